@@ -1,0 +1,61 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "cia402_driver/can/frame.h"
+#include "cia402_driver/common/time.h"
+
+namespace cia402::can {
+
+/// Where a protocol stack puts the frames it wants on the wire.
+class Sink {
+ public:
+  virtual ~Sink() = default;
+  /// Queues one frame. Never blocks. The frames of one sink leave in the order they were given
+  /// within each identifier. @return false if the frame could not be taken (queue full or interface
+  /// down); the sink counts such losses, they are never silent.
+  virtual bool send(const Frame& frame) = 0;
+};
+
+/// The controller's fault confinement state (ISO 11898-1) or why there is no bus at all.
+enum class BusState { missing, down, error_active, error_warning, error_passive, bus_off };
+
+/// A bus state in words, e.g. "error passive".
+const char* toString(BusState state);
+
+/// Counters since start; all only ever grow.
+struct BusCounters {
+  std::uint64_t frames_sent = 0;
+  std::uint64_t frames_received = 0;
+  std::uint64_t frames_deferred = 0;  ///< waited in our own queue, the kernel's was full (ENOBUFS)
+  std::uint64_t frames_dropped = 0;   ///< refused: own queue full, or interface down
+  std::uint64_t error_frames = 0;
+  std::uint64_t bus_off_events = 0;
+  std::uint64_t receive_overflows = 0;  ///< frames lost by the controller or the kernel
+};
+
+struct ReceivedFrame {
+  Frame frame;
+  Time stamp;  ///< when the frame was on the wire (kernel time stamp mapped to BusClock)
+};
+
+/// A CAN interface: the edge where I/O happens. Never blocks; used by one thread only.
+class Interface : public Sink {
+ public:
+  /// The next received frame, or nothing. Error frames are delivered, too.
+  virtual std::optional<ReceivedFrame> receive(Time now) = 0;
+  /// To be called regularly (every cycle): sends deferred frames, re-opens a lost interface.
+  virtual void maintain(Time now) = 0;
+  /// A file descriptor that poll()s readable when receive() has something; -1 if there is none.
+  virtual int fd() const = 0;
+  virtual BusState state() const = 0;
+  virtual const BusCounters& counters() const = 0;
+  /// State in words with the reason and what to do, e.g. "can0 does not exist: plug the adapter in
+  /// or run `ip link add ...`".
+  virtual std::string describe() const = 0;
+};
+
+}  // namespace cia402::can
