@@ -1,0 +1,61 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "cia402_driver/can/bus.h"
+#include "cia402_driver/canopen/config.h"
+#include "cia402_driver/canopen/node.h"
+
+namespace cia402::canopen {
+
+/// What the master tells the layers above, as it happens (in receive() or tick()).
+class MasterListener {
+ public:
+  virtual ~MasterListener() = default;
+  virtual void onEmergency(Node&, const Emergency&) {}
+  virtual void onBootUp(Node&, Time) {}  ///< a boot-up frame, expected or not
+  virtual void onHealthChange(Node&, NodeHealth /*before*/, Time) {}
+};
+
+/// CANopen master of one bus (CiA 301): NMT, heartbeat, SYNC, and one Node per device. Sans-IO: the
+/// owner hands in frames and time and sends nothing else on the bus. One thread.
+class Master {
+ public:
+  /// @param sink must outlive the master.
+  Master(MasterConfig config, can::Sink& sink, MasterListener* listener = nullptr);
+
+  /// Boots all nodes in parallel (NMT reset communication to all first, if `reset`).
+  void start(Time now, bool reset = true);
+  void receive(const can::Frame& frame, Time stamp, Time now);
+  /// Time-outs, heartbeat, SDO queues, boot procedures.
+  void tick(Time now);
+  Time nextDeadline() const;
+
+  /// Produces SYNC now (with counter if configured).
+  void sendSync(Time now);
+  /// Sends every ready node's RPDOs.
+  void sendRpdos(Time now);
+  /// NMT command to all nodes.
+  void commandAll(NmtCommand command, Time now);
+
+  std::vector<Node>& nodes() { return nodes_; }
+  const std::vector<Node>& nodes() const { return nodes_; }
+  /// nullptr if no such node is configured.
+  Node* find(NodeId id);
+  const MasterConfig& config() const { return config_; }
+  /// Frames whose COB-ID belongs to no configured node.
+  std::uint64_t strayFrames() const { return stray_frames_; }
+
+ private:
+  // The implementer completes this part.
+  MasterConfig config_;
+  can::Sink& sink_;
+  MasterListener* listener_;
+  std::vector<Node> nodes_;
+  std::uint64_t stray_frames_ = 0;
+};
+
+}  // namespace cia402::canopen

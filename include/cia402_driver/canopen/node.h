@@ -1,0 +1,79 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "cia402_driver/canopen/config.h"
+#include "cia402_driver/canopen/emergency.h"
+#include "cia402_driver/canopen/nmt.h"
+#include "cia402_driver/canopen/pdo.h"
+#include "cia402_driver/canopen/sdo_client.h"
+
+namespace cia402::canopen {
+
+/// Health of a node as the master sees it.
+enum class NodeHealth : std::uint8_t {
+  absent,   ///< never heard of, or boot timed out
+  booting,  ///< identified and configured at the moment; bootStep() says how far
+  ready,    ///< configured and started (operational)
+  failed,   ///< boot failed; bootError() says why; boot() tries again
+  lost,     ///< heartbeat missing
+};
+const char* toString(NodeHealth health);
+
+/// The master's side of one node: SDO client, process image, supervision and boot procedure.
+/// Owned by Master.
+class Node {
+ public:
+  Node(const NodeConfig& config, const MasterConfig& master, can::Sink& sink);
+  ~Node();
+  Node(Node&&) noexcept;
+
+  NodeId id() const;
+  const std::string& name() const;
+  const NodeConfig& config() const;
+
+  NodeHealth health() const;
+  NmtState nmtState() const;
+  /// Step of the boot procedure in words: "reading 1018:01 vendor id", "waiting for boot-up".
+  const std::string& bootStep() const;
+  /// Why the boot failed or the node was lost, and what to do; empty when healthy.
+  const std::string& problem() const;
+  /// Identity read at boot.
+  struct Identity {
+    std::uint32_t device_type = 0, vendor_id = 0, product_code = 0, revision = 0, serial = 0;
+  };
+  const std::optional<Identity>& identity() const;
+  /// Notes worth telling: optional writes refused, objects missing, heartbeat not supported.
+  const std::vector<std::string>& notes() const;
+
+  /// (Re)starts the boot procedure: identify, configure, start. @param reset send NMT reset
+  /// communication first; without it the node is only brought to pre-operational.
+  void boot(Time now, bool reset);
+  /// NMT command to this node alone. After stop / pre-operational commands the node is not ready.
+  void command(NmtCommand command, Time now);
+
+  SdoClient& sdo();
+  ProcessImage& image();
+  const ProcessImage& image() const;
+
+  /// Boot-ups seen since start. A change tells that the node lost its configuration.
+  std::uint32_t bootUps() const;
+  Time lastHeartbeat() const;
+  const std::optional<Emergency>& lastEmergency() const;
+
+  void receive(const can::Frame& frame, Time stamp, Time now);  ///< called by Master
+  void tick(Time now);                                          ///< called by Master
+  Time nextDeadline() const;                                    ///< called by Master
+  /// Sends the RPDOs that are due in this cycle (all synchronous and event-driven ones).
+  void sendRpdos(Time now);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace cia402::canopen

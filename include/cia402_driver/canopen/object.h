@@ -1,0 +1,59 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace cia402::canopen {
+
+/// Node-ID of a device on the bus, 1..127 (CiA 301, 7.3.5); 0 addresses all nodes in NMT.
+using NodeId = std::uint8_t;
+
+/// Address of an object in a device's object dictionary.
+struct ObjectId {
+  std::uint16_t index = 0;
+  std::uint8_t subindex = 0;
+};
+
+constexpr bool operator==(ObjectId a, ObjectId b) {
+  return a.index == b.index && a.subindex == b.subindex;
+}
+constexpr bool operator!=(ObjectId a, ObjectId b) { return !(a == b); }
+constexpr bool operator<(ObjectId a, ObjectId b) {
+  return a.index != b.index ? a.index < b.index : a.subindex < b.subindex;
+}
+
+/// "6041:00": four and two upper-case hexadecimal digits.
+std::string toString(ObjectId object);
+
+/// Reads "6041:00", "0x6041:0", "0x6041" or "6041" (hexadecimal, sub-index 0 unless given).
+std::optional<ObjectId> parseObjectId(std::string_view text);
+
+/// Basic data types of CiA 301, 7.4.7 that can stand in an object dictionary.
+enum class DataType : std::uint8_t {
+  boolean,
+  int8,
+  int16,
+  int32,
+  int64,
+  uint8,
+  uint16,
+  uint32,
+  uint64,
+  real32,
+  real64,
+  visible_string,
+  octet_string,
+  domain,
+};
+
+/// Size on the wire in bits: 1 for boolean, 8..64 for numbers, 0 for types of any length.
+unsigned sizeBits(DataType type);
+bool isSigned(DataType type);
+/// "uint16"; the same words as in profiles.
+const char* toString(DataType type);
+std::optional<DataType> parseDataType(std::string_view text);
+
+}  // namespace cia402::canopen

@@ -1,0 +1,103 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cia402_driver/can/bus.h"
+#include "cia402_driver/canopen/object.h"
+#include "cia402_driver/common/result.h"
+
+namespace cia402::canopen {
+
+using Bytes = std::vector<std::uint8_t>;
+
+/// How long to wait for each answer of the server and how often to start a transfer again after a
+/// time-out. Aborts by the server are answers: they are never retried.
+struct SdoOptions {
+  Duration timeout = std::chrono::milliseconds(500);
+  int retries = 1;
+};
+
+/// One transfer, shared by the client and whoever asked for it. Whoever asked polls `done()`; a
+/// dropped ticket only means that nobody wants the result.
+class SdoTransfer {
+ public:
+  enum class Direction { upload, download };
+  enum class Failure { none, aborted_by_server, timed_out, protocol_error, cancelled };
+
+  bool done() const { return done_; }
+  /// Valid once done() and ok: what was read; for a download what was written.
+  const Bytes& data() const { return data_; }
+  bool ok() const { return done_ && failure_ == Failure::none; }
+  Failure failure() const { return failure_; }
+  /// The server's or our own abort code; 0 if there was none.
+  std::uint32_t abortCode() const { return abort_code_; }
+  /// In words: "node 3, object 6060:00 mode_of_operation, write 08: the drive refused:
+  /// 0x06090030 (invalid value)". Empty while running or when ok.
+  const std::string& message() const { return message_; }
+  ObjectId object() const { return object_; }
+  Direction direction() const { return direction_; }
+
+ private:
+  friend class SdoClient;
+  ObjectId object_;
+  std::string name_;
+  Direction direction_ = Direction::upload;
+  SdoOptions options_;
+  Bytes data_;
+  bool done_ = false;
+  Failure failure_ = Failure::none;
+  std::uint32_t abort_code_ = 0;
+  std::string message_;
+};
+using SdoTicket = std::shared_ptr<const SdoTransfer>;
+
+/// SDO client for one node (CiA 301, 7.2.4): a queue of transfers, one on the wire at a time,
+/// expedited or segmented of any length. Sans-IO: all nodes' clients run at once in one thread.
+class SdoClient {
+ public:
+  /// @param sink where requests go; must outlive the client.
+  SdoClient(NodeId node, can::Sink& sink, SdoOptions defaults = {});
+
+  /// Queues a read. @param name object name for messages, may be empty.
+  SdoTicket upload(ObjectId object, std::string name = {}, std::optional<SdoOptions> = {});
+  /// Queues a write of `data` in wire order (little-endian).
+  SdoTicket download(ObjectId object, Bytes data, std::string name = {},
+                     std::optional<SdoOptions> = {});
+
+  /// Takes a frame with COB-ID 580h + node-ID; others and answers to nothing are ignored (counted).
+  void receive(const can::Frame& frame, Time now);
+  /// Starts queued transfers and handles time-outs.
+  void tick(Time now);
+  /// When tick() must be called at the latest.
+  Time nextDeadline() const;
+  /// Ends all transfers, running and queued, with `reason` (e.g. "the node rebooted").
+  void cancelAll(const std::string& reason);
+
+  bool idle() const;
+  struct Counters {
+    std::uint64_t completed = 0, aborted = 0, timeouts = 0, retries = 0, stray_frames = 0;
+  };
+  const Counters& counters() const { return counters_; }
+  NodeId node() const { return node_; }
+
+ private:
+  // The implementer completes this part.
+  NodeId node_;
+  can::Sink& sink_;
+  SdoOptions defaults_;
+  std::deque<std::shared_ptr<SdoTransfer>> queue_;
+  Counters counters_;
+};
+
+/// A little-endian unsigned number from up to eight bytes. @pre bytes.size() <= 8
+std::uint64_t toUnsigned(const Bytes& bytes);
+/// `size` little-endian bytes of `value`. @pre size <= 8
+Bytes toBytes(std::uint64_t value, unsigned size);
+
+}  // namespace cia402::canopen
