@@ -29,6 +29,8 @@ constexpr Duration fromSeconds(double seconds) {
 }
 
 /// A duration in seconds.
-constexpr double toSeconds(Duration duration) { return static_cast<double>(duration.count()) * 1e-9; }
+constexpr double toSeconds(Duration duration) {
+  return static_cast<double>(duration.count()) * 1e-9;
+}
 
 }  // namespace cia402

@@ -1,0 +1,85 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <yaml-cpp/yaml.h>
+
+#include "cia402_driver/canopen/config.h"
+#include "cia402_driver/common/problems.h"
+#include "cia402_driver/drive/axis_config.h"
+
+namespace cia402::config {
+
+struct BusConfig {
+  std::string interface;  ///< "can0", or "sim"
+  double bitrate = 1e6;   ///< bit/s
+  Duration sync_period{std::chrono::milliseconds(4)};
+  canopen::NodeId node_id = 127;
+  Duration heartbeat{std::chrono::milliseconds(100)};
+  std::uint8_t sync_counter = 0;  ///< chosen from the profiles unless given
+};
+
+/// Goal and path tolerances of one joint in a group; 0: none.
+struct JointTolerance {
+  double trajectory = 0.0, goal = 0.0;
+};
+
+struct GroupConfig {
+  std::string name;
+  std::vector<std::string> joints;
+  bool stop_group_on_fault = true;
+  double goal_time = 1.0;  ///< s
+  std::map<std::string, JointTolerance> tolerances;
+};
+
+struct CouplingConfig {
+  std::vector<std::string> joints, axes;
+  std::vector<std::vector<double>> matrix;  ///< joint space = matrix * axis space
+};
+
+/// Fixed and moving frames around a joint, for tf.
+struct FrameConfig {
+  std::string joint, parent, child;
+  double xyz[3] = {0, 0, 0}, rpy[3] = {0, 0, 0}, axis[3] = {0, 0, 1};
+};
+
+struct RobotConfig {
+  BusConfig bus;
+  std::vector<drive::AxisConfig> axes;
+  std::vector<CouplingConfig> couplings;
+  std::vector<GroupConfig> groups;
+  std::vector<FrameConfig> frames;
+  double joint_state_rate = 50.0;                      ///< Hz
+  std::map<std::string, YAML::Node> simulation;        ///< axis name -> its `simulation:` section
+  std::map<std::string, std::string> simulated_drive;  ///< axis name -> definition name
+};
+
+/// Finds the file of a drive profile: a name ("generic_cia402") in the search folders, or a path.
+/// @return empty if there is none.
+using ProfileLookup = std::function<std::string(const std::string& drive)>;
+ProfileLookup profilesIn(std::vector<std::string> folders);
+
+/// Turns a parameter tree (interface.md, "Configuration") into a typed configuration. Every problem
+/// is reported at once with its path; the result is only valid if none was added.
+RobotConfig loadRobot(const YAML::Node& tree, const ProfileLookup& profiles, Problems& problems);
+
+/// What the CANopen master needs: PDO COB-IDs, mappings, start-up writes as bytes. A pure function
+/// of a valid configuration; problems that only show here (a value that does not fit) are added.
+canopen::MasterConfig makeMasterConfig(const RobotConfig& robot, Problems& problems);
+
+/// Bus load that the configuration causes, as shares of the bit rate (1.0: full).
+struct BusLoad {
+  double nominal = 0.0, worst = 0.0;  ///< without stuff bits; with the most there can be
+  double feasible_rate = 0.0;         ///< Hz of SYNC at which the worst case is 80 %
+};
+BusLoad busLoad(const canopen::MasterConfig& master, double bitrate);
+
+/// The PDO plan as a table for people.
+std::string pdoTable(const canopen::MasterConfig& master);
+
+}  // namespace cia402::config

@@ -1,0 +1,120 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "cia402_driver/canopen/node.h"
+#include "cia402_driver/common/result.h"
+#include "cia402_driver/drive/axis_config.h"
+#include "cia402_driver/drive/state_machine.h"
+
+namespace cia402::drive {
+
+/// Long operations of an axis; each an explicit state machine with a deadline.
+enum class ProcedureKind : std::uint8_t {
+  none,
+  enable,
+  disable,
+  home,
+  clear_faults,
+  recover,
+  quick_stop,
+  halt,
+  set_mode,
+  set_position,
+};
+const char* toString(ProcedureKind kind);
+
+/// What a procedure is doing, for diagnostics, service answers and action feedback alike.
+struct ProcedureStatus {
+  ProcedureKind kind = ProcedureKind::none;
+  std::uint32_t id = 0;  ///< grows with every procedure started on the axis
+  bool running = false;
+  bool success = false;     ///< valid once not running
+  std::string step;         ///< "switching on"
+  std::string waiting_for;  ///< "statusword to show operation enabled"
+  std::string message;      ///< the result as a sentence, once not running
+  Time started{}, deadline{};
+};
+
+/// What is asked of an axis.
+struct ProcedureRequest {
+  ProcedureKind kind = ProcedureKind::none;
+  std::string mode;       ///< set_mode: canonical name
+  double position = 0.0;  ///< set_position: joint value the present position shall have
+};
+
+inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+/// Feedback and condition of an axis after the last update. Plain values, cheap to copy; texts are
+/// made on demand by Axis.
+struct AxisState {
+  Time stamp{};  ///< when the feedback was on the wire
+  bool feedback_valid = false;
+  double position = kUnknown;         ///< rad or m
+  double velocity = kUnknown;         ///< rad/s or m/s
+  double effort = kUnknown;           ///< N m or N
+  double following_error = kUnknown;  ///< commanded minus measured position, rad or m
+  State state = State::unknown;
+  std::uint16_t statusword = 0;
+  std::uint16_t error_code = 0;    ///< 603Fh or last EMCY; 0: none
+  std::int16_t mode_value = 0;     ///< 6061h
+  const ModeSpec* mode = nullptr;  ///< active mode, nullptr while unknown
+  bool homed = false;
+  bool target_reached = false;
+  bool warning = false;
+  bool internal_limit = false;
+  bool ready_for_motion = false;  ///< operation enabled, mode active, brake released, no procedure
+  std::uint32_t digital_inputs = 0;
+  canopen::NodeHealth health = canopen::NodeHealth::absent;
+};
+
+/// One CiA 402 axis on a node: decodes feedback, drives the state machine, runs procedures, encodes
+/// set-points. Sans-IO; after construction the cyclic calls do not allocate (procedures may, when a
+/// step ends).
+class Axis {
+ public:
+  /// @throws std::invalid_argument if the configuration lacks what it was validated for.
+  Axis(AxisConfig config, canopen::Node& node);
+  ~Axis();
+  Axis(Axis&&) noexcept;
+
+  const AxisConfig& config() const;
+  canopen::Node& node();
+  const AxisState& state() const;
+  const ProcedureStatus& procedure() const;
+
+  /// Decodes the node's process image. Call after the TPDOs of a cycle.
+  void readFeedback(Time now);
+  /// Advances state machine and procedures. Call after readFeedback() and in each cycle; also when
+  /// an SDO answer came, to hurry procedures along.
+  void update(Time now);
+  /// Encodes controlword and targets into the process image. Call before the RPDOs of a cycle.
+  void writeCommands(Time now);
+
+  /// Starts a procedure. disable, quick_stop and halt pre-empt a running one; anything else is
+  /// refused with a sentence while one runs or where the axis cannot do it.
+  Result<std::uint32_t> start(const ProcedureRequest& request, Time now);
+  /// Ends a running procedure safely (homing: halt), e.g. the action was cancelled.
+  void cancel(const std::string& reason, Time now);
+
+  /// Set-point of the active mode in joint units (rad, m, per s, N m, N). Only taken while
+  /// ready_for_motion. @return false (nothing changes) for NaN, out of limits or not ready.
+  [[nodiscard]] bool setTarget(double value);
+  double target() const;
+  /// Why setTarget would refuse now, in words; empty if it would not.
+  std::string motionRefusal() const;
+
+  /// Node and axis events from the master.
+  void onEmergency(const canopen::Emergency& emergency, Time now);
+  void onHealthChange(canopen::NodeHealth before, Time now);
+
+  /// The present fault in words with cause and remedy; empty if none.
+  std::string faultText() const;
+};
+
+}  // namespace cia402::drive

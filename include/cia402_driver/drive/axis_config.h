@@ -1,0 +1,49 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cia402_driver/canopen/config.h"
+#include "cia402_driver/drive/conversion.h"
+#include "cia402_driver/drive/profile.h"
+
+namespace cia402::drive {
+
+/// Limits of a joint in SI units (rad or m); absent: none.
+struct AxisLimits {
+  std::optional<double> lower, upper, velocity, acceleration, jerk, effort;
+};
+
+struct HomingOptions {
+  /// Method number of the drive; absent: declare zero (only where the profile says so).
+  std::optional<int> method;
+  double search_velocity = 0.0;  ///< rad/s or m/s, > 0
+  double zero_velocity = 0.0;
+  double acceleration = 0.0;  ///< rad/s^2 or m/s^2
+  double offset = 0.0;        ///< joint position at the home point, rad or m
+  Duration timeout{std::chrono::seconds(30)};
+  bool required = true;  ///< no position motion before homing
+  int order = 0;         ///< axes of a lower order home first
+};
+
+/// Typed configuration of one axis.
+struct AxisConfig {
+  std::string name;   ///< key in the YAML
+  std::string joint;  ///< joint name
+  canopen::NodeId node_id = 0;
+  std::shared_ptr<const DriveProfile> profile;
+  AxisGeometry geometry;
+  AxisLimits limits;
+  std::string mode;  ///< canonical name; mode at start
+  std::optional<HomingOptions> homing;
+  Duration command_timeout{std::chrono::milliseconds(200)};
+  std::vector<PdoLayout> pdos;     ///< resolved layout (profile's or the user's)
+  std::vector<NamedWrite> writes;  ///< the user's extra start-up writes
+  std::optional<std::uint32_t> vendor_id, product_code, revision, serial;  ///< expected identity
+};
+
+}  // namespace cia402::drive

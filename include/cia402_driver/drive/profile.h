@@ -1,0 +1,191 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cia402_driver/canopen/object.h"
+#include "cia402_driver/canopen/pdo.h"
+#include "cia402_driver/common/problems.h"
+#include "cia402_driver/common/time.h"
+
+namespace cia402::drive {
+
+using canopen::DataType;
+using canopen::ObjectId;
+
+/// How a number sits in an object.
+enum class Encoding : std::uint8_t {
+  integer,              ///< a plain integer, scaled by the profile's units
+  float32,              ///< the bit pattern of an IEEE-754 float in a 32-bit integer object
+  half_float,           ///< the upper 16 bits of such a pattern in a 16-bit object (value << 16)
+  half_float_unsigned,  ///< 16-bit word n; pattern = n * 65535, n unsigned
+  half_float_signed,    ///< 16-bit word n; pattern = n * 65535, n signed
+};
+
+/// What a value means physically; decides which entry of the profile's unit system scales it.
+enum class Quantity : std::uint8_t {
+  none,
+  position,
+  velocity,
+  acceleration,
+  jerk,
+  torque,
+  current,
+  voltage,
+  temperature,
+  time,
+};
+
+/// A named object of the drive family.
+struct ObjectSpec {
+  std::string name;  ///< "target_position"; the fixed names are listed in docs/drive_profiles.md
+  ObjectId id;
+  DataType type = DataType::uint32;
+  Encoding encoding = Encoding::integer;
+  Quantity quantity = Quantity::none;
+  double factor = 1.0;  ///< further factor: device value = factor * value in the profile's unit
+  bool readable = true;
+  bool writable = true;
+  bool rpdo = false;  ///< may be mapped into an RPDO
+  bool tpdo = false;  ///< may be mapped into a TPDO
+};
+
+/// Device units of one quantity: a device value 1 is `scale` of `base` per `per`.
+struct UnitSpec {
+  enum class Base : std::uint8_t {
+    count,  ///< axis option counts_per_turn to the motor turn
+    turn,
+    radian,
+    degree,
+    per_mille_of_rated,  ///< torque: 1/1000 of the rated torque
+    newton_metre,
+    ampere,
+    volt,
+    celsius,
+    second,
+    one,
+  };
+  Base base = Base::one;
+  int per_seconds = 0;      ///< power of 1/s: velocity 1, acceleration 2, jerk 3
+  bool per_minute = false;  ///< rpm: velocity per minute instead of per second
+  double scale = 1.0;
+};
+
+/// What a mode controls, for everything above the drive that does not care for mode numbers.
+enum class ControlKind : std::uint8_t { position, velocity, torque, homing };
+
+enum class Handshake : std::uint8_t {
+  none,           ///< a written target takes effect at once
+  new_set_point,  ///< controlword bit 4 edge, acknowledged by statusword bit 12 (pp)
+};
+
+/// A write by profile name: value in the object's unit system (SI after conversion) or raw.
+struct NamedWrite {
+  std::string object;               ///< name in the profile, or "6065:00"
+  std::optional<double> value;      ///< in SI units of the joint if the object has a quantity
+  std::optional<std::int64_t> raw;  ///< as it is
+  /// A value of the configuration instead: "limits.velocity", "limits.acceleration",
+  /// "limits.effort", "limits.lower", "limits.upper", "sync_period.value", "sync_period.exponent",
+  /// "homing.search_velocity", "position_actual" (read and copied)...; skipped where not
+  /// configured.
+  std::string from;
+  bool optional = false;  ///< an abort is noted, not an error
+};
+
+/// One mode of operation of the family.
+struct ModeSpec {
+  std::string name;  ///< canonical logical name ("cyclic_position") or vendor name
+  int value = 0;     ///< for 6060h
+  ControlKind kind = ControlKind::position;
+  bool cyclic = false;  ///< follows a stream of set-points (trajectory groups may use it)
+  std::string target;   ///< name of the target object; empty for homing
+  Handshake handshake = Handshake::none;
+  std::uint16_t controlword_bits = 0;  ///< held while the mode is active in Operation enabled
+  std::optional<int> target_reached_bit, following_error_bit, set_point_acknowledge_bit,
+      speed_zero_bit, homing_attained_bit, homing_error_bit, follows_command_bit;
+  std::vector<NamedWrite> entry_writes;  ///< before the mode is entered, by SDO
+};
+
+/// How the family finds its zero.
+struct HomingSpec {
+  enum class Kind : std::uint8_t {
+    none,
+    drive,         ///< the drive's own homing mode (CiA 402)
+    declare_zero,  ///< no homing in the drive: the present position is declared to be the offset
+  };
+  Kind kind = Kind::none;
+  std::map<int, std::string> methods;  ///< method number -> meaning in words
+  bool needs_zero_attained_before_start = false;
+  std::vector<NamedWrite> writes;  ///< homing parameters, `from` the axis' homing options
+};
+
+/// A known 603Fh / EMCY code of the family.
+struct ErrorText {
+  std::string text, cause, remedy;
+};
+
+/// PDO layout and constraints.
+struct PdoLayout {
+  canopen::PdoDirection direction = canopen::PdoDirection::tpdo;
+  unsigned number = 1;
+  std::uint8_t transmission = 1;
+  std::uint16_t inhibit = 0;         ///< 100 us
+  std::uint16_t event_timer = 0;     ///< ms
+  std::vector<std::string> objects;  ///< profile names or "6041:00"
+};
+
+/// A drive family as data. Loaded from config/drives/<name>.yaml; documented in
+/// docs/drive_profiles.md. No code anywhere asks for `name`.
+struct DriveProfile {
+  std::string name, description;
+  std::optional<std::uint32_t> device_type, vendor_id, product_code;
+  std::map<Quantity, UnitSpec> units;
+  bool output_shaft = false;  ///< units count at the joint's side of the gear
+  std::vector<ObjectSpec> objects;
+  std::vector<ModeSpec> modes;
+  HomingSpec homing;
+  bool halt_supported = true;
+  bool warning_stops = false;             ///< a warning makes the drive stop like a fault
+  std::vector<int> quick_stop_holds;      ///< values of 605Ah after which quick stop stays active
+  std::vector<NamedWrite> startup;        ///< at every boot
+  std::vector<NamedWrite> before_enable;  ///< by SDO, each time before enabling
+  std::vector<PdoLayout> pdos;            ///< default layout; unlisted PDOs are disabled
+  unsigned max_pdos = 4;                  ///< per direction
+  unsigned max_pdo_entries = 8;
+  bool pdo_map_count_may_be_read_only = false;
+  bool pdo_cob_ids_fixed = false;
+  std::optional<std::uint8_t> sync_counter;  ///< overflow value wanted in 1019h; none: no counter
+  bool has_sync_counter_object = true;       ///< 1019h exists
+  bool has_sync_period_object = true;        ///< 1006h exists
+  bool heartbeat_supported = true, heartbeat_consumer_supported = true;
+  struct Timing {
+    Duration boot{std::chrono::seconds(5)};
+    Duration state_change{std::chrono::seconds(2)};
+    Duration mode_change{std::chrono::seconds(1)};
+    Duration brake_release{0};  ///< Operation enabled until set-points are followed
+    Duration sdo{std::chrono::milliseconds(500)};
+    int sdo_retries = 1;
+  } timing;
+  std::map<std::uint16_t, ErrorText> errors;
+
+  const ObjectSpec* find(const std::string& object_name) const;
+  const ObjectSpec* find(ObjectId id) const;
+  /// By logical name; nullptr if the family has no such mode.
+  const ModeSpec* mode(const std::string& mode_name) const;
+};
+
+/// "csp" -> "cyclic_position"; names that are no short form come back as they are.
+std::string canonicalModeName(const std::string& name);
+
+/// Reads config/drives/<name>.yaml. Every problem is added with "file:line" paths; the profile is
+/// only valid if none was added.
+DriveProfile loadDriveProfile(const std::string& path, Problems& problems);
+/// The same from text (tests). @param source name for messages.
+DriveProfile parseDriveProfile(const std::string& text, const std::string& source,
+                               Problems& problems);
+
+}  // namespace cia402::drive

@@ -1,0 +1,53 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace cia402::drive {
+
+/// States of the CiA 402 power drive system (CiA 402-2, finite state automaton).
+enum class State : std::uint8_t {
+  not_ready_to_switch_on,
+  switch_on_disabled,
+  ready_to_switch_on,
+  switched_on,
+  operation_enabled,
+  quick_stop_active,
+  fault_reaction_active,
+  fault,
+  unknown,  ///< no statusword yet, or bits that match no state
+};
+/// "operation enabled".
+const char* toString(State state);
+
+/// The state that a statusword shows, by mask and value as CiA 402-2 lists them.
+State decodeState(std::uint16_t statusword);
+/// Set bits by name: "ready to switch on, voltage enabled, warning".
+std::string statuswordText(std::uint16_t statusword);
+
+/// Where somebody wants the drive to be.
+enum class Goal : std::uint8_t { disabled, ready, switched_on, enabled, quick_stop };
+
+/// One step towards a goal from a state: bits of the controlword 0..3 and 7.
+struct Command {
+  std::uint16_t controlword = 0;
+  int transition = -1;    ///< number in CiA 402-2; -1: nothing to do, wait
+  const char* text = "";  ///< "shutdown (transition 2)"
+};
+/// The controlword that brings `state` one transition nearer to `goal` or keeps it there; a table
+/// over all states and goals. Fault is only left by a fault reset, never by this.
+Command nextCommand(State state, Goal goal);
+
+namespace controlword {
+inline constexpr std::uint16_t kSwitchOn = 1u << 0, kEnableVoltage = 1u << 1, kQuickStop = 1u << 2,
+                               kEnableOperation = 1u << 3, kNewSetPoint = 1u << 4,
+                               kHomingStart = 1u << 4, kChangeImmediately = 1u << 5,
+                               kRelative = 1u << 6, kFaultReset = 1u << 7, kHalt = 1u << 8;
+}
+namespace statusword {
+inline constexpr std::uint16_t kVoltageEnabled = 1u << 4, kWarning = 1u << 7, kRemote = 1u << 9,
+                               kTargetReached = 1u << 10, kInternalLimit = 1u << 11;
+}
+
+}  // namespace cia402::drive
