@@ -1,0 +1,56 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "cia402_driver/common/result.h"
+
+namespace cia402::motion {
+
+/// Ties the joints a person thinks in to the axes that motors move, as in a differential wrist:
+/// joint = matrix * axis, for positions, velocities and accelerations alike. Effort goes the other
+/// way round (the power is the same on both sides): axis effort = matrixᵀ * joint effort.
+///
+/// The conversions neither allocate nor fail. Input and output have size() elements each and must
+/// not overlap.
+class Coupling {
+ public:
+  using Input = Eigen::Ref<const Eigen::VectorXd>;
+  using Output = Eigen::Ref<Eigen::VectorXd>;
+
+  /// One row a joint, one column an axis. @return why the matrix cannot be used: not square, of
+  /// another size than the names, not finite, or singular, i.e. some movement of the axes would
+  /// move no joint (after scaling rows and columns
+  /// the smallest singular value is below 1e-9 of the largest).
+  static Result<Coupling> create(std::vector<std::string> joints, std::vector<std::string> axes,
+                                 const Eigen::MatrixXd& matrix);
+
+  /// Positions, velocities or accelerations of the joints from those of the axes.
+  void toJoints(const Input& axes, Output joints) const { joints.noalias() = matrix_ * axes; }
+  /// Positions, velocities or accelerations of the axes from those of the joints.
+  void toAxes(const Input& joints, Output axes) const { axes.noalias() = inverse_ * joints; }
+  /// Joint efforts (N·m or N) from axis efforts.
+  void effortToJoints(const Input& axes, Output joints) const {
+    joints.noalias() = inverse_transposed_ * axes;
+  }
+  /// Axis efforts (N·m or N) from joint efforts.
+  void effortToAxes(const Input& joints, Output axes) const {
+    axes.noalias() = transposed_ * joints;
+  }
+
+  std::size_t size() const { return joints_.size(); }
+  const std::vector<std::string>& joints() const { return joints_; }
+  const std::vector<std::string>& axes() const { return axes_; }
+  const Eigen::MatrixXd& matrix() const { return matrix_; }
+
+ private:
+  Coupling(std::vector<std::string> joints, std::vector<std::string> axes,
+           const Eigen::MatrixXd& matrix);
+
+  std::vector<std::string> joints_, axes_;
+  Eigen::MatrixXd matrix_, inverse_, transposed_, inverse_transposed_;
+};
+
+}  // namespace cia402::motion

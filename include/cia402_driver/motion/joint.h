@@ -1,0 +1,38 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace cia402::motion {
+
+/// What a joint moves in; only used to write sentences.
+enum class JointUnit { radian, metre };
+
+/// "rad" or "m".
+const char* toString(JointUnit unit);
+
+/// The limits of one joint, in rad or m and their derivatives, N·m or N. An absent limit is not
+/// checked. `lower` and `upper` hold for continuous joints, too, where they are given.
+struct JointLimits {
+  std::optional<double> lower, upper;
+  std::optional<double> velocity, acceleration, jerk, effort;  ///< largest magnitudes, > 0
+  bool continuous = false;  ///< turns without end: positions a full turn apart are one pose
+};
+
+/// One joint as the motion module sees it.
+struct Joint {
+  std::string name;
+  JointLimits limits;
+  JointUnit unit = JointUnit::radian;
+};
+
+/// Position, velocity and acceleration of one joint, in rad or m and s.
+struct MotionState {
+  double position = 0, velocity = 0, acceleration = 0;
+};
+
+/// A number for a sentence, up to 8 significant digits: "3.1", "-0.25".
+std::string formatNumber(double value);
+
+}  // namespace cia402::motion

@@ -1,0 +1,17 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/motion/joint.h"
+
+#include <array>
+#include <cstdio>
+
+namespace cia402::motion {
+
+const char* toString(JointUnit unit) { return unit == JointUnit::metre ? "m" : "rad"; }
+
+std::string formatNumber(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.8g", value);
+  return text.data();
+}
+
+}  // namespace cia402::motion
