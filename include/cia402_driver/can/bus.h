@@ -49,6 +49,8 @@ class Interface : public Sink {
   virtual std::optional<ReceivedFrame> receive(Time now) = 0;
   /// To be called regularly (every cycle): sends deferred frames, re-opens a lost interface.
   virtual void maintain(Time now) = 0;
+  /// When receive() or maintain() has something to do at the latest, beside what fd() announces.
+  virtual Time nextDeadline() const { return kNever; }
   /// A file descriptor that poll()s readable when receive() has something; -1 if there is none.
   virtual int fd() const = 0;
   virtual BusState state() const = 0;

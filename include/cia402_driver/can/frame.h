@@ -8,7 +8,8 @@
 
 namespace cia402::can {
 
-/// One classic CAN data or remote frame (ISO 11898-1), or an error frame reported by the controller.
+/// One classic CAN data or remote frame (ISO 11898-1), or an error frame reported by the
+/// controller.
 struct Frame {
   std::uint32_t id = 0;   ///< identifier, 11 or 29 bits; for an error frame the error class bits
   std::uint8_t size = 0;  ///< number of data bytes, 0..8
