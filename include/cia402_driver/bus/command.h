@@ -1,0 +1,72 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "cia402_driver/canopen/sdo_client.h"
+#include "cia402_driver/drive/axis.h"
+#include "cia402_driver/motion/trajectory.h"
+
+namespace cia402::bus {
+
+/// What a command came to, for a service answer.
+struct Answer {
+  bool success = false;
+  std::string message;  ///< a sentence
+  canopen::Bytes data;  ///< read_object: wire order
+  double number = std::numeric_limits<double>::quiet_NaN();  ///< read_object: in the unit of `text`
+  std::string text;     ///< read_object: value with unit
+};
+
+/// Called once, in the bus thread, when a command has ended. Must not block.
+using Reply = std::function<void(const Answer&)>;
+
+/// A procedure on one axis, or on all that are concerned where `axis` is empty.
+struct ProcedureCommand {
+  std::string axis;
+  drive::ProcedureRequest request;
+};
+
+/// A set-point of the axis' active mode, rad or m, per s, N m or N. Answered only if refused.
+struct SetpointCommand {
+  std::size_t axis = 0;  ///< index in the configuration
+  double value = 0.0;
+};
+
+/// A trajectory for a group; without points: stop. Answered once it was accepted or refused.
+struct TrajectoryCommand {
+  std::string group;
+  std::vector<std::string> joints;
+  std::vector<motion::TrajectoryPoint> points;
+  std::optional<Time> start_time;
+};
+
+/// Reads an object by profile name or "6041:00".
+struct ReadObjectCommand {
+  std::string axis, object;
+};
+
+/// Writes an object: a number in SI joint units for objects with a quantity, else a plain number
+/// (decimal or 0x...), or a text for strings.
+struct WriteObjectCommand {
+  std::string axis, object, value;
+};
+
+/// Runs a function in the bus thread, e.g. to inject a fault into a simulated drive.
+struct CallCommand {
+  std::function<Answer(Time)> function;
+};
+
+struct Command {
+  std::variant<ProcedureCommand, SetpointCommand, TrajectoryCommand, ReadObjectCommand,
+               WriteObjectCommand, CallCommand>
+      body;
+  Reply reply;  ///< may be empty
+};
+
+}  // namespace cia402::bus

@@ -1,0 +1,48 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "cia402_driver/bus/cycle_statistics.h"
+#include "cia402_driver/bus/fixed_text.h"
+#include "cia402_driver/can/bus.h"
+#include "cia402_driver/canopen/nmt.h"
+#include "cia402_driver/drive/axis.h"
+
+namespace cia402::bus {
+
+/// One axis as the last cycle left it.
+struct AxisSnapshot {
+  drive::AxisState state;
+  double target = drive::kUnknown;  ///< set-point of the active mode, joint units
+  canopen::NmtState nmt = canopen::NmtState::unknown;
+  drive::ProcedureKind procedure = drive::ProcedureKind::none;
+  bool procedure_running = false;
+  std::uint32_t serial = 0;         ///< 1018:04; 0: not read
+  std::uint64_t missed_feedback = 0;///< cycles without a new TPDO while the node was ready
+  FixedText<96> step;               ///< of the procedure or of the node's boot
+  FixedText<160> waiting_for;
+  FixedText<384> problem;           ///< fault or node problem in words; empty if well
+};
+
+/// The trajectory of one group.
+struct GroupSnapshot {
+  bool executing = false;
+  bool stopping = false;
+};
+
+/// Everything the ROS side shows, taken once a cycle.
+struct RobotSnapshot {
+  Time now{};
+  can::BusState bus_state = can::BusState::missing;
+  can::BusCounters counters;
+  FixedText<256> bus_text;
+  double bus_load = 0.0;  ///< share of the bit rate over the last second, stuff bits not counted
+  CycleStatistics statistics;
+  bool shut_down = false;
+  std::vector<AxisSnapshot> axes;    ///< in configuration order
+  std::vector<GroupSnapshot> groups; ///< in configuration order
+};
+
+}  // namespace cia402::bus
