@@ -12,20 +12,54 @@
 
 namespace cia402::sim {
 
-/// Behaviour switches of a simulated device's communication, where real devices differ.
+/// Behaviour switches of a simulated device's communication, where real devices differ. The
+/// defaults are those of CiA 301 (clauses of version 4.2.0). May be changed at any time.
 struct DeviceBehaviour {
   Duration boot_time{std::chrono::milliseconds(20)};     ///< power-on or reset to boot-up
   Duration sdo_latency{std::chrono::microseconds(200)};  ///< request to answer
   bool ignores_nmt_reset = false;
-  bool map_count_read_only = false;  ///< sub0 of 16xxh/1Axxh refuses writes with 0x06010002
+  bool map_count_read_only = false;  ///< sub0 of 16xxh/1Axxh refuses writes with 0x06010002; it
+                                     ///< follows the entries written, which may be at any time
   bool accepts_plain_sync = true;    ///< take an empty SYNC although 1019h is not 0
   bool sdo_silent = false;           ///< never answers SDO
+
+  // SDO server (7.2.4.3).
+  bool generic_length_abort = false;  ///< 0x06070010 for every wrong length instead of ...12, ...13
+  bool upload_without_size = false;   ///< upload answers do not tell the size (s = 0)
+  bool byte_wise_sdo = false;         ///< accepts requests of fewer than 8 bytes, rest taken as 0
+
+  // PDO configuration (7.5.2.35 to 7.5.2.38).
+  bool mapping_requires_invalid = true;     ///< 16xxh/1Axxh can be written only while bit 31 of the
+                                            ///< COB-ID is set (else 0x08000022), entries only while
+                                            ///< sub0 is 0 (else 0x06010000)
+  bool map_entry_checked_on_write = false;  ///< a bad entry is refused when it is written, not only
+                                            ///< when sub0 is
+  bool disable_may_change_id = false;  ///< bits 0..29 of a COB-ID may change in the same write that
+                                       ///< sets bit 31
+  bool timers_require_invalid = false;  ///< inhibit time and SYNC start value can be written only
+                                        ///< while bit 31 of the COB-ID is set (else 0x08000022)
+  bool rtr_types = true;                ///< TPDO types 252 and 253 exist (else 0x06090030)
+
+  // PDO transmission (7.2.2).
+  bool type255_event_timer_only = false;   ///< type 255 sends when the event timer ends, never on a
+                                           ///< change (Damiao)
+  bool sends_event_tpdos_on_start = true;  ///< entering operational sends TPDOs of type 254, 255
+
+  // Supervision.
+  bool sync_timeout = false;  ///< no SYNC for 1.5 * 1006h: EMCY 0x8201 (Damiao)
 };
 
 /// A CANopen slave (CiA 301) on an object dictionary: boot-up, NMT, SDO server (expedited,
 /// segmented), four or more PDO pairs with mapping and all transmission types, inhibit and event
 /// timers, SYNC with counter, heartbeat producer and consumer, EMCY with 1001h/1003h. Sans-IO. It
 /// shares no encoder with the master on purpose.
+///
+/// The dictionary says what the device has: a service whose objects are missing does not exist.
+/// From the first powerOn() the device uses the write and read hooks of 1003h, 1005h, 1006h, 1014h,
+/// 1016h, 1017h, 1019h and the PDO parameters 1400h-1BFFh; all others are the application's.
+/// Node-IDs in default COB-IDs are to be resolved in the dictionary. Errors of communication it
+/// reports by itself (EMCY 0x81xx, 0x82xx with bits 0 and 4 of 1001h) and takes back with EMCY
+/// 0x0000 when the last one is gone, unless the application then holds a fault of its own.
 class Device {
  public:
   /// What the application (the drive) on top wants to know. All calls happen in receive()/tick().
@@ -33,31 +67,49 @@ class Device {
    public:
     virtual ~Application() = default;
     virtual void onPowerOn(Time) {}  ///< also after reset node / reset communication
+    /// After reset communication (1000h-1FFFh are back at their power-on values); onPowerOn()
+    /// unless the application tells the two apart.
+    virtual void onResetCommunication(Time now) { onPowerOn(now); }
+    /// The state just entered; boot_up while initialising.
     virtual void onNmtState(canopen::NmtState, Time) {}
-    virtual void onSync(Time) {}        ///< before synchronous TPDOs are sampled
+    virtual void onSync(Time) {}        ///< before synchronous TPDOs are sampled; every accepted
+                                        ///< SYNC, in pre-operational, too
     virtual void onRpdo(Time) {}        ///< after an RPDO's values were taken
     virtual void onMasterLost(Time) {}  ///< heartbeat consumer timed out (1016h)
     virtual void onMasterBack(Time) {}
-    virtual void beforeTpdo(Time) {}  ///< bring actual values up to date
+    virtual void beforeTpdo(Time) {}  ///< bring actual values up to date; not for notifyChange()
+    /// Whether a fault of the application keeps bits of 1001h set, so that the end of a
+    /// communication error must not report "no error".
+    virtual bool hasFault() const { return false; }
   };
 
+  /// `dictionary`, `sink` and `application` must outlive the device.
   Device(canopen::NodeId node, can::Sink& sink, ObjectDictionary& dictionary,
          DeviceBehaviour behaviour, Application& application);
   ~Device();
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
 
+  /// Restores the dictionary's power-on values and begins to boot; boot-up after `boot_time`.
   void powerOn(Time now);
   void powerOff();  ///< silent and deaf until powerOn()
   bool powered() const;
+  /// Takes a frame from the bus (any frame: what is not meant for it is ignored).
   void receive(const can::Frame& frame, Time now);
+  /// Does what is due until `now`.
   void tick(Time now);
+  /// When tick() must be called next; kNever if nothing is pending.
   Time nextEvent() const;
 
   canopen::NodeId node() const;
+  /// `unknown` without power, `boot_up` while initialising.
   canopen::NmtState nmtState() const;
-  /// Sends an EMCY (unless inhibited) and enters it into 1003h; 1001h := error_register.
+  /// Sends an EMCY and enters it into 1003h; 1001h := error_register. The frame waits (at most 16)
+  /// while the inhibit time 1015h runs or the NMT state forbids it; it is lost where 1014h is
+  /// disabled or missing. CiA 301, 7.2.7.
   void sendEmergency(std::uint16_t code, std::uint8_t error_register,
                      const std::array<std::uint8_t, 5>& vendor, Time now);
-  /// EMCY 0000h: all errors gone; 1001h := 0.
+  /// EMCY 0000h: all errors gone; 1001h := 0. The history 1003h stays.
   void clearEmergency(Time now);
   /// Mapped values of event-driven TPDOs may have changed: sends those whose content did, subject
   /// to their inhibit time (types 254, 255 by `behaviour`).
