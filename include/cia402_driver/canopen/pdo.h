@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -63,7 +64,8 @@ class ProcessImage {
   bool receive(std::size_t tpdo, const can::Frame& frame, Time stamp);
   /// Packs an RPDO.
   void pack(std::size_t rpdo, can::Frame& frame) const;
-  /// Marks every input as unknown (the node rebooted or was lost).
+  /// Marks every input as unknown and sets every output to 0 (the node rebooted or was lost), so
+  /// that no set-point or controlword of before is ever sent again.
   void invalidate();
 
   struct Pdo {
@@ -87,6 +89,8 @@ class ProcessImage {
   std::vector<Pdo>& rpdos() { return rpdos_; }
 
  private:
+  void add(const PdoConfig& config);
+
   std::vector<Pdo> tpdos_, rpdos_;
   std::vector<ProcessValue> inputs_;
   std::vector<std::uint64_t> outputs_;

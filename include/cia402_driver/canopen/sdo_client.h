@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <memory>
@@ -10,7 +11,7 @@
 
 #include "cia402_driver/can/bus.h"
 #include "cia402_driver/canopen/object.h"
-#include "cia402_driver/common/result.h"
+#include "cia402_driver/common/time.h"
 
 namespace cia402::canopen {
 
@@ -40,6 +41,9 @@ class SdoTransfer {
   /// In words: "node 3, object 6060:00 mode_of_operation, write 08: the drive refused:
   /// 0x06090030 (invalid value)". Empty while running or when ok.
   const std::string& message() const { return message_; }
+  /// The last part of message() alone: "the drive refused: 0x06090030 (invalid value)".
+  const std::string& reason() const { return reason_; }
+  const std::string& name() const { return name_; }
   ObjectId object() const { return object_; }
   Direction direction() const { return direction_; }
 
@@ -53,7 +57,7 @@ class SdoTransfer {
   bool done_ = false;
   Failure failure_ = Failure::none;
   std::uint32_t abort_code_ = 0;
-  std::string message_;
+  std::string message_, reason_;
 };
 using SdoTicket = std::shared_ptr<const SdoTransfer>;
 
@@ -87,12 +91,48 @@ class SdoClient {
   NodeId node() const { return node_; }
 
  private:
-  // The implementer completes this part.
+  /// What the server is expected to answer at the moment.
+  enum class Phase { idle, upload_initiate, upload_segment, download_initiate, download_segment };
+  enum class Outcome { taken, stray };
+  using Transfer = std::shared_ptr<SdoTransfer>;
+
+  SdoTicket enqueue(Transfer transfer, const std::optional<SdoOptions>& options);
+  void startNext(Time now);
+  void initiate(Time now);
+  void await(Phase phase, Time now);
+  void sendInitiate(std::uint8_t command, std::uint32_t data);
+  void sendAbort(std::uint32_t code);
+  bool namesCurrentObject(const can::Frame& frame) const;
+
+  Outcome dispatch(const can::Frame& frame, Time now);
+  Outcome onServerAbort(const can::Frame& frame, Time now);
+  Outcome onUploadInitiated(const can::Frame& frame, Time now);
+  Outcome onUploadSegment(const can::Frame& frame, Time now);
+  Outcome onDownloadInitiated(const can::Frame& frame, Time now);
+  Outcome onDownloadSegment(const can::Frame& frame, Time now);
+  void requestSegment(Time now);
+  void sendSegment(Time now);
+
+  void onTimeout(Time now);
+  void succeed(Time now);
+  void fail(SdoTransfer::Failure failure, std::uint32_t code, std::string reason, Time now);
+  /// Tells the server, too.
+  void abortTransfer(std::uint32_t code, const std::string& why, Time now);
+  void finish(SdoTransfer& transfer, SdoTransfer::Failure failure, std::uint32_t code,
+              std::string reason);
+
   NodeId node_;
   can::Sink& sink_;
   SdoOptions defaults_;
-  std::deque<std::shared_ptr<SdoTransfer>> queue_;
+  std::deque<Transfer> queue_;  ///< the front one is on the wire unless phase_ is idle
   Counters counters_;
+  Phase phase_ = Phase::idle;
+  Time deadline_ = kNever;
+  int attempt_ = 0;
+  bool toggle_ = false;
+  std::size_t offset_ = 0;                  ///< bytes of a download already sent
+  std::optional<std::uint32_t> announced_;  ///< size the server announced for an upload
+  Bytes received_;                          ///< of the upload on the wire
 };
 
 /// A little-endian unsigned number from up to eight bytes. @pre bytes.size() <= 8

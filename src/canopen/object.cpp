@@ -1,0 +1,82 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/canopen/object.h"
+
+#include <array>
+#include <charconv>
+#include <cstdio>
+
+namespace cia402::canopen {
+namespace {
+
+struct TypeRow {
+  DataType type;
+  const char* name;
+  unsigned bits;
+  bool is_signed;
+};
+
+constexpr std::array<TypeRow, 14> kTypes{{
+    {DataType::boolean, "boolean", 1, false},
+    {DataType::int8, "int8", 8, true},
+    {DataType::int16, "int16", 16, true},
+    {DataType::int32, "int32", 32, true},
+    {DataType::int64, "int64", 64, true},
+    {DataType::uint8, "uint8", 8, false},
+    {DataType::uint16, "uint16", 16, false},
+    {DataType::uint32, "uint32", 32, false},
+    {DataType::uint64, "uint64", 64, false},
+    {DataType::real32, "real32", 32, true},
+    {DataType::real64, "real64", 64, true},
+    {DataType::visible_string, "visible_string", 0, false},
+    {DataType::octet_string, "octet_string", 0, false},
+    {DataType::domain, "domain", 0, false},
+}};
+
+const TypeRow& row(DataType type) {
+  for (const TypeRow& candidate : kTypes) {
+    if (candidate.type == type) return candidate;
+  }
+  return kTypes.back();
+}
+
+std::optional<unsigned> parseHex(std::string_view text, unsigned max) {
+  if (text.size() > 2 && text[0] == '0' && (text[1] == 'x' || text[1] == 'X')) {
+    text.remove_prefix(2);
+  }
+  unsigned value = 0;
+  const char* const end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data(), end, value, 16);
+  if (parsed.ec != std::errc() || parsed.ptr != end || value > max) return {};
+  return value;
+}
+
+}  // namespace
+
+std::string toString(ObjectId object) {
+  std::array<char, 8> text{};
+  std::snprintf(text.data(), text.size(), "%04X:%02X", static_cast<unsigned>(object.index),
+                static_cast<unsigned>(object.subindex));
+  return text.data();
+}
+
+std::optional<ObjectId> parseObjectId(std::string_view text) {
+  const std::size_t colon = text.find(':');
+  const std::optional<unsigned> index = parseHex(text.substr(0, colon), 0xFFFF);
+  const std::optional<unsigned> subindex =
+      colon == std::string_view::npos ? 0U : parseHex(text.substr(colon + 1), 0xFF);
+  if (!index || !subindex) return {};
+  return ObjectId{static_cast<std::uint16_t>(*index), static_cast<std::uint8_t>(*subindex)};
+}
+
+unsigned sizeBits(DataType type) { return row(type).bits; }
+bool isSigned(DataType type) { return row(type).is_signed; }
+const char* toString(DataType type) { return row(type).name; }
+
+std::optional<DataType> parseDataType(std::string_view text) {
+  for (const TypeRow& candidate : kTypes) {
+    if (text == candidate.name) return candidate.type;
+  }
+  return {};
+}
+
+}  // namespace cia402::canopen

@@ -1,0 +1,113 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/canopen/pdo.h"
+
+#include <algorithm>
+
+namespace cia402::canopen {
+namespace {
+
+constexpr unsigned kMaxBits = 64;
+
+std::uint64_t maskOf(unsigned bits) {
+  return bits >= kMaxBits ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
+}
+
+std::uint64_t loadLittleEndian(const std::array<std::uint8_t, 8>& data) {
+  return static_cast<std::uint64_t>(data[0]) | static_cast<std::uint64_t>(data[1]) << 8 |
+         static_cast<std::uint64_t>(data[2]) << 16 | static_cast<std::uint64_t>(data[3]) << 24 |
+         static_cast<std::uint64_t>(data[4]) << 32 | static_cast<std::uint64_t>(data[5]) << 40 |
+         static_cast<std::uint64_t>(data[6]) << 48 | static_cast<std::uint64_t>(data[7]) << 56;
+}
+
+void storeLittleEndian(std::uint64_t word, std::array<std::uint8_t, 8>& data) {
+  data[0] = static_cast<std::uint8_t>(word);
+  data[1] = static_cast<std::uint8_t>(word >> 8);
+  data[2] = static_cast<std::uint8_t>(word >> 16);
+  data[3] = static_cast<std::uint8_t>(word >> 24);
+  data[4] = static_cast<std::uint8_t>(word >> 32);
+  data[5] = static_cast<std::uint8_t>(word >> 40);
+  data[6] = static_cast<std::uint8_t>(word >> 48);
+  data[7] = static_cast<std::uint8_t>(word >> 56);
+}
+
+Slot findSlot(const std::vector<ObjectId>& objects, ObjectId object) {
+  const auto found = std::find(objects.begin(), objects.end(), object);
+  return found == objects.end() ? kNoSlot : static_cast<Slot>(found - objects.begin());
+}
+
+Slot findOrAddSlot(std::vector<ObjectId>& objects, ObjectId object) {
+  const Slot slot = findSlot(objects, object);
+  if (slot != kNoSlot) return slot;
+  objects.push_back(object);
+  return static_cast<Slot>(objects.size() - 1);
+}
+
+}  // namespace
+
+ProcessImage::ProcessImage(const std::vector<PdoConfig>& pdos) {
+  for (const PdoConfig& config : pdos) {
+    if (config.enabled) add(config);
+  }
+  const auto by_number = [](const Pdo& a, const Pdo& b) { return a.number < b.number; };
+  std::stable_sort(tpdos_.begin(), tpdos_.end(), by_number);
+  std::stable_sort(rpdos_.begin(), rpdos_.end(), by_number);
+  inputs_.resize(input_objects_.size());
+  outputs_.resize(output_objects_.size());
+}
+
+void ProcessImage::add(const PdoConfig& config) {
+  const bool input = config.direction == PdoDirection::tpdo;
+  std::vector<ObjectId>& objects = input ? input_objects_ : output_objects_;
+  Pdo pdo{};
+  pdo.direction = config.direction;
+  pdo.number = config.number;
+  pdo.cob_id = config.cob_id;
+  pdo.transmission = config.transmission;
+  unsigned shift = 0;
+  for (const PdoEntry& entry : config.entries) {
+    if (entry.bits == 0 || shift + entry.bits > kMaxBits) break;  // refused when the node boots
+    pdo.fields.push_back(
+        {findOrAddSlot(objects, entry.object), static_cast<std::uint8_t>(shift), entry.bits});
+    shift += entry.bits;
+  }
+  pdo.size = static_cast<std::uint8_t>((shift + 7) / 8);
+  (input ? tpdos_ : rpdos_).push_back(std::move(pdo));
+}
+
+Slot ProcessImage::inputSlot(ObjectId object) const { return findSlot(input_objects_, object); }
+Slot ProcessImage::outputSlot(ObjectId object) const { return findSlot(output_objects_, object); }
+
+bool ProcessImage::receive(std::size_t tpdo, const can::Frame& frame, Time stamp) {
+  Pdo& pdo = tpdos_[tpdo];
+  const bool exact = frame.size == pdo.size;
+  if (!exact) {
+    ++pdo.wrong_length;
+    if (frame.size < pdo.size) return false;
+  }
+  ++pdo.count;
+  pdo.last = stamp;
+  const std::uint64_t word = loadLittleEndian(frame.data);
+  for (const Pdo::Field& field : pdo.fields) {
+    inputs_[field.slot] = {(word >> field.shift) & maskOf(field.bits), stamp, true};
+  }
+  return exact;
+}
+
+void ProcessImage::pack(std::size_t rpdo, can::Frame& frame) const {
+  const Pdo& pdo = rpdos_[rpdo];
+  std::uint64_t word = 0;
+  for (const Pdo::Field& field : pdo.fields) {
+    word |= (outputs_[field.slot] & maskOf(field.bits)) << field.shift;
+  }
+  frame.id = pdo.cob_id;
+  frame.size = pdo.size;
+  frame.extended = frame.remote = frame.error = false;
+  storeLittleEndian(word, frame.data);
+}
+
+void ProcessImage::invalidate() {
+  std::fill(inputs_.begin(), inputs_.end(), ProcessValue{});
+  std::fill(outputs_.begin(), outputs_.end(), std::uint64_t{0});
+}
+
+}  // namespace cia402::canopen
