@@ -62,7 +62,6 @@ TrajectoryResult Trajectory::create(const std::vector<Joint>& joints,
                                     const std::vector<TrajectoryPoint>& points,
                                     const TrajectoryStart& start) {
   if (auto failure = checkShape(joints, commanded, points)) return *failure;
-
   Trajectory result;
   result.joint_count_ = joints.size();
   result.begin_ = start.begin();
@@ -71,28 +70,16 @@ TrajectoryResult Trajectory::create(const std::vector<Joint>& joints,
   if (points.empty()) return result;
 
   const Time base = start.start_time.value_or(start.now);
-  if (base > Time{} && points.back().time_from_start > kNever - base) {
-    return TrajectoryError(TrajectoryErrorCode::invalid_goal,
-                           "point " + std::to_string(points.size() - 1) +
-                               " lies beyond the end of time; check time_from_start");
+  if (auto failure = result.takePointsAhead(points, base)) return *failure;
+  std::vector<double> shift(joints.size(), 0.0);
+  const std::vector<double>& first = points[result.dropped_points_].positions;
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    if (!start.shortest_way || !joints[j].limits.continuous) continue;
+    shift[j] = kTurn * std::round((commanded[j].position - first[j]) / kTurn);
   }
-  const auto ahead = std::find_if(points.begin(), points.end(), [&](const auto& point) {
-    return base + point.time_from_start > result.begin_;
-  });
-  if (ahead == points.end()) return allPassed(points.back(), base, result.begin_);
-  result.dropped_points_ = static_cast<std::size_t>(ahead - points.begin());
-  for (auto point = ahead; point != points.end(); ++point) {
-    result.ends_.push_back(base + point->time_from_start);
-  }
-
   result.segments_.reserve(result.ends_.size() * joints.size());
   std::vector<Target> from;
-  std::vector<double> shift(joints.size(), 0.0);
-  for (std::size_t j = 0; j < joints.size(); ++j) {
-    from.push_back({commanded[j], true, true});
-    if (!start.shortest_way || !joints[j].limits.continuous) continue;
-    shift[j] = kTurn * std::round((commanded[j].position - ahead->positions[j]) / kTurn);
-  }
+  for (const MotionState& state : commanded) from.push_back({state, true, true});
   Time begin = result.begin_;
   for (std::size_t s = 0; s < result.ends_.size(); ++s) {
     const std::size_t index = result.dropped_points_ + s;
@@ -109,6 +96,22 @@ TrajectoryResult Trajectory::create(const std::vector<Joint>& joints,
     begin = result.ends_[s];
   }
   return result;
+}
+
+std::optional<TrajectoryError> Trajectory::takePointsAhead(
+    const std::vector<TrajectoryPoint>& points, Time base) {
+  if (base > Time{} && points.back().time_from_start > kNever - base) {
+    return TrajectoryError(TrajectoryErrorCode::invalid_goal,
+                           "point " + std::to_string(points.size() - 1) +
+                               " lies beyond the end of time; check time_from_start");
+  }
+  for (const TrajectoryPoint& point : points) {
+    const Time time = base + point.time_from_start;
+    if (time > begin_) ends_.push_back(time);
+  }
+  if (ends_.empty()) return allPassed(points.back(), base, begin_);
+  dropped_points_ = points.size() - ends_.size();
+  return {};
 }
 
 std::size_t Trajectory::segmentAt(Time time) const {

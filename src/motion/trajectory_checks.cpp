@@ -45,7 +45,6 @@ Failure checkJoints(const std::vector<Joint>& joints, const std::vector<MotionSt
 /// A quantity of a point and how it is called.
 struct Quantity {
   const char* name;
-  const char* power;
   const std::vector<double>& values;
   bool required;
 };
@@ -69,15 +68,14 @@ Failure checkQuantity(const std::vector<Joint>& joints, std::size_t index, const
 
 Failure checkPoint(const std::vector<Joint>& joints, const TrajectoryPoint& point,
                    std::size_t index) {
-  if (Failure failure = checkQuantity(joints, index, {"positions", "", point.positions, true})) {
+  if (Failure failure = checkQuantity(joints, index, {"positions", point.positions, true})) {
+    return failure;
+  }
+  if (Failure failure = checkQuantity(joints, index, {"velocities", point.velocities, false})) {
     return failure;
   }
   if (Failure failure =
-          checkQuantity(joints, index, {"velocities", "/s", point.velocities, false})) {
-    return failure;
-  }
-  if (Failure failure =
-          checkQuantity(joints, index, {"accelerations", "/s²", point.accelerations, false})) {
+          checkQuantity(joints, index, {"accelerations", point.accelerations, false})) {
     return failure;
   }
   if (!point.accelerations.empty() && point.velocities.empty()) {

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <variant>
@@ -93,6 +94,9 @@ class Trajectory {
 
  private:
   Trajectory() = default;
+  /// Fills ends_ with the points after begin_; `base` is where their times count from.
+  std::optional<TrajectoryError> takePointsAhead(const std::vector<TrajectoryPoint>& points,
+                                                 Time base);
   /// The segment that `time` lies in; only between startTime() and endTime().
   std::size_t segmentAt(Time time) const;
   MotionState sampleSegment(std::size_t segment, std::size_t joint, Time time) const;

@@ -1,0 +1,205 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/motion/setpoint_limiter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace cia402::motion {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Close to a limit the velocity is proportional to the room left, room / delay. A loop of that
+/// gain closed over feedback that is late by `reaction` comes in without overshoot only while gain
+/// * reaction < 1/e, hence a delay of at least e times the reaction.
+constexpr double kSettling = 3;
+
+/// The largest velocity towards a place `room` ahead from which one can still stop there: moving on
+/// for `delay_s` and then braking with `deceleration` takes v·delay + v²/(2·deceleration). Braking
+/// in steps needs no more than braking continuously, hence this holds whatever steps follow.
+double brakingVelocity(double room, double delay_s, double deceleration) {
+  if (!(room > 0)) return 0;  // also if the position is unknown
+  return 2 * room / (delay_s + std::sqrt(delay_s * delay_s + 2 * room / deceleration));
+}
+
+/// Rounding alone must not carry a position over a limit that braking kept.
+double withoutRounding(double to, double from, const JointLimits& limits) {
+  const auto barely = [to](double limit) {
+    return std::abs(to - limit) < 1e-9 * (1 + std::abs(to));
+  };
+  if (limits.upper && from <= *limits.upper && to > *limits.upper && barely(*limits.upper)) {
+    return *limits.upper;
+  }
+  if (limits.lower && from >= *limits.lower && to < *limits.lower && barely(*limits.lower)) {
+    return *limits.lower;
+  }
+  return to;
+}
+
+std::string problem(const Joint& joint, const char* what, double value, const char* power) {
+  return joint.name + ": " + what + " is " + formatNumber(value) + " " + toString(joint.unit) +
+         power;
+}
+
+}  // namespace
+
+Result<void> check(const LimiterConfig& config) {
+  const Joint& joint = config.joint;
+  const JointLimits& limits = joint.limits;
+  const auto wrong = [](const std::optional<double>& limit) {
+    return limit && !(std::isfinite(*limit) && *limit > 0);
+  };
+  const char* const above_zero = "; it must be a finite number above 0";
+  if (wrong(limits.velocity)) {
+    return Error{problem(joint, "the velocity limit", *limits.velocity, "/s") + above_zero};
+  }
+  if (wrong(limits.acceleration)) {
+    return Error{problem(joint, "the acceleration limit", *limits.acceleration, "/s²") +
+                 above_zero};
+  }
+  if (wrong(config.stop_deceleration)) {
+    return Error{problem(joint, "the stop deceleration", *config.stop_deceleration, "/s²") +
+                 above_zero};
+  }
+  for (const auto& [name, limit] :
+       {std::pair("the lower limit", limits.lower), std::pair("the upper limit", limits.upper)}) {
+    if (limit && !std::isfinite(*limit)) {
+      return Error{problem(joint, name, *limit, "") + "; it must be a finite number"};
+    }
+  }
+  if (limits.lower && limits.upper && *limits.lower >= *limits.upper) {
+    return Error{problem(joint, "the lower limit", *limits.lower, "") +
+                 ", not below the upper limit " + formatNumber(*limits.upper) + " " +
+                 toString(joint.unit)};
+  }
+  if (config.command_timeout && *config.command_timeout <= Duration::zero()) {
+    return Error{joint.name + ": the command timeout is " +
+                 formatNumber(toSeconds(*config.command_timeout)) + " s; it must be above 0"};
+  }
+  return {};
+}
+
+void SetpointLimiter::resetTo(const MotionState& state, Time now) {
+  output_ = state;
+  if (!std::isfinite(state.velocity)) output_.velocity = 0;
+  command_.reset();
+  stepped_ = now;
+  timed_out_ = false;
+  limiting_ = false;
+}
+
+Result<void> SetpointLimiter::take(double command, const char* power, Time now) {
+  if (!std::isfinite(command)) {
+    return Error{problem(config_.joint, "the commanded value", command, power) +
+                 ", not a finite number; it is ignored"};
+  }
+  command_ = command;
+  commanded_ = now;
+  timed_out_ = false;
+  return {};
+}
+
+bool SetpointLimiter::hasCommand(Time now) {
+  if (command_ && config_.command_timeout && now - commanded_ > *config_.command_timeout) {
+    command_.reset();
+    timed_out_ = true;
+  }
+  return command_.has_value();
+}
+
+double SetpointLimiter::permitted(double desired, double position, double dt,
+                                  double reaction_s) const {
+  const JointLimits& limits = config_.joint.limits;
+  const double acceleration = limits.acceleration.value_or(kInfinity);
+  const double fastest = limits.velocity.value_or(kInfinity);
+  const double delay_s = dt + kSettling * reaction_s;
+  double lowest = -fastest, highest = fastest;
+  if (limits.upper) {
+    const double room = *limits.upper - position;
+    highest = std::min(highest, brakingVelocity(room, delay_s, acceleration));
+  }
+  if (limits.lower) {
+    const double room = position - *limits.lower;
+    lowest = std::max(lowest, -brakingVelocity(room, delay_s, acceleration));
+  }
+  const double harder = command_ ? 0 : config_.stop_deceleration.value_or(0);
+  const double change = std::max(acceleration, harder) * dt;
+  return std::clamp(std::clamp(desired, lowest, highest), output_.velocity - change,
+                    output_.velocity + change);
+}
+
+double SetpointLimiter::slower(double dt) const {
+  const double deceleration =
+      config_.stop_deceleration.value_or(config_.joint.limits.acceleration.value_or(kInfinity));
+  const double speed = std::max(0.0, std::abs(output_.velocity) - deceleration * dt);
+  return std::copysign(speed, output_.velocity);
+}
+
+void PositionLimiter::reset(const MotionState& commanded, Time now) {
+  resetTo(commanded, now);
+  previous_command_ = commanded.position;
+  fresh_ = false;
+}
+
+Result<void> PositionLimiter::command(double position, Time now) {
+  if (Result<void> taken = take(position, "", now); !taken) return taken;
+  const JointLimits& limits = config_.joint.limits;
+  if (limits.lower) command_ = std::max(*command_, *limits.lower);
+  if (limits.upper) command_ = std::min(*command_, *limits.upper);
+  fresh_ = true;
+  return {};
+}
+
+/// Towards the command, in one step at most onto it, and never faster than from where its own
+/// velocity can still be met by braking.
+double PositionLimiter::approach(double dt) const {
+  const double acceleration = config_.joint.limits.acceleration.value_or(kInfinity);
+  const double fastest = config_.joint.limits.velocity.value_or(kInfinity);
+  const double way = *command_ - output_.position;
+  double moving = 0;
+  if (fresh_ && previous_command_) moving = (*command_ - *previous_command_) / dt;
+  moving = std::clamp(moving, -fastest, fastest);
+  const double relative = brakingVelocity(std::abs(way), dt, acceleration);
+  return way >= 0 ? std::min(way / dt, moving + relative) : std::max(way / dt, moving - relative);
+}
+
+MotionState PositionLimiter::step(Time now) {
+  const double dt = toSeconds(now - stepped_);
+  if (!(dt > 0)) return output_;
+  const bool follow = hasCommand(now);
+  const JointLimits& limits = config_.joint.limits;
+  const double from = output_.position;
+  const double velocity = permitted(follow ? approach(dt) : slower(dt), from, dt, 0);
+  const double to = withoutRounding(from + velocity * dt, from, limits);
+  output_ = {to, velocity, (velocity - output_.velocity) / dt};
+  limiting_ = follow && std::abs(to - *command_) > 1e-12 * (1 + std::abs(to));
+  previous_command_ = to;
+  if (command_) previous_command_ = fresh_ ? command_ : std::nullopt;
+  fresh_ = false;
+  stepped_ = now;
+  return output_;
+}
+
+void VelocityLimiter::reset(const MotionState& commanded, Time now) { resetTo(commanded, now); }
+
+Result<void> VelocityLimiter::command(double velocity, Time now) {
+  return take(velocity, "/s", now);
+}
+
+MotionState VelocityLimiter::step(Time now, double position) {
+  const double dt = toSeconds(now - stepped_);
+  if (!(dt > 0)) return output_;
+  const JointLimits& limits = config_.joint.limits;
+  const bool lost = std::isnan(position) && (limits.lower || limits.upper);
+  const bool follow = hasCommand(now) && !lost;
+  const double desired = follow ? *command_ : slower(dt);
+  const double velocity = permitted(desired, position, dt, reaction_s_);
+  limiting_ = follow && velocity != *command_;
+  output_ = {position, velocity, (velocity - output_.velocity) / dt};
+  stepped_ = now;
+  return output_;
+}
+
+}  // namespace cia402::motion
