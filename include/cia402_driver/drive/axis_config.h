@@ -40,6 +40,7 @@ struct AxisConfig {
   AxisLimits limits;
   std::string mode;  ///< canonical name; mode at start
   std::optional<HomingOptions> homing;
+  Duration sync_period{std::chrono::milliseconds(4)};  ///< of the bus
   Duration command_timeout{std::chrono::milliseconds(200)};
   std::vector<PdoLayout> pdos;     ///< resolved layout (profile's or the user's)
   std::vector<NamedWrite> writes;  ///< the user's extra start-up writes

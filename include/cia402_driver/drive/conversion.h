@@ -23,11 +23,15 @@ struct AxisGeometry {
 
 /// Converts one object's raw wire number to a joint value in SI units and back. A plain value
 /// prepared at configuration; both directions are a multiplication, an addition and a range check.
+///
+/// Unsigned objects hold magnitudes (a profile velocity, a window): direction and offset do not
+/// touch them, and negative values do not fit. Signed ones follow the axis' direction; the offset
+/// belongs to positions only.
 class Conversion {
  public:
   Conversion() = default;
   /// @return an error sentence if the geometry lacks what the unit needs (counts_per_turn, lead,
-  /// rated torque).
+  /// rated torque), the unit does not suit the quantity, or the object holds no number.
   static Result<Conversion> create(const ObjectSpec& object, const DriveProfile& profile,
                                    const AxisGeometry& geometry);
 
@@ -42,11 +46,19 @@ class Conversion {
   double highest() const;
   /// Joint units per device unit (resolution); 0 for floats.
   double resolution() const;
+  /// True if larger device numbers are smaller joint values.
+  bool reversed() const { return factor_ < 0.0; }
+  /// The same with all joint values larger by `amount`: the zero was declared elsewhere.
+  Conversion shifted(double amount) const;
 
  private:
-  double factor_ = 1.0;  ///< joint value = factor * device value + offset
+  double factor_ = 1.0;   ///< joint value = factor * device value + offset
+  double inverse_ = 1.0;  ///< 1 / factor
   double offset_ = 0.0;
-  DataType type_ = DataType::int32;
+  double low_ = -2147483648.0, high_ = 2147483647.0;  ///< device values that fit
+  std::uint64_t mask_ = 0xFFFFFFFF;                   ///< bits of the object
+  std::uint8_t shift_ = 32;                           ///< 64 - bits
+  bool signed_ = true;
   Encoding encoding_ = Encoding::integer;
 };
 

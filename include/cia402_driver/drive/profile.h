@@ -30,6 +30,7 @@ enum class Encoding : std::uint8_t {
 enum class Quantity : std::uint8_t {
   none,
   position,
+  distance,  ///< a difference of positions: following error, windows; no offset
   velocity,
   acceleration,
   jerk,
@@ -38,20 +39,6 @@ enum class Quantity : std::uint8_t {
   voltage,
   temperature,
   time,
-};
-
-/// A named object of the drive family.
-struct ObjectSpec {
-  std::string name;  ///< "target_position"; the fixed names are listed in docs/drive_profiles.md
-  ObjectId id;
-  DataType type = DataType::uint32;
-  Encoding encoding = Encoding::integer;
-  Quantity quantity = Quantity::none;
-  double factor = 1.0;  ///< further factor: device value = factor * value in the profile's unit
-  bool readable = true;
-  bool writable = true;
-  bool rpdo = false;  ///< may be mapped into an RPDO
-  bool tpdo = false;  ///< may be mapped into a TPDO
 };
 
 /// Device units of one quantity: a device value 1 is `scale` of `base` per `per`.
@@ -71,8 +58,23 @@ struct UnitSpec {
   };
   Base base = Base::one;
   int per_seconds = 0;      ///< power of 1/s: velocity 1, acceleration 2, jerk 3
-  bool per_minute = false;  ///< rpm: velocity per minute instead of per second
+  bool per_minute = false;  ///< one of these is per minute instead: "turn/min", "turn/min/s"
   double scale = 1.0;
+};
+
+/// A named object of the drive family.
+struct ObjectSpec {
+  std::string name;  ///< "target_position"; the fixed names are listed in docs/drive_profiles.md
+  ObjectId id;
+  DataType type = DataType::uint32;
+  Encoding encoding = Encoding::integer;
+  Quantity quantity = Quantity::none;
+  double factor = 1.0;  ///< further factor: device value = factor * value in the profile's unit
+  std::optional<UnitSpec> unit;  ///< of this object alone; absent: the profile's for the quantity
+  bool readable = true;
+  bool writable = true;
+  bool rpdo = false;  ///< may be mapped into an RPDO
+  bool tpdo = false;  ///< may be mapped into a TPDO
 };
 
 /// What a mode controls, for everything above the drive that does not care for mode numbers.
@@ -84,16 +86,21 @@ enum class Handshake : std::uint8_t {
 };
 
 /// A write by profile name: value in the object's unit system (SI after conversion) or raw.
+/// drive/named_write.h turns it into a number for one axis.
 struct NamedWrite {
   std::string object;               ///< name in the profile, or "6065:00"
   std::optional<double> value;      ///< in SI units of the joint if the object has a quantity
   std::optional<std::int64_t> raw;  ///< as it is
-  /// A value of the configuration instead: "limits.velocity", "limits.acceleration",
-  /// "limits.effort", "limits.lower", "limits.upper", "sync_period.value", "sync_period.exponent",
-  /// "homing.search_velocity", "position_actual" (read and copied)...; skipped where not
-  /// configured.
+  /// A value of the configuration instead: "limits.lower", "limits.upper" (the one that is the
+  /// smaller or larger number in the drive), "limits.velocity", "limits.acceleration",
+  /// "limits.jerk", "limits.effort", "sync_period.value", "sync_period.exponent", "homing.method",
+  /// "homing.search_velocity", "homing.zero_velocity", "homing.acceleration", "homing.offset"; or
+  /// the name of a readable object, which is read and copied as it is. Where the configuration
+  /// does not name it, `value` or `raw` is taken; without these the write is skipped.
   std::string from;
-  bool optional = false;  ///< an abort is noted, not an error
+  double times = 1.0;            ///< the configuration's value is multiplied by this
+  std::optional<DataType> type;  ///< of an object by index that the profile does not name
+  bool optional = false;         ///< an abort is noted, not an error
 };
 
 /// One mode of operation of the family.
@@ -107,7 +114,10 @@ struct ModeSpec {
   std::uint16_t controlword_bits = 0;  ///< held while the mode is active in Operation enabled
   std::optional<int> target_reached_bit, following_error_bit, set_point_acknowledge_bit,
       speed_zero_bit, homing_attained_bit, homing_error_bit, follows_command_bit;
-  std::vector<NamedWrite> entry_writes;  ///< before the mode is entered, by SDO
+  /// Before the mode is entered, by SDO. What is mapped into an RPDO must be held in the process
+  /// image, too, while the mode is active, or the next RPDO would undo it (a velocity limit in the
+  /// velocity target of a vendor's position mode).
+  std::vector<NamedWrite> entry_writes;
 };
 
 /// How the family finds its zero.
@@ -161,6 +171,7 @@ struct DriveProfile {
   std::optional<std::uint8_t> sync_counter;  ///< overflow value wanted in 1019h; none: no counter
   bool has_sync_counter_object = true;       ///< 1019h exists
   bool has_sync_period_object = true;        ///< 1006h exists
+  Duration sync_period_step{std::chrono::microseconds(1)};  ///< 1006h takes multiples of this
   bool heartbeat_supported = true, heartbeat_consumer_supported = true;
   struct Timing {
     Duration boot{std::chrono::seconds(5)};
