@@ -1,0 +1,170 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/drive/state_machine.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace cia402::drive {
+namespace {
+
+struct Row {
+  std::uint16_t statusword;
+  State state;
+};
+
+// Damiao manual sheet 3.2, statuswords after each transition 0..16.
+TEST(StateMachine, DecodesTheStatuswordsOfTheDamiaoManual) {
+  const Row rows[] = {
+      {0x0000, State::not_ready_to_switch_on}, {0x0250, State::switch_on_disabled},
+      {0x0231, State::ready_to_switch_on},     {0x0233, State::switched_on},
+      {0x0237, State::operation_enabled},      {0x0217, State::quick_stop_active},
+      {0x021F, State::fault_reaction_active},  {0x0218, State::fault},
+  };
+  for (const Row& row : rows) {
+    EXPECT_EQ(decodeState(row.statusword), row.state) << std::hex << row.statusword;
+  }
+}
+
+TEST(StateMachine, IgnoresWarningRemoteAndModeBitsWhenDecoding) {
+  const Row rows[] = {
+      {0x0000, State::not_ready_to_switch_on}, {0x0040, State::switch_on_disabled},
+      {0x0021, State::ready_to_switch_on},     {0x0023, State::switched_on},
+      {0x0027, State::operation_enabled},      {0x0007, State::quick_stop_active},
+      {0x000F, State::fault_reaction_active},  {0x0008, State::fault},
+  };
+  // Bits 4, 7..15 carry no state (CiA 402-2, "x" in the coding table).
+  const std::uint16_t free_bits = 0xFF90;
+  for (const Row& row : rows) {
+    for (unsigned bit = 0; bit < 16; ++bit) {
+      const auto mask = static_cast<std::uint16_t>(1u << bit);
+      if ((free_bits & mask) == 0) continue;
+      const auto word = static_cast<std::uint16_t>(row.statusword | mask);
+      EXPECT_EQ(decodeState(word), row.state) << std::hex << word;
+    }
+    const auto all = static_cast<std::uint16_t>(row.statusword | free_bits);
+    EXPECT_EQ(decodeState(all), row.state) << std::hex << all;
+  }
+}
+
+TEST(StateMachine, IgnoresTheQuickStopBitOnlyWhereTheStandardDoes) {
+  EXPECT_EQ(decodeState(0x0020), State::not_ready_to_switch_on);
+  EXPECT_EQ(decodeState(0x0060), State::switch_on_disabled);
+  EXPECT_EQ(decodeState(0x002F), State::fault_reaction_active);
+  EXPECT_EQ(decodeState(0x0028), State::fault);
+  EXPECT_EQ(decodeState(0x0001), State::unknown);  // ready bits with quick stop bit 0
+  EXPECT_EQ(decodeState(0x0003), State::unknown);
+}
+
+TEST(StateMachine, BitsThatMatchNoStateAreUnknown) {
+  for (std::uint16_t word : {0x0002, 0x0004, 0x0005, 0x0006, 0x0009, 0x0022, 0x0061, 0x0067}) {
+    EXPECT_EQ(decodeState(word), State::unknown) << std::hex << word;
+  }
+}
+
+struct Step {
+  State state;
+  Goal goal;
+  std::uint16_t controlword;
+  int transition;
+};
+
+// CiA 402-2: shutdown xxxx 0xxx x110, switch on 0111, enable operation 1111, disable voltage xx0x,
+// quick stop x01x, disable operation 0111.
+TEST(StateMachine, CommandsEveryStateTowardsEveryGoal) {
+  using S = State;
+  using G = Goal;
+  const Step steps[] = {
+      {S::not_ready_to_switch_on, G::disabled, 0x0000, -1},
+      {S::not_ready_to_switch_on, G::ready, 0x0000, -1},
+      {S::not_ready_to_switch_on, G::switched_on, 0x0000, -1},
+      {S::not_ready_to_switch_on, G::enabled, 0x0000, -1},
+      {S::not_ready_to_switch_on, G::quick_stop, 0x0000, -1},
+      {S::switch_on_disabled, G::disabled, 0x0000, -1},
+      {S::switch_on_disabled, G::ready, 0x0006, 2},
+      {S::switch_on_disabled, G::switched_on, 0x0006, 2},
+      {S::switch_on_disabled, G::enabled, 0x0006, 2},
+      {S::switch_on_disabled, G::quick_stop, 0x0000, -1},
+      {S::ready_to_switch_on, G::disabled, 0x0000, 7},
+      {S::ready_to_switch_on, G::ready, 0x0006, -1},
+      {S::ready_to_switch_on, G::switched_on, 0x0007, 3},
+      {S::ready_to_switch_on, G::enabled, 0x0007, 3},
+      {S::ready_to_switch_on, G::quick_stop, 0x0002, 7},
+      {S::switched_on, G::disabled, 0x0000, 10},
+      {S::switched_on, G::ready, 0x0006, 6},
+      {S::switched_on, G::switched_on, 0x0007, -1},
+      {S::switched_on, G::enabled, 0x000F, 4},
+      {S::switched_on, G::quick_stop, 0x0002, 10},
+      {S::operation_enabled, G::disabled, 0x0007, 5},
+      {S::operation_enabled, G::ready, 0x0006, 8},
+      {S::operation_enabled, G::switched_on, 0x0007, 5},
+      {S::operation_enabled, G::enabled, 0x000F, -1},
+      {S::operation_enabled, G::quick_stop, 0x0002, 11},
+      {S::quick_stop_active, G::disabled, 0x0000, 12},
+      {S::quick_stop_active, G::ready, 0x0000, 12},
+      {S::quick_stop_active, G::switched_on, 0x0000, 12},
+      {S::quick_stop_active, G::enabled, 0x000F, 16},
+      {S::quick_stop_active, G::quick_stop, 0x0002, -1},
+      {S::fault_reaction_active, G::disabled, 0x0000, -1},
+      {S::fault_reaction_active, G::ready, 0x0000, -1},
+      {S::fault_reaction_active, G::switched_on, 0x0000, -1},
+      {S::fault_reaction_active, G::enabled, 0x0000, -1},
+      {S::fault_reaction_active, G::quick_stop, 0x0000, -1},
+      {S::fault, G::disabled, 0x0000, -1},
+      {S::fault, G::ready, 0x0000, -1},
+      {S::fault, G::switched_on, 0x0000, -1},
+      {S::fault, G::enabled, 0x0000, -1},
+      {S::fault, G::quick_stop, 0x0000, -1},
+      {S::unknown, G::disabled, 0x0000, -1},
+      {S::unknown, G::ready, 0x0000, -1},
+      {S::unknown, G::switched_on, 0x0000, -1},
+      {S::unknown, G::enabled, 0x0000, -1},
+      {S::unknown, G::quick_stop, 0x0002, -1},
+  };
+  for (const Step& step : steps) {
+    const Command command = nextCommand(step.state, step.goal);
+    const std::string where = std::string(toString(step.state)) + " -> goal " +
+                              std::to_string(static_cast<int>(step.goal));
+    EXPECT_EQ(command.controlword, step.controlword) << where;
+    EXPECT_EQ(command.transition, step.transition) << where;
+    if (step.transition >= 0) {
+      EXPECT_NE(std::string(command.text).find("transition " + std::to_string(step.transition)),
+                std::string::npos)
+          << where << ": " << command.text;
+    }
+  }
+}
+
+TEST(StateMachine, NoGoalEverSetsFaultResetOrHalt) {
+  for (int state = 0; state <= static_cast<int>(State::unknown); ++state) {
+    for (int goal = 0; goal <= static_cast<int>(Goal::quick_stop); ++goal) {
+      const Command command = nextCommand(static_cast<State>(state), static_cast<Goal>(goal));
+      EXPECT_EQ(command.controlword & ~0x000F, 0);
+    }
+  }
+}
+
+TEST(StateMachine, NamesStates) {
+  EXPECT_STREQ(toString(State::not_ready_to_switch_on), "not ready to switch on");
+  EXPECT_STREQ(toString(State::switch_on_disabled), "switch on disabled");
+  EXPECT_STREQ(toString(State::ready_to_switch_on), "ready to switch on");
+  EXPECT_STREQ(toString(State::switched_on), "switched on");
+  EXPECT_STREQ(toString(State::operation_enabled), "operation enabled");
+  EXPECT_STREQ(toString(State::quick_stop_active), "quick stop active");
+  EXPECT_STREQ(toString(State::fault_reaction_active), "fault reaction active");
+  EXPECT_STREQ(toString(State::fault), "fault");
+  EXPECT_STREQ(toString(State::unknown), "unknown");
+}
+
+TEST(StateMachine, NamesStatuswordBits) {
+  EXPECT_EQ(statuswordText(0x0091), "ready to switch on, voltage enabled, warning");
+  EXPECT_EQ(statuswordText(0x0250), "voltage enabled, switch on disabled, remote");
+  EXPECT_EQ(statuswordText(0x0C2E),
+            "switched on, operation enabled, fault, quick stop inactive, target reached, internal "
+            "limit active");
+  EXPECT_EQ(statuswordText(0xF100), "bit 8, bit 12, bit 13, bit 14, bit 15");
+  EXPECT_EQ(statuswordText(0x0000), "no bit set");
+}
+
+}  // namespace
+}  // namespace cia402::drive
