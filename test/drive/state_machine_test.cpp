@@ -57,7 +57,8 @@ TEST(StateMachine, IgnoresTheQuickStopBitOnlyWhereTheStandardDoes) {
 }
 
 TEST(StateMachine, BitsThatMatchNoStateAreUnknown) {
-  for (std::uint16_t word : {0x0002, 0x0004, 0x0005, 0x0006, 0x0009, 0x0022, 0x0061, 0x0067}) {
+  for (int bits : {0x0002, 0x0004, 0x0005, 0x0006, 0x0009, 0x0022, 0x0061, 0x0067}) {
+    const auto word = static_cast<std::uint16_t>(bits);
     EXPECT_EQ(decodeState(word), State::unknown) << std::hex << word;
   }
 }
