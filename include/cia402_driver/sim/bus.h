@@ -17,7 +17,8 @@
 namespace cia402::sim {
 
 /// The software behind a port: a simulated drive, a master under test. Called from Bus::advance()
-/// only, with the true time on the bus; it may send on its port, but not advance the bus.
+/// with the true time on the bus (onStateChange() also from the port's own switches); it may send
+/// on its port, but not advance the bus.
 class Listener {
  public:
   virtual ~Listener() = default;
@@ -93,6 +94,8 @@ class Port final : public can::Sink {
   const Entry* bestReadyAt(Time time) const;
   Time earliestReady() const;
   void discardQueue();
+  void stopRecovery();
+  void recovered(Time now);
   void refreshOnBus(Time now);
   void transmitFailed(bool missing_acknowledge, Time now);
   void transmitSucceeded(Time now);
@@ -184,7 +187,8 @@ class Bus {
     Port* sender = nullptr;
     Port::Entry entry;
     Time start{};
-    Time end{};  // of EOF, or of the error delimiter
+    Time end{};         // of EOF, or of the error delimiter
+    unsigned bits = 0;  // with the intermission
     Outcome outcome = Outcome::success;
   };
 
@@ -199,7 +203,7 @@ class Bus {
   Port* nextRecovery(Time& when) const;
   void countRecessiveUntil(Time start);
   void countRecessiveSequence();
-  void account(Time end, Duration busy, unsigned bits);
+  void account();
 
   double bitrate_;
   std::array<std::int64_t, 256> bit_times_{};  // ns of so many bits
