@@ -1,0 +1,104 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/motion/coupling.h"
+
+#include <gmock/gmock.h>
+
+#include <random>
+
+namespace cia402::motion {
+namespace {
+
+using testing::HasSubstr;
+
+Eigen::MatrixXd matrix2(double a, double b, double c, double d) {
+  Eigen::MatrixXd matrix(2, 2);
+  matrix << a, b, c, d;
+  return matrix;
+}
+
+Result<Coupling> wrist(const Eigen::MatrixXd& matrix) {
+  return Coupling::create({"wrist_pitch", "wrist_roll"}, {"m5", "m6"}, matrix);
+}
+
+Coupling differential() { return wrist(matrix2(0.5, 0.5, 1.0, -1.0)).value(); }
+
+TEST(Coupling, DifferentialWristTurnsAxisPositionsIntoJointPositions) {
+  Eigen::VectorXd joints(2);
+  differential().toJoints(Eigen::Vector2d(0.4, 0.2), joints);
+  EXPECT_NEAR(joints(0), 0.3, 1e-15);
+  EXPECT_NEAR(joints(1), 0.2, 1e-15);
+}
+
+TEST(Coupling, DifferentialWristTurnsJointPositionsIntoAxisPositions) {
+  Eigen::VectorXd axes(2);
+  differential().toAxes(Eigen::Vector2d(0.3, 0.2), axes);
+  EXPECT_NEAR(axes(0), 0.4, 1e-15);
+  EXPECT_NEAR(axes(1), 0.2, 1e-15);
+}
+
+TEST(Coupling, EffortGoesThroughTheTranspose) {
+  Eigen::VectorXd axes(2), joints(2);
+  differential().effortToAxes(Eigen::Vector2d(4, 1), axes);  // 0.5*4 + 1*1, 0.5*4 - 1*1
+  EXPECT_NEAR(axes(0), 3, 1e-15);
+  EXPECT_NEAR(axes(1), 1, 1e-15);
+  differential().effortToJoints(axes, joints);
+  EXPECT_NEAR(joints(0), 4, 1e-15);
+  EXPECT_NEAR(joints(1), 1, 1e-15);
+}
+
+TEST(Coupling, ThereAndBackIsTheSameAndPowerIsKept) {
+  std::mt19937 engine(7);
+  std::uniform_real_distribution<double> random(-2, 2);
+  const auto fill = [&](auto& values) {
+    for (auto& value : values.reshaped()) value = random(engine);
+  };
+  for (int i = 0; i < 200; ++i) {
+    Eigen::MatrixXd matrix(3, 3);
+    fill(matrix);
+    matrix += 3 * Eigen::MatrixXd::Identity(3, 3);
+    const auto coupling = Coupling::create({"a", "b", "c"}, {"1", "2", "3"}, matrix);
+    if (!coupling) continue;
+    Eigen::VectorXd joints(3), axes(3), back(3), effort(3), axis_effort(3);
+    fill(joints);
+    fill(effort);
+    coupling->toAxes(joints, axes);
+    coupling->toJoints(axes, back);
+    EXPECT_NEAR((back - joints).norm(), 0, 1e-9);
+    coupling->effortToAxes(effort, axis_effort);
+    EXPECT_NEAR(axis_effort.dot(axes), effort.dot(joints), 1e-9 * (1 + axes.norm()));
+  }
+}
+
+TEST(Coupling, SingularMatrixIsRefusedInWords) {
+  const auto result = wrist(matrix2(0.5, 0.5, 1, 1));
+  ASSERT_FALSE(result);
+  EXPECT_THAT(result.error().message,
+              HasSubstr("coupling of joints wrist_pitch, wrist_roll with axes m5, m6: the matrix "
+                        "[[0.5, 0.5], [1, 1]] is singular"));
+  EXPECT_FALSE(wrist(matrix2(0, 0, 0, 0)));
+  EXPECT_FALSE(wrist(matrix2(1, 0, 2, 0)));
+}
+
+TEST(Coupling, UnequalScalesAreNotMistakenForSingularity) {
+  EXPECT_TRUE(wrist(matrix2(1e-6, 0, 0, 1e6)));
+  EXPECT_TRUE(wrist(matrix2(1e-7, 1e-7, 1e5, -1e5)));
+}
+
+TEST(Coupling, WrongSizesAreRefusedInWords) {
+  const auto shape = wrist(Eigen::MatrixXd::Identity(2, 3));
+  ASSERT_FALSE(shape);
+  EXPECT_THAT(shape.error().message, HasSubstr("2 rows and 3 columns; it needs 2 of each"));
+  const auto names = Coupling::create({"a"}, {"1", "2"}, Eigen::MatrixXd::Identity(1, 2));
+  ASSERT_FALSE(names);
+  EXPECT_THAT(names.error().message, HasSubstr("1 joints and 2 axes"));
+  EXPECT_FALSE(Coupling::create({}, {}, Eigen::MatrixXd()));
+}
+
+TEST(Coupling, MatrixWithNanIsRefused) {
+  const auto result = wrist(matrix2(1, 0, 0, std::nan("")));
+  ASSERT_FALSE(result);
+  EXPECT_THAT(result.error().message, HasSubstr("not a number"));
+}
+
+}  // namespace
+}  // namespace cia402::motion
