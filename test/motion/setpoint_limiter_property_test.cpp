@@ -1,0 +1,137 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "cia402_driver/motion/setpoint_limiter.h"
+
+namespace cia402::motion {
+namespace {
+
+constexpr double kLower = -1.5, kUpper = 2.0, kVelocity = 1.5, kAcceleration = 6.0;
+constexpr int kCycles = 100000;
+
+LimiterConfig config() {
+  LimiterConfig result;
+  result.joint.name = "elbow";
+  result.joint.limits.lower = kLower;
+  result.joint.limits.upper = kUpper;
+  result.joint.limits.velocity = kVelocity;
+  result.joint.limits.acceleration = kAcceleration;
+  result.command_timeout = std::chrono::milliseconds(200);
+  result.stop_deceleration = 3;
+  return result;
+}
+
+/// Cycles that are late and early, commands that step, drift, shake, pause and are not numbers.
+class Storm {
+ public:
+  explicit Storm(unsigned seed) : engine_(seed) {}
+
+  double random(double magnitude) {
+    return std::uniform_real_distribution<double>(-magnitude, magnitude)(engine_);
+  }
+  Duration cycle() {
+    const double jitter = chance(0.01) ? 8 : 1 + random(0.4);
+    return fromSeconds(0.004 * jitter);
+  }
+  std::optional<double> command(double magnitude) {
+    if (chance(0.004)) silent_ = static_cast<int>(50 + random(50));
+    if (silent_ > 0 && --silent_ > 0) return std::nullopt;
+    if (chance(0.002)) return std::nan("");
+    if (chance(0.01)) kind_ = static_cast<int>(2 + random(2));
+    if (kind_ == 0) return value_ = random(magnitude);
+    if (kind_ == 1) return value_ += random(0.005 * magnitude);
+    if (kind_ == 2) return value_ + random(1e-4);
+    if (chance(0.02)) value_ = random(magnitude);
+    return value_;
+  }
+
+ private:
+  bool chance(double p) { return std::bernoulli_distribution(p)(engine_); }
+
+  std::mt19937 engine_;
+  int silent_ = 0, kind_ = 0;
+  double value_ = 0;
+};
+
+class EverySeed : public testing::TestWithParam<unsigned> {};
+INSTANTIATE_TEST_SUITE_P(Seeds, EverySeed, testing::Values(1U, 2U, 3U, 4U, 5U));
+
+TEST_P(EverySeed, PositionOutputNeverViolatesALimit) {
+  Storm storm(GetParam());
+  PositionLimiter limiter(config());
+  Time now{};
+  limiter.reset({}, now);
+  double position = 0, velocity = 0, top_speed = 0, top = 0, bottom = 0;
+  for (int i = 0; i < kCycles; ++i) {
+    if (const auto command = storm.command(4)) static_cast<void>(limiter.command(*command, now));
+    const Duration cycle = storm.cycle();
+    const double dt = toSeconds(cycle);
+    const double next = limiter.step(now += cycle).position;
+    // Differences of the positions alone: what the drive sees.
+    const double next_velocity = (next - position) / dt;
+    ASSERT_LE(next, kUpper) << i;
+    ASSERT_GE(next, kLower) << i;
+    ASSERT_LE(std::abs(next_velocity), kVelocity + 1e-9) << i;
+    ASSERT_LE(std::abs(next_velocity - velocity) / dt, kAcceleration + 1e-6) << i;
+    ASSERT_NEAR(limiter.output().velocity, next_velocity, 1e-9) << i;
+    position = next;
+    velocity = next_velocity;
+    top_speed = std::max(top_speed, std::abs(velocity));
+    top = std::max(top, position);
+    bottom = std::min(bottom, position);
+  }
+  // The storm did drive the joint to its limits.
+  EXPECT_GT(top_speed, 0.99 * kVelocity);
+  EXPECT_GT(top, kUpper - 1e-3);
+  EXPECT_LT(bottom, kLower + 1e-3);
+}
+
+TEST_P(EverySeed, VelocityOutputNeverViolatesALimit) {
+  Storm storm(GetParam());
+  VelocityLimiter limiter(config());
+  Time now{};
+  limiter.reset({}, now);
+  double position = 0, velocity = 0, top_speed = 0, top = 0, bottom = 0;
+  for (int i = 0; i < kCycles; ++i) {
+    if (const auto command = storm.command(3)) static_cast<void>(limiter.command(*command, now));
+    const Duration cycle = storm.cycle();
+    const double dt = toSeconds(cycle);
+    const double next = limiter.step(now += cycle, position).velocity;
+    ASSERT_LE(std::abs(next), kVelocity + 1e-12) << i;
+    ASSERT_LE(std::abs(next - velocity) / dt, kAcceleration + 1e-9) << i;
+    velocity = next;
+    position += velocity * dt;
+    ASSERT_LE(position, kUpper + 1e-9) << i;
+    ASSERT_GE(position, kLower - 1e-9) << i;
+    top_speed = std::max(top_speed, std::abs(velocity));
+    top = std::max(top, position);
+    bottom = std::min(bottom, position);
+  }
+  EXPECT_GT(top_speed, 0.99 * kVelocity);
+  EXPECT_GT(top, kUpper - 1e-3);
+  EXPECT_LT(bottom, kLower + 1e-3);
+}
+
+TEST_P(EverySeed, AConstantTargetIsReachedWithoutOvershootFromAnyStart) {
+  Storm storm(GetParam());
+  for (int run = 0; run < 200; ++run) {
+    PositionLimiter limiter(config());
+    Time now{};
+    const double from = storm.random(1.4), target = storm.random(1.4);
+    limiter.reset({from, 0, 0}, now);
+    const double sign = target >= from ? 1 : -1;
+    for (int i = 0; i < 1500; ++i) {
+      ASSERT_TRUE(limiter.command(target, now));
+      const double beyond =
+          sign * (limiter.step(now += std::chrono::milliseconds(4)).position - target);
+      ASSERT_LE(beyond, 1e-12);
+    }
+    ASSERT_NEAR(limiter.output().position, target, 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace cia402::motion

@@ -1,0 +1,292 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/motion/setpoint_limiter.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+namespace cia402::motion {
+namespace {
+
+using testing::HasSubstr;
+constexpr Duration kCycle = std::chrono::milliseconds(4);
+constexpr double kDt = 0.004;
+
+LimiterConfig elbow() {
+  LimiterConfig config;
+  config.joint.name = "elbow";
+  config.joint.limits.lower = -1.5;
+  config.joint.limits.upper = 2.0;
+  config.joint.limits.velocity = 1.0;
+  config.joint.limits.acceleration = 5.0;
+  return config;
+}
+
+/// Runs one limiter in virtual time.
+struct Position {
+  explicit Position(const LimiterConfig& config, const MotionState& from = {}) : limiter(config) {
+    limiter.reset(from, now);
+  }
+  MotionState step() { return limiter.step(now += kCycle); }
+  MotionState follow(double target) {
+    EXPECT_TRUE(limiter.command(target, now));
+    return step();
+  }
+  Time now{};
+  PositionLimiter limiter;
+};
+
+/// A limiter with an ideal axis behind it.
+struct Velocity {
+  explicit Velocity(const LimiterConfig& config, double from = 0) : limiter(config) {
+    position = from;
+    limiter.reset({from, 0, 0}, now);
+  }
+  MotionState step() {
+    const MotionState state = limiter.step(now += kCycle, position);
+    position += state.velocity * kDt;
+    return state;
+  }
+  MotionState follow(double target) {
+    EXPECT_TRUE(limiter.command(target, now));
+    return step();
+  }
+  Time now{};
+  double position = 0;
+  VelocityLimiter limiter;
+};
+
+TEST(PositionLimiter, HoldsStillWithoutACommand) {
+  Position joint(elbow(), {0.3, 0, 0});
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(joint.step().position, 0.3);
+}
+
+TEST(PositionLimiter, FirstStepTowardsAFarTargetIsOneAccelerationStep) {
+  Position joint(elbow());
+  const MotionState state = joint.follow(1);
+  EXPECT_NEAR(state.velocity, 0.02, 1e-12);  // 5 rad/s² * 4 ms
+  EXPECT_NEAR(state.acceleration, 5, 1e-9);
+  EXPECT_NEAR(state.position, 8e-5, 1e-15);
+  EXPECT_TRUE(joint.limiter.isLimiting());
+}
+
+TEST(PositionLimiter, StepIsReachedInTrapezoidTimeWithoutOvershoot) {
+  Position joint(elbow());
+  joint.follow(1);
+  double highest = 0;
+  // 1 rad at 1 rad/s and 5 rad/s²: 1/1 + 1/5 s = 300 cycles; a few more for braking in steps
+  for (int i = 0; i < 310; ++i) highest = std::max(highest, joint.step().position);
+  EXPECT_NEAR(joint.limiter.output().position, 1, 1e-6);
+  EXPECT_LE(highest, 1 + 1e-12);
+  for (int i = 0; i < 20; ++i) joint.step();
+  EXPECT_NEAR(joint.limiter.output().velocity, 0, 1e-12);
+  EXPECT_FALSE(joint.limiter.isLimiting());
+}
+
+TEST(PositionLimiter, AStreamWithinTheLimitsComesOutUnchanged) {
+  Position joint(elbow());
+  for (int i = 1; i < 5000; ++i) {
+    // 0.9 rad/s and 4.05 rad/s² at most, from rest
+    const double target = 0.2 * (1 - std::cos(4.5 * i * kDt));
+    ASSERT_NEAR(joint.follow(target).position, target, 1e-12) << "cycle " << i;
+    ASSERT_FALSE(joint.limiter.isLimiting());
+  }
+}
+
+TEST(PositionLimiter, TargetsBeyondAPositionLimitEndAtTheLimit) {
+  Position joint(elbow());
+  joint.follow(100);
+  for (int i = 0; i < 2000; ++i) ASSERT_LE(joint.step().position, 2.0);
+  EXPECT_NEAR(joint.limiter.output().position, 2.0, 1e-9);
+  joint.follow(-100);
+  for (int i = 0; i < 2000; ++i) ASSERT_GE(joint.step().position, -1.5);
+  EXPECT_NEAR(joint.limiter.output().position, -1.5, 1e-9);
+}
+
+TEST(PositionLimiter, ComesBackFromOutsideItsLimits) {
+  Position joint(elbow(), {2.5, 0, 0});
+  double previous = 2.5;
+  joint.follow(100);
+  for (int i = 0; i < 1000; ++i) {
+    const double position = joint.step().position;
+    ASSERT_LE(position, previous);
+    previous = position;
+  }
+  EXPECT_NEAR(previous, 2.0, 1e-9);
+}
+
+TEST(PositionLimiter, StaleCommandStopsTheJointByTheStopDeceleration) {
+  LimiterConfig config = elbow();
+  config.command_timeout = std::chrono::milliseconds(200);
+  config.stop_deceleration = 2.5;
+  Position joint(config);
+  joint.follow(2);
+  for (int i = 1; i < 50; ++i) joint.step();
+  EXPECT_FALSE(joint.limiter.timedOut());
+  const double speed = joint.limiter.output().velocity;
+  EXPECT_NEAR(speed, 1, 1e-9);
+  EXPECT_NEAR(joint.step().velocity, speed - 0.01, 1e-12);  // 2.5 rad/s² * 4 ms
+  EXPECT_TRUE(joint.limiter.timedOut());
+  for (int i = 0; i < 100; ++i) joint.step();
+  EXPECT_EQ(joint.limiter.output().velocity, 0);
+  joint.follow(2);
+  EXPECT_FALSE(joint.limiter.timedOut());
+  EXPECT_GT(joint.limiter.output().velocity, 0);
+}
+
+TEST(PositionLimiter, AStopMayBeHarderThanTheAccelerationLimitIfSoConfigured) {
+  LimiterConfig config = elbow();
+  config.command_timeout = std::chrono::milliseconds(200);
+  config.stop_deceleration = 25;
+  Position joint(config);
+  joint.follow(2);
+  for (int i = 1; i < 50; ++i) joint.step();
+  EXPECT_NEAR(joint.step().velocity, 0.9, 1e-9);
+}
+
+TEST(PositionLimiter, NotANumberIsRefusedAndDoesNotRefreshTheCommand) {
+  LimiterConfig config = elbow();
+  config.command_timeout = std::chrono::milliseconds(10);
+  Position joint(config);
+  joint.follow(1);
+  for (int i = 0; i < 5; ++i) {
+    const auto result = joint.limiter.command(std::nan(""), joint.now);
+    ASSERT_FALSE(result);
+    EXPECT_THAT(result.error().message, HasSubstr("elbow: the commanded value is nan rad"));
+    joint.step();
+  }
+  EXPECT_TRUE(joint.limiter.timedOut());
+}
+
+TEST(PositionLimiter, TimeThatStandsStillOrRunsBackChangesNothing) {
+  Position joint(elbow());
+  const MotionState state = joint.follow(1);
+  EXPECT_EQ(joint.limiter.step(joint.now).position, state.position);
+  EXPECT_EQ(joint.limiter.step(joint.now - kCycle).velocity, state.velocity);
+}
+
+TEST(PositionLimiter, WithoutAnyLimitsTheTargetIsReachedAtOnce) {
+  Position joint(LimiterConfig{});
+  EXPECT_EQ(joint.follow(7).position, 7);
+  EXPECT_EQ(joint.follow(7).velocity, 0);
+}
+
+TEST(VelocityLimiter, AcceleratesToTheCommandAtTheLimit) {
+  Velocity joint(elbow());
+  EXPECT_NEAR(joint.follow(0.5).velocity, 0.02, 1e-12);
+  EXPECT_TRUE(joint.limiter.isLimiting());
+  for (int i = 1; i < 25; ++i) joint.step();
+  EXPECT_NEAR(joint.limiter.output().velocity, 0.5, 1e-12);
+  joint.step();
+  EXPECT_FALSE(joint.limiter.isLimiting());
+  EXPECT_NEAR(joint.follow(-9).velocity, 0.48, 1e-12);
+}
+
+TEST(VelocityLimiter, NeverFasterThanTheLimit) {
+  Velocity joint(elbow());
+  joint.follow(50);
+  for (int i = 0; i < 100; ++i) joint.step();
+  EXPECT_NEAR(joint.limiter.output().velocity, 1, 1e-12);
+}
+
+TEST(VelocityLimiter, BrakesBeforeAPositionLimitAndMayLeaveItAgain) {
+  Velocity joint(elbow(), 1.5);
+  joint.follow(1);
+  for (int i = 0; i < 1000; ++i) {
+    joint.step();
+    ASSERT_LE(joint.position, 2.0 + 1e-12);
+  }
+  EXPECT_NEAR(joint.position, 2.0, 1e-6);
+  EXPECT_NEAR(joint.follow(-1).velocity, -0.02, 1e-9);
+}
+
+TEST(VelocityLimiter, LateFeedbackDoesNotCarryItOverTheLimit) {
+  for (const std::size_t delay : {1U, 2U, 5U}) {
+    VelocityLimiter limiter(elbow(), kCycle * static_cast<int>(delay));
+    Time now{};
+    limiter.reset({}, now);
+    ASSERT_TRUE(limiter.command(1, now));
+    std::vector<double> pending(delay, 0.0);  // velocities on their way to the axis
+    double position = 0;
+    for (std::size_t i = 0; i < 3000; ++i) {
+      const double velocity = limiter.step(now += kCycle, position).velocity;
+      position += pending[i % delay] * kDt;
+      pending[i % delay] = velocity;
+      ASSERT_LE(position, 2.0 + 1e-9) << delay << " cycles late, in cycle " << i;
+    }
+    EXPECT_NEAR(position, 2.0, 1e-3);
+  }
+}
+
+TEST(VelocityLimiter, OutsideItsLimitsAJointOnlyMovesBack) {
+  Velocity joint(elbow(), 2.1);
+  EXPECT_EQ(joint.follow(1).velocity, 0);
+  EXPECT_NEAR(joint.follow(-1).velocity, -0.02, 1e-12);
+}
+
+TEST(VelocityLimiter, UnknownPositionStopsAJointThatHasPositionLimits) {
+  Velocity joint(elbow());
+  for (int i = 0; i < 50; ++i) joint.follow(0.5);
+  const double nan = std::nan("");
+  EXPECT_NEAR(joint.limiter.step(joint.now += kCycle, nan).velocity, 0.48, 1e-12);
+  for (int i = 0; i < 30; ++i) joint.limiter.step(joint.now += kCycle, nan);
+  EXPECT_EQ(joint.limiter.output().velocity, 0);
+
+  LimiterConfig wheel = elbow();
+  wheel.joint.limits.lower.reset();
+  wheel.joint.limits.upper.reset();
+  Velocity turning(wheel);
+  ASSERT_TRUE(turning.limiter.command(0.5, turning.now));
+  EXPECT_NEAR(turning.limiter.step(turning.now += kCycle, nan).velocity, 0.02, 1e-12);
+}
+
+TEST(VelocityLimiter, StaleCommandBringsTheJointToRest) {
+  LimiterConfig config = elbow();
+  config.command_timeout = std::chrono::milliseconds(100);
+  Velocity joint(config);
+  joint.follow(0.4);
+  for (int i = 1; i < 25; ++i) joint.step();
+  EXPECT_FALSE(joint.limiter.timedOut());
+  EXPECT_NEAR(joint.step().velocity, 0.38, 1e-12);
+  EXPECT_TRUE(joint.limiter.timedOut());
+  for (int i = 0; i < 20; ++i) joint.step();
+  EXPECT_EQ(joint.limiter.output().velocity, 0);
+}
+
+TEST(VelocityLimiter, NotANumberIsRefused) {
+  Velocity joint(elbow());
+  const auto result = joint.limiter.command(INFINITY, joint.now);
+  ASSERT_FALSE(result);
+  EXPECT_THAT(result.error().message, HasSubstr("elbow: the commanded value is inf rad/s"));
+}
+
+void expectWrong(const LimiterConfig& config, const std::string& sentence) {
+  const auto result = check(config);
+  ASSERT_FALSE(result);
+  EXPECT_THAT(result.error().message, HasSubstr(sentence));
+}
+
+TEST(LimiterConfig, MistakesAreNamed) {
+  EXPECT_TRUE(check(elbow()));
+  LimiterConfig config = elbow();
+  config.joint.limits.velocity = 0;
+  expectWrong(config, "elbow: the velocity limit is 0 rad/s; it must be a finite number above 0");
+  config = elbow();
+  config.joint.limits.acceleration = INFINITY;
+  expectWrong(config, "elbow: the acceleration limit is inf rad/s²");
+  config = elbow();
+  config.stop_deceleration = -1;
+  expectWrong(config, "elbow: the stop deceleration is -1 rad/s²");
+  config = elbow();
+  config.joint.limits.lower = std::nan("");
+  expectWrong(config, "elbow: the lower limit is nan rad; it must be a finite number");
+  config = elbow();
+  config.joint.limits.lower = 3;
+  expectWrong(config, "elbow: the lower limit is 3 rad, not below the upper limit 2 rad");
+  config = elbow();
+  config.command_timeout = Duration::zero();
+  expectWrong(config, "elbow: the command timeout is 0 s; it must be above 0");
+}
+
+}  // namespace
+}  // namespace cia402::motion
