@@ -42,6 +42,11 @@ struct AxisConfig {
   std::optional<HomingOptions> homing;
   Duration sync_period{std::chrono::milliseconds(4)};  ///< of the bus
   Duration command_timeout{std::chrono::milliseconds(200)};
+  /// Statusword and position may be this old at most where they come by a cyclic TPDO (transmission
+  /// type 1..240 or with an event timer); then an enabled axis is quick-stopped.
+  Duration feedback_timeout{std::chrono::milliseconds(100)};
+  /// Below this the axis stands still (mode changes, homing, set_position), rad/s or m/s.
+  double standstill_velocity = 0.01;
   std::vector<PdoLayout> pdos;     ///< resolved layout (profile's or the user's)
   std::vector<NamedWrite> writes;  ///< the user's extra start-up writes
   std::optional<std::uint32_t> vendor_id, product_code, revision, serial;  ///< expected identity

@@ -1,0 +1,50 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "cia402_driver/common/time.h"
+
+namespace cia402::drive {
+
+/// Hands set-points to a drive one by one with controlword bit 4 and statusword bit 12 (CiA 402-2,
+/// profile position mode). The target has left in a PDO before the edge of bit 4 is made, so that a
+/// drive can never take the edge with the previous target; a newer target waits until the drive
+/// has acknowledged, and the latest wins.
+class SetPointHandshake {
+ public:
+  /// What the axis sees in this cycle.
+  struct Input {
+    std::uint64_t target_frames = 0;       ///< sent so far of the RPDO with the target
+    std::uint64_t controlword_frames = 0;  ///< sent so far of the RPDO with the controlword
+    bool acknowledged = false;             ///< statusword bit 12
+    bool has_acknowledge = true;           ///< the mode has such a bit; else bit 4 is pulsed
+  };
+
+  /// Wants `raw` to be the set-point. Replaces one that has not been handed over yet.
+  void offer(std::uint64_t raw);
+  /// Forgets everything, bit 4 falls. `raw` is what the target object shall hold meanwhile.
+  void reset(std::uint64_t raw);
+  /// One cycle. @return false if the drive has not answered for `timeout`: bit 4 falls and the
+  /// set-point is dropped.
+  [[nodiscard]] bool advance(const Input& input, Time now, Duration timeout);
+
+  std::uint64_t raw() const { return raw_; }  ///< for the target object
+  bool bit() const { return phase_ == Phase::raised; }
+  /// A set-point is on its way: the drive's target-reached bit still speaks of the one before.
+  bool busy() const { return pending_ || phase_ != Phase::idle; }
+  /// Statusword bit 12 does not do what is waited for, in words.
+  const char* waitingFor() const;
+
+ private:
+  enum class Phase : std::uint8_t { idle, announced, raised, lowered };
+  void enter(Phase phase, std::uint64_t frames, Time now);
+
+  Phase phase_ = Phase::idle;
+  bool pending_ = false;
+  bool timing_ = false;  ///< `since_` is valid while waiting in idle
+  std::uint64_t raw_ = 0, next_ = 0, frames_ = 0;
+  Time since_{};
+};
+
+}  // namespace cia402::drive

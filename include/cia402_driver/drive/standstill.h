@@ -1,0 +1,33 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "cia402_driver/common/time.h"
+
+namespace cia402::drive {
+
+/// Tells from measured positions whether an axis stands still: its mean velocity over a window must
+/// stay below the threshold. Positions do not lie as drives' velocity values do (rpm steps, noise,
+/// not mapped at all).
+class Standstill {
+ public:
+  static constexpr Duration kWindow{std::chrono::milliseconds(50)};
+
+  /// @param threshold rad/s or m/s, > 0
+  /// @param resolution rad or m per device unit: one unit to and fro is no motion
+  Standstill(double threshold, double resolution)
+      : tolerance_(threshold * toSeconds(kWindow) + 1.5 * resolution) {}
+
+  /// Takes a measured position (rad or m) with the time it was on the wire.
+  void update(double position, Time stamp);
+  /// Nothing is known any more: counts as moving until a window is full again.
+  void reset();
+  bool still() const { return still_; }
+
+ private:
+  double tolerance_;  ///< rad or m within a window
+  double anchor_ = 0.0;
+  Time anchored_{};
+  bool started_ = false, still_ = false;
+};
+
+}  // namespace cia402::drive

@@ -1,0 +1,24 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/drive/standstill.h"
+
+#include <cmath>
+
+namespace cia402::drive {
+
+void Standstill::update(double position, Time stamp) {
+  const bool moved = !(std::fabs(position - anchor_) <= tolerance_);
+  if (!started_ || moved) {
+    still_ = false;
+  } else if (stamp - anchored_ < kWindow) {
+    return;
+  } else {
+    still_ = true;
+  }
+  started_ = true;
+  anchor_ = position;
+  anchored_ = stamp;
+}
+
+void Standstill::reset() { started_ = still_ = false; }
+
+}  // namespace cia402::drive
