@@ -17,10 +17,10 @@ namespace cia402::bus {
 /// What a command came to, for a service answer.
 struct Answer {
   bool success = false;
-  std::string message;  ///< a sentence
-  canopen::Bytes data;  ///< read_object: wire order
+  std::string message;                                       ///< a sentence
+  canopen::Bytes data;                                       ///< read_object: wire order
   double number = std::numeric_limits<double>::quiet_NaN();  ///< read_object: in the unit of `text`
-  std::string text;     ///< read_object: value with unit
+  std::string text;                                          ///< read_object: value with unit
 };
 
 /// Called once, in the bus thread, when a command has ended. Must not block.

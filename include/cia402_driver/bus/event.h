@@ -16,9 +16,9 @@ struct Event {
   Severity severity = Severity::info;
   Time stamp{};
   bool is_emergency = false;
-  std::size_t axis = 0;           ///< valid if is_emergency
-  canopen::Emergency emergency;   ///< valid if is_emergency
-  FixedText<384> text;            ///< a sentence that names the axis
+  std::size_t axis = 0;          ///< valid if is_emergency
+  canopen::Emergency emergency;  ///< valid if is_emergency
+  FixedText<384> text;           ///< a sentence that names the axis
 };
 
 /// Takes events in the bus thread. Never blocks.

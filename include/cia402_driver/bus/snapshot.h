@@ -19,11 +19,11 @@ struct AxisSnapshot {
   canopen::NmtState nmt = canopen::NmtState::unknown;
   drive::ProcedureKind procedure = drive::ProcedureKind::none;
   bool procedure_running = false;
-  std::uint32_t serial = 0;         ///< 1018:04; 0: not read
-  std::uint64_t missed_feedback = 0;///< cycles without a new TPDO while the node was ready
-  FixedText<96> step;               ///< of the procedure or of the node's boot
+  std::uint32_t serial = 0;           ///< 1018:04; 0: not read
+  std::uint64_t missed_feedback = 0;  ///< cycles without a new TPDO while the node was ready
+  FixedText<96> step;                 ///< of the procedure or of the node's boot
   FixedText<160> waiting_for;
-  FixedText<384> problem;           ///< fault or node problem in words; empty if well
+  FixedText<384> problem;  ///< fault or node problem in words; empty if well
 };
 
 /// The trajectory of one group.
@@ -41,8 +41,8 @@ struct RobotSnapshot {
   double bus_load = 0.0;  ///< share of the bit rate over the last second, stuff bits not counted
   CycleStatistics statistics;
   bool shut_down = false;
-  std::vector<AxisSnapshot> axes;    ///< in configuration order
-  std::vector<GroupSnapshot> groups; ///< in configuration order
+  std::vector<AxisSnapshot> axes;     ///< in configuration order
+  std::vector<GroupSnapshot> groups;  ///< in configuration order
 };
 
 }  // namespace cia402::bus

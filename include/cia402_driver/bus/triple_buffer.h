@@ -19,8 +19,9 @@ class TripleBuffer {
   T& back() { return buffers_[back_]; }
   /// Writer: makes back() the newest value.
   void publish() {
-    back_ = exchange_.exchange(static_cast<std::uint8_t>(back_ | kFresh), std::memory_order_acq_rel) &
-            kIndex;
+    back_ =
+        exchange_.exchange(static_cast<std::uint8_t>(back_ | kFresh), std::memory_order_acq_rel) &
+        kIndex;
   }
   /// Reader: true if a newer value than front() was published; front() is that value then.
   bool refresh() {

@@ -1,0 +1,84 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cia402_driver/bus/axis_motion.h"
+#include "cia402_driver/config/robot.h"
+#include "cia402_driver/drive/axis.h"
+#include "cia402_driver/motion/stop_ramp.h"
+#include "cia402_driver/motion/trajectory.h"
+
+namespace cia402::bus {
+
+/// How a trajectory ended, with the code of control_msgs/FollowJointTrajectoryResult.
+struct TrajectoryOutcome {
+  motion::TrajectoryErrorCode code = motion::TrajectoryErrorCode::successful;
+  std::string message;
+};
+
+/// A set of joints that follow trajectories together. One trajectory at a time; a new one takes
+/// over smoothly from where the present one is.
+class Group {
+ public:
+  /// @param axes indices of the axes of config.joints, in that order.
+  /// @param all the axes of the bus; only their configuration is used here.
+  Group(config::GroupConfig config, std::vector<std::size_t> axes,
+        const std::vector<drive::Axis>& all);
+
+  const config::GroupConfig& config() const { return config_; }
+  /// Joint names with limits, in the order of the configuration.
+  const std::vector<motion::Joint>& joints() const { return joints_; }
+  const std::vector<std::size_t>& axes() const { return axes_; }
+
+  /// Checks a trajectory and takes it over; without points, stops. Points are in the order of
+  /// `names`. On an error nothing changes.
+  TrajectoryOutcome start(const std::vector<std::string>& names,
+                          const std::vector<motion::TrajectoryPoint>& points,
+                          std::optional<Time> start_time, std::vector<drive::Axis>& axes,
+                          std::vector<AxisMotion>& motions, Time now);
+  /// Ramps all joints down to rest and ends the trajectory with `why`.
+  void stop(const TrajectoryOutcome& why, Time now);
+  /// Gives the axes their set-points of this cycle. @return how the trajectory ended, in the cycle
+  /// in which it did.
+  std::optional<TrajectoryOutcome> step(std::vector<drive::Axis>& axes,
+                                        std::vector<AxisMotion>& motions, Time now);
+
+  /// A trajectory is being followed or its end is awaited.
+  bool executing() const { return phase_ == Phase::following; }
+  /// The joints are being brought to rest.
+  bool stopping() const { return phase_ == Phase::stopping; }
+  /// Commanded states, one a joint; valid while executing or stopping.
+  const std::vector<motion::MotionState>& commanded() const { return commanded_; }
+
+ private:
+  enum class Phase { idle, following, stopping };
+
+  std::string refusal(const std::vector<drive::Axis>& axes,
+                      const std::vector<AxisMotion>& motions) const;
+  std::vector<motion::MotionState> commandedAt(const std::vector<drive::Axis>& axes,
+                                               Time time) const;
+  std::optional<TrajectoryOutcome> checkAxes(const std::vector<drive::Axis>& axes) const;
+  std::optional<TrajectoryOutcome> checkRefusal() const;
+  std::optional<TrajectoryOutcome> checkPath(const std::vector<drive::Axis>& axes) const;
+  std::optional<TrajectoryOutcome> checkGoal(const std::vector<drive::Axis>& axes, Time now) const;
+  void beginStop(Time now);
+  void release(std::vector<AxisMotion>& motions);
+  void sendSetpoints(std::vector<drive::Axis>& axes);
+
+  config::GroupConfig config_;
+  std::vector<std::size_t> axes_;
+  std::vector<motion::Joint> joints_;
+  std::vector<config::JointTolerance> tolerances_;
+  motion::GroupStop ramps_;
+  Phase phase_ = Phase::idle;
+  std::optional<motion::Trajectory> trajectory_, next_;
+  std::vector<motion::MotionState> commanded_;
+  const motion::Joint* refused_ = nullptr;  // whose axis did not take its set-point
+  TrajectoryOutcome outcome_;               // of a stopping trajectory
+};
+
+}  // namespace cia402::bus

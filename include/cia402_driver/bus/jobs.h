@@ -1,0 +1,84 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "cia402_driver/bus/command.h"
+#include "cia402_driver/drive/axis.h"
+
+namespace cia402::bus {
+
+/// A procedure on one or several axes, in the order that was asked for: axes of equal order run
+/// together; an order begins when the one before has succeeded on every axis.
+class ProcedureJob {
+ public:
+  struct Item {
+    std::size_t axis = 0;
+    int order = 0;
+  };
+
+  /// @param items not empty; any order.
+  ProcedureJob(drive::ProcedureRequest request, std::vector<Item> items, Reply reply);
+
+  /// Starts what is due and watches what runs. @return true once the reply was given.
+  bool step(std::vector<drive::Axis>& axes, Time now);
+  /// Gives a failed reply; for the end of the program.
+  void abandon(const std::string& why);
+
+ private:
+  enum class Stage : std::uint8_t { waiting, running, succeeded, failed };
+  struct Entry {
+    Item item;
+    Stage stage = Stage::waiting;
+    std::uint32_t id = 0;
+    std::string message;
+  };
+
+  void startDue(std::vector<drive::Axis>& axes, Time now);
+  void watch(std::vector<drive::Axis>& axes);
+  void skipRest(const std::vector<drive::Axis>& axes);
+  Answer answer(const std::vector<drive::Axis>& axes) const;
+
+  drive::ProcedureRequest request_;
+  std::vector<Entry> entries_;
+  Reply reply_;
+};
+
+/// One read_object or write_object: the SDO transfers it needs and the wording of its answer.
+/// Numbers are in device units; the answer shows the joint's units beside them where the profile
+/// knows the quantity.
+class ObjectJob {
+ public:
+  /// Begins to read. An error if `object` is neither a profile name nor "6041:00".
+  /// @param axis must outlive the job.
+  static Result<ObjectJob> read(drive::Axis& axis, const std::string& object, Reply reply);
+  /// Begins to write `value`: a number ("-5", "0x80000181", "1.5") or text, by the object's type.
+  /// The size of an object that the profile does not list is asked of the drive first.
+  static Result<ObjectJob> write(drive::Axis& axis, const std::string& object,
+                                 const std::string& value, Reply reply);
+
+  /// @return true once the reply was given.
+  bool step();
+  /// Gives a failed reply; for the end of the program.
+  void abandon(const std::string& why) { finish(false, who_ + ": " + why); }
+
+ private:
+  enum class Stage : std::uint8_t { reading, asking_size, writing };
+
+  static Result<ObjectJob> find(drive::Axis& axis, const std::string& object, Reply reply);
+  bool finish(bool success, std::string message);
+  bool finishRead();
+  bool writeWithAskedSize();
+
+  drive::Axis* axis_ = nullptr;
+  const drive::ObjectSpec* spec_ = nullptr;
+  std::string who_, name_, value_;
+  canopen::ObjectId id_;
+  Stage stage_ = Stage::reading;
+  canopen::SdoTicket ticket_;
+  Reply reply_;
+};
+
+}  // namespace cia402::bus

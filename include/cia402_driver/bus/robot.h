@@ -1,0 +1,118 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cia402_driver/bus/axis_motion.h"
+#include "cia402_driver/bus/command.h"
+#include "cia402_driver/bus/cycle_statistics.h"
+#include "cia402_driver/bus/event.h"
+#include "cia402_driver/bus/group.h"
+#include "cia402_driver/bus/jobs.h"
+#include "cia402_driver/bus/snapshot.h"
+#include "cia402_driver/canopen/master.h"
+#include "cia402_driver/config/robot.h"
+#include "cia402_driver/drive/axis.h"
+
+namespace cia402::bus {
+
+/// Everything on one bus: the CANopen master, the axes, the trajectory groups, and the cycle that
+/// ties them together. Sans-IO: BusRunner runs it in real time, tests run it in virtual time. One
+/// thread.
+///
+/// The cycle: SYNC leaves at its absolute deadline before anything is computed; half a period later
+/// the feedback is decoded, motion computed and the RPDOs sent, in time for the next SYNC.
+class Robot final : private canopen::MasterListener {
+ public:
+  /// @param robot valid configuration, @param master made from it by config::makeMasterConfig.
+  /// @param sink where frames go, @param events where news go; both must outlive the robot.
+  Robot(config::RobotConfig robot, canopen::MasterConfig master, can::Sink& sink,
+        EventSink& events);
+  Robot(const Robot&) = delete;
+  Robot& operator=(const Robot&) = delete;
+
+  /// Begins to boot the drives and to cycle; to be called once the bus is there. Nothing is sent
+  /// before.
+  void start(Time now);
+  bool started() const { return started_; }
+  /// A frame from the bus. @param stamp when it was on the wire.
+  void receive(const can::Frame& frame, Time stamp, Time now);
+  /// Does all that is due: SYNC, cycle, time-outs, procedures.
+  void tick(Time now);
+  /// When tick() is due at the latest.
+  Time nextDeadline() const;
+
+  /// Carries out a command; its reply may come at once or when a procedure has ended.
+  void execute(Command command, Time now);
+
+  /// Ends everything in good order: motion is ramped down, the axes are disabled, the drives go
+  /// pre-operational; done after 1.8 s at the latest, see shutDown().
+  void beginShutdown(Time now);
+  bool shutDown() const { return shutdown_ == Shutdown::done; }
+
+  /// Writes the state of everything but the bus interface. Allocates only if `snapshot` has not
+  /// got the right sizes yet.
+  void fill(RobotSnapshot& snapshot) const;
+
+  const config::RobotConfig& config() const { return config_; }
+  std::vector<drive::Axis>& axes() { return axes_; }
+  const std::vector<Group>& groups() const { return groups_; }
+  canopen::Master& master() { return master_; }
+  const CycleStatistics& statistics() const { return statistics_; }
+
+ private:
+  enum class Shutdown { no, stopping, disabling, done };
+
+  struct AxisNews {  // what people were told last, to tell only what changes
+    FixedText<384> problem;
+    FixedText<96> step;
+    FixedText<160> waiting_for;
+    Time checked{};
+    drive::State state = drive::State::unknown;
+    canopen::NodeHealth health = canopen::NodeHealth::absent;
+    std::uint32_t procedure = 0;
+    bool running = false;
+    std::uint16_t error_code = 0;
+  };
+
+  void onEmergency(canopen::Node& node, const canopen::Emergency& emergency) override;
+  void onBootUp(canopen::Node& node, Time now) override;
+  void onHealthChange(canopen::Node& node, canopen::NodeHealth before, Time now) override;
+
+  void sync(Time now);
+  void cycle(Time now);
+  void stepJobs(Time now);
+  void stepShutdown(Time now);
+  void stopMotion(const std::string& why, Time now);
+  void watchAxes(Time now);
+  void tell(Event::Severity severity, std::string_view text, Time now);
+  drive::Axis* axisNamed(const std::string& name);
+  std::size_t axisOf(const canopen::Node& node) const;
+
+  void run(ProcedureCommand& command, Reply reply, Time now);
+  void run(SetpointCommand& command, const Reply& reply, Time now);
+  void run(TrajectoryCommand& command, const Reply& reply, Time now);
+  void run(ReadObjectCommand& command, Reply reply, Time now);
+  void run(WriteObjectCommand& command, Reply reply, Time now);
+  void run(CallCommand& command, const Reply& reply, Time now);
+
+  config::RobotConfig config_;
+  EventSink& events_;
+  canopen::Master master_;
+  std::vector<drive::Axis> axes_;
+  std::vector<AxisMotion> motions_;
+  std::vector<Group> groups_;
+  std::vector<ProcedureJob> procedures_;
+  std::vector<ObjectJob> objects_;
+  std::vector<AxisNews> news_;
+  std::vector<std::uint64_t> missed_feedback_;
+  std::vector<Time> last_feedback_;
+  CycleStatistics statistics_;
+  bool started_ = false;
+  Time next_sync_ = kNever, next_cycle_ = kNever, now_{};
+  Shutdown shutdown_ = Shutdown::no;
+  Time shutdown_began_{};
+};
+
+}  // namespace cia402::bus

@@ -1,0 +1,89 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "cia402_driver/bus/command.h"
+#include "cia402_driver/bus/event.h"
+#include "cia402_driver/bus/load_meter.h"
+#include "cia402_driver/bus/realtime.h"
+#include "cia402_driver/bus/robot.h"
+#include "cia402_driver/bus/snapshot.h"
+#include "cia402_driver/bus/spsc_queue.h"
+#include "cia402_driver/bus/triple_buffer.h"
+#include "cia402_driver/can/bus.h"
+
+namespace cia402::bus {
+
+/// Runs a Robot on a CAN interface in real time: one thread that owns both. Other threads reach it
+/// through post(), snapshot() and nextEvent() only.
+class BusRunner final : private EventSink {
+ public:
+  struct Options {
+    int priority = 80;  ///< SCHED_FIFO priority, 1..99; 0: leave scheduling and memory alone
+  };
+
+  /// @param robot valid configuration, @param master made from it.
+  BusRunner(config::RobotConfig robot, canopen::MasterConfig master,
+            std::unique_ptr<can::Interface> interface, Options options);
+  /// Shuts down in good order if that has not been done.
+  ~BusRunner();
+
+  /// Starts the thread. Where the interface is missing or down it waits for it.
+  void start();
+  /// Begins the orderly shutdown; returns at once.
+  void requestShutdown();
+  /// Waits for the end of the thread, at most about 2 s after requestShutdown().
+  void join();
+  bool running() const { return running_.load(); }
+
+  /// Any thread: queues a command. If there is no room or no running thread, its reply is given at
+  /// once and false returned.
+  bool post(Command command);
+  /// Any thread: the newest snapshot.
+  RobotSnapshot snapshot();
+  /// One thread: the next event. @return false if there is none.
+  bool nextEvent(Event& event) { return events_.pop(event); }
+  /// Events that found no room, since start.
+  std::uint64_t lostEvents() const { return lost_events_.load(); }
+  /// Valid once running(); what the operating system granted.
+  RealtimeReport realtime();
+
+ private:
+  void onEvent(const Event& event) override;
+  void run();
+  void iterate(Time now);
+  void watchInterface(Time now);
+  void publish(Time now);
+  void wait() const;
+  void wake() const;
+  void refuseRest();
+
+  Options options_;
+  std::unique_ptr<can::Interface> interface_;
+  LoadMeter meter_;
+  Robot robot_;
+  int wake_fd_;
+  SpscQueue<Command> mailbox_{256};
+  std::mutex producers_;  // among the posting threads only
+  SpscQueue<Event> events_{512};
+  TripleBuffer<RobotSnapshot> snapshots_;
+  std::mutex readers_;  // among the reading threads only
+  RealtimeReport realtime_;
+  std::mutex realtime_mutex_;
+  std::atomic<std::uint64_t> lost_events_{0};
+  std::atomic<bool> running_{false}, shutdown_requested_{false};
+  can::BusState interface_state_ = can::BusState::missing;
+  bool interface_told_ = false;
+  FixedText<256> interface_text_;
+  std::uint64_t published_cycle_ = 0;
+  Time published_{};
+  std::thread thread_;
+};
+
+}  // namespace cia402::bus

@@ -1,0 +1,247 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/bus/group.h"
+
+#include <cmath>
+
+namespace cia402::bus {
+namespace {
+
+using motion::TrajectoryErrorCode;
+
+std::vector<motion::StopLimits> stopLimitsOf(const std::vector<motion::Joint>& joints,
+                                             const std::vector<std::size_t>& axes,
+                                             const std::vector<drive::Axis>& all) {
+  std::vector<motion::StopLimits> limits;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const drive::AxisConfig& config = all[axes[i]].config();
+    motion::StopLimits limit;
+    limit.deceleration = stopDeceleration(config);
+    limit.lower = config.limits.lower;
+    limit.upper = config.limits.upper;
+    limit.hardest = config.limits.acceleration;
+    limits.push_back(limit);
+  }
+  return limits;
+}
+
+std::vector<motion::TrajectoryPoint> reorder(const std::vector<motion::TrajectoryPoint>& points,
+                                             const std::vector<std::size_t>& order) {
+  const auto pick = [&order](const std::vector<double>& values) {
+    if (values.size() != order.size()) return values;  // absent, or an error that create() words
+    std::vector<double> picked;
+    for (std::size_t from : order) picked.push_back(values[from]);
+    return picked;
+  };
+  std::vector<motion::TrajectoryPoint> ordered;
+  for (const motion::TrajectoryPoint& point : points) {
+    ordered.push_back({pick(point.positions), pick(point.velocities), pick(point.accelerations),
+                       point.time_from_start});
+  }
+  return ordered;
+}
+
+}  // namespace
+
+Group::Group(config::GroupConfig config, std::vector<std::size_t> axes,
+             const std::vector<drive::Axis>& all)
+    : config_(std::move(config)),
+      axes_(std::move(axes)),
+      ramps_(std::vector<motion::StopLimits>()),
+      commanded_(axes_.size()) {
+  for (std::size_t axis : axes_) {
+    joints_.push_back(jointOf(all[axis].config()));
+    const auto tolerance = config_.tolerances.find(joints_.back().name);
+    tolerances_.push_back(tolerance == config_.tolerances.end() ? config::JointTolerance()
+                                                                : tolerance->second);
+  }
+  ramps_ = motion::GroupStop(stopLimitsOf(joints_, axes_, all));
+}
+
+std::string Group::refusal(const std::vector<drive::Axis>& axes,
+                           const std::vector<AxisMotion>& motions) const {
+  std::string all;
+  for (std::size_t axis : axes_) {
+    std::string reason = axes[axis].motionRefusal();
+    const drive::ModeSpec* mode = axes[axis].state().mode;
+    if (reason.empty() &&
+        (mode == nullptr || !mode->cyclic || mode->kind != drive::ControlKind::position)) {
+      reason = axes[axis].config().name + " is in mode " + (mode ? mode->name : "unknown") +
+               ", which does not follow trajectories: set_mode cyclic_position first";
+    }
+    const std::string* owner = motions[axis].owner();
+    if (reason.empty() && owner != nullptr && owner != &config_.name) {
+      reason = axes[axis].config().name + " follows a trajectory of group " + *owner;
+    }
+    if (!reason.empty()) all += (all.empty() ? "" : "; ") + reason;
+  }
+  return all;
+}
+
+std::vector<motion::MotionState> Group::commandedAt(const std::vector<drive::Axis>& axes,
+                                                    Time time) const {
+  std::vector<motion::MotionState> states(axes_.size());
+  if (phase_ == Phase::following) {
+    trajectory_->sample(time, states);
+  } else if (phase_ == Phase::stopping) {
+    ramps_.sample(time, states);
+  } else {
+    for (std::size_t i = 0; i < axes_.size(); ++i) states[i] = {axes[axes_[i]].target(), 0.0, 0.0};
+  }
+  return states;
+}
+
+TrajectoryOutcome Group::start(const std::vector<std::string>& names,
+                               const std::vector<motion::TrajectoryPoint>& points,
+                               std::optional<Time> start_time, std::vector<drive::Axis>& axes,
+                               std::vector<AxisMotion>& motions, Time now) {
+  if (points.empty()) {
+    stop({TrajectoryErrorCode::successful, config_.name + ": stopped by an empty trajectory"}, now);
+    return {TrajectoryErrorCode::successful, config_.name + ": stopping"};
+  }
+  const auto order = motion::matchJoints(joints_, names);
+  if (!order) return {TrajectoryErrorCode::invalid_joints, order.error().message};
+  const std::string why_not = refusal(axes, motions);
+  if (!why_not.empty()) {
+    return {TrajectoryErrorCode::invalid_goal, config_.name + ": trajectory refused: " + why_not};
+  }
+  motion::TrajectoryStart start;
+  start.now = now;
+  start.start_time = start_time;
+  start.shortest_way = true;
+  auto trajectory = motion::Trajectory::create(joints_, commandedAt(axes, start.begin()),
+                                               reorder(points, *order), start);
+  if (!trajectory) return {trajectory.error().code, trajectory.error().message};
+  if (phase_ == Phase::following) {
+    next_ = std::move(trajectory).value();
+  } else {
+    trajectory_ = std::move(trajectory).value();
+    next_.reset();
+  }
+  phase_ = Phase::following;
+  refused_ = nullptr;
+  for (std::size_t axis : axes_) motions[axis].setOwner(&config_.name);
+  return {TrajectoryErrorCode::successful, config_.name + ": trajectory accepted"};
+}
+
+void Group::stop(const TrajectoryOutcome& why, Time now) {
+  if (phase_ != Phase::following) return;
+  outcome_ = why;
+  beginStop(now);
+}
+
+void Group::beginStop(Time now) {
+  trajectory_->sample(now, commanded_);
+  ramps_.start(commanded_, now);
+  trajectory_.reset();
+  next_.reset();
+  phase_ = Phase::stopping;
+}
+
+std::optional<TrajectoryOutcome> Group::step(std::vector<drive::Axis>& axes,
+                                             std::vector<AxisMotion>& motions, Time now) {
+  if (phase_ == Phase::idle) return std::nullopt;
+  if (phase_ == Phase::following) {
+    if (next_ && now >= next_->startTime()) {
+      trajectory_ = std::move(next_);
+      next_.reset();
+    }
+    auto ended = checkAxes(axes);
+    if (!ended) ended = checkPath(axes);
+    if (!ended) ended = checkRefusal();
+    if (ended) {
+      outcome_ = *ended;
+      beginStop(now);
+    }
+  }
+  if (phase_ == Phase::following) {
+    trajectory_->sample(now, commanded_);
+    sendSetpoints(axes);
+    if (next_ || !trajectory_->finished(now)) return std::nullopt;
+    const auto reached = checkGoal(axes, now);
+    if (!reached) return std::nullopt;
+    outcome_ = *reached;
+    release(motions);
+    return outcome_;
+  }
+  ramps_.sample(now, commanded_);
+  sendSetpoints(axes);
+  if (!ramps_.finished(now)) return std::nullopt;
+  release(motions);
+  return outcome_;
+}
+
+void Group::sendSetpoints(std::vector<drive::Axis>& axes) {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    drive::Axis& axis = axes[axes_[i]];
+    // An axis that fell out of operation holds or stops by itself; the others go on as configured.
+    if (axis.state().ready_for_motion && !axis.setTarget(commanded_[i].position)) {
+      refused_ = &joints_[i];
+    }
+  }
+}
+
+void Group::release(std::vector<AxisMotion>& motions) {
+  for (std::size_t axis : axes_) motions[axis].setOwner(nullptr);
+  trajectory_.reset();
+  next_.reset();
+  phase_ = Phase::idle;
+}
+
+std::optional<TrajectoryOutcome> Group::checkAxes(const std::vector<drive::Axis>& axes) const {
+  bool any_ready = false;
+  for (std::size_t index : axes_) {
+    if (axes[index].state().ready_for_motion) {
+      any_ready = true;
+    } else if (config_.stop_group_on_fault) {
+      return TrajectoryOutcome{
+          TrajectoryErrorCode::path_tolerance_violated,
+          config_.name + ": trajectory stopped: " + axes[index].motionRefusal()};
+    }
+  }
+  if (any_ready) return std::nullopt;
+  return TrajectoryOutcome{TrajectoryErrorCode::path_tolerance_violated,
+                           config_.name + ": trajectory stopped: no joint is enabled any more"};
+}
+
+std::optional<TrajectoryOutcome> Group::checkRefusal() const {
+  if (refused_ == nullptr) return std::nullopt;
+  return TrajectoryOutcome{TrajectoryErrorCode::path_tolerance_violated,
+                           config_.name + ": trajectory stopped: " + refused_->name +
+                               " refused a set-point: it does not fit the drive or is beyond the "
+                               "joint's limits"};
+}
+
+std::optional<TrajectoryOutcome> Group::checkPath(const std::vector<drive::Axis>& axes) const {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const drive::AxisState& state = axes[axes_[i]].state();
+    if (tolerances_[i].trajectory <= 0.0 || !state.ready_for_motion) continue;
+    const double error = commanded_[i].position - state.position;
+    if (trajectory_->startTime() < state.stamp && std::abs(error) > tolerances_[i].trajectory) {
+      return TrajectoryOutcome{
+          TrajectoryErrorCode::path_tolerance_violated,
+          config_.name + ": trajectory stopped: " + joints_[i].name + " is " +
+              motion::formatNumber(std::abs(error)) + " " + motion::toString(joints_[i].unit) +
+              " off its path, the tolerance is " + motion::formatNumber(tolerances_[i].trajectory)};
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<TrajectoryOutcome> Group::checkGoal(const std::vector<drive::Axis>& axes,
+                                                  Time now) const {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    if (tolerances_[i].goal <= 0.0) continue;
+    const double error = trajectory_->goal()[i] - axes[axes_[i]].state().position;
+    if (std::abs(error) <= tolerances_[i].goal) continue;
+    if (now < trajectory_->endTime() + fromSeconds(config_.goal_time)) return std::nullopt;
+    return TrajectoryOutcome{TrajectoryErrorCode::goal_tolerance_violated,
+                             config_.name + ": goal missed: " + joints_[i].name + " is " +
+                                 motion::formatNumber(std::abs(error)) + " " +
+                                 motion::toString(joints_[i].unit) + " away after " +
+                                 motion::formatNumber(config_.goal_time) + " s, the tolerance is " +
+                                 motion::formatNumber(tolerances_[i].goal)};
+  }
+  return TrajectoryOutcome{TrajectoryErrorCode::successful, config_.name + ": goal reached"};
+}
+
+}  // namespace cia402::bus

@@ -1,0 +1,163 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/bus/object_text.h"
+
+#include <cctype>
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
+
+#include "cia402_driver/drive/conversion.h"
+#include "cia402_driver/motion/joint.h"
+
+namespace cia402::bus {
+namespace {
+
+using canopen::Bytes;
+using drive::Encoding;
+using drive::ObjectSpec;
+
+bool isText(drive::DataType type) { return canopen::sizeBits(type) == 0; }
+
+/// The object without its physical meaning: converts between raw and device numbers only.
+Result<drive::Conversion> deviceNumbers(const ObjectSpec& spec, const drive::AxisConfig& axis) {
+  ObjectSpec plain = spec;
+  plain.quantity = drive::Quantity::none;
+  plain.factor = 1.0;
+  return drive::Conversion::create(plain, *axis.profile, axis.geometry);
+}
+
+const char* jointUnit(drive::Quantity quantity, const drive::AxisConfig& axis) {
+  const bool linear = axis.geometry.type == drive::AxisGeometry::Type::prismatic;
+  switch (quantity) {
+    case drive::Quantity::position:
+      return linear ? "m" : "rad";
+    case drive::Quantity::velocity:
+      return linear ? "m/s" : "rad/s";
+    case drive::Quantity::acceleration:
+      return linear ? "m/s^2" : "rad/s^2";
+    case drive::Quantity::torque:
+      return linear ? "N" : "N m";
+    default:
+      return nullptr;
+  }
+}
+
+std::string hexNumber(std::uint64_t raw, unsigned bytes) {
+  static const char* const kDigits = "0123456789ABCDEF";
+  std::string text = "0x";
+  for (unsigned i = 2 * bytes; i-- > 0;) text += kDigits[(raw >> (4 * i)) & 0xF];
+  return text;
+}
+
+std::int64_t signExtended(std::uint64_t raw, unsigned bits) {
+  if (bits >= 64) return static_cast<std::int64_t>(raw);
+  const std::uint64_t sign = std::uint64_t{1} << (bits - 1);
+  return static_cast<std::int64_t>((raw ^ sign)) - static_cast<std::int64_t>(sign);
+}
+
+ObjectText describeUnlisted(const Bytes& data) {
+  ObjectText text;
+  if (data.empty() || data.size() > 8) {
+    text.value = textOf(data);
+    return text;
+  }
+  const std::uint64_t raw = canopen::toUnsigned(data);
+  text.number = static_cast<double>(raw);
+  text.value =
+      std::to_string(raw) + " (" + hexNumber(raw, static_cast<unsigned>(data.size())) + ")";
+  return text;
+}
+
+Result<Bytes> integerBytes(const std::string& value, unsigned bits, bool is_signed) {
+  const bool negative = !value.empty() && value[0] == '-';
+  char* end = nullptr;
+  errno = 0;
+  const unsigned long long magnitude = std::strtoull(value.c_str() + (negative ? 1 : 0), &end, 0);
+  const bool number = !value.empty() && end != nullptr && *end == '\0' && errno == 0 &&
+                      std::isdigit(static_cast<unsigned char>(value[negative ? 1 : 0])) != 0;
+  if (!number) return Error{"\"" + value + "\" is not a whole number; write e.g. -5 or 0x1A"};
+  const std::uint64_t largest = bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
+  const std::uint64_t lowest = std::uint64_t{1} << (bits - 1);
+  if (negative ? (!is_signed || magnitude > lowest) : magnitude > largest) {
+    return Error{value + " does not fit " + std::to_string(bits) + (is_signed ? " signed" : "") +
+                 " bits"};
+  }
+  const std::uint64_t raw = negative ? (~std::uint64_t{magnitude} + 1) : magnitude;
+  return canopen::toBytes(raw & largest, bits / 8);
+}
+
+Result<Bytes> floatBytes(const std::string& value, const ObjectSpec& spec,
+                         const drive::AxisConfig& axis) {
+  char* end = nullptr;
+  const double number = std::strtod(value.c_str(), &end);
+  if (value.empty() || end == nullptr || *end != '\0') {
+    return Error{"\"" + value + "\" is not a number; write e.g. -1.5"};
+  }
+  const Result<drive::Conversion> conversion = deviceNumbers(spec, axis);
+  if (!conversion) return conversion.error();
+  std::uint64_t raw = 0;
+  if (!conversion->toDevice(number, raw)) {
+    return Error{value + " cannot be sent: it is not finite or does not fit the object"};
+  }
+  return canopen::toBytes(raw, canopen::sizeBits(spec.type) / 8);
+}
+
+}  // namespace
+
+std::string textOf(const Bytes& data) {
+  std::string text;
+  bool printable = !data.empty();
+  for (std::uint8_t byte : data) printable = printable && std::isprint(byte) != 0;
+  if (printable) return "\"" + std::string(data.begin(), data.end()) + "\"";
+  for (std::uint8_t byte : data) text += (text.empty() ? "" : " ") + hexNumber(byte, 1).substr(2);
+  return text.empty() ? "nothing" : text;
+}
+
+ObjectText describeObject(const ObjectSpec* spec, const drive::AxisConfig& axis,
+                          const Bytes& data) {
+  if (spec == nullptr || isText(spec->type)) return describeUnlisted(data);
+  const unsigned bits = canopen::sizeBits(spec->type);
+  ObjectText text;
+  if (data.size() * 8 != (bits == 1 ? 8 : bits)) {
+    text.value = textOf(data) + " (" + std::to_string(data.size()) +
+                 " bytes, but the profile says " + canopen::toString(spec->type) + ")";
+    return text;
+  }
+  const std::uint64_t raw = canopen::toUnsigned(data);
+  const Result<drive::Conversion> device = deviceNumbers(*spec, axis);
+  text.number = device ? device->toJoint(raw) : static_cast<double>(signExtended(raw, bits));
+  const bool whole = spec->encoding == Encoding::integer && spec->type != drive::DataType::real32 &&
+                     spec->type != drive::DataType::real64;
+  if (whole) {
+    text.value = canopen::isSigned(spec->type) ? std::to_string(signExtended(raw, bits))
+                                               : std::to_string(raw);
+    text.value += " (" + hexNumber(raw, static_cast<unsigned>(data.size())) + ")";
+  } else {
+    text.value = motion::formatNumber(text.number);
+  }
+  const char* unit = jointUnit(spec->quantity, axis);
+  const Result<drive::Conversion> joint =
+      drive::Conversion::create(*spec, *axis.profile, axis.geometry);
+  if (unit != nullptr && joint) {
+    text.value += " = " + motion::formatNumber(joint->toJoint(raw)) + " " + unit;
+  }
+  return text;
+}
+
+Result<Bytes> encodeObject(const ObjectSpec& spec, const drive::AxisConfig& axis,
+                           const std::string& value) {
+  if (isText(spec.type)) return Bytes(value.begin(), value.end());
+  if (spec.encoding != Encoding::integer || spec.type == drive::DataType::real32 ||
+      spec.type == drive::DataType::real64) {
+    return floatBytes(value, spec, axis);
+  }
+  const unsigned bits = canopen::sizeBits(spec.type);
+  return integerBytes(value, bits == 1 ? 8 : bits, canopen::isSigned(spec.type));
+}
+
+Result<Bytes> encodeUnlisted(const std::string& value, std::size_t size) {
+  if (size == 0 || size > 8) return Bytes(value.begin(), value.end());
+  return integerBytes(value, static_cast<unsigned>(8 * size), true);
+}
+
+}  // namespace cia402::bus

@@ -1,0 +1,101 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "cia402_driver/bus/jobs.h"
+
+namespace cia402::bus {
+
+ProcedureJob::ProcedureJob(drive::ProcedureRequest request, std::vector<Item> items, Reply reply)
+    : request_(std::move(request)), reply_(std::move(reply)) {
+  std::stable_sort(items.begin(), items.end(),
+                   [](const Item& a, const Item& b) { return a.order < b.order; });
+  for (const Item& item : items) entries_.push_back({item, Stage::waiting, 0, {}});
+}
+
+bool ProcedureJob::step(std::vector<drive::Axis>& axes, Time now) {
+  watch(axes);
+  const bool failed = std::any_of(entries_.begin(), entries_.end(),
+                                  [](const Entry& e) { return e.stage == Stage::failed; });
+  if (failed) {
+    skipRest(axes);
+  } else {
+    startDue(axes, now);
+  }
+  const bool ended = std::all_of(entries_.begin(), entries_.end(), [](const Entry& e) {
+    return e.stage == Stage::succeeded || e.stage == Stage::failed;
+  });
+  if (ended && reply_) reply_(answer(axes));
+  return ended;
+}
+
+void ProcedureJob::abandon(const std::string& why) {
+  Answer answer;
+  answer.message = std::string(toString(request_.kind)) + ": " + why;
+  if (reply_) reply_(answer);
+}
+
+void ProcedureJob::startDue(std::vector<drive::Axis>& axes, Time now) {
+  const auto open = std::find_if(entries_.begin(), entries_.end(),
+                                 [](const Entry& e) { return e.stage != Stage::succeeded; });
+  if (open == entries_.end()) return;
+  const int order = open->item.order;
+  for (Entry& entry : entries_) {
+    if (entry.stage != Stage::waiting || entry.item.order != order) continue;
+    const Result<std::uint32_t> started = axes[entry.item.axis].start(request_, now);
+    entry.stage = started ? Stage::running : Stage::failed;
+    if (started) {
+      entry.id = *started;
+    } else {
+      entry.message = started.error().message;
+    }
+  }
+  watch(axes);  // what ends at once
+}
+
+void ProcedureJob::watch(std::vector<drive::Axis>& axes) {
+  for (Entry& entry : entries_) {
+    if (entry.stage != Stage::running) continue;
+    const drive::Axis& axis = axes[entry.item.axis];
+    const drive::ProcedureStatus& status = axis.procedure();
+    if (status.id != entry.id) {
+      entry.stage = Stage::failed;
+      entry.message = axis.config().name + ": " + toString(request_.kind) + " was replaced by " +
+                      toString(status.kind);
+    } else if (!status.running) {
+      entry.stage = status.success ? Stage::succeeded : Stage::failed;
+      entry.message = status.message;
+    }
+  }
+}
+
+void ProcedureJob::skipRest(const std::vector<drive::Axis>& axes) {
+  for (Entry& entry : entries_) {
+    if (entry.stage != Stage::waiting) continue;
+    entry.stage = Stage::failed;
+    entry.message = axes[entry.item.axis].config().name + ": not started, for another axis failed";
+  }
+}
+
+Answer ProcedureJob::answer(const std::vector<drive::Axis>& axes) const {
+  Answer answer;
+  if (entries_.size() == 1) {
+    answer.success = entries_.front().stage == Stage::succeeded;
+    answer.message = entries_.front().message;
+    return answer;
+  }
+  const auto succeeded = std::count_if(entries_.begin(), entries_.end(),
+                                       [](const Entry& e) { return e.stage == Stage::succeeded; });
+  answer.success = static_cast<std::size_t>(succeeded) == entries_.size();
+  answer.message = std::string(toString(request_.kind)) + " done on " + std::to_string(succeeded) +
+                   " of " + std::to_string(entries_.size()) + " axes";
+  for (const Entry& entry : entries_) {
+    if (entry.stage == Stage::failed || request_.kind == drive::ProcedureKind::home) {
+      answer.message +=
+          "; " +
+          (entry.message.empty() ? axes[entry.item.axis].config().name + ": done" : entry.message);
+    }
+  }
+  return answer;
+}
+
+}  // namespace cia402::bus

@@ -1,0 +1,285 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/bus/robot.h"
+
+#include <algorithm>
+
+namespace cia402::bus {
+namespace {
+
+constexpr Duration kStopTime = std::chrono::milliseconds(1000);     // ramps at shutdown
+constexpr Duration kDisableTime = std::chrono::milliseconds(1800);  // from the start of shutdown
+constexpr Duration kNewsInterval = std::chrono::milliseconds(100);
+
+std::string whoIs(const canopen::Node& node) {
+  return node.name() + " (node " + std::to_string(node.id()) + ")";
+}
+
+}  // namespace
+
+Robot::Robot(config::RobotConfig robot, canopen::MasterConfig master, can::Sink& sink,
+             EventSink& events)
+    : config_(std::move(robot)), events_(events), master_(std::move(master), sink, this) {
+  const Duration cycle = config_.bus.sync_period;
+  for (const drive::AxisConfig& axis : config_.axes) {
+    axes_.emplace_back(axis, *master_.find(axis.node_id));
+    motions_.emplace_back(axis, cycle);
+  }
+  for (const config::GroupConfig& group : config_.groups) {
+    std::vector<std::size_t> members;
+    for (const std::string& joint : group.joints) {
+      const auto axis = std::find_if(config_.axes.begin(), config_.axes.end(),
+                                     [&](const drive::AxisConfig& a) { return a.joint == joint; });
+      members.push_back(static_cast<std::size_t>(axis - config_.axes.begin()));
+    }
+    groups_.emplace_back(group, std::move(members), axes_);
+  }
+  news_.resize(axes_.size());
+  missed_feedback_.resize(axes_.size());
+  last_feedback_.resize(axes_.size());
+}
+
+void Robot::start(Time now) {
+  if (started_) return;
+  started_ = true;
+  now_ = now;
+  next_sync_ = now + config_.bus.sync_period;
+  master_.start(now);
+}
+
+void Robot::receive(const can::Frame& frame, Time stamp, Time now) {
+  now_ = now;
+  master_.receive(frame, stamp, now);
+  const bool sdo_answer = frame.id > 0x580 && frame.id < 0x600;
+  if (!sdo_answer) return;
+  for (drive::Axis& axis : axes_) {  // hurry its procedure along
+    if (axis.config().node_id == (frame.id & 0x7F)) axis.update(now);
+  }
+}
+
+Time Robot::nextDeadline() const {
+  if (!started_ || shutDown()) return kNever;
+  return std::min({next_sync_, next_cycle_, master_.nextDeadline()});
+}
+
+void Robot::tick(Time now) {
+  if (!started_ || shutDown()) return;
+  now_ = now;
+  if (now >= next_sync_) sync(now);
+  if (now >= next_cycle_) cycle(now);
+  if (now >= master_.nextDeadline()) master_.tick(now);
+}
+
+void Robot::sync(Time now) {
+  master_.sendSync(now);
+  statistics_.syncSent(now - next_sync_);
+  const Duration period = config_.bus.sync_period;
+  next_cycle_ = now + period / 2;
+  next_sync_ += period;
+  if (next_sync_ <= now) {  // never a burst of SYNCs: what was missed is left out, and counted
+    const auto skipped = (now - next_sync_) / period + 1;
+    next_sync_ += skipped * period;
+    statistics_.cyclesSkipped(static_cast<std::uint64_t>(skipped));
+  }
+}
+
+void Robot::cycle(Time now) {
+  next_cycle_ = kNever;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    axes_[i].readFeedback(now);
+    axes_[i].update(now);
+    const drive::AxisState& state = axes_[i].state();
+    if (state.health == canopen::NodeHealth::ready && state.stamp == last_feedback_[i]) {
+      ++missed_feedback_[i];
+    }
+    last_feedback_[i] = state.stamp;
+  }
+  for (Group& group : groups_) {
+    if (const auto outcome = group.step(axes_, motions_, now)) {
+      tell(outcome->code == motion::TrajectoryErrorCode::successful ? Event::Severity::info
+                                                                    : Event::Severity::error,
+           outcome->message, now);
+    }
+  }
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    motions_[i].step(axes_[i], now);
+    axes_[i].writeCommands(now);
+  }
+  master_.sendRpdos(now);
+  stepJobs(now);
+  stepShutdown(now);
+  watchAxes(now);
+}
+
+void Robot::stepJobs(Time now) {
+  const auto keep_running = [&](auto& jobs, auto&& step) {
+    jobs.erase(std::remove_if(jobs.begin(), jobs.end(), step), jobs.end());
+  };
+  if (!procedures_.empty()) {
+    keep_running(procedures_, [&](ProcedureJob& job) { return job.step(axes_, now); });
+  }
+  if (!objects_.empty()) keep_running(objects_, [](ObjectJob& job) { return job.step(); });
+}
+
+void Robot::stopMotion(const std::string& why, Time now) {
+  for (Group& group : groups_) {
+    group.stop({motion::TrajectoryErrorCode::path_tolerance_violated, why}, now);
+  }
+  for (std::size_t i = 0; i < axes_.size(); ++i) motions_[i].stop(axes_[i], now);
+}
+
+void Robot::beginShutdown(Time now) {
+  if (shutdown_ != Shutdown::no) return;
+  shutdown_ = started_ ? Shutdown::stopping : Shutdown::done;
+  shutdown_began_ = now;
+  stopMotion("stopped: the driver is shutting down", now);
+}
+
+void Robot::stepShutdown(Time now) {
+  if (shutdown_ == Shutdown::no) return;
+  if (shutdown_ == Shutdown::stopping) {
+    const bool at_rest = std::all_of(motions_.begin(), motions_.end(),
+                                     [](const AxisMotion& m) { return m.atRest(); }) &&
+                         std::none_of(groups_.begin(), groups_.end(),
+                                      [](const Group& g) { return g.executing() || g.stopping(); });
+    if (!at_rest && now < shutdown_began_ + kStopTime) return;
+    shutdown_ = Shutdown::disabling;
+    drive::ProcedureRequest request;
+    request.kind = drive::ProcedureKind::disable;
+    for (drive::Axis& axis : axes_) (void)axis.start(request, now);  // not ready: nothing to do
+    return;
+  }
+  if (shutdown_ == Shutdown::disabling) {
+    const bool disabled = std::none_of(axes_.begin(), axes_.end(), [](const drive::Axis& axis) {
+      return axis.state().health == canopen::NodeHealth::ready && axis.procedure().running;
+    });
+    if (!disabled && now < shutdown_began_ + kDisableTime) return;
+    master_.commandAll(canopen::NmtCommand::enter_pre_operational, now);
+    shutdown_ = Shutdown::done;
+    const std::string why = "ended by the shutdown of the driver";
+    for (ProcedureJob& job : procedures_) job.abandon(why);
+    for (ObjectJob& job : objects_) job.abandon(why);
+    procedures_.clear();
+    objects_.clear();
+  }
+}
+
+drive::Axis* Robot::axisNamed(const std::string& name) {
+  for (drive::Axis& axis : axes_) {
+    if (axis.config().name == name) return &axis;
+  }
+  return nullptr;
+}
+
+std::size_t Robot::axisOf(const canopen::Node& node) const {
+  const auto axis = std::find_if(axes_.begin(), axes_.end(), [&](const drive::Axis& a) {
+    return a.config().node_id == node.id();
+  });
+  return static_cast<std::size_t>(axis - axes_.begin());
+}
+
+void Robot::tell(Event::Severity severity, std::string_view text, Time now) {
+  Event event;
+  event.severity = severity;
+  event.stamp = now;
+  event.text.assign(text);
+  events_.onEvent(event);
+}
+
+void Robot::onEmergency(canopen::Node& node, const canopen::Emergency& emergency) {
+  const std::size_t index = axisOf(node);
+  if (index == axes_.size()) return;
+  axes_[index].onEmergency(emergency, now_);
+  const auto& known = axes_[index].config().profile->errors;
+  const auto text = known.find(emergency.code);
+  Event event;
+  event.severity = emergency.code == 0 ? Event::Severity::info : Event::Severity::warning;
+  event.stamp = emergency.stamp;
+  event.is_emergency = true;
+  event.axis = index;
+  event.emergency = emergency;
+  event.text.assign(
+      whoIs(node) + ": emergency: " +
+      (text == known.end() ? canopen::emergencyText(emergency.code) : text->second.text) +
+      "; error register: " + canopen::errorRegisterText(emergency.error_register));
+  events_.onEvent(event);
+}
+
+void Robot::onBootUp(canopen::Node& node, Time now) {
+  tell(Event::Severity::info, whoIs(node) + ": booted up", now);
+}
+
+void Robot::onHealthChange(canopen::Node& node, canopen::NodeHealth before, Time now) {
+  const std::size_t index = axisOf(node);
+  if (index == axes_.size()) return;
+  axes_[index].onHealthChange(before, now);
+  const canopen::NodeHealth health = node.health();
+  if (health == canopen::NodeHealth::booting) return;
+  const bool well = health == canopen::NodeHealth::ready;
+  std::string text = whoIs(node) + (well ? ": identified, configured and started" : ": ");
+  if (!well) text += node.problem().empty() ? toString(health) : node.problem();
+  tell(well ? Event::Severity::info : Event::Severity::error, text, now);
+  if (well) {
+    for (const std::string& note : node.notes()) {
+      tell(Event::Severity::warning, whoIs(node) + ": " + note, now);
+    }
+  }
+}
+
+void Robot::watchAxes(Time now) {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const drive::AxisState& state = axes_[i].state();
+    const drive::ProcedureStatus& procedure = axes_[i].procedure();
+    AxisNews& news = news_[i];
+    const bool well = state.health == canopen::NodeHealth::ready &&
+                      state.state != drive::State::fault &&
+                      state.state != drive::State::fault_reaction_active && !state.warning;
+    const bool changed = news.state != state.state || news.health != state.health ||
+                         news.error_code != state.error_code || news.procedure != procedure.id ||
+                         news.running != procedure.running;
+    const bool stale = (!well || procedure.running || !news.problem.empty()) &&
+                       now >= news.checked + kNewsInterval;
+    if (!changed && !stale) continue;
+    news.state = state.state;
+    news.health = state.health;
+    news.error_code = state.error_code;
+    news.procedure = procedure.id;
+    news.running = procedure.running;
+    news.checked = now;
+    const canopen::Node& node = axes_[i].node();
+    const bool booting = state.health != canopen::NodeHealth::ready;
+    news.step.assign(booting ? node.bootStep() : procedure.step);
+    news.waiting_for.assign(procedure.running ? procedure.waiting_for : std::string());
+    const std::string problem = !node.problem().empty() ? node.problem() : axes_[i].faultText();
+    if (news.problem == problem) continue;
+    news.problem.assign(problem);
+    const bool told_by_health = !node.problem().empty();
+    if (!problem.empty() && !told_by_health) tell(Event::Severity::error, problem, now);
+  }
+}
+
+void Robot::fill(RobotSnapshot& snapshot) const {
+  snapshot.now = now_;
+  snapshot.statistics = statistics_;
+  snapshot.shut_down = shutDown();
+  snapshot.axes.resize(axes_.size());
+  snapshot.groups.resize(groups_.size());
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    AxisSnapshot& axis = snapshot.axes[i];
+    const canopen::Node& node = master_.nodes()[i];
+    axis.state = axes_[i].state();
+    axis.target = axes_[i].target();
+    axis.nmt = node.nmtState();
+    axis.procedure = axes_[i].procedure().kind;
+    axis.procedure_running = axes_[i].procedure().running;
+    axis.serial = node.identity() ? node.identity()->serial : 0;
+    axis.missed_feedback = missed_feedback_[i];
+    axis.step = news_[i].step;
+    axis.waiting_for = news_[i].waiting_for;
+    axis.problem = news_[i].problem;
+  }
+  for (std::size_t i = 0; i < groups_.size(); ++i) {
+    snapshot.groups[i] = {groups_[i].executing(), groups_[i].stopping()};
+  }
+}
+
+}  // namespace cia402::bus

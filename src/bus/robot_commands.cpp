@@ -1,0 +1,110 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/bus/robot.h"
+
+namespace cia402::bus {
+namespace {
+
+Answer refused(std::string message) {
+  Answer answer;
+  answer.message = std::move(message);
+  return answer;
+}
+
+Answer done(std::string message) {
+  Answer answer;
+  answer.success = true;
+  answer.message = std::move(message);
+  return answer;
+}
+
+void give(const Reply& reply, const Answer& answer) {
+  if (reply) reply(answer);
+}
+
+}  // namespace
+
+void Robot::execute(Command command, Time now) {
+  now_ = now;
+  if (shutdown_ != Shutdown::no) {
+    give(command.reply, refused("refused: the driver is shutting down"));
+    return;
+  }
+  std::visit([&](auto& body) { run(body, std::move(command.reply), now); }, command.body);
+}
+
+void Robot::run(ProcedureCommand& command, Reply reply, Time now) {
+  if (!started_) {
+    give(reply,
+         refused("refused: the bus interface " + config_.bus.interface + " is not there yet"));
+    return;
+  }
+  const bool homing = command.request.kind == drive::ProcedureKind::home;
+  std::vector<ProcedureJob::Item> items;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const drive::AxisConfig& axis = axes_[i].config();
+    const bool named = axis.name == command.axis;
+    const bool concerned = command.axis.empty() && (!homing || axis.homing);
+    if (named || concerned) items.push_back({i, homing && axis.homing ? axis.homing->order : 0});
+  }
+  if (items.empty()) {
+    give(reply, refused(command.axis.empty() ? "nothing to do: no axis has a `homing` section"
+                                             : "there is no axis \"" + command.axis + "\""));
+    return;
+  }
+  procedures_.emplace_back(command.request, std::move(items), std::move(reply));
+  if (procedures_.back().step(axes_, now)) procedures_.pop_back();
+}
+
+void Robot::run(SetpointCommand& command, const Reply& reply, Time now) {
+  if (command.axis >= axes_.size()) return;
+  const Result<void> taken =
+      motions_[command.axis].command(axes_[command.axis], command.value, now);
+  if (taken) return;
+  give(reply, refused(taken.error().message));
+}
+
+void Robot::run(TrajectoryCommand& command, const Reply& reply, Time now) {
+  for (Group& group : groups_) {
+    if (group.config().name != command.group) continue;
+    const TrajectoryOutcome outcome =
+        group.start(command.joints, command.points, command.start_time, axes_, motions_, now);
+    const bool accepted = outcome.code == motion::TrajectoryErrorCode::successful;
+    give(reply, accepted ? done(outcome.message) : refused(outcome.message));
+    return;
+  }
+  give(reply, refused("there is no group \"" + command.group + "\""));
+}
+
+void Robot::run(ReadObjectCommand& command, Reply reply, Time) {
+  drive::Axis* axis = axisNamed(command.axis);
+  if (axis == nullptr) {
+    give(reply, refused("there is no axis \"" + command.axis + "\""));
+    return;
+  }
+  Result<ObjectJob> job = ObjectJob::read(*axis, command.object, reply);
+  if (job) {
+    objects_.push_back(std::move(job).value());
+  } else {
+    give(reply, refused(job.error().message));
+  }
+}
+
+void Robot::run(WriteObjectCommand& command, Reply reply, Time) {
+  drive::Axis* axis = axisNamed(command.axis);
+  if (axis == nullptr) {
+    give(reply, refused("there is no axis \"" + command.axis + "\""));
+    return;
+  }
+  Result<ObjectJob> job = ObjectJob::write(*axis, command.object, command.value, reply);
+  if (job) {
+    objects_.push_back(std::move(job).value());
+  } else {
+    give(reply, refused(job.error().message));
+  }
+}
+
+void Robot::run(CallCommand& command, const Reply& reply, Time now) {
+  give(reply, command.function(now));
+}
+
+}  // namespace cia402::bus

@@ -1,0 +1,200 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/bus/runner.h"
+
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <system_error>
+
+#include "cia402_driver/bus/real_clock.h"
+
+namespace cia402::bus {
+namespace {
+
+constexpr Duration kIdleInterval = std::chrono::milliseconds(20);  // while there is no cycle
+constexpr Duration kFlushTime = std::chrono::milliseconds(20);     // for the last frames
+constexpr int kFramesPerRound = 256;  // then the clock is looked at again
+
+bool usable(can::BusState state) {
+  return state != can::BusState::missing && state != can::BusState::down;
+}
+
+void give(const Reply& reply, const char* message) {
+  if (!reply) return;
+  Answer answer;
+  answer.message = message;
+  reply(answer);
+}
+
+RobotSnapshot sized(std::size_t axes, std::size_t groups) {
+  RobotSnapshot snapshot;
+  snapshot.axes.resize(axes);
+  snapshot.groups.resize(groups);
+  return snapshot;
+}
+
+}  // namespace
+
+BusRunner::BusRunner(config::RobotConfig robot, canopen::MasterConfig master,
+                     std::unique_ptr<can::Interface> interface, Options options)
+    : options_(options),
+      interface_(std::move(interface)),
+      meter_(*interface_, robot.bus.bitrate),
+      robot_(std::move(robot), std::move(master), meter_, *this),
+      wake_fd_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)),
+      snapshots_(sized(robot_.axes().size(), robot_.groups().size())) {
+  if (wake_fd_ < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
+}
+
+BusRunner::~BusRunner() {
+  requestShutdown();
+  join();
+  close(wake_fd_);
+}
+
+void BusRunner::start() {
+  running_ = true;
+  thread_ = std::thread([this] { run(); });
+}
+
+void BusRunner::requestShutdown() {
+  shutdown_requested_ = true;
+  wake();
+}
+
+void BusRunner::join() {
+  if (thread_.joinable()) thread_.join();
+}
+
+bool BusRunner::post(Command command) {
+  bool queued = false;
+  {
+    const std::lock_guard<std::mutex> lock(producers_);
+    queued = running_ && mailbox_.push(std::move(command));
+  }
+  if (queued) {
+    wake();
+  } else {
+    give(command.reply, running_ ? "refused: too many commands are waiting, try again"
+                                 : "refused: the driver is not running");
+  }
+  return queued;
+}
+
+RobotSnapshot BusRunner::snapshot() {
+  const std::lock_guard<std::mutex> lock(readers_);
+  snapshots_.refresh();
+  return snapshots_.front();
+}
+
+RealtimeReport BusRunner::realtime() {
+  const std::lock_guard<std::mutex> lock(realtime_mutex_);
+  return realtime_;
+}
+
+void BusRunner::onEvent(const Event& event) {
+  if (!events_.push(Event(event))) ++lost_events_;
+}
+
+void BusRunner::run() {
+  if (options_.priority > 0) {
+    const RealtimeReport report = makeRealtime(options_.priority);
+    Event event;
+    event.severity = report.complete() ? Event::Severity::info : Event::Severity::warning;
+    event.stamp = realNow();
+    event.text.assign(report.text);
+    onEvent(event);
+    const std::lock_guard<std::mutex> lock(realtime_mutex_);
+    realtime_ = report;
+  }
+  while (!robot_.shutDown()) {
+    iterate(realNow());
+    if (!robot_.shutDown()) wait();
+  }
+  const Time flushed = realNow() + kFlushTime;  // the last frames are still on their way
+  for (Time now = realNow(); now < flushed; now = realNow()) {
+    while (interface_->receive(now)) {
+    }
+    interface_->maintain(now);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  publish(realNow());
+  refuseRest();
+}
+
+void BusRunner::iterate(Time now) {
+  if (shutdown_requested_) robot_.beginShutdown(now);
+  watchInterface(now);
+  robot_.tick(now);  // first of all: SYNC may be due
+  for (int i = 0; i < kFramesPerRound; ++i) {
+    const auto received = interface_->receive(now);
+    if (!received) break;
+    meter_.count(received->frame);
+    robot_.receive(received->frame, received->stamp, now);
+  }
+  Command command;
+  while (mailbox_.pop(command)) robot_.execute(std::move(command), now);
+  interface_->maintain(now);
+  meter_.update(now);
+  publish(now);
+}
+
+void BusRunner::watchInterface(Time now) {
+  const can::BusState state = interface_->state();
+  if (usable(state) && !robot_.started()) robot_.start(now);
+  if (interface_told_ && state == interface_state_) return;
+  interface_told_ = true;
+  interface_state_ = state;
+  Event event;
+  event.severity =
+      state == can::BusState::error_active ? Event::Severity::info : Event::Severity::error;
+  event.stamp = now;
+  interface_text_.assign(interface_->describe());
+  event.text.assign(interface_text_.view());
+  onEvent(event);
+}
+
+void BusRunner::publish(Time now) {
+  const std::uint64_t cycle = robot_.statistics().cycles();
+  if (cycle == published_cycle_ && now < published_ + kIdleInterval) return;
+  published_cycle_ = cycle;
+  published_ = now;
+  RobotSnapshot& snapshot = snapshots_.back();
+  robot_.fill(snapshot);
+  snapshot.now = now;
+  snapshot.bus_state = interface_->state();
+  snapshot.counters = interface_->counters();
+  snapshot.bus_load = meter_.load();
+  snapshot.bus_text = interface_text_;
+  snapshots_.publish();
+}
+
+void BusRunner::wait() const {
+  pollfd sources[2] = {{wake_fd_, POLLIN, 0}, {interface_->fd(), POLLIN, 0}};
+  const Time now = realNow();
+  const Time deadline =
+      std::min({robot_.nextDeadline(), interface_->nextDeadline(), now + kIdleInterval});
+  const std::int64_t left = std::max<std::int64_t>((deadline - now).count(), 0);
+  const timespec timeout{left / 1'000'000'000, left % 1'000'000'000};
+  const nfds_t count = sources[1].fd >= 0 ? 2 : 1;
+  if (ppoll(sources, count, &timeout, nullptr) > 0 && sources[0].revents != 0) {
+    std::uint64_t wakes = 0;
+    (void)!read(wake_fd_, &wakes, sizeof wakes);
+  }
+}
+
+void BusRunner::wake() const {
+  const std::uint64_t one = 1;
+  (void)!write(wake_fd_, &one, sizeof one);
+}
+
+void BusRunner::refuseRest() {
+  const std::lock_guard<std::mutex> lock(producers_);
+  running_ = false;
+  Command command;
+  while (mailbox_.pop(command)) give(command.reply, "refused: the driver is shutting down");
+}
+
+}  // namespace cia402::bus
