@@ -1,0 +1,48 @@
+# Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+# Building and using what was built; sourced after common.sh.
+# shellcheck shell=bash
+
+# Configures and builds into $1; further arguments go to cmake. Quick when nothing has changed.
+# Prints the compiler's words only if it fails.
+build() {
+  local directory=$1
+  shift
+  mkdir -p "$directory"
+  say "building in ${directory#"$repository/"}"
+  {
+    cmake -S "$repository" -B "$directory" -G Ninja \
+      -DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DPYTHON_EXECUTABLE="$system_python" "$@" &&
+      cmake --build "$directory" --parallel "$(build_jobs)"
+  } >"$directory/build.log" 2>&1 || {
+    grep -vE '^\[[0-9]+/[0-9]+\] (Building|Generating|Linking)' "$directory/build.log" |
+      tail -n 60 >&2
+    die "the build failed, see $directory/build.log"
+  }
+}
+
+# Library, tests and ROS nodes; afterwards use_ros makes them known to roslaunch and its like.
+build_ros() {
+  build "$build_root/ros" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCIA402_WITH_ROS=ON
+}
+
+# Enters the environment of what build_ros built, with logs kept inside build/ and a master of its
+# own: nothing of a ROS system that may run on this machine is touched.
+use_ros() {
+  set +u  # catkin's scripts read unset variables
+  # shellcheck disable=SC1091
+  source "$build_root/ros/devel/setup.bash"
+  set -u
+  export ROS_HOME=$build_root/ros_home
+  export ROS_LOG_DIR=$ROS_HOME/log
+  export ROS_MASTER_URI
+  ROS_MASTER_URI=http://localhost:$(free_port)
+  unset ROS_IP ROS_HOSTNAME ROS_NAMESPACE
+  export ROS_HOSTNAME=localhost
+  # A python of the user's own has no rospy; what asks env for python3 gets the system's.
+  export PATH=/usr/bin:/bin:$PATH
+}
+
+# A TCP port that is free now.
+free_port() {
+  "$system_python" -c 'import socket; s = socket.socket(); s.bind(("", 0)); print(s.getsockname()[1])'
+}
