@@ -21,8 +21,9 @@ struct ResolvedWrite {
   bool optional = false;
 };
 
-/// Works out a write. @return nothing if what it takes its value from is not configured; an error
-/// sentence if the object is unknown or the value does not fit it.
+/// Works out a write. @return nothing if what it takes its value from is not configured, or if it
+/// is optional and cannot be converted (no rated_torque); an error sentence if the object is
+/// unknown or the value does not fit it.
 Result<std::optional<ResolvedWrite>> resolveWrite(const NamedWrite& write, const AxisConfig& axis);
 
 /// `raw` as the bytes of an SDO transfer: little-endian, as long as the type.

@@ -1,0 +1,31 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "cia402_driver/drive/profile.h"
+#include "cia402_driver/drive/yaml_reader.h"
+
+namespace cia402::drive {
+
+/// Where a list of writes stands; decides what its entries may do.
+enum class WriteList : std::uint8_t {
+  boot,     ///< fixed before the drive is asked anything: values, no copies of other objects
+  running,  ///< done by the axis: may copy another object
+};
+
+/// Reads a list of writes (docs/drive_profiles.md, "Writes"); what is wrong adds problems. By index
+/// (`object: "6065:00"`) a value is the drive's own whole number; by name it is in SI units.
+std::vector<NamedWrite> readWrites(const YamlValue& list, const DriveProfile& profile,
+                                   WriteList kind);
+
+/// Reads a PDO layout (docs/drive_profiles.md, "PDOs") against the objects and limits of a profile.
+std::vector<PdoLayout> readPdos(const YamlValue& section, const DriveProfile& profile);
+
+/// The object that a name or an index ("6041:00") means; nullptr if the profile has none.
+const ObjectSpec* findObject(const DriveProfile& profile, const std::string& name);
+
+/// Names of all objects, for suggestions.
+std::vector<std::string> objectNames(const DriveProfile& profile);
+
+}  // namespace cia402::drive

@@ -1,0 +1,154 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/drive/named_write.h"
+
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "cia402_driver/drive/profile_reader.h"
+
+namespace cia402::drive {
+namespace {
+
+// What a write puts into the object: an SI value, a raw number, or a copy.
+struct Source {
+  std::optional<double> value;
+  std::optional<std::int64_t> raw;
+  std::optional<ObjectId> copied_from;
+};
+
+std::optional<double> limit(const std::string& name, const AxisLimits& limits, bool reversed) {
+  if (name == "limits.lower") return reversed ? limits.upper : limits.lower;
+  if (name == "limits.upper") return reversed ? limits.lower : limits.upper;
+  if (name == "limits.velocity") return limits.velocity;
+  if (name == "limits.acceleration") return limits.acceleration;
+  if (name == "limits.jerk") return limits.jerk;
+  if (name == "limits.effort") return limits.effort;
+  return {};
+}
+
+// An option that is 0 was not configured; the offset counts always.
+std::optional<double> homing(const std::string& name, const HomingOptions& options) {
+  const auto positive = [](double v) { return v > 0.0 ? std::optional<double>(v) : std::nullopt; };
+  if (name == "homing.search_velocity") return positive(options.search_velocity);
+  if (name == "homing.zero_velocity") return positive(options.zero_velocity);
+  if (name == "homing.acceleration") return positive(options.acceleration);
+  if (name == "homing.offset") return options.offset;
+  return {};
+}
+
+Source configured(const NamedWrite& write, const AxisConfig& axis, bool reversed) {
+  Source source;
+  const std::string& from = write.from;
+  if (const auto value = limit(from, axis.limits, reversed)) {
+    source.value = *value * write.times;
+  } else if (from == "sync_period.value" || from == "sync_period.exponent") {
+    const auto period = interpolationPeriod(axis.sync_period);
+    if (period) source.raw = from == "sync_period.value" ? int{period->value} : period->exponent;
+  } else if (axis.homing && from == "homing.method") {
+    source.raw = axis.homing->method;
+  } else if (axis.homing && homing(from, *axis.homing)) {
+    source.value = *homing(from, *axis.homing) * write.times;
+  } else if (const ObjectSpec* object = axis.profile->find(from)) {
+    source.copied_from = object->id;
+  }
+  return source;
+}
+
+std::string withUnit(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%g", value);
+  return text;
+}
+
+Error refuse(const AxisConfig& axis, const std::string& name, const std::string& why) {
+  return Error{axis.name + " (node " + std::to_string(axis.node_id) + "): " + name + ": " + why};
+}
+
+// Velocities, accelerations and efforts of the configuration are magnitudes: the drive gets them
+// positive whatever the axis' direction.
+bool isMagnitude(const NamedWrite& write) {
+  return !write.from.empty() && write.from != "limits.lower" && write.from != "limits.upper" &&
+         write.from != "homing.offset";
+}
+
+Result<std::uint64_t> encode(const NamedWrite& write, double value, const Conversion& conversion,
+                             const AxisConfig& axis, const std::string& name) {
+  const double wanted = isMagnitude(write) && conversion.reversed() ? -value : value;
+  std::uint64_t raw = 0;
+  if (conversion.toDevice(wanted, raw)) return raw;
+  return refuse(axis, name,
+                withUnit(value) + " does not fit; the object holds " +
+                    withUnit(conversion.lowest()) + " to " + withUnit(conversion.highest()));
+}
+
+std::uint64_t masked(std::int64_t value, DataType type) {
+  const unsigned bits = canopen::sizeBits(type);
+  return static_cast<std::uint64_t>(value) & (~std::uint64_t{0} >> (64 - bits));
+}
+
+}  // namespace
+
+std::optional<InterpolationPeriod> interpolationPeriod(Duration period) {
+  std::int64_t unit_ns = 1000000000;
+  for (int exponent = 0; exponent >= -6; --exponent, unit_ns /= 10) {
+    const std::int64_t value = period.count() / unit_ns;
+    if (period.count() % unit_ns != 0 || value < 1 || value > 255) continue;
+    return InterpolationPeriod{static_cast<std::uint8_t>(value),
+                               static_cast<std::int8_t>(exponent)};
+  }
+  return {};
+}
+
+Result<std::optional<ResolvedWrite>> resolveWrite(const NamedWrite& write, const AxisConfig& axis) {
+  using Resolved = std::optional<ResolvedWrite>;
+  const ObjectSpec* object = findObject(*axis.profile, write.object);
+  const auto id = object != nullptr ? std::optional<ObjectId>(object->id)
+                                    : canopen::parseObjectId(write.object);
+  const auto type = object != nullptr ? std::optional<DataType>(object->type) : write.type;
+  if (!id || !type || canopen::sizeBits(*type) == 0) {
+    return refuse(axis, write.object, "profile " + axis.profile->name + " has no such number");
+  }
+  ResolvedWrite resolved;
+  resolved.object = *id;
+  resolved.type = *type;
+  resolved.optional = write.optional;
+  resolved.name =
+      (object != nullptr ? object->name + " " : "") + "(" + canopen::toString(*id) + ")";
+
+  Source source;
+  if (!write.from.empty()) {
+    const bool reversed =
+        object != nullptr && (axis.geometry.direction < 0) != (object->factor < 0.0);
+    source = configured(write, axis, reversed);
+  }
+  if (!source.value && !source.raw && !source.copied_from) {
+    source.value = write.value;
+    source.raw = write.raw;
+  }
+  if (source.copied_from) {
+    resolved.copied_from = source.copied_from;
+  } else if (source.raw) {
+    resolved.raw = masked(*source.raw, *type);
+  } else if (source.value && object != nullptr) {
+    const auto conversion = Conversion::create(*object, *axis.profile, axis.geometry);
+    if (!conversion && write.optional) return Resolved{};
+    if (!conversion) return refuse(axis, resolved.name, conversion.error().message);
+    const auto raw = encode(write, *source.value, *conversion, axis, resolved.name);
+    if (!raw) return raw.error();
+    resolved.raw = *raw;
+  } else {
+    return Resolved{};
+  }
+  return Resolved{resolved};
+}
+
+std::vector<std::uint8_t> wireBytes(std::uint64_t raw, DataType type) {
+  std::vector<std::uint8_t> bytes;
+  for (unsigned bit = 0; bit < canopen::sizeBits(type); bit += 8) {
+    bytes.push_back(static_cast<std::uint8_t>(raw >> bit));
+  }
+  return bytes;
+}
+
+}  // namespace cia402::drive

@@ -1,0 +1,40 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/drive/profile.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace cia402::drive {
+
+const ObjectSpec* DriveProfile::find(const std::string& object_name) const {
+  const auto found = std::find_if(objects.begin(), objects.end(),
+                                  [&](const ObjectSpec& o) { return o.name == object_name; });
+  return found == objects.end() ? nullptr : &*found;
+}
+
+const ObjectSpec* DriveProfile::find(ObjectId id) const {
+  const auto found = std::find_if(objects.begin(), objects.end(),
+                                  [&](const ObjectSpec& object) { return object.id == id; });
+  return found == objects.end() ? nullptr : &*found;
+}
+
+const ModeSpec* DriveProfile::mode(const std::string& mode_name) const {
+  const std::string canonical = canonicalModeName(mode_name);
+  const auto found = std::find_if(modes.begin(), modes.end(),
+                                  [&](const ModeSpec& m) { return m.name == canonical; });
+  return found == modes.end() ? nullptr : &*found;
+}
+
+std::string canonicalModeName(const std::string& name) {
+  static constexpr std::pair<const char*, const char*> kShortForms[] = {
+      {"pp", "profile_position"}, {"vl", "velocity"},         {"pv", "profile_velocity"},
+      {"pt", "profile_torque"},   {"hm", "homing"},           {"ip", "interpolated_position"},
+      {"csp", "cyclic_position"}, {"csv", "cyclic_velocity"}, {"cst", "cyclic_torque"},
+  };
+  for (const auto& [short_form, canonical] : kShortForms) {
+    if (name == short_form) return canonical;
+  }
+  return name;
+}
+
+}  // namespace cia402::drive

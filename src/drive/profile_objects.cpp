@@ -1,0 +1,150 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include <limits>
+#include <map>
+
+#include "profile_parts.h"
+
+namespace cia402::drive {
+namespace {
+
+void readType(YamlSection& section, ObjectSpec& object) {
+  const auto value = section.require("type", "write for example `type: uint16`");
+  const auto text = value ? value->text() : std::nullopt;
+  if (!text) return;
+  if (const auto type = canopen::parseDataType(*text)) {
+    object.type = *type;
+    return;
+  }
+  value->problem(
+      "unknown type" +
+      suggestion(*text, {"boolean", "int8", "int16", "int32", "int64", "uint8", "uint16", "uint32",
+                         "uint64", "real32", "visible_string", "octet_string", "domain"}));
+}
+
+void readEncoding(YamlSection& section, ObjectSpec& object) {
+  if (object.type == DataType::real32) object.encoding = Encoding::float32;
+  const auto value = section.get("encoding");
+  if (!value) return;
+  const auto index = value->oneOf(
+      {"integer", "float32", "half_float", "half_float_unsigned", "half_float_signed"});
+  if (!index) return;
+  object.encoding = static_cast<Encoding>(*index);
+  const unsigned bits = canopen::sizeBits(object.type);
+  const char* const type = canopen::toString(object.type);
+  if (object.encoding == Encoding::float32 && bits != 32) {
+    value->problem(std::string("float32 needs a type of 32 bits, not ") + type);
+  } else if (object.encoding > Encoding::float32 && bits != 16) {
+    value->problem(std::string("half floats need a type of 16 bits, not ") + type);
+  } else if (object.encoding == Encoding::integer && object.type == DataType::real32) {
+    value->problem("real32 is a float, not an integer; leave `encoding` out");
+  }
+}
+
+void readAccess(YamlSection& section, ObjectSpec& object) {
+  if (const auto value = section.get("access")) {
+    const auto index = value->oneOf({"rw", "ro", "wo", "const"});
+    object.readable = index != std::size_t{2};
+    object.writable = index == std::size_t{0} || index == std::size_t{2};
+  }
+  const auto value = section.get("pdo");
+  const auto index = value ? value->oneOf({"none", "rpdo", "tpdo", "both"}) : std::nullopt;
+  if (!index) return;
+  object.rpdo = *index == 1 || *index == 3;
+  object.tpdo = *index == 2 || *index == 3;
+  if (*index == 0) return;
+  const unsigned bits = canopen::sizeBits(object.type);
+  if (bits == 0) {
+    value->problem(std::string("a ") + canopen::toString(object.type) +
+                   " has no fixed length and cannot be mapped into a PDO");
+  }
+  if (object.rpdo && !object.writable) value->problem("a read-only object cannot be in an RPDO");
+  if (object.tpdo && !object.readable) value->problem("a write-only object cannot be in a TPDO");
+}
+
+void readMeaning(YamlSection& section, ObjectSpec& object, const DriveProfile& profile) {
+  if (const auto value = section.get("quantity")) {
+    object.quantity = readQuantity(*value).value_or(Quantity::none);
+  }
+  const auto factor = section.get("factor");
+  const auto number = factor ? factor->number() : std::nullopt;
+  if (number && *number == 0.0) factor->problem("must not be 0");
+  if (number && *number != 0.0) object.factor = *number;
+  const auto unit = section.get("unit");
+  if (object.quantity == Quantity::none) {
+    if (unit) unit->problem("a unit needs a `quantity`");
+    return;
+  }
+  if (unit) object.unit = readUnit(*unit, object.quantity);
+  if (canopen::sizeBits(object.type) == 0 || object.type == DataType::boolean) {
+    section.problem(std::string("a ") + canopen::toString(object.type) + " measures no quantity");
+  }
+  const Quantity counted =
+      object.quantity == Quantity::distance ? Quantity::position : object.quantity;
+  if (!unit && profile.units.count(counted) == 0) {
+    section.problem("`units` has no entry for what it measures, and it has no `unit` of its own");
+  }
+}
+
+ObjectSpec readObject(const std::string& name, const YamlValue& value,
+                      const DriveProfile& profile) {
+  ObjectSpec object;
+  object.name = name;
+  YamlSection section(value);
+  const auto id = section.require("object", "write index and sub-index, for example \"6041:00\"");
+  const auto text = id ? id->text() : std::nullopt;
+  if (text) {
+    const auto parsed = canopen::parseObjectId(*text);
+    if (!parsed) id->problem("`" + *text + "` is no object; write for example \"6041:00\"");
+    if (parsed) object.id = *parsed;
+  }
+  readType(section, object);
+  readEncoding(section, object);
+  readAccess(section, object);
+  readMeaning(section, object, profile);
+  section.finish();
+  return object;
+}
+
+}  // namespace
+
+std::int64_t lowestOf(DataType type) {
+  const unsigned bits = canopen::sizeBits(type);
+  return canopen::isSigned(type) ? -(std::int64_t{1} << (bits - 2)) * 2 : 0;
+}
+
+std::int64_t highestOf(DataType type) {
+  const unsigned bits = canopen::sizeBits(type) - (canopen::isSigned(type) ? 1 : 0);
+  if (bits >= 63) return std::numeric_limits<std::int64_t>::max();
+  return (std::int64_t{1} << bits) - 1;
+}
+
+const ObjectSpec* findObject(const DriveProfile& profile, const std::string& name) {
+  if (const ObjectSpec* object = profile.find(name)) return object;
+  const auto id = canopen::parseObjectId(name);
+  return id ? profile.find(*id) : nullptr;
+}
+
+std::vector<std::string> objectNames(const DriveProfile& profile) {
+  std::vector<std::string> names;
+  for (const ObjectSpec& object : profile.objects) names.push_back(object.name);
+  return names;
+}
+
+void readObjects(const YamlValue& value, DriveProfile& profile) {
+  YamlSection section(value);
+  std::map<ObjectId, std::string> names;
+  for (const auto& [name, entry] : section.entries()) {
+    const ObjectSpec object = readObject(name, entry, profile);
+    if (canopen::parseObjectId(name)) {
+      entry.problem("the name reads like an index; choose another one");
+    }
+    const auto [first, fresh] = names.emplace(object.id, name);
+    if (!fresh && object.id.index != 0) {
+      entry.problem(canopen::toString(object.id) + " has the name `" + first->second + "` already");
+    }
+    if (profile.find(name) == nullptr) profile.objects.push_back(object);
+  }
+  section.finish();
+}
+
+}  // namespace cia402::drive

@@ -1,0 +1,27 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "cia402_driver/drive/profile_reader.h"
+
+// The parts of a profile file, each read by a function of its own into the profile.
+namespace cia402::drive {
+
+/// A unit such as "count/s" or "turn/min"; adds a problem if it does not suit the quantity.
+std::optional<UnitSpec> readUnit(const YamlValue& value, Quantity quantity);
+void readUnits(const YamlValue& section, DriveProfile& profile);
+void readObjects(const YamlValue& section, DriveProfile& profile);
+void readModes(const YamlValue& section, DriveProfile& profile);
+void readHoming(const YamlValue& section, DriveProfile& profile);
+void readErrors(const YamlValue& section, DriveProfile& profile);
+
+/// "position"; the words of profiles.
+std::optional<Quantity> readQuantity(const YamlValue& value);
+
+/// Smallest and largest whole number that an integer type holds (64 bits: as far as int64 goes).
+std::int64_t lowestOf(DataType type);
+std::int64_t highestOf(DataType type);
+
+}  // namespace cia402::drive

@@ -1,0 +1,125 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "profile_parts.h"
+
+namespace cia402::drive {
+namespace {
+
+const std::vector<std::string>& configurationSources() {
+  static const std::vector<std::string> kSources = {
+      "limits.lower",  "limits.upper",           "limits.velocity",      "limits.acceleration",
+      "limits.jerk",   "limits.effort",          "sync_period.value",    "sync_period.exponent",
+      "homing.method", "homing.search_velocity", "homing.zero_velocity", "homing.acceleration",
+      "homing.offset",
+  };
+  return kSources;
+}
+
+// The object by name or index; its type from `type:` where the profile does not name it.
+const ObjectSpec* readTarget(YamlSection& section, const DriveProfile& profile, NamedWrite& write) {
+  const auto value = section.require("object", "name it by profile name or index");
+  const auto type_value = section.get("type");
+  const auto type_text = type_value ? type_value->text() : std::nullopt;
+  if (type_text) {
+    write.type = canopen::parseDataType(*type_text);
+    if (!write.type) type_value->problem("unknown type `" + *type_text + "`");
+  }
+  const auto text = value ? value->text() : std::nullopt;
+  if (!text) return nullptr;
+  write.object = *text;
+  const ObjectSpec* object = findObject(profile, *text);
+  if (object != nullptr) {
+    if (!object->writable) value->problem("`" + *text + "` is read-only");
+    return object;
+  }
+  if (!canopen::parseObjectId(*text)) {
+    value->problem("profile " + profile.name + " has no object `" + *text + "`" +
+                   suggestion(*text, objectNames(profile)));
+  } else if (!type_value) {
+    value->problem("profile " + profile.name + " does not name " + *text +
+                   "; add its type, for example `type: uint16`");
+  } else if (write.type && canopen::sizeBits(*write.type) == 0) {
+    type_value->problem("only numbers can be written");
+  }
+  return nullptr;
+}
+
+void readRaw(const YamlValue& value, DataType type, NamedWrite& write) {
+  if (canopen::sizeBits(type) == 0) {
+    value.problem("only numbers can be written");
+    return;
+  }
+  write.raw = value.integer(lowestOf(type), highestOf(type));
+}
+
+void readValue(YamlSection& section, const ObjectSpec* object, NamedWrite& write) {
+  const auto value = section.get("value");
+  const auto raw = section.get("raw");
+  if (value && raw) section.problem("has both `value` and `raw`; keep one");
+  if (!value && !raw && write.from.empty()) {
+    section.problem("has no value: write `value`, `raw` or `from`");
+  }
+  const std::optional<DataType> type = object != nullptr ? object->type : write.type;
+  if (!type) return;
+  const bool by_index = object == nullptr || write.object != object->name;
+  if (raw) readRaw(*raw, *type, write);
+  if (!value) return;
+  if (!by_index) {
+    write.value = value->number();
+    return;
+  }
+  if (object != nullptr && value->isScalar() && !parseInteger(value->node().Scalar())) {
+    value->problem("by index a value is the drive's own whole number; write `object: " +
+                   object->name + "` to give it in SI units");
+    return;
+  }
+  readRaw(*value, *type, write);
+}
+
+void readFrom(YamlSection& section, const DriveProfile& profile, const ObjectSpec* object,
+              WriteList kind, NamedWrite& write) {
+  if (section.read("times", write.times, kPositive) && !section.has("from")) {
+    section.problem("`times` multiplies what `from` names; there is no `from`");
+  }
+  const auto value = section.get("from");
+  const auto text = value ? value->text() : std::nullopt;
+  if (!text) return;
+  write.from = *text;
+  const auto& sources = configurationSources();
+  if (std::find(sources.begin(), sources.end(), *text) != sources.end()) return;
+  const ObjectSpec* source = profile.find(*text);
+  if (source == nullptr) {
+    value->problem("unknown source `" + *text + "`" + suggestion(*text, sources));
+  } else if (kind == WriteList::boot) {
+    value->problem("copying `" + *text +
+                   "` is only possible in before_enable, entry_writes and "
+                   "homing, when the drive can be asked");
+  } else if (!source->readable) {
+    value->problem("`" + *text + "` cannot be read");
+  } else if (object != nullptr &&
+             (source->type != object->type || source->encoding != object->encoding)) {
+    value->problem("`" + *text + "` is not coded as `" + object->name + "` is");
+  }
+}
+
+}  // namespace
+
+std::vector<NamedWrite> readWrites(const YamlValue& list, const DriveProfile& profile,
+                                   WriteList kind) {
+  std::vector<NamedWrite> writes;
+  for (const YamlValue& value : list.list()) {
+    NamedWrite write;
+    YamlSection section(value);
+    const ObjectSpec* object = readTarget(section, profile, write);
+    readFrom(section, profile, object, kind, write);
+    readValue(section, object, write);
+    section.read("optional", write.optional);
+    section.finish();
+    writes.push_back(write);
+  }
+  return writes;
+}
+
+}  // namespace cia402::drive

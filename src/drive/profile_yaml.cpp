@@ -1,0 +1,186 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include <fstream>
+#include <sstream>
+
+#include "profile_parts.h"
+
+namespace cia402::drive {
+namespace {
+
+void readIdentity(YamlSection& profile_section, DriveProfile& profile) {
+  const auto value = profile_section.get("identity");
+  if (!value) return;
+  YamlSection section(*value);
+  section.readInteger("device_type", profile.device_type, 0, 0xFFFFFFFF);
+  section.readInteger("vendor_id", profile.vendor_id, 0, 0xFFFFFFFF);
+  section.readInteger("product_code", profile.product_code, 0, 0xFFFFFFFF);
+  section.finish();
+}
+
+void readPdoRules(YamlSection& profile_section, DriveProfile& profile) {
+  const auto value = profile_section.get("pdo_rules");
+  if (!value) return;
+  YamlSection section(*value);
+  section.readInteger("max_pdos", profile.max_pdos, 1, 4);
+  section.readInteger("max_entries", profile.max_pdo_entries, 1, 64);
+  section.read("map_count_may_be_read_only", profile.pdo_map_count_may_be_read_only);
+  section.finish();
+}
+
+void readSync(YamlSection& profile_section, DriveProfile& profile) {
+  const auto value = profile_section.get("sync");
+  if (!value) return;
+  YamlSection section(*value);
+  section.read("counter_object", profile.has_sync_counter_object);
+  section.read("period_object", profile.has_sync_period_object);
+  const auto counter = section.get("counter");
+  const auto overflow = counter ? counter->integer(0, 240) : std::nullopt;
+  if (overflow == 1) counter->problem("1 is no counter; use 0 (none) or 2 to 240");
+  if (overflow) profile.sync_counter = static_cast<std::uint8_t>(*overflow);
+  if (overflow && !profile.has_sync_counter_object) {
+    counter->problem("a counter needs the object 1019h, but `counter_object` is false");
+  }
+  double step = toSeconds(profile.sync_period_step);
+  section.read("period_step", step, Range{1e-6, 1.0, false});
+  profile.sync_period_step = fromSeconds(step);
+  section.finish();
+}
+
+void readHeartbeat(YamlSection& profile_section, DriveProfile& profile) {
+  const auto value = profile_section.get("heartbeat");
+  if (!value) return;
+  YamlSection section(*value);
+  section.read("producer", profile.heartbeat_supported);
+  section.read("consumer", profile.heartbeat_consumer_supported);
+  section.finish();
+}
+
+void readDuration(YamlSection& section, const std::string& key, Range range, Duration& target) {
+  double seconds = toSeconds(target);
+  if (section.read(key, seconds, range)) target = fromSeconds(seconds);
+}
+
+void readTiming(YamlSection& profile_section, DriveProfile& profile) {
+  const auto value = profile_section.get("timing");
+  if (!value) return;
+  const Range deadline{0.001, 600.0, false};
+  YamlSection section(*value);
+  readDuration(section, "boot", deadline, profile.timing.boot);
+  readDuration(section, "state_change", deadline, profile.timing.state_change);
+  readDuration(section, "mode_change", deadline, profile.timing.mode_change);
+  readDuration(section, "brake_release", Range{0.0, 60.0, false}, profile.timing.brake_release);
+  readDuration(section, "sdo", deadline, profile.timing.sdo);
+  section.readInteger("sdo_retries", profile.timing.sdo_retries, 0, 10);
+  section.finish();
+}
+
+void readQuickStop(YamlSection& section, DriveProfile& profile) {
+  const auto value = section.get("quick_stop_holds");
+  if (!value) return;
+  for (const YamlValue& entry : value->list()) {
+    const auto option = entry.integer(-32768, 32767);
+    if (option) profile.quick_stop_holds.push_back(static_cast<int>(*option));
+  }
+}
+
+// Objects that the axis uses by their fixed names whatever the mode.
+void checkFixedObjects(const YamlSection& section, const DriveProfile& profile) {
+  struct Fixed {
+    const char* name;
+    bool rpdo, tpdo;
+  };
+  constexpr Fixed kFixed[] = {
+      {"controlword", true, false},        {"statusword", false, true},
+      {"mode_of_operation", false, false}, {"mode_display", false, false},
+      {"position_actual", false, true},
+  };
+  for (const Fixed& fixed : kFixed) {
+    const ObjectSpec* object = profile.find(fixed.name);
+    if (object == nullptr) {
+      section.problem("objects/" + std::string(fixed.name) + " is missing; every axis needs it");
+    } else if ((fixed.rpdo && !object->rpdo) || (fixed.tpdo && !object->tpdo)) {
+      section.problem("objects/" + std::string(fixed.name) + " must be mappable into " +
+                      (fixed.rpdo ? "an RPDO" : "a TPDO"));
+    }
+  }
+  for (const char* word : {"controlword", "statusword"}) {
+    const ObjectSpec* object = profile.find(word);
+    if (object != nullptr && object->type != DataType::uint16) {
+      section.problem("objects/" + std::string(word) + " must be a uint16");
+    }
+  }
+}
+
+void readBehaviour(YamlSection& section, DriveProfile& profile) {
+  section.read("output_shaft", profile.output_shaft);
+  section.read("halt_supported", profile.halt_supported);
+  section.read("warning_stops", profile.warning_stops);
+  readQuickStop(section, profile);
+  readPdoRules(section, profile);
+  readSync(section, profile);
+  readHeartbeat(section, profile);
+  readTiming(section, profile);
+}
+
+DriveProfile readProfile(const YamlValue& root) {
+  DriveProfile profile;
+  YamlSection section(root);
+  if (section.require("name", "the file's name without .yaml")) section.read("name", profile.name);
+  section.read("description", profile.description);
+  readIdentity(section, profile);
+  if (const auto units = section.require("units", "how the drive counts")) {
+    readUnits(*units, profile);
+  }
+  if (const auto objects = section.require("objects", "the drive's objects by name")) {
+    readObjects(*objects, profile);
+    checkFixedObjects(section, profile);
+  }
+  readBehaviour(section, profile);
+  if (const auto modes = section.require("modes", "at least one mode")) readModes(*modes, profile);
+  if (const auto homing = section.get("homing")) readHoming(*homing, profile);
+  if (const auto writes = section.get("startup")) {
+    profile.startup = readWrites(*writes, profile, WriteList::boot);
+  }
+  if (const auto writes = section.get("before_enable")) {
+    profile.before_enable = readWrites(*writes, profile, WriteList::running);
+  }
+  if (const auto pdos = section.require("pdos", "the PDO layout")) {
+    profile.pdos = readPdos(*pdos, profile);
+  }
+  if (const auto errors = section.get("errors")) readErrors(*errors, profile);
+  section.finish();
+  return profile;
+}
+
+}  // namespace
+
+DriveProfile parseDriveProfile(const std::string& text, const std::string& source,
+                               Problems& problems) {
+  YAML::Node root;
+  try {
+    root = YAML::Load(text);
+  } catch (const YAML::Exception& error) {
+    problems.add(source + ":" + std::to_string(error.mark.line + 1), "is no YAML: " + error.msg);
+    return {};
+  }
+  if (!root.IsMap()) {
+    problems.add(source,
+                 "is no drive profile: it must be a mapping with name, units, objects, "
+                 "modes and pdos");
+    return {};
+  }
+  return readProfile(YamlValue(root, "", problems, source));
+}
+
+DriveProfile loadDriveProfile(const std::string& path, Problems& problems) {
+  std::ifstream file(path);
+  std::ostringstream text;
+  text << file.rdbuf();
+  if (!file) {
+    problems.add(path, "cannot be read");
+    return {};
+  }
+  return parseDriveProfile(text.str(), path, problems);
+}
+
+}  // namespace cia402::drive
