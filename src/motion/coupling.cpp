@@ -34,8 +34,13 @@ std::string printed(const Eigen::MatrixXd& matrix) {
 /// Smallest over largest singular value, after scaling the rows (joints) and then the columns
 /// (axes): metres beside radians or a large gear ratio do not make a coupling singular.
 double reciprocalCondition(Eigen::MatrixXd matrix) {
-  for (auto row : matrix.rowwise()) row /= std::max(row.cwiseAbs().maxCoeff(), 1e-300);
-  for (auto column : matrix.colwise()) column /= std::max(column.cwiseAbs().maxCoeff(), 1e-300);
+  constexpr double kTiny = 1e-300;  // a row of zeros stays one
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    matrix.row(i) /= std::max(matrix.row(i).cwiseAbs().maxCoeff(), kTiny);
+  }
+  for (Eigen::Index i = 0; i < matrix.cols(); ++i) {
+    matrix.col(i) /= std::max(matrix.col(i).cwiseAbs().maxCoeff(), kTiny);
+  }
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(matrix);
   const auto& values = svd.singularValues();
   return values(0) > 0 ? values(values.size() - 1) / values(0) : 0;

@@ -96,7 +96,7 @@ void StopRamp::keepWithin(const MotionState& state, const StopLimits& limits) {
 }
 
 MotionState StopRamp::sample(Time time) const {
-  if (time >= end_) return {stop_position_, 0, 0};
+  if (time >= end_ || count_ == 0) return {stop_position_, 0, 0};
   double t = std::max(0.0, toSeconds(time - start_));
   std::size_t i = 0;
   while (i + 1 < count_ && t > phases_[i].duration_s) t -= phases_[i++].duration_s;

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <random>
 
 namespace cia402::motion {
@@ -50,7 +51,7 @@ TEST(Coupling, ThereAndBackIsTheSameAndPowerIsKept) {
   std::mt19937 engine(7);
   std::uniform_real_distribution<double> random(-2, 2);
   const auto fill = [&](auto& values) {
-    for (auto& value : values.reshaped()) value = random(engine);
+    for (Eigen::Index k = 0; k < values.size(); ++k) values.data()[k] = random(engine);
   };
   for (int i = 0; i < 200; ++i) {
     Eigen::MatrixXd matrix(3, 3);

@@ -115,6 +115,26 @@ TEST_P(EverySeed, VelocityOutputNeverViolatesALimit) {
   EXPECT_LT(bottom, kLower + 1e-3);
 }
 
+TEST_P(EverySeed, RoundingCarriesNoPositionOverAnyLimit) {
+  Storm storm(GetParam());
+  for (int run = 0; run < 2000; ++run) {
+    LimiterConfig odd = config();
+    odd.joint.limits.lower = -1 + storm.random(0.5);
+    odd.joint.limits.upper = 1 + storm.random(0.5);
+    odd.joint.limits.velocity.reset();
+    if (run % 2 == 0) odd.joint.limits.acceleration.reset();
+    PositionLimiter limiter(odd);
+    Time now{};
+    limiter.reset({storm.random(0.4), 0, 0}, now);
+    for (int i = 0; i < 40; ++i) {
+      ASSERT_TRUE(limiter.command(i % 20 < 10 ? 9 : -9, now));
+      const double position = limiter.step(now += fromSeconds(0.1 + storm.random(0.09))).position;
+      ASSERT_LE(position, *odd.joint.limits.upper);
+      ASSERT_GE(position, *odd.joint.limits.lower);
+    }
+  }
+}
+
 TEST_P(EverySeed, AConstantTargetIsReachedWithoutOvershootFromAnyStart) {
   Storm storm(GetParam());
   for (int run = 0; run < 200; ++run) {

@@ -142,6 +142,7 @@ TEST(PositionLimiter, AStopMayBeHarderThanTheAccelerationLimitIfSoConfigured) {
   joint.follow(2);
   for (int i = 1; i < 50; ++i) joint.step();
   EXPECT_NEAR(joint.step().velocity, 0.9, 1e-9);
+  EXPECT_NEAR(joint.follow(-1).velocity, 0.88, 1e-9);  // but not to follow a command
 }
 
 TEST(PositionLimiter, NotANumberIsRefusedAndDoesNotRefreshTheCommand) {
@@ -234,6 +235,10 @@ TEST(VelocityLimiter, UnknownPositionStopsAJointThatHasPositionLimits) {
 
   LimiterConfig wheel = elbow();
   wheel.joint.limits.lower.reset();
+  Velocity one_limit(wheel);
+  ASSERT_TRUE(one_limit.limiter.command(-0.5, one_limit.now));
+  EXPECT_EQ(one_limit.limiter.step(one_limit.now += kCycle, nan).velocity, 0);
+
   wheel.joint.limits.upper.reset();
   Velocity turning(wheel);
   ASSERT_TRUE(turning.limiter.command(0.5, turning.now));

@@ -139,6 +139,11 @@ TEST(StopRamp, WhatCannotBeComputedIsHeldAtOnce) {
   EXPECT_TRUE(StopRamp({0.7, nan, 0}, decelerating(1), kStart).finished(kStart));
 }
 
+TEST(StopRamp, BeforeItsStartTheStartCounts) {
+  EXPECT_EQ(StopRamp({0.7, 2, 0}, decelerating(1), kStart).sample(Time{}).position, 0.7);
+  EXPECT_EQ(StopRamp({0.7, 2, 0}, decelerating(0), kStart).sample(Time{}).position, 0.7);
+}
+
 TEST(StopRamp, LimitsComeFromTheJoint) {
   Joint joint{"elbow", {}, JointUnit::radian};
   joint.limits.upper = 2;

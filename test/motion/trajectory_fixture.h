@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <limits>
+#include <string>
 #include <vector>
 
 #include "cia402_driver/motion/trajectory.h"

@@ -24,6 +24,13 @@ TEST_F(TrajectorySampling, PositionsOnlyGiveStraightLines) {
   EXPECT_NEAR(trajectory->sample(0, at(2)).velocity, 0.5, 1e-12);
 }
 
+TEST_F(TrajectorySampling, ExactlyAtAPointTheNextSegmentCounts) {
+  const auto trajectory = create({point(1, {1, 0}), point(3, {2, 0})});
+  ASSERT_TRUE(trajectory.ok());
+  EXPECT_NEAR(trajectory->sample(0, at(1)).position, 1, 1e-12);
+  EXPECT_NEAR(trajectory->sample(0, at(1)).velocity, 0.5, 1e-12);
+}
+
 TEST_F(TrajectorySampling, VelocitiesGiveCubics) {
   const auto trajectory = create({point(1, {1, 2}, {0, 0})});
   ASSERT_TRUE(trajectory.ok());

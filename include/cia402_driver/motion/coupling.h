@@ -13,8 +13,8 @@ namespace cia402::motion {
 /// joint = matrix * axis, for positions, velocities and accelerations alike. Effort goes the other
 /// way round (the power is the same on both sides): axis effort = matrixᵀ * joint effort.
 ///
-/// The conversions neither allocate nor fail. Input and output have size() elements each and must
-/// not overlap.
+/// The conversions neither allocate nor fail. Input and output are contiguous (a vector, or an
+/// Eigen::Map of one), have size() elements each and must not overlap.
 class Coupling {
  public:
   using Input = Eigen::Ref<const Eigen::VectorXd>;

@@ -43,6 +43,8 @@ class StopRamp {
   Time endTime() const { return end_; }
   /// Seconds until at rest.
   double duration() const { return duration_s_; }
+  /// Where it comes to rest. With a jerk limit, a joint that was about to turn round may pass a
+  /// little beyond on the way.
   double stopPosition() const { return stop_position_; }
 
  private:
