@@ -1,0 +1,111 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cia402_driver/can/bus.h"
+#include "cia402_driver/can/pending_queue.h"
+
+namespace cia402::can {
+
+class LinkProbe;
+class RawSocket;
+
+/// Frames to be received: those whose identifier equals `id` in the bits of `mask`.
+struct ReceiveFilter {
+  std::uint32_t id = 0;
+  std::uint32_t mask = 0;
+  bool extended = false;  ///< 29-bit identifiers; false: 11-bit
+};
+
+/// A CAN interface of Linux. Time stamps are the kernel's, mapped to CLOCK_MONOTONIC, which is the
+/// BusClock of the real world; a step of the wall clock does not reach them.
+///
+/// The interface may be missing, go down, come up, vanish and come back with another index at any
+/// time: state() tells, and maintain() opens it again.
+///
+/// Safety: while the interface is missing, down or bus-off, send() refuses, and what still waited
+/// in our queue is thrown away (counted in frames_dropped). A command from before the interruption
+/// never reaches a drive after it.
+///
+/// Frames sent here are seen by other sockets on this machine, not by this one. Nothing allocates
+/// once the object exists, but describe(), setFilters() and opening an interface. Not thread-safe.
+class SocketCan final : public Interface {
+ public:
+  struct Options {
+    std::size_t queue_capacity = 512;    ///< frames that may wait for the kernel
+    Duration check_period{100'000'000};  ///< how often maintain() looks at the interface
+    std::vector<ReceiveFilter> filters;  ///< by the kernel; empty: everything
+    int receive_buffer = 1 << 20;        ///< bytes; the kernel may allow less
+    unsigned bitrate = 1'000'000;        ///< bit/s, named in the advice of describe() only
+  };
+
+  /// Opens the interface if it is there; if not, maintain() will.
+  explicit SocketCan(std::string name) : SocketCan(std::move(name), Options()) {}
+  SocketCan(std::string name, Options options);
+  ~SocketCan() override;
+  SocketCan(const SocketCan&) = delete;
+  SocketCan& operator=(const SocketCan&) = delete;
+
+  /// Sends, or queues behind frames that wait. @return false, counted in frames_dropped: the queue
+  /// is full, the interface is missing, down or bus-off, or the frame is none that can be sent.
+  bool send(const Frame& frame) override;
+  /// To be called until it returns nothing. Error frames of the controller have changed state()
+  /// before they are handed out.
+  std::optional<ReceivedFrame> receive(Time now) override;
+  /// Sends waiting frames and, every check period, looks at the interface. Finding one that comes
+  /// or goes can take the kernel a few milliseconds.
+  void maintain(Time now) override;
+
+  int fd() const override;
+  /// From the kernel's error frames. Many drivers do not report that a disturbed controller is well
+  /// again: error_warning and error_passive then stay until the interface restarts.
+  BusState state() const override { return state_; }
+  const BusCounters& counters() const override { return counters_; }
+  std::string describe() const override;
+
+  /// Replaces the kernel's receive filters; an empty list receives everything.
+  void setFilters(std::vector<ReceiveFilter> filters);
+  /// The last error frame in words, or empty.
+  std::string lastErrorFrame() const;
+  /// Frames waiting for the kernel.
+  std::size_t pending() const { return pending_.size(); }
+  const std::string& name() const { return name_; }
+
+ private:
+  enum class Attempt { sent, busy, failed };
+
+  bool canSend() const;
+  bool refuse();
+  Attempt attempt(const Frame& frame);
+  void flushPending();
+  void checkLink();
+  void updateState(bool up, bool carrier);
+  void countOverflows();
+  std::string describeMissing() const;
+  void becomeUnusable(BusState state);
+  void handleError(int error);
+  void handleErrorFrame(const Frame& frame);
+
+  std::string name_;
+  Options options_;
+  std::unique_ptr<LinkProbe> probe_;
+  std::unique_ptr<RawSocket> socket_;
+  PendingQueue pending_;
+  BusState state_ = BusState::missing;
+  BusCounters counters_;
+  std::optional<Frame> last_error_frame_;
+  Time next_check_ = Time::min();
+  bool batch_done_ = false;           // everything was handed out since the last read
+  std::uint32_t overflows_seen_ = 0;  // of this socket
+  bool carrier_was_lost_ = false;     // since bus-off
+  int open_error_ = 0;                // errno of the last attempt to open
+};
+
+}  // namespace cia402::can
