@@ -2,12 +2,15 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "cia402_driver/can/bus.h"
 #include "cia402_driver/canopen/config.h"
+#include "cia402_driver/canopen/heartbeat.h"
 #include "cia402_driver/canopen/node.h"
+#include "cia402_driver/canopen/sync.h"
 
 namespace cia402::canopen {
 
@@ -24,7 +27,8 @@ class MasterListener {
 /// owner hands in frames and time and sends nothing else on the bus. One thread.
 class Master {
  public:
-  /// @param sink must outlive the master.
+  /// @param sink must outlive the master. @throws std::invalid_argument for node-IDs out of range
+  /// or used twice and for TPDO COB-IDs that are no 11-bit identifiers or used twice.
   Master(MasterConfig config, can::Sink& sink, MasterListener* listener = nullptr);
 
   /// Boots all nodes in parallel (NMT reset communication to all first, if `reset`).
@@ -50,11 +54,27 @@ class Master {
   std::uint64_t strayFrames() const { return stray_frames_; }
 
  private:
-  // The implementer completes this part.
+  enum class Service : std::uint8_t { none, tpdo, emergency, sdo, heartbeat };
+  /// Where a frame goes, by its identifier.
+  struct Route {
+    Service service = Service::none;
+    std::uint8_t node = 0;  ///< index in nodes_
+    std::uint8_t pdo = 0;   ///< index in ProcessImage::tpdos()
+  };
+  static constexpr std::size_t kIdentifiers = 2048;  ///< of 11 bits
+
+  void addRoutes(std::size_t node);
+  void addRoute(std::uint32_t cob_id, Route route);
+  void tell(std::size_t node, Time now);
+
   MasterConfig config_;
   can::Sink& sink_;
   MasterListener* listener_;
   std::vector<Node> nodes_;
+  std::vector<NodeHealth> told_;  ///< what the listener knows of each node
+  std::array<Route, kIdentifiers> routes_{};
+  SyncProducer sync_;
+  HeartbeatProducer heartbeat_;
   std::uint64_t stray_frames_ = 0;
 };
 

@@ -1,10 +1,12 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cia402_driver/canopen/config.h"
 #include "cia402_driver/canopen/emergency.h"
@@ -19,7 +21,7 @@ enum class NodeHealth : std::uint8_t {
   absent,   ///< never heard of, or boot timed out
   booting,  ///< identified and configured at the moment; bootStep() says how far
   ready,    ///< configured and started (operational)
-  failed,   ///< boot failed; bootError() says why; boot() tries again
+  failed,   ///< boot failed, or commanded out of operation; problem() says why; boot() tries again
   lost,     ///< heartbeat missing
 };
 const char* toString(NodeHealth health);
@@ -53,8 +55,11 @@ class Node {
   /// (Re)starts the boot procedure: identify, configure, start. @param reset send NMT reset
   /// communication first; without it the node is only brought to pre-operational.
   void boot(Time now, bool reset);
-  /// NMT command to this node alone. After stop / pre-operational commands the node is not ready.
+  /// NMT command to this node alone. After stop and pre-operational the node is `failed` until
+  /// boot() is called or it reboots; after a reset it boots again by itself.
   void command(NmtCommand command, Time now);
+  /// The same after the master has sent `command` to all nodes at once: nothing is sent.
+  void commanded(NmtCommand command, Time now);
 
   SdoClient& sdo();
   ProcessImage& image();
@@ -64,10 +69,15 @@ class Node {
   std::uint32_t bootUps() const;
   Time lastHeartbeat() const;
   const std::optional<Emergency>& lastEmergency() const;
+  /// Emergencies received since start, error resets included.
+  std::uint32_t emergencies() const;
 
-  void receive(const can::Frame& frame, Time stamp, Time now);  ///< called by Master
-  void tick(Time now);                                          ///< called by Master
-  Time nextDeadline() const;                                    ///< called by Master
+  /// Takes an EMCY, SDO or heartbeat frame of this node; called by Master.
+  void receive(const can::Frame& frame, Time stamp, Time now);
+  /// Takes the frame of TPDO number image().tpdos()[tpdo]; called by Master.
+  void receiveTpdo(std::size_t tpdo, const can::Frame& frame, Time stamp);
+  void tick(Time now);        ///< called by Master
+  Time nextDeadline() const;  ///< called by Master
   /// Sends the RPDOs that are due in this cycle (all synchronous and event-driven ones).
   void sendRpdos(Time now);
 

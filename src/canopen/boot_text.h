@@ -1,0 +1,19 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "cia402_driver/canopen/sdo_client.h"
+
+namespace cia402::canopen {
+
+/// "1018:01 vendor id".
+std::string objectText(ObjectId object, const std::string& name);
+/// Up to eight bytes as one number: "0x0064" for 64 00; longer data as "12 bytes".
+std::string valueText(const Bytes& data);
+/// "0x000D0117".
+std::string hex32(std::uint32_t value);
+/// "5 s", "0.3 s".
+std::string secondsText(Duration duration);
+
+}  // namespace cia402::canopen

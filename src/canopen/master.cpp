@@ -1,0 +1,136 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/canopen/master.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <stdexcept>
+#include <utility>
+
+namespace cia402::canopen {
+
+Master::Master(MasterConfig config, can::Sink& sink, MasterListener* listener)
+    : config_(std::move(config)),
+      sink_(sink),
+      listener_(listener),
+      told_(config_.nodes.size(), NodeHealth::absent),
+      sync_(config_.sync_counter),
+      heartbeat_(config_.node_id, config_.heartbeat) {
+  nodes_.reserve(config_.nodes.size());
+  for (const NodeConfig& node : config_.nodes) {
+    nodes_.emplace_back(node, config_, sink_);
+    addRoutes(nodes_.size() - 1);
+  }
+}
+
+void Master::addRoutes(std::size_t node) {
+  const NodeId id = nodes_[node].id();
+  if (id < 1 || id > 127) {
+    throw std::invalid_argument("node-ID " + std::to_string(id) + " is not in 1..127");
+  }
+  const auto index = static_cast<std::uint8_t>(node);
+  addRoute(0x080U + id, {Service::emergency, index, 0});
+  addRoute(0x580U + id, {Service::sdo, index, 0});
+  addRoute(0x700U + id, {Service::heartbeat, index, 0});
+  const std::vector<ProcessImage::Pdo>& tpdos = nodes_[node].image().tpdos();
+  for (std::size_t i = 0; i < tpdos.size(); ++i) {
+    addRoute(tpdos[i].cob_id, {Service::tpdo, index, static_cast<std::uint8_t>(i)});
+  }
+}
+
+void Master::addRoute(std::uint32_t cob_id, Route route) {
+  std::array<char, 8> text{};
+  std::snprintf(text.data(), text.size(), "0x%03X", static_cast<unsigned>(cob_id & 0xFFFFU));
+  if (cob_id >= kIdentifiers) {
+    throw std::invalid_argument(std::string("COB-ID ") + text.data() + " has more than 11 bits");
+  }
+  if (routes_[cob_id].service != Service::none) {
+    throw std::invalid_argument(std::string("COB-ID ") + text.data() + " is used twice, by " +
+                                nodes_[routes_[cob_id].node].name() + " and " +
+                                nodes_[route.node].name());
+  }
+  routes_[cob_id] = route;
+}
+
+void Master::start(Time now, bool reset) {
+  sync_.restart();
+  heartbeat_.start(sink_, now);
+  if (reset) {
+    commandAll(NmtCommand::reset_communication, now);
+    return;
+  }
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    nodes_[i].boot(now, false);
+    tell(i, now);
+  }
+}
+
+void Master::receive(const can::Frame& frame, Time stamp, Time now) {
+  if (frame.error) return;
+  if (frame.extended || frame.remote || frame.id >= kIdentifiers) {
+    ++stray_frames_;
+    return;
+  }
+  const Route route = routes_[frame.id];
+  if (route.service == Service::tpdo) {
+    nodes_[route.node].receiveTpdo(route.pdo, frame, stamp);
+    return;
+  }
+  if (route.service == Service::none) {
+    ++stray_frames_;
+    return;
+  }
+  Node& node = nodes_[route.node];
+  const std::uint32_t boot_ups = node.bootUps();
+  const std::uint32_t emergencies = node.emergencies();
+  node.receive(frame, stamp, now);
+  if (listener_ != nullptr) {
+    if (node.emergencies() != emergencies) listener_->onEmergency(node, *node.lastEmergency());
+    if (node.bootUps() != boot_ups) listener_->onBootUp(node, now);
+  }
+  tell(route.node, now);
+}
+
+void Master::tick(Time now) {
+  heartbeat_.tick(sink_, now);
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    if (nodes_[i].nextDeadline() > now) continue;
+    nodes_[i].tick(now);
+    tell(i, now);
+  }
+}
+
+/// Tells the listener what it does not know yet; a node may also have been commanded from outside.
+void Master::tell(std::size_t node, Time now) {
+  const NodeHealth before = std::exchange(told_[node], nodes_[node].health());
+  if (listener_ == nullptr || before == told_[node]) return;
+  listener_->onHealthChange(nodes_[node], before, now);
+}
+
+Time Master::nextDeadline() const {
+  Time next = heartbeat_.deadline();
+  for (const Node& node : nodes_) next = std::min(next, node.nextDeadline());
+  return next;
+}
+
+void Master::sendSync(Time) { sink_.send(sync_.next()); }
+
+void Master::sendRpdos(Time now) {
+  for (Node& node : nodes_) node.sendRpdos(now);
+}
+
+void Master::commandAll(NmtCommand command, Time now) {
+  sink_.send(nmtFrame(command, 0));
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    nodes_[i].commanded(command, now);
+    tell(i, now);
+  }
+}
+
+Node* Master::find(NodeId id) {
+  const auto found = std::find_if(nodes_.begin(), nodes_.end(),
+                                  [id](const Node& node) { return node.id() == id; });
+  return found == nodes_.end() ? nullptr : &*found;
+}
+
+}  // namespace cia402::canopen

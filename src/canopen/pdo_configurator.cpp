@@ -1,0 +1,299 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "pdo_configurator.h"
+
+#include <cstdio>
+
+#include "cia402_driver/canopen/abort_code.h"
+
+namespace cia402::canopen {
+namespace {
+
+constexpr std::uint32_t kInvalidBit = 0x80000000;   // CiA 301, 7.5.2.35, bit 31
+constexpr std::uint32_t kNoRemoteBit = 0x40000000;  // bit 30: the drive's own choice, kept
+constexpr std::uint32_t kCanIdMask = 0x1FFFFFFF;
+constexpr unsigned kMaxPdoBits = 64;
+
+std::string hex(std::uint32_t value, int digits) {
+  std::array<char, 16> text{};
+  std::snprintf(text.data(), text.size(), "0x%0*X", digits, static_cast<unsigned>(value));
+  return text.data();
+}
+
+unsigned totalBits(const PdoConfig& pdo) {
+  unsigned bits = 0;
+  for (const PdoEntry& entry : pdo.entries) bits += entry.bits;
+  return bits;
+}
+
+}  // namespace
+
+PdoConfigurator::PdoConfigurator(SdoClient& sdo, const PdoConfig& wanted, Options options)
+    : sdo_(sdo), wanted_(wanted), options_(options) {
+  const bool tpdo = wanted.direction == PdoDirection::tpdo;
+  const auto offset = static_cast<std::uint16_t>(wanted.number - 1);
+  communication_ = static_cast<std::uint16_t>((tpdo ? 0x1800 : 0x1400) + offset);
+  mapping_ = static_cast<std::uint16_t>((tpdo ? 0x1A00 : 0x1600) + offset);
+  if (!wanted.enabled) return;
+  parameters_.push_back({2, 1, "transmission type", wanted.transmission, false, {}});
+  if (tpdo) parameters_.push_back({3, 2, "inhibit time", wanted.inhibit, true, {}});
+  parameters_.push_back({5, 2, "event timer", wanted.event_timer, true, {}});
+}
+
+PdoConfigurator::Status PdoConfigurator::advance() {
+  if (!ticket_ && phase_ == Phase::read_cob_id) {
+    if (wanted_.number < 1 || wanted_.number > 512) {
+      fail("there is no PDO of this number, 1..512 are allowed");
+    } else if (totalBits(wanted_) > kMaxPdoBits) {
+      fail("its entries have " + std::to_string(totalBits(wanted_)) + " bits, 64 fit in a PDO");
+    } else {
+      ask();
+    }
+  }
+  while (ticket_ && ticket_->done()) {
+    const SdoTicket finished = std::move(ticket_);
+    ticket_.reset();
+    answered(*finished);
+    if (phase_ != Phase::done && phase_ != Phase::failed) ask();
+  }
+  if (phase_ == Phase::failed) return Status::failed;
+  return phase_ == Phase::done ? Status::done : Status::running;
+}
+
+void PdoConfigurator::ask() {
+  const auto n = static_cast<std::uint8_t>(item_ + 1);
+  switch (phase_) {
+    case Phase::read_cob_id:
+      return read({communication_, 1}, "COB-ID");
+    case Phase::read_parameter:
+      return read({communication_, parameters_[item_].subindex}, parameters_[item_].name);
+    case Phase::read_count:
+      return read({mapping_, 0}, "number of entries");
+    case Phase::read_entry:
+      return read({mapping_, n}, "entry " + std::to_string(n));
+    case Phase::disable:
+      return write({communication_, 1}, cob_id_ | kInvalidBit, 4, "COB-ID");
+    case Phase::clear_map:
+      return write({mapping_, 0}, 0, 1, "number of entries");
+    case Phase::write_entry:
+      return write({mapping_, n}, entryValue(item_), 4, entryName(item_));
+    case Phase::write_count:
+      return write({mapping_, 0}, static_cast<std::uint32_t>(wanted_.entries.size()), 1,
+                   "number of entries");
+    case Phase::write_parameter:
+      return write({communication_, parameters_[item_].subindex}, parameters_[item_].wanted,
+                   parameters_[item_].size, parameters_[item_].name);
+    case Phase::enable:
+      return write({communication_, 1}, enabledCobId(), 4, "COB-ID");
+    case Phase::done:
+    case Phase::failed:
+      return;
+  }
+}
+
+void PdoConfigurator::read(ObjectId object, const std::string& name) {
+  const std::string full_name = name + " of " + title();
+  step_ = (verifying_ ? "reading back " : "reading ") + toString(object) + " " + full_name;
+  ticket_ = sdo_.upload(object, full_name);
+}
+
+void PdoConfigurator::write(ObjectId object, std::uint32_t value, unsigned size,
+                            const std::string& name) {
+  changed_ = true;
+  const std::string full_name = name + " of " + title();
+  step_ = "writing " + hex(value, static_cast<int>(2 * size)) + " to " + toString(object) + " " +
+          full_name;
+  ticket_ = sdo_.download(object, toBytes(value, size), full_name);
+}
+
+void PdoConfigurator::answered(const SdoTransfer& transfer) {
+  if (transfer.direction() == SdoTransfer::Direction::upload) {
+    answeredRead(transfer);
+  } else {
+    answeredWrite(transfer);
+  }
+}
+
+void PdoConfigurator::answeredRead(const SdoTransfer& transfer) {
+  if (phase_ == Phase::read_cob_id) return answeredCobId(transfer);
+  if (phase_ == Phase::read_parameter) return answeredParameter(transfer);
+  if (!transfer.ok()) return failTransfer(transfer);
+  const auto value = static_cast<std::uint32_t>(toUnsigned(transfer.data()));
+  if (phase_ == Phase::read_count) {
+    count_ = value;
+    entries_.clear();
+    // Entries need no look where their number differs already.
+    if (count_ != wanted_.entries.size() || count_ == 0) return compare();
+    return enter(Phase::read_entry);
+  }
+  entries_.push_back(value);
+  if (entries_.size() < count_) return enter(Phase::read_entry, item_ + 1);
+  compare();
+}
+
+void PdoConfigurator::answeredCobId(const SdoTransfer& transfer) {
+  if (!transfer.ok()) {
+    const bool answered = transfer.failure() == SdoTransfer::Failure::aborted_by_server;
+    if (answered && options_.may_be_missing) return enter(Phase::done);
+    return failTransfer(transfer);
+  }
+  cob_id_ = static_cast<std::uint32_t>(toUnsigned(transfer.data()));
+  if (wanted_.enabled) return enter(Phase::read_parameter);
+  if ((cob_id_ & kInvalidBit) != 0) return enter(Phase::done);
+  if (verifying_) return fail("the drive did not disable it: COB-ID is still " + hex(cob_id_, 8));
+  enter(Phase::disable);
+}
+
+void PdoConfigurator::answeredParameter(const SdoTransfer& transfer) {
+  Parameter& parameter = parameters_[item_];
+  if (transfer.ok()) {
+    parameter.actual = static_cast<std::uint32_t>(toUnsigned(transfer.data()));
+  } else if (transfer.failure() == SdoTransfer::Failure::aborted_by_server &&
+             parameter.missing_is_zero && parameter.wanted == 0) {
+    parameter.actual = 0;
+  } else {
+    return failTransfer(transfer);
+  }
+  if (item_ + 1 < parameters_.size()) return enter(Phase::read_parameter, item_ + 1);
+  enter(Phase::read_count);
+}
+
+void PdoConfigurator::compare() {
+  if (verifying_) return verify();
+  if (firstDifference().empty()) return enter(Phase::done);
+  if ((cob_id_ & kInvalidBit) == 0) return enter(Phase::disable);
+  if (mapDiffers()) return enter(Phase::clear_map);
+  enterWriteParameter(0);
+}
+
+void PdoConfigurator::verify() {
+  const std::string difference = firstDifference();
+  if (difference.empty()) return enter(Phase::done);
+  std::string reason = "the drive took all writes, but " + difference;
+  if (map_refused_) {
+    reason = "the drive refuses to change the number of mapped objects (" +
+             toString(ObjectId{mapping_, 0}) + " is read-only), and " + difference;
+  }
+  fail(reason + "; choose a mapping that the drive can hold");
+}
+
+void PdoConfigurator::answeredWrite(const SdoTransfer& transfer) {
+  if (!transfer.ok()) {
+    if (!refusedReadOnlyCount(transfer)) return failTransfer(transfer);
+    map_refused_ = true;
+  }
+  switch (phase_) {
+    case Phase::disable:
+      if (!wanted_.enabled) return enterRead();
+      if (mapDiffers()) return enter(Phase::clear_map);
+      return enterWriteParameter(0);
+    case Phase::clear_map:
+      if (!wanted_.entries.empty()) return enter(Phase::write_entry);
+      return enterWriteParameter(0);
+    case Phase::write_entry:
+      if (item_ + 1 < wanted_.entries.size()) return enter(Phase::write_entry, item_ + 1);
+      if (!map_refused_) return enter(Phase::write_count);
+      return enterWriteParameter(0);
+    case Phase::write_count:
+      return enterWriteParameter(0);
+    case Phase::write_parameter:
+      return enterWriteParameter(item_ + 1);
+    default:  // enable: all is written
+      return enterRead();
+  }
+}
+
+bool PdoConfigurator::refusedReadOnlyCount(const SdoTransfer& transfer) const {
+  return options_.count_may_be_read_only &&
+         transfer.failure() == SdoTransfer::Failure::aborted_by_server &&
+         transfer.abortCode() == abort_code::kReadOnly &&
+         transfer.object() == ObjectId{mapping_, 0};
+}
+
+void PdoConfigurator::enterWriteParameter(std::size_t item) {
+  while (item < parameters_.size() && parameters_[item].actual == parameters_[item].wanted) ++item;
+  if (item < parameters_.size()) return enter(Phase::write_parameter, item);
+  enter(Phase::enable);
+}
+
+void PdoConfigurator::enterRead() {
+  verifying_ = true;
+  enter(Phase::read_cob_id);
+}
+
+void PdoConfigurator::enter(Phase phase, std::size_t item) {
+  phase_ = phase;
+  item_ = item;
+}
+
+void PdoConfigurator::fail(const std::string& reason) {
+  error_ = title() + ": " + reason;
+  phase_ = Phase::failed;
+}
+
+void PdoConfigurator::failTransfer(const SdoTransfer& transfer) {
+  timed_out_ = transfer.failure() != SdoTransfer::Failure::aborted_by_server;
+  std::string reason = step_ + ": " + transfer.reason();
+  if (transfer.abortCode() == abort_code::kReadOnly && transfer.object().index == mapping_ &&
+      transfer.object().subindex == 0) {
+    reason += "; if the drive's number of entries is fixed, say so in its profile";
+  } else if (phase_ == Phase::read_cob_id &&
+             transfer.failure() == SdoTransfer::Failure::aborted_by_server) {
+    reason += "; the drive has no such PDO, use another number";
+  }
+  fail(reason);
+}
+
+std::string PdoConfigurator::title() const {
+  return (wanted_.direction == PdoDirection::tpdo ? "TPDO " : "RPDO ") +
+         std::to_string(wanted_.number);
+}
+
+std::uint32_t PdoConfigurator::enabledCobId() const {
+  return (cob_id_ & kNoRemoteBit) | wanted_.cob_id;
+}
+
+std::uint32_t PdoConfigurator::entryValue(std::size_t item) const {
+  const PdoEntry& entry = wanted_.entries[item];
+  return static_cast<std::uint32_t>(entry.object.index) << 16 |
+         static_cast<std::uint32_t>(entry.object.subindex) << 8 | entry.bits;
+}
+
+std::string PdoConfigurator::entryName(std::size_t item) const {
+  const PdoEntry& entry = wanted_.entries[item];
+  std::string name = "entry " + std::to_string(item + 1) + " (" + toString(entry.object);
+  if (!entry.name.empty()) name += " " + entry.name;
+  return name + ")";
+}
+
+bool PdoConfigurator::mapDiffers() const {
+  if (count_ != wanted_.entries.size()) return true;
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    if (entries_[i] != entryValue(i)) return true;
+  }
+  return false;
+}
+
+std::string PdoConfigurator::firstDifference() const {
+  const auto tell = [](ObjectId object, const std::string& is, const std::string& wanted) {
+    return toString(object) + " is " + is + ", wanted is " + wanted;
+  };
+  if ((cob_id_ & (kInvalidBit | kCanIdMask)) != wanted_.cob_id) {
+    return tell({communication_, 1}, hex(cob_id_, 8), hex(enabledCobId(), 8));
+  }
+  for (const Parameter& parameter : parameters_) {
+    if (parameter.actual == parameter.wanted) continue;
+    return tell({communication_, parameter.subindex}, std::to_string(parameter.actual.value_or(0)),
+                std::to_string(parameter.wanted));
+  }
+  if (count_ != wanted_.entries.size()) {
+    return tell({mapping_, 0}, std::to_string(count_), std::to_string(wanted_.entries.size()));
+  }
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    if (entries_[i] == entryValue(i)) continue;
+    return tell({mapping_, static_cast<std::uint8_t>(i + 1)}, hex(entries_[i], 8),
+                hex(entryValue(i), 8));
+  }
+  return {};
+}
+
+}  // namespace cia402::canopen

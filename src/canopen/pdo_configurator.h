@@ -1,0 +1,109 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cia402_driver/canopen/pdo.h"
+#include "cia402_driver/canopen/sdo_client.h"
+
+namespace cia402::canopen {
+
+/// Brings one PDO of a node to its wanted configuration, as CiA 301, 7.5.2.34..37 prescribe: make
+/// it invalid (bit 31 of the COB-ID), number of entries 0, entries, number of entries, other
+/// communication parameters, make it valid. Everything is read first; only what differs is written
+/// and nothing at all where nothing differs; after writing everything is read back.
+class PdoConfigurator {
+ public:
+  struct Options {
+    bool count_may_be_read_only = false;  ///< go on when sub-index 0 of the mapping is read-only
+    bool may_be_missing = false;          ///< a PDO that cannot be read is none of our business
+  };
+  enum class Status { running, done, failed };
+
+  /// @param wanted with `enabled` false the PDO is only made invalid. @param sdo must outlive this.
+  PdoConfigurator(SdoClient& sdo, const PdoConfig& wanted, Options options);
+
+  /// Asks for the next object as soon as the last answer is there. Call first to begin, then after
+  /// each SDO answer.
+  Status advance();
+
+  /// Which object is being read or written: "reading 1800:01 COB-ID of TPDO 1".
+  const std::string& step() const { return step_; }
+  /// Why it failed.
+  const std::string& error() const { return error_; }
+  /// It failed because the drive did not answer at all.
+  bool timedOut() const { return timed_out_; }
+  /// True once something had to be written.
+  bool changed() const { return changed_; }
+
+ private:
+  enum class Phase {
+    read_cob_id,
+    read_parameter,
+    read_count,
+    read_entry,
+    disable,
+    clear_map,
+    write_entry,
+    write_count,
+    write_parameter,
+    enable,
+    done,
+    failed,
+  };
+  /// A communication parameter beside the COB-ID.
+  struct Parameter {
+    std::uint8_t subindex;
+    unsigned size;  ///< bytes
+    const char* name;
+    std::uint32_t wanted;
+    bool missing_is_zero;
+    std::optional<std::uint32_t> actual;
+  };
+
+  void ask();
+  void read(ObjectId object, const std::string& name);
+  void write(ObjectId object, std::uint32_t value, unsigned size, const std::string& name);
+  void answered(const SdoTransfer& transfer);
+  void answeredRead(const SdoTransfer& transfer);
+  void answeredCobId(const SdoTransfer& transfer);
+  void answeredParameter(const SdoTransfer& transfer);
+  void answeredWrite(const SdoTransfer& transfer);
+  void compare();
+  void verify();
+  void enter(Phase phase, std::size_t item = 0);
+  void enterWriteParameter(std::size_t item);
+  void enterRead();
+  void fail(const std::string& reason);
+  void failTransfer(const SdoTransfer& transfer);
+  bool refusedReadOnlyCount(const SdoTransfer& transfer) const;
+
+  std::string title() const;
+  std::uint32_t enabledCobId() const;
+  std::uint32_t entryValue(std::size_t item) const;
+  std::string entryName(std::size_t item) const;
+  bool mapDiffers() const;
+  std::string firstDifference() const;
+
+  SdoClient& sdo_;
+  PdoConfig wanted_;
+  Options options_;
+  std::uint16_t communication_;  ///< index of the communication parameters
+  std::uint16_t mapping_;        ///< index of the mapping parameters
+  std::vector<Parameter> parameters_;
+
+  Phase phase_ = Phase::read_cob_id;
+  std::size_t item_ = 0;
+  bool verifying_ = false, changed_ = false, map_refused_ = false, timed_out_ = false;
+  std::uint32_t cob_id_ = 0;
+  std::size_t count_ = 0;
+  std::vector<std::uint32_t> entries_;
+  SdoTicket ticket_;
+  std::string step_, error_;
+};
+
+}  // namespace cia402::canopen
