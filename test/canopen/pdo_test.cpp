@@ -1,0 +1,120 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/canopen/pdo.h"
+
+#include <gtest/gtest.h>
+
+#include "canopen/scripted_peer.h"
+
+namespace cia402::canopen {
+namespace {
+
+using test::frame;
+
+constexpr Time kStamp(std::chrono::milliseconds(7));
+constexpr ObjectId kStatusword{0x6041, 0}, kPosition{0x6064, 0}, kMode{0x6061, 0};
+constexpr ObjectId kControlword{0x6040, 0}, kTarget{0x607A, 0};
+
+PdoConfig pdo(PdoDirection direction, unsigned number, std::uint16_t cob_id,
+              std::vector<PdoEntry> entries) {
+  PdoConfig config;
+  config.direction = direction;
+  config.number = number;
+  config.cob_id = cob_id;
+  config.entries = std::move(entries);
+  return config;
+}
+
+std::vector<PdoConfig> servo() {
+  return {pdo(PdoDirection::tpdo, 2, 0x283, {{kMode, 8, ""}, {kStatusword, 16, ""}}),
+          pdo(PdoDirection::tpdo, 1, 0x183, {{kStatusword, 16, ""}, {kPosition, 32, ""}}),
+          pdo(PdoDirection::rpdo, 1, 0x203, {{kControlword, 16, ""}, {kTarget, 32, ""}})};
+}
+
+TEST(ProcessImage, unpacks_little_endian_entries_one_after_the_other) {
+  ProcessImage image(servo());
+  EXPECT_TRUE(image.receive(0, frame("183 37 02 78 56 34 F2"), kStamp));
+  const ProcessValue& statusword = image.input(image.inputSlot(kStatusword));
+  EXPECT_EQ(statusword.raw, 0x0237U);
+  EXPECT_EQ(statusword.stamp, kStamp);
+  EXPECT_TRUE(statusword.valid);
+  EXPECT_EQ(image.input(image.inputSlot(kPosition)).raw, 0xF2345678U);  // zero-extended
+}
+
+TEST(ProcessImage, orders_pdos_by_number_and_shares_the_slot_of_an_object_mapped_twice) {
+  ProcessImage image(servo());
+  ASSERT_EQ(image.tpdos().size(), 2U);
+  EXPECT_EQ(image.tpdos()[0].cob_id, 0x183);
+  EXPECT_EQ(image.tpdos()[1].cob_id, 0x283);
+  image.receive(0, frame("183 37 02 00 00 00 00"), kStamp);
+  image.receive(1, frame("283 08 50 02"), kStamp);
+  EXPECT_EQ(image.input(image.inputSlot(kStatusword)).raw, 0x0250U);
+  EXPECT_EQ(image.input(image.inputSlot(kMode)).raw, 0x08U);
+}
+
+TEST(ProcessImage, keeps_the_two_directions_apart) {
+  ProcessImage image(servo());
+  EXPECT_EQ(image.outputSlot(kStatusword), kNoSlot);
+  EXPECT_EQ(image.inputSlot(kControlword), kNoSlot);
+  EXPECT_NE(image.outputSlot(kControlword), kNoSlot);
+}
+
+TEST(ProcessImage, packs_outputs_and_cuts_them_to_their_width) {
+  ProcessImage image(servo());
+  image.setOutput(image.outputSlot(kControlword), 0xABCD000F);
+  image.setOutput(image.outputSlot(kTarget), static_cast<std::uint64_t>(-2));
+  can::Frame packed;
+  image.pack(0, packed);
+  EXPECT_EQ(test::text(packed), "203 0F 00 FE FF FF FF");
+}
+
+TEST(ProcessImage, handles_entries_that_are_no_whole_bytes_and_a_full_64_bit_entry) {
+  ProcessImage bits({pdo(PdoDirection::tpdo, 1, 0x181,
+                         {{{0x2000, 1}, 1, ""}, {{0x2000, 2}, 3, ""}, {{0x2000, 3}, 12, ""}})});
+  EXPECT_EQ(bits.tpdos()[0].size, 2);
+  // 0xABCB = 1010 1011 1100 | 101 | 1
+  bits.receive(0, frame("181 CB AB"), kStamp);
+  EXPECT_EQ(bits.input(bits.inputSlot({0x2000, 1})).raw, 1U);
+  EXPECT_EQ(bits.input(bits.inputSlot({0x2000, 2})).raw, 5U);
+  EXPECT_EQ(bits.input(bits.inputSlot({0x2000, 3})).raw, 0xABCU);
+
+  ProcessImage wide({pdo(PdoDirection::tpdo, 1, 0x181, {{{0x2001, 0}, 64, ""}})});
+  wide.receive(0, frame("181 01 02 03 04 05 06 07 88"), kStamp);
+  EXPECT_EQ(wide.input(0).raw, 0x8807060504030201U);
+}
+
+TEST(ProcessImage, takes_nothing_from_a_frame_that_is_too_short) {
+  ProcessImage image(servo());
+  image.receive(0, frame("183 37 02 01 00 00 00"), kStamp);
+  EXPECT_FALSE(image.receive(0, frame("183 50 02 09 00 00"), kStamp + std::chrono::seconds(1)));
+  EXPECT_EQ(image.input(image.inputSlot(kStatusword)).raw, 0x0237U);
+  EXPECT_EQ(image.input(image.inputSlot(kStatusword)).stamp, kStamp);
+  EXPECT_EQ(image.tpdos()[0].wrong_length, 1U);
+  EXPECT_EQ(image.tpdos()[0].count, 1U);
+}
+
+TEST(ProcessImage, takes_the_mapped_part_of_a_frame_that_is_too_long_but_counts_it) {
+  ProcessImage image(servo());
+  EXPECT_FALSE(image.receive(0, frame("183 37 02 01 00 00 00 FF"), kStamp));
+  EXPECT_EQ(image.input(image.inputSlot(kPosition)).raw, 1U);
+  EXPECT_EQ(image.tpdos()[0].wrong_length, 1U);
+}
+
+TEST(ProcessImage, has_no_slots_for_disabled_pdos) {
+  std::vector<PdoConfig> pdos = servo();
+  pdos[0].enabled = false;
+  ProcessImage image(pdos);
+  EXPECT_EQ(image.tpdos().size(), 1U);
+  EXPECT_EQ(image.inputSlot(kMode), kNoSlot);
+}
+
+TEST(ProcessImage, forgets_inputs_and_outputs_when_invalidated) {
+  ProcessImage image(servo());
+  image.receive(0, frame("183 37 02 01 00 00 00"), kStamp);
+  image.setOutput(image.outputSlot(kControlword), 0x0F);
+  image.invalidate();
+  EXPECT_FALSE(image.input(image.inputSlot(kStatusword)).valid);
+  EXPECT_EQ(image.output(image.outputSlot(kControlword)), 0U);
+}
+
+}  // namespace
+}  // namespace cia402::canopen
