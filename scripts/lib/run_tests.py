@@ -37,6 +37,15 @@ class Results:
             file.write(f"{'passed' if passed else 'failed'}\t{name}\t{log}\n")
 
 
+def interrupt(process):
+    """Asks a process to end what it has started and itself, as Ctrl-C does."""
+    process.send_signal(signal.SIGINT)
+    try:
+        process.wait(20)
+    except subprocess.TimeoutExpired:
+        pass  # run() kills it
+
+
 def run(command, log, timeout, **options):
     """Runs a command with its output in a log. Whatever it has started ends with it."""
     with open(log, "ab") as file:
@@ -46,13 +55,16 @@ def run(command, log, timeout, **options):
             status = process.wait(timeout)
         except subprocess.TimeoutExpired:
             file.write(f"\nkilled after {timeout} s\n".encode())
-            status = None
+            interrupt(process)
+            return None
         finally:
             try:
                 os.killpg(process.pid, signal.SIGKILL)
             except ProcessLookupError:
                 pass
             process.wait()
+        if status != 0:
+            file.write(f"\nended with status {status}\n".encode())
     return status
 
 
