@@ -26,7 +26,7 @@ struct DeviceBehaviour {
   // SDO server (7.2.4.3).
   bool generic_length_abort = false;  ///< 0x06070010 for every wrong length instead of ...12, ...13
   bool upload_without_size = false;   ///< upload answers do not tell the size (s = 0)
-  bool byte_wise_sdo = false;         ///< accepts requests of fewer than 8 bytes, rest taken as 0
+  bool accepts_short_sdo = false;     ///< takes requests of fewer than 8 bytes, the rest as 0
 
   // PDO configuration (7.5.2.35 to 7.5.2.38).
   bool mapping_requires_invalid = true;     ///< 16xxh/1Axxh can be written only while bit 31 of the

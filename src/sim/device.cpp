@@ -1,0 +1,258 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/sim/device.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "pdo_server.h"
+#include "sdo_server.h"
+#include "slave_context.h"
+#include "slave_emergency.h"
+#include "slave_heartbeat.h"
+#include "slave_sync.h"
+
+namespace cia402::sim {
+
+using canopen::NmtCommand;
+using canopen::NmtState;
+
+namespace {
+
+constexpr std::uint32_t kNmt = 0x000;
+constexpr std::uint32_t kSdoRequest = 0x600;
+constexpr std::uint32_t kErrorControl = 0x700;
+constexpr std::uint32_t kFunctionCode = 0x780;
+constexpr std::uint32_t kNodeId = 0x07F;
+
+constexpr std::uint16_t kFirstCommunicationObject = 0x1000;
+constexpr std::uint16_t kLastCommunicationObject = 0x1FFF;
+
+}  // namespace
+
+struct Device::Impl {
+  SlaveContext context;
+  SlaveEmergency emergency{context};
+  SlaveHeartbeat heartbeat{context, emergency};
+  SlaveSync sync{context, emergency};
+  SdoServer sdo{context};
+  PdoServer pdos{context, emergency};
+  Time boot_at = kNever;
+  Time next_event = kNever;
+  unsigned depth = 0;
+
+  Impl(canopen::NodeId node, can::Sink& sink, ObjectDictionary& dictionary,
+       DeviceBehaviour behaviour, Application& application)
+      : context(node, sink, dictionary, std::move(behaviour), application) {
+    context.change_state = [this](NmtState state) { changeState(state); };
+  }
+
+  ~Impl() { releaseObjects(); }
+
+  void serveObjects();
+  void releaseObjects();
+  void beginBoot(bool reset_all);
+  void silence(NmtState state);
+  void finishBoot();
+  void changeState(NmtState state);
+  void command(const can::Frame& frame);
+  void onSync(const can::Frame& frame);
+  void dispatch(const can::Frame& frame);
+  void runDue();
+  Time deadline() const;
+};
+
+namespace {
+
+/// Sets the time of a call and finds the next event when the outermost call ends: the application
+/// may call the device from within its own calls.
+template <typename Impl>
+class Call {
+ public:
+  Call(Impl& impl, Time now) : impl_(impl) {
+    impl_.context.now = now;
+    ++impl_.depth;
+  }
+  ~Call() {
+    if (--impl_.depth == 0) impl_.next_event = impl_.deadline();
+  }
+  Call(const Call&) = delete;
+  Call& operator=(const Call&) = delete;
+
+ private:
+  Impl& impl_;
+};
+
+}  // namespace
+
+void Device::Impl::serveObjects() {
+  releaseObjects();
+  emergency.serveObjects();
+  heartbeat.serveObjects();
+  sync.serveObjects();
+  pdos.serveObjects();
+}
+
+void Device::Impl::releaseObjects() {
+  for (const ObjectId id : context.hooked) {
+    context.dictionary.onWriteCheck(id, nullptr);
+    context.dictionary.onWrite(id, nullptr);
+    context.dictionary.onRead(id, nullptr);
+  }
+  context.hooked.clear();
+}
+
+// Forgets all that runs or waits; `state` is one in which nothing is sent.
+void Device::Impl::silence(NmtState state) {
+  context.state = state;
+  boot_at = kNever;
+  pdos.stop();
+  heartbeat.reset();
+  sync.reset();
+  sdo.reset();
+  emergency.reset();
+}
+
+void Device::Impl::beginBoot(bool reset_all) {
+  silence(NmtState::boot_up);
+  if (reset_all) {
+    context.dictionary.restoreInitial();
+    context.application.onPowerOn(context.now);
+  } else {
+    context.dictionary.restoreInitial(kFirstCommunicationObject, kLastCommunicationObject);
+    context.application.onResetCommunication(context.now);
+  }
+  boot_at = context.now + context.behaviour.boot_time;
+  context.application.onNmtState(NmtState::boot_up, context.now);
+}
+
+void Device::Impl::finishBoot() {
+  boot_at = kNever;
+  sync.start();
+  pdos.configure();
+  heartbeat.start();
+  changeState(NmtState::pre_operational);
+}
+
+void Device::Impl::changeState(NmtState state) {
+  if (state == context.state) return;
+  if (context.operational()) pdos.stop();
+  if (state == NmtState::stopped) sdo.reset();
+  context.state = state;
+  if (context.operational()) pdos.start();
+  context.application.onNmtState(state, context.now);
+  if (context.operational() && context.behaviour.sends_event_tpdos_on_start) pdos.sendOnStart();
+  emergency.tick();
+}
+
+void Device::Impl::command(const can::Frame& frame) {
+  if (frame.remote || frame.size != 2) return;
+  if (frame.data[1] != 0 && frame.data[1] != context.node) return;
+  switch (static_cast<NmtCommand>(frame.data[0])) {
+    case NmtCommand::start:
+      return changeState(NmtState::operational);
+    case NmtCommand::stop:
+      return changeState(NmtState::stopped);
+    case NmtCommand::enter_pre_operational:
+      return changeState(NmtState::pre_operational);
+    case NmtCommand::reset_node:
+      if (!context.behaviour.ignores_nmt_reset) beginBoot(true);
+      return;
+    case NmtCommand::reset_communication:
+      if (!context.behaviour.ignores_nmt_reset) beginBoot(false);
+      return;
+  }
+}
+
+void Device::Impl::onSync(const can::Frame& frame) {
+  if (!context.communicating()) return;
+  const auto counter = sync.accept(frame);
+  if (!counter) return;
+  if (context.operational()) pdos.applySynchronous();
+  context.application.onSync(context.now);
+  if (context.operational()) pdos.sendSynchronous(*counter);
+}
+
+void Device::Impl::dispatch(const can::Frame& frame) {
+  if (frame.id == sync.cobId()) return onSync(frame);
+  if (context.operational() && pdos.concerns(frame.id)) return pdos.receive(frame);
+  if (frame.id == kNmt) return command(frame);
+  if (frame.id == kSdoRequest + context.node) return sdo.receive(frame);
+  if ((frame.id & kFunctionCode) == kErrorControl) {
+    heartbeat.receive(static_cast<canopen::NodeId>(frame.id & kNodeId), frame);
+  }
+}
+
+void Device::Impl::runDue() {
+  if (boot_at <= context.now) finishBoot();
+  sync.tick();
+  heartbeat.tick();
+  pdos.tick();
+  sdo.tick();
+  emergency.tick();
+}
+
+Time Device::Impl::deadline() const {
+  return std::min({boot_at, sync.deadline(), heartbeat.deadline(), pdos.deadline(), sdo.deadline(),
+                   emergency.deadline()});
+}
+
+Device::Device(canopen::NodeId node, can::Sink& sink, ObjectDictionary& dictionary,
+               DeviceBehaviour behaviour, Application& application)
+    : impl_(std::make_unique<Impl>(node, sink, dictionary, std::move(behaviour), application)) {}
+
+Device::~Device() = default;
+
+void Device::powerOn(Time now) {
+  Call<Impl> call(*impl_, now);
+  impl_->serveObjects();
+  impl_->beginBoot(true);
+}
+
+void Device::powerOff() {
+  impl_->silence(NmtState::unknown);
+  impl_->next_event = kNever;
+}
+
+bool Device::powered() const { return impl_->context.state != NmtState::unknown; }
+
+void Device::receive(const can::Frame& frame, Time now) {
+  if (frame.extended || frame.error || !powered()) return;
+  Call<Impl> call(*impl_, now);
+  if (impl_->next_event <= now) impl_->runDue();
+  if (impl_->context.state != NmtState::boot_up) impl_->dispatch(frame);
+}
+
+void Device::tick(Time now) {
+  if (impl_->next_event > now) return;
+  Call<Impl> call(*impl_, now);
+  impl_->runDue();
+}
+
+Time Device::nextEvent() const { return impl_->next_event; }
+
+canopen::NodeId Device::node() const { return impl_->context.node; }
+
+canopen::NmtState Device::nmtState() const { return impl_->context.state; }
+
+void Device::sendEmergency(std::uint16_t code, std::uint8_t error_register,
+                           const std::array<std::uint8_t, 5>& vendor, Time now) {
+  if (!powered()) return;
+  Call<Impl> call(*impl_, now);
+  impl_->emergency.send(code, error_register, vendor);
+}
+
+void Device::clearEmergency(Time now) {
+  if (!powered()) return;
+  Call<Impl> call(*impl_, now);
+  impl_->emergency.clear();
+}
+
+void Device::notifyChange(Time now) {
+  if (!powered()) return;
+  Call<Impl> call(*impl_, now);
+  if (impl_->context.operational()) impl_->pdos.notifyChange();
+}
+
+DeviceBehaviour& Device::behaviour() { return impl_->context.behaviour; }
+
+}  // namespace cia402::sim

@@ -1,0 +1,55 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "cia402_driver/sim/device.h"
+
+namespace cia402::sim {
+
+/// What the services of one simulated slave share. `now` is the time of the call in progress, for
+/// hooks that carry none.
+struct SlaveContext {
+  canopen::NodeId node;
+  can::Sink& sink;
+  ObjectDictionary& dictionary;
+  DeviceBehaviour behaviour;
+  Device::Application& application;
+  canopen::NmtState state = canopen::NmtState::unknown;
+  Time now{};
+  std::function<void(canopen::NmtState)> change_state;
+  std::vector<ObjectId> hooked;
+
+  SlaveContext(canopen::NodeId id, can::Sink& frames, ObjectDictionary& objects,
+               DeviceBehaviour switches, Device::Application& app)
+      : node(id),
+        sink(frames),
+        dictionary(objects),
+        behaviour(std::move(switches)),
+        application(app) {}
+
+  bool operational() const { return state == canopen::NmtState::operational; }
+  /// States in which SDO, SYNC and EMCY work (CiA 301, table 38).
+  bool communicating() const {
+    return operational() || state == canopen::NmtState::pre_operational;
+  }
+
+  /// Value of an object of the dictionary, `missing` where there is none.
+  std::uint64_t value(ObjectId id, std::uint64_t missing = 0) const {
+    const Entry* entry = dictionary.find(id);
+    return entry == nullptr ? missing : entry->number;
+  }
+
+  /// Serves writes of an object, if the dictionary has it. Either function may be empty.
+  void serveWrites(ObjectId id, ObjectDictionary::WriteCheck check,
+                   ObjectDictionary::WriteHook hook) {
+    if (dictionary.find(id) == nullptr) return;
+    dictionary.onWriteCheck(id, std::move(check));
+    dictionary.onWrite(id, std::move(hook));
+    hooked.push_back(id);
+  }
+};
+
+}  // namespace cia402::sim
