@@ -47,6 +47,14 @@ class ScriptedPeer : public can::Sink {
   ScriptedPeer& on(const std::string& request, const char* answer) {
     return on(request, std::vector<std::string>{answer});
   }
+  /// Replaces all lines for one request.
+  ScriptedPeer& replace(const std::string& request, const std::vector<std::string>& answers) {
+    forget(request);
+    return on(request, answers);
+  }
+  ScriptedPeer& replace(const std::string& request, const char* answer) {
+    return replace(request, std::vector<std::string>{answer});
+  }
   /// Forgets the lines for one request: it is not answered any more.
   void forget(const std::string& request) { script_.erase(request); }
 

@@ -1,0 +1,58 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "canopen/scripted_drive.h"
+#include "canopen/scripted_peer.h"
+#include "cia402_driver/canopen/node.h"
+
+namespace cia402::canopen::test {
+
+using Lines = std::vector<std::string>;
+
+/// Node 3, "shoulder", against a scripted servo, in virtual time.
+class NodeFixture : public ::testing::Test {
+ protected:
+  NodeFixture() { addServo(peer, 3); }
+
+  void create() { node.emplace(config, MasterConfig{}, peer); }
+  /// Hands over answers until the wire is quiet.
+  void settle() {
+    peer.deliver([this](const can::Frame& received) { node->receive(received, now, now); });
+  }
+  void boot(bool reset = true) {
+    create();
+    node->boot(now, reset);
+    settle();
+  }
+  void hear(const std::string& text) {
+    node->receive(frame(text), now, now);
+    settle();
+  }
+  /// Lets time pass as a bus thread would: tick whenever a deadline is due.
+  void pass(Duration duration) {
+    const Time end = now + duration;
+    while (node->nextDeadline() <= end) {
+      now = std::max(now, node->nextDeadline());
+      node->tick(now);
+      settle();
+    }
+    now = end;
+  }
+  bool sentLine(const std::string& text) const {
+    return std::find(peer.sent.begin(), peer.sent.end(), text) != peer.sent.end();
+  }
+
+  ScriptedPeer peer;
+  NodeConfig config = servoConfig(3, "shoulder");
+  std::optional<Node> node;
+  Time now{};
+};
+
+}  // namespace cia402::canopen::test
