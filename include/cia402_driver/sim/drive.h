@@ -40,6 +40,7 @@ struct DriveTruth {
   bool moving = false;
   std::uint16_t statusword = 0;
   canopen::NmtState nmt = canopen::NmtState::unknown;
+  unsigned bad_floats_received = 0;  ///< NaN, infinity, -0.0 in float objects, where trapped
 };
 
 /// A simulated CiA 402 drive: Device + state machine + modes + motor + switches.
@@ -57,8 +58,8 @@ class Drive {
 
   /// Injects a fault by its name in the definition ("following_error", "overcurrent",
   /// "overtemperature", "undervoltage", "encoder", ...) or as a raw error code "0x7305"; also
-  /// "power_cycle", "silent" (stops answering), "blocked_rotor", "sdo_silent". @return an error
-  /// that lists the known names.
+  /// "power_cycle", "silent" (stops answering), "blocked_rotor", "sdo_silent", and "clear", which
+  /// takes the causes of all of them away. @return an error that lists the known names.
   Result<void> inject(const std::string& fault, Time now);
   std::vector<std::string> faultNames() const;
 

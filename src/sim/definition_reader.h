@@ -1,0 +1,62 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <functional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace cia402::sim {
+
+/// Everything wrong with one file, gathered.
+using Problems = std::vector<std::string>;
+
+/// One map of a YAML file. Notes wrong types, values and, at finish(), keys nobody asked for.
+class DefinitionReader {
+ public:
+  DefinitionReader(const YAML::Node& node, std::string path, Problems& problems);
+  ~DefinitionReader();
+  DefinitionReader(const DefinitionReader&) = delete;
+  DefinitionReader& operator=(const DefinitionReader&) = delete;
+
+  bool has(const std::string& key);
+  YAML::Node node(const std::string& key);
+  void read(const std::string& key, bool& out);
+  void read(const std::string& key, std::string& out);
+  void read(const std::string& key, double& out, double low, double high);
+  void read(const std::string& key, std::int64_t& out, std::int64_t low, std::int64_t high);
+  /// One of `words`; out is left alone if there is none.
+  template <typename T>
+  void read(const std::string& key, T& out, const std::vector<std::pair<const char*, T>>& words) {
+    if (!has(key)) return;
+    const std::string text = node(key).IsScalar() ? node(key).Scalar() : "";
+    std::string known;
+    for (const auto& [word, value] : words) {
+      if (text == word) {
+        out = value;
+        return;
+      }
+      known += known.empty() ? word : std::string(", ") + word;
+    }
+    problem(key, "'" + text + "' is none of: " + known);
+  }
+  /// `body` for the map under `key`, if there.
+  void section(const std::string& key, const std::function<void(DefinitionReader&)>& body);
+  /// `body` for each pair of the map under `key`.
+  void each(const std::string& key,
+            const std::function<void(const std::string&, const YAML::Node&)>& body);
+
+  void problem(const std::string& key, const std::string& text);
+  std::string pathOf(const std::string& key) const;
+  Problems& problems() { return problems_; }
+
+ private:
+  YAML::Node node_;
+  std::string path_;
+  Problems& problems_;
+  std::set<std::string> asked_;
+};
+
+}  // namespace cia402::sim

@@ -1,0 +1,268 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/sim/drive.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+
+#include "drive_core.h"
+#include "drive_definition.h"
+#include "drive_parameter_store.h"
+
+namespace cia402::sim {
+namespace {
+
+constexpr Duration kPowerCycle = std::chrono::milliseconds(500);
+
+// Error register bits of a code's class (CiA 301, 7.2.7.1 and 7.5.2.2).
+std::uint8_t registerFor(std::uint16_t code) {
+  switch (code >> 12) {
+    case 0x2:
+      return 0x03;
+    case 0x3:
+      return 0x05;
+    case 0x4:
+      return 0x09;
+    case 0x8:
+      return (code & 0xFF00) == 0x8600 ? 0x21 : 0x11;
+    default:
+      return 0x01;
+  }
+}
+
+// Lets nothing out while the drive plays dead.
+class Gate : public can::Sink {
+ public:
+  explicit Gate(can::Sink& sink) : sink_(sink) {}
+  bool send(const can::Frame& frame) override { return closed || sink_.send(frame); }
+  bool closed = false;
+
+ private:
+  can::Sink& sink_;
+};
+
+}  // namespace
+
+struct Drive::Impl : Device::Application, DriveCore::Reports {
+  Impl(std::shared_ptr<const DriveDefinition> drive_definition, canopen::NodeId node,
+       can::Sink& sink, const AxisMechanics& axis_mechanics)
+      : definition(std::move(drive_definition)),
+        mechanics(axis_mechanics),
+        dictionary(definition->dictionary.build(node)),
+        gate(sink),
+        device(node, gate, dictionary, definition->communication, *this),
+        core(*definition, mechanics, dictionary, *this),
+        store(dictionary, [this] { return core.enabled(); }) {
+    installHooks();
+  }
+
+  void installHooks() {
+    for (const auto& pair : dictionary.entries()) {
+      const Entry& entry = pair.second;
+      if (entry.access != Access::rw && entry.access != Access::wo) continue;
+      if (entry.id.index < 0x2000) continue;
+      const auto role = roleOf(entry);
+      dictionary.onWriteCheck(entry.id, [this](const Entry& e, std::uint64_t number) {
+        return core.refuseWrite(e, number);
+      });
+      const Encoding encoding = encodingOf(entry);
+      if (role || encoding != Encoding::integer) {
+        dictionary.onWrite(entry.id,
+                           [this, role, encoding](const Entry& e) { written(e, role, encoding); });
+      }
+    }
+  }
+
+  std::optional<Role> roleOf(const Entry& entry) const {
+    for (const auto& moved : definition->objects) {
+      if (moved.second == entry.id) return moved.first;
+    }
+    return findRole(entry.id);
+  }
+
+  Encoding encodingOf(const Entry& entry) const {
+    const auto special = definition->encodings.find(entry.id);
+    if (special != definition->encodings.end()) return special->second;
+    const auto role = roleOf(entry);
+    return role && roleInfo(*role).quantity != Quantity::none ? definition->encoding
+                                                              : Encoding::integer;
+  }
+
+  void written(const Entry& entry, std::optional<Role> role, Encoding encoding) {
+    if (encoding != Encoding::integer && badFloat(decodeNumber(entry, encoding))) {
+      ++non_finite;
+      core.onNonFinite();
+      return;
+    }
+    if (role == Role::controlword) core.onControlword();
+    if (role == Role::mode) core.onMode();
+    if (role == Role::target_position) core.onTargetPosition();
+    if (role == Role::clear_errors && entry.number != 0) core.resetFault();
+    if (role == Role::save_zero && entry.number != 0) core.saveZero();
+  }
+
+  bool badFloat(double value) const {
+    if (!std::isfinite(value)) return definition->traps_non_finite;
+    return value == 0.0 && std::signbit(value) && definition->traps_negative_zero;
+  }
+
+  // Device::Application
+  void onPowerOn(Time time) override {
+    now = time;
+    core.start(cold, time);
+    cold = false;
+  }
+  void onResetCommunication(Time) override {}  // the power drive system goes on
+  void onNmtState(canopen::NmtState state, Time) override { core.onNmtState(state); }
+  void onSync(Time) override { core.onSync(); }
+  void onMasterLost(Time) override { core.onMasterLost(); }
+  bool hasFault() const override { return core.hasFault(); }
+
+  // DriveCore::Reports
+  void emergency(const FaultDefinition& fault, std::uint8_t error_register) override {
+    device.sendEmergency(fault.code, error_register, fault.vendor, now);
+  }
+  void errorsGone() override { device.clearEmergency(now); }
+  void statusChanged() override { status_changed = true; }
+
+  void bringTo(Time time) {
+    now = std::max(now, time);
+    if (restart_at && now >= *restart_at) {
+      const Time at = *restart_at;
+      restart_at.reset();
+      core.advance(at);
+      cold = true;
+      device.powerOn(at);
+    }
+    core.advance(now);
+  }
+
+  void flushChanges() {
+    if (!status_changed && !core.motion().powered()) return;
+    status_changed = false;
+    if (device.powered()) device.notifyChange(now);
+  }
+
+  std::shared_ptr<const DriveDefinition> definition;
+  AxisMechanics mechanics;
+  ObjectDictionary dictionary;
+  Gate gate;
+  Device device;
+  DriveCore core;
+  ParameterStore store;
+  Time now{};
+  std::optional<Time> restart_at;
+  std::map<std::uint16_t, FaultDefinition> raw_faults;
+  unsigned non_finite = 0;
+  bool cold = false;
+  bool first_power = true;
+  bool status_changed = false;
+};
+
+Drive::Drive(std::shared_ptr<const DriveDefinition> definition, canopen::NodeId node,
+             can::Sink& sink, AxisMechanics mechanics)
+    : impl_(std::make_unique<Impl>(std::move(definition), node, sink, mechanics)) {}
+
+Drive::~Drive() = default;
+
+void Drive::powerOn(Time now) {
+  impl_->bringTo(now);
+  impl_->restart_at.reset();
+  impl_->cold = !impl_->first_power;  // at first an incremental counter stands where the rotor is
+  impl_->first_power = false;
+  impl_->device.powerOn(now);
+}
+
+void Drive::powerOff(Time now) {
+  impl_->bringTo(now);
+  impl_->restart_at.reset();
+  impl_->device.powerOff();
+  impl_->core.powerOff();
+}
+
+void Drive::receive(const can::Frame& frame, Time now) {
+  impl_->bringTo(now);
+  if (!impl_->gate.closed) impl_->device.receive(frame, now);
+  impl_->flushChanges();
+}
+
+void Drive::tick(Time now) {
+  impl_->bringTo(now);
+  impl_->device.tick(now);
+  impl_->flushChanges();
+}
+
+Time Drive::nextEvent() const {
+  Time next = std::min(impl_->device.nextEvent(), impl_->core.nextEvent());
+  if (impl_->restart_at) next = std::min(next, *impl_->restart_at);
+  return next;
+}
+
+Result<void> Drive::inject(const std::string& fault, Time now) {
+  Impl& impl = *impl_;
+  impl.bringTo(now);
+  if (const FaultDefinition* known = impl.definition->fault(fault)) {
+    impl.core.raise(*known);
+  } else if (fault == "power_cycle") {
+    powerOff(now);
+    impl.restart_at = now + kPowerCycle;
+  } else if (fault == "silent") {
+    impl.gate.closed = true;
+  } else if (fault == "sdo_silent") {
+    impl.device.behaviour().sdo_silent = true;
+  } else if (fault == "blocked_rotor") {
+    impl.core.blockRotor(true);
+  } else if (fault == "clear") {
+    impl.gate.closed = false;
+    impl.device.behaviour().sdo_silent = impl.definition->communication.sdo_silent;
+    impl.core.removeCauses();
+  } else {
+    char* end = nullptr;
+    const bool raw = fault.compare(0, 2, "0x") == 0;
+    const unsigned long code = raw ? std::strtoul(fault.c_str(), &end, 16) : 0;
+    if (code == 0 || code > 0xFFFF || *end != '\0') {
+      std::string names;
+      for (const std::string& name : faultNames()) names += (names.empty() ? "" : ", ") + name;
+      return Error{"no fault '" + fault + "' in the simulated drive " + impl.definition->name +
+                   " (node " + std::to_string(impl.device.node()) + "); known: " + names +
+                   ", or an error code like 0x7305"};
+    }
+    FaultDefinition& made = impl.raw_faults[static_cast<std::uint16_t>(code)];
+    made.name = fault;
+    made.code = static_cast<std::uint16_t>(code);
+    made.error_register = registerFor(made.code);
+    impl.core.raise(made);
+  }
+  impl.flushChanges();
+  return {};
+}
+
+std::vector<std::string> Drive::faultNames() const {
+  std::vector<std::string> names;
+  for (const FaultDefinition& fault : impl_->definition->faults) names.push_back(fault.name);
+  for (const char* name : {"blocked_rotor", "clear", "power_cycle", "sdo_silent", "silent"}) {
+    names.emplace_back(name);
+  }
+  return names;
+}
+
+DriveTruth Drive::truth(Time now) {
+  impl_->bringTo(now);
+  const DriveMotion& motion = impl_->core.motion();
+  DriveTruth truth;
+  truth.position_turns = motion.motor().position();
+  truth.velocity_turns = motion.motor().velocity();
+  truth.power_stage_on = motion.powered();
+  truth.moving = std::fabs(truth.velocity_turns) > 1e-3;
+  truth.statusword = impl_->core.statusword();
+  truth.nmt = impl_->device.nmtState();
+  truth.bad_floats_received = impl_->non_finite;
+  return truth;
+}
+
+Device& Drive::device() { return impl_->device; }
+ObjectDictionary& Drive::dictionary() { return impl_->dictionary; }
+AxisMechanics& Drive::mechanics() { return impl_->mechanics; }
+
+}  // namespace cia402::sim

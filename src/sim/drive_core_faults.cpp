@@ -1,0 +1,135 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "drive_core.h"
+
+namespace cia402::sim {
+namespace {
+
+constexpr std::uint8_t kGenericError = 0x01;  // 1001h bit 0 is set with every error
+
+}  // namespace
+
+std::uint8_t DriveCore::errorRegister() const {
+  std::uint8_t bits = causes_.empty() ? 0 : kGenericError;
+  for (const Cause& cause : causes_) {
+    bits = static_cast<std::uint8_t>(bits | cause.fault->error_register);
+  }
+  return bits;
+}
+
+void DriveCore::raise(const FaultDefinition& fault) {
+  if (!on_) return;
+  const auto same = std::find_if(causes_.begin(), causes_.end(),
+                                 [&fault](const Cause& c) { return c.fault == &fault; });
+  const Time until = fault.persists == Duration::max() ? kNever : now_ + fault.persists;
+  if (same != causes_.end()) {
+    same->until = until;
+  } else if (causes_.size() < causes_.capacity()) {
+    causes_.push_back({&fault, until});
+  }
+  values_.setRaw(Role::error_code, fault.code);
+  if (fault.warning) warning_ = true;
+  if (!fault.warning || definition_.warning_stops) {
+    const bool reacting = state_ == PdsState::fault_reaction_active || state_ == PdsState::fault;
+    const Ramp ramp = fault.reaction
+                          ? *fault.reaction
+                          : option(definition_.fault_reaction, Role::fault_reaction_option).ramp;
+    if (!reacting || ramp == Ramp::coast) beginFaultReaction(ramp);  // transition 13
+  }
+  updateStatusword();
+  reports_.emergency(fault, errorRegister());
+}
+
+const FaultDefinition* DriveCore::lastingCause(bool warnings) const {
+  for (const Cause& cause : causes_) {
+    if (cause.fault->warning != warnings) continue;
+    if (!cause.fault->resettable || cause.until > now_) return cause.fault;
+  }
+  return nullptr;
+}
+
+void DriveCore::resetFault() {
+  if (state_ != PdsState::fault && !warning_) return;
+  if (state_ == PdsState::fault_reaction_active) return;
+  const FaultDefinition* lasting = lastingCause(false);
+  if (lasting == nullptr) lasting = lastingCause(true);
+  if (lasting != nullptr) {
+    values_.setRaw(Role::error_code, lasting->code);
+    reports_.emergency(*lasting, errorRegister());
+    return;
+  }
+  clearErrors();
+  if (state_ == PdsState::fault) enter(PdsState::switch_on_disabled);  // transition 15
+}
+
+void DriveCore::clearErrors() {
+  causes_.clear();
+  warning_ = false;
+  values_.setRaw(Role::error_code, 0);
+  reports_.errorsGone();
+}
+
+void DriveCore::removeCauses() {
+  for (Cause& cause : causes_) cause.until = now_;
+  motion_.motor().block(false);
+  updateStatusword();
+}
+
+void DriveCore::superviseMotion() {
+  if (motion_.followingErrorExceeded() && definition_.following_error_is_fault &&
+      state_ != PdsState::fault_reaction_active) {
+    if (const FaultDefinition* fault = definition_.fault("following_error")) raise(*fault);
+  }
+  if (!motion_.limitSwitchHit()) {
+    limit_reported_ = false;
+  } else if (!limit_reported_) {
+    limit_reported_ = true;
+    const FaultDefinition* fault = definition_.fault("limit_switch");
+    if (fault != nullptr && definition_.limit_switch_is_fault) raise(*fault);
+  }
+}
+
+void DriveCore::onNonFinite() {
+  if (const FaultDefinition* fault = definition_.fault("not_a_number")) raise(*fault);
+}
+
+void DriveCore::connectionLost(ConnectionLoss reaction) {
+  switch (reaction) {
+    case ConnectionLoss::none:
+      return;
+    case ConnectionLoss::fault:
+      if (const FaultDefinition* fault = definition_.fault("master_lost")) raise(*fault);
+      return;
+    case ConnectionLoss::disable_voltage:
+      if (enabledState()) enter(PdsState::switch_on_disabled);
+      break;
+    case ConnectionLoss::quick_stop:
+      if (state_ == PdsState::operation_enabled) {
+        beginQuickStop(option(definition_.quick_stop, Role::quick_stop_option));
+      }
+      break;
+  }
+  updateStatusword();
+}
+
+void DriveCore::onMasterLost() {
+  constexpr ConnectionLoss kByOption[] = {ConnectionLoss::none, ConnectionLoss::fault,
+                                          ConnectionLoss::disable_voltage,
+                                          ConnectionLoss::quick_stop};
+  const std::int64_t code = values_.raw(Role::abort_connection_option,
+                                        static_cast<std::int64_t>(definition_.master_lost));
+  connectionLost(code >= 0 && code <= 3 ? kByOption[code] : definition_.master_lost);
+}
+
+void DriveCore::onNmtState(canopen::NmtState state) {
+  const bool left =
+      nmt_ == canopen::NmtState::operational && state != canopen::NmtState::operational;
+  nmt_ = state;
+  if (!left || !definition_.stops_outside_operational) return;
+  if (state_ != PdsState::operation_enabled && state_ != PdsState::quick_stop_active) return;
+  beginQuickStop({Ramp::quick_stop, false});
+  updateStatusword();
+}
+
+}  // namespace cia402::sim

@@ -1,0 +1,370 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "drive_definition.h"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "definition_reader.h"
+#include "homing_sequence.h"
+
+namespace cia402::sim {
+namespace {
+
+using canopen::ObjectId;
+using Reader = DefinitionReader;
+
+constexpr std::int64_t kInt32Max = std::numeric_limits<std::int32_t>::max();
+constexpr double kForeverS = 1e6;
+
+const std::vector<std::pair<const char*, Encoding>> kEncodings = {
+    {"integer", Encoding::integer},
+    {"float32", Encoding::float32},
+    {"bfloat16", Encoding::bfloat16},
+    {"scaled_unsigned", Encoding::scaled_unsigned},
+    {"scaled_signed", Encoding::scaled_signed}};
+const std::vector<std::pair<const char*, Ramp>> kRamps = {{"coast", Ramp::coast},
+                                                          {"slow_down", Ramp::slow_down},
+                                                          {"quick_stop", Ramp::quick_stop},
+                                                          {"limit", Ramp::limit}};
+const std::vector<std::pair<const char*, ModeBehaviour>> kBehaviours = {
+    {"hold", ModeBehaviour::hold},
+    {"profile_position", ModeBehaviour::profile_position},
+    {"profile_velocity", ModeBehaviour::profile_velocity},
+    {"profile_torque", ModeBehaviour::profile_torque},
+    {"homing", ModeBehaviour::homing},
+    {"cyclic_position", ModeBehaviour::cyclic_position},
+    {"cyclic_velocity", ModeBehaviour::cyclic_velocity}};
+const std::vector<std::pair<const char*, Bit12>> kBit12 = {
+    {"none", Bit12::none},
+    {"acknowledge", Bit12::acknowledge},
+    {"zero_speed", Bit12::zero_speed},
+    {"follows", Bit12::follows},
+    {"homing_attained", Bit12::homing_attained}};
+const std::vector<std::pair<const char*, Bit13>> kBit13 = {
+    {"none", Bit13::none},
+    {"following_error", Bit13::following_error},
+    {"homing_error", Bit13::homing_error}};
+const std::vector<std::pair<const char*, ConnectionLoss>> kConnectionLoss = {
+    {"none", ConnectionLoss::none},
+    {"fault", ConnectionLoss::fault},
+    {"disable_voltage", ConnectionLoss::disable_voltage},
+    {"quick_stop", ConnectionLoss::quick_stop}};
+constexpr const char* kQuantities[] = {"none",   "position", "velocity", "acceleration",
+                                       "torque", "current",  "time",     "motor_speed"};
+static_assert(sizeof(kQuantities) / sizeof(kQuantities[0]) == kQuantityCount, "a name for each");
+
+void readDuration(Reader& reader, const std::string& key, Duration& out) {
+  double seconds = toSeconds(out);
+  reader.read(key, seconds, 0.0, 3600.0);
+  out = fromSeconds(seconds);
+}
+
+std::optional<std::int64_t> integerOf(const std::string& text) {
+  std::int64_t value = 0;
+  if (!YAML::convert<std::int64_t>::decode(YAML::Node(text), value)) return std::nullopt;
+  return value;
+}
+
+void readCommunication(Reader& reader, DeviceBehaviour& out) {
+  readDuration(reader, "boot_time", out.boot_time);
+  readDuration(reader, "sdo_latency", out.sdo_latency);
+  reader.read("ignores_nmt_reset", out.ignores_nmt_reset);
+  reader.read("map_count_read_only", out.map_count_read_only);
+  reader.read("accepts_plain_sync", out.accepts_plain_sync);
+  reader.read("generic_length_abort", out.generic_length_abort);
+  reader.read("upload_without_size", out.upload_without_size);
+  reader.read("accepts_short_sdo", out.accepts_short_sdo);
+  reader.read("mapping_requires_invalid", out.mapping_requires_invalid);
+  reader.read("map_entry_checked_on_write", out.map_entry_checked_on_write);
+  reader.read("disable_may_change_id", out.disable_may_change_id);
+  reader.read("timers_require_invalid", out.timers_require_invalid);
+  reader.read("rtr_types", out.rtr_types);
+  reader.read("type255_event_timer_only", out.type255_event_timer_only);
+  reader.read("sends_event_tpdos_on_start", out.sends_event_tpdos_on_start);
+  reader.read("sync_timeout", out.sync_timeout);
+}
+
+void readUnits(Reader& reader, DriveDefinition& out) {
+  for (std::size_t i = 1; i < kQuantityCount; ++i) {
+    if (!reader.has(kQuantities[i])) continue;
+    UnitScale& unit = out.units[i];
+    if (reader.node(kQuantities[i]).IsScalar() &&
+        reader.node(kQuantities[i]).Scalar() == "counts") {
+      unit = {true, 1.0};
+    } else {
+      unit.per_count = false;
+      reader.read(kQuantities[i], unit.factor, 1e-9, 1e12);
+    }
+  }
+}
+
+void readObjects(Reader& reader, DriveDefinition& out) {
+  reader.each("objects", [&](const std::string& key, const YAML::Node& value) {
+    const auto role = findRole(key);
+    const auto object = value.IsScalar() ? canopen::parseObjectId(value.Scalar()) : std::nullopt;
+    if (!role) return reader.problem("objects", "'" + key + "' is no role of an object");
+    if (!object) return reader.problem("objects", key + ": must be an object like \"6041:00\"");
+    out.objects[*role] = *object;
+  });
+  reader.each("encodings", [&](const std::string& key, const YAML::Node& value) {
+    const auto object = canopen::parseObjectId(key);
+    if (!object) return reader.problem("encodings", "'" + key + "' is no object like \"6071:00\"");
+    const auto word = std::find_if(kEncodings.begin(), kEncodings.end(), [&](const auto& pair) {
+      return value.IsScalar() && value.Scalar() == pair.first;
+    });
+    if (word == kEncodings.end()) return reader.problem("encodings", key + ": unknown encoding");
+    out.encodings[*object] = word->second;
+  });
+}
+
+void readMotor(Reader& reader, MotorParameters& out) {
+  reader.read("rated_acceleration", out.rated_acceleration, 1e-3, 1e6);
+  reader.read("max_torque", out.max_torque, 0.01, 100.0);
+  reader.read("max_speed", out.max_speed, 1e-3, 1e6);
+  reader.read("friction", out.friction, 0.0, 10.0);
+  reader.read("viscous_friction", out.viscous_friction, 0.0, 1e3);
+}
+
+std::optional<Role> readRole(Reader& reader, const std::string& key) {
+  if (!reader.has(key)) return std::nullopt;
+  std::string text;
+  reader.read(key, text);
+  const auto role = findRole(text);
+  if (!role) reader.problem(key, "'" + text + "' is no role of an object");
+  return role;
+}
+
+// What the standard gives bits 12 and 13 in a mode, unless the file says otherwise.
+void applyStandardBits(ModeDefinition& mode) {
+  switch (mode.behaviour) {
+    case ModeBehaviour::profile_position:
+      mode.bit_12 = Bit12::acknowledge;
+      mode.bit_13 = Bit13::following_error;
+      mode.velocity = Role::profile_velocity;
+      break;
+    case ModeBehaviour::profile_velocity:
+      mode.bit_12 = Bit12::zero_speed;
+      break;
+    case ModeBehaviour::cyclic_position:
+      mode.bit_12 = Bit12::follows;
+      mode.bit_13 = Bit13::following_error;
+      break;
+    case ModeBehaviour::cyclic_velocity:
+      mode.bit_12 = Bit12::follows;
+      break;
+    case ModeBehaviour::homing:
+      mode.bit_12 = Bit12::homing_attained;
+      mode.bit_13 = Bit13::homing_error;
+      break;
+    default:
+      break;
+  }
+}
+
+void readMode(const std::string& number, const YAML::Node& node, Reader& parent,
+              DriveDefinition& out) {
+  Reader reader(node, parent.pathOf("modes." + number), parent.problems());
+  ModeDefinition mode;
+  const auto value = integerOf(number);
+  if (!value) parent.problem("modes", "'" + number + "' is no mode number");
+  mode.number = value.value_or(0);
+  if (!reader.has("behaviour")) reader.problem("behaviour", "is missing");
+  reader.read("behaviour", mode.behaviour, kBehaviours);
+  applyStandardBits(mode);
+  reader.read("handshake", mode.handshake);
+  reader.read("bit_12", mode.bit_12, kBit12);
+  reader.read("bit_13", mode.bit_13, kBit13);
+  reader.read("target_reached", mode.target_reached);
+  if (reader.has("velocity") && reader.node("velocity").Scalar() == "none") {
+    mode.velocity.reset();
+  } else if (reader.has("velocity")) {
+    mode.velocity = readRole(reader, "velocity");
+  }
+  mode.torque = readRole(reader, "torque");
+  out.modes.push_back(mode);
+}
+
+void readOptionTable(Reader& parent, const std::string& key, OptionTable& out) {
+  parent.section(key, [&](Reader& reader) {
+    out.options.clear();
+    reader.read("default", out.fallback, -32768, 32767);
+    reader.each("values", [&](const std::string& number, const YAML::Node& node) {
+      Reader row(node, reader.pathOf("values." + number), reader.problems());
+      StopOption option;
+      const auto value = integerOf(number);
+      if (!value) reader.problem("values", "'" + number + "' is no option code");
+      row.read("ramp", option.ramp, kRamps);
+      row.read("hold", option.hold);
+      out.options[value.value_or(0)] = option;
+    });
+  });
+}
+
+// CiA 402-2, tables of 605Ah to 605Eh.
+void applyStandardOptions(DriveDefinition& out) {
+  const StopOption coast{Ramp::coast, false};
+  const StopOption slow{Ramp::slow_down, false};
+  const StopOption quick{Ramp::quick_stop, false};
+  const StopOption limit{Ramp::limit, false};
+  out.quick_stop = {2,
+                    {{0, coast},
+                     {1, slow},
+                     {2, quick},
+                     {3, limit},
+                     {4, limit},
+                     {5, {Ramp::slow_down, true}},
+                     {6, {Ramp::quick_stop, true}},
+                     {7, {Ramp::limit, true}},
+                     {8, {Ramp::limit, true}}}};
+  out.shutdown = {0, {{0, coast}, {1, slow}}};
+  out.disable_operation = {1, {{0, coast}, {1, slow}}};
+  out.halt_option = {1, {{1, slow}, {2, quick}, {3, limit}, {4, limit}}};
+  out.fault_reaction = {2, {{0, coast}, {1, slow}, {2, quick}, {3, limit}, {4, limit}}};
+}
+
+void readStateMachine(Reader& reader, DriveDefinition& out) {
+  readDuration(reader, "initialisation", out.initialisation);
+  reader.read("enable_in_one_step", out.enable_in_one_step);
+  reader.read("direct_enable", out.direct_enable);
+  reader.read("mode_change_while_enabled", out.mode_change_while_enabled);
+  reader.read("resume_quick_stop_while_moving", out.resume_quick_stop_while_moving);
+  reader.read("halt", out.halt);
+  reader.read("internal_limit_bit", out.internal_limit_bit);
+  reader.read("warning_stops", out.warning_stops);
+  reader.read("following_error_is_fault", out.following_error_is_fault);
+  reader.read("limit_switch_is_fault", out.limit_switch_is_fault);
+  reader.read("master_lost", out.master_lost, kConnectionLoss);
+  reader.read("stops_outside_operational", out.stops_outside_operational);
+  reader.read("interpolates_over_sync_period", out.follows_sync_period);
+  readOptionTable(reader, "quick_stop", out.quick_stop);
+  readOptionTable(reader, "shutdown", out.shutdown);
+  readOptionTable(reader, "disable_operation", out.disable_operation);
+  readOptionTable(reader, "halt_option", out.halt_option);
+  readOptionTable(reader, "fault_reaction", out.fault_reaction);
+  if (!reader.has("locked_while_enabled")) return;
+  for (const YAML::Node& item : reader.node("locked_while_enabled")) {
+    const auto object = item.IsScalar() ? canopen::parseObjectId(item.Scalar()) : std::nullopt;
+    if (object)
+      out.locked_while_enabled.push_back(*object);
+    else
+      reader.problem("locked_while_enabled", "must be a list of objects like \"6083:00\"");
+  }
+}
+
+void readHoming(Reader& reader, DriveDefinition& out) {
+  reader.read<bool>("home_offset", out.home_offset_is_zero_shift,
+                    {{"position_at_home", false}, {"shift_of_zero", true}});
+  reader.read("returns_to_home", out.homing_returns);
+  if (!reader.has("methods")) return;
+  for (const YAML::Node& item : reader.node("methods")) {
+    const auto number = item.IsScalar() ? integerOf(item.Scalar()) : std::nullopt;
+    if (number && findHomingMethod(*number) != nullptr)
+      out.homing_methods.push_back(*number);
+    else
+      reader.problem("methods", "must be a list of methods 1..14, 17..30, 33, 34, 35, 37");
+  }
+}
+
+void readFault(const std::string& name, const YAML::Node& node, Reader& parent,
+               DriveDefinition& out) {
+  Reader reader(node, parent.pathOf("faults." + name), parent.problems());
+  FaultDefinition fault;
+  fault.name = name;
+  std::int64_t number = 0;
+  if (!reader.has("code")) reader.problem("code", "is missing");
+  reader.read("code", number, 1, 0xFFFF);
+  fault.code = static_cast<std::uint16_t>(number);
+  number = fault.error_register;
+  reader.read("register", number, 0, 0xFF);
+  fault.error_register = static_cast<std::uint8_t>(number);
+  if (reader.has("vendor")) {
+    const YAML::Node bytes = reader.node("vendor");
+    for (std::size_t i = 0; bytes.IsSequence() && i < std::min<std::size_t>(5, bytes.size()); ++i) {
+      const auto byte = integerOf(bytes[i].IsScalar() ? bytes[i].Scalar() : "");
+      if (byte && *byte >= 0 && *byte <= 255)
+        fault.vendor[i] = static_cast<std::uint8_t>(*byte);
+      else
+        reader.problem("vendor", "must be a list of up to five bytes");
+    }
+  }
+  reader.read("resettable", fault.resettable);
+  reader.read("warning", fault.warning);
+  reader.read("voltage_lost", fault.voltage_lost);
+  double seconds = 0.0;
+  reader.read("persists_for", seconds, 0.0, kForeverS);
+  fault.persists = fromSeconds(seconds);
+  Ramp reaction = Ramp::coast;
+  if (reader.has("reaction")) {
+    reader.read("reaction", reaction, kRamps);
+    fault.reaction = reaction;
+  }
+  out.faults.push_back(fault);
+}
+
+void readDefinition(Reader& reader, DriveDefinition& out) {
+  std::string description;
+  reader.read("name", out.name);
+  reader.read("description", description);
+  if (!reader.has("dictionary")) {
+    reader.problem("dictionary", "is missing: the list of the drive's objects");
+  } else {
+    auto dictionary = DictionaryTemplate::parse(reader.node("dictionary"));
+    if (dictionary.ok())
+      out.dictionary = std::move(dictionary).value();
+    else
+      reader.problem("dictionary", dictionary.error().message);
+  }
+  applyStandardOptions(out);
+  reader.section("communication", [&](Reader& r) { readCommunication(r, out.communication); });
+  reader.section("units", [&](Reader& r) { readUnits(r, out); });
+  reader.read("encoding", out.encoding, kEncodings);
+  readObjects(reader, out);
+  reader.section("motor", [&](Reader& r) { readMotor(r, out.motor); });
+  reader.read<bool>("encoder", out.absolute_encoder, {{"absolute", true}, {"incremental", false}});
+  reader.each("modes", [&](const std::string& number, const YAML::Node& node) {
+    readMode(number, node, reader, out);
+  });
+  reader.section("state_machine", [&](Reader& r) { readStateMachine(r, out); });
+  reader.section("homing", [&](Reader& r) { readHoming(r, out); });
+  reader.section("float_traps", [&](Reader& r) {
+    r.read("non_finite", out.traps_non_finite);
+    r.read("negative_zero", out.traps_negative_zero);
+  });
+  reader.each("faults", [&](const std::string& name, const YAML::Node& node) {
+    readFault(name, node, reader, out);
+  });
+}
+
+}  // namespace
+
+const FaultDefinition* DriveDefinition::fault(const std::string& fault_name) const {
+  const auto found = std::find_if(faults.begin(), faults.end(),
+                                  [&](const FaultDefinition& f) { return f.name == fault_name; });
+  return found == faults.end() ? nullptr : &*found;
+}
+
+const ModeDefinition* DriveDefinition::mode(std::int64_t number) const {
+  const auto found = std::find_if(modes.begin(), modes.end(),
+                                  [number](const ModeDefinition& m) { return m.number == number; });
+  return found == modes.end() ? nullptr : &*found;
+}
+
+Result<std::shared_ptr<const DriveDefinition>> loadDriveDefinition(const std::string& path) {
+  Problems problems;
+  auto definition = std::make_shared<DriveDefinition>();
+  try {
+    const YAML::Node file = YAML::LoadFile(path);
+    DefinitionReader reader(file, "", problems);
+    readDefinition(reader, *definition);
+  } catch (const YAML::Exception& error) {
+    problems.push_back(error.what());
+  }
+  if (problems.empty()) return std::shared_ptr<const DriveDefinition>(std::move(definition));
+  std::string text = path + ": the simulated drive's definition has problems:";
+  for (const std::string& problem : problems) text += "\n  " + problem;
+  return Error{text};
+}
+
+}  // namespace cia402::sim
