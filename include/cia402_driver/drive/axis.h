@@ -87,6 +87,8 @@ class Axis {
   canopen::Node& node();
   const AxisState& state() const;
   const ProcedureStatus& procedure() const;
+  /// The one before; ended, e.g. because disable, quick_stop or halt pre-empted it.
+  const ProcedureStatus& previousProcedure() const;
 
   /// Decodes the node's process image. Call after the TPDOs of a cycle.
   void readFeedback(Time now);
@@ -115,6 +117,15 @@ class Axis {
 
   /// The present fault in words with cause and remedy; empty if none.
   std::string faultText() const;
+
+  /// The last thing the axis did by itself (left operation, quick-stopped without feedback, dropped
+  /// a set-point, lost its node), as a sentence; noticeCount() grows with each.
+  const std::string& notice() const;
+  std::uint32_t noticeCount() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace cia402::drive

@@ -1,0 +1,135 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/drive/axis.h"
+
+#include <utility>
+
+#include "axis_core.h"
+#include "procedure.h"
+
+namespace cia402::drive {
+
+struct Axis::Impl {
+  Impl(AxisConfig config, canopen::Node& node)
+      : core(std::move(config), node), boot_ups(node.bootUps()) {}
+
+  void watchNode();
+  void finish(bool success, std::string message);
+  void preempt(ProcedureKind by);
+  Context context(Time now) { return {core, status, now}; }
+
+  AxisCore core;
+  ProcedureStatus status, previous;
+  std::unique_ptr<Procedure> procedure;
+  bool was_ready = false;
+  std::uint32_t boot_ups = 0;
+};
+
+/// Notices a node that is not what it was, even if nobody called onHealthChange().
+void Axis::Impl::watchNode() {
+  const bool ready = core.nodeReady();
+  const std::uint32_t count = core.node().bootUps();
+  if (was_ready && (!ready || count != boot_ups)) core.onNodeLost();
+  was_ready = ready;
+  boot_ups = count;
+}
+
+void Axis::Impl::finish(bool success, std::string message) {
+  core.setFaultReset(false);
+  core.setHomingStart(false);
+  status.running = false;
+  status.success = success;
+  status.message = std::move(message);
+  status.waiting_for.clear();
+  procedure.reset();
+}
+
+void Axis::Impl::preempt(ProcedureKind by) {
+  finish(false, core.who() + ": " + toString(status.kind) + " was stopped by " + toString(by) +
+                    " while " + (status.step.empty() ? std::string("starting") : status.step));
+}
+
+Axis::Axis(AxisConfig config, canopen::Node& node)
+    : impl_(std::make_unique<Impl>(std::move(config), node)) {}
+Axis::~Axis() = default;
+Axis::Axis(Axis&&) noexcept = default;
+
+const AxisConfig& Axis::config() const { return impl_->core.config(); }
+canopen::Node& Axis::node() { return impl_->core.node(); }
+const AxisState& Axis::state() const { return impl_->core.state(); }
+const ProcedureStatus& Axis::procedure() const { return impl_->status; }
+const ProcedureStatus& Axis::previousProcedure() const { return impl_->previous; }
+
+void Axis::readFeedback(Time now) {
+  impl_->watchNode();
+  impl_->core.readFeedback(now);
+}
+
+void Axis::update(Time now) {
+  Impl& impl = *impl_;
+  impl.watchNode();
+  std::string failure = impl.core.supervise(now);
+  if (impl.procedure) {
+    const bool waits = !impl.core.nodeReady() && impl.procedure->survivesNodeLoss();
+    if (!failure.empty() && !waits) {
+      impl.finish(false, std::string(toString(impl.status.kind)) + " failed: " + failure);
+    } else {
+      Outcome outcome = impl.procedure->advance(impl.context(now));
+      if (!outcome.isRunning()) impl.finish(outcome.isDone(), std::move(outcome.message));
+    }
+  }
+  impl.core.updateReadiness(impl.status.running, now);
+}
+
+void Axis::writeCommands(Time now) { impl_->core.writeCommands(now); }
+
+Result<std::uint32_t> Axis::start(const ProcedureRequest& request, Time now) {
+  Impl& impl = *impl_;
+  impl.watchNode();
+  const bool preempts = request.kind == ProcedureKind::disable ||
+                        request.kind == ProcedureKind::quick_stop ||
+                        request.kind == ProcedureKind::halt;
+  if (impl.status.running && !preempts) {
+    return Error{impl.core.who() + ": " + toString(request.kind) + " is refused while " +
+                 toString(impl.status.kind) + " runs (" + impl.status.step +
+                 "); wait for its end, or stop it by halt, quick_stop or disable"};
+  }
+  auto procedure = makeProcedure(request, impl.core);
+  if (!procedure) return procedure.error();
+  if (impl.status.running) impl.preempt(request.kind);
+  impl.previous = impl.status;
+  const std::uint32_t id = impl.status.id + 1;
+  impl.status = ProcedureStatus();
+  impl.status.kind = request.kind;
+  impl.status.id = id;
+  impl.status.running = true;
+  impl.status.step = "starting";
+  impl.status.started = impl.status.deadline = now;
+  impl.procedure = std::move(procedure.value());
+  impl.core.updateReadiness(true, now);
+  return id;
+}
+
+void Axis::cancel(const std::string& reason, Time now) {
+  Impl& impl = *impl_;
+  if (!impl.procedure || !impl.procedure->cancel(reason, impl.context(now))) return;
+  const bool switching_on = impl.core.goal() == Goal::enabled && !impl.core.inOperation();
+  if (switching_on) impl.core.setGoal(Goal::disabled);
+  impl.finish(false,
+              impl.core.who() + ": " + toString(impl.status.kind) + " was cancelled: " + reason);
+}
+
+bool Axis::setTarget(double value) { return impl_->core.setTarget(value); }
+double Axis::target() const { return impl_->core.target(); }
+std::string Axis::motionRefusal() const { return impl_->core.motionRefusal(impl_->status.running); }
+
+void Axis::onEmergency(const canopen::Emergency& emergency, Time) {
+  impl_->core.onEmergency(emergency);
+}
+
+void Axis::onHealthChange(canopen::NodeHealth, Time) { impl_->watchNode(); }
+
+std::string Axis::faultText() const { return impl_->core.faultText(); }
+const std::string& Axis::notice() const { return impl_->core.notice(); }
+std::uint32_t Axis::noticeCount() const { return impl_->core.noticeCount(); }
+
+}  // namespace cia402::drive

@@ -1,0 +1,153 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// Construction, and the reactions that wait for nobody.
+#include "axis_core.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "sentence.h"
+
+namespace cia402::drive {
+
+AxisCore::AxisCore(AxisConfig config, canopen::Node& node)
+    : config_(std::move(config)),
+      node_(node),
+      objects_(config_, node),
+      polled_velocity_(poller_.add(objects_.velocity)),
+      polled_effort_(poller_.add(objects_.effort)),
+      polled_following_error_(poller_.add(objects_.following_error)),
+      polled_mode_(poller_.add(objects_.mode_display)),
+      polled_inputs_(poller_.add(objects_.digital_inputs)),
+      standstill_(config_.standstill_velocity, objects_.position.conversion.resolution()),
+      mode_(objects_.channel(config_.mode)),
+      position_(objects_.position.conversion) {
+  std::size_t longest = 0;
+  for (const ModeSpec& spec : profile().modes) {
+    longest = std::max(longest, spec.entry_writes.size());
+  }
+  held_.reserve(longest);
+  selectMode(*mode_);
+  state_.homed = absolute();
+}
+
+bool AxisCore::absolute() const { return !config_.homing || !config_.homing->required; }
+
+const ModeChannel& AxisCore::workingMode() const {
+  return mode_->spec->kind == ControlKind::homing ? *objects_.channel(config_.mode) : *mode_;
+}
+
+void AxisCore::setGoal(Goal goal) {
+  silent_ = false;
+  goal_ = goal;
+  if (goal != Goal::enabled) leaveOperation();
+}
+
+void AxisCore::leaveOperation() {
+  in_operation_ = state_.ready_for_motion = false;
+  brake_released_ = kNever;
+  homing_start_ = halt_bit_ = halted_ = ramping_ = false;
+  handshake_.reset(target_raw_);
+  target_ = kUnknown;
+}
+
+bool AxisCore::faulted() const {
+  return state_.state == State::fault || state_.state == State::fault_reaction_active;
+}
+
+bool AxisCore::powerOff() const {
+  return state_.state == State::switch_on_disabled || state_.state == State::ready_to_switch_on ||
+         state_.state == State::fault || state_.state == State::not_ready_to_switch_on;
+}
+
+std::string AxisCore::supervise(Time now) {
+  std::string failure = std::exchange(failure_, std::string());
+  if (!nodeReady()) return failure;
+  const bool commanded = goal_ != Goal::disabled && goal_ != Goal::quick_stop;
+  if (commanded && !state_.feedback_valid) {
+    setGoal(Goal::quick_stop);
+    failure = who() + ": no usable statusword (6041:00) and position (6064:00) for more than " +
+              seconds(config_.feedback_timeout) +
+              "; quick stop is commanded. Check bus load, cable and the drive's TPDOs";
+    notify(failure);
+    return failure;
+  }
+  const State state = state_.state;
+  const bool undecodable =
+      state == State::unknown && now - known_state_ <= config_.feedback_timeout;
+  if (in_operation_ && state != State::operation_enabled && !undecodable) {
+    failure = who() + ": the drive left operation enabled by itself: " + stateText() + "; " +
+              (faulted() || state_.error_code != 0 ? faultText() : emergencyText()) +
+              (faulted() ? "" : "; enable brings it back once the reason is gone");
+    setGoal(Goal::disabled);
+    notify(failure);
+    return failure;
+  }
+  if (in_operation_ && state_.warning && profile().warning_stops) {
+    failure = who() + ": the drive warns (statusword bit 7), which makes it stop like a fault: " +
+              faultText();
+    setGoal(Goal::disabled);
+    notify(failure);
+    return failure;
+  }
+  if (!in_operation_ && goal_ == Goal::enabled && state == State::operation_enabled) {
+    in_operation_ = true;
+    brake_released_ = now + profile().timing.brake_release;
+    neutralizeTarget();
+  }
+  return failure;
+}
+
+void AxisCore::updateReadiness(bool busy, Time now) {
+  state_.ready_for_motion = in_operation_ && !busy && !halted_ && state_.feedback_valid &&
+                            now >= brake_released_ && shown_mode_ == mode_->spec->value &&
+                            state_.state == State::operation_enabled;
+}
+
+void AxisCore::onNodeLost() {
+  const bool was_commanded = !silent_;
+  setGoal(Goal::disabled);
+  silent_ = true;
+  fault_reset_ = false;
+  forgetFeedback();
+  poller_.reset();
+  read_error_code_.reset();
+  error_ticket_.reset();
+  emergency_code_ = state_.error_code = 0;
+  base_controlword_ = controlword_ = 0;
+  if (!absolute()) adoptDriveZero(0.0);
+  state_.homed = absolute();
+  state_.ready_for_motion = false;
+  state_.health = node_.health();
+  selectMode(*objects_.channel(config_.mode));
+  failure_ = who() + ": the node is " + canopen::toString(node_.health());
+  if (!node_.problem().empty()) failure_ += " (" + node_.problem() + ")";
+  failure_ += "; the axis stays disabled until recover or enable";
+  if (was_commanded) notify(failure_);
+}
+
+void AxisCore::notify(std::string text) {
+  notice_ = std::move(text);
+  ++notices_;
+}
+
+void AxisCore::declarePosition(double value) {
+  if (!state_.feedback_valid) return;
+  const double shift = zero_shift_ + (value - state_.position);
+  adoptDriveZero(shift);
+}
+
+void AxisCore::adoptDriveZero(double shift) {
+  const double moved = shift - zero_shift_;
+  zero_shift_ = shift;
+  position_ = objects_.position.conversion.shifted(shift);
+  if (mode_->spec->kind == ControlKind::position) {
+    mode_conversion_ = mode_->conversion.shifted(shift);
+    target_ += moved;
+    previous_target_ += moved;
+  }
+  state_.position += moved;
+  state_.homed = true;
+  standstill_.reset();
+}
+
+}  // namespace cia402::drive

@@ -1,0 +1,178 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "axis_objects.h"
+#include "axis_poller.h"
+#include "cia402_driver/drive/axis.h"
+#include "cia402_driver/drive/set_point_handshake.h"
+#include "cia402_driver/drive/soft_stop.h"
+#include "cia402_driver/drive/standstill.h"
+
+namespace cia402::drive {
+
+/// The axis without its procedures: feedback, state machine, targets, and the reactions that must
+/// not wait for anybody. Procedures tell it where to go and watch it.
+class AxisCore {
+ public:
+  AxisCore(AxisConfig config, canopen::Node& node);
+  AxisCore(const AxisCore&) = delete;
+  AxisCore& operator=(const AxisCore&) = delete;
+
+  const AxisConfig& config() const { return config_; }
+  const DriveProfile& profile() const { return *config_.profile; }
+  const AxisObjects& objects() const { return objects_; }
+  canopen::Node& node() { return node_; }
+  const AxisState& state() const { return state_; }
+  bool nodeReady() const { return node_.health() == canopen::NodeHealth::ready; }
+
+  // --- The cycle -------------------------------------------------------------------------------
+  void readFeedback(Time now);
+  /// Reacts to what the feedback says. @return why a running procedure must fail; empty: nothing
+  std::string supervise(Time now);
+  /// @param busy a procedure runs
+  void updateReadiness(bool busy, Time now);
+  void writeCommands(Time now);
+  void onEmergency(const canopen::Emergency& emergency);
+  /// The node is not ready any more: forgets everything, commands nothing.
+  void onNodeLost();
+
+  // --- State machine ---------------------------------------------------------------------------
+  Goal goal() const { return goal_; }
+  void setGoal(Goal goal);
+  void setFaultReset(bool on) { fault_reset_ = on; }
+  void setHomingStart(bool on) { homing_start_ = on; }
+  void setHaltBit(bool on) { halt_bit_ = on; }
+  bool inOperation() const { return in_operation_; }
+  /// In operation, and the time that the brake needs is over.
+  bool brakeReleased(Time now) const { return in_operation_ && now >= brake_released_; }
+  /// RPDOs with the controlword sent so far.
+  std::uint64_t controlwordFrames() const;
+  /// No motion is possible by this drive: the power stage is off, as far as the statusword says.
+  bool powerOff() const;
+
+  // --- Modes -----------------------------------------------------------------------------------
+  const ModeChannel& mode() const { return *mode_; }
+  /// The mode to enable in: the selected one, or the configured one where a homing was cut off.
+  const ModeChannel& workingMode() const;
+  /// Makes `mode` the one whose value and target the RPDOs carry; its target becomes neutral.
+  void selectMode(const ModeChannel& mode);
+  /// The value that 6061h shows, if known.
+  std::optional<int> shownMode() const { return shown_mode_; }
+  void putShownMode(std::uint64_t raw, Time now);
+  /// Keeps `raw` in an RPDO object while the mode is active (ModeSpec::entry_writes).
+  void holdOutput(canopen::Slot slot, std::uint64_t raw);
+
+  // --- Targets ---------------------------------------------------------------------------------
+  bool setTarget(double value);
+  double target() const { return target_; }
+  std::string motionRefusal(bool busy) const;
+  /// Target := actual in position modes, 0 in the others.
+  void neutralizeTarget();
+  /// Puts a neutral target of another mode into its RPDO, before that mode becomes active.
+  void presetTarget(const ModeChannel& mode);
+  std::uint64_t frames(const OutputObject& object) const;
+  /// RPDOs with the active mode's target (or the controlword where it has none) sent so far.
+  std::uint64_t targetFrames() const;
+  bool atStandstill() const { return standstill_.still(); }
+
+  // --- Halt ------------------------------------------------------------------------------------
+  /// Stops by the halt bit, or by a ramp of the set-points where that cannot do it.
+  void beginHalt();
+  /// Replaces the set-point that a halted drive would go on to by "stay here". The halt itself is
+  /// released once that is on the wire and handshakeBusy() is over.
+  void replaceHaltedTarget();
+  void releaseHalt();
+  bool halted() const { return halted_; }
+  bool rampFinished() const { return !ramping_ || ramp_.finished(); }
+  bool handshakeBusy() const { return handshake_.busy(); }
+
+  // --- Zero ------------------------------------------------------------------------------------
+  /// The present position shall read `value` from now on.
+  void declarePosition(double value);
+  /// The drive has found its home by itself: what was declared before is void. @param shift joint
+  /// value to add to what the drive's own zero says
+  void adoptDriveZero(double shift);
+
+  // --- Words -----------------------------------------------------------------------------------
+  /// "shoulder (node 3)".
+  std::string who() const;
+  std::string stateText() const;  ///< "statusword 0x0233 (switched on: ...)"
+  std::string emergencyText() const;
+  /// What was commanded, what the drive shows and its last EMCY.
+  std::string report() const;
+  std::string faultText() const;
+  bool faulted() const;
+  void forgetFault();
+  /// When the next edge of the fault reset bit is allowed (guard against storms of resets).
+  Time nextFaultReset() const { return next_fault_reset_; }
+  void noteFaultReset(Time next_allowed) { next_fault_reset_ = next_allowed; }
+  const std::string& notice() const { return notice_; }
+  std::uint32_t noticeCount() const { return notices_; }
+  void notify(std::string text);
+
+ private:
+  void readState(Time now);
+  void readMotion(Time now);
+  void readErrorCode();
+  void readMode(Time now);
+  double read(const InputObject& object, int polled, Time now) const;
+  void forgetFeedback();
+  void forgetMotion();
+  void leaveOperation();
+  std::uint16_t composeControlword();
+  void writeTarget(Time now);
+  void writeNeutralTargets();
+  void advanceHandshake(Time now);
+  void advanceRamp(Duration dt);
+  bool withinLimits(double value) const;
+  bool homedEnough() const;
+  bool absolute() const;
+  bool neutralTarget(const ModeChannel& mode, std::uint64_t& raw) const;
+
+  AxisConfig config_;
+  canopen::Node& node_;
+  AxisObjects objects_;
+  AxisState state_;
+  AxisPoller poller_;
+  int polled_velocity_, polled_effort_, polled_following_error_, polled_mode_, polled_inputs_;
+  Standstill standstill_;
+
+  Goal goal_ = Goal::disabled;
+  bool silent_ = true;  ///< nobody has asked for anything since the node came: controlword 0
+  bool in_operation_ = false;
+  bool fault_reset_ = false, homing_start_ = false, halt_bit_ = false, halted_ = false;
+  std::uint16_t controlword_ = 0, base_controlword_ = 0;
+  Command command_;
+  Time brake_released_ = kNever, known_state_{};
+
+  const ModeChannel* mode_;
+  std::optional<int> shown_mode_;
+  Conversion position_, mode_conversion_;  ///< with what set_position declared
+  double zero_shift_ = 0.0;
+
+  double target_ = kUnknown, previous_target_ = kUnknown, target_velocity_ = 0.0;
+  std::uint64_t target_raw_ = 0, neutral_raw_ = 0;
+  bool neutral_known_ = false;
+  Time written_{};
+  SetPointHandshake handshake_;
+  SoftStop ramp_;
+  bool ramping_ = false;
+  struct Held {
+    canopen::Slot slot;
+    std::uint64_t raw;
+  };
+  std::vector<Held> held_;
+
+  Time next_fault_reset_ = Time::min();
+  std::uint16_t emergency_code_ = 0;
+  std::optional<std::uint16_t> read_error_code_;
+  canopen::SdoTicket error_ticket_;
+  std::string failure_, notice_;
+  std::uint32_t notices_ = 0;
+};
+
+}  // namespace cia402::drive

@@ -1,0 +1,178 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// What the axis knows: the process image and polled objects, decoded.
+#include <cmath>
+
+#include "axis_core.h"
+
+namespace cia402::drive {
+namespace {
+
+bool bitSet(std::uint16_t word, const std::optional<int>& bit) {
+  return bit && ((static_cast<unsigned>(word) >> *bit) & 1u) != 0;
+}
+
+std::int16_t signedMode(std::uint64_t raw, DataType type) {
+  if (canopen::sizeBits(type) == 8 && canopen::isSigned(type)) return static_cast<std::int8_t>(raw);
+  return static_cast<std::int16_t>(raw);
+}
+
+}  // namespace
+
+void AxisCore::readFeedback(Time now) {
+  state_.health = node_.health();
+  if (!nodeReady()) {
+    forgetFeedback();
+    return;
+  }
+  poller_.advance(node_.sdo(), now);
+  readMotion(now);
+  readState(now);
+  readErrorCode();
+}
+
+void AxisCore::readState(Time now) {
+  const canopen::ProcessValue& word = node_.image().input(objects_.statusword.slot);
+  const bool fresh =
+      word.valid && (!objects_.statusword.cyclic || now - word.stamp <= config_.feedback_timeout);
+  if (!fresh) {
+    state_.state = State::unknown;
+    forgetMotion();
+    return;
+  }
+  const auto statusword = static_cast<std::uint16_t>(word.raw);
+  if (statusword != state_.statusword || state_.state == State::unknown) {
+    state_.statusword = statusword;
+    state_.state = decodeState(statusword);
+    state_.warning = (statusword & statusword::kWarning) != 0;
+    state_.internal_limit = (statusword & statusword::kInternalLimit) != 0;
+  }
+  if (state_.state != State::unknown) known_state_ = now;
+  readMode(now);
+  state_.target_reached = state_.mode != nullptr && !handshake_.busy() &&
+                          bitSet(statusword, state_.mode->target_reached_bit);
+}
+
+void AxisCore::readMotion(Time now) {
+  const canopen::ProcessValue& position = node_.image().input(objects_.position.slot);
+  const bool fresh = position.valid && (!objects_.position.cyclic ||
+                                        now - position.stamp <= config_.feedback_timeout);
+  const double joint = fresh ? position_.toJoint(position.raw) : kUnknown;
+  if (!std::isfinite(joint)) {
+    forgetMotion();
+    return;
+  }
+  state_.feedback_valid = true;
+  state_.position = joint;
+  if (position.stamp != state_.stamp || !neutral_known_) {
+    standstill_.update(joint, position.stamp);
+    neutral_raw_ = position.raw;
+    neutral_known_ = true;
+  }
+  state_.stamp = position.stamp;
+  state_.velocity = read(objects_.velocity, polled_velocity_, now);
+  state_.effort = read(objects_.effort, polled_effort_, now);
+  if (objects_.following_error.spec != nullptr) {
+    state_.following_error = read(objects_.following_error, polled_following_error_, now);
+  } else if (in_operation_ && mode_->spec->kind == ControlKind::position) {
+    state_.following_error = target_ - joint;
+  } else {
+    state_.following_error = kUnknown;
+  }
+  if (objects_.digital_inputs.mapped()) {
+    state_.digital_inputs =
+        static_cast<std::uint32_t>(node_.image().input(objects_.digital_inputs.slot).raw);
+  } else if (polled_inputs_ >= 0) {
+    state_.digital_inputs = static_cast<std::uint32_t>(poller_.value(polled_inputs_, now).raw);
+  }
+}
+
+double AxisCore::read(const InputObject& object, int polled, Time now) const {
+  if (object.mapped()) {
+    const canopen::ProcessValue& value = node_.image().input(object.slot);
+    return value.valid ? object.conversion.toJoint(value.raw) : kUnknown;
+  }
+  if (polled < 0) return kUnknown;
+  const AxisPoller::Value value = poller_.value(polled, now);
+  return value.valid ? object.conversion.toJoint(value.raw) : kUnknown;
+}
+
+void AxisCore::readMode(Time now) {
+  std::optional<std::uint64_t> raw;
+  if (objects_.mode_display.mapped()) {
+    const canopen::ProcessValue& value = node_.image().input(objects_.mode_display.slot);
+    if (value.valid) raw = value.raw;
+  } else if (polled_mode_ >= 0) {
+    const AxisPoller::Value value = poller_.value(polled_mode_, now);
+    if (value.valid) raw = value.raw;
+  } else {
+    raw = static_cast<std::uint64_t>(mode_->spec->value);  // the family has no 6061h: believe
+  }
+  if (!raw) {
+    shown_mode_.reset();
+    state_.mode = nullptr;
+    return;
+  }
+  const DataType type =
+      objects_.mode_display.spec != nullptr ? objects_.mode_display.spec->type : DataType::int16;
+  const std::int16_t value = signedMode(*raw, type);
+  if (shown_mode_ == value && state_.mode != nullptr) return;
+  shown_mode_ = value;
+  state_.mode_value = value;
+  const ModeChannel* channel = objects_.channelOfValue(value);
+  state_.mode = channel != nullptr ? channel->spec : nullptr;
+}
+
+void AxisCore::putShownMode(std::uint64_t raw, Time now) {
+  poller_.put(polled_mode_, raw, now);
+  if (!objects_.mode_display.mapped()) readMode(now);
+}
+
+void AxisCore::readErrorCode() {
+  std::uint16_t code = emergency_code_;
+  if (objects_.error_code.mapped()) {
+    const canopen::ProcessValue& value = node_.image().input(objects_.error_code.slot);
+    if (value.valid && value.raw != 0) code = static_cast<std::uint16_t>(value.raw);
+  } else if (faulted()) {
+    if (error_ticket_ && error_ticket_->done()) {
+      if (error_ticket_->ok() && error_ticket_->data().size() <= 8) {
+        read_error_code_ = static_cast<std::uint16_t>(canopen::toUnsigned(error_ticket_->data()));
+      } else {
+        read_error_code_ = std::uint16_t{0};
+      }
+      error_ticket_.reset();
+    }
+    if (!read_error_code_ && !error_ticket_ && objects_.error_code.spec != nullptr) {
+      error_ticket_ =
+          node_.sdo().upload(objects_.error_code.spec->id, objects_.error_code.spec->name);
+    }
+    if (read_error_code_ && *read_error_code_ != 0) code = *read_error_code_;
+  } else {
+    read_error_code_.reset();
+    error_ticket_.reset();
+  }
+  state_.error_code = code;
+}
+
+void AxisCore::onEmergency(const canopen::Emergency& emergency) {
+  emergency_code_ = emergency.code;
+}
+
+void AxisCore::forgetMotion() {
+  state_.feedback_valid = false;
+  state_.position = state_.velocity = state_.effort = state_.following_error = kUnknown;
+  neutral_known_ = false;
+  standstill_.reset();
+}
+
+void AxisCore::forgetFeedback() {
+  forgetMotion();
+  state_.state = State::unknown;
+  state_.statusword = 0;
+  state_.mode = nullptr;
+  state_.mode_value = 0;
+  shown_mode_.reset();
+  state_.target_reached = state_.warning = state_.internal_limit = false;
+  state_.digital_inputs = 0;
+}
+
+}  // namespace cia402::drive

@@ -1,0 +1,149 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "axis_objects.h"
+
+#include <stdexcept>
+
+namespace cia402::drive {
+namespace {
+
+using canopen::ObjectId;
+using canopen::PdoDirection;
+
+/// The fixed name of the profile format, or else the standard's own index.
+const ObjectSpec* findObject(const DriveProfile& profile, const char* name, ObjectId id) {
+  const ObjectSpec* spec = profile.find(name);
+  return spec != nullptr ? spec : profile.find(id);
+}
+
+bool arrivesCyclically(const canopen::Node& node, ObjectId object) {
+  for (const canopen::PdoConfig& pdo : node.config().pdos) {
+    if (!pdo.enabled || pdo.direction != PdoDirection::tpdo) continue;
+    for (const canopen::PdoEntry& entry : pdo.entries) {
+      if (entry.object != object) continue;
+      if ((pdo.transmission >= 1 && pdo.transmission <= 240) || pdo.event_timer > 0) return true;
+    }
+  }
+  return false;
+}
+
+std::size_t rpdoOf(const canopen::ProcessImage& image, canopen::Slot slot) {
+  for (std::size_t i = 0; i < image.rpdos().size(); ++i) {
+    for (const canopen::ProcessImage::Pdo::Field& field : image.rpdos()[i].fields) {
+      if (field.slot == slot) return i;
+    }
+  }
+  return 0;
+}
+
+InputObject input(const AxisConfig& config, const canopen::Node& node, const char* name,
+                  ObjectId id) {
+  InputObject result;
+  result.spec = findObject(*config.profile, name, id);
+  if (result.spec == nullptr) return result;
+  result.slot = node.image().inputSlot(result.spec->id);
+  result.cyclic = arrivesCyclically(node, result.spec->id);
+  const auto conversion = Conversion::create(*result.spec, *config.profile, config.geometry);
+  if (conversion) {
+    result.conversion = *conversion;
+  } else if (result.spec->quantity != Quantity::none) {
+    result.spec = nullptr;  // e.g. torque without a rated torque: unknown rather than wrong
+    result.slot = canopen::kNoSlot;
+  }
+  return result;
+}
+
+OutputObject output(const canopen::Node& node, const ObjectSpec* spec) {
+  OutputObject result;
+  result.spec = spec;
+  if (spec == nullptr) return result;
+  result.slot = node.image().outputSlot(spec->id);
+  if (result.mapped()) result.rpdo = rpdoOf(node.image(), result.slot);
+  return result;
+}
+
+bool sameCoding(const ObjectSpec& a, const ObjectSpec& b) {
+  return a.type == b.type && a.encoding == b.encoding && a.quantity == b.quantity &&
+         a.factor == b.factor && !a.unit && !b.unit;
+}
+
+ModeChannel modeChannel(const AxisConfig& config, const canopen::Node& node, const ModeSpec& spec,
+                        const ObjectSpec* position) {
+  ModeChannel channel;
+  channel.spec = &spec;
+  if (spec.target.empty()) return channel;
+  const ObjectSpec* object = config.profile->find(spec.target);
+  channel.target = output(node, object);
+  if (object == nullptr) {
+    channel.refusal = "the drive profile does not name its target object " + spec.target;
+    return channel;
+  }
+  if (!channel.target.mapped()) {
+    channel.refusal = "its target " + canopen::toString(object->id) + " " + object->name +
+                      " is not mapped into an RPDO; map it in `pdos:` of the axis";
+    return channel;
+  }
+  const auto conversion = Conversion::create(*object, *config.profile, config.geometry);
+  if (conversion) {
+    channel.conversion = *conversion;
+  } else {
+    channel.refusal = conversion.error().message;
+  }
+  channel.copies_position = position != nullptr && sameCoding(*object, *position);
+  return channel;
+}
+
+void require(bool mapped, const AxisConfig& config, const char* what) {
+  if (mapped) return;
+  throw std::invalid_argument(config.name + " (node " + std::to_string(config.node_id) +
+                              "): " + what + " must be mapped into a PDO");
+}
+
+}  // namespace
+
+AxisObjects::AxisObjects(const AxisConfig& config, const canopen::Node& node) {
+  statusword = input(config, node, "statusword", {0x6041, 0});
+  position = input(config, node, "position_actual", {0x6064, 0});
+  velocity = input(config, node, "velocity_actual", {0x606C, 0});
+  effort = input(config, node, "torque_actual", {0x6077, 0});
+  following_error = input(config, node, "following_error", {0x60F4, 0});
+  mode_display = input(config, node, "mode_display", {0x6061, 0});
+  error_code = input(config, node, "error_code", {0x603F, 0});
+  digital_inputs = input(config, node, "digital_inputs", {0x60FD, 0});
+  controlword = output(node, findObject(*config.profile, "controlword", {0x6040, 0}));
+  mode = output(node, findObject(*config.profile, "mode", {0x6060, 0}));
+  require(statusword.mapped(), config, "the statusword (6041:00)");
+  require(position.mapped(), config, "the actual position (6064:00)");
+  require(controlword.mapped(), config, "the controlword (6040:00)");
+
+  modes.reserve(config.profile->modes.size());
+  for (const ModeSpec& spec : config.profile->modes) {
+    modes.push_back(modeChannel(config, node, spec, position.spec));
+  }
+  if (channel(config.mode) == nullptr) {
+    throw std::invalid_argument(config.name + ": the drive profile " + config.profile->name +
+                                " has no mode " + config.mode);
+  }
+}
+
+const ModeChannel* AxisObjects::channel(const std::string& mode_name) const {
+  for (const ModeChannel& channel : modes) {
+    if (channel.spec->name == mode_name) return &channel;
+  }
+  return nullptr;
+}
+
+const ModeChannel* AxisObjects::channelOfValue(int mode_value) const {
+  for (const ModeChannel& channel : modes) {
+    if (channel.spec->value == mode_value) return &channel;
+  }
+  return nullptr;
+}
+
+const ModeChannel* AxisObjects::homingChannel() const {
+  for (const ModeChannel& channel : modes) {
+    if (channel.spec->kind == ControlKind::homing) return &channel;
+  }
+  return nullptr;
+}
+
+}  // namespace cia402::drive

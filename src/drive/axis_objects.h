@@ -1,0 +1,55 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "cia402_driver/canopen/node.h"
+#include "cia402_driver/drive/axis_config.h"
+
+namespace cia402::drive {
+
+/// A value that the drive reports: by TPDO where it is mapped, else it has to be read by SDO.
+struct InputObject {
+  const ObjectSpec* spec = nullptr;  ///< nullptr: the family has no such object
+  canopen::Slot slot = canopen::kNoSlot;
+  Conversion conversion;
+  bool cyclic = false;  ///< its TPDO comes regularly, so its age means something
+  bool mapped() const { return slot != canopen::kNoSlot; }
+};
+
+/// A value that the master sends by RPDO.
+struct OutputObject {
+  const ObjectSpec* spec = nullptr;
+  canopen::Slot slot = canopen::kNoSlot;
+  std::size_t rpdo = 0;  ///< index in ProcessImage::rpdos()
+  bool mapped() const { return slot != canopen::kNoSlot; }
+};
+
+/// A mode of the profile with its target resolved.
+struct ModeChannel {
+  const ModeSpec* spec = nullptr;
+  OutputObject target;
+  Conversion conversion;
+  bool copies_position = false;  ///< target has the very coding of the actual position
+  std::string refusal;           ///< why the mode cannot be used; empty: it can
+};
+
+/// Where everything that an axis needs is in the process image, worked out once.
+struct AxisObjects {
+  /// @throws std::invalid_argument if controlword, statusword or actual position are not mapped.
+  AxisObjects(const AxisConfig& config, const canopen::Node& node);
+
+  InputObject statusword, position, velocity, effort, following_error, mode_display, error_code,
+      digital_inputs;
+  OutputObject controlword, mode;
+  std::vector<ModeChannel> modes;
+
+  const ModeChannel* channel(const std::string& mode_name) const;
+  const ModeChannel* channelOfValue(int mode_value) const;
+  /// The profile's homing mode, nullptr if it has none.
+  const ModeChannel* homingChannel() const;
+};
+
+}  // namespace cia402::drive

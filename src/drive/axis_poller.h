@@ -1,0 +1,52 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "axis_objects.h"
+
+namespace cia402::drive {
+
+/// Reads objects that no TPDO brings by SDO, one after the other, whenever nobody else uses the
+/// channel. Never blocks; each value carries the time of its answer. A request allocates.
+class AxisPoller {
+ public:
+  static constexpr Duration kInterval{std::chrono::milliseconds(50)};  ///< between two requests
+  static constexpr Duration kStale{std::chrono::seconds(1)};  ///< older values are not believed
+
+  struct Value {
+    std::uint64_t raw = 0;
+    Time stamp{};
+    bool valid = false;
+  };
+
+  /// Adds `object` unless it is mapped or the family does not have it. @return its number for
+  /// value(), or -1.
+  int add(const InputObject& object);
+  /// Takes an answer that has come and asks for the next value.
+  void advance(canopen::SdoClient& sdo, Time now);
+  /// The node lost its state: nothing is known any more.
+  void reset();
+  /// Takes a value that somebody else has read.
+  void put(int item, std::uint64_t raw, Time now);
+  /// The value of an item; not valid if there is none younger than kStale.
+  Value value(int item, Time now) const;
+
+ private:
+  struct Item {
+    canopen::ObjectId object;
+    std::string name;
+    Value value;
+    bool refused = false;  ///< the drive aborted: it does not have the object after all
+  };
+  void ask(canopen::SdoClient& sdo, Time now);
+
+  std::vector<Item> items_;
+  std::size_t current_ = 0;
+  canopen::SdoTicket ticket_;
+  Time next_{};
+};
+
+}  // namespace cia402::drive

@@ -1,0 +1,90 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// The axis in sentences; made on demand only.
+#include <cmath>
+
+#include "axis_core.h"
+#include "cia402_driver/drive/fault_text.h"
+#include "sentence.h"
+
+namespace cia402::drive {
+
+std::string AxisCore::who() const {
+  return config_.joint + " (node " + std::to_string(config_.node_id) + ")";
+}
+
+std::string AxisCore::stateText() const {
+  if (state_.state == State::unknown && state_.statusword == 0) return "no statusword";
+  return "statusword " + hexWord(state_.statusword) + " (" + toString(state_.state) + ": " +
+         statuswordText(state_.statusword) + ")";
+}
+
+std::string AxisCore::emergencyText() const {
+  const auto& emergency = node_.lastEmergency();
+  if (!emergency || emergency->code == 0) return "no EMCY is pending";
+  return "last EMCY " + errorCodeText(profile(), emergency->code);
+}
+
+std::string AxisCore::report() const {
+  const canopen::ProcessImage::Pdo& rpdo = node_.image().rpdos()[objects_.controlword.rpdo];
+  std::string text = "controlword 6040:00 = " + hexWord(controlword_) + ", " + command_.text +
+                     ", sent in RPDO" + std::to_string(rpdo.number) + " (COB-ID " +
+                     hexWord(rpdo.cob_id) + ", " + std::to_string(rpdo.count) + " frames so far)";
+  text += "; the drive shows " + stateText() + "; " + emergencyText();
+  if (rpdo.count == 0) text += "; no RPDO has left: is the cycle running?";
+  if ((state_.statusword & statusword::kVoltageEnabled) == 0) {
+    text += "; voltage enabled is 0: check the main supply and the safety (STO) inputs";
+  } else if ((state_.statusword & statusword::kRemote) == 0) {
+    text += "; remote is 0: the drive does not listen to the controlword, check its control source";
+  }
+  return text;
+}
+
+std::string AxisCore::faultText() const {
+  if (faulted()) {
+    const char* reacting =
+        state_.state == State::fault_reaction_active ? " (the drive is still stopping)" : "";
+    if (state_.error_code == 0) {
+      return who() + ": fault" + reacting +
+             ", no error code yet (603F:00 is 0 and no EMCY came); clear_faults, then look at the "
+             "drive's own display or log";
+    }
+    return who() + ": fault " + errorCodeText(profile(), state_.error_code) + reacting +
+           "; then clear_faults";
+  }
+  if (state_.error_code != 0) {
+    return who() + ": " + (state_.warning ? "warning " : "error reported ") +
+           errorCodeText(profile(), state_.error_code);
+  }
+  if (state_.warning && profile().warning_stops) {
+    return who() + ": warning without a code (statusword bit 7); clear_faults";
+  }
+  return {};
+}
+
+std::string AxisCore::motionRefusal(bool busy) const {
+  if (state_.ready_for_motion) {
+    if (!homedEnough()) return who() + ": not homed; home it before position motion";
+    return {};
+  }
+  if (!nodeReady()) {
+    return who() + ": the node is " + canopen::toString(node_.health()) +
+           "; recover brings it back";
+  }
+  if (!state_.feedback_valid) {
+    return who() + ": no fresh position (6064:00) and statusword (6041:00)";
+  }
+  if (faulted()) return faultText();
+  if (busy) return who() + ": a procedure is running";
+  if (!in_operation_) {
+    return who() + ": not enabled, " + stateText() + "; call enable";
+  }
+  if (halted_) return who() + ": halted; enable releases the halt";
+  if (shown_mode_ != mode_->spec->value) {
+    return who() + ": 6061:00 shows mode " +
+           (shown_mode_ ? std::to_string(*shown_mode_) : std::string("unknown")) + " instead of " +
+           std::to_string(mode_->spec->value) + " (" + mode_->spec->name + ")";
+  }
+  return who() + ": the brake is being released";
+}
+
+}  // namespace cia402::drive

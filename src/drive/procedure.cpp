@@ -1,0 +1,66 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "procedure.h"
+
+namespace cia402::drive {
+
+const char* toString(ProcedureKind kind) {
+  switch (kind) {
+    case ProcedureKind::none:
+      return "none";
+    case ProcedureKind::enable:
+      return "enable";
+    case ProcedureKind::disable:
+      return "disable";
+    case ProcedureKind::home:
+      return "home";
+    case ProcedureKind::clear_faults:
+      return "clear_faults";
+    case ProcedureKind::recover:
+      return "recover";
+    case ProcedureKind::quick_stop:
+      return "quick_stop";
+    case ProcedureKind::halt:
+      return "halt";
+    case ProcedureKind::set_mode:
+      return "set_mode";
+    case ProcedureKind::set_position:
+      return "set_position";
+  }
+  return "unknown";
+}
+
+Result<std::unique_ptr<Procedure>> makeProcedure(const ProcedureRequest& request, AxisCore& axis) {
+  switch (request.kind) {
+    case ProcedureKind::enable:
+      return makeEnable(axis);
+    case ProcedureKind::disable:
+      return makeDisable(axis);
+    case ProcedureKind::home:
+      return makeHome(axis);
+    case ProcedureKind::clear_faults:
+      return makeClearFaults(axis);
+    case ProcedureKind::recover:
+      return makeRecover(axis);
+    case ProcedureKind::quick_stop:
+      return makeQuickStop(axis);
+    case ProcedureKind::halt:
+      return makeHalt(axis);
+    case ProcedureKind::set_mode:
+      return makeSetMode(axis, request.mode);
+    case ProcedureKind::set_position:
+      return makeSetPosition(axis, request.position);
+    case ProcedureKind::none:
+      break;
+  }
+  return Error{axis.who() + ": no procedure was named"};
+}
+
+std::string nodeRefusal(AxisCore& axis, const char* what) {
+  if (axis.nodeReady()) return {};
+  std::string text =
+      axis.who() + ": cannot " + what + ": the node is " + canopen::toString(axis.node().health());
+  if (!axis.node().problem().empty()) text += " (" + axis.node().problem() + ")";
+  return text + "; recover boots it again";
+}
+
+}  // namespace cia402::drive

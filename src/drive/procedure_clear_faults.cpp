@@ -1,0 +1,41 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "procedure.h"
+#include "step_fault_reset.h"
+
+namespace cia402::drive {
+namespace {
+
+/// Clears a fault and leaves the axis disabled.
+class ClearFaults : public Procedure {
+ public:
+  Outcome advance(const Context& context) override {
+    AxisCore& axis = context.axis;
+    if (!begun_) {
+      begun_ = true;
+      context.status.deadline = context.now + 3 * axis.profile().timing.state_change +
+                                FaultResetStep::kInterval + FaultResetStep::kWatch;
+      if (!clearable(axis)) {
+        return Outcome::done(axis.config().joint + ": no fault, nothing to clear");
+      }
+    }
+    Outcome outcome = reset_.advance(context);
+    if (outcome.isDone()) {
+      outcome.message = axis.config().joint + ": " + outcome.message + "; the axis is disabled";
+    }
+    return outcome;
+  }
+
+ private:
+  bool begun_ = false;
+  FaultResetStep reset_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Procedure>> makeClearFaults(AxisCore& axis) {
+  const std::string refusal = nodeRefusal(axis, "clear faults");
+  if (!refusal.empty()) return Error{refusal};
+  return std::unique_ptr<Procedure>(std::make_unique<ClearFaults>());
+}
+
+}  // namespace cia402::drive

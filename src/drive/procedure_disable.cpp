@@ -1,0 +1,73 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "procedure.h"
+#include "sentence.h"
+#include "step_stop.h"
+
+namespace cia402::drive {
+namespace {
+
+/// Switches the power stage off. A moving axis is brought to rest by the quick stop ramp first, as
+/// switching off alone lets most drives coast.
+class Disable : public Procedure {
+ public:
+  Outcome advance(const Context& context) override {
+    AxisCore& axis = context.axis;
+    if (phase_ == Phase::begin) begin(context);
+    if (phase_ == Phase::stopping) {
+      const Outcome outcome = stop_.advance(context);
+      if (outcome.isRunning()) return outcome;
+      if (outcome.isFailed()) stop_problem_ = outcome.message;
+      switchOff(context);
+      return Outcome::running();
+    }
+    if (axis.faulted() && axis.state().state == State::fault) {
+      return Outcome::done(axis.config().joint + ": disabled; " + axis.faultText());
+    }
+    if (axis.state().state == State::switch_on_disabled) return finish(axis);
+    if (context.now - since_ <= 2 * axis.profile().timing.state_change) return Outcome::running();
+    return Outcome::failed(axis.who() + ": disabling timed out after " +
+                           seconds(context.now - since_) + "; " + axis.report());
+  }
+
+ private:
+  enum class Phase { begin, stopping, switching_off };
+
+  void begin(const Context& context) {
+    AxisCore& axis = context.axis;
+    context.status.deadline = context.now + 3 * axis.profile().timing.state_change;
+    const bool powered = axis.state().state == State::operation_enabled ||
+                         axis.state().state == State::quick_stop_active;
+    if (powered && !axis.atStandstill()) {
+      phase_ = Phase::stopping;
+    } else {
+      switchOff(context);
+    }
+  }
+
+  void switchOff(const Context& context) {
+    phase_ = Phase::switching_off;
+    since_ = context.now;
+    context.axis.setGoal(Goal::disabled);
+    context.show("switching off", "the drive to show switch on disabled");
+  }
+
+  Outcome finish(AxisCore& axis) const {
+    if (stop_problem_.empty()) return Outcome::done(axis.config().joint + ": disabled");
+    return Outcome::done(axis.config().joint + ": disabled, but " + stop_problem_);
+  }
+
+  Phase phase_ = Phase::begin;
+  QuickStopStep stop_;
+  std::string stop_problem_;
+  Time since_{};
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Procedure>> makeDisable(AxisCore& axis) {
+  const std::string refusal = nodeRefusal(axis, "disable");
+  if (!refusal.empty()) return Error{refusal + "; whether its power stage is off is unknown"};
+  return std::unique_ptr<Procedure>(std::make_unique<Disable>());
+}
+
+}  // namespace cia402::drive

@@ -1,0 +1,91 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "procedure.h"
+#include "sentence.h"
+#include "step_enable.h"
+
+namespace cia402::drive {
+namespace {
+
+/// Enables the axis in its mode. An axis that is already enabled is released from a halt: the drive
+/// is first given "stay here", so that it does not go on to where it was going.
+class Enable : public Procedure {
+ public:
+  explicit Enable(AxisCore& axis)
+      : enabling_(axis.workingMode(), axis.profile()), mode_(axis.workingMode()) {}
+
+  Outcome advance(const Context& context) override {
+    if (!begun_) begin(context);
+    return releasing_ ? release(context) : enable(context);
+  }
+
+ private:
+  void begin(const Context& context) {
+    begun_ = true;
+    started_ = context.now;
+    AxisCore& axis = context.axis;
+    const DriveProfile::Timing& timing = axis.profile().timing;
+    context.status.deadline =
+        context.now + 5 * timing.state_change + 2 * timing.mode_change + timing.brake_release;
+    releasing_ = axis.inOperation();
+    leaving_homing_ = releasing_ && axis.mode().spec->kind == ControlKind::homing;
+    if (!releasing_ || !axis.halted() || leaving_homing_) return;
+    axis.replaceHaltedTarget();
+    frames_ = axis.targetFrames();
+    context.show("releasing the halt", "the drive to take its present position as set-point");
+  }
+
+  Outcome release(const Context& context) {
+    AxisCore& axis = context.axis;
+    if (leaving_homing_) {
+      const Outcome outcome = mode_.advance(context);
+      if (!outcome.isDone()) return outcome;
+      leaving_homing_ = false;
+      frames_ = axis.targetFrames();
+    }
+    if (!axis.halted()) {
+      return Outcome::done(axis.config().joint + ": is enabled already, mode " +
+                           axis.mode().spec->name);
+    }
+    if (axis.handshakeBusy() || axis.targetFrames() < frames_ + 2) {
+      if (context.now - started_ <= 2 * axis.profile().timing.state_change) {
+        return Outcome::running();
+      }
+      return Outcome::failed(axis.who() +
+                             ": the halt was not released: the drive does not take a new set-point "
+                             "while halted; disable and enable instead. " +
+                             axis.report());
+    }
+    axis.releaseHalt();
+    return Outcome::done(axis.config().joint +
+                         ": the halt is released, the axis holds its position");
+  }
+
+  Outcome enable(const Context& context) {
+    const Outcome outcome = enabling_.advance(context);
+    if (!outcome.isDone()) return outcome;
+    AxisCore& axis = context.axis;
+    return Outcome::done(axis.config().joint + ": enabled in mode " + axis.mode().spec->name +
+                         " after " + seconds(context.now - started_));
+  }
+
+  EnableStep enabling_;
+  ModeStep mode_;
+  bool begun_ = false, releasing_ = false, leaving_homing_ = false;
+  std::uint64_t frames_ = 0;
+  Time started_{};
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Procedure>> makeEnable(AxisCore& axis) {
+  const std::string refusal = nodeRefusal(axis, "enable");
+  if (!refusal.empty()) return Error{refusal};
+  if (axis.faulted()) return Error{"cannot enable: " + axis.faultText()};
+  const ModeChannel& mode = axis.workingMode();
+  if (!mode.refusal.empty()) {
+    return Error{axis.who() + ": cannot enable in mode " + mode.spec->name + ": " + mode.refusal};
+  }
+  return std::unique_ptr<Procedure>(std::make_unique<Enable>(axis));
+}
+
+}  // namespace cia402::drive

@@ -1,0 +1,77 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "procedure.h"
+#include "procedure_home_drive.h"
+#include "sentence.h"
+
+namespace cia402::drive {
+namespace {
+
+/// For drives without homing: the present position is declared to be the configured offset.
+class DeclareZero : public Procedure {
+ public:
+  Outcome advance(const Context& context) override {
+    AxisCore& axis = context.axis;
+    if (!axis.state().feedback_valid) {
+      return Outcome::failed(axis.who() + ": the zero cannot be declared: no fresh feedback");
+    }
+    const double offset = axis.config().homing->offset;
+    axis.declarePosition(offset);
+    const bool prismatic = axis.config().geometry.type == AxisGeometry::Type::prismatic;
+    return Outcome::done(axis.config().joint + ": homed by declaring the present position to be " +
+                         length(offset, prismatic) + "; nothing moved");
+  }
+};
+
+Result<std::unique_ptr<Procedure>> makeDeclareZero(AxisCore& axis) {
+  if (!axis.state().feedback_valid) {
+    return Error{axis.who() + ": cannot home: no fresh position (6064:00)"};
+  }
+  if (!axis.atStandstill()) {
+    return Error{axis.who() +
+                 ": its drive family homes by declaring the present position, which "
+                 "needs standstill (velocity " +
+                 number(axis.state().velocity) + ")"};
+  }
+  return std::unique_ptr<Procedure>(std::make_unique<DeclareZero>());
+}
+
+Result<std::unique_ptr<Procedure>> makeDriveHoming(AxisCore& axis) {
+  const ModeChannel* homing = axis.objects().homingChannel();
+  if (homing == nullptr) {
+    return Error{axis.who() + ": cannot home: the drive profile " + axis.profile().name +
+                 " has no homing mode"};
+  }
+  if (!axis.config().homing->method) {
+    return Error{axis.who() +
+                 ": cannot home: no homing method is configured; set homing: "
+                 "{method: ...}"};
+  }
+  if (axis.inOperation() && !axis.atStandstill()) {
+    return Error{axis.who() + ": homing is only started at standstill (velocity " +
+                 number(axis.state().velocity) + ")"};
+  }
+  return std::unique_ptr<Procedure>(std::make_unique<DriveHoming>(axis, *homing));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Procedure>> makeHome(AxisCore& axis) {
+  if (!axis.config().homing) {
+    return Error{axis.who() + ": cannot home: no homing is configured; add homing: {...}"};
+  }
+  const std::string refusal = nodeRefusal(axis, "home");
+  if (!refusal.empty()) return Error{refusal};
+  if (axis.faulted()) return Error{"cannot home: " + axis.faultText()};
+  switch (axis.profile().homing.kind) {
+    case HomingSpec::Kind::declare_zero:
+      return makeDeclareZero(axis);
+    case HomingSpec::Kind::drive:
+      return makeDriveHoming(axis);
+    case HomingSpec::Kind::none:
+      break;
+  }
+  return Error{axis.who() + ": cannot home: the drive family " + axis.profile().name +
+               " knows no homing; set_position declares the present position"};
+}
+
+}  // namespace cia402::drive

@@ -1,0 +1,112 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "procedure.h"
+#include "sentence.h"
+#include "step_enable.h"
+#include "step_fault_reset.h"
+
+namespace cia402::drive {
+namespace {
+
+/// Brings an axis back from wherever it is: boots the node if it is not ready, clears faults,
+/// enables. Calling it on a healthy axis does no harm.
+class Recover : public Procedure {
+ public:
+  explicit Recover(AxisCore& axis) : enabling_(axis.workingMode(), axis.profile()) {}
+
+  Outcome advance(const Context& context) override {
+    switch (phase_) {
+      case Phase::begin:
+        begin(context);
+        return Outcome::running();
+      case Phase::booting:
+        return boot(context);
+      case Phase::feedback:
+        return awaitFeedback(context);
+      case Phase::clearing: {
+        const Outcome outcome = reset_.advance(context);
+        if (outcome.isDone()) phase_ = Phase::enabling;
+        return outcome.isDone() ? Outcome::running() : outcome;
+      }
+      case Phase::enabling: {
+        if (context.axis.inOperation()) return finish(context);
+        const Outcome outcome = enabling_.advance(context);
+        return outcome.isDone() ? finish(context) : outcome;
+      }
+    }
+    return Outcome::running();
+  }
+
+  bool survivesNodeLoss() const override { return phase_ == Phase::booting; }
+
+ private:
+  enum class Phase { begin, booting, feedback, clearing, enabling };
+
+  void begin(const Context& context) {
+    AxisCore& axis = context.axis;
+    const DriveProfile::Timing& timing = axis.profile().timing;
+    started_ = context.now;
+    boot_deadline_ = context.now + 3 * timing.boot;
+    context.status.deadline =
+        boot_deadline_ + 8 * timing.state_change + 2 * timing.mode_change + timing.brake_release;
+    phase_ = Phase::booting;
+    if (axis.nodeReady()) return;
+    context.show("booting the node", "the node to be identified, configured and started");
+    if (axis.node().health() != canopen::NodeHealth::booting) axis.node().boot(context.now, true);
+  }
+
+  Outcome boot(const Context& context) {
+    AxisCore& axis = context.axis;
+    if (axis.nodeReady()) {
+      phase_ = Phase::feedback;
+      since_ = context.now;
+      context.show("reading feedback", "statusword and position from the drive");
+      return Outcome::running();
+    }
+    const bool failed = axis.node().health() == canopen::NodeHealth::failed ||
+                        axis.node().health() == canopen::NodeHealth::absent;
+    if (failed && context.now > started_) {
+      return Outcome::failed(axis.who() + ": the node did not boot: " + axis.node().problem());
+    }
+    if (context.now < boot_deadline_) return Outcome::running();
+    return Outcome::failed(axis.who() + ": the node did not become ready within " +
+                           seconds(context.now - started_) + ", it is " +
+                           canopen::toString(axis.node().health()) + ", " + axis.node().bootStep());
+  }
+
+  Outcome awaitFeedback(const Context& context) {
+    AxisCore& axis = context.axis;
+    if (axis.state().feedback_valid) {
+      phase_ = clearable(axis) ? Phase::clearing : Phase::enabling;
+      return Outcome::running();
+    }
+    if (context.now - since_ <= axis.profile().timing.state_change) return Outcome::running();
+    return Outcome::failed(axis.who() + ": no usable statusword (6041:00) and position (6064:00) " +
+                           "within " + seconds(context.now - since_) + " after the node was ready");
+  }
+
+  Outcome finish(const Context& context) {
+    AxisCore& axis = context.axis;
+    std::string text = axis.config().joint + ": recovered, enabled in mode " +
+                       axis.mode().spec->name + " after " + seconds(context.now - started_);
+    if (axis.halted()) text += "; it is halted, enable releases the halt";
+    if (!axis.state().homed) text += "; it is not homed, home it before position motion";
+    return Outcome::done(text);
+  }
+
+  Phase phase_ = Phase::begin;
+  FaultResetStep reset_;
+  EnableStep enabling_;
+  Time started_{}, boot_deadline_{}, since_{};
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Procedure>> makeRecover(AxisCore& axis) {
+  const ModeChannel& mode = axis.workingMode();
+  if (!mode.refusal.empty()) {
+    return Error{axis.who() + ": cannot enable in mode " + mode.spec->name + ": " + mode.refusal};
+  }
+  return std::unique_ptr<Procedure>(std::make_unique<Recover>(axis));
+}
+
+}  // namespace cia402::drive

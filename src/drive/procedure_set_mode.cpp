@@ -1,0 +1,70 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "procedure.h"
+#include "sentence.h"
+#include "step_mode.h"
+
+namespace cia402::drive {
+namespace {
+
+/// Switches the mode of operation, disabled or enabled at standstill.
+class SetMode : public Procedure {
+ public:
+  explicit SetMode(const ModeChannel& mode) : mode_(&mode), step_(mode) {}
+
+  Outcome advance(const Context& context) override {
+    AxisCore& axis = context.axis;
+    if (!begun_) {
+      begun_ = true;
+      started_ = context.now;
+      context.status.deadline = context.now + 3 * axis.profile().timing.mode_change;
+    }
+    const Outcome outcome = step_.advance(context);
+    if (!outcome.isDone()) return outcome;
+    return Outcome::done(axis.config().joint + ": mode " + mode_->spec->name + " after " +
+                         seconds(context.now - started_));
+  }
+
+ private:
+  const ModeChannel* mode_;
+  ModeStep step_;
+  bool begun_ = false;
+  Time started_{};
+};
+
+std::string knownModes(const AxisCore& axis) {
+  std::string names;
+  for (const ModeChannel& channel : axis.objects().modes) {
+    if (channel.spec->kind == ControlKind::homing || !channel.refusal.empty()) continue;
+    names += (names.empty() ? "" : ", ") + channel.spec->name;
+  }
+  return names;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Procedure>> makeSetMode(AxisCore& axis, const std::string& mode) {
+  const std::string name = canonicalModeName(mode);
+  const ModeChannel* channel = axis.objects().channel(name);
+  if (channel == nullptr) {
+    return Error{axis.who() + ": the drive family " + axis.profile().name + " has no mode \"" +
+                 mode + "\"; it has " + knownModes(axis)};
+  }
+  if (channel->spec->kind == ControlKind::homing) {
+    return Error{axis.who() + ": " + name + " is not entered by set_mode; call home"};
+  }
+  if (!channel->refusal.empty()) {
+    return Error{axis.who() + ": mode " + name + " cannot be used: " + channel->refusal};
+  }
+  const std::string refusal = nodeRefusal(axis, "set the mode");
+  if (!refusal.empty()) return Error{refusal};
+  if (!axis.state().feedback_valid) {
+    return Error{axis.who() + ": cannot set the mode: no fresh statusword and position"};
+  }
+  if (axis.inOperation() && !axis.atStandstill()) {
+    return Error{axis.who() + ": mode " + name + " is refused in motion (velocity " +
+                 number(axis.state().velocity) + "); stop the axis first"};
+  }
+  return std::unique_ptr<Procedure>(std::make_unique<SetMode>(*channel));
+}
+
+}  // namespace cia402::drive

@@ -1,0 +1,93 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "step_enable.h"
+
+#include "sentence.h"
+
+namespace cia402::drive {
+
+void EnableStep::enter(Phase phase, const Context& context) {
+  phase_ = phase;
+  since_ = context.now;
+  last_ = State::unknown;
+}
+
+Outcome EnableStep::advance(const Context& context) {
+  if (!begun_) {
+    begun_ = true;
+    enter(Phase::feedback, context);
+    context.show("reading feedback", "statusword and position from the drive");
+  }
+  if (phase_ != Phase::feedback && context.axis.faulted()) {
+    return fail(context, context.axis.faultText());
+  }
+  switch (phase_) {
+    case Phase::feedback:
+      return awaitFeedback(context);
+    case Phase::writing: {
+      const Outcome outcome = writes_.advance(context);
+      if (!outcome.isDone()) return outcome;
+      enter(Phase::mode, context);
+      return Outcome::running();
+    }
+    case Phase::mode: {
+      const Outcome outcome = mode_.advance(context);
+      if (!outcome.isDone()) return outcome;
+      enter(Phase::transitions, context);
+      context.axis.setGoal(Goal::enabled);
+      return Outcome::running();
+    }
+    case Phase::transitions:
+      return climb(context);
+    case Phase::brake:
+      return context.axis.brakeReleased(context.now) ? Outcome::done() : Outcome::running();
+  }
+  return Outcome::running();
+}
+
+Outcome EnableStep::awaitFeedback(const Context& context) {
+  if (context.axis.state().feedback_valid) {
+    enter(Phase::writing, context);
+    return Outcome::running();
+  }
+  const Duration waited = context.now - since_;
+  if (waited <= context.axis.profile().timing.state_change) return Outcome::running();
+  return fail(context, context.axis.who() +
+                           ": no usable statusword (6041:00) and position "
+                           "(6064:00) within " +
+                           seconds(waited) + "; check the TPDOs");
+}
+
+Outcome EnableStep::climb(const Context& context) {
+  AxisCore& axis = context.axis;
+  if (axis.inOperation()) {
+    enter(Phase::brake, context);
+    context.show("releasing the brake", seconds(axis.profile().timing.brake_release) +
+                                            " to pass (profile, brake_release)");
+    return Outcome::running();
+  }
+  const State state = axis.state().state;
+  const Duration limit = axis.profile().timing.state_change;
+  if (state != last_) {
+    last_ = state;
+    since_ = context.now;
+    context.show("switching on", std::string("the drive to leave ") + toString(state));
+  }
+  // From quick stop active by transition 16 where the drive holds there; by 12 where it does not,
+  // or does not answer to 16.
+  const bool by_disabling =
+      state == State::quick_stop_active &&
+      (axis.profile().quick_stop_holds.empty() || context.now - since_ > limit / 2);
+  const Goal goal = by_disabling ? Goal::disabled : Goal::enabled;
+  if (axis.goal() != goal) axis.setGoal(goal);
+  if (context.now - since_ <= limit) return Outcome::running();
+  return fail(context, axis.who() + ": enabling timed out: the drive has been in " +
+                           toString(state) + " for " + seconds(context.now - since_) + "; " +
+                           axis.report());
+}
+
+Outcome EnableStep::fail(const Context& context, std::string why) {
+  context.axis.setGoal(Goal::disabled);
+  return Outcome::failed(std::move(why));
+}
+
+}  // namespace cia402::drive

@@ -1,0 +1,32 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "procedure.h"
+#include "step_mode.h"
+
+namespace cia402::drive {
+
+/// Brings a disabled axis into operation in a mode: fresh feedback, before_enable writes, mode and
+/// neutral target on the wire, then each transition awaited, then the brake.
+class EnableStep {
+ public:
+  EnableStep(const ModeChannel& mode, const DriveProfile& profile)
+      : writes_(profile.before_enable), mode_(mode) {}
+  Outcome advance(const Context& context);
+
+ private:
+  enum class Phase { feedback, writing, mode, transitions, brake };
+  void enter(Phase phase, const Context& context);
+  Outcome awaitFeedback(const Context& context);
+  Outcome climb(const Context& context);
+  Outcome fail(const Context& context, std::string why);
+
+  WriteStep writes_;
+  ModeStep mode_;
+  Phase phase_ = Phase::feedback;
+  bool begun_ = false;
+  State last_ = State::unknown;
+  Time since_{};
+};
+
+}  // namespace cia402::drive

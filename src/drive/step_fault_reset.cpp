@@ -1,0 +1,94 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "step_fault_reset.h"
+
+#include "cia402_driver/drive/fault_text.h"
+#include "sentence.h"
+
+namespace cia402::drive {
+namespace {
+constexpr std::uint64_t kFrames = 2;  // so many RPDOs with a level of bit 7: the drive has it
+}  // namespace
+
+bool clearable(const AxisCore& axis) {
+  return axis.faulted() || (axis.state().warning && axis.profile().warning_stops);
+}
+
+void FaultResetStep::enter(Phase phase, const Context& context) {
+  phase_ = phase;
+  since_ = context.now;
+  frames_ = context.axis.controlwordFrames();
+}
+
+Outcome FaultResetStep::fail(const Context& context, const std::string& why) const {
+  context.axis.setFaultReset(false);
+  return Outcome::failed(why);
+}
+
+Outcome FaultResetStep::advance(const Context& context) {
+  AxisCore& axis = context.axis;
+  const Duration waited = context.now - since_;
+  const Duration limit = axis.profile().timing.state_change;
+  const bool sent = axis.controlwordFrames() >= frames_ + kFrames;
+  switch (phase_) {
+    case Phase::begin:
+      code_ = axis.state().error_code;
+      axis.setGoal(Goal::disabled);
+      axis.setFaultReset(false);
+      enter(Phase::reacting, context);
+      context.show("waiting for the fault reaction to end", "the drive to show fault");
+      return Outcome::running();
+    case Phase::reacting:
+      if (axis.state().state == State::fault_reaction_active) {
+        if (waited <= limit) return Outcome::running();
+        return fail(context, axis.who() + ": the drive's fault reaction did not end within " +
+                                 seconds(waited) + "; " + axis.report());
+      }
+      enter(Phase::low, context);
+      context.show("resetting the fault", "controlword bit 7 to be sent low, then high");
+      return Outcome::running();
+    case Phase::low:
+      if (axis.state().error_code != 0) code_ = axis.state().error_code;
+      if (!sent && waited > limit) {
+        return fail(context, axis.who() + ": no RPDO has left for " + seconds(waited) +
+                                 "; is the cycle running?");
+      }
+      if (!sent || context.now < axis.nextFaultReset()) return Outcome::running();
+      axis.setFaultReset(true);
+      axis.noteFaultReset(context.now + kInterval);
+      enter(Phase::high, context);
+      context.show("resetting the fault", "the drive to leave fault");
+      return Outcome::running();
+    case Phase::high: {
+      const bool left = sent && !clearable(axis);
+      if (!left && waited <= limit) return Outcome::running();
+      axis.setFaultReset(false);
+      if (!left) {
+        return fail(context, "the fault reset (6040:00 bit 7) did not clear it within " +
+                                 seconds(waited) + ": " + axis.faultText() + "; " + axis.report());
+      }
+      axis.forgetFault();
+      enter(Phase::low_again, context);
+      context.show("fault reset", "controlword bit 7 to be sent low again");
+      return Outcome::running();
+    }
+    case Phase::low_again:
+      if (!sent && waited <= limit) return Outcome::running();
+      enter(Phase::watching, context);
+      context.show("fault reset", "the fault to stay away");
+      return Outcome::running();
+    case Phase::watching:
+      if (clearable(axis)) {
+        return fail(context,
+                    "the fault came back at once after the reset, its cause is still "
+                    "there: " +
+                        axis.faultText());
+      }
+      if (waited < kWatch) return Outcome::running();
+      return Outcome::done(code_ == 0 ? std::string("fault cleared")
+                                      : "fault " + errorCodeText(axis.profile(), code_) +
+                                            "; it is cleared");
+  }
+  return Outcome::running();
+}
+
+}  // namespace cia402::drive

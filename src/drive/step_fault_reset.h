@@ -1,0 +1,32 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "procedure.h"
+
+namespace cia402::drive {
+
+/// Fault reset (transition 15) with a proper edge: controlword bit 7 low on the wire, then high
+/// until the drive has left the fault or the time is over, then low again, then a moment in which
+/// the fault may come back. Edges are at least kInterval apart, whoever asks for them.
+class FaultResetStep {
+ public:
+  static constexpr Duration kInterval{std::chrono::seconds(1)};
+  static constexpr Duration kWatch{std::chrono::milliseconds(300)};
+
+  Outcome advance(const Context& context);
+
+ private:
+  enum class Phase { begin, reacting, low, high, low_again, watching };
+  void enter(Phase phase, const Context& context);
+  Outcome fail(const Context& context, const std::string& why) const;
+
+  Phase phase_ = Phase::begin;
+  std::uint16_t code_ = 0;
+  std::uint64_t frames_ = 0;
+  Time since_{};
+};
+
+/// Something that a fault reset could clear.
+bool clearable(const AxisCore& axis);
+
+}  // namespace cia402::drive

@@ -1,0 +1,33 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "procedure.h"
+#include "step_writes.h"
+
+namespace cia402::drive {
+
+/// Brings the drive into a mode of operation: entry writes, neutral target on the wire, 6060h, and
+/// 6061h awaited. Other values of 6061h on the way are no errors; some drives show -1 for seconds.
+/// If the drive does not follow, the mode from before is commanded again.
+class ModeStep {
+ public:
+  explicit ModeStep(const ModeChannel& mode) : mode_(&mode), writes_(mode.spec->entry_writes) {}
+  Outcome advance(const Context& context);
+
+ private:
+  enum class Phase { writing, presetting, sending, waiting };
+  void select(const Context& context);
+  Outcome await(const Context& context);
+  void askForDisplay(const Context& context);
+  Outcome fail(const Context& context, std::string why);
+
+  const ModeChannel* mode_;
+  const ModeChannel* before_ = nullptr;
+  WriteStep writes_;
+  Phase phase_ = Phase::writing;
+  canopen::SdoTicket command_, display_;
+  std::uint64_t frames_ = 0, controlword_frames_ = 0;
+  Time started_{}, next_question_{};
+};
+
+}  // namespace cia402::drive
