@@ -14,6 +14,15 @@ std::string whoIs(const canopen::Node& node) {
   return node.name() + " (node " + std::to_string(node.id()) + ")";
 }
 
+NodeSnapshot nodeSnapshot(const canopen::Node& node) {
+  NodeSnapshot snapshot;
+  snapshot.nmt = node.nmtState();
+  snapshot.last_heartbeat = node.lastHeartbeat();
+  snapshot.boot_ups = node.bootUps();
+  if (node.identity()) snapshot.identity = *node.identity();
+  return snapshot;
+}
+
 }  // namespace
 
 Robot::Robot(config::RobotConfig robot, canopen::MasterConfig master, can::Sink& sink,
@@ -21,7 +30,8 @@ Robot::Robot(config::RobotConfig robot, canopen::MasterConfig master, can::Sink&
     : config_(std::move(robot)), events_(events), master_(std::move(master), sink, this) {
   const Duration cycle = config_.bus.sync_period;
   for (const drive::AxisConfig& axis : config_.axes) {
-    axes_.emplace_back(axis, *master_.find(axis.node_id));
+    nodes_.push_back(master_.find(axis.node_id));
+    axes_.emplace_back(axis, *nodes_.back());
     motions_.emplace_back(axis, cycle);
   }
   for (const config::GroupConfig& group : config_.groups) {
@@ -35,6 +45,7 @@ Robot::Robot(config::RobotConfig robot, canopen::MasterConfig master, can::Sink&
   }
   news_.resize(axes_.size());
   missed_feedback_.resize(axes_.size());
+  emergencies_.resize(axes_.size());
   last_feedback_.resize(axes_.size());
 }
 
@@ -188,6 +199,7 @@ void Robot::tell(Event::Severity severity, std::string_view text, Time now) {
 void Robot::onEmergency(canopen::Node& node, const canopen::Emergency& emergency) {
   const std::size_t index = axisOf(node);
   if (index == axes_.size()) return;
+  ++emergencies_[index];
   axes_[index].onEmergency(emergency, now_);
   const auto& known = axes_[index].config().profile->errors;
   const auto text = known.find(emergency.code);
@@ -265,13 +277,12 @@ void Robot::fill(RobotSnapshot& snapshot) const {
   snapshot.groups.resize(groups_.size());
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     AxisSnapshot& axis = snapshot.axes[i];
-    const canopen::Node& node = master_.nodes()[i];
     axis.state = axes_[i].state();
     axis.target = axes_[i].target();
-    axis.nmt = node.nmtState();
+    axis.node = nodeSnapshot(*nodes_[i]);
+    axis.node.emergencies = emergencies_[i];
     axis.procedure = axes_[i].procedure().kind;
     axis.procedure_running = axes_[i].procedure().running;
-    axis.serial = node.identity() ? node.identity()->serial : 0;
     axis.missed_feedback = missed_feedback_[i];
     axis.step = news_[i].step;
     axis.waiting_for = news_[i].waiting_for;

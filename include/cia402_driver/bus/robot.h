@@ -106,7 +106,8 @@ class Robot final : private canopen::MasterListener {
   std::vector<ProcedureJob> procedures_;
   std::vector<ObjectJob> objects_;
   std::vector<AxisNews> news_;
-  std::vector<std::uint64_t> missed_feedback_;
+  std::vector<canopen::Node*> nodes_;  // of each axis
+  std::vector<std::uint64_t> missed_feedback_, emergencies_;
   std::vector<Time> last_feedback_;
   CycleStatistics statistics_;
   bool started_ = false;

@@ -12,11 +12,20 @@
 
 namespace cia402::bus {
 
+/// The node of an axis as the last cycle left it.
+struct NodeSnapshot {
+  canopen::NmtState nmt = canopen::NmtState::unknown;
+  Time last_heartbeat{};             ///< Time() if there was none
+  std::uint32_t boot_ups = 0;        ///< since start
+  std::uint64_t emergencies = 0;     ///< since start, resets included
+  canopen::Node::Identity identity;  ///< zeros where not read
+};
+
 /// One axis as the last cycle left it.
 struct AxisSnapshot {
   drive::AxisState state;
+  NodeSnapshot node;
   double target = drive::kUnknown;  ///< set-point of the active mode, joint units
-  canopen::NmtState nmt = canopen::NmtState::unknown;
   drive::ProcedureKind procedure = drive::ProcedureKind::none;
   bool procedure_running = false;
   std::uint32_t serial = 0;           ///< 1018:04; 0: not read

@@ -1,0 +1,35 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <ros/node_handle.h>
+#include <ros/subscriber.h>
+#include <std_msgs/Float64.h>
+#include <trajectory_msgs/JointTrajectory.h>
+
+#include <string>
+#include <vector>
+
+#include "cia402_driver/bus/runner.h"
+#include "cia402_driver/config/robot.h"
+
+namespace cia402::ros_node {
+
+/// Subscribes ~<axis>/command and ~<group>/command. What is refused is told in the log.
+class CommandTopics {
+ public:
+  CommandTopics(ros::NodeHandle& private_node, bus::BusRunner& runner,
+                const config::RobotConfig& robot);
+
+ private:
+  void onSetpoint(std::size_t axis, const std_msgs::Float64& message);
+  void onTrajectory(const std::string& group, const trajectory_msgs::JointTrajectory& message);
+
+  bus::BusRunner& runner_;
+  std::vector<ros::Subscriber> subscribers_;
+};
+
+/// The message as a command for a group.
+bus::TrajectoryCommand trajectoryCommand(const std::string& group,
+                                         const trajectory_msgs::JointTrajectory& message);
+
+}  // namespace cia402::ros_node

@@ -1,0 +1,33 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <ros/node_handle.h>
+#include <ros/timer.h>
+
+#include "cia402_driver/bus/runner.h"
+#include "cia402_driver/config/robot.h"
+
+namespace cia402::ros_node {
+
+/// /diagnostics after REP-107: one status for the bus, each node and each axis. The hardware id of
+/// a node and its axis is the serial number.
+class Diagnostics {
+ public:
+  Diagnostics(ros::NodeHandle& node, ros::NodeHandle& private_node, bus::BusRunner& runner,
+              const config::RobotConfig& robot);
+
+ private:
+  using Status = diagnostic_updater::DiagnosticStatusWrapper;
+  void reportBus(Status& status);
+  void reportNode(std::size_t axis, Status& status);
+  void reportAxis(std::size_t axis, Status& status);
+
+  bus::BusRunner& runner_;
+  const config::RobotConfig& robot_;
+  bus::RobotSnapshot snapshot_;
+  diagnostic_updater::Updater updater_;
+  ros::Timer timer_;
+};
+
+}  // namespace cia402::ros_node

@@ -1,0 +1,31 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <ros/node_handle.h>
+#include <ros/publisher.h>
+#include <ros/timer.h>
+
+#include "cia402_driver/bus/runner.h"
+#include "cia402_driver/config/robot.h"
+
+namespace cia402::ros_node {
+
+/// Brings what happens on the bus into the log, and emergencies to ~emergencies.
+class EventLog {
+ public:
+  EventLog(ros::NodeHandle& private_node, bus::BusRunner& runner, const config::RobotConfig& robot);
+
+  /// Empties the queue of events; also called at the end, when timers no longer run.
+  void drain();
+
+ private:
+  void publish(const bus::Event& event);
+
+  bus::BusRunner& runner_;
+  const config::RobotConfig& robot_;
+  ros::Publisher emergencies_;
+  ros::Timer timer_;
+  std::uint64_t lost_told_ = 0;
+};
+
+}  // namespace cia402::ros_node

@@ -1,0 +1,33 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <ros/node_handle.h>
+#include <ros/timer.h>
+#include <tf2_ros/transform_broadcaster.h>
+
+#include "cia402_driver/bus/runner.h"
+#include "cia402_driver/config/robot.h"
+
+namespace cia402::ros_node {
+
+/// Transform of a joint's child frame in its parent frame at a joint position (rad or m): the
+/// origin, then the turn about or the shift along the axis, as URDF defines joints.
+geometry_msgs::TransformStamped jointTransform(const config::FrameConfig& frame, bool prismatic,
+                                               double position, const ros::Time& stamp);
+
+/// Publishes the frames of joints that have a `frame` section to /tf. A joint whose position is not
+/// known sends nothing.
+class Frames {
+ public:
+  Frames(ros::NodeHandle& node, bus::BusRunner& runner, const config::RobotConfig& robot);
+
+ private:
+  void publish(const ros::TimerEvent&);
+
+  bus::BusRunner& runner_;
+  const config::RobotConfig& robot_;
+  tf2_ros::TransformBroadcaster broadcaster_;
+  ros::Timer timer_;
+};
+
+}  // namespace cia402::ros_node

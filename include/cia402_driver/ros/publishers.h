@@ -1,0 +1,46 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cia402_driver/AxisStates.h>
+#include <cia402_driver/BusState.h>
+#include <ros/node_handle.h>
+#include <ros/publisher.h>
+#include <ros/timer.h>
+#include <sensor_msgs/JointState.h>
+
+#include <vector>
+
+#include "cia402_driver/bus/runner.h"
+#include "cia402_driver/config/robot.h"
+
+namespace cia402::ros_node {
+
+/// joint_states at the configured rate, ~axis_states, ~bus_state and ~<group>/state.
+class Publishers {
+ public:
+  /// @param node where joint_states is published, @param private_node for the rest.
+  Publishers(ros::NodeHandle& node, ros::NodeHandle& private_node, bus::BusRunner& runner,
+             const config::RobotConfig& robot);
+
+ private:
+  void publishJointStates(const ros::TimerEvent&);
+  void publishStates(const ros::TimerEvent&);
+  void publishGroups(const bus::RobotSnapshot& snapshot);
+  BusState busState(const bus::RobotSnapshot& snapshot) const;
+  AxisStates axisStates(const bus::RobotSnapshot& snapshot) const;
+  bool changed(const AxisStates& states) const;
+
+  bus::BusRunner& runner_;
+  const config::RobotConfig& robot_;
+  sensor_msgs::JointState joint_states_;
+  AxisStates last_states_;
+  ros::Time axis_states_sent_, bus_state_sent_;
+  ros::Publisher joint_states_pub_, axis_states_pub_, bus_state_pub_;
+  std::vector<ros::Publisher> group_pubs_;
+  ros::Timer joint_timer_, state_timer_;
+};
+
+/// What the fault or the procedure of an axis says, as AxisState and diagnostics show it.
+std::string stepText(const bus::AxisSnapshot& axis);
+
+}  // namespace cia402::ros_node

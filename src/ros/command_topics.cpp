@@ -1,0 +1,76 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/ros/command_topics.h"
+
+#include <ros/console.h>
+
+#include <boost/function.hpp>
+
+#include "cia402_driver/ros/clock_map.h"
+
+namespace cia402::ros_node {
+namespace {
+
+constexpr double kRefusalLogInterval = 1.0;  // s; a refused stream must not flood the log
+
+void logRefusal(const bus::Answer& answer) {
+  if (!answer.success) ROS_WARN_STREAM_THROTTLE(kRefusalLogInterval, answer.message);
+}
+
+}  // namespace
+
+bus::TrajectoryCommand trajectoryCommand(const std::string& group,
+                                         const trajectory_msgs::JointTrajectory& message) {
+  bus::TrajectoryCommand command;
+  command.group = group;
+  command.joints = message.joint_names;
+  for (const trajectory_msgs::JointTrajectoryPoint& point : message.points) {
+    command.points.push_back({point.positions, point.velocities, point.accelerations,
+                              Duration(point.time_from_start.toNSec())});
+  }
+  if (!message.header.stamp.isZero()) command.start_time = fromRos(message.header.stamp);
+  return command;
+}
+
+CommandTopics::CommandTopics(ros::NodeHandle& private_node, bus::BusRunner& runner,
+                             const config::RobotConfig& robot)
+    : runner_(runner) {
+  for (std::size_t i = 0; i < robot.axes.size(); ++i) {
+    const boost::function<void(const std_msgs::Float64&)> callback =
+        [this, i](const std_msgs::Float64& message) { onSetpoint(i, message); };
+    subscribers_.push_back(private_node.subscribe<const std_msgs::Float64&>(
+        robot.axes[i].name + "/command", 1, callback, ros::VoidConstPtr(),
+        ros::TransportHints().tcpNoDelay()));
+  }
+  for (const config::GroupConfig& group : robot.groups) {
+    const std::string name = group.name;
+    const boost::function<void(const trajectory_msgs::JointTrajectory&)> callback =
+        [this, name](const trajectory_msgs::JointTrajectory& message) {
+          onTrajectory(name, message);
+        };
+    subscribers_.push_back(private_node.subscribe<const trajectory_msgs::JointTrajectory&>(
+        name + "/command", 1, callback));
+  }
+}
+
+void CommandTopics::onSetpoint(std::size_t axis, const std_msgs::Float64& message) {
+  bus::Command command;
+  command.body = bus::SetpointCommand{axis, message.data};
+  command.reply = logRefusal;
+  runner_.post(std::move(command));
+}
+
+void CommandTopics::onTrajectory(const std::string& group,
+                                 const trajectory_msgs::JointTrajectory& message) {
+  bus::Command command;
+  command.body = trajectoryCommand(group, message);
+  command.reply = [](const bus::Answer& answer) {
+    if (answer.success) {
+      ROS_DEBUG_STREAM(answer.message);
+    } else {
+      ROS_ERROR_STREAM(answer.message);
+    }
+  };
+  runner_.post(std::move(command));
+}
+
+}  // namespace cia402::ros_node

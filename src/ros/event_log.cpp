@@ -1,0 +1,63 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/ros/event_log.h"
+
+#include <cia402_driver/Emergency.h>
+#include <ros/console.h>
+
+#include "cia402_driver/ros/clock_map.h"
+
+namespace cia402::ros_node {
+
+EventLog::EventLog(ros::NodeHandle& private_node, bus::BusRunner& runner,
+                   const config::RobotConfig& robot)
+    : runner_(runner), robot_(robot) {
+  emergencies_ = private_node.advertise<Emergency>("emergencies", 100);
+  timer_ =
+      private_node.createTimer(ros::Duration(0.02), [this](const ros::TimerEvent&) { drain(); });
+}
+
+void EventLog::drain() {
+  bus::Event event;
+  while (runner_.nextEvent(event)) {
+    switch (event.severity) {
+      case bus::Event::Severity::info:
+        ROS_INFO_STREAM(event.text.view());
+        break;
+      case bus::Event::Severity::warning:
+        ROS_WARN_STREAM(event.text.view());
+        break;
+      case bus::Event::Severity::error:
+        ROS_ERROR_STREAM(event.text.view());
+        break;
+    }
+    if (event.is_emergency) publish(event);
+  }
+  const std::uint64_t lost = runner_.lostEvents();
+  if (lost != lost_told_) {
+    ROS_WARN_STREAM(lost - lost_told_ << " events came too fast to be logged");
+    lost_told_ = lost;
+  }
+}
+
+void EventLog::publish(const bus::Event& event) {
+  const drive::AxisConfig& axis = robot_.axes[event.axis];
+  Emergency message;
+  message.header.stamp = toRos(event.emergency.stamp);
+  message.node_id = axis.node_id;
+  message.axes = {axis.name};
+  message.error_code = event.emergency.code;
+  message.error_register = event.emergency.error_register;
+  std::copy(event.emergency.vendor.begin(), event.emergency.vendor.end(),
+            message.manufacturer.begin());
+  const auto known = axis.profile->errors.find(event.emergency.code);
+  if (known == axis.profile->errors.end()) {
+    message.text = canopen::emergencyText(event.emergency.code);
+  } else {
+    message.text = known->second.text;
+    message.remedy =
+        known->second.cause + (known->second.cause.empty() ? "" : "; ") + known->second.remedy;
+  }
+  emergencies_.publish(message);
+}
+
+}  // namespace cia402::ros_node

@@ -1,0 +1,32 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/ros/fault_service.h"
+
+#include <cia402_driver/InjectFault.h>
+
+namespace cia402::ros_node {
+
+FaultService::FaultService(ros::NodeHandle& private_node, Inject inject)
+    : inject_(std::move(inject)) {
+  server_ = private_node.advertiseService<InjectFault::Request, InjectFault::Response>(
+      "inject_fault", [this](InjectFault::Request& request, InjectFault::Response& response) {
+        const bus::Answer answer = inject_(request.axis, request.fault);
+        response.success = answer.success;
+        response.message = answer.message;
+        return true;
+      });
+}
+
+bus::Answer injectFault(sim::Drive* drive, const std::string& axis, const std::string& fault,
+                        Time now) {
+  bus::Answer answer;
+  if (drive == nullptr) {
+    answer.message = "there is no simulated drive \"" + axis + "\"";
+    return answer;
+  }
+  const Result<void> injected = drive->inject(fault, now);
+  answer.success = injected.ok();
+  answer.message = injected ? axis + ": injected " + fault : axis + ": " + injected.error().message;
+  return answer;
+}
+
+}  // namespace cia402::ros_node

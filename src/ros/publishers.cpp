@@ -1,0 +1,200 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/ros/publishers.h"
+
+#include <control_msgs/JointTrajectoryControllerState.h>
+
+#include <cmath>
+#include <limits>
+
+#include "cia402_driver/ros/clock_map.h"
+
+namespace cia402::ros_node {
+namespace {
+
+constexpr double kStateCheckRate = 50.0;       // Hz
+const ros::Duration kAxisStatesInterval(0.1);  // at the latest
+const ros::Duration kBusStateInterval(0.5);
+
+double age(Time since, Time now) {
+  return since == Time() ? std::numeric_limits<double>::infinity() : toSeconds(now - since);
+}
+
+AxisState axisState(const bus::AxisSnapshot& axis, const drive::AxisConfig& config, Time now) {
+  AxisState message;
+  message.name = config.name;
+  message.joint = config.joint;
+  message.state = drive::toString(axis.state.state);
+  message.mode = axis.state.mode ? axis.state.mode->name : "";
+  message.statusword = axis.state.statusword;
+  message.homed = axis.state.homed;
+  message.target_reached = axis.state.target_reached;
+  message.warning = axis.state.warning;
+  message.internal_limit = axis.state.internal_limit;
+  message.error_code = axis.state.error_code;
+  message.error_text = axis.problem.str();
+  message.procedure = axis.procedure_running ? drive::toString(axis.procedure) : "";
+  message.step = stepText(axis);
+  message.position = axis.state.position;
+  message.velocity = axis.state.velocity;
+  message.effort = axis.state.effort;
+  message.following_error = axis.state.following_error;
+  message.digital_inputs = axis.state.digital_inputs;
+  message.feedback_age = age(axis.state.stamp, now);
+  if (axis.state.stamp != Time()) message.stamp = toRos(axis.state.stamp);
+  return message;
+}
+
+NodeState nodeState(const bus::AxisSnapshot& axis, const drive::AxisConfig& config, Time now) {
+  NodeState message;
+  message.node_id = config.node_id;
+  message.axes = {config.name};
+  message.nmt_state = canopen::toString(axis.node.nmt);
+  message.ready = axis.state.health == canopen::NodeHealth::ready;
+  message.step = message.ready ? "" : axis.step.str();
+  message.heartbeat_age = age(axis.node.last_heartbeat, now);
+  message.boot_ups = axis.node.boot_ups;
+  message.emergencies = static_cast<std::uint32_t>(axis.node.emergencies);
+  message.vendor_id = axis.node.identity.vendor_id;
+  message.product_code = axis.node.identity.product_code;
+  message.revision_number = axis.node.identity.revision;
+  message.serial_number = axis.node.identity.serial;
+  return message;
+}
+
+}  // namespace
+
+std::string stepText(const bus::AxisSnapshot& axis) {
+  std::string text = axis.step.str();
+  if (!axis.waiting_for.empty()) text += ", waiting for " + axis.waiting_for.str();
+  return text;
+}
+
+Publishers::Publishers(ros::NodeHandle& node, ros::NodeHandle& private_node, bus::BusRunner& runner,
+                       const config::RobotConfig& robot)
+    : runner_(runner), robot_(robot) {
+  for (const drive::AxisConfig& axis : robot.axes) joint_states_.name.push_back(axis.joint);
+  joint_states_.position.resize(robot.axes.size());
+  joint_states_.velocity.resize(robot.axes.size());
+  joint_states_.effort.resize(robot.axes.size());
+  joint_states_pub_ = node.advertise<sensor_msgs::JointState>("joint_states", 10);
+  axis_states_pub_ = private_node.advertise<AxisStates>("axis_states", 10, true);
+  bus_state_pub_ = private_node.advertise<BusState>("bus_state", 10, true);
+  for (const config::GroupConfig& group : robot.groups) {
+    group_pubs_.push_back(private_node.advertise<control_msgs::JointTrajectoryControllerState>(
+        group.name + "/state", 10));
+  }
+  joint_timer_ = node.createTimer(ros::Duration(1.0 / robot.joint_state_rate),
+                                  &Publishers::publishJointStates, this);
+  state_timer_ =
+      node.createTimer(ros::Duration(1.0 / kStateCheckRate), &Publishers::publishStates, this);
+}
+
+void Publishers::publishJointStates(const ros::TimerEvent&) {
+  const bus::RobotSnapshot snapshot = runner_.snapshot();
+  Time newest{};
+  for (std::size_t i = 0; i < snapshot.axes.size(); ++i) {
+    const drive::AxisState& state = snapshot.axes[i].state;
+    joint_states_.position[i] = state.position;
+    joint_states_.velocity[i] = state.velocity;
+    joint_states_.effort[i] = state.effort;
+    if (state.feedback_valid && state.stamp > newest) newest = state.stamp;
+  }
+  joint_states_.header.stamp = newest == Time() ? ros::Time::now() : toRos(newest);
+  joint_states_pub_.publish(joint_states_);
+  publishGroups(snapshot);
+}
+
+void Publishers::publishGroups(const bus::RobotSnapshot& snapshot) {
+  for (std::size_t g = 0; g < group_pubs_.size(); ++g) {
+    if (group_pubs_[g].getNumSubscribers() == 0) continue;
+    control_msgs::JointTrajectoryControllerState message;
+    message.header.stamp = joint_states_.header.stamp;
+    for (const std::string& joint : robot_.groups[g].joints) {
+      for (std::size_t i = 0; i < robot_.axes.size(); ++i) {
+        if (robot_.axes[i].joint != joint) continue;
+        const bus::AxisSnapshot& axis = snapshot.axes[i];
+        const bool position =
+            axis.state.mode != nullptr && axis.state.mode->kind == drive::ControlKind::position;
+        const double desired = position ? axis.target : drive::kUnknown;
+        message.joint_names.push_back(joint);
+        message.desired.positions.push_back(desired);
+        message.actual.positions.push_back(axis.state.position);
+        message.actual.velocities.push_back(axis.state.velocity);
+        message.error.positions.push_back(desired - axis.state.position);
+      }
+    }
+    group_pubs_[g].publish(message);
+  }
+}
+
+void Publishers::publishStates(const ros::TimerEvent&) {
+  const bus::RobotSnapshot snapshot = runner_.snapshot();
+  const ros::Time now = ros::Time::now();
+  const AxisStates states = axisStates(snapshot);
+  if (changed(states) || now - axis_states_sent_ >= kAxisStatesInterval) {
+    axis_states_sent_ = now;
+    last_states_ = states;
+    axis_states_pub_.publish(states);
+  }
+  if (now - bus_state_sent_ >= kBusStateInterval) {
+    bus_state_sent_ = now;
+    bus_state_pub_.publish(busState(snapshot));
+  }
+}
+
+AxisStates Publishers::axisStates(const bus::RobotSnapshot& snapshot) const {
+  AxisStates message;
+  message.header.stamp = ros::Time::now();
+  const Time now = bus::realNow();
+  for (std::size_t i = 0; i < snapshot.axes.size(); ++i) {
+    message.axes.push_back(axisState(snapshot.axes[i], robot_.axes[i], now));
+  }
+  return message;
+}
+
+bool Publishers::changed(const AxisStates& states) const {
+  if (states.axes.size() != last_states_.axes.size()) return true;
+  for (std::size_t i = 0; i < states.axes.size(); ++i) {
+    const AxisState& a = states.axes[i];
+    const AxisState& b = last_states_.axes[i];
+    if (a.state != b.state || a.mode != b.mode || a.homed != b.homed ||
+        a.target_reached != b.target_reached || a.warning != b.warning ||
+        a.internal_limit != b.internal_limit || a.error_code != b.error_code ||
+        a.error_text != b.error_text || a.procedure != b.procedure || a.step != b.step ||
+        a.digital_inputs != b.digital_inputs) {
+      return true;
+    }
+  }
+  return false;
+}
+
+BusState Publishers::busState(const bus::RobotSnapshot& snapshot) const {
+  BusState message;
+  message.header.stamp = ros::Time::now();
+  message.interface = robot_.bus.interface;
+  message.state = can::toString(snapshot.bus_state);
+  message.description = snapshot.bus_text.str();
+  message.load = snapshot.bus_load;
+  message.frames_sent = snapshot.counters.frames_sent;
+  message.frames_received = snapshot.counters.frames_received;
+  message.frames_deferred = snapshot.counters.frames_deferred;
+  message.frames_dropped = snapshot.counters.frames_dropped;
+  message.error_frames = snapshot.counters.error_frames;
+  message.bus_off_events = snapshot.counters.bus_off_events;
+  message.receive_overflows = snapshot.counters.receive_overflows;
+  message.sync_period = toSeconds(robot_.bus.sync_period);
+  message.cycles = snapshot.statistics.cycles();
+  message.overruns = snapshot.statistics.overruns();
+  message.sync_lateness_last = snapshot.statistics.lastLateness();
+  message.sync_lateness_rms = snapshot.statistics.rmsLateness();
+  message.sync_lateness_max = snapshot.statistics.maxLateness();
+  message.real_time = runner_.realtime().complete();
+  const Time now = bus::realNow();
+  for (std::size_t i = 0; i < snapshot.axes.size(); ++i) {
+    message.missed_feedback += snapshot.axes[i].missed_feedback;
+    message.nodes.push_back(nodeState(snapshot.axes[i], robot_.axes[i], now));
+  }
+  return message;
+}
+
+}  // namespace cia402::ros_node

@@ -1,0 +1,50 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/ros/robot_loader.h"
+
+#include <ros/console.h>
+#include <ros/package.h>
+
+namespace cia402::ros_node {
+namespace {
+
+std::string packageFolder(const std::string& folder) {
+  return ros::package::getPath("cia402_driver") + "/config/" + folder;
+}
+
+bool report(const Problems& problems, const std::string& where) {
+  if (problems.empty()) return false;
+  ROS_FATAL_STREAM(problems.list().size()
+                   << (problems.list().size() == 1 ? " problem" : " problems") << " in the "
+                   << where << "; nothing was sent to the bus:\n"
+                   << problems.text());
+  return true;
+}
+
+}  // namespace
+
+std::optional<LoadedRobot> loadRobot(const ros::NodeHandle& private_node) {
+  Problems problems;
+  Parameters parameters = readParameters(private_node, problems);
+  std::vector<std::string> folders = {packageFolder("drives")};
+  if (!parameters.options.profile_path.empty()) {
+    folders.insert(folders.begin(), parameters.options.profile_path);
+  }
+  LoadedRobot loaded;
+  loaded.options = parameters.options;
+  loaded.robot = config::loadRobot(parameters.robot, config::profilesIn(folders), problems);
+  const std::string where = "configuration of " + private_node.getNamespace();
+  if (report(problems, where)) return std::nullopt;
+  loaded.master = config::makeMasterConfig(loaded.robot, problems);
+  if (report(problems, where)) return std::nullopt;
+  for (const std::string& warning : loaded.robot.warnings) ROS_WARN_STREAM(warning);
+  return loaded;
+}
+
+std::optional<std::vector<sim::SimulatedAxis>> loadSimulation(const config::RobotConfig& robot) {
+  Problems problems;
+  auto axes = sim::simulatedAxes(robot, packageFolder("simulated_drives"), problems);
+  if (report(problems, "simulation")) return std::nullopt;
+  return axes;
+}
+
+}  // namespace cia402::ros_node

@@ -1,0 +1,130 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/ros/services.h"
+
+#include <cia402_driver/ReadObject.h>
+#include <cia402_driver/SetMode.h>
+#include <cia402_driver/SetPosition.h>
+#include <cia402_driver/WriteObject.h>
+#include <std_srvs/Trigger.h>
+
+#include <future>
+#include <memory>
+
+namespace cia402::ros_node {
+namespace {
+
+using drive::ProcedureKind;
+
+/// The Trigger services, after interface.md.
+constexpr struct {
+  const char* name;
+  ProcedureKind kind;
+} kTriggers[] = {
+    {"enable", ProcedureKind::enable},   {"disable", ProcedureKind::disable},
+    {"home", ProcedureKind::home},       {"clear_faults", ProcedureKind::clear_faults},
+    {"recover", ProcedureKind::recover}, {"quick_stop", ProcedureKind::quick_stop},
+    {"halt", ProcedureKind::halt},
+};
+
+std::string hexBytes(const canopen::Bytes& data) {
+  static const char* const kDigits = "0123456789ABCDEF";
+  std::string text;
+  for (std::uint8_t byte : data) {
+    if (!text.empty()) text += ' ';
+    text += kDigits[byte >> 4];
+    text += kDigits[byte & 0xF];
+  }
+  return text;
+}
+
+bus::Command procedure(const std::string& axis, const drive::ProcedureRequest& request) {
+  bus::Command command;
+  command.body = bus::ProcedureCommand{axis, request};
+  return command;
+}
+
+}  // namespace
+
+Services::Services(ros::NodeHandle& private_node, bus::BusRunner& runner,
+                   const config::RobotConfig& robot)
+    : runner_(runner) {
+  advertise(private_node, "");
+  for (const drive::AxisConfig& axis : robot.axes) {
+    advertise(ros::NodeHandle(private_node, axis.name), axis.name);
+  }
+}
+
+unsigned Services::threads(const config::RobotConfig& robot) {
+  return static_cast<unsigned>(robot.axes.size()) + 4;
+}
+
+bus::Answer Services::call(bus::Command command) {
+  const auto promise = std::make_shared<std::promise<bus::Answer>>();
+  command.reply = [promise](const bus::Answer& answer) { promise->set_value(answer); };
+  std::future<bus::Answer> answer = promise->get_future();
+  runner_.post(std::move(command));
+  return answer.get();  // every procedure has a deadline, and each command gets its reply
+}
+
+void Services::advertiseTrigger(ros::NodeHandle& node, const char* name, const std::string& axis,
+                                ProcedureKind kind) {
+  using Trigger = std_srvs::Trigger;
+  servers_.push_back(node.advertiseService<Trigger::Request, Trigger::Response>(
+      name, [this, axis, kind](Trigger::Request&, Trigger::Response& response) {
+        drive::ProcedureRequest request;
+        request.kind = kind;
+        const bus::Answer answer = call(procedure(axis, request));
+        response.success = answer.success;
+        response.message = answer.message;
+        return true;
+      }));
+}
+
+void Services::advertise(ros::NodeHandle node, const std::string& axis) {
+  for (const auto& trigger : kTriggers) advertiseTrigger(node, trigger.name, axis, trigger.kind);
+  servers_.push_back(node.advertiseService<SetMode::Request, SetMode::Response>(
+      "set_mode", [this, axis](SetMode::Request& request, SetMode::Response& response) {
+        drive::ProcedureRequest wanted;
+        wanted.kind = ProcedureKind::set_mode;
+        wanted.mode = drive::canonicalModeName(request.mode);
+        const bus::Answer answer = call(procedure(axis, wanted));
+        response.success = answer.success;
+        response.message = answer.message;
+        return true;
+      }));
+  if (axis.empty()) return;  // the rest makes sense for one axis only
+  servers_.push_back(node.advertiseService<SetPosition::Request, SetPosition::Response>(
+      "set_position", [this, axis](SetPosition::Request& request, SetPosition::Response& response) {
+        drive::ProcedureRequest wanted;
+        wanted.kind = ProcedureKind::set_position;
+        wanted.position = request.position;
+        const bus::Answer answer = call(procedure(axis, wanted));
+        response.success = answer.success;
+        response.message = answer.message;
+        return true;
+      }));
+  servers_.push_back(node.advertiseService<ReadObject::Request, ReadObject::Response>(
+      "read_object", [this, axis](ReadObject::Request& request, ReadObject::Response& response) {
+        bus::Command command;
+        command.body = bus::ReadObjectCommand{axis, request.object};
+        const bus::Answer answer = call(std::move(command));
+        response.success = answer.success;
+        response.message = answer.message;
+        response.value = answer.text;
+        response.raw = hexBytes(answer.data);
+        response.number = answer.number;
+        response.bytes = answer.data;
+        return true;
+      }));
+  servers_.push_back(node.advertiseService<WriteObject::Request, WriteObject::Response>(
+      "write_object", [this, axis](WriteObject::Request& request, WriteObject::Response& response) {
+        bus::Command command;
+        command.body = bus::WriteObjectCommand{axis, request.object, request.value};
+        const bus::Answer answer = call(std::move(command));
+        response.success = answer.success;
+        response.message = answer.message;
+        return true;
+      }));
+}
+
+}  // namespace cia402::ros_node
