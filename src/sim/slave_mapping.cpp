@@ -57,11 +57,11 @@ std::uint32_t Mapping::checkEntry(const ObjectDictionary& dictionary, std::uint6
 std::uint32_t Mapping::check(const ObjectDictionary& dictionary, std::uint16_t index,
                              std::uint64_t count, PdoDirection direction) {
   if (count > kMaxBits) return abort_code::kPdoLength;
+  if (dictionary.find({index, static_cast<std::uint8_t>(count)}) == nullptr) {
+    return abort_code::kPdoLength;
+  }
   unsigned bits = 0;
   for (std::uint64_t place = 1; place <= count; ++place) {
-    if (dictionary.find({index, static_cast<std::uint8_t>(place)}) == nullptr) {
-      return abort_code::kPdoLength;
-    }
     const std::uint64_t value = mappingValue(dictionary, index, place);
     if (const auto refused = checkEntry(dictionary, value, direction)) return refused;
     bits += bitsOf(value);
