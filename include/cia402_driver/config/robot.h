@@ -4,7 +4,9 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <yaml-cpp/yaml.h>
@@ -48,6 +50,18 @@ struct FrameConfig {
   double xyz[3] = {0, 0, 0}, rpy[3] = {0, 0, 0}, axis[3] = {0, 0, 1};
 };
 
+/// The `simulation:` section of an axis: what stands around the simulated drive, in the joint's own
+/// true coordinates (rad or m).
+struct SimulationConfig {
+  std::string drive;  ///< definition of the simulated drive; default: the profile's name
+  double initial_position = 0.0;  ///< where the joint stands at power-on
+  std::optional<double> lower_limit_switch, upper_limit_switch;  ///< active beyond
+  std::optional<std::pair<double, double>> home_switch;          ///< active from .. to
+  std::optional<double> index_offset;   ///< turns; the index pulse is at k + index_offset
+  std::optional<double> time_constant;  ///< s, lag of the position loop
+  double brake_delay = 0.0;             ///< s
+};
+
 struct RobotConfig {
   BusConfig bus;
   std::vector<drive::AxisConfig> axes;
@@ -57,7 +71,13 @@ struct RobotConfig {
   double joint_state_rate = 50.0;                      ///< Hz
   std::map<std::string, YAML::Node> simulation;        ///< axis name -> its `simulation:` section
   std::map<std::string, std::string> simulated_drive;  ///< axis name -> definition name
+  std::map<std::string, SimulationConfig> simulated;   ///< axis name -> its section, typed
+  std::vector<std::string> warnings;                   ///< worth a look, but no reason to refuse
 };
+
+/// Turns of the shaft that the drive counts at (motor, or joint where the profile says
+/// output_shaft), for a joint position; 0 where the drive says 0.
+double driveTurns(const drive::AxisConfig& axis, double joint_position);
 
 /// Finds the file of a drive profile: a name ("generic_cia402") in the search folders, or a path.
 /// @return empty if there is none.
@@ -81,5 +101,8 @@ BusLoad busLoad(const canopen::MasterConfig& master, double bitrate);
 
 /// The PDO plan as a table for people.
 std::string pdoTable(const canopen::MasterConfig& master);
+
+/// Reads a robot's YAML file into a tree for loadRobot(); adds a problem if it is no YAML.
+YAML::Node readRobotFile(const std::string& path, Problems& problems);
 
 }  // namespace cia402::config

@@ -1,0 +1,118 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include "robot_parts.h"
+
+namespace cia402::config {
+
+using drive::kNotNegative;
+using drive::kPositive;
+using drive::YamlSection;
+using drive::YamlValue;
+
+drive::AxisLimits readLimits(const YamlValue& value, drive::AxisGeometry::Type type) {
+  drive::AxisLimits limits;
+  YamlSection section(value);
+  section.read("lower", limits.lower);
+  section.read("upper", limits.upper);
+  section.read("velocity", limits.velocity, kPositive);
+  section.read("acceleration", limits.acceleration, kPositive);
+  section.read("jerk", limits.jerk, kPositive);
+  section.read("effort", limits.effort, kPositive);
+  section.finish();
+  const auto upper = section.get("upper");
+  if (limits.lower && limits.upper && !(*limits.lower < *limits.upper)) {
+    upper->problem("must be greater than lower (" + section.get("lower")->node().Scalar() +
+                   "), not `" + upper->node().Scalar() + "`");
+  }
+  if (type == drive::AxisGeometry::Type::continuous && (limits.lower || limits.upper)) {
+    section.problem("a continuous joint has neither lower nor upper; write `type: revolute`");
+  }
+  return limits;
+}
+
+drive::HomingOptions readHoming(const YamlValue& value) {
+  drive::HomingOptions homing;
+  YamlSection section(value);
+  section.readInteger("method", homing.method, -128, 127);
+  section.read("search_velocity", homing.search_velocity, kPositive);
+  section.read("zero_velocity", homing.zero_velocity, kPositive);
+  section.read("acceleration", homing.acceleration, kPositive);
+  section.read("offset", homing.offset);
+  double timeout = toSeconds(homing.timeout);
+  section.read("timeout", timeout, drive::Range{0.0, 3600.0, true});
+  homing.timeout = fromSeconds(timeout);
+  section.read("required", homing.required);
+  section.readInteger("order", homing.order, -1000, 1000);
+  section.finish();
+  return homing;
+}
+
+void readIdentity(const YamlValue& value, drive::AxisConfig& axis) {
+  YamlSection section(value);
+  section.readInteger("vendor_id", axis.vendor_id, 0, 0xFFFFFFFF);
+  section.readInteger("product_code", axis.product_code, 0, 0xFFFFFFFF);
+  section.readInteger("revision", axis.revision, 0, 0xFFFFFFFF);
+  section.readInteger("serial", axis.serial, 0, 0xFFFFFFFF);
+  section.finish();
+}
+
+namespace {
+
+void readVector(YamlSection& section, const std::string& key, double (&target)[3]) {
+  const auto value = section.get(key);
+  const auto numbers = value ? value->numbers(3) : std::nullopt;
+  for (std::size_t i = 0; numbers && i < 3; ++i) target[i] = (*numbers)[i];
+}
+
+}  // namespace
+
+FrameConfig readFrame(const YamlValue& value, const std::string& joint) {
+  FrameConfig frame;
+  frame.joint = joint;
+  YamlSection section(value);
+  section.require("parent", "the tf frame that the joint is fixed to");
+  section.require("child", "the tf frame that the joint moves");
+  section.read("parent", frame.parent);
+  section.read("child", frame.child);
+  if (const auto origin = section.get("origin")) {
+    YamlSection origin_section(*origin);
+    readVector(origin_section, "xyz", frame.xyz);
+    readVector(origin_section, "rpy", frame.rpy);
+    origin_section.finish();
+  }
+  readVector(section, "axis", frame.axis);
+  const double length = std::hypot(frame.axis[0], frame.axis[1], frame.axis[2]);
+  if (length < 1e-9) section.get("axis")->problem("must not be the zero vector");
+  for (double& component : frame.axis) component /= length;
+  section.finish();
+  return frame;
+}
+
+SimulationConfig readSimulation(const YamlValue& value) {
+  SimulationConfig simulation;
+  YamlSection section(value);
+  section.read("drive", simulation.drive);
+  section.read("initial_position", simulation.initial_position);
+  section.read("lower_limit_switch", simulation.lower_limit_switch);
+  section.read("upper_limit_switch", simulation.upper_limit_switch);
+  if (const auto home = section.get("home_switch")) {
+    const auto range = home->numbers(2);
+    if (range && !((*range)[0] < (*range)[1])) {
+      home->problem("must be a range [from, to], the smaller position first");
+    } else if (range) {
+      simulation.home_switch = std::make_pair((*range)[0], (*range)[1]);
+    }
+  }
+  section.read("index_offset", simulation.index_offset, drive::Range{0.0, 1.0, false});
+  section.read("time_constant", simulation.time_constant, kPositive);
+  section.read("brake_delay", simulation.brake_delay, kNotNegative);
+  section.finish();
+  if (simulation.lower_limit_switch && simulation.upper_limit_switch &&
+      !(*simulation.lower_limit_switch < *simulation.upper_limit_switch)) {
+    section.problem("lower_limit_switch must be less than upper_limit_switch");
+  }
+  return simulation;
+}
+
+}  // namespace cia402::config

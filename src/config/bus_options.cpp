@@ -1,0 +1,149 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "cia402_driver/drive/named_write.h"
+#include "robot_parts.h"
+
+namespace cia402::config {
+namespace {
+
+using drive::YamlSection;
+using drive::YamlValue;
+
+void readBitrate(YamlSection& section, BusConfig& bus) {
+  static const std::vector<std::int64_t> kRates = {10000,  20000,  50000,  100000, 125000,
+                                                   250000, 500000, 800000, 1000000};
+  const auto value = section.get("bitrate");
+  const auto rate = value ? value->integer(1, 1000000) : std::nullopt;
+  if (!rate) return;
+  if (std::find(kRates.begin(), kRates.end(), *rate) == kRates.end()) {
+    value->problem(
+        "is no bit rate of CiA 301; there are 10000, 20000, 50000, 100000, 125000, "
+        "250000, 500000, 800000 and 1000000");
+  }
+  bus.bitrate = static_cast<double>(*rate);
+}
+
+void readSyncPeriod(YamlSection& section, BusConfig& bus) {
+  double period = toSeconds(bus.sync_period);
+  if (!section.read("sync_period", period, drive::Range{0.0, 1.0, true})) return;
+  const auto value = *section.get("sync_period");
+  bus.sync_period = fromSeconds(period);
+  if (bus.sync_period < std::chrono::microseconds(100)) {
+    value.problem("must be at least 0.0001 s");
+  } else if (bus.sync_period.count() % 1000 != 0) {
+    value.problem("must be a whole number of microseconds, as 1006h counts in them");
+  }
+}
+
+void readHeartbeat(YamlSection& section, BusConfig& bus) {
+  double heartbeat = toSeconds(bus.heartbeat);
+  if (!section.read("heartbeat", heartbeat, drive::Range{0.0, 65.535, false})) return;
+  bus.heartbeat = fromSeconds(heartbeat);
+  if (bus.heartbeat.count() % 1000000 != 0) {
+    section.get("heartbeat")->problem("must be a whole number of milliseconds, as 1017h counts");
+  }
+}
+
+std::string seconds(Duration duration) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g s", toSeconds(duration));
+  return text;
+}
+
+std::string percent(double share) { return std::to_string(std::lround(share * 100.0)) + " %"; }
+
+void checkPeriod(const YamlValue& at, const RobotConfig& robot) {
+  for (const drive::AxisConfig& axis : robot.axes) {
+    if (!axis.profile) continue;
+    const Duration step = axis.profile->sync_period_step;
+    if (axis.profile->has_sync_period_object && robot.bus.sync_period % step != Duration(0)) {
+      at.problem("`" + axis.name + "` (profile " + axis.profile->name + ") takes multiples of " +
+                 seconds(step) + " in 1006h");
+    }
+    const auto& writes = axis.profile->startup;
+    const bool interpolates =
+        std::any_of(writes.begin(), writes.end(), [](const drive::NamedWrite& write) {
+          return write.from.compare(0, 12, "sync_period.") == 0;
+        });
+    if (interpolates && !drive::interpolationPeriod(robot.bus.sync_period)) {
+      at.problem("`" + axis.name +
+                 "` needs the period in 60C2h as a number 1 to 255 times a power "
+                 "of ten; take for example 0.004 instead of " +
+                 seconds(robot.bus.sync_period));
+      return;
+    }
+  }
+}
+
+}  // namespace
+
+void readBus(const YamlValue& value, BusConfig& bus, bool& counter_given) {
+  YamlSection section(value);
+  section.require("interface", "the CAN interface (can0), or `sim` for simulated drives");
+  section.read("interface", bus.interface);
+  if (bus.interface.size() > 15) {
+    section.get("interface")->problem("no network interface has a name longer than 15 letters");
+  }
+  readBitrate(section, bus);
+  readSyncPeriod(section, bus);
+  section.readInteger("node_id", bus.node_id, 1, 127);
+  readHeartbeat(section, bus);
+  counter_given = section.readInteger("sync_counter", bus.sync_counter, 0, 240);
+  if (counter_given && bus.sync_counter == 1) {
+    section.get("sync_counter")->problem("1 is no counter; write 0 (none) or 2 to 240");
+  }
+  section.finish();
+}
+
+void checkSync(const YamlValue& bus_section, bool counter_given, RobotConfig& robot) {
+  YamlSection section(bus_section);
+  checkPeriod(section.get("sync_period").value_or(bus_section), robot);
+  const drive::AxisConfig* chooser = nullptr;
+  for (const drive::AxisConfig& axis : robot.axes) {
+    if (counter_given || !axis.profile || !axis.profile->sync_counter) continue;
+    if (chooser != nullptr && *axis.profile->sync_counter != robot.bus.sync_counter) {
+      bus_section.problem("`" + chooser->name + "` and `" + axis.name +
+                          "` want different SYNC "
+                          "counters; choose with `sync_counter`");
+    }
+    chooser = chooser != nullptr ? chooser : &axis;
+    robot.bus.sync_counter = *axis.profile->sync_counter;
+  }
+  for (const drive::AxisConfig& axis : robot.axes) {
+    if (robot.bus.sync_counter == 0 || !axis.profile || axis.profile->has_sync_counter_object) {
+      continue;
+    }
+    robot.warnings.push_back("axes/" + axis.name +
+                             ": SYNC carries a counter, but this drive has no "
+                             "1019h; if it takes no SYNC, write `sync_counter: 0` under `bus`");
+  }
+}
+
+void checkBusLoad(const YamlValue& bus_section, RobotConfig& robot, Problems& problems) {
+  const canopen::MasterConfig master = makeMasterConfig(robot, problems);
+  const BusLoad load = busLoad(master, robot.bus.bitrate);
+  const std::string rate = std::to_string(std::lround(1.0 / toSeconds(robot.bus.sync_period)));
+  const std::string share = "the PDOs need " + percent(load.worst) + " of the bus at " + rate +
+                            " Hz in the worst case (" + percent(load.nominal) +
+                            " without stuff bits)";
+  const std::string feasible = std::to_string(static_cast<int>(load.feasible_rate));
+  if (load.worst > 1.0) {
+    YamlSection section(bus_section);
+    section.get("sync_period")
+        .value_or(bus_section)
+        .problem(share + "; at most " + feasible + " Hz keep it below 80 %: write " +
+                 "`sync_period` of " +
+                 seconds(fromSeconds(std::ceil(1e6 / load.feasible_rate) * 1e-6)) +
+                 " or more, map fewer objects, or use a second bus");
+  } else if (load.worst > 0.8) {
+    robot.warnings.push_back("bus/sync_period: " + share +
+                             ", which leaves little for SDO and "
+                             "emergencies; at most " +
+                             feasible + " Hz keep it below 80 %");
+  }
+}
+
+}  // namespace cia402::config

@@ -1,0 +1,174 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "cia402_driver/drive/conversion.h"
+#include "cia402_driver/drive/named_write.h"
+#include "robot_parts.h"
+
+namespace cia402::config {
+namespace {
+
+using canopen::PdoDirection;
+using drive::AxisConfig;
+using drive::AxisGeometry;
+using drive::Conversion;
+using drive::DriveProfile;
+using drive::ModeSpec;
+using drive::Quantity;
+using drive::UnitSpec;
+using drive::YamlSection;
+using Base = UnitSpec::Base;
+
+bool counts(const DriveProfile& profile, Quantity quantity, Base base) {
+  const auto unit = profile.units.find(quantity);
+  return unit != profile.units.end() && unit->second.base == base;
+}
+
+void checkGeometry(YamlSection& section, const AxisConfig& axis) {
+  const bool needs_counts = counts(*axis.profile, Quantity::position, Base::count) ||
+                            counts(*axis.profile, Quantity::velocity, Base::count);
+  if (needs_counts && !section.has("counts_per_turn")) {
+    section.problem("`counts_per_turn` is missing: the drive's position counts per motor turn");
+  }
+  const bool prismatic = axis.geometry.type == AxisGeometry::Type::prismatic;
+  if (prismatic && !section.has("lead")) {
+    section.problem("`lead` is missing: metres per screw turn of a prismatic axis");
+  }
+  if (!prismatic && section.has("lead")) {
+    section.get("lead")->problem("is for prismatic axes; write `type: prismatic` or leave it out");
+  }
+}
+
+bool maps(const AxisConfig& axis, PdoDirection direction, const std::string& object) {
+  return std::any_of(axis.pdos.begin(), axis.pdos.end(), [&](const drive::PdoLayout& pdo) {
+    return pdo.direction == direction &&
+           std::find(pdo.objects.begin(), pdo.objects.end(), object) != pdo.objects.end();
+  });
+}
+
+std::vector<std::string> startModes(const DriveProfile& profile) {
+  std::vector<std::string> names;
+  for (const ModeSpec& mode : profile.modes) {
+    if (mode.kind != drive::ControlKind::homing) names.push_back(mode.name);
+  }
+  return names;
+}
+
+void checkMode(YamlSection& section, const AxisConfig& axis) {
+  const auto at = section.get("mode").value_or(section.value());
+  const ModeSpec* mode = axis.profile->mode(axis.mode);
+  if (mode == nullptr || mode->kind == drive::ControlKind::homing) {
+    at.problem("profile " + axis.profile->name + " has no mode `" + axis.mode + "` to start in" +
+               drive::suggestion(axis.mode, startModes(*axis.profile)));
+    return;
+  }
+  if (!maps(axis, PdoDirection::rpdo, mode->target)) {
+    at.problem("mode `" + axis.mode + "` needs `" + mode->target +
+               "` in an RPDO; add it to `pdos`, or choose a mode whose target is mapped");
+  }
+  if (mode->kind == drive::ControlKind::torque && axis.geometry.rated_torque <= 0.0 &&
+      counts(*axis.profile, Quantity::torque, Base::per_mille_of_rated)) {
+    at.problem("mode `" + axis.mode + "` needs `rated_torque` (N m at the motor shaft)");
+  }
+}
+
+void checkCyclicObjects(YamlSection& section, const AxisConfig& axis) {
+  const auto at = section.get("pdos").value_or(section.value());
+  const auto need = [&](PdoDirection direction, const char* object, const char* kind) {
+    if (!maps(axis, direction, object)) {
+      at.problem("`" + std::string(object) + "` must be in " + kind + ": the axis needs it in " +
+                 "every cycle");
+    }
+  };
+  need(PdoDirection::rpdo, "controlword", "an RPDO");
+  need(PdoDirection::tpdo, "statusword", "a TPDO");
+  need(PdoDirection::tpdo, "position_actual", "a TPDO");
+}
+
+void checkHoming(YamlSection& section, const AxisConfig& axis, RobotConfig& robot) {
+  if (!axis.homing) return;
+  const drive::HomingSpec& spec = axis.profile->homing;
+  const auto homing = *section.get("homing");
+  YamlSection homing_section(homing);
+  const auto method = homing_section.get("method");
+  if (spec.kind == drive::HomingSpec::Kind::none) {
+    homing.problem("profile " + axis.profile->name + " has no homing; remove the section");
+  } else if (spec.kind == drive::HomingSpec::Kind::declare_zero && method) {
+    method->problem(
+        "this drive has no homing methods: the present position is declared to be "
+        "`offset`; remove the method");
+  } else if (spec.kind == drive::HomingSpec::Kind::drive && !method) {
+    homing.problem("`method` is missing: the number of a homing method of the drive");
+  } else if (axis.homing->method && method && spec.methods.count(*axis.homing->method) == 0) {
+    std::string known;
+    for (const auto& entry : spec.methods) {
+      known += (known.empty() ? "" : ", ") + std::to_string(entry.first);
+    }
+    method->problem("profile " + axis.profile->name + " has no method " +
+                    std::to_string(*axis.homing->method) + "; it has " + known);
+  }
+  const double offset = axis.homing->offset;
+  if ((axis.limits.lower && offset < *axis.limits.lower) ||
+      (axis.limits.upper && offset > *axis.limits.upper)) {
+    robot.warnings.push_back(homing.path() +
+                             "/offset lies outside the axis' limits: after homing "
+                             "the axis will stand where it may not be");
+  }
+}
+
+// Positions beyond what the object holds would wrap around.
+void checkRange(YamlSection& section, const AxisConfig& axis) {
+  for (const char* name : {"position_actual", "target_position"}) {
+    const drive::ObjectSpec* object = axis.profile->find(name);
+    if (object == nullptr) continue;
+    const auto conversion = Conversion::create(*object, *axis.profile, axis.geometry);
+    if (!conversion) continue;  // told by checkGeometry() already
+    const bool low = axis.limits.lower && *axis.limits.lower < conversion->lowest();
+    const bool high = axis.limits.upper && *axis.limits.upper > conversion->highest();
+    if (!low && !high) continue;
+    section.get("limits")->problem("`" + std::string(name) + "` holds " +
+                                   std::to_string(conversion->lowest()) + " to " +
+                                   std::to_string(conversion->highest()) +
+                                   " and would wrap around inside these limits; reduce "
+                                   "counts_per_turn or the limits");
+    return;
+  }
+}
+
+void checkWrites(YamlSection& section, const AxisConfig& axis) {
+  const auto check = [&](const std::vector<drive::NamedWrite>& writes, const drive::YamlValue& at) {
+    for (const drive::NamedWrite& write : writes) {
+      const auto resolved = drive::resolveWrite(write, axis);
+      if (!resolved) at.problem(resolved.error().message);
+    }
+  };
+  check(axis.profile->startup, section.get("limits").value_or(section.value()));
+  check(axis.writes, section.get("write").value_or(section.value()));
+  const ModeSpec* mode = axis.profile->mode(axis.mode);
+  if (mode != nullptr) check(mode->entry_writes, section.get("limits").value_or(section.value()));
+  if (axis.homing) check(axis.profile->homing.writes, *section.get("homing"));
+}
+
+}  // namespace
+
+void checkAxis(YamlSection& section, const AxisConfig& axis, RobotConfig& robot) {
+  if (!axis.profile) return;
+  checkGeometry(section, axis);
+  checkMode(section, axis);
+  checkCyclicObjects(section, axis);
+  checkHoming(section, axis, robot);
+  checkRange(section, axis);
+  const bool geometry_known = !counts(*axis.profile, Quantity::position, Base::count) ||
+                              axis.geometry.counts_per_turn > 0.0;
+  const bool lead_known =
+      axis.geometry.type != AxisGeometry::Type::prismatic || axis.geometry.lead > 0.0;
+  if (geometry_known && lead_known) checkWrites(section, axis);
+  if (axis.limits.effort && axis.geometry.rated_torque <= 0.0 &&
+      counts(*axis.profile, Quantity::torque, Base::per_mille_of_rated)) {
+    robot.warnings.push_back(section.value().path() +
+                             "/limits/effort is not sent to the drive, which counts in 1/1000 of "
+                             "its rated torque; give `rated_torque`");
+  }
+}
+
+}  // namespace cia402::config

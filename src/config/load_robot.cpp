@@ -1,0 +1,110 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <fstream>
+#include <set>
+
+#include "robot_parts.h"
+
+namespace cia402::config {
+namespace {
+
+using drive::YamlSection;
+using drive::YamlValue;
+
+void readAxes(const YamlValue& value, const YAML::Node& defaults, ProfileCache& profiles,
+              RobotConfig& robot) {
+  YamlSection section(value);
+  for (const auto& [name, entry] : section.entries()) {
+    const YamlValue merged(mergeDefaults(defaults, entry.node()), entry.path(), entry.problems());
+    readAxis(name, merged, profiles, robot);
+  }
+  section.finish();
+  if (robot.axes.empty()) value.problem("must name at least one axis");
+}
+
+void checkFrames(const YamlValue& axes, const RobotConfig& robot) {
+  std::set<std::string> children;
+  for (const FrameConfig& frame : robot.frames) {
+    if (!frame.child.empty() && !children.insert(frame.child).second) {
+      axes.problem("two joints move the tf frame `" + frame.child + "`; a frame has one parent");
+    }
+  }
+}
+
+RobotConfig readRobot(const YAML::Node& tree, const ProfileLookup& lookup, Problems& problems) {
+  RobotConfig robot;
+  ProfileCache profiles(lookup, problems);
+  const YamlValue root(tree, "", problems);
+  YamlSection section(root);
+  const YamlValue missing(YAML::Node(YAML::NodeType::Map), "bus", problems);
+  bool counter_given = false;
+
+  const auto bus = section.get("bus");
+  readBus(bus.value_or(missing), robot.bus, counter_given);
+  const auto defaults = section.get("defaults");
+  if (defaults) YamlSection check_kind(*defaults);
+  const auto axes = section.get("axes");
+  if (axes) {
+    readAxes(*axes, defaults ? defaults->node() : YAML::Node(), profiles, robot);
+    checkFrames(*axes, robot);
+  } else {
+    problems.add("axes", "is missing: name at least one axis with its node_id and drive");
+  }
+  if (const auto couplings = section.get("couplings")) readCouplings(*couplings, robot);
+  const auto groups = section.get("groups");
+  if (groups && !groups->node().IsNull()) readGroups(*groups, robot);
+  if (robot.groups.empty()) addDefaultGroup(robot);
+  section.read("joint_state_rate", robot.joint_state_rate, drive::Range{0.0, 1000.0, true});
+  section.finish();
+
+  checkSync(bus.value_or(missing), counter_given, robot);
+  if (problems.empty()) checkBusLoad(bus.value_or(missing), robot, problems);
+  return robot;
+}
+
+}  // namespace
+
+ProfileLookup profilesIn(std::vector<std::string> folders) {
+  return [folders](const std::string& name) -> std::string {
+    const bool is_path = name.find('/') != std::string::npos ||
+                         (name.size() > 5 && name.compare(name.size() - 5, 5, ".yaml") == 0);
+    if (is_path && std::ifstream(name)) return name;
+    for (const std::string& folder : folders) {
+      const std::string path = folder + "/" + name + (is_path ? "" : ".yaml");
+      if (std::ifstream(path)) return path;
+    }
+    return "";
+  };
+}
+
+YAML::Node readRobotFile(const std::string& path, Problems& problems) {
+  try {
+    return YAML::LoadFile(path);
+  } catch (const YAML::BadFile&) {
+    problems.add(path, "cannot be read");
+  } catch (const YAML::Exception& error) {
+    problems.add(path + ":" + std::to_string(error.mark.line + 1), "is no YAML: " + error.msg);
+  }
+  return YAML::Node();
+}
+
+RobotConfig loadRobot(const YAML::Node& tree, const ProfileLookup& profiles, Problems& problems) {
+  if (!tree.IsMap()) {
+    problems.add("configuration", "is empty or no mapping; it needs `bus` and `axes`");
+    return {};
+  }
+  Problems found;
+  RobotConfig robot = readRobot(tree, profiles, found);
+  nameDefaults(tree, found, problems);
+  return robot;
+}
+
+double driveTurns(const drive::AxisConfig& axis, double joint_position) {
+  const drive::AxisGeometry& geometry = axis.geometry;
+  const bool prismatic = geometry.type == drive::AxisGeometry::Type::prismatic;
+  const double per_turn = prismatic ? geometry.lead : 2.0 * std::acos(-1.0);
+  const double gear = axis.profile->output_shaft ? 1.0 : geometry.gear_ratio;
+  return geometry.direction * (joint_position - geometry.position_offset) * gear / per_turn;
+}
+
+}  // namespace cia402::config

@@ -1,0 +1,61 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "cia402_driver/config/robot.h"
+#include "cia402_driver/drive/yaml_reader.h"
+
+// The parts of a robot configuration, each read by a function of its own.
+namespace cia402::config {
+
+/// Drive profiles already read, by file; nullptr for one with problems.
+class ProfileCache {
+ public:
+  ProfileCache(const ProfileLookup& lookup, Problems& problems)
+      : lookup_(lookup), problems_(problems) {}
+  /// nullptr (and problems) if there is no valid profile of that name.
+  std::shared_ptr<const drive::DriveProfile> get(const drive::YamlValue& name);
+
+ private:
+  const ProfileLookup& lookup_;
+  Problems& problems_;
+  std::map<std::string, std::shared_ptr<const drive::DriveProfile>> profiles_;
+};
+
+/// `axis` with everything that only `defaults` has added under it, mappings key by key.
+YAML::Node mergeDefaults(const YAML::Node& defaults, const YAML::Node& axis);
+/// Problems of what an axis took from `defaults` get the path "defaults/..." and are told once.
+void nameDefaults(const YAML::Node& tree, const Problems& from, Problems& to);
+
+void readBus(const drive::YamlValue& value, BusConfig& bus, bool& counter_given);
+/// Reads one axis with its frame and simulation into `robot`.
+void readAxis(const std::string& name, const drive::YamlValue& value, ProfileCache& profiles,
+              RobotConfig& robot);
+
+drive::AxisLimits readLimits(const drive::YamlValue& value, drive::AxisGeometry::Type type);
+drive::HomingOptions readHoming(const drive::YamlValue& value);
+void readIdentity(const drive::YamlValue& value, drive::AxisConfig& axis);
+FrameConfig readFrame(const drive::YamlValue& value, const std::string& joint);
+SimulationConfig readSimulation(const drive::YamlValue& value);
+
+/// What the axis' keys mean together with its profile; `section` is the axis.
+void checkAxis(drive::YamlSection& section, const drive::AxisConfig& axis, RobotConfig& robot);
+
+void readCouplings(const drive::YamlValue& value, RobotConfig& robot);
+void readGroups(const drive::YamlValue& value, RobotConfig& robot);
+/// The group `joints` of all joints that can follow a stream of positions.
+void addDefaultGroup(RobotConfig& robot);
+/// Names of all joints: of axes without a coupling, and of the couplings.
+std::vector<std::string> jointNames(const RobotConfig& robot);
+
+/// Chooses the SYNC counter and checks the period against what the drives take.
+void checkSync(const drive::YamlValue& bus_section, bool counter_given, RobotConfig& robot);
+void checkBusLoad(const drive::YamlValue& bus_section, RobotConfig& robot, Problems& problems);
+
+/// True for names that can stand in a topic: a letter, then letters, digits and underscores.
+bool isGraphName(const std::string& name);
+
+}  // namespace cia402::config
