@@ -14,7 +14,7 @@ build() {
       -DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DPYTHON_EXECUTABLE="$system_python" "$@" &&
       cmake --build "$directory" --parallel "$(build_jobs)"
   } >"$directory/build.log" 2>&1 || {
-    grep -vE '^\[[0-9]+/[0-9]+\] (Building|Generating|Linking)' "$directory/build.log" |
+    grep -vE '^(-- |Generating |\[[0-9]+/[0-9]+\] )' "$directory/build.log" |
       tail -n 60 >&2
     die "the build failed, see $directory/build.log"
   }
