@@ -3,12 +3,12 @@
 
 #include <linux/can/error.h>
 #include <linux/can/raw.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <ctime>
 
 namespace cia402::can {
 namespace {

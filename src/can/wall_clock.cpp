@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "wall_clock.h"
 
-#include <time.h>
+#include <ctime>
 
 #include <limits>
 

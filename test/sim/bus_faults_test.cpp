@@ -146,6 +146,16 @@ TEST_F(BusFaultsTest, ACorruptedFrameIsRepeatedAndBothSidesCountTheError) {
   EXPECT_EQ(errors.size(), 1u);
 }
 
+TEST_F(BusFaultsTest, ARepeatedFrameStaysAheadOfTheNextOfItsIdentifier) {
+  bus.faults().add(rule(FaultKind::corrupt, 0x601, 1));
+  master_port.send(Frame(0x601, {1}), atUs(0));
+  master_port.send(Frame(0x601, {2}), atUs(0));
+  bus.advance(atUs(1000));
+  ASSERT_EQ(drive.frames.size(), 2u);
+  EXPECT_EQ(drive.frames[0].frame.data[0], 1);
+  EXPECT_EQ(drive.frames[1].frame.data[0], 2);
+}
+
 TEST_F(BusFaultsTest, ThirtyTwoFailedAttemptsInARowAreBusOff) {
   bus.faults().add(rule(FaultKind::corrupt, 0x080, 31));
   master_port.send(kSync, atUs(0));

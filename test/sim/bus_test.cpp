@@ -202,8 +202,13 @@ TEST_F(BusTest, TellsTheLoadSinceStartAndOfTheLastSecond) {
   EXPECT_DOUBLE_EQ(bus.recentLoad(), 0.051 * 0.5);
   bus.advance(atUs(3'000'000));
   EXPECT_DOUBLE_EQ(bus.recentLoad(), 0.0);
-  EXPECT_EQ(bus.traffic().frames, 1500u);
-  EXPECT_EQ(bus.traffic().busy_bits, 1500u * 51u);
+  master_port.send(kSync, atUs(3'000'000));
+  bus.advance(atUs(3'050'000));  // counts once its tenth of a second is full
+  EXPECT_DOUBLE_EQ(bus.recentLoad(), 0.0);
+  bus.advance(atUs(3'100'000));
+  EXPECT_DOUBLE_EQ(bus.recentLoad(), 0.000051);
+  EXPECT_EQ(bus.traffic().frames, 1501u);
+  EXPECT_EQ(bus.traffic().busy_bits, 1501u * 51u);
 }
 
 TEST_F(BusTest, CountsTheLoadFromTheFirstTimeItIsGiven) {
