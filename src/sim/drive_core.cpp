@@ -146,7 +146,6 @@ void DriveCore::onControlword() {
   const PdsCommand command = decodeCommand(controlword_, previous);
   if (command == PdsCommand::fault_reset) {
     resetFault();
-    updateStatusword();
     return;
   }
   const bool was_operating = state_ == PdsState::operation_enabled && !after_stop_;

@@ -61,6 +61,7 @@ void DriveCore::resetFault() {
   }
   clearErrors();
   if (state_ == PdsState::fault) enter(PdsState::switch_on_disabled);  // transition 15
+  updateStatusword();
 }
 
 void DriveCore::clearErrors() {

@@ -63,7 +63,7 @@ void DriveMotion::powerStage(bool on) {
 }
 
 void DriveMotion::setMode(const ModeDefinition* mode) {
-  if (powered_ && !positionControlled()) takeOver();
+  if (powered_) takeOver();
   mode_ = mode;
   profile_.reset(demand_, demand_velocity_);
   interpolator_.reset(demand_);
@@ -78,12 +78,15 @@ void DriveMotion::setMode(const ModeDefinition* mode) {
   velocity_reached_.reset();
   if (mode_ != nullptr && mode_->behaviour == ModeBehaviour::profile_position && mode_->handshake) {
     active_.limits = profileLimits();
+    if (active_.limits.deceleration > 0.0) {  // the nearest place to stand still
+      active_.target +=
+          demand_velocity_ * std::fabs(demand_velocity_) / (2.0 * active_.limits.deceleration);
+    }
   }
 }
 
 void DriveMotion::stop(Ramp ramp) {
-  if (!positionControlled()) takeOver();
-  profile_.reset(demand_, demand_velocity_);
+  takeOver();  // from where the rotor really is, whatever was demanded of it
   stop_ = ramp;
 }
 
@@ -290,7 +293,10 @@ void DriveMotion::stepCyclicPosition() {
   interpolator_.step();
   const double moved = interpolator_.position() - before;
   if (moved != 0.0 && blocked(moved)) {
-    if (demand_velocity_ * moved <= 0.0) demand_velocity_ = 0.0;
+    const double speed = demand_velocity_ * moved <= 0.0
+                             ? 0.0
+                             : std::min(std::fabs(demand_velocity_), std::fabs(motor_.velocity()));
+    demand_velocity_ = std::copysign(speed, moved);
     profile_.reset(demand_, demand_velocity_);
     profile_.stop(deceleration(Ramp::quick_stop));
     demand_ = profile_.position();

@@ -51,6 +51,8 @@ void Motor::accelerate(double wanted) {
 
 void Motor::followPosition(double demand) {
   const double error = demand - position_;
+  const double demand_speed = last_demand_ ? (demand - *last_demand_) / kDriveStepS : 0.0;
+  last_demand_ = demand;
   const double distance = std::fabs(error);
   if (distance < kRestDistance && std::fabs(velocity_) < kRestVelocity && !blocked_) {
     position_ = demand;
@@ -58,12 +60,16 @@ void Motor::followPosition(double demand) {
     torque_ = 0.0;
     return;
   }
-  const double speed = std::min({distance / parameters_.position_time_constant,
-                                 brakingSpeed(distance), parameters_.max_speed});
+  // The demand has just moved on by a step: seen after the step the lag is the time constant's.
+  const double lag = parameters_.position_time_constant + kDriveStepS;
+  const double approach =
+      brakingSpeed(distance) + std::max(0.0, std::copysign(1.0, error) * demand_speed);
+  const double speed = std::min({distance / lag, approach, parameters_.max_speed});
   accelerate((std::copysign(speed, error) - velocity_) * velocity_gain_ / kDriveStepS);
 }
 
 void Motor::followVelocity(double demand) {
+  last_demand_.reset();
   if (demand == 0.0 && std::fabs(velocity_) < kRestVelocity) {
     velocity_ = 0.0;
     torque_ = 0.0;
@@ -73,6 +79,7 @@ void Motor::followVelocity(double demand) {
 }
 
 void Motor::applyTorque(double rated_torques, double max_speed) {
+  last_demand_.reset();
   const double torque = std::clamp(rated_torques, -torque_limit_, torque_limit_);
   const double friction = parameters_.friction;
   double push = 0.0;  // what is left of the torque after friction
@@ -99,6 +106,7 @@ void Motor::applyTorque(double rated_torques, double max_speed) {
 }
 
 void Motor::coast() {
+  last_demand_.reset();
   torque_ = 0.0;
   if (velocity_ == 0.0) return;
   const double deceleration = parameters_.friction * parameters_.rated_acceleration +

@@ -1,6 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "cia402_driver/common/time.h"
 
 namespace cia402::sim {
@@ -55,6 +57,7 @@ class Motor {
   double position_;
   double velocity_ = 0.0;
   double torque_ = 0.0;
+  std::optional<double> last_demand_;  ///< of the position loop, to know how fast it moves
   bool blocked_ = false;
 };
 
