@@ -23,6 +23,8 @@ Result<drive::Conversion> deviceNumbers(const ObjectSpec& spec, const drive::Axi
   ObjectSpec plain = spec;
   plain.quantity = drive::Quantity::none;
   plain.factor = 1.0;
+  // The pattern of a float has a sign, even in an object that the drive calls unsigned.
+  if (plain.encoding == Encoding::float32) plain.type = drive::DataType::real32;
   return drive::Conversion::create(plain, *axis.profile, axis.geometry);
 }
 
@@ -68,22 +70,52 @@ ObjectText describeUnlisted(const Bytes& data) {
   return text;
 }
 
-Result<Bytes> integerBytes(const std::string& value, unsigned bits, bool is_signed) {
+/// What whole numbers an object holds.
+struct IntegerRange {
+  std::int64_t lowest = 0;
+  std::uint64_t highest = 0;          ///< of a decimal number
+  std::uint64_t highest_pattern = 0;  ///< of a hexadecimal one: the bits as they are
+  unsigned size = 0;                  ///< bytes
+  std::string type;                   ///< for messages
+};
+
+IntegerRange rangeOf(drive::DataType type) {
+  const unsigned bits = canopen::sizeBits(type);
+  const std::uint64_t all = bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
+  IntegerRange range;
+  range.highest = canopen::isSigned(type) ? all >> 1 : all;
+  range.lowest = canopen::isSigned(type) ? -static_cast<std::int64_t>(all >> 1) - 1 : 0;
+  range.highest_pattern = all;
+  range.size = bits == 1 ? 1 : bits / 8;
+  range.type = canopen::toString(type);
+  return range;
+}
+
+/// Whether the number has a sign is not known: both readings are taken.
+IntegerRange rangeOfSize(unsigned size) {
+  const std::uint64_t all = size >= 8 ? ~std::uint64_t{0} : (std::uint64_t{1} << (8 * size)) - 1;
+  return {-static_cast<std::int64_t>(all >> 1) - 1, all, all, size,
+          std::to_string(size) + (size == 1 ? " byte" : " bytes")};
+}
+
+Result<Bytes> integerBytes(const std::string& value, const IntegerRange& range) {
   const bool negative = !value.empty() && value[0] == '-';
+  const std::string digits = value.substr(negative ? 1 : 0);
+  const bool hexadecimal = digits.size() > 2 && digits[0] == '0' && std::tolower(digits[1]) == 'x';
   char* end = nullptr;
   errno = 0;
-  const unsigned long long magnitude = std::strtoull(value.c_str() + (negative ? 1 : 0), &end, 0);
-  const bool number = !value.empty() && end != nullptr && *end == '\0' && errno == 0 &&
-                      std::isdigit(static_cast<unsigned char>(value[negative ? 1 : 0])) != 0;
-  if (!number) return Error{"\"" + value + "\" is not a whole number; write e.g. -5 or 0x1A"};
-  const std::uint64_t largest = bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
-  const std::uint64_t lowest = std::uint64_t{1} << (bits - 1);
-  if (negative ? (!is_signed || magnitude > lowest) : magnitude > largest) {
-    return Error{value + " does not fit " + std::to_string(bits) + (is_signed ? " signed" : "") +
-                 " bits"};
+  const std::uint64_t magnitude = std::strtoull(digits.c_str(), &end, hexadecimal ? 16 : 10);
+  if (digits.empty() || *end != '\0' || std::isdigit(static_cast<unsigned char>(digits[0])) == 0) {
+    return Error{"\"" + value + "\" is not a whole number; write e.g. -5 or 0x1A"};
   }
-  const std::uint64_t raw = negative ? (~std::uint64_t{magnitude} + 1) : magnitude;
-  return canopen::toBytes(raw & largest, bits / 8);
+  const std::uint64_t raw = negative ? ~magnitude + 1 : magnitude;
+  const std::uint64_t lowest = ~static_cast<std::uint64_t>(range.lowest) + 1;  // its magnitude
+  const std::uint64_t highest = hexadecimal ? range.highest_pattern : range.highest;
+  if (errno != 0 || magnitude > (negative ? lowest : highest)) {
+    return Error{value + " does not fit " + range.type + " (" + std::to_string(range.lowest) +
+                 ".." + std::to_string(range.highest) + ")"};
+  }
+  return canopen::toBytes(raw & range.highest_pattern, range.size);
 }
 
 Result<Bytes> floatBytes(const std::string& value, const ObjectSpec& spec,
@@ -115,9 +147,13 @@ std::string textOf(const Bytes& data) {
 
 ObjectText describeObject(const ObjectSpec* spec, const drive::AxisConfig& axis,
                           const Bytes& data) {
-  if (spec == nullptr || isText(spec->type)) return describeUnlisted(data);
+  if (spec == nullptr) return describeUnlisted(data);
   const unsigned bits = canopen::sizeBits(spec->type);
   ObjectText text;
+  if (isText(spec->type)) {
+    text.value = textOf(data);
+    return text;
+  }
   if (data.size() * 8 != (bits == 1 ? 8 : bits)) {
     text.value = textOf(data) + " (" + std::to_string(data.size()) +
                  " bytes, but the profile says " + canopen::toString(spec->type) + ")";
@@ -151,13 +187,12 @@ Result<Bytes> encodeObject(const ObjectSpec& spec, const drive::AxisConfig& axis
       spec.type == drive::DataType::real64) {
     return floatBytes(value, spec, axis);
   }
-  const unsigned bits = canopen::sizeBits(spec.type);
-  return integerBytes(value, bits == 1 ? 8 : bits, canopen::isSigned(spec.type));
+  return integerBytes(value, rangeOf(spec.type));
 }
 
 Result<Bytes> encodeUnlisted(const std::string& value, std::size_t size) {
   if (size == 0 || size > 8) return Bytes(value.begin(), value.end());
-  return integerBytes(value, static_cast<unsigned>(8 * size), true);
+  return integerBytes(value, rangeOfSize(static_cast<unsigned>(size)));
 }
 
 }  // namespace cia402::bus

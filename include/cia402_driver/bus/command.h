@@ -19,7 +19,7 @@ struct Answer {
   bool success = false;
   std::string message;                                       ///< a sentence
   canopen::Bytes data;                                       ///< read_object: wire order
-  double number = std::numeric_limits<double>::quiet_NaN();  ///< read_object: in the unit of `text`
+  double number = std::numeric_limits<double>::quiet_NaN();  ///< read_object: in device units
   std::string text;                                          ///< read_object: value with unit
 };
 
@@ -51,8 +51,8 @@ struct ReadObjectCommand {
   std::string axis, object;
 };
 
-/// Writes an object: a number in SI joint units for objects with a quantity, else a plain number
-/// (decimal or 0x...), or a text for strings.
+/// Writes an object: a number in device units (decimal, or 0x... as the bit pattern; a float where
+/// the object carries one), or a text for strings.
 struct WriteObjectCommand {
   std::string axis, object, value;
 };

@@ -1,0 +1,36 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/bus/cycle_statistics.h"
+
+#include <gtest/gtest.h>
+
+namespace cia402::bus {
+namespace {
+
+using namespace std::chrono_literals;
+
+TEST(CycleStatistics, IsZeroBeforeTheFirstSync) {
+  const CycleStatistics statistics;
+  EXPECT_EQ(statistics.cycles(), 0u);
+  EXPECT_EQ(statistics.rmsLateness(), 0.0);
+  EXPECT_EQ(statistics.maxLateness(), 0.0);
+}
+
+TEST(CycleStatistics, TellsLastLargestAndRootMeanSquareLateness) {
+  CycleStatistics statistics;
+  statistics.syncSent(4ms);
+  statistics.syncSent(3ms);
+  EXPECT_EQ(statistics.cycles(), 2u);
+  EXPECT_DOUBLE_EQ(statistics.lastLateness(), 0.003);
+  EXPECT_DOUBLE_EQ(statistics.maxLateness(), 0.004);
+  EXPECT_NEAR(statistics.rmsLateness(), 0.0035355339, 1e-9);  // sqrt((16 + 9) / 2) ms
+}
+
+TEST(CycleStatistics, AddsUpSkippedCycles) {
+  CycleStatistics statistics;
+  statistics.cyclesSkipped(3);
+  statistics.cyclesSkipped(1);
+  EXPECT_EQ(statistics.overruns(), 4u);
+}
+
+}  // namespace
+}  // namespace cia402::bus
