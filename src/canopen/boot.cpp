@@ -87,7 +87,8 @@ void BootProcedure::enter(std::size_t step, Time now) {
   for (index_ = step; index_ < kStepCount; ++index_) {
     item_ = 0;
     deadline_ = kNever;
-    if ((this->*kSteps[index_].begin)(now)) return;
+    const Step& present = kSteps[index_];
+    if ((this->*present.begin)(now)) return;
   }
   step_ = "ready";
   status_ = Status::done;
@@ -95,12 +96,13 @@ void BootProcedure::enter(std::size_t step, Time now) {
 
 BootProcedure::Status BootProcedure::advance(Time now) {
   while (status_ == Status::running) {
-    switch ((this->*kSteps[index_].check)(now)) {
+    const Step& present = kSteps[index_];
+    switch ((this->*present.check)(now)) {
       case Progress::waiting:
         return status_;
       case Progress::again:
         ++item_;
-        if ((this->*kSteps[index_].begin)(now)) break;
+        if ((this->*present.begin)(now)) break;
         [[fallthrough]];
       case Progress::next:
         enter(index_ + 1, now);

@@ -42,6 +42,7 @@ bool BootProcedure::beginWaitingForBootUp(Time now) {
 BootProcedure::Progress BootProcedure::checkWaitingForBootUp(Time now) {
   if (now < deadline_) return Progress::waiting;
   boot_up_missed_ = true;
+  heartbeat_heard_ = false;  // those so far may have left before the reset
   return Progress::next;
 }
 

@@ -17,6 +17,8 @@ constexpr std::uint8_t kRequestDownloadSegmented = 0x21;  // size indicated
 constexpr std::uint8_t kRequestDownloadExpedited = 0x23;  // size indicated
 constexpr std::uint8_t kAbort = 0x80;
 
+constexpr Time kAtOnce{};  // the beginning of time, but no number that overflows in a subtraction
+
 std::string hexBytes(const Bytes& bytes) {
   constexpr std::size_t kShown = 8;
   std::string text;
@@ -73,7 +75,7 @@ void SdoClient::tick(Time now) {
 
 Time SdoClient::nextDeadline() const {
   if (phase_ != Phase::idle) return deadline_;
-  return queue_.empty() ? kNever : Time::min();
+  return queue_.empty() ? kNever : kAtOnce;
 }
 
 bool SdoClient::idle() const { return queue_.empty(); }

@@ -160,6 +160,15 @@ TEST_F(BootTest, a_node_with_heartbeat_but_without_sdo_answers_has_failed_not_va
   EXPECT_THAT(node->problem(), HasSubstr("sends heartbeats, but did not answer SDO requests"));
 }
 
+TEST_F(BootTest, a_heartbeat_of_before_the_reset_is_no_sign_of_life) {
+  peer.forget("000 82 03");
+  peer.forget(kAskDeviceType);
+  boot();
+  hear("703 05");
+  pass(seconds(6));
+  EXPECT_EQ(node->health(), NodeHealth::absent);
+}
+
 TEST_F(BootTest, another_product_than_configured_is_told_with_both_numbers) {
   config.product_code = 0x000D0117;
   peer.replace(kAskProduct, "583 43 18 10 02 05 00 00 00");
