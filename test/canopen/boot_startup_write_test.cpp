@@ -1,0 +1,88 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "canopen/node_fixture.h"
+
+namespace cia402::canopen {
+namespace {
+
+using test::Lines;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+class StartupWriteTest : public test::NodeFixture {
+ protected:
+  StartupWriteTest() {
+    StartupWrite write;
+    write.object = {0x6065, 0};
+    write.name = "following_error_window";
+    write.data = {0x88, 0x13, 0x00, 0x00};  // 5000
+    config.writes = {write};
+  }
+  const char* kRead = "603 40 65 60 00 00 00 00 00";
+  const char* kWrite = "603 23 65 60 00 88 13 00 00";
+  const char* kDone = "583 60 65 60 00 00 00 00 00";
+};
+
+TEST_F(StartupWriteTest, writes_what_differs) {
+  peer.on(kRead, "583 43 65 60 00 10 00 00 00").on(kWrite, kDone);
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_TRUE(sentLine(kWrite));
+}
+
+TEST_F(StartupWriteTest, does_not_write_what_is_as_wanted) {
+  peer.on(kRead, "583 43 65 60 00 88 13 00 00");
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_FALSE(sentLine(kWrite));
+}
+
+TEST_F(StartupWriteTest, writes_an_object_that_cannot_be_read) {
+  peer.on(kRead, "583 80 65 60 00 01 00 01 06").on(kWrite, kDone);
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_TRUE(sentLine(kWrite));
+}
+
+TEST_F(StartupWriteTest, does_not_read_first_where_not_wanted) {
+  config.writes[0].only_if_different = false;
+  peer.on(kWrite, kDone);
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_FALSE(sentLine(kRead));
+}
+
+TEST_F(StartupWriteTest, a_refused_write_fails_the_boot_unless_optional) {
+  peer.on(kRead, "583 43 65 60 00 10 00 00 00").on(kWrite, "583 80 65 60 00 31 00 09 06");
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->problem(),
+            "shoulder (node 3): boot failed while writing 0x00001388 to 6065:00 "
+            "following_error_window: the drive refused: 0x06090031 (value of parameter written too "
+            "high)");
+  EXPECT_FALSE(sentLine("000 01 03"));
+  config.writes[0].optional = true;
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_THAT(node->notes(),
+              ElementsAre(HasSubstr("optional start-up write left out: writing 0x00001388 to "
+                                    "6065:00 following_error_window")));
+}
+
+TEST_F(StartupWriteTest, keeps_the_order_of_the_configuration) {
+  StartupWrite second = config.writes[0];
+  second.object = {0x605A, 0};
+  second.data = {0x02, 0x00};
+  config.writes.push_back(second);
+  for (StartupWrite& write : config.writes) write.only_if_different = false;
+  peer.on(kWrite, kDone).on("603 2B 5A 60 00 02 00 00 00", "583 60 5A 60 00 00 00 00 00");
+  boot();
+  const Lines sent = peer.take();
+  EXPECT_EQ(Lines(sent.end() - 3, sent.end()),
+            (Lines{kWrite, "603 2B 5A 60 00 02 00 00 00", "000 01 03"}));
+}
+
+}  // namespace
+}  // namespace cia402::canopen
