@@ -64,12 +64,8 @@ void readSections(YamlSection& section, AxisConfig& axis, RobotConfig& robot) {
     robot.frames.push_back(readFrame(*frame, axis.joint));
   }
   SimulationConfig simulation;
-  if (const auto value = section.get("simulation")) {
-    simulation = readSimulation(*value);
-    robot.simulation[axis.name] = value->node();
-  }
+  if (const auto value = section.get("simulation")) simulation = readSimulation(*value);
   if (simulation.drive.empty() && axis.profile) simulation.drive = axis.profile->name;
-  robot.simulated_drive[axis.name] = simulation.drive;
   robot.simulated[axis.name] = simulation;
 }
 

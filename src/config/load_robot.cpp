@@ -1,5 +1,4 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include <cmath>
 #include <fstream>
 #include <set>
 
@@ -97,14 +96,6 @@ RobotConfig loadRobot(const YAML::Node& tree, const ProfileLookup& profiles, Pro
   RobotConfig robot = readRobot(tree, profiles, found);
   nameDefaults(tree, found, problems);
   return robot;
-}
-
-double driveTurns(const drive::AxisConfig& axis, double joint_position) {
-  const drive::AxisGeometry& geometry = axis.geometry;
-  const bool prismatic = geometry.type == drive::AxisGeometry::Type::prismatic;
-  const double per_turn = prismatic ? geometry.lead : 2.0 * std::acos(-1.0);
-  const double gear = axis.profile->output_shaft ? 1.0 : geometry.gear_ratio;
-  return geometry.direction * (joint_position - geometry.position_offset) * gear / per_turn;
 }
 
 }  // namespace cia402::config

@@ -111,7 +111,7 @@ void readModes(const YamlValue& value, DriveProfile& profile) {
   for (const auto& [name, entry] : section.entries()) {
     const ModeSpec mode = readMode(name, entry, profile);
     if (profile.mode(mode.name) != nullptr) {
-      if (mode.name != name) entry.problem("`" + mode.name + "` is given already");
+      entry.problem("the mode " + mode.name + " is given already");
       continue;
     }
     profile.modes.push_back(mode);

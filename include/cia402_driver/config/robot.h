@@ -68,16 +68,10 @@ struct RobotConfig {
   std::vector<CouplingConfig> couplings;
   std::vector<GroupConfig> groups;
   std::vector<FrameConfig> frames;
-  double joint_state_rate = 50.0;                      ///< Hz
-  std::map<std::string, YAML::Node> simulation;        ///< axis name -> its `simulation:` section
-  std::map<std::string, std::string> simulated_drive;  ///< axis name -> definition name
-  std::map<std::string, SimulationConfig> simulated;   ///< axis name -> its section, typed
-  std::vector<std::string> warnings;                   ///< worth a look, but no reason to refuse
+  double joint_state_rate = 50.0;                     ///< Hz
+  std::map<std::string, SimulationConfig> simulated;  ///< axis name -> its `simulation:` section
+  std::vector<std::string> warnings;                  ///< worth a look, but no reason to refuse
 };
-
-/// Turns of the shaft that the drive counts at (motor, or joint where the profile says
-/// output_shaft), for a joint position; 0 where the drive says 0.
-double driveTurns(const drive::AxisConfig& axis, double joint_position);
 
 /// Finds the file of a drive profile: a name ("generic_cia402") in the search folders, or a path.
 /// @return empty if there is none.

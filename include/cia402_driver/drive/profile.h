@@ -167,7 +167,6 @@ struct DriveProfile {
   unsigned max_pdos = 4;                  ///< per direction
   unsigned max_pdo_entries = 8;
   bool pdo_map_count_may_be_read_only = false;
-  bool pdo_cob_ids_fixed = false;
   std::optional<std::uint8_t> sync_counter;  ///< overflow value wanted in 1019h; none: no counter
   bool has_sync_counter_object = true;       ///< 1019h exists
   bool has_sync_period_object = true;        ///< 1006h exists

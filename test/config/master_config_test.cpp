@@ -1,0 +1,170 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cia402_driver/config/robot.h"
+
+namespace cia402::config {
+namespace {
+
+using canopen::NodeConfig;
+using canopen::PdoConfig;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+canopen::MasterConfig make(const std::string& yaml) {
+  Problems problems;
+  const RobotConfig robot =
+      loadRobot(YAML::Load(yaml), profilesIn({CIA402_CONFIG_DIR "/drives"}), problems);
+  const canopen::MasterConfig master = makeMasterConfig(robot, problems);
+  EXPECT_EQ(problems.text(), "");
+  return master;
+}
+
+const char* const kTwo = R"(
+bus: {interface: can0, sync_period: 0.004, node_id: 100, heartbeat: 0.2}
+axes:
+  servo:
+    node_id: 5
+    drive: generic_cia402
+    counts_per_turn: 6283.185307179586
+    limits: {velocity: 2.0, acceleration: 8.0}
+    identity: {vendor_id: "0x80000181", serial: 7}
+    write: [{object: "0x6065", value: 5000}, {object: position_window, value: 0.01}]
+  joint: {node_id: 6, drive: damiao_dm, limits: {velocity: 2.0, effort: 7.0}}
+)";
+
+std::vector<std::uint8_t> written(const NodeConfig& node, canopen::ObjectId object) {
+  for (const auto& write : node.writes) {
+    if (write.object == object) return write.data;
+  }
+  return {};
+}
+
+const PdoConfig& pdo(const NodeConfig& node, canopen::PdoDirection direction, unsigned number) {
+  for (const PdoConfig& config : node.pdos) {
+    if (config.direction == direction && config.number == number) return config;
+  }
+  throw std::logic_error("no such PDO");
+}
+
+TEST(MasterConfig, CobIdsAreThoseOfThePredefinedConnectionSet) {
+  const canopen::MasterConfig master = make(kTwo);
+  const NodeConfig& node = master.nodes.at(0);
+  const auto rpdo = canopen::PdoDirection::rpdo, tpdo = canopen::PdoDirection::tpdo;
+  ASSERT_EQ(node.pdos.size(), 8u);
+  EXPECT_EQ(pdo(node, rpdo, 1).cob_id, 0x205);
+  EXPECT_EQ(pdo(node, rpdo, 4).cob_id, 0x505);
+  EXPECT_EQ(pdo(node, tpdo, 1).cob_id, 0x185);
+  EXPECT_EQ(pdo(node, tpdo, 4).cob_id, 0x485);
+}
+
+TEST(MasterConfig, MapsTheLayoutAndDisablesTheRest) {
+  const canopen::MasterConfig master = make(kTwo);
+  const PdoConfig& first = pdo(master.nodes.at(0), canopen::PdoDirection::rpdo, 1);
+  EXPECT_TRUE(first.enabled);
+  ASSERT_EQ(first.entries.size(), 2u);
+  EXPECT_EQ(first.entries[0].object, (canopen::ObjectId{0x6040, 0}));
+  EXPECT_EQ(first.entries[0].bits, 16);
+  EXPECT_EQ(first.entries[1].object, (canopen::ObjectId{0x607A, 0}));
+  EXPECT_EQ(first.entries[1].bits, 32);
+  EXPECT_FALSE(pdo(master.nodes.at(0), canopen::PdoDirection::rpdo, 3).enabled);
+  EXPECT_EQ(pdo(master.nodes.at(0), canopen::PdoDirection::tpdo, 3).transmission, 10);
+}
+
+TEST(MasterConfig, StartUpWritesAreBytesInWireOrder) {
+  const canopen::MasterConfig master = make(kTwo);
+  const NodeConfig& servo = master.nodes.at(0);
+  EXPECT_THAT(written(servo, {0x6081, 0}), ElementsAre(0xD0, 0x07, 0x00, 0x00));  // 2000 counts/s
+  EXPECT_THAT(written(servo, {0x6085, 0}), ElementsAre(0x80, 0x3E, 0x00, 0x00));  // 16000
+  EXPECT_THAT(written(servo, {0x60C2, 1}), ElementsAre(0x04));
+  EXPECT_THAT(written(servo, {0x60C2, 2}), ElementsAre(0xFD));                    // 10^-3 s
+  EXPECT_THAT(written(servo, {0x6065, 0}), ElementsAre(0x88, 0x13, 0x00, 0x00));  // raw, by index
+  EXPECT_THAT(written(servo, {0x6067, 0}), ElementsAre(0x0A, 0x00, 0x00, 0x00));  // 0.01 rad
+  const NodeConfig& joint = master.nodes.at(1);
+  EXPECT_THAT(written(joint, {0x6083, 0}), ElementsAre(0x00, 0x00, 0xA0, 0x41));  // 20.0, default
+  EXPECT_THAT(written(joint, {0x6072, 0}), ElementsAre(0x00, 0x00, 0xE0, 0x40));  // 7.0
+  EXPECT_THAT(written(joint, {0x605A, 0}), ElementsAre(0x02, 0x00));
+  EXPECT_THAT(written(joint, {0x1029, 1}), ElementsAre(0x00));
+}
+
+TEST(MasterConfig, NamesIdentitySupervisionAndSync) {
+  const canopen::MasterConfig master = make(kTwo);
+  EXPECT_EQ(master.node_id, 100);
+  EXPECT_EQ(master.heartbeat, std::chrono::milliseconds(200));
+  EXPECT_EQ(master.sync_counter, 240);
+  const NodeConfig& servo = master.nodes.at(0);
+  EXPECT_EQ(servo.name, "servo");
+  EXPECT_EQ(servo.vendor_id, 0x80000181u);
+  EXPECT_EQ(servo.serial, 7u);
+  EXPECT_FALSE(servo.device_type);
+  EXPECT_EQ(servo.heartbeat, std::chrono::milliseconds(200));
+  EXPECT_EQ(servo.heartbeat_timeout, std::chrono::milliseconds(600));
+  EXPECT_EQ(servo.master_timeout, std::chrono::milliseconds(600));
+  EXPECT_EQ(servo.sync_counter, 240);
+  EXPECT_EQ(servo.sync_period_us, 4000u);
+  EXPECT_EQ(master.nodes.at(1).device_type, 0x00030000u);
+  EXPECT_TRUE(master.nodes.at(1).map_count_may_be_read_only);
+}
+
+TEST(MasterConfig, WithoutACounterOnlyDrivesThatExpectOneAreTold) {
+  std::string text = kTwo;
+  text.replace(text.find("node_id: 100"), 12, "sync_counter: 0");
+  const canopen::MasterConfig master = make(text);
+  EXPECT_EQ(master.sync_counter, 0);
+  EXPECT_FALSE(master.nodes.at(0).sync_counter);
+  EXPECT_EQ(master.nodes.at(1).sync_counter, 0);
+}
+
+TEST(BusLoad, CountsBitsAsTheStandardDoes) {
+  // SYNC 47/55 bits, one RPDO and one TPDO of 6 bytes 95/115 each, at 250 Hz; no heartbeats.
+  canopen::MasterConfig master;
+  master.heartbeat = Duration(0);
+  NodeConfig node;
+  node.heartbeat = Duration(0);
+  PdoConfig six;
+  six.entries = {{{0x6041, 0}, 16, "statusword"}, {{0x6064, 0}, 32, "position_actual"}};
+  six.direction = canopen::PdoDirection::tpdo;
+  node.pdos.push_back(six);
+  six.direction = canopen::PdoDirection::rpdo;
+  node.pdos.push_back(six);
+  master.nodes.push_back(node);
+  BusLoad load = busLoad(master, 1e6);
+  EXPECT_DOUBLE_EQ(load.nominal, (47 + 2 * 95) * 250 / 1e6);
+  EXPECT_DOUBLE_EQ(load.worst, (55 + 2 * 115) * 250 / 1e6);
+  EXPECT_DOUBLE_EQ(load.feasible_rate, 0.8e6 / (55 + 2 * 115));
+
+  master.nodes[0].pdos[0].transmission = 5;  // every fifth SYNC
+  master.sync_counter = 240;                 // one byte more in SYNC
+  master.heartbeat = std::chrono::milliseconds(100);
+  load = busLoad(master, 5e5);
+  EXPECT_DOUBLE_EQ(load.worst, ((65 + 115 + 23) * 250 + 650) / 5e5);
+
+  master.nodes[0].pdos[0].enabled = false;
+  load = busLoad(master, 5e5);
+  EXPECT_DOUBLE_EQ(load.nominal, ((55 + 95) * 250 + 550) / 5e5);
+
+  master.nodes[0].pdos[0].enabled = true;
+  master.nodes[0].pdos[0].transmission = 255;
+  master.nodes[0].pdos[0].inhibit = 500;  // at most 20 a second
+  load = busLoad(master, 5e5);
+  EXPECT_DOUBLE_EQ(load.worst, ((65 + 115) * 250 + 650 + 115 * 20) / 5e5);
+}
+
+TEST(BusLoad, FourDemoAxesLeaveRoomAt250Hertz) {
+  Problems problems;
+  const YAML::Node tree = readRobotFile(CIA402_CONFIG_DIR "/robots/demo.yaml", problems);
+  const RobotConfig robot = loadRobot(tree, profilesIn({CIA402_CONFIG_DIR "/drives"}), problems);
+  EXPECT_LT(busLoad(makeMasterConfig(robot, problems), robot.bus.bitrate).worst, 0.8);
+}
+
+TEST(PdoTable, ShowsWhoSendsWhatWhen) {
+  const std::string table = pdoTable(make(kTwo));
+  EXPECT_THAT(table, HasSubstr("servo                5  rpdo1  0x205   sync               48  "
+                               "controlword 6040:00, target_position 607A:00\n"));
+  EXPECT_THAT(table, HasSubstr("joint                6  tpdo3  0x386   sync / 10          16  "
+                               "error_code 603F:00\n"));
+}
+
+}  // namespace
+}  // namespace cia402::config

@@ -1,0 +1,215 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/config/robot.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace cia402::config {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const char* const kArm = R"(
+bus: {interface: can0, sync_period: 0.004}
+defaults: {drive: generic_cia402, counts_per_turn: 4000, limits: {velocity: 2.0}}
+axes:
+  shoulder: {node_id: 1, gear_ratio: 50.0, limits: {lower: -3.0, upper: 3.0}}
+  elbow: {node_id: 2, homing: {method: 17}}
+)";
+
+struct Loaded {
+  RobotConfig robot;
+  std::string problems;
+};
+
+Loaded load(const std::string& yaml) {
+  Problems problems;
+  Loaded loaded;
+  loaded.robot = loadRobot(YAML::Load(yaml), profilesIn({CIA402_CONFIG_DIR "/drives"}), problems);
+  loaded.problems = problems.text();
+  return loaded;
+}
+
+// The arm with the first `from` replaced by `to`.
+Loaded changed(const std::string& from, const std::string& to) {
+  std::string text = kArm;
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return load(text.replace(at, from.size(), to));
+}
+
+TEST(RobotConfig, MergesDefaultsUnderEveryAxis) {
+  const Loaded loaded = load(kArm);
+  EXPECT_EQ(loaded.problems, "");
+  EXPECT_THAT(loaded.robot.warnings, IsEmpty());
+  ASSERT_EQ(loaded.robot.axes.size(), 2u);
+  const drive::AxisConfig& shoulder = loaded.robot.axes[0];
+  EXPECT_EQ(shoulder.limits.velocity, 2.0);
+  EXPECT_EQ(shoulder.limits.upper, 3.0);
+  EXPECT_EQ(shoulder.geometry.gear_ratio, 50.0);
+  EXPECT_EQ(shoulder.joint, "shoulder");
+  EXPECT_EQ(shoulder.mode, "cyclic_position");
+  EXPECT_EQ(shoulder.profile, loaded.robot.axes[1].profile) << "a profile is read once";
+}
+
+TEST(RobotConfig, WithoutGroupsAllPositionJointsFormOne) {
+  const Loaded loaded = load(kArm);
+  ASSERT_EQ(loaded.robot.groups.size(), 1u);
+  EXPECT_EQ(loaded.robot.groups[0].name, "joints");
+  EXPECT_THAT(loaded.robot.groups[0].joints, ElementsAre("shoulder", "elbow"));
+}
+
+TEST(RobotConfig, TheDemoRobotHasNeitherProblemsNorWarnings) {
+  Problems problems;
+  const YAML::Node tree = readRobotFile(CIA402_CONFIG_DIR "/robots/demo.yaml", problems);
+  const RobotConfig robot = loadRobot(tree, profilesIn({CIA402_CONFIG_DIR "/drives"}), problems);
+  EXPECT_EQ(problems.text(), "");
+  EXPECT_THAT(robot.warnings, IsEmpty());
+  ASSERT_EQ(robot.axes.size(), 4u);
+  EXPECT_EQ(robot.axes[3].profile->name, "damiao_dm");
+  EXPECT_EQ(robot.bus.sync_counter, 240) << "as the Damiao drive wants";
+  EXPECT_EQ(robot.frames.size(), 4u);
+  EXPECT_THAT(robot.groups.at(0).joints, ElementsAre("shoulder", "elbow", "wrist", "gripper"));
+}
+
+TEST(RobotConfig, TellsTenMistakesAtOnce) {
+  Problems problems;
+  const YAML::Node tree = readRobotFile(CIA402_TEST_DIR "/config/ten_mistakes.yaml", problems);
+  loadRobot(tree, profilesIn({CIA402_CONFIG_DIR "/drives"}), problems);
+  const std::string text = problems.text();
+  EXPECT_EQ(problems.list().size(), 10u) << text;
+  for (const char* expected : {
+           "  bus/sync_period: must be greater than 0 and at most 1, not `-0.004`\n",
+           "  axes/base/colour: unknown key",
+           "  axes/base/gear_ratio: must be a number, not `fast`\n",
+           "  axes/shoulder/node_id: 1 is the node-ID of `base` already\n",
+           "  axes/shoulder/drive: there is no drive profile `generic_402`",
+           "  axes/elbow/pdos/tpdo1: is 80 bits long (16 + 32 + 32)",
+           "  axes/elbow/limits/upper: must be greater than lower (2.0), not `-2.0`\n",
+           "  axes/wrist/counts_per_turn: must be greater than 0, not `0`\n",
+           "  axes/hand/mode: profile generic_cia402 has no mode `cyclic_postion` to start in, did "
+           "you mean `cyclic_position`?\n",
+           "  groups/arm/joints[1]: there is no joint `elbw`, did you mean `elbow`?\n",
+       }) {
+    EXPECT_THAT(text, HasSubstr(expected));
+  }
+}
+
+struct Mistake {
+  const char *from, *to, *problem;
+};
+const Mistake kMistakes[] = {
+    {"interface: can0", "bitrate: 500000", "bus: `interface` is missing"},
+    {"interface: can0", "interface: can0, bitrate: 123456", "bus/bitrate: is no bit rate"},
+    {"sync_period: 0.004", "sync_period: .nan", "bus/sync_period: must be a finite number"},
+    {"sync_period: 0.004", "sync_period: 0.0040001", "bus/sync_period: must be a whole number of"},
+    {"sync_period: 0.004", "sync_period: 0.003333", "needs the period in 60C2h"},
+    {"sync_period: 0.004", "node_id: 1", "axes/shoulder/node_id: 1 is the master's own"},
+    {"sync_period: 0.004", "heartbeat: -1", "bus/heartbeat: must be at least 0"},
+    {"sync_period: 0.004", "sync_counter: 1", "bus/sync_counter: 1 is no counter"},
+    {"defaults: {", "defaults: {gear: 5, ", "  defaults/gear: unknown key"},
+    {"node_id: 1,", "node_id: 128,", "axes/shoulder/node_id: must be between 1 and 127"},
+    {"node_id: 1,", "", "axes/shoulder: `node_id` is missing"},
+    {"node_id: 1,", "node_id: 1, direction: 0,", "axes/shoulder/direction: must be 1 or -1"},
+    {"node_id: 1,", "node_id: 1, lead: 0.01,", "axes/shoulder/lead: is for prismatic axes"},
+    {"node_id: 1,", "node_id: 1, type: prismatic,", "`lead` is missing"},
+    {"node_id: 1,", "node_id: 1, type: round,", "axes/shoulder/type: unknown word `round`"},
+    {"node_id: 1,", "node_id: 1, type: continuous,", "a continuous joint has neither"},
+    {"node_id: 1,", "node_id: 1, joint: elbow,", "the joint `elbow` is that of `shoulder`"},
+    {"node_id: 1,", "node_id: 1, mode: homing,", "has no mode `homing` to start in"},
+    {"node_id: 1,", "node_id: 1, mode: pt,", "needs `rated_torque`"},
+    {"node_id: 1,",
+     "node_id: 1, pdos: {rpdo1: [controlword], tpdo1: [statusword, position_actual]},",
+     "mode `cyclic_position` needs `target_position` in an RPDO"},
+    {"node_id: 1,", "node_id: 1, pdos: {rpdo1: [target_position], tpdo1: [statusword]},",
+     "`controlword` must be in an RPDO"},
+    {"node_id: 1,", "node_id: 1, pdos: {rpdo1: [controlword, target_position]},",
+     "`position_actual` must be in a TPDO"},
+    {"node_id: 1,", "node_id: 1, write: [{object: \"0x2000:01\", value: 5}],", "add its type"},
+    {"node_id: 1,", "node_id: 1, write: [{object: no_such, value: 5}],", "has no object `no_such`"},
+    {"node_id: 1,", "node_id: 1, write: [{object: \"0x6065\", value: 0.5}],",
+     "write `object: following_error_window`"},
+    {"node_id: 1,", "node_id: 1, frame: {parent: base},",
+     "axes/shoulder/frame: `child` is missing"},
+    {"node_id: 1,", "node_id: 1, simulation: {home_switch: [2, 1]},", "must be a range"},
+    {"upper: 3.0", "upper: 1.0e+9", "would wrap around inside these limits"},
+    {"method: 17", "method: 99",
+     "axes/elbow/homing/method: profile generic_cia402 has no method 99"},
+    {"method: 17", "timeout: 5", "axes/elbow/homing: `method` is missing"},
+    {"elbow: {node_id: 2,", "elbow: {drive: damiao_dm, node_id: 2,",
+     "axes/elbow/homing/method: this drive has no homing methods"},
+    {"elbow:", "el-bow:", "axes/el-bow: an axis is named by a letter"},
+    {"axes:", "groups: {elbow: {joints: [shoulder]}}\naxes:",
+     "groups/elbow: is the name of an axis"},
+    {"axes:", "groups: {arm: {joints: [elbow, elbow]}}\naxes:", "`elbow` is listed twice"},
+    {"axes:", "groups: {arm: {joints: []}}\naxes:", "groups/arm/joints: must not be empty"},
+    {"axes:", "groups: {arm: {joints: [elbow], constraints: {shoulder: {goal: 1}}}}\naxes:",
+     "groups/arm/constraints/shoulder: unknown key"},
+    {"axes:",
+     "couplings: [{joints: [p, r], axes: [shoulder, elbow], matrix: [[1, 2], [2, 4]]}]\naxes:",
+     "couplings[0]/matrix: has no inverse"},
+    {"axes:", "couplings: [{joints: [p], axes: [shoulder, elbow], matrix: [[1, 2]]}]\naxes:",
+     "needs as many joints as axes"},
+    {"axes:", "joint_state_rate: 0\naxes:", "joint_state_rate: must be greater than 0"},
+    {"sync_period: 0.004", "sync_period: 0.0005", "bus/sync_period: the PDOs need"},
+};
+
+TEST(RobotConfig, TellsEveryMistakeWithItsPath) {
+  for (const Mistake& mistake : kMistakes) {
+    EXPECT_THAT(changed(mistake.from, mistake.to).problems, HasSubstr(mistake.problem))
+        << mistake.to;
+  }
+}
+
+TEST(RobotConfig, TellsAMistakeInTheDefaultsOnce) {
+  const std::string problems = changed("counts_per_turn: 4000", "counts_per_turn: -1").problems;
+  EXPECT_EQ(problems, "  defaults/counts_per_turn: must be greater than 0, not `-1`\n");
+}
+
+TEST(RobotConfig, WarnsOfALoadOverEightyPercentAndRefusesOneOverAHundred) {
+  // Two axes of 115 + 115 + 125 + 135 + 95 / 10 bits each and 55 for SYNC: 1054 bits a cycle, and
+  // 3 * 650 bits/s of heartbeats.
+  EXPECT_THAT(load(kArm).robot.warnings, IsEmpty());
+  const Loaded busy = changed("sync_period: 0.004", "sync_period: 0.0012");
+  EXPECT_EQ(busy.problems, "");
+  ASSERT_EQ(busy.robot.warnings.size(), 1u);
+  EXPECT_THAT(busy.robot.warnings[0], HasSubstr("need 88 % of the bus at 833 Hz"));
+  const Loaded full = changed("sync_period: 0.004", "sync_period: 0.001");
+  EXPECT_THAT(full.problems, HasSubstr("need 106 % of the bus at 1000 Hz"));
+  EXPECT_THAT(full.problems, HasSubstr("at most 757 Hz keep it below 80 %"));
+}
+
+TEST(RobotConfig, WarnsOfAnEffortLimitThatCannotBeSent) {
+  const Loaded loaded = changed("upper: 3.0", "upper: 3.0, effort: 10");
+  EXPECT_EQ(loaded.problems, "");
+  ASSERT_EQ(loaded.robot.warnings.size(), 1u);
+  EXPECT_THAT(loaded.robot.warnings[0], HasSubstr("give `rated_torque`"));
+}
+
+TEST(RobotConfig, DamiaoTakesOnlyItsOwnStepsOfThePeriod) {
+  const std::string text =
+      "bus: {interface: can0, sync_period: 0.0012}\naxes: {a: {node_id: 1, drive: damiao_dm}}\n";
+  EXPECT_THAT(load(text).problems,
+              HasSubstr("`a` (profile damiao_dm) takes multiples of 0.0005 s"));
+}
+
+TEST(RobotConfig, CoupledAxesGiveTheirJointsTheCouplingsNames) {
+  const Loaded loaded = changed("axes:",
+                                "couplings: [{joints: [pitch, roll], axes: [shoulder, elbow], "
+                                "matrix: [[0.5, 0.5], [1, -1]]}]\n"
+                                "axes:");
+  EXPECT_EQ(loaded.problems, "");
+  EXPECT_THAT(loaded.robot.groups.at(0).joints, ElementsAre("pitch", "roll"));
+}
+
+TEST(RobotConfig, NothingAtAllIsAProblemToo) {
+  EXPECT_THAT(load("").problems, HasSubstr("it needs `bus` and `axes`"));
+  const std::string empty = load("{}").problems;
+  EXPECT_THAT(empty, HasSubstr("bus: `interface` is missing"));
+  EXPECT_THAT(empty, HasSubstr("axes: is missing"));
+}
+
+}  // namespace
+}  // namespace cia402::config

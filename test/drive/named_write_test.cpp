@@ -1,0 +1,142 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/drive/named_write.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace cia402::drive {
+namespace {
+
+AxisConfig axisOf(const char* drive) {
+  Problems problems;
+  AxisConfig axis;
+  axis.name = "shoulder";
+  axis.node_id = 3;
+  axis.profile = std::make_shared<const DriveProfile>(
+      loadDriveProfile(std::string(CIA402_CONFIG_DIR "/drives/") + drive + ".yaml", problems));
+  EXPECT_EQ(problems.text(), "");
+  axis.geometry.counts_per_turn = 6283.185307179586;  // 1000 counts per rad
+  return axis;
+}
+
+NamedWrite write(const char* object, const char* from) {
+  NamedWrite named;
+  named.object = object;
+  named.from = from;
+  return named;
+}
+
+std::uint64_t rawOf(const NamedWrite& named, const AxisConfig& axis) {
+  const auto resolved = resolveWrite(named, axis);
+  EXPECT_TRUE(resolved) << (resolved ? "" : resolved.error().message);
+  if (!resolved || !*resolved) return 0xBAD;
+  return (*resolved)->raw;
+}
+
+TEST(NamedWrite, TakesLimitsInTheDrivesUnits) {
+  AxisConfig axis = axisOf("generic_cia402");
+  axis.limits.velocity = 2.0;
+  EXPECT_EQ(rawOf(write("profile_velocity", "limits.velocity"), axis), 2000u);
+  NamedWrite twice = write("profile_velocity", "limits.velocity");
+  twice.times = 2.0;
+  EXPECT_EQ(rawOf(twice, axis), 4000u);
+}
+
+TEST(NamedWrite, SwapsThePositionLimitsOfAReversedAxis) {
+  AxisConfig axis = axisOf("generic_cia402");
+  axis.limits.lower = -1.0;
+  axis.limits.upper = 3.0;
+  EXPECT_EQ(rawOf(write("software_limit_min", "limits.lower"), axis), 0xFFFFFC18u);  // -1000
+  axis.geometry.direction = -1;
+  EXPECT_EQ(rawOf(write("software_limit_min", "limits.lower"), axis), 0xFFFFF448u);  // -3000
+  EXPECT_EQ(rawOf(write("software_limit_max", "limits.upper"), axis), 1000u);
+}
+
+TEST(NamedWrite, LimitsInSignedObjectsStayPositiveOnAReversedAxis) {
+  AxisConfig axis = axisOf("damiao_dm");
+  axis.limits.velocity = 3.0;
+  axis.geometry.direction = -1;
+  EXPECT_EQ(rawOf(write("target_velocity", "limits.velocity"), axis), 0x40400000u);  // +3.0
+}
+
+TEST(NamedWrite, LeavesOutWhatIsNotConfigured) {
+  const AxisConfig axis = axisOf("generic_cia402");
+  const auto resolved = resolveWrite(write("profile_velocity", "limits.velocity"), axis);
+  ASSERT_TRUE(resolved);
+  EXPECT_FALSE(*resolved);
+  NamedWrite with_default = write("profile_velocity", "limits.velocity");
+  with_default.value = 0.5;
+  EXPECT_EQ(rawOf(with_default, axis), 500u);
+}
+
+TEST(NamedWrite, TakesTheHomingOptions) {
+  AxisConfig axis = axisOf("generic_cia402");
+  axis.homing = HomingOptions();
+  axis.homing->method = -2;
+  axis.homing->search_velocity = 0.25;
+  axis.homing->zero_velocity = 0.05;
+  axis.homing->acceleration = 1.5;
+  axis.homing->offset = -0.5;
+  EXPECT_EQ(rawOf(write("homing_method", "homing.method"), axis), 0xFEu);
+  EXPECT_EQ(rawOf(write("homing_search_velocity", "homing.search_velocity"), axis), 250u);
+  EXPECT_EQ(rawOf(write("homing_zero_velocity", "homing.zero_velocity"), axis), 50u);
+  EXPECT_EQ(rawOf(write("homing_acceleration", "homing.acceleration"), axis), 1500u);
+  EXPECT_EQ(rawOf(write("home_offset", "homing.offset"), axis), 0xFFFFFE0Cu);  // -500
+}
+
+TEST(NamedWrite, WritesTheSyncPeriodAsValueAndExponent) {
+  AxisConfig axis = axisOf("generic_cia402");
+  axis.sync_period = std::chrono::microseconds(2500);
+  EXPECT_EQ(rawOf(write("interpolation_period_value", "sync_period.value"), axis), 25u);
+  EXPECT_EQ(rawOf(write("interpolation_period_exponent", "sync_period.exponent"), axis), 0xFCu);
+}
+
+TEST(NamedWrite, PeriodsAreExactOrNothing) {
+  const auto four = interpolationPeriod(std::chrono::milliseconds(4));
+  ASSERT_TRUE(four);
+  EXPECT_EQ(four->value, 4);
+  EXPECT_EQ(four->exponent, -3);
+  EXPECT_EQ(interpolationPeriod(std::chrono::milliseconds(250))->value, 25);
+  EXPECT_EQ(interpolationPeriod(std::chrono::seconds(1))->exponent, 0);
+  EXPECT_FALSE(interpolationPeriod(std::chrono::microseconds(3333)));
+  EXPECT_FALSE(interpolationPeriod(std::chrono::nanoseconds(1500)));
+  EXPECT_FALSE(interpolationPeriod(Duration(0)));
+}
+
+TEST(NamedWrite, ACopyNamesTheObjectToRead) {
+  const auto copy = resolveWrite(write("target_position", "position_actual"), axisOf("damiao_dm"));
+  ASSERT_TRUE(copy && *copy);
+  EXPECT_EQ((*copy)->copied_from, (ObjectId{0x6064, 0}));
+  EXPECT_EQ((*copy)->object, (ObjectId{0x607A, 0}));
+}
+
+TEST(NamedWrite, RefusesInWordsWhatDoesNotFit) {
+  AxisConfig axis = axisOf("generic_cia402");
+  axis.limits.upper = 3e6;
+  const auto resolved = resolveWrite(write("software_limit_max", "limits.upper"), axis);
+  ASSERT_FALSE(resolved);
+  EXPECT_THAT(resolved.error().message,
+              testing::HasSubstr("shoulder (node 3): software_limit_max (607D:02): 3e+06 does not "
+                                 "fit; the object holds -2.14748e+06 to 2.14748e+06"));
+}
+
+TEST(NamedWrite, IsLeftOutIfItIsOptionalAndCannotBeConverted) {
+  AxisConfig axis = axisOf("generic_cia402");
+  axis.limits.effort = 5.0;  // in 1/1000 of a rated torque that nobody gave
+  NamedWrite torque = write("max_torque", "limits.effort");
+  EXPECT_FALSE(resolveWrite(torque, axis));
+  torque.optional = true;
+  const auto resolved = resolveWrite(torque, axis);
+  ASSERT_TRUE(resolved);
+  EXPECT_FALSE(*resolved);
+}
+
+TEST(NamedWrite, BytesAreLittleEndianAndAsManyAsTheType) {
+  EXPECT_THAT(wireBytes(0x12345678, DataType::uint32),
+              testing::ElementsAre(0x78, 0x56, 0x34, 0x12));
+  EXPECT_THAT(wireBytes(0xFFFE, DataType::int16), testing::ElementsAre(0xFE, 0xFF));
+  EXPECT_THAT(wireBytes(0x08, DataType::int8), testing::ElementsAre(0x08));
+}
+
+}  // namespace
+}  // namespace cia402::drive

@@ -1,0 +1,225 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/drive/profile.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace cia402::drive {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const char* const kSmall = R"(name: small
+units: {position: count, velocity: count/s}
+objects:
+  controlword: {object: "6040:00", type: uint16, pdo: rpdo}
+  statusword: {object: "6041:00", type: uint16, access: ro, pdo: tpdo}
+  mode_of_operation: {object: "6060:00", type: int8}
+  mode_display: {object: "6061:00", type: int8, access: ro, pdo: tpdo}
+  target_position: {object: "607A:00", type: int32, quantity: position, pdo: rpdo}
+  position_actual: {object: "6064:00", type: int32, quantity: position, access: ro, pdo: tpdo}
+  profile_velocity: {object: "6081:00", type: uint32, quantity: velocity}
+modes:
+  csp: {value: 8, control: position, cyclic: true, target: target_position}
+pdos:
+  rpdo1: [controlword, target_position]
+  tpdo1: [statusword, position_actual]
+)";
+
+// The small profile with the first `from` replaced by `to`.
+std::string changed(const std::string& from, const std::string& to) {
+  std::string text = kSmall;
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+std::string problemsOf(const std::string& text) {
+  Problems problems;
+  parseDriveProfile(text, "small.yaml", problems);
+  return problems.text();
+}
+
+DriveProfile shipped(const char* name) {
+  Problems problems;
+  const DriveProfile profile =
+      loadDriveProfile(std::string(CIA402_CONFIG_DIR "/drives/") + name + ".yaml", problems);
+  EXPECT_EQ(problems.text(), "");
+  EXPECT_EQ(profile.name, name);
+  return profile;
+}
+
+TEST(DriveProfile, ReadsASmallOne) {
+  Problems problems;
+  const DriveProfile profile = parseDriveProfile(kSmall, "small.yaml", problems);
+  EXPECT_EQ(problems.text(), "");
+  ASSERT_NE(profile.mode("csp"), nullptr);
+  EXPECT_EQ(profile.mode("csp")->name, "cyclic_position");
+  EXPECT_EQ(profile.mode("cyclic_position"), profile.mode("csp"));
+  EXPECT_EQ(profile.mode("csv"), nullptr);
+  ASSERT_NE(profile.find("target_position"), nullptr);
+  EXPECT_EQ(profile.find(ObjectId{0x607A, 0}), profile.find("target_position"));
+  ASSERT_EQ(profile.pdos.size(), 2u);
+  EXPECT_THAT(profile.pdos[0].objects, ElementsAre("controlword", "target_position"));
+  EXPECT_EQ(profile.pdos[0].transmission, 1);
+}
+
+TEST(DriveProfile, TheShippedOnesAreValid) {
+  const DriveProfile generic = shipped("generic_cia402");
+  for (const char* mode : {"pp", "pv", "hm", "csp", "csv"}) EXPECT_NE(generic.mode(mode), nullptr);
+  EXPECT_EQ(generic.mode("pp")->handshake, Handshake::new_set_point);
+  EXPECT_EQ(generic.homing.kind, HomingSpec::Kind::drive);
+  for (const int method : {17, 30, 33, 34, 35, 37})
+    EXPECT_EQ(generic.homing.methods.count(method), 1u);
+}
+
+TEST(DriveProfile, TheDamiaoOneSaysWhatTheManualSays) {
+  const DriveProfile damiao = shipped("damiao_dm");
+  EXPECT_EQ(damiao.device_type, 0x00030000u);
+  EXPECT_EQ(damiao.find("mode_of_operation")->type, DataType::uint16);
+  EXPECT_EQ(damiao.find("target_position")->encoding, Encoding::float32);
+  const std::pair<const char*, int> modes[] = {
+      {"profile_position", 1},  {"cyclic_position", 1},
+      {"position_velocity", 2}, {"position_velocity_torque", 3},
+      {"profile_velocity", 4},  {"velocity_torque", 5},
+      {"profile_torque", 6}};
+  for (const auto& [name, value] : modes) {
+    ASSERT_NE(damiao.mode(name), nullptr) << name;
+    EXPECT_EQ(damiao.mode(name)->value, value) << name;
+    EXPECT_EQ(damiao.mode(name)->handshake, Handshake::none) << name;
+  }
+  EXPECT_EQ(damiao.homing.kind, HomingSpec::Kind::declare_zero);
+  EXPECT_FALSE(damiao.halt_supported);
+  EXPECT_TRUE(damiao.warning_stops);
+  EXPECT_THAT(damiao.quick_stop_holds, ElementsAre(3, 4));
+  EXPECT_EQ(damiao.sync_counter, 240);
+  EXPECT_EQ(damiao.sync_period_step, std::chrono::microseconds(500));
+  EXPECT_TRUE(damiao.pdo_map_count_may_be_read_only);
+  ASSERT_EQ(damiao.before_enable.size(), 2u);
+  EXPECT_EQ(damiao.before_enable[0].object, "quick_stop_option");
+  EXPECT_EQ(damiao.before_enable[1].object, "target_position");
+  EXPECT_EQ(damiao.before_enable[1].from, "position_actual");
+  EXPECT_EQ(damiao.errors.count(0x8201) + damiao.errors.count(0x8250), 2u);
+}
+
+struct Mistake {
+  const char *from, *to, *problem;
+};
+// One change each, and what must be said about it: with the line it stands in.
+const Mistake kMistakes[] = {
+    {"units: {", "untis: {", "small.yaml:2: untis: unknown key, did you mean `units`?"},
+    {"name: small", "name: small\nname: twice", "small.yaml:2: name: is given twice"},
+    {"position: count,", "position: count/s,",
+     "small.yaml:2: units/position: `count/s` is no unit"},
+    {"velocity: count/s", "velocity: parsec", "`parsec` is no unit of velocity"},
+    {"type: uint16, pdo: rpdo", "type: uint61, pdo: rpdo",
+     "small.yaml:4: objects/controlword/type: unknown type, did you mean `uint16`?"},
+    {"type: uint16, pdo: rpdo", "type: visible_string, pdo: rpdo", "has no fixed length"},
+    {"\"6040:00\"", "\"60X0\"", "small.yaml:4: objects/controlword/object: `60X0` is no object"},
+    {"\"6041:00\"", "\"6040:00\"", "6040:00 has the name `controlword` already"},
+    {"  statusword:", "  controlword:", "objects/statusword is missing"},
+    {"  statusword:", "  controlword:", "small.yaml:5: objects/controlword: is given twice"},
+    {"pdo: tpdo}\n  mode_of", "pdo: rpdo}\n  mode_of", "a read-only object cannot be in an RPDO"},
+    {"quantity: position, pdo: rpdo", "encoding: half_float, quantity: position, pdo: rpdo",
+     "half floats need a type of 16 bits, not int32"},
+    {"\"6060:00\", type: int8", "\"6060:00\", type: int8, encoding: float32",
+     "float32 needs a type of 32 bits, not int8"},
+    {"quantity: velocity}", "quantity: torque}", "`units` has no entry for what it measures"},
+    {"quantity: velocity}", "quantity: velocity, factor: 0}", "factor: must not be 0"},
+    {"quantity: velocity}", "quantity: velocity, unit: degC}", "`degC` is no unit of velocity"},
+    {"value: 8", "value: 300", "modes/csp/value: must be between -128 and 127, not `300`"},
+    {"value: 8", "value: eight", "modes/csp/value: must be a whole number, not `eight`"},
+    {"target: target_position", "target: target_positon",
+     "no object `target_positon`, did you mean `target_position`?"},
+    {"target: target_position", "target: position_actual", "cannot be in an RPDO"},
+    {"target: target_position", "target: controlword", "does not measure what the mode controls"},
+    {"cyclic: true", "handshake: new_set_point", "needs status_bits/set_point_acknowledge"},
+    {"cyclic: true", "controlword_bits: 0x80", "must leave bits 0 to 3 and 7"},
+    {"  csp: {",
+     "  csp: {value: 8, control: position, target: target_position}\n  cyclic_position: {",
+     "small.yaml:13: modes/cyclic_position: the mode cyclic_position is given already"},
+    {"control: position", "control: homing", "homing has no target"},
+    {"[controlword, target_position]", "[controlword, target_position, controlword]",
+     "small.yaml:14: pdos/rpdo1[2]: `controlword` is mapped already, in pdos/rpdo1"},
+    {"[controlword, target_position]", "[controlword, profile_velocity]",
+     "`profile_velocity` cannot be mapped into an RPDO"},
+    {"[statusword, position_actual]", "[statusword, positon_actual]",
+     "did you mean `position_actual`?"},
+    {"[statusword, position_actual]", "{objects: [statusword], transmission: 250}",
+     "transmission types 241 to 253"},
+    {"[statusword, position_actual]", "{objects: [statusword], inhibit: 7}",
+     "tpdo1/inhibit: must be at least 0 and at most 6.5535"},
+    {"  tpdo1:", "  tpdo5:", "no such PDO; there are rpdo1 to rpdo4"},
+    {"pdos:", "homing: {kind: drive}\npdos:", "needs `methods`"},
+    {"pdos:", "homing: {kind: declare_zero, methods: {1: x}}\npdos:", "`methods` are for kind"},
+    {"pdos:", "homing: {kind: drive, methods: {x: y}}\npdos:", "a homing method is a number"},
+    {"pdos:", "errors: {0x12345: text}\npdos:", "an error code is a number"},
+    {"pdos:", "sync: {counter: 1}\npdos:", "1 is no counter"},
+    {"pdos:", "startup: [{object: profile_velocity}]\npdos:", "has no value"},
+    {"pdos:", "startup: [{object: profile_velocty, raw: 1}]\npdos:",
+     "did you mean `profile_velocity`"},
+    {"pdos:", "startup: [{object: \"2000:01\", raw: 1}]\npdos:", "add its type"},
+    {"pdos:", "startup: [{object: statusword, raw: 1}]\npdos:", "`statusword` is read-only"},
+    {"pdos:", "startup: [{object: mode_of_operation, raw: 200}]\npdos:", "between -128 and 127"},
+    {"pdos:", "startup: [{object: profile_velocity, from: limits.velocty}]\npdos:",
+     "did you mean `limits.velocity`?"},
+    {"pdos:", "startup: [{object: target_position, from: position_actual}]\npdos:",
+     "copying `position_actual` is only possible in before_enable"},
+    {"pdos:", "before_enable: [{object: mode_of_operation, from: position_actual}]\npdos:",
+     "is not coded as `mode_of_operation` is"},
+    {"pdos:", "startup: [{object: profile_velocity, value: 1, raw: 1}]\npdos:", "keep one"},
+    {"pdos:", "startup: [{object: profile_velocity, value: 1, times: 2}]\npdos:",
+     "there is no `from`"},
+};
+
+TEST(DriveProfile, TellsEveryMistakeWithItsPlace) {
+  for (const Mistake& mistake : kMistakes) {
+    EXPECT_THAT(problemsOf(changed(mistake.from, mistake.to)), HasSubstr(mistake.problem))
+        << mistake.to;
+  }
+}
+
+TEST(DriveProfile, RefusesMoreThanSixtyFourBitsInAPdo) {
+  const std::string text =
+      changed("[statusword, position_actual]", "[statusword, position_actual, mode_display]");
+  EXPECT_EQ(problemsOf(text), "");  // 56 bits
+  std::string wide = changed("\"6061:00\", type: int8", "\"6061:00\", type: int32");
+  const std::string from = "[statusword, position_actual]";
+  wide.replace(wide.find(from), from.size(), "[statusword, position_actual, mode_display]");
+  EXPECT_THAT(problemsOf(wide),
+              HasSubstr("small.yaml:15: pdos/tpdo1: is 80 bits long (16 + 32 + 32)"));
+}
+
+TEST(DriveProfile, TellsAllMistakesAtOnce) {
+  Problems problems;
+  std::string text = changed("value: 8", "value: x");
+  text.replace(text.find("int32"), 5, "int23");
+  text.replace(text.find("rpdo1:"), 6, "rpdo9:");
+  parseDriveProfile(text, "small.yaml", problems);
+  EXPECT_EQ(problems.list().size(), 3u) << problems.text();
+}
+
+TEST(DriveProfile, SaysThatTextIsNoYaml) {
+  EXPECT_THAT(problemsOf("a: [1\nb: {"), HasSubstr("is no YAML"));
+  EXPECT_THAT(problemsOf("just words"), HasSubstr("is no drive profile"));
+  Problems problems;
+  loadDriveProfile("/nowhere/x.yaml", problems);
+  EXPECT_EQ(problems.text(), "  /nowhere/x.yaml: cannot be read\n");
+}
+
+TEST(DriveProfile, KnowsTheShortNamesOfModes) {
+  EXPECT_EQ(canonicalModeName("pp"), "profile_position");
+  EXPECT_EQ(canonicalModeName("vl"), "velocity");
+  EXPECT_EQ(canonicalModeName("pv"), "profile_velocity");
+  EXPECT_EQ(canonicalModeName("pt"), "profile_torque");
+  EXPECT_EQ(canonicalModeName("hm"), "homing");
+  EXPECT_EQ(canonicalModeName("ip"), "interpolated_position");
+  EXPECT_EQ(canonicalModeName("csp"), "cyclic_position");
+  EXPECT_EQ(canonicalModeName("csv"), "cyclic_velocity");
+  EXPECT_EQ(canonicalModeName("cst"), "cyclic_torque");
+  EXPECT_EQ(canonicalModeName("velocity_torque"), "velocity_torque");
+}
+
+}  // namespace
+}  // namespace cia402::drive

@@ -1,0 +1,113 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/drive/yaml_reader.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace cia402::drive {
+namespace {
+
+using testing::HasSubstr;
+
+struct Reader {
+  explicit Reader(const char* yaml, const char* source = "")
+      : section(YamlValue(YAML::Load(yaml), "top", problems, source)) {}
+  Problems problems;
+  YamlSection section;
+  std::string text() const { return problems.text(); }
+};
+
+TEST(YamlReader, SuggestsTheNearestKnownKey) {
+  Reader reader("{velocty: 1.0}");
+  double velocity = 0.0;
+  reader.section.read("velocity", velocity);
+  reader.section.finish();
+  EXPECT_EQ(reader.text(), "  top/velocty: unknown key, did you mean `velocity`?\n");
+}
+
+TEST(YamlReader, ListsTheKnownKeysWhereNothingIsNear) {
+  Reader reader("{colour: red}");
+  reader.section.has("gear_ratio");
+  reader.section.has("lead");
+  reader.section.finish();
+  EXPECT_EQ(reader.text(), "  top/colour: unknown key; known are gear_ratio, lead\n");
+}
+
+TEST(YamlReader, NoticesAKeyThatIsGivenTwice) {
+  Reader reader("{a: 1, a: 2}");
+  reader.section.has("a");
+  reader.section.finish();
+  EXPECT_EQ(reader.text(), "  top/a: is given twice\n");
+}
+
+TEST(YamlReader, NamesFileAndLine) {
+  Reader reader("a: 1\nb:\n  - x\n", "file.yaml");
+  double b = 0.0;
+  EXPECT_FALSE(reader.section.read("b", b));
+  EXPECT_EQ(reader.text(), "  file.yaml:3: top/b: must be a number, not a list\n");
+}
+
+TEST(YamlReader, ReadsWholeNumbersInDecimalAndHexadecimalOnly) {
+  EXPECT_EQ(parseInteger("010"), 10);
+  EXPECT_EQ(parseInteger("-7"), -7);
+  EXPECT_EQ(parseInteger("0x80000181"), 0x80000181);
+  for (const char* bad : {"", "-", "1.0", "12a", " 1", "0x", "99999999999999999999"}) {
+    EXPECT_FALSE(parseInteger(bad)) << bad;
+  }
+}
+
+TEST(YamlReader, RefusesNumbersThatAreNoneOrOutOfRange) {
+  Reader reader("{nan: .nan, inf: -.inf, word: fast, zero: 0, big: 200, map: {}}");
+  double number = 5.0;
+  EXPECT_FALSE(reader.section.read("nan", number));
+  EXPECT_FALSE(reader.section.read("inf", number));
+  EXPECT_FALSE(reader.section.read("word", number));
+  EXPECT_FALSE(reader.section.read("zero", number, kPositive));
+  EXPECT_EQ(number, 5.0);
+  int id = 3;
+  EXPECT_FALSE(reader.section.readInteger("big", id, 1, 127));
+  EXPECT_FALSE(reader.section.readInteger("map", id, 1, 127));
+  EXPECT_EQ(id, 3);
+  EXPECT_EQ(reader.text(),
+            "  top/nan: must be a finite number, not `.nan`\n"
+            "  top/inf: must be a finite number, not `-.inf`\n"
+            "  top/word: must be a number, not `fast`\n"
+            "  top/zero: must be greater than 0, not `0`\n"
+            "  top/big: must be between 1 and 127, not `200`\n"
+            "  top/map: must be a whole number, not a mapping\n");
+}
+
+TEST(YamlReader, ReadsTruthWordsAndParameterServerNumbers) {
+  Reader reader("{a: true, b: 0, c: maybe}");
+  bool a = false, b = true, c = true;
+  EXPECT_TRUE(reader.section.read("a", a));
+  EXPECT_TRUE(reader.section.read("b", b));
+  EXPECT_FALSE(reader.section.read("c", c));
+  EXPECT_TRUE(a && !b && c);
+  EXPECT_THAT(reader.text(), HasSubstr("top/c: must be true or false"));
+}
+
+TEST(YamlReader, ReadsListsOfAKnownLength) {
+  Reader reader("{xyz: [1, 2, 3], short: [1, 2], odd: [1, x, 3], none: 1}");
+  EXPECT_EQ(reader.section.get("xyz")->numbers(3), (std::vector<double>{1, 2, 3}));
+  EXPECT_FALSE(reader.section.get("short")->numbers(3));
+  EXPECT_FALSE(reader.section.get("odd")->numbers(3));
+  EXPECT_FALSE(reader.section.get("none")->numbers(3));
+  EXPECT_THAT(reader.text(), HasSubstr("top/short: must be a list of 3 numbers, not of 2"));
+  EXPECT_THAT(reader.text(), HasSubstr("top/odd[1]: must be a number"));
+  EXPECT_THAT(reader.text(), HasSubstr("top/none: must be a list"));
+}
+
+TEST(YamlReader, AScalarIsNoMapping) {
+  Reader reader("just a text");
+  EXPECT_EQ(reader.text(), "  top: must be a mapping (key: value), not `just a text`\n");
+  EXPECT_FALSE(reader.section.has("a"));
+}
+
+TEST(YamlReader, FindsSwappedLettersButNotEveryShortWord) {
+  EXPECT_EQ(nearestName("shoudler", {"elbow", "shoulder"}), "shoulder");
+  EXPECT_EQ(nearestName("xyz", {"abc"}), "");
+}
+
+}  // namespace
+}  // namespace cia402::drive
