@@ -54,6 +54,7 @@ void Robot::start(Time now) {
   started_ = true;
   now_ = now;
   next_sync_ = now + config_.bus.sync_period;
+  sync_held_ = master_.config().sync_counter != 0;
   master_.start(now);
 }
 
@@ -80,8 +81,19 @@ void Robot::tick(Time now) {
   if (now >= master_.nextDeadline()) master_.tick(now);
 }
 
+bool Robot::mayProduceSync() {
+  if (!sync_held_) return true;
+  const auto& nodes = master_.nodes();
+  const auto is = [](canopen::NodeHealth health) {
+    return [health](const canopen::Node& node) { return node.health() == health; };
+  };
+  sync_held_ = std::none_of(nodes.begin(), nodes.end(), is(canopen::NodeHealth::ready)) &&
+               std::any_of(nodes.begin(), nodes.end(), is(canopen::NodeHealth::booting));
+  return !sync_held_;
+}
+
 void Robot::sync(Time now) {
-  master_.sendSync(now);
+  if (mayProduceSync()) master_.sendSync(now);
   statistics_.syncSent(now - next_sync_);
   const Duration period = config_.bus.sync_period;
   next_cycle_ = now + period / 2;
@@ -227,8 +239,10 @@ void Robot::onHealthChange(canopen::Node& node, canopen::NodeHealth before, Time
   const canopen::NodeHealth health = node.health();
   if (health == canopen::NodeHealth::booting) return;
   const bool well = health == canopen::NodeHealth::ready;
-  std::string text = whoIs(node) + (well ? ": identified, configured and started" : ": ");
-  if (!well) text += node.problem().empty() ? toString(health) : node.problem();
+  std::string text = node.problem();  // names the node itself
+  if (text.empty()) {
+    text = whoIs(node) + ": " + (well ? "identified, configured and started" : toString(health));
+  }
   tell(well ? Event::Severity::info : Event::Severity::error, text, now);
   if (well) {
     for (const std::string& note : node.notes()) {

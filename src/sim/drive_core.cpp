@@ -45,7 +45,10 @@ void DriveCore::start(bool cold, Time now) {
   last_sync_.reset();
   values_.setRaw(Role::error_code, 0);
   values_.setRaw(Role::mode_display, values_.raw(Role::mode, 0));
-  if (now >= ready_at_) enter(PdsState::switch_on_disabled);
+  if (now >= ready_at_) {
+    ready_at_ = kNever;
+    enter(PdsState::switch_on_disabled);
+  }
   motion_.publish();
   updateStatusword();
 }
@@ -87,7 +90,11 @@ void DriveCore::advance(Time now) {
 
 Time DriveCore::nextEvent() const {
   if (idle()) return kNever;
-  if (ready_at_ != kNever && !motion_.powered()) return std::max(ready_at_, now_);
+  if (ready_at_ != kNever && !motion_.powered()) {
+    const Time due{(gridStep(ready_at_ - Duration(1)) + 1) *
+                   kDriveStep};  // the first step at or after
+    return std::max(due, Time{(step_ + 1) * kDriveStep});
+  }
   // While SYNC runs the drive is asked often enough by it.
   const bool synchronised = last_sync_ && now_ - *last_sync_ < kSyncSilence;
   return now_ + (synchronised ? kSyncSilence : kWatchPeriod);

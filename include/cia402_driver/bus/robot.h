@@ -80,6 +80,9 @@ class Robot final : private canopen::MasterListener {
   void onBootUp(canopen::Node& node, Time now) override;
   void onHealthChange(canopen::Node& node, canopen::NodeHealth before, Time now) override;
 
+  /// A counter in SYNC is an error to drives that are not yet configured for it (EMCY 0x8240): the
+  /// first SYNC waits until a drive is ready or none is booting.
+  bool mayProduceSync();
   void sync(Time now);
   void cycle(Time now);
   void stepJobs(Time now);
@@ -110,7 +113,7 @@ class Robot final : private canopen::MasterListener {
   std::vector<std::uint64_t> missed_feedback_, emergencies_;
   std::vector<Time> last_feedback_;
   CycleStatistics statistics_;
-  bool started_ = false;
+  bool started_ = false, sync_held_ = false;
   Time next_sync_ = kNever, next_cycle_ = kNever, now_{};
   Shutdown shutdown_ = Shutdown::no;
   Time shutdown_began_{};

@@ -1,0 +1,82 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cia402_driver/bus/robot.h"
+#include "cia402_driver/sim/robot_drives.h"
+#include "cia402_driver/sim/world.h"
+
+namespace cia402::tools {
+
+/// A whole robot in virtual time and one thread: driver, bus and simulated drives. Hours of robot
+/// life in seconds, and with one seed always the same.
+class VirtualRobot final : private sim::Participant, private bus::EventSink {
+ public:
+  /// @param axes the drives on the bus, not necessarily those that `robot` expects.
+  /// @param seed of faults injected into the bus.
+  VirtualRobot(const config::RobotConfig& robot, const canopen::MasterConfig& master,
+               const std::vector<sim::SimulatedAxis>& axes, std::uint64_t seed = 1)
+      : world_(robot.bus.bitrate, seed),
+        port_(world_.addParticipant("master", *this)),
+        robot_(robot, master, port_, *this) {
+    for (const sim::SimulatedAxis& axis : axes) {
+      world_.addDrive(axis.name, axis.definition, axis.node, axis.mechanics);
+    }
+  }
+
+  /// Powers the drives on and starts the driver.
+  void start() {
+    world_.powerOn();
+    robot_.start(world_.now());
+  }
+  void run(Duration duration) { world_.advance(world_.now() + duration); }
+  /// Runs in steps of a millisecond until `condition` holds. @return false after `limit`.
+  bool runUntil(const std::function<bool()>& condition, Duration limit) {
+    const Time end = world_.now() + limit;
+    while (!condition()) {
+      if (world_.now() >= end) return false;
+      run(std::chrono::milliseconds(1));
+    }
+    return true;
+  }
+  /// Gives a command and runs until it is answered; nothing after `limit`.
+  std::optional<bus::Answer> call(bus::Command command,
+                                  Duration limit = std::chrono::seconds(120)) {
+    std::optional<bus::Answer> answer;
+    command.reply = [&answer](const bus::Answer& given) { answer = given; };
+    robot_.execute(std::move(command), world_.now());
+    runUntil([&answer] { return answer.has_value(); }, limit);
+    return answer;
+  }
+  /// A procedure on one axis, or on all (`axis` empty).
+  std::optional<bus::Answer> procedure(drive::ProcedureKind kind, const std::string& axis = {}) {
+    bus::Command command;
+    drive::ProcedureRequest request;
+    request.kind = kind;
+    command.body = bus::ProcedureCommand{axis, request};
+    return call(std::move(command));
+  }
+
+  bus::Robot& robot() { return robot_; }
+  sim::World& world() { return world_; }
+  Time now() const { return world_.now(); }
+  /// What was told so far, oldest first.
+  const std::vector<bus::Event>& events() const { return events_; }
+
+ private:
+  void receive(const can::Frame& frame, Time now) override { robot_.receive(frame, now, now); }
+  void tick(Time now) override { robot_.tick(now); }
+  Time nextDeadline() const override { return robot_.nextDeadline(); }
+  void onEvent(const bus::Event& event) override { events_.push_back(event); }
+
+  sim::World world_;
+  sim::Port& port_;
+  std::vector<bus::Event> events_;
+  bus::Robot robot_;
+};
+
+}  // namespace cia402::tools
