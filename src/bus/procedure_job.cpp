@@ -56,11 +56,13 @@ void ProcedureJob::watch(std::vector<drive::Axis>& axes) {
   for (Entry& entry : entries_) {
     if (entry.stage != Stage::running) continue;
     const drive::Axis& axis = axes[entry.item.axis];
-    const drive::ProcedureStatus& status = axis.procedure();
+    const bool replaced = axis.procedure().id != entry.id;
+    const drive::ProcedureStatus& status =
+        replaced ? axis.previousProcedure() : axis.procedure();  // which may have ended well
     if (status.id != entry.id) {
       entry.stage = Stage::failed;
       entry.message = axis.config().name + ": " + toString(request_.kind) + " was replaced by " +
-                      toString(status.kind);
+                      toString(axis.procedure().kind);
     } else if (!status.running) {
       entry.stage = status.success ? Stage::succeeded : Stage::failed;
       entry.message = status.message;

@@ -29,15 +29,15 @@ void Robot::execute(Command command, Time now) {
     give(command.reply, refused("refused: the driver is shutting down"));
     return;
   }
+  if (!started_ && !std::holds_alternative<CallCommand>(command.body)) {
+    give(command.reply,
+         refused("refused: the bus interface " + config_.bus.interface + " is not there yet"));
+    return;
+  }
   std::visit([&](auto& body) { run(body, std::move(command.reply), now); }, command.body);
 }
 
 void Robot::run(ProcedureCommand& command, Reply reply, Time now) {
-  if (!started_) {
-    give(reply,
-         refused("refused: the bus interface " + config_.bus.interface + " is not there yet"));
-    return;
-  }
   const bool homing = command.request.kind == drive::ProcedureKind::home;
   std::vector<ProcedureJob::Item> items;
   for (std::size_t i = 0; i < axes_.size(); ++i) {

@@ -1,0 +1,120 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/bus/jobs.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "bus/robot_world.h"
+
+namespace cia402::bus {
+namespace {
+
+using drive::ProcedureKind;
+using test::homingOfOrder;
+using test::RobotWorld;
+using testing::AllOf;
+using testing::HasSubstr;
+using namespace std::chrono_literals;
+
+config::RobotConfig homingRobot() {
+  config::RobotConfig robot = test::testRobot();
+  robot.axes[0].homing = homingOfOrder(1);
+  robot.axes[1].homing = homingOfOrder(0);
+  return robot;
+}
+
+struct ProcedureJobTest : testing::Test {
+  RobotWorld world{homingRobot()};
+  ProcedureJobTest() { world.enable(); }
+};
+
+TEST_F(ProcedureJobTest, HomesAxesOfALowerOrderFirst) {
+  const Answer answer = world.call(ProcedureKind::home);
+  EXPECT_TRUE(answer.success) << answer.message;
+  EXPECT_THAT(answer.message, HasSubstr("home done on 2 of 2 axes"));
+  ASSERT_TRUE(world.drives[0].homing_began && world.drives[1].homing_began);
+  // The fake drive takes 100 ms; the shoulder waits for its result.
+  EXPECT_GT(*world.drives[0].homing_began, *world.drives[1].homing_began + 100ms);
+  EXPECT_TRUE(world.axis(0).state().homed && world.axis(1).state().homed);
+}
+
+TEST_F(ProcedureJobTest, LeavesLaterOrdersUnstartedAfterAFailureAndSaysSo) {
+  world.drives[1].homing_fails = true;
+  const Answer answer = world.call(ProcedureKind::home);
+  EXPECT_FALSE(answer.success);
+  EXPECT_THAT(answer.message, AllOf(HasSubstr("home done on 0 of 2 axes"),
+                                    HasSubstr("elbow (node 2): homing stopped"),
+                                    HasSubstr("shoulder: not started, for another axis failed")));
+  EXPECT_FALSE(world.drives[0].homing_began);
+}
+
+TEST_F(ProcedureJobTest, HomesOneAxisAloneWhateverItsOrder) {
+  const Answer answer = world.call(ProcedureKind::home, "shoulder");
+  EXPECT_TRUE(answer.success) << answer.message;
+  EXPECT_THAT(answer.message, HasSubstr("shoulder: homed"));
+  EXPECT_FALSE(world.drives[1].homing_began);
+}
+
+TEST_F(ProcedureJobTest, TellsThatAProcedureWasStoppedByAnother) {
+  world.drives[1].homing_is_slow = true;
+  const auto home = world.begin(ProcedureKind::home, "elbow");
+  world.run(200ms);
+  ASSERT_TRUE(home->empty());
+  const Answer halted = world.call(ProcedureKind::halt, "elbow");
+  EXPECT_TRUE(halted.success) << halted.message;
+  ASSERT_EQ(home->size(), 1u);
+  EXPECT_FALSE(home->front().success);
+  EXPECT_THAT(home->front().message,
+              AllOf(HasSubstr("elbow"), HasSubstr("home"), HasSubstr("halt")));
+}
+
+TEST_F(ProcedureJobTest, RefusesWhatTheAxisRefusesWithItsSentence) {
+  world.drives[1].homing_is_slow = true;
+  const auto home = world.begin(ProcedureKind::home, "elbow");
+  world.run(100ms);
+  const Answer second = world.call(ProcedureKind::enable, "elbow");
+  EXPECT_FALSE(second.success);
+  EXPECT_THAT(second.message, HasSubstr("elbow (node 2): enable is refused while home runs"));
+}
+
+TEST_F(ProcedureJobTest, DoesOnAllAxesWhatItCanAndNamesThoseThatFail) {
+  world.drives[0].silent = true;
+  ASSERT_TRUE(
+      world.runUntil([&] { return world.axis(0).state().health == canopen::NodeHealth::lost; }));
+  const Answer answer = world.call(ProcedureKind::disable);
+  EXPECT_FALSE(answer.success);
+  EXPECT_THAT(answer.message,
+              AllOf(HasSubstr("disable done on 1 of 2 axes"), HasSubstr("; shoulder (node 1): ")));
+  EXPECT_FALSE(world.drives[1].enabled());
+}
+
+TEST_F(ProcedureJobTest, RepliesOnceOnly) {
+  const auto answers = world.begin(ProcedureKind::enable);
+  world.run(1s);
+  EXPECT_EQ(answers->size(), 1u);
+}
+
+TEST_F(ProcedureJobTest, GivesTheResultOfAProcedureThatEndedJustBeforeTheNextBegan) {
+  const auto first = world.begin(ProcedureKind::disable, "elbow");
+  // Its end is noticed by the axis while the job has not looked yet.
+  while (world.axis(1).procedure().running) {
+    world.run(1ms);
+    world.axis(1).readFeedback(world.now);
+    world.axis(1).update(world.now);
+  }
+  ASSERT_TRUE(first->empty());
+  const Answer second = world.call(ProcedureKind::enable, "elbow");
+  EXPECT_TRUE(second.success) << second.message;
+  ASSERT_EQ(first->size(), 1u);
+  EXPECT_TRUE(first->front().success) << first->front().message;
+}
+
+TEST(ProcedureJob, RefusesAnUnknownAxisAndHomingWithoutAnyHomingSection) {
+  RobotWorld world;
+  world.boot();
+  EXPECT_EQ(world.call(ProcedureKind::enable, "wrist").message, "there is no axis \"wrist\"");
+  EXPECT_THAT(world.call(ProcedureKind::home).message, HasSubstr("no axis has a `homing` section"));
+}
+
+}  // namespace
+}  // namespace cia402::bus
