@@ -85,6 +85,10 @@ void Axis::writeCommands(Time now) { impl_->core.writeCommands(now); }
 Result<std::uint32_t> Axis::start(const ProcedureRequest& request, Time now) {
   Impl& impl = *impl_;
   impl.watchNode();
+  const std::string failure = impl.core.takeFailure();
+  if (impl.procedure && !failure.empty() && !impl.procedure->survivesNodeLoss()) {
+    impl.finish(false, std::string(toString(impl.status.kind)) + " failed: " + failure);
+  }
   const bool preempts = request.kind == ProcedureKind::disable ||
                         request.kind == ProcedureKind::quick_stop ||
                         request.kind == ProcedureKind::halt;

@@ -107,6 +107,7 @@ void AxisCore::neutralizeTarget() {
   }
   previous_target_ = target_;
   target_velocity_ = 0.0;
+  set_point_dropped_ = false;
   handshake_.reset(target_raw_);
 }
 
@@ -158,7 +159,8 @@ bool AxisCore::setTarget(double value) {
   }
   std::uint64_t raw = 0;
   if (!mode_->target.mapped() || !mode_conversion_.toDevice(value, raw)) return false;
-  const bool changed = raw != target_raw_;
+  const bool changed = raw != target_raw_ || set_point_dropped_;
+  set_point_dropped_ = false;
   target_ = value;
   target_raw_ = raw;
   if (changed && mode_->spec->handshake == Handshake::new_set_point) handshake_.offer(raw);
@@ -176,8 +178,7 @@ void AxisCore::advanceHandshake(Time now) {
   if (handshake_.advance(input, now, profile().timing.state_change)) return;
   notify(who() + ": the drive did not take the set-point " + number(target_) + ": waited " +
          seconds(profile().timing.state_change) + " for " + waiting + "; " + report());
-  target_raw_ = handshake_.raw();
-  target_ = mode_conversion_.toJoint(target_raw_);
+  set_point_dropped_ = true;
 }
 
 void AxisCore::beginHalt() {

@@ -60,7 +60,7 @@ bool AxisCore::powerOff() const {
 }
 
 std::string AxisCore::supervise(Time now) {
-  std::string failure = std::exchange(failure_, std::string());
+  std::string failure = takeFailure();
   if (!nodeReady()) return failure;
   const bool commanded = goal_ != Goal::disabled && goal_ != Goal::quick_stop;
   if (commanded && !state_.feedback_valid) {

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "axis_objects.h"
@@ -33,6 +34,8 @@ class AxisCore {
   void readFeedback(Time now);
   /// Reacts to what the feedback says. @return why a running procedure must fail; empty: nothing
   std::string supervise(Time now);
+  /// Why a procedure that ran until now must fail (the node was lost); empty: nothing.
+  std::string takeFailure() { return std::exchange(failure_, std::string()); }
   /// @param busy a procedure runs
   void updateReadiness(bool busy, Time now);
   void writeCommands(Time now);
@@ -78,6 +81,7 @@ class AxisCore {
   /// RPDOs with the active mode's target (or the controlword where it has none) sent so far.
   std::uint64_t targetFrames() const;
   bool atStandstill() const { return standstill_.still(); }
+  bool moving() const { return standstill_.moving(); }
 
   // --- Halt ------------------------------------------------------------------------------------
   /// Stops by the halt bit, or by a ramp of the set-points where that cannot do it.
@@ -159,6 +163,7 @@ class AxisCore {
   bool neutral_known_ = false;
   Time written_{};
   SetPointHandshake handshake_;
+  bool set_point_dropped_ = false;  ///< the drive does not have target_
   SoftStop ramp_;
   bool ramping_ = false;
   struct Held {

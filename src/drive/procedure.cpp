@@ -1,6 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "procedure.h"
 
+#include "sentence.h"
+
 namespace cia402::drive {
 
 const char* toString(ProcedureKind kind) {
@@ -53,6 +55,18 @@ Result<std::unique_ptr<Procedure>> makeProcedure(const ProcedureRequest& request
       break;
   }
   return Error{axis.who() + ": no procedure was named"};
+}
+
+Outcome awaitStandstill(const Context& context, Time since, const std::string& what) {
+  AxisCore& axis = context.axis;
+  if (!axis.state().feedback_valid) {
+    return Outcome::failed(axis.who() + ": " + what +
+                           ": no fresh statusword (6041:00) and position (6064:00)");
+  }
+  if (axis.atStandstill()) return Outcome::done();
+  if (!axis.moving() && context.now - since <= 4 * Standstill::kWindow) return Outcome::running();
+  return Outcome::failed(axis.who() + ": " + what + " needs standstill (velocity " +
+                         number(axis.state().velocity) + "); stop the axis first");
 }
 
 std::string nodeRefusal(AxisCore& axis, const char* what) {

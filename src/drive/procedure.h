@@ -62,6 +62,10 @@ Result<std::unique_ptr<Procedure>> makeHalt(AxisCore& axis);
 Result<std::unique_ptr<Procedure>> makeSetMode(AxisCore& axis, const std::string& mode);
 Result<std::unique_ptr<Procedure>> makeSetPosition(AxisCore& axis, double position);
 
+/// A check before something that needs standstill: running while it is not known yet (a window of
+/// Standstill is not full), failed in motion. @param since when the waiting began
+Outcome awaitStandstill(const Context& context, Time since, const std::string& what);
+
 /// Error for a procedure that needs the node; empty if it is ready.
 std::string nodeRefusal(AxisCore& axis, const char* what);
 

@@ -11,9 +11,9 @@ class DeclareZero : public Procedure {
  public:
   Outcome advance(const Context& context) override {
     AxisCore& axis = context.axis;
-    if (!axis.state().feedback_valid) {
-      return Outcome::failed(axis.who() + ": the zero cannot be declared: no fresh feedback");
-    }
+    const Outcome standing = awaitStandstill(context, context.status.started,
+                                             "homing by declaring the present position");
+    if (!standing.isDone()) return standing;
     const double offset = axis.config().homing->offset;
     axis.declarePosition(offset);
     const bool prismatic = axis.config().geometry.type == AxisGeometry::Type::prismatic;
@@ -21,19 +21,6 @@ class DeclareZero : public Procedure {
                          length(offset, prismatic) + "; nothing moved");
   }
 };
-
-Result<std::unique_ptr<Procedure>> makeDeclareZero(AxisCore& axis) {
-  if (!axis.state().feedback_valid) {
-    return Error{axis.who() + ": cannot home: no fresh position (6064:00)"};
-  }
-  if (!axis.atStandstill()) {
-    return Error{axis.who() +
-                 ": its drive family homes by declaring the present position, which "
-                 "needs standstill (velocity " +
-                 number(axis.state().velocity) + ")"};
-  }
-  return std::unique_ptr<Procedure>(std::make_unique<DeclareZero>());
-}
 
 Result<std::unique_ptr<Procedure>> makeDriveHoming(AxisCore& axis) {
   const ModeChannel* homing = axis.objects().homingChannel();
@@ -46,7 +33,7 @@ Result<std::unique_ptr<Procedure>> makeDriveHoming(AxisCore& axis) {
                  ": cannot home: no homing method is configured; set homing: "
                  "{method: ...}"};
   }
-  if (axis.inOperation() && !axis.atStandstill()) {
+  if (axis.moving()) {
     return Error{axis.who() + ": homing is only started at standstill (velocity " +
                  number(axis.state().velocity) + ")"};
   }
@@ -64,7 +51,7 @@ Result<std::unique_ptr<Procedure>> makeHome(AxisCore& axis) {
   if (axis.faulted()) return Error{"cannot home: " + axis.faultText()};
   switch (axis.profile().homing.kind) {
     case HomingSpec::Kind::declare_zero:
-      return makeDeclareZero(axis);
+      return std::unique_ptr<Procedure>(std::make_unique<DeclareZero>());
     case HomingSpec::Kind::drive:
       return makeDriveHoming(axis);
     case HomingSpec::Kind::none:

@@ -18,6 +18,11 @@ class SetMode : public Procedure {
       started_ = context.now;
       context.status.deadline = context.now + 3 * axis.profile().timing.mode_change;
     }
+    if (!standing_ && axis.inOperation()) {
+      const Outcome standing = awaitStandstill(context, started_, "switching the mode");
+      if (!standing.isDone()) return standing;
+    }
+    standing_ = true;
     const Outcome outcome = step_.advance(context);
     if (!outcome.isDone()) return outcome;
     return Outcome::done(axis.config().joint + ": mode " + mode_->spec->name + " after " +
@@ -27,7 +32,7 @@ class SetMode : public Procedure {
  private:
   const ModeChannel* mode_;
   ModeStep step_;
-  bool begun_ = false;
+  bool begun_ = false, standing_ = false;
   Time started_{};
 };
 
@@ -60,7 +65,7 @@ Result<std::unique_ptr<Procedure>> makeSetMode(AxisCore& axis, const std::string
   if (!axis.state().feedback_valid) {
     return Error{axis.who() + ": cannot set the mode: no fresh statusword and position"};
   }
-  if (axis.inOperation() && !axis.atStandstill()) {
+  if (axis.inOperation() && axis.moving()) {
     return Error{axis.who() + ": mode " + name + " is refused in motion (velocity " +
                  number(axis.state().velocity) + "); stop the axis first"};
   }

@@ -16,9 +16,9 @@ class SetPosition : public Procedure {
     AxisCore& axis = context.axis;
     const bool prismatic = axis.config().geometry.type == AxisGeometry::Type::prismatic;
     const double before = axis.state().position;
-    if (!axis.state().feedback_valid) {
-      return Outcome::failed(axis.who() + ": the position cannot be declared: no fresh feedback");
-    }
+    const Outcome standing =
+        awaitStandstill(context, context.status.started, "declaring the position");
+    if (!standing.isDone()) return standing;
     axis.declarePosition(position_);
     return Outcome::done(axis.config().joint + ": the present position is declared to be " +
                          length(position_, prismatic) + " (it read " + length(before, prismatic) +
@@ -37,13 +37,6 @@ Result<std::unique_ptr<Procedure>> makeSetPosition(AxisCore& axis, double positi
   }
   const std::string refusal = nodeRefusal(axis, "declare the position");
   if (!refusal.empty()) return Error{refusal};
-  if (!axis.state().feedback_valid) {
-    return Error{axis.who() + ": cannot declare the position: no fresh position (6064:00)"};
-  }
-  if (!axis.atStandstill()) {
-    return Error{axis.who() + ": the position is only declared at standstill (velocity " +
-                 number(axis.state().velocity) + ")"};
-  }
   return std::unique_ptr<Procedure>(std::make_unique<SetPosition>(position));
 }
 

@@ -7,18 +7,22 @@ namespace cia402::drive {
 
 void Standstill::update(double position, Time stamp) {
   const bool moved = !(std::fabs(position - anchor_) <= tolerance_);
-  if (!started_ || moved) {
+  if (!started_) {
+    still_ = moving_ = false;
+  } else if (moved) {
     still_ = false;
+    moving_ = true;
   } else if (stamp - anchored_ < kWindow) {
     return;
   } else {
     still_ = true;
+    moving_ = false;
   }
   started_ = true;
   anchor_ = position;
   anchored_ = stamp;
 }
 
-void Standstill::reset() { started_ = still_ = false; }
+void Standstill::reset() { started_ = still_ = moving_ = false; }
 
 }  // namespace cia402::drive

@@ -24,6 +24,11 @@ Outcome FaultResetStep::fail(const Context& context, const std::string& why) con
   return Outcome::failed(why);
 }
 
+Outcome FaultResetStep::cameBack(const Context& context) const {
+  return fail(context, "the fault came back at once after the reset, its cause is still there: " +
+                           context.axis.faultText());
+}
+
 Outcome FaultResetStep::advance(const Context& context) {
   AxisCore& axis = context.axis;
   const Duration waited = context.now - since_;
@@ -58,31 +63,25 @@ Outcome FaultResetStep::advance(const Context& context) {
       enter(Phase::high, context);
       context.show("resetting the fault", "the drive to leave fault");
       return Outcome::running();
-    case Phase::high: {
-      const bool left = sent && !clearable(axis);
-      if (!left && waited <= limit) return Outcome::running();
-      axis.setFaultReset(false);
-      if (!left) {
+    case Phase::high:
+      if (axis.state().state == State::fault_reaction_active) return cameBack(context);
+      if (clearable(axis)) {
+        if (waited <= limit) return Outcome::running();
         return fail(context, "the fault reset (6040:00 bit 7) did not clear it within " +
                                  seconds(waited) + ": " + axis.faultText() + "; " + axis.report());
       }
+      axis.setFaultReset(false);
       axis.forgetFault();
       enter(Phase::low_again, context);
       context.show("fault reset", "controlword bit 7 to be sent low again");
       return Outcome::running();
-    }
     case Phase::low_again:
       if (!sent && waited <= limit) return Outcome::running();
       enter(Phase::watching, context);
       context.show("fault reset", "the fault to stay away");
       return Outcome::running();
     case Phase::watching:
-      if (clearable(axis)) {
-        return fail(context,
-                    "the fault came back at once after the reset, its cause is still "
-                    "there: " +
-                        axis.faultText());
-      }
+      if (clearable(axis)) return cameBack(context);
       if (waited < kWatch) return Outcome::running();
       return Outcome::done(code_ == 0 ? std::string("fault cleared")
                                       : "fault " + errorCodeText(axis.profile(), code_) +

@@ -19,6 +19,7 @@ class FaultResetStep {
   enum class Phase { begin, reacting, low, high, low_again, watching };
   void enter(Phase phase, const Context& context);
   Outcome fail(const Context& context, const std::string& why) const;
+  Outcome cameBack(const Context& context) const;
 
   Phase phase_ = Phase::begin;
   std::uint16_t code_ = 0;

@@ -22,12 +22,14 @@ class Standstill {
   /// Nothing is known any more: counts as moving until a window is full again.
   void reset();
   bool still() const { return still_; }
+  /// Has been seen to move; false, too, while a first window is not full yet.
+  bool moving() const { return moving_; }
 
  private:
   double tolerance_;  ///< rad or m within a window
   double anchor_ = 0.0;
   Time anchored_{};
-  bool started_ = false, still_ = false;
+  bool started_ = false, still_ = false, moving_ = false;
 };
 
 }  // namespace cia402::drive

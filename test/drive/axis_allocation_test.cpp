@@ -1,0 +1,53 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include <cstdlib>
+#include <new>
+
+#include "drive/axis_fixture.h"
+
+namespace {
+bool counting = false;
+int allocations = 0;
+}  // namespace
+
+void* operator new(std::size_t size) {
+  if (counting) ++allocations;
+  if (void* memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace cia402::drive {
+namespace {
+
+TEST(AxisAllocation, TheCyclicCallsOfAMovingAxisDoNotAllocate) {
+  for (const char* mode : {"cyclic_position", "cyclic_velocity", "profile_position"}) {
+    AxisConfig config = test::testConfig();
+    config.mode = mode;
+    test::Bench bench(config);
+    ASSERT_TRUE(bench.boot());
+    ASSERT_TRUE(bench.enable());
+    allocations = 0;
+    for (int i = 0; i < 500; ++i) {
+      bench.run(test::Bench::kCycle);
+      counting = true;
+      bench.axis.readFeedback(bench.now);
+      bench.axis.update(bench.now);
+      static_cast<void>(bench.axis.setTarget(1e-4 * i));
+      bench.axis.writeCommands(bench.now);
+      counting = false;
+    }
+    EXPECT_EQ(allocations, 0) << mode;
+  }
+}
+
+TEST(AxisAllocation, TheCounterCounts) {
+  allocations = 0;
+  counting = true;
+  delete new int(1);
+  counting = false;
+  EXPECT_GE(allocations, 1);
+}
+
+}  // namespace
+}  // namespace cia402::drive

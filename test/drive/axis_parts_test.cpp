@@ -1,0 +1,109 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// Standstill, soft stop, homing status and fault texts.
+#include <gtest/gtest.h>
+
+#include "cia402_driver/drive/fault_text.h"
+#include "cia402_driver/drive/homing_status.h"
+#include "cia402_driver/drive/soft_stop.h"
+#include "cia402_driver/drive/standstill.h"
+
+namespace cia402::drive {
+namespace {
+
+using std::chrono::milliseconds;
+
+TEST(Standstill, NeedsAFullWindowAtRest) {
+  Standstill standstill(0.01, 1e-4);
+  Time now{};
+  standstill.update(1.0, now);
+  standstill.update(1.0, now + milliseconds(49));
+  EXPECT_FALSE(standstill.still());
+  EXPECT_FALSE(standstill.moving());
+  standstill.update(1.0, now + milliseconds(50));
+  EXPECT_TRUE(standstill.still());
+}
+
+TEST(Standstill, NoticesMotionFasterThanTheThreshold) {
+  Standstill standstill(0.01, 0.0);
+  Time now{};
+  double position = 0;
+  for (int i = 0; i < 100; ++i) standstill.update(0.0, now += milliseconds(4));
+  ASSERT_TRUE(standstill.still());
+  for (int i = 0; i < 100; ++i) {
+    standstill.update(position += 0.02 * 0.004, now += milliseconds(4));
+  }
+  EXPECT_FALSE(standstill.still());
+  EXPECT_TRUE(standstill.moving());
+}
+
+TEST(Standstill, BelievesAnEncoderThatTogglesByOneUnit) {
+  Standstill standstill(0.01, 0.01);  // one unit is far more than the threshold in a window
+  Time now{};
+  for (int i = 0; i < 100; ++i) standstill.update(i % 2 == 0 ? 0.0 : 0.01, now += milliseconds(4));
+  EXPECT_TRUE(standstill.still());
+}
+
+TEST(SoftStop, StopsWithConstantDeceleration) {
+  SoftStop stop;
+  stop.begin(1.0, -2.0, 4.0);
+  for (int i = 0; i < 250; ++i) stop.advance(milliseconds(1));
+  EXPECT_NEAR(stop.velocity(), -1.0, 1e-9);
+  EXPECT_FALSE(stop.finished());
+  for (int i = 0; i < 250; ++i) stop.advance(milliseconds(1));
+  EXPECT_TRUE(stop.finished());
+  EXPECT_NEAR(stop.position(), 1.0 - 0.5, 1e-9);  // v^2 / 2a
+  stop.advance(milliseconds(100));
+  EXPECT_NEAR(stop.position(), 0.5, 1e-9);
+}
+
+TEST(SoftStop, TakesItsDefaultTimeWithoutADeceleration) {
+  SoftStop stop;
+  stop.begin(0.0, 1.0, 0.0);
+  stop.advance(milliseconds(299));
+  EXPECT_FALSE(stop.finished());
+  stop.advance(milliseconds(2));
+  EXPECT_TRUE(stop.finished());
+}
+
+TEST(SoftStop, AtRestItIsFinishedAtOnce) {
+  SoftStop stop;
+  stop.begin(0.3, 0.0, 1.0);
+  EXPECT_TRUE(stop.finished());
+  EXPECT_EQ(stop.position(), 0.3);
+}
+
+TEST(HomingStatus, DecodesTheTableOfTheStandard) {
+  ModeSpec mode;
+  mode.target_reached_bit = 10;
+  EXPECT_EQ(decodeHoming(0x0237, mode), HomingStatus::in_progress);
+  EXPECT_EQ(decodeHoming(0x0637, mode), HomingStatus::interrupted);
+  EXPECT_EQ(decodeHoming(0x1237, mode), HomingStatus::attained_moving);
+  EXPECT_EQ(decodeHoming(0x1637, mode), HomingStatus::completed);
+  EXPECT_EQ(decodeHoming(0x2237, mode), HomingStatus::error_moving);
+  EXPECT_EQ(decodeHoming(0x2637, mode), HomingStatus::error_stopped);
+  EXPECT_EQ(decodeHoming(0x3237, mode), HomingStatus::contradictory);
+  EXPECT_EQ(decodeHoming(0x3637, mode), HomingStatus::contradictory);
+}
+
+TEST(HomingStatus, UsesTheBitsOfTheProfile) {
+  ModeSpec mode;
+  mode.homing_attained_bit = 15;
+  mode.homing_error_bit = 14;
+  EXPECT_EQ(decodeHoming(0x8237, mode), HomingStatus::completed);
+  EXPECT_EQ(decodeHoming(0x4237, mode), HomingStatus::error_stopped);
+}
+
+TEST(FaultText, KnowsTheFamiliesCodes) {
+  DriveProfile profile;
+  profile.errors[0x7305] = {"encoder", "no signal", "check the plug"};
+  profile.errors[0x7306] = {"encoder battery", "", "replace it"};
+  EXPECT_EQ(errorCodeText(profile, 0x7305), "0x7305 encoder: no signal; check the plug");
+  EXPECT_EQ(errorCodeText(profile, 0x7306), "0x7306 encoder battery: replace it");
+}
+
+TEST(FaultText, FallsBackToTheClassesOfTheStandard) {
+  EXPECT_EQ(errorCodeText(DriveProfile(), 0x8611).substr(0, 22), "0x8611 following error");
+}
+
+}  // namespace
+}  // namespace cia402::drive

@@ -1,0 +1,316 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/drive/axis.h"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "drive/axis_fixture.h"
+
+namespace cia402::drive {
+namespace {
+
+using test::Bench;
+using test::FakeDrive;
+using test::HasSubstr;
+using test::milliseconds;
+using test::testConfig;
+using test::testProfile;
+
+TEST(Axis, IsRefusedWithoutAMappedStatusword) {
+  canopen::NodeConfig node = test::nodeConfig();
+  node.pdos[2].entries.erase(node.pdos[2].entries.begin());
+  EXPECT_THROW(Bench(testConfig(), node), std::invalid_argument);
+}
+
+TEST(Axis, KnowsNothingBeforeTheNodeIsReady) {
+  Bench bench;
+  bench.run(milliseconds(20));
+  const AxisState& state = bench.axis.state();
+  EXPECT_FALSE(state.feedback_valid);
+  EXPECT_TRUE(std::isnan(state.position));
+  EXPECT_TRUE(std::isnan(state.velocity));
+  EXPECT_EQ(state.state, State::unknown);
+  EXPECT_THAT(bench.axis.motionRefusal(), HasSubstr("shoulder (node 3): the node is"));
+}
+
+TEST(Axis, DecodesFeedbackAfterBoot) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  bench.cycle();
+  EXPECT_NEAR(bench.axis.state().position, 1.2345, 1e-9);
+  EXPECT_EQ(bench.axis.state().state, State::switch_on_disabled);
+  EXPECT_EQ(bench.axis.state().stamp, bench.now);
+}
+
+TEST(Axis, CommandsNothingUntilTold) {
+  Bench bench;
+  bench.drive.state = FakeDrive::S::enabled;  // left over from somebody else
+  ASSERT_TRUE(bench.boot());
+  bench.drive.state = FakeDrive::S::ready;
+  bench.run(milliseconds(500));
+  ASSERT_EQ(bench.drive.controlwords.size(), 1u);
+  EXPECT_EQ(bench.drive.controlwords[0], 0x0000);
+}
+
+TEST(Axis, TargetFollowsTheActualPositionWhileNotEnabled) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  bench.drive.coast = 5000;  // pushed by hand
+  bench.run(milliseconds(400));
+  EXPECT_NEAR(bench.drive.target_position, bench.drive.position, 5000 * 0.009);
+  EXPECT_GT(bench.drive.position, 13000);
+}
+
+TEST(Axis, EnablingStepsThroughEveryStateWithTheTargetAlreadyAtTheActualPosition) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  std::vector<std::int32_t> targets_when_enabled;
+  bench.each_cycle = [&] {
+    if (bench.drive.state == FakeDrive::S::enabled) {
+      targets_when_enabled.push_back(bench.drive.target_position);
+    }
+  };
+  ASSERT_TRUE(bench.enable());
+  EXPECT_EQ(bench.drive.controlwords, (std::vector<std::uint16_t>{0x0000, 0x0006, 0x0007, 0x000F}));
+  ASSERT_FALSE(targets_when_enabled.empty());
+  for (const std::int32_t target : targets_when_enabled) EXPECT_EQ(target, 12345);
+  EXPECT_TRUE(bench.axis.state().ready_for_motion);
+  EXPECT_EQ(bench.axis.motionRefusal(), "");
+  EXPECT_THAT(bench.axis.procedure().message,
+              HasSubstr("shoulder: enabled in mode cyclic_position"));
+}
+
+TEST(Axis, FollowsSetPointsInCyclicPosition) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  EXPECT_TRUE(bench.axis.setTarget(1.25));
+  EXPECT_DOUBLE_EQ(bench.axis.target(), 1.25);
+  bench.run(milliseconds(12));
+  EXPECT_EQ(bench.drive.target_position, 12500);
+  EXPECT_NEAR(bench.axis.state().position, 1.25, 1e-9);
+}
+
+TEST(Axis, RefusesTargetsThatAreNoNumberOrOutOfLimits) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  EXPECT_FALSE(bench.axis.setTarget(1.0));  // not enabled
+  ASSERT_TRUE(bench.enable());
+  const double before = bench.axis.target();
+  EXPECT_FALSE(bench.axis.setTarget(std::numeric_limits<double>::quiet_NaN()));
+  EXPECT_FALSE(bench.axis.setTarget(std::numeric_limits<double>::infinity()));
+  EXPECT_FALSE(bench.axis.setTarget(3.11));
+  EXPECT_FALSE(bench.axis.setTarget(-3.11));
+  EXPECT_DOUBLE_EQ(bench.axis.target(), before);
+  EXPECT_TRUE(bench.axis.setTarget(3.1));
+}
+
+TEST(Axis, AnAxisOutsideItsLimitsMayComeBackButNotGoFurther) {
+  Bench bench;
+  bench.drive.position = 32000;
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  EXPECT_FALSE(bench.axis.setTarget(3.21));
+  EXPECT_TRUE(bench.axis.setTarget(3.19));
+  EXPECT_TRUE(bench.axis.setTarget(3.0));
+  EXPECT_FALSE(bench.axis.setTarget(3.15));
+}
+
+TEST(Axis, RefusesPositionMotionBeforeARequiredHoming) {
+  AxisConfig config = testConfig();
+  config.homing = HomingOptions();
+  config.homing->method = 17;
+  Bench bench(config);
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  EXPECT_FALSE(bench.axis.state().homed);
+  EXPECT_FALSE(bench.axis.setTarget(1.24));
+  EXPECT_THAT(bench.axis.motionRefusal(), HasSubstr("shoulder (node 3): not homed"));
+}
+
+TEST(Axis, WaitsForTheBrakeBeforeMotion) {
+  DriveProfile profile = testProfile();
+  profile.timing.brake_release = milliseconds(200);
+  Bench bench(testConfig(profile));
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.axis.start({ProcedureKind::enable, {}, 0}, bench.now).ok());
+  ASSERT_TRUE(bench.runUntil([&] { return bench.axis.state().state == State::operation_enabled; }));
+  const Time enabled = bench.now;
+  ASSERT_TRUE(bench.runUntil([&] { return bench.axis.state().ready_for_motion; }));
+  EXPECT_GE(bench.now - enabled, milliseconds(200));
+  EXPECT_LE(bench.now - enabled, milliseconds(212));
+}
+
+TEST(Axis, AFaultDisablesForGoodAndSaysWhy) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  bench.deliver(bench.drive.fail(0x8611));
+  bench.run(milliseconds(40));
+  EXPECT_EQ(bench.axis.state().state, State::fault);
+  EXPECT_FALSE(bench.axis.state().ready_for_motion);
+  EXPECT_EQ(bench.axis.state().error_code, 0x8611);
+  EXPECT_EQ(bench.axis.faultText(),
+            "shoulder (node 3): fault 0x8611 following error: the axis is blocked or the gains are "
+            "too low; check the mechanics and 6065:00; then clear_faults");
+  EXPECT_EQ(bench.axis.noticeCount(), 1u);
+  EXPECT_THAT(bench.axis.notice(),
+              HasSubstr("shoulder (node 3): the drive left operation enabled"));
+  EXPECT_THAT(bench.axis.notice(), HasSubstr("statusword 0x021F (fault reaction active"));
+  EXPECT_THAT(bench.axis.notice(), HasSubstr("0x8611 following error"));
+  bench.drive.state = FakeDrive::S::disabled;  // however it got out of it
+  bench.run(milliseconds(500));
+  EXPECT_EQ(bench.drive.state, FakeDrive::S::disabled);
+  EXPECT_EQ(bench.drive.controlword, 0x0000);
+}
+
+TEST(Axis, NeverEnablesAgainByItselfAfterTheDriveSwitchedOff) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  bench.drive.state = FakeDrive::S::disabled;  // STO
+  bench.drive.voltage = false;
+  bench.run(milliseconds(300));
+  EXPECT_EQ(bench.drive.state, FakeDrive::S::disabled);
+  EXPECT_THAT(bench.axis.notice(), HasSubstr("switch on disabled"));
+  EXPECT_THAT(bench.axis.motionRefusal(), HasSubstr("call enable"));
+}
+
+TEST(Axis, OneUndecodableStatuswordSwitchesNothingOff) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  bench.drive.silent = true;
+  bench.cycle();
+  // 0x0002: no state of the table; position and mode as before.
+  bench.deliver(can::Frame(0x183, {0x02, 0x02, 0x39, 0x30, 0x00, 0x00, 0x08}));
+  bench.cycle();
+  bench.drive.silent = false;
+  bench.run(milliseconds(40));
+  EXPECT_EQ(bench.drive.controlword, 0x000F);
+  EXPECT_TRUE(bench.axis.state().ready_for_motion);
+}
+
+TEST(Axis, AWarningStopsOnlyWhereTheProfileSaysSo) {
+  Bench calm;
+  ASSERT_TRUE(calm.boot());
+  ASSERT_TRUE(calm.enable());
+  calm.drive.warning = true;
+  calm.run(milliseconds(40));
+  EXPECT_TRUE(calm.axis.state().warning);
+  EXPECT_TRUE(calm.axis.state().ready_for_motion);
+
+  DriveProfile profile = testProfile();
+  profile.warning_stops = true;
+  Bench strict(testConfig(profile));
+  ASSERT_TRUE(strict.boot());
+  ASSERT_TRUE(strict.enable());
+  strict.drive.warning = true;
+  strict.run(milliseconds(40));
+  EXPECT_FALSE(strict.axis.state().ready_for_motion);
+  EXPECT_NE(strict.drive.state, FakeDrive::S::enabled);
+  EXPECT_THAT(strict.axis.notice(), HasSubstr("statusword bit 7"));
+}
+
+TEST(Axis, SilentFeedbackQuickStopsAnEnabledAxis) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  bench.drive.silent = true;
+  bench.run(milliseconds(96));
+  EXPECT_TRUE(bench.axis.state().feedback_valid);
+  bench.run(milliseconds(16));
+  EXPECT_FALSE(bench.axis.state().feedback_valid);
+  EXPECT_TRUE(std::isnan(bench.axis.state().position));
+  EXPECT_EQ(bench.drive.controlword, 0x0002);
+  EXPECT_THAT(bench.axis.notice(),
+              HasSubstr("(6041:00) and position (6064:00) for more than 0.1 s"));
+  bench.drive.silent = false;
+  bench.run(milliseconds(300));
+  EXPECT_FALSE(bench.axis.state().ready_for_motion);
+  EXPECT_NE(bench.drive.state, FakeDrive::S::enabled);
+}
+
+TEST(Axis, FeedbackThatOnlyComesOnChangeDoesNotGetOld) {
+  canopen::NodeConfig node = test::nodeConfig();
+  for (canopen::PdoConfig& pdo : node.pdos) {
+    if (pdo.direction == canopen::PdoDirection::tpdo) pdo.transmission = 254;
+  }
+  Bench bench(testConfig(), node);
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  bench.drive.silent = true;
+  bench.run(milliseconds(400));
+  EXPECT_TRUE(bench.axis.state().feedback_valid);
+  EXPECT_EQ(bench.drive.controlword, 0x000F);
+}
+
+TEST(Axis, ARebootedDriveIsLeftDisabledAndForgotten) {
+  AxisConfig config = testConfig();
+  config.homing = HomingOptions();
+  config.homing->method = 17;
+  Bench bench(config);
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.perform(ProcedureKind::set_position, {}, 0.5).success);
+  ASSERT_TRUE(bench.enable());
+  ASSERT_TRUE(bench.axis.state().homed);
+  bench.deliver(bench.drive.reboot());
+  EXPECT_FALSE(bench.axis.state().ready_for_motion);
+  EXPECT_FALSE(bench.axis.state().homed);
+  EXPECT_THAT(bench.axis.notice(), HasSubstr("stays disabled until recover or enable"));
+  ASSERT_TRUE(bench.runUntil([&] { return bench.axis.state().feedback_valid; }));
+  bench.drive.controlwords.clear();
+  bench.run(milliseconds(500));
+  EXPECT_EQ(bench.drive.controlwords, std::vector<std::uint16_t>{});
+  EXPECT_EQ(bench.drive.controlword, 0x0000);
+  EXPECT_NEAR(bench.axis.state().position, 1.2345, 1e-9);  // what was declared is void
+}
+
+TEST(Axis, ALostNodeFailsTheRunningProcedure) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  bench.drive.stuck.insert(FakeDrive::S::ready);
+  ASSERT_TRUE(bench.axis.start({ProcedureKind::enable, {}, 0}, bench.now).ok());
+  bench.run(milliseconds(100));
+  bench.deliver(bench.drive.reboot());
+  bench.cycle();
+  EXPECT_FALSE(bench.axis.procedure().running);
+  EXPECT_FALSE(bench.axis.procedure().success);
+  EXPECT_THAT(bench.axis.procedure().message,
+              HasSubstr("enable failed: shoulder (node 3): the node"));
+}
+
+TEST(Axis, ReadsByServiceDataObjectWhatIsNotMapped) {
+  canopen::NodeConfig node = test::nodeConfig();
+  node.pdos.pop_back();  // velocity, torque, error code
+  Bench bench(testConfig(), node);
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  bench.drive.coast = 0;
+  bench.run(milliseconds(300));
+  EXPECT_NEAR(bench.axis.state().velocity, 0.0, 1e-9);
+  bench.deliver(bench.drive.fail(0x8611));
+  bench.run(milliseconds(100));
+  EXPECT_EQ(bench.axis.state().error_code, 0x8611);
+}
+
+TEST(Axis, RefusesASecondProcedureWhileOneRunsButAStopPreempts) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  bench.drive.stuck.insert(FakeDrive::S::ready);
+  const auto first = bench.axis.start({ProcedureKind::enable, {}, 0}, bench.now);
+  ASSERT_TRUE(first.ok());
+  bench.run(milliseconds(60));
+  EXPECT_THAT(bench.refusal(ProcedureKind::recover),
+              HasSubstr("shoulder (node 3): recover is refused while enable runs (switching on)"));
+  bench.drive.stuck.clear();
+  EXPECT_TRUE(bench.perform(ProcedureKind::disable).success);
+  EXPECT_EQ(bench.axis.previousProcedure().id, *first);
+  EXPECT_FALSE(bench.axis.previousProcedure().success);
+  EXPECT_THAT(bench.axis.previousProcedure().message, HasSubstr("enable was stopped by disable"));
+  EXPECT_EQ(bench.drive.state, FakeDrive::S::disabled);
+}
+
+}  // namespace
+}  // namespace cia402::drive

@@ -1,0 +1,168 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// clear_faults and recover.
+#include "drive/axis_fixture.h"
+
+namespace cia402::drive {
+namespace {
+
+using test::Bench;
+using test::FakeDrive;
+using test::HasSubstr;
+using test::milliseconds;
+using test::testConfig;
+using test::testProfile;
+
+void fault(Bench& bench, std::uint16_t code = 0x8611) {
+  bench.deliver(bench.drive.fail(code));
+  bench.run(milliseconds(40));
+}
+
+TEST(ClearFaultsProcedure, MakesOneEdgeAndLeavesTheAxisDisabled) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  fault(bench);
+  bench.drive.controlwords.clear();
+  const ProcedureStatus& status = bench.perform(ProcedureKind::clear_faults);
+  EXPECT_TRUE(status.success) << status.message;
+  EXPECT_EQ(bench.drive.controlwords, (std::vector<std::uint16_t>{0x0080, 0x0000}));
+  EXPECT_EQ(bench.drive.resets, 1);
+  EXPECT_EQ(bench.drive.state, FakeDrive::S::disabled);
+  EXPECT_THAT(status.message, HasSubstr("shoulder: fault 0x8611 following error"));
+  EXPECT_THAT(status.message, HasSubstr("it is cleared; the axis is disabled"));
+  EXPECT_EQ(bench.axis.faultText(), "");
+  EXPECT_EQ(bench.axis.state().error_code, 0);
+}
+
+TEST(ClearFaultsProcedure, WaitsForTheFaultReactionToEnd) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  bench.deliver(bench.drive.fail(0x8611));
+  bench.cycle();
+  EXPECT_EQ(bench.drive.state, FakeDrive::S::reaction);
+  EXPECT_TRUE(bench.perform(ProcedureKind::clear_faults).success);
+  EXPECT_EQ(bench.drive.resets, 1);
+}
+
+TEST(ClearFaultsProcedure, WithoutAFaultHasNothingToClear) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  const ProcedureStatus& status = bench.perform(ProcedureKind::clear_faults);
+  EXPECT_TRUE(status.success);
+  EXPECT_EQ(status.message, "shoulder: no fault, nothing to clear");
+  EXPECT_EQ(bench.drive.controlword, 0x000F);
+}
+
+TEST(ClearFaultsProcedure, AFaultThatComesBackIsToldWithCauseAndRemedy) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  fault(bench);
+  bench.drive.fault_persists = true;
+  const ProcedureStatus& status = bench.perform(ProcedureKind::clear_faults);
+  EXPECT_FALSE(status.success);
+  EXPECT_THAT(status.message, HasSubstr("shoulder (node 3): fault 0x8611 following error"));
+  EXPECT_THAT(status.message, HasSubstr("came back at once"));
+  EXPECT_THAT(status.message, HasSubstr("check the mechanics and 6065:00"));
+}
+
+TEST(ClearFaultsProcedure, AFaultThatStaysTimesOutWithBitSevenLowAgain) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  fault(bench);
+  bench.drive.stuck.insert(FakeDrive::S::fault);
+  const ProcedureStatus& status = bench.perform(ProcedureKind::clear_faults);
+  EXPECT_FALSE(status.success);
+  EXPECT_THAT(status.message,
+              HasSubstr("the fault reset (6040:00 bit 7) did not clear it within 2"));
+  bench.run(milliseconds(8));
+  EXPECT_EQ(bench.drive.controlword, 0x0000);
+}
+
+TEST(ClearFaultsProcedure, EdgesAreAtLeastASecondApart) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  fault(bench);
+  std::vector<Time> edges;
+  bench.each_cycle = [&, last = 0]() mutable {
+    if (bench.drive.resets != last) edges.push_back(bench.now);
+    last = bench.drive.resets;
+  };
+  bench.drive.fault_persists = true;
+  for (int i = 0; i < 3; ++i) {
+    bench.perform(ProcedureKind::clear_faults);
+    bench.run(milliseconds(60));
+  }
+  ASSERT_EQ(edges.size(), 3u);
+  EXPECT_GE(edges[1] - edges[0], std::chrono::seconds(1));
+  EXPECT_GE(edges[2] - edges[1], std::chrono::seconds(1));
+}
+
+TEST(ClearFaultsProcedure, AWarningIsClearedWhereItStopsTheDrive) {
+  DriveProfile profile = testProfile();
+  profile.warning_stops = true;
+  Bench bench(testConfig(profile));
+  ASSERT_TRUE(bench.boot());
+  bench.drive.warning = true;
+  bench.run(milliseconds(20));
+  bench.each_cycle = [&] {
+    if ((bench.drive.controlword & 0x80) != 0) bench.drive.warning = false;
+  };
+  EXPECT_TRUE(bench.perform(ProcedureKind::clear_faults).success);
+  EXPECT_FALSE(bench.drive.warning);
+}
+
+TEST(RecoverProcedure, ClearsTheFaultAndEnables) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  fault(bench);
+  const ProcedureStatus& status = bench.perform(ProcedureKind::recover);
+  EXPECT_TRUE(status.success) << status.message;
+  EXPECT_THAT(status.message, HasSubstr("shoulder: recovered, enabled in mode cyclic_position"));
+  EXPECT_TRUE(bench.axis.state().ready_for_motion);
+}
+
+TEST(RecoverProcedure, BootsALostNodeAgain) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  bench.dead = true;
+  ASSERT_TRUE(bench.runUntil([&] { return bench.node().health() == canopen::NodeHealth::lost; }));
+  bench.drive.reboot();  // power is back, the boot-up message got lost
+  bench.dead = false;
+  const ProcedureStatus& status = bench.perform(ProcedureKind::recover);
+  EXPECT_TRUE(status.success) << status.message;
+  EXPECT_EQ(bench.node().health(), canopen::NodeHealth::ready);
+  EXPECT_TRUE(bench.axis.state().ready_for_motion);
+}
+
+TEST(RecoverProcedure, SaysWhyANodeDoesNotBoot) {
+  Bench bench;
+  bench.dead = true;
+  const ProcedureStatus& status = bench.perform(ProcedureKind::recover);
+  EXPECT_FALSE(status.success);
+  EXPECT_THAT(status.message, HasSubstr("shoulder (node 3): the node did not boot"));
+  EXPECT_GT(status.message.size(), 60u);
+}
+
+TEST(RecoverProcedure, IsHarmlessOnAnEnabledAxis) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  bench.drive.controlwords.clear();
+  EXPECT_TRUE(bench.perform(ProcedureKind::recover).success);
+  EXPECT_EQ(bench.drive.controlwords, std::vector<std::uint16_t>{});
+}
+
+TEST(RecoverProcedure, RemindsOfAMissingHoming) {
+  AxisConfig config = testConfig();
+  config.homing = HomingOptions();
+  config.homing->method = 17;
+  Bench bench(config);
+  ASSERT_TRUE(bench.boot());
+  EXPECT_THAT(bench.perform(ProcedureKind::recover).message, HasSubstr("it is not homed"));
+}
+
+}  // namespace
+}  // namespace cia402::drive

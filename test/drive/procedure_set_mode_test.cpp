@@ -1,0 +1,189 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include "drive/axis_fixture.h"
+
+namespace cia402::drive {
+namespace {
+
+using test::Bench;
+using test::FakeDrive;
+using test::HasSubstr;
+using test::milliseconds;
+using test::testConfig;
+using test::testProfile;
+
+TEST(SetModeProcedure, SwitchesAnEnabledAxisAtStandstillWithoutMotion) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  double largest = 0;
+  bench.each_cycle = [&] { largest = std::max(largest, std::fabs(bench.drive.velocity)); };
+  for (const char* mode : {"pp", "csv", "profile_velocity", "csp", "csv", "csp", "pp", "csp"}) {
+    const ProcedureStatus& status = bench.perform(ProcedureKind::set_mode, mode);
+    EXPECT_TRUE(status.success) << status.message;
+    EXPECT_EQ(bench.axis.state().mode->name, canonicalModeName(mode));
+    EXPECT_TRUE(bench.axis.state().ready_for_motion);
+    bench.run(milliseconds(40));
+  }
+  EXPECT_EQ(largest, 0.0);
+  EXPECT_EQ(bench.drive.state, FakeDrive::S::enabled);
+}
+
+TEST(SetModeProcedure, AStaleTargetOfTheNewModeIsReplacedBeforeTheModeIsActive) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  ASSERT_TRUE(bench.perform(ProcedureKind::set_mode, "csv").success);
+  ASSERT_TRUE(bench.axis.setTarget(0.5));
+  bench.run(milliseconds(1000));
+  ASSERT_TRUE(bench.axis.setTarget(0.0));
+  bench.run(milliseconds(200));
+  ASSERT_GT(bench.drive.position, 17000);
+  std::vector<std::int32_t> targets;
+  bench.each_cycle = [&] {
+    if (bench.drive.mode == 8) targets.push_back(bench.drive.target_position);
+  };
+  ASSERT_TRUE(bench.perform(ProcedureKind::set_mode, "csp").success);
+  ASSERT_FALSE(targets.empty());
+  for (const std::int32_t target : targets) EXPECT_EQ(target, std::int32_t(bench.drive.position));
+}
+
+TEST(SetModeProcedure, IsRefusedInMotion) {
+  AxisConfig config = testConfig();
+  config.mode = "cyclic_velocity";
+  Bench bench(config);
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  ASSERT_TRUE(bench.axis.setTarget(0.5));
+  bench.run(milliseconds(200));
+  EXPECT_THAT(bench.refusal(ProcedureKind::set_mode, "csp"),
+              HasSubstr("shoulder (node 3): mode cyclic_position is refused in motion (velocity "
+                        "0.500)"));
+}
+
+TEST(SetModeProcedure, RefusesUnknownUnmappedAndHomingModes) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  EXPECT_THAT(
+      bench.refusal(ProcedureKind::set_mode, "cst"),
+      HasSubstr("shoulder (node 3): the drive family test_drive has no mode \"cst\"; it has "
+                "profile_position, profile_velocity, cyclic_position, cyclic_velocity"));
+  EXPECT_THAT(bench.refusal(ProcedureKind::set_mode, "ip"),
+              HasSubstr("60C1:01 interpolation_target is not mapped into an RPDO"));
+  EXPECT_THAT(bench.refusal(ProcedureKind::set_mode, "hm"), HasSubstr("call home"));
+}
+
+TEST(SetModeProcedure, ADriveThatDoesNotFollowKeepsItsMode) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  bench.each_cycle = [&] { bench.drive.commanded_mode = 8; };
+  bench.drive.mode_delay = 100000;
+  const ProcedureStatus& status = bench.perform(ProcedureKind::set_mode, "csv");
+  EXPECT_FALSE(status.success);
+  EXPECT_THAT(status.message, HasSubstr("mode cyclic_velocity was not taken"));
+  EXPECT_THAT(status.message, HasSubstr("6060:00 was set to 9 (cyclic_velocity)"));
+  bench.drive.mode_delay = 0;
+  bench.run(milliseconds(40));
+  EXPECT_EQ(bench.drive.commanded_mode, 8);
+}
+
+TEST(SetModeProcedure, EntryWritesOfMappedObjectsStayInTheRpdo) {
+  DriveProfile profile = testProfile();
+  NamedWrite speed;
+  speed.object = "target_velocity";
+  speed.value = 0.7;
+  profile.modes[4].entry_writes = {speed};  // a vendor's position mode with a speed limit
+  Bench bench(testConfig(profile));
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  bench.run(milliseconds(100));
+  EXPECT_EQ(bench.drive.target_velocity, 7000);
+  EXPECT_THAT(bench.drive.writes, testing::Contains(std::make_pair(0x60FFu, std::uint64_t{7000})));
+}
+
+TEST(VelocityMode, TakesVelocitiesWithinTheLimit) {
+  AxisConfig config = testConfig();
+  config.mode = "csv";
+  config.mode = canonicalModeName(config.mode);
+  Bench bench(config);
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  EXPECT_FALSE(bench.axis.setTarget(2.1));
+  EXPECT_FALSE(bench.axis.setTarget(-2.1));
+  EXPECT_TRUE(bench.axis.setTarget(-1.5));
+  bench.run(milliseconds(12));
+  EXPECT_EQ(bench.drive.target_velocity, -15000);
+}
+
+TEST(VelocityMode, DoesNotDriveFurtherOutOfThePositionLimits) {
+  AxisConfig config = testConfig();
+  config.mode = "cyclic_velocity";
+  Bench bench(config);
+  bench.drive.position = 31500;
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  EXPECT_FALSE(bench.axis.setTarget(0.1));
+  EXPECT_TRUE(bench.axis.setTarget(-0.1));
+}
+
+AxisConfig profilePosition() {
+  AxisConfig config = testConfig();
+  config.mode = "profile_position";
+  return config;
+}
+
+TEST(ProfilePositionMode, HandsOverEachTargetOnceAndNeverThePreviousOne) {
+  Bench bench(profilePosition());
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  ASSERT_TRUE(bench.axis.setTarget(1.3));
+  bench.run(milliseconds(400));
+  EXPECT_EQ(bench.drive.accepted, (std::vector<std::int32_t>{13000}));
+  EXPECT_TRUE(bench.axis.state().target_reached);
+  ASSERT_TRUE(bench.axis.setTarget(1.2));
+  bench.cycle();
+  EXPECT_FALSE(bench.axis.state().target_reached) << "the bit still speaks of the old target";
+  bench.run(milliseconds(400));
+  EXPECT_EQ(bench.drive.accepted, (std::vector<std::int32_t>{13000, 12000}));
+  EXPECT_EQ(bench.drive.controlword & 0x0030, 0x0020);
+}
+
+TEST(ProfilePositionMode, TheLatestOfManyTargetsWins) {
+  Bench bench(profilePosition());
+  bench.drive.acknowledge_delay = 10;
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  int target = 13000;
+  bench.each_cycle = [&] {
+    if (target == 14000) return;
+    target += 10;
+    EXPECT_TRUE(bench.axis.setTarget(1e-4 * target));
+  };
+  bench.run(milliseconds(1500));
+  ASSERT_FALSE(bench.drive.accepted.empty());
+  EXPECT_LT(bench.drive.accepted.size(), 20u);
+  EXPECT_EQ(bench.drive.accepted.back(), 14000);
+  EXPECT_EQ(bench.drive.position, 14000);
+}
+
+TEST(ProfilePositionMode, AMissingAcknowledgeIsToldAndDoesNotStickTheBit) {
+  Bench bench(profilePosition());
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  bench.drive.acknowledges = false;
+  ASSERT_TRUE(bench.axis.setTarget(1.3));
+  bench.run(std::chrono::seconds(3));
+  EXPECT_EQ(bench.drive.controlword & 0x0010, 0);
+  EXPECT_THAT(bench.axis.notice(),
+              HasSubstr("shoulder (node 3): the drive did not take the set-point 1.300: waited 2 s "
+                        "for statusword bit 12 (set-point acknowledge) to rise"));
+  bench.drive.acknowledges = true;
+  ASSERT_TRUE(bench.axis.setTarget(1.3));
+  bench.run(milliseconds(400));
+  EXPECT_EQ(bench.drive.accepted.size(), 1u) << "the same target can be given again";
+}
+
+}  // namespace
+}  // namespace cia402::drive
