@@ -169,16 +169,16 @@ TEST(RobotConfig, TellsAMistakeInTheDefaultsOnce) {
 }
 
 TEST(RobotConfig, WarnsOfALoadOverEightyPercentAndRefusesOneOverAHundred) {
-  // Two axes of 115 + 115 + 125 + 135 + 95 / 10 bits each and 55 for SYNC: 1054 bits a cycle, and
+  // Two axes of 115 + 95 + 125 + 135 + 95 / 10 bits each and 55 for SYNC: 1014 bits a cycle, and
   // 3 * 650 bits/s of heartbeats.
   EXPECT_THAT(load(kArm).robot.warnings, IsEmpty());
   const Loaded busy = changed("sync_period: 0.004", "sync_period: 0.0012");
   EXPECT_EQ(busy.problems, "");
   ASSERT_EQ(busy.robot.warnings.size(), 1u);
-  EXPECT_THAT(busy.robot.warnings[0], HasSubstr("need 88 % of the bus at 833 Hz"));
+  EXPECT_THAT(busy.robot.warnings[0], HasSubstr("need 85 % of the bus at 833 Hz"));
   const Loaded full = changed("sync_period: 0.004", "sync_period: 0.001");
-  EXPECT_THAT(full.problems, HasSubstr("need 106 % of the bus at 1000 Hz"));
-  EXPECT_THAT(full.problems, HasSubstr("at most 757 Hz keep it below 80 %"));
+  EXPECT_THAT(full.problems, HasSubstr("need 102 % of the bus at 1000 Hz"));
+  EXPECT_THAT(full.problems, HasSubstr("at most 787 Hz keep it below 80 %"));
 }
 
 TEST(RobotConfig, WarnsOfAnEffortLimitThatCannotBeSent) {
