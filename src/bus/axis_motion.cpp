@@ -51,6 +51,15 @@ double stopDeceleration(const drive::AxisConfig& config) {
                                                                       : kDefaultDeceleration;
 }
 
+motion::StopLimits stopLimits(const drive::AxisConfig& config) {
+  motion::StopLimits limits;
+  limits.deceleration = stopDeceleration(config);
+  limits.lower = config.limits.lower;
+  limits.upper = config.limits.upper;
+  limits.hardest = config.limits.acceleration;
+  return limits;
+}
+
 // The drive acts on a set-point up to two cycles after it was computed from a measured position.
 AxisMotion::AxisMotion(const drive::AxisConfig& config, Duration cycle)
     : position_(limiterConfig(config)),
@@ -70,16 +79,28 @@ Result<void> AxisMotion::command(const drive::Axis& axis, double value, Time now
     return Error{axis.config().name + ": set-point refused: it is not a finite number"};
   }
   if (mode_ != axis.state().mode) enter(axis, now);
+  if (mode_->kind == drive::ControlKind::homing) {
+    return Error{axis.config().name + ": set-point refused: mode " + mode_->name +
+                 " takes none; set_mode another first"};
+  }
+  if (ramp_) {
+    position_.reset(ramp_->sample(now), now);
+    ramp_.reset();
+  }
   command_ = value;
   commanded_ = now;
-  if (mode_->kind == drive::ControlKind::position) return position_.command(value, now);
   if (mode_->kind == drive::ControlKind::velocity) return velocity_.command(value, now);
-  return {};
+  if (mode_->kind != drive::ControlKind::position) return {};
+  const drive::AxisLimits& limits = axis.config().limits;
+  if (limits.lower) command_ = std::max(*command_, *limits.lower);
+  if (limits.upper) command_ = std::min(*command_, *limits.upper);
+  return position_.command(*command_, now);
 }
 
 void AxisMotion::enter(const drive::Axis& axis, Time now) {
   mode_ = axis.state().mode;
   command_.reset();
+  ramp_.reset();
   at_rest_ = true;
   position_.reset({axis.target(), 0.0, 0.0}, now);
   velocity_.reset({axis.state().position, 0.0, 0.0}, now);
@@ -90,11 +111,11 @@ void AxisMotion::stop(const drive::Axis& axis, Time now) {
   if (mode_->kind == drive::ControlKind::velocity) {
     // Refusal is impossible: zero is finite.
     (void)velocity_.command(0.0, now);
+  } else if (mode_->kind == drive::ControlKind::position && mode_->cyclic) {
+    if (!ramp_ && !at_rest_) ramp_.emplace(position_.output(), stopLimits(axis.config()), stepped_);
   } else if (mode_->kind == drive::ControlKind::position) {
-    const motion::MotionState& state = position_.output();
-    const double distance =
-        state.velocity * std::abs(state.velocity) / (2.0 * stopDeceleration(axis.config()));
-    (void)position_.command(state.position + distance, now);
+    command_.reset();  // the drive plans its motion: who disables it stops it by quick stop
+    at_rest_ = true;
   } else {
     command_ = 0.0;
   }
@@ -134,7 +155,8 @@ void AxisMotion::stepPosition(drive::Axis& axis, Time now) {
     at_rest_ = axis.state().target_reached;
     return;
   }
-  const motion::MotionState state = position_.step(now);
+  const motion::MotionState state = ramp_ ? ramp_->sample(now) : position_.step(now);
+  stepped_ = now;
   at_rest_ = state.velocity == 0.0;
   if (!axis.setTarget(state.position)) command_.reset();
 }

@@ -1,28 +1,13 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "cia402_driver/bus/group.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace cia402::bus {
 namespace {
 
 using motion::TrajectoryErrorCode;
-
-std::vector<motion::StopLimits> stopLimitsOf(const std::vector<motion::Joint>& joints,
-                                             const std::vector<std::size_t>& axes,
-                                             const std::vector<drive::Axis>& all) {
-  std::vector<motion::StopLimits> limits;
-  for (std::size_t i = 0; i < joints.size(); ++i) {
-    const drive::AxisConfig& config = all[axes[i]].config();
-    motion::StopLimits limit;
-    limit.deceleration = stopDeceleration(config);
-    limit.lower = config.limits.lower;
-    limit.upper = config.limits.upper;
-    limit.hardest = config.limits.acceleration;
-    limits.push_back(limit);
-  }
-  return limits;
-}
 
 std::vector<motion::TrajectoryPoint> reorder(const std::vector<motion::TrajectoryPoint>& points,
                                              const std::vector<std::size_t>& order) {
@@ -46,15 +31,18 @@ Group::Group(config::GroupConfig config, std::vector<std::size_t> axes,
              const std::vector<drive::Axis>& all)
     : config_(std::move(config)),
       axes_(std::move(axes)),
-      ramps_(std::vector<motion::StopLimits>()),
-      commanded_(axes_.size()) {
+      ramps_({}),
+      commanded_(axes_.size()),
+      dropped_(axes_.size(), 0) {
+  std::vector<motion::StopLimits> stops;
   for (std::size_t axis : axes_) {
     joints_.push_back(jointOf(all[axis].config()));
+    stops.push_back(stopLimits(all[axis].config()));
     const auto tolerance = config_.tolerances.find(joints_.back().name);
     tolerances_.push_back(tolerance == config_.tolerances.end() ? config::JointTolerance()
                                                                 : tolerance->second);
   }
-  ramps_ = motion::GroupStop(stopLimitsOf(joints_, axes_, all));
+  ramps_ = motion::GroupStop(std::move(stops));
 }
 
 std::string Group::refusal(const std::vector<drive::Axis>& axes,
@@ -72,6 +60,10 @@ std::string Group::refusal(const std::vector<drive::Axis>& axes,
     if (reason.empty() && owner != nullptr && owner != &config_.name) {
       reason = axes[axis].config().name + " follows a trajectory of group " + *owner;
     }
+    if (reason.empty() && owner == nullptr && !motions[axis].atRest()) {
+      reason = axes[axis].config().name +
+               " is still moved by streamed set-points: end the stream and let it come to rest";
+    }
     if (!reason.empty()) all += (all.empty() ? "" : "; ") + reason;
   }
   return all;
@@ -84,8 +76,9 @@ std::vector<motion::MotionState> Group::commandedAt(const std::vector<drive::Axi
     trajectory_->sample(time, states);
   } else if (phase_ == Phase::stopping) {
     ramps_.sample(time, states);
-  } else {
-    for (std::size_t i = 0; i < axes_.size(); ++i) states[i] = {axes[axes_[i]].target(), 0.0, 0.0};
+  }
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    if (phase_ == Phase::idle || dropped_[i] != 0) states[i] = {axes[axes_[i]].target(), 0.0, 0.0};
   }
   return states;
 }
@@ -111,22 +104,28 @@ TrajectoryOutcome Group::start(const std::vector<std::string>& names,
   auto trajectory = motion::Trajectory::create(joints_, commandedAt(axes, start.begin()),
                                                reorder(points, *order), start);
   if (!trajectory) return {trajectory.error().code, trajectory.error().message};
-  if (phase_ == Phase::following) {
-    next_ = std::move(trajectory).value();
-  } else {
-    trajectory_ = std::move(trajectory).value();
-    next_.reset();
+  next_ = std::move(trajectory).value();
+  if (phase_ == Phase::idle) {
+    commanded_ = commandedAt(axes, now);
+    beginNext();
   }
-  phase_ = Phase::following;
-  refused_ = nullptr;
   for (std::size_t axis : axes_) motions[axis].setOwner(&config_.name);
   return {TrajectoryErrorCode::successful, config_.name + ": trajectory accepted"};
 }
 
+void Group::beginNext() {
+  trajectory_ = std::move(next_);
+  next_.reset();
+  phase_ = Phase::following;
+  refused_ = nullptr;
+  std::fill(dropped_.begin(), dropped_.end(), std::uint8_t{0});
+}
+
 void Group::stop(const TrajectoryOutcome& why, Time now) {
-  if (phase_ != Phase::following) return;
+  if (!executing()) return;
   outcome_ = why;
-  beginStop(now);
+  if (phase_ == Phase::following) beginStop(now);
+  next_.reset();
 }
 
 void Group::beginStop(Time now) {
@@ -140,11 +139,11 @@ void Group::beginStop(Time now) {
 std::optional<TrajectoryOutcome> Group::step(std::vector<drive::Axis>& axes,
                                              std::vector<AxisMotion>& motions, Time now) {
   if (phase_ == Phase::idle) return std::nullopt;
+  if (next_ && now >= next_->startTime()) beginNext();
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    if (!axes[axes_[i]].state().ready_for_motion) dropped_[i] = 1;
+  }
   if (phase_ == Phase::following) {
-    if (next_ && now >= next_->startTime()) {
-      trajectory_ = std::move(next_);
-      next_.reset();
-    }
     auto ended = checkAxes(axes);
     if (!ended) ended = checkPath(axes);
     if (!ended) ended = checkRefusal();
@@ -165,16 +164,16 @@ std::optional<TrajectoryOutcome> Group::step(std::vector<drive::Axis>& axes,
   }
   ramps_.sample(now, commanded_);
   sendSetpoints(axes);
-  if (!ramps_.finished(now)) return std::nullopt;
+  if (next_ || !ramps_.finished(now)) return std::nullopt;
   release(motions);
   return outcome_;
 }
 
 void Group::sendSetpoints(std::vector<drive::Axis>& axes) {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    drive::Axis& axis = axes[axes_[i]];
     // An axis that fell out of operation holds or stops by itself; the others go on as configured.
-    if (axis.state().ready_for_motion && !axis.setTarget(commanded_[i].position)) {
+    // Enabled again, it must not jump to where the trajectory is by now.
+    if (dropped_[i] == 0 && !axes[axes_[i]].setTarget(commanded_[i].position)) {
       refused_ = &joints_[i];
     }
   }
@@ -189,18 +188,22 @@ void Group::release(std::vector<AxisMotion>& motions) {
 
 std::optional<TrajectoryOutcome> Group::checkAxes(const std::vector<drive::Axis>& axes) const {
   bool any_ready = false;
-  for (std::size_t index : axes_) {
-    if (axes[index].state().ready_for_motion) {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    if (dropped_[i] == 0) {
       any_ready = true;
     } else if (config_.stop_group_on_fault) {
-      return TrajectoryOutcome{
-          TrajectoryErrorCode::path_tolerance_violated,
-          config_.name + ": trajectory stopped: " + axes[index].motionRefusal()};
+      return TrajectoryOutcome{TrajectoryErrorCode::path_tolerance_violated,
+                               config_.name + ": trajectory stopped: " + dropReason(axes, i)};
     }
   }
   if (any_ready) return std::nullopt;
   return TrajectoryOutcome{TrajectoryErrorCode::path_tolerance_violated,
                            config_.name + ": trajectory stopped: no joint is enabled any more"};
+}
+
+std::string Group::dropReason(const std::vector<drive::Axis>& axes, std::size_t joint) const {
+  const std::string reason = axes[axes_[joint]].motionRefusal();
+  return reason.empty() ? joints_[joint].name + " fell out of operation on the way" : reason;
 }
 
 std::optional<TrajectoryOutcome> Group::checkRefusal() const {
@@ -214,7 +217,7 @@ std::optional<TrajectoryOutcome> Group::checkRefusal() const {
 std::optional<TrajectoryOutcome> Group::checkPath(const std::vector<drive::Axis>& axes) const {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const drive::AxisState& state = axes[axes_[i]].state();
-    if (tolerances_[i].trajectory <= 0.0 || !state.ready_for_motion) continue;
+    if (tolerances_[i].trajectory <= 0.0 || dropped_[i] != 0) continue;
     const double error = commanded_[i].position - state.position;
     if (trajectory_->startTime() < state.stamp && std::abs(error) > tolerances_[i].trajectory) {
       return TrajectoryOutcome{
@@ -229,6 +232,11 @@ std::optional<TrajectoryOutcome> Group::checkPath(const std::vector<drive::Axis>
 
 std::optional<TrajectoryOutcome> Group::checkGoal(const std::vector<drive::Axis>& axes,
                                                   Time now) const {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    if (dropped_[i] == 0) continue;
+    return TrajectoryOutcome{TrajectoryErrorCode::goal_tolerance_violated,
+                             config_.name + ": goal missed: " + dropReason(axes, i)};
+  }
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     if (tolerances_[i].goal <= 0.0) continue;
     const double error = trajectory_->goal()[i] - axes[axes_[i]].state().position;

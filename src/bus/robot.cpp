@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "cia402_driver/drive/fault_text.h"
+
 namespace cia402::bus {
 namespace {
 
@@ -96,6 +98,7 @@ void Robot::sync(Time now) {
   if (mayProduceSync()) master_.sendSync(now);
   statistics_.syncSent(now - next_sync_);
   const Duration period = config_.bus.sync_period;
+  if (next_cycle_ != kNever) statistics_.cyclesSkipped(1);  // this SYNC has overtaken it
   next_cycle_ = now + period / 2;
   next_sync_ += period;
   if (next_sync_ <= now) {  // never a burst of SYNCs: what was missed is left out, and counted
@@ -213,18 +216,17 @@ void Robot::onEmergency(canopen::Node& node, const canopen::Emergency& emergency
   if (index == axes_.size()) return;
   ++emergencies_[index];
   axes_[index].onEmergency(emergency, now_);
-  const auto& known = axes_[index].config().profile->errors;
-  const auto text = known.find(emergency.code);
   Event event;
   event.severity = emergency.code == 0 ? Event::Severity::info : Event::Severity::warning;
   event.stamp = emergency.stamp;
   event.is_emergency = true;
   event.axis = index;
   event.emergency = emergency;
-  event.text.assign(
-      whoIs(node) + ": emergency: " +
-      (text == known.end() ? canopen::emergencyText(emergency.code) : text->second.text) +
-      "; error register: " + canopen::errorRegisterText(emergency.error_register));
+  const std::string what =
+      emergency.code == 0 ? canopen::emergencyText(0)
+                          : drive::errorCodeText(*axes_[index].config().profile, emergency.code);
+  event.text.assign(whoIs(node) + ": emergency: " + what +
+                    "; error register: " + canopen::errorRegisterText(emergency.error_register));
   events_.onEvent(event);
 }
 
@@ -261,7 +263,8 @@ void Robot::watchAxes(Time now) {
                       state.state != drive::State::fault_reaction_active && !state.warning;
     const bool changed = news.state != state.state || news.health != state.health ||
                          news.error_code != state.error_code || news.procedure != procedure.id ||
-                         news.running != procedure.running;
+                         news.running != procedure.running ||
+                         news.notices != axes_[i].noticeCount();
     const bool stale = (!well || procedure.running || !news.problem.empty()) &&
                        now >= news.checked + kNewsInterval;
     if (!changed && !stale) continue;
@@ -276,10 +279,16 @@ void Robot::watchAxes(Time now) {
     news.step.assign(booting ? node.bootStep() : procedure.step);
     news.waiting_for.assign(procedure.running ? procedure.waiting_for : std::string());
     const std::string problem = !node.problem().empty() ? node.problem() : axes_[i].faultText();
-    if (news.problem == problem) continue;
-    news.problem.assign(problem);
+    const bool noticed = news.notices != axes_[i].noticeCount();
     const bool told_by_health = !node.problem().empty();
-    if (!problem.empty() && !told_by_health) tell(Event::Severity::error, problem, now);
+    news.notices = axes_[i].noticeCount();
+    if (noticed && !told_by_health) tell(Event::Severity::error, axes_[i].notice(), now);
+    const FixedText<384> shown(problem);
+    if (news.problem == shown.view()) continue;
+    news.problem = shown;
+    const bool told =
+        told_by_health || (noticed && axes_[i].notice().find(problem) != std::string::npos);
+    if (!problem.empty() && !told) tell(Event::Severity::error, problem, now);
   }
 }
 

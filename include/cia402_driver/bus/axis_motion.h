@@ -7,6 +7,7 @@
 #include "cia402_driver/common/result.h"
 #include "cia402_driver/drive/axis.h"
 #include "cia402_driver/motion/setpoint_limiter.h"
+#include "cia402_driver/motion/stop_ramp.h"
 
 namespace cia402::bus {
 
@@ -16,6 +17,8 @@ motion::Joint jointOf(const drive::AxisConfig& config);
 /// Deceleration with which an axis is stopped by set-points: its acceleration limit, or 5 rad/s²
 /// (0.5 m/s²) where none is configured.
 double stopDeceleration(const drive::AxisConfig& config);
+/// How the set-points of an axis are brought to rest: with stopDeceleration(), within its limits.
+motion::StopLimits stopLimits(const drive::AxisConfig& config);
 
 /// Makes the set-points of one axis from streamed commands (`~<axis>/command`): limits position,
 /// velocity and acceleration, and stops the axis when a stream of velocities or efforts dries up.
@@ -35,7 +38,8 @@ class AxisMotion {
   /// outlive the taking. Commands are forgotten.
   void setOwner(const std::string* name) { owner_ = name; }
   const std::string* owner() const { return owner_; }
-  /// Forgets the command and ramps a moving axis down to rest.
+  /// Forgets the command and ramps a moving axis down to rest. An axis whose drive plans the motion
+  /// is left to it.
   void stop(const drive::Axis& axis, Time now);
   /// Are the set-points of this cycle at rest?
   bool atRest() const { return at_rest_; }
@@ -53,7 +57,8 @@ class AxisMotion {
   const std::string* owner_ = nullptr;
   const drive::ModeSpec* mode_ = nullptr;  // for which the limiters were reset
   std::optional<double> command_;
-  Time commanded_{};
+  std::optional<motion::StopRamp> ramp_;  // of a stopped position stream
+  Time commanded_{}, stepped_{};
   bool at_rest_ = true;
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,8 +48,8 @@ class Group {
   std::optional<TrajectoryOutcome> step(std::vector<drive::Axis>& axes,
                                         std::vector<AxisMotion>& motions, Time now);
 
-  /// A trajectory is being followed or its end is awaited.
-  bool executing() const { return phase_ == Phase::following; }
+  /// A trajectory is being followed, or its beginning or end is awaited.
+  bool executing() const { return phase_ == Phase::following || next_.has_value(); }
   /// The joints are being brought to rest.
   bool stopping() const { return phase_ == Phase::stopping; }
   /// Commanded states, one a joint; valid while executing or stopping.
@@ -65,6 +66,8 @@ class Group {
   std::optional<TrajectoryOutcome> checkRefusal() const;
   std::optional<TrajectoryOutcome> checkPath(const std::vector<drive::Axis>& axes) const;
   std::optional<TrajectoryOutcome> checkGoal(const std::vector<drive::Axis>& axes, Time now) const;
+  std::string dropReason(const std::vector<drive::Axis>& axes, std::size_t joint) const;
+  void beginNext();
   void beginStop(Time now);
   void release(std::vector<AxisMotion>& motions);
   void sendSetpoints(std::vector<drive::Axis>& axes);
@@ -77,6 +80,7 @@ class Group {
   Phase phase_ = Phase::idle;
   std::optional<motion::Trajectory> trajectory_, next_;
   std::vector<motion::MotionState> commanded_;
+  std::vector<std::uint8_t> dropped_;       // joints that fell out of operation under way
   const motion::Joint* refused_ = nullptr;  // whose axis did not take its set-point
   TrajectoryOutcome outcome_;               // of a stopping trajectory
 };

@@ -71,7 +71,7 @@ class Robot final : private canopen::MasterListener {
     Time checked{};
     drive::State state = drive::State::unknown;
     canopen::NodeHealth health = canopen::NodeHealth::absent;
-    std::uint32_t procedure = 0;
+    std::uint32_t procedure = 0, notices = 0;
     bool running = false;
     std::uint16_t error_code = 0;
   };
