@@ -29,7 +29,8 @@ SIM_MAY_NOT_INCLUDE = re.compile(
     r"canopen/(sdo|pdo|emergency|heartbeat|sync|master|node|boot)|drive/(axis\.h|state_machine|conversion)")
 
 SANS_IO = MODEL + ["motion", "sim"]
-EDGE = re.compile(r"/can/socketcan")
+# The edge of can/ towards the kernel.
+EDGE = re.compile(r"/can/(socketcan|raw_socket|link_probe|wall_clock)")
 FORBIDDEN = [
     (re.compile(r"#include\s*<(thread|mutex|shared_mutex|condition_variable|future|semaphore|"
                 r"ctime|time\.h|pthread\.h|poll\.h|unistd\.h|sys/(socket|select|epoll|timerfd|time)\.h|"
