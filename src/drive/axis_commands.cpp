@@ -9,7 +9,7 @@
 namespace cia402::drive {
 
 std::uint64_t AxisCore::frames(const OutputObject& object) const {
-  return node_.image().rpdos()[object.rpdo].count;
+  return image_.rpdos()[object.rpdo].count;
 }
 
 std::uint64_t AxisCore::controlwordFrames() const { return frames(objects_.controlword); }
@@ -40,7 +40,6 @@ std::uint16_t AxisCore::composeControlword() {
 }
 
 void AxisCore::writeCommands(Time now) {
-  canopen::ProcessImage& image = node_.image();
   if (in_operation_) {
     writeTarget(now);
   } else {
@@ -48,11 +47,11 @@ void AxisCore::writeCommands(Time now) {
   }
   written_ = now;
   controlword_ = composeControlword();
-  image.setOutput(objects_.controlword.slot, controlword_);
+  image_.setOutput(objects_.controlword.slot, controlword_);
   if (objects_.mode.mapped()) {
-    image.setOutput(objects_.mode.slot, static_cast<std::uint64_t>(mode_->spec->value));
+    image_.setOutput(objects_.mode.slot, static_cast<std::uint64_t>(mode_->spec->value));
   }
-  for (const Held& held : held_) image.setOutput(held.slot, held.raw);
+  for (const Held& held : held_) image_.setOutput(held.slot, held.raw);
 }
 
 void AxisCore::writeTarget(Time now) {
@@ -66,7 +65,7 @@ void AxisCore::writeTarget(Time now) {
   if (mode_->spec->handshake == Handshake::new_set_point) advanceHandshake(now);
   if (!mode_->target.mapped()) return;
   const bool by_hand = mode_->spec->handshake == Handshake::new_set_point;
-  node_.image().setOutput(mode_->target.slot, by_hand ? handshake_.raw() : target_raw_);
+  image_.setOutput(mode_->target.slot, by_hand ? handshake_.raw() : target_raw_);
 }
 
 bool AxisCore::neutralTarget(const ModeChannel& mode, std::uint64_t& raw) const {
@@ -84,7 +83,7 @@ void AxisCore::writeNeutralTargets() {
   for (const ModeChannel& channel : objects_.modes) {
     std::uint64_t raw = 0;
     if (channel.target.mapped() && neutralTarget(channel, raw)) {
-      node_.image().setOutput(channel.target.slot, raw);
+      image_.setOutput(channel.target.slot, raw);
     }
   }
 }
@@ -96,14 +95,14 @@ void AxisCore::presetTarget(const ModeChannel& mode) {
     return;
   }
   std::uint64_t raw = 0;
-  if (neutralTarget(mode, raw)) node_.image().setOutput(mode.target.slot, raw);
+  if (neutralTarget(mode, raw)) image_.setOutput(mode.target.slot, raw);
 }
 
 void AxisCore::neutralizeTarget() {
   ramping_ = false;
   target_ = mode_->spec->kind == ControlKind::position ? state_.position : 0.0;
   if (!neutralTarget(*mode_, target_raw_) && mode_->target.mapped()) {
-    target_raw_ = node_.image().output(mode_->target.slot);
+    target_raw_ = image_.output(mode_->target.slot);
   }
   previous_target_ = target_;
   target_velocity_ = 0.0;

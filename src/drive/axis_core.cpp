@@ -12,6 +12,7 @@ namespace cia402::drive {
 AxisCore::AxisCore(AxisConfig config, canopen::Node& node)
     : config_(std::move(config)),
       node_(node),
+      image_(node.image()),
       objects_(config_, node),
       polled_velocity_(poller_.add(objects_.velocity)),
       polled_effort_(poller_.add(objects_.effort)),
@@ -60,7 +61,8 @@ bool AxisCore::powerOff() const {
 }
 
 std::string AxisCore::supervise(Time now) {
-  std::string failure = takeFailure();
+  std::string failure;
+  if (!failure_.empty()) failure = takeFailure();
   if (!nodeReady()) return failure;
   const bool commanded = goal_ != Goal::disabled && goal_ != Goal::quick_stop;
   if (commanded && !state_.feedback_valid) {

@@ -139,6 +139,7 @@ class AxisCore {
 
   AxisConfig config_;
   canopen::Node& node_;
+  canopen::ProcessImage& image_;
   AxisObjects objects_;
   AxisState state_;
   AxisPoller poller_;
@@ -155,6 +156,7 @@ class AxisCore {
 
   const ModeChannel* mode_;
   std::optional<int> shown_mode_;
+  std::uint64_t shown_raw_ = 0;  ///< of 6061h, for which shown_mode_ was decoded
   Conversion position_, mode_conversion_;  ///< with what set_position declared
   double zero_shift_ = 0.0;
 

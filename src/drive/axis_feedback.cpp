@@ -31,7 +31,7 @@ void AxisCore::readFeedback(Time now) {
 }
 
 void AxisCore::readState(Time now) {
-  const canopen::ProcessValue& word = node_.image().input(objects_.statusword.slot);
+  const canopen::ProcessValue& word = image_.input(objects_.statusword.slot);
   const bool fresh =
       word.valid && (!objects_.statusword.cyclic || now - word.stamp <= config_.feedback_timeout);
   if (!fresh) {
@@ -53,7 +53,7 @@ void AxisCore::readState(Time now) {
 }
 
 void AxisCore::readMotion(Time now) {
-  const canopen::ProcessValue& position = node_.image().input(objects_.position.slot);
+  const canopen::ProcessValue& position = image_.input(objects_.position.slot);
   const bool fresh = position.valid && (!objects_.position.cyclic ||
                                         now - position.stamp <= config_.feedback_timeout);
   const double joint = fresh ? position_.toJoint(position.raw) : kUnknown;
@@ -80,7 +80,7 @@ void AxisCore::readMotion(Time now) {
   }
   if (objects_.digital_inputs.mapped()) {
     state_.digital_inputs =
-        static_cast<std::uint32_t>(node_.image().input(objects_.digital_inputs.slot).raw);
+        static_cast<std::uint32_t>(image_.input(objects_.digital_inputs.slot).raw);
   } else if (polled_inputs_ >= 0) {
     state_.digital_inputs = static_cast<std::uint32_t>(poller_.value(polled_inputs_, now).raw);
   }
@@ -88,7 +88,7 @@ void AxisCore::readMotion(Time now) {
 
 double AxisCore::read(const InputObject& object, int polled, Time now) const {
   if (object.mapped()) {
-    const canopen::ProcessValue& value = node_.image().input(object.slot);
+    const canopen::ProcessValue& value = image_.input(object.slot);
     return value.valid ? object.conversion.toJoint(value.raw) : kUnknown;
   }
   if (polled < 0) return kUnknown;
@@ -99,7 +99,7 @@ double AxisCore::read(const InputObject& object, int polled, Time now) const {
 void AxisCore::readMode(Time now) {
   std::optional<std::uint64_t> raw;
   if (objects_.mode_display.mapped()) {
-    const canopen::ProcessValue& value = node_.image().input(objects_.mode_display.slot);
+    const canopen::ProcessValue& value = image_.input(objects_.mode_display.slot);
     if (value.valid) raw = value.raw;
   } else if (polled_mode_ >= 0) {
     const AxisPoller::Value value = poller_.value(polled_mode_, now);
@@ -107,6 +107,7 @@ void AxisCore::readMode(Time now) {
   } else {
     raw = static_cast<std::uint64_t>(mode_->spec->value);  // the family has no 6061h: believe
   }
+  if (raw && shown_mode_ && *raw == shown_raw_ && state_.mode != nullptr) return;
   if (!raw) {
     shown_mode_.reset();
     state_.mode = nullptr;
@@ -115,7 +116,7 @@ void AxisCore::readMode(Time now) {
   const DataType type =
       objects_.mode_display.spec != nullptr ? objects_.mode_display.spec->type : DataType::int16;
   const std::int16_t value = signedMode(*raw, type);
-  if (shown_mode_ == value && state_.mode != nullptr) return;
+  shown_raw_ = *raw;
   shown_mode_ = value;
   state_.mode_value = value;
   const ModeChannel* channel = objects_.channelOfValue(value);
@@ -130,7 +131,7 @@ void AxisCore::putShownMode(std::uint64_t raw, Time now) {
 void AxisCore::readErrorCode() {
   std::uint16_t code = emergency_code_;
   if (objects_.error_code.mapped()) {
-    const canopen::ProcessValue& value = node_.image().input(objects_.error_code.slot);
+    const canopen::ProcessValue& value = image_.input(objects_.error_code.slot);
     if (value.valid && value.raw != 0) code = static_cast<std::uint16_t>(value.raw);
   } else if (faulted()) {
     if (error_ticket_ && error_ticket_->done()) {
