@@ -45,12 +45,28 @@ TEST(Axis, DecodesFeedbackAfterBoot) {
 
 TEST(Axis, CommandsNothingUntilTold) {
   Bench bench;
-  bench.drive.state = FakeDrive::S::enabled;  // left over from somebody else
   ASSERT_TRUE(bench.boot());
-  bench.drive.state = FakeDrive::S::ready;
+  bench.drive.state = FakeDrive::S::enabled;  // by somebody else: not 0x0007, not 0x000F
+  bench.drive.stuck.insert(FakeDrive::S::enabled);
   bench.run(milliseconds(500));
-  ASSERT_EQ(bench.drive.controlwords.size(), 1u);
-  EXPECT_EQ(bench.drive.controlwords[0], 0x0000);
+  EXPECT_EQ(bench.drive.controlwords, std::vector<std::uint16_t>{0x0000});
+}
+
+TEST(Axis, APositionWithoutAStatuswordIsNotBelieved) {
+  canopen::NodeConfig node = test::nodeConfig();
+  node.pdos[2].entries = {{{0x6041, 0}, 16, "statusword"}};
+  node.pdos.push_back(
+      test::pdo(canopen::PdoDirection::tpdo, 3, 0x383, {{{0x6064, 0}, 32, "position_actual"}}));
+  Bench bench(testConfig(), node);
+  bench.each_cycle = [&] { bench.deliver(can::Frame(0x383, {0xE8, 0x03, 0x00, 0x00})); };
+  ASSERT_TRUE(bench.boot());
+  bench.run(milliseconds(20));
+  EXPECT_NEAR(bench.axis.state().position, 0.1, 1e-9);
+  bench.drive.silent = true;
+  bench.run(milliseconds(150));
+  EXPECT_EQ(bench.axis.state().state, State::unknown);
+  EXPECT_FALSE(bench.axis.state().feedback_valid);
+  EXPECT_TRUE(std::isnan(bench.axis.state().position));
 }
 
 TEST(Axis, TargetFollowsTheActualPositionWhileNotEnabled) {

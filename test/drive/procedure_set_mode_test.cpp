@@ -49,6 +49,26 @@ TEST(SetModeProcedure, AStaleTargetOfTheNewModeIsReplacedBeforeTheModeIsActive) 
   for (const std::int32_t target : targets) EXPECT_EQ(target, std::int32_t(bench.drive.position));
 }
 
+TEST(SetModeProcedure, TheNeutralTargetIsOnTheWireBeforeTheModeIsCommanded) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  ASSERT_TRUE(bench.perform(ProcedureKind::set_mode, "csv").success);
+  ASSERT_TRUE(bench.axis.setTarget(0.5));
+  bench.run(milliseconds(8));
+  bench.drive.coast = -5000;  // blocked: the velocity target stays, the axis stands
+  bench.run(milliseconds(200));
+  ASSERT_TRUE(bench.perform(ProcedureKind::set_mode, "csp").success);
+  bench.drive.coast = 0;
+  bench.run(milliseconds(200));
+  std::int32_t last_before = -1;
+  bench.each_cycle = [&] {
+    if (bench.drive.commanded_mode == 8) last_before = bench.drive.target_velocity;
+  };
+  ASSERT_TRUE(bench.perform(ProcedureKind::set_mode, "csv").success);
+  EXPECT_EQ(last_before, 0);
+}
+
 TEST(SetModeProcedure, IsRefusedInMotion) {
   AxisConfig config = testConfig();
   config.mode = "cyclic_velocity";
