@@ -217,6 +217,20 @@ TEST(DriveCyclicPosition, FollowsTheStreamWithTheLagOfItsLoop) {
   EXPECT_EQ(b.position(), counts);
 }
 
+TEST(DriveCyclicPosition, ASetPointBetweenTwoSyncsWaitsForTheNext) {
+  Bench b;
+  b.nmt(0x01);
+  b.mode(8);
+  b.enable();
+  for (int i = 0; i < 5; ++i) b.cycle(0);
+  b.frame(0x401, {0x0F, 0x00, 0xF4, 0x01, 0x00, 0x00});  // 500
+  b.run(ms(4));
+  EXPECT_EQ(b.demand(), 0);
+  b.sync();
+  b.run(ms(5));
+  EXPECT_EQ(b.demand(), 500);
+}
+
 TEST(DriveCyclicPosition, EnablingFarFromTheTargetJumpsIntoAFollowingError) {
   Bench b;
   b.nmt(0x01);

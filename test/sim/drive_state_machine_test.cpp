@@ -61,6 +61,12 @@ TEST(DriveStateMachine, EnablesInOneStepFromReadyToSwitchOn) {
   EXPECT_EQ(b.word(), 0x0237);  // 3 and 4
 }
 
+TEST(DriveStateMachine, ShutdownDoesNotCareAboutBitThree) {
+  Bench b;
+  b.control(0x000E);
+  EXPECT_EQ(b.word(), 0x0231);
+}
+
 TEST(DriveStateMachine, IgnoresCommandsThatMeanNothingInAState) {
   Bench b;
   for (const int word : {0x0007, 0x000F, 0x0002, 0x0000, 0x0080}) {

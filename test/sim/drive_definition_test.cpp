@@ -1,0 +1,65 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <fstream>
+
+#include "cia402_driver/sim/drive.h"
+
+namespace cia402::sim {
+namespace {
+
+using testing::HasSubstr;
+
+std::string errorOf(const std::string& text) {
+  const std::string path = testing::TempDir() + "drive_definition_test.yaml";
+  std::ofstream(path) << text;
+  const auto loaded = loadDriveDefinition(path);
+  std::remove(path.c_str());
+  return loaded.ok() ? "" : loaded.error().message;
+}
+
+TEST(DriveDefinition, BothDefinitionsOfTheRepositoryLoad) {
+  for (const char* name : {"generic_cia402", "damiao_dm"}) {
+    const auto loaded =
+        loadDriveDefinition(std::string(CIA402_CONFIG_DIR) + "/simulated_drives/" + name + ".yaml");
+    EXPECT_TRUE(loaded.ok()) << (loaded.ok() ? "" : loaded.error().message);
+  }
+}
+
+TEST(DriveDefinition, ReportsEveryProblemAtOnceWithItsPath) {
+  const std::string error = errorOf(
+      "name: x\n"
+      "dictionary: [[0x6040, 0, controlword, uint16, rw, rt, 0]]\n"
+      "colour: red\n"
+      "encoding: roman\n"
+      "units: {position: -1, torque: much}\n"
+      "objects: {nonsense: \"6040:00\", controlword: 12.5}\n"
+      "modes:\n"
+      "  1: {behaviour: flying}\n"
+      "  2: {behavior: homing}\n"
+      "state_machine: {halt: perhaps, quick_stop: {values: {1: {ramp: steep}}}}\n"
+      "homing: {methods: [17, 15]}\n"
+      "faults:\n"
+      "  odd: {register: 300}\n");
+  for (const char* expected :
+       {"colour (line 3): unknown key", "encoding (line 4)", "units.position (line 5)",
+        "units.torque (line 5)", "'nonsense' is no role", "controlword: must be an object",
+        "modes.1.behaviour (line 8): 'flying' is none of", "modes.2.behaviour: is missing",
+        "modes.2.behavior (line 9): unknown key", "state_machine.halt (line 10)",
+        "state_machine.quick_stop.values.1.ramp (line 10)", "homing.methods (line 11)",
+        "faults.odd.code: is missing", "faults.odd.register (line 13)"}) {
+    EXPECT_THAT(error, HasSubstr(expected));
+  }
+}
+
+TEST(DriveDefinition, SaysSoWhenThereIsNoFileOrNoYaml) {
+  EXPECT_THAT(loadDriveDefinition("/nowhere/x.yaml").error().message, HasSubstr("/nowhere/x.yaml"));
+  EXPECT_THAT(errorOf("a: [1"), HasSubstr("problems"));
+  EXPECT_THAT(errorOf("just text"), HasSubstr("must be a map"));
+  EXPECT_THAT(errorOf("name: x"), HasSubstr("dictionary: is missing"));
+}
+
+}  // namespace
+}  // namespace cia402::sim
