@@ -11,7 +11,7 @@ namespace cia402::ros_node {
 EventLog::EventLog(ros::NodeHandle& private_node, bus::BusRunner& runner,
                    const config::RobotConfig& robot)
     : runner_(runner), robot_(robot) {
-  emergencies_ = private_node.advertise<Emergency>("emergencies", 100);
+  emergencies_ = private_node.advertise<cia402_driver::Emergency>("emergencies", 100);
   timer_ =
       private_node.createTimer(ros::Duration(0.02), [this](const ros::TimerEvent&) { drain(); });
 }
@@ -41,7 +41,7 @@ void EventLog::drain() {
 
 void EventLog::publish(const bus::Event& event) {
   const drive::AxisConfig& axis = robot_.axes[event.axis];
-  Emergency message;
+  cia402_driver::Emergency message;
   message.header.stamp = toRos(event.emergency.stamp);
   message.node_id = axis.node_id;
   message.axes = {axis.name};

@@ -7,8 +7,10 @@ namespace cia402::ros_node {
 
 FaultService::FaultService(ros::NodeHandle& private_node, Inject inject)
     : inject_(std::move(inject)) {
-  server_ = private_node.advertiseService<InjectFault::Request, InjectFault::Response>(
-      "inject_fault", [this](InjectFault::Request& request, InjectFault::Response& response) {
+  server_ = private_node.advertiseService<cia402_driver::InjectFault::Request,
+                                          cia402_driver::InjectFault::Response>(
+      "inject_fault", [this](cia402_driver::InjectFault::Request& request,
+                             cia402_driver::InjectFault::Response& response) {
         const bus::Answer answer = inject_(request.axis, request.fault);
         response.success = answer.success;
         response.message = answer.message;

@@ -19,8 +19,9 @@ double age(Time since, Time now) {
   return since == Time() ? std::numeric_limits<double>::infinity() : toSeconds(now - since);
 }
 
-AxisState axisState(const bus::AxisSnapshot& axis, const drive::AxisConfig& config, Time now) {
-  AxisState message;
+cia402_driver::AxisState axisState(const bus::AxisSnapshot& axis, const drive::AxisConfig& config,
+                                   Time now) {
+  cia402_driver::AxisState message;
   message.name = config.name;
   message.joint = config.joint;
   message.state = drive::toString(axis.state.state);
@@ -44,8 +45,9 @@ AxisState axisState(const bus::AxisSnapshot& axis, const drive::AxisConfig& conf
   return message;
 }
 
-NodeState nodeState(const bus::AxisSnapshot& axis, const drive::AxisConfig& config, Time now) {
-  NodeState message;
+cia402_driver::NodeState nodeState(const bus::AxisSnapshot& axis, const drive::AxisConfig& config,
+                                   Time now) {
+  cia402_driver::NodeState message;
   message.node_id = config.node_id;
   message.axes = {config.name};
   message.nmt_state = canopen::toString(axis.node.nmt);
@@ -77,8 +79,8 @@ Publishers::Publishers(ros::NodeHandle& node, ros::NodeHandle& private_node, bus
   joint_states_.velocity.resize(robot.axes.size());
   joint_states_.effort.resize(robot.axes.size());
   joint_states_pub_ = node.advertise<sensor_msgs::JointState>("joint_states", 10);
-  axis_states_pub_ = private_node.advertise<AxisStates>("axis_states", 10, true);
-  bus_state_pub_ = private_node.advertise<BusState>("bus_state", 10, true);
+  axis_states_pub_ = private_node.advertise<cia402_driver::AxisStates>("axis_states", 10, true);
+  bus_state_pub_ = private_node.advertise<cia402_driver::BusState>("bus_state", 10, true);
   for (const config::GroupConfig& group : robot.groups) {
     group_pubs_.push_back(private_node.advertise<control_msgs::JointTrajectoryControllerState>(
         group.name + "/state", 10));
@@ -130,7 +132,7 @@ void Publishers::publishGroups(const bus::RobotSnapshot& snapshot) {
 void Publishers::publishStates(const ros::TimerEvent&) {
   const bus::RobotSnapshot snapshot = runner_.snapshot();
   const ros::Time now = ros::Time::now();
-  const AxisStates states = axisStates(snapshot);
+  const cia402_driver::AxisStates states = axisStates(snapshot);
   if (changed(states) || now - axis_states_sent_ >= kAxisStatesInterval) {
     axis_states_sent_ = now;
     last_states_ = states;
@@ -142,8 +144,8 @@ void Publishers::publishStates(const ros::TimerEvent&) {
   }
 }
 
-AxisStates Publishers::axisStates(const bus::RobotSnapshot& snapshot) const {
-  AxisStates message;
+cia402_driver::AxisStates Publishers::axisStates(const bus::RobotSnapshot& snapshot) const {
+  cia402_driver::AxisStates message;
   message.header.stamp = ros::Time::now();
   const Time now = bus::realNow();
   for (std::size_t i = 0; i < snapshot.axes.size(); ++i) {
@@ -152,11 +154,11 @@ AxisStates Publishers::axisStates(const bus::RobotSnapshot& snapshot) const {
   return message;
 }
 
-bool Publishers::changed(const AxisStates& states) const {
+bool Publishers::changed(const cia402_driver::AxisStates& states) const {
   if (states.axes.size() != last_states_.axes.size()) return true;
   for (std::size_t i = 0; i < states.axes.size(); ++i) {
-    const AxisState& a = states.axes[i];
-    const AxisState& b = last_states_.axes[i];
+    const cia402_driver::AxisState& a = states.axes[i];
+    const cia402_driver::AxisState& b = last_states_.axes[i];
     if (a.state != b.state || a.mode != b.mode || a.homed != b.homed ||
         a.target_reached != b.target_reached || a.warning != b.warning ||
         a.internal_limit != b.internal_limit || a.error_code != b.error_code ||
@@ -168,8 +170,8 @@ bool Publishers::changed(const AxisStates& states) const {
   return false;
 }
 
-BusState Publishers::busState(const bus::RobotSnapshot& snapshot) const {
-  BusState message;
+cia402_driver::BusState Publishers::busState(const bus::RobotSnapshot& snapshot) const {
+  cia402_driver::BusState message;
   message.header.stamp = ros::Time::now();
   message.interface = robot_.bus.interface;
   message.state = can::toString(snapshot.bus_state);

@@ -82,19 +82,23 @@ void Services::advertiseTrigger(ros::NodeHandle& node, const char* name, const s
 
 void Services::advertise(ros::NodeHandle node, const std::string& axis) {
   for (const auto& trigger : kTriggers) advertiseTrigger(node, trigger.name, axis, trigger.kind);
-  servers_.push_back(node.advertiseService<SetMode::Request, SetMode::Response>(
-      "set_mode", [this, axis](SetMode::Request& request, SetMode::Response& response) {
-        drive::ProcedureRequest wanted;
-        wanted.kind = ProcedureKind::set_mode;
-        wanted.mode = drive::canonicalModeName(request.mode);
-        const bus::Answer answer = call(procedure(axis, wanted));
-        response.success = answer.success;
-        response.message = answer.message;
-        return true;
-      }));
+  servers_.push_back(
+      node.advertiseService<cia402_driver::SetMode::Request, cia402_driver::SetMode::Response>(
+          "set_mode", [this, axis](cia402_driver::SetMode::Request& request,
+                                   cia402_driver::SetMode::Response& response) {
+            drive::ProcedureRequest wanted;
+            wanted.kind = ProcedureKind::set_mode;
+            wanted.mode = drive::canonicalModeName(request.mode);
+            const bus::Answer answer = call(procedure(axis, wanted));
+            response.success = answer.success;
+            response.message = answer.message;
+            return true;
+          }));
   if (axis.empty()) return;  // the rest makes sense for one axis only
-  servers_.push_back(node.advertiseService<SetPosition::Request, SetPosition::Response>(
-      "set_position", [this, axis](SetPosition::Request& request, SetPosition::Response& response) {
+  servers_.push_back(node.advertiseService<cia402_driver::SetPosition::Request,
+                                           cia402_driver::SetPosition::Response>(
+      "set_position", [this, axis](cia402_driver::SetPosition::Request& request,
+                                   cia402_driver::SetPosition::Response& response) {
         drive::ProcedureRequest wanted;
         wanted.kind = ProcedureKind::set_position;
         wanted.position = request.position;
@@ -103,8 +107,10 @@ void Services::advertise(ros::NodeHandle node, const std::string& axis) {
         response.message = answer.message;
         return true;
       }));
-  servers_.push_back(node.advertiseService<ReadObject::Request, ReadObject::Response>(
-      "read_object", [this, axis](ReadObject::Request& request, ReadObject::Response& response) {
+  servers_.push_back(node.advertiseService<cia402_driver::ReadObject::Request,
+                                           cia402_driver::ReadObject::Response>(
+      "read_object", [this, axis](cia402_driver::ReadObject::Request& request,
+                                  cia402_driver::ReadObject::Response& response) {
         bus::Command command;
         command.body = bus::ReadObjectCommand{axis, request.object};
         const bus::Answer answer = call(std::move(command));
@@ -116,8 +122,10 @@ void Services::advertise(ros::NodeHandle node, const std::string& axis) {
         response.bytes = answer.data;
         return true;
       }));
-  servers_.push_back(node.advertiseService<WriteObject::Request, WriteObject::Response>(
-      "write_object", [this, axis](WriteObject::Request& request, WriteObject::Response& response) {
+  servers_.push_back(node.advertiseService<cia402_driver::WriteObject::Request,
+                                           cia402_driver::WriteObject::Response>(
+      "write_object", [this, axis](cia402_driver::WriteObject::Request& request,
+                                   cia402_driver::WriteObject::Response& response) {
         bus::Command command;
         command.body = bus::WriteObjectCommand{axis, request.object, request.value};
         const bus::Answer answer = call(std::move(command));

@@ -26,21 +26,22 @@ class Publishers {
   void publishJointStates(const ros::TimerEvent&);
   void publishStates(const ros::TimerEvent&);
   void publishGroups(const bus::RobotSnapshot& snapshot);
-  BusState busState(const bus::RobotSnapshot& snapshot) const;
-  AxisStates axisStates(const bus::RobotSnapshot& snapshot) const;
-  bool changed(const AxisStates& states) const;
+  cia402_driver::BusState busState(const bus::RobotSnapshot& snapshot) const;
+  cia402_driver::AxisStates axisStates(const bus::RobotSnapshot& snapshot) const;
+  bool changed(const cia402_driver::AxisStates& states) const;
 
   bus::BusRunner& runner_;
   const config::RobotConfig& robot_;
   sensor_msgs::JointState joint_states_;
-  AxisStates last_states_;
+  cia402_driver::AxisStates last_states_;
   ros::Time axis_states_sent_, bus_state_sent_;
   ros::Publisher joint_states_pub_, axis_states_pub_, bus_state_pub_;
   std::vector<ros::Publisher> group_pubs_;
   ros::Timer joint_timer_, state_timer_;
 };
 
-/// What the fault or the procedure of an axis says, as AxisState and diagnostics show it.
+/// What the fault or the procedure of an axis says, as cia402_driver::AxisState and diagnostics
+/// show it.
 std::string stepText(const bus::AxisSnapshot& axis);
 
 }  // namespace cia402::ros_node
