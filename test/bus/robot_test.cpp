@@ -9,8 +9,10 @@
 namespace cia402::bus {
 namespace {
 
+using drive::ProcedureKind;
 using test::kPeriod;
 using test::RobotWorld;
+using testing::AllOf;
 using testing::HasSubstr;
 using namespace std::chrono_literals;
 
@@ -21,12 +23,228 @@ TEST(Robot, SendsNothingBeforeItIsStarted) {
   EXPECT_EQ(world.robot.nextDeadline(), kNever);
 }
 
-TEST(Robot, BootsAndEnablesItsDrives) {
+TEST(Robot, RefusesCommandsBeforeItIsStarted) {
+  RobotWorld world;
+  const auto answers = world.begin(ProcedureKind::enable);
+  ASSERT_EQ(answers->size(), 1u);
+  EXPECT_EQ(answers->front().message, "refused: the bus interface can0 is not there yet");
+}
+
+TEST(Robot, BootsAndEnablesItsDrivesAndTellsSo) {
   RobotWorld world;
   world.enable();
   EXPECT_TRUE(world.drives[0].enabled());
   EXPECT_TRUE(world.drives[1].enabled());
+  EXPECT_EQ(world.eventsWith("shoulder (node 1): booted up"), 1u);
   EXPECT_EQ(world.eventsWith("shoulder (node 1): identified, configured and started"), 1u);
+}
+
+TEST(Robot, SendsSyncAtExactDeadlines) {
+  RobotWorld world;
+  const Time start = world.now;
+  world.robot.start(start);
+  world.run(1s);
+  const auto syncs = world.sentWithId(0x080);
+  ASSERT_EQ(syncs.size(), 249u);  // the first after one period
+  for (std::size_t i = 0; i < syncs.size(); ++i) {
+    ASSERT_EQ(syncs[i].time, start + static_cast<int>(i + 1) * kPeriod);
+  }
+  EXPECT_EQ(world.robot.statistics().maxLateness(), 0.0);
+  EXPECT_EQ(world.robot.statistics().overruns(), 0u);
+}
+
+TEST(Robot, SendsRpdosHalfAPeriodAfterSync) {
+  RobotWorld world;
+  world.boot();
+  world.sent.clear();
+  world.run(100ms);
+  const auto syncs = world.sentWithId(0x080), rpdos = world.sentWithId(0x201);
+  ASSERT_EQ(syncs.size(), 25u);
+  ASSERT_GE(rpdos.size(), 24u);
+  for (std::size_t i = 0; i < 24; ++i) {
+    const auto& rpdo = rpdos[i + rpdos.size() - 24];
+    const Duration after = (rpdo.time - syncs.front().time) % kPeriod;
+    ASSERT_EQ(after, kPeriod / 2);
+  }
+}
+
+TEST(Robot, NeverSendsABurstOfSyncsAfterALongPause) {
+  RobotWorld world;
+  const Time start = world.now;
+  world.boot();
+  world.run(start + 3s - world.now);
+  const auto missed = world.robot.statistics().overruns();
+  world.sent.clear();
+  world.now += 50ms;  // the SYNC of 3.000 is sent at 3.050
+  world.run(10ms);
+  const auto syncs = world.sentWithId(0x080);
+  ASSERT_EQ(syncs.size(), 3u);
+  EXPECT_EQ(syncs[0].time, start + 3050ms);
+  EXPECT_EQ(syncs[1].time, start + 3052ms);  // back on the grid
+  EXPECT_EQ(syncs[2].time, start + 3056ms);
+  // Those of 3.004 to 3.048 are left out; the cycle of 3.050 is overtaken by the SYNC of 3.052.
+  EXPECT_EQ(world.robot.statistics().overruns() - missed, 12u + 1u);
+  EXPECT_DOUBLE_EQ(world.robot.statistics().maxLateness(), 0.050);
+}
+
+TEST(Robot, CountsCyclesWithoutFeedbackOfAReadyDrive) {
+  RobotWorld world;
+  world.boot();
+  RobotSnapshot before, after;
+  world.robot.fill(before);
+  world.drives[0].silent = true;
+  world.run(40ms);
+  world.robot.fill(after);
+  EXPECT_NEAR(static_cast<double>(after.axes[0].missed_feedback - before.axes[0].missed_feedback),
+              10.0, 1.0);
+  EXPECT_EQ(after.axes[1].missed_feedback, before.axes[1].missed_feedback);
+}
+
+TEST(Robot, TellsAnEmergencyWithCodeCauseAndRemedy) {
+  RobotWorld world;
+  world.enable();
+  world.drives[1].fault(0x8611);
+  world.run(100ms);
+  const auto event = std::find_if(world.events.begin(), world.events.end(),
+                                  [](const Event& e) { return e.is_emergency; });
+  ASSERT_NE(event, world.events.end());
+  EXPECT_EQ(event->axis, 1u);
+  EXPECT_EQ(event->emergency.code, 0x8611);
+  EXPECT_THAT(event->text.str(), AllOf(HasSubstr("elbow (node 2): emergency: 0x8611"),
+                                       HasSubstr("blocked"), HasSubstr("check the mechanics")));
+  RobotSnapshot snapshot;
+  world.robot.fill(snapshot);
+  EXPECT_EQ(snapshot.axes[1].node.emergencies, 1u);
+  EXPECT_THAT(snapshot.axes[1].problem.str(), HasSubstr("following error"));
+  EXPECT_TRUE(snapshot.axes[0].problem.empty());
+}
+
+TEST(Robot, TellsALongProblemOnlyOnce) {
+  config::RobotConfig config = test::testRobot();
+  auto profile = std::make_shared<drive::DriveProfile>(*config.axes[0].profile);
+  profile->errors[0x8611].cause = std::string(500, 'x');
+  config.axes[0].profile = profile;
+  RobotWorld world(config);
+  world.boot();
+  world.drives[0].fault(0x8611);
+  world.run(100ms);
+  const std::size_t told = world.events.size();
+  world.run(2s);
+  EXPECT_EQ(world.events.size(), told) << world.allEvents();
+}
+
+TEST(Robot, LosesASilentDriveAndBringsItBackDisabled) {
+  RobotWorld world;
+  world.enable();
+  world.drives[0].silent = true;
+  ASSERT_TRUE(world.runUntil([&] { return world.eventsWith("no heartbeat") > 0; }, 1s));
+  EXPECT_TRUE(world.drives[1].enabled());
+  world.drives[0].silent = false;
+  ASSERT_TRUE(world.runUntil(
+      [&] { return world.axis(0).state().health == canopen::NodeHealth::ready; }, 5s));
+  world.run(200ms);
+  EXPECT_FALSE(world.drives[0].enabled());
+}
+
+TEST(Robot, RunsACallInTheBusThread) {
+  RobotWorld world;
+  CallCommand call;
+  call.function = [](Time now) {
+    Answer answer;
+    answer.success = now == Time(1s);
+    return answer;
+  };
+  EXPECT_TRUE(world.call(call).success);
+}
+
+// --- Shutdown ------------------------------------------------------------------------------------
+
+struct RobotShutdown : testing::Test {
+  bool shutDownIn(Duration limit) {
+    const Time begun = world.now;
+    world.robot.beginShutdown(world.now);
+    const bool done = world.runUntil([&] { return world.robot.shutDown(); }, limit);
+    took = world.now - begun;
+    return done;
+  }
+  void expectPreOperationalLast() const {
+    ASSERT_FALSE(world.sent.empty());
+    EXPECT_EQ(world.sent.back().frame, can::Frame(0x000, {0x80, 0x00}));
+  }
+  RobotWorld world;
+  Duration took{};
+};
+
+TEST_F(RobotShutdown, IsDoneAtOnceIfNothingWasStarted) {
+  world.robot.beginShutdown(world.now);
+  EXPECT_TRUE(world.robot.shutDown());
+  EXPECT_TRUE(world.sent.empty());
+}
+
+TEST_F(RobotShutdown, RampsMotionDownThenDisablesThenSendsPreOperational) {
+  world.enable();
+  ASSERT_TRUE(world.move({1.0, -1.0}, 1.0).success);
+  world.run(500ms);  // 1.5 rad/s
+  world.drives[0].targets.clear();
+  ASSERT_TRUE(shutDownIn(2s));
+  EXPECT_LT(took, 1s);
+  const auto& targets = world.drives[0].targets;
+  ASSERT_GT(targets.size(), 30u);  // 1.5 rad/s at 10 rad/s² take 150 ms
+  for (std::size_t i = 2; i < targets.size(); ++i) {
+    const int change = targets[i] - 2 * targets[i - 1] + targets[i - 2];
+    EXPECT_LE(std::abs(change), 16 + 3) << i;  // 10 rad/s² * (4 ms)², rounded
+  }
+  EXPECT_LE(targets.back() - targets[targets.size() - 2], 3);  // came to rest
+  EXPECT_EQ(world.drives[0].statusword, 0x0250);
+  EXPECT_EQ(world.drives[1].statusword, 0x0250);
+  expectPreOperationalLast();
+  EXPECT_EQ(world.robot.nextDeadline(), kNever);
+  world.sent.clear();
+  world.run(1s);
+  EXPECT_TRUE(world.sent.empty());
+}
+
+TEST_F(RobotShutdown, EndsInTimeThoughTheDrivesDoNotObey) {
+  world.enable();
+  ASSERT_TRUE(world.move({1.0, -1.0}, 1.0).success);
+  world.run(500ms);
+  for (auto& drive : world.drives) drive.deaf_to_controlword = true;
+  ASSERT_TRUE(shutDownIn(2s));
+  EXPECT_GE(took, 1700ms);  // they were given their time
+  expectPreOperationalLast();
+}
+
+TEST_F(RobotShutdown, EndsInTimeThoughNobodyIsThere) {
+  world.enable();
+  for (auto& drive : world.drives) drive.silent = true;
+  ASSERT_TRUE(shutDownIn(2s));
+  expectPreOperationalLast();
+}
+
+TEST_F(RobotShutdown, EndsWhileTheDrivesBoot) {
+  world.robot.start(world.now);
+  world.run(10ms);
+  ASSERT_TRUE(shutDownIn(2s));
+  expectPreOperationalLast();
+}
+
+TEST_F(RobotShutdown, GivesAllPendingRepliesAndTakesNoMoreCommands) {
+  world.enable();
+  world.drives[0].deaf_to_controlword = true;
+  const auto disable = world.begin(ProcedureKind::disable, "shoulder");
+  world.drives[1].sdo_silent = true;
+  std::vector<std::shared_ptr<std::vector<Answer>>> reads;
+  for (int i = 0; i < 30; ++i) reads.push_back(world.begin(ReadObjectCommand{"elbow", "6098:00"}));
+  ASSERT_TRUE(shutDownIn(2s));
+  EXPECT_EQ(disable->size(), 1u);
+  EXPECT_FALSE(disable->front().success);
+  for (const auto& read : reads) {
+    ASSERT_EQ(read->size(), 1u);
+    EXPECT_FALSE(read->front().success);
+  }
+  EXPECT_EQ(reads.back()->front().message, "elbow (node 2): ended by the shutdown of the driver");
+  EXPECT_EQ(world.begin(ProcedureKind::enable)->front().message,
+            "refused: the driver is shutting down");
 }
 
 }  // namespace

@@ -1,0 +1,201 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/bus/axis_motion.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "bus/robot_world.h"
+
+namespace cia402::bus {
+namespace {
+
+using test::FakeDrive;
+using test::RobotWorld;
+using testing::AllOf;
+using testing::HasSubstr;
+using namespace std::chrono_literals;
+
+config::RobotConfig oneAxis(const std::string& mode) {
+  config::RobotConfig robot = test::testRobot();
+  robot.axes.resize(1);
+  robot.axes[0].mode = mode;
+  robot.groups[0].joints = {"shoulder"};
+  return robot;
+}
+
+struct Rig {
+  explicit Rig(const config::RobotConfig& config) : world(config) { world.enable(); }
+  explicit Rig(const std::string& mode) : Rig(oneAxis(mode)) {}
+
+  /// @return the refusal; empty if it was taken.
+  std::string command(double value) {
+    const auto answers = world.begin(SetpointCommand{0, value});
+    return answers->empty() ? std::string() : answers->front().message;
+  }
+  FakeDrive& drive() { return world.drives[0]; }
+
+  RobotWorld world;
+};
+
+int largestStep(const std::vector<std::int32_t>& values) {
+  int largest = 0;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    largest = std::max(largest, std::abs(values[i] - values[i - 1]));
+  }
+  return largest;
+}
+
+int largestChangeOfStep(const std::vector<std::int32_t>& values) {
+  std::vector<std::int32_t> steps;
+  for (std::size_t i = 1; i < values.size(); ++i) steps.push_back(values[i] - values[i - 1]);
+  return largestStep(steps);
+}
+
+// 2 rad/s * 4 ms = 800 counts, 10 rad/s² * (4 ms)² = 16 counts, each rounded.
+constexpr int kLargestStep = 800 + 1, kLargestChange = 16 + 2;
+
+TEST(AxisMotion, LimitsAStreamedPositionInVelocityAndAcceleration) {
+  Rig rig("cyclic_position");
+  ASSERT_EQ(rig.command(2.0), "");
+  rig.world.run(2s);
+  EXPECT_EQ(rig.drive().targets.back(), 200000);
+  EXPECT_LE(largestStep(rig.drive().targets), kLargestStep);
+  EXPECT_LE(largestChangeOfStep(rig.drive().targets), kLargestChange);
+  EXPECT_EQ(*std::max_element(rig.drive().targets.begin(), rig.drive().targets.end()), 200000);
+}
+
+TEST(AxisMotion, StopsAStreamedPositionAtTheLimitOfTheJoint) {
+  Rig rig("cyclic_position");
+  ASSERT_EQ(rig.command(10.0), "");
+  rig.world.run(4s);
+  EXPECT_EQ(rig.drive().position, 300000);
+}
+
+TEST(AxisMotion, RampsAStreamedVelocityUpAndStopsItByARampWhenTheStreamDriesUp) {
+  Rig rig("cyclic_velocity");
+  for (int i = 0; i < 25; ++i) {
+    ASSERT_EQ(rig.command(1.0), "");
+    rig.world.run(20ms);
+  }
+  EXPECT_EQ(rig.drive().target_velocity, 100000);
+  rig.world.run(170ms);  // the last command is 190 ms old, command_timeout is 200 ms
+  EXPECT_EQ(rig.drive().target_velocity, 100000);
+  rig.world.run(60ms);
+  EXPECT_GT(rig.drive().target_velocity, 0);  // on the ramp: 1 rad/s at 10 rad/s² take 100 ms
+  EXPECT_LT(rig.drive().target_velocity, 100000);
+  rig.world.run(100ms);
+  EXPECT_EQ(rig.drive().target_velocity, 0);
+  EXPECT_LE(largestStep(rig.drive().velocities), 4000 + 1);  // 10 rad/s² * 4 ms
+}
+
+TEST(AxisMotion, StopsAStreamedVelocityBeforeThePositionLimit) {
+  Rig rig("cyclic_velocity");
+  for (int i = 0; i < 200; ++i) {
+    (void)rig.command(2.0);
+    rig.world.run(20ms);
+  }
+  EXPECT_LE(rig.drive().position, 300000);
+  EXPECT_GT(rig.drive().position, 290000);
+  EXPECT_LT(rig.drive().target_velocity, 1000);  // 0.01 rad/s, creeping up to it
+}
+
+TEST(AxisMotion, ClampsATorqueAndDropsItWhenTheStreamDriesUp) {
+  Rig rig("cyclic_torque");
+  ASSERT_EQ(rig.command(8.0), "");
+  rig.world.run(50ms);
+  EXPECT_EQ(rig.drive().target_torque, 500);  // 5 N m of 10 N m in 1/1000
+  ASSERT_EQ(rig.command(-8.0), "");
+  rig.world.run(50ms);
+  EXPECT_EQ(rig.drive().target_torque, -500);
+  rig.world.run(170ms);
+  EXPECT_EQ(rig.drive().target_torque, 0);
+}
+
+TEST(AxisMotion, HandsAProfilePositionToTheDriveWithinTheLimits) {
+  Rig rig("profile_position");
+  ASSERT_EQ(rig.command(0.5), "");
+  rig.world.run(1s);
+  EXPECT_EQ(rig.drive().position, 50000);
+  ASSERT_EQ(rig.command(99.0), "");
+  rig.world.run(4s);
+  EXPECT_EQ(rig.drive().position, 300000);
+}
+
+TEST(AxisMotion, DisablesADriveThatPlansItsMotionAtOnceAtShutdown) {
+  Rig rig("profile_position");
+  ASSERT_EQ(rig.command(2.0), "");
+  rig.world.run(500ms);
+  const std::int32_t position = rig.drive().position;
+  ASSERT_GT(position, 10000);
+  rig.world.robot.beginShutdown(rig.world.now);
+  rig.world.run(100ms);
+  EXPECT_FALSE(rig.drive().enabled());
+  EXPECT_LT(rig.drive().position, position + 3000);  // 30 ms at 1 rad/s
+}
+
+TEST(AxisMotion, RampsAPositionStreamDownThoughNoAccelerationIsConfigured) {
+  config::RobotConfig config = oneAxis("cyclic_position");
+  config.axes[0].limits.acceleration.reset();
+  Rig rig(config);
+  ASSERT_EQ(rig.command(2.9), "");
+  rig.world.run(500ms);
+  rig.drive().targets.erase(rig.drive().targets.begin(), rig.drive().targets.end() - 3);
+  const std::int32_t from = rig.drive().targets.back();
+  rig.world.robot.beginShutdown(rig.world.now);
+  ASSERT_TRUE(rig.world.runUntil([&] { return rig.world.robot.shutDown(); }, 2s));
+  EXPECT_LE(largestStep(rig.drive().targets), kLargestStep);
+  EXPECT_LE(largestChangeOfStep(rig.drive().targets), 8 + 2);  // 5 rad/s² * (4 ms)²
+  // 2 rad/s at 5 rad/s² take 0.4 rad.
+  EXPECT_NEAR(rig.drive().targets.back() - from, 40000, 800);
+}
+
+TEST(AxisMotion, GoesOnSmoothlyAfterAStop) {
+  Rig rig("cyclic_position");
+  std::vector<drive::Axis>& axes = rig.world.robot.axes();
+  AxisMotion motion(axes[0].config(), test::kPeriod);
+  const auto run = [&](int cycles) {
+    for (int i = 0; i < cycles; ++i) {
+      motion.step(axes[0], rig.world.now);
+      rig.world.run(test::kPeriod);
+    }
+  };
+  ASSERT_TRUE(motion.command(axes[0], 2.0, rig.world.now).ok());
+  run(100);
+  motion.stop(axes[0], rig.world.now);
+  run(20);
+  EXPECT_FALSE(motion.atRest());
+  ASSERT_TRUE(motion.command(axes[0], 2.0, rig.world.now).ok());
+  run(300);
+  EXPECT_TRUE(motion.atRest());
+  EXPECT_EQ(rig.drive().targets.back(), 200000);
+  EXPECT_LE(largestStep(rig.drive().targets), kLargestStep);
+  EXPECT_LE(largestChangeOfStep(rig.drive().targets), kLargestChange);
+}
+
+TEST(AxisMotion, RefusesWhatCannotBeDoneInWords) {
+  Rig rig("cyclic_position");
+  EXPECT_EQ(rig.command(std::numeric_limits<double>::quiet_NaN()),
+            "shoulder: set-point refused: it is not a finite number");
+  ASSERT_TRUE(rig.world.move({1.0}, 1.0).success);
+  EXPECT_EQ(rig.command(1.0),
+            "shoulder: set-point refused: the axis follows a trajectory of group arm; stop that "
+            "first with an empty trajectory");
+  rig.world.run(2s);
+  EXPECT_EQ(rig.command(1.0), "");
+  ASSERT_TRUE(rig.world.call(drive::ProcedureKind::disable).success);
+  EXPECT_THAT(rig.command(1.0), AllOf(HasSubstr("shoulder (node 1)"), HasSubstr("not enabled")));
+}
+
+TEST(AxisMotion, ForgetsACommandWhenTheAxisIsDisabled) {
+  Rig rig("cyclic_position");
+  ASSERT_EQ(rig.command(2.0), "");
+  rig.world.run(400ms);
+  ASSERT_TRUE(rig.world.call(drive::ProcedureKind::disable).success);
+  ASSERT_TRUE(rig.world.call(drive::ProcedureKind::enable).success);
+  const std::int32_t position = rig.drive().position;
+  rig.world.run(500ms);
+  EXPECT_EQ(rig.drive().position, position);
+}
+
+}  // namespace
+}  // namespace cia402::bus

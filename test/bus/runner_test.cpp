@@ -1,0 +1,226 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/bus/runner.h"
+
+#include <sys/mman.h>
+
+#include <atomic>
+#include <future>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "bus/robot_world.h"
+
+namespace cia402::bus {
+namespace {
+
+using drive::ProcedureKind;
+using test::FakeDrive;
+using testing::HasSubstr;
+
+/// What the test sees and sets of an interface that the runner owns.
+struct Wire {
+  std::atomic<can::BusState> state{can::BusState::error_active};
+  std::atomic<int> frames{0};
+  std::promise<void> first_frame, shut_down;
+};
+
+/// An interface with the drives shoulder and elbow behind it; used by the bus thread only.
+class FakeInterface : public can::Interface {
+ public:
+  explicit FakeInterface(std::shared_ptr<Wire> wire) : wire_(std::move(wire)) {}
+
+  bool send(const can::Frame& frame) override {
+    if (wire_->frames++ == 0) wire_->first_frame.set_value();
+    if (frame == can::Frame(0x000, {0x80, 0x00})) wire_->shut_down.set_value();
+    for (FakeDrive& drive : drives_) drive.receive(frame, now_);
+    return true;
+  }
+  std::optional<can::ReceivedFrame> receive(Time now) override {
+    now_ = now;
+    for (FakeDrive& drive : drives_) {
+      drive.tick(now);
+      if (drive.out.empty()) continue;
+      const can::ReceivedFrame received{drive.out.front(), now};
+      drive.out.pop_front();
+      ++counters_.frames_received;
+      return received;
+    }
+    return std::nullopt;
+  }
+  void maintain(Time) override {}
+  Time nextDeadline() const override {
+    Time next = kNever;
+    for (const FakeDrive& drive : drives_) {
+      next = std::min(next, drive.out.empty() ? drive.nextDeadline() : Time{});
+    }
+    return next;
+  }
+  int fd() const override { return -1; }
+  can::BusState state() const override { return wire_->state; }
+  const can::BusCounters& counters() const override { return counters_; }
+  std::string describe() const override {
+    return std::string("can0 is ") + can::toString(wire_->state);
+  }
+
+ private:
+  std::shared_ptr<Wire> wire_;
+  std::array<FakeDrive, 2> drives_{FakeDrive(1), FakeDrive(2)};
+  can::BusCounters counters_;
+  Time now_{};
+};
+
+struct BusRunnerTest : testing::Test {
+  BusRunnerTest() {
+    config::RobotConfig robot = test::testRobot();
+    robot.bus.sync_period = std::chrono::milliseconds(10);  // sanitizers are slow
+    for (drive::AxisConfig& axis : robot.axes) axis.homing = test::homingOfOrder(0);
+    runner = std::make_unique<BusRunner>(robot, test::masterOf(robot),
+                                         std::make_unique<FakeInterface>(wire), options());
+  }
+  static BusRunner::Options options() {
+    BusRunner::Options options;
+    options.priority = 0;
+    return options;
+  }
+  std::future<Answer> post(decltype(Command::body) body) {
+    auto promise = std::make_shared<std::promise<Answer>>();
+    Command command;
+    command.body = std::move(body);
+    command.reply = [promise](const Answer& answer) { promise->set_value(answer); };
+    auto future = promise->get_future();
+    posted = runner->post(std::move(command));
+    return future;
+  }
+  std::future<Answer> post(ProcedureKind kind) {
+    ProcedureCommand command;
+    command.request.kind = kind;
+    return post(command);
+  }
+  /// Returns when the bus thread has come round.
+  void meet() {
+    CallCommand call;
+    call.function = [](Time) { return Answer(); };
+    post(call).wait();
+  }
+  void waitFor(const std::function<bool()>& condition) {
+    while (!condition()) meet();
+  }
+  bool seen(const std::string& words) {
+    Event event;
+    while (runner->nextEvent(event)) events += event.text.str() + "\n";
+    return events.find(words) != std::string::npos;
+  }
+  bool ready() {
+    const RobotSnapshot snapshot = runner->snapshot();
+    return std::all_of(snapshot.axes.begin(), snapshot.axes.end(), [](const AxisSnapshot& axis) {
+      return axis.state.health == canopen::NodeHealth::ready && axis.state.feedback_valid;
+    });
+  }
+
+  std::shared_ptr<Wire> wire = std::make_shared<Wire>();
+  std::unique_ptr<BusRunner> runner;
+  std::string events;
+  bool posted = false;
+};
+
+TEST_F(BusRunnerTest, RefusesCommandsBeforeItsStart) {
+  auto answer = post(ProcedureKind::enable);
+  EXPECT_FALSE(posted);
+  EXPECT_EQ(answer.get().message, "refused: the driver is not running");
+}
+
+TEST_F(BusRunnerTest, EndsCleanlyThoughItWasNeverStarted) {
+  runner.reset();
+  EXPECT_EQ(wire->frames, 0);
+}
+
+TEST_F(BusRunnerTest, WaitsForAMissingInterfaceAndStartsTheRobotWhenItIsThere) {
+  wire->state = can::BusState::missing;
+  runner->start();
+  waitFor([&] { return seen("can0 is missing"); });
+  EXPECT_EQ(post(ProcedureKind::enable).get().message,
+            "refused: the bus interface can0 is not there yet");
+  EXPECT_EQ(wire->frames, 0);
+  wire->state = can::BusState::error_active;
+  wire->first_frame.get_future().wait();
+  waitFor([&] { return seen("elbow (node 2): identified, configured and started"); });
+  EXPECT_EQ(runner->snapshot().bus_state, can::BusState::error_active);
+}
+
+TEST_F(BusRunnerTest, CarriesCommandsOutAndShowsTheResultInItsSnapshot) {
+  runner->start();
+  waitFor([&] { return ready(); });
+  const Answer enabled = post(ProcedureKind::enable).get();
+  EXPECT_TRUE(enabled.success) << enabled.message;
+  waitFor(
+      [&] { return runner->snapshot().axes[1].state.state == drive::State::operation_enabled; });
+  const RobotSnapshot snapshot = runner->snapshot();
+  EXPECT_GT(snapshot.statistics.cycles(), 0u);
+  EXPECT_GT(snapshot.counters.frames_received, 0u);
+  EXPECT_EQ(snapshot.axes.size(), 2u);
+  EXPECT_EQ(runner->lostEvents(), 0u);
+}
+
+TEST_F(BusRunnerTest, RefusesCommandsAfterItsEnd) {
+  runner->start();
+  wire->first_frame.get_future().wait();
+  runner->requestShutdown();
+  runner->join();
+  EXPECT_FALSE(runner->running());
+  EXPECT_TRUE(runner->snapshot().shut_down);
+  auto answer = post(ProcedureKind::enable);
+  EXPECT_FALSE(posted);
+  EXPECT_EQ(answer.get().message, "refused: the driver is not running");
+}
+
+TEST_F(BusRunnerTest, ShutsDownInItsDestructorAndAnswersWhatWaits) {
+  runner->start();
+  waitFor([&] { return ready(); });
+  std::vector<std::future<Answer>> answers;
+  answers.push_back(post(ProcedureKind::home));
+  for (int i = 0; i < 50; ++i) answers.push_back(post(ReadObjectCommand{"elbow", "6098:00"}));
+  runner.reset();
+  for (auto& answer : answers) EXPECT_FALSE(answer.get().message.empty());
+  wire->shut_down.get_future().wait();
+}
+
+TEST_F(BusRunnerTest, RefusesCommandsThatFindNoRoom) {
+  runner->start();
+  std::promise<void> arrived, release;
+  CallCommand call;
+  call.function = [&](Time) {
+    arrived.set_value();
+    release.get_future().wait();
+    return Answer();
+  };
+  auto blocking = post(call);
+  arrived.get_future().wait();
+  std::vector<std::future<Answer>> queued;
+  do {
+    queued.push_back(post(SetpointCommand{0, 1.0}));
+  } while (posted && queued.size() < 1000);
+  EXPECT_EQ(queued.size(), 257u);
+  EXPECT_EQ(queued.back().get().message, "refused: too many commands are waiting, try again");
+  release.set_value();
+  blocking.wait();
+  meet();
+}
+
+TEST_F(BusRunnerTest, TellsWhatTheOperatingSystemGranted) {
+  config::RobotConfig robot = test::testRobot();
+  BusRunner::Options options;
+  options.priority = 1;
+  runner = std::make_unique<BusRunner>(robot, test::masterOf(robot),
+                                       std::make_unique<FakeInterface>(wire), options);
+  runner->start();
+  meet();
+  const RealtimeReport report = runner->realtime();
+  EXPECT_THAT(report.text, HasSubstr("bus thread"));
+  EXPECT_TRUE(seen(report.text.substr(0, 100)));
+  runner.reset();
+  munlockall();
+}
+
+}  // namespace
+}  // namespace cia402::bus
