@@ -239,7 +239,8 @@ void Robot::onHealthChange(canopen::Node& node, canopen::NodeHealth before, Time
   if (index == axes_.size()) return;
   axes_[index].onHealthChange(before, now);
   const canopen::NodeHealth health = node.health();
-  if (health == canopen::NodeHealth::booting) return;
+  const bool asked_for = health == canopen::NodeHealth::booting || shutdown_ != Shutdown::no;
+  if (asked_for) return;
   const bool well = health == canopen::NodeHealth::ready;
   std::string text = node.problem();  // names the node itself
   if (text.empty()) {
