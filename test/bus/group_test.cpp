@@ -352,6 +352,7 @@ TEST_F(GroupToleranceTest, DoesNotJudgeTheFirstCycleByAnEarlierTrajectory) {
   // Meanwhile the elbow moves on by other means.
   ASSERT_TRUE(world.move({0.5, 0.5}, 1.0).success);
   world.run(1100ms);
+  world.run(1ms);  // so that feedback comes between the start and the first cycle
   ASSERT_EQ(start(group, 0.5, 0.0).code, TrajectoryErrorCode::successful);
   const TrajectoryOutcome outcome = follow(group);
   EXPECT_EQ(outcome.code, TrajectoryErrorCode::successful) << outcome.message;

@@ -23,6 +23,7 @@ struct Wire {
   std::atomic<can::BusState> state{can::BusState::error_active};
   std::atomic<int> frames{0};
   std::promise<void> first_frame, shut_down;
+  std::function<void()> while_flushing;  ///< called once, after the last frame was sent
 };
 
 /// An interface with the drives shoulder and elbow behind it; used by the bus thread only.
@@ -32,7 +33,10 @@ class FakeInterface : public can::Interface {
 
   bool send(const can::Frame& frame) override {
     if (wire_->frames++ == 0) wire_->first_frame.set_value();
-    if (frame == can::Frame(0x000, {0x80, 0x00})) wire_->shut_down.set_value();
+    if (frame == can::Frame(0x000, {0x80, 0x00})) {
+      wire_->shut_down.set_value();
+      rounds_left_ = 3;
+    }
     for (FakeDrive& drive : drives_) drive.receive(frame, now_);
     return true;
   }
@@ -48,7 +52,9 @@ class FakeInterface : public can::Interface {
     }
     return std::nullopt;
   }
-  void maintain(Time) override {}
+  void maintain(Time) override {
+    if (rounds_left_ > 0 && --rounds_left_ == 0 && wire_->while_flushing) wire_->while_flushing();
+  }
   Time nextDeadline() const override {
     Time next = kNever;
     for (const FakeDrive& drive : drives_) {
@@ -68,6 +74,7 @@ class FakeInterface : public can::Interface {
   std::array<FakeDrive, 2> drives_{FakeDrive(1), FakeDrive(2)};
   can::BusCounters counters_;
   Time now_{};
+  int rounds_left_ = 0;
 };
 
 struct BusRunnerTest : testing::Test {
@@ -183,6 +190,18 @@ TEST_F(BusRunnerTest, ShutsDownInItsDestructorAndAnswersWhatWaits) {
   runner.reset();
   for (auto& answer : answers) EXPECT_FALSE(answer.get().message.empty());
   wire->shut_down.get_future().wait();
+}
+
+TEST_F(BusRunnerTest, AnswersCommandsThatComeWhileItEnds) {
+  std::future<Answer> answer;
+  wire->while_flushing = [&] { answer = post(ProcedureKind::enable); };
+  runner->start();
+  wire->first_frame.get_future().wait();
+  runner->requestShutdown();
+  runner->join();
+  ASSERT_TRUE(posted);
+  ASSERT_EQ(answer.wait_for(std::chrono::seconds(0)), std::future_status::ready);
+  EXPECT_EQ(answer.get().message, "refused: the driver is shutting down");
 }
 
 TEST_F(BusRunnerTest, RefusesCommandsThatFindNoRoom) {
