@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "cia402_driver/motion/polynomial.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace cia402::motion {
@@ -63,6 +64,25 @@ Polynomial Polynomial::derivative() const {
   Polynomial result;
   for (std::size_t k = 0; k < kDegree; ++k) result.c[k] = static_cast<double>(k + 1) * c[k + 1];
   return result;
+}
+
+Bounds boundsInUnitInterval(const Polynomial& polynomial) {
+  constexpr std::size_t kCount = Polynomial::kDegree + 1;
+  // kWeights[i][k] = C(i, k) / C(5, k): the i-th Bernstein coefficient's share of c[k].
+  constexpr double kWeights[kCount][kCount] = {{1, 0, 0, 0, 0, 0},
+                                               {1, 1 / 5.0, 0, 0, 0, 0},
+                                               {1, 2 / 5.0, 1 / 10.0, 0, 0, 0},
+                                               {1, 3 / 5.0, 3 / 10.0, 1 / 10.0, 0, 0},
+                                               {1, 4 / 5.0, 6 / 10.0, 4 / 10.0, 1 / 5.0, 0},
+                                               {1, 1, 1, 1, 1, 1}};
+  Bounds bounds{polynomial.c[0], polynomial.c[0]};
+  for (std::size_t i = 1; i < kCount; ++i) {
+    double coefficient = 0;
+    for (std::size_t k = 0; k <= i; ++k) coefficient += kWeights[i][k] * polynomial.c[k];
+    bounds.min = std::min(bounds.min, coefficient);
+    bounds.max = std::max(bounds.max, coefficient);
+  }
+  return bounds;
 }
 
 Roots rootsInUnitInterval(const Polynomial& polynomial) {

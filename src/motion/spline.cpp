@@ -55,6 +55,22 @@ Range SplineSegment::range(const Polynomial& polynomial, double scale) const {
   return result;
 }
 
+bool SplineSegment::surelyWithin(const JointLimits& limits) const {
+  const auto within = [](const Polynomial& polynomial, double scale, std::optional<double> low,
+                         std::optional<double> high) {
+    if (!low && !high) return true;
+    const Bounds bounds = boundsInUnitInterval(polynomial);
+    return (!low || bounds.min * scale >= *low) && (!high || bounds.max * scale <= *high);
+  };
+  const auto below = [&within](const Polynomial& polynomial, double scale,
+                               const std::optional<double>& limit) {
+    return !limit || within(polynomial, scale, -*limit, limit);
+  };
+  return within(position_, 1, limits.lower, limits.upper) &&
+         below(velocity_, 1 / duration_s_, limits.velocity) &&
+         below(acceleration_, 1 / (duration_s_ * duration_s_), limits.acceleration);
+}
+
 Range SplineSegment::positionRange() const { return range(position_, 1); }
 Range SplineSegment::velocityRange() const { return range(velocity_, 1 / duration_s_); }
 Range SplineSegment::accelerationRange() const {

@@ -172,6 +172,7 @@ std::optional<TrajectoryError> checkLimits(const SplineSegment& segment, const P
     return invalidGoal(whereabouts(place, 0) + "motion of " + seconds(segment.duration()) +
                        " is too fast to be computed; check positions and time_from_start");
   }
+  if (segment.surelyWithin(place.joint.limits)) return {};
   if (Failure failure = checkPosition(segment, place)) return failure;
   const JointLimits& limits = place.joint.limits;
   const Range velocity = segment.velocityRange();

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 namespace cia402::motion {
 namespace {
 
@@ -48,6 +50,30 @@ TEST(Polynomial, FindsRootsAtBothEnds) {
 TEST(Polynomial, ConstantsHaveNoRoots) {
   EXPECT_EQ(rootsInUnitInterval(Polynomial{{3}}).count, 0U);
   EXPECT_EQ(rootsInUnitInterval(Polynomial{}).count, 0U);
+}
+
+TEST(Polynomial, BoundsAreTheHullOfItsBernsteinCoefficients) {
+  // x - x^2 has the coefficients 0, 1/5, 3/10, 3/10, 1/5, 0 (by hand); its true maximum is 1/4
+  const Bounds hill = boundsInUnitInterval(Polynomial{{0, 1, -1}});
+  EXPECT_NEAR(hill.min, 0.0, 1e-15);
+  EXPECT_NEAR(hill.max, 0.3, 1e-15);
+  const Bounds power = boundsInUnitInterval(Polynomial{{0, 0, 0, 0, 0, 2}});  // 2 x^5
+  EXPECT_EQ(power.min, 0);
+  EXPECT_EQ(power.max, 2);
+}
+
+TEST(Polynomial, BoundsHoldEveryValue) {
+  std::mt19937_64 random(7);
+  for (int i = 0; i < 2000; ++i) {
+    Polynomial f;
+    for (double& c : f.c) c = static_cast<double>(random() % 2001) * 0.01 - 10.0;
+    const Bounds bounds = boundsInUnitInterval(f);
+    for (int k = 0; k <= 50; ++k) {
+      const double value = f(0.02 * k);
+      ASSERT_GE(value, bounds.min - 1e-9) << i;
+      ASSERT_LE(value, bounds.max + 1e-9) << i;
+    }
+  }
 }
 
 }  // namespace

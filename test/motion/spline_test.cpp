@@ -144,5 +144,26 @@ TEST_F(RandomSplines, NoSampleLeavesTheRangesAndTheRangesAreReached) {
   }
 }
 
+TEST(Spline, IsSurelyWithinLimitsOnlyIfEachOfThemIsKept) {
+  // 0 to 1 rad in 1 s at rest on both ends: up to 1.5 rad/s and 6 rad/s^2
+  const auto segment = SplineSegment::cubic({0, 0, 0}, {1, 0, 0}, 1);
+  JointLimits limits;
+  EXPECT_TRUE(segment.surelyWithin(limits));
+  limits.lower = -0.1;
+  limits.upper = 1.1;
+  limits.velocity = 4.0;
+  limits.acceleration = 7.0;
+  EXPECT_TRUE(segment.surelyWithin(limits));
+  const auto violated = [&](auto change) {
+    JointLimits tight = limits;
+    change(tight);
+    return !segment.surelyWithin(tight);
+  };
+  EXPECT_TRUE(violated([](JointLimits& l) { l.lower = 0.01; }));
+  EXPECT_TRUE(violated([](JointLimits& l) { l.upper = 0.99; }));
+  EXPECT_TRUE(violated([](JointLimits& l) { l.velocity = 1.49; }));
+  EXPECT_TRUE(violated([](JointLimits& l) { l.acceleration = 5.9; }));
+}
+
 }  // namespace
 }  // namespace cia402::motion

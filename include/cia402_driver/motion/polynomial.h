@@ -15,6 +15,15 @@ struct Polynomial {
   Polynomial derivative() const;
 };
 
+/// Bounds of a polynomial over [0, 1]: never too narrow, often too wide.
+struct Bounds {
+  double min = 0, max = 0;
+};
+
+/// The convex hull of the Bernstein coefficients, which holds the polynomial: many times cheaper
+/// than its exact extrema. Does not allocate.
+Bounds boundsInUnitInterval(const Polynomial& polynomial);
+
 /// Places in [0, 1], in rising order. A polynomial that is zero everywhere has none.
 struct Roots {
   std::array<double, Polynomial::kDegree> x{};

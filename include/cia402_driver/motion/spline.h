@@ -41,6 +41,10 @@ class SplineSegment {
   Range velocityRange() const;
   Range accelerationRange() const;
 
+  /// True only if position, velocity and acceleration keep the limits over the whole segment; false
+  /// says that the exact ranges have to be looked at. Many times cheaper than those.
+  bool surelyWithin(const JointLimits& limits) const;
+
   /// False where the arithmetic overflowed (positions or rates of change beyond any machine).
   bool isFinite() const;
 
