@@ -1,0 +1,140 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "driven_robot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+namespace cia402::benchmark {
+namespace {
+
+constexpr Duration kFrameTime = std::chrono::microseconds(120);  // of a TPDO at 1 Mbit/s
+constexpr double kBitrate = 1e6;
+
+bus::RobotSnapshot sized(std::size_t axes) {
+  bus::RobotSnapshot snapshot;
+  snapshot.axes.resize(axes);
+  snapshot.groups.resize(1);
+  return snapshot;
+}
+
+}  // namespace
+
+DrivenRobot::DrivenRobot(int axes, double sync_period_s, int cycles)
+    : config_(genericRobot(axes, sync_period_s, Layout::lean)),
+      period_(config_.robot.bus.sync_period),
+      drives_(axes),
+      meter_(*this, kBitrate),
+      robot_(config_.robot, config_.master, meter_, *this),
+      snapshots_(sized(static_cast<std::size_t>(axes))) {
+  incoming_.reserve(256);
+  outgoing_.reserve(256);
+  robot_.start(now_);
+  const auto ready = [](const drive::Axis& axis) {
+    return axis.state().health == canopen::NodeHealth::ready && axis.state().feedback_valid;
+  };
+  while (!std::all_of(robot_.axes().begin(), robot_.axes().end(), ready)) step();
+  bus::Command enable;
+  bus::ProcedureCommand procedure;
+  procedure.request.kind = drive::ProcedureKind::enable;
+  enable.body = procedure;
+  runUntilAnswered(std::move(enable));
+  const std::uint64_t sync = robot_.statistics().cycles();
+  while (robot_.statistics().cycles() == sync) step();
+  sync_ = now_ + period_;
+  began_ = now_;
+  runUntilAnswered(swing(config_.robot, sync_period_s * (cycles + 1), 0.1));
+}
+
+bool DrivenRobot::send(const can::Frame& frame) {
+  outgoing_.push_back(frame);
+  return true;
+}
+
+void DrivenRobot::onEvent(const bus::Event& event) { events_.push_back(event); }
+
+void DrivenRobot::runUntilAnswered(bus::Command command) {
+  std::optional<bus::Answer> answer;
+  command.reply = [&answer](const bus::Answer& given) { answer = given; };
+  robot_.execute(std::move(command), now_);
+  while (!answer) step();
+  if (!answer->success) throw std::runtime_error(answer->message);
+}
+
+/// One event of a bus on which frames take no time.
+void DrivenRobot::step() {
+  now_ = std::max(now_, std::min(robot_.nextDeadline(), drives_.nextHeartbeat()));
+  if (toSeconds(now_.time_since_epoch()) > 60.0) {
+    std::string told;
+    for (const bus::Event& event : events_) told += "\n" + event.text.str();
+    throw std::runtime_error("the scripted drives were not enabled within a minute:" + told);
+  }
+  robot_.tick(now_);
+  drives_.tick(now_, incoming_);
+  while (!outgoing_.empty() || !incoming_.empty()) {
+    const std::vector<can::Frame> sent = std::exchange(outgoing_, {});
+    for (const can::Frame& frame : sent) drives_.receive(frame, incoming_);
+    const std::vector<can::Frame> received = std::exchange(incoming_, {});
+    for (const can::Frame& frame : received) robot_.receive(frame, now_, now_);
+  }
+}
+
+void DrivenRobot::prepare() {
+  incoming_.clear();
+  for (const can::Frame& frame : outgoing_) {
+    if (frame.id != 0x080) drives_.receive(frame, incoming_);
+  }
+  drives_.receive(can::Frame(0x080, {}), incoming_);
+  drives_.tick(sync_, incoming_);
+  outgoing_.clear();
+}
+
+void DrivenRobot::cycle() {
+  wake(sync_);
+  Time now = sync_;
+  for (const can::Frame& frame : incoming_) {
+    now += kFrameTime;
+    robot_.tick(now);
+    const can::Frame received = frame;
+    meter_.count(received);
+    robot_.receive(received, now, now);
+    meter_.update(now);
+    publish(now);
+  }
+  wake(sync_ + period_ / 2);
+  sync_ += period_;
+}
+
+void DrivenRobot::wake(Time now) {
+  robot_.tick(now);
+  meter_.update(now);
+  publish(now);
+}
+
+/// As in BusRunner.
+void DrivenRobot::publish(Time now) {
+  now_ = std::min(now, robot_.nextDeadline());  // what BusRunner would wait for
+  const std::uint64_t cycle = robot_.statistics().cycles();
+  if (cycle == published_cycle_) return;
+  published_cycle_ = cycle;
+  robot_.fill(snapshots_.back());
+  snapshots_.publish();
+}
+
+void DrivenRobot::check() const {
+  // The target was computed in the middle of the last period.
+  const double time_s = toSeconds(sync_ - period_ / 2 - began_);
+  const auto& commanded = robot_.groups().front().commanded();
+  for (std::size_t i = 0; i < commanded.size(); ++i) {
+    if (robot_.groups().front().executing() &&
+        std::abs(commanded[i].position - swingPosition(i, time_s)) < 1e-3) {
+      continue;
+    }
+    std::string told;
+    for (const bus::Event& event : events_) told += "\n" + event.text.str();
+    throw std::runtime_error("joint " + std::to_string(i + 1) + " left its path:" + told);
+  }
+}
+
+}  // namespace cia402::benchmark

@@ -1,0 +1,56 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "cia402_driver/bus/load_meter.h"
+#include "cia402_driver/bus/robot.h"
+#include "cia402_driver/bus/triple_buffer.h"
+#include "robots.h"
+#include "scripted_drives.h"
+
+namespace cia402::benchmark {
+
+/// A driver in virtual time whose drives have answered before the cycle begins, so that a cycle is
+/// the driver's work alone: everything that BusRunner does in it but system calls.
+class DrivenRobot final : private can::Sink, private bus::EventSink {
+ public:
+  /// Boots and enables all axes and begins a trajectory of `cycles` cycles.
+  /// @throws std::runtime_error if that fails.
+  DrivenRobot(int axes, double sync_period_s, int cycles);
+
+  /// The drives' part: reads the last cycle's frames and lays out those of the next one.
+  void prepare();
+  /// The driver's part: SYNC leaves; the drives' frames come in, one at a time as they do on a bus;
+  /// in the middle of the period motion is computed and the RPDOs leave.
+  void cycle();
+
+  /// The frames of one cycle, as prepare() and cycle() left them.
+  const std::vector<can::Frame>& received() const { return incoming_; }
+  const std::vector<can::Frame>& sent() const { return outgoing_; }
+  /// @throws std::runtime_error unless all axes are where the trajectory wants them.
+  void check() const;
+
+ private:
+  bool send(const can::Frame& frame) override;
+  void onEvent(const bus::Event& event) override;
+
+  void runUntilAnswered(bus::Command command);
+  void step();
+  void wake(Time now);
+  void publish(Time now);
+
+  TestRobot config_;
+  Duration period_;
+  ScriptedDrives drives_;
+  bus::LoadMeter meter_;
+  bus::Robot robot_;
+  bus::TripleBuffer<bus::RobotSnapshot> snapshots_;
+  std::vector<can::Frame> incoming_, outgoing_;
+  std::vector<bus::Event> events_;
+  Time now_{}, sync_{}, began_{};
+  std::uint64_t published_cycle_ = 0;
+};
+
+}  // namespace cia402::benchmark
