@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "procedure.h"
 #include "sentence.h"
-#include "step_enable.h"
+#include "step_switch.h"
 
 namespace cia402::drive {
 namespace {
@@ -11,7 +11,7 @@ namespace {
 class Enable : public Procedure {
  public:
   explicit Enable(AxisCore& axis)
-      : enabling_(axis.workingMode(), axis.profile()), mode_(axis.workingMode()) {}
+      : enabling_(axis.workingMode(), axis.profile()), mode_(axis.workingMode(), axis.profile()) {}
 
   Outcome advance(const Context& context) override {
     if (!begun_) begin(context);
@@ -69,7 +69,7 @@ class Enable : public Procedure {
   }
 
   EnableStep enabling_;
-  ModeStep mode_;
+  SwitchStep mode_;
   bool begun_ = false, releasing_ = false, leaving_homing_ = false;
   std::uint64_t frames_ = 0;
   Time started_{};

@@ -25,7 +25,7 @@ DriveHoming::DriveHoming(AxisCore& axis, const ModeChannel& homing)
                   ? axis.objects().channel(axis.config().mode)
                   : &axis.mode()),
       writes_(axis.profile().homing.writes),
-      mode_(homing),
+      mode_(homing, axis.profile()),
       enabling_(homing, axis.profile()),
       moves_nothing_(*axis.config().homing->method == 35 || *axis.config().homing->method == 37) {}
 
@@ -243,7 +243,7 @@ Outcome DriveHoming::stop(const Context& context) {
 }
 
 void DriveHoming::restore(const Context& context) {
-  restoring_.emplace(*before_);
+  restoring_.emplace(*before_, context.axis.profile());
   enter(Phase::restoring, context);
 }
 

@@ -5,7 +5,7 @@
 
 #include "cia402_driver/drive/homing_status.h"
 #include "procedure.h"
-#include "step_enable.h"
+#include "step_switch.h"
 
 namespace cia402::drive {
 
@@ -61,9 +61,9 @@ class DriveHoming : public Procedure {
   const ModeChannel* homing_;
   const ModeChannel* before_;
   WriteStep writes_;
-  ModeStep mode_;
+  SwitchStep mode_;
   EnableStep enabling_;
-  std::optional<ModeStep> restoring_;
+  std::optional<SwitchStep> restoring_;
   canopen::SdoTicket offset_;
 
   Phase phase_ = Phase::begin;

@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "procedure.h"
 #include "sentence.h"
-#include "step_mode.h"
+#include "step_switch.h"
 
 namespace cia402::drive {
 namespace {
@@ -9,14 +9,19 @@ namespace {
 /// Switches the mode of operation, disabled or enabled at standstill.
 class SetMode : public Procedure {
  public:
-  explicit SetMode(const ModeChannel& mode) : mode_(&mode), step_(mode) {}
+  SetMode(const ModeChannel& mode, const DriveProfile& profile)
+      : mode_(&mode), step_(mode, profile) {}
 
   Outcome advance(const Context& context) override {
     AxisCore& axis = context.axis;
     if (!begun_) {
       begun_ = true;
       started_ = context.now;
-      context.status.deadline = context.now + 3 * axis.profile().timing.mode_change;
+      const DriveProfile::Timing& timing = axis.profile().timing;
+      context.status.deadline = context.now + 3 * timing.mode_change;
+      if (axis.profile().mode_change_needs_disabling) {
+        context.status.deadline += 8 * timing.state_change + timing.brake_release;
+      }
     }
     if (!standing_ && axis.inOperation()) {
       const Outcome standing = awaitStandstill(context, started_, "switching the mode");
@@ -26,12 +31,13 @@ class SetMode : public Procedure {
     const Outcome outcome = step_.advance(context);
     if (!outcome.isDone()) return outcome;
     return Outcome::done(axis.config().joint + ": mode " + mode_->spec->name + " after " +
-                         seconds(context.now - started_));
+                         seconds(context.now - started_) +
+                         (step_.wasDisabled() ? ", disabled meanwhile as the drive demands" : ""));
   }
 
  private:
   const ModeChannel* mode_;
-  ModeStep step_;
+  SwitchStep step_;
   bool begun_ = false, standing_ = false;
   Time started_{};
 };
@@ -69,7 +75,7 @@ Result<std::unique_ptr<Procedure>> makeSetMode(AxisCore& axis, const std::string
     return Error{axis.who() + ": mode " + name + " is refused in motion (velocity " +
                  number(axis.state().velocity) + "); stop the axis first"};
   }
-  return std::unique_ptr<Procedure>(std::make_unique<SetMode>(*channel));
+  return std::unique_ptr<Procedure>(std::make_unique<SetMode>(*channel, axis.profile()));
 }
 
 }  // namespace cia402::drive

@@ -111,10 +111,17 @@ void checkFixedObjects(const YamlSection& section, const DriveProfile& profile) 
   }
 }
 
+void readModeChange(YamlSection& section, DriveProfile& profile) {
+  const auto value = section.get("mode_change");
+  const auto index = value ? value->oneOf({"any", "disabled"}) : std::nullopt;
+  profile.mode_change_needs_disabling = index && *index == 1;
+}
+
 void readBehaviour(YamlSection& section, DriveProfile& profile) {
   section.read("output_shaft", profile.output_shaft);
   section.read("halt_supported", profile.halt_supported);
   section.read("warning_stops", profile.warning_stops);
+  readModeChange(section, profile);
   readQuickStop(section, profile);
   readPdoRules(section, profile);
   readSync(section, profile);

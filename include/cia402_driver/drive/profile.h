@@ -159,6 +159,9 @@ struct DriveProfile {
   std::vector<ModeSpec> modes;
   HomingSpec homing;
   bool halt_supported = true;
+  /// 6060h, or what goes with a mode, is refused while the power stage is on: to switch the mode
+  /// the axis is disabled and enabled again.
+  bool mode_change_needs_disabling = false;
   bool warning_stops = false;             ///< a warning makes the drive stop like a fault
   std::vector<int> quick_stop_holds;      ///< values of 605Ah after which quick stop stays active
   std::vector<NamedWrite> startup;        ///< at every boot

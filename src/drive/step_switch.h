@@ -1,0 +1,33 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "procedure.h"
+#include "step_enable.h"
+#include "step_mode.h"
+
+namespace cia402::drive {
+
+/// Brings an axis into another mode, enabled or not. Where the drive takes no mode while its power
+/// stage is on (profile, `mode_change: disabled`), an enabled axis is disabled and enabled again.
+/// To be used at standstill.
+class SwitchStep {
+ public:
+  SwitchStep(const ModeChannel& mode, const DriveProfile& profile)
+      : channel_(&mode), mode_(mode), enabling_(mode, profile) {}
+  Outcome advance(const Context& context);
+  /// The power stage was off for the switch.
+  bool wasDisabled() const { return was_disabled_; }
+
+ private:
+  enum class Phase { begin, disabling, enabling, switching };
+  Outcome awaitDisabled(const Context& context);
+
+  const ModeChannel* channel_;
+  ModeStep mode_;
+  EnableStep enabling_;
+  Phase phase_ = Phase::begin;
+  bool was_disabled_ = false;
+  Time since_{};
+};
+
+}  // namespace cia402::drive
