@@ -55,6 +55,14 @@ function(cia402_ros_module)
   endif()
 endfunction()
 
+# What running the driver takes, without the tests: for a short first build.
+function(cia402_run_target)
+  add_custom_target(cia402_run DEPENDS ${cia402_executables} ${PROJECT_NAME}_generate_messages)
+  if(CIA402_OWN_CONTROL_MSGS)
+    add_dependencies(cia402_run control_msgs_generate_messages)
+  endif()
+endfunction()
+
 # What a user of the installed package needs: programs, library, launch files and configuration.
 function(cia402_ros_install)
   install(TARGETS ${cia402_executables} ${cia402_libraries}

@@ -2,17 +2,17 @@
 # Building and using what was built; sourced after common.sh.
 # shellcheck shell=bash
 
-# Configures and builds into $1; further arguments go to cmake. Quick when nothing has changed.
-# Prints the compiler's words only if it fails.
+# Configures into directory $1 and builds target $2 there; further arguments go to cmake. Quick when
+# nothing has changed. Prints the compiler's words only if it fails.
 build() {
-  local directory=$1
-  shift
+  local directory=$1 target=$2
+  shift 2
   mkdir -p "$directory"
   say "building in ${directory#"$repository/"}"
   {
     cmake -S "$repository" -B "$directory" -G Ninja \
       -DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DPYTHON_EXECUTABLE="$system_python" "$@" &&
-      cmake --build "$directory" --parallel "$(build_jobs)"
+      cmake --build "$directory" --target "$target" --parallel "$(build_jobs)"
   } >"$directory/build.log" 2>&1 || {
     grep -vE '^(-- |Generating |\[[0-9]+/[0-9]+\] )' "$directory/build.log" |
       tail -n 60 >&2
@@ -20,9 +20,10 @@ build() {
   }
 }
 
-# Library, tests and ROS nodes; afterwards use_ros makes them known to roslaunch and its like.
+# Builds a target, `all` or what running the driver takes (`cia402_run`); afterwards use_ros makes
+# the nodes known to roslaunch and its like.
 build_ros() {
-  build "$build_root/ros" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCIA402_WITH_ROS=ON
+  build "$build_root/ros" "$1" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCIA402_WITH_ROS=ON
 }
 
 # Enters the environment of what build_ros built, with logs kept inside build/ and a master of its

@@ -17,6 +17,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import traceback
 import unittest
 import xml.etree.ElementTree as ElementTree
 
@@ -120,11 +121,6 @@ def run_gtest(results, executable):
         results.note(False, f"{name}: ends with status 0, not {status}", log)
 
 
-def run_gtests(results, executables):
-    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        list(pool.map(lambda executable: run_gtest(results, executable), executables))
-
-
 # Python's unittest
 
 class Recorder(unittest.TextTestResult):
@@ -193,15 +189,24 @@ def run_rostest(results, file):
         results.note(False, f"{name}: reports its tests (status {status})", log)
 
 
+def run_file(kind, results, file):
+    """Runs one file of tests. Whatever goes wrong in doing so is a failure of its own."""
+    try:
+        {"gtest": run_gtest, "unittest": run_unittest, "rostest": run_rostest}[kind](results, file)
+    except Exception:  # pylint: disable=broad-except
+        log = results.logs / f"{pathlib.Path(file).stem}.error.log"
+        log.write_text(traceback.format_exc(), encoding="utf-8")
+        results.note(False, f"{pathlib.Path(file).name}: runs", log)
+
+
 def main():
     kind, logs, files = sys.argv[1], pathlib.Path(sys.argv[2]).resolve(), sys.argv[3:]
     logs.mkdir(parents=True, exist_ok=True)
     results = Results(logs)
-    if kind == "gtest":
-        run_gtests(results, files)
-    else:
-        for file in files:
-            {"unittest": run_unittest, "rostest": run_rostest}[kind](results, file)
+    # Nodes of a ROS graph need the processors for themselves.
+    at_once = os.cpu_count() if kind == "gtest" else 1
+    with concurrent.futures.ThreadPoolExecutor(at_once) as pool:
+        list(pool.map(lambda file: run_file(kind, results, file), files))
     return 1 if results.failed else 0
 
 

@@ -35,39 +35,39 @@ class WithVcan(unittest.TestCase):
     def setUpClass(cls):
         with tempfile.TemporaryDirectory() as directory:
             cls.directory = os.path.realpath(directory)
-            cls.run = subprocess.run(
+            cls.outcome = subprocess.run(
                 [WITH_VCAN, "--timeout", "120", "bash", "-c", QUESTIONS, "bash", "a b", "c'd\"", ""],
                 cwd=directory, env={**os.environ, "WITH_VCAN_TEST": "two\nlines $x"},
                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
 
     def test_vcan0_is_up(self):
-        self.assertRegex(self.run.stdout, r"interface: vcan0 .*<.*\bUP\b")
+        self.assertRegex(self.outcome.stdout, r"interface: vcan0 .*<.*\bUP\b")
 
     def test_a_frame_sent_on_vcan0_is_received(self):
-        self.assertRegex(self.run.stdout, r"frame: +vcan0 +123 +\[4\] +DE AD BE EF")
+        self.assertRegex(self.outcome.stdout, r"frame: +vcan0 +123 +\[4\] +DE AD BE EF")
 
     def test_the_command_may_delete_and_add_the_interface(self):
-        self.assertIn("deleted: yes", self.run.stdout)
-        self.assertRegex(self.run.stdout, r"added: vcan0 .*<.*\bUP\b")
+        self.assertIn("deleted: yes", self.outcome.stdout)
+        self.assertRegex(self.outcome.stdout, r"added: vcan0 .*<.*\bUP\b")
 
     def test_the_exit_status_is_handed_back(self):
-        self.assertEqual(self.run.returncode, 7)
+        self.assertEqual(self.outcome.returncode, 7)
 
     def test_arguments_with_spaces_and_quotes_arrive_whole(self):
-        self.assertIn("arguments: [a b] [c'd\"] []\n", self.run.stdout)
+        self.assertIn("arguments: [a b] [c'd\"] []\n", self.outcome.stdout)
 
     def test_the_working_directory_is_kept(self):
-        self.assertIn(f"directory: {self.directory}\n", self.run.stdout)
+        self.assertIn(f"directory: {self.directory}\n", self.outcome.stdout)
 
     def test_the_environment_is_kept(self):
-        self.assertIn("variable: two\nlines $x\n", self.run.stdout)
+        self.assertIn("variable: two\nlines $x\n", self.outcome.stdout)
 
     def test_stdin_is_empty(self):
-        self.assertIn("stdin: .\n", self.run.stdout)
+        self.assertIn("stdin: .\n", self.outcome.stdout)
 
     def test_stdout_and_stderr_stay_apart(self):
-        self.assertIn("said on stderr\n", self.run.stderr)
-        self.assertNotIn("said on stderr", self.run.stdout)
+        self.assertIn("said on stderr\n", self.outcome.stderr)
+        self.assertNotIn("said on stderr", self.outcome.stdout)
 
     def test_a_command_that_hangs_is_killed_at_the_timeout(self):
         start = time.monotonic()
