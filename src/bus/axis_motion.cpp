@@ -78,7 +78,7 @@ Result<void> AxisMotion::command(const drive::Axis& axis, double value, Time now
   if (!std::isfinite(value)) {
     return Error{axis.config().name + ": set-point refused: it is not a finite number"};
   }
-  if (mode_ != axis.state().mode) enter(axis, now);
+  if (!entered(axis)) enter(axis, now);
   if (mode_->kind == drive::ControlKind::homing) {
     return Error{axis.config().name + ": set-point refused: mode " + mode_->name +
                  " takes none; set_mode another first"};
@@ -97,8 +97,13 @@ Result<void> AxisMotion::command(const drive::Axis& axis, double value, Time now
   return position_.command(*command_, now);
 }
 
+bool AxisMotion::entered(const drive::Axis& axis) const {
+  return mode_ == axis.state().mode && zero_changes_ == axis.state().zero_changes;
+}
+
 void AxisMotion::enter(const drive::Axis& axis, Time now) {
   mode_ = axis.state().mode;
+  zero_changes_ = axis.state().zero_changes;
   command_.reset();
   ramp_.reset();
   at_rest_ = true;
@@ -132,7 +137,7 @@ void AxisMotion::step(drive::Axis& axis, Time now) {
     mode_ = nullptr;  // what the group does to the target is not known here
     return;
   }
-  if (mode_ != axis.state().mode) enter(axis, now);
+  if (!entered(axis)) enter(axis, now);
   if (!command_) return;
   switch (mode_->kind) {
     case drive::ControlKind::position:
@@ -164,14 +169,21 @@ void AxisMotion::stepPosition(drive::Axis& axis, Time now) {
 void AxisMotion::stepVelocity(drive::Axis& axis, Time now) {
   const motion::MotionState state = velocity_.step(now, axis.state().position);
   at_rest_ = state.velocity == 0.0;
-  if (!axis.setTarget(state.velocity)) command_.reset();
+  if (!axis.setTarget(state.velocity)) zero(axis, now);
 }
 
 void AxisMotion::stepTorque(drive::Axis& axis, Time now) {
   double effort = now - commanded_ > timeout_ ? 0.0 : *command_;
   if (effort_limit_) effort = std::clamp(effort, -*effort_limit_, *effort_limit_);
   at_rest_ = effort == 0.0;
-  if (!axis.setTarget(effort)) command_.reset();
+  if (!axis.setTarget(effort)) zero(axis, now);
+}
+
+void AxisMotion::zero(drive::Axis& axis, Time now) {
+  command_.reset();
+  at_rest_ = true;
+  velocity_.reset({axis.state().position, 0.0, 0.0}, now);
+  (void)axis.setTarget(0.0);  // fits every object and limit
 }
 
 }  // namespace cia402::bus

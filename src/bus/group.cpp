@@ -33,7 +33,9 @@ Group::Group(config::GroupConfig config, std::vector<std::size_t> axes,
       axes_(std::move(axes)),
       ramps_({}),
       commanded_(axes_.size()),
-      dropped_(axes_.size(), 0) {
+      dropped_(axes_.size(), 0),
+      next_dropped_(axes_.size(), 0),
+      zeros_(axes_.size(), 0) {
   std::vector<motion::StopLimits> stops;
   for (std::size_t axis : axes_) {
     joints_.push_back(jointOf(all[axis].config()));
@@ -105,6 +107,8 @@ TrajectoryOutcome Group::start(const std::vector<std::string>& names,
                                                reorder(points, *order), start);
   if (!trajectory) return {trajectory.error().code, trajectory.error().message};
   next_ = std::move(trajectory).value();
+  std::fill(next_dropped_.begin(), next_dropped_.end(), std::uint8_t{0});
+  for (std::size_t i = 0; i < axes_.size(); ++i) zeros_[i] = axes[axes_[i]].state().zero_changes;
   if (phase_ == Phase::idle) {
     commanded_ = commandedAt(axes, now);
     beginNext();
@@ -118,7 +122,19 @@ void Group::beginNext() {
   next_.reset();
   phase_ = Phase::following;
   refused_ = nullptr;
-  std::fill(dropped_.begin(), dropped_.end(), std::uint8_t{0});
+  dropped_ = next_dropped_;
+}
+
+/// A joint that was not ready for a while, or whose positions got another zero, is not where its
+/// trajectories were planned from.
+void Group::noteDropped(const std::vector<drive::Axis>& axes) {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const drive::AxisState& state = axes[axes_[i]].state();
+    if (!state.ready_for_motion || state.zero_changes != zeros_[i]) {
+      dropped_[i] = next_dropped_[i] = 1;
+    }
+    zeros_[i] = state.zero_changes;
+  }
 }
 
 void Group::stop(const TrajectoryOutcome& why, Time now) {
@@ -139,10 +155,8 @@ void Group::beginStop(Time now) {
 std::optional<TrajectoryOutcome> Group::step(std::vector<drive::Axis>& axes,
                                              std::vector<AxisMotion>& motions, Time now) {
   if (phase_ == Phase::idle) return std::nullopt;
+  noteDropped(axes);
   if (next_ && now >= next_->startTime()) beginNext();
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
-    if (!axes[axes_[i]].state().ready_for_motion) dropped_[i] = 1;
-  }
   if (phase_ == Phase::following) {
     auto ended = checkAxes(axes);
     if (!ended) ended = checkPath(axes);
@@ -203,7 +217,9 @@ std::optional<TrajectoryOutcome> Group::checkAxes(const std::vector<drive::Axis>
 
 std::string Group::dropReason(const std::vector<drive::Axis>& axes, std::size_t joint) const {
   const std::string reason = axes[axes_[joint]].motionRefusal();
-  return reason.empty() ? joints_[joint].name + " fell out of operation on the way" : reason;
+  return reason.empty()
+             ? joints_[joint].name + " fell out of operation or got another zero on the way"
+             : reason;
 }
 
 std::optional<TrajectoryOutcome> Group::checkRefusal() const {

@@ -56,6 +56,7 @@ void AxisCore::writeCommands(Time now) {
 
 void AxisCore::writeTarget(Time now) {
   const Duration dt = now - written_;
+  if (setPointsRunFree()) beginRamp();
   if (ramping_) {
     advanceRamp(dt);
   } else if (dt > Duration::zero()) {
@@ -142,8 +143,11 @@ bool AxisCore::withinLimits(double value) const {
     case ControlKind::velocity:
       if (limits.velocity && std::fabs(value) > *limits.velocity) return false;
       if (!state_.homed) return true;
-      return !(limits.lower && state_.position <= *limits.lower && value < 0.0) &&
-             !(limits.upper && state_.position >= *limits.upper && value > 0.0);
+      // Beyond a limit it may only get slower or turn back.
+      return !(limits.lower && state_.position <= *limits.lower && value < 0.0 &&
+               !(value > target_)) &&
+             !(limits.upper && state_.position >= *limits.upper && value > 0.0 &&
+               !(value < target_));
     case ControlKind::torque:
       return !(limits.effort && std::fabs(value) > *limits.effort);
     case ControlKind::homing:
@@ -184,11 +188,29 @@ void AxisCore::beginHalt() {
   if (!in_operation_) return;
   halted_ = true;
   state_.ready_for_motion = false;
-  const ModeSpec& spec = *mode_->spec;
-  if (profile().halt_supported && !spec.cyclic) {
+  if (profile().halt_supported && !mode_->spec->cyclic) {
     halt_bit_ = true;
     return;
   }
+  beginRamp();
+}
+
+bool AxisCore::setPointsRunFree() const {
+  if (state_.ready_for_motion || ramping_ || halted_) return false;
+  switch (mode_->spec->kind) {
+    case ControlKind::position:
+      return mode_->spec->cyclic && target_velocity_ != 0.0;
+    case ControlKind::velocity:
+    case ControlKind::torque:
+      return target_ != 0.0;
+    case ControlKind::homing:
+      return false;
+  }
+  return false;
+}
+
+void AxisCore::beginRamp() {
+  const ModeSpec& spec = *mode_->spec;
   ramping_ = true;
   const double deceleration = config_.limits.acceleration.value_or(0.0);
   switch (spec.kind) {
@@ -235,6 +257,10 @@ void AxisCore::advanceRamp(Duration dt) {
     handshake_.offer(raw);
   }
   target_raw_ = raw;
+  if (!ramp_.finished() || halted_) return;
+  ramping_ = false;
+  previous_target_ = target_;
+  target_velocity_ = 0.0;
 }
 
 void AxisCore::replaceHaltedTarget() {

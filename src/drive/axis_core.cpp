@@ -100,8 +100,9 @@ std::string AxisCore::supervise(Time now) {
 }
 
 void AxisCore::updateReadiness(bool busy, Time now) {
-  state_.ready_for_motion = in_operation_ && !busy && !halted_ && state_.feedback_valid &&
-                            now >= brake_released_ && shown_mode_ == mode_->spec->value &&
+  state_.ready_for_motion = in_operation_ && !busy && !halted_ && !ramping_ &&
+                            state_.feedback_valid && now >= brake_released_ &&
+                            shown_mode_ == mode_->spec->value &&
                             state_.state == State::operation_enabled;
 }
 
@@ -149,6 +150,7 @@ void AxisCore::adoptDriveZero(double shift) {
   }
   state_.position += moved;
   state_.homed = true;
+  ++state_.zero_changes;
   standstill_.reset();
 }
 

@@ -131,6 +131,10 @@ class AxisCore {
   void writeTarget(Time now);
   void writeNeutralTargets();
   void advanceHandshake(Time now);
+  /// The axis moves by its set-points, but nobody may give it any (a procedure runs, the mode
+  /// display is lost): they must not stay as they are.
+  bool setPointsRunFree() const;
+  void beginRamp();
   void advanceRamp(Duration dt);
   bool withinLimits(double value) const;
   bool homedEnough() const;

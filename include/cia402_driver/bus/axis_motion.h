@@ -49,6 +49,9 @@ class AxisMotion {
   void stepPosition(drive::Axis& axis, Time now);
   void stepVelocity(drive::Axis& axis, Time now);
   void stepTorque(drive::Axis& axis, Time now);
+  bool entered(const drive::Axis& axis) const;
+  /// The axis refused a velocity or an effort: it must not go on with the one before.
+  void zero(drive::Axis& axis, Time now);
 
   motion::PositionLimiter position_;
   motion::VelocityLimiter velocity_;
@@ -56,6 +59,7 @@ class AxisMotion {
   std::optional<double> effort_limit_;
   const std::string* owner_ = nullptr;
   const drive::ModeSpec* mode_ = nullptr;  // for which the limiters were reset
+  std::uint32_t zero_changes_ = 0;         // of the axis, then
   std::optional<double> command_;
   std::optional<motion::StopRamp> ramp_;  // of a stopped position stream
   Time commanded_{}, stepped_{};

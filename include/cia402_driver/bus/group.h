@@ -67,6 +67,7 @@ class Group {
   std::optional<TrajectoryOutcome> checkPath(const std::vector<drive::Axis>& axes) const;
   std::optional<TrajectoryOutcome> checkGoal(const std::vector<drive::Axis>& axes, Time now) const;
   std::string dropReason(const std::vector<drive::Axis>& axes, std::size_t joint) const;
+  void noteDropped(const std::vector<drive::Axis>& axes);
   void beginNext();
   void beginStop(Time now);
   void release(std::vector<AxisMotion>& motions);
@@ -81,6 +82,8 @@ class Group {
   std::optional<motion::Trajectory> trajectory_, next_;
   std::vector<motion::MotionState> commanded_;
   std::vector<std::uint8_t> dropped_;       // joints that fell out of operation under way
+  std::vector<std::uint8_t> next_dropped_;  // the same since next_ was planned
+  std::vector<std::uint32_t> zeros_;        // AxisState::zero_changes, as last seen
   const motion::Joint* refused_ = nullptr;  // whose axis did not take its set-point
   TrajectoryOutcome outcome_;               // of a stopping trajectory
 };

@@ -65,6 +65,7 @@ struct AxisState {
   std::int16_t mode_value = 0;     ///< 6061h
   const ModeSpec* mode = nullptr;  ///< active mode, nullptr while unknown
   bool homed = false;
+  std::uint32_t zero_changes = 0;  ///< grows when positions get another zero: older ones are void
   bool target_reached = false;
   bool warning = false;
   bool internal_limit = false;
