@@ -64,6 +64,7 @@ motion::StopLimits stopLimits(const drive::AxisConfig& config) {
 AxisMotion::AxisMotion(const drive::AxisConfig& config, Duration cycle)
     : position_(limiterConfig(config)),
       velocity_(velocityLimiterConfig(config), 2 * cycle),
+      cycle_(cycle),
       timeout_(config.command_timeout),
       effort_limit_(config.limits.effort) {}
 
@@ -107,8 +108,22 @@ void AxisMotion::enter(const drive::Axis& axis, Time now) {
   command_.reset();
   ramp_.reset();
   at_rest_ = true;
+  rest(axis, now);
+}
+
+void AxisMotion::rest(const drive::Axis& axis, Time now) {
+  stepped_ = now;
   position_.reset({axis.target(), 0.0, 0.0}, now);
   velocity_.reset({axis.state().position, 0.0, 0.0}, now);
+}
+
+// The limiters would make good in one step whatever the time since the last one allows.
+void AxisMotion::forgetLateCycles(const drive::Axis& axis, Time now) {
+  if (now - stepped_ <= 2 * cycle_) return;
+  position_.reset(position_.output(), now - cycle_);
+  velocity_.reset({axis.state().position, velocity_.output().velocity, 0.0}, now - cycle_);
+  if (mode_->kind == drive::ControlKind::position) (void)position_.command(*command_, now);
+  if (mode_->kind == drive::ControlKind::velocity) (void)velocity_.command(*command_, commanded_);
 }
 
 void AxisMotion::stop(const drive::Axis& axis, Time now) {
@@ -138,7 +153,12 @@ void AxisMotion::step(drive::Axis& axis, Time now) {
     return;
   }
   if (!entered(axis)) enter(axis, now);
-  if (!command_) return;
+  if (!command_) {
+    rest(axis, now);
+    return;
+  }
+  forgetLateCycles(axis, now);
+  stepped_ = now;
   switch (mode_->kind) {
     case drive::ControlKind::position:
       stepPosition(axis, now);
@@ -161,7 +181,6 @@ void AxisMotion::stepPosition(drive::Axis& axis, Time now) {
     return;
   }
   const motion::MotionState state = ramp_ ? ramp_->sample(now) : position_.step(now);
-  stepped_ = now;
   at_rest_ = state.velocity == 0.0;
   if (!axis.setTarget(state.position)) command_.reset();
 }

@@ -46,6 +46,8 @@ class AxisMotion {
 
  private:
   void enter(const drive::Axis& axis, Time now);
+  void rest(const drive::Axis& axis, Time now);
+  void forgetLateCycles(const drive::Axis& axis, Time now);
   void stepPosition(drive::Axis& axis, Time now);
   void stepVelocity(drive::Axis& axis, Time now);
   void stepTorque(drive::Axis& axis, Time now);
@@ -55,7 +57,7 @@ class AxisMotion {
 
   motion::PositionLimiter position_;
   motion::VelocityLimiter velocity_;
-  Duration timeout_;
+  Duration cycle_, timeout_;
   std::optional<double> effort_limit_;
   const std::string* owner_ = nullptr;
   const drive::ModeSpec* mode_ = nullptr;  // for which the limiters were reset
