@@ -59,12 +59,14 @@ Result<std::unique_ptr<Procedure>> makeProcedure(const ProcedureRequest& request
 
 Outcome awaitStandstill(const Context& context, Time since, const std::string& what) {
   AxisCore& axis = context.axis;
+  const bool patient = context.now - since <= 4 * Standstill::kWindow;
   if (!axis.state().feedback_valid) {
+    if (patient) return Outcome::running();  // the node is ready, its first TPDO still to come
     return Outcome::failed(axis.who() + ": " + what +
                            ": no fresh statusword (6041:00) and position (6064:00)");
   }
   if (axis.atStandstill()) return Outcome::done();
-  if (!axis.moving() && context.now - since <= 4 * Standstill::kWindow) return Outcome::running();
+  if (!axis.moving() && patient) return Outcome::running();
   return Outcome::failed(axis.who() + ": " + what + " needs standstill (velocity " +
                          number(axis.state().velocity) + "); stop the axis first");
 }
