@@ -1,0 +1,221 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "system/robot_fixture.h"
+
+namespace cia402 {
+
+inline LoadedRobot loadText(const std::string& yaml) { return loadTree(YAML::Load(yaml)); }
+
+/// Two revolute axes of the generic drive, 131072 counts on 100 turns of the motor, in a group.
+/// @param left, right more options of the axis, e.g. ", homing: {...}".
+inline std::string genericPair(const std::string& left = {}, const std::string& right = {},
+                               const std::string& group = {}) {
+  return "bus: {interface: sim, bitrate: 1000000, sync_period: 0.004, heartbeat: 0.1}\n"
+         "defaults: {drive: generic_cia402, counts_per_turn: 131072, gear_ratio: 100.0,\n"
+         "  rated_torque: 0.64, command_timeout: 0.2, mode: cyclic_position,\n"
+         "  limits: {lower: -2.5, upper: 2.5, velocity: 1.5, acceleration: 4.0, jerk: 40.0,\n"
+         "           effort: 120.0}}\n"
+         "axes:\n"
+         "  left: {node_id: 1" +
+         left +
+         "}\n"
+         "  right: {node_id: 2" +
+         right +
+         "}\n"
+         "groups:\n"
+         "  pair: {joints: [left, right]" +
+         group + "}\n";
+}
+
+/// One Damiao joint that stands at 1.1 rad.
+inline std::string damiaoJoint(const std::string& more = {}) {
+  return "bus: {interface: sim, bitrate: 1000000, sync_period: 0.004, heartbeat: 0.1}\n"
+         "axes:\n"
+         "  joint: {node_id: 4, drive: damiao_dm, mode: cyclic_position, command_timeout: 0.2,\n"
+         "    limits: {lower: -2.0, upper: 2.0, velocity: 2.0, acceleration: 15.0, jerk: 150.0,\n"
+         "             effort: 5.0}, simulation: {initial_position: 1.1, time_constant: 0.005}" +
+         more + "}\n";
+}
+
+/// A whole robot under test. Knows the truth in the simulated drives in the joints' own units, and
+/// looks at it every millisecond.
+class Scene {
+ public:
+  explicit Scene(LoadedRobot loaded, std::uint64_t seed = 1)
+      : loaded_(std::move(loaded)),
+        robot_(loaded_.robot, loaded_.master, loaded_.axes, seed),
+        seen_(loaded_.robot.axes.size()) {}
+
+  struct Seen {  // of the truth, since forget()
+    double lowest = 1e9, highest = -1e9, fastest = 0.0;
+    double travel() const { return highest - lowest; }
+  };
+
+  tools::VirtualRobot& robot() { return robot_; }
+  sim::World& world() { return robot_.world(); }
+  const LoadedRobot& loaded() const { return loaded_; }
+  std::string told() const { return cia402::told(robot_); }
+  Time now() const { return robot_.now(); }
+
+  std::size_t index(const std::string& name) const {
+    const auto& axes = loaded_.robot.axes;
+    const auto axis = std::find_if(axes.begin(), axes.end(),
+                                   [&](const drive::AxisConfig& a) { return a.name == name; });
+    EXPECT_TRUE(axis != axes.end()) << name;
+    return static_cast<std::size_t>(axis - axes.begin());
+  }
+  drive::Axis& axis(const std::string& name) { return robot_.robot().axes()[index(name)]; }
+  const drive::AxisState& state(const std::string& name) { return axis(name).state(); }
+  sim::Port& port(const std::string& name) { return world().port(index(name)); }
+  sim::Drive& drive(const std::string& name) { return world().drive(index(name)); }
+  sim::DriveTruth truth(const std::string& name) { return drive(name).truth(now()); }
+  void inject(const std::string& name, const std::string& fault) {
+    const auto done = drive(name).inject(fault, now());
+    EXPECT_TRUE(done) << (done ? "" : done.error().message);
+  }
+
+  /// Where the joint truly stands, rad or m, in the coordinates of its `simulation:` section.
+  double position(std::size_t i) {
+    return world().drive(i).truth(now()).position_turns * unitsPerTurn(i) +
+           loaded_.robot.axes[i].geometry.position_offset;
+  }
+  double position(const std::string& name) { return position(index(name)); }
+  double velocity(std::size_t i) {
+    return world().drive(i).truth(now()).velocity_turns * unitsPerTurn(i);
+  }
+  double velocity(const std::string& name) { return velocity(index(name)); }
+  const Seen& seen(const std::string& name) const { return seen_[index(name)]; }
+  void forget() { std::fill(seen_.begin(), seen_.end(), Seen()); }
+  /// Called every millisecond.
+  void watch(std::function<void()> look) { look_ = std::move(look); }
+
+  void run(Duration duration) {
+    const Time end = now() + duration;
+    while (now() < end) step();
+  }
+  bool runUntil(const std::function<bool()>& condition, Duration limit) {
+    const Time end = now() + limit;
+    while (!condition()) {
+      if (now() >= end) return false;
+      step();
+    }
+    return true;
+  }
+  /// Powers the drives on, starts the driver and boots all nodes.
+  bool boot() {
+    robot_.start();
+    return runUntil([this] { return allReady(robot_); }, std::chrono::seconds(8));
+  }
+
+  bus::Answer call(bus::Command command, Duration limit = std::chrono::seconds(120)) {
+    std::optional<bus::Answer> answer;
+    command.reply = [&answer](const bus::Answer& given) { answer = given; };
+    robot_.robot().execute(std::move(command), now());
+    runUntil([&answer] { return answer.has_value(); }, limit);
+    if (answer) return *answer;
+    bus::Answer none;
+    none.message = "no answer";
+    return none;
+  }
+  bus::Answer procedure(drive::ProcedureKind kind, const std::string& name = {},
+                        const std::string& mode = {}) {
+    drive::ProcedureRequest request;
+    request.kind = kind;
+    request.mode = mode;
+    return call(command(bus::ProcedureCommand{name, request}));
+  }
+  /// Starts a procedure and does not wait; its answer goes to the returned place.
+  std::shared_ptr<std::optional<bus::Answer>> begin(drive::ProcedureKind kind,
+                                                    const std::string& name) {
+    auto answer = std::make_shared<std::optional<bus::Answer>>();
+    drive::ProcedureRequest request;
+    request.kind = kind;
+    bus::Command given = command(bus::ProcedureCommand{name, request});
+    given.reply = [answer](const bus::Answer& a) { *answer = a; };
+    robot_.robot().execute(std::move(given), now());
+    return answer;
+  }
+  /// Gives one set-point. @return why it was refused; empty if not.
+  std::string setpoint(const std::string& name, double value) {
+    std::string refusal;
+    bus::Command given = command(bus::SetpointCommand{index(name), value});
+    given.reply = [&refusal](const bus::Answer& answer) { refusal = answer.message; };
+    robot_.robot().execute(std::move(given), now());
+    return refusal;
+  }
+  /// Streams a set-point every 20 ms.
+  void stream(const std::string& name, double value, Duration duration) {
+    const Time end = now() + duration;
+    while (now() < end) {
+      const std::string refusal = setpoint(name, value);
+      ASSERT_EQ(refusal, "");
+      run(std::chrono::milliseconds(20));
+    }
+  }
+  /// Sends a group to one goal, all joints at rest there after `duration`.
+  bus::Answer move(std::vector<double> goal, Duration duration, std::size_t group = 0) {
+    const config::GroupConfig& config = loaded_.robot.groups[group];
+    bus::TrajectoryCommand trajectory;
+    trajectory.group = config.name;
+    trajectory.joints = config.joints;
+    std::vector<double> rest(goal.size(), 0.0);
+    trajectory.points = {{std::move(goal), std::move(rest), {}, duration}};
+    return call(command(trajectory));
+  }
+  bus::Answer stopGroup(std::size_t group = 0) {
+    bus::TrajectoryCommand trajectory;
+    trajectory.group = loaded_.robot.groups[group].name;
+    return call(command(trajectory));
+  }
+  unsigned badFloats() {
+    unsigned sum = 0;
+    for (std::size_t i = 0; i < world().driveCount(); ++i) {
+      sum += world().drive(i).truth(now()).bad_floats_received;
+    }
+    return sum;
+  }
+
+ private:
+  template <class Body>
+  static bus::Command command(Body body) {
+    bus::Command given;
+    given.body = std::move(body);
+    return given;
+  }
+  double unitsPerTurn(std::size_t i) const {
+    constexpr double kTwoPi = 6.283185307179586;
+    const drive::AxisConfig& axis = loaded_.robot.axes[i];
+    const bool linear = axis.geometry.type == drive::AxisGeometry::Type::prismatic;
+    const double ratio = axis.profile->output_shaft ? 1.0 : axis.geometry.gear_ratio;
+    return (linear ? axis.geometry.lead : kTwoPi) / ratio * axis.geometry.direction;
+  }
+  void step() {
+    robot_.run(std::chrono::milliseconds(1));
+    for (std::size_t i = 0; i < seen_.size(); ++i) {
+      const double at = position(i);
+      seen_[i].lowest = std::min(seen_[i].lowest, at);
+      seen_[i].highest = std::max(seen_[i].highest, at);
+      seen_[i].fastest = std::max(seen_[i].fastest, std::abs(velocity(i)));
+    }
+    if (look_) look_();
+  }
+
+  LoadedRobot loaded_;
+  tools::VirtualRobot robot_;
+  std::vector<Seen> seen_;
+  std::function<void()> look_;
+};
+
+}  // namespace cia402
