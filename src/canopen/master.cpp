@@ -18,7 +18,7 @@ Master::Master(MasterConfig config, can::Sink& sink, MasterListener* listener)
       heartbeat_(config_.node_id, config_.heartbeat) {
   nodes_.reserve(config_.nodes.size());
   for (const NodeConfig& node : config_.nodes) {
-    nodes_.emplace_back(node, config_, sink_);
+    nodes_.emplace_back(node, config_, sink_, &deadlines_changed_);
     addRoutes(nodes_.size() - 1);
   }
 }
@@ -108,9 +108,15 @@ void Master::tell(std::size_t node, Time now) {
 }
 
 Time Master::nextDeadline() const {
-  Time next = heartbeat_.deadline();
-  for (const Node& node : nodes_) next = std::min(next, node.nextDeadline());
-  return next;
+  if (deadlines_changed_) {
+    deadlines_changed_ = false;
+    nodes_deadline_ = kNever;
+    for (const Node& node : nodes_) {
+      nodes_deadline_ = std::min(nodes_deadline_, node.nextDeadline());
+      deadlines_changed_ = deadlines_changed_ || node.sdoLent();
+    }
+  }
+  return std::min(heartbeat_.deadline(), nodes_deadline_);
 }
 
 void Master::sendSync(Time) { sink_.send(sync_.next()); }

@@ -43,9 +43,11 @@ const char* toString(NodeHealth health) {
 }
 
 struct Node::Impl {
-  Impl(const NodeConfig& node_config, const MasterConfig& master, can::Sink& frame_sink)
+  Impl(const NodeConfig& node_config, const MasterConfig& master, can::Sink& frame_sink,
+       bool* changed)
       : config(node_config),
         sink(frame_sink),
+        deadlines_changed(changed),
         sdo(config.node_id, sink, config.sdo),
         image(config.pdos),
         consumer(config.heartbeat_timeout),
@@ -63,6 +65,7 @@ struct Node::Impl {
 
   const NodeConfig config;
   can::Sink& sink;
+  bool* deadlines_changed;  ///< may be nullptr
   SdoClient sdo;
   ProcessImage image;
   HeartbeatConsumer consumer;
@@ -88,6 +91,7 @@ std::string Node::Impl::sentence(const std::string& text) const {
 void Node::Impl::refresh() {
   next = std::min({sdo.nextDeadline(), consumer.deadline(), boot.deadline()});
   sdo_lent = false;
+  if (deadlines_changed != nullptr) *deadlines_changed = true;
   pdos_live = boot.started() && (health == NodeHealth::ready || health == NodeHealth::booting);
 }
 
@@ -182,8 +186,9 @@ void Node::Impl::onEmergency(const can::Frame& frame, Time stamp) {
   ++emergencies;
 }
 
-Node::Node(const NodeConfig& config, const MasterConfig& master, can::Sink& sink)
-    : impl_(std::make_unique<Impl>(config, master, sink)) {}
+Node::Node(const NodeConfig& config, const MasterConfig& master, can::Sink& sink,
+           bool* deadlines_changed)
+    : impl_(std::make_unique<Impl>(config, master, sink, deadlines_changed)) {}
 Node::~Node() = default;
 Node::Node(Node&&) noexcept = default;
 
@@ -205,12 +210,15 @@ const std::optional<Emergency>& Node::lastEmergency() const { return impl_->last
 
 SdoClient& Node::sdo() {
   impl_->sdo_lent = true;
+  if (impl_->deadlines_changed != nullptr) *impl_->deadlines_changed = true;
   return impl_->sdo;
 }
 
 Time Node::nextDeadline() const {
   return impl_->sdo_lent ? std::min(impl_->next, impl_->sdo.nextDeadline()) : impl_->next;
 }
+
+bool Node::sdoLent() const { return impl_->sdo_lent; }
 
 void Node::boot(Time now, bool reset) {
   if (reset) {
@@ -278,6 +286,8 @@ void Node::tick(Time now) {
   impl_->sdo.tick(now);
   impl_->runBoot(now);
   if (impl_->consumer.expired(now)) {
+    // It may still hear us and go on with its last set-point, which nobody sends any more.
+    impl_->sink.send(nmtFrame(NmtCommand::stop, id()));
     impl_->takeOut(NodeHealth::lost,
                    "no heartbeat for " + secondsText(impl_->consumer.timeout()) +
                        ": check power and cable; it is configured again when it is back");

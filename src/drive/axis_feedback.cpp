@@ -24,7 +24,7 @@ void AxisCore::readFeedback(Time now) {
     forgetFeedback();
     return;
   }
-  poller_.advance(node_.sdo(), now);
+  if (poller_.due(now)) poller_.advance(node_.sdo(), now);
   readMotion(now);
   readState(now);
   readErrorCode();
@@ -107,7 +107,9 @@ void AxisCore::readMode(Time now) {
   } else {
     raw = static_cast<std::uint64_t>(mode_->spec->value);  // the family has no 6061h: believe
   }
-  if (raw && shown_mode_ && *raw == shown_raw_ && state_.mode != nullptr) return;
+  // Modes of one value differ in the driver only: the commanded one is active then.
+  const bool commanded = state_.mode == mode_->spec || state_.mode_value != mode_->spec->value;
+  if (raw && shown_mode_ && *raw == shown_raw_ && state_.mode != nullptr && commanded) return;
   if (!raw) {
     shown_mode_.reset();
     state_.mode = nullptr;
@@ -119,7 +121,7 @@ void AxisCore::readMode(Time now) {
   shown_raw_ = *raw;
   shown_mode_ = value;
   state_.mode_value = value;
-  const ModeChannel* channel = objects_.channelOfValue(value);
+  const ModeChannel* channel = value == mode_->spec->value ? mode_ : objects_.channelOfValue(value);
   state_.mode = channel != nullptr ? channel->spec : nullptr;
 }
 

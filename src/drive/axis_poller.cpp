@@ -48,11 +48,4 @@ void AxisPoller::put(int item, std::uint64_t raw, Time now) {
   if (item >= 0) items_[static_cast<std::size_t>(item)].value = {raw, now, true};
 }
 
-AxisPoller::Value AxisPoller::value(int item, Time now) const {
-  if (item < 0) return {};
-  Value value = items_[static_cast<std::size_t>(item)].value;
-  if (now - value.stamp > kStale) value.valid = false;
-  return value;
-}
-
 }  // namespace cia402::drive

@@ -25,6 +25,8 @@ class AxisPoller {
   /// Adds `object` unless it is mapped or the family does not have it. @return its number for
   /// value(), or -1.
   int add(const InputObject& object);
+  /// Is there anything for advance() to do?
+  bool due(Time now) const { return ticket_ ? ticket_->done() : now >= next_ && !items_.empty(); }
   /// Takes an answer that has come and asks for the next value.
   void advance(canopen::SdoClient& sdo, Time now);
   /// The node lost its state: nothing is known any more.
@@ -32,7 +34,11 @@ class AxisPoller {
   /// Takes a value that somebody else has read.
   void put(int item, std::uint64_t raw, Time now);
   /// The value of an item; not valid if there is none younger than kStale.
-  Value value(int item, Time now) const;
+  Value value(int item, Time now) const {
+    if (item < 0) return {};
+    const Value& value = items_[static_cast<std::size_t>(item)].value;
+    return value.valid && now - value.stamp <= kStale ? value : Value();
+  }
 
  private:
   struct Item {

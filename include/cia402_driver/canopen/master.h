@@ -31,6 +31,9 @@ class Master {
   /// or used twice and for TPDO COB-IDs that are no 11-bit identifiers or used twice.
   Master(MasterConfig config, can::Sink& sink, MasterListener* listener = nullptr);
 
+  Master(const Master&) = delete;  // the nodes know where it is
+  Master& operator=(const Master&) = delete;
+
   /// Boots all nodes in parallel (NMT reset communication to all first, if `reset`).
   void start(Time now, bool reset = true);
   void receive(const can::Frame& frame, Time stamp, Time now);
@@ -76,6 +79,9 @@ class Master {
   SyncProducer sync_;
   HeartbeatProducer heartbeat_;
   std::uint64_t stray_frames_ = 0;
+  // The earliest deadline of all nodes is kept: it is asked for with every frame.
+  mutable bool deadlines_changed_ = true;
+  mutable Time nodes_deadline_ = kNever;
 };
 
 }  // namespace cia402::canopen

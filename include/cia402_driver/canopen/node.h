@@ -30,7 +30,10 @@ const char* toString(NodeHealth health);
 /// Owned by Master.
 class Node {
  public:
-  Node(const NodeConfig& config, const MasterConfig& master, can::Sink& sink);
+  /// @param deadlines_changed set whenever nextDeadline() may have become another one; if any, it
+  /// outlives the node.
+  Node(const NodeConfig& config, const MasterConfig& master, can::Sink& sink,
+       bool* deadlines_changed = nullptr);
   ~Node();
   Node(Node&&) noexcept;
 
@@ -61,6 +64,7 @@ class Node {
   /// The same after the master has sent `command` to all nodes at once: nothing is sent.
   void commanded(NmtCommand command, Time now);
 
+  /// To be used at once, not kept: the node looks at its transfers' deadlines anew after each call.
   SdoClient& sdo();
   ProcessImage& image();
   const ProcessImage& image() const;
@@ -78,6 +82,9 @@ class Node {
   void receiveTpdo(std::size_t tpdo, const can::Frame& frame, Time stamp);
   void tick(Time now);        ///< called by Master
   Time nextDeadline() const;  ///< called by Master
+  /// Somebody may have begun a transfer since: nextDeadline() moves without notice until the node
+  /// receives or ticks again.
+  bool sdoLent() const;
   /// Sends the RPDOs that are due in this cycle (all synchronous and event-driven ones).
   void sendRpdos(Time now);
 
