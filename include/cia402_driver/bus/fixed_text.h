@@ -17,6 +17,13 @@ class FixedText {
 
  public:
   FixedText() = default;
+  FixedText(const FixedText& other) { *this = other; }
+  /// Copies what is used: most texts are empty most of the time.
+  FixedText& operator=(const FixedText& other) {
+    size_ = other.size_;
+    if (this != &other) std::copy_n(other.data_.begin(), size_, data_.begin());
+    return *this;
+  }
   FixedText(std::string_view text) { assign(text); }  // NOLINT: implicit like std::string
 
   void assign(std::string_view text) {
