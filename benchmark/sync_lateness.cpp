@@ -25,7 +25,6 @@ using std::chrono::milliseconds;
 constexpr Duration kPeriod = milliseconds(4);
 constexpr int kAxes = 6, kPriority = 80;
 constexpr int kBlocks = 20, kSamples = 500;
-constexpr Duration kBooting = milliseconds(500), kEnabling = milliseconds(500);
 
 /// The absolute deadlines of a periodic task: what is overdue by a period or more is left out.
 class Deadlines {
@@ -95,30 +94,41 @@ class MeasuringInterface final : public can::Interface {
   can::BusCounters counters_;
 };
 
-/// Latenesses of the last kSamples SYNCs of a driver with all axes enabled.
+void waitUntilAll(bus::BusRunner& runner, bool (*condition)(const drive::AxisState&)) {
+  for (int i = 0; i < 1000; ++i) {
+    const bus::RobotSnapshot snapshot = runner.snapshot();
+    const bool all = std::all_of(snapshot.axes.begin(), snapshot.axes.end(),
+                                 [&](const bus::AxisSnapshot& a) { return condition(a.state); });
+    if (all) return;
+    std::this_thread::sleep_for(milliseconds(10));
+  }
+  std::string told;
+  for (bus::Event event; runner.nextEvent(event);) told += "\n" + event.text.str();
+  throw std::runtime_error("the axes were not enabled within 10 s:" + told);
+}
+
+/// Latenesses of kSamples SYNCs of a driver with all axes enabled.
 std::vector<double> driverBlock(const TestRobot& config) {
   Record record;
-  record.syncs.reserve(2 * kSamples);
+  record.syncs.reserve(10000);
   bus::BusRunner::Options options;
   options.priority = kPriority;
   bus::BusRunner runner(config.robot, config.master, std::make_unique<MeasuringInterface>(record),
                         options);
   runner.start();
-  std::this_thread::sleep_for(kBooting);
+  waitUntilAll(runner, [](const drive::AxisState& state) { return state.feedback_valid; });
   bus::Command enable;
   bus::ProcedureCommand procedure;
   procedure.request.kind = drive::ProcedureKind::enable;
   enable.body = procedure;
   runner.post(std::move(enable));
-  std::this_thread::sleep_for(kEnabling + kSamples * kPeriod);
-  for (const bus::AxisSnapshot& axis : runner.snapshot().axes) {
-    if (!axis.state.ready_for_motion) throw std::runtime_error("the axes were not enabled");
-  }
+  waitUntilAll(runner, [](const drive::AxisState& state) { return state.ready_for_motion; });
+  const Time begin = bus::realNow();
+  std::this_thread::sleep_for((kSamples + 5) * kPeriod);
   runner.requestShutdown();
   runner.join();
   Deadlines deadlines(record.start + kPeriod);
   std::vector<double> latenesses;
-  const Time begin = record.start + kBooting + kEnabling;
   for (Time sync : record.syncs) {
     const double late = deadlines.meet(sync);
     if (sync >= begin && latenesses.size() < kSamples) latenesses.push_back(late);
