@@ -1,0 +1,123 @@
+#!/usr/bin/python3
+# Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+"""The demo robot as launch/demo.launch starts it: boot, and what is published at rest."""
+import math
+import time
+
+import rospy
+from cia402_driver.msg import AxisStates
+from robot_client import ERROR, OK, Robot, RobotTest, main, wait_until
+from tf2_msgs.msg import TFMessage
+
+
+class Boot(RobotTest):
+    @classmethod
+    def setUpClass(cls):
+        cls.robot = Robot()
+        cls.robot.wait_ready()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.robot.close()
+
+    def record(self, seconds):
+        """joint_states of so many seconds, with their times of arrival."""
+        self.robot.joint_states, self.robot.record = [], True
+        end = time.monotonic() + seconds
+        wait_until(lambda: time.monotonic() >= end, "time passes")
+        self.robot.record = False
+        return self.robot.joint_states
+
+    def test_all_drives_are_identified_configured_and_left_disabled(self):
+        for name in self.AXES:
+            axis, node = self.robot.axis(name), self.robot.node(name)
+            self.assertEqual(axis.state, "switch on disabled")
+            self.assertEqual(node.nmt_state, "operational")
+            self.assertNotEqual(node.vendor_id, 0)
+            self.assertFalse(axis.homed)
+
+    def test_joint_states_keep_their_order_and_are_known(self):
+        for _, message in self.record(0.5):
+            self.assertEqual(message.name, self.AXES)
+            for values in (message.position, message.velocity, message.effort):
+                self.assertEqual(len(values), 4)
+                self.assertFalse(any(math.isnan(value) for value in values))
+
+    def test_joint_states_say_where_the_robot_stands(self):
+        self.assertAlmostEqual(self.robot.axis("wrist").position, self.robot.position("wrist"),
+                               delta=1e-3)
+        self.assertFalse(self.robot.axis("shoulder").homed)
+
+    def test_joint_states_come_at_the_configured_rate(self):
+        messages = self.record(3.0)
+        rate = (len(messages) - 1) / (messages[-1][0] - messages[0][0])
+        self.assertAlmostEqual(rate, 50.0, delta=7.0)
+
+    def test_stamps_rise_and_lie_shortly_before_publication(self):
+        messages = self.record(3.0)
+        stamps = [message.header.stamp.to_sec() for _, message in messages]
+        ages = sorted(arrival - message.header.stamp.to_sec() for arrival, message in messages)
+        self.assertEqual(stamps, sorted(stamps))
+        self.assertGreater(len(set(stamps)), 0.9 * len(stamps))
+        self.assertGreater(ages[0], 0.0)
+        self.assertLess(ages[len(ages) // 2], 0.05)
+
+    def test_axis_states_are_latched(self):
+        message = rospy.wait_for_message("/robot/axis_states", AxisStates, 10.0)
+        self.assertEqual(message._connection_header["latching"], "1")
+        self.assertEqual([axis.name for axis in message.axes], self.AXES)
+
+    def test_bus_state_tells_of_a_bus_that_works(self):
+        before = self.robot.bus_state
+        self.assertEqual(before.interface, "sim")
+        self.assertEqual(before.state, "error active")
+        self.assertAlmostEqual(before.sync_period, 0.004)
+        wait_until(lambda: self.robot.bus_state.cycles > before.cycles + 50
+                   and self.robot.bus_state.frames_received > before.frames_received + 50
+                   and 0.05 < self.robot.bus_state.load < 1.0, "the bus is busy")
+        self.assertEqual(self.robot.bus_state.error_frames, 0)
+
+    def test_diagnostics_have_a_status_for_bus_node_and_axis(self):
+        self.robot.wait_diagnostic("bus", OK, "simulated bus with 4 drives")
+        for name in ("elbow", "shoulder", "wrist"):  # the Damiao minds late SYNCs, see its profile
+            self.robot.wait_diagnostic(name, OK, "switch on disabled")
+        self.robot.wait_diagnostic("node 2", OK, "operational")
+
+    def test_hardware_id_is_the_serial_number(self):
+        for name in self.AXES:
+            node = self.robot.node(name)
+            expected = str(node.serial_number) if node.serial_number else f"node {node.node_id}"
+            for status in (name, f"node {node.node_id}"):
+                found = wait_until(lambda: self.robot.diagnostic(status), f"status of {status}")
+                self.assertTrue(found.hardware_id.endswith(expected), found.hardware_id)
+        self.assertEqual(self.robot.diagnostic("bus").hardware_id, "sim")
+
+    def test_tf_holds_the_frames_of_all_joints(self):
+        transforms = {}
+
+        def take(message):
+            for transform in message.transforms:
+                transforms[transform.child_frame_id] = transform
+        subscriber = rospy.Subscriber("/tf", TFMessage, take)
+        wait_until(lambda: len(transforms) == 4, "four transforms")
+        subscriber.unregister()
+        parents = {child: transform.header.frame_id for child, transform in transforms.items()}
+        self.assertEqual(parents, {"upper_arm": "base", "forearm": "upper_arm", "hand": "forearm",
+                                   "finger": "hand"})
+        forearm = transforms["forearm"].transform
+        self.assertAlmostEqual(forearm.translation.x, 0.4)
+        half = 0.5 * self.robot.position("elbow")
+        self.assertAlmostEqual(forearm.rotation.z, math.sin(half), delta=1e-3)
+        self.assertAlmostEqual(forearm.rotation.w, math.cos(half), delta=1e-3)
+
+    def test_z_motion_is_refused_before_homing_and_enabling(self):
+        self.robot.follow(self.AXES, [(1.0, [0.1] * 4)])
+        before = {name: self.robot.position(name) for name in self.AXES}
+        self.record(0.5)
+        for name in self.AXES:
+            self.assertAlmostEqual(self.robot.position(name), before[name], delta=1e-3)
+        self.assertNotEqual(self.robot.diagnostic("shoulder").level, ERROR)
+
+
+if __name__ == "__main__":
+    main("boot")

@@ -1,0 +1,166 @@
+#!/usr/bin/python3
+# Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+"""Homing, trajectories and set-points, with the answers a person gets."""
+import rospy
+from cia402_driver.msg import AxisStates
+from robot_client import RobotTest, main, wait_until
+
+HOME = {"shoulder": -2.6, "elbow": 0.2906, "wrist": 0.0, "gripper": 0.0}
+
+
+class Homing(RobotTest):
+    """A fresh robot: nothing is homed."""
+
+    def test_1_motion_is_refused_before_enabling_and_homing(self):
+        seen = len(self.process.output())
+        self.robot.follow(["shoulder", "elbow", "wrist", "gripper"], [(1.0, [0.0] * 4)])
+        self.wait_log("enable", seen)
+        self.succeed("enable")
+        seen = len(self.process.output())
+        self.robot.follow(["shoulder", "elbow", "wrist", "gripper"], [(1.0, [0.0] * 4)])
+        self.wait_log("hom", seen)
+        self.succeed("disable")
+
+    def test_2_a_single_axis_homes(self):
+        self.succeed("wrist/home", "wrist|method 37|position 0.000 rad")
+        self.assertTrue(self.robot.wait_axis("wrist", lambda axis: axis.homed, "homed"))
+        self.assertFalse(self.robot.axis("shoulder").homed)
+
+    def test_3_all_axes_home_in_their_order(self):
+        wait_until(lambda: not any(axis.procedure for axis in self.robot.axis_states.axes), "idle")
+        running, shoulder_homed = [], []
+
+        def watch(states):
+            for axis in states.axes:
+                if axis.procedure == "home" and axis.name not in running:
+                    running.append(axis.name)
+                    shoulder_homed.append(any(other.name == "shoulder" and other.homed
+                                              for other in states.axes))
+        subscriber = rospy.Subscriber("/robot/axis_states", AxisStates, watch)
+        self.succeed("home", "home done on 4 of 4 axes|shoulder: homed by method 17|"
+                     "elbow: homed by method 33|gripper: homed by declaring")
+        subscriber.unregister()
+        self.assertEqual(running[0], "shoulder")  # order 1
+        self.assertIn("elbow", running)           # order 2
+        self.assertTrue(shoulder_homed[running.index("elbow")])
+        for joint, place in HOME.items():
+            self.robot.wait_at(joint, place, 0.02)
+
+
+class Motion(RobotTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.robot.call("home")
+
+    def setUp(self):
+        for axis in self.AXES:
+            self.robot.wait_rest(axis)
+            if self.robot.axis(axis).mode not in ("", "cyclic_position"):
+                self.succeed(f"{axis}/set_mode", mode="csp")
+        self.succeed("enable")
+
+    def test_trajectory_reaches_its_goal(self):
+        goal = {"shoulder": -1.8, "elbow": -0.3, "wrist": 0.8, "gripper": 0.6}
+        middle = [-2.2, 0.0, 0.4, 0.3]
+        self.robot.follow(list(goal), [(0.8, middle), (1.8, list(goal.values()))])
+        worst = {}
+
+        def arrived():
+            state = self.robot.group_state
+            for joint, error in zip(state.joint_names, state.error.positions):
+                worst[joint] = max(worst.get(joint, 0.0), abs(error))
+            return all(abs(self.robot.position(joint) - place) < 0.005
+                       for joint, place in goal.items())
+        wait_until(lambda: self.robot.group_state, "state of the group")
+        wait_until(arrived, "all joints at the goal")
+        self.assertEqual(sorted(worst), self.AXES)
+        self.assertTrue(all(error < 0.2 for error in worst.values()), worst)
+        self.assertTrue(any(error > 1e-4 for error in worst.values()), worst)
+
+    def test_trajectory_with_fewer_joints_or_beyond_limits_is_refused(self):
+        seen = len(self.process.output())
+        self.robot.follow(["shoulder", "elbow", "wrist", "gripper"], [(3.0, [0.0, 2.5, 0.0, 0.0])])
+        self.wait_log("elbow|2.5|2", seen)
+        seen = len(self.process.output())
+        self.robot.follow(["shoulder", "neck", "wrist", "gripper"], [(3.0, [0.0] * 4)])
+        self.wait_log("neck", seen)
+
+    def test_set_point_in_cyclic_position_is_followed_within_limits(self):
+        for axis, place in (("wrist", -0.5), ("gripper", 0.4)):
+            self.robot.command(axis, place)
+            self.robot.wait_at(axis, place, 0.005)
+
+    def test_velocity_is_followed_and_stops_when_the_stream_dries_up(self):
+        self.succeed("wrist/set_mode", "cyclic_velocity", mode="csv")
+        self.succeed("wrist/enable")
+        before = self.robot.position("wrist")
+        self.robot.stream("wrist", 0.5, lambda: self.robot.position("wrist") > before + 0.2,
+                          "wrist turns")
+        place = self.robot.wait_rest("wrist", 5.0)
+        self.assertLess(place, before + 1.5)
+        self.assertEqual(self.robot.axis("wrist").state, "operation enabled")
+
+    def test_profile_position_makes_its_own_way(self):
+        self.succeed("elbow/set_mode", "profile_position", mode="pp")
+        self.assertEqual(self.robot.wait_axis(
+            "elbow", lambda axis: axis.mode == "profile_position", "pp").mode, "profile_position")
+        self.succeed("elbow/enable")
+        for place in (0.6, -0.2):
+            self.robot.command("elbow", place)
+            self.robot.wait_at("elbow", place, 0.005)
+        self.robot.wait_axis("elbow", lambda axis: axis.target_reached, "target reached")
+
+    def test_profile_velocity_turns_and_stops(self):
+        self.succeed("wrist/set_mode", "profile_velocity", mode="profile_velocity")
+        self.succeed("wrist/enable")
+        before = self.robot.position("wrist")
+        self.robot.stream("wrist", -0.5, lambda: self.robot.position("wrist") < before - 0.2,
+                          "wrist turns")
+        self.robot.wait_rest("wrist", 5.0)
+
+    def test_unknown_mode_is_refused_with_the_modes_there_are(self):
+        self.refuse("wrist/set_mode", "wrist|sideways|profile_position|cyclic_position",
+                    mode="sideways")
+        self.assertEqual(self.robot.axis("wrist").mode, "cyclic_position")
+
+    def test_damiao_changes_its_mode_and_follows(self):
+        self.succeed("gripper/disable")
+        self.succeed("gripper/set_mode", "cyclic_velocity", mode="csv")
+        self.succeed("gripper/enable")
+        before = self.robot.position("gripper")
+        self.robot.stream("gripper", 0.4,
+                          lambda: abs(self.robot.position("gripper") - before) > 0.1,
+                          "gripper turns")
+        self.robot.wait_rest("gripper", 5.0)
+        self.succeed("gripper/disable")
+
+    def test_quick_stop_stops_and_takes_the_power(self):
+        self.robot.follow(["shoulder", "elbow", "wrist", "gripper"],
+                          [(4.0, [-1.0, 0.0, 0.0, 0.0])])
+        before = self.robot.position("shoulder")
+        wait_until(lambda: abs(self.robot.position("shoulder") - before) > 0.05, "it moves")
+        self.succeed("quick_stop")
+        self.robot.wait_rest("shoulder", 5.0)
+        for axis in self.AXES:
+            self.robot.wait_axis(axis, lambda state: state.state != "operation enabled", "off")
+
+    def test_halt_stops_and_keeps_the_power(self):
+        self.robot.follow(["shoulder", "elbow", "wrist", "gripper"],
+                          [(4.0, [-2.4, 0.0, 0.5, 0.0])])
+        before = self.robot.position("wrist")
+        wait_until(lambda: abs(self.robot.position("wrist") - before) > 0.05, "it moves")
+        self.succeed("shoulder/halt", "shoulder")
+        self.robot.wait_rest("shoulder", 5.0)
+        self.assertEqual(self.robot.axis("shoulder").state, "operation enabled")
+
+    def test_set_position_declares_where_the_axis_stands(self):
+        self.succeed("wrist/disable")
+        before = self.robot.wait_rest("wrist")
+        self.succeed("wrist/set_position", "wrist", position=before + 0.25)
+        self.robot.wait_at("wrist", before + 0.25, 0.002)
+        self.succeed("wrist/set_position", position=before)
+
+
+if __name__ == "__main__":
+    main("motion")

@@ -1,0 +1,86 @@
+#!/usr/bin/python3
+# Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+"""Starts that lead nowhere: a wrong configuration, an interface that is not there."""
+import math
+import time
+import unittest
+
+from robot_client import ERROR, Process, Robot, main, wait_until
+
+# What the node must say about test/config/ten_mistakes.yaml: path and a word.
+MISTAKES = [
+    ("bus/sync_period", "-0.004"),
+    ("axes/base/colour", "unknown"),
+    ("axes/base/gear_ratio", "fast"),
+    ("node_id", "1"),
+    ("axes/shoulder/drive", "generic_402"),
+    ("axes/elbow/limits", "2.0"),
+    ("axes/elbow/pdos/tpdo1", "64"),
+    ("axes/wrist/counts_per_turn", "0"),
+    ("axes/hand/mode", "cyclic_postion"),
+    ("groups/arm/joints", "elbw"),
+]
+
+
+class WrongConfiguration(unittest.TestCase):
+    def test_all_ten_mistakes_are_told_at_once(self):
+        process = Process("bus_node", "mistaken", "test/config/ten_mistakes.yaml")
+        self.assertNotEqual(process.wait(), 0)
+        lines = process.output().splitlines()
+        for path, word in MISTAKES:
+            self.assertTrue(any(path in line and word in line for line in lines), (path, word))
+        self.assertIn("10 problems", process.output())
+        self.assertIn("nothing was sent", process.output())
+
+    def test_simulated_drives_refuse_it_too(self):
+        process = Process("simulated_drives", "mistaken_drives", "test/config/ten_mistakes.yaml")
+        self.assertNotEqual(process.wait(), 0)
+        self.assertIn("10 problems", process.output())
+
+
+class MissingInterface(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.robot = Robot("waiting")
+        cls.process = Process("bus_node", "waiting", "config/robots/demo.yaml",
+                              interface="vcan9")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.robot.close()
+        cls.process.kill()
+
+    def test_joint_states_are_nan_until_feedback_is_known(self):
+        message = wait_until(lambda: self.robot.joint_state, "joint_states")
+        self.assertEqual(message.name, ["elbow", "gripper", "shoulder", "wrist"])
+        for values in (message.position, message.velocity, message.effort):
+            self.assertEqual(len(values), 4)
+            self.assertTrue(all(math.isnan(value) for value in values), values)
+
+    def test_axis_states_claim_nothing(self):
+        states = wait_until(lambda: self.robot.axis_states, "axis_states")
+        for axis in states.axes:
+            self.assertEqual(axis.state, "unknown")
+            self.assertFalse(axis.homed)
+            self.assertTrue(math.isinf(axis.feedback_age))
+            self.assertTrue(axis.stamp.is_zero())
+
+    def test_diagnostics_tell_what_is_missing(self):
+        self.robot.wait_diagnostic("bus", ERROR, "vcan9")
+        wait_until(lambda: self.robot.bus_state, "bus_state")
+        self.assertEqual(self.robot.bus_state.frames_sent, 0)
+
+    def test_services_refuse_in_words(self):
+        answer = self.robot.call("shoulder/enable")
+        self.assertFalse(answer.success)
+        self.assertIn("vcan9", answer.message)
+
+    def test_zz_it_ends_at_once(self):
+        wait_until(lambda: self.robot.axis_states, "the node is up")
+        began = time.monotonic()
+        self.assertEqual(self.process.stop(), 0)
+        self.assertLess(time.monotonic() - began, 2.0)
+
+
+if __name__ == "__main__":
+    main("start")
