@@ -239,6 +239,11 @@ void PdoConfigurator::failTransfer(const SdoTransfer& transfer) {
   } else if (phase_ == Phase::read_cob_id &&
              transfer.failure() == SdoTransfer::Failure::aborted_by_server) {
     reason += "; the drive has no such PDO, use another number";
+  } else if (phase_ == Phase::write_count && !timed_out_) {
+    // Drives check the entries when they are written, or all of them only now.
+    for (std::size_t i = 0; i < wanted_.entries.size(); ++i) {
+      reason += (i == 0 ? "; one of these cannot be mapped: " : ", ") + entryName(i);
+    }
   }
   fail(reason);
 }
