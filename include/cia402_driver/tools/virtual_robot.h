@@ -1,9 +1,11 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cia402_driver/bus/robot.h"
@@ -63,19 +65,35 @@ class VirtualRobot final : private sim::Participant, private bus::EventSink {
 
   bus::Robot& robot() { return robot_; }
   sim::World& world() { return world_; }
+  /// The driver does not run for so long, as on a host that sleeps; frames are kept for it.
+  void freeze(Duration duration) { frozen_until_ = world_.now() + duration; }
+  /// The driver's controller, to pull its cable or let it die.
+  sim::Port& port() { return port_; }
   Time now() const { return world_.now(); }
   /// What was told so far, oldest first.
   const std::vector<bus::Event>& events() const { return events_; }
 
  private:
-  void receive(const can::Frame& frame, Time now) override { robot_.receive(frame, now, now); }
-  void tick(Time now) override { robot_.tick(now); }
-  Time nextDeadline() const override { return robot_.nextDeadline(); }
+  void receive(const can::Frame& frame, Time now) override {
+    if (now < frozen_until_) {
+      kept_.push_back({frame, now});
+    } else {
+      robot_.receive(frame, now, now);
+    }
+  }
+  void tick(Time now) override {
+    for (const auto& [frame, stamp] : kept_) robot_.receive(frame, stamp, now);
+    kept_.clear();
+    robot_.tick(now);
+  }
+  Time nextDeadline() const override { return std::max(robot_.nextDeadline(), frozen_until_); }
   void onEvent(const bus::Event& event) override { events_.push_back(event); }
 
   sim::World world_;
   sim::Port& port_;
   std::vector<bus::Event> events_;
+  std::vector<std::pair<can::Frame, Time>> kept_;
+  Time frozen_until_{};
   bus::Robot robot_;
 };
 
