@@ -226,7 +226,10 @@ TEST_F(MasterTest, tells_a_change_that_was_commanded_at_the_node_itself) {
 TEST_F(MasterTest, starts_transfers_that_others_queued) {
   start();
   peer.take();
-  master->find(5)->sdo().upload({0x6041, 0});
+  EXPECT_GT(master->nextDeadline(), now);
+  SdoClient& sdo = master->find(5)->sdo();
+  EXPECT_GT(master->nextDeadline(), now);
+  sdo.upload({0x6041, 0});
   EXPECT_LE(master->nextDeadline(), now);
   master->tick(now);
   EXPECT_EQ(peer.take(), Lines{"605 40 41 60 00 00 00 00 00"});
