@@ -98,7 +98,12 @@ Result<std::uint32_t> Axis::start(const ProcedureRequest& request, Time now) {
                  "); wait for its end, or stop it by halt, quick_stop or disable"};
   }
   auto procedure = makeProcedure(request, impl.core);
-  if (!procedure) return procedure.error();
+  if (!procedure) {
+    if (!impl.status.running) return procedure.error();
+    // It cannot be done now, but what was asked is that the axis shall not go on.
+    impl.preempt(request.kind);
+    return Error{procedure.error().message + "; " + toString(impl.status.kind) + " was ended"};
+  }
   if (impl.status.running) impl.preempt(request.kind);
   impl.previous = impl.status;
   const std::uint32_t id = impl.status.id + 1;

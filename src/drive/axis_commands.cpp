@@ -18,8 +18,16 @@ std::uint64_t AxisCore::targetFrames() const {
   return mode_->target.mapped() ? frames(mode_->target) : controlwordFrames();
 }
 
+/// Nothing that moves anything; but a drive that was found moving is not left to coast either:
+/// "disable voltage" would cut its quick stop ramp short.
+std::uint16_t AxisCore::silentControlword() const {
+  const bool stopped = state_.state == State::quick_stop_active && atStandstill();
+  if (powerOff() || stopped || state_.state == State::switched_on || faulted()) return 0;
+  return controlword::kEnableVoltage;  // quick stop
+}
+
 std::uint16_t AxisCore::composeControlword() {
-  if (silent_ && !fault_reset_) return 0;
+  if (silent_ && !fault_reset_) return silentControlword();
   // An undecodable word is no reason to switch anything off: the last command stands.
   if (state_.state != State::unknown || goal_ != Goal::enabled) {
     command_ = nextCommand(state_.state, goal_);

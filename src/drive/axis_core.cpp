@@ -80,7 +80,8 @@ std::string AxisCore::supervise(Time now) {
     failure = who() + ": the drive left operation enabled by itself: " + stateText() + "; " +
               (faulted() || state_.error_code != 0 ? faultText() : emergencyText()) +
               (faulted() ? "" : "; enable brings it back once the reason is gone");
-    setGoal(Goal::disabled);
+    // Switching off would cut a quick stop ramp of the drive short.
+    setGoal(state == State::quick_stop_active ? Goal::quick_stop : Goal::disabled);
     notify(failure);
     return failure;
   }

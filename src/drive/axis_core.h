@@ -128,6 +128,7 @@ class AxisCore {
   void forgetMotion();
   void leaveOperation();
   std::uint16_t composeControlword();
+  std::uint16_t silentControlword() const;
   void writeTarget(Time now);
   void writeNeutralTargets();
   void advanceHandshake(Time now);

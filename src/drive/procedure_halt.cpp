@@ -17,6 +17,11 @@ class Halt : public Procedure {
       started_ = context.now;
       context.status.deadline = context.now + axis.profile().timing.state_change;
       if (!axis.inOperation()) {
+        if (axis.goal() == Goal::enabled) {  // the procedure before was switching it on
+          axis.setGoal(Goal::disabled);
+          return Outcome::done(axis.config().joint +
+                               ": was being enabled, is switched off again instead");
+        }
         return Outcome::done(axis.config().joint + ": is not enabled, so nothing is to be halted");
       }
       axis.beginHalt();

@@ -33,8 +33,7 @@ Outcome EnableStep::advance(const Context& context) {
       const Outcome outcome = mode_.advance(context);
       if (!outcome.isDone()) return outcome;
       enter(Phase::transitions, context);
-      context.axis.setGoal(Goal::enabled);
-      return Outcome::running();
+      return climb(context);
     }
     case Phase::transitions:
       return climb(context);
@@ -77,7 +76,9 @@ Outcome EnableStep::climb(const Context& context) {
   const bool by_disabling =
       state == State::quick_stop_active &&
       (axis.profile().quick_stop_holds.empty() || context.now - since_ > limit / 2);
-  const Goal goal = by_disabling ? Goal::disabled : Goal::enabled;
+  Goal goal = by_disabling ? Goal::disabled : Goal::enabled;
+  // A quick stop under way is neither cut short nor left in motion.
+  if (state == State::quick_stop_active && axis.moving()) goal = Goal::quick_stop;
   if (axis.goal() != goal) axis.setGoal(goal);
   if (context.now - since_ <= limit) return Outcome::running();
   return fail(context, axis.who() + ": enabling timed out: the drive has been in " +

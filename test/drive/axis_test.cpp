@@ -43,13 +43,13 @@ TEST(Axis, DecodesFeedbackAfterBoot) {
   EXPECT_EQ(bench.axis.state().stamp, bench.now);
 }
 
-TEST(Axis, CommandsNothingUntilTold) {
+TEST(Axis, UntilToldItOnlyStopsADriveThatItFindsEnabled) {
   Bench bench;
   ASSERT_TRUE(bench.boot());
   bench.drive.state = FakeDrive::S::enabled;  // by somebody else: not 0x0007, not 0x000F
   bench.drive.stuck.insert(FakeDrive::S::enabled);
   bench.run(milliseconds(500));
-  EXPECT_EQ(bench.drive.controlwords, std::vector<std::uint16_t>{0x0000});
+  EXPECT_EQ(bench.drive.controlwords, (std::vector<std::uint16_t>{0x0000, 0x0002}));
 }
 
 TEST(Axis, APositionWithoutAStatuswordIsNotBelieved) {

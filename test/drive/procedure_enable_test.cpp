@@ -181,7 +181,8 @@ TEST(EnableProcedure, LeavesQuickStopActiveByDisablingWhereTheDriveDoesNotHold) 
   bench.run(milliseconds(20));
   bench.drive.stuck.clear();
   ASSERT_TRUE(bench.enable());
-  EXPECT_EQ(bench.drive.controlwords, (std::vector<std::uint16_t>{0x0000, 0x0006, 0x0007, 0x000F}));
+  EXPECT_EQ(bench.drive.controlwords,
+            (std::vector<std::uint16_t>{0x0000, 0x0002, 0x0000, 0x0006, 0x0007, 0x000F}));
 }
 
 TEST(EnableProcedure, AnEnabledAxisSaysSo) {
