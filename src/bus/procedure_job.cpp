@@ -9,7 +9,7 @@ ProcedureJob::ProcedureJob(drive::ProcedureRequest request, std::vector<Item> it
     : request_(std::move(request)), reply_(std::move(reply)) {
   std::stable_sort(items.begin(), items.end(),
                    [](const Item& a, const Item& b) { return a.order < b.order; });
-  for (const Item& item : items) entries_.push_back({item, Stage::waiting, 0, {}});
+  for (const Item& item : items) entries_.push_back({item, Stage::waiting, 0, false, {}});
 }
 
 bool ProcedureJob::step(std::vector<drive::Axis>& axes, Time now) {
@@ -54,8 +54,9 @@ void ProcedureJob::startDue(std::vector<drive::Axis>& axes, Time now) {
 
 void ProcedureJob::watch(std::vector<drive::Axis>& axes) {
   for (Entry& entry : entries_) {
-    if (entry.stage != Stage::running) continue;
     const drive::Axis& axis = axes[entry.item.axis];
+    if (entry.stage == Stage::waiting) watchWaiting(entry, axis);
+    if (entry.stage != Stage::running) continue;
     const bool replaced = axis.procedure().id != entry.id;
     const drive::ProcedureStatus& status =
         replaced ? axis.previousProcedure() : axis.procedure();  // which may have ended well
@@ -68,6 +69,21 @@ void ProcedureJob::watch(std::vector<drive::Axis>& axes) {
       entry.message = status.message;
     }
   }
+}
+
+/// Somebody who stops an axis does not want it moved by what was asked before.
+void ProcedureJob::watchWaiting(Entry& entry, const drive::Axis& axis) {
+  using drive::ProcedureKind;
+  const drive::ProcedureStatus& status = axis.procedure();
+  const bool stops = status.kind == ProcedureKind::disable ||
+                     status.kind == ProcedureKind::quick_stop || status.kind == ProcedureKind::halt;
+  if (entry.seen && status.id != entry.id && stops) {
+    entry.stage = Stage::failed;
+    entry.message =
+        axis.config().name + ": not started, for " + toString(status.kind) + " was called";
+  }
+  entry.id = status.id;
+  entry.seen = true;
 }
 
 void ProcedureJob::skipRest(const std::vector<drive::Axis>& axes) {

@@ -98,8 +98,10 @@ void Robot::sync(Time now) {
   if (mayProduceSync()) master_.sendSync(now);
   statistics_.syncSent(now - next_sync_);
   const Duration period = config_.bus.sync_period;
-  if (next_cycle_ != kNever) statistics_.cyclesSkipped(1);  // this SYNC has overtaken it
-  next_cycle_ = now + period / 2;
+  const bool overtaken = next_cycle_ != kNever;
+  if (overtaken) statistics_.cyclesSkipped(1);
+  // Under load every SYNC might overtake the cycle before: then none would ever run.
+  next_cycle_ = overtaken ? now : now + period / 2;
   next_sync_ += period;
   if (next_sync_ <= now) {  // never a burst of SYNCs: what was missed is left out, and counted
     const auto skipped = (now - next_sync_) / period + 1;
@@ -157,6 +159,9 @@ void Robot::beginShutdown(Time now) {
   if (shutdown_ != Shutdown::no) return;
   shutdown_ = started_ ? Shutdown::stopping : Shutdown::done;
   shutdown_began_ = now;
+  // What waits for its turn must not begin any more.
+  for (ProcedureJob& job : procedures_) job.abandon("ended by the shutdown of the driver");
+  procedures_.clear();
   stopMotion("stopped: the driver is shutting down", now);
 }
 
@@ -181,10 +186,7 @@ void Robot::stepShutdown(Time now) {
     if (!disabled && now < shutdown_began_ + kDisableTime) return;
     master_.commandAll(canopen::NmtCommand::enter_pre_operational, now);
     shutdown_ = Shutdown::done;
-    const std::string why = "ended by the shutdown of the driver";
-    for (ProcedureJob& job : procedures_) job.abandon(why);
-    for (ObjectJob& job : objects_) job.abandon(why);
-    procedures_.clear();
+    for (ObjectJob& job : objects_) job.abandon("ended by the shutdown of the driver");
     objects_.clear();
   }
 }

@@ -32,12 +32,14 @@ class ProcedureJob {
   struct Entry {
     Item item;
     Stage stage = Stage::waiting;
-    std::uint32_t id = 0;
+    std::uint32_t id = 0;  ///< of the procedure; while waiting: of the axis' last one
+    bool seen = false;     ///< id is known while waiting
     std::string message;
   };
 
   void startDue(std::vector<drive::Axis>& axes, Time now);
   void watch(std::vector<drive::Axis>& axes);
+  static void watchWaiting(Entry& entry, const drive::Axis& axis);
   void skipRest(const std::vector<drive::Axis>& axes);
   Answer answer(const std::vector<drive::Axis>& axes) const;
 
