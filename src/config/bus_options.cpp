@@ -78,6 +78,21 @@ void checkPeriod(const YamlValue& at, const RobotConfig& robot) {
   }
 }
 
+void warnOfUnnoticedLoss(RobotConfig& robot) {
+  if (robot.bus.heartbeat == Duration(0)) {
+    robot.warnings.push_back(
+        "bus/heartbeat: is 0: should this program die, no drive would notice and stop; nor would a "
+        "lost drive be noticed but by its missing TPDOs");
+    return;
+  }
+  for (const drive::AxisConfig& axis : robot.axes) {
+    if (!axis.profile || axis.profile->heartbeat_consumer_supported) continue;
+    robot.warnings.push_back("axes/" + axis.name +
+                             ": this drive watches no heartbeat: should this program die, it would "
+                             "not notice and stop");
+  }
+}
+
 }  // namespace
 
 void readBus(const YamlValue& value, BusConfig& bus, bool& counter_given) {
@@ -100,6 +115,7 @@ void readBus(const YamlValue& value, BusConfig& bus, bool& counter_given) {
 
 void checkSync(const YamlValue& bus_section, bool counter_given, RobotConfig& robot) {
   YamlSection section(bus_section);
+  warnOfUnnoticedLoss(robot);
   checkPeriod(section.get("sync_period").value_or(bus_section), robot);
   const drive::AxisConfig* chooser = nullptr;
   for (const drive::AxisConfig& axis : robot.axes) {

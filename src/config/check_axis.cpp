@@ -85,6 +85,41 @@ void checkCyclicObjects(YamlSection& section, const AxisConfig& axis) {
   need(PdoDirection::tpdo, "position_actual", "a TPDO");
 }
 
+bool isSet(const AxisConfig& axis, const std::string& object) {
+  if (object == "controlword" || object == "mode_of_operation") return true;
+  const auto& modes = axis.profile->modes;
+  return std::any_of(modes.begin(), modes.end(), [&](const ModeSpec& mode) {
+    const auto& writes = mode.entry_writes;
+    return mode.target == object ||
+           std::any_of(writes.begin(), writes.end(),
+                       [&](const drive::NamedWrite& write) { return write.object == object; });
+  });
+}
+
+// What an RPDO carries is sent in every cycle, over whatever an SDO wrote: a torque limit that
+// nobody sets would be 0 and drop the load.
+void checkRpdoObjects(YamlSection& section, const AxisConfig& axis) {
+  const auto at = section.get("pdos").value_or(section.value());
+  for (const drive::PdoLayout& pdo : axis.pdos) {
+    if (pdo.direction != PdoDirection::rpdo) continue;
+    for (const std::string& object : pdo.objects) {
+      if (isSet(axis, object)) continue;
+      at.problem("`" + object +
+                 "` would be sent as 0 in every cycle, as nothing sets it: take it " +
+                 "out of the RPDO; `write` sets it by SDO when the drive boots");
+    }
+  }
+}
+
+// Set-points are only slowed down by limits that are there.
+void warnOfMissingLimits(YamlSection& section, const AxisConfig& axis, RobotConfig& robot) {
+  const bool velocity = axis.limits.velocity.has_value();
+  if (velocity && axis.limits.acceleration) return;
+  robot.warnings.push_back(section.value().path() + "/limits: no " +
+                           (velocity ? "acceleration" : "velocity") +
+                           " limit: the axis follows set-points however fast they are");
+}
+
 void checkHoming(YamlSection& section, const AxisConfig& axis, RobotConfig& robot) {
   if (!axis.homing) return;
   const drive::HomingSpec& spec = axis.profile->homing;
@@ -156,6 +191,8 @@ void checkAxis(YamlSection& section, const AxisConfig& axis, RobotConfig& robot)
   checkGeometry(section, axis);
   checkMode(section, axis);
   checkCyclicObjects(section, axis);
+  checkRpdoObjects(section, axis);
+  warnOfMissingLimits(section, axis, robot);
   checkHoming(section, axis, robot);
   checkRange(section, axis);
   const bool geometry_known = !counts(*axis.profile, Quantity::position, Base::count) ||

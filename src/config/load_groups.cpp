@@ -140,6 +140,11 @@ void readCouplings(const YamlValue& value, RobotConfig& robot) {
     }
     robot.couplings.push_back(coupling);
   }
+  if (!robot.couplings.empty()) {
+    value.problem(
+        "joints that several axes move together are not supported yet: trajectories would go to "
+        "the axes as if each were a joint; leave `couplings` out and command the axes");
+  }
   for (const drive::AxisConfig& axis : robot.axes) {
     if (coupled.count(axis.name) == 0 && joints.count(axis.joint) != 0) {
       value.problem("the joint `" + axis.joint + "` is that of an axis without coupling already");

@@ -13,7 +13,7 @@ using testing::IsEmpty;
 
 const char* const kArm = R"(
 bus: {interface: can0, sync_period: 0.004}
-defaults: {drive: generic_cia402, counts_per_turn: 4000, limits: {velocity: 2.0}}
+defaults: {drive: generic_cia402, counts_per_turn: 4000, limits: {velocity: 2.0, acceleration: 8.0}}
 axes:
   shoulder: {node_id: 1, gear_ratio: 50.0, limits: {lower: -3.0, upper: 3.0}}
   elbow: {node_id: 2, homing: {method: 17}}
@@ -195,13 +195,33 @@ TEST(RobotConfig, DamiaoTakesOnlyItsOwnStepsOfThePeriod) {
               HasSubstr("`a` (profile damiao_dm) takes multiples of 0.0005 s"));
 }
 
-TEST(RobotConfig, CoupledAxesGiveTheirJointsTheCouplingsNames) {
+TEST(RobotConfig, CoupledAxesAreRefusedAsNothingWouldCoupleThem) {
   const Loaded loaded = changed("axes:",
                                 "couplings: [{joints: [pitch, roll], axes: [shoulder, elbow], "
                                 "matrix: [[0.5, 0.5], [1, -1]]}]\n"
                                 "axes:");
-  EXPECT_EQ(loaded.problems, "");
+  EXPECT_THAT(loaded.problems, HasSubstr("couplings: joints that several axes move together"));
   EXPECT_THAT(loaded.robot.groups.at(0).joints, ElementsAre("pitch", "roll"));
+}
+
+TEST(RobotConfig, AnObjectThatNothingSetsIsNoObjectForAnRpdo) {
+  const std::string axis =
+      "bus: {interface: can0}\naxes: {a: {node_id: 1, drive: generic_cia402, counts_per_turn: "
+      "1000, rated_torque: 1.0, limits: {velocity: 1, acceleration: 1}, pdos: {rpdo1: "
+      "[controlword, mode_of_operation, target_position], tpdo1: [statusword, position_actual]";
+  EXPECT_EQ(load(axis + "}}}").problems, "");
+  EXPECT_THAT(load(axis + ", rpdo2: [target_torque, max_torque]}}}").problems,
+              HasSubstr("`max_torque` would be sent as 0 in every cycle"));
+}
+
+TEST(RobotConfig, WarnsOfWhatCannotBeNoticedOrLimited) {
+  const std::string text =
+      "bus: {interface: can0, heartbeat: 0}\naxes: {a: {node_id: 1, drive: damiao_dm}}\n";
+  const Loaded loaded = load(text);
+  EXPECT_EQ(loaded.problems, "");
+  ASSERT_EQ(loaded.robot.warnings.size(), 2u);
+  EXPECT_THAT(loaded.robot.warnings[0], HasSubstr("axes/a/limits: no velocity limit"));
+  EXPECT_THAT(loaded.robot.warnings[1], HasSubstr("bus/heartbeat: is 0"));
 }
 
 TEST(RobotConfig, NothingAtAllIsAProblemToo) {
