@@ -117,10 +117,11 @@ void AxisMotion::rest(const drive::Axis& axis, Time now) {
   velocity_.reset({axis.state().position, 0.0, 0.0}, now);
 }
 
-// The limiters would make good in one step whatever the time since the last one allows.
+// The limiters would make good in one step whatever the time since the last one allows. A drive
+// that got no new positions has come to rest meanwhile.
 void AxisMotion::forgetLateCycles(const drive::Axis& axis, Time now) {
   if (now - stepped_ <= 2 * cycle_) return;
-  position_.reset(position_.output(), now - cycle_);
+  position_.reset({axis.target(), 0.0, 0.0}, now - cycle_);
   velocity_.reset({axis.state().position, velocity_.output().velocity, 0.0}, now - cycle_);
   if (mode_->kind == drive::ControlKind::position) (void)position_.command(*command_, now);
   if (mode_->kind == drive::ControlKind::velocity) (void)velocity_.command(*command_, commanded_);
