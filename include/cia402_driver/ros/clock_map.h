@@ -3,20 +3,45 @@
 
 #include <ros/time.h>
 
+#include <atomic>
+#include <cstdint>
+#include <cstdlib>
+#include <limits>
+
 #include "cia402_driver/bus/real_clock.h"
 
 namespace cia402::ros_node {
 
-/// ROS time of a moment on the bus, by the present distance of the two clocks.
+/// Nanoseconds that ROS time is ahead of the bus' clock. The same value as long as the clocks keep
+/// their distance to 0.5 ms, so that one moment always has one stamp and stamps keep their order;
+/// two readings of the clocks alone would differ by as long as the thread was interrupted between.
+inline std::int64_t clockDistance() {
+  static std::atomic<std::int64_t> distance{0};
+  constexpr std::int64_t kTolerance = 500'000;
+  std::int64_t best = 0, width = std::numeric_limits<std::int64_t>::max();
+  for (int i = 0; i < 3; ++i) {
+    const std::int64_t before = bus::realNow().time_since_epoch().count();
+    const auto ros_now = static_cast<std::int64_t>(ros::Time::now().toNSec());
+    const std::int64_t after = bus::realNow().time_since_epoch().count();
+    if (after - before >= width) continue;
+    width = after - before;
+    best = ros_now - (before + width / 2);
+  }
+  const std::int64_t kept = distance.load();
+  if (std::abs(best - kept) <= kTolerance + width / 2) return kept;
+  distance = best;
+  return best;
+}
+
+/// ROS time of a moment on the bus.
 inline ros::Time toRos(Time time) {
-  const ros::Time now = ros::Time::now();
-  return now - ros::Duration().fromNSec((bus::realNow() - time).count());
+  const std::int64_t stamp = time.time_since_epoch().count() + clockDistance();
+  return stamp <= 0 ? ros::Time() : ros::Time().fromNSec(static_cast<std::uint64_t>(stamp));
 }
 
 /// The moment on the bus of a ROS time.
 inline Time fromRos(const ros::Time& time) {
-  const ros::Time now = ros::Time::now();
-  return bus::realNow() + Duration((time - now).toNSec());
+  return Time(Duration(static_cast<std::int64_t>(time.toNSec()) - clockDistance()));
 }
 
 }  // namespace cia402::ros_node
