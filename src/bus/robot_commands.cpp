@@ -75,7 +75,7 @@ void Robot::run(TrajectoryCommand& command, const Reply& reply, Time now) {
   give(reply, refused("there is no group \"" + command.group + "\""));
 }
 
-void Robot::run(ReadObjectCommand& command, Reply reply, Time) {
+void Robot::run(ReadObjectCommand& command, const Reply& reply, Time) {
   drive::Axis* axis = axisNamed(command.axis);
   if (axis == nullptr) {
     give(reply, refused("there is no axis \"" + command.axis + "\""));
@@ -89,7 +89,7 @@ void Robot::run(ReadObjectCommand& command, Reply reply, Time) {
   }
 }
 
-void Robot::run(WriteObjectCommand& command, Reply reply, Time) {
+void Robot::run(WriteObjectCommand& command, const Reply& reply, Time) {
   drive::Axis* axis = axisNamed(command.axis);
   if (axis == nullptr) {
     give(reply, refused("there is no axis \"" + command.axis + "\""));

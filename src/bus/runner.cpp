@@ -76,9 +76,10 @@ bool BusRunner::post(Command command) {
   }
   if (queued) {
     wake();
-  } else {
-    give(command.reply, running_ ? "refused: too many commands are waiting, try again"
-                                 : "refused: the driver is not running");
+  } else {               // not moved from: push() leaves what it does not take
+    give(command.reply,  // NOLINT(bugprone-use-after-move)
+         running_ ? "refused: too many commands are waiting, try again"
+                  : "refused: the driver is not running");
   }
   return queued;
 }

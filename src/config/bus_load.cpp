@@ -16,7 +16,8 @@ struct FrameBits {
 FrameBits frameBits(unsigned bytes) {
   const unsigned stuffable = 34 + 8 * bytes;
   const unsigned nominal = 47 + 8 * bytes;
-  return {static_cast<double>(nominal), static_cast<double>(nominal + (stuffable - 1) / 4)};
+  const unsigned worst = nominal + (stuffable - 1) / 4;
+  return {static_cast<double>(nominal), static_cast<double>(worst)};
 }
 
 // Bits per second, as a part that follows SYNC and a part that does not.

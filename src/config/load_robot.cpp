@@ -64,7 +64,7 @@ RobotConfig readRobot(const YAML::Node& tree, const ProfileLookup& lookup, Probl
 }  // namespace
 
 ProfileLookup profilesIn(std::vector<std::string> folders) {
-  return [folders](const std::string& name) -> std::string {
+  return [folders = std::move(folders)](const std::string& name) -> std::string {
     const bool is_path = name.find('/') != std::string::npos ||
                          (name.size() > 5 && name.compare(name.size() - 5, 5, ".yaml") == 0);
     if (is_path && std::ifstream(name)) return name;

@@ -42,9 +42,9 @@ void readEncoding(YamlSection& section, ObjectSpec& object) {
 
 void readAccess(YamlSection& section, ObjectSpec& object) {
   if (const auto value = section.get("access")) {
-    const auto index = value->oneOf({"rw", "ro", "wo", "const"});
-    object.readable = index != std::size_t{2};
-    object.writable = index == std::size_t{0} || index == std::size_t{2};
+    const std::size_t index = value->oneOf({"rw", "ro", "wo", "const"}).value_or(0);
+    object.readable = index != 2;
+    object.writable = index == 0 || index == 2;
   }
   const auto value = section.get("pdo");
   const auto index = value ? value->oneOf({"none", "rpdo", "tpdo", "both"}) : std::nullopt;

@@ -11,11 +11,11 @@ namespace cia402::drive {
 
 /// A unit such as "count/s" or "turn/min"; adds a problem if it does not suit the quantity.
 std::optional<UnitSpec> readUnit(const YamlValue& value, Quantity quantity);
-void readUnits(const YamlValue& section, DriveProfile& profile);
-void readObjects(const YamlValue& section, DriveProfile& profile);
-void readModes(const YamlValue& section, DriveProfile& profile);
-void readHoming(const YamlValue& section, DriveProfile& profile);
-void readErrors(const YamlValue& section, DriveProfile& profile);
+void readUnits(const YamlValue& value, DriveProfile& profile);
+void readObjects(const YamlValue& value, DriveProfile& profile);
+void readModes(const YamlValue& value, DriveProfile& profile);
+void readHoming(const YamlValue& value, DriveProfile& profile);
+void readErrors(const YamlValue& value, DriveProfile& profile);
 
 /// "position"; the words of profiles.
 std::optional<Quantity> readQuantity(const YamlValue& value);

@@ -97,7 +97,7 @@ void ModeStep::askForDisplay(const Context& context) {
   }
 }
 
-Outcome ModeStep::fail(const Context& context, std::string why) {
+Outcome ModeStep::fail(const Context& context, const std::string& why) {
   AxisCore& axis = context.axis;
   if (before_ != nullptr && before_ != mode_) {
     axis.selectMode(*before_);

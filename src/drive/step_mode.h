@@ -19,7 +19,7 @@ class ModeStep {
   void select(const Context& context);
   Outcome await(const Context& context);
   void askForDisplay(const Context& context);
-  Outcome fail(const Context& context, std::string why);
+  Outcome fail(const Context& context, const std::string& why);
 
   const ModeChannel* mode_;
   const ModeChannel* before_ = nullptr;

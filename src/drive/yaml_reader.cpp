@@ -88,8 +88,8 @@ std::optional<double> parseNumber(const std::string& text) {
   return value;
 }
 
-YamlValue::YamlValue(YAML::Node node, std::string path, Problems& problems, std::string source)
-    : node_(std::move(node)),
+YamlValue::YamlValue(const YAML::Node& node, std::string path, Problems& problems, std::string source)
+    : node_(node),
       path_(std::move(path)),
       problems_(&problems),
       source_(std::move(source)) {}

@@ -42,7 +42,7 @@ struct Device::Impl {
 
   Impl(canopen::NodeId node, can::Sink& sink, ObjectDictionary& dictionary,
        DeviceBehaviour behaviour, Application& application)
-      : context(node, sink, dictionary, std::move(behaviour), application) {
+      : context(node, sink, dictionary, behaviour, application) {
     context.change_state = [this](NmtState state) { changeState(state); };
   }
 
@@ -198,7 +198,7 @@ Time Device::Impl::deadline() const {
 
 Device::Device(canopen::NodeId node, can::Sink& sink, ObjectDictionary& dictionary,
                DeviceBehaviour behaviour, Application& application)
-    : impl_(std::make_unique<Impl>(node, sink, dictionary, std::move(behaviour), application)) {}
+    : impl_(std::make_unique<Impl>(node, sink, dictionary, behaviour, application)) {}
 
 Device::~Device() = default;
 

@@ -120,7 +120,7 @@ bool inRange(const Entry& entry) {
 
 Result<DefaultValue> parseDefault(const YAML::Node& node, DataType type) {
   if (!node.IsScalar()) return Error{"a default is a single value"};
-  const std::string text = node.Scalar();
+  const std::string& text = node.Scalar();
   if (widthBits(type) == 0) {
     DefaultValue result;
     result.bytes.assign(text.begin(), text.end());

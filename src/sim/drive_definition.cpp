@@ -12,7 +12,6 @@
 namespace cia402::sim {
 namespace {
 
-using canopen::ObjectId;
 using Reader = DefinitionReader;
 
 constexpr std::int64_t kInt32Max = std::numeric_limits<std::int32_t>::max();

@@ -27,7 +27,7 @@ struct SlaveContext {
       : node(id),
         sink(frames),
         dictionary(objects),
-        behaviour(std::move(switches)),
+        behaviour(switches),
         application(app) {}
 
   bool operational() const { return state == canopen::NmtState::operational; }

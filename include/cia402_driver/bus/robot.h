@@ -96,8 +96,8 @@ class Robot final : private canopen::MasterListener {
   void run(ProcedureCommand& command, Reply reply, Time now);
   void run(SetpointCommand& command, const Reply& reply, Time now);
   void run(TrajectoryCommand& command, const Reply& reply, Time now);
-  void run(ReadObjectCommand& command, Reply reply, Time now);
-  void run(WriteObjectCommand& command, Reply reply, Time now);
+  void run(ReadObjectCommand& command, const Reply& reply, Time now);
+  void run(WriteObjectCommand& command, const Reply& reply, Time now);
   void run(CallCommand& command, const Reply& reply, Time now);
 
   config::RobotConfig config_;

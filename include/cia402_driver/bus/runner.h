@@ -32,7 +32,7 @@ class BusRunner final : private EventSink {
   BusRunner(config::RobotConfig robot, canopen::MasterConfig master,
             std::unique_ptr<can::Interface> interface, Options options);
   /// Shuts down in good order if that has not been done.
-  ~BusRunner();
+  ~BusRunner() override;
 
   /// Starts the thread. Where the interface is missing or down it waits for it.
   void start();

@@ -20,7 +20,7 @@ std::vector<NamedWrite> readWrites(const YamlValue& list, const DriveProfile& pr
                                    WriteList kind);
 
 /// Reads a PDO layout (docs/drive_profiles.md, "PDOs") against the objects and limits of a profile.
-std::vector<PdoLayout> readPdos(const YamlValue& section, const DriveProfile& profile);
+std::vector<PdoLayout> readPdos(const YamlValue& value, const DriveProfile& profile);
 
 /// The object that a name or an index ("6041:00") means; nullptr if the profile has none.
 const ObjectSpec* findObject(const DriveProfile& profile, const std::string& name);

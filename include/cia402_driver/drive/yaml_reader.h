@@ -38,7 +38,7 @@ inline constexpr Range kNotNegative{0.0, std::numeric_limits<double>::max(), fal
 class YamlValue {
  public:
   /// @param source file name for messages; empty: paths without a line number.
-  YamlValue(YAML::Node node, std::string path, Problems& problems, std::string source = {});
+  YamlValue(const YAML::Node& node, std::string path, Problems& problems, std::string source = {});
 
   std::optional<double> number(Range range = {}) const;
   std::optional<std::int64_t> integer(std::int64_t low, std::int64_t high) const;

@@ -20,8 +20,8 @@ class Diagnostics {
  private:
   using Status = diagnostic_updater::DiagnosticStatusWrapper;
   void reportBus(Status& status);
-  void reportNode(std::size_t axis, Status& status);
-  void reportAxis(std::size_t axis, Status& status);
+  void reportNode(std::size_t index, Status& status);
+  void reportAxis(std::size_t index, Status& status);
 
   bus::BusRunner& runner_;
   const config::RobotConfig& robot_;
