@@ -80,7 +80,7 @@ void checkPeriod(const YamlValue& at, const RobotConfig& robot) {
 
 void warnOfUnnoticedLoss(RobotConfig& robot) {
   if (robot.bus.heartbeat == Duration(0)) {
-    robot.warnings.push_back(
+    robot.warnings.emplace_back(
         "bus/heartbeat: is 0: should this program die, no drive would notice and stop; nor would a "
         "lost drive be noticed but by its missing TPDOs");
     return;
