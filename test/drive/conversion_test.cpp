@@ -165,6 +165,16 @@ TEST(Conversion, RefusesWhatWouldWrapAround) {
   EXPECT_NEAR(position.lowest(), -2147483648.0 * unit, 1e-6);
 }
 
+TEST(Conversion, AFloatInAnUnsignedObjectIsNeverNegative) {
+  const auto position = *Conversion::create(
+      object(DataType::uint32, Quantity::distance, Encoding::float32), floatDrive(), servo());
+  std::uint64_t raw = 7;
+  EXPECT_FALSE(position.toDevice(-1.5, raw));
+  EXPECT_FALSE(position.toDevice(std::nan(""), raw));
+  EXPECT_EQ(raw, 7u);
+  EXPECT_EQ(encode(position, 1.5), 0x3FC00000u);
+}
+
 TEST(Conversion, SixtyFourBitsEndBelowTheLargestDouble) {
   ObjectSpec wide = object(DataType::uint64, Quantity::none);
   const auto conversion = *Conversion::create(wide, countingDrive(), servo());

@@ -30,6 +30,28 @@ TEST(SetModeProcedure, SwitchesAnEnabledAxisAtStandstillWithoutMotion) {
   EXPECT_EQ(bench.drive.state, FakeDrive::S::enabled);
 }
 
+TEST(SetModeProcedure, DisablesADriveThatTakesNoModeWhileEnabled) {
+  DriveProfile profile = testProfile();
+  profile.mode_change_needs_disabling = true;
+  Bench bench(testConfig(profile));
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  bool changed_while_enabled = false;
+  int before = bench.drive.commanded_mode;
+  bench.each_cycle = [&] {
+    const bool enabled = bench.drive.state == FakeDrive::S::enabled;
+    changed_while_enabled |= enabled && bench.drive.commanded_mode != before;
+    if (!enabled) before = bench.drive.commanded_mode;
+  };
+  const ProcedureStatus& status = bench.perform(ProcedureKind::set_mode, "csv");
+  EXPECT_TRUE(status.success) << status.message;
+  EXPECT_THAT(status.message, HasSubstr("disabled meanwhile as the drive demands"));
+  EXPECT_FALSE(changed_while_enabled);
+  EXPECT_EQ(bench.axis.state().mode->name, "cyclic_velocity");
+  EXPECT_EQ(bench.drive.state, FakeDrive::S::enabled);
+  EXPECT_THAT(bench.perform(ProcedureKind::set_mode, "csv").message, Not(HasSubstr("meanwhile")));
+}
+
 TEST(SetModeProcedure, AStaleTargetOfTheNewModeIsReplacedBeforeTheModeIsActive) {
   Bench bench;
   ASSERT_TRUE(bench.boot());
