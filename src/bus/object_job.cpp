@@ -52,7 +52,11 @@ Result<ObjectJob> ObjectJob::write(drive::Axis& axis, const std::string& object,
 
 bool ObjectJob::step() {
   if (!ticket_->done()) return false;
-  if (!ticket_->ok()) return finish(false, ticket_->message());
+  if (!ticket_->ok()) {
+    return finish(false, who_ + ": " + name_ +
+                             (stage_ == Stage::reading ? " not read: " : " not written: ") +
+                             ticket_->reason());
+  }
   switch (stage_) {
     case Stage::reading:
       return finishRead();

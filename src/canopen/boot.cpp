@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "boot_text.h"
+#include "cia402_driver/canopen/abort_code.h"
 
 namespace cia402::canopen {
 
@@ -29,6 +30,8 @@ namespace {
 
 constexpr unsigned kProbedPdos = 4;  // of each direction, looked at though not configured
 constexpr Duration kLeastStartTime = std::chrono::seconds(1);
+constexpr Duration kStateRetry = std::chrono::milliseconds(50);
+constexpr Duration kStatePatience = std::chrono::seconds(3);  // a drive stops and disables in that
 
 std::vector<PdoConfig> withUnlistedDisabled(const std::vector<PdoConfig>& wanted) {
   std::vector<PdoConfig> all;
@@ -187,6 +190,7 @@ BootProcedure::Progress BootProcedure::checkPdo(Time now) {
 bool BootProcedure::beginStartupWrite(Time now) {
   if (item_ >= config_.writes.size()) return false;
   const StartupWrite& wanted = config_.writes[item_];
+  repeat_at_ = patient_until_ = kNever;
   reading_before_write_ = wanted.only_if_different;
   if (reading_before_write_) {
     read(wanted.object, wanted.name, now);
@@ -203,12 +207,28 @@ void BootProcedure::sendStartupWrite(Time now) {
 }
 
 BootProcedure::Progress BootProcedure::checkStartupWrite(Time now) {
+  if (repeat_at_ != kNever) {
+    if (now < repeat_at_) return Progress::waiting;
+    repeat_at_ = deadline_ = kNever;
+    sendStartupWrite(now);
+    return Progress::waiting;
+  }
   if (!ticket_->done()) return Progress::waiting;
   if (reading_before_write_) return checkReadBeforeWrite(now);
   if (ticket_->ok()) return Progress::again;
-  if (!config_.writes[item_].optional || !refused()) return failTransfer();
+  const bool optional = config_.writes[item_].optional;
+  if (!optional && ticket_->abortCode() == abort_code::kDeviceState) return repeatLater(now);
+  if (!optional || !refused()) return failTransfer();
   note("optional start-up write left out: " + step_ + ": " + ticket_->reason());
   return Progress::again;
+}
+
+/// Drives that lock parameters while they are enabled may still be on their way out of that state.
+BootProcedure::Progress BootProcedure::repeatLater(Time now) {
+  if (patient_until_ == kNever) patient_until_ = now + kStatePatience;
+  if (now >= patient_until_) return failTransfer();
+  repeat_at_ = deadline_ = now + kStateRetry;
+  return Progress::waiting;
 }
 
 BootProcedure::Progress BootProcedure::checkReadBeforeWrite(Time now) {

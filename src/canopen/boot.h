@@ -96,6 +96,7 @@ class BootProcedure {
   bool beginStartupWrite(Time now);
   Progress checkStartupWrite(Time now);
   Progress checkReadBeforeWrite(Time now);
+  Progress repeatLater(Time now);
   void sendStartupWrite(Time now);
   bool beginStart(Time now);
   Progress checkStart(Time now);
@@ -118,6 +119,8 @@ class BootProcedure {
   std::optional<std::uint32_t> sync_period_;         ///< 1006h as the drive has it
   std::optional<std::uint32_t> wanted_sync_period_;  ///< 1006h as it shall be
   bool reading_before_write_ = false;
+  /// A start-up write that the drive's present state forbids: when to try again, and until when.
+  Time repeat_at_ = kNever, patient_until_ = kNever;
   bool boot_up_missed_ = false, heartbeat_heard_ = false, operational_heard_ = false;
   bool supervised_ = false, started_ = false;
   std::string step_{"not started"}, error_;

@@ -8,6 +8,8 @@
 namespace cia402::config {
 namespace {
 
+constexpr std::uint64_t kQuickStopCommand = 0x0002;  // enable voltage without "no quick stop"
+
 using canopen::NodeConfig;
 using canopen::PdoConfig;
 using canopen::PdoDirection;
@@ -79,6 +81,19 @@ void addWrites(const std::vector<drive::NamedWrite>& writes, const AxisConfig& a
   }
 }
 
+/// A drive that is still enabled from before must not be configured under way, and many refuse it:
+/// it is told to stop and switch off first (controlword: quick stop).
+void addStop(const drive::DriveProfile& profile, NodeConfig& node) {
+  const drive::ObjectSpec* controlword = profile.find("controlword");
+  if (controlword == nullptr) return;
+  canopen::StartupWrite stop;
+  stop.object = controlword->id;
+  stop.name = controlword->name;
+  stop.data = drive::wireBytes(kQuickStopCommand, controlword->type);
+  stop.optional = true;
+  node.writes.push_back(stop);
+}
+
 void setSupervision(const BusConfig& bus, const drive::DriveProfile& profile, NodeConfig& node) {
   const Duration timeout = 3 * bus.heartbeat;
   const Duration none{0};
@@ -114,6 +129,7 @@ NodeConfig makeNode(const RobotConfig& robot, const AxisConfig& axis, Problems& 
   node.sdo.timeout = profile.timing.sdo;
   node.sdo.retries = profile.timing.sdo_retries;
   node.boot_timeout = profile.timing.boot;
+  addStop(profile, node);
   addWrites(profile.startup, axis, "axes/" + axis.name, node, problems);
   addWrites(axis.writes, axis, "axes/" + axis.name + "/write", node, problems);
   return node;
