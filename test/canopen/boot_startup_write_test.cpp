@@ -7,6 +7,7 @@
 namespace cia402::canopen {
 namespace {
 
+using namespace std::chrono_literals;
 using test::Lines;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -52,6 +53,28 @@ TEST_F(StartupWriteTest, does_not_read_first_where_not_wanted) {
   boot();
   EXPECT_EQ(node->health(), NodeHealth::ready);
   EXPECT_FALSE(sentLine(kRead));
+}
+
+// 0x08000022: because of the present device state; e.g. a drive on its way out of operation.
+const char* const kNotInThisState = "583 80 65 60 00 22 00 00 08";
+
+TEST_F(StartupWriteTest, tries_again_what_the_present_state_forbids) {
+  peer.on(kRead, "583 43 65 60 00 10 00 00 00");
+  peer.on(kWrite, kNotInThisState).on(kWrite, kNotInThisState).on(kWrite, kDone);
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::booting);
+  pass(200ms);
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+}
+
+TEST_F(StartupWriteTest, gives_up_after_three_seconds_in_a_state_that_forbids_it) {
+  peer.on(kRead, "583 43 65 60 00 10 00 00 00").on(kWrite, kNotInThisState);
+  boot();
+  pass(2900ms);
+  EXPECT_EQ(node->health(), NodeHealth::booting);
+  pass(300ms);
+  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_THAT(node->problem(), HasSubstr("following_error_window: the drive refused: 0x08000022"));
 }
 
 TEST_F(StartupWriteTest, a_refused_write_fails_the_boot_unless_optional) {

@@ -183,6 +183,23 @@ TEST(Boot, ADriveLeftEnabledByADeadDriverDoesNotMoveAndIsDisabled) {
   EXPECT_LT(scene.seen("left").travel(), 1e-3);
 }
 
+TEST(Boot, ADriveThatLocksItsParametersWhileEnabledComesBackAfterAPulledCable) {
+  Scene scene(loadText(damiaoJoint()));
+  ASSERT_TRUE(scene.boot());
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
+  scene.forget();
+  scene.robot().port().setAttached(false);  // the driver's end of the cable
+  scene.run(1s);
+  ASSERT_NE(scene.state("joint").health, NodeHealth::ready);
+  scene.robot().port().setAttached(true);
+  ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 8s)) << scene.told();
+  scene.run(500ms);
+  EXPECT_FALSE(scene.truth("joint").power_stage_on) << "nobody asked it to come back";
+  EXPECT_LT(scene.seen("joint").travel(), 1e-3);
+  const auto recovered = scene.procedure(ProcedureKind::recover, "joint");
+  EXPECT_TRUE(recovered.success) << recovered.message;
+}
+
 TEST(Master, WhenItDiesTheDrivesStopByThemselves) {
   Scene scene(loadText(genericPair()));
   ASSERT_TRUE(scene.boot());
