@@ -84,6 +84,7 @@ class Faults(RobotTest):
         place = self.robot.position("wrist")
         self.robot.command("wrist", place + 0.2)
         self.robot.wait_at("wrist", place + 0.2, 0.005)
+        self.robot.wait_rest("wrist")  # the next test's trajectory is refused before
 
     def test_silent_drives_freeze_the_stamps(self):
         for axis in self.AXES:
