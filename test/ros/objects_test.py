@@ -24,7 +24,7 @@ class Objects(RobotTest):
         self.assertIn('"', answer.value)
 
     def test_read_of_a_missing_object_tells_the_abort_in_words(self):
-        self.refuse("shoulder/read_object", "node 1|5FFF|does not exist", object="5FFF:00")
+        self.refuse("shoulder/read_object", "shoulder|5FFF|does not exist", object="5FFF:00")
 
     def test_read_of_an_unknown_name_is_refused(self):
         self.refuse("shoulder/read_object", "shoulder|positon_actual", object="positon_actual")
@@ -38,7 +38,7 @@ class Objects(RobotTest):
         self.assertEqual(self.succeed("shoulder/read_object", object="6065").number, before)
 
     def test_write_to_a_read_only_object_tells_the_abort_in_words(self):
-        self.refuse("shoulder/write_object", "node 1|statusword|read-only", object="statusword",
+        self.refuse("shoulder/write_object", "shoulder|statusword|read-only", object="statusword",
                     value="1")
 
     def test_write_of_nonsense_is_refused_before_it_is_sent(self):
