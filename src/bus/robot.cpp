@@ -112,6 +112,7 @@ void Robot::sync(Time now) {
 
 void Robot::cycle(Time now) {
   next_cycle_ = kNever;
+  keepMotionClock(now);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     axes_[i].readFeedback(now);
     axes_[i].update(now);
@@ -122,7 +123,7 @@ void Robot::cycle(Time now) {
     last_feedback_[i] = state.stamp;
   }
   for (Group& group : groups_) {
-    if (const auto outcome = group.step(axes_, motions_, now)) {
+    if (const auto outcome = group.step(axes_, motions_, motionTime(now))) {
       tell(outcome->code == motion::TrajectoryErrorCode::successful ? Event::Severity::info
                                                                     : Event::Severity::error,
            outcome->message, now);
@@ -138,6 +139,13 @@ void Robot::cycle(Time now) {
   watchAxes(now);
 }
 
+void Robot::keepMotionClock(Time now) {
+  const Duration period = config_.bus.sync_period;
+  const Duration since = now - last_cycle_;
+  if (last_cycle_ != Time() && since > 2 * period) motion_delay_ += since - period;
+  last_cycle_ = now;
+}
+
 void Robot::stepJobs(Time now) {
   const auto keep_running = [&](auto& jobs, auto&& step) {
     jobs.erase(std::remove_if(jobs.begin(), jobs.end(), step), jobs.end());
@@ -150,7 +158,7 @@ void Robot::stepJobs(Time now) {
 
 void Robot::stopMotion(const std::string& why, Time now) {
   for (Group& group : groups_) {
-    group.stop({motion::TrajectoryErrorCode::path_tolerance_violated, why}, now);
+    group.stop({motion::TrajectoryErrorCode::path_tolerance_violated, why}, motionTime(now));
   }
   for (std::size_t i = 0; i < axes_.size(); ++i) motions_[i].stop(axes_[i], now);
 }

@@ -76,6 +76,16 @@ TEST_F(Commands, AStreamGoesOnSmoothlyAfterAHostThatSlept) {
   EXPECT_NEAR(scene.position("left"), 2.0, 1e-3) << scene.told();
 }
 
+TEST_F(Commands, ATrajectoryGoesOnWhereItWasAfterAHostThatSlept) {
+  WireTargets wire(scene);
+  ASSERT_TRUE(scene.move({2.0, 2.0}, 2s).success);
+  scene.run(1s);
+  scene.robot().freeze(14ms);  // more than three cycles, at 1.5 rad/s
+  scene.run(3s);
+  EXPECT_LE(wire.largest_step, kStepLimit);
+  EXPECT_NEAR(scene.position("left"), 2.0, 1e-3) << scene.told();
+}
+
 TEST_F(Commands, AVelocityStreamThatDriesUpStopsTheAxis) {
   ASSERT_TRUE(scene.procedure(ProcedureKind::set_mode, "left", "csv").success);
   scene.stream("left", 1.0, 1s);

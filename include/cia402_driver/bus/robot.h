@@ -85,6 +85,10 @@ class Robot final : private canopen::MasterListener {
   bool mayProduceSync();
   void sync(Time now);
   void cycle(Time now);
+  /// Trajectories run on a clock that leaves out what a late cycle missed: their set-points go on
+  /// where they were instead of jumping to where they would be.
+  void keepMotionClock(Time now);
+  Time motionTime(Time now) const { return now - motion_delay_; }
   void stepJobs(Time now);
   void stepShutdown(Time now);
   void stopMotion(const std::string& why, Time now);
@@ -113,6 +117,8 @@ class Robot final : private canopen::MasterListener {
   std::vector<std::uint64_t> missed_feedback_, emergencies_;
   std::vector<Time> last_feedback_;
   CycleStatistics statistics_;
+  Time last_cycle_{};
+  Duration motion_delay_{0};
   bool started_ = false, sync_held_ = false;
   Time next_sync_ = kNever, next_cycle_ = kNever, now_{};
   Shutdown shutdown_ = Shutdown::no;
