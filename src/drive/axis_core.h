@@ -161,7 +161,7 @@ class AxisCore {
 
   const ModeChannel* mode_;
   std::optional<int> shown_mode_;
-  std::uint64_t shown_raw_ = 0;  ///< of 6061h, for which shown_mode_ was decoded
+  std::uint64_t shown_raw_ = 0;            ///< of 6061h, for which shown_mode_ was decoded
   Conversion position_, mode_conversion_;  ///< with what set_position declared
   double zero_shift_ = 0.0;
 

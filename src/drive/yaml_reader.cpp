@@ -88,11 +88,9 @@ std::optional<double> parseNumber(const std::string& text) {
   return value;
 }
 
-YamlValue::YamlValue(const YAML::Node& node, std::string path, Problems& problems, std::string source)
-    : node_(node),
-      path_(std::move(path)),
-      problems_(&problems),
-      source_(std::move(source)) {}
+YamlValue::YamlValue(const YAML::Node& node, std::string path, Problems& problems,
+                     std::string source)
+    : node_(node), path_(std::move(path)), problems_(&problems), source_(std::move(source)) {}
 
 void YamlValue::problem(const std::string& message) const {
   if (source_.empty()) {

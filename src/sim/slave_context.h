@@ -24,11 +24,7 @@ struct SlaveContext {
 
   SlaveContext(canopen::NodeId id, can::Sink& frames, ObjectDictionary& objects,
                DeviceBehaviour switches, Device::Application& app)
-      : node(id),
-        sink(frames),
-        dictionary(objects),
-        behaviour(switches),
-        application(app) {}
+      : node(id), sink(frames), dictionary(objects), behaviour(switches), application(app) {}
 
   bool operational() const { return state == canopen::NmtState::operational; }
   /// States in which SDO, SYNC and EMCY work (CiA 301, table 38).
