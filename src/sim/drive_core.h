@@ -74,8 +74,8 @@ class DriveCore {
   void stepState();
   void enter(PdsState state);
   void execute(const PdsTransition& transition);
-  void leaveEnabled(const PdsTransition& transition, const OptionTable& table, Role option);
-  void beginQuickStop(StopOption option);
+  void leaveEnabled(const PdsTransition& transition, const OptionTable& table, Role role);
+  void beginQuickStop(StopOption chosen);
   void beginFaultReaction(Ramp ramp);
   StopOption option(const OptionTable& table, Role role) const;
   void clearErrors();

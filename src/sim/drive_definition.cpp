@@ -14,7 +14,6 @@ namespace {
 
 using Reader = DefinitionReader;
 
-constexpr std::int64_t kInt32Max = std::numeric_limits<std::int32_t>::max();
 constexpr double kForeverS = 1e6;
 
 const std::vector<std::pair<const char*, Encoding>> kEncodings = {

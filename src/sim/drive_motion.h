@@ -93,7 +93,7 @@ class DriveMotion {
   void stepHoming(double from);
   void superviseFollowing();
   void superviseTargets();
-  double limitedVelocity(double velocity, double deceleration);
+  double limitedVelocity(double velocity, double braking);
 
   void acceptSetPoint(std::uint16_t controlword);
   void startHoming();

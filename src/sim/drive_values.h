@@ -68,9 +68,9 @@ enum class Role : std::uint8_t {
   target_velocity,
   clear_errors,  ///< vendor object: a write that is not 0 resets faults
   save_zero,     ///< vendor object: the present position becomes 0
-  count_,
+  count,
 };
-inline constexpr std::size_t kRoleCount = static_cast<std::size_t>(Role::count_);
+inline constexpr std::size_t kRoleCount = static_cast<std::size_t>(Role::count);
 
 /// What a number measures. Internally: turns, turns/s, turns/s^2, rated torques, seconds.
 enum class Quantity : std::uint8_t {
@@ -82,9 +82,9 @@ enum class Quantity : std::uint8_t {
   current,
   time,
   motor_speed,
-  count_,
+  count,
 };
-inline constexpr std::size_t kQuantityCount = static_cast<std::size_t>(Quantity::count_);
+inline constexpr std::size_t kQuantityCount = static_cast<std::size_t>(Quantity::count);
 
 /// How a number stands in its object.
 enum class Encoding : std::uint8_t {
