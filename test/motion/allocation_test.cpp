@@ -13,14 +13,15 @@ namespace {
 std::size_t allocations = 0;
 }
 
-// Counts what the whole program allocates with new.
-void* operator new(std::size_t size) {
+// Counts what the whole program allocates with new. Not inlined, or the compiler sees half of a
+// pair and takes it for a mismatch.
+[[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocations;
   if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
   throw std::bad_alloc();
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace cia402::motion {
 namespace {
