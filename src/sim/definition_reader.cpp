@@ -75,6 +75,12 @@ void DefinitionReader::read(const std::string& key, std::int64_t& out, std::int6
   out = value;
 }
 
+void DefinitionReader::read(const std::string& key, Duration& out) {
+  double seconds = toSeconds(out);
+  read(key, seconds, 0.0, 3600.0);
+  out = fromSeconds(seconds);
+}
+
 void DefinitionReader::section(const std::string& key,
                                const std::function<void(DefinitionReader&)>& body) {
   if (!has(key)) return;

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "cia402_driver/common/time.h"
+
 namespace cia402::sim {
 
 /// Everything wrong with one file, gathered.
@@ -27,6 +29,8 @@ class DefinitionReader {
   void read(const std::string& key, std::string& out);
   void read(const std::string& key, double& out, double low, double high);
   void read(const std::string& key, std::int64_t& out, std::int64_t low, std::int64_t high);
+  /// Seconds, 0 to an hour.
+  void read(const std::string& key, Duration& out);
   /// One of `words`; out is left alone if there is none.
   template <typename T>
   void read(const std::string& key, T& out, const std::vector<std::pair<const char*, T>>& words) {

@@ -8,6 +8,7 @@
 #include "sdo_server.h"
 #include "slave_context.h"
 #include "slave_emergency.h"
+#include "slave_guarding.h"
 #include "slave_heartbeat.h"
 #include "slave_sync.h"
 
@@ -33,6 +34,7 @@ struct Device::Impl {
   SlaveContext context;
   SlaveEmergency emergency{context};
   SlaveHeartbeat heartbeat{context, emergency};
+  SlaveGuarding guarding{context, emergency};
   SlaveSync sync{context, emergency};
   SdoServer sdo{context};
   PdoServer pdos{context, emergency};
@@ -88,6 +90,7 @@ void Device::Impl::serveObjects() {
   releaseObjects();
   emergency.serveObjects();
   heartbeat.serveObjects();
+  guarding.serveObjects();
   sync.serveObjects();
   pdos.serveObjects();
 }
@@ -107,6 +110,7 @@ void Device::Impl::silence(NmtState state) {
   boot_at = kNever;
   pdos.stop();
   heartbeat.reset();
+  guarding.reset();
   sync.reset();
   sdo.reset();
   emergency.reset();
@@ -177,6 +181,7 @@ void Device::Impl::dispatch(const can::Frame& frame) {
   if (context.operational() && pdos.concerns(frame.id)) return pdos.receive(frame);
   if (frame.id == kNmt) return command(frame);
   if (frame.id == kSdoRequest + context.node) return sdo.receive(frame);
+  if (frame.id == kErrorControl + context.node) return guarding.receive(frame);
   if ((frame.id & kFunctionCode) == kErrorControl) {
     heartbeat.receive(static_cast<canopen::NodeId>(frame.id & kNodeId), frame);
   }
@@ -186,14 +191,15 @@ void Device::Impl::runDue() {
   if (boot_at <= context.now) finishBoot();
   sync.tick();
   heartbeat.tick();
+  guarding.tick();
   pdos.tick();
   sdo.tick();
   emergency.tick();
 }
 
 Time Device::Impl::deadline() const {
-  return std::min({boot_at, sync.deadline(), heartbeat.deadline(), pdos.deadline(), sdo.deadline(),
-                   emergency.deadline()});
+  return std::min({boot_at, sync.deadline(), heartbeat.deadline(), guarding.deadline(),
+                   pdos.deadline(), sdo.deadline(), emergency.deadline()});
 }
 
 Device::Device(canopen::NodeId node, can::Sink& sink, ObjectDictionary& dictionary,

@@ -3,6 +3,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <set>
 #include <string>
 #include <utility>
@@ -195,6 +196,18 @@ Result<DictionaryTemplate> DictionaryTemplate::parse(const YAML::Node& list) {
     for (const auto& item : list) reader.readItem(item);
   }
   return std::move(reader).finish();
+}
+
+void DictionaryTemplate::add(const DictionaryTemplate& other) {
+  rows_.insert(rows_.end(), other.rows_.begin(), other.rows_.end());
+}
+
+bool DictionaryTemplate::remove(std::uint16_t index) {
+  const auto first = std::remove_if(
+      rows_.begin(), rows_.end(), [index](const Row& row) { return row.entry.id.index == index; });
+  const bool found = first != rows_.end();
+  rows_.erase(first, rows_.end());
+  return found;
 }
 
 ObjectDictionary DictionaryTemplate::build(canopen::NodeId node) const {

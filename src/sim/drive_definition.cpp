@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "definition_communication.h"
 #include "definition_reader.h"
 #include "homing_sequence.h"
 
@@ -15,6 +16,7 @@ namespace {
 using Reader = DefinitionReader;
 
 constexpr double kForeverS = 1e6;
+constexpr int kDeepestExtension = 4;
 
 const std::vector<std::pair<const char*, Encoding>> kEncodings = {
     {"integer", Encoding::integer},
@@ -53,35 +55,10 @@ constexpr const char* kQuantities[] = {"none",   "position", "velocity", "accele
                                        "torque", "current",  "time",     "motor_speed"};
 static_assert(sizeof(kQuantities) / sizeof(kQuantities[0]) == kQuantityCount, "a name for each");
 
-void readDuration(Reader& reader, const std::string& key, Duration& out) {
-  double seconds = toSeconds(out);
-  reader.read(key, seconds, 0.0, 3600.0);
-  out = fromSeconds(seconds);
-}
-
 std::optional<std::int64_t> integerOf(const std::string& text) {
   std::int64_t value = 0;
   if (!YAML::convert<std::int64_t>::decode(YAML::Node(text), value)) return std::nullopt;
   return value;
-}
-
-void readCommunication(Reader& reader, DeviceBehaviour& out) {
-  readDuration(reader, "boot_time", out.boot_time);
-  readDuration(reader, "sdo_latency", out.sdo_latency);
-  reader.read("ignores_nmt_reset", out.ignores_nmt_reset);
-  reader.read("map_count_read_only", out.map_count_read_only);
-  reader.read("accepts_plain_sync", out.accepts_plain_sync);
-  reader.read("generic_length_abort", out.generic_length_abort);
-  reader.read("upload_without_size", out.upload_without_size);
-  reader.read("accepts_short_sdo", out.accepts_short_sdo);
-  reader.read("mapping_requires_invalid", out.mapping_requires_invalid);
-  reader.read("map_entry_checked_on_write", out.map_entry_checked_on_write);
-  reader.read("disable_may_change_id", out.disable_may_change_id);
-  reader.read("timers_require_invalid", out.timers_require_invalid);
-  reader.read("rtr_types", out.rtr_types);
-  reader.read("type255_event_timer_only", out.type255_event_timer_only);
-  reader.read("sends_event_tpdos_on_start", out.sends_event_tpdos_on_start);
-  reader.read("sync_timeout", out.sync_timeout);
 }
 
 void readUnits(Reader& reader, DriveDefinition& out) {
@@ -181,7 +158,9 @@ void readMode(const std::string& number, const YAML::Node& node, Reader& parent,
     mode.velocity = readRole(reader, "velocity");
   }
   mode.torque = readRole(reader, "torque");
-  out.modes.push_back(mode);
+  const auto known = std::find_if(out.modes.begin(), out.modes.end(),
+                                  [&](const auto& other) { return other.number == mode.number; });
+  known == out.modes.end() ? out.modes.push_back(mode) : void(*known = mode);
 }
 
 void readOptionTable(Reader& parent, const std::string& key, OptionTable& out) {
@@ -223,7 +202,7 @@ void applyStandardOptions(DriveDefinition& out) {
 }
 
 void readStateMachine(Reader& reader, DriveDefinition& out) {
-  readDuration(reader, "initialisation", out.initialisation);
+  reader.read("initialisation", out.initialisation);
   reader.read("enable_in_one_step", out.enable_in_one_step);
   reader.read("direct_enable", out.direct_enable);
   reader.read("mode_change_while_enabled", out.mode_change_while_enabled);
@@ -242,6 +221,7 @@ void readStateMachine(Reader& reader, DriveDefinition& out) {
   readOptionTable(reader, "halt_option", out.halt_option);
   readOptionTable(reader, "fault_reaction", out.fault_reaction);
   if (!reader.has("locked_while_enabled")) return;
+  out.locked_while_enabled.clear();
   for (const YAML::Node& item : reader.node("locked_while_enabled")) {
     const auto object = item.IsScalar() ? canopen::parseObjectId(item.Scalar()) : std::nullopt;
     if (object)
@@ -256,6 +236,7 @@ void readHoming(Reader& reader, DriveDefinition& out) {
                     {{"position_at_home", false}, {"shift_of_zero", true}});
   reader.read("returns_to_home", out.homing_returns);
   if (!reader.has("methods")) return;
+  out.homing_methods.clear();
   for (const YAML::Node& item : reader.node("methods")) {
     const auto number = item.IsScalar() ? integerOf(item.Scalar()) : std::nullopt;
     if (number && findHomingMethod(*number) != nullptr)
@@ -298,23 +279,41 @@ void readFault(const std::string& name, const YAML::Node& node, Reader& parent,
     reader.read("reaction", reaction, kRamps);
     fault.reaction = reaction;
   }
-  out.faults.push_back(fault);
+  const auto known = std::find_if(out.faults.begin(), out.faults.end(),
+                                  [&](const auto& other) { return other.name == name; });
+  known == out.faults.end() ? out.faults.push_back(fault) : void(*known = fault);
 }
 
-void readDefinition(Reader& reader, DriveDefinition& out) {
+// Objects of the drive that the file extends, if any, go and come one by one.
+void readDictionary(Reader& reader, bool extends, DriveDefinition& out) {
+  if (reader.has("without")) {
+    for (const YAML::Node& item : reader.node("without")) {
+      const auto index = item.IsScalar() ? integerOf(item.Scalar()) : std::nullopt;
+      if (!index || *index < 0 || *index > 0xFFFF ||
+          !out.dictionary.remove(static_cast<std::uint16_t>(*index))) {
+        reader.problem("without",
+                       "must be a list of objects of the drive that is extended, "
+                       "such as 0x1017");
+      }
+    }
+  }
+  if (!reader.has("dictionary")) {
+    if (!extends) reader.problem("dictionary", "is missing: the list of the drive's objects");
+    return;
+  }
+  auto dictionary = DictionaryTemplate::parse(reader.node("dictionary"));
+  if (dictionary.ok())
+    out.dictionary.add(dictionary.value());
+  else
+    reader.problem("dictionary", dictionary.error().message);
+}
+
+void readDefinition(Reader& reader, bool extends, DriveDefinition& out) {
   std::string description;
   reader.read("name", out.name);
   reader.read("description", description);
-  if (!reader.has("dictionary")) {
-    reader.problem("dictionary", "is missing: the list of the drive's objects");
-  } else {
-    auto dictionary = DictionaryTemplate::parse(reader.node("dictionary"));
-    if (dictionary.ok())
-      out.dictionary = std::move(dictionary).value();
-    else
-      reader.problem("dictionary", dictionary.error().message);
-  }
-  applyStandardOptions(out);
+  readDictionary(reader, extends, out);
+  if (!extends) applyStandardOptions(out);
   reader.section("communication", [&](Reader& r) { readCommunication(r, out.communication); });
   reader.section("units", [&](Reader& r) { readUnits(r, out); });
   reader.read("encoding", out.encoding, kEncodings);
@@ -335,6 +334,27 @@ void readDefinition(Reader& reader, DriveDefinition& out) {
   });
 }
 
+// The drive that the file extends lies beside it.
+void readFile(const std::string& path, int depth, DriveDefinition& out, Problems& problems) {
+  try {
+    const YAML::Node file = YAML::LoadFile(path);
+    Reader reader(file, "", problems);
+    std::string base;
+    reader.read("extends", base);
+    if (!base.empty() && depth == kDeepestExtension) {
+      return reader.problem("extends", "is too deep: do the files extend each other?");
+    }
+    if (!base.empty()) {
+      Problems of_base;
+      readFile(path.substr(0, path.rfind('/') + 1) + base + ".yaml", depth + 1, out, of_base);
+      for (const std::string& problem : of_base) reader.problem("extends", base + ": " + problem);
+    }
+    readDefinition(reader, !base.empty(), out);
+  } catch (const YAML::Exception& error) {
+    problems.push_back(path + ": " + error.what());
+  }
+}
+
 }  // namespace
 
 const FaultDefinition* DriveDefinition::fault(const std::string& fault_name) const {
@@ -352,13 +372,7 @@ const ModeDefinition* DriveDefinition::mode(std::int64_t number) const {
 Result<std::shared_ptr<const DriveDefinition>> loadDriveDefinition(const std::string& path) {
   Problems problems;
   auto definition = std::make_shared<DriveDefinition>();
-  try {
-    const YAML::Node file = YAML::LoadFile(path);
-    DefinitionReader reader(file, "", problems);
-    readDefinition(reader, *definition);
-  } catch (const YAML::Exception& error) {
-    problems.push_back(error.what());
-  }
+  readFile(path, 0, *definition, problems);
   if (problems.empty()) return std::shared_ptr<const DriveDefinition>(std::move(definition));
   std::string text = path + ": the simulated drive's definition has problems:";
   for (const std::string& problem : problems) text += "\n  " + problem;

@@ -26,8 +26,9 @@ AxisMechanics mechanicsOf(const drive::AxisConfig& axis, const config::Simulatio
     mechanics.counts_per_turn = axis.geometry.counts_per_turn;
   }
   // A reversed axis meets its lower joint limit at the drive's positive switch.
-  auto lower = section.lower_limit_switch, upper = section.upper_limit_switch;
-  if (axis.geometry.direction < 0) std::swap(lower, upper);
+  const bool reversed = axis.geometry.direction < 0;
+  const auto& lower = reversed ? section.upper_limit_switch : section.lower_limit_switch;
+  const auto& upper = reversed ? section.lower_limit_switch : section.upper_limit_switch;
   if (lower) mechanics.negative_limit_switch = shaftTurns(axis, *lower);
   if (upper) mechanics.positive_limit_switch = shaftTurns(axis, *upper);
   if (section.home_switch) {

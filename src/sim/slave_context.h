@@ -38,6 +38,14 @@ struct SlaveContext {
     return entry == nullptr ? missing : entry->number;
   }
 
+  /// What the loss of the master by heartbeat or life guarding does (CiA 301, 7.5.2.29).
+  void masterLost() {
+    const std::uint64_t reaction = value({0x1029, 1});
+    if (reaction == 0 && operational()) change_state(canopen::NmtState::pre_operational);
+    if (reaction == 2) change_state(canopen::NmtState::stopped);
+    application.onMasterLost(now);
+  }
+
   /// Serves writes of an object, if the dictionary has it. Either function may be empty.
   void serveWrites(ObjectId id, ObjectDictionary::WriteCheck check,
                    ObjectDictionary::WriteHook hook) {

@@ -14,7 +14,6 @@ namespace {
 constexpr std::uint32_t kErrorControl = 0x700;
 constexpr std::uint16_t kConsumerTimes = 0x1016;
 constexpr ObjectId kProducerTime{0x1017, 0};
-constexpr ObjectId kErrorBehaviour{0x1029, 1};
 constexpr std::uint16_t kHeartbeatLost = 0x8130;
 constexpr std::uint32_t kParameterIncompatible = 0x06040043;
 
@@ -118,10 +117,7 @@ bool SlaveHeartbeat::anyLost() const {
 void SlaveHeartbeat::onLost(Consumer& consumer) {
   consumer.deadline = kNever;
   emergency_.raise(consumer.lost, kHeartbeatLost);
-  const std::uint64_t reaction = context_.value(kErrorBehaviour);
-  if (reaction == 0 && context_.operational()) context_.change_state(NmtState::pre_operational);
-  if (reaction == 2) context_.change_state(NmtState::stopped);
-  context_.application.onMasterLost(context_.now);
+  context_.masterLost();
 }
 
 void SlaveHeartbeat::tick() {

@@ -20,8 +20,8 @@ std::string errorOf(const std::string& text) {
   return loaded.ok() ? "" : loaded.error().message;
 }
 
-TEST(DriveDefinition, BothDefinitionsOfTheRepositoryLoad) {
-  for (const char* name : {"generic_cia402", "damiao_dm"}) {
+TEST(DriveDefinition, EveryDefinitionOfTheRepositoryLoads) {
+  for (const char* name : {"generic_cia402", "generic_cia402_guarding", "damiao_dm"}) {
     const auto loaded =
         loadDriveDefinition(std::string(CIA402_CONFIG_DIR) + "/simulated_drives/" + name + ".yaml");
     EXPECT_TRUE(loaded.ok()) << (loaded.ok() ? "" : loaded.error().message);
@@ -59,6 +59,40 @@ TEST(DriveDefinition, SaysSoWhenThereIsNoFileOrNoYaml) {
   EXPECT_THAT(errorOf("a: [1"), HasSubstr("problems"));
   EXPECT_THAT(errorOf("just text"), HasSubstr("must be a map"));
   EXPECT_THAT(errorOf("name: x"), HasSubstr("dictionary: is missing"));
+  EXPECT_THAT(errorOf("extends: nothing"), HasSubstr("nothing.yaml"));
+}
+
+TEST(DriveDefinition, AFileCanExtendAnotherBesideIt) {
+  const std::string base = testing::TempDir() + "drive_definition_base.yaml";
+  const std::string path = testing::TempDir() + "drive_definition_extended.yaml";
+  std::ofstream(base) << "dictionary: [[0x6040, 0, controlword, uint16, rw, rt, 5],\n"
+                         "             [0x1017, 0, heartbeat, uint16, rw, -, 7],\n"
+                         "             [0x1018, 1, vendor, uint32, ro, -, 8]]\n"
+                         "faults: {odd: {code: 0x1000}, even: {code: 0x2000}}\n";
+  std::ofstream(path) << "extends: drive_definition_base\n"
+                         "without: [0x1017]\n"
+                         "dictionary: [[0x1018, 1, vendor, uint32, ro, -, 9]]\n"
+                         "faults: {odd: {code: 0x1001}}\n";
+  const auto loaded = loadDriveDefinition(path);
+  ASSERT_TRUE(loaded.ok()) << loaded.error().message;
+  struct NoBus : can::Sink {
+    bool send(const can::Frame&) override { return true; }
+  } bus;
+  Drive drive(loaded.value(), 1, bus, {});
+  EXPECT_EQ(drive.dictionary().find({0x6040, 0})->number, 5U);
+  EXPECT_EQ(drive.dictionary().find({0x1017, 0}), nullptr);
+  EXPECT_EQ(drive.dictionary().find({0x1018, 1})->number, 9U);
+  EXPECT_THAT(drive.faultNames(), testing::IsSupersetOf({"odd", "even"}));
+
+  std::ofstream(base) << "extends: drive_definition_extended\ncolour: red\n";
+  EXPECT_THAT(loadDriveDefinition(path).error().message,
+              HasSubstr("do the files extend each other"));
+  std::ofstream(base) << "colour: red\n";
+  const std::string error = loadDriveDefinition(path).error().message;
+  EXPECT_THAT(error, HasSubstr("extends (line 1): drive_definition_base: colour (line 1)"));
+  EXPECT_THAT(error, HasSubstr("without (line 2)"));
+  std::remove(base.c_str());
+  std::remove(path.c_str());
 }
 
 }  // namespace

@@ -51,15 +51,16 @@ struct DeviceBehaviour {
 
 /// A CANopen slave (CiA 301) on an object dictionary: boot-up, NMT, SDO server (expedited,
 /// segmented), four or more PDO pairs with mapping and all transmission types, inhibit and event
-/// timers, SYNC with counter, heartbeat producer and consumer, EMCY with 1001h/1003h. Sans-IO. It
-/// shares no encoder with the master on purpose.
+/// timers, SYNC with counter, heartbeat producer and consumer, node guarding, EMCY with
+/// 1001h/1003h. Sans-IO. It shares no encoder with the master on purpose.
 ///
 /// The dictionary says what the device has: a service whose objects are missing does not exist.
-/// From the first powerOn() the device uses the write and read hooks of 1003h, 1005h, 1006h, 1014h,
-/// 1016h, 1017h, 1019h and the PDO parameters 1400h-1BFFh; all others are the application's.
-/// Node-IDs in default COB-IDs are to be resolved in the dictionary. Errors of communication it
-/// reports by itself (EMCY 0x81xx, 0x82xx with bits 0 and 4 of 1001h) and takes back with EMCY
-/// 0x0000 when the last one is gone, unless the application then holds a fault of its own.
+/// From the first powerOn() the device uses the write and read hooks of 1003h, 1005h, 1006h, 100Ch,
+/// 100Dh, 1014h, 1016h, 1017h, 1019h and the PDO parameters 1400h-1BFFh; all others are the
+/// application's. Node-IDs in default COB-IDs are to be resolved in the dictionary. Errors of
+/// communication it reports by itself (EMCY 0x81xx, 0x82xx with bits 0 and 4 of 1001h) and takes
+/// back with EMCY 0x0000 when the last one is gone, unless the application then holds a fault of
+/// its own.
 class Device {
  public:
   /// What the application (the drive) on top wants to know. All calls happen in receive()/tick().
@@ -75,7 +76,7 @@ class Device {
     virtual void onSync(Time) {}        ///< before synchronous TPDOs are sampled; every accepted
                                         ///< SYNC, in pre-operational, too
     virtual void onRpdo(Time) {}        ///< after an RPDO's values were taken
-    virtual void onMasterLost(Time) {}  ///< heartbeat consumer timed out (1016h)
+    virtual void onMasterLost(Time) {}  ///< heartbeat (1016h) or life guarding timed out
     virtual void onMasterBack(Time) {}
     virtual void beforeTpdo(Time) {}  ///< bring actual values up to date; not for notifyChange()
     /// Whether a fault of the application keeps bits of 1001h set, so that the end of a

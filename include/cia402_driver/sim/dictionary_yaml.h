@@ -46,6 +46,11 @@ class DictionaryTemplate {
   /// Reads the list. @return an error that names every problem with its line.
   static Result<DictionaryTemplate> parse(const YAML::Node& list);
 
+  /// Takes the objects of `other`; where both have one, that of `other` counts.
+  void add(const DictionaryTemplate& other);
+  /// Takes an object away with all its sub-indices. @return false if there is none.
+  bool remove(std::uint16_t index);
+
   /// The dictionary of the node `node`.
   ObjectDictionary build(canopen::NodeId node) const;
 

@@ -1,0 +1,25 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "definition_communication.h"
+
+namespace cia402::sim {
+
+void readCommunication(DefinitionReader& reader, DeviceBehaviour& out) {
+  reader.read("boot_time", out.boot_time);
+  reader.read("sdo_latency", out.sdo_latency);
+  reader.read("ignores_nmt_reset", out.ignores_nmt_reset);
+  reader.read("map_count_read_only", out.map_count_read_only);
+  reader.read("accepts_plain_sync", out.accepts_plain_sync);
+  reader.read("generic_length_abort", out.generic_length_abort);
+  reader.read("upload_without_size", out.upload_without_size);
+  reader.read("accepts_short_sdo", out.accepts_short_sdo);
+  reader.read("mapping_requires_invalid", out.mapping_requires_invalid);
+  reader.read("map_entry_checked_on_write", out.map_entry_checked_on_write);
+  reader.read("disable_may_change_id", out.disable_may_change_id);
+  reader.read("timers_require_invalid", out.timers_require_invalid);
+  reader.read("rtr_types", out.rtr_types);
+  reader.read("type255_event_timer_only", out.type255_event_timer_only);
+  reader.read("sends_event_tpdos_on_start", out.sends_event_tpdos_on_start);
+  reader.read("sync_timeout", out.sync_timeout);
+}
+
+}  // namespace cia402::sim
