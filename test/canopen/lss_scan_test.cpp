@@ -1,0 +1,127 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/canopen/lss_scan.h"
+
+#include "canopen/lss_fixture.h"
+
+namespace cia402::canopen::test {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+using testing::UnorderedElementsAre;
+
+using LssScan = LssFixture;
+constexpr lss::Identity kStranger{0xFFFFFFFF, 0x80000001, 0x7FFFFFFE, 0x00000001};
+
+TEST_F(LssScan, NobodyIsFoundWhereAllHaveNodeIds) {
+  wire.add(parts(kServo), 3);
+  LssScanTask task;
+  ASSERT_TRUE(run(task));
+  EXPECT_TRUE(task.found().empty());
+  EXPECT_EQ(task.result(), "0 devices without a node-ID");
+}
+
+TEST_F(LssScan, OneDeviceIsFoundByItsBits) {
+  wire.add(parts(kServo));
+  LssScanTask task;
+  ASSERT_TRUE(run(task));
+  EXPECT_THAT(task.found(), UnorderedElementsAre(kServo));
+  EXPECT_FALSE(task.incomplete());
+  EXPECT_EQ(task.result(), "1 device without a node-ID");
+  // Vendor 0x0000ABCD: bits 31..16 are 0, bit 15 is 1, bit 14 is 0.
+  EXPECT_EQ(sentCount("7E5 51 00 00 00 00 1F 00 00"), 1u);
+  EXPECT_EQ(sentCount("7E5 51 00 00 00 00 0F 00 00"), 1u);
+  EXPECT_EQ(sentCount("7E5 51 00 80 00 00 0F 00 00"), 1u);
+  EXPECT_EQ(sentCount("7E5 51 00 80 00 00 0E 00 00"), 1u);
+  EXPECT_EQ(sentCount("7E5 51 CD AB 00 00 00 00 01"), 1u) << "on to the product code";
+  EXPECT_EQ(sentCount("7E5 51 39 30 00 00 00 03 00"), 1u) << "into the configuration state";
+  EXPECT_FALSE(wire.slaves[0].configuration) << "left as it was";
+  EXPECT_EQ(wire.slaves[0].node_id, 0xFF);
+}
+
+TEST_F(LssScan, SeveralDevicesAreFoundOneAfterTheOther) {
+  wire.add(parts(kServo));
+  wire.add(parts(kOther));
+  wire.add(parts(kStranger));
+  wire.add({1, 1, 1, 1}, 7);
+  LssScanTask task;
+  ASSERT_TRUE(run(task));
+  EXPECT_THAT(task.found(), UnorderedElementsAre(kServo, kOther, kStranger));
+  EXPECT_FALSE(task.incomplete());
+}
+
+TEST_F(LssScan, StepsAreToldInWords) {
+  wire.add(parts(kServo));
+  LssScanTask task;
+  task.advance(master, wire.now);
+  EXPECT_EQ(task.step(), "switching all devices to the waiting state");
+  finish();
+  task.advance(master, wire.now);
+  EXPECT_EQ(task.step(), "asking whether there is a device without a node-ID");
+  finish();
+  task.advance(master, wire.now);
+  EXPECT_EQ(task.step(), "scanning bit 31 of the vendor id of device 1");
+}
+
+TEST_F(LssScan, DevicesThatAnswerTooLateAreNoInventedOnes) {
+  wire.add(parts(kServo));
+  wire.answer_time = 25ms;  // each answer comes in the window of the next question
+  LssScanTask task;
+  run(task);
+  for (const lss::Identity& found : task.found()) EXPECT_EQ(found, kServo);
+  EXPECT_TRUE(task.incomplete());
+  EXPECT_THAT(task.error() + task.result(), HasSubstr("longer window"));
+}
+
+TEST_F(LssScan, ALongerWindowFindsSlowDevices) {
+  wire.add(parts(kServo));
+  wire.answer_time = 25ms;
+  master.setWindow(50ms);
+  LssScanTask task;
+  ASSERT_TRUE(run(task));
+  EXPECT_THAT(task.found(), UnorderedElementsAre(kServo));
+}
+
+TEST_F(LssScan, TwoDevicesOfOneIdentityAreNotConfirmed) {
+  wire.add(parts(kServo));
+  wire.add(parts(kServo));
+  LssScanTask task;
+  EXPECT_FALSE(run(task));
+  EXPECT_TRUE(task.found().empty());
+  EXPECT_THAT(task.error(), HasSubstr("2 answers came"));
+}
+
+void expectTruth(const LssScanTask& task, const LssWire& wire, unsigned seed) {
+  for (const lss::Identity& found : task.found()) {
+    const bool exists =
+        std::any_of(wire.slaves.begin(), wire.slaves.end(),
+                    [&](const LssSlave& slave) { return slave.identity == parts(found); });
+    EXPECT_TRUE(exists) << "seed " << seed << ": " << toString(found);
+  }
+  if (task.found().size() < wire.slaves.size()) {
+    EXPECT_TRUE(task.incomplete()) << "seed " << seed << ": one is missing, and nobody says so";
+    EXPECT_NE(task.error() + task.result(), "");
+  }
+  for (const LssSlave& slave : wire.slaves) EXPECT_EQ(slave.pending, 0xFF);
+}
+
+TEST_F(LssScan, UnderLossIdentitiesAreRightOrMissingWithAReason) {
+  int complete = 0;
+  for (unsigned seed = 1; seed <= 60; ++seed) {
+    wire.slaves.clear();
+    wire.random.seed(seed);
+    wire.loss = seed % 2 == 0 ? 0.1 : 0.01;
+    wire.duplicates = seed % 3 == 0 ? wire.loss : 0.0;
+    wire.add(parts(kServo));
+    wire.add(parts(kOther));
+    wire.add(parts(kStranger));
+    LssScanTask task;
+    run(task);
+    complete += task.found().size() == 3;
+    expectTruth(task, wire, seed);
+  }
+  EXPECT_GT(complete, 50);
+}
+
+}  // namespace
+}  // namespace cia402::canopen::test

@@ -1,0 +1,215 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/canopen/lss_task.h"
+
+#include "canopen/lss_fixture.h"
+
+namespace cia402::canopen::test {
+namespace {
+
+using testing::HasSubstr;
+
+class LssTaskTest : public LssFixture {
+ protected:
+  LssAssignTask assign(const lss::Identity& identity, NodeId node, bool store = false,
+                       std::vector<NodeId> in_use = {}) {
+    LssAssignTask::Options options;
+    options.identity = identity;
+    options.node_id = node;
+    options.store = store;
+    options.in_use = std::move(in_use);
+    return LssAssignTask(options, wire);
+  }
+};
+
+TEST_F(LssTaskTest, AnUnconfiguredDeviceGetsItsNodeIdByItsIdentity) {
+  LssSlave& right = wire.add(parts(kServo));
+  LssSlave& other = wire.add(parts(kOther));
+  auto task = assign(kServo, 5);
+  ASSERT_TRUE(run(task)) << task.error();
+  EXPECT_EQ(right.node_id, 5);
+  EXPECT_FALSE(right.configuration);
+  EXPECT_EQ(right.stored, 0xFF) << "nobody asked for it";
+  EXPECT_EQ(other.node_id, 0xFF);
+  EXPECT_TRUE(task.changed());
+  EXPECT_EQ(task.result(),
+            "the device got node-ID 5 (it had none), which it forgets without power");
+  std::vector<std::string> lines;
+  for (const can::Frame& f : wire.sent) lines.push_back(text(f));
+  const std::string waiting = "7E5 04 00 00 00 00 00 00 00";
+  EXPECT_THAT(
+      lines, testing::ElementsAre(waiting, waiting, waiting, waiting, "7E5 40 CD AB 00 00 00 00 00",
+                                  "7E5 41 17 01 0D 00 00 00 00", "7E5 42 02 00 01 00 00 00 00",
+                                  "7E5 43 39 30 00 00 00 00 00", "7E5 5A 00 00 00 00 00 00 00",
+                                  "7E5 5B 00 00 00 00 00 00 00", "7E5 5C 00 00 00 00 00 00 00",
+                                  "7E5 5D 00 00 00 00 00 00 00", "7E5 5E 00 00 00 00 00 00 00",
+                                  "7E5 11 05 00 00 00 00 00 00", waiting, waiting, waiting));
+}
+
+TEST_F(LssTaskTest, ANodeIdIsStoredWhereAsked) {
+  LssSlave& slave = wire.add(parts(kServo));
+  auto task = assign(kServo, 5, true);
+  ASSERT_TRUE(run(task)) << task.error();
+  EXPECT_EQ(slave.stored, 5);
+  EXPECT_THAT(task.result(), HasSubstr("and stored it"));
+}
+
+TEST_F(LssTaskTest, ADeviceThatHasItsNodeIdIsLeftAlone) {
+  LssSlave& slave = wire.add(parts(kServo), 5);
+  auto task = assign(kServo, 5, true);
+  ASSERT_TRUE(run(task)) << task.error();
+  EXPECT_FALSE(task.changed());
+  EXPECT_EQ(slave.stored, 0xFF) << "no write to a memory that wears out, at every start";
+  EXPECT_FALSE(slave.configuration);
+  EXPECT_EQ(task.result(), "the device has node-ID 5 already");
+}
+
+TEST_F(LssTaskTest, ADeviceWithAnotherNodeIdIsResetToTakeTheNewOne) {
+  wire.add(parts(kServo), 9);
+  auto task = assign(kServo, 5);
+  ASSERT_TRUE(run(task)) << task.error();
+  EXPECT_EQ(text(wire.sent.back()), "000 82 09");
+  EXPECT_THAT(task.result(), HasSubstr("(it had 9)"));
+}
+
+TEST_F(LssTaskTest, ANodeIdSharedWithADriveInOperationIsNotReset) {
+  LssSlave& slave = wire.add(parts(kServo), 9);
+  auto task = assign(kServo, 5, true, {2, 9});
+  EXPECT_FALSE(run(task));
+  EXPECT_THAT(task.error(), HasSubstr("has node-ID 9, which is that of a drive in operation"));
+  EXPECT_EQ(slave.pending, 9);
+  EXPECT_FALSE(slave.configuration);
+  EXPECT_EQ(sentCount("000 82 09"), 0u);
+}
+
+TEST_F(LssTaskTest, AnAbsentDeviceIsToldWithItsIdentity) {
+  wire.add(parts(kOther));
+  auto task = assign(kServo, 5);
+  EXPECT_FALSE(run(task));
+  EXPECT_TRUE(task.absent());
+  EXPECT_THAT(task.error(), HasSubstr("serial 12345"));
+  EXPECT_THAT(task.error(), HasSubstr("nobody answered within 0.1 s, asked 5 times"));
+  EXPECT_THAT(task.error(), HasSubstr("check power"));
+}
+
+TEST_F(LssTaskTest, TwoDevicesOfOneIdentityGetNothing) {
+  LssSlave& one = wire.add(parts(kServo));
+  LssSlave& two = wire.add(parts(kServo));
+  auto task = assign(kServo, 5);
+  EXPECT_FALSE(run(task));
+  EXPECT_FALSE(task.absent());
+  EXPECT_THAT(task.error(), HasSubstr("2 answers came where one device was asked"));
+  EXPECT_EQ(one.pending, 0xFF);
+  EXPECT_EQ(two.pending, 0xFF);
+}
+
+TEST_F(LssTaskTest, ADeviceStuckInTheConfigurationStateIsNoticedBeforeAnythingIsConfigured) {
+  LssSlave& slave = wire.add(parts(kServo));
+  LssSlave& stuck = wire.add(parts(kOther));
+  auto task = assign(kServo, 5);
+  while (task.step().find("inquiring its serial") == std::string::npos) {
+    task.advance(master, wire.now);
+    step();
+  }
+  stuck.configuration = true;
+  EXPECT_FALSE(run(task));
+  EXPECT_THAT(task.error(), HasSubstr("answers came where one device was asked"));
+  EXPECT_EQ(slave.pending, 0xFF);
+  EXPECT_EQ(stuck.pending, 0xFF);
+}
+
+TEST_F(LssTaskTest, ADeviceThatTellsAnotherIdentityIsNotConfigured) {
+  LssSlave& slave = wire.add(parts(kServo));
+  auto task = assign(kServo, 5);
+  while (task.step().find("inquiring its revision") == std::string::npos) {
+    task.advance(master, wire.now);
+    step();
+  }
+  slave.identity[3] = 99;
+  EXPECT_FALSE(run(task));
+  EXPECT_THAT(task.error(), HasSubstr("inquiring its serial number"));
+  EXPECT_THAT(task.error(), HasSubstr("serial 99"));
+  EXPECT_EQ(slave.pending, 0xFF);
+}
+
+TEST_F(LssTaskTest, RefusalsAreToldInWordsAndTheDeviceIsReleased) {
+  LssSlave& slave = wire.add(parts(kServo));
+  slave.configure_error = 1;
+  auto task = assign(kServo, 5);
+  EXPECT_FALSE(run(task));
+  EXPECT_THAT(task.error(), HasSubstr("setting its node-ID to 5: the device refused with error 1 "
+                                      "(node-ID out of range)"));
+  EXPECT_FALSE(slave.configuration);
+  slave.configure_error = 0;
+  slave.store_error = 1;
+  auto again = assign(kServo, 5, true);
+  EXPECT_FALSE(run(again));
+  EXPECT_THAT(again.error(), HasSubstr("cannot store its LSS settings"));
+  EXPECT_THAT(again.error(), HasSubstr("store: false"));
+}
+
+TEST_F(LssTaskTest, LookingTellsWhetherAnybodyHasNoNodeId) {
+  wire.add(parts(kServo), 3);
+  LssLookTask nobody;
+  ASSERT_TRUE(run(nobody));
+  EXPECT_FALSE(nobody.found());
+  wire.add(parts(kOther));
+  wire.add({1, 2, 3, 4});
+  LssLookTask somebody;
+  ASSERT_TRUE(run(somebody));
+  EXPECT_TRUE(somebody.found()) << "two answers are as good as one";
+}
+
+TEST_F(LssTaskTest, BitTimingIsSetInOneDevice) {
+  LssSlave& slave = wire.add(parts(kServo), 3);
+  LssSlave& other = wire.add(parts(kOther), 4);
+  LssBitTimingTask task(kServo, 250, true);
+  ASSERT_TRUE(run(task)) << task.error();
+  EXPECT_EQ(slave.bit_timing, 3);
+  EXPECT_EQ(other.bit_timing, -1);
+  EXPECT_EQ(sentCount("7E5 13 00 03 00 00 00 00 00"), 1u);
+  EXPECT_EQ(sentCount("7E5 17 00 00 00 00 00 00 00"), 1u);
+  EXPECT_EQ(task.result(), "stored 250 kbit/s");
+  EXPECT_FALSE(slave.configuration);
+}
+
+TEST_F(LssTaskTest, ARefusedBitTimingIsNotStored) {
+  LssSlave& slave = wire.add(parts(kServo), 3);
+  slave.timing_error = 1;
+  LssBitTimingTask task(kServo, 10, true);
+  EXPECT_FALSE(run(task));
+  EXPECT_THAT(task.error(), HasSubstr("error 1 (bit timing not supported)"));
+  EXPECT_EQ(sentCount("7E5 17 00 00 00 00 00 00 00"), 0u);
+}
+
+TEST_F(LssTaskTest, ActivationReachesAllDevicesOnce) {
+  LssSlave& one = wire.add(parts(kServo), 3);
+  LssSlave& two = wire.add(parts(kOther), 4);
+  LssActivateTask task(500);
+  ASSERT_TRUE(run(task));
+  EXPECT_EQ(one.activations, 1);
+  EXPECT_EQ(two.activations, 1);
+  EXPECT_EQ(text(wire.sent.back()), "7E5 15 F4 01 00 00 00 00 00");
+}
+
+/// Every second of these frames or so is lost; whatever is said at the end must be true.
+TEST_F(LssTaskTest, UnderLossADeviceGetsItsNodeIdOrAReason) {
+  int assigned = 0;
+  for (unsigned seed = 1; seed <= 300; ++seed) {
+    wire.slaves.clear();
+    wire.random.seed(seed);
+    wire.loss = seed % 2 == 0 ? 0.1 : 0.01;
+    wire.duplicates = wire.loss;
+    LssSlave& right = wire.add(parts(kServo));
+    LssSlave& other = wire.add(parts(kOther));
+    auto task = assign(kServo, 5, true);
+    const bool ok = run(task);
+    assigned += ok;
+    EXPECT_EQ(other.node_id, 0xFF) << seed;
+    EXPECT_EQ(other.pending, 0xFF) << seed;
+    EXPECT_TRUE(ok ? right.pending == 5 : !task.error().empty()) << seed;
+  }
+  EXPECT_GT(assigned, 270);
+}
+
+}  // namespace
+}  // namespace cia402::canopen::test
