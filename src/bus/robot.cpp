@@ -266,6 +266,7 @@ void Robot::onHealthChange(canopen::Node& node, canopen::NodeHealth before, Time
 
 void Robot::watchAxes(Time now) {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
+    watchPdos(i, now);
     const drive::AxisState& state = axes_[i].state();
     const drive::ProcedureStatus& procedure = axes_[i].procedure();
     AxisNews& news = news_[i];
@@ -318,6 +319,9 @@ void Robot::fill(RobotSnapshot& snapshot) const {
     axis.procedure = axes_[i].procedure().kind;
     axis.procedure_running = axes_[i].procedure().running;
     axis.missed_feedback = missed_feedback_[i];
+    axis.stale_feedback = nodes_[i]->image().staleCount();
+    axis.wrong_lengths = nodes_[i]->image().wrongLengths();
+    axis.stale = news_[i].stale;
     axis.step = news_[i].step;
     axis.waiting_for = news_[i].waiting_for;
     axis.problem = news_[i].problem;

@@ -2,6 +2,8 @@
 #include "boot.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 
 #include "boot_text.h"
 #include "cia402_driver/canopen/abort_code.h"
@@ -69,6 +71,7 @@ void BootProcedure::start(From from, Time now) {
   pdo_.reset();
   identity_.reset();
   notes_.clear();
+  adopted_cob_ids_.clear();
   error_.clear();
   sync_counter_differs_ = false;
   sync_period_.reset();
@@ -177,14 +180,29 @@ BootProcedure::Progress BootProcedure::checkPdo(Time now) {
       sdo_.tick(now);
       return Progress::waiting;
     case PdoConfigurator::Status::done:
+      adoptCobId();
       return Progress::again;
     case PdoConfigurator::Status::failed:
       break;
   }
-  const bool unlisted = item_ < pdos_.size() - config_.pdos.size();
-  if (!unlisted || pdo_->timedOut()) return fail("boot failed: " + pdo_->error());
+  const bool unwanted = !pdos_[item_].enabled;
+  if (!unwanted || pdo_->timedOut()) return fail("boot failed: " + pdo_->error());
   note("a PDO that is not configured could not be disabled: " + pdo_->error());
   return Progress::again;
+}
+
+void BootProcedure::adoptCobId() {
+  const std::optional<std::uint16_t> cob_id = pdo_->adoptedCobId();
+  if (!cob_id) return;
+  const PdoConfig& pdo = pdos_[item_];
+  adopted_cob_ids_.push_back({pdo.direction, pdo.number, *cob_id});
+  if (pdo.cob_id == 0) return;  // asked for
+  std::array<char, 96> text{};
+  std::snprintf(text.data(), text.size(),
+                "%s %u has the COB-ID 0x%03X that the drive insists on, instead of 0x%03X",
+                pdo.direction == PdoDirection::tpdo ? "TPDO" : "RPDO", pdo.number,
+                unsigned{*cob_id}, unsigned{pdo.cob_id});
+  note(text.data());
 }
 
 bool BootProcedure::beginStartupWrite(Time now) {

@@ -49,6 +49,13 @@ class BootProcedure {
   bool supervised() const { return supervised_; }
   /// The node was told to start: its PDOs are as configured and may be believed.
   bool started() const { return started_; }
+  /// A PDO whose COB-ID is the drive's own.
+  struct CobId {
+    PdoDirection direction;
+    unsigned number;
+    std::uint16_t cob_id;
+  };
+  const std::vector<CobId>& adoptedCobIds() const { return adopted_cob_ids_; }
 
  private:
   enum class Progress { waiting, again, next, failed };
@@ -93,6 +100,7 @@ class BootProcedure {
   Progress checkWriteSyncPeriod(Time now);
   bool beginPdo(Time now);
   Progress checkPdo(Time now);
+  void adoptCobId();
   bool beginStartupWrite(Time now);
   Progress checkStartupWrite(Time now);
   Progress checkReadBeforeWrite(Time now);
@@ -114,6 +122,7 @@ class BootProcedure {
   Time deadline_ = kNever, absent_at_ = kNever;
   SdoTicket ticket_;
   std::optional<PdoConfigurator> pdo_;
+  std::vector<CobId> adopted_cob_ids_;
   std::optional<Node::Identity> identity_;
   bool sync_counter_differs_ = false;
   std::optional<std::uint32_t> sync_period_;         ///< 1006h as the drive has it

@@ -8,6 +8,15 @@
 #include <utility>
 
 namespace cia402::canopen {
+namespace {
+
+std::string hexId(std::uint32_t cob_id) {
+  std::array<char, 12> text{};
+  std::snprintf(text.data(), text.size(), "0x%03X", static_cast<unsigned>(cob_id));
+  return text.data();
+}
+
+}  // namespace
 
 Master::Master(MasterConfig config, can::Sink& sink, MasterListener* listener)
     : config_(std::move(config)),
@@ -15,7 +24,9 @@ Master::Master(MasterConfig config, can::Sink& sink, MasterListener* listener)
       listener_(listener),
       told_(config_.nodes.size(), NodeHealth::absent),
       sync_(config_.sync_counter),
-      heartbeat_(config_.node_id, config_.heartbeat) {
+      heartbeat_(config_.node_id, config_.heartbeat),
+      time_(config_.time_interval) {
+  routes_[kSyncCobId].service = Service::sync;
   nodes_.reserve(config_.nodes.size());
   for (const NodeConfig& node : config_.nodes) {
     nodes_.emplace_back(node, config_, sink_, &deadlines_changed_);
@@ -32,20 +43,50 @@ void Master::addRoutes(std::size_t node) {
   addRoute(0x080U + id, {Service::emergency, index, 0});
   addRoute(0x580U + id, {Service::sdo, index, 0});
   addRoute(0x700U + id, {Service::heartbeat, index, 0});
-  const std::vector<ProcessImage::Pdo>& tpdos = nodes_[node].image().tpdos();
-  for (std::size_t i = 0; i < tpdos.size(); ++i) {
-    addRoute(tpdos[i].cob_id, {Service::tpdo, index, static_cast<std::uint8_t>(i)});
+  const std::string conflict = addPdoRoutes(node);
+  if (!conflict.empty()) throw std::invalid_argument(nodes_[node].name() + ": " + conflict);
+}
+
+/// RPDOs have no way in, but nobody else may use their identifiers. PDOs whose COB-ID only the
+/// drive knows (0) follow when it boots.
+/// @return what is in the way, in words
+std::string Master::addPdoRoutes(std::size_t node) {
+  const ProcessImage& image = nodes_[node].image();
+  for (const Service service : {Service::tpdo, Service::rpdo}) {
+    const auto& pdos = service == Service::tpdo ? image.tpdos() : image.rpdos();
+    for (std::size_t i = 0; i < pdos.size(); ++i) {
+      if (pdos[i].cob_id == 0) continue;
+      const std::string pdo = std::string(service == Service::tpdo ? "TPDO " : "RPDO ") +
+                              std::to_string(pdos[i].number) + " with COB-ID " +
+                              hexId(pdos[i].cob_id);
+      if (pdos[i].cob_id >= kIdentifiers) return pdo + ": that has more than 11 bits";
+      Route& route = routes_[pdos[i].cob_id];
+      if (route.service == Service::sync) return pdo + ": that is used twice, it is SYNC";
+      if (route.service != Service::none) {
+        return pdo + ": that is used twice, by " + nodes_[route.node].name() + " already";
+      }
+      route = {service, static_cast<std::uint8_t>(node), static_cast<std::uint8_t>(i)};
+    }
   }
+  return {};
+}
+
+/// A drive has told other COB-IDs of its PDOs than those that were configured.
+void Master::followCobIds(std::size_t node, Time now) {
+  for (Route& route : routes_) {
+    const bool pdo = route.service == Service::tpdo || route.service == Service::rpdo;
+    if (pdo && route.node == node) route = Route();
+  }
+  const std::string conflict = addPdoRoutes(node);
+  if (conflict.empty()) return;
+  nodes_[node].refuse("cannot be used: " + conflict +
+                          "; give the drive another COB-ID there, or leave that PDO out",
+                      now);
 }
 
 void Master::addRoute(std::uint32_t cob_id, Route route) {
-  std::array<char, 8> text{};
-  std::snprintf(text.data(), text.size(), "0x%03X", static_cast<unsigned>(cob_id & 0xFFFFU));
-  if (cob_id >= kIdentifiers) {
-    throw std::invalid_argument(std::string("COB-ID ") + text.data() + " has more than 11 bits");
-  }
   if (routes_[cob_id].service != Service::none) {
-    throw std::invalid_argument(std::string("COB-ID ") + text.data() + " is used twice, by " +
+    throw std::invalid_argument("COB-ID " + hexId(cob_id) + " is used twice, by " +
                                 nodes_[routes_[cob_id].node].name() + " and " +
                                 nodes_[route.node].name());
   }
@@ -55,6 +96,7 @@ void Master::addRoute(std::uint32_t cob_id, Route route) {
 void Master::start(Time now, bool reset) {
   sync_.restart();
   heartbeat_.start(sink_, now);
+  time_.start(now);
   if (reset) {
     commandAll(NmtCommand::reset_communication, now);
     return;
@@ -76,7 +118,11 @@ void Master::receive(const can::Frame& frame, Time stamp, Time now) {
     nodes_[route.node].receiveTpdo(route.pdo, frame, stamp);
     return;
   }
-  if (route.service == Service::none) {
+  if (route.service == Service::sync) {
+    if (listener_ != nullptr) listener_->onForeignSync(frame, stamp, now);
+    return;
+  }
+  if (route.service == Service::none || route.service == Service::rpdo) {
     ++stray_frames_;
     return;
   }
@@ -84,6 +130,7 @@ void Master::receive(const can::Frame& frame, Time stamp, Time now) {
   const std::uint32_t boot_ups = node.bootUps();
   const std::uint32_t emergencies = node.emergencies();
   node.receive(frame, stamp, now);
+  if (node.takeCobIdChange()) followCobIds(route.node, now);
   if (listener_ != nullptr) {
     if (node.emergencies() != emergencies) listener_->onEmergency(node, *node.lastEmergency());
     if (node.bootUps() != boot_ups) listener_->onBootUp(node, now);
@@ -93,9 +140,11 @@ void Master::receive(const can::Frame& frame, Time stamp, Time now) {
 
 void Master::tick(Time now) {
   heartbeat_.tick(sink_, now);
+  time_.tick(sink_, now);
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     if (nodes_[i].nextDeadline() > now) continue;
     nodes_[i].tick(now);
+    if (nodes_[i].takeCobIdChange()) followCobIds(i, now);
     tell(i, now);
   }
 }
@@ -116,10 +165,17 @@ Time Master::nextDeadline() const {
       deadlines_changed_ = deadlines_changed_ || node.sdoLent();
     }
   }
-  return std::min(heartbeat_.deadline(), nodes_deadline_);
+  return std::min({heartbeat_.deadline(), time_.deadline(), nodes_deadline_});
 }
 
-void Master::sendSync(Time) { sink_.send(sync_.next()); }
+void Master::sendSync(Time now) {
+  sink_.send(sync_.next());
+  syncPassed(now);
+}
+
+void Master::syncPassed(Time now) {
+  for (Node& node : nodes_) node.onSync(now);
+}
 
 void Master::sendRpdos(Time now) {
   for (Node& node : nodes_) node.sendRpdos(now);

@@ -2,6 +2,7 @@
 #include "cia402_driver/canopen/node.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "boot.h"
 #include "boot_text.h"
@@ -55,6 +56,7 @@ struct Node::Impl {
 
   void startBoot(BootProcedure::From from, const std::string& why, Time now);
   void runBoot(Time now);
+  void adoptCobIds();
   void endBoot(NodeHealth end);
   void takeOut(NodeHealth as, const std::string& why);
   void onBootUp(Time now);
@@ -76,6 +78,7 @@ struct Node::Impl {
   std::string problem;
   bool begun = false;             ///< boot() was called: from now on the node boots by itself, too
   bool pdos_live = false;         ///< TPDOs are those that were configured
+  bool cob_ids_changed = false;   ///< since takeCobIdChange()
   Time next = kNever;             ///< of all deadlines
   mutable bool sdo_lent = false;  ///< somebody may have queued a transfer: `next` is not known
   std::uint32_t boot_ups = 0, emergencies = 0;
@@ -113,7 +116,9 @@ void Node::Impl::takeOut(NodeHealth as, const std::string& why) {
 
 void Node::Impl::runBoot(Time now) {
   if (!boot.running()) return;
+  const std::size_t adopted = boot.adoptedCobIds().size();
   const BootProcedure::Status status = boot.advance(now);
+  if (boot.adoptedCobIds().size() != adopted) adoptCobIds();
   switch (status) {
     case BootProcedure::Status::running:
       if (boot.supervised()) consumer.allow();
@@ -131,6 +136,13 @@ void Node::Impl::runBoot(Time now) {
       break;
     case BootProcedure::Status::idle:
       break;
+  }
+}
+
+void Node::Impl::adoptCobIds() {
+  for (const BootProcedure::CobId& pdo : boot.adoptedCobIds()) {
+    image.setCobId(pdo.direction, pdo.number, pdo.cob_id);
+    cob_ids_changed = true;
   }
 }
 
@@ -295,15 +307,31 @@ void Node::tick(Time now) {
   impl_->refresh();
 }
 
+void Node::onSync(Time now) {
+  if (impl_->health != NodeHealth::ready) return;
+  ProcessImage& image = impl_->image;
+  image.age(now);
+  can::Frame frame;
+  for (const std::size_t tpdo : image.requested()) {
+    if (image.requestDue(tpdo, frame)) impl_->sink.send(frame);
+  }
+}
+
+bool Node::takeCobIdChange() { return std::exchange(impl_->cob_ids_changed, false); }
+
+void Node::refuse(const std::string& why, Time) {
+  impl_->sink.send(nmtFrame(NmtCommand::enter_pre_operational, id()));
+  impl_->takeOut(NodeHealth::failed, why);
+  impl_->refresh();
+}
+
 void Node::sendRpdos(Time now) {
   if (impl_->health != NodeHealth::ready) return;
-  std::vector<ProcessImage::Pdo>& rpdos = impl_->image.rpdos();
+  ProcessImage& image = impl_->image;
   can::Frame frame;
-  for (std::size_t i = 0; i < rpdos.size(); ++i) {
-    impl_->image.pack(i, frame);
-    impl_->sink.send(frame);
-    rpdos[i].last = now;
-    ++rpdos[i].count;
+  for (std::size_t i = 0; i < image.rpdos().size(); ++i) {
+    if (!image.packDue(i, frame, now)) continue;
+    if (!impl_->sink.send(frame)) image.repeat(i);
   }
 }
 

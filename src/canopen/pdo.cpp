@@ -53,6 +53,13 @@ ProcessImage::ProcessImage(const std::vector<PdoConfig>& pdos) {
   std::stable_sort(rpdos_.begin(), rpdos_.end(), by_number);
   inputs_.resize(input_objects_.size());
   outputs_.resize(output_objects_.size());
+  input_tpdos_.resize(input_objects_.size());
+  for (std::size_t i = tpdos_.size(); i-- > 0;) {  // of two that bring an object, the first counts
+    for (const Pdo::Field& field : tpdos_[i].fields) input_tpdos_[field.slot] = i;
+  }
+  for (std::size_t i = 0; i < tpdos_.size(); ++i) {
+    if (isRequested(tpdos_[i].transmission)) requested_.push_back(i);
+  }
 }
 
 void ProcessImage::add(const PdoConfig& config) {
@@ -71,6 +78,16 @@ void ProcessImage::add(const PdoConfig& config) {
     shift += entry.bits;
   }
   pdo.size = static_cast<std::uint8_t>((shift + 7) / 8);
+  pdo.request_every = std::max<std::uint16_t>(config.request_every, 1);
+  pdo.refresh_every = std::max<std::uint16_t>(config.refresh_every, 1);
+  if (isCyclic(config.transmission)) {
+    pdo.silent_limit = std::uint32_t{config.stale_after} * config.transmission;
+  } else if (isRequested(config.transmission)) {
+    pdo.silent_limit = std::uint32_t{config.stale_after} * pdo.request_every;
+  } else if (isEventDriven(config.transmission) && config.event_timer != 0) {
+    pdo.age_limit = config.stale_after * (std::chrono::milliseconds(config.event_timer) +
+                                          std::chrono::microseconds(100) * config.inhibit);
+  }
   (input ? tpdos_ : rpdos_).push_back(std::move(pdo));
 }
 
@@ -81,11 +98,15 @@ bool ProcessImage::receive(std::size_t tpdo, const can::Frame& frame, Time stamp
   Pdo& pdo = tpdos_[tpdo];
   const bool exact = frame.size == pdo.size;
   if (!exact) {
-    ++pdo.wrong_length;
+    ++wrong_lengths_;
+    pdo.wrong_size = frame.size;
+    ++(frame.size < pdo.size ? pdo.too_short : pdo.too_long);
     if (frame.size < pdo.size) return false;
   }
   ++pdo.count;
   pdo.last = stamp;
+  pdo.silent = 0;
+  pdo.stale = false;
   const std::uint64_t word = loadLittleEndian(frame.data);
   for (const Pdo::Field& field : pdo.fields) {
     inputs_[field.slot] = {(word >> field.shift) & maskOf(field.bits), stamp, true};
@@ -93,21 +114,79 @@ bool ProcessImage::receive(std::size_t tpdo, const can::Frame& frame, Time stamp
   return exact;
 }
 
-void ProcessImage::pack(std::size_t rpdo, can::Frame& frame) const {
-  const Pdo& pdo = rpdos_[rpdo];
+void ProcessImage::age(Time now) {
+  for (Pdo& pdo : tpdos_) {
+    ++pdo.silent;
+    if (pdo.stale) continue;
+    if (pdo.silent_limit == 0 && pdo.age_limit == Duration::zero()) continue;
+    if (pdo.last == Time()) pdo.last = now;  // it is expected from now on
+    const bool overdue =
+        pdo.silent_limit != 0 ? pdo.silent > pdo.silent_limit : now - pdo.last > pdo.age_limit;
+    if (!overdue) continue;
+    pdo.stale = true;
+    ++pdo.stale_count;
+    ++stale_count_;
+  }
+}
+
+bool ProcessImage::requestDue(std::size_t tpdo, can::Frame& frame) {
+  Pdo& pdo = tpdos_[tpdo];
+  if (++pdo.since_request < pdo.request_every) return false;
+  pdo.since_request = 0;
+  frame = can::Frame();
+  frame.id = pdo.cob_id;
+  frame.size = pdo.size;
+  frame.remote = true;
+  return true;
+}
+
+std::uint64_t ProcessImage::pack(const Pdo& pdo) const {
   std::uint64_t word = 0;
   for (const Pdo::Field& field : pdo.fields) {
     word |= (outputs_[field.slot] & maskOf(field.bits)) << field.shift;
   }
+  return word;
+}
+
+void ProcessImage::fillFrame(const Pdo& pdo, std::uint64_t word, can::Frame& frame) const {
   frame.id = pdo.cob_id;
   frame.size = pdo.size;
   frame.extended = frame.remote = frame.error = false;
   storeLittleEndian(word, frame.data);
 }
 
+void ProcessImage::pack(std::size_t rpdo, can::Frame& frame) const {
+  fillFrame(rpdos_[rpdo], pack(rpdos_[rpdo]), frame);
+}
+
+bool ProcessImage::packDue(std::size_t rpdo, can::Frame& frame, Time now) {
+  Pdo& pdo = rpdos_[rpdo];
+  const std::uint64_t word = pack(pdo);
+  if (++pdo.silent < pdo.refresh_every && pdo.sent_once && word == pdo.sent) return false;
+  fillFrame(pdo, word, frame);
+  pdo.sent = word;
+  pdo.sent_once = true;
+  pdo.silent = 0;
+  pdo.last = now;
+  ++pdo.count;
+  return true;
+}
+
+void ProcessImage::setCobId(PdoDirection direction, unsigned number, std::uint16_t cob_id) {
+  for (Pdo& pdo : direction == PdoDirection::tpdo ? tpdos_ : rpdos_) {
+    if (pdo.number == number) pdo.cob_id = cob_id;
+  }
+}
+
 void ProcessImage::invalidate() {
   std::fill(inputs_.begin(), inputs_.end(), ProcessValue{});
   std::fill(outputs_.begin(), outputs_.end(), std::uint64_t{0});
+  for (Pdo& pdo : tpdos_) {
+    pdo.stale = false;
+    pdo.silent = pdo.since_request = 0;
+    pdo.last = Time();
+  }
+  for (Pdo& pdo : rpdos_) pdo.sent_once = false;
 }
 
 }  // namespace cia402::canopen

@@ -10,7 +10,9 @@ namespace {
 
 constexpr std::uint32_t kInvalidBit = 0x80000000;   // CiA 301, 7.5.2.35, bit 31
 constexpr std::uint32_t kNoRemoteBit = 0x40000000;  // bit 30: the drive's own choice, kept
+constexpr std::uint32_t kExtendedBit = 0x20000000;  // bit 29: an identifier of 29 bits
 constexpr std::uint32_t kCanIdMask = 0x1FFFFFFF;
+constexpr std::uint32_t kMaxCanId = 0x7FF;
 constexpr unsigned kMaxPdoBits = 64;
 
 std::string hex(std::uint32_t value, int digits) {
@@ -137,10 +139,38 @@ void PdoConfigurator::answeredCobId(const SdoTransfer& transfer) {
     return failTransfer(transfer);
   }
   cob_id_ = static_cast<std::uint32_t>(toUnsigned(transfer.data()));
-  if (wanted_.enabled) return enter(Phase::read_parameter);
+  if (wanted_.enabled) {
+    if (wanted_.cob_id == 0 && !adoptCobId()) {
+      return fail("the drive's own COB-ID is to be used, but " + toString(transfer.object()) +
+                  " is " + hex(cob_id_, 8) + ", which is none of 11 bits; configure a `cob_id`");
+    }
+    return enter(Phase::read_parameter);
+  }
   if ((cob_id_ & kInvalidBit) != 0) return enter(Phase::done);
   if (verifying_) return fail("the drive did not disable it: COB-ID is still " + hex(cob_id_, 8));
   enter(Phase::disable);
+}
+
+/// @return false if what the drive has is no usable identifier.
+bool PdoConfigurator::adoptCobId() {
+  const std::uint32_t can_id = cob_id_ & kCanIdMask;
+  if ((cob_id_ & kExtendedBit) != 0 || can_id == 0 || can_id > kMaxCanId) return false;
+  wanted_.cob_id = static_cast<std::uint16_t>(can_id);
+  adopted_ = wanted_.cob_id;
+  return true;
+}
+
+/// The drive has a COB-ID that it does not give up: then that is the one, if it is valid.
+bool PdoConfigurator::refusedCobId(const SdoTransfer& transfer) {
+  if (cob_id_fixed_ || !wanted_.enabled ||
+      transfer.failure() != SdoTransfer::Failure::aborted_by_server ||
+      transfer.abortCode() != abort_code::kReadOnly) {
+    return false;
+  }
+  const bool differs = (cob_id_ & kCanIdMask) != wanted_.cob_id;
+  if (phase_ == Phase::enable && !differs) return false;  // it is the valid bit that is refused
+  cob_id_fixed_ = true;
+  return !differs || adoptCobId();
 }
 
 void PdoConfigurator::answeredParameter(const SdoTransfer& transfer) {
@@ -176,16 +206,27 @@ void PdoConfigurator::verify() {
   fail(reason + "; choose a mapping that the drive can hold");
 }
 
+void PdoConfigurator::enterAfterDisable() {
+  if (!wanted_.enabled) return enterRead();
+  if (mapDiffers()) return enter(Phase::clear_map);
+  enterWriteParameter(0);
+}
+
 void PdoConfigurator::answeredWrite(const SdoTransfer& transfer) {
+  const bool cob_id = phase_ == Phase::disable || phase_ == Phase::enable;
+  if (!transfer.ok() && cob_id) {
+    const bool was_disabled = phase_ == Phase::enable;
+    if (!refusedCobId(transfer)) return failTransfer(transfer);
+    if (was_disabled) return enter(Phase::enable);  // now with the drive's own
+    return enterAfterDisable();
+  }
   if (!transfer.ok()) {
     if (!refusedReadOnlyCount(transfer)) return failTransfer(transfer);
     map_refused_ = true;
   }
   switch (phase_) {
     case Phase::disable:
-      if (!wanted_.enabled) return enterRead();
-      if (mapDiffers()) return enter(Phase::clear_map);
-      return enterWriteParameter(0);
+      return enterAfterDisable();
     case Phase::clear_map:
       if (!wanted_.entries.empty()) return enter(Phase::write_entry);
       return enterWriteParameter(0);
@@ -212,6 +253,7 @@ bool PdoConfigurator::refusedReadOnlyCount(const SdoTransfer& transfer) const {
 void PdoConfigurator::enterWriteParameter(std::size_t item) {
   while (item < parameters_.size() && parameters_[item].actual == parameters_[item].wanted) ++item;
   if (item < parameters_.size()) return enter(Phase::write_parameter, item);
+  if (cob_id_fixed_) return enterRead();  // it never became invalid
   enter(Phase::enable);
 }
 
@@ -254,7 +296,9 @@ std::string PdoConfigurator::title() const {
 }
 
 std::uint32_t PdoConfigurator::enabledCobId() const {
-  return (cob_id_ & kNoRemoteBit) | wanted_.cob_id;
+  const bool requested =
+      wanted_.direction == PdoDirection::tpdo && isRequested(wanted_.transmission);
+  return (requested ? 0 : cob_id_ & kNoRemoteBit) | wanted_.cob_id;
 }
 
 std::uint32_t PdoConfigurator::entryValue(std::size_t item) const {
@@ -282,7 +326,7 @@ std::string PdoConfigurator::firstDifference() const {
   const auto tell = [](ObjectId object, const std::string& is, const std::string& wanted) {
     return toString(object) + " is " + is + ", wanted is " + wanted;
   };
-  if ((cob_id_ & (kInvalidBit | kCanIdMask)) != wanted_.cob_id) {
+  if (cob_id_ != enabledCobId()) {
     return tell({communication_, 1}, hex(cob_id_, 8), hex(enabledCobId(), 8));
   }
   for (const Parameter& parameter : parameters_) {

@@ -15,7 +15,8 @@ namespace cia402::canopen {
 /// Brings one PDO of a node to its wanted configuration, as CiA 301, 7.5.2.34..37 prescribe: make
 /// it invalid (bit 31 of the COB-ID), number of entries 0, entries, number of entries, other
 /// communication parameters, make it valid. Everything is read first; only what differs is written
-/// and nothing at all where nothing differs; after writing everything is read back.
+/// and nothing at all where nothing differs; after writing everything is read back. Where the drive
+/// says that its COB-ID is read-only (0x06010002), or none is wanted, the drive's own is kept.
 class PdoConfigurator {
  public:
   struct Options {
@@ -37,6 +38,8 @@ class PdoConfigurator {
   const std::string& error() const { return error_; }
   /// It failed because the drive did not answer at all.
   bool timedOut() const { return timed_out_; }
+  /// The COB-ID of the PDO is the drive's own, not the one configured: which.
+  std::optional<std::uint16_t> adoptedCobId() const { return adopted_; }
   /// True once something had to be written.
   bool changed() const { return changed_; }
 
@@ -80,6 +83,9 @@ class PdoConfigurator {
   void enterRead();
   void fail(const std::string& reason);
   void failTransfer(const SdoTransfer& transfer);
+  bool adoptCobId();
+  bool refusedCobId(const SdoTransfer& transfer);
+  void enterAfterDisable();
   bool refusedReadOnlyCount(const SdoTransfer& transfer) const;
 
   std::string title() const;
@@ -100,6 +106,8 @@ class PdoConfigurator {
   std::size_t item_ = 0;
   bool verifying_ = false, changed_ = false, map_refused_ = false, timed_out_ = false;
   std::uint32_t cob_id_ = 0;
+  std::optional<std::uint16_t> adopted_;
+  bool cob_id_fixed_ = false;  ///< the drive refuses to make the PDO invalid, or valid elsewhere
   std::size_t count_ = 0;
   std::vector<std::uint32_t> entries_;
   SdoTicket ticket_;

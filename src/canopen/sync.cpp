@@ -1,17 +1,71 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "cia402_driver/canopen/sync.h"
 
+#include <cmath>
+
 namespace cia402::canopen {
-namespace {
-
-constexpr std::uint32_t kSyncCobId = 0x080;  // default of 1005h
-
-}  // namespace
 
 can::Frame SyncProducer::next() {
   if (overflow_ == 0) return can::Frame(kSyncCobId, {});
   counter_ = counter_ >= overflow_ ? std::uint8_t{1} : static_cast<std::uint8_t>(counter_ + 1);
   return can::Frame(kSyncCobId, {counter_});
+}
+
+SyncConsumer::Observation SyncConsumer::receive(const can::Frame& frame, Time stamp) {
+  Observation seen;
+  ++received_;
+  checkForm(frame);
+  const Duration interval = stamp - last_;
+  last_ = stamp;
+  if (state_ != State::running) {
+    state_ = State::running;
+    seen.returned = true;
+    sum_ = Duration::zero();
+    intervals_ = 0;
+    return seen;
+  }
+  const double periods = toSeconds(interval) / toSeconds(period_);
+  measure(interval);
+  if (periods > kOneMissing) {
+    seen.missed = static_cast<std::uint64_t>(std::lround(periods)) - 1;
+    missed_ += seen.missed;
+    return seen;
+  }
+  seen.regular = true;
+  seen.deviation = interval - (measured_ > Duration::zero() ? measured_ : period_);
+  return seen;
+}
+
+// Single long intervals lack a SYNC; where all are long, the period is another one.
+void SyncConsumer::measure(Duration interval) {
+  sum_ += interval;
+  if (++intervals_ < kWindow) return;
+  measured_ = sum_ / kWindow;
+  sum_ = Duration::zero();
+  intervals_ = 0;
+}
+
+void SyncConsumer::checkForm(const can::Frame& frame) {
+  form_wrong_ = frame.size != (overflow_ == 0 ? 0 : 1);
+  if (form_wrong_ || overflow_ == 0) {
+    counter_ = 0;
+    return;
+  }
+  const std::uint8_t expected =
+      counter_ >= overflow_ ? std::uint8_t{1} : static_cast<std::uint8_t>(counter_ + 1);
+  if (counter_ != 0 && frame.data[0] != expected) ++counter_errors_;
+  counter_ = frame.data[0];
+}
+
+bool SyncConsumer::tick(Time now) {
+  if (now < deadline()) return false;
+  state_ = State::lost;
+  return true;
+}
+
+bool SyncConsumer::periodWrong() const {
+  if (measured_ == Duration::zero()) return false;
+  return std::fabs(toSeconds(measured_ - period_)) > kTolerance * toSeconds(period_);
 }
 
 }  // namespace cia402::canopen

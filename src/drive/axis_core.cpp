@@ -67,15 +67,14 @@ std::string AxisCore::supervise(Time now) {
   const bool commanded = goal_ != Goal::disabled && goal_ != Goal::quick_stop;
   if (commanded && !state_.feedback_valid) {
     setGoal(Goal::quick_stop);
-    failure = who() + ": no usable statusword (6041:00) and position (6064:00) for more than " +
-              seconds(config_.feedback_timeout) +
+    failure = who() + ": no usable statusword (6041:00) and position (6064:00): " + feedbackText() +
               "; quick stop is commanded. Check bus load, cable and the drive's TPDOs";
     notify(failure);
     return failure;
   }
   const State state = state_.state;
   const bool undecodable =
-      state == State::unknown && now - known_state_ <= config_.feedback_timeout;
+      state == State::unknown && now - known_state_ <= config_.undecodable_timeout;
   if (in_operation_ && state != State::operation_enabled && !undecodable) {
     failure = who() + ": the drive left operation enabled by itself: " + stateText() + "; " +
               (faulted() || state_.error_code != 0 ? faultText() : emergencyText()) +

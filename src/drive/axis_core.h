@@ -105,6 +105,8 @@ class AxisCore {
   /// "shoulder (node 3)".
   std::string who() const;
   std::string stateText() const;  ///< "statusword 0x0233 (switched on: ...)"
+  /// Why there is no feedback: "TPDO 1 (COB-ID 0x183) did not come for 11 cycles".
+  std::string feedbackText() const;
   std::string emergencyText() const;
   /// What was commanded, what the drive shows and its last EMCY.
   std::string report() const;

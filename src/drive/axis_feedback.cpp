@@ -32,9 +32,7 @@ void AxisCore::readFeedback(Time now) {
 
 void AxisCore::readState(Time now) {
   const canopen::ProcessValue& word = image_.input(objects_.statusword.slot);
-  const bool fresh =
-      word.valid && (!objects_.statusword.cyclic || now - word.stamp <= config_.feedback_timeout);
-  if (!fresh) {
+  if (!image_.fresh(objects_.statusword.slot)) {
     state_.state = State::unknown;
     forgetMotion();
     return;
@@ -54,8 +52,7 @@ void AxisCore::readState(Time now) {
 
 void AxisCore::readMotion(Time now) {
   const canopen::ProcessValue& position = image_.input(objects_.position.slot);
-  const bool fresh = position.valid && (!objects_.position.cyclic ||
-                                        now - position.stamp <= config_.feedback_timeout);
+  const bool fresh = image_.fresh(objects_.position.slot);
   const double joint = fresh ? position_.toJoint(position.raw) : kUnknown;
   if (!std::isfinite(joint)) {
     forgetMotion();
@@ -88,8 +85,8 @@ void AxisCore::readMotion(Time now) {
 
 double AxisCore::read(const InputObject& object, int polled, Time now) const {
   if (object.mapped()) {
-    const canopen::ProcessValue& value = image_.input(object.slot);
-    return value.valid ? object.conversion.toJoint(value.raw) : kUnknown;
+    if (!image_.fresh(object.slot)) return kUnknown;
+    return object.conversion.toJoint(image_.input(object.slot).raw);
   }
   if (polled < 0) return kUnknown;
   const AxisPoller::Value value = poller_.value(polled, now);
@@ -99,8 +96,8 @@ double AxisCore::read(const InputObject& object, int polled, Time now) const {
 void AxisCore::readMode(Time now) {
   std::optional<std::uint64_t> raw;
   if (objects_.mode_display.mapped()) {
-    const canopen::ProcessValue& value = image_.input(objects_.mode_display.slot);
-    if (value.valid) raw = value.raw;
+    const canopen::Slot slot = objects_.mode_display.slot;
+    if (image_.fresh(slot)) raw = image_.input(slot).raw;
   } else if (polled_mode_ >= 0) {
     const AxisPoller::Value value = poller_.value(polled_mode_, now);
     if (value.valid) raw = value.raw;

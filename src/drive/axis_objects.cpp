@@ -7,23 +7,11 @@ namespace cia402::drive {
 namespace {
 
 using canopen::ObjectId;
-using canopen::PdoDirection;
 
 /// The fixed name of the profile format, or else the standard's own index.
 const ObjectSpec* findObject(const DriveProfile& profile, const char* name, ObjectId id) {
   const ObjectSpec* spec = profile.find(name);
   return spec != nullptr ? spec : profile.find(id);
-}
-
-bool arrivesCyclically(const canopen::Node& node, ObjectId object) {
-  for (const canopen::PdoConfig& pdo : node.config().pdos) {
-    if (!pdo.enabled || pdo.direction != PdoDirection::tpdo) continue;
-    for (const canopen::PdoEntry& entry : pdo.entries) {
-      if (entry.object != object) continue;
-      if ((pdo.transmission >= 1 && pdo.transmission <= 240) || pdo.event_timer > 0) return true;
-    }
-  }
-  return false;
 }
 
 std::size_t rpdoOf(const canopen::ProcessImage& image, canopen::Slot slot) {
@@ -41,7 +29,6 @@ InputObject input(const AxisConfig& config, const canopen::Node& node, const cha
   result.spec = findObject(*config.profile, name, id);
   if (result.spec == nullptr) return result;
   result.slot = node.image().inputSlot(result.spec->id);
-  result.cyclic = arrivesCyclically(node, result.spec->id);
   const auto conversion = Conversion::create(*result.spec, *config.profile, config.geometry);
   if (conversion) {
     result.conversion = *conversion;

@@ -15,7 +15,6 @@ struct InputObject {
   const ObjectSpec* spec = nullptr;  ///< nullptr: the family has no such object
   canopen::Slot slot = canopen::kNoSlot;
   Conversion conversion;
-  bool cyclic = false;  ///< its TPDO comes regularly, so its age means something
   bool mapped() const { return slot != canopen::kNoSlot; }
 };
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "axis_core.h"
+#include "cia402_driver/canopen/pdo_text.h"
 #include "cia402_driver/drive/fault_text.h"
 #include "sentence.h"
 
@@ -16,6 +17,13 @@ std::string AxisCore::stateText() const {
   if (state_.state == State::unknown && state_.statusword == 0) return "no statusword";
   return "statusword " + hexWord(state_.statusword) + " (" + toString(state_.state) + ": " +
          statuswordText(state_.statusword) + ")";
+}
+
+std::string AxisCore::feedbackText() const {
+  std::string text = canopen::staleText(image_);
+  if (!text.empty()) return text;
+  const bool come = image_.fresh(objects_.statusword.slot) && image_.fresh(objects_.position.slot);
+  return come ? "the position that the drive sends is no finite number" : "none has come yet";
 }
 
 std::string AxisCore::emergencyText() const {

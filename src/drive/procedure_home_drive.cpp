@@ -279,8 +279,9 @@ bool DriveHoming::attained(const Context& context) const {
 bool DriveHoming::statuswordIsFresh(const Context& context) const {
   AxisCore& axis = context.axis;
   const InputObject& object = axis.objects().statusword;
-  if (!object.cyclic) return context.now - since_ > std::chrono::milliseconds(20);
-  return axis.node().image().input(object.slot).stamp > since_;
+  const canopen::ProcessImage& image = axis.node().image();
+  if (!image.regular(object.slot)) return context.now - since_ > std::chrono::milliseconds(20);
+  return image.input(object.slot).stamp > since_;
 }
 
 bool DriveHoming::offsetIsWritten(const AxisCore& axis) const {

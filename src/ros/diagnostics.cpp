@@ -108,6 +108,9 @@ void Diagnostics::reportNode(std::size_t index, Status& status) {
   status.add("boot-ups", axis.node.boot_ups);
   status.add("emergencies", axis.node.emergencies);
   status.add("feedback missed", axis.missed_feedback);
+  status.add("feedback stale", axis.stale_feedback);
+  status.add("feedback of wrong length", axis.wrong_lengths);
+  if (!axis.stale.empty()) status.mergeSummary(DiagnosticStatus::WARN, axis.stale.str());
 }
 
 void Diagnostics::reportAxis(std::size_t index, Status& status) {

@@ -148,7 +148,7 @@ TEST_F(MasterTest, counts_frames_that_belong_to_nobody) {
   start();
   hear("184 37 02 2A 00 00 00");
   hear("704 05");
-  hear("080");
+  hear("100 00 00 00 00 00 00");
   can::Frame extended = frame("185 37 02 2A 00 00 00");
   extended.extended = true;
   master->receive(extended, now, now);

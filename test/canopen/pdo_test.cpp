@@ -88,7 +88,7 @@ TEST(ProcessImage, takes_nothing_from_a_frame_that_is_too_short) {
   EXPECT_FALSE(image.receive(0, frame("183 50 02 09 00 00"), kStamp + std::chrono::seconds(1)));
   EXPECT_EQ(image.input(image.inputSlot(kStatusword)).raw, 0x0237U);
   EXPECT_EQ(image.input(image.inputSlot(kStatusword)).stamp, kStamp);
-  EXPECT_EQ(image.tpdos()[0].wrong_length, 1U);
+  EXPECT_EQ(image.tpdos()[0].too_short, 1U);
   EXPECT_EQ(image.tpdos()[0].count, 1U);
 }
 
@@ -96,7 +96,7 @@ TEST(ProcessImage, takes_the_mapped_part_of_a_frame_that_is_too_long_but_counts_
   ProcessImage image(servo());
   EXPECT_FALSE(image.receive(0, frame("183 37 02 01 00 00 00 FF"), kStamp));
   EXPECT_EQ(image.input(image.inputSlot(kPosition)).raw, 1U);
-  EXPECT_EQ(image.tpdos()[0].wrong_length, 1U);
+  EXPECT_EQ(image.tpdos()[0].too_long, 1U);
 }
 
 TEST(ProcessImage, has_no_slots_for_disabled_pdos) {

@@ -174,6 +174,7 @@ class Bench {
       last_heartbeat_ = now;
       deliver(drive.heartbeat());
     }
+    node_.onSync(now);
     if (!dead) {
       for (const can::Frame& frame : drive.sync(toSeconds(kCycle))) deliver(frame);
     }

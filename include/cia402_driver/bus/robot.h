@@ -74,6 +74,9 @@ class Robot final : private canopen::MasterListener {
     std::uint32_t procedure = 0, notices = 0;
     bool running = false;
     std::uint16_t error_code = 0;
+    std::uint64_t stale_count = 0, wrong_lengths = 0;  // of the TPDOs
+    FixedText<160> stale;
+    Time pdos_told{};
   };
 
   void onEmergency(canopen::Node& node, const canopen::Emergency& emergency) override;
@@ -93,6 +96,7 @@ class Robot final : private canopen::MasterListener {
   void stepShutdown(Time now);
   void stopMotion(const std::string& why, Time now);
   void watchAxes(Time now);
+  void watchPdos(std::size_t axis, Time now);
   void tell(Event::Severity severity, std::string_view text, Time now);
   drive::Axis* axisNamed(const std::string& name);
   std::size_t axisOf(const canopen::Node& node) const;

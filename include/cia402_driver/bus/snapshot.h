@@ -30,6 +30,9 @@ struct AxisSnapshot {
   bool procedure_running = false;
   std::uint32_t serial = 0;           ///< 1018:04; 0: not read
   std::uint64_t missed_feedback = 0;  ///< cycles without a new TPDO while the node was ready
+  std::uint64_t stale_feedback = 0;   ///< how often a TPDO was overdue, see PdoConfig::stale_after
+  std::uint64_t wrong_lengths = 0;    ///< TPDOs that were too short or too long
+  FixedText<160> stale;               ///< TPDOs overdue at present, in words; empty if none
   FixedText<96> step;                 ///< of the procedure or of the node's boot
   FixedText<160> waiting_for;
   FixedText<384> problem;  ///< fault or node problem in words; empty if well

@@ -49,6 +49,8 @@ struct MasterConfig {
   Duration heartbeat{std::chrono::milliseconds(100)};  ///< produced; zero: none
   Duration sync_period{std::chrono::milliseconds(4)};
   std::uint8_t sync_counter = 0;  ///< overflow value of the SYNC counter (1019h): 0 or 2..240
+  bool external_sync = false;     ///< another device produces SYNC, the master follows it
+  Duration time_interval{0};      ///< of the TIME message; zero: none
   std::vector<NodeConfig> nodes;
 };
 

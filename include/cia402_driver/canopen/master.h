@@ -11,6 +11,7 @@
 #include "cia402_driver/canopen/heartbeat.h"
 #include "cia402_driver/canopen/node.h"
 #include "cia402_driver/canopen/sync.h"
+#include "cia402_driver/canopen/time_producer.h"
 
 namespace cia402::canopen {
 
@@ -21,6 +22,8 @@ class MasterListener {
   virtual void onEmergency(Node&, const Emergency&) {}
   virtual void onBootUp(Node&, Time) {}  ///< a boot-up frame, expected or not
   virtual void onHealthChange(Node&, NodeHealth /*before*/, Time) {}
+  /// Another device has sent SYNC. @param stamp when it was on the wire
+  virtual void onForeignSync(const can::Frame&, Time /*stamp*/, Time /*now*/) {}
 };
 
 /// CANopen master of one bus (CiA 301): NMT, heartbeat, SYNC, and one Node per device. Sans-IO: the
@@ -43,8 +46,13 @@ class Master {
 
   /// Produces SYNC now (with counter if configured).
   void sendSync(Time now);
-  /// Sends every ready node's RPDOs.
+  /// To be called instead when somebody else has produced it, or should have: counts the cycle for
+  /// the age of the nodes' inputs and asks for TPDOs by remote frames.
+  void syncPassed(Time now);
+  /// Sends every ready node's RPDOs that are due.
   void sendRpdos(Time now);
+  /// Tells the wall-clock time for TIME messages; without it none are sent.
+  void setWallTime(UnixTime wall, Time now) { time_.setWallTime(wall, now); }
   /// NMT command to all nodes.
   void commandAll(NmtCommand command, Time now);
 
@@ -57,17 +65,19 @@ class Master {
   std::uint64_t strayFrames() const { return stray_frames_; }
 
  private:
-  enum class Service : std::uint8_t { none, tpdo, emergency, sdo, heartbeat };
+  enum class Service : std::uint8_t { none, tpdo, emergency, sdo, heartbeat, sync, rpdo };
   /// Where a frame goes, by its identifier.
   struct Route {
     Service service = Service::none;
     std::uint8_t node = 0;  ///< index in nodes_
-    std::uint8_t pdo = 0;   ///< index in ProcessImage::tpdos()
+    std::uint8_t pdo = 0;   ///< index in ProcessImage::tpdos() or rpdos()
   };
   static constexpr std::size_t kIdentifiers = 2048;  ///< of 11 bits
 
   void addRoutes(std::size_t node);
   void addRoute(std::uint32_t cob_id, Route route);
+  std::string addPdoRoutes(std::size_t node);
+  void followCobIds(std::size_t node, Time now);
   void tell(std::size_t node, Time now);
 
   MasterConfig config_;
@@ -78,6 +88,7 @@ class Master {
   std::array<Route, kIdentifiers> routes_{};
   SyncProducer sync_;
   HeartbeatProducer heartbeat_;
+  TimeProducer time_;
   std::uint64_t stray_frames_ = 0;
   // The earliest deadline of all nodes is kept: it is asked for with every frame.
   mutable bool deadlines_changed_ = true;

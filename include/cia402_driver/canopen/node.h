@@ -80,12 +80,20 @@ class Node {
   void receive(const can::Frame& frame, Time stamp, Time now);
   /// Takes the frame of TPDO number image().tpdos()[tpdo]; called by Master.
   void receiveTpdo(std::size_t tpdo, const can::Frame& frame, Time stamp);
+  /// SYNC is on the bus (or should be): ages the inputs and sends the remote frames that ask for
+  /// TPDOs; called by Master.
+  void onSync(Time now);
+  /// The drive insisted on COB-IDs of its own, in image() now; told once. Called by Master.
+  bool takeCobIdChange();
+  /// The node cannot be used as it is: takes it out of operation, for `why` in words. Called by
+  /// Master.
+  void refuse(const std::string& why, Time now);
   void tick(Time now);        ///< called by Master
   Time nextDeadline() const;  ///< called by Master
   /// Somebody may have begun a transfer since: nextDeadline() moves without notice until the node
   /// receives or ticks again.
   bool sdoLent() const;
-  /// Sends the RPDOs that are due in this cycle (all synchronous and event-driven ones).
+  /// Sends the RPDOs that are due in this cycle (PdoConfig::refresh_every).
   void sendRpdos(Time now);
 
  private:

@@ -22,16 +22,32 @@ struct PdoEntry {
   std::string name;       ///< for messages
 };
 
+/// Transmission types (CiA 301, 7.5.2.35 and 7.5.2.37).
+constexpr bool isCyclic(std::uint8_t type) { return type >= 1 && type <= 240; }
+/// The drive sends the TPDO only when a remote frame asks for it: 252 sampled at SYNC, 253 at once.
+constexpr bool isRequested(std::uint8_t type) { return type == 252 || type == 253; }
+constexpr bool isEventDriven(std::uint8_t type) { return type >= 254; }
+
 /// The wanted configuration of one PDO of a node (CiA 301, objects 1400h/1600h, 1800h/1A00h).
 struct PdoConfig {
   PdoDirection direction = PdoDirection::tpdo;
-  unsigned number = 1;            ///< 1..512; communication parameters at 1400h/1800h + number - 1
-  std::uint16_t cob_id = 0;       ///< 11-bit CAN-ID
-  std::uint8_t transmission = 1;  ///< transmission type 0..240, 254, 255
+  unsigned number = 1;  ///< 1..512; communication parameters at 1400h/1800h + number - 1
+  /// 11-bit CAN-ID; 0: the one that the drive has, read when it boots. Where the drive refuses
+  /// another one as read-only, its own is taken, too.
+  std::uint16_t cob_id = 0;
+  std::uint8_t transmission = 1;  ///< transmission type 0..240, 252..255 (RPDO: without 252, 253)
   std::uint16_t inhibit = 0;      ///< inhibit time, 100 us (TPDO only)
-  std::uint16_t event_timer = 0;  ///< ms
+  /// ms; of an RPDO: the drive reacts when none came for so long (the drive's own deadline).
+  std::uint16_t event_timer = 0;
   bool enabled = true;            ///< false: only made invalid (bit 31)
   std::vector<PdoEntry> entries;  ///< at most 64 bits in all
+
+  /// A TPDO that is due and fails to come so many times in a row is stale; 0: never.
+  std::uint16_t stale_after = 10;
+  /// TPDO of type 252 or 253: a remote frame asks for it after every so many SYNCs.
+  std::uint16_t request_every = 1;
+  /// RPDO: sent in a cycle in which its content changed, and at least every so many cycles.
+  std::uint16_t refresh_every = 1;
 };
 
 /// A value in a node's process image: a raw little-endian number as wide as its mapping entry.
@@ -64,6 +80,32 @@ class ProcessImage {
   bool receive(std::size_t tpdo, const can::Frame& frame, Time stamp);
   /// Packs an RPDO.
   void pack(std::size_t rpdo, can::Frame& frame) const;
+  /// Packs an RPDO if it is due in this cycle: its content changed, or it was not sent for
+  /// PdoConfig::refresh_every cycles. Counts it as sent then.
+  bool packDue(std::size_t rpdo, can::Frame& frame, Time now);
+  /// The frame of packDue() did not leave: it is due again in the next cycle.
+  void repeat(std::size_t rpdo) { rpdos_[rpdo].sent_once = false; }
+  /// One cycle more without the TPDOs that did not come: counts, and marks what is stale. Once a
+  /// cycle, when SYNC goes out, while the node is in operation.
+  void age(Time now);
+  /// The remote frame that asks for TPDO `tpdo`, if it is due at this SYNC; to be called for each
+  /// number in requested() at each SYNC.
+  bool requestDue(std::size_t tpdo, can::Frame& frame);
+  /// Indices of the TPDOs that remote frames ask for.
+  const std::vector<std::size_t>& requested() const { return requested_; }
+  /// Has the value come, and in time? A slot of an object that is not mapped is not fresh.
+  bool fresh(Slot slot) const {
+    return slot != kNoSlot && inputs_[slot].valid && !tpdos_[input_tpdos_[slot]].stale;
+  }
+  /// Does the value come at a known rate, whether it changes or not? @pre slot is that of an input
+  bool regular(Slot slot) const {
+    const Pdo& pdo = tpdos_[input_tpdos_[slot]];
+    return pdo.silent_limit != 0 || pdo.age_limit != Duration::zero();
+  }
+  /// The TPDO (index in tpdos()) that brings an input. @pre slot is that of an input
+  std::size_t tpdoOf(Slot slot) const { return input_tpdos_[slot]; }
+  /// The drive has another COB-ID than configured. No effect for a PDO that is not enabled.
+  void setCobId(PdoDirection direction, unsigned number, std::uint16_t cob_id);
   /// Marks every input as unknown and sets every output to 0 (the node rebooted or was lost), so
   /// that no set-point or controlword of before is ever sent again.
   void invalidate();
@@ -75,7 +117,17 @@ class ProcessImage {
     std::uint8_t transmission;
     std::uint8_t size;  ///< bytes
     Time last{};        ///< last reception or transmission
-    std::uint64_t count = 0, wrong_length = 0;
+    std::uint64_t count = 0, too_short = 0, too_long = 0;
+    std::uint8_t wrong_size = 0;     ///< bytes of the last one that was too short or too long
+    bool stale = false;              ///< TPDO: due for too long; see PdoConfig::stale_after
+    std::uint64_t stale_count = 0;   ///< how often it became stale
+    std::uint32_t silent = 0;        ///< SYNCs since the last reception or transmission
+    std::uint32_t silent_limit = 0;  ///< stale beyond; 0: its silence means nothing
+    Duration age_limit{0};           ///< the same for an event timer; 0: none
+    std::uint16_t request_every = 1, refresh_every = 1;
+    std::uint16_t since_request = 0;
+    std::uint64_t sent = 0;  ///< content of the last transmission
+    bool sent_once = false;
     struct Field {
       Slot slot;
       std::uint8_t shift;
@@ -86,12 +138,19 @@ class ProcessImage {
   /// Enabled TPDOs / RPDOs, in order of their number.
   const std::vector<Pdo>& tpdos() const { return tpdos_; }
   const std::vector<Pdo>& rpdos() const { return rpdos_; }
-  std::vector<Pdo>& rpdos() { return rpdos_; }
+  /// Frames of a wrong length, all TPDOs together.
+  std::uint64_t wrongLengths() const { return wrong_lengths_; }
+  /// How often a TPDO became stale, all together.
+  std::uint64_t staleCount() const { return stale_count_; }
 
  private:
   void add(const PdoConfig& config);
+  std::uint64_t pack(const Pdo& pdo) const;
+  void fillFrame(const Pdo& pdo, std::uint64_t word, can::Frame& frame) const;
 
   std::vector<Pdo> tpdos_, rpdos_;
+  std::vector<std::size_t> requested_, input_tpdos_;
+  std::uint64_t wrong_lengths_ = 0, stale_count_ = 0;
   std::vector<ProcessValue> inputs_;
   std::vector<std::uint64_t> outputs_;
   std::vector<ObjectId> input_objects_, output_objects_;

@@ -4,8 +4,12 @@
 #include <cstdint>
 
 #include "cia402_driver/can/frame.h"
+#include "cia402_driver/common/time.h"
 
 namespace cia402::canopen {
+
+/// Identifier of SYNC (CiA 301, 7.2.5), default of 1005h.
+inline constexpr std::uint32_t kSyncCobId = 0x080;
 
 /// Produces SYNC messages (CiA 301, 7.2.5), with a counter where 1019h asks for one.
 class SyncProducer {
@@ -22,6 +26,62 @@ class SyncProducer {
  private:
   std::uint8_t overflow_;
   std::uint8_t counter_ = 0;
+};
+
+/// Watches the SYNC of another device: whether it comes, how regularly, and in which form.
+class SyncConsumer {
+ public:
+  enum class State : std::uint8_t {
+    waiting,  ///< none came yet
+    running,
+    lost,  ///< none for kLostAfter periods
+  };
+  static constexpr int kLostAfter = 3;        ///< periods without SYNC
+  static constexpr int kWindow = 16;          ///< intervals that period() is the mean of
+  static constexpr double kTolerance = 0.05;  ///< share by which the period may be wrong
+  static constexpr double kOneMissing = 1.5;  ///< a longer interval (periods) lacks a SYNC
+
+  /// @param period expected, > 0. @param overflow expected counter: 0 none, else 2..240 (1019h).
+  SyncConsumer(Duration period, std::uint8_t overflow) : period_(period), overflow_(overflow) {}
+
+  /// What a SYNC tells by its form and time.
+  struct Observation {
+    bool regular = false;      ///< `deviation` is known: the SYNC before came, too
+    Duration deviation{};      ///< from the interval that was expected
+    bool returned = false;     ///< it was lost, or this is the first
+    std::uint64_t missed = 0;  ///< SYNCs that should have come before it
+  };
+  /// @param stamp when it was on the wire.
+  Observation receive(const can::Frame& frame, Time stamp);
+  /// @return true once, when SYNC was lost.
+  bool tick(Time now);
+  Time deadline() const { return state_ == State::running ? last_ + kLostAfter * period_ : kNever; }
+
+  State state() const { return state_; }
+  /// Mean of the last kWindow regular intervals; zero before there were so many.
+  Duration period() const { return measured_; }
+  /// The measured period is another one than expected, by more than kTolerance.
+  bool periodWrong() const;
+  /// The last SYNC had no counter where one is expected, or the other way round.
+  bool formWrong() const { return form_wrong_; }
+  std::uint64_t received() const { return received_; }
+  std::uint64_t missed() const { return missed_; }  ///< by gaps between those that came
+  std::uint64_t counterErrors() const { return counter_errors_; }
+  Time last() const { return last_; }
+
+ private:
+  void measure(Duration interval);
+  void checkForm(const can::Frame& frame);
+
+  Duration period_;
+  std::uint8_t overflow_;
+  State state_ = State::waiting;
+  Time last_{};
+  Duration measured_{0}, sum_{0};
+  int intervals_ = 0;
+  bool form_wrong_ = false;
+  std::uint8_t counter_ = 0;
+  std::uint64_t received_ = 0, missed_ = 0, counter_errors_ = 0;
 };
 
 }  // namespace cia402::canopen

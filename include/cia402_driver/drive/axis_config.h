@@ -42,9 +42,11 @@ struct AxisConfig {
   std::optional<HomingOptions> homing;
   Duration sync_period{std::chrono::milliseconds(4)};  ///< of the bus
   Duration command_timeout{std::chrono::milliseconds(200)};
-  /// Statusword and position may be this old at most where they come by a cyclic TPDO (transmission
-  /// type 1..240 or with an event timer); then an enabled axis is quick-stopped.
-  Duration feedback_timeout{std::chrono::milliseconds(100)};
+  /// A TPDO that fails to come so many times in a row is stale; where it brings statusword or
+  /// position, an enabled axis is quick-stopped then.
+  std::uint16_t stale_after = 10;
+  /// A statusword that no state of CiA 402 shows is put up with for so long.
+  Duration undecodable_timeout{std::chrono::milliseconds(100)};
   /// Below this the axis stands still (mode changes, homing, set_position), rad/s or m/s.
   double standstill_velocity = 0.01;
   std::vector<PdoLayout> pdos;     ///< resolved layout (profile's or the user's)
