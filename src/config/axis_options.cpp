@@ -107,6 +107,12 @@ SimulationConfig readSimulation(const YamlValue& value) {
   section.read("index_offset", simulation.index_offset, drive::Range{0.0, 1.0, false});
   section.read("time_constant", simulation.time_constant, kPositive);
   section.read("brake_delay", simulation.brake_delay, kNotNegative);
+  section.read("unconfigured", simulation.unconfigured);
+  constexpr std::int64_t kHighest = 0xFFFFFFFF;
+  section.readInteger("vendor", simulation.vendor, 0, kHighest);
+  section.readInteger("product", simulation.product, 0, kHighest);
+  section.readInteger("revision", simulation.revision, 0, kHighest);
+  section.readInteger("serial", simulation.serial, 0, kHighest);
   section.finish();
   if (simulation.lower_limit_switch && simulation.upper_limit_switch &&
       !(*simulation.lower_limit_switch < *simulation.upper_limit_switch)) {

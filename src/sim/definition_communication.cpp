@@ -19,6 +19,9 @@ void readCommunication(DefinitionReader& reader, DeviceBehaviour& out) {
   reader.read("rtr_types", out.rtr_types);
   reader.read("type255_event_timer_only", out.type255_event_timer_only);
   reader.read("sends_event_tpdos_on_start", out.sends_event_tpdos_on_start);
+  reader.read("lss", out.lss);
+  reader.read("lss_bit_timing", out.lss_bit_timing);
+  reader.read("lss_store", out.lss_store);
   reader.read("sync_timeout", out.sync_timeout);
 }
 

@@ -10,6 +10,7 @@
 #include "slave_emergency.h"
 #include "slave_guarding.h"
 #include "slave_heartbeat.h"
+#include "slave_lss.h"
 #include "slave_sync.h"
 
 namespace cia402::sim {
@@ -22,15 +23,29 @@ namespace {
 constexpr std::uint32_t kNmt = 0x000;
 constexpr std::uint32_t kSdoRequest = 0x600;
 constexpr std::uint32_t kErrorControl = 0x700;
+constexpr std::uint32_t kLssRequest = 0x7E5;
 constexpr std::uint32_t kFunctionCode = 0x780;
 constexpr std::uint32_t kNodeId = 0x07F;
 
 constexpr std::uint16_t kFirstCommunicationObject = 0x1000;
 constexpr std::uint16_t kLastCommunicationObject = 0x1FFF;
 
+// Lets nothing out while the device speaks another bit rate than the bus.
+class Transceiver : public can::Sink {
+ public:
+  explicit Transceiver(can::Sink& sink) : sink_(sink) {}
+  void watch(const SlaveLss& lss) { lss_ = &lss; }
+  bool send(const can::Frame& frame) override { return lss_->deaf() || sink_.send(frame); }
+
+ private:
+  can::Sink& sink_;
+  const SlaveLss* lss_ = nullptr;
+};
+
 }  // namespace
 
 struct Device::Impl {
+  Transceiver transceiver;
   SlaveContext context;
   SlaveEmergency emergency{context};
   SlaveHeartbeat heartbeat{context, emergency};
@@ -38,14 +53,19 @@ struct Device::Impl {
   SlaveSync sync{context, emergency};
   SdoServer sdo{context};
   PdoServer pdos{context, emergency};
+  SlaveLss lss;
   Time boot_at = kNever;
   Time next_event = kNever;
   unsigned depth = 0;
 
   Impl(canopen::NodeId node, can::Sink& sink, ObjectDictionary& dictionary,
        DeviceBehaviour behaviour, Application& application)
-      : context(node, sink, dictionary, behaviour, application) {
+      : transceiver(sink),
+        context(node, transceiver, dictionary, behaviour, application),
+        lss(context, node) {
+    transceiver.watch(lss);
     context.change_state = [this](NmtState state) { changeState(state); };
+    context.reset_communication = [this] { beginBoot(false); };
   }
 
   ~Impl() { releaseObjects(); }
@@ -53,11 +73,13 @@ struct Device::Impl {
   void serveObjects();
   void releaseObjects();
   void beginBoot(bool reset_all);
+  void takeNodeId();
   void silence(NmtState state);
   void finishBoot();
   void changeState(NmtState state);
   void command(const can::Frame& frame);
   void onSync(const can::Frame& frame);
+  void hear(const can::Frame& frame);
   void dispatch(const can::Frame& frame);
   void runDue();
   Time deadline() const;
@@ -114,10 +136,19 @@ void Device::Impl::silence(NmtState state) {
   sync.reset();
   sdo.reset();
   emergency.reset();
+  lss.reset();
+}
+
+void Device::Impl::takeNodeId() {
+  const canopen::NodeId before = context.node;
+  context.node = lss.pendingNode();
+  if (context.node != before) context.application.onNodeId(before, context.node);
 }
 
 void Device::Impl::beginBoot(bool reset_all) {
   silence(NmtState::boot_up);
+  if (reset_all) lss.load();
+  takeNodeId();
   if (reset_all) {
     context.dictionary.restoreInitial();
     context.application.onPowerOn(context.now);
@@ -131,6 +162,7 @@ void Device::Impl::beginBoot(bool reset_all) {
 
 void Device::Impl::finishBoot() {
   boot_at = kNever;
+  if (context.node == kUnconfigured) return;  // LSS waits for a node-ID
   sync.start();
   pdos.configure();
   heartbeat.start();
@@ -180,6 +212,7 @@ void Device::Impl::dispatch(const can::Frame& frame) {
   if (frame.id == sync.cobId()) return onSync(frame);
   if (context.operational() && pdos.concerns(frame.id)) return pdos.receive(frame);
   if (frame.id == kNmt) return command(frame);
+  if (frame.id == kLssRequest) return lss.receive(frame);
   if (frame.id == kSdoRequest + context.node) return sdo.receive(frame);
   if (frame.id == kErrorControl + context.node) return guarding.receive(frame);
   if ((frame.id & kFunctionCode) == kErrorControl) {
@@ -187,8 +220,17 @@ void Device::Impl::dispatch(const can::Frame& frame) {
   }
 }
 
+void Device::Impl::hear(const can::Frame& frame) {
+  if (lss.deaf()) return;
+  if (context.state != NmtState::boot_up) return dispatch(frame);
+  // Still initialising; without a node-ID LSS alone works, once the device has started.
+  const bool waits_for_id = context.node == kUnconfigured && boot_at == kNever;
+  if (waits_for_id && frame.id == kLssRequest) lss.receive(frame);
+}
+
 void Device::Impl::runDue() {
   if (boot_at <= context.now) finishBoot();
+  lss.tick();
   sync.tick();
   heartbeat.tick();
   guarding.tick();
@@ -198,8 +240,8 @@ void Device::Impl::runDue() {
 }
 
 Time Device::Impl::deadline() const {
-  return std::min({boot_at, sync.deadline(), heartbeat.deadline(), guarding.deadline(),
-                   pdos.deadline(), sdo.deadline(), emergency.deadline()});
+  return std::min({boot_at, lss.deadline(), sync.deadline(), heartbeat.deadline(),
+                   guarding.deadline(), pdos.deadline(), sdo.deadline(), emergency.deadline()});
 }
 
 Device::Device(canopen::NodeId node, can::Sink& sink, ObjectDictionary& dictionary,
@@ -225,7 +267,7 @@ void Device::receive(const can::Frame& frame, Time now) {
   if (frame.extended || frame.error || !powered()) return;
   Call<Impl> call(*impl_, now);
   if (impl_->next_event <= now) impl_->runDue();
-  if (impl_->context.state != NmtState::boot_up) impl_->dispatch(frame);
+  impl_->hear(frame);
 }
 
 void Device::tick(Time now) {
@@ -239,6 +281,8 @@ Time Device::nextEvent() const { return impl_->next_event; }
 canopen::NodeId Device::node() const { return impl_->context.node; }
 
 canopen::NmtState Device::nmtState() const { return impl_->context.state; }
+
+void Device::setBusBitrate(std::uint32_t bitrate) { impl_->lss.setBusBitrate(bitrate); }
 
 void Device::sendEmergency(std::uint16_t code, std::uint8_t error_register,
                            const std::array<std::uint8_t, 5>& vendor, Time now) {

@@ -210,6 +210,14 @@ bool DictionaryTemplate::remove(std::uint16_t index) {
   return found;
 }
 
+std::vector<ObjectId> DictionaryTemplate::nodeIdObjects() const {
+  std::vector<ObjectId> found;
+  for (const Row& row : rows_) {
+    if (row.add_node_id) found.push_back(row.entry.id);
+  }
+  return found;
+}
+
 ObjectDictionary DictionaryTemplate::build(canopen::NodeId node) const {
   ObjectDictionary dictionary;
   for (const Row& row : rows_) {

@@ -46,15 +46,28 @@ class Gate : public can::Sink {
 
 struct Drive::Impl : Device::Application, DriveCore::Reports {
   Impl(std::shared_ptr<const DriveDefinition> drive_definition, canopen::NodeId node,
-       can::Sink& sink, const AxisMechanics& axis_mechanics)
+       can::Sink& sink, const AxisMechanics& axis_mechanics, const DriveIdentity& identity)
       : definition(std::move(drive_definition)),
         mechanics(axis_mechanics),
-        dictionary(definition->dictionary.build(node)),
+        dictionary(build(*definition, node, identity)),
         gate(sink),
         device(node, gate, dictionary, definition->communication, *this),
         core(*definition, mechanics, dictionary, *this),
         store(dictionary, [this] { return core.enabled(); }) {
     installHooks();
+  }
+
+  static ObjectDictionary build(const DriveDefinition& definition, canopen::NodeId node,
+                                const DriveIdentity& identity) {
+    ObjectDictionary built = definition.dictionary.build(node);
+    const std::optional<std::uint32_t> numbers[] = {identity.vendor, identity.product,
+                                                    identity.revision, identity.serial};
+    for (std::uint8_t i = 0; i < 4; ++i) {
+      Entry* entry = built.find({0x1018, static_cast<std::uint8_t>(i + 1)});
+      if (entry == nullptr || !numbers[i]) continue;
+      entry->number = entry->initial_number = *numbers[i];
+    }
+    return built;
   }
 
   void installHooks() {
@@ -113,6 +126,11 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
     core.start(cold, time);
     cold = false;
   }
+  void onNodeId(canopen::NodeId before, canopen::NodeId now_is) override {
+    for (const ObjectId id : definition->dictionary.nodeIdObjects()) {
+      store.moveDefault(id, std::int64_t{now_is} - before);
+    }
+  }
   void onResetCommunication(Time) override {}  // the power drive system goes on
   void onNmtState(canopen::NmtState state, Time) override { core.onNmtState(state); }
   void onSync(Time) override { core.onSync(); }
@@ -161,8 +179,8 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
 };
 
 Drive::Drive(std::shared_ptr<const DriveDefinition> definition, canopen::NodeId node,
-             can::Sink& sink, AxisMechanics mechanics)
-    : impl_(std::make_unique<Impl>(std::move(definition), node, sink, mechanics)) {}
+             can::Sink& sink, AxisMechanics mechanics, const DriveIdentity& identity)
+    : impl_(std::make_unique<Impl>(std::move(definition), node, sink, mechanics, identity)) {}
 
 Drive::~Drive() = default;
 

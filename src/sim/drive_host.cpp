@@ -33,7 +33,8 @@ DriveHost::DriveHost(const std::vector<SimulatedAxis>& axes, can::Interface& int
     : interface_(interface) {
   for (const SimulatedAxis& axis : axes) {
     auto tap = std::make_unique<Tap>(interface);
-    auto drive = std::make_unique<Drive>(axis.definition, axis.node, *tap, axis.mechanics);
+    auto drive =
+        std::make_unique<Drive>(axis.definition, axis.node, *tap, axis.mechanics, axis.identity);
     drives_.push_back({axis.name, std::move(tap), std::move(drive)});
   }
   for (Member& member : drives_) member.drive->powerOn(now);

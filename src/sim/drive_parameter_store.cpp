@@ -68,6 +68,14 @@ void ParameterStore::install(std::uint16_t index, std::uint64_t signature) {
   }
 }
 
+void ParameterStore::moveDefault(ObjectId id, std::int64_t by) {
+  Entry* entry = dictionary_.find(id);
+  std::uint64_t& factory = factory_[id];
+  const std::uint64_t moved = factory + static_cast<std::uint64_t>(by);
+  if (entry != nullptr && entry->initial_number == factory) entry->initial_number = moved;
+  factory = moved;
+}
+
 void ParameterStore::store(std::uint8_t subindex) {
   for (const auto& pair : dictionary_.entries()) {
     if (!inGroup(pair.first.index, subindex) || !isParameter(pair.second)) continue;

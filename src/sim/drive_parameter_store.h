@@ -17,6 +17,8 @@ class ParameterStore {
  public:
   /// Installs itself where `dictionary` has 1010h and 1011h; both must outlive it.
   ParameterStore(ObjectDictionary& dictionary, std::function<bool()> enabled);
+  /// The default of an object moves with the node-ID; what was saved in its place stays.
+  void moveDefault(ObjectId id, std::int64_t by);
   ParameterStore(const ParameterStore&) = delete;
   ParameterStore& operator=(const ParameterStore&) = delete;
 

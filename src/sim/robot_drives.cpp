@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "slave_context.h"
+
 namespace cia402::sim {
 namespace {
 
@@ -59,7 +61,10 @@ std::vector<SimulatedAxis> simulatedAxes(const config::RobotConfig& robot,
       problems.add("axes/" + axis.name + "/simulation/drive", definition.error().message);
       continue;
     }
-    axes.push_back({axis.name, axis.node_id, *definition, mechanicsOf(axis, simulation)});
+    const canopen::NodeId node = simulation.unconfigured ? kUnconfigured : axis.node_id;
+    const DriveIdentity identity{simulation.vendor, simulation.product, simulation.revision,
+                                 simulation.serial};
+    axes.push_back({axis.name, node, *definition, mechanicsOf(axis, simulation), identity});
   }
   return axes;
 }

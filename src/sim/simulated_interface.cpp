@@ -8,7 +8,7 @@ SimulatedInterface::SimulatedInterface(const std::vector<SimulatedAxis>& axes, d
     : world_(bitrate), interface_(world_.bus(), "master") {
   world_.advance(now);
   for (const SimulatedAxis& axis : axes) {
-    world_.addDrive(axis.name, axis.definition, axis.node, axis.mechanics);
+    world_.addDrive(axis.name, axis.definition, axis.node, axis.mechanics, axis.identity);
   }
   interface_.setAdvance([this](Time time) { world_.advance(time); });
   world_.powerOn();

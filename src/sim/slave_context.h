@@ -9,6 +9,9 @@
 
 namespace cia402::sim {
 
+/// The node-ID of a device that has none yet (CiA 305).
+inline constexpr canopen::NodeId kUnconfigured = 255;
+
 /// What the services of one simulated slave share. `now` is the time of the call in progress, for
 /// hooks that carry none.
 struct SlaveContext {
@@ -20,6 +23,7 @@ struct SlaveContext {
   canopen::NmtState state = canopen::NmtState::unknown;
   Time now{};
   std::function<void(canopen::NmtState)> change_state;
+  std::function<void()> reset_communication;
   std::vector<ObjectId> hooked;
 
   SlaveContext(canopen::NodeId id, can::Sink& frames, ObjectDictionary& objects,

@@ -10,9 +10,11 @@ namespace cia402::sim {
 class World::DriveNode final : public Listener {
  public:
   DriveNode(Bus& bus, std::string name, std::shared_ptr<const DriveDefinition> definition,
-            canopen::NodeId node, const AxisMechanics& mechanics)
+            canopen::NodeId node, const AxisMechanics& mechanics, const DriveIdentity& identity)
       : port_(bus.attach(*this, std::move(name))),
-        drive_(std::move(definition), node, port_, mechanics) {}
+        drive_(std::move(definition), node, port_, mechanics, identity) {
+    drive_.device().setBusBitrate(static_cast<std::uint32_t>(bus.bitrate()));
+  }
 
   void onFrame(const can::Frame& frame, Time now) override {
     drive_.receive(frame, now);
@@ -51,9 +53,10 @@ World::World(double bitrate, std::uint64_t seed) : bus_(bitrate, seed) {}
 World::~World() = default;
 
 Drive& World::addDrive(const std::string& name, std::shared_ptr<const DriveDefinition> definition,
-                       canopen::NodeId node, const AxisMechanics& mechanics) {
+                       canopen::NodeId node, const AxisMechanics& mechanics,
+                       const DriveIdentity& identity) {
   drives_.push_back(
-      std::make_unique<DriveNode>(bus_, name, std::move(definition), node, mechanics));
+      std::make_unique<DriveNode>(bus_, name, std::move(definition), node, mechanics, identity));
   return drives_.back()->drive();
 }
 

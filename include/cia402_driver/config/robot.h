@@ -60,6 +60,8 @@ struct SimulationConfig {
   std::optional<double> index_offset;   ///< turns; the index pulse is at k + index_offset
   std::optional<double> time_constant;  ///< s, lag of the position loop
   double brake_delay = 0.0;             ///< s
+  bool unconfigured = false;            ///< has no node-ID until LSS gives it one
+  std::optional<std::uint32_t> vendor, product, revision, serial;  ///< instead of the drive's 1018h
 };
 
 struct RobotConfig {

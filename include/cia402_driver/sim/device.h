@@ -45,6 +45,11 @@ struct DeviceBehaviour {
                                            ///< change (Damiao)
   bool sends_event_tpdos_on_start = true;  ///< entering operational sends TPDOs of type 254, 255
 
+  // LSS (CiA 305), where 1018h has its four numbers.
+  bool lss = true;
+  bool lss_bit_timing = true;  ///< has the bit rates of table 0 (else error 1)
+  bool lss_store = true;       ///< can store (else error 1)
+
   // Supervision.
   bool sync_timeout = false;  ///< no SYNC for 1.5 * 1006h: EMCY 0x8201 (Damiao)
 };
@@ -67,6 +72,8 @@ class Device {
   class Application {
    public:
     virtual ~Application() = default;
+    /// A reset begins with another node-ID than before: defaults that depend on it have changed.
+    virtual void onNodeId(canopen::NodeId /*before*/, canopen::NodeId /*now*/) {}
     virtual void onPowerOn(Time) {}  ///< also after reset node / reset communication
     /// After reset communication (1000h-1FFFh are back at their power-on values); onPowerOn()
     /// unless the application tells the two apart.
@@ -84,6 +91,7 @@ class Device {
     virtual bool hasFault() const { return false; }
   };
 
+  /// `node` is the stored node-ID; 255: none, LSS has to give one before the device boots.
   /// `dictionary`, `sink` and `application` must outlive the device.
   Device(canopen::NodeId node, can::Sink& sink, ObjectDictionary& dictionary,
          DeviceBehaviour behaviour, Application& application);
@@ -102,7 +110,11 @@ class Device {
   /// When tick() must be called next; kNever if nothing is pending.
   Time nextEvent() const;
 
+  /// The active node-ID, 255 while there is none.
   canopen::NodeId node() const;
+  /// The bit rate of the bus, bit/s. A device that LSS has set to another one is deaf and mute (on
+  /// a real bus it would disturb). Without this call every bit rate is that of the bus.
+  void setBusBitrate(std::uint32_t bitrate);
   /// `unknown` without power, `boot_up` while initialising.
   canopen::NmtState nmtState() const;
   /// Sends an EMCY and enters it into 1003h; 1001h := error_register. The frame waits (at most 16)

@@ -51,6 +51,8 @@ class DictionaryTemplate {
   /// Takes an object away with all its sub-indices. @return false if there is none.
   bool remove(std::uint16_t index);
 
+  /// Objects whose default depends on the node-ID.
+  std::vector<ObjectId> nodeIdObjects() const;
   /// The dictionary of the node `node`.
   ObjectDictionary build(canopen::NodeId node) const;
 

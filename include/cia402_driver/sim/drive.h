@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,11 @@ struct AxisMechanics {
   double counts_per_turn = 131072;       ///< drive position units per motor turn (integer drives)
 };
 
+/// What 1018h of one drive says, where it differs from its family's definition.
+struct DriveIdentity {
+  std::optional<std::uint32_t> vendor, product, revision, serial;
+};
+
 /// Definition of a simulated drive family: dictionary and behaviour, read from
 /// config/simulated_drives/<name>.yaml.
 struct DriveDefinition;
@@ -46,8 +52,9 @@ struct DriveTruth {
 /// A simulated CiA 402 drive: Device + state machine + modes + motor + switches.
 class Drive {
  public:
+  /// @param node node-ID as stored in the drive; 255: none yet, it waits for one by LSS.
   Drive(std::shared_ptr<const DriveDefinition> definition, canopen::NodeId node, can::Sink& sink,
-        AxisMechanics mechanics);
+        AxisMechanics mechanics, const DriveIdentity& identity = {});
   ~Drive();
 
   void powerOn(Time now);

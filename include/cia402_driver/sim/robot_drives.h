@@ -14,9 +14,10 @@ namespace cia402::sim {
 /// What it takes to build the simulated drive of one axis.
 struct SimulatedAxis {
   std::string name;
-  canopen::NodeId node = 0;
+  canopen::NodeId node = 0;  ///< 255: none yet
   std::shared_ptr<const DriveDefinition> definition;
   AxisMechanics mechanics;
+  DriveIdentity identity;
 };
 
 /// The simulated drives of a robot: definitions from `folder` (config/simulated_drives), mechanics

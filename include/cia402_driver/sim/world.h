@@ -33,7 +33,8 @@ class World {
 
   /// Adds a drive; power it on with Drive::powerOn(), or all with powerOn().
   Drive& addDrive(const std::string& name, std::shared_ptr<const DriveDefinition> definition,
-                  canopen::NodeId node, const AxisMechanics& mechanics);
+                  canopen::NodeId node, const AxisMechanics& mechanics,
+                  const DriveIdentity& identity = {});
   /// Adds a participant that outlives the world. @return its port, to send on.
   Port& addParticipant(const std::string& name, Participant& participant);
 

@@ -26,7 +26,7 @@ class VirtualRobot final : private sim::Participant, private bus::EventSink {
         port_(world_.addParticipant("master", *this)),
         robot_(robot, master, port_, *this) {
     for (const sim::SimulatedAxis& axis : axes) {
-      world_.addDrive(axis.name, axis.definition, axis.node, axis.mechanics);
+      world_.addDrive(axis.name, axis.definition, axis.node, axis.mechanics, axis.identity);
     }
   }
 
