@@ -89,7 +89,8 @@ bool Robot::mayProduceSync() {
   const auto is = [](canopen::NodeHealth health) {
     return [health](const canopen::Node& node) { return node.health() == health; };
   };
-  sync_held_ = std::none_of(nodes.begin(), nodes.end(), is(canopen::NodeHealth::ready)) &&
+  const auto started = [](const canopen::Node& node) { return node.started(); };
+  sync_held_ = std::none_of(nodes.begin(), nodes.end(), started) &&
                std::any_of(nodes.begin(), nodes.end(), is(canopen::NodeHealth::booting));
   return !sync_held_;
 }

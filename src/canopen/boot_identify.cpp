@@ -2,7 +2,7 @@
 // The first steps of the boot procedure: is somebody there, and who is it.
 #include <array>
 
-#include "boot.h"
+#include "boot_steps.h"
 #include "boot_text.h"
 
 namespace cia402::canopen {
@@ -31,84 +31,106 @@ std::string mismatch(ObjectId object, const char* name, std::uint32_t is, std::u
          "; check node-ID and wiring, or correct `identity` in the configuration";
 }
 
-}  // namespace
-
-bool BootProcedure::beginWaitingForBootUp(Time now) {
-  step_ = "waiting for boot-up";
-  deadline_ = now + config_.boot_timeout / 4;
-  return true;
-}
-
-BootProcedure::Progress BootProcedure::checkWaitingForBootUp(Time now) {
-  if (now < deadline_) return Progress::waiting;
-  boot_up_missed_ = true;
-  heartbeat_heard_ = false;  // those so far may have left before the reset
-  return Progress::next;
-}
-
-bool BootProcedure::beginProofOfLife(Time now) {
-  SdoOptions once = config_.sdo;
-  once.retries = 0;  // asked again until absent_at_
-  read(kDeviceType, kDeviceTypeName, now, once);
-  return true;
-}
-
-BootProcedure::Progress BootProcedure::checkProofOfLife(Time now) {
-  if (!ticket_->done()) return Progress::waiting;
-  if (ticket_->failure() == SdoTransfer::Failure::timed_out) {
-    return now < absent_at_ ? Progress::again : nobodyThere();
+class BootUpWait : public BootStep {
+ public:
+  bool begin(BootContext& boot, Time now) override {
+    boot.step = "waiting for boot-up";
+    boot.deadline = now + boot.config.boot_timeout / 4;
+    return true;
   }
-  if (!ticket_->ok() && !refused()) return failTransfer();
-  if (boot_up_missed_) {
-    // The drive is there but took no notice of the reset: it may still be operational.
-    sink_.send(nmtFrame(NmtCommand::enter_pre_operational, config_.node_id));
-  }
-  identity_.emplace();
-  if (!ticket_->ok()) {
-    if (config_.device_type) return failTransfer();
-    note("cannot be read: " + objectText(kDeviceType, kDeviceTypeName) + ": " + ticket_->reason());
+  Progress check(BootContext& boot, Time now) override {
+    if (now < boot.deadline) return Progress::waiting;
+    boot.found.boot_up_missed = true;
+    boot.found.heartbeat_heard = false;  // those so far may have left before the reset
     return Progress::next;
   }
-  identity_->device_type = static_cast<std::uint32_t>(toUnsigned(ticket_->data()));
-  if (config_.device_type && *config_.device_type != identity_->device_type) {
-    return fail(
-        mismatch(kDeviceType, kDeviceTypeName, identity_->device_type, *config_.device_type));
-  }
-  return Progress::next;
-}
+};
 
-BootProcedure::Progress BootProcedure::nobodyThere() {
-  if (heartbeat_heard_) {
-    return fail("sends heartbeats, but did not answer SDO requests (" + step_ + ") for " +
-                secondsText(config_.boot_timeout) +
-                "; look for a second device with this node-ID, or raise the SDO time-out");
+class ProofOfLife : public BootStep {
+ public:
+  bool begin(BootContext& boot, Time now) override {
+    SdoOptions once = boot.config.sdo;
+    once.retries = 0;  // asked again until absent_at
+    boot.read(kDeviceType, kDeviceTypeName, now, once);
+    return true;
   }
-  status_ = Status::absent;
-  return fail("does not answer: neither a boot-up message nor an answer to " + step_ +
-              " came within " + secondsText(config_.boot_timeout) +
-              "; check power, cable and termination, bit rate and node-ID");
-}
 
-bool BootProcedure::beginIdentity(Time now) {
-  if (item_ >= kIdentity.size()) return false;
-  read({0x1018, kIdentity[item_].subindex}, kIdentity[item_].name, now);
-  return true;
-}
+  Progress check(BootContext& boot, Time now) override {
+    if (!boot.answered()) return Progress::waiting;
+    if (boot.ticket->failure() == SdoTransfer::Failure::timed_out) {
+      return now < boot.absent_at ? Progress::again : nobodyThere(boot);
+    }
+    if (!boot.ok() && !boot.refused()) return boot.failTransfer();
+    // The drive is there but took no notice of the reset: it may still be operational.
+    if (boot.found.boot_up_missed) boot.command(NmtCommand::enter_pre_operational);
+    return identify(boot);
+  }
 
-BootProcedure::Progress BootProcedure::checkIdentity(Time) {
-  if (!ticket_->done()) return Progress::waiting;
-  const IdentityRow& row = kIdentity[item_];
-  const std::optional<std::uint32_t>& configured = config_.*row.configured;
-  if (!ticket_->ok()) {
-    if (configured || !refused()) return failTransfer();
-    return Progress::again;  // only the vendor id is mandatory, and nobody asked for it
+ private:
+  static Progress identify(BootContext& boot) {
+    Node::Identity& identity = boot.found.identity.emplace();
+    const std::optional<std::uint32_t>& configured = boot.config.device_type;
+    if (!boot.ok()) {
+      if (configured) return boot.failTransfer();
+      boot.noteTransfer("its device type is unknown");
+      return Progress::next;
+    }
+    identity.device_type = boot.value();
+    if (configured && *configured != identity.device_type) {
+      return boot.fail(BootFailure::refused,
+                       mismatch(kDeviceType, kDeviceTypeName, identity.device_type, *configured));
+    }
+    return Progress::next;
   }
-  const auto value = static_cast<std::uint32_t>(toUnsigned(ticket_->data()));
-  (*identity_).*row.read = value;
-  if (configured && *configured != value) {
-    return fail(mismatch({0x1018, row.subindex}, row.name, value, *configured));
+
+  static Progress nobodyThere(BootContext& boot) {
+    if (boot.found.heartbeat_heard) {
+      return boot.fail(BootFailure::timed_out,
+                       "sends heartbeats, but did not answer SDO requests (" + boot.step +
+                           ") for " + secondsText(boot.config.boot_timeout) +
+                           "; look for a second device with this node-ID, or raise the SDO "
+                           "time-out");
+    }
+    return boot.fail(BootFailure::absent,
+                     "does not answer: neither a boot-up message nor an answer to " + boot.step +
+                         " came within " + secondsText(boot.config.boot_timeout) +
+                         "; check power, cable and termination, bit rate and node-ID");
   }
-  return Progress::again;
-}
+};
+
+class Identification : public BootStep {
+ public:
+  bool begin(BootContext& boot, Time now) override {
+    if (item_ >= kIdentity.size()) return false;
+    boot.read({0x1018, kIdentity[item_].subindex}, kIdentity[item_].name, now);
+    return true;
+  }
+
+  Progress check(BootContext& boot, Time) override {
+    if (!boot.answered()) return Progress::waiting;
+    const IdentityRow& row = kIdentity[item_++];
+    const std::optional<std::uint32_t>& configured = boot.config.*row.configured;
+    if (!boot.ok()) {
+      if (configured || !boot.refused()) return boot.failTransfer();
+      return Progress::again;  // only the vendor id is mandatory, and nobody asked for it
+    }
+    const std::uint32_t value = boot.value();
+    (*boot.found.identity).*row.read = value;
+    if (configured && *configured != value) {
+      return boot.fail(BootFailure::refused,
+                       mismatch({0x1018, row.subindex}, row.name, value, *configured));
+    }
+    return Progress::again;
+  }
+
+ private:
+  std::size_t item_ = 0;
+};
+
+}  // namespace
+
+BootStepPointer makeBootUpWait() { return std::make_unique<BootUpWait>(); }
+BootStepPointer makeProofOfLife() { return std::make_unique<ProofOfLife>(); }
+BootStepPointer makeIdentification() { return std::make_unique<Identification>(); }
 
 }  // namespace cia402::canopen

@@ -1,137 +1,146 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-// The steps of the boot procedure that set up heartbeats and SYNC in the drive.
+// Error control: how master and drive notice that the other one is gone.
 #include <algorithm>
+#include <array>
 
-#include "boot.h"
-#include "boot_text.h"
-#include "cia402_driver/canopen/abort_code.h"
+#include "boot_steps.h"
 
 namespace cia402::canopen {
 namespace {
 
-constexpr ObjectId kConsumerHeartbeat{0x1016, 1};  // CiA 301, 7.5.2.17
-constexpr ObjectId kProducerHeartbeat{0x1017, 0};  // CiA 301, 7.5.2.18
-constexpr ObjectId kSyncPeriod{0x1006, 0};         // CiA 301, 7.5.2.6
-constexpr ObjectId kSyncCounter{0x1019, 0};        // CiA 301, 7.5.2.22
-constexpr const char* kConsumerHeartbeatName = "consumer heartbeat time";
-constexpr const char* kProducerHeartbeatName = "producer heartbeat time";
-constexpr const char* kSyncPeriodName = "communication cycle period";
-constexpr const char* kSyncCounterName = "synchronous counter overflow value";
-
-/// Both heartbeat objects hold 16 bits of milliseconds.
+/// All of them hold milliseconds in 16 bits, 1016h beside the node-ID.
 std::uint32_t milliseconds16(Duration duration) {
   const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(duration).count();
   return static_cast<std::uint32_t>(std::clamp<std::int64_t>(ms, 1, 0xFFFF));
 }
 
+class ErrorControlSetup : public BootStep {
+ public:
+  bool begin(BootContext& boot, Time now) override {
+    if (rows_.empty()) plan(boot);
+    if (item_ >= rows_.size()) {
+      conclude(boot);
+      return false;
+    }
+    const Row& row = rows_[item_];
+    comparing_ = boot.config.boot.check != ConfigurationCheck::none;
+    if (comparing_) {
+      boot.read(row.object, row.name, now);
+    } else {
+      boot.write(row.object, toBytes(row.value, row.size), row.name, now);
+    }
+    return true;
+  }
+
+  Progress check(BootContext& boot, Time now) override {
+    if (!boot.answered()) return Progress::waiting;
+    const Row& row = rows_[item_];
+    if (!boot.ok() && !boot.refused()) return boot.failTransfer();
+    if (comparing_ && !boot.has(row.value, row.size) && !boot.refusedAsMissing()) {
+      // Not as the last boot left it: nor may be anything else.
+      comparing_ = false;
+      boot.found.error_control_differed = true;
+      boot.write(row.object, toBytes(row.value, row.size), row.name, now);
+      return Progress::waiting;
+    }
+    judge(row, boot);
+    ++item_;
+    return Progress::again;
+  }
+
+ private:
+  enum class Purpose { watch_master, be_watched, no_heartbeat, guard_time, life_time };
+  struct Row {
+    ObjectId object;
+    const char* name;
+    std::uint32_t value;
+    unsigned size;
+    Purpose purpose;
+  };
+
+  void plan(const BootContext& boot) {
+    const NodeConfig& config = boot.config;
+    if (config.error_control == ErrorControl::guarding) {  // 7.5.2.11, 7.5.2.12
+      rows_ = {
+          {{0x1017, 0}, "producer heartbeat time", 0, 2, Purpose::no_heartbeat},
+          {{0x100C, 0}, "guard time", milliseconds16(config.guard_time), 2, Purpose::guard_time},
+          {{0x100D, 0}, "life time factor", config.life_time_factor, 1, Purpose::life_time}};
+      return;
+    }
+    if (config.master_timeout > Duration::zero() && boot.master_heartbeat > Duration::zero()) {
+      const std::uint32_t value =
+          static_cast<std::uint32_t>(boot.master) << 16 | milliseconds16(config.master_timeout);
+      rows_.push_back(
+          {{0x1016, 1}, "consumer heartbeat time", value, 4, Purpose::watch_master});  // 7.5.2.17
+    }
+    if (config.error_control == ErrorControl::heartbeat && config.heartbeat > Duration::zero()) {
+      rows_.push_back({{0x1017, 0},
+                       "producer heartbeat time",
+                       milliseconds16(config.heartbeat),
+                       2,
+                       Purpose::be_watched});  // 7.5.2.18
+    }
+  }
+
+  void judge(const Row& row, BootContext& boot) {
+    switch (row.purpose) {
+      case Purpose::watch_master:
+        boot.found.watches_master = boot.ok();
+        if (!boot.ok()) boot.noteTransfer("cannot notice a dead master");
+        break;
+      case Purpose::be_watched:
+        boot.found.supervised = boot.ok();
+        if (!boot.ok()) boot.noteTransfer("not supervised, its loss will go unnoticed");
+        break;
+      case Purpose::no_heartbeat:
+        if (!boot.ok() && !boot.refusedAsMissing()) {
+          boot.noteTransfer("its heartbeat could not be switched off for node guarding");
+        }
+        break;
+      case Purpose::guard_time:  // the drive answers RTR without it, too, but will not miss us
+        boot.found.supervised = boot.found.guarded = true;
+        boot.found.watches_master = boot.ok();
+        if (!boot.ok()) boot.noteTransfer("cannot notice a dead master");
+        break;
+      case Purpose::life_time:
+        if (!boot.ok() && boot.found.watches_master) {
+          boot.noteTransfer("cannot notice a dead master");
+        }
+        boot.found.watches_master = boot.found.watches_master && boot.ok();
+        break;
+    }
+  }
+
+  /// What is not even asked for is told, too.
+  void conclude(BootContext& boot) const {
+    const auto planned = [this](Purpose purpose) {
+      return std::any_of(rows_.begin(), rows_.end(),
+                         [purpose](const Row& row) { return row.purpose == purpose; });
+    };
+    if (!planned(Purpose::watch_master) && !planned(Purpose::guard_time)) {
+      boot.notes.emplace_back(
+          "cannot notice a dead master: neither a heartbeat of the master nor node guarding is "
+          "configured for it");
+    }
+    if (!planned(Purpose::be_watched) && !planned(Purpose::guard_time)) {
+      boot.notes.emplace_back(
+          "not supervised, its loss will show in missing TPDOs only: neither heartbeat nor node "
+          "guarding is configured for it");
+    }
+  }
+
+  std::vector<Row> rows_;
+  std::size_t item_ = 0;
+  bool comparing_ = false;
+};
+
 }  // namespace
 
-bool BootProcedure::refusedAsMissing() const {
-  return refused() && (ticket_->abortCode() == abort_code::kNoSuchObject ||
-                       ticket_->abortCode() == abort_code::kNoSuchSubindex);
+const char* toString(ErrorControl kind) {
+  constexpr std::array<const char*, 3> kNames{{"none", "heartbeat", "guarding"}};
+  return kNames.at(static_cast<std::size_t>(kind));
 }
 
-bool BootProcedure::beginMasterTimeout(Time now) {
-  if (config_.master_timeout <= Duration::zero() || !master_has_heartbeat_) return false;
-  const std::uint32_t value =
-      static_cast<std::uint32_t>(master_) << 16 | milliseconds16(config_.master_timeout);
-  write(kConsumerHeartbeat, toBytes(value, 4), kConsumerHeartbeatName, now);
-  return true;
-}
-
-BootProcedure::Progress BootProcedure::checkMasterTimeout(Time) {
-  if (!ticket_->done()) return Progress::waiting;
-  if (ticket_->ok()) return Progress::next;
-  if (!refused()) return failTransfer();
-  note("cannot notice a dead master: " + step_ + ": " + ticket_->reason());
-  return Progress::next;
-}
-
-bool BootProcedure::beginHeartbeat(Time now) {
-  if (config_.heartbeat <= Duration::zero()) return false;
-  write(kProducerHeartbeat, toBytes(milliseconds16(config_.heartbeat), 2), kProducerHeartbeatName,
-        now);
-  return true;
-}
-
-BootProcedure::Progress BootProcedure::checkHeartbeat(Time) {
-  if (!ticket_->done()) return Progress::waiting;
-  supervised_ = ticket_->ok();
-  if (ticket_->ok()) return Progress::next;
-  if (!refused()) return failTransfer();
-  note("not supervised, its loss will go unnoticed: " + step_ + ": " + ticket_->reason());
-  return Progress::next;
-}
-
-bool BootProcedure::beginReadSyncCounter(Time now) {
-  if (!config_.sync_counter) return false;
-  read(kSyncCounter, kSyncCounterName, now);
-  return true;
-}
-
-BootProcedure::Progress BootProcedure::checkReadSyncCounter(Time) {
-  if (!ticket_->done()) return Progress::waiting;
-  if (ticket_->ok()) {
-    sync_counter_differs_ = toUnsigned(ticket_->data()) != *config_.sync_counter;
-  } else if (!refusedAsMissing() || *config_.sync_counter != 0) {
-    return failTransfer();
-  }
-  return Progress::next;
-}
-
-bool BootProcedure::beginReadSyncPeriod(Time now) {
-  if (!sync_counter_differs_ && !config_.sync_period_us) return false;
-  read(kSyncPeriod, kSyncPeriodName, now);
-  return true;
-}
-
-BootProcedure::Progress BootProcedure::checkReadSyncPeriod(Time) {
-  if (!ticket_->done()) return Progress::waiting;
-  if (ticket_->ok()) {
-    sync_period_ = static_cast<std::uint32_t>(toUnsigned(ticket_->data()));
-    wanted_sync_period_ = config_.sync_period_us.value_or(*sync_period_);
-  } else if (!refusedAsMissing()) {
-    return failTransfer();
-  } else if (config_.sync_period_us.value_or(0) != 0) {
-    note("does not know the SYNC period: " + step_ + ": " + ticket_->reason());
-  }
-  return Progress::next;
-}
-
-// The counter may change only while the period is 0 (CiA 301, 7.5.2.22).
-bool BootProcedure::beginStopSyncPeriod(Time now) {
-  if (!sync_counter_differs_ || sync_period_.value_or(0) == 0) return false;
-  write(kSyncPeriod, toBytes(0, 4), kSyncPeriodName, now);
-  return true;
-}
-
-BootProcedure::Progress BootProcedure::checkStopSyncPeriod(Time) {
-  if (!ticket_->done()) return Progress::waiting;
-  if (!ticket_->ok()) return failTransfer();
-  sync_period_ = 0;
-  return Progress::next;
-}
-
-bool BootProcedure::beginWriteSyncCounter(Time now) {
-  if (!sync_counter_differs_) return false;
-  write(kSyncCounter, toBytes(*config_.sync_counter, 1), kSyncCounterName, now);
-  return true;
-}
-
-BootProcedure::Progress BootProcedure::checkWriteSyncCounter(Time) {
-  if (!ticket_->done()) return Progress::waiting;
-  return ticket_->ok() ? Progress::next : failTransfer();
-}
-
-bool BootProcedure::beginWriteSyncPeriod(Time now) {
-  if (!wanted_sync_period_ || sync_period_ == wanted_sync_period_) return false;
-  write(kSyncPeriod, toBytes(*wanted_sync_period_, 4), kSyncPeriodName, now);
-  return true;
-}
-
-BootProcedure::Progress BootProcedure::checkWriteSyncPeriod(Time) {
-  if (!ticket_->done()) return Progress::waiting;
-  return ticket_->ok() ? Progress::next : failTransfer();
-}
+BootStepPointer makeErrorControl() { return std::make_unique<ErrorControlSetup>(); }
 
 }  // namespace cia402::canopen

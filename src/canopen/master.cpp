@@ -22,6 +22,7 @@ Master::Master(MasterConfig config, can::Sink& sink, MasterListener* listener)
     : config_(std::move(config)),
       sink_(sink),
       listener_(listener),
+      pacer_(config_.bitrate),
       told_(config_.nodes.size(), NodeHealth::absent),
       sync_(config_.sync_counter),
       heartbeat_(config_.node_id, config_.heartbeat),
@@ -29,7 +30,7 @@ Master::Master(MasterConfig config, can::Sink& sink, MasterListener* listener)
   routes_[kSyncCobId].service = Service::sync;
   nodes_.reserve(config_.nodes.size());
   for (const NodeConfig& node : config_.nodes) {
-    nodes_.emplace_back(node, config_, sink_, &deadlines_changed_);
+    nodes_.emplace_back(node, config_, sink_, &pacer_, &deadlines_changed_);
     addRoutes(nodes_.size() - 1);
   }
 }
@@ -115,6 +116,7 @@ void Master::receive(const can::Frame& frame, Time stamp, Time now) {
   }
   const Route route = routes_[frame.id];
   if (route.service == Service::tpdo) {
+    pacer_.occupied(1, now);
     nodes_[route.node].receiveTpdo(route.pdo, frame, stamp);
     return;
   }
@@ -178,7 +180,11 @@ void Master::syncPassed(Time now) {
 }
 
 void Master::sendRpdos(Time now) {
-  for (Node& node : nodes_) node.sendRpdos(now);
+  for (Node& node : nodes_) {
+    if (node.health() != NodeHealth::ready) continue;
+    node.sendRpdos(now);
+    pacer_.occupied(static_cast<unsigned>(node.image().rpdos().size()), now);
+  }
 }
 
 void Master::commandAll(NmtCommand command, Time now) {

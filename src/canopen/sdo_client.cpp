@@ -75,13 +75,13 @@ void SdoClient::tick(Time now) {
 
 Time SdoClient::nextDeadline() const {
   if (phase_ != Phase::idle) return deadline_;
-  return queue_.empty() ? kNever : kAtOnce;
+  return queue_.empty() ? kNever : std::max(kAtOnce, held_until_);
 }
 
 bool SdoClient::idle() const { return queue_.empty(); }
 
 void SdoClient::startNext(Time now) {
-  if (queue_.empty()) return;
+  if (queue_.empty() || now < held_until_) return;
   attempt_ = 0;
   initiate(now);
 }

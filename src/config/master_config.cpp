@@ -143,6 +143,7 @@ canopen::MasterConfig makeMasterConfig(const RobotConfig& robot, Problems& probl
   master.heartbeat = robot.bus.heartbeat;
   master.sync_period = robot.bus.sync_period;
   master.sync_counter = robot.bus.sync_counter;
+  master.bitrate = robot.bus.bitrate;
   for (const AxisConfig& axis : robot.axes) {
     if (axis.profile) master.nodes.push_back(makeNode(robot, axis, problems));
   }

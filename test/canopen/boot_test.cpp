@@ -35,6 +35,8 @@ TEST_F(BootTest, identifies_configures_and_starts_a_drive_frame_by_frame) {
                    "603 40 18 10 04 00 00 00 00",  //
                    "603 23 16 10 01 2C 01 7F 00",  // watch node 127, 300 ms
                    "603 2B 17 10 00 64 00 00 00",  // heartbeat every 100 ms
+                   "603 40 05 10 00 00 00 00 00",  // does it make SYNC?
+                   "603 40 14 10 00 00 00 00 00",  // where do its emergencies go?
                    "603 40 00 14 01 00 00 00 00",  // is there an RPDO to disable?
                    "603 40 01 14 01 00 00 00 00",  //
                    "603 40 02 14 01 00 00 00 00",  //
@@ -122,7 +124,7 @@ TEST_F(BootTest, nobody_there_is_absent_and_told_what_to_check) {
             "shoulder (node 3): does not answer: neither a boot-up message nor an answer to "
             "reading 1000:00 device type came within 5 s; check power, cable and termination, bit "
             "rate and node-ID");
-  EXPECT_EQ(node->nextDeadline(), kNever);
+  EXPECT_EQ(node->nextDeadline(), Time() + milliseconds(5250) + seconds(2)) << "the first look";
 }
 
 TEST_F(BootTest, an_absent_node_boots_when_it_is_switched_on_later) {
@@ -224,7 +226,7 @@ TEST_F(BootTest, a_time_out_is_retried_then_told_with_step_object_and_reason) {
   EXPECT_EQ(node->health(), NodeHealth::failed);
   EXPECT_EQ(node->problem(),
             "shoulder (node 3): boot failed while reading 1018:01 vendor id: no answer within 500 "
-            "ms, asked 2 times");
+            "ms, asked 2 times; it is tried again in 1 s (attempt 2 of 3)");
   peer.on(kAskVendor, "583 43 18 10 01 CD AB 00 00");
   node->boot(now, true);
   settle();
@@ -272,7 +274,7 @@ TEST_F(BootTest, stops_the_sync_period_before_it_changes_the_sync_counter) {
   boot();
   EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
   const Lines sent = peer.take();
-  EXPECT_EQ(Lines(sent.begin() + 8, sent.begin() + 13),
+  EXPECT_EQ(Lines(sent.begin() + 10, sent.begin() + 15),
             (Lines{"603 40 19 10 00 00 00 00 00", "603 40 06 10 00 00 00 00 00",
                    "603 23 06 10 00 00 00 00 00", "603 2F 19 10 00 00 00 00 00",
                    "603 23 06 10 00 A0 0F 00 00"}));
@@ -362,14 +364,124 @@ TEST_F(BootTest, fails_when_the_drive_does_not_become_operational) {
   EXPECT_EQ(peer.take().back(), "000 80 03");
 }
 
-TEST_F(BootTest, without_heartbeat_it_is_ready_as_soon_as_it_is_started) {
+TEST_F(BootTest, without_heartbeat_its_first_tpdo_tells_that_it_is_operational) {
   config.heartbeat = Duration::zero();
   config.master_timeout = Duration::zero();
   peer.forget("000 01 03");
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), NodeHealth::booting);
+  EXPECT_EQ(node->bootStep(), "waiting for the first TPDO");
   EXPECT_FALSE(sentLine("603 2B 17 10 00 64 00 00 00"));
   EXPECT_FALSE(sentLine("603 23 16 10 01 2C 01 7F 00"));
+  EXPECT_EQ(peer.take().back(), "000 01 03");
+  pass(milliseconds(250));
+  EXPECT_EQ(peer.take(), Lines{"000 01 03"}) << "the first one may have been lost";
+  node->receiveTpdo(0, test::frame("183 37 02 01 00 00 00"), now);
+  pass(milliseconds(0));
+  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_THAT(node->notes(), ElementsAre(HasSubstr("cannot notice a dead master: neither"),
+                                         HasSubstr("not supervised, its loss will show in missing "
+                                                   "TPDOs only")));
+}
+
+TEST_F(BootTest, without_heartbeat_and_without_tpdos_in_time_the_boot_fails) {
+  config.heartbeat = Duration::zero();
+  peer.forget("000 01 03");
+  boot();
+  pass(milliseconds(1000));
+  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_THAT(node->problem(),
+              HasSubstr("was started (NMT), but none of its TPDOs came in time; read its error"));
+  EXPECT_EQ(peer.take().back(), "000 80 03");
+}
+
+TEST_F(BootTest, where_no_tpdo_comes_by_itself_it_is_asked_for_its_state) {
+  config.heartbeat = Duration::zero();
+  config.pdos[1].transmission = 255;
+  peer.replace("603 40 00 18 02 00 00 00 00", "583 4F 00 18 02 FF 00 00 00");
+  peer.forget("000 01 03");
+  peer.on("703 R1", "703 05");
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_THAT(node->notes(), ElementsAre(HasSubstr("not supervised")));
+  peer.forget("703 R1");
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::booting);
+  pass(milliseconds(100));
+  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_THAT(node->notes().back(), HasSubstr("nothing tells whether it became operational"));
+}
+
+TEST_F(BootTest, a_start_command_that_was_lost_is_repeated) {
+  peer.forget("000 01 03");
+  boot();
+  peer.take();
+  hear("703 7F");
+  peer.on("000 01 03", "703 05");
+  pass(milliseconds(250));
+  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(peer.take(), Lines{"000 01 03"});
+}
+
+TEST_F(BootTest, a_drive_that_makes_sync_itself_is_told_to_stop) {
+  peer.replace("603 40 05 10 00 00 00 00 00", "583 43 05 10 00 80 00 00 40")
+      .on("603 23 05 10 00 80 00 00 00", "583 60 05 10 00 00 00 00 00");
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_TRUE(sentLine("603 23 05 10 00 80 00 00 00"));
+}
+
+TEST_F(BootTest, a_drive_that_goes_on_to_make_sync_is_refused) {
+  peer.replace("603 40 05 10 00 00 00 00 00", "583 43 05 10 00 80 00 00 40")
+      .on("603 23 05 10 00 80 00 00 00", "583 80 05 10 00 02 00 01 06");
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_THAT(node->problem(), HasSubstr("the drive makes SYNC itself (1005:00 COB-ID SYNC is "
+                                         "0x40000080), as the master does, and refuses to change"));
+}
+
+TEST_F(BootTest, another_sync_identifier_is_set_right_or_refused) {
+  peer.replace("603 40 05 10 00 00 00 00 00", "583 43 05 10 00 81 00 00 00")
+      .on("603 23 05 10 00 80 00 00 00", "583 60 05 10 00 00 00 00 00");
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  peer.replace("603 23 05 10 00 80 00 00 00", "583 80 05 10 00 02 00 01 06");
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_THAT(node->problem(), HasSubstr("the drive waits for another SYNC (1005:00"));
+}
+
+TEST_F(BootTest, emergencies_under_another_identifier_are_switched_off_then_set_right) {
+  peer.replace("603 40 14 10 00 00 00 00 00", "583 43 14 10 00 90 00 00 00")
+      .on("603 23 14 10 00 90 00 00 80", "583 60 14 10 00 00 00 00 00")
+      .on("603 23 14 10 00 83 00 00 00", "583 60 14 10 00 00 00 00 00");
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  const Lines sent = peer.take();
+  const auto disabled = std::find(sent.begin(), sent.end(), "603 23 14 10 00 90 00 00 80");
+  ASSERT_NE(disabled, sent.end());
+  EXPECT_EQ(*(disabled + 1), "603 23 14 10 00 83 00 00 00");
+}
+
+TEST_F(BootTest, emergencies_that_are_disabled_are_enabled_or_told) {
+  peer.replace("603 40 14 10 00 00 00 00 00", "583 43 14 10 00 83 00 00 80")
+      .on("603 23 14 10 00 83 00 00 00", "583 60 14 10 00 00 00 00 00");
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_THAT(node->notes(), IsEmpty());
+  peer.replace("603 23 14 10 00 83 00 00 00", "583 80 14 10 00 02 00 01 06");
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_THAT(node->notes(), ElementsAre(HasSubstr("its emergencies go unheard (1014:00 COB-ID "
+                                                   "EMCY is 0x80000083)")));
+}
+
+TEST_F(BootTest, a_drive_without_1005h_and_1014h_is_taken_as_the_standard_predefines) {
+  peer.replace("603 40 05 10 00 00 00 00 00", "583 80 05 10 00 00 00 02 06")
+      .replace("603 40 14 10 00 00 00 00 00", "583 80 14 10 00 00 00 02 06");
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_THAT(node->notes(), IsEmpty());
 }
 
 }  // namespace

@@ -38,6 +38,7 @@ inline const std::vector<std::pair<const char*, const char*>>& servoScript() {
       {"40 18 10 04 00 00 00 00", "43 18 10 04 39 30 00 00"},  // serial 12345
       {"23 16 10 01 2C 01 7F 00", "60 16 10 01 00 00 00 00"},  // 1016:01 = node 127, 300 ms
       {"2B 17 10 00 64 00 00 00", "60 17 10 00 00 00 00 00"},  // 1017h = 100 ms
+      {"40 05 10 00 00 00 00 00", "43 05 10 00 80 00 00 00"},  // 1005h = 0x80, makes no SYNC
       {"40 01 14 01 00 00 00 00", "80 01 14 01 00 00 02 06"},  // there is no RPDO 2
       {"40 02 14 01 00 00 00 00", "80 02 14 01 00 00 02 06"},
       {"40 03 14 01 00 00 00 00", "80 03 14 01 00 00 02 06"},
@@ -69,6 +70,8 @@ inline void addServo(ScriptedPeer& peer, unsigned node) {
   peer.on(request(node, "40 00 14 01 00 00 00 00"),
           std::vector<std::string>{answer(node, std::string("43 00 14 01 ") + id + " 02 00 00")});
   std::snprintf(id, sizeof(id), "%02X", 0x80 + node);
+  peer.on(request(node, "40 14 10 00 00 00 00 00"),  // 1014h = 0x80 + node
+          std::vector<std::string>{answer(node, std::string("43 14 10 00 ") + id + " 00 00 00")});
   peer.on(request(node, "40 00 18 01 00 00 00 00"),
           std::vector<std::string>{answer(node, std::string("43 00 18 01 ") + id + " 01 00 00")});
   peer.on(nmt("01", node), std::vector<std::string>{line(0x700, node, "05")});

@@ -24,10 +24,12 @@ inline can::Frame frame(const std::string& text) {
   return result;
 }
 
+/// The same the other way round; "701 R1" for a remote frame that asks for one byte.
 inline std::string text(const can::Frame& frame) {
   char word[8];
   std::snprintf(word, sizeof(word), "%03X", static_cast<unsigned>(frame.id));
   std::string result = word;
+  if (frame.remote) return result + " R" + std::to_string(frame.size);
   for (std::size_t i = 0; i < frame.size; ++i) {
     std::snprintf(word, sizeof(word), " %02X", static_cast<unsigned>(frame.data[i]));
     result += word;

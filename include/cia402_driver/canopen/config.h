@@ -13,6 +13,37 @@
 
 namespace cia402::canopen {
 
+/// How the loss of a node is noticed, and by the node that of the master (CiA 301, 7.2.8.3.2).
+enum class ErrorControl : std::uint8_t {
+  none,       ///< the loss of the node shows in its missing TPDOs only
+  heartbeat,  ///< both send heartbeats and watch those of the other
+  guarding,   ///< the master asks by RTR; the node answers and watches that it is asked
+};
+const char* toString(ErrorControl kind);
+
+/// How the master knows that a node still holds what was configured (CiA 301, 7.5.2.23, 1020h).
+enum class ConfigurationCheck : std::uint8_t {
+  none,      ///< it is configured at each boot
+  checksum,  ///< 1020h holds a checksum of what this master wrote last
+  date,      ///< 1020h holds the date that was configured for this configuration
+};
+
+/// How a boot that did not succeed goes on by itself.
+struct BootPolicy {
+  bool optional = false;                  ///< the node may be absent without that being an error
+  bool restore_before_configure = false;  ///< 1011h:01 once, before the first configuration
+  /// How often a boot that failed by a time-out is tried again. What the drive refused, and a wrong
+  /// identity, is not.
+  unsigned retries = 2;
+  Duration retry_delay{std::chrono::seconds(1)};
+  /// An absent or lost node is asked for its device type so often, first...
+  Duration search_period{std::chrono::seconds(2)};
+  /// ... and, doubled each time, at last. Zero: never.
+  Duration search_period_max{std::chrono::seconds(30)};
+  ConfigurationCheck check = ConfigurationCheck::none;
+  std::uint32_t date = 0, time = 0;  ///< 1020h:01, days since 1984-01-01; 1020h:02, ms of the day
+};
+
 /// A write to the drive's object dictionary during boot.
 struct StartupWrite {
   ObjectId object;
@@ -20,6 +51,7 @@ struct StartupWrite {
   Bytes data;                     ///< wire order
   bool optional = false;          ///< an abort by the drive is noted, not an error
   bool only_if_different = true;  ///< read first, write only what differs
+  bool always = false;            ///< no configuration: also where that is left out as unchanged
 };
 
 /// Everything the master must know of one node.
@@ -28,12 +60,17 @@ struct NodeConfig {
   std::string name;  ///< for messages: the axis or joint
   /// Identity the node must have where given: 1000h, 1018h:01..04.
   std::optional<std::uint32_t> device_type, vendor_id, product_code, revision, serial;
+  ErrorControl error_control = ErrorControl::heartbeat;
   /// Heartbeat asked of the node (1017h); zero: none, the node cannot be supervised.
   Duration heartbeat{std::chrono::milliseconds(100)};
   /// Without a heartbeat for this long the node is lost.
   Duration heartbeat_timeout{std::chrono::milliseconds(300)};
   /// The node shall watch the master's heartbeat (1016h:01) with this time-out; zero: not written.
   Duration master_timeout{std::chrono::milliseconds(300)};
+  /// With guarding: how often the node is asked (100Ch), whole ms; without an accepted answer for
+  /// `life_time_factor` (100Dh) times that it is lost.
+  Duration guard_time{std::chrono::milliseconds(100)};
+  std::uint8_t life_time_factor = 3;
   std::optional<std::uint8_t> sync_counter;     ///< 1019h to write; none: not written
   std::optional<std::uint32_t> sync_period_us;  ///< 1006h to write; none: not written
   bool map_count_may_be_read_only = false;      ///< quirk: sub0 of 16xxh/1Axxh aborts 0x06010002
@@ -41,6 +78,7 @@ struct NodeConfig {
   std::vector<StartupWrite> writes;  ///< after the PDOs, in this order
   SdoOptions sdo;
   Duration boot_timeout{std::chrono::seconds(5)};  ///< from reset to boot-up or an SDO answer
+  BootPolicy boot;
 };
 
 /// Configuration of the master itself.
@@ -51,6 +89,9 @@ struct MasterConfig {
   std::uint8_t sync_counter = 0;  ///< overflow value of the SYNC counter (1019h): 0 or 2..240
   bool external_sync = false;     ///< another device produces SYNC, the master follows it
   Duration time_interval{0};      ///< of the TIME message; zero: none
+  /// bit/s. Requests of booting nodes leave no faster than the bus carries them together with
+  /// their answers; 0: at once.
+  double bitrate = 0.0;
   std::vector<NodeConfig> nodes;
 };
 

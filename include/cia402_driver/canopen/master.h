@@ -83,6 +83,7 @@ class Master {
   MasterConfig config_;
   can::Sink& sink_;
   MasterListener* listener_;
+  SdoPacer pacer_;
   std::vector<Node> nodes_;
   std::vector<NodeHealth> told_;  ///< what the listener knows of each node
   std::array<Route, kIdentifiers> routes_{};

@@ -13,6 +13,7 @@
 #include "cia402_driver/canopen/nmt.h"
 #include "cia402_driver/canopen/pdo.h"
 #include "cia402_driver/canopen/sdo_client.h"
+#include "cia402_driver/canopen/sdo_pacer.h"
 
 namespace cia402::canopen {
 
@@ -22,7 +23,7 @@ enum class NodeHealth : std::uint8_t {
   booting,  ///< identified and configured at the moment; bootStep() says how far
   ready,    ///< configured and started (operational)
   failed,   ///< boot failed, or commanded out of operation; problem() says why; boot() tries again
-  lost,     ///< heartbeat missing
+  lost,     ///< heartbeat, or answer to guarding, missing
 };
 const char* toString(NodeHealth health);
 
@@ -30,10 +31,11 @@ const char* toString(NodeHealth health);
 /// Owned by Master.
 class Node {
  public:
-  /// @param deadlines_changed set whenever nextDeadline() may have become another one; if any, it
-  /// outlives the node.
+  /// @param pacer gives turns to the requests of all booting nodes; none: they leave at once.
+  /// @param deadlines_changed set whenever nextDeadline() may have become another one. Both outlive
+  /// the node.
   Node(const NodeConfig& config, const MasterConfig& master, can::Sink& sink,
-       bool* deadlines_changed = nullptr);
+       SdoPacer* pacer = nullptr, bool* deadlines_changed = nullptr);
   ~Node();
   Node(Node&&) noexcept;
 
@@ -54,6 +56,17 @@ class Node {
   const std::optional<Identity>& identity() const;
   /// Notes worth telling: optional writes refused, objects missing, heartbeat not supported.
   const std::vector<std::string>& notes() const;
+  /// Good to know about the last boot, but no reason to worry.
+  const std::vector<std::string>& remarks() const;
+  /// Who notices whose loss, as found at boot.
+  struct Supervision {
+    ErrorControl kind = ErrorControl::none;
+    bool watched = false;         ///< the master notices the loss of the node
+    bool watches_master = false;  ///< the node notices the loss of the master
+  };
+  Supervision supervision() const;
+  /// It was told to start: its PDOs are as configured.
+  bool started() const;
 
   /// (Re)starts the boot procedure: identify, configure, start. @param reset send NMT reset
   /// communication first; without it the node is only brought to pre-operational.

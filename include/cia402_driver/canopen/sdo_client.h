@@ -80,6 +80,9 @@ class SdoClient {
   void tick(Time now);
   /// When tick() must be called at the latest.
   Time nextDeadline() const;
+  /// Queued transfers do not start before `when`, for requests that take turns on the bus; a
+  /// transfer on its way goes on.
+  void holdUntil(Time when) { held_until_ = when; }
   /// Ends all transfers, running and queued, with `reason` (e.g. "the node rebooted").
   void cancelAll(const std::string& reason);
 
@@ -127,7 +130,7 @@ class SdoClient {
   std::deque<Transfer> queue_;  ///< the front one is on the wire unless phase_ is idle
   Counters counters_;
   Phase phase_ = Phase::idle;
-  Time deadline_ = kNever;
+  Time deadline_ = kNever, held_until_{};
   int attempt_ = 0;
   bool toggle_ = false;
   std::size_t offset_ = 0;                  ///< bytes of a download already sent

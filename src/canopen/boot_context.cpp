@@ -1,0 +1,66 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "boot_context.h"
+
+#include <utility>
+
+#include "boot_text.h"
+#include "cia402_driver/canopen/abort_code.h"
+
+namespace cia402::canopen {
+
+void BootContext::reset() {
+  found = BootFindings();
+  ticket.reset();
+  deadline = kNever;
+  absent_at = kNever;
+  error.clear();
+  failure = BootFailure::none;
+  ask_state = false;
+  notes.clear();
+  remarks.clear();
+}
+
+void BootContext::read(ObjectId object, const std::string& name, Time now,
+                       std::optional<SdoOptions> options) {
+  step = "reading " + objectText(object, name);
+  ticket = sdo.upload(object, name, options);
+  submit(now);
+}
+
+void BootContext::write(ObjectId object, Bytes data, const std::string& name, Time now,
+                        std::optional<SdoOptions> options) {
+  step = "writing " + valueText(data) + " to " + objectText(object, name);
+  ticket = sdo.download(object, std::move(data), name, options);
+  submit(now);
+}
+
+void BootContext::submit(Time now) {
+  sdo.holdUntil(pacer.turn(now));
+  sdo.tick(now);
+}
+
+bool BootContext::refused() const {
+  return ticket->failure() == SdoTransfer::Failure::aborted_by_server;
+}
+
+bool BootContext::refusedAsMissing() const {
+  return refused() && (ticket->abortCode() == abort_code::kNoSuchObject ||
+                       ticket->abortCode() == abort_code::kNoSuchSubindex);
+}
+
+Progress BootContext::fail(BootFailure kind, const std::string& reason) {
+  failure = kind;
+  error = reason;
+  return Progress::failed;
+}
+
+Progress BootContext::failTransfer() {
+  return fail(refused() ? BootFailure::refused : BootFailure::timed_out,
+              "boot failed while " + step + ": " + ticket->reason());
+}
+
+void BootContext::noteTransfer(const std::string& what) {
+  notes.push_back(what + ": " + step + ": " + ticket->reason());
+}
+
+}  // namespace cia402::canopen

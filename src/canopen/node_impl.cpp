@@ -1,0 +1,275 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "node_impl.h"
+
+#include <algorithm>
+
+#include "boot_text.h"
+
+namespace cia402::canopen {
+namespace {
+
+constexpr std::uint8_t kBootUp = 0x00;
+
+NmtState stateOf(std::uint8_t byte) {
+  const auto state = static_cast<NmtState>(byte & 0x7F);  // bit 7: node guarding's toggle bit
+  switch (state) {
+    case NmtState::stopped:
+    case NmtState::operational:
+    case NmtState::pre_operational:
+      return state;
+    case NmtState::boot_up:
+    case NmtState::unknown:
+      break;
+  }
+  return NmtState::unknown;
+}
+
+}  // namespace
+
+Node::Impl::Impl(const NodeConfig& node_config, const MasterConfig& master, can::Sink& frame_sink,
+                 SdoPacer* shared_pacer, bool* changed)
+    : config(node_config),
+      sink(frame_sink),
+      deadlines_changed(changed),
+      sdo(config.node_id, sink, config.sdo),
+      image(config.pdos),
+      consumer(config.heartbeat_timeout),
+      guard(config.node_id, config.guard_time, config.life_time_factor),
+      boot(config, master, sdo, sink, shared_pacer != nullptr ? *shared_pacer : own_pacer),
+      retry(config.boot) {}
+
+std::string Node::Impl::sentence(const std::string& text) const {
+  const std::string node = "node " + std::to_string(config.node_id);
+  return (config.name.empty() ? node : config.name + " (" + node + ")") + ": " + text;
+}
+
+const std::string& Node::Impl::step() const {
+  const std::string search = boot.running() ? std::string() : retry.searchText();
+  step_text = search.empty() ? retry.attemptText() + boot.step() : search;
+  return step_text;
+}
+
+void Node::Impl::refresh() {
+  next = std::min({sdo.nextDeadline(), consumer.deadline(), guard.deadline(), boot.deadline(),
+                   retry.deadline()});
+  sdo_lent = false;
+  if (deadlines_changed != nullptr) *deadlines_changed = true;
+  pdos_live = boot.started() && (health == NodeHealth::ready || health == NodeHealth::booting);
+}
+
+void Node::Impl::startBoot(BootProcedure::From from, const std::string& why, Time now) {
+  retry.reset();
+  beginBoot(from, why, now);
+}
+
+void Node::Impl::beginBoot(BootProcedure::From from, const std::string& why, Time now) {
+  begun = true;
+  takeOut(NodeHealth::booting, why);
+  notes.clear();
+  boot.start(from, now);
+}
+
+void Node::Impl::takeOut(NodeHealth as, const std::string& why) {
+  boot.stop();
+  consumer.disarm();
+  guard.stop();
+  sdo.cancelAll(why.empty() ? "the node is booted again" : "the node " + why);
+  probe.reset();
+  image.invalidate();
+  health = as;
+  problem = why.empty() ? std::string() : sentence(why);
+}
+
+void Node::Impl::lose(const std::string& why, Time now) {
+  // It may still hear us and go on with its last set-point, which nobody sends any more.
+  sink.send(nmtFrame(NmtCommand::stop, config.node_id));
+  takeOut(NodeHealth::lost,
+          why + ": check power and cable; it is configured again when it is back");
+  retry.search(now);
+}
+
+void Node::Impl::runBoot(Time now) {
+  if (!boot.running()) return;
+  const std::size_t adopted = boot.found().cob_ids.size();
+  const BootProcedure::Status status = boot.advance(now);
+  if (boot.found().cob_ids.size() != adopted) adoptCobIds();
+  switch (status) {
+    case BootProcedure::Status::running:
+      superviseWhileBooting(now);
+      break;
+    case BootProcedure::Status::done:
+      superviseWhileBooting(now);
+      succeed(now);
+      break;
+    case BootProcedure::Status::failed:
+      endBoot(NodeHealth::failed, now);
+      break;
+    case BootProcedure::Status::absent:
+      endBoot(NodeHealth::absent, now);
+      break;
+    case BootProcedure::Status::idle:
+      break;
+  }
+}
+
+void Node::Impl::adoptCobIds() {
+  for (const AdoptedCobId& pdo : boot.found().cob_ids) {
+    image.setCobId(pdo.direction, pdo.number, pdo.cob_id);
+    cob_ids_changed = true;
+  }
+}
+
+void Node::Impl::superviseWhileBooting(Time now) {
+  const BootFindings& found = boot.found();
+  const bool ask = boot.takeStateRequest();
+  if (found.guarded) {
+    if (!guard.active()) {
+      guard.start(found.after_reset, sink, now);
+    } else if (ask) {
+      guard.ask(sink, now);
+    }
+  } else if (found.supervised) {
+    consumer.allow();
+  } else if (ask) {
+    sink.send(NodeGuard::request(config.node_id));
+  }
+}
+
+void Node::Impl::succeed(Time now) {
+  health = NodeHealth::ready;
+  problem.clear();
+  retry.reset();
+  if (boot.found().supervised && !boot.found().guarded) consumer.arm(now);
+  notes = boot.notes();
+  compareWithLastIdentity();
+}
+
+void Node::Impl::compareWithLastIdentity() {
+  const Node::Identity& now = *boot.found().identity;
+  if (last_identity) {
+    const Node::Identity& then = *last_identity;
+    const bool same_kind = now.vendor_id == then.vendor_id && now.product_code == then.product_code;
+    if (now.serial != then.serial || !same_kind) {
+      notes.push_back("is another drive than before: its serial number (1018:04) is " +
+                      std::to_string(now.serial) + ", it was " + std::to_string(then.serial) +
+                      (same_kind ? "" : ", and its vendor or product is another one, too") +
+                      "; check its position and parameters before it moves, or give `serial` under "
+                      "`identity` so that a strange drive is refused");
+    }
+  }
+  last_identity = now;
+}
+
+void Node::Impl::endBoot(NodeHealth end, Time now) {
+  consumer.disarm();
+  guard.stop();
+  health = end;
+  notes = boot.notes();
+  if (end == NodeHealth::absent) {
+    retry.search(now);
+  } else {
+    retry.failed(boot.failure(), now);
+  }
+  problem = sentence(boot.error() + retry.outlook());
+}
+
+void Node::Impl::onBootUp(Time now) {
+  ++boot_ups;
+  nmt_state = NmtState::boot_up;
+  if (!begun) return;
+  const bool surprise = health == NodeHealth::ready;
+  startBoot(BootProcedure::From::boot_up,
+            surprise
+                ? "rebooted by itself (boot-up message in operation): look for a power dip or a "
+                  "watchdog reset; it is configured again and stays disabled"
+                : "",
+            now);
+}
+
+void Node::Impl::onErrorControl(std::uint8_t byte, Time stamp, Time now) {
+  if (byte == kBootUp) {
+    onBootUp(now);
+  } else if (!guard.active() || guard.receive(byte, now)) {
+    onHeartbeat(stateOf(byte), stamp, now);
+  }
+}
+
+void Node::Impl::onHeartbeat(NmtState state, Time stamp, Time now) {
+  last_heartbeat = stamp;
+  nmt_state = state;
+  consumer.heard(now);
+  if (boot.running()) {
+    boot.heartbeatHeard(state);
+    runBoot(now);
+    return;
+  }
+  if (!begun) return;
+  if (health == NodeHealth::absent || health == NodeHealth::lost) {
+    startBoot(BootProcedure::From::unknown, "", now);
+  } else if (health == NodeHealth::ready && state != NmtState::operational &&
+             state != NmtState::unknown) {
+    startBoot(BootProcedure::From::unknown,
+              std::string("became ") + toString(state) +
+                  " without our command: look for another NMT master or a reset; it is configured "
+                  "again and stays disabled",
+              now);
+  }
+}
+
+void Node::Impl::onEmergency(const can::Frame& frame, Time stamp) {
+  if (frame.size < 2) return;
+  Emergency emergency;
+  emergency.code = static_cast<std::uint16_t>(frame.data[0] | frame.data[1] << 8);
+  if (frame.size > 2) emergency.error_register = frame.data[2];
+  for (std::size_t i = 3; i < frame.size; ++i) emergency.vendor[i - 3] = frame.data[i];
+  emergency.stamp = stamp;
+  last_emergency = emergency;
+  ++emergencies;
+}
+
+void Node::Impl::checkSupervision(Time now) {
+  if (consumer.expired(now)) {
+    lose("no heartbeat for " + secondsText(consumer.timeout()), now);
+    return;
+  }
+  if (!guard.expired(now)) {
+    guard.tick(sink, now);
+    return;
+  }
+  if (!boot.running() || guard.answered()) {
+    lose(guard.loss(), now);
+    return;
+  }
+  const std::string why = "boot failed: " + guard.loss() +
+                          "; if the drive has no node guarding, choose another `error_control`";
+  takeOut(NodeHealth::failed, why);
+  retry.failed(BootFailure::timed_out, now);
+  problem = sentence(why + retry.outlook());
+}
+
+void Node::Impl::tryAgain(Time now) {
+  if (retry.retryDue(now)) {
+    retry.begun();
+    beginBoot(BootProcedure::From::unknown, "", now);
+  } else if (retry.searchDue(now)) {
+    retry.begun();
+    SdoOptions once = config.sdo;
+    once.retries = 0;
+    probe = sdo.upload({0x1000, 0}, "device type", once);
+    sdo.tick(now);
+  }
+}
+
+/// Any answer to the search, a refusal as well, tells that somebody is there.
+void Node::Impl::runProbe(Time now) {
+  if (!probe || !probe->done()) return;
+  const SdoTicket answer = std::move(probe);
+  probe.reset();
+  if (answer->ok() || answer->failure() == SdoTransfer::Failure::aborted_by_server) {
+    startBoot(BootProcedure::From::unknown, "", now);
+  } else {
+    retry.notFound(now);
+  }
+}
+
+}  // namespace cia402::canopen

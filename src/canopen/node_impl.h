@@ -1,0 +1,75 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "boot.h"
+#include "boot_retry.h"
+#include "cia402_driver/canopen/heartbeat.h"
+#include "cia402_driver/canopen/node.h"
+#include "cia402_driver/canopen/node_guarding.h"
+
+namespace cia402::canopen {
+
+/// The parts of a node and what one's news mean to the others.
+struct Node::Impl {
+  Impl(const NodeConfig& node_config, const MasterConfig& master, can::Sink& frame_sink,
+       SdoPacer* shared_pacer, bool* changed);
+
+  /// Begins a boot that is no repetition of a failed one.
+  void startBoot(BootProcedure::From from, const std::string& why, Time now);
+  void beginBoot(BootProcedure::From from, const std::string& why, Time now);
+  void runBoot(Time now);
+  void succeed(Time now);
+  void endBoot(NodeHealth end, Time now);
+  /// Whatever was known of the node or on its way to it is void.
+  void takeOut(NodeHealth as, const std::string& why);
+  void lose(const std::string& why, Time now);
+
+  void onBootUp(Time now);
+  void onErrorControl(std::uint8_t byte, Time stamp, Time now);
+  void onHeartbeat(NmtState state, Time stamp, Time now);
+  void onEmergency(const can::Frame& frame, Time stamp);
+
+  void adoptCobIds();
+  void superviseWhileBooting(Time now);
+  void checkSupervision(Time now);
+  void tryAgain(Time now);
+  void runProbe(Time now);
+  /// A drive exchanged while it was off is told where no serial number refuses it.
+  void compareWithLastIdentity();
+
+  void refresh();
+  std::string sentence(const std::string& text) const;
+  const std::string& step() const;
+
+  const NodeConfig config;
+  can::Sink& sink;
+  bool* deadlines_changed;  ///< may be nullptr
+  SdoPacer own_pacer{0.0};  ///< where the master shares none
+  SdoClient sdo;
+  ProcessImage image;
+  HeartbeatConsumer consumer;
+  NodeGuard guard;
+  BootProcedure boot;
+  BootRetry retry;
+  SdoTicket probe;  ///< of the search for a node that does not answer
+  NodeHealth health = NodeHealth::absent;
+  NmtState nmt_state = NmtState::unknown;
+  std::string problem;
+  mutable std::string step_text;
+  std::vector<std::string> notes;
+  std::optional<Node::Identity> last_identity;  ///< of the last boot that succeeded
+  bool begun = false;             ///< boot() was called once; before that nothing starts by itself
+  bool pdos_live = false;         ///< TPDOs are those that were configured
+  bool cob_ids_changed = false;   ///< since takeCobIdChange()
+  Time next = kNever;             ///< of all deadlines
+  mutable bool sdo_lent = false;  ///< somebody may have queued a transfer: `next` is not known
+  std::uint32_t boot_ups = 0, emergencies = 0;
+  Time last_heartbeat{};
+  std::optional<Emergency> last_emergency;
+};
+
+}  // namespace cia402::canopen

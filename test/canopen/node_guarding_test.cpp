@@ -1,0 +1,200 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/canopen/node_guarding.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "canopen/node_fixture.h"
+
+namespace cia402::canopen {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using test::Lines;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+TEST(NodeGuardText, asks_with_a_remote_frame_for_one_byte) {
+  const can::Frame request = NodeGuard::request(3);
+  EXPECT_EQ(request.id, 0x703U);
+  EXPECT_TRUE(request.remote);
+  EXPECT_EQ(request.size, 1);
+}
+
+/// A drive without heartbeat, guarded every 100 ms, lost after 300 ms.
+class NodeGuarding : public test::NodeFixture {
+ protected:
+  NodeGuarding() {
+    config.error_control = ErrorControl::guarding;
+    peer.on("603 2B 17 10 00 00 00 00 00", "583 80 17 10 00 00 00 02 06");  // no 1017h
+    peer.on("603 2B 0C 10 00 64 00 00 00", "583 60 0C 10 00 00 00 00 00");  // 100Ch = 100 ms
+    peer.on("603 2F 0D 10 00 03 00 00 00", "583 60 0D 10 00 00 00 00 00");  // 100Dh = 3
+    peer.forget("000 01 03");
+    peer.on("703 R1", "703 7F");  // pre-operational, toggle 0
+    peer.on("703 R1", "703 85");  // operational, toggle 1
+    for (int i = 0; i < 100; ++i) {
+      peer.on("703 R1", "703 05");
+      peer.on("703 R1", "703 85");
+    }
+  }
+  void bootReady() {
+    boot();
+    ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem() << node->bootStep();
+  }
+  /// From now on the answers are these, the last one again and again.
+  void answers(const Lines& lines) {
+    peer.forget("703 R1");
+    for (const std::string& line : lines) peer.on("703 R1", Lines{line});
+  }
+  unsigned requests() {
+    const Lines sent = peer.take();
+    return static_cast<unsigned>(std::count(sent.begin(), sent.end(), "703 R1"));
+  }
+};
+
+TEST_F(NodeGuarding, is_set_up_in_the_drive_then_begins_before_the_start) {
+  bootReady();
+  const Lines sent = peer.take();
+  const auto first = std::find(sent.begin(), sent.end(), "603 2B 17 10 00 00 00 00 00");
+  ASSERT_NE(first, sent.end());
+  EXPECT_EQ(Lines(first, first + 3),
+            (Lines{"603 2B 17 10 00 00 00 00 00", "603 2B 0C 10 00 64 00 00 00",
+                   "603 2F 0D 10 00 03 00 00 00"}));
+  EXPECT_EQ(std::count(sent.begin(), sent.end(), "703 R1"), 2);
+  EXPECT_EQ(sent.back(), "703 R1") << "asked at once whether it is operational";
+  EXPECT_THAT(node->notes(), IsEmpty());
+  EXPECT_FALSE(sentLine("603 23 16 10 01 2C 01 7F 00")) << "heartbeats are not for it";
+  EXPECT_EQ(node->supervision().kind, ErrorControl::guarding);
+  EXPECT_TRUE(node->supervision().watched);
+  EXPECT_TRUE(node->supervision().watches_master);
+}
+
+TEST_F(NodeGuarding, asks_every_guard_time_as_long_as_it_is_answered) {
+  bootReady();
+  requests();
+  pass(milliseconds(99));
+  EXPECT_EQ(requests(), 0U);
+  pass(milliseconds(1));
+  EXPECT_EQ(requests(), 1U);
+  pass(seconds(5));
+  EXPECT_EQ(requests(), 50U);
+  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->nmtState(), NmtState::operational);
+}
+
+TEST_F(NodeGuarding, a_node_that_answers_no_more_is_lost_after_its_life_time) {
+  bootReady();
+  peer.take();
+  peer.forget("703 R1");
+  pass(milliseconds(299));
+  EXPECT_EQ(node->health(), NodeHealth::ready);
+  pass(milliseconds(1));
+  EXPECT_EQ(node->health(), NodeHealth::lost);
+  EXPECT_EQ(node->problem(),
+            "shoulder (node 3): no answer to node guarding for 0.3 s (asked every 0.1 s): check "
+            "power and cable; it is configured again when it is back");
+  EXPECT_TRUE(sentLine("000 02 03"));
+}
+
+TEST_F(NodeGuarding, a_toggle_bit_that_stands_still_is_no_answer) {
+  bootReady();
+  answers({"703 05"});  // right once, then always the same
+  pass(milliseconds(399));
+  EXPECT_EQ(node->health(), NodeHealth::ready);
+  pass(milliseconds(1));
+  EXPECT_EQ(node->health(), NodeHealth::lost);
+  EXPECT_THAT(node->problem(), HasSubstr("no valid answer to node guarding for 0.3 s (asked every "
+                                         "0.1 s): the toggle bit of 2 answers did not alternate; "
+                                         "look for a second device with this node-ID"));
+}
+
+TEST_F(NodeGuarding, one_lost_request_or_answer_does_no_harm) {
+  bootReady();
+  peer.forget("703 R1");
+  pass(milliseconds(150));  // asked once in vain: the drive did not toggle
+  answers({"703 05", "703 85", "703 85", "703 05", "703 85", "703 05", "703 85"});
+  pass(milliseconds(700));
+  EXPECT_EQ(node->health(), NodeHealth::ready);
+}
+
+TEST_F(NodeGuarding, an_answer_that_was_lost_lets_the_next_one_seem_wrong_only_once) {
+  bootReady();                                        // last answer: toggle 1
+  answers({"703 85", "703 05", "703 85", "703 05"});  // that with toggle 0 was lost
+  pass(milliseconds(400));
+  EXPECT_EQ(node->health(), NodeHealth::ready);
+}
+
+TEST_F(NodeGuarding, after_a_boot_up_the_first_answer_must_have_toggle_bit_0) {
+  answers({"703 FF"});  // pre-operational, but toggle bit 1 from the beginning
+  boot();
+  pass(milliseconds(300));
+  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_THAT(node->problem(), HasSubstr("boot failed: no valid answer to node guarding"));
+}
+
+TEST_F(NodeGuarding, without_a_reset_the_toggle_bit_may_begin_either_way) {
+  answers({"703 FF", "703 05", "703 85"});
+  boot(false);
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+}
+
+TEST_F(NodeGuarding, another_state_than_expected_is_told_and_set_right) {
+  bootReady();
+  peer.forget(test::request(3, "40 00 10 00 00 00 00 00"));
+  answers({"703 04"});
+  pass(milliseconds(100));
+  EXPECT_EQ(node->health(), NodeHealth::booting);
+  EXPECT_THAT(node->problem(), HasSubstr("became stopped without our command"));
+}
+
+TEST_F(NodeGuarding, a_drive_that_does_not_take_the_life_time_cannot_notice_a_dead_master) {
+  peer.replace("603 2B 0C 10 00 64 00 00 00", "583 80 0C 10 00 00 00 02 06");
+  peer.replace("603 2F 0D 10 00 03 00 00 00", "583 80 0D 10 00 00 00 02 06");
+  bootReady();
+  EXPECT_THAT(node->notes(),
+              ElementsAre("cannot notice a dead master: writing 0x0064 to 100C:00 guard time: the "
+                          "drive refused: 0x06020000 (object does not exist in the object "
+                          "dictionary)"));
+  EXPECT_TRUE(node->supervision().watched);
+  EXPECT_FALSE(node->supervision().watches_master);
+}
+
+TEST_F(NodeGuarding, a_drive_that_answers_sdo_but_no_guarding_fails_with_a_remedy) {
+  peer.forget("703 R1");
+  boot();
+  pass(milliseconds(300));
+  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->problem(),
+            "shoulder (node 3): boot failed: no answer to node guarding for 0.3 s (asked every 0.1 "
+            "s); if the drive has no node guarding, choose another `error_control`; it is tried "
+            "again in 1 s (attempt 2 of 3)");
+}
+
+TEST_F(NodeGuarding, a_lost_node_is_looked_for_and_booted_again) {
+  bootReady();
+  peer.forget("703 R1");
+  const std::string ask = test::request(3, "40 00 10 00 00 00 00 00");
+  peer.forget(ask);
+  pass(milliseconds(300));
+  ASSERT_EQ(node->health(), NodeHealth::lost);
+  peer.take();
+  pass(milliseconds(2000));
+  EXPECT_EQ(peer.take(), Lines{ask});
+  EXPECT_EQ(node->bootStep(), "looked for 1 times, again every 2 s");
+  peer.on(ask, "583 43 00 10 00 92 01 02 00");
+  answers({"703 7F", "703 85", "703 05"});
+  pass(milliseconds(4500));
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+}
+
+TEST_F(NodeGuarding, no_request_leaves_while_the_node_is_not_there) {
+  peer.forget("000 82 03");
+  boot();
+  pass(milliseconds(1200));
+  EXPECT_EQ(requests(), 0U);
+}
+
+}  // namespace
+}  // namespace cia402::canopen
