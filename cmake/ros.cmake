@@ -27,7 +27,7 @@ find_package(catkin REQUIRED COMPONENTS message_generation ${cia402_ros_packages
 add_message_files(FILES
   AxisState.msg AxisStates.msg BusState.msg Emergency.msg NodeState.msg)
 add_service_files(FILES
-  InjectFault.srv ReadObject.srv SetMode.srv SetPosition.srv WriteObject.srv)
+  InjectFault.srv Nmt.srv ReadObject.srv SetMode.srv SetPosition.srv WriteObject.srv)
 add_action_files(FILES Home.action)
 generate_messages(DEPENDENCIES actionlib_msgs std_msgs)
 

@@ -155,6 +155,7 @@ void Robot::stepJobs(Time now) {
     keep_running(procedures_, [&](ProcedureJob& job) { return job.step(axes_, now); });
   }
   if (!objects_.empty()) keep_running(objects_, [](ObjectJob& job) { return job.step(); });
+  if (!nmt_.empty()) keep_running(nmt_, [&](NmtJob& job) { return job.step(axes_, now); });
 }
 
 void Robot::stopMotion(const std::string& why, Time now) {
@@ -171,6 +172,8 @@ void Robot::beginShutdown(Time now) {
   // What waits for its turn must not begin any more.
   for (ProcedureJob& job : procedures_) job.abandon("ended by the shutdown of the driver");
   procedures_.clear();
+  for (NmtJob& job : nmt_) job.abandon("ended by the shutdown of the driver");
+  nmt_.clear();
   stopMotion("stopped: the driver is shutting down", now);
 }
 

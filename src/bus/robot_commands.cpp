@@ -105,6 +105,26 @@ void Robot::run(WriteObjectCommand& command, const Reply& reply, Time) {
   }
 }
 
+void Robot::run(NmtServiceCommand& command, const Reply& reply, Time now) {
+  std::vector<std::size_t> which;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    if (command.axis.empty() || axes_[i].config().name == command.axis) which.push_back(i);
+  }
+  if (which.empty()) {
+    give(reply, refused("there is no axis \"" + command.axis + "\""));
+    return;
+  }
+  Result<NmtJob> job =
+      NmtJob::start(command.command, which, command.axis.empty(), axes_, master_, reply, now);
+  if (!job) {
+    give(reply, refused(job.error().message));
+    return;
+  }
+  const std::string whom = command.axis.empty() ? "all nodes" : command.axis;
+  tell(Event::Severity::info, "nmt " + command.command + " to " + whom + " was asked for", now);
+  nmt_.push_back(std::move(job).value());
+}
+
 void Robot::run(CallCommand& command, const Reply& reply, Time now) {
   give(reply, command.function(now));
 }

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
+#include "cia402_driver/drive/profile_reader.h"
 #include "robot_parts.h"
 
 namespace cia402::config {
@@ -54,6 +55,13 @@ void readIdentity(const YamlValue& value, drive::AxisConfig& axis) {
   section.readInteger("product_code", axis.product_code, 0, 0xFFFFFFFF);
   section.readInteger("revision", axis.revision, 0, 0xFFFFFFFF);
   section.readInteger("serial", axis.serial, 0, 0xFFFFFFFF);
+  section.finish();
+}
+
+void readParameters(const YamlValue& value, drive::AxisConfig& axis) {
+  YamlSection section(value);
+  drive::readSubindices(section, "save", axis.save);
+  drive::readSubindices(section, "restore", axis.restore);
   section.finish();
 }
 

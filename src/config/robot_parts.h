@@ -38,6 +38,7 @@ void readAxis(const std::string& name, const drive::YamlValue& value, ProfileCac
 drive::AxisLimits readLimits(const drive::YamlValue& value, drive::AxisGeometry::Type type);
 drive::HomingOptions readHoming(const drive::YamlValue& value);
 void readIdentity(const drive::YamlValue& value, drive::AxisConfig& axis);
+void readParameters(const drive::YamlValue& value, drive::AxisConfig& axis);
 FrameConfig readFrame(const drive::YamlValue& value, const std::string& joint);
 SimulationConfig readSimulation(const drive::YamlValue& value);
 

@@ -21,6 +21,7 @@ struct Axis::Impl {
   ProcedureStatus status, previous;
   std::unique_ptr<Procedure> procedure;
   bool was_ready = false;
+  bool lost = false;  ///< since the last update(), though the node may be ready again
   std::uint32_t boot_ups = 0;
 };
 
@@ -28,7 +29,10 @@ struct Axis::Impl {
 void Axis::Impl::watchNode() {
   const bool ready = core.nodeReady();
   const std::uint32_t count = core.node().bootUps();
-  if (was_ready && (!ready || count != boot_ups)) core.onNodeLost();
+  if (was_ready && (!ready || count != boot_ups)) {
+    core.onNodeLost();
+    lost = true;
+  }
   was_ready = ready;
   boot_ups = count;
 }
@@ -69,7 +73,7 @@ void Axis::update(Time now) {
   impl.watchNode();
   std::string failure = impl.core.supervise(now);
   if (impl.procedure) {
-    const bool waits = !impl.core.nodeReady() && impl.procedure->survivesNodeLoss();
+    const bool waits = (impl.lost || !impl.core.nodeReady()) && impl.procedure->survivesNodeLoss();
     if (!failure.empty() && !waits) {
       impl.finish(false, std::string(toString(impl.status.kind)) + " failed: " + failure);
     } else {
@@ -77,6 +81,7 @@ void Axis::update(Time now) {
       if (!outcome.isRunning()) impl.finish(outcome.isDone(), std::move(outcome.message));
     }
   }
+  impl.lost = false;
   impl.core.updateReadiness(impl.status.running, now);
 }
 

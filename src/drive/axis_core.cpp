@@ -55,10 +55,7 @@ bool AxisCore::faulted() const {
   return state_.state == State::fault || state_.state == State::fault_reaction_active;
 }
 
-bool AxisCore::powerOff() const {
-  return state_.state == State::switch_on_disabled || state_.state == State::ready_to_switch_on ||
-         state_.state == State::fault || state_.state == State::not_ready_to_switch_on;
-}
+bool AxisCore::powerOff() const { return powerStageOff(state_.state); }
 
 std::string AxisCore::supervise(Time now) {
   std::string failure;

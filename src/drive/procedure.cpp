@@ -27,6 +27,10 @@ const char* toString(ProcedureKind kind) {
       return "set_mode";
     case ProcedureKind::set_position:
       return "set_position";
+    case ProcedureKind::save_parameters:
+      return "save_parameters";
+    case ProcedureKind::restore_parameters:
+      return "restore_parameters";
   }
   return "unknown";
 }
@@ -51,6 +55,10 @@ Result<std::unique_ptr<Procedure>> makeProcedure(const ProcedureRequest& request
       return makeSetMode(axis, request.mode);
     case ProcedureKind::set_position:
       return makeSetPosition(axis, request.position);
+    case ProcedureKind::save_parameters:
+      return makeSaveParameters(axis);
+    case ProcedureKind::restore_parameters:
+      return makeRestoreParameters(axis);
     case ProcedureKind::none:
       break;
   }

@@ -74,6 +74,16 @@ void readTiming(YamlSection& profile_section, DriveProfile& profile) {
   section.finish();
 }
 
+void readParameters(YamlSection& profile_section, DriveProfile& profile) {
+  const auto value = profile_section.get("parameters");
+  if (!value) return;
+  YamlSection section(*value);
+  readSubindices(section, "save", profile.parameters.save);
+  readSubindices(section, "restore", profile.parameters.restore);
+  readDuration(section, "timeout", Range{0.001, 600.0, false}, profile.parameters.timeout);
+  section.finish();
+}
+
 void readQuickStop(YamlSection& section, DriveProfile& profile) {
   const auto value = section.get("quick_stop_holds");
   if (!value) return;
@@ -127,6 +137,7 @@ void readBehaviour(YamlSection& section, DriveProfile& profile) {
   readSync(section, profile);
   readHeartbeat(section, profile);
   readTiming(section, profile);
+  readParameters(section, profile);
 }
 
 DriveProfile readProfile(const YamlValue& root) {
@@ -160,6 +171,24 @@ DriveProfile readProfile(const YamlValue& root) {
 }
 
 }  // namespace
+
+void readSubindices(YamlSection& section, const std::string& key,
+                    std::vector<std::uint8_t>& subindices) {
+  const auto value = section.get(key);
+  if (!value) return;
+  std::vector<std::uint8_t> read;
+  for (const YamlValue& entry : value->list()) {
+    const auto subindex = entry.integer(1, 127);
+    if (subindex) read.push_back(static_cast<std::uint8_t>(*subindex));
+  }
+  if (read.empty()) {
+    value->problem(
+        "must be a list of sub-indices: 1 all parameters, 2 communication, 3 "
+        "application, 4 and more the maker's");
+  } else {
+    subindices = std::move(read);
+  }
+}
 
 DriveProfile parseDriveProfile(const std::string& text, const std::string& source,
                                Problems& problems) {

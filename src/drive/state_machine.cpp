@@ -104,6 +104,11 @@ const char* toString(State state) {
   return kStateNames[index < kStates ? index : kStates - 1];
 }
 
+bool powerStageOff(State state) {
+  return state == State::switch_on_disabled || state == State::ready_to_switch_on ||
+         state == State::fault || state == State::not_ready_to_switch_on;
+}
+
 State decodeState(std::uint16_t statusword) {
   for (const StateCode& code : kStateCodes) {
     if ((statusword & code.mask) == code.value) return code.state;

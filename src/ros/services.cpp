@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "cia402_driver/ros/services.h"
 
+#include <cia402_driver/Nmt.h>
 #include <cia402_driver/ReadObject.h>
 #include <cia402_driver/SetMode.h>
 #include <cia402_driver/SetPosition.h>
@@ -20,10 +21,15 @@ constexpr struct {
   const char* name;
   ProcedureKind kind;
 } kTriggers[] = {
-    {"enable", ProcedureKind::enable},   {"disable", ProcedureKind::disable},
-    {"home", ProcedureKind::home},       {"clear_faults", ProcedureKind::clear_faults},
-    {"recover", ProcedureKind::recover}, {"quick_stop", ProcedureKind::quick_stop},
+    {"enable", ProcedureKind::enable},
+    {"disable", ProcedureKind::disable},
+    {"home", ProcedureKind::home},
+    {"clear_faults", ProcedureKind::clear_faults},
+    {"recover", ProcedureKind::recover},
+    {"quick_stop", ProcedureKind::quick_stop},
     {"halt", ProcedureKind::halt},
+    {"save_parameters", ProcedureKind::save_parameters},
+    {"restore_parameters", ProcedureKind::restore_parameters},
 };
 
 std::string hexBytes(const canopen::Bytes& data) {
@@ -90,6 +96,17 @@ void Services::advertise(ros::NodeHandle node, const std::string& axis) {
             wanted.kind = ProcedureKind::set_mode;
             wanted.mode = drive::canonicalModeName(request.mode);
             const bus::Answer answer = call(procedure(axis, wanted));
+            response.success = answer.success;
+            response.message = answer.message;
+            return true;
+          }));
+  servers_.push_back(
+      node.advertiseService<cia402_driver::Nmt::Request, cia402_driver::Nmt::Response>(
+          "nmt", [this, axis](cia402_driver::Nmt::Request& request,
+                              cia402_driver::Nmt::Response& response) {
+            bus::Command command;
+            command.body = bus::NmtServiceCommand{axis, request.command};
+            const bus::Answer answer = call(std::move(command));
             response.success = answer.success;
             response.message = answer.message;
             return true;

@@ -38,6 +38,7 @@ void DriveCore::start(bool cold, Time now) {
   state_ = PdsState::not_ready_to_switch_on;
   ready_at_ = now + definition_.initialisation;
   controlword_ = 0;
+  statusword_ = 0;  // the dictionary has its initial values again
   after_stop_.reset();
   causes_.clear();
   warning_ = false;

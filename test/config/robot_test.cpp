@@ -54,6 +54,18 @@ TEST(RobotConfig, MergesDefaultsUnderEveryAxis) {
   EXPECT_EQ(shoulder.profile, loaded.robot.axes[1].profile) << "a profile is read once";
 }
 
+TEST(RobotConfig, ChoosesWhatIsSavedAndRestored) {
+  const Loaded loaded = changed("gear_ratio: 50.0", "parameters: {save: [2, 3]}");
+  EXPECT_EQ(loaded.problems, "");
+  EXPECT_THAT(loaded.robot.axes[0].saved(), ElementsAre(2, 3));
+  EXPECT_THAT(loaded.robot.axes[0].restored(), ElementsAre(1)) << "the profile's";
+  EXPECT_THAT(loaded.robot.axes[1].saved(), ElementsAre(1));
+  EXPECT_THAT(changed("gear_ratio: 50.0", "parameters: {save: [0]}").problems,
+              HasSubstr("axes/shoulder/parameters/save[0]: must be between 1 and 127"));
+  EXPECT_THAT(changed("gear_ratio: 50.0", "parameters: {save: 2}").problems,
+              HasSubstr("axes/shoulder/parameters/save: must be a list of sub-indices"));
+}
+
 TEST(RobotConfig, WithoutGroupsAllPositionJointsFormOne) {
   const Loaded loaded = load(kArm);
   ASSERT_EQ(loaded.robot.groups.size(), 1u);

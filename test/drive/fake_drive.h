@@ -40,6 +40,7 @@ class FakeDrive : public can::Sink {
   double quick_stop_deceleration = 1e6;  ///< counts/s^2
   bool silent = false;                   ///< sends no PDO
   std::map<std::pair<unsigned, unsigned>, std::uint32_t> aborts;  ///< SDO writes refused
+  std::set<std::pair<unsigned, unsigned>> unanswered;             ///< SDO writes taken in silence
   std::map<std::pair<unsigned, unsigned>, std::pair<std::uint64_t, unsigned>> dictionary;
 
   // What the test may look at.
@@ -183,6 +184,7 @@ class FakeDrive : public can::Sink {
       dictionary[key] = {dword(frame, 4) & mask, size};
       writes.emplace_back(index, dword(frame, 4) & mask);
       if (index == 0x6060) commanded_mode = static_cast<std::int8_t>(frame.data[4]);
+      if (unanswered.count(key) != 0) return;
       return reply(0x60, 0);
     }
   }

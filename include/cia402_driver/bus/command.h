@@ -57,6 +57,12 @@ struct WriteObjectCommand {
   std::string axis, object, value;
 };
 
+/// An NMT command by its word ("stop", see NmtJob) to one axis' node, or to all where `axis` is
+/// empty.
+struct NmtServiceCommand {
+  std::string axis, command;
+};
+
 /// Runs a function in the bus thread, e.g. to inject a fault into a simulated drive.
 struct CallCommand {
   std::function<Answer(Time)> function;
@@ -64,7 +70,7 @@ struct CallCommand {
 
 struct Command {
   std::variant<ProcedureCommand, SetpointCommand, TrajectoryCommand, ReadObjectCommand,
-               WriteObjectCommand, CallCommand>
+               WriteObjectCommand, NmtServiceCommand, CallCommand>
       body;
   Reply reply;  ///< may be empty
 };

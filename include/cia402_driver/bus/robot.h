@@ -10,6 +10,7 @@
 #include "cia402_driver/bus/event.h"
 #include "cia402_driver/bus/group.h"
 #include "cia402_driver/bus/jobs.h"
+#include "cia402_driver/bus/nmt_job.h"
 #include "cia402_driver/bus/snapshot.h"
 #include "cia402_driver/canopen/master.h"
 #include "cia402_driver/config/robot.h"
@@ -106,6 +107,7 @@ class Robot final : private canopen::MasterListener {
   void run(TrajectoryCommand& command, const Reply& reply, Time now);
   void run(ReadObjectCommand& command, const Reply& reply, Time now);
   void run(WriteObjectCommand& command, const Reply& reply, Time now);
+  void run(NmtServiceCommand& command, const Reply& reply, Time now);
   void run(CallCommand& command, const Reply& reply, Time now);
 
   config::RobotConfig config_;
@@ -116,6 +118,7 @@ class Robot final : private canopen::MasterListener {
   std::vector<Group> groups_;
   std::vector<ProcedureJob> procedures_;
   std::vector<ObjectJob> objects_;
+  std::vector<NmtJob> nmt_;
   std::vector<AxisNews> news_;
   std::vector<canopen::Node*> nodes_;  // of each axis
   std::vector<std::uint64_t> missed_feedback_, emergencies_;

@@ -17,15 +17,17 @@ namespace cia402::drive {
 /// Long operations of an axis; each an explicit state machine with a deadline.
 enum class ProcedureKind : std::uint8_t {
   none,
-  enable,        ///< into operation with target := actual; releases a halt if enabled already
-  disable,       ///< power stage off; a moving axis is quick-stopped first
-  home,          ///< by the drive or by declaring; ends enabled in the mode from before
-  clear_faults,  ///< one edge of the fault reset bit; the axis stays disabled
-  recover,       ///< boot the node if needed, clear faults, enable
-  quick_stop,    ///< ends disabled, or holding where the drive does (605Ah, quick_stop_holds)
-  halt,          ///< stop and stay enabled until `enable` releases it
-  set_mode,      ///< disabled, or enabled at standstill
-  set_position,  ///< declare the present position; an offset in software, at standstill
+  enable,              ///< into operation with target := actual; releases a halt if enabled already
+  disable,             ///< power stage off; a moving axis is quick-stopped first
+  home,                ///< by the drive or by declaring; ends enabled in the mode from before
+  clear_faults,        ///< one edge of the fault reset bit; the axis stays disabled
+  recover,             ///< boot the node if needed, clear faults, enable
+  quick_stop,          ///< ends disabled, or holding where the drive does (605Ah, quick_stop_holds)
+  halt,                ///< stop and stay enabled until `enable` releases it
+  set_mode,            ///< disabled, or enabled at standstill
+  set_position,        ///< declare the present position; an offset in software, at standstill
+  save_parameters,     ///< 1010h, while disabled
+  restore_parameters,  ///< 1011h, while disabled; resets the node, which is configured again
 };
 const char* toString(ProcedureKind kind);
 

@@ -52,6 +52,13 @@ struct AxisConfig {
   std::vector<PdoLayout> pdos;     ///< resolved layout (profile's or the user's)
   std::vector<NamedWrite> writes;  ///< the user's extra start-up writes
   std::optional<std::uint32_t> vendor_id, product_code, revision, serial;  ///< expected identity
+  std::vector<std::uint8_t> save, restore;  ///< sub-indices of 1010h, 1011h; empty: the profile's
+  const std::vector<std::uint8_t>& saved() const {
+    return save.empty() ? profile->parameters.save : save;
+  }
+  const std::vector<std::uint8_t>& restored() const {
+    return restore.empty() ? profile->parameters.restore : restore;
+  }
 };
 
 }  // namespace cia402::drive

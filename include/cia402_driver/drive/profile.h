@@ -183,6 +183,12 @@ struct DriveProfile {
     Duration sdo{std::chrono::milliseconds(500)};
     int sdo_retries = 1;
   } timing;
+  /// Which sub-indices of 1010h and 1011h save and restore parameters: 1 all, 2 communication, 3
+  /// application, 4.. the maker's.
+  struct Parameters {
+    std::vector<std::uint8_t> save{1}, restore{1};
+    Duration timeout{std::chrono::seconds(10)};  ///< for the drive to confirm one
+  } parameters;
   std::map<std::uint16_t, ErrorText> errors;
 
   const ObjectSpec* find(const std::string& object_name) const;

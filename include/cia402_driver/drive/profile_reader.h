@@ -22,6 +22,11 @@ std::vector<NamedWrite> readWrites(const YamlValue& list, const DriveProfile& pr
 /// Reads a PDO layout (docs/drive_profiles.md, "PDOs") against the objects and limits of a profile.
 std::vector<PdoLayout> readPdos(const YamlValue& value, const DriveProfile& profile);
 
+/// Reads a list of sub-indices of 1010h or 1011h into `subindices`, which keeps what it has if the
+/// key is missing or wrong.
+void readSubindices(YamlSection& section, const std::string& key,
+                    std::vector<std::uint8_t>& subindices);
+
 /// The object that a name or an index ("6041:00") means; nullptr if the profile has none.
 const ObjectSpec* findObject(const DriveProfile& profile, const std::string& name);
 

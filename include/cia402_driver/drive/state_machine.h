@@ -20,6 +20,8 @@ enum class State : std::uint8_t {
 };
 /// "operation enabled".
 const char* toString(State state);
+/// The power stage is off in this state: no motion is possible by this drive.
+bool powerStageOff(State state);
 
 /// The state that a statusword shows, by mask and value as CiA 402-2 lists them.
 State decodeState(std::uint16_t statusword);

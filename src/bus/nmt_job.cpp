@@ -1,0 +1,171 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/bus/nmt_job.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace cia402::bus {
+namespace {
+
+using canopen::NmtCommand;
+using canopen::NmtState;
+using canopen::NodeHealth;
+
+constexpr struct {
+  const char* word;
+  NmtCommand command;
+} kWords[] = {
+    {"start", NmtCommand::start},
+    {"stop", NmtCommand::stop},
+    {"pre_operational", NmtCommand::enter_pre_operational},
+    {"reset_node", NmtCommand::reset_node},
+    {"reset_communication", NmtCommand::reset_communication},
+};
+constexpr Duration kLeastWait = std::chrono::seconds(1);
+constexpr int kBootTimes = 4;  // boot time-outs until a boot that does not end is given up
+
+std::optional<NmtCommand> commandOf(const std::string& word) {
+  for (const auto& known : kWords) {
+    if (word == known.word) return known.command;
+  }
+  return {};
+}
+
+std::string who(const drive::Axis& axis) {
+  return axis.config().name + " (node " + std::to_string(axis.config().node_id) + ")";
+}
+
+std::string refusal(drive::Axis& axis, const std::string& word, NmtCommand command) {
+  if (axis.node().health() != NodeHealth::ready) return {};
+  if (command == NmtCommand::start) return {};  // it is started already
+  const std::string refused = who(axis) + ": nmt " + word + " is refused: ";
+  if (axis.procedure().running) {
+    return refused + toString(axis.procedure().kind) + " runs (" + axis.procedure().step +
+           "); wait for its end, or stop it by halt, quick_stop or disable";
+  }
+  const drive::AxisState& state = axis.state();
+  if (state.feedback_valid && drive::powerStageOff(state.state)) return {};
+  return refused + "the axis is not disabled (" +
+         (state.feedback_valid ? toString(state.state) : "no fresh statusword") +
+         "), and NMT does not stop a motor: what a drive does without set-points is its own "
+         "choice; quick_stop or disable it first";
+}
+
+}  // namespace
+
+Result<NmtJob> NmtJob::start(const std::string& word, const std::vector<std::size_t>& which,
+                             bool all, std::vector<drive::Axis>& axes, canopen::Master& master,
+                             Reply reply, Time now) {
+  const auto command = commandOf(word);
+  if (!command) {
+    std::string known;
+    for (const auto& entry : kWords) known += std::string(known.empty() ? "" : ", ") + entry.word;
+    return Error{"nmt: unknown command \"" + word + "\"; there are " + known};
+  }
+  for (const std::size_t index : which) {
+    const std::string why = refusal(axes[index], word, *command);
+    if (!why.empty()) return Error{why};
+  }
+  NmtJob job;
+  job.word_ = word;
+  job.command_ = *command;
+  job.reply_ = std::move(reply);
+  job.began_ = now;
+  for (const std::size_t index : which) {
+    job.entries_.push_back({index, false, false, {}});
+    canopen::Node& node = axes[index].node();
+    if (*command == NmtCommand::start) {
+      const bool needed =
+          node.health() != NodeHealth::ready && node.health() != NodeHealth::booting;
+      // A drive that is not configured must not be started as it is: its PDOs may mean anything.
+      if (needed) node.boot(now, false);
+    } else if (!all) {
+      node.command(*command, now);
+    }
+  }
+  if (all && *command != NmtCommand::start) master.commandAll(*command, now);
+  return job;
+}
+
+bool NmtJob::step(std::vector<drive::Axis>& axes, Time now) {
+  for (Entry& entry : entries_) {
+    if (!entry.ended) watch(entry, axes[entry.axis], now);
+  }
+  const bool ended =
+      std::all_of(entries_.begin(), entries_.end(), [](const Entry& e) { return e.ended; });
+  if (ended && reply_) reply_(answer());
+  return ended;
+}
+
+void NmtJob::watch(Entry& entry, drive::Axis& axis, Time now) const {
+  if (now <= began_) return;
+  const bool stays = command_ == NmtCommand::stop || command_ == NmtCommand::enter_pre_operational;
+  if (stays) {
+    watchState(entry, axis, now);
+  } else {
+    watchBoot(entry, axis, now);
+  }
+  if (entry.ended) entry.message = who(axis) + ": nmt " + word_ + ": " + entry.message;
+}
+
+/// Start and the resets end with the node configured and operational.
+void NmtJob::watchBoot(Entry& entry, drive::Axis& axis, Time now) const {
+  canopen::Node& node = axis.node();
+  const NodeHealth health = node.health();
+  const Duration patience = kBootTimes * node.config().boot_timeout + kLeastWait;
+  entry.success = health == NodeHealth::ready;
+  entry.ended = entry.success || health == NodeHealth::failed || health == NodeHealth::absent ||
+                now >= began_ + patience;
+  if (entry.success) {
+    const bool was_reset = command_ != NmtCommand::start;
+    entry.message = std::string("the drive is configured and operational") +
+                    (was_reset ? "; it is disabled" : "");
+  } else if (entry.ended) {
+    entry.message = "sent, but the node is not operational: " +
+                    (node.problem().empty() ? node.bootStep() : node.problem());
+  }
+}
+
+void NmtJob::watchState(Entry& entry, drive::Axis& axis, Time now) const {
+  canopen::Node& node = axis.node();
+  const NmtState wanted =
+      command_ == NmtCommand::stop ? NmtState::stopped : NmtState::pre_operational;
+  const bool heard = node.nmtState() == wanted && node.lastHeartbeat() > began_;
+  const Duration heartbeat = node.config().heartbeat;
+  const bool tells = heartbeat > Duration::zero();
+  entry.success = heard || !tells;
+  entry.ended = entry.success || now >= began_ + std::max(kLeastWait, 3 * heartbeat);
+  if (heard) {
+    entry.message = std::string("the drive is ") + canopen::toString(wanted) +
+                    "; `start` or `recover` configures and starts it again";
+  } else if (!tells) {
+    entry.message = "sent; the drive has no heartbeat to tell whether it obeyed";
+  } else if (entry.ended) {
+    entry.message =
+        std::string("sent, but the drive's heartbeat says ") + canopen::toString(node.nmtState());
+  }
+}
+
+Answer NmtJob::answer() const {
+  Answer answer;
+  const auto succeeded = std::count_if(entries_.begin(), entries_.end(),
+                                       [](const Entry& entry) { return entry.success; });
+  answer.success = static_cast<std::size_t>(succeeded) == entries_.size();
+  if (entries_.size() > 1) {
+    answer.message = "nmt " + word_ + " done on " + std::to_string(succeeded) + " of " +
+                     std::to_string(entries_.size()) + " nodes";
+  }
+  for (const Entry& entry : entries_) {
+    if (entries_.size() > 1 && entry.success) continue;
+    answer.message += (answer.message.empty() ? "" : "; ") + entry.message;
+  }
+  return answer;
+}
+
+void NmtJob::abandon(const std::string& why) {
+  Answer answer;
+  answer.message = "nmt " + word_ + ": " + why;
+  if (reply_) reply_(answer);
+}
+
+}  // namespace cia402::bus

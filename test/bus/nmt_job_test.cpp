@@ -1,0 +1,158 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/bus/nmt_job.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "bus/robot_world.h"
+
+namespace cia402::bus::test {
+namespace {
+
+using namespace std::chrono_literals;
+using canopen::NodeHealth;
+using testing::HasSubstr;
+
+NmtServiceCommand nmt(const std::string& axis, const std::string& word) {
+  NmtServiceCommand command;
+  command.axis = axis;
+  command.command = word;
+  return command;
+}
+
+class NmtJobTest : public testing::Test {
+ protected:
+  /// Frames with COB-ID 0 since forget().
+  std::vector<can::Frame> commands() const {
+    std::vector<can::Frame> all;
+    for (const auto& sent : world.sentWithId(0x000)) all.push_back(sent.frame);
+    return all;
+  }
+  void forget() { world.sent.clear(); }
+  RobotWorld world;
+};
+
+TEST_F(NmtJobTest, StopTakesOneNodeOutUntilItIsStartedAgain) {
+  world.boot();
+  forget();
+  const auto answers = world.begin(nmt("shoulder", "stop"));
+  EXPECT_EQ(commands(), std::vector<can::Frame>{can::Frame(0x000, {0x02, 1})});
+  world.run(20ms);
+  EXPECT_TRUE(answers->empty()) << "the drive's heartbeat must say so";
+  world.robot.receive(can::Frame(0x701, {0x04}), world.now, world.now);
+  const Answer stopped = world.wait(answers);
+  EXPECT_TRUE(stopped.success) << stopped.message;
+  EXPECT_THAT(stopped.message, HasSubstr("shoulder (node 1): nmt stop: the drive is stopped"));
+  EXPECT_EQ(world.axis(0).node().health(), NodeHealth::failed);
+  EXPECT_EQ(world.axis(1).node().health(), NodeHealth::ready);
+  const Answer started = world.call(nmt("shoulder", "start"));
+  EXPECT_TRUE(started.success) << started.message;
+  EXPECT_THAT(started.message, HasSubstr("nmt start: the drive is configured and operational"));
+  EXPECT_EQ(world.axis(0).node().health(), NodeHealth::ready);
+}
+
+TEST_F(NmtJobTest, PreOperationalForAllIsOneFrameAndWaitsForAll) {
+  world.boot();
+  forget();
+  const Answer answer = world.call(nmt("", "pre_operational"));
+  EXPECT_TRUE(answer.success) << answer.message;
+  EXPECT_EQ(answer.message, "nmt pre_operational done on 2 of 2 nodes");
+  EXPECT_EQ(commands(), std::vector<can::Frame>{can::Frame(0x000, {0x80, 0})});
+}
+
+TEST_F(NmtJobTest, AResetIsAnsweredOnceTheNodeIsConfiguredAgain) {
+  world.boot();
+  for (const auto& [word, specifier] :
+       {std::pair<const char*, int>{"reset_node", 0x81}, {"reset_communication", 0x82}}) {
+    forget();
+    const Answer answer = world.call(nmt("elbow", word));
+    EXPECT_TRUE(answer.success) << answer.message;
+    EXPECT_THAT(answer.message, HasSubstr("elbow (node 2)"));
+    EXPECT_THAT(answer.message, HasSubstr("it is disabled"));
+    ASSERT_FALSE(commands().empty());
+    EXPECT_EQ(commands().front(), can::Frame(0x000, {static_cast<std::uint8_t>(specifier), 2}));
+    EXPECT_EQ(world.axis(1).node().health(), NodeHealth::ready);
+  }
+}
+
+TEST_F(NmtJobTest, NothingIsSentWhileAnAxisIsEnabled) {
+  world.enable();
+  forget();
+  for (const char* word : {"stop", "pre_operational", "reset_node", "reset_communication"}) {
+    for (const char* axis : {"elbow", ""}) {
+      const Answer answer = world.call(nmt(axis, word));
+      EXPECT_FALSE(answer.success);
+      EXPECT_THAT(answer.message, HasSubstr("is not disabled (operation enabled)"));
+      EXPECT_THAT(answer.message, HasSubstr("quick_stop or disable it first"));
+    }
+  }
+  EXPECT_TRUE(commands().empty());
+  EXPECT_TRUE(world.drives[0].enabled());
+  EXPECT_TRUE(world.drives[1].enabled());
+}
+
+TEST_F(NmtJobTest, OneEnabledAxisForbidsTheCommandToAll) {
+  world.boot();
+  ASSERT_TRUE(world.call(drive::ProcedureKind::enable, "elbow").success);
+  forget();
+  EXPECT_THAT(world.call(nmt("", "reset_node")).message, HasSubstr("elbow (node 2)"));
+  EXPECT_TRUE(commands().empty());
+  EXPECT_TRUE(world.call(nmt("shoulder", "reset_node")).success);
+  EXPECT_TRUE(world.drives[1].enabled());
+}
+
+TEST_F(NmtJobTest, StartOfAnEnabledAxisChangesNothing) {
+  world.enable();
+  forget();
+  EXPECT_TRUE(world.call(nmt("", "start")).success);
+  EXPECT_TRUE(commands().empty());
+  EXPECT_TRUE(world.drives[0].enabled());
+}
+
+TEST_F(NmtJobTest, ARunningProcedureIsNotCutOff) {
+  world.boot();
+  world.drives[0].deaf_to_controlword = true;
+  const auto enabling = world.begin(drive::ProcedureKind::enable, "shoulder");
+  world.run(20ms);
+  EXPECT_THAT(world.call(nmt("shoulder", "stop")).message, HasSubstr("enable runs ("));
+  EXPECT_TRUE(enabling->empty());
+}
+
+TEST_F(NmtJobTest, ADriveThatDoesNotObeyIsTold) {
+  world.boot();
+  world.drives[0].silent = true;
+  const Answer answer = world.call(nmt("shoulder", "stop"));
+  EXPECT_FALSE(answer.success);
+  EXPECT_THAT(answer.message, HasSubstr("sent, but the drive's heartbeat says"));
+}
+
+TEST_F(NmtJobTest, ADriveThatDoesNotComeBackFromAResetIsTold) {
+  world.boot();
+  world.drives[0].silent = true;
+  const Answer answer = world.call(nmt("shoulder", "reset_node"));
+  EXPECT_FALSE(answer.success);
+  EXPECT_THAT(answer.message, HasSubstr("nmt reset_node: sent, but the node is not operational"));
+  EXPECT_THAT(answer.message, HasSubstr("does not answer"));
+}
+
+TEST_F(NmtJobTest, UnknownWordsAndAxesAreRefused) {
+  world.boot();
+  forget();
+  EXPECT_EQ(world.call(nmt("elbow", "halt")).message,
+            "nmt: unknown command \"halt\"; there are start, stop, pre_operational, reset_node, "
+            "reset_communication");
+  EXPECT_EQ(world.call(nmt("knee", "stop")).message, "there is no axis \"knee\"");
+  EXPECT_TRUE(commands().empty());
+}
+
+TEST_F(NmtJobTest, AShutdownAnswersWhatWaits) {
+  world.boot();
+  world.drives[0].silent = true;
+  const auto answers = world.begin(nmt("shoulder", "reset_node"));
+  world.robot.beginShutdown(world.now);
+  ASSERT_EQ(answers->size(), 1u);
+  EXPECT_THAT(answers->front().message, HasSubstr("shutdown"));
+}
+
+}  // namespace
+}  // namespace cia402::bus::test
