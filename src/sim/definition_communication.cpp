@@ -19,6 +19,18 @@ void readCommunication(DefinitionReader& reader, DeviceBehaviour& out) {
   reader.read("rtr_types", out.rtr_types);
   reader.read("type255_event_timer_only", out.type255_event_timer_only);
   reader.read("sends_event_tpdos_on_start", out.sends_event_tpdos_on_start);
+  reader.read("store_time", out.store_time);
+  reader.read("starts_operational", out.starts_operational);
+  reader.read("boots_again_after", out.boots_again_after);
+  reader.read("restart_after_bus_off", out.restart_after_bus_off);
+  reader.read<PdoIdentifiers>("pdo_identifiers", out.pdo_identifiers,
+                              {{"writable", PdoIdentifiers::writable},
+                               {"fixed", PdoIdentifiers::fixed},
+                               {"read_only", PdoIdentifiers::read_only}});
+  std::int64_t bytes = out.tpdo_size_error;
+  reader.read("tpdo_size_error", bytes, -8, 8);
+  out.tpdo_size_error = static_cast<int>(bytes);
+  reader.read("sync_producer", out.sync_producer);
   reader.read("lss", out.lss);
   reader.read("lss_bit_timing", out.lss_bit_timing);
   reader.read("lss_store", out.lss_store);

@@ -12,6 +12,7 @@
 #include "slave_heartbeat.h"
 #include "slave_lss.h"
 #include "slave_sync.h"
+#include "slave_time.h"
 
 namespace cia402::sim {
 
@@ -26,6 +27,8 @@ constexpr std::uint32_t kErrorControl = 0x700;
 constexpr std::uint32_t kLssRequest = 0x7E5;
 constexpr std::uint32_t kFunctionCode = 0x780;
 constexpr std::uint32_t kNodeId = 0x07F;
+
+constexpr std::uint16_t kRecoveredFromBusOff = 0x8140;
 
 constexpr std::uint16_t kFirstCommunicationObject = 0x1000;
 constexpr std::uint16_t kLastCommunicationObject = 0x1FFF;
@@ -51,10 +54,12 @@ struct Device::Impl {
   SlaveHeartbeat heartbeat{context, emergency};
   SlaveGuarding guarding{context, emergency};
   SlaveSync sync{context, emergency};
+  SlaveTime clock{context};
   SdoServer sdo{context};
   PdoServer pdos{context, emergency};
   SlaveLss lss;
   Time boot_at = kNever;
+  Time boot_again_at = kNever;
   Time next_event = kNever;
   unsigned depth = 0;
 
@@ -114,6 +119,7 @@ void Device::Impl::serveObjects() {
   heartbeat.serveObjects();
   guarding.serveObjects();
   sync.serveObjects();
+  clock.serveObjects();
   pdos.serveObjects();
 }
 
@@ -129,11 +135,12 @@ void Device::Impl::releaseObjects() {
 // Forgets all that runs or waits; `state` is one in which nothing is sent.
 void Device::Impl::silence(NmtState state) {
   context.state = state;
-  boot_at = kNever;
+  boot_at = boot_again_at = kNever;
   pdos.stop();
   heartbeat.reset();
   guarding.reset();
   sync.reset();
+  clock.reset();
   sdo.reset();
   emergency.reset();
   lss.reset();
@@ -164,9 +171,14 @@ void Device::Impl::finishBoot() {
   boot_at = kNever;
   if (context.node == kUnconfigured) return;  // LSS waits for a node-ID
   sync.start();
+  clock.start();
   pdos.configure();
   heartbeat.start();
+  if (context.behaviour.boots_again_after > Duration::zero()) {
+    boot_again_at = context.now + context.behaviour.boots_again_after;
+  }
   changeState(NmtState::pre_operational);
+  if (context.behaviour.starts_operational) changeState(NmtState::operational);
 }
 
 void Device::Impl::changeState(NmtState state) {
@@ -212,6 +224,7 @@ void Device::Impl::dispatch(const can::Frame& frame) {
   if (frame.id == sync.cobId()) return onSync(frame);
   if (context.operational() && pdos.concerns(frame.id)) return pdos.receive(frame);
   if (frame.id == kNmt) return command(frame);
+  if (frame.id == clock.cobId()) return clock.receive(frame);
   if (frame.id == kLssRequest) return lss.receive(frame);
   if (frame.id == kSdoRequest + context.node) return sdo.receive(frame);
   if (frame.id == kErrorControl + context.node) return guarding.receive(frame);
@@ -230,8 +243,13 @@ void Device::Impl::hear(const can::Frame& frame) {
 
 void Device::Impl::runDue() {
   if (boot_at <= context.now) finishBoot();
+  if (boot_again_at <= context.now) {
+    boot_again_at = kNever;
+    context.sink.send(can::Frame(kErrorControl + context.node, {0x00}));
+  }
   lss.tick();
   sync.tick();
+  if (const auto own = sync.takeProduced()) onSync(*own);
   heartbeat.tick();
   guarding.tick();
   pdos.tick();
@@ -240,7 +258,7 @@ void Device::Impl::runDue() {
 }
 
 Time Device::Impl::deadline() const {
-  return std::min({boot_at, lss.deadline(), sync.deadline(), heartbeat.deadline(),
+  return std::min({boot_at, boot_again_at, lss.deadline(), sync.deadline(), heartbeat.deadline(),
                    guarding.deadline(), pdos.deadline(), sdo.deadline(), emergency.deadline()});
 }
 
@@ -289,6 +307,22 @@ void Device::sendEmergency(std::uint16_t code, std::uint8_t error_register,
   if (!powered()) return;
   Call<Impl> call(*impl_, now);
   impl_->emergency.send(code, error_register, vendor);
+}
+
+std::optional<ReceivedTime> Device::lastTime() const { return impl_->clock.last(); }
+
+void Device::onBusOff(Time now) {
+  if (!powered() || impl_->context.state == NmtState::boot_up) return;
+  Call<Impl> call(*impl_, now);
+  impl_->context.masterLost();
+}
+
+void Device::onBusRecovered(Time now) {
+  if (!powered() || impl_->context.state == NmtState::boot_up) return;
+  Call<Impl> call(*impl_, now);
+  bool recovered = false;
+  impl_->emergency.raise(recovered, kRecoveredFromBusOff);
+  impl_->emergency.resolve(recovered);
 }
 
 void Device::clearEmergency(Time now) {

@@ -14,6 +14,8 @@ namespace cia402::sim {
 namespace {
 
 constexpr Duration kPowerCycle = std::chrono::milliseconds(500);
+constexpr Duration kStormInterval = std::chrono::milliseconds(1);
+constexpr std::uint16_t kStormCode = 0x6100;  // internal software
 
 // Error register bits of a code's class (CiA 301, 7.2.7.1 and 7.5.2.2).
 std::uint8_t registerFor(std::uint16_t code) {
@@ -53,7 +55,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
         gate(sink),
         device(node, gate, dictionary, definition->communication, *this),
         core(*definition, mechanics, dictionary, *this),
-        store(dictionary, [this] { return core.enabled(); }) {
+        store(dictionary, [this] { return !definition->stores_while_enabled && core.enabled(); }) {
     installHooks();
   }
 
@@ -156,6 +158,22 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
     core.advance(now);
   }
 
+  // An EMCY a millisecond that changes nothing else, until the fault is cleared.
+  void storm() {
+    if (storm_at > now) return;
+    storm_at = now + kStormInterval;
+    const auto count = static_cast<std::uint8_t>(++storm_count);
+    device.sendEmergency(kStormCode, 0x01, {count, 0, 0, 0, 0}, now);
+  }
+
+  // Another drive of the same kind takes this one's place: other serial number, as from the
+  // factory.
+  void exchange() {
+    store.restore(1);
+    Entry* serial = dictionary.find({0x1018, 4});
+    if (serial != nullptr) ++serial->initial_number;
+  }
+
   void flushChanges() {
     if (!status_changed && !core.motion().powered()) return;
     status_changed = false;
@@ -173,6 +191,8 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
   std::optional<Time> restart_at;
   std::map<std::uint16_t, FaultDefinition> raw_faults;
   unsigned non_finite = 0;
+  Time storm_at = kNever;
+  unsigned storm_count = 0;
   bool cold = false;
   bool first_power = true;
   bool status_changed = false;
@@ -208,11 +228,12 @@ void Drive::receive(const can::Frame& frame, Time now) {
 void Drive::tick(Time now) {
   impl_->bringTo(now);
   impl_->device.tick(now);
+  impl_->storm();
   impl_->flushChanges();
 }
 
 Time Drive::nextEvent() const {
-  Time next = std::min(impl_->device.nextEvent(), impl_->core.nextEvent());
+  Time next = std::min({impl_->device.nextEvent(), impl_->core.nextEvent(), impl_->storm_at});
   if (impl_->restart_at) next = std::min(next, *impl_->restart_at);
   return next;
 }
@@ -222,18 +243,26 @@ Result<void> Drive::inject(const std::string& fault, Time now) {
   impl.bringTo(now);
   if (const FaultDefinition* known = impl.definition->fault(fault)) {
     impl.core.raise(*known);
-  } else if (fault == "power_cycle") {
+  } else if (fault == "power_cycle" || fault == "exchange") {
     powerOff(now);
+    if (fault == "exchange") impl.exchange();
     impl.restart_at = now + kPowerCycle;
   } else if (fault == "silent") {
     impl.gate.closed = true;
   } else if (fault == "sdo_silent") {
     impl.device.behaviour().sdo_silent = true;
+  } else if (fault == "emergency_storm") {
+    impl.storm_at = now;
+    impl.storm();
+  } else if (fault == "short_tpdos" || fault == "long_tpdos") {
+    impl.device.behaviour().tpdo_size_error = fault == "short_tpdos" ? -1 : 1;
   } else if (fault == "blocked_rotor") {
     impl.core.blockRotor(true);
   } else if (fault == "clear") {
     impl.gate.closed = false;
+    impl.storm_at = kNever;
     impl.device.behaviour().sdo_silent = impl.definition->communication.sdo_silent;
+    impl.device.behaviour().tpdo_size_error = impl.definition->communication.tpdo_size_error;
     impl.core.removeCauses();
   } else {
     char* end = nullptr;
@@ -259,7 +288,8 @@ Result<void> Drive::inject(const std::string& fault, Time now) {
 std::vector<std::string> Drive::faultNames() const {
   std::vector<std::string> names;
   for (const FaultDefinition& fault : impl_->definition->faults) names.push_back(fault.name);
-  for (const char* name : {"blocked_rotor", "clear", "power_cycle", "sdo_silent", "silent"}) {
+  for (const char* name : {"blocked_rotor", "clear", "emergency_storm", "exchange", "long_tpdos",
+                           "power_cycle", "sdo_silent", "short_tpdos", "silent"}) {
     names.emplace_back(name);
   }
   return names;

@@ -205,6 +205,7 @@ void readStateMachine(Reader& reader, DriveDefinition& out) {
   reader.read("initialisation", out.initialisation);
   reader.read("enable_in_one_step", out.enable_in_one_step);
   reader.read("direct_enable", out.direct_enable);
+  reader.read("stores_while_enabled", out.stores_while_enabled);
   reader.read("mode_change_while_enabled", out.mode_change_while_enabled);
   reader.read("resume_quick_stop_while_moving", out.resume_quick_stop_while_moving);
   reader.read("halt", out.halt);

@@ -98,6 +98,7 @@ struct DriveDefinition {
   bool enable_in_one_step = true;  ///< 0x0F in Ready to switch on: transitions 3 and 4 at once
   bool direct_enable = false;      ///< 0x07 and 0x0F work in Switch on disabled, too
   bool mode_change_while_enabled = true;
+  bool stores_while_enabled = false;  ///< takes 1010h and 1011h then, too (else 0x08000022)
   bool resume_quick_stop_while_moving = true;
   bool halt = true;
   bool internal_limit_bit = true;

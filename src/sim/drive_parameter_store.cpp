@@ -10,6 +10,9 @@ namespace {
 
 constexpr std::uint16_t kStore = 0x1010;
 constexpr std::uint16_t kRestore = 0x1011;
+constexpr std::uint16_t kVerifyConfiguration = 0x1020;
+constexpr std::uint16_t kMode = 0x6060;
+constexpr std::uint16_t kOutputs = 0x60FE;
 constexpr std::uint64_t kSave = 0x65766173;  // "save", least significant byte first
 constexpr std::uint64_t kLoad = 0x64616F6C;  // "load"
 
@@ -50,6 +53,7 @@ ParameterStore::ParameterStore(ObjectDictionary& dictionary, std::function<bool(
   for (const auto& pair : dictionary_.entries()) factory_[pair.first] = pair.second.initial_number;
   install(kStore, kSave);
   install(kRestore, kLoad);
+  dictionary_.onChange([this](const Entry& entry) { changed(entry); });
 }
 
 void ParameterStore::install(std::uint16_t index, std::uint64_t signature) {
@@ -74,6 +78,15 @@ void ParameterStore::moveDefault(ObjectId id, std::int64_t by) {
   const std::uint64_t moved = factory + static_cast<std::uint64_t>(by);
   if (entry != nullptr && entry->initial_number == factory) entry->initial_number = moved;
   factory = moved;
+}
+
+void ParameterStore::changed(const Entry& entry) {
+  const std::uint16_t index = entry.id.index;
+  const bool commanded = index == kVerifyConfiguration || index == kMode || index == kOutputs;
+  if (commanded || !isParameter(entry)) return;
+  for (const std::uint8_t sub : {std::uint8_t{1}, std::uint8_t{2}}) {
+    if (Entry* mark = dictionary_.find({kVerifyConfiguration, sub})) mark->number = 0;
+  }
 }
 
 void ParameterStore::store(std::uint8_t subindex) {

@@ -138,7 +138,10 @@ std::uint32_t ObjectDictionary::write(ObjectId id, const std::vector<std::uint8_
     std::uint64_t number = 0;
     for (std::size_t i = data.size(); i-- > 0;) number = (number << 8U) | data[i];
     if (entry.type == DataType::boolean && number > 1) return abort_code::kInvalidValue;
-    return writeNumber(entry, number);
+    const std::uint64_t before = entry.number;
+    const std::uint32_t refused = writeNumber(entry, number);
+    if (refused == 0 && change_ && entry.number != before) change_(entry);
+    return refused;
   }
   const auto found = hooks_.find(id);
   const Hooks none;
@@ -146,8 +149,10 @@ std::uint32_t ObjectDictionary::write(ObjectId id, const std::vector<std::uint8_
   if (hooks.check) {
     if (const std::uint32_t refused = hooks.check(entry, 0)) return refused;
   }
+  const bool changes = entry.bytes != data;
   entry.bytes = data;
   if (hooks.write) hooks.write(entry);
+  if (changes && change_) change_(entry);
   return 0;
 }
 

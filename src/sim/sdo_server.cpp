@@ -61,7 +61,7 @@ void SdoServer::receive(const can::Frame& frame) {
   std::fill(request.frame.data.begin() + frame.size, request.frame.data.end(), std::uint8_t{0});
   Time begin = context_.now;
   if (waiting_ > 0) begin = queue_[(head_ + waiting_ - 1) % kQueueSize].due;
-  request.due = begin + context_.behaviour.sdo_latency;
+  request.due = begin + context_.answerTime(request.frame);
   ++waiting_;
   tick();
 }

@@ -22,6 +22,7 @@ struct SlaveContext {
   Device::Application& application;
   canopen::NmtState state = canopen::NmtState::unknown;
   Time now{};
+  Time sync_window_end = kNever;  ///< synchronous RPDOs are taken until then (1007h)
   std::function<void(canopen::NmtState)> change_state;
   std::function<void()> reset_communication;
   std::vector<ObjectId> hooked;
@@ -48,6 +49,13 @@ struct SlaveContext {
     if (reaction == 0 && operational()) change_state(canopen::NmtState::pre_operational);
     if (reaction == 2) change_state(canopen::NmtState::stopped);
     application.onMasterLost(now);
+  }
+
+  /// From an SDO request to its answer.
+  Duration answerTime(const can::Frame& request) const {
+    const unsigned index = request.data[1] | static_cast<unsigned>(request.data[2]) << 8U;
+    const bool stores = request.data[0] >> 5U == 1 && (index == 0x1010 || index == 0x1011);
+    return behaviour.sdo_latency + (stores ? behaviour.store_time : Duration::zero());
   }
 
   /// Serves writes of an object, if the dictionary has it. Either function may be empty.

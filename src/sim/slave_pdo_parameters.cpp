@@ -20,6 +20,12 @@ std::uint32_t checkType(const SlaveContext& context, const PdoRecords& pdo, std:
   return rtr && context.behaviour.rtr_types ? 0 : abort_code::kInvalidValue;
 }
 
+bool idIsFixed(const SlaveContext& context, const Entry& entry, std::uint64_t number) {
+  const PdoIdentifiers rule = context.behaviour.pdo_identifiers;
+  if (rule == PdoIdentifiers::fixed) return ((entry.number ^ number) & ~kCobIdInvalid) != 0;
+  return rule == PdoIdentifiers::read_only;
+}
+
 std::uint32_t checkMappingEntry(const SlaveContext& context, const PdoRecords& pdo,
                                 const Entry& entry, std::uint64_t number) {
   const auto refused = Mapping::checkEntry(context.dictionary, number, pdo.direction);
@@ -58,6 +64,7 @@ std::uint32_t checkCommunication(const SlaveContext& context, const PdoRecords& 
   const bool locked = context.behaviour.timers_require_invalid && isValid(context, pdo);
   switch (entry.id.subindex) {
     case pdo_sub::kCobId:
+      if (idIsFixed(context, entry, number)) return abort_code::kReadOnly;
       return checkCobId(static_cast<std::uint32_t>(entry.number),
                         static_cast<std::uint32_t>(number),
                         context.behaviour.disable_may_change_id);

@@ -52,6 +52,7 @@ void SlaveRpdo::receive(const can::Frame& frame) {
   emergency_.resolve(timed_out_);
   const std::uint64_t data = takeBytes(frame, 0, mapping_.size());
   if (!synchronous_) return apply(data);
+  if (context_.now > context_.sync_window_end) return;  // too late, to be discarded (1007h)
   data_ = data;
   waiting_ = true;
 }

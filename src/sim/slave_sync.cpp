@@ -12,21 +12,21 @@ namespace {
 
 constexpr ObjectId kCobId{0x1005, 0};
 constexpr ObjectId kPeriod{0x1006, 0};
+constexpr ObjectId kWindow{0x1007, 0};
 constexpr ObjectId kCounterOverflow{0x1019, 0};
 constexpr std::uint16_t kUnexpectedLength = 0x8240;
 constexpr std::uint16_t kSyncTimeout = 0x8201;
 
-std::uint32_t checkSyncCobId(const Entry&, std::uint64_t number) {
-  const auto cob_id = static_cast<std::uint32_t>(number);
-  if ((cob_id & kCobIdGenerateSync) != 0) return abort_code::kInvalidValue;
-  return checkCobId(kCobIdInvalid, cob_id & ~kCobIdInvalid, true);
-}
-
 }  // namespace
 
 void SlaveSync::serveObjects() {
-  context_.serveWrites(kCobId, checkSyncCobId, [this](const Entry&) { start(); });
-  context_.serveWrites(kPeriod, nullptr, [this](const Entry&) { deadline_ = kNever; });
+  context_.serveWrites(
+      kCobId, [this](const Entry& entry, std::uint64_t number) { return check(entry, number); },
+      [this](const Entry&) { start(); });
+  context_.serveWrites(kPeriod, nullptr, [this](const Entry&) {
+    deadline_ = kNever;
+    start();
+  });
   context_.serveWrites(
       kCounterOverflow,
       [this](const Entry&, std::uint64_t number) {
@@ -37,7 +37,9 @@ void SlaveSync::serveObjects() {
 }
 
 void SlaveSync::reset() {
-  deadline_ = kNever;
+  deadline_ = next_ = kNever;
+  produced_.reset();
+  context_.sync_window_end = kNever;
   wrong_length_ = false;
   timed_out_ = false;
 }
@@ -46,6 +48,43 @@ void SlaveSync::start() {
   cob_id_ = static_cast<std::uint32_t>(context_.value(kCobId, 0x80)) & kCobIdMask;
   overflow_ = context_.dictionary.find(kCounterOverflow);
   period_ = context_.dictionary.find(kPeriod);
+  const bool produces = (context_.value(kCobId) & kCobIdGenerateSync) != 0;
+  next_ = produces && period() > Duration::zero() ? context_.now + period() : kNever;
+  counter_ = 1;
+}
+
+// The identifier stays while SYNC is produced (CiA 301, 7.5.2.5).
+std::uint32_t SlaveSync::check(const Entry& entry, std::uint64_t number) const {
+  const auto cob_id = static_cast<std::uint32_t>(number);
+  const bool produces = (cob_id & kCobIdGenerateSync) != 0;
+  if (produces && !context_.behaviour.sync_producer) return abort_code::kInvalidValue;
+  const bool was_producing = (entry.number & kCobIdGenerateSync) != 0;
+  if (was_producing && produces && entry.number != number) return abort_code::kInvalidValue;
+  return checkCobId(kCobIdInvalid, cob_id & ~(kCobIdInvalid | kCobIdGenerateSync), true);
+}
+
+Duration SlaveSync::period() const {
+  return std::chrono::microseconds(static_cast<std::int64_t>(context_.value(kPeriod)));
+}
+
+void SlaveSync::produce() {
+  const std::uint64_t overflow = context_.value(kCounterOverflow);
+  can::Frame frame(cob_id_, {});
+  if (overflow != 0) {
+    frame = can::Frame(cob_id_, {counter_});
+    counter_ = counter_ >= overflow ? std::uint8_t{1} : static_cast<std::uint8_t>(counter_ + 1);
+  }
+  next_ += period();
+  if (next_ <= context_.now) next_ = context_.now + period();
+  if (!context_.communicating()) return;
+  context_.sink.send(frame);
+  produced_ = frame;
+}
+
+std::optional<can::Frame> SlaveSync::takeProduced() {
+  const auto frame = produced_;
+  produced_.reset();
+  return frame;
 }
 
 std::optional<std::uint8_t> SlaveSync::accept(const can::Frame& frame) {
@@ -58,6 +97,8 @@ std::optional<std::uint8_t> SlaveSync::accept(const can::Frame& frame) {
   }
   emergency_.resolve(wrong_length_);
   emergency_.resolve(timed_out_);
+  const std::chrono::microseconds window(static_cast<std::int64_t>(context_.value(kWindow)));
+  context_.sync_window_end = window.count() > 0 ? context_.now + window : kNever;
   if (context_.behaviour.sync_timeout && period_ != nullptr && period_->number != 0) {
     const std::chrono::microseconds period(static_cast<std::int64_t>(period_->number));
     deadline_ = context_.now + Duration(period) * 3 / 2;
@@ -66,6 +107,7 @@ std::optional<std::uint8_t> SlaveSync::accept(const can::Frame& frame) {
 }
 
 void SlaveSync::tick() {
+  if (next_ <= context_.now) produce();
   if (deadline_ > context_.now) return;
   deadline_ = kNever;
   emergency_.raise(timed_out_, kSyncTimeout);

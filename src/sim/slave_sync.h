@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 
@@ -9,7 +10,7 @@
 
 namespace cia402::sim {
 
-/// SYNC consumer (CiA 301, 7.2.5): 1005h, 1006h, 1019h.
+/// SYNC consumer and producer (CiA 301, 7.2.5): 1005h, 1006h, 1007h, 1019h.
 class SlaveSync {
  public:
   SlaveSync(SlaveContext& context, SlaveEmergency& emergency)
@@ -23,7 +24,9 @@ class SlaveSync {
   /// The counter of an accepted SYNC, 0 if it carried none; nothing if it must be ignored.
   std::optional<std::uint8_t> accept(const can::Frame& frame);
   void tick();
-  Time deadline() const { return deadline_; }
+  Time deadline() const { return std::min(deadline_, next_); }
+  /// Own SYNC since the last call; the device hears it like any other.
+  std::optional<can::Frame> takeProduced();
 
  private:
   SlaveContext& context_;
@@ -31,7 +34,14 @@ class SlaveSync {
   const Entry* overflow_ = nullptr;
   const Entry* period_ = nullptr;
   std::uint32_t cob_id_ = 0x80;
+  std::uint32_t check(const Entry& entry, std::uint64_t number) const;
+  Duration period() const;
+  void produce();
+
   Time deadline_ = kNever;
+  Time next_ = kNever;  // own SYNC
+  std::uint8_t counter_ = 1;
+  std::optional<can::Frame> produced_;
   bool wrong_length_ = false;
   bool timed_out_ = false;
 };

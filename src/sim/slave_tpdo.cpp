@@ -117,7 +117,8 @@ void SlaveTpdo::trigger(std::uint64_t data) {
 }
 
 void SlaveTpdo::transmit(std::uint64_t data) {
-  can::Frame frame = emptyFrame(can_id_, mapping_.size());
+  const int size = int{mapping_.size()} + context_.behaviour.tpdo_size_error;
+  can::Frame frame = emptyFrame(can_id_, static_cast<std::uint8_t>(std::clamp(size, 0, 8)));
   putBytes(frame, 0, frame.size, data);
   context_.sink.send(frame);
   last_ = data;

@@ -18,21 +18,50 @@ class World::DriveNode final : public Listener {
 
   void onFrame(const can::Frame& frame, Time now) override {
     drive_.receive(frame, now);
-    next_event_ = drive_.nextEvent();
+    refresh();
+  }
+  void onStateChange(can::BusState state, Time now) override {
+    const bool was_off = off_;
+    off_ = state == can::BusState::bus_off;
+    if (off_ == was_off) return;
+    Device& device = drive_.device();
+    restart_at_ = kNever;
+    if (off_ && device.behaviour().restart_after_bus_off > Duration::zero()) {
+      restart_at_ = now + device.behaviour().restart_after_bus_off;
+    }
+    drive_.tick(now);
+    off_ ? device.onBusOff(now) : device.onBusRecovered(now);
+    refresh();
   }
   void tick(Time now) {
+    if (restart_at_ <= now) {
+      restart_at_ = kNever;
+      port_.requestRecovery();
+    }
+    const bool had_power = drive_.device().powered();
     drive_.tick(now);
-    next_event_ = drive_.nextEvent();
+    if (off_ && !had_power && drive_.device().powered()) restartController();
+    refresh();
   }
-  void refresh() { next_event_ = drive_.nextEvent(); }
+  void refresh() { next_event_ = std::min(drive_.nextEvent(), restart_at_); }
   Time nextEvent() const { return next_event_; }
   Port& port() { return port_; }
   Drive& drive() { return drive_; }
 
  private:
+  // Power that comes back starts the controller anew.
+  void restartController() {
+    off_ = false;
+    restart_at_ = kNever;
+    port_.setPowered(false);
+    port_.setPowered(true);
+  }
+
   Port& port_;
   Drive drive_;
   Time next_event_ = kNever;
+  Time restart_at_ = kNever;
+  bool off_ = false;
 };
 
 class World::ParticipantNode final : public Listener {

@@ -31,7 +31,8 @@ TEST_F(SlaveSyncTest, FollowsItsCobId) {
   EXPECT_THAT(application.calls, ElementsAre("sync"));
 }
 
-TEST_F(SlaveSyncTest, CannotProduceSyncNorUseExtendedIdentifiers) {
+TEST_F(SlaveSyncTest, CannotProduceSyncWithoutAProducerNorUseExtendedIdentifiers) {
+  behaviour.sync_producer = false;
   boot();
   EXPECT_EQ(sdo({0x23, 0x05, 0x10, 0x00, 0x80, 0, 0, 0x40}), "581 80 05 10 00 30 00 09 06");
   EXPECT_EQ(sdo({0x23, 0x05, 0x10, 0x00, 0x80, 0, 0, 0x20}), "581 80 05 10 00 30 00 09 06");
@@ -105,6 +106,53 @@ TEST_F(SlaveSyncTest, DoesNotWatchThePeriodUnlessToldTo) {
   send(0x080, {});
   run(milliseconds(100));
   EXPECT_THAT(sent(), IsEmpty());
+}
+
+TEST_F(SlaveSyncTest, ProducesSyncWhereBit30IsSetAndHearsItItself) {
+  presetPdos(1, 1);
+  preset(0x1006, 0, 2000);
+  operate();
+  EXPECT_EQ(sdo({0x23, 0x05, 0x10, 0x00, 0x80, 0, 0, 0x40}), "581 60 05 10 00 00 00 00 00");
+  forget();
+  run(milliseconds(3));
+  EXPECT_THAT(sent(), ElementsAre("080", "181 00 00 00 00 00 00"));
+  EXPECT_THAT(application.calls, testing::Contains("sync"));
+  run(milliseconds(1));
+  EXPECT_THAT(sent(), ElementsAre("080", "181 00 00 00 00 00 00"));
+  // Its identifier stays while it runs.
+  EXPECT_EQ(sdo({0x23, 0x05, 0x10, 0x00, 0x81, 0, 0, 0x40}), "581 80 05 10 00 30 00 09 06");
+  EXPECT_EQ(sdo({0x23, 0x05, 0x10, 0x00, 0x80, 0, 0, 0x00}), "581 60 05 10 00 00 00 00 00");
+  forget();
+  run(milliseconds(100));
+  EXPECT_THAT(sent(), IsEmpty());
+}
+
+TEST_F(SlaveSyncTest, CountsItsOwnSyncAndIsSilentWhileStopped) {
+  preset(0x1005, 0, 0x40000080);
+  preset(0x1006, 0, 1000);
+  preset(0x1019, 0, 2);
+  boot();
+  run(milliseconds(3));
+  EXPECT_THAT(sent(), ElementsAre("080 01", "080 02", "080 01"));
+  send(0x000, {0x02, 0x01});
+  run(milliseconds(10));
+  EXPECT_THAT(sent(), IsEmpty());
+}
+
+TEST_F(SlaveSyncTest, SynchronousRpdosAfterTheWindowAreLost) {
+  presetPdos(1, 255);
+  add(0x1007, 0, DataType::uint32, Access::rw, 500);
+  operate();
+  send(0x201, {0x06, 0x00, 1, 0, 0, 0});  // no SYNC yet: no window
+  send(0x080, {});
+  EXPECT_EQ(value(0x607A), 1U);
+  run(testing_support::microseconds(500));
+  send(0x201, {0x06, 0x00, 2, 0, 0, 0});
+  run(testing_support::microseconds(1));
+  send(0x201, {0x06, 0x00, 3, 0, 0, 0});  // too late
+  run(milliseconds(1));
+  send(0x080, {});
+  EXPECT_EQ(value(0x607A), 2U);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "cia402_driver/can/bus.h"
@@ -12,12 +13,30 @@
 
 namespace cia402::sim {
 
+/// How far a device lets the COB-IDs of its PDOs be configured (1400h, 1800h sub 1).
+enum class PdoIdentifiers : std::uint8_t {
+  writable,   ///< as CiA 301 says
+  fixed,      ///< bit 31 only; another identifier is refused with 0x06010002
+  read_only,  ///< every write is refused with 0x06010002
+};
+
+/// The time of a TIME message (CiA 301, 7.2.6).
+struct ReceivedTime {
+  std::uint32_t milliseconds = 0;  ///< after midnight
+  std::uint16_t days = 0;          ///< since 1 January 1984
+  Time at{};                       ///< when the message came
+};
+
 /// Behaviour switches of a simulated device's communication, where real devices differ. The
 /// defaults are those of CiA 301 (clauses of version 4.2.0). May be changed at any time.
 struct DeviceBehaviour {
   Duration boot_time{std::chrono::milliseconds(20)};     ///< power-on or reset to boot-up
   Duration sdo_latency{std::chrono::microseconds(200)};  ///< request to answer
+  Duration store_time{};  ///< more for a write to 1010h or 1011h: the memory is slow
   bool ignores_nmt_reset = false;
+  bool starts_operational = false;   ///< enters NMT operational by itself after boot-up
+  Duration boots_again_after{};      ///< sends boot-up a second time so long after; 0: does not
+  Duration restart_after_bus_off{};  ///< leaves bus-off by itself after this time; 0: never
   bool map_count_read_only = false;  ///< sub0 of 16xxh/1Axxh refuses writes with 0x06010002; it
                                      ///< follows the entries written, which may be at any time
   bool accepts_plain_sync = true;    ///< take an empty SYNC although 1019h is not 0
@@ -38,9 +57,12 @@ struct DeviceBehaviour {
                                        ///< sets bit 31
   bool timers_require_invalid = false;  ///< inhibit time and SYNC start value can be written only
                                         ///< while bit 31 of the COB-ID is set (else 0x08000022)
-  bool rtr_types = true;                ///< TPDO types 252 and 253 exist (else 0x06090030)
+  PdoIdentifiers pdo_identifiers = PdoIdentifiers::writable;
+  bool rtr_types = true;  ///< TPDO types 252 and 253 exist (else 0x06090030)
 
   // PDO transmission (7.2.2).
+  int tpdo_size_error =
+      0;  ///< bytes that TPDOs are too long, or, negative, too short; 0 to 8 leave
   bool type255_event_timer_only = false;   ///< type 255 sends when the event timer ends, never on a
                                            ///< change (Damiao)
   bool sends_event_tpdos_on_start = true;  ///< entering operational sends TPDOs of type 254, 255
@@ -51,6 +73,7 @@ struct DeviceBehaviour {
   bool lss_store = true;       ///< can store (else error 1)
 
   // Supervision.
+  bool sync_producer = true;  ///< can produce SYNC (1005h bit 30, 1006h; else 0x06090030)
   bool sync_timeout = false;  ///< no SYNC for 1.5 * 1006h: EMCY 0x8201 (Damiao)
 };
 
@@ -61,7 +84,7 @@ struct DeviceBehaviour {
 ///
 /// The dictionary says what the device has: a service whose objects are missing does not exist.
 /// From the first powerOn() the device uses the write and read hooks of 1003h, 1005h, 1006h, 100Ch,
-/// 100Dh, 1014h, 1016h, 1017h, 1019h and the PDO parameters 1400h-1BFFh; all others are the
+/// 100Dh, 1012h, 1014h, 1016h, 1017h, 1019h and the PDO parameters 1400h-1BFFh; all others are the
 /// application's. Node-IDs in default COB-IDs are to be resolved in the dictionary. Errors of
 /// communication it reports by itself (EMCY 0x81xx, 0x82xx with bits 0 and 4 of 1001h) and takes
 /// back with EMCY 0x0000 when the last one is gone, unless the application then holds a fault of
@@ -80,10 +103,11 @@ class Device {
     virtual void onResetCommunication(Time now) { onPowerOn(now); }
     /// The state just entered; boot_up while initialising.
     virtual void onNmtState(canopen::NmtState, Time) {}
-    virtual void onSync(Time) {}        ///< before synchronous TPDOs are sampled; every accepted
-                                        ///< SYNC, in pre-operational, too
-    virtual void onRpdo(Time) {}        ///< after an RPDO's values were taken
-    virtual void onMasterLost(Time) {}  ///< heartbeat (1016h) or life guarding timed out
+    virtual void onSync(Time) {}  ///< before synchronous TPDOs are sampled; every accepted
+                                  ///< SYNC, in pre-operational, too
+    virtual void onRpdo(Time) {}  ///< after an RPDO's values were taken
+    /// Heartbeat or life guarding was lost, or the controller went bus-off.
+    virtual void onMasterLost(Time) {}
     virtual void onMasterBack(Time) {}
     virtual void beforeTpdo(Time) {}  ///< bring actual values up to date; not for notifyChange()
     /// Whether a fault of the application keeps bits of 1001h set, so that the end of a
@@ -122,6 +146,12 @@ class Device {
   /// disabled or missing. CiA 301, 7.2.7.
   void sendEmergency(std::uint16_t code, std::uint8_t error_register,
                      const std::array<std::uint8_t, 5>& vendor, Time now);
+  /// The last TIME message heard since power-on or reset.
+  std::optional<ReceivedTime> lastTime() const;
+  /// The controller went bus-off: reacts like to the loss of the master.
+  void onBusOff(Time now);
+  /// It is back: EMCY 0x8140.
+  void onBusRecovered(Time now);
   /// EMCY 0000h: all errors gone; 1001h := 0. The history 1003h stays.
   void clearEmergency(Time now);
   /// Mapped values of event-driven TPDOs may have changed: sends those whose content did, subject

@@ -65,7 +65,8 @@ class Drive {
 
   /// Injects a fault by its name in the definition ("following_error", "overcurrent",
   /// "overtemperature", "undervoltage", "encoder", ...) or as a raw error code "0x7305"; also
-  /// "power_cycle", "silent" (stops answering), "blocked_rotor", "sdo_silent", and "clear", which
+  /// "power_cycle", "exchange", "silent" (stops answering), "blocked_rotor", "sdo_silent",
+  /// "emergency_storm", "short_tpdos", "long_tpdos" (docs/simulated_drives.md), and "clear", which
   /// takes the causes of all of them away. @return an error that lists the known names.
   Result<void> inject(const std::string& fault, Time now);
   std::vector<std::string> faultNames() const;

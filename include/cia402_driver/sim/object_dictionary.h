@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cia402_driver/canopen/object.h"
@@ -63,6 +64,9 @@ class ObjectDictionary {
   void onWrite(ObjectId id, WriteHook hook);
   void onRead(ObjectId id, ReadHook hook);
 
+  /// Called after a write by SDO has changed a value, after the object's own hook.
+  void onChange(WriteHook hook) { change_ = std::move(hook); }
+
   /// The hooks of an object, for those who call them often; the reference stays valid and sees
   /// hooks that are set later.
   const Hooks& hooks(ObjectId id);
@@ -90,6 +94,7 @@ class ObjectDictionary {
  private:
   std::map<ObjectId, Entry> entries_;
   std::map<ObjectId, Hooks> hooks_;
+  WriteHook change_;
 };
 
 /// Number of an entry as a signed value of its own width (sign-extended).
