@@ -229,6 +229,9 @@ TEST_F(SlaveLssTest, FastscanFindsEveryBitAndSelects) {
   EXPECT_THAT(ask({0x51, 0x00, 0x00, 0x00, 0x10, 28, 0, 0}), yes);
   EXPECT_THAT(ask({0x51, 0xFF, 0xFF, 0xFF, 0x1F, 28, 0, 0}), yes);  // lower bits do not count
   EXPECT_THAT(ask({0x51, 0x45, 0x33, 0x22, 0x11, 0, 0, 1}), IsEmpty());
+  // The whole number is known, but the scan stays with it: nobody is selected.
+  EXPECT_THAT(ask({0x51, 0x44, 0x33, 0x22, 0x11, 0, 0, 0}), yes);
+  EXPECT_THAT(ask({0x5E, 0, 0, 0, 0, 0, 0, 0}), IsEmpty());
   // The product is not asked for yet.
   EXPECT_THAT(ask({0x51, 0x02, 0x04, 0x00, 0x00, 0, 1, 2}), IsEmpty());
   EXPECT_THAT(ask({0x51, 0x44, 0x33, 0x22, 0x11, 0, 0, 1}), yes);
