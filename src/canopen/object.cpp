@@ -15,7 +15,7 @@ struct TypeRow {
   bool is_signed;
 };
 
-constexpr std::array<TypeRow, 14> kTypes{{
+constexpr std::array<TypeRow, 25> kTypes{{
     {DataType::boolean, "boolean", 1, false},
     {DataType::int8, "int8", 8, true},
     {DataType::int16, "int16", 16, true},
@@ -29,6 +29,17 @@ constexpr std::array<TypeRow, 14> kTypes{{
     {DataType::real64, "real64", 64, true},
     {DataType::visible_string, "visible_string", 0, false},
     {DataType::octet_string, "octet_string", 0, false},
+    {DataType::int24, "int24", 24, true},
+    {DataType::int40, "int40", 40, true},
+    {DataType::int48, "int48", 48, true},
+    {DataType::int56, "int56", 56, true},
+    {DataType::uint24, "uint24", 24, false},
+    {DataType::uint40, "uint40", 40, false},
+    {DataType::uint48, "uint48", 48, false},
+    {DataType::uint56, "uint56", 56, false},
+    {DataType::unicode_string, "unicode_string", 0, false},
+    {DataType::time_of_day, "time_of_day", 48, false},
+    {DataType::time_difference, "time_difference", 48, false},
     {DataType::domain, "domain", 0, false},
 }};
 

@@ -18,8 +18,9 @@ constexpr char kNodeId[] = "$NODEID";
 bool isReal(DataType type) { return type == DataType::real32 || type == DataType::real64; }
 
 bool isSignedInteger(DataType type) {
-  return type == DataType::int8 || type == DataType::int16 || type == DataType::int32 ||
-         type == DataType::int64;
+  return type == DataType::int8 || type == DataType::int16 || type == DataType::int24 ||
+         type == DataType::int32 || type == DataType::int40 || type == DataType::int48 ||
+         type == DataType::int56 || type == DataType::int64;
 }
 
 std::optional<std::int64_t> integerOf(const std::string& text) {

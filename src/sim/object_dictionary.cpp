@@ -24,8 +24,9 @@ std::int64_t signExtend(std::uint64_t number, unsigned bits) {
 bool isReal(DataType type) { return type == DataType::real32 || type == DataType::real64; }
 
 bool isSignedInteger(DataType type) {
-  return type == DataType::int8 || type == DataType::int16 || type == DataType::int32 ||
-         type == DataType::int64;
+  return type == DataType::int8 || type == DataType::int16 || type == DataType::int24 ||
+         type == DataType::int32 || type == DataType::int40 || type == DataType::int48 ||
+         type == DataType::int56 || type == DataType::int64;
 }
 
 // Bytes a value takes in an SDO; a boolean takes a whole one. 0: any length.

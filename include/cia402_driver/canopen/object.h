@@ -47,9 +47,20 @@ enum class DataType : std::uint8_t {
   visible_string,
   octet_string,
   domain,
+  int24,
+  int40,
+  int48,
+  int56,
+  uint24,
+  uint40,
+  uint48,
+  uint56,
+  unicode_string,
+  time_of_day,      ///< 48 bits: milliseconds after midnight, days since 1984-01-01
+  time_difference,  ///< 48 bits: milliseconds, days
 };
 
-/// Size on the wire in bits: 1 for boolean, 8..64 for numbers, 0 for types of any length.
+/// Size on the wire in bits: 1 for boolean, 8..64 for numbers and times, 0 for types of any length.
 unsigned sizeBits(DataType type);
 bool isSigned(DataType type);
 /// "uint16"; the same words as in profiles.

@@ -112,10 +112,24 @@ constexpr unsigned widthBits(DataType type) {
     case DataType::int16:
     case DataType::uint16:
       return 16;
+    case DataType::int24:
+    case DataType::uint24:
+      return 24;
     case DataType::int32:
     case DataType::uint32:
     case DataType::real32:
       return 32;
+    case DataType::int40:
+    case DataType::uint40:
+      return 40;
+    case DataType::int48:
+    case DataType::uint48:
+    case DataType::time_of_day:
+    case DataType::time_difference:
+      return 48;
+    case DataType::int56:
+    case DataType::uint56:
+      return 56;
     case DataType::int64:
     case DataType::uint64:
     case DataType::real64:

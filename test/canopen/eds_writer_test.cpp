@@ -1,0 +1,125 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <tuple>
+
+#include "cia402_driver/canopen/eds.h"
+
+namespace cia402::canopen {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+Eds readFile(const std::string& name, std::optional<NodeId> node_id) {
+  std::ifstream file(std::string(CIA402_TEST_DIR) + "/canopen/eds/" + name, std::ios::binary);
+  EXPECT_TRUE(file) << name;
+  const std::string text((std::istreambuf_iterator<char>(file)), {});
+  return readEds(text, node_id);
+}
+
+// Everything but the lines of the file.
+auto fields(const DictionaryEntry& e) {
+  return std::tie(e.id, e.name, e.denotation, e.type, e.access, e.mappable, e.flags, e.low, e.high,
+                  e.default_value, e.value, e.default_adds_node_id, e.upload_file, e.download_file);
+}
+
+auto fields(const EdsInfo& i) {
+  return std::tie(i.file_name, i.description, i.created_by, i.modified_by, i.creation_date,
+                  i.creation_time, i.modification_date, i.modification_time, i.vendor_name,
+                  i.product_name, i.order_code, i.vendor_number, i.product_number,
+                  i.revision_number, i.baud_rates, i.rpdo_count, i.tpdo_count, i.compact_pdo,
+                  i.granularity, i.lss_supported, i.boot_up_master, i.boot_up_slave,
+                  i.group_messaging, i.dynamic_channels, i.dummies, i.comments, i.node_id,
+                  i.node_name, i.baud_rate, i.lss_serial);
+}
+
+void expectEqual(const Eds& a, const Eds& b, const std::string& what) {
+  EXPECT_TRUE(fields(a.info) == fields(b.info)) << what;
+  ASSERT_EQ(a.dictionary.size(), b.dictionary.size()) << what;
+  for (const auto& [index, object] : a.dictionary.objects()) {
+    const auto found = b.dictionary.objects().find(index);
+    ASSERT_NE(found, b.dictionary.objects().end()) << what << " " << index;
+    EXPECT_EQ(object.name, found->second.name);
+    EXPECT_EQ(object.code, found->second.code);
+    for (const auto& [subindex, entry] : object.entries) {
+      const DictionaryEntry* other = b.dictionary.find(entry.id);
+      ASSERT_NE(other, nullptr) << what << " " << toString(entry.id);
+      EXPECT_TRUE(fields(entry) == fields(*other)) << what << " " << toString(entry.id);
+    }
+  }
+}
+
+TEST(EdsWriter, WhatIsWrittenReadsBackEqual) {
+  for (const char* name :
+       {"clean.eds", "node_id.eds", "types.eds", "compact.eds", "compact_pdo.eds", "sparse.eds",
+        "deftypes.eds", "latin1.eds", "access.eds", "drive.dcf", "lists.eds"}) {
+    Eds first = readFile(name, NodeId{5});
+    first.info.node_id = NodeId{5};
+    // An object without a sub-index cannot be written, for it says nothing.
+    first.dictionary.objects().erase(0x2200);
+    first.dictionary.objects().erase(0x2105);
+    const std::string text = writeDcf(first.info, first.dictionary);
+    expectEqual(first, readEds(text), name);
+  }
+}
+
+TEST(EdsWriter, AWrittenFileGivesNoProblem) {
+  for (const char* name : {"clean.eds", "types.eds", "compact.eds", "compact_pdo.eds"}) {
+    Eds first = readFile(name, NodeId{5});
+    first.info.node_id = NodeId{5};
+    first.dictionary.objects().erase(0x2105);
+    std::vector<std::string> problems;
+    for (const EdsProblem& problem : readEds(writeDcf(first.info, first.dictionary)).problems) {
+      problems.push_back(toString(problem));
+    }
+    EXPECT_THAT(problems, IsEmpty()) << name;
+  }
+}
+
+TEST(EdsWriter, TheTextIsThatOfTheStandard) {
+  EdsInfo info;
+  info.node_id = NodeId{0x20};
+  info.baud_rate = 1000;
+  ObjectDictionary dictionary;
+  DictionaryObject object{0x1800, "TPDO", ObjectCode::record, {}};
+  DictionaryEntry& entry = object.entries[1];
+  entry.id = {0x1800, 1};
+  entry.name = "COB-ID\n; used";
+  entry.default_value = ObjectValue{0xA0, 0x01, 0, 0};
+  entry.default_adds_node_id = true;
+  entry.value = ObjectValue{0xA0, 0x01, 0, 0x80};
+  dictionary.set(object);
+  const std::string text = writeDcf(info, dictionary);
+  EXPECT_THAT(text, HasSubstr("[DeviceComissioning]\r\nNodeID=0x20\r\nBaudrate=1000\r\n"));
+  EXPECT_THAT(text, HasSubstr("[OptionalObjects]\r\nSupportedObjects=1\r\n1=0x1800\r\n"));
+  EXPECT_THAT(text, HasSubstr("[1800]\r\nParameterName=TPDO\r\nObjectType=0x9\r\nSubNumber=1\r\n"));
+  EXPECT_THAT(text, HasSubstr("[1800sub1]\r\nParameterName=COB-ID , used\r\nObjectType=0x7\r\n"
+                              "DataType=0x0007\r\nAccessType=rw\r\nDefaultValue=$NODEID+0x180\r\n"
+                              "PDOMapping=0\r\nParameterValue=0x800001A0\r\n"));
+}
+
+TEST(EdsWriter, AValueThatNoLineCanHoldIsLeftOut) {
+  ObjectDictionary dictionary;
+  DictionaryObject object{0x1008, "Device name", ObjectCode::variable, {}};
+  DictionaryEntry& entry = object.entries[0];
+  entry.id = {0x1008, 0};
+  entry.name = "Device name";
+  entry.type = DataType::visible_string;
+  for (const ObjectValue& value :
+       {ObjectValue{'a', '\n', 'b'}, ObjectValue{' ', 'a'}, ObjectValue{'a', 0}, ObjectValue{0xFF},
+        ObjectValue{';'}, ObjectValue{'a', ' ', ';'}, ObjectValue{}}) {
+    entry.value = value;
+    dictionary.set(object);
+    EXPECT_EQ(writeDcf({}, dictionary).find("ParameterValue"), std::string::npos);
+  }
+  entry.value = ObjectValue{'a', ';', 'b'};
+  dictionary.set(object);
+  EXPECT_THAT(writeDcf({}, dictionary), HasSubstr("ParameterValue=a;b\r\n"));
+}
+
+}  // namespace
+}  // namespace cia402::canopen
