@@ -17,8 +17,13 @@ Result<ObjectJob> ObjectJob::find(drive::Axis& axis, const std::string& object, 
     job.id_ = *id;
     job.spec_ = config.profile->find(*id);
   } else {
+    std::string why;
+    if (config.eds != nullptr) {
+      const auto found = config.eds->dictionary.find(object);
+      if (!found) why = " (" + config.eds->file + ": " + found.error().message + ")";
+    }
     return Error{job.who_ + ": \"" + object + "\" is neither an object of profile " +
-                 config.profile->name + " nor an index such as 6041:00"};
+                 config.profile->name + " nor an index such as 6041:00" + why};
   }
   job.name_ = canopen::toString(job.id_) + (job.spec_ ? " " + job.spec_->name : "");
   return job;
@@ -45,6 +50,14 @@ Result<ObjectJob> ObjectJob::write(drive::Axis& axis, const std::string& object,
   }
   const Result<canopen::Bytes> data = encodeObject(*job.spec_, axis.config(), value);
   if (!data) return Error{job.who_ + ": " + job.name_ + " not written: " + data.error().message};
+  if (const auto& eds = axis.config().eds) {
+    const canopen::DictionaryEntry* entry = eds->dictionary.find(job.id_);
+    const auto allowed =
+        entry != nullptr ? canopen::checkWrite(*entry, *data, eds->file) : Result<void>();
+    if (!allowed) {
+      return Error{job.who_ + ": " + job.name_ + " not written: " + allowed.error().message};
+    }
+  }
   job.stage_ = Stage::writing;
   job.ticket_ = axis.node().sdo().download(job.id_, *data, job.name_);
   return found;

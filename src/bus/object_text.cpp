@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 
 #include "cia402_driver/drive/conversion.h"
 #include "cia402_driver/motion/joint.h"
@@ -125,9 +126,13 @@ Result<Bytes> floatBytes(const std::string& value, const ObjectSpec& spec,
   if (value.empty() || end == nullptr || *end != '\0') {
     return Error{"\"" + value + "\" is not a number; write e.g. -1.5"};
   }
+  std::uint64_t raw = 0;
+  if (spec.type == drive::DataType::real64) {
+    std::memcpy(&raw, &number, sizeof raw);
+    return canopen::toBytes(raw, sizeof raw);
+  }
   const Result<drive::Conversion> conversion = deviceNumbers(spec, axis);
   if (!conversion) return conversion.error();
-  std::uint64_t raw = 0;
   if (!conversion->toDevice(number, raw)) {
     return Error{value + " cannot be sent: it is not finite or does not fit the object"};
   }
@@ -162,6 +167,7 @@ ObjectText describeObject(const ObjectSpec* spec, const drive::AxisConfig& axis,
   const std::uint64_t raw = canopen::toUnsigned(data);
   const Result<drive::Conversion> device = deviceNumbers(*spec, axis);
   text.number = device ? device->toJoint(raw) : static_cast<double>(signExtended(raw, bits));
+  if (spec->type == drive::DataType::real64) text.number = canopen::realOf(data);
   const bool whole = spec->encoding == Encoding::integer && spec->type != drive::DataType::real32 &&
                      spec->type != drive::DataType::real64;
   if (whole) {

@@ -119,6 +119,7 @@ void readAxis(const std::string& name, const YamlValue& value, ProfileCache& pro
   readJoint(section, axis, robot);
   const auto drive_name = section.require("drive", "the drive's profile, e.g. generic_cia402");
   if (drive_name) axis.profile = profiles.get(*drive_name);
+  readEds(section, axis, profiles, robot);
   readGeometry(section, axis.geometry);
   section.read("mode", axis.mode);
   axis.mode = drive::canonicalModeName(axis.mode);
@@ -132,6 +133,7 @@ void readAxis(const std::string& name, const YamlValue& value, ProfileCache& pro
     axis.mode = streams ? "cyclic_position" : axis.profile->modes.front().name;
   }
   checkAxis(section, axis, robot);
+  checkEds(section, axis, robot);
   section.finish();
   robot.axes.push_back(axis);
 }

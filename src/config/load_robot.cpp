@@ -65,8 +65,10 @@ RobotConfig readRobot(const YAML::Node& tree, const ProfileLookup& lookup, Probl
 
 ProfileLookup profilesIn(std::vector<std::string> folders) {
   return [folders = std::move(folders)](const std::string& name) -> std::string {
-    const bool is_path = name.find('/') != std::string::npos ||
-                         (name.size() > 5 && name.compare(name.size() - 5, 5, ".yaml") == 0);
+    const std::size_t dot = name.find_last_of("./");
+    const std::string ending = dot == std::string::npos ? "" : canopen::nameKey(name.substr(dot));
+    const bool is_path = name.find('/') != std::string::npos || ending == ".yaml" ||
+                         ending == ".eds" || ending == ".dcf";
     if (is_path && std::ifstream(name)) return name;
     for (const std::string& folder : folders) {
       const std::string path = folder + "/" + name + (is_path ? "" : ".yaml");

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 
 #include "cia402_driver/config/robot.h"
@@ -18,11 +19,16 @@ class ProfileCache {
       : lookup_(lookup), problems_(problems) {}
   /// nullptr (and problems) if there is no valid profile of that name.
   std::shared_ptr<const drive::DriveProfile> get(const drive::YamlValue& name);
+  /// The EDS or DCF of that name; what is wrong in it becomes warnings, once a file. nullptr (and
+  /// problems) if there is none.
+  std::shared_ptr<const drive::AxisEds> eds(const drive::YamlValue& name, canopen::NodeId node_id,
+                                            RobotConfig& robot);
 
  private:
   const ProfileLookup& lookup_;
   Problems& problems_;
   std::map<std::string, std::shared_ptr<const drive::DriveProfile>> profiles_;
+  std::set<std::string> eds_told_;
 };
 
 /// `axis` with everything that only `defaults` has added under it, mappings key by key.
@@ -34,6 +40,11 @@ void readBus(const drive::YamlValue& value, BusConfig& bus, bool& counter_given)
 /// Reads one axis with its frame and simulation into `robot`.
 void readAxis(const std::string& name, const drive::YamlValue& value, ProfileCache& profiles,
               RobotConfig& robot);
+
+/// Reads `eds` and widens the axis' profile by its objects; checkEds() compares both.
+void readEds(drive::YamlSection& section, drive::AxisConfig& axis, ProfileCache& cache,
+             RobotConfig& robot);
+void checkEds(drive::YamlSection& section, const drive::AxisConfig& axis, RobotConfig& robot);
 
 drive::AxisLimits readLimits(const drive::YamlValue& value, drive::AxisGeometry::Type type);
 drive::HomingOptions readHoming(const drive::YamlValue& value);

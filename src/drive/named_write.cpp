@@ -87,6 +87,14 @@ std::uint64_t masked(std::int64_t value, DataType type) {
   return static_cast<std::uint64_t>(value) & (~std::uint64_t{0} >> (64 - bits));
 }
 
+// Access, length and limits as the EDS tells them.
+Result<void> checkAgainstEds(const ResolvedWrite& write, const AxisConfig& axis) {
+  const canopen::DictionaryEntry* entry =
+      axis.eds != nullptr ? axis.eds->dictionary.find(write.object) : nullptr;
+  if (entry == nullptr || write.copied_from) return {};
+  return canopen::checkWrite(*entry, wireBytes(write.raw, write.type), axis.eds->file);
+}
+
 }  // namespace
 
 std::optional<InterpolationPeriod> interpolationPeriod(Duration period) {
@@ -107,7 +115,7 @@ Result<std::optional<ResolvedWrite>> resolveWrite(const NamedWrite& write, const
                                     : canopen::parseObjectId(write.object);
   const auto type = object != nullptr ? std::optional<DataType>(object->type) : write.type;
   if (!id || !type || canopen::sizeBits(*type) == 0) {
-    return refuse(axis, write.object, "profile " + axis.profile->name + " has no such number");
+    return refuse(axis, write.object, sourceOf(*axis.profile) + " has no such number");
   }
   ResolvedWrite resolved;
   resolved.object = *id;
@@ -139,6 +147,9 @@ Result<std::optional<ResolvedWrite>> resolveWrite(const NamedWrite& write, const
     resolved.raw = *raw;
   } else {
     return Resolved{};
+  }
+  if (const auto allowed = checkAgainstEds(resolved, axis); !allowed) {
+    return refuse(axis, resolved.name, allowed.error().message);
   }
   return Resolved{resolved};
 }

@@ -4,12 +4,20 @@
 #include <algorithm>
 #include <utility>
 
+#include "cia402_driver/canopen/object_dictionary.h"
+
 namespace cia402::drive {
 
 const ObjectSpec* DriveProfile::find(const std::string& object_name) const {
   const auto found = std::find_if(objects.begin(), objects.end(),
                                   [&](const ObjectSpec& o) { return o.name == object_name; });
-  return found == objects.end() ? nullptr : &*found;
+  if (found != objects.end()) return &*found;
+  if (eds.empty()) return nullptr;
+  const std::string key = canopen::nameKey(object_name);
+  const auto by_key = std::find_if(objects.begin(), objects.end(), [&](const ObjectSpec& o) {
+    return std::find(o.eds_keys.begin(), o.eds_keys.end(), key) != o.eds_keys.end();
+  });
+  return by_key == objects.end() ? nullptr : &*by_key;
 }
 
 const ObjectSpec* DriveProfile::find(ObjectId id) const {

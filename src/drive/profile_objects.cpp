@@ -124,6 +124,10 @@ const ObjectSpec* findObject(const DriveProfile& profile, const std::string& nam
   return id ? profile.find(*id) : nullptr;
 }
 
+std::string sourceOf(const DriveProfile& profile) {
+  return "profile " + profile.name + (profile.eds.empty() ? "" : " with " + profile.eds);
+}
+
 std::vector<std::string> objectNames(const DriveProfile& profile) {
   std::vector<std::string> names;
   for (const ObjectSpec& object : profile.objects) names.push_back(object.name);

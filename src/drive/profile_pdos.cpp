@@ -39,11 +39,11 @@ const ObjectSpec* readEntry(const YamlValue& value, const DriveProfile& profile,
   if (!text) return nullptr;
   const ObjectSpec* object = findObject(profile, *text);
   if (object == nullptr) {
-    value.problem("profile " + profile.name + " has no object `" + *text + "`" +
+    value.problem(sourceOf(profile) + " has no object `" + *text + "`" +
                   suggestion(*text, objectNames(profile)));
   } else if (!(direction == PdoDirection::rpdo ? object->rpdo : object->tpdo)) {
     value.problem("`" + object->name + "` cannot be mapped into " + word(direction) +
-                  " (see its `pdo:` in the profile)");
+                  (object->from_eds ? " by " + profile.eds : " (see its `pdo:` in the profile)"));
   }
   return object;
 }

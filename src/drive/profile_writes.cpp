@@ -35,10 +35,10 @@ const ObjectSpec* readTarget(YamlSection& section, const DriveProfile& profile, 
     return object;
   }
   if (!canopen::parseObjectId(*text)) {
-    value->problem("profile " + profile.name + " has no object `" + *text + "`" +
+    value->problem(sourceOf(profile) + " has no object `" + *text + "`" +
                    suggestion(*text, objectNames(profile)));
   } else if (!type_value) {
-    value->problem("profile " + profile.name + " does not name " + *text +
+    value->problem(sourceOf(profile) + " does not name " + *text +
                    "; add its type, for example `type: uint16`");
   } else if (write.type && canopen::sizeBits(*write.type) == 0) {
     type_value->problem("only numbers can be written");
@@ -66,6 +66,14 @@ void readValue(YamlSection& section, const ObjectSpec* object, NamedWrite& write
   const bool by_index = object == nullptr || write.object != object->name;
   if (raw) readRaw(*raw, *type, write);
   if (!value) return;
+  if (object != nullptr && object->from_eds) {
+    if (object->encoding == Encoding::integer) {
+      readRaw(*value, *type, write);
+    } else {
+      write.value = value->number();
+    }
+    return;
+  }
   if (!by_index) {
     write.value = value->number();
     return;

@@ -61,10 +61,13 @@ std::string nearestName(std::string_view name, const std::vector<std::string>& c
   return best;
 }
 
+// A longer list (of an EDS) would hide what is said.
+constexpr std::size_t kMostListed = 60;
+
 std::string suggestion(std::string_view name, const std::vector<std::string>& candidates) {
   const std::string nearest = nearestName(name, candidates);
   if (!nearest.empty()) return ", did you mean `" + nearest + "`?";
-  if (candidates.empty()) return "";
+  if (candidates.empty() || candidates.size() > kMostListed) return "";
   std::string all;
   for (const std::string& candidate : candidates) all += (all.empty() ? "" : ", ") + candidate;
   return "; known are " + all;

@@ -11,6 +11,19 @@ std::string packageFolder(const std::string& folder) {
   return ros::package::getPath("cia402_driver") + "/config/" + folder;
 }
 
+// "package://my_robot/drives/motor.eds", or what config::profilesIn() finds.
+config::ProfileLookup lookup(std::vector<std::string> folders) {
+  return [plain = config::profilesIn(std::move(folders))](const std::string& name) -> std::string {
+    static const std::string kScheme = "package://";
+    if (name.compare(0, kScheme.size(), kScheme) != 0) return plain(name);
+    const std::size_t slash = name.find('/', kScheme.size());
+    if (slash == std::string::npos) return "";
+    const std::string package = name.substr(kScheme.size(), slash - kScheme.size());
+    const std::string folder = ros::package::getPath(package);
+    return folder.empty() ? "" : plain(folder + name.substr(slash));
+  };
+}
+
 bool report(const Problems& problems, const std::string& where) {
   if (problems.empty()) return false;
   ROS_FATAL_STREAM(problems.list().size()
@@ -31,7 +44,7 @@ std::optional<LoadedRobot> loadRobot(const ros::NodeHandle& private_node) {
   }
   LoadedRobot loaded;
   loaded.options = parameters.options;
-  loaded.robot = config::loadRobot(parameters.robot, config::profilesIn(folders), problems);
+  loaded.robot = config::loadRobot(parameters.robot, lookup(folders), problems);
   const std::string where = "configuration of " + private_node.getNamespace();
   if (report(problems, where)) return std::nullopt;
   loaded.master = config::makeMasterConfig(loaded.robot, problems);

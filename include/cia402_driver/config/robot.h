@@ -75,7 +75,8 @@ struct RobotConfig {
   std::vector<std::string> warnings;                  ///< worth a look, but no reason to refuse
 };
 
-/// Finds the file of a drive profile: a name ("generic_cia402") in the search folders, or a path.
+/// Finds the file of a drive profile, an EDS or a DCF: a name ("generic_cia402", "motor.eds") in
+/// the search folders, or a path.
 /// @return empty if there is none.
 using ProfileLookup = std::function<std::string(const std::string& drive)>;
 ProfileLookup profilesIn(std::vector<std::string> folders);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cia402_driver/canopen/config.h"
+#include "cia402_driver/canopen/eds.h"
 #include "cia402_driver/drive/conversion.h"
 #include "cia402_driver/drive/profile.h"
 
@@ -30,12 +31,20 @@ struct HomingOptions {
   int order = 0;         ///< axes of a lower order home first
 };
 
+/// The EDS or DCF of an axis' drive.
+struct AxisEds {
+  std::string file;  ///< without its folder, for messages
+  canopen::EdsInfo info;
+  canopen::ObjectDictionary dictionary;
+};
+
 /// Typed configuration of one axis.
 struct AxisConfig {
   std::string name;   ///< key in the YAML
   std::string joint;  ///< joint name
   canopen::NodeId node_id = 0;
-  std::shared_ptr<const DriveProfile> profile;
+  std::shared_ptr<const DriveProfile> profile;  ///< with the objects of the EDS added
+  std::shared_ptr<const AxisEds> eds;           ///< nullptr: none was given
   AxisGeometry geometry;
   AxisLimits limits;
   std::string mode;  ///< canonical name; mode at start

@@ -73,8 +73,10 @@ struct ObjectSpec {
   std::optional<UnitSpec> unit;  ///< of this object alone; absent: the profile's for the quantity
   bool readable = true;
   bool writable = true;
-  bool rpdo = false;  ///< may be mapped into an RPDO
-  bool tpdo = false;  ///< may be mapped into a TPDO
+  bool rpdo = false;                  ///< may be mapped into an RPDO
+  bool tpdo = false;                  ///< may be mapped into a TPDO
+  bool from_eds = false;              ///< the axis' EDS names it, the profile does not
+  std::vector<std::string> eds_keys;  ///< further names, from the EDS (canopen::nameKey())
 };
 
 /// What a mode controls, for everything above the drive that does not care for mode numbers.
@@ -190,7 +192,9 @@ struct DriveProfile {
     Duration timeout{std::chrono::seconds(10)};  ///< for the drive to confirm one
   } parameters;
   std::map<std::uint16_t, ErrorText> errors;
+  std::string eds;  ///< file whose objects were added, for messages; empty: none
 
+  /// By the profile's name, or by a name of the EDS without regard to case and blanks.
   const ObjectSpec* find(const std::string& object_name) const;
   const ObjectSpec* find(ObjectId id) const;
   /// By logical name; nullptr if the family has no such mode.

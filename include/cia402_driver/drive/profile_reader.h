@@ -30,6 +30,9 @@ void readSubindices(YamlSection& section, const std::string& key,
 /// The object that a name or an index ("6041:00") means; nullptr if the profile has none.
 const ObjectSpec* findObject(const DriveProfile& profile, const std::string& name);
 
+/// "profile generic_cia402", and the EDS that it was widened by.
+std::string sourceOf(const DriveProfile& profile);
+
 /// Names of all objects, for suggestions.
 std::vector<std::string> objectNames(const DriveProfile& profile);
 
