@@ -1,0 +1,36 @@
+# Fuzz targets: fuzz/<name>_fuzz.cpp, an invariant per file. With CIA402_BUILD_FUZZERS (clang only,
+# see scripts/fuzz) each becomes a program of libFuzzer; otherwise a test that runs it once over its
+# corpus, so that it cannot rot.
+option(CIA402_BUILD_FUZZERS "Build the fuzz targets with libFuzzer (clang)" OFF)
+
+function(cia402_fuzz_targets)
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/fuzz/*_fuzz.cpp)
+  foreach(source ${sources})
+    get_filename_component(target ${source} NAME_WE)
+    string(REGEX REPLACE "_fuzz$" "" name ${target})
+    if(CIA402_BUILD_FUZZERS)
+      add_executable(${target} ${source})
+      target_link_options(${target} PRIVATE -fsanitize=fuzzer)
+    elseif(CIA402_BUILD_TESTS)
+      set(target test_fuzz_${name})
+      add_executable(${target} ${source} ${PROJECT_SOURCE_DIR}/test/fuzz/corpus_test.cpp)
+      target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/fuzz)
+      target_compile_definitions(${target} PRIVATE
+        CIA402_CORPUS="${PROJECT_SOURCE_DIR}/fuzz/corpus/${name}" CIA402_FUZZ_NAME=${name})
+      target_link_libraries(${target} PRIVATE GTest::gtest_main)
+      set_property(GLOBAL APPEND PROPERTY cia402_tests ${PROJECT_BINARY_DIR}/${target})
+      add_test(NAME fuzz_${name} COMMAND ${target})
+    else()
+      continue()
+    endif()
+    set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
+    target_compile_definitions(${target} PRIVATE CIA402_CONFIG_DIR="${PROJECT_SOURCE_DIR}/config")
+    # Without YAML where it is not read: such a target is built in a minute.
+    file(STRINGS ${source} above REGEX "#include \"cia402_driver/(drive|config)/")
+    set(module cia402_canopen)
+    if(above)
+      set(module cia402_config)
+    endif()
+    target_link_libraries(${target} PRIVATE ${module} cia402_warnings)
+  endforeach()
+endfunction()
