@@ -4,7 +4,7 @@
 #include "cia402_driver/canopen/eds.h"
 #include "input.h"
 
-// The EDS reader on any bytes. The first byte is the node-ID. What was read is written as a DCF and
+// The EDS reader on any bytes. What was read is written as a DCF and
 // read again: that must give the same objects without an error.
 namespace cia402::fuzz {
 namespace {
@@ -47,16 +47,15 @@ void roundTrip(const Eds& eds) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace cia402;
-  if (size == 0) return 0;
-  const auto node_id = static_cast<canopen::NodeId>(data[0] % 127 + 1);
-  const std::string_view text(reinterpret_cast<const char*>(data + 1), size - 1);
+  const auto node_id = static_cast<canopen::NodeId>(size % 127 + 1);
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
   const canopen::Eds eds = canopen::readEds(text, node_id);
   fuzz::require(eds.problems.size() <= canopen::kMostEdsProblems, "problems are bounded");
   fuzz::require(eds.dictionary.size() <= canopen::kMostEdsEntries + 64 * 1024,
                 "entries are bounded");
   unsigned line = 0;
   for (const canopen::EdsProblem& problem : eds.problems) {
-    fuzz::require(problem.line >= line && problem.line <= size, "problems are in order");
+    fuzz::require(problem.line >= line && problem.line <= size + 1, "problems are in order");
     line = problem.line;
   }
   for (const auto& [index, object] : eds.dictionary.objects()) {

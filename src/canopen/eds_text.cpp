@@ -208,7 +208,8 @@ std::string EdsText::decode(std::string_view bytes) {
   }
   bool control = false;
   for (char& c : text) {
-    if (!isBlank(c) || c == ' ' || c == '\t') continue;
+    if (c == '\t') c = ' ';
+    if (!isBlank(c) || c == ' ') continue;
     c = '?';
     control = true;
   }
