@@ -20,7 +20,7 @@ std::string hexId(std::uint32_t cob_id) {
 
 Master::Master(MasterConfig config, can::Sink& sink, MasterListener* listener)
     : config_(std::move(config)),
-      sink_(sink),
+      sink_(sink, config_.bitrate),
       listener_(listener),
       pacer_(config_.bitrate),
       told_(config_.nodes.size(), NodeHealth::absent),
@@ -30,7 +30,7 @@ Master::Master(MasterConfig config, can::Sink& sink, MasterListener* listener)
   routes_[kSyncCobId].service = Service::sync;
   nodes_.reserve(config_.nodes.size());
   for (const NodeConfig& node : config_.nodes) {
-    nodes_.emplace_back(node, config_, sink_, &pacer_, &deadlines_changed_);
+    nodes_.emplace_back(node, config_, sink_, &pacer_, &deadlines_changed_, &sink_);
     addRoutes(nodes_.size() - 1);
   }
 }
@@ -42,7 +42,7 @@ void Master::addRoutes(std::size_t node) {
   }
   const auto index = static_cast<std::uint8_t>(node);
   addRoute(0x080U + id, {Service::emergency, index, 0});
-  addRoute(0x580U + id, {Service::sdo, index, 0});
+  addRoute(nodes_[node].sdo().answerId(), {Service::sdo, index, 0});
   addRoute(0x700U + id, {Service::heartbeat, index, 0});
   const std::string conflict = addPdoRoutes(node);
   if (!conflict.empty()) throw std::invalid_argument(nodes_[node].name() + ": " + conflict);
@@ -95,6 +95,7 @@ void Master::addRoute(std::uint32_t cob_id, Route route) {
 }
 
 void Master::start(Time now, bool reset) {
+  sink_.setTime(now);
   sync_.restart();
   heartbeat_.start(sink_, now);
   time_.start(now);
@@ -110,6 +111,8 @@ void Master::start(Time now, bool reset) {
 
 void Master::receive(const can::Frame& frame, Time stamp, Time now) {
   if (frame.error) return;
+  sink_.setTime(now);
+  sink_.heard(frame, now);
   if (frame.extended || frame.remote || frame.id >= kIdentifiers) {
     ++stray_frames_;
     return;
@@ -141,6 +144,7 @@ void Master::receive(const can::Frame& frame, Time stamp, Time now) {
 }
 
 void Master::tick(Time now) {
+  sink_.setTime(now);
   heartbeat_.tick(sink_, now);
   time_.tick(sink_, now);
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -171,7 +175,9 @@ Time Master::nextDeadline() const {
 }
 
 void Master::sendSync(Time now) {
+  sink_.setTime(now);
   sink_.send(sync_.next());
+  sink_.syncSent(now, config_.sync_period);
   syncPassed(now);
 }
 
@@ -180,6 +186,7 @@ void Master::syncPassed(Time now) {
 }
 
 void Master::sendRpdos(Time now) {
+  sink_.setTime(now);
   for (Node& node : nodes_) {
     if (node.health() != NodeHealth::ready) continue;
     node.sendRpdos(now);
@@ -188,6 +195,7 @@ void Master::sendRpdos(Time now) {
 }
 
 void Master::commandAll(NmtCommand command, Time now) {
+  sink_.setTime(now);
   sink_.send(nmtFrame(command, 0));
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     nodes_[i].commanded(command, now);

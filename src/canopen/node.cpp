@@ -23,9 +23,9 @@ const char* toString(NodeHealth health) {
   return "lost";
 }
 
-Node::Node(const NodeConfig& config, const MasterConfig& master, can::Sink& sink, SdoPacer* pacer,
-           bool* deadlines_changed)
-    : impl_(std::make_unique<Impl>(config, master, sink, pacer, deadlines_changed)) {}
+Node::Node(const NodeConfig& config, const MasterConfig& master, can::Sink& sink, SdoPacer* turns,
+           bool* deadlines_changed, can::Pacer* wire)
+    : impl_(std::make_unique<Impl>(config, master, sink, turns, deadlines_changed, wire)) {}
 Node::~Node() = default;
 Node::Node(Node&&) noexcept = default;
 
@@ -62,6 +62,8 @@ SdoClient& Node::sdo() {
   if (impl_->deadlines_changed != nullptr) *impl_->deadlines_changed = true;
   return impl_->sdo;
 }
+
+const SdoClient& Node::sdo() const { return impl_->sdo; }
 
 Time Node::nextDeadline() const {
   return impl_->sdo_lent ? std::min(impl_->next, impl_->sdo.nextDeadline()) : impl_->next;
@@ -103,17 +105,19 @@ void Node::commanded(NmtCommand command, Time now) {
 }
 
 void Node::receive(const can::Frame& frame, Time stamp, Time now) {
+  if (frame.id == impl_->sdo.answerId()) {
+    impl_->sdo.receive(frame, now);
+    // On a full bus heartbeats, the least urgent of frames, may come late while it is configured.
+    if (impl_->boot.running() && impl_->consumer.armed()) impl_->consumer.heard(now);
+    impl_->runBoot(now);
+    impl_->runProbe(now);
+    impl_->refresh();
+    return;
+  }
   switch (frame.id & 0x780U) {  // function code, CiA 301, table 38
     case 0x080:
       impl_->onEmergency(frame, stamp);
       return;
-    case 0x580:
-      impl_->sdo.receive(frame, now);
-      // On a full bus heartbeats, the least urgent of frames, may come late while it is configured.
-      if (impl_->boot.running() && impl_->consumer.armed()) impl_->consumer.heard(now);
-      impl_->runBoot(now);
-      impl_->runProbe(now);
-      break;
     case 0x700:
       if (frame.size == 0) return;
       impl_->onErrorControl(frame.data[0], stamp, now);

@@ -27,15 +27,15 @@ NmtState stateOf(std::uint8_t byte) {
 }  // namespace
 
 Node::Impl::Impl(const NodeConfig& node_config, const MasterConfig& master, can::Sink& frame_sink,
-                 SdoPacer* shared_pacer, bool* changed)
+                 SdoPacer* shared_turns, bool* changed, can::Pacer* wire)
     : config(node_config),
       sink(frame_sink),
       deadlines_changed(changed),
-      sdo(config.node_id, sink, config.sdo),
+      sdo(config.node_id, sink, config.sdo, config.sdo_channel, wire),
       image(config.pdos),
       consumer(config.heartbeat_timeout),
       guard(config.node_id, config.guard_time, config.life_time_factor),
-      boot(config, master, sdo, sink, shared_pacer != nullptr ? *shared_pacer : own_pacer),
+      boot(config, master, sdo, sink, shared_turns != nullptr ? *shared_turns : own_turns),
       retry(config.boot) {}
 
 std::string Node::Impl::sentence(const std::string& text) const {
@@ -65,6 +65,7 @@ void Node::Impl::startBoot(BootProcedure::From from, const std::string& why, Tim
 void Node::Impl::beginBoot(BootProcedure::From from, const std::string& why, Time now) {
   begun = true;
   takeOut(NodeHealth::booting, why);
+  if (from == BootProcedure::From::boot_up) sdo.serverRestarted();
   notes.clear();
   boot.start(from, now);
 }

@@ -16,7 +16,7 @@ namespace cia402::canopen {
 /// The parts of a node and what one's news mean to the others.
 struct Node::Impl {
   Impl(const NodeConfig& node_config, const MasterConfig& master, can::Sink& frame_sink,
-       SdoPacer* shared_pacer, bool* changed);
+       SdoPacer* shared_turns, bool* changed, can::Pacer* wire);
 
   /// Begins a boot that is no repetition of a failed one.
   void startBoot(BootProcedure::From from, const std::string& why, Time now);
@@ -48,7 +48,7 @@ struct Node::Impl {
   const NodeConfig config;
   can::Sink& sink;
   bool* deadlines_changed;  ///< may be nullptr
-  SdoPacer own_pacer{0.0};  ///< where the master shares none
+  SdoPacer own_turns{0.0};  ///< where the master shares none
   SdoClient sdo;
   ProcessImage image;
   HeartbeatConsumer consumer;

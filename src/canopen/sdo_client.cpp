@@ -11,11 +11,20 @@
 namespace cia402::canopen {
 namespace {
 
-// Command specifiers of CiA 301, 7.2.4.3: bits 7..5 of the first byte.
+// Client command specifiers and flags of CiA 301, 7.2.4.3: the first byte.
 constexpr std::uint8_t kRequestUpload = 0x40;
 constexpr std::uint8_t kRequestDownloadSegmented = 0x21;  // size indicated
 constexpr std::uint8_t kRequestDownloadExpedited = 0x23;  // size indicated
+constexpr std::uint8_t kRequestBlockUpload = 0xA4;        // CRC supported
+constexpr std::uint8_t kRequestBlockDownload = 0xC6;      // CRC supported, size indicated
 constexpr std::uint8_t kAbort = 0x80;
+
+constexpr std::uint32_t kBlockSize = 127;  // segments; the most there are
+/// Up to here the server may answer a block upload by an ordinary one: that is fewer frames.
+constexpr std::uint32_t kSwitchThreshold = 28;  // bytes
+
+// Both never change while the device runs, so that even a late answer would be right.
+constexpr ObjectId kDeviceType{0x1000, 0}, kIdentityCount{0x1018, 0};
 
 constexpr Time kAtOnce{};  // the beginning of time, but no number that overflows in a subtraction
 
@@ -39,8 +48,14 @@ std::string milliseconds(Duration duration) {
 
 }  // namespace
 
-SdoClient::SdoClient(NodeId node, can::Sink& sink, SdoOptions defaults)
-    : node_(node), sink_(sink), defaults_(defaults) {}
+SdoClient::SdoClient(NodeId node, can::Sink& sink, SdoOptions defaults, SdoChannel channel,
+                     can::Pacer* pacer)
+    : node_(node),
+      sink_(sink),
+      pacer_(pacer),
+      defaults_(defaults),
+      request_id_(channel.request != 0 ? channel.request : 0x600U + node),
+      answer_id_(channel.answer != 0 ? channel.answer : 0x580U + node) {}
 
 SdoTicket SdoClient::upload(ObjectId object, std::string name, std::optional<SdoOptions> options) {
   auto transfer = std::make_shared<SdoTransfer>();
@@ -68,12 +83,15 @@ SdoTicket SdoClient::enqueue(Transfer transfer, const std::optional<SdoOptions>&
 void SdoClient::tick(Time now) {
   if (phase_ == Phase::idle) {
     startNext(now);
+  } else if (phase_ == Phase::block_download_segments && now >= feed_at_) {
+    feedBlock(now);
   } else if (now >= deadline_) {
     onTimeout(now);
   }
 }
 
 Time SdoClient::nextDeadline() const {
+  if (phase_ == Phase::block_download_segments) return std::min(deadline_, feed_at_);
   if (phase_ != Phase::idle) return deadline_;
   return queue_.empty() ? kNever : std::max(kAtOnce, held_until_);
 }
@@ -83,71 +101,167 @@ bool SdoClient::idle() const { return queue_.empty(); }
 void SdoClient::startNext(Time now) {
   if (queue_.empty() || now < held_until_) return;
   attempt_ = 0;
-  initiate(now);
+  fell_back_ = false;
+  started_at_ = now;
+  attempt(now);
+}
+
+void SdoClient::attempt(Time now) {
+  ++attempt_;
+  if (abandoned_) {
+    sendFence(now);
+  } else {
+    initiate(now);
+  }
 }
 
 void SdoClient::initiate(Time now) {
-  const SdoTransfer& transfer = *queue_.front();
-  ++attempt_;
   toggle_ = false;
+  repetition_seen_ = false;
   offset_ = 0;
   announced_.reset();
   received_.clear();
-  if (transfer.direction_ == SdoTransfer::Direction::upload) {
+  block_ = Block();
+  if (queue_.front()->direction_ == SdoTransfer::Direction::upload) {
+    initiateUpload(now);
+  } else {
+    initiateDownload(now);
+  }
+}
+
+bool SdoClient::wantsBlock() const {
+  const SdoTransfer& transfer = *queue_.front();
+  if (fell_back_ || block_refused_) return false;
+  const bool upload = transfer.direction_ == SdoTransfer::Direction::upload;
+  switch (transfer.options_.block) {
+    case SdoOptions::Block::never:
+      return false;
+    case SdoOptions::Block::automatic:
+      return !upload && transfer.data_.size() > transfer.options_.block_threshold;
+    case SdoOptions::Block::always:
+      return upload || !transfer.data_.empty();
+  }
+  return false;
+}
+
+void SdoClient::initiateUpload(Time now) {
+  if (wantsBlock()) {
+    sendInitiate(kRequestBlockUpload, kBlockSize | kSwitchThreshold << 8U);
+    await(Phase::block_upload_initiate, now);
+  } else {
     sendInitiate(kRequestUpload, 0);
     await(Phase::upload_initiate, now);
+  }
+}
+
+void SdoClient::initiateDownload(Time now) {
+  const Bytes& data = queue_.front()->data_;
+  const auto size = static_cast<std::uint32_t>(data.size());
+  if (wantsBlock()) {
+    sendInitiate(kRequestBlockDownload, size);
+    await(Phase::block_download_initiate, now);
     return;
   }
-  const std::size_t size = transfer.data_.size();
   if (size >= 1 && size <= 4) {
     const auto unused = static_cast<std::uint8_t>((4 - size) << 2);
     sendInitiate(static_cast<std::uint8_t>(kRequestDownloadExpedited | unused),
-                 static_cast<std::uint32_t>(toUnsigned(transfer.data_)));
+                 static_cast<std::uint32_t>(toUnsigned(data)));
   } else {
-    sendInitiate(kRequestDownloadSegmented, static_cast<std::uint32_t>(size));
+    sendInitiate(kRequestDownloadSegmented, size);
   }
   await(Phase::download_initiate, now);
 }
 
 void SdoClient::await(Phase phase, Time now) {
   phase_ = phase;
+  asked_at_ = now;
   deadline_ = now + queue_.front()->options_.timeout;
 }
 
+void SdoClient::answered(Time now) {
+  const Duration latency = std::max(now - asked_at_, Duration::zero());
+  ++counters_.answers;
+  counters_.last_latency = latency;
+  counters_.longest_latency = std::max(counters_.longest_latency, latency);
+  counters_.total_latency += latency;
+  repetition_seen_ = false;
+}
+
+void SdoClient::sendRequest(std::uint8_t command, ObjectId object, std::uint32_t data) {
+  sink_.send(can::Frame(
+      request_id_, {command, static_cast<std::uint8_t>(object.index),
+                    static_cast<std::uint8_t>(object.index >> 8), object.subindex,
+                    static_cast<std::uint8_t>(data), static_cast<std::uint8_t>(data >> 8),
+                    static_cast<std::uint8_t>(data >> 16), static_cast<std::uint8_t>(data >> 24)}));
+}
+
 void SdoClient::sendInitiate(std::uint8_t command, std::uint32_t data) {
-  const ObjectId object = queue_.front()->object_;
-  sink_.send(
-      can::Frame(0x600U + node_,
-                 {command, static_cast<std::uint8_t>(object.index),
-                  static_cast<std::uint8_t>(object.index >> 8), object.subindex,
-                  static_cast<std::uint8_t>(data), static_cast<std::uint8_t>(data >> 8),
-                  static_cast<std::uint8_t>(data >> 16), static_cast<std::uint8_t>(data >> 24)}));
+  sendRequest(command, queue_.front()->object_, data);
 }
 
 void SdoClient::sendAbort(std::uint32_t code) { sendInitiate(kAbort, code); }
 
+/// The transfer on the wire is given up, but its answer may still be under way.
+void SdoClient::abandon() {
+  abandoned_ = queue_.front()->object_;
+  // Segments of a block upload carry data behind a first byte that can be any: one of them could
+  // look like the answer to a read, hardly like that to one and later like that to another.
+  const bool anything = phase_ == Phase::block_upload_segments || phase_ == Phase::block_upload_end;
+  fences_left_ = anything ? 2 : 1;
+}
+
+ObjectId SdoClient::fenceObject() const {
+  const bool other = abandoned_->index == kDeviceType.index || fences_left_ > 1;
+  return other && abandoned_->index != kIdentityCount.index ? kIdentityCount : kDeviceType;
+}
+
+void SdoClient::sendFence(Time now) {
+  ++counters_.fences;
+  sendRequest(kRequestUpload, fenceObject(), 0);
+  await(Phase::fence, now);
+}
+
+void SdoClient::serverRestarted() {
+  abandoned_.reset();
+  block_refused_ = false;
+}
+
 void SdoClient::onTimeout(Time now) {
   const SdoOptions options = queue_.front()->options_;
   ++counters_.timeouts;
-  sendAbort(abort_code::kTimeout);
+  if (resumeBlockUpload(now)) return;
+  const bool at_fence = phase_ == Phase::fence;
+  if (!at_fence) {
+    sendAbort(abort_code::kTimeout);
+    abandon();
+  }
+  // Servers without block transfer should refuse it, but some do not answer at all.
+  if (phase_ == Phase::block_download_initiate || phase_ == Phase::block_upload_initiate) {
+    fell_back_ = true;
+  }
   if (attempt_ <= options.retries) {
     ++counters_.retries;
-    initiate(now);
+    attempt(now);
     return;
   }
   std::string reason = "no answer within " + milliseconds(options.timeout);
   if (attempt_ > 1) reason += ", asked " + std::to_string(attempt_) + " times";
+  if (at_fence && attempt_ == 1) reason += ", the device has been silent since an earlier request";
   fail(SdoTransfer::Failure::timed_out, abort_code::kTimeout, std::move(reason), now);
 }
 
 void SdoClient::abortTransfer(std::uint32_t code, const std::string& why, Time now) {
   sendAbort(code);
+  abandon();
   fail(SdoTransfer::Failure::protocol_error, code,
        "the answer breaks the SDO protocol: " + why + "; aborted with " + abortText(code), now);
 }
 
 void SdoClient::succeed(Time now) {
   ++counters_.completed;
+  counters_.bytes += queue_.front()->data_.size();
+  counters_.busy += std::max(now - started_at_, Duration::zero());
+  block_refused_ = block_refused_ || fell_back_;
   finish(*queue_.front(), SdoTransfer::Failure::none, 0, {});
   queue_.pop_front();
   phase_ = Phase::idle;
@@ -179,7 +293,10 @@ void SdoClient::finish(SdoTransfer& transfer, SdoTransfer::Failure failure, std:
 }
 
 void SdoClient::cancelAll(const std::string& reason) {
-  if (phase_ != Phase::idle) sendAbort(abort_code::kGeneral);
+  if (phase_ != Phase::idle && phase_ != Phase::fence) {
+    sendAbort(abort_code::kGeneral);
+    abandon();
+  }
   phase_ = Phase::idle;
   for (const Transfer& transfer : queue_) {
     finish(*transfer, SdoTransfer::Failure::cancelled, 0, "cancelled: " + reason);

@@ -16,15 +16,16 @@ enum ServerCommand : unsigned {
   kUploadInitiated = 2,
   kDownloadInitiated = 3,
   kAborted = 4,
+  kBlockDownload = 5,
+  kBlockUpload = 6,
 };
 
+constexpr std::uint8_t kAbortCommand = 0x80;
 constexpr std::uint8_t kExpedited = 0x02;      // upload initiate answer, bit e
 constexpr std::uint8_t kSizeIndicated = 0x01;  // upload initiate answer, bit s
 constexpr std::uint8_t kToggle = 0x10;
 constexpr std::uint8_t kLastSegment = 0x01;
 constexpr std::size_t kSegmentBytes = 7;
-/// An upload longer than this is refused: a server that never ends must not eat the memory.
-constexpr std::size_t kMaxUpload = std::size_t{16} << 20;
 
 std::uint32_t dataField(const can::Frame& frame) {
   return static_cast<std::uint32_t>(frame.data[4]) |
@@ -38,13 +39,42 @@ bool toggleOf(const can::Frame& frame) { return (frame.data[0] & kToggle) != 0; 
 }  // namespace
 
 void SdoClient::receive(const can::Frame& frame, Time now) {
-  const bool ours = frame.id == 0x580U + node_ && !frame.extended && !frame.remote && !frame.error;
+  const bool ours = frame.id == answer_id_ && !frame.extended && !frame.remote && !frame.error;
   // CiA 301, 7.2.4.3: an SDO is always eight bytes long.
-  if (!ours || frame.size != 8 || dispatch(frame, now) == Outcome::stray) ++counters_.stray_frames;
+  if (!ours || frame.size != 8 || dispatch(frame, now) == Outcome::stray) {
+    ++counters_.stray_frames;
+    return;
+  }
+  last_answer_ = frame;
+}
+
+bool SdoClient::inBlockTransfer() const {
+  switch (phase_) {
+    case Phase::block_upload_initiate:
+    case Phase::block_upload_segments:
+    case Phase::block_upload_end:
+    case Phase::block_download_initiate:
+    case Phase::block_download_segments:
+    case Phase::block_download_acknowledge:
+    case Phase::block_download_end:
+      return true;
+    default:
+      return false;
+  }
 }
 
 SdoClient::Outcome SdoClient::dispatch(const can::Frame& frame, Time now) {
   if (phase_ == Phase::idle) return Outcome::stray;
+  if (phase_ == Phase::fence) return onFenceAnswer(frame, now);
+  if (phase_ == Phase::block_upload_segments && frame.data[0] != kAbortCommand) {
+    return onBlockUploadSegment(frame, now);
+  }
+  if (!inBlockTransfer()) return dispatchSegmented(frame, now);
+  if (frame.data[0] == kAbortCommand) return onServerAbort(frame, now);
+  return dispatchBlock(frame, now);
+}
+
+SdoClient::Outcome SdoClient::dispatchSegmented(const can::Frame& frame, Time now) {
   const unsigned command = frame.data[0] >> 5;
   if (command == kAborted) return onServerAbort(frame, now);
   if (command > kAborted) {
@@ -53,7 +83,7 @@ SdoClient::Outcome SdoClient::dispatch(const can::Frame& frame, Time now) {
     abortTransfer(abort_code::kInvalidCommand, "unknown command specifier", now);
     return Outcome::taken;
   }
-  // An answer that fits another phase is a late one to an abandoned request.
+  // An answer that fits another phase is a repeated one.
   switch (phase_) {
     case Phase::upload_initiate:
       return command == kUploadInitiated ? onUploadInitiated(frame, now) : Outcome::stray;
@@ -63,27 +93,66 @@ SdoClient::Outcome SdoClient::dispatch(const can::Frame& frame, Time now) {
       return command == kDownloadInitiated ? onDownloadInitiated(frame, now) : Outcome::stray;
     case Phase::download_segment:
       return command == kDownloadSegment ? onDownloadSegment(frame, now) : Outcome::stray;
-    case Phase::idle:
-      break;
+    default:
+      return Outcome::stray;
   }
-  return Outcome::stray;
+}
+
+SdoClient::Outcome SdoClient::dispatchBlock(const can::Frame& frame, Time now) {
+  const unsigned command = frame.data[0] >> 5;
+  switch (phase_) {
+    case Phase::block_upload_initiate:
+      if (command == kUploadInitiated) return onUploadInitiated(frame, now);
+      return command == kBlockUpload ? onBlockUploadInitiated(frame, now) : Outcome::stray;
+    case Phase::block_upload_end:
+      return command == kBlockUpload ? onBlockUploadEnd(frame, now) : Outcome::stray;
+    case Phase::block_download_initiate:
+      return command == kBlockDownload ? onBlockDownloadInitiated(frame, now) : Outcome::stray;
+    case Phase::block_download_segments:
+    case Phase::block_download_acknowledge:
+      return command == kBlockDownload ? onBlockAcknowledged(frame, now) : Outcome::stray;
+    case Phase::block_download_end:
+      return command == kBlockDownload ? onBlockDownloadEnd(frame, now) : Outcome::stray;
+    default:
+      return Outcome::stray;
+  }
+}
+
+bool SdoClient::names(const can::Frame& frame, ObjectId object) {
+  return frame.data[1] == (object.index & 0xFFU) && frame.data[2] == object.index >> 8 &&
+         frame.data[3] == object.subindex;
 }
 
 bool SdoClient::namesCurrentObject(const can::Frame& frame) const {
-  const ObjectId object = queue_.front()->object_;
-  return frame.data[1] == (object.index & 0xFFU) && frame.data[2] == object.index >> 8 &&
-         frame.data[3] == object.subindex;
+  return names(frame, queue_.front()->object_);
+}
+
+/// Everything that comes before it is the past of an abandoned transfer.
+SdoClient::Outcome SdoClient::onFenceAnswer(const can::Frame& frame, Time now) {
+  const bool answer = frame.data[0] >> 5 == kUploadInitiated || frame.data[0] == kAbortCommand;
+  if (!answer || !names(frame, fenceObject())) return Outcome::stray;
+  answered(now);
+  if (--fences_left_ > 0) {
+    sendFence(now);
+  } else {
+    abandoned_.reset();
+    initiate(now);
+  }
+  return Outcome::taken;
 }
 
 SdoClient::Outcome SdoClient::onServerAbort(const can::Frame& frame, Time now) {
   if (!namesCurrentObject(frame)) return Outcome::stray;
   const std::uint32_t code = dataField(frame);
+  answered(now);
+  if (fallsBack(code, now)) return Outcome::taken;
   fail(SdoTransfer::Failure::aborted_by_server, code, "the drive refused: " + abortText(code), now);
   return Outcome::taken;
 }
 
 SdoClient::Outcome SdoClient::onUploadInitiated(const can::Frame& frame, Time now) {
   if (!namesCurrentObject(frame)) return Outcome::stray;
+  answered(now);
   const std::uint8_t command = frame.data[0];
   const bool size_indicated = (command & kSizeIndicated) != 0;
   if ((command & kExpedited) != 0) {
@@ -93,39 +162,56 @@ SdoClient::Outcome SdoClient::onUploadInitiated(const can::Frame& frame, Time no
     succeed(now);
     return Outcome::taken;
   }
-  if (size_indicated) {
-    announced_ = dataField(frame);
-    if (*announced_ > kMaxUpload) {
-      abortTransfer(abort_code::kOutOfMemory,
-                    "the announced " + std::to_string(*announced_) + " bytes are too many", now);
-      return Outcome::taken;
-    }
-    received_.reserve(*announced_);
-  }
+  if (size_indicated && !acceptAnnounced(dataField(frame), now)) return Outcome::taken;
   requestSegment(now);
+  return Outcome::taken;
+}
+
+/// Memory is taken only for what is allowed. @return false: aborted.
+bool SdoClient::acceptAnnounced(std::uint32_t size, Time now) {
+  announced_ = size;
+  const std::size_t limit = queue_.front()->options_.longest_upload;
+  if (size > limit) {
+    abortTransfer(abort_code::kOutOfMemory,
+                  "the announced " + std::to_string(size) + " bytes are more than the " +
+                      std::to_string(limit) + " allowed",
+                  now);
+    return false;
+  }
+  received_.reserve(size);
+  return true;
+}
+
+/// A frame that came twice is not a server that forgets to toggle; one that comes thrice is.
+SdoClient::Outcome SdoClient::onWrongToggle(const can::Frame& frame, Time now) {
+  if (frame == last_answer_ && !repetition_seen_) {
+    repetition_seen_ = true;
+    return Outcome::stray;
+  }
+  abortTransfer(abort_code::kToggleBit, "toggle bit not alternated", now);
   return Outcome::taken;
 }
 
 void SdoClient::requestSegment(Time now) {
   const auto command = static_cast<std::uint8_t>(0x60 | (toggle_ ? kToggle : 0));
-  sink_.send(can::Frame(0x600U + node_, {command, 0, 0, 0, 0, 0, 0, 0}));
+  sink_.send(can::Frame(request_id_, {command, 0, 0, 0, 0, 0, 0, 0}));
   await(Phase::upload_segment, now);
 }
 
 SdoClient::Outcome SdoClient::onUploadSegment(const can::Frame& frame, Time now) {
-  if (toggleOf(frame) != toggle_) {
-    abortTransfer(abort_code::kToggleBit, "toggle bit not alternated", now);
-    return Outcome::taken;
-  }
+  if (toggleOf(frame) != toggle_) return onWrongToggle(frame, now);
+  answered(now);
   const std::size_t size = kSegmentBytes - ((frame.data[0] >> 1) & 7U);
   const bool last = (frame.data[0] & kLastSegment) != 0;
-  received_.insert(received_.end(), frame.data.begin() + 1,
-                   frame.data.begin() + 1 + static_cast<std::ptrdiff_t>(size));
-  const std::size_t limit = announced_.value_or(kMaxUpload);
-  if (received_.size() > limit) {
+  const std::size_t limit = announced_.value_or(queue_.front()->options_.longest_upload);
+  if (received_.size() + size > limit) {
     abortTransfer(announced_ ? abort_code::kLengthTooHigh : abort_code::kOutOfMemory,
                   "more than " + std::to_string(limit) + " bytes came", now);
-  } else if (!last) {
+    return Outcome::taken;
+  }
+  received_.insert(received_.end(), frame.data.begin() + 1,
+                   frame.data.begin() + 1 + static_cast<std::ptrdiff_t>(size));
+  if (!last) {
     toggle_ = !toggle_;
     requestSegment(now);
   } else if (announced_ && received_.size() < *announced_) {
@@ -142,6 +228,7 @@ SdoClient::Outcome SdoClient::onUploadSegment(const can::Frame& frame, Time now)
 
 SdoClient::Outcome SdoClient::onDownloadInitiated(const can::Frame& frame, Time now) {
   if (!namesCurrentObject(frame)) return Outcome::stray;
+  answered(now);
   const std::size_t size = queue_.front()->data_.size();
   if (size >= 1 && size <= 4) {
     succeed(now);
@@ -156,7 +243,7 @@ void SdoClient::sendSegment(Time now) {
   const std::size_t size = std::min(kSegmentBytes, data.size() - offset_);
   const bool last = offset_ + size == data.size();
   const std::size_t unused = (kSegmentBytes - size) << 1;
-  can::Frame frame(0x600U + node_, {0, 0, 0, 0, 0, 0, 0, 0});
+  can::Frame frame(request_id_, {0, 0, 0, 0, 0, 0, 0, 0});
   frame.data[0] =
       static_cast<std::uint8_t>((toggle_ ? kToggle : 0U) | unused | (last ? kLastSegment : 0U));
   std::copy_n(data.begin() + static_cast<std::ptrdiff_t>(offset_), size, frame.data.begin() + 1);
@@ -166,10 +253,8 @@ void SdoClient::sendSegment(Time now) {
 }
 
 SdoClient::Outcome SdoClient::onDownloadSegment(const can::Frame& frame, Time now) {
-  if (toggleOf(frame) != toggle_) {
-    abortTransfer(abort_code::kToggleBit, "toggle bit not alternated", now);
-    return Outcome::taken;
-  }
+  if (toggleOf(frame) != toggle_) return onWrongToggle(frame, now);
+  answered(now);
   if (offset_ == queue_.front()->data_.size()) {
     succeed(now);
   } else {

@@ -32,6 +32,7 @@ inline std::string nmt(const std::string& command, unsigned node) {
 inline const std::vector<std::pair<const char*, const char*>>& servoScript() {
   static const std::vector<std::pair<const char*, const char*>> script{
       {"40 00 10 00 00 00 00 00", "43 00 10 00 92 01 02 00"},  // 1000h = 0x00020192
+      {"40 18 10 00 00 00 00 00", "4F 18 10 00 04 00 00 00"},  // identity of four entries
       {"40 18 10 01 00 00 00 00", "43 18 10 01 CD AB 00 00"},  // vendor 0x0000ABCD
       {"40 18 10 02 00 00 00 00", "43 18 10 02 17 01 0D 00"},  // product 0x000D0117
       {"40 18 10 03 00 00 00 00", "43 18 10 03 02 00 01 00"},  // revision 0x00010002

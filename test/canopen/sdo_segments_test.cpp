@@ -54,7 +54,9 @@ TEST_P(LongTransfer, is_written_to_the_last_byte) {
   const std::size_t size = GetParam();
   Bytes data(size);
   for (std::size_t i = 0; i < size; ++i) data[i] = byteAt(i);
-  const SdoTicket ticket = client.download({0x1F50, 1}, data);
+  SdoOptions in_segments = options();
+  in_segments.block = SdoOptions::Block::never;
+  const SdoTicket ticket = client.download({0x1F50, 1}, data, "", in_segments);
   client.tick(now);
   can::Frame first = frame(peer.take().back());
   EXPECT_EQ(first.data[0], 0x21);

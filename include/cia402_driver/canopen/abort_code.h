@@ -11,6 +11,9 @@ namespace abort_code {
 inline constexpr std::uint32_t kToggleBit = 0x05030000;
 inline constexpr std::uint32_t kTimeout = 0x05040000;
 inline constexpr std::uint32_t kInvalidCommand = 0x05040001;
+inline constexpr std::uint32_t kInvalidBlockSize = 0x05040002;
+inline constexpr std::uint32_t kInvalidSequence = 0x05040003;
+inline constexpr std::uint32_t kCrcError = 0x05040004;
 inline constexpr std::uint32_t kOutOfMemory = 0x05040005;
 inline constexpr std::uint32_t kUnsupportedAccess = 0x06010000;
 inline constexpr std::uint32_t kWriteOnly = 0x06010001;
@@ -25,6 +28,7 @@ inline constexpr std::uint32_t kNoSuchSubindex = 0x06090011;
 inline constexpr std::uint32_t kInvalidValue = 0x06090030;
 inline constexpr std::uint32_t kValueTooHigh = 0x06090031;
 inline constexpr std::uint32_t kValueTooLow = 0x06090032;
+inline constexpr std::uint32_t kNoConnection = 0x060A0023;
 inline constexpr std::uint32_t kGeneral = 0x08000000;
 inline constexpr std::uint32_t kCannotTransfer = 0x08000020;
 inline constexpr std::uint32_t kLocalControl = 0x08000021;

@@ -77,6 +77,7 @@ struct NodeConfig {
   std::vector<PdoConfig> pdos;
   std::vector<StartupWrite> writes;  ///< after the PDOs, in this order
   SdoOptions sdo;
+  SdoChannel sdo_channel;                          ///< COB-IDs other than 600h and 580h + node-ID
   Duration boot_timeout{std::chrono::seconds(5)};  ///< from reset to boot-up or an SDO answer
   BootPolicy boot;
 };
@@ -90,7 +91,7 @@ struct MasterConfig {
   bool external_sync = false;     ///< another device produces SYNC, the master follows it
   Duration time_interval{0};      ///< of the TIME message; zero: none
   /// bit/s. Requests of booting nodes leave no faster than the bus carries them together with
-  /// their answers; 0: at once.
+  /// their answers, and long SDO transfers do not fill the interface's queue; 0: all at once.
   double bitrate = 0.0;
   std::vector<NodeConfig> nodes;
 };

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cia402_driver/can/bus.h"
+#include "cia402_driver/can/pacer.h"
 #include "cia402_driver/canopen/config.h"
 #include "cia402_driver/canopen/heartbeat.h"
 #include "cia402_driver/canopen/node.h"
@@ -31,7 +32,7 @@ class MasterListener {
 class Master {
  public:
   /// @param sink must outlive the master. @throws std::invalid_argument for node-IDs out of range
-  /// or used twice and for TPDO COB-IDs that are no 11-bit identifiers or used twice.
+  /// or used twice and for TPDO and SDO COB-IDs that are no 11-bit identifiers or used twice.
   Master(MasterConfig config, can::Sink& sink, MasterListener* listener = nullptr);
 
   Master(const Master&) = delete;  // the nodes know where it is
@@ -81,7 +82,7 @@ class Master {
   void tell(std::size_t node, Time now);
 
   MasterConfig config_;
-  can::Sink& sink_;
+  can::Pacer sink_;
   MasterListener* listener_;
   SdoPacer pacer_;
   std::vector<Node> nodes_;

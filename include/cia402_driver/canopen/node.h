@@ -31,11 +31,11 @@ const char* toString(NodeHealth health);
 /// Owned by Master.
 class Node {
  public:
-  /// @param pacer gives turns to the requests of all booting nodes; none: they leave at once.
-  /// @param deadlines_changed set whenever nextDeadline() may have become another one. Both outlive
-  /// the node.
+  /// @param turns gives turns to the requests of all booting nodes; none: they leave at once.
+  /// @param deadlines_changed set whenever nextDeadline() may have become another one.
+  /// @param wire the sink where it is a pacer, for SDO block transfers. All outlive the node.
   Node(const NodeConfig& config, const MasterConfig& master, can::Sink& sink,
-       SdoPacer* pacer = nullptr, bool* deadlines_changed = nullptr);
+       SdoPacer* turns = nullptr, bool* deadlines_changed = nullptr, can::Pacer* wire = nullptr);
   ~Node();
   Node(Node&&) noexcept;
 
@@ -79,6 +79,7 @@ class Node {
 
   /// To be used at once, not kept: the node looks at its transfers' deadlines anew after each call.
   SdoClient& sdo();
+  const SdoClient& sdo() const;
   ProcessImage& image();
   const ProcessImage& image() const;
 
