@@ -13,6 +13,8 @@ int virtualTimeSpeed();
 int virtualTimeRepeatable();
 int cycleCost();
 int syncLateness();
+int sdoBlockDownload();
+int sdoBlockUpload();
 
 /// Runs `cycles` cycles of `axes` enabled axes for an instruction counter that only looks at
 /// cia402_measured_cycle; prints nothing. @return exit status.

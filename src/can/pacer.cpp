@@ -17,7 +17,7 @@ constexpr unsigned kLeast = 2 * 135;  // two
 }  // namespace
 
 Pacer::Pacer(Sink& sink, double bitrate)
-    : sink_(sink), bit_time_ps_(std::llround(1e12 / std::max(bitrate, 1.0))) {}
+    : sink_(sink), bit_time_ps_(bitrate > 0.0 ? std::llround(1e12 / bitrate) : 0) {}
 
 void Pacer::occupy(unsigned bits_on_wire) {
   busy_until_ = std::max(busy_until_, now_) + bits(bits_on_wire);

@@ -231,7 +231,10 @@ void SdoClient::onTimeout(Time now) {
   ++counters_.timeouts;
   if (resumeBlockUpload(now)) return;
   const bool at_fence = phase_ == Phase::fence;
-  if (!at_fence) {
+  if (at_fence) {
+    // The first abort may have been lost, and a server in the middle of a block takes all for data.
+    sendRequest(kAbort, *abandoned_, abort_code::kTimeout);
+  } else {
     sendAbort(abort_code::kTimeout);
     abandon();
   }

@@ -61,7 +61,14 @@ bool Port::send(const can::Frame& frame, Time now) {
   return true;
 }
 
+void Port::append(const Entry& entry, bool ahead_of_all) {
+  const Time previous_ready = queue_.empty() || ahead_of_all ? entry.ready : queue_.front().ready;
+  const auto inserted = queue_.insert(ahead_of_all ? queue_.end() : queue_.begin(), entry);
+  inserted->ready = std::max(entry.ready, previous_ready);
+}
+
 void Port::insert(const Entry& entry, bool ahead_of_equals) {
+  if (fifo_) return append(entry, ahead_of_equals);
   const auto place = std::partition_point(queue_.begin(), queue_.end(), [&](const Entry& other) {
     return ahead_of_equals ? other.key >= entry.key : other.key > entry.key;
   });
@@ -73,6 +80,7 @@ void Port::insert(const Entry& entry, bool ahead_of_equals) {
 
 const Port::Entry* Port::bestReadyAt(Time time) const {
   if (suspended_until_ > time) return nullptr;
+  if (fifo_) return !queue_.empty() && queue_.back().ready <= time ? &queue_.back() : nullptr;
   for (auto entry = queue_.rbegin(); entry != queue_.rend(); ++entry) {
     if (entry->ready <= time) return &*entry;
   }
@@ -81,6 +89,7 @@ const Port::Entry* Port::bestReadyAt(Time time) const {
 
 Time Port::earliestReady() const {
   Time earliest = kNever;
+  if (fifo_ && !queue_.empty()) return std::max(queue_.back().ready, suspended_until_);
   for (const Entry& entry : queue_) earliest = std::min(earliest, entry.ready);
   return std::max(earliest, suspended_until_);
 }

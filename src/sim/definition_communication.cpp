@@ -12,6 +12,11 @@ void readCommunication(DefinitionReader& reader, DeviceBehaviour& out) {
   reader.read("generic_length_abort", out.generic_length_abort);
   reader.read("upload_without_size", out.upload_without_size);
   reader.read("accepts_short_sdo", out.accepts_short_sdo);
+  reader.read("sdo_block", out.sdo_block);
+  reader.read("sdo_block_crc", out.sdo_block_crc);
+  reader.read("sdo_block_crc_error", out.sdo_block_crc_error);
+  reader.read("sdo_block_size", out.sdo_block_size, 1, 127);
+  reader.read("sdo_block_size_varies", out.sdo_block_size_varies);
   reader.read("mapping_requires_invalid", out.mapping_requires_invalid);
   reader.read("map_entry_checked_on_write", out.map_entry_checked_on_write);
   reader.read("disable_may_change_id", out.disable_may_change_id);

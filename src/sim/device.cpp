@@ -22,7 +22,7 @@ using canopen::NmtState;
 namespace {
 
 constexpr std::uint32_t kNmt = 0x000;
-constexpr std::uint32_t kSdoRequest = 0x600;
+constexpr std::uint16_t kSecondSdoParameter = 0x1201;
 constexpr std::uint32_t kErrorControl = 0x700;
 constexpr std::uint32_t kLssRequest = 0x7E5;
 constexpr std::uint32_t kFunctionCode = 0x780;
@@ -56,6 +56,7 @@ struct Device::Impl {
   SlaveSync sync{context, emergency};
   SlaveTime clock{context};
   SdoServer sdo{context};
+  SdoServer second_sdo{context, kSecondSdoParameter};
   PdoServer pdos{context, emergency};
   SlaveLss lss;
   Time boot_at = kNever;
@@ -120,6 +121,7 @@ void Device::Impl::serveObjects() {
   guarding.serveObjects();
   sync.serveObjects();
   clock.serveObjects();
+  second_sdo.serveObjects();
   pdos.serveObjects();
 }
 
@@ -142,6 +144,7 @@ void Device::Impl::silence(NmtState state) {
   sync.reset();
   clock.reset();
   sdo.reset();
+  second_sdo.reset();
   emergency.reset();
   lss.reset();
 }
@@ -173,6 +176,8 @@ void Device::Impl::finishBoot() {
   sync.start();
   clock.start();
   pdos.configure();
+  sdo.configure();
+  second_sdo.configure();
   heartbeat.start();
   if (context.behaviour.boots_again_after > Duration::zero()) {
     boot_again_at = context.now + context.behaviour.boots_again_after;
@@ -184,7 +189,10 @@ void Device::Impl::finishBoot() {
 void Device::Impl::changeState(NmtState state) {
   if (state == context.state) return;
   if (context.operational()) pdos.stop();
-  if (state == NmtState::stopped) sdo.reset();
+  if (state == NmtState::stopped) {
+    sdo.reset();
+    second_sdo.reset();
+  }
   context.state = state;
   if (context.operational()) pdos.start();
   context.application.onNmtState(state, context.now);
@@ -226,7 +234,8 @@ void Device::Impl::dispatch(const can::Frame& frame) {
   if (frame.id == kNmt) return command(frame);
   if (frame.id == clock.cobId()) return clock.receive(frame);
   if (frame.id == kLssRequest) return lss.receive(frame);
-  if (frame.id == kSdoRequest + context.node) return sdo.receive(frame);
+  if (sdo.concerns(frame.id)) return sdo.receive(frame);
+  if (second_sdo.concerns(frame.id)) return second_sdo.receive(frame);
   if (frame.id == kErrorControl + context.node) return guarding.receive(frame);
   if ((frame.id & kFunctionCode) == kErrorControl) {
     heartbeat.receive(static_cast<canopen::NodeId>(frame.id & kNodeId), frame);
@@ -254,12 +263,14 @@ void Device::Impl::runDue() {
   guarding.tick();
   pdos.tick();
   sdo.tick();
+  second_sdo.tick();
   emergency.tick();
 }
 
 Time Device::Impl::deadline() const {
   return std::min({boot_at, boot_again_at, lss.deadline(), sync.deadline(), heartbeat.deadline(),
-                   guarding.deadline(), pdos.deadline(), sdo.deadline(), emergency.deadline()});
+                   guarding.deadline(), pdos.deadline(), sdo.deadline(), second_sdo.deadline(),
+                   emergency.deadline()});
 }
 
 Device::Device(canopen::NodeId node, can::Sink& sink, ObjectDictionary& dictionary,

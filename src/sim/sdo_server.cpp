@@ -12,7 +12,10 @@ namespace abort_code = canopen::abort_code;
 
 namespace {
 
+constexpr std::uint32_t kRequestId = 0x600;
 constexpr std::uint32_t kAnswerId = 0x580;
+constexpr std::uint32_t kNoId = 0xFFFFFFFF;
+constexpr std::uint32_t kNotValid = 0x80000000;  // bit of a COB-ID, CiA 301, 7.5.2.33
 
 // Client command specifiers, bits 5..7 of the first byte.
 constexpr unsigned kDownloadSegment = 0;
@@ -41,11 +44,35 @@ constexpr std::size_t kMemory = 1U << 20U;
 
 unsigned commandOf(const can::Frame& frame) { return frame.data[0] >> 5U; }
 
-ObjectId objectOf(const can::Frame& frame) {
+}  // namespace
+
+ObjectId SdoServer::objectOf(const can::Frame& frame) {
   return {static_cast<std::uint16_t>(takeBytes(frame, 1, 2)), frame.data[3]};
 }
 
-}  // namespace
+SdoServer::SdoServer(SlaveContext& context, std::uint16_t parameter)
+    : context_(context), parameter_(parameter), request_id_(kNoId), answer_id_(kNoId) {
+  data_.reserve(64);
+}
+
+void SdoServer::serveObjects() {
+  for (const std::uint8_t subindex : {std::uint8_t{1}, std::uint8_t{2}}) {
+    context_.serveWrites({parameter_, subindex}, nullptr, [this](const Entry&) { configure(); });
+  }
+}
+
+void SdoServer::configure() {
+  if (parameter_ == 0) {
+    request_id_ = kRequestId + context_.node;
+    answer_id_ = kAnswerId + context_.node;
+    return;
+  }
+  const auto request = static_cast<std::uint32_t>(context_.value({parameter_, 1}, kNotValid));
+  const auto answer_cob = static_cast<std::uint32_t>(context_.value({parameter_, 2}, kNotValid));
+  const bool valid = ((request | answer_cob) & kNotValid) == 0;
+  request_id_ = valid ? request & 0x7FFU : kNoId;
+  answer_id_ = answer_cob & 0x7FFU;
+}
 
 void SdoServer::reset() {
   head_ = 0;
@@ -59,6 +86,7 @@ void SdoServer::receive(const can::Frame& frame) {
   Request& request = queue_[(head_ + waiting_) % kQueueSize];
   request.frame = frame;
   std::fill(request.frame.data.begin() + frame.size, request.frame.data.end(), std::uint8_t{0});
+  if (takesAtOnce(request.frame)) return blockSegment(request.frame);
   Time begin = context_.now;
   if (waiting_ > 0) begin = queue_[(head_ + waiting_ - 1) % kQueueSize].due;
   request.due = begin + context_.answerTime(request.frame);
@@ -76,6 +104,11 @@ void SdoServer::tick() {
 }
 
 void SdoServer::process(const can::Frame& request) {
+  if (transfer_ == Transfer::block_download) {
+    const bool aborted = request.data[0] == kAborted;
+    if (!aborted && !block_ended_) return blockSegment(request);
+    if (block_ended_ && request == last_segment_) return;  // the wire gave it twice
+  }
   switch (commandOf(request)) {
     case kDownloadSegment:
       return downloadSegment(request);
@@ -89,7 +122,9 @@ void SdoServer::process(const can::Frame& request) {
       transfer_ = Transfer::none;
       return;
     case kBlockUpload:
+      return blockUpload(request);
     case kBlockDownload:
+      return blockDownload(request);
     default:
       object_ = objectOf(request);
       return abort(abort_code::kInvalidCommand);
@@ -155,7 +190,7 @@ void SdoServer::finishDownload() {
 }
 
 void SdoServer::confirmSegment() {
-  can::Frame frame = emptyFrame(kAnswerId + context_.node, 8);
+  can::Frame frame = emptyFrame(answer_id_, 8);
   frame.data[0] = static_cast<std::uint8_t>(kDownloadSegmentDone | (toggle_ ? 0 : kToggle));
   context_.sink.send(frame);
 }
@@ -164,6 +199,11 @@ void SdoServer::initiateUpload(const can::Frame& request) {
   object_ = objectOf(request);
   transfer_ = Transfer::none;
   if (const auto refused = context_.dictionary.read(object_, data_)) return abort(refused);
+  answerUpload();
+}
+
+// The value is in data_: in the answer itself, or in segments to be asked for.
+void SdoServer::answerUpload() {
   const bool tell_size = !context_.behaviour.upload_without_size;
   if (!data_.empty() && data_.size() <= kExpeditedSize) {
     std::uint32_t value = 0;
@@ -187,7 +227,7 @@ void SdoServer::uploadSegment(const can::Frame& request) {
   }
   if (!toggleFits(request)) return;
   const std::size_t size = std::min(kSegmentSize, data_.size() - sent_);
-  can::Frame frame = emptyFrame(kAnswerId + context_.node, 8);
+  can::Frame frame = emptyFrame(answer_id_, 8);
   for (std::size_t i = 0; i < size; ++i) frame.data[1 + i] = data_[sent_ + i];
   sent_ += size;
   const bool last = sent_ == data_.size();
@@ -208,7 +248,7 @@ bool SdoServer::toggleFits(const can::Frame& request) {
 }
 
 void SdoServer::answer(std::uint8_t command, std::uint32_t value) {
-  can::Frame frame = emptyFrame(kAnswerId + context_.node, 8);
+  can::Frame frame = emptyFrame(answer_id_, 8);
   frame.data[0] = command;
   putBytes(frame, 1, 2, object_.index);
   frame.data[3] = object_.subindex;

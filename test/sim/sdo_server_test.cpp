@@ -160,7 +160,8 @@ TEST_F(SegmentedSdoTest, ANewInitiateReplacesTheTransferInProgress) {
   EXPECT_EQ(sdo({0x60, 0, 0, 0, 0, 0, 0, 0}), "581 00 4A 6F 69 6E 74 4D 6F");
 }
 
-TEST_F(SdoServerTest, RefusesBlockTransferAndUnknownCommands) {
+TEST_F(SdoServerTest, RefusesUnknownCommandsAndBlockTransferWhereItHasNone) {
+  behaviour.sdo_block = false;
   boot();
   EXPECT_EQ(sdo({0xA4, 0x00, 0x10, 0x00, 0x7F, 0, 0, 0}), "581 80 00 10 00 01 00 04 05");
   EXPECT_EQ(sdo({0xC2, 0x17, 0x10, 0x00, 2, 0, 0, 0}), "581 80 17 10 00 01 00 04 05");

@@ -15,7 +15,8 @@ namespace cia402::can {
 /// report by the controller. Sans-IO, does not allocate.
 class Pacer final : public Sink {
  public:
-  /// @param sink must outlive the pacer. @param bitrate in bit/s, positive.
+  /// @param sink must outlive the pacer. @param bitrate in bit/s; 0: nothing
+  /// is held back.
   Pacer(Sink& sink, double bitrate);
 
   /// The time of what is sent from here on. Going back is harmless.

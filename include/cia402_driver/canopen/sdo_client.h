@@ -220,7 +220,7 @@ class SdoClient {
   void endSubBlock(Time now);
   void sendBlockAcknowledge(unsigned sequence, Time now);
   void checkBlock(std::size_t until);
-  bool mayRepeatSegments() const { return block_.crc || announced_.has_value(); }
+  bool mayRepeatSegments() const;
   bool resumeBlockUpload(Time now);
 
   Outcome onBlockDownloadInitiated(const can::Frame& frame, Time now);

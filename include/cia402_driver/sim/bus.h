@@ -43,9 +43,9 @@ struct PortCounters {
 class Bus;
 
 /// A CAN controller on a simulated bus: a transmit queue in the order of arbitration (first in,
-/// first out within an identifier), error counters and fault confinement after ISO 11898-1. While
-/// the cable is pulled, or nobody acknowledges, frames wait and are sent once they can be, stale as
-/// they are: that is what real controllers do.
+/// first out within an identifier; or in the order of send()), error counters and fault confinement
+/// after ISO 11898-1. While the cable is pulled, or nobody acknowledges, frames wait and are sent
+/// once they can be, stale as they are: that is what real controllers do.
 class Port final : public can::Sink {
  public:
   Port(Bus& bus, Listener& listener, std::string name, std::size_t capacity);
@@ -56,6 +56,9 @@ class Port final : public can::Sink {
   /// The same at `now`; a time before Bus::now() counts as Bus::now().
   bool send(const can::Frame& frame, Time now);
 
+  /// Whether frames leave in the order in which they were given, as from the kernel's queue of a
+  /// SocketCAN interface, instead of by arbitration. To be called while nothing waits. Default: no.
+  void setFirstInFirstOut(bool on) { fifo_ = on; }
   /// Pulls (false) or plugs in the cable. Default: plugged in.
   void setAttached(bool attached);
   /// Takes the power away (queue and error counters are lost) or gives it back. Default: on.
@@ -89,6 +92,7 @@ class Port final : public can::Sink {
     can::Frame frame;
   };
 
+  void append(const Entry& entry, bool ahead_of_all);
   bool canTransmit() const { return on_bus_ && !queue_.empty(); }
   void insert(const Entry& entry, bool ahead_of_equals);
   const Entry* bestReadyAt(Time time) const;
@@ -107,7 +111,8 @@ class Port final : public can::Sink {
   Listener& listener_;
   std::string name_;
   std::size_t capacity_;
-  std::vector<Entry> queue_;  // the winner of arbitration is at the back
+  std::vector<Entry> queue_;  // the next to leave is at the back
+  bool fifo_ = false;
   unsigned tec_ = 0;
   unsigned rec_ = 0;
   bool attached_ = true;

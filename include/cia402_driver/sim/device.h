@@ -46,6 +46,11 @@ struct DeviceBehaviour {
   bool generic_length_abort = false;  ///< 0x06070010 for every wrong length instead of ...12, ...13
   bool upload_without_size = false;   ///< upload answers do not tell the size (s = 0)
   bool accepts_short_sdo = false;     ///< takes requests of fewer than 8 bytes, the rest as 0
+  bool sdo_block = true;              ///< has block transfer (else 0x05040001)
+  bool sdo_block_crc = true;          ///< computes the CRC of block transfers
+  bool sdo_block_crc_error = false;   ///< computes it wrong: sends it, and finds the client's wrong
+  std::int64_t sdo_block_size = 127;  ///< segments of a sub-block that downloads shall have, 1..127
+  bool sdo_block_size_varies = false;  ///< ... at most, each sub-block another number
 
   // PDO configuration (7.5.2.35 to 7.5.2.38).
   bool mapping_requires_invalid = true;     ///< 16xxh/1Axxh can be written only while bit 31 of the
@@ -77,16 +82,17 @@ struct DeviceBehaviour {
   bool sync_timeout = false;  ///< no SYNC for 1.5 * 1006h: EMCY 0x8201 (Damiao)
 };
 
-/// A CANopen slave (CiA 301) on an object dictionary: boot-up, NMT, SDO server (expedited,
-/// segmented), four or more PDO pairs with mapping and all transmission types, inhibit and event
-/// timers, SYNC with counter, heartbeat producer and consumer, node guarding, EMCY with
-/// 1001h/1003h. Sans-IO. It shares no encoder with the master on purpose.
+/// A CANopen slave (CiA 301) on an object dictionary: boot-up, NMT, SDO servers (expedited,
+/// segmented and block; a second one where 1201h has COB-IDs), four or more PDO pairs with mapping
+/// and all transmission types, inhibit and event timers, SYNC with counter, heartbeat producer and
+/// consumer, node guarding, EMCY with 1001h/1003h. Sans-IO. It shares no encoder with the master on
+/// purpose.
 ///
 /// The dictionary says what the device has: a service whose objects are missing does not exist.
 /// From the first powerOn() the device uses the write and read hooks of 1003h, 1005h, 1006h, 100Ch,
-/// 100Dh, 1012h, 1014h, 1016h, 1017h, 1019h and the PDO parameters 1400h-1BFFh; all others are the
-/// application's. Node-IDs in default COB-IDs are to be resolved in the dictionary. Errors of
-/// communication it reports by itself (EMCY 0x81xx, 0x82xx with bits 0 and 4 of 1001h) and takes
+/// 100Dh, 1012h, 1014h, 1016h, 1017h, 1019h, 1201h and the PDO parameters 1400h-1BFFh; all others
+/// are the application's. Node-IDs in default COB-IDs are to be resolved in the dictionary. Errors
+/// of communication it reports by itself (EMCY 0x81xx, 0x82xx with bits 0 and 4 of 1001h) and takes
 /// back with EMCY 0x0000 when the last one is gone, unless the application then holds a fault of
 /// its own.
 class Device {
