@@ -18,17 +18,18 @@ MAY_INCLUDE = {
     "drive": MODEL[:3],
     "config": MODEL[:4],
     "motion": ["common"],
-    "bus": MODEL + ["motion"],
+    "decode": MODEL,
+    "bus": MODEL + ["motion", "decode"],
     "sim": MODEL,
-    "ros": MODEL + ["motion", "bus", "sim"],
-    "tools": MODEL + ["motion", "bus", "sim"],
+    "ros": MODEL + ["motion", "decode", "bus", "sim"],
+    "tools": MODEL + ["motion", "decode", "bus", "sim"],
 }
 # sim/ takes only types and numbers from the master's stack: what encodes, decodes or decides there
 # must not do so here, or a mistake would meet itself on both ends of the wire and stay unseen.
 SIM_MAY_NOT_INCLUDE = re.compile(
     r"canopen/(sdo|pdo|emergency|heartbeat|sync|master|node|boot)|drive/(axis\.h|state_machine|conversion)")
 
-SANS_IO = MODEL + ["motion", "sim"]
+SANS_IO = MODEL + ["motion", "decode", "sim"]
 # The edge of can/ towards the kernel.
 EDGE = re.compile(r"/can/(socketcan|raw_socket|link_probe|wall_clock)")
 FORBIDDEN = [

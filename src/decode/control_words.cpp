@@ -1,0 +1,86 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// Statusword and controlword (CiA 402-2) in words.
+#include "cia402_driver/decode/value_text.h"
+#include "cia402_driver/drive/state_machine.h"
+
+namespace cia402::decode {
+namespace {
+
+using drive::ControlKind;
+using drive::ModeSpec;
+
+/// Bits 0..3, 5 and 6 are the state.
+constexpr const char* kStatusBits[16] = {
+    nullptr, nullptr,  nullptr,  nullptr,          "voltage enabled", nullptr,  nullptr,  "warning",
+    "bit 8", "remote", "bit 10", "internal limit", "bit 12",          "bit 13", "bit 14", "bit 15"};
+
+const char* statusBit(int bit, const ModeSpec* mode) {
+  if (mode == nullptr) return kStatusBits[bit];
+  const std::pair<const std::optional<int>&, const char*> named[] = {
+      {mode->target_reached_bit, "target reached"},
+      {mode->following_error_bit, "following error"},
+      {mode->set_point_acknowledge_bit, "set-point acknowledged"},
+      {mode->speed_zero_bit, "speed is zero"},
+      {mode->homing_attained_bit, "homing attained"},
+      {mode->homing_error_bit, "homing error"},
+      {mode->follows_command_bit, "follows the command"}};
+  for (const auto& [position, words] : named) {
+    if (position && *position == bit) return words;
+  }
+  return kStatusBits[bit];
+}
+
+/// CiA 402-2, table "command coding": bits that count, their value, and the command.
+struct Command {
+  std::uint16_t mask, value;
+  const char* name;
+};
+constexpr Command kCommands[] = {
+    {0x0080, 0x0080, "fault reset"}, {0x0002, 0x0000, "disable voltage"},
+    {0x0006, 0x0002, "quick stop"},  {0x0007, 0x0006, "shutdown"},
+    {0x000F, 0x0007, "switch on"},   {0x000F, 0x000F, "enable operation"},
+};
+
+std::string controlBit(unsigned bit, const ModeSpec* mode) {
+  if (bit == 8) return "halt";
+  if (mode != nullptr && mode->handshake == drive::Handshake::new_set_point) {
+    if (bit == 4) return "new set-point";
+    if (bit == 5) return "change at once";
+    if (bit == 6) return "relative";
+  }
+  if (mode != nullptr && mode->kind == ControlKind::homing && bit == 4) return "start homing";
+  return "bit " + std::to_string(bit);
+}
+
+}  // namespace
+
+std::string statuswordText(std::uint16_t statusword, const ModeSpec* mode) {
+  std::string text =
+      hexNumber(statusword, 2) + " " + drive::toString(drive::decodeState(statusword));
+  const char* separator = "; ";
+  for (int bit = 0; bit < 16; ++bit) {
+    const char* const name = statusBit(bit, mode);
+    if ((statusword >> bit & 1) == 0 || name == nullptr) continue;
+    text += std::string(separator) + name;
+    separator = ", ";
+  }
+  return text;
+}
+
+std::string controlwordText(std::uint16_t controlword, const ModeSpec* mode) {
+  std::string text = hexNumber(controlword, 2);
+  for (const Command& command : kCommands) {
+    if ((controlword & command.mask) != command.value) continue;
+    text += std::string(" ") + command.name;
+    break;
+  }
+  const char* separator = "; ";
+  for (unsigned bit = 4; bit < 16; ++bit) {
+    if ((controlword >> bit & 1U) == 0 || bit == 7) continue;
+    text += separator + controlBit(bit, mode);
+    separator = ", ";
+  }
+  return text;
+}
+
+}  // namespace cia402::decode

@@ -1,0 +1,225 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/decode/frame_decoder.h"
+
+#include <cstdio>
+
+#include "cia402_driver/can/error_frame.h"
+#include "cia402_driver/canopen/emergency.h"
+#include "cia402_driver/canopen/nmt.h"
+
+namespace cia402::decode {
+namespace {
+
+using can::Frame;
+using canopen::NodeId;
+
+std::uint64_t wordOf(const Frame& frame) {
+  std::uint64_t word = 0;
+  for (unsigned i = 0; i < frame.size && i < 8; ++i) {
+    word |= static_cast<std::uint64_t>(frame.data[i]) << (8 * i);
+  }
+  return word;
+}
+
+std::string dataText(const Frame& frame) {
+  if (frame.remote) return "remote request, " + std::to_string(frame.size) + " bytes";
+  return bytesText(canopen::Bytes(frame.data.begin(), frame.data.begin() + frame.size));
+}
+
+std::string hexBytes(const Frame& frame, std::size_t begin) {
+  std::string text;
+  for (std::size_t i = begin; i < frame.size; ++i) {
+    text += (text.empty() ? "" : " ") + hexNumber(frame.data[i], 1).substr(2);
+  }
+  return text;
+}
+
+const char* nmtStateText(std::uint8_t state) {
+  switch (state & 0x7F) {
+    case 0x00:
+      return "boot-up";
+    case 0x04:
+      return "stopped";
+    case 0x05:
+      return "operational";
+    case 0x7F:
+      return "pre-operational";
+    default:
+      return nullptr;
+  }
+}
+
+std::string nmtCommandText(std::uint8_t command) {
+  switch (command) {
+    case 0x01:
+      return "start";
+    case 0x02:
+      return "stop";
+    case 0x80:
+      return "enter pre-operational";
+    case 0x81:
+      return "reset node";
+    case 0x82:
+      return "reset communication";
+    default:
+      return "unknown command " + hexNumber(command, 1);
+  }
+}
+
+}  // namespace
+
+FrameDecoder::FrameDecoder(const config::RobotConfig& robot, const canopen::MasterConfig& master)
+    : master_(master.node_id) {
+  for (const drive::AxisConfig& axis : robot.axes) {
+    Node& node = nodes_[axis.node_id];
+    node.name = axis.name + " (" + std::to_string(axis.node_id) + ")";
+    node.values = std::make_unique<ValueText>(axis);
+    node.sdo = SdoDecoder(node.values.get());
+  }
+  for (const canopen::NodeConfig& node : master.nodes) addPdos(node);
+}
+
+void FrameDecoder::addPdos(const canopen::NodeConfig& config) {
+  for (const canopen::PdoConfig& from : config.pdos) {
+    if (!from.enabled) continue;
+    Pdo pdo;
+    pdo.service = (from.direction == canopen::PdoDirection::rpdo ? "RPDO" : "TPDO") +
+                  std::to_string(from.number);
+    pdo.node = config.node_id;
+    unsigned shift = 0;
+    for (const canopen::PdoEntry& entry : from.entries) {
+      if (shift + entry.bits > 64) break;
+      pdo.fields.push_back({entry.object, entry.name, shift, entry.bits});
+      shift += entry.bits;
+    }
+    pdo.size = (shift + 7) / 8;
+    pdos_[from.cob_id] = std::move(pdo);
+  }
+}
+
+FrameDecoder::Node& FrameDecoder::nodeOf(NodeId id) {
+  Node& node = nodes_[id];
+  if (node.name.empty()) {
+    node.name = id == master_ ? "master" : "node " + std::to_string(id);
+  }
+  return node;
+}
+
+std::string FrameDecoder::nodeName(NodeId id) const {
+  const auto node = nodes_.find(id);
+  if (node != nodes_.end() && !node->second.name.empty()) return node->second.name;
+  return id == master_ ? "master" : "node " + std::to_string(id);
+}
+
+std::string FrameDecoder::pdoText(const Pdo& pdo, const Frame& frame) {
+  if (frame.remote) return "asked for";
+  ValueText* const values = nodeOf(pdo.node).values.get();
+  const std::uint64_t word = wordOf(frame);
+  const auto raw = [&](const Field& field) {
+    const std::uint64_t mask =
+        field.bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << field.bits) - 1;
+    return word >> field.shift & mask;
+  };
+  const auto present = [&](const Field& field) {
+    return field.shift + field.bits <= 8U * frame.size;
+  };
+  std::string text;
+  if (frame.size < pdo.size) {
+    text =
+        "too short, " + std::to_string(frame.size) + " of " + std::to_string(pdo.size) + " bytes";
+  }
+  if (values == nullptr) return text + (text.empty() ? "" : "; ") + hexBytes(frame, 0);
+  for (const Field& field : pdo.fields) {  // the mode first: it names bits of the other values
+    if (present(field)) values->note(field.object, raw(field));
+  }
+  for (const Field& field : pdo.fields) {
+    if (!present(field)) break;
+    text += (text.empty() ? "" : " | ") +
+            (field.name.empty() ? canopen::toString(field.object) : field.name) + " " +
+            values->describe(field.object, raw(field), field.bits);
+  }
+  return text;
+}
+
+std::string FrameDecoder::emergencyText(const Frame& frame, NodeId id) {
+  if (frame.size < 3) return "too short for an emergency: " + dataText(frame);
+  const auto code = static_cast<std::uint16_t>(frame.data[0] | frame.data[1] << 8);
+  const ValueText* const values = nodeOf(id).values.get();
+  std::string text = code == 0           ? "0x0000 error reset or no error"
+                     : values != nullptr ? errorText(code, *values->axis().profile)
+                                         : hexNumber(code, 2) + " " + canopen::emergencyText(code);
+  text += "; error register " + hexNumber(frame.data[2], 1) + " " +
+          canopen::errorRegisterText(frame.data[2]);
+  const std::string vendor = hexBytes(frame, 3);
+  if (vendor.find_first_not_of("0 ") != std::string::npos) text += "; manufacturer " + vendor;
+  return text;
+}
+
+/// COB-ID 700h + node-ID: boot-up, heartbeat and node guarding (CiA 301, 7.2.8).
+DecodedFrame FrameDecoder::errorControl(const Frame& frame, NodeId id) {
+  Node& node = nodeOf(id);
+  if (frame.remote) {
+    node.guarded = true;
+    return {"guarding", node.name, "asked for its state"};
+  }
+  if (frame.size == 0) return {"heartbeat", node.name, "empty"};
+  const std::uint8_t state = frame.data[0];
+  if (state == 0) node.guarded = false;
+  const char* const words = nmtStateText(state);
+  const std::string text = words != nullptr ? words : "unknown state " + hexNumber(state, 1);
+  if (!node.guarded && (state & 0x80) == 0) return {"heartbeat", node.name, text};
+  return {"guarding", node.name, text + ((state & 0x80) != 0 ? ", toggle 1" : ", toggle 0")};
+}
+
+/// What belongs to no single node by its identifier.
+DecodedFrame FrameDecoder::broadcast(const Frame& frame) {
+  if (frame.id == 0x000) {
+    if (frame.size < 2) return {"NMT", "", "too short: " + dataText(frame)};
+    const NodeId id = frame.data[1];
+    return {"NMT", id == 0 ? "all" : nodeName(id), nmtCommandText(frame.data[0])};
+  }
+  if (frame.id == 0x080) {
+    return {"SYNC", "", frame.size == 0 ? "" : "counter " + std::to_string(frame.data[0])};
+  }
+  if (frame.id == 0x100) return {"TIME", "", timeText(frame)};
+  if (frame.id == 0x7E5 || frame.id == 0x7E4) {
+    return {"LSS", frame.id == 0x7E5 ? "master" : "slave", lssText(frame, frame.id == 0x7E5)};
+  }
+  return {"?", "", hexNumber(frame.id, 2) + ": " + dataText(frame)};
+}
+
+DecodedFrame FrameDecoder::decode(const Frame& frame) {
+  if (frame.error) return {"error", "", can::describeErrorFrame(frame)};
+  if (frame.extended) return {"?", "", hexNumber(frame.id, 4) + ": " + dataText(frame)};
+  const auto pdo = pdos_.find(frame.id);
+  if (pdo != pdos_.end()) {
+    return {pdo->second.service, nodeOf(pdo->second.node).name, pdoText(pdo->second, frame)};
+  }
+  const auto id = static_cast<NodeId>(frame.id & 0x7F);
+  if (id == 0 || frame.id == 0x7E4 || frame.id == 0x7E5) return broadcast(frame);
+  switch (frame.id & 0x780U) {  // function code, CiA 301, table 38
+    case 0x080:
+      return {"EMCY", nodeOf(id).name, emergencyText(frame, id)};
+    case 0x580:
+      return {"SDO", nodeOf(id).name, nodeOf(id).sdo.answer(frame)};
+    case 0x600:
+      return {"SDO", nodeOf(id).name, nodeOf(id).sdo.request(frame)};
+    case 0x700:
+      return errorControl(frame, id);
+    default:
+      return broadcast(frame);
+  }
+}
+
+std::string formatDecoded(std::chrono::nanoseconds stamp, double relative, const char* direction,
+                          const DecodedFrame& decoded) {
+  const auto column = [](const std::string& text) { return text.empty() ? "-" : text.c_str(); };
+  const long long microseconds = stamp.count() / 1000;
+  char head[128];
+  std::snprintf(head, sizeof head, "%lld.%06lld %+11.6f  %-2s  %-9s  %-16s  ",
+                microseconds / 1'000'000, microseconds % 1'000'000, relative, direction,
+                column(decoded.service), column(decoded.node));
+  return head + (decoded.text.empty() ? "-" : decoded.text);
+}
+
+}  // namespace cia402::decode

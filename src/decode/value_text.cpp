@@ -1,0 +1,197 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/decode/value_text.h"
+
+#include <array>
+#include <cctype>
+#include <cstdio>
+
+#include "cia402_driver/canopen/emergency.h"
+#include "cia402_driver/decode/object_names.h"
+
+namespace cia402::decode {
+namespace {
+
+using canopen::Bytes;
+using canopen::ObjectId;
+using drive::DataType;
+using drive::ObjectSpec;
+using drive::Quantity;
+
+constexpr std::size_t kLongestBytes = 32;
+
+const char* unitOf(Quantity quantity, const drive::AxisConfig& axis) {
+  const bool linear = axis.geometry.type == drive::AxisGeometry::Type::prismatic;
+  switch (quantity) {
+    case Quantity::position:
+    case Quantity::distance:
+      return linear ? "m" : "rad";
+    case Quantity::velocity:
+      return linear ? "m/s" : "rad/s";
+    case Quantity::acceleration:
+      return linear ? "m/s^2" : "rad/s^2";
+    case Quantity::jerk:
+      return linear ? "m/s^3" : "rad/s^3";
+    case Quantity::torque:
+      return linear ? "N" : "N m";
+    case Quantity::current:
+      return "A";
+    case Quantity::voltage:
+      return "V";
+    case Quantity::temperature:
+      return "degC";
+    case Quantity::time:
+      return "s";
+    case Quantity::none:
+      break;
+  }
+  return nullptr;
+}
+
+std::int64_t signExtended(std::uint64_t raw, unsigned bits) {
+  if (bits == 0 || bits >= 64) return static_cast<std::int64_t>(raw);
+  const std::uint64_t sign = std::uint64_t{1} << (bits - 1);
+  return static_cast<std::int64_t>(raw ^ sign) - static_cast<std::int64_t>(sign);
+}
+
+std::string number(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.6g", value);
+  return text.data();
+}
+
+/// Without knowledge of what it means: decimal and hexadecimal.
+std::string plain(std::uint64_t raw, unsigned bits, bool is_signed) {
+  const std::string decimal =
+      is_signed ? std::to_string(signExtended(raw, bits)) : std::to_string(raw);
+  return raw < 10 && !is_signed ? decimal : decimal + " (" + hexNumber(raw, (bits + 7) / 8) + ")";
+}
+
+bool isWhole(const ObjectSpec& spec) {
+  return spec.encoding == drive::Encoding::integer && spec.type != DataType::real32 &&
+         spec.type != DataType::real64;
+}
+
+}  // namespace
+
+std::string hexNumber(std::uint64_t raw, unsigned bytes) {
+  static const char* const kDigits = "0123456789ABCDEF";
+  std::string text = "0x";
+  for (unsigned i = 2 * bytes; i-- > 0;) text += i < 16 ? kDigits[(raw >> (4 * i)) & 0xF] : '0';
+  return text;
+}
+
+std::string bytesText(const Bytes& data) {
+  if (data.empty()) return "nothing";
+  const bool cut = data.size() > kLongestBytes;
+  const auto end = data.begin() + static_cast<std::ptrdiff_t>(cut ? kLongestBytes : data.size());
+  bool printable = true;
+  for (auto byte = data.begin(); byte != end; ++byte) {
+    printable = printable && std::isprint(*byte) != 0;
+  }
+  std::string text = printable ? "\"" + std::string(data.begin(), end) + "\"" : "";
+  for (auto byte = data.begin(); byte != end && !printable; ++byte) {
+    text += (text.empty() ? "" : " ") + hexNumber(*byte, 1).substr(2);
+  }
+  return text + (cut ? "..." : "");
+}
+
+ValueText::ValueText(const drive::AxisConfig& axis) : axis_(axis) {
+  if (!axis_.profile) return;
+  for (const ObjectSpec& spec : axis_.profile->objects) {
+    Known known;
+    known.spec = &spec;
+    known.unit = unitOf(spec.quantity, axis_);
+    const auto conversion = drive::Conversion::create(spec, *axis_.profile, axis_.geometry);
+    if (conversion) known.conversion = *conversion;
+    objects_.emplace(spec.id, known);
+  }
+}
+
+const ValueText::Known* ValueText::find(ObjectId object) const {
+  const auto found = objects_.find(object);
+  return found == objects_.end() ? nullptr : &found->second;
+}
+
+std::string ValueText::name(ObjectId object) const {
+  const Known* known = find(object);
+  return known != nullptr ? known->spec->name : communicationObjectName(object);
+}
+
+std::string ValueText::title(ObjectId object) const {
+  const std::string words = name(object);
+  return canopen::toString(object) + (words.empty() ? "" : " " + words);
+}
+
+void ValueText::note(ObjectId object, std::uint64_t raw) {
+  const Known* known = find(object);
+  if (known == nullptr || known->spec->name != "mode_display") return;
+  const auto value = signExtended(raw, canopen::sizeBits(known->spec->type));
+  mode_ = nullptr;
+  for (const drive::ModeSpec& mode : axis_.profile->modes) {
+    if (mode.value == value) mode_ = &mode;
+  }
+}
+
+std::string ValueText::words(const Known& known, std::uint64_t raw, unsigned bits) const {
+  const std::string& name = known.spec->name;
+  const auto word = static_cast<std::uint16_t>(raw);
+  if (name == "statusword") return statuswordText(word, mode_);
+  if (name == "controlword") return controlwordText(word, mode_);
+  if (name == "error_code") return errorText(word, *axis_.profile);
+  if (name == "mode_display" || name == "mode_of_operation") {
+    return modeText(static_cast<int>(signExtended(raw, bits)), *axis_.profile);
+  }
+  const bool whole = isWhole(*known.spec);
+  if (known.conversion && (known.unit != nullptr || !whole)) {
+    const std::string value = number(known.conversion->toJoint(raw));
+    const std::string device =
+        !whole || known.conversion->resolution() == 1.0
+            ? ""
+            : " (" +
+                  (canopen::isSigned(known.spec->type) ? std::to_string(signExtended(raw, bits))
+                                                       : std::to_string(raw)) +
+                  ")";
+    return value + (known.unit != nullptr ? std::string(" ") + known.unit : "") + device;
+  }
+  return plain(raw, bits, canopen::isSigned(known.spec->type));
+}
+
+std::string ValueText::describe(ObjectId object, std::uint64_t raw, unsigned bits) const {
+  const Known* known = find(object);
+  if (known == nullptr) return plain(raw, bits, false);
+  const unsigned expected = canopen::sizeBits(known->spec->type);
+  if (expected != bits) return plain(raw, bits, false);
+  return words(*known, raw, bits);
+}
+
+std::string ValueText::describe(ObjectId object, const Bytes& data) const {
+  const Known* known = find(object);
+  const unsigned bits = known == nullptr ? 0 : canopen::sizeBits(known->spec->type);
+  const auto size = static_cast<unsigned>(data.size());
+  if (known == nullptr) {
+    return size == 0 || size == 3 || size > 4 ? bytesText(data)
+                                              : plain(canopen::toUnsigned(data), 8 * size, false);
+  }
+  if (bits == 0) return bytesText(data);
+  if ((bits + 7) / 8 != size) {
+    return bytesText(data) + " (" + std::to_string(size) + " bytes, but the profile says " +
+           canopen::toString(known->spec->type) + ")";
+  }
+  return words(*known, canopen::toUnsigned(data), bits);
+}
+
+std::string modeText(int value, const drive::DriveProfile& profile) {
+  for (const drive::ModeSpec& mode : profile.modes) {
+    if (mode.value == value) return std::to_string(value) + " " + mode.name;
+  }
+  return std::to_string(value) + (value == 0 ? " no mode" : " unknown to the profile");
+}
+
+std::string errorText(std::uint16_t code, const drive::DriveProfile& profile) {
+  if (code == 0) return "0x0000 none";
+  const auto known = profile.errors.find(code);
+  return hexNumber(code, 2) + " " +
+         (known != profile.errors.end() ? known->second.text : canopen::emergencyText(code));
+}
+
+}  // namespace cia402::decode
