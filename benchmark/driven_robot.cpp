@@ -26,8 +26,10 @@ DrivenRobot::DrivenRobot(int axes, double sync_period_s, int cycles)
       period_(config_.robot.bus.sync_period),
       drives_(axes),
       meter_(*this, kBitrate),
-      robot_(config_.robot, config_.master, meter_, *this),
+      recorder_(config_.robot, meter_),
+      robot_(config_.robot, config_.master, recorder_, *this),
       snapshots_(sized(static_cast<std::size_t>(axes))) {
+  recorder_.watch(robot_);
   incoming_.reserve(256);
   outgoing_.reserve(256);
   robot_.start(now_);
@@ -52,7 +54,10 @@ bool DrivenRobot::send(const can::Frame& frame) {
   return true;
 }
 
-void DrivenRobot::onEvent(const bus::Event& event) { events_.push_back(event); }
+void DrivenRobot::onEvent(const bus::Event& event) {
+  recorder_.onEvent(event);
+  events_.push_back(event);
+}
 
 void DrivenRobot::runUntilAnswered(bus::Command command) {
   std::optional<bus::Answer> answer;
@@ -76,7 +81,10 @@ void DrivenRobot::step() {
     const std::vector<can::Frame> sent = std::exchange(outgoing_, {});
     for (const can::Frame& frame : sent) drives_.receive(frame, incoming_);
     const std::vector<can::Frame> received = std::exchange(incoming_, {});
-    for (const can::Frame& frame : received) robot_.receive(frame, now_, now_);
+    for (const can::Frame& frame : received) {
+      recorder_.received(frame, now_);
+      robot_.receive(frame, now_, now_);
+    }
   }
 }
 
@@ -98,8 +106,10 @@ void DrivenRobot::cycle() {
     robot_.tick(now);
     const can::Frame received = frame;
     meter_.count(received);
+    recorder_.received(received, now);
     robot_.receive(received, now, now);
     meter_.update(now);
+    recorder_.observe();
     publish(now);
   }
   wake(sync_ + period_ / 2);
@@ -109,6 +119,7 @@ void DrivenRobot::cycle() {
 void DrivenRobot::wake(Time now) {
   robot_.tick(now);
   meter_.update(now);
+  recorder_.observe();
   publish(now);
 }
 

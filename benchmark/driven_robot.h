@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "cia402_driver/bus/flight_recorder.h"
 #include "cia402_driver/bus/load_meter.h"
 #include "cia402_driver/bus/robot.h"
 #include "cia402_driver/bus/triple_buffer.h"
@@ -45,6 +46,7 @@ class DrivenRobot final : private can::Sink, private bus::EventSink {
   Duration period_;
   ScriptedDrives drives_;
   bus::LoadMeter meter_;
+  bus::FlightRecorder recorder_;
   bus::Robot robot_;
   bus::TripleBuffer<bus::RobotSnapshot> snapshots_;
   std::vector<can::Frame> incoming_, outgoing_;

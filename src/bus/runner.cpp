@@ -42,9 +42,12 @@ BusRunner::BusRunner(config::RobotConfig robot, canopen::MasterConfig master,
     : options_(options),
       interface_(std::move(interface)),
       meter_(*interface_, robot.bus.bitrate),
-      robot_(std::move(robot), std::move(master), meter_, *this),
+      recorder_(robot, meter_),
+      robot_(std::move(robot), std::move(master), recorder_, *this),
       wake_fd_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)),
-      snapshots_(sized(robot_.axes().size(), robot_.groups().size())) {
+      snapshots_(sized(robot_.axes().size(), robot_.groups().size())),
+      recordings_(recorder_, robot_.config(), robot_.master().config()) {
+  recorder_.watch(robot_);
   if (wake_fd_ < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
 }
 
@@ -96,6 +99,7 @@ RealtimeReport BusRunner::realtime() {
 }
 
 void BusRunner::onEvent(const Event& event) {
+  recorder_.onEvent(event);
   if (!events_.push(Event(event))) ++lost_events_;
 }
 
@@ -133,12 +137,15 @@ void BusRunner::iterate(Time now) {
     const auto received = interface_->receive(now);
     if (!received) break;
     meter_.count(received->frame);
+    recorder_.received(received->frame, received->stamp);
     robot_.receive(received->frame, received->stamp, now);
   }
   Command command;
   while (mailbox_.pop(command)) robot_.execute(std::move(command), now);
   interface_->maintain(now);
   meter_.update(now);
+  recorder_.observe();
+  if (recorder_.triggered()) recordings_.wake();
   publish(now);
 }
 
@@ -155,6 +162,7 @@ void BusRunner::watchInterface(Time now) {
   interface_text_.assign(interface_->describe());
   event.text.assign(interface_text_.view());
   onEvent(event);
+  recorder_.onInterface(state, now);
 }
 
 void BusRunner::publish(Time now) {

@@ -53,6 +53,7 @@ RobotConfig readRobot(const YAML::Node& tree, const ProfileLookup& lookup, Probl
   const auto groups = section.get("groups");
   if (groups && !groups->node().IsNull()) readGroups(*groups, robot);
   if (robot.groups.empty()) addDefaultGroup(robot);
+  if (const auto recorder = section.get("recorder")) readRecorder(*recorder, robot.recorder);
   section.read("joint_state_rate", robot.joint_state_rate, drive::Range{0.0, 1000.0, true});
   section.finish();
 

@@ -37,6 +37,7 @@ YAML::Node mergeDefaults(const YAML::Node& defaults, const YAML::Node& axis);
 void nameDefaults(const YAML::Node& tree, const Problems& from, Problems& to);
 
 void readBus(const drive::YamlValue& value, BusConfig& bus, bool& counter_given);
+void readRecorder(const drive::YamlValue& value, RecorderConfig& recorder);
 /// Reads one axis with its frame and simulation into `robot`.
 void readAxis(const std::string& name, const drive::YamlValue& value, ProfileCache& profiles,
               RobotConfig& robot);

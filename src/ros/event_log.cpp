@@ -32,6 +32,14 @@ void EventLog::drain() {
     }
     if (event.is_emergency) publish(event);
   }
+  bus::RecordingService::News news;
+  while (runner_.recordings().nextNews(news)) {
+    if (news.written) {
+      ROS_WARN_STREAM(news.text);
+    } else {
+      ROS_ERROR_STREAM(news.text);
+    }
+  }
   const std::uint64_t lost = runner_.lostEvents();
   if (lost != lost_told_) {
     ROS_WARN_STREAM(lost - lost_told_ << " events came too fast to be logged");

@@ -55,6 +55,7 @@ Services::Services(ros::NodeHandle& private_node, bus::BusRunner& runner,
                    const config::RobotConfig& robot)
     : runner_(runner) {
   advertise(private_node, "");
+  advertiseDump(private_node);
   for (const drive::AxisConfig& axis : robot.axes) {
     advertise(ros::NodeHandle(private_node, axis.name), axis.name);
   }
@@ -82,6 +83,17 @@ void Services::advertiseTrigger(ros::NodeHandle& node, const char* name, const s
         const bus::Answer answer = call(procedure(axis, request));
         response.success = answer.success;
         response.message = answer.message;
+        return true;
+      }));
+}
+
+void Services::advertiseDump(ros::NodeHandle& node) {
+  using Trigger = std_srvs::Trigger;
+  servers_.push_back(node.advertiseService<Trigger::Request, Trigger::Response>(
+      "dump_recording", [this](Trigger::Request&, Trigger::Response& response) {
+        const bus::RecordingService::News news = runner_.recordings().request();
+        response.success = news.written;
+        response.message = news.text;
         return true;
       }));
 }

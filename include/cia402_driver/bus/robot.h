@@ -61,6 +61,12 @@ class Robot final : private canopen::MasterListener {
   const std::vector<Group>& groups() const { return groups_; }
   canopen::Master& master() { return master_; }
   const CycleStatistics& statistics() const { return statistics_; }
+  const std::vector<drive::Axis>& axes() const { return axes_; }
+  const std::vector<AxisMotion>& motions() const { return motions_; }
+  /// The time it was given last.
+  Time now() const { return now_; }
+  /// When feedback was decoded and motion computed last.
+  Time lastCycle() const { return last_cycle_; }
 
  private:
   enum class Shutdown { no, stopping, disabling, done };

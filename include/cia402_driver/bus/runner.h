@@ -10,8 +10,10 @@
 
 #include "cia402_driver/bus/command.h"
 #include "cia402_driver/bus/event.h"
+#include "cia402_driver/bus/flight_recorder.h"
 #include "cia402_driver/bus/load_meter.h"
 #include "cia402_driver/bus/realtime.h"
+#include "cia402_driver/bus/recording_service.h"
 #include "cia402_driver/bus/robot.h"
 #include "cia402_driver/bus/snapshot.h"
 #include "cia402_driver/bus/spsc_queue.h"
@@ -51,6 +53,8 @@ class BusRunner final : private EventSink {
   bool nextEvent(Event& event) { return events_.pop(event); }
   /// Events that found no room, since start.
   std::uint64_t lostEvents() const { return lost_events_.load(); }
+  /// The flight recorder's files.
+  RecordingService& recordings() { return recordings_; }
   /// Valid once running(); what the operating system granted.
   RealtimeReport realtime();
 
@@ -67,6 +71,7 @@ class BusRunner final : private EventSink {
   Options options_;
   std::unique_ptr<can::Interface> interface_;
   LoadMeter meter_;
+  FlightRecorder recorder_;
   Robot robot_;
   int wake_fd_;
   SpscQueue<Command> mailbox_{256};
@@ -83,6 +88,7 @@ class BusRunner final : private EventSink {
   FixedText<256> interface_text_;
   std::uint64_t published_cycle_ = 0;
   Time published_{};
+  RecordingService recordings_;
   std::thread thread_;
 };
 

@@ -64,8 +64,17 @@ struct SimulationConfig {
   std::optional<std::uint32_t> vendor, product, revision, serial;  ///< instead of the drive's 1018h
 };
 
+/// The `recorder:` section: what the flight recorder keeps, and where recordings go.
+struct RecorderConfig {
+  Duration duration{std::chrono::seconds(10)};            ///< kept before the end of a recording
+  Duration post_trigger{std::chrono::milliseconds(500)};  ///< recorded after a fault
+  std::string directory;  ///< empty: `recordings` in $ROS_HOME or ~/.ros
+  unsigned keep = 20;     ///< recordings of this bus; the oldest go. 0: none is written on faults
+};
+
 struct RobotConfig {
   BusConfig bus;
+  RecorderConfig recorder;
   std::vector<drive::AxisConfig> axes;
   std::vector<CouplingConfig> couplings;
   std::vector<GroupConfig> groups;

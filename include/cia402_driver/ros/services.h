@@ -28,6 +28,7 @@ class Services {
   void advertise(ros::NodeHandle node, const std::string& axis);
   void advertiseTrigger(ros::NodeHandle& node, const char* name, const std::string& axis,
                         drive::ProcedureKind kind);
+  void advertiseDump(ros::NodeHandle& node);
   /// Posts the command and waits for its reply.
   bus::Answer call(bus::Command command);
 

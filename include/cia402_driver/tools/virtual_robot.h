@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "cia402_driver/bus/flight_recorder.h"
 #include "cia402_driver/bus/robot.h"
 #include "cia402_driver/sim/robot_drives.h"
 #include "cia402_driver/sim/world.h"
@@ -24,7 +25,9 @@ class VirtualRobot final : private sim::Participant, private bus::EventSink {
                const std::vector<sim::SimulatedAxis>& axes, std::uint64_t seed = 1)
       : world_(robot.bus.bitrate, seed),
         port_(world_.addParticipant("master", *this)),
-        robot_(robot, master, port_, *this) {
+        recorder_(robot, port_),
+        robot_(robot, master, recorder_, *this) {
+    recorder_.watch(robot_);
     for (const sim::SimulatedAxis& axis : axes) {
       world_.addDrive(axis.name, axis.definition, axis.node, axis.mechanics, axis.identity);
     }
@@ -65,6 +68,7 @@ class VirtualRobot final : private sim::Participant, private bus::EventSink {
 
   bus::Robot& robot() { return robot_; }
   sim::World& world() { return world_; }
+  bus::FlightRecorder& recorder() { return recorder_; }
   /// The driver does not run for so long, as on a host that sleeps; frames are kept for it.
   void freeze(Duration duration) { frozen_until_ = world_.now() + duration; }
   /// The driver's controller, to pull its cable or let it die.
@@ -78,22 +82,31 @@ class VirtualRobot final : private sim::Participant, private bus::EventSink {
     if (now < frozen_until_) {
       kept_.push_back({frame, now});
     } else {
-      robot_.receive(frame, now, now);
+      take(frame, now, now);
     }
   }
   void tick(Time now) override {
-    for (const auto& [frame, stamp] : kept_) robot_.receive(frame, stamp, now);
+    for (const auto& [frame, stamp] : kept_) take(frame, stamp, now);
     kept_.clear();
     robot_.tick(now);
+    recorder_.observe();
+  }
+  void take(const can::Frame& frame, Time stamp, Time now) {
+    recorder_.received(frame, stamp);
+    robot_.receive(frame, stamp, now);
   }
   Time nextDeadline() const override { return std::max(robot_.nextDeadline(), frozen_until_); }
-  void onEvent(const bus::Event& event) override { events_.push_back(event); }
+  void onEvent(const bus::Event& event) override {
+    recorder_.onEvent(event);
+    events_.push_back(event);
+  }
 
   sim::World world_;
   sim::Port& port_;
   std::vector<bus::Event> events_;
   std::vector<std::pair<can::Frame, Time>> kept_;
   Time frozen_until_{};
+  bus::FlightRecorder recorder_;
   bus::Robot robot_;
 };
 

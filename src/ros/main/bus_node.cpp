@@ -70,6 +70,7 @@ int main(int argc, char** argv) {
   bus::BusRunner::Options options;
   options.priority = loaded->options.realtime_priority;
   bus::BusRunner runner(loaded->robot, loaded->master, std::move(interface), options);
+  ROS_INFO_STREAM(runner.recordings().describe());
   ros_node::EventLog events(private_node, runner, loaded->robot);
   ros_node::Publishers publishers(node, private_node, runner, loaded->robot);
   ros_node::Diagnostics diagnostics(node, private_node, runner, loaded->robot);

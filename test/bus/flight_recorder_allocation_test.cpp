@@ -1,0 +1,111 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include <cstdlib>
+#include <new>
+
+#include <gtest/gtest.h>
+
+#include "bus/robot_world.h"
+#include "cia402_driver/bus/flight_recorder.h"
+
+namespace {
+bool counting = false;
+int allocations = 0;
+}  // namespace
+
+// Every form is replaced, or a sanitizer's own would free what came from malloc(). Not inlined: GCC
+// would see malloc() beside delete and warn of a mismatch.
+[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  if (counting) ++allocations;
+  return std::malloc(size);
+}
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  if (void* memory = operator new(size, std::nothrow)) return memory;
+  throw std::bad_alloc();
+}
+[[gnu::noinline]] void* operator new[](std::size_t size) { return operator new(size); }
+[[gnu::noinline]] void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
+  return operator new(size, std::nothrow);
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete[](void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, const std::nothrow_t&) noexcept {
+  std::free(memory);
+}
+[[gnu::noinline]] void operator delete[](void* memory, const std::nothrow_t&) noexcept {
+  std::free(memory);
+}
+
+namespace cia402::bus {
+namespace {
+
+using namespace std::chrono_literals;
+
+class NoSink : public can::Sink {
+ public:
+  bool send(const can::Frame&) override { return true; }
+};
+
+/// A recorder that looks on while a robot is enabled, moves and fails.
+class RecorderAllocation : public testing::Test {
+ protected:
+  RecorderAllocation() {
+    recorder.watch(world.robot);
+    world.boot();
+  }
+  /// Everything that the cycle asks of the recorder, without a single allocation.
+  void record(Duration time) {
+    for (const Time end = world.now + time; world.now < end;) {
+      world.run(test::kPeriod);
+      const Event event = world.events.empty() ? Event() : world.events.back();
+      allocations = 0;
+      counting = true;
+      recorder.observe();
+      recorder.received(can::Frame(0x181, {1, 2, 3}), world.now);
+      recorder.send(can::Frame(0x201, {1, 2, 3}));
+      recorder.onEvent(event);
+      counting = false;
+      ASSERT_EQ(allocations, 0);
+    }
+  }
+  static config::RobotConfig configuration() {
+    config::RobotConfig robot = test::testRobot();
+    robot.recorder.duration = 1s;  // the rings of axes and notes run over
+    robot.recorder.keep = 5;
+    return robot;
+  }
+  NoSink sink;
+  config::RobotConfig config = configuration();
+  test::RobotWorld world{config};
+  FlightRecorder recorder{config, sink};
+};
+
+TEST_F(RecorderAllocation, RecordingAllocatesNothingWhateverHappens) {
+  const std::size_t memory = recorder.memory();
+  record(100ms);
+  const auto enabled = world.begin(drive::ProcedureKind::enable);
+  record(1s);
+  ASSERT_TRUE(enabled->front().success);
+  ASSERT_TRUE(world.move({1.0, -1.0}, 2.0).success);
+  record(1s);
+  world.drives[0].fault(0x8611);
+  record(8s);
+  RecordingTrigger trigger;
+  ASSERT_TRUE(recorder.nextTrigger(trigger));
+  EXPECT_EQ(recorder.memory(), memory);
+  const Recording recording = recorder.copy(world.now);
+  EXPECT_GT(recording.axes.size(), 19U);
+}
+
+TEST_F(RecorderAllocation, TheCounterCounts) {
+  allocations = 0;
+  counting = true;
+  int* volatile number = new int(1);  // volatile: may not be optimised away
+  delete number;
+  counting = false;
+  EXPECT_GE(allocations, 1);
+}
+
+}  // namespace
+}  // namespace cia402::bus

@@ -1,0 +1,179 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/bus/flight_recorder.h"
+
+#include <gmock/gmock.h>
+
+#include <string>
+
+#include "bus/robot_world.h"
+
+namespace cia402::bus {
+namespace {
+
+using namespace std::chrono_literals;
+using Kind = RecordingTrigger::Kind;
+using testing::HasSubstr;
+
+constexpr Time kStart{100s};
+
+class NoSink : public can::Sink {
+ public:
+  bool send(const can::Frame&) override { return takes; }
+  bool takes = true;
+};
+
+class NoEvents : public EventSink {
+ public:
+  void onEvent(const Event&) override {}
+};
+
+/// A recorder whose robot does not run.
+class Recorder : public testing::Test {
+ protected:
+  static config::RobotConfig configuration() {
+    config::RobotConfig robot = test::testRobot();
+    robot.recorder.keep = 5;
+    return robot;
+  }
+  Event emergency(std::size_t axis, std::uint16_t code, Time stamp) {
+    Event event;
+    event.is_emergency = true;
+    event.axis = axis;
+    event.emergency.code = code;
+    event.stamp = stamp;
+    return event;
+  }
+  std::vector<RecordingTrigger> triggers() {
+    std::vector<RecordingTrigger> all;
+    RecordingTrigger trigger;
+    while (recorder.nextTrigger(trigger)) all.push_back(trigger);
+    return all;
+  }
+
+  NoSink sink;
+  NoEvents events;
+  config::RobotConfig config = configuration();
+  FlightRecorder recorder{config, sink};
+  Robot robot{config, test::masterOf(config), recorder, events};
+};
+
+TEST_F(Recorder, HasRoomForTheMostFramesOfItsTimeAndOneSecond) {
+  EXPECT_EQ(recorder.frameCapacity(), 234043U);  // 11 s * 10^6 bit/s / 47 bits = 234042.6
+  EXPECT_GT(recorder.memory(), 234043U * 24U);
+  EXPECT_LT(recorder.memory(), 7'000'000U);
+}
+
+TEST_F(Recorder, KeepsWhatTheInterfaceTook) {
+  recorder.watch(robot);
+  robot.start(kStart);  // heartbeat and NMT
+  const std::size_t sent = recorder.copy(kStart).frames.size();
+  ASSERT_GT(sent, 0U);
+  EXPECT_EQ(recorder.copy(kStart).frames.front().direction(), can::Direction::transmitted);
+  sink.takes = false;
+  EXPECT_FALSE(recorder.send(can::Frame(0x201, {0x0F, 0x00})));
+  EXPECT_EQ(recorder.copy(kStart).frames.size(), sent) << "was not sent";
+}
+
+TEST_F(Recorder, FramesAreSortedAndThoseOfBeforeAreLeftOut) {
+  recorder.received(can::Frame(0x181, {1}), kStart - 10s - 1ms);
+  recorder.received(can::Frame(0x182, {1}), kStart - 10s);
+  recorder.received(can::Frame(0x184, {1}), kStart - 1s);
+  recorder.received(can::Frame(0x183, {1}), kStart - 2s);
+  recorder.received(can::Frame(0x185, {1}), kStart + 1ms);
+  std::vector<unsigned> ids;
+  for (const auto& record : recorder.copy(kStart).frames) ids.push_back(record.frame().id);
+  EXPECT_EQ(ids, (std::vector<unsigned>{0x182, 0x183, 0x184}));
+}
+
+TEST_F(Recorder, AnEmergencyIsATriggerAndAnErrorResetIsNone) {
+  recorder.onEvent(emergency(1, 0x0000, kStart));
+  EXPECT_FALSE(recorder.triggered());
+  recorder.onEvent(emergency(1, 0x8611, kStart));
+  EXPECT_TRUE(recorder.triggered());
+  EXPECT_FALSE(recorder.triggered()) << "told once";
+  const auto found = triggers();
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].kind, Kind::emergency);
+  EXPECT_EQ(found[0].axis, 1U);
+  EXPECT_EQ(found[0].code, 0x8611);
+  EXPECT_EQ(found[0].stamp, kStart);
+}
+
+TEST_F(Recorder, BusOffAndALostInterfaceAreTriggers) {
+  recorder.onInterface(can::BusState::missing, kStart);
+  recorder.onInterface(can::BusState::error_active, kStart);
+  recorder.onInterface(can::BusState::error_passive, kStart);
+  EXPECT_TRUE(triggers().empty()) << "not there yet, or passing";
+  recorder.onInterface(can::BusState::bus_off, kStart);
+  recorder.onInterface(can::BusState::bus_off, kStart);
+  recorder.onInterface(can::BusState::down, kStart + 100ms);
+  const auto found = triggers();
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[0].kind, Kind::bus_off);
+  EXPECT_EQ(found[1].kind, Kind::interface_lost);
+}
+
+TEST_F(Recorder, AStormOfEmergenciesIsOneRecordingAndTheRestIsCounted) {
+  for (int i = 0; i < 1000; ++i) recorder.onEvent(emergency(0, 0x2310, kStart + i * 10ms));
+  const auto found = triggers();
+  // Those of half a second belong to the recording; 10 s after it another one may begin.
+  ASSERT_EQ(found.size(), 51U);
+  EXPECT_EQ(found.back().stamp, kStart + 500ms);
+  EXPECT_EQ(recorder.suppressed(), 949U);
+}
+
+TEST(FlightRecorder, WithNothingToKeepFaultsAreNoTriggers) {
+  NoSink sink;
+  config::RobotConfig config = test::testRobot();
+  config.recorder.keep = 0;
+  FlightRecorder recorder(config, sink);
+  recorder.onInterface(can::BusState::error_active, kStart);
+  recorder.onInterface(can::BusState::bus_off, kStart);
+  RecordingTrigger trigger;
+  EXPECT_FALSE(recorder.nextTrigger(trigger));
+  EXPECT_EQ(recorder.suppressed(), 0U);
+}
+
+TEST(FlightRecorder, NeedsMoreMemoryForMoreTimeAndMoreAxes) {
+  NoSink sink;
+  config::RobotConfig small = test::testRobot(), large = small, slow = small;
+  large.recorder.duration = 60s;
+  slow.bus.bitrate = 125000;
+  const std::size_t base = FlightRecorder(small, sink).memory();
+  EXPECT_GT(FlightRecorder(large, sink).memory(), 5 * base);
+  EXPECT_LT(FlightRecorder(slow, sink).memory(), base / 4);
+}
+
+TEST(RecordingLimiter, RareFaultsAreAllRecorded) {
+  RecordingLimiter limiter(10s);
+  for (int i = 0; i < 100; ++i) EXPECT_TRUE(limiter.permit(kStart + i * 60s)) << i;
+}
+
+TEST(RecordingLimiter, InAStormTheGapDoublesUpToAnHour) {
+  RecordingLimiter limiter(10s);
+  std::vector<Time> recorded;
+  for (Time now = kStart; now < kStart + 12h; now += 1s) {
+    if (limiter.permit(now)) recorded.push_back(now);
+  }
+  std::vector<Duration> gaps;
+  for (std::size_t i = 1; i < recorded.size(); ++i) gaps.push_back(recorded[i] - recorded[i - 1]);
+  ASSERT_GE(gaps.size(), 12U);
+  EXPECT_EQ(gaps[0], 10s);
+  for (std::size_t i = 1; i < gaps.size(); ++i) {
+    EXPECT_EQ(gaps[i], std::min<Duration>(2 * gaps[i - 1], 1h)) << i;
+  }
+  EXPECT_LE(recorded.size(), 22U) << "in twelve hours";
+}
+
+TEST(RecordingLimiter, AMinuteWithoutAFaultEndsTheStorm) {
+  RecordingLimiter limiter(10s);
+  // Recorded after 0, 10, 30, 70, 150 and 310 s; not before 630 s again.
+  for (int i = 0; i < 400; ++i) limiter.permit(kStart + i * 1s);
+  EXPECT_FALSE(limiter.permit(kStart + 458s));
+  EXPECT_TRUE(limiter.permit(kStart + 518s));
+  EXPECT_FALSE(limiter.permit(kStart + 527s));
+  EXPECT_TRUE(limiter.permit(kStart + 528s));
+}
+
+}  // namespace
+}  // namespace cia402::bus

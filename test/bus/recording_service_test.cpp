@@ -1,0 +1,134 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/bus/recording_service.h"
+
+#include <gmock/gmock.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
+#include <optional>
+
+#include "bus/robot_world.h"
+#include "cia402_driver/bus/real_clock.h"
+#include "cia402_driver/bus/recording_text.h"
+
+namespace cia402::bus {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+
+class NoSink : public can::Sink {
+ public:
+  bool send(const can::Frame&) override { return true; }
+};
+
+class Service : public testing::Test {
+ protected:
+  Service() {
+    char name[] = "/tmp/recording_service_XXXXXX";
+    root = mkdtemp(name);
+    robot.recorder.directory = root;
+    robot.recorder.keep = 1000;
+    recorder.emplace(robot, sink);
+    service.emplace(*recorder, robot, test::masterOf(robot));
+  }
+  ~Service() override {
+    service.reset();
+    fs::remove_all(root);
+  }
+  void emergency(Time stamp) {
+    Event event;
+    event.is_emergency = true;
+    event.emergency.code = 0x8611;
+    event.stamp = stamp;
+    recorder->received(can::Frame(0x081, {0x11, 0x86, 0x21, 0, 0, 0, 0, 0}), stamp);
+    recorder->onEvent(event);
+    service->wake();
+  }
+  RecordingService::News nextNews() {
+    RecordingService::News news;
+    while (!service->nextNews(news)) std::this_thread::yield();
+    return news;
+  }
+  std::size_t files() const {
+    return static_cast<std::size_t>(
+        std::distance(fs::directory_iterator(root), fs::directory_iterator()));
+  }
+
+  std::string root;
+  NoSink sink;
+  config::RobotConfig robot = test::testRobot();
+  std::optional<FlightRecorder> recorder;
+  std::optional<RecordingService> service;
+};
+
+TEST_F(Service, ARequestIsAnsweredWithTheNamesOfTheFiles) {
+  recorder->received(can::Frame(0x701, {0x05}), realNow());
+  const auto news = service->request();
+  EXPECT_TRUE(news.written);
+  EXPECT_THAT(news.text, HasSubstr("asked for"));
+  EXPECT_THAT(news.text, HasSubstr("1 frames in " + news.log));
+  EXPECT_THAT(news.text, HasSubstr("requested.txt"));
+  EXPECT_TRUE(fs::exists(news.log));
+  EXPECT_EQ(files(), 2U);
+}
+
+TEST_F(Service, AFaultIsRecordedByItselfAndToldOnce) {
+  emergency(realNow());
+  const auto news = nextNews();
+  EXPECT_TRUE(news.written) << news.text;
+  EXPECT_THAT(news.text, HasSubstr("shoulder (node 1): emergency 0x8611 following error"));
+  EXPECT_EQ(news.axes, std::vector<std::uint16_t>{0});
+  RecordingService::News more;
+  EXPECT_FALSE(service->nextNews(more));
+  EXPECT_EQ(files(), 2U);
+}
+
+TEST_F(Service, TheEndOfTheProgramDoesNotLoseTheFault) {
+  emergency(realNow());
+  service.reset();  // before the half second after the fault is over
+  EXPECT_EQ(files(), 2U);
+}
+
+TEST_F(Service, WhileARecordingIsBeingWrittenAnotherOneIsRefusedInWords) {
+  // The log's name is known, and a pipe there holds the writer until somebody reads. Half a
+  // millisecond keeps the name clear of rounding.
+  const Duration wall = wallClockDistance();
+  const auto whole = std::chrono::duration_cast<std::chrono::milliseconds>(
+      (realNow() - 1s).time_since_epoch() + wall);
+  const Time stamp{whole + 500us - wall};
+  const std::string log = root + "/" + timeStamp(whole) + "_can0_shoulder_emergency_8611.log";
+  ASSERT_EQ(mkfifo(log.c_str(), 0600), 0);
+  emergency(stamp);
+  RecordingService::News refused = service->request();
+  while (refused.written) refused = service->request();  // the thread has not begun yet
+  EXPECT_THAT(refused.text, HasSubstr("refused: a recording is being written"));
+  std::ifstream reader(log);
+  std::string line;
+  std::getline(reader, line);
+  EXPECT_THAT(line, HasSubstr("can0 081#1186210000000000 R"));
+  EXPECT_TRUE(nextNews().written);
+  EXPECT_TRUE(service->request().written);
+}
+
+TEST_F(Service, WhatCannotBeWrittenIsTold) {
+  service.reset();
+  robot.recorder.directory = "/proc/recordings";
+  service.emplace(*recorder, robot, test::masterOf(robot));
+  const auto news = service->request();
+  EXPECT_FALSE(news.written);
+  EXPECT_THAT(news.text, HasSubstr("/proc/recordings"));
+  EXPECT_THAT(news.text, HasSubstr("asked for"));
+}
+
+TEST_F(Service, DescribesItsMemoryAndWhereItWrites) {
+  EXPECT_THAT(service->describe(), HasSubstr("the last 10 s in 5.9 MB (234043 frames, the most "
+                                             "that 1000 kbit/s carry"));
+  EXPECT_THAT(service->describe(), HasSubstr("written on faults and by dump_recording to " + root +
+                                             ", at most 1000 recordings"));
+}
+
+}  // namespace
+}  // namespace cia402::bus
