@@ -29,7 +29,11 @@ NodeSnapshot nodeSnapshot(const canopen::Node& node) {
 
 Robot::Robot(config::RobotConfig robot, canopen::MasterConfig master, can::Sink& sink,
              EventSink& events)
-    : config_(std::move(robot)), events_(events), master_(std::move(master), sink, this) {
+    : config_(std::move(robot)),
+      events_(events),
+      master_(std::move(master), sink, this),
+      sink_(sink),
+      lss_(sink) {
   const Duration cycle = config_.bus.sync_period;
   for (const drive::AxisConfig& axis : config_.axes) {
     nodes_.push_back(master_.find(axis.node_id));
@@ -49,12 +53,18 @@ Robot::Robot(config::RobotConfig robot, canopen::MasterConfig master, can::Sink&
   missed_feedback_.resize(axes_.size());
   emergencies_.resize(axes_.size());
   last_feedback_.resize(axes_.size());
+  lss_problems_.resize(axes_.size());
 }
 
 void Robot::start(Time now) {
   if (started_) return;
   started_ = true;
   now_ = now;
+  lss_starting_ = beginLss();
+  if (!lss_starting_) begin(now);
+}
+
+void Robot::begin(Time now) {
   next_sync_ = now + config_.bus.sync_period;
   sync_held_ = master_.config().sync_counter != 0;
   master_.start(now);
@@ -62,6 +72,7 @@ void Robot::start(Time now) {
 
 void Robot::receive(const can::Frame& frame, Time stamp, Time now) {
   now_ = now;
+  lss_.receive(frame, now);
   master_.receive(frame, stamp, now);
   const bool sdo_answer = frame.id > 0x580 && frame.id < 0x600;
   if (!sdo_answer) return;
@@ -72,7 +83,7 @@ void Robot::receive(const can::Frame& frame, Time stamp, Time now) {
 
 Time Robot::nextDeadline() const {
   if (!started_ || shutDown()) return kNever;
-  return std::min({next_sync_, next_cycle_, master_.nextDeadline()});
+  return std::min({next_sync_, next_cycle_, master_.nextDeadline(), lss_.nextDeadline()});
 }
 
 void Robot::tick(Time now) {
@@ -81,6 +92,7 @@ void Robot::tick(Time now) {
   if (now >= next_sync_) sync(now);
   if (now >= next_cycle_) cycle(now);
   if (now >= master_.nextDeadline()) master_.tick(now);
+  if (now >= lss_.nextDeadline()) stepLss(now);
 }
 
 bool Robot::mayProduceSync() {
@@ -136,6 +148,7 @@ void Robot::cycle(Time now) {
   }
   master_.sendRpdos(now);
   stepJobs(now);
+  lookForLostDrives(now);
   stepShutdown(now);
   watchAxes(now);
 }
@@ -167,11 +180,15 @@ void Robot::stopMotion(const std::string& why, Time now) {
 
 void Robot::beginShutdown(Time now) {
   if (shutdown_ != Shutdown::no) return;
-  shutdown_ = started_ ? Shutdown::stopping : Shutdown::done;
+  lss_.abandon();
+  // Before the nodes were booted there is nothing to stop.
+  shutdown_ = started_ && !lss_starting_ ? Shutdown::stopping : Shutdown::done;
   shutdown_began_ = now;
   // What waits for its turn must not begin any more.
   for (ProcedureJob& job : procedures_) job.abandon("ended by the shutdown of the driver");
   procedures_.clear();
+  for (ProcedureJob& job : waiting_for_lss_) job.abandon("ended by the shutdown of the driver");
+  waiting_for_lss_.clear();
   for (NmtJob& job : nmt_) job.abandon("ended by the shutdown of the driver");
   nmt_.clear();
   stopMotion("stopped: the driver is shutting down", now);
@@ -292,9 +309,12 @@ void Robot::watchAxes(Time now) {
     news.checked = now;
     const canopen::Node& node = axes_[i].node();
     const bool booting = state.health != canopen::NodeHealth::ready;
-    news.step.assign(booting ? node.bootStep() : procedure.step);
+    const bool in_lss = lss_.busy() && lss_.who() == config_.axes[i].name;
+    news.step.assign(in_lss ? lss_.step() : booting ? node.bootStep() : procedure.step);
     news.waiting_for.assign(procedure.running ? procedure.waiting_for : std::string());
-    const std::string problem = !node.problem().empty() ? node.problem() : axes_[i].faultText();
+    std::string problem = !node.problem().empty() ? node.problem() : axes_[i].faultText();
+    if (state.health == canopen::NodeHealth::ready) lss_problems_[i].clear();
+    if (!lss_problems_[i].empty()) problem = lss_problems_[i];  // the reason for what follows it
     const bool noticed = news.notices != axes_[i].noticeCount();
     const bool told_by_health = !node.problem().empty();
     news.notices = axes_[i].noticeCount();

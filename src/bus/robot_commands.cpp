@@ -34,6 +34,11 @@ void Robot::execute(Command command, Time now) {
          refused("refused: the bus interface " + config_.bus.interface + " is not there yet"));
     return;
   }
+  if (lss_starting_ && !std::holds_alternative<CallCommand>(command.body)) {
+    give(command.reply,
+         refused("refused: the drives are being given their node-IDs (" + lss_.step() + ")"));
+    return;
+  }
   std::visit([&](auto& body) { run(body, std::move(command.reply), now); }, command.body);
 }
 
@@ -49,6 +54,10 @@ void Robot::run(ProcedureCommand& command, Reply reply, Time now) {
   if (items.empty()) {
     give(reply, refused(command.axis.empty() ? "nothing to do: no axis has a `homing` section"
                                              : "there is no axis \"" + command.axis + "\""));
+    return;
+  }
+  if (command.request.kind == drive::ProcedureKind::recover && recoverByLss(items)) {
+    waiting_for_lss_.emplace_back(command.request, std::move(items), std::move(reply));
     return;
   }
   procedures_.emplace_back(command.request, std::move(items), std::move(reply));

@@ -60,6 +60,7 @@ void readSections(YamlSection& section, AxisConfig& axis, RobotConfig& robot) {
   }
   if (const auto homing = section.get("homing")) axis.homing = readHoming(*homing);
   if (const auto identity = section.get("identity")) readIdentity(*identity, axis);
+  if (const auto lss = section.get("lss")) readLss(*lss, axis, robot);
   if (const auto parameters = section.get("parameters")) readParameters(*parameters, axis);
   if (const auto frame = section.get("frame")) {
     robot.frames.push_back(readFrame(*frame, axis.joint));

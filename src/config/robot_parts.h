@@ -50,6 +50,9 @@ void checkEds(drive::YamlSection& section, const drive::AxisConfig& axis, RobotC
 drive::AxisLimits readLimits(const drive::YamlValue& value, drive::AxisGeometry::Type type);
 drive::HomingOptions readHoming(const drive::YamlValue& value);
 void readIdentity(const drive::YamlValue& value, drive::AxisConfig& axis);
+/// `true`, or a mapping; the numbers that it leaves out are those of `identity`, which gets those
+/// that it lacks: what LSS selects is also what the boot expects.
+void readLss(const drive::YamlValue& value, drive::AxisConfig& axis, const RobotConfig& robot);
 void readParameters(const drive::YamlValue& value, drive::AxisConfig& axis);
 FrameConfig readFrame(const drive::YamlValue& value, const std::string& joint);
 SimulationConfig readSimulation(const drive::YamlValue& value);

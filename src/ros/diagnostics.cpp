@@ -93,6 +93,7 @@ void Diagnostics::reportNode(std::size_t index, Status& status) {
                    axis.problem.empty() ? canopen::toString(health) : axis.problem.str());
   }
   status.add("axis", robot_.axes[index].name);
+  status.add("step", axis.step.str());
   status.add("drive", robot_.axes[index].profile->name);
   status.add("NMT state", canopen::toString(axis.node.nmt));
   addHex(status, "device type", axis.node.identity.device_type);

@@ -66,6 +66,42 @@ TEST(RobotConfig, ChoosesWhatIsSavedAndRestored) {
               HasSubstr("axes/shoulder/parameters/save: must be a list of sub-indices"));
 }
 
+TEST(RobotConfig, TakesTheIdentityForLss) {
+  const Loaded by_identity = changed(
+      "gear_ratio: 50.0",
+      "lss: true, identity: {vendor_id: 1, product_code: 2, revision: 3, serial: \"0x80000004\"}");
+  EXPECT_EQ(by_identity.problems, "");
+  ASSERT_TRUE(by_identity.robot.axes[0].lss);
+  EXPECT_EQ(by_identity.robot.axes[0].lss->identity, (canopen::lss::Identity{1, 2, 3, 0x80000004}));
+  EXPECT_FALSE(by_identity.robot.axes[0].lss->store);
+  EXPECT_FALSE(by_identity.robot.axes[1].lss);
+  const Loaded own =
+      changed("gear_ratio: 50.0",
+              "lss: {vendor_id: 1, product_code: 2, revision: 3, serial: 4, store: true}");
+  EXPECT_EQ(own.problems, "");
+  EXPECT_TRUE(own.robot.axes[0].lss->store);
+  EXPECT_EQ(own.robot.axes[0].serial, 4u) << "the boot compares what LSS has selected";
+  EXPECT_FALSE(changed("gear_ratio: 50.0", "lss: false").robot.axes[0].lss);
+}
+
+TEST(RobotConfig, RefusesAnLssThatCannotTellDrivesApart) {
+  EXPECT_THAT(
+      changed("gear_ratio: 50.0", "lss: {vendor_id: 1, serial: 4}").problems,
+      HasSubstr("axes/shoulder/lss: needs all four numbers of the drive's identity (1018h), "
+                "here or under `identity`; missing: product_code, revision"));
+  EXPECT_THAT(changed("gear_ratio: 50.0", "lss: maybe").problems, HasSubstr("axes/shoulder/lss"));
+  EXPECT_THAT(changed("gear_ratio: 50.0",
+                      "identity: {serial: 5}, lss: {vendor_id: 1, product_code: 2, revision: 3, "
+                      "serial: 4}")
+                  .problems,
+              HasSubstr("axes/shoulder/lss/serial: is another number than that under `identity`"));
+  EXPECT_THAT(load(std::string(kArm).replace(
+                       std::string(kArm).find("defaults: {"), 11,
+                       "defaults: {lss: {vendor_id: 1, product_code: 2, revision: 3, serial: 4}, "))
+                  .problems,
+              HasSubstr("`shoulder` has the same identity: LSS cannot tell the drives apart"));
+}
+
 TEST(RobotConfig, WithoutGroupsAllPositionJointsFormOne) {
   const Loaded loaded = load(kArm);
   ASSERT_EQ(loaded.robot.groups.size(), 1u);

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "cia402_driver/canopen/lss_protocol.h"
 #include "cia402_driver/canopen/sdo_client.h"
 #include "cia402_driver/drive/axis.h"
 #include "cia402_driver/motion/trajectory.h"
@@ -21,6 +22,8 @@ struct Answer {
   canopen::Bytes data;                                       ///< read_object: wire order
   double number = std::numeric_limits<double>::quiet_NaN();  ///< read_object: in device units
   std::string text;                                          ///< read_object: value with unit
+  std::vector<canopen::lss::Identity> devices;               ///< lss_scan: without a node-ID
+  std::vector<std::string> device_axes;  ///< lss_scan: the axis of each device, or empty
 };
 
 /// Called once, in the bus thread, when a command has ended. Must not block.
@@ -63,6 +66,27 @@ struct NmtServiceCommand {
   std::string axis, command;
 };
 
+/// Finds all devices without a node-ID; refused while something is in motion.
+struct LssScanCommand {
+  Duration window{std::chrono::milliseconds(20)};  ///< for each answer, see LssOptions
+};
+
+/// Gives the device of an identity a node-ID.
+struct LssAssignCommand {
+  canopen::lss::Identity identity;
+  int node_id = 0;
+  bool store = false;
+};
+
+/// Sets the bit timing of one axis' drive, or of all where `axis` is empty; with `activate` all
+/// devices on the bus take it.
+struct LssBitTimingCommand {
+  std::string axis;
+  unsigned kbit_per_s = 0;
+  bool store = false, activate = false;
+  Duration delay{std::chrono::seconds(1)};  ///< of silence before and after the change
+};
+
 /// Runs a function in the bus thread, e.g. to inject a fault into a simulated drive.
 struct CallCommand {
   std::function<Answer(Time)> function;
@@ -70,7 +94,8 @@ struct CallCommand {
 
 struct Command {
   std::variant<ProcedureCommand, SetpointCommand, TrajectoryCommand, ReadObjectCommand,
-               WriteObjectCommand, NmtServiceCommand, CallCommand>
+               WriteObjectCommand, NmtServiceCommand, LssScanCommand, LssAssignCommand,
+               LssBitTimingCommand, CallCommand>
       body;
   Reply reply;  ///< may be empty
 };

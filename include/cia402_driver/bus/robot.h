@@ -10,6 +10,7 @@
 #include "cia402_driver/bus/event.h"
 #include "cia402_driver/bus/group.h"
 #include "cia402_driver/bus/jobs.h"
+#include "cia402_driver/bus/lss_desk.h"
 #include "cia402_driver/bus/nmt_job.h"
 #include "cia402_driver/bus/snapshot.h"
 #include "cia402_driver/canopen/master.h"
@@ -105,6 +106,18 @@ class Robot final : private canopen::MasterListener {
   void watchAxes(Time now);
   void watchPdos(std::size_t axis, Time now);
   void tell(Event::Severity severity, std::string_view text, Time now);
+  // robot_lss.cpp
+  std::string motionOnBus() const;
+  std::vector<canopen::NodeId> nodesInOperation() const;
+  void assignByLss(std::size_t index, bool reset);
+  void lssAssigned(std::size_t index, const canopen::LssTask& task, bool success, Time now);
+  bool beginLss();
+  void stepLss(Time now);
+  void lookForLostDrives(Time now);
+  bool recoverByLss(const std::vector<ProcedureJob::Item>& items);
+  std::string bitTimingRefusal(std::size_t index, canopen::lss::Identity& identity);
+  /// Boots the nodes and begins to cycle.
+  void begin(Time now);
   drive::Axis* axisNamed(const std::string& name);
   std::size_t axisOf(const canopen::Node& node) const;
 
@@ -114,6 +127,9 @@ class Robot final : private canopen::MasterListener {
   void run(ReadObjectCommand& command, const Reply& reply, Time now);
   void run(WriteObjectCommand& command, const Reply& reply, Time now);
   void run(NmtServiceCommand& command, const Reply& reply, Time now);
+  void run(LssScanCommand& command, const Reply& reply, Time now);
+  void run(LssAssignCommand& command, const Reply& reply, Time now);
+  void run(LssBitTimingCommand& command, const Reply& reply, Time now);
   void run(CallCommand& command, const Reply& reply, Time now);
 
   config::RobotConfig config_;
@@ -125,6 +141,12 @@ class Robot final : private canopen::MasterListener {
   std::vector<ProcedureJob> procedures_;
   std::vector<ObjectJob> objects_;
   std::vector<NmtJob> nmt_;
+  can::Sink& sink_;
+  LssDesk lss_;
+  bool lss_starting_ = false;  ///< drives get their node-IDs before anything else
+  Time next_lss_look_{};
+  std::vector<std::string> lss_problems_;      // of each axis
+  std::vector<ProcedureJob> waiting_for_lss_;  ///< begin once the desk is free
   std::vector<AxisNews> news_;
   std::vector<canopen::Node*> nodes_;  // of each axis
   std::vector<std::uint64_t> missed_feedback_, emergencies_;

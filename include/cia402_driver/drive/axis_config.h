@@ -9,6 +9,7 @@
 
 #include "cia402_driver/canopen/config.h"
 #include "cia402_driver/canopen/eds.h"
+#include "cia402_driver/canopen/lss_protocol.h"
 #include "cia402_driver/drive/conversion.h"
 #include "cia402_driver/drive/profile.h"
 
@@ -38,6 +39,12 @@ struct AxisEds {
   canopen::ObjectDictionary dictionary;
 };
 
+/// A drive that gets its node-ID by LSS at start-up, see bus::Robot.
+struct AxisLss {
+  canopen::lss::Identity identity;
+  bool store = false;  ///< in the drive, where it was another one
+};
+
 /// Typed configuration of one axis.
 struct AxisConfig {
   std::string name;   ///< key in the YAML
@@ -61,6 +68,7 @@ struct AxisConfig {
   std::vector<PdoLayout> pdos;     ///< resolved layout (profile's or the user's)
   std::vector<NamedWrite> writes;  ///< the user's extra start-up writes
   std::optional<std::uint32_t> vendor_id, product_code, revision, serial;  ///< expected identity
+  std::optional<AxisLss> lss;
   std::vector<std::uint8_t> save, restore;  ///< sub-indices of 1010h, 1011h; empty: the profile's
   const std::vector<std::uint8_t>& saved() const {
     return save.empty() ? profile->parameters.save : save;

@@ -13,6 +13,7 @@
 #include "cia402_driver/ros/event_log.h"
 #include "cia402_driver/ros/fault_service.h"
 #include "cia402_driver/ros/frames.h"
+#include "cia402_driver/ros/lss_services.h"
 #include "cia402_driver/ros/process_signals.h"
 #include "cia402_driver/ros/publishers.h"
 #include "cia402_driver/ros/robot_loader.h"
@@ -82,6 +83,7 @@ int main(int argc, char** argv) {
   ros::NodeHandle service_node("~");
   service_node.setCallbackQueue(&service_queue);
   ros_node::Services services(service_node, runner, loaded->robot);
+  ros_node::LssServices lss_services(service_node, runner);
   std::unique_ptr<ros_node::FaultService> faults;
   if (simulation != nullptr) {
     faults =

@@ -1,0 +1,53 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "cia402_driver/canopen/lss_task.h"
+
+namespace cia402::bus {
+
+/// Carries out LSS tasks one after the other, for there is one LSS master on a bus. Sans-IO.
+class LssDesk {
+ public:
+  using Ended = std::function<void(const canopen::LssTask& task, bool success, Time now)>;
+
+  /// @param sink must outlive the desk.
+  explicit LssDesk(can::Sink& sink) : sink_(sink), master_(sink) {}
+
+  /// Queues a task. @param who for step(): an axis, or what is done. @param ended called once.
+  /// @param window of this task alone, see LssOptions::window.
+  void add(std::string who, std::unique_ptr<canopen::LssTask> task, Ended ended,
+           std::optional<Duration> window = {});
+  /// Ends everything without further ado; no device stays in the configuration state.
+  void abandon();
+
+  void receive(const can::Frame& frame, Time now);
+  void tick(Time now);
+  Time nextDeadline() const;
+
+  bool busy() const { return !queue_.empty(); }
+  /// Whose task runs; empty if none does.
+  std::string who() const { return busy() ? queue_.front().who : std::string(); }
+  /// "LSS: inquiring its node-ID".
+  std::string step() const;
+
+ private:
+  struct Entry {
+    std::string who;
+    std::unique_ptr<canopen::LssTask> task;
+    Ended ended;
+    std::optional<Duration> window;
+  };
+  void advance(Time now);
+
+  can::Sink& sink_;
+  canopen::LssMaster master_;
+  std::deque<Entry> queue_;
+};
+
+}  // namespace cia402::bus

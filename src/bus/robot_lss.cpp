@@ -1,0 +1,287 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// Layer setting services of a robot: drives that the configuration names by identity get their
+// node-IDs, and people may look for others.
+#include <algorithm>
+#include <cmath>
+
+#include "cia402_driver/bus/robot.h"
+#include "cia402_driver/canopen/lss_scan.h"
+
+namespace cia402::bus {
+namespace {
+
+using canopen::NodeHealth;
+namespace lss = canopen::lss;
+
+constexpr Duration kLookInterval = std::chrono::seconds(5);
+
+Answer answerOf(bool success, std::string message) {
+  Answer answer;
+  answer.success = success;
+  answer.message = std::move(message);
+  return answer;
+}
+
+void give(const Reply& reply, const Answer& answer) {
+  if (reply) reply(answer);
+}
+
+std::string who(const drive::AxisConfig& axis) {
+  return axis.name + " (node " + std::to_string(axis.node_id) + ")";
+}
+
+bool away(NodeHealth health) { return health == NodeHealth::absent || health == NodeHealth::lost; }
+
+// Waited for by the boot procedure, but silent since the start.
+bool neverHeard(const canopen::Node& node) {
+  const auto& answers = node.sdo().counters();
+  return node.bootUps() == 0 && node.lastHeartbeat() == Time() && answers.completed == 0 &&
+         answers.aborted == 0;
+}
+
+}  // namespace
+
+/// Why nothing that delays other things may be begun; empty if it may.
+std::string Robot::motionOnBus() const {
+  for (const Group& group : groups_) {
+    if (group.executing() || group.stopping()) {
+      return "refused: the group " + group.config().name + " is in motion";
+    }
+  }
+  for (const drive::Axis& axis : axes_) {
+    const drive::AxisState& state = axis.state();
+    if (state.health != NodeHealth::ready) continue;
+    const bool still = std::abs(state.velocity) < axis.config().standstill_velocity;
+    if (!still && !(state.feedback_valid && drive::powerStageOff(state.state))) {
+      return "refused: " + who(axis.config()) + " may be in motion; stop it first";
+    }
+  }
+  return {};
+}
+
+std::vector<canopen::NodeId> Robot::nodesInOperation() const {
+  std::vector<canopen::NodeId> ids = {config_.bus.node_id};
+  for (const canopen::Node& node : master_.nodes()) {
+    if (!away(node.health()) && !neverHeard(node)) ids.push_back(node.id());
+  }
+  return ids;
+}
+
+/// Gives the drive of an axis its node-ID. @param reset unless all nodes are reset afterwards
+void Robot::assignByLss(std::size_t index, bool reset) {
+  const drive::AxisConfig& axis = config_.axes[index];
+  canopen::LssAssignTask::Options options;
+  options.identity = axis.lss->identity;
+  options.node_id = axis.node_id;
+  options.store = axis.lss->store;
+  options.reset = reset;
+  if (reset) options.in_use = nodesInOperation();
+  lss_.add(axis.name, std::make_unique<canopen::LssAssignTask>(std::move(options), sink_),
+           [this, index](const canopen::LssTask& task, bool success, Time now) {
+             lssAssigned(index, task, success, now);
+           });
+}
+
+void Robot::lssAssigned(std::size_t index, const canopen::LssTask& task, bool success, Time now) {
+  const std::string text =
+      who(config_.axes[index]) + ": LSS: " + (success ? task.result() : task.error());
+  if (success) {
+    lss_problems_[index].clear();
+    tell(Event::Severity::info, text, now);
+  } else if (lss_problems_[index] != text) {
+    lss_problems_[index] = text;
+    tell(Event::Severity::error, text, now);
+  }
+}
+
+/// @return true if node-IDs are given out before anything else.
+bool Robot::beginLss() {
+  for (std::size_t i = 0; i < config_.axes.size(); ++i) {
+    if (config_.axes[i].lss) assignByLss(i, false);
+  }
+  return lss_.busy();
+}
+
+void Robot::stepLss(Time now) {
+  lss_.tick(now);
+  if (lss_starting_) {
+    for (std::size_t i = 0; i < config_.axes.size(); ++i) {
+      const bool working = lss_.busy() && lss_.who() == config_.axes[i].name;
+      news_[i].step.assign(working ? lss_.step() : lss_.busy() ? "LSS: waiting for its turn" : "");
+      news_[i].problem.assign(lss_problems_[i]);
+    }
+    if (lss_.busy()) return;
+    lss_starting_ = false;
+    begin(now);
+    return;
+  }
+  if (lss_.busy()) return;
+  for (ProcedureJob& job : waiting_for_lss_) procedures_.push_back(std::move(job));
+  waiting_for_lss_.clear();
+}
+
+/// A drive that comes without a node-ID cannot announce itself by a boot-up message: while a drive
+/// is away, all that have none are asked to speak up.
+void Robot::lookForLostDrives(Time now) {
+  if (lss_.busy() || now < next_lss_look_) return;
+  next_lss_look_ = now + kLookInterval;
+  const bool missing = std::any_of(axes_.begin(), axes_.end(), [](const drive::Axis& axis) {
+    return axis.config().lss && away(axis.state().health);
+  });
+  if (!missing || shutdown_ != Shutdown::no) return;
+  lss_.add("", std::make_unique<canopen::LssLookTask>(),
+           [this](const canopen::LssTask& task, bool, Time) {
+             if (!static_cast<const canopen::LssLookTask&>(task).found()) return;
+             for (std::size_t i = 0; i < axes_.size(); ++i) {
+               if (config_.axes[i].lss && away(axes_[i].state().health)) assignByLss(i, true);
+             }
+           });
+}
+
+/// Recovering begins with the node-ID where the drive may have lost it.
+bool Robot::recoverByLss(const std::vector<ProcedureJob::Item>& items) {
+  bool needed = false;
+  for (const ProcedureJob::Item& item : items) {
+    if (!config_.axes[item.axis].lss || !away(axes_[item.axis].state().health)) continue;
+    assignByLss(item.axis, true);
+    needed = true;
+  }
+  return needed;
+}
+
+void Robot::run(LssScanCommand& command, const Reply& reply, Time) {
+  const std::string refusal = motionOnBus();
+  if (!refusal.empty()) return give(reply, answerOf(false, refusal));
+  lss_.add(
+      "", std::make_unique<canopen::LssScanTask>(),
+      [this, reply](const canopen::LssTask& task, bool success, Time) {
+        const auto& scan = static_cast<const canopen::LssScanTask&>(task);
+        Answer answer =
+            answerOf(success && !scan.incomplete(), success ? task.result() : task.error());
+        for (const lss::Identity& identity : scan.found()) {
+          answer.devices.push_back(identity);
+          answer.device_axes.emplace_back();
+          for (const drive::AxisConfig& axis : config_.axes) {
+            const bool its = axis.lss && axis.lss->identity == identity;
+            if (its) answer.device_axes.back() = axis.name;
+          }
+          answer.message += "; " + toString(identity);
+          const std::string& axis = answer.device_axes.back();
+          if (!axis.empty()) answer.message += " is that of " + axis;
+        }
+        give(reply, answer);
+      },
+      command.window);
+}
+
+void Robot::run(LssAssignCommand& command, const Reply& reply, Time) {
+  if (command.node_id < 1 || command.node_id > 127) {
+    return give(reply, answerOf(false, "refused: node-ID " + std::to_string(command.node_id) +
+                                           " is not in 1..127"));
+  }
+  const auto node = static_cast<canopen::NodeId>(command.node_id);
+  const std::vector<canopen::NodeId> in_use = nodesInOperation();
+  if (std::find(in_use.begin(), in_use.end(), node) != in_use.end()) {
+    const bool own = node == config_.bus.node_id;
+    return give(reply, answerOf(false, "refused: node-ID " + std::to_string(node) +
+                                           (own ? " is the master's own"
+                                                : " is that of a drive in operation")));
+  }
+  const std::string refusal = motionOnBus();
+  if (!refusal.empty()) return give(reply, answerOf(false, refusal));
+  canopen::LssAssignTask::Options options;
+  options.identity = command.identity;
+  options.node_id = node;
+  options.store = command.store;
+  options.in_use = in_use;
+  const std::string device = toString(command.identity);
+  lss_.add("", std::make_unique<canopen::LssAssignTask>(std::move(options), sink_),
+           [reply, device](const canopen::LssTask& task, bool success, Time) {
+             give(reply,
+                  answerOf(success, device + ": " + (success ? task.result() : task.error())));
+           });
+}
+
+/// Why the bit timing of an axis' drive cannot be set; empty if it can, then `identity` is filled.
+std::string Robot::bitTimingRefusal(std::size_t index, lss::Identity& identity) {
+  const drive::Axis& axis = axes_[index];
+  const drive::AxisConfig& config = axis.config();
+  const drive::AxisState& state = axis.state();
+  const bool off = state.feedback_valid && drive::powerStageOff(state.state);
+  if (state.health == NodeHealth::ready && !off) {
+    return "refused: " + who(config) + " is not disabled; disable it first";
+  }
+  if (config.lss) {
+    identity = config.lss->identity;
+  } else if (const auto& read = nodes_[index]->identity()) {
+    identity = {read->vendor_id, read->product_code, read->revision, read->serial};
+  } else {
+    return "refused: the identity of " + who(config) +
+           " is not known: it has neither `lss` in the configuration nor been there to be read";
+  }
+  return {};
+}
+
+void Robot::run(LssBitTimingCommand& command, const Reply& reply, Time) {
+  const std::string rate = std::to_string(command.kbit_per_s);
+  std::vector<std::pair<std::string, lss::Identity>> drives;
+  std::string refusal;
+  for (std::size_t i = 0; i < axes_.size() && refusal.empty(); ++i) {
+    if (!command.axis.empty() && axes_[i].config().name != command.axis) continue;
+    drives.emplace_back(who(axes_[i].config()), lss::Identity());
+    refusal = bitTimingRefusal(i, drives.back().second);
+  }
+  if (drives.empty()) refusal = "there is no axis \"" + command.axis + "\"";
+  if (!lss::bitTimingIndex(command.kbit_per_s)) {
+    refusal =
+        "refused: there is no bit timing of " + rate + " kbit/s; CiA 305 has " + lss::bitRates();
+  }
+  if (command.activate && !command.axis.empty()) {
+    refusal = "refused: all drives must take a new bit rate at once; activate it for the bus";
+  }
+  if (!refusal.empty()) return give(reply, answerOf(false, refusal));
+
+  struct Progress {
+    std::string text;
+    std::size_t left = 0;
+    bool success = true;
+  };
+  const auto progress = std::make_shared<Progress>();
+  progress->left = drives.size();
+  const bool activate = command.activate;
+  const auto delay = static_cast<std::uint16_t>(
+      std::clamp<std::int64_t>(command.delay.count() / 1000000, 1, 65535));
+  for (const auto& [name, identity] : drives) {
+    lss_.add(
+        name,
+        std::make_unique<canopen::LssBitTimingTask>(identity, command.kbit_per_s, command.store),
+        [=, who = name](const canopen::LssTask& task, bool success, Time) {
+          progress->text += (progress->text.empty() ? "" : "; ") + who + ": " +
+                            (success ? task.result() : task.error());
+          progress->success = progress->success && success;
+          if (--progress->left > 0) return;
+          if (!progress->success || !activate) {
+            std::string end = "; nothing has changed on the bus yet: ";
+            end += progress->success
+                       ? "the drives take it when they are powered on again (stored) or by "
+                         "`activate`; the interface and `bus/bitrate` must be set to it then"
+                       : "not all drives took it, none was told to activate it";
+            return give(reply, answerOf(progress->success, progress->text + end));
+          }
+          lss_.add("", std::make_unique<canopen::LssActivateTask>(delay),
+                   [=](const canopen::LssTask&, bool, Time) {
+                     give(reply,
+                          answerOf(true, progress->text + "; all devices switch in " +
+                                             std::to_string(delay) +
+                                             " ms and are silent as long "
+                                             "again: set the interface (ip link set ... type can "
+                                             "bitrate " +
+                                             rate +
+                                             "000) and `bus/bitrate` to it "
+                                             "now, the drives are lost until then"));
+                   });
+        });
+  }
+}
+
+}  // namespace cia402::bus

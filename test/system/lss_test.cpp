@@ -1,0 +1,248 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// Drives without node-IDs on whole robots.
+#include "system/scene.h"
+
+namespace cia402 {
+namespace {
+
+using namespace std::chrono_literals;
+using canopen::NodeHealth;
+using drive::ProcedureKind;
+using testing::HasSubstr;
+using testing::UnorderedElementsAre;
+
+std::string lssOf(int serial, const std::string& more = {}) {
+  return ", lss: {vendor_id: 1234, product_code: 1026, revision: 65536, serial: " +
+         std::to_string(serial) + more + "}";
+}
+std::string unconfigured(int serial) {
+  return ", simulation: {unconfigured: true, serial: " + std::to_string(serial) + "}";
+}
+canopen::lss::Identity device(std::uint32_t serial) { return {1234, 1026, 65536, serial}; }
+
+template <class Body>
+bus::Answer call(Scene& scene, Body body) {
+  bus::Command command;
+  command.body = std::move(body);
+  return scene.call(std::move(command));
+}
+
+bool boots(Scene& scene, Duration limit = 20s) {
+  scene.robot().start();
+  return scene.runUntil([&] { return allReady(scene.robot()); }, limit);
+}
+
+TEST(Lss, TwoUnconfiguredDrivesAreAssignedByIdentityBootedAndMoved) {
+  // The serial numbers are crossed: the simulated drive beside `left` is that of `right`.
+  Scene scene(
+      loadText(genericPair(lssOf(222) + unconfigured(111), lssOf(111) + unconfigured(222))));
+  ASSERT_TRUE(boots(scene)) << scene.told();
+  EXPECT_EQ(scene.drive("left").device().node(), 2);
+  EXPECT_EQ(scene.drive("right").device().node(), 1);
+  EXPECT_THAT(scene.told(),
+              HasSubstr("left (node 1): LSS: the device got node-ID 1 (it had none)"));
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
+  ASSERT_TRUE(scene.move({0.5, -0.3}, 1s).success);
+  scene.run(3s);
+  EXPECT_NEAR(scene.position("right"), 0.5, 1e-3) << "moved as `left`";
+  EXPECT_NEAR(scene.position("left"), -0.3, 1e-3);
+}
+
+TEST(Lss, ADriveThatIsNotThereIsToldAndTheOtherWorks) {
+  Scene scene(
+      loadText(genericPair(lssOf(111) + unconfigured(999), lssOf(222) + unconfigured(222))));
+  scene.robot().start();
+  ASSERT_TRUE(
+      scene.runUntil([&] { return scene.state("right").health == NodeHealth::ready; }, 10s));
+  scene.run(10s);
+  EXPECT_THAT(scene.told(), HasSubstr("left (node 1): LSS: while selecting the device with vendor "
+                                      "0x000004D2, product 0x00000402, revision 0x00010000, serial "
+                                      "111"));
+  EXPECT_EQ(scene.drive("left").device().node(), 255) << "never a wrong one";
+  EXPECT_TRUE(scene.procedure(ProcedureKind::enable, "right").success);
+}
+
+TEST(Lss, StepsAndProblemsAreShown) {
+  Scene scene(
+      loadText(genericPair(lssOf(111) + unconfigured(999), lssOf(222) + unconfigured(222))));
+  scene.robot().start();
+  scene.run(30ms);
+  bus::RobotSnapshot snapshot;
+  scene.robot().robot().fill(snapshot);
+  EXPECT_THAT(snapshot.axes[0].step.str(), HasSubstr("LSS: selecting the device with vendor"));
+  EXPECT_EQ(snapshot.axes[1].step.str(), "LSS: waiting for its turn");
+  EXPECT_THAT(scene.procedure(ProcedureKind::enable).message, HasSubstr("given their node-IDs"));
+  scene.run(8s);
+  scene.robot().robot().fill(snapshot);
+  EXPECT_THAT(snapshot.axes[0].problem.str(), HasSubstr("left (node 1): LSS: "));
+  EXPECT_TRUE(snapshot.axes[1].problem.empty());
+}
+
+TEST(Lss, ADriveThatForgotItsNodeIdGetsItAgainWhileTheOtherMoves) {
+  Scene scene(
+      loadText(genericPair(lssOf(111) + unconfigured(111)) + "  alone: {joints: [right]}\n"));
+  ASSERT_TRUE(boots(scene)) << scene.told();
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
+  ASSERT_TRUE(scene.move({2.0}, 12s, 1).success);
+  scene.inject("left", "power_cycle");
+  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health != NodeHealth::ready; }, 2s));
+  ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 12s)) << scene.told();
+  EXPECT_EQ(scene.drive("left").device().node(), 1);
+  EXPECT_FALSE(scene.truth("left").power_stage_on) << "left disabled";
+  scene.run(14s);
+  EXPECT_NEAR(scene.position("right"), 2.0, 1e-3) << "the other did not notice";
+}
+
+TEST(Lss, RecoverBeginsWithTheNodeId) {
+  Scene scene(loadText(genericPair(lssOf(111) + unconfigured(111))));
+  ASSERT_TRUE(boots(scene)) << scene.told();
+  scene.inject("left", "power_cycle");
+  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health == NodeHealth::lost; }, 2s));
+  scene.run(400ms);
+  const auto recovered = scene.procedure(ProcedureKind::recover, "left");
+  EXPECT_TRUE(recovered.success) << recovered.message;
+  EXPECT_TRUE(scene.truth("left").power_stage_on);
+}
+
+TEST(Lss, AStoredNodeIdOutlivesThePower) {
+  Scene scene(loadText(genericPair(lssOf(111, ", store: true") + unconfigured(111))));
+  ASSERT_TRUE(boots(scene)) << scene.told();
+  scene.inject("left", "power_cycle");
+  scene.run(3s);
+  EXPECT_EQ(scene.drive("left").device().node(), 1);
+  EXPECT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 4s)) << scene.told();
+}
+
+TEST(Lss, ScanFindsDevicesAssignNamesOneAndNobodyInOperationIsTouched) {
+  Scene scene(loadText(genericPair(unconfigured(111))));
+  scene.robot().start();
+  ASSERT_TRUE(
+      scene.runUntil([&] { return scene.state("right").health == NodeHealth::ready; }, 10s));
+  const auto scan = call(scene, bus::LssScanCommand{});
+  ASSERT_TRUE(scan.success) << scan.message;
+  EXPECT_THAT(scan.devices, UnorderedElementsAre(device(111)));
+  EXPECT_THAT(scan.message, HasSubstr("1 device without a node-ID"));
+  EXPECT_THAT(scan.message, HasSubstr("serial 111"));
+  EXPECT_EQ(scan.device_axes, std::vector<std::string>{""});
+  EXPECT_EQ(scene.state("right").health, NodeHealth::ready);
+
+  bus::LssAssignCommand assign;
+  assign.identity = device(111);
+  assign.node_id = 2;
+  EXPECT_THAT(call(scene, assign).message, HasSubstr("node-ID 2 is that of a drive in operation"));
+  assign.node_id = 127;
+  EXPECT_THAT(call(scene, assign).message, HasSubstr("node-ID 127 is the master's own"));
+  assign.node_id = 200;
+  EXPECT_THAT(call(scene, assign).message, HasSubstr("node-ID 200 is not in 1..127"));
+  assign.node_id = 1;
+  const auto assigned = call(scene, assign);
+  ASSERT_TRUE(assigned.success) << assigned.message;
+  EXPECT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 6s)) << scene.told();
+}
+
+TEST(Lss, NothingIsScannedOrAssignedInMotion) {
+  Scene scene(loadText(genericPair()));
+  ASSERT_TRUE(scene.boot());
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
+  ASSERT_TRUE(scene.move({1.0, 1.0}, 3s).success);
+  scene.run(500ms);
+  EXPECT_THAT(call(scene, bus::LssScanCommand{}).message, HasSubstr("pair is in motion"));
+  bus::LssAssignCommand assign;
+  assign.node_id = 9;
+  EXPECT_THAT(call(scene, assign).message, HasSubstr("is in motion"));
+}
+
+TEST(Lss, BitTimingIsSetInDisabledDrivesAndWhatFollowsIsSaid) {
+  Scene scene(loadText(genericPair(", simulation: {serial: 111}", ", simulation: {serial: 222}")));
+  ASSERT_TRUE(scene.boot());
+  bus::LssBitTimingCommand timing;
+  timing.kbit_per_s = 250;
+  timing.store = true;
+  const auto set = call(scene, timing);
+  EXPECT_TRUE(set.success) << set.message;
+  EXPECT_THAT(set.message, HasSubstr("left (node 1): stored 250 kbit/s; right (node 2): stored 250 "
+                                     "kbit/s; nothing has changed on the bus yet"));
+  scene.run(1s);
+  EXPECT_TRUE(allReady(scene.robot()));
+  timing.kbit_per_s = 100;
+  EXPECT_THAT(call(scene, timing).message, HasSubstr("no bit timing of 100 kbit/s"));
+  timing.kbit_per_s = 250;
+  timing.axis = "left";
+  timing.activate = true;
+  EXPECT_THAT(call(scene, timing).message,
+              HasSubstr("all drives must take a new bit rate at once"));
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
+  timing.axis.clear();
+  EXPECT_THAT(call(scene, timing).message, HasSubstr("left (node 1) is not disabled"));
+}
+
+TEST(Lss, ActivationSwitchesAllDrivesAndSaysThatTheBusMustFollow) {
+  Scene scene(loadText(genericPair(", simulation: {serial: 111}", ", simulation: {serial: 222}")));
+  ASSERT_TRUE(scene.boot());
+  bus::LssBitTimingCommand timing;
+  timing.kbit_per_s = 500;
+  timing.activate = true;
+  timing.delay = 100ms;
+  const auto set = call(scene, timing);
+  EXPECT_TRUE(set.success) << set.message;
+  EXPECT_THAT(set.message, HasSubstr("all devices switch in 100 ms"));
+  EXPECT_THAT(set.message, HasSubstr("bitrate 500000"));
+  scene.run(3s);
+  EXPECT_EQ(scene.state("left").health, NodeHealth::lost);
+  EXPECT_EQ(scene.state("right").health, NodeHealth::lost);
+}
+
+TEST(Lss, AShutdownAtTheStartIsOrderly) {
+  Scene scene(loadText(genericPair(lssOf(111) + unconfigured(111))));
+  scene.robot().start();
+  scene.run(60ms);
+  scene.robot().robot().beginShutdown(scene.now());
+  EXPECT_TRUE(scene.robot().robot().shutDown());
+}
+
+class LssUnderLoss : public testing::TestWithParam<double> {};
+
+TEST_P(LssUnderLoss, ScanTellsTrueIdentitiesOrAReason) {
+  int complete = 0;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    Scene scene(loadText(genericPair(unconfigured(111), unconfigured(222))), seed);
+    scene.robot().start();
+    scene.run(7s);
+    sim::FaultRates rates;
+    rates.loss = GetParam();
+    scene.world().bus().faults().setRates(rates);
+    const auto scan = call(scene, bus::LssScanCommand{});
+    for (const auto& found : scan.devices) {
+      EXPECT_TRUE(found == device(111) || found == device(222)) << toString(found);
+    }
+    EXPECT_TRUE(scan.devices.size() == 2 || !scan.success) << scan.message;
+    EXPECT_NE(scan.message, "");
+    complete += scan.devices.size() == 2;
+  }
+  EXPECT_GE(complete, 3);
+}
+
+TEST_P(LssUnderLoss, NoDriveEverGetsTheNodeIdOfAnother) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    Scene scene(
+        loadText(genericPair(lssOf(111) + unconfigured(111), lssOf(222) + unconfigured(222))),
+        seed);
+    sim::FaultRates rates;
+    rates.loss = GetParam();
+    scene.world().bus().faults().setRates(rates);
+    scene.robot().start();
+    for (int i = 0; i < 200; ++i) {
+      scene.run(50ms);
+      EXPECT_NE(scene.drive("left").device().node(), 2) << seed;
+      EXPECT_NE(scene.drive("right").device().node(), 1) << seed;
+    }
+    const bool both =
+        scene.drive("left").device().node() == 1 && scene.drive("right").device().node() == 2;
+    EXPECT_TRUE(both || scene.told().find("LSS: ") != std::string::npos) << seed;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Losses, LssUnderLoss, testing::Values(0.01, 0.1));
+
+}  // namespace
+}  // namespace cia402
