@@ -36,6 +36,7 @@ class DrivenRobot final : private can::Sink, private bus::EventSink {
  private:
   bool send(const can::Frame& frame) override;
   void onEvent(const bus::Event& event) override;
+  void onEmergency(const bus::EmergencyEvent& event) override { recorder_.onEmergency(event); }
 
   void runUntilAnswered(bus::Command command);
   void step();

@@ -178,13 +178,12 @@ void FlightRecorder::lookForFault(std::size_t index, const drive::AxisState& sta
 }
 
 void FlightRecorder::onEvent(const Event& event) {
-  if (event.is_emergency) {  // its frame is recorded
-    if (event.emergency.code != 0) {
-      trigger(Kind::emergency, event.axis, event.emergency.code, event.stamp);
-    }
-    return;
-  }
   notes_.push({NoteRecord::Kind::event, NoteRecord::kNoAxis, event.text.view(), event.stamp});
+}
+
+void FlightRecorder::onEmergency(const EmergencyEvent& event) {
+  if (event.emergency.code == 0) return;
+  trigger(Kind::emergency, event.axis, event.emergency.code, event.emergency.stamp);
 }
 
 void FlightRecorder::onInterface(can::BusState state, Time now) {

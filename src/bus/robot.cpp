@@ -49,9 +49,11 @@ Robot::Robot(config::RobotConfig robot, canopen::MasterConfig master, can::Sink&
     }
     groups_.emplace_back(group, std::move(members), axes_);
   }
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    reporters_.emplace_back(i, whoIs(*nodes_[i]), axes_[i].config().profile, events_);
+  }
   news_.resize(axes_.size());
   missed_feedback_.resize(axes_.size());
-  emergencies_.resize(axes_.size());
   last_feedback_.resize(axes_.size());
   lss_problems_.resize(axes_.size());
 }
@@ -217,6 +219,7 @@ void Robot::stepShutdown(Time now) {
     shutdown_ = Shutdown::done;
     for (ObjectJob& job : objects_) job.abandon("ended by the shutdown of the driver");
     objects_.clear();
+    for (AxisReporter& reporter : reporters_) reporter.flush(now);
   }
 }
 
@@ -245,24 +248,18 @@ void Robot::tell(Event::Severity severity, std::string_view text, Time now) {
 void Robot::onEmergency(canopen::Node& node, const canopen::Emergency& emergency) {
   const std::size_t index = axisOf(node);
   if (index == axes_.size()) return;
-  ++emergencies_[index];
   axes_[index].onEmergency(emergency, now_);
-  Event event;
-  event.severity = emergency.code == 0 ? Event::Severity::info : Event::Severity::warning;
-  event.stamp = emergency.stamp;
-  event.is_emergency = true;
-  event.axis = index;
-  event.emergency = emergency;
-  const std::string what =
-      emergency.code == 0 ? canopen::emergencyText(0)
-                          : drive::errorCodeText(*axes_[index].config().profile, emergency.code);
-  event.text.assign(whoIs(node) + ": emergency: " + what +
-                    "; error register: " + canopen::errorRegisterText(emergency.error_register));
-  events_.onEvent(event);
+  reporters_[index].emergency(emergency, now_);
+}
+
+void Robot::onMalformedEmergency(canopen::Node& node, std::size_t size) {
+  const std::size_t index = axisOf(node);
+  if (index != axes_.size()) reporters_[index].malformedEmergency(size, now_);
 }
 
 void Robot::onBootUp(canopen::Node& node, Time now) {
-  tell(Event::Severity::info, whoIs(node) + ": booted up", now);
+  const std::size_t index = axisOf(node);
+  if (index != axes_.size()) reporters_[index].bootUp(now);
 }
 
 void Robot::onHealthChange(canopen::Node& node, canopen::NodeHealth before, Time now) {
@@ -286,6 +283,7 @@ void Robot::onHealthChange(canopen::Node& node, canopen::NodeHealth before, Time
 }
 
 void Robot::watchAxes(Time now) {
+  for (AxisReporter& reporter : reporters_) reporter.tick(now);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     watchPdos(i, now);
     const drive::AxisState& state = axes_[i].state();
@@ -324,7 +322,7 @@ void Robot::watchAxes(Time now) {
     news.problem = shown;
     const bool told =
         told_by_health || (noticed && axes_[i].notice().find(problem) != std::string::npos);
-    if (!problem.empty() && !told) tell(Event::Severity::error, problem, now);
+    if (!problem.empty() && !told) reporters_[i].fault(state.error_code, problem, now);
   }
 }
 
@@ -339,7 +337,7 @@ void Robot::fill(RobotSnapshot& snapshot) const {
     axis.state = axes_[i].state();
     axis.target = axes_[i].target();
     axis.node = nodeSnapshot(*nodes_[i]);
-    axis.node.emergencies = emergencies_[i];
+    axis.emergencies = reporters_[i].emergencies();
     axis.procedure = axes_[i].procedure().kind;
     axis.procedure_running = axes_[i].procedure().running;
     axis.missed_feedback = missed_feedback_[i];

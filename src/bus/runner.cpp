@@ -103,6 +103,11 @@ void BusRunner::onEvent(const Event& event) {
   if (!events_.push(Event(event))) ++lost_events_;
 }
 
+void BusRunner::onEmergency(const EmergencyEvent& event) {
+  recorder_.onEmergency(event);
+  if (!emergencies_.push(EmergencyEvent(event))) ++lost_emergencies_;
+}
+
 void BusRunner::run() {
   if (options_.priority > 0) {
     const RealtimeReport report = makeRealtime(options_.priority);

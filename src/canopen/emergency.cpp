@@ -2,6 +2,7 @@
 #include "cia402_driver/canopen/emergency.h"
 
 #include <algorithm>
+#include <cstdio>
 
 namespace cia402::canopen {
 namespace {
@@ -54,6 +55,9 @@ constexpr Row kCodes[] = {
     {0x3110, "mains overvoltage"},
     {0x3120, "mains undervoltage"},
     {0x3130, "mains phase failure"},
+    {0x3131, "mains phase failure L1"},
+    {0x3132, "mains phase failure L2"},
+    {0x3133, "mains phase failure L3"},
     {0x3134, "mains phase sequence"},
     {0x3140, "mains frequency"},
     {0x3141, "mains frequency too high"},
@@ -64,6 +68,9 @@ constexpr Row kCodes[] = {
     {0x3230, "load error"},
     {0x3300, "output voltage"},
     {0x3310, "output overvoltage"},
+    {0x3311, "output overvoltage, phase U"},
+    {0x3312, "output overvoltage, phase V"},
+    {0x3313, "output overvoltage, phase W"},
     {0x3320, "armature circuit"},
     {0x3321, "armature circuit interrupted"},
     {0x3330, "field circuit"},
@@ -189,6 +196,17 @@ constexpr const char* kRegisterBits[8] = {
 
 }  // namespace
 
+std::optional<Emergency> decodeEmergency(const can::Frame& frame, Time stamp) {
+  if (frame.size < 2) return std::nullopt;
+  Emergency emergency;
+  emergency.code = static_cast<std::uint16_t>(frame.data[0] | frame.data[1] << 8);
+  if (frame.size > 2) emergency.error_register = frame.data[2];
+  for (std::size_t i = 3; i < frame.size; ++i) emergency.vendor[i - 3] = frame.data[i];
+  emergency.size = frame.size;
+  emergency.stamp = stamp;
+  return emergency;
+}
+
 std::string emergencyText(std::uint16_t code) {
   if (const char* words = findExact(code)) return words;
   for (const unsigned mask : {0xFFF0U, 0xFF00U, 0xF000U}) {
@@ -208,6 +226,17 @@ std::string errorRegisterText(std::uint8_t bits) {
     text += kRegisterBits[bit];
   }
   return text;
+}
+
+std::string vendorBytesText(const Emergency& emergency) {
+  const auto& bytes = emergency.vendor;
+  if (std::all_of(bytes.begin(), bytes.end(), [](std::uint8_t byte) { return byte == 0; })) {
+    return {};
+  }
+  std::array<char, 16> text{};
+  std::snprintf(text.data(), text.size(), "%02X %02X %02X %02X %02X", bytes[0], bytes[1], bytes[2],
+                bytes[3], bytes[4]);
+  return text.data();
 }
 
 }  // namespace cia402::canopen

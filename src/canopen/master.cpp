@@ -134,10 +134,14 @@ void Master::receive(const can::Frame& frame, Time stamp, Time now) {
   Node& node = nodes_[route.node];
   const std::uint32_t boot_ups = node.bootUps();
   const std::uint32_t emergencies = node.emergencies();
+  const std::uint32_t malformed = node.malformedEmergencies();
   node.receive(frame, stamp, now);
   if (node.takeCobIdChange()) followCobIds(route.node, now);
   if (listener_ != nullptr) {
     if (node.emergencies() != emergencies) listener_->onEmergency(node, *node.lastEmergency());
+    if (node.malformedEmergencies() != malformed) {
+      listener_->onMalformedEmergency(node, frame.size);
+    }
     if (node.bootUps() != boot_ups) listener_->onBootUp(node, now);
   }
   tell(route.node, now);

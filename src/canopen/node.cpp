@@ -54,6 +54,7 @@ ProcessImage& Node::image() { return impl_->image; }
 const ProcessImage& Node::image() const { return impl_->image; }
 std::uint32_t Node::bootUps() const { return impl_->boot_ups; }
 std::uint32_t Node::emergencies() const { return impl_->emergencies; }
+std::uint32_t Node::malformedEmergencies() const { return impl_->malformed_emergencies; }
 Time Node::lastHeartbeat() const { return impl_->last_heartbeat; }
 const std::optional<Emergency>& Node::lastEmergency() const { return impl_->last_emergency; }
 

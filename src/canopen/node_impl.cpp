@@ -218,12 +218,11 @@ void Node::Impl::onHeartbeat(NmtState state, Time stamp, Time now) {
 }
 
 void Node::Impl::onEmergency(const can::Frame& frame, Time stamp) {
-  if (frame.size < 2) return;
-  Emergency emergency;
-  emergency.code = static_cast<std::uint16_t>(frame.data[0] | frame.data[1] << 8);
-  if (frame.size > 2) emergency.error_register = frame.data[2];
-  for (std::size_t i = 3; i < frame.size; ++i) emergency.vendor[i - 3] = frame.data[i];
-  emergency.stamp = stamp;
+  const auto emergency = decodeEmergency(frame, stamp);
+  if (!emergency) {
+    ++malformed_emergencies;
+    return;
+  }
   last_emergency = emergency;
   ++emergencies;
 }

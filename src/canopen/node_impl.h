@@ -67,7 +67,7 @@ struct Node::Impl {
   bool cob_ids_changed = false;   ///< since takeCobIdChange()
   Time next = kNever;             ///< of all deadlines
   mutable bool sdo_lent = false;  ///< somebody may have queued a transfer: `next` is not known
-  std::uint32_t boot_ups = 0, emergencies = 0;
+  std::uint32_t boot_ups = 0, emergencies = 0, malformed_emergencies = 0;
   Time last_heartbeat{};
   std::optional<Emergency> last_emergency;
 };

@@ -14,6 +14,11 @@ std::string hexWord(std::uint16_t word) {
   return text.data();
 }
 
+std::string errorName(const DriveProfile& profile, std::uint16_t code) {
+  const auto known = profile.errors.find(code);
+  return known == profile.errors.end() ? canopen::emergencyText(code) : known->second.text;
+}
+
 std::string errorCodeText(const DriveProfile& profile, std::uint16_t code) {
   const auto known = profile.errors.find(code);
   if (known == profile.errors.end()) {

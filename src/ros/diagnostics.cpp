@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cia402_driver/bus/real_clock.h"
+#include "cia402_driver/drive/fault_text.h"
 #include "cia402_driver/ros/publishers.h"
 
 namespace cia402::ros_node {
@@ -30,6 +31,16 @@ std::string withUnit(double value, const char* unit) {
   char text[48];
   std::snprintf(text, sizeof text, "%.6g %s", value, unit);
   return text;
+}
+
+/// "emergencies: 1234", then a line for each code.
+void addEmergencies(diagnostic_updater::DiagnosticStatusWrapper& status,
+                    const bus::EmergencyCounts& counts) {
+  status.add("emergencies", counts.total);
+  for (std::size_t i = 0; i < counts.codes; ++i) {
+    status.add("emergencies " + drive::hexWord(counts.of[i].code), counts.of[i].count);
+  }
+  if (counts.malformed != 0) status.add("emergencies malformed", counts.malformed);
 }
 
 }  // namespace
@@ -107,7 +118,7 @@ void Diagnostics::reportNode(std::size_t index, Status& status) {
     status.addf("heartbeat age", "%.3f s", toSeconds(snapshot_.now - axis.node.last_heartbeat));
   }
   status.add("boot-ups", axis.node.boot_ups);
-  status.add("emergencies", axis.node.emergencies);
+  addEmergencies(status, axis.emergencies);
   status.add("feedback missed", axis.missed_feedback);
   status.add("feedback stale", axis.stale_feedback);
   status.add("feedback of wrong length", axis.wrong_lengths);

@@ -11,7 +11,7 @@ namespace cia402::ros_node {
 EventLog::EventLog(ros::NodeHandle& private_node, bus::BusRunner& runner,
                    const config::RobotConfig& robot)
     : runner_(runner), robot_(robot) {
-  emergencies_ = private_node.advertise<cia402_driver::Emergency>("emergencies", 100);
+  emergencies_ = private_node.advertise<cia402_driver::Emergency>("emergencies", 10000);
   timer_ =
       private_node.createTimer(ros::Duration(0.02), [this](const ros::TimerEvent&) { drain(); });
 }
@@ -30,7 +30,6 @@ void EventLog::drain() {
         ROS_ERROR_STREAM(event.text.view());
         break;
     }
-    if (event.is_emergency) publish(event);
   }
   bus::RecordingService::News news;
   while (runner_.recordings().nextNews(news)) {
@@ -40,14 +39,22 @@ void EventLog::drain() {
       ROS_ERROR_STREAM(news.text);
     }
   }
+  bus::EmergencyEvent emergency;
+  while (runner_.nextEmergency(emergency)) publish(emergency);
   const std::uint64_t lost = runner_.lostEvents();
   if (lost != lost_told_) {
     ROS_WARN_STREAM(lost - lost_told_ << " events came too fast to be logged");
     lost_told_ = lost;
   }
+  const std::uint64_t unpublished = runner_.lostEmergencies();
+  if (unpublished != unpublished_told_) {
+    ROS_WARN_STREAM(unpublished - unpublished_told_
+                    << " emergencies came too fast to be published; they are counted");
+    unpublished_told_ = unpublished;
+  }
 }
 
-void EventLog::publish(const bus::Event& event) {
+void EventLog::publish(const bus::EmergencyEvent& event) {
   const drive::AxisConfig& axis = robot_.axes[event.axis];
   cia402_driver::Emergency message;
   message.header.stamp = toRos(event.emergency.stamp);

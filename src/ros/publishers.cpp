@@ -55,7 +55,7 @@ cia402_driver::NodeState nodeState(const bus::AxisSnapshot& axis, const drive::A
   message.step = message.ready ? "" : axis.step.str();
   message.heartbeat_age = age(axis.node.last_heartbeat, now);
   message.boot_ups = axis.node.boot_ups;
-  message.emergencies = static_cast<std::uint32_t>(axis.node.emergencies);
+  message.emergencies = static_cast<std::uint32_t>(axis.emergencies.total);
   message.vendor_id = axis.node.identity.vendor_id;
   message.product_code = axis.node.identity.product_code;
   message.revision_number = axis.node.identity.revision;

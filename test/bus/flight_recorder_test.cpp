@@ -35,12 +35,11 @@ class Recorder : public testing::Test {
     robot.recorder.keep = 5;
     return robot;
   }
-  Event emergency(std::size_t axis, std::uint16_t code, Time stamp) {
-    Event event;
-    event.is_emergency = true;
+  static EmergencyEvent emergency(std::size_t axis, std::uint16_t code, Time stamp) {
+    EmergencyEvent event;
     event.axis = axis;
     event.emergency.code = code;
-    event.stamp = stamp;
+    event.emergency.stamp = stamp;
     return event;
   }
   std::vector<RecordingTrigger> triggers() {
@@ -86,9 +85,9 @@ TEST_F(Recorder, FramesAreSortedAndThoseOfBeforeAreLeftOut) {
 }
 
 TEST_F(Recorder, AnEmergencyIsATriggerAndAnErrorResetIsNone) {
-  recorder.onEvent(emergency(1, 0x0000, kStart));
+  recorder.onEmergency(emergency(1, 0x0000, kStart));
   EXPECT_FALSE(recorder.triggered());
-  recorder.onEvent(emergency(1, 0x8611, kStart));
+  recorder.onEmergency(emergency(1, 0x8611, kStart));
   EXPECT_TRUE(recorder.triggered());
   EXPECT_FALSE(recorder.triggered()) << "told once";
   const auto found = triggers();
@@ -114,7 +113,7 @@ TEST_F(Recorder, BusOffAndALostInterfaceAreTriggers) {
 }
 
 TEST_F(Recorder, AStormOfEmergenciesIsOneRecordingAndTheRestIsCounted) {
-  for (int i = 0; i < 1000; ++i) recorder.onEvent(emergency(0, 0x2310, kStart + i * 10ms));
+  for (int i = 0; i < 1000; ++i) recorder.onEmergency(emergency(0, 0x2310, kStart + i * 10ms));
   const auto found = triggers();
   // Those of half a second belong to the recording; 10 s after it another one may begin.
   ASSERT_EQ(found.size(), 51U);

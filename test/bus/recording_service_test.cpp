@@ -39,12 +39,11 @@ class Service : public testing::Test {
     fs::remove_all(root);
   }
   void emergency(Time stamp) {
-    Event event;
-    event.is_emergency = true;
+    EmergencyEvent event;
     event.emergency.code = 0x8611;
-    event.stamp = stamp;
+    event.emergency.stamp = stamp;
     recorder->received(can::Frame(0x081, {0x11, 0x86, 0x21, 0, 0, 0, 0, 0}), stamp);
-    recorder->onEvent(event);
+    recorder->onEmergency(event);
     service->wake();
   }
   RecordingService::News nextNews() {

@@ -105,16 +105,18 @@ TEST(Robot, TellsAnEmergencyWithCodeCauseAndRemedy) {
   world.enable();
   world.drives[1].fault(0x8611);
   world.run(100ms);
-  const auto event = std::find_if(world.events.begin(), world.events.end(),
-                                  [](const Event& e) { return e.is_emergency; });
+  const auto event = std::find_if(world.events.begin(), world.events.end(), [](const Event& e) {
+    return e.text.view().find("emergency:") != std::string::npos;
+  });
   ASSERT_NE(event, world.events.end());
-  EXPECT_EQ(event->axis, 1u);
-  EXPECT_EQ(event->emergency.code, 0x8611);
+  ASSERT_EQ(world.emergencies.size(), 1u);
+  EXPECT_EQ(world.emergencies[0].axis, 1u);
+  EXPECT_EQ(world.emergencies[0].emergency.code, 0x8611);
   EXPECT_THAT(event->text.str(), AllOf(HasSubstr("elbow (node 2): emergency: 0x8611"),
                                        HasSubstr("blocked"), HasSubstr("check the mechanics")));
   RobotSnapshot snapshot;
   world.robot.fill(snapshot);
-  EXPECT_EQ(snapshot.axes[1].node.emergencies, 1u);
+  EXPECT_EQ(snapshot.axes[1].emergencies.total, 1u);
   EXPECT_THAT(snapshot.axes[1].problem.str(), HasSubstr("following error"));
   EXPECT_TRUE(snapshot.axes[0].problem.empty());
 }

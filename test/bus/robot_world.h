@@ -133,6 +133,7 @@ class RobotWorld : private can::Sink, private EventSink {
   Time now{std::chrono::seconds(1)};
   std::vector<Sent> sent;
   std::vector<Event> events;
+  std::vector<EmergencyEvent> emergencies;
   std::deque<FakeDrive> drives;  ///< in the order of the axes
   Robot robot;
 
@@ -254,6 +255,7 @@ class RobotWorld : private can::Sink, private EventSink {
     return true;
   }
   void onEvent(const Event& event) override { events.push_back(event); }
+  void onEmergency(const EmergencyEvent& event) override { emergencies.push_back(event); }
 
   void collect() {
     for (FakeDrive& drive : drives) {

@@ -10,22 +10,28 @@
 
 namespace cia402::bus {
 
-/// Something that happened on the bus and that people want to read about.
+/// Something that happened on the bus and that people want to read about. What repeats quickly is
+/// summed up (RepeatLimiter).
 struct Event {
   enum class Severity : std::uint8_t { info, warning, error };
   Severity severity = Severity::info;
   Time stamp{};
-  bool is_emergency = false;
-  std::size_t axis = 0;          ///< valid if is_emergency
-  canopen::Emergency emergency;  ///< valid if is_emergency
-  FixedText<384> text;           ///< a sentence that names the axis
+  FixedText<384> text;  ///< a sentence that names the axis
 };
 
-/// Takes events in the bus thread. Never blocks.
+/// One emergency message, for programs: every single one is handed on.
+struct EmergencyEvent {
+  std::size_t axis = 0;  ///< index in the configuration
+  canopen::Emergency emergency;
+};
+
+/// Takes events in the bus thread. Never blocks. Emergencies go their own way: a storm of them
+/// leaves other news alone.
 class EventSink {
  public:
   virtual ~EventSink() = default;
   virtual void onEvent(const Event& event) = 0;
+  virtual void onEmergency(const EmergencyEvent&) {}
 };
 
 }  // namespace cia402::bus

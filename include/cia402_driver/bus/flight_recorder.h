@@ -56,6 +56,7 @@ class FlightRecorder final : public can::Sink {
     if (robot_->lastCycle() != observed_) observeCycle();
   }
   void onEvent(const Event& event);
+  void onEmergency(const EmergencyEvent& event);
   /// The interface has another state.
   void onInterface(can::BusState state, Time now);
   /// Were there triggers since the last call?

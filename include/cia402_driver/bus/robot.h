@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cia402_driver/bus/axis_motion.h"
+#include "cia402_driver/bus/axis_reporter.h"
 #include "cia402_driver/bus/command.h"
 #include "cia402_driver/bus/cycle_statistics.h"
 #include "cia402_driver/bus/event.h"
@@ -88,6 +89,7 @@ class Robot final : private canopen::MasterListener {
   };
 
   void onEmergency(canopen::Node& node, const canopen::Emergency& emergency) override;
+  void onMalformedEmergency(canopen::Node& node, std::size_t size) override;
   void onBootUp(canopen::Node& node, Time now) override;
   void onHealthChange(canopen::Node& node, canopen::NodeHealth before, Time now) override;
 
@@ -148,8 +150,9 @@ class Robot final : private canopen::MasterListener {
   std::vector<std::string> lss_problems_;      // of each axis
   std::vector<ProcedureJob> waiting_for_lss_;  ///< begin once the desk is free
   std::vector<AxisNews> news_;
+  std::vector<AxisReporter> reporters_;
   std::vector<canopen::Node*> nodes_;  // of each axis
-  std::vector<std::uint64_t> missed_feedback_, emergencies_;
+  std::vector<std::uint64_t> missed_feedback_;
   std::vector<Time> last_feedback_;
   CycleStatistics statistics_;
   Time last_cycle_{};

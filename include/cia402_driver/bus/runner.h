@@ -51,15 +51,20 @@ class BusRunner final : private EventSink {
   RobotSnapshot snapshot();
   /// One thread: the next event. @return false if there is none.
   bool nextEvent(Event& event) { return events_.pop(event); }
+  /// One thread: the next emergency. @return false if there is none.
+  bool nextEmergency(EmergencyEvent& event) { return emergencies_.pop(event); }
   /// Events that found no room, since start.
   std::uint64_t lostEvents() const { return lost_events_.load(); }
   /// The flight recorder's files.
   RecordingService& recordings() { return recordings_; }
+  /// Emergencies that found no room, since start; counted in the snapshot all the same.
+  std::uint64_t lostEmergencies() const { return lost_emergencies_.load(); }
   /// Valid once running(); what the operating system granted.
   RealtimeReport realtime();
 
  private:
   void onEvent(const Event& event) override;
+  void onEmergency(const EmergencyEvent& event) override;
   void run();
   void iterate(Time now);
   void watchInterface(Time now);
@@ -77,11 +82,12 @@ class BusRunner final : private EventSink {
   SpscQueue<Command> mailbox_{256};
   std::mutex producers_;  // among the posting threads only
   SpscQueue<Event> events_{512};
+  SpscQueue<EmergencyEvent> emergencies_{4096};  // half a second of nothing else at 1 Mbit/s
   TripleBuffer<RobotSnapshot> snapshots_;
   std::mutex readers_;  // among the reading threads only
   RealtimeReport realtime_;
   std::mutex realtime_mutex_;
-  std::atomic<std::uint64_t> lost_events_{0};
+  std::atomic<std::uint64_t> lost_events_{0}, lost_emergencies_{0};
   std::atomic<bool> running_{false}, shutdown_requested_{false};
   can::BusState interface_state_ = can::BusState::missing;
   bool interface_told_ = false;

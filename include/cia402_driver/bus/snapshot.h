@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "cia402_driver/bus/axis_reporter.h"
 #include "cia402_driver/bus/cycle_statistics.h"
 #include "cia402_driver/bus/fixed_text.h"
 #include "cia402_driver/can/bus.h"
@@ -17,7 +18,6 @@ struct NodeSnapshot {
   canopen::NmtState nmt = canopen::NmtState::unknown;
   Time last_heartbeat{};             ///< Time() if there was none
   std::uint32_t boot_ups = 0;        ///< since start
-  std::uint64_t emergencies = 0;     ///< since start, resets included
   canopen::Node::Identity identity;  ///< zeros where not read
 };
 
@@ -25,6 +25,7 @@ struct NodeSnapshot {
 struct AxisSnapshot {
   drive::AxisState state;
   NodeSnapshot node;
+  EmergencyCounts emergencies;
   double target = drive::kUnknown;  ///< set-point of the active mode, joint units
   drive::ProcedureKind procedure = drive::ProcedureKind::none;
   bool procedure_running = false;

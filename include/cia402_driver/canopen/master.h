@@ -21,6 +21,8 @@ class MasterListener {
  public:
   virtual ~MasterListener() = default;
   virtual void onEmergency(Node&, const Emergency&) {}
+  /// A frame of so many bytes where an emergency was expected: it holds no error code.
+  virtual void onMalformedEmergency(Node&, std::size_t /*size*/) {}
   virtual void onBootUp(Node&, Time) {}  ///< a boot-up frame, expected or not
   virtual void onHealthChange(Node&, NodeHealth /*before*/, Time) {}
   /// Another device has sent SYNC. @param stamp when it was on the wire

@@ -89,6 +89,8 @@ class Node {
   const std::optional<Emergency>& lastEmergency() const;
   /// Emergencies received since start, error resets included.
   std::uint32_t emergencies() const;
+  /// Emergency frames without an error code, not counted in emergencies().
+  std::uint32_t malformedEmergencies() const;
 
   /// Takes an EMCY, SDO or heartbeat frame of this node; called by Master.
   void receive(const can::Frame& frame, Time stamp, Time now);

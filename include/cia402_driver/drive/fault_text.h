@@ -12,6 +12,9 @@ namespace cia402::drive {
 /// where it knows the code, else by the classes of CiA 301 and 402.
 std::string errorCodeText(const DriveProfile& profile, std::uint16_t code);
 
+/// The short text of a code alone: "following error".
+std::string errorName(const DriveProfile& profile, std::uint16_t code);
+
 /// "0x0231": four upper-case hexadecimal digits.
 std::string hexWord(std::uint16_t word);
 

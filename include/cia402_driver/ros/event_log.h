@@ -19,13 +19,13 @@ class EventLog {
   void drain();
 
  private:
-  void publish(const bus::Event& event);
+  void publish(const bus::EmergencyEvent& event);
 
   bus::BusRunner& runner_;
   const config::RobotConfig& robot_;
   ros::Publisher emergencies_;
   ros::Timer timer_;
-  std::uint64_t lost_told_ = 0;
+  std::uint64_t lost_told_ = 0, unpublished_told_ = 0;
 };
 
 }  // namespace cia402::ros_node

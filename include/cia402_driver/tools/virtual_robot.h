@@ -76,6 +76,8 @@ class VirtualRobot final : private sim::Participant, private bus::EventSink {
   Time now() const { return world_.now(); }
   /// What was told so far, oldest first.
   const std::vector<bus::Event>& events() const { return events_; }
+  /// Every emergency so far, oldest first.
+  const std::vector<bus::EmergencyEvent>& emergencies() const { return emergencies_; }
 
  private:
   void receive(const can::Frame& frame, Time now) override {
@@ -100,10 +102,15 @@ class VirtualRobot final : private sim::Participant, private bus::EventSink {
     recorder_.onEvent(event);
     events_.push_back(event);
   }
+  void onEmergency(const bus::EmergencyEvent& event) override {
+    recorder_.onEmergency(event);
+    emergencies_.push_back(event);
+  }
 
   sim::World world_;
   sim::Port& port_;
   std::vector<bus::Event> events_;
+  std::vector<bus::EmergencyEvent> emergencies_;
   std::vector<std::pair<can::Frame, Time>> kept_;
   Time frozen_until_{};
   bus::FlightRecorder recorder_;
