@@ -10,6 +10,8 @@ namespace {
 
 constexpr Duration kStopTime = std::chrono::milliseconds(1000);     // ramps at shutdown
 constexpr Duration kDisableTime = std::chrono::milliseconds(1800);  // from the start of shutdown
+constexpr unsigned kHistoryAfterFault = 4;                          // entries
+constexpr Duration kHistoryInterval = std::chrono::seconds(5);  // at least, between two readings
 constexpr Duration kNewsInterval = std::chrono::milliseconds(100);
 
 std::string whoIs(const canopen::Node& node) {
@@ -70,6 +72,23 @@ void Robot::begin(Time now) {
   next_sync_ = now + config_.bus.sync_period;
   sync_held_ = master_.config().sync_counter != 0;
   master_.start(now);
+}
+
+void Robot::busLost(const std::string& why, Time now) {
+  if (!started_ || !bus_lost_.empty()) return;
+  bus_lost_ = why;
+  stopMotion("stopped: " + why, now);
+  for (drive::Axis& axis : axes_) axis.onBusLost(why);
+}
+
+void Robot::busBack(Time now) {
+  if (bus_lost_.empty()) return;
+  bus_lost_.clear();
+  tell(Event::Severity::info,
+       config_.bus.interface +
+           " is back: drives that were lost are configured again; the axes stay "
+           "disabled until enable or recover",
+       now);
 }
 
 void Robot::receive(const can::Frame& frame, Time stamp, Time now) {
@@ -171,6 +190,7 @@ void Robot::stepJobs(Time now) {
   }
   if (!objects_.empty()) keep_running(objects_, [](ObjectJob& job) { return job.step(); });
   if (!nmt_.empty()) keep_running(nmt_, [&](NmtJob& job) { return job.step(axes_, now); });
+  if (!histories_.empty()) keep_running(histories_, [](HistoryJob& job) { return job.step(); });
 }
 
 void Robot::stopMotion(const std::string& why, Time now) {
@@ -219,6 +239,8 @@ void Robot::stepShutdown(Time now) {
     shutdown_ = Shutdown::done;
     for (ObjectJob& job : objects_) job.abandon("ended by the shutdown of the driver");
     objects_.clear();
+    for (HistoryJob& job : histories_) job.abandon("ended by the shutdown of the driver");
+    histories_.clear();
     for (AxisReporter& reporter : reporters_) reporter.flush(now);
   }
 }
@@ -282,6 +304,21 @@ void Robot::onHealthChange(canopen::Node& node, canopen::NodeHealth before, Time
   }
 }
 
+void Robot::readHistoryAfterFault(std::size_t axis, Time now) {
+  AxisNews& news = news_[axis];
+  const bool recently = news.history_asked != Time() && now < news.history_asked + kHistoryInterval;
+  if (recently || shutdown_ != Shutdown::no) return;
+  news.history_asked = now;
+  histories_.emplace_back(
+      axes_[axis], kHistoryAfterFault, [this, axis](const canopen::ErrorHistory& history) {
+        const std::string text = historyText(*axes_[axis].config().profile, history);
+        news_[axis].history.assign(text);
+        tell(Event::Severity::info,
+             whoIs(*nodes_[axis]) + ": the drive's error history (1003h), newest first: " + text,
+             now_);
+      });
+}
+
 void Robot::watchAxes(Time now) {
   for (AxisReporter& reporter : reporters_) reporter.tick(now);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
@@ -299,6 +336,10 @@ void Robot::watchAxes(Time now) {
     const bool stale = (!well || procedure.running || !news.problem.empty()) &&
                        now >= news.checked + kNewsInterval;
     if (!changed && !stale) continue;
+    const auto faulty = [](drive::State s) {
+      return s == drive::State::fault || s == drive::State::fault_reaction_active;
+    };
+    if (faulty(state.state) && !faulty(news.state)) readHistoryAfterFault(i, now);
     news.state = state.state;
     news.health = state.health;
     news.error_code = state.error_code;
@@ -347,6 +388,7 @@ void Robot::fill(RobotSnapshot& snapshot) const {
     axis.step = news_[i].step;
     axis.waiting_for = news_[i].waiting_for;
     axis.problem = news_[i].problem;
+    axis.history = news_[i].history;
   }
   for (std::size_t i = 0; i < groups_.size(); ++i) {
     snapshot.groups[i] = {groups_[i].executing(), groups_[i].stopping()};

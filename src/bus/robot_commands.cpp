@@ -39,6 +39,12 @@ void Robot::execute(Command command, Time now) {
          refused("refused: the drives are being given their node-IDs (" + lss_.step() + ")"));
     return;
   }
+  if (!bus_lost_.empty() && !std::holds_alternative<CallCommand>(command.body)) {
+    give(command.reply, refused("refused: " + bus_lost_ +
+                                ", nothing reaches the drives; those that watch the master's "
+                                "heartbeat stop by themselves"));
+    return;
+  }
   std::visit([&](auto& body) { run(body, std::move(command.reply), now); }, command.body);
 }
 
@@ -132,6 +138,24 @@ void Robot::run(NmtServiceCommand& command, const Reply& reply, Time now) {
   const std::string whom = command.axis.empty() ? "all nodes" : command.axis;
   tell(Event::Severity::info, "nmt " + command.command + " to " + whom + " was asked for", now);
   nmt_.push_back(std::move(job).value());
+}
+
+void Robot::run(ErrorHistoryCommand& command, const Reply& reply, Time) {
+  drive::Axis* axis = axisNamed(command.axis);
+  if (axis == nullptr) {
+    give(reply, refused("there is no axis \"" + command.axis + "\""));
+    return;
+  }
+  const std::string who = axis->config().name + " (node " + std::to_string(axis->config().node_id) +
+                          "): error history (1003h): ";
+  histories_.emplace_back(*axis, canopen::ErrorHistoryReader::kAll,
+                          [axis, who, reply](const canopen::ErrorHistory& history) {
+                            Answer answer;
+                            answer.success = history.readable;
+                            answer.message = who + historyText(*axis->config().profile, history);
+                            answer.history = history;
+                            give(reply, answer);
+                          });
 }
 
 void Robot::run(CallCommand& command, const Reply& reply, Time now) {

@@ -17,10 +17,6 @@ constexpr Duration kIdleInterval = std::chrono::milliseconds(20);  // while ther
 constexpr Duration kFlushTime = std::chrono::milliseconds(20);     // for the last frames
 constexpr int kFramesPerRound = 256;  // then the clock is looked at again
 
-bool usable(can::BusState state) {
-  return state != can::BusState::missing && state != can::BusState::down;
-}
-
 void give(const Reply& reply, const char* message) {
   if (!reply) return;
   Answer answer;
@@ -136,7 +132,8 @@ void BusRunner::run() {
 
 void BusRunner::iterate(Time now) {
   if (shutdown_requested_) robot_.beginShutdown(now);
-  watchInterface(now);
+  watch_.update(*interface_, robot_, now);
+  recorder_.onInterface(interface_->state(), now);
   robot_.tick(now);  // first of all: SYNC may be due
   for (int i = 0; i < kFramesPerRound; ++i) {
     const auto received = interface_->receive(now);
@@ -154,22 +151,6 @@ void BusRunner::iterate(Time now) {
   publish(now);
 }
 
-void BusRunner::watchInterface(Time now) {
-  const can::BusState state = interface_->state();
-  if (usable(state) && !robot_.started()) robot_.start(now);
-  if (interface_told_ && state == interface_state_) return;
-  interface_told_ = true;
-  interface_state_ = state;
-  Event event;
-  event.severity =
-      state == can::BusState::error_active ? Event::Severity::info : Event::Severity::error;
-  event.stamp = now;
-  interface_text_.assign(interface_->describe());
-  event.text.assign(interface_text_.view());
-  onEvent(event);
-  recorder_.onInterface(state, now);
-}
-
 void BusRunner::publish(Time now) {
   const std::uint64_t cycle = robot_.statistics().cycles();
   if (cycle == published_cycle_ && now < published_ + kIdleInterval) return;
@@ -181,7 +162,9 @@ void BusRunner::publish(Time now) {
   snapshot.bus_state = interface_->state();
   snapshot.counters = interface_->counters();
   snapshot.bus_load = meter_.load();
-  snapshot.bus_text = interface_text_;
+  snapshot.bus_text.assign(watch_.text());
+  snapshot.pending = interface_->pending();
+  snapshot.error_counters = interface_->errorCounters();
   snapshots_.publish();
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdio>
+#include <iterator>
 
 namespace cia402::can {
 namespace {
@@ -163,6 +164,30 @@ BusState stateAfter(const Frame& error_frame, BusState before) {
   }
   if ((error_frame.id & error_class::kRestarted) != 0) return BusState::error_active;
   return before;
+}
+
+const char* errorClassName(std::size_t bit) {
+  static constexpr const char* kNames[] = {
+      "transmission timeout",
+      "lost arbitration",
+      "controller",
+      "protocol violation",
+      "transceiver",
+      "no acknowledge",
+      "bus-off",
+      "bus error",
+      "restarted",
+      "error counters",
+  };
+  return bit < std::size(kNames) ? kNames[bit] : "unknown";
+}
+
+void countErrorFrame(const Frame& error_frame, BusCounters& counters) {
+  ++counters.error_frames;
+  for (std::size_t bit = 0; bit < counters.error_classes.size(); ++bit) {
+    counters.error_classes[bit] += error_frame.id >> bit & 1U;
+  }
+  if (reportsReceiveOverflow(error_frame)) ++counters.receive_overflows;
 }
 
 bool reportsReceiveOverflow(const Frame& error_frame) {

@@ -6,17 +6,28 @@
 #include <utility>
 
 #include "cia402_driver/can/error_frame.h"
+#include "cia402_driver/can/link_settings.h"
 #include "link_probe.h"
 #include "raw_socket.h"
+#include "wall_clock.h"
 
 namespace cia402::can {
+
+namespace {
+
+// A controller's driver may hand out frames from before bus-off after telling it.
+constexpr Duration kOldFrames = std::chrono::milliseconds(50);
+
+}  // namespace
 
 SocketCan::SocketCan(std::string name, Options options)
     : name_(std::move(name)),
       options_(std::move(options)),
       probe_(std::make_unique<LinkProbe>()),
       socket_(std::make_unique<RawSocket>()),
-      pending_(options_.queue_capacity) {
+      pending_(options_.queue_capacity),
+      reader_(std::make_unique<LinkReader>()),
+      recovery_(options_.recovery) {
   checkLink();
 }
 
@@ -45,7 +56,13 @@ bool SocketCan::send(const Frame& frame) {
     if (result == Attempt::sent) return true;
     if (result == Attempt::failed) return refuse();
   }
-  if (!pending_.push(frame)) return refuse();
+  const bool cyclic = !frame.extended && !frame.remote && options_.cyclic[frame.id];
+  PendingQueue::Patience patience;
+  patience.lifetime = cyclic ? options_.cyclic_lifetime : options_.other_lifetime;
+  patience.newest_only = cyclic;
+  const bool taken = pending_.push(frame, monotonicNow(), patience);
+  countStale();
+  if (!taken) return refuse();
   ++counters_.frames_deferred;
   return true;
 }
@@ -63,23 +80,26 @@ SocketCan::Attempt SocketCan::attempt(const Frame& frame) {
 
 void SocketCan::flushPending() {
   if (pending_.empty() || !canSend()) return;
-  pending_.flush([this](const Frame& frame) {
+  pending_.flush(monotonicNow(), [this](const Frame& frame) {
     const Attempt result = attempt(frame);
     // Either this frame is lost alone, or handleError() has thrown it away with the whole queue.
     if (result == Attempt::failed && !pending_.empty()) ++counters_.frames_dropped;
     return result != Attempt::busy;
   });
+  countStale();
 }
 
 std::optional<ReceivedFrame> SocketCan::receive(Time) {
   while (socket_->isOpen()) {
     if (auto received = socket_->pop()) {
       if (received->frame.error) {
-        handleErrorFrame(received->frame);
+        handleErrorFrame(received->frame, received->stamp);
       } else {
         ++counters_.frames_received;
         // A frame proves the controller back on the bus.
-        if (state_ == BusState::bus_off) state_ = BusState::error_active;
+        if (state_ == BusState::bus_off && received->stamp > bus_off_at_ + kOldFrames) {
+          comeBack(BusState::error_active);
+        }
       }
       countOverflows();
       return received;
@@ -102,19 +122,30 @@ void SocketCan::countOverflows() {
   overflows_seen_ = overflows;
 }
 
-void SocketCan::handleErrorFrame(const Frame& frame) {
-  ++counters_.error_frames;
-  if (reportsReceiveOverflow(frame)) ++counters_.receive_overflows;
+void SocketCan::handleErrorFrame(const Frame& frame, Time stamp) {
+  countErrorFrame(frame, counters_);
   last_error_frame_ = frame;
+  if ((frame.id & error_class::kCounters) != 0) {
+    error_counters_ = ErrorCounters{frame.data[6], frame.data[7]};
+  }
   const BusState next = stateAfter(frame, state_);
+  if (next == BusState::bus_off) bus_off_at_ = stamp;
   if (next == state_ || state_ == BusState::down) return;
   if (next == BusState::bus_off) {
     ++counters_.bus_off_events;
     carrier_was_lost_ = false;
     becomeUnusable(next);
+  } else if (state_ == BusState::bus_off) {
+    comeBack(next);
   } else {
     state_ = next;
   }
+}
+
+void SocketCan::comeBack(BusState state) {
+  ++counters_.restarts;
+  recovery_note_.clear();
+  state_ = state;
 }
 
 void SocketCan::handleError(int error) {
@@ -137,6 +168,7 @@ void SocketCan::handleError(int error) {
 
 void SocketCan::becomeUnusable(BusState state) {
   state_ = state;
+  if (state != BusState::bus_off) recovery_note_.clear();
   counters_.frames_dropped += pending_.discard();
 }
 
@@ -145,7 +177,56 @@ void SocketCan::maintain(Time now) {
     next_check_ = now + options_.check_period;
     checkLink();
   }
+  recovery_.update(state_, now);
+  if (recovery_.attempt(now)) tryToReturn(now);
   flushPending();
+}
+
+/// The time for a restart has come: asks the kernel how things are, and for what is needed.
+void SocketCan::tryToReturn(Time) {
+  const auto link = reader_->read(name_);
+  if (!link || !link->up) return;  // checkLink() will find out
+  if (link->controller == BusState::bus_off) {
+    restart(*link);
+  } else if (link->controller && *link->controller != BusState::down) {
+    comeBack(*link->controller);
+  } else if (!link->controller && link->carrier) {
+    comeBack(BusState::error_active);
+  }
+}
+
+void SocketCan::restart(const LinkSettings& link) {
+  if (link.restart_ms.value_or(0) > 0) {
+    recovery_note_ = name_ + " is bus-off: the kernel restarts it " +
+                     std::to_string(*link.restart_ms) + " ms after each bus-off (restart-ms)";
+    return;
+  }
+  ++counters_.restart_attempts;
+  const int error = reader_->restart(link);
+  const std::string kernel = "have the kernel do it: `ip link set " + name_ +
+                             " down; ip link set " + name_ + " up type can bitrate " +
+                             std::to_string(options_.bitrate) + " restart-ms 100` as root";
+  switch (error) {
+    case 0:
+      recovery_note_ = name_ +
+                       " is bus-off: the driver has asked the kernel to restart it, attempt " +
+                       std::to_string(recovery_.attempts());
+      break;
+    case EPERM:
+    case EACCES:
+      recovery_note_ =
+          name_ + " is bus-off, and the driver may not restart it (no CAP_NET_ADMIN): " +
+          "run `ip link set " + name_ + " type can restart` as root, and from now on " + kernel;
+      break;
+    case EOPNOTSUPP:
+      recovery_note_ = name_ + " is bus-off, and its kernel driver cannot restart it: run " +
+                       "`ip link set " + name_ + " down; ip link set " + name_ + " up` as root";
+      break;
+    default:
+      recovery_note_ = name_ + " is bus-off, and the kernel refused to restart it (" +
+                       std::generic_category().message(error) + "): " + kernel;
+      break;
+  }
 }
 
 void SocketCan::checkLink() {
@@ -182,7 +263,7 @@ void SocketCan::updateState(bool up, bool carrier) {
     state_ = carrier ? BusState::error_active : BusState::bus_off;
   } else if (state_ == BusState::bus_off) {
     // The carrier follows the controller with a delay: believe it only after it was seen to go.
-    if (carrier && carrier_was_lost_) state_ = BusState::error_active;
+    if (carrier && carrier_was_lost_) comeBack(BusState::error_active);
     carrier_was_lost_ = carrier_was_lost_ || !carrier;
   }
 }
@@ -206,11 +287,8 @@ std::string SocketCan::describe() const {
              std::to_string(options_.bitrate) + " restart-ms 100` (a virtual one: `ip link set " +
              name_ + " up`) as root" + last;
     case BusState::bus_off:
-      return name_ +
-             " is bus-off, nothing is sent: check wiring, termination and bit rate, then run `" +
-             "ip link set " + name_ +
-             " type can restart`, or have the kernel do it by `ip link set " + name_ +
-             " type can restart-ms 100` while the interface is down" + last;
+      return name_ + " is bus-off, nothing is sent: check wiring, termination and bit rate" +
+             (recovery_note_.empty() ? "; it is restarted soon" : "; " + recovery_note_) + last;
     case BusState::error_warning:
     case BusState::error_passive:
       return name_ + " is " + toString(state_) +

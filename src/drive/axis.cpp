@@ -142,6 +142,8 @@ void Axis::onEmergency(const canopen::Emergency& emergency, Time) {
 
 void Axis::onHealthChange(canopen::NodeHealth, Time) { impl_->watchNode(); }
 
+void Axis::onBusLost(const std::string& why) { impl_->core.onBusLost(why); }
+
 std::string Axis::faultText() const { return impl_->core.faultText(); }
 const std::string& Axis::notice() const { return impl_->core.notice(); }
 std::uint32_t Axis::noticeCount() const { return impl_->core.noticeCount(); }

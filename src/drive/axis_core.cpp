@@ -125,6 +125,16 @@ void AxisCore::onNodeLost() {
   if (was_commanded) notify(failure_);
 }
 
+void AxisCore::onBusLost(const std::string& why) {
+  const bool commanded = goal_ != Goal::disabled && goal_ != Goal::quick_stop;
+  if (!commanded) return;
+  setGoal(Goal::quick_stop);
+  failure_ = who() + ": " + why +
+             ": nothing reaches the drive; it gets a quick stop once the bus is back and stays "
+             "disabled until enable or recover";
+  notify(failure_);
+}
+
 void AxisCore::notify(std::string text) {
   notice_ = std::move(text);
   ++notices_;

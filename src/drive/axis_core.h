@@ -40,6 +40,7 @@ class AxisCore {
   void updateReadiness(bool busy, Time now);
   void writeCommands(Time now);
   void onEmergency(const canopen::Emergency& emergency);
+  void onBusLost(const std::string& why);
   /// The node is not ready any more: forgets everything, commands nothing.
   void onNodeLost();
 

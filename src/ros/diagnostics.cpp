@@ -1,9 +1,12 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "cia402_driver/ros/diagnostics.h"
 
+#include <ros/console.h>
+
 #include <cmath>
 
 #include "cia402_driver/bus/real_clock.h"
+#include "cia402_driver/can/error_frame.h"
 #include "cia402_driver/drive/fault_text.h"
 #include "cia402_driver/ros/publishers.h"
 
@@ -41,6 +44,46 @@ void addEmergencies(diagnostic_updater::DiagnosticStatusWrapper& status,
     status.add("emergencies " + drive::hexWord(counts.of[i].code), counts.of[i].count);
   }
   if (counts.malformed != 0) status.add("emergencies malformed", counts.malformed);
+}
+
+/// What goes wrong on the bus, by kind.
+void addBusHealth(diagnostic_updater::DiagnosticStatusWrapper& status,
+                  const bus::RobotSnapshot& snapshot) {
+  const can::BusCounters& counters = snapshot.counters;
+  status.add("restarts after bus-off", counters.restarts);
+  status.add("restart attempts of the driver", counters.restart_attempts);
+  status.add("frames stale", counters.frames_stale);
+  status.add("frames waiting", snapshot.pending);
+  status.add("receive overflows", counters.receive_overflows);
+  for (std::size_t bit = 0; bit < counters.error_classes.size(); ++bit) {
+    if (counters.error_classes[bit] == 0) continue;
+    status.add(std::string("error frames, ") + can::errorClassName(bit),
+               counters.error_classes[bit]);
+  }
+  if (snapshot.error_counters) {
+    status.addf("error counters", "transmit %u, receive %u", snapshot.error_counters->transmit,
+                snapshot.error_counters->receive);
+  }
+}
+
+/// What the kernel says of the interface.
+void addLink(diagnostic_updater::DiagnosticStatusWrapper& status, const can::LinkSettings& link) {
+  status.add("interface kind", link.kind.empty() ? "unknown" : link.kind);
+  if (link.tx_queue_length) status.add("txqueuelen", *link.tx_queue_length);
+  if (link.bitrate) status.add("bit rate", *link.bitrate);
+  if (link.restart_ms) status.add("restart-ms", *link.restart_ms);
+  if (link.controller) status.add("controller state", can::toString(*link.controller));
+  if (link.transmit_errors && link.receive_errors) {
+    status.addf("controller error counters", "transmit %u, receive %u",
+                static_cast<unsigned>(*link.transmit_errors),
+                static_cast<unsigned>(*link.receive_errors));
+  }
+  if (!link.events) return;
+  status.add("berr-reporting", link.error_reporting ? "on" : "off");
+  status.add("bus-offs (kernel)", link.events->bus_offs);
+  status.add("restarts (kernel)", link.events->restarts);
+  status.add("arbitration lost (kernel)", link.events->arbitration_lost);
+  status.add("bus errors (kernel)", link.events->bus_errors);
 }
 
 }  // namespace
@@ -83,12 +126,33 @@ void Diagnostics::reportBus(Status& status) {
   status.add("frames dropped", snapshot_.counters.frames_dropped);
   status.add("error frames", snapshot_.counters.error_frames);
   status.add("bus-off events", snapshot_.counters.bus_off_events);
+  addBusHealth(status, snapshot_);
+  reportLink(status);
   status.addf("SYNC period", "%.3f ms", 1e3 * toSeconds(robot_.bus.sync_period));
   status.addf("SYNC lateness rms", "%.3f ms", 1e3 * cycle.rmsLateness());
   status.addf("SYNC lateness max", "%.3f ms", 1e3 * cycle.maxLateness());
   status.add("cycles", cycle.cycles());
   status.add("cycles skipped", cycle.overruns());
   status.add("real time", runner_.realtime().text);
+}
+
+void Diagnostics::reportLink(Status& status) {
+  if (robot_.bus.interface == "sim") return;
+  const auto link = link_reader_.read(robot_.bus.interface);
+  if (!link) return;
+  addLink(status, *link);
+  const auto findings = can::findingsOf(*link, static_cast<unsigned>(robot_.bus.bitrate),
+                                        robot_.bus.sync_period, can::mayConfigureLinks());
+  for (const can::LinkFinding& finding : findings) {
+    status.mergeSummary(finding.error ? DiagnosticStatus::ERROR : DiagnosticStatus::WARN,
+                        finding.text);
+    if (!findings_told_.insert(finding.text).second) continue;
+    if (finding.error) {
+      ROS_ERROR_STREAM(finding.text);
+    } else {
+      ROS_WARN_STREAM(finding.text);
+    }
+  }
 }
 
 void Diagnostics::reportNode(std::size_t index, Status& status) {
@@ -150,6 +214,7 @@ void Diagnostics::reportAxis(std::size_t index, Status& status) {
   status.addf("error code", "0x%04X", state.error_code);
   status.add("procedure", axis.procedure_running ? drive::toString(axis.procedure) : "none");
   status.add("step", stepText(axis));
+  if (!axis.history.empty()) status.add("error history after the last fault", axis.history.str());
   status.add("position", withUnit(state.position, linear ? "m" : "rad"));
   status.add("velocity", withUnit(state.velocity, linear ? "m/s" : "rad/s"));
   status.add("effort", withUnit(state.effort, linear ? "N" : "N m"));

@@ -184,6 +184,17 @@ cia402_driver::BusState Publishers::busState(const bus::RobotSnapshot& snapshot)
   message.error_frames = snapshot.counters.error_frames;
   message.bus_off_events = snapshot.counters.bus_off_events;
   message.receive_overflows = snapshot.counters.receive_overflows;
+  message.frames_stale = snapshot.counters.frames_stale;
+  message.tx_pending = static_cast<std::uint32_t>(snapshot.pending);
+  message.arbitration_lost = snapshot.counters.error_classes[1];
+  message.restart_attempts = snapshot.counters.restart_attempts;
+  message.restarts = snapshot.counters.restarts;
+  message.transmit_errors = snapshot.error_counters
+                                ? static_cast<std::int16_t>(snapshot.error_counters->transmit)
+                                : std::int16_t{-1};
+  message.receive_errors = snapshot.error_counters
+                               ? static_cast<std::int16_t>(snapshot.error_counters->receive)
+                               : std::int16_t{-1};
   message.sync_period = toSeconds(robot_.bus.sync_period);
   message.cycles = snapshot.statistics.cycles();
   message.overruns = snapshot.statistics.overruns();

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "cia402_driver/ros/services.h"
 
+#include <cia402_driver/ErrorHistory.h>
 #include <cia402_driver/Nmt.h>
 #include <cia402_driver/ReadObject.h>
 #include <cia402_driver/SetMode.h>
@@ -10,6 +11,8 @@
 
 #include <future>
 #include <memory>
+
+#include "cia402_driver/drive/fault_text.h"
 
 namespace cia402::ros_node {
 namespace {
@@ -53,7 +56,7 @@ bus::Command procedure(const std::string& axis, const drive::ProcedureRequest& r
 
 Services::Services(ros::NodeHandle& private_node, bus::BusRunner& runner,
                    const config::RobotConfig& robot)
-    : runner_(runner) {
+    : runner_(runner), robot_(robot) {
   advertise(private_node, "");
   advertiseDump(private_node);
   for (const drive::AxisConfig& axis : robot.axes) {
@@ -98,6 +101,28 @@ void Services::advertiseDump(ros::NodeHandle& node) {
       }));
 }
 
+void Services::advertiseHistory(ros::NodeHandle& node, const std::string& axis) {
+  using History = cia402_driver::ErrorHistory;
+  std::shared_ptr<const drive::DriveProfile> profile;
+  for (const drive::AxisConfig& config : robot_.axes) {
+    if (config.name == axis) profile = config.profile;
+  }
+  servers_.push_back(node.advertiseService<History::Request, History::Response>(
+      "error_history", [this, axis, profile](History::Request&, History::Response& response) {
+        bus::Command command;
+        command.body = bus::ErrorHistoryCommand{axis};
+        const bus::Answer answer = call(std::move(command));
+        response.success = answer.success;
+        response.message = answer.message;
+        for (const canopen::ErrorHistoryEntry& entry : answer.history.entries) {
+          response.codes.push_back(entry.code);
+          response.infos.push_back(entry.info);
+          response.texts.push_back(drive::errorCodeText(*profile, entry.code));
+        }
+        return true;
+      }));
+}
+
 void Services::advertise(ros::NodeHandle node, const std::string& axis) {
   for (const auto& trigger : kTriggers) advertiseTrigger(node, trigger.name, axis, trigger.kind);
   servers_.push_back(
@@ -124,6 +149,7 @@ void Services::advertise(ros::NodeHandle node, const std::string& axis) {
             return true;
           }));
   if (axis.empty()) return;  // the rest makes sense for one axis only
+  advertiseHistory(node, axis);
   servers_.push_back(node.advertiseService<cia402_driver::SetPosition::Request,
                                            cia402_driver::SetPosition::Response>(
       "set_position", [this, axis](cia402_driver::SetPosition::Request& request,

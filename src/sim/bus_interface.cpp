@@ -1,7 +1,11 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "cia402_driver/sim/bus_interface.h"
 
+#include <algorithm>
+#include <string>
 #include <utility>
+
+#include "cia402_driver/can/error_frame.h"
 
 namespace cia402::sim {
 namespace {
@@ -34,6 +38,7 @@ can::Frame stateFrame(can::BusState state, const Port& port) {
 
 BusInterface::BusInterface(Bus& bus, std::string name, const Options& options)
     : bus_(bus), options_(options), port_(bus.attach(*this, std::move(name))) {
+  recovery_ = can::BusOffRecovery(options.recovery);
   ring_.resize(options.receive_capacity > 0 ? options.receive_capacity : 1);
 }
 
@@ -63,9 +68,33 @@ std::optional<can::ReceivedFrame> BusInterface::receive(Time now) {
 void BusInterface::maintain(Time now) {
   advance(now);
   counters_.frames_dropped = port_.counters().dropped;
-  if (now < restart_at_) return;
-  restart_at_ = kNever;
-  port_.requestRecovery();
+  recovery_.update(port_.state(), now);
+  recover(now);
+}
+
+void BusInterface::recover(Time now) {
+  const bool kernel = options_.restart_after > Duration::zero();
+  if (kernel && now >= restart_at_) {
+    restart_at_ = kNever;
+    recovery_note_ = port_.name() + " is bus-off: it is restarted by itself after each bus-off";
+    port_.requestRecovery();
+  }
+  if (kernel || !recovery_.attempt(now)) return;
+  ++counters_.restart_attempts;
+  if (options_.may_restart) {
+    recovery_note_ = port_.name() + " is bus-off: the driver has restarted it, attempt " +
+                     std::to_string(recovery_.attempts());
+    port_.requestRecovery();
+  } else {
+    recovery_note_ = port_.name() + " is bus-off, and the driver may not restart it";
+  }
+}
+
+std::optional<can::Interface::ErrorCounters> BusInterface::errorCounters() const {
+  ErrorCounters counters;
+  counters.transmit = static_cast<std::uint8_t>(std::min(port_.transmitErrors(), 255U));
+  counters.receive = static_cast<std::uint8_t>(std::min(port_.receiveErrors(), 255U));
+  return counters;
 }
 
 can::BusState BusInterface::state() const { return port_.state(); }
@@ -88,9 +117,16 @@ void BusInterface::onSent(const can::Frame&, Time) { ++counters_.frames_sent; }
 
 void BusInterface::onStateChange(can::BusState state, Time now) {
   if (state == can::BusState::down) return;  // no power: not something a controller can report
-  ++counters_.error_frames;
-  push(stateFrame(state, port_), now);
-  if (state != can::BusState::bus_off) return;
+  const can::Frame frame = stateFrame(state, port_);
+  can::countErrorFrame(frame, counters_);
+  push(frame, now);
+  const bool off = state == can::BusState::bus_off;
+  if (was_off_ && !off) {
+    ++counters_.restarts;
+    recovery_note_.clear();
+  }
+  was_off_ = off;
+  if (!off) return;
   ++counters_.bus_off_events;
   if (options_.restart_after > Duration::zero()) restart_at_ = now + options_.restart_after;
 }
@@ -105,7 +141,9 @@ std::string BusInterface::describe() const {
       return name + " is up";
     case can::BusState::bus_off:
       return name + " is bus-off: no frame is sent until the controller is restarted" +
-             (options_.restart_after > Duration::zero() ? ", which happens by itself" : "");
+             (options_.restart_after > Duration::zero() ? ", which happens by itself"
+              : recovery_note_.empty()                  ? ""
+                                                        : "; " + recovery_note_);
     default:
       return name + " is " + can::toString(port_.state()) + " (transmit errors " +
              std::to_string(port_.transmitErrors()) + ", receive errors " +

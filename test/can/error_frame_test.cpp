@@ -83,5 +83,23 @@ TEST(ReportsReceiveOverflow, LooksAtTheControllerStatusOnly) {
   EXPECT_FALSE(reportsReceiveOverflow(Frame(0x004, {0, 0x01})));
 }
 
+TEST(CountErrorFrame, CountsEveryClassOfAFrameAndWhatWasLost) {
+  BusCounters counters;
+  countErrorFrame(errorFrame(0x002, {5}), counters);
+  countErrorFrame(errorFrame(0x0A8, {0, 0, 0, 0x19}), counters);
+  countErrorFrame(errorFrame(0x204, {0, 0x01}), counters);
+  EXPECT_EQ(counters.error_frames, 3u);
+  EXPECT_EQ(counters.error_classes, (std::array<std::uint64_t, 10>{0, 1, 1, 1, 0, 1, 0, 1, 0, 1}));
+  EXPECT_EQ(counters.receive_overflows, 1u);
+}
+
+TEST(ErrorClassName, NamesTheBits) {
+  EXPECT_STREQ(errorClassName(0), "transmission timeout");
+  EXPECT_STREQ(errorClassName(1), "lost arbitration");
+  EXPECT_STREQ(errorClassName(6), "bus-off");
+  EXPECT_STREQ(errorClassName(9), "error counters");
+  EXPECT_STREQ(errorClassName(10), "unknown");
+}
+
 }  // namespace
 }  // namespace cia402::can

@@ -12,8 +12,8 @@ import rosparam
 import rospkg
 import rospy
 from cia402_driver.msg import AxisStates, BusState, Emergency
-from cia402_driver.srv import (InjectFault, LssAssign, LssScan, LssSetBitTiming, Nmt, ReadObject,
-                               SetMode, SetPosition, WriteObject)
+from cia402_driver.srv import (ErrorHistory, InjectFault, LssAssign, LssScan, LssSetBitTiming,
+                               Nmt, ReadObject, SetMode, SetPosition, WriteObject)
 from control_msgs.msg import JointTrajectoryControllerState
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from sensor_msgs.msg import JointState
@@ -26,9 +26,10 @@ DEADLINE = 40.0  # s; for what takes well below a second on a quiet machine
 ERROR, WARN, OK = DiagnosticStatus.ERROR, DiagnosticStatus.WARN, DiagnosticStatus.OK
 
 SERVICES = {
-    "inject_fault": InjectFault, "read_object": ReadObject, "write_object": WriteObject,
-    "set_mode": SetMode, "set_position": SetPosition, "nmt": Nmt, "lss_scan": LssScan,
-    "lss_assign": LssAssign, "lss_set_bit_timing": LssSetBitTiming,
+    "error_history": ErrorHistory, "inject_fault": InjectFault, "nmt": Nmt,
+    "read_object": ReadObject, "write_object": WriteObject, "set_mode": SetMode,
+    "set_position": SetPosition, "lss_scan": LssScan, "lss_assign": LssAssign,
+    "lss_set_bit_timing": LssSetBitTiming,
 }
 
 

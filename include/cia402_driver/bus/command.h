@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "cia402_driver/canopen/error_history.h"
 #include "cia402_driver/canopen/lss_protocol.h"
 #include "cia402_driver/canopen/sdo_client.h"
 #include "cia402_driver/drive/axis.h"
@@ -24,6 +25,7 @@ struct Answer {
   std::string text;                                          ///< read_object: value with unit
   std::vector<canopen::lss::Identity> devices;               ///< lss_scan: without a node-ID
   std::vector<std::string> device_axes;  ///< lss_scan: the axis of each device, or empty
+  canopen::ErrorHistory history;                             ///< error_history
 };
 
 /// Called once, in the bus thread, when a command has ended. Must not block.
@@ -66,6 +68,11 @@ struct NmtServiceCommand {
   std::string axis, command;
 };
 
+/// Reads the error history (1003h) of an axis' drive.
+struct ErrorHistoryCommand {
+  std::string axis;
+};
+
 /// Finds all devices without a node-ID; refused while something is in motion.
 struct LssScanCommand {
   Duration window{std::chrono::milliseconds(20)};  ///< for each answer, see LssOptions
@@ -95,7 +102,7 @@ struct CallCommand {
 struct Command {
   std::variant<ProcedureCommand, SetpointCommand, TrajectoryCommand, ReadObjectCommand,
                WriteObjectCommand, NmtServiceCommand, LssScanCommand, LssAssignCommand,
-               LssBitTimingCommand, CallCommand>
+               LssBitTimingCommand, ErrorHistoryCommand, CallCommand>
       body;
   Reply reply;  ///< may be empty
 };

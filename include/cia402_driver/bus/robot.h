@@ -10,6 +10,7 @@
 #include "cia402_driver/bus/cycle_statistics.h"
 #include "cia402_driver/bus/event.h"
 #include "cia402_driver/bus/group.h"
+#include "cia402_driver/bus/history_job.h"
 #include "cia402_driver/bus/jobs.h"
 #include "cia402_driver/bus/lss_desk.h"
 #include "cia402_driver/bus/nmt_job.h"
@@ -45,6 +46,12 @@ class Robot final : private canopen::MasterListener {
   void tick(Time now);
   /// When tick() is due at the latest.
   Time nextDeadline() const;
+
+  /// No frame leaves any more, for the reason `why` ("can0 is bus-off"): motion ends, axes are not
+  /// enabled when the bus comes back, commands are refused until then.
+  void busLost(const std::string& why, Time now);
+  /// Frames leave again.
+  void busBack(Time now);
 
   /// Carries out a command; its reply may come at once or when a procedure has ended.
   void execute(Command command, Time now);
@@ -83,6 +90,8 @@ class Robot final : private canopen::MasterListener {
     std::uint32_t procedure = 0, notices = 0;
     bool running = false;
     std::uint16_t error_code = 0;
+    FixedText<256> history;  // as read after the last fault
+    Time history_asked{};
     std::uint64_t stale_count = 0, wrong_lengths = 0;  // of the TPDOs
     FixedText<160> stale;
     Time pdos_told{};
@@ -132,7 +141,10 @@ class Robot final : private canopen::MasterListener {
   void run(LssScanCommand& command, const Reply& reply, Time now);
   void run(LssAssignCommand& command, const Reply& reply, Time now);
   void run(LssBitTimingCommand& command, const Reply& reply, Time now);
+  void run(ErrorHistoryCommand& command, const Reply& reply, Time now);
   void run(CallCommand& command, const Reply& reply, Time now);
+  /// Reads the error history of an axis that has just got a fault.
+  void readHistoryAfterFault(std::size_t axis, Time now);
 
   config::RobotConfig config_;
   EventSink& events_;
@@ -149,11 +161,13 @@ class Robot final : private canopen::MasterListener {
   Time next_lss_look_{};
   std::vector<std::string> lss_problems_;      // of each axis
   std::vector<ProcedureJob> waiting_for_lss_;  ///< begin once the desk is free
+  std::vector<HistoryJob> histories_;
   std::vector<AxisNews> news_;
   std::vector<AxisReporter> reporters_;
   std::vector<canopen::Node*> nodes_;  // of each axis
   std::vector<std::uint64_t> missed_feedback_;
   std::vector<Time> last_feedback_;
+  std::string bus_lost_;  ///< why; empty: it is there
   CycleStatistics statistics_;
   Time last_cycle_{};
   Duration motion_delay_{0};

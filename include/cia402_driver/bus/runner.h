@@ -8,6 +8,7 @@
 #include <mutex>
 #include <thread>
 
+#include "cia402_driver/bus/bus_watch.h"
 #include "cia402_driver/bus/command.h"
 #include "cia402_driver/bus/event.h"
 #include "cia402_driver/bus/flight_recorder.h"
@@ -67,7 +68,6 @@ class BusRunner final : private EventSink {
   void onEmergency(const EmergencyEvent& event) override;
   void run();
   void iterate(Time now);
-  void watchInterface(Time now);
   void publish(Time now);
   void wait() const;
   void wake() const;
@@ -89,9 +89,7 @@ class BusRunner final : private EventSink {
   std::mutex realtime_mutex_;
   std::atomic<std::uint64_t> lost_events_{0}, lost_emergencies_{0};
   std::atomic<bool> running_{false}, shutdown_requested_{false};
-  can::BusState interface_state_ = can::BusState::missing;
-  bool interface_told_ = false;
-  FixedText<256> interface_text_;
+  BusWatch watch_{*this};
   std::uint64_t published_cycle_ = 0;
   Time published_{};
   RecordingService recordings_;

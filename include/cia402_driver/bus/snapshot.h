@@ -1,7 +1,9 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "cia402_driver/bus/axis_reporter.h"
@@ -36,6 +38,7 @@ struct AxisSnapshot {
   FixedText<160> stale;               ///< TPDOs overdue at present, in words; empty if none
   FixedText<96> step;                 ///< of the procedure or of the node's boot
   FixedText<160> waiting_for;
+  FixedText<256> history;  ///< the drive's own error list, read after its last fault
   FixedText<384> problem;  ///< fault or node problem in words; empty if well
 };
 
@@ -50,7 +53,9 @@ struct RobotSnapshot {
   Time now{};
   can::BusState bus_state = can::BusState::missing;
   can::BusCounters counters;
-  FixedText<256> bus_text;
+  FixedText<512> bus_text;
+  std::size_t pending = 0;  ///< frames that wait in the driver
+  std::optional<can::Interface::ErrorCounters> error_counters;
   double bus_load = 0.0;  ///< share of the bit rate over the last second, stuff bits not counted
   CycleStatistics statistics;
   bool shut_down = false;

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -35,6 +36,13 @@ struct BusCounters {
   std::uint64_t error_frames = 0;
   std::uint64_t bus_off_events = 0;
   std::uint64_t receive_overflows = 0;  ///< frames lost by the controller or the kernel
+  /// Waited too long to be true, or a newer one of the same identifier came: thrown away.
+  std::uint64_t frames_stale = 0;
+  /// Error frames of each class; the place is the bit of the class in error_frame.h, e.g. 1 for
+  /// lost arbitration. A frame may have several classes.
+  std::array<std::uint64_t, 10> error_classes{};
+  std::uint64_t restart_attempts = 0;  ///< that the driver asked for after bus-off
+  std::uint64_t restarts = 0;          ///< returns from bus-off, whoever restarted
 };
 
 struct ReceivedFrame {
@@ -58,6 +66,15 @@ class Interface : public Sink {
   /// State in words with the reason and what to do, e.g. "can0 does not exist: plug the adapter in
   /// or run `ip link add ...`".
   virtual std::string describe() const = 0;
+  /// What is done about bus-off, what came of it and what to do; empty if there is nothing to tell.
+  virtual std::string recovery() const { return {}; }
+  /// Frames that wait in the driver.
+  virtual std::size_t pending() const { return 0; }
+  /// The controller's error counters as the last error frame told them; absent: not told yet.
+  struct ErrorCounters {
+    std::uint8_t transmit = 0, receive = 0;
+  };
+  virtual std::optional<ErrorCounters> errorCounters() const { return std::nullopt; }
 };
 
 }  // namespace cia402::can

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -42,6 +43,11 @@ std::string describeErrorFrame(const Frame& frame);
 /// The controller's state after an error frame, given the one before. Frames that say nothing about
 /// the state (lost arbitration, single bus errors) leave it alone.
 BusState stateAfter(const Frame& error_frame, BusState before);
+
+/// Names of the error classes by their bit, e.g. "lost arbitration" for bit 1.
+const char* errorClassName(std::size_t bit);
+/// Adds an error frame to the counters: in all, by class, and what was lost with it.
+void countErrorFrame(const Frame& error_frame, BusCounters& counters);
 
 /// True if the error frame tells that the controller or its driver lost received frames.
 bool reportsReceiveOverflow(const Frame& error_frame);

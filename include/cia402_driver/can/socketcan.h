@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <bitset>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -10,11 +11,14 @@
 #include <vector>
 
 #include "cia402_driver/can/bus.h"
+#include "cia402_driver/can/bus_off_recovery.h"
 #include "cia402_driver/can/pending_queue.h"
 
 namespace cia402::can {
 
 class LinkProbe;
+class LinkReader;
+struct LinkSettings;
 class RawSocket;
 
 /// Frames to be received: those whose identifier equals `id` in the bits of `mask`.
@@ -30,15 +34,28 @@ struct ReceiveFilter {
 /// The interface may be missing, go down, come up, vanish and come back with another index at any
 /// time: state() tells, and maintain() opens it again.
 ///
-/// Safety: while the interface is missing, down or bus-off, send() refuses, and what still waited
-/// in our queue is thrown away (counted in frames_dropped). A command from before the interruption
-/// never reaches a drive after it.
+/// After bus-off the controller is restarted with growing delays (BusOffRecovery): by the kernel
+/// where its restart-ms is set, else by a request to the kernel, which needs CAP_NET_ADMIN; where
+/// neither is possible describe() says what to do. Bus-off is over when an error frame says so,
+/// when frames are received again, or when the kernel says that the controller is well. An
+/// interface without a controller (vcan) is taken as back once its delay is over.
+///
+/// Safety: frames of the identifiers in Options::cyclic never wait longer than
+/// Options::cyclic_lifetime, and only the newest of each identifier waits at all. While the
+/// interface is missing, down or bus-off, send() refuses, and what still waited in our queue is
+/// thrown away (counted in frames_dropped). A command from before the interruption never reaches a
+/// drive after it.
 ///
 /// Frames sent here are seen by other sockets on this machine, not by this one. Nothing allocates
 /// once the object exists, but describe(), setFilters() and opening an interface. Not thread-safe.
 class SocketCan final : public Interface {
  public:
   struct Options {
+    /// 11-bit identifiers of frames of which only the newest is worth sending.
+    std::bitset<2048> cyclic;
+    Duration cyclic_lifetime{8'000'000};   ///< so long may such a frame wait
+    Duration other_lifetime{500'000'000};  ///< so long may any other frame wait
+    BusOffRecovery::Options recovery;
     std::size_t queue_capacity = 512;    ///< frames that may wait for the kernel
     Duration check_period{100'000'000};  ///< how often maintain() looks at the interface
     std::vector<ReceiveFilter> filters;  ///< by the kernel; empty: everything
@@ -69,13 +86,15 @@ class SocketCan final : public Interface {
   BusState state() const override { return state_; }
   const BusCounters& counters() const override { return counters_; }
   std::string describe() const override;
+  std::string recovery() const override { return recovery_note_; }
+  std::optional<ErrorCounters> errorCounters() const override { return error_counters_; }
 
   /// Replaces the kernel's receive filters; an empty list receives everything.
   void setFilters(std::vector<ReceiveFilter> filters);
   /// The last error frame in words, or empty.
   std::string lastErrorFrame() const;
   /// Frames waiting for the kernel.
-  std::size_t pending() const { return pending_.size(); }
+  std::size_t pending() const override { return pending_.size(); }
   const std::string& name() const { return name_; }
 
  private:
@@ -91,13 +110,22 @@ class SocketCan final : public Interface {
   std::string describeMissing() const;
   void becomeUnusable(BusState state);
   void handleError(int error);
-  void handleErrorFrame(const Frame& frame);
+  void handleErrorFrame(const Frame& frame, Time stamp);
+  void countStale() { counters_.frames_stale = pending_.stale(); }
+  void comeBack(BusState state);
+  void tryToReturn(Time now);
+  void restart(const LinkSettings& link);
 
   std::string name_;
   Options options_;
   std::unique_ptr<LinkProbe> probe_;
   std::unique_ptr<RawSocket> socket_;
   PendingQueue pending_;
+  std::unique_ptr<LinkReader> reader_;
+  BusOffRecovery recovery_;
+  std::string recovery_note_;
+  std::optional<ErrorCounters> error_counters_;
+  Time bus_off_at_{};
   BusState state_ = BusState::missing;
   BusCounters counters_;
   std::optional<Frame> last_error_frame_;

@@ -117,6 +117,10 @@ class Axis {
   /// Node and axis events from the master.
   void onEmergency(const canopen::Emergency& emergency, Time now);
   void onHealthChange(canopen::NodeHealth before, Time now);
+  /// Nothing reaches the drive any more, for the reason `why` ("can0 is bus-off"): an axis in
+  /// motion or enabled gets a quick stop as the first thing once the bus is back, and stays
+  /// disabled.
+  void onBusLost(const std::string& why);
 
   /// The present fault in words with cause and remedy; empty if none.
   std::string faultText() const;

@@ -5,7 +5,11 @@
 #include <ros/node_handle.h>
 #include <ros/timer.h>
 
+#include <set>
+#include <string>
+
 #include "cia402_driver/bus/runner.h"
+#include "cia402_driver/can/link_settings.h"
 #include "cia402_driver/config/robot.h"
 
 namespace cia402::ros_node {
@@ -20,12 +24,15 @@ class Diagnostics {
  private:
   using Status = diagnostic_updater::DiagnosticStatusWrapper;
   void reportBus(Status& status);
+  void reportLink(Status& status);
   void reportNode(std::size_t index, Status& status);
   void reportAxis(std::size_t index, Status& status);
 
   bus::BusRunner& runner_;
   const config::RobotConfig& robot_;
   bus::RobotSnapshot snapshot_;
+  can::LinkReader link_reader_;
+  std::set<std::string> findings_told_;
   diagnostic_updater::Updater updater_;
   ros::Timer timer_;
 };

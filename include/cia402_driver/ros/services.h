@@ -29,10 +29,12 @@ class Services {
   void advertiseTrigger(ros::NodeHandle& node, const char* name, const std::string& axis,
                         drive::ProcedureKind kind);
   void advertiseDump(ros::NodeHandle& node);
+  void advertiseHistory(ros::NodeHandle& node, const std::string& axis);
   /// Posts the command and waits for its reply.
   bus::Answer call(bus::Command command);
 
   bus::BusRunner& runner_;
+  const config::RobotConfig& robot_;
   std::vector<ros::ServiceServer> servers_;
 };
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cia402_driver/can/bus.h"
+#include "cia402_driver/can/bus_off_recovery.h"
 #include "cia402_driver/sim/bus.h"
 
 namespace cia402::sim {
@@ -20,6 +21,10 @@ class BusInterface final : public can::Interface, private Listener {
   struct Options {
     std::size_t receive_capacity = 1024;  ///< frames kept for receive(); more overflow, counted
     Duration restart_after{};  ///< recover from bus-off after this time; 0: never (`restart-ms`)
+    /// Whether the driver may restart the controller itself where restart_after is 0, as with
+    /// CAP_NET_ADMIN.
+    bool may_restart = true;
+    can::BusOffRecovery::Options recovery;
   };
 
   explicit BusInterface(Bus& bus, std::string name = "sim")
@@ -39,6 +44,9 @@ class BusInterface final : public can::Interface, private Listener {
   can::BusState state() const override;
   const can::BusCounters& counters() const override { return counters_; }
   std::string describe() const override;
+  std::string recovery() const override { return recovery_note_; }
+  std::size_t pending() const override { return port_.pending(); }
+  std::optional<ErrorCounters> errorCounters() const override;
 
   /// The port underneath, e.g. to pull its cable.
   Port& port() { return port_; }
@@ -48,6 +56,7 @@ class BusInterface final : public can::Interface, private Listener {
   void onSent(const can::Frame& frame, Time end_of_frame) override;
   void onStateChange(can::BusState state, Time now) override;
   void advance(Time now);
+  void recover(Time now);
   void push(const can::Frame& frame, Time stamp);
 
   Bus& bus_;
@@ -58,6 +67,9 @@ class BusInterface final : public can::Interface, private Listener {
   std::size_t first_ = 0;
   std::size_t count_ = 0;
   Time restart_at_ = kNever;
+  can::BusOffRecovery recovery_;
+  std::string recovery_note_;
+  bool was_off_ = false;
   can::BusCounters counters_;
 };
 

@@ -28,9 +28,14 @@ class SimulatedInterface final : public can::Interface {
   can::BusState state() const override { return interface_.state(); }
   const can::BusCounters& counters() const override { return interface_.counters(); }
   std::string describe() const override;
+  std::string recovery() const override { return interface_.recovery(); }
+  std::size_t pending() const override { return interface_.pending(); }
+  std::optional<ErrorCounters> errorCounters() const override { return interface_.errorCounters(); }
 
   /// The drives, e.g. to inject faults; only from the thread that calls receive().
   World& world() { return world_; }
+  /// The driver's own controller, e.g. to send it to bus-off; only from that thread, too.
+  Port& port() { return interface_.port(); }
 
  private:
   World world_;

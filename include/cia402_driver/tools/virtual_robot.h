@@ -80,6 +80,18 @@ class VirtualRobot final : private sim::Participant, private bus::EventSink {
   const std::vector<bus::EmergencyEvent>& emergencies() const { return emergencies_; }
 
  private:
+  /// As bus::BusWatch does with a real interface.
+  void watchPort(Time now) {
+    const bool lost = port_.state() == can::BusState::bus_off;
+    if (lost == port_lost_) return;
+    port_lost_ = lost;
+    recorder_.onInterface(port_.state(), now);
+    if (lost) {
+      robot_.busLost("the bus is off", now);
+    } else {
+      robot_.busBack(now);
+    }
+  }
   void receive(const can::Frame& frame, Time now) override {
     if (now < frozen_until_) {
       kept_.push_back({frame, now});
@@ -90,6 +102,7 @@ class VirtualRobot final : private sim::Participant, private bus::EventSink {
   void tick(Time now) override {
     for (const auto& [frame, stamp] : kept_) take(frame, stamp, now);
     kept_.clear();
+    watchPort(now);
     robot_.tick(now);
     recorder_.observe();
   }
@@ -114,6 +127,7 @@ class VirtualRobot final : private sim::Participant, private bus::EventSink {
   std::vector<std::pair<can::Frame, Time>> kept_;
   Time frozen_until_{};
   bus::FlightRecorder recorder_;
+  bool port_lost_ = false;
   bus::Robot robot_;
 };
 

@@ -8,6 +8,7 @@
 #include "cia402_driver/bus/real_clock.h"
 #include "cia402_driver/bus/runner.h"
 #include "cia402_driver/can/socketcan.h"
+#include "cia402_driver/canopen/cyclic_identifiers.h"
 #include "cia402_driver/ros/command_topics.h"
 #include "cia402_driver/ros/diagnostics.h"
 #include "cia402_driver/ros/event_log.h"
@@ -29,7 +30,13 @@ using namespace cia402;  // NOLINT: a main file
 std::unique_ptr<can::Interface> openInterface(const LoadedRobot& loaded,
                                               sim::SimulatedInterface*& simulation) {
   const config::BusConfig& bus = loaded.robot.bus;
-  if (bus.interface != "sim") return std::make_unique<can::SocketCan>(bus.interface);
+  if (bus.interface != "sim") {
+    can::SocketCan::Options options;
+    options.bitrate = static_cast<unsigned>(bus.bitrate);
+    options.cyclic_lifetime = 2 * bus.sync_period;
+    for (const std::uint32_t id : canopen::cyclicIdentifiers(loaded.master)) options.cyclic.set(id);
+    return std::make_unique<can::SocketCan>(bus.interface, options);
+  }
   const auto axes = ros_node::loadSimulation(loaded.robot);
   if (!axes) return nullptr;
   auto interface = std::make_unique<sim::SimulatedInterface>(*axes, bus.bitrate, bus::realNow());
@@ -44,6 +51,13 @@ ros_node::FaultService::Inject injectThrough(bus::BusRunner& runner,
     const auto promise = std::make_shared<std::promise<bus::Answer>>();
     bus::Command command;
     command.body = bus::CallCommand{[&simulation, axis, fault](Time now) {
+      if (axis == "bus" && fault == "bus_off") {
+        simulation.port().forceBusOff();
+        bus::Answer done;
+        done.success = true;
+        done.message = "the driver's controller is bus-off";
+        return done;
+      }
       return ros_node::injectFault(simulation.world().find(axis), axis, fault, now);
     }};
     command.reply = [promise](const bus::Answer& answer) { promise->set_value(answer); };

@@ -1,0 +1,40 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "cia402_driver/bus/event.h"
+#include "cia402_driver/bus/fixed_text.h"
+#include "cia402_driver/bus/repeat_limiter.h"
+#include "cia402_driver/bus/robot.h"
+#include "cia402_driver/can/bus.h"
+
+namespace cia402::bus {
+
+/// Watches the CAN interface for a robot: starts the robot once the bus is there, tells it when the
+/// bus is lost and when it is back, and puts every change into words. Changes that come too fast to
+/// be read are summed up.
+class BusWatch {
+ public:
+  explicit BusWatch(EventSink& events) : events_(events) {}
+
+  /// To be called often; allocates only when something has changed, or is not well.
+  void update(const can::Interface& interface, Robot& robot, Time now);
+  /// The interface in words, as of at most 0.2 s ago.
+  std::string_view text() const { return text_.view(); }
+
+ private:
+  void onChange(const can::Interface& interface, Robot& robot, Time now);
+  void tell(Event::Severity severity, const std::string& text, Time now);
+
+  EventSink& events_;
+  can::BusState state_ = can::BusState::missing;
+  bool known_ = false;  // state_ is
+  RepeatLimiter limit_;
+  FixedText<512> text_;
+  FixedText<256> remedy_;  // told last
+  Time refreshed_{};
+};
+
+}  // namespace cia402::bus

@@ -1,0 +1,108 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cia402_driver/bus/bus_watch.h"
+#include "cia402_driver/sim/bus_interface.h"
+#include "system/robot_fixture.h"
+
+namespace cia402 {
+
+/// A whole robot on a CAN interface in virtual time: what bus::BusRunner does in its thread, with a
+/// controller that may fall off the bus and has to be restarted.
+class InterfaceScene : private bus::EventSink {
+ public:
+  InterfaceScene(LoadedRobot loaded, const sim::BusInterface::Options& options)
+      : loaded_(std::move(loaded)),
+        world_(loaded_.robot.bus.bitrate),
+        interface_(world_.bus(), "can0", options),
+        robot_(loaded_.robot, loaded_.master, interface_, *this) {
+    for (const sim::SimulatedAxis& axis : loaded_.axes) {
+      world_.addDrive(axis.name, axis.definition, axis.node, axis.mechanics);
+    }
+    interface_.setAdvance([this](Time time) { world_.advance(time); });
+    world_.powerOn();
+  }
+
+  bus::Robot& robot() { return robot_; }
+  sim::World& world() { return world_; }
+  sim::BusInterface& interface() { return interface_; }
+  sim::Port& port() { return interface_.port(); }
+  const bus::BusWatch& watch() const { return watch_; }
+  Time now() const { return now_; }
+  std::string told() const {
+    std::string text;
+    for (const bus::Event& event : events_) text += event.text.str() + "\n";
+    return text;
+  }
+  void forgetTold() { events_.clear(); }
+  const drive::AxisState& state(std::size_t i) { return robot_.axes()[i].state(); }
+  sim::DriveTruth truth(std::size_t i) { return world_.drive(i).truth(now_); }
+  bool allReady() {
+    for (const drive::Axis& axis : robot_.axes()) {
+      if (axis.state().health != canopen::NodeHealth::ready || !axis.state().feedback_valid) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  void run(Duration duration) {
+    for (const Time end = now_ + duration; now_ < end;) step();
+  }
+  template <typename Condition>
+  bool runUntil(Condition&& condition, Duration limit) {
+    for (const Time end = now_ + limit; !condition();) {
+      if (now_ >= end) return false;
+      step();
+    }
+    return true;
+  }
+  bus::Answer call(decltype(bus::Command::body) body) {
+    std::optional<bus::Answer> answer;
+    bus::Command command;
+    command.body = std::move(body);
+    command.reply = [&answer](const bus::Answer& given) { answer = given; };
+    robot_.execute(std::move(command), now_);
+    runUntil([&answer] { return answer.has_value(); }, std::chrono::seconds(60));
+    return answer.value_or(bus::Answer());
+  }
+  bus::Answer procedure(drive::ProcedureKind kind, const std::string& axis = {}) {
+    drive::ProcedureRequest request;
+    request.kind = kind;
+    return call(bus::ProcedureCommand{axis, request});
+  }
+  bus::Answer move(std::vector<double> goal, Duration duration) {
+    bus::TrajectoryCommand trajectory;
+    trajectory.group = loaded_.robot.groups[0].name;
+    trajectory.joints = loaded_.robot.groups[0].joints;
+    std::vector<double> rest(goal.size(), 0.0);
+    trajectory.points = {{std::move(goal), std::move(rest), {}, duration}};
+    return call(trajectory);
+  }
+
+ private:
+  void onEvent(const bus::Event& event) override { events_.push_back(event); }
+  void step() {
+    now_ += std::chrono::microseconds(500);
+    watch_.update(interface_, robot_, now_);
+    robot_.tick(now_);
+    while (const auto received = interface_.receive(now_)) {
+      robot_.receive(received->frame, received->stamp, now_);
+    }
+    interface_.maintain(now_);
+  }
+
+  LoadedRobot loaded_;
+  sim::World world_;
+  sim::BusInterface interface_;
+  std::vector<bus::Event> events_;
+  bus::Robot robot_;
+  bus::BusWatch watch_{*this};
+  Time now_{};
+};
+
+}  // namespace cia402
