@@ -68,6 +68,15 @@ AxisRecord recordOf(std::size_t index, const drive::Axis& axis, std::uint8_t fla
   return record;
 }
 
+/// Calls `use(node, pdo)` for every PDO in operation, always in the same order.
+template <typename Use>
+void forEachPdo(const Robot& robot, Use&& use) {
+  for (const canopen::Node& node : robot.master().nodes()) {
+    for (const auto& pdo : node.image().tpdos()) use(node, pdo);
+    for (const auto& pdo : node.image().rpdos()) use(node, pdo);
+  }
+}
+
 template <typename Record, typename StampOf>
 void sortFrom(std::vector<Record>& records, Time begin, Time end, StampOf stampOf) {
   records.erase(std::remove_if(records.begin(), records.end(),
@@ -108,6 +117,22 @@ FlightRecorder::FlightRecorder(const config::RobotConfig& robot, can::Sink& sink
   for (const config::GroupConfig& group : robot.groups) group_names_.push_back(group.name);
 }
 
+void FlightRecorder::watch(const Robot& robot) {
+  robot_ = &robot;
+  forEachPdo(robot, [&](const canopen::Node& node, const canopen::ProcessImage::Pdo& pdo) {
+    identifiers_.push_back({node.id(), pdo.direction, pdo.number, pdo.cob_id});
+  });
+  cob_ids_ = std::vector<std::atomic<std::uint16_t>>(identifiers_.size());
+  observeIdentifiers();
+}
+
+void FlightRecorder::observeIdentifiers() {
+  auto place = cob_ids_.begin();
+  forEachPdo(*robot_, [&](const canopen::Node&, const canopen::ProcessImage::Pdo& pdo) {
+    (place++)->store(pdo.cob_id, std::memory_order_relaxed);
+  });
+}
+
 std::size_t FlightRecorder::memory() const {
   return frames_.memory() + axes_.memory() + notes_.memory();
 }
@@ -116,7 +141,10 @@ void FlightRecorder::observeCycle() {
   const Time now = robot_->now();
   observed_ = robot_->lastCycle();
   const bool sample = now >= sampled_ + kSampleInterval;
-  if (sample) sampled_ = now;
+  if (sample) {
+    sampled_ = now;
+    observeIdentifiers();
+  }
   const std::vector<drive::Axis>& axes = robot_->axes();
   for (std::size_t i = 0; i < axes.size(); ++i) {
     observeAxis(i, axes[i], !robot_->motions()[i].atRest(), sample, now);
@@ -219,6 +247,10 @@ Recording FlightRecorder::copy(Time end) const {
   recording.frames = frames_.copy();
   recording.axes = axes_.copy();
   recording.notes = notes_.copy();
+  recording.identifiers = identifiers_;
+  for (std::size_t i = 0; i < cob_ids_.size(); ++i) {
+    recording.identifiers[i].cob_id = cob_ids_[i].load(std::memory_order_relaxed);
+  }
   sortFrom(recording.frames, recording.begin, end,
            [](const can::FrameRecord& record) { return record.stamp(); });
   sortFrom(recording.axes, recording.begin, end,

@@ -87,6 +87,20 @@ std::string errorWords(std::uint16_t code, const drive::AxisConfig& axis) {
   return decode::errorText(code, *axis.profile);
 }
 
+/// The configuration with the COB-IDs that the PDOs really had.
+canopen::MasterConfig asItWas(canopen::MasterConfig master, const Recording& recording) {
+  for (const PdoIdentifier& known : recording.identifiers) {
+    for (canopen::NodeConfig& node : master.nodes) {
+      if (node.node_id != known.node) continue;
+      for (canopen::PdoConfig& pdo : node.pdos) {
+        const bool same = pdo.direction == known.direction && pdo.number == known.number;
+        if (same) pdo.cob_id = known.cob_id;
+      }
+    }
+  }
+  return master;
+}
+
 /// Writes the lines of a recording in the order of time.
 class Teller {
  public:
@@ -96,7 +110,7 @@ class Teller {
         recording_(recording),
         robot_(robot),
         wall_(wall),
-        decoder_(robot, master),
+        decoder_(robot, asItWas(master, recording)),
         last_(robot.axes.size(), nullptr) {}
 
   void tell() {

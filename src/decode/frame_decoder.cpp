@@ -76,12 +76,17 @@ FrameDecoder::FrameDecoder(const config::RobotConfig& robot, const canopen::Mast
     node.values = std::make_unique<ValueText>(axis);
     node.sdo = SdoDecoder(node.values.get());
   }
-  for (const canopen::NodeConfig& node : master.nodes) addPdos(node);
+  for (const canopen::NodeConfig& node : master.nodes) {
+    addPdos(node);
+    const canopen::SdoChannel& sdo = node.sdo_channel;
+    if (sdo.request != 0) channels_[sdo.request] = {node.node_id, false};
+    if (sdo.answer != 0) channels_[sdo.answer] = {node.node_id, true};
+  }
 }
 
 void FrameDecoder::addPdos(const canopen::NodeConfig& config) {
   for (const canopen::PdoConfig& from : config.pdos) {
-    if (!from.enabled) continue;
+    if (!from.enabled || from.cob_id == 0) continue;
     Pdo pdo;
     pdo.service = (from.direction == canopen::PdoDirection::rpdo ? "RPDO" : "TPDO") +
                   std::to_string(from.number);
@@ -194,6 +199,12 @@ DecodedFrame FrameDecoder::decode(const Frame& frame) {
   const auto pdo = pdos_.find(frame.id);
   if (pdo != pdos_.end()) {
     return {pdo->second.service, nodeOf(pdo->second.node).name, pdoText(pdo->second, frame)};
+  }
+  const auto channel = channels_.find(frame.id);
+  if (channel != channels_.end()) {
+    Node& node = nodeOf(channel->second.node);
+    return {"SDO", node.name,
+            channel->second.answer ? node.sdo.answer(frame) : node.sdo.request(frame)};
   }
   const auto id = static_cast<NodeId>(frame.id & 0x7F);
   if (id == 0 || frame.id == 0x7E4 || frame.id == 0x7E5) return broadcast(frame);

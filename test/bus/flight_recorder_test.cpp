@@ -121,6 +121,31 @@ TEST_F(Recorder, AStormOfEmergenciesIsOneRecordingAndTheRestIsCounted) {
   EXPECT_EQ(recorder.suppressed(), 949U);
 }
 
+TEST(FlightRecorder, KnowsTheIdentifiersOfPdosAsTheDrivesKeepThem) {
+  NoSink sink;
+  const config::RobotConfig config = test::testRobot();
+  test::RobotWorld world{config};
+  FlightRecorder recorder(config, sink);
+  recorder.watch(world.robot);
+  const auto identifierOf = [&](canopen::NodeId node, canopen::PdoDirection direction) {
+    for (const PdoIdentifier& known : recorder.copy(world.now).identifiers) {
+      if (known.node == node && known.direction == direction && known.number == 1) {
+        return unsigned{known.cob_id};
+      }
+    }
+    return 0U;
+  };
+  EXPECT_EQ(identifierOf(2, canopen::PdoDirection::tpdo), 0x182U);
+  EXPECT_EQ(identifierOf(2, canopen::PdoDirection::rpdo), 0x202U);
+  world.boot();
+  auto& nodes = world.robot.master().nodes();
+  nodes[1].image().setCobId(canopen::PdoDirection::tpdo, 1, 0x1E5);
+  world.run(110ms);
+  recorder.observe();
+  EXPECT_EQ(identifierOf(2, canopen::PdoDirection::tpdo), 0x1E5U);
+  EXPECT_EQ(identifierOf(1, canopen::PdoDirection::tpdo), 0x181U);
+}
+
 TEST(FlightRecorder, WithNothingToKeepFaultsAreNoTriggers) {
   NoSink sink;
   config::RobotConfig config = test::testRobot();

@@ -111,6 +111,20 @@ TEST(RecordingText, LinesAreInTheOrderOfTimeAndTheHeadSaysWhy) {
             "1700000009.004000   +0.004000  --  step       elbow (2)         switching on\n");
 }
 
+TEST(RecordingText, PdosAreKnownByTheIdentifiersThatTheDrivesKept) {
+  const config::RobotConfig robot = test::testRobot();
+  Recording recording;
+  recording.frames = {{can::Frame(0x1E5, {0x37, 0x02}), Time(1ms), false},
+                      {can::Frame(0x182, {0x37, 0x02}), Time(2ms), false}};
+  recording.identifiers = {{2, canopen::PdoDirection::tpdo, 1, 0x1E5},
+                           {2, canopen::PdoDirection::rpdo, 1, 0x202}};
+  recording.triggers.resize(1);
+  std::ostringstream out;
+  writeText(out, recording, robot, test::masterOf(robot), 0s);
+  EXPECT_THAT(out.str(), HasSubstr("rx  TPDO1      elbow (2)         too short, 2 of "));
+  EXPECT_THAT(out.str(), HasSubstr("rx  ?          -                 0x0182: 37 02"));
+}
+
 TEST(RecordingText, FramesAreLoggedWithTheirDirection) {
   Recording recording;
   can::Frame error(0x040, {0, 0, 0, 0, 0, 0, 0, 0});

@@ -81,6 +81,14 @@ TEST_F(Decoder, ModeNamesTheBitsThatDependOnIt) {
             "0 m (0)");
 }
 
+TEST_F(Decoder, APdoWhoseIdentifierOnlyTheDriveKnowsHidesNoNmt) {
+  canopen::MasterConfig master = test::master(robot);
+  for (canopen::PdoConfig& pdo : master.nodes[0].pdos) pdo.cob_id = 0;
+  FrameDecoder other(robot, master);
+  EXPECT_EQ(other.decode({0x000, {0x82, 0x00}}).service, "NMT");
+  EXPECT_EQ(other.decode({0x181, {0x82, 0x00}}).service, "?");
+}
+
 TEST_F(Decoder, AShortPdoTellsWhatThereIs) {
   EXPECT_EQ(line({0x181, {0x18, 0x02}}),
             "TPDO1|shoulder (1)|too short, 2 of 7 bytes | statusword 0x0218 fault; voltage "
@@ -160,6 +168,17 @@ TEST_F(Decoder, SdoOfEachNodeHasItsOwnMemory) {
   EXPECT_EQ(
       line({0x589, {0x80, 0x41, 0x60, 0x00, 0x00, 0x00, 0x02, 0x06}}),
       "SDO|node 9|abort 6041:00: 0x06020000 (object does not exist in the object dictionary)");
+}
+
+TEST_F(Decoder, AnSdoChannelOfOtherIdentifiersIsThatOfItsNode) {
+  canopen::MasterConfig master = test::master(robot);
+  master.nodes[1].sdo_channel = {0x650, 0x5D0};
+  FrameDecoder other(robot, master);
+  const DecodedFrame asked = other.decode({0x650, {0x40, 0x41, 0x60, 0x00, 0, 0, 0, 0}});
+  EXPECT_EQ(asked.service + "|" + asked.node + "|" + asked.text,
+            "SDO|slide (2)|read 6041:00 statusword");
+  const DecodedFrame told = other.decode({0x5D0, {0x4B, 0x41, 0x60, 0x00, 0x40, 0x02, 0, 0}});
+  EXPECT_EQ(told.text, "read 6041:00 statusword = 0x0240 switch on disabled; remote");
 }
 
 TEST_F(Decoder, ErrorFramesAndForeignOnesHaveWords) {

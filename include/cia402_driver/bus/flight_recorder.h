@@ -42,7 +42,7 @@ class FlightRecorder final : public can::Sink {
 
   // The thread of the bus:
   /// The robot whose axes are recorded and by whose time frames are stamped; before it sends.
-  void watch(const Robot& robot) { robot_ = &robot; }
+  void watch(const Robot& robot);
   /// Records what the interface takes.
   bool send(const can::Frame& frame) override {
     if (!sink_.send(frame)) return false;
@@ -88,6 +88,7 @@ class FlightRecorder final : public can::Sink {
   void observeAxis(std::size_t index, const drive::Axis& axis, bool moving, bool sample, Time now);
   void observeStep(std::size_t index, const drive::Axis& axis, Time now);
   void observeGroups(Time now);
+  void observeIdentifiers();
   void lookForFault(std::size_t index, const drive::AxisState& state, Time now);
   void trigger(RecordingTrigger::Kind kind, std::size_t axis, std::uint16_t code, Time now);
 
@@ -101,6 +102,8 @@ class FlightRecorder final : public can::Sink {
   std::vector<Watched> watched_;
   std::vector<std::uint8_t> groups_;
   std::vector<std::string> group_names_;
+  std::vector<PdoIdentifier> identifiers_;  // fixed once the robot is known, but the COB-IDs:
+  std::vector<std::atomic<std::uint16_t>> cob_ids_;
   SpscQueue<RecordingTrigger> triggers_{64};
   RecordingLimiter limiter_;
   Time observed_{}, sampled_{}, recording_until_ = Time::min();

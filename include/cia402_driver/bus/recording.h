@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cia402_driver/can/frame_record.h"
+#include "cia402_driver/canopen/config.h"
 #include "cia402_driver/common/time.h"
 #include "cia402_driver/config/robot.h"
 
@@ -81,6 +82,14 @@ std::string triggerText(const RecordingTrigger& trigger, const config::RobotConf
 /// The same for a file name: "shoulder_fault_8611", "bus_off".
 std::string triggerName(const RecordingTrigger& trigger, const config::RobotConfig& robot);
 
+/// The COB-ID of a PDO; some drives keep one of their own.
+struct PdoIdentifier {
+  canopen::NodeId node = 0;
+  canopen::PdoDirection direction = canopen::PdoDirection::tpdo;
+  unsigned number = 1;
+  std::uint16_t cob_id = 0;
+};
+
 /// What a flight recorder held at a moment.
 struct Recording {
   Time begin{}, end{};
@@ -88,6 +97,7 @@ struct Recording {
   std::vector<can::FrameRecord> frames;    ///< by stamp
   std::vector<AxisRecord> axes;            ///< by stamp
   std::vector<NoteRecord> notes;           ///< by stamp
+  std::vector<PdoIdentifier> identifiers;  ///< of all PDOs, as they were last
 };
 
 }  // namespace cia402::bus

@@ -69,6 +69,7 @@ class Robot final : private canopen::MasterListener {
   std::vector<drive::Axis>& axes() { return axes_; }
   const std::vector<Group>& groups() const { return groups_; }
   canopen::Master& master() { return master_; }
+  const canopen::Master& master() const { return master_; }
   const CycleStatistics& statistics() const { return statistics_; }
   const std::vector<drive::Axis>& axes() const { return axes_; }
   const std::vector<AxisMotion>& motions() const { return motions_; }

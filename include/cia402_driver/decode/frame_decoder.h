@@ -58,6 +58,12 @@ class FrameDecoder {
     bool guarded = false;  ///< a guarding request was seen
   };
 
+  /// SDO on other COB-IDs than 600h and 580h + node-ID.
+  struct Channel {
+    canopen::NodeId node = 0;
+    bool answer = false;  ///< from the drive
+  };
+
   void addPdos(const canopen::NodeConfig& config);
   Node& nodeOf(canopen::NodeId id);
   std::string pdoText(const Pdo& pdo, const can::Frame& frame);
@@ -66,7 +72,8 @@ class FrameDecoder {
   std::string emergencyText(const can::Frame& frame, canopen::NodeId id);
 
   canopen::NodeId master_;
-  std::map<std::uint32_t, Pdo> pdos_;  // by COB-ID
+  std::map<std::uint32_t, Pdo> pdos_;          // by COB-ID
+  std::map<std::uint32_t, Channel> channels_;  // by COB-ID
   std::map<canopen::NodeId, Node> nodes_;
 };
 
