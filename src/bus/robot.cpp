@@ -309,10 +309,12 @@ void Robot::readHistoryAfterFault(std::size_t axis, Time now) {
   const bool recently = news.history_asked != Time() && now < news.history_asked + kHistoryInterval;
   if (recently || shutdown_ != Shutdown::no) return;
   news.history_asked = now;
+  news.history_wanted = false;
   histories_.emplace_back(
       axes_[axis], kHistoryAfterFault, [this, axis](const canopen::ErrorHistory& history) {
         const std::string text = historyText(*axes_[axis].config().profile, history);
         news_[axis].history.assign(text);
+        if (!history.readable) return;  // many drives keep none
         tell(Event::Severity::info,
              whoIs(*nodes_[axis]) + ": the drive's error history (1003h), newest first: " + text,
              now_);
@@ -323,6 +325,7 @@ void Robot::watchAxes(Time now) {
   for (AxisReporter& reporter : reporters_) reporter.tick(now);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     watchPdos(i, now);
+    if (news_[i].history_wanted) readHistoryAfterFault(i, now);
     const drive::AxisState& state = axes_[i].state();
     const drive::ProcedureStatus& procedure = axes_[i].procedure();
     AxisNews& news = news_[i];
@@ -339,7 +342,7 @@ void Robot::watchAxes(Time now) {
     const auto faulty = [](drive::State s) {
       return s == drive::State::fault || s == drive::State::fault_reaction_active;
     };
-    if (faulty(state.state) && !faulty(news.state)) readHistoryAfterFault(i, now);
+    if (faulty(state.state) && !faulty(news.state)) news.history_wanted = true;
     news.state = state.state;
     news.health = state.health;
     news.error_code = state.error_code;

@@ -162,6 +162,7 @@ void BusRunner::publish(Time now) {
   snapshot.bus_state = interface_->state();
   snapshot.counters = interface_->counters();
   snapshot.bus_load = meter_.load();
+  snapshot.most_bus_load = meter_.mostLoad();
   snapshot.bus_text.assign(watch_.text());
   snapshot.pending = interface_->pending();
   snapshot.error_counters = interface_->errorCounters();

@@ -119,7 +119,8 @@ void Diagnostics::reportBus(Status& status) {
     status.mergeSummaryf(DiagnosticStatus::WARN, "bus load %.0f %%", 100.0 * snapshot_.bus_load);
   }
   status.addf("state", "%s", can::toString(snapshot_.bus_state));
-  status.addf("load", "%.1f %%", 100.0 * snapshot_.bus_load);
+  status.addf("load", "%.1f %%, %.1f %% with all stuff bits that are possible",
+              100.0 * snapshot_.bus_load, 100.0 * snapshot_.most_bus_load);
   status.add("frames sent", snapshot_.counters.frames_sent);
   status.add("frames received", snapshot_.counters.frames_received);
   status.add("frames deferred", snapshot_.counters.frames_deferred);
@@ -133,6 +134,7 @@ void Diagnostics::reportBus(Status& status) {
   status.addf("SYNC lateness max", "%.3f ms", 1e3 * cycle.maxLateness());
   status.add("cycles", cycle.cycles());
   status.add("cycles skipped", cycle.overruns());
+  status.add("failures not recorded", runner_.recordings().suppressed());
   status.add("real time", runner_.realtime().text);
 }
 

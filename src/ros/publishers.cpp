@@ -177,6 +177,7 @@ cia402_driver::BusState Publishers::busState(const bus::RobotSnapshot& snapshot)
   message.state = can::toString(snapshot.bus_state);
   message.description = snapshot.bus_text.str();
   message.load = snapshot.bus_load;
+  message.load_most = snapshot.most_bus_load;
   message.frames_sent = snapshot.counters.frames_sent;
   message.frames_received = snapshot.counters.frames_received;
   message.frames_deferred = snapshot.counters.frames_deferred;

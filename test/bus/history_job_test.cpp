@@ -68,6 +68,19 @@ TEST_F(HistoryJobTest, IsReadOnceWhenAnAxisFaultsAndShownInTheSnapshot) {
   EXPECT_EQ(world.eventsWith("newest first"), 1u);
 }
 
+TEST_F(HistoryJobTest, IsReadOfASecondFaultToo) {
+  remember(1, 0x8611, 0);
+  world.drives[0].fault(0x8611);
+  world.run(200ms);
+  ASSERT_TRUE(world.call(drive::ProcedureKind::clear_faults, "shoulder").success);
+  remember(1, 0x3210, 0);
+  world.drives[0].fault(0x3210);
+  world.run(1s);
+  EXPECT_EQ(world.eventsWith("newest first"), 1u) << "not in quick succession";
+  world.run(5s);
+  EXPECT_EQ(world.eventsWith("newest first: 0x3210 DC link overvoltage"), 1u);
+}
+
 TEST_F(HistoryJobTest, DoesNotHoldTheCycleUp) {
   remember(1, 0x8611, 0);
   world.drives[0].sdo_silent = true;

@@ -40,6 +40,16 @@ TEST_F(LoadMeterTest, CountsAFrameWithEightBytesAs111Bits) {
   EXPECT_DOUBLE_EQ(loadAfter(1s), 0.111);
 }
 
+// 34 bits before the CRC delimiter and 64 of data may be stuffed, one after each four but the first
+// five: 24.
+TEST_F(LoadMeterTest, TellsWhatStuffBitsMayAdd) {
+  meter.count(can::Frame(0x181, {1, 2, 3, 4, 5, 6, 7, 8}));
+  meter.update(start + 1s);
+  EXPECT_DOUBLE_EQ(meter.mostLoad(), 0.135);
+  meter.update(start + 2s);
+  EXPECT_DOUBLE_EQ(meter.mostLoad(), 0.0);
+}
+
 // 20 bits more: 18 of the identifier, SRR, r1.
 TEST_F(LoadMeterTest, CountsAnExtendedFrameWithOneByteAs75Bits) {
   can::Frame frame(0x12345, {1});

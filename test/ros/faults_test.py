@@ -13,6 +13,11 @@ class Faults(RobotTest):
         for axis in self.AXES:
             self.robot.call("inject_fault", axis=axis, fault="clear")
 
+    def value(self, status, key):
+        """A value of a diagnostic status; empty if it is not there."""
+        values = self.robot.diagnostic(status).values
+        return next((value.value for value in values if value.key == key), "")
+
     def test_fault_shows_in_words_and_is_cleared(self):
         self.home_and_enable()
         self.robot.emergencies.clear()
@@ -62,6 +67,47 @@ class Faults(RobotTest):
         self.succeed("inject_fault", axis="gripper", fault="clear")
         wait_until(lambda: self.robot.call("gripper/clear_faults").success, "cleared")
         self.succeed("gripper/enable")
+
+    def test_error_history_is_read_after_a_fault_and_by_service(self):
+        self.home_and_enable()
+        seen = len(self.process.output())
+        for fault in ("overcurrent", "encoder"):
+            self.succeed("inject_fault", axis="elbow", fault=fault)
+            self.robot.wait_state("elbow", "fault")
+            self.succeed("inject_fault", axis="elbow", fault="clear")
+            self.succeed("elbow/clear_faults")
+        self.wait_log("elbow (node 2): the drive's error history (1003h), newest first: 0x", seen)
+        answer = self.succeed("elbow/error_history", "elbow (node 2)|1003h|0x7305|0x2310")
+        self.assertEqual(list(answer.codes[:2]), [0x7305, 0x2310])
+        self.assertEqual(len(answer.infos), len(answer.codes))
+        self.assertIn("incremental sensor 1 fault", answer.texts[0])
+        wait_until(lambda: "0x2310" in self.value("elbow", "error history after the last fault"),
+                   "the history in diagnostics")
+        wait_until(lambda: self.value("node 2", "emergencies 0x7305"), "the count in diagnostics")
+
+    def test_bus_off_stops_is_ended_by_the_driver_and_leaves_the_axes_disabled(self):
+        self.home_and_enable()
+        start = self.robot.position("wrist")
+        goal = 1.0 if start < 0.0 else -1.0
+        self.robot.follow(["shoulder", "elbow", "wrist", "gripper"],
+                          [(5.0, [-2.0, 0.0, goal, 0.0])])
+        wait_until(lambda: abs(self.robot.position("wrist") - start) > 0.1, "it moves")
+        seen = len(self.process.output())
+        before = self.robot.bus_state.restarts
+        self.succeed("inject_fault", axis="bus", fault="bus_off")
+        self.wait_log("stopped: sim is bus-off", seen)
+        self.wait_log("sim is back", seen)
+        wait_until(lambda: self.robot.bus_state.restarts == before + 1, "restarts are counted")
+        self.assertGreaterEqual(self.robot.bus_state.restart_attempts, 1)
+        self.robot.wait_diagnostic("bus", OK, "")
+        for name in self.AXES:
+            self.robot.wait_axis(name, lambda axis: axis.state != "operation enabled", "disabled")
+        wait_until(lambda: all(node.ready for node in self.robot.bus_state.nodes), "ready again")
+        wait_until(lambda: self.robot.call("recover").success, "recovered")
+        self.home_and_enable()
+        place = self.robot.wait_rest("wrist")
+        self.robot.command("wrist", place + 0.1)
+        self.robot.wait_at("wrist", place + 0.1)
 
     def test_unknown_fault_or_axis_is_refused_with_the_names(self):
         self.refuse("inject_fault", "encoder|overcurrent|power_cycle", axis="elbow",

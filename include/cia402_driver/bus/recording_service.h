@@ -43,6 +43,8 @@ class RecordingService {
   News request();
   /// Any thread: what the thread has written or failed to write. @return false if nothing is new.
   bool nextNews(News& news);
+  /// Any thread: failures that were not recorded because there were too many.
+  std::uint64_t suppressed() const { return recorder_.suppressed(); }
   /// Any thread: what the recorder keeps in how much memory, and where recordings go.
   std::string describe() const;
 

@@ -93,6 +93,7 @@ class Robot final : private canopen::MasterListener {
     std::uint16_t error_code = 0;
     FixedText<256> history;  // as read after the last fault
     Time history_asked{};
+    bool history_wanted = false;
     std::uint64_t stale_count = 0, wrong_lengths = 0;  // of the TPDOs
     FixedText<160> stale;
     Time pdos_told{};
@@ -144,7 +145,7 @@ class Robot final : private canopen::MasterListener {
   void run(LssBitTimingCommand& command, const Reply& reply, Time now);
   void run(ErrorHistoryCommand& command, const Reply& reply, Time now);
   void run(CallCommand& command, const Reply& reply, Time now);
-  /// Reads the error history of an axis that has just got a fault.
+  /// Reads the error history of an axis that has got a fault, but not in quick succession.
   void readHistoryAfterFault(std::size_t axis, Time now);
 
   config::RobotConfig config_;

@@ -56,7 +56,8 @@ struct RobotSnapshot {
   FixedText<512> bus_text;
   std::size_t pending = 0;  ///< frames that wait in the driver
   std::optional<can::Interface::ErrorCounters> error_counters;
-  double bus_load = 0.0;  ///< share of the bit rate over the last second, stuff bits not counted
+  double bus_load = 0.0;       ///< share of the bit rate over the last second, without stuff bits
+  double most_bus_load = 0.0;  ///< with as many stuff bits as the frames could need
   CycleStatistics statistics;
   bool shut_down = false;
   std::vector<AxisSnapshot> axes;     ///< in configuration order
