@@ -113,7 +113,8 @@ FlightRecorder::FlightRecorder(const config::RobotConfig& robot, can::Sink& sink
       notes_(recordsIn(duration_ + kSpare, kNotesPerSecond)),
       watched_(robot.axes.size()),
       groups_(robot.groups.size()),
-      limiter_(duration_) {
+      emergency_limiter_(duration_),
+      limiters_(robot.axes.size() + 1, RecordingLimiter(duration_)) {
   for (const config::GroupConfig& group : robot.groups) group_names_.push_back(group.name);
 }
 
@@ -222,10 +223,15 @@ void FlightRecorder::onInterface(can::BusState state, Time now) {
   if (isLost(state) && !isLost(before)) trigger(Kind::interface_lost, 0, 0, now);
 }
 
+RecordingLimiter& FlightRecorder::limiterOf(Kind kind, std::size_t axis) {
+  if (kind == Kind::emergency) return emergency_limiter_;
+  return limiters_[namesAxis(kind) ? axis : limiters_.size() - 1];
+}
+
 void FlightRecorder::trigger(Kind kind, std::size_t axis, std::uint16_t code, Time now) {
   if (!on_faults_) return;
   if (now > recording_until_) {
-    if (!limiter_.permit(now)) {
+    if (!limiterOf(kind, axis).permit(now)) {
       ++suppressed_;
       return;
     }

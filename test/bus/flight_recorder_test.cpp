@@ -121,6 +121,16 @@ TEST_F(Recorder, AStormOfEmergenciesIsOneRecordingAndTheRestIsCounted) {
   EXPECT_EQ(recorder.suppressed(), 949U);
 }
 
+TEST_F(Recorder, AStormOfEmergenciesHidesNoFailure) {
+  for (int i = 0; i < 200; ++i) recorder.onEmergency(emergency(0, 0x2310, kStart + i * 10ms));
+  triggers();
+  recorder.onInterface(can::BusState::error_active, kStart);
+  recorder.onInterface(can::BusState::bus_off, kStart + 3s);
+  const auto found = triggers();
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].kind, Kind::bus_off);
+}
+
 TEST(FlightRecorder, KnowsTheIdentifiersOfPdosAsTheDrivesKeepThem) {
   NoSink sink;
   const config::RobotConfig config = test::testRobot();

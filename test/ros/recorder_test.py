@@ -28,6 +28,7 @@ class Recorder(RobotTest):
         self.wait_log(f"flight recorder: the last 10 s in |MB|{self.directory}")
 
     def test_02_service_answers_with_the_files(self):
+        self.succeed("elbow/read_object", object="1018:01")
         answer = self.succeed("dump_recording", "flight recording|asked for")
         log = re.search(r"frames in (\S+\.log)", answer.message)[1]
         text = re.search(r"in words in (\S+\.txt)", answer.message)[1]

@@ -90,6 +90,7 @@ class FlightRecorder final : public can::Sink {
   void observeGroups(Time now);
   void observeIdentifiers();
   void lookForFault(std::size_t index, const drive::AxisState& state, Time now);
+  RecordingLimiter& limiterOf(RecordingTrigger::Kind kind, std::size_t axis);
   void trigger(RecordingTrigger::Kind kind, std::size_t axis, std::uint16_t code, Time now);
 
   can::Sink& sink_;
@@ -105,7 +106,8 @@ class FlightRecorder final : public can::Sink {
   std::vector<PdoIdentifier> identifiers_;  // fixed once the robot is known, but the COB-IDs:
   std::vector<std::atomic<std::uint16_t>> cob_ids_;
   SpscQueue<RecordingTrigger> triggers_{64};
-  RecordingLimiter limiter_;
+  RecordingLimiter emergency_limiter_;      // one for all: a storm of them hides no failure
+  std::vector<RecordingLimiter> limiters_;  // failures of each axis, and of the bus
   Time observed_{}, sampled_{}, recording_until_ = Time::min();
   bool triggered_ = false;
   can::BusState interface_ = can::BusState::missing;
