@@ -180,10 +180,10 @@ void Robot::stopMotion(const std::string& why, Time now) {
 
 void Robot::beginShutdown(Time now) {
   if (shutdown_ != Shutdown::no) return;
-  lss_.abandon();
   // Before the nodes were booted there is nothing to stop.
   shutdown_ = started_ && !lss_starting_ ? Shutdown::stopping : Shutdown::done;
   shutdown_began_ = now;
+  lss_.abandon("ended by the shutdown of the driver", now);
   // What waits for its turn must not begin any more.
   for (ProcedureJob& job : procedures_) job.abandon("ended by the shutdown of the driver");
   procedures_.clear();

@@ -110,7 +110,8 @@ class Robot final : private canopen::MasterListener {
   std::string motionOnBus() const;
   std::vector<canopen::NodeId> nodesInOperation() const;
   void assignByLss(std::size_t index, bool reset);
-  void lssAssigned(std::size_t index, const canopen::LssTask& task, bool success, Time now);
+  void lssAssigned(std::size_t index, const canopen::LssTask& task, const std::string& error,
+                   Time now);
   bool beginLss();
   void stepLss(Time now);
   void lookForLostDrives(Time now);
