@@ -169,6 +169,7 @@ void Robot::stepJobs(Time now) {
   }
   if (!objects_.empty()) keep_running(objects_, [](ObjectJob& job) { return job.step(); });
   if (!nmt_.empty()) keep_running(nmt_, [&](NmtJob& job) { return job.step(axes_, now); });
+  if (!dcfs_.empty()) keep_running(dcfs_, [](DcfJob& job) { return job.step(); });
 }
 
 void Robot::stopMotion(const std::string& why, Time now) {
@@ -217,6 +218,8 @@ void Robot::stepShutdown(Time now) {
     shutdown_ = Shutdown::done;
     for (ObjectJob& job : objects_) job.abandon("ended by the shutdown of the driver");
     objects_.clear();
+    for (DcfJob& job : dcfs_) job.abandon("ended by the shutdown of the driver");
+    dcfs_.clear();
   }
 }
 

@@ -13,7 +13,7 @@ import rospkg
 import rospy
 from cia402_driver.msg import AxisStates, BusState, Emergency
 from cia402_driver.srv import (InjectFault, LssAssign, LssScan, LssSetBitTiming, Nmt, ReadObject,
-                               SetMode, SetPosition, WriteObject)
+                               SaveDcf, SetMode, SetPosition, WriteObject)
 from control_msgs.msg import JointTrajectoryControllerState
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from sensor_msgs.msg import JointState
@@ -28,7 +28,7 @@ ERROR, WARN, OK = DiagnosticStatus.ERROR, DiagnosticStatus.WARN, DiagnosticStatu
 SERVICES = {
     "inject_fault": InjectFault, "read_object": ReadObject, "write_object": WriteObject,
     "set_mode": SetMode, "set_position": SetPosition, "nmt": Nmt, "lss_scan": LssScan,
-    "lss_assign": LssAssign, "lss_set_bit_timing": LssSetBitTiming,
+    "lss_assign": LssAssign, "lss_set_bit_timing": LssSetBitTiming, "save_dcf": SaveDcf,
 }
 
 

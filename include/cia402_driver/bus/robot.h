@@ -7,6 +7,7 @@
 #include "cia402_driver/bus/axis_motion.h"
 #include "cia402_driver/bus/command.h"
 #include "cia402_driver/bus/cycle_statistics.h"
+#include "cia402_driver/bus/dcf_job.h"
 #include "cia402_driver/bus/event.h"
 #include "cia402_driver/bus/group.h"
 #include "cia402_driver/bus/jobs.h"
@@ -131,6 +132,7 @@ class Robot final : private canopen::MasterListener {
   void run(LssScanCommand& command, const Reply& reply, Time now);
   void run(LssAssignCommand& command, const Reply& reply, Time now);
   void run(LssBitTimingCommand& command, const Reply& reply, Time now);
+  void run(SaveDcfCommand& command, const Reply& reply, Time now);
   void run(CallCommand& command, const Reply& reply, Time now);
 
   config::RobotConfig config_;
@@ -148,6 +150,7 @@ class Robot final : private canopen::MasterListener {
   Time next_lss_look_{};
   std::vector<std::string> lss_problems_;      // of each axis
   std::vector<ProcedureJob> waiting_for_lss_;  ///< begin once the desk is free
+  std::vector<DcfJob> dcfs_;
   std::vector<AxisNews> news_;
   std::vector<canopen::Node*> nodes_;  // of each axis
   std::vector<std::uint64_t> missed_feedback_, emergencies_;
