@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "cia402_driver/can/pacer.h"
 #include "cia402_driver/canopen/sdo_client.h"
 #include "input.h"
 
@@ -17,18 +18,67 @@ using namespace canopen;
 
 constexpr NodeId kNode = 5;
 constexpr std::uint32_t kAnswerId = 0x585;
+constexpr std::size_t kShortUpload = 20;
 
-/// Keeps the last request and its number.
+/// Keeps the last request and its number, and what a block upload has brought so far.
 struct Requests : can::Sink {
   bool send(const can::Frame& frame) override {
     last = frame;
     ++count;
+    const std::uint8_t command = frame.data[0];
+    if (command == 0xA3 || command == 0xA2) sequence = 0;  // a sub-block begins
+    if ((command & 0xE3U) == 0xA0U) uploaded.clear();      // an upload begins
     require(frame.id == 0x605 && frame.size == 8, "a request is a frame of 8 bytes on 605h");
     return count % 50 != 49;  // the queue is full now and then
   }
   can::Frame last;
   std::uint64_t count = 0;
+  std::uint8_t sequence = 0;  ///< of the last segment of a sub-block of an upload
+  Bytes uploaded;
 };
+
+/// CRC of CiA 301, 7.2.4.3.16: polynomial x^16 + x^12 + x^5 + 1, from 0.
+std::uint16_t checksum(const Bytes& data, std::size_t size) {
+  std::uint32_t crc = 0;
+  for (std::size_t i = 0; i < size; ++i) {
+    crc ^= std::uint32_t{data[i]} << 8U;
+    for (int bit = 0; bit < 8; ++bit) crc = (crc & 0x8000U) != 0 ? crc << 1U ^ 0x1021U : crc << 1U;
+  }
+  return static_cast<std::uint16_t>(crc);
+}
+
+/// What a server of block transfers would say next, right more often than not.
+can::Frame blockAnswer(Requests& requests, Input& input) {
+  can::Frame frame = requests.last;
+  frame.id = kAnswerId;
+  frame.size = 8;
+  const std::uint8_t shape = input.byte();
+  switch (shape % 4) {
+    case 0:  // a segment, the last one or not
+      frame.data[0] = static_cast<std::uint8_t>(++requests.sequence | (shape & 0x80U));
+      for (std::size_t i = 1; i < 8; ++i) {
+        frame.data[i] = input.byte();
+        requests.uploaded.push_back(frame.data[i]);
+      }
+      break;
+    case 1:  // a sub-block has come
+      frame.data = {0xA2, static_cast<std::uint8_t>(requests.last.data[0] & 0x7FU), input.byte()};
+      break;
+    case 2: {  // the end: bytes of the last segment that do not count, and the checksum
+      const unsigned unused = shape / 4 % 8;
+      const std::size_t size = requests.uploaded.size();
+      const std::uint16_t crc = checksum(requests.uploaded, size < unused ? 0 : size - unused);
+      frame.data = {static_cast<std::uint8_t>(0xC1U | unused << 2U),
+                    static_cast<std::uint8_t>(crc & 0xFFU), static_cast<std::uint8_t>(crc >> 8U)};
+      break;
+    }
+    default:  // the beginning, of an upload or a download
+      frame.data[0] = requests.last.data[0] < 0xC0 ? 0xC6 : 0xA4;
+      frame.data[4] = input.byte();
+      for (std::size_t i = 5; i < 8; ++i) frame.data[i] = 0;
+  }
+  return frame;
+}
 
 /// A plausible answer: the last request's object with a command of any kind.
 can::Frame answer(const Requests& requests, Input& input) {
@@ -54,7 +104,13 @@ can::Frame answer(const Requests& requests, Input& input) {
 SdoOptions readOptions(Input& input) {
   SdoOptions options;
   options.timeout = std::chrono::milliseconds(1 + input.byte());
-  options.retries = input.byte() % 3;
+  const std::uint8_t shape = input.byte();
+  using Block = SdoOptions::Block;
+  static constexpr Block kBlocks[] = {Block::automatic, Block::always, Block::never};
+  options.retries = shape % 3;
+  options.block = kBlocks[shape / 4 % 3];
+  if ((shape & 0x40U) != 0) options.longest_upload = kShortUpload;
+  if ((shape & 0x80U) != 0) options.block_threshold = 4;
   return options;
 }
 
@@ -90,26 +146,36 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size > 4096) return 0;
   fuzz::Input input(data, size);
   fuzz::Requests requests;
-  canopen::SdoClient client(fuzz::kNode, requests, fuzz::readOptions(input));
+  const canopen::SdoOptions defaults = fuzz::readOptions(input);
+  // Half of them at 1 Mbit/s, with the segments of a block held back for the wire.
+  const bool paced = (size & 1U) != 0;
+  can::Pacer pacer(requests, 1e6);
+  can::Sink& sink = paced ? static_cast<can::Sink&>(pacer) : requests;
+  canopen::SdoClient client(fuzz::kNode, sink, defaults, {}, paced ? &pacer : nullptr);
   std::vector<canopen::SdoTicket> tickets;
   std::uint64_t frames = 0;
   Time now{};
   while (!input.empty()) {
     const std::uint8_t action = input.byte();
+    pacer.setTime(now);
     if (action < 0x30) {
       if (tickets.size() < 20) fuzz::start(client, input, tickets);
       client.tick(now);
     } else if (action < 0x60) {
       now += std::chrono::milliseconds(input.byte());
       client.tick(now);
-    } else if (action < 0xC0) {
+    } else if (action < 0x90) {
       client.receive(fuzz::answer(requests, input), now);
+      ++frames;
+    } else if (action < 0xC0) {
+      client.receive(fuzz::blockAnswer(requests, input), now);
       ++frames;
     } else if (action < 0xFC) {
       client.receive(input.frame(action < 0xF0 ? fuzz::kAnswerId : input.word() & 0x7FFU), now);
       ++frames;
     } else {
       client.cancelAll("fuzz");
+      if (action == 0xFF) client.serverRestarted();
     }
     fuzz::check(tickets, frames);
   }
@@ -119,6 +185,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const Time deadline = client.nextDeadline();
     fuzz::require(deadline != kNever, "who waits has a deadline");
     if (deadline > now) now = deadline;
+    pacer.setTime(now);
     client.tick(now);
   }
   fuzz::check(tickets, frames);

@@ -10,11 +10,14 @@ void LssDesk::add(std::string who, std::unique_ptr<canopen::LssTask> task, Ended
   queue_.push_back({std::move(who), std::move(task), std::move(ended), window});
 }
 
-void LssDesk::abandon() {
+void LssDesk::abandon(const std::string& why, Time now) {
   if (!busy()) return;
-  queue_.clear();
   master_.stop();
   sink_.send(canopen::lss::switchGlobal(canopen::lss::State::waiting));
+  for (; busy(); queue_.pop_front()) {
+    const Entry& entry = queue_.front();
+    if (entry.ended) entry.ended(*entry.task, why, now);
+  }
 }
 
 void LssDesk::receive(const can::Frame& frame, Time now) {
@@ -39,7 +42,8 @@ void LssDesk::advance(Time now) {
     if (status == canopen::LssTask::Status::running) continue;
     const Entry ended = std::move(queue_.front());  // its end may add others
     queue_.pop_front();
-    if (ended.ended) ended.ended(*ended.task, status == canopen::LssTask::Status::done, now);
+    const bool done = status == canopen::LssTask::Status::done;
+    if (ended.ended) ended.ended(*ended.task, done ? std::string() : ended.task->error(), now);
   }
 }
 

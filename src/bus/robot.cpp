@@ -191,6 +191,7 @@ void Robot::stepJobs(Time now) {
   if (!objects_.empty()) keep_running(objects_, [](ObjectJob& job) { return job.step(); });
   if (!nmt_.empty()) keep_running(nmt_, [&](NmtJob& job) { return job.step(axes_, now); });
   if (!histories_.empty()) keep_running(histories_, [](HistoryJob& job) { return job.step(); });
+  if (!dcfs_.empty()) keep_running(dcfs_, [](DcfJob& job) { return job.step(); });
 }
 
 void Robot::stopMotion(const std::string& why, Time now) {
@@ -202,10 +203,10 @@ void Robot::stopMotion(const std::string& why, Time now) {
 
 void Robot::beginShutdown(Time now) {
   if (shutdown_ != Shutdown::no) return;
-  lss_.abandon();
   // Before the nodes were booted there is nothing to stop.
   shutdown_ = started_ && !lss_starting_ ? Shutdown::stopping : Shutdown::done;
   shutdown_began_ = now;
+  lss_.abandon("ended by the shutdown of the driver", now);
   // What waits for its turn must not begin any more.
   for (ProcedureJob& job : procedures_) job.abandon("ended by the shutdown of the driver");
   procedures_.clear();
@@ -242,6 +243,8 @@ void Robot::stepShutdown(Time now) {
     for (HistoryJob& job : histories_) job.abandon("ended by the shutdown of the driver");
     histories_.clear();
     for (AxisReporter& reporter : reporters_) reporter.flush(now);
+    for (DcfJob& job : dcfs_) job.abandon("ended by the shutdown of the driver");
+    dcfs_.clear();
   }
 }
 

@@ -158,6 +158,15 @@ void Robot::run(ErrorHistoryCommand& command, const Reply& reply, Time) {
                           });
 }
 
+void Robot::run(SaveDcfCommand& command, const Reply& reply, Time) {
+  drive::Axis* axis = axisNamed(command.axis);
+  if (axis == nullptr) {
+    give(reply, refused("there is no axis \"" + command.axis + "\""));
+    return;
+  }
+  dcfs_.emplace_back(*axis, command, config_.bus.bitrate, reply);
+}
+
 void Robot::run(CallCommand& command, const Reply& reply, Time now) {
   give(reply, command.function(now));
 }

@@ -77,14 +77,15 @@ void Robot::assignByLss(std::size_t index, bool reset) {
   options.reset = reset;
   if (reset) options.in_use = nodesInOperation();
   lss_.add(axis.name, std::make_unique<canopen::LssAssignTask>(std::move(options), sink_),
-           [this, index](const canopen::LssTask& task, bool success, Time now) {
-             lssAssigned(index, task, success, now);
+           [this, index](const canopen::LssTask& task, const std::string& error, Time now) {
+             if (shutdown_ == Shutdown::no) lssAssigned(index, task, error, now);
            });
 }
 
-void Robot::lssAssigned(std::size_t index, const canopen::LssTask& task, bool success, Time now) {
-  const std::string text =
-      who(config_.axes[index]) + ": LSS: " + (success ? task.result() : task.error());
+void Robot::lssAssigned(std::size_t index, const canopen::LssTask& task, const std::string& error,
+                        Time now) {
+  const bool success = error.empty();
+  const std::string text = who(config_.axes[index]) + ": LSS: " + (success ? task.result() : error);
   if (success) {
     lss_problems_[index].clear();
     tell(Event::Severity::info, text, now);
@@ -130,7 +131,7 @@ void Robot::lookForLostDrives(Time now) {
   });
   if (!missing || shutdown_ != Shutdown::no) return;
   lss_.add("", std::make_unique<canopen::LssLookTask>(),
-           [this](const canopen::LssTask& task, bool, Time) {
+           [this](const canopen::LssTask& task, const std::string&, Time) {
              if (!static_cast<const canopen::LssLookTask&>(task).found()) return;
              for (std::size_t i = 0; i < axes_.size(); ++i) {
                if (config_.axes[i].lss && away(axes_[i].state().health)) assignByLss(i, true);
@@ -154,10 +155,10 @@ void Robot::run(LssScanCommand& command, const Reply& reply, Time) {
   if (!refusal.empty()) return give(reply, answerOf(false, refusal));
   lss_.add(
       "", std::make_unique<canopen::LssScanTask>(),
-      [this, reply](const canopen::LssTask& task, bool success, Time) {
+      [this, reply](const canopen::LssTask& task, const std::string& error, Time) {
         const auto& scan = static_cast<const canopen::LssScanTask&>(task);
-        Answer answer =
-            answerOf(success && !scan.incomplete(), success ? task.result() : task.error());
+        const bool success = error.empty();
+        Answer answer = answerOf(success && !scan.incomplete(), success ? task.result() : error);
         for (const lss::Identity& identity : scan.found()) {
           answer.devices.push_back(identity);
           answer.device_axes.emplace_back();
@@ -196,9 +197,9 @@ void Robot::run(LssAssignCommand& command, const Reply& reply, Time) {
   options.in_use = in_use;
   const std::string device = toString(command.identity);
   lss_.add("", std::make_unique<canopen::LssAssignTask>(std::move(options), sink_),
-           [reply, device](const canopen::LssTask& task, bool success, Time) {
-             give(reply,
-                  answerOf(success, device + ": " + (success ? task.result() : task.error())));
+           [reply, device](const canopen::LssTask& task, const std::string& error, Time) {
+             const bool success = error.empty();
+             give(reply, answerOf(success, device + ": " + (success ? task.result() : error)));
            });
 }
 
@@ -255,9 +256,10 @@ void Robot::run(LssBitTimingCommand& command, const Reply& reply, Time) {
     lss_.add(
         name,
         std::make_unique<canopen::LssBitTimingTask>(identity, command.kbit_per_s, command.store),
-        [=, who = name](const canopen::LssTask& task, bool success, Time) {
-          progress->text += (progress->text.empty() ? "" : "; ") + who + ": " +
-                            (success ? task.result() : task.error());
+        [=, who = name](const canopen::LssTask& task, const std::string& error, Time) {
+          const bool success = error.empty();
+          progress->text +=
+              (progress->text.empty() ? "" : "; ") + who + ": " + (success ? task.result() : error);
           progress->success = progress->success && success;
           if (--progress->left > 0) return;
           if (!progress->success || !activate) {
@@ -269,7 +271,10 @@ void Robot::run(LssBitTimingCommand& command, const Reply& reply, Time) {
             return give(reply, answerOf(progress->success, progress->text + end));
           }
           lss_.add("", std::make_unique<canopen::LssActivateTask>(delay),
-                   [=](const canopen::LssTask&, bool, Time) {
+                   [=](const canopen::LssTask&, const std::string& failure, Time) {
+                     if (!failure.empty()) {
+                       return give(reply, answerOf(false, progress->text + "; " + failure));
+                     }
                      give(reply,
                           answerOf(true, progress->text + "; all devices switch in " +
                                              std::to_string(delay) +

@@ -60,6 +60,7 @@ void EdsReader::readFileInfo() {
   info.creation_time = textOf(*section, "creationtime");
   info.modification_date = textOf(*section, "modificationdate");
   info.modification_time = textOf(*section, "modificationtime");
+  info.last_eds = textOf(*section, "lasteds");
 }
 
 void EdsReader::readDeviceInfo() {

@@ -61,6 +61,7 @@ void writeInfo(const EdsInfo& info, DcfText& text) {
   text.optional("ModificationTime", oneLine(info.modification_time));
   text.optional("ModificationDate", oneLine(info.modification_date));
   text.optional("ModifiedBy", oneLine(info.modified_by));
+  text.optional("LastEDS", oneLine(info.last_eds));
 }
 
 void writeDevice(const EdsInfo& info, DcfText& text) {
@@ -185,6 +186,10 @@ void writeObject(const DictionaryObject& object, std::optional<NodeId> node_id, 
 }
 
 }  // namespace
+
+bool fitsDcf(DataType type, const ObjectValue& value) {
+  return formatEdsValue(value, type).has_value();
+}
 
 std::string writeDcf(const EdsInfo& info, const ObjectDictionary& dictionary) {
   DcfText text;

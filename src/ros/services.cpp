@@ -4,6 +4,7 @@
 #include <cia402_driver/ErrorHistory.h>
 #include <cia402_driver/Nmt.h>
 #include <cia402_driver/ReadObject.h>
+#include <cia402_driver/SaveDcf.h>
 #include <cia402_driver/SetMode.h>
 #include <cia402_driver/SetPosition.h>
 #include <cia402_driver/WriteObject.h>
@@ -13,6 +14,7 @@
 #include <memory>
 
 #include "cia402_driver/drive/fault_text.h"
+#include "cia402_driver/ros/dcf_file.h"
 
 namespace cia402::ros_node {
 namespace {
@@ -123,6 +125,28 @@ void Services::advertiseHistory(ros::NodeHandle& node, const std::string& axis) 
       }));
 }
 
+// The drive is read in the bus thread, the file is written here.
+void Services::advertiseSaveDcf(ros::NodeHandle& node, const std::string& axis) {
+  using cia402_driver::SaveDcf;
+  servers_.push_back(node.advertiseService<SaveDcf::Request, SaveDcf::Response>(
+      "save_dcf", [this, axis](SaveDcf::Request& request, SaveDcf::Response& response) {
+        const auto wanted = saveDcfCommand(axis, request.path);
+        if (!wanted) {
+          response.message = wanted.error().message;
+          return true;
+        }
+        bus::Command command;
+        command.body = *wanted;
+        const bus::Answer answer = call(std::move(command));
+        response.message = answer.message;
+        if (!answer.success) return true;
+        const auto written = writeDcfFile(request.path, answer.text);
+        response.success = written.ok();
+        response.message += written ? "; written to " + *written : "; " + written.error().message;
+        return true;
+      }));
+}
+
 void Services::advertise(ros::NodeHandle node, const std::string& axis) {
   for (const auto& trigger : kTriggers) advertiseTrigger(node, trigger.name, axis, trigger.kind);
   servers_.push_back(
@@ -150,6 +174,7 @@ void Services::advertise(ros::NodeHandle node, const std::string& axis) {
           }));
   if (axis.empty()) return;  // the rest makes sense for one axis only
   advertiseHistory(node, axis);
+  advertiseSaveDcf(node, axis);
   servers_.push_back(node.advertiseService<cia402_driver::SetPosition::Request,
                                            cia402_driver::SetPosition::Response>(
       "set_position", [this, axis](cia402_driver::SetPosition::Request& request,

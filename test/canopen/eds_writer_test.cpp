@@ -33,8 +33,8 @@ auto fields(const EdsInfo& i) {
                   i.product_name, i.order_code, i.vendor_number, i.product_number,
                   i.revision_number, i.baud_rates, i.rpdo_count, i.tpdo_count, i.compact_pdo,
                   i.granularity, i.lss_supported, i.boot_up_master, i.boot_up_slave,
-                  i.group_messaging, i.dynamic_channels, i.dummies, i.comments, i.node_id,
-                  i.node_name, i.baud_rate, i.lss_serial);
+                  i.group_messaging, i.dynamic_channels, i.dummies, i.comments, i.last_eds,
+                  i.node_id, i.node_name, i.baud_rate, i.lss_serial);
 }
 
 void expectEqual(const Eds& a, const Eds& b, const std::string& what) {

@@ -13,7 +13,7 @@ import rospkg
 import rospy
 from cia402_driver.msg import AxisStates, BusState, Emergency
 from cia402_driver.srv import (ErrorHistory, InjectFault, LssAssign, LssScan, LssSetBitTiming,
-                               Nmt, ReadObject, SetMode, SetPosition, WriteObject)
+                               Nmt, ReadObject, SaveDcf, SetMode, SetPosition, WriteObject)
 from control_msgs.msg import JointTrajectoryControllerState
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from sensor_msgs.msg import JointState
@@ -29,7 +29,7 @@ SERVICES = {
     "error_history": ErrorHistory, "inject_fault": InjectFault, "nmt": Nmt,
     "read_object": ReadObject, "write_object": WriteObject, "set_mode": SetMode,
     "set_position": SetPosition, "lss_scan": LssScan, "lss_assign": LssAssign,
-    "lss_set_bit_timing": LssSetBitTiming,
+    "lss_set_bit_timing": LssSetBitTiming, "save_dcf": SaveDcf,
 }
 
 

@@ -200,6 +200,39 @@ TEST(Lss, AShutdownAtTheStartIsOrderly) {
   EXPECT_TRUE(scene.robot().robot().shutDown());
 }
 
+TEST(Lss, WhoWaitsForLssAtAShutdownIsAnswered) {
+  Scene scene(loadText(genericPair(unconfigured(111))));
+  scene.robot().start();
+  ASSERT_TRUE(
+      scene.runUntil([&] { return scene.state("right").health == NodeHealth::ready; }, 10s));
+  std::vector<std::string> answers;
+  const auto ask = [&](decltype(bus::Command::body) body) {
+    bus::Command command;
+    command.body = std::move(body);
+    command.reply = [&](const bus::Answer& answer) {
+      EXPECT_FALSE(answer.success);
+      answers.push_back(answer.message);
+    };
+    scene.robot().robot().execute(std::move(command), scene.now());
+  };
+  bus::LssAssignCommand assign;
+  assign.identity = device(111);
+  assign.node_id = 1;
+  bus::LssBitTimingCommand timing;
+  timing.axis = "right";
+  timing.kbit_per_s = 500;
+  ask(bus::LssScanCommand{});
+  ask(assign);
+  ask(timing);
+  scene.run(100ms);
+  EXPECT_TRUE(answers.empty());
+  scene.robot().robot().beginShutdown(scene.now());
+  ASSERT_EQ(answers.size(), 3u);
+  for (const std::string& answer : answers) {
+    EXPECT_THAT(answer, HasSubstr("ended by the shutdown of the driver"));
+  }
+}
+
 class LssUnderLoss : public testing::TestWithParam<double> {};
 
 TEST_P(LssUnderLoss, ScanTellsTrueIdentitiesOrAReason) {

@@ -22,10 +22,10 @@ struct Answer {
   std::string message;                                       ///< a sentence
   canopen::Bytes data;                                       ///< read_object: wire order
   double number = std::numeric_limits<double>::quiet_NaN();  ///< read_object: in device units
-  std::string text;                                          ///< read_object: value with unit
-  std::vector<canopen::lss::Identity> devices;               ///< lss_scan: without a node-ID
-  std::vector<std::string> device_axes;  ///< lss_scan: the axis of each device, or empty
-  canopen::ErrorHistory history;                             ///< error_history
+  std::string text;  ///< read_object: value with unit; save_dcf: the file
+  std::vector<canopen::lss::Identity> devices;  ///< lss_scan: without a node-ID
+  std::vector<std::string> device_axes;         ///< lss_scan: the axis of each device, or empty
+  canopen::ErrorHistory history;                ///< error_history
 };
 
 /// Called once, in the bus thread, when a command has ended. Must not block.
@@ -94,6 +94,12 @@ struct LssBitTimingCommand {
   Duration delay{std::chrono::seconds(1)};  ///< of silence before and after the change
 };
 
+/// Reads everything that a drive holds and words it as a DCF: the answer's text. The file name and
+/// the present date ("11-21-2026") and time ("03:40PM"), as CiA 306 writes them, go into the file.
+struct SaveDcfCommand {
+  std::string axis, file_name, date, time;
+};
+
 /// Runs a function in the bus thread, e.g. to inject a fault into a simulated drive.
 struct CallCommand {
   std::function<Answer(Time)> function;
@@ -102,7 +108,7 @@ struct CallCommand {
 struct Command {
   std::variant<ProcedureCommand, SetpointCommand, TrajectoryCommand, ReadObjectCommand,
                WriteObjectCommand, NmtServiceCommand, LssScanCommand, LssAssignCommand,
-               LssBitTimingCommand, ErrorHistoryCommand, CallCommand>
+               LssBitTimingCommand, ErrorHistoryCommand, SaveDcfCommand, CallCommand>
       body;
   Reply reply;  ///< may be empty
 };

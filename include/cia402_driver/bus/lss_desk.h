@@ -14,7 +14,9 @@ namespace cia402::bus {
 /// Carries out LSS tasks one after the other, for there is one LSS master on a bus. Sans-IO.
 class LssDesk {
  public:
-  using Ended = std::function<void(const canopen::LssTask& task, bool success, Time now)>;
+  /// @param error why it failed; empty for success.
+  using Ended =
+      std::function<void(const canopen::LssTask& task, const std::string& error, Time now)>;
 
   /// @param sink must outlive the desk.
   explicit LssDesk(can::Sink& sink) : sink_(sink), master_(sink) {}
@@ -23,8 +25,9 @@ class LssDesk {
   /// @param window of this task alone, see LssOptions::window.
   void add(std::string who, std::unique_ptr<canopen::LssTask> task, Ended ended,
            std::optional<Duration> window = {});
-  /// Ends everything without further ado; no device stays in the configuration state.
-  void abandon();
+  /// Ends everything without further ado, for this reason; no device stays in the configuration
+  /// state.
+  void abandon(const std::string& why, Time now);
 
   void receive(const can::Frame& frame, Time now);
   void tick(Time now);

@@ -8,6 +8,7 @@
 #include "cia402_driver/bus/axis_reporter.h"
 #include "cia402_driver/bus/command.h"
 #include "cia402_driver/bus/cycle_statistics.h"
+#include "cia402_driver/bus/dcf_job.h"
 #include "cia402_driver/bus/event.h"
 #include "cia402_driver/bus/group.h"
 #include "cia402_driver/bus/history_job.h"
@@ -123,7 +124,8 @@ class Robot final : private canopen::MasterListener {
   std::string motionOnBus() const;
   std::vector<canopen::NodeId> nodesInOperation() const;
   void assignByLss(std::size_t index, bool reset);
-  void lssAssigned(std::size_t index, const canopen::LssTask& task, bool success, Time now);
+  void lssAssigned(std::size_t index, const canopen::LssTask& task, const std::string& error,
+                   Time now);
   bool beginLss();
   void stepLss(Time now);
   void lookForLostDrives(Time now);
@@ -144,6 +146,7 @@ class Robot final : private canopen::MasterListener {
   void run(LssAssignCommand& command, const Reply& reply, Time now);
   void run(LssBitTimingCommand& command, const Reply& reply, Time now);
   void run(ErrorHistoryCommand& command, const Reply& reply, Time now);
+  void run(SaveDcfCommand& command, const Reply& reply, Time now);
   void run(CallCommand& command, const Reply& reply, Time now);
   /// Reads the error history of an axis that has got a fault, but not in quick succession.
   void readHistoryAfterFault(std::size_t axis, Time now);
@@ -164,6 +167,7 @@ class Robot final : private canopen::MasterListener {
   std::vector<std::string> lss_problems_;      // of each axis
   std::vector<ProcedureJob> waiting_for_lss_;  ///< begin once the desk is free
   std::vector<HistoryJob> histories_;
+  std::vector<DcfJob> dcfs_;
   std::vector<AxisNews> news_;
   std::vector<AxisReporter> reporters_;
   std::vector<canopen::Node*> nodes_;  // of each axis

@@ -42,6 +42,7 @@ struct EdsInfo {
   std::vector<std::uint16_t> dummies;  ///< data types that can be mapped to fill a PDO
   std::vector<std::string> comments;
   // DCF only.
+  std::string last_eds;  ///< file that it was made from
   std::optional<NodeId> node_id;
   std::string node_name;
   unsigned baud_rate = 0;  ///< kbit/s; 0: none
@@ -67,6 +68,9 @@ inline constexpr std::size_t kMostEdsEntries = 300'000;
 /// @param node_id for $NODEID; absent: the NodeID of the DCF, else 0.
 Eds readEds(std::string_view text, std::optional<NodeId> node_id = {});
 
+/// Whether a line of a DCF can hold a value: strings with line ends or zeros, for example, do not
+/// fit.
+bool fitsDcf(DataType type, const ObjectValue& value);
 /// Writes a DCF of `dictionary` (CiA 306): what readEds() reads back equal, with CRLF line ends.
 /// Values of any length that no line of text can hold are left out.
 std::string writeDcf(const EdsInfo& info, const ObjectDictionary& dictionary);
