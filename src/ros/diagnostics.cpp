@@ -84,14 +84,24 @@ void Diagnostics::reportNode(std::size_t index, Status& status) {
   const bus::AxisSnapshot& axis = snapshot_.axes[index];
   status.hardware_id = hardwareId(axis, robot_.axes[index]);
   const canopen::NodeHealth health = axis.state.health;
+  const canopen::Node::Supervision& supervision = axis.node.supervision;
   if (health == canopen::NodeHealth::ready) {
     status.summary(DiagnosticStatus::OK, "configured and operational");
+    if (!supervision.watched) {
+      status.mergeSummary(DiagnosticStatus::WARN, "its loss would show in missing TPDOs only");
+    }
+    if (!supervision.watches_master) {
+      status.mergeSummary(DiagnosticStatus::WARN, "it cannot notice a dead master");
+    }
   } else if (health == canopen::NodeHealth::booting) {
     status.summary(DiagnosticStatus::WARN, "booting: " + axis.step.str());
   } else {
-    status.summary(DiagnosticStatus::ERROR,
+    status.summary(axis.node.may_be_absent ? DiagnosticStatus::WARN : DiagnosticStatus::ERROR,
                    axis.problem.empty() ? canopen::toString(health) : axis.problem.str());
+    status.add("boot", axis.step.str());
   }
+  status.add("error control", canopen::toString(supervision.kind));
+  status.add("notices a dead master", supervision.watches_master ? "yes" : "no");
   status.add("axis", robot_.axes[index].name);
   status.add("step", axis.step.str());
   status.add("drive", robot_.axes[index].profile->name);
@@ -122,7 +132,7 @@ void Diagnostics::reportAxis(std::size_t index, Status& status) {
   const bool fault =
       state.state == drive::State::fault || state.state == drive::State::fault_reaction_active;
   if (!axis.problem.empty() || fault) {
-    status.summary(DiagnosticStatus::ERROR,
+    status.summary(axis.node.may_be_absent ? DiagnosticStatus::WARN : DiagnosticStatus::ERROR,
                    axis.problem.empty() ? drive::toString(state.state) : axis.problem.str());
   } else if (state.health != canopen::NodeHealth::ready) {
     status.summary(DiagnosticStatus::WARN, "the drive is not ready");
