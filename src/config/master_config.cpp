@@ -134,6 +134,7 @@ NodeConfig makeNode(const RobotConfig& robot, const AxisConfig& axis, Problems& 
   node.pdos = makePdos(axis, problems);
   node.sdo.timeout = profile.timing.sdo;
   node.sdo.retries = profile.timing.sdo_retries;
+  node.sdo_channel = axis.sdo;
   node.boot_timeout = profile.timing.boot;
   addStop(profile, node);
   addWrites(profile.startup, axis, "axes/" + axis.name, node, problems);
@@ -153,6 +154,7 @@ canopen::MasterConfig makeMasterConfig(const RobotConfig& robot, Problems& probl
   for (const AxisConfig& axis : robot.axes) {
     if (axis.profile) master.nodes.push_back(makeNode(robot, axis, problems));
   }
+  checkSdoChannels(master, problems);
   return master;
 }
 

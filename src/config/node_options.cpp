@@ -107,6 +107,16 @@ void readRetries(const YamlValue& value, canopen::BootPolicy& policy) {
   section.finish();
 }
 
+void readChannel(const YamlValue& value, canopen::SdoChannel& channel) {
+  YamlSection section(value);
+  const std::string hint =
+      "both COB-IDs of the channel, as the drive has them: {request: 0x641, "
+      "answer: 0x5C1}";
+  if (section.require("request", hint)) section.readInteger("request", channel.request, 1, 0x7FF);
+  if (section.require("answer", hint)) section.readInteger("answer", channel.answer, 1, 0x7FF);
+  section.finish();
+}
+
 std::string secondsText(Duration time) {
   char text[32];
   std::snprintf(text, sizeof text, "%g s", toSeconds(time));
@@ -136,6 +146,7 @@ void readNodeOptions(YamlSection& section, AxisConfig& axis) {
   if (const auto value = section.get("error_control")) {
     readErrorControl(*value, axis.error_control);
   }
+  if (const auto value = section.get("sdo")) readChannel(*value, axis.sdo);
   section.read("optional", axis.boot.optional);
   section.read("restore_before_configure", axis.boot.restore_before_configure);
   if (const auto value = section.get("configuration_check")) readCheck(*value, axis.boot);

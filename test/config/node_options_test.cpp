@@ -103,6 +103,30 @@ TEST(NodeOptions, BootOptionsReachTheMaster) {
   EXPECT_EQ(policy.search_period, milliseconds(10000));
 }
 
+TEST(NodeOptions, AnSdoChannelOfOtherCobIdsReachesTheMaster) {
+  const Loaded loaded = load("sdo: {request: 0x641, answer: 0x5C1}");
+  EXPECT_EQ(loaded.problems, "");
+  EXPECT_EQ(loaded.node.sdo_channel.request, 0x641);
+  EXPECT_EQ(loaded.node.sdo_channel.answer, 0x5C1);
+  EXPECT_EQ(load("").node.sdo_channel.request, 0) << "the predefined ones";
+}
+
+TEST(NodeOptions, AnSdoChannelMayNotTakeTheIdentifiersOfOthers) {
+  const auto problem = [](const char* request, const char* answer) {
+    return load(std::string("sdo: {request: ") + request + ", answer: " + answer + "}").problems;
+  };
+  EXPECT_THAT(problem("0x641", "0x181"),
+              HasSubstr("axes/a/sdo/answer: COB-ID 0x181 belongs to TPDO 1 of a already"));
+  EXPECT_THAT(problem("0x080", "0x5C1"), HasSubstr("axes/a/sdo/request: COB-ID 0x080 belongs to "
+                                                   "SYNC already"));
+  EXPECT_THAT(problem("0x641", "0x701"), HasSubstr("error control of a already"));
+  EXPECT_THAT(problem("0x641", "0x77F"), HasSubstr("the heartbeat of this program already"));
+  EXPECT_THAT(problem("0x641", "0x641"), HasSubstr("the SDO channel of a already"));
+  EXPECT_EQ(problem("0x601", "0x581"), "") << "written out, the predefined ones";
+  EXPECT_THAT(problem("0x800", "0x581"), HasSubstr("axes/a/sdo/request"));
+  EXPECT_THAT(load("sdo: {request: 0x641}").problems, HasSubstr("`answer` is missing"));
+}
+
 TEST(NodeOptions, ADateBecomesTheNumbersOf1020h) {
   const canopen::BootPolicy moment = load("configuration_check: 2026-11-21T15:30:00").node.boot;
   EXPECT_EQ(moment.check, canopen::ConfigurationCheck::date);

@@ -171,6 +171,25 @@ TEST(OptionalNodes, AMandatoryOneIsAnErrorAndKeepsTheOthersFromNothing) {
   EXPECT_TRUE(scene.procedure(ProcedureKind::enable, "right").success);
 }
 
+TEST(SdoChannels, ADriveIsBootedAndReadOnTheChannelThatItsOtherServerHas) {
+  Scene scene(loadText(genericPair(", sdo: {request: 0x641, answer: 0x5C1}")));
+  for (std::uint8_t sub = 1; sub <= 2; ++sub) {
+    sim::Entry entry;
+    entry.id = {0x1201, sub};
+    entry.number = entry.initial_number = sub == 1 ? 0x641 : 0x5C1;
+    scene.drive("left").dictionary().add(entry);
+  }
+  unsigned predefined = 0, own = 0;
+  scene.world().bus().setMonitor([&](const can::Frame& frame, Time) {
+    predefined += frame.id == 0x601 || frame.id == 0x581 ? 1U : 0U;
+    own += frame.id == 0x641 || frame.id == 0x5C1 ? 1U : 0U;
+  });
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  EXPECT_EQ(predefined, 0u);
+  EXPECT_GT(own, 50u);
+  EXPECT_TRUE(scene.procedure(ProcedureKind::enable).success);
+}
+
 TEST(ExchangedDrives, AnotherSerialNumberIsRefusedWhereOneIsConfiguredAndToldWhereNot) {
   Scene scene(loadText(genericPair(", identity: {serial: 1}")));
   ASSERT_TRUE(scene.boot()) << scene.told();

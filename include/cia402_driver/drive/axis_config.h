@@ -77,6 +77,7 @@ struct AxisConfig {
   std::vector<PdoLayout> pdos;     ///< resolved layout (profile's or the user's)
   std::vector<NamedWrite> writes;  ///< the user's extra start-up writes
   ErrorControlOptions error_control;
+  canopen::SdoChannel sdo;  ///< COB-IDs other than the predefined ones
   canopen::BootPolicy boot;
   std::optional<std::uint32_t> vendor_id, product_code, revision, serial;  ///< expected identity
   std::optional<AxisLss> lss;
