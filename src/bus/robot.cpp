@@ -23,6 +23,7 @@ NodeSnapshot nodeSnapshot(const canopen::Node& node) {
   snapshot.boot_ups = node.bootUps();
   if (node.identity()) snapshot.identity = *node.identity();
   snapshot.supervision = node.supervision();
+  snapshot.sdo = node.sdo().counters();
   snapshot.may_be_absent =
       node.config().boot.optional &&
       (node.health() == canopen::NodeHealth::absent || node.health() == canopen::NodeHealth::lost);

@@ -32,6 +32,18 @@ std::string withUnit(double value, const char* unit) {
   return text;
 }
 
+void addSdo(diagnostic_updater::DiagnosticStatusWrapper& status,
+            const canopen::SdoClient::Counters& sdo) {
+  status.addf(
+      "SDO transfers", "%llu done, %llu aborted, %llu time-outs, %llu repeated",
+      static_cast<unsigned long long>(sdo.completed), static_cast<unsigned long long>(sdo.aborted),
+      static_cast<unsigned long long>(sdo.timeouts), static_cast<unsigned long long>(sdo.retries));
+  status.addf("SDO answer time", "%.3f ms mean, %.3f ms longest",
+              1e3 * toSeconds(sdo.meanLatency()), 1e3 * toSeconds(sdo.longest_latency));
+  status.addf("SDO throughput", "%.0f B/s", sdo.throughput());
+  status.add("SDO frames out of place", sdo.stray_frames);
+}
+
 }  // namespace
 
 Diagnostics::Diagnostics(ros::NodeHandle& node, ros::NodeHandle& private_node,
@@ -116,6 +128,7 @@ void Diagnostics::reportNode(std::size_t index, Status& status) {
   } else {
     status.addf("heartbeat age", "%.3f s", toSeconds(snapshot_.now - axis.node.last_heartbeat));
   }
+  addSdo(status, axis.node.sdo);
   status.add("boot-ups", axis.node.boot_ups);
   status.add("emergencies", axis.node.emergencies);
   status.add("feedback missed", axis.missed_feedback);

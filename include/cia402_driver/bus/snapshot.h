@@ -21,6 +21,7 @@ struct NodeSnapshot {
   canopen::Node::Identity identity;        ///< zeros where not read
   canopen::Node::Supervision supervision;  ///< as found at the last boot
   bool may_be_absent = false;              ///< `optional`, and absent or lost
+  canopen::SdoClient::Counters sdo;        ///< since start
 };
 
 /// One axis as the last cycle left it.
