@@ -15,6 +15,7 @@ int cycleCost();
 int syncLateness();
 int sdoBlockDownload();
 int sdoBlockUpload();
+int bootNodes();
 
 /// Runs `cycles` cycles of `axes` enabled axes for an instruction counter that only looks at
 /// cia402_measured_cycle; prints nothing. @return exit status.

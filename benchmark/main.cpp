@@ -16,13 +16,14 @@ struct Figure {
   int (*measure)();
 };
 
-constexpr std::array<Figure, 6> kFigures{{
+constexpr std::array<Figure, 7> kFigures{{
     {"virtual_time_speed_3_axes", virtualTimeSpeed},
     {"virtual_time_repeatable", virtualTimeRepeatable},
     {"cycle_cost_6_axes", cycleCost},
     {"sync_lateness", syncLateness},
     {"sdo_block_download", sdoBlockDownload},
     {"sdo_block_upload", sdoBlockUpload},
+    {"boot_32_nodes", bootNodes},
 }};
 
 int run(int argc, char** argv) {

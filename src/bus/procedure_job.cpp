@@ -98,7 +98,7 @@ Answer ProcedureJob::answer(const std::vector<drive::Axis>& axes) const {
   Answer answer;
   if (entries_.size() == 1) {
     answer.success = entries_.front().stage == Stage::succeeded;
-    answer.message = entries_.front().message;
+    answer.message = entries_.front().message + remark_;
     return answer;
   }
   const auto succeeded = std::count_if(entries_.begin(), entries_.end(),
@@ -113,6 +113,7 @@ Answer ProcedureJob::answer(const std::vector<drive::Axis>& axes) const {
           (entry.message.empty() ? axes[entry.item.axis].config().name + ": done" : entry.message);
     }
   }
+  answer.message += remark_;
   return answer;
 }
 

@@ -24,6 +24,11 @@ NodeSnapshot nodeSnapshot(const canopen::Node& node) {
   snapshot.last_heartbeat = node.lastHeartbeat();
   snapshot.boot_ups = node.bootUps();
   if (node.identity()) snapshot.identity = *node.identity();
+  snapshot.supervision = node.supervision();
+  snapshot.sdo = node.sdo().counters();
+  snapshot.may_be_absent =
+      node.config().boot.optional &&
+      (node.health() == canopen::NodeHealth::absent || node.health() == canopen::NodeHealth::lost);
   return snapshot;
 }
 
@@ -299,8 +304,15 @@ void Robot::onHealthChange(canopen::Node& node, canopen::NodeHealth before, Time
   if (text.empty()) {
     text = whoIs(node) + ": " + (well ? "identified, configured and started" : toString(health));
   }
-  tell(well ? Event::Severity::info : Event::Severity::error, text, now);
+  const bool may_be = node.config().boot.optional && (health == canopen::NodeHealth::absent ||
+                                                      health == canopen::NodeHealth::lost);
+  const Event::Severity bad = may_be ? Event::Severity::warning : Event::Severity::error;
+  if (may_be) text += "; it is optional, the others go on without it";
+  tell(well ? Event::Severity::info : bad, text, now);
   if (well) {
+    for (const std::string& remark : node.remarks()) {
+      tell(Event::Severity::info, whoIs(node) + ": " + remark, now);
+    }
     for (const std::string& note : node.notes()) {
       tell(Event::Severity::warning, whoIs(node) + ": " + note, now);
     }

@@ -21,6 +21,11 @@ void give(const Reply& reply, const Answer& answer) {
   if (reply) reply(answer);
 }
 
+bool mayBeAbsent(const canopen::Node& node) {
+  return node.config().boot.optional && (node.health() == canopen::NodeHealth::absent ||
+                                         node.health() == canopen::NodeHealth::lost);
+}
+
 }  // namespace
 
 void Robot::execute(Command command, Time now) {
@@ -51,15 +56,21 @@ void Robot::execute(Command command, Time now) {
 void Robot::run(ProcedureCommand& command, Reply reply, Time now) {
   const bool homing = command.request.kind == drive::ProcedureKind::home;
   std::vector<ProcedureJob::Item> items;
+  std::string left_out;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const drive::AxisConfig& axis = axes_[i].config();
     const bool named = axis.name == command.axis;
     const bool concerned = command.axis.empty() && (!homing || axis.homing);
+    if (concerned && mayBeAbsent(axes_[i].node())) {
+      left_out += "; " + axis.name + " is optional and not there, it was left out";
+      continue;
+    }
     if (named || concerned) items.push_back({i, homing && axis.homing ? axis.homing->order : 0});
   }
   if (items.empty()) {
-    give(reply, refused(command.axis.empty() ? "nothing to do: no axis has a `homing` section"
-                                             : "there is no axis \"" + command.axis + "\""));
+    give(reply, refused(!command.axis.empty() ? "there is no axis \"" + command.axis + "\""
+                        : left_out.empty()    ? "nothing to do: no axis has a `homing` section"
+                                              : "nothing to do" + left_out));
     return;
   }
   if (command.request.kind == drive::ProcedureKind::recover && recoverByLss(items)) {
@@ -67,6 +78,7 @@ void Robot::run(ProcedureCommand& command, Reply reply, Time now) {
     return;
   }
   procedures_.emplace_back(command.request, std::move(items), std::move(reply));
+  procedures_.back().remark(std::move(left_out));
   if (procedures_.back().step(axes_, now)) procedures_.pop_back();
 }
 

@@ -42,7 +42,9 @@ void Master::addRoutes(std::size_t node) {
   }
   const auto index = static_cast<std::uint8_t>(node);
   addRoute(0x080U + id, {Service::emergency, index, 0});
-  addRoute(nodes_[node].sdo().answerId(), {Service::sdo, index, 0});
+  const SdoClient& sdo = std::as_const(nodes_[node]).sdo();
+  addRoute(sdo.answerId(), {Service::sdo, index, 0});
+  addRoute(sdo.requestId(), {Service::sdo_request, index, 0});
   addRoute(0x700U + id, {Service::heartbeat, index, 0});
   const std::string conflict = addPdoRoutes(node);
   if (!conflict.empty()) throw std::invalid_argument(nodes_[node].name() + ": " + conflict);
@@ -86,6 +88,10 @@ void Master::followCobIds(std::size_t node, Time now) {
 }
 
 void Master::addRoute(std::uint32_t cob_id, Route route) {
+  if (cob_id >= kIdentifiers) {
+    throw std::invalid_argument(nodes_[route.node].name() + ": COB-ID " + hexId(cob_id) +
+                                " has more than 11 bits");
+  }
   if (routes_[cob_id].service != Service::none) {
     throw std::invalid_argument("COB-ID " + hexId(cob_id) + " is used twice, by " +
                                 nodes_[routes_[cob_id].node].name() + " and " +
@@ -127,7 +133,8 @@ void Master::receive(const can::Frame& frame, Time stamp, Time now) {
     if (listener_ != nullptr) listener_->onForeignSync(frame, stamp, now);
     return;
   }
-  if (route.service == Service::none || route.service == Service::rpdo) {
+  if (route.service == Service::none || route.service == Service::rpdo ||
+      route.service == Service::sdo_request) {
     ++stray_frames_;
     return;
   }

@@ -56,6 +56,17 @@ void addHeartbeat(Duration period, Traffic& nominal, Traffic& worst) {
   worst.per_second += frame.worst / toSeconds(period);
 }
 
+void addErrorControl(const canopen::NodeConfig& node, Traffic& nominal, Traffic& worst) {
+  if (node.error_control != canopen::ErrorControl::guarding) {
+    addHeartbeat(node.heartbeat, nominal, worst);
+    return;
+  }
+  addHeartbeat(node.guard_time, nominal, worst);  // the answer; the request carries no data
+  const FrameBits request = frameBits(0);
+  nominal.per_second += request.nominal / toSeconds(node.guard_time);
+  worst.per_second += request.worst / toSeconds(node.guard_time);
+}
+
 }  // namespace
 
 BusLoad busLoad(const canopen::MasterConfig& master, double bitrate) {
@@ -66,7 +77,7 @@ BusLoad busLoad(const canopen::MasterConfig& master, double bitrate) {
   const double period_s = toSeconds(master.sync_period);
   addHeartbeat(master.heartbeat, nominal, worst);
   for (const canopen::NodeConfig& node : master.nodes) {
-    addHeartbeat(node.heartbeat, nominal, worst);
+    addErrorControl(node, nominal, worst);
     for (const canopen::PdoConfig& pdo : node.pdos) {
       if (pdo.enabled) addPdo(pdo, period_s, nominal, worst);
     }

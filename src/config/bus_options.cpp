@@ -86,7 +86,15 @@ void warnOfUnnoticedLoss(RobotConfig& robot) {
     return;
   }
   for (const drive::AxisConfig& axis : robot.axes) {
-    if (!axis.profile || axis.profile->heartbeat_consumer_supported) continue;
+    if (!axis.profile) continue;
+    const ErrorControlPlan plan = planErrorControl(robot.bus, axis);
+    if (plan.kind == canopen::ErrorControl::guarding) continue;
+    if (plan.kind == canopen::ErrorControl::none) {
+      robot.warnings.push_back("axes/" + axis.name +
+                               ": this drive is not supervised: its loss shows in missing TPDOs "
+                               "only");
+    }
+    if (plan.master_timeout > Duration(0)) continue;
     robot.warnings.push_back("axes/" + axis.name +
                              ": this drive watches no heartbeat: should this program die, it would "
                              "not notice and stop");

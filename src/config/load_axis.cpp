@@ -62,6 +62,7 @@ void readSections(YamlSection& section, AxisConfig& axis, RobotConfig& robot) {
   if (const auto identity = section.get("identity")) readIdentity(*identity, axis);
   if (const auto lss = section.get("lss")) readLss(*lss, axis, robot);
   if (const auto parameters = section.get("parameters")) readParameters(*parameters, axis);
+  readNodeOptions(section, axis);
   if (const auto frame = section.get("frame")) {
     robot.frames.push_back(readFrame(*frame, axis.joint));
   }
@@ -135,6 +136,7 @@ void readAxis(const std::string& name, const YamlValue& value, ProfileCache& pro
   }
   checkAxis(section, axis, robot);
   checkEds(section, axis, robot);
+  checkErrorControl(section, axis, robot);
   section.finish();
   robot.axes.push_back(axis);
 }

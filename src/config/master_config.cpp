@@ -91,15 +91,20 @@ void addStop(const drive::DriveProfile& profile, NodeConfig& node) {
   stop.name = controlword->name;
   stop.data = drive::wireBytes(kQuickStopCommand, controlword->type);
   stop.optional = true;
+  stop.always = true;
   node.writes.push_back(stop);
 }
 
-void setSupervision(const BusConfig& bus, const drive::DriveProfile& profile, NodeConfig& node) {
-  const Duration timeout = 3 * bus.heartbeat;
-  const Duration none{0};
-  node.heartbeat = profile.heartbeat_supported ? bus.heartbeat : none;
-  node.heartbeat_timeout = profile.heartbeat_supported ? timeout : none;
-  node.master_timeout = profile.heartbeat_consumer_supported ? timeout : none;
+void setSupervision(const BusConfig& bus, const AxisConfig& axis, NodeConfig& node) {
+  const ErrorControlPlan plan = planErrorControl(bus, axis);
+  const bool guarding = plan.kind == canopen::ErrorControl::guarding;
+  node.error_control = plan.kind;
+  node.heartbeat = guarding ? Duration(0) : plan.period;
+  node.heartbeat_timeout = guarding ? Duration(0) : plan.timeout;
+  node.master_timeout = plan.master_timeout;
+  if (!guarding) return;
+  node.guard_time = plan.period;
+  node.life_time_factor = static_cast<std::uint8_t>(plan.timeout / plan.period);
 }
 
 void setSync(const BusConfig& bus, const drive::DriveProfile& profile, NodeConfig& node) {
@@ -122,12 +127,14 @@ NodeConfig makeNode(const RobotConfig& robot, const AxisConfig& axis, Problems& 
   node.product_code = axis.product_code ? axis.product_code : profile.product_code;
   node.revision = axis.revision;
   node.serial = axis.serial;
-  setSupervision(robot.bus, profile, node);
+  node.boot = axis.boot;
+  setSupervision(robot.bus, axis, node);
   setSync(robot.bus, profile, node);
   node.map_count_may_be_read_only = profile.pdo_map_count_may_be_read_only;
   node.pdos = makePdos(axis, problems);
   node.sdo.timeout = profile.timing.sdo;
   node.sdo.retries = profile.timing.sdo_retries;
+  node.sdo_channel = axis.sdo;
   node.boot_timeout = profile.timing.boot;
   addStop(profile, node);
   addWrites(profile.startup, axis, "axes/" + axis.name, node, problems);
@@ -147,6 +154,7 @@ canopen::MasterConfig makeMasterConfig(const RobotConfig& robot, Problems& probl
   for (const AxisConfig& axis : robot.axes) {
     if (axis.profile) master.nodes.push_back(makeNode(robot, axis, problems));
   }
+  checkSdoChannels(master, problems);
   return master;
 }
 

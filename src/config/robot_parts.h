@@ -49,6 +49,19 @@ void checkEds(drive::YamlSection& section, const drive::AxisConfig& axis, RobotC
 
 drive::AxisLimits readLimits(const drive::YamlValue& value, drive::AxisGeometry::Type type);
 drive::HomingOptions readHoming(const drive::YamlValue& value);
+/// `error_control`, `sdo`, `optional`, `boot` and the like.
+void readNodeOptions(drive::YamlSection& section, drive::AxisConfig& axis);
+/// What `error_control` means together with profile and bus; `section` is the axis.
+void checkErrorControl(drive::YamlSection& section, const drive::AxisConfig& axis,
+                       const RobotConfig& robot);
+/// How master and drive notice each other's loss; zero: not at all.
+struct ErrorControlPlan {
+  canopen::ErrorControl kind = canopen::ErrorControl::none;
+  Duration period{0}, timeout{0}, master_timeout{0};
+};
+ErrorControlPlan planErrorControl(const BusConfig& bus, const drive::AxisConfig& axis);
+/// COB-IDs of `sdo` that somebody else has become problems.
+void checkSdoChannels(const canopen::MasterConfig& master, Problems& problems);
 void readIdentity(const drive::YamlValue& value, drive::AxisConfig& axis);
 /// `true`, or a mapping; the numbers that it leaves out are those of `identity`, which gets those
 /// that it lacks: what LSS selects is also what the boot expects.

@@ -52,6 +52,7 @@ void readHeartbeat(YamlSection& profile_section, DriveProfile& profile) {
   YamlSection section(*value);
   section.read("producer", profile.heartbeat_supported);
   section.read("consumer", profile.heartbeat_consumer_supported);
+  section.read("node_guarding", profile.node_guarding_supported);
   section.finish();
 }
 

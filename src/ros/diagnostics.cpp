@@ -86,6 +86,18 @@ void addLink(diagnostic_updater::DiagnosticStatusWrapper& status, const can::Lin
   status.add("bus errors (kernel)", link.events->bus_errors);
 }
 
+void addSdo(diagnostic_updater::DiagnosticStatusWrapper& status,
+            const canopen::SdoClient::Counters& sdo) {
+  status.addf(
+      "SDO transfers", "%llu done, %llu aborted, %llu time-outs, %llu repeated",
+      static_cast<unsigned long long>(sdo.completed), static_cast<unsigned long long>(sdo.aborted),
+      static_cast<unsigned long long>(sdo.timeouts), static_cast<unsigned long long>(sdo.retries));
+  status.addf("SDO answer time", "%.3f ms mean, %.3f ms longest",
+              1e3 * toSeconds(sdo.meanLatency()), 1e3 * toSeconds(sdo.longest_latency));
+  status.addf("SDO throughput", "%.0f B/s", sdo.throughput());
+  status.add("SDO frames out of place", sdo.stray_frames);
+}
+
 }  // namespace
 
 Diagnostics::Diagnostics(ros::NodeHandle& node, ros::NodeHandle& private_node,
@@ -161,14 +173,24 @@ void Diagnostics::reportNode(std::size_t index, Status& status) {
   const bus::AxisSnapshot& axis = snapshot_.axes[index];
   status.hardware_id = hardwareId(axis, robot_.axes[index]);
   const canopen::NodeHealth health = axis.state.health;
+  const canopen::Node::Supervision& supervision = axis.node.supervision;
   if (health == canopen::NodeHealth::ready) {
     status.summary(DiagnosticStatus::OK, "configured and operational");
+    if (!supervision.watched) {
+      status.mergeSummary(DiagnosticStatus::WARN, "its loss would show in missing TPDOs only");
+    }
+    if (!supervision.watches_master) {
+      status.mergeSummary(DiagnosticStatus::WARN, "it cannot notice a dead master");
+    }
   } else if (health == canopen::NodeHealth::booting) {
     status.summary(DiagnosticStatus::WARN, "booting: " + axis.step.str());
   } else {
-    status.summary(DiagnosticStatus::ERROR,
+    status.summary(axis.node.may_be_absent ? DiagnosticStatus::WARN : DiagnosticStatus::ERROR,
                    axis.problem.empty() ? canopen::toString(health) : axis.problem.str());
+    status.add("boot", axis.step.str());
   }
+  status.add("error control", canopen::toString(supervision.kind));
+  status.add("notices a dead master", supervision.watches_master ? "yes" : "no");
   status.add("axis", robot_.axes[index].name);
   status.add("step", axis.step.str());
   status.add("drive", robot_.axes[index].profile->name);
@@ -183,6 +205,7 @@ void Diagnostics::reportNode(std::size_t index, Status& status) {
   } else {
     status.addf("heartbeat age", "%.3f s", toSeconds(snapshot_.now - axis.node.last_heartbeat));
   }
+  addSdo(status, axis.node.sdo);
   status.add("boot-ups", axis.node.boot_ups);
   addEmergencies(status, axis.emergencies);
   status.add("feedback missed", axis.missed_feedback);
@@ -199,7 +222,7 @@ void Diagnostics::reportAxis(std::size_t index, Status& status) {
   const bool fault =
       state.state == drive::State::fault || state.state == drive::State::fault_reaction_active;
   if (!axis.problem.empty() || fault) {
-    status.summary(DiagnosticStatus::ERROR,
+    status.summary(axis.node.may_be_absent ? DiagnosticStatus::WARN : DiagnosticStatus::ERROR,
                    axis.problem.empty() ? drive::toString(state.state) : axis.problem.str());
   } else if (state.health != canopen::NodeHealth::ready) {
     status.summary(DiagnosticStatus::WARN, "the drive is not ready");

@@ -251,6 +251,28 @@ TEST_F(MasterTest, refuses_node_ids_and_cob_ids_that_cannot_be) {
   EXPECT_THROW(create(), std::invalid_argument);
   config.nodes[1].pdos[1].cob_id = 0x800;
   EXPECT_THROW(create(), std::invalid_argument);
+  config.nodes[1] = test::servoConfig(5, "elbow");
+  config.nodes[1].sdo_channel.answer = 0x583;  // the shoulder's
+  EXPECT_THROW(create(), std::invalid_argument);
+  config.nodes[1].sdo_channel = {0x603, 0x5C5};
+  EXPECT_THROW(create(), std::invalid_argument);
+  config.nodes[1].sdo_channel = {0x645, 0x800};
+  EXPECT_THROW(create(), std::invalid_argument);
+  config.nodes[1].sdo_channel = {0x645, 0x5C5};
+  EXPECT_NO_THROW(create());
+}
+
+TEST_F(MasterTest, speaks_to_a_node_on_the_sdo_channel_that_it_has) {
+  config.nodes[1].sdo_channel = {0x645, 0x5C5};
+  create();
+  const SdoTicket ticket = master->find(5)->sdo().upload({0x6061, 0});
+  master->tick(now);
+  EXPECT_THAT(peer.sent, Contains("645 40 61 60 00 00 00 00 00"));
+  hear("585 4F 61 60 00 07 00 00 00");
+  EXPECT_FALSE(ticket->done()) << "that is nobody's identifier now";
+  hear("5C5 4F 61 60 00 08 00 00 00");
+  ASSERT_TRUE(ticket->ok()) << ticket->message();
+  EXPECT_EQ(ticket->data(), Bytes{8});
 }
 
 }  // namespace

@@ -5,12 +5,14 @@ import struct
 import threading
 import time
 
+CAN_RTR_FLAG = 0x40000000
 PRE_OPERATIONAL = 0x7F
 NMT_PRE_OPERATIONAL = 0x80
 
 
 class Wire:
-    """Collects (monotonic time, identifier, data) of all frames."""
+    """Collects (monotonic time, identifier, data) of all data frames, and of remote frames the time
+    and the identifier."""
 
     def __init__(self, interface="vcan0"):
         self._socket = socket.socket(socket.PF_CAN, socket.SOCK_RAW, socket.CAN_RAW)
@@ -18,6 +20,7 @@ class Wire:
         self._socket.bind((interface,))
         self._socket.settimeout(0.1)
         self.frames = []
+        self.remote = []
         self._open = True
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
@@ -32,6 +35,9 @@ class Wire:
                 time.sleep(0.05)
                 continue
             identifier, size = struct.unpack_from("=IB", raw)
+            if identifier & CAN_RTR_FLAG:
+                self.remote.append((time.monotonic(), identifier & 0x1FFFFFFF))
+                continue
             self.frames.append((time.monotonic(), identifier & 0x1FFFFFFF, raw[8:8 + size]))
 
     def close(self):

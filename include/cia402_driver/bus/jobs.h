@@ -22,6 +22,8 @@ class ProcedureJob {
   /// @param items not empty; any order.
   ProcedureJob(drive::ProcedureRequest request, std::vector<Item> items, Reply reply);
 
+  /// Said at the end of the answer.
+  void remark(std::string text) { remark_ = std::move(text); }
   /// Starts what is due and watches what runs. @return true once the reply was given.
   bool step(std::vector<drive::Axis>& axes, Time now);
   /// Gives a failed reply; for the end of the program.
@@ -46,6 +48,7 @@ class ProcedureJob {
   drive::ProcedureRequest request_;
   std::vector<Entry> entries_;
   Reply reply_;
+  std::string remark_;
 };
 
 /// One read_object or write_object: the SDO transfers it needs and the wording of its answer.

@@ -18,9 +18,12 @@ namespace cia402::bus {
 /// The node of an axis as the last cycle left it.
 struct NodeSnapshot {
   canopen::NmtState nmt = canopen::NmtState::unknown;
-  Time last_heartbeat{};             ///< Time() if there was none
-  std::uint32_t boot_ups = 0;        ///< since start
-  canopen::Node::Identity identity;  ///< zeros where not read
+  Time last_heartbeat{};                   ///< Time() if there was none
+  std::uint32_t boot_ups = 0;              ///< since start
+  canopen::Node::Identity identity;        ///< zeros where not read
+  canopen::Node::Supervision supervision;  ///< as found at the last boot
+  bool may_be_absent = false;              ///< `optional`, and absent or lost
+  canopen::SdoClient::Counters sdo;        ///< since start
 };
 
 /// One axis as the last cycle left it.

@@ -68,7 +68,16 @@ class Master {
   std::uint64_t strayFrames() const { return stray_frames_; }
 
  private:
-  enum class Service : std::uint8_t { none, tpdo, emergency, sdo, heartbeat, sync, rpdo };
+  enum class Service : std::uint8_t {
+    none,
+    tpdo,
+    emergency,
+    sdo,
+    heartbeat,
+    sync,
+    rpdo,
+    sdo_request,  ///< like RPDOs sent by us alone
+  };
   /// Where a frame goes, by its identifier.
   struct Route {
     Service service = Service::none;

@@ -45,6 +45,15 @@ struct AxisLss {
   bool store = false;  ///< in the drive, where it was another one
 };
 
+/// How the loss of the drive, and of the master, is noticed; what is not given is as profile and
+/// bus have it.
+struct ErrorControlOptions {
+  std::optional<canopen::ErrorControl> kind;
+  std::optional<Duration> period;          ///< of heartbeats, or guard time
+  std::optional<Duration> timeout;         ///< until the drive is lost
+  std::optional<Duration> master_timeout;  ///< until the drive takes the master for lost
+};
+
 /// Typed configuration of one axis.
 struct AxisConfig {
   std::string name;   ///< key in the YAML
@@ -67,6 +76,9 @@ struct AxisConfig {
   double standstill_velocity = 0.01;
   std::vector<PdoLayout> pdos;     ///< resolved layout (profile's or the user's)
   std::vector<NamedWrite> writes;  ///< the user's extra start-up writes
+  ErrorControlOptions error_control;
+  canopen::SdoChannel sdo;  ///< COB-IDs other than the predefined ones
+  canopen::BootPolicy boot;
   std::optional<std::uint32_t> vendor_id, product_code, revision, serial;  ///< expected identity
   std::optional<AxisLss> lss;
   std::vector<std::uint8_t> save, restore;  ///< sub-indices of 1010h, 1011h; empty: the profile's

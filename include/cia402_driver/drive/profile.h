@@ -177,6 +177,7 @@ struct DriveProfile {
   bool has_sync_period_object = true;        ///< 1006h exists
   Duration sync_period_step{std::chrono::microseconds(1)};  ///< 1006h takes multiples of this
   bool heartbeat_supported = true, heartbeat_consumer_supported = true;
+  bool node_guarding_supported = false;  ///< 100Ch and 100Dh; used where there is no heartbeat
   struct Timing {
     Duration boot{std::chrono::seconds(5)};
     Duration state_change{std::chrono::seconds(2)};

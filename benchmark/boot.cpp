@@ -1,0 +1,75 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// How long many drives take to boot, beside the time that their frames alone need on the wire.
+#include <array>
+#include <cstdio>
+#include <stdexcept>
+
+#include "cia402_driver/tools/virtual_robot.h"
+#include "figures.h"
+#include "robots.h"
+
+namespace cia402::benchmark {
+namespace {
+
+struct Row {
+  int nodes;
+  double sync_period;  ///< s; the shortest usual one that leaves some of the bus free
+};
+constexpr std::array<Row, 4> kRows{{{1, 0.004}, {8, 0.008}, {32, 0.02}, {100, 0.06}}};
+
+struct Boot {
+  double took = 0.0, wire = 0.0;  ///< s, from the reset command to the last node ready
+  std::uint64_t frames = 0;
+  double ratio() const { return took / wire; }
+};
+
+bool allReady(bus::Robot& robot) {
+  for (const canopen::Node& node : robot.master().nodes()) {
+    if (node.health() != canopen::NodeHealth::ready) return false;
+  }
+  return true;
+}
+
+/// The drives are powered and waiting when the driver starts and resets them.
+Boot boot(const Row& row) {
+  const TestRobot robot = genericRobot(row.nodes, row.sync_period, Layout::profile);
+  tools::VirtualRobot world(robot.robot, robot.master, robot.axes);
+  world.world().powerOn();
+  world.run(std::chrono::seconds(1));
+  const sim::BusTraffic before = world.world().bus().traffic();
+  const Time begin = world.now();
+  world.robot().start(begin);
+  const Time end = begin + std::chrono::seconds(60);
+  while (!allReady(world.robot()) && world.now() < end) world.run(std::chrono::microseconds(100));
+  for (const canopen::Node& node : world.robot().master().nodes()) {
+    const bool well = node.health() == canopen::NodeHealth::ready && node.bootUps() == 1 &&
+                      node.notes().empty() && node.emergencies() == 0;
+    if (!well) {
+      throw std::runtime_error(node.name() + " did not boot as it should: " + node.bootStep() +
+                               " " + node.problem());
+    }
+  }
+  const sim::BusTraffic after = world.world().bus().traffic();
+  Boot result;
+  result.took = toSeconds(world.now() - begin);
+  result.wire = static_cast<double>(after.busy_bits - before.busy_bits) / 1e6;
+  result.frames = after.frames - before.frames;
+  return result;
+}
+
+}  // namespace
+
+int bootNodes() {
+  std::fprintf(stderr, "| nodes | frames | on the wire | until all are ready | ratio |\n");
+  std::fprintf(stderr, "|---|---|---|---|---|\n");
+  for (const Row& row : kRows) {
+    const Boot result = boot(row);
+    std::fprintf(stderr, "| %d | %llu | %.3f s | %.3f s | %.2f |\n", row.nodes,
+                 static_cast<unsigned long long>(result.frames), result.wire, result.took,
+                 result.ratio());
+    if (row.nodes == 32) print("boot_32_nodes", result.ratio(), "ratio");
+  }
+  return 0;
+}
+
+}  // namespace cia402::benchmark

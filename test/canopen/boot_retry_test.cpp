@@ -1,0 +1,178 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "../../src/canopen/boot_retry.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "canopen/node_fixture.h"
+
+namespace cia402::canopen {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using test::Lines;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+const char kAskDeviceType[] = "603 40 00 10 00 00 00 00 00";
+const char kAskIdentityCount[] = "603 40 18 10 00 00 00 00 00";
+const char kAskVendor[] = "603 40 18 10 01 00 00 00 00";
+
+class BootRetryTest : public test::NodeFixture {
+ protected:
+  std::ptrdiff_t asked(const char* line) {
+    const Lines sent = peer.take();
+    return std::count(sent.begin(), sent.end(), line);
+  }
+};
+
+TEST_F(BootRetryTest, a_time_out_is_tried_again_after_the_delay_and_given_up_in_words) {
+  peer.forget(kAskVendor);
+  boot();
+  pass(seconds(1));
+  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(asked(kAskVendor), 2);
+  pass(milliseconds(999));
+  EXPECT_EQ(asked(kAskVendor), 0);
+  pass(milliseconds(1));
+  EXPECT_EQ(node->health(), NodeHealth::booting);
+  EXPECT_EQ(node->bootStep(), "attempt 2 of 3: reading 1018:01 vendor id");
+  EXPECT_EQ(peer.take()[0], "000 80 03");
+  pass(seconds(1));
+  EXPECT_THAT(node->problem(), HasSubstr("; it is tried again in 1 s (attempt 3 of 3)"));
+  pass(seconds(2));
+  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_THAT(node->problem(), HasSubstr("asked 2 times; given up after 3 attempts"));
+  peer.take();
+  pass(seconds(600));
+  EXPECT_THAT(peer.take(), IsEmpty());
+  EXPECT_EQ(node->nextDeadline(), kNever);
+}
+
+TEST_F(BootRetryTest, a_second_attempt_may_succeed) {
+  peer.forget(kAskVendor);
+  boot();
+  pass(seconds(1));
+  peer.on(kAskVendor, "583 43 18 10 01 CD AB 00 00");
+  pass(seconds(1));
+  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->problem(), "");
+  EXPECT_EQ(node->bootStep(), "ready");
+}
+
+TEST_F(BootRetryTest, what_a_person_asks_for_begins_to_count_anew) {
+  peer.forget(kAskVendor);
+  boot();
+  pass(seconds(20));
+  ASSERT_THAT(node->problem(), HasSubstr("given up"));
+  node->boot(now, true);
+  settle();
+  pass(seconds(1));
+  EXPECT_THAT(node->problem(), HasSubstr("attempt 2 of 3"));
+}
+
+TEST_F(BootRetryTest, a_wrong_identity_is_not_tried_again) {
+  config.serial = 4711;
+  boot();
+  ASSERT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_THAT(node->problem(), Not(HasSubstr("again")));
+  peer.take();
+  pass(seconds(600));
+  EXPECT_THAT(peer.take(), IsEmpty());
+}
+
+TEST_F(BootRetryTest, a_refusal_is_not_tried_again) {
+  config.vendor_id = 1;
+  peer.replace(kAskVendor, "583 80 18 10 01 00 00 02 06");
+  boot();
+  ASSERT_EQ(node->health(), NodeHealth::failed);
+  peer.take();
+  pass(seconds(600));
+  EXPECT_THAT(peer.take(), IsEmpty());
+}
+
+TEST_F(BootRetryTest, without_retries_it_is_told_at_once_as_final) {
+  config.boot.retries = 0;
+  peer.forget(kAskVendor);
+  boot();
+  pass(seconds(60));
+  EXPECT_THAT(node->problem(), ::testing::EndsWith("asked 2 times"));
+}
+
+TEST_F(BootRetryTest, an_absent_node_is_asked_ever_less_often_and_for_ever) {
+  peer.forget("000 82 03");
+  peer.forget(kAskDeviceType);
+  peer.forget(kAskIdentityCount);
+  boot();
+  pass(milliseconds(5250));
+  ASSERT_EQ(node->health(), NodeHealth::absent);
+  peer.take();
+  // As a late answer to the last question could not be told from one to this, another is asked.
+  const std::vector<int> pauses_s{2, 4, 8, 16, 30, 30, 30};  // after each time-out of 0.5 s
+  for (const int pause : pauses_s) {
+    pass(seconds(pause) - milliseconds(1));
+    EXPECT_THAT(peer.take(), IsEmpty()) << pause;
+    pass(milliseconds(1));
+    EXPECT_THAT(peer.take(), ElementsAre(kAskIdentityCount)) << pause;
+    pass(milliseconds(500));
+    EXPECT_THAT(peer.take(), ElementsAre("603 80 00 10 00 00 00 04 05")) << "the abort";
+    EXPECT_EQ(node->health(), NodeHealth::absent);
+  }
+  EXPECT_EQ(node->bootStep(), "looked for 7 times, again every 30 s");
+  pass(seconds(3600));
+  const std::ptrdiff_t times = asked(kAskIdentityCount);
+  EXPECT_LE(times, 120);
+  EXPECT_GE(times, 110);
+}
+
+TEST_F(BootRetryTest, a_node_that_answers_the_search_boots_though_it_said_nothing_by_itself) {
+  peer.forget("000 82 03");
+  peer.forget(kAskDeviceType);
+  boot();
+  pass(seconds(120));
+  ASSERT_EQ(node->health(), NodeHealth::absent);
+  peer.on(kAskDeviceType, "583 43 00 10 00 92 01 02 00");
+  for (int i = 0; i < 310 && node->health() == NodeHealth::absent; ++i) pass(milliseconds(100));
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_TRUE(sentLine("000 80 03"));
+}
+
+TEST_F(BootRetryTest, a_refusal_of_the_search_is_a_sign_of_life_too) {
+  peer.forget("000 82 03");
+  peer.forget(kAskDeviceType);
+  boot();
+  pass(milliseconds(5250));
+  peer.on(kAskDeviceType, "583 80 00 10 00 00 00 00 08");
+  pass(seconds(2));
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+}
+
+TEST_F(BootRetryTest, no_search_where_none_is_wanted) {
+  config.boot.search_period = Duration::zero();
+  peer.forget("000 82 03");
+  peer.forget(kAskDeviceType);
+  boot();
+  pass(milliseconds(6000));
+  ASSERT_EQ(node->health(), NodeHealth::absent);
+  EXPECT_EQ(node->nextDeadline(), kNever);
+}
+
+TEST_F(BootRetryTest, another_drive_than_before_is_told_where_no_serial_refuses_it) {
+  boot();
+  ASSERT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_THAT(node->notes(), IsEmpty());
+  peer.replace("603 40 18 10 04 00 00 00 00", "583 43 18 10 04 3A 30 00 00");
+  hear("703 00");
+  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_THAT(node->notes(),
+              ElementsAre(HasSubstr("is another drive than before: its serial number (1018:04) is "
+                                    "12346, it was 12345; check its position")));
+  hear("703 00");
+  EXPECT_THAT(node->notes(), IsEmpty()) << "told once";
+}
+
+}  // namespace
+}  // namespace cia402::canopen

@@ -1,0 +1,246 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// Whole robots whose drives boot as real ones do: late, twice, not at all, guarded, exchanged.
+#include "system/scene.h"
+
+namespace cia402 {
+namespace {
+
+using namespace std::chrono_literals;
+using canopen::NodeHealth;
+using drive::ProcedureKind;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr const char* kGuarded =
+    ", error_control: guarding, simulation: {drive: generic_cia402_guarding}";
+
+TEST(Guarding, ADriveWithoutHeartbeatIsGuardedBesideOneWithIt) {
+  Scene scene(loadText(genericPair(kGuarded)));
+  unsigned requests = 0, answers = 0, odd = 0;
+  scene.world().bus().setMonitor([&](const can::Frame& frame, Time) {
+    if (frame.id != 0x701) return;
+    requests += frame.remote ? 1U : 0U;
+    answers += frame.remote ? 0U : 1U;
+    odd += !frame.remote && frame.data[0] == 0x85 ? 1U : 0U;
+  });
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  EXPECT_THAT(scene.told(), Not(HasSubstr("cannot notice")));
+  requests = answers = odd = 0;
+  scene.run(10s);
+  EXPECT_NEAR(requests, 100, 1);
+  EXPECT_EQ(answers, requests);
+  EXPECT_NEAR(odd, 50, 1) << "operational, every other answer with the toggle bit";
+  EXPECT_EQ(scene.state("left").health, NodeHealth::ready);
+  EXPECT_TRUE(scene.procedure(ProcedureKind::enable).success);
+}
+
+TEST(Guarding, WhenTheMasterDiesTheGuardedDriveStopsByItself) {
+  Scene scene(loadText(genericPair(kGuarded)));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
+  ASSERT_TRUE(scene.move({2.0, -2.0}, 4s).success);
+  scene.run(2s);
+  ASSERT_GT(scene.velocity("left"), 0.5);
+  scene.robot().port().setPowered(false);
+  scene.run(300ms + 200ms);
+  EXPECT_NEAR(scene.velocity("left"), 0.0, 1e-2);
+  scene.run(300ms);
+  EXPECT_FALSE(scene.truth("left").power_stage_on);
+}
+
+TEST(Guarding, AGuardedDriveThatFallsSilentIsLostInWordsAndTakenInAgain) {
+  Scene scene(loadText(genericPair(kGuarded)));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
+  scene.port("left").setAttached(false);
+  ASSERT_TRUE(
+      scene.runUntil([&] { return scene.state("left").health == NodeHealth::lost; }, 400ms));
+  EXPECT_THAT(scene.told(), HasSubstr("left (node 1): no answer to node guarding for 0.3 s"));
+  EXPECT_EQ(scene.state("right").health, NodeHealth::ready);
+  scene.port("left").setAttached(true);
+  ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 8s)) << scene.told();
+  scene.run(500ms);
+  EXPECT_FALSE(scene.truth("left").power_stage_on);
+  const auto recovered = scene.procedure(ProcedureKind::recover, "left");
+  EXPECT_TRUE(recovered.success) << recovered.message;
+}
+
+TEST(Guarding, APowerCycledGuardedDriveIsConfiguredAgain) {
+  Scene scene(loadText(genericPair(kGuarded)));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  scene.inject("left", "power_cycle");
+  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health != NodeHealth::ready; }, 2s));
+  ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 6s)) << scene.told();
+  scene.run(5s);
+  EXPECT_EQ(scene.state("left").health, NodeHealth::ready) << scene.told();
+}
+
+TEST(Guarding, ADriveWithoutGuardingObjectsIsToldToNoticeNoDeadMaster) {
+  Scene scene(loadText(genericPair(", error_control: guarding")));
+  ASSERT_TRUE(scene.boot()) << scene.told();  // by the book it answers remote frames all the same
+  EXPECT_THAT(scene.told(), HasSubstr("left (node 1): cannot notice a dead master"));
+}
+
+TEST(LateDrives, OneThatIgnoresTheResetAndIsStillEnabledIsStoppedAndConfigured) {
+  Scene scene(loadText(genericPair()));
+  ASSERT_TRUE(scene.boot());
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
+  scene.drive("left").device().behaviour().ignores_nmt_reset = true;
+  scene.axis("left").node().boot(scene.now(), true);
+  scene.run(100ms);
+  ASSERT_EQ(scene.state("left").health, NodeHealth::booting);
+  ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 8s)) << scene.told();
+  scene.run(500ms);
+  EXPECT_FALSE(scene.truth("left").power_stage_on) << "nobody asked for it";
+  EXPECT_EQ(scene.truth("left").nmt, canopen::NmtState::operational);
+}
+
+TEST(LateDrives, OneThatIsSwitchedOnMinutesLaterIsTakenIn) {
+  Scene scene(loadText(genericPair()));
+  scene.robot().start();
+  scene.drive("left").powerOff(scene.now());
+  scene.port("left").setPowered(false);
+  scene.run(180s);
+  EXPECT_EQ(scene.state("left").health, NodeHealth::absent);
+  scene.port("left").setPowered(true);
+  scene.drive("left").powerOn(scene.now());
+  ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 2s)) << scene.told();
+}
+
+TEST(LateDrives, OneWhoseBootUpIsLostIsFoundByTheSearch) {
+  Scene scene(loadText(genericPair()));
+  scene.robot().start();
+  scene.drive("left").powerOff(scene.now());
+  scene.port("left").setPowered(false);
+  scene.run(60s);
+  ASSERT_EQ(scene.state("left").health, NodeHealth::absent);
+  sim::FaultRule rule;
+  rule.id = 0x701;
+  rule.count = 1;
+  scene.world().bus().faults().add(rule);
+  scene.port("left").setPowered(true);
+  scene.drive("left").powerOn(scene.now());
+  scene.run(1s);
+  EXPECT_EQ(scene.state("left").health, NodeHealth::absent) << "it said nothing that was heard";
+  ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 33s)) << scene.told();
+}
+
+TEST(LateDrives, OneThatSaysBootUpTwiceStartsOver) {
+  Scene scene(loadText(genericPair()));
+  scene.robot().start();
+  scene.run(25ms);  // in the middle of its boot
+  scene.drive("left").powerOff(scene.now());
+  scene.drive("left").powerOn(scene.now());
+  ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 8s)) << scene.told();
+  EXPECT_GE(scene.axis("left").node().bootUps(), 2u);
+  EXPECT_TRUE(scene.procedure(ProcedureKind::enable).success);
+}
+
+TEST(OptionalNodes, AnAbsentOneIsLeftOutAndNoError) {
+  Scene scene(loadText(genericPair(", optional: true")));
+  scene.robot().start();
+  scene.drive("left").powerOff(scene.now());
+  scene.port("left").setPowered(false);
+  scene.run(8s);
+  ASSERT_EQ(scene.state("left").health, NodeHealth::absent);
+  for (const bus::Event& event : scene.robot().events()) {
+    EXPECT_NE(event.severity, bus::Event::Severity::error) << event.text.str();
+  }
+  EXPECT_THAT(scene.told(), HasSubstr("it is optional, the others go on without it"));
+  const auto enabled = scene.procedure(ProcedureKind::enable);
+  EXPECT_TRUE(enabled.success) << enabled.message;
+  EXPECT_THAT(enabled.message, HasSubstr("left is optional and not there, it was left out"));
+  EXPECT_TRUE(scene.truth("right").power_stage_on);
+  EXPECT_TRUE(scene.procedure(ProcedureKind::recover).success);
+  EXPECT_FALSE(scene.procedure(ProcedureKind::enable, "left").success) << "asked for by name";
+  scene.port("left").setPowered(true);
+  scene.drive("left").powerOn(scene.now());
+  ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 6s)) << scene.told();
+  const auto both = scene.procedure(ProcedureKind::enable);
+  EXPECT_TRUE(both.success) << both.message;
+  EXPECT_THAT(both.message, Not(HasSubstr("left out")));
+}
+
+TEST(OptionalNodes, AMandatoryOneIsAnErrorAndKeepsTheOthersFromNothing) {
+  Scene scene(loadText(genericPair()));
+  scene.robot().start();
+  scene.drive("left").powerOff(scene.now());
+  scene.port("left").setPowered(false);
+  scene.run(8s);
+  EXPECT_FALSE(scene.procedure(ProcedureKind::enable).success);
+  EXPECT_TRUE(scene.procedure(ProcedureKind::enable, "right").success);
+}
+
+TEST(SdoChannels, ADriveIsBootedAndReadOnTheChannelThatItsOtherServerHas) {
+  Scene scene(loadText(genericPair(", sdo: {request: 0x641, answer: 0x5C1}")));
+  for (std::uint8_t sub = 1; sub <= 2; ++sub) {
+    sim::Entry entry;
+    entry.id = {0x1201, sub};
+    entry.number = entry.initial_number = sub == 1 ? 0x641 : 0x5C1;
+    scene.drive("left").dictionary().add(entry);
+  }
+  unsigned predefined = 0, own = 0;
+  scene.world().bus().setMonitor([&](const can::Frame& frame, Time) {
+    predefined += frame.id == 0x601 || frame.id == 0x581 ? 1U : 0U;
+    own += frame.id == 0x641 || frame.id == 0x5C1 ? 1U : 0U;
+  });
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  EXPECT_EQ(predefined, 0u);
+  EXPECT_GT(own, 50u);
+  EXPECT_TRUE(scene.procedure(ProcedureKind::enable).success);
+}
+
+TEST(ExchangedDrives, AnotherSerialNumberIsRefusedWhereOneIsConfiguredAndToldWhereNot) {
+  Scene scene(loadText(genericPair(", identity: {serial: 1}")));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  for (const char* name : {"left", "right"}) {
+    scene.drive(name).powerOff(scene.now());
+    scene.drive(name).dictionary().find({0x1018, 4})->initial_number = 77;
+    scene.drive(name).powerOn(scene.now());
+  }
+  scene.run(3s);
+  EXPECT_EQ(scene.state("left").health, NodeHealth::failed);
+  EXPECT_THAT(scene.told(), HasSubstr("left (node 1): is another drive than configured: 1018:04"));
+  EXPECT_EQ(scene.state("right").health, NodeHealth::ready) << scene.told();
+  EXPECT_THAT(scene.told(), HasSubstr("right (node 2): is another drive than before: its serial "
+                                      "number (1018:04) is 77, it was 1"));
+}
+
+TEST(Reboot, TheOthersMissNoCycleWhileOneIsSwitchedOffAndOn) {
+  Scene scene(loadText(genericPair(", homing: {method: 37}", ", homing: {method: 37}") +
+                       "  alone: {joints: [right]}\n"));
+  ASSERT_TRUE(scene.boot());
+  ASSERT_TRUE(scene.procedure(ProcedureKind::home).success);
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
+  ASSERT_TRUE(scene.move({2.0}, 6s, 1).success);
+  bus::RobotSnapshot before, after;
+  scene.run(500ms);
+  scene.robot().robot().fill(before);
+  scene.inject("left", "power_cycle");
+  scene.run(5s);
+  scene.robot().robot().fill(after);
+  EXPECT_EQ(scene.state("left").health, NodeHealth::ready) << scene.told();
+  EXPECT_EQ(after.axes[1].missed_feedback, before.axes[1].missed_feedback);
+  EXPECT_EQ(after.axes[1].node.boot_ups, before.axes[1].node.boot_ups);
+  EXPECT_GT(after.axes[0].node.boot_ups, before.axes[0].node.boot_ups);
+  EXPECT_EQ(after.statistics.overruns(), before.statistics.overruns());
+  scene.run(2s);
+  EXPECT_NEAR(scene.position("right"), 2.0, 1e-3);
+}
+
+TEST(Unsupervised, ALostStartIsNoticedByTheMissingTpdos) {
+  Scene scene(loadText(genericPair(", error_control: none")));
+  sim::FaultRule rule;  // reset, then start of the first node, both never heard by it
+  rule.id = 0x000;
+  rule.receiver = "left";
+  rule.count = 2;
+  scene.world().powerOn();
+  scene.run(1s);
+  scene.world().bus().faults().add(rule);
+  scene.robot().robot().start(scene.now());
+  ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 8s)) << scene.told();
+  EXPECT_EQ(scene.truth("left").nmt, canopen::NmtState::operational);
+}
+
+}  // namespace
+}  // namespace cia402
