@@ -132,6 +132,9 @@ void BusRunner::run() {
 void BusRunner::iterate(Time now) {
   if (shutdown_requested_) robot_.beginShutdown(now);
   watchInterface(now);
+  if (robot_.config().bus.time_interval > Duration::zero()) {
+    robot_.setWallTime(now.time_since_epoch() + wallClockDistance(), now);
+  }
   robot_.tick(now);  // first of all: SYNC may be due
   for (int i = 0; i < kFramesPerRound; ++i) {
     const auto received = interface_->receive(now);

@@ -102,6 +102,17 @@ void setSupervision(const BusConfig& bus, const drive::DriveProfile& profile, No
   node.master_timeout = profile.heartbeat_consumer_supported ? timeout : none;
 }
 
+/// Only what arrives within the window after SYNC is synchronous (CiA 301, 7.5.2.9).
+void addSyncWindow(const BusConfig& bus, NodeConfig& node) {
+  if (!bus.sync_window) return;
+  canopen::StartupWrite write;
+  write.object = {0x1007, 0};
+  write.name = "synchronous window length";
+  write.data = canopen::toBytes(static_cast<std::uint64_t>(bus.sync_window->count() / 1000), 4);
+  write.optional = true;  // few drives have it
+  node.writes.push_back(write);
+}
+
 void setSync(const BusConfig& bus, const drive::DriveProfile& profile, NodeConfig& node) {
   // Without a counter on the bus only drives that expect one must be told so.
   if (profile.has_sync_counter_object && (bus.sync_counter != 0 || profile.sync_counter)) {
@@ -130,6 +141,7 @@ NodeConfig makeNode(const RobotConfig& robot, const AxisConfig& axis, Problems& 
   node.sdo.retries = profile.timing.sdo_retries;
   node.boot_timeout = profile.timing.boot;
   addStop(profile, node);
+  addSyncWindow(robot.bus, node);
   addWrites(profile.startup, axis, "axes/" + axis.name, node, problems);
   addWrites(axis.writes, axis, "axes/" + axis.name + "/write", node, problems);
   return node;
@@ -144,6 +156,8 @@ canopen::MasterConfig makeMasterConfig(const RobotConfig& robot, Problems& probl
   master.sync_period = robot.bus.sync_period;
   master.sync_counter = robot.bus.sync_counter;
   master.bitrate = robot.bus.bitrate;
+  master.external_sync = robot.bus.external_sync;
+  master.time_interval = robot.bus.time_interval;
   for (const AxisConfig& axis : robot.axes) {
     if (axis.profile) master.nodes.push_back(makeNode(robot, axis, problems));
   }

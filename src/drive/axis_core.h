@@ -40,6 +40,8 @@ class AxisCore {
   void updateReadiness(bool busy, Time now);
   void writeCommands(Time now);
   void onEmergency(const canopen::Emergency& emergency);
+  /// Quick stop by SDO: RPDOs do not reach the drive.
+  void stopBySdo(const std::string& why);
   /// The node is not ready any more: forgets everything, commands nothing.
   void onNodeLost();
 

@@ -77,6 +77,11 @@ void Diagnostics::reportBus(Status& status) {
   status.addf("SYNC lateness max", "%.3f ms", 1e3 * cycle.maxLateness());
   status.add("cycles", cycle.cycles());
   status.add("cycles skipped", cycle.overruns());
+  status.add("SYNC missed", snapshot_.missed_syncs);
+  status.add("SYNC of others", snapshot_.foreign_syncs);
+  if (!snapshot_.sync_problem.empty()) {
+    status.mergeSummary(DiagnosticStatus::ERROR, snapshot_.sync_problem.str());
+  }
   status.add("real time", runner_.realtime().text);
 }
 

@@ -52,6 +52,9 @@ struct RobotSnapshot {
   FixedText<256> bus_text;
   double bus_load = 0.0;  ///< share of the bit rate over the last second, stuff bits not counted
   CycleStatistics statistics;
+  FixedText<200> sync_problem;      ///< why SYNC is not as it must be, in words; empty if well
+  std::uint64_t missed_syncs = 0;   ///< of an external producer
+  std::uint64_t foreign_syncs = 0;  ///< of others, while the driver produces SYNC
   bool shut_down = false;
   std::vector<AxisSnapshot> axes;     ///< in configuration order
   std::vector<GroupSnapshot> groups;  ///< in configuration order
