@@ -175,12 +175,15 @@ void checkBusLoad(const YamlValue& bus_section, RobotConfig& robot, Problems& pr
   const std::string feasible = std::to_string(static_cast<int>(load.feasible_rate));
   if (load.worst > 1.0) {
     YamlSection section(bus_section);
-    section.get("sync_period")
-        .value_or(bus_section)
-        .problem(share + "; at most " + feasible + " Hz keep it below 80 %: write " +
-                 "`sync_period` of " +
-                 seconds(fromSeconds(std::ceil(1e6 / load.feasible_rate) * 1e-6)) +
-                 " or more, map fewer objects, or use a second bus");
+    const auto at = section.get("sync_period").value_or(bus_section);
+    if (load.feasible_rate < 1.0) {
+      at.problem(share + "; heartbeats and events alone fill it: make `heartbeat` longer, give " +
+                 "event-driven PDOs an `inhibit` time, or use a second bus");
+      return;
+    }
+    at.problem(share + "; at most " + feasible + " Hz keep it below 80 %: write `sync_period` of " +
+               seconds(fromSeconds(std::ceil(1e6 / load.feasible_rate) * 1e-6)) +
+               " or more, leave modes (`modes`) or feedback (`feedback`) out, or use a second bus");
   } else if (load.worst > 0.8) {
     robot.warnings.push_back("bus/sync_period: " + share +
                              ", which leaves little for SDO and "

@@ -107,9 +107,12 @@ struct BusLoad {
   double feasible_rate = 0.0;         ///< Hz of SYNC at which the worst case is 80 %
 };
 BusLoad busLoad(const canopen::MasterConfig& master, double bitrate);
+/// The part of one PDO in it, the remote frames that ask for it included; zero if it is disabled.
+/// Nominal: an RPDO that is sent on change is sent at its refresh rate only.
+BusLoad pdoLoad(const canopen::PdoConfig& pdo, Duration sync_period, double bitrate);
 
-/// The PDO plan as a table for people.
-std::string pdoTable(const canopen::MasterConfig& master);
+/// The PDO plan as a table for people, with the bus load that each PDO causes.
+std::string pdoTable(const canopen::MasterConfig& master, double bitrate);
 
 /// Reads a robot's YAML file into a tree for loadRobot(); adds a problem if it is no YAML.
 YAML::Node readRobotFile(const std::string& path, Problems& problems);
