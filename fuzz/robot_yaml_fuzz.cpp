@@ -28,6 +28,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const canopen::MasterConfig master = config::makeMasterConfig(robot, problems);
   if (!problems.empty()) return 0;
   fuzz::require(master.nodes.size() == robot.axes.size(), "an axis is a node");
-  config::pdoTable(master);
+  config::pdoTable(master, robot.bus.bitrate);
   return 0;
 }

@@ -40,7 +40,8 @@ Robot::Robot(config::RobotConfig robot, canopen::MasterConfig master, can::Sink&
       events_(events),
       master_(std::move(master), sink, this),
       sink_(sink),
-      lss_(sink) {
+      lss_(sink),
+      external_sync_(config_.bus.sync_period, config_.bus.sync_counter) {
   const Duration cycle = config_.bus.sync_period;
   for (const drive::AxisConfig& axis : config_.axes) {
     nodes_.push_back(master_.find(axis.node_id));
@@ -115,7 +116,7 @@ Time Robot::nextDeadline() const {
 void Robot::tick(Time now) {
   if (!started_ || shutDown()) return;
   now_ = now;
-  if (now >= next_sync_) sync(now);
+  if (now >= next_sync_) config_.bus.external_sync ? lackSync(now) : sync(now);
   if (now >= next_cycle_) cycle(now);
   if (now >= master_.nextDeadline()) master_.tick(now);
   if (now >= lss_.nextDeadline()) stepLss(now);
@@ -177,6 +178,7 @@ void Robot::cycle(Time now) {
   lookForLostDrives(now);
   stepShutdown(now);
   watchAxes(now);
+  watchSync(now);
 }
 
 void Robot::keepMotionClock(Time now) {
@@ -389,6 +391,9 @@ void Robot::fill(RobotSnapshot& snapshot) const {
   snapshot.now = now_;
   snapshot.statistics = statistics_;
   snapshot.shut_down = shutDown();
+  snapshot.sync_problem = sync_problem_;
+  snapshot.missed_syncs = external_sync_.missed();
+  snapshot.foreign_syncs = foreign_syncs_;
   snapshot.axes.resize(axes_.size());
   snapshot.groups.resize(groups_.size());
   for (std::size_t i = 0; i < axes_.size(); ++i) {

@@ -55,6 +55,14 @@ void Robot::execute(Command command, Time now) {
 
 void Robot::run(ProcedureCommand& command, Reply reply, Time now) {
   const bool homing = command.request.kind == drive::ProcedureKind::home;
+  const bool enables = homing || command.request.kind == drive::ProcedureKind::enable ||
+                       command.request.kind == drive::ProcedureKind::recover;
+  const std::string problem = enables ? syncProblem() : std::string();
+  if (!problem.empty()) {
+    give(reply,
+         refused(std::string(drive::toString(command.request.kind)) + " is refused: " + problem));
+    return;
+  }
   std::vector<ProcedureJob::Item> items;
   std::string left_out;
   for (std::size_t i = 0; i < axes_.size(); ++i) {

@@ -134,6 +134,9 @@ void BusRunner::iterate(Time now) {
   if (shutdown_requested_) robot_.beginShutdown(now);
   watch_.update(*interface_, robot_, now);
   recorder_.onInterface(interface_->state(), now);
+  if (robot_.config().bus.time_interval > Duration::zero()) {
+    robot_.setWallTime(now.time_since_epoch() + wallClockDistance(), now);
+  }
   robot_.tick(now);  // first of all: SYNC may be due
   for (int i = 0; i < kFramesPerRound; ++i) {
     const auto received = interface_->receive(now);

@@ -38,6 +38,28 @@ void readSyncPeriod(YamlSection& section, BusConfig& bus) {
   }
 }
 
+void readSyncWindow(YamlSection& section, BusConfig& bus) {
+  double window = 0.0;
+  if (!section.read("sync_window", window, drive::Range{0.0, 1.0, false})) return;
+  const auto value = *section.get("sync_window");
+  bus.sync_window = fromSeconds(window);
+  if (bus.sync_window->count() % 1000 != 0) {
+    value.problem("must be a whole number of microseconds, as 1007h counts in them");
+  } else if (*bus.sync_window > bus.sync_period) {
+    value.problem("must not be longer than sync_period (" +
+                  std::to_string(toSeconds(bus.sync_period)) + " s)");
+  }
+}
+
+void readTimeInterval(YamlSection& section, BusConfig& bus) {
+  double interval = 0.0;
+  if (!section.read("time_interval", interval, drive::Range{0.0, 86400.0, false})) return;
+  bus.time_interval = fromSeconds(interval);
+  if (interval > 0.0 && interval < 0.01) {
+    section.get("time_interval")->problem("must be 0 (no TIME messages) or at least 0.01 s");
+  }
+}
+
 void readHeartbeat(YamlSection& section, BusConfig& bus) {
   double heartbeat = toSeconds(bus.heartbeat);
   if (!section.read("heartbeat", heartbeat, drive::Range{0.0, 65.535, false})) return;
@@ -114,6 +136,11 @@ void readBus(const YamlValue& value, BusConfig& bus, bool& counter_given) {
   readSyncPeriod(section, bus);
   section.readInteger("node_id", bus.node_id, 1, 127);
   readHeartbeat(section, bus);
+  if (const auto sync = section.get("sync")) {
+    bus.external_sync = sync->oneOf({"own", "external"}).value_or(0) == 1;
+  }
+  readSyncWindow(section, bus);
+  readTimeInterval(section, bus);
   counter_given = section.readInteger("sync_counter", bus.sync_counter, 0, 240);
   if (counter_given && bus.sync_counter == 1) {
     section.get("sync_counter")->problem("1 is no counter; write 0 (none) or 2 to 240");
@@ -156,12 +183,15 @@ void checkBusLoad(const YamlValue& bus_section, RobotConfig& robot, Problems& pr
   const std::string feasible = std::to_string(static_cast<int>(load.feasible_rate));
   if (load.worst > 1.0) {
     YamlSection section(bus_section);
-    section.get("sync_period")
-        .value_or(bus_section)
-        .problem(share + "; at most " + feasible + " Hz keep it below 80 %: write " +
-                 "`sync_period` of " +
-                 seconds(fromSeconds(std::ceil(1e6 / load.feasible_rate) * 1e-6)) +
-                 " or more, map fewer objects, or use a second bus");
+    const auto at = section.get("sync_period").value_or(bus_section);
+    if (load.feasible_rate < 1.0) {
+      at.problem(share + "; heartbeats and events alone fill it: make `heartbeat` longer, give " +
+                 "event-driven PDOs an `inhibit` time, or use a second bus");
+      return;
+    }
+    at.problem(share + "; at most " + feasible + " Hz keep it below 80 %: write `sync_period` of " +
+               seconds(fromSeconds(std::ceil(1e6 / load.feasible_rate) * 1e-6)) +
+               " or more, leave modes (`modes`) or feedback (`feedback`) out, or use a second bus");
   } else if (load.worst > 0.8) {
     robot.warnings.push_back("bus/sync_period: " + share +
                              ", which leaves little for SDO and "

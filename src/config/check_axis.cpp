@@ -3,6 +3,7 @@
 
 #include "cia402_driver/drive/conversion.h"
 #include "cia402_driver/drive/named_write.h"
+#include "pdo_planner.h"
 #include "robot_parts.h"
 
 namespace cia402::config {
@@ -66,6 +67,13 @@ void checkMode(YamlSection& section, const AxisConfig& axis) {
     at.problem("mode `" + axis.mode + "` needs `" + mode->target +
                "` in an RPDO; add it to `pdos`, or choose a mode whose target is mapped");
   }
+  for (const std::string& name : section.has("modes") ? axis.modes : std::vector<std::string>()) {
+    const ModeSpec* other = axis.profile->mode(name);
+    if (other == nullptr || other->target.empty()) continue;
+    if (maps(axis, PdoDirection::rpdo, other->target)) continue;
+    section.get("modes")->problem("mode `" + name + "` needs `" + other->target +
+                                  "` in an RPDO; add it to `pdos`, or leave the mode out");
+  }
   if (mode->kind == drive::ControlKind::torque && axis.geometry.rated_torque <= 0.0 &&
       counts(*axis.profile, Quantity::torque, Base::per_mille_of_rated)) {
     at.problem("mode `" + axis.mode + "` needs `rated_torque` (N m at the motor shaft)");
@@ -85,17 +93,6 @@ void checkCyclicObjects(YamlSection& section, const AxisConfig& axis) {
   need(PdoDirection::tpdo, "position_actual", "a TPDO");
 }
 
-bool isSet(const AxisConfig& axis, const std::string& object) {
-  if (object == "controlword" || object == "mode_of_operation") return true;
-  const auto& modes = axis.profile->modes;
-  return std::any_of(modes.begin(), modes.end(), [&](const ModeSpec& mode) {
-    const auto& writes = mode.entry_writes;
-    return mode.target == object ||
-           std::any_of(writes.begin(), writes.end(),
-                       [&](const drive::NamedWrite& write) { return write.object == object; });
-  });
-}
-
 // What an RPDO carries is sent in every cycle, over whatever an SDO wrote: a torque limit that
 // nobody sets would be 0 and drop the load.
 void checkRpdoObjects(YamlSection& section, const AxisConfig& axis) {
@@ -103,7 +100,7 @@ void checkRpdoObjects(YamlSection& section, const AxisConfig& axis) {
   for (const drive::PdoLayout& pdo : axis.pdos) {
     if (pdo.direction != PdoDirection::rpdo) continue;
     for (const std::string& object : pdo.objects) {
-      if (isSet(axis, object)) continue;
+      if (isSetByDriver(*axis.profile, object)) continue;
       at.problem("`" + object +
                  "` would be sent as 0 in every cycle, as nothing sets it: take it " +
                  "out of the RPDO; `write` sets it by SDO when the drive boots");
@@ -190,7 +187,8 @@ void checkAxis(YamlSection& section, const AxisConfig& axis, RobotConfig& robot)
   if (!axis.profile) return;
   checkGeometry(section, axis);
   checkMode(section, axis);
-  checkCyclicObjects(section, axis);
+  const bool planned = !axis.pdos.empty() || section.has("pdos");  // else checkMode() has told why
+  if (planned) checkCyclicObjects(section, axis);
   checkRpdoObjects(section, axis);
   warnOfMissingLimits(section, axis, robot);
   checkHoming(section, axis, robot);

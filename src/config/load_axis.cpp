@@ -74,10 +74,8 @@ void readSections(YamlSection& section, AxisConfig& axis, RobotConfig& robot) {
 
 // The keys whose meaning depends on the profile.
 void readWithProfile(YamlSection& section, AxisConfig& axis) {
-  const auto pdos = section.get("pdos");
   const auto writes = section.get("write");
   if (!axis.profile) return;
-  axis.pdos = pdos ? drive::readPdos(*pdos, *axis.profile) : axis.profile->pdos;
   if (writes) axis.writes = drive::readWrites(*writes, *axis.profile, drive::WriteList::boot);
 }
 
@@ -134,7 +132,7 @@ void readAxis(const std::string& name, const YamlValue& value, ProfileCache& pro
     const bool streams = axis.profile->mode("cyclic_position") != nullptr;
     axis.mode = streams ? "cyclic_position" : axis.profile->modes.front().name;
   }
-  checkAxis(section, axis, robot);
+  if (choosePdos(section, axis, robot)) checkAxis(section, axis, robot);
   checkEds(section, axis, robot);
   checkErrorControl(section, axis, robot);
   section.finish();

@@ -42,6 +42,7 @@ RobotConfig readRobot(const YAML::Node& tree, const ProfileLookup& lookup, Probl
   readBus(bus.value_or(missing), robot.bus, counter_given);
   const auto defaults = section.get("defaults");
   if (defaults) YamlSection check_kind(*defaults);
+  section.read("joint_state_rate", robot.joint_state_rate, drive::Range{0.0, 1000.0, true});
   const auto axes = section.get("axes");
   if (axes) {
     readAxes(*axes, defaults ? defaults->node() : YAML::Node(), profiles, robot);
@@ -54,7 +55,6 @@ RobotConfig readRobot(const YAML::Node& tree, const ProfileLookup& lookup, Probl
   if (groups && !groups->node().IsNull()) readGroups(*groups, robot);
   if (robot.groups.empty()) addDefaultGroup(robot);
   if (const auto recorder = section.get("recorder")) readRecorder(*recorder, robot.recorder);
-  section.read("joint_state_rate", robot.joint_state_rate, drive::Range{0.0, 1000.0, true});
   section.finish();
 
   checkSync(bus.value_or(missing), counter_given, robot);

@@ -1,5 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cstdio>
+#include <map>
 
 #include "cia402_driver/drive/named_write.h"
 #include "cia402_driver/drive/profile_reader.h"
@@ -15,20 +17,48 @@ using canopen::PdoConfig;
 using canopen::PdoDirection;
 using drive::AxisConfig;
 
-// COB-ID of the first four PDOs (CiA 301, predefined connection set).
-std::uint16_t cobId(PdoDirection direction, unsigned number, canopen::NodeId node) {
-  const unsigned base = direction == PdoDirection::rpdo ? 0x200 : 0x180;
-  return static_cast<std::uint16_t>(base + 0x100 * (number - 1) + node);
+constexpr unsigned kPredefinedPdos = 4;  // of each direction have a COB-ID of their own
+
+/// May a PDO have this identifier (CiA 301, 7.3.5, restricted CAN-IDs)?
+bool isPdoCobId(unsigned cob_id) {
+  return (cob_id >= 0x181 && cob_id <= 0x57F) || (cob_id >= 0x680 && cob_id <= 0x6DF);
+}
+
+std::string hexId(unsigned cob_id) {
+  char text[12];
+  std::snprintf(text, sizeof text, "0x%03X", cob_id);
+  return text;
+}
+
+/// 0: the drive's own.
+unsigned cobId(const drive::PdoLayout& layout, const AxisConfig& axis) {
+  using Kind = drive::CobIdSpec::Kind;
+  const unsigned base = layout.direction == PdoDirection::rpdo ? 0x200 : 0x180;
+  switch (layout.cob_id.kind) {
+    case Kind::absolute:
+      return layout.cob_id.value;
+    case Kind::node_id:
+      return unsigned{layout.cob_id.value} + axis.node_id;
+    case Kind::drive:
+      return 0;
+    case Kind::predefined:
+      break;
+  }
+  if (axis.profile->cob_ids_of_drive) return 0;
+  return base + 0x100 * (layout.number - 1) + axis.node_id;  // only asked for up to the fourth
 }
 
 PdoConfig makePdo(const drive::PdoLayout& layout, const AxisConfig& axis) {
   PdoConfig pdo;
   pdo.direction = layout.direction;
   pdo.number = layout.number;
-  pdo.cob_id = cobId(layout.direction, layout.number, axis.node_id);
+  pdo.cob_id = static_cast<std::uint16_t>(cobId(layout, axis));
   pdo.transmission = layout.transmission;
   pdo.inhibit = layout.inhibit;
   pdo.event_timer = layout.event_timer;
+  pdo.stale_after = axis.stale_after;
+  pdo.request_every = layout.request_every;
+  pdo.refresh_every = layout.refresh_every;
   pdo.enabled = !layout.objects.empty();
   for (const std::string& name : layout.objects) {
     const drive::ObjectSpec* object = drive::findObject(*axis.profile, name);
@@ -39,28 +69,57 @@ PdoConfig makePdo(const drive::PdoLayout& layout, const AxisConfig& axis) {
   return pdo;
 }
 
+bool hasCobId(const drive::PdoLayout& layout, const AxisConfig& axis) {
+  return layout.number <= kPredefinedPdos || axis.profile->cob_ids_of_drive ||
+         layout.cob_id.kind != drive::CobIdSpec::Kind::predefined;
+}
+
 // The layout's PDOs; all others that the drive has are made invalid.
 std::vector<PdoConfig> makePdos(const AxisConfig& axis, Problems& problems) {
   std::vector<PdoConfig> pdos;
+  const std::string path = "axes/" + axis.name + "/pdos";
   for (const PdoDirection direction : {PdoDirection::rpdo, PdoDirection::tpdo}) {
-    for (unsigned number = 1; number <= std::min(axis.profile->max_pdos, 4U); ++number) {
-      drive::PdoLayout unused;
-      unused.direction = direction;
-      unused.number = number;
-      const auto layout =
-          std::find_if(axis.pdos.begin(), axis.pdos.end(), [&](const drive::PdoLayout& entry) {
-            return entry.direction == direction && entry.number == number;
-          });
-      pdos.push_back(makePdo(layout == axis.pdos.end() ? unused : *layout, axis));
+    const bool rpdo = direction == PdoDirection::rpdo;
+    const unsigned count = rpdo ? axis.profile->max_rpdos : axis.profile->max_tpdos;
+    for (unsigned number = 1; number <= count; ++number) {
+      drive::PdoLayout layout;
+      layout.direction = direction;
+      layout.number = number;
+      for (const drive::PdoLayout& entry : axis.pdos) {
+        if (entry.direction == direction && entry.number == number) layout = entry;
+      }
+      const std::string name = (rpdo ? "rpdo" : "tpdo") + std::to_string(number);
+      if (!layout.objects.empty() && !hasCobId(layout, axis)) {
+        problems.add(path, name + " has no COB-ID: the predefined connection set ends with the " +
+                               "fourth; give it a `cob_id`");
+        continue;
+      }
+      pdos.push_back(makePdo(layout, axis));
+      const unsigned cob_id = pdos.back().cob_id;
+      if (pdos.back().enabled && cob_id != 0 && !isPdoCobId(cob_id)) {
+        problems.add(path, name + " would have the COB-ID " + hexId(cob_id) +
+                               ", which CiA 301 keeps for something else");
+      }
     }
   }
-  for (const drive::PdoLayout& layout : axis.pdos) {
-    if (layout.number <= 4) continue;
-    problems.add("axes/" + axis.name + "/pdos",
-                 "PDO " + std::to_string(layout.number) +
-                     " has no COB-ID: the predefined connection set ends with the fourth");
-  }
   return pdos;
+}
+
+/// No two PDOs on the bus share an identifier: a drive would take what is meant for another.
+void checkCobIds(const canopen::MasterConfig& master, Problems& problems) {
+  std::map<unsigned, std::string> users;
+  for (const NodeConfig& node : master.nodes) {
+    for (const PdoConfig& pdo : node.pdos) {
+      if (!pdo.enabled || pdo.cob_id == 0) continue;
+      const std::string name = (pdo.direction == PdoDirection::rpdo ? "rpdo" : "tpdo") +
+                               std::to_string(pdo.number) + " of `" + node.name + "`";
+      const auto [first, fresh] = users.emplace(pdo.cob_id, name);
+      if (fresh) continue;
+      problems.add("axes/" + node.name + "/pdos", name + " has the COB-ID " + hexId(pdo.cob_id) +
+                                                      ", which is that of " + first->second +
+                                                      " already; give one of them another");
+    }
+  }
 }
 
 void addWrites(const std::vector<drive::NamedWrite>& writes, const AxisConfig& axis,
@@ -107,6 +166,17 @@ void setSupervision(const BusConfig& bus, const AxisConfig& axis, NodeConfig& no
   node.life_time_factor = static_cast<std::uint8_t>(plan.timeout / plan.period);
 }
 
+/// Only what arrives within the window after SYNC is synchronous (CiA 301, 7.5.2.9).
+void addSyncWindow(const BusConfig& bus, NodeConfig& node) {
+  if (!bus.sync_window) return;
+  canopen::StartupWrite write;
+  write.object = {0x1007, 0};
+  write.name = "synchronous window length";
+  write.data = canopen::toBytes(static_cast<std::uint64_t>(bus.sync_window->count() / 1000), 4);
+  write.optional = true;  // few drives have it
+  node.writes.push_back(write);
+}
+
 void setSync(const BusConfig& bus, const drive::DriveProfile& profile, NodeConfig& node) {
   // Without a counter on the bus only drives that expect one must be told so.
   if (profile.has_sync_counter_object && (bus.sync_counter != 0 || profile.sync_counter)) {
@@ -137,6 +207,7 @@ NodeConfig makeNode(const RobotConfig& robot, const AxisConfig& axis, Problems& 
   node.sdo_channel = axis.sdo;
   node.boot_timeout = profile.timing.boot;
   addStop(profile, node);
+  addSyncWindow(robot.bus, node);
   addWrites(profile.startup, axis, "axes/" + axis.name, node, problems);
   addWrites(axis.writes, axis, "axes/" + axis.name + "/write", node, problems);
   return node;
@@ -151,10 +222,13 @@ canopen::MasterConfig makeMasterConfig(const RobotConfig& robot, Problems& probl
   master.sync_period = robot.bus.sync_period;
   master.sync_counter = robot.bus.sync_counter;
   master.bitrate = robot.bus.bitrate;
+  master.external_sync = robot.bus.external_sync;
+  master.time_interval = robot.bus.time_interval;
   for (const AxisConfig& axis : robot.axes) {
     if (axis.profile) master.nodes.push_back(makeNode(robot, axis, problems));
   }
   checkSdoChannels(master, problems);
+  checkCobIds(master, problems);
   return master;
 }
 

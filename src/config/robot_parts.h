@@ -70,6 +70,10 @@ void readParameters(const drive::YamlValue& value, drive::AxisConfig& axis);
 FrameConfig readFrame(const drive::YamlValue& value, const std::string& joint);
 SimulationConfig readSimulation(const drive::YamlValue& value);
 
+/// Chooses the PDO mapping: the axis' `pdos`, the profile's, or one made for its modes.
+/// @return false if there is none; the problem is told.
+bool choosePdos(drive::YamlSection& section, drive::AxisConfig& axis, RobotConfig& robot);
+
 /// What the axis' keys mean together with its profile; `section` is the axis.
 void checkAxis(drive::YamlSection& section, const drive::AxisConfig& axis, RobotConfig& robot);
 

@@ -136,6 +136,8 @@ bool Axis::setTarget(double value) { return impl_->core.setTarget(value); }
 double Axis::target() const { return impl_->core.target(); }
 std::string Axis::motionRefusal() const { return impl_->core.motionRefusal(impl_->status.running); }
 
+void Axis::stopBySdo(const std::string& why, Time) { impl_->core.stopBySdo(why); }
+
 void Axis::onEmergency(const canopen::Emergency& emergency, Time) {
   impl_->core.onEmergency(emergency);
 }

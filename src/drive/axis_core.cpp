@@ -135,6 +135,17 @@ void AxisCore::onBusLost(const std::string& why) {
   notify(failure_);
 }
 
+void AxisCore::stopBySdo(const std::string& why) {
+  if (!nodeReady() || powerOff()) return;
+  const bool was_commanded = !silent_ && goal_ != Goal::disabled;
+  setGoal(Goal::quick_stop);
+  const ObjectSpec* object = objects_.controlword.spec;
+  node_.sdo().download(object->id, canopen::toBytes(controlword::kEnableVoltage, 2), object->name);
+  if (!was_commanded) return;
+  failure_ = who() + ": " + why;
+  notify(failure_);
+}
+
 void AxisCore::notify(std::string text) {
   notice_ = std::move(text);
   ++notices_;

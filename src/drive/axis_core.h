@@ -41,6 +41,8 @@ class AxisCore {
   void writeCommands(Time now);
   void onEmergency(const canopen::Emergency& emergency);
   void onBusLost(const std::string& why);
+  /// Quick stop by SDO: RPDOs do not reach the drive.
+  void stopBySdo(const std::string& why);
   /// The node is not ready any more: forgets everything, commands nothing.
   void onNodeLost();
 

@@ -7,6 +7,8 @@
 namespace cia402::drive {
 namespace {
 
+constexpr std::uint16_t kRpdoTimeout = 0x8250;  // CiA 301, table 26
+
 bool bitSet(std::uint16_t word, const std::optional<int>& bit) {
   return bit && ((static_cast<unsigned>(word) >> *bit) & 1u) != 0;
 }
@@ -155,6 +157,11 @@ void AxisCore::readErrorCode() {
 
 void AxisCore::onEmergency(const canopen::Emergency& emergency) {
   emergency_code_ = emergency.code;
+  if (emergency.code == kRpdoTimeout) {
+    stopBySdo(
+        "the drive reports EMCY 0x8250: no RPDO reached it in time (1400:05); quick stop is "
+        "commanded by SDO. Check the bus and the COB-IDs of its RPDOs, then enable again");
+  }
 }
 
 void AxisCore::forgetMotion() {

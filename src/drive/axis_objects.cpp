@@ -66,7 +66,7 @@ ModeChannel modeChannel(const AxisConfig& config, const canopen::Node& node, con
   }
   if (!channel.target.mapped()) {
     channel.refusal = "its target " + canopen::toString(object->id) + " " + object->name +
-                      " is not mapped into an RPDO; map it in `pdos:` of the axis";
+                      " is not mapped into an RPDO; name the mode in `modes:` of the axis";
     return channel;
   }
   const auto conversion = Conversion::create(*object, *config.profile, config.geometry);

@@ -18,10 +18,13 @@ void readTransmission(YamlSection& section, PdoLayout& pdo) {
   const auto value = section.get("transmission");
   const auto type = value ? value->integer(0, 255) : std::nullopt;
   if (!type) return;
-  if (*type > 240 && *type < 254) {
+  const bool requested = canopen::isRequested(static_cast<std::uint8_t>(*type));
+  if (requested && pdo.direction == PdoDirection::rpdo) {
+    value->problem("types 252 and 253 are asked for by remote frames: only TPDOs can be");
+  } else if (*type > 240 && *type < 254 && !requested) {
     value->problem(
-        "transmission types 241 to 253 are reserved or asked for by remote frames; use "
-        "0 to 240 (with SYNC), 254 or 255 (on events)");
+        "transmission types 241 to 251 are reserved; use 0 to 240 (with SYNC), 252 or 253 (TPDO, "
+        "asked for by remote frames), 254 or 255 (on events)");
   }
   pdo.transmission = static_cast<std::uint8_t>(*type);
 }
@@ -31,6 +34,28 @@ std::uint16_t readTime(YamlSection& section, const std::string& key, double unit
   double seconds = 0.0;
   section.read(key, seconds, Range{0.0, 65535.0 * unit, false});
   return static_cast<std::uint16_t>(std::lround(seconds / unit));
+}
+
+// A COB-ID of a PDO: "0x1A5", "$NODEID+0x1A0", or `drive` for the drive's own.
+void readCobId(YamlSection& section, PdoLayout& pdo) {
+  const auto value = section.get("cob_id");
+  const auto text = value ? value->text() : std::nullopt;
+  if (!text) return;
+  const std::string relative = "$NODEID+";
+  if (*text == "drive") {
+    pdo.cob_id.kind = CobIdSpec::Kind::drive;
+    return;
+  }
+  const bool by_node = text->compare(0, relative.size(), relative) == 0;
+  const auto number = parseInteger(by_node ? text->substr(relative.size()) : *text);
+  const bool known = number && *number >= (by_node ? 0x180 : 0x181) && *number <= 0x6DF;
+  if (!known) {
+    value->problem("must be `drive`, a number from 0x181 to 0x57F or 0x680 to 0x6DF, or such as " +
+                   std::string("\"$NODEID+0x180\", not `") + *text + "`");
+    return;
+  }
+  pdo.cob_id.kind = by_node ? CobIdSpec::Kind::node_id : CobIdSpec::Kind::absolute;
+  pdo.cob_id.value = static_cast<std::uint16_t>(*number);
 }
 
 const ObjectSpec* readEntry(const YamlValue& value, const DriveProfile& profile,
@@ -73,31 +98,57 @@ void readEntries(const YamlValue& list, const DriveProfile& profile, PdoLayout& 
 }
 
 // "rpdo1" .. "tpdo<max>".
-std::optional<PdoLayout> parseName(const std::string& name, unsigned max_pdos) {
+std::optional<PdoLayout> parseName(const std::string& name, const DriveProfile& profile) {
   PdoLayout pdo;
   const std::string kind = name.substr(0, 4);
   if (kind != "rpdo" && kind != "tpdo") return {};
   pdo.direction = kind == "rpdo" ? PdoDirection::rpdo : PdoDirection::tpdo;
   const auto number = parseInteger(name.substr(4));
-  if (!number || *number < 1 || *number > static_cast<std::int64_t>(max_pdos)) return {};
+  const unsigned most = pdo.direction == PdoDirection::rpdo ? profile.max_rpdos : profile.max_tpdos;
+  if (!number || *number < 1 || *number > static_cast<std::int64_t>(most)) return {};
   pdo.number = static_cast<unsigned>(*number);
   return pdo;
 }
 
 }  // namespace
 
-std::vector<PdoLayout> readPdos(const YamlValue& value, const DriveProfile& profile) {
+std::vector<std::string> readModeNames(const YamlValue& list, const DriveProfile& profile) {
+  std::vector<std::string> known, names;
+  for (const ModeSpec& mode : profile.modes) known.push_back(mode.name);
+  for (const YamlValue& value : list.list()) {
+    const auto text = value.text();
+    if (!text) continue;
+    names.push_back(canonicalModeName(*text));
+    if (profile.mode(names.back()) != nullptr) continue;
+    value.problem("profile " + profile.name + " has no mode `" + *text + "`" +
+                  suggestion(*text, known));
+  }
+  return names;
+}
+
+std::vector<std::string> readFeedbackNames(const YamlValue& list, const DriveProfile& profile) {
+  std::vector<std::string> names;
+  for (const YamlValue& value : list.list()) {
+    const ObjectSpec* object = readEntry(value, profile, PdoDirection::tpdo);
+    if (object != nullptr) names.push_back(object->name);
+  }
+  return names;
+}
+
+std::vector<PdoLayout> readPdos(const YamlValue& value, const DriveProfile& profile,
+                                Sharing sharing) {
   std::vector<PdoLayout> pdos;
   std::map<std::string, std::string> mapped[2];  // per direction: object -> where
   YamlSection section(value);
   for (const auto& [name, entry] : section.entries()) {
-    auto pdo = parseName(name, profile.max_pdos);
+    auto pdo = parseName(name, profile);
     if (!pdo) {
-      const std::string most = std::to_string(profile.max_pdos);
-      entry.problem("no such PDO; there are rpdo1 to rpdo" + most + " and tpdo1 to tpdo" + most);
+      entry.problem("no such PDO; there are rpdo1 to rpdo" + std::to_string(profile.max_rpdos) +
+                    " and tpdo1 to tpdo" + std::to_string(profile.max_tpdos));
       continue;
     }
     auto& seen = mapped[pdo->direction == PdoDirection::rpdo ? 0 : 1];
+    if (sharing == Sharing::allowed) seen.clear();
     if (!entry.isMap()) {
       readEntries(entry, profile, *pdo, seen);
     } else {
@@ -108,6 +159,16 @@ std::vector<PdoLayout> readPdos(const YamlValue& value, const DriveProfile& prof
       readTransmission(details, *pdo);
       pdo->inhibit = readTime(details, "inhibit", 1e-4);
       pdo->event_timer = readTime(details, "event_timer", 1e-3);
+      readCobId(details, *pdo);
+      const bool requested = canopen::isRequested(pdo->transmission);
+      if (details.has("request_every") && !requested) {
+        details.get("request_every")->problem("is for TPDOs of transmission type 252 or 253");
+      }
+      details.readInteger("request_every", pdo->request_every, 1, 10000);
+      if (details.has("refresh_every") && pdo->direction == PdoDirection::tpdo) {
+        details.get("refresh_every")->problem("is for RPDOs");
+      }
+      details.readInteger("refresh_every", pdo->refresh_every, 1, 1000);
       details.finish();
     }
     pdos.push_back(*pdo);

@@ -21,9 +21,20 @@ void readPdoRules(YamlSection& profile_section, DriveProfile& profile) {
   const auto value = profile_section.get("pdo_rules");
   if (!value) return;
   YamlSection section(*value);
-  section.readInteger("max_pdos", profile.max_pdos, 1, 4);
+  if (section.readInteger("max_pdos", profile.max_rpdos, 1, 16)) {
+    profile.max_tpdos = profile.max_rpdos;
+  }
+  section.readInteger("max_rpdos", profile.max_rpdos, 1, 16);
+  section.readInteger("max_tpdos", profile.max_tpdos, 1, 16);
   section.readInteger("max_entries", profile.max_pdo_entries, 1, 64);
   section.read("map_count_may_be_read_only", profile.pdo_map_count_may_be_read_only);
+  if (const auto cob_ids = section.get("cob_ids")) {
+    profile.cob_ids_of_drive = cob_ids->oneOf({"predefined", "drive"}).value_or(0) == 1;
+  }
+  section.read("rpdo_deadline", profile.rpdo_deadline);
+  if (const auto fixed = section.get("fixed")) {  // every default of CiA 402 has the controlword
+    profile.fixed_pdos = readPdos(*fixed, profile, Sharing::allowed);
+  }
   section.finish();
 }
 
@@ -134,7 +145,6 @@ void readBehaviour(YamlSection& section, DriveProfile& profile) {
   section.read("warning_stops", profile.warning_stops);
   readModeChange(section, profile);
   readQuickStop(section, profile);
-  readPdoRules(section, profile);
   readSync(section, profile);
   readHeartbeat(section, profile);
   readTiming(section, profile);
@@ -163,8 +173,13 @@ DriveProfile readProfile(const YamlValue& root) {
   if (const auto writes = section.get("before_enable")) {
     profile.before_enable = readWrites(*writes, profile, WriteList::running);
   }
-  if (const auto pdos = section.require("pdos", "the PDO layout")) {
-    profile.pdos = readPdos(*pdos, profile);
+  readPdoRules(section, profile);
+  if (const auto pdos = section.get("pdos")) profile.pdos = readPdos(*pdos, profile);
+  if (const auto names = section.get("default_modes")) {
+    profile.default_modes = readModeNames(*names, profile);
+  }
+  if (const auto names = section.get("feedback")) {
+    profile.feedback = readFeedbackNames(*names, profile);
   }
   if (const auto errors = section.get("errors")) readErrors(*errors, profile);
   section.finish();
@@ -202,8 +217,8 @@ DriveProfile parseDriveProfile(const std::string& text, const std::string& sourc
   }
   if (!root.IsMap()) {
     problems.add(source,
-                 "is no drive profile: it must be a mapping with name, units, objects, "
-                 "modes and pdos");
+                 "is no drive profile: it must be a mapping with name, units, objects "
+                 "and modes");
     return {};
   }
   return readProfile(YamlValue(root, "", problems, source));

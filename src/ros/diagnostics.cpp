@@ -147,6 +147,11 @@ void Diagnostics::reportBus(Status& status) {
   status.add("cycles", cycle.cycles());
   status.add("cycles skipped", cycle.overruns());
   status.add("failures not recorded", runner_.recordings().suppressed());
+  status.add("SYNC missed", snapshot_.missed_syncs);
+  status.add("SYNC of others", snapshot_.foreign_syncs);
+  if (!snapshot_.sync_problem.empty()) {
+    status.mergeSummary(DiagnosticStatus::ERROR, snapshot_.sync_problem.str());
+  }
   status.add("real time", runner_.realtime().text);
 }
 

@@ -28,6 +28,8 @@ class Log : public MasterListener {
   void onHealthChange(Node& node, NodeHealth before, Time) override {
     lines.push_back(node.name() + " " + toString(before) + " -> " + toString(node.health()));
   }
+  void onForeignSync(const can::Frame&, Time, Time) override { ++foreign_syncs; }
+  int foreign_syncs = 0;
   Lines take() {
     Lines result;
     result.swap(lines);
@@ -273,6 +275,58 @@ TEST_F(MasterTest, speaks_to_a_node_on_the_sdo_channel_that_it_has) {
   hear("5C5 4F 61 60 00 08 00 00 00");
   ASSERT_TRUE(ticket->ok()) << ticket->message();
   EXPECT_EQ(ticket->data(), Bytes{8});
+}
+
+TEST_F(MasterTest, follows_a_tpdo_to_the_cob_id_that_the_drive_insists_on) {
+  peer.replace("603 40 00 18 01 00 00 00 00", "583 43 00 18 01 A3 01 00 00");  // 1A3h
+  peer.on("603 23 00 18 01 A3 01 00 80", "583 80 00 18 01 02 00 01 06");       // read-only
+  start();
+  const Node& shoulder = *master->find(3);
+  ASSERT_EQ(shoulder.health(), NodeHealth::ready) << shoulder.problem();
+  EXPECT_THAT(
+      shoulder.notes(),
+      Contains(::testing::HasSubstr("TPDO 1 has the COB-ID 0x1A3 that the drive insists on")));
+  hear("183 37 02 2A 00 00 00");
+  EXPECT_EQ(master->strayFrames(), 1U);
+  hear("1A3 37 02 2A 00 00 00");
+  EXPECT_EQ(shoulder.image().input(shoulder.image().inputSlot({0x6064, 0})).raw, 42U);
+}
+
+TEST_F(MasterTest, refuses_a_drive_that_insists_on_the_cob_id_of_another) {
+  peer.replace("603 40 00 18 01 00 00 00 00", "583 43 00 18 01 85 01 00 00");  // elbow's 185h
+  peer.on("603 23 00 18 01 85 01 00 80", "583 80 00 18 01 02 00 01 06");
+  start();
+  EXPECT_EQ(master->find(3)->health(), NodeHealth::failed);
+  EXPECT_THAT(
+      master->find(3)->problem(),
+      ::testing::HasSubstr("TPDO 1 with COB-ID 0x185: that is used twice, by elbow already"));
+  EXPECT_EQ(master->find(5)->health(), NodeHealth::ready);
+  hear("185 37 02 2A 00 00 00");
+  const ProcessImage& elbow = master->find(5)->image();
+  EXPECT_EQ(elbow.input(elbow.inputSlot({0x6064, 0})).raw, 42U);
+}
+
+TEST_F(MasterTest, no_two_rpdos_share_a_cob_id) {
+  config.nodes[1].pdos[0].cob_id = 0x203;
+  EXPECT_THROW(create(), std::invalid_argument);
+}
+
+TEST_F(MasterTest, asks_for_tpdos_by_remote_frame_right_after_sync) {
+  config.nodes.pop_back();
+  config.nodes[0].pdos[1].transmission = 253;
+  peer.replace("603 40 00 18 02 00 00 00 00", "583 4F 00 18 02 FD 00 00 00");
+  start();
+  ASSERT_EQ(master->find(3)->health(), NodeHealth::ready) << master->find(3)->problem();
+  peer.take();
+  master->sendSync(now);
+  EXPECT_EQ(peer.take(), (Lines{"080", "183 R6"}));
+}
+
+TEST_F(MasterTest, tells_syncs_of_others_and_does_not_call_them_stray) {
+  start();
+  hear("080");
+  EXPECT_EQ(log.foreign_syncs, 1);
+  EXPECT_EQ(master->strayFrames(), 0U);
 }
 
 }  // namespace

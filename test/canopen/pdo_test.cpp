@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "canopen/scripted_peer.h"
+#include "cia402_driver/canopen/pdo_text.h"
 
 namespace cia402::canopen {
 namespace {
@@ -114,6 +115,134 @@ TEST(ProcessImage, forgets_inputs_and_outputs_when_invalidated) {
   image.invalidate();
   EXPECT_FALSE(image.input(image.inputSlot(kStatusword)).valid);
   EXPECT_EQ(image.output(image.outputSlot(kControlword)), 0U);
+}
+
+PdoConfig tpdoOfType(std::uint8_t type) {
+  PdoConfig config = pdo(PdoDirection::tpdo, 1, 0x183, {{kStatusword, 16, ""}});
+  config.transmission = type;
+  config.stale_after = 3;
+  return config;
+}
+
+Time at(int ms) { return Time(std::chrono::seconds(5) + std::chrono::milliseconds(ms)); }
+
+/// SYNCs without a TPDO until it is stale; 0: it never is.
+int syncsUntilStale(ProcessImage& image) {
+  for (int sync = 1; sync <= 1000; ++sync) {
+    image.age(at(4 * sync));
+    if (image.tpdos()[0].stale) return sync;
+  }
+  return 0;
+}
+
+TEST(ProcessImage, a_synchronous_tpdo_is_stale_after_it_failed_to_come_three_times) {
+  ProcessImage every({tpdoOfType(1)});
+  EXPECT_EQ(syncsUntilStale(every), 4);  // the answer to the fourth SYNC is not due yet
+  ProcessImage fifth({tpdoOfType(5)});
+  EXPECT_EQ(syncsUntilStale(fifth), 16);
+  EXPECT_EQ(fifth.staleCount(), 1U);
+}
+
+TEST(ProcessImage, a_tpdo_that_comes_again_is_fresh_again_and_counted_once) {
+  ProcessImage image({tpdoOfType(1)});
+  const Slot slot = image.inputSlot(kStatusword);
+  EXPECT_FALSE(image.fresh(slot)) << "nothing has come yet";
+  image.receive(0, frame("183 37 02"), kStamp);
+  EXPECT_TRUE(image.fresh(slot));
+  syncsUntilStale(image);
+  EXPECT_FALSE(image.fresh(slot));
+  for (int i = 0; i < 5; ++i) image.age(kStamp);
+  EXPECT_EQ(image.tpdos()[0].stale_count, 1U);
+  image.receive(0, frame("183 37 02"), kStamp);
+  EXPECT_TRUE(image.fresh(slot));
+  EXPECT_EQ(syncsUntilStale(image), 4);
+  EXPECT_EQ(image.staleCount(), 2U);
+}
+
+TEST(ProcessImage, a_frame_that_is_too_short_does_not_keep_a_tpdo_fresh) {
+  ProcessImage image({tpdoOfType(1)});
+  for (int i = 0; i < 4; ++i) {
+    image.age(kStamp);
+    image.receive(0, frame("183 37"), kStamp);
+  }
+  EXPECT_TRUE(image.tpdos()[0].stale);
+}
+
+TEST(ProcessImage, tpdos_without_a_rate_are_never_stale) {
+  for (const int type : {0, 254, 255}) {
+    ProcessImage image({tpdoOfType(static_cast<std::uint8_t>(type))});
+    EXPECT_EQ(syncsUntilStale(image), 0) << type;
+    EXPECT_FALSE(image.regular(image.inputSlot(kStatusword)));
+  }
+}
+
+TEST(ProcessImage, an_event_timer_tells_how_long_a_tpdo_may_be_away) {
+  PdoConfig config = tpdoOfType(255);
+  config.event_timer = 20;  // ms
+  config.inhibit = 50;      // 5 ms
+  ProcessImage image({config});
+  EXPECT_TRUE(image.regular(image.inputSlot(kStatusword)));
+  image.receive(0, frame("183 37 02"), at(0));
+  image.age(at(75));
+  EXPECT_FALSE(image.tpdos()[0].stale);
+  image.age(at(76));  // more than three times 25 ms
+  EXPECT_TRUE(image.tpdos()[0].stale);
+}
+
+TEST(ProcessImage, asks_by_remote_frame_at_the_configured_rate) {
+  for (const int type : {252, 253}) {
+    PdoConfig config = tpdoOfType(static_cast<std::uint8_t>(type));
+    config.request_every = 3;
+    ProcessImage image({config});
+    ASSERT_EQ(image.requested(), std::vector<std::size_t>{0});
+    can::Frame request;
+    EXPECT_FALSE(image.requestDue(0, request));
+    EXPECT_FALSE(image.requestDue(0, request));
+    ASSERT_TRUE(image.requestDue(0, request));
+    EXPECT_EQ(request.id, 0x183U);
+    EXPECT_TRUE(request.remote);
+    EXPECT_EQ(request.size, 2);  // the length that is asked for
+    EXPECT_FALSE(image.requestDue(0, request));
+    EXPECT_EQ(syncsUntilStale(image), 10);
+  }
+}
+
+TEST(ProcessImage, an_rpdo_leaves_when_its_content_changes_and_at_its_refresh_rate) {
+  PdoConfig config = pdo(PdoDirection::rpdo, 1, 0x203, {{kControlword, 16, ""}});
+  config.refresh_every = 4;
+  ProcessImage image({config});
+  can::Frame frame;
+  const auto due = [&] { return image.packDue(0, frame, kStamp); };
+  EXPECT_TRUE(due()) << "the first one";
+  EXPECT_FALSE(due());
+  image.setOutput(image.outputSlot(kControlword), 6);
+  EXPECT_TRUE(due());
+  EXPECT_EQ(test::text(frame), "203 06 00");
+  for (int i = 0; i < 3; ++i) EXPECT_FALSE(due()) << i;
+  EXPECT_TRUE(due()) << "the fourth cycle since";
+  image.repeat(0);
+  EXPECT_TRUE(due()) << "it did not leave";
+  image.invalidate();
+  EXPECT_TRUE(due()) << "the drive has rebooted";
+  EXPECT_EQ(image.rpdos()[0].count, 5U);
+}
+
+TEST(PdoText, names_what_is_overdue_and_what_has_a_wrong_length) {
+  ProcessImage image(servo());
+  EXPECT_EQ(staleText(image), "");
+  EXPECT_EQ(wrongLengthText(image), "");
+  image.receive(0, frame("183 37 02"), kStamp);
+  image.receive(1, frame("283 08 50 02 00"), kStamp);
+  image.receive(1, frame("283 08 50 02 00"), kStamp);
+  EXPECT_EQ(
+      wrongLengthText(image),
+      "TPDO 1 (COB-ID 0x183) came with 2 bytes instead of 6: too short, not taken (1 so far), "
+      "TPDO 2 (COB-ID 0x283) came with 4 bytes instead of 3: too long, its beginning was taken "
+      "(2 so far)");
+  for (int i = 0; i < 11; ++i) image.age(kStamp);
+  EXPECT_EQ(staleText(image),
+            "TPDO 1 (COB-ID 0x183) did not come for 11 cycles, TPDO 2 (COB-ID 0x283) did not come "
+            "for 11 cycles");
 }
 
 }  // namespace

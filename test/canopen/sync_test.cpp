@@ -36,5 +36,76 @@ TEST(SyncProducer, restarts_at_1) {
   EXPECT_EQ(test::text(sync.next()), "080 01");
 }
 
+constexpr Duration kPeriod = std::chrono::milliseconds(4);
+Time us(int value) { return Time(std::chrono::seconds(1) + std::chrono::microseconds(value)); }
+can::Frame sync(const char* text = "080") { return test::frame(text); }
+
+TEST(SyncConsumer, is_lost_after_three_periods_without_sync_and_says_so_once) {
+  SyncConsumer consumer(kPeriod, 0);
+  EXPECT_EQ(consumer.state(), SyncConsumer::State::waiting);
+  EXPECT_FALSE(consumer.tick(us(1000000))) << "what never came is not lost";
+  EXPECT_TRUE(consumer.receive(sync(), us(0)).returned);
+  EXPECT_FALSE(consumer.receive(sync(), us(4000)).returned);
+  EXPECT_EQ(consumer.deadline(), us(16000));
+  EXPECT_FALSE(consumer.tick(us(15999)));
+  EXPECT_TRUE(consumer.tick(us(16000)));
+  EXPECT_FALSE(consumer.tick(us(16001)));
+  EXPECT_EQ(consumer.state(), SyncConsumer::State::lost);
+  EXPECT_TRUE(consumer.receive(sync(), us(50000)).returned);
+  EXPECT_EQ(consumer.state(), SyncConsumer::State::running);
+}
+
+TEST(SyncConsumer, counts_the_syncs_that_a_gap_lacks) {
+  SyncConsumer consumer(kPeriod, 0);
+  consumer.receive(sync(), us(0));
+  EXPECT_EQ(consumer.receive(sync(), us(5900)).missed, 0U);
+  EXPECT_EQ(consumer.receive(sync(), us(5900 + 11900)).missed, 2U);
+  EXPECT_EQ(consumer.missed(), 2U);
+  EXPECT_EQ(consumer.received(), 3U);
+}
+
+TEST(SyncConsumer, tells_how_far_an_interval_is_off) {
+  SyncConsumer consumer(kPeriod, 0);
+  EXPECT_FALSE(consumer.receive(sync(), us(0)).regular);
+  const SyncConsumer::Observation late = consumer.receive(sync(), us(4300));
+  EXPECT_TRUE(late.regular);
+  EXPECT_EQ(late.deviation, std::chrono::microseconds(300));
+  EXPECT_EQ(consumer.receive(sync(), us(8000)).deviation, -std::chrono::microseconds(300));
+}
+
+TEST(SyncConsumer, measures_the_period_and_compares_it) {
+  for (const int interval : {4000, 4190, 3810, 4210, 3790, 5000, 8000, 2000}) {
+    SyncConsumer consumer(kPeriod, 0);
+    for (int i = 0; i < SyncConsumer::kWindow; ++i) consumer.receive(sync(), us(i * interval));
+    EXPECT_FALSE(consumer.periodWrong()) << "too few to tell";
+    EXPECT_EQ(consumer.period(), Duration::zero());
+    consumer.receive(sync(), us(SyncConsumer::kWindow * interval));
+    EXPECT_EQ(consumer.period(), std::chrono::microseconds(interval));
+    EXPECT_EQ(consumer.periodWrong(), interval < 3800 || interval > 4200) << interval;
+  }
+}
+
+TEST(SyncConsumer, sees_a_counter_that_is_missing_or_not_expected) {
+  SyncConsumer without(kPeriod, 0);
+  without.receive(sync("080 01"), us(0));
+  EXPECT_TRUE(without.formWrong());
+  without.receive(sync(), us(4000));
+  EXPECT_FALSE(without.formWrong());
+  SyncConsumer with(kPeriod, 3);
+  with.receive(sync(), us(0));
+  EXPECT_TRUE(with.formWrong());
+}
+
+TEST(SyncConsumer, counts_counters_that_do_not_follow_each_other) {
+  SyncConsumer consumer(kPeriod, 3);
+  int time = 0;
+  for (const char* text : {"080 02", "080 03", "080 01", "080 02"}) {
+    consumer.receive(sync(text), us(time += 4000));
+  }
+  EXPECT_EQ(consumer.counterErrors(), 0U);
+  consumer.receive(sync("080 01"), us(time += 4000));
+  EXPECT_EQ(consumer.counterErrors(), 1U);
+}
+
 }  // namespace
 }  // namespace cia402::canopen

@@ -158,12 +158,166 @@ TEST(BusLoad, FourDemoAxesLeaveRoomAt250Hertz) {
   EXPECT_LT(busLoad(makeMasterConfig(robot, problems), robot.bus.bitrate).worst, 0.8);
 }
 
-TEST(PdoTable, ShowsWhoSendsWhatWhen) {
-  const std::string table = pdoTable(make(kTwo));
-  EXPECT_THAT(table, HasSubstr("servo                5  rpdo1  0x205   sync               48  "
-                               "controlword 6040:00, target_position 607A:00\n"));
-  EXPECT_THAT(table, HasSubstr("joint                6  tpdo3  0x386   sync / 10          16  "
-                               "error_code 603F:00\n"));
+TEST(BusLoad, CountsRemoteFramesRefreshedRpdosAndTime) {
+  canopen::MasterConfig master;
+  master.heartbeat = Duration(0);
+  master.time_interval = std::chrono::seconds(1);  // 6 bytes: 95, 115
+  NodeConfig node;
+  node.heartbeat = Duration(0);
+  PdoConfig two;
+  two.entries = {{{0x6041, 0}, 16, "statusword"}};
+  two.transmission = 253;
+  two.request_every = 5;
+  two.direction = canopen::PdoDirection::tpdo;
+  node.pdos.push_back(two);  // 63, 75 and the remote frame 47, 55
+  two.direction = canopen::PdoDirection::rpdo;
+  two.transmission = 1;
+  two.refresh_every = 10;
+  node.pdos.push_back(two);
+  master.nodes.push_back(node);
+  const BusLoad load = busLoad(master, 1e6);
+  EXPECT_NEAR(load.nominal, ((47 + (63 + 47) / 5.0 + 63 / 10.0) * 250 + 95) / 1e6, 1e-12);
+  EXPECT_NEAR(load.worst, ((55 + (75 + 55) / 5.0 + 75) * 250 + 115) / 1e6, 1e-12);
+}
+
+TEST(PdoTable, ShowsWhoSendsWhatWhenAndWhatItCosts) {
+  const std::string table = pdoTable(make(kTwo), 1e6);
+  // 6 bytes at 250 Hz: 95 * 250 = 2.375 %, 115 * 250 = 2.875 %.
+  EXPECT_THAT(table, HasSubstr("servo                5  rpdo1   0x205   sync                 48"
+                               "    2.38    2.88  controlword 6040:00, target_position 607A:00\n"));
+  // 2 bytes at 25 Hz: 63 * 25 = 0.16 %, 75 * 25 = 0.19 %.
+  EXPECT_THAT(table, HasSubstr("joint                6  tpdo3   0x386   sync / 10            16"
+                               "    0.16    0.19  error_code 603F:00\n"));
+  EXPECT_THAT(table, HasSubstr("total, with SYNC and heartbeats, at 1000000 bit/s and 250 Hz: "));
+}
+
+constexpr const char* kServo = R"(
+bus: {interface: can0, sync_period: 0.004BUS}
+axes:
+  servo: {node_id: 5, drive: generic_cia402, counts_per_turn: 4000,
+          limits: {velocity: 2.0, acceleration: 8.0}AXIS}
+)";
+
+/// The servo with more keys of the bus and of the axis; its problems go to `text`.
+canopen::MasterConfig servo(const std::string& bus, const std::string& axis, std::string& text) {
+  std::string yaml = kServo;
+  yaml.replace(yaml.find("BUS"), 3, bus);
+  yaml.replace(yaml.find("AXIS"), 4, axis);
+  Problems problems;
+  const RobotConfig robot =
+      loadRobot(YAML::Load(yaml), profilesIn({CIA402_CONFIG_DIR "/drives"}), problems);
+  canopen::MasterConfig master;
+  if (problems.empty()) master = makeMasterConfig(robot, problems);
+  text = problems.text();
+  return master;
+}
+
+TEST(MasterConfig, CobIdsMayBeGivenOrLeftToTheDrive) {
+  std::string problems;
+  const canopen::MasterConfig master = servo("", R"(, pdos: {rpdo1: [controlword, target_position],
+              tpdo1: {objects: [statusword, position_actual], cob_id: "0x1A5"},
+              tpdo2: {objects: [velocity_actual], cob_id: "$NODEID+0x1C0"},
+              tpdo3: {objects: [torque_actual], cob_id: drive}})",
+                                             problems);
+  EXPECT_EQ(problems, "");
+  const auto tpdo = canopen::PdoDirection::tpdo;
+  EXPECT_EQ(pdo(master.nodes.at(0), tpdo, 1).cob_id, 0x1A5);
+  EXPECT_EQ(pdo(master.nodes.at(0), tpdo, 2).cob_id, 0x1C5);
+  EXPECT_EQ(pdo(master.nodes.at(0), tpdo, 3).cob_id, 0);
+}
+
+TEST(MasterConfig, RefusesCobIdsThatAreTakenOrReserved) {
+  std::string problems;
+  servo("", R"(, pdos: {rpdo1: [controlword, target_position],
+          tpdo1: {objects: [statusword, position_actual], cob_id: "0x205"}})",
+        problems);
+  EXPECT_THAT(problems,
+              HasSubstr("axes/servo/pdos: tpdo1 of `servo` has the COB-ID 0x205, which is "
+                        "that of rpdo1 of `servo` already"));
+  servo("", R"(, pdos: {rpdo1: [controlword, target_position],
+          tpdo1: {objects: [statusword, position_actual], cob_id: "0x600"}})",
+        problems);
+  EXPECT_THAT(problems, HasSubstr("COB-ID 0x600, which CiA 301 keeps for something else"));
+  servo("", R"(, pdos: {rpdo1: [controlword, target_position],
+          tpdo1: {objects: [statusword, position_actual], cob_id: "0x080"}})",
+        problems);
+  EXPECT_THAT(problems, HasSubstr("tpdo1/cob_id: must be `drive`, a number from 0x181"));
+}
+
+TEST(MasterConfig, RemoteFramesAskForTypes252And253Only) {
+  std::string problems;
+  const canopen::MasterConfig master =
+      servo("", R"(, stale_after: 3, pdos: {rpdo1: [controlword, target_position],
+          tpdo1: [statusword, position_actual],
+          tpdo2: {objects: [velocity_actual], transmission: 252, request_every: 5}})",
+            problems);
+  EXPECT_EQ(problems, "");
+  const PdoConfig& asked = pdo(master.nodes.at(0), canopen::PdoDirection::tpdo, 2);
+  EXPECT_EQ(asked.transmission, 252);
+  EXPECT_EQ(asked.request_every, 5);
+  EXPECT_EQ(asked.stale_after, 3);
+  servo("", R"(, pdos: {rpdo1: {objects: [controlword, target_position], transmission: 253},
+          tpdo1: {objects: [statusword, position_actual], request_every: 2}})",
+        problems);
+  EXPECT_THAT(problems, HasSubstr("rpdo1/transmission: types 252 and 253 are asked for"));
+  EXPECT_THAT(problems, HasSubstr("tpdo1/request_every: is for TPDOs of transmission type 252"));
+}
+
+TEST(MasterConfig, TheDrivesOwnDeadlineStandsOnTheControlword) {
+  std::string problems;
+  const canopen::MasterConfig master = servo("", ", rpdo_timeout: 0.05", problems);
+  EXPECT_EQ(problems, "");
+  const auto rpdo = canopen::PdoDirection::rpdo;
+  EXPECT_EQ(pdo(master.nodes.at(0), rpdo, 1).event_timer, 50);
+  EXPECT_EQ(pdo(master.nodes.at(0), rpdo, 2).event_timer, 0) << "it is sent on change";
+  EXPECT_EQ(pdo(make(kTwo).nodes.at(1), rpdo, 1).event_timer, 100) << "the profile says it has one";
+  EXPECT_EQ(pdo(make(kTwo).nodes.at(0), rpdo, 1).event_timer, 0);
+  servo("", ", rpdo_timeout: 0.005", problems);
+  EXPECT_THAT(problems, HasSubstr("axes/servo/rpdo_timeout: must be 0 (none) or at least two"));
+}
+
+TEST(MasterConfig, SyncMayComeFromOutsideAndHaveAWindow) {
+  std::string problems;
+  const canopen::MasterConfig master =
+      servo(", sync: external, sync_window: 0.003, time_interval: 1.0", "", problems);
+  EXPECT_EQ(problems, "");
+  EXPECT_TRUE(master.external_sync);
+  EXPECT_EQ(master.time_interval, std::chrono::seconds(1));
+  EXPECT_THAT(written(master.nodes.at(0), {0x1007, 0}), ElementsAre(0xB8, 0x0B, 0x00, 0x00));
+  EXPECT_THAT(written(servo("", "", problems).nodes.at(0), {0x1007, 0}), testing::IsEmpty());
+  servo(", sync: other, sync_window: 0.005, time_interval: 0.001", "", problems);
+  EXPECT_THAT(problems, HasSubstr("bus/sync: "));
+  EXPECT_THAT(problems, HasSubstr("bus/sync_window: must not be longer than sync_period"));
+  EXPECT_THAT(problems, HasSubstr("bus/time_interval: must be 0"));
+}
+
+TEST(MasterConfig, ModesThatCannotBeServedAreRefused) {
+  std::string problems;
+  servo("", ", modes: [cyclic_velocity, cyclic_spline]", problems);
+  EXPECT_THAT(problems, HasSubstr("axes/servo/modes[1]: profile generic_cia402 has no mode"));
+  servo("", R"(, modes: [cyclic_velocity], pdos: {rpdo1: [controlword, target_position],
+          tpdo1: [statusword, position_actual]})",
+        problems);
+  EXPECT_THAT(problems,
+              HasSubstr("axes/servo/modes: mode `cyclic_velocity` needs `target_velocity` "
+                        "in an RPDO"));
+}
+
+TEST(BusLoad, TellsTheLargestFeasibleRate) {
+  std::string yaml =
+      "bus: {interface: can0, sync_period: 0.001}\ndefaults: {drive: generic_cia402, "
+      "counts_per_turn: 4000, modes: [], feedback: [], limits: {velocity: 2.0, "
+      "acceleration: 8.0}}\naxes:\n";
+  for (int i = 1; i <= 6; ++i) {
+    yaml += "  a" + std::to_string(i) + ": {node_id: " + std::to_string(i) + "}\n";
+  }
+  Problems problems;
+  loadRobot(YAML::Load(yaml), profilesIn({CIA402_CONFIG_DIR "/drives"}), problems);
+  // Worst: 55 + 6 * (115 + 125) bits per cycle, seven heartbeats of 65 bits at 10 Hz:
+  // (0.8e6 - 4550) / 1495 = 532 Hz.
+  EXPECT_THAT(problems.text(),
+              HasSubstr("bus/sync_period: the PDOs need 150 % of the bus at 1000 Hz"));
+  EXPECT_THAT(problems.text(), HasSubstr("at most 532 Hz keep it below 80 %"));
 }
 
 }  // namespace

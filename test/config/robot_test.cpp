@@ -217,16 +217,16 @@ TEST(RobotConfig, TellsAMistakeInTheDefaultsOnce) {
 }
 
 TEST(RobotConfig, WarnsOfALoadOverEightyPercentAndRefusesOneOverAHundred) {
-  // Two axes of 115 + 95 + 125 + 135 + 95 / 10 bits each and 55 for SYNC: 1014 bits a cycle, and
-  // 3 * 650 bits/s of heartbeats.
+  // Two axes of 115 + 95 + 125 bits, and at 0.9 ms 115 / 11 + 115 / 44, each, 55 for SYNC: 751 bits
+  // a cycle; at 0.7 ms 115 / 14 + 115 / 57: 745 bits. And 3 * 650 bits/s of heartbeats.
   EXPECT_THAT(load(kArm).robot.warnings, IsEmpty());
-  const Loaded busy = changed("sync_period: 0.004", "sync_period: 0.0012");
+  const Loaded busy = changed("sync_period: 0.004", "sync_period: 0.0009");
   EXPECT_EQ(busy.problems, "");
   ASSERT_EQ(busy.robot.warnings.size(), 1u);
-  EXPECT_THAT(busy.robot.warnings[0], HasSubstr("need 85 % of the bus at 833 Hz"));
-  const Loaded full = changed("sync_period: 0.004", "sync_period: 0.001");
-  EXPECT_THAT(full.problems, HasSubstr("need 102 % of the bus at 1000 Hz"));
-  EXPECT_THAT(full.problems, HasSubstr("at most 787 Hz keep it below 80 %"));
+  EXPECT_THAT(busy.robot.warnings[0], HasSubstr("need 84 % of the bus at 1111 Hz"));
+  const Loaded full = changed("sync_period: 0.004", "sync_period: 0.0007");
+  EXPECT_THAT(full.problems, HasSubstr("need 107 % of the bus at 1429 Hz"));
+  EXPECT_THAT(full.problems, HasSubstr("at most 1070 Hz keep it below 80 %"));
 }
 
 TEST(RobotConfig, WarnsOfAnEffortLimitThatCannotBeSent) {

@@ -147,7 +147,7 @@ const Mistake kMistakes[] = {
     {"[statusword, position_actual]", "[statusword, positon_actual]",
      "did you mean `position_actual`?"},
     {"[statusword, position_actual]", "{objects: [statusword], transmission: 250}",
-     "transmission types 241 to 253"},
+     "transmission types 241 to 251"},
     {"[statusword, position_actual]", "{objects: [statusword], inhibit: 7}",
      "tpdo1/inhibit: must be at least 0 and at most 6.5535"},
     {"  tpdo1:", "  tpdo5:", "no such PDO; there are rpdo1 to rpdo4"},

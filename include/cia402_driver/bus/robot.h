@@ -43,6 +43,8 @@ class Robot final : private canopen::MasterListener {
   bool started() const { return started_; }
   /// A frame from the bus. @param stamp when it was on the wire.
   void receive(const can::Frame& frame, Time stamp, Time now);
+  /// Tells the wall-clock time, for TIME messages (`bus: {time_interval: ...}`).
+  void setWallTime(canopen::UnixTime wall, Time now) { master_.setWallTime(wall, now); }
   /// Does all that is due: SYNC, cycle, time-outs, procedures.
   void tick(Time now);
   /// When tick() is due at the latest.
@@ -97,19 +99,29 @@ class Robot final : private canopen::MasterListener {
     bool history_wanted = false;
     std::uint64_t stale_count = 0, wrong_lengths = 0;  // of the TPDOs
     FixedText<160> stale;
-    Time pdos_told{};
+    Time pdos_told = Time::min();
   };
 
   void onEmergency(canopen::Node& node, const canopen::Emergency& emergency) override;
   void onMalformedEmergency(canopen::Node& node, std::size_t size) override;
   void onBootUp(canopen::Node& node, Time now) override;
   void onHealthChange(canopen::Node& node, canopen::NodeHealth before, Time now) override;
+  void onForeignSync(const can::Frame& frame, Time stamp, Time now) override;
 
   /// A counter in SYNC is an error to drives that are not yet configured for it (EMCY 0x8240): the
   /// first SYNC waits until a drive is ready or none is booting.
   bool mayProduceSync();
   void sync(Time now);
   void cycle(Time now);
+  /// SYNC of another device leads the cycle.
+  void followSync(const can::Frame& frame, Time stamp, Time now);
+  /// That SYNC is due and does not come: the cycle goes on without it, motion does not.
+  void lackSync(Time now);
+  void stopForLostSync(Time now);
+  void noteSecondProducer(Time now);
+  void watchSync(Time now);
+  /// Why no axis may be enabled as SYNC is now; empty if it is well.
+  std::string syncProblem() const;
   /// Trajectories run on a clock that leaves out what a late cycle missed: their set-points go on
   /// where they were instead of jumping to where they would be.
   void keepMotionClock(Time now);
@@ -178,6 +190,10 @@ class Robot final : private canopen::MasterListener {
   Time last_cycle_{};
   Duration motion_delay_{0};
   bool started_ = false, sync_held_ = false;
+  canopen::SyncConsumer external_sync_;
+  std::uint64_t foreign_syncs_ = 0;  ///< of others, while this program produces SYNC
+  Time last_foreign_sync_{}, sync_checked_{};
+  FixedText<200> sync_problem_;
   Time next_sync_ = kNever, next_cycle_ = kNever, now_{};
   Shutdown shutdown_ = Shutdown::no;
   Time shutdown_began_{};

@@ -23,7 +23,10 @@ struct BusConfig {
   Duration sync_period{std::chrono::milliseconds(4)};
   canopen::NodeId node_id = 127;
   Duration heartbeat{std::chrono::milliseconds(100)};
-  std::uint8_t sync_counter = 0;  ///< chosen from the profiles unless given
+  std::uint8_t sync_counter = 0;        ///< chosen from the profiles unless given
+  bool external_sync = false;           ///< another device produces SYNC, the node follows it
+  std::optional<Duration> sync_window;  ///< 1007h of the drives; none: not written
+  Duration time_interval{0};            ///< of TIME messages; zero: none
 };
 
 /// Goal and path tolerances of one joint in a group; 0: none.
@@ -104,9 +107,12 @@ struct BusLoad {
   double feasible_rate = 0.0;         ///< Hz of SYNC at which the worst case is 80 %
 };
 BusLoad busLoad(const canopen::MasterConfig& master, double bitrate);
+/// The part of one PDO in it, the remote frames that ask for it included; zero if it is disabled.
+/// Nominal: an RPDO that is sent on change is sent at its refresh rate only.
+BusLoad pdoLoad(const canopen::PdoConfig& pdo, Duration sync_period, double bitrate);
 
-/// The PDO plan as a table for people.
-std::string pdoTable(const canopen::MasterConfig& master);
+/// The PDO plan as a table for people, with the bus load that each PDO causes.
+std::string pdoTable(const canopen::MasterConfig& master, double bitrate);
 
 /// Reads a robot's YAML file into a tree for loadRobot(); adds a problem if it is no YAML.
 YAML::Node readRobotFile(const std::string& path, Problems& problems);

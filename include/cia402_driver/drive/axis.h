@@ -114,6 +114,10 @@ class Axis {
   /// Why setTarget would refuse now, in words; empty if it would not.
   std::string motionRefusal() const;
 
+  /// RPDOs do not reach the drive, or are not taken as SYNC is gone: a drive that may be enabled is
+  /// quick-stopped by SDO and stays disabled. @param why in words
+  void stopBySdo(const std::string& why, Time now);
+
   /// Node and axis events from the master.
   void onEmergency(const canopen::Emergency& emergency, Time now);
   void onHealthChange(canopen::NodeHealth before, Time now);

@@ -74,7 +74,9 @@ struct AxisConfig {
   Duration undecodable_timeout{std::chrono::milliseconds(100)};
   /// Below this the axis stands still (mode changes, homing, set_position), rad/s or m/s.
   double standstill_velocity = 0.01;
-  std::vector<PdoLayout> pdos;     ///< resolved layout (profile's or the user's)
+  std::vector<std::string> modes;  ///< that the PDOs serve: the one at start and those to switch to
+  std::vector<PdoLayout> pdos;     ///< resolved layout (planned, the profile's or the user's)
+  Duration rpdo_timeout{0};        ///< the drive reacts when none came for so long; zero: never
   std::vector<NamedWrite> writes;  ///< the user's extra start-up writes
   ErrorControlOptions error_control;
   canopen::SdoChannel sdo;  ///< COB-IDs other than the predefined ones

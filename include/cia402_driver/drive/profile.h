@@ -140,13 +140,28 @@ struct ErrorText {
   std::string text, cause, remedy;
 };
 
-/// PDO layout and constraints.
+/// Where a PDO's COB-ID comes from.
+struct CobIdSpec {
+  enum class Kind : std::uint8_t {
+    predefined,  ///< of the predefined connection set, PDOs 1 to 4
+    absolute,    ///< `value`
+    node_id,     ///< `value` plus the node-ID
+    drive,       ///< whatever the drive has, read when it boots
+  };
+  Kind kind = Kind::predefined;
+  std::uint16_t value = 0;
+};
+
+/// One PDO of a layout.
 struct PdoLayout {
   canopen::PdoDirection direction = canopen::PdoDirection::tpdo;
   unsigned number = 1;
   std::uint8_t transmission = 1;
-  std::uint16_t inhibit = 0;         ///< 100 us
-  std::uint16_t event_timer = 0;     ///< ms
+  std::uint16_t inhibit = 0;        ///< 100 us
+  std::uint16_t event_timer = 0;    ///< ms
+  std::uint16_t request_every = 1;  ///< cycles; TPDO of type 252, 253
+  std::uint16_t refresh_every = 1;  ///< cycles; RPDO whose content does not change
+  CobIdSpec cob_id;
   std::vector<std::string> objects;  ///< profile names or "6041:00"
 };
 
@@ -168,9 +183,15 @@ struct DriveProfile {
   std::vector<int> quick_stop_holds;      ///< values of 605Ah after which quick stop stays active
   std::vector<NamedWrite> startup;        ///< at every boot
   std::vector<NamedWrite> before_enable;  ///< by SDO, each time before enabling
-  std::vector<PdoLayout> pdos;            ///< default layout; unlisted PDOs are disabled
-  unsigned max_pdos = 4;                  ///< per direction
+  /// A layout for all axes of the family; empty: each axis gets one that suits its modes.
+  std::vector<PdoLayout> pdos;
+  unsigned max_rpdos = 4, max_tpdos = 4;
   unsigned max_pdo_entries = 8;
+  std::vector<PdoLayout> fixed_pdos;       ///< with a mapping that the drive does not let change
+  bool cob_ids_of_drive = false;           ///< COB-IDs of PDOs are fixed: read and used
+  bool rpdo_deadline = false;              ///< the drive reacts when RPDOs stay away (1400h:05)
+  std::vector<std::string> default_modes;  ///< an axis can switch to; empty: all
+  std::vector<std::string> feedback;       ///< by PDO where there is room, most important first
   bool pdo_map_count_may_be_read_only = false;
   std::optional<std::uint8_t> sync_counter;  ///< overflow value wanted in 1019h; none: no counter
   bool has_sync_counter_object = true;       ///< 1019h exists

@@ -19,13 +19,22 @@ enum class WriteList : std::uint8_t {
 std::vector<NamedWrite> readWrites(const YamlValue& list, const DriveProfile& profile,
                                    WriteList kind);
 
+/// May two PDOs of one direction carry the same object?
+enum class Sharing : std::uint8_t { refused, allowed };
+
 /// Reads a PDO layout (docs/drive_profiles.md, "PDOs") against the objects and limits of a profile.
-std::vector<PdoLayout> readPdos(const YamlValue& value, const DriveProfile& profile);
+std::vector<PdoLayout> readPdos(const YamlValue& value, const DriveProfile& profile,
+                                Sharing sharing = Sharing::refused);
 
 /// Reads a list of sub-indices of 1010h or 1011h into `subindices`, which keeps what it has if the
 /// key is missing or wrong.
 void readSubindices(YamlSection& section, const std::string& key,
                     std::vector<std::uint8_t>& subindices);
+
+/// Reads a list of the profile's modes; canonical names.
+std::vector<std::string> readModeNames(const YamlValue& list, const DriveProfile& profile);
+/// Reads a list of objects that can be in a TPDO; their profile names.
+std::vector<std::string> readFeedbackNames(const YamlValue& list, const DriveProfile& profile);
 
 /// The object that a name or an index ("6041:00") means; nullptr if the profile has none.
 const ObjectSpec* findObject(const DriveProfile& profile, const std::string& name);

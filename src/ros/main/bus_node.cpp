@@ -80,7 +80,7 @@ int main(int argc, char** argv) {
   sim::SimulatedInterface* simulation = nullptr;
   std::unique_ptr<can::Interface> interface = openInterface(*loaded, simulation);
   if (!interface) return 1;
-  ROS_INFO_STREAM("PDO plan:\n" << config::pdoTable(loaded->master));
+  ROS_INFO_STREAM("PDO plan:\n" << config::pdoTable(loaded->master, loaded->robot.bus.bitrate));
 
   bus::BusRunner::Options options;
   options.priority = loaded->options.realtime_priority;

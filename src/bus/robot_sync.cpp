@@ -1,0 +1,108 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// SYNC of other devices: followed where that is configured, told of where it is not.
+#include <cstdio>
+
+#include "cia402_driver/bus/robot.h"
+
+namespace cia402::bus {
+namespace {
+
+using State = canopen::SyncConsumer::State;
+
+constexpr Duration kSyncNewsInterval = std::chrono::milliseconds(100);
+constexpr Duration kForeignHeard = std::chrono::seconds(1);  // one within this is a second producer
+constexpr Duration kPatience = std::chrono::seconds(1);  // with the first SYNC, before it is told
+
+std::string milliseconds(Duration duration) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g ms", 1e3 * toSeconds(duration));
+  return text;
+}
+
+}  // namespace
+
+void Robot::onForeignSync(const can::Frame& frame, Time stamp, Time now) {
+  if (!started_) return;
+  if (config_.bus.external_sync) {
+    followSync(frame, stamp, now);
+  } else {
+    noteSecondProducer(now);
+  }
+}
+
+void Robot::followSync(const can::Frame& frame, Time stamp, Time now) {
+  const Duration period = config_.bus.sync_period;
+  const canopen::SyncConsumer::Observation seen = external_sync_.receive(frame, stamp);
+  const Duration deviation = seen.deviation < Duration::zero() ? -seen.deviation : seen.deviation;
+  statistics_.syncSent(seen.regular ? deviation : Duration::zero());
+  statistics_.cyclesSkipped(seen.missed);
+  master_.syncPassed(now);
+  const bool overtaken = next_cycle_ != kNever;
+  if (overtaken) statistics_.cyclesSkipped(1);
+  next_cycle_ = overtaken ? now : stamp + period / 2;
+  next_sync_ = external_sync_.deadline();
+}
+
+void Robot::lackSync(Time now) {
+  if (external_sync_.tick(now)) stopForLostSync(now);
+  master_.syncPassed(now);
+  next_cycle_ = now;
+  next_sync_ = now + config_.bus.sync_period;
+}
+
+void Robot::stopForLostSync(Time now) {
+  const int periods = canopen::SyncConsumer::kLostAfter;
+  const std::string why =
+      "stopped: no SYNC (COB-ID 0x080) came from the other device for " + std::to_string(periods) +
+      " periods (" + milliseconds(periods * config_.bus.sync_period) +
+      "); set-points do not reach the drives without it. Check the device that produces SYNC, then "
+      "enable again";
+  stopMotion(why, now);
+  for (drive::Axis& axis : axes_) axis.stopBySdo(why, now);
+}
+
+void Robot::noteSecondProducer(Time now) {
+  ++foreign_syncs_;
+  last_foreign_sync_ = now;
+}
+
+std::string Robot::syncProblem() const {
+  if (!config_.bus.external_sync) {
+    if (foreign_syncs_ == 0 || now_ > last_foreign_sync_ + kForeignHeard) return {};
+    return "another device produces SYNC (COB-ID 0x080), too: drives would move at both paces; "
+           "look for 1005h with bit 30, or let the other one lead with `bus: {sync: external}`";
+  }
+  const std::string expected = milliseconds(config_.bus.sync_period);
+  if (external_sync_.state() != State::running) {
+    return "no SYNC (COB-ID 0x080) comes; another device must send it every " + expected +
+           ", as `bus: {sync: external}` says";
+  }
+  if (external_sync_.formWrong()) {
+    return std::string("SYNC comes ") +
+           (config_.bus.sync_counter == 0 ? "with a counter, write its overflow value as"
+                                          : "without the counter of") +
+           " `bus: {sync_counter}`";
+  }
+  if (!external_sync_.periodWrong()) return {};
+  return "SYNC comes every " + milliseconds(external_sync_.period()) + ", not every " + expected +
+         " as `bus: {sync_period}` says: correct one of them";
+}
+
+void Robot::watchSync(Time now) {
+  if (now < sync_checked_ + kSyncNewsInterval) return;
+  const bool just_started = sync_checked_ == Time();
+  sync_checked_ = just_started ? now + kPatience : now;
+  if (just_started) return;
+  if (!config_.bus.external_sync && foreign_syncs_ == 0) return;
+  const std::string problem = syncProblem();
+  const FixedText<200> shown(problem);
+  if (sync_problem_ == shown.view()) return;
+  sync_problem_ = shown;
+  if (problem.empty()) {
+    tell(Event::Severity::info, "SYNC is as it should be", now);
+  } else {
+    tell(Event::Severity::error, problem, now);
+  }
+}
+
+}  // namespace cia402::bus

@@ -1,0 +1,120 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// Which objects of an axis travel by PDO.
+#include <algorithm>
+
+#include "cia402_driver/drive/profile_reader.h"
+#include "pdo_planner.h"
+#include "robot_parts.h"
+
+namespace cia402::config {
+namespace {
+
+using drive::AxisConfig;
+using drive::DriveProfile;
+using drive::ModeSpec;
+using drive::YamlSection;
+
+constexpr Duration kFresh = std::chrono::milliseconds(10);  // age of velocities, or one joint_state
+constexpr Duration kLeastRpdoTimeout = std::chrono::milliseconds(100);
+constexpr int kRpdoTimeoutCycles = 10;
+/// What is shown of an axis beside what it needs; most important first.
+const char* const kFeedback[] = {"velocity_actual", "torque_actual", "error_code", "digital_inputs",
+                                 "following_error"};
+
+std::vector<std::string> allModes(const DriveProfile& profile) {
+  std::vector<std::string> names;
+  for (const ModeSpec& mode : profile.modes) names.push_back(mode.name);
+  return names;
+}
+
+std::vector<std::string> feedbackOf(const DriveProfile& profile) {
+  if (!profile.feedback.empty()) return profile.feedback;
+  return {std::begin(kFeedback), std::end(kFeedback)};
+}
+
+bool plan(YamlSection& section, AxisConfig& axis, RobotConfig& robot, PdoNeeds needs) {
+  const DriveProfile& profile = *axis.profile;
+  const auto modes = section.get("modes");
+  needs.mode = axis.mode;
+  needs.cycle = axis.sync_period;
+  needs.fresh = std::min(kFresh, fromSeconds(1.0 / robot.joint_state_rate));
+  const Result<PdoPlan> planned = planPdos(profile, needs);
+  if (!planned) {
+    const auto at = modes ? *modes : section.get("mode").value_or(section.value());
+    at.problem("profile " + profile.name + ": " + planned.error().message);
+    return false;
+  }
+  if (const auto feedback = section.get("feedback")) {
+    for (const std::string& name : planned->by_sdo) {
+      robot.warnings.push_back(feedback->path() + ": `" + name +
+                               "` finds no room in the TPDOs and is read by SDO, which is slow");
+    }
+  }
+  axis.pdos = planned->pdos;
+  axis.modes = planned->modes;
+  return true;
+}
+
+void readRpdoTimeout(YamlSection& section, AxisConfig& axis) {
+  if (axis.profile->rpdo_deadline) {
+    axis.rpdo_timeout = std::max(kLeastRpdoTimeout, kRpdoTimeoutCycles * axis.sync_period);
+  }
+  double timeout = toSeconds(axis.rpdo_timeout);
+  if (!section.read("rpdo_timeout", timeout, drive::Range{0.0, 65.535, false})) return;
+  axis.rpdo_timeout = fromSeconds(timeout);
+  if (timeout > 0.0 && axis.rpdo_timeout < 2 * axis.sync_period) {
+    section.get("rpdo_timeout")
+        ->problem("must be 0 (none) or at least two cycles, " +
+                  std::to_string(2.0 * toSeconds(axis.sync_period)) + " s");
+  }
+}
+
+/// The drive's own deadline stands on the RPDO that carries the controlword in every cycle.
+void setRpdoTimeout(AxisConfig& axis) {
+  const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(axis.rpdo_timeout).count();
+  for (drive::PdoLayout& pdo : axis.pdos) {
+    const auto& objects = pdo.objects;
+    const bool commands = std::find(objects.begin(), objects.end(), "controlword") != objects.end();
+    if (pdo.direction != canopen::PdoDirection::rpdo || !commands || pdo.event_timer != 0) continue;
+    pdo.event_timer = static_cast<std::uint16_t>(std::clamp<std::int64_t>(ms, 0, 0xFFFF));
+    return;
+  }
+}
+
+}  // namespace
+
+bool choosePdos(YamlSection& section, AxisConfig& axis, RobotConfig& robot) {
+  const auto pdos = section.get("pdos");
+  const auto modes = section.get("modes");
+  const auto feedback = section.get("feedback");
+  section.readInteger("stale_after", axis.stale_after, 1, 1000);
+  if (!axis.profile) {
+    section.get("rpdo_timeout");
+    return false;
+  }
+  const DriveProfile& profile = *axis.profile;
+  readRpdoTimeout(section, axis);
+  PdoNeeds needs;
+  needs.modes_required = modes.has_value();
+  needs.modes = modes ? drive::readModeNames(*modes, profile) : profile.default_modes;
+  if (!modes && needs.modes.empty()) needs.modes = allModes(profile);
+  needs.feedback = feedback ? drive::readFeedbackNames(*feedback, profile) : feedbackOf(profile);
+  if (pdos && feedback) feedback->problem("says nothing beside `pdos`: keep one of them");
+  if (pdos || !profile.pdos.empty()) {
+    axis.pdos = pdos ? drive::readPdos(*pdos, profile) : profile.pdos;
+    axis.modes = needs.modes;
+  } else {
+    const ModeSpec* start = profile.mode(axis.mode);
+    const bool known =
+        std::all_of(needs.modes.begin(), needs.modes.end(),
+                    [&](const std::string& m) { return profile.mode(m) != nullptr; });
+    if (start == nullptr || start->kind == drive::ControlKind::homing) {
+      return true;  // checkMode() tells
+    }
+    if (!known || !plan(section, axis, robot, needs)) return false;
+  }
+  setRpdoTimeout(axis);
+  return true;
+}
+
+}  // namespace cia402::config

@@ -1,0 +1,42 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cia402_driver/common/result.h"
+#include "cia402_driver/common/time.h"
+#include "cia402_driver/drive/profile.h"
+
+namespace cia402::config {
+
+/// What an axis wants to travel by PDO.
+struct PdoNeeds {
+  std::string mode;                ///< canonical name, a mode of the profile: the one to start in
+  std::vector<std::string> modes;  ///< others that it may be switched to
+  bool modes_required = false;     ///< one of `modes` that finds no room is an error; else left out
+  /// Feedback beside statusword, position_actual and mode_display, most important first; what
+  /// finds no room is left to SDO.
+  std::vector<std::string> feedback;
+  Duration cycle{std::chrono::milliseconds(4)};
+  /// Velocity and torque shall not be older than this, where the cycle allows.
+  Duration fresh{std::chrono::milliseconds(10)};
+};
+
+struct PdoPlan {
+  std::vector<drive::PdoLayout> pdos;
+  std::vector<std::string> modes;   ///< that the plan serves, the one to start in first
+  std::vector<std::string> by_sdo;  ///< feedback that found no room
+};
+
+/// Chooses the PDO mapping of one axis: controlword and target of the start mode in one RPDO where
+/// they fit, the targets of the other modes beside them, statusword, position and mode in a TPDO of
+/// every cycle, the rest in slower ones; as little load on the bus as the profile's rules allow.
+/// @return a sentence that says which rule is in the way and what to leave out, if there is no way.
+Result<PdoPlan> planPdos(const drive::DriveProfile& profile, const PdoNeeds& needs);
+
+/// True if the driver sets `object` of an RPDO in every cycle: controlword, mode_of_operation, and
+/// what modes write. Any other would be sent as 0.
+bool isSetByDriver(const drive::DriveProfile& profile, const std::string& object);
+
+}  // namespace cia402::config

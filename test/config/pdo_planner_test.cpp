@@ -1,0 +1,292 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "../../src/config/pdo_planner.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <random>
+
+namespace cia402::config {
+namespace {
+
+using canopen::PdoDirection;
+using drive::DriveProfile;
+using drive::PdoLayout;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+DriveProfile family(const std::string& name) {
+  Problems problems;
+  DriveProfile profile = drive::loadDriveProfile(
+      std::string(CIA402_CONFIG_DIR) + "/drives/" + name + ".yaml", problems);
+  EXPECT_EQ(problems.text(), "");
+  return profile;
+}
+
+PdoNeeds needs(const DriveProfile& profile, const std::string& mode = "cyclic_position") {
+  PdoNeeds result;
+  result.mode = mode;
+  result.modes = profile.default_modes;
+  result.feedback = profile.feedback;
+  return result;
+}
+
+PdoPlan planned(const DriveProfile& profile, const PdoNeeds& what) {
+  const Result<PdoPlan> plan = planPdos(profile, what);
+  EXPECT_TRUE(plan.ok()) << (plan.ok() ? "" : plan.error().message);
+  return plan.ok() ? *plan : PdoPlan();
+}
+
+/// "rpdo1: controlword target_position" and how often.
+std::vector<std::string> lines(const PdoPlan& plan) {
+  std::vector<std::string> result;
+  for (const PdoLayout& pdo : plan.pdos) {
+    const bool rpdo = pdo.direction == PdoDirection::rpdo;
+    std::string text = (rpdo ? "rpdo" : "tpdo") + std::to_string(pdo.number) + " /" +
+                       std::to_string(rpdo ? pdo.refresh_every : pdo.transmission) + ":";
+    for (const std::string& object : pdo.objects) text += " " + object;
+    result.push_back(text);
+  }
+  return result;
+}
+
+TEST(PdoPlanner, AGenericServoNeedsOneFrameEachWayPerCycle) {
+  const DriveProfile profile = family("generic_cia402");
+  EXPECT_THAT(lines(planned(profile, needs(profile))),
+              ElementsAre("rpdo1 /1: controlword target_position", "rpdo2 /10: target_velocity",
+                          "tpdo1 /1: statusword position_actual mode_display",
+                          "tpdo2 /2: velocity_actual torque_actual",
+                          "tpdo3 /10: error_code digital_inputs"));
+}
+
+TEST(PdoPlanner, ADamiaoServesAllItsModes) {
+  const DriveProfile profile = family("damiao_dm");
+  PdoNeeds what = needs(profile);
+  for (const drive::ModeSpec& mode : profile.modes) what.modes.push_back(mode.name);
+  const PdoPlan plan = planned(profile, what);
+  EXPECT_THAT(lines(plan),
+              ElementsAre("rpdo1 /1: controlword target_position",
+                          "rpdo2 /10: target_velocity target_torque",
+                          "tpdo1 /1: statusword position_actual mode_display",
+                          "tpdo2 /2: velocity_actual torque_actual", "tpdo3 /10: error_code"));
+  EXPECT_EQ(plan.modes.size(), profile.modes.size());
+}
+
+TEST(PdoPlanner, TheTargetOfTheStartModeTravelsWithTheControlword) {
+  const DriveProfile profile = family("generic_cia402");
+  EXPECT_THAT(lines(planned(profile, needs(profile, "cyclic_velocity"))),
+              testing::Contains("rpdo1 /1: controlword target_velocity"));
+}
+
+TEST(PdoPlanner, ASlowCycleBringsEverythingInEachCycle) {
+  const DriveProfile profile = family("generic_cia402");
+  PdoNeeds what = needs(profile);
+  what.cycle = std::chrono::milliseconds(50);
+  for (const PdoLayout& pdo : planned(profile, what).pdos) EXPECT_EQ(pdo.transmission, 1);
+}
+
+TEST(PdoPlanner, LeavesOptionalModesAndFeedbackOutWhereThereIsNoRoom) {
+  DriveProfile profile = family("generic_cia402");
+  profile.max_rpdos = profile.max_tpdos = 1;
+  const PdoPlan plan = planned(profile, needs(profile));
+  EXPECT_THAT(lines(plan), ElementsAre("rpdo1 /1: controlword target_position",
+                                       "tpdo1 /1: statusword position_actual mode_display"));
+  EXPECT_THAT(plan.modes, ElementsAre("cyclic_position", "profile_position", "homing"));
+  EXPECT_THAT(plan.by_sdo,
+              ElementsAre("velocity_actual", "torque_actual", "error_code", "digital_inputs"));
+}
+
+TEST(PdoPlanner, SaysWhichModeFindsNoRoomAndWhatToLeaveOut) {
+  DriveProfile profile = family("generic_cia402");
+  profile.max_rpdos = 1;
+  PdoNeeds what = needs(profile);
+  what.modes = {"cyclic_velocity"};
+  what.modes_required = true;
+  const auto plan = planPdos(profile, what);
+  ASSERT_FALSE(plan.ok());
+  EXPECT_EQ(
+      plan.error().message,
+      "mode `cyclic_velocity` finds no room: the drive has 1 RPDO of 64 bits with at most 8 "
+      "objects, which controlword (16), target_position (32) fill already: `target_velocity` "
+      "(32) would need another one; leave out `cyclic_velocity` or one of the modes before it");
+}
+
+TEST(PdoPlanner, SaysWhyTheStartModeCannotBeServed) {
+  DriveProfile profile = family("generic_cia402");
+  profile.max_rpdos = 1;
+  profile.max_pdo_entries = 1;
+  const auto plan = planPdos(profile, needs(profile));
+  ASSERT_FALSE(plan.ok());
+  EXPECT_THAT(plan.error().message,
+              HasSubstr("mode `cyclic_position` needs controlword (16), target_position (32) in "
+                        "RPDOs, but the drive has 1 RPDO of 64 bits with at most 1 objects"));
+}
+
+TEST(PdoPlanner, SaysThatATargetCannotBeMapped) {
+  DriveProfile profile = family("generic_cia402");
+  for (drive::ObjectSpec& object : profile.objects) {
+    if (object.name == "target_velocity") object.rpdo = false;
+  }
+  PdoNeeds what = needs(profile);
+  what.modes = {"cyclic_velocity"};
+  EXPECT_THAT(planned(profile, what).modes, ElementsAre("cyclic_position"));
+  what.modes_required = true;
+  const auto plan = planPdos(profile, what);
+  ASSERT_FALSE(plan.ok());
+  EXPECT_THAT(plan.error().message, HasSubstr("`target_velocity`, which cannot be mapped"));
+}
+
+TEST(PdoPlanner, DoesNotUseAFixedRpdoThatWouldSendWhatNobodySets) {
+  DriveProfile profile = family("generic_cia402");
+  PdoLayout fixed;
+  fixed.direction = PdoDirection::rpdo;
+  fixed.number = 1;
+  fixed.objects = {"controlword", "target_position", "max_torque"};
+  profile.fixed_pdos = {fixed};
+  EXPECT_THAT(lines(planned(profile, needs(profile))),
+              testing::Contains("rpdo2 /1: controlword target_position"));
+}
+
+/// A family made up by chance: rules, mappability and widths.
+class RandomFamily {
+ public:
+  explicit RandomFamily(unsigned seed) : random_(seed), profile_(family("generic_cia402")) {
+    for (drive::ObjectSpec& object : profile_.objects) {
+      const bool motion = object.quantity != drive::Quantity::none;
+      constexpr canopen::DataType kTypes[] = {canopen::DataType::int8, canopen::DataType::int16,
+                                              canopen::DataType::int32, canopen::DataType::int64};
+      if (motion && below(3) == 0) object.type = kTypes[below(4)];
+      if (below(8) == 0) object.rpdo = false;
+      if (below(8) == 0) object.tpdo = false;
+    }
+    profile_.max_rpdos = 1 + below(5);
+    profile_.max_tpdos = 1 + below(5);
+    profile_.max_pdo_entries = 1 + below(8);
+    for (unsigned i = below(4); i > 0; --i) addFixed();
+    needs_.mode = profile_.modes[below(static_cast<unsigned>(profile_.modes.size()))].name;
+    for (const drive::ModeSpec& mode : profile_.modes) {
+      if (below(2) == 0) needs_.modes.push_back(mode.name);
+    }
+    needs_.modes_required = below(2) == 0;
+    for (const char* name : {"velocity_actual", "torque_actual", "error_code", "digital_inputs",
+                             "following_error", "dc_link_voltage"}) {
+      if (below(2) == 0) needs_.feedback.emplace_back(name);
+    }
+    needs_.cycle = std::chrono::milliseconds(1 + below(30));
+  }
+  const DriveProfile& profile() const { return profile_; }
+  const PdoNeeds& needs() const { return needs_; }
+
+ private:
+  unsigned below(unsigned limit) { return static_cast<unsigned>(random_() % limit); }
+  void addFixed() {
+    PdoLayout fixed;
+    fixed.direction = below(2) == 0 ? PdoDirection::rpdo : PdoDirection::tpdo;
+    const bool rpdo = fixed.direction == PdoDirection::rpdo;
+    fixed.number = 1 + below(rpdo ? profile_.max_rpdos : profile_.max_tpdos);
+    for (const PdoLayout& other : profile_.fixed_pdos) {
+      if (other.direction == fixed.direction && other.number == fixed.number) return;
+    }
+    unsigned bits = 0;
+    for (const drive::ObjectSpec& object : profile_.objects) {
+      const unsigned width = canopen::sizeBits(object.type);
+      if (!(rpdo ? object.rpdo : object.tpdo) || below(4) != 0 || width == 0) continue;
+      if (bits + width > 64 || fixed.objects.size() >= profile_.max_pdo_entries) break;
+      bits += width;
+      fixed.objects.push_back(object.name);
+    }
+    profile_.fixed_pdos.push_back(fixed);
+  }
+
+  std::mt19937 random_;
+  DriveProfile profile_;
+  PdoNeeds needs_;
+};
+
+bool isFixed(const DriveProfile& profile, const PdoLayout& pdo) {
+  return std::any_of(profile.fixed_pdos.begin(), profile.fixed_pdos.end(), [&](const PdoLayout& f) {
+    return f.direction == pdo.direction && f.number == pdo.number;
+  });
+}
+
+bool carries(const PdoPlan& plan, PdoDirection direction, const std::string& object) {
+  return std::any_of(plan.pdos.begin(), plan.pdos.end(), [&](const PdoLayout& pdo) {
+    return pdo.direction == direction &&
+           std::find(pdo.objects.begin(), pdo.objects.end(), object) != pdo.objects.end();
+  });
+}
+
+void check(const DriveProfile& profile, const PdoNeeds& what, const PdoPlan& plan) {
+  std::map<std::pair<PdoDirection, unsigned>, int> numbers;
+  std::map<std::pair<PdoDirection, std::string>, int> free_objects;
+  for (const PdoLayout& pdo : plan.pdos) {
+    const bool rpdo = pdo.direction == PdoDirection::rpdo;
+    EXPECT_EQ(++numbers[std::make_pair(pdo.direction, pdo.number)], 1);
+    EXPECT_GE(pdo.number, 1u);
+    EXPECT_LE(pdo.number, rpdo ? profile.max_rpdos : profile.max_tpdos);
+    EXPECT_LE(pdo.objects.size(), profile.max_pdo_entries);
+    EXPECT_GE(pdo.transmission, 1);
+    EXPECT_LE(pdo.transmission, 240);
+    unsigned bits = 0;
+    for (const std::string& name : pdo.objects) {
+      const drive::ObjectSpec* object = profile.find(name);
+      ASSERT_NE(object, nullptr) << name;
+      EXPECT_TRUE(rpdo ? object->rpdo : object->tpdo) << name;
+      EXPECT_TRUE(!rpdo || isSetByDriver(profile, name)) << name;
+      bits += canopen::sizeBits(object->type);
+      if (!isFixed(profile, pdo)) {
+        EXPECT_EQ(++free_objects[std::make_pair(pdo.direction, name)], 1) << name;
+      }
+    }
+    EXPECT_GT(bits, 0u);
+    EXPECT_LE(bits, 64u);
+    for (const PdoLayout& fixed : profile.fixed_pdos) {
+      if (fixed.direction == pdo.direction && fixed.number == pdo.number) {
+        EXPECT_EQ(fixed.objects, pdo.objects) << "a fixed mapping was changed";
+      }
+    }
+  }
+  EXPECT_TRUE(carries(plan, PdoDirection::rpdo, "controlword"));
+  EXPECT_TRUE(carries(plan, PdoDirection::tpdo, "statusword"));
+  EXPECT_TRUE(carries(plan, PdoDirection::tpdo, "position_actual"));
+  EXPECT_EQ(plan.modes.front(), what.mode);
+  for (const std::string& name : plan.modes) {
+    const std::string& target = profile.mode(name)->target;
+    EXPECT_TRUE(target.empty() || carries(plan, PdoDirection::rpdo, target)) << name;
+  }
+  for (const std::string& name : what.feedback) {
+    const bool by_sdo =
+        std::find(plan.by_sdo.begin(), plan.by_sdo.end(), name) != plan.by_sdo.end();
+    EXPECT_NE(by_sdo, carries(plan, PdoDirection::tpdo, name)) << name;
+  }
+  if (!what.modes_required) return;
+  for (const std::string& name : what.modes) {
+    EXPECT_NE(std::find(plan.modes.begin(), plan.modes.end(), name), plan.modes.end()) << name;
+  }
+}
+
+TEST(PdoPlannerProperty, EveryPlanKeepsTheRulesOrIsRefusedWithAReason) {
+  unsigned plans = 0, refusals = 0;
+  for (unsigned seed = 1; seed <= 1500; ++seed) {
+    SCOPED_TRACE(seed);
+    const RandomFamily random(seed);
+    const auto plan = planPdos(random.profile(), random.needs());
+    if (plan.ok()) {
+      ++plans;
+      check(random.profile(), random.needs(), *plan);
+    } else {
+      ++refusals;
+      EXPECT_GT(plan.error().message.size(), 30u);
+      EXPECT_THAT(plan.error().message,
+                  testing::AnyOf(HasSubstr("the drive has"), HasSubstr("mapp")));
+    }
+    if (HasFailure()) break;
+  }
+  EXPECT_GT(plans, 200u);
+  EXPECT_GT(refusals, 200u);
+}
+
+}  // namespace
+}  // namespace cia402::config

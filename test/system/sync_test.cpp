@@ -1,0 +1,206 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// SYNC that another device produces: followed, lost, irregular, or not wanted.
+#include "system/scene.h"
+
+namespace cia402 {
+namespace {
+
+using namespace std::chrono_literals;
+using drive::ProcedureKind;
+using testing::HasSubstr;
+using testing::Not;
+
+/// Another device on the bus that sends SYNC at its own pace.
+class Metronome final : public sim::Participant {
+ public:
+  Metronome(sim::World& world, Duration period)
+      : world_(world), port_(world.addParticipant("metronome", *this)), period_(period) {}
+  void play(bool on) { next_ = on ? world_.now() + period_ : kNever; }
+  void setPeriod(Duration period) { period_ = period; }
+  void setCounter(bool on) { counter_ = on; }
+
+ private:
+  void receive(const can::Frame&, Time) override {}
+  void tick(Time now) override {
+    if (now < next_) return;
+    next_ += period_;
+    if (counter_) {
+      port_.send(can::Frame(0x080, {static_cast<std::uint8_t>(1 + count_++ % 240)}), now);
+    } else {
+      port_.send(can::Frame(0x080, {}), now);
+    }
+  }
+  Time nextDeadline() const override { return next_; }
+
+  sim::World& world_;
+  sim::Port& port_;
+  Duration period_;
+  Time next_ = kNever;
+  bool counter_ = false;
+  unsigned count_ = 0;
+};
+
+std::string external(const std::string& more = {}) {
+  std::string yaml = genericPair();
+  return yaml.replace(yaml.find("heartbeat: 0.1"), 14, "heartbeat: 0.1, sync: external" + more);
+}
+
+class ExternalSync : public testing::Test {
+ protected:
+  void boot(const std::string& yaml, Duration period = 4ms, bool counter = false) {
+    scene = std::make_unique<Scene>(loadText(yaml));
+    metronome = std::make_unique<Metronome>(scene->world(), period);
+    metronome->setCounter(counter);
+    scene->world().bus().setMonitor([this](const can::Frame& frame, Time now) {
+      if (frame.id == 0x080) last_sync = now;
+      if (frame.id == 0x201) rpdo_after_sync = now - last_sync;
+    });
+    metronome->play(true);
+    ASSERT_TRUE(scene->boot()) << scene->told();
+    scene->run(200ms);
+  }
+  bus::RobotSnapshot snapshot() {
+    bus::RobotSnapshot shot;
+    scene->robot().robot().fill(shot);
+    return shot;
+  }
+
+  std::unique_ptr<Scene> scene;
+  std::unique_ptr<Metronome> metronome;
+  Time last_sync{};
+  Duration rpdo_after_sync{};
+};
+
+TEST_F(ExternalSync, ATrajectoryFollowsThePaceOfAnotherDevice) {
+  boot(external());
+  ASSERT_TRUE(scene->procedure(ProcedureKind::enable).success) << scene->told();
+  const auto moved = scene->move({0.6, -0.4}, 2s);
+  EXPECT_TRUE(moved.success) << moved.message;
+  scene->run(2500ms);
+  EXPECT_NEAR(scene->position("left"), 0.6, 1e-3);
+  EXPECT_NEAR(scene->position("right"), -0.4, 1e-3);
+  // Half a period after SYNC, and the frames before it.
+  EXPECT_GT(rpdo_after_sync, 2ms);
+  EXPECT_LT(rpdo_after_sync, 2500us);
+  EXPECT_EQ(snapshot().missed_syncs, 0u);
+  EXPECT_THAT(scene->told(), Not(HasSubstr("SYNC")));
+}
+
+TEST_F(ExternalSync, TheDriverItselfProducesNone) {
+  boot(external());
+  metronome->play(false);
+  scene->run(100ms);
+  const Time last = last_sync;
+  scene->run(1s);
+  EXPECT_EQ(last_sync, last);
+}
+
+TEST_F(ExternalSync, WhenItIsLostEverythingThatMovesIsStoppedInWords) {
+  boot(external());
+  ASSERT_TRUE(scene->procedure(ProcedureKind::enable).success);
+  ASSERT_TRUE(scene->move({1.5, -1.5}, 4s).success);
+  scene->run(1s);
+  ASSERT_GT(std::fabs(scene->velocity("left")), 0.2);
+  metronome->play(false);
+  scene->run(600ms);
+  EXPECT_NEAR(scene->velocity("left"), 0.0, 1e-3);
+  EXPECT_NEAR(scene->velocity("right"), 0.0, 1e-3);
+  EXPECT_FALSE(scene->truth("left").power_stage_on);
+  EXPECT_FALSE(scene->truth("right").power_stage_on);
+  EXPECT_THAT(scene->told(),
+              HasSubstr("left (node 1): stopped: no SYNC (COB-ID 0x080) came from the "
+                        "other device for 3 periods (12 ms)"));
+  EXPECT_TRUE(std::isnan(scene->state("left").position)) << "it is not known any more";
+  const auto refused = scene->procedure(ProcedureKind::enable, "left");
+  EXPECT_FALSE(refused.success);
+  EXPECT_THAT(refused.message, HasSubstr("enable is refused: no SYNC (COB-ID 0x080) comes"));
+}
+
+TEST_F(ExternalSync, WhenItIsBackNothingMovesUntilSomebodyEnables) {
+  boot(external());
+  ASSERT_TRUE(scene->procedure(ProcedureKind::enable).success);
+  ASSERT_TRUE(scene->move({1.5, -1.5}, 4s).success);
+  scene->run(1s);
+  metronome->play(false);
+  scene->run(600ms);
+  scene->forget();
+  metronome->play(true);
+  scene->run(1s);
+  EXPECT_LT(scene->seen("left").travel(), 2e-4);
+  EXPECT_FALSE(scene->truth("left").power_stage_on);
+  EXPECT_FALSE(std::isnan(scene->state("left").position));
+  EXPECT_THAT(scene->told(), HasSubstr("SYNC is as it should be"));
+  const auto enabled = scene->procedure(ProcedureKind::enable);
+  EXPECT_TRUE(enabled.success) << enabled.message;
+  EXPECT_LT(scene->seen("left").travel(), 2e-4);
+}
+
+TEST_F(ExternalSync, ASingleMissingSyncIsCountedAndNoReasonToStop) {
+  boot(external());
+  ASSERT_TRUE(scene->procedure(ProcedureKind::enable).success);
+  sim::FaultRule rule;
+  rule.id = 0x080;
+  scene->world().bus().faults().add(rule);
+  scene->run(100ms);
+  EXPECT_EQ(snapshot().missed_syncs, 1u);
+  EXPECT_TRUE(scene->state("left").ready_for_motion);
+}
+
+TEST_F(ExternalSync, AnotherPeriodThanConfiguredIsSaidAndNothingIsEnabled) {
+  boot(external(), 5ms);
+  scene->run(1500ms);
+  EXPECT_THAT(scene->told(), HasSubstr("SYNC comes every 5 ms, not every 4 ms as"));
+  const auto refused = scene->procedure(ProcedureKind::enable, "left");
+  EXPECT_FALSE(refused.success);
+  EXPECT_THAT(refused.message, HasSubstr("SYNC comes every 5 ms"));
+  EXPECT_TRUE(snapshot().sync_problem.view().find("5 ms") != std::string::npos);
+}
+
+TEST_F(ExternalSync, ACounterThatNobodyConfiguredIsSaid) {
+  boot(external(), 4ms, true);
+  scene->run(1500ms);
+  EXPECT_THAT(scene->told(), HasSubstr("SYNC comes with a counter"));
+}
+
+TEST_F(ExternalSync, WithoutAProducerTheNodesBootAndTheReasonIsSaid) {
+  scene = std::make_unique<Scene>(loadText(external()));
+  ASSERT_TRUE(scene->boot()) << scene->told();
+  scene->run(1500ms);
+  EXPECT_THAT(scene->told(), HasSubstr("no SYNC (COB-ID 0x080) comes; another device must send it "
+                                       "every 4 ms"));
+  EXPECT_FALSE(scene->procedure(ProcedureKind::enable).success);
+}
+
+TEST_F(ExternalSync, ASecondProducerBesideOurOwnSyncIsSaid) {
+  boot(genericPair(), 40ms);
+  scene->run(1500ms);
+  EXPECT_THAT(scene->told(), HasSubstr("another device produces SYNC (COB-ID 0x080), too"));
+  EXPECT_GT(snapshot().foreign_syncs, 30u);
+  EXPECT_FALSE(scene->procedure(ProcedureKind::enable).success);
+  metronome->play(false);
+  scene->run(1500ms);
+  const auto enabled = scene->procedure(ProcedureKind::enable);
+  EXPECT_TRUE(enabled.success) << enabled.message;
+}
+
+TEST(TimeMessage, IsSentAtItsIntervalOnceTheWallClockIsKnown) {
+  std::string yaml = genericPair();
+  yaml.replace(yaml.find("heartbeat: 0.1"), 14, "heartbeat: 0.1, time_interval: 0.5");
+  Scene scene(loadText(yaml));
+  std::vector<can::Frame> seen;
+  scene.world().bus().setMonitor([&](const can::Frame& frame, Time) {
+    if (frame.id == 0x100) seen.push_back(frame);
+  });
+  ASSERT_TRUE(scene.boot());
+  scene.run(1s);
+  EXPECT_TRUE(seen.empty());
+  scene.robot().robot().setWallTime(441763200s + 24h, scene.now());  // 1984-01-02 00:00
+  scene.run(2s);
+  ASSERT_EQ(seen.size(), 4u);
+  EXPECT_EQ(seen[0].size, 6);
+  EXPECT_EQ(seen[0].data[4], 1);  // a day after 1984-01-01
+  EXPECT_EQ(seen[0].data[5], 0);
+}
+
+}  // namespace
+}  // namespace cia402
