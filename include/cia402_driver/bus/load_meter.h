@@ -7,8 +7,8 @@
 namespace cia402::bus {
 
 /// Stands between a robot and its interface and measures how busy the bus is with what passes here.
-/// Where the stuff bits are would have to be searched bit by bit; the true load lies between the one
-/// without any and the one with as many as the frames could need.
+/// Where the stuff bits are would have to be searched bit by bit; the true load lies between the
+/// one without any and the one with as many as the frames could need.
 class LoadMeter final : public can::Sink {
  public:
   LoadMeter(can::Sink& sink, double bitrate) : sink_(sink), bitrate_(bitrate) {}
