@@ -31,7 +31,7 @@ SIM_MAY_NOT_INCLUDE = re.compile(
 
 SANS_IO = MODEL + ["motion", "decode", "sim"]
 # The edge of can/ towards the kernel.
-EDGE = re.compile(r"/can/(socketcan|raw_socket|link_probe|wall_clock)")
+EDGE = re.compile(r"/can/(socketcan|raw_socket|link_probe|link_message|link_settings|wall_clock)")
 FORBIDDEN = [
     (re.compile(r"#include\s*<(thread|mutex|shared_mutex|condition_variable|future|semaphore|"
                 r"ctime|time\.h|pthread\.h|poll\.h|unistd\.h|sys/(socket|select|epoll|timerfd|time)\.h|"
