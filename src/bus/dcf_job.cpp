@@ -154,9 +154,10 @@ void DcfJob::addCommunicationObjects(const drive::DriveProfile& profile) {
       "Number of mapped objects", "Mapped object 1", "Mapped object 2",
       "Mapped object 3",          "Mapped object 4", "Mapped object 5",
       "Mapped object 6",          "Mapped object 7", "Mapped object 8"};
-  for (unsigned i = 0; i < profile.max_pdos; ++i) {
-    for (const unsigned base : {0x1400U, 0x1800U}) {
-      const bool receive = base == 0x1400;
+  for (const unsigned base : {0x1400U, 0x1800U}) {
+    const bool receive = base == 0x1400;
+    const unsigned count = receive ? profile.max_rpdos : profile.max_tpdos;
+    for (unsigned i = 0; i < count; ++i) {
       addRecord(static_cast<std::uint16_t>(base + i),
                 receive ? "RPDO communication parameter" : "TPDO communication parameter",
                 {u8, u32, u8, u16, u8, u16, u8},
