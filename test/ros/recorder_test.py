@@ -7,7 +7,7 @@ import shutil
 import tempfile
 
 from recordings import find_recording, first, head_of, read_log, read_text, wait_recording
-from robot_client import Process, Robot, RobotTest, main
+from robot_client import Process, Robot, RobotTest, main, wait_until
 
 
 class Recorder(RobotTest):
@@ -24,12 +24,18 @@ class Recorder(RobotTest):
         super().tearDownClass()
         shutil.rmtree(cls.directory)
 
+    def dump(self):
+        """Asks for a recording. @return the answer, or None while a failure is being recorded."""
+        answer = self.robot.call("dump_recording")
+        return answer if answer.success else None
+
     def test_01_memory_and_place_are_told_at_the_start(self):
         self.wait_log(f"flight recorder: the last 10 s in |MB|{self.directory}")
 
     def test_02_service_answers_with_the_files(self):
         self.succeed("elbow/read_object", object="1018:01")
-        answer = self.succeed("dump_recording", "flight recording|asked for")
+        answer = wait_until(self.dump, "a recording on demand")
+        self.assert_words(answer.message, "flight recording|asked for")
         log = re.search(r"frames in (\S+\.log)", answer.message)[1]
         text = re.search(r"in words in (\S+\.txt)", answer.message)[1]
         self.assertTrue(os.path.basename(log).endswith("Z_sim_requested.log"), log)
@@ -72,9 +78,11 @@ class Recorder(RobotTest):
                         recorder={"directory": "/proc/recordings"})
         robot = Robot("other")
         try:
-            answer = robot.call("dump_recording")
-            self.assertFalse(answer.success)
-            self.assert_words(answer.message, "could not be written|/proc/recordings")
+            def met():  # refused while a failure is being recorded
+                answer = robot.call("dump_recording")
+                self.assertFalse(answer.success)
+                return "could not be written" in answer.message and answer.message
+            self.assert_words(wait_until(met, "told"), "/proc/recordings")
         finally:
             other.stop()
             robot.close()

@@ -9,7 +9,7 @@ import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "ros"))
 from recordings import first, head_of, read_log, read_text, wait_recording  # noqa: E402
-from robot_client import Process, Robot, RobotTest, main, rospy  # noqa: E402
+from robot_client import Process, Robot, RobotTest, main, rospy, wait_until  # noqa: E402
 from wire import Wire  # noqa: E402
 
 CONFIG = "test/vcan/robot.yaml"
@@ -40,8 +40,8 @@ class VcanRecorder(RobotTest):
         self.assertTrue(answer.success, answer.message)
 
     def test_a_fault_is_on_file(self):
-        self.succeed("recover")
-        self.succeed("wrist/home")
+        wait_until(lambda: self.robot.call("recover").success, "recovered")
+        wait_until(lambda: self.robot.call("wrist/enable").success, "enabled")
         began = time.time()
         self.inject("wrist", "encoder")
         self.robot.wait_state("wrist", "fault")
@@ -68,8 +68,10 @@ class VcanRecorder(RobotTest):
         self.assertLess(told, fell)
 
     def test_b_service_writes_what_there_is(self):
-        answer = self.succeed("dump_recording", "vcan0_requested.log")
-        self.assertIn("vcan0_requested.txt", answer.message)
+        def met():  # refused while a failure is being recorded
+            answer = self.robot.call("dump_recording")
+            return answer.success and answer.message
+        self.assert_words(wait_until(met, "written"), "vcan0_requested.log|vcan0_requested.txt")
 
 
 if __name__ == "__main__":
