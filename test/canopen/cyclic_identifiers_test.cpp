@@ -3,27 +3,46 @@
 
 #include <gmock/gmock.h>
 
+#include <utility>
+#include <vector>
+
 namespace cia402::canopen {
 namespace {
 
-TEST(CyclicIdentifiers, AreSyncTimeHeartbeatAndRpdosButNoTransfersAndCommands) {
+MasterConfig masterWith(std::vector<PdoConfig> pdos) {
   MasterConfig master;
-  master.node_id = 127;
   NodeConfig node;
   node.node_id = 3;
-  PdoConfig fixed;  // an RPDO that the drive has elsewhere
-  fixed.direction = PdoDirection::rpdo;
-  fixed.cob_id = 0x6A3;
-  PdoConfig tpdo;
-  tpdo.direction = PdoDirection::tpdo;
-  tpdo.cob_id = 0x183;
-  PdoConfig unknown;  // read at boot
-  unknown.direction = PdoDirection::rpdo;
-  unknown.cob_id = 0;
-  node.pdos = {fixed, tpdo, unknown};
+  node.pdos = std::move(pdos);
   master.nodes = {node};
-  EXPECT_THAT(cyclicIdentifiers(master), testing::UnorderedElementsAre(0x080, 0x100, 0x77F, 0x203,
-                                                                       0x303, 0x403, 0x503, 0x6A3));
+  return master;
+}
+
+PdoConfig rpdo(std::uint16_t cob_id) {
+  PdoConfig pdo;
+  pdo.direction = PdoDirection::rpdo;
+  pdo.cob_id = cob_id;
+  return pdo;
+}
+
+TEST(CyclicIdentifiers, AreSyncTimeHeartbeatAndRpdosWhereverADriveMayHaveThem) {
+  const auto identifiers = cyclicIdentifiers(masterWith({rpdo(0x6A3), rpdo(0)}));
+  for (const std::uint32_t id : {0x080U, 0x100U, 0x77FU, 0x203U, 0x503U, 0x6A3U, 0x1F5U}) {
+    EXPECT_THAT(identifiers, testing::Contains(id)) << std::hex << id;
+  }
+}
+
+TEST(CyclicIdentifiers, AreNotThoseOfCommandsAndTransfers) {
+  MasterConfig master = masterWith({});
+  master.nodes[0].sdo_channel = {0x690, 0x5F0};
+  const auto identifiers = cyclicIdentifiers(master);
+  for (const std::uint32_t id : {0x000U, 0x601U, 0x603U, 0x67FU, 0x690U, 0x7E5U}) {
+    EXPECT_THAT(identifiers, testing::Not(testing::Contains(id))) << std::hex << id;
+  }
+}
+
+TEST(CyclicIdentifiers, IncludeAnRpdoInThePlaceOfAnSdoRequest) {
+  EXPECT_THAT(cyclicIdentifiers(masterWith({rpdo(0x610)})), testing::Contains(0x610U));
 }
 
 }  // namespace

@@ -8,9 +8,9 @@
 
 namespace cia402::canopen {
 
-/// Identifiers of the frames that the master sends again and again: SYNC, TIME, its heartbeat and
-/// RPDOs, those of the pre-defined connection set included (CiA 301, table 39). Of these only the
-/// newest is worth sending; a late one is a lie.
+/// Identifiers of which only the newest frame of the master is worth sending, for a late one is a
+/// lie: SYNC, TIME, heartbeat, RPDOs. A drive may keep COB-IDs for its PDOs that are known only
+/// once it has booted; hence all but those of NMT, SDO and LSS requests.
 std::vector<std::uint32_t> cyclicIdentifiers(const MasterConfig& master);
 
 }  // namespace cia402::canopen
