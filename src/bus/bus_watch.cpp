@@ -54,7 +54,7 @@ void BusWatch::onChange(const can::Interface& interface, Robot& robot, Time now)
   } else if (!robot.started()) {
     robot.start(now);
   } else if (was_lost) {
-    robot.busBack(now);
+    robot.busBack(verdict != RepeatLimiter::Verdict::hold, now);
   }
 }
 

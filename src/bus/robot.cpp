@@ -87,9 +87,10 @@ void Robot::busLost(const std::string& why, Time now) {
   for (drive::Axis& axis : axes_) axis.onBusLost(why);
 }
 
-void Robot::busBack(Time now) {
+void Robot::busBack(bool is_news, Time now) {
   if (bus_lost_.empty()) return;
   bus_lost_.clear();
+  if (!is_news) return;
   tell(Event::Severity::info,
        config_.bus.interface +
            " is back: drives that were lost are configured again; the axes stay "

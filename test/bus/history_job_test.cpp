@@ -42,9 +42,11 @@ TEST_F(HistoryJobTest, AnswersWithTheTextsOfTheProfileAndOfTheStandard) {
 }
 
 TEST_F(HistoryJobTest, TellsAnEmptyHistoryFromOneThatDoesNotExist) {
+  world.drives[0].aborts[ObjectId{0x1003, 0}] = 0x06020000;
   EXPECT_FALSE(read().success);
   EXPECT_THAT(read().message,
               HasSubstr("the drive keeps no error history: 1003:00 does not exist"));
+  world.drives[0].aborts.clear();
   world.drives[0].objects[ObjectId{0x1003, 0}] = {0};
   EXPECT_TRUE(read().success);
   EXPECT_EQ(read().message, "shoulder (node 1): error history (1003h): empty");

@@ -53,8 +53,8 @@ class Robot final : private canopen::MasterListener {
   /// No frame leaves any more, for the reason `why` ("can0 is bus-off"): motion ends, axes are not
   /// enabled when the bus comes back, commands are refused until then.
   void busLost(const std::string& why, Time now);
-  /// Frames leave again.
-  void busBack(Time now);
+  /// Frames leave again. @param is_news whether people are told.
+  void busBack(bool is_news, Time now);
 
   /// Carries out a command; its reply may come at once or when a procedure has ended.
   void execute(Command command, Time now);

@@ -89,7 +89,7 @@ class VirtualRobot final : private sim::Participant, private bus::EventSink {
     if (lost) {
       robot_.busLost("the bus is off", now);
     } else {
-      robot_.busBack(now);
+      robot_.busBack(true, now);
     }
   }
   void receive(const can::Frame& frame, Time now) override {
