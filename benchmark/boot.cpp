@@ -42,7 +42,8 @@ Boot boot(const Row& row) {
   const Time end = begin + std::chrono::seconds(60);
   while (!allReady(world.robot()) && world.now() < end) world.run(std::chrono::microseconds(100));
   for (const canopen::Node& node : world.robot().master().nodes()) {
-    const bool well = node.health() == canopen::NodeHealth::ready && node.bootUps() == 1 &&
+    const std::uint32_t boot_ups = node.bootUps() - 1;  // the first one told that it has power
+    const bool well = node.health() == canopen::NodeHealth::ready && boot_ups == 1 &&
                       node.notes().empty() && node.emergencies() == 0;
     if (!well) {
       throw std::runtime_error(node.name() + " did not boot as it should: " + node.bootStep() +

@@ -220,6 +220,14 @@ TEST_F(SdoBlockDownloadTest, tries_segments_on_a_server_that_does_not_answer_to_
   receive("581 43 00 10 00 92 01 02 00");  // it is there
   EXPECT_EQ(peer.take().back(), "601 21 50 1F 01 14 00 00 00");
   EXPECT_FALSE(ticket->done());
+  receive("581 60 50 1F 01 00 00 00 00");
+  receive("581 20 00 00 00 00 00 00 00");
+  receive("581 30 00 00 00 00 00 00 00");
+  receive("581 20 00 00 00 00 00 00 00");
+  ASSERT_TRUE(ticket->ok()) << ticket->message();
+  peer.take();
+  start();
+  EXPECT_EQ(peer.take(), Lines{"601 21 50 1F 01 14 00 00 00"}) << "remembered";
 }
 
 TEST_F(SdoBlockDownloadTest, happens_by_itself_above_the_threshold_only) {

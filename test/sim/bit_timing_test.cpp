@@ -7,6 +7,8 @@
 #include <random>
 #include <string>
 
+#include "cia402_driver/can/frame_bits.h"
+
 namespace cia402::sim {
 namespace {
 
@@ -186,6 +188,21 @@ TEST(ExactBits, NeedAtLeastOneStuffBitForTheZerosOfAnEmptyStandardFrame) {
   // RTR, IDE, r0 and the length 0 are seven zeros in a row: one stuff bit at least.
   EXPECT_EQ(fewest_stuff_bits, 1u);
   EXPECT_GE(most_stuff_bits, 4u);
+}
+
+TEST(ExactBits, AreThoseThatTheDriverCountsForItself) {
+  std::mt19937 random(5);
+  for (int i = 0; i < 5000; ++i) {
+    Frame frame;
+    frame.extended = random() % 4 == 0;
+    frame.id = static_cast<std::uint32_t>(random()) & (frame.extended ? 0x1FFFFFFFU : 0x7FFU);
+    frame.remote = random() % 8 == 0;
+    frame.size = static_cast<std::uint8_t>(random() % 9);
+    for (std::uint8_t& byte : frame.data) {
+      byte = random() % 2 == 0 ? std::uint8_t{0} : static_cast<std::uint8_t>(random());
+    }
+    ASSERT_EQ(can::wireBits(frame), exactBits(frame)) << i;
+  }
 }
 
 }  // namespace

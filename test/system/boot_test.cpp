@@ -171,6 +171,74 @@ TEST(OptionalNodes, AMandatoryOneIsAnErrorAndKeepsTheOthersFromNothing) {
   EXPECT_TRUE(scene.procedure(ProcedureKind::enable, "right").success);
 }
 
+/// Counts the writes to node 1 by SDO.
+void countWrites(Scene& scene, unsigned& writes) {
+  scene.world().bus().setMonitor([&writes](const can::Frame& frame, Time) {
+    if (frame.id == 0x601 && frame.data[0] >> 5U == 1) ++writes;
+  });
+}
+
+TEST(Unchanged, ADriveThatStoredItsConfigurationIsNotConfiguredAgainAfterAPowerFailure) {
+  Scene scene(loadText(genericPair(", configuration_check: checksum")));
+  unsigned writes = 0;
+  countWrites(scene, writes);
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  EXPECT_GT(writes, 10u);
+  const auto saved = scene.procedure(ProcedureKind::save_parameters, "left");
+  ASSERT_TRUE(saved.success) << saved.message;
+  writes = 0;
+  scene.inject("left", "power_cycle");
+  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health != NodeHealth::ready; }, 2s));
+  ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 8s)) << scene.told();
+  EXPECT_LE(writes, 1u) << "nothing but the controlword that stops";
+  EXPECT_THAT(scene.told(), HasSubstr("left (node 1): its configuration is unchanged (1020h)"));
+  EXPECT_TRUE(scene.procedure(ProcedureKind::enable).success);
+}
+
+TEST(Unchanged, ADriveThatForgotIsConfigured) {
+  Scene scene(loadText(genericPair(", configuration_check: checksum")));
+  unsigned writes = 0;
+  countWrites(scene, writes);
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  const unsigned first = writes;
+  writes = 0;
+  scene.inject("left", "power_cycle");
+  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health != NodeHealth::ready; }, 2s));
+  ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 8s)) << scene.told();
+  EXPECT_EQ(writes, first);
+  EXPECT_THAT(scene.told(), Not(HasSubstr("unchanged")));
+}
+
+TEST(RestoreBeforeConfigure, WhatSomebodyStoredInTheDriveIsGone) {
+  Scene scene(loadText(genericPair(", restore_before_configure: true")));
+  sim::Entry& window = *scene.drive("left").dictionary().find({0x6065, 0});
+  const std::uint64_t factory = window.number;
+  window.number = window.initial_number = 4321;
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  EXPECT_EQ(window.number, factory);
+  EXPECT_EQ(scene.state("left").health, NodeHealth::ready);
+}
+
+TEST(BlockTransfer, ADriveThatHasNoneGetsTheDownloadInSegments) {
+  for (const bool has_block : {true, false}) {
+    Scene scene(loadText(genericPair()));
+    sim::Entry entry;
+    entry.id = {0x1F50, 1};
+    entry.type = sim::DataType::domain;
+    scene.drive("left").dictionary().add(entry);
+    scene.drive("left").device().behaviour().sdo_block = has_block;
+    ASSERT_TRUE(scene.boot()) << scene.told();
+    canopen::Bytes program(5000);
+    for (std::size_t i = 0; i < program.size(); ++i) program[i] = static_cast<std::uint8_t>(i * 7);
+    const canopen::SdoTicket ticket =
+        scene.axis("left").node().sdo().download({0x1F50, 1}, program, "program");
+    ASSERT_TRUE(scene.runUntil([&] { return ticket->done(); }, 20s));
+    EXPECT_TRUE(ticket->ok()) << ticket->message();
+    EXPECT_EQ(scene.drive("left").dictionary().find({0x1F50, 1})->bytes, program);
+    EXPECT_EQ(scene.state("right").health, NodeHealth::ready);
+  }
+}
+
 TEST(SdoChannels, ADriveIsBootedAndReadOnTheChannelThatItsOtherServerHas) {
   Scene scene(loadText(genericPair(", sdo: {request: 0x641, answer: 0x5C1}")));
   for (std::uint8_t sub = 1; sub <= 2; ++sub) {
