@@ -112,7 +112,9 @@ TEST_F(DcfJobTest, ASilentDriveEndsItSoon) {
   world.drives[0].sdo_silent = true;
   const Answer answer = save();
   EXPECT_FALSE(answer.success);
-  EXPECT_THAT(answer.message, AllOf(HasSubstr("shoulder (node 1): no DCF: "), HasSubstr("2003")));
+  EXPECT_THAT(answer.message,
+              AllOf(HasSubstr("shoulder (node 1): no DCF: node 1, object 2004:00 Not there"),
+                    HasSubstr("no answer within 100 ms")));
 }
 
 TEST_F(DcfJobTest, WithoutAnEdsTheProfileAndTheCommunicationObjectsAreRead) {
