@@ -184,7 +184,7 @@ bool DcfJob::askNext() {
   if (items_.empty()) return false;
   item_ = std::move(items_.front());
   items_.pop_front();
-  ticket_ = axis_->node().sdo().upload(item_.id, canopen::toString(item_.id) + " " + item_.name);
+  ticket_ = axis_->node().sdo().upload(item_.id, item_.name);
   return true;
 }
 

@@ -113,7 +113,8 @@ TEST_F(DcfJobTest, ASilentDriveEndsItSoon) {
   const Answer answer = save();
   EXPECT_FALSE(answer.success);
   EXPECT_THAT(answer.message,
-              AllOf(HasSubstr("shoulder (node 1): no DCF: "), HasSubstr("no answer within")));
+              AllOf(HasSubstr("shoulder (node 1): no DCF: node 1, object 2004:00 Not there"),
+                    HasSubstr("no answer within 100 ms")));
 }
 
 TEST_F(DcfJobTest, WithoutAnEdsTheProfileAndTheCommunicationObjectsAreRead) {
