@@ -11,6 +11,3 @@ std::string configFolder();
 std::string testFolder();
 
 }  // namespace cia402::test
-
-#define CIA402_CONFIG_DIR ::cia402::test::configFolder() + ""
-#define CIA402_TEST_DIR ::cia402::test::testFolder() + ""

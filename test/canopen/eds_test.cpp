@@ -1,5 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "cia402_driver/canopen/eds.h"
+#include "folders.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,7 +17,7 @@ using ::testing::IsEmpty;
 
 // What is wrong in each file is told in its first lines; the files carry the damage of real ones.
 Eds readFile(const std::string& name, std::optional<NodeId> node_id = NodeId{5}) {
-  std::ifstream file(std::string(CIA402_TEST_DIR) + "/canopen/eds/" + name, std::ios::binary);
+  std::ifstream file(cia402::test::testFolder() + "/canopen/eds/" + name, std::ios::binary);
   EXPECT_TRUE(file) << name;
   const std::string text((std::istreambuf_iterator<char>(file)), {});
   return readEds(text, node_id);

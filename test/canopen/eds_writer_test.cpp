@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "cia402_driver/canopen/eds.h"
+#include "folders.h"
 
 namespace cia402::canopen {
 namespace {
@@ -15,7 +16,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 Eds readFile(const std::string& name, std::optional<NodeId> node_id) {
-  std::ifstream file(std::string(CIA402_TEST_DIR) + "/canopen/eds/" + name, std::ios::binary);
+  std::ifstream file(cia402::test::testFolder() + "/canopen/eds/" + name, std::ios::binary);
   EXPECT_TRUE(file) << name;
   const std::string text((std::istreambuf_iterator<char>(file)), {});
   return readEds(text, node_id);

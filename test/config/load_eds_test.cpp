@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "cia402_driver/config/robot.h"
+#include "folders.h"
 
 namespace cia402::config {
 namespace {
@@ -28,9 +29,10 @@ Loaded load(const std::string& extra, const std::string& eds = "motor.eds") {
       "  shoulder: {node_id: 5, drive: generic_cia402, counts_per_turn: 4000, limits: {velocity: "
       "2.0, acceleration: 8.0}, eds: " +
       eds + extra + "}\n";
-  loaded.robot =
-      loadRobot(YAML::Load(yaml),
-                profilesIn({CIA402_CONFIG_DIR "/drives", CIA402_TEST_DIR "/config"}), problems);
+  loaded.robot = loadRobot(YAML::Load(yaml),
+                           profilesIn({cia402::test::configFolder() + "/drives",
+                                       cia402::test::testFolder() + "/config"}),
+                           problems);
   loaded.problems = problems.text();
   return loaded;
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "cia402_driver/config/robot.h"
+#include "folders.h"
 
 namespace cia402::config {
 namespace {
@@ -15,7 +16,7 @@ using testing::HasSubstr;
 canopen::MasterConfig make(const std::string& yaml) {
   Problems problems;
   const RobotConfig robot =
-      loadRobot(YAML::Load(yaml), profilesIn({CIA402_CONFIG_DIR "/drives"}), problems);
+      loadRobot(YAML::Load(yaml), profilesIn({cia402::test::configFolder() + "/drives"}), problems);
   const canopen::MasterConfig master = makeMasterConfig(robot, problems);
   EXPECT_EQ(problems.text(), "");
   return master;
@@ -153,8 +154,10 @@ TEST(BusLoad, CountsBitsAsTheStandardDoes) {
 
 TEST(BusLoad, FourDemoAxesLeaveRoomAt250Hertz) {
   Problems problems;
-  const YAML::Node tree = readRobotFile(CIA402_CONFIG_DIR "/robots/demo.yaml", problems);
-  const RobotConfig robot = loadRobot(tree, profilesIn({CIA402_CONFIG_DIR "/drives"}), problems);
+  const YAML::Node tree =
+      readRobotFile(cia402::test::configFolder() + "/robots/demo.yaml", problems);
+  const RobotConfig robot =
+      loadRobot(tree, profilesIn({cia402::test::configFolder() + "/drives"}), problems);
   EXPECT_LT(busLoad(makeMasterConfig(robot, problems), robot.bus.bitrate).worst, 0.8);
 }
 
@@ -205,7 +208,7 @@ canopen::MasterConfig servo(const std::string& bus, const std::string& axis, std
   yaml.replace(yaml.find("AXIS"), 4, axis);
   Problems problems;
   const RobotConfig robot =
-      loadRobot(YAML::Load(yaml), profilesIn({CIA402_CONFIG_DIR "/drives"}), problems);
+      loadRobot(YAML::Load(yaml), profilesIn({cia402::test::configFolder() + "/drives"}), problems);
   canopen::MasterConfig master;
   if (problems.empty()) master = makeMasterConfig(robot, problems);
   text = problems.text();
@@ -312,7 +315,7 @@ TEST(BusLoad, TellsTheLargestFeasibleRate) {
     yaml += "  a" + std::to_string(i) + ": {node_id: " + std::to_string(i) + "}\n";
   }
   Problems problems;
-  loadRobot(YAML::Load(yaml), profilesIn({CIA402_CONFIG_DIR "/drives"}), problems);
+  loadRobot(YAML::Load(yaml), profilesIn({cia402::test::configFolder() + "/drives"}), problems);
   // Worst: 55 + 6 * (115 + 125) bits per cycle, seven heartbeats of 65 bits at 10 Hz:
   // (0.8e6 - 4550) / 1495 = 532 Hz.
   EXPECT_THAT(problems.text(),

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "cia402_driver/config/robot.h"
+#include "folders.h"
 
 namespace cia402::config {
 namespace {
@@ -27,7 +28,7 @@ Loaded load(const std::string& keys, const std::string& bus = "heartbeat: 0.1") 
                  "}\naxes: {a: {node_id: 1, drive: generic_cia402, counts_per_turn: 1000, limits: "
                  "{velocity: 1, acceleration: 1}" +
                  (keys.empty() ? "" : ", " + keys) + "}}");
-  const std::string drives = std::string(CIA402_CONFIG_DIR) + "/drives";
+  const std::string drives = cia402::test::configFolder() + "/drives";
   loaded.robot = loadRobot(tree, profilesIn({drives}), problems);
   if (problems.empty()) {
     const canopen::MasterConfig master = makeMasterConfig(loaded.robot, problems);

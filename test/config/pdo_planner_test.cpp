@@ -1,5 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "../../src/config/pdo_planner.h"
+#include "folders.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -19,8 +20,8 @@ using testing::HasSubstr;
 
 DriveProfile family(const std::string& name) {
   Problems problems;
-  DriveProfile profile = drive::loadDriveProfile(
-      std::string(CIA402_CONFIG_DIR) + "/drives/" + name + ".yaml", problems);
+  DriveProfile profile =
+      drive::loadDriveProfile(cia402::test::configFolder() + "/drives/" + name + ".yaml", problems);
   EXPECT_EQ(problems.text(), "");
   return profile;
 }

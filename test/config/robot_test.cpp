@@ -1,5 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "cia402_driver/config/robot.h"
+#include "folders.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -27,7 +28,8 @@ struct Loaded {
 Loaded load(const std::string& yaml) {
   Problems problems;
   Loaded loaded;
-  loaded.robot = loadRobot(YAML::Load(yaml), profilesIn({CIA402_CONFIG_DIR "/drives"}), problems);
+  loaded.robot =
+      loadRobot(YAML::Load(yaml), profilesIn({cia402::test::configFolder() + "/drives"}), problems);
   loaded.problems = problems.text();
   return loaded;
 }
@@ -111,8 +113,10 @@ TEST(RobotConfig, WithoutGroupsAllPositionJointsFormOne) {
 
 TEST(RobotConfig, TheDemoRobotHasNeitherProblemsNorWarnings) {
   Problems problems;
-  const YAML::Node tree = readRobotFile(CIA402_CONFIG_DIR "/robots/demo.yaml", problems);
-  const RobotConfig robot = loadRobot(tree, profilesIn({CIA402_CONFIG_DIR "/drives"}), problems);
+  const YAML::Node tree =
+      readRobotFile(cia402::test::configFolder() + "/robots/demo.yaml", problems);
+  const RobotConfig robot =
+      loadRobot(tree, profilesIn({cia402::test::configFolder() + "/drives"}), problems);
   EXPECT_EQ(problems.text(), "");
   EXPECT_THAT(robot.warnings, IsEmpty());
   ASSERT_EQ(robot.axes.size(), 4u);
@@ -124,8 +128,9 @@ TEST(RobotConfig, TheDemoRobotHasNeitherProblemsNorWarnings) {
 
 TEST(RobotConfig, TellsTenMistakesAtOnce) {
   Problems problems;
-  const YAML::Node tree = readRobotFile(CIA402_TEST_DIR "/config/ten_mistakes.yaml", problems);
-  loadRobot(tree, profilesIn({CIA402_CONFIG_DIR "/drives"}), problems);
+  const YAML::Node tree =
+      readRobotFile(cia402::test::testFolder() + "/config/ten_mistakes.yaml", problems);
+  loadRobot(tree, profilesIn({cia402::test::configFolder() + "/drives"}), problems);
   const std::string text = problems.text();
   EXPECT_EQ(problems.list().size(), 10u) << text;
   for (const char* expected : {

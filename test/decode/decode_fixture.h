@@ -7,6 +7,7 @@
 
 #include "cia402_driver/config/robot.h"
 #include "cia402_driver/decode/frame_decoder.h"
+#include "folders.h"
 
 namespace cia402::decode::test {
 
@@ -24,7 +25,7 @@ axes:
 )";
   Problems problems;
   const config::RobotConfig robot = config::loadRobot(
-      YAML::Load(kText), config::profilesIn({CIA402_CONFIG_DIR "/drives"}), problems);
+      YAML::Load(kText), config::profilesIn({cia402::test::configFolder() + "/drives"}), problems);
   EXPECT_TRUE(problems.empty()) << problems.text();
   return robot;
 }

@@ -1,5 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "cia402_driver/drive/named_write.h"
+#include "folders.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +14,7 @@ AxisConfig axisOf(const char* drive) {
   axis.name = "shoulder";
   axis.node_id = 3;
   axis.profile = std::make_shared<const DriveProfile>(
-      loadDriveProfile(std::string(CIA402_CONFIG_DIR "/drives/") + drive + ".yaml", problems));
+      loadDriveProfile(cia402::test::configFolder() + "/drives/" + drive + ".yaml", problems));
   EXPECT_EQ(problems.text(), "");
   axis.geometry.counts_per_turn = 6283.185307179586;  // 1000 counts per rad
   return axis;

@@ -1,5 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "cia402_driver/drive/profile.h"
+#include "folders.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -44,7 +45,7 @@ std::string problemsOf(const std::string& text) {
 DriveProfile shipped(const char* name) {
   Problems problems;
   const DriveProfile profile =
-      loadDriveProfile(std::string(CIA402_CONFIG_DIR "/drives/") + name + ".yaml", problems);
+      loadDriveProfile(cia402::test::configFolder() + "/drives/" + name + ".yaml", problems);
   EXPECT_EQ(problems.text(), "");
   EXPECT_EQ(profile.name, name);
   return profile;

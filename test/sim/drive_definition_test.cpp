@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "cia402_driver/sim/drive.h"
+#include "folders.h"
 
 namespace cia402::sim {
 namespace {
@@ -24,7 +25,7 @@ TEST(DriveDefinition, EveryDefinitionOfTheRepositoryLoads) {
   for (const char* name :
        {"generic_cia402", "generic_cia402_guarding", "generic_cia402_narrow", "damiao_dm"}) {
     const auto loaded =
-        loadDriveDefinition(std::string(CIA402_CONFIG_DIR) + "/simulated_drives/" + name + ".yaml");
+        loadDriveDefinition(cia402::test::configFolder() + "/simulated_drives/" + name + ".yaml");
     EXPECT_TRUE(loaded.ok()) << (loaded.ok() ? "" : loaded.error().message);
   }
 }

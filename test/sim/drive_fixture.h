@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cia402_driver/sim/drive.h"
+#include "folders.h"
 
 namespace cia402::sim {
 
@@ -20,7 +21,7 @@ class DriveBench : public can::Sink {
  public:
   explicit DriveBench(const std::string& name, const AxisMechanics& mechanics = {}) {
     auto definition =
-        loadDriveDefinition(std::string(CIA402_CONFIG_DIR) + "/simulated_drives/" + name + ".yaml");
+        loadDriveDefinition(cia402::test::configFolder() + "/simulated_drives/" + name + ".yaml");
     EXPECT_TRUE(definition.ok()) << (definition.ok() ? "" : definition.error().message);
     drive = std::make_unique<Drive>(definition.value(), canopen::NodeId{1}, *this, mechanics);
     drive->powerOn(now);

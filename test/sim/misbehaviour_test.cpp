@@ -2,6 +2,7 @@
 // Drives that do what they should not: switches of DeviceBehaviour and injected faults.
 #include "cia402_driver/sim/world.h"
 #include "drive_fixture.h"
+#include "folders.h"
 #include "slave_fixture.h"
 
 namespace cia402::sim {
@@ -105,8 +106,8 @@ class BusOffDrive : public testing::Test {
  protected:
   BusOffDrive() {
     world.bus().setAnalyser(true);
-    const auto definition = loadDriveDefinition(std::string(CIA402_CONFIG_DIR) +
-                                                "/simulated_drives/generic_cia402.yaml");
+    const auto definition =
+        loadDriveDefinition(cia402::test::configFolder() + "/simulated_drives/generic_cia402.yaml");
     drive = &world.addDrive("x", definition.value(), 1, {});
     world.bus().setMonitor([this](const can::Frame& frame, Time) {
       if (!frame.error) frames.push_back(testing_support::toText(frame));

@@ -1,5 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "cia402_driver/sim/robot_drives.h"
+#include "folders.h"
 
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
@@ -8,7 +9,7 @@ namespace cia402::sim {
 namespace {
 
 std::vector<SimulatedAxis> axesOf(const std::string& simulation, Problems& problems) {
-  const std::string folder = CIA402_CONFIG_DIR;
+  const std::string folder = cia402::test::configFolder();
   const YAML::Node tree = YAML::Load(
       "bus: {interface: sim, bitrate: 1000000, sync_period: 0.004}\n"
       "axes:\n"

@@ -1,5 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "drive_fixture.h"
+#include "folders.h"
 #include "slave_fixture.h"
 
 namespace cia402::sim {
@@ -340,7 +341,7 @@ TEST_F(ConfiguredSlaveLssTest, ADeviceWithoutLssIsSilent) {
 
 TEST(SlaveLss, TheDefaultsOfADriveFollowItsNodeId) {
   const auto definition =
-      loadDriveDefinition(std::string(CIA402_CONFIG_DIR) + "/simulated_drives/generic_cia402.yaml");
+      loadDriveDefinition(cia402::test::configFolder() + "/simulated_drives/generic_cia402.yaml");
   ASSERT_TRUE(definition.ok());
   testing_support::RecordingSink sink;
   DriveIdentity identity;

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Commands as a robot sees them: streams, limits, trajectories, shutdown. What left on the wire is
 // read from the bus.
+#include "folders.h"
 #include "system/scene.h"
 
 namespace cia402 {
@@ -213,10 +214,10 @@ TEST(Shutdown, InMotionStopsDisablesAndLeavesTheDrivesPreOperational) {
 TEST(Configuration, WithMistakesIsRefusedBeforeAnyFrame) {
   Problems problems;
   const YAML::Node tree =
-      config::readRobotFile(std::string(CIA402_TEST_DIR) + "/config/ten_mistakes.yaml", problems);
+      config::readRobotFile(cia402::test::testFolder() + "/config/ten_mistakes.yaml", problems);
   ASSERT_TRUE(problems.empty());
   const auto robot = config::loadRobot(
-      tree, config::profilesIn({std::string(CIA402_CONFIG_DIR) + "/drives"}), problems);
+      tree, config::profilesIn({cia402::test::configFolder() + "/drives"}), problems);
   EXPECT_GE(problems.list().size(), 10u) << problems.text();
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cia402_driver/tools/virtual_robot.h"
+#include "folders.h"
 
 namespace cia402 {
 
@@ -20,7 +21,7 @@ struct LoadedRobot {
 inline LoadedRobot loadTree(const YAML::Node& tree) {
   LoadedRobot loaded;
   Problems problems;
-  const std::string folder = CIA402_CONFIG_DIR;
+  const std::string folder = cia402::test::configFolder();
   loaded.robot = config::loadRobot(tree, config::profilesIn({folder + "/drives"}), problems);
   if (problems.empty()) loaded.master = config::makeMasterConfig(loaded.robot, problems);
   if (problems.empty()) {
@@ -33,7 +34,7 @@ inline LoadedRobot loadTree(const YAML::Node& tree) {
 inline LoadedRobot loadFile(const std::string& name) {
   Problems problems;
   const YAML::Node tree =
-      config::readRobotFile(std::string(CIA402_CONFIG_DIR) + "/robots/" + name, problems);
+      config::readRobotFile(cia402::test::configFolder() + "/robots/" + name, problems);
   EXPECT_TRUE(problems.empty()) << problems.text();
   return loadTree(tree);
 }
