@@ -44,19 +44,21 @@ void Robot::followSync(const can::Frame& frame, Time stamp, Time now) {
 }
 
 void Robot::lackSync(Time now) {
-  if (external_sync_.tick(now)) stopForLostSync(now);
+  if (external_sync_.tick(now)) {
+    const int periods = canopen::SyncConsumer::kLostAfter;
+    stopForSync("stopped: no SYNC (COB-ID 0x080) came from the other device for " +
+                    std::to_string(periods) + " periods (" +
+                    milliseconds(periods * config_.bus.sync_period) +
+                    "); set-points do not reach the drives without it. Check the device that " +
+                    "produces SYNC, then enable again",
+                now);
+  }
   master_.syncPassed(now);
   next_cycle_ = now;
   next_sync_ = now + config_.bus.sync_period;
 }
 
-void Robot::stopForLostSync(Time now) {
-  const int periods = canopen::SyncConsumer::kLostAfter;
-  const std::string why =
-      "stopped: no SYNC (COB-ID 0x080) came from the other device for " + std::to_string(periods) +
-      " periods (" + milliseconds(periods * config_.bus.sync_period) +
-      "); set-points do not reach the drives without it. Check the device that produces SYNC, then "
-      "enable again";
+void Robot::stopForSync(const std::string& why, Time now) {
   stopMotion(why, now);
   for (drive::Axis& axis : axes_) axis.stopBySdo(why, now);
 }
@@ -102,6 +104,9 @@ void Robot::watchSync(Time now) {
     tell(Event::Severity::info, "SYNC is as it should be", now);
   } else {
     tell(Event::Severity::error, problem, now);
+    // Where it is lost, that has happened already.
+    const bool comes = external_sync_.state() == State::running;
+    if (comes && config_.bus.external_sync) stopForSync("stopped: " + problem, now);
   }
 }
 

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "cia402_driver/canopen/sync.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace cia402::canopen {
@@ -20,13 +21,13 @@ SyncConsumer::Observation SyncConsumer::receive(const can::Frame& frame, Time st
   if (state_ != State::running) {
     state_ = State::running;
     seen.returned = true;
-    sum_ = Duration::zero();
-    intervals_ = 0;
+    restartMeasuring();
     return seen;
   }
   const double periods = toSeconds(interval) / toSeconds(period_);
-  measure(interval);
-  if (periods > kOneMissing) {
+  const bool lacks_sync = periods > kOneMissing;
+  measure(interval, lacks_sync);
+  if (lacks_sync) {
     seen.missed = static_cast<std::uint64_t>(std::lround(periods)) - 1;
     missed_ += seen.missed;
     return seen;
@@ -36,18 +37,28 @@ SyncConsumer::Observation SyncConsumer::receive(const can::Frame& frame, Time st
   return seen;
 }
 
-// Single long intervals lack a SYNC; where all are long, the period is another one.
-void SyncConsumer::measure(Duration interval) {
+// Single long intervals lack a SYNC; where most are long, the period is another one.
+void SyncConsumer::measure(Duration interval, bool lacks_sync) {
   sum_ += interval;
+  if (!lacks_sync) {
+    sum_of_short_ += interval;
+    ++short_intervals_;
+  }
   if (++intervals_ < kWindow) return;
-  measured_ = sum_ / kWindow;
-  sum_ = Duration::zero();
-  intervals_ = 0;
+  const bool mostly_short = 2 * short_intervals_ > kWindow;
+  measured_ = mostly_short ? sum_of_short_ / short_intervals_ : sum_ / kWindow;
+  restartMeasuring();
+}
+
+void SyncConsumer::restartMeasuring() {
+  sum_ = sum_of_short_ = Duration::zero();
+  intervals_ = short_intervals_ = 0;
 }
 
 void SyncConsumer::checkForm(const can::Frame& frame) {
-  form_wrong_ = frame.size != (overflow_ == 0 ? 0 : 1);
-  if (form_wrong_ || overflow_ == 0) {
+  const bool odd = frame.size != (overflow_ == 0 ? 0 : 1);
+  odd_forms_ = odd ? std::min(odd_forms_ + 1, kOddForms) : 0;
+  if (odd || overflow_ == 0) {
     counter_ = 0;
     return;
   }

@@ -32,12 +32,29 @@ std::vector<std::string> feedbackOf(const DriveProfile& profile) {
   return {std::begin(kFeedback), std::end(kFeedback)};
 }
 
+/// Does the drive's own description say that an object is not there, or in no PDO?
+bool ruledOut(const AxisConfig& axis, const std::string& name) {
+  const drive::ObjectSpec* object = axis.profile->find(name);
+  if (axis.eds == nullptr || object == nullptr) return false;
+  const canopen::DictionaryEntry* entry = axis.eds->dictionary.find(object->id);
+  return entry == nullptr || !entry->mappable;
+}
+
+template <class Unwanted>
+void leaveOut(std::vector<std::string>& names, const Unwanted& unwanted) {
+  names.erase(std::remove_if(names.begin(), names.end(), unwanted), names.end());
+}
+
+Duration freshness(const RobotConfig& robot) {
+  return std::min(kFresh, fromSeconds(1.0 / robot.joint_state_rate));
+}
+
 bool plan(YamlSection& section, AxisConfig& axis, RobotConfig& robot, PdoNeeds needs) {
   const DriveProfile& profile = *axis.profile;
   const auto modes = section.get("modes");
   needs.mode = axis.mode;
   needs.cycle = axis.sync_period;
-  needs.fresh = std::min(kFresh, fromSeconds(1.0 / robot.joint_state_rate));
+  needs.fresh = freshness(robot);
   const Result<PdoPlan> planned = planPdos(profile, needs);
   if (!planned) {
     const auto at = modes ? *modes : section.get("mode").value_or(section.value());
@@ -51,6 +68,7 @@ bool plan(YamlSection& section, AxisConfig& axis, RobotConfig& robot, PdoNeeds n
     }
   }
   axis.pdos = planned->pdos;
+  axis.pdos_planned = true;
   axis.modes = planned->modes;
   return true;
 }
@@ -99,6 +117,13 @@ bool choosePdos(YamlSection& section, AxisConfig& axis, RobotConfig& robot) {
   needs.modes = modes ? drive::readModeNames(*modes, profile) : profile.default_modes;
   if (!modes && needs.modes.empty()) needs.modes = allModes(profile);
   needs.feedback = feedback ? drive::readFeedbackNames(*feedback, profile) : feedbackOf(profile);
+  const auto ruled_out = [&](const std::string& name) { return ruledOut(axis, name); };
+  const auto unreachable = [&](const std::string& name) {
+    const ModeSpec* mode = profile.mode(name);
+    return mode != nullptr && ruledOut(axis, mode->target);
+  };
+  if (!feedback) leaveOut(needs.feedback, ruled_out);
+  if (!modes) leaveOut(needs.modes, unreachable);
   if (pdos && feedback) feedback->problem("says nothing beside `pdos`: keep one of them");
   if (pdos || !profile.pdos.empty()) {
     axis.pdos = pdos ? drive::readPdos(*pdos, profile) : profile.pdos;
@@ -115,6 +140,24 @@ bool choosePdos(YamlSection& section, AxisConfig& axis, RobotConfig& robot) {
   }
   setRpdoTimeout(axis);
   return true;
+}
+
+void planAgain(RobotConfig& robot, Duration cycle) {
+  robot.bus.sync_period = cycle;
+  for (AxisConfig& axis : robot.axes) {
+    axis.sync_period = cycle;
+    if (!axis.pdos_planned) continue;
+    PdoNeeds needs;
+    needs.mode = axis.mode;
+    needs.modes = axis.modes;
+    for (const drive::PdoLayout& pdo : axis.pdos) {
+      if (pdo.direction != canopen::PdoDirection::tpdo) continue;
+      needs.feedback.insert(needs.feedback.end(), pdo.objects.begin(), pdo.objects.end());
+    }
+    needs.cycle = cycle;
+    needs.fresh = freshness(robot);
+    if (const Result<PdoPlan> planned = planPdos(*axis.profile, needs)) axis.pdos = planned->pdos;
+  }
 }
 
 }  // namespace cia402::config

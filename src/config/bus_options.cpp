@@ -12,6 +12,8 @@ namespace {
 using drive::YamlSection;
 using drive::YamlValue;
 
+constexpr double kComfortable = 0.8;  // share of the bus that leaves room for SDO and emergencies
+
 void readBitrate(YamlSection& section, BusConfig& bus) {
   static const std::vector<std::int64_t> kRates = {10000,  20000,  50000,  100000, 125000,
                                                    250000, 500000, 800000, 1000000};
@@ -123,6 +125,34 @@ void warnOfUnnoticedLoss(RobotConfig& robot) {
   }
 }
 
+/// The next period from `us` on that 60C2h can tell: 1 to 255 times a power of ten.
+std::int64_t tellable(std::int64_t us) {
+  std::int64_t unit = 1;
+  while ((us + unit - 1) / unit > 255) unit *= 10;
+  return (us + unit - 1) / unit * unit;
+}
+
+struct FeasibleCycle {
+  Duration period;
+  double rate;  ///< Hz; the highest with the plan of that period
+};
+
+/// The shortest cycle that loads the bus to kComfortable at most. A slower cycle plans anew: what
+/// need not come so often comes with fewer of its SYNCs.
+std::optional<FeasibleCycle> feasibleCycle(RobotConfig robot, BusLoad load) {
+  constexpr double kSlowest = 1.0;  // Hz
+  std::int64_t us = 0;
+  while (load.feasible_rate >= kSlowest) {
+    us = tellable(std::max(us + 1, static_cast<std::int64_t>(std::ceil(1e6 / load.feasible_rate))));
+    const Duration period = std::chrono::microseconds(us);
+    planAgain(robot, period);
+    Problems ignored;
+    load = busLoad(makeMasterConfig(robot, ignored), robot.bus.bitrate);
+    if (load.worst <= kComfortable) return FeasibleCycle{period, load.feasible_rate};
+  }
+  return {};
+}
+
 }  // namespace
 
 void readBus(const YamlValue& value, BusConfig& bus, bool& counter_given) {
@@ -180,19 +210,21 @@ void checkBusLoad(const YamlValue& bus_section, RobotConfig& robot, Problems& pr
   const std::string share = "the PDOs need " + percent(load.worst) + " of the bus at " + rate +
                             " Hz in the worst case (" + percent(load.nominal) +
                             " without stuff bits)";
-  const std::string feasible = std::to_string(static_cast<int>(load.feasible_rate));
+  if (load.worst <= kComfortable) return;
+  const auto cycle = feasibleCycle(robot, load);
+  const std::string feasible = std::to_string(cycle ? static_cast<int>(cycle->rate) : 0);
   if (load.worst > 1.0) {
     YamlSection section(bus_section);
     const auto at = section.get("sync_period").value_or(bus_section);
-    if (load.feasible_rate < 1.0) {
+    if (!cycle) {
       at.problem(share + "; heartbeats and events alone fill it: make `heartbeat` longer, give " +
                  "event-driven PDOs an `inhibit` time, or use a second bus");
       return;
     }
     at.problem(share + "; at most " + feasible + " Hz keep it below 80 %: write `sync_period` of " +
-               seconds(fromSeconds(std::ceil(1e6 / load.feasible_rate) * 1e-6)) +
+               seconds(cycle->period) +
                " or more, leave modes (`modes`) or feedback (`feedback`) out, or use a second bus");
-  } else if (load.worst > 0.8) {
+  } else {
     robot.warnings.push_back("bus/sync_period: " + share +
                              ", which leaves little for SDO and "
                              "emergencies; at most " +

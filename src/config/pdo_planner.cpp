@@ -227,11 +227,10 @@ class Planner {
         if (fixed.direction == direction && fixed.number == pdo.number) layout = fixed;
       }
       layout.objects = pdo.items;
-      if (direction == PdoDirection::tpdo) {
-        layout.transmission = static_cast<std::uint8_t>(std::min(pdo.every, kMaxEvery));
-      } else {
-        layout.transmission = 1;
+      if (direction == PdoDirection::rpdo) {
         layout.refresh_every = static_cast<std::uint16_t>(pdo.every);
+      } else if (layout.transmission == 1) {  // nobody gave another one
+        layout.transmission = static_cast<std::uint8_t>(std::min(pdo.every, kMaxEvery));
       }
       plan_.pdos.push_back(layout);
     }

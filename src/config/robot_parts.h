@@ -74,6 +74,9 @@ SimulationConfig readSimulation(const drive::YamlValue& value);
 /// @return false if there is none; the problem is told.
 bool choosePdos(drive::YamlSection& section, drive::AxisConfig& axis, RobotConfig& robot);
 
+/// Plans what was planned once more, for another cycle; the same objects find room then.
+void planAgain(RobotConfig& robot, Duration cycle);
+
 /// What the axis' keys mean together with its profile; `section` is the axis.
 void checkAxis(drive::YamlSection& section, const drive::AxisConfig& axis, RobotConfig& robot);
 

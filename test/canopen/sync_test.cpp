@@ -40,16 +40,16 @@ constexpr Duration kPeriod = std::chrono::milliseconds(4);
 Time us(int value) { return Time(std::chrono::seconds(1) + std::chrono::microseconds(value)); }
 can::Frame sync(const char* text = "080") { return test::frame(text); }
 
-TEST(SyncConsumer, is_lost_after_three_periods_without_sync_and_says_so_once) {
+TEST(SyncConsumer, is_lost_when_three_in_a_row_are_missing_and_says_so_once) {
   SyncConsumer consumer(kPeriod, 0);
   EXPECT_EQ(consumer.state(), SyncConsumer::State::waiting);
   EXPECT_FALSE(consumer.tick(us(1000000))) << "what never came is not lost";
   EXPECT_TRUE(consumer.receive(sync(), us(0)).returned);
   EXPECT_FALSE(consumer.receive(sync(), us(4000)).returned);
-  EXPECT_EQ(consumer.deadline(), us(16000));
-  EXPECT_FALSE(consumer.tick(us(15999)));
-  EXPECT_TRUE(consumer.tick(us(16000)));
-  EXPECT_FALSE(consumer.tick(us(16001)));
+  EXPECT_EQ(consumer.deadline(), us(18000)) << "the third is half a period late";
+  EXPECT_FALSE(consumer.tick(us(17999)));
+  EXPECT_TRUE(consumer.tick(us(18000)));
+  EXPECT_FALSE(consumer.tick(us(18001)));
   EXPECT_EQ(consumer.state(), SyncConsumer::State::lost);
   EXPECT_TRUE(consumer.receive(sync(), us(50000)).returned);
   EXPECT_EQ(consumer.state(), SyncConsumer::State::running);
@@ -85,14 +85,28 @@ TEST(SyncConsumer, measures_the_period_and_compares_it) {
   }
 }
 
+TEST(SyncConsumer, leaves_single_gaps_out_of_the_period) {
+  SyncConsumer consumer(kPeriod, 0);
+  int time = 0;
+  for (int i = 0; i <= SyncConsumer::kWindow; ++i) {
+    consumer.receive(sync(), us(time += i % 4 == 0 ? 8000 : 4000));
+  }
+  EXPECT_EQ(consumer.period(), kPeriod);
+  EXPECT_FALSE(consumer.periodWrong());
+  EXPECT_EQ(consumer.missed(), 4U);
+}
+
 TEST(SyncConsumer, sees_a_counter_that_is_missing_or_not_expected) {
   SyncConsumer without(kPeriod, 0);
-  without.receive(sync("080 01"), us(0));
+  for (int i = 1; i <= SyncConsumer::kOddForms; ++i) {
+    EXPECT_FALSE(without.formWrong()) << "a stray one is no reason";
+    without.receive(sync("080 01"), us(4000 * i));
+  }
   EXPECT_TRUE(without.formWrong());
-  without.receive(sync(), us(4000));
+  without.receive(sync(), us(16000));
   EXPECT_FALSE(without.formWrong());
   SyncConsumer with(kPeriod, 3);
-  with.receive(sync(), us(0));
+  for (int i = 1; i <= SyncConsumer::kOddForms; ++i) with.receive(sync(), us(4000 * i));
   EXPECT_TRUE(with.formWrong());
 }
 

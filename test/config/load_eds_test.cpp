@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "cia402_driver/config/robot.h"
 #include "folders.h"
 
@@ -76,6 +78,24 @@ TEST(LoadEds, ObjectsAreWrittenAndMappedByTheirNamesInTheEds) {
     }
   }
   EXPECT_TRUE(mapped);
+}
+
+bool maps(const Loaded& loaded, const std::string& object) {
+  for (const drive::PdoLayout& pdo : loaded.robot.axes[0].pdos) {
+    if (std::find(pdo.objects.begin(), pdo.objects.end(), object) != pdo.objects.end()) return true;
+  }
+  return false;
+}
+
+TEST(LoadEds, WhatTheDriveDoesNotHaveIsPlannedOnlyWhereSomebodyAsksForIt) {
+  const Loaded loaded = load("");
+  EXPECT_TRUE(maps(loaded, "target_position"));
+  EXPECT_FALSE(maps(loaded, "velocity_actual"));
+  EXPECT_FALSE(maps(loaded, "target_velocity"));
+  EXPECT_EQ(loaded.robot.axes[0].modes.front(), "cyclic_position");
+  const Loaded asked = load(", feedback: [velocity_actual], modes: [cyclic_velocity]");
+  EXPECT_TRUE(maps(asked, "velocity_actual"));
+  EXPECT_TRUE(maps(asked, "target_velocity"));
 }
 
 TEST(LoadEds, ValuesAreCheckedAgainstTheEdsBeforeAnythingIsSent) {

@@ -323,5 +323,29 @@ TEST(BusLoad, TellsTheLargestFeasibleRate) {
   EXPECT_THAT(problems.text(), HasSubstr("at most 532 Hz keep it below 80 %"));
 }
 
+TEST(BusLoad, TheRateThatIsToldIsFeasibleWithThePlanOfThatRate) {
+  const auto yaml = [](const std::string& period) {
+    return "bus: {interface: can0, bitrate: 250000, sync_period: " + period +
+           "}\naxes:\n  a: {node_id: 1, drive: generic_cia402, counts_per_turn: 4000, "
+           "limits: {velocity: 2.0, acceleration: 8.0}}\n";
+  };
+  const auto load = [&](const std::string& period, Problems& problems) {
+    return loadRobot(YAML::Load(yaml(period)), profilesIn({CIA402_CONFIG_DIR "/drives"}), problems);
+  };
+  Problems refused;
+  load("0.001", refused);
+  const std::string text = refused.text();
+  const std::size_t at = text.find("write `sync_period` of ");
+  ASSERT_NE(at, std::string::npos) << text;
+  const std::string period = text.substr(at + 23, text.find(' ', at + 23) - at - 23);
+  Problems problems;
+  const RobotConfig robot = load(period, problems);
+  EXPECT_EQ(problems.text(), "") << "60C2h must be able to tell it, too";
+  EXPECT_TRUE(robot.warnings.empty()) << robot.warnings.front();
+  const BusLoad there = busLoad(makeMasterConfig(robot, problems), 250000);
+  EXPECT_LE(there.worst, 0.8);
+  EXPECT_GT(there.worst, 0.77);
+}
+
 }  // namespace
 }  // namespace cia402::config

@@ -270,7 +270,7 @@ void check(const DriveProfile& profile, const PdoNeeds& what, const PdoPlan& pla
 
 TEST(PdoPlannerProperty, EveryPlanKeepsTheRulesOrIsRefusedWithAReason) {
   unsigned plans = 0, refusals = 0;
-  for (unsigned seed = 1; seed <= 1500; ++seed) {
+  for (unsigned seed = 1; seed <= 500; ++seed) {
     SCOPED_TRACE(seed);
     const RandomFamily random(seed);
     const auto plan = planPdos(random.profile(), random.needs());
@@ -285,8 +285,8 @@ TEST(PdoPlannerProperty, EveryPlanKeepsTheRulesOrIsRefusedWithAReason) {
     }
     if (HasFailure()) break;
   }
-  EXPECT_GT(plans, 200u);
-  EXPECT_GT(refusals, 200u);
+  EXPECT_GT(plans, 60u);
+  EXPECT_GT(refusals, 60u);
 }
 
 }  // namespace

@@ -223,7 +223,8 @@ TEST(RobotConfig, TellsAMistakeInTheDefaultsOnce) {
 
 TEST(RobotConfig, WarnsOfALoadOverEightyPercentAndRefusesOneOverAHundred) {
   // Two axes of 115 + 95 + 125 bits, and at 0.9 ms 115 / 11 + 115 / 44, each, 55 for SYNC: 751 bits
-  // a cycle; at 0.7 ms 115 / 14 + 115 / 57: 745 bits. And 3 * 650 bits/s of heartbeats.
+  // a cycle; at 0.7 ms 115 / 14 + 115 / 57: 745 bits; at 0.95 ms, the next period of 60C2h at
+  // which all fits, 115 / 10 + 115 / 42: 753 bits. And 3 * 650 bits/s of heartbeats.
   EXPECT_THAT(load(kArm).robot.warnings, IsEmpty());
   const Loaded busy = changed("sync_period: 0.004", "sync_period: 0.0009");
   EXPECT_EQ(busy.problems, "");
@@ -231,7 +232,7 @@ TEST(RobotConfig, WarnsOfALoadOverEightyPercentAndRefusesOneOverAHundred) {
   EXPECT_THAT(busy.robot.warnings[0], HasSubstr("need 84 % of the bus at 1111 Hz"));
   const Loaded full = changed("sync_period: 0.004", "sync_period: 0.0007");
   EXPECT_THAT(full.problems, HasSubstr("need 107 % of the bus at 1429 Hz"));
-  EXPECT_THAT(full.problems, HasSubstr("at most 1070 Hz keep it below 80 %"));
+  EXPECT_THAT(full.problems, HasSubstr("at most 1059 Hz keep it below 80 %"));
 }
 
 TEST(RobotConfig, WarnsOfAnEffortLimitThatCannotBeSent) {

@@ -1,5 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // PDOs that fail to come, come with a wrong length, or are asked for; and plans on real drives.
+#include <fstream>
+#include <iterator>
+
 #include "system/scene.h"
 
 namespace cia402 {
@@ -100,6 +103,125 @@ TEST(WrongLengths, AreCountedAndNamedButNotInAFlood) {
     ++lines;
   }
   EXPECT_EQ(lines, 2u) << told;
+}
+
+/// One axis whose velocity comes by a TPDO of its own, in a move that takes two seconds.
+std::string velocityBy(const std::string& tpdo2) {
+  return genericPair(
+      ", pdos: {rpdo1: [controlword, target_position], tpdo1: [statusword, position_actual, "
+      "mode_display], tpdo2: {objects: [velocity_actual], " +
+      tpdo2 + "}}");
+}
+
+struct Rates {
+  unsigned moving = 0, standing = 0;  // per second
+};
+
+Rates velocityRates(const std::string& tpdo2) {
+  Scene scene(loadText(velocityBy(tpdo2)));
+  EXPECT_TRUE(scene.boot()) << scene.told();
+  EXPECT_TRUE(scene.procedure(ProcedureKind::enable).success) << scene.told();
+  Rates rates;
+  unsigned* count = nullptr;
+  scene.world().bus().setMonitor([&](const can::Frame& frame, Time) {
+    if (frame.id == 0x281 && count != nullptr) ++*count;
+  });
+  EXPECT_TRUE(scene.move({1.0, 1.0}, 2s).success);
+  scene.run(500ms);
+  EXPECT_NEAR(scene.state("left").velocity, scene.velocity("left"), 0.1) << tpdo2;
+  count = &rates.moving;
+  scene.run(1s);
+  count = nullptr;
+  scene.run(1500ms);
+  EXPECT_NEAR(scene.state("left").velocity, 0.0, 0.01) << tpdo2;
+  count = &rates.standing;
+  scene.run(1s);
+  return rates;
+}
+
+TEST(TransmissionTypes, OfTpdosComeWhenTheyShould) {
+  const Rates acyclic = velocityRates("transmission: 0");
+  EXPECT_NEAR(acyclic.moving, 250.0, 5.0) << "with the SYNC after each change";
+  EXPECT_LE(acyclic.standing, 60u);
+  const Rates fifth = velocityRates("transmission: 5");
+  EXPECT_NEAR(fifth.moving, 50.0, 1.0);
+  EXPECT_NEAR(fifth.standing, 50.0, 1.0);
+  for (const char* type : {"254", "255"}) {
+    const std::string event = "transmission: " + std::string(type);
+    EXPECT_GT(velocityRates(event).moving, 240u);
+    const Rates inhibited = velocityRates(event + ", inhibit: 0.05");
+    EXPECT_NEAR(inhibited.moving, 20.0, 1.0);
+    const Rates timed = velocityRates(event + ", inhibit: 0.05, event_timer: 0.1");
+    EXPECT_GE(timed.standing, 9u);
+  }
+}
+
+TEST(TransmissionTypes, OfRpdosAreTakenByTheDrive) {
+  for (const char* type : {"0", "1", "254", "255"}) {
+    Scene scene(loadText(genericPair(
+        std::string(", pdos: {rpdo1: {objects: [controlword, target_position], transmission: ") +
+        type + "}, tpdo1: [statusword, position_actual, mode_display]}")));
+    ASSERT_TRUE(scene.boot()) << type << scene.told();
+    ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success) << type << scene.told();
+    ASSERT_TRUE(scene.move({0.5, 0.5}, 1s).success) << type;
+    scene.run(1500ms);
+    EXPECT_NEAR(scene.position("left"), 0.5, 1e-3) << type;
+  }
+}
+
+/// Two PDOs each way of two objects each, on identifiers that cannot be changed.
+class NarrowDrive : public testing::Test {
+ protected:
+  std::string yaml(const std::string& rules) {
+    std::ifstream file(std::string(CIA402_CONFIG_DIR) + "/drives/generic_cia402.yaml");
+    std::string text((std::istreambuf_iterator<char>(file)), {});
+    const auto replace = [&](const std::string& what, const std::string& with) {
+      ASSERT_NE(text.find(what), std::string::npos) << what;
+      text.replace(text.find(what), what.size(), with);
+    };
+    replace("\"6060:00\", type: int8, pdo: rpdo", "\"6060:00\", type: int8");
+    replace("access: ro, pdo: tpdo}\n  supported_modes", "access: ro}\n  supported_modes");
+    replace("\nunits:", "\npdo_rules: {" + rules + "}\nunits:");
+    const std::string path = testing::TempDir() + "narrow_drive.yaml";
+    std::ofstream(path) << text;
+    return "bus: {interface: sim, bitrate: 1000000, sync_period: 0.004, heartbeat: 0.1}\n"
+           "axes:\n  left: {node_id: 1, drive: " +
+           path +
+           ", counts_per_turn: 131072, gear_ratio: 100.0, rated_torque: 0.64,\n"
+           "    simulation: {drive: generic_cia402_narrow},\n"
+           "    limits: {lower: -2.5, upper: 2.5, velocity: 1.5, acceleration: 4.0, jerk: 40.0}}\n";
+  }
+  void bootAndMove(Scene& scene) {
+    scene.world().bus().setMonitor([this](const can::Frame& frame, Time) {
+      const unsigned index = frame.data[1] | frame.data[2] << 8;
+      const bool download = frame.id == 0x601 && (frame.data[0] & 0xE0) == 0x20;
+      if (download && index >= 0x1600 && index <= 0x17FF) ++mapping_writes;
+      if (download && index >= 0x1A00 && index <= 0x1BFF) ++mapping_writes;
+    });
+    ASSERT_TRUE(scene.boot()) << scene.told();
+    const auto enabled = scene.procedure(ProcedureKind::enable);
+    ASSERT_TRUE(enabled.success) << enabled.message;
+    ASSERT_TRUE(scene.move({0.5}, 1s).success);
+    scene.run(1500ms);
+    EXPECT_NEAR(scene.position("left"), 0.5, 1e-3);
+    EXPECT_FALSE(std::isnan(scene.state("left").velocity));
+  }
+  unsigned mapping_writes = 0;
+};
+
+TEST_F(NarrowDrive, GetsAPlanThatItCanHold) {
+  Scene scene(loadText(yaml("max_pdos: 2, max_entries: 2, cob_ids: drive")));
+  bootAndMove(scene);
+  EXPECT_GT(mapping_writes, 0u);
+}
+
+TEST_F(NarrowDrive, WithMappingsOfItsOwnIsNeverMapped) {
+  Scene scene(loadText(
+      yaml("max_pdos: 2, max_entries: 2, cob_ids: drive, fixed: {rpdo1: [controlword], rpdo2: "
+           "[controlword, target_position], tpdo1: [statusword], tpdo2: [statusword, "
+           "position_actual]}")));
+  bootAndMove(scene);
+  EXPECT_EQ(mapping_writes, 0u);
 }
 
 TEST(RequestedPdos, BringWhatRemoteFramesAskFor) {

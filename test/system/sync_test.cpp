@@ -1,5 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // SYNC that another device produces: followed, lost, irregular, or not wanted.
+#include <random>
+
+#include "cia402_driver/sim/sync_producer.h"
 #include "system/scene.h"
 
 namespace cia402 {
@@ -156,6 +159,19 @@ TEST_F(ExternalSync, AnotherPeriodThanConfiguredIsSaidAndNothingIsEnabled) {
   EXPECT_TRUE(snapshot().sync_problem.view().find("5 ms") != std::string::npos);
 }
 
+TEST_F(ExternalSync, APeriodThatChangesStopsWhatMoves) {
+  boot(external());
+  ASSERT_TRUE(scene->procedure(ProcedureKind::enable).success);
+  ASSERT_TRUE(scene->move({1.5, -1.5}, 4s).success);
+  scene->run(1s);
+  metronome->setPeriod(6ms);
+  scene->run(1s);
+  EXPECT_NEAR(scene->velocity("left"), 0.0, 1e-3);
+  EXPECT_FALSE(scene->truth("left").power_stage_on);
+  EXPECT_FALSE(scene->truth("right").power_stage_on);
+  EXPECT_THAT(scene->told(), HasSubstr("right (node 2): stopped: SYNC comes every 6 ms, not"));
+}
+
 TEST_F(ExternalSync, ACounterThatNobodyConfiguredIsSaid) {
   boot(external(), 4ms, true);
   scene->run(1500ms);
@@ -180,6 +196,98 @@ TEST_F(ExternalSync, ASecondProducerBesideOurOwnSyncIsSaid) {
   metronome->play(false);
   scene->run(1500ms);
   const auto enabled = scene->procedure(ProcedureKind::enable);
+  EXPECT_TRUE(enabled.success) << enabled.message;
+}
+
+/// Loses frames of SYNC by chance.
+class Lossy {
+ public:
+  explicit Lossy(Scene& scene, unsigned one_in) : scene_(scene), one_in_(one_in) {}
+  void everyMillisecond() {
+    if (random_() % (4 * one_in_) != 0) return;
+    sim::FaultRule rule;
+    rule.id = 0x080;
+    scene_.world().bus().faults().add(rule);
+    ++lost;
+  }
+  unsigned lost = 0;
+
+ private:
+  Scene& scene_;
+  unsigned one_in_;
+  std::mt19937 random_{7};
+};
+
+/// Parameter: each SYNC is late by up to so many microseconds.
+class ExternalSyncJitter : public testing::TestWithParam<int> {};
+
+TEST_P(ExternalSyncJitter, AndLossDisturbNeitherMotionNorPeople) {
+  Scene scene(loadText(external()));
+  sim::SyncProducer producer(11);
+  producer.connect(scene.world().addParticipant("producer", producer));
+  sim::SyncSchedule schedule;
+  schedule.jitter = std::chrono::microseconds(GetParam());
+  producer.start(schedule, scene.now());
+  Lossy lossy(scene, 50);
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  scene.run(200ms);
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success) << scene.told();
+  scene.watch([&] { lossy.everyMillisecond(); });
+  ASSERT_TRUE(scene.move({1.0, -1.0}, 4s).success);
+  scene.run(5s);
+  EXPECT_NEAR(scene.position("left"), 1.0, 1e-3);
+  EXPECT_NEAR(scene.position("right"), -1.0, 1e-3);
+  EXPECT_GT(lossy.lost, 15u);
+  bus::RobotSnapshot shot;
+  scene.robot().robot().fill(shot);
+  EXPECT_NEAR(static_cast<double>(shot.missed_syncs), lossy.lost, 1.0);
+  EXPECT_TRUE(scene.state("left").ready_for_motion);
+  EXPECT_THAT(scene.told(), Not(HasSubstr("SYNC")));
+}
+
+INSTANTIATE_TEST_SUITE_P(Microseconds, ExternalSyncJitter, testing::Values(0, 200, 1000, 1500));
+
+/// Bit 30 of 1005h makes the left drive the producer.
+std::string leftProduces() {
+  const std::string bit = ", write: [{object: \"1005:00\", type: uint32, raw: 0x40000080}]";
+  std::string yaml = genericPair(bit);
+  return yaml.replace(yaml.find("heartbeat: 0.1"), 14, "heartbeat: 0.1, sync: external");
+}
+
+TEST(SyncOfADrive, LeadsTheDriverAndTheOtherDrives) {
+  Scene scene(loadText(leftProduces()));
+  unsigned syncs = 0;
+  scene.world().bus().setMonitor(
+      [&](const can::Frame& frame, Time) { syncs += frame.id == 0x080; });
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  scene.run(200ms);
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success) << scene.told();
+  syncs = 0;
+  ASSERT_TRUE(scene.move({0.6, -0.4}, 2s).success);
+  scene.run(2s);
+  EXPECT_NEAR(syncs, 500.0, 1.0) << "one producer only";
+  scene.run(500ms);
+  EXPECT_NEAR(scene.position("left"), 0.6, 1e-3);
+  EXPECT_NEAR(scene.position("right"), -0.4, 1e-3);
+}
+
+TEST(SyncOfADrive, IsLostWithTheDriveAndTheOthersStop) {
+  Scene scene(loadText(leftProduces()));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  scene.run(200ms);
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success) << scene.told();
+  ASSERT_TRUE(scene.move({1.5, -1.5}, 4s).success);
+  scene.run(1s);
+  ASSERT_GT(std::fabs(scene.velocity("right")), 0.2);
+  scene.drive("left").powerOff(scene.now());
+  scene.run(700ms);
+  EXPECT_NEAR(scene.velocity("right"), 0.0, 1e-3);
+  EXPECT_FALSE(scene.truth("right").power_stage_on);
+  EXPECT_THAT(scene.told(), HasSubstr("right (node 2): stopped: no SYNC (COB-ID 0x080) came"));
+  scene.drive("left").powerOn(scene.now());
+  scene.run(3s);
+  EXPECT_THAT(scene.told(), HasSubstr("SYNC is as it should be"));
+  const auto enabled = scene.procedure(ProcedureKind::enable);
   EXPECT_TRUE(enabled.success) << enabled.message;
 }
 

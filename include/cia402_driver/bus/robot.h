@@ -117,7 +117,8 @@ class Robot final : private canopen::MasterListener {
   void followSync(const can::Frame& frame, Time stamp, Time now);
   /// That SYNC is due and does not come: the cycle goes on without it, motion does not.
   void lackSync(Time now);
-  void stopForLostSync(Time now);
+  /// Set-points do not reach the drives as they should: all that moves is stopped, by SDO.
+  void stopForSync(const std::string& why, Time now);
   void noteSecondProducer(Time now);
   void watchSync(Time now);
   /// Why no axis may be enabled as SYNC is now; empty if it is well.

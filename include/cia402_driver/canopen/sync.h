@@ -34,10 +34,11 @@ class SyncConsumer {
   enum class State : std::uint8_t {
     waiting,  ///< none came yet
     running,
-    lost,  ///< none for kLostAfter periods
+    lost,  ///< kLostAfter in a row did not come
   };
-  static constexpr int kLostAfter = 3;        ///< periods without SYNC
+  static constexpr int kLostAfter = 3;        ///< SYNCs in a row that may not be missing
   static constexpr int kWindow = 16;          ///< intervals that period() is the mean of
+  static constexpr int kOddForms = 3;         ///< SYNCs in a row of a wrong form that are no chance
   static constexpr double kTolerance = 0.05;  ///< share by which the period may be wrong
   static constexpr double kOneMissing = 1.5;  ///< a longer interval (periods) lacks a SYNC
 
@@ -55,31 +56,36 @@ class SyncConsumer {
   Observation receive(const can::Frame& frame, Time stamp);
   /// @return true once, when SYNC was lost.
   bool tick(Time now);
-  Time deadline() const { return state_ == State::running ? last_ + kLostAfter * period_ : kNever; }
+  /// When tick() is due: half a period after the SYNC that would be one too many to miss.
+  Time deadline() const {
+    return state_ == State::running ? last_ + kLostAfter * period_ + period_ / 2 : kNever;
+  }
 
   State state() const { return state_; }
-  /// Mean of the last kWindow regular intervals; zero before there were so many.
+  /// Mean of the last kWindow intervals, without those that lack a SYNC unless most of them do;
+  /// zero before there were so many.
   Duration period() const { return measured_; }
   /// The measured period is another one than expected, by more than kTolerance.
   bool periodWrong() const;
-  /// The last SYNC had no counter where one is expected, or the other way round.
-  bool formWrong() const { return form_wrong_; }
+  /// The last SYNCs had no counter where one is expected, or the other way round.
+  bool formWrong() const { return odd_forms_ >= kOddForms; }
   std::uint64_t received() const { return received_; }
   std::uint64_t missed() const { return missed_; }  ///< by gaps between those that came
   std::uint64_t counterErrors() const { return counter_errors_; }
   Time last() const { return last_; }
 
  private:
-  void measure(Duration interval);
+  void measure(Duration interval, bool lacks_sync);
+  void restartMeasuring();
   void checkForm(const can::Frame& frame);
 
   Duration period_;
   std::uint8_t overflow_;
   State state_ = State::waiting;
   Time last_{};
-  Duration measured_{0}, sum_{0};
-  int intervals_ = 0;
-  bool form_wrong_ = false;
+  Duration measured_{0}, sum_{0}, sum_of_short_{0};
+  int intervals_ = 0, short_intervals_ = 0;
+  int odd_forms_ = 0;
   std::uint8_t counter_ = 0;
   std::uint64_t received_ = 0, missed_ = 0, counter_errors_ = 0;
 };

@@ -76,6 +76,7 @@ struct AxisConfig {
   double standstill_velocity = 0.01;
   std::vector<std::string> modes;  ///< that the PDOs serve: the one at start and those to switch to
   std::vector<PdoLayout> pdos;     ///< resolved layout (planned, the profile's or the user's)
+  bool pdos_planned = false;       ///< for this cycle; another one may get another plan
   Duration rpdo_timeout{0};        ///< the drive reacts when none came for so long; zero: never
   std::vector<NamedWrite> writes;  ///< the user's extra start-up writes
   ErrorControlOptions error_control;
