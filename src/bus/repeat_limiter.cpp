@@ -21,12 +21,11 @@ RepeatLimiter::Verdict RepeatLimiter::take(std::uint32_t kind, Time now) {
   const bool over = entry.held == 0 && now >= entry.began + kInterval;
   if (!entry.open || over) {
     entry.open = true;
-    entry.storm = false;
     entry.began = now;
     entry.told = 0;
     updateDeadline();
   }
-  const bool room = !entry.storm && entry.told < kAtOnce && &entry != &entries_[kKinds];
+  const bool room = entry.told < kAtOnce && &entry != &entries_[kKinds];
   if (!room) {
     ++entry.held;
     return Verdict::hold;
@@ -50,7 +49,6 @@ std::optional<RepeatLimiter::Summary> RepeatLimiter::next(Time now, Duration int
     summary.over = now - entry.began;
     summary.total = entry.count.total;
     entry.held = 0;
-    entry.storm = true;
     entry.began = now;
     return summary;
   }

@@ -98,6 +98,22 @@ TEST_F(RecorderAllocation, RecordingAllocatesNothingWhateverHappens) {
   EXPECT_GT(recording.axes.size(), 19U);
 }
 
+TEST_F(RecorderAllocation, AStormOfEmergenciesHidesNoFaultOfTheSameAxis) {
+  EmergencyEvent emergency;
+  emergency.emergency.code = 0x8130;
+  for (int i = 0; i < 100; ++i) {
+    emergency.emergency.stamp = world.now - 2s + i * 10ms;
+    recorder.onEmergency(emergency);
+  }
+  RecordingTrigger trigger;
+  while (recorder.nextTrigger(trigger)) {
+  }
+  world.drives[0].fault(0x8611);
+  record(100ms);
+  ASSERT_TRUE(recorder.nextTrigger(trigger));
+  EXPECT_EQ(trigger.kind, RecordingTrigger::Kind::fault);
+}
+
 TEST_F(RecorderAllocation, TheCounterCounts) {
   allocations = 0;
   counting = true;

@@ -51,6 +51,7 @@ TEST(DecodeEmergency, TakesAShortFrameAsFarAsItGoes) {
   EXPECT_EQ(emergency->error_register, 0x11);
   EXPECT_EQ(emergency->vendor, (std::array<std::uint8_t, 5>{0xAB, 0, 0, 0, 0}));
   EXPECT_EQ(emergency->size, 4);
+  EXPECT_EQ(decodeEmergency(can::Frame(0x083, {0x30, 0x81}), Time())->code, 0x8130);
   EXPECT_FALSE(decodeEmergency(can::Frame(0x083, {0x30}), Time()));
   EXPECT_FALSE(decodeEmergency(can::Frame(0x083, {}), Time()));
 }

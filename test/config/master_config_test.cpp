@@ -330,7 +330,8 @@ TEST(BusLoad, TheRateThatIsToldIsFeasibleWithThePlanOfThatRate) {
            "limits: {velocity: 2.0, acceleration: 8.0}}\n";
   };
   const auto load = [&](const std::string& period, Problems& problems) {
-    return loadRobot(YAML::Load(yaml(period)), profilesIn({CIA402_CONFIG_DIR "/drives"}), problems);
+    return loadRobot(YAML::Load(yaml(period)),
+                     profilesIn({cia402::test::configFolder() + "/drives"}), problems);
   };
   Problems refused;
   load("0.001", refused);

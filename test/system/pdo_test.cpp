@@ -3,6 +3,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "folders.h"
 #include "system/scene.h"
 
 namespace cia402 {
@@ -173,7 +174,7 @@ TEST(TransmissionTypes, OfRpdosAreTakenByTheDrive) {
 class NarrowDrive : public testing::Test {
  protected:
   std::string yaml(const std::string& rules) {
-    std::ifstream file(std::string(CIA402_CONFIG_DIR) + "/drives/generic_cia402.yaml");
+    std::ifstream file(cia402::test::configFolder() + "/drives/generic_cia402.yaml");
     std::string text((std::istreambuf_iterator<char>(file)), {});
     const auto replace = [&](const std::string& what, const std::string& with) {
       ASSERT_NE(text.find(what), std::string::npos) << what;

@@ -60,8 +60,7 @@ class RepeatLimiter {
     Count count;
     Time began{};            // of the interval
     bool open = false;       // an interval runs
-    bool storm = false;      // the interval before had held news, too: nothing is told at once
-    unsigned told = 0;       // in this interval
+    unsigned told = 0;       // at once, since there was a quiet interval
     std::uint64_t held = 0;  // in this interval
   };
 
