@@ -25,7 +25,9 @@ class Recorder(RobotTest):
         shutil.rmtree(cls.directory)
 
     def dump(self):
-        """Asks for a recording. @return the answer, or None while a failure is being recorded."""
+        """Reads an object and asks for a recording. @return the answer, or None while a failure is
+        being recorded."""
+        self.succeed("elbow/read_object", object="1018:01")
         answer = self.robot.call("dump_recording")
         return answer if answer.success else None
 
@@ -33,7 +35,6 @@ class Recorder(RobotTest):
         self.wait_log(f"flight recorder: the last 10 s in |MB|{self.directory}")
 
     def test_02_service_answers_with_the_files(self):
-        self.succeed("elbow/read_object", object="1018:01")
         answer = wait_until(self.dump, "a recording on demand")
         self.assert_words(answer.message, "flight recording|asked for")
         log = re.search(r"frames in (\S+\.log)", answer.message)[1]
