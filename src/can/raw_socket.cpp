@@ -61,7 +61,7 @@ RawSocket::RawSocket() {
 RawSocket::~RawSocket() { close(); }
 
 int RawSocket::open(int interface_index, const std::vector<ReceiveFilter>& filters,
-                    int receive_buffer) {
+                    int receive_buffer, bool error_frames) {
   close();
   fd_ = ::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW);
   if (fd_ < 0) return errno;
@@ -71,7 +71,7 @@ int RawSocket::open(int interface_index, const std::vector<ReceiveFilter>& filte
   if (!setOption(fd_, SOL_SOCKET, SO_RCVBUFFORCE, receive_buffer)) {
     setOption(fd_, SOL_SOCKET, SO_RCVBUF, receive_buffer);
   }
-  const can_err_mask_t errors = CAN_ERR_MASK;
+  const can_err_mask_t errors = error_frames ? CAN_ERR_MASK : 0;
   sockaddr_can address{};
   address.can_family = AF_CAN;
   address.can_ifindex = interface_index;

@@ -25,7 +25,8 @@ class RawSocket {
   RawSocket(const RawSocket&) = delete;
   RawSocket& operator=(const RawSocket&) = delete;
 
-  int open(int interface_index, const std::vector<ReceiveFilter>& filters, int receive_buffer);
+  int open(int interface_index, const std::vector<ReceiveFilter>& filters, int receive_buffer,
+           bool error_frames);
   void close();
   bool isOpen() const { return fd_ >= 0; }
   int fd() const { return fd_; }

@@ -243,7 +243,8 @@ void SocketCan::checkLink() {
   if (!link.exists) return;
   if (!socket_->isOpen()) {
     open_error_ = probe_->isCan(name_)
-                      ? socket_->open(link.index, options_.filters, options_.receive_buffer)
+                      ? socket_->open(link.index, options_.filters, options_.receive_buffer,
+                                      options_.error_frames)
                       : ENODEV;
     if (open_error_ != 0) return;
     batch_done_ = false;

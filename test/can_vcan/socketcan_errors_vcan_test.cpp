@@ -43,6 +43,20 @@ TEST_F(SocketCanOnVcan, FollowsTheErrorFramesOfTheController) {
   EXPECT_EQ(can.counters().frames_received, 0u);
 }
 
+TEST_F(SocketCanOnVcan, DoesNotSufferFromErrorFramesItDoesNotWant) {
+  SocketCan::Options deaf = options();
+  deaf.error_frames = false;
+  SocketCan can("vcan0", deaf);
+  PlainSocket driver;
+  ASSERT_TRUE(driver.send(CAN_ERR_FLAG | 0x040, {0, 0, 0, 0, 0, 0, 0, 0}));
+  ASSERT_TRUE(driver.send(0x701, {5}));
+  const auto received = receiveWithin(can, kPatience);
+  ASSERT_TRUE(received);
+  EXPECT_EQ(received->frame.id, 0x701u);
+  EXPECT_EQ(can.state(), BusState::error_active);
+  EXPECT_EQ(can.counters().error_frames, 0u);
+}
+
 TEST_F(SocketCanOnVcan, TakesAFrameFromTheBusAsProofThatBusOffIsOver) {
   SocketCan can("vcan0", options());
   PlainSocket driver;

@@ -61,6 +61,9 @@ class SocketCan final : public Interface {
     std::vector<ReceiveFilter> filters;  ///< by the kernel; empty: everything
     int receive_buffer = 1 << 20;        ///< bytes; the kernel may allow less
     unsigned bitrate = 1'000'000;        ///< bit/s, named in the advice of describe() only
+    /// Error frames are received. Simulated drives do without: what the controller of this
+    /// interface suffers is not theirs.
+    bool error_frames = true;
   };
 
   /// Opens the interface if it is there; if not, maintain() will.

@@ -37,7 +37,9 @@ int main(int argc, char** argv) {
   const auto axes = ros_node::loadSimulation(loaded->robot);
   if (!axes) return 1;
 
-  can::SocketCan interface(loaded->robot.bus.interface);
+  can::SocketCan::Options options;
+  options.error_frames = false;
+  can::SocketCan interface(loaded->robot.bus.interface, options);
   sim::DriveHost host(*axes, interface, bus::realNow());
   std::mutex host_mutex;
   ros_node::FaultService faults(
