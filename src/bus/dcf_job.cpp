@@ -2,6 +2,7 @@
 #include "cia402_driver/bus/dcf_job.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "cia402_driver/canopen/abort_code.h"
@@ -18,6 +19,7 @@ using canopen::ObjectId;
 
 constexpr unsigned kMostSilent = 3;
 constexpr std::size_t kMostNamed = 10;
+constexpr const char* kHighest = "Highest sub-index supported";
 constexpr std::uint32_t kNotToBeRead = 0x2;  // ObjFlags of CiA 306
 
 bool isAbsent(std::uint32_t abort_code) {
@@ -59,7 +61,7 @@ DcfJob::DcfJob(drive::Axis& axis, const SaveDcfCommand& command, double bitrate,
   info_.file_name = command.file_name;
   info_.node_id = config.node_id;
   info_.node_name = config.name;
-  info_.baud_rate = static_cast<unsigned>(bitrate / 1000.0 + 0.5);
+  info_.baud_rate = static_cast<unsigned>(std::lround(bitrate / 1000.0));
   info_.modification_date = command.date;
   info_.modification_time = command.time;
   info_.modified_by = "cia402_driver";
@@ -93,6 +95,9 @@ void DcfJob::addProfileObjects(const drive::DriveProfile& profile) {
     DictionaryEntry entry = entryOf(spec.id, spec.name, spec.type, access);
     entry.mappable = spec.rpdo || spec.tpdo;
     object.entries[spec.id.subindex] = std::move(entry);
+    // A record has it, whether or not the profile makes use of it.
+    object.entries.try_emplace(0,
+                               entryOf({spec.id.index, 0}, kHighest, DataType::uint8, Access::ro));
     const bool single = first && spec.id.subindex == 0;
     object.code = single ? ObjectCode::variable : ObjectCode::record;
     object.name = single ? spec.name : canopen::toString(spec.id).substr(0, 4);
@@ -142,11 +147,10 @@ void DcfJob::addCommunicationObjects(const drive::DriveProfile& profile) {
     place->second.entries[0] = entryOf({row.index, 0}, row.name, row.type, row.access);
   }
   const DataType u8 = DataType::uint8, u16 = DataType::uint16, u32 = DataType::uint32;
-  const char* const highest = "Highest sub-index supported";
-  addRecord(0x1016, "Consumer heartbeat time", {u8, u32}, {highest, "Consumer heartbeat time 1"},
+  addRecord(0x1016, "Consumer heartbeat time", {u8, u32}, {kHighest, "Consumer heartbeat time 1"},
             Access::ro, Access::rw);
   addRecord(0x1018, "Identity object", {u8, u32, u32, u32, u32},
-            {highest, "Vendor-ID", "Product code", "Revision number", "Serial number"}, Access::ro,
+            {kHighest, "Vendor-ID", "Product code", "Revision number", "Serial number"}, Access::ro,
             Access::ro);
   std::vector<DataType> mapped(9, u32);
   mapped[0] = u8;
@@ -161,7 +165,7 @@ void DcfJob::addCommunicationObjects(const drive::DriveProfile& profile) {
       addRecord(static_cast<std::uint16_t>(base + i),
                 receive ? "RPDO communication parameter" : "TPDO communication parameter",
                 {u8, u32, u8, u16, u8, u16, u8},
-                {highest, "COB-ID", "Transmission type", "Inhibit time", "Reserved", "Event timer",
+                {kHighest, "COB-ID", "Transmission type", "Inhibit time", "Reserved", "Event timer",
                  "SYNC start value"},
                 Access::ro, Access::rw);
       addRecord(static_cast<std::uint16_t>(base + 0x200 + i),

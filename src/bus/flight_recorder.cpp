@@ -78,15 +78,15 @@ void forEachPdo(const Robot& robot, Use&& use) {
 }
 
 template <typename Record, typename StampOf>
-void sortFrom(std::vector<Record>& records, Time begin, Time end, StampOf stampOf) {
+void sortFrom(std::vector<Record>& records, Time begin, Time end, StampOf stamp_of) {
   records.erase(std::remove_if(records.begin(), records.end(),
                                [&](const Record& record) {
-                                 return stampOf(record) < begin || stampOf(record) > end;
+                                 return stamp_of(record) < begin || stamp_of(record) > end;
                                }),
                 records.end());
   // Frames are stamped on the wire, or when they were handed over: not quite in order.
   std::stable_sort(records.begin(), records.end(),
-                   [&](const Record& a, const Record& b) { return stampOf(a) < stampOf(b); });
+                   [&](const Record& a, const Record& b) { return stamp_of(a) < stamp_of(b); });
 }
 
 }  // namespace
@@ -242,7 +242,7 @@ void FlightRecorder::trigger(Kind kind, std::size_t axis, std::uint16_t code, Ti
   trigger.axis = static_cast<std::uint16_t>(axis);
   trigger.code = code;
   trigger.stamp = now;
-  if (!triggers_.push(std::move(trigger))) ++suppressed_;
+  if (!triggers_.push(RecordingTrigger(trigger))) ++suppressed_;
   triggered_ = true;
 }
 

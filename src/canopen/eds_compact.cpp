@@ -129,7 +129,7 @@ void EdsReader::addCompactParameters(std::uint16_t index, unsigned pdo) {
   object.name = std::string(index >= 0x1800 ? "TPDO" : "RPDO") + " communication parameter " +
                 std::to_string(pdo + 1);
   std::uint8_t highest = 0;
-  for (std::uint8_t i = 0; i < std::size(kEntries); ++i) {
+  for (std::size_t i = 0; i < std::size(kEntries); ++i) {
     if ((eds_.info.compact_pdo >> i & 1U) == 0) continue;
     highest = static_cast<std::uint8_t>(i + 1);
     object.entries[highest] = pdoEntry({index, highest}, kEntries[i].name, kEntries[i].type);

@@ -19,7 +19,6 @@ constexpr std::uint8_t kStart = 0xA3;
 constexpr std::uint8_t kAcknowledge = 0xA2;
 constexpr std::uint8_t kEndAcknowledge = 0xA1;
 constexpr unsigned kBlockSize = 127;
-constexpr std::size_t kSegmentBytes = 7;
 constexpr unsigned kMostVain = 10;  // sub-blocks in a row of which nothing could be used
 
 }  // namespace

@@ -23,8 +23,9 @@ constexpr std::array<std::uint16_t, 256> kTable = makeTable();
 
 std::uint16_t sdoCrc(std::uint16_t crc, const std::uint8_t* bytes, std::size_t size) {
   for (std::size_t i = 0; i < size; ++i) {
-    const unsigned index = (crc >> 8U ^ bytes[i]) & 0xFFU;
-    crc = static_cast<std::uint16_t>((crc << 8U & 0xFF00U) ^ kTable[index]);
+    const unsigned before = crc;
+    const unsigned index = (before >> 8U ^ bytes[i]) & 0xFFU;
+    crc = static_cast<std::uint16_t>((before << 8U & 0xFF00U) ^ kTable[index]);
   }
   return crc;
 }

@@ -56,7 +56,7 @@ class Search {
         }
       }
       if (packed.every == 0) return;  // of no use: the subset without it is tried, too
-      fixed_.push_back({packed, bits});
+      fixed_.emplace_back(packed, bits);
     }
     rest_.clear();
     for (std::size_t i = 0; i < items_.size(); ++i) {
@@ -79,7 +79,8 @@ class Search {
     if (best_ && !(so_far < best_cost_)) return;
     if (next == rest_.size()) return keep(so_far);
     const PackItem& item = items_[rest_[next]];
-    for (std::size_t b = 0; b < bins_.size(); ++b) {
+    const std::size_t open = bins_.size();  // more come and go in the search below
+    for (std::size_t b = 0; b < open; ++b) {
       if (bins_[b].bits + item.bits > kMaxBits || bins_[b].items.size() >= rules_.entries) continue;
       const Bin before = bins_[b];
       bins_[b].bits += item.bits;
@@ -140,7 +141,8 @@ class Search {
 FrameBits frameBits(unsigned bytes) {
   const unsigned stuffable = 34 + 8 * bytes;
   const unsigned nominal = 47 + 8 * bytes;
-  return {static_cast<double>(nominal), static_cast<double>(nominal + (stuffable - 1) / 4)};
+  const unsigned worst = nominal + (stuffable - 1) / 4;
+  return {static_cast<double>(nominal), static_cast<double>(worst)};
 }
 
 FrameBits remoteFrameBits() { return frameBits(0); }

@@ -110,10 +110,10 @@ FrameDecoder::Node& FrameDecoder::nodeOf(NodeId id) {
   return node;
 }
 
-std::string FrameDecoder::nodeName(NodeId id) const {
-  const auto node = nodes_.find(id);
-  if (node != nodes_.end() && !node->second.name.empty()) return node->second.name;
-  return id == master_ ? "master" : "node " + std::to_string(id);
+std::string FrameDecoder::nodeName(NodeId node) const {
+  const auto known = nodes_.find(node);
+  if (known != nodes_.end() && !known->second.name.empty()) return known->second.name;
+  return node == master_ ? "master" : "node " + std::to_string(node);
 }
 
 std::string FrameDecoder::pdoText(const Pdo& pdo, const Frame& frame) {

@@ -124,7 +124,8 @@ std::string SdoDecoder::blockSegment(const Frame& frame) {
 
 /// The receiver has taken the segments of a block up to a number; the others come again.
 void SdoDecoder::forgetUnacknowledged(std::uint8_t acknowledged) {
-  const std::size_t taken = std::min<std::size_t>(received_, block_began_ + 7U * acknowledged);
+  const std::size_t taken =
+      std::min<std::size_t>(received_, block_began_ + std::size_t{7} * acknowledged);
   const bool complete = taken == received_;
   in_block_ = in_block_ && !(complete && last_segment_seen_);
   last_segment_seen_ = last_segment_seen_ && complete;

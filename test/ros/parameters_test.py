@@ -24,7 +24,7 @@ class Parameters(RobotTest):
         self.assertEqual(self.read(), factory + 7)
         self.succeed("shoulder/restore_parameters", "shoulder|1011:01|reset|disabled")
         self.assertEqual(self.read(), factory)
-        self.assertEqual(self.robot.axis("shoulder").state, "switch on disabled")
+        self.robot.wait_state("shoulder", "switch on disabled")
 
     def test_all_axes_at_once(self):
         self.succeed("save_parameters", "save_parameters done on 4 of 4 axes")

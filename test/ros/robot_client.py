@@ -68,7 +68,7 @@ class Process:
         self.name = name
         self._lines = []
         self._process = subprocess.Popen(
-            [executable(node), f"__name:={name}"], stdout=subprocess.PIPE,
+            ["stdbuf", "-oL", executable(node), f"__name:={name}"], stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, text=True, errors="replace")
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()

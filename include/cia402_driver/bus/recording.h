@@ -53,7 +53,7 @@ struct NoteRecord {
   NoteRecord() = default;
   /// Longer texts are cut and end in "...".
   NoteRecord(Kind what, std::size_t which, std::string_view words, Time when);
-  void append(std::string_view words);
+  void append(std::string_view more);
   std::string_view view() const { return {text.data(), size}; }
 };
 static_assert(sizeof(NoteRecord) == 256 && std::is_trivially_copyable<NoteRecord>::value, "ring");
