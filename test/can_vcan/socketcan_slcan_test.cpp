@@ -6,7 +6,9 @@
 #include <sys/ioctl.h>
 #include <termios.h>
 
+#include <atomic>
 #include <cerrno>
+#include <thread>
 
 #include "can_vcan/vcan_fixture.h"
 #include "cia402_driver/can/link_settings.h"
@@ -39,11 +41,19 @@ class SerialAdapter : public ::testing::Test {
     char name[IFNAMSIZ] = {};
     ASSERT_EQ(::ioctl(slave_, 0x8910 /* SIOCGIFNAME */, name), 0) << "no slcan";
     name_ = name;
+    reader_ = std::thread([this] {  // the kernel waits for its commands to be read
+      char bytes[64];
+      while (!done_) {
+        if (::read(master_, bytes, sizeof bytes) <= 0) std::this_thread::sleep_for(milliseconds(2));
+      }
+    });
     ASSERT_TRUE(
         run("ip link set " + name_ + " type can bitrate 500000 && ip link set " + name_ + " up"));
   }
   void TearDown() override {
     if (!name_.empty()) run("ip link set " + name_ + " down");
+    done_ = true;
+    if (reader_.joinable()) reader_.join();
     if (slave_ >= 0) ::close(slave_);
     if (master_ >= 0) ::close(master_);
   }
@@ -55,6 +65,8 @@ class SerialAdapter : public ::testing::Test {
 
   std::string name_;
   int master_ = -1, slave_ = -1;
+  std::atomic<bool> done_{false};
+  std::thread reader_;
 };
 
 TEST_F(SerialAdapter, ShowsItsSettingsAndCannotBeRestarted) {
