@@ -26,7 +26,8 @@ void BusWatch::update(const can::Interface& interface, Robot& robot, Time now) {
       tell(Event::Severity::warning,
            robot.config().bus.interface + " became " +
                can::toString(static_cast<can::BusState>(summary->kind)) + " " +
-               std::to_string(summary->count) + " times in the last 5 s",
+               std::to_string(summary->count) + " times in the last 5 s, now it is " +
+               can::toString(state_),
            now);
     }
   }
