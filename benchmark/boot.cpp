@@ -15,7 +15,7 @@ struct Row {
   int nodes;
   double sync_period;  ///< s; the shortest usual one that leaves some of the bus free
 };
-constexpr std::array<Row, 4> kRows{{{1, 0.004}, {8, 0.008}, {32, 0.02}, {100, 0.06}}};
+constexpr std::array<Row, 4> kRows{{{1, 0.004}, {8, 0.008}, {32, 0.02}, {100, 0.08}}};
 
 struct Boot {
   double took = 0.0, wire = 0.0;  ///< s, from the reset command to the last node ready
@@ -46,8 +46,12 @@ Boot boot(const Row& row) {
     const bool well = node.health() == canopen::NodeHealth::ready && boot_ups == 1 &&
                       node.notes().empty() && node.emergencies() == 0;
     if (!well) {
-      throw std::runtime_error(node.name() + " did not boot as it should: " + node.bootStep() +
-                               " " + node.problem());
+      throw std::runtime_error(
+          node.name() + " did not boot as it should: " + node.bootStep() + ", boot-ups " +
+          std::to_string(boot_ups) + ", emergencies " + std::to_string(node.emergencies()) +
+          (node.lastEmergency() ? ", the last one " + std::to_string(node.lastEmergency()->code)
+                                : "") +
+          " " + node.problem() + (node.notes().empty() ? "" : node.notes().front()));
     }
   }
   const sim::BusTraffic after = world.world().bus().traffic();
