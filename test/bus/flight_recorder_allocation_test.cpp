@@ -1,41 +1,9 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include <cstdlib>
-#include <new>
-
 #include <gtest/gtest.h>
 
 #include "bus/robot_world.h"
 #include "cia402_driver/bus/flight_recorder.h"
-
-namespace {
-bool counting = false;
-int allocations = 0;
-}  // namespace
-
-// Every form is replaced, or a sanitizer's own would free what came from malloc(). Not inlined: GCC
-// would see malloc() beside delete and warn of a mismatch.
-[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  if (counting) ++allocations;
-  return std::malloc(size);
-}
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  if (void* memory = operator new(size, std::nothrow)) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void* operator new[](std::size_t size) { return operator new(size); }
-[[gnu::noinline]] void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
-  return operator new(size, std::nothrow);
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete[](void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, const std::nothrow_t&) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete[](void* memory, const std::nothrow_t&) noexcept {
-  std::free(memory);
-}
+#include "count_allocations.h"
 
 namespace cia402::bus {
 namespace {

@@ -263,55 +263,6 @@ TEST_F(BootTest, refused_heartbeat_objects_are_notes_not_errors) {
   EXPECT_EQ(node->health(), NodeHealth::ready);
 }
 
-TEST_F(BootTest, stops_the_sync_period_before_it_changes_the_sync_counter) {
-  config.sync_counter = 0;
-  config.sync_period_us = 4000;
-  peer.on("603 40 19 10 00 00 00 00 00", "583 4F 19 10 00 F0 00 00 00")   // 240
-      .on("603 40 06 10 00 00 00 00 00", "583 43 06 10 00 10 27 00 00")   // 10000 us
-      .on("603 23 06 10 00 00 00 00 00", "583 60 06 10 00 00 00 00 00")   // 0
-      .on("603 2F 19 10 00 00 00 00 00", "583 60 19 10 00 00 00 00 00")   // 0
-      .on("603 23 06 10 00 A0 0F 00 00", "583 60 06 10 00 00 00 00 00");  // 4000 us
-  boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
-  const Lines sent = peer.take();
-  EXPECT_EQ(Lines(sent.begin() + 10, sent.begin() + 15),
-            (Lines{"603 40 19 10 00 00 00 00 00", "603 40 06 10 00 00 00 00 00",
-                   "603 23 06 10 00 00 00 00 00", "603 2F 19 10 00 00 00 00 00",
-                   "603 23 06 10 00 A0 0F 00 00"}));
-}
-
-TEST_F(BootTest, puts_the_sync_period_back_where_only_the_counter_is_configured) {
-  config.sync_counter = 10;
-  peer.on("603 40 19 10 00 00 00 00 00", "583 4F 19 10 00 00 00 00 00")
-      .on("603 40 06 10 00 00 00 00 00", "583 43 06 10 00 10 27 00 00")
-      .on("603 23 06 10 00 00 00 00 00", "583 60 06 10 00 00 00 00 00")
-      .on("603 2F 19 10 00 0A 00 00 00", "583 60 19 10 00 00 00 00 00")
-      .on("603 23 06 10 00 10 27 00 00", "583 60 06 10 00 00 00 00 00");
-  boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
-  EXPECT_TRUE(sentLine("603 23 06 10 00 10 27 00 00"));
-}
-
-TEST_F(BootTest, leaves_sync_objects_alone_that_are_as_wanted) {
-  config.sync_counter = 0;
-  config.sync_period_us = 4000;
-  peer.on("603 40 19 10 00 00 00 00 00", "583 4F 19 10 00 00 00 00 00")
-      .on("603 40 06 10 00 00 00 00 00", "583 43 06 10 00 A0 0F 00 00");
-  boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
-}
-
-TEST_F(BootTest, a_drive_without_sync_counter_is_right_for_a_plain_sync_only) {
-  config.sync_counter = 0;
-  peer.on("603 40 19 10 00 00 00 00 00", "583 80 19 10 00 00 00 02 06");
-  boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
-  config.sync_counter = 10;
-  boot();
-  EXPECT_EQ(node->health(), NodeHealth::failed);
-  EXPECT_THAT(node->problem(), HasSubstr("1019:00 synchronous counter overflow value"));
-}
-
 TEST_F(BootTest, disables_an_enabled_pdo_that_nobody_configured) {
   peer.replace("603 40 02 18 01 00 00 00 00", "583 43 02 18 01 83 03 00 40")
       .on("603 40 02 18 01 00 00 00 00", "583 43 02 18 01 83 03 00 C0")
@@ -421,67 +372,6 @@ TEST_F(BootTest, a_start_command_that_was_lost_is_repeated) {
   pass(milliseconds(250));
   EXPECT_EQ(node->health(), NodeHealth::ready);
   EXPECT_EQ(peer.take(), Lines{"000 01 03"});
-}
-
-TEST_F(BootTest, a_drive_that_makes_sync_itself_is_told_to_stop) {
-  peer.replace("603 40 05 10 00 00 00 00 00", "583 43 05 10 00 80 00 00 40")
-      .on("603 23 05 10 00 80 00 00 00", "583 60 05 10 00 00 00 00 00");
-  boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
-  EXPECT_TRUE(sentLine("603 23 05 10 00 80 00 00 00"));
-}
-
-TEST_F(BootTest, a_drive_that_goes_on_to_make_sync_is_refused) {
-  peer.replace("603 40 05 10 00 00 00 00 00", "583 43 05 10 00 80 00 00 40")
-      .on("603 23 05 10 00 80 00 00 00", "583 80 05 10 00 02 00 01 06");
-  boot();
-  EXPECT_EQ(node->health(), NodeHealth::failed);
-  EXPECT_THAT(node->problem(), HasSubstr("the drive makes SYNC itself (1005:00 COB-ID SYNC is "
-                                         "0x40000080), as the master does, and refuses to change"));
-}
-
-TEST_F(BootTest, another_sync_identifier_is_set_right_or_refused) {
-  peer.replace("603 40 05 10 00 00 00 00 00", "583 43 05 10 00 81 00 00 00")
-      .on("603 23 05 10 00 80 00 00 00", "583 60 05 10 00 00 00 00 00");
-  boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
-  peer.replace("603 23 05 10 00 80 00 00 00", "583 80 05 10 00 02 00 01 06");
-  boot();
-  EXPECT_EQ(node->health(), NodeHealth::failed);
-  EXPECT_THAT(node->problem(), HasSubstr("the drive waits for another SYNC (1005:00"));
-}
-
-TEST_F(BootTest, emergencies_under_another_identifier_are_switched_off_then_set_right) {
-  peer.replace("603 40 14 10 00 00 00 00 00", "583 43 14 10 00 90 00 00 00")
-      .on("603 23 14 10 00 90 00 00 80", "583 60 14 10 00 00 00 00 00")
-      .on("603 23 14 10 00 83 00 00 00", "583 60 14 10 00 00 00 00 00");
-  boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
-  const Lines sent = peer.take();
-  const auto disabled = std::find(sent.begin(), sent.end(), "603 23 14 10 00 90 00 00 80");
-  ASSERT_NE(disabled, sent.end());
-  EXPECT_EQ(*(disabled + 1), "603 23 14 10 00 83 00 00 00");
-}
-
-TEST_F(BootTest, emergencies_that_are_disabled_are_enabled_or_told) {
-  peer.replace("603 40 14 10 00 00 00 00 00", "583 43 14 10 00 83 00 00 80")
-      .on("603 23 14 10 00 83 00 00 00", "583 60 14 10 00 00 00 00 00");
-  boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
-  EXPECT_THAT(node->notes(), IsEmpty());
-  peer.replace("603 23 14 10 00 83 00 00 00", "583 80 14 10 00 02 00 01 06");
-  boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready);
-  EXPECT_THAT(node->notes(), ElementsAre(HasSubstr("its emergencies go unheard (1014:00 COB-ID "
-                                                   "EMCY is 0x80000083)")));
-}
-
-TEST_F(BootTest, a_drive_without_1005h_and_1014h_is_taken_as_the_standard_predefines) {
-  peer.replace("603 40 05 10 00 00 00 00 00", "583 80 05 10 00 00 00 02 06")
-      .replace("603 40 14 10 00 00 00 00 00", "583 80 14 10 00 00 00 02 06");
-  boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
-  EXPECT_THAT(node->notes(), IsEmpty());
 }
 
 }  // namespace

@@ -1,107 +1,11 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "../../src/canopen/pdo_configurator.h"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "canopen/scripted_peer.h"
+#include "canopen/pdo_configurator_fixture.h"
 
 namespace cia402::canopen {
 namespace {
 
-using test::ScriptedPeer;
+using namespace test;
 using ::testing::HasSubstr;
-using Lines = std::vector<std::string>;
-using Status = PdoConfigurator::Status;
-
-// TPDO 1 of node 3: 6041:00 (16 bits) and 6064:00 (32 bits), COB-ID 183h, every SYNC.
-PdoConfig wantedTpdo() {
-  PdoConfig pdo;
-  pdo.direction = PdoDirection::tpdo;
-  pdo.number = 1;
-  pdo.cob_id = 0x183;
-  pdo.transmission = 1;
-  pdo.entries = {{{0x6041, 0}, 16, "statusword"}, {{0x6064, 0}, 32, "position"}};
-  return pdo;
-}
-
-const char kReadCobId[] = "603 40 00 18 01 00 00 00 00";
-const char kReadType[] = "603 40 00 18 02 00 00 00 00";
-const char kReadInhibit[] = "603 40 00 18 03 00 00 00 00";
-const char kReadTimer[] = "603 40 00 18 05 00 00 00 00";
-const char kReadCount[] = "603 40 00 1A 00 00 00 00 00";
-const char kReadEntry1[] = "603 40 00 1A 01 00 00 00 00";
-const char kReadEntry2[] = "603 40 00 1A 02 00 00 00 00";
-const Lines kReadAll{kReadCobId, kReadType,   kReadInhibit, kReadTimer,
-                     kReadCount, kReadEntry1, kReadEntry2};
-
-const char kDisable[] = "603 23 00 18 01 83 01 00 80";
-const char kClearMap[] = "603 2F 00 1A 00 00 00 00 00";
-const char kWriteEntry1[] = "603 23 00 1A 01 10 00 41 60";
-const char kWriteEntry2[] = "603 23 00 1A 02 20 00 64 60";
-const char kWriteCount[] = "603 2F 00 1A 00 02 00 00 00";
-const char kWriteType[] = "603 2F 00 18 02 01 00 00 00";
-const char kEnable[] = "603 23 00 18 01 83 01 00 00";
-
-const char kCobIdDone[] = "583 60 00 18 01 00 00 00 00";
-const char kTypeDone[] = "583 60 00 18 02 00 00 00 00";
-const char kCountDone[] = "583 60 00 1A 00 00 00 00 00";
-const char kEntry1Done[] = "583 60 00 1A 01 00 00 00 00";
-const char kEntry2Done[] = "583 60 00 1A 02 00 00 00 00";
-
-const char kCobIdEnabled[] = "583 43 00 18 01 83 01 00 00";
-const char kCobIdDisabled[] = "583 43 00 18 01 83 01 00 80";
-const char kType1[] = "583 4F 00 18 02 01 00 00 00";
-const char kType255[] = "583 4F 00 18 02 FF 00 00 00";
-const char kInhibit0[] = "583 4B 00 18 03 00 00 00 00";
-const char kTimer0[] = "583 4B 00 18 05 00 00 00 00";
-const char kCount0[] = "583 4F 00 1A 00 00 00 00 00";
-const char kCount2[] = "583 4F 00 1A 00 02 00 00 00";
-const char kEntry1[] = "583 43 00 1A 01 10 00 41 60";
-const char kEntry2[] = "583 43 00 1A 02 20 00 64 60";
-
-class PdoConfiguratorTest : public ::testing::Test {
- protected:
-  static SdoOptions askOnce() {
-    SdoOptions options;
-    options.retries = 0;
-    return options;
-  }
-  Status run(const PdoConfig& wanted, PdoConfigurator::Options options = {}) {
-    configurator.emplace(client, wanted, options);
-    Status status = configurator->advance();
-    client.tick(now);
-    peer.deliver([&](const can::Frame& answer) {
-      client.receive(answer, now);
-      status = configurator->advance();
-      client.tick(now);
-    });
-    return status;
-  }
-  void allAsWanted() {
-    peer.on(kReadCobId, kCobIdEnabled)
-        .on(kReadType, kType1)
-        .on(kReadInhibit, kInhibit0)
-        .on(kReadTimer, kTimer0)
-        .on(kReadCount, kCount2)
-        .on(kReadEntry1, kEntry1)
-        .on(kReadEntry2, kEntry2);
-  }
-  void allWritesTaken() {
-    peer.on(kDisable, kCobIdDone)
-        .on(kClearMap, kCountDone)
-        .on(kWriteEntry1, kEntry1Done)
-        .on(kWriteEntry2, kEntry2Done)
-        .on(kWriteCount, kCountDone)
-        .on(kWriteType, kTypeDone)
-        .on(kEnable, kCobIdDone);
-  }
-
-  ScriptedPeer peer;
-  SdoClient client{3, peer, askOnce()};
-  std::optional<PdoConfigurator> configurator;
-  Time now{};
-};
 
 TEST_F(PdoConfiguratorTest, writes_nothing_when_everything_is_as_wanted) {
   allAsWanted();
@@ -338,69 +242,6 @@ TEST_F(PdoConfiguratorTest, says_when_the_drive_stopped_answering) {
   EXPECT_EQ(configurator->advance(), Status::failed);
   EXPECT_TRUE(configurator->timedOut());
   EXPECT_THAT(configurator->error(), HasSubstr("no answer within 500 ms"));
-}
-
-const char kReadOnlyCobId[] = "583 80 00 18 01 02 00 01 06";
-const char kOtherCobId[] = "583 43 00 18 01 A5 01 00 00";  // 1A5h, valid
-
-TEST_F(PdoConfiguratorTest, keeps_a_cob_id_that_the_drive_does_not_let_change) {
-  peer.on(kReadCobId, kOtherCobId).on("603 23 00 18 01 A5 01 00 80", kReadOnlyCobId);
-  allAsWanted();
-  peer.replace(kReadCobId, kOtherCobId);
-  EXPECT_EQ(run(wantedTpdo()), Status::done) << configurator->error();
-  EXPECT_EQ(configurator->adoptedCobId(), 0x1A5);
-}
-
-TEST_F(PdoConfiguratorTest, keeps_the_drives_cob_id_where_only_another_one_is_refused) {
-  allAsWanted();
-  allWritesTaken();
-  peer.replace(kReadCobId, kOtherCobId)
-      .on("603 23 00 18 01 A5 01 00 80", kCobIdDone)
-      .replace(kEnable, kReadOnlyCobId)
-      .on("603 23 00 18 01 A5 01 00 00", kCobIdDone);
-  EXPECT_EQ(run(wantedTpdo()), Status::done) << configurator->error();
-  EXPECT_EQ(configurator->adoptedCobId(), 0x1A5);
-}
-
-TEST_F(PdoConfiguratorTest, a_pdo_that_the_drive_keeps_invalid_is_an_error) {
-  allAsWanted();
-  peer.replace(kReadCobId, kCobIdDisabled).on(kEnable, kReadOnlyCobId);
-  EXPECT_EQ(run(wantedTpdo()), Status::failed);
-  EXPECT_THAT(configurator->error(), HasSubstr("0x06010002"));
-}
-
-TEST_F(PdoConfiguratorTest, takes_the_drives_own_cob_id_where_none_is_configured) {
-  allAsWanted();
-  peer.replace(kReadCobId, kOtherCobId);
-  PdoConfig wanted = wantedTpdo();
-  wanted.cob_id = 0;
-  EXPECT_EQ(run(wanted), Status::done) << configurator->error();
-  EXPECT_EQ(peer.take(), kReadAll) << "nothing is written";
-  EXPECT_EQ(configurator->adoptedCobId(), 0x1A5);
-}
-
-TEST_F(PdoConfiguratorTest, refuses_an_own_cob_id_that_is_none) {
-  PdoConfig wanted = wantedTpdo();
-  wanted.cob_id = 0;
-  peer.on(kReadCobId, "583 43 00 18 01 00 00 00 80");
-  EXPECT_EQ(run(wanted), Status::failed);
-  EXPECT_THAT(configurator->error(), HasSubstr("1800:01 is 0x80000000, which is none of 11 bits"));
-  peer.replace(kReadCobId, "583 43 00 18 01 A5 01 00 20");  // bit 29: 29-bit identifier
-  EXPECT_EQ(run(wanted), Status::failed);
-}
-
-TEST_F(PdoConfiguratorTest, allows_remote_frames_for_types_that_need_them) {
-  allAsWanted();
-  allWritesTaken();
-  const char forbidden[] = "583 43 00 18 01 83 01 00 40";  // bit 30: no remote frames
-  peer.replace(kReadCobId, {forbidden})
-      .on(kReadCobId, kCobIdEnabled)
-      .on("603 23 00 18 01 83 01 00 C0", kCobIdDone)
-      .replace(kReadType, "583 4F 00 18 02 FD 00 00 00");  // 253
-  PdoConfig wanted = wantedTpdo();
-  wanted.transmission = 253;
-  EXPECT_EQ(run(wanted), Status::done) << configurator->error();
-  EXPECT_FALSE(configurator->adoptedCobId());
 }
 
 }  // namespace

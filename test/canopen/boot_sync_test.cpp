@@ -1,0 +1,65 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "canopen/node_fixture.h"
+
+namespace cia402::canopen {
+namespace {
+
+using test::Lines;
+using ::testing::HasSubstr;
+
+class BootSyncTest : public test::NodeFixture {};
+
+TEST_F(BootSyncTest, stops_the_sync_period_before_it_changes_the_sync_counter) {
+  config.sync_counter = 0;
+  config.sync_period_us = 4000;
+  peer.on("603 40 19 10 00 00 00 00 00", "583 4F 19 10 00 F0 00 00 00")   // 240
+      .on("603 40 06 10 00 00 00 00 00", "583 43 06 10 00 10 27 00 00")   // 10000 us
+      .on("603 23 06 10 00 00 00 00 00", "583 60 06 10 00 00 00 00 00")   // 0
+      .on("603 2F 19 10 00 00 00 00 00", "583 60 19 10 00 00 00 00 00")   // 0
+      .on("603 23 06 10 00 A0 0F 00 00", "583 60 06 10 00 00 00 00 00");  // 4000 us
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  const Lines sent = peer.take();
+  EXPECT_EQ(Lines(sent.begin() + 10, sent.begin() + 15),
+            (Lines{"603 40 19 10 00 00 00 00 00", "603 40 06 10 00 00 00 00 00",
+                   "603 23 06 10 00 00 00 00 00", "603 2F 19 10 00 00 00 00 00",
+                   "603 23 06 10 00 A0 0F 00 00"}));
+}
+
+TEST_F(BootSyncTest, puts_the_sync_period_back_where_only_the_counter_is_configured) {
+  config.sync_counter = 10;
+  peer.on("603 40 19 10 00 00 00 00 00", "583 4F 19 10 00 00 00 00 00")
+      .on("603 40 06 10 00 00 00 00 00", "583 43 06 10 00 10 27 00 00")
+      .on("603 23 06 10 00 00 00 00 00", "583 60 06 10 00 00 00 00 00")
+      .on("603 2F 19 10 00 0A 00 00 00", "583 60 19 10 00 00 00 00 00")
+      .on("603 23 06 10 00 10 27 00 00", "583 60 06 10 00 00 00 00 00");
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_TRUE(sentLine("603 23 06 10 00 10 27 00 00"));
+}
+
+TEST_F(BootSyncTest, leaves_sync_objects_alone_that_are_as_wanted) {
+  config.sync_counter = 0;
+  config.sync_period_us = 4000;
+  peer.on("603 40 19 10 00 00 00 00 00", "583 4F 19 10 00 00 00 00 00")
+      .on("603 40 06 10 00 00 00 00 00", "583 43 06 10 00 A0 0F 00 00");
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+}
+
+TEST_F(BootSyncTest, a_drive_without_sync_counter_is_right_for_a_plain_sync_only) {
+  config.sync_counter = 0;
+  peer.on("603 40 19 10 00 00 00 00 00", "583 80 19 10 00 00 00 02 06");
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  config.sync_counter = 10;
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_THAT(node->problem(), HasSubstr("1019:00 synchronous counter overflow value"));
+}
+
+}  // namespace
+}  // namespace cia402::canopen
