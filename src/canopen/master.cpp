@@ -179,7 +179,6 @@ Time Master::nextDeadline() const {
     nodes_deadline_ = kNever;
     for (const Node& node : nodes_) {
       nodes_deadline_ = std::min(nodes_deadline_, node.nextDeadline());
-      deadlines_changed_ = deadlines_changed_ || node.sdoLent();
     }
   }
   return std::min({heartbeat_.deadline(), time_.deadline(), nodes_deadline_});

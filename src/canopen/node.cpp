@@ -31,7 +31,9 @@ Node::Node(Node&&) noexcept = default;
 
 NodeId Node::id() const { return impl_->config.node_id; }
 const std::string& Node::name() const { return impl_->config.name; }
+std::string Node::who() const { return impl_->who(); }
 const NodeConfig& Node::config() const { return impl_->config; }
+bool Node::excused() const { return config().boot.optional && isAway(impl_->health); }
 NodeHealth Node::health() const { return impl_->health; }
 NmtState Node::nmtState() const { return impl_->nmt_state; }
 const std::string& Node::bootStep() const { return impl_->step(); }
@@ -58,19 +60,10 @@ std::uint32_t Node::malformedEmergencies() const { return impl_->malformed_emerg
 Time Node::lastHeartbeat() const { return impl_->last_heartbeat; }
 const std::optional<Emergency>& Node::lastEmergency() const { return impl_->last_emergency; }
 
-SdoClient& Node::sdo() {
-  impl_->sdo_lent = true;
-  if (impl_->deadlines_changed != nullptr) *impl_->deadlines_changed = true;
-  return impl_->sdo;
-}
-
+SdoClient& Node::sdo() { return impl_->sdo; }
 const SdoClient& Node::sdo() const { return impl_->sdo; }
 
-Time Node::nextDeadline() const {
-  return impl_->sdo_lent ? std::min(impl_->next, impl_->sdo.nextDeadline()) : impl_->next;
-}
-
-bool Node::sdoLent() const { return impl_->sdo_lent; }
+Time Node::nextDeadline() const { return std::min(impl_->next, impl_->sdo.nextDeadline()); }
 
 void Node::boot(Time now, bool reset) {
   if (reset) {

@@ -36,12 +36,16 @@ Node::Impl::Impl(const NodeConfig& node_config, const MasterConfig& master, can:
       consumer(config.heartbeat_timeout),
       guard(config.node_id, config.guard_time, config.life_time_factor),
       boot(config, master, sdo, sink, shared_turns != nullptr ? *shared_turns : own_turns),
-      retry(config.boot) {}
-
-std::string Node::Impl::sentence(const std::string& text) const {
-  const std::string node = "node " + std::to_string(config.node_id);
-  return (config.name.empty() ? node : config.name + " (" + node + ")") + ": " + text;
+      retry(config.boot) {
+  sdo.tellWhenQueued(changed);
 }
+
+std::string Node::Impl::who() const {
+  const std::string node = "node " + std::to_string(config.node_id);
+  return config.name.empty() ? node : config.name + " (" + node + ")";
+}
+
+std::string Node::Impl::sentence(const std::string& text) const { return who() + ": " + text; }
 
 const std::string& Node::Impl::step() const {
   const std::string search = boot.running() ? std::string() : retry.searchText();
@@ -52,7 +56,6 @@ const std::string& Node::Impl::step() const {
 void Node::Impl::refresh() {
   next = std::min({sdo.nextDeadline(), consumer.deadline(), guard.deadline(), boot.deadline(),
                    retry.deadline()});
-  sdo_lent = false;
   if (deadlines_changed != nullptr) *deadlines_changed = true;
   pdos_live = boot.started() && (health == NodeHealth::ready || health == NodeHealth::booting);
 }

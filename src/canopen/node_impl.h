@@ -42,6 +42,7 @@ struct Node::Impl {
   void compareWithLastIdentity();
 
   void refresh();
+  std::string who() const;
   std::string sentence(const std::string& text) const;
   const std::string& step() const;
 
@@ -62,11 +63,10 @@ struct Node::Impl {
   mutable std::string step_text;
   std::vector<std::string> notes;
   std::optional<Node::Identity> last_identity;  ///< of the last boot that succeeded
-  bool begun = false;             ///< boot() was called once; before that nothing starts by itself
-  bool pdos_live = false;         ///< TPDOs are those that were configured
-  bool cob_ids_changed = false;   ///< since takeCobIdChange()
-  Time next = kNever;             ///< of all deadlines
-  mutable bool sdo_lent = false;  ///< somebody may have queued a transfer: `next` is not known
+  bool begun = false;            ///< boot() was called once; before that nothing starts by itself
+  bool pdos_live = false;        ///< TPDOs are those that were configured
+  bool cob_ids_changed = false;  ///< since takeCobIdChange()
+  Time next = kNever;            ///< of all deadlines but that of a transfer queued since
   std::uint32_t boot_ups = 0, emergencies = 0, malformed_emergencies = 0;
   Time last_heartbeat{};
   std::optional<Emergency> last_emergency;

@@ -7,18 +7,17 @@
 
 #include "cia402_driver/canopen/abort_code.h"
 #include "cia402_driver/canopen/sdo_client.h"
+#include "sdo_block.h"
 
 namespace cia402::canopen {
+
+using namespace sdo_block;
+
 namespace {
 
-constexpr std::uint8_t kCrcSupported = 0x04;
 constexpr std::uint8_t kSubcommand = 0x03;  // of a server's answer
 constexpr unsigned kInitiated = 0, kEnded = 1, kAcknowledged = 2;
-constexpr std::uint8_t kLastSegment = 0x80;
 constexpr std::uint8_t kEnd = 0xC1;
-constexpr unsigned kLargestBlock = 127;
-constexpr std::size_t kSegmentBytes = 7;
-constexpr unsigned kMostVain = 10;  // sub-blocks in a row of which the server took nothing
 constexpr Duration kQueueFull = std::chrono::milliseconds(1);
 
 /// Whether a server says by this code that it has no block transfer. Real ones use general codes,
@@ -63,7 +62,7 @@ SdoClient::Outcome SdoClient::onBlockDownloadInitiated(const can::Frame& frame, 
 }
 
 void SdoClient::beginSubBlock(unsigned size, Time now) {
-  if (size == 0 || size > kLargestBlock) {
+  if (size == 0 || size > kMostSegments) {
     abortTransfer(abort_code::kInvalidBlockSize,
                   "the server asks for sub-blocks of " + std::to_string(size) + " segments", now);
     return;

@@ -6,20 +6,20 @@
 
 #include "cia402_driver/canopen/abort_code.h"
 #include "cia402_driver/canopen/sdo_client.h"
+#include "sdo_block.h"
 #include "sdo_crc.h"
 
 namespace cia402::canopen {
+
+using namespace sdo_block;
+
 namespace {
 
-constexpr std::uint8_t kCrcSupported = 0x04;
 constexpr std::uint8_t kSizeIndicated = 0x02;
-constexpr std::uint8_t kLastSegment = 0x80;
 constexpr std::uint8_t kSequence = 0x7F;
 constexpr std::uint8_t kStart = 0xA3;
 constexpr std::uint8_t kAcknowledge = 0xA2;
 constexpr std::uint8_t kEndAcknowledge = 0xA1;
-constexpr unsigned kBlockSize = 127;
-constexpr unsigned kMostVain = 10;  // sub-blocks in a row of which nothing could be used
 
 }  // namespace
 
@@ -28,7 +28,7 @@ SdoClient::Outcome SdoClient::onBlockUploadInitiated(const can::Frame& frame, Ti
   if ((command & 1U) != 0 || !namesCurrentObject(frame)) return Outcome::stray;
   answered(now);
   block_.crc = (command & kCrcSupported) != 0;
-  block_.size = kBlockSize;
+  block_.size = kMostSegments;
   const auto size = static_cast<std::uint32_t>(frame.data[4]) |
                     static_cast<std::uint32_t>(frame.data[5]) << 8 |
                     static_cast<std::uint32_t>(frame.data[6]) << 16 |

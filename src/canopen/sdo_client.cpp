@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "cia402_driver/canopen/abort_code.h"
+#include "sdo_block.h"
 
 namespace cia402::canopen {
 namespace {
@@ -19,7 +20,6 @@ constexpr std::uint8_t kRequestBlockUpload = 0xA4;        // CRC supported
 constexpr std::uint8_t kRequestBlockDownload = 0xC6;      // CRC supported, size indicated
 constexpr std::uint8_t kAbort = 0x80;
 
-constexpr std::uint32_t kBlockSize = 127;  // segments; the most there are
 /// Up to here the server may answer a block upload by an ordinary one: that is fewer frames.
 constexpr std::uint32_t kSwitchThreshold = 28;  // bytes
 
@@ -77,6 +77,7 @@ SdoTicket SdoClient::download(ObjectId object, Bytes data, std::string name,
 SdoTicket SdoClient::enqueue(Transfer transfer, const std::optional<SdoOptions>& options) {
   transfer->options_ = options.value_or(defaults_);
   queue_.push_back(transfer);
+  if (queued_ != nullptr) *queued_ = true;
   return transfer;
 }
 
@@ -146,7 +147,8 @@ bool SdoClient::wantsBlock() const {
 
 void SdoClient::initiateUpload(Time now) {
   if (wantsBlock()) {
-    sendInitiate(kRequestBlockUpload, kBlockSize | kSwitchThreshold << 8U);
+    sendInitiate(kRequestBlockUpload,
+                 std::uint32_t{sdo_block::kMostSegments} | kSwitchThreshold << 8U);
     await(Phase::block_upload_initiate, now);
   } else {
     sendInitiate(kRequestUpload, 0);

@@ -26,6 +26,10 @@ enum class NodeHealth : std::uint8_t {
   lost,     ///< heartbeat, or answer to guarding, missing
 };
 const char* toString(NodeHealth health);
+/// Nobody answers.
+inline bool isAway(NodeHealth health) {
+  return health == NodeHealth::absent || health == NodeHealth::lost;
+}
 
 /// The master's side of one node: SDO client, process image, supervision and boot procedure.
 /// Owned by Master.
@@ -41,7 +45,11 @@ class Node {
 
   NodeId id() const;
   const std::string& name() const;
+  /// "shoulder (node 3)", for messages.
+  std::string who() const;
   const NodeConfig& config() const;
+  /// It is away, and the configuration says that it may be.
+  bool excused() const;
 
   NodeHealth health() const;
   NmtState nmtState() const;
@@ -106,9 +114,6 @@ class Node {
   void refuse(const std::string& why, Time now);
   void tick(Time now);        ///< called by Master
   Time nextDeadline() const;  ///< called by Master
-  /// Somebody may have begun a transfer since: nextDeadline() moves without notice until the node
-  /// receives or ticks again.
-  bool sdoLent() const;
   /// Sends the RPDOs that are due in this cycle (PdoConfig::refresh_every).
   void sendRpdos(Time now);
 

@@ -132,6 +132,9 @@ class SdoClient {
   /// Queued transfers do not start before `when`, for requests that take turns on the bus; a
   /// transfer on its way goes on.
   void holdUntil(Time when) { held_until_ = when; }
+  /// `*queued` becomes true with every transfer that is queued, for nextDeadline() may be another
+  /// one then. It must outlive the client; nullptr: nobody is told.
+  void tellWhenQueued(bool* queued) { queued_ = queued; }
   /// Ends all transfers, running and queued, with `reason` (e.g. "the node rebooted").
   void cancelAll(const std::string& reason);
   /// A boot-up message came: no answer to an older request can follow, and whether the server takes
@@ -246,6 +249,7 @@ class SdoClient {
   SdoOptions defaults_;
   std::uint32_t request_id_, answer_id_;
   std::deque<Transfer> queue_;  ///< the front one is on the wire unless phase_ is idle
+  bool* queued_ = nullptr;
   Counters counters_;
   Phase phase_ = Phase::idle;
   Time deadline_ = kNever, held_until_{};
