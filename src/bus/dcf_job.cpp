@@ -47,7 +47,7 @@ DictionaryEntry entryOf(ObjectId id, std::string name, DataType type, Access acc
 DcfJob::DcfJob(drive::Axis& axis, const SaveDcfCommand& command, double bitrate, Reply reply)
     : axis_(&axis), reply_(std::move(reply)) {
   const drive::AxisConfig& config = axis.config();
-  who_ = config.name + " (node " + std::to_string(config.node_id) + ")";
+  who_ = drive::whoIs(config);
   if (config.eds != nullptr) {
     info_ = config.eds->info;
     info_.last_eds = config.eds->file;

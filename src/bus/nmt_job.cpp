@@ -31,14 +31,10 @@ std::optional<NmtCommand> commandOf(const std::string& word) {
   return {};
 }
 
-std::string who(const drive::Axis& axis) {
-  return axis.config().name + " (node " + std::to_string(axis.config().node_id) + ")";
-}
-
 std::string refusal(drive::Axis& axis, const std::string& word, NmtCommand command) {
   if (axis.node().health() != NodeHealth::ready) return {};
   if (command == NmtCommand::start) return {};  // it is started already
-  const std::string refused = who(axis) + ": nmt " + word + " is refused: ";
+  const std::string refused = drive::whoIs(axis.config()) + ": nmt " + word + " is refused: ";
   if (axis.procedure().running) {
     return refused + toString(axis.procedure().kind) + " runs (" + axis.procedure().step +
            "); wait for its end, or stop it by halt, quick_stop or disable";
@@ -105,7 +101,8 @@ void NmtJob::watch(Entry& entry, drive::Axis& axis, Time now) const {
   } else {
     watchBoot(entry, axis, now);
   }
-  if (entry.ended) entry.message = who(axis) + ": nmt " + word_ + ": " + entry.message;
+  if (entry.ended)
+    entry.message = drive::whoIs(axis.config()) + ": nmt " + word_ + ": " + entry.message;
 }
 
 /// Start and the resets end with the node configured and operational.

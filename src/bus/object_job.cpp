@@ -9,7 +9,7 @@ Result<ObjectJob> ObjectJob::find(drive::Axis& axis, const std::string& object, 
   job.axis_ = &axis;
   job.reply_ = std::move(reply);
   const drive::AxisConfig& config = axis.config();
-  job.who_ = config.name + " (node " + std::to_string(config.node_id) + ")";
+  job.who_ = drive::whoIs(config);
   job.spec_ = config.profile->find(object);
   if (job.spec_ != nullptr) {
     job.id_ = job.spec_->id;

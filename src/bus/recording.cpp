@@ -74,7 +74,7 @@ std::string triggerText(const RecordingTrigger& trigger, const config::RobotConf
   std::string text = words(trigger.kind);
   if (!namesAxis(trigger.kind) || trigger.axis >= robot.axes.size()) return text;
   const drive::AxisConfig& axis = robot.axes[trigger.axis];
-  text = axis.name + " (node " + std::to_string(axis.node_id) + "): " + text;
+  text = drive::whoIs(axis) + ": " + text;
   return trigger.code == 0 ? text : text + " " + decode::errorText(trigger.code, *axis.profile);
 }
 

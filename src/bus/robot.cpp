@@ -10,27 +10,6 @@ namespace {
 
 constexpr Duration kStopTime = std::chrono::milliseconds(1000);     // ramps at shutdown
 constexpr Duration kDisableTime = std::chrono::milliseconds(1800);  // from the start of shutdown
-constexpr unsigned kHistoryAfterFault = 4;                          // entries
-constexpr Duration kHistoryInterval = std::chrono::seconds(5);  // at least, between two readings
-constexpr Duration kNewsInterval = std::chrono::milliseconds(100);
-
-std::string whoIs(const canopen::Node& node) {
-  return node.name() + " (node " + std::to_string(node.id()) + ")";
-}
-
-NodeSnapshot nodeSnapshot(const canopen::Node& node) {
-  NodeSnapshot snapshot;
-  snapshot.nmt = node.nmtState();
-  snapshot.last_heartbeat = node.lastHeartbeat();
-  snapshot.boot_ups = node.bootUps();
-  if (node.identity()) snapshot.identity = *node.identity();
-  snapshot.supervision = node.supervision();
-  snapshot.sdo = node.sdo().counters();
-  snapshot.may_be_absent =
-      node.config().boot.optional &&
-      (node.health() == canopen::NodeHealth::absent || node.health() == canopen::NodeHealth::lost);
-  return snapshot;
-}
 
 }  // namespace
 
@@ -58,7 +37,7 @@ Robot::Robot(config::RobotConfig robot, canopen::MasterConfig master, can::Sink&
     groups_.emplace_back(group, std::move(members), axes_);
   }
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    reporters_.emplace_back(i, whoIs(*nodes_[i]), axes_[i].config().profile, events_);
+    reporters_.emplace_back(i, nodes_[i]->who(), axes_[i].config().profile, events_);
   }
   news_.resize(axes_.size());
   missed_feedback_.resize(axes_.size());
@@ -256,10 +235,11 @@ void Robot::stepShutdown(Time now) {
   }
 }
 
-drive::Axis* Robot::axisNamed(const std::string& name) {
+drive::Axis* Robot::axisNamed(const std::string& name, const Reply& reply) {
   for (drive::Axis& axis : axes_) {
     if (axis.config().name == name) return &axis;
   }
+  refuse(reply, "there is no axis \"" + name + "\"");
   return nullptr;
 }
 
@@ -305,117 +285,18 @@ void Robot::onHealthChange(canopen::Node& node, canopen::NodeHealth before, Time
   const bool well = health == canopen::NodeHealth::ready;
   std::string text = node.problem();  // names the node itself
   if (text.empty()) {
-    text = whoIs(node) + ": " + (well ? "identified, configured and started" : toString(health));
+    text = node.who() + ": " + (well ? "identified, configured and started" : toString(health));
   }
-  const bool may_be = node.config().boot.optional && (health == canopen::NodeHealth::absent ||
-                                                      health == canopen::NodeHealth::lost);
-  const Event::Severity bad = may_be ? Event::Severity::warning : Event::Severity::error;
-  if (may_be) text += "; it is optional, the others go on without it";
+  const Event::Severity bad = node.excused() ? Event::Severity::warning : Event::Severity::error;
+  if (node.excused()) text += "; it is optional, the others go on without it";
   tell(well ? Event::Severity::info : bad, text, now);
   if (well) {
     for (const std::string& remark : node.remarks()) {
-      tell(Event::Severity::info, whoIs(node) + ": " + remark, now);
+      tell(Event::Severity::info, node.who() + ": " + remark, now);
     }
     for (const std::string& note : node.notes()) {
-      tell(Event::Severity::warning, whoIs(node) + ": " + note, now);
+      tell(Event::Severity::warning, node.who() + ": " + note, now);
     }
-  }
-}
-
-void Robot::readHistoryAfterFault(std::size_t axis, Time now) {
-  AxisNews& news = news_[axis];
-  const bool recently = news.history_asked != Time() && now < news.history_asked + kHistoryInterval;
-  if (recently || shutdown_ != Shutdown::no) return;
-  news.history_asked = now;
-  news.history_wanted = false;
-  histories_.emplace_back(
-      axes_[axis], kHistoryAfterFault, [this, axis](const canopen::ErrorHistory& history) {
-        const std::string text = historyText(*axes_[axis].config().profile, history);
-        news_[axis].history.assign(text);
-        if (!history.readable) return;  // many drives keep none
-        tell(Event::Severity::info,
-             whoIs(*nodes_[axis]) + ": the drive's error history (1003h), newest first: " + text,
-             now_);
-      });
-}
-
-void Robot::watchAxes(Time now) {
-  for (AxisReporter& reporter : reporters_) reporter.tick(now);
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
-    watchPdos(i, now);
-    if (news_[i].history_wanted) readHistoryAfterFault(i, now);
-    const drive::AxisState& state = axes_[i].state();
-    const drive::ProcedureStatus& procedure = axes_[i].procedure();
-    AxisNews& news = news_[i];
-    const bool well = state.health == canopen::NodeHealth::ready &&
-                      state.state != drive::State::fault &&
-                      state.state != drive::State::fault_reaction_active && !state.warning;
-    const bool changed = news.state != state.state || news.health != state.health ||
-                         news.error_code != state.error_code || news.procedure != procedure.id ||
-                         news.running != procedure.running ||
-                         news.notices != axes_[i].noticeCount();
-    const bool stale = (!well || procedure.running || !news.problem.empty()) &&
-                       now >= news.checked + kNewsInterval;
-    if (!changed && !stale) continue;
-    const auto faulty = [](drive::State s) {
-      return s == drive::State::fault || s == drive::State::fault_reaction_active;
-    };
-    if (faulty(state.state) && !faulty(news.state)) news.history_wanted = true;
-    news.state = state.state;
-    news.health = state.health;
-    news.error_code = state.error_code;
-    news.procedure = procedure.id;
-    news.running = procedure.running;
-    news.checked = now;
-    const canopen::Node& node = axes_[i].node();
-    const bool booting = state.health != canopen::NodeHealth::ready;
-    const bool in_lss = lss_.busy() && lss_.who() == config_.axes[i].name;
-    news.step.assign(in_lss ? lss_.step() : booting ? node.bootStep() : procedure.step);
-    news.waiting_for.assign(procedure.running ? procedure.waiting_for : std::string());
-    std::string problem = !node.problem().empty() ? node.problem() : axes_[i].faultText();
-    if (state.health == canopen::NodeHealth::ready) lss_problems_[i].clear();
-    if (!lss_problems_[i].empty()) problem = lss_problems_[i];  // the reason for what follows it
-    const bool noticed = news.notices != axes_[i].noticeCount();
-    const bool told_by_health = !node.problem().empty();
-    news.notices = axes_[i].noticeCount();
-    if (noticed && !told_by_health) tell(Event::Severity::error, axes_[i].notice(), now);
-    const FixedText<384> shown(problem);
-    if (news.problem == shown.view()) continue;
-    news.problem = shown;
-    const bool told =
-        told_by_health || (noticed && axes_[i].notice().find(problem) != std::string::npos);
-    if (!problem.empty() && !told) reporters_[i].fault(state.error_code, problem, now);
-  }
-}
-
-void Robot::fill(RobotSnapshot& snapshot) const {
-  snapshot.now = now_;
-  snapshot.statistics = statistics_;
-  snapshot.shut_down = shutDown();
-  snapshot.sync_problem = sync_problem_;
-  snapshot.missed_syncs = external_sync_.missed();
-  snapshot.foreign_syncs = foreign_syncs_;
-  snapshot.axes.resize(axes_.size());
-  snapshot.groups.resize(groups_.size());
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
-    AxisSnapshot& axis = snapshot.axes[i];
-    axis.state = axes_[i].state();
-    axis.target = axes_[i].target();
-    axis.node = nodeSnapshot(*nodes_[i]);
-    axis.emergencies = reporters_[i].emergencies();
-    axis.procedure = axes_[i].procedure().kind;
-    axis.procedure_running = axes_[i].procedure().running;
-    axis.missed_feedback = missed_feedback_[i];
-    axis.stale_feedback = nodes_[i]->image().staleCount();
-    axis.wrong_lengths = nodes_[i]->image().wrongLengths();
-    axis.stale = news_[i].stale;
-    axis.step = news_[i].step;
-    axis.waiting_for = news_[i].waiting_for;
-    axis.problem = news_[i].problem;
-    axis.history = news_[i].history;
-  }
-  for (std::size_t i = 0; i < groups_.size(); ++i) {
-    snapshot.groups[i] = {groups_[i].executing(), groups_[i].stopping()};
   }
 }
 

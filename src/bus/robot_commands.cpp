@@ -2,52 +2,26 @@
 #include "cia402_driver/bus/robot.h"
 
 namespace cia402::bus {
-namespace {
-
-Answer refused(std::string message) {
-  Answer answer;
-  answer.message = std::move(message);
-  return answer;
-}
-
-Answer done(std::string message) {
-  Answer answer;
-  answer.success = true;
-  answer.message = std::move(message);
-  return answer;
-}
-
-void give(const Reply& reply, const Answer& answer) {
-  if (reply) reply(answer);
-}
-
-bool mayBeAbsent(const canopen::Node& node) {
-  return node.config().boot.optional && (node.health() == canopen::NodeHealth::absent ||
-                                         node.health() == canopen::NodeHealth::lost);
-}
-
-}  // namespace
-
 void Robot::execute(Command command, Time now) {
   now_ = now;
   if (shutdown_ != Shutdown::no) {
-    give(command.reply, refused("refused: the driver is shutting down"));
+    refuse(command.reply, "refused: the driver is shutting down");
     return;
   }
   if (!started_ && !std::holds_alternative<CallCommand>(command.body)) {
-    give(command.reply,
-         refused("refused: the bus interface " + config_.bus.interface + " is not there yet"));
+    refuse(command.reply,
+           "refused: the bus interface " + config_.bus.interface + " is not there yet");
     return;
   }
   if (lss_starting_ && !std::holds_alternative<CallCommand>(command.body)) {
-    give(command.reply,
-         refused("refused: the drives are being given their node-IDs (" + lss_.step() + ")"));
+    refuse(command.reply,
+           "refused: the drives are being given their node-IDs (" + lss_.step() + ")");
     return;
   }
   if (!bus_lost_.empty() && !std::holds_alternative<CallCommand>(command.body)) {
-    give(command.reply, refused("refused: " + bus_lost_ +
-                                ", nothing reaches the drives; those that watch the master's "
-                                "heartbeat stop by themselves"));
+    refuse(command.reply, "refused: " + bus_lost_ +
+                              ", nothing reaches the drives; those that watch the master's "
+                              "heartbeat stop by themselves");
     return;
   }
   std::visit([&](auto& body) { run(body, std::move(command.reply), now); }, command.body);
@@ -59,8 +33,7 @@ void Robot::run(ProcedureCommand& command, Reply reply, Time now) {
                        command.request.kind == drive::ProcedureKind::recover;
   const std::string problem = enables ? syncProblem() : std::string();
   if (!problem.empty()) {
-    give(reply,
-         refused(std::string(drive::toString(command.request.kind)) + " is refused: " + problem));
+    refuse(reply, std::string(drive::toString(command.request.kind)) + " is refused: " + problem);
     return;
   }
   std::vector<ProcedureJob::Item> items;
@@ -69,16 +42,16 @@ void Robot::run(ProcedureCommand& command, Reply reply, Time now) {
     const drive::AxisConfig& axis = axes_[i].config();
     const bool named = axis.name == command.axis;
     const bool concerned = command.axis.empty() && (!homing || axis.homing);
-    if (concerned && mayBeAbsent(axes_[i].node())) {
+    if (concerned && axes_[i].node().excused()) {
       left_out += "; " + axis.name + " is optional and not there, it was left out";
       continue;
     }
     if (named || concerned) items.push_back({i, homing && axis.homing ? axis.homing->order : 0});
   }
   if (items.empty()) {
-    give(reply, refused(!command.axis.empty() ? "there is no axis \"" + command.axis + "\""
-                        : left_out.empty()    ? "nothing to do: no axis has a `homing` section"
-                                              : "nothing to do" + left_out));
+    refuse(reply, !command.axis.empty() ? "there is no axis \"" + command.axis + "\""
+                  : left_out.empty()    ? "nothing to do: no axis has a `homing` section"
+                                        : "nothing to do" + left_out);
     return;
   }
   if (command.request.kind == drive::ProcedureKind::recover && recoverByLss(items)) {
@@ -95,7 +68,7 @@ void Robot::run(SetpointCommand& command, const Reply& reply, Time now) {
   const Result<void> taken =
       motions_[command.axis].command(axes_[command.axis], command.value, now);
   if (taken) return;
-  give(reply, refused(taken.error().message));
+  refuse(reply, taken.error().message);
 }
 
 void Robot::run(TrajectoryCommand& command, const Reply& reply, Time now) {
@@ -106,37 +79,31 @@ void Robot::run(TrajectoryCommand& command, const Reply& reply, Time now) {
     const TrajectoryOutcome outcome =
         group.start(command.joints, command.points, start_time, axes_, motions_, motionTime(now));
     const bool accepted = outcome.code == motion::TrajectoryErrorCode::successful;
-    give(reply, accepted ? done(outcome.message) : refused(outcome.message));
+    give(reply, answerOf(accepted, outcome.message));
     return;
   }
-  give(reply, refused("there is no group \"" + command.group + "\""));
+  refuse(reply, "there is no group \"" + command.group + "\"");
 }
 
 void Robot::run(ReadObjectCommand& command, const Reply& reply, Time) {
-  drive::Axis* axis = axisNamed(command.axis);
-  if (axis == nullptr) {
-    give(reply, refused("there is no axis \"" + command.axis + "\""));
-    return;
-  }
+  drive::Axis* axis = axisNamed(command.axis, reply);
+  if (axis == nullptr) return;
   Result<ObjectJob> job = ObjectJob::read(*axis, command.object, reply);
   if (job) {
     objects_.push_back(std::move(job).value());
   } else {
-    give(reply, refused(job.error().message));
+    refuse(reply, job.error().message);
   }
 }
 
 void Robot::run(WriteObjectCommand& command, const Reply& reply, Time) {
-  drive::Axis* axis = axisNamed(command.axis);
-  if (axis == nullptr) {
-    give(reply, refused("there is no axis \"" + command.axis + "\""));
-    return;
-  }
+  drive::Axis* axis = axisNamed(command.axis, reply);
+  if (axis == nullptr) return;
   Result<ObjectJob> job = ObjectJob::write(*axis, command.object, command.value, reply);
   if (job) {
     objects_.push_back(std::move(job).value());
   } else {
-    give(reply, refused(job.error().message));
+    refuse(reply, job.error().message);
   }
 }
 
@@ -146,13 +113,13 @@ void Robot::run(NmtServiceCommand& command, const Reply& reply, Time now) {
     if (command.axis.empty() || axes_[i].config().name == command.axis) which.push_back(i);
   }
   if (which.empty()) {
-    give(reply, refused("there is no axis \"" + command.axis + "\""));
+    refuse(reply, "there is no axis \"" + command.axis + "\"");
     return;
   }
   Result<NmtJob> job =
       NmtJob::start(command.command, which, command.axis.empty(), axes_, master_, reply, now);
   if (!job) {
-    give(reply, refused(job.error().message));
+    refuse(reply, job.error().message);
     return;
   }
   const std::string whom = command.axis.empty() ? "all nodes" : command.axis;
@@ -161,13 +128,9 @@ void Robot::run(NmtServiceCommand& command, const Reply& reply, Time now) {
 }
 
 void Robot::run(ErrorHistoryCommand& command, const Reply& reply, Time) {
-  drive::Axis* axis = axisNamed(command.axis);
-  if (axis == nullptr) {
-    give(reply, refused("there is no axis \"" + command.axis + "\""));
-    return;
-  }
-  const std::string who = axis->config().name + " (node " + std::to_string(axis->config().node_id) +
-                          "): error history (1003h): ";
+  drive::Axis* axis = axisNamed(command.axis, reply);
+  if (axis == nullptr) return;
+  const std::string who = drive::whoIs(axis->config()) + ": error history (1003h): ";
   histories_.emplace_back(*axis, canopen::ErrorHistoryReader::kAll,
                           [axis, who, reply](const canopen::ErrorHistory& history) {
                             Answer answer;
@@ -179,11 +142,8 @@ void Robot::run(ErrorHistoryCommand& command, const Reply& reply, Time) {
 }
 
 void Robot::run(SaveDcfCommand& command, const Reply& reply, Time) {
-  drive::Axis* axis = axisNamed(command.axis);
-  if (axis == nullptr) {
-    give(reply, refused("there is no axis \"" + command.axis + "\""));
-    return;
-  }
+  drive::Axis* axis = axisNamed(command.axis, reply);
+  if (axis == nullptr) return;
   dcfs_.emplace_back(*axis, command, config_.bus.bitrate, reply);
 }
 

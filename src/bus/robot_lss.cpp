@@ -15,23 +15,6 @@ namespace lss = canopen::lss;
 
 constexpr Duration kLookInterval = std::chrono::seconds(5);
 
-Answer answerOf(bool success, std::string message) {
-  Answer answer;
-  answer.success = success;
-  answer.message = std::move(message);
-  return answer;
-}
-
-void give(const Reply& reply, const Answer& answer) {
-  if (reply) reply(answer);
-}
-
-std::string who(const drive::AxisConfig& axis) {
-  return axis.name + " (node " + std::to_string(axis.node_id) + ")";
-}
-
-bool away(NodeHealth health) { return health == NodeHealth::absent || health == NodeHealth::lost; }
-
 // Waited for by the boot procedure, but silent since the start.
 bool neverHeard(const canopen::Node& node) {
   const auto& answers = node.sdo().counters();
@@ -53,7 +36,7 @@ std::string Robot::motionOnBus() const {
     if (state.health != NodeHealth::ready) continue;
     const bool still = std::abs(state.velocity) < axis.config().standstill_velocity;
     if (!still && !(state.feedback_valid && drive::powerStageOff(state.state))) {
-      return "refused: " + who(axis.config()) + " may be in motion; stop it first";
+      return "refused: " + drive::whoIs(axis.config()) + " may be in motion; stop it first";
     }
   }
   return {};
@@ -62,7 +45,7 @@ std::string Robot::motionOnBus() const {
 std::vector<canopen::NodeId> Robot::nodesInOperation() const {
   std::vector<canopen::NodeId> ids = {config_.bus.node_id};
   for (const canopen::Node& node : master_.nodes()) {
-    if (!away(node.health()) && !neverHeard(node)) ids.push_back(node.id());
+    if (!canopen::isAway(node.health()) && !neverHeard(node)) ids.push_back(node.id());
   }
   return ids;
 }
@@ -85,7 +68,8 @@ void Robot::assignByLss(std::size_t index, bool reset) {
 void Robot::lssAssigned(std::size_t index, const canopen::LssTask& task, const std::string& error,
                         Time now) {
   const bool success = error.empty();
-  const std::string text = who(config_.axes[index]) + ": LSS: " + (success ? task.result() : error);
+  const std::string text =
+      drive::whoIs(config_.axes[index]) + ": LSS: " + (success ? task.result() : error);
   if (success) {
     lss_problems_[index].clear();
     tell(Event::Severity::info, text, now);
@@ -127,14 +111,15 @@ void Robot::lookForLostDrives(Time now) {
   if (lss_.busy() || now < next_lss_look_) return;
   next_lss_look_ = now + kLookInterval;
   const bool missing = std::any_of(axes_.begin(), axes_.end(), [](const drive::Axis& axis) {
-    return axis.config().lss && away(axis.state().health);
+    return axis.config().lss && canopen::isAway(axis.state().health);
   });
   if (!missing || shutdown_ != Shutdown::no) return;
   lss_.add("", std::make_unique<canopen::LssLookTask>(),
            [this](const canopen::LssTask& task, const std::string&, Time) {
              if (!static_cast<const canopen::LssLookTask&>(task).found()) return;
              for (std::size_t i = 0; i < axes_.size(); ++i) {
-               if (config_.axes[i].lss && away(axes_[i].state().health)) assignByLss(i, true);
+               if (config_.axes[i].lss && canopen::isAway(axes_[i].state().health))
+                 assignByLss(i, true);
              }
            });
 }
@@ -143,7 +128,7 @@ void Robot::lookForLostDrives(Time now) {
 bool Robot::recoverByLss(const std::vector<ProcedureJob::Item>& items) {
   bool needed = false;
   for (const ProcedureJob::Item& item : items) {
-    if (!config_.axes[item.axis].lss || !away(axes_[item.axis].state().health)) continue;
+    if (!config_.axes[item.axis].lss || !canopen::isAway(axes_[item.axis].state().health)) continue;
     assignByLss(item.axis, true);
     needed = true;
   }
@@ -152,7 +137,7 @@ bool Robot::recoverByLss(const std::vector<ProcedureJob::Item>& items) {
 
 void Robot::run(LssScanCommand& command, const Reply& reply, Time) {
   const std::string refusal = motionOnBus();
-  if (!refusal.empty()) return give(reply, answerOf(false, refusal));
+  if (!refusal.empty()) return refuse(reply, refusal);
   lss_.add(
       "", std::make_unique<canopen::LssScanTask>(),
       [this, reply](const canopen::LssTask& task, const std::string& error, Time) {
@@ -177,19 +162,18 @@ void Robot::run(LssScanCommand& command, const Reply& reply, Time) {
 
 void Robot::run(LssAssignCommand& command, const Reply& reply, Time) {
   if (command.node_id < 1 || command.node_id > 127) {
-    return give(reply, answerOf(false, "refused: node-ID " + std::to_string(command.node_id) +
-                                           " is not in 1..127"));
+    return refuse(reply,
+                  "refused: node-ID " + std::to_string(command.node_id) + " is not in 1..127");
   }
   const auto node = static_cast<canopen::NodeId>(command.node_id);
   const std::vector<canopen::NodeId> in_use = nodesInOperation();
   if (std::find(in_use.begin(), in_use.end(), node) != in_use.end()) {
     const bool own = node == config_.bus.node_id;
-    return give(reply, answerOf(false, "refused: node-ID " + std::to_string(node) +
-                                           (own ? " is the master's own"
-                                                : " is that of a drive in operation")));
+    return refuse(reply, "refused: node-ID " + std::to_string(node) +
+                             (own ? " is the master's own" : " is that of a drive in operation"));
   }
   const std::string refusal = motionOnBus();
-  if (!refusal.empty()) return give(reply, answerOf(false, refusal));
+  if (!refusal.empty()) return refuse(reply, refusal);
   canopen::LssAssignTask::Options options;
   options.identity = command.identity;
   options.node_id = node;
@@ -210,14 +194,14 @@ std::string Robot::bitTimingRefusal(std::size_t index, lss::Identity& identity) 
   const drive::AxisState& state = axis.state();
   const bool off = state.feedback_valid && drive::powerStageOff(state.state);
   if (state.health == NodeHealth::ready && !off) {
-    return "refused: " + who(config) + " is not disabled; disable it first";
+    return "refused: " + drive::whoIs(config) + " is not disabled; disable it first";
   }
   if (config.lss) {
     identity = config.lss->identity;
   } else if (const auto& read = nodes_[index]->identity()) {
     identity = {read->vendor_id, read->product_code, read->revision, read->serial};
   } else {
-    return "refused: the identity of " + who(config) +
+    return "refused: the identity of " + drive::whoIs(config) +
            " is not known: it has neither `lss` in the configuration nor been there to be read";
   }
   return {};
@@ -229,7 +213,7 @@ void Robot::run(LssBitTimingCommand& command, const Reply& reply, Time) {
   std::string refusal;
   for (std::size_t i = 0; i < axes_.size() && refusal.empty(); ++i) {
     if (!command.axis.empty() && axes_[i].config().name != command.axis) continue;
-    drives.emplace_back(who(axes_[i].config()), lss::Identity());
+    drives.emplace_back(drive::whoIs(axes_[i].config()), lss::Identity());
     refusal = bitTimingRefusal(i, drives.back().second);
   }
   if (drives.empty()) refusal = "there is no axis \"" + command.axis + "\"";
@@ -240,7 +224,7 @@ void Robot::run(LssBitTimingCommand& command, const Reply& reply, Time) {
   if (command.activate && !command.axis.empty()) {
     refusal = "refused: all drives must take a new bit rate at once; activate it for the bus";
   }
-  if (!refusal.empty()) return give(reply, answerOf(false, refusal));
+  if (!refusal.empty()) return refuse(reply, refusal);
 
   struct Progress {
     std::string text;
@@ -273,7 +257,7 @@ void Robot::run(LssBitTimingCommand& command, const Reply& reply, Time) {
           lss_.add("", std::make_unique<canopen::LssActivateTask>(delay),
                    [=](const canopen::LssTask&, const std::string& failure, Time) {
                      if (!failure.empty()) {
-                       return give(reply, answerOf(false, progress->text + "; " + failure));
+                       return refuse(reply, progress->text + "; " + failure);
                      }
                      give(reply,
                           answerOf(true, progress->text + "; all devices switch in " +

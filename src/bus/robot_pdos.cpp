@@ -22,7 +22,7 @@ void Robot::watchPdos(std::size_t axis, Time now) {
   news.pdos_told = now;
   const std::string overdue = canopen::staleText(image);
   news.stale.assign(overdue);
-  const std::string who = node.name() + " (node " + std::to_string(node.id()) + "): ";
+  const std::string who = node.who() + ": ";
   if (short_or_long) {
     tell(Event::Severity::warning,
          who + canopen::wrongLengthText(image) +

@@ -17,13 +17,6 @@ constexpr Duration kIdleInterval = std::chrono::milliseconds(20);  // while ther
 constexpr Duration kFlushTime = std::chrono::milliseconds(20);     // for the last frames
 constexpr int kFramesPerRound = 256;  // then the clock is looked at again
 
-void give(const Reply& reply, const char* message) {
-  if (!reply) return;
-  Answer answer;
-  answer.message = message;
-  reply(answer);
-}
-
 RobotSnapshot sized(std::size_t axes, std::size_t groups) {
   RobotSnapshot snapshot;
   snapshot.axes.resize(axes);
@@ -75,10 +68,10 @@ bool BusRunner::post(Command command) {
   }
   if (queued) {
     wake();
-  } else {               // not moved from: push() leaves what it does not take
-    give(command.reply,  // NOLINT(bugprone-use-after-move)
-         running_ ? "refused: too many commands are waiting, try again"
-                  : "refused: the driver is not running");
+  } else {                 // not moved from: push() leaves what it does not take
+    refuse(command.reply,  // NOLINT(bugprone-use-after-move)
+           running_ ? "refused: too many commands are waiting, try again"
+                    : "refused: the driver is not running");
   }
   return queued;
 }
@@ -195,7 +188,7 @@ void BusRunner::refuseRest() {
   const std::lock_guard<std::mutex> lock(producers_);
   running_ = false;
   Command command;
-  while (mailbox_.pop(command)) give(command.reply, "refused: the driver is shutting down");
+  while (mailbox_.pop(command)) refuse(command.reply, "refused: the driver is shutting down");
 }
 
 }  // namespace cia402::bus

@@ -81,8 +81,7 @@ ModeChannel modeChannel(const AxisConfig& config, const canopen::Node& node, con
 
 void require(bool mapped, const AxisConfig& config, const char* what) {
   if (mapped) return;
-  throw std::invalid_argument(config.name + " (node " + std::to_string(config.node_id) +
-                              "): " + what + " must be mapped into a PDO");
+  throw std::invalid_argument(whoIs(config) + ": " + what + " must be mapped into a PDO");
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ std::string withUnit(double value) {
 }
 
 Error refuse(const AxisConfig& axis, const std::string& name, const std::string& why) {
-  return Error{axis.name + " (node " + std::to_string(axis.node_id) + "): " + name + ": " + why};
+  return Error{whoIs(axis) + ": " + name + ": " + why};
 }
 
 // Velocities, accelerations and efforts of the configuration are magnitudes: the drive gets them

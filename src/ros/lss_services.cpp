@@ -5,9 +5,10 @@
 #include <cia402_driver/LssScan.h>
 #include <cia402_driver/LssSetBitTiming.h>
 
+#include <algorithm>
 #include <cmath>
-#include <future>
-#include <memory>
+
+#include "cia402_driver/ros/command_call.h"
 
 namespace cia402::ros_node {
 namespace {
@@ -28,16 +29,6 @@ bool takeSeconds(double seconds, double longest, Duration& value) {
 
 }  // namespace
 
-bus::Answer LssServices::call(decltype(bus::Command::body) body) {
-  bus::Command command;
-  command.body = std::move(body);
-  const auto promise = std::make_shared<std::promise<bus::Answer>>();
-  command.reply = [promise](const bus::Answer& answer) { promise->set_value(answer); };
-  std::future<bus::Answer> answer = promise->get_future();
-  runner_.post(std::move(command));
-  return answer.get();
-}
-
 LssServices::LssServices(ros::NodeHandle& private_node, bus::BusRunner& runner) : runner_(runner) {
   servers_.push_back(private_node.advertiseService<LssScan::Request, LssScan::Response>(
       "lss_scan", [this](LssScan::Request& request, LssScan::Response& response) {
@@ -46,9 +37,8 @@ LssServices::LssServices(ros::NodeHandle& private_node, bus::BusRunner& runner) 
           response.message = "refused: the window must be 0 to 2 s";
           return true;
         }
-        const bus::Answer answer = call(command);
-        response.success = answer.success;
-        response.message = answer.message;
+        const bus::Answer answer = call(runner_, command);
+        respond(answer, response);
         response.axes = answer.device_axes;
         for (const canopen::lss::Identity& identity : answer.devices) {
           cia402_driver::LssIdentity device;
@@ -67,10 +57,7 @@ LssServices::LssServices(ros::NodeHandle& private_node, bus::BusRunner& runner) 
                             request.device.revision, request.device.serial};
         command.node_id = request.node_id;
         command.store = request.store != 0;
-        const bus::Answer answer = call(command);
-        response.success = answer.success;
-        response.message = answer.message;
-        return true;
+        return respond(call(runner_, command), response);
       }));
   servers_.push_back(
       private_node.advertiseService<LssSetBitTiming::Request, LssSetBitTiming::Response>(
@@ -85,10 +72,7 @@ LssServices::LssServices(ros::NodeHandle& private_node, bus::BusRunner& runner) 
               response.message = "refused: the delay must be 0 to 60 s";
               return true;
             }
-            const bus::Answer answer = call(command);
-            response.success = answer.success;
-            response.message = answer.message;
-            return true;
+            return respond(call(runner_, command), response);
           }));
 }
 

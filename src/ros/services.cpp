@@ -10,10 +10,10 @@
 #include <cia402_driver/WriteObject.h>
 #include <std_srvs/Trigger.h>
 
-#include <future>
 #include <memory>
 
 #include "cia402_driver/drive/fault_text.h"
+#include "cia402_driver/ros/command_call.h"
 #include "cia402_driver/ros/dcf_file.h"
 
 namespace cia402::ros_node {
@@ -48,12 +48,6 @@ std::string hexBytes(const canopen::Bytes& data) {
   return text;
 }
 
-bus::Command procedure(const std::string& axis, const drive::ProcedureRequest& request) {
-  bus::Command command;
-  command.body = bus::ProcedureCommand{axis, request};
-  return command;
-}
-
 }  // namespace
 
 Services::Services(ros::NodeHandle& private_node, bus::BusRunner& runner,
@@ -70,14 +64,6 @@ unsigned Services::threads(const config::RobotConfig& robot) {
   return static_cast<unsigned>(robot.axes.size()) + 4;
 }
 
-bus::Answer Services::call(bus::Command command) {
-  const auto promise = std::make_shared<std::promise<bus::Answer>>();
-  command.reply = [promise](const bus::Answer& answer) { promise->set_value(answer); };
-  std::future<bus::Answer> answer = promise->get_future();
-  runner_.post(std::move(command));
-  return answer.get();  // every procedure has a deadline, and each command gets its reply
-}
-
 void Services::advertiseTrigger(ros::NodeHandle& node, const char* name, const std::string& axis,
                                 ProcedureKind kind) {
   using Trigger = std_srvs::Trigger;
@@ -85,10 +71,7 @@ void Services::advertiseTrigger(ros::NodeHandle& node, const char* name, const s
       name, [this, axis, kind](Trigger::Request&, Trigger::Response& response) {
         drive::ProcedureRequest request;
         request.kind = kind;
-        const bus::Answer answer = call(procedure(axis, request));
-        response.success = answer.success;
-        response.message = answer.message;
-        return true;
+        return respond(call(runner_, bus::ProcedureCommand{axis, request}), response);
       }));
 }
 
@@ -111,11 +94,8 @@ void Services::advertiseHistory(ros::NodeHandle& node, const std::string& axis) 
   }
   servers_.push_back(node.advertiseService<History::Request, History::Response>(
       "error_history", [this, axis, profile](History::Request&, History::Response& response) {
-        bus::Command command;
-        command.body = bus::ErrorHistoryCommand{axis};
-        const bus::Answer answer = call(std::move(command));
-        response.success = answer.success;
-        response.message = answer.message;
+        const bus::Answer answer = call(runner_, bus::ErrorHistoryCommand{axis});
+        respond(answer, response);
         for (const canopen::ErrorHistoryEntry& entry : answer.history.entries) {
           response.codes.push_back(entry.code);
           response.infos.push_back(entry.info);
@@ -135,9 +115,7 @@ void Services::advertiseSaveDcf(ros::NodeHandle& node, const std::string& axis) 
           response.message = wanted.error().message;
           return true;
         }
-        bus::Command command;
-        command.body = *wanted;
-        const bus::Answer answer = call(std::move(command));
+        const bus::Answer answer = call(runner_, *wanted);
         response.message = answer.message;
         if (!answer.success) return true;
         const auto written = writeDcfFile(request.path, answer.text);
@@ -156,21 +134,13 @@ void Services::advertise(ros::NodeHandle node, const std::string& axis) {
             drive::ProcedureRequest wanted;
             wanted.kind = ProcedureKind::set_mode;
             wanted.mode = drive::canonicalModeName(request.mode);
-            const bus::Answer answer = call(procedure(axis, wanted));
-            response.success = answer.success;
-            response.message = answer.message;
-            return true;
+            return respond(call(runner_, bus::ProcedureCommand{axis, wanted}), response);
           }));
   servers_.push_back(
       node.advertiseService<cia402_driver::Nmt::Request, cia402_driver::Nmt::Response>(
           "nmt", [this, axis](cia402_driver::Nmt::Request& request,
                               cia402_driver::Nmt::Response& response) {
-            bus::Command command;
-            command.body = bus::NmtServiceCommand{axis, request.command};
-            const bus::Answer answer = call(std::move(command));
-            response.success = answer.success;
-            response.message = answer.message;
-            return true;
+            return respond(call(runner_, bus::NmtServiceCommand{axis, request.command}), response);
           }));
   if (axis.empty()) return;  // the rest makes sense for one axis only
   advertiseHistory(node, axis);
@@ -182,20 +152,14 @@ void Services::advertise(ros::NodeHandle node, const std::string& axis) {
         drive::ProcedureRequest wanted;
         wanted.kind = ProcedureKind::set_position;
         wanted.position = request.position;
-        const bus::Answer answer = call(procedure(axis, wanted));
-        response.success = answer.success;
-        response.message = answer.message;
-        return true;
+        return respond(call(runner_, bus::ProcedureCommand{axis, wanted}), response);
       }));
   servers_.push_back(node.advertiseService<cia402_driver::ReadObject::Request,
                                            cia402_driver::ReadObject::Response>(
       "read_object", [this, axis](cia402_driver::ReadObject::Request& request,
                                   cia402_driver::ReadObject::Response& response) {
-        bus::Command command;
-        command.body = bus::ReadObjectCommand{axis, request.object};
-        const bus::Answer answer = call(std::move(command));
-        response.success = answer.success;
-        response.message = answer.message;
+        const bus::Answer answer = call(runner_, bus::ReadObjectCommand{axis, request.object});
+        respond(answer, response);
         response.value = answer.text;
         response.raw = hexBytes(answer.data);
         response.number = answer.number;
@@ -206,12 +170,8 @@ void Services::advertise(ros::NodeHandle node, const std::string& axis) {
                                            cia402_driver::WriteObject::Response>(
       "write_object", [this, axis](cia402_driver::WriteObject::Request& request,
                                    cia402_driver::WriteObject::Response& response) {
-        bus::Command command;
-        command.body = bus::WriteObjectCommand{axis, request.object, request.value};
-        const bus::Answer answer = call(std::move(command));
-        response.success = answer.success;
-        response.message = answer.message;
-        return true;
+        return respond(call(runner_, bus::WriteObjectCommand{axis, request.object, request.value}),
+                       response);
       }));
 }
 

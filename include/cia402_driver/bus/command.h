@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -28,8 +29,21 @@ struct Answer {
   canopen::ErrorHistory history;                ///< error_history
 };
 
+inline Answer answerOf(bool success, std::string message) {
+  Answer answer;
+  answer.success = success;
+  answer.message = std::move(message);
+  return answer;
+}
+
 /// Called once, in the bus thread, when a command has ended. Must not block.
 using Reply = std::function<void(const Answer&)>;
+inline void give(const Reply& reply, const Answer& answer) {
+  if (reply) reply(answer);
+}
+inline void refuse(const Reply& reply, std::string message) {
+  give(reply, answerOf(false, std::move(message)));
+}
 
 /// A procedure on one axis, or on all that are concerned where `axis` is empty.
 struct ProcedureCommand {

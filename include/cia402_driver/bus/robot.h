@@ -146,7 +146,8 @@ class Robot final : private canopen::MasterListener {
   std::string bitTimingRefusal(std::size_t index, canopen::lss::Identity& identity);
   /// Boots the nodes and begins to cycle.
   void begin(Time now);
-  drive::Axis* axisNamed(const std::string& name);
+  /// nullptr if there is none; `reply` says so then.
+  drive::Axis* axisNamed(const std::string& name, const Reply& reply);
   std::size_t axisOf(const canopen::Node& node) const;
 
   void run(ProcedureCommand& command, Reply reply, Time now);

@@ -93,4 +93,9 @@ struct AxisConfig {
   }
 };
 
+/// "shoulder (node 3)", for messages.
+inline std::string whoIs(const AxisConfig& axis) {
+  return axis.name + " (node " + std::to_string(axis.node_id) + ")";
+}
+
 }  // namespace cia402::drive

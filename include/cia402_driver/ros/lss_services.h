@@ -17,8 +17,6 @@ class LssServices {
   LssServices(ros::NodeHandle& private_node, bus::BusRunner& runner);
 
  private:
-  bus::Answer call(decltype(bus::Command::body) body);
-
   bus::BusRunner& runner_;
   std::vector<ros::ServiceServer> servers_;
 };

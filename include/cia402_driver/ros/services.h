@@ -32,7 +32,6 @@ class Services {
   void advertiseDump(ros::NodeHandle& node);
   void advertiseHistory(ros::NodeHandle& node, const std::string& axis);
   /// Posts the command and waits for its reply.
-  bus::Answer call(bus::Command command);
 
   bus::BusRunner& runner_;
   const config::RobotConfig& robot_;

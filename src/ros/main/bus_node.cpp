@@ -2,13 +2,13 @@
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
 
-#include <future>
 #include <memory>
 
 #include "cia402_driver/bus/real_clock.h"
 #include "cia402_driver/bus/runner.h"
 #include "cia402_driver/can/socketcan.h"
 #include "cia402_driver/canopen/cyclic_identifiers.h"
+#include "cia402_driver/ros/command_call.h"
 #include "cia402_driver/ros/command_topics.h"
 #include "cia402_driver/ros/diagnostics.h"
 #include "cia402_driver/ros/event_log.h"
@@ -48,22 +48,14 @@ std::unique_ptr<can::Interface> openInterface(const LoadedRobot& loaded,
 ros_node::FaultService::Inject injectThrough(bus::BusRunner& runner,
                                              sim::SimulatedInterface& simulation) {
   return [&](const std::string& axis, const std::string& fault) {
-    const auto promise = std::make_shared<std::promise<bus::Answer>>();
-    bus::Command command;
-    command.body = bus::CallCommand{[&simulation, axis, fault](Time now) {
+    const auto inject = [&simulation, axis, fault](Time now) {
       if (axis == "bus" && fault == "bus_off") {
         simulation.port().forceBusOff();
-        bus::Answer done;
-        done.success = true;
-        done.message = "the driver's controller is bus-off";
-        return done;
+        return bus::answerOf(true, "the driver's controller is bus-off");
       }
       return ros_node::injectFault(simulation.world().find(axis), axis, fault, now);
-    }};
-    command.reply = [promise](const bus::Answer& answer) { promise->set_value(answer); };
-    auto answer = promise->get_future();
-    runner.post(std::move(command));
-    return answer.get();
+    };
+    return ros_node::call(runner, bus::CallCommand{inject});
   };
 }
 

@@ -1,0 +1,80 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// What people are told of the axes, as it happens.
+#include "cia402_driver/bus/robot.h"
+
+namespace cia402::bus {
+namespace {
+
+constexpr unsigned kHistoryAfterFault = 4;                      // entries
+constexpr Duration kHistoryInterval = std::chrono::seconds(5);  // at least, between two readings
+constexpr Duration kNewsInterval = std::chrono::milliseconds(100);
+
+}  // namespace
+
+void Robot::readHistoryAfterFault(std::size_t axis, Time now) {
+  AxisNews& news = news_[axis];
+  const bool recently = news.history_asked != Time() && now < news.history_asked + kHistoryInterval;
+  if (recently || shutdown_ != Shutdown::no) return;
+  news.history_asked = now;
+  news.history_wanted = false;
+  histories_.emplace_back(
+      axes_[axis], kHistoryAfterFault, [this, axis](const canopen::ErrorHistory& history) {
+        const std::string text = historyText(*axes_[axis].config().profile, history);
+        news_[axis].history.assign(text);
+        if (!history.readable) return;  // many drives keep none
+        tell(Event::Severity::info,
+             nodes_[axis]->who() + ": the drive's error history (1003h), newest first: " + text,
+             now_);
+      });
+}
+
+void Robot::watchAxes(Time now) {
+  for (AxisReporter& reporter : reporters_) reporter.tick(now);
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    watchPdos(i, now);
+    if (news_[i].history_wanted) readHistoryAfterFault(i, now);
+    const drive::AxisState& state = axes_[i].state();
+    const drive::ProcedureStatus& procedure = axes_[i].procedure();
+    AxisNews& news = news_[i];
+    const bool well = state.health == canopen::NodeHealth::ready &&
+                      state.state != drive::State::fault &&
+                      state.state != drive::State::fault_reaction_active && !state.warning;
+    const bool changed = news.state != state.state || news.health != state.health ||
+                         news.error_code != state.error_code || news.procedure != procedure.id ||
+                         news.running != procedure.running ||
+                         news.notices != axes_[i].noticeCount();
+    const bool stale = (!well || procedure.running || !news.problem.empty()) &&
+                       now >= news.checked + kNewsInterval;
+    if (!changed && !stale) continue;
+    const auto faulty = [](drive::State s) {
+      return s == drive::State::fault || s == drive::State::fault_reaction_active;
+    };
+    if (faulty(state.state) && !faulty(news.state)) news.history_wanted = true;
+    news.state = state.state;
+    news.health = state.health;
+    news.error_code = state.error_code;
+    news.procedure = procedure.id;
+    news.running = procedure.running;
+    news.checked = now;
+    const canopen::Node& node = axes_[i].node();
+    const bool booting = state.health != canopen::NodeHealth::ready;
+    const bool in_lss = lss_.busy() && lss_.who() == config_.axes[i].name;
+    news.step.assign(in_lss ? lss_.step() : booting ? node.bootStep() : procedure.step);
+    news.waiting_for.assign(procedure.running ? procedure.waiting_for : std::string());
+    std::string problem = !node.problem().empty() ? node.problem() : axes_[i].faultText();
+    if (state.health == canopen::NodeHealth::ready) lss_problems_[i].clear();
+    if (!lss_problems_[i].empty()) problem = lss_problems_[i];  // the reason for what follows it
+    const bool noticed = news.notices != axes_[i].noticeCount();
+    const bool told_by_health = !node.problem().empty();
+    news.notices = axes_[i].noticeCount();
+    if (noticed && !told_by_health) tell(Event::Severity::error, axes_[i].notice(), now);
+    const FixedText<384> shown(problem);
+    if (news.problem == shown.view()) continue;
+    news.problem = shown;
+    const bool told =
+        told_by_health || (noticed && axes_[i].notice().find(problem) != std::string::npos);
+    if (!problem.empty() && !told) reporters_[i].fault(state.error_code, problem, now);
+  }
+}
+
+}  // namespace cia402::bus

@@ -1,0 +1,56 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// What the ROS side is shown of a robot.
+#include "cia402_driver/bus/robot.h"
+
+namespace cia402::bus {
+namespace {
+
+NodeSnapshot nodeSnapshot(const canopen::Node& node) {
+  NodeSnapshot snapshot;
+  snapshot.nmt = node.nmtState();
+  snapshot.last_heartbeat = node.lastHeartbeat();
+  snapshot.boot_ups = node.bootUps();
+  if (node.identity()) snapshot.identity = *node.identity();
+  snapshot.supervision = node.supervision();
+  snapshot.sdo = node.sdo().counters();
+  snapshot.may_be_absent = node.excused();
+  return snapshot;
+}
+
+}  // namespace
+
+void Robot::fill(RobotSnapshot& snapshot) const {
+  snapshot.now = now_;
+  snapshot.statistics = statistics_;
+  snapshot.shut_down = shutDown();
+  snapshot.sync_problem = sync_problem_;
+  snapshot.missed_syncs = external_sync_.missed();
+  snapshot.foreign_syncs = foreign_syncs_;
+  snapshot.axes.resize(axes_.size());
+  snapshot.groups.resize(groups_.size());
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    AxisSnapshot& axis = snapshot.axes[i];
+    axis.state = axes_[i].state();
+    axis.target = axes_[i].target();
+    axis.node = nodeSnapshot(*nodes_[i]);
+    const EmergencyCounts& emergencies = reporters_[i].emergencies();
+    const bool more = axis.emergencies.total != emergencies.total ||
+                      axis.emergencies.malformed != emergencies.malformed;
+    if (more) axis.emergencies = emergencies;  // counts of every code: not for every cycle
+    axis.procedure = axes_[i].procedure().kind;
+    axis.procedure_running = axes_[i].procedure().running;
+    axis.missed_feedback = missed_feedback_[i];
+    axis.stale_feedback = nodes_[i]->image().staleCount();
+    axis.wrong_lengths = nodes_[i]->image().wrongLengths();
+    axis.stale = news_[i].stale;
+    axis.step = news_[i].step;
+    axis.waiting_for = news_[i].waiting_for;
+    axis.problem = news_[i].problem;
+    axis.history = news_[i].history;
+  }
+  for (std::size_t i = 0; i < groups_.size(); ++i) {
+    snapshot.groups[i] = {groups_[i].executing(), groups_[i].stopping()};
+  }
+}
+
+}  // namespace cia402::bus
