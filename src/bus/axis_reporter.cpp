@@ -94,7 +94,7 @@ void AxisReporter::bootUp(Time now) {
   tellUnlessHeld(other_limit_.take(kBootUp, now), Event::Severity::info, "booted up", now);
 }
 
-void AxisReporter::tick(Time now) {
+void AxisReporter::sumUp(Time now) {
   while (const auto summary = emergency_limit_.due(now)) tell("emergency", *summary, now);
   while (const auto summary = other_limit_.due(now)) tell("problem", *summary, now);
 }

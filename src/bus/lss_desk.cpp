@@ -24,11 +24,6 @@ void LssDesk::receive(const can::Frame& frame, Time now) {
   if (frame.id == canopen::lss::kAnswerId) master_.receive(frame, now);
 }
 
-Time LssDesk::nextDeadline() const {
-  if (queue_.empty()) return kNever;
-  return master_.busy() ? master_.nextDeadline() : Time();
-}
-
 void LssDesk::tick(Time now) {
   master_.tick(now);
   advance(now);

@@ -92,8 +92,11 @@ void Robot::stepLss(Time now) {
   if (lss_starting_) {
     for (std::size_t i = 0; i < config_.axes.size(); ++i) {
       const bool working = lss_.busy() && lss_.who() == config_.axes[i].name;
-      news_[i].step.assign(working ? lss_.step() : lss_.busy() ? "LSS: waiting for its turn" : "");
-      news_[i].problem.assign(lss_problems_[i]);
+      AxisWords& words = news_[i].words;
+      words.say(&AxisWords::step, working       ? lss_.step()
+                                  : lss_.busy() ? "LSS: waiting for its turn"
+                                                : "");
+      words.say(&AxisWords::problem, lss_problems_[i]);
     }
     if (lss_.busy()) return;
     lss_starting_ = false;

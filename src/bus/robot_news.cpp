@@ -20,7 +20,7 @@ void Robot::readHistoryAfterFault(std::size_t axis, Time now) {
   histories_.emplace_back(
       axes_[axis], kHistoryAfterFault, [this, axis](const canopen::ErrorHistory& history) {
         const std::string text = historyText(*axes_[axis].config().profile, history);
-        news_[axis].history.assign(text);
+        news_[axis].words.say(&AxisWords::history, text);
         if (!history.readable) return;  // many drives keep none
         tell(Event::Severity::info,
              nodes_[axis]->who() + ": the drive's error history (1003h), newest first: " + text,
@@ -43,7 +43,7 @@ void Robot::watchAxes(Time now) {
                          news.error_code != state.error_code || news.procedure != procedure.id ||
                          news.running != procedure.running ||
                          news.notices != axes_[i].noticeCount();
-    const bool stale = (!well || procedure.running || !news.problem.empty()) &&
+    const bool stale = (!well || procedure.running || !news.words.problem.empty()) &&
                        now >= news.checked + kNewsInterval;
     if (!changed && !stale) continue;
     const auto faulty = [](drive::State s) {
@@ -59,8 +59,11 @@ void Robot::watchAxes(Time now) {
     const canopen::Node& node = axes_[i].node();
     const bool booting = state.health != canopen::NodeHealth::ready;
     const bool in_lss = lss_.busy() && lss_.who() == config_.axes[i].name;
-    news.step.assign(in_lss ? lss_.step() : booting ? node.bootStep() : procedure.step);
-    news.waiting_for.assign(procedure.running ? procedure.waiting_for : std::string());
+    news.words.say(&AxisWords::step, in_lss    ? lss_.step()
+                                     : booting ? node.bootStep()
+                                               : procedure.step);
+    news.words.say(&AxisWords::waiting_for,
+                   procedure.running ? procedure.waiting_for : std::string());
     std::string problem = !node.problem().empty() ? node.problem() : axes_[i].faultText();
     if (state.health == canopen::NodeHealth::ready) lss_problems_[i].clear();
     if (!lss_problems_[i].empty()) problem = lss_problems_[i];  // the reason for what follows it
@@ -68,9 +71,9 @@ void Robot::watchAxes(Time now) {
     const bool told_by_health = !node.problem().empty();
     news.notices = axes_[i].noticeCount();
     if (noticed && !told_by_health) tell(Event::Severity::error, axes_[i].notice(), now);
-    const FixedText<384> shown(problem);
-    if (news.problem == shown.view()) continue;
-    news.problem = shown;
+    const std::uint32_t version = news.words.version;
+    news.words.say(&AxisWords::problem, problem);
+    if (news.words.version == version) continue;
     const bool told =
         told_by_health || (noticed && axes_[i].notice().find(problem) != std::string::npos);
     if (!problem.empty() && !told) reporters_[i].fault(state.error_code, problem, now);

@@ -7,6 +7,7 @@ namespace {
 
 NodeSnapshot nodeSnapshot(const canopen::Node& node) {
   NodeSnapshot snapshot;
+  snapshot.changes = node.changes();
   snapshot.nmt = node.nmtState();
   snapshot.last_heartbeat = node.lastHeartbeat();
   snapshot.boot_ups = node.bootUps();
@@ -32,7 +33,8 @@ void Robot::fill(RobotSnapshot& snapshot) const {
     AxisSnapshot& axis = snapshot.axes[i];
     axis.state = axes_[i].state();
     axis.target = axes_[i].target();
-    axis.node = nodeSnapshot(*nodes_[i]);
+    const canopen::Node& node = *nodes_[i];
+    if (axis.node.changes != node.changes()) axis.node = nodeSnapshot(node);
     const EmergencyCounts& emergencies = reporters_[i].emergencies();
     const bool more = axis.emergencies.total != emergencies.total ||
                       axis.emergencies.malformed != emergencies.malformed;
@@ -40,13 +42,9 @@ void Robot::fill(RobotSnapshot& snapshot) const {
     axis.procedure = axes_[i].procedure().kind;
     axis.procedure_running = axes_[i].procedure().running;
     axis.missed_feedback = missed_feedback_[i];
-    axis.stale_feedback = nodes_[i]->image().staleCount();
-    axis.wrong_lengths = nodes_[i]->image().wrongLengths();
-    axis.stale = news_[i].stale;
-    axis.step = news_[i].step;
-    axis.waiting_for = news_[i].waiting_for;
-    axis.problem = news_[i].problem;
-    axis.history = news_[i].history;
+    axis.stale_feedback = node.image().staleCount();
+    axis.wrong_lengths = node.image().wrongLengths();
+    if (axis.words.version != news_[i].words.version) axis.words = news_[i].words;
   }
   for (std::size_t i = 0; i < groups_.size(); ++i) {
     snapshot.groups[i] = {groups_[i].executing(), groups_[i].stopping()};

@@ -173,15 +173,10 @@ void Master::tell(std::size_t node, Time now) {
   listener_->onHealthChange(nodes_[node], before, now);
 }
 
-Time Master::nextDeadline() const {
-  if (deadlines_changed_) {
-    deadlines_changed_ = false;
-    nodes_deadline_ = kNever;
-    for (const Node& node : nodes_) {
-      nodes_deadline_ = std::min(nodes_deadline_, node.nextDeadline());
-    }
-  }
-  return std::min({heartbeat_.deadline(), time_.deadline(), nodes_deadline_});
+void Master::askNodes() const {
+  deadlines_changed_ = false;
+  nodes_deadline_ = kNever;
+  for (const Node& node : nodes_) nodes_deadline_ = std::min(nodes_deadline_, node.nextDeadline());
 }
 
 void Master::sendSync(Time now) {

@@ -25,7 +25,8 @@ const char* toString(NodeHealth health) {
 
 Node::Node(const NodeConfig& config, const MasterConfig& master, can::Sink& sink, SdoPacer* turns,
            bool* deadlines_changed, can::Pacer* wire)
-    : impl_(std::make_unique<Impl>(config, master, sink, turns, deadlines_changed, wire)) {}
+    : impl_(std::make_unique<Impl>(config, master, sink, turns, deadlines_changed, wire)),
+      front_(impl_.get()) {}
 Node::~Node() = default;
 Node::Node(Node&&) noexcept = default;
 
@@ -34,7 +35,6 @@ const std::string& Node::name() const { return impl_->config.name; }
 std::string Node::who() const { return impl_->who(); }
 const NodeConfig& Node::config() const { return impl_->config; }
 bool Node::excused() const { return config().boot.optional && isAway(impl_->health); }
-NodeHealth Node::health() const { return impl_->health; }
 NmtState Node::nmtState() const { return impl_->nmt_state; }
 const std::string& Node::bootStep() const { return impl_->step(); }
 const std::string& Node::problem() const { return impl_->problem; }
@@ -52,9 +52,6 @@ Node::Supervision Node::supervision() const {
                                         : ErrorControl::none;
   return supervision;
 }
-ProcessImage& Node::image() { return impl_->image; }
-const ProcessImage& Node::image() const { return impl_->image; }
-std::uint32_t Node::bootUps() const { return impl_->boot_ups; }
 std::uint32_t Node::emergencies() const { return impl_->emergencies; }
 std::uint32_t Node::malformedEmergencies() const { return impl_->malformed_emergencies; }
 Time Node::lastHeartbeat() const { return impl_->last_heartbeat; }

@@ -28,11 +28,11 @@ NmtState stateOf(std::uint8_t byte) {
 
 Node::Impl::Impl(const NodeConfig& node_config, const MasterConfig& master, can::Sink& frame_sink,
                  SdoPacer* shared_turns, bool* changed, can::Pacer* wire)
-    : config(node_config),
+    : Front(node_config.pdos),
+      config(node_config),
       sink(frame_sink),
       deadlines_changed(changed),
       sdo(config.node_id, sink, config.sdo, config.sdo_channel, wire),
-      image(config.pdos),
       consumer(config.heartbeat_timeout),
       guard(config.node_id, config.guard_time, config.life_time_factor),
       boot(config, master, sdo, sink, shared_turns != nullptr ? *shared_turns : own_turns),
@@ -54,6 +54,7 @@ const std::string& Node::Impl::step() const {
 }
 
 void Node::Impl::refresh() {
+  ++changes;
   next = std::min({sdo.nextDeadline(), consumer.deadline(), guard.deadline(), boot.deadline(),
                    retry.deadline()});
   if (deadlines_changed != nullptr) *deadlines_changed = true;

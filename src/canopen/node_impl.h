@@ -14,7 +14,7 @@
 namespace cia402::canopen {
 
 /// The parts of a node and what one's news mean to the others.
-struct Node::Impl {
+struct Node::Impl : Node::Front {
   Impl(const NodeConfig& node_config, const MasterConfig& master, can::Sink& frame_sink,
        SdoPacer* shared_turns, bool* changed, can::Pacer* wire);
 
@@ -51,13 +51,11 @@ struct Node::Impl {
   bool* deadlines_changed;  ///< may be nullptr
   SdoPacer own_turns{0.0};  ///< where the master shares none
   SdoClient sdo;
-  ProcessImage image;
   HeartbeatConsumer consumer;
   NodeGuard guard;
   BootProcedure boot;
   BootRetry retry;
   SdoTicket probe;  ///< of the search for a node that does not answer
-  NodeHealth health = NodeHealth::absent;
   NmtState nmt_state = NmtState::unknown;
   std::string problem;
   mutable std::string step_text;
@@ -67,7 +65,7 @@ struct Node::Impl {
   bool pdos_live = false;        ///< TPDOs are those that were configured
   bool cob_ids_changed = false;  ///< since takeCobIdChange()
   Time next = kNever;            ///< of all deadlines but that of a transfer queued since
-  std::uint32_t boot_ups = 0, emergencies = 0, malformed_emergencies = 0;
+  std::uint32_t emergencies = 0, malformed_emergencies = 0;
   Time last_heartbeat{};
   std::optional<Emergency> last_emergency;
 };

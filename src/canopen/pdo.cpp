@@ -73,8 +73,8 @@ void ProcessImage::add(const PdoConfig& config) {
   unsigned shift = 0;
   for (const PdoEntry& entry : config.entries) {
     if (entry.bits == 0 || shift + entry.bits > kMaxBits) break;  // refused when the node boots
-    pdo.fields.push_back(
-        {findOrAddSlot(objects, entry.object), static_cast<std::uint8_t>(shift), entry.bits});
+    pdo.fields.push_back({findOrAddSlot(objects, entry.object), static_cast<std::uint8_t>(shift),
+                          entry.bits, maskOf(entry.bits)});
     shift += entry.bits;
   }
   pdo.size = static_cast<std::uint8_t>((shift + 7) / 8);
@@ -109,7 +109,7 @@ bool ProcessImage::receive(std::size_t tpdo, const can::Frame& frame, Time stamp
   pdo.stale = false;
   const std::uint64_t word = loadLittleEndian(frame.data);
   for (const Pdo::Field& field : pdo.fields) {
-    inputs_[field.slot] = {(word >> field.shift) & maskOf(field.bits), stamp, true};
+    inputs_[field.slot] = {(word >> field.shift) & field.mask, stamp, true};
   }
   return exact;
 }
@@ -143,7 +143,7 @@ bool ProcessImage::requestDue(std::size_t tpdo, can::Frame& frame) {
 std::uint64_t ProcessImage::pack(const Pdo& pdo) const {
   std::uint64_t word = 0;
   for (const Pdo::Field& field : pdo.fields) {
-    word |= (outputs_[field.slot] & maskOf(field.bits)) << field.shift;
+    word |= (outputs_[field.slot] & field.mask) << field.shift;
   }
   return word;
 }

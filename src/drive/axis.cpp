@@ -53,14 +53,15 @@ void Axis::Impl::preempt(ProcedureKind by) {
 }
 
 Axis::Axis(AxisConfig config, canopen::Node& node)
-    : impl_(std::make_unique<Impl>(std::move(config), node)) {}
+    : impl_(std::make_unique<Impl>(std::move(config), node)),
+      state_(&impl_->core.state()),
+      procedure_(&impl_->status),
+      notices_(&impl_->core.noticeCount()) {}
 Axis::~Axis() = default;
 Axis::Axis(Axis&&) noexcept = default;
 
 const AxisConfig& Axis::config() const { return impl_->core.config(); }
 canopen::Node& Axis::node() { return impl_->core.node(); }
-const AxisState& Axis::state() const { return impl_->core.state(); }
-const ProcedureStatus& Axis::procedure() const { return impl_->status; }
 const ProcedureStatus& Axis::previousProcedure() const { return impl_->previous; }
 
 void Axis::readFeedback(Time now) {
@@ -148,6 +149,5 @@ void Axis::onBusLost(const std::string& why) { impl_->core.onBusLost(why); }
 
 std::string Axis::faultText() const { return impl_->core.faultText(); }
 const std::string& Axis::notice() const { return impl_->core.notice(); }
-std::uint32_t Axis::noticeCount() const { return impl_->core.noticeCount(); }
 
 }  // namespace cia402::drive

@@ -120,7 +120,7 @@ class AxisCore {
   Time nextFaultReset() const { return next_fault_reset_; }
   void noteFaultReset(Time next_allowed) { next_fault_reset_ = next_allowed; }
   const std::string& notice() const { return notice_; }
-  std::uint32_t noticeCount() const { return notices_; }
+  const std::uint32_t& noticeCount() const { return notices_; }
   void notify(std::string text);
 
  private:

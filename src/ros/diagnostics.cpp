@@ -188,16 +188,17 @@ void Diagnostics::reportNode(std::size_t index, Status& status) {
       status.mergeSummary(DiagnosticStatus::WARN, "it cannot notice a dead master");
     }
   } else if (health == canopen::NodeHealth::booting) {
-    status.summary(DiagnosticStatus::WARN, "booting: " + axis.step.str());
+    status.summary(DiagnosticStatus::WARN, "booting: " + axis.words.step.str());
   } else {
-    status.summary(axis.node.may_be_absent ? DiagnosticStatus::WARN : DiagnosticStatus::ERROR,
-                   axis.problem.empty() ? canopen::toString(health) : axis.problem.str());
-    status.add("boot", axis.step.str());
+    status.summary(
+        axis.node.may_be_absent ? DiagnosticStatus::WARN : DiagnosticStatus::ERROR,
+        axis.words.problem.empty() ? canopen::toString(health) : axis.words.problem.str());
+    status.add("boot", axis.words.step.str());
   }
   status.add("error control", canopen::toString(supervision.kind));
   status.add("notices a dead master", supervision.watches_master ? "yes" : "no");
   status.add("axis", robot_.axes[index].name);
-  status.add("step", axis.step.str());
+  status.add("step", axis.words.step.str());
   status.add("drive", robot_.axes[index].profile->name);
   status.add("NMT state", canopen::toString(axis.node.nmt));
   addHex(status, "device type", axis.node.identity.device_type);
@@ -216,7 +217,8 @@ void Diagnostics::reportNode(std::size_t index, Status& status) {
   status.add("feedback missed", axis.missed_feedback);
   status.add("feedback stale", axis.stale_feedback);
   status.add("feedback of wrong length", axis.wrong_lengths);
-  if (!axis.stale.empty()) status.mergeSummary(DiagnosticStatus::WARN, axis.stale.str());
+  if (!axis.words.stale.empty())
+    status.mergeSummary(DiagnosticStatus::WARN, axis.words.stale.str());
 }
 
 void Diagnostics::reportAxis(std::size_t index, Status& status) {
@@ -226,9 +228,10 @@ void Diagnostics::reportAxis(std::size_t index, Status& status) {
   status.hardware_id = hardwareId(axis, config);
   const bool fault =
       state.state == drive::State::fault || state.state == drive::State::fault_reaction_active;
-  if (!axis.problem.empty() || fault) {
-    status.summary(axis.node.may_be_absent ? DiagnosticStatus::WARN : DiagnosticStatus::ERROR,
-                   axis.problem.empty() ? drive::toString(state.state) : axis.problem.str());
+  if (!axis.words.problem.empty() || fault) {
+    status.summary(
+        axis.node.may_be_absent ? DiagnosticStatus::WARN : DiagnosticStatus::ERROR,
+        axis.words.problem.empty() ? drive::toString(state.state) : axis.words.problem.str());
   } else if (state.health != canopen::NodeHealth::ready) {
     status.summary(DiagnosticStatus::WARN, "the drive is not ready");
   } else if (state.warning) {
@@ -244,7 +247,8 @@ void Diagnostics::reportAxis(std::size_t index, Status& status) {
   status.addf("error code", "0x%04X", state.error_code);
   status.add("procedure", axis.procedure_running ? drive::toString(axis.procedure) : "none");
   status.add("step", stepText(axis));
-  if (!axis.history.empty()) status.add("error history after the last fault", axis.history.str());
+  if (!axis.words.history.empty())
+    status.add("error history after the last fault", axis.words.history.str());
   status.add("position", withUnit(state.position, linear ? "m" : "rad"));
   status.add("velocity", withUnit(state.velocity, linear ? "m/s" : "rad/s"));
   status.add("effort", withUnit(state.effort, linear ? "N" : "N m"));

@@ -32,7 +32,7 @@ cia402_driver::AxisState axisState(const bus::AxisSnapshot& axis, const drive::A
   message.warning = axis.state.warning;
   message.internal_limit = axis.state.internal_limit;
   message.error_code = axis.state.error_code;
-  message.error_text = axis.problem.str();
+  message.error_text = axis.words.problem.str();
   message.procedure = axis.procedure_running ? drive::toString(axis.procedure) : "";
   message.step = stepText(axis);
   message.position = axis.state.position;
@@ -52,7 +52,7 @@ cia402_driver::NodeState nodeState(const bus::AxisSnapshot& axis, const drive::A
   message.axes = {config.name};
   message.nmt_state = canopen::toString(axis.node.nmt);
   message.ready = axis.state.health == canopen::NodeHealth::ready;
-  message.step = message.ready ? "" : axis.step.str();
+  message.step = message.ready ? "" : axis.words.step.str();
   message.heartbeat_age = age(axis.node.last_heartbeat, now);
   message.boot_ups = axis.node.boot_ups;
   message.emergencies = static_cast<std::uint32_t>(axis.emergencies.total);
@@ -66,8 +66,8 @@ cia402_driver::NodeState nodeState(const bus::AxisSnapshot& axis, const drive::A
 }  // namespace
 
 std::string stepText(const bus::AxisSnapshot& axis) {
-  std::string text = axis.step.str();
-  if (!axis.waiting_for.empty()) text += ", waiting for " + axis.waiting_for.str();
+  std::string text = axis.words.step.str();
+  if (!axis.words.waiting_for.empty()) text += ", waiting for " + axis.words.waiting_for.str();
   return text;
 }
 

@@ -63,9 +63,9 @@ TEST_F(HistoryJobTest, IsReadOnceWhenAnAxisFaultsAndShownInTheSnapshot) {
       << world.allEvents();
   RobotSnapshot snapshot;
   world.robot.fill(snapshot);
-  EXPECT_THAT(snapshot.axes[0].history.str(), HasSubstr("(info 0x0004) and 2 older"));
-  EXPECT_THAT(snapshot.axes[0].history.str(), Not(HasSubstr("0x0005")));
-  EXPECT_TRUE(snapshot.axes[1].history.empty());
+  EXPECT_THAT(snapshot.axes[0].words.history.str(), HasSubstr("(info 0x0004) and 2 older"));
+  EXPECT_THAT(snapshot.axes[0].words.history.str(), Not(HasSubstr("0x0005")));
+  EXPECT_TRUE(snapshot.axes[1].words.history.empty());
   world.run(10s);
   EXPECT_EQ(world.eventsWith("newest first"), 1u);
 }

@@ -117,8 +117,8 @@ TEST(Robot, TellsAnEmergencyWithCodeCauseAndRemedy) {
   RobotSnapshot snapshot;
   world.robot.fill(snapshot);
   EXPECT_EQ(snapshot.axes[1].emergencies.total, 1u);
-  EXPECT_THAT(snapshot.axes[1].problem.str(), HasSubstr("following error"));
-  EXPECT_TRUE(snapshot.axes[0].problem.empty());
+  EXPECT_THAT(snapshot.axes[1].words.problem.str(), HasSubstr("following error"));
+  EXPECT_TRUE(snapshot.axes[0].words.problem.empty());
 }
 
 TEST(Robot, TellsALongProblemOnlyOnce) {

@@ -69,13 +69,14 @@ TEST(Lss, StepsAndProblemsAreShown) {
   scene.run(30ms);
   bus::RobotSnapshot snapshot;
   scene.robot().robot().fill(snapshot);
-  EXPECT_THAT(snapshot.axes[0].step.str(), HasSubstr("LSS: selecting the device with vendor"));
-  EXPECT_EQ(snapshot.axes[1].step.str(), "LSS: waiting for its turn");
+  EXPECT_THAT(snapshot.axes[0].words.step.str(),
+              HasSubstr("LSS: selecting the device with vendor"));
+  EXPECT_EQ(snapshot.axes[1].words.step.str(), "LSS: waiting for its turn");
   EXPECT_THAT(scene.procedure(ProcedureKind::enable).message, HasSubstr("given their node-IDs"));
   scene.run(8s);
   scene.robot().robot().fill(snapshot);
-  EXPECT_THAT(snapshot.axes[0].problem.str(), HasSubstr("left (node 1): LSS: "));
-  EXPECT_TRUE(snapshot.axes[1].problem.empty());
+  EXPECT_THAT(snapshot.axes[0].words.problem.str(), HasSubstr("left (node 1): LSS: "));
+  EXPECT_TRUE(snapshot.axes[1].words.problem.empty());
 }
 
 TEST(Lss, ADriveThatForgotItsNodeIdGetsItAgainWhileTheOtherMoves) {

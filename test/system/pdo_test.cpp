@@ -50,7 +50,7 @@ TEST(StaleFeedback, StopsAnEnabledAxisInWordsAndIsShownAsUnknown) {
   scene.run(1s);
   const bus::AxisSnapshot shot = snapshot(scene, "left");
   EXPECT_EQ(shot.stale_feedback, 1u);
-  EXPECT_THAT(shot.stale.str(), HasSubstr("TPDO 1 (COB-ID 0x181) did not come for"));
+  EXPECT_THAT(shot.words.stale.str(), HasSubstr("TPDO 1 (COB-ID 0x181) did not come for"));
 }
 
 TEST(StaleFeedback, OfASlowPdoOnlyHidesItsValues) {

@@ -48,7 +48,9 @@ class AxisReporter {
   void bootUp(Time now);
 
   /// Tells the summaries that are due.
-  void tick(Time now);
+  void tick(Time now) {
+    if (now >= emergency_limit_.deadline() || now >= other_limit_.deadline()) sumUp(now);
+  }
   /// Tells what was held back until now.
   void flush(Time now);
 
@@ -56,6 +58,7 @@ class AxisReporter {
 
  private:
   void tell(Event::Severity severity, const std::string& text, Time now);
+  void sumUp(Time now);
   void tellUnlessHeld(RepeatLimiter::Verdict verdict, Event::Severity severity,
                       const std::string& text, Time now);
   void tell(const char* prefix, const RepeatLimiter::Summary& summary, Time now);

@@ -31,7 +31,10 @@ class LssDesk {
 
   void receive(const can::Frame& frame, Time now);
   void tick(Time now);
-  Time nextDeadline() const;
+  Time nextDeadline() const {
+    if (!busy()) return kNever;
+    return master_.busy() ? master_.nextDeadline() : Time();
+  }
 
   bool busy() const { return !queue_.empty(); }
   /// Whose task runs; empty if none does.

@@ -85,20 +85,16 @@ class Robot final : private canopen::MasterListener {
   enum class Shutdown { no, stopping, disabling, done };
 
   struct AxisNews {  // what people were told last, to tell only what changes
-    FixedText<384> problem;
-    FixedText<96> step;
-    FixedText<160> waiting_for;
+    AxisWords words;
     Time checked{};
     drive::State state = drive::State::unknown;
     canopen::NodeHealth health = canopen::NodeHealth::absent;
     std::uint32_t procedure = 0, notices = 0;
     bool running = false;
     std::uint16_t error_code = 0;
-    FixedText<256> history;  // as read after the last fault
     Time history_asked{};
     bool history_wanted = false;
     std::uint64_t stale_count = 0, wrong_lengths = 0;  // of the TPDOs
-    FixedText<160> stale;
     Time pdos_told = Time::min();
   };
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "cia402_driver/bus/axis_reporter.h"
@@ -17,6 +18,7 @@ namespace cia402::bus {
 
 /// The node of an axis as the last cycle left it.
 struct NodeSnapshot {
+  std::uint32_t changes = 0;  ///< canopen::Node::changes() at that time
   canopen::NmtState nmt = canopen::NmtState::unknown;
   Time last_heartbeat{};                   ///< Time() if there was none
   std::uint32_t boot_ups = 0;              ///< since start
@@ -24,6 +26,24 @@ struct NodeSnapshot {
   canopen::Node::Supervision supervision;  ///< as found at the last boot
   bool may_be_absent = false;              ///< `optional`, and absent or lost
   canopen::SdoClient::Counters sdo;        ///< since start
+};
+
+/// What is said of an axis in words; changes seldom.
+struct AxisWords {
+  std::uint32_t version = 0;  ///< grows with every change
+  FixedText<160> stale;       ///< TPDOs overdue at present; empty if none
+  FixedText<96> step;         ///< of the procedure or of the node's boot
+  FixedText<160> waiting_for;
+  FixedText<256> history;  ///< the drive's own error list, read after its last fault
+  FixedText<384> problem;  ///< fault or node problem; empty if well
+
+  template <std::size_t N>
+  void say(FixedText<N> AxisWords::*what, std::string_view text) {
+    const FixedText<N> said(text);
+    if (this->*what == said.view()) return;
+    this->*what = said;
+    ++version;
+  }
 };
 
 /// One axis as the last cycle left it.
@@ -38,11 +58,7 @@ struct AxisSnapshot {
   std::uint64_t missed_feedback = 0;  ///< cycles without a new TPDO while the node was ready
   std::uint64_t stale_feedback = 0;   ///< how often a TPDO was overdue, see PdoConfig::stale_after
   std::uint64_t wrong_lengths = 0;    ///< TPDOs that were too short or too long
-  FixedText<160> stale;               ///< TPDOs overdue at present, in words; empty if none
-  FixedText<96> step;                 ///< of the procedure or of the node's boot
-  FixedText<160> waiting_for;
-  FixedText<256> history;  ///< the drive's own error list, read after its last fault
-  FixedText<384> problem;  ///< fault or node problem in words; empty if well
+  AxisWords words;
 };
 
 /// The trajectory of one group.

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -45,7 +46,10 @@ class Master {
   void receive(const can::Frame& frame, Time stamp, Time now);
   /// Time-outs, heartbeat, SDO queues, boot procedures.
   void tick(Time now);
-  Time nextDeadline() const;
+  Time nextDeadline() const {
+    if (deadlines_changed_) askNodes();
+    return std::min({heartbeat_.deadline(), time_.deadline(), nodes_deadline_});
+  }
 
   /// Produces SYNC now (with counter if configured).
   void sendSync(Time now);
@@ -68,6 +72,7 @@ class Master {
   std::uint64_t strayFrames() const { return stray_frames_; }
 
  private:
+  void askNodes() const;  ///< when they have to be ticked
   enum class Service : std::uint8_t {
     none,
     tpdo,

@@ -51,7 +51,7 @@ class Node {
   /// It is away, and the configuration says that it may be.
   bool excused() const;
 
-  NodeHealth health() const;
+  NodeHealth health() const { return front_->health; }
   NmtState nmtState() const;
   /// Step of the boot procedure in words: "reading 1018:01 vendor id", "waiting for boot-up".
   const std::string& bootStep() const;
@@ -88,12 +88,14 @@ class Node {
   /// To be used at once, not kept: the node looks at its transfers' deadlines anew after each call.
   SdoClient& sdo();
   const SdoClient& sdo() const;
-  ProcessImage& image();
-  const ProcessImage& image() const;
+  ProcessImage& image() { return front_->image; }
+  const ProcessImage& image() const { return front_->image; }
 
   /// Boot-ups seen since start. A change tells that the node lost its configuration.
-  std::uint32_t bootUps() const;
+  std::uint32_t bootUps() const { return front_->boot_ups; }
   Time lastHeartbeat() const;
+  /// Grows with everything that is new of the node but what PDOs bring.
+  std::uint32_t changes() const { return front_->changes; }
   const std::optional<Emergency>& lastEmergency() const;
   /// Emergencies received since start, error resets included.
   std::uint32_t emergencies() const;
@@ -119,7 +121,15 @@ class Node {
 
  private:
   struct Impl;
+  /// The part of Impl that every cycle looks at.
+  struct Front {
+    explicit Front(const std::vector<PdoConfig>& pdos) : image(pdos) {}
+    ProcessImage image;
+    NodeHealth health = NodeHealth::absent;
+    std::uint32_t boot_ups = 0, changes = 1;
+  };
   std::unique_ptr<Impl> impl_;
+  Front* front_;
 };
 
 }  // namespace cia402::canopen

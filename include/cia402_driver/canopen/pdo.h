@@ -132,6 +132,7 @@ class ProcessImage {
       Slot slot;
       std::uint8_t shift;
       std::uint8_t bits;
+      std::uint64_t mask;  ///< as wide, not shifted
     };
     std::vector<Field> fields;
   };

@@ -88,8 +88,8 @@ class Axis {
 
   const AxisConfig& config() const;
   canopen::Node& node();
-  const AxisState& state() const;
-  const ProcedureStatus& procedure() const;
+  const AxisState& state() const { return *state_; }
+  const ProcedureStatus& procedure() const { return *procedure_; }
   /// The one before; ended, e.g. because disable, quick_stop or halt pre-empted it.
   const ProcedureStatus& previousProcedure() const;
 
@@ -132,11 +132,15 @@ class Axis {
   /// The last thing the axis did by itself (left operation, quick-stopped without feedback, dropped
   /// a set-point, lost its node), as a sentence; noticeCount() grows with each.
   const std::string& notice() const;
-  std::uint32_t noticeCount() const;
+  std::uint32_t noticeCount() const { return *notices_; }
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
+  // Of impl_, for every cycle asks for them:
+  const AxisState* state_;
+  const ProcedureStatus* procedure_;
+  const std::uint32_t* notices_;
 };
 
 }  // namespace cia402::drive
