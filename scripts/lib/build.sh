@@ -23,7 +23,8 @@ build() {
 # Builds a target, `all` or what running the driver takes (`cia402_run`); afterwards use_ros makes
 # the nodes known to roslaunch and its like.
 build_ros() {
-  build "$build_root/ros" "$1" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCIA402_WITH_ROS=ON
+  build "$build_root/ros" "$1" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCIA402_WITH_ROS=ON \
+    -DCIA402_BUILD_BENCHMARKS=ON
 }
 
 # Enters the environment of what build_ros built, with logs kept inside build/ and a master of its

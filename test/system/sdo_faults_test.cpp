@@ -29,6 +29,10 @@ constexpr Kind kKinds[] = {{"expedited", {0x2000, 0}, 4, SdoOptions::Block::neve
                            {"block", {0x2002, 0}, 3000, SdoOptions::Block::always},
                            {"short block", {0x2003, 0}, 200, SdoOptions::Block::always}};
 constexpr std::size_t kKindCount = 4;
+// No segment is ever repeated, so long transfers seldom survive; 143 and 14,286 segments.
+constexpr Kind kThousand = {"segmented 1,000", {0x2004, 0}, 1000, SdoOptions::Block::never};
+constexpr Kind kHundredThousand = {
+    "segmented 100,000", {0x2005, 0}, 100'000, SdoOptions::Block::never};
 
 /// Codes that tell a disturbed transfer, not a refused one.
 bool tellsDisturbance(std::uint32_t code) {
@@ -42,6 +46,9 @@ class SdoFaults {
     bus.addNumber({0x2000, 0}, 0);
     for (std::size_t i = 1; i < kKindCount; ++i) {
       bus.addDomain(kKinds[i].object, Bytes(kKinds[i].size));
+    }
+    for (const Kind& kind : {kThousand, kHundredThousand}) {
+      bus.addDomain(kind.object, Bytes(kind.size));
     }
     sim::DeviceBehaviour& behaviour = bus.device().behaviour();
     behaviour.sdo_block_crc = seed % 4 != 0;
@@ -136,6 +143,48 @@ TEST_P(SdoFaultsTest, transfers_end_correctly_or_say_why_not_and_never_bring_wro
     EXPECT_GT(writes[i], 0) << kKinds[i].name;
     EXPECT_GT(reads[i], 0) << kKinds[i].name;
   }
+}
+
+/// How often `kind` was written and read in `rounds` rounds at this rate of disturbances.
+struct Survivors {
+  int writes = 0, reads = 0;
+};
+Survivors survivors(const Kind& kind, double rate, std::uint64_t rounds) {
+  Survivors survivors;
+  for (std::uint64_t seed = 1; seed <= rounds; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    SdoFaults world(rate, seed);
+    world.writeAndRead(kind);
+    survivors.writes += world.writes;
+    survivors.reads += world.reads;
+  }
+  return survivors;
+}
+
+TEST(SdoLongSegmentedTest, of_1000_bytes_some_survive_where_one_frame_in_a_hundred_is_disturbed) {
+  const Survivors some = survivors(kThousand, 0.01, 100);
+  EXPECT_GT(some.writes, 0);
+  EXPECT_GT(some.reads, 0);
+}
+
+TEST(SdoLongSegmentedTest, of_1000_bytes_none_survives_one_in_ten_and_none_is_wrong) {
+  const Survivors none = survivors(kThousand, 0.1, 100);  // 0.81 to the power of 143
+  EXPECT_EQ(none.writes, 0);
+  EXPECT_EQ(none.reads, 0);
+}
+
+TEST(SdoLongSegmentedTest, of_100000_bytes_none_survives_one_in_a_hundred_and_none_is_wrong) {
+  for (const double rate : {0.01, 0.1}) {
+    const Survivors none = survivors(kHundredThousand, rate, 30);
+    EXPECT_EQ(none.writes, 0) << rate;
+    EXPECT_EQ(none.reads, 0) << rate;
+  }
+}
+
+TEST(SdoLongSegmentedTest, of_100000_bytes_most_survive_one_in_a_million) {
+  const Survivors most = survivors(kHundredThousand, 1e-6, 10);  // 28,574 frames each
+  EXPECT_GE(most.writes, 8);
+  EXPECT_GE(most.reads, 8);
 }
 
 INSTANTIATE_TEST_SUITE_P(Rates, SdoFaultsTest, ::testing::Values(0.01, 0.1));
