@@ -121,6 +121,34 @@ TEST(Robot, TellsAnEmergencyWithCodeCauseAndRemedy) {
   EXPECT_TRUE(snapshot.axes[0].words.problem.empty());
 }
 
+TEST(Robot, ASnapshotThatIsFilledAgainShowsWhatHasChanged) {
+  RobotWorld world;
+  RobotSnapshot used;
+  world.robot.fill(used);
+  EXPECT_EQ(used.axes[1].node.identity.vendor_id, 0u);
+  world.enable();
+  world.robot.fill(used);
+  EXPECT_TRUE(used.axes[1].words.problem.empty());
+  world.drives[1].fault(0x8611);
+  world.run(100ms);
+  world.robot.fill(used);
+  EXPECT_THAT(used.axes[1].words.problem.str(), HasSubstr("following error"));
+  world.drives[1].silent = true;
+  world.run(2s);
+  world.robot.fill(used);
+  EXPECT_THAT(used.axes[1].words.problem.str(), HasSubstr("no heartbeat"));
+  world.drives[1].silent = false;
+  world.run(2s);
+  world.robot.fill(used);
+  RobotSnapshot fresh;
+  world.robot.fill(fresh);
+  EXPECT_EQ(used.axes[1].node.nmt, canopen::NmtState::operational);
+  EXPECT_EQ(used.axes[1].node.last_heartbeat, fresh.axes[1].node.last_heartbeat);
+  EXPECT_GT(used.axes[1].node.sdo.completed, used.axes[0].node.sdo.completed) << "booted twice";
+  EXPECT_EQ(used.axes[1].node.sdo.completed, fresh.axes[1].node.sdo.completed);
+  EXPECT_EQ(used.axes[1].words.problem.str(), fresh.axes[1].words.problem.str());
+}
+
 TEST(Robot, TellsALongProblemOnlyOnce) {
   config::RobotConfig config = test::testRobot();
   auto profile = std::make_shared<drive::DriveProfile>(*config.axes[0].profile);

@@ -42,6 +42,23 @@ TEST(PackPdos, SharesAPdoWhereThatIsCheaper) {
   EXPECT_EQ(packed->size(), 1u);
 }
 
+TEST(PackPdos, KeepsFastObjectsTogetherWhereTheWorstCaseIsTheSame) {
+  // What may change in every cycle costs the same however it is packed, at worst; on the average
+  // the two slow ones in a PDO of their own are the cheapest.
+  PackRules rules;
+  rules.pdos = 2;
+  rules.may_change_every_cycle = true;
+  const PackItem a{"a", 32, 1}, b{"b", 32, 1}, slow{"slow", 32, 10}, slower{"slower", 32, 20};
+  for (const auto& items :
+       {std::vector<PackItem>{a, slow, b, slower}, std::vector<PackItem>{slow, a, slower, b},
+        std::vector<PackItem>{a, slow, slower, b}}) {
+    const auto packed = packPdos(items, rules);
+    ASSERT_TRUE(packed);
+    ASSERT_EQ(packed->size(), 2u);
+    EXPECT_EQ(packed->at(0).every + packed->at(1).every, 11u);  // 1 and 10
+  }
+}
+
 TEST(PackPdos, FillsFurtherPdosOnlyWithinTheRules) {
   PackRules rules;
   rules.pdos = 1;

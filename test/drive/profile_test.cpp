@@ -181,6 +181,24 @@ TEST(DriveProfile, TellsEveryMistakeWithItsPlace) {
   }
 }
 
+TEST(DriveProfile, OnlyFixedPdosMayShareAnObject) {
+  const std::string rules = R"(
+pdo_rules:
+  fixed:
+    rpdo1: [controlword, target_position]
+    rpdo2: [controlword]
+    tpdo1: [statusword, position_actual]
+    tpdo2: [statusword]
+)";
+  Problems problems;
+  const DriveProfile profile = parseDriveProfile(kSmall + rules, "small.yaml", problems);
+  EXPECT_EQ(problems.text(), "");
+  ASSERT_EQ(profile.fixed_pdos.size(), 4u);
+  EXPECT_THAT(profile.fixed_pdos[1].objects, ElementsAre("controlword"));
+  EXPECT_THAT(problemsOf(changed("  tpdo1:", "  rpdo2: [controlword]\n  tpdo1:")),
+              HasSubstr("`controlword` is mapped already, in pdos/rpdo1"));
+}
+
 TEST(DriveProfile, RefusesMoreThanSixtyFourBitsInAPdo) {
   const std::string text =
       changed("[statusword, position_actual]", "[statusword, position_actual, mode_display]");
