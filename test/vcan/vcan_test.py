@@ -10,7 +10,8 @@ import time
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "ros"))
 from robot_client import (ERROR, OK, Process, Robot, RobotTest, main, rospy,  # noqa: E402
                           wait_until)
-from wire import NMT_PRE_OPERATIONAL, PRE_OPERATIONAL, Wire  # noqa: E402
+from wire import (NMT_PRE_OPERATIONAL, PRE_OPERATIONAL, Wire,  # noqa: E402
+                  clock_distance)
 
 CONFIG = "test/vcan/robot.yaml"
 JOINTS = ["shoulder", "wrist", "gripper"]
@@ -87,13 +88,13 @@ class Vcan(RobotTest):
         self.robot.joint_states, self.robot.record = [], True
         wait_until(lambda: len(self.robot.joint_states) > 30, "joint_states")
         self.robot.record = False
-        offset = rospy.get_time() - time.monotonic()
+        offset = clock_distance()
         feedback = [at + offset for at, identifier, _ in self.wire.frames
                     if 0x180 < identifier <= 0x184]
         stamps = [message.header.stamp.to_sec() for _, message in self.robot.joint_states]
         self.assertEqual(stamps, sorted(stamps))
         distances = sorted(min(abs(stamp - at) for at in feedback) for stamp in stamps)
-        self.assertLess(distances[len(distances) // 2], 0.004)  # a quarter of the period is chance
+        self.assertLess(distances[len(distances) // 2], 0.001)  # SYNC is every 20 ms
         ages = sorted(arrival - message.header.stamp.to_sec()
                       for arrival, message in self.robot.joint_states)
         self.assertGreater(ages[0], 0.0)

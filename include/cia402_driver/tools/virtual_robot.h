@@ -94,7 +94,7 @@ class VirtualRobot final : private sim::Participant, private bus::EventSink {
   }
   void receive(const can::Frame& frame, Time now) override {
     if (now < frozen_until_) {
-      kept_.push_back({frame, now});
+      kept_.emplace_back(frame, now);
     } else {
       take(frame, now, now);
     }
