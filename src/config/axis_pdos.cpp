@@ -125,6 +125,10 @@ bool choosePdos(YamlSection& section, AxisConfig& axis, RobotConfig& robot) {
   if (!feedback) leaveOut(needs.feedback, ruled_out);
   if (!modes) leaveOut(needs.modes, unreachable);
   if (pdos && feedback) feedback->problem("says nothing beside `pdos`: keep one of them");
+  if (!pdos && feedback && !profile.pdos.empty()) {
+    feedback->problem("says nothing here: profile " + profile.name +
+                      " has PDOs of its own; give the axis `pdos` instead");
+  }
   if (pdos || !profile.pdos.empty()) {
     axis.pdos = pdos ? drive::readPdos(*pdos, profile) : profile.pdos;
     axis.modes = needs.modes;

@@ -103,7 +103,11 @@ void checkPeriod(const YamlValue& at, const RobotConfig& robot) {
 }
 
 void warnOfUnnoticedLoss(RobotConfig& robot) {
-  if (robot.bus.heartbeat == Duration(0)) {
+  const auto unsupervised = [&](const drive::AxisConfig& axis) {
+    return !axis.profile || planErrorControl(robot.bus, axis).kind == canopen::ErrorControl::none;
+  };
+  if (robot.bus.heartbeat == Duration(0) &&
+      std::all_of(robot.axes.begin(), robot.axes.end(), unsupervised)) {
     robot.warnings.emplace_back(
         "bus/heartbeat: is 0: should this program die, no drive would notice and stop; nor would a "
         "lost drive be noticed but by its missing TPDOs");

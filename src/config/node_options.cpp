@@ -123,6 +123,21 @@ std::string secondsText(Duration time) {
   return text;
 }
 
+void checkMasterTimeout(const YamlValue& at, const drive::ErrorControlOptions& options,
+                        ErrorControl kind, const BusConfig& bus) {
+  if (!options.master_timeout) return;
+  if (kind == ErrorControl::guarding) {
+    at.problem("`master_timeout` is for heartbeats; with guarding `timeout` goes for both");
+  } else if (bus.heartbeat == Duration(0)) {
+    at.problem(
+        "`master_timeout` waits for the heartbeat of this program, which has none: give "
+        "bus/heartbeat a time");
+  } else if (*options.master_timeout <= bus.heartbeat) {
+    at.problem("`master_timeout` (" + secondsText(*options.master_timeout) +
+               ") must be longer than bus/heartbeat (" + secondsText(bus.heartbeat) + ")");
+  }
+}
+
 }  // namespace
 
 ErrorControlPlan planErrorControl(const BusConfig& bus, const AxisConfig& axis) {
@@ -167,6 +182,7 @@ void checkErrorControl(YamlSection& section, const AxisConfig& axis, const Robot
   } else if (plan.kind == ErrorControl::none && options.kind.value_or(plan.kind) != plan.kind) {
     at->problem("needs a `period`, as bus/heartbeat is 0");
   }
+  checkMasterTimeout(*at, options, plan.kind, robot.bus);
   if (plan.kind == ErrorControl::none) return;
   const bool multiple = plan.timeout % plan.period == Duration(0);
   const std::int64_t factor = plan.timeout / plan.period;
@@ -176,13 +192,6 @@ void checkErrorControl(YamlSection& section, const AxisConfig& axis, const Robot
   } else if (plan.timeout <= plan.period) {
     at->problem("`timeout` (" + secondsText(plan.timeout) + ") must be longer than `period` (" +
                 secondsText(plan.period) + ")");
-  }
-  if (!options.master_timeout) return;
-  if (plan.kind == ErrorControl::guarding) {
-    at->problem("`master_timeout` is for heartbeats; with guarding `timeout` goes for both");
-  } else if (*options.master_timeout <= robot.bus.heartbeat) {
-    at->problem("`master_timeout` (" + secondsText(*options.master_timeout) +
-                ") must be longer than bus/heartbeat (" + secondsText(robot.bus.heartbeat) + ")");
   }
 }
 

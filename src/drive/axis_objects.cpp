@@ -96,7 +96,7 @@ AxisObjects::AxisObjects(const AxisConfig& config, const canopen::Node& node) {
   error_code = input(config, node, "error_code", {0x603F, 0});
   digital_inputs = input(config, node, "digital_inputs", {0x60FD, 0});
   controlword = output(node, findObject(*config.profile, "controlword", {0x6040, 0}));
-  mode = output(node, findObject(*config.profile, "mode", {0x6060, 0}));
+  mode = output(node, findObject(*config.profile, "mode_of_operation", {0x6060, 0}));
   require(statusword.mapped(), config, "the statusword (6041:00)");
   require(position.mapped(), config, "the actual position (6064:00)");
   require(controlword.mapped(), config, "the controlword (6040:00)");

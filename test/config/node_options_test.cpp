@@ -11,7 +11,9 @@ namespace {
 
 using canopen::ErrorControl;
 using std::chrono::milliseconds;
+using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 
 struct Loaded {
   std::string problems;
@@ -90,6 +92,19 @@ TEST(NodeOptions, NoneIsPossibleAndWarnedOf) {
   EXPECT_THAT(loaded.robot.warnings[0], HasSubstr("axes/a: this drive is not supervised"));
 }
 
+TEST(NodeOptions, WithoutAHeartbeatOfTheBusEachAxisIsJudgedByItsOwn) {
+  const auto warnings = [](const std::string& keys) {
+    return load(keys, "heartbeat: 0").robot.warnings;
+  };
+  EXPECT_THAT(warnings(""), ElementsAre(HasSubstr("bus/heartbeat: is 0")));
+  EXPECT_THAT(warnings("error_control: {kind: guarding, period: 0.1, timeout: 0.3}"), IsEmpty());
+  EXPECT_THAT(warnings("error_control: {period: 0.1}"),
+              ElementsAre(HasSubstr("axes/a: this drive watches no heartbeat")));
+  EXPECT_THAT(
+      load("error_control: {period: 0.1, master_timeout: 0.3}", "heartbeat: 0").problems,
+      HasSubstr("`master_timeout` waits for the heartbeat of this program, which has none"));
+}
+
 TEST(NodeOptions, BootOptionsReachTheMaster) {
   const canopen::BootPolicy policy =
       load(
@@ -128,6 +143,24 @@ TEST(NodeOptions, AnSdoChannelMayNotTakeTheIdentifiersOfOthers) {
   EXPECT_THAT(load("sdo: {request: 0x641}").problems, HasSubstr("`answer` is missing"));
 }
 
+TEST(NodeOptions, FeedbackIsRefusedWhereItWouldBeIgnored) {
+  EXPECT_THAT(load("feedback: [velocity_actual], pdos: {rpdo1: [controlword, target_position], "
+                   "tpdo1: [statusword, position_actual]}")
+                  .problems,
+              HasSubstr("axes/a/feedback: says nothing beside `pdos`"));
+  Problems problems;
+  const YAML::Node tree = YAML::Load(
+      "bus: {interface: can0}\naxes: {a: {node_id: 1, drive: own_pdos_drive, counts_per_turn: "
+      "1000, "
+      "limits: {velocity: 1, acceleration: 1}, feedback: [mode_display]}}");
+  const auto file = [](const std::string& drive) {
+    return cia402::test::testFolder() + "/config/" + drive + ".yaml";
+  };
+  loadRobot(tree, file, problems);
+  EXPECT_THAT(problems.text(),
+              HasSubstr("axes/a/feedback: says nothing here: profile own_pdos_drive has PDOs"));
+}
+
 TEST(NodeOptions, ADateBecomesTheNumbersOf1020h) {
   const canopen::BootPolicy moment = load("configuration_check: 2026-11-21T15:30:00").node.boot;
   EXPECT_EQ(moment.check, canopen::ConfigurationCheck::date);
@@ -152,6 +185,7 @@ TEST(NodeOptions, MistakesAreNamedWithARemedy) {
       {"error_control: {period: 0.1005}", "whole number of milliseconds"},
       {"error_control: {period: 66}", "axes/a/error_control/period"},
       {"error_control: {master_timeout: 0.1}", "must be longer than bus/heartbeat"},
+      {"error_control: {kind: none, master_timeout: 0.05}", "must be longer than bus/heartbeat"},
       {"error_control: {kind: none, period: 0.1}", "`none` has neither"},
       {"error_control: {perod: 0.1}", "did you mean `period`"},
       {"optional: perhaps", "axes/a/optional"},
