@@ -32,13 +32,13 @@ std::optional<NmtCommand> commandOf(const std::string& word) {
 }
 
 std::string refusal(drive::Axis& axis, const std::string& word, NmtCommand command) {
-  if (axis.node().health() != NodeHealth::ready) return {};
-  if (command == NmtCommand::start) return {};  // it is started already
+  if (command == NmtCommand::start) return {};  // at most, it boots
   const std::string refused = drive::whoIs(axis.config()) + ": nmt " + word + " is refused: ";
   if (axis.procedure().running) {
     return refused + toString(axis.procedure().kind) + " runs (" + axis.procedure().step +
            "); wait for its end, or stop it by halt, quick_stop or disable";
   }
+  if (axis.node().health() != NodeHealth::ready) return {};
   const drive::AxisState& state = axis.state();
   if (state.feedback_valid && drive::powerStageOff(state.state)) return {};
   return refused + "the axis is not disabled (" +

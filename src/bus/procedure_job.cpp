@@ -18,7 +18,7 @@ bool ProcedureJob::step(std::vector<drive::Axis>& axes, Time now) {
                                   [](const Entry& e) { return e.stage == Stage::failed; });
   if (failed) {
     skipRest(axes);
-  } else {
+  } else if (!held_) {
     startDue(axes, now);
   }
   const bool ended = std::all_of(entries_.begin(), entries_.end(), [](const Entry& e) {
@@ -71,16 +71,31 @@ void ProcedureJob::watch(std::vector<drive::Axis>& axes) {
   }
 }
 
+void ProcedureJob::refuseToBegin(Entry& entry, const drive::Axis& axis, const std::string& why) {
+  entry.stage = Stage::failed;
+  entry.message = axis.config().name + ": not started, for " + why;
+}
+
+void ProcedureJob::withdraw(std::size_t axis, drive::ProcedureKind by,
+                            const std::vector<drive::Axis>& axes) {
+  for (Entry& entry : entries_) {
+    if (entry.stage != Stage::waiting || entry.item.axis != axis) continue;
+    refuseToBegin(entry, axes[axis], std::string(toString(by)) + " was called");
+  }
+}
+
+void ProcedureJob::withdrawEnabling(const std::string& why, const std::vector<drive::Axis>& axes) {
+  if (!enables(request_.kind)) return;
+  for (Entry& entry : entries_) {
+    if (entry.stage == Stage::waiting) refuseToBegin(entry, axes[entry.item.axis], why);
+  }
+}
+
 /// Somebody who stops an axis does not want it moved by what was asked before.
 void ProcedureJob::watchWaiting(Entry& entry, const drive::Axis& axis) {
-  using drive::ProcedureKind;
   const drive::ProcedureStatus& status = axis.procedure();
-  const bool stops = status.kind == ProcedureKind::disable ||
-                     status.kind == ProcedureKind::quick_stop || status.kind == ProcedureKind::halt;
-  if (entry.seen && status.id != entry.id && stops) {
-    entry.stage = Stage::failed;
-    entry.message =
-        axis.config().name + ": not started, for " + toString(status.kind) + " was called";
+  if (entry.seen && status.id != entry.id && stops(status.kind)) {
+    refuseToBegin(entry, axis, std::string(toString(status.kind)) + " was called");
   }
   entry.id = status.id;
   entry.seen = true;
@@ -89,8 +104,7 @@ void ProcedureJob::watchWaiting(Entry& entry, const drive::Axis& axis) {
 void ProcedureJob::skipRest(const std::vector<drive::Axis>& axes) {
   for (Entry& entry : entries_) {
     if (entry.stage != Stage::waiting) continue;
-    entry.stage = Stage::failed;
-    entry.message = axes[entry.item.axis].config().name + ": not started, for another axis failed";
+    refuseToBegin(entry, axes[entry.item.axis], "another axis failed");
   }
 }
 

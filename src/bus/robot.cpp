@@ -63,6 +63,7 @@ void Robot::busLost(const std::string& why, Time now) {
   if (!started_ || !bus_lost_.empty()) return;
   bus_lost_ = why;
   stopMotion("stopped: " + why, now);
+  withdrawEnabling(why);
   for (drive::Axis& axis : axes_) axis.onBusLost(why);
 }
 
@@ -173,6 +174,8 @@ void Robot::stepJobs(Time now) {
     jobs.erase(std::remove_if(jobs.begin(), jobs.end(), step), jobs.end());
   };
   if (!procedures_.empty()) {
+    const std::string problem = syncProblem();
+    if (!problem.empty()) withdrawEnabling(problem);
     keep_running(procedures_, [&](ProcedureJob& job) { return job.step(axes_, now); });
   }
   if (!objects_.empty()) keep_running(objects_, [](ObjectJob& job) { return job.step(); });
@@ -188,6 +191,10 @@ void Robot::stopMotion(const std::string& why, Time now) {
   for (std::size_t i = 0; i < axes_.size(); ++i) motions_[i].stop(axes_[i], now);
 }
 
+void Robot::withdrawEnabling(const std::string& why) {
+  for (ProcedureJob& job : procedures_) job.withdrawEnabling(why, axes_);
+}
+
 void Robot::beginShutdown(Time now) {
   if (shutdown_ != Shutdown::no) return;
   // Before the nodes were booted there is nothing to stop.
@@ -197,8 +204,6 @@ void Robot::beginShutdown(Time now) {
   // What waits for its turn must not begin any more.
   for (ProcedureJob& job : procedures_) job.abandon("ended by the shutdown of the driver");
   procedures_.clear();
-  for (ProcedureJob& job : waiting_for_lss_) job.abandon("ended by the shutdown of the driver");
-  waiting_for_lss_.clear();
   for (NmtJob& job : nmt_) job.abandon("ended by the shutdown of the driver");
   nmt_.clear();
   stopMotion("stopped: the driver is shutting down", now);

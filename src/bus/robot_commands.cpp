@@ -29,9 +29,7 @@ void Robot::execute(Command command, Time now) {
 
 void Robot::run(ProcedureCommand& command, Reply reply, Time now) {
   const bool homing = command.request.kind == drive::ProcedureKind::home;
-  const bool enables = homing || command.request.kind == drive::ProcedureKind::enable ||
-                       command.request.kind == drive::ProcedureKind::recover;
-  const std::string problem = enables ? syncProblem() : std::string();
+  const std::string problem = enables(command.request.kind) ? syncProblem() : std::string();
   if (!problem.empty()) {
     refuse(reply, std::string(drive::toString(command.request.kind)) + " is refused: " + problem);
     return;
@@ -46,7 +44,10 @@ void Robot::run(ProcedureCommand& command, Reply reply, Time now) {
       left_out += "; " + axis.name + " is optional and not there, it was left out";
       continue;
     }
-    if (named || concerned) items.push_back({i, homing && axis.homing ? axis.homing->order : 0});
+    if (!named && !concerned) continue;
+    items.push_back({i, homing && axis.homing ? axis.homing->order : 0});
+    if (!stops(command.request.kind)) continue;
+    for (ProcedureJob& job : procedures_) job.withdraw(i, command.request.kind, axes_);
   }
   if (items.empty()) {
     refuse(reply, !command.axis.empty() ? "there is no axis \"" + command.axis + "\""
@@ -54,12 +55,10 @@ void Robot::run(ProcedureCommand& command, Reply reply, Time now) {
                                         : "nothing to do" + left_out);
     return;
   }
-  if (command.request.kind == drive::ProcedureKind::recover && recoverByLss(items)) {
-    waiting_for_lss_.emplace_back(command.request, std::move(items), std::move(reply));
-    return;
-  }
+  const bool by_lss = command.request.kind == drive::ProcedureKind::recover && recoverByLss(items);
   procedures_.emplace_back(command.request, std::move(items), std::move(reply));
   procedures_.back().remark(std::move(left_out));
+  if (by_lss) procedures_.back().hold();  // until stepLss() has no more to do
   if (procedures_.back().step(axes_, now)) procedures_.pop_back();
 }
 

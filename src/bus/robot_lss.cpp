@@ -104,8 +104,7 @@ void Robot::stepLss(Time now) {
     return;
   }
   if (lss_.busy()) return;
-  for (ProcedureJob& job : waiting_for_lss_) procedures_.push_back(std::move(job));
-  waiting_for_lss_.clear();
+  for (ProcedureJob& job : procedures_) job.release();
 }
 
 /// A drive that comes without a node-ID cannot announce itself by a boot-up message: while a drive

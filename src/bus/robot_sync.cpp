@@ -60,6 +60,7 @@ void Robot::lackSync(Time now) {
 
 void Robot::stopForSync(const std::string& why, Time now) {
   stopMotion(why, now);
+  withdrawEnabling(why);
   for (drive::Axis& axis : axes_) axis.stopBySdo(why, now);
 }
 

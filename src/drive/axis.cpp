@@ -7,6 +7,11 @@
 #include "procedure.h"
 
 namespace cia402::drive {
+namespace {
+
+constexpr std::uint16_t kRpdoTimeout = 0x8250;  // CiA 301, table 26
+
+}  // namespace
 
 struct Axis::Impl {
   Impl(AxisConfig config, canopen::Node& node)
@@ -15,6 +20,8 @@ struct Axis::Impl {
   void watchNode();
   void finish(bool success, std::string message);
   void preempt(ProcedureKind by);
+  /// Ends a procedure that would enable the axis.
+  void endEnabling(const std::string& why);
   Context context(Time now) { return {core, status, now}; }
 
   AxisCore core;
@@ -50,6 +57,12 @@ void Axis::Impl::finish(bool success, std::string message) {
 void Axis::Impl::preempt(ProcedureKind by) {
   finish(false, core.who() + ": " + toString(status.kind) + " was stopped by " + toString(by) +
                     " while " + (status.step.empty() ? std::string("starting") : status.step));
+}
+
+void Axis::Impl::endEnabling(const std::string& why) {
+  if (!procedure || !enables(status.kind)) return;
+  if (core.goal() == Goal::enabled && !core.inOperation()) core.setGoal(Goal::disabled);
+  finish(false, core.who() + ": " + toString(status.kind) + " was ended: " + why);
 }
 
 Axis::Axis(AxisConfig config, canopen::Node& node)
@@ -95,10 +108,7 @@ Result<std::uint32_t> Axis::start(const ProcedureRequest& request, Time now) {
   if (impl.procedure && !failure.empty() && !impl.procedure->survivesNodeLoss()) {
     impl.finish(false, std::string(toString(impl.status.kind)) + " failed: " + failure);
   }
-  const bool preempts = request.kind == ProcedureKind::disable ||
-                        request.kind == ProcedureKind::quick_stop ||
-                        request.kind == ProcedureKind::halt;
-  if (impl.status.running && !preempts) {
+  if (impl.status.running && !stops(request.kind)) {
     return Error{impl.core.who() + ": " + toString(request.kind) + " is refused while " +
                  toString(impl.status.kind) + " runs (" + impl.status.step +
                  "); wait for its end, or stop it by halt, quick_stop or disable"};
@@ -137,15 +147,26 @@ bool Axis::setTarget(double value) { return impl_->core.setTarget(value); }
 double Axis::target() const { return impl_->core.target(); }
 std::string Axis::motionRefusal() const { return impl_->core.motionRefusal(impl_->status.running); }
 
-void Axis::stopBySdo(const std::string& why, Time) { impl_->core.stopBySdo(why); }
+void Axis::stopBySdo(const std::string& why, Time) {
+  impl_->core.stopBySdo(why);
+  impl_->endEnabling(why);
+}
 
-void Axis::onEmergency(const canopen::Emergency& emergency, Time) {
+void Axis::onEmergency(const canopen::Emergency& emergency, Time now) {
   impl_->core.onEmergency(emergency);
+  if (emergency.code != kRpdoTimeout || !impl_->core.nodeReady()) return;
+  stopBySdo(
+      "the drive reports EMCY 0x8250: no RPDO reached it in time (1400:05); quick stop is "
+      "commanded by SDO. Check the bus and the COB-IDs of its RPDOs, then enable again",
+      now);
 }
 
 void Axis::onHealthChange(canopen::NodeHealth, Time) { impl_->watchNode(); }
 
-void Axis::onBusLost(const std::string& why) { impl_->core.onBusLost(why); }
+void Axis::onBusLost(const std::string& why) {
+  impl_->core.onBusLost(why);
+  impl_->endEnabling(why + ": nothing reaches the drive");
+}
 
 std::string Axis::faultText() const { return impl_->core.faultText(); }
 const std::string& Axis::notice() const { return impl_->core.notice(); }

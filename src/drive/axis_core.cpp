@@ -59,6 +59,7 @@ bool AxisCore::powerOff() const { return powerStageOff(state_.state); }
 
 std::string AxisCore::supervise(Time now) {
   std::string failure;
+  watchStopBySdo();
   if (!failure_.empty()) failure = takeFailure();
   if (!nodeReady()) return failure;
   const bool commanded = goal_ != Goal::disabled && goal_ != Goal::quick_stop;
@@ -140,10 +141,20 @@ void AxisCore::stopBySdo(const std::string& why) {
   const bool was_commanded = !silent_ && goal_ != Goal::disabled;
   setGoal(Goal::quick_stop);
   const ObjectSpec* object = objects_.controlword.spec;
-  node_.sdo().download(object->id, canopen::toBytes(controlword::kEnableVoltage, 2), object->name);
+  stop_ticket_ = node_.sdo().download(object->id, canopen::toBytes(controlword::kEnableVoltage, 2),
+                                      object->name);
   if (!was_commanded) return;
   failure_ = who() + ": " + why;
   notify(failure_);
+}
+
+/// Where that failed as well, nothing but the drive itself can stop the motor.
+void AxisCore::watchStopBySdo() {
+  if (!stop_ticket_ || !stop_ticket_->done()) return;
+  const canopen::SdoTicket ended = std::exchange(stop_ticket_, nullptr);
+  if (ended->ok()) return;
+  notify(who() + ": the quick stop by SDO failed: " + ended->message() +
+         "; the drive may go on: switch its power off if it does not stop by itself");
 }
 
 void AxisCore::notify(std::string text) {

@@ -127,6 +127,7 @@ class AxisCore {
   void readState(Time now);
   void readMotion(Time now);
   void readErrorCode();
+  void readDigitalInputs(Time now);
   void readMode(Time now);
   double read(const InputObject& object, int polled, Time now) const;
   void forgetFeedback();
@@ -143,6 +144,7 @@ class AxisCore {
   void beginRamp();
   void advanceRamp(Duration dt);
   bool withinLimits(double value) const;
+  void watchStopBySdo();
   bool homedEnough() const;
   bool absolute() const;
   bool neutralTarget(const ModeChannel& mode, std::uint64_t& raw) const;
@@ -187,7 +189,7 @@ class AxisCore {
   Time next_fault_reset_ = Time::min();
   std::uint16_t emergency_code_ = 0;
   std::optional<std::uint16_t> read_error_code_;
-  canopen::SdoTicket error_ticket_;
+  canopen::SdoTicket error_ticket_, stop_ticket_;
   std::string failure_, notice_;
   std::uint32_t notices_ = 0;
 };

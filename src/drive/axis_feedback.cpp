@@ -7,8 +7,6 @@
 namespace cia402::drive {
 namespace {
 
-constexpr std::uint16_t kRpdoTimeout = 0x8250;  // CiA 301, table 26
-
 bool bitSet(std::uint16_t word, const std::optional<int>& bit) {
   return bit && ((static_cast<unsigned>(word) >> *bit) & 1u) != 0;
 }
@@ -77,12 +75,22 @@ void AxisCore::readMotion(Time now) {
   } else {
     state_.following_error = kUnknown;
   }
+  readDigitalInputs(now);
+}
+
+void AxisCore::readDigitalInputs(Time now) {
+  const canopen::Slot slot = objects_.digital_inputs.slot;
+  std::uint64_t raw = 0;
+  state_.digital_inputs_valid = false;
   if (objects_.digital_inputs.mapped()) {
-    state_.digital_inputs =
-        static_cast<std::uint32_t>(image_.input(objects_.digital_inputs.slot).raw);
+    state_.digital_inputs_valid = image_.fresh(slot);
+    raw = image_.input(slot).raw;
   } else if (polled_inputs_ >= 0) {
-    state_.digital_inputs = static_cast<std::uint32_t>(poller_.value(polled_inputs_, now).raw);
+    const AxisPoller::Value value = poller_.value(polled_inputs_, now);
+    state_.digital_inputs_valid = value.valid;
+    raw = value.raw;
   }
+  state_.digital_inputs = state_.digital_inputs_valid ? static_cast<std::uint32_t>(raw) : 0;
 }
 
 double AxisCore::read(const InputObject& object, int polled, Time now) const {
@@ -133,7 +141,8 @@ void AxisCore::readErrorCode() {
   std::uint16_t code = emergency_code_;
   if (objects_.error_code.mapped()) {
     const canopen::ProcessValue& value = image_.input(objects_.error_code.slot);
-    if (value.valid && value.raw != 0) code = static_cast<std::uint16_t>(value.raw);
+    const bool fresh = image_.fresh(objects_.error_code.slot);
+    if (fresh && value.raw != 0) code = static_cast<std::uint16_t>(value.raw);
   } else if (faulted()) {
     if (error_ticket_ && error_ticket_->done()) {
       if (error_ticket_->ok() && error_ticket_->data().size() <= 8) {
@@ -157,11 +166,6 @@ void AxisCore::readErrorCode() {
 
 void AxisCore::onEmergency(const canopen::Emergency& emergency) {
   emergency_code_ = emergency.code;
-  if (emergency.code == kRpdoTimeout) {
-    stopBySdo(
-        "the drive reports EMCY 0x8250: no RPDO reached it in time (1400:05); quick stop is "
-        "commanded by SDO. Check the bus and the COB-IDs of its RPDOs, then enable again");
-  }
 }
 
 void AxisCore::forgetMotion() {
@@ -180,6 +184,7 @@ void AxisCore::forgetFeedback() {
   shown_mode_.reset();
   state_.target_reached = state_.warning = state_.internal_limit = false;
   state_.digital_inputs = 0;
+  state_.digital_inputs_valid = false;
 }
 
 }  // namespace cia402::drive

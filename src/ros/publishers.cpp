@@ -40,6 +40,7 @@ cia402_driver::AxisState axisState(const bus::AxisSnapshot& axis, const drive::A
   message.effort = axis.state.effort;
   message.following_error = axis.state.following_error;
   message.digital_inputs = axis.state.digital_inputs;
+  message.digital_inputs_valid = axis.state.digital_inputs_valid;
   message.feedback_age = age(axis.state.stamp, now);
   if (axis.state.stamp != Time()) message.stamp = toRos(axis.state.stamp);
   return message;
@@ -163,7 +164,7 @@ bool Publishers::changed(const cia402_driver::AxisStates& states) const {
         a.target_reached != b.target_reached || a.warning != b.warning ||
         a.internal_limit != b.internal_limit || a.error_code != b.error_code ||
         a.error_text != b.error_text || a.procedure != b.procedure || a.step != b.step ||
-        a.digital_inputs != b.digital_inputs) {
+        a.digital_inputs != b.digital_inputs || a.digital_inputs_valid != b.digital_inputs_valid) {
       return true;
     }
   }

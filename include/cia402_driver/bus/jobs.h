@@ -24,6 +24,13 @@ class ProcedureJob {
 
   /// Said at the end of the answer.
   void remark(std::string text) { remark_ = std::move(text); }
+  /// Nothing is started before release().
+  void hold() { held_ = true; }
+  void release() { held_ = false; }
+  /// Somebody wants the axis to stop: what has not begun on it does not begin any more.
+  void withdraw(std::size_t axis, drive::ProcedureKind by, const std::vector<drive::Axis>& axes);
+  /// The same on all axes, for the reason `why`, if the procedure would enable them.
+  void withdrawEnabling(const std::string& why, const std::vector<drive::Axis>& axes);
   /// Starts what is due and watches what runs. @return true once the reply was given.
   bool step(std::vector<drive::Axis>& axes, Time now);
   /// Gives a failed reply; for the end of the program.
@@ -42,6 +49,7 @@ class ProcedureJob {
   void startDue(std::vector<drive::Axis>& axes, Time now);
   void watch(std::vector<drive::Axis>& axes);
   static void watchWaiting(Entry& entry, const drive::Axis& axis);
+  static void refuseToBegin(Entry& entry, const drive::Axis& axis, const std::string& why);
   void skipRest(const std::vector<drive::Axis>& axes);
   Answer answer(const std::vector<drive::Axis>& axes) const;
 
@@ -49,6 +57,7 @@ class ProcedureJob {
   std::vector<Entry> entries_;
   Reply reply_;
   std::string remark_;
+  bool held_ = false;
 };
 
 /// One read_object or write_object: the SDO transfers it needs and the wording of its answer.

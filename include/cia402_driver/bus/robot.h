@@ -126,6 +126,8 @@ class Robot final : private canopen::MasterListener {
   void stepJobs(Time now);
   void stepShutdown(Time now);
   void stopMotion(const std::string& why, Time now);
+  /// Nothing that was asked for before enables an axis any more.
+  void withdrawEnabling(const std::string& why);
   void watchAxes(Time now);
   void watchPdos(std::size_t axis, Time now);
   void tell(Event::Severity severity, std::string_view text, Time now);
@@ -174,8 +176,7 @@ class Robot final : private canopen::MasterListener {
   LssDesk lss_;
   bool lss_starting_ = false;  ///< drives get their node-IDs before anything else
   Time next_lss_look_{};
-  std::vector<std::string> lss_problems_;      // of each axis
-  std::vector<ProcedureJob> waiting_for_lss_;  ///< begin once the desk is free
+  std::vector<std::string> lss_problems_;  // of each axis
   std::vector<HistoryJob> histories_;
   std::vector<DcfJob> dcfs_;
   std::vector<AxisNews> news_;

@@ -30,6 +30,16 @@ enum class ProcedureKind : std::uint8_t {
   restore_parameters,  ///< 1011h, while disabled; resets the node, which is configured again
 };
 const char* toString(ProcedureKind kind);
+/// Does it bring the axis to rest, so that it may interrupt another one?
+constexpr bool stops(ProcedureKind kind) {
+  return kind == ProcedureKind::disable || kind == ProcedureKind::quick_stop ||
+         kind == ProcedureKind::halt;
+}
+/// Does it switch the power stage on, or may it?
+constexpr bool enables(ProcedureKind kind) {
+  return kind == ProcedureKind::enable || kind == ProcedureKind::home ||
+         kind == ProcedureKind::recover || kind == ProcedureKind::set_mode;
+}
 
 /// What a procedure is doing, for diagnostics, service answers and action feedback alike.
 struct ProcedureStatus {
@@ -72,7 +82,8 @@ struct AxisState {
   bool warning = false;
   bool internal_limit = false;
   bool ready_for_motion = false;  ///< operation enabled, mode active, brake released, no procedure
-  std::uint32_t digital_inputs = 0;
+  std::uint32_t digital_inputs = 0;   ///< 60FDh
+  bool digital_inputs_valid = false;  ///< false: not received, or not in time
   canopen::NodeHealth health = canopen::NodeHealth::absent;
 };
 
@@ -115,7 +126,8 @@ class Axis {
   std::string motionRefusal() const;
 
   /// RPDOs do not reach the drive, or are not taken as SYNC is gone: a drive that may be enabled is
-  /// quick-stopped by SDO and stays disabled. @param why in words
+  /// quick-stopped by SDO and stays disabled; a procedure that would enable it is ended.
+  /// @param why in words
   void stopBySdo(const std::string& why, Time now);
 
   /// Node and axis events from the master.
@@ -123,7 +135,7 @@ class Axis {
   void onHealthChange(canopen::NodeHealth before, Time now);
   /// Nothing reaches the drive any more, for the reason `why` ("can0 is bus-off"): an axis in
   /// motion or enabled gets a quick stop as the first thing once the bus is back, and stays
-  /// disabled.
+  /// disabled; a procedure that would enable it is ended.
   void onBusLost(const std::string& why);
 
   /// The present fault in words with cause and remedy; empty if none.
