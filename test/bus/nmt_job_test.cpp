@@ -118,6 +118,17 @@ TEST_F(NmtJobTest, ARunningProcedureIsNotCutOff) {
   EXPECT_TRUE(enabling->empty());
 }
 
+TEST_F(NmtJobTest, ARecoverThatWaitsForItsNodeIsNotCutOff) {
+  world.boot();
+  world.drives[0].silent = true;
+  world.run(1s);
+  ASSERT_NE(world.axis(0).state().health, canopen::NodeHealth::ready);
+  const auto recovering = world.begin(drive::ProcedureKind::recover, "shoulder");
+  world.run(20ms);
+  ASSERT_TRUE(recovering->empty());
+  EXPECT_THAT(world.call(nmt("shoulder", "reset_node")).message, HasSubstr("recover runs ("));
+}
+
 TEST_F(NmtJobTest, ADriveThatDoesNotObeyIsTold) {
   world.boot();
   world.drives[0].silent = true;

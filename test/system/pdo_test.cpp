@@ -70,6 +70,18 @@ TEST(StaleFeedback, OfASlowPdoOnlyHidesItsValues) {
   EXPECT_THAT(scene.told(), HasSubstr("left (node 1): TPDO 2 (COB-ID 0x281) did not come for"));
 }
 
+TEST(StaleFeedback, OfDigitalInputsIsNotShownAsLow) {
+  Scene scene(loadText(genericPair()));
+  ASSERT_TRUE(scene.boot());
+  scene.run(200ms);
+  EXPECT_TRUE(scene.state("left").digital_inputs_valid);
+  lose(scene, 0x381);  // error code and inputs, with every tenth SYNC
+  scene.run(500ms);
+  EXPECT_FALSE(scene.state("left").digital_inputs_valid);
+  EXPECT_EQ(scene.state("left").digital_inputs, 0u);
+  EXPECT_TRUE(scene.state("right").digital_inputs_valid);
+}
+
 /// Sends what it is told to: a device that should not be there.
 class Intruder final : public sim::Participant {
  public:
