@@ -124,10 +124,14 @@ std::string secondsText(Duration time) {
 }
 
 void checkMasterTimeout(const YamlValue& at, const drive::ErrorControlOptions& options,
-                        ErrorControl kind, const BusConfig& bus) {
+                        ErrorControl kind, const BusConfig& bus,
+                        const drive::DriveProfile& profile) {
   if (!options.master_timeout) return;
   if (kind == ErrorControl::guarding) {
     at.problem("`master_timeout` is for heartbeats; with guarding `timeout` goes for both");
+  } else if (!profile.heartbeat_consumer_supported) {
+    at.problem("`master_timeout`: profile " + profile.name +
+               " says that the drive watches no heartbeat");
   } else if (bus.heartbeat == Duration(0)) {
     at.problem(
         "`master_timeout` waits for the heartbeat of this program, which has none: give "
@@ -182,7 +186,7 @@ void checkErrorControl(YamlSection& section, const AxisConfig& axis, const Robot
   } else if (plan.kind == ErrorControl::none && options.kind.value_or(plan.kind) != plan.kind) {
     at->problem("needs a `period`, as bus/heartbeat is 0");
   }
-  checkMasterTimeout(*at, options, plan.kind, robot.bus);
+  checkMasterTimeout(*at, options, plan.kind, robot.bus, *axis.profile);
   if (plan.kind == ErrorControl::none) return;
   const bool multiple = plan.timeout % plan.period == Duration(0);
   const std::int64_t factor = plan.timeout / plan.period;

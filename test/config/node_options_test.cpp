@@ -143,7 +143,7 @@ TEST(NodeOptions, AnSdoChannelMayNotTakeTheIdentifiersOfOthers) {
   EXPECT_THAT(load("sdo: {request: 0x641}").problems, HasSubstr("`answer` is missing"));
 }
 
-TEST(NodeOptions, FeedbackIsRefusedWhereItWouldBeIgnored) {
+TEST(NodeOptions, WhatWouldBeIgnoredIsRefused) {
   EXPECT_THAT(load("feedback: [velocity_actual], pdos: {rpdo1: [controlword, target_position], "
                    "tpdo1: [statusword, position_actual]}")
                   .problems,
@@ -152,11 +152,14 @@ TEST(NodeOptions, FeedbackIsRefusedWhereItWouldBeIgnored) {
   const YAML::Node tree = YAML::Load(
       "bus: {interface: can0}\naxes: {a: {node_id: 1, drive: own_pdos_drive, counts_per_turn: "
       "1000, "
-      "limits: {velocity: 1, acceleration: 1}, feedback: [mode_display]}}");
+      "limits: {velocity: 1, acceleration: 1}, feedback: [mode_display], error_control: "
+      "{master_timeout: 1.0}}}");
   const auto file = [](const std::string& drive) {
     return cia402::test::testFolder() + "/config/" + drive + ".yaml";
   };
   loadRobot(tree, file, problems);
+  EXPECT_THAT(problems.text(),
+              HasSubstr("profile own_pdos_drive says that the drive watches no heartbeat"));
   EXPECT_THAT(problems.text(),
               HasSubstr("axes/a/feedback: says nothing here: profile own_pdos_drive has PDOs"));
 }

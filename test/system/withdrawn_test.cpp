@@ -97,26 +97,47 @@ TEST_P(InterruptedBySync, NothingIsEnabledAndWhatMovedStops) {
 
 INSTANTIATE_TEST_SUITE_P(After, InterruptedBySync, testing::Values(0, 3, 7, 12, 20, 35));
 
-TEST(ARecoverThatWaitsForLss, IsWithdrawnByDisableEvenWhereThatIsRefused) {
-  Scene scene(loadText(genericPair({},
+class ARecoverThatWaitsForLss : public testing::Test {
+ protected:
+  /// `right` was switched off and is being looked for by LSS.
+  void beginRecover(const std::string& axes) {
+    ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 20s)) << scene.told();
+    scene.inject("right", "power_cycle");
+    ASSERT_TRUE(scene.runUntil(
+        [&] { return scene.state("right").health == canopen::NodeHealth::lost; }, 2s));
+    scene.run(400ms);
+    recovering = scene.begin(ProcedureKind::recover, axes);
+    scene.run(5ms);
+    ASSERT_FALSE(*recovering) << (*recovering)->message;
+  }
+  void SetUp() override { scene.robot().start(); }
+
+  Scene scene{loadText(genericPair({},
                                    ", lss: {vendor_id: 1234, product_code: 1026, revision: 65536, "
-                                   "serial: 222}, simulation: {unconfigured: true, serial: 222}")));
-  scene.robot().start();
-  ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 20s)) << scene.told();
-  scene.inject("right", "power_cycle");
-  ASSERT_TRUE(
-      scene.runUntil([&] { return scene.state("right").health == canopen::NodeHealth::lost; }, 2s));
-  scene.run(400ms);
-  const auto recovering = scene.begin(ProcedureKind::recover, "");
-  scene.run(5ms);
-  ASSERT_FALSE(*recovering) << (*recovering)->message;
+                                   "serial: 222}, simulation: {unconfigured: true, serial: 222}"))};
+  std::shared_ptr<std::optional<bus::Answer>> recovering;
+};
+
+TEST_F(ARecoverThatWaitsForLss, IsWithdrawnFromAllAxesThatAreDisabled) {
+  beginRecover("");
   EXPECT_FALSE(scene.procedure(ProcedureKind::disable).success) << "right is away";
   scene.run(10s);
   ASSERT_TRUE(*recovering);
   EXPECT_FALSE((*recovering)->success);
-  EXPECT_THAT((*recovering)->message, AllOf(HasSubstr("left: not started, for disable was called"),
-                                            HasSubstr("right: not started")));
+  EXPECT_THAT((*recovering)->message,
+              AllOf(HasSubstr("left: not started, for disable was called"),
+                    HasSubstr("right: not started, for disable was called")));
   EXPECT_FALSE(scene.truth("left").power_stage_on);
+  EXPECT_FALSE(scene.truth("right").power_stage_on);
+}
+
+TEST_F(ARecoverThatWaitsForLss, IsWithdrawnByAHaltThatIsRefused) {
+  beginRecover("right");
+  EXPECT_FALSE(scene.procedure(ProcedureKind::halt, "right").success) << "it is away";
+  ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 20s)) << scene.told();
+  scene.run(3s);
+  ASSERT_TRUE(*recovering);
+  EXPECT_THAT((*recovering)->message, HasSubstr("right: not started, for halt was called"));
   EXPECT_FALSE(scene.truth("right").power_stage_on);
 }
 
