@@ -19,7 +19,10 @@ Event::Severity severityOf(can::BusState state) {
 
 }  // namespace
 
-void BusWatch::update(const can::Interface& interface, Robot& robot, Time now) {
+std::optional<can::BusState> BusWatch::update(const can::Interface& interface, Robot& robot,
+                                              Time now) {
+  const auto through = unseenLoss(interface);
+  if (through) onUnseenLoss(*through, interface, robot, now);
   if (!known_ || interface.state() != state_) onChange(interface, robot, now);
   if (now >= limit_.deadline()) {
     while (const auto summary = limit_.due(now)) {
@@ -31,13 +34,47 @@ void BusWatch::update(const can::Interface& interface, Robot& robot, Time now) {
            now);
     }
   }
-  if (state_ == can::BusState::error_active || now < refreshed_ + kRefresh) return;
+  if (state_ == can::BusState::error_active || now < refreshed_ + kRefresh) return through;
   refreshed_ = now;
   text_.assign(interface.describe());
   const std::string remedy = interface.recovery();
-  if (remedy_ == remedy) return;
+  if (remedy_ == remedy) return through;
   remedy_.assign(remedy);
   if (!remedy.empty()) tell(Event::Severity::warning, remedy, now);
+  return through;
+}
+
+std::optional<can::BusState> BusWatch::unseenLoss(const can::Interface& interface) {
+  const can::BusCounters& counters = interface.counters();
+  const bool went = counters.interface_losses != interface_losses_;
+  const bool off = counters.bus_off_events != bus_offs_;
+  interface_losses_ = counters.interface_losses;
+  bus_offs_ = counters.bus_off_events;
+  // A loss that is still there, or was there at the last look, is seen by the state.
+  if (!known_ || lost(state_) || lost(interface.state())) return std::nullopt;
+  if (went) return can::BusState::down;
+  if (off) return can::BusState::bus_off;
+  return std::nullopt;
+}
+
+/// The set-points of the time in between reached nobody: motion must not go on as if they had.
+void BusWatch::onUnseenLoss(can::BusState through, const can::Interface& interface, Robot& robot,
+                            Time now) {
+  const std::string what =
+      robot.config().bus.interface + " was " + can::toString(through) + " for a moment";
+  const auto verdict = limit_.take(static_cast<std::uint32_t>(through), now);
+  const bool is_news = verdict != RepeatLimiter::Verdict::hold;
+  if (is_news) {
+    tell(severityOf(through),
+         what +
+             (through == can::BusState::bus_off
+                  ? ": check wiring, termination and bit rate"
+                  : ": look who takes it down, or whether its adapter was unplugged") +
+             "; now: " + interface.describe(),
+         now);
+  }
+  robot.busLost(what, now);
+  robot.busBack(is_news, now);
 }
 
 void BusWatch::onChange(const can::Interface& interface, Robot& robot, Time now) {

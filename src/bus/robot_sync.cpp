@@ -12,10 +12,12 @@ using State = canopen::SyncConsumer::State;
 constexpr Duration kSyncNewsInterval = std::chrono::milliseconds(100);
 constexpr Duration kForeignHeard = std::chrono::seconds(1);  // one within this is a second producer
 constexpr Duration kPatience = std::chrono::seconds(1);  // with the first SYNC, before it is told
+constexpr Duration kLasting = std::chrono::seconds(1);   // trouble that is away so long is over
+constexpr int kMeasuredDigits = 3;
 
-std::string milliseconds(Duration duration) {
+std::string milliseconds(Duration duration, int digits = 6) {
   char text[32];
-  std::snprintf(text, sizeof text, "%g ms", 1e3 * toSeconds(duration));
+  std::snprintf(text, sizeof text, "%.*g ms", digits, 1e3 * toSeconds(duration));
   return text;
 }
 
@@ -69,26 +71,44 @@ void Robot::noteSecondProducer(Time now) {
   last_foreign_sync_ = now;
 }
 
-std::string Robot::syncProblem() const {
+Robot::SyncTrouble Robot::syncTrouble() const {
   if (!config_.bus.external_sync) {
-    if (foreign_syncs_ == 0 || now_ > last_foreign_sync_ + kForeignHeard) return {};
-    return "another device produces SYNC (COB-ID 0x080), too: drives would move at both paces; "
-           "look for 1005h with bit 30, or let the other one lead with `bus: {sync: external}`";
+    const bool heard = foreign_syncs_ != 0 && now_ <= last_foreign_sync_ + kForeignHeard;
+    return heard ? SyncTrouble::second_producer : SyncTrouble::none;
   }
+  if (external_sync_.state() != State::running) return SyncTrouble::absent;
+  if (external_sync_.formWrong()) return SyncTrouble::wrong_form;
+  return external_sync_.periodWrong() ? SyncTrouble::wrong_period : SyncTrouble::none;
+}
+
+std::string Robot::syncText(SyncTrouble trouble) const {
   const std::string expected = milliseconds(config_.bus.sync_period);
-  if (external_sync_.state() != State::running) {
-    return "no SYNC (COB-ID 0x080) comes; another device must send it every " + expected +
-           ", as `bus: {sync: external}` says";
+  switch (trouble) {
+    case SyncTrouble::none:
+      break;
+    case SyncTrouble::second_producer:
+      return "another device produces SYNC (COB-ID 0x080), too: drives would move at both paces; "
+             "look for 1005h with bit 30, or let the other one lead with `bus: {sync: external}`";
+    case SyncTrouble::absent:
+      return "no SYNC (COB-ID 0x080) comes; another device must send it every " + expected +
+             ", as `bus: {sync: external}` says";
+    case SyncTrouble::wrong_form:
+      return std::string("SYNC comes ") +
+             (config_.bus.sync_counter == 0 ? "with a counter, write its overflow value as"
+                                            : "without the counter of") +
+             " `bus: {sync_counter}`";
+    case SyncTrouble::wrong_period:
+      return "SYNC comes every " + milliseconds(external_sync_.period(), kMeasuredDigits) +
+             ", not every " + expected + " as `bus: {sync_period}` says: correct one of them";
   }
-  if (external_sync_.formWrong()) {
-    return std::string("SYNC comes ") +
-           (config_.bus.sync_counter == 0 ? "with a counter, write its overflow value as"
-                                          : "without the counter of") +
-           " `bus: {sync_counter}`";
-  }
-  if (!external_sync_.periodWrong()) return {};
-  return "SYNC comes every " + milliseconds(external_sync_.period()) + ", not every " + expected +
-         " as `bus: {sync_period}` says: correct one of them";
+  return {};
+}
+
+std::string Robot::syncProblem() const {
+  const SyncTrouble trouble = syncTrouble();
+  if (trouble != SyncTrouble::none) return syncText(trouble);
+  if (sync_trouble_ == SyncTrouble::none) return {};
+  return sync_problem_.str() + " (a moment ago; wait until SYNC has been well for a second)";
 }
 
 void Robot::watchSync(Time now) {
@@ -97,18 +117,24 @@ void Robot::watchSync(Time now) {
   sync_checked_ = just_started ? now + kPatience : now;
   if (just_started) return;
   if (!config_.bus.external_sync && foreign_syncs_ == 0) return;
-  const std::string problem = syncProblem();
-  const FixedText<200> shown(problem);
-  if (sync_problem_ == shown.view()) return;
-  sync_problem_ = shown;
-  if (problem.empty()) {
+  const SyncTrouble trouble = syncTrouble();
+  if (trouble != sync_seen_) sync_seen_since_ = now;
+  sync_seen_ = trouble;
+  const bool is_new = trouble != sync_trouble_;
+  // At the edge of what is tolerated trouble comes and goes at every look: told once.
+  const bool lasts = now >= sync_seen_since_ + kLasting;
+  if (is_new && sync_trouble_ != SyncTrouble::none && !lasts) return;
+  sync_trouble_ = trouble;
+  sync_problem_.assign(syncText(trouble));
+  if (!is_new) return;
+  if (trouble == SyncTrouble::none) {
     tell(Event::Severity::info, "SYNC is as it should be", now);
-  } else {
-    tell(Event::Severity::error, problem, now);
-    // Where it is lost, that has happened already.
-    const bool comes = external_sync_.state() == State::running;
-    if (comes && config_.bus.external_sync) stopForSync("stopped: " + problem, now);
+    return;
   }
+  tell(Event::Severity::error, sync_problem_.view(), now);
+  // Where it is lost, that has happened already.
+  const bool comes = external_sync_.state() == State::running;
+  if (comes && config_.bus.external_sync) stopForSync("stopped: " + sync_problem_.str(), now);
 }
 
 }  // namespace cia402::bus

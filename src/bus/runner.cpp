@@ -125,7 +125,9 @@ void BusRunner::run() {
 
 void BusRunner::iterate(Time now) {
   if (shutdown_requested_) robot_.beginShutdown(now);
-  watch_.update(*interface_, robot_, now);
+  if (const auto unseen = watch_.update(*interface_, robot_, now)) {
+    recorder_.onInterface(*unseen, now);
+  }
   recorder_.onInterface(interface_->state(), now);
   if (robot_.config().bus.time_interval > Duration::zero()) {
     robot_.setWallTime(now.time_since_epoch() + wallClockDistance(), now);

@@ -167,6 +167,8 @@ void SocketCan::handleError(int error) {
 }
 
 void SocketCan::becomeUnusable(BusState state) {
+  const bool was_there = state_ != BusState::missing && state_ != BusState::down;
+  if (was_there && state != BusState::bus_off) ++counters_.interface_losses;
   state_ = state;
   if (state != BusState::bus_off) recovery_note_.clear();
   counters_.frames_dropped += pending_.discard();

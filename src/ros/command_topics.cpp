@@ -1,22 +1,11 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "cia402_driver/ros/command_topics.h"
 
-#include <ros/console.h>
-
 #include <boost/function.hpp>
 
 #include "cia402_driver/ros/clock_map.h"
 
 namespace cia402::ros_node {
-namespace {
-
-constexpr double kRefusalLogInterval = 1.0;  // s; a refused stream must not flood the log
-
-void logRefusal(const bus::Answer& answer) {
-  if (!answer.success) ROS_WARN_STREAM_THROTTLE(kRefusalLogInterval, answer.message);
-}
-
-}  // namespace
 
 bus::TrajectoryCommand trajectoryCommand(const std::string& group,
                                          const trajectory_msgs::JointTrajectory& message) {
@@ -32,8 +21,8 @@ bus::TrajectoryCommand trajectoryCommand(const std::string& group,
 }
 
 CommandTopics::CommandTopics(ros::NodeHandle& private_node, bus::BusRunner& runner,
-                             const config::RobotConfig& robot)
-    : runner_(runner) {
+                             bus::ReplyLog& replies, const config::RobotConfig& robot)
+    : runner_(runner), replies_(replies) {
   for (std::size_t i = 0; i < robot.axes.size(); ++i) {
     const boost::function<void(const std_msgs::Float64&)> callback =
         [this, i](const std_msgs::Float64& message) { onSetpoint(i, message); };
@@ -55,7 +44,7 @@ CommandTopics::CommandTopics(ros::NodeHandle& private_node, bus::BusRunner& runn
 void CommandTopics::onSetpoint(std::size_t axis, const std_msgs::Float64& message) {
   bus::Command command;
   command.body = bus::SetpointCommand{axis, message.data};
-  command.reply = logRefusal;
+  command.reply = replies_.toSetpoint(axis);
   runner_.post(std::move(command));
 }
 
@@ -63,13 +52,7 @@ void CommandTopics::onTrajectory(const std::string& group,
                                  const trajectory_msgs::JointTrajectory& message) {
   bus::Command command;
   command.body = trajectoryCommand(group, message);
-  command.reply = [](const bus::Answer& answer) {
-    if (answer.success) {
-      ROS_DEBUG_STREAM(answer.message);
-    } else {
-      ROS_ERROR_STREAM(answer.message);
-    }
-  };
+  command.reply = replies_.toTrajectory();
   runner_.post(std::move(command));
 }
 

@@ -22,7 +22,7 @@ std::string localTime(const char* format) {
 
 }  // namespace
 
-Result<bus::SaveDcfCommand> saveDcfCommand(const std::string& axis, const std::string& path) {
+Result<bus::DcfStamp> dcfStamp(const std::string& axis, const std::string& path) {
   const fs::path file(path);
   if (file.extension() != ".dcf") {
     return Error{axis + ": \"" + path + "\" does not end in .dcf; write for example /tmp/" + axis +
@@ -33,8 +33,7 @@ Result<bus::SaveDcfCommand> saveDcfCommand(const std::string& axis, const std::s
   if (error || !fs::is_directory(absolute.parent_path(), error)) {
     return Error{axis + ": there is no folder " + absolute.parent_path().string()};
   }
-  return bus::SaveDcfCommand{axis, file.filename().string(), localTime("%m-%d-%Y"),
-                             localTime("%I:%M%p")};
+  return bus::DcfStamp{file.filename().string(), localTime("%m-%d-%Y"), localTime("%I:%M%p")};
 }
 
 Result<std::string> writeDcfFile(const std::string& path, const std::string& text) {

@@ -8,9 +8,9 @@
 
 namespace cia402::ros_node {
 
-EventLog::EventLog(ros::NodeHandle& private_node, bus::BusRunner& runner,
+EventLog::EventLog(ros::NodeHandle& private_node, bus::BusRunner& runner, bus::ReplyLog& replies,
                    const config::RobotConfig& robot)
-    : runner_(runner), robot_(robot) {
+    : runner_(runner), replies_(replies), robot_(robot) {
   emergencies_ = private_node.advertise<cia402_driver::Emergency>("emergencies", 10000);
   timer_ =
       private_node.createTimer(ros::Duration(0.02), [this](const ros::TimerEvent&) { drain(); });
@@ -31,6 +31,7 @@ void EventLog::drain() {
         break;
     }
   }
+  drainReplies();
   bus::RecordingService::News news;
   while (runner_.recordings().nextNews(news)) {
     if (news.written) {
@@ -52,6 +53,27 @@ void EventLog::drain() {
                     << " emergencies came too fast to be published; they are counted");
     unpublished_told_ = unpublished;
   }
+}
+
+void EventLog::drainReplies() {
+  bus::ReplyLog::Entry entry;
+  while (replies_.next(entry)) {
+    switch (entry.level) {
+      case bus::ReplyLog::Level::debug:
+        ROS_DEBUG_STREAM(entry.text.view());
+        break;
+      case bus::ReplyLog::Level::warning:
+        ROS_WARN_STREAM(entry.text.view());
+        break;
+      case bus::ReplyLog::Level::error:
+        ROS_ERROR_STREAM(entry.text.view());
+        break;
+    }
+  }
+  const std::uint64_t lost = replies_.lost();
+  if (lost == replies_lost_told_) return;
+  ROS_WARN_STREAM(lost - replies_lost_told_ << " refused commands came too fast to be logged");
+  replies_lost_told_ = lost;
 }
 
 void EventLog::publish(const bus::EmergencyEvent& event) {

@@ -56,7 +56,9 @@ Services::Services(ros::NodeHandle& private_node, bus::BusRunner& runner,
   advertise(private_node, "");
   advertiseDump(private_node);
   for (const drive::AxisConfig& axis : robot.axes) {
-    advertise(ros::NodeHandle(private_node, axis.name), axis.name);
+    ros::NodeHandle axis_node(private_node, axis.name);
+    advertise(axis_node, axis.name);
+    advertiseSaveDcf(axis_node, axis);
   }
 }
 
@@ -105,17 +107,19 @@ void Services::advertiseHistory(ros::NodeHandle& node, const std::string& axis) 
       }));
 }
 
-// The drive is read in the bus thread, the file is written here.
-void Services::advertiseSaveDcf(ros::NodeHandle& node, const std::string& axis) {
+// The drive is read in the bus thread; the file is planned, worded and written here.
+void Services::advertiseSaveDcf(ros::NodeHandle& node, const drive::AxisConfig& axis) {
   using cia402_driver::SaveDcf;
   servers_.push_back(node.advertiseService<SaveDcf::Request, SaveDcf::Response>(
-      "save_dcf", [this, axis](SaveDcf::Request& request, SaveDcf::Response& response) {
-        const auto wanted = saveDcfCommand(axis, request.path);
-        if (!wanted) {
-          response.message = wanted.error().message;
+      "save_dcf", [this, &axis](SaveDcf::Request& request, SaveDcf::Response& response) {
+        const auto stamp = dcfStamp(axis.name, request.path);
+        if (!stamp) {
+          response.message = stamp.error().message;
           return true;
         }
-        const bus::Answer answer = call(runner_, *wanted);
+        bus::DcfDraft draft(axis, *stamp);
+        bus::Answer answer = call(runner_, draft.command());
+        if (answer.success) answer = draft.finish();
         response.message = answer.message;
         if (!answer.success) return true;
         const auto written = writeDcfFile(request.path, answer.text);
@@ -144,7 +148,6 @@ void Services::advertise(ros::NodeHandle node, const std::string& axis) {
           }));
   if (axis.empty()) return;  // the rest makes sense for one axis only
   advertiseHistory(node, axis);
-  advertiseSaveDcf(node, axis);
   servers_.push_back(node.advertiseService<cia402_driver::SetPosition::Request,
                                            cia402_driver::SetPosition::Response>(
       "set_position", [this, axis](cia402_driver::SetPosition::Request& request,

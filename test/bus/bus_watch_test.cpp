@@ -38,7 +38,7 @@ struct BusWatchTest : testing::Test, EventSink {
   }
   void update(Duration later = 0ms) {
     now += later;
-    watch.update(interface, world.robot, now);
+    unseen = watch.update(interface, world.robot, now);
   }
   void become(BusState state, const std::string& words, Duration later = 1ms) {
     interface.now = state;
@@ -49,6 +49,7 @@ struct BusWatchTest : testing::Test, EventSink {
   FakeInterface interface;
   std::vector<std::string> texts;
   std::vector<Event::Severity> severities;
+  std::optional<BusState> unseen;  // what the last update returned
   BusWatch watch{*this};
   Time now{10s};
 };
@@ -106,6 +107,81 @@ TEST_F(BusWatchTest, LetsTheRobotRefuseCommandsWhileTheBusIsLost) {
   become(BusState::down, "can0 is down");
   EXPECT_THAT(world.call(drive::ProcedureKind::enable).message,
               HasSubstr("refused: can0 is down, nothing reaches the drive"));
+}
+
+/// The arm moves on a bus that is well.
+struct BusWatchOfAMove : BusWatchTest {
+  BusWatchOfAMove() {
+    world.enable();
+    become(BusState::error_active, "can0 is up");
+    EXPECT_TRUE(world.move({1.0, -1.0}, 4.0).success);
+    world.run(500ms);
+    EXPECT_TRUE(world.group().executing());
+    now = world.now;
+    texts.clear();
+    severities.clear();
+  }
+  void expectStoppedFor(const std::string& reason) {
+    EXPECT_FALSE(world.group().executing());
+    world.run(1s);
+    EXPECT_NE(world.axis(0).state().state, drive::State::operation_enabled);
+    EXPECT_EQ(world.eventsWith("stopped: " + reason), 1u) << world.allEvents();
+    EXPECT_TRUE(world.call(drive::ProcedureKind::recover).success) << "the bus is there";
+  }
+};
+
+TEST_F(BusWatchOfAMove, TakesABusOffBetweenTwoLooksForALoss) {
+  ++interface.counted.bus_off_events;
+  update();
+  EXPECT_EQ(unseen, BusState::bus_off);
+  EXPECT_THAT(texts, ElementsAre("can0 was bus-off for a moment: check wiring, termination and bit "
+                                 "rate; now: can0 is up"));
+  EXPECT_THAT(severities, ElementsAre(Event::Severity::error));
+  EXPECT_EQ(world.eventsWith("can0 is back"), 1u);
+  expectStoppedFor("can0 was bus-off for a moment");
+  update();
+  EXPECT_FALSE(unseen) << "taken once";
+  EXPECT_EQ(texts.size(), 1u);
+}
+
+TEST_F(BusWatchOfAMove, TakesAnInterfaceThatWentDownBetweenTwoLooksForALoss) {
+  ++interface.counted.interface_losses;
+  update();
+  EXPECT_EQ(unseen, BusState::down);
+  EXPECT_THAT(texts, ElementsAre(HasSubstr("can0 was down for a moment: look who takes it down")));
+  expectStoppedFor("can0 was down for a moment");
+}
+
+TEST_F(BusWatchOfAMove, TakesABusOffThatLeftAWarningBehindForALoss) {
+  ++interface.counted.bus_off_events;
+  become(BusState::error_warning, "can0 warns");
+  EXPECT_EQ(unseen, BusState::bus_off);
+  EXPECT_EQ(texts.back(), "can0 warns");
+  expectStoppedFor("can0 was bus-off for a moment");
+}
+
+TEST_F(BusWatchOfAMove, TellsALossThatItSeesOnlyOnce) {
+  ++interface.counted.bus_off_events;
+  become(BusState::bus_off, "can0 is off");
+  EXPECT_FALSE(unseen);
+  ++interface.counted.bus_off_events;  // and again, before it was seen to be back
+  become(BusState::error_active, "can0 is up");
+  EXPECT_FALSE(unseen);
+  EXPECT_THAT(texts, ElementsAre("can0 is off", "can0 is up"));
+  EXPECT_EQ(world.eventsWith("can0 is back"), 1u);
+}
+
+TEST_F(BusWatchTest, SumsUpLossesThatItDoesNotSee) {
+  become(BusState::error_active, "can0 is up");
+  for (int i = 0; i < 100; ++i) {
+    ++interface.counted.bus_off_events;
+    update(1ms);
+  }
+  EXPECT_EQ(texts.size(), 4u);
+  texts.clear();
+  update(5s);
+  EXPECT_THAT(texts, ElementsAre(HasSubstr("can0 became bus-off 97 times in the last 5 s, now it "
+                                           "is error active")));
 }
 
 }  // namespace

@@ -2,155 +2,55 @@
 #include "cia402_driver/bus/dcf_job.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include "bus/robot_world.h"
+#include "bus/dcf_world.h"
 
 namespace cia402::bus {
 namespace {
 
 using canopen::ObjectId;
 using test::Bytes;
-using test::RobotWorld;
 using testing::AllOf;
 using testing::HasSubstr;
-using testing::Not;
 
-const char* const kEds = R"([DeviceInfo]
-VendorNumber=0x123
-NrOfTXPDO=1
-[2001]
-ParameterName=Gain
-DataType=6
-AccessType=rw
-DefaultValue=5
-[2002]
-ParameterName=Command
-DataType=6
-AccessType=wo
-[2003]
-ParameterName=Length differs
-DataType=7
-AccessType=rw
-[2004]
-ParameterName=Not there
-DataType=7
-AccessType=rw
-[2005]
-ParameterName=Name
-DataType=9
-AccessType=ro
-[2006]
-ParameterName=Not to be scanned
-DataType=6
-AccessType=rw
-ObjFlags=2
-)";
-
-config::RobotConfig robotWithEds() {
-  config::RobotConfig robot = test::testRobot();
-  canopen::Eds eds = canopen::readEds(kEds, canopen::NodeId{1});
-  robot.axes[0].eds =
-      std::make_shared<const drive::AxisEds>(drive::AxisEds{"motor.eds", eds.info, eds.dictionary});
-  return robot;
-}
-
-struct DcfJobTest : testing::Test {
-  DcfJobTest() : world(robotWithEds()) {
-    world.boot();
-    world.drives[0].objects[ObjectId{0x2001, 0}] = {0x34, 0x12};
-    world.drives[0].objects[ObjectId{0x2002, 0}] = {1, 0};
-    world.drives[0].objects[ObjectId{0x2003, 0}] = {1, 0};
-    world.drives[0].objects[ObjectId{0x2005, 0}] = {'M', '7', 0, 0};
-    world.drives[0].objects[ObjectId{0x2006, 0}] = {1, 0};
-  }
-  Answer save(const std::string& axis = "shoulder") {
-    return world.call(SaveDcfCommand{axis, "shoulder.dcf", "11-21-2026", "03:40PM"});
-  }
-  RobotWorld world;
+struct DcfJobTest : test::DcfWorld {
+  Answer read() { return world.call(DcfDraft(world.axis(0).config(), stamp()).command()); }
 };
 
-TEST_F(DcfJobTest, ReadsWhatTheEdsCallsReadableAndTellsWhatCouldNotBeRead) {
-  const Answer answer = save();
-  ASSERT_TRUE(answer.success) << answer.message;
-  EXPECT_EQ(answer.message,
-            "shoulder (node 1): 2 objects read, 2 could not be read: 2003:00 Length differs (2 "
-            "bytes, but it should be uint32); 2004:00 Not there (the drive refused: 0x06020000 "
-            "(object does not exist in the object dictionary))");
-  const canopen::Eds dcf = canopen::readEds(answer.text);
-  EXPECT_EQ(dcf.info.node_id, canopen::NodeId{1});
-  EXPECT_EQ(dcf.info.node_name, "shoulder");
-  EXPECT_EQ(dcf.info.baud_rate, 1000U);
-  EXPECT_EQ(dcf.info.file_name, "shoulder.dcf");
-  EXPECT_EQ(dcf.info.last_eds, "motor.eds");
-  EXPECT_EQ(dcf.info.modification_date, "11-21-2026");
-  EXPECT_EQ(dcf.info.vendor_number, 0x123U);
-  EXPECT_EQ(dcf.dictionary.find(ObjectId{0x2001, 0})->value, (Bytes{0x34, 0x12}));
-  EXPECT_EQ(dcf.dictionary.find(ObjectId{0x2001, 0})->default_value, (Bytes{5, 0}));
-  EXPECT_EQ(dcf.dictionary.find(ObjectId{0x2005, 0})->value, (Bytes{'M', '7'}));
-  for (const std::uint16_t index : {std::uint16_t{0x2002}, std::uint16_t{0x2003},
-                                    std::uint16_t{0x2004}, std::uint16_t{0x2006}}) {
-    EXPECT_FALSE(dcf.dictionary.find(ObjectId{index, 0})->value) << index;
-  }
-}
-
-TEST_F(DcfJobTest, TextThatNoLineCanHoldIsLeftOutAndTold) {
-  world.drives[0].objects[ObjectId{0x2005, 0}] = {'M', '\n', '7'};
-  const Answer answer = save();
-  ASSERT_TRUE(answer.success);
-  EXPECT_THAT(answer.message, HasSubstr("2 objects read, 1 of them left out because no line"));
-  EXPECT_FALSE(canopen::readEds(answer.text).dictionary.find(ObjectId{0x2005, 0})->value);
+TEST_F(DcfJobTest, HandsBackWhatItReadAndLeavesTheWordsToTheCaller) {
+  const SaveDcfCommand command = DcfDraft(world.axis(0).config(), stamp()).command();
+  const Answer answer = world.call(command);
+  EXPECT_TRUE(answer.success);
+  EXPECT_TRUE(answer.text.empty());
+  const auto& items = command.reading->items;
+  ASSERT_EQ(items.size(), 4u);
+  EXPECT_EQ(items[0].outcome, DcfReading::Outcome::read);
+  EXPECT_EQ(items[0].data, (Bytes{0x34, 0x12}));
+  EXPECT_EQ(items[2].outcome, DcfReading::Outcome::refused);
+  EXPECT_THAT(items[2].problem, HasSubstr("0x06020000"));
+  EXPECT_EQ(command.reading->bitrate, 1e6);
+  EXPECT_EQ(command.reading.use_count(), 1) << "the bus thread frees nothing";
 }
 
 TEST_F(DcfJobTest, NothingIsWrittenToTheDrive) {
   world.drives[0].written.clear();
-  save();
+  read();
   EXPECT_TRUE(world.drives[0].written.empty());
 }
 
 TEST_F(DcfJobTest, ASilentDriveEndsItSoon) {
   world.drives[0].sdo_silent = true;
-  const Answer answer = save();
+  const Answer answer = read();
   EXPECT_FALSE(answer.success);
   EXPECT_THAT(answer.message,
               AllOf(HasSubstr("shoulder (node 1): no DCF: node 1, object 2004:00 Not there"),
                     HasSubstr("no answer within 100 ms")));
 }
 
-TEST_F(DcfJobTest, WithoutAnEdsTheProfileAndTheCommunicationObjectsAreRead) {
-  test::FakeDrive& drive = world.drives[1];
-  for (std::uint32_t index = 0x1000; index < 0x2000; ++index) {
-    for (std::uint8_t subindex = 0; subindex < 9; ++subindex) {
-      const ObjectId id{static_cast<std::uint16_t>(index), subindex};
-      if (index != 0x1017) drive.aborts[id] = subindex == 0 ? 0x06020000 : 0x06090011;
-    }
-  }
-  const auto give = [&](ObjectId id, const Bytes& data) {
-    drive.aborts.erase(id);
-    drive.objects[id] = data;
-  };
-  give({0x1000, 0}, {0x92, 0x01, 0x02, 0x00});
-  give({0x1018, 0}, {2});
-  give({0x1018, 1}, {0xBC, 0x0A, 0, 0});
-  give({0x1018, 2}, {7, 0, 0, 0});
-  give({0x1017, 0}, {100, 0});
-  give({0x6065, 0}, {0x10, 0x27, 0, 0});
-  const Answer answer = save("elbow");
-  ASSERT_TRUE(answer.success) << answer.message;
-  const canopen::Eds dcf = canopen::readEds(answer.text);
-  EXPECT_EQ(dcf.dictionary.find(ObjectId{0x1000, 0})->value, (Bytes{0x92, 0x01, 0x02, 0x00}));
-  EXPECT_EQ(dcf.dictionary.find(ObjectId{0x6065, 0})->value, (Bytes{0x10, 0x27, 0, 0}));
-  EXPECT_EQ(dcf.dictionary.find(ObjectId{0x6065, 0})->name, "following_error_window");
-  EXPECT_EQ(dcf.info.vendor_number, 0xABCU);
-  EXPECT_EQ(dcf.info.product_number, 7U);
-  EXPECT_EQ(dcf.dictionary.objects().at(0x1018).entries.size(), 3U);
-  EXPECT_EQ(dcf.dictionary.find(ObjectId{0x1018, 1})->access, canopen::Access::ro);
-  EXPECT_EQ(dcf.dictionary.find(ObjectId{0x1800, 1}), nullptr);
-  EXPECT_THAT(answer.message, Not(HasSubstr("could not be read")));
-}
-
 TEST_F(DcfJobTest, AnUnknownAxisIsRefused) {
-  EXPECT_EQ(save("nobody").message, "there is no axis \"nobody\"");
+  SaveDcfCommand command = DcfDraft(world.axis(0).config(), stamp()).command();
+  command.axis = "nobody";
+  EXPECT_EQ(world.call(command).message, "there is no axis \"nobody\"");
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <sys/mman.h>
 
 #include <atomic>
+#include <cstdlib>
+#include <filesystem>
 #include <future>
 
 #include <gmock/gmock.h>
@@ -22,6 +24,7 @@ using testing::HasSubstr;
 struct Wire {
   std::atomic<can::BusState> state{can::BusState::error_active};
   std::atomic<int> frames{0};
+  std::atomic<std::uint64_t> bus_off_events{0};
   std::promise<void> first_frame, shut_down;
   std::function<void()> while_flushing;  ///< called once, after the last frame was sent
 };
@@ -53,6 +56,7 @@ class FakeInterface : public can::Interface {
     return std::nullopt;
   }
   void maintain(Time) override {
+    counters_.bus_off_events = wire_->bus_off_events;
     if (rounds_left_ > 0 && --rounds_left_ == 0 && wire_->while_flushing) wire_->while_flushing();
   }
   Time nextDeadline() const override {
@@ -224,6 +228,25 @@ TEST_F(BusRunnerTest, RefusesCommandsThatFindNoRoom) {
   release.set_value();
   blocking.wait();
   meet();
+}
+
+TEST_F(BusRunnerTest, RecordsABusOffThatIsOverBeforeItLooks) {
+  char folder[] = "/tmp/runner_test_XXXXXX";
+  config::RobotConfig robot = test::testRobot();
+  robot.recorder.directory = mkdtemp(folder);
+  robot.recorder.keep = 1;
+  robot.recorder.post_trigger = Duration::zero();
+  runner = std::make_unique<BusRunner>(robot, test::masterOf(robot),
+                                       std::make_unique<FakeInterface>(wire), options());
+  runner->start();
+  wire->first_frame.get_future().wait();
+  wire->bus_off_events = 1;
+  RecordingService::News news;
+  waitFor([&] { return runner->recordings().nextNews(news); });
+  EXPECT_THAT(news.text, HasSubstr("bus-off"));
+  EXPECT_TRUE(seen("can0 was bus-off for a moment"));
+  runner.reset();
+  std::filesystem::remove_all(folder);
 }
 
 TEST_F(BusRunnerTest, TellsWhatTheOperatingSystemGranted) {

@@ -18,6 +18,7 @@ TEST_F(SocketCanOnVcan, SurvivesTheInterfaceGoingDownAndUp) {
   ASSERT_TRUE(becomes(b, BusState::error_active)) << b.describe();
   EXPECT_TRUE(a.send(Frame(0x202, {2})));
   EXPECT_THAT(receivedIds(b), ElementsAre(0x202));
+  EXPECT_EQ(a.counters().interface_losses, 1u);
 }
 
 TEST_F(SocketCanOnVcan, NoticesADownInterfaceBySendingBeforeItLooks) {
@@ -68,6 +69,7 @@ TEST_F(SocketCanOnVcan, NoticesAnInterfaceExchangedBetweenTwoLooks) {
   a.maintain(now());
   b.maintain(now());
   ASSERT_EQ(a.state(), BusState::error_active) << a.describe();
+  EXPECT_EQ(a.counters().interface_losses, 1u) << "told by nothing else";
   EXPECT_TRUE(a.send(Frame(0x202, {2})));
   EXPECT_THAT(receivedIds(b), ElementsAre(0x202));
 }

@@ -93,6 +93,24 @@ TEST_F(BusOffOfTheDriver, ThatIsShortLeavesTheAxesDisabledToo) {
   expectUsableAgain();
 }
 
+TEST_F(BusOffOfTheDriver, ThatIsOverBeforeTheDriverLooksLeavesTheAxesDisabledToo) {
+  begin();
+  scene->port().forceBusOff();
+  scene->port().requestRecovery();  // the kernel, with a short `restart-ms`
+  scene->stall(50ms);
+  ASSERT_EQ(scene->interface().state(), BusState::error_active);
+  scene->run(10ms);
+  EXPECT_THAT(scene->told(),
+              AllOf(HasSubstr("sim was bus-off for a moment: check wiring"),
+                    HasSubstr("left (node 1): sim was bus-off for a moment: nothing reaches"),
+                    HasSubstr("sim is back")));
+  const double at_return = scene->state(0).position;
+  expectLeftDisabled();
+  EXPECT_LT(std::abs(scene->state(0).position - at_return), 0.2) << "a quick stop, no move";
+  EXPECT_THAT(scene->told(), HasSubstr("stopped: sim was bus-off for a moment"));
+  expectUsableAgain();
+}
+
 TEST_F(BusOffOfTheDriver, RefusesCommandsWithTheReason) {
   sim::BusInterface::Options options;
   options.may_restart = false;

@@ -61,6 +61,11 @@ class InterfaceScene : private bus::EventSink {
     }
     return true;
   }
+  /// The driver's thread does not run for so long; the bus and the kernel do.
+  void stall(Duration duration) {
+    now_ += duration;
+    world_.advance(now_);
+  }
   bus::Answer call(decltype(bus::Command::body) body) {
     std::optional<bus::Answer> answer;
     bus::Command command;

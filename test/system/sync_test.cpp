@@ -132,6 +132,8 @@ TEST_F(ExternalSync, WhenItIsBackNothingMovesUntilSomebodyEnables) {
   EXPECT_LT(scene->seen("left").travel(), 2e-4);
   EXPECT_FALSE(scene->truth("left").power_stage_on);
   EXPECT_FALSE(std::isnan(scene->state("left").position));
+  EXPECT_THAT(scene->procedure(ProcedureKind::enable).message, HasSubstr("a moment ago"));
+  scene->run(500ms);
   EXPECT_THAT(scene->told(), HasSubstr("SYNC is as it should be"));
   const auto enabled = scene->procedure(ProcedureKind::enable);
   EXPECT_TRUE(enabled.success) << enabled.message;
@@ -194,7 +196,7 @@ TEST_F(ExternalSync, ASecondProducerBesideOurOwnSyncIsSaid) {
   EXPECT_GT(snapshot().foreign_syncs, 30u);
   EXPECT_FALSE(scene->procedure(ProcedureKind::enable).success);
   metronome->play(false);
-  scene->run(1500ms);
+  scene->run(2500ms);
   const auto enabled = scene->procedure(ProcedureKind::enable);
   EXPECT_TRUE(enabled.success) << enabled.message;
 }
@@ -243,6 +245,47 @@ TEST_P(ExternalSyncJitter, AndLossDisturbNeitherMotionNorPeople) {
   EXPECT_NEAR(static_cast<double>(shot.missed_syncs), lossy.lost, 1.0);
   EXPECT_TRUE(scene.state("left").ready_for_motion);
   EXPECT_THAT(scene.told(), Not(HasSubstr("SYNC")));
+}
+
+/// Parameter: the producer's period, microseconds; 4 ms are configured.
+class ExternalSyncOfAWrongPeriod : public testing::TestWithParam<int> {
+ protected:
+  static std::size_t linesWith(const std::string& words, const std::string& told) {
+    std::size_t count = 0;
+    for (std::size_t at = told.find(words); at != std::string::npos;) {
+      ++count;
+      at = told.find(words, at + 1);
+    }
+    return count;
+  }
+};
+
+TEST_P(ExternalSyncOfAWrongPeriod, ThatJittersIsToldOnceAndNothingIsEnabled) {
+  Scene scene(loadText(external()));
+  sim::SyncProducer producer(11);
+  producer.connect(scene.world().addParticipant("producer", producer));
+  sim::SyncSchedule schedule;
+  schedule.period = std::chrono::microseconds(GetParam());
+  schedule.jitter = 800us;
+  producer.start(schedule, scene.now());
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  scene.run(20s);
+  EXPECT_LE(linesWith("SYNC", scene.told()), 2u) << scene.told();
+  EXPECT_EQ(linesWith("SYNC is as it should be", scene.told()), 0u);
+  for (int i = 0; i < 50; ++i) {
+    EXPECT_FALSE(scene.procedure(ProcedureKind::enable, "left").success) << i;
+    scene.run(17ms);
+  }
+}
+
+// At the edge of what is tolerated, plainly wrong, and so long that it seems absent in between.
+INSTANTIATE_TEST_SUITE_P(Microseconds, ExternalSyncOfAWrongPeriod,
+                         testing::Values(4200, 5000, 20000));
+
+TEST_F(ExternalSync, AMeasuredPeriodIsToldInThreeDigits) {
+  boot(external(), 5123456ns);
+  scene->run(1500ms);
+  EXPECT_THAT(scene->told(), HasSubstr("SYNC comes every 5.12 ms, not every 4 ms as"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Microseconds, ExternalSyncJitter, testing::Values(0, 200, 1000, 1500));

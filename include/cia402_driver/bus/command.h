@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -23,7 +24,7 @@ struct Answer {
   std::string message;                                       ///< a sentence
   canopen::Bytes data;                                       ///< read_object: wire order
   double number = std::numeric_limits<double>::quiet_NaN();  ///< read_object: in device units
-  std::string text;  ///< read_object: value with unit; save_dcf: the file
+  std::string text;  ///< read_object: value with unit; DcfDraft: the file
   std::vector<canopen::lss::Identity> devices;  ///< lss_scan: without a node-ID
   std::vector<std::string> device_axes;         ///< lss_scan: the axis of each device, or empty
   canopen::ErrorHistory history;                ///< error_history
@@ -108,10 +109,11 @@ struct LssBitTimingCommand {
   Duration delay{std::chrono::seconds(1)};  ///< of silence before and after the change
 };
 
-/// Reads everything that a drive holds and words it as a DCF: the answer's text. The file name and
-/// the present date ("11-21-2026") and time ("03:40PM"), as CiA 306 writes them, go into the file.
+struct DcfReading;
+/// Reads the objects of a drive that a DCF is to hold; made by DcfDraft.
 struct SaveDcfCommand {
-  std::string axis, file_name, date, time;
+  std::string axis;
+  std::shared_ptr<DcfReading> reading;  ///< not nullptr; complete once answered with success
 };
 
 /// Runs a function in the bus thread, e.g. to inject a fault into a simulated drive.

@@ -117,7 +117,10 @@ class Robot final : private canopen::MasterListener {
   void stopForSync(const std::string& why, Time now);
   void noteSecondProducer(Time now);
   void watchSync(Time now);
-  /// Why no axis may be enabled as SYNC is now; empty if it is well.
+  enum class SyncTrouble : std::uint8_t { none, second_producer, absent, wrong_form, wrong_period };
+  SyncTrouble syncTrouble() const;
+  std::string syncText(SyncTrouble trouble) const;
+  /// Why no axis may be enabled as SYNC is now, or was a moment ago; empty if it is well.
   std::string syncProblem() const;
   /// Trajectories run on a clock that leaves out what a late cycle missed: their set-points go on
   /// where they were instead of jumping to where they would be.
@@ -192,7 +195,10 @@ class Robot final : private canopen::MasterListener {
   canopen::SyncConsumer external_sync_;
   std::uint64_t foreign_syncs_ = 0;  ///< of others, while this program produces SYNC
   Time last_foreign_sync_{}, sync_checked_{};
-  FixedText<200> sync_problem_;
+  SyncTrouble sync_trouble_ = SyncTrouble::none;  // that was told
+  SyncTrouble sync_seen_ = SyncTrouble::none;     // at the last look
+  Time sync_seen_since_{};
+  FixedText<200> sync_problem_;  // sync_trouble_ in words
   Time next_sync_ = kNever, next_cycle_ = kNever, now_{};
   Shutdown shutdown_ = Shutdown::no;
   Time shutdown_began_{};

@@ -35,6 +35,7 @@ struct BusCounters {
   std::uint64_t frames_dropped = 0;   ///< refused: own queue full, or interface down
   std::uint64_t error_frames = 0;
   std::uint64_t bus_off_events = 0;
+  std::uint64_t interface_losses = 0;   ///< the interface went down or was removed
   std::uint64_t receive_overflows = 0;  ///< frames lost by the controller or the kernel
   /// Waited too long to be true, or a newer one of the same identifier came: thrown away.
   std::uint64_t frames_stale = 0;

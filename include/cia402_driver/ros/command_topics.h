@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "cia402_driver/bus/reply_log.h"
 #include "cia402_driver/bus/runner.h"
 #include "cia402_driver/config/robot.h"
 
@@ -17,7 +18,8 @@ namespace cia402::ros_node {
 /// Subscribes ~<axis>/command and ~<group>/command. What is refused is told in the log.
 class CommandTopics {
  public:
-  CommandTopics(ros::NodeHandle& private_node, bus::BusRunner& runner,
+  /// @param replies where refusals go; must outlive the thread of `runner`.
+  CommandTopics(ros::NodeHandle& private_node, bus::BusRunner& runner, bus::ReplyLog& replies,
                 const config::RobotConfig& robot);
 
  private:
@@ -25,6 +27,7 @@ class CommandTopics {
   void onTrajectory(const std::string& group, const trajectory_msgs::JointTrajectory& message);
 
   bus::BusRunner& runner_;
+  bus::ReplyLog& replies_;
   std::vector<ros::Subscriber> subscribers_;
 };
 

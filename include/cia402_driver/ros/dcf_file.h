@@ -3,14 +3,14 @@
 
 #include <string>
 
-#include "cia402_driver/bus/command.h"
+#include "cia402_driver/bus/dcf_draft.h"
 #include "cia402_driver/common/result.h"
 
 namespace cia402::ros_node {
 
-/// The command that reads what a drive holds, with the file's name and the present date and time.
+/// What a DCF says of itself: the file's name and the present date and time.
 /// An error if `path` does not end in .dcf or its folder does not exist.
-Result<bus::SaveDcfCommand> saveDcfCommand(const std::string& axis, const std::string& path);
+Result<bus::DcfStamp> dcfStamp(const std::string& axis, const std::string& path);
 
 /// Writes the file as a whole: a reader finds the old one or the new one, never half of it.
 /// @return its absolute path.

@@ -5,27 +5,32 @@
 #include <ros/publisher.h>
 #include <ros/timer.h>
 
+#include "cia402_driver/bus/reply_log.h"
 #include "cia402_driver/bus/runner.h"
 #include "cia402_driver/config/robot.h"
 
 namespace cia402::ros_node {
 
-/// Brings what happens on the bus into the log, and emergencies to ~emergencies.
+/// Brings what happens on the bus and what becomes of commands from topics into the log, and
+/// emergencies to ~emergencies.
 class EventLog {
  public:
-  EventLog(ros::NodeHandle& private_node, bus::BusRunner& runner, const config::RobotConfig& robot);
+  EventLog(ros::NodeHandle& private_node, bus::BusRunner& runner, bus::ReplyLog& replies,
+           const config::RobotConfig& robot);
 
-  /// Empties the queue of events; also called at the end, when timers no longer run.
+  /// Empties the queues of events and replies; also called at the end, when timers no longer run.
   void drain();
 
  private:
   void publish(const bus::EmergencyEvent& event);
+  void drainReplies();
 
   bus::BusRunner& runner_;
+  bus::ReplyLog& replies_;
   const config::RobotConfig& robot_;
   ros::Publisher emergencies_;
   ros::Timer timer_;
-  std::uint64_t lost_told_ = 0, unpublished_told_ = 0;
+  std::uint64_t lost_told_ = 0, unpublished_told_ = 0, replies_lost_told_ = 0;
 };
 
 }  // namespace cia402::ros_node

@@ -26,7 +26,7 @@ class Services {
 
  private:
   void advertise(ros::NodeHandle node, const std::string& axis);
-  void advertiseSaveDcf(ros::NodeHandle& node, const std::string& axis);
+  void advertiseSaveDcf(ros::NodeHandle& node, const drive::AxisConfig& axis);
   void advertiseTrigger(ros::NodeHandle& node, const char* name, const std::string& axis,
                         drive::ProcedureKind kind);
   void advertiseDump(ros::NodeHandle& node);

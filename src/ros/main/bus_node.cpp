@@ -76,13 +76,14 @@ int main(int argc, char** argv) {
 
   bus::BusRunner::Options options;
   options.priority = loaded->options.realtime_priority;
+  bus::ReplyLog replies(loaded->robot.axes.size());
   bus::BusRunner runner(loaded->robot, loaded->master, std::move(interface), options);
   ROS_INFO_STREAM(runner.recordings().describe());
-  ros_node::EventLog events(private_node, runner, loaded->robot);
+  ros_node::EventLog events(private_node, runner, replies, loaded->robot);
   ros_node::Publishers publishers(node, private_node, runner, loaded->robot);
   ros_node::Diagnostics diagnostics(node, private_node, runner, loaded->robot);
   ros_node::Frames frames(node, runner, loaded->robot);
-  ros_node::CommandTopics topics(private_node, runner, loaded->robot);
+  ros_node::CommandTopics topics(private_node, runner, replies, loaded->robot);
   runner.start();
 
   ros::CallbackQueue service_queue;  // calls wait for their procedures: not in the way of topics

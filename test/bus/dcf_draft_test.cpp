@@ -1,0 +1,97 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/bus/dcf_draft.h"
+
+#include <gmock/gmock.h>
+
+#include "bus/dcf_world.h"
+
+namespace cia402::bus {
+namespace {
+
+using canopen::ObjectId;
+using test::Bytes;
+using testing::HasSubstr;
+using testing::Not;
+
+struct DcfDraftTest : test::DcfWorld {
+  /// The file, or why there is none.
+  Answer save(std::size_t axis = 0) {
+    DcfDraft draft(world.axis(axis).config(), stamp());
+    const Answer answer = world.call(draft.command());
+    return answer.success ? draft.finish() : answer;
+  }
+};
+
+TEST_F(DcfDraftTest, ReadsWhatTheEdsCallsReadableAndTellsWhatCouldNotBeRead) {
+  const Answer answer = save();
+  ASSERT_TRUE(answer.success) << answer.message;
+  EXPECT_EQ(answer.message,
+            "shoulder (node 1): 2 objects read, 2 could not be read: 2003:00 Length differs (2 "
+            "bytes, but it should be uint32); 2004:00 Not there (the drive refused: 0x06020000 "
+            "(object does not exist in the object dictionary))");
+  const canopen::Eds dcf = canopen::readEds(answer.text);
+  EXPECT_EQ(dcf.info.node_id, canopen::NodeId{1});
+  EXPECT_EQ(dcf.info.node_name, "shoulder");
+  EXPECT_EQ(dcf.info.baud_rate, 1000U);
+  EXPECT_EQ(dcf.info.file_name, "shoulder.dcf");
+  EXPECT_EQ(dcf.info.last_eds, "motor.eds");
+  EXPECT_EQ(dcf.info.modification_date, "11-21-2026");
+  EXPECT_EQ(dcf.info.vendor_number, 0x123U);
+  EXPECT_EQ(dcf.dictionary.find(ObjectId{0x2001, 0})->value, (Bytes{0x34, 0x12}));
+  EXPECT_EQ(dcf.dictionary.find(ObjectId{0x2001, 0})->default_value, (Bytes{5, 0}));
+  EXPECT_EQ(dcf.dictionary.find(ObjectId{0x2005, 0})->value, (Bytes{'M', '7'}));
+  for (const std::uint16_t index : {std::uint16_t{0x2002}, std::uint16_t{0x2003},
+                                    std::uint16_t{0x2004}, std::uint16_t{0x2006}}) {
+    EXPECT_FALSE(dcf.dictionary.find(ObjectId{index, 0})->value) << index;
+  }
+}
+
+TEST_F(DcfDraftTest, TextThatNoLineCanHoldIsLeftOutAndTold) {
+  world.drives[0].objects[ObjectId{0x2005, 0}] = {'M', '\n', '7'};
+  const Answer answer = save();
+  ASSERT_TRUE(answer.success);
+  EXPECT_THAT(answer.message, HasSubstr("2 objects read, 1 of them left out because no line"));
+  EXPECT_FALSE(canopen::readEds(answer.text).dictionary.find(ObjectId{0x2005, 0})->value);
+}
+
+TEST_F(DcfDraftTest, WithoutAnEdsTheProfileAndTheCommunicationObjectsAreRead) {
+  test::FakeDrive& drive = world.drives[1];
+  for (std::uint32_t index = 0x1000; index < 0x2000; ++index) {
+    for (std::uint8_t subindex = 0; subindex < 9; ++subindex) {
+      const ObjectId id{static_cast<std::uint16_t>(index), subindex};
+      if (index != 0x1017) drive.aborts[id] = subindex == 0 ? 0x06020000 : 0x06090011;
+    }
+  }
+  const auto give = [&](ObjectId id, const Bytes& data) {
+    drive.aborts.erase(id);
+    drive.objects[id] = data;
+  };
+  give({0x1000, 0}, {0x92, 0x01, 0x02, 0x00});
+  give({0x1018, 0}, {2});
+  give({0x1018, 1}, {0xBC, 0x0A, 0, 0});
+  give({0x1018, 2}, {7, 0, 0, 0});
+  give({0x1017, 0}, {100, 0});
+  give({0x6065, 0}, {0x10, 0x27, 0, 0});
+  const Answer answer = save(1);
+  ASSERT_TRUE(answer.success) << answer.message;
+  const canopen::Eds dcf = canopen::readEds(answer.text);
+  EXPECT_EQ(dcf.dictionary.find(ObjectId{0x1000, 0})->value, (Bytes{0x92, 0x01, 0x02, 0x00}));
+  EXPECT_EQ(dcf.dictionary.find(ObjectId{0x6065, 0})->value, (Bytes{0x10, 0x27, 0, 0}));
+  EXPECT_EQ(dcf.dictionary.find(ObjectId{0x6065, 0})->name, "following_error_window");
+  EXPECT_EQ(dcf.info.vendor_number, 0xABCU);
+  EXPECT_EQ(dcf.info.product_number, 7U);
+  EXPECT_EQ(dcf.dictionary.objects().at(0x1018).entries.size(), 3U);
+  EXPECT_EQ(dcf.dictionary.find(ObjectId{0x1018, 1})->access, canopen::Access::ro);
+  EXPECT_EQ(dcf.dictionary.find(ObjectId{0x1800, 1}), nullptr);
+  EXPECT_THAT(answer.message, Not(HasSubstr("could not be read")));
+}
+
+TEST_F(DcfDraftTest, ADriveThatGivesNothingHasNoFile) {
+  for (const auto& [id, data] : world.drives[0].objects) world.drives[0].aborts[id] = 0x08000022;
+  const Answer answer = save();
+  EXPECT_FALSE(answer.success);
+  EXPECT_EQ(answer.message, "shoulder (node 1): no DCF: the drive gave none of its objects");
+}
+
+}  // namespace
+}  // namespace cia402::bus
