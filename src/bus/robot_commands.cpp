@@ -31,7 +31,7 @@ void Robot::run(ProcedureCommand& command, Reply reply, Time now) {
   const bool homing = command.request.kind == drive::ProcedureKind::home;
   const bool enables = homing || command.request.kind == drive::ProcedureKind::enable ||
                        command.request.kind == drive::ProcedureKind::recover;
-  const std::string problem = enables ? syncProblem() : std::string();
+  const std::string problem = enables ? enableProblem() : std::string();
   if (!problem.empty()) {
     refuse(reply, std::string(drive::toString(command.request.kind)) + " is refused: " + problem);
     return;
