@@ -144,7 +144,7 @@ TEST_F(BootUnchanged, a_drive_that_kept_1020h_but_lost_its_heartbeat_time_is_cau
 TEST_F(BootUnchanged, a_boot_that_fails_on_its_way_leaves_no_proof) {
   peer.replace(kReadDate, kNoDate);
   config.pdos[0].entries.pop_back();
-  peer.on("603 23 00 14 01 03 02 00 80", "583 80 00 14 01 22 00 00 08");
+  peer.on("603 23 00 14 01 03 02 00 80", "583 80 00 14 01 20 00 00 08");
   boot();
   EXPECT_EQ(node->health(), NodeHealth::failed);
   EXPECT_TRUE(sentLine(kVoidTime));
