@@ -6,8 +6,8 @@
 namespace cia402::bus {
 
 void LssDesk::add(std::string who, std::unique_ptr<canopen::LssTask> task, Ended ended,
-                  std::optional<Duration> window) {
-  queue_.push_back({std::move(who), std::move(task), std::move(ended), window});
+                  Refusal refusal, std::optional<Duration> window) {
+  queue_.push_back({std::move(who), std::move(task), std::move(ended), std::move(refusal), window});
 }
 
 void LssDesk::abandon(const std::string& why, Time now) {
@@ -32,14 +32,25 @@ void LssDesk::tick(Time now) {
 void LssDesk::advance(Time now) {
   while (!queue_.empty() && !master_.busy()) {
     Entry& entry = queue_.front();
+    if (const Refusal refusal = std::exchange(entry.refusal, nullptr)) {
+      const std::string why = refusal();
+      if (!why.empty()) {
+        end(why, now);
+        continue;
+      }
+    }
     master_.setWindow(entry.window.value_or(canopen::LssOptions().window));
     const canopen::LssTask::Status status = entry.task->advance(master_, now);
     if (status == canopen::LssTask::Status::running) continue;
-    const Entry ended = std::move(queue_.front());  // its end may add others
-    queue_.pop_front();
-    const bool done = status == canopen::LssTask::Status::done;
-    if (ended.ended) ended.ended(*ended.task, done ? std::string() : ended.task->error(), now);
+    end(status == canopen::LssTask::Status::done ? std::string() : entry.task->error(), now);
   }
+}
+
+/// The present task has ended; its end may add others.
+void LssDesk::end(const std::string& error, Time now) {
+  const Entry ended = std::move(queue_.front());
+  queue_.pop_front();
+  if (ended.ended) ended.ended(*ended.task, error, now);
 }
 
 std::string LssDesk::step() const {

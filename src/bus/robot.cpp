@@ -174,7 +174,7 @@ void Robot::stepJobs(Time now) {
     jobs.erase(std::remove_if(jobs.begin(), jobs.end(), step), jobs.end());
   };
   if (!procedures_.empty()) {
-    const std::string problem = syncProblem();
+    const std::string problem = enableProblem();
     if (!problem.empty()) withdrawEnabling(problem);
     keep_running(procedures_, [&](ProcedureJob& job) { return job.step(axes_, now); });
   }

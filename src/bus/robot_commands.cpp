@@ -29,7 +29,7 @@ void Robot::execute(Command command, Time now) {
 
 void Robot::run(ProcedureCommand& command, Reply reply, Time now) {
   const bool homing = command.request.kind == drive::ProcedureKind::home;
-  const std::string problem = enables(command.request.kind) ? syncProblem() : std::string();
+  const std::string problem = enables(command.request.kind) ? enableProblem() : std::string();
   if (!problem.empty()) {
     refuse(reply, std::string(drive::toString(command.request.kind)) + " is refused: " + problem);
     return;

@@ -58,7 +58,7 @@ void Robot::assignByLss(std::size_t index, bool reset) {
   options.node_id = axis.node_id;
   options.store = axis.lss->store;
   options.reset = reset;
-  if (reset) options.in_use = nodesInOperation();
+  if (reset) options.in_use = [this] { return nodesInOperation(); };
   lss_.add(axis.name, std::make_unique<canopen::LssAssignTask>(std::move(options), sink_),
            [this, index](const canopen::LssTask& task, const std::string& error, Time now) {
              if (shutdown_ == Shutdown::no) lssAssigned(index, task, error, now);
@@ -159,7 +159,7 @@ void Robot::run(LssScanCommand& command, const Reply& reply, Time) {
         }
         give(reply, answer);
       },
-      command.window);
+      [this] { return motionOnBus(); }, command.window);
 }
 
 void Robot::run(LssAssignCommand& command, const Reply& reply, Time) {
@@ -180,24 +180,63 @@ void Robot::run(LssAssignCommand& command, const Reply& reply, Time) {
   options.identity = command.identity;
   options.node_id = node;
   options.store = command.store;
-  options.in_use = in_use;
+  options.in_use = [this] { return nodesInOperation(); };
   const std::string device = toString(command.identity);
-  lss_.add("", std::make_unique<canopen::LssAssignTask>(std::move(options), sink_),
-           [reply, device](const canopen::LssTask& task, const std::string& error, Time) {
-             const bool success = error.empty();
-             give(reply, answerOf(success, device + ": " + (success ? task.result() : error)));
-           });
+  lss_.add(
+      "", std::make_unique<canopen::LssAssignTask>(std::move(options), sink_),
+      [reply, device](const canopen::LssTask& task, const std::string& error, Time) {
+        const bool success = error.empty();
+        give(reply, answerOf(success, device + ": " + (success ? task.result() : error)));
+      },
+      [this] { return motionOnBus(); });
+}
+
+/// "left (node 1) is not disabled"; empty if it is, and nothing is about to enable it.
+std::string Robot::notDisabled(std::size_t index) const {
+  const drive::Axis& axis = axes_[index];
+  const drive::AxisState& state = axis.state();
+  const drive::ProcedureStatus& procedure = axis.procedure();
+  const std::string who = drive::whoIs(axis.config());
+  if (procedure.running) {
+    return who + " is not disabled for good: " + toString(procedure.kind) + " runs (" +
+           procedure.step + ")";
+  }
+  const bool off = state.feedback_valid && drive::powerStageOff(state.state);
+  return state.health == NodeHealth::ready && !off ? who + " is not disabled" : std::string();
+}
+
+/// Why not all devices may be told to take their new bit timing; empty if they may.
+std::string Robot::activationRefusal(bool stored) const {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const std::string why = notDisabled(i);
+    if (why.empty()) continue;
+    return "not activated: " + why +
+           "; nothing has changed on the bus yet, but the drives hold the new bit timing and take "
+           "it with the next `activate`" +
+           (stored ? " or when they are powered on again" : "") +
+           ": disable the axis and call it again, or set the old bit rate";
+  }
+  return {};
+}
+
+std::string Robot::enableProblem() const {
+  if (activations_ > 0) {
+    return "lss_set_bit_timing is at work (" + lss_.step() +
+           "), and then all devices switch to another bit rate, which no axis may be enabled for; "
+           "wait for its end";
+  }
+  if (now_ < bit_timing_switched_) {
+    return "all devices switch to another bit rate at this moment; set the interface and "
+           "`bus/bitrate` to it";
+  }
+  return syncProblem();
 }
 
 /// Why the bit timing of an axis' drive cannot be set; empty if it can, then `identity` is filled.
 std::string Robot::bitTimingRefusal(std::size_t index, lss::Identity& identity) {
-  const drive::Axis& axis = axes_[index];
-  const drive::AxisConfig& config = axis.config();
-  const drive::AxisState& state = axis.state();
-  const bool off = state.feedback_valid && drive::powerStageOff(state.state);
-  if (state.health == NodeHealth::ready && !off) {
-    return "refused: " + drive::whoIs(config) + " is not disabled; disable it first";
-  }
+  const drive::AxisConfig& config = axes_[index].config();
+  const std::string why = notDisabled(index);
+  if (!why.empty()) return "refused: " + why + "; disable it first";
   if (config.lss) {
     identity = config.lss->identity;
   } else if (const auto& read = nodes_[index]->identity()) {
@@ -211,11 +250,11 @@ std::string Robot::bitTimingRefusal(std::size_t index, lss::Identity& identity) 
 
 void Robot::run(LssBitTimingCommand& command, const Reply& reply, Time) {
   const std::string rate = std::to_string(command.kbit_per_s);
-  std::vector<std::pair<std::string, lss::Identity>> drives;
+  std::vector<std::pair<std::size_t, lss::Identity>> drives;
   std::string refusal;
   for (std::size_t i = 0; i < axes_.size() && refusal.empty(); ++i) {
     if (!command.axis.empty() && axes_[i].config().name != command.axis) continue;
-    drives.emplace_back(drive::whoIs(axes_[i].config()), lss::Identity());
+    drives.emplace_back(i, lss::Identity());
     refusal = bitTimingRefusal(i, drives.back().second);
   }
   if (drives.empty()) refusal = "there is no axis \"" + command.axis + "\"";
@@ -226,6 +265,11 @@ void Robot::run(LssBitTimingCommand& command, const Reply& reply, Time) {
   if (command.activate && !command.axis.empty()) {
     refusal = "refused: all drives must take a new bit rate at once; activate it for the bus";
   }
+  const bool recovers = std::any_of(procedures_.begin(), procedures_.end(),
+                                    [](const ProcedureJob& job) { return job.held(); });
+  if (command.activate && recovers) {
+    refusal = "refused: recover waits for its turn, and enables its axes then; wait for its end";
+  }
   if (!refusal.empty()) return refuse(reply, refusal);
 
   struct Progress {
@@ -235,42 +279,47 @@ void Robot::run(LssBitTimingCommand& command, const Reply& reply, Time) {
   };
   const auto progress = std::make_shared<Progress>();
   progress->left = drives.size();
-  const bool activate = command.activate;
+  const bool activate = command.activate, store = command.store;
+  if (activate) ++activations_;
   const auto delay = static_cast<std::uint16_t>(
       std::clamp<std::int64_t>(command.delay.count() / 1000000, 1, 65535));
-  for (const auto& [name, identity] : drives) {
+  const auto activated = [=](const canopen::LssTask&, const std::string& failure, Time now) {
+    --activations_;
+    if (!failure.empty()) return refuse(reply, progress->text + "; " + failure);
+    bit_timing_switched_ = now + 2 * std::chrono::milliseconds(delay);
+    give(reply,
+         answerOf(true, progress->text + "; all devices switch in " + std::to_string(delay) +
+                            " ms and are silent as long again: set the interface (ip link set ... "
+                            "type can bitrate " +
+                            rate +
+                            "000) and `bus/bitrate` to it now, the drives are lost until then"));
+  };
+  for (const auto& [index, identity] : drives) {
+    const std::string who = drive::whoIs(axes_[index].config());
     lss_.add(
-        name,
+        who,
         std::make_unique<canopen::LssBitTimingTask>(identity, command.kbit_per_s, command.store),
-        [=, who = name](const canopen::LssTask& task, const std::string& error, Time) {
+        [=](const canopen::LssTask& task, const std::string& error, Time) {
           const bool success = error.empty();
           progress->text +=
               (progress->text.empty() ? "" : "; ") + who + ": " + (success ? task.result() : error);
           progress->success = progress->success && success;
           if (--progress->left > 0) return;
-          if (!progress->success || !activate) {
-            std::string end = "; nothing has changed on the bus yet: ";
-            end += progress->success
-                       ? "the drives take it when they are powered on again (stored) or by "
-                         "`activate`; the interface and `bus/bitrate` must be set to it then"
-                       : "not all drives took it, none was told to activate it";
-            return give(reply, answerOf(progress->success, progress->text + end));
+          if (progress->success && activate) {
+            return lss_.add("", std::make_unique<canopen::LssActivateTask>(delay), activated,
+                            [this, store] { return activationRefusal(store); });
           }
-          lss_.add("", std::make_unique<canopen::LssActivateTask>(delay),
-                   [=](const canopen::LssTask&, const std::string& failure, Time) {
-                     if (!failure.empty()) {
-                       return refuse(reply, progress->text + "; " + failure);
-                     }
-                     give(reply,
-                          answerOf(true, progress->text + "; all devices switch in " +
-                                             std::to_string(delay) +
-                                             " ms and are silent as long "
-                                             "again: set the interface (ip link set ... type can "
-                                             "bitrate " +
-                                             rate +
-                                             "000) and `bus/bitrate` to it "
-                                             "now, the drives are lost until then"));
-                   });
+          if (activate) --activations_;
+          std::string end = "; nothing has changed on the bus yet: ";
+          end += progress->success
+                     ? "the drives take it when they are powered on again (stored) or by "
+                       "`activate`; the interface and `bus/bitrate` must be set to it then"
+                     : "not all drives took it, none was told to activate it";
+          give(reply, answerOf(progress->success, progress->text + end));
+        },
+        [this, i = index] {
+          const std::string why = notDisabled(i);
+          return why.empty() ? why : "refused: " + why;
         });
   }
 }

@@ -12,6 +12,7 @@ std::vector<BootStepPointer> makeSteps(const NodeConfig& config) {
   steps.push_back(makeBootUpWait());
   steps.push_back(makeProofOfLife());
   steps.push_back(makeIdentification());
+  steps.push_back(makeStop());
   steps.push_back(makeRestore());
   steps.push_back(makeErrorControl());
   steps.push_back(makeUnchangedCheck());

@@ -34,13 +34,18 @@ class CobIds : public BootStep {
   }
 
   Progress check(BootContext& boot, Time now) override {
+    if (const auto resting = patience_.rest(boot, now)) return *resting;
     if (!boot.answered()) return Progress::waiting;
     if (!boot.ok() && !boot.refused()) return boot.failTransfer();
     const bool settled = !boot.ok() || step(boot, now);
     if (!settled) return Progress::waiting;
     // What cannot be read is as the standard predefines it.
-    if (!boot.ok() && phase_ != Phase::reading) return kept(boot);
+    if (!boot.ok() && phase_ != Phase::reading) {
+      if (patience_.grant(boot, boot.ticket->abortCode(), now)) return Progress::waiting;
+      return kept(boot);
+    }
     ++item_;
+    patience_.renew();
     return Progress::again;
   }
 
@@ -104,6 +109,7 @@ class CobIds : public BootStep {
   Phase phase_ = Phase::reading;
   std::size_t item_ = 0;
   std::uint32_t value_ = 0;
+  StatePatience patience_;
 };
 
 }  // namespace

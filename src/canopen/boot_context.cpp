@@ -7,6 +7,12 @@
 #include "cia402_driver/canopen/abort_code.h"
 
 namespace cia402::canopen {
+namespace {
+
+constexpr Duration kStateRetry = std::chrono::milliseconds(50);
+constexpr Duration kStatePatience = std::chrono::seconds(3);  // a drive stops and disables in that
+
+}  // namespace
 
 void BootContext::reset() {
   found = BootFindings();
@@ -61,6 +67,21 @@ Progress BootContext::failTransfer() {
 
 void BootContext::noteTransfer(const std::string& what) {
   notes.push_back(what + ": " + step + ": " + ticket->reason());
+}
+
+bool StatePatience::grant(BootContext& boot, std::uint32_t abort, Time now) {
+  if (abort != abort_code::kDeviceState) return false;
+  if (until_ == kNever) until_ = now + kStatePatience;
+  if (now >= until_) return false;
+  repeat_at_ = boot.deadline = now + kStateRetry;
+  return true;
+}
+
+std::optional<Progress> StatePatience::rest(BootContext& boot, Time now) {
+  if (repeat_at_ == kNever) return {};
+  if (now < repeat_at_) return Progress::waiting;
+  repeat_at_ = boot.deadline = kNever;
+  return Progress::again;
 }
 
 }  // namespace cia402::canopen

@@ -115,6 +115,23 @@ class BootContext {
   void noteTransfer(const std::string& what);
 };
 
+/// What the present state of the drive forbids (0x08000022) is tried again for a while: one that
+/// was left enabled may still be on its way out of operation. One per step.
+class StatePatience {
+ public:
+  /// To be asked for each answer that is no success. @return true: it was such a refusal, and the
+  /// step waits, see rest().
+  bool grant(BootContext& boot, std::uint32_t abort, Time now);
+  /// To be asked first in check(): `waiting` or, when the time has come, `again`; none if the step
+  /// does not wait.
+  std::optional<Progress> rest(BootContext& boot, Time now);
+  /// The item is done: the next one has as long.
+  void renew() { until_ = kNever; }
+
+ private:
+  Time repeat_at_ = kNever, until_ = kNever;
+};
+
 /// One step of the boot procedure. Lives as long as one boot.
 class BootStep {
  public:

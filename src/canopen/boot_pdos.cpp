@@ -49,6 +49,7 @@ class Pdos : public BootStep {
   }
 
   Progress check(BootContext& boot, Time now) override {
+    if (const auto resting = patience_.rest(boot, now)) return *resting;
     const std::string before = pdo_->step();
     const PdoConfigurator::Status status = pdo_->advance();
     boot.step = pdo_->step();
@@ -58,11 +59,13 @@ class Pdos : public BootStep {
         return Progress::waiting;
       case PdoConfigurator::Status::done:
         adoptCobId(boot);
+        if (pdo_->changed()) patience_.renew();
         ++item_;
         return Progress::again;
       case PdoConfigurator::Status::failed:
         break;
     }
+    if (patience_.grant(boot, pdo_->abortCode(), now)) return Progress::waiting;
     if (pdos_[item_].enabled || pdo_->timedOut()) {
       return boot.fail(pdo_->timedOut() ? BootFailure::timed_out : BootFailure::refused,
                        "boot failed: " + pdo_->error());
@@ -90,6 +93,7 @@ class Pdos : public BootStep {
   std::vector<PdoConfig> pdos_;
   std::size_t item_ = 0;
   std::optional<PdoConfigurator> pdo_;
+  StatePatience patience_;
 };
 
 }  // namespace

@@ -13,30 +13,21 @@ const Bytes kLoad{0x6C, 0x6F, 0x61, 0x64};                   // the signature, "
 constexpr Duration kRest = std::chrono::seconds(1);          // a drive left in motion stops in that
 constexpr Duration kRestoreTime = std::chrono::seconds(10);  // drives write their memory meanwhile
 
-/// Stops the drive, writes the signature and resets the node; its boot-up begins the boot anew.
+/// Writes the signature and resets the node; its boot-up begins the boot anew.
 class Restore : public BootStep {
  public:
   bool begin(BootContext& boot, Time now) override {
     if (!boot.config.boot.restore_before_configure || boot.restored) return false;
     const std::vector<StartupWrite>& writes = boot.config.writes;
-    while (item_ < writes.size() && !writes[item_].always) ++item_;
-    if (item_ < writes.size()) {
-      boot.write(writes[item_].object, writes[item_].data, writes[item_].name, now);
-      return true;
-    }
-    phase_ = Phase::resting;
+    const bool was_stopped = std::any_of(writes.begin(), writes.end(),
+                                         [](const StartupWrite& write) { return write.always; });
     boot.step = "waiting for the drive to stand still before its parameters are restored";
-    boot.deadline = now + (writes.empty() ? Duration::zero() : kRest);
+    boot.deadline = now + (was_stopped ? kRest : Duration::zero());
     return true;
   }
 
   Progress check(BootContext& boot, Time now) override {
     switch (phase_) {
-      case Phase::stopping:
-        if (!boot.answered()) return Progress::waiting;
-        if (!boot.ok() && !boot.refused()) return boot.failTransfer();
-        ++item_;
-        return Progress::again;
       case Phase::resting:
         if (now < boot.deadline) return Progress::waiting;
         restore(boot, now);
@@ -53,7 +44,7 @@ class Restore : public BootStep {
   }
 
  private:
-  enum class Phase { stopping, resting, restoring, restarting };
+  enum class Phase { resting, restoring, restarting };
 
   void restore(BootContext& boot, Time now) {
     SdoOptions patient = boot.config.sdo;
@@ -77,8 +68,7 @@ class Restore : public BootStep {
     return Progress::waiting;
   }
 
-  Phase phase_ = Phase::stopping;
-  std::size_t item_ = 0;
+  Phase phase_ = Phase::resting;
 };
 
 }  // namespace

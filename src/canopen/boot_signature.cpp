@@ -40,7 +40,8 @@ void addPdo(Checksum& sum, const PdoConfig& pdo) {
   }
 }
 
-std::uint64_t checksum(const NodeConfig& config, const Node::Identity& identity) {
+std::uint64_t checksum(const NodeConfig& config, const Node::Identity& identity,
+                       bool external_sync) {
   Checksum sum;
   for (const std::uint32_t part : {identity.device_type, identity.vendor_id, identity.product_code,
                                    identity.revision, identity.serial}) {
@@ -61,16 +62,17 @@ std::uint64_t checksum(const NodeConfig& config, const Node::Identity& identity)
     sum.add(write.object);
     sum.add(write.data);
   }
+  if (external_sync) sum.add(1U);  // 1005h is another one
   return sum.value();
 }
 
 }  // namespace
 
 ConfigurationSignature configurationSignature(const NodeConfig& config,
-                                              const Node::Identity& identity) {
+                                              const Node::Identity& identity, bool external_sync) {
   if (config.boot.check == ConfigurationCheck::date) return {config.boot.date, config.boot.time};
   constexpr std::uint64_t kDays = 0xFFFF, kMilliseconds = 86400000 - 1;
-  const std::uint64_t sum = checksum(config, identity);
+  const std::uint64_t sum = checksum(config, identity, external_sync);
   return {static_cast<std::uint32_t>(1 + (sum >> 32) % kDays),
           static_cast<std::uint32_t>(1 + (sum & 0xFFFFFFFF) % kMilliseconds)};
 }

@@ -17,7 +17,8 @@ struct ConfigurationSignature {
 /// With ConfigurationCheck::date the configured date; else a checksum of all that a boot writes and
 /// of the device that takes it (vendor, product, revision, i.e. firmware, serial), in numbers that
 /// are a date and a time of day: never 0, which means "not configured".
+/// @param external_sync MasterConfig::external_sync: a drive may be the one that makes SYNC.
 ConfigurationSignature configurationSignature(const NodeConfig& config,
-                                              const Node::Identity& identity);
+                                              const Node::Identity& identity, bool external_sync);
 
 }  // namespace cia402::canopen

@@ -14,6 +14,8 @@ using BootStepPointer = std::unique_ptr<BootStep>;
 BootStepPointer makeBootUpWait();
 BootStepPointer makeProofOfLife();
 BootStepPointer makeIdentification();
+// boot_writes.cpp: what stops a drive that was left enabled, before anything else is written to it.
+BootStepPointer makeStop();
 // boot_restore.cpp: factory settings (1011h), where asked for.
 BootStepPointer makeRestore();
 // boot_supervise.cpp: heartbeat or guarding, both ways.

@@ -33,6 +33,7 @@ class ErrorControlSetup : public BootStep {
   }
 
   Progress check(BootContext& boot, Time now) override {
+    if (const auto resting = patience_.rest(boot, now)) return *resting;
     if (!boot.answered()) return Progress::waiting;
     const Row& row = rows_[item_];
     if (!boot.ok() && !boot.refused()) return boot.failTransfer();
@@ -41,6 +42,9 @@ class ErrorControlSetup : public BootStep {
       comparing_ = false;
       boot.found.error_control_differed = true;
       boot.write(row.object, toBytes(row.value, row.size), row.name, now);
+      return Progress::waiting;
+    }
+    if (!boot.ok() && patience_.grant(boot, boot.ticket->abortCode(), now)) {
       return Progress::waiting;
     }
     judge(row, boot);
@@ -132,6 +136,7 @@ class ErrorControlSetup : public BootStep {
   std::vector<Row> rows_;
   std::size_t item_ = 0;
   bool comparing_ = false;
+  StatePatience patience_;
 };
 
 }  // namespace

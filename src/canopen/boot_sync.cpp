@@ -20,9 +20,14 @@ class SyncSetup : public BootStep {
     return false;
   }
 
-  Progress check(BootContext& boot, Time) override {
+  Progress check(BootContext& boot, Time now) override {
+    if (const auto resting = patience_.rest(boot, now)) return *resting;
     if (!boot.answered()) return Progress::waiting;
-    if (!take(boot)) return boot.failTransfer();
+    if (!take(boot)) {
+      if (patience_.grant(boot, boot.ticket->abortCode(), now)) return Progress::waiting;
+      return boot.failTransfer();
+    }
+    patience_.renew();
     phase_ = after(phase_);
     return Progress::again;
   }
@@ -88,6 +93,7 @@ class SyncSetup : public BootStep {
   bool counter_differs_ = false;
   std::optional<std::uint32_t> period_;         ///< 1006h as the drive has it
   std::optional<std::uint32_t> wanted_period_;  ///< 1006h as it shall be
+  StatePatience patience_;
 };
 
 }  // namespace

@@ -52,7 +52,7 @@ class UnchangedCheck : public BootStep {
     if (boot.config.boot.check == ConfigurationCheck::none) return false;
     switch (phase_) {
       case Phase::date:
-        wanted_ = configurationSignature(boot.config, *boot.found.identity);
+        wanted_ = configurationSignature(boot.config, *boot.found.identity, boot.external_sync);
         samples_ = samples(boot.config);
         boot.read(kDate, kDateName, now);
         return true;
@@ -166,7 +166,7 @@ class Signature : public BootStep {
     boot.must_configure = false;
     if (!boot.found.has_signature || boot.found.unchanged || item_ > 1) return false;
     const ConfigurationSignature signature =
-        configurationSignature(boot.config, *boot.found.identity);
+        configurationSignature(boot.config, *boot.found.identity, boot.external_sync);
     boot.write(item_ == 0 ? kDate : kTime, toBytes(item_ == 0 ? signature.date : signature.time, 4),
                item_ == 0 ? kDateName : kTimeName, now);
     return true;

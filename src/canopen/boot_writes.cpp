@@ -1,21 +1,20 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-// The start-up writes of profile and user.
+// The start-up writes: those that are always done first of all, those of profile and user last.
 #include "boot_steps.h"
-#include "cia402_driver/canopen/abort_code.h"
 
 namespace cia402::canopen {
 namespace {
 
-constexpr Duration kStateRetry = std::chrono::milliseconds(50);
-constexpr Duration kStatePatience = std::chrono::seconds(3);  // a drive stops and disables in that
-
-class StartupWrites : public BootStep {
+class Writes : public BootStep {
  public:
+  /// @param always those that are no configuration, else the others.
+  explicit Writes(bool always) : always_(always) {}
+
   bool begin(BootContext& boot, Time now) override {
+    if (boot.found.unchanged && !always_) return false;
     const std::vector<StartupWrite>& writes = boot.config.writes;
-    while (boot.found.unchanged && item_ < writes.size() && !writes[item_].always) ++item_;
+    while (item_ < writes.size() && writes[item_].always != always_) ++item_;
     if (item_ >= writes.size()) return false;
-    repeat_at_ = patient_until_ = kNever;
     reading_ = writes[item_].only_if_different;
     if (reading_) {
       boot.read(writes[item_].object, writes[item_].name, now);
@@ -26,27 +25,22 @@ class StartupWrites : public BootStep {
   }
 
   Progress check(BootContext& boot, Time now) override {
-    if (repeat_at_ != kNever) {
-      if (now < repeat_at_) return Progress::waiting;
-      repeat_at_ = boot.deadline = kNever;
-      send(boot, now);
-      return Progress::waiting;
-    }
+    if (const auto resting = patience_.rest(boot, now)) return *resting;
     if (!boot.answered()) return Progress::waiting;
     if (reading_) return compare(boot, now);
     if (boot.ok()) return done();
     const bool optional = boot.config.writes[item_].optional;
-    if (!optional && boot.ticket->abortCode() == abort_code::kDeviceState) {
-      return repeatLater(boot, now);
-    }
+    if (!optional && patience_.grant(boot, boot.ticket->abortCode(), now)) return Progress::waiting;
     if (!optional || !boot.refused()) return boot.failTransfer();
-    boot.noteTransfer("optional start-up write left out");
+    boot.noteTransfer(always_ ? "was not told to stop before it was configured"
+                              : "optional start-up write left out");
     return done();
   }
 
  private:
   Progress done() {
     ++item_;
+    patience_.renew();
     return Progress::again;
   }
 
@@ -63,23 +57,15 @@ class StartupWrites : public BootStep {
     return Progress::waiting;
   }
 
-  /// Drives that lock parameters while they are enabled may still be on their way out of that
-  /// state.
-  Progress repeatLater(BootContext& boot, Time now) {
-    if (patient_until_ == kNever) patient_until_ = now + kStatePatience;
-    if (now >= patient_until_) return boot.failTransfer();
-    repeat_at_ = boot.deadline = now + kStateRetry;
-    return Progress::waiting;
-  }
-
+  const bool always_;
   std::size_t item_ = 0;
   bool reading_ = false;
-  /// A write that the drive's present state forbids: when to try again, and until when.
-  Time repeat_at_ = kNever, patient_until_ = kNever;
+  StatePatience patience_;
 };
 
 }  // namespace
 
-BootStepPointer makeStartupWrites() { return std::make_unique<StartupWrites>(); }
+BootStepPointer makeStop() { return std::make_unique<Writes>(true); }
+BootStepPointer makeStartupWrites() { return std::make_unique<Writes>(false); }
 
 }  // namespace cia402::canopen

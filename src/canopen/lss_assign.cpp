@@ -32,13 +32,20 @@ LssTask::Status LssAssignTask::select(LssMaster& master, Time now) {
   }
   const std::uint8_t present = selection_.nodeId();
   if (present == options_.node_id) return leave(master, now);
-  const auto& in_use = options_.in_use;
-  if (std::find(in_use.begin(), in_use.end(), present) != in_use.end()) {
+  const std::vector<NodeId> in_use = options_.in_use ? options_.in_use() : std::vector<NodeId>();
+  const auto used = [&](std::uint8_t node) {
+    return std::find(in_use.begin(), in_use.end(), node) != in_use.end();
+  };
+  if (used(present)) {
     failure_ = "the device has node-ID " + std::to_string(present) +
                ", which is that of a drive in operation: to give it up it would have to be reset, "
                "and the other with it; nothing was changed, power the device on alone";
-    return leave(master, now);
+  } else if (used(options_.node_id)) {
+    failure_ = "node-ID " + std::to_string(options_.node_id) +
+               " is that of a drive in operation by now; nothing was changed, choose another or "
+               "take that drive off the bus";
   }
+  if (!failure_.empty()) return leave(master, now);
   changed_ = true;
   phase_ = Phase::configuring;
   LssRequest request;

@@ -82,10 +82,7 @@ void Node::commanded(NmtCommand command, Time now) {
       break;
     case NmtCommand::stop:
     case NmtCommand::enter_pre_operational:
-      if (impl_->health != NodeHealth::ready && impl_->health != NodeHealth::booting) break;
-      impl_->takeOut(NodeHealth::failed,
-                     std::string("was taken out of operation by the NMT command '") +
-                         toString(command) + "'; boot it (recover) to use it again");
+      impl_->takeOutBy(command);
       break;
     case NmtCommand::reset_node:
     case NmtCommand::reset_communication:

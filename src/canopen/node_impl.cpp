@@ -2,6 +2,7 @@
 #include "node_impl.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "boot_text.h"
 
@@ -63,6 +64,7 @@ void Node::Impl::refresh() {
 
 void Node::Impl::startBoot(BootProcedure::From from, const std::string& why, Time now) {
   retry.reset();
+  taken_out.clear();
   beginBoot(from, why, now);
 }
 
@@ -83,6 +85,24 @@ void Node::Impl::takeOut(NodeHealth as, const std::string& why) {
   image.invalidate();
   health = as;
   problem = why.empty() ? std::string() : sentence(why);
+}
+
+void Node::Impl::takeOutBy(NmtCommand command) {
+  if (!begun) return;
+  const std::string why = std::string("was taken out of operation by the NMT command '") +
+                          toString(command) + "'; boot it (recover) to use it again";
+  const std::string outlook = retry.outlook();
+  const bool repeats = retry.deadline() != kNever;
+  retry.reset();
+  if (isAway(health)) {  // it may be optional, so it stays away until it is heard
+    taken_out = why;
+    takeOut(health, std::string("is ") + toString(health) + " and " + why);
+  } else if (health != NodeHealth::failed) {
+    takeOut(NodeHealth::failed, why);
+  } else if (repeats) {
+    problem.resize(problem.size() - outlook.size());
+    problem += "; it is not tried again, for it " + why;
+  }
 }
 
 void Node::Impl::lose(const std::string& why, Time now) {
@@ -209,7 +229,9 @@ void Node::Impl::onHeartbeat(NmtState state, Time stamp, Time now) {
     return;
   }
   if (!begun) return;
-  if (health == NodeHealth::absent || health == NodeHealth::lost) {
+  if (isAway(health) && !taken_out.empty()) {
+    takeOut(NodeHealth::failed, std::exchange(taken_out, {}));
+  } else if (isAway(health)) {
     startBoot(BootProcedure::From::unknown, "", now);
   } else if (health == NodeHealth::ready && state != NmtState::operational &&
              state != NmtState::unknown) {

@@ -26,6 +26,9 @@ struct Node::Impl : Node::Front {
   void endBoot(NodeHealth end, Time now);
   /// Whatever was known of the node or on its way to it is void.
   void takeOut(NodeHealth as, const std::string& why);
+  /// Stop or enter pre-operational, on purpose: nothing but its own boot-up message boots it again
+  /// before somebody asks for it.
+  void takeOutBy(NmtCommand command);
   void lose(const std::string& why, Time now);
 
   void onBootUp(Time now);
@@ -58,6 +61,7 @@ struct Node::Impl : Node::Front {
   SdoTicket probe;  ///< of the search for a node that does not answer
   NmtState nmt_state = NmtState::unknown;
   std::string problem;
+  std::string taken_out;  ///< why it is not booted at its next heartbeat, though it is away
   mutable std::string step_text;
   std::vector<std::string> notes;
   std::optional<Node::Identity> last_identity;  ///< of the last boot that succeeded

@@ -274,6 +274,7 @@ void PdoConfigurator::fail(const std::string& reason) {
 
 void PdoConfigurator::failTransfer(const SdoTransfer& transfer) {
   timed_out_ = transfer.failure() != SdoTransfer::Failure::aborted_by_server;
+  if (!timed_out_) abort_code_ = transfer.abortCode();
   std::string reason = step_ + ": " + transfer.reason();
   if (transfer.abortCode() == abort_code::kReadOnly && transfer.object().index == mapping_ &&
       transfer.object().subindex == 0) {

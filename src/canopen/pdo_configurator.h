@@ -38,6 +38,8 @@ class PdoConfigurator {
   const std::string& error() const { return error_; }
   /// It failed because the drive did not answer at all.
   bool timedOut() const { return timed_out_; }
+  /// The abort code by which the drive made it fail; 0 if it was no abort.
+  std::uint32_t abortCode() const { return abort_code_; }
   /// The COB-ID of the PDO is the drive's own, not the one configured: which.
   std::optional<std::uint16_t> adoptedCobId() const { return adopted_; }
   /// True once something had to be written.
@@ -105,6 +107,7 @@ class PdoConfigurator {
   Phase phase_ = Phase::read_cob_id;
   std::size_t item_ = 0;
   bool verifying_ = false, changed_ = false, map_refused_ = false, timed_out_ = false;
+  std::uint32_t abort_code_ = 0;
   std::uint32_t cob_id_ = 0;
   std::optional<std::uint16_t> adopted_;
   bool cob_id_fixed_ = false;  ///< the drive refuses to make the PDO invalid, or valid elsewhere

@@ -74,9 +74,40 @@ SdoTicket SdoClient::download(ObjectId object, Bytes data, std::string name,
   return enqueue(std::move(transfer), options);
 }
 
+SdoTicket SdoClient::downloadUrgent(ObjectId object, Bytes data, const std::string& name) {
+  auto transfer = std::make_shared<SdoTransfer>();
+  transfer->object_ = object;
+  transfer->name_ = name;
+  transfer->direction_ = SdoTransfer::Direction::download;
+  transfer->data_ = std::move(data);
+  transfer->urgent_ = true;
+  makeWay(toString(object) + (name.empty() ? "" : " " + name));
+  return enqueue(std::move(transfer), {});
+}
+
+/// The transfer on the wire, unless it is urgent itself, is none any more.
+void SdoClient::makeWay(const std::string& urgent) {
+  if (phase_ == Phase::idle || queue_.front()->urgent_) return;
+  if (phase_ == Phase::fence) {  // nothing of the transfer itself was sent: it can wait
+    attempt_ = 1;
+    fell_back_ = false;
+    return;
+  }
+  sendAbort(abort_code::kGeneral);
+  abandon();
+  finish(*queue_.front(), SdoTransfer::Failure::cancelled, 0,
+         "cancelled: it made way for an urgent write to " + urgent);
+  queue_.pop_front();
+  phase_ = Phase::idle;
+}
+
 SdoTicket SdoClient::enqueue(Transfer transfer, const std::optional<SdoOptions>& options) {
   transfer->options_ = options.value_or(defaults_);
-  queue_.push_back(transfer);
+  const auto place = transfer->urgent_
+                         ? std::find_if(queue_.begin(), queue_.end(),
+                                        [](const Transfer& queued) { return !queued->urgent_; })
+                         : queue_.end();
+  queue_.insert(place, transfer);
   if (queued_ != nullptr) *queued_ = true;
   return transfer;
 }
@@ -94,13 +125,14 @@ void SdoClient::tick(Time now) {
 Time SdoClient::nextDeadline() const {
   if (phase_ == Phase::block_download_segments) return std::min(deadline_, feed_at_);
   if (phase_ != Phase::idle) return deadline_;
-  return queue_.empty() ? kNever : std::max(kAtOnce, held_until_);
+  if (queue_.empty()) return kNever;
+  return queue_.front()->urgent_ ? kAtOnce : std::max(kAtOnce, held_until_);
 }
 
 bool SdoClient::idle() const { return queue_.empty(); }
 
 void SdoClient::startNext(Time now) {
-  if (queue_.empty() || now < held_until_) return;
+  if (queue_.empty() || (now < held_until_ && !queue_.front()->urgent_)) return;
   attempt_ = 0;
   fell_back_ = false;
   started_at_ = now;

@@ -150,6 +150,7 @@ void addStop(const drive::DriveProfile& profile, NodeConfig& node) {
   stop.name = controlword->name;
   stop.data = drive::wireBytes(kQuickStopCommand, controlword->type);
   stop.optional = true;
+  stop.only_if_different = false;  // one answer sooner
   stop.always = true;
   node.writes.push_back(stop);
 }

@@ -141,8 +141,8 @@ void AxisCore::stopBySdo(const std::string& why) {
   const bool was_commanded = !silent_ && goal_ != Goal::disabled;
   setGoal(Goal::quick_stop);
   const ObjectSpec* object = objects_.controlword.spec;
-  stop_ticket_ = node_.sdo().download(object->id, canopen::toBytes(controlword::kEnableVoltage, 2),
-                                      object->name);
+  stop_ticket_ = node_.sdo().downloadUrgent(
+      object->id, canopen::toBytes(controlword::kEnableVoltage, 2), object->name);
   if (!was_commanded) return;
   failure_ = who() + ": " + why;
   notify(failure_);

@@ -49,10 +49,10 @@ TEST_F(BootRestore, a_drive_that_may_still_move_is_stopped_first) {
   StartupWrite stop;
   stop.object = {0x6040, 0};
   stop.data = {0x02, 0x00};
+  stop.only_if_different = false;
   stop.always = true;
   config.writes = {stop};
   peer.on("603 2B 40 60 00 02 00 00 00", "583 60 40 60 00 00 00 00 00");
-  peer.on("603 40 40 60 00 00 00 00 00", "583 4B 40 60 00 02 00 00 00");
   boot();
   EXPECT_TRUE(sentLine("603 2B 40 60 00 02 00 00 00"));
   EXPECT_EQ(node->bootStep(),

@@ -160,6 +160,92 @@ TEST_F(BootRetryTest, no_search_where_none_is_wanted) {
   EXPECT_EQ(node->nextDeadline(), kNever);
 }
 
+TEST_F(BootRetryTest, an_nmt_command_out_of_operation_ends_the_attempts) {
+  peer.forget(kAskVendor);
+  boot();
+  pass(seconds(1));
+  ASSERT_THAT(node->problem(), HasSubstr("; it is tried again in 1 s (attempt 2 of 3)"));
+  peer.on(kAskVendor, "583 43 18 10 01 CD AB 00 00");
+  node->command(NmtCommand::stop, now);
+  EXPECT_EQ(node->problem(),
+            "shoulder (node 3): boot failed while reading 1018:01 vendor id: no answer within 500 "
+            "ms, asked 2 times; it is not tried again, for it was taken out of operation by the "
+            "NMT command 'stop'; boot it (recover) to use it again");
+  peer.take();
+  hear("703 04");
+  pass(seconds(600));
+  EXPECT_THAT(peer.take(), IsEmpty());
+  EXPECT_EQ(node->health(), NodeHealth::failed);
+  node->boot(now, false);
+  settle();
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+}
+
+TEST_F(BootRetryTest, an_nmt_command_out_of_operation_keeps_the_reason_of_a_boot_that_was_refused) {
+  config.serial = 4711;
+  boot();
+  ASSERT_EQ(node->health(), NodeHealth::failed);
+  node->command(NmtCommand::stop, now);
+  EXPECT_THAT(node->problem(), HasSubstr("1018:04 serial number"));
+}
+
+TEST_F(BootRetryTest, an_nmt_command_out_of_operation_ends_the_search_until_somebody_asks) {
+  peer.forget("000 82 03");
+  peer.forget(kAskDeviceType);
+  boot();
+  pass(milliseconds(5250));
+  ASSERT_EQ(node->health(), NodeHealth::absent);
+  node->command(NmtCommand::enter_pre_operational, now);
+  peer.on(kAskDeviceType, "583 43 00 10 00 92 01 02 00");
+  peer.take();
+  pass(seconds(600));
+  EXPECT_THAT(peer.take(), IsEmpty());
+  EXPECT_EQ(node->health(), NodeHealth::absent) << "optional ones stay excused";
+  EXPECT_EQ(node->problem(),
+            "shoulder (node 3): is absent and was taken out of operation by the NMT command 'enter "
+            "pre-operational'; boot it (recover) to use it again");
+  hear("703 7F");
+  pass(seconds(600));
+  EXPECT_THAT(peer.take(), IsEmpty());
+  EXPECT_EQ(node->health(), NodeHealth::failed) << "it is there, but nobody asked for it";
+  EXPECT_THAT(node->problem(), HasSubstr("shoulder (node 3): was taken out of operation by"));
+  node->boot(now, false);
+  settle();
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+}
+
+TEST_F(BootRetryTest, an_nmt_command_out_of_operation_ends_a_question_of_the_search_on_its_way) {
+  peer.forget("000 82 03");
+  peer.forget(kAskDeviceType);
+  peer.forget(kAskIdentityCount);
+  boot();
+  pass(milliseconds(7250));
+  ASSERT_EQ(node->health(), NodeHealth::absent);
+  ASSERT_EQ(peer.take().back(), kAskIdentityCount);
+  node->command(NmtCommand::stop, now);
+  hear("583 4F 18 10 00 04 00 00 00");
+  hear("583 43 00 10 00 92 01 02 00");
+  EXPECT_EQ(node->health(), NodeHealth::absent);
+  pass(seconds(600));
+  EXPECT_THAT(peer.take(), ElementsAre("000 02 03"));
+}
+
+TEST_F(BootRetryTest, a_lost_node_that_was_stopped_boots_at_its_boot_up_message_only) {
+  boot();
+  ASSERT_EQ(node->health(), NodeHealth::ready);
+  pass(seconds(1));
+  ASSERT_EQ(node->health(), NodeHealth::lost);
+  node->command(NmtCommand::stop, now);
+  hear("703 04");
+  EXPECT_EQ(node->health(), NodeHealth::failed);
+  hear("703 00");
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  pass(seconds(1));
+  ASSERT_EQ(node->health(), NodeHealth::lost);
+  hear("703 05");
+  EXPECT_EQ(node->health(), NodeHealth::ready) << "as ever, for that command is over";
+}
+
 TEST_F(BootRetryTest, another_drive_than_before_is_told_where_no_serial_refuses_it) {
   boot();
   ASSERT_EQ(node->health(), NodeHealth::ready);

@@ -284,13 +284,13 @@ TEST_F(BootTest, notes_an_unconfigured_pdo_that_cannot_be_disabled) {
 TEST_F(BootTest, a_pdo_that_cannot_be_configured_fails_the_boot) {
   peer.replace("603 40 00 1A 00 00 00 00 00", "583 4F 00 1A 00 00 00 00 00")
       .on("603 23 00 18 01 83 01 00 80", "583 60 00 18 01 00 00 00 00")
-      .on("603 2F 00 1A 00 00 00 00 00", "583 80 00 1A 00 22 00 00 08");
+      .on("603 2F 00 1A 00 00 00 00 00", "583 80 00 1A 00 20 00 00 08");
   boot();
   EXPECT_EQ(node->health(), NodeHealth::failed);
   EXPECT_EQ(node->problem(),
             "shoulder (node 3): boot failed: TPDO 1: writing 0x00 to 1A00:00 number of entries of "
-            "TPDO 1: the drive refused: 0x08000022 (data cannot be transferred or stored because "
-            "of the present device state)");
+            "TPDO 1: the drive refused: 0x08000020 (data cannot be transferred or stored to the "
+            "application)");
 }
 
 TEST_F(BootTest, is_ready_only_when_the_heartbeat_says_operational) {

@@ -144,7 +144,7 @@ TEST_F(BootUnchanged, a_drive_that_kept_1020h_but_lost_its_heartbeat_time_is_cau
 TEST_F(BootUnchanged, a_boot_that_fails_on_its_way_leaves_no_proof) {
   peer.replace(kReadDate, kNoDate);
   config.pdos[0].entries.pop_back();
-  peer.on("603 23 00 14 01 03 02 00 80", "583 80 00 14 01 22 00 00 08");
+  peer.on("603 23 00 14 01 03 02 00 80", "583 80 00 14 01 20 00 00 08");
   boot();
   EXPECT_EQ(node->health(), NodeHealth::failed);
   EXPECT_TRUE(sentLine(kVoidTime));
@@ -159,6 +159,33 @@ TEST_F(BootUnchanged, a_drive_that_refuses_the_proof_is_ready_all_the_same) {
   EXPECT_THAT(node->notes(), ElementsAre(HasSubstr("will be written again at the next boot")));
 }
 
+TEST_F(BootUnchanged,
+       what_was_written_for_a_sync_of_others_is_written_again_for_that_of_the_master) {
+  config.boot.check = ConfigurationCheck::checksum;
+  const Node::Identity identity{0x00020192, 0xABCD, 0x000D0117, 0x00010002, 12345};
+  const auto line = [](const char* to, unsigned subindex, std::uint32_t value) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%s 20 10 %02X %02X %02X %02X %02X", to, subindex, value & 255,
+                  value >> 8 & 255, value >> 16 & 255, value >> 24);
+    return std::string(text);
+  };
+  const auto external = configurationSignature(config, identity, true);
+  const auto own = configurationSignature(config, identity, false);
+  peer.replace(kReadDate, {line("583 43", 1, external.date)});
+  peer.replace(kReadTime, {line("583 43", 2, external.time)});
+  peer.on(line("603 23", 1, own.date), "583 60 20 10 01 00 00 00 00");
+  peer.on(line("603 23", 2, own.time), "583 60 20 10 02 00 00 00 00");
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_TRUE(sentLine(kAskMap));
+  EXPECT_TRUE(sentLine(line("603 23", 1, own.date)));
+  peer.take();
+  master.external_sync = true;
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_FALSE(sentLine(kAskMap)) << "that is what it holds";
+}
+
 TEST(ConfigurationSignatureTest, changes_with_everything_that_a_boot_writes_and_with_the_device) {
   NodeConfig config = test::servoConfig(3, "shoulder");
   config.boot.check = ConfigurationCheck::checksum;
@@ -167,8 +194,9 @@ TEST(ConfigurationSignatureTest, changes_with_everything_that_a_boot_writes_and_
   write.data = {1, 2, 3, 4};
   config.writes = {write};
   Node::Identity identity;
+  bool external = false;
   const auto signature = [&](const NodeConfig& of) {
-    const ConfigurationSignature s = configurationSignature(of, identity);
+    const ConfigurationSignature s = configurationSignature(of, identity, external);
     EXPECT_GE(s.date, 1U);
     EXPECT_LE(s.date, 0xFFFFU);
     EXPECT_GE(s.time, 1U);
@@ -198,6 +226,9 @@ TEST(ConfigurationSignatureTest, changes_with_everything_that_a_boot_writes_and_
   EXPECT_TRUE(differs([](NodeConfig& c) { c.life_time_factor = 4; }));
   EXPECT_TRUE(differs([](NodeConfig& c) { c.sync_period_us = 4000; }));
   EXPECT_TRUE(differs([](NodeConfig& c) { c.sync_counter = 0; }));
+  external = true;  // 1005h may let a drive make SYNC
+  EXPECT_NE(signature(config), first);
+  external = false;
   identity.revision = 0x00010003;  // another firmware
   EXPECT_NE(signature(config), first);
   identity = Node::Identity();

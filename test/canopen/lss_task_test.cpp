@@ -16,7 +16,7 @@ class LssTaskTest : public LssFixture {
     options.identity = identity;
     options.node_id = node;
     options.store = store;
-    options.in_use = std::move(in_use);
+    options.in_use = [in_use = std::move(in_use)] { return in_use; };
     return LssAssignTask(options, wire);
   }
 };
@@ -79,6 +79,30 @@ TEST_F(LssTaskTest, ANodeIdSharedWithADriveInOperationIsNotReset) {
   EXPECT_EQ(slave.pending, 9);
   EXPECT_FALSE(slave.configuration);
   EXPECT_EQ(sentCount("000 82 09"), 0u);
+}
+
+TEST_F(LssTaskTest, ANodeIdThatAnotherHasByNowIsNotGiven) {
+  LssSlave& slave = wire.add(parts(kServo));
+  auto task = assign(kServo, 5, true, {2, 5});
+  EXPECT_FALSE(run(task));
+  EXPECT_THAT(task.error(), HasSubstr("node-ID 5 is that of a drive in operation by now"));
+  EXPECT_EQ(slave.pending, 0xFF);
+  EXPECT_FALSE(slave.configuration);
+}
+
+TEST_F(LssTaskTest, WhoIsInOperationIsAskedWhenTheDeviceHasToldItsNodeId) {
+  LssSlave& slave = wire.add(parts(kServo), 9);
+  std::vector<NodeId> in_use;
+  LssAssignTask::Options options;
+  options.identity = kServo;
+  options.node_id = 5;
+  options.in_use = [&in_use] { return in_use; };
+  LssAssignTask task(options, wire);
+  task.advance(master, wire.now);
+  in_use = {9};
+  EXPECT_FALSE(run(task));
+  EXPECT_THAT(task.error(), HasSubstr("has node-ID 9, which is that of a drive in operation"));
+  EXPECT_EQ(slave.pending, 9);
 }
 
 TEST_F(LssTaskTest, AnAbsentDeviceIsToldWithItsIdentity) {

@@ -21,7 +21,7 @@ class NodeFixture : public ::testing::Test {
  protected:
   NodeFixture() { addServo(peer, 3); }
 
-  void create() { node.emplace(config, MasterConfig{}, peer); }
+  void create() { node.emplace(config, master, peer); }
   /// Hands over answers until the wire is quiet.
   void settle() {
     peer.deliver([this](const can::Frame& received) { node->receive(received, now, now); });
@@ -51,6 +51,7 @@ class NodeFixture : public ::testing::Test {
 
   ScriptedPeer peer;
   NodeConfig config = servoConfig(3, "shoulder");
+  MasterConfig master;
   std::optional<Node> node;
   Time now{};
 };

@@ -1,5 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Whole robots whose drives boot as real ones do: late, twice, not at all, guarded, exchanged.
+#include "../../src/sim/drive_definition.h"
+#include "cia402_driver/canopen/object.h"
 #include "system/scene.h"
 
 namespace cia402 {
@@ -93,6 +95,80 @@ TEST(LateDrives, OneThatIgnoresTheResetAndIsStillEnabledIsStoppedAndConfigured) 
   scene.run(500ms);
   EXPECT_FALSE(scene.truth("left").power_stage_on) << "nobody asked for it";
   EXPECT_EQ(scene.truth("left").nmt, canopen::NmtState::operational);
+}
+
+/// A drive that another master left in profile velocity, its shaft turning, with a PDO map of its
+/// own. It turns on when its master is silent (6007h = 0), and changes no PDO, and nothing of SYNC,
+/// while it is enabled.
+class LeftTurning : public testing::Test {
+ protected:
+  static LoadedRobot load() {
+    LoadedRobot loaded = loadText(genericPair());
+    sim::DriveDefinition turns_on = *loaded.axes[0].definition;
+    turns_on.stops_outside_operational = false;
+    loaded.axes[0].definition = std::make_shared<const sim::DriveDefinition>(std::move(turns_on));
+    return loaded;
+  }
+  LeftTurning() : scene(load()) {}
+  void write(canopen::ObjectId object, std::uint64_t value, unsigned size) {
+    EXPECT_EQ(scene.drive("left").dictionary().write(object, canopen::toBytes(value, size)), 0u)
+        << canopen::toString(object);
+  }
+  void lockWhileEnabled(canopen::ObjectId object) {
+    sim::ObjectDictionary& dictionary = scene.drive("left").dictionary();
+    if (dictionary.find(object) == nullptr) return;
+    dictionary.onWriteCheck(object, [this, before = dictionary.hooks(object).check](
+                                        const sim::Entry& entry, std::uint64_t number) {
+      const bool enabled = scene.truth("left").power_stage_on;
+      refused += enabled ? 1U : 0U;
+      return enabled ? 0x08000022U : before ? before(entry, number) : 0U;
+    });
+  }
+  void leaveTurning() {
+    scene.world().powerOn();
+    scene.run(1s);
+    write({0x1800, 1}, 0x80000181, 4);
+    write({0x1A00, 0}, 0, 1);
+    write({0x1A00, 1}, 0x60640020, 4);  // the position alone
+    write({0x1A00, 0}, 1, 1);
+    write({0x1800, 1}, 0x181, 4);
+    write({0x6007, 0}, 0, 2);
+    write({0x6060, 0}, 3, 1);
+    write({0x6085, 0}, 6553600, 4);  // 50 turns/s^2
+    write({0x60FF, 0}, 2621440, 4);  // 20 turns/s
+    for (const std::uint64_t controlword : {0x06U, 0x07U, 0x0FU}) {
+      write({0x6040, 0}, controlword, 2);
+      scene.run(50ms);
+    }
+    scene.run(3s);
+    for (const canopen::ObjectId object :
+         {canopen::ObjectId{0x1005, 0}, {0x1006, 0}, {0x1019, 0}, {0x1800, 1}, {0x1A00, 0}}) {
+      lockWhileEnabled(object);
+    }
+  }
+  Scene scene;
+  unsigned refused = 0;
+};
+
+TEST_F(LeftTurning, IsStoppedBeforeAnythingElseIsWrittenAndBooted) {
+  leaveTurning();
+  ASSERT_NEAR(scene.truth("left").velocity_turns, 20.0, 0.1);
+  std::vector<can::Frame> writes;
+  unsigned reads = 0;
+  scene.world().bus().setMonitor([&](const can::Frame& frame, Time) {
+    if (frame.id == 0x601 && frame.data[0] == 0x40 && writes.empty()) ++reads;
+    if (frame.id == 0x601 && frame.data[0] >> 5U == 1) writes.push_back(frame);
+  });
+  scene.robot().robot().start(scene.now());
+  ASSERT_TRUE(scene.runUntil([&] { return !writes.empty(); }, 2s));
+  EXPECT_EQ(writes[0], can::Frame(0x601, {0x2B, 0x40, 0x60, 0x00, 0x02, 0x00, 0, 0}));
+  EXPECT_LE(reads, 5u) << "who it is, and nothing else";
+  ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 8s)) << scene.told();
+  EXPECT_GT(refused, 0u) << "the test needs a drive that refuses while it stops";
+  EXPECT_FALSE(scene.truth("left").power_stage_on);
+  EXPECT_NEAR(scene.truth("left").velocity_turns, 0.0, 1e-3);
+  EXPECT_EQ(scene.drive("left").dictionary().find({0x1A00, 1})->number >> 16U, 0x6041u);
+  EXPECT_TRUE(scene.procedure(ProcedureKind::enable).success);
 }
 
 TEST(LateDrives, OneThatIsSwitchedOnMinutesLaterIsTakenIn) {

@@ -1,6 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Drives without node-IDs on whole robots.
-#include "system/scene.h"
+#include "system/lss_scene.h"
 
 namespace cia402 {
 namespace {
@@ -10,22 +10,6 @@ using canopen::NodeHealth;
 using drive::ProcedureKind;
 using testing::HasSubstr;
 using testing::UnorderedElementsAre;
-
-std::string lssOf(int serial, const std::string& more = {}) {
-  return ", lss: {vendor_id: 1234, product_code: 1026, revision: 65536, serial: " +
-         std::to_string(serial) + more + "}";
-}
-std::string unconfigured(int serial) {
-  return ", simulation: {unconfigured: true, serial: " + std::to_string(serial) + "}";
-}
-canopen::lss::Identity device(std::uint32_t serial) { return {1234, 1026, 65536, serial}; }
-
-template <class Body>
-bus::Answer call(Scene& scene, Body body) {
-  bus::Command command;
-  command.body = std::move(body);
-  return scene.call(std::move(command));
-}
 
 bool boots(Scene& scene, Duration limit = 20s) {
   scene.robot().start();
@@ -153,44 +137,77 @@ TEST(Lss, NothingIsScannedOrAssignedInMotion) {
   EXPECT_THAT(call(scene, assign).message, HasSubstr("is in motion"));
 }
 
-TEST(Lss, BitTimingIsSetInDisabledDrivesAndWhatFollowsIsSaid) {
-  Scene scene(loadText(genericPair(", simulation: {serial: 111}", ", simulation: {serial: 222}")));
-  ASSERT_TRUE(scene.boot());
-  bus::LssBitTimingCommand timing;
-  timing.kbit_per_s = 250;
-  timing.store = true;
-  const auto set = call(scene, timing);
-  EXPECT_TRUE(set.success) << set.message;
-  EXPECT_THAT(set.message, HasSubstr("left (node 1): stored 250 kbit/s; right (node 2): stored 250 "
-                                     "kbit/s; nothing has changed on the bus yet"));
-  scene.run(1s);
-  EXPECT_TRUE(allReady(scene.robot()));
-  timing.kbit_per_s = 100;
-  EXPECT_THAT(call(scene, timing).message, HasSubstr("no bit timing of 100 kbit/s"));
-  timing.kbit_per_s = 250;
-  timing.axis = "left";
-  timing.activate = true;
-  EXPECT_THAT(call(scene, timing).message,
-              HasSubstr("all drives must take a new bit rate at once"));
-  ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
-  timing.axis.clear();
-  EXPECT_THAT(call(scene, timing).message, HasSubstr("left (node 1) is not disabled"));
+/// `left` is switched off at first, and a device without a node-ID keeps a scan busy for seconds.
+class BehindAScan : public testing::Test {
+ protected:
+  BehindAScan()
+      : scene(loadText(genericPair(", simulation: {serial: 111}", unconfigured(222)) +
+                       "  alone: {joints: [left]}\n")) {}
+  void begin() {
+    scene.robot().start();
+    power(false);
+    ASSERT_TRUE(
+        scene.runUntil([&] { return scene.state("left").health == NodeHealth::absent; }, 10s));
+    scan = ask(scene, bus::LssScanCommand{100ms});
+  }
+  void power(bool on) {
+    scene.port("left").setPowered(on);
+    on ? scene.drive("left").powerOn(scene.now()) : scene.drive("left").powerOff(scene.now());
+  }
+  void switchOnAndEnable() {
+    power(true);
+    ASSERT_TRUE(
+        scene.runUntil([&] { return scene.state("left").health == NodeHealth::ready; }, 5s));
+    ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "left").success);
+    ASSERT_FALSE(scan->has_value()) << "the test needs a longer scan";
+  }
+  std::shared_ptr<std::optional<bus::Answer>> assign(std::uint32_t serial, int node) {
+    bus::LssAssignCommand command;
+    command.identity = device(serial);
+    command.node_id = node;
+    return ask(scene, command);
+  }
+  Scene scene;
+  std::shared_ptr<std::optional<bus::Answer>> scan;
+};
+
+TEST_F(BehindAScan, ADriveThatWasEnabledMeanwhileKeepsItsNodeIdAndIsNotReset) {
+  begin();
+  const auto answer = assign(111, 9);
+  ASSERT_FALSE(answer->has_value()) << (*answer)->message;
+  switchOnAndEnable();
+  ASSERT_TRUE(scene.runUntil([&] { return answer->has_value(); }, 60s));
+  EXPECT_FALSE((*answer)->success);
+  EXPECT_THAT((*answer)->message,
+              HasSubstr("the device has node-ID 1, which is that of a drive in operation"));
+  scene.run(500ms);
+  EXPECT_EQ(scene.state("left").health, NodeHealth::ready);
+  EXPECT_TRUE(scene.truth("left").power_stage_on);
 }
 
-TEST(Lss, ActivationSwitchesAllDrivesAndSaysThatTheBusMustFollow) {
-  Scene scene(loadText(genericPair(", simulation: {serial: 111}", ", simulation: {serial: 222}")));
-  ASSERT_TRUE(scene.boot());
-  bus::LssBitTimingCommand timing;
-  timing.kbit_per_s = 500;
-  timing.activate = true;
-  timing.delay = 100ms;
-  const auto set = call(scene, timing);
-  EXPECT_TRUE(set.success) << set.message;
-  EXPECT_THAT(set.message, HasSubstr("all devices switch in 100 ms"));
-  EXPECT_THAT(set.message, HasSubstr("bitrate 500000"));
-  scene.run(3s);
-  EXPECT_EQ(scene.state("left").health, NodeHealth::lost);
-  EXPECT_EQ(scene.state("right").health, NodeHealth::lost);
+TEST_F(BehindAScan, ANodeIdThatIsInOperationMeanwhileIsNotGivenToAnother) {
+  begin();
+  const auto answer = assign(222, 1);
+  ASSERT_FALSE(answer->has_value()) << (*answer)->message;
+  switchOnAndEnable();
+  ASSERT_TRUE(scene.runUntil([&] { return answer->has_value(); }, 60s));
+  EXPECT_FALSE((*answer)->success);
+  EXPECT_THAT((*answer)->message, HasSubstr("node-ID 1 is that of a drive in operation by now"));
+  EXPECT_EQ(scene.drive("right").device().node(), 255);
+}
+
+TEST_F(BehindAScan, NothingIsScannedOrAssignedInMotionThatBeganMeanwhile) {
+  begin();
+  const auto assigned = assign(222, 9);
+  const auto scanned = ask(scene, bus::LssScanCommand{});
+  switchOnAndEnable();
+  ASSERT_TRUE(scene.move({2.0}, 40s, 1).success);
+  ASSERT_TRUE(scene.runUntil([&] { return scanned->has_value(); }, 30s));
+  EXPECT_TRUE((*scan)->success) << (*scan)->message;
+  EXPECT_THAT((*assigned)->message,
+              HasSubstr("serial 222 (0x000000DE): refused: the group alone is in motion"));
+  EXPECT_THAT((*scanned)->message, HasSubstr("refused: the group alone is in motion"));
+  EXPECT_EQ(scene.drive("right").device().node(), 255);
 }
 
 TEST(Lss, AShutdownAtTheStartIsOrderly) {

@@ -27,6 +27,7 @@ class ProcedureJob {
   /// Nothing is started before release().
   void hold() { held_ = true; }
   void release() { held_ = false; }
+  bool held() const { return held_; }
   /// Somebody wants the axis to stop: what has not begun on it does not begin any more.
   void withdraw(std::size_t axis, drive::ProcedureKind by, const std::vector<drive::Axis>& axes);
   /// The same on all axes, for the reason `why`, if the procedure would enable them.

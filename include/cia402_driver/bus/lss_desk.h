@@ -17,14 +17,17 @@ class LssDesk {
   /// @param error why it failed; empty for success.
   using Ended =
       std::function<void(const canopen::LssTask& task, const std::string& error, Time now)>;
+  /// Why a task must not begin now; empty if it may.
+  using Refusal = std::function<std::string()>;
 
   /// @param sink must outlive the desk.
   explicit LssDesk(can::Sink& sink) : sink_(sink), master_(sink) {}
 
   /// Queues a task. @param who for step(): an axis, or what is done. @param ended called once.
+  /// @param refusal asked when its turn has come, for those before it may take long.
   /// @param window of this task alone, see LssOptions::window.
   void add(std::string who, std::unique_ptr<canopen::LssTask> task, Ended ended,
-           std::optional<Duration> window = {});
+           Refusal refusal = {}, std::optional<Duration> window = {});
   /// Ends everything without further ado, for this reason; no device stays in the configuration
   /// state.
   void abandon(const std::string& why, Time now);
@@ -47,9 +50,11 @@ class LssDesk {
     std::string who;
     std::unique_ptr<canopen::LssTask> task;
     Ended ended;
+    Refusal refusal;  ///< empty once it was asked
     std::optional<Duration> window;
   };
   void advance(Time now);
+  void end(const std::string& error, Time now);
 
   can::Sink& sink_;
   canopen::LssMaster master_;

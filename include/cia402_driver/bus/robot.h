@@ -144,7 +144,11 @@ class Robot final : private canopen::MasterListener {
   void stepLss(Time now);
   void lookForLostDrives(Time now);
   bool recoverByLss(const std::vector<ProcedureJob::Item>& items);
+  std::string notDisabled(std::size_t index) const;
   std::string bitTimingRefusal(std::size_t index, canopen::lss::Identity& identity);
+  std::string activationRefusal(bool stored) const;
+  /// Why no axis may be enabled now; empty if it may.
+  std::string enableProblem() const;
   /// Boots the nodes and begins to cycle.
   void begin(Time now);
   /// nullptr if there is none; `reply` says so then.
@@ -179,6 +183,8 @@ class Robot final : private canopen::MasterListener {
   LssDesk lss_;
   bool lss_starting_ = false;  ///< drives get their node-IDs before anything else
   Time next_lss_look_{};
+  unsigned activations_ = 0;    ///< bit timing jobs that end with an activation, queued or running
+  Time bit_timing_switched_{};  ///< all devices have taken their new bit timing by then
   std::vector<std::string> lss_problems_;  // of each axis
   std::vector<HistoryJob> histories_;
   std::vector<DcfJob> dcfs_;

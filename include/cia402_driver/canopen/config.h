@@ -51,7 +51,7 @@ struct StartupWrite {
   Bytes data;                     ///< wire order
   bool optional = false;          ///< an abort by the drive is noted, not an error
   bool only_if_different = true;  ///< read first, write only what differs
-  bool always = false;            ///< no configuration: also where that is left out as unchanged
+  bool always = false;  ///< no configuration but what stops the drive: done at each boot, first
 };
 
 /// Everything the master must know of one node.
@@ -75,7 +75,7 @@ struct NodeConfig {
   std::optional<std::uint32_t> sync_period_us;  ///< 1006h to write; none: not written
   bool map_count_may_be_read_only = false;      ///< quirk: sub0 of 16xxh/1Axxh aborts 0x06010002
   std::vector<PdoConfig> pdos;
-  std::vector<StartupWrite> writes;  ///< after the PDOs, in this order
+  std::vector<StartupWrite> writes;  ///< in this order, after the PDOs but for `always`
   SdoOptions sdo;
   SdoChannel sdo_channel;                          ///< COB-IDs other than 600h and 580h + node-ID
   Duration boot_timeout{std::chrono::seconds(5)};  ///< from reset to boot-up or an SDO answer

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -81,9 +82,9 @@ class LssAssignTask final : public LssTask {
     lss::Identity identity;
     NodeId node_id = 0;  ///< 1..127
     bool store = false;  ///< only where the node-ID is another one than before
-    /// A node-ID that the device has is left only if nobody else may have the same, for a reset
-    /// would hit both: those in this list are refused.
-    std::vector<NodeId> in_use;
+    /// Node-IDs of others, asked for when the device has told its own; none: all are free. One that
+    /// another has is neither given, nor left: the reset would hit both.
+    std::function<std::vector<NodeId>()> in_use;
     /// Node-IDs become valid with the reset communication of all nodes at start-up; else the
     /// device itself is reset (one without a node-ID boots by itself).
     bool reset = true;

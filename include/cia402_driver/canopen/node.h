@@ -80,7 +80,8 @@ class Node {
   /// communication first; without it the node is only brought to pre-operational.
   void boot(Time now, bool reset);
   /// NMT command to this node alone. After stop and pre-operational the node is `failed` until
-  /// boot() is called or it reboots; after a reset it boots again by itself.
+  /// boot() is called or it reboots, and one that is away is not looked for any more and `failed`
+  /// once it is heard; after a reset it boots again by itself.
   void command(NmtCommand command, Time now);
   /// The same after the master has sent `command` to all nodes at once: nothing is sent.
   void commanded(NmtCommand command, Time now);

@@ -71,6 +71,7 @@ class SdoTransfer {
   Direction direction_ = Direction::upload;
   SdoOptions options_;
   Bytes data_;
+  bool urgent_ = false;
   bool done_ = false;
   Failure failure_ = Failure::none;
   std::uint32_t abort_code_ = 0;
@@ -121,6 +122,12 @@ class SdoClient {
   /// Queues a write of `data` in wire order (little-endian).
   SdoTicket download(ObjectId object, Bytes data, std::string name = {},
                      std::optional<SdoOptions> = {});
+  /// A write that waits for nothing, e.g. a stop: it is the first of the queue, holdUntil() does
+  /// not hold it, and the transfer on the wire is abandoned, whose ticket fails (`cancelled`, with
+  /// the urgent object in the reason). As its answer may still come, one read of an object that
+  /// never changes precedes the write then. The other queued transfers follow. Urgent writes do not
+  /// abandon each other: they are done in the order in which they were asked for.
+  SdoTicket downloadUrgent(ObjectId object, Bytes data, const std::string& name);
 
   /// Takes a frame of the channel's answer COB-ID; others and answers to nothing are ignored
   /// (counted).
@@ -184,6 +191,7 @@ class SdoClient {
   };
 
   SdoTicket enqueue(Transfer transfer, const std::optional<SdoOptions>& options);
+  void makeWay(const std::string& urgent);
   void startNext(Time now);
   void attempt(Time now);
   void initiate(Time now);
