@@ -37,8 +37,8 @@ class Guarding(RobotTest):
         cls.wire.close()
 
     def requests(self, since):
-        return [at for at, identifier in list(self.wire.remote)
-                if identifier == GUARD and at >= since]
+        return [at for at, identifier in self.wire.remote_since(since)
+                if identifier == GUARD]
 
     def test_01_boots_and_is_asked_by_remote_frames_with_alternating_answers(self):
         self.robot.wait_ready(60.0)
@@ -53,7 +53,7 @@ class Guarding(RobotTest):
         answers = guard_answers()
         self.assertEqual(set(answers), {0x05, 0x85})
         self.assertTrue(all(one != two for one, two in zip(answers, answers[1:])), answers)
-        self.assertFalse(any(identifier == 0x702 for _, identifier in list(self.wire.remote)))
+        self.assertFalse(any(identifier == 0x702 for _, identifier in self.wire.remote_since(0.0)))
         self.robot.wait_diagnostic("node 1", OK, "operational")
 
     def test_02_drive_killed_is_noticed_in_words_and_taken_in_again(self):

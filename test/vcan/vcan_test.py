@@ -89,7 +89,7 @@ class Vcan(RobotTest):
         wait_until(lambda: len(self.robot.joint_states) > 30, "joint_states")
         self.robot.record = False
         offset = clock_distance()
-        feedback = [at + offset for at, identifier, _ in self.wire.frames
+        feedback = [at + offset for at, identifier, _ in self.wire.since(0.0)
                     if 0x180 < identifier <= 0x184]
         stamps = [message.header.stamp.to_sec() for _, message in self.robot.joint_states]
         self.assertEqual(stamps, sorted(stamps))

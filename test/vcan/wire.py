@@ -35,28 +35,34 @@ class Wire:
         self._socket.setsockopt(socket.SOL_SOCKET, SO_TIMESTAMPNS, 1)
         self._socket.bind((interface,))
         self._socket.settimeout(0.1)
-        self.frames = []
-        self.remote = []
+        self._distance = clock_distance()  # once: its system calls are dear in user-mode Linux
+        self._frames = []
+        self._remote = []
+        self._read_until = 0.0  # monotonic: all that was sent before has been read
         self._open = True
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
 
     def _run(self):
+        asked = 0.0
         while self._open:
             try:
                 raw, ancillary, _, _ = self._socket.recvmsg(16, socket.CMSG_SPACE(16))
             except socket.timeout:
+                self._read_until = max(self._read_until, asked)
+                asked = time.monotonic()
                 continue
             except OSError:  # the interface went down
                 time.sleep(0.05)
                 continue
             seconds, nanoseconds = struct.unpack("@qq", ancillary[0][2])
-            at = seconds + nanoseconds * 1e-9 - clock_distance()
+            at = seconds + nanoseconds * 1e-9 - self._distance
             identifier, size = struct.unpack_from("=IB", raw)
             if identifier & CAN_RTR_FLAG:
-                self.remote.append((at, identifier & 0x1FFFFFFF))
-                continue
-            self.frames.append((at, identifier & 0x1FFFFFFF, raw[8:8 + size]))
+                self._remote.append((at, identifier & 0x1FFFFFFF))
+            else:
+                self._frames.append((at, identifier & 0x1FFFFFFF, raw[8:8 + size]))
+            self._read_until = max(self._read_until, at)
 
     def close(self):
         self._open = False
@@ -64,7 +70,23 @@ class Wire:
         self._socket.close()
 
     def since(self, when):
-        return [frame for frame in list(self.frames) if frame[0] >= when]
+        """The data frames since then, up to this call."""
+        self._catch_up()
+        return [frame for frame in list(self._frames) if frame[0] >= when]
+
+    def remote_since(self, when):
+        """(time, identifier) of the remote frames since then, up to this call."""
+        self._catch_up()
+        return [frame for frame in list(self._remote) if frame[0] >= when]
+
+    def _catch_up(self, timeout=60.0):
+        """Waits until all that was sent before this call has been read: judged is what was on the
+        wire, not what a reader that got no processor time has come to see of it."""
+        now = time.monotonic()
+        while self._read_until < now:
+            if time.monotonic() > now + timeout:
+                raise AssertionError(f"the wire is read {now - self._read_until:.1f} s late")
+            time.sleep(0.02)
 
     def first(self, when, condition):
         """Time of the first frame since then with condition(identifier, data), or None."""
