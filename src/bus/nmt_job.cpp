@@ -101,8 +101,8 @@ void NmtJob::watch(Entry& entry, drive::Axis& axis, Time now) const {
   } else {
     watchBoot(entry, axis, now);
   }
-  if (entry.ended)
-    entry.message = drive::whoIs(axis.config()) + ": nmt " + word_ + ": " + entry.message;
+  if (!entry.ended) return;
+  entry.message = drive::whoIs(axis.config()) + ": nmt " + word_ + ": " + entry.message;
 }
 
 /// Start and the resets end with the node configured and operational.

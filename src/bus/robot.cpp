@@ -244,7 +244,7 @@ drive::Axis* Robot::axisNamed(const std::string& name, const Reply& reply) {
   for (drive::Axis& axis : axes_) {
     if (axis.config().name == name) return &axis;
   }
-  refuse(reply, "there is no axis \"" + name + "\"");
+  refuse(reply, noSuchAxis(name));
   return nullptr;
 }
 

@@ -50,7 +50,7 @@ void Robot::run(ProcedureCommand& command, Reply reply, Time now) {
     for (ProcedureJob& job : procedures_) job.withdraw(i, command.request.kind, axes_);
   }
   if (items.empty()) {
-    refuse(reply, !command.axis.empty() ? "there is no axis \"" + command.axis + "\""
+    refuse(reply, !command.axis.empty() ? noSuchAxis(command.axis)
                   : left_out.empty()    ? "nothing to do: no axis has a `homing` section"
                                         : "nothing to do" + left_out);
     return;
@@ -112,7 +112,7 @@ void Robot::run(NmtServiceCommand& command, const Reply& reply, Time now) {
     if (command.axis.empty() || axes_[i].config().name == command.axis) which.push_back(i);
   }
   if (which.empty()) {
-    refuse(reply, "there is no axis \"" + command.axis + "\"");
+    refuse(reply, noSuchAxis(command.axis));
     return;
   }
   Result<NmtJob> job =

@@ -120,8 +120,8 @@ void Robot::lookForLostDrives(Time now) {
            [this](const canopen::LssTask& task, const std::string&, Time) {
              if (!static_cast<const canopen::LssLookTask&>(task).found()) return;
              for (std::size_t i = 0; i < axes_.size(); ++i) {
-               if (config_.axes[i].lss && canopen::isAway(axes_[i].state().health))
-                 assignByLss(i, true);
+               if (!config_.axes[i].lss) continue;
+               if (canopen::isAway(axes_[i].state().health)) assignByLss(i, true);
              }
            });
 }
@@ -257,7 +257,7 @@ void Robot::run(LssBitTimingCommand& command, const Reply& reply, Time) {
     drives.emplace_back(i, lss::Identity());
     refusal = bitTimingRefusal(i, drives.back().second);
   }
-  if (drives.empty()) refusal = "there is no axis \"" + command.axis + "\"";
+  if (drives.empty()) refusal = noSuchAxis(command.axis);
   if (!lss::bitTimingIndex(command.kbit_per_s)) {
     refusal =
         "refused: there is no bit timing of " + rate + " kbit/s; CiA 305 has " + lss::bitRates();

@@ -2,8 +2,7 @@
 // SYNC that another device produces: followed, lost, irregular, or not wanted.
 #include <random>
 
-#include "cia402_driver/sim/sync_producer.h"
-#include "system/scene.h"
+#include "system/synced_scene.h"
 
 namespace cia402 {
 namespace {
@@ -13,54 +12,21 @@ using drive::ProcedureKind;
 using testing::HasSubstr;
 using testing::Not;
 
-/// Another device on the bus that sends SYNC at its own pace.
-class Metronome final : public sim::Participant {
- public:
-  Metronome(sim::World& world, Duration period)
-      : world_(world), port_(world.addParticipant("metronome", *this)), period_(period) {}
-  void play(bool on) { next_ = on ? world_.now() + period_ : kNever; }
-  void setPeriod(Duration period) { period_ = period; }
-  void setCounter(bool on) { counter_ = on; }
-
- private:
-  void receive(const can::Frame&, Time) override {}
-  void tick(Time now) override {
-    if (now < next_) return;
-    next_ += period_;
-    if (counter_) {
-      port_.send(can::Frame(0x080, {static_cast<std::uint8_t>(1 + count_++ % 240)}), now);
-    } else {
-      port_.send(can::Frame(0x080, {}), now);
-    }
-  }
-  Time nextDeadline() const override { return next_; }
-
-  sim::World& world_;
-  sim::Port& port_;
-  Duration period_;
-  Time next_ = kNever;
-  bool counter_ = false;
-  unsigned count_ = 0;
-};
-
-std::string external(const std::string& more = {}) {
-  std::string yaml = genericPair();
-  return yaml.replace(yaml.find("heartbeat: 0.1"), 14, "heartbeat: 0.1, sync: external" + more);
+sim::SyncSchedule every(Duration period) {
+  sim::SyncSchedule schedule;
+  schedule.period = period;
+  return schedule;
 }
 
 class ExternalSync : public testing::Test {
  protected:
-  void boot(const std::string& yaml, Duration period = 4ms, bool counter = false) {
-    scene = std::make_unique<Scene>(loadText(yaml));
-    metronome = std::make_unique<Metronome>(scene->world(), period);
-    metronome->setCounter(counter);
+  void boot(const std::string& yaml = syncExternal(), const sim::SyncSchedule& schedule = {}) {
+    scene = std::make_unique<SyncedScene>(yaml, schedule);
     scene->world().bus().setMonitor([this](const can::Frame& frame, Time now) {
       if (frame.id == 0x080) last_sync = now;
       if (frame.id == 0x201) rpdo_after_sync = now - last_sync;
     });
-    metronome->play(true);
     ASSERT_TRUE(scene->boot()) << scene->told();
-    scene->run(200ms);
   }
   bus::RobotSnapshot snapshot() {
     bus::RobotSnapshot shot;
@@ -68,14 +34,13 @@ class ExternalSync : public testing::Test {
     return shot;
   }
 
-  std::unique_ptr<Scene> scene;
-  std::unique_ptr<Metronome> metronome;
+  std::unique_ptr<SyncedScene> scene;
   Time last_sync{};
   Duration rpdo_after_sync{};
 };
 
 TEST_F(ExternalSync, ATrajectoryFollowsThePaceOfAnotherDevice) {
-  boot(external());
+  boot();
   ASSERT_TRUE(scene->procedure(ProcedureKind::enable).success) << scene->told();
   const auto moved = scene->move({0.6, -0.4}, 2s);
   EXPECT_TRUE(moved.success) << moved.message;
@@ -90,8 +55,8 @@ TEST_F(ExternalSync, ATrajectoryFollowsThePaceOfAnotherDevice) {
 }
 
 TEST_F(ExternalSync, TheDriverItselfProducesNone) {
-  boot(external());
-  metronome->play(false);
+  boot();
+  scene->cease();
   scene->run(100ms);
   const Time last = last_sync;
   scene->run(1s);
@@ -99,12 +64,12 @@ TEST_F(ExternalSync, TheDriverItselfProducesNone) {
 }
 
 TEST_F(ExternalSync, WhenItIsLostEverythingThatMovesIsStoppedInWords) {
-  boot(external());
+  boot();
   ASSERT_TRUE(scene->procedure(ProcedureKind::enable).success);
   ASSERT_TRUE(scene->move({1.5, -1.5}, 4s).success);
   scene->run(1s);
   ASSERT_GT(std::fabs(scene->velocity("left")), 0.2);
-  metronome->play(false);
+  scene->cease();
   scene->run(600ms);
   EXPECT_NEAR(scene->velocity("left"), 0.0, 1e-3);
   EXPECT_NEAR(scene->velocity("right"), 0.0, 1e-3);
@@ -120,14 +85,14 @@ TEST_F(ExternalSync, WhenItIsLostEverythingThatMovesIsStoppedInWords) {
 }
 
 TEST_F(ExternalSync, WhenItIsBackNothingMovesUntilSomebodyEnables) {
-  boot(external());
+  boot();
   ASSERT_TRUE(scene->procedure(ProcedureKind::enable).success);
   ASSERT_TRUE(scene->move({1.5, -1.5}, 4s).success);
   scene->run(1s);
-  metronome->play(false);
+  scene->cease();
   scene->run(600ms);
   scene->forget();
-  metronome->play(true);
+  scene->produce();
   scene->run(1s);
   EXPECT_LT(scene->seen("left").travel(), 2e-4);
   EXPECT_FALSE(scene->truth("left").power_stage_on);
@@ -141,7 +106,7 @@ TEST_F(ExternalSync, WhenItIsBackNothingMovesUntilSomebodyEnables) {
 }
 
 TEST_F(ExternalSync, ASingleMissingSyncIsCountedAndNoReasonToStop) {
-  boot(external());
+  boot();
   ASSERT_TRUE(scene->procedure(ProcedureKind::enable).success);
   sim::FaultRule rule;
   rule.id = 0x080;
@@ -152,7 +117,7 @@ TEST_F(ExternalSync, ASingleMissingSyncIsCountedAndNoReasonToStop) {
 }
 
 TEST_F(ExternalSync, AnotherPeriodThanConfiguredIsSaidAndNothingIsEnabled) {
-  boot(external(), 5ms);
+  boot(syncExternal(), every(5ms));
   scene->run(1500ms);
   EXPECT_THAT(scene->told(), HasSubstr("SYNC comes every 5 ms, not every 4 ms as"));
   const auto refused = scene->procedure(ProcedureKind::enable, "left");
@@ -162,40 +127,43 @@ TEST_F(ExternalSync, AnotherPeriodThanConfiguredIsSaidAndNothingIsEnabled) {
 }
 
 TEST_F(ExternalSync, APeriodThatChangesStopsWhatMoves) {
-  boot(external());
+  boot();
   ASSERT_TRUE(scene->procedure(ProcedureKind::enable).success);
   ASSERT_TRUE(scene->move({1.5, -1.5}, 4s).success);
   scene->run(1s);
-  metronome->setPeriod(6ms);
+  scene->produce(every(6ms));
   scene->run(1s);
   EXPECT_NEAR(scene->velocity("left"), 0.0, 1e-3);
   EXPECT_FALSE(scene->truth("left").power_stage_on);
   EXPECT_FALSE(scene->truth("right").power_stage_on);
-  EXPECT_THAT(scene->told(), HasSubstr("right (node 2): stopped: SYNC comes every 6 ms, not"));
+  EXPECT_THAT(scene->told(), HasSubstr("right (node 2): stopped: SYNC comes every "));
+  EXPECT_THAT(snapshot().sync_problem.str(), HasSubstr("SYNC comes every 6 ms, not every 4 ms"));
 }
 
 TEST_F(ExternalSync, ACounterThatNobodyConfiguredIsSaid) {
-  boot(external(), 4ms, true);
+  sim::SyncSchedule counted;
+  counted.counter_overflow = 240;
+  boot(syncExternal(), counted);
   scene->run(1500ms);
   EXPECT_THAT(scene->told(), HasSubstr("SYNC comes with a counter"));
 }
 
-TEST_F(ExternalSync, WithoutAProducerTheNodesBootAndTheReasonIsSaid) {
-  scene = std::make_unique<Scene>(loadText(external()));
-  ASSERT_TRUE(scene->boot()) << scene->told();
-  scene->run(1500ms);
-  EXPECT_THAT(scene->told(), HasSubstr("no SYNC (COB-ID 0x080) comes; another device must send it "
-                                       "every 4 ms"));
-  EXPECT_FALSE(scene->procedure(ProcedureKind::enable).success);
+TEST(ExternalSyncWithoutAProducer, LetsTheNodesBootAndTheReasonIsSaid) {
+  Scene scene(loadText(syncExternal()));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  scene.run(1500ms);
+  EXPECT_THAT(scene.told(), HasSubstr("no SYNC (COB-ID 0x080) comes; another device must send it "
+                                      "every 4 ms"));
+  EXPECT_FALSE(scene.procedure(ProcedureKind::enable).success);
 }
 
 TEST_F(ExternalSync, ASecondProducerBesideOurOwnSyncIsSaid) {
-  boot(genericPair(), 40ms);
+  boot(genericPair(), every(40ms));
   scene->run(1500ms);
   EXPECT_THAT(scene->told(), HasSubstr("another device produces SYNC (COB-ID 0x080), too"));
   EXPECT_GT(snapshot().foreign_syncs, 30u);
   EXPECT_FALSE(scene->procedure(ProcedureKind::enable).success);
-  metronome->play(false);
+  scene->cease();
   scene->run(2500ms);
   const auto enabled = scene->procedure(ProcedureKind::enable);
   EXPECT_TRUE(enabled.success) << enabled.message;
@@ -224,15 +192,11 @@ class Lossy {
 class ExternalSyncJitter : public testing::TestWithParam<int> {};
 
 TEST_P(ExternalSyncJitter, AndLossDisturbNeitherMotionNorPeople) {
-  Scene scene(loadText(external()));
-  sim::SyncProducer producer(11);
-  producer.connect(scene.world().addParticipant("producer", producer));
   sim::SyncSchedule schedule;
   schedule.jitter = std::chrono::microseconds(GetParam());
-  producer.start(schedule, scene.now());
+  SyncedScene scene(syncExternal(), schedule);
   Lossy lossy(scene, 50);
   ASSERT_TRUE(scene.boot()) << scene.told();
-  scene.run(200ms);
   ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success) << scene.told();
   scene.watch([&] { lossy.everyMillisecond(); });
   ASSERT_TRUE(scene.move({1.0, -1.0}, 4s).success);
@@ -261,13 +225,9 @@ class ExternalSyncOfAWrongPeriod : public testing::TestWithParam<int> {
 };
 
 TEST_P(ExternalSyncOfAWrongPeriod, ThatJittersIsToldOnceAndNothingIsEnabled) {
-  Scene scene(loadText(external()));
-  sim::SyncProducer producer(11);
-  producer.connect(scene.world().addParticipant("producer", producer));
-  sim::SyncSchedule schedule;
-  schedule.period = std::chrono::microseconds(GetParam());
+  sim::SyncSchedule schedule = every(std::chrono::microseconds(GetParam()));
   schedule.jitter = 800us;
-  producer.start(schedule, scene.now());
+  SyncedScene scene(syncExternal(), schedule);
   ASSERT_TRUE(scene.boot()) << scene.told();
   scene.run(20s);
   EXPECT_LE(linesWith("SYNC", scene.told()), 2u) << scene.told();
@@ -283,7 +243,7 @@ INSTANTIATE_TEST_SUITE_P(Microseconds, ExternalSyncOfAWrongPeriod,
                          testing::Values(4200, 5000, 20000));
 
 TEST_F(ExternalSync, AMeasuredPeriodIsToldInThreeDigits) {
-  boot(external(), 5123456ns);
+  boot(syncExternal(), every(5123456ns));
   scene->run(1500ms);
   EXPECT_THAT(scene->told(), HasSubstr("SYNC comes every 5.12 ms, not every 4 ms as"));
 }
@@ -293,8 +253,7 @@ INSTANTIATE_TEST_SUITE_P(Microseconds, ExternalSyncJitter, testing::Values(0, 20
 /// Bit 30 of 1005h makes the left drive the producer.
 std::string leftProduces() {
   const std::string bit = ", write: [{object: \"1005:00\", type: uint32, raw: 0x40000080}]";
-  std::string yaml = genericPair(bit);
-  return yaml.replace(yaml.find("heartbeat: 0.1"), 14, "heartbeat: 0.1, sync: external");
+  return syncExternal(genericPair(bit));
 }
 
 TEST(SyncOfADrive, LeadsTheDriverAndTheOtherDrives) {

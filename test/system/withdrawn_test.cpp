@@ -1,8 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // What was asked for before everything had to stop enables nothing afterwards.
-#include "cia402_driver/sim/sync_producer.h"
 #include "system/interface_scene.h"
-#include "system/scene.h"
+#include "system/lss_scene.h"
+#include "system/synced_scene.h"
 
 namespace cia402 {
 namespace {
@@ -65,24 +65,19 @@ class InterruptedBySync : public testing::TestWithParam<int> {};
 TEST_P(InterruptedBySync, NothingIsEnabledAndWhatMovedStops) {
   for (const ProcedureKind kind : kEnabling) {
     SCOPED_TRACE(toString(kind));
-    std::string yaml = genericPair({}, kHoming);
-    yaml.replace(yaml.find("heartbeat: 0.1"), 14, "heartbeat: 0.1, sync: external");
+    std::string yaml = syncExternal(genericPair({}, kHoming));
     yaml.replace(yaml.find("joints: [left, right]"), 21, "joints: [left]");
-    Scene scene(loadText(yaml));
-    sim::SyncProducer lead;
-    lead.connect(scene.world().addParticipant("lead", lead));
-    lead.start({}, scene.now());
+    SyncedScene scene(yaml);
     ASSERT_TRUE(scene.boot()) << scene.told();
-    scene.run(300ms);
     ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "left").success) << scene.told();
     ASSERT_TRUE(scene.move({1.5}, 4s).success);
     scene.run(1s);
     const auto answer = scene.begin(kind, "right");
     scene.run(std::chrono::milliseconds(GetParam()));
     if (*answer) return;  // it was faster
-    lead.stop();
+    scene.cease();
     scene.run(24ms);
-    lead.start({}, scene.now());
+    scene.produce();
     scene.run(1s);
     ASSERT_TRUE(*answer);
     EXPECT_FALSE((*answer)->success) << (*answer)->message;
@@ -112,9 +107,7 @@ class ARecoverThatWaitsForLss : public testing::Test {
   }
   void SetUp() override { scene.robot().start(); }
 
-  Scene scene{loadText(genericPair({},
-                                   ", lss: {vendor_id: 1234, product_code: 1026, revision: 65536, "
-                                   "serial: 222}, simulation: {unconfigured: true, serial: 222}"))};
+  Scene scene{loadText(genericPair({}, lssOf(222) + unconfigured(222)))};
   std::shared_ptr<std::optional<bus::Answer>> recovering;
 };
 
@@ -142,17 +135,11 @@ TEST_F(ARecoverThatWaitsForLss, IsWithdrawnByAHaltThatIsRefused) {
 }
 
 TEST(AQuickStopBySdo, ThatTheDriveDoesNotTakeIsTold) {
-  std::string yaml = genericPair();
-  yaml.replace(yaml.find("heartbeat: 0.1"), 14, "heartbeat: 0.1, sync: external");
-  Scene scene(loadText(yaml));
-  sim::SyncProducer lead;
-  lead.connect(scene.world().addParticipant("lead", lead));
-  lead.start({}, scene.now());
+  SyncedScene scene;
   ASSERT_TRUE(scene.boot()) << scene.told();
-  scene.run(300ms);
   ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success) << scene.told();
   scene.inject("left", "sdo_silent");
-  lead.stop();
+  scene.cease();
   scene.run(3s);
   EXPECT_THAT(scene.told(), AllOf(HasSubstr("left (node 1): the quick stop by SDO failed: "),
                                   HasSubstr("switch its power off")));

@@ -45,6 +45,9 @@ inline void give(const Reply& reply, const Answer& answer) {
 inline void refuse(const Reply& reply, std::string message) {
   give(reply, answerOf(false, std::move(message)));
 }
+inline std::string noSuchAxis(const std::string& name) {
+  return "there is no axis \"" + name + "\"";
+}
 
 /// A procedure on one axis, or on all that are concerned where `axis` is empty.
 struct ProcedureCommand {
