@@ -139,6 +139,7 @@ void Diagnostics::reportBus(Status& status) {
   status.add("frames dropped", snapshot_.counters.frames_dropped);
   status.add("error frames", snapshot_.counters.error_frames);
   status.add("bus-off events", snapshot_.counters.bus_off_events);
+  status.add("interface losses", snapshot_.counters.interface_losses);
   addBusHealth(status, snapshot_);
   reportLink(status);
   status.addf("SYNC period", "%.3f ms", 1e3 * toSeconds(robot_.bus.sync_period));

@@ -185,6 +185,7 @@ cia402_driver::BusState Publishers::busState(const bus::RobotSnapshot& snapshot)
   message.frames_dropped = snapshot.counters.frames_dropped;
   message.error_frames = snapshot.counters.error_frames;
   message.bus_off_events = snapshot.counters.bus_off_events;
+  message.interface_losses = snapshot.counters.interface_losses;
   message.receive_overflows = snapshot.counters.receive_overflows;
   message.frames_stale = snapshot.counters.frames_stale;
   message.tx_pending = static_cast<std::uint32_t>(snapshot.pending);

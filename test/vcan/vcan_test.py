@@ -143,6 +143,7 @@ class Vcan(RobotTest):
         self.assertTrue(self.process.running())
         link("set", "vcan0", "up")
         self.robot.wait_diagnostic("bus", OK, "vcan0")
+        self.assertGreaterEqual(self.robot.bus_state.interface_losses, 1)
         self.settle()
         self.home_and_enable()
         place = self.robot.wait_rest("wrist")
