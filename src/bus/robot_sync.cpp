@@ -1,5 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // SYNC of other devices: followed where that is configured, told of where it is not.
+#include <algorithm>
 #include <cstdio>
 
 #include "cia402_driver/bus/robot.h"
@@ -11,6 +12,7 @@ using State = canopen::SyncConsumer::State;
 
 constexpr Duration kSyncNewsInterval = std::chrono::milliseconds(100);
 constexpr Duration kForeignHeard = std::chrono::seconds(1);  // one within this is a second producer
+constexpr int kForeignLooks = 3;  // so many in a row that found one: not a stray frame, but a pace
 constexpr Duration kPatience = std::chrono::seconds(1);  // with the first SYNC, before it is told
 constexpr Duration kLasting = std::chrono::seconds(1);   // trouble that is away so long is over
 constexpr int kMeasuredDigits = 3;
@@ -111,12 +113,24 @@ std::string Robot::syncProblem() const {
   return sync_problem_.str() + " (a moment ago; wait until SYNC has been well for a second)";
 }
 
+/// Drives that get SYNC at two paces do not move as they are told to.
+void Robot::watchSecondProducer(Time now) {
+  const bool heard = foreign_syncs_ != foreign_seen_;
+  foreign_seen_ = foreign_syncs_;
+  foreign_looks_ = heard ? std::min(foreign_looks_ + 1, kForeignLooks + 1) : 0;
+  if (foreign_looks_ != kForeignLooks) return;
+  stopForSync("stopped: " + syncText(SyncTrouble::second_producer), now);
+}
+
 void Robot::watchSync(Time now) {
   if (now < sync_checked_ + kSyncNewsInterval) return;
   const bool just_started = sync_checked_ == Time();
   sync_checked_ = just_started ? now + kPatience : now;
   if (just_started) return;
-  if (!config_.bus.external_sync && foreign_syncs_ == 0) return;
+  if (!config_.bus.external_sync) {
+    if (foreign_syncs_ == 0) return;
+    watchSecondProducer(now);
+  }
   const SyncTrouble trouble = syncTrouble();
   if (trouble != sync_seen_) sync_seen_since_ = now;
   sync_seen_ = trouble;

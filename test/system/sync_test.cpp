@@ -169,6 +169,38 @@ TEST_F(ExternalSync, ASecondProducerBesideOurOwnSyncIsSaid) {
   EXPECT_TRUE(enabled.success) << enabled.message;
 }
 
+TEST_F(ExternalSync, ASecondProducerThatAppearsStopsWhatMoves) {
+  boot(genericPair());  // its SYNCs go on until here
+  scene->cease();
+  scene->run(2500ms);
+  ASSERT_TRUE(scene->procedure(ProcedureKind::enable).success) << scene->told();
+  ASSERT_TRUE(scene->move({1.5, -1.5}, 4s).success);
+  scene->run(1s);
+  scene->produce(every(40ms));
+  scene->run(1s);
+  EXPECT_NEAR(scene->velocity("left"), 0.0, 1e-3);
+  EXPECT_NEAR(scene->velocity("right"), 0.0, 1e-3);
+  EXPECT_FALSE(scene->truth("left").power_stage_on);
+  EXPECT_FALSE(scene->truth("right").power_stage_on);
+  EXPECT_THAT(scene->told(), HasSubstr("right (node 2): stopped: another device produces SYNC"));
+}
+
+TEST_F(ExternalSync, AStraySyncIsToldAndNoReasonToStop) {
+  boot(genericPair());
+  scene->cease();
+  scene->run(2500ms);
+  ASSERT_TRUE(scene->procedure(ProcedureKind::enable).success) << scene->told();
+  ASSERT_TRUE(scene->move({1.5, -1.5}, 4s).success);
+  scene->run(1s);
+  scene->produce(every(40ms));
+  scene->run(150ms);
+  scene->cease();
+  scene->run(4s);
+  EXPECT_THAT(scene->told(), HasSubstr("another device produces SYNC"));
+  EXPECT_NEAR(scene->position("left"), 1.5, 1e-3);
+  EXPECT_TRUE(scene->state("right").ready_for_motion);
+}
+
 /// Loses frames of SYNC by chance.
 class Lossy {
  public:

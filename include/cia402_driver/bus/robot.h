@@ -119,6 +119,7 @@ class Robot final : private canopen::MasterListener {
   void watchSync(Time now);
   enum class SyncTrouble : std::uint8_t { none, second_producer, absent, wrong_form, wrong_period };
   SyncTrouble syncTrouble() const;
+  void watchSecondProducer(Time now);
   std::string syncText(SyncTrouble trouble) const;
   /// Why no axis may be enabled as SYNC is now, or was a moment ago; empty if it is well.
   std::string syncProblem() const;
@@ -200,6 +201,8 @@ class Robot final : private canopen::MasterListener {
   bool started_ = false, sync_held_ = false;
   canopen::SyncConsumer external_sync_;
   std::uint64_t foreign_syncs_ = 0;  ///< of others, while this program produces SYNC
+  std::uint64_t foreign_seen_ = 0;   ///< of them, at the last look
+  int foreign_looks_ = 0;            ///< in a row that found new ones
   Time last_foreign_sync_{}, sync_checked_{};
   SyncTrouble sync_trouble_ = SyncTrouble::none;  // that was told
   SyncTrouble sync_seen_ = SyncTrouble::none;     // at the last look
