@@ -98,6 +98,21 @@ TEST_F(NodeGuarding, a_node_that_answers_no_more_is_lost_after_its_life_time) {
   EXPECT_TRUE(sentLine("000 02 03"));
 }
 
+TEST_F(NodeGuarding, a_node_that_heard_the_stop_after_its_loss_is_found_by_a_remote_frame) {
+  bootReady();
+  peer.forget("703 R1");
+  pass(milliseconds(300));
+  ASSERT_EQ(node->health(), NodeHealth::lost);
+  peer.forget("603 40 00 10 00 00 00 00 00");  // stopped: no SDO, and nothing said unasked
+  peer.take();
+  pass(seconds(2));
+  EXPECT_EQ(node->health(), NodeHealth::lost);
+  EXPECT_GE(requests(), 1U);
+  answers({"703 84"});  // stopped, toggle bit 1
+  for (int i = 0; i < 300 && node->health() == NodeHealth::lost; ++i) pass(milliseconds(100));
+  EXPECT_EQ(node->health(), NodeHealth::booting) << node->problem();
+}
+
 TEST_F(NodeGuarding, a_toggle_bit_that_stands_still_is_no_answer) {
   bootReady();
   answers({"703 05"});  // right once, then always the same
@@ -181,7 +196,7 @@ TEST_F(NodeGuarding, a_lost_node_is_looked_for_and_booted_again) {
   ASSERT_EQ(node->health(), NodeHealth::lost);
   peer.take();
   pass(milliseconds(2000));
-  EXPECT_EQ(peer.take(), Lines{ask});
+  EXPECT_EQ(peer.take(), (Lines{ask, "703 R1"}));
   EXPECT_EQ(node->bootStep(), "looked for 1 times, again every 2 s");
   peer.on(ask, "583 43 00 10 00 92 01 02 00");
   answers({"703 7F", "703 85", "703 05"});

@@ -77,6 +77,21 @@ TEST(Guarding, APowerCycledGuardedDriveIsConfiguredAgain) {
   EXPECT_EQ(scene.state("left").health, NodeHealth::ready) << scene.told();
 }
 
+TEST(Guarding, AGuardedDriveWhoseAnswersWereLostIsFoundAgain) {
+  Scene scene(loadText(genericPair(kGuarded)));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  sim::FaultRule answers;  // the drive itself is well, and hears the stop that follows
+  answers.id = 0x701;
+  answers.receiver = "master";
+  answers.count = 3;
+  scene.world().bus().faults().add(answers);
+  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health == NodeHealth::lost; }, 1s));
+  scene.run(1ms);
+  EXPECT_EQ(scene.truth("left").nmt, canopen::NmtState::stopped);
+  ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 6s)) << scene.told();
+  EXPECT_FALSE(scene.truth("left").power_stage_on);
+}
+
 TEST(Guarding, ADriveWithoutGuardingObjectsIsToldToNoticeNoDeadMaster) {
   Scene scene(loadText(genericPair(", error_control: guarding")));
   ASSERT_TRUE(scene.boot()) << scene.told();  // by the book it answers remote frames all the same
