@@ -3,6 +3,7 @@
 // said to be done is done in the drive, and what failed has a reason. Nothing is made up.
 #include <map>
 
+#include "system/disturbance.h"
 #include "system/scene.h"
 
 namespace cia402 {
@@ -18,16 +19,6 @@ constexpr canopen::ObjectId kErrorTime{0x6066, 0};  // following error time out,
 constexpr char kGuarded[] =
     ", error_control: guarding, simulation: {drive: generic_cia402_guarding}";
 
-enum class Kind { lost, duplicated, delayed };
-struct Disturbance {
-  Kind kind;
-  double rate;
-  friend std::ostream& operator<<(std::ostream& out, const Disturbance& disturbance) {
-    constexpr const char* kNames[] = {"lost", "duplicated", "delayed"};
-    return out << disturbance.rate << " " << kNames[static_cast<int>(disturbance.kind)];
-  }
-};
-
 class DisturbedServices : public testing::TestWithParam<Disturbance> {
  protected:
   /// A robot that has booted; then the bus is disturbed.
@@ -38,15 +29,7 @@ class DisturbedServices : public testing::TestWithParam<Disturbance> {
     });
     ASSERT_TRUE(scene->boot()) << scene->told();
   }
-  void disturb() {
-    sim::FaultRates rates;
-    const auto [kind, rate] = GetParam();
-    (kind == Kind::lost         ? rates.loss
-     : kind == Kind::duplicated ? rates.duplicate
-                                : rates.delay) = rate;
-    rates.longest_delay = 20ms;
-    scene->world().bus().faults().setRates(rates);
-  }
+  void disturb() { scene->world().bus().faults().setRates(GetParam().rates()); }
   void calm() { scene->world().bus().faults().setRates({}); }
   template <class Body>
   bus::Answer ask(Body body) {
@@ -238,11 +221,7 @@ TEST_P(DisturbedServices, GuardingKeepsADriveOrSaysWhyItIsLost) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Of, DisturbedServices,
-    testing::Values(Disturbance{Kind::lost, 0.01}, Disturbance{Kind::lost, 0.1},
-                    Disturbance{Kind::duplicated, 0.01}, Disturbance{Kind::duplicated, 0.1},
-                    Disturbance{Kind::delayed, 0.01}, Disturbance{Kind::delayed, 0.1}));
+INSTANTIATE_TEST_SUITE_P(Of, DisturbedServices, testing::ValuesIn(kDisturbances));
 
 }  // namespace
 }  // namespace cia402

@@ -1,5 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Drives without node-IDs on whole robots.
+#include "system/disturbance.h"
 #include "system/lss_scene.h"
 
 namespace cia402 {
@@ -251,17 +252,15 @@ TEST(Lss, WhoWaitsForLssAtAShutdownIsAnswered) {
   }
 }
 
-class LssUnderLoss : public testing::TestWithParam<double> {};
+class DisturbedLss : public testing::TestWithParam<Disturbance> {};
 
-TEST_P(LssUnderLoss, ScanTellsTrueIdentitiesOrAReason) {
+TEST_P(DisturbedLss, ScanTellsTrueIdentitiesOrAReason) {
   int complete = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     Scene scene(loadText(genericPair(unconfigured(111), unconfigured(222))), seed);
     scene.robot().start();
     scene.run(7s);
-    sim::FaultRates rates;
-    rates.loss = GetParam();
-    scene.world().bus().faults().setRates(rates);
+    scene.world().bus().faults().setRates(GetParam().rates());
     const auto scan = call(scene, bus::LssScanCommand{});
     for (const auto& found : scan.devices) {
       EXPECT_TRUE(found == device(111) || found == device(222)) << toString(found);
@@ -273,14 +272,12 @@ TEST_P(LssUnderLoss, ScanTellsTrueIdentitiesOrAReason) {
   EXPECT_GE(complete, 3);
 }
 
-TEST_P(LssUnderLoss, NoDriveEverGetsTheNodeIdOfAnother) {
+TEST_P(DisturbedLss, NoDriveEverGetsTheNodeIdOfAnother) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     Scene scene(
         loadText(genericPair(lssOf(111) + unconfigured(111), lssOf(222) + unconfigured(222))),
         seed);
-    sim::FaultRates rates;
-    rates.loss = GetParam();
-    scene.world().bus().faults().setRates(rates);
+    scene.world().bus().faults().setRates(GetParam().rates());
     scene.robot().start();
     for (int i = 0; i < 200; ++i) {
       scene.run(50ms);
@@ -293,7 +290,7 @@ TEST_P(LssUnderLoss, NoDriveEverGetsTheNodeIdOfAnother) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Losses, LssUnderLoss, testing::Values(0.01, 0.1));
+INSTANTIATE_TEST_SUITE_P(Of, DisturbedLss, testing::ValuesIn(kDisturbances));
 
 }  // namespace
 }  // namespace cia402
