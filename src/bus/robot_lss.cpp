@@ -22,6 +22,13 @@ bool neverHeard(const canopen::Node& node) {
          answers.aborted == 0;
 }
 
+/// It failed, or was taken out of operation, and its heartbeat has ended since.
+bool fellSilent(const canopen::Node& node, Time now) {
+  return node.health() == NodeHealth::failed &&
+         node.supervision().kind == canopen::ErrorControl::heartbeat &&
+         now > node.lastHeartbeat() + node.config().heartbeat_timeout;
+}
+
 }  // namespace
 
 /// Why nothing that delays other things may be begun; empty if it may.
@@ -45,7 +52,8 @@ std::string Robot::motionOnBus() const {
 std::vector<canopen::NodeId> Robot::nodesInOperation() const {
   std::vector<canopen::NodeId> ids = {config_.bus.node_id};
   for (const canopen::Node& node : master_.nodes()) {
-    if (!canopen::isAway(node.health()) && !neverHeard(node)) ids.push_back(node.id());
+    if (canopen::isAway(node.health()) || neverHeard(node) || fellSilent(node, now_)) continue;
+    ids.push_back(node.id());
   }
   return ids;
 }
@@ -130,7 +138,10 @@ void Robot::lookForLostDrives(Time now) {
 bool Robot::recoverByLss(const std::vector<ProcedureJob::Item>& items) {
   bool needed = false;
   for (const ProcedureJob::Item& item : items) {
-    if (!config_.axes[item.axis].lss || !canopen::isAway(axes_[item.axis].state().health)) continue;
+    const drive::AxisState& state = axes_[item.axis].state();
+    const bool there = state.health == canopen::NodeHealth::booting ||
+                       (state.health == canopen::NodeHealth::ready && state.feedback_valid);
+    if (!config_.axes[item.axis].lss || there) continue;
     assignByLss(item.axis, true);
     needed = true;
   }

@@ -1,4 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include <optional>
+
 #include "procedure.h"
 #include "sentence.h"
 #include "step_enable.h"
@@ -7,8 +9,9 @@
 namespace cia402::drive {
 namespace {
 
-/// Brings an axis back from wherever it is: boots the node if it is not ready, clears faults,
-/// enables. Calling it on a healthy axis does no harm.
+/// Brings an axis back from wherever it is: boots the node if it is not ready, or ready but without
+/// feedback (nobody notices where an unsupervised node went), clears faults, enables. Calling it on
+/// a healthy axis does no harm.
 class Recover : public Procedure {
  public:
   explicit Recover(AxisCore& axis) : enabling_(axis.workingMode(), axis.profile()) {}
@@ -39,17 +42,25 @@ class Recover : public Procedure {
   bool survivesNodeLoss() const override { return phase_ == Phase::booting; }
 
  private:
+  static constexpr int kBootTimes = 3;
   enum class Phase { begin, booting, feedback, clearing, enabling };
 
   void begin(const Context& context) {
     AxisCore& axis = context.axis;
     const DriveProfile::Timing& timing = axis.profile().timing;
     started_ = context.now;
-    boot_deadline_ = context.now + 3 * timing.boot;
-    context.status.deadline =
-        boot_deadline_ + 8 * timing.state_change + 2 * timing.mode_change + timing.brake_release;
+    context.status.deadline = context.now + kBootTimes * timing.boot + 9 * timing.state_change +
+                              2 * timing.mode_change + timing.brake_release;
+    boot_deadline_ = context.now + kBootTimes * timing.boot;
     phase_ = Phase::booting;
-    if (axis.nodeReady()) return;
+    if (!axis.nodeReady()) bootNode(context);
+  }
+
+  void bootNode(const Context& context) {
+    AxisCore& axis = context.axis;
+    phase_ = Phase::booting;
+    booted_ = context.now;
+    boot_deadline_ = context.now + kBootTimes * axis.profile().timing.boot;
     context.show("booting the node", "the node to be identified, configured and started");
     if (axis.node().health() != canopen::NodeHealth::booting) axis.node().boot(context.now, true);
   }
@@ -64,7 +75,7 @@ class Recover : public Procedure {
     }
     const bool failed = axis.node().health() == canopen::NodeHealth::failed ||
                         axis.node().health() == canopen::NodeHealth::absent;
-    if (failed && context.now > started_) {
+    if (failed && context.now > booted_.value_or(started_)) {
       return Outcome::failed(axis.who() + ": the node did not boot: " + axis.node().problem());
     }
     if (context.now < boot_deadline_) return Outcome::running();
@@ -80,6 +91,10 @@ class Recover : public Procedure {
       return Outcome::running();
     }
     if (context.now - since_ <= axis.profile().timing.state_change) return Outcome::running();
+    if (!booted_) {
+      bootNode(context);
+      return Outcome::running();
+    }
     return Outcome::failed(axis.who() + ": no usable statusword (6041:00) and position (6064:00) " +
                            "within " + seconds(context.now - since_) + " after the node was ready");
   }
@@ -97,6 +112,7 @@ class Recover : public Procedure {
   FaultResetStep reset_;
   EnableStep enabling_;
   Time started_{}, boot_deadline_{}, since_{};
+  std::optional<Time> booted_;  ///< began to boot; none: was not needed so far
 };
 
 }  // namespace

@@ -90,6 +90,22 @@ TEST(Lss, RecoverBeginsWithTheNodeId) {
   EXPECT_TRUE(scene.truth("left").power_stage_on);
 }
 
+TEST(Lss, RecoverGivesItBackToADriveThatWasTakenOutOfOperationAndThenSwitchedOff) {
+  Scene scene(
+      loadText(genericPair(lssOf(111) + unconfigured(111), lssOf(222) + unconfigured(222))));
+  scene.robot().start();
+  ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 20s)) << scene.told();
+  const auto stopped = call(scene, bus::NmtServiceCommand{"left", "stop"});
+  ASSERT_TRUE(stopped.success) << stopped.message;
+  scene.inject("left", "power_cycle");
+  scene.run(2s);
+  ASSERT_EQ(scene.state("left").health, NodeHealth::failed) << "nobody asked for it";
+  ASSERT_EQ(scene.drive("left").device().node(), 255);
+  const auto recovered = scene.procedure(ProcedureKind::recover, "left");
+  EXPECT_TRUE(recovered.success) << recovered.message;
+  EXPECT_EQ(scene.drive("left").device().node(), 1);
+}
+
 TEST(Lss, AStoredNodeIdOutlivesThePower) {
   Scene scene(loadText(genericPair(lssOf(111, ", store: true") + unconfigured(111))));
   ASSERT_TRUE(boots(scene)) << scene.told();
