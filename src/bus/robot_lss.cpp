@@ -138,9 +138,8 @@ void Robot::lookForLostDrives(Time now) {
 bool Robot::recoverByLss(const std::vector<ProcedureJob::Item>& items) {
   bool needed = false;
   for (const ProcedureJob::Item& item : items) {
-    const drive::AxisState& state = axes_[item.axis].state();
-    const bool there = state.health == canopen::NodeHealth::booting ||
-                       (state.health == canopen::NodeHealth::ready && state.feedback_valid);
+    const NodeHealth health = axes_[item.axis].state().health;
+    const bool there = health == NodeHealth::booting || health == NodeHealth::ready;
     if (!config_.axes[item.axis].lss || there) continue;
     assignByLss(item.axis, true);
     needed = true;

@@ -1,6 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // SYNC of other devices: followed where that is configured, told of where it is not.
-#include <algorithm>
 #include <cstdio>
 
 #include "cia402_driver/bus/robot.h"
@@ -12,7 +11,8 @@ using State = canopen::SyncConsumer::State;
 
 constexpr Duration kSyncNewsInterval = std::chrono::milliseconds(100);
 constexpr Duration kForeignHeard = std::chrono::seconds(1);  // one within this is a second producer
-constexpr int kForeignLooks = 3;  // so many in a row that found one: not a stray frame, but a pace
+constexpr unsigned kForeignLooks =
+    3;  // so many in a row that found one: not a stray frame, but a pace
 constexpr Duration kPatience = std::chrono::seconds(1);  // with the first SYNC, before it is told
 constexpr Duration kLasting = std::chrono::seconds(1);   // trouble that is away so long is over
 constexpr int kMeasuredDigits = 3;
@@ -117,7 +117,7 @@ std::string Robot::syncProblem() const {
 void Robot::watchSecondProducer(Time now) {
   const bool heard = foreign_syncs_ != foreign_seen_;
   foreign_seen_ = foreign_syncs_;
-  foreign_looks_ = heard ? std::min(foreign_looks_ + 1, kForeignLooks + 1) : 0;
+  foreign_looks_ = heard ? foreign_looks_ + 1 : 0;
   if (foreign_looks_ != kForeignLooks) return;
   stopForSync("stopped: " + syncText(SyncTrouble::second_producer), now);
 }

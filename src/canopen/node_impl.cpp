@@ -283,10 +283,9 @@ void Node::Impl::tryAgain(Time now) {
     once.retries = 0;
     probe = sdo.upload({0x1000, 0}, "device type", once);
     sdo.tick(now);
-    // Where it heard the stop that follows its loss, it has no SDO and tells its state if asked
-    // only.
-    if (config.error_control == ErrorControl::guarding)
-      sink.send(NodeGuard::request(config.node_id));
+    // A guarded drive that heard the stop after its loss has no SDO, and tells its state if asked.
+    const bool guarded = config.error_control == ErrorControl::guarding;
+    if (guarded) sink.send(NodeGuard::request(config.node_id));
   }
 }
 

@@ -51,36 +51,41 @@ class Recover : public Procedure {
     started_ = context.now;
     context.status.deadline = context.now + kBootTimes * timing.boot + 9 * timing.state_change +
                               2 * timing.mode_change + timing.brake_release;
-    boot_deadline_ = context.now + kBootTimes * timing.boot;
-    phase_ = Phase::booting;
-    if (!axis.nodeReady()) bootNode(context);
+    if (axis.nodeReady()) {
+      beginFeedback(context);
+    } else {
+      bootNode(context);
+    }
   }
 
   void bootNode(const Context& context) {
     AxisCore& axis = context.axis;
     phase_ = Phase::booting;
     booted_ = context.now;
-    boot_deadline_ = context.now + kBootTimes * axis.profile().timing.boot;
     context.show("booting the node", "the node to be identified, configured and started");
     if (axis.node().health() != canopen::NodeHealth::booting) axis.node().boot(context.now, true);
+  }
+
+  void beginFeedback(const Context& context) {
+    phase_ = Phase::feedback;
+    since_ = context.now;
+    context.show("reading feedback", "statusword and position from the drive");
   }
 
   Outcome boot(const Context& context) {
     AxisCore& axis = context.axis;
     if (axis.nodeReady()) {
-      phase_ = Phase::feedback;
-      since_ = context.now;
-      context.show("reading feedback", "statusword and position from the drive");
+      beginFeedback(context);
       return Outcome::running();
     }
     const bool failed = axis.node().health() == canopen::NodeHealth::failed ||
                         axis.node().health() == canopen::NodeHealth::absent;
-    if (failed && context.now > booted_.value_or(started_)) {
+    if (failed && context.now > *booted_) {
       return Outcome::failed(axis.who() + ": the node did not boot: " + axis.node().problem());
     }
-    if (context.now < boot_deadline_) return Outcome::running();
+    if (context.now < *booted_ + kBootTimes * axis.profile().timing.boot) return Outcome::running();
     return Outcome::failed(axis.who() + ": the node did not become ready within " +
-                           seconds(context.now - started_) + ", it is " +
+                           seconds(context.now - *booted_) + ", it is " +
                            canopen::toString(axis.node().health()) + ", " + axis.node().bootStep());
   }
 
@@ -96,7 +101,9 @@ class Recover : public Procedure {
       return Outcome::running();
     }
     return Outcome::failed(axis.who() + ": no usable statusword (6041:00) and position (6064:00) " +
-                           "within " + seconds(context.now - since_) + " after the node was ready");
+                           "within " + seconds(context.now - since_) +
+                           " after the node was ready: " + axis.feedbackText() +
+                           "; check bus load, cable and the drive's TPDOs");
   }
 
   Outcome finish(const Context& context) {
@@ -111,8 +118,8 @@ class Recover : public Procedure {
   Phase phase_ = Phase::begin;
   FaultResetStep reset_;
   EnableStep enabling_;
-  Time started_{}, boot_deadline_{}, since_{};
-  std::optional<Time> booted_;  ///< began to boot; none: was not needed so far
+  Time started_{}, since_{};
+  std::optional<Time> booted_;  ///< when the boot began; none: it was not needed so far
 };
 
 }  // namespace

@@ -53,7 +53,8 @@ Outcome EnableStep::awaitFeedback(const Context& context) {
   return fail(context, context.axis.who() +
                            ": no usable statusword (6041:00) and position "
                            "(6064:00) within " +
-                           seconds(waited) + "; check the TPDOs");
+                           seconds(waited) +
+                           "; check the TPDOs, or recover the axis, which boots the drive");
 }
 
 Outcome EnableStep::climb(const Context& context) {

@@ -16,8 +16,6 @@ using drive::ProcedureKind;
 using testing::HasSubstr;
 
 constexpr canopen::ObjectId kErrorTime{0x6066, 0};  // following error time out, ms
-constexpr char kGuarded[] =
-    ", error_control: guarding, simulation: {drive: generic_cia402_guarding}";
 
 class DisturbedServices : public testing::TestWithParam<Disturbance> {
  protected:
@@ -33,9 +31,7 @@ class DisturbedServices : public testing::TestWithParam<Disturbance> {
   void calm() { scene->world().bus().faults().setRates({}); }
   template <class Body>
   bus::Answer ask(Body body) {
-    bus::Command command;
-    command.body = std::move(body);
-    const bus::Answer answer = scene->call(std::move(command));
+    const bus::Answer answer = call(*scene, std::move(body));
     (answer.success ? done : failed) += 1;
     if (!answer.success) {
       EXPECT_THAT(answer.message, HasSubstr("left (node 1)"));
@@ -48,6 +44,14 @@ class DisturbedServices : public testing::TestWithParam<Disturbance> {
     request.kind = kind;
     return ask(bus::ProcedureCommand{"left", request});
   }
+  /// The same with a value that is not the factory's. @return the factory's
+  std::uint64_t beginChanged(std::uint64_t seed) {
+    begin(seed);
+    const std::uint64_t factory = errorTime();
+    EXPECT_TRUE(call(*scene, bus::WriteObjectCommand{"left", "6066:00", "77"}).success);
+    EXPECT_EQ(errorTime(), 77u);
+    return factory;
+  }
   std::uint64_t errorTime() { return scene->drive("left").dictionary().find(kErrorTime)->number; }
   void powerCycle() {
     scene->inject("left", "power_cycle");
@@ -55,10 +59,10 @@ class DisturbedServices : public testing::TestWithParam<Disturbance> {
         scene->runUntil([&] { return scene->state("left").health != NodeHealth::ready; }, 2s));
     ASSERT_TRUE(scene->runUntil([&] { return allReady(scene->robot()); }, 20s)) << scene->told();
   }
-  /// Rare disturbances leave most of it working.
-  void expectMostDone() {
-    const unsigned all = done + failed;
-    EXPECT_GE(done, GetParam().rate < 0.05 ? all * 3 / 4 : all / 4) << failed << " failed";
+  /// @param at_one_in_ten share of what works where one frame in ten is disturbed.
+  void expectMostDone(double at_one_in_ten = 0.25) {
+    const double share = GetParam().rate < 0.05 ? 0.75 : at_one_in_ten;
+    EXPECT_GE(done, share * (done + failed)) << failed << " failed";
   }
 
   std::unique_ptr<Scene> scene;
@@ -92,9 +96,7 @@ TEST_P(DisturbedServices, ObjectsAreWrittenAndReadAsTheyAre) {
 
 TEST_P(DisturbedServices, WhatIsSaidToBeSavedOutlivesThePower) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    begin(seed);
-    const std::uint64_t factory = errorTime();
-    ASSERT_TRUE(ask(bus::WriteObjectCommand{"left", "6066:00", "77"}).success);
+    const std::uint64_t factory = beginChanged(seed);
     disturb();
     const auto saved = run(ProcedureKind::save_parameters);
     calm();
@@ -109,9 +111,7 @@ TEST_P(DisturbedServices, WhatIsSaidToBeSavedOutlivesThePower) {
 
 TEST_P(DisturbedServices, WhatIsSaidToBeRestoredIsTheFactorys) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    begin(seed);
-    const std::uint64_t factory = errorTime();
-    ASSERT_TRUE(ask(bus::WriteObjectCommand{"left", "6066:00", "77"}).success);
+    const std::uint64_t factory = beginChanged(seed);
     disturb();
     const auto restored = run(ProcedureKind::restore_parameters);
     EXPECT_FALSE(scene->truth("left").power_stage_on);
@@ -119,7 +119,7 @@ TEST_P(DisturbedServices, WhatIsSaidToBeRestoredIsTheFactorys) {
       EXPECT_EQ(errorTime(), factory) << restored.message;
     }
   }
-  expectMostDone();
+  expectMostDone(0.0);  // the drive boots again: no boot of 300 frames survives 30 lost ones
 }
 
 TEST_P(DisturbedServices, TheErrorHistoryIsTheDrivesOwn) {
@@ -198,11 +198,13 @@ TEST_P(DisturbedServices, GuardingKeepsADriveOrSaysWhyItIsLost) {
     begin(seed, kGuarded);
     disturb();
     bool was_ready = true;
+    std::size_t told = 0;
     for (int i = 0; i < 20'000; ++i) {
       scene->run(1ms);
       const bool ready = scene->state("left").health == NodeHealth::ready;
       if (was_ready && !ready) {
-        EXPECT_THAT(scene->told(), HasSubstr("left (node 1): no "));
+        EXPECT_THAT(scene->told().substr(told), HasSubstr("left (node 1): no "));
+        told = scene->told().size();
       }
       was_ready = ready;
       ASSERT_FALSE(scene->truth("left").power_stage_on);

@@ -97,6 +97,11 @@ TEST(Lss, RecoverGivesItBackToADriveThatWasTakenOutOfOperationAndThenSwitchedOff
   ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 20s)) << scene.told();
   const auto stopped = call(scene, bus::NmtServiceCommand{"left", "stop"});
   ASSERT_TRUE(stopped.success) << stopped.message;
+  scene.run(2s);
+  bus::LssAssignCommand assign;
+  assign.identity = device(333);
+  assign.node_id = 1;
+  EXPECT_THAT(call(scene, assign).message, HasSubstr("node-ID 1 is that of a drive in operation"));
   scene.inject("left", "power_cycle");
   scene.run(2s);
   ASSERT_EQ(scene.state("left").health, NodeHealth::failed) << "nobody asked for it";

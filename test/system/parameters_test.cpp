@@ -21,14 +21,10 @@ class ParametersScene : public testing::Test {
     return scene.drive(name).dictionary().find(kErrorTime)->number;
   }
   bus::Answer write(const std::string& value) {
-    bus::Command command;
-    command.body = bus::WriteObjectCommand{"left", "6066:00", value};
-    return scene.call(std::move(command));
+    return call(scene, bus::WriteObjectCommand{"left", "6066:00", value});
   }
   bus::Answer nmt(const std::string& axis, const std::string& word) {
-    bus::Command command;
-    command.body = bus::NmtServiceCommand{axis, word};
-    return scene.call(std::move(command));
+    return call(scene, bus::NmtServiceCommand{axis, word});
   }
   void powerCycle() {
     scene.inject("left", "power_cycle");

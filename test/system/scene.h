@@ -39,6 +39,15 @@ inline std::string genericPair(const std::string& left = {}, const std::string& 
          group + "}\n";
 }
 
+/// The same with further keys of `bus`.
+inline std::string withBus(const std::string& more, std::string yaml = genericPair()) {
+  return yaml.replace(yaml.find("heartbeat: 0.1"), 14, "heartbeat: 0.1, " + more);
+}
+
+/// A drive without heartbeat, as the end of its axis' mapping.
+constexpr char kGuarded[] =
+    ", error_control: guarding, simulation: {drive: generic_cia402_guarding}";
+
 /// One Damiao joint that stands at 1.1 rad.
 inline std::string damiaoJoint(const std::string& more = {}) {
   return "bus: {interface: sim, bitrate: 1000000, sync_period: 0.004, heartbeat: 0.1}\n"
@@ -217,5 +226,23 @@ class Scene {
   std::vector<Seen> seen_;
   std::function<void()> look_;
 };
+
+template <class Body>
+bus::Answer call(Scene& scene, Body body) {
+  bus::Command command;
+  command.body = std::move(body);
+  return scene.call(std::move(command));
+}
+
+/// Asks and does not wait; the answer goes to the returned place.
+template <class Body>
+std::shared_ptr<std::optional<bus::Answer>> ask(Scene& scene, Body body) {
+  auto answer = std::make_shared<std::optional<bus::Answer>>();
+  bus::Command command;
+  command.body = std::move(body);
+  command.reply = [answer](const bus::Answer& given) { *answer = given; };
+  scene.robot().robot().execute(std::move(command), scene.now());
+  return answer;
+}
 
 }  // namespace cia402

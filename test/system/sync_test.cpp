@@ -28,6 +28,16 @@ class ExternalSync : public testing::Test {
     });
     ASSERT_TRUE(scene->boot()) << scene->told();
   }
+  /// The other producer is silent; both axes are on their way.
+  void moveWithOwnSync() {
+    scene = std::make_unique<SyncedScene>(genericPair());
+    scene->cease();
+    ASSERT_TRUE(scene->boot()) << scene->told();
+    ASSERT_TRUE(scene->procedure(ProcedureKind::enable).success) << scene->told();
+    ASSERT_TRUE(scene->move({1.5, -1.5}, 4s).success);
+    scene->run(1s);
+    ASSERT_GT(std::fabs(scene->velocity("left")), 0.2);
+  }
   bus::RobotSnapshot snapshot() {
     bus::RobotSnapshot shot;
     scene->robot().robot().fill(shot);
@@ -170,12 +180,7 @@ TEST_F(ExternalSync, ASecondProducerBesideOurOwnSyncIsSaid) {
 }
 
 TEST_F(ExternalSync, ASecondProducerThatAppearsStopsWhatMoves) {
-  boot(genericPair());  // its SYNCs go on until here
-  scene->cease();
-  scene->run(2500ms);
-  ASSERT_TRUE(scene->procedure(ProcedureKind::enable).success) << scene->told();
-  ASSERT_TRUE(scene->move({1.5, -1.5}, 4s).success);
-  scene->run(1s);
+  moveWithOwnSync();
   scene->produce(every(40ms));
   scene->run(1s);
   EXPECT_NEAR(scene->velocity("left"), 0.0, 1e-3);
@@ -186,12 +191,7 @@ TEST_F(ExternalSync, ASecondProducerThatAppearsStopsWhatMoves) {
 }
 
 TEST_F(ExternalSync, AStraySyncIsToldAndNoReasonToStop) {
-  boot(genericPair());
-  scene->cease();
-  scene->run(2500ms);
-  ASSERT_TRUE(scene->procedure(ProcedureKind::enable).success) << scene->told();
-  ASSERT_TRUE(scene->move({1.5, -1.5}, 4s).success);
-  scene->run(1s);
+  moveWithOwnSync();
   scene->produce(every(40ms));
   scene->run(150ms);
   scene->cease();
@@ -326,9 +326,7 @@ TEST(SyncOfADrive, IsLostWithTheDriveAndTheOthersStop) {
 }
 
 TEST(TimeMessage, IsSentAtItsIntervalOnceTheWallClockIsKnown) {
-  std::string yaml = genericPair();
-  yaml.replace(yaml.find("heartbeat: 0.1"), 14, "heartbeat: 0.1, time_interval: 0.5");
-  Scene scene(loadText(yaml));
+  Scene scene(loadText(withBus("time_interval: 0.5")));
   std::vector<can::Frame> seen;
   scene.world().bus().setMonitor([&](const can::Frame& frame, Time) {
     if (frame.id == 0x100) seen.push_back(frame);

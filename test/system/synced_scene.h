@@ -8,17 +8,17 @@
 
 namespace cia402 {
 
-/// The robot follows SYNC of another device; `more` are further keys of `bus`.
-inline std::string syncExternal(std::string yaml = genericPair(), const std::string& more = {}) {
-  return yaml.replace(yaml.find("heartbeat: 0.1"), 14, "heartbeat: 0.1, sync: external" + more);
+/// The robot follows SYNC of another device.
+inline std::string syncExternal(const std::string& yaml = genericPair()) {
+  return withBus("sync: external", yaml);
 }
 
 /// A whole robot in virtual time and another device that produces SYNC from the start.
 class SyncedScene : public Scene {
  public:
   explicit SyncedScene(const std::string& yaml = syncExternal(),
-                       const sim::SyncSchedule& schedule = {})
-      : Scene(loadText(yaml)) {
+                       const sim::SyncSchedule& schedule = {}, std::uint64_t seed = 1)
+      : Scene(loadText(yaml), seed) {
     producer_.connect(world().addParticipant("producer", producer_));
     produce(schedule);
   }

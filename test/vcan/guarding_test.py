@@ -37,8 +37,7 @@ class Guarding(RobotTest):
         cls.wire.close()
 
     def requests(self, since):
-        return [at for at, identifier in self.wire.remote_since(since)
-                if identifier == GUARD]
+        return [at for at, identifier in self.wire.remote_since(since) if identifier == GUARD]
 
     def test_01_boots_and_is_asked_by_remote_frames_with_alternating_answers(self):
         self.robot.wait_ready(60.0)

@@ -202,7 +202,7 @@ class Robot final : private canopen::MasterListener {
   canopen::SyncConsumer external_sync_;
   std::uint64_t foreign_syncs_ = 0;  ///< of others, while this program produces SYNC
   std::uint64_t foreign_seen_ = 0;   ///< of them, at the last look
-  int foreign_looks_ = 0;            ///< in a row that found new ones
+  unsigned foreign_looks_ = 0;       ///< in a row that found new ones
   Time last_foreign_sync_{}, sync_checked_{};
   SyncTrouble sync_trouble_ = SyncTrouble::none;  // that was told
   SyncTrouble sync_seen_ = SyncTrouble::none;     // at the last look
