@@ -119,7 +119,7 @@ TEST_P(DisturbedServices, WhatIsSaidToBeRestoredIsTheFactorys) {
       EXPECT_EQ(errorTime(), factory) << restored.message;
     }
   }
-  expectMostDone(0.0);  // the drive boots again: no boot of 300 frames survives 30 lost ones
+  expectMostDone(0.0);  // the drive boots again, which is some 300 frames
 }
 
 TEST_P(DisturbedServices, TheErrorHistoryIsTheDrivesOwn) {
