@@ -6,8 +6,9 @@ Usage: run_tests.py gtest    LOGS EXECUTABLE...
        run_tests.py unittest LOGS FILE.py...
        run_tests.py rostest  LOGS FILE.test...
 
-Appends to LOGS/results.tsv a line per case: passed or failed, name, log file. A case that did not
-run (crash, time-out, skipped, disabled) has failed. Exit status 1 if any case failed.
+Appends to LOGS/results.tsv a line per case: passed or failed, name, log file, and what was said of
+a failure, cut short. A case that did not run (crash, time-out, skipped, disabled) has failed. Exit
+status 1 if any case failed.
 """
 import concurrent.futures
 import json
@@ -32,10 +33,12 @@ class Results:
         self.logs = logs
         self.failed = 0
 
-    def note(self, passed, name, log):
-        self.failed += not passed
+    def note(self, name, log, why=None):
+        """@param why what was said of the failure, or None: passed."""
+        self.failed += why is not None
+        words = " ".join((why or "").split())[:300]
         with open(self.logs / "results.tsv", "a", encoding="utf-8") as file:
-            file.write(f"{'passed' if passed else 'failed'}\t{name}\t{log}\n")
+            file.write(f"{'passed' if why is None else 'failed'}\t{name}\t{log}\t{words}\n")
 
 
 def interrupt(process):
@@ -88,14 +91,17 @@ def cases_in(executable):
     return cases
 
 
-def passed_cases(report):
-    """Names of the cases that a JSON report of GoogleTest says have run and passed."""
+def outcomes_in(report):
+    """{case: why it failed, or None} of what a JSON report of GoogleTest says has run."""
     try:
         suites = json.loads(report.read_text(encoding="utf-8"))["testsuites"]
     except (OSError, ValueError):
-        return set()  # crashed before writing it
-    return {f"{suite['name']}.{case['name']}" for suite in suites for case in suite["testsuite"]
-            if case.get("result") == "COMPLETED" and not case.get("failures")}
+        return {}  # crashed before writing it
+    return {f"{suite['name']}.{case['name']}":
+            " ".join(failure["failure"] for failure in case["failures"])
+            if case.get("failures") else None
+            for suite in suites for case in suite["testsuite"]
+            if case.get("result") == "COMPLETED"}
 
 
 def run_gtest(results, executable):
@@ -110,29 +116,43 @@ def run_gtest(results, executable):
         log.write_text(f"cannot list the tests: {error}\n", encoding="utf-8")
         cases = []
     if not cases:
-        results.note(False, f"{name}: has tests", log)
+        results.note(f"{name}: has tests", log, "none found")
         return
     status = run([executable, "--gtest_brief=1", f"--gtest_output=json:{report}"], log,
                  GTEST_TIMEOUT_S, cwd=results.logs)
-    passed = passed_cases(report)
-    for case in cases:
-        results.note(case in passed, f"{name}: {case}", log)
-    if status != 0 and all(case in passed for case in cases):
-        results.note(False, f"{name}: ends with status 0, not {status}", log)
+    outcomes = outcomes_in(report)
+    reasons = [outcomes.get(case, f"did not run (status {status})") for case in cases]
+    for case, why in zip(cases, reasons):
+        results.note(f"{name}: {case}", log, why)
+    if status != 0 and all(why is None for why in reasons):
+        results.note(f"{name}: ends with status 0", log, f"ended with {status}")
 
 
 # Python's unittest
 
 class Recorder(unittest.TextTestResult):
-    """Notes every case of a unittest; the text goes to the log as usual."""
+    """Notes the outcome of every case of a unittest; the text goes to the log as usual."""
 
     def startTestRun(self):
         super().startTestRun()
-        self.passed = []
+        self.outcomes = {}
 
     def addSuccess(self, test):
         super().addSuccess(test)
-        self.passed.append(test.id())
+        self.outcomes.setdefault(test.id(), None)
+
+    def addFailure(self, test, err):
+        super().addFailure(test, err)
+        self.outcomes[test.id()] = str(err[1])
+
+    def addError(self, test, err):
+        super().addError(test, err)
+        self.outcomes[test.id()] = repr(err[1])
+
+    def addSubTest(self, test, subtest, err):
+        super().addSubTest(test, subtest, err)
+        if err is not None:
+            self.outcomes[test.id()] = str(err[1])
 
 
 def run_unittest(results, file):
@@ -143,26 +163,27 @@ def run_unittest(results, file):
     cases = [test.id() for group in suite for test in
              (group if isinstance(group, unittest.TestSuite) else [group])]
     with open(log, "w", encoding="utf-8") as stream:
-        outcome = unittest.TextTestRunner(stream, verbosity=2, resultclass=Recorder).run(suite)
+        run_of = unittest.TextTestRunner(stream, verbosity=2, resultclass=Recorder).run(suite)
     for case in cases:
-        results.note(case in outcome.passed, case, log)
+        results.note(case, log, run_of.outcomes.get(case, "did not run"))
     if not cases:
-        results.note(False, f"{path.stem}: has tests", log)
+        results.note(f"{path.stem}: has tests", log, "none found")
 
 
 # rostest
 
 def xml_cases(files):
-    """(name, passed) of every case in JUnit XML files."""
+    """(name, why it failed or None) of every case in JUnit XML files."""
     for file in files:
         try:
             root = ElementTree.parse(file).getroot()
-        except ElementTree.ParseError:
-            yield f"{file.name} is readable", False
+        except ElementTree.ParseError as error:
+            yield f"{file.name} is readable", str(error)
             continue
         for case in root.iter("testcase"):
-            bad = any(case.find(tag) is not None for tag in ("failure", "error", "skipped"))
-            yield f"{case.get('classname', '')}.{case.get('name')}", not bad
+            bad = [part.text or part.get("message") or part.tag
+                   for part in case if part.tag in ("failure", "error", "skipped")]
+            yield f"{case.get('classname', '')}.{case.get('name')}", " ".join(bad) if bad else None
 
 
 def run_rostest(results, file):
@@ -179,24 +200,24 @@ def run_rostest(results, file):
     # fails, too, when the node died before it could report.
     cases = list(xml_cases(sorted(directory.rglob("rosunit-*.xml"))))
     nodes = list(xml_cases(sorted(directory.rglob("rostest-*.xml"))))
-    for case, passed in cases:
-        results.note(passed, f"{name}: {case}", log)
-    if all(passed for _, passed in cases):
-        for node, passed in nodes:
-            if not passed:
-                results.note(False, f"{name}: {node}", log)
-    if not nodes or (not cases and all(passed for _, passed in nodes)):
-        results.note(False, f"{name}: reports its tests (status {status})", log)
+    for case, why in cases:
+        results.note(f"{name}: {case}", log, why)
+    if all(why is None for _, why in cases):
+        for node, why in nodes:
+            if why is not None:
+                results.note(f"{name}: {node}", log, why)
+    if not nodes or (not cases and all(why is None for _, why in nodes)):
+        results.note(f"{name}: reports its tests", log, f"status {status}")
 
 
 def run_file(kind, results, file):
     """Runs one file of tests. Whatever goes wrong in doing so is a failure of its own."""
     try:
         {"gtest": run_gtest, "unittest": run_unittest, "rostest": run_rostest}[kind](results, file)
-    except Exception:  # pylint: disable=broad-except
+    except Exception as error:  # pylint: disable=broad-except
         log = results.logs / f"{pathlib.Path(file).stem}.error.log"
         log.write_text(traceback.format_exc(), encoding="utf-8")
-        results.note(False, f"{pathlib.Path(file).name}: runs", log)
+        results.note(f"{pathlib.Path(file).name}: runs", log, repr(error))
 
 
 def main():

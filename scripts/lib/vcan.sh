@@ -122,12 +122,15 @@ vcan_in_uml() {
   trap 'exit 143' TERM HUP
   touch "$uml_directory/stdout" "$uml_directory/stderr"
   uml_write_init "$uml_directory" "$@"
-  local preload=$uml_directory/xstate.so
-  cc -O2 -shared -fPIC -o "$preload" "$here/lib/uml_xstate.c" || preload=''
+  local preload=$uml_directory/preload.so
+  cc -O2 -Wall -Wextra -Werror -shared -fPIC -o "$preload" "$here"/lib/uml_{xstate,time}.c || {
+    echo "with_vcan: what user-mode Linux is run with was not compiled, see above" >&2
+    return 125
+  }
 
   # timeout makes the process group, so that Ctrl-C reaches this script alone.
-  LD_PRELOAD=$preload TMPDIR=$memory \
-    setpriv --pdeathsig TERM timeout --kill-after=2 "$timeout" \
+  setpriv --pdeathsig TERM timeout --kill-after=2 "$timeout" \
+    env "LD_PRELOAD=$preload" "TMPDIR=$memory" \
     linux.uml "mem=${megabytes}M" rootfstype=hostfs rootflags=/ rw "init=$uml_directory/init" \
     "uml_dir=$uml_directory/" umid=uml con=null con0=null,fd:2 \
     </dev/null >"$uml_directory/console" 2>&1 &

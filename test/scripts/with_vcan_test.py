@@ -3,6 +3,7 @@
 """scripts/with_vcan hands a command over as it was called, to a place where vcan0 works."""
 import os
 import pathlib
+import signal
 import subprocess
 import tempfile
 import time
@@ -71,10 +72,64 @@ class WithVcan(unittest.TestCase):
 
     def test_a_command_that_hangs_is_killed_at_the_timeout(self):
         start = time.monotonic()
-        run = subprocess.run([WITH_VCAN, "--timeout", "6", "sleep", "100"], check=False,
-                             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        run = subprocess.run([WITH_VCAN, "--timeout", "6", "bash", "-c", "while :; do :; done"],
+                             check=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         self.assertEqual(run.returncode, 124)
         self.assertLess(time.monotonic() - start, 60)
+
+
+# Reads the clock until told to stop; prints the longest time between two readings.
+WATCH_THE_CLOCK = """
+import os, time
+open("started", "w").close()
+last, longest = time.monotonic(), 0.0
+while not os.path.exists("enough"):
+    now = time.monotonic()
+    longest, last = max(longest, now - last), now
+print(longest)
+"""
+
+
+def user_mode_linux(ancestor):
+    """The process that is the kernel, started by with_vcan."""
+    for entry in pathlib.Path("/proc").iterdir():
+        try:
+            command = (entry / "comm").read_text().strip()
+            parent = (entry / "stat").read_text().rsplit(")", 1)[1].split()[1]
+            grandparent = pathlib.Path("/proc", parent, "stat").read_text()
+        except (OSError, IndexError):
+            continue  # no process, or ended meanwhile
+        if command == "linux.uml" and int(grandparent.rsplit(")", 1)[1].split()[1]) == ancestor:
+            return int(entry.name)
+    raise AssertionError(f"no user-mode Linux below process {ancestor}")
+
+
+class TimeInUserModeLinux(unittest.TestCase):
+    """It does not depend on how much of the processors the machine gets."""
+
+    def test_nobody_waits_for_idle_time(self):
+        run = subprocess.run([WITH_VCAN, "--uml", "--timeout", "300", "bash", "-c",
+                              "date +%s; sleep 86400; date +%s"],
+                             stdout=subprocess.PIPE, text=True, check=True)
+        before, after = map(int, run.stdout.split())
+        self.assertIn(after - before, range(86400, 86410))
+
+    def test_what_gets_no_processor_for_a_while_does_not_notice(self):
+        with tempfile.TemporaryDirectory() as directory:
+            run = subprocess.Popen(
+                [WITH_VCAN, "--uml", "--timeout", "300", "/usr/bin/python3", "-c", WATCH_THE_CLOCK],
+                cwd=directory, stdout=subprocess.PIPE, text=True)
+            while not os.path.exists(os.path.join(directory, "started")):
+                self.assertIsNone(run.poll(), "it ended before it began")
+                time.sleep(0.01)
+            kernel = user_mode_linux(run.pid)
+            os.kill(kernel, signal.SIGSTOP)
+            time.sleep(2.0)  # what is tested is that these do not count
+            os.kill(kernel, signal.SIGCONT)
+            pathlib.Path(directory, "enough").touch()
+            output, _ = run.communicate()
+        self.assertEqual(run.returncode, 0)
+        self.assertLess(float(output), 0.2)
 
 
 if __name__ == "__main__":

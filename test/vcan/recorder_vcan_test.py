@@ -40,9 +40,15 @@ class VcanRecorder(RobotTest):
         answer = rospy.ServiceProxy("/simulated_drives/inject_fault", InjectFault)(axis, fault)
         self.assertTrue(answer.success, answer.message)
 
+    def statuswords(self):
+        """Those of the wrist, on the wire so far."""
+        return [data[:2].hex().upper() for _, identifier, data in self.wire.since(0.0)
+                if identifier == 0x183]
+
     def test_a_fault_is_on_file(self):
         wait_until(lambda: self.robot.call("recover").success, "recovered")
         wait_until(lambda: self.robot.call("wrist/enable").success, "enabled")
+        wait_until(lambda: len(self.statuswords()) > 50, "some cycles of feedback")
         began = time.time()
         self.inject("wrist", "encoder")
         self.robot.wait_state("wrist", "fault")
@@ -56,8 +62,7 @@ class VcanRecorder(RobotTest):
         self.assertGreater(emergency[0], began - 0.1)
         self.assertLess(emergency[0], began + 40.0)
         logged = [frame[3][:4] for frame in frames if frame[2] == 0x183]
-        wired = [data[:2].hex().upper() for _, identifier, data in self.wire.since(0.0)
-                 if identifier == 0x183]
+        wired = self.statuswords()
         self.assertGreater(len(logged), 50)
         self.assertIn(" ".join(word for word, _ in itertools.groupby(logged)),
                       " ".join(word for word, _ in itertools.groupby(wired)))

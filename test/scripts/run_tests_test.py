@@ -1,0 +1,118 @@
+#!/usr/bin/python3
+# Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+"""scripts/lib/run_tests.py: what has not run and passed has failed, and the reason is told."""
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+LIB = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "lib"
+sys.path.insert(0, str(LIB))
+import run_tests  # noqa: E402
+
+UNITTEST = """
+import unittest
+class Three(unittest.TestCase):
+    def test_good(self): pass
+    def test_unequal(self): self.assertEqual(1, 2, "one\\n is not two")
+    def test_raises(self): raise ValueError("x")
+    @unittest.skip("for later")
+    def test_left_out(self): pass
+    def test_parts(self):
+        with self.subTest("first"): self.fail("a part")
+"""
+# Stands in for an executable of GoogleTest: lists its cases, writes its report, ends with a status.
+GTEST = """#!/bin/bash
+case $1 in
+  --gtest_list_tests) printf 'Suite.\\n  Good\\n  Bad  # comment\\n  DISABLED_Never\\n' ;;
+  *) [ -z '{report}' ] || echo '{report}' > "${{2#--gtest_output=json:}}"; exit {status} ;;
+esac
+"""
+REPORT = """{"testsuites": [{"name": "Suite", "testsuite": [
+  {"name": "Good", "result": "COMPLETED"},
+  {"name": "Bad", "result": "COMPLETED", "failures": [{"failure": "first"}, {"failure": "second"}]},
+  {"name": "DISABLED_Never", "result": "SUPPRESSED"}]}]}"""
+GOOD_REPORT = """{"testsuites": [{"name": "Suite", "testsuite": [
+  {"name": "Good", "result": "COMPLETED"}, {"name": "Bad", "result": "COMPLETED"},
+  {"name": "DISABLED_Never", "result": "COMPLETED"}]}]}"""
+
+
+class RunTests(unittest.TestCase):
+    def setUp(self):
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+        self.path = pathlib.Path(directory.name)
+
+    def run_on(self, kind, name, text):
+        """@return exit status, {test: (passed or failed, reason)}."""
+        file = self.path / name
+        file.write_text(text)
+        file.chmod(0o755)
+        logs = self.path / "logs"
+        run = subprocess.run(["/usr/bin/python3", LIB / "run_tests.py", kind, logs, file],
+                             stdout=subprocess.DEVNULL, check=False)
+        lines = (logs / "results.tsv").read_text().splitlines()
+        fields = [line.split("\t") for line in lines]
+        for field in fields:
+            self.assertTrue(os.path.exists(field[2]), field)
+        return run.returncode, {field[1]: (field[0], field[3]) for field in fields}
+
+    def test_every_case_of_a_unittest(self):
+        status, results = self.run_on("unittest", "three_test.py", UNITTEST)
+        self.assertEqual(status, 1)
+        self.assertEqual(results, {
+            "three_test.Three.test_good": ("passed", ""),
+            "three_test.Three.test_unequal": ("failed", "1 != 2 : one is not two"),
+            "three_test.Three.test_raises": ("failed", "ValueError('x')"),
+            "three_test.Three.test_left_out": ("failed", "did not run"),
+            "three_test.Three.test_parts": ("failed", "a part"),
+        })
+
+    def test_a_unittest_that_cannot_be_loaded(self):
+        status, results = self.run_on("unittest", "broken_test.py", "import no_such_module\n")
+        self.assertEqual(status, 1)
+        [(outcome, reason)] = results.values()
+        self.assertEqual(outcome, "failed")
+        self.assertIn("Failed to import test module: broken_test", reason)
+
+    def test_every_case_of_googletest(self):
+        status, results = self.run_on("gtest", "suite", GTEST.format(report=REPORT, status=1))
+        self.assertEqual(status, 1)
+        self.assertEqual(results, {
+            "suite: Suite.Good": ("passed", ""),
+            "suite: Suite.Bad": ("failed", "first second"),
+            "suite: Suite.DISABLED_Never": ("failed", "did not run (status 1)"),
+        })
+
+    def test_googletest_that_crashes_before_its_report(self):
+        _, results = self.run_on("gtest", "suite", GTEST.format(report="", status=139))
+        self.assertEqual(set(results.values()), {("failed", "did not run (status 139)")})
+
+    def test_googletest_that_passes_and_then_ends_badly(self):
+        status, results = self.run_on("gtest", "suite", GTEST.format(report=GOOD_REPORT, status=1))
+        self.assertEqual(status, 1)
+        self.assertEqual(results["suite: ends with status 0"], ("failed", "ended with 1"))
+
+    def test_all_good(self):
+        status, results = self.run_on("gtest", "suite", GTEST.format(report=GOOD_REPORT, status=0))
+        self.assertEqual(status, 0)
+        self.assertEqual([outcome for outcome, _ in results.values()], ["passed"] * 3)
+
+    def test_the_xml_of_rostest(self):
+        report = self.path / "rosunit-x.xml"
+        report.write_text('<testsuite><testcase classname="a.B" name="good"/>'
+                          '<testcase classname="a.B" name="bad"><failure>1 != 2</failure></testcase>'
+                          '<testcase classname="a.B" name="out"><skipped message="why"/></testcase>'
+                          "</testsuite>")
+        torn = self.path / "rosunit-torn.xml"
+        torn.write_text("<testsuite><testcase")
+        cases = list(run_tests.xml_cases([report, torn]))
+        self.assertEqual(cases[:3], [("a.B.good", None), ("a.B.bad", "1 != 2"), ("a.B.out", "why")])
+        self.assertEqual(cases[3][0], "rosunit-torn.xml is readable")
+        self.assertIsNotNone(cases[3][1])
+
+
+if __name__ == "__main__":
+    unittest.main()
