@@ -37,7 +37,7 @@ class WithVcan(unittest.TestCase):
         with tempfile.TemporaryDirectory() as directory:
             cls.directory = os.path.realpath(directory)
             cls.outcome = subprocess.run(
-                [WITH_VCAN, "--timeout", "120", "bash", "-c", QUESTIONS, "bash", "a b", "c'd\"", ""],
+                [WITH_VCAN, "--timeout", "600", "bash", "-c", QUESTIONS, "bash", "a b", "c'd\"", ""],
                 cwd=directory, env={**os.environ, "WITH_VCAN_TEST": "two\nlines $x"},
                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
 
@@ -75,7 +75,7 @@ class WithVcan(unittest.TestCase):
         run = subprocess.run([WITH_VCAN, "--timeout", "6", "bash", "-c", "while :; do :; done"],
                              check=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         self.assertEqual(run.returncode, 124)
-        self.assertLess(time.monotonic() - start, 60)
+        self.assertLess(time.monotonic() - start, 300)
 
 
 # Reads the clock until told to stop; prints the longest time between two readings.
@@ -108,7 +108,7 @@ class TimeInUserModeLinux(unittest.TestCase):
     """It does not depend on how much of the processors the machine gets."""
 
     def test_nobody_waits_for_idle_time(self):
-        run = subprocess.run([WITH_VCAN, "--uml", "--timeout", "300", "bash", "-c",
+        run = subprocess.run([WITH_VCAN, "--uml", "--timeout", "600", "bash", "-c",
                               "date +%s; sleep 86400; date +%s"],
                              stdout=subprocess.PIPE, text=True, check=True)
         before, after = map(int, run.stdout.split())
@@ -117,7 +117,7 @@ class TimeInUserModeLinux(unittest.TestCase):
     def test_what_gets_no_processor_for_a_while_does_not_notice(self):
         with tempfile.TemporaryDirectory() as directory:
             run = subprocess.Popen(
-                [WITH_VCAN, "--uml", "--timeout", "300", "/usr/bin/python3", "-c", WATCH_THE_CLOCK],
+                [WITH_VCAN, "--uml", "--timeout", "600", "/usr/bin/python3", "-c", WATCH_THE_CLOCK],
                 cwd=directory, stdout=subprocess.PIPE, text=True)
             while not os.path.exists(os.path.join(directory, "started")):
                 self.assertIsNone(run.poll(), "it ended before it began")
