@@ -15,7 +15,7 @@ namespace {
 
 constexpr Duration kIdleInterval = std::chrono::milliseconds(20);  // while there is no cycle
 constexpr Duration kFlushTime = std::chrono::milliseconds(20);     // for the last frames
-constexpr int kFramesPerRound = 256;  // then the clock is looked at again
+constexpr int kFramesToFlush = 256;  // per millisecond: a flood does not keep it from its end
 
 RobotSnapshot sized(std::size_t axes, std::size_t groups) {
   RobotSnapshot snapshot;
@@ -30,13 +30,10 @@ BusRunner::BusRunner(config::RobotConfig robot, canopen::MasterConfig master,
                      std::unique_ptr<can::Interface> interface, Options options)
     : options_(options),
       interface_(std::move(interface)),
-      meter_(*interface_, robot.bus.bitrate),
-      recorder_(robot, meter_),
-      robot_(std::move(robot), std::move(master), recorder_, *this),
+      loop_(std::move(robot), std::move(master), *interface_, *this),
       wake_fd_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)),
-      snapshots_(sized(robot_.axes().size(), robot_.groups().size())),
-      recordings_(recorder_, robot_.config(), robot_.master().config()) {
-  recorder_.watch(robot_);
+      snapshots_(sized(loop_.robot().axes().size(), loop_.robot().groups().size())),
+      recordings_(loop_.recorder(), loop_.robot().config(), loop_.robot().master().config()) {
   if (wake_fd_ < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
 }
 
@@ -88,12 +85,12 @@ RealtimeReport BusRunner::realtime() {
 }
 
 void BusRunner::onEvent(const Event& event) {
-  recorder_.onEvent(event);
+  loop_.recorder().onEvent(event);
   if (!events_.push(Event(event))) ++lost_events_;
 }
 
 void BusRunner::onEmergency(const EmergencyEvent& event) {
-  recorder_.onEmergency(event);
+  loop_.recorder().onEmergency(event);
   if (!emergencies_.push(EmergencyEvent(event))) ++lost_emergencies_;
 }
 
@@ -108,13 +105,13 @@ void BusRunner::run() {
     const std::lock_guard<std::mutex> lock(realtime_mutex_);
     realtime_ = report;
   }
-  while (!robot_.shutDown()) {
+  while (!loop_.robot().shutDown()) {
     iterate(realNow());
-    if (!robot_.shutDown()) wait();
+    if (!loop_.robot().shutDown()) wait();
   }
   const Time flushed = realNow() + kFlushTime;  // the last frames are still on their way
   for (Time now = realNow(); now < flushed; now = realNow()) {
-    while (interface_->receive(now)) {
+    for (int i = 0; i < kFramesToFlush && interface_->receive(now); ++i) {
     }
     interface_->maintain(now);
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -124,44 +121,31 @@ void BusRunner::run() {
 }
 
 void BusRunner::iterate(Time now) {
-  if (shutdown_requested_) robot_.beginShutdown(now);
-  if (const auto unseen = watch_.update(*interface_, robot_, now)) {
-    recorder_.onInterface(*unseen, now);
+  Robot& robot = loop_.robot();
+  if (shutdown_requested_) robot.beginShutdown(now);
+  if (robot.config().bus.time_interval > Duration::zero()) {
+    robot.setWallTime(now.time_since_epoch() + wallClockDistance(), now);
   }
-  recorder_.onInterface(interface_->state(), now);
-  if (robot_.config().bus.time_interval > Duration::zero()) {
-    robot_.setWallTime(now.time_since_epoch() + wallClockDistance(), now);
-  }
-  robot_.tick(now);  // first of all: SYNC may be due
-  for (int i = 0; i < kFramesPerRound; ++i) {
-    const auto received = interface_->receive(now);
-    if (!received) break;
-    meter_.count(received->frame);
-    recorder_.received(received->frame, received->stamp);
-    robot_.receive(received->frame, received->stamp, now);
-  }
+  loop_.step(now);
   Command command;
-  while (mailbox_.pop(command)) robot_.execute(std::move(command), now);
-  interface_->maintain(now);
-  meter_.update(now);
-  recorder_.observe();
-  if (recorder_.triggered()) recordings_.wake();
+  while (mailbox_.pop(command)) robot.execute(std::move(command), now);
+  if (loop_.recorder().triggered()) recordings_.wake();
   publish(now);
 }
 
 void BusRunner::publish(Time now) {
-  const std::uint64_t cycle = robot_.statistics().cycles();
+  const std::uint64_t cycle = loop_.robot().statistics().cycles();
   if (cycle == published_cycle_ && now < published_ + kIdleInterval) return;
   published_cycle_ = cycle;
   published_ = now;
   RobotSnapshot& snapshot = snapshots_.back();
-  robot_.fill(snapshot);
+  loop_.robot().fill(snapshot);
   snapshot.now = now;
   snapshot.bus_state = interface_->state();
   snapshot.counters = interface_->counters();
-  snapshot.bus_load = meter_.load();
-  snapshot.most_bus_load = meter_.mostLoad();
-  snapshot.bus_text.assign(watch_.text());
+  snapshot.bus_load = loop_.meter().load();
+  snapshot.most_bus_load = loop_.meter().mostLoad();
+  snapshot.bus_text.assign(loop_.watch().text());
   snapshot.pending = interface_->pending();
   snapshot.error_counters = interface_->errorCounters();
   snapshots_.publish();
@@ -170,8 +154,7 @@ void BusRunner::publish(Time now) {
 void BusRunner::wait() const {
   pollfd sources[2] = {{wake_fd_, POLLIN, 0}, {interface_->fd(), POLLIN, 0}};
   const Time now = realNow();
-  const Time deadline =
-      std::min({robot_.nextDeadline(), interface_->nextDeadline(), now + kIdleInterval});
+  const Time deadline = std::min(loop_.nextDeadline(), now + kIdleInterval);
   const std::int64_t left = std::max<std::int64_t>((deadline - now).count(), 0);
   const timespec timeout{left / 1'000'000'000, left % 1'000'000'000};
   const nfds_t count = sources[1].fd >= 0 ? 2 : 1;

@@ -108,6 +108,7 @@ void Node::Impl::takeOutBy(NmtCommand command) {
 void Node::Impl::lose(const std::string& why, Time now) {
   // It may still hear us and go on with its last set-point, which nobody sends any more.
   sink.send(nmtFrame(NmtCommand::stop, config.node_id));
+  sdo.cancelAll("the node is lost: " + why);
   takeOut(NodeHealth::lost,
           why + ": check power and cable; it is configured again when it is back");
   retry.search(now);

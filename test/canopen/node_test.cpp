@@ -102,6 +102,7 @@ TEST_F(NodeTest, is_lost_a_time_out_after_its_last_heartbeat) {
   tpdo("183 37 02 01 00 00 00");  // not believed before it is configured again
   EXPECT_FALSE(statusword().valid);
   EXPECT_EQ(ticket->failure(), SdoTransfer::Failure::cancelled);
+  EXPECT_THAT(ticket->message(), HasSubstr("cancelled: the node is lost: no heartbeat for 0.3 s"));
   EXPECT_EQ(rpdos(), Lines{});
   EXPECT_EQ(node->image().output(node->image().outputSlot(kControlword)), 0U);
 }

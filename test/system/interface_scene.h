@@ -5,21 +5,21 @@
 #include <string>
 #include <vector>
 
-#include "cia402_driver/bus/bus_watch.h"
+#include "cia402_driver/bus/bus_loop.h"
 #include "cia402_driver/sim/bus_interface.h"
 #include "system/robot_fixture.h"
 
 namespace cia402 {
 
-/// A whole robot on a CAN interface in virtual time: what bus::BusRunner does in its thread, with a
-/// controller that may fall off the bus and has to be restarted.
+/// A whole robot on a CAN interface in virtual time, with a controller that may fall off the bus
+/// and has to be restarted, and a thread that may be held up.
 class InterfaceScene : private bus::EventSink {
  public:
   InterfaceScene(LoadedRobot loaded, const sim::BusInterface::Options& options)
       : loaded_(std::move(loaded)),
         world_(loaded_.robot.bus.bitrate),
         interface_(world_.bus(), "can0", options),
-        robot_(loaded_.robot, loaded_.master, interface_, *this) {
+        loop_(loaded_.robot, loaded_.master, interface_, *this) {
     for (const sim::SimulatedAxis& axis : loaded_.axes) {
       world_.addDrive(axis.name, axis.definition, axis.node, axis.mechanics);
     }
@@ -27,11 +27,11 @@ class InterfaceScene : private bus::EventSink {
     world_.powerOn();
   }
 
-  bus::Robot& robot() { return robot_; }
+  bus::Robot& robot() { return loop_.robot(); }
   sim::World& world() { return world_; }
   sim::BusInterface& interface() { return interface_; }
   sim::Port& port() { return interface_.port(); }
-  const bus::BusWatch& watch() const { return watch_; }
+  const bus::BusWatch& watch() const { return loop_.watch(); }
   Time now() const { return now_; }
   std::string told() const {
     std::string text;
@@ -39,10 +39,10 @@ class InterfaceScene : private bus::EventSink {
     return text;
   }
   void forgetTold() { events_.clear(); }
-  const drive::AxisState& state(std::size_t i) { return robot_.axes()[i].state(); }
+  const drive::AxisState& state(std::size_t i) { return robot().axes()[i].state(); }
   sim::DriveTruth truth(std::size_t i) { return world_.drive(i).truth(now_); }
   bool allReady() {
-    for (const drive::Axis& axis : robot_.axes()) {
+    for (const drive::Axis& axis : robot().axes()) {
       if (axis.state().health != canopen::NodeHealth::ready || !axis.state().feedback_valid) {
         return false;
       }
@@ -71,7 +71,7 @@ class InterfaceScene : private bus::EventSink {
     bus::Command command;
     command.body = std::move(body);
     command.reply = [&answer](const bus::Answer& given) { answer = given; };
-    robot_.execute(std::move(command), now_);
+    robot().execute(std::move(command), now_);
     runUntil([&answer] { return answer.has_value(); }, std::chrono::seconds(60));
     return answer.value_or(bus::Answer());
   }
@@ -93,20 +93,14 @@ class InterfaceScene : private bus::EventSink {
   void onEvent(const bus::Event& event) override { events_.push_back(event); }
   void step() {
     now_ += std::chrono::microseconds(500);
-    watch_.update(interface_, robot_, now_);
-    robot_.tick(now_);
-    while (const auto received = interface_.receive(now_)) {
-      robot_.receive(received->frame, received->stamp, now_);
-    }
-    interface_.maintain(now_);
+    loop_.step(now_);
   }
 
   LoadedRobot loaded_;
   sim::World world_;
   sim::BusInterface interface_;
   std::vector<bus::Event> events_;
-  bus::Robot robot_;
-  bus::BusWatch watch_{*this};
+  bus::BusLoop loop_;
   Time now_{};
 };
 

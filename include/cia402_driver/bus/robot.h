@@ -45,7 +45,9 @@ class Robot final : private canopen::MasterListener {
   void receive(const can::Frame& frame, Time stamp, Time now);
   /// Tells the wall-clock time, for TIME messages (`bus: {time_interval: ...}`).
   void setWallTime(canopen::UnixTime wall, Time now) { master_.setWallTime(wall, now); }
-  /// Does all that is due: SYNC, cycle, time-outs, procedures.
+  /// Sends SYNC if it is due; before frames that wait are taken in.
+  void produceSync(Time now);
+  /// Does all that is due: SYNC, cycle, time-outs, procedures; after the frames that came before.
   void tick(Time now);
   /// When tick() is due at the latest.
   Time nextDeadline() const;

@@ -8,14 +8,11 @@
 #include <mutex>
 #include <thread>
 
-#include "cia402_driver/bus/bus_watch.h"
+#include "cia402_driver/bus/bus_loop.h"
 #include "cia402_driver/bus/command.h"
 #include "cia402_driver/bus/event.h"
-#include "cia402_driver/bus/flight_recorder.h"
-#include "cia402_driver/bus/load_meter.h"
 #include "cia402_driver/bus/realtime.h"
 #include "cia402_driver/bus/recording_service.h"
-#include "cia402_driver/bus/robot.h"
 #include "cia402_driver/bus/snapshot.h"
 #include "cia402_driver/bus/spsc_queue.h"
 #include "cia402_driver/bus/triple_buffer.h"
@@ -75,9 +72,7 @@ class BusRunner final : private EventSink {
 
   Options options_;
   std::unique_ptr<can::Interface> interface_;
-  LoadMeter meter_;
-  FlightRecorder recorder_;
-  Robot robot_;
+  BusLoop loop_;
   int wake_fd_;
   SpscQueue<Command> mailbox_{256};
   std::mutex producers_;  // among the posting threads only
@@ -89,7 +84,6 @@ class BusRunner final : private EventSink {
   std::mutex realtime_mutex_;
   std::atomic<std::uint64_t> lost_events_{0}, lost_emergencies_{0};
   std::atomic<bool> running_{false}, shutdown_requested_{false};
-  BusWatch watch_{*this};
   std::uint64_t published_cycle_ = 0;
   Time published_{};
   RecordingService recordings_;

@@ -99,7 +99,9 @@ class VirtualRobot final : private sim::Participant, private bus::EventSink {
       take(frame, now, now);
     }
   }
+  /// In the order of bus::BusLoop.
   void tick(Time now) override {
+    robot_.produceSync(now);
     for (const auto& [frame, stamp] : kept_) take(frame, stamp, now);
     kept_.clear();
     watchPort(now);

@@ -1,0 +1,98 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/bus/bus_loop.h"
+
+#include <gtest/gtest.h>
+
+#include "bus/robot_world.h"
+
+namespace cia402::bus {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// An interface with frames of nobody in its queue.
+class Queue : public can::Interface {
+ public:
+  bool send(const can::Frame& frame) override {
+    syncs += frame.id == 0x080 ? 1 : 0;
+    return true;
+  }
+  std::optional<can::ReceivedFrame> receive(Time now) override {
+    if (waiting == 0) return std::nullopt;
+    --waiting;
+    return can::ReceivedFrame{can::Frame(0x7A0, {}), std::min(now, stamp)};
+  }
+  void maintain(Time) override {}
+  int fd() const override { return -1; }
+  can::BusState state() const override { return can::BusState::error_active; }
+  const can::BusCounters& counters() const override { return counters_; }
+  std::string describe() const override { return "can0"; }
+
+  long waiting = 0;
+  Time stamp = Time::max();  ///< of the frames, at the latest
+  int syncs = 0;
+
+ private:
+  can::BusCounters counters_;
+};
+
+class BusLoopTest : public testing::Test, protected EventSink {
+ protected:
+  void onEvent(const Event&) override {}
+  void onEmergency(const EmergencyEvent&) override {}
+  void run(Duration duration) {
+    for (const Time end = now + duration; now < end; now += 100us) loop.step(now);
+  }
+  Time lastCycle() const { return loop.robot().lastCycle(); }
+
+  config::RobotConfig robot = test::testRobot();
+  Queue queue;
+  BusLoop loop{robot, test::masterOf(robot), queue, *this};
+  Time now{1s};
+};
+
+TEST_F(BusLoopTest, SleepsUntilTheRobotHasToDoSomething) {
+  run(100ms);
+  EXPECT_EQ(loop.nextDeadline(), loop.robot().nextDeadline());
+}
+
+TEST_F(BusLoopTest, IsDueAtOnceWhileFramesWait) {
+  run(101ms);
+  queue.waiting = 300;
+  loop.step(now);
+  EXPECT_EQ(queue.waiting, 44);
+  ASSERT_GT(loop.robot().nextDeadline(), now);
+  EXPECT_LE(loop.nextDeadline(), now);
+  loop.step(now);
+  EXPECT_EQ(queue.waiting, 0);
+  EXPECT_GT(loop.nextDeadline(), now);
+}
+
+TEST_F(BusLoopTest, ProducesSyncWhileItReadsButNoCycleBeforeItHasReadThePast) {
+  run(101ms);  // the cycle is due a millisecond later
+  const Time before = lastCycle();
+  const int syncs = queue.syncs;
+  now += 100ms;  // a stall
+  queue.stamp = now;
+  queue.waiting = 300;
+  loop.step(now);
+  EXPECT_EQ(queue.syncs, syncs + 1);
+  EXPECT_EQ(lastCycle(), before);
+  loop.step(now);
+  EXPECT_EQ(queue.syncs, syncs + 1);
+  EXPECT_EQ(lastCycle(), now);
+}
+
+TEST_F(BusLoopTest, GoesOnInAFloodThatComesFasterThanItIsRead) {
+  run(100ms);
+  const int syncs = queue.syncs;
+  queue.waiting = 1'000'000'000;
+  for (int i = 0; i < 50; ++i) {
+    run(20ms);
+    ASSERT_GT(lastCycle(), now - 2 * test::kPeriod);
+  }
+  EXPECT_NEAR(queue.syncs - syncs, 250, 2);
+}
+
+}  // namespace
+}  // namespace cia402::bus

@@ -1,0 +1,106 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// The driver's thread is held up, as on a machine that sleeps or is overloaded, while the bus and
+// the kernel's queue go on: what came in time counts, though it is read late.
+#include "cia402_driver/sim/sync_producer.h"
+#include "system/interface_scene.h"
+#include "system/scene.h"
+
+namespace cia402 {
+namespace {
+
+using namespace std::chrono_literals;
+using canopen::NodeHealth;
+using testing::HasSubstr;
+using testing::Not;
+
+/// Heartbeats every 0.1 s, missed by the driver after 0.3 s, by the drives after 10 s.
+constexpr char kPatientDrive[] = ", error_control: {master_timeout: 10.0}";
+
+/// Whoever sends and does not listen.
+class Deaf : public sim::Listener {
+  void onFrame(const can::Frame&, Time) override {}
+};
+
+class StalledDriver : public testing::Test {
+ protected:
+  void begin(const std::string& yaml) {
+    scene.emplace(loadText(yaml), sim::BusInterface::Options());
+    ASSERT_TRUE(scene->runUntil([&] { return scene->allReady(); }, 8s)) << scene->told();
+    scene->run(500ms);
+    scene->forgetTold();
+  }
+  /// At many places within a cycle and between heartbeats.
+  template <typename Check>
+  void stallInAllPhases(Duration duration, Check&& check) {
+    for (int i = 0; i < 20; ++i) {
+      scene->stall(duration);
+      scene->run(200ms + i * 500us);
+      ASSERT_NO_FATAL_FAILURE(check()) << "stall " << i;
+    }
+  }
+  std::optional<InterfaceScene> scene;
+};
+
+TEST_F(StalledDriver, LosesNoDriveWhoseHeartbeatsWaitInTheQueue) {
+  begin(genericPair(kPatientDrive, kPatientDrive));
+  stallInAllPhases(1s, [&] {
+    for (std::size_t i = 0; i < 2; ++i) {
+      ASSERT_EQ(scene->state(i).health, NodeHealth::ready) << scene->told();
+      ASSERT_TRUE(scene->state(i).feedback_valid) << scene->told();
+    }
+  });
+  EXPECT_EQ(scene->told(), "");
+}
+
+TEST_F(StalledDriver, LosesNoDriveWhoseHeartbeatsWaitBehindManyOtherFrames) {
+  begin(genericPair(kPatientDrive, kPatientDrive));
+  Deaf deaf;
+  sim::Port& stranger = scene->world().bus().attach(deaf, "stranger", 800);
+  for (int i = 0; i < 800; ++i) {
+    ASSERT_TRUE(stranger.send(can::Frame(0x7A0, {0, 1, 2, 3, 4, 5, 6, 7}), scene->now()));
+  }
+  scene->stall(1s);
+  scene->run(1s);
+  EXPECT_EQ(scene->told(), "");
+  EXPECT_EQ(scene->interface().counters().receive_overflows, 0u);
+}
+
+TEST_F(StalledDriver, LosesADriveThatWasSilentMeanwhile) {
+  begin(genericPair(kPatientDrive, kPatientDrive));
+  scene->world().drive(0).powerOff(scene->now());
+  scene->stall(1s);
+  scene->run(20ms);
+  EXPECT_EQ(scene->state(0).health, NodeHealth::lost);
+  EXPECT_EQ(scene->state(1).health, NodeHealth::ready);
+}
+
+TEST_F(StalledDriver, TakesAnAnswerThatCameInTime) {
+  begin(genericPair(kPatientDrive, kPatientDrive));
+  for (int i = 0; i < 20; ++i) {
+    std::optional<bus::Answer> answer;
+    bus::Command command;
+    command.body = bus::ReadObjectCommand{"left", "1008:00"};
+    command.reply = [&answer](const bus::Answer& given) { answer = given; };
+    scene->robot().execute(std::move(command), scene->now());
+    scene->stall(5s);
+    ASSERT_TRUE(scene->runUntil([&] { return answer.has_value(); }, 100ms)) << i;
+    ASSERT_TRUE(answer->success) << i << ": " << answer->message;
+    scene->run(100ms + i * 500us);
+  }
+  EXPECT_EQ(scene->robot().master().nodes()[0].sdo().counters().timeouts, 0u);
+}
+
+TEST_F(StalledDriver, DoesNotMissTheSyncOfAnotherDeviceThatWaitsInTheQueue) {
+  scene.emplace(loadText(withBus("sync: external", genericPair(kPatientDrive, kPatientDrive))),
+                sim::BusInterface::Options());
+  sim::SyncProducer producer(11);
+  producer.connect(scene->world().addParticipant("producer", producer));
+  producer.start({}, scene->now() + 4ms);
+  ASSERT_TRUE(scene->runUntil([&] { return scene->allReady(); }, 8s)) << scene->told();
+  scene->run(2s);
+  scene->forgetTold();
+  stallInAllPhases(100ms, [&] { ASSERT_THAT(scene->told(), Not(HasSubstr("no SYNC"))); });
+}
+
+}  // namespace
+}  // namespace cia402
