@@ -98,16 +98,18 @@ void DrivenRobot::prepare() {
   outgoing_.clear();
 }
 
+/// In the order of bus::BusLoop::step.
 void DrivenRobot::cycle() {
   wake(sync_);
   Time now = sync_;
   for (const can::Frame& frame : incoming_) {
     now += kFrameTime;
-    robot_.tick(now);
     const can::Frame received = frame;
+    robot_.produceSync(now);
     meter_.count(received);
     recorder_.received(received, now);
     robot_.receive(received, now, now);
+    robot_.tick(now);
     meter_.update(now);
     recorder_.observe();
     publish(now);

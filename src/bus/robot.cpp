@@ -94,16 +94,16 @@ Time Robot::nextDeadline() const {
   return std::min({next_sync_, next_cycle_, master_.nextDeadline(), lss_.nextDeadline()});
 }
 
-void Robot::produceSync(Time now) {
-  if (!started_ || shutDown()) return;
+void Robot::syncIsDue(Time now) {
+  if (!started_ || shutDown() || config_.bus.external_sync) return;
   now_ = now;
-  if (now >= next_sync_ && !config_.bus.external_sync) sync(now);
+  sync(now);
 }
 
 void Robot::tick(Time now) {
   if (!started_ || shutDown()) return;
-  produceSync(now);
-  if (now >= next_sync_ && config_.bus.external_sync) lackSync(now);
+  now_ = now;
+  if (now >= next_sync_) config_.bus.external_sync ? lackSync(now) : sync(now);
   if (now >= next_cycle_) cycle(now);
   if (now >= master_.nextDeadline()) master_.tick(now);
   if (now >= lss_.nextDeadline()) stepLss(now);
