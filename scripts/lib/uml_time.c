@@ -13,7 +13,6 @@
 #include <dlfcn.h>
 #include <signal.h>
 #include <stdint.h>
-#include <sys/time.h>
 #include <time.h>
 
 enum { second = 1000000000 };  // all times are in ns
