@@ -30,8 +30,10 @@ void BusLoop::step(Time now) {
   }
   recorder_.onInterface(interface_.state(), now);
   robot_.produceSync(now);
-  rounds_behind_ = takeIn(now) ? 0 : rounds_behind_ + 1;
-  if (rounds_behind_ % kRoundsBehind == 0) robot_.tick(now);
+  if (takeIn(now) || ++rounds_behind_ == kRoundsBehind) {
+    rounds_behind_ = 0;
+    robot_.tick(now);
+  }
   interface_.maintain(now);
   meter_.update(now);
   recorder_.observe();

@@ -94,7 +94,7 @@ Time Robot::nextDeadline() const {
   return std::min({next_sync_, next_cycle_, master_.nextDeadline(), lss_.nextDeadline()});
 }
 
-void Robot::syncIsDue(Time now) {
+void Robot::onSyncDue(Time now) {
   if (!started_ || shutDown() || config_.bus.external_sync) return;
   now_ = now;
   sync(now);

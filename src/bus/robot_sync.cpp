@@ -11,8 +11,7 @@ using State = canopen::SyncConsumer::State;
 
 constexpr Duration kSyncNewsInterval = std::chrono::milliseconds(100);
 constexpr Duration kForeignHeard = std::chrono::seconds(1);  // one within this is a second producer
-constexpr unsigned kForeignLooks =
-    3;  // so many in a row that found one: not a stray frame, but a pace
+constexpr unsigned kForeignLooks = 3;  // in a row that found one: no stray frame, but a pace
 constexpr Duration kPatience = std::chrono::seconds(1);  // with the first SYNC, before it is told
 constexpr Duration kLasting = std::chrono::seconds(1);   // trouble that is away so long is over
 constexpr int kMeasuredDigits = 3;

@@ -1,9 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // The driver's thread is held up, as on a machine that sleeps or is overloaded, while the bus and
 // the kernel's queue go on: what came in time counts, though it is read late.
-#include "cia402_driver/sim/sync_producer.h"
 #include "system/interface_scene.h"
-#include "system/scene.h"
+#include "system/synced_scene.h"
 
 namespace cia402 {
 namespace {
@@ -91,7 +90,7 @@ TEST_F(StalledDriver, TakesAnAnswerThatCameInTime) {
 }
 
 TEST_F(StalledDriver, DoesNotMissTheSyncOfAnotherDeviceThatWaitsInTheQueue) {
-  scene.emplace(loadText(withBus("sync: external", genericPair(kPatientDrive, kPatientDrive))),
+  scene.emplace(loadText(syncExternal(genericPair(kPatientDrive, kPatientDrive))),
                 sim::BusInterface::Options());
   sim::SyncProducer producer(11);
   producer.connect(scene->world().addParticipant("producer", producer));

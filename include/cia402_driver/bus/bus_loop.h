@@ -40,7 +40,7 @@ class BusLoop {
   FlightRecorder recorder_;
   Robot robot_;
   BusWatch watch_;
-  int rounds_behind_ = 0;    ///< in a row that left frames of the past for the next one
+  int rounds_behind_ = 0;    ///< since tick(): they left frames of the past
   bool more_waits_ = false;  ///< the last round may have left frames
 };
 

@@ -47,7 +47,7 @@ class Robot final : private canopen::MasterListener {
   void setWallTime(canopen::UnixTime wall, Time now) { master_.setWallTime(wall, now); }
   /// Sends SYNC if it is due; before frames that wait are taken in.
   void produceSync(Time now) {
-    if (now >= next_sync_) syncIsDue(now);
+    if (now >= next_sync_) onSyncDue(now);
   }
   /// Does all that is due: SYNC, cycle, time-outs, procedures; after the frames that came before.
   void tick(Time now);
@@ -111,7 +111,7 @@ class Robot final : private canopen::MasterListener {
   /// A counter in SYNC is an error to drives that are not yet configured for it (EMCY 0x8240): the
   /// first SYNC waits until a drive is ready or none is booting.
   bool mayProduceSync();
-  void syncIsDue(Time now);
+  void onSyncDue(Time now);
   void sync(Time now);
   void cycle(Time now);
   /// SYNC of another device leads the cycle.
