@@ -31,20 +31,19 @@ Group::Group(config::GroupConfig config, std::vector<std::size_t> axes,
              const std::vector<drive::Axis>& all)
     : config_(std::move(config)),
       axes_(std::move(axes)),
-      ramps_({}),
+      clock_(all.empty() ? Duration(1) : all.front().config().sync_period),
       commanded_(axes_.size()),
       dropped_(axes_.size(), 0),
       next_dropped_(axes_.size(), 0),
-      zeros_(axes_.size(), 0) {
-  std::vector<motion::StopLimits> stops;
+      breaks_(axes_.size(), 0),
+      notices_(axes_.size(), 0) {
   for (std::size_t axis : axes_) {
     joints_.push_back(jointOf(all[axis].config()));
-    stops.push_back(stopLimits(all[axis].config()));
+    accelerations_.push_back(drive::stopDeceleration(all[axis].config()));
     const auto tolerance = config_.tolerances.find(joints_.back().name);
     tolerances_.push_back(tolerance == config_.tolerances.end() ? config::JointTolerance()
                                                                 : tolerance->second);
   }
-  ramps_ = motion::GroupStop(std::move(stops));
 }
 
 std::string Group::refusal(const std::vector<drive::Axis>& axes,
@@ -74,13 +73,12 @@ std::string Group::refusal(const std::vector<drive::Axis>& axes,
 std::vector<motion::MotionState> Group::commandedAt(const std::vector<drive::Axis>& axes,
                                                     Time time) const {
   std::vector<motion::MotionState> states(axes_.size());
-  if (phase_ == Phase::following) {
-    trajectory_->sample(time, states);
-  } else if (phase_ == Phase::stopping) {
-    ramps_.sample(time, states);
-  }
+  const bool planned = phase_ == Phase::following && clock_.rate() == 1.0;
+  if (planned) trajectory_->sample(time, states);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    if (phase_ == Phase::idle || dropped_[i] != 0) states[i] = {axes[axes_[i]].target(), 0.0, 0.0};
+    if (planned && dropped_[i] == 0) continue;
+    const auto sent = axes[axes_[i]].setPoint().expected(time - clock_.time());
+    states[i] = {sent.position, sent.velocity, 0.0};
   }
   return states;
 }
@@ -90,7 +88,8 @@ TrajectoryOutcome Group::start(const std::vector<std::string>& names,
                                std::optional<Time> start_time, std::vector<drive::Axis>& axes,
                                std::vector<AxisMotion>& motions, Time now) {
   if (points.empty()) {
-    stop({TrajectoryErrorCode::successful, config_.name + ": stopped by an empty trajectory"}, now);
+    stop({TrajectoryErrorCode::successful, config_.name + ": stopped by an empty trajectory"},
+         axes);
     return {TrajectoryErrorCode::successful, config_.name + ": stopping"};
   }
   const auto order = motion::matchJoints(joints_, names);
@@ -99,25 +98,30 @@ TrajectoryOutcome Group::start(const std::vector<std::string>& names,
   if (!why_not.empty()) {
     return {TrajectoryErrorCode::invalid_goal, config_.name + ": trajectory refused: " + why_not};
   }
+  if (phase_ == Phase::idle) clock_.set(now);
   motion::TrajectoryStart start;
-  start.now = now;
-  start.start_time = start_time;
+  start.now = clock_.time();
+  if (start_time) start.start_time = clock_.at(*start_time, now);
   start.shortest_way = true;
   auto trajectory = motion::Trajectory::create(joints_, commandedAt(axes, start.begin()),
                                                reorder(points, *order), start);
   if (!trajectory) return {trajectory.error().code, trajectory.error().message};
   next_ = std::move(trajectory).value();
   std::fill(next_dropped_.begin(), next_dropped_.end(), std::uint8_t{0});
-  for (std::size_t i = 0; i < axes_.size(); ++i) zeros_[i] = axes[axes_[i]].state().zero_changes;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    breaks_[i] = axes[axes_[i]].setPoint().breaks();
+    notices_[i] = axes[axes_[i]].noticeCount();
+  }
   if (phase_ == Phase::idle) {
-    commanded_ = commandedAt(axes, now);
-    beginNext();
+    showSent(axes);
+    beginNext(now);
   }
   for (std::size_t axis : axes_) motions[axis].setOwner(&config_.name);
   return {TrajectoryErrorCode::successful, config_.name + ": trajectory accepted"};
 }
 
-void Group::beginNext() {
+void Group::beginNext(Time now) {
+  began_ = now;
   trajectory_ = std::move(next_);
   next_.reset();
   phase_ = Phase::following;
@@ -125,60 +129,121 @@ void Group::beginNext() {
   dropped_ = next_dropped_;
 }
 
-/// A joint that was not ready for a while, or whose positions got another zero, is not where its
-/// trajectories were planned from.
+/// A joint that was not ready for a while, or whose set-points were ended by anything else (another
+/// zero of its positions, a motor that stands), is not where its trajectories were planned from.
 void Group::noteDropped(const std::vector<drive::Axis>& axes) {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    const drive::AxisState& state = axes[axes_[i]].state();
-    if (!state.ready_for_motion || state.zero_changes != zeros_[i]) {
+    const drive::Axis& axis = axes[axes_[i]];
+    if (!axis.state().ready_for_motion || axis.setPoint().breaks() != breaks_[i]) {
       dropped_[i] = next_dropped_[i] = 1;
     }
-    zeros_[i] = state.zero_changes;
+    breaks_[i] = axis.setPoint().breaks();
   }
 }
 
-void Group::stop(const TrajectoryOutcome& why, Time now) {
+void Group::stop(const TrajectoryOutcome& why, std::vector<drive::Axis>& axes) {
   if (!executing()) return;
   outcome_ = why;
-  if (phase_ == Phase::following) beginStop(now);
+  if (phase_ == Phase::following) beginStop(axes);
   next_.reset();
 }
 
-void Group::beginStop(Time now) {
-  trajectory_->sample(now, commanded_);
-  ramps_.start(commanded_, now);
+void Group::beginStop(std::vector<drive::Axis>& axes) {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    drive::Axis& axis = axes[axes_[i]];
+    if (dropped_[i] == 0) axis.stopSetPoint();
+    breaks_[i] = axis.setPoint().breaks();
+  }
   trajectory_.reset();
   next_.reset();
   phase_ = Phase::stopping;
+}
+
+/// The joints' own accelerations come with the square of the rate, so that both together keep the
+/// limit: rise * velocity + rate² * acceleration.
+double Group::permittedRise() const {
+  constexpr double kLeast = 0.1;  // of the limit, where the trajectory takes all of it
+  const double rate = clock_.rate();
+  double rise = 1e9;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const motion::MotionState state = trajectory_->sample(i, clock_.time());
+    const double limit = accelerations_[i];
+    const double left = limit - rate * rate * std::abs(state.acceleration);
+    const double speed = std::max(std::abs(state.velocity), 1e-9);
+    rise = std::min(rise, std::max(left, kLeast * limit) / speed);
+  }
+  return rise;
+}
+
+void Group::advanceClock(Time now) {
+  if (phase_ == Phase::stopping || clock_.time() < trajectory_->startTime()) {
+    clock_.idle(now);
+  } else {
+    clock_.cycle(now);
+    clock_.advance(clock_.rate() == 1.0 ? 1.0 : permittedRise());
+  }
+}
+
+void Group::follow(std::vector<drive::Axis>& axes) {
+  trajectory_->sample(clock_.time(), commanded_);
+  for (motion::MotionState& state : commanded_) {
+    state.velocity *= clock_.rate();
+    state.acceleration *= clock_.rate() * clock_.rate();
+  }
+  sendSetpoints(axes);
+}
+
+void Group::showSent(const std::vector<drive::Axis>& axes) {
+  commanded_.resize(axes_.size());
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const drive::SetPoint& sent = axes[axes_[i]].setPoint();
+    commanded_[i] = {sent.value(), sent.velocity(), 0.0};
+  }
+}
+
+bool Group::stands(const std::vector<drive::Axis>& axes) const {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    if (dropped_[i] == 0 && !axes[axes_[i]].setPoint().atRest()) return false;
+  }
+  return true;
+}
+
+/// The goal was sent already: given once more, the set-points are at rest there.
+bool Group::atGoal(const std::vector<drive::Axis>& axes) const {
+  if (!trajectory_->finished(clock_.time())) return false;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    if (dropped_[i] == 0 && axes[axes_[i]].target() != trajectory_->goal()[i]) return false;
+  }
+  return true;
 }
 
 std::optional<TrajectoryOutcome> Group::step(std::vector<drive::Axis>& axes,
                                              std::vector<AxisMotion>& motions, Time now) {
   if (phase_ == Phase::idle) return std::nullopt;
   noteDropped(axes);
-  if (next_ && now >= next_->startTime()) beginNext();
+  advanceClock(now);
+  if (next_ && clock_.time() >= next_->startTime()) beginNext(now);
   if (phase_ == Phase::following) {
     auto ended = checkAxes(axes);
     if (!ended) ended = checkPath(axes);
     if (!ended) ended = checkRefusal();
     if (ended) {
       outcome_ = *ended;
-      beginStop(now);
+      beginStop(axes);
     }
   }
   if (phase_ == Phase::following) {
-    trajectory_->sample(now, commanded_);
-    sendSetpoints(axes);
-    if (next_ || !trajectory_->finished(now)) return std::nullopt;
-    const auto reached = checkGoal(axes, now);
+    const bool at_goal = !next_ && atGoal(axes);
+    follow(axes);
+    if (!at_goal) return std::nullopt;
+    const auto reached = checkGoal(axes);
     if (!reached) return std::nullopt;
     outcome_ = *reached;
     release(motions);
     return outcome_;
   }
-  ramps_.sample(now, commanded_);
-  sendSetpoints(axes);
-  if (next_ || !ramps_.finished(now)) return std::nullopt;
+  showSent(axes);
+  if (next_ || !stands(axes)) return std::nullopt;
   release(motions);
   return outcome_;
 }
@@ -216,10 +281,11 @@ std::optional<TrajectoryOutcome> Group::checkAxes(const std::vector<drive::Axis>
 }
 
 std::string Group::dropReason(const std::vector<drive::Axis>& axes, std::size_t joint) const {
-  const std::string reason = axes[axes_[joint]].motionRefusal();
-  return reason.empty()
-             ? joints_[joint].name + " fell out of operation or got another zero on the way"
-             : reason;
+  const drive::Axis& axis = axes[axes_[joint]];
+  const std::string reason = axis.motionRefusal();
+  if (!reason.empty()) return reason;
+  if (axis.noticeCount() != notices_[joint]) return axis.notice();
+  return joints_[joint].name + " fell out of operation or got another zero on the way";
 }
 
 std::optional<TrajectoryOutcome> Group::checkRefusal() const {
@@ -235,7 +301,7 @@ std::optional<TrajectoryOutcome> Group::checkPath(const std::vector<drive::Axis>
     const drive::AxisState& state = axes[axes_[i]].state();
     if (tolerances_[i].trajectory <= 0.0 || dropped_[i] != 0) continue;
     const double error = commanded_[i].position - state.position;
-    if (trajectory_->startTime() < state.stamp && std::abs(error) > tolerances_[i].trajectory) {
+    if (began_ < state.stamp && std::abs(error) > tolerances_[i].trajectory) {
       return TrajectoryOutcome{
           TrajectoryErrorCode::path_tolerance_violated,
           config_.name + ": trajectory stopped: " + joints_[i].name + " is " +
@@ -246,8 +312,7 @@ std::optional<TrajectoryOutcome> Group::checkPath(const std::vector<drive::Axis>
   return std::nullopt;
 }
 
-std::optional<TrajectoryOutcome> Group::checkGoal(const std::vector<drive::Axis>& axes,
-                                                  Time now) const {
+std::optional<TrajectoryOutcome> Group::checkGoal(const std::vector<drive::Axis>& axes) const {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     if (dropped_[i] == 0) continue;
     return TrajectoryOutcome{TrajectoryErrorCode::goal_tolerance_violated,
@@ -257,7 +322,8 @@ std::optional<TrajectoryOutcome> Group::checkGoal(const std::vector<drive::Axis>
     if (tolerances_[i].goal <= 0.0) continue;
     const double error = trajectory_->goal()[i] - axes[axes_[i]].state().position;
     if (std::abs(error) <= tolerances_[i].goal) continue;
-    if (now < trajectory_->endTime() + fromSeconds(config_.goal_time)) return std::nullopt;
+    if (clock_.time() < trajectory_->endTime() + fromSeconds(config_.goal_time))
+      return std::nullopt;
     return TrajectoryOutcome{TrajectoryErrorCode::goal_tolerance_violated,
                              config_.name + ": goal missed: " + joints_[i].name + " is " +
                                  motion::formatNumber(std::abs(error)) + " " +

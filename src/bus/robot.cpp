@@ -60,9 +60,10 @@ void Robot::begin(Time now) {
 }
 
 void Robot::busLost(const std::string& why, Time now) {
+  now_ = now;
   if (!started_ || !bus_lost_.empty()) return;
   bus_lost_ = why;
-  stopMotion("stopped: " + why, now);
+  stopMotion("stopped: " + why);
   withdrawEnabling(why);
   for (drive::Axis& axis : axes_) axis.onBusLost(why);
 }
@@ -139,7 +140,7 @@ void Robot::sync(Time now) {
 
 void Robot::cycle(Time now) {
   next_cycle_ = kNever;
-  keepMotionClock(now);
+  last_cycle_ = now;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     axes_[i].readFeedback(now);
     axes_[i].update(now);
@@ -150,7 +151,7 @@ void Robot::cycle(Time now) {
     last_feedback_[i] = state.stamp;
   }
   for (Group& group : groups_) {
-    if (const auto outcome = group.step(axes_, motions_, motionTime(now))) {
+    if (const auto outcome = group.step(axes_, motions_, now)) {
       tell(outcome->code == motion::TrajectoryErrorCode::successful ? Event::Severity::info
                                                                     : Event::Severity::error,
            outcome->message, now);
@@ -168,13 +169,6 @@ void Robot::cycle(Time now) {
   watchSync(now);
 }
 
-void Robot::keepMotionClock(Time now) {
-  const Duration period = config_.bus.sync_period;
-  const Duration since = now - last_cycle_;
-  if (last_cycle_ != Time() && since > 2 * period) motion_delay_ += since - period;
-  last_cycle_ = now;
-}
-
 void Robot::stepJobs(Time now) {
   const auto keep_running = [&](auto& jobs, auto&& step) {
     jobs.erase(std::remove_if(jobs.begin(), jobs.end(), step), jobs.end());
@@ -190,11 +184,11 @@ void Robot::stepJobs(Time now) {
   if (!dcfs_.empty()) keep_running(dcfs_, [](DcfJob& job) { return job.step(); });
 }
 
-void Robot::stopMotion(const std::string& why, Time now) {
+void Robot::stopMotion(const std::string& why) {
   for (Group& group : groups_) {
-    group.stop({motion::TrajectoryErrorCode::path_tolerance_violated, why}, motionTime(now));
+    group.stop({motion::TrajectoryErrorCode::path_tolerance_violated, why}, axes_);
   }
-  for (std::size_t i = 0; i < axes_.size(); ++i) motions_[i].stop(axes_[i], now);
+  for (std::size_t i = 0; i < axes_.size(); ++i) motions_[i].stop(axes_[i]);
 }
 
 void Robot::withdrawEnabling(const std::string& why) {
@@ -212,7 +206,7 @@ void Robot::beginShutdown(Time now) {
   procedures_.clear();
   for (NmtJob& job : nmt_) job.abandon("ended by the shutdown of the driver");
   nmt_.clear();
-  stopMotion("stopped: the driver is shutting down", now);
+  stopMotion("stopped: the driver is shutting down");
 }
 
 void Robot::stepShutdown(Time now) {

@@ -71,12 +71,10 @@ void Robot::run(SetpointCommand& command, const Reply& reply, Time now) {
 }
 
 void Robot::run(TrajectoryCommand& command, const Reply& reply, Time now) {
-  std::optional<Time> start_time = command.start_time;
-  if (start_time) start_time = motionTime(*start_time);
   for (Group& group : groups_) {
     if (group.config().name != command.group) continue;
     const TrajectoryOutcome outcome =
-        group.start(command.joints, command.points, start_time, axes_, motions_, motionTime(now));
+        group.start(command.joints, command.points, command.start_time, axes_, motions_, now);
     const bool accepted = outcome.code == motion::TrajectoryErrorCode::successful;
     give(reply, answerOf(accepted, outcome.message));
     return;

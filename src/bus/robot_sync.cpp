@@ -62,7 +62,7 @@ void Robot::lackSync(Time now) {
 }
 
 void Robot::stopForSync(const std::string& why, Time now) {
-  stopMotion(why, now);
+  stopMotion(why);
   withdrawEnabling(why);
   for (drive::Axis& axis : axes_) axis.stopBySdo(why, now);
 }

@@ -144,7 +144,8 @@ void Axis::cancel(const std::string& reason, Time now) {
 }
 
 bool Axis::setTarget(double value) { return impl_->core.setTarget(value); }
-double Axis::target() const { return impl_->core.target(); }
+const SetPoint& Axis::setPoint() const { return impl_->core.setPoint(); }
+void Axis::stopSetPoint() { impl_->core.stopSetPoint(); }
 std::string Axis::motionRefusal() const { return impl_->core.motionRefusal(impl_->status.running); }
 
 void Axis::stopBySdo(const std::string& why, Time) {

@@ -28,6 +28,7 @@ std::uint16_t AxisCore::silentControlword() const {
 
 std::uint16_t AxisCore::composeControlword() {
   if (silent_ && !fault_reset_) return silentControlword();
+  if (voltage_off_) return 0;
   // An undecodable word is no reason to switch anything off: the last command stands.
   if (state_.state != State::unknown || goal_ != Goal::enabled) {
     command_ = nextCommand(state_.state, goal_);
@@ -63,18 +64,22 @@ void AxisCore::writeCommands(Time now) {
 }
 
 void AxisCore::writeTarget(Time now) {
-  const Duration dt = now - written_;
-  if (setPointsRunFree()) beginRamp();
-  if (ramping_) {
-    advanceRamp(dt);
-  } else if (dt > Duration::zero()) {
-    target_velocity_ = (target_ - previous_target_) / toSeconds(dt);
-    previous_target_ = target_;
-  }
-  if (mode_->spec->handshake == Handshake::new_set_point) advanceHandshake(now);
-  if (!mode_->target.mapped()) return;
+  if (set_point_.advance(now)) encodeTarget();
+  if (!config_.brake_after_effort) effort_streamed_ = false;
+  if (effort_streamed_ && !set_point_.leased()) brakeEffort();
   const bool by_hand = mode_->spec->handshake == Handshake::new_set_point;
+  if (by_hand) advanceHandshake(now);
+  if (!mode_->target.mapped()) return;
   image_.setOutput(mode_->target.slot, by_hand ? handshake_.raw() : target_raw_);
+}
+
+void AxisCore::encodeTarget() {
+  std::uint64_t raw = target_raw_;
+  if (!mode_conversion_.toDevice(set_point_.value(), raw)) return;
+  if (raw != target_raw_ && mode_->spec->handshake == Handshake::new_set_point) {
+    handshake_.offer(raw);
+  }
+  target_raw_ = raw;
 }
 
 bool AxisCore::neutralTarget(const ModeChannel& mode, std::uint64_t& raw) const {
@@ -108,13 +113,11 @@ void AxisCore::presetTarget(const ModeChannel& mode) {
 }
 
 void AxisCore::neutralizeTarget() {
-  ramping_ = false;
-  target_ = mode_->spec->kind == ControlKind::position ? state_.position : 0.0;
+  const bool position = mode_->spec->kind == ControlKind::position;
+  set_point_.rest(kindOf(*mode_->spec), position ? state_.position : 0.0);
   if (!neutralTarget(*mode_, target_raw_) && mode_->target.mapped()) {
     target_raw_ = image_.output(mode_->target.slot);
   }
-  previous_target_ = target_;
-  target_velocity_ = 0.0;
   set_point_dropped_ = false;
   handshake_.reset(target_raw_);
 }
@@ -146,16 +149,16 @@ bool AxisCore::withinLimits(double value) const {
   const AxisLimits& limits = config_.limits;
   switch (mode_->spec->kind) {
     case ControlKind::position:  // an axis that stands outside may come back, not go further out
-      return !(limits.lower && value < std::min(*limits.lower, target_)) &&
-             !(limits.upper && value > std::max(*limits.upper, target_));
+      return !(limits.lower && value < std::min(*limits.lower, target())) &&
+             !(limits.upper && value > std::max(*limits.upper, target()));
     case ControlKind::velocity:
       if (limits.velocity && std::fabs(value) > *limits.velocity) return false;
       if (!state_.homed) return true;
       // Beyond a limit it may only get slower or turn back.
       return !(limits.lower && state_.position <= *limits.lower && value < 0.0 &&
-               !(value > target_)) &&
+               !(value > target())) &&
              !(limits.upper && state_.position >= *limits.upper && value > 0.0 &&
-               !(value < target_));
+               !(value < target()));
     case ControlKind::torque:
       return !(limits.effort && std::fabs(value) > *limits.effort);
     case ControlKind::homing:
@@ -170,11 +173,13 @@ bool AxisCore::setTarget(double value) {
   }
   std::uint64_t raw = 0;
   if (!mode_->target.mapped() || !mode_conversion_.toDevice(value, raw)) return false;
-  const bool changed = raw != target_raw_ || set_point_dropped_;
+  if (mode_->spec->kind == ControlKind::torque) {
+    effort_streamed_ = true;
+    if (braking_) braking_ = halt_bit_ = false;
+  }
+  if (set_point_dropped_ && raw == target_raw_) handshake_.offer(raw);  // once more
   set_point_dropped_ = false;
-  target_ = value;
-  target_raw_ = raw;
-  if (changed && mode_->spec->handshake == Handshake::new_set_point) handshake_.offer(raw);
+  set_point_.give(value);
   return true;
 }
 
@@ -187,96 +192,10 @@ void AxisCore::advanceHandshake(Time now) {
   input.acknowledged = bit && ((static_cast<unsigned>(state_.statusword) >> *bit) & 1u) != 0;
   const char* waiting = handshake_.waitingFor();
   if (handshake_.advance(input, now, profile().timing.state_change)) return;
-  notify(who() + ": the drive did not take the set-point " + number(target_) + ": waited " +
+  notify(who() + ": the drive did not take the set-point " + number(target()) + ": waited " +
          seconds(profile().timing.state_change) + " for " + waiting + "; " + report());
   set_point_dropped_ = true;
 }
-
-void AxisCore::beginHalt() {
-  if (!in_operation_) return;
-  halted_ = true;
-  state_.ready_for_motion = false;
-  if (profile().halt_supported && !mode_->spec->cyclic) {
-    halt_bit_ = true;
-    return;
-  }
-  beginRamp();
-}
-
-bool AxisCore::setPointsRunFree() const {
-  if (state_.ready_for_motion || ramping_ || halted_) return false;
-  switch (mode_->spec->kind) {
-    case ControlKind::position:
-      return mode_->spec->cyclic && target_velocity_ != 0.0;
-    case ControlKind::velocity:
-    case ControlKind::torque:
-      return target_ != 0.0;
-    case ControlKind::homing:
-      return false;
-  }
-  return false;
-}
-
-void AxisCore::beginRamp() {
-  const ModeSpec& spec = *mode_->spec;
-  ramping_ = true;
-  const double deceleration = config_.limits.acceleration.value_or(0.0);
-  switch (spec.kind) {
-    case ControlKind::position:
-      if (!spec.cyclic) {  // the drive plans by itself: give it the point where it can stop
-        target_velocity_ = std::isfinite(state_.velocity) ? state_.velocity : 0.0;
-        target_ = state_.position;
-      }
-      ramp_.begin(target_, target_velocity_, deceleration);
-      if (!spec.cyclic) ramp_.advance(std::chrono::hours(1));
-      break;
-    case ControlKind::velocity:
-      ramp_.begin(0.0, target_, deceleration);
-      break;
-    case ControlKind::torque:
-    case ControlKind::homing:
-      ramp_.begin(0.0, 0.0, deceleration);
-      break;
-  }
-}
-
-void AxisCore::advanceRamp(Duration dt) {
-  ramp_.advance(dt);
-  const AxisLimits& limits = config_.limits;
-  switch (mode_->spec->kind) {
-    case ControlKind::position: {
-      double position = ramp_.position();
-      if (limits.lower) position = std::max(position, std::min(*limits.lower, target_));
-      if (limits.upper) position = std::min(position, std::max(*limits.upper, target_));
-      target_ = position;
-      break;
-    }
-    case ControlKind::velocity:
-      target_ = ramp_.velocity();
-      break;
-    case ControlKind::torque:
-    case ControlKind::homing:
-      target_ = 0.0;
-      break;
-  }
-  std::uint64_t raw = target_raw_;
-  if (!mode_conversion_.toDevice(target_, raw)) return;
-  if (raw != target_raw_ && mode_->spec->handshake == Handshake::new_set_point) {
-    handshake_.offer(raw);
-  }
-  target_raw_ = raw;
-  if (!ramp_.finished() || halted_) return;
-  ramping_ = false;
-  previous_target_ = target_;
-  target_velocity_ = 0.0;
-}
-
-void AxisCore::replaceHaltedTarget() {
-  neutralizeTarget();
-  if (mode_->spec->handshake == Handshake::new_set_point) handshake_.offer(target_raw_);
-}
-
-void AxisCore::releaseHalt() { halt_bit_ = halted_ = ramping_ = false; }
 
 void AxisCore::forgetFault() {
   emergency_code_ = 0;

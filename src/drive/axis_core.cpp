@@ -8,6 +8,14 @@
 #include "sentence.h"
 
 namespace cia402::drive {
+namespace {
+
+SetPointLimits setPointLimits(const AxisConfig& config) {
+  return {config.limits.lower, config.limits.upper, config.limits.velocity,
+          stopDeceleration(config)};
+}
+
+}  // namespace
 
 AxisCore::AxisCore(AxisConfig config, canopen::Node& node)
     : config_(std::move(config)),
@@ -21,7 +29,8 @@ AxisCore::AxisCore(AxisConfig config, canopen::Node& node)
       polled_inputs_(poller_.add(objects_.digital_inputs)),
       standstill_(config_.standstill_velocity, objects_.position.conversion.resolution()),
       mode_(objects_.channel(config_.mode)),
-      position_(objects_.position.conversion) {
+      position_(objects_.position.conversion),
+      set_point_(setPointLimits(config_), config_.sync_period) {
   std::size_t longest = 0;
   for (const ModeSpec& spec : profile().modes) {
     longest = std::max(longest, spec.entry_writes.size());
@@ -38,17 +47,22 @@ const ModeChannel& AxisCore::workingMode() const {
 }
 
 void AxisCore::setGoal(Goal goal) {
-  silent_ = false;
+  silent_ = voltage_off_ = false;
   goal_ = goal;
   if (goal != Goal::enabled) leaveOperation();
 }
 
+void AxisCore::switchOff() {
+  setGoal(Goal::disabled);
+  voltage_off_ = true;
+}
+
 void AxisCore::leaveOperation() {
   in_operation_ = state_.ready_for_motion = false;
-  brake_released_ = kNever;
-  homing_start_ = halt_bit_ = halted_ = ramping_ = false;
+  brake_released_ = running_since_ = kNever;
+  homing_start_ = halt_bit_ = halted_ = braking_ = effort_streamed_ = false;
   handshake_.reset(target_raw_);
-  target_ = kUnknown;
+  set_point_.rest(kindOf(*mode_->spec), SetPoint::kNone);
 }
 
 bool AxisCore::faulted() const {
@@ -60,6 +74,7 @@ bool AxisCore::powerOff() const { return powerStageOff(state_.state); }
 std::string AxisCore::supervise(Time now) {
   std::string failure;
   watchStopBySdo();
+  noteMissedCycles(now);
   if (!failure_.empty()) failure = takeFailure();
   if (!nodeReady()) return failure;
   const bool commanded = goal_ != Goal::disabled && goal_ != Goal::quick_stop;
@@ -85,22 +100,24 @@ std::string AxisCore::supervise(Time now) {
   if (in_operation_ && state_.warning && profile().warning_stops) {
     failure = who() + ": the drive warns (statusword bit 7), which makes it stop like a fault: " +
               faultText();
-    setGoal(Goal::disabled);
+    setGoal(Goal::quick_stop);  // what the drive does itself; switching off would let it coast
     notify(failure);
     return failure;
   }
+  if (in_operation_) watchFollowing(now);
   if (!in_operation_ && goal_ == Goal::enabled && state == State::operation_enabled) {
     in_operation_ = true;
     brake_released_ = now + profile().timing.brake_release;
+    in_operation_since_ = now;
+    follows_shown_ = left_behind_ = false;
     neutralizeTarget();
   }
   return failure;
 }
 
 void AxisCore::updateReadiness(bool busy, Time now) {
-  state_.ready_for_motion = in_operation_ && !busy && !halted_ && !ramping_ &&
-                            state_.feedback_valid && now >= brake_released_ &&
-                            shown_mode_ == mode_->spec->value &&
+  state_.ready_for_motion = in_operation_ && !busy && !halted_ && state_.feedback_valid &&
+                            brakeReleased(now) && shown_mode_ == mode_->spec->value &&
                             state_.state == State::operation_enabled;
 }
 
@@ -174,8 +191,7 @@ void AxisCore::adoptDriveZero(double shift) {
   position_ = objects_.position.conversion.shifted(shift);
   if (mode_->spec->kind == ControlKind::position) {
     mode_conversion_ = mode_->conversion.shifted(shift);
-    target_ += moved;
-    previous_target_ += moved;
+    set_point_.shift(moved);
   }
   state_.position += moved;
   state_.homed = true;

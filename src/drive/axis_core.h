@@ -9,8 +9,8 @@
 #include "axis_objects.h"
 #include "axis_poller.h"
 #include "cia402_driver/drive/axis.h"
+#include "cia402_driver/drive/set_point.h"
 #include "cia402_driver/drive/set_point_handshake.h"
-#include "cia402_driver/drive/soft_stop.h"
 #include "cia402_driver/drive/standstill.h"
 
 namespace cia402::drive {
@@ -49,12 +49,15 @@ class AxisCore {
   // --- State machine ---------------------------------------------------------------------------
   Goal goal() const { return goal_; }
   void setGoal(Goal goal);
+  /// Disable voltage, also where the drive's state is not known; until the next goal.
+  void switchOff();
   void setFaultReset(bool on) { fault_reset_ = on; }
   void setHomingStart(bool on) { homing_start_ = on; }
   void setHaltBit(bool on) { halt_bit_ = on; }
   bool inOperation() const { return in_operation_; }
-  /// In operation, and the time that the brake needs is over.
-  bool brakeReleased(Time now) const { return in_operation_ && now >= brake_released_; }
+  /// In operation, and the drive follows its set-points: the time that the brake needs is over, and
+  /// the mode's bit for it is set. A drive that never sets that bit is waited for once.
+  bool brakeReleased(Time now) const;
   /// RPDOs with the controlword sent so far.
   std::uint64_t controlwordFrames() const;
   /// No motion is possible by this drive: the power stage is off, as far as the statusword says.
@@ -74,7 +77,10 @@ class AxisCore {
 
   // --- Targets ---------------------------------------------------------------------------------
   bool setTarget(double value);
-  double target() const { return target_; }
+  double target() const { return set_point_.value(); }
+  const SetPoint& setPoint() const { return set_point_; }
+  /// Brings the set-points to rest, by a ramp where they move. Nothing if they do not.
+  void stopSetPoint() { set_point_.stop(); }
   std::string motionRefusal(bool busy) const;
   /// Target := actual in position modes, 0 in the others.
   void neutralizeTarget();
@@ -83,18 +89,22 @@ class AxisCore {
   std::uint64_t frames(const OutputObject& object) const;
   /// RPDOs with the active mode's target (or the controlword where it has none) sent so far.
   std::uint64_t targetFrames() const;
-  bool atStandstill() const { return standstill_.still(); }
-  bool moving() const { return standstill_.moving(); }
+  /// Measured over a window that lies wholly after the last set-point that could have moved it.
+  bool atStandstill() const;
+  /// Has been seen to move, or is being moved.
+  bool moving() const;
 
   // --- Halt ------------------------------------------------------------------------------------
-  /// Stops by the halt bit, or by a ramp of the set-points where that cannot do it.
+  /// Stops by what the mode has for it (stopBy()). By quick stop the axis leaves operation.
   void beginHalt();
   /// Replaces the set-point that a halted drive would go on to by "stay here". The halt itself is
   /// released once that is on the wire and handshakeBusy() is over.
   void replaceHaltedTarget();
   void releaseHalt();
   bool halted() const { return halted_; }
-  bool rampFinished() const { return !ramping_ || ramp_.finished(); }
+  bool setPointsAtRest() const { return set_point_.atRest(); }
+  /// The longest that a stop may take, from the fastest that the axis may go.
+  Duration stopTime() const;
   bool handshakeBusy() const { return handshake_.busy(); }
 
   // --- Zero ------------------------------------------------------------------------------------
@@ -138,11 +148,14 @@ class AxisCore {
   void writeTarget(Time now);
   void writeNeutralTargets();
   void advanceHandshake(Time now);
-  /// The axis moves by its set-points, but nobody may give it any (a procedure runs, the mode
-  /// display is lost): they must not stay as they are.
-  bool setPointsRunFree() const;
-  void beginRamp();
-  void advanceRamp(Duration dt);
+  void noteMissedCycles(Time now);
+  void encodeTarget();
+  StopBy stopBy() const { return drive::stopBy(*mode_->spec, profile()); }
+  /// A torque is nobody's any more: the axis must not coast on (command_timeout_action).
+  void brakeEffort();
+  void giveStopPoint();
+  bool followsCommand(Time now) const;
+  void watchFollowing(Time now);
   bool withinLimits(double value) const;
   void watchStopBySdo();
   bool homedEnough() const;
@@ -162,9 +175,11 @@ class AxisCore {
   bool silent_ = true;  ///< nobody has asked for anything since the node came: controlword 0
   bool in_operation_ = false;
   bool fault_reset_ = false, homing_start_ = false, halt_bit_ = false, halted_ = false;
+  bool braking_ = false;      ///< the halt bit brakes an axis whose torque is nobody's any more
+  bool voltage_off_ = false;  ///< the power stage is to be off, whatever the drive shows
   std::uint16_t controlword_ = 0, base_controlword_ = 0;
   Command command_;
-  Time brake_released_ = kNever, known_state_{};
+  Time brake_released_ = kNever, in_operation_since_{}, known_state_{};
 
   const ModeChannel* mode_;
   std::optional<int> shown_mode_;
@@ -172,14 +187,18 @@ class AxisCore {
   Conversion position_, mode_conversion_;  ///< with what set_position declared
   double zero_shift_ = 0.0;
 
-  double target_ = kUnknown, previous_target_ = kUnknown, target_velocity_ = 0.0;
+  SetPoint set_point_;
   std::uint64_t target_raw_ = 0, neutral_raw_ = 0;
   bool neutral_known_ = false;
   Time written_{};
   SetPointHandshake handshake_;
   bool set_point_dropped_ = false;  ///< the drive does not have target_
-  SoftStop ramp_;
-  bool ramping_ = false;
+  bool effort_streamed_ = false;    ///< and not braked since
+  // Does the drive follow its set-points?
+  bool follows_shown_ = false;  ///< the mode's bit for it was set since the axis is in operation
+  bool follows_never_shown_ = false;  ///< it never was, this drive does not use it
+  bool left_behind_ = false;          ///< and told so
+  Time running_since_ = kNever;       ///< set-points of a stream move since then
   struct Held {
     canopen::Slot slot;
     std::uint64_t raw;

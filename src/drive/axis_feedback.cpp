@@ -71,7 +71,7 @@ void AxisCore::readMotion(Time now) {
   if (objects_.following_error.spec != nullptr) {
     state_.following_error = read(objects_.following_error, polled_following_error_, now);
   } else if (in_operation_ && mode_->spec->kind == ControlKind::position) {
-    state_.following_error = target_ - joint;
+    state_.following_error = target() - joint;
   } else {
     state_.following_error = kUnknown;
   }

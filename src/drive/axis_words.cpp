@@ -87,13 +87,14 @@ std::string AxisCore::motionRefusal(bool busy) const {
     return who() + ": not enabled, " + stateText() + "; call enable";
   }
   if (halted_) return who() + ": halted; enable releases the halt";
-  if (ramping_) return who() + ": still being brought to rest after a procedure took it over";
   if (shown_mode_ != mode_->spec->value) {
     return who() + ": 6061:00 shows mode " +
            (shown_mode_ ? std::to_string(*shown_mode_) : std::string("unknown")) + " instead of " +
            std::to_string(mode_->spec->value) + " (" + mode_->spec->name + ")";
   }
-  return who() + ": the brake is being released";
+  return who() +
+         ": the brake is being released, or the drive does not follow its set-points yet (" +
+         stateText() + ")";
 }
 
 }  // namespace cia402::drive

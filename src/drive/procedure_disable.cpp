@@ -17,6 +17,7 @@ class Disable : public Procedure {
       const Outcome outcome = stop_.advance(context);
       if (outcome.isRunning()) return outcome;
       if (outcome.isFailed()) stop_problem_ = outcome.message;
+      cut_ = outcome.isFailed();
       switchOff(context);
       return Outcome::running();
     }
@@ -34,10 +35,9 @@ class Disable : public Procedure {
 
   void begin(const Context& context) {
     AxisCore& axis = context.axis;
-    context.status.deadline = context.now + 3 * axis.profile().timing.state_change;
-    const bool powered = axis.state().state == State::operation_enabled ||
-                         axis.state().state == State::quick_stop_active;
-    if (powered && !axis.atStandstill()) {
+    context.status.deadline =
+        context.now + axis.stopTime() + 2 * axis.profile().timing.state_change;
+    if (!axis.powerOff() && !axis.atStandstill()) {  // an unknown state counts as powered
       phase_ = Phase::stopping;
     } else {
       switchOff(context);
@@ -47,18 +47,24 @@ class Disable : public Procedure {
   void switchOff(const Context& context) {
     phase_ = Phase::switching_off;
     since_ = context.now;
-    context.axis.setGoal(Goal::disabled);
+    cut_ ? context.axis.switchOff() : context.axis.setGoal(Goal::disabled);
     context.show("switching off", "the drive to show switch on disabled");
   }
 
   Outcome finish(AxisCore& axis) const {
-    if (stop_problem_.empty()) return Outcome::done(axis.config().joint + ": disabled");
-    return Outcome::done(axis.config().joint + ": disabled, but " + stop_problem_);
+    std::string text = axis.config().joint + ": disabled";
+    if (!stop_problem_.empty()) text += ", but " + stop_problem_;
+    if (stop_problem_.empty() && axis.moving()) {
+      text += "; it still moves (velocity " + number(axis.state().velocity) +
+              "), nothing of the drive brakes it";
+    }
+    return Outcome::done(text);
   }
 
   Phase phase_ = Phase::begin;
   QuickStopStep stop_;
   std::string stop_problem_;
+  bool cut_ = false;  ///< the quick stop did not do it: disable voltage, whatever the drive shows
   Time since_{};
 };
 

@@ -1,36 +1,24 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include <optional>
+
 #include "procedure.h"
 #include "sentence.h"
+#include "step_stop.h"
 
 namespace cia402::drive {
 namespace {
 
-/// Stops an enabled axis and keeps it enabled: by controlword bit 8 in modes in which the drive
-/// plans its motion, by ramping the set-points down in cyclic modes and on drives without halt. The
-/// halt lasts until `enable` releases it.
+/// Stops an enabled axis by what its mode has for it, and keeps it enabled where that is possible:
+/// set-points ramped to rest, controlword bit 8, or the quick stop. The halt lasts until `enable`
+/// releases it. An axis that is being stopped already is waited for.
 class Halt : public Procedure {
  public:
   Outcome advance(const Context& context) override {
     AxisCore& axis = context.axis;
-    if (!begun_) {
-      begun_ = true;
-      started_ = context.now;
-      context.status.deadline = context.now + axis.profile().timing.state_change;
-      if (!axis.inOperation()) {
-        if (axis.goal() == Goal::enabled) {  // the procedure before was switching it on
-          axis.setGoal(Goal::disabled);
-          return Outcome::done(axis.config().joint +
-                               ": was being enabled, is switched off again instead");
-        }
-        return Outcome::done(axis.config().joint + ": is not enabled, so nothing is to be halted");
-      }
-      axis.beginHalt();
-      context.show("halting", "standstill");
-      return Outcome::running();
-    }
-    if (axis.rampFinished() && axis.atStandstill()) {
-      return Outcome::done(axis.config().joint + ": halted at " +
-                           length(axis.state().position, prismatic(axis)) +
+    if (!begun_) return begin(context);
+    if (quick_stop_) return awaitQuickStop(context);
+    if (axis.setPointsAtRest() && axis.atStandstill()) {
+      return Outcome::done(axis.config().joint + ": halted at " + place(axis) +
                            "; enable releases the halt");
     }
     if (context.now < context.status.deadline) return Outcome::running();
@@ -42,10 +30,50 @@ class Halt : public Procedure {
   }
 
  private:
-  static bool prismatic(const AxisCore& axis) {
-    return axis.config().geometry.type == AxisGeometry::Type::prismatic;
+  Outcome begin(const Context& context) {
+    AxisCore& axis = context.axis;
+    begun_ = true;
+    started_ = context.now;
+    context.status.deadline = context.now + axis.stopTime();
+    mode_ = axis.mode().spec->name;
+    if (axis.inOperation()) {
+      axis.beginHalt();
+      if (axis.inOperation()) {
+        context.show("halting", "standstill");
+        return Outcome::running();
+      }
+      was_enabled_ = true;
+    } else if (axis.goal() == Goal::enabled) {  // the procedure before was switching it on
+      axis.setGoal(Goal::disabled);
+      return Outcome::done(axis.config().joint +
+                           ": was being enabled, is switched off again instead");
+    } else if (axis.powerOff() && !axis.moving()) {
+      return Outcome::done(axis.config().joint + ": is not enabled, so nothing is to be halted");
+    }
+    quick_stop_.emplace();
+    return quick_stop_->advance(context);
   }
-  bool begun_ = false;
+
+  Outcome awaitQuickStop(const Context& context) {
+    AxisCore& axis = context.axis;
+    const Outcome outcome = quick_stop_->advance(context);
+    if (!outcome.isDone()) return outcome;
+    std::string text =
+        axis.config().joint + ": stands at " + place(axis) + ", stopped by a quick stop";
+    if (was_enabled_) text += ", as mode " + mode_ + " has no other brake";
+    return Outcome::done(text + (axis.powerOff() ? "; it is disabled, enable to go on"
+                                                 : "; it holds its position, enable to go on"));
+  }
+
+  static std::string place(const AxisCore& axis) {
+    if (!axis.state().feedback_valid) return "an unknown position";
+    return length(axis.state().position,
+                  axis.config().geometry.type == AxisGeometry::Type::prismatic);
+  }
+
+  bool begun_ = false, was_enabled_ = false;
+  std::optional<QuickStopStep> quick_stop_;
+  std::string mode_;
   Time started_{};
 };
 

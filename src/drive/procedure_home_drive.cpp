@@ -43,7 +43,7 @@ Outcome DriveHoming::advance(const Context& context) {
     case Phase::writing: {
       const Outcome outcome = writes_.advance(context);
       if (!outcome.isDone()) return outcome;
-      if (!context.axis.rampFinished()) return Outcome::running();
+      if (!context.axis.setPointsAtRest()) return Outcome::running();
       entered_by_mode_ = context.axis.inOperation();
       enter(Phase::entering, context);
       return Outcome::running();

@@ -16,7 +16,7 @@ class QuickStop : public Procedure {
     AxisCore& axis = context.axis;
     if (!begun_) {
       begun_ = true;
-      context.status.deadline = context.now + 2 * axis.profile().timing.state_change;
+      context.status.deadline = context.now + axis.stopTime() + axis.profile().timing.state_change;
     }
     if (!stopped_) {
       const Outcome outcome = stop_.advance(context);

@@ -33,6 +33,12 @@ const ModeSpec* DriveProfile::mode(const std::string& mode_name) const {
   return found == modes.end() ? nullptr : &*found;
 }
 
+StopBy stopBy(const ModeSpec& mode, const DriveProfile& profile) {
+  if (mode.stop) return *mode.stop;
+  if (profile.halt_supported && !mode.cyclic) return StopBy::halt;
+  return mode.kind == ControlKind::torque ? StopBy::quick_stop : StopBy::set_points;
+}
+
 std::string canonicalModeName(const std::string& name) {
   static constexpr std::pair<const char*, const char*> kShortForms[] = {
       {"pp", "profile_position"}, {"vl", "velocity"},         {"pv", "profile_velocity"},

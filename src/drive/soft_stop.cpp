@@ -9,7 +9,7 @@ namespace cia402::drive {
 void SoftStop::begin(double position, double velocity, double deceleration) {
   position_ = position;
   velocity_ = std::isfinite(velocity) ? velocity : 0.0;
-  deceleration_ = deceleration > 0.0 ? deceleration : std::fabs(velocity_) / kDefaultTime;
+  deceleration_ = deceleration;
 }
 
 void SoftStop::advance(Duration dt) {

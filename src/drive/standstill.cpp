@@ -16,6 +16,7 @@ void Standstill::update(double position, Time stamp) {
     return;
   } else {
     still_ = true;
+    still_from_ = anchored_;
     moving_ = false;
   }
   started_ = true;

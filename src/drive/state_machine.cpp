@@ -93,8 +93,8 @@ constexpr std::array<std::array<Command, kGoals>, kStates> kCommands = {{
     {{kNothing, kNothing, kNothing, kNothing, kNothing}},
     // fault: only a fault reset leaves it (transition 15)
     {{kNothing, kNothing, kNothing, kNothing, kNothing}},
-    // unknown: nothing that could move anything
-    {{kNothing, kNothing, kNothing, kNothing, kStayQuickStop}},
+    // unknown: nothing that could move anything, nor let an axis coast that moves
+    {{kStayQuickStop, kStayQuickStop, kStayQuickStop, kNothing, kStayQuickStop}},
 }};
 
 }  // namespace

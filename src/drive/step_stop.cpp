@@ -14,12 +14,19 @@ Outcome QuickStopStep::advance(const Context& context) {
     context.show("stopping", "the quick stop ramp to end at standstill");
     return Outcome::running();
   }
-  const State state = axis.state().state;
-  if (axis.powerOff()) return Outcome::done();
-  if (state == State::quick_stop_active && axis.atStandstill()) return Outcome::done();
-  if (context.now - started_ <= axis.profile().timing.state_change) return Outcome::running();
+  const bool off = axis.powerOff();
+  const bool stopped = off || axis.state().state == State::quick_stop_active;
+  const bool at_rest = axis.atStandstill() || (off && !axis.state().feedback_valid);
+  if (stopped && at_rest) return Outcome::done();
+  const Duration waited = context.now - started_;
+  if (waited <= axis.stopTime()) return Outcome::running();
+  if (off) {
+    return Outcome::failed(
+        axis.who() + ": the power stage is off, but the axis still moves after " + seconds(waited) +
+        " (velocity " + number(axis.state().velocity) + "): nothing of the drive brakes it");
+  }
   return Outcome::failed(axis.who() + ": the quick stop did not end at standstill within " +
-                         seconds(context.now - started_) + "; " + axis.report());
+                         seconds(waited) + "; " + axis.report());
 }
 
 }  // namespace cia402::drive

@@ -159,9 +159,10 @@ TEST(AxisMotion, GoesOnSmoothlyAfterAStop) {
       rig.world.run(test::kPeriod);
     }
   };
+  rig.world.run(1ms);  // so that each cycle of the robot lies within a run
   ASSERT_TRUE(motion.command(axes[0], 2.0, rig.world.now).ok());
   run(100);
-  motion.stop(axes[0], rig.world.now);
+  motion.stop(axes[0]);
   run(20);
   EXPECT_FALSE(motion.atRest());
   ASSERT_TRUE(motion.command(axes[0], 2.0, rig.world.now).ok());

@@ -307,8 +307,9 @@ TEST_F(GroupToleranceTest, EndsWithSuccessWithinTheTolerances) {
 
 TEST_F(GroupToleranceTest, EndsWithMinus4OffThePathAndStopsByARamp) {
   Group group = make({0.05, 0.01});
-  world.drives[1].blocked = true;
   ASSERT_EQ(start(group, 0.5, -0.5).code, TrajectoryErrorCode::successful);
+  world.run(test::kPeriod);
+  world.drives[1].disturbance = 5100;  // 0.051 rad off
   const TrajectoryOutcome outcome = follow(group);
   EXPECT_EQ(static_cast<int>(outcome.code), -4);
   EXPECT_THAT(outcome.message, AllOf(HasSubstr("test: trajectory stopped: elbow is 0.05"),
@@ -319,13 +320,26 @@ TEST_F(GroupToleranceTest, EndsWithMinus4OffThePathAndStopsByARamp) {
 
 TEST_F(GroupToleranceTest, EndsWithMinus5WhenTheGoalIsMissedAfterTheGoalTime) {
   Group group = make({0.0, 0.01});
-  world.drives[1].blocked = true;
   ASSERT_EQ(start(group, 0.5, -0.5).code, TrajectoryErrorCode::successful);
+  world.drives[1].disturbance = 2000;  // 0.02 rad off
   const TrajectoryOutcome outcome = follow(group);
   EXPECT_EQ(static_cast<int>(outcome.code), -5);
   EXPECT_EQ(outcome.message,
-            "test: goal missed: elbow is 0.5 rad away after 0.5 s, the tolerance is 0.01");
+            "test: goal missed: elbow is 0.02 rad away after 0.5 s, the tolerance is 0.01");
   EXPECT_NEAR(toSeconds(took), 1.5, 0.02);
+}
+
+TEST_F(GroupToleranceTest, CallsASetPointBackThatRunsAwayFromAMotorThatStands) {
+  Group group = make({0.0, 0.01});
+  world.drives[1].blocked = true;
+  ASSERT_EQ(start(group, 0.5, -0.5).code, TrajectoryErrorCode::successful);
+  const TrajectoryOutcome outcome = follow(group);
+  EXPECT_EQ(static_cast<int>(outcome.code), -4);
+  EXPECT_THAT(outcome.message, AllOf(HasSubstr("test: trajectory stopped: elbow (node 2)"),
+                                     HasSubstr("the motor stands while its set-points run")));
+  world.run(100ms);
+  EXPECT_EQ(world.drives[1].targets.back(), 0);
+  EXPECT_LT(world.drives[0].radians(), 0.1);
 }
 
 TEST_F(GroupToleranceTest, SucceedsWhenTheGoalIsReachedWithinTheGoalTime) {
@@ -349,6 +363,7 @@ TEST_F(GroupToleranceTest, DoesNotJudgeTheFirstCycleByAnEarlierTrajectory) {
   Group group = make({0.05, 0.01});
   ASSERT_EQ(start(group, 0.5, -0.5).code, TrajectoryErrorCode::successful);
   ASSERT_EQ(follow(group).code, TrajectoryErrorCode::successful);
+  world.run(2 * test::kPeriod);
   // Meanwhile the elbow moves on by other means.
   ASSERT_TRUE(world.move({0.5, 0.5}, 1.0).success);
   world.run(1100ms);

@@ -207,6 +207,18 @@ class Bench {
     const auto id = axis.start({kind, mode, position}, now);
     return id.ok() ? std::string("was not refused") : id.error().message;
   }
+  /// From now on gives `value` as set-point in every cycle.
+  void follow(double value) {
+    each_cycle = [this, value] { static_cast<void>(axis.setTarget(value)); };
+  }
+  /// The set-point of the next cycle. @return whether it was taken
+  bool give(double value) {
+    bool taken = false;
+    each_cycle = [&] { taken = axis.setTarget(value); };
+    cycle();
+    each_cycle = nullptr;
+    return taken;
+  }
   bool enable() {
     const ProcedureStatus& status = perform(ProcedureKind::enable);
     EXPECT_TRUE(status.success) << status.message;

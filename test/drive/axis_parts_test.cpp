@@ -56,15 +56,6 @@ TEST(SoftStop, StopsWithConstantDeceleration) {
   EXPECT_NEAR(stop.position(), 0.5, 1e-9);
 }
 
-TEST(SoftStop, TakesItsDefaultTimeWithoutADeceleration) {
-  SoftStop stop;
-  stop.begin(0.0, 1.0, 0.0);
-  stop.advance(milliseconds(299));
-  EXPECT_FALSE(stop.finished());
-  stop.advance(milliseconds(2));
-  EXPECT_TRUE(stop.finished());
-}
-
 TEST(SoftStop, AtRestItIsFinishedAtOnce) {
   SoftStop stop;
   stop.begin(0.3, 0.0, 1.0);

@@ -101,9 +101,9 @@ TEST(Axis, FollowsSetPointsInCyclicPosition) {
   Bench bench;
   ASSERT_TRUE(bench.boot());
   ASSERT_TRUE(bench.enable());
-  EXPECT_TRUE(bench.axis.setTarget(1.25));
+  bench.follow(1.25);
+  bench.run(milliseconds(20));  // from 1.2345 at 2 rad/s
   EXPECT_DOUBLE_EQ(bench.axis.target(), 1.25);
-  bench.run(milliseconds(12));
   EXPECT_EQ(bench.drive.target_position, 12500);
   EXPECT_NEAR(bench.axis.state().position, 1.25, 1e-9);
 }
@@ -128,9 +128,9 @@ TEST(Axis, AnAxisOutsideItsLimitsMayComeBackButNotGoFurther) {
   ASSERT_TRUE(bench.boot());
   ASSERT_TRUE(bench.enable());
   EXPECT_FALSE(bench.axis.setTarget(3.21));
-  EXPECT_TRUE(bench.axis.setTarget(3.19));
-  EXPECT_TRUE(bench.axis.setTarget(3.0));
-  EXPECT_FALSE(bench.axis.setTarget(3.15));
+  EXPECT_TRUE(bench.give(3.195));
+  EXPECT_TRUE(bench.give(3.19));
+  EXPECT_FALSE(bench.give(3.195));
 }
 
 TEST(Axis, RefusesPositionMotionBeforeARequiredHoming) {

@@ -194,8 +194,8 @@ TEST(HomeProcedure, ShiftsInSoftwareWhatAnUnwrittenHomeOffsetMisses) {
   EXPECT_TRUE(bench.perform(ProcedureKind::home).success);
   EXPECT_EQ(bench.drive.position, 500);
   EXPECT_NEAR(bench.axis.state().position, -3.05, 1e-9);
-  ASSERT_TRUE(bench.axis.setTarget(-3.0));
-  bench.run(milliseconds(12));
+  bench.follow(-3.0);
+  bench.run(milliseconds(40));
   EXPECT_EQ(bench.drive.target_position, 1000);
 }
 
@@ -247,8 +247,8 @@ TEST(SetPositionProcedure, DeclaresThePresentPositionAndKeepsTheDriveWhereItIs) 
   EXPECT_EQ(bench.drive.position, 12345);
   EXPECT_NEAR(bench.axis.state().position, -0.5, 1e-9);
   EXPECT_NEAR(bench.axis.target(), -0.5, 1e-9);
-  ASSERT_TRUE(bench.axis.setTarget(-0.4));
-  bench.run(milliseconds(12));
+  bench.follow(-0.4);
+  bench.run(milliseconds(60));
   EXPECT_EQ(bench.drive.target_position, 13345);
 }
 

@@ -57,10 +57,10 @@ TEST(SetModeProcedure, AStaleTargetOfTheNewModeIsReplacedBeforeTheModeIsActive) 
   ASSERT_TRUE(bench.boot());
   ASSERT_TRUE(bench.enable());
   ASSERT_TRUE(bench.perform(ProcedureKind::set_mode, "csv").success);
-  ASSERT_TRUE(bench.axis.setTarget(0.5));
+  bench.follow(0.5);
   bench.run(milliseconds(1000));
-  ASSERT_TRUE(bench.axis.setTarget(0.0));
-  bench.run(milliseconds(200));
+  bench.each_cycle = nullptr;  // comes to rest
+  bench.run(milliseconds(300));
   ASSERT_GT(bench.drive.position, 17000);
   std::vector<std::int32_t> targets;
   bench.each_cycle = [&] {
@@ -76,12 +76,11 @@ TEST(SetModeProcedure, TheNeutralTargetIsOnTheWireBeforeTheModeIsCommanded) {
   ASSERT_TRUE(bench.boot());
   ASSERT_TRUE(bench.enable());
   ASSERT_TRUE(bench.perform(ProcedureKind::set_mode, "csv").success);
-  ASSERT_TRUE(bench.axis.setTarget(0.5));
+  bench.follow(0.5);
   bench.run(milliseconds(8));
-  bench.drive.coast = -5000;  // blocked: the velocity target stays, the axis stands
-  bench.run(milliseconds(200));
+  bench.each_cycle = nullptr;
+  bench.run(milliseconds(300));
   ASSERT_TRUE(bench.perform(ProcedureKind::set_mode, "csp").success);
-  bench.drive.coast = 0;
   bench.run(milliseconds(200));
   std::int32_t last_before = -1;
   bench.each_cycle = [&] {
@@ -97,7 +96,7 @@ TEST(SetModeProcedure, IsRefusedInMotion) {
   Bench bench(config);
   ASSERT_TRUE(bench.boot());
   ASSERT_TRUE(bench.enable());
-  ASSERT_TRUE(bench.axis.setTarget(0.5));
+  bench.follow(0.5);
   bench.run(milliseconds(200));
   EXPECT_THAT(bench.refusal(ProcedureKind::set_mode, "csp"),
               HasSubstr("shoulder (node 3): mode cyclic_position is refused in motion (velocity "
@@ -154,7 +153,7 @@ TEST(VelocityMode, TakesVelocitiesWithinTheLimit) {
   ASSERT_TRUE(bench.enable());
   EXPECT_FALSE(bench.axis.setTarget(2.1));
   EXPECT_FALSE(bench.axis.setTarget(-2.1));
-  EXPECT_TRUE(bench.axis.setTarget(-1.5));
+  bench.follow(-1.5);
   bench.run(milliseconds(12));
   EXPECT_EQ(bench.drive.target_velocity, -15000);
 }
@@ -184,7 +183,7 @@ TEST(ProfilePositionMode, HandsOverEachTargetOnceAndNeverThePreviousOne) {
   bench.run(milliseconds(400));
   EXPECT_EQ(bench.drive.accepted, (std::vector<std::int32_t>{13000}));
   EXPECT_TRUE(bench.axis.state().target_reached);
-  ASSERT_TRUE(bench.axis.setTarget(1.2));
+  ASSERT_TRUE(bench.give(1.2));
   bench.cycle();
   EXPECT_FALSE(bench.axis.state().target_reached) << "the bit still speaks of the old target";
   bench.run(milliseconds(400));

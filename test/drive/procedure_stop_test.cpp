@@ -37,7 +37,7 @@ TEST(DisableProcedure, AMovingAxisIsStoppedByTheQuickStopRampFirst) {
   Bench bench(inMode("cyclic_velocity"));
   ASSERT_TRUE(bench.boot());
   ASSERT_TRUE(bench.enable());
-  ASSERT_TRUE(bench.axis.setTarget(1.0));
+  bench.follow(1.0);
   bench.run(milliseconds(200));
   EXPECT_NEAR(bench.drive.velocity, 10000, 1);
   bench.drive.quick_stop_deceleration = 100000;  // 0.1 s
@@ -64,7 +64,7 @@ TEST(QuickStopProcedure, StopsAndEndsDisabled) {
   Bench bench(inMode("cyclic_velocity"));
   ASSERT_TRUE(bench.boot());
   ASSERT_TRUE(bench.enable());
-  ASSERT_TRUE(bench.axis.setTarget(-1.0));
+  bench.follow(-1.0);
   bench.run(milliseconds(200));
   bench.drive.quick_stop_deceleration = 100000;
   const ProcedureStatus& status = bench.perform(ProcedureKind::quick_stop);
@@ -148,7 +148,9 @@ TEST(HaltProcedure, GivesThePointWhereTheAxisCanStopWhereThereIsNoHaltBit) {
   bench.run(milliseconds(200));
   const double from = bench.axis.state().position;
   EXPECT_TRUE(bench.perform(ProcedureKind::halt).success);
-  EXPECT_NEAR(bench.axis.state().position - from, 2.0 * 2.0 / (2 * 8.0), 0.01);
+  // v^2 / 2a, and what the axis goes on until the drive has the point: up to three cycles.
+  EXPECT_GE(bench.axis.state().position - from, 2.0 * 2.0 / (2 * 8.0));
+  EXPECT_LE(bench.axis.state().position - from, 2.0 * 2.0 / (2 * 8.0) + 3 * 0.004 * 2.0);
   EXPECT_EQ(bench.drive.controlword & 0x0100, 0);
 }
 
@@ -159,7 +161,7 @@ TEST(HaltProcedure, RampsVelocitySetPointsDownInCyclicVelocity) {
   Bench bench(config);
   ASSERT_TRUE(bench.boot());
   ASSERT_TRUE(bench.enable());
-  ASSERT_TRUE(bench.axis.setTarget(1.0));
+  bench.follow(1.0);
   bench.run(milliseconds(200));
   EXPECT_TRUE(bench.perform(ProcedureKind::halt).success);
   EXPECT_EQ(bench.drive.target_velocity, 0);

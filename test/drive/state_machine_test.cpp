@@ -116,9 +116,9 @@ TEST(StateMachine, CommandsEveryStateTowardsEveryGoal) {
       {S::fault, G::switched_on, 0x0000, -1},
       {S::fault, G::enabled, 0x0000, -1},
       {S::fault, G::quick_stop, 0x0000, -1},
-      {S::unknown, G::disabled, 0x0000, -1},
-      {S::unknown, G::ready, 0x0000, -1},
-      {S::unknown, G::switched_on, 0x0000, -1},
+      {S::unknown, G::disabled, 0x0002, -1},
+      {S::unknown, G::ready, 0x0002, -1},
+      {S::unknown, G::switched_on, 0x0002, -1},
       {S::unknown, G::enabled, 0x0000, -1},
       {S::unknown, G::quick_stop, 0x0002, -1},
   };

@@ -7,22 +7,16 @@
 #include "cia402_driver/common/result.h"
 #include "cia402_driver/drive/axis.h"
 #include "cia402_driver/motion/setpoint_limiter.h"
-#include "cia402_driver/motion/stop_ramp.h"
 
 namespace cia402::bus {
 
 /// The joint of an axis with its limits, as the motion module sees it.
 motion::Joint jointOf(const drive::AxisConfig& config);
 
-/// Deceleration with which an axis is stopped by set-points: its acceleration limit, or 5 rad/s²
-/// (0.5 m/s²) where none is configured.
-double stopDeceleration(const drive::AxisConfig& config);
-/// How the set-points of an axis are brought to rest: with stopDeceleration(), within its limits.
-motion::StopLimits stopLimits(const drive::AxisConfig& config);
-
 /// Makes the set-points of one axis from streamed commands (`~<axis>/command`): limits position,
-/// velocity and acceleration, and stops the axis when a stream of velocities or efforts dries up.
-/// Idle while a trajectory group moves the axis.
+/// velocity and acceleration. When a stream of velocities dries up it is ramped down, one of
+/// efforts is given up, so that the axis brakes or coasts as configured. Goes on from what the axis
+/// sent last, by one period a cycle. Idle while a trajectory group moves the axis.
 class AxisMotion {
  public:
   /// @param cycle the period of step().
@@ -38,33 +32,32 @@ class AxisMotion {
   /// outlive the taking. Commands are forgotten.
   void setOwner(const std::string* name) { owner_ = name; }
   const std::string* owner() const { return owner_; }
-  /// Forgets the command and ramps a moving axis down to rest. An axis whose drive plans the motion
-  /// is left to it.
-  void stop(const drive::Axis& axis, Time now);
+  /// Forgets the command and brings a moving axis to rest. An axis whose drive plans the motion is
+  /// left to it.
+  void stop(drive::Axis& axis);
   /// Are the set-points of this cycle at rest?
   bool atRest() const { return at_rest_; }
 
  private:
-  void enter(const drive::Axis& axis, Time now);
-  void rest(const drive::Axis& axis, Time now);
-  void forgetLateCycles(const drive::Axis& axis, Time now);
-  void stepPosition(drive::Axis& axis, Time now);
+  void enter(const drive::Axis& axis);
+  /// The limiters go on from what the axis sent last. @param at when that was, in clock_
+  void resume(const drive::Axis& axis, Time at);
+  void stepPosition(drive::Axis& axis);
   void stepVelocity(drive::Axis& axis, Time now);
   void stepTorque(drive::Axis& axis, Time now);
   bool entered(const drive::Axis& axis) const;
-  /// The axis refused a velocity or an effort: it must not go on with the one before.
-  void zero(drive::Axis& axis, Time now);
 
   motion::PositionLimiter position_;
   motion::VelocityLimiter velocity_;
   Duration cycle_, timeout_;
   std::optional<double> effort_limit_;
   const std::string* owner_ = nullptr;
-  const drive::ModeSpec* mode_ = nullptr;  // for which the limiters were reset
-  std::uint32_t zero_changes_ = 0;         // of the axis, then
+  const drive::ModeSpec* mode_ = nullptr;         // for which the limiters were reset
+  std::uint32_t zero_changes_ = 0;                // of the axis, then
+  std::uint32_t breaks_ = 0, interruptions_ = 0;  // of its set-point, as last seen
   std::optional<double> command_;
-  std::optional<motion::StopRamp> ramp_;  // of a stopped position stream
-  Time commanded_{}, stepped_{};
+  Time clock_{};      // one period a cycle, however late it is
+  Time commanded_{};  // in the time of the bus
   bool at_rest_ = true;
 };
 

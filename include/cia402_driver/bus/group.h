@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "cia402_driver/bus/axis_motion.h"
+#include "cia402_driver/bus/motion_clock.h"
 #include "cia402_driver/config/robot.h"
 #include "cia402_driver/drive/axis.h"
-#include "cia402_driver/motion/stop_ramp.h"
 #include "cia402_driver/motion/trajectory.h"
 
 namespace cia402::bus {
@@ -41,8 +41,8 @@ class Group {
                           const std::vector<motion::TrajectoryPoint>& points,
                           std::optional<Time> start_time, std::vector<drive::Axis>& axes,
                           std::vector<AxisMotion>& motions, Time now);
-  /// Ramps all joints down to rest and ends the trajectory with `why`.
-  void stop(const TrajectoryOutcome& why, Time now);
+  /// Brings all joints to rest and ends the trajectory with `why`.
+  void stop(const TrajectoryOutcome& why, std::vector<drive::Axis>& axes);
   /// Gives the axes their set-points of this cycle. @return how the trajectory ended, in the cycle
   /// in which it did.
   std::optional<TrajectoryOutcome> step(std::vector<drive::Axis>& axes,
@@ -60,16 +60,24 @@ class Group {
 
   std::string refusal(const std::vector<drive::Axis>& axes,
                       const std::vector<AxisMotion>& motions) const;
+  /// Where the joints are when the clock shows `time`, if nothing new begins before.
   std::vector<motion::MotionState> commandedAt(const std::vector<drive::Axis>& axes,
                                                Time time) const;
+  void advanceClock(Time now);
+  void follow(std::vector<drive::Axis>& axes);
+  /// How fast the clock's rate may rise, 1/s.
+  double permittedRise() const;
+  bool stands(const std::vector<drive::Axis>& axes) const;
+  bool atGoal(const std::vector<drive::Axis>& axes) const;
   std::optional<TrajectoryOutcome> checkAxes(const std::vector<drive::Axis>& axes) const;
   std::optional<TrajectoryOutcome> checkRefusal() const;
   std::optional<TrajectoryOutcome> checkPath(const std::vector<drive::Axis>& axes) const;
-  std::optional<TrajectoryOutcome> checkGoal(const std::vector<drive::Axis>& axes, Time now) const;
+  std::optional<TrajectoryOutcome> checkGoal(const std::vector<drive::Axis>& axes) const;
   std::string dropReason(const std::vector<drive::Axis>& axes, std::size_t joint) const;
   void noteDropped(const std::vector<drive::Axis>& axes);
-  void beginNext();
-  void beginStop(Time now);
+  void beginNext(Time now);
+  void beginStop(std::vector<drive::Axis>& axes);
+  void showSent(const std::vector<drive::Axis>& axes);
   void release(std::vector<AxisMotion>& motions);
   void sendSetpoints(std::vector<drive::Axis>& axes);
 
@@ -77,13 +85,16 @@ class Group {
   std::vector<std::size_t> axes_;
   std::vector<motion::Joint> joints_;
   std::vector<config::JointTolerance> tolerances_;
-  motion::GroupStop ramps_;
+  MotionClock clock_;
+  std::vector<double> accelerations_;  // limits, one a joint
   Phase phase_ = Phase::idle;
   std::optional<motion::Trajectory> trajectory_, next_;
   std::vector<motion::MotionState> commanded_;
   std::vector<std::uint8_t> dropped_;       // joints that fell out of operation under way
   std::vector<std::uint8_t> next_dropped_;  // the same since next_ was planned
-  std::vector<std::uint32_t> zeros_;        // AxisState::zero_changes, as last seen
+  std::vector<std::uint32_t> breaks_;       // of the joints' set-points, as last seen
+  std::vector<std::uint32_t> notices_;      // of the axes, when a trajectory was taken
+  Time began_{};                            // the trajectory, in the time of the bus
   const motion::Joint* refused_ = nullptr;  // whose axis did not take its set-point
   TrajectoryOutcome outcome_;               // of a stopping trajectory
 };

@@ -128,13 +128,9 @@ class Robot final : private canopen::MasterListener {
   std::string syncText(SyncTrouble trouble) const;
   /// Why no axis may be enabled as SYNC is now, or was a moment ago; empty if it is well.
   std::string syncProblem() const;
-  /// Trajectories run on a clock that leaves out what a late cycle missed: their set-points go on
-  /// where they were instead of jumping to where they would be.
-  void keepMotionClock(Time now);
-  Time motionTime(Time now) const { return now - motion_delay_; }
   void stepJobs(Time now);
   void stepShutdown(Time now);
-  void stopMotion(const std::string& why, Time now);
+  void stopMotion(const std::string& why);
   /// Nothing that was asked for before enables an axis any more.
   void withdrawEnabling(const std::string& why);
   void watchAxes(Time now);
@@ -202,7 +198,6 @@ class Robot final : private canopen::MasterListener {
   std::string bus_lost_;  ///< why; empty: it is there
   CycleStatistics statistics_;
   Time last_cycle_{};
-  Duration motion_delay_{0};
   bool started_ = false, sync_held_ = false;
   canopen::SyncConsumer external_sync_;
   std::uint64_t foreign_syncs_ = 0;  ///< of others, while this program produces SYNC

@@ -10,6 +10,7 @@
 #include "cia402_driver/canopen/node.h"
 #include "cia402_driver/common/result.h"
 #include "cia402_driver/drive/axis_config.h"
+#include "cia402_driver/drive/set_point.h"
 #include "cia402_driver/drive/state_machine.h"
 
 namespace cia402::drive {
@@ -118,10 +119,16 @@ class Axis {
   /// Ends a running procedure safely (homing: halt), e.g. the action was cancelled.
   void cancel(const std::string& reason, Time now);
 
-  /// Set-point of the active mode in joint units (rad, m, per s, N m, N). Only taken while
-  /// ready_for_motion. @return false (nothing changes) for NaN, out of limits or not ready.
+  /// Set-point of the active mode for this cycle, in joint units (rad, m, per s, N m, N). Only
+  /// taken while ready_for_motion. What moves must be given anew in every cycle: it is brought to
+  /// rest where it is not (SetPoint). @return false (nothing changes) for NaN, out of limits or not
+  /// ready.
   [[nodiscard]] bool setTarget(double value);
-  double target() const;
+  double target() const { return setPoint().value(); }
+  /// What was sent last, and how it moves.
+  const SetPoint& setPoint() const;
+  /// Brings the set-points to rest, by a ramp where they move. Nothing if they do not.
+  void stopSetPoint();
   /// Why setTarget would refuse now, in words; empty if it would not.
   std::string motionRefusal() const;
 

@@ -67,6 +67,7 @@ struct AxisConfig {
   std::optional<HomingOptions> homing;
   Duration sync_period{std::chrono::milliseconds(4)};  ///< of the bus
   Duration command_timeout{std::chrono::milliseconds(200)};
+  bool brake_after_effort = true;  ///< when a stream of efforts ends; else the axis coasts
   /// A TPDO that fails to come so many times in a row is stale; where it brings statusword or
   /// position, an enabled axis is quick-stopped then.
   std::uint16_t stale_after = 10;
@@ -92,6 +93,10 @@ struct AxisConfig {
     return restore.empty() ? profile->parameters.restore : restore;
   }
 };
+
+/// With which an axis is stopped by its set-points: its acceleration limit, or 5 rad/s² (0.5 m/s²)
+/// where none is configured.
+double stopDeceleration(const AxisConfig& axis);
 
 /// "shoulder (node 3)", for messages.
 inline std::string whoIs(const AxisConfig& axis) {

@@ -87,6 +87,15 @@ enum class Handshake : std::uint8_t {
   new_set_point,  ///< controlword bit 4 edge, acknowledged by statusword bit 12 (pp)
 };
 
+/// What brings an axis to rest while its drive stays in operation.
+enum class StopBy : std::uint8_t {
+  set_points,  ///< they are ramped to rest; where the drive plans, it gets the nearest place to
+               ///< stand
+  halt,        ///< controlword bit 8
+  quick_stop,  ///< nothing else brakes in this mode: the drive's own ramp, after which it switches
+               ///< off or holds as 605Ah says
+};
+
 /// A write by profile name: value in the object's unit system (SI after conversion) or raw.
 /// drive/named_write.h turns it into a number for one axis.
 struct NamedWrite {
@@ -113,6 +122,7 @@ struct ModeSpec {
   bool cyclic = false;  ///< follows a stream of set-points (trajectory groups may use it)
   std::string target;   ///< name of the target object; empty for homing
   Handshake handshake = Handshake::none;
+  std::optional<StopBy> stop;          ///< absent: by the kind of mode, see stopBy()
   std::uint16_t controlword_bits = 0;  ///< held while the mode is active in Operation enabled
   std::optional<int> target_reached_bit, following_error_bit, set_point_acknowledge_bit,
       speed_zero_bit, homing_attained_bit, homing_error_bit, follows_command_bit;
@@ -222,6 +232,11 @@ struct DriveProfile {
   /// By logical name; nullptr if the family has no such mode.
   const ModeSpec* mode(const std::string& mode_name) const;
 };
+
+/// What stops the axis in `mode`: what the profile says; else the set-points in cyclic modes, and
+/// the halt bit where the drive plans the motion and has one. Torques cannot be ramped to rest, so
+/// without halt bit the quick stop must do it.
+StopBy stopBy(const ModeSpec& mode, const DriveProfile& profile);
 
 /// "csp" -> "cyclic_position"; names that are no short form come back as they are.
 std::string canonicalModeName(const std::string& name);

@@ -5,12 +5,11 @@
 
 namespace cia402::drive {
 
-/// Brings a streamed set-point to rest with constant deceleration, for drives and modes without the
-/// halt bit. All numbers in joint units.
+/// Brings a streamed set-point to rest with constant deceleration. All numbers in joint units.
 class SoftStop {
  public:
-  /// Starts at `position` with `velocity` (unit/s). @param deceleration unit/s^2; not positive: the
-  /// stop takes kDefaultTime.
+  /// Starts at `position` with `velocity` (unit/s; not finite: at rest). @param deceleration
+  /// unit/s^2, > 0
   void begin(double position, double velocity, double deceleration);
   /// Advances by `dt`. Stays where it is once finished.
   void advance(Duration dt);
@@ -18,11 +17,8 @@ class SoftStop {
   double position() const { return position_; }
   double velocity() const { return velocity_; }
 
-  /// Duration of a stop where no deceleration is configured, s.
-  static constexpr double kDefaultTime = 0.3;
-
  private:
-  double position_ = 0.0, velocity_ = 0.0, deceleration_ = 0.0;
+  double position_ = 0.0, velocity_ = 0.0, deceleration_ = 1.0;
 };
 
 }  // namespace cia402::drive

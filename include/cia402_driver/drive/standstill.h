@@ -22,13 +22,15 @@ class Standstill {
   /// Nothing is known any more: counts as moving until a window is full again.
   void reset();
   bool still() const { return still_; }
+  /// Beginning of the last window in which it stood. @pre still()
+  Time stillFrom() const { return still_from_; }
   /// Has been seen to move; false, too, while a first window is not full yet.
   bool moving() const { return moving_; }
 
  private:
   double tolerance_;  ///< rad or m within a window
   double anchor_ = 0.0;
-  Time anchored_{};
+  Time anchored_{}, still_from_{};
   bool started_ = false, still_ = false, moving_ = false;
 };
 

@@ -1,0 +1,152 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// How the axis comes to rest, and whether it is.
+#include <cmath>
+
+#include "axis_core.h"
+#include "sentence.h"
+
+namespace cia402::drive {
+namespace {
+
+/// A drive may act on a set-point so many cycles after it was computed.
+constexpr int kReactionCycles = 2;
+/// A drive that never shows that it follows its set-points is waited for so long, once.
+constexpr Duration kFollowPatience{std::chrono::seconds(1)};
+/// Set-points that run while the motor stands are called back after so long; sooner where the drive
+/// itself says that it does not follow.
+constexpr Duration kLeftBehind{std::chrono::milliseconds(150)},
+    kHeld{std::chrono::milliseconds(60)};
+/// Only set-points that are so many times faster than standstill tell that a motor stays behind.
+constexpr double kClearlyMoving = 3.0;
+constexpr Duration kStopMargin{std::chrono::milliseconds(500)};
+
+}  // namespace
+
+void AxisCore::noteMissedCycles(Time now) {
+  if (written_ != Time{} && now - written_ > 2 * config_.sync_period) set_point_.interrupt();
+}
+
+Duration AxisCore::stopTime() const {
+  const double fastest = config_.limits.velocity.value_or(0.0);
+  const double measured = std::isfinite(state_.velocity) ? std::fabs(state_.velocity) : 0.0;
+  const double ramp = std::max(fastest, measured) / stopDeceleration(config_);
+  return std::max(profile().timing.state_change, fromSeconds(2.0 * ramp) + kStopMargin);
+}
+
+bool AxisCore::atStandstill() const {
+  return standstill_.still() &&
+         standstill_.stillFrom() >= set_point_.movedAt() + kReactionCycles * config_.sync_period;
+}
+
+bool AxisCore::moving() const {
+  return standstill_.moving() || (in_operation_ && !set_point_.atRest());
+}
+
+void AxisCore::beginHalt() {
+  if (!in_operation_ || halted_) return;
+  set_point_.stop();
+  switch (stopBy()) {
+    case StopBy::halt:
+      halt_bit_ = true;
+      break;
+    case StopBy::quick_stop:
+      setGoal(Goal::quick_stop);
+      return;
+    case StopBy::set_points:
+      if (set_point_.kind() == SetPointKind::goal) giveStopPoint();
+      break;
+  }
+  halted_ = true;
+  state_.ready_for_motion = false;
+}
+
+/// The drive plans by itself: it gets the point where it can stop. What it does until it has that
+/// is added, so that it need not turn back.
+void AxisCore::giveStopPoint() {
+  if (!state_.feedback_valid) return;
+  const double velocity = std::isfinite(state_.velocity) ? state_.velocity : 0.0;
+  const double reaction = toSeconds(kReactionCycles * config_.sync_period);
+  double point = state_.position + velocity * reaction +
+                 velocity * std::fabs(velocity) / (2.0 * stopDeceleration(config_));
+  const AxisLimits& limits = config_.limits;
+  if (limits.lower) point = std::max(point, std::min(*limits.lower, state_.position));
+  if (limits.upper) point = std::min(point, std::max(*limits.upper, state_.position));
+  set_point_.give(point);
+}
+
+void AxisCore::brakeEffort() {
+  if (set_point_.atRest() && atStandstill()) {
+    effort_streamed_ = false;
+    return;
+  }
+  if (braking_ || halted_) return;
+  set_point_.stop();
+  if (stopBy() == StopBy::halt) {
+    braking_ = halt_bit_ = true;
+    return;
+  }
+  setGoal(Goal::quick_stop);
+  notify(who() + ": the stream of efforts ended; the axis is braked by a quick stop, as mode " +
+         mode_->spec->name +
+         " has no other brake. enable to go on, or let it coast by "
+         "command_timeout_action: coast");
+}
+
+void AxisCore::replaceHaltedTarget() {
+  if (!halt_bit_) return;  // its set-points have come to rest
+  neutralizeTarget();
+  if (mode_->spec->handshake == Handshake::new_set_point) handshake_.offer(target_raw_);
+}
+
+void AxisCore::releaseHalt() { halt_bit_ = halted_ = braking_ = false; }
+
+bool AxisCore::brakeReleased(Time now) const {
+  return in_operation_ && now >= brake_released_ && followsCommand(now);
+}
+
+bool AxisCore::followsCommand(Time now) const {
+  return !mode_->spec->follows_command_bit || follows_shown_ || follows_never_shown_ ||
+         now - in_operation_since_ >= kFollowPatience;
+}
+
+/// Set-points must not run away from a motor that stands: held by its brake, at a limit switch,
+/// blocked. It would leap after them when it is let go.
+void AxisCore::watchFollowing(Time now) {
+  const auto& bit = mode_->spec->follows_command_bit;
+  const bool mode_shown = state_.mode == mode_->spec;
+  const bool follows = bit && mode_shown && ((state_.statusword >> *bit) & 1u) != 0;
+  if (follows) {
+    follows_shown_ = true;
+    follows_never_shown_ = false;
+  } else if (bit && !follows_shown_ && now - in_operation_since_ >= kFollowPatience) {
+    follows_never_shown_ = true;
+  }
+  if (standstill_.moving()) left_behind_ = false;
+  const bool runs = set_point_.kind() == SetPointKind::stream &&
+                    std::fabs(set_point_.velocity()) > kClearlyMoving * config_.standstill_velocity;
+  if (!runs) {
+    running_since_ = kNever;
+    return;
+  }
+  if (running_since_ == kNever) running_since_ = now;
+  const bool told_by_drive = state_.internal_limit || (bit && follows_shown_ && !follows);
+  if (now - running_since_ < (told_by_drive ? kHeld : kLeftBehind)) return;
+  const bool stands =
+      standstill_.still() &&
+      standstill_.stillFrom() >= running_since_ + kReactionCycles * config_.sync_period;
+  if (!stands) return;
+  const double ahead = set_point_.value() - state_.position;
+  neutralizeTarget();
+  running_since_ = kNever;
+  if (std::exchange(left_behind_, true)) return;
+  std::string why = "the brake, a limit or the load holds it";
+  if (state_.internal_limit)
+    why =
+        "internal limit active (statusword bit 11): a limit switch or a position limit of the "
+        "drive holds it";
+  notify(who() + ": the motor stands while its set-points run, " + number(ahead) +
+         (config_.geometry.type == AxisGeometry::Type::prismatic ? " m" : " rad") +
+         " ahead: " + why + ". They are called back to where it stands");
+}
+
+}  // namespace cia402::drive
