@@ -31,7 +31,9 @@ class Recover : public Procedure {
         return outcome.isDone() ? Outcome::running() : outcome;
       }
       case Phase::enabling: {
-        if (context.axis.inOperation()) return finish(context);
+        if (context.axis.inOperation()) {
+          return context.axis.brakeReleased(context.now) ? finish(context) : Outcome::running();
+        }
         const Outcome outcome = enabling_.advance(context);
         return outcome.isDone() ? finish(context) : outcome;
       }

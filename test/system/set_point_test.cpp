@@ -1,0 +1,220 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// Quick calls on a moving axis, late cycles during a stop: what the motor does.
+#include "system/scene.h"
+
+namespace cia402 {
+namespace {
+
+using namespace std::chrono_literals;
+using drive::ProcedureKind;
+using testing::HasSubstr;
+
+constexpr double kVelocity = 1.5;  // limit of genericPair()
+
+drive::ProcedureRequest declare(double position) {
+  drive::ProcedureRequest request;
+  request.kind = ProcedureKind::set_position;
+  request.position = position;
+  return request;
+}
+
+struct Rig : Scene {
+  explicit Rig(const std::string& yaml, const std::string& mode = "cyclic_position")
+      : Scene(loadText(yaml)) {
+    EXPECT_TRUE(boot()) << told();
+    if (mode != "cyclic_position") {
+      EXPECT_TRUE(procedure(ProcedureKind::set_mode, {}, mode).success);
+    }
+    const bus::Answer enabled = procedure(ProcedureKind::enable);
+    EXPECT_TRUE(enabled.success) << enabled.message;
+    run(100ms);
+  }
+};
+
+TEST(SetPoints, AVelocityThatIsNobodysAnyMoreEndsWithTheCallThatTookItsStream) {
+  Rig scene(genericPair(), "cyclic_velocity");
+  ASSERT_EQ(scene.setpoint("left", 1.0), "");
+  scene.run(8ms);
+  (void)call(scene, bus::ProcedureCommand{"left", declare(0.4)});
+  scene.run(500ms);
+  scene.forget();
+  scene.run(2s);
+  EXPECT_LT(scene.seen("left").travel(), 1e-3);
+}
+
+TEST(SetPoints, AStreamThatEndsWhileItCreepsComesToRest) {
+  Rig scene(genericPair(), "cyclic_velocity");
+  scene.stream("left", 0.008, 300ms);
+  scene.run(1s);
+  scene.forget();
+  scene.run(5s);
+  EXPECT_LT(scene.seen("left").travel(), 1e-3);
+}
+
+TEST(SetPoints, ASecondHaltMovesNothing) {
+  Rig scene(genericPair());
+  scene.stream("left", 2.0, 700ms);
+  ASSERT_GT(std::abs(scene.velocity("left")), 1.0);
+  ASSERT_TRUE(scene.procedure(ProcedureKind::halt, "left").success);
+  scene.run(300ms);
+  scene.forget();
+  EXPECT_TRUE(scene.procedure(ProcedureKind::halt, "left").success);
+  scene.run(1s);
+  EXPECT_LT(scene.seen("left").travel(), 1e-3);
+  EXPECT_LT(scene.seen("left").fastest, 0.02);
+}
+
+TEST(SetPoints, DeclaringThePositionOfAHaltedAxisMovesNothing) {
+  for (const std::string& yaml : {genericPair(), damiaoJoint()}) {
+    Rig scene(yaml);
+    const std::string axis = scene.loaded().robot.axes[0].name;
+    scene.stream(axis, scene.state(axis).position + 0.3, 400ms);
+    ASSERT_TRUE(scene.procedure(ProcedureKind::halt, axis).success);
+    scene.run(300ms);
+    scene.forget();
+    const bus::Answer answer = call(scene, bus::ProcedureCommand{axis, declare(0.3)});
+    scene.run(1s);
+    EXPECT_LT(scene.seen(axis).travel(), 1e-3) << answer.message;
+    EXPECT_NE(scene.state(axis).state, drive::State::fault);
+  }
+}
+
+TEST(SetPoints, ALateCycleDuringAHaltMovesNothingAtOnce) {
+  for (const std::string& yaml : {genericPair(), damiaoJoint()}) {
+    Rig scene(yaml);
+    const std::string axis = scene.loaded().robot.axes[0].name;
+    const double limit = *scene.loaded().robot.axes[0].limits.velocity;
+    const double towards = scene.state(axis).position > 1.0 ? -1.5 : 2.0;
+    scene.stream(axis, towards, 400ms);
+    (void)scene.begin(ProcedureKind::halt, axis);
+    scene.run(20ms);
+    scene.forget();
+    scene.robot().freeze(60ms);
+    scene.run(2s);
+    EXPECT_LT(scene.seen(axis).fastest, 1.05 * limit) << axis;
+    scene.forget();
+    scene.run(500ms);
+    EXPECT_LT(scene.seen(axis).travel(), 1e-3);
+  }
+}
+
+TEST(SetPoints, ALateCycleDuringTheShutdownStartsNoVelocityAnew) {
+  Rig scene(genericPair(), "cyclic_velocity");
+  scene.stream("left", 1.0, 700ms);
+  scene.robot().robot().beginShutdown(scene.now());
+  scene.run(120ms);  // of 250 ms
+  const double speed = std::abs(scene.velocity("left"));
+  ASSERT_LT(speed, 0.8);
+  scene.robot().freeze(12ms);
+  scene.forget();
+  scene.run(2s);
+  EXPECT_LT(scene.seen("left").fastest, speed + 0.05);
+  EXPECT_LT(scene.seen("left").travel(), speed * speed / (2 * 4.0) + speed * 0.03 + 0.01);
+}
+
+TEST(SetPoints, ATrajectoryGoesOnFromRestAfterALateCycle) {
+  Rig scene(genericPair());
+  ASSERT_TRUE(scene.move({1.2, 1.2}, 2s).success);
+  scene.run(1s);
+  ASSERT_GT(scene.velocity("left"), 0.8);
+  scene.robot().freeze(100ms);
+  scene.run(101ms);
+  double before = scene.velocity("left"), hardest = 0.0;
+  ASSERT_LT(before, 0.1);  // it waited at the last target
+  for (int i = 0; i < 50; ++i) {
+    scene.run(20ms);
+    hardest = std::max(hardest, (scene.velocity("left") - before) / 0.020);
+    before = scene.velocity("left");
+  }
+  EXPECT_LT(hardest, 4.0 * 1.3) << "rad/s^2; the limit is 4, the motor swings a little";
+  scene.run(3s);
+  EXPECT_NEAR(scene.position("left"), 1.2, 1e-3);
+  EXPECT_THAT(scene.told(), HasSubstr("goal reached"));
+}
+
+TEST(SetPoints, ADisableWhoseDriveIsNotHeardDoesNotCutItsQuickStop) {
+  Rig scene(genericPair(), "cyclic_velocity");
+  scene.stream("left", kVelocity, 800ms);
+  ASSERT_GT(std::abs(scene.velocity("left")), 1.3);
+  sim::FaultRule rule;  // no TPDO arrives any more
+  rule.id = 0x181;
+  rule.count = 1000000;
+  scene.world().bus().faults().add(rule);
+  const Time end = scene.now() + 300ms;
+  while (scene.now() < end && scene.axis("left").state().state != drive::State::unknown) {
+    (void)scene.setpoint("left", kVelocity);
+    scene.run(4ms);
+  }
+  scene.run(8ms);
+  scene.forget();
+  (void)scene.begin(ProcedureKind::disable, "left");
+  while (std::abs(scene.velocity("left")) > 0.05) {
+    ASSERT_TRUE(scene.truth("left").power_stage_on)
+        << "coasts at " << scene.velocity("left") << " rad/s";
+    scene.run(1ms);
+  }
+  // By 6085h, twice the acceleration limit, and what passed until it was told.
+  EXPECT_LT(scene.seen("left").travel(), kVelocity * kVelocity / (2 * 8.0) + kVelocity * 0.02);
+  scene.run(6s);
+  EXPECT_FALSE(scene.truth("left").power_stage_on);
+}
+
+TEST(SetPoints, DoNotRunAwayFromAMotorThatItsBrakeHolds) {
+  Rig scene(genericPair(", simulation: {brake_delay: 0.3}"));
+  ASSERT_TRUE(scene.procedure(ProcedureKind::disable).success);
+  const auto enabled = scene.begin(ProcedureKind::enable, "left");
+  double highest_target = 0.0;
+  const Time end = scene.now() + 2s;
+  while (scene.now() < end) {
+    (void)scene.setpoint("left", 1.0);
+    if (scene.truth("left").power_stage_on && scene.position("left") < 0.01) {
+      highest_target = std::max(highest_target, scene.axis("left").target());
+    }
+    scene.run(4ms);
+  }
+  ASSERT_TRUE(enabled->has_value());
+  EXPECT_TRUE((*enabled)->success) << (*enabled)->message;
+  EXPECT_LT(highest_target, 0.02);
+  EXPECT_NE(scene.state("left").state, drive::State::fault) << scene.told();
+  EXPECT_LT(scene.seen("left").fastest, 1.05 * kVelocity);
+  EXPECT_NEAR(scene.position("left"), 1.0, 1e-3);
+}
+
+TEST(SetPoints, AreCalledBackFromALimitSwitchAndSaySo) {
+  Rig scene(genericPair(", simulation: {upper_limit_switch: 0.5}"));
+  scene.forget();
+  scene.stream("left", 2.0, 2s);
+  EXPECT_THAT(scene.told(), HasSubstr("left (node 1): the motor stands while its set-points run"));
+  EXPECT_THAT(scene.told(), HasSubstr("internal limit active"));
+  EXPECT_LT(scene.axis("left").target(), 0.5 + 0.1);
+  scene.forget();
+  scene.stream("left", 0.2, 1s);  // the way back is free
+  EXPECT_LT(scene.seen("left").fastest, 1.05 * kVelocity);
+  EXPECT_NEAR(scene.position("left"), 0.2, 1e-2);
+}
+
+TEST(SetPoints, AHaltDuringAQuickStopAnswersAtRest) {
+  Rig scene(genericPair());
+  scene.stream("left", 2.0, 700ms);
+  (void)scene.begin(ProcedureKind::quick_stop, "left");
+  scene.run(4ms);
+  const bus::Answer answer = scene.procedure(ProcedureKind::halt, "left");
+  EXPECT_TRUE(answer.success) << answer.message;
+  EXPECT_LT(std::abs(scene.velocity("left")), 0.02) << answer.message;
+}
+
+TEST(SetPoints, AHaltJustAfterMotionBeganAnswersAtRest) {
+  for (const Duration after : {4ms, 8ms, 12ms, 20ms, 40ms}) {
+    Rig scene(genericPair());
+    (void)scene.setpoint("left", 2.0);
+    scene.run(after);
+    const bus::Answer answer = scene.procedure(ProcedureKind::halt, "left");
+    EXPECT_TRUE(answer.success) << answer.message;
+    scene.forget();
+    scene.run(500ms);
+    EXPECT_LT(scene.seen("left").travel(), 2e-4) << toSeconds(after);
+  }
+}
+
+}  // namespace
+}  // namespace cia402
