@@ -126,6 +126,9 @@ void readAxis(const std::string& name, const YamlValue& value, ProfileCache& pro
   double timeout = toSeconds(axis.command_timeout);
   section.read("command_timeout", timeout, drive::Range{0.0, 60.0, true});
   axis.command_timeout = fromSeconds(timeout);
+  if (const auto action = section.get("command_timeout_action")) {
+    axis.brake_after_effort = action->oneOf({"brake", "coast"}).value_or(0) == 0;
+  }
   readSections(section, axis, robot);
   readWithProfile(section, axis);
   if (axis.profile && axis.mode.empty()) {

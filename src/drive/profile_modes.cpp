@@ -64,6 +64,16 @@ void readHandshake(YamlSection& section, ModeSpec& mode) {
   }
 }
 
+void readStop(YamlSection& section, ModeSpec& mode) {
+  const auto value = section.get("stop");
+  const auto index = value ? value->oneOf({"set_points", "halt", "quick_stop"}) : std::nullopt;
+  if (!index) return;
+  mode.stop = static_cast<StopBy>(*index);
+  if (mode.stop == StopBy::set_points && mode.kind == ControlKind::torque) {
+    value->problem("a torque of 0 lets the axis coast; write halt or quick_stop");
+  }
+}
+
 ModeSpec readMode(const std::string& name, const YamlValue& value, const DriveProfile& profile) {
   ModeSpec mode;
   mode.name = canonicalModeName(name);
@@ -77,6 +87,7 @@ ModeSpec readMode(const std::string& name, const YamlValue& value, const DrivePr
   readTarget(section, profile, mode);
   readStatusBits(section, mode);
   readHandshake(section, mode);
+  readStop(section, mode);
   section.readInteger("controlword_bits", mode.controlword_bits, 0, 0xFFFF);
   if ((mode.controlword_bits & 0x008F) != 0) {
     section.problem("controlword_bits must leave bits 0 to 3 and 7 to the state machine");

@@ -35,7 +35,8 @@ const std::vector<std::pair<const char*, ModeBehaviour>> kBehaviours = {
     {"profile_torque", ModeBehaviour::profile_torque},
     {"homing", ModeBehaviour::homing},
     {"cyclic_position", ModeBehaviour::cyclic_position},
-    {"cyclic_velocity", ModeBehaviour::cyclic_velocity}};
+    {"cyclic_velocity", ModeBehaviour::cyclic_velocity},
+    {"cyclic_torque", ModeBehaviour::cyclic_torque}};
 const std::vector<std::pair<const char*, Bit12>> kBit12 = {
     {"none", Bit12::none},
     {"acknowledge", Bit12::acknowledge},
@@ -127,6 +128,7 @@ void applyStandardBits(ModeDefinition& mode) {
       mode.bit_13 = Bit13::following_error;
       break;
     case ModeBehaviour::cyclic_velocity:
+    case ModeBehaviour::cyclic_torque:
       mode.bit_12 = Bit12::follows;
       break;
     case ModeBehaviour::homing:

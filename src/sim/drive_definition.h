@@ -25,6 +25,7 @@ enum class ModeBehaviour : std::uint8_t {
   homing,
   cyclic_position,
   cyclic_velocity,
+  cyclic_torque,
 };
 
 /// What statusword bit 12 means in a mode.

@@ -34,6 +34,7 @@ bool DriveMotion::positionControlled() const {
     case ModeBehaviour::profile_velocity:
     case ModeBehaviour::cyclic_velocity:
     case ModeBehaviour::profile_torque:
+    case ModeBehaviour::cyclic_torque:
       return false;
     default:
       return true;
@@ -246,7 +247,10 @@ void DriveMotion::step() {
         stepVelocity(false);
         break;
       case ModeBehaviour::profile_torque:
-        stepTorque();
+        stepTorque(true);
+        break;
+      case ModeBehaviour::cyclic_torque:
+        stepTorque(false);
         break;
       case ModeBehaviour::homing:
         stepHoming(from);
@@ -334,9 +338,10 @@ void DriveMotion::stepVelocity(bool ramped) {
   demand_ = motor_.position();
 }
 
-void DriveMotion::stepTorque() {
+void DriveMotion::stepTorque(bool ramped) {
   const double target = values_.get(Role::target_torque, 0.0);
-  const double change = values_.get(Role::torque_slope, kUnlimited) * kDriveStepS;
+  const double slope = ramped ? values_.get(Role::torque_slope, kUnlimited) : kUnlimited;
+  const double change = slope * kDriveStepS;
   demand_torque_ = std::clamp(target, demand_torque_ - change, demand_torque_ + change);
   double speed = maxSpeed();
   if (mode_->velocity) speed = std::min(speed, std::fabs(values_.get(*mode_->velocity, 0.0)));

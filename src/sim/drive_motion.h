@@ -89,7 +89,7 @@ class DriveMotion {
   void stepProfilePosition();
   void stepCyclicPosition();
   void stepVelocity(bool ramped);
-  void stepTorque();
+  void stepTorque(bool ramped);
   void stepHoming(double from);
   void superviseFollowing();
   void superviseTargets();

@@ -340,7 +340,7 @@ TEST(DriveStateMachine, ResultDoesNotDependOnHowOftenItIsTicked) {
 TEST(DriveStateMachine, RefusesUnsupportedModesBySdoAndIgnoresThemByPdo) {
   Bench b;
   b.write(0x6060, 0, 3, 1);
-  EXPECT_EQ(b.abortOf({0x2F, 0x60, 0x60, 0x00, 0x04, 0, 0, 0}), 0x06090030U);
+  EXPECT_EQ(b.abortOf({0x2F, 0x60, 0x60, 0x00, 0x02, 0, 0, 0}), 0x06090030U);
   EXPECT_EQ(b.read(0x6061) & 0xFFU, 3U);
   b.nmt(0x01);
   b.frame(0x301, {0x06, 0x00, 0x04});  // RPDO2: controlword, mode
@@ -348,7 +348,7 @@ TEST(DriveStateMachine, RefusesUnsupportedModesBySdoAndIgnoresThemByPdo) {
   EXPECT_EQ(b.state(), 0x21);
   b.frame(0x301, {0x06, 0x00, 0x08});
   EXPECT_EQ(b.read(0x6061) & 0xFFU, 8U);
-  EXPECT_EQ(b.read(0x6502), 0x000001A5U);
+  EXPECT_EQ(b.read(0x6502), 0x000003ADU);
 }
 
 TEST(DriveStateMachine, SendsItsStatusByTpdoWhenItChanges) {

@@ -216,5 +216,110 @@ TEST(SetPoints, AHaltJustAfterMotionBeganAnswersAtRest) {
   }
 }
 
+/// The modes that push: effort, and what ends a stream of it.
+struct Effort {
+  const char* name;
+  std::string yaml;
+  const char* mode;
+  double effort;       ///< N m, that moves the axis
+  bool stays_enabled;  ///< the mode has a brake of its own
+  friend std::ostream& operator<<(std::ostream& out, const Effort& effort) {
+    return out << effort.name;
+  }
+};
+
+std::string withModes(std::string yaml, const char* modes) {
+  const std::size_t at = yaml.find("mode: cyclic_position");
+  return yaml.replace(at, 21, std::string("mode: cyclic_position, modes: [") + modes + "]");
+}
+
+std::vector<Effort> efforts() {
+  const char* generic = "csp, profile_torque, cyclic_torque";
+  return {{"generic_pt", withModes(genericPair(), generic), "profile_torque", 6.0, true},
+          {"generic_cst", withModes(genericPair(), generic), "cyclic_torque", 6.0, false},
+          {"damiao_torque", withModes(damiaoJoint(), "csp, profile_torque"), "profile_torque", -0.2,
+           false}};
+}
+
+class EffortMode : public testing::TestWithParam<Effort> {
+ protected:
+  explicit EffortMode(const std::string& more = {})
+      : scene(GetParam().yaml + more), axis(scene.loaded().robot.axes[0].name) {
+    EXPECT_TRUE(scene.boot()) << scene.told();
+    const bus::Answer set = scene.procedure(ProcedureKind::set_mode, axis, GetParam().mode);
+    EXPECT_TRUE(set.success) << set.message;
+    const bus::Answer enabled = scene.procedure(ProcedureKind::enable, axis);
+    EXPECT_TRUE(enabled.success) << enabled.message;
+    speedUp();
+  }
+  /// Pushes until the axis turns at half a radian a second.
+  void speedUp() {
+    EXPECT_TRUE(scene.runUntil(
+        [&] {
+          EXPECT_EQ(scene.setpoint(axis, GetParam().effort), "");
+          return std::abs(scene.velocity(axis)) > 0.5;
+        },
+        5s))
+        << scene.velocity(axis);
+    scene.forget();
+  }
+  /// v²/2a by the slower of the two ramps, and what passes until the brake begins.
+  double wayToRest(double reaction_s) const {
+    const double slowest = *scene.loaded().robot.axes[0].limits.acceleration;
+    const double speed = *scene.loaded().robot.axes[0].limits.velocity;  // until the effort goes
+    return speed * speed / (2.0 * slowest) + speed * reaction_s;
+  }
+  struct Loaded : Scene {
+    explicit Loaded(const std::string& yaml) : Scene(loadText(yaml)) {}
+  };
+  Loaded scene;
+  std::string axis;
+};
+
+TEST_P(EffortMode, TheEndOfTheStreamBrakes) {
+  scene.run(3s);
+  EXPECT_LT(scene.seen(axis).travel(), wayToRest(0.25)) << scene.told();
+  EXPECT_EQ(scene.truth(axis).power_stage_on, GetParam().stays_enabled);
+  scene.forget();
+  scene.run(1s);
+  EXPECT_LT(scene.seen(axis).travel(), 1e-3);
+}
+
+TEST_P(EffortMode, AHaltBrakesAndIsAnsweredAtRest) {
+  const bus::Answer answer = scene.procedure(ProcedureKind::halt, axis);
+  EXPECT_TRUE(answer.success) << answer.message;
+  EXPECT_LT(std::abs(scene.velocity(axis)), 0.02) << answer.message;
+  EXPECT_LT(scene.seen(axis).travel(), wayToRest(0.05));
+  EXPECT_EQ(scene.truth(axis).power_stage_on, GetParam().stays_enabled) << answer.message;
+}
+
+TEST_P(EffortMode, AnEffortAfterTheBrakeMovesAgainWhereItStaysEnabled) {
+  scene.run(2s);
+  if (!GetParam().stays_enabled) {
+    EXPECT_NE(scene.setpoint(axis, GetParam().effort), "");
+    EXPECT_TRUE(scene.procedure(ProcedureKind::enable, axis).success);
+  }
+  speedUp();
+}
+
+INSTANTIATE_TEST_SUITE_P(Modes, EffortMode, testing::ValuesIn(efforts()),
+                         [](const auto& tested) { return tested.param.name; });
+
+TEST(SetPoints, AnEffortStreamCoastsWhereThatIsAskedFor) {
+  Scene scene(
+      loadText(withModes(genericPair(", command_timeout_action: coast"), "csp, cyclic_torque")));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  ASSERT_TRUE(scene.procedure(ProcedureKind::set_mode, "left", "cst").success);
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "left").success);
+  ASSERT_TRUE(scene.runUntil(
+      [&] {
+        EXPECT_EQ(scene.setpoint("left", 6.0), "");
+        return std::abs(scene.velocity("left")) > 0.5;
+      },
+      5s));
+  scene.run(2s);
+  EXPECT_TRUE(scene.truth("left").power_stage_on);
+}
+
 }  // namespace
 }  // namespace cia402
