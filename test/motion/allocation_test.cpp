@@ -6,7 +6,6 @@
 
 #include "cia402_driver/motion/coupling.h"
 #include "cia402_driver/motion/setpoint_limiter.h"
-#include "cia402_driver/motion/stop_ramp.h"
 #include "cia402_driver/motion/trajectory.h"
 
 namespace {
@@ -31,7 +30,6 @@ TEST(Allocation, NothingInTheCyclicPathAllocates) {
   std::vector<MotionState> states(2);
   const auto trajectory = Trajectory::create(
       joints, states, {{{1, 1}, {0, 0}, {0, 0}, std::chrono::seconds(1)}}, TrajectoryStart{});
-  GroupStop stop({{4, 40, 2, -2, 8}, {4, 40, 2, -2, 8}});
   LimiterConfig config;
   config.joint.limits = {-1, 1, 1, 5, {}, {}, false};
   PositionLimiter positions(config);
@@ -43,8 +41,6 @@ TEST(Allocation, NothingInTheCyclicPathAllocates) {
   ASSERT_GT(before, 0U);
   for (Time now{}; now < Time{std::chrono::seconds(2)}; now += std::chrono::milliseconds(4)) {
     trajectory->sample(now, states);
-    stop.start(states, now);
-    stop.sample(now, states);
     static_cast<void>(positions.command(0.3, now));
     static_cast<void>(velocities.command(0.3, now));
     positions.step(now);

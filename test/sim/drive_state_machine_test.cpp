@@ -343,7 +343,7 @@ TEST(DriveStateMachine, RefusesUnsupportedModesBySdoAndIgnoresThemByPdo) {
   EXPECT_EQ(b.abortOf({0x2F, 0x60, 0x60, 0x00, 0x02, 0, 0, 0}), 0x06090030U);
   EXPECT_EQ(b.read(0x6061) & 0xFFU, 3U);
   b.nmt(0x01);
-  b.frame(0x301, {0x06, 0x00, 0x04});  // RPDO2: controlword, mode
+  b.frame(0x301, {0x06, 0x00, 0x02});  // RPDO2: controlword, mode
   EXPECT_EQ(b.read(0x6061) & 0xFFU, 3U);
   EXPECT_EQ(b.state(), 0x21);
   b.frame(0x301, {0x06, 0x00, 0x08});

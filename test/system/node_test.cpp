@@ -159,14 +159,15 @@ TEST(Boot, AWrongDeviceTypeIsRefusedInWords) {
 }
 
 TEST(Boot, AnObjectThatTheDriveLacksIsNamed) {
-  Scene scene(loadText(genericPair(
-      ", pdos: {rpdo1: [controlword, target_position], rpdo2: [target_velocity, target_torque], "
-      "tpdo1: [statusword, position_actual, mode_display], tpdo2: [velocity_actual]}")));
+  Scene scene(loadText(
+      genericPair(", pdos: {rpdo1: [controlword, target_position], rpdo2: [target_velocity], "
+                  "tpdo1: [statusword, position_actual, mode_display], tpdo2: [velocity_actual, "
+                  "dc_link_voltage]}")));
   scene.robot().start();
   scene.run(6s);
   EXPECT_EQ(scene.state("left").health, NodeHealth::failed);
   EXPECT_THAT(scene.told(), HasSubstr("one of these cannot be mapped: "));
-  EXPECT_THAT(scene.told(), HasSubstr("6071:00"));
+  EXPECT_THAT(scene.told(), HasSubstr("6079:00"));
   EXPECT_THAT(scene.told(), HasSubstr("left (node 1)"));
   EXPECT_EQ(scene.state("right").health, NodeHealth::ready);
 }

@@ -71,7 +71,7 @@ class Trajectory {
   /// A last velocity up to this counts as rest, in rad/s or m/s.
   static constexpr double kRestVelocity = 1e-3;
 
-  /// Made from no points: the caller brings the joints to rest (GroupStop). Sampling holds the
+  /// Made from no points: the caller brings the joints to rest. Sampling holds the
   /// commanded positions.
   bool isStop() const { return ends_.empty(); }
 

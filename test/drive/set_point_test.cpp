@@ -1,0 +1,170 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/drive/set_point.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+
+namespace cia402::drive {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr Duration kCycle = milliseconds(10);
+constexpr double kVelocity = 2.0, kDeceleration = 4.0;
+
+SetPointLimits limits() { return {-1.0, 1.0, kVelocity, kDeceleration}; }
+
+struct Rig {
+  explicit Rig(SetPointKind kind, double value = 0.0) : point(limits(), kCycle) {
+    point.rest(kind, value);
+  }
+  void cycle() { point.advance(now += kCycle); }
+  void cycles(int count) {
+    for (int i = 0; i < count; ++i) cycle();
+  }
+  /// A stream that moves at `velocity` for so many cycles.
+  void move(double velocity, int count) {
+    for (int i = 0; i < count; ++i) {
+      point.give(point.value() + velocity * toSeconds(kCycle));
+      cycle();
+    }
+  }
+  SetPoint point;
+  Time now{std::chrono::seconds(1)};
+};
+
+TEST(SetPoint, AStreamStandsWhereItWasGivenWhileItIsRenewed) {
+  Rig rig(SetPointKind::stream);
+  rig.move(1.0, 10);
+  EXPECT_NEAR(rig.point.value(), 0.1, 1e-12);
+  EXPECT_NEAR(rig.point.velocity(), 1.0, 1e-9);
+  EXPECT_FALSE(rig.point.atRest());
+  EXPECT_EQ(rig.point.movedAt(), rig.now);
+}
+
+TEST(SetPoint, AStreamThatIsNotRenewedIsRampedToRest) {
+  Rig rig(SetPointKind::stream);
+  rig.move(1.0, 10);
+  const std::uint32_t breaks = rig.point.breaks();
+  rig.cycles(40);
+  EXPECT_TRUE(rig.point.atRest());
+  EXPECT_NEAR(rig.point.value(), 0.1 + 1.0 / (2 * kDeceleration), 1e-9);  // v²/2a
+  EXPECT_EQ(rig.point.breaks(), breaks + 1);
+}
+
+TEST(SetPoint, SlowsAVelocityDownByTheDecelerationWhereItIsNotRenewed) {
+  Rig rig(SetPointKind::velocity);
+  rig.point.give(1.0);
+  rig.cycle();
+  EXPECT_EQ(rig.point.value(), 1.0);
+  rig.cycle();
+  EXPECT_NEAR(rig.point.value(), 1.0 - kDeceleration * 0.01, 1e-12);
+  rig.cycles(30);
+  EXPECT_EQ(rig.point.value(), 0.0);
+  EXPECT_TRUE(rig.point.atRest());
+}
+
+TEST(SetPoint, DropsATorqueAtOnceWhereItIsNotRenewed) {
+  Rig rig(SetPointKind::torque);
+  rig.point.give(3.0);
+  rig.cycle();
+  EXPECT_EQ(rig.point.value(), 3.0);
+  rig.cycle();
+  EXPECT_EQ(rig.point.value(), 0.0);
+}
+
+TEST(SetPoint, LeavesAGoalToTheDrive) {
+  Rig rig(SetPointKind::goal);
+  rig.point.give(0.7);
+  rig.cycles(100);
+  EXPECT_EQ(rig.point.value(), 0.7);
+  EXPECT_TRUE(rig.point.atRest());
+  EXPECT_EQ(rig.point.movedAt(), Time(std::chrono::seconds(1)) + kCycle);
+}
+
+TEST(SetPoint, StepsNoFurtherThanTheVelocityLimitAllows) {
+  Rig rig(SetPointKind::stream);
+  rig.point.give(0.5);
+  rig.cycle();
+  EXPECT_NEAR(rig.point.value(), kVelocity * 0.01, 1e-6);
+}
+
+TEST(SetPoint, ASecondStopChangesNothing) {
+  Rig once(SetPointKind::stream), twice(SetPointKind::stream);
+  for (Rig* rig : {&once, &twice}) rig->move(1.5, 10);
+  once.point.stop();
+  twice.point.stop();
+  for (int i = 0; i < 60; ++i) {
+    once.cycle();
+    twice.point.stop();
+    twice.cycle();
+    ASSERT_EQ(once.point.value(), twice.point.value()) << i;
+  }
+  EXPECT_TRUE(twice.point.atRest());
+}
+
+TEST(SetPoint, AfterMissedCyclesAStreamStandsAtWhatWasSentLast) {
+  Rig rig(SetPointKind::stream);
+  rig.move(1.5, 10);
+  rig.point.stop();
+  rig.cycles(3);
+  const double sent = rig.point.value();
+  rig.now += milliseconds(150);
+  rig.point.interrupt();
+  rig.cycles(20);
+  EXPECT_EQ(rig.point.value(), sent);
+  EXPECT_TRUE(rig.point.atRest());
+  EXPECT_EQ(rig.point.interruptions(), 1u);
+}
+
+TEST(SetPoint, AfterMissedCyclesAVelocityGoesOnWithItsRamp) {
+  Rig rig(SetPointKind::velocity);
+  rig.point.give(1.0);
+  rig.cycle();
+  rig.point.stop();
+  rig.cycle();
+  rig.now += milliseconds(150);
+  rig.point.interrupt();
+  rig.cycle();
+  EXPECT_NEAR(rig.point.value(), 1.0 - 2 * kDeceleration * 0.01, 1e-12);
+}
+
+TEST(SetPoint, ANewZeroShiftsARampUnderWay) {
+  Rig rig(SetPointKind::stream), shifted(SetPointKind::stream);
+  for (Rig* r : {&rig, &shifted}) {
+    r->move(1.0, 10);
+    r->point.stop();
+    r->cycles(3);
+  }
+  shifted.point.shift(0.3);
+  for (int i = 0; i < 40; ++i) {
+    rig.cycle();
+    shifted.cycle();
+    ASSERT_NEAR(shifted.point.value(), rig.point.value() + 0.3, 1e-9);
+  }
+}
+
+TEST(SetPoint, AStopEndsAtTheLimitOfTheJoint) {
+  Rig rig(SetPointKind::stream, 0.9);
+  rig.move(2.0, 4);  // 0.98, and half a metre of braking distance
+  EXPECT_NEAR(rig.point.stopPosition(), 1.0, 1e-12);
+  rig.point.stop();
+  rig.cycles(60);
+  EXPECT_NEAR(rig.point.value(), 1.0, 1e-12);
+}
+
+TEST(SetPoint, TellsWhereAStopWillBringIt) {
+  Rig rig(SetPointKind::stream);
+  rig.move(1.0, 10);
+  const SetPoint::Motion half = rig.point.expected(milliseconds(125));
+  EXPECT_NEAR(half.velocity, 0.5, 1e-9);
+  EXPECT_NEAR(half.position, 0.1 + 0.125 * 0.75, 1e-9);
+  const SetPoint::Motion end = rig.point.expected(std::chrono::seconds(5));
+  EXPECT_EQ(end.velocity, 0.0);
+  EXPECT_NEAR(end.position, rig.point.stopPosition(), 1e-9);
+}
+
+}  // namespace
+}  // namespace cia402::drive
