@@ -10,6 +10,8 @@ namespace {
 
 /// A drive may act on a set-point so many cycles after it was computed.
 constexpr int kReactionCycles = 2;
+/// The same for a drive that plans its motion, whose plan is ahead of the motor.
+constexpr int kPlanningCycles = 4;
 /// A drive that never shows that it follows its set-points is waited for so long, once.
 constexpr Duration kFollowPatience{std::chrono::seconds(1)};
 /// Set-points that run while the motor stands are called back after so long; sooner where the drive
@@ -60,17 +62,25 @@ void AxisCore::beginHalt() {
   state_.ready_for_motion = false;
 }
 
-/// The drive plans by itself: it gets the point where it can stop. What it does until it has that
-/// is added, so that it need not turn back.
+/// The drive plans by itself: it gets the nearest point where it can stop. What it does until it
+/// has that is added, for a point that is too near would make it turn back: it may still be gaining
+/// speed, and what it has planned is ahead of what is measured. It never goes beyond its goal.
 void AxisCore::giveStopPoint() {
   if (!state_.feedback_valid) return;
+  const double goal = set_point_.value(), from = state_.position;
   const double velocity = std::isfinite(state_.velocity) ? state_.velocity : 0.0;
-  const double reaction = toSeconds(kReactionCycles * config_.sync_period);
-  double point = state_.position + velocity * reaction +
-                 velocity * std::fabs(velocity) / (2.0 * stopDeceleration(config_));
+  const double sign = std::copysign(
+      1.0, std::fabs(velocity) > config_.standstill_velocity ? velocity : goal - from);
+  const double reaction = toSeconds(kPlanningCycles * config_.sync_period);
+  const double deceleration = stopDeceleration(config_), speed = std::fabs(velocity);
+  const double faster = std::max(
+      speed, std::min(speed + deceleration * reaction, config_.limits.velocity.value_or(1e9)));
+  const double way = faster * reaction + faster * faster / (2.0 * deceleration);
+  double point = from + sign * way;
+  if (sign * (goal - from) >= 0.0) point = sign * std::min(sign * point, sign * goal);
   const AxisLimits& limits = config_.limits;
-  if (limits.lower) point = std::max(point, std::min(*limits.lower, state_.position));
-  if (limits.upper) point = std::min(point, std::max(*limits.upper, state_.position));
+  if (limits.lower) point = std::max(point, std::min(*limits.lower, from));
+  if (limits.upper) point = std::min(point, std::max(*limits.upper, from));
   set_point_.give(point);
 }
 

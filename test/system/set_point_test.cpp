@@ -42,9 +42,10 @@ TEST(SetPoints, AVelocityThatIsNobodysAnyMoreEndsWithTheCallThatTookItsStream) {
   EXPECT_LT(scene.seen("left").travel(), 1e-3);
 }
 
-TEST(SetPoints, AStreamThatEndsWhileItCreepsComesToRest) {
+TEST(SetPoints, AStreamThatCreepsEndsWithTheCallThatTookIt) {
   Rig scene(genericPair(), "cyclic_velocity");
   scene.stream("left", 0.008, 300ms);
+  (void)call(scene, bus::ProcedureCommand{"left", declare(0.4)});
   scene.run(1s);
   scene.forget();
   scene.run(5s);
@@ -203,18 +204,60 @@ TEST(SetPoints, AHaltDuringAQuickStopAnswersAtRest) {
   EXPECT_LT(std::abs(scene.velocity("left")), 0.02) << answer.message;
 }
 
-TEST(SetPoints, AHaltJustAfterMotionBeganAnswersAtRest) {
-  for (const Duration after : {4ms, 8ms, 12ms, 20ms, 40ms}) {
-    Rig scene(genericPair());
-    (void)scene.setpoint("left", 2.0);
-    scene.run(after);
-    const bus::Answer answer = scene.procedure(ProcedureKind::halt, "left");
-    EXPECT_TRUE(answer.success) << answer.message;
-    scene.forget();
-    scene.run(500ms);
-    EXPECT_LT(scene.seen("left").travel(), 2e-4) << toSeconds(after);
+/// How far a motor turned back, at most.
+struct Reversal {
+  double furthest = -1e9, back = 0.0;
+  void see(double position) {
+    furthest = std::max(furthest, position);
+    back = std::max(back, furthest - position);
+  }
+};
+
+struct EarlyStop {
+  const char* name;
+  std::string yaml;
+  const char* mode;
+  double set_point;
+  friend std::ostream& operator<<(std::ostream& out, const EarlyStop& stop) {
+    return out << stop.name;
+  }
+};
+
+class AStopJustAfterMotionBegan : public testing::TestWithParam<EarlyStop> {};
+
+TEST_P(AStopJustAfterMotionBegan, IsAnsweredAtRestAndTurnsNothingBack) {
+  for (const auto kind : {ProcedureKind::halt, ProcedureKind::disable, ProcedureKind::quick_stop}) {
+    for (const Duration after : {4ms, 8ms, 12ms, 20ms, 40ms, 60ms}) {
+      Rig scene(GetParam().yaml);
+      const std::string axis = scene.loaded().robot.axes[0].name;
+      ASSERT_TRUE(scene.procedure(ProcedureKind::set_mode, axis, GetParam().mode).success);
+      scene.run(200ms);
+      ASSERT_EQ(scene.setpoint(axis, GetParam().set_point), "");
+      scene.run(after);
+      Reversal reversal;
+      scene.watch([&] { reversal.see(scene.position(axis)); });
+      const bus::Answer answer = scene.procedure(kind, axis);
+      EXPECT_TRUE(answer.success) << answer.message;
+      const double told_at = scene.position(axis);
+      scene.run(500ms);
+      const std::string where =
+          std::string(toString(kind)) + " after " + std::to_string(toSeconds(after)) + " s";
+      EXPECT_NEAR(scene.position(axis), told_at, 2e-4) << where << ": " << answer.message;
+      EXPECT_LT(reversal.back, 2e-4) << where;
+    }
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(
+    In, AStopJustAfterMotionBegan,
+    testing::Values(EarlyStop{"generic_csp", genericPair(), "cyclic_position", 2.0},
+                    EarlyStop{"generic_csv", genericPair(), "cyclic_velocity", 1.5},
+                    EarlyStop{"generic_pp", genericPair(), "profile_position", 2.0},
+                    EarlyStop{"generic_pv", genericPair(), "profile_velocity", 1.5},
+                    EarlyStop{"damiao_csp", damiaoJoint(), "cyclic_position", 1.9},
+                    EarlyStop{"damiao_csv", damiaoJoint(), "cyclic_velocity", 1.5},
+                    EarlyStop{"damiao_pp", damiaoJoint(), "profile_position", 1.9}),
+    [](const auto& tested) { return tested.param.name; });
 
 /// The modes that push: effort, and what ends a stream of it.
 struct Effort {
