@@ -45,7 +45,7 @@ DrivenRobot::DrivenRobot(int axes, double sync_period_s, int cycles)
   const std::uint64_t sync = robot_.statistics().cycles();
   while (robot_.statistics().cycles() == sync) step();
   sync_ = now_ + period_;
-  began_ = now_;
+  began_ = sync_ - period_ / 2;  // one period before the first cycle
   runUntilAnswered(swing(config_.robot, sync_period_s * (cycles + 1), 0.1));
 }
 
@@ -146,7 +146,10 @@ void DrivenRobot::check() const {
     }
     std::string told;
     for (const bus::Event& event : events_) told += "\n" + event.text.str();
-    throw std::runtime_error("joint " + std::to_string(i + 1) + " left its path:" + told);
+    throw std::runtime_error("joint " + std::to_string(i + 1) +
+                             " left its path: " + std::to_string(commanded[i].position) +
+                             " instead of " + std::to_string(swingPosition(i, time_s)) +
+                             " rad at " + std::to_string(time_s) + " s" + told);
   }
 }
 

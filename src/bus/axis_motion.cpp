@@ -106,15 +106,15 @@ void AxisMotion::stop(drive::Axis& axis) {
 
 void AxisMotion::step(drive::Axis& axis, Time now) {
   clock_ += cycle_;
+  if (owner_ != nullptr) {
+    mode_ = nullptr;  // what the group does to the target is not known here
+    return;
+  }
   const drive::SetPoint& sent = axis.setPoint();
   if (!axis.state().ready_for_motion || axis.state().mode == nullptr) {
     mode_ = nullptr;
     command_.reset();
     at_rest_ = sent.atRest();
-    return;
-  }
-  if (owner_ != nullptr) {
-    mode_ = nullptr;  // what the group does to the target is not known here
     return;
   }
   if (!entered(axis)) enter(axis);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace cia402::bus {
 namespace {
@@ -98,7 +99,10 @@ TrajectoryOutcome Group::start(const std::vector<std::string>& names,
   if (!why_not.empty()) {
     return {TrajectoryErrorCode::invalid_goal, config_.name + ": trajectory refused: " + why_not};
   }
-  if (phase_ == Phase::idle) clock_.set(now);
+  if (phase_ == Phase::idle) {
+    clock_.set(now);
+    starts_ = true;
+  }
   motion::TrajectoryStart start;
   start.now = clock_.time();
   if (start_time) start.start_time = clock_.at(*start_time, now);
@@ -178,6 +182,8 @@ double Group::permittedRise() const {
 void Group::advanceClock(Time now) {
   if (phase_ == Phase::stopping || clock_.time() < trajectory_->startTime()) {
     clock_.idle(now);
+  } else if (std::exchange(starts_, false)) {
+    clock_.begin(now);
   } else {
     clock_.cycle(now);
     clock_.advance(clock_.rate() == 1.0 ? 1.0 : permittedRise());
@@ -186,11 +192,15 @@ void Group::advanceClock(Time now) {
 
 void Group::follow(std::vector<drive::Axis>& axes) {
   trajectory_->sample(clock_.time(), commanded_);
+  if (clock_.rate() < 1.0) scaleCommanded();
+  sendSetpoints(axes);
+}
+
+void Group::scaleCommanded() {
   for (motion::MotionState& state : commanded_) {
     state.velocity *= clock_.rate();
     state.acceleration *= clock_.rate() * clock_.rate();
   }
-  sendSetpoints(axes);
 }
 
 void Group::showSent(const std::vector<drive::Axis>& axes) {

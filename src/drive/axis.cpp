@@ -30,6 +30,7 @@ struct Axis::Impl {
   bool was_ready = false;
   bool lost = false;  ///< since the last update(), though the node may be ready again
   std::uint32_t boot_ups = 0;
+  Time watched{};  ///< when watchNode() was called by readFeedback()
 };
 
 /// Notices a node that is not what it was, even if nobody called onHealthChange().
@@ -69,7 +70,8 @@ Axis::Axis(AxisConfig config, canopen::Node& node)
     : impl_(std::make_unique<Impl>(std::move(config), node)),
       state_(&impl_->core.state()),
       procedure_(&impl_->status),
-      notices_(&impl_->core.noticeCount()) {}
+      notices_(&impl_->core.noticeCount()),
+      set_point_(&impl_->core.setPoint()) {}
 Axis::~Axis() = default;
 Axis::Axis(Axis&&) noexcept = default;
 
@@ -79,12 +81,13 @@ const ProcedureStatus& Axis::previousProcedure() const { return impl_->previous;
 
 void Axis::readFeedback(Time now) {
   impl_->watchNode();
+  impl_->watched = now;
   impl_->core.readFeedback(now);
 }
 
 void Axis::update(Time now) {
   Impl& impl = *impl_;
-  impl.watchNode();
+  if (impl.watched != now) impl.watchNode();  // else readFeedback() just did
   std::string failure = impl.core.supervise(now);
   if (impl.procedure) {
     const bool waits = (impl.lost || !impl.core.nodeReady()) && impl.procedure->survivesNodeLoss();
@@ -144,7 +147,6 @@ void Axis::cancel(const std::string& reason, Time now) {
 }
 
 bool Axis::setTarget(double value) { return impl_->core.setTarget(value); }
-const SetPoint& Axis::setPoint() const { return impl_->core.setPoint(); }
 void Axis::stopSetPoint() { impl_->core.stopSetPoint(); }
 std::string Axis::motionRefusal() const { return impl_->core.motionRefusal(impl_->status.running); }
 

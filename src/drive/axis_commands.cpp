@@ -31,7 +31,11 @@ std::uint16_t AxisCore::composeControlword() {
   if (voltage_off_) return 0;
   // An undecodable word is no reason to switch anything off: the last command stands.
   if (state_.state != State::unknown || goal_ != Goal::enabled) {
-    command_ = nextCommand(state_.state, goal_);
+    if (state_.state != commanded_in_ || goal_ != commanded_for_) {
+      command_ = nextCommand(state_.state, goal_);
+      commanded_in_ = state_.state;
+      commanded_for_ = goal_;
+    }
     base_controlword_ = command_.controlword;
   }
   unsigned word = base_controlword_;
@@ -65,7 +69,6 @@ void AxisCore::writeCommands(Time now) {
 
 void AxisCore::writeTarget(Time now) {
   if (set_point_.advance(now)) encodeTarget();
-  if (!config_.brake_after_effort) effort_streamed_ = false;
   if (effort_streamed_ && !set_point_.leased()) brakeEffort();
   const bool by_hand = mode_->spec->handshake == Handshake::new_set_point;
   if (by_hand) advanceHandshake(now);
@@ -74,8 +77,9 @@ void AxisCore::writeTarget(Time now) {
 }
 
 void AxisCore::encodeTarget() {
-  std::uint64_t raw = target_raw_;
-  if (!mode_conversion_.toDevice(set_point_.value(), raw)) return;
+  std::uint64_t raw = given_raw_;
+  const bool as_given = set_point_.value() == given_;
+  if (!as_given && !mode_conversion_.toDevice(set_point_.value(), raw)) return;
   if (raw != target_raw_ && mode_->spec->handshake == Handshake::new_set_point) {
     handshake_.offer(raw);
   }
@@ -124,6 +128,7 @@ void AxisCore::neutralizeTarget() {
 
 void AxisCore::selectMode(const ModeChannel& mode) {
   mode_ = &mode;
+  given_ = kUnknown;
   held_.clear();
   mode_conversion_ = mode.spec->kind == ControlKind::position ? mode.conversion.shifted(zero_shift_)
                                                               : mode.conversion;
@@ -174,12 +179,14 @@ bool AxisCore::setTarget(double value) {
   std::uint64_t raw = 0;
   if (!mode_->target.mapped() || !mode_conversion_.toDevice(value, raw)) return false;
   if (mode_->spec->kind == ControlKind::torque) {
-    effort_streamed_ = true;
+    effort_streamed_ = config_.brake_after_effort;
     if (braking_) braking_ = halt_bit_ = false;
   }
   if (set_point_dropped_ && raw == target_raw_) handshake_.offer(raw);  // once more
   set_point_dropped_ = false;
   set_point_.give(value);
+  given_ = value;
+  given_raw_ = raw;
   return true;
 }
 

@@ -73,8 +73,8 @@ bool AxisCore::powerOff() const { return powerStageOff(state_.state); }
 
 std::string AxisCore::supervise(Time now) {
   std::string failure;
-  watchStopBySdo();
-  noteMissedCycles(now);
+  if (stop_ticket_) watchStopBySdo();
+  if (now > written_ + 2 * config_.sync_period && written_ != Time{}) set_point_.interrupt();
   if (!failure_.empty()) failure = takeFailure();
   if (!nodeReady()) return failure;
   const bool commanded = goal_ != Goal::disabled && goal_ != Goal::quick_stop;
@@ -109,7 +109,7 @@ std::string AxisCore::supervise(Time now) {
     in_operation_ = true;
     brake_released_ = now + profile().timing.brake_release;
     in_operation_since_ = now;
-    follows_shown_ = left_behind_ = false;
+    follows_ = follows_shown_ = left_behind_ = false;
     neutralizeTarget();
   }
   return failure;
@@ -192,6 +192,7 @@ void AxisCore::adoptDriveZero(double shift) {
   if (mode_->spec->kind == ControlKind::position) {
     mode_conversion_ = mode_->conversion.shifted(shift);
     set_point_.shift(moved);
+    given_ = kUnknown;
   }
   state_.position += moved;
   state_.homed = true;

@@ -57,7 +57,7 @@ class AxisCore {
   bool inOperation() const { return in_operation_; }
   /// In operation, and the drive follows its set-points: the time that the brake needs is over, and
   /// the mode's bit for it is set. A drive that never sets that bit is waited for once.
-  bool brakeReleased(Time now) const;
+  bool brakeReleased(Time now) const { return in_operation_ && now >= brake_released_ && follows_; }
   /// RPDOs with the controlword sent so far.
   std::uint64_t controlwordFrames() const;
   /// No motion is possible by this drive: the power stage is off, as far as the statusword says.
@@ -148,14 +148,15 @@ class AxisCore {
   void writeTarget(Time now);
   void writeNeutralTargets();
   void advanceHandshake(Time now);
-  void noteMissedCycles(Time now);
   void encodeTarget();
   StopBy stopBy() const { return drive::stopBy(*mode_->spec, profile()); }
   /// A torque is nobody's any more: the axis must not coast on (command_timeout_action).
   void brakeEffort();
   void giveStopPoint();
-  bool followsCommand(Time now) const;
+  void lookForFollowing(Time now);
   void watchFollowing(Time now);
+  /// The set-points come back to where the motor stands.
+  void callBack();
   bool withinLimits(double value) const;
   void watchStopBySdo();
   bool homedEnough() const;
@@ -178,7 +179,9 @@ class AxisCore {
   bool braking_ = false;      ///< the halt bit brakes an axis whose torque is nobody's any more
   bool voltage_off_ = false;  ///< the power stage is to be off, whatever the drive shows
   std::uint16_t controlword_ = 0, base_controlword_ = 0;
-  Command command_;
+  Command command_ = nextCommand(State::unknown, Goal::disabled);  ///< of these two:
+  State commanded_in_ = State::unknown;
+  Goal commanded_for_ = Goal::disabled;
   Time brake_released_ = kNever, in_operation_since_{}, known_state_{};
 
   const ModeChannel* mode_;
@@ -188,13 +191,14 @@ class AxisCore {
   double zero_shift_ = 0.0;
 
   SetPoint set_point_;
-  std::uint64_t target_raw_ = 0, neutral_raw_ = 0;
+  double given_ = kUnknown;  ///< the last set-point that was taken, and its raw number
+  std::uint64_t given_raw_ = 0, target_raw_ = 0, neutral_raw_ = 0;
   bool neutral_known_ = false;
   Time written_{};
   SetPointHandshake handshake_;
   bool set_point_dropped_ = false;  ///< the drive does not have target_
   bool effort_streamed_ = false;    ///< and not braked since
-  // Does the drive follow its set-points?
+  bool follows_ = false;            ///< its set-points, as far as the drive shows that
   bool follows_shown_ = false;  ///< the mode's bit for it was set since the axis is in operation
   bool follows_never_shown_ = false;  ///< it never was, this drive does not use it
   bool left_behind_ = false;          ///< and told so

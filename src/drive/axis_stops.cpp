@@ -24,10 +24,6 @@ constexpr Duration kStopMargin{std::chrono::milliseconds(500)};
 
 }  // namespace
 
-void AxisCore::noteMissedCycles(Time now) {
-  if (written_ != Time{} && now - written_ > 2 * config_.sync_period) set_point_.interrupt();
-}
-
 Duration AxisCore::stopTime() const {
   const double fastest = config_.limits.velocity.value_or(0.0);
   const double measured = std::isfinite(state_.velocity) ? std::fabs(state_.velocity) : 0.0;
@@ -110,53 +106,50 @@ void AxisCore::replaceHaltedTarget() {
 
 void AxisCore::releaseHalt() { halt_bit_ = halted_ = braking_ = false; }
 
-bool AxisCore::brakeReleased(Time now) const {
-  return in_operation_ && now >= brake_released_ && followsCommand(now);
-}
-
-bool AxisCore::followsCommand(Time now) const {
-  return !mode_->spec->follows_command_bit || follows_shown_ || follows_never_shown_ ||
-         now - in_operation_since_ >= kFollowPatience;
+/// Whether the drive shows that it follows; a drive that never does is waited for once.
+void AxisCore::lookForFollowing(Time now) {
+  const auto& bit = mode_->spec->follows_command_bit;
+  const bool shown = bit && state_.mode == mode_->spec && ((state_.statusword >> *bit) & 1u) != 0;
+  if (shown) follows_shown_ = true;
+  if (!bit || shown || follows_never_shown_) {
+    follows_ = true;
+  } else if (now - in_operation_since_ >= kFollowPatience) {
+    follows_ = follows_never_shown_ = true;
+  }
 }
 
 /// Set-points must not run away from a motor that stands: held by its brake, at a limit switch,
 /// blocked. It would leap after them when it is let go.
 void AxisCore::watchFollowing(Time now) {
-  const auto& bit = mode_->spec->follows_command_bit;
-  const bool mode_shown = state_.mode == mode_->spec;
-  const bool follows = bit && mode_shown && ((state_.statusword >> *bit) & 1u) != 0;
-  if (follows) {
-    follows_shown_ = true;
-    follows_never_shown_ = false;
-  } else if (bit && !follows_shown_ && now - in_operation_since_ >= kFollowPatience) {
-    follows_never_shown_ = true;
-  }
-  if (standstill_.moving()) left_behind_ = false;
-  const bool runs = set_point_.kind() == SetPointKind::stream &&
+  if (!follows_ || (follows_never_shown_ && !follows_shown_)) lookForFollowing(now);
+  const bool runs = set_point_.kind() == SetPointKind::stream && !standstill_.moving() &&
                     std::fabs(set_point_.velocity()) > kClearlyMoving * config_.standstill_velocity;
   if (!runs) {
     running_since_ = kNever;
+    if (standstill_.moving()) left_behind_ = false;
     return;
   }
   if (running_since_ == kNever) running_since_ = now;
-  const bool told_by_drive = state_.internal_limit || (bit && follows_shown_ && !follows);
-  if (now - running_since_ < (told_by_drive ? kHeld : kLeftBehind)) return;
-  const bool stands =
-      standstill_.still() &&
-      standstill_.stillFrom() >= running_since_ + kReactionCycles * config_.sync_period;
-  if (!stands) return;
+  const auto& bit = mode_->spec->follows_command_bit;
+  const bool dropped = follows_shown_ && bit && ((state_.statusword >> *bit) & 1u) == 0;
+  const Duration patience = state_.internal_limit || dropped ? kHeld : kLeftBehind;
+  const Time begun = running_since_ + kReactionCycles * config_.sync_period;
+  const bool stands = standstill_.still() && standstill_.stillFrom() >= begun;
+  if (stands && now - running_since_ >= patience) callBack();
+}
+
+void AxisCore::callBack() {
   const double ahead = set_point_.value() - state_.position;
   neutralizeTarget();
   running_since_ = kNever;
   if (std::exchange(left_behind_, true)) return;
-  std::string why = "the brake, a limit or the load holds it";
-  if (state_.internal_limit)
-    why =
-        "internal limit active (statusword bit 11): a limit switch or a position limit of the "
-        "drive holds it";
-  notify(who() + ": the motor stands while its set-points run, " + number(ahead) +
-         (config_.geometry.type == AxisGeometry::Type::prismatic ? " m" : " rad") +
-         " ahead: " + why + ". They are called back to where it stands");
+  const bool prismatic = config_.geometry.type == AxisGeometry::Type::prismatic;
+  notify(who() + ": the motor stands while its set-points run, " + length(ahead, prismatic) +
+         " ahead: " +
+         (state_.internal_limit ? "internal limit active (statusword bit 11), a limit switch or a "
+                                  "position limit of the drive holds it"
+                                : "the brake, a limit or the load holds it") +
+         ". They are called back to where it stands");
 }
 
 }  // namespace cia402::drive

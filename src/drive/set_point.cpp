@@ -27,21 +27,27 @@ SetPointKind kindOf(const ModeSpec& mode) {
 }
 
 SetPoint::SetPoint(const SetPointLimits& limits, Duration cycle)
-    : limits_(limits), cycle_s_(toSeconds(cycle)), cycle_(cycle) {}
+    : limits_(limits),
+      cycle_s_(toSeconds(cycle)),
+      furthest_(limits.velocity ? *limits.velocity * cycle_s_ * kTolerance : 1e300),
+      cycle_(cycle) {}
 
 void SetPoint::rest(SetPointKind kind, double value) {
   kind_ = kind;
   value_ = value;
   velocity_ = 0.0;
-  given_.reset();
+  has_given_ = false;
   stopping_ = false;
   ++breaks_;
 }
 
-void SetPoint::give(double value) { given_ = value; }
+void SetPoint::give(double value) {
+  given_ = value;
+  has_given_ = true;
+}
 
 void SetPoint::stop() {
-  given_.reset();
+  has_given_ = false;
   if (stopping_ || atRest()) return;
   ++breaks_;
   beginStop();
@@ -63,18 +69,18 @@ void SetPoint::interrupt() {
 void SetPoint::shift(double by) {
   if (kind_ != SetPointKind::stream && kind_ != SetPointKind::goal) return;
   value_ += by;
-  given_.reset();
+  has_given_ = false;
   if (stopping_) ramp_.begin(value_, velocity_, limits_.deceleration);
   ++breaks_;
 }
 
 bool SetPoint::advance(Time now) {
   const double before = value_;
-  leased_ = given_.has_value();
+  leased_ = has_given_;
   if (leased_) {
     stopping_ = false;
     follow();
-    given_.reset();
+    has_given_ = false;
   } else {
     if (!stopping_ && !atRest()) {
       ++breaks_;
@@ -82,18 +88,15 @@ bool SetPoint::advance(Time now) {
     }
     if (stopping_) advanceStop();
   }
-  const bool changed = value_ != before && !(std::isnan(value_) && std::isnan(before));
+  const bool changed = value_ != before && !std::isnan(value_);
   if (changed || !atRest()) moved_at_ = now;
   return changed;
 }
 
 void SetPoint::follow() {
-  double next = *given_;
+  double next = given_;
   if (kind_ == SetPointKind::stream) {
-    if (limits_.velocity) {
-      const double furthest = *limits_.velocity * cycle_s_ * kTolerance;
-      next = std::clamp(next, value_ - furthest, value_ + furthest);
-    }
+    next = std::clamp(next, value_ - furthest_, value_ + furthest_);
     velocity_ = (next - value_) / cycle_s_;
   }
   value_ = next;

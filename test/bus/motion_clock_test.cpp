@@ -20,6 +20,16 @@ TEST(MotionClock, GoesByOnePeriodACycleHoweverLateItIs) {
   EXPECT_EQ(clock.time(), Time(1s) + 20ms);
 }
 
+TEST(MotionClock, BeginsByWhatHasPassedSinceButNeverByMoreThanAPeriod) {
+  MotionClock clock(4ms);
+  clock.set(Time(1s));
+  clock.begin(Time(1s) + 1ms);
+  EXPECT_EQ(clock.time(), Time(1s) + 1ms);
+  clock.set(Time(1s));
+  clock.begin(Time(1s) + 150ms);
+  EXPECT_EQ(clock.time(), Time(1s) + 4ms);
+}
+
 TEST(MotionClock, StartsFromStandstillAfterMissedCycles) {
   MotionClock clock(4ms);
   Time now{1s};

@@ -65,6 +65,7 @@ class Group {
                                                Time time) const;
   void advanceClock(Time now);
   void follow(std::vector<drive::Axis>& axes);
+  void scaleCommanded();
   /// How fast the clock's rate may rise, 1/s.
   double permittedRise() const;
   bool stands(const std::vector<drive::Axis>& axes) const;
@@ -86,6 +87,7 @@ class Group {
   std::vector<motion::Joint> joints_;
   std::vector<config::JointTolerance> tolerances_;
   MotionClock clock_;
+  bool starts_ = false;                // no cycle has passed since it was set
   std::vector<double> accelerations_;  // limits, one a joint
   Phase phase_ = Phase::idle;
   std::optional<motion::Trajectory> trajectory_, next_;

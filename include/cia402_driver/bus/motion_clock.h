@@ -30,6 +30,12 @@ class MotionClock {
     if (now - cycled_ > 2 * period_) rate_ = 0.0;
     cycled_ = now;
   }
+  /// The first cycle of a motion that begins between two cycles: by what has passed since, at most
+  /// one period.
+  void begin(Time now) {
+    time_ += std::min(now - cycled_, period_);
+    cycled_ = now;
+  }
   /// Goes on by one period. @param rise 1/s, > 0, by which the rate may rise
   void advance(double rise) {
     rate_ = std::min(1.0, rate_ + rise * toSeconds(period_));

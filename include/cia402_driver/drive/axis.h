@@ -126,7 +126,7 @@ class Axis {
   [[nodiscard]] bool setTarget(double value);
   double target() const { return setPoint().value(); }
   /// What was sent last, and how it moves.
-  const SetPoint& setPoint() const;
+  const SetPoint& setPoint() const { return *set_point_; }
   /// Brings the set-points to rest, by a ramp where they move. Nothing if they do not.
   void stopSetPoint();
   /// Why setTarget would refuse now, in words; empty if it would not.
@@ -160,6 +160,7 @@ class Axis {
   const AxisState* state_;
   const ProcedureStatus* procedure_;
   const std::uint32_t* notices_;
+  const SetPoint* set_point_;
 };
 
 }  // namespace cia402::drive

@@ -90,12 +90,12 @@ class SetPoint {
   double withinLimits(double position) const;
 
   SetPointLimits limits_;
-  double cycle_s_;
+  double cycle_s_, furthest_;  ///< step of a stream
   Duration cycle_;
   SetPointKind kind_ = SetPointKind::none;
   double value_ = kNone, velocity_ = 0.0;
-  std::optional<double> given_;
-  bool stopping_ = false, leased_ = false;
+  double given_ = kNone;
+  bool has_given_ = false, stopping_ = false, leased_ = false;
   SoftStop ramp_;
   Time moved_at_ = Time::min();
   std::uint32_t breaks_ = 0, interruptions_ = 0;
