@@ -62,7 +62,7 @@ void AxisCore::readMotion(Time now) {
   state_.position = joint;
   if (position.stamp != state_.stamp || !neutral_known_) {
     standstill_.update(joint, position.stamp);
-    neutral_raw_ = position.raw;
+    neutral_raw_ = objects_.position.conversion.sendable(position.raw);
     neutral_known_ = true;
   }
   state_.stamp = position.stamp;

@@ -154,6 +154,10 @@ bool Conversion::toDevice(double value, std::uint64_t& raw) const {
   return true;
 }
 
+std::uint64_t Conversion::sendable(std::uint64_t raw) const {
+  return withoutNegativeZero(encoding_, raw);
+}
+
 double Conversion::lowest() const { return (factor_ < 0.0 ? high_ : low_) * factor_ + offset_; }
 
 double Conversion::highest() const { return (factor_ < 0.0 ? low_ : high_) * factor_ + offset_; }

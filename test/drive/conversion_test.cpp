@@ -56,6 +56,16 @@ std::uint64_t encode(const Conversion& conversion, double value) {
   return raw;
 }
 
+TEST(Conversion, MinusZeroIsNotSentBack) {
+  const auto joint = *Conversion::create(
+      object(DataType::int32, Quantity::position, Encoding::float32), floatDrive(), servo());
+  EXPECT_EQ(joint.sendable(0x80000000), 0u);
+  EXPECT_EQ(joint.sendable(0xBF800000), 0xBF800000u);  // -1.0
+  const auto counts =
+      *Conversion::create(object(DataType::int32, Quantity::position), countingDrive(), servo());
+  EXPECT_EQ(counts.sendable(0x80000000), 0x80000000u) << "a count like any other";
+}
+
 TEST(Conversion, CountsOfTheMotorBecomeRadiansBehindTheGear) {
   const auto position = *Conversion::create(object(DataType::int32, Quantity::position),
                                             countingDrive(), servo(1, 50.0));

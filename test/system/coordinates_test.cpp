@@ -10,6 +10,20 @@ using namespace std::chrono_literals;
 using drive::ProcedureKind;
 using testing::HasSubstr;
 
+TEST(Coordinates, MinusZeroIsNeverSentBackToTheDrive) {
+  LoadedRobot loaded = loadText(damiaoJoint());
+  loaded.axes[0].mechanics.initial_position = -0.0;
+  Scene scene(std::move(loaded));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  ASSERT_EQ(scene.drive("joint").dictionary().find({0x6064, 0})->number, 0x80000000u);
+  const auto recovered = scene.procedure(ProcedureKind::recover);
+  EXPECT_TRUE(recovered.success) << recovered.message;
+  scene.run(200ms);
+  EXPECT_EQ(scene.badFloats(), 0u);
+  EXPECT_TRUE(scene.truth("joint").power_stage_on) << scene.told();
+  EXPECT_LT(scene.seen("joint").travel(), 1e-6);
+}
+
 TEST(Coordinates, AGoalThatTheDriveDidNotReachIsNotCalledReached) {
   Scene scene(loadText(genericPair()));
   ASSERT_TRUE(scene.boot());

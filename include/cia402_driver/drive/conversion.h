@@ -41,6 +41,8 @@ class Conversion {
   /// Raw number of a joint value, rounded to the nearest device unit. NaN, infinity and what does
   /// not fit the object give `false` and leave `raw` untouched.
   [[nodiscard]] bool toDevice(double value, std::uint64_t& raw) const;
+  /// What may be sent of what was received: `raw`, but +0.0 for -0.0.
+  std::uint64_t sendable(std::uint64_t raw) const;
   /// Largest and smallest joint value that fits the object.
   double lowest() const;
   double highest() const;
