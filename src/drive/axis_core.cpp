@@ -30,6 +30,7 @@ AxisCore::AxisCore(AxisConfig config, canopen::Node& node)
       standstill_(config_.standstill_velocity, objects_.position.conversion.resolution()),
       mode_(objects_.channel(config_.mode)),
       position_(objects_.position.conversion),
+      limits_(config_),
       set_point_(setPointLimits(config_), config_.sync_period) {
   std::size_t longest = 0;
   for (const ModeSpec& spec : profile().modes) {
@@ -77,6 +78,7 @@ std::string AxisCore::supervise(Time now) {
   noteMissedCycles(now);
   if (!failure_.empty()) failure = takeFailure();
   if (!nodeReady()) return failure;
+  keepLimits();
   const bool commanded = goal_ != Goal::disabled && goal_ != Goal::quick_stop;
   if (commanded && !state_.feedback_valid) {
     setGoal(Goal::quick_stop);
@@ -133,6 +135,8 @@ void AxisCore::onNodeLost() {
   emergency_code_ = state_.error_code = 0;
   base_controlword_ = controlword_ = 0;
   if (!absolute()) adoptDriveZero(0.0);
+  limits_.forget();
+  limits_due_ = true;
   state_.homed = absolute();
   state_.ready_for_motion = false;
   state_.health = node_.health();
@@ -196,7 +200,26 @@ void AxisCore::adoptDriveZero(double shift) {
   state_.position += moved;
   state_.homed = true;
   ++state_.zero_changes;
+  limits_due_ = true;
   standstill_.reset();
+}
+
+void AxisCore::openLimits(bool open) {
+  if (limits_open_ == open) return;
+  limits_open_ = open;
+  limits_due_ = true;
+}
+
+void AxisCore::keepLimits() {
+  if (state_.feedback_valid) {
+    const bool known = state_.homed && !limits_open_;
+    if (std::exchange(limits_due_, false) || known != limits_known_) {
+      limits_known_ = known;
+      limits_.aim(known, zero_shift_, state_.position);
+    }
+    limits_.closeIfInside(state_.position, in_operation_ ? target() : state_.position);
+  }
+  limits_.advance(node_.sdo());
 }
 
 }  // namespace cia402::drive

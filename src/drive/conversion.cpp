@@ -162,6 +162,18 @@ double Conversion::lowest() const { return (factor_ < 0.0 ? high_ : low_) * fact
 
 double Conversion::highest() const { return (factor_ < 0.0 ? low_ : high_) * factor_ + offset_; }
 
+std::uint64_t Conversion::lowestRaw() const {
+  std::uint64_t raw = 0;
+  if (encoding_ != Encoding::integer) return encodeFloat(encoding_, low_, raw) ? raw : 0;
+  return signed_ ? mask_ ^ (mask_ >> 1) : 0;
+}
+
+std::uint64_t Conversion::highestRaw() const {
+  std::uint64_t raw = 0;
+  if (encoding_ != Encoding::integer) return encodeFloat(encoding_, high_, raw) ? raw : 0;
+  return signed_ ? mask_ >> 1 : mask_;
+}
+
 double Conversion::resolution() const {
   return encoding_ == Encoding::integer ? std::fabs(factor_) : 0.0;
 }

@@ -66,6 +66,21 @@ TEST(Conversion, MinusZeroIsNotSentBack) {
   EXPECT_EQ(counts.sendable(0x80000000), 0x80000000u) << "a count like any other";
 }
 
+TEST(Conversion, KnowsTheNumbersThatLimitNothing) {
+  const auto position =
+      *Conversion::create(object(DataType::int32, Quantity::position), countingDrive(), servo());
+  EXPECT_EQ(position.lowestRaw(), 0x80000000u);
+  EXPECT_EQ(position.highestRaw(), 0x7FFFFFFFu);
+  const auto narrow =
+      *Conversion::create(object(DataType::uint16, Quantity::position), countingDrive(), servo());
+  EXPECT_EQ(narrow.lowestRaw(), 0u);
+  EXPECT_EQ(narrow.highestRaw(), 0xFFFFu);
+  const auto joint = *Conversion::create(
+      object(DataType::int32, Quantity::position, Encoding::float32), floatDrive(), servo());
+  EXPECT_EQ(joint.lowestRaw(), 0xFF7FFFFFu);
+  EXPECT_EQ(joint.highestRaw(), 0x7F7FFFFFu);
+}
+
 TEST(Conversion, CountsOfTheMotorBecomeRadiansBehindTheGear) {
   const auto position = *Conversion::create(object(DataType::int32, Quantity::position),
                                             countingDrive(), servo(1, 50.0));

@@ -46,6 +46,9 @@ class Conversion {
   /// Largest and smallest joint value that fits the object.
   double lowest() const;
   double highest() const;
+  /// Smallest and largest number of the object, as it is on the wire.
+  std::uint64_t lowestRaw() const;
+  std::uint64_t highestRaw() const;
   /// Joint units per device unit (resolution); 0 for floats.
   double resolution() const;
   /// True if larger device numbers are smaller joint values.
