@@ -37,6 +37,11 @@ AxisCore::AxisCore(AxisConfig config, canopen::Node& node)
     longest = std::max(longest, spec.entry_writes.size());
   }
   held_.reserve(longest);
+  const ObjectSpec& position = *objects_.position.spec;
+  const bool continuous = config_.geometry.type == AxisGeometry::Type::continuous;
+  if (continuous && position.encoding == Encoding::integer) {
+    unwrap_ = {canopen::sizeBits(position.type), canopen::isSigned(position.type)};
+  }
   selectMode(*mode_);
   state_.homed = absolute();
 }
@@ -185,16 +190,19 @@ void AxisCore::notify(std::string text) {
 
 void AxisCore::declarePosition(double value) {
   if (!state_.feedback_valid) return;
-  const double shift = zero_shift_ + (value - state_.position);
-  adoptDriveZero(shift);
+  setZero(zero_shift_ + (value - state_.position));
 }
 
 void AxisCore::adoptDriveZero(double shift) {
+  unwrap_.restart(mode_->spec->kind == ControlKind::homing);
+  setZero(shift);
+}
+
+void AxisCore::setZero(double shift) {
   const double moved = shift - zero_shift_;
   zero_shift_ = shift;
-  position_ = objects_.position.conversion.shifted(shift);
+  placeZero();
   if (mode_->spec->kind == ControlKind::position) {
-    mode_conversion_ = mode_->conversion.shifted(shift);
     set_point_.shift(moved);
   }
   state_.position += moved;
@@ -202,6 +210,17 @@ void AxisCore::adoptDriveZero(double shift) {
   ++state_.zero_changes;
   limits_due_ = true;
   standstill_.reset();
+}
+
+/// Targets need no whole wraps: they wrap around themselves.
+void AxisCore::placeZero() {
+  const Conversion& position = objects_.position.conversion;
+  position_ =
+      position.shifted(zero_shift_ + static_cast<double>(unwrap_.wraps()) * position.span());
+  mode_conversion_ = mode_->conversion;
+  if (mode_->spec->kind != ControlKind::position) return;
+  mode_conversion_ = mode_conversion_.shifted(zero_shift_);
+  if (unwrap_.counting()) mode_conversion_ = mode_conversion_.wrapping();
 }
 
 void AxisCore::openLimits(bool open) {

@@ -9,6 +9,7 @@
 #include "axis_objects.h"
 #include "axis_poller.h"
 #include "cia402_driver/drive/axis.h"
+#include "cia402_driver/drive/position_unwrap.h"
 #include "cia402_driver/drive/set_point.h"
 #include "cia402_driver/drive/set_point_handshake.h"
 #include "cia402_driver/drive/standstill.h"
@@ -172,6 +173,9 @@ class AxisCore {
   void keepLimits();
   bool homedEnough() const;
   bool absolute() const;
+  void setZero(double shift);
+  void placeZero();
+  bool withinReach(double position) const;
   bool neutralTarget(const ModeChannel& mode, std::uint64_t& raw) const;
 
   AxisConfig config_;
@@ -198,6 +202,7 @@ class AxisCore {
   std::uint64_t shown_raw_ = 0;            ///< of 6061h, for which shown_mode_ was decoded
   Conversion position_, mode_conversion_;  ///< with what set_position declared
   double zero_shift_ = 0.0;
+  PositionUnwrap unwrap_;  ///< counts for continuous joints
   PositionLimits limits_;
   bool limits_due_ = true, limits_open_ = false, limits_known_ = false;
 

@@ -53,6 +53,7 @@ void AxisCore::readState(Time now) {
 void AxisCore::readMotion(Time now) {
   const canopen::ProcessValue& position = image_.input(objects_.position.slot);
   const bool fresh = image_.fresh(objects_.position.slot);
+  if (fresh && unwrap_.update(position.raw)) placeZero();
   const double joint = fresh ? position_.toJoint(position.raw) : kUnknown;
   if (!std::isfinite(joint)) {
     forgetMotion();

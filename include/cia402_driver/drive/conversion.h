@@ -53,6 +53,12 @@ class Conversion {
   double resolution() const;
   /// True if larger device numbers are smaller joint values.
   bool reversed() const { return factor_ < 0.0; }
+  /// Joint units of all numbers that the object has, after which it begins anew; 0 for floats,
+  /// which do not.
+  double span() const;
+  /// The same for a joint that turns without end: what does not fit the object wraps around, as the
+  /// drive's own counting does. Floats do not.
+  Conversion wrapping() const;
   /// The same with all joint values larger by `amount`: the zero was declared elsewhere.
   Conversion shifted(double amount) const;
 
@@ -63,7 +69,7 @@ class Conversion {
   double low_ = -2147483648.0, high_ = 2147483647.0;  ///< device values that fit
   std::uint64_t mask_ = 0xFFFFFFFF;                   ///< bits of the object
   std::uint8_t shift_ = 32;                           ///< 64 - bits
-  bool signed_ = true;
+  bool signed_ = true, wraps_ = false;
   Encoding encoding_ = Encoding::integer;
 };
 
