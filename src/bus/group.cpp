@@ -10,6 +10,8 @@ namespace {
 
 using motion::TrajectoryErrorCode;
 
+constexpr double kArrived = 0.01;  // rad or m; "reached" where no goal tolerance is configured
+
 std::vector<motion::TrajectoryPoint> reorder(const std::vector<motion::TrajectoryPoint>& points,
                                              const std::vector<std::size_t>& order) {
   const auto pick = [&order](const std::vector<double>& values) {
@@ -328,20 +330,30 @@ std::optional<TrajectoryOutcome> Group::checkGoal(const std::vector<drive::Axis>
     return TrajectoryOutcome{TrajectoryErrorCode::goal_tolerance_violated,
                              config_.name + ": goal missed: " + dropReason(axes, i)};
   }
+  std::string away;  // without a tolerance that is no failure, but it is told
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    if (tolerances_[i].goal <= 0.0) continue;
-    const double error = trajectory_->goal()[i] - axes[axes_[i]].state().position;
-    if (std::abs(error) <= tolerances_[i].goal) continue;
+    const bool judged = tolerances_[i].goal > 0.0;
+    const double error = std::abs(trajectory_->goal()[i] - axes[axes_[i]].state().position);
+    if (error <= (judged ? tolerances_[i].goal : kArrived)) continue;
     if (clock_.time() < trajectory_->endTime() + fromSeconds(config_.goal_time))
       return std::nullopt;
-    return TrajectoryOutcome{TrajectoryErrorCode::goal_tolerance_violated,
-                             config_.name + ": goal missed: " + joints_[i].name + " is " +
-                                 motion::formatNumber(std::abs(error)) + " " +
-                                 motion::toString(joints_[i].unit) + " away after " +
-                                 motion::formatNumber(config_.goal_time) + " s, the tolerance is " +
-                                 motion::formatNumber(tolerances_[i].goal)};
+    const std::string where = joints_[i].name + " is " + motion::formatNumber(error) + " " +
+                              motion::toString(joints_[i].unit) + " away";
+    if (judged) {
+      return TrajectoryOutcome{TrajectoryErrorCode::goal_tolerance_violated,
+                               config_.name + ": goal missed: " + where + " after " +
+                                   motion::formatNumber(config_.goal_time) +
+                                   " s, the tolerance is " +
+                                   motion::formatNumber(tolerances_[i].goal)};
+    }
+    away += (away.empty() ? "" : ", ") + where;
   }
-  return TrajectoryOutcome{TrajectoryErrorCode::successful, config_.name + ": goal reached"};
+  if (away.empty()) {
+    return TrajectoryOutcome{TrajectoryErrorCode::successful, config_.name + ": goal reached"};
+  }
+  return TrajectoryOutcome{TrajectoryErrorCode::successful,
+                           config_.name + ": the trajectory is over, but " + away +
+                               " from its goal; no goal tolerance is configured for it"};
 }
 
 }  // namespace cia402::bus

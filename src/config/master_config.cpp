@@ -125,6 +125,7 @@ void checkCobIds(const canopen::MasterConfig& master, Problems& problems) {
 void addWrites(const std::vector<drive::NamedWrite>& writes, const AxisConfig& axis,
                const std::string& path, NodeConfig& node, Problems& problems) {
   for (const drive::NamedWrite& write : writes) {
+    if (write.when_homed) continue;  // the axis does that
     const auto resolved = drive::resolveWrite(write, axis);
     if (!resolved) {
       problems.add(path, resolved.error().message);

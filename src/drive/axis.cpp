@@ -48,6 +48,7 @@ void Axis::Impl::watchNode() {
 void Axis::Impl::finish(bool success, std::string message) {
   core.setFaultReset(false);
   core.setHomingStart(false);
+  core.openLimits(false);
   status.running = false;
   status.success = success;
   status.message = std::move(message);

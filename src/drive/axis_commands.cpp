@@ -130,8 +130,8 @@ void AxisCore::selectMode(const ModeChannel& mode) {
   mode_ = &mode;
   given_ = kUnknown;
   held_.clear();
-  mode_conversion_ = mode.spec->kind == ControlKind::position ? mode.conversion.shifted(zero_shift_)
-                                                              : mode.conversion;
+  if (mode.spec->kind != ControlKind::homing) unwrap_.resume();
+  placeZero();
   homing_start_ = false;
   neutralizeTarget();
 }
@@ -150,11 +150,18 @@ bool AxisCore::homedEnough() const {
   return state_.homed || mode_->spec->kind != ControlKind::position || absolute();
 }
 
+/// Beyond half of what the drive can count, what is sent means a place on the other side.
+bool AxisCore::withinReach(double position) const {
+  if (!unwrap_.counting()) return true;
+  return std::fabs(position - state_.position) <
+         0.5 * std::fabs(objects_.position.conversion.span());
+}
+
 bool AxisCore::withinLimits(double value) const {
   const AxisLimits& limits = config_.limits;
   switch (mode_->spec->kind) {
     case ControlKind::position:  // an axis that stands outside may come back, not go further out
-      return !(limits.lower && value < std::min(*limits.lower, target())) &&
+      return withinReach(value) && !(limits.lower && value < std::min(*limits.lower, target())) &&
              !(limits.upper && value > std::max(*limits.upper, target()));
     case ControlKind::velocity:
       if (limits.velocity && std::fabs(value) > *limits.velocity) return false;

@@ -30,12 +30,18 @@ AxisCore::AxisCore(AxisConfig config, canopen::Node& node)
       standstill_(config_.standstill_velocity, objects_.position.conversion.resolution()),
       mode_(objects_.channel(config_.mode)),
       position_(objects_.position.conversion),
+      limits_(config_),
       set_point_(setPointLimits(config_), config_.sync_period) {
   std::size_t longest = 0;
   for (const ModeSpec& spec : profile().modes) {
     longest = std::max(longest, spec.entry_writes.size());
   }
   held_.reserve(longest);
+  const ObjectSpec& position = *objects_.position.spec;
+  const bool continuous = config_.geometry.type == AxisGeometry::Type::continuous;
+  if (continuous && position.encoding == Encoding::integer) {
+    unwrap_ = {canopen::sizeBits(position.type), canopen::isSigned(position.type)};
+  }
   selectMode(*mode_);
   state_.homed = absolute();
 }
@@ -77,6 +83,7 @@ std::string AxisCore::supervise(Time now) {
   if (now > written_ + 2 * config_.sync_period && written_ != Time{}) set_point_.interrupt();
   if (!failure_.empty()) failure = takeFailure();
   if (!nodeReady()) return failure;
+  keepLimits();
   const bool commanded = goal_ != Goal::disabled && goal_ != Goal::quick_stop;
   if (commanded && !state_.feedback_valid) {
     setGoal(Goal::quick_stop);
@@ -133,6 +140,8 @@ void AxisCore::onNodeLost() {
   emergency_code_ = state_.error_code = 0;
   base_controlword_ = controlword_ = 0;
   if (!absolute()) adoptDriveZero(0.0);
+  limits_.forget();
+  limits_due_ = true;
   state_.homed = absolute();
   state_.ready_for_motion = false;
   state_.health = node_.health();
@@ -181,23 +190,56 @@ void AxisCore::notify(std::string text) {
 
 void AxisCore::declarePosition(double value) {
   if (!state_.feedback_valid) return;
-  const double shift = zero_shift_ + (value - state_.position);
-  adoptDriveZero(shift);
+  setZero(zero_shift_ + (value - state_.position));
 }
 
 void AxisCore::adoptDriveZero(double shift) {
+  unwrap_.restart(mode_->spec->kind == ControlKind::homing);
+  setZero(shift);
+}
+
+void AxisCore::setZero(double shift) {
   const double moved = shift - zero_shift_;
   zero_shift_ = shift;
-  position_ = objects_.position.conversion.shifted(shift);
+  placeZero();
   if (mode_->spec->kind == ControlKind::position) {
-    mode_conversion_ = mode_->conversion.shifted(shift);
     set_point_.shift(moved);
     given_ = kUnknown;
   }
   state_.position += moved;
   state_.homed = true;
   ++state_.zero_changes;
+  limits_due_ = true;
   standstill_.reset();
+}
+
+/// Targets need no whole wraps: they wrap around themselves.
+void AxisCore::placeZero() {
+  const Conversion& position = objects_.position.conversion;
+  position_ =
+      position.shifted(zero_shift_ + static_cast<double>(unwrap_.wraps()) * position.span());
+  mode_conversion_ = mode_->conversion;
+  if (mode_->spec->kind != ControlKind::position) return;
+  mode_conversion_ = mode_conversion_.shifted(zero_shift_);
+  if (unwrap_.counting()) mode_conversion_ = mode_conversion_.wrapping();
+}
+
+void AxisCore::openLimits(bool open) {
+  if (limits_open_ == open) return;
+  limits_open_ = open;
+  limits_due_ = true;
+}
+
+void AxisCore::keepLimits() {
+  if (state_.feedback_valid) {
+    const bool known = state_.homed && !limits_open_;
+    if (std::exchange(limits_due_, false) || known != limits_known_) {
+      limits_known_ = known;
+      limits_.aim(known, zero_shift_, state_.position);
+    }
+    limits_.closeIfInside(state_.position, in_operation_ ? target() : state_.position);
+  }
+  limits_.advance(node_.sdo());
 }
 
 }  // namespace cia402::drive

@@ -9,9 +9,11 @@
 #include "axis_objects.h"
 #include "axis_poller.h"
 #include "cia402_driver/drive/axis.h"
+#include "cia402_driver/drive/position_unwrap.h"
 #include "cia402_driver/drive/set_point.h"
 #include "cia402_driver/drive/set_point_handshake.h"
 #include "cia402_driver/drive/standstill.h"
+#include "position_limits.h"
 
 namespace cia402::drive {
 
@@ -114,6 +116,16 @@ class AxisCore {
   /// value to add to what the drive's own zero says
   void adoptDriveZero(double shift);
 
+  // --- Limits in the drive (607Dh), which follow the zero ---------------------------------------
+  /// Keeps them open, for the drive is about to get another zero; or no more. The end of a
+  /// procedure ends it, too.
+  void openLimits(bool open);
+  /// Has them worked out anew, for the axis is about to be enabled.
+  void renewLimits() { limits_due_ = true; }
+  /// The drive has them, or has refused them.
+  bool limitsSettled() const { return !limits_due_ && limits_.settled(); }
+  const PositionLimits& limits() const { return limits_; }
+
   // --- Words -----------------------------------------------------------------------------------
   /// "shoulder (node 3)".
   std::string who() const;
@@ -159,8 +171,12 @@ class AxisCore {
   void callBack();
   bool withinLimits(double value) const;
   void watchStopBySdo();
+  void keepLimits();
   bool homedEnough() const;
   bool absolute() const;
+  void setZero(double shift);
+  void placeZero();
+  bool withinReach(double position) const;
   bool neutralTarget(const ModeChannel& mode, std::uint64_t& raw) const;
 
   AxisConfig config_;
@@ -189,6 +205,9 @@ class AxisCore {
   std::uint64_t shown_raw_ = 0;            ///< of 6061h, for which shown_mode_ was decoded
   Conversion position_, mode_conversion_;  ///< with what set_position declared
   double zero_shift_ = 0.0;
+  PositionUnwrap unwrap_;  ///< counts for continuous joints
+  PositionLimits limits_;
+  bool limits_due_ = true, limits_open_ = false, limits_known_ = false;
 
   SetPoint set_point_;
   double given_ = kUnknown;  ///< the last set-point that was taken, and its raw number

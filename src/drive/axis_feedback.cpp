@@ -53,6 +53,7 @@ void AxisCore::readState(Time now) {
 void AxisCore::readMotion(Time now) {
   const canopen::ProcessValue& position = image_.input(objects_.position.slot);
   const bool fresh = image_.fresh(objects_.position.slot);
+  if (fresh && unwrap_.update(position.raw)) placeZero();
   const double joint = fresh ? position_.toJoint(position.raw) : kUnknown;
   if (!std::isfinite(joint)) {
     forgetMotion();
@@ -62,7 +63,7 @@ void AxisCore::readMotion(Time now) {
   state_.position = joint;
   if (position.stamp != state_.stamp || !neutral_known_) {
     standstill_.update(joint, position.stamp);
-    neutral_raw_ = position.raw;
+    neutral_raw_ = objects_.position.conversion.sendable(position.raw);
     neutral_known_ = true;
   }
   state_.stamp = position.stamp;

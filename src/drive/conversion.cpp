@@ -12,6 +12,7 @@ namespace {
 using Base = UnitSpec::Base;
 using Type = AxisGeometry::Type;
 
+constexpr double kExact = 9007199254740992.0;  // 2^53: whole numbers up to here are doubles
 constexpr double kPi = 3.14159265358979323846;
 
 bool isMotion(Quantity quantity) {
@@ -146,7 +147,11 @@ bool Conversion::toDevice(double value, std::uint64_t& raw) const {
     if (!(signed_ || device >= 0.0)) return false;
     return encodeFloat(encoding_, device, raw);
   }
-  const double rounded = std::nearbyint(device);
+  double rounded = std::nearbyint(device);
+  if (wraps_ && std::fabs(rounded) < kExact) {
+    const double numbers = high_ - low_ + 1.0;
+    rounded -= numbers * std::floor((rounded - low_) / numbers);
+  }
   if (!(rounded >= low_ && rounded <= high_)) return false;  // NaN, too
   raw = (signed_ ? static_cast<std::uint64_t>(static_cast<std::int64_t>(rounded))
                  : static_cast<std::uint64_t>(rounded)) &
@@ -154,12 +159,38 @@ bool Conversion::toDevice(double value, std::uint64_t& raw) const {
   return true;
 }
 
+std::uint64_t Conversion::sendable(std::uint64_t raw) const {
+  return withoutNegativeZero(encoding_, raw);
+}
+
 double Conversion::lowest() const { return (factor_ < 0.0 ? high_ : low_) * factor_ + offset_; }
 
 double Conversion::highest() const { return (factor_ < 0.0 ? low_ : high_) * factor_ + offset_; }
 
+std::uint64_t Conversion::lowestRaw() const {
+  std::uint64_t raw = 0;
+  if (encoding_ != Encoding::integer) return encodeFloat(encoding_, low_, raw) ? raw : 0;
+  return signed_ ? mask_ ^ (mask_ >> 1) : 0;
+}
+
+std::uint64_t Conversion::highestRaw() const {
+  std::uint64_t raw = 0;
+  if (encoding_ != Encoding::integer) return encodeFloat(encoding_, high_, raw) ? raw : 0;
+  return signed_ ? mask_ >> 1 : mask_;
+}
+
 double Conversion::resolution() const {
   return encoding_ == Encoding::integer ? std::fabs(factor_) : 0.0;
+}
+
+double Conversion::span() const {
+  return encoding_ == Encoding::integer ? (high_ - low_ + 1.0) * factor_ : 0.0;
+}
+
+Conversion Conversion::wrapping() const {
+  Conversion result = *this;
+  result.wraps_ = encoding_ == Encoding::integer && shift_ > 0;
+  return result;
 }
 
 Conversion Conversion::shifted(double amount) const {

@@ -71,6 +71,11 @@ inline bool encodeFloat(Encoding encoding, double value, std::uint64_t& raw) {
   return true;
 }
 
+/// `raw` with -0.0 replaced by +0.0: drives report the first and refuse it as a target.
+inline std::uint64_t withoutNegativeZero(Encoding encoding, std::uint64_t raw) {
+  return encoding != Encoding::integer && decodeFloat(encoding, raw) == 0.0 ? 0 : raw;
+}
+
 /// Largest value that the encoding holds.
 inline double largestFloat(Encoding encoding) {
   if (encoding == Encoding::float32) return static_cast<double>(std::numeric_limits<float>::max());

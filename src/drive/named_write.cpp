@@ -55,6 +55,10 @@ Source configured(const NamedWrite& write, const AxisConfig& axis, bool reversed
   return source;
 }
 
+bool reverses(const ObjectSpec& object, const AxisConfig& axis) {
+  return (axis.geometry.direction < 0) != (object.factor < 0.0);
+}
+
 std::string withUnit(double value) {
   char text[40];
   std::snprintf(text, sizeof text, "%g", value);
@@ -95,6 +99,16 @@ Result<void> checkAgainstEds(const ResolvedWrite& write, const AxisConfig& axis)
   return canopen::checkWrite(*entry, wireBytes(write.raw, write.type), axis.eds->file);
 }
 
+// The number that limits nothing: as far as the object goes, or as the EDS lets it.
+std::uint64_t widest(const ResolvedWrite& write, const Conversion& conversion,
+                     const AxisConfig& axis, bool low) {
+  const canopen::DictionaryEntry* entry =
+      axis.eds != nullptr ? axis.eds->dictionary.find(write.object) : nullptr;
+  const auto* bound = entry == nullptr ? nullptr : low ? &entry->low : &entry->high;
+  if (bound != nullptr && *bound) return canopen::toUnsigned(**bound);
+  return low ? conversion.lowestRaw() : conversion.highestRaw();
+}
+
 }  // namespace
 
 std::optional<InterpolationPeriod> interpolationPeriod(Duration period) {
@@ -126,9 +140,7 @@ Result<std::optional<ResolvedWrite>> resolveWrite(const NamedWrite& write, const
 
   Source source;
   if (!write.from.empty()) {
-    const bool reversed =
-        object != nullptr && (axis.geometry.direction < 0) != (object->factor < 0.0);
-    source = configured(write, axis, reversed);
+    source = configured(write, axis, object != nullptr && reverses(*object, axis));
   }
   if (!source.value && !source.raw && !source.copied_from) {
     source.value = write.value;
@@ -152,6 +164,25 @@ Result<std::optional<ResolvedWrite>> resolveWrite(const NamedWrite& write, const
     return refuse(axis, resolved.name, allowed.error().message);
   }
   return Resolved{resolved};
+}
+
+Result<std::optional<ResolvedLimit>> resolveLimit(const NamedWrite& write, const AxisConfig& axis) {
+  using Limit = std::optional<ResolvedLimit>;
+  const auto resolved = resolveWrite(write, axis);
+  if (!resolved) return resolved.error();
+  const ObjectSpec* object = findObject(*axis.profile, write.object);
+  if (!*resolved || object == nullptr) return Limit{};
+  const auto conversion = Conversion::create(*object, *axis.profile, axis.geometry);
+  const bool smaller_number = write.from == "limits.lower";
+  const auto value = limit(write.from, axis.limits, reverses(*object, axis));
+  if (!conversion || !value) return Limit{};
+  ResolvedLimit result;
+  result.write = **resolved;
+  result.conversion = *conversion;
+  result.value = *value * write.times;
+  result.lower = smaller_number != conversion->reversed();
+  result.open = widest(result.write, *conversion, axis, smaller_number);
+  return Limit{result};
 }
 
 std::vector<std::uint8_t> wireBytes(std::uint64_t raw, DataType type) {

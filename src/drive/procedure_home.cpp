@@ -2,6 +2,7 @@
 #include "procedure.h"
 #include "procedure_home_drive.h"
 #include "sentence.h"
+#include "step_declare.h"
 
 namespace cia402::drive {
 namespace {
@@ -9,17 +10,21 @@ namespace {
 /// For drives without homing: the present position is declared to be the configured offset.
 class DeclareZero : public Procedure {
  public:
+  explicit DeclareZero(double offset)
+      : declaring_(offset, "homing by declaring the present position") {}
+
   Outcome advance(const Context& context) override {
     AxisCore& axis = context.axis;
-    const Outcome standing = awaitStandstill(context, context.status.started,
-                                             "homing by declaring the present position");
-    if (!standing.isDone()) return standing;
+    const Outcome declared = declaring_.advance(context);
+    if (!declared.isDone()) return declared;
     const double offset = axis.config().homing->offset;
-    axis.declarePosition(offset);
     const bool prismatic = axis.config().geometry.type == AxisGeometry::Type::prismatic;
     return Outcome::done(axis.config().joint + ": homed by declaring the present position to be " +
-                         length(offset, prismatic) + "; nothing moved");
+                         length(offset, prismatic) + "; nothing moved" + declaring_.remark());
   }
+
+ private:
+  DeclareStep declaring_;
 };
 
 Result<std::unique_ptr<Procedure>> makeDriveHoming(AxisCore& axis) {
@@ -51,7 +56,8 @@ Result<std::unique_ptr<Procedure>> makeHome(AxisCore& axis) {
   if (axis.faulted()) return Error{"cannot home: " + axis.faultText()};
   switch (axis.profile().homing.kind) {
     case HomingSpec::Kind::declare_zero:
-      return std::unique_ptr<Procedure>(std::make_unique<DeclareZero>());
+      return std::unique_ptr<Procedure>(
+          std::make_unique<DeclareZero>(axis.config().homing->offset));
     case HomingSpec::Kind::drive:
       return makeDriveHoming(axis);
     case HomingSpec::Kind::none:

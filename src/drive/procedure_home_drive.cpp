@@ -43,7 +43,9 @@ Outcome DriveHoming::advance(const Context& context) {
     case Phase::writing: {
       const Outcome outcome = writes_.advance(context);
       if (!outcome.isDone()) return outcome;
-      if (!context.axis.setPointsAtRest()) return Outcome::running();
+      if (!context.axis.setPointsAtRest() || !context.axis.limitsSettled()) {
+        return Outcome::running();
+      }
       entered_by_mode_ = context.axis.inOperation();
       enter(Phase::entering, context);
       return Outcome::running();
@@ -58,6 +60,8 @@ Outcome DriveHoming::advance(const Context& context) {
       return readOffset(context);
     case Phase::settling:
       return settle(context);
+    case Phase::limiting:
+      return limit(context);
     case Phase::stopping:
       return stop(context);
     case Phase::restoring:
@@ -72,6 +76,7 @@ void DriveHoming::begin(const Context& context) {
   started_ = context.now;
   context.status.deadline = context.now + axis.config().homing->timeout + 5 * timing.state_change +
                             4 * timing.mode_change + timing.brake_release + kClearTime;
+  axis.openLimits(true);
   enter(Phase::writing, context);
 }
 
@@ -204,15 +209,34 @@ Outcome DriveHoming::settle(const Context& context) {
   AxisCore& axis = context.axis;
   const bool sent = axis.controlwordFrames() >= frames_ + kFrames;
   if (sent && (axis.atStandstill() || context.now - since_ > axis.profile().timing.state_change)) {
-    restore(context);
+    axis.openLimits(false);
+    enter(Phase::limiting, context);
+    context.show("writing position limits", "the drive to take those of the new zero");
   }
   return Outcome::running();
+}
+
+/// Before a mode comes back in which the drive would clamp its target to those of another zero.
+Outcome DriveHoming::limit(const Context& context) {
+  AxisCore& axis = context.axis;
+  if (!axis.limitsSettled()) return Outcome::running();
+  const std::string problem = axis.limits().problem();
+  if (problem.empty()) {
+    restore(context);
+    return Outcome::running();
+  }
+  axis.setGoal(Goal::quick_stop);
+  axis.selectMode(*before_);
+  return Outcome::failed(axis.who() + ": homed by " + method(axis) + ", position " +
+                         length(axis.state().position, prismatic(axis)) +
+                         ", but the drive holds position limits of another zero: " + problem +
+                         "; quick stop is commanded, enable writes them again");
 }
 
 bool DriveHoming::cancel(const std::string& reason, const Context& context) {
   if (phase_ == Phase::stopping || phase_ == Phase::restoring) return false;
   if (phase_ != Phase::clearing && phase_ != Phase::searching && phase_ != Phase::reading_offset &&
-      phase_ != Phase::settling) {
+      phase_ != Phase::settling && phase_ != Phase::limiting) {
     return true;
   }
   giveUp(context, "it was cancelled: " + reason);
@@ -264,7 +288,7 @@ Outcome DriveHoming::finishRestoring(const Context& context) {
                            ", but then " + outcome.message + "; quick stop is commanded");
   }
   return Outcome::done(axis.config().joint + ": homed by " + method(axis) + " in " +
-                       seconds(end_ - started_) + ", position " + where);
+                       seconds(end_ - started_) + ", position " + where + axis.limits().remark());
 }
 
 HomingStatus DriveHoming::status(const Context& context) const {

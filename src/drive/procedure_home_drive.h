@@ -32,6 +32,7 @@ class DriveHoming : public Procedure {
     searching,  ///< bit 4 is high
     reading_offset,
     settling,   ///< new position on the wire
+    limiting,   ///< position limits around the new zero
     stopping,   ///< after failure or cancellation
     restoring,  ///< mode from before
   };
@@ -47,6 +48,7 @@ class DriveHoming : public Procedure {
   Outcome readOffset(const Context& context);
   void adopt(const Context& context, double home_in_drive);
   Outcome settle(const Context& context);
+  Outcome limit(const Context& context);
   void giveUp(const Context& context, std::string why);
   Outcome stop(const Context& context);
   void restore(const Context& context);

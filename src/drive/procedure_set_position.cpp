@@ -3,30 +3,32 @@
 
 #include "procedure.h"
 #include "sentence.h"
+#include "step_declare.h"
 
 namespace cia402::drive {
 namespace {
 
-/// Declares the present position by an offset in software; nothing moves, nothing is written.
+/// Declares the present position by an offset in software, which the drive's position limits
+/// follow; nothing moves.
 class SetPosition : public Procedure {
  public:
-  explicit SetPosition(double position) : position_(position) {}
+  explicit SetPosition(double position)
+      : position_(position), declaring_(position, "declaring the position") {}
 
   Outcome advance(const Context& context) override {
     AxisCore& axis = context.axis;
     const bool prismatic = axis.config().geometry.type == AxisGeometry::Type::prismatic;
-    const double before = axis.state().position;
-    const Outcome standing =
-        awaitStandstill(context, context.status.started, "declaring the position");
-    if (!standing.isDone()) return standing;
-    axis.declarePosition(position_);
+    const Outcome declared = declaring_.advance(context);
+    if (!declared.isDone()) return declared;
     return Outcome::done(axis.config().joint + ": the present position is declared to be " +
-                         length(position_, prismatic) + " (it read " + length(before, prismatic) +
-                         "); nothing moved, the axis counts as homed");
+                         length(position_, prismatic) + " (it read " +
+                         length(declaring_.before(), prismatic) +
+                         "); nothing moved, the axis counts as homed" + declaring_.remark());
   }
 
  private:
   double position_;
+  DeclareStep declaring_;
 };
 
 }  // namespace

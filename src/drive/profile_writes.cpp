@@ -112,6 +112,29 @@ void readFrom(YamlSection& section, const DriveProfile& profile, const ObjectSpe
   }
 }
 
+bool isPositionLimit(const ObjectSpec* object, const NamedWrite& write) {
+  return object != nullptr && object->quantity == Quantity::position &&
+         (write.from == "limits.lower" || write.from == "limits.upper");
+}
+
+// A position limit that the drive gets before it has found its zero makes it move when enabled.
+void readWhen(YamlSection& section, const ObjectSpec* object, WriteList kind, NamedWrite& write) {
+  const auto value = section.get("when");
+  const bool limit = isPositionLimit(object, write);
+  if (value) write.when_homed = value->oneOf({"homed"}).has_value();
+  if (value && !(limit && kind == WriteList::boot)) {
+    value->problem(
+        "is for position objects with `from: limits.lower` or `limits.upper` in startup "
+        "and `write`");
+    write.when_homed = false;
+  } else if (!value && limit) {
+    section.problem(
+        "limits the position in the drive's coordinates, which are those of the joint "
+        "only once its zero is known; add `when: homed`" +
+        std::string(kind == WriteList::boot ? "" : " and move it to startup"));
+  }
+}
+
 }  // namespace
 
 std::vector<NamedWrite> readWrites(const YamlValue& list, const DriveProfile& profile,
@@ -123,6 +146,7 @@ std::vector<NamedWrite> readWrites(const YamlValue& list, const DriveProfile& pr
     const ObjectSpec* object = readTarget(section, profile, write);
     readFrom(section, profile, object, kind, write);
     readValue(section, object, write);
+    readWhen(section, object, kind, write);
     section.read("optional", write.optional);
     section.finish();
     writes.push_back(write);

@@ -26,9 +26,13 @@ Outcome EnableStep::advance(const Context& context) {
     case Phase::writing: {
       const Outcome outcome = writes_.advance(context);
       if (!outcome.isDone()) return outcome;
-      enter(Phase::mode, context);
+      enter(Phase::limits, context);
+      context.axis.renewLimits();
+      context.show("writing position limits", "the drive to take the joint's limits");
       return Outcome::running();
     }
+    case Phase::limits:
+      return awaitLimits(context);
     case Phase::mode: {
       const Outcome outcome = mode_.advance(context);
       if (!outcome.isDone()) return outcome;
@@ -55,6 +59,20 @@ Outcome EnableStep::awaitFeedback(const Context& context) {
                            "(6064:00) within " +
                            seconds(waited) +
                            "; check the TPDOs, or recover the axis, which boots the drive");
+}
+
+Outcome EnableStep::awaitLimits(const Context& context) {
+  AxisCore& axis = context.axis;
+  if (!axis.limitsSettled()) return Outcome::running();
+  const std::string problem = axis.limits().problem();
+  if (!problem.empty()) {
+    return fail(context, axis.who() +
+                             ": is not enabled, as the drive holds position limits of another "
+                             "zero, to which it would move: " +
+                             problem);
+  }
+  enter(Phase::mode, context);
+  return Outcome::running();
 }
 
 Outcome EnableStep::climb(const Context& context) {

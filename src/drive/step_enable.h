@@ -6,8 +6,9 @@
 
 namespace cia402::drive {
 
-/// Brings a disabled axis into operation in a mode: fresh feedback, before_enable writes, mode and
-/// neutral target on the wire, then each transition awaited, then the brake.
+/// Brings a disabled axis into operation in a mode: fresh feedback, before_enable writes, position
+/// limits (PositionLimits), mode and neutral target on the wire, then each transition awaited, then
+/// the brake.
 class EnableStep {
  public:
   EnableStep(const ModeChannel& mode, const DriveProfile& profile)
@@ -15,9 +16,10 @@ class EnableStep {
   Outcome advance(const Context& context);
 
  private:
-  enum class Phase { feedback, writing, mode, transitions, brake };
+  enum class Phase { feedback, writing, limits, mode, transitions, brake };
   void enter(Phase phase, const Context& context);
   Outcome awaitFeedback(const Context& context);
+  Outcome awaitLimits(const Context& context);
   Outcome climb(const Context& context);
   Outcome fail(const Context& context, std::string why);
 

@@ -1,7 +1,10 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "step_writes.h"
 
+#include <cmath>
 #include <utility>
+
+#include "float_codec.h"
 
 namespace cia402::drive {
 
@@ -17,10 +20,12 @@ Outcome WriteStep::advance(const Context& context) {
     if (!answer->ok() && !current_.optional) {
       return Outcome::failed(context.axis.who() + ": " + answer->message());
     }
-    const bool copy = answer->direction() == canopen::SdoTransfer::Direction::upload;
-    if (answer->ok() && copy) {
-      write(context, answer->data());
-      continue;
+    if (answer->ok() && answer->direction() == canopen::SdoTransfer::Direction::upload) {
+      if (copy(context, answer->data())) continue;
+      if (!current_.optional) {
+        return Outcome::failed(context.axis.who() + ": what was to be copied into " +
+                               current_.name + " is no finite number");
+      }
     }
     ++next_;
   }
@@ -47,6 +52,18 @@ bool WriteStep::begin(const Context& context, Outcome& problem) {
   } else {
     write(context, wireBytes(current_.raw, current_.type));
   }
+  return true;
+}
+
+/// @return false for NaN and infinity, which are never sent.
+bool WriteStep::copy(const Context& context, canopen::Bytes bytes) {
+  const ObjectSpec* source = context.axis.profile().find(*current_.copied_from);
+  if (source != nullptr && source->encoding != Encoding::integer && bytes.size() <= 8) {
+    const std::uint64_t raw = canopen::toUnsigned(bytes);
+    if (std::isnan(decodeFloat(source->encoding, raw))) return false;
+    bytes = wireBytes(withoutNegativeZero(source->encoding, raw), source->type);
+  }
+  write(context, std::move(bytes));
   return true;
 }
 

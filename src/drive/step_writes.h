@@ -23,6 +23,7 @@ class WriteStep {
 
  private:
   bool begin(const Context& context, Outcome& problem);
+  bool copy(const Context& context, canopen::Bytes bytes);
   void write(const Context& context, canopen::Bytes bytes);
 
   const std::vector<NamedWrite>* writes_;  ///< in the profile, which outlives every procedure

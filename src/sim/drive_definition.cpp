@@ -323,6 +323,7 @@ void readDefinition(Reader& reader, bool extends, DriveDefinition& out) {
   readObjects(reader, out);
   reader.section("motor", [&](Reader& r) { readMotor(r, out.motor); });
   reader.read<bool>("encoder", out.absolute_encoder, {{"absolute", true}, {"incremental", false}});
+  reader.read("positions_wrap", out.positions_wrap);
   reader.each("modes", [&](const std::string& number, const YAML::Node& node) {
     readMode(number, node, reader, out);
   });

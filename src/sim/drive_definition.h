@@ -96,6 +96,7 @@ struct DriveDefinition {
   std::vector<ModeDefinition> modes;
 
   bool absolute_encoder = true;
+  bool positions_wrap = true;      ///< else a target beyond the wrap is a whole range away
   bool enable_in_one_step = true;  ///< 0x0F in Ready to switch on: transitions 3 and 4 at once
   bool direct_enable = false;      ///< 0x07 and 0x0F work in Switch on disabled, too
   bool mode_change_while_enabled = true;

@@ -137,13 +137,28 @@ ProfileLimits DriveMotion::profileLimits() const {
   return limits;
 }
 
-double DriveMotion::clampToLimits(double target) {
-  const double low = followedTurns(Role::position_minimum);
-  const double high = followedTurns(Role::position_maximum);
-  if (!values_.has(Role::position_minimum) || low >= high) return target;
-  const double clamped = std::clamp(target, low, high);
-  limited_ = limited_ || clamped != target;
-  return clamped;
+/// 607Dh in the drive's own turns; none where it limits nothing: both equal, or at their widest.
+std::optional<DriveMotion::Span> DriveMotion::positionLimits() const {
+  if (!values_.has(Role::position_minimum)) return std::nullopt;
+  const Span span{values_.get(Role::position_minimum, 0.0),
+                  values_.get(Role::position_maximum, 0.0)};
+  const double all = values_.range(Role::position_minimum);
+  const double most = all - all / std::ldexp(1.0, 31);
+  if (span.low >= span.high || (all > 0.0 && span.high - span.low >= most)) return std::nullopt;
+  return span;
+}
+
+/// True turns of what the drive reads as `turns`. Numbers that wrap around mean the nearest of all
+/// the places that read so.
+double DriveMotion::trueTarget(double turns) {
+  const auto limits = positionLimits();
+  const double clamped = limits ? std::clamp(turns, limits->low, limits->high) : turns;
+  limited_ = limited_ || clamped != turns;
+  const double target = clamped + frame_;
+  const double range = values_.range(Role::target_position);
+  if (!definition_.positions_wrap || range == 0.0) return target;
+  const double ranges = std::round((target - demand_) / range);
+  return ranges == 0.0 ? target : target - ranges * range;
 }
 
 bool DriveMotion::blocked(double direction) {
@@ -186,9 +201,8 @@ void DriveMotion::acceptSetPoint(std::uint16_t controlword) {
   const bool immediately = (controlword & 0x0020) != 0;
   const bool relative = (controlword & 0x0040) != 0;
   const SetPoint& last = buffered_ ? *buffered_ : active_;
-  const double target = relative ? last.target + values_.get(Role::target_position, 0.0)
-                                 : followedTurns(Role::target_position);
-  const SetPoint next{clampToLimits(target), profileLimits()};
+  const double turns = values_.get(Role::target_position, 0.0);
+  const SetPoint next{trueTarget(relative ? last.target - frame_ + turns : turns), profileLimits()};
   acknowledged_ = true;
   target_reached_ = false;
   position_reached_.reset();
@@ -205,7 +219,7 @@ void DriveMotion::cyclicTarget(double seconds) {
   if (mode_ == nullptr || mode_->behaviour != ModeBehaviour::cyclic_position) return;
   if (!powered_ || stop_ || held_) return;
   limited_ = false;
-  interpolator_.moveTo(clampToLimits(followedTurns(Role::target_position)), seconds);
+  interpolator_.moveTo(trueTarget(values_.get(Role::target_position, 0.0)), seconds);
 }
 
 void DriveMotion::step() {
@@ -275,8 +289,9 @@ void DriveMotion::stepStop() {
 }
 
 void DriveMotion::stepProfilePosition() {
-  if (!mode_->handshake)
-    active_ = {clampToLimits(followedTurns(Role::target_position)), profileLimits()};
+  if (!mode_->handshake) {
+    active_ = {trueTarget(values_.get(Role::target_position, 0.0)), profileLimits()};
+  }
   if (blocked(active_.target - profile_.position())) {
     profile_.stop(deceleration(Ramp::quick_stop));
   } else {
@@ -315,10 +330,10 @@ void DriveMotion::stepCyclicPosition() {
 
 double DriveMotion::limitedVelocity(double velocity, double braking) {
   if (velocity != 0.0 && blocked(velocity)) return 0.0;
-  const double low = followedTurns(Role::position_minimum);
-  const double high = followedTurns(Role::position_maximum);
-  if (!values_.has(Role::position_minimum) || low >= high || velocity == 0.0) return velocity;
-  const double room = velocity > 0.0 ? high - motor_.position() : motor_.position() - low;
+  const auto limits = positionLimits();
+  if (!limits || velocity == 0.0) return velocity;
+  const double position = motor_.position() - frame_;
+  const double room = velocity > 0.0 ? limits->high - position : position - limits->low;
   const double reachable = room <= 0.0 ? 0.0 : std::sqrt(2.0 * braking * room);
   limited_ = limited_ || reachable < std::fabs(velocity);
   return std::copysign(std::min(std::fabs(velocity), reachable), velocity);

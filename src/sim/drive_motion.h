@@ -78,11 +78,14 @@ class DriveMotion {
 
   void takeOver();
   bool positionControlled() const;
-  double followedTurns(Role role) const { return values_.get(role, 0.0) + frame_; }
   double deceleration(Ramp ramp) const;
   ProfileLimits profileLimits() const;
   double maxSpeed() const;
-  double clampToLimits(double target);
+  struct Span {
+    double low, high;
+  };
+  std::optional<Span> positionLimits() const;
+  double trueTarget(double turns);
   bool blocked(double direction);
 
   void stepStop();

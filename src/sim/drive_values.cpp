@@ -165,6 +165,12 @@ double DriveValues::get(Role role, double fallback) const {
   return s.entry == nullptr ? fallback : decodeNumber(*s.entry, s.encoding) / s.scale;
 }
 
+double DriveValues::range(Role role) const {
+  const Slot& s = slot(role);
+  if (s.entry == nullptr || s.encoding != Encoding::integer) return 0.0;
+  return std::ldexp(1.0, static_cast<int>(widthBits(s.entry->type))) / s.scale;
+}
+
 void DriveValues::set(Role role, double value) {
   const Slot& s = slot(role);
   if (s.entry != nullptr) s.entry->number = encodeNumber(value * s.scale, *s.entry, s.encoding);

@@ -126,6 +126,9 @@ class DriveValues {
   void setRaw(Role role, std::int64_t value);
   /// All bits set: how the standard switches a window off (6065h, 6067h).
   bool allOnes(Role role) const;
+  /// All that the object's numbers span, after which they begin anew; 0 for floats and where there
+  /// is no such object.
+  double range(Role role) const;
   const Entry* entry(Role role) const { return slot(role).entry; }
   Encoding encoding(Role role) const { return slot(role).encoding; }
 

@@ -56,6 +56,58 @@ std::uint64_t encode(const Conversion& conversion, double value) {
   return raw;
 }
 
+TEST(Conversion, MinusZeroIsNotSentBack) {
+  const auto joint = *Conversion::create(
+      object(DataType::int32, Quantity::position, Encoding::float32), floatDrive(), servo());
+  EXPECT_EQ(joint.sendable(0x80000000), 0u);
+  EXPECT_EQ(joint.sendable(0xBF800000), 0xBF800000u);  // -1.0
+  const auto counts =
+      *Conversion::create(object(DataType::int32, Quantity::position), countingDrive(), servo());
+  EXPECT_EQ(counts.sendable(0x80000000), 0x80000000u) << "a count like any other";
+}
+
+TEST(Conversion, AJointWithoutEndWrapsWhatDoesNotFit) {
+  const auto plain =
+      *Conversion::create(object(DataType::int32, Quantity::position), countingDrive(), servo());
+  const auto wrapping = plain.wrapping();
+  constexpr double kCount = 2.0 * kPi / 4000;
+  std::uint64_t raw = 0xDEAD;
+  EXPECT_FALSE(plain.toDevice(2147483648.0 * kCount, raw));
+  EXPECT_EQ(raw, 0xDEADu);
+  EXPECT_EQ(encode(wrapping, 2147483647.0 * kCount), 0x7FFFFFFFu);
+  EXPECT_EQ(encode(wrapping, 2147483648.0 * kCount), 0x80000000u);
+  EXPECT_EQ(encode(wrapping, -2147483649.0 * kCount), 0x7FFFFFFFu);
+  EXPECT_EQ(encode(wrapping, (3 * 4294967296.0 + 5.0) * kCount), 5u);
+  EXPECT_FALSE(wrapping.toDevice(std::numeric_limits<double>::infinity(), raw));
+  EXPECT_FALSE(wrapping.toDevice(std::nan(""), raw));
+  EXPECT_FALSE(wrapping.toDevice(1e30, raw));
+  EXPECT_NEAR(plain.span(), 4294967296.0 * kCount, 1e-3);
+}
+
+TEST(Conversion, FloatsDoNotWrap) {
+  const auto joint =
+      Conversion::create(object(DataType::int32, Quantity::position, Encoding::float32),
+                         floatDrive(), servo())
+          ->wrapping();
+  EXPECT_EQ(joint.span(), 0.0);
+  EXPECT_EQ(encode(joint, 1e10), 0x501502F9u);  // 1e10 as a float
+}
+
+TEST(Conversion, KnowsTheNumbersThatLimitNothing) {
+  const auto position =
+      *Conversion::create(object(DataType::int32, Quantity::position), countingDrive(), servo());
+  EXPECT_EQ(position.lowestRaw(), 0x80000000u);
+  EXPECT_EQ(position.highestRaw(), 0x7FFFFFFFu);
+  const auto narrow =
+      *Conversion::create(object(DataType::uint16, Quantity::position), countingDrive(), servo());
+  EXPECT_EQ(narrow.lowestRaw(), 0u);
+  EXPECT_EQ(narrow.highestRaw(), 0xFFFFu);
+  const auto joint = *Conversion::create(
+      object(DataType::int32, Quantity::position, Encoding::float32), floatDrive(), servo());
+  EXPECT_EQ(joint.lowestRaw(), 0xFF7FFFFFu);
+  EXPECT_EQ(joint.highestRaw(), 0x7F7FFFFFu);
+}
+
 TEST(Conversion, CountsOfTheMotorBecomeRadiansBehindTheGear) {
   const auto position = *Conversion::create(object(DataType::int32, Quantity::position),
                                             countingDrive(), servo(1, 50.0));

@@ -19,9 +19,12 @@ inline Duration ms(double milliseconds) { return fromSeconds(milliseconds * 1e-3
 /// time.
 class DriveBench : public can::Sink {
  public:
-  explicit DriveBench(const std::string& name, const AxisMechanics& mechanics = {}) {
-    auto definition =
-        loadDriveDefinition(cia402::test::configFolder() + "/simulated_drives/" + name + ".yaml");
+  explicit DriveBench(const std::string& name, const AxisMechanics& mechanics = {})
+      : DriveBench(loadDriveDefinition(cia402::test::configFolder() + "/simulated_drives/" + name +
+                                       ".yaml"),
+                   mechanics) {}
+  DriveBench(const Result<std::shared_ptr<const DriveDefinition>>& definition,
+             const AxisMechanics& mechanics) {
     EXPECT_TRUE(definition.ok()) << (definition.ok() ? "" : definition.error().message);
     drive = std::make_unique<Drive>(definition.value(), canopen::NodeId{1}, *this, mechanics);
     drive->powerOn(now);

@@ -1,5 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Modes of the generic simulated drive. 131072 counts per turn; ramps 10 turns/s^2 by default.
+#include <fstream>
+#include <limits>
+
 #include "drive_fixture.h"
 
 namespace cia402::sim {
@@ -215,6 +218,78 @@ TEST(DriveCyclicPosition, FollowsTheStreamWithTheLagOfItsLoop) {
   EXPECT_EQ(b.bits(0x3000), 0x1000);
   b.run(ms(100));  // the stream ends: it stands at the last set-point
   EXPECT_EQ(b.position(), counts);
+}
+
+TEST(DriveCyclicPosition, RunsOnWhereItsNumbersWrap) {
+  for (const int direction : {1, -1}) {
+    AxisMechanics mechanics;
+    mechanics.initial_position = direction * 16383.98;  // turns; 131072 counts * 16384 = 2^31
+    Bench b(mechanics);
+    b.nmt(0x01);
+    b.mode(8);
+    std::uint32_t counts = b.read(0x6064);
+    b.target(static_cast<std::int32_t>(counts));
+    b.enable();
+    const double start = b.drive->truth(b.now).position_turns;
+    for (int i = 0; i < 20; ++i) {
+      counts += static_cast<std::uint32_t>(direction * 500);
+      b.cycle(static_cast<std::int32_t>(counts));
+    }
+    b.run(ms(100));
+    EXPECT_EQ(b.state(), 0x27);
+    EXPECT_EQ(b.read(0x6064), counts);
+    EXPECT_EQ((counts >> 31) == 1, direction > 0) << "the sign has changed";
+    EXPECT_NEAR(b.drive->truth(b.now).position_turns - start, direction * 10000.0 / kTurn, 1.0 / kTurn);
+  }
+}
+
+TEST(DriveCyclicPosition, WithoutWrappingATargetBeyondTheWrapIsAWholeRangeAway) {
+  const std::string folder = testing::TempDir();
+  std::ofstream(folder + "generic_cia402.yaml")
+      << std::ifstream(cia402::test::configFolder() + "/simulated_drives/generic_cia402.yaml")
+             .rdbuf();
+  std::ofstream(folder + "counting.yaml")
+      << "extends: generic_cia402\nname: counting\npositions_wrap: false\n";
+  AxisMechanics mechanics;
+  mechanics.initial_position = 16383.999;
+  DriveBench b(loadDriveDefinition(folder + "counting.yaml"), mechanics);
+  b.nmt(0x01);
+  b.write(0x6060, 0, 8, 1);
+  b.write(0x607A, 0, b.read(0x6064), 4);
+  b.enable();
+  for (int i = 0; i < 20; ++i) {
+    b.frame(0x401, {0x0F, 0x00, 0x00, 0x00, 0x00, 0x80});  // one count beyond the largest
+    b.sync();
+    b.run(ms(4));
+  }
+  EXPECT_EQ(b.read(0x603F), 0x8611U);
+  EXPECT_LT(b.drive->truth(b.now).velocity_turns, -1.0) << "it ran backwards";
+}
+
+TEST(DriveProfilePosition, TakesTheNearestPlaceThatReadsAsItsTarget) {
+  AxisMechanics mechanics;
+  mechanics.initial_position = 16383.5;
+  Bench b(mechanics);
+  b.mode(1);
+  b.enable();
+  b.target(std::numeric_limits<std::int32_t>::min() + kTurn / 2);  // a turn further
+  b.control(0x001F);
+  b.run(ms(2000));
+  EXPECT_NEAR(b.drive->truth(b.now).position_turns, 16384.5, 1e-5);
+}
+
+TEST(DriveCyclicPosition, TheWidestSoftwareLimitsAreNone) {
+  AxisMechanics mechanics;
+  mechanics.initial_position = 16383.9;
+  Bench b(mechanics);
+  b.write(0x607D, 1, 0x80000000, 4);
+  b.write(0x607D, 2, 0x7FFFFFFF, 4);
+  b.mode(3);
+  b.write(0x60FF, 0, kTurn, 4);
+  b.enable();
+  b.run(ms(1000));
+  EXPECT_GT(b.drive->truth(b.now).position_turns, 16384.5);
+  EXPECT_EQ(b.bits(0x0800), 0);
 }
 
 TEST(DriveCyclicPosition, ASetPointBetweenTwoSyncsWaitsForTheNext) {

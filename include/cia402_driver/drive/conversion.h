@@ -41,13 +41,24 @@ class Conversion {
   /// Raw number of a joint value, rounded to the nearest device unit. NaN, infinity and what does
   /// not fit the object give `false` and leave `raw` untouched.
   [[nodiscard]] bool toDevice(double value, std::uint64_t& raw) const;
+  /// What may be sent of what was received: `raw`, but +0.0 for -0.0.
+  std::uint64_t sendable(std::uint64_t raw) const;
   /// Largest and smallest joint value that fits the object.
   double lowest() const;
   double highest() const;
+  /// Smallest and largest number of the object, as it is on the wire.
+  std::uint64_t lowestRaw() const;
+  std::uint64_t highestRaw() const;
   /// Joint units per device unit (resolution); 0 for floats.
   double resolution() const;
   /// True if larger device numbers are smaller joint values.
   bool reversed() const { return factor_ < 0.0; }
+  /// Joint units of all numbers that the object has, after which it begins anew; 0 for floats,
+  /// which do not.
+  double span() const;
+  /// The same for a joint that turns without end: what does not fit the object wraps around, as the
+  /// drive's own counting does. Floats do not.
+  Conversion wrapping() const;
   /// The same with all joint values larger by `amount`: the zero was declared elsewhere.
   Conversion shifted(double amount) const;
 
@@ -58,7 +69,7 @@ class Conversion {
   double low_ = -2147483648.0, high_ = 2147483647.0;  ///< device values that fit
   std::uint64_t mask_ = 0xFFFFFFFF;                   ///< bits of the object
   std::uint8_t shift_ = 32;                           ///< 64 - bits
-  bool signed_ = true;
+  bool signed_ = true, wraps_ = false;
   Encoding encoding_ = Encoding::integer;
 };
 

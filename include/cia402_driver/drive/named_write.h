@@ -26,6 +26,17 @@ struct ResolvedWrite {
 /// unknown or the value does not fit it.
 Result<std::optional<ResolvedWrite>> resolveWrite(const NamedWrite& write, const AxisConfig& axis);
 
+/// A write with NamedWrite::when_homed, worked out for one axis.
+struct ResolvedLimit {
+  ResolvedWrite write;
+  Conversion conversion;   ///< of the object, under the configured zero
+  double value = 0.0;      ///< of the joint, rad or m
+  bool lower = false;      ///< the joint may not be below it; else not above it
+  std::uint64_t open = 0;  ///< raw: limits nothing
+};
+/// @return nothing where the axis has no such limit; an error as resolveWrite() gives it.
+Result<std::optional<ResolvedLimit>> resolveLimit(const NamedWrite& write, const AxisConfig& axis);
+
 /// `raw` as the bytes of an SDO transfer: little-endian, as long as the type.
 std::vector<std::uint8_t> wireBytes(std::uint64_t raw, DataType type);
 

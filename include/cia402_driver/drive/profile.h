@@ -111,7 +111,10 @@ struct NamedWrite {
   std::string from;
   double times = 1.0;            ///< the configuration's value is multiplied by this
   std::optional<DataType> type;  ///< of an object by index that the profile does not name
-  bool optional = false;         ///< an abort is noted, not an error
+  /// A limit of the position that counts in the drive's coordinates: written while these are known
+  /// to be the joint's, and open (the widest number) while they are not. See drive/position_limits.
+  bool when_homed = false;
+  bool optional = false;  ///< an abort is noted, not an error
 };
 
 /// One mode of operation of the family.

@@ -1,0 +1,116 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// A joint that turns without end, on a drive whose 32 bits wrap every two turns of it: nothing that
+// is told or commanded has a step there.
+#include "system/scene.h"
+
+namespace cia402 {
+namespace {
+
+using namespace std::chrono_literals;
+using drive::ProcedureKind;
+using testing::HasSubstr;
+
+/// 2^24 counts * 128 = 2^31 counts a turn: 6064h wraps at +-6.283 rad.
+std::string table(double at, const std::string& more = {}) {
+  return "bus: {interface: sim, bitrate: 1000000, sync_period: 0.004, heartbeat: 0.1}\n"
+         "axes:\n"
+         "  table: {node_id: 1, drive: generic_cia402, type: continuous,\n"
+         "    counts_per_turn: 16777216, gear_ratio: 128.0, mode: cyclic_position,\n"
+         "    write: [{object: following_error_window, value: 0.1}],\n"
+         "    limits: {velocity: 1.5, acceleration: 3.0, jerk: 30.0}" +
+         more + ", simulation: {initial_position: " + std::to_string(at) +
+         "}}\n"
+         "groups: {all: {joints: [table]}}\n";
+}
+
+class Continuous : public testing::TestWithParam<int> {
+ protected:
+  void begin(const std::string& more = {}) {
+    scene.emplace(loadText(table(GetParam() * 6.0, more)));
+    ASSERT_TRUE(scene->boot()) << scene->told();
+    ASSERT_TRUE(scene->procedure(ProcedureKind::enable).success);
+    last_ = scene->state("table").position;
+    first_ = last_ - scene->position("table");
+    scene->watch([this] { look(); });
+  }
+  void look() {
+    const double told = scene->state("table").position;
+    largest_step = std::max(largest_step, std::abs(told - last_));
+    off = std::max(off, std::abs(told - first_ - scene->position("table")));
+    last_ = told;
+  }
+  double sign() const { return GetParam(); }
+
+  std::optional<Scene> scene;
+  double largest_step = 0.0, off = 0.0;  // of what is told: between looks; from the truth
+
+ private:
+  double last_ = 0.0, first_ = 0.0;
+};
+
+// Feedback is at most two cycles old, and one cycle more for the wire.
+constexpr double kStep = 1.5 * 0.004 * 1.05, kOld = 1.5 * 0.012;
+
+TEST_P(Continuous, AStreamOfPositionsCrossesTheWrapThereAndBack) {
+  begin();
+  for (const double goal : {7.5, 5.0, 14.0, -7.0}) {
+    ASSERT_EQ(scene->setpoint("table", sign() * goal), "");
+    scene->run(16s);
+    EXPECT_NEAR(scene->position("table"), sign() * goal, 1e-3) << scene->told();
+  }
+  EXPECT_LE(largest_step, kStep);
+  EXPECT_LE(off, kOld);
+  EXPECT_LE(scene->seen("table").fastest, 1.5 * 1.01);
+}
+
+TEST_P(Continuous, ATrajectoryCrossesTheWrapThereAndBack) {
+  begin();
+  ASSERT_TRUE(scene->move({sign() * 8.0}, 3s).success);
+  scene->run(4s);
+  EXPECT_NEAR(scene->position("table"), sign() * 8.0, 1e-3) << scene->told();
+  ASSERT_TRUE(scene->move({sign() * 5.5}, 3s).success);
+  scene->run(4s);
+  EXPECT_NEAR(scene->position("table"), sign() * 5.5, 1e-3) << scene->told();
+  EXPECT_LE(largest_step, kStep);
+  EXPECT_LE(off, kOld);
+}
+
+TEST_P(Continuous, AVelocityCrossesTheWrapAgainAndAgain) {
+  begin(", modes: [cyclic_velocity]");
+  ASSERT_TRUE(scene->procedure(ProcedureKind::set_mode, "table", "cyclic_velocity").success);
+  scene->stream("table", sign() * 1.4, 20s);
+  EXPECT_GT(std::abs(scene->state("table").position), 6.0 + 20.0);
+  scene->run(1s);
+  EXPECT_LE(largest_step, kStep);
+  EXPECT_LE(off, kOld);
+  // The mode is changed far from where the drive says that it stands: nothing moves.
+  scene->forget();
+  ASSERT_TRUE(scene->procedure(ProcedureKind::set_mode, "table", "cyclic_position").success);
+  scene->run(200ms);
+  EXPECT_LT(scene->seen("table").travel(), 1e-4);
+  const double goal = scene->state("table").position - sign() * 1.0;
+  ASSERT_EQ(scene->setpoint("table", goal), "");
+  scene->run(3s);
+  EXPECT_NEAR(scene->state("table").position, goal, 1e-3);
+}
+
+TEST_P(Continuous, ADeclaredPositionHoldsOverTheWrap) {
+  begin();
+  ASSERT_EQ(scene->setpoint("table", sign() * 7.0), "");
+  scene->run(3s);
+  drive::ProcedureRequest request;
+  request.kind = ProcedureKind::set_position;
+  request.position = 0.5;
+  ASSERT_TRUE(call(*scene, bus::ProcedureCommand{"table", request}).success);
+  EXPECT_NEAR(scene->state("table").position, 0.5, 1e-3);
+  ASSERT_EQ(scene->setpoint("table", 0.5 - sign() * 1.5), "");
+  scene->run(3s);
+  EXPECT_NEAR(scene->position("table"), sign() * 5.5, 1e-3);
+  EXPECT_NEAR(scene->state("table").position, 0.5 - sign() * 1.5, 1e-3);
+}
+
+INSTANTIATE_TEST_SUITE_P(BothWays, Continuous, testing::Values(1, -1),
+                         [](const auto& tested) { return tested.param > 0 ? "Up" : "Down"; });
+
+}  // namespace
+}  // namespace cia402

@@ -1,0 +1,208 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// The limits that a drive keeps (607Dh) count from its own zero. Whatever that zero is: enabling
+// moves nothing, and motion ends where it was told to.
+#include "system/scene.h"
+
+namespace cia402 {
+namespace {
+
+using namespace std::chrono_literals;
+using drive::ProcedureKind;
+using testing::HasSubstr;
+
+constexpr double kCountsPerRad = 131072.0 * 100.0 / 6.283185307179586;
+
+/// 607Dh of the drive, in rad.
+double limitIn(Scene& scene, const std::string& name, std::uint8_t subindex) {
+  const auto* entry = scene.drive(name).dictionary().find({0x607D, subindex});
+  return static_cast<std::int32_t>(entry->number) / kCountsPerRad;
+}
+double lowest(Scene& scene, const std::string& name) { return limitIn(scene, name, 1); }
+double highest(Scene& scene, const std::string& name) { return limitIn(scene, name, 2); }
+
+std::string limits(double lower, double upper) {
+  return ", limits: {lower: " + std::to_string(lower) + ", upper: " + std::to_string(upper) +
+         ", velocity: 1.5, acceleration: 4.0, jerk: 40.0, effort: 120.0}";
+}
+
+std::string standing(double at, const std::string& more = {}) {
+  return ", simulation: {initial_position: " + std::to_string(at) + more + "}";
+}
+
+/// Searches the lower switch at -0.5 from 0.0; the joint reads `offset` there.
+std::string homed(double offset) {
+  return ", homing: {method: 17, search_velocity: 0.8, zero_velocity: 0.05, acceleration: 4.0, "
+         "offset: " +
+         std::to_string(offset) + "}" + standing(0.0, ", lower_limit_switch: -0.5");
+}
+
+bus::Answer declare(Scene& scene, const std::string& name, double position) {
+  drive::ProcedureRequest request;
+  request.kind = ProcedureKind::set_position;
+  request.position = position;
+  return call(scene, bus::ProcedureCommand{name, request});
+}
+
+void expectNothingMoved(Scene& scene, const std::string& name) {
+  EXPECT_LT(scene.seen(name).travel(), 1e-3) << scene.told();
+  EXPECT_LT(scene.seen(name).fastest, 0.02);
+  EXPECT_EQ(scene.state(name).error_code, 0) << scene.told();
+}
+
+TEST(Coordinates, EnablingBeforeHomingMovesNothingThoughTheDrivesZeroIsOutsideTheLimits) {
+  Scene scene(loadText(genericPair(homed(0.25) + limits(0.2, 2.0))));
+  ASSERT_TRUE(scene.boot());
+  scene.forget();
+  const auto recovered = scene.procedure(ProcedureKind::recover);
+  EXPECT_TRUE(recovered.success) << recovered.message;
+  scene.run(500ms);
+  expectNothingMoved(scene, "left");
+  const auto home = scene.procedure(ProcedureKind::home, "left");
+  ASSERT_TRUE(home.success) << home.message << scene.told();
+  EXPECT_NEAR(lowest(scene, "left"), 0.2, 1e-6);
+  EXPECT_NEAR(highest(scene, "left"), 2.0, 1e-6);
+  ASSERT_EQ(scene.setpoint("left", 1.9), "");
+  scene.run(4s);
+  EXPECT_NEAR(scene.position("left"), -0.5 + (1.9 - 0.25), 2e-3);
+}
+
+TEST(Coordinates, HomeOutsideTheLimitsIsLeftWithoutAJump) {
+  Scene scene(loadText(genericPair(homed(-0.1) + limits(0.2, 2.0))));
+  ASSERT_TRUE(scene.boot());
+  const auto home = scene.procedure(ProcedureKind::home, "left");
+  ASSERT_TRUE(home.success) << home.message << scene.told();
+  const double at = scene.position("left");
+  scene.forget();
+  scene.run(500ms);
+  expectNothingMoved(scene, "left");
+  ASSERT_EQ(scene.setpoint("left", 0.5), "");
+  scene.run(3s);
+  EXPECT_NEAR(scene.position("left") - at, 0.6, 5e-3);
+  EXPECT_LT(scene.seen("left").fastest, 1.5 * 1.02);
+  EXPECT_NEAR(lowest(scene, "left"), 0.2, 1e-6) << "closed once the axis came back";
+}
+
+TEST(Coordinates, ADriveThatCameBackWithOldLimitsIsEnabledWithoutMotion) {
+  Scene scene(loadText(genericPair(homed(0.25) + limits(0.2, 2.0))));
+  ASSERT_TRUE(scene.boot());
+  ASSERT_TRUE(scene.procedure(ProcedureKind::home, "left").success);
+  ASSERT_TRUE(scene.procedure(ProcedureKind::disable, "left").success);
+  ASSERT_TRUE(scene.procedure(ProcedureKind::save_parameters, "left").success);
+  scene.inject("left", "power_cycle");  // the encoder counts from 0 then
+  scene.run(1s);
+  ASSERT_FALSE(scene.state("left").homed);
+  scene.forget();
+  const auto recovered = scene.procedure(ProcedureKind::recover, "left");
+  EXPECT_TRUE(recovered.success) << recovered.message;
+  scene.run(500ms);
+  expectNothingMoved(scene, "left");
+}
+
+TEST(Coordinates, AnAxisFoundOutsideItsLimitsIsEnabledWithoutMotionAndComesBack) {
+  Scene scene(loadText(genericPair(standing(2.7))));
+  ASSERT_TRUE(scene.boot());
+  scene.forget();
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "left").success);
+  scene.run(500ms);
+  expectNothingMoved(scene, "left");
+  ASSERT_EQ(scene.setpoint("left", 2.0), "");
+  scene.run(3s);
+  EXPECT_NEAR(scene.position("left"), 2.0, 1e-3);
+  EXPECT_LT(scene.seen("left").fastest, 1.5 * 1.02);
+  EXPECT_NEAR(highest(scene, "left"), 2.5, 1e-6);
+}
+
+class Declared : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(scene.boot());
+    ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
+  }
+  Scene scene{loadText(genericPair(limits(-0.5, 0.5)))};
+};
+
+TEST_F(Declared, PositionMovesTheDrivesLimitsAlong) {
+  scene.forget();
+  const auto declared = declare(scene, "left", 0.4);
+  ASSERT_TRUE(declared.success) << declared.message;
+  expectNothingMoved(scene, "left");
+  EXPECT_NEAR(lowest(scene, "left"), -0.9, 1e-6);
+  EXPECT_NEAR(highest(scene, "left"), 0.1, 1e-6);
+  ASSERT_TRUE(scene.move({-0.45, 0.0}, 3s).success);
+  scene.run(4s);
+  EXPECT_THAT(scene.told(), HasSubstr("goal reached"));
+  EXPECT_NEAR(scene.position("left"), -0.45 - 0.4, 1e-3);
+}
+
+TEST_F(Declared, PositionOfADisabledAxisMovesTheDrivesLimitsAlong) {
+  ASSERT_TRUE(scene.procedure(ProcedureKind::disable, "left").success);
+  ASSERT_TRUE(declare(scene, "left", -0.3).success);
+  EXPECT_NEAR(lowest(scene, "left"), -0.2, 1e-6);
+  EXPECT_NEAR(highest(scene, "left"), 0.8, 1e-6);
+}
+
+TEST_F(Declared, PositionOutsideTheLimitsMovesNothing) {
+  scene.forget();
+  ASSERT_TRUE(declare(scene, "left", 0.8).success);
+  scene.run(500ms);
+  expectNothingMoved(scene, "left");
+  ASSERT_EQ(scene.setpoint("left", 0.3), "");
+  scene.run(2s);
+  EXPECT_NEAR(scene.position("left"), 0.3 - 0.8, 1e-3);
+}
+
+TEST_F(Declared, PositionFarAwayLeavesLimitsOpenThatTheDriveCannotCount) {
+  // 131072 * 100 counts a turn: 32 bits hold 1029 rad each way.
+  scene.forget();
+  ASSERT_TRUE(declare(scene, "left", -1500.0).success);
+  scene.run(100ms);
+  expectNothingMoved(scene, "left");
+  EXPECT_NEAR(highest(scene, "left"), 2147483647 / kCountsPerRad, 1e-6);
+  EXPECT_NEAR(lowest(scene, "left"), -2147483648.0 / kCountsPerRad, 1e-6);
+}
+
+TEST_F(Declared, PositionOutlivesALostNodeWithItsLimits) {
+  ASSERT_TRUE(declare(scene, "left", 0.4).success);
+  scene.inject("left", "silent");
+  scene.run(1s);
+  scene.inject("left", "clear");
+  scene.forget();
+  const auto recovered = scene.procedure(ProcedureKind::recover, "left");
+  ASSERT_TRUE(recovered.success) << recovered.message << scene.told();
+  scene.run(200ms);
+  expectNothingMoved(scene, "left");
+  EXPECT_NEAR(lowest(scene, "left"), -0.9, 1e-6);
+  ASSERT_EQ(scene.setpoint("left", -0.45), "");
+  scene.run(3s);
+  EXPECT_NEAR(scene.position("left"), -0.45 - 0.4, 1e-3);
+}
+
+TEST(Coordinates, MinusZeroIsNeverSentBackToTheDrive) {
+  LoadedRobot loaded = loadText(damiaoJoint());
+  loaded.axes[0].mechanics.initial_position = -0.0;
+  Scene scene(std::move(loaded));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  ASSERT_EQ(scene.drive("joint").dictionary().find({0x6064, 0})->number, 0x80000000u);
+  const auto recovered = scene.procedure(ProcedureKind::recover);
+  EXPECT_TRUE(recovered.success) << recovered.message;
+  scene.run(200ms);
+  EXPECT_EQ(scene.badFloats(), 0u);
+  EXPECT_TRUE(scene.truth("joint").power_stage_on) << scene.told();
+  EXPECT_LT(scene.seen("joint").travel(), 1e-6);
+}
+
+TEST(Coordinates, AGoalThatTheDriveDidNotReachIsNotCalledReached) {
+  Scene scene(loadText(genericPair()));
+  ASSERT_TRUE(scene.boot());
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
+  // Somebody else's limit in the drive: +0.6 rad.
+  scene.drive("left").dictionary().find({0x607D, 2})->number = 1251645;
+  ASSERT_TRUE(scene.move({1.0, 1.0}, 3s).success);
+  scene.run(6s);
+  ASSERT_NEAR(scene.position("left"), 0.6, 1e-3) << "the drive clamps";
+  EXPECT_THAT(scene.told(), Not(HasSubstr("goal reached")));
+  EXPECT_THAT(scene.told(), HasSubstr("left"));
+}
+
+}  // namespace
+}  // namespace cia402

@@ -1,0 +1,142 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// Velocity, acceleration and effort of the true motor in every mode of both families, after another
+// mode that left its own ramps in the drive.
+#include <cstring>
+#include <deque>
+
+#include "system/scene.h"
+
+namespace cia402 {
+namespace {
+
+using namespace std::chrono_literals;
+using drive::ControlKind;
+using drive::ProcedureKind;
+
+/// What the motor did, looked at every millisecond.
+class Motion {
+ public:
+  Motion(Scene& scene, std::string axis) : scene_(scene), axis_(std::move(axis)) {
+    scene_.watch([this] { look(); });
+  }
+  void forget() {
+    fastest = hardest = strongest = 0.0;
+    velocities_.clear();
+  }
+  double fastest = 0.0, hardest = 0.0;  // rad/s, rad/s^2 over 8 ms
+  double strongest = 0.0;               // 6077h as its number
+
+ private:
+  void look() {
+    const double velocity = scene_.velocity(axis_);
+    velocities_.push_back(velocity);
+    if (velocities_.size() > 9) velocities_.pop_front();
+    fastest = std::max(fastest, std::abs(velocity));
+    if (velocities_.size() == 9) {
+      hardest = std::max(hardest, std::abs(velocity - velocities_.front()) / 0.008);
+    }
+    const auto* torque = scene_.drive(axis_).dictionary().find({0x6077, 0});
+    if (torque->type == canopen::DataType::int16) {
+      strongest = std::max(
+          strongest, std::abs(static_cast<double>(static_cast<std::int16_t>(torque->number))));
+    } else {
+      float value = 0.0F;
+      const auto bits = static_cast<std::uint32_t>(torque->number);
+      std::memcpy(&value, &bits, sizeof value);
+      strongest = std::max(strongest, std::abs(static_cast<double>(value)));
+    }
+  }
+  Scene& scene_;
+  std::string axis_;
+  std::deque<double> velocities_;
+};
+
+/// The widest motion that the mode can be asked for: there and back.
+void exert(Scene& scene, const std::string& axis, double velocity, double effort) {
+  const ControlKind kind = scene.state(axis).mode->kind;
+  if (kind == ControlKind::position) {
+    for (const double goal : {-1.5, 1.2}) {
+      ASSERT_EQ(scene.setpoint(axis, goal), "");
+      scene.run(2500ms);
+      EXPECT_NEAR(scene.position(axis), goal, 0.02);
+    }
+  } else {
+    const double value = kind == ControlKind::velocity ? velocity : 0.3 * effort;
+    for (const double sign : {-1.0, 1.0}) scene.stream(axis, sign * value, 500ms);
+    scene.run(300ms);
+  }
+}
+
+/// Against a rotor that does not move.
+void push(Scene& scene, const std::string& axis, double velocity, double effort) {
+  scene.inject(axis, "blocked_rotor");
+  const ControlKind kind = scene.state(axis).mode->kind;
+  const double value = kind == ControlKind::position   ? 0.0
+                       : kind == ControlKind::velocity ? velocity
+                                                       : 2.0 * effort;
+  const int times = kind == ControlKind::torque ? 300 : 15;  // 6087h: 1 N m in a second
+  for (int i = 0; i < times; ++i) {
+    (void)scene.setpoint(axis, value);  // a following error ends it
+    scene.run(20ms);
+  }
+}
+
+class DamiaoMode : public testing::TestWithParam<const char*> {};
+
+TEST_P(DamiaoMode, KeepsTheLimitsOfVelocityAccelerationAndEffort) {
+  constexpr double kVelocity = 2.0, kAcceleration = 15.0, kEffort = 5.0;
+  Scene scene(loadText(damiaoJoint(", modes: [" + std::string(GetParam()) + "]")));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);  // cyclic_position: steep ramps
+  const auto switched = scene.procedure(ProcedureKind::set_mode, "joint", GetParam());
+  ASSERT_TRUE(switched.success) << switched.message;
+  Motion motion(scene, "joint");
+  exert(scene, "joint", kVelocity, kEffort);
+  EXPECT_LE(motion.fastest, kVelocity * 1.01);
+  EXPECT_GT(motion.fastest, kVelocity * 0.9) << "the test asked for too little";
+  if (scene.state("joint").mode->kind != ControlKind::torque) {
+    // Of a stream the drive plans its own way to each set-point, with steeper ramps than the
+    // limit's.
+    const bool streamed = std::string(GetParam()) == "cyclic_position";
+    EXPECT_LE(motion.hardest, kAcceleration * (streamed ? 1.2 : 1.1));
+  }
+  motion.forget();
+  push(scene, "joint", kVelocity, kEffort);
+  EXPECT_LE(motion.strongest, kEffort * 1.01);
+  EXPECT_GT(motion.strongest, kEffort * 0.3) << "the test asked for too little";
+}
+
+INSTANTIATE_TEST_SUITE_P(All, DamiaoMode,
+                         testing::Values("cyclic_position", "profile_position", "position_velocity",
+                                         "position_velocity_torque", "profile_velocity",
+                                         "cyclic_velocity", "velocity_torque", "profile_torque"),
+                         [](const auto& tested) { return std::string(tested.param); });
+
+class GenericMode : public testing::TestWithParam<const char*> {};
+
+TEST_P(GenericMode, KeepsTheLimitsOfVelocityAccelerationAndEffort) {
+  constexpr double kVelocity = 1.5, kAcceleration = 4.0;
+  constexpr double kEffort = 120.0 / (0.64 * 100.0) * 1000.0;  // in 1/1000 of the rated torque
+  Scene scene(loadText(genericPair(", write: [{object: following_error_window, value: 0.5}]")));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
+  const auto switched = scene.procedure(ProcedureKind::set_mode, "left", GetParam());
+  ASSERT_TRUE(switched.success) << switched.message;
+  Motion motion(scene, "left");
+  exert(scene, "left", kVelocity, 0.0);
+  EXPECT_LE(motion.fastest, kVelocity * 1.01);
+  EXPECT_GT(motion.fastest, kVelocity * 0.9) << "the test asked for too little";
+  EXPECT_LE(motion.hardest, kAcceleration * 1.1);
+  motion.forget();
+  push(scene, "left", kVelocity, 0.0);
+  EXPECT_LE(motion.strongest, kEffort * 1.01);
+  EXPECT_GT(motion.strongest, kEffort * 0.3) << "the test asked for too little";
+}
+
+INSTANTIATE_TEST_SUITE_P(All, GenericMode,
+                         testing::Values("cyclic_position", "profile_position", "profile_velocity",
+                                         "cyclic_velocity"),
+                         [](const auto& tested) { return std::string(tested.param); });
+
+}  // namespace
+}  // namespace cia402
