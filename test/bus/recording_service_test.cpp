@@ -32,7 +32,7 @@ class Service : public testing::Test {
     robot.recorder.directory = root;
     robot.recorder.keep = 1000;
     recorder.emplace(robot, sink);
-    service.emplace(*recorder, robot, test::masterOf(robot));
+    service.emplace(*recorder, robot, test::masterOf(robot), time);
   }
   ~Service() override {
     service.reset();
@@ -59,6 +59,7 @@ class Service : public testing::Test {
   std::string root;
   NoSink sink;
   config::RobotConfig robot = test::testRobot();
+  BusTime time;
   std::optional<FlightRecorder> recorder;
   std::optional<RecordingService> service;
 };
@@ -115,7 +116,7 @@ TEST_F(Service, WhileARecordingIsBeingWrittenAnotherOneIsRefusedInWords) {
 TEST_F(Service, WhatCannotBeWrittenIsTold) {
   service.reset();
   robot.recorder.directory = "/proc/recordings";
-  service.emplace(*recorder, robot, test::masterOf(robot));
+  service.emplace(*recorder, robot, test::masterOf(robot), time);
   const auto news = service->request();
   EXPECT_FALSE(news.written);
   EXPECT_THAT(news.text, HasSubstr("/proc/recordings"));
