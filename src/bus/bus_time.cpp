@@ -11,8 +11,6 @@ constexpr Duration kLeast = std::chrono::microseconds(1);
 
 }  // namespace
 
-constexpr Duration BusTime::kCatchUp;
-
 Time BusTime::advance(Time due) {
   const Time clock = clock_();
   if (kind_ == Kind::real) return clock;

@@ -113,6 +113,24 @@ TEST_F(Service, WhileARecordingIsBeingWrittenAnotherOneIsRefusedInWords) {
   EXPECT_TRUE(service->request().written);
 }
 
+TEST_F(Service, WritesTheTimeOfTheWallClockWhereTheBusHasStoodStill) {
+  Duration behind = 1h;
+  BusTime late(BusTime::Kind::simulated, [&behind] { return realNow() - behind; });
+  late.advance(kNever);
+  behind = 0h;
+  late.advance(kNever);
+  service.reset();
+  service.emplace(*recorder, robot, test::masterOf(robot), late);
+  recorder->received(can::Frame(0x701, {0x05}), late.now());
+  const auto news = service->request();
+  ASSERT_TRUE(news.written) << news.text;
+  std::ifstream log(news.log);
+  char parenthesis = 0;
+  double stamp = 0.0;
+  log >> parenthesis >> stamp;
+  EXPECT_NEAR(stamp, toSeconds(realNow().time_since_epoch() + wallClockDistance()), 300.0);
+}
+
 TEST_F(Service, WhatCannotBeWrittenIsTold) {
   service.reset();
   robot.recorder.directory = "/proc/recordings";
