@@ -12,7 +12,7 @@
 namespace cia402::bus {
 namespace {
 
-constexpr int kNiceness = 10;           // writing is less urgent than all else
+constexpr int kNiceness = 5;            // less urgent than all else, but the end waits for it
 constexpr std::size_t kMostNews = 100;  // if nobody fetches them
 
 }  // namespace

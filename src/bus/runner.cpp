@@ -112,12 +112,14 @@ void BusRunner::run() {
   }
   const auto advance = [this] { return time_.advance(interface_->nextDeadline()); };
   Time now = advance();
-  for (const Time flushed = now + kFlushTime; now < flushed; now = advance()) {
-    // the last frames are still on their way
+  const Time flushed = now + kFlushTime;  // the last frames are still on their way
+  for (; now < flushed; now = advance()) {
     for (int i = 0; i < kFramesToFlush && interface_->receive(now); ++i) {
     }
     interface_->maintain(now);
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    if (interface_->nextDeadline() > time_.now()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
   }
   publish(now);
   refuseRest();

@@ -159,7 +159,7 @@ class Faults(RobotTest):
         wait_until(lambda: abs(self.robot.position("shoulder") - start) > 0.1, "it moves")
         began = time.monotonic()
         self.assertEqual(self.process.stop(), 0)
-        self.assertLess(time.monotonic() - began, 20.0)  # the drives themselves: see test/vcan
+        self.assertLess(time.monotonic() - began, 60.0)  # the drives themselves: see test/vcan
         self.assertIn("stopped", self.process.output())
         self.robot.close()
         self.setUpClass()
