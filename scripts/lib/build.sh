@@ -2,17 +2,18 @@
 # Building and using what was built; sourced after common.sh.
 # shellcheck shell=bash
 
-# Configures into directory $1 and builds target $2 there; further arguments go to cmake. Quick when
-# nothing has changed. Prints the compiler's words only if it fails.
+# Configures into directory $1 and builds the targets $2 there; further arguments go to cmake. Quick
+# when nothing has changed. Prints the compiler's words only if it fails.
 build() {
-  local directory=$1 target=$2
+  local directory=$1 targets
+  read -ra targets <<<"$2"
   shift 2
   mkdir -p "$directory"
   say "building in ${directory#"$repository/"}"
   {
     cmake -S "$repository" -B "$directory" -G Ninja \
       -DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DPYTHON_EXECUTABLE="$system_python" "$@" &&
-      cmake --build "$directory" --target "$target" --parallel "$(build_jobs)"
+      cmake --build "$directory" --target "${targets[@]}" --parallel "$(build_jobs)"
   } >"$directory/build.log" 2>&1 || {
     grep -vE '^(-- |Generating |\[[0-9]+/[0-9]+\] )' "$directory/build.log" |
       tail -n 60 >&2

@@ -12,14 +12,14 @@
 namespace cia402::bus {
 namespace {
 
-constexpr int kNiceness = 10;           // writing is less urgent than all else
+constexpr int kNiceness = 5;            // less urgent than all else, but the end waits for it
 constexpr std::size_t kMostNews = 100;  // if nobody fetches them
 
 }  // namespace
 
 RecordingService::RecordingService(FlightRecorder& recorder, config::RobotConfig robot,
-                                   canopen::MasterConfig master)
-    : recorder_(recorder), robot_(std::move(robot)), master_(std::move(master)) {
+                                   canopen::MasterConfig master, const BusTime& time)
+    : recorder_(recorder), robot_(std::move(robot)), master_(std::move(master)), time_(time) {
   sem_init(&triggered_, 0, 0);
   thread_ = std::thread([this] { run(); });
 }
@@ -47,8 +47,8 @@ void RecordingService::run() {
 /// Waits until what follows the fault is recorded, too, and collects the triggers until then.
 void RecordingService::record(const RecordingTrigger& first) {
   const Time end = first.stamp + robot_.recorder.post_trigger;
-  while (!ending_ && realNow() < end) {
-    const Duration left = std::min<Duration>(end - realNow(), std::chrono::milliseconds(50));
+  while (!ending_ && time_.now() < end) {
+    const Duration left = std::min<Duration>(end - time_.now(), std::chrono::milliseconds(50));
     if (left > Duration(0)) std::this_thread::sleep_for(left);
   }
   std::vector<RecordingTrigger> triggers = {first};
@@ -61,7 +61,7 @@ void RecordingService::record(const RecordingTrigger& first) {
     }
   }
   const std::lock_guard<std::mutex> one_at_a_time(writing_);
-  News news = write(std::move(triggers), std::min(end, realNow()));
+  News news = write(std::move(triggers), std::min(end, time_.now()));
   const std::lock_guard<std::mutex> lock(news_mutex_);
   if (news_.size() == kMostNews) news_.pop_front();
   news_.push_back(std::move(news));
@@ -75,15 +75,15 @@ RecordingService::News RecordingService::request() {
     return news;
   }
   RecordingTrigger trigger;
-  trigger.stamp = realNow();
+  trigger.stamp = time_.now();
   return write({trigger}, trigger.stamp);
 }
 
 RecordingService::News RecordingService::write(std::vector<RecordingTrigger> triggers, Time end) {
   Recording recording = recorder_.copy(end);
   recording.triggers = std::move(triggers);
-  const Result<RecordingFiles> files =
-      writeRecording(recording, robot_, master_, wallClockDistance());
+  const Duration wall = wallClockDistance() + (time_.toClock(end) - end);
+  const Result<RecordingFiles> files = writeRecording(recording, robot_, master_, wall);
   News news;
   news.written = files.ok();
   std::string why;

@@ -7,8 +7,7 @@
 
 #include <algorithm>
 #include <system_error>
-
-#include "cia402_driver/bus/real_clock.h"
+#include <utility>
 
 namespace cia402::bus {
 namespace {
@@ -28,12 +27,14 @@ RobotSnapshot sized(std::size_t axes, std::size_t groups) {
 
 BusRunner::BusRunner(config::RobotConfig robot, canopen::MasterConfig master,
                      std::unique_ptr<can::Interface> interface, Options options)
-    : options_(options),
+    : options_(std::move(options)),
+      time_(options_.time, options_.clock),
       interface_(std::move(interface)),
       loop_(std::move(robot), std::move(master), *interface_, *this),
       wake_fd_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)),
       snapshots_(sized(loop_.robot().axes().size(), loop_.robot().groups().size())),
-      recordings_(loop_.recorder(), loop_.robot().config(), loop_.robot().master().config()) {
+      recordings_(loop_.recorder(), loop_.robot().config(), loop_.robot().master().config(),
+                  time_) {
   if (wake_fd_ < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
 }
 
@@ -99,24 +100,28 @@ void BusRunner::run() {
     const RealtimeReport report = makeRealtime(options_.priority);
     Event event;
     event.severity = report.complete() ? Event::Severity::info : Event::Severity::warning;
-    event.stamp = realNow();
+    event.stamp = time_.now();
     event.text.assign(report.text);
     onEvent(event);
     const std::lock_guard<std::mutex> lock(realtime_mutex_);
     realtime_ = report;
   }
   while (!loop_.robot().shutDown()) {
-    iterate(realNow());
+    iterate(time_.advance(due_));
     if (!loop_.robot().shutDown()) wait();
   }
-  const Time flushed = realNow() + kFlushTime;  // the last frames are still on their way
-  for (Time now = realNow(); now < flushed; now = realNow()) {
+  const auto advance = [this] { return time_.advance(interface_->nextDeadline()); };
+  Time now = advance();
+  const Time flushed = now + kFlushTime;  // the last frames are still on their way
+  for (; now < flushed; now = advance()) {
     for (int i = 0; i < kFramesToFlush && interface_->receive(now); ++i) {
     }
     interface_->maintain(now);
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    if (interface_->nextDeadline() > time_.now()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
   }
-  publish(realNow());
+  publish(now);
   refuseRest();
 }
 
@@ -124,7 +129,7 @@ void BusRunner::iterate(Time now) {
   Robot& robot = loop_.robot();
   if (shutdown_requested_) robot.beginShutdown(now);
   if (robot.config().bus.time_interval > Duration::zero()) {
-    robot.setWallTime(now.time_since_epoch() + wallClockDistance(), now);
+    robot.setWallTime(time_.toClock(now).time_since_epoch() + wallClockDistance(), now);
   }
   loop_.step(now);
   Command command;
@@ -151,10 +156,11 @@ void BusRunner::publish(Time now) {
   snapshots_.publish();
 }
 
-void BusRunner::wait() const {
+void BusRunner::wait() {
   pollfd sources[2] = {{wake_fd_, POLLIN, 0}, {interface_->fd(), POLLIN, 0}};
-  const Time now = realNow();
-  const Time deadline = std::min(loop_.nextDeadline(), now + kIdleInterval);
+  due_ = loop_.nextDeadline();
+  const Time now = time_.now();
+  const Time deadline = std::min(due_, now + kIdleInterval);
   const std::int64_t left = std::max<std::int64_t>((deadline - now).count(), 0);
   const timespec timeout{left / 1'000'000'000, left % 1'000'000'000};
   const nfds_t count = sources[1].fd >= 0 ? 2 : 1;

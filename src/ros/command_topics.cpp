@@ -8,7 +8,8 @@
 namespace cia402::ros_node {
 
 bus::TrajectoryCommand trajectoryCommand(const std::string& group,
-                                         const trajectory_msgs::JointTrajectory& message) {
+                                         const trajectory_msgs::JointTrajectory& message,
+                                         const bus::BusTime& time) {
   bus::TrajectoryCommand command;
   command.group = group;
   command.joints = message.joint_names;
@@ -16,7 +17,7 @@ bus::TrajectoryCommand trajectoryCommand(const std::string& group,
     command.points.push_back({point.positions, point.velocities, point.accelerations,
                               Duration(point.time_from_start.toNSec())});
   }
-  if (!message.header.stamp.isZero()) command.start_time = fromRos(message.header.stamp);
+  if (!message.header.stamp.isZero()) command.start_time = fromRos(time, message.header.stamp);
   return command;
 }
 
@@ -51,7 +52,7 @@ void CommandTopics::onSetpoint(std::size_t axis, const std_msgs::Float64& messag
 void CommandTopics::onTrajectory(const std::string& group,
                                  const trajectory_msgs::JointTrajectory& message) {
   bus::Command command;
-  command.body = trajectoryCommand(group, message);
+  command.body = trajectoryCommand(group, message, runner_.time());
   command.reply = replies_.toTrajectory();
   runner_.post(std::move(command));
 }

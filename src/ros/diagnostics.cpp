@@ -145,6 +145,9 @@ void Diagnostics::reportBus(Status& status) {
   status.addf("SYNC period", "%.3f ms", 1e3 * toSeconds(robot_.bus.sync_period));
   status.addf("SYNC lateness rms", "%.3f ms", 1e3 * cycle.rmsLateness());
   status.addf("SYNC lateness max", "%.3f ms", 1e3 * cycle.maxLateness());
+  if (robot_.bus.interface == "sim") {
+    status.addf("simulation behind the clock", "%.3f s", toSeconds(runner_.time().lost()));
+  }
   status.add("cycles", cycle.cycles());
   status.add("cycles skipped", cycle.overruns());
   status.add("failures not recorded", runner_.recordings().suppressed());

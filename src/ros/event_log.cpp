@@ -79,7 +79,7 @@ void EventLog::drainReplies() {
 void EventLog::publish(const bus::EmergencyEvent& event) {
   const drive::AxisConfig& axis = robot_.axes[event.axis];
   cia402_driver::Emergency message;
-  message.header.stamp = toRos(event.emergency.stamp);
+  message.header.stamp = toRos(runner_.time(), event.emergency.stamp);
   message.node_id = axis.node_id;
   message.axes = {axis.name};
   message.error_code = event.emergency.code;

@@ -48,7 +48,8 @@ void Frames::publish(const ros::TimerEvent&) {
       const drive::AxisState& state = snapshot.axes[i].state;
       if (robot_.axes[i].joint != frame.joint || std::isnan(state.position)) continue;
       const bool prismatic = robot_.axes[i].geometry.type == drive::AxisGeometry::Type::prismatic;
-      messages.push_back(jointTransform(frame, prismatic, state.position, toRos(state.stamp)));
+      const ros::Time stamp = toRos(runner_.time(), state.stamp);
+      messages.push_back(jointTransform(frame, prismatic, state.position, stamp));
     }
   }
   if (!messages.empty()) broadcaster_.sendTransform(messages);

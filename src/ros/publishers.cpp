@@ -20,7 +20,7 @@ double age(Time since, Time now) {
 }
 
 cia402_driver::AxisState axisState(const bus::AxisSnapshot& axis, const drive::AxisConfig& config,
-                                   Time now) {
+                                   const bus::BusTime& time) {
   cia402_driver::AxisState message;
   message.name = config.name;
   message.joint = config.joint;
@@ -41,8 +41,8 @@ cia402_driver::AxisState axisState(const bus::AxisSnapshot& axis, const drive::A
   message.following_error = axis.state.following_error;
   message.digital_inputs = axis.state.digital_inputs;
   message.digital_inputs_valid = axis.state.digital_inputs_valid;
-  message.feedback_age = age(axis.state.stamp, now);
-  if (axis.state.stamp != Time()) message.stamp = toRos(axis.state.stamp);
+  message.feedback_age = age(axis.state.stamp, time.now());
+  if (axis.state.stamp != Time()) message.stamp = toRos(time, axis.state.stamp);
   return message;
 }
 
@@ -102,7 +102,7 @@ void Publishers::publishJointStates(const ros::TimerEvent&) {
     joint_states_.effort[i] = state.effort;
     if (state.feedback_valid && state.stamp > newest) newest = state.stamp;
   }
-  joint_states_.header.stamp = newest == Time() ? ros::Time::now() : toRos(newest);
+  joint_states_.header.stamp = newest == Time() ? ros::Time::now() : toRos(runner_.time(), newest);
   joint_states_pub_.publish(joint_states_);
   publishGroups(snapshot);
 }
@@ -148,9 +148,8 @@ void Publishers::publishStates(const ros::TimerEvent&) {
 cia402_driver::AxisStates Publishers::axisStates(const bus::RobotSnapshot& snapshot) const {
   cia402_driver::AxisStates message;
   message.header.stamp = ros::Time::now();
-  const Time now = bus::realNow();
   for (std::size_t i = 0; i < snapshot.axes.size(); ++i) {
-    message.axes.push_back(axisState(snapshot.axes[i], robot_.axes[i], now));
+    message.axes.push_back(axisState(snapshot.axes[i], robot_.axes[i], runner_.time()));
   }
   return message;
 }
@@ -205,7 +204,7 @@ cia402_driver::BusState Publishers::busState(const bus::RobotSnapshot& snapshot)
   message.sync_lateness_rms = snapshot.statistics.rmsLateness();
   message.sync_lateness_max = snapshot.statistics.maxLateness();
   message.real_time = runner_.realtime().complete();
-  const Time now = bus::realNow();
+  const Time now = runner_.time().now();
   for (std::size_t i = 0; i < snapshot.axes.size(); ++i) {
     message.missed_feedback += snapshot.axes[i].missed_feedback;
     message.nodes.push_back(nodeState(snapshot.axes[i], robot_.axes[i], now));

@@ -32,7 +32,7 @@ class Service : public testing::Test {
     robot.recorder.directory = root;
     robot.recorder.keep = 1000;
     recorder.emplace(robot, sink);
-    service.emplace(*recorder, robot, test::masterOf(robot));
+    service.emplace(*recorder, robot, test::masterOf(robot), time);
   }
   ~Service() override {
     service.reset();
@@ -59,6 +59,7 @@ class Service : public testing::Test {
   std::string root;
   NoSink sink;
   config::RobotConfig robot = test::testRobot();
+  BusTime time;
   std::optional<FlightRecorder> recorder;
   std::optional<RecordingService> service;
 };
@@ -112,10 +113,28 @@ TEST_F(Service, WhileARecordingIsBeingWrittenAnotherOneIsRefusedInWords) {
   EXPECT_TRUE(service->request().written);
 }
 
+TEST_F(Service, WritesTheTimeOfTheWallClockWhereTheBusHasStoodStill) {
+  Duration behind = 1h;
+  BusTime late(BusTime::Kind::simulated, [&behind] { return realNow() - behind; });
+  late.advance(kNever);
+  behind = 0h;
+  late.advance(kNever);
+  service.reset();
+  service.emplace(*recorder, robot, test::masterOf(robot), late);
+  recorder->received(can::Frame(0x701, {0x05}), late.now());
+  const auto news = service->request();
+  ASSERT_TRUE(news.written) << news.text;
+  std::ifstream log(news.log);
+  char parenthesis = 0;
+  double stamp = 0.0;
+  log >> parenthesis >> stamp;
+  EXPECT_NEAR(stamp, toSeconds(realNow().time_since_epoch() + wallClockDistance()), 300.0);
+}
+
 TEST_F(Service, WhatCannotBeWrittenIsTold) {
   service.reset();
   robot.recorder.directory = "/proc/recordings";
-  service.emplace(*recorder, robot, test::masterOf(robot));
+  service.emplace(*recorder, robot, test::masterOf(robot), time);
   const auto news = service->request();
   EXPECT_FALSE(news.written);
   EXPECT_THAT(news.text, HasSubstr("/proc/recordings"));

@@ -97,7 +97,7 @@ class Motion(RobotTest):
         before = self.robot.position("wrist")
         self.robot.stream("wrist", 0.5, lambda: self.robot.position("wrist") > before + 0.2,
                           "wrist turns")
-        place = self.robot.wait_rest("wrist", 5.0)
+        place = self.robot.wait_rest("wrist")
         self.assertLess(place, before + 1.5)
         self.assertEqual(self.robot.axis("wrist").state, "operation enabled")
 
@@ -117,7 +117,7 @@ class Motion(RobotTest):
         before = self.robot.position("wrist")
         self.robot.stream("wrist", -0.5, lambda: self.robot.position("wrist") < before - 0.2,
                           "wrist turns")
-        self.robot.wait_rest("wrist", 5.0)
+        self.robot.wait_rest("wrist")
 
     def test_unknown_mode_is_refused_with_the_modes_there_are(self):
         self.refuse("wrist/set_mode", "wrist|sideways|profile_position|cyclic_position",
@@ -132,7 +132,7 @@ class Motion(RobotTest):
         self.robot.stream("gripper", 0.4,
                           lambda: abs(self.robot.position("gripper") - before) > 0.1,
                           "gripper turns")
-        self.robot.wait_rest("gripper", 5.0)
+        self.robot.wait_rest("gripper")
         self.succeed("gripper/disable")
 
     def test_quick_stop_stops_and_takes_the_power(self):
@@ -141,7 +141,7 @@ class Motion(RobotTest):
         before = self.robot.position("shoulder")
         wait_until(lambda: abs(self.robot.position("shoulder") - before) > 0.05, "it moves")
         self.succeed("quick_stop")
-        self.robot.wait_rest("shoulder", 5.0)
+        self.robot.wait_rest("shoulder")
         for axis in self.AXES:
             self.robot.wait_axis(axis, lambda state: state.state != "operation enabled", "off")
 
@@ -151,7 +151,7 @@ class Motion(RobotTest):
         before = self.robot.position("wrist")
         wait_until(lambda: abs(self.robot.position("wrist") - before) > 0.05, "it moves")
         self.succeed("shoulder/halt", "shoulder")
-        self.robot.wait_rest("shoulder", 5.0)
+        self.robot.wait_rest("shoulder")
         self.assertEqual(self.robot.axis("shoulder").state, "operation enabled")
 
     def test_set_position_declares_where_the_axis_stands(self):

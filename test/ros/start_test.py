@@ -79,7 +79,7 @@ class MissingInterface(unittest.TestCase):
         wait_until(lambda: self.robot.axis_states, "the node is up")
         began = time.monotonic()
         self.assertEqual(self.process.stop(), 0)
-        self.assertLess(time.monotonic() - began, 2.0)
+        self.assertLess(time.monotonic() - began, 20.0)
 
 
 if __name__ == "__main__":

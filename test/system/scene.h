@@ -58,6 +58,15 @@ inline std::string damiaoJoint(const std::string& more = {}) {
          more + "}\n";
 }
 
+/// The pair with a Damiao as its right axis: one drive that faults when the master's heartbeat is
+/// missing for 0.3 s, and one that minds SYNC that is late.
+inline std::string mixedPair(std::string yaml = genericPair()) {
+  const std::string damiao =
+      "{node_id: 2, drive: damiao_dm, limits: {lower: -2.0, upper: 2.0, velocity: 2.0,\n"
+      "    acceleration: 15.0, jerk: 150.0, effort: 5.0}}\n";
+  return yaml.replace(yaml.find("{node_id: 2}"), 13, damiao);
+}
+
 /// A whole robot under test. Knows the truth in the simulated drives in the joints' own units, and
 /// looks at it every millisecond.
 class Scene {

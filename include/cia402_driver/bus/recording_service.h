@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "cia402_driver/bus/bus_time.h"
 #include "cia402_driver/bus/flight_recorder.h"
 #include "cia402_driver/bus/recording_files.h"
 #include "cia402_driver/canopen/config.h"
@@ -31,9 +32,9 @@ class RecordingService {
     std::string log;                  ///< the candump log, if written
   };
 
-  /// @param recorder must outlive the service.
+  /// @param recorder, @param time must outlive the service.
   RecordingService(FlightRecorder& recorder, config::RobotConfig robot,
-                   canopen::MasterConfig master);
+                   canopen::MasterConfig master, const BusTime& time);
   /// Writes what a fault has asked for, then ends the thread.
   ~RecordingService();
 
@@ -56,6 +57,7 @@ class RecordingService {
   FlightRecorder& recorder_;
   config::RobotConfig robot_;
   canopen::MasterConfig master_;
+  const BusTime& time_;
   sem_t triggered_;
   std::atomic<bool> ending_{false};
   std::mutex writing_;  // one recording at a time

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "cia402_driver/bus/bus_loop.h"
+#include "cia402_driver/bus/bus_time.h"
 #include "cia402_driver/bus/command.h"
 #include "cia402_driver/bus/event.h"
 #include "cia402_driver/bus/realtime.h"
@@ -20,12 +21,14 @@
 
 namespace cia402::bus {
 
-/// Runs a Robot on a CAN interface in real time: one thread that owns both. Other threads reach it
-/// through post(), snapshot() and nextEvent() only.
+/// Runs a Robot on a CAN interface at the pace of the clock: one thread that owns both. Other
+/// threads reach it through post(), snapshot() and nextEvent() only.
 class BusRunner final : private EventSink {
  public:
   struct Options {
     int priority = 80;  ///< SCHED_FIFO priority, 1..99; 0: leave scheduling and memory alone
+    BusTime::Kind time = BusTime::Kind::real;  ///< simulated: the bus lives inside this process
+    std::function<Time()> clock = realNow;     ///< of BusTime
   };
 
   /// @param robot valid configuration, @param master made from it.
@@ -38,7 +41,7 @@ class BusRunner final : private EventSink {
   void start();
   /// Begins the orderly shutdown; returns at once.
   void requestShutdown();
-  /// Waits for the end of the thread, at most about 2 s after requestShutdown().
+  /// Waits for the end of the thread, at most about 2 s on the bus after requestShutdown().
   void join();
   bool running() const { return running_.load(); }
 
@@ -51,6 +54,8 @@ class BusRunner final : private EventSink {
   bool nextEvent(Event& event) { return events_.pop(event); }
   /// One thread: the next emergency. @return false if there is none.
   bool nextEmergency(EmergencyEvent& event) { return emergencies_.pop(event); }
+  /// Any thread: the time of snapshots, commands, events and emergencies.
+  const BusTime& time() const { return time_; }
   /// Events that found no room, since start.
   std::uint64_t lostEvents() const { return lost_events_.load(); }
   /// The flight recorder's files.
@@ -66,11 +71,12 @@ class BusRunner final : private EventSink {
   void run();
   void iterate(Time now);
   void publish(Time now);
-  void wait() const;
+  void wait();
   void wake() const;
   void refuseRest();
 
   Options options_;
+  BusTime time_;
   std::unique_ptr<can::Interface> interface_;
   BusLoop loop_;
   int wake_fd_;
@@ -86,6 +92,7 @@ class BusRunner final : private EventSink {
   std::atomic<bool> running_{false}, shutdown_requested_{false};
   std::uint64_t published_cycle_ = 0;
   Time published_{};
+  Time due_ = kNever;  // when the loop has to go round again
   RecordingService recordings_;
   std::thread thread_;
 };

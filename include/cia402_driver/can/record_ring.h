@@ -29,10 +29,9 @@ class RecordRing {
   void push(const T& record) {
     Slot words;
     std::memcpy(words.data(), &record, sizeof record);
-    // A reader that sees a word of this record must see that the one before was counted.
-    std::atomic_thread_fence(std::memory_order_release);
+    // A reader that sees any word of this record must see that the one before was counted.
     AtomicSlot& slot = slots_[next_];
-    for (std::size_t i = 0; i < kWords; ++i) slot[i].store(words[i], std::memory_order_relaxed);
+    for (std::size_t i = 0; i < kWords; ++i) slot[i].store(words[i], std::memory_order_release);
     if (++next_ == slots_.size()) next_ = 0;
     written_.store(written_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
   }
@@ -45,11 +44,10 @@ class RecordRing {
     Slot words;
     for (std::uint64_t i = begin; i < end; ++i) {
       const AtomicSlot& slot = slots_[static_cast<std::size_t>(i % slots_.size())];
-      for (std::size_t k = 0; k < kWords; ++k) words[k] = slot[k].load(std::memory_order_relaxed);
+      for (std::size_t k = 0; k < kWords; ++k) words[k] = slot[k].load(std::memory_order_acquire);
       void* const record = &records[static_cast<std::size_t>(i - begin)];
       std::memcpy(record, words.data(), sizeof(T));
     }
-    std::atomic_thread_fence(std::memory_order_acquire);
     dropOverwritten(records, begin);
     return records;
   }

@@ -8,11 +8,11 @@
 #include <cstdlib>
 #include <limits>
 
-#include "cia402_driver/bus/real_clock.h"
+#include "cia402_driver/bus/bus_time.h"
 
 namespace cia402::ros_node {
 
-/// Nanoseconds that ROS time is ahead of the bus' clock. The same value as long as the clocks keep
+/// Nanoseconds that ROS time is ahead of CLOCK_MONOTONIC. The same value as long as the clocks keep
 /// their distance to 0.5 ms, so that one moment always has one stamp and stamps keep their order;
 /// two readings of the clocks alone would differ by as long as the thread was interrupted between.
 inline std::int64_t clockDistance() {
@@ -34,14 +34,15 @@ inline std::int64_t clockDistance() {
 }
 
 /// ROS time of a moment on the bus.
-inline ros::Time toRos(Time time) {
-  const std::int64_t stamp = time.time_since_epoch().count() + clockDistance();
+inline ros::Time toRos(const bus::BusTime& time, Time moment) {
+  const std::int64_t stamp = time.toClock(moment).time_since_epoch().count() + clockDistance();
   return stamp <= 0 ? ros::Time() : ros::Time().fromNSec(static_cast<std::uint64_t>(stamp));
 }
 
 /// The moment on the bus of a ROS time.
-inline Time fromRos(const ros::Time& time) {
-  return Time(Duration(static_cast<std::int64_t>(time.toNSec()) - clockDistance()));
+inline Time fromRos(const bus::BusTime& time, const ros::Time& moment) {
+  const auto stamp = static_cast<std::int64_t>(moment.toNSec());
+  return time.fromClock(Time(Duration(stamp - clockDistance())));
 }
 
 }  // namespace cia402::ros_node

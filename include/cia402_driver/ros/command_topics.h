@@ -31,8 +31,9 @@ class CommandTopics {
   std::vector<ros::Subscriber> subscribers_;
 };
 
-/// The message as a command for a group.
+/// The message as a command for a group; its start in the time of the bus.
 bus::TrajectoryCommand trajectoryCommand(const std::string& group,
-                                         const trajectory_msgs::JointTrajectory& message);
+                                         const trajectory_msgs::JointTrajectory& message,
+                                         const bus::BusTime& time);
 
 }  // namespace cia402::ros_node

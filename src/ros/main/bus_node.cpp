@@ -76,6 +76,7 @@ int main(int argc, char** argv) {
 
   bus::BusRunner::Options options;
   options.priority = loaded->options.realtime_priority;
+  if (simulation != nullptr) options.time = bus::BusTime::Kind::simulated;
   bus::ReplyLog replies(loaded->robot.axes.size());
   bus::BusRunner runner(loaded->robot, loaded->master, std::move(interface), options);
   ROS_INFO_STREAM(runner.recordings().describe());

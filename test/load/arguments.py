@@ -1,0 +1,78 @@
+# Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+"""Good and bad arguments for every service and topic of a bus_node."""
+import os
+
+import rospy
+from cia402_driver.msg import LssIdentity
+from std_msgs.msg import Float64
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+NAN, INF = float("nan"), float("inf")
+JOINTS = ["shoulder", "elbow", "wrist", "gripper"]
+NUMBERS = [0.0, -0.0, 0.1, -0.3, 1.0, 1e9, -1e300, NAN, INF, -INF]
+NAMES = JOINTS + ["", "nobody", "bus", "ä", "x" * 1000]
+OBJECTS = ["position_actual", "6041:00", "0x6064", "following_error_window", "1008:00", "1018:01",
+           "5FFF:00", "6041:", ":", "", "FFFFFFFF:FF", "ä", "x" * 1000]
+# Nothing here keeps a drive from working.
+WRITABLE = ["606D:00", "0x606E", "statusword", "5FFF:00", "606D:", "", "ä", "x" * 1000]
+VALUES = ["0", "1", "123456", "-1", "0xFFFFFFFF", "1e400", "nan", "inf", "fast", "", "x" * 1000]
+MODES = ["csp", "csv", "pp", "pv", "cyclic_position", "sideways", "", "x" * 1000]
+NMT = ["start", "stop", "pre_operational", "reset_node", "reset_communication", "jump", ""]
+FAULTS = ["encoder", "overcurrent", "power_cycle", "silent", "sdo_silent", "emergency_storm",
+          "short_tpdos", "blocked_rotor", "clear", "clear", "clear", "headache", ""]
+
+
+def trigger(_chance, _folder):
+    return {}
+
+
+def identity(chance):
+    return LssIdentity(vendor_id=1234, product_code=1026, revision=65536,
+                       serial=chance.choice([0, 1111, 0xFFFFFFFF]))
+
+
+SERVICES = {name: trigger for name in (
+    "enable", "disable", "home", "clear_faults", "recover", "quick_stop", "halt",
+    "save_parameters", "restore_parameters", "dump_recording", "error_history")}
+SERVICES.update({
+    "set_mode": lambda chance, _: {"mode": chance.choice(MODES)},
+    "set_position": lambda chance, _: {"position": chance.choice(NUMBERS)},
+    "read_object": lambda chance, _: {"object": chance.choice(OBJECTS)},
+    "write_object": lambda chance, _: {"object": chance.choice(WRITABLE),
+                                       "value": chance.choice(VALUES)},
+    "nmt": lambda chance, _: {"command": chance.choice(NMT)},
+    "save_dcf": lambda chance, folder: {"path": chance.choice(
+        [os.path.join(folder, "a.dcf"), "/nowhere/a.dcf", "a", ""])},
+    "inject_fault": lambda chance, _: {"axis": chance.choice(NAMES), "fault": chance.choice(
+        FAULTS + ["bus_off"])},
+    "lss_scan": lambda chance, _: {"window": chance.choice([0.0, 0.02, -1.0, NAN, 1e9])},
+    "lss_assign": lambda chance, _: {"device": identity(chance),
+                                     "node_id": chance.choice([0, 1, 99, 127, 255]),
+                                     "store": chance.choice([True, False])},
+    # Never one that the drives would take: they would be deaf until the bus follows.
+    "lss_set_bit_timing": lambda chance, _: {"axis": chance.choice(NAMES),
+                                             "kbit_per_s": chance.choice([0, 1, 300, 4000000000]),
+                                             "delay": chance.choice(NUMBERS)},
+})
+
+
+def set_point(chance):
+    return Float64(chance.choice(NUMBERS))
+
+
+def trajectory(chance):
+    message = JointTrajectory(joint_names=chance.choice(
+        [JOINTS, JOINTS[::-1], JOINTS[:2], JOINTS[:3] + ["neck"], []]))
+    message.header.stamp = chance.choice(
+        [rospy.Time(), rospy.Time.now(), rospy.Time.now() - rospy.Duration(5),
+         rospy.Time.now() + rospy.Duration(1), rospy.Time(1), rospy.Time(4294967295)])
+    width = chance.choice([len(message.joint_names)] * 4 + [0, 2, 50])
+    for i in range(chance.choice([0, 1, 2, 5, 200])):
+        places = [chance.choice([0.1, 0.2, -0.2] * 6 + NUMBERS) for _ in range(width)]
+        message.points.append(JointTrajectoryPoint(
+            positions=places, velocities=chance.choice([[], [0.0] * width, [NAN] * width]),
+            time_from_start=rospy.Duration(chance.choice([i + 1, i + 1, i, -1]))))
+    return message
+
+
+TOPICS = {Float64: set_point, JointTrajectory: trajectory}

@@ -1,0 +1,138 @@
+#!/usr/bin/python3
+# Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+"""A bus_node under load from all its topics and services at once, with good and bad arguments.
+
+Every call is answered in words, the node survives, and one recover brings all axes back. What a
+sanitizer says of the node is a failure. CIA402_LOAD_S: how long, 60 s unless told.
+"""
+import os
+import random
+import shutil
+import sys
+import tempfile
+import threading
+import time
+
+import rosgraph
+import rospy
+import rosservice
+import rostopic
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "ros"))
+from arguments import SERVICES, TOPICS  # noqa: E402
+from robot_client import Process, Robot, RobotTest, main, wait_until  # noqa: E402
+
+SECONDS = float(os.environ.get("CIA402_LOAD_S", "60"))
+CALLERS = 8
+SANITIZER_WORDS = ("Sanitizer", "runtime error:")
+
+
+class Load(RobotTest):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.mkdtemp(prefix="load_")
+        cls.process = Process("bus_node", "robot", cls.CONFIG, interface="sim",
+                              recorder={"directory": cls.folder, "post_trigger": 0.2, "keep": 3})
+        cls.robot = Robot()
+        cls.robot.wait_ready()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.robot.close()
+        if cls.process.running():
+            cls.process.kill()
+        shutil.rmtree(cls.folder)
+
+    def setUp(self):
+        self.end = time.monotonic() + SECONDS
+        self.random = random.Random(1)
+        self.lock = threading.Lock()
+        self.services, self.waiting = self.offered(), []
+        self.problems = []
+        self.calls = {}
+        self.sent = {}
+
+    def start(self, work, *arguments):
+        def run():
+            try:
+                work(*arguments)
+            except Exception as error:  # pylint: disable=broad-except
+                self.problems.append(f"{work.__name__}{arguments}: {error!r}")
+        thread = threading.Thread(target=run, daemon=True)
+        thread.start()
+        return thread
+
+    def next_service(self):
+        """All of them, one after another, each round in another order."""
+        with self.lock:
+            if not self.waiting:
+                self.waiting = self.services[:]
+                self.random.shuffle(self.waiting)
+            return self.waiting.pop()
+
+    def call(self, seed):
+        """One caller: services with any of their arguments, as fast as answers come."""
+        chance = random.Random(seed)
+        proxies = {}
+        while time.monotonic() < self.end:
+            name = self.next_service()
+            if name not in proxies:
+                proxies[name] = rospy.ServiceProxy(name, rosservice.get_service_class_by_name(name))
+            request = SERVICES[name.rsplit("/", 1)[-1]](chance, self.folder)
+            answer = proxies[name](**request)
+            if not answer.message:
+                self.problems.append(f"{name} {request}: answered without a word")
+            with self.lock:
+                self.calls[name] = self.calls.get(name, 0) + 1
+
+    def publish(self, topic, kind):
+        """Sends to one topic a hundred times a second."""
+        chance = random.Random(topic)
+        publisher = rospy.Publisher(topic, kind, queue_size=1)
+        while time.monotonic() < self.end:
+            publisher.publish(TOPICS[kind](chance))
+            self.sent[topic] = self.sent.get(topic, 0) + 1
+            time.sleep(0.01)
+        publisher.unregister()
+
+    def topics(self):
+        """What the node listens to: (topic, class)."""
+        _, subscribers, _ = rosgraph.Master("/load").getSystemState()
+        heard = [topic for topic, nodes in subscribers if "/robot" in nodes]
+        return [(topic, rostopic.get_topic_class(topic)[0]) for topic in heard]
+
+    @staticmethod
+    def offered():
+        """The node's services but those of every node."""
+        return [name for name in rosservice.get_service_list(node="/robot")
+                if name.rsplit("/", 1)[-1] not in ("get_loggers", "set_logger_level")]
+
+    def recover(self):
+        for axis in self.AXES:
+            self.robot.call("inject_fault", axis=axis, fault="clear")
+        return self.robot.call("recover").success
+
+    def test_all_topics_and_services_at_once(self):
+        topics = self.topics()
+        self.assertGreaterEqual(len(self.services), 80)
+        self.assertEqual(len(topics), 5)  # four axes and a group
+        threads = [self.start(self.call, seed) for seed in range(CALLERS)]
+        threads += [self.start(self.publish, topic, kind) for topic, kind in topics]
+        for thread in threads:
+            thread.join(SECONDS + 300.0)
+            self.assertFalse(thread.is_alive(), "a call was not answered")
+        print(f"{sum(self.calls.values())} calls, {sum(self.sent.values())} messages", flush=True)
+        self.assertEqual(self.problems, [])
+        self.assertTrue(self.process.running())
+        self.assertEqual(sorted(self.sent), sorted(topic for topic, _ in topics))
+        self.assertEqual(sorted(self.calls), sorted(self.services))
+        wait_until(self.recover, "recovered", 300.0)
+        self.robot.wait_ready()
+        self.assertEqual(self.process.stop(), 0)
+        output = self.process.output()
+        for word in SANITIZER_WORDS:
+            self.assertNotIn(word, output)
+
+
+if __name__ == "__main__":
+    main("load")

@@ -1,0 +1,177 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// The thread of the driver with simulated drives inside the process, and other threads around it.
+#include "cia402_driver/bus/runner.h"
+
+#include <sys/stat.h>
+
+#include <atomic>
+#include <filesystem>
+#include <future>
+#include <limits>
+#include <thread>
+
+#include "cia402_driver/sim/simulated_interface.h"
+#include "system/scene.h"
+
+namespace cia402 {
+namespace {
+
+using namespace std::chrono_literals;
+using drive::ProcedureKind;
+
+class SimulatedRunner : public testing::Test {
+ protected:
+  ~SimulatedRunner() override {
+    runner.reset();
+    if (!folder.empty()) std::filesystem::remove_all(folder);
+  }
+  void begin(std::function<Time()> clock = bus::realNow) {
+    char name[] = "/tmp/bus_runner_test_XXXXXX";
+    folder = mkdtemp(name);
+    LoadedRobot loaded = loadText(mixedPair());
+    loaded.robot.recorder.directory = folder;
+    loaded.robot.recorder.keep = 3;
+    bus::BusRunner::Options options;
+    options.priority = 0;
+    options.time = bus::BusTime::Kind::simulated;
+    options.clock = clock;
+    auto interface = std::make_unique<sim::SimulatedInterface>(
+        loaded.axes, loaded.robot.bus.bitrate, options.clock());
+    simulation = interface.get();
+    runner = std::make_unique<bus::BusRunner>(loaded.robot, loaded.master, std::move(interface),
+                                              options);
+    runner->start();
+    while (!all([](const bus::AxisSnapshot& axis) { return axis.state.feedback_valid; })) {
+      std::this_thread::yield();
+    }
+  }
+  template <typename Condition>
+  bool all(Condition&& condition) {
+    const bus::RobotSnapshot snapshot = runner->snapshot();
+    return std::all_of(snapshot.axes.begin(), snapshot.axes.end(), condition);
+  }
+  std::uint64_t cycles() { return runner->snapshot().statistics.cycles(); }
+  void waitCycles(std::uint64_t count) {
+    for (const std::uint64_t end = cycles() + count; cycles() < end;) std::this_thread::yield();
+  }
+  bus::Answer call(decltype(bus::Command::body) body) {
+    auto promise = std::make_shared<std::promise<bus::Answer>>();
+    bus::Command command;
+    command.body = std::move(body);
+    command.reply = [promise](const bus::Answer& answer) { promise->set_value(answer); };
+    auto answer = promise->get_future();
+    runner->post(std::move(command));
+    return answer.get();
+  }
+  bus::Answer procedure(ProcedureKind kind, const std::string& axis = {}) {
+    bus::ProcedureCommand command;
+    command.axis = axis;
+    command.request.kind = kind;
+    return call(command);
+  }
+
+  std::string folder;
+  sim::SimulatedInterface* simulation = nullptr;
+  std::unique_ptr<bus::BusRunner> runner;
+};
+
+TEST_F(SimulatedRunner, KeepsItsDrivesOnAClockThatJumps) {
+  std::atomic<int> readings{0};
+  begin([&readings] { return bus::realNow() + (readings++ / 200) * Duration(10s); });
+  ASSERT_TRUE(procedure(ProcedureKind::enable).success);
+  waitCycles(500);
+  EXPECT_TRUE(all([](const bus::AxisSnapshot& axis) {
+    return axis.state.state == drive::State::operation_enabled && axis.emergencies.total == 0;
+  }));
+  EXPECT_EQ(runner->snapshot().statistics.overruns(), 0U);
+  EXPECT_GE(runner->time().lost(), 10s);
+}
+
+TEST_F(SimulatedRunner, EndsOnAClockThatJumps) {
+  std::atomic<int> readings{0};
+  begin([&readings] { return bus::realNow() + (readings++ / 50) * Duration(10s); });
+  ASSERT_TRUE(procedure(ProcedureKind::enable).success);
+  runner->requestShutdown();
+  runner->join();
+  EXPECT_FALSE(runner->running());
+  EXPECT_TRUE(all([](const bus::AxisSnapshot& axis) {
+    return axis.state.state != drive::State::operation_enabled;
+  }));
+}
+
+/// Everything that ROS does with it, from as many threads, with good and bad arguments.
+TEST_F(SimulatedRunner, AnswersEveryCallOfManyThreadsAtOnce) {
+  begin();
+  std::atomic<bool> end{false};
+  std::atomic<int> answers{0};
+  std::vector<std::thread> threads;
+  const auto often = [&](auto&& work) {
+    threads.emplace_back([&end, work] {
+      for (int i = 0; !end; ++i) work(i);
+    });
+  };
+  const auto told = [&answers](const bus::Answer& answer) {
+    EXPECT_TRUE(answer.success || !answer.message.empty());
+    ++answers;
+  };
+  const std::vector<std::string> axes = {"left", "right", "", "nobody"};
+  const std::vector<ProcedureKind> kinds = {
+      ProcedureKind::enable,       ProcedureKind::halt,    ProcedureKind::recover,
+      ProcedureKind::quick_stop,   ProcedureKind::disable, ProcedureKind::clear_faults,
+      ProcedureKind::set_position, ProcedureKind::set_mode};
+  for (std::size_t thread = 0; thread < 2; ++thread) {
+    often([&, thread](int i) {
+      const auto n = static_cast<std::size_t>(i) + thread;
+      told(procedure(kinds[n % kinds.size()], axes[n % axes.size()]));
+    });
+  }
+  often([&](int i) {
+    const std::string& axis = axes[static_cast<std::size_t>(i) % axes.size()];
+    told(call(bus::ReadObjectCommand{axis, i % 2 != 0 ? "6064" : "none such"}));
+    told(call(bus::WriteObjectCommand{axis, "6065", i % 2 != 0 ? "123456" : "fast"}));
+    told(call(bus::ErrorHistoryCommand{axis}));
+    told(call(bus::NmtServiceCommand{axis, i % 2 != 0 ? "start" : "jump"}));
+  });
+  often([&](int i) {
+    constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+    bus::Command command;
+    command.body = bus::SetpointCommand{static_cast<std::size_t>(i % 2),
+                                        i % 5 == 0 ? kNoNumber : 0.001 * (i % 100)};
+    runner->post(std::move(command));
+    bus::TrajectoryCommand trajectory;
+    trajectory.group = "pair";
+    trajectory.joints = {"left", i % 3 == 0 ? "neck" : "right"};
+    trajectory.points = {{{0.1, 0.1}, {0.0, 0.0}, {}, 1s}};
+    if (i % 2 == 0) trajectory.start_time = runner->time().fromClock(bus::realNow() + 10ms);
+    told(call(trajectory));
+  });
+  often([&](int i) {
+    const auto inject = [this, i](Time now) {
+      const auto done = simulation->world().drive(0).inject(i % 2 == 0 ? "encoder" : "clear", now);
+      return bus::answerOf(done.ok(), "injected");
+    };
+    told(call(bus::CallCommand{inject}));
+    waitCycles(20);
+  });
+  often([&](int) {
+    const bus::RobotSnapshot snapshot = runner->snapshot();
+    EXPECT_GE(runner->time().now(), snapshot.now);
+    EXPECT_GE(runner->time().toClock(snapshot.now), snapshot.now);
+    for (bus::Event event; runner->nextEvent(event);) EXPECT_FALSE(event.text.empty());
+    for (bus::EmergencyEvent event; runner->nextEmergency(event);) EXPECT_LT(event.axis, 2U);
+    bus::RecordingService::News news;
+    while (runner->recordings().nextNews(news)) EXPECT_TRUE(news.written) << news.text;
+    (void)runner->realtime();
+  });
+  often([&](int) {
+    EXPECT_FALSE(runner->recordings().request().text.empty());
+    waitCycles(50);
+  });
+  waitCycles(1000);
+  end = true;
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_GE(answers.load(), 100);
+}
+
+}  // namespace
+}  // namespace cia402
