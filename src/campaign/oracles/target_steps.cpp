@@ -1,0 +1,102 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// Streamed position targets on the wire step by no more than velocity limit times cycle.
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <optional>
+
+#include "../oracle.h"
+
+namespace cia402::campaign {
+namespace {
+
+constexpr canopen::ObjectId kTargetPosition{0x607A, 0};
+
+class TargetSteps final : public Oracle {
+ public:
+  explicit TargetSteps(const Stage& stage) {
+    for (const AxisFacts& facts : stage.axes()) {
+      for (const canopen::NodeConfig& node : stage.loaded().master.nodes) {
+        if (node.node_id == facts.config->node_id) findTargets(node, facts.index);
+      }
+    }
+    last_.resize(stage.axes().size());
+  }
+  const char* name() const override { return "target_step"; }
+
+  void onFrame(const can::Frame& frame, const View& view) override {
+    const auto found = targets_.find(frame.id);
+    if (found == targets_.end() || frame.error || frame.remote) return;
+    const Place& place = found->second;
+    if (frame.size < place.byte + 4) return;
+    judge(view, place.axis, valueIn(frame, place, view.stage.axes()[place.axis]));
+  }
+  void look(const View& view) override {
+    for (std::size_t i = 0; i < last_.size(); ++i) {
+      if (!streams(view, i)) last_[i].reset();
+    }
+  }
+
+ private:
+  struct Place {
+    std::size_t axis = 0;
+    unsigned byte = 0;
+  };
+
+  void findTargets(const canopen::NodeConfig& node, std::size_t axis) {
+    for (const canopen::PdoConfig& pdo : node.pdos) {
+      if (pdo.direction != canopen::PdoDirection::rpdo || !pdo.enabled) continue;
+      unsigned bit = 0;
+      for (const canopen::PdoEntry& entry : pdo.entries) {
+        if (entry.object == kTargetPosition) targets_[pdo.cob_id] = {axis, bit / 8};
+        bit += entry.bits;
+      }
+    }
+  }
+  /// In joint units.
+  static double valueIn(const can::Frame& frame, const Place& place, const AxisFacts& facts) {
+    std::uint32_t raw = 0;
+    for (unsigned i = 0; i < 4; ++i) {
+      raw |= static_cast<std::uint32_t>(frame.data[place.byte + i]) << 8 * i;
+    }
+    if (facts.units_per_count != 0.0) {
+      return facts.units_per_count * static_cast<double>(static_cast<std::int32_t>(raw));
+    }
+    float value = 0.0F;
+    std::memcpy(&value, &raw, sizeof value);
+    return static_cast<double>(value);
+  }
+  /// Is it enabled in a mode in which a target counts at once?
+  static bool streams(const View& view, std::size_t i) {
+    const AxisFacts& facts = view.stage.axes()[i];
+    const AxisTruth& truth = view.truths[i];
+    const drive::ModeSpec* mode = facts.config->profile->mode("cyclic_position");
+    if (!truth.enabled() || mode == nullptr || truth.mode != mode->value) return false;
+    // Another mode may have the same number: the one at start must be the cyclic one then.
+    return facts.units_per_count != 0.0 || facts.config->mode == "cyclic_position";
+  }
+  void judge(const View& view, std::size_t i, double value) {
+    if (!streams(view, i)) return;
+    const AxisFacts& facts = view.stage.axes()[i];
+    const double step = last_[i] ? std::fabs(value - *last_[i]) : 0.0;
+    const double allowed = 1.02 * facts.velocity * toSeconds(facts.config->sync_period) +
+                           2 * std::fabs(facts.units_per_count) + 1e-6 * std::fabs(value);
+    if (last_[i] && !(step <= allowed)) {
+      report(view, i,
+             "is sent a target that steps by " + number(step) + " in one cycle, " +
+                 number(step / allowed) + " times what its velocity limit allows");
+    }
+    last_[i] = value;
+  }
+
+  std::map<std::uint32_t, Place> targets_;
+  std::vector<std::optional<double>> last_;
+};
+
+}  // namespace
+
+std::unique_ptr<Oracle> makeTargetSteps(const Stage& stage) {
+  return std::make_unique<TargetSteps>(stage);
+}
+
+}  // namespace cia402::campaign
