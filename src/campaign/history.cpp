@@ -7,12 +7,6 @@
 namespace cia402::campaign {
 namespace {
 
-std::string text(double value) {
-  char written[32];
-  std::snprintf(written, sizeof written, "%.4g", value);
-  return written;
-}
-
 class Author {
  public:
   Author(Random& random, const RobotPlan& robot) : random_(random), robot_(robot) {

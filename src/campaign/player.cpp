@@ -33,7 +33,9 @@ Player::Player(Stage& stage, const Scene& scene, const RunOptions& options)
       oracles_(allOracles(stage)),
       dead_(stage.axes().size()) {
   conditions_.axes.resize(stage.axes().size());
-  for (auto& oracle : oracles_) oracle->reportTo(findings_);
+  for (auto& oracle : oracles_) {
+    oracle->reportTo(ignored(oracle->name()) ? ignored_ : findings_);
+  }
   // Another master that sends and listens to nothing.
   foreign_ = &stage_.world().bus().attach(deaf_, "foreign");
   foreign_->setAttached(false);
@@ -116,8 +118,12 @@ void Player::say(const std::string& line) {
   options_.trace(time + line);
 }
 
+bool Player::ignored(const std::string& oracle) const {
+  return ("," + options_.ignore + ",").find("," + oracle + ",") != std::string::npos;
+}
+
 void Player::report(const char* oracle, const std::string& axis, const std::string& text) {
-  findings_.push_back({oracle, axis, text, stage_.now()});
+  (ignored(oracle) ? ignored_ : findings_).push_back({oracle, axis, text, stage_.now()});
 }
 
 void Player::onFrame(const can::Frame& frame, Time now) {

@@ -51,6 +51,7 @@ class Player {
   bool failed() const { return stop_at_first_ && !findings_.empty(); }
   void later(Duration delay, std::function<void()> what);
   void say(const std::string& line);
+  bool ignored(const std::string& oracle) const;
   void report(const char* oracle, const std::string& axis, const std::string& text);
   void onFrame(const can::Frame& frame, Time now);
   View view() { return {stage_, truths_, permits_, conditions_, stage_.now()}; }
@@ -100,7 +101,7 @@ class Player {
   Conditions conditions_;
   std::vector<AxisTruth> truths_;
   std::vector<std::unique_ptr<Oracle>> oracles_;
-  std::vector<Finding> findings_;
+  std::vector<Finding> findings_, ignored_;
   std::list<Pending> pending_;
   std::vector<Stream> streams_;
   std::vector<Later> later_;

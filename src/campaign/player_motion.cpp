@@ -12,8 +12,6 @@ namespace {
 using namespace std::chrono_literals;
 using Source = Permits::Source;
 
-constexpr double kTwoPi = 6.283185307179586476925;
-
 }  // namespace
 
 bool Player::actMotion(const Words& words) {

@@ -9,6 +9,8 @@
 
 namespace cia402::campaign {
 
+inline constexpr double kTwoPi = 6.283185307179586476925;
+
 /// Random choices that are the same on every platform: the generator is standardised, what is made
 /// of its numbers is our own.
 class Random {

@@ -7,14 +7,6 @@
 namespace cia402::campaign {
 namespace {
 
-constexpr double kTwoPi = 6.283185307179586476925;
-
-std::string text(double value) {
-  char written[32];
-  std::snprintf(written, sizeof written, "%.5g", value);
-  return written;
-}
-
 /// One axis; its YAML is a flow mapping on one line.
 class AxisWriter {
  public:
@@ -162,6 +154,12 @@ std::string groupYaml(Random& random, const GroupPlan& group, const std::vector<
 }
 
 }  // namespace
+
+std::string text(double value) {
+  char written[32];
+  std::snprintf(written, sizeof written, "%.5g", value);
+  return written;
+}
 
 const std::vector<ModePlan>& modesOf(bool damiao) {
   static const std::vector<ModePlan> kGeneric{{"cyclic_position", 'p'},

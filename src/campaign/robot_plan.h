@@ -29,6 +29,9 @@ struct RobotPlan {
   std::vector<GroupPlan> groups;
 };
 
+/// A number with as many digits as a scene needs.
+std::string text(double value);
+
 /// A random robot of 2 to 6 axes.
 RobotPlan planRobot(Random& random);
 

@@ -106,7 +106,8 @@ class Shrinker {
   bool dropKeysOf(const std::vector<std::string>& path) {
     bool better = false;
     for (const std::string& key : keysOf(path)) {
-      if (key == "velocity" || key == "acceleration" || key == "axes") continue;
+      // Without limits there is nothing to judge by.
+      if (key == "limits" || key == "velocity" || key == "acceleration") continue;
       Scene candidate = scene_;
       YAML::Node tree = YAML::Load(candidate.robot);
       YAML::Node node = at(tree, path);

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstring>
 
+#include "random.h"
+
 namespace cia402::campaign {
 namespace {
-
-constexpr double kTwoPi = 6.283185307179586476925;
 
 AxisFacts factsOf(const drive::AxisConfig& axis, const config::BusConfig& bus, std::size_t index) {
   AxisFacts facts;

@@ -30,6 +30,7 @@ struct Report {
 struct RunOptions {
   std::string config_folder;  ///< with drives/ and simulated_drives/
   bool stop_at_first = true;  ///< finding
+  std::string ignore;         ///< names of oracles that say nothing, to look at what is behind them
   /// Takes a line for each action, answer, event and finding.
   std::function<void(const std::string&)> trace;
 };

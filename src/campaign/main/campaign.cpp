@@ -29,7 +29,7 @@ struct Options {
   int jobs = 2;
   int tries = 600;  ///< of the shrinker
   bool trace = false, make = false;
-  std::string scene, out = "build/campaign", config = CIA402_CONFIG_FOLDER;
+  std::string ignore, scene, out = "build/campaign", config = CIA402_CONFIG_FOLDER;
 };
 
 /// What a worker tells of a seed, in one write to the pipe.
@@ -43,6 +43,7 @@ struct Result {
 RunOptions runOptions(const Options& options) {
   RunOptions run;
   run.config_folder = options.config;
+  run.ignore = options.ignore;
   return run;
 }
 
@@ -203,6 +204,8 @@ bool parse(int argc, char** argv, Options& options) {
       options.tries = std::atoi(value);
     } else if (word == "--scene") {
       options.scene = value;
+    } else if (word == "--ignore") {
+      options.ignore = value;
     } else if (word == "--out") {
       options.out = value;
     } else if (word == "--config") {

@@ -25,6 +25,7 @@ class MotorLimits final : public Oracle {
     const Duration period = view.stage.loaded().robot.bus.sync_period;
     const Duration since = view.now - last_sync_;
     last_sync_ = view.now;
+    if (since > period + period / 2) starved_ = view.now + kSyncMemory;
     const double shorter = 1.0 - toSeconds(since) / toSeconds(period);
     if (shorter > 0.02) {
       squeeze_ = std::max(view.now < squeezed_ ? squeeze_ : 0.0, shorter);
@@ -60,6 +61,10 @@ class MotorLimits final : public Oracle {
           view, i,
           "turns at " + number(truth.velocity) + " per s, its limit is " + number(facts.velocity));
     }
+    // Without set-points a drive stops where the last one was, as hard as it can.
+    const Duration period = view.stage.loaded().robot.bus.sync_period;
+    const bool starved = view.now < starved_ || view.now - last_sync_ > period + period / 2;
+    if (starved) axis.count = 0;
     if (axis.count == kWindow && squeeze == 0.0) {
       const double rate = (truth.velocity - axis.speeds[axis.next]) / (kWindow * 0.001);
       // A quick stop may take twice the limit.
@@ -75,7 +80,7 @@ class MotorLimits final : public Oracle {
   }
 
   std::vector<Axis> axes_;
-  Time last_sync_{}, squeezed_{};
+  Time last_sync_{}, squeezed_{}, starved_{};
   double squeeze_ = 0.0;
 };
 
