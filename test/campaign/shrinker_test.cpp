@@ -28,9 +28,8 @@ Scene longScene() {
 }
 
 std::size_t count(const Scene& scene, const std::string& verb) {
-  return static_cast<std::size_t>(
-      std::count_if(scene.actions.begin(), scene.actions.end(),
-                    [&](const Action& a) { return a.verb() == verb; }));
+  return static_cast<std::size_t>(std::count_if(scene.actions.begin(), scene.actions.end(),
+                                                [&](const Action& a) { return a.verb() == verb; }));
 }
 
 bool haltThenDisable(const Scene& scene) {

@@ -36,8 +36,9 @@ TEST_P(Scenes, ShowNothingAnyMore) {
   const campaign::Report report = campaign::run(*scene, options);
   ASSERT_EQ(report.problem, "");
   for (const campaign::Finding& finding : report.findings) {
-    ADD_FAILURE() << scene->about << "\n" << finding.oracle << ": " << finding.axis << " "
-                  << finding.text << ", at " << toSeconds(finding.at.time_since_epoch()) << " s";
+    ADD_FAILURE() << scene->about << "\n"
+                  << finding.oracle << ": " << finding.axis << " " << finding.text << ", at "
+                  << toSeconds(finding.at.time_since_epoch()) << " s";
   }
 }
 

@@ -1,5 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-// Streamed position targets on the wire step by no more than velocity limit times cycle.
+// Streamed position targets on the wire step by no more than velocity limit times cycle. A frame
+// that itself ends operation is no set-point: the drive does not follow the target in it.
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -10,7 +11,7 @@
 namespace cia402::campaign {
 namespace {
 
-constexpr canopen::ObjectId kTargetPosition{0x607A, 0};
+constexpr canopen::ObjectId kTargetPosition{0x607A, 0}, kControlword{0x6040, 0};
 
 class TargetSteps final : public Oracle {
  public:
@@ -21,12 +22,19 @@ class TargetSteps final : public Oracle {
       }
     }
     last_.resize(stage.axes().size());
+    controlwords_.resize(stage.axes().size());
   }
   const char* name() const override { return "target_step"; }
 
   void onFrame(const can::Frame& frame, const View& view) override {
+    if (frame.error || frame.remote) return;
+    const auto control = controls_.find(frame.id);
+    if (control != controls_.end() && frame.size >= control->second.byte + 2) {
+      const unsigned byte = control->second.byte;
+      controlwords_[control->second.axis] = frame.data[byte] | frame.data[byte + 1] << 8;
+    }
     const auto found = targets_.find(frame.id);
-    if (found == targets_.end() || frame.error || frame.remote) return;
+    if (found == targets_.end()) return;
     const Place& place = found->second;
     if (frame.size < place.byte + 4) return;
     judge(view, place.axis, valueIn(frame, place, view.stage.axes()[place.axis]));
@@ -49,6 +57,7 @@ class TargetSteps final : public Oracle {
       unsigned bit = 0;
       for (const canopen::PdoEntry& entry : pdo.entries) {
         if (entry.object == kTargetPosition) targets_[pdo.cob_id] = {axis, bit / 8};
+        if (entry.object == kControlword) controls_[pdo.cob_id] = {axis, bit / 8};
         bit += entry.bits;
       }
     }
@@ -71,12 +80,18 @@ class TargetSteps final : public Oracle {
     const AxisFacts& facts = view.stage.axes()[i];
     const AxisTruth& truth = view.truths[i];
     const drive::ModeSpec* mode = facts.config->profile->mode("cyclic_position");
-    if (!truth.enabled() || mode == nullptr || truth.mode != mode->value) return false;
+    if (!facts.config->limits.velocity || !truth.enabled() || mode == nullptr ||
+        truth.mode != mode->value)
+      return false;
     // Another mode may have the same number: the one at start must be the cyclic one then.
     return facts.units_per_count != 0.0 || facts.config->mode == "cyclic_position";
   }
+  bool operates(std::size_t i) const { return (controlwords_[i] & 0x8F) == 0x0F; }
   void judge(const View& view, std::size_t i, double value) {
-    if (!streams(view, i)) return;
+    if (!streams(view, i) || !operates(i)) {
+      last_[i].reset();
+      return;
+    }
     const AxisFacts& facts = view.stage.axes()[i];
     const double step = last_[i] ? std::fabs(value - *last_[i]) : 0.0;
     const double allowed = 1.02 * facts.velocity * toSeconds(facts.config->sync_period) +
@@ -89,7 +104,8 @@ class TargetSteps final : public Oracle {
     last_[i] = value;
   }
 
-  std::map<std::uint32_t, Place> targets_;
+  std::map<std::uint32_t, Place> targets_, controls_;  // by COB-ID
+  std::vector<int> controlwords_;
   std::vector<std::optional<double>> last_;
 };
 
