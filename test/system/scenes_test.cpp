@@ -43,7 +43,7 @@ TEST_P(Scenes, ShowNothingAnyMore) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, Scenes, testing::ValuesIn(sceneFiles()),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& scene) { return scene.param; });
 
 }  // namespace
 }  // namespace cia402
