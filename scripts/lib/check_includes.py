@@ -23,6 +23,7 @@ MAY_INCLUDE = {
     "sim": MODEL,
     "ros": MODEL + ["motion", "decode", "bus", "sim"],
     "tools": MODEL + ["motion", "decode", "bus", "sim"],
+    "campaign": MODEL + ["motion", "decode", "bus", "sim", "tools"],
 }
 # sim/ takes only types and numbers from the master's stack: what encodes, decodes or decides there
 # must not do so here, or a mistake would meet itself on both ends of the wire and stay unseen.

@@ -48,6 +48,8 @@ class BusInterface final : public can::Interface, private Listener {
   std::size_t pending() const override { return port_.pending(); }
   std::optional<ErrorCounters> errorCounters() const override;
 
+  /// Frames that wait to be received.
+  std::size_t waiting() const { return count_; }
   /// The port underneath, e.g. to pull its cable.
   Port& port() { return port_; }
 

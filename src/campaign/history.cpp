@@ -1,0 +1,283 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "history.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace cia402::campaign {
+namespace {
+
+class Author {
+ public:
+  Author(Random& random, const RobotPlan& robot) : random_(random), robot_(robot) {
+    for (const AxisPlan& axis : robot.axes) modes_.push_back(axis.mode);
+    troubled_ = random.chance(0.6);
+    late_host_ = random.chance(0.4);
+  }
+
+  std::vector<Action> write(double seconds) {
+    now_ = random_.between(2.0, 3.0);
+    begin();
+    while (now_ < seconds) {
+      episode();
+      if (random_.chance(0.12)) prove();
+    }
+    prove();
+    add(now_, "end");
+    std::stable_sort(actions_.begin(), actions_.end(),
+                     [](const Action& a, const Action& b) { return a.at < b.at; });
+    return std::move(actions_);
+  }
+
+ private:
+  void add(double at, const std::string& words) {
+    char line[32];
+    std::snprintf(line, sizeof line, "%.6f ", at);
+    actions_.push_back(parseAction(line + words).value());
+  }
+  const AxisPlan& anyAxis() { return robot_.axes[random_.below(robot_.axes.size())]; }
+  std::string whom(const AxisPlan& axis, double all = 0.2) {
+    return random_.chance(all) ? "all" : axis.name;
+  }
+  char kindOf(const AxisPlan& axis) {
+    const auto index = static_cast<std::size_t>(&axis - robot_.axes.data());
+    for (const ModePlan& mode : modesOf(axis.damiao)) {
+      if (modes_[index] == mode.name) return mode.kind;
+    }
+    return 'p';
+  }
+
+  /// Enabled, and homed where that is asked for.
+  void begin() {
+    add(now_, "recover all");
+    now_ += 1.0;
+    bool moves = false;
+    for (const AxisPlan& axis : robot_.axes) {
+      if (!axis.homing) continue;
+      add(now_, "home " + axis.name);
+      moves = moves || axis.homes_by_moving;
+    }
+    now_ += moves ? random_.between(0.3, 8.0) : 0.6;
+  }
+  void prove() {
+    now_ += 0.5;
+    add(now_, "prove");  // what follows is counted from its end
+    now_ += 0.5;
+  }
+
+  void episode() {
+    const AxisPlan& axis = anyAxis();
+    if (random_.chance(0.35)) {
+      add(now_, (random_.chance(0.7) ? "recover " : "enable ") + whom(axis, 0.6));
+      now_ += random_.between(0.3, 1.2);
+    }
+    if (axis.homing && random_.chance(0.1)) {
+      add(now_, "home " + axis.name);
+      now_ += random_.between(0.05, 3.0);
+    }
+    if (random_.chance(0.08)) changeMode(axis);
+    move(axis);
+    if (random_.chance(0.3)) move(anyAxis());
+    double at = now_ + random_.between(0.005, 1.5);
+    if (late_host_ && random_.chance(0.4)) late(at + random_.between(-0.02, 0.08));
+    if (troubled_ && random_.chance(0.3)) trouble(at + random_.between(-0.05, 0.15), axis);
+    const std::size_t calls = random_.pick({0, 1, 1, 2, 2, 3, 4});
+    for (std::size_t i = 0; i < calls; ++i) {
+      call(at, random_.chance(0.8) ? axis : anyAxis());
+      at += random_.chance(0.7) ? random_.between(0.0, 0.01) : random_.between(0.01, 0.4);
+    }
+    now_ = at + random_.between(0.05, 2.0);
+  }
+
+  void changeMode(const AxisPlan& axis) {
+    const std::string mode = random_.pick(modesOf(axis.damiao)).name;
+    modes_[static_cast<std::size_t>(&axis - robot_.axes.data())] = mode;
+    add(now_, "set_mode " + axis.name + " " + mode);
+    now_ += random_.between(0.3, 1.5);
+  }
+
+  double position(const AxisPlan& axis) { return random_.between(axis.lower, axis.upper); }
+
+  void move(const AxisPlan& axis) {
+    const char kind = kindOf(axis);
+    if (kind == 'p' && random_.chance(0.4)) return trajectory();
+    const std::string rate = text(random_.between(50.0, 250.0));
+    const std::string length = text(random_.between(0.005, 1.5));
+    double value = position(axis);
+    if (kind == 'v') value = axis.velocity * random_.between(-1.2, 1.2);
+    if (kind == 't') value = axis.effort * random_.between(-0.5, 0.5);
+    if (random_.chance(0.05)) value = random_.pick({0.0, -0.0, 1e9, -1e9});
+    if (random_.chance(0.15)) {
+      add(now_, "point " + axis.name + " " + text(value));
+    } else if (kind == 'p' && random_.chance(0.2)) {
+      add(now_, "nudge " + axis.name + " " + text(0.2 * axis.velocity * random_.between(-1, 1)) +
+                    " " + length + " " + rate);
+    } else if (random_.chance(0.3)) {
+      const double amplitude = kind == 'p' ? 0.2 * (axis.upper - axis.lower) : 0.3 * axis.velocity;
+      add(now_, "sine " + axis.name + " " + text(value) + " " + text(amplitude) + " " +
+                    text(random_.between(0.3, 3.0)) + " " + length + " " + rate);
+    } else {
+      add(now_, "stream " + axis.name + " " + text(value) + " " + length + " " + rate);
+    }
+    if (random_.chance(0.04)) {
+      add(now_ + random_.between(0.0, 0.3),
+          "point " + axis.name + " " + random_.pick<std::string>({"nan", "inf", "-inf", "1e300"}));
+    }
+  }
+
+  void trajectory() {
+    const GroupPlan& group = random_.pick(robot_.groups);
+    std::string shares;
+    for (std::size_t i = 0; i < group.axes.size(); ++i) shares += " " + text(random_.uniform());
+    const std::string length = text(random_.between(0.1, 2.5));
+    const double choice = random_.uniform();
+    if (choice < 0.65) {
+      add(now_, "move " + group.name + " " + length + shares);
+    } else if (choice < 0.9) {
+      add(now_, "path " + group.name + " " + text(random_.between(-0.5, 1.0)) + " " +
+                    std::to_string(1 + random_.below(4)) + " " + length + shares);
+    } else {
+      std::string goal;
+      for (std::size_t i = 0; i < group.axes.size(); ++i) {
+        goal += " " + random_.pick<std::string>({"nan", "1e9", "0", "-0.0", "99"});
+      }
+      add(now_, "goal " + group.name + " " + length + goal);
+    }
+    if (random_.chance(0.3)) {  // another one takes over on the way
+      add(now_ + random_.between(0.0, 1.0),
+          "move " + group.name + " " + text(random_.between(0.3, 2.0)) + shares);
+    }
+    if (random_.chance(0.15)) add(now_ + random_.between(0.0, 1.0), "stop " + group.name);
+  }
+
+  void call(double at, const AxisPlan& axis) {
+    const std::string who = whom(axis);
+    const double choice = random_.uniform();
+    if (choice < 0.22) return add(at, "halt " + who);
+    if (choice < 0.32) return add(at, "quick_stop " + who);
+    if (choice < 0.44) return add(at, "disable " + who);
+    if (choice < 0.54) return add(at, "enable " + who);
+    if (choice < 0.64) return add(at, "recover " + who);
+    if (choice < 0.72) {
+      const std::string mode = random_.pick(modesOf(axis.damiao)).name;
+      return add(at, "set_mode " + axis.name + " " + mode);
+    }
+    if (choice < 0.80) return add(at, "set_position " + axis.name + " " + text(position(axis)));
+    if (choice < 0.84) return add(at, "home " + axis.name);
+    if (choice < 0.87) return add(at, "clear_faults " + who);
+    if (choice < 0.90) return add(at, "point " + axis.name + " " + text(position(axis)));
+    if (choice < 0.92) return add(at, "stop " + random_.pick(robot_.groups).name);
+    if (choice < 0.94) return add(at, "read " + axis.name + " " + object());
+    if (choice < 0.96) return write(at, axis);
+    if (choice < 0.98) {
+      return add(at, "nmt " + who + " " +
+                         random_.pick<std::string>({"start", "stop", "pre_operational",
+                                                    "reset_node", "reset_communication"}));
+    }
+    add(at, random_.pick<std::string>({"save ", "restore ", "history "}) + axis.name);
+  }
+  std::string object() {
+    return random_.pick<std::string>(
+        {"position_actual", "6041:00", "following_error_window", "1018:04", "6502:00", "5FFF:01"});
+  }
+  void write(double at, const AxisPlan& axis) {
+    if (axis.damiao) {
+      add(at,
+          "write " + axis.name + " " +
+              random_.pick<std::string>({"following_error_window nan", "following_error_window 0.5",
+                                         "position_window -0.0", "position_window inf",
+                                         "200A:03 100.0", "2004:03 1000.0"}));
+    } else {
+      add(at, "write " + axis.name + " " +
+                  random_.pick<std::string>({"6066:00 20", "position_window_time 10",
+                                             "digital_outputs 1", "6041:00 0", "5FFF:00 1"}));
+    }
+  }
+
+  void late(double at) {
+    const double choice = random_.uniform();
+    if (choice < 0.6) {
+      add(at, "stall " + text(random_.pick({0.005, 0.012, 0.02, 0.06, 0.15, 0.5})));
+    } else if (choice < 0.8) {
+      add(at,
+          "late " + text(random_.between(0.0005, 0.006)) + " " + text(random_.between(0.5, 3.0)));
+    } else if (choice < 0.93) {
+      add(at, "kill " + text(random_.between(0.01, 1.5)));
+      now_ += 1.0;
+    } else {
+      add(at, "shutdown " + text(random_.between(0.1, 1.0)));
+      now_ += 3.0;
+    }
+  }
+
+  void trouble(double at, const AxisPlan& axis) {
+    const std::string length = text(random_.between(0.02, 1.5));
+    const double choice = random_.uniform();
+    if (choice < 0.12) {
+      add(at, "loss " + text(random_.pick({0.01, 0.1, 0.25})) + " " + length);
+    } else if (choice < 0.18) {
+      add(at, "delay " + text(random_.between(0.01, 0.2)) + " " + length + " " +
+                  text(random_.between(0.002, 0.02)));
+    } else if (choice < 0.24) {
+      add(at, random_.pick<std::string>({"corrupt ", "duplicate "}) +
+                  text(random_.between(0.01, 0.1)) + " " + length);
+    } else if (choice < 0.50) {
+      fault(at, axis);
+    } else if (choice < 0.57) {
+      add(at, "power " + axis.name + " " + length);
+    } else if (choice < 0.63) {
+      add(at, "silent " + axis.name + " " + length);
+    } else if (choice < 0.68) {
+      add(at, "mute " + axis.name + " " + length);
+    } else if (choice < 0.76) {
+      add(at, "block " + axis.name + " " + length);
+    } else if (choice < 0.83) {
+      if (axis.damiao) return;  // has none
+      add(at, "switch " + axis.name + random_.pick<std::string>({" lower ", " upper "}) +
+                  text(random_.between(0.2, 2.0)));
+    } else if (choice < 0.88) {
+      add(at, "cable " + (random_.chance(0.5) ? "host" : axis.name) + " " + length);
+    } else if (choice < 0.93) {
+      add(at, "bus_off " + (random_.chance(0.5) ? "host" : axis.name) + " " + length);
+    } else if (choice < 0.96) {
+      add(at, "sync " + text(random_.pick({0.004, 0.01, 0.05})) + " " + length);
+    } else {
+      add(at, "foreign_nmt " + whom(axis) + " " +
+                  random_.pick<std::string>(
+                      {"stop", "pre_operational", "reset_node", "reset_communication", "start"}));
+    }
+  }
+  void fault(double at, const AxisPlan& axis) {
+    static const std::vector<std::string> kGeneric{"overcurrent",
+                                                   "short_circuit",
+                                                   "overvoltage",
+                                                   "undervoltage",
+                                                   "encoder",
+                                                   "hardware",
+                                                   "following_error",
+                                                   "overtemperature",
+                                                   "0x7305",
+                                                   "power_cycle",
+                                                   "overtemperature_warning"};
+    static const std::vector<std::string> kDamiao{
+        "overcurrent",  "overvoltage", "undervoltage",    "motor_overtemperature",
+        "encoder",      "hardware",    "following_error", "overtemperature_warning",
+        "not_a_number", "0x7305",      "power_cycle"};
+    add(at, "fault " + axis.name + " " + random_.pick(axis.damiao ? kDamiao : kGeneric));
+  }
+
+  Random& random_;
+  const RobotPlan& robot_;
+  std::vector<std::string> modes_;
+  std::vector<Action> actions_;
+  double now_ = 0.0;
+  bool troubled_ = false, late_host_ = false;
+};
+
+}  // namespace
+
+std::vector<Action> planHistory(Random& random, const RobotPlan& robot, double seconds) {
+  return Author(random, robot).write(seconds);
+}
+
+}  // namespace cia402::campaign

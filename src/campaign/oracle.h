@@ -1,0 +1,67 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cia402_driver/campaign/runner.h"
+#include "conditions.h"
+#include "permits.h"
+#include "stage.h"
+
+namespace cia402::campaign {
+
+/// A call of a service, as it was made.
+struct Call {
+  std::string verb, who;
+  std::vector<std::size_t> axes;
+  Time at{};
+  Duration stalled{};  ///< Conditions::stalled at that time
+};
+
+/// What an oracle may look at: motors, wire, what was commanded and answered, and what is wrong
+/// with the world. Not the driver.
+struct View {
+  const Stage& stage;
+  const std::vector<AxisTruth>& truths;
+  const Permits& permits;
+  const Conditions& conditions;
+  Time now;
+};
+
+/// Judges one thing.
+class Oracle {
+ public:
+  virtual ~Oracle() = default;
+  virtual const char* name() const = 0;
+  /// Every millisecond.
+  virtual void look(const View&) {}
+  virtual void onFrame(const can::Frame&, const View&) {}
+  virtual void onCall(const Call&, const View&) {}
+  virtual void onAnswer(const Call&, const bus::Answer&, const View&) {}
+
+  void reportTo(std::vector<Finding>& findings) { findings_ = &findings; }
+
+ protected:
+  void report(const View& view, std::size_t axis, std::string text) {
+    findings_->push_back({name(), view.stage.axes()[axis].name, std::move(text), view.now});
+  }
+
+ private:
+  std::vector<Finding>* findings_ = nullptr;
+};
+
+/// "0.28 rad/s" and the like.
+std::string number(double value);
+
+std::unique_ptr<Oracle> makeCommandedMotion(const Stage& stage);
+std::unique_ptr<Oracle> makePowerOracle(const Stage& stage);
+std::unique_ptr<Oracle> makeTargetSteps(const Stage& stage);
+std::unique_ptr<Oracle> makeMotorLimits(const Stage& stage);
+std::unique_ptr<Oracle> makeFloats(const Stage& stage);
+std::unique_ptr<Oracle> makeAnswers(const Stage& stage);
+/// All of them.
+std::vector<std::unique_ptr<Oracle>> allOracles(const Stage& stage);
+
+}  // namespace cia402::campaign

@@ -1,0 +1,70 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// What the answer to a call says is true of the motor.
+#include <cmath>
+#include <set>
+
+#include "../oracle.h"
+
+namespace cia402::campaign {
+namespace {
+
+using namespace std::chrono_literals;
+
+// An answer speaks of feedback that is up to two cycles and their frames old.
+constexpr Duration kFeedbackAge = 25ms;
+
+class Answers final : public Oracle {
+ public:
+  explicit Answers(const Stage& stage) : seen_(stage.axes().size()) {}
+  const char* name() const override { return "untrue_answer"; }
+
+  void look(const View& view) override {
+    for (std::size_t i = 0; i < seen_.size(); ++i) {
+      const AxisTruth& truth = view.truths[i];
+      if (truth.power) seen_[i].on = view.now;
+      if (!truth.power) seen_[i].off = view.now;
+      if (std::fabs(truth.velocity) <= view.stage.axes()[i].creep()) seen_[i].still = view.now;
+    }
+  }
+  void onAnswer(const Call& call, const bus::Answer& answer, const View& view) override {
+    if (!answer.success) return;
+    static const std::set<std::string> kStands{"halt",         "disable", "quick_stop", "set_mode",
+                                               "set_position", "save",    "restore"};
+    static const std::set<std::string> kOff{"disable", "save", "restore"};
+    static const std::set<std::string> kOn{"enable", "recover"};
+    const auto says = [&](const std::set<std::string>& verbs) {
+      return verbs.count(call.verb) != 0;
+    };
+    for (std::size_t i : call.axes) {
+      const Seen& seen = seen_[i];
+      const auto lately = [&](Time time) { return view.now - time <= kFeedbackAge; };
+      if (says(kStands) && !lately(seen.still)) {
+        report(view, i,
+               call.verb + " is answered with success (" + answer.message +
+                   ") while the motor turns at " + number(view.truths[i].velocity) + " per s");
+      }
+      if (says(kOff) && !lately(seen.off)) {
+        report(view, i,
+               call.verb + " is answered with success (" + answer.message +
+                   ") while the power stage is on");
+      }
+      if (says(kOn) && !lately(seen.on)) {
+        report(view, i,
+               call.verb + " is answered with success (" + answer.message +
+                   ") while the power stage is off");
+      }
+    }
+  }
+
+ private:
+  struct Seen {
+    Time on{-1h}, off{-1h}, still{-1h};
+  };
+  std::vector<Seen> seen_;
+};
+
+}  // namespace
+
+std::unique_ptr<Oracle> makeAnswers(const Stage& stage) { return std::make_unique<Answers>(stage); }
+
+}  // namespace cia402::campaign

@@ -1,0 +1,95 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// The motors keep the limits of velocity and acceleration.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "../oracle.h"
+
+namespace cia402::campaign {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::size_t kWindow = 20;  // ms over which acceleration is measured
+constexpr Duration kSyncMemory = 30ms;
+constexpr std::uint32_t kSync = 0x80;
+
+class MotorLimits final : public Oracle {
+ public:
+  explicit MotorLimits(const Stage& stage) : axes_(stage.axes().size()) {}
+  const char* name() const override { return "motor_limits"; }
+
+  void onFrame(const can::Frame& frame, const View& view) override {
+    if (frame.id != kSync || frame.error) return;
+    const Duration period = view.stage.loaded().robot.bus.sync_period;
+    const Duration since = view.now - last_sync_;
+    last_sync_ = view.now;
+    if (since > period + period / 2) starved_ = view.now + kSyncMemory;
+    const double shorter = 1.0 - toSeconds(since) / toSeconds(period);
+    if (shorter > 0.02) {
+      squeeze_ = std::max(view.now < squeezed_ ? squeeze_ : 0.0, shorter);
+      squeezed_ = view.now + kSyncMemory;
+    }
+  }
+  void look(const View& view) override {
+    for (std::size_t i = 0; i < axes_.size(); ++i) look(view, i);
+  }
+
+ private:
+  struct Axis {
+    std::array<double, kWindow> speeds{};
+    std::size_t next = 0, count = 0;
+  };
+
+  void look(const View& view, std::size_t i) {
+    const AxisFacts& facts = view.stage.axes()[i];
+    const AxisTruth& truth = view.truths[i];
+    Axis& axis = axes_[i];
+    const drive::AxisLimits& limits = facts.config->limits;
+    const bool judged = limits.velocity && limits.acceleration && truth.power &&
+                        view.now >= view.conditions.axes[i].blocked &&
+                        view.now >= view.conditions.lossy && view.now >= view.conditions.foreign &&
+                        view.now >= view.conditions.axes[i].cut_off;
+    if (!judged) {
+      axis.count = 0;
+      return;
+    }
+    // SYNCs that follow each other too quickly make a drive do two steps in the time of one.
+    const double squeeze = view.now < squeezed_ ? squeeze_ : 0.0;
+    const double fastest = facts.velocity * (1.1 + squeeze) + 0.002;
+    if (std::fabs(truth.velocity) > fastest) {
+      report(
+          view, i,
+          "turns at " + number(truth.velocity) + " per s, its limit is " + number(facts.velocity));
+    }
+    // Without set-points a drive stops where the last one was, as hard as it can.
+    const Duration period = view.stage.loaded().robot.bus.sync_period;
+    const bool starved = view.now < starved_ || view.now - last_sync_ > period + period / 2;
+    if (starved) axis.count = 0;
+    if (axis.count == kWindow && squeeze == 0.0) {
+      const double rate = (truth.velocity - axis.speeds[axis.next]) / (kWindow * 0.001);
+      // A quick stop may take twice the limit.
+      if (std::fabs(rate) > 2.0 * facts.acceleration * 1.3 + 0.05 * facts.velocity / 0.02) {
+        report(view, i,
+               "changes its speed by " + number(rate) + " per s^2, its limit is " +
+                   number(facts.acceleration));
+      }
+    }
+    axis.speeds[axis.next] = truth.velocity;
+    axis.next = (axis.next + 1) % kWindow;
+    axis.count = std::min(axis.count + 1, kWindow);
+  }
+
+  std::vector<Axis> axes_;
+  Time last_sync_{}, squeezed_{}, starved_{};
+  double squeeze_ = 0.0;
+};
+
+}  // namespace
+
+std::unique_ptr<Oracle> makeMotorLimits(const Stage& stage) {
+  return std::make_unique<MotorLimits>(stage);
+}
+
+}  // namespace cia402::campaign

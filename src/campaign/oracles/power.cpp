@@ -1,0 +1,40 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// The power stage is neither switched off nor on while the motor turns.
+#include <cmath>
+
+#include "../oracle.h"
+
+namespace cia402::campaign {
+namespace {
+
+class Power final : public Oracle {
+ public:
+  explicit Power(const Stage& stage) : before_(stage.axes().size()) {}
+  const char* name() const override { return "power_at_speed"; }
+
+  void look(const View& view) override {
+    for (std::size_t i = 0; i < before_.size(); ++i) {
+      const AxisTruth& truth = view.truths[i];
+      const AxisFacts& facts = view.stage.axes()[i];
+      const bool fast = std::fabs(truth.velocity) > 0.05 * facts.velocity + 0.005;
+      if (fast && before_[i] && !truth.power && view.now >= view.conditions.axes[i].may_coast) {
+        report(view, i, "lost its power at " + number(truth.velocity) + " per s and coasts");
+      }
+      if (fast && !before_[i] && truth.power) {
+        report(view, i, "was switched on while it coasted at " + number(truth.velocity) + " per s");
+      }
+      before_[i] = truth.power;
+    }
+  }
+
+ private:
+  std::vector<bool> before_;
+};
+
+}  // namespace
+
+std::unique_ptr<Oracle> makePowerOracle(const Stage& stage) {
+  return std::make_unique<Power>(stage);
+}
+
+}  // namespace cia402::campaign

@@ -1,0 +1,118 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// Streamed position targets on the wire step by no more than velocity limit times cycle. A frame
+// that itself ends operation is no set-point: the drive does not follow the target in it.
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <optional>
+
+#include "../oracle.h"
+
+namespace cia402::campaign {
+namespace {
+
+constexpr canopen::ObjectId kTargetPosition{0x607A, 0}, kControlword{0x6040, 0};
+
+class TargetSteps final : public Oracle {
+ public:
+  explicit TargetSteps(const Stage& stage) {
+    for (const AxisFacts& facts : stage.axes()) {
+      for (const canopen::NodeConfig& node : stage.loaded().master.nodes) {
+        if (node.node_id == facts.config->node_id) findTargets(node, facts.index);
+      }
+    }
+    last_.resize(stage.axes().size());
+    controlwords_.resize(stage.axes().size());
+  }
+  const char* name() const override { return "target_step"; }
+
+  void onFrame(const can::Frame& frame, const View& view) override {
+    if (frame.error || frame.remote) return;
+    const auto control = controls_.find(frame.id);
+    if (control != controls_.end() && frame.size >= control->second.byte + 2) {
+      const unsigned byte = control->second.byte;
+      controlwords_[control->second.axis] = frame.data[byte] | frame.data[byte + 1] << 8;
+    }
+    const auto found = targets_.find(frame.id);
+    if (found == targets_.end()) return;
+    const Place& place = found->second;
+    if (frame.size < place.byte + 4) return;
+    judge(view, place.axis, valueIn(frame, place, view.stage.axes()[place.axis]));
+  }
+  void look(const View& view) override {
+    for (std::size_t i = 0; i < last_.size(); ++i) {
+      if (!streams(view, i)) last_[i].reset();
+    }
+  }
+
+ private:
+  struct Place {
+    std::size_t axis = 0;
+    unsigned byte = 0;
+  };
+
+  void findTargets(const canopen::NodeConfig& node, std::size_t axis) {
+    for (const canopen::PdoConfig& pdo : node.pdos) {
+      if (pdo.direction != canopen::PdoDirection::rpdo || !pdo.enabled) continue;
+      unsigned bit = 0;
+      for (const canopen::PdoEntry& entry : pdo.entries) {
+        if (entry.object == kTargetPosition) targets_[pdo.cob_id] = {axis, bit / 8};
+        if (entry.object == kControlword) controls_[pdo.cob_id] = {axis, bit / 8};
+        bit += entry.bits;
+      }
+    }
+  }
+  /// In joint units.
+  static double valueIn(const can::Frame& frame, const Place& place, const AxisFacts& facts) {
+    std::uint32_t raw = 0;
+    for (unsigned i = 0; i < 4; ++i) {
+      raw |= static_cast<std::uint32_t>(frame.data[place.byte + i]) << 8 * i;
+    }
+    if (facts.units_per_count != 0.0) {
+      return facts.units_per_count * static_cast<double>(static_cast<std::int32_t>(raw));
+    }
+    float value = 0.0F;
+    std::memcpy(&value, &raw, sizeof value);
+    return static_cast<double>(value);
+  }
+  /// Is it enabled in a mode in which a target counts at once?
+  static bool streams(const View& view, std::size_t i) {
+    const AxisFacts& facts = view.stage.axes()[i];
+    const AxisTruth& truth = view.truths[i];
+    const drive::ModeSpec* mode = facts.config->profile->mode("cyclic_position");
+    if (!facts.config->limits.velocity || !truth.enabled() || mode == nullptr ||
+        truth.mode != mode->value)
+      return false;
+    // Another mode may have the same number: the one at start must be the cyclic one then.
+    return facts.units_per_count != 0.0 || facts.config->mode == "cyclic_position";
+  }
+  bool operates(std::size_t i) const { return (controlwords_[i] & 0x8F) == 0x0F; }
+  void judge(const View& view, std::size_t i, double value) {
+    if (!streams(view, i) || !operates(i)) {
+      last_[i].reset();
+      return;
+    }
+    const AxisFacts& facts = view.stage.axes()[i];
+    const double step = last_[i] ? std::fabs(value - *last_[i]) : 0.0;
+    const double allowed = 1.02 * facts.velocity * toSeconds(facts.config->sync_period) +
+                           2 * std::fabs(facts.units_per_count) + 1e-6 * std::fabs(value);
+    if (last_[i] && !(step <= allowed)) {
+      report(view, i,
+             "is sent a target that steps by " + number(step) + " in one cycle, " +
+                 number(step / allowed) + " times what its velocity limit allows");
+    }
+    last_[i] = value;
+  }
+
+  std::map<std::uint32_t, Place> targets_, controls_;  // by COB-ID
+  std::vector<int> controlwords_;
+  std::vector<std::optional<double>> last_;
+};
+
+}  // namespace
+
+std::unique_ptr<Oracle> makeTargetSteps(const Stage& stage) {
+  return std::make_unique<TargetSteps>(stage);
+}
+
+}  // namespace cia402::campaign

@@ -1,0 +1,55 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "stage.h"
+
+namespace cia402::campaign {
+
+/// Until when each axis may move, and why: made from what was commanded and answered, and from
+/// what became of motor, host and bus. Knows nothing of what the driver thinks.
+class Permits {
+ public:
+  /// Who can move an axis; each for itself.
+  enum class Source { stream, target, trajectory, homing };
+
+  explicit Permits(const Stage& stage);
+
+  /// The axis may move until then, or longer if it may already. A `target` is used up as soon as
+  /// the axis stands for a while: a position that was reached is no reason to move again.
+  void allow(std::size_t axis, Source source, Time until);
+  /// It may move no longer than that by `source`, or by any.
+  void cut(std::size_t axis, Source source, Time until);
+  void cut(std::size_t axis, Time until);
+  /// Everything that is under way lasts so much longer: the host stood still.
+  void delay(Duration duration, Time now);
+  /// Everything that is under way may take so much longer, also what begins before `until`.
+  void stretch(std::size_t axis, Duration duration, Time until);
+  /// Homings that were pending end with the process.
+  void endHomings(Time now);
+  /// To be called with each look at the motors.
+  void watch(const std::vector<AxisTruth>& truths, Time now);
+
+  Time until(std::size_t axis) const;
+  bool allowed(std::size_t axis, Time now) const { return now <= until(axis); }
+
+ private:
+  struct Axis {
+    std::array<Time, 4> until{};
+    Time moved{};
+    Duration stretched{};
+    Time stretched_until{};
+    bool power = false, faulted = false;
+  };
+  Time& at(std::size_t axis, Source source) {
+    return axes_[axis].until[static_cast<std::size_t>(source)];
+  }
+  void watch(Axis& axis, const AxisFacts& facts, const AxisTruth& truth, Time now);
+
+  const Stage& stage_;
+  std::vector<Axis> axes_;
+};
+
+}  // namespace cia402::campaign

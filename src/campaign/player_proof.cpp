@@ -1,0 +1,113 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// After the disturbances the robot comes back, and a small move works.
+#include <algorithm>
+#include <cmath>
+
+#include "player.h"
+
+namespace cia402::campaign {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Duration kRecoverTime = 20s;
+
+}  // namespace
+
+void Player::prove() {
+  calm();
+  runTo(stage_.now() + 4s);
+  if (failed()) return;
+  bus::Answer answer;
+  const Time began = stage_.now();
+  if (!proveCall("recover", "all", kRecoverTime, answer)) return;
+  if (!answer.success) {
+    report("no_recovery", "", "recover fails when all is well again: " + answer.message);
+    return;
+  }
+  for (const AxisFacts& facts : stage_.axes()) {
+    if (!facts.config->homing) continue;
+    if (stage_.host().robot().axes()[facts.index].state().homed) continue;
+    if (!proveCall("home", facts.name, facts.homing_timeout + 10s, answer)) return;
+    if (answer.success) continue;
+    report("no_recovery", facts.name, "home fails when all is well again: " + answer.message);
+    return;
+  }
+  say("  recovered within " + number(toSeconds(stage_.now() - began)) + " s");
+  for (std::size_t i = 0; i < stage_.axes().size() && !failed(); ++i) proveMove(i);
+}
+
+bool Player::proveCall(const std::string& verb, const std::string& who, Duration limit,
+                       bus::Answer& answer) {
+  const auto done = std::make_shared<std::optional<bus::Answer>>();
+  bus::Command command;
+  drive::ProcedureRequest request;
+  request.kind = verb == "home" ? drive::ProcedureKind::home : drive::ProcedureKind::recover;
+  command.body = bus::ProcedureCommand{who == "all" ? std::string() : who, request};
+  command.reply = [done](const bus::Answer& given) { *done = given; };
+  const auto axes = stage_.named(who);
+  for (std::size_t i : axes) {
+    if (verb == "home" && stage_.axes()[i].homes_by_moving) {
+      permits_.allow(i, Permits::Source::homing, kNever);
+    }
+  }
+  say("> " + verb + " " + who);
+  stage_.host().post(std::move(command));
+  for (const Time end = stage_.now() + limit; stage_.now() < end && !*done;) {
+    runTo(stage_.now() + 5ms);
+    if (failed()) return false;
+  }
+  for (std::size_t i : axes) permits_.cut(i, Permits::Source::homing, stage_.now());
+  if (*done) {
+    answer = **done;
+    say("< " + verb + (answer.success ? ": " : " FAILED: ") + answer.message);
+    return true;
+  }
+  report(
+      "no_recovery", who,
+      verb + " is not answered within " + number(toSeconds(limit)) + " s when all is well again");
+  return false;
+}
+
+void Player::proveMove(std::size_t axis) {
+  const AxisFacts& facts = stage_.axes()[axis];
+  const drive::DriveProfile& profile = *facts.config->profile;
+  const auto mode =
+      std::find_if(profile.modes.begin(), profile.modes.end(),
+                   [&](const drive::ModeSpec& m) { return m.value == truths_[axis].mode; });
+  if (mode == profile.modes.end()) {
+    report(
+        "no_recovery", facts.name,
+        "its drive shows mode " + std::to_string(truths_[axis].mode) + " when all is well again");
+    return;
+  }
+  const drive::AxisLimits& limits = facts.config->limits;
+  const double from = truths_[axis].position, at = shown(axis);
+  const double middle =
+      limits.lower && limits.upper ? (*limits.lower + *limits.upper) / 2.0 : at + 1.0;
+  const double sign = middle >= at ? 1.0 : -1.0;
+  double expected = 0.05 * facts.velocity * sign;
+  double value = at + expected;
+  if (mode->kind == drive::ControlKind::velocity) value = 0.2 * facts.velocity * sign;
+  if (mode->kind == drive::ControlKind::torque) {
+    value = 0.15 * limits.effort.value_or(1.0) * sign;
+  }
+  if (mode->kind == drive::ControlKind::velocity) expected = value * 0.3;
+  const bool torque = mode->kind == drive::ControlKind::torque;
+  stream(
+      axis, [value](Duration) { return value; }, 0.3, 100.0);
+  runTo(stage_.now() + 300ms + facts.config->command_timeout + facts.stopTime(facts.velocity) +
+        500ms);
+  if (failed()) return;
+  const double moved = truths_[axis].position - from;
+  const bool far_enough = moved * sign > 0.3 * std::fabs(expected);
+  const bool too_far =
+      !torque && std::fabs(moved) > 3.0 * std::fabs(expected) +
+                                        facts.velocity * facts.velocity / facts.acceleration;
+  if ((torque ? moved * sign > 0.0 : far_enough) && !too_far) return;
+  report("no_recovery", facts.name,
+         "was told to move by " + number(expected) + " in mode " + mode->name +
+             " when all was well again, and moved by " + number(moved));
+}
+
+}  // namespace cia402::campaign

@@ -1,0 +1,198 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "robot_plan.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace cia402::campaign {
+namespace {
+
+/// One axis; its YAML is a flow mapping on one line.
+class AxisWriter {
+ public:
+  AxisWriter(Random& random, std::size_t number, int node) : random_(random) {
+    axis_.name = "a" + std::to_string(number + 1);
+    axis_.damiao = random.chance(0.4);
+    add("node_id", std::to_string(node));
+    add("drive", axis_.damiao ? "damiao_dm" : "generic_cia402");
+    const double kind = random.uniform();
+    linear_ = !axis_.damiao && kind < 0.15;
+    axis_.continuous = !linear_ && kind < 0.3;
+    if (linear_) add("type", "prismatic");
+    if (axis_.continuous) add("type", "continuous");
+    if (axis_.damiao) {
+      damiao();
+    } else {
+      generic();
+    }
+    place();
+    homing();
+    options();
+    add("simulation", "{" + simulation_ + "}");
+    axis_.yaml += "}";
+  }
+  AxisPlan take() { return std::move(axis_); }
+
+ private:
+  void add(const std::string& key, const std::string& value) {
+    axis_.yaml += (axis_.yaml.empty() ? "{" : ", ") + key + ": " + value;
+  }
+  void simulate(const std::string& key, const std::string& value) {
+    simulation_ += (simulation_.empty() ? "" : ", ") + key + ": " + value;
+  }
+  void damiao() {
+    time_constant_ = random_.between(0.003, 0.008);
+    axis_.velocity = random_.between(0.5, 4.0);
+    axis_.acceleration = axis_.velocity * random_.between(2.0, 8.0);
+    axis_.effort = random_.between(3.0, 7.0);
+    axis_.mode = random_.chance(0.55) ? "cyclic_position" : random_.pick(modesOf(true)).name;
+  }
+  void generic() {
+    time_constant_ = random_.between(0.002, 0.006);
+    const double counts = random_.pick({4096.0, 65536.0, 131072.0});
+    const double gear = linear_ ? random_.pick({1.0, 2.0, 5.0}) : random_.between(20.0, 160.0);
+    const double lead = random_.pick({0.005, 0.01, 0.02});
+    const double unit = (linear_ ? lead : kTwoPi) / gear;  // joint units a motor turn
+    add("counts_per_turn", text(counts));
+    add("gear_ratio", text(gear));
+    if (linear_) add("lead", text(lead));
+    const double rated = 0.64, strength = random_.between(1.5, 3.0);
+    add("rated_torque", text(rated));
+    axis_.effort = rated * strength * (linear_ ? kTwoPi / unit : gear);
+    axis_.velocity = linear_ ? random_.between(0.05, 0.4) : random_.between(0.3, 3.0);
+    axis_.velocity = std::min(axis_.velocity, 60.0 * unit);
+    axis_.acceleration =
+        std::min(axis_.velocity * random_.between(2.0, 8.0), 0.25 * strength * 300.0 * unit);
+    axis_.mode = random_.chance(0.6) ? "cyclic_position" : random_.pick(modesOf(false)).name;
+    // Narrow enough to notice what jumps, wide enough for honest motion.
+    add("write", "[{object: following_error_window, value: " +
+                     text(5.0 * axis_.velocity * time_constant_ + 0.004 * axis_.velocity) + "}]");
+  }
+  void place() {
+    const double reach = linear_ ? 0.4 : 2.5;
+    at_ = random_.chance(0.3) ? 0.0 : random_.between(-reach, reach);
+    axis_.lower = at_ - random_.between(0.15, 1.0) * reach;
+    axis_.upper = at_ + random_.between(0.15, 1.0) * reach;
+    if (random_.chance(0.4)) add("direction", "-1");
+    if (random_.chance(0.25)) add("position_offset", text(random_.between(-0.3, 0.3) * reach));
+    std::string limits;
+    if (!axis_.continuous) {
+      limits = "lower: " + text(axis_.lower) + ", upper: " + text(axis_.upper) + ", ";
+    }
+    add("limits", "{" + limits + "velocity: " + text(axis_.velocity) + ", acceleration: " +
+                      text(axis_.acceleration) + ", effort: " + text(axis_.effort) + "}");
+    simulate("initial_position", text(at_));
+    simulate("time_constant", text(time_constant_));
+  }
+  void homing() {
+    const double choice = random_.uniform();
+    if (axis_.damiao) {
+      if (choice < 0.3) declare({});
+      return;
+    }
+    if (choice < 0.25) return;
+    if (choice < 0.55) return declare("method: " + random_.pick<std::string>({"35", "37"}) + ", ");
+    axis_.homing = axis_.homes_by_moving = true;
+    std::string method = random_.pick<std::string>({"33", "34"});
+    if (choice > 0.8 && !axis_.continuous) {
+      method = random_.pick<std::string>({"17", "18"});
+      simulate("lower_limit_switch", text(axis_.lower - 0.05));
+      simulate("upper_limit_switch", text(axis_.upper + 0.05));
+    }
+    add("homing", "{method: " + method + ", search_velocity: " + text(0.4 * axis_.velocity) +
+                      ", zero_velocity: " + text(0.1 * axis_.velocity) + ", acceleration: " +
+                      text(axis_.acceleration) + ", offset: " + text(at_) + required() + "}");
+  }
+  void declare(const std::string& method) {
+    axis_.homing = true;
+    const double offset = random_.chance(0.5) ? at_ : random_.between(axis_.lower, axis_.upper);
+    add("homing", "{" + method + "offset: " + text(offset) + required() + "}");
+  }
+  std::string required() { return random_.chance(0.2) ? ", required: false" : ""; }
+  void options() {
+    add("mode", axis_.mode);
+    axis_.command_timeout = random_.pick({0.05, 0.1, 0.2, 0.4});
+    add("command_timeout", text(axis_.command_timeout));
+    if (!axis_.damiao && random_.chance(0.3)) {
+      simulate("brake_delay", text(random_.between(0.02, 0.25)));
+    }
+    if (!axis_.damiao && random_.chance(0.1)) {
+      add("error_control", "guarding");
+      simulate("drive", "generic_cia402_guarding");
+    }
+  }
+
+  Random& random_;
+  AxisPlan axis_;
+  std::string simulation_;
+  bool linear_ = false;
+  double at_ = 0.0, time_constant_ = 0.004;
+};
+
+bool cyclic(const AxisPlan& axis) { return axis.mode == "cyclic_position"; }
+
+GroupPlan planGroup(Random& random, const std::vector<AxisPlan>& axes, std::size_t number) {
+  GroupPlan group;
+  group.name = "g" + std::to_string(number + 1);
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    if (cyclic(axes[i]) || random.chance(0.1)) group.axes.push_back(i);
+  }
+  if (number > 0 && group.axes.size() > 1) {
+    group.axes.erase(group.axes.begin() +
+                     static_cast<std::ptrdiff_t>(random.below(group.axes.size())));
+  }
+  if (group.axes.empty()) group.axes.push_back(random.below(axes.size()));
+  return group;
+}
+
+std::string groupYaml(Random& random, const GroupPlan& group, const std::vector<AxisPlan>& axes) {
+  std::string joints;
+  for (std::size_t i : group.axes) joints += (joints.empty() ? "" : ", ") + axes[i].name;
+  std::string yaml = "  " + group.name + ": {joints: [" + joints + "]";
+  if (random.chance(0.4)) yaml += ", stop_group_on_fault: false";
+  return yaml + "}\n";
+}
+
+}  // namespace
+
+std::string text(double value) {
+  char written[32];
+  std::snprintf(written, sizeof written, "%.5g", value);
+  return written;
+}
+
+const std::vector<ModePlan>& modesOf(bool damiao) {
+  static const std::vector<ModePlan> kGeneric{{"cyclic_position", 'p'},
+                                              {"profile_position", 'p'},
+                                              {"profile_velocity", 'v'},
+                                              {"cyclic_velocity", 'v'}};
+  static const std::vector<ModePlan> kDamiao{
+      {"cyclic_position", 'p'},          {"profile_position", 'p'}, {"position_velocity", 'p'},
+      {"position_velocity_torque", 'p'}, {"profile_velocity", 'v'}, {"cyclic_velocity", 'v'},
+      {"velocity_torque", 'v'},          {"profile_torque", 't'}};
+  return damiao ? kDamiao : kGeneric;
+}
+
+RobotPlan planRobot(Random& random) {
+  RobotPlan robot;
+  const std::size_t count = 2 + random.below(5);
+  const int first = 1 + static_cast<int>(random.below(30));
+  for (std::size_t i = 0; i < count; ++i) {
+    robot.axes.push_back(AxisWriter(random, i, first + 3 * static_cast<int>(i)).take());
+  }
+  const double period =
+      count <= 2 && random.chance(0.3) ? 0.002 : random.pick({0.004, 0.004, 0.005, 0.01});
+  robot.yaml = "bus: {interface: can0, bitrate: 1000000, sync_period: " + text(period) +
+               ", heartbeat: " + text(random.pick({0.05, 0.1, 0.1, 0.2})) + "}\n" +
+               "recorder: {duration: 1, keep: 0}\naxes:\n";
+  for (const AxisPlan& axis : robot.axes) robot.yaml += "  " + axis.name + ": " + axis.yaml + "\n";
+  robot.yaml += "groups:\n";
+  const std::size_t groups = random.chance(0.3) ? 2 : 1;
+  for (std::size_t i = 0; i < groups; ++i) {
+    robot.groups.push_back(planGroup(random, robot.axes, i));
+    robot.yaml += groupYaml(random, robot.groups.back(), robot.axes);
+  }
+  return robot;
+}
+
+}  // namespace cia402::campaign

@@ -1,0 +1,45 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "random.h"
+
+namespace cia402::campaign {
+
+/// What the author of a history has to know of an axis.
+struct AxisPlan {
+  std::string name, yaml;
+  bool damiao = false, continuous = false, homing = false, homes_by_moving = false;
+  double velocity = 1.0, acceleration = 4.0, effort = 1.0;
+  double lower = -1.0, upper = 1.0;
+  double command_timeout = 0.2;
+  std::string mode;  ///< at start
+};
+
+struct GroupPlan {
+  std::string name;
+  std::vector<std::size_t> axes;
+};
+
+struct RobotPlan {
+  std::string yaml;
+  std::vector<AxisPlan> axes;
+  std::vector<GroupPlan> groups;
+};
+
+/// A number with as many digits as a scene needs.
+std::string text(double value);
+
+/// A random robot of 2 to 6 axes.
+RobotPlan planRobot(Random& random);
+
+/// Modes that an axis of the family can be in, and what their set-points are.
+struct ModePlan {
+  const char* name;
+  char kind;  ///< p position, v velocity, t torque
+};
+const std::vector<ModePlan>& modesOf(bool damiao);
+
+}  // namespace cia402::campaign

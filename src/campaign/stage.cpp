@@ -1,0 +1,113 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "stage.h"
+
+#include <cmath>
+#include <cstring>
+
+#include "random.h"
+
+namespace cia402::campaign {
+namespace {
+
+AxisFacts factsOf(const drive::AxisConfig& axis, const config::BusConfig& bus, std::size_t index) {
+  AxisFacts facts;
+  facts.name = axis.name;
+  facts.index = index;
+  facts.config = &axis;
+  const drive::AxisGeometry& geometry = axis.geometry;
+  const bool linear = geometry.type == drive::AxisGeometry::Type::prismatic;
+  const double ratio = axis.profile->output_shaft ? 1.0 : geometry.gear_ratio;
+  facts.units_per_turn = (linear ? geometry.lead : kTwoPi) / ratio * geometry.direction;
+  if (!axis.profile->output_shaft) {
+    facts.units_per_count = facts.units_per_turn / geometry.counts_per_turn;
+  }
+  facts.velocity = axis.limits.velocity.value_or(1.0);
+  facts.acceleration = axis.limits.acceleration.value_or(linear ? 0.5 : 5.0);
+  facts.master_timeout = axis.error_control.master_timeout.value_or(3 * bus.heartbeat);
+  if (axis.homing) {
+    const int method = axis.homing->method.value_or(37);
+    facts.homes_by_moving = method != 35 && method != 37;
+    facts.homing_timeout = axis.homing->timeout;
+  }
+  return facts;
+}
+
+double asFloat(std::uint64_t number) {
+  const auto bits = static_cast<std::uint32_t>(number);
+  float value = 0.0F;
+  std::memcpy(&value, &bits, sizeof value);
+  return static_cast<double>(value);
+}
+
+}  // namespace
+
+Result<Loaded> loadRobot(const std::string& yaml, const std::string& config_folder) try {
+  Loaded loaded;
+  Problems problems;
+  loaded.robot = config::loadRobot(YAML::Load(yaml),
+                                   config::profilesIn({config_folder + "/drives"}), problems);
+  if (problems.empty()) loaded.master = config::makeMasterConfig(loaded.robot, problems);
+  if (problems.empty()) {
+    loaded.axes = sim::simulatedAxes(loaded.robot, config_folder + "/simulated_drives", problems);
+  }
+  if (!problems.empty()) return Error{problems.text()};
+  return loaded;
+} catch (const YAML::Exception& exception) {
+  return Error{exception.what()};
+}
+
+Duration AxisFacts::stopTime(double speed) const {
+  return fromSeconds(1.2 * std::fabs(speed) / acceleration + 0.15);
+}
+
+Stage::Stage(Loaded loaded, std::uint64_t seed)
+    : loaded_(std::move(loaded)),
+      world_(loaded_.robot.bus.bitrate, seed),
+      host_(world_, loaded_.robot, loaded_.master) {
+  for (const sim::SimulatedAxis& axis : loaded_.axes) {
+    sim::Drive& drive =
+        world_.addDrive(axis.name, axis.definition, axis.node, axis.mechanics, axis.identity);
+    objects_.push_back(
+        {drive.dictionary().find({0x6061, 0}), drive.dictionary().find({0x6064, 0})});
+  }
+  for (std::size_t i = 0; i < loaded_.robot.axes.size(); ++i) {
+    facts_.push_back(factsOf(loaded_.robot.axes[i], loaded_.robot.bus, i));
+  }
+}
+
+const AxisFacts* Stage::find(const std::string& name) const {
+  for (const AxisFacts& facts : facts_) {
+    if (facts.name == name) return &facts;
+  }
+  return nullptr;
+}
+
+std::vector<std::size_t> Stage::named(const std::string& name) const {
+  std::vector<std::size_t> indices;
+  for (const AxisFacts& facts : facts_) {
+    if (name == "all" || facts.name == name) indices.push_back(facts.index);
+  }
+  return indices;
+}
+
+void Stage::look(std::vector<AxisTruth>& truths) {
+  truths.resize(facts_.size());
+  for (std::size_t i = 0; i < facts_.size(); ++i) {
+    const sim::DriveTruth truth = world_.drive(i).truth(now());
+    AxisTruth& seen = truths[i];
+    seen.position = truth.position_turns * facts_[i].units_per_turn;
+    seen.velocity = truth.velocity_turns * facts_[i].units_per_turn;
+    seen.power = truth.power_stage_on;
+    seen.statusword = truth.statusword;
+    seen.bad_floats = truth.bad_floats_received;
+    seen.nmt = truth.nmt;
+    seen.mode = static_cast<int>(sim::asSigned(*objects_[i].mode));
+    seen.told =
+        facts_[i].units_per_count == 0.0
+            ? asFloat(objects_[i].position->number) *
+                  (facts_[i].config->geometry.direction < 0 ? -1.0 : 1.0)
+            : static_cast<double>(sim::asSigned(*objects_[i].position)) * facts_[i].units_per_count;
+  }
+}
+
+}  // namespace cia402::campaign

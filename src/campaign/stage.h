@@ -1,0 +1,81 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cia402_driver/campaign/scene.h"
+#include "cia402_driver/sim/robot_drives.h"
+#include "cia402_driver/tools/virtual_host.h"
+
+namespace cia402::campaign {
+
+/// A robot's YAML as the driver loads it, with the drives to simulate.
+struct Loaded {
+  config::RobotConfig robot;
+  canopen::MasterConfig master;
+  std::vector<sim::SimulatedAxis> axes;
+};
+Result<Loaded> loadRobot(const std::string& yaml, const std::string& config_folder);
+
+/// What is true of one motor and its drive, in the joint's units but with the drive's own zero.
+struct AxisTruth {
+  double position = 0.0;  ///< rad or m
+  double velocity = 0.0;
+  bool power = false;
+  std::uint16_t statusword = 0;
+  int mode = 0;             ///< 6061h
+  double told = 0.0;        ///< 6064h, before position_offset and what set_position declared
+  unsigned bad_floats = 0;  ///< received by it since the start
+  canopen::NmtState nmt = canopen::NmtState::unknown;
+
+  bool faulted() const { return (statusword & 0x0008) != 0; }
+  bool enabled() const { return (statusword & 0x006F) == 0x0027; }
+};
+
+/// What oracles must know of an axis besides its truth.
+struct AxisFacts {
+  std::string name;
+  std::size_t index = 0;
+  const drive::AxisConfig* config = nullptr;
+  double units_per_turn = 1.0;   ///< of the shaft that the simulated drive turns; signed
+  double units_per_count = 0.0;  ///< of 607Ah and 6064h; 0: they are floats
+  double velocity = 1.0, acceleration = 1.0;  ///< limits
+  Duration master_timeout{};                  ///< after which the drive stops by itself
+  bool homes_by_moving = false;
+  Duration homing_timeout{};
+
+  /// Longest time from `speed` to rest by the acceleration limit.
+  Duration stopTime(double speed) const;
+  double creep() const { return 0.02 * velocity + 0.002; }  ///< slower counts as standing
+};
+
+/// The world of a scene: drives, bus, and the computer with the driver.
+class Stage {
+ public:
+  Stage(Loaded loaded, std::uint64_t seed);
+
+  sim::World& world() { return world_; }
+  tools::VirtualHost& host() { return host_; }
+  const Loaded& loaded() const { return loaded_; }
+  const std::vector<AxisFacts>& axes() const { return facts_; }
+  /// nullptr if there is none.
+  const AxisFacts* find(const std::string& name) const;
+  /// The axes that a call concerns: one by its name, or "all".
+  std::vector<std::size_t> named(const std::string& name) const;
+  Time now() const { return world_.now(); }
+  /// Looks at all drives.
+  void look(std::vector<AxisTruth>& truths);
+
+ private:
+  Loaded loaded_;
+  sim::World world_;
+  tools::VirtualHost host_;
+  std::vector<AxisFacts> facts_;
+  struct Objects {
+    const sim::Entry *mode, *position;
+  };
+  std::vector<Objects> objects_;
+};
+
+}  // namespace cia402::campaign
