@@ -231,8 +231,9 @@ void AxisCore::openLimits(bool open) {
 }
 
 void AxisCore::keepLimits() {
+  const bool known = state_.homed && !limits_open_;
+  if (limits_.idle() && !limits_due_ && known == limits_known_) return;
   if (state_.feedback_valid) {
-    const bool known = state_.homed && !limits_open_;
     if (std::exchange(limits_due_, false) || known != limits_known_) {
       limits_known_ = known;
       limits_.aim(known, zero_shift_, state_.position);

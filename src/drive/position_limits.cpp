@@ -29,6 +29,7 @@ PositionLimits::PositionLimits(const AxisConfig& config) {
 }
 
 void PositionLimits::forget() {
+  idle_ = false;
   ticket_.reset();
   for (std::size_t i = 0; i < count_; ++i) {
     const ResolvedLimit limit = sides_[i].limit;
@@ -38,6 +39,7 @@ void PositionLimits::forget() {
 }
 
 void PositionLimits::aim(bool known, double shift, double position) {
+  idle_ = false;
   for (std::size_t i = 0; i < count_; ++i) {
     Side& side = sides_[i];
     const ResolvedLimit& limit = side.limit;
@@ -85,6 +87,8 @@ void PositionLimits::advance(canopen::SdoClient& sdo) {
                          : sdo.upload(write.object, write.name);
     return;
   }
+  idle_ = true;
+  for (std::size_t i = 0; i < count_; ++i) idle_ = idle_ && sides_[i].aimed && !sides_[i].left_open;
 }
 
 void PositionLimits::take(Side& side, const canopen::SdoTransfer& answer) {

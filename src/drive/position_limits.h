@@ -32,6 +32,8 @@ class PositionLimits {
   void advance(canopen::SdoClient& sdo);
 
   bool settled() const;
+  /// Neither closeIfInside() nor advance() has anything to do until aim() or forget().
+  bool idle() const { return idle_; }
   /// Why the axis must not be enabled: the drive holds narrower limits than it should and refuses
   /// others. Empty: nothing.
   std::string problem() const;
@@ -56,6 +58,7 @@ class PositionLimits {
 
   std::array<Side, 2> sides_;
   std::size_t count_ = 0;
+  bool idle_ = false;
   std::size_t busy_ = 0;  ///< whose transfer `ticket_` is
   std::uint64_t sent_ = 0;
   canopen::SdoTicket ticket_;
