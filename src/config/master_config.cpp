@@ -125,7 +125,8 @@ void checkCobIds(const canopen::MasterConfig& master, Problems& problems) {
 void addWrites(const std::vector<drive::NamedWrite>& writes, const AxisConfig& axis,
                const std::string& path, NodeConfig& node, Problems& problems) {
   for (const drive::NamedWrite& write : writes) {
-    if (write.when_homed) continue;  // the axis does that
+    // The axis does that once it is homed; one that need not be is so from the start.
+    if (write.when_homed && axis.homing && axis.homing->required) continue;
     const auto resolved = drive::resolveWrite(write, axis);
     if (!resolved) {
       problems.add(path, resolved.error().message);

@@ -136,12 +136,15 @@ TEST_P(DisturbedServices, TheErrorHistoryIsTheDrivesOwn) {
       const auto answer = ask(bus::ErrorHistoryCommand{"left"});
       if (!answer.success) continue;
       const sim::ObjectDictionary& objects = scene->drive("left").dictionary();
-      EXPECT_EQ(answer.history.recorded, objects.find({0x1003, 0})->number) << answer.message;
+      const bool whole = answer.history.remark.empty();  // else the drive was lost meanwhile
+      if (whole) {
+        EXPECT_EQ(answer.history.recorded, objects.find({0x1003, 0})->number) << answer.message;
+      }
       std::uint8_t place = 0;
       for (const canopen::ErrorHistoryEntry& entry : answer.history.entries) {
         EXPECT_EQ(entry.code, objects.find({0x1003, ++place})->number & 0xFFFF) << answer.message;
       }
-      if (answer.history.remark.empty()) {
+      if (whole) {
         EXPECT_GE(place, 3) << answer.message;
       }
     }

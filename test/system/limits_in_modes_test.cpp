@@ -85,7 +85,8 @@ class DamiaoMode : public testing::TestWithParam<const char*> {};
 
 TEST_P(DamiaoMode, KeepsTheLimitsOfVelocityAccelerationAndEffort) {
   constexpr double kVelocity = 2.0, kAcceleration = 15.0, kEffort = 5.0;
-  Scene scene(loadText(damiaoJoint(", modes: [" + std::string(GetParam()) + "]")));
+  Scene scene(loadText(
+      damiaoJoint(", command_timeout_action: coast, modes: [" + std::string(GetParam()) + "]")));
   ASSERT_TRUE(scene.boot()) << scene.told();
   ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);  // cyclic_position: steep ramps
   const auto switched = scene.procedure(ProcedureKind::set_mode, "joint", GetParam());
