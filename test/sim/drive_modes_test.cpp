@@ -239,7 +239,8 @@ TEST(DriveCyclicPosition, RunsOnWhereItsNumbersWrap) {
     EXPECT_EQ(b.state(), 0x27);
     EXPECT_EQ(b.read(0x6064), counts);
     EXPECT_EQ((counts >> 31) == 1, direction > 0) << "the sign has changed";
-    EXPECT_NEAR(b.drive->truth(b.now).position_turns - start, direction * 10000.0 / kTurn, 1.0 / kTurn);
+    EXPECT_NEAR(b.drive->truth(b.now).position_turns - start, direction * 10000.0 / kTurn,
+                1.0 / kTurn);
   }
 }
 
