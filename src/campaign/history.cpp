@@ -81,8 +81,8 @@ class Author {
     double at = now_ + random_.between(0.005, 1.5);
     if (late_host_ && random_.chance(0.4)) late(at + random_.between(-0.02, 0.08));
     if (troubled_ && random_.chance(0.3)) trouble(at + random_.between(-0.05, 0.15), axis);
-    const std::size_t calls = random_.pick({0, 1, 1, 2, 2, 3, 4});
-    for (std::size_t i = 0; i < calls; ++i) {
+    const int calls = random_.pick({0, 1, 1, 2, 2, 3, 4});
+    for (int i = 0; i < calls; ++i) {
       call(at, random_.chance(0.8) ? axis : anyAxis());
       at += random_.chance(0.7) ? random_.between(0.0, 0.01) : random_.between(0.01, 0.4);
     }
