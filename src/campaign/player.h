@@ -69,9 +69,9 @@ class Player {
   void point(std::size_t axis, double value);
   void accepted(std::size_t axis, double value);
   void stepStreams();
-  void trajectory(const config::GroupConfig& group, std::vector<motion::TrajectoryPoint> points,
+  void trajectory(const config::GroupConfig& to, std::vector<motion::TrajectoryPoint> points,
                   Duration start, bool has_start);
-  std::vector<double> reachable(const config::GroupConfig& group, const std::vector<double>& from,
+  std::vector<double> reachable(const config::GroupConfig& to, const std::vector<double>& from,
                                 const Words& words, std::size_t first, double seconds) const;
   const config::GroupConfig* group(const std::string& name) const;
   std::size_t axisOf(const std::string& joint) const;

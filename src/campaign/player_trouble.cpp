@@ -197,7 +197,7 @@ bool Player::actDrive(const Words& words) {
       const Result<void> done = drive.inject(what, now);
       if (!done) throw std::invalid_argument(done.error().message);
     };
-    const auto clearLater = [this, &drive](Duration delay) {
+    const auto clear_later = [this, &drive](Duration delay) {
       later(delay, [this, &drive] { (void)drive.inject("clear", stage_.now()); });
     };
     if (verb == "fault") {  // fault A NAME
@@ -224,15 +224,15 @@ bool Player::actDrive(const Words& words) {
       const Duration length = seconds(words.at(2));
       breakLink(i, length);
       inject("silent");
-      clearLater(length);
+      clear_later(length);
     } else if (verb == "mute") {  // mute A SECONDS: answers no SDO
       inject("sdo_silent");
-      clearLater(seconds(words.at(2)));
+      clear_later(seconds(words.at(2)));
     } else if (verb == "block") {  // block A SECONDS: the rotor
       const Duration length = seconds(words.at(2));
       inject("blocked_rotor");
       Conditions::extend(condition.blocked, now + length + 400ms);
-      clearLater(length);
+      clear_later(length);
     } else {  // switch A lower|upper SECONDS: a limit switch right where it stands
       sim::AxisMechanics& mechanics = drive.mechanics();
       double& place = words.at(2) == "lower" ? mechanics.negative_limit_switch
