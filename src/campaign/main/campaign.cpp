@@ -166,7 +166,7 @@ class Campaign {
   int findings_ = 0;
 };
 
-int runScene(const Options& options, Scene scene) {
+int runScene(const Options& options, const Scene& scene) {
   RunOptions run_options = runOptions(options);
   if (options.trace) {
     run_options.trace = [](const std::string& line) { std::cout << line << "\n"; };
@@ -186,13 +186,13 @@ int runScene(const Options& options, Scene scene) {
 bool parse(int argc, char** argv, Options& options) {
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
-    if (word == "--trace") {
-      options.trace = true;
-    } else if (word == "--make") {
-      options.make = true;
-    } else if (i + 1 == argc) {
-      return false;
-    } else if (const char* value = argv[++i]; word == "--hours") {
+    if (word == "--trace" || word == "--make") {
+      (word == "--trace" ? options.trace : options.make) = true;
+      continue;
+    }
+    if (i + 1 == argc) return false;
+    const char* value = argv[++i];
+    if (word == "--hours") {
       options.hours = std::atof(value);
     } else if (word == "--seconds") {
       options.seconds = std::atof(value);
