@@ -7,6 +7,11 @@
 #include "sentence.h"
 
 namespace cia402::drive {
+namespace {
+
+constexpr double kFreeSpeed = 0.9;  ///< of the velocity limit, up to which an effort is as given
+
+}  // namespace
 
 std::uint64_t AxisCore::frames(const OutputObject& object) const {
   return image_.rpdos()[object.rpdo].count;
@@ -157,6 +162,23 @@ bool AxisCore::withinReach(double position) const {
          0.5 * std::fabs(objects_.position.conversion.span());
 }
 
+/// Beyond a limit of position a velocity or effort may only get less or lead back.
+bool AxisCore::leadsInside(double value) const {
+  const AxisLimits& limits = config_.limits;
+  if (!state_.homed) return true;
+  return !(limits.lower && state_.position <= *limits.lower && value < 0.0 &&
+           !(value > target())) &&
+         !(limits.upper && state_.position >= *limits.upper && value > 0.0 && !(value < target()));
+}
+
+/// An effort makes a motor without load ever faster, and not every drive has a limit of speed for
+/// its torque modes: from nine tenths of the limit on it gets less, at the limit it is 0.
+double AxisCore::guardSpeed(double effort) const {
+  if (!config_.limits.velocity || !(effort * state_.velocity > 0.0)) return effort;
+  const double share = std::fabs(state_.velocity) / *config_.limits.velocity;
+  return effort * std::clamp((1.0 - share) / (1.0 - kFreeSpeed), 0.0, 1.0);
+}
+
 bool AxisCore::withinLimits(double value) const {
   const AxisLimits& limits = config_.limits;
   switch (mode_->spec->kind) {
@@ -164,15 +186,9 @@ bool AxisCore::withinLimits(double value) const {
       return withinReach(value) && !(limits.lower && value < std::min(*limits.lower, target())) &&
              !(limits.upper && value > std::max(*limits.upper, target()));
     case ControlKind::velocity:
-      if (limits.velocity && std::fabs(value) > *limits.velocity) return false;
-      if (!state_.homed) return true;
-      // Beyond a limit it may only get slower or turn back.
-      return !(limits.lower && state_.position <= *limits.lower && value < 0.0 &&
-               !(value > target())) &&
-             !(limits.upper && state_.position >= *limits.upper && value > 0.0 &&
-               !(value < target()));
+      return !(limits.velocity && std::fabs(value) > *limits.velocity) && leadsInside(value);
     case ControlKind::torque:
-      return !(limits.effort && std::fabs(value) > *limits.effort);
+      return !(limits.effort && std::fabs(value) > *limits.effort) && leadsInside(value);
     case ControlKind::homing:
       return false;
   }
@@ -183,6 +199,7 @@ bool AxisCore::setTarget(double value) {
   if (!std::isfinite(value) || !state_.ready_for_motion || !homedEnough() || !withinLimits(value)) {
     return false;
   }
+  if (mode_->spec->kind == ControlKind::torque) value = guardSpeed(value);
   std::uint64_t raw = 0;
   if (!mode_->target.mapped() || !mode_conversion_.toDevice(value, raw)) return false;
   if (mode_->spec->kind == ControlKind::torque) {

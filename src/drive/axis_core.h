@@ -169,6 +169,8 @@ class AxisCore {
   void watchFollowing(Time now);
   /// The set-points come back to where the motor stands.
   void callBack();
+  bool leadsInside(double value) const;
+  double guardSpeed(double effort) const;
   bool withinLimits(double value) const;
   void watchStopBySdo();
   void keepLimits();

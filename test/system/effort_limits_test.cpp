@@ -1,0 +1,76 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// An effort pushes a motor without load: what keeps its speed and its way within the limits.
+#include "system/scene.h"
+
+namespace cia402 {
+namespace {
+
+using namespace std::chrono_literals;
+using drive::ProcedureKind;
+
+constexpr double kVelocity = 1.5, kAcceleration = 4.0, kUpper = 2.5,
+                 kCycle = 0.004;  // genericPair()
+constexpr double kEffort = 60.0;  // N m
+constexpr double kTwoPi = 6.283185307179586;
+// The simulated rotor: 300 motor turns/s^2 by the rated 0.64 N m, here on 100 turns.
+constexpr double kPushed = kEffort / (0.64 * 100.0) * 300.0 / 100.0 * kTwoPi;
+
+struct Pushed : Scene {
+  explicit Pushed(const std::string& more, const std::string& mode)
+      : Scene(loadText(genericPair(", modes: [csp, pt, cst]" + more))) {
+    EXPECT_TRUE(boot()) << told();
+    const bus::Answer set = procedure(ProcedureKind::set_mode, "left", mode);
+    EXPECT_TRUE(set.success) << set.message;
+    const bus::Answer enabled = procedure(ProcedureKind::enable, "left");
+    EXPECT_TRUE(enabled.success) << enabled.message;
+    run(100ms);
+    forget();
+  }
+  /// @return what the last set-point was refused with, "" if all were taken
+  std::string push(double effort, Duration duration) {
+    std::string refused;
+    for (const Time end = now() + duration; now() < end && refused.empty();) {
+      refused = setpoint("left", effort);
+      run(4ms);
+    }
+    return refused;
+  }
+};
+
+class EffortLimits : public testing::TestWithParam<const char*> {};
+
+TEST_P(EffortLimits, TheDriveIsToldTheLimitOfSpeed) {
+  Pushed scene("", GetParam());
+  const auto* speed = scene.drive("left").dictionary().find({0x6080, 0});
+  // 1.5 rad/s on 100 turns of the motor, in 1/min, and a twentieth more.
+  EXPECT_NEAR(static_cast<double>(speed->number), 1.05 * kVelocity * 100.0 / kTwoPi * 60.0, 1.0);
+}
+
+TEST_P(EffortLimits, ADriveWithoutALimitOfSpeedKeepsItAllTheSame) {
+  Pushed scene(", limits: {velocity: 1.5, acceleration: 4.0, effort: 120.0}" +
+                   std::string(", write: [{object: \"6080:00\", raw: 600000}]"),
+               GetParam());
+  EXPECT_EQ(scene.push(kEffort, 3s), "");
+  // What was measured two cycles ago is answered in the next.
+  EXPECT_LT(scene.seen("left").fastest, kVelocity + 3 * kCycle * kPushed);
+  EXPECT_GT(scene.seen("left").fastest, 0.8 * kVelocity) << "the test pushed too little";
+  EXPECT_EQ(scene.push(-kEffort, 3s), "");
+  EXPECT_LT(scene.seen("left").fastest, kVelocity + 3 * kCycle * kPushed);
+}
+
+TEST_P(EffortLimits, BeyondALimitOfPositionNoEffortLeadsFurtherOut) {
+  Pushed scene("", GetParam());
+  EXPECT_NE(scene.push(kEffort, 10s), "");
+  scene.run(3s);
+  EXPECT_GT(scene.seen("left").highest, kUpper) << "the limit was not reached";
+  // A command time-out of 0.2 s, then the brake.
+  EXPECT_LT(
+      scene.seen("left").highest,
+      kUpper + 1.15 * kVelocity * 0.25 + 1.15 * 1.15 * kVelocity * kVelocity / 2 / kAcceleration);
+}
+
+INSTANTIATE_TEST_SUITE_P(Modes, EffortLimits, testing::Values("profile_torque", "cyclic_torque"),
+                         [](const auto& tested) { return std::string(tested.param); });
+
+}  // namespace
+}  // namespace cia402
