@@ -121,6 +121,7 @@ void readAxis(const std::string& name, const YamlValue& value, ProfileCache& pro
   if (drive_name) axis.profile = profiles.get(*drive_name);
   readEds(section, axis, profiles, robot);
   readGeometry(section, axis.geometry);
+  if (axis.geometry.type == AxisGeometry::Type::prismatic) axis.standstill_velocity = 0.002;
   section.read("mode", axis.mode);
   axis.mode = drive::canonicalModeName(axis.mode);
   double timeout = toSeconds(axis.command_timeout);

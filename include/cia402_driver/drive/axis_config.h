@@ -73,7 +73,8 @@ struct AxisConfig {
   std::uint16_t stale_after = 10;
   /// A statusword that no state of CiA 402 shows is put up with for so long.
   Duration undecodable_timeout{std::chrono::milliseconds(100)};
-  /// Below this the axis stands still (mode changes, homing, set_position), rad/s or m/s.
+  /// Below this the axis stands still (mode changes, homing, set_position), rad/s or m/s; a
+  /// prismatic one gets 0.002.
   double standstill_velocity = 0.01;
   std::vector<std::string> modes;  ///< that the PDOs serve: the one at start and those to switch to
   std::vector<PdoLayout> pdos;     ///< resolved layout (planned, the profile's or the user's)
