@@ -14,7 +14,7 @@ namespace cia402::campaign {
 
 /// A call of a service, as it was made.
 struct Call {
-  std::string verb, who;
+  std::string verb, who, mode;  ///< mode: of a set_mode
   std::vector<std::size_t> axes;
   Time at{};
   Duration stalled{};  ///< Conditions::stalled at that time
@@ -59,6 +59,8 @@ std::unique_ptr<Oracle> makeCommandedMotion(const Stage& stage);
 std::unique_ptr<Oracle> makePowerOracle(const Stage& stage);
 std::unique_ptr<Oracle> makeTargetSteps(const Stage& stage);
 std::unique_ptr<Oracle> makeMotorLimits(const Stage& stage);
+std::unique_ptr<Oracle> makeEffortLimits(const Stage& stage);
+std::unique_ptr<Oracle> makeSnapshots(const Stage& stage);
 std::unique_ptr<Oracle> makeFloats(const Stage& stage);
 std::unique_ptr<Oracle> makeAnswers(const Stage& stage);
 /// All of them.

@@ -19,6 +19,7 @@ void Permits::allow(std::size_t axis, Source source, Time until) {
   Time& present = at(axis, source);
   present = std::max(present, until);
   if (source == Source::target) axes_[axis].moved = stage_.now();
+  if (source == Source::homing) axes_[axis].homing_called = stage_.now();
 }
 
 void Permits::cut(std::size_t axis, Source source, Time until) {
@@ -27,6 +28,13 @@ void Permits::cut(std::size_t axis, Source source, Time until) {
 
 void Permits::cut(std::size_t axis, Time until) {
   for (Time& time : axes_[axis].until) time = std::min(time, until);
+}
+
+void Permits::end(std::size_t axis, Time called, Time now) {
+  for (const Source source : {Source::stream, Source::target, Source::trajectory}) {
+    cut(axis, source, now);
+  }
+  if (axes_[axis].homing_called <= called) cut(axis, Source::homing, now);
 }
 
 void Permits::delay(Duration duration, Time now) {

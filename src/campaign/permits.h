@@ -23,6 +23,9 @@ class Permits {
   /// It may move no longer than that by `source`, or by any.
   void cut(std::size_t axis, Source source, Time until);
   void cut(std::size_t axis, Time until);
+  /// All that was commanded before `called` is void from now on; a homing that was called later
+  /// goes on.
+  void end(std::size_t axis, Time called, Time now);
   /// Everything that is under way lasts so much longer: the host stood still.
   void delay(Duration duration, Time now);
   /// Everything that is under way may take so much longer, also what begins before `until`.
@@ -38,7 +41,7 @@ class Permits {
  private:
   struct Axis {
     std::array<Time, 4> until{};
-    Time moved{};
+    Time moved{}, homing_called{};
     Duration stretched{};
     Time stretched_until{};
     bool power = false, faulted = false;

@@ -93,6 +93,14 @@ void Player::look() {
   const View seen = view();
   for (auto& oracle : oracles_) oracle->look(seen);
   watchDeadlines();
+  if (const AxisFacts* const watched = stage_.find(options_.watch)) {
+    const AxisTruth& truth = truths_[watched->index];
+    char line[120];
+    std::snprintf(line, sizeof line, "%s at %.6g, %.4g per s, effort %.3g, mode %d, %04X%s",
+                  watched->name.c_str(), truth.position, truth.velocity, truth.effort, truth.mode,
+                  truth.statusword, truth.power ? "" : ", no power");
+    say(line);
+  }
 }
 
 void Player::act(const Action& action) {

@@ -65,7 +65,12 @@ bool Player::actCall(const Words& words) {
 void Player::call(const Words& words, decltype(bus::Command::body) body, Duration bound) {
   if (!stage_.host().running()) return;
   Pending pending;
-  pending.call = {words[0], words[1], stage_.named(words[1]), stage_.now(), conditions_.stalled};
+  pending.call = {words[0],
+                  words[1],
+                  words[0] == "set_mode" ? words.at(2) : "",
+                  stage_.named(words[1]),
+                  stage_.now(),
+                  conditions_.stalled};
   pending.deadline = stage_.now() + bound;
   pending_.push_back(pending);
   if (words[0] == "home") {
@@ -104,7 +109,7 @@ void Player::answered(const Call& call, const bus::Answer& answer) {
                         call.verb == "quick_stop" || call.verb == "set_mode" ||
                         call.verb == "set_position" || call.verb == "save" ||
                         call.verb == "restore";
-    if (stands && answer.success) permits_.cut(i, now);
+    if (stands && answer.success) permits_.end(i, call.at, now);
   }
 }
 

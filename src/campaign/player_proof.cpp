@@ -44,8 +44,13 @@ bool Player::proveCall(const std::string& verb, const std::string& who, Duration
   drive::ProcedureRequest request;
   request.kind = verb == "home" ? drive::ProcedureKind::home : drive::ProcedureKind::recover;
   command.body = bus::ProcedureCommand{who == "all" ? std::string() : who, request};
-  command.reply = [done](const bus::Answer& given) { *done = given; };
   const auto axes = stage_.named(who);
+  const Call call{verb, who, "", axes, stage_.now(), conditions_.stalled};
+  for (auto& oracle : oracles_) oracle->onCall(call, view());
+  command.reply = [this, done, call](const bus::Answer& given) {
+    *done = given;
+    answered(call, given);
+  };
   for (std::size_t i : axes) {
     if (verb == "home" && stage_.axes()[i].homes_by_moving) {
       permits_.allow(i, Permits::Source::homing, kNever);
@@ -57,10 +62,8 @@ bool Player::proveCall(const std::string& verb, const std::string& who, Duration
     runTo(stage_.now() + 5ms);
     if (failed()) return false;
   }
-  for (std::size_t i : axes) permits_.cut(i, Permits::Source::homing, stage_.now());
   if (*done) {
     answer = **done;
-    say("< " + verb + (answer.success ? ": " : " FAILED: ") + answer.message);
     return true;
   }
   report(

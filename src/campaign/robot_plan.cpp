@@ -162,10 +162,9 @@ std::string text(double value) {
 }
 
 const std::vector<ModePlan>& modesOf(bool damiao) {
-  static const std::vector<ModePlan> kGeneric{{"cyclic_position", 'p'},
-                                              {"profile_position", 'p'},
-                                              {"profile_velocity", 'v'},
-                                              {"cyclic_velocity", 'v'}};
+  static const std::vector<ModePlan> kGeneric{{"cyclic_position", 'p'},  {"profile_position", 'p'},
+                                              {"profile_velocity", 'v'}, {"cyclic_velocity", 'v'},
+                                              {"profile_torque", 't'},   {"cyclic_torque", 't'}};
   static const std::vector<ModePlan> kDamiao{
       {"cyclic_position", 'p'},          {"profile_position", 'p'}, {"position_velocity", 'p'},
       {"position_velocity_torque", 'p'}, {"profile_velocity", 'v'}, {"cyclic_velocity", 'v'},
@@ -182,8 +181,10 @@ RobotPlan planRobot(Random& random) {
   }
   const double period =
       count <= 2 && random.chance(0.3) ? 0.002 : random.pick({0.004, 0.004, 0.005, 0.01});
+  const double heartbeat = random.pick({0.05, 0.1, 0.1, 0.2});
+  const bool external_sync = random.chance(0.12);
   robot.yaml = "bus: {interface: can0, bitrate: 1000000, sync_period: " + text(period) +
-               ", heartbeat: " + text(random.pick({0.05, 0.1, 0.1, 0.2})) + "}\n" +
+               ", heartbeat: " + text(heartbeat) + (external_sync ? ", sync: external}\n" : "}\n") +
                "recorder: {duration: 1, keep: 0}\naxes:\n";
   for (const AxisPlan& axis : robot.axes) robot.yaml += "  " + axis.name + ": " + axis.yaml + "\n";
   robot.yaml += "groups:\n";

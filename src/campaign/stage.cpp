@@ -20,6 +20,8 @@ AxisFacts factsOf(const drive::AxisConfig& axis, const config::BusConfig& bus, s
   facts.units_per_turn = (linear ? geometry.lead : kTwoPi) / ratio * geometry.direction;
   if (!axis.profile->output_shaft) {
     facts.units_per_count = facts.units_per_turn / geometry.counts_per_turn;
+    facts.effort_per_count =
+        geometry.rated_torque * 1e-3 * kTwoPi / std::fabs(facts.units_per_turn);
   }
   facts.velocity = axis.limits.velocity.value_or(1.0);
   facts.acceleration = axis.limits.acceleration.value_or(linear ? 0.5 : 5.0);
@@ -60,6 +62,13 @@ Duration AxisFacts::stopTime(double speed) const {
   return fromSeconds(1.2 * std::fabs(speed) / acceleration + 0.15);
 }
 
+drive::ControlKind AxisFacts::kind(int mode) const {
+  for (const drive::ModeSpec& spec : config->profile->modes) {
+    if (spec.value == mode) return spec.kind;
+  }
+  return drive::ControlKind::homing;
+}
+
 Stage::Stage(Loaded loaded, std::uint64_t seed)
     : loaded_(std::move(loaded)),
       world_(loaded_.robot.bus.bitrate, seed),
@@ -67,11 +76,16 @@ Stage::Stage(Loaded loaded, std::uint64_t seed)
   for (const sim::SimulatedAxis& axis : loaded_.axes) {
     sim::Drive& drive =
         world_.addDrive(axis.name, axis.definition, axis.node, axis.mechanics, axis.identity);
-    objects_.push_back(
-        {drive.dictionary().find({0x6061, 0}), drive.dictionary().find({0x6064, 0})});
+    const auto entry = [&](std::uint16_t object) { return drive.dictionary().find({object, 0}); };
+    objects_.push_back({entry(0x6061), entry(0x6064), entry(0x6077)});
   }
   for (std::size_t i = 0; i < loaded_.robot.axes.size(); ++i) {
     facts_.push_back(factsOf(loaded_.robot.axes[i], loaded_.robot.bus, i));
+  }
+  const config::BusConfig& bus = loaded_.robot.bus;
+  if (bus.external_sync) {
+    sync_.connect(world_.addParticipant("sync", sync_));
+    sync_.start({bus.sync_period, static_cast<std::uint8_t>(bus.sync_counter), {}, 0x80}, now());
   }
 }
 
@@ -107,6 +121,10 @@ void Stage::look(std::vector<AxisTruth>& truths) {
             ? asFloat(objects_[i].position->number) *
                   (facts_[i].config->geometry.direction < 0 ? -1.0 : 1.0)
             : static_cast<double>(sim::asSigned(*objects_[i].position)) * facts_[i].units_per_count;
+    const sim::Entry& effort = *objects_[i].effort;
+    seen.effort = facts_[i].effort_per_count == 0.0
+                      ? asFloat(effort.number)
+                      : static_cast<double>(sim::asSigned(effort)) * facts_[i].effort_per_count;
   }
 }
 

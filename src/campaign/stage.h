@@ -6,6 +6,7 @@
 
 #include "cia402_driver/campaign/scene.h"
 #include "cia402_driver/sim/robot_drives.h"
+#include "cia402_driver/sim/sync_producer.h"
 #include "cia402_driver/tools/virtual_host.h"
 
 namespace cia402::campaign {
@@ -22,6 +23,7 @@ Result<Loaded> loadRobot(const std::string& yaml, const std::string& config_fold
 struct AxisTruth {
   double position = 0.0;  ///< rad or m
   double velocity = 0.0;
+  double effort = 0.0;  ///< N m or N, 6077h
   bool power = false;
   std::uint16_t statusword = 0;
   int mode = 0;             ///< 6061h
@@ -38,8 +40,9 @@ struct AxisFacts {
   std::string name;
   std::size_t index = 0;
   const drive::AxisConfig* config = nullptr;
-  double units_per_turn = 1.0;   ///< of the shaft that the simulated drive turns; signed
-  double units_per_count = 0.0;  ///< of 607Ah and 6064h; 0: they are floats
+  double units_per_turn = 1.0;    ///< of the shaft that the simulated drive turns; signed
+  double units_per_count = 0.0;   ///< of 607Ah and 6064h; 0: they are floats
+  double effort_per_count = 0.0;  ///< of 6077h; 0: it is a float
   double velocity = 1.0, acceleration = 1.0;  ///< limits
   Duration master_timeout{};                  ///< after which the drive stops by itself
   bool homes_by_moving = false;
@@ -47,7 +50,10 @@ struct AxisFacts {
 
   /// Longest time from `speed` to rest by the acceleration limit.
   Duration stopTime(double speed) const;
-  double creep() const { return 0.02 * velocity + 0.002; }  ///< slower counts as standing
+  /// What the mode with that number of 6060h controls; other where the drive homes or has no mode.
+  drive::ControlKind kind(int mode) const;
+  /// Slower counts as standing.
+  double creep() const { return std::max(0.02 * velocity + 0.002, config->standstill_velocity); }
 };
 
 /// The world of a scene: drives, bus, and the computer with the driver.
@@ -57,6 +63,8 @@ class Stage {
 
   sim::World& world() { return world_; }
   tools::VirtualHost& host() { return host_; }
+  /// What the driver shows; nullptr while no process runs.
+  const bus::Robot* driver() const { return host_.running() ? &host_.robot() : nullptr; }
   const Loaded& loaded() const { return loaded_; }
   const std::vector<AxisFacts>& axes() const { return facts_; }
   /// nullptr if there is none.
@@ -69,11 +77,12 @@ class Stage {
 
  private:
   Loaded loaded_;
+  sim::SyncProducer sync_;  ///< of a robot whose driver follows another's SYNC; outlives the world
   sim::World world_;
   tools::VirtualHost host_;
   std::vector<AxisFacts> facts_;
   struct Objects {
-    const sim::Entry *mode, *position;
+    const sim::Entry *mode, *position, *effort;
   };
   std::vector<Objects> objects_;
 };

@@ -33,6 +33,7 @@ struct RunOptions {
   std::string ignore;         ///< names of oracles that say nothing, to look at what is behind them
   /// Takes a line for each action, answer, event and finding.
   std::function<void(const std::string&)> trace;
+  std::string watch;  ///< an axis whose motor is traced every millisecond; empty: none
 };
 
 /// Runs a scene: the robot in virtual time, its history, and all oracles.

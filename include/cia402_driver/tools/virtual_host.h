@@ -86,6 +86,7 @@ class VirtualHost final : private bus::EventSink {
   sim::BusInterface& interface() { return interface_; }
   /// @pre running()
   bus::Robot& robot() { return loop_->robot(); }
+  const bus::Robot& robot() const { return loop_->robot(); }
   bus::BusLoop& loop() { return *loop_; }
 
  private:

@@ -17,6 +17,8 @@ std::vector<std::unique_ptr<Oracle>> allOracles(const Stage& stage) {
   oracles.push_back(makePowerOracle(stage));
   oracles.push_back(makeTargetSteps(stage));
   oracles.push_back(makeMotorLimits(stage));
+  oracles.push_back(makeEffortLimits(stage));
+  oracles.push_back(makeSnapshots(stage));
   oracles.push_back(makeFloats(stage));
   oracles.push_back(makeAnswers(stage));
   return oracles;

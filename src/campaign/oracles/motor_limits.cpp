@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "../oracle.h"
 
@@ -17,11 +18,29 @@ constexpr std::uint32_t kSync = 0x80;
 
 class MotorLimits final : public Oracle {
  public:
-  explicit MotorLimits(const Stage& stage) : axes_(stage.axes().size()) {}
+  explicit MotorLimits(const Stage& stage) : axes_(stage.axes().size()) {
+    for (const AxisFacts& facts : stage.axes()) {
+      for (const canopen::NodeConfig& node : stage.loaded().master.nodes) {
+        if (node.node_id != facts.config->node_id) continue;
+        for (const canopen::PdoConfig& pdo : node.pdos) {
+          if (pdo.direction == canopen::PdoDirection::rpdo) rpdos_[pdo.cob_id] = facts.index;
+        }
+      }
+    }
+  }
   const char* name() const override { return "motor_limits"; }
 
   void onFrame(const can::Frame& frame, const View& view) override {
-    if (frame.id != kSync || frame.error) return;
+    if (frame.error) return;
+    const auto rpdo = rpdos_.find(frame.id);
+    if (rpdo != rpdos_.end()) axes_[rpdo->second].fed = true;
+    if (frame.id != kSync) return;
+    // Without a set-point a drive stops where the last one was, as hard as it can.
+    for (Axis& axis : axes_) {
+      if (!axis.fed)
+        axis.starved = view.now + view.stage.loaded().robot.bus.sync_period + kSyncMemory;
+      axis.fed = false;
+    }
     const Duration period = view.stage.loaded().robot.bus.sync_period;
     const Duration since = view.now - last_sync_;
     last_sync_ = view.now;
@@ -40,6 +59,8 @@ class MotorLimits final : public Oracle {
   struct Axis {
     std::array<double, kWindow> speeds{};
     std::size_t next = 0, count = 0;
+    bool fed = false;  // since the last SYNC
+    Time starved{};
   };
 
   void look(const View& view, std::size_t i) {
@@ -63,10 +84,14 @@ class MotorLimits final : public Oracle {
           view, i,
           "turns at " + number(truth.velocity) + " per s, its limit is " + number(facts.velocity));
     }
-    // Without set-points a drive stops where the last one was, as hard as it can.
     const Duration period = view.stage.loaded().robot.bus.sync_period;
-    const bool starved = view.now < starved_ || view.now - last_sync_ > period + period / 2;
-    if (starved) axis.count = 0;
+    const bool starved =
+        view.now < std::max(starved_, axis.starved) || view.now - last_sync_ > period + period / 2;
+    // Nor is it limited where an effort is commanded: it follows from the load.
+    const bool effort = facts.kind(truth.mode) == drive::ControlKind::torque;
+    // A limit switch stops a motor as hard as its drive can.
+    const bool at_limit = facts.units_per_count != 0.0 && (truth.statusword & 0x0800) != 0;
+    if (starved || effort || at_limit) axis.count = 0;
     if (axis.count == kWindow && squeeze == 0.0) {
       const double rate = (truth.velocity - axis.speeds[axis.next]) / (kWindow * 0.001);
       // A quick stop may take twice the limit.
@@ -82,6 +107,7 @@ class MotorLimits final : public Oracle {
   }
 
   std::vector<Axis> axes_;
+  std::map<std::uint32_t, std::size_t> rpdos_;  // COB-ID, axis
   Time last_sync_{}, squeezed_{}, starved_{};
   double squeeze_ = 0.0;
 };

@@ -1,6 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Streamed position targets on the wire step by no more than velocity limit times cycle. A frame
-// that itself ends operation is no set-point: the drive does not follow the target in it.
+// that itself ends operation is no set-point: the drive does not follow the target in it. A target
+// that is called back to where the motor stands moves nothing either.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -11,6 +13,7 @@
 namespace cia402::campaign {
 namespace {
 
+constexpr const char* kMode = "cyclic_position";
 constexpr canopen::ObjectId kTargetPosition{0x607A, 0}, kControlword{0x6040, 0};
 
 class TargetSteps final : public Oracle {
@@ -23,6 +26,7 @@ class TargetSteps final : public Oracle {
     }
     last_.resize(stage.axes().size());
     controlwords_.resize(stage.axes().size());
+    for (const AxisFacts& facts : stage.axes()) unsure_.push_back(facts.config->mode != kMode);
   }
   const char* name() const override { return "target_step"; }
 
@@ -38,6 +42,10 @@ class TargetSteps final : public Oracle {
     const Place& place = found->second;
     if (frame.size < place.byte + 4) return;
     judge(view, place.axis, valueIn(frame, place, view.stage.axes()[place.axis]));
+  }
+  void onCall(const Call& call, const View&) override {
+    if (call.verb != "set_mode" || call.mode == kMode) return;
+    for (std::size_t i : call.axes) unsure_[i] = true;
   }
   void look(const View& view) override {
     for (std::size_t i = 0; i < last_.size(); ++i) {
@@ -76,15 +84,17 @@ class TargetSteps final : public Oracle {
     return static_cast<double>(value);
   }
   /// Is it enabled in a mode in which a target counts at once?
-  static bool streams(const View& view, std::size_t i) {
+  bool streams(const View& view, std::size_t i) const {
     const AxisFacts& facts = view.stage.axes()[i];
     const AxisTruth& truth = view.truths[i];
-    const drive::ModeSpec* mode = facts.config->profile->mode("cyclic_position");
+    const drive::DriveProfile& profile = *facts.config->profile;
+    const drive::ModeSpec* mode = profile.mode(kMode);
     if (!facts.config->limits.velocity || !truth.enabled() || mode == nullptr ||
         truth.mode != mode->value)
       return false;
-    // Another mode may have the same number: the one at start must be the cyclic one then.
-    return facts.units_per_count != 0.0 || facts.config->mode == "cyclic_position";
+    // Where another mode has the same number, nobody may ever have asked for one.
+    const auto same = [&](const drive::ModeSpec& other) { return other.value == mode->value; };
+    return !unsure_[i] || std::count_if(profile.modes.begin(), profile.modes.end(), same) == 1;
   }
   bool operates(std::size_t i) const { return (controlwords_[i] & 0x8F) == 0x0F; }
   void judge(const View& view, std::size_t i, double value) {
@@ -96,7 +106,9 @@ class TargetSteps final : public Oracle {
     const double step = last_[i] ? std::fabs(value - *last_[i]) : 0.0;
     const double allowed = 1.02 * facts.velocity * toSeconds(facts.config->sync_period) +
                            2 * std::fabs(facts.units_per_count) + 1e-6 * std::fabs(value);
-    if (last_[i] && !(step <= allowed)) {
+    const bool called_back = std::fabs(view.truths[i].velocity) <= facts.creep() &&
+                             std::fabs(value - view.truths[i].told) <= allowed;
+    if (last_[i] && !(step <= allowed) && !called_back) {
       report(view, i,
              "is sent a target that steps by " + number(step) + " in one cycle, " +
                  number(step / allowed) + " times what its velocity limit allows");
@@ -106,6 +118,7 @@ class TargetSteps final : public Oracle {
 
   std::map<std::uint32_t, Place> targets_, controls_;  // by COB-ID
   std::vector<int> controlwords_;
+  std::vector<bool> unsure_;  // another mode than kMode was asked for at some time
   std::vector<std::optional<double>> last_;
 };
 

@@ -1,0 +1,120 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// What the driver shows of an axis agrees with its drive.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "../oracle.h"
+
+namespace cia402::campaign {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::size_t kMemory = 60;  // ms: two of the longest cycles, their frames, and a filter
+constexpr int kEvery = 10;           // looks
+
+class Snapshots final : public Oracle {
+ public:
+  explicit Snapshots(const Stage& stage) : axes_(stage.axes().size()) {}
+  const char* name() const override { return "untrue_snapshot"; }
+
+  void onCall(const Call& call, const View&) override { count(call, 1); }
+  void onAnswer(const Call& call, const bus::Answer&, const View&) override { count(call, -1); }
+  void look(const View& view) override {
+    for (std::size_t i = 0; i < axes_.size(); ++i) remember(view, i);
+    if (++looks_ % kEvery != 0) return;
+    for (std::size_t i = 0; i < axes_.size(); ++i) judge(view, i);
+  }
+
+ private:
+  struct Axis {
+    std::array<double, kMemory> speeds{};
+    std::size_t next = 0, count = 0;
+    Time enabled{-1h}, not_enabled{-1h}, faulted{-1h}, sound{-1h}, moved{-1h};
+    int calls = 0;               // under way that may set a new zero
+    std::optional<double> zero;  // what is shown minus what the drive tells
+  };
+
+  void count(const Call& call, int step) {
+    static const char* const kHarmless[] = {"halt",       "enable",       "disable",
+                                            "quick_stop", "clear_faults", "read"};
+    const auto* const end = std::end(kHarmless);
+    if (std::find(std::begin(kHarmless), end, call.verb) != end) return;
+    for (std::size_t i : call.axes) {
+      axes_[i].calls += step;
+      axes_[i].zero.reset();
+    }
+  }
+  void remember(const View& view, std::size_t i) {
+    const AxisTruth& truth = view.truths[i];
+    Axis& axis = axes_[i];
+    axis.speeds[axis.next] = truth.velocity;
+    axis.next = (axis.next + 1) % kMemory;
+    axis.count = std::min(axis.count + 1, kMemory);
+    (truth.enabled() ? axis.enabled : axis.not_enabled) = view.now;
+    (truth.faulted() ? axis.faulted : axis.sound) = view.now;
+    if (std::fabs(truth.velocity) > 1e-4) axis.moved = view.now;
+    const bool sound = view.conditions.quiet(i, view.now) &&
+                       truth.nmt == canopen::NmtState::operational &&
+                       view.stage.driver() != nullptr;
+    if (view.stage.driver() == nullptr) axis.calls = 0;
+    if (!sound) {
+      axis.count = 0;
+      axis.zero.reset();
+    }
+  }
+  void judge(const View& view, std::size_t i) {
+    Axis& axis = axes_[i];
+    if (axis.count < kMemory) return;
+    const drive::AxisState& shown = view.stage.driver()->axes()[i].state();
+    const bool enabled = shown.state == drive::State::operation_enabled;
+    const bool fault = shown.state == drive::State::fault;
+    if (enabled && !lately(view, axis.enabled)) report(view, i, "is shown enabled, and is not");
+    if (fault && !lately(view, axis.faulted)) report(view, i, "is shown in a fault, and has none");
+    const bool known = shown.state != drive::State::unknown;
+    if (known && !enabled && !lately(view, axis.not_enabled)) {
+      report(view, i, "is enabled, and is not shown so");
+    }
+    judgeSpeed(view, i, shown);
+    judgePlace(view, i, shown);
+  }
+  void judgeSpeed(const View& view, std::size_t i, const drive::AxisState& shown) {
+    const Axis& axis = axes_[i];
+    const AxisFacts& facts = view.stage.axes()[i];
+    const auto [least, most] = std::minmax_element(axis.speeds.begin(), axis.speeds.end());
+    const double margin = 0.1 * facts.velocity + 0.05 * (*most - *least);
+    if (shown.velocity < *least - margin || shown.velocity > *most + margin) {
+      report(view, i,
+             "is shown at " + number(shown.velocity) + " per s, and has turned at " +
+                 number(*least) + " to " + number(*most) + " of late");
+    }
+  }
+  /// While it stands, what is shown differs from 6064h by the same zero, until that is set anew.
+  void judgePlace(const View& view, std::size_t i, const drive::AxisState& shown) {
+    Axis& axis = axes_[i];
+    if (lately(view, axis.moved) || axis.calls > 0 || !shown.feedback_valid) return;
+    const AxisFacts& facts = view.stage.axes()[i];
+    const double zero = shown.position - view.truths[i].told;
+    const double margin = 2 * std::fabs(facts.units_per_count) + 1e-5;
+    if (axis.zero && std::fabs(zero - *axis.zero) > margin) {
+      report(view, i,
+             "is shown at " + number(shown.position) + ", which is " + number(zero - *axis.zero) +
+                 " off what its drive tells, and nobody has set a new zero");
+    }
+    if (!axis.zero) axis.zero = zero;
+  }
+  static bool lately(const View& view, Time time) { return view.now - time <= 60ms; }
+
+  std::vector<Axis> axes_;
+  int looks_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Oracle> makeSnapshots(const Stage& stage) {
+  return std::make_unique<Snapshots>(stage);
+}
+
+}  // namespace cia402::campaign
