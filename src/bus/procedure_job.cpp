@@ -9,7 +9,10 @@ ProcedureJob::ProcedureJob(drive::ProcedureRequest request, std::vector<Item> it
     : request_(std::move(request)), reply_(std::move(reply)) {
   std::stable_sort(items.begin(), items.end(),
                    [](const Item& a, const Item& b) { return a.order < b.order; });
-  for (const Item& item : items) entries_.push_back({item, Stage::waiting, 0, false, {}});
+  for (const Item& item : items) {
+    entries_.emplace_back();
+    entries_.back().item = item;
+  }
 }
 
 bool ProcedureJob::step(std::vector<drive::Axis>& axes, Time now) {
@@ -21,11 +24,27 @@ bool ProcedureJob::step(std::vector<drive::Axis>& axes, Time now) {
   } else if (!held_) {
     startDue(axes, now);
   }
-  const bool ended = std::all_of(entries_.begin(), entries_.end(), [](const Entry& e) {
+  if (!ended()) return false;
+  judge(axes);
+  if (reply_) reply_(answer(axes));
+  return true;
+}
+
+bool ProcedureJob::ended() const {
+  return std::all_of(entries_.begin(), entries_.end(), [](const Entry& e) {
     return e.stage == Stage::succeeded || e.stage == Stage::failed;
   });
-  if (ended && reply_) reply_(answer(axes));
-  return ended;
+}
+
+/// What an axis answered may not be true any more when the last one has ended.
+void ProcedureJob::judge(const std::vector<drive::Axis>& axes) {
+  if (request_.kind != drive::ProcedureKind::recover) return;
+  for (Entry& entry : entries_) {
+    const std::string obstacle = axes[entry.item.axis].obstacle();
+    if (entry.stage != Stage::succeeded || obstacle.empty()) continue;
+    entry.stage = Stage::failed;
+    entry.message = obstacle;
+  }
 }
 
 void ProcedureJob::abandon(const std::string& why) {

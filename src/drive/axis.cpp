@@ -18,6 +18,7 @@ struct Axis::Impl {
       : core(std::move(config), node), boot_ups(node.bootUps()) {}
 
   void watchNode();
+  void advance(Time now);
   void finish(bool success, std::string message);
   void preempt(ProcedureKind by);
   /// Ends a procedure that would enable the axis.
@@ -43,6 +44,11 @@ void Axis::Impl::watchNode() {
   }
   was_ready = ready;
   boot_ups = count;
+}
+
+void Axis::Impl::advance(Time now) {
+  Outcome outcome = procedure->advance(context(now));
+  if (!outcome.isRunning()) finish(outcome.isDone(), std::move(outcome.message));
 }
 
 void Axis::Impl::finish(bool success, std::string message) {
@@ -95,8 +101,7 @@ void Axis::update(Time now) {
     if (!failure.empty() && !waits) {
       impl.finish(false, std::string(toString(impl.status.kind)) + " failed: " + failure);
     } else {
-      Outcome outcome = impl.procedure->advance(impl.context(now));
-      if (!outcome.isRunning()) impl.finish(outcome.isDone(), std::move(outcome.message));
+      impl.advance(now);
     }
   }
   impl.lost = false;
@@ -134,7 +139,8 @@ Result<std::uint32_t> Axis::start(const ProcedureRequest& request, Time now) {
   impl.status.step = "starting";
   impl.status.started = impl.status.deadline = now;
   impl.procedure = std::move(procedure.value());
-  impl.core.updateReadiness(true, now);
+  if (impl.procedure->leavesAlone(impl.context(now))) impl.advance(now);
+  impl.core.updateReadiness(impl.status.running, now);
   return id;
 }
 
@@ -150,6 +156,7 @@ void Axis::cancel(const std::string& reason, Time now) {
 bool Axis::setTarget(double value) { return impl_->core.setTarget(value); }
 void Axis::stopSetPoint() { impl_->core.stopSetPoint(); }
 std::string Axis::motionRefusal() const { return impl_->core.motionRefusal(impl_->status.running); }
+std::string Axis::obstacle() const { return impl_->core.obstacle(); }
 
 void Axis::stopBySdo(const std::string& why, Time) {
   impl_->core.stopBySdo(why);

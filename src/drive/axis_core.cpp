@@ -66,7 +66,7 @@ void AxisCore::switchOff() {
 void AxisCore::leaveOperation() {
   in_operation_ = state_.ready_for_motion = false;
   brake_released_ = running_since_ = kNever;
-  homing_start_ = halt_bit_ = halted_ = braking_ = effort_streamed_ = false;
+  homing_start_ = halt_bit_ = state_.halted = braking_ = effort_streamed_ = false;
   handshake_.reset(target_raw_);
   set_point_.rest(kindOf(*mode_->spec), SetPoint::kNone);
 }
@@ -123,7 +123,7 @@ std::string AxisCore::supervise(Time now) {
 }
 
 void AxisCore::updateReadiness(bool busy, Time now) {
-  state_.ready_for_motion = in_operation_ && !busy && !halted_ && state_.feedback_valid &&
+  state_.ready_for_motion = in_operation_ && !busy && !state_.halted && state_.feedback_valid &&
                             brakeReleased(now) && shown_mode_ == mode_->spec->value &&
                             state_.state == State::operation_enabled;
 }

@@ -84,6 +84,7 @@ class AxisCore {
   /// Brings the set-points to rest, by a ramp where they move. Nothing if they do not.
   void stopSetPoint() { set_point_.stop(); }
   std::string motionRefusal(bool busy) const;
+  std::string obstacle() const;
   /// Target := actual in position modes, 0 in the others.
   void neutralizeTarget();
   /// Puts a neutral target of another mode into its RPDO, before that mode becomes active.
@@ -103,7 +104,7 @@ class AxisCore {
   /// released once that is on the wire and handshakeBusy() is over.
   void replaceHaltedTarget();
   void releaseHalt();
-  bool halted() const { return halted_; }
+  bool halted() const { return state_.halted; }
   bool setPointsAtRest() const { return set_point_.atRest(); }
   /// The longest that a stop may take, from the fastest that the axis may go.
   Duration stopTime() const;
@@ -193,7 +194,7 @@ class AxisCore {
   Goal goal_ = Goal::disabled;
   bool silent_ = true;  ///< nobody has asked for anything since the node came: controlword 0
   bool in_operation_ = false;
-  bool fault_reset_ = false, homing_start_ = false, halt_bit_ = false, halted_ = false;
+  bool fault_reset_ = false, homing_start_ = false, halt_bit_ = false;
   bool braking_ = false;      ///< the halt bit brakes an axis whose torque is nobody's any more
   bool voltage_off_ = false;  ///< the power stage is to be off, whatever the drive shows
   std::uint16_t controlword_ = 0, base_controlword_ = 0;

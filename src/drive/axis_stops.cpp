@@ -41,7 +41,7 @@ bool AxisCore::moving() const {
 }
 
 void AxisCore::beginHalt() {
-  if (!in_operation_ || halted_) return;
+  if (!in_operation_ || state_.halted) return;
   set_point_.stop();
   switch (stopBy()) {
     case StopBy::halt:
@@ -54,7 +54,7 @@ void AxisCore::beginHalt() {
       if (set_point_.kind() == SetPointKind::goal) giveStopPoint();
       break;
   }
-  halted_ = true;
+  state_.halted = true;
   state_.ready_for_motion = false;
 }
 
@@ -85,7 +85,7 @@ void AxisCore::brakeEffort() {
     effort_streamed_ = false;
     return;
   }
-  if (braking_ || halted_) return;
+  if (braking_ || state_.halted) return;
   set_point_.stop();
   if (stopBy() == StopBy::halt) {
     braking_ = halt_bit_ = true;
@@ -104,7 +104,7 @@ void AxisCore::replaceHaltedTarget() {
   if (mode_->spec->handshake == Handshake::new_set_point) handshake_.offer(target_raw_);
 }
 
-void AxisCore::releaseHalt() { halt_bit_ = halted_ = braking_ = false; }
+void AxisCore::releaseHalt() { halt_bit_ = state_.halted = braking_ = false; }
 
 /// Whether the drive shows that it follows; a drive that never does is waited for once.
 void AxisCore::lookForFollowing(Time now) {

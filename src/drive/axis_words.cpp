@@ -69,6 +69,24 @@ std::string AxisCore::faultText() const {
   return {};
 }
 
+std::string AxisCore::obstacle() const {
+  const std::string& name = config_.name;
+  const bool homed = homedEnough();
+  if (!nodeReady())
+    return name + ", its node is " + canopen::toString(node_.health()) + ": recover";
+  if (!state_.feedback_valid) return name + " gives no fresh statusword and position: recover";
+  if (faulted()) return name + " is in fault: recover";
+  if (!in_operation_) return name + " is not enabled (" + toString(state_.state) + "): enable";
+  if (mode_->spec->kind == ControlKind::homing) {
+    return name + " is left in its homing mode: enable" + (homed ? "" : ", then home");
+  }
+  if (state_.halted) return name + " is halted: enable" + (homed ? "" : ", then home");
+  if (shown_mode_ != mode_->spec->value) {
+    return name + " does not show that it is in mode " + mode_->spec->name + ": set_mode";
+  }
+  return homed ? std::string() : name + " is not homed: home";
+}
+
 std::string AxisCore::motionRefusal(bool busy) const {
   if (state_.ready_for_motion) {
     if (!homedEnough()) return who() + ": not homed; home it before position motion";
@@ -86,7 +104,7 @@ std::string AxisCore::motionRefusal(bool busy) const {
   if (!in_operation_) {
     return who() + ": not enabled, " + stateText() + "; call enable";
   }
-  if (halted_) return who() + ": halted; enable releases the halt";
+  if (state_.halted) return who() + ": halted; enable releases the halt";
   if (shown_mode_ != mode_->spec->value) {
     return who() + ": 6061:00 shows mode " +
            (shown_mode_ ? std::to_string(*shown_mode_) : std::string("unknown")) + " instead of " +

@@ -44,6 +44,9 @@ class Procedure {
   /// Somebody wants it to end. @return true if it may simply be dropped; else it goes on running
   /// until the axis is safe and then fails with `reason`.
   virtual bool cancel(const std::string& /*reason*/, const Context&) { return true; }
+  /// Nothing has to be done: it ends as soon as it is asked for, and whoever moves the axis goes
+  /// on.
+  virtual bool leavesAlone(const Context&) const { return false; }
   /// It waits for the node to come back by itself.
   virtual bool survivesNodeLoss() const { return false; }
 };

@@ -10,8 +10,8 @@ namespace cia402::drive {
 namespace {
 
 /// Brings an axis back from wherever it is: boots the node if it is not ready, or ready but without
-/// feedback (nobody notices where an unsupervised node went), clears faults, enables. Calling it on
-/// a healthy axis does no harm.
+/// feedback (nobody notices where an unsupervised node went), clears faults, enables. An axis that
+/// is enabled and well is left alone, also in motion. Succeeds if the axis takes commands then.
 class Recover : public Procedure {
  public:
   explicit Recover(AxisCore& axis) : enabling_(axis.workingMode(), axis.profile()) {}
@@ -19,6 +19,7 @@ class Recover : public Procedure {
   Outcome advance(const Context& context) override {
     switch (phase_) {
       case Phase::begin:
+        if (leavesAlone(context)) return leave(context);
         begin(context);
         return Outcome::running();
       case Phase::booting:
@@ -41,11 +42,19 @@ class Recover : public Procedure {
     return Outcome::running();
   }
 
+  bool leavesAlone(const Context& context) const override {
+    return isWell(context.axis) && context.axis.brakeReleased(context.now);
+  }
   bool survivesNodeLoss() const override { return phase_ == Phase::booting; }
 
  private:
   static constexpr int kBootTimes = 3;
   enum class Phase { begin, booting, feedback, clearing, enabling };
+
+  static bool isWell(const AxisCore& axis) {
+    return axis.nodeReady() && axis.state().feedback_valid && axis.inOperation() &&
+           !clearable(axis);
+  }
 
   void begin(const Context& context) {
     AxisCore& axis = context.axis;
@@ -108,13 +117,21 @@ class Recover : public Procedure {
                            "; check bus load, cable and the drive's TPDOs");
   }
 
+  static Outcome leave(const Context& context) {
+    const AxisCore& axis = context.axis;
+    const std::string obstacle = axis.obstacle();
+    if (!obstacle.empty()) return Outcome::failed(obstacle);
+    return Outcome::done(axis.config().joint + ": is enabled and well, mode " +
+                         axis.mode().spec->name + "; it was left alone");
+  }
+
   Outcome finish(const Context& context) {
-    AxisCore& axis = context.axis;
-    std::string text = axis.config().joint + ": recovered, enabled in mode " +
-                       axis.mode().spec->name + " after " + seconds(context.now - started_);
-    if (axis.halted()) text += "; it is halted, enable releases the halt";
-    if (!axis.state().homed) text += "; it is not homed, home it before position motion";
-    return Outcome::done(text);
+    const AxisCore& axis = context.axis;
+    const std::string obstacle = axis.obstacle();
+    const std::string done = "recovered, enabled in mode " + axis.mode().spec->name + " after " +
+                             seconds(context.now - started_);
+    if (!obstacle.empty()) return Outcome::failed(obstacle + " (" + done + ")");
+    return Outcome::done(axis.config().joint + ": " + done);
   }
 
   Phase phase_ = Phase::begin;

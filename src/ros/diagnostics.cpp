@@ -241,12 +241,14 @@ void Diagnostics::reportAxis(std::size_t index, Status& status) {
   } else if (state.warning) {
     status.summary(DiagnosticStatus::WARN, "the drive shows a warning");
   } else {
-    status.summary(DiagnosticStatus::OK, drive::toString(state.state));
+    status.summary(DiagnosticStatus::OK, std::string(drive::toString(state.state)) +
+                                             (state.halted ? ", halted until `enable`" : ""));
   }
   const bool linear = config.geometry.type == drive::AxisGeometry::Type::prismatic;
   status.add("state", drive::toString(state.state));
   status.add("statusword", drive::statuswordText(state.statusword));
   status.add("mode", state.mode ? state.mode->name : "unknown");
+  status.add("halted", state.halted ? "yes" : "no");
   status.add("homed", state.homed ? "yes" : "no");
   status.addf("error code", "0x%04X", state.error_code);
   status.add("procedure", axis.procedure_running ? drive::toString(axis.procedure) : "none");

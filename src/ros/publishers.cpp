@@ -28,6 +28,7 @@ cia402_driver::AxisState axisState(const bus::AxisSnapshot& axis, const drive::A
   message.mode = axis.state.mode ? axis.state.mode->name : "";
   message.statusword = axis.state.statusword;
   message.homed = axis.state.homed;
+  message.halted = axis.state.halted;
   message.target_reached = axis.state.target_reached;
   message.warning = axis.state.warning;
   message.internal_limit = axis.state.internal_limit;
@@ -159,7 +160,7 @@ bool Publishers::changed(const cia402_driver::AxisStates& states) const {
   for (std::size_t i = 0; i < states.axes.size(); ++i) {
     const cia402_driver::AxisState& a = states.axes[i];
     const cia402_driver::AxisState& b = last_states_.axes[i];
-    if (a.state != b.state || a.mode != b.mode || a.homed != b.homed ||
+    if (a.state != b.state || a.mode != b.mode || a.homed != b.homed || a.halted != b.halted ||
         a.target_reached != b.target_reached || a.warning != b.warning ||
         a.internal_limit != b.internal_limit || a.error_code != b.error_code ||
         a.error_text != b.error_text || a.procedure != b.procedure || a.step != b.step ||

@@ -109,6 +109,30 @@ TEST_F(ProcedureJobTest, GivesTheResultOfAProcedureThatEndedJustBeforeTheNextBeg
   EXPECT_TRUE(first->front().success) << first->front().message;
 }
 
+TEST_F(ProcedureJobTest, RecoverNamesEachAxisThatTakesNoCommandAndTheCallThatHelps) {
+  ASSERT_TRUE(world.call(ProcedureKind::home).success);
+  ASSERT_TRUE(world.call(ProcedureKind::recover).success);
+  ASSERT_TRUE(world.call(ProcedureKind::halt, "elbow").success);
+  const Answer answer = world.call(ProcedureKind::recover);
+  EXPECT_FALSE(answer.success);
+  EXPECT_EQ(answer.message, "recover done on 1 of 2 axes; elbow is halted: enable");
+  ASSERT_TRUE(world.call(ProcedureKind::enable, "elbow").success);
+  EXPECT_TRUE(world.call(ProcedureKind::recover).success);
+}
+
+TEST_F(ProcedureJobTest, RecoverTellsWhatIsTrueWhenItsLastAxisHasEnded) {
+  ASSERT_TRUE(world.call(ProcedureKind::home).success);
+  world.drives[1].fault(0x8611);
+  world.run(20ms);
+  const auto recovering = world.begin(ProcedureKind::recover);
+  world.run(200ms);  // the elbow's fault reset takes longer; the shoulder was left alone
+  ASSERT_TRUE(recovering->empty());
+  ASSERT_TRUE(world.call(ProcedureKind::disable, "shoulder").success);
+  const Answer answer = world.wait(recovering);
+  EXPECT_FALSE(answer.success);
+  EXPECT_THAT(answer.message, HasSubstr("shoulder is not enabled (switch on disabled): enable"));
+}
+
 TEST(ProcedureJob, RefusesAnUnknownAxisAndHomingWithoutAnyHomingSection) {
   RobotWorld world;
   world.boot();

@@ -1,5 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // clear_faults and recover.
+#include <algorithm>
+
 #include "drive/axis_fixture.h"
 
 namespace cia402::drive {
@@ -155,13 +157,75 @@ TEST(RecoverProcedure, IsHarmlessOnAnEnabledAxis) {
   EXPECT_EQ(bench.drive.controlwords, std::vector<std::uint16_t>{});
 }
 
-TEST(RecoverProcedure, RemindsOfAMissingHoming) {
+TEST(RecoverProcedure, DoesNotTakeAMovingAxisFromWhoMovesIt) {
+  AxisConfig config = testConfig();
+  config.mode = "cyclic_velocity";
+  Bench bench(config);
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  bench.follow(1.0);
+  bench.run(milliseconds(200));
+  double slowest = 1e9;
+  bench.each_cycle = [&] {
+    EXPECT_TRUE(bench.axis.setTarget(1.0)) << bench.axis.motionRefusal();
+    slowest = std::min(slowest, bench.drive.velocity);
+  };
+  const ProcedureStatus& status = bench.perform(ProcedureKind::recover);
+  EXPECT_TRUE(status.success) << status.message;
+  EXPECT_THAT(status.message, HasSubstr("it was left alone"));
+  bench.run(milliseconds(200));
+  EXPECT_NEAR(slowest, 10000.0, 1.0);
+}
+
+TEST(RecoverProcedure, OfAHaltedAxisNamesTheCallThatReleasesIt) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  ASSERT_TRUE(bench.perform(ProcedureKind::halt).success);
+  EXPECT_TRUE(bench.axis.state().halted);
+  const ProcedureStatus& status = bench.perform(ProcedureKind::recover);
+  EXPECT_FALSE(status.success);
+  EXPECT_EQ(status.message, "shoulder is halted: enable");
+  EXPECT_TRUE(bench.axis.state().halted) << "who halted it is not overruled";
+  ASSERT_TRUE(bench.enable());
+  EXPECT_FALSE(bench.axis.state().halted);
+  EXPECT_TRUE(bench.perform(ProcedureKind::recover).success);
+}
+
+TEST(RecoverProcedure, AHaltedAxisThatIsSwitchedOffIsNotHaltedAnyMore) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  ASSERT_TRUE(bench.perform(ProcedureKind::halt).success);
+  ASSERT_TRUE(bench.perform(ProcedureKind::disable).success);
+  EXPECT_FALSE(bench.axis.state().halted);
+  EXPECT_TRUE(bench.perform(ProcedureKind::recover).success);
+}
+
+TEST(RecoverProcedure, FailsWhereHomingIsMissingAndNamesIt) {
   AxisConfig config = testConfig();
   config.homing = HomingOptions();
   config.homing->method = 17;
   Bench bench(config);
   ASSERT_TRUE(bench.boot());
-  EXPECT_THAT(bench.perform(ProcedureKind::recover).message, HasSubstr("it is not homed"));
+  const ProcedureStatus& status = bench.perform(ProcedureKind::recover);
+  EXPECT_FALSE(status.success) << "it takes no position";
+  EXPECT_THAT(status.message, HasSubstr("shoulder is not homed: home"));
+  EXPECT_EQ(bench.drive.state, FakeDrive::S::enabled);
+  EXPECT_TRUE(bench.perform(ProcedureKind::home).success);
+  EXPECT_TRUE(bench.perform(ProcedureKind::recover).success);
+}
+
+TEST(RecoverProcedure, NeedsNoHomingForVelocities) {
+  AxisConfig config = testConfig();
+  config.homing = HomingOptions();
+  config.homing->method = 17;
+  config.mode = "cyclic_velocity";
+  Bench bench(config);
+  ASSERT_TRUE(bench.boot());
+  const ProcedureStatus& status = bench.perform(ProcedureKind::recover);
+  EXPECT_TRUE(status.success) << status.message;
+  EXPECT_TRUE(bench.give(0.5));
 }
 
 }  // namespace

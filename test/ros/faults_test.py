@@ -103,7 +103,7 @@ class Faults(RobotTest):
         for name in self.AXES:
             self.robot.wait_axis(name, lambda axis: axis.state != "operation enabled", "disabled")
         wait_until(lambda: all(node.ready for node in self.robot.bus_state.nodes), "ready again")
-        wait_until(lambda: self.robot.call("recover").success, "recovered")
+        wait_until(self.robot.recovered, "recovered")
         self.home_and_enable()
         place = self.robot.wait_rest("wrist")
         self.robot.command("wrist", place + 0.1)
@@ -123,7 +123,7 @@ class Faults(RobotTest):
         axis = self.robot.wait_axis("wrist", lambda state: state.state == "switch on disabled",
                                     "left disabled")
         self.assertNotEqual(axis.state, "operation enabled")
-        self.succeed("wrist/recover", "wrist")
+        self.refuse("wrist/recover", "wrist is not homed: home")
         if not self.robot.axis("wrist").homed:
             self.succeed("wrist/home")
         self.succeed("wrist/enable")
@@ -149,7 +149,7 @@ class Faults(RobotTest):
             self.assertLess(message.header.stamp.to_sec(), silent)
         for axis in self.AXES:
             self.succeed("inject_fault", axis=axis, fault="clear")
-        wait_until(lambda: self.robot.call("recover").success, "recovered")
+        wait_until(self.robot.recovered, "recovered")
         self.robot.wait_ready()
 
     def test_sigint_in_motion_ends_in_time(self):

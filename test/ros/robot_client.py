@@ -239,6 +239,12 @@ class Robot:
         print(f"{name} {request or ''}: {answer.success}, {answer.message}", flush=True)
         return answer
 
+    def recovered(self):
+        """Calls recover. @return whether the axes miss nothing but their zero then."""
+        answer = self.call("recover")
+        return answer.success or all(" is not homed: home" in part
+                                     for part in answer.message.split("; ")[1:])
+
     def publisher(self, topic, kind):
         """A publisher that the node listens to."""
         path = f"{self._prefix}/{topic}"

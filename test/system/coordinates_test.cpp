@@ -54,7 +54,8 @@ TEST(Coordinates, EnablingBeforeHomingMovesNothingThoughTheDrivesZeroIsOutsideTh
   ASSERT_TRUE(scene.boot());
   scene.forget();
   const auto recovered = scene.procedure(ProcedureKind::recover);
-  EXPECT_TRUE(recovered.success) << recovered.message;
+  EXPECT_THAT(recovered.message, HasSubstr("left is not homed: home"));
+  EXPECT_TRUE(scene.truth("left").power_stage_on);
   scene.run(500ms);
   expectNothingMoved(scene, "left");
   const auto home = scene.procedure(ProcedureKind::home, "left");
@@ -93,7 +94,8 @@ TEST(Coordinates, ADriveThatCameBackWithOldLimitsIsEnabledWithoutMotion) {
   ASSERT_FALSE(scene.state("left").homed);
   scene.forget();
   const auto recovered = scene.procedure(ProcedureKind::recover, "left");
-  EXPECT_TRUE(recovered.success) << recovered.message;
+  EXPECT_THAT(recovered.message, HasSubstr("left is not homed: home"));
+  EXPECT_TRUE(scene.truth("left").power_stage_on);
   scene.run(500ms);
   expectNothingMoved(scene, "left");
 }

@@ -179,18 +179,18 @@ TEST_F(Safety, AVelocityAxisComesToRestWhenAProcedureTakesItsStream) {
   setMode("cyclic_velocity");
   mustSucceed(ProcedureKind::enable);
   stream(0.3, 500ms);
-  mustSucceed(ProcedureKind::recover);
+  mustSucceed(ProcedureKind::enable);
   robot->run(1s);
   EXPECT_LT(fastest(500ms), 1e-3);
 }
 
-TEST_F(Safety, AProcedureOnAMovingAxisStopsItsSetPointsByARamp) {
+TEST_F(Safety, AHaltOfAMovingAxisStopsItsSetPointsByARamp) {
   boot(kOneAxis);
   mustSucceed(ProcedureKind::enable);
   stream(1.9, 700ms);
   const double moving = fastest(4ms);
   ASSERT_GT(moving, 0.5);
-  post(ProcedureKind::recover);
+  post(ProcedureKind::halt);
   double last = axis().target(), last_step = moving * 0.004, hardest = 0.0;
   for (int i = 0; i < 200; ++i) {
     robot->run(4ms);

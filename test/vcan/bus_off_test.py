@@ -77,7 +77,7 @@ class BusOff(RobotTest):
 
     def begin_motion(self):
         self.robot.wait_ready(60.0)
-        wait_until(lambda: self.robot.call("recover").success, "recovered")
+        wait_until(self.robot.recovered, "recovered")
         self.home_and_enable()
         start = self.robot.wait_rest("wrist")
         goal = 2.5 if start < 0.0 else -2.5
@@ -91,7 +91,7 @@ class BusOff(RobotTest):
         for name in JOINTS:
             self.robot.wait_axis(name, lambda axis: axis.state != "operation enabled", "disabled")
             self.robot.wait_rest(name)
-        wait_until(lambda: self.robot.call("recover").success, "recovered")
+        wait_until(self.robot.recovered, "recovered")
         self.home_and_enable()
         place = self.robot.wait_rest("wrist")
         self.robot.command("wrist", place + 0.1)

@@ -64,7 +64,7 @@ class Guarding(RobotTest):
         self.robot.wait_ready(60.0)
 
     def test_03_node_killed_makes_the_guarded_drive_stop(self):
-        wait_until(lambda: self.robot.call("recover").success, "recovered")
+        wait_until(self.robot.recovered, "recovered")
         self.robot.wait_axis("guarded", lambda axis: axis.state == "operation enabled", "enabled")
         began = time.monotonic()
         self.process.kill()

@@ -68,7 +68,7 @@ class Lss(RobotTest):
             return all(abs(self.robot.position(joint) - place) < 0.01
                        for joint, place in goal.items())
         # A machine that forgets the drives for seconds lets them stop and be booted again.
-        wait_until(lambda: self.robot.call("recover").success and moved(), "moved", 120.0)
+        wait_until(lambda: self.robot.recovered() and moved(), "moved", 120.0)
         self.succeed("disable")
 
     def test_assigned_at_start_by_identity_they_boot_and_move(self):

@@ -46,7 +46,7 @@ class VcanRecorder(RobotTest):
                 if identifier == 0x183]
 
     def test_a_fault_is_on_file(self):
-        wait_until(lambda: self.robot.call("recover").success, "recovered")
+        wait_until(self.robot.recovered, "recovered")
         wait_until(lambda: self.robot.call("wrist/enable").success, "enabled")
         wait_until(lambda: len(self.statuswords()) > 50, "some cycles of feedback")
         began = time.time()

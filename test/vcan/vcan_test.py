@@ -64,7 +64,7 @@ class Vcan(RobotTest):
         """All drives there and recovered, by news from now on."""
         self.robot.bus_state = self.robot.axis_states = None
         self.robot.wait_ready(60.0)
-        wait_until(lambda: self.robot.call("recover").success, "recovered")
+        wait_until(self.robot.recovered, "recovered")
 
     def begin_motion(self, axis="wrist"):
         """All joints begin to move for 8 s and are seen to move."""

@@ -11,7 +11,8 @@
 namespace cia402::bus {
 
 /// A procedure on one or several axes, in the order that was asked for: axes of equal order run
-/// together; an order begins when the one before has succeeded on every axis.
+/// together; an order begins when the one before has succeeded on every axis. The answer says what
+/// is true of all axes when it is given.
 class ProcedureJob {
  public:
   struct Item {
@@ -49,6 +50,8 @@ class ProcedureJob {
 
   void startDue(std::vector<drive::Axis>& axes, Time now);
   void watch(std::vector<drive::Axis>& axes);
+  bool ended() const;
+  void judge(const std::vector<drive::Axis>& axes);
   static void watchWaiting(Entry& entry, const drive::Axis& axis);
   static void refuseToBegin(Entry& entry, const drive::Axis& axis, const std::string& why);
   void skipRest(const std::vector<drive::Axis>& axes);

@@ -22,7 +22,7 @@ enum class ProcedureKind : std::uint8_t {
   disable,             ///< power stage off; a moving axis is quick-stopped first
   home,                ///< by the drive or by declaring; ends enabled in the mode from before
   clear_faults,        ///< one edge of the fault reset bit; the axis stays disabled
-  recover,             ///< boot the node if needed, clear faults, enable
+  recover,             ///< boot the node if needed, clear faults, enable; leaves enabled axes alone
   quick_stop,          ///< ends disabled, or holding where the drive does (605Ah, quick_stop_holds)
   halt,                ///< stop and stay enabled until `enable` releases it
   set_mode,            ///< disabled, or enabled at standstill
@@ -82,6 +82,7 @@ struct AxisState {
   bool target_reached = false;
   bool warning = false;
   bool internal_limit = false;
+  bool halted = false;            ///< enabled, and takes no command until `enable` releases it
   bool ready_for_motion = false;  ///< operation enabled, mode active, brake released, no procedure
   std::uint32_t digital_inputs = 0;   ///< 60FDh
   bool digital_inputs_valid = false;  ///< false: not received, or not in time
@@ -131,6 +132,9 @@ class Axis {
   void stopSetPoint();
   /// Why setTarget would refuse now, in words; empty if it would not.
   std::string motionRefusal() const;
+  /// Why the axis takes no command, and the call that helps: "elbow is halted: enable"; empty if it
+  /// does. A procedure that runs is left out of account.
+  std::string obstacle() const;
 
   /// RPDOs do not reach the drive, or are not taken as SYNC is gone: a drive that may be enabled is
   /// quick-stopped by SDO and stays disabled; a procedure that would enable it is ended.
