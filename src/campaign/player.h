@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <list>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -90,7 +91,7 @@ class Player {
   void prove();
   bool proveCall(const std::string& verb, const std::string& who, Duration limit,
                  bus::Answer& answer);
-  void proveMove(std::size_t axis);
+  void proveMove(std::size_t axis, bool back = false);
 
   Stage& stage_;
   const Scene& scene_;
@@ -105,6 +106,7 @@ class Player {
   std::list<Pending> pending_;
   std::vector<Stream> streams_;
   std::vector<Later> later_;
+  std::map<std::size_t, std::string> follows_;  ///< the group that moved an axis last
   std::vector<bool> dead_;  ///< drives with a fault that only the power switch ends
   class Deaf : public sim::Listener {
     void onFrame(const can::Frame&, Time) override {}

@@ -137,6 +137,8 @@ void Player::trajectory(const config::GroupConfig& to, std::vector<motion::Traje
     const Time now = stage_.now();
     stage_.look(truths_);
     for (std::size_t i : axes) {
+      if (stop && follows_[i] != to.name) continue;  // another group moves it
+      follows_[i] = to.name;
       const double speed = truths_[i].velocity;
       const Time end = stop ? now + stage_.axes()[i].stopTime(speed)
                             : std::max(base, has_start ? base : now) + last + 250ms;
@@ -198,7 +200,8 @@ void Player::accepted(std::size_t axis, double value) {
   const bool position = mode == profile.modes.end() || mode->kind == drive::ControlKind::position;
   if (position) {
     const drive::AxisLimits& limits = facts.config->limits;
-    const double range = limits.lower && limits.upper ? *limits.upper - *limits.lower : 6.0;
+    const double way = std::min(std::fabs(value - shown(axis)), 3600.0 * facts.velocity);
+    const double range = limits.lower && limits.upper ? *limits.upper - *limits.lower : way;
     permits_.allow(
         axis, Source::target,
         now + fromSeconds(range / facts.velocity + facts.velocity / facts.acceleration * 3 + 1.0));

@@ -87,7 +87,7 @@ bool Player::proveCall(const std::string& verb, const std::string& who, Duration
   return false;
 }
 
-void Player::proveMove(std::size_t axis) {
+void Player::proveMove(std::size_t axis, bool back) {
   const AxisFacts& facts = stage_.axes()[axis];
   const drive::DriveProfile& profile = *facts.config->profile;
   const auto mode =
@@ -103,7 +103,7 @@ void Player::proveMove(std::size_t axis) {
   const double from = truths_[axis].position, at = shown(axis);
   const double middle =
       limits.lower && limits.upper ? (*limits.lower + *limits.upper) / 2.0 : at + 1.0;
-  const double sign = middle >= at ? 1.0 : -1.0;
+  const double sign = (middle >= at ? 1.0 : -1.0) * (back ? -1.0 : 1.0);
   double expected = 0.05 * facts.velocity * sign;
   double value = at + expected;
   if (mode->kind == drive::ControlKind::velocity) value = 0.2 * facts.velocity * sign;
@@ -123,6 +123,9 @@ void Player::proveMove(std::size_t axis) {
       !torque && std::fabs(moved) > 3.0 * std::fabs(expected) +
                                         facts.velocity * facts.velocity / facts.acceleration;
   if ((torque ? moved * sign > 0.0 : far_enough) && !too_far) return;
+  // A switch may stand in the way: it lets the axis go back.
+  const bool held = facts.units_per_count != 0.0 && (truths_[axis].statusword & 0x0800) != 0;
+  if (held && !back) return proveMove(axis, true);
   report("no_recovery", facts.name,
          "was told to move by " + number(expected) + " in mode " + mode->name +
              " when all was well again, and moved by " + number(moved));

@@ -138,6 +138,7 @@ void AxisCore::selectMode(const ModeChannel& mode) {
   if (mode.spec->kind != ControlKind::homing) unwrap_.resume();
   placeZero();
   homing_start_ = false;
+  if (braking_) braking_ = halt_bit_ = false;  // it belongs to the mode that is left, at rest
   neutralizeTarget();
 }
 

@@ -348,6 +348,23 @@ TEST_P(EffortMode, AnEffortAfterTheBrakeMovesAgainWhereItStaysEnabled) {
 INSTANTIATE_TEST_SUITE_P(Modes, EffortMode, testing::ValuesIn(efforts()),
                          [](const auto& tested) { return tested.param.name; });
 
+TEST(SetPoints, AHomingBeginsAfterAnEffortWasBraked) {
+  Scene scene(loadText(withModes(genericPair(", homing: {method: 34, search_velocity: 0.5}"),
+                                 "csp, profile_torque, homing")));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  ASSERT_TRUE(scene.procedure(ProcedureKind::set_mode, "left", "profile_torque").success);
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "left").success);
+  ASSERT_TRUE(scene.runUntil(
+      [&] {
+        EXPECT_EQ(scene.setpoint("left", 6.0), "");
+        return std::abs(scene.velocity("left")) > 0.3;
+      },
+      5s));
+  scene.run(2s);
+  const bus::Answer homed = scene.procedure(ProcedureKind::home, "left");
+  EXPECT_TRUE(homed.success) << homed.message;
+}
+
 TEST(SetPoints, AnEffortStreamCoastsWhereThatIsAskedFor) {
   Scene scene(
       loadText(withModes(genericPair(", command_timeout_action: coast"), "csp, cyclic_torque")));

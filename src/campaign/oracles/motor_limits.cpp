@@ -14,6 +14,7 @@ using namespace std::chrono_literals;
 
 constexpr std::size_t kWindow = 20;  // ms over which acceleration is measured
 constexpr Duration kSyncMemory = 30ms;
+constexpr Duration kLongestLag = 500ms;
 constexpr std::uint32_t kSync = 0x80;
 
 class MotorLimits final : public Oracle {
@@ -59,8 +60,10 @@ class MotorLimits final : public Oracle {
   struct Axis {
     std::array<double, kWindow> speeds{};
     std::size_t next = 0, count = 0;
-    bool fed = false;  // since the last SYNC
-    Time starved{};
+    bool fed = false;   // since the last SYNC
+    Time starved{};     // until then it lacks set-points
+    Time last{};        // it may take no longer than that
+    Time catches_up{};  // until then it makes good what that cost it
   };
 
   void look(const View& view, std::size_t i) {
@@ -72,6 +75,10 @@ class MotorLimits final : public Oracle {
                         view.now >= view.conditions.axes[i].blocked &&
                         view.now >= view.conditions.lossy && view.now >= view.conditions.foreign &&
                         view.now >= view.conditions.axes[i].cut_off;
+    const Duration period = view.stage.loaded().robot.bus.sync_period;
+    if (view.now - last_sync_ > period + period / 2 || !judged)
+      axis.starved = view.now + kSyncMemory;
+    const bool lags = catchesUp(view, axis, facts, truth);
     if (!judged) {
       axis.count = 0;
       return;
@@ -79,19 +86,16 @@ class MotorLimits final : public Oracle {
     // SYNCs that follow each other too quickly make a drive do two steps in the time of one.
     const double squeeze = view.now < squeezed_ ? squeeze_ : 0.0;
     const double fastest = facts.velocity * (1.1 + squeeze) + 0.002;
-    if (std::fabs(truth.velocity) > fastest) {
+    if (std::fabs(truth.velocity) > fastest && !lags) {
       report(
           view, i,
           "turns at " + number(truth.velocity) + " per s, its limit is " + number(facts.velocity));
     }
-    const Duration period = view.stage.loaded().robot.bus.sync_period;
-    const bool starved =
-        view.now < std::max(starved_, axis.starved) || view.now - last_sync_ > period + period / 2;
     // Nor is it limited where an effort is commanded: it follows from the load.
     const bool effort = facts.kind(truth.mode) == drive::ControlKind::torque;
     // A limit switch stops a motor as hard as its drive can.
     const bool at_limit = facts.units_per_count != 0.0 && (truth.statusword & 0x0800) != 0;
-    if (starved || effort || at_limit) axis.count = 0;
+    if (lags || effort || at_limit) axis.count = 0;
     if (axis.count == kWindow && squeeze == 0.0) {
       const double rate = (truth.velocity - axis.speeds[axis.next]) / (kWindow * 0.001);
       // A quick stop may take twice the limit.
@@ -104,6 +108,21 @@ class MotorLimits final : public Oracle {
     axis.speeds[axis.next] = truth.velocity;
     axis.next = (axis.next + 1) % kWindow;
     axis.count = std::min(axis.count + 1, kWindow);
+  }
+
+  /// A drive that lacked a set-point stops as hard as it can, and makes it good with all its
+  /// effort.
+  bool catchesUp(const View& view, Axis& axis, const AxisFacts& facts,
+                 const AxisTruth& truth) const {
+    if (view.now < std::max(starved_, axis.starved)) {
+      axis.catches_up = view.now + 20ms;
+      axis.last = view.now + kLongestLag;
+    }
+    const double effort = facts.config->limits.effort.value_or(1e300);
+    if (view.now < axis.catches_up && std::fabs(truth.effort) > 0.9 * effort) {
+      axis.catches_up = std::min(view.now + 20ms, axis.last);
+    }
+    return view.now < axis.catches_up;
   }
 
   std::vector<Axis> axes_;
