@@ -6,6 +6,7 @@
 
 #include "cia402_driver/drive/standstill.h"
 #include "procedure.h"
+#include "step_enable.h"
 #include "step_fault_reset.h"
 
 namespace cia402::drive {
@@ -40,10 +41,13 @@ struct Steps {
   }
   /// From switch on disabled it takes three transitions, and one more out of quick stop active.
   Duration enable() const {
-    return timing.state_change + writes(profile.before_enable) + limits() + mode() +
-           4 * timing.state_change + std::max(timing.brake_release, kFollowPatience);
+    return timing.state_change + EnableStep::kComeToRest + writes(profile.before_enable) +
+           limits() + mode() + 4 * timing.state_change +
+           std::max(timing.brake_release, kFollowPatience);
   }
-  Duration change() const { return timing.state_change + enable(); }  // SwitchStep
+  Duration change() const {  // SwitchStep
+    return profile.mode_change_needs_disabling ? timing.state_change + enable() : mode();
+  }
   Duration reset() const {
     return 4 * timing.state_change + FaultResetStep::kInterval + FaultResetStep::kWatch;
   }
@@ -75,21 +79,21 @@ Duration timeLimit(ProcedureKind kind, const AxisConfig& config, double velocity
     case ProcedureKind::none:
       break;
     case ProcedureKind::enable:
-      return kMargin + stop + steps.change();
+      return kMargin + std::max(steps.change(), steps.enable());
     case ProcedureKind::disable:
       return kMargin + stop + 2 * change;
     case ProcedureKind::home:
-      return kMargin + stop + steps.home();
+      return kMargin + steps.home();
     case ProcedureKind::clear_faults:
       return kMargin + steps.reset();
     case ProcedureKind::recover:
-      return kMargin + 2 * change + steps.boot() + steps.reset() + stop + steps.enable();
+      return kMargin + 2 * change + steps.boot() + steps.reset() + steps.enable();
     case ProcedureKind::quick_stop:
       return kMargin + stop + std::max(change, steps.transfer());
     case ProcedureKind::halt:
       return kMargin + stop;
     case ProcedureKind::set_mode:
-      return kMargin + kStanding + std::max(steps.change(), steps.mode());
+      return kMargin + kStanding + steps.change();
     case ProcedureKind::set_position:
       return kMargin + steps.declare();
     case ProcedureKind::save_parameters:

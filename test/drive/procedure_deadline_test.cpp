@@ -72,7 +72,7 @@ class Deadline : public testing::TestWithParam<Case> {
     const auto started = bench.axis.start({GetParam().kind, "cyclic_position", 0.5}, bench.now);
     EXPECT_TRUE(started.ok()) << (started.ok() ? "" : started.error().message);
     EXPECT_GT(bench.axis.procedure().deadline, began);
-    EXPECT_LE(bench.axis.procedure().deadline, began + 90s);
+    EXPECT_LE(bench.axis.procedure().deadline, began + 80s);
     EXPECT_TRUE(bench.runUntil([&] { return !bench.axis.procedure().running; }, 120s))
         << "still runs: " << bench.axis.procedure().step << ", waiting for "
         << bench.axis.procedure().waiting_for;
