@@ -4,6 +4,41 @@
 #include "cia402_driver/bus/jobs.h"
 
 namespace cia402::bus {
+namespace {
+
+/// Why what a procedure has achieved is not so any more; empty if it is.
+/// @param replaced another one was called since
+std::string lapse(const drive::ProcedureRequest& request, const drive::Axis& axis, bool replaced) {
+  using drive::ProcedureKind;
+  const drive::AxisState& state = axis.state();
+  const std::string began = axis.config().name + ": " + toString(request.kind) + " had succeeded, ";
+  const std::string cause = replaced
+                                ? began + "but " + toString(axis.procedure().kind) + " was called: "
+                                : began + "but ";
+  const bool enabled = state.state == drive::State::operation_enabled;
+  const std::string now = std::string("it is ") + toString(state.state);
+  switch (request.kind) {
+    case ProcedureKind::recover:
+      return axis.obstacle();
+    case ProcedureKind::enable:
+      return enabled ? std::string() : cause + now;
+    case ProcedureKind::disable:
+      return powerStageOff(state.state) ? std::string() : cause + now;
+    case ProcedureKind::home:
+    case ProcedureKind::set_position:
+      return state.homed ? std::string() : cause + "it is not homed";
+    case ProcedureKind::set_mode:
+      if (axis.modeName() == drive::canonicalModeName(request.mode)) return {};
+      return cause + "it is in mode " + axis.modeName();
+    case ProcedureKind::halt:
+    case ProcedureKind::quick_stop:
+      return replaced && enables(axis.procedure().kind) ? cause + now : std::string();
+    default:
+      return {};
+  }
+}
+
+}  // namespace
 
 ProcedureJob::ProcedureJob(drive::ProcedureRequest request, std::vector<Item> items, Reply reply)
     : request_(std::move(request)), reply_(std::move(reply)) {
@@ -38,12 +73,13 @@ bool ProcedureJob::ended() const {
 
 /// What an axis answered may not be true any more when the last one has ended.
 void ProcedureJob::judge(const std::vector<drive::Axis>& axes) {
-  if (request_.kind != drive::ProcedureKind::recover) return;
+  if (entries_.size() == 1) return;
   for (Entry& entry : entries_) {
-    const std::string obstacle = axes[entry.item.axis].obstacle();
-    if (entry.stage != Stage::succeeded || obstacle.empty()) continue;
+    const drive::Axis& axis = axes[entry.item.axis];
+    const std::string lapsed = lapse(request_, axis, axis.procedure().id != entry.id);
+    if (entry.stage != Stage::succeeded || lapsed.empty()) continue;
     entry.stage = Stage::failed;
-    entry.message = obstacle;
+    entry.message = lapsed;
   }
 }
 

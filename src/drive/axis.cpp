@@ -5,6 +5,7 @@
 
 #include "axis_core.h"
 #include "procedure.h"
+#include "procedure_limits.h"
 
 namespace cia402::drive {
 namespace {
@@ -47,7 +48,7 @@ void Axis::Impl::watchNode() {
 }
 
 void Axis::Impl::advance(Time now) {
-  Outcome outcome = procedure->advance(context(now));
+  Outcome outcome = procedure->step(context(now));
   if (!outcome.isRunning()) finish(outcome.isDone(), std::move(outcome.message));
 }
 
@@ -137,7 +138,9 @@ Result<std::uint32_t> Axis::start(const ProcedureRequest& request, Time now) {
   impl.status.id = id;
   impl.status.running = true;
   impl.status.step = "starting";
-  impl.status.started = impl.status.deadline = now;
+  impl.status.started = now;
+  impl.status.deadline =
+      now + timeLimit(request.kind, impl.core.config(), impl.core.state().velocity);
   impl.procedure = std::move(procedure.value());
   if (impl.procedure->leavesAlone(impl.context(now))) impl.advance(now);
   impl.core.updateReadiness(impl.status.running, now);
@@ -157,6 +160,7 @@ bool Axis::setTarget(double value) { return impl_->core.setTarget(value); }
 void Axis::stopSetPoint() { impl_->core.stopSetPoint(); }
 std::string Axis::motionRefusal() const { return impl_->core.motionRefusal(impl_->status.running); }
 std::string Axis::obstacle() const { return impl_->core.obstacle(); }
+const std::string& Axis::modeName() const { return impl_->core.mode().spec->name; }
 
 void Axis::stopBySdo(const std::string& why, Time) {
   impl_->core.stopBySdo(why);

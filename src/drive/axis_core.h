@@ -17,6 +17,9 @@
 
 namespace cia402::drive {
 
+/// A drive that never shows that it follows its set-points is waited for so long, once.
+inline constexpr Duration kFollowPatience{std::chrono::seconds(1)};
+
 /// The axis without its procedures: feedback, state machine, targets, and the reactions that must
 /// not wait for anybody. Procedures tell it where to go and watch it.
 class AxisCore {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "axis_core.h"
+#include "procedure_limits.h"
 #include "sentence.h"
 
 namespace cia402::drive {
@@ -12,24 +13,16 @@ namespace {
 constexpr int kReactionCycles = 2;
 /// The same for a drive that plans its motion, whose plan is ahead of the motor.
 constexpr int kPlanningCycles = 4;
-/// A drive that never shows that it follows its set-points is waited for so long, once.
-constexpr Duration kFollowPatience{std::chrono::seconds(1)};
 /// Set-points that run while the motor stands are called back after so long; sooner where the drive
 /// itself says that it does not follow.
 constexpr Duration kLeftBehind{std::chrono::milliseconds(150)},
     kHeld{std::chrono::milliseconds(60)};
 /// Only set-points that are so many times faster than standstill tell that a motor stays behind.
 constexpr double kClearlyMoving = 3.0;
-constexpr Duration kStopMargin{std::chrono::milliseconds(500)};
 
 }  // namespace
 
-Duration AxisCore::stopTime() const {
-  const double fastest = config_.limits.velocity.value_or(0.0);
-  const double measured = std::isfinite(state_.velocity) ? std::fabs(state_.velocity) : 0.0;
-  const double ramp = std::max(fastest, measured) / stopDeceleration(config_);
-  return std::max(profile().timing.state_change, fromSeconds(2.0 * ramp) + kStopMargin);
-}
+Duration AxisCore::stopTime() const { return drive::stopTime(config_, state_.velocity); }
 
 bool AxisCore::atStandstill() const {
   return standstill_.still() &&

@@ -65,6 +65,43 @@ Result<std::unique_ptr<Procedure>> makeProcedure(const ProcedureRequest& request
   return Error{axis.who() + ": no procedure was named"};
 }
 
+namespace {
+
+/// The axis is not to move by what was given up. @return what was done, in words
+std::string makeSafe(AxisCore& axis, ProcedureKind kind) {
+  if (!axis.nodeReady()) return "nothing reaches the drive";
+  axis.setHomingStart(false);
+  const bool off = kind == ProcedureKind::disable && axis.atStandstill();
+  if (!enables(kind) && !stops(kind)) return "nothing moves by it";
+  if (axis.mode().spec->kind == ControlKind::homing) axis.selectMode(axis.workingMode());
+  off ? axis.switchOff() : axis.setGoal(Goal::quick_stop);
+  return off ? "disable voltage is commanded" : "quick stop is commanded";
+}
+
+}  // namespace
+
+Outcome Procedure::step(const Context& context) {
+  const State state = context.axis.state().state;
+  if (!watched_) seen_ = state;
+  watched_ = true;
+  if (state != seen_) ++changes_;
+  seen_ = state;
+  Outcome outcome = advance(context);
+  if (outcome.isRunning() && context.now >= context.status.deadline) return giveUp(context);
+  return outcome;
+}
+
+Outcome Procedure::giveUp(const Context& context) const {
+  AxisCore& axis = context.axis;
+  const ProcedureStatus& status = context.status;
+  std::string text = axis.who() + ": " + toString(status.kind) + " was given up after " +
+                     seconds(context.now - status.started) + " while " + status.step;
+  if (!status.waiting_for.empty()) text += ", waiting for " + status.waiting_for;
+  text += "; the drive changed its state " + std::to_string(changes_) + " times meanwhile. ";
+  const std::string report = axis.report();
+  return Outcome::failed(text + makeSafe(axis, status.kind) + "; " + report);
+}
+
 Outcome awaitStandstill(const Context& context, Time since, const std::string& what) {
   AxisCore& axis = context.axis;
   const bool patient = context.now - since <= 4 * Standstill::kWindow;

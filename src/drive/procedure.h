@@ -36,11 +36,13 @@ struct Context {
   }
 };
 
-/// A long operation on an axis. advance() is called in every cycle until it is not running.
+/// A long operation on an axis. step() is called in every cycle until it is not running.
 class Procedure {
  public:
   virtual ~Procedure() = default;
-  virtual Outcome advance(const Context& context) = 0;
+  /// Does what is due. Where the deadline of the whole (ProcedureStatus) is over it leaves the axis
+  /// safe and fails, whatever its steps wait for.
+  Outcome step(const Context& context);
   /// Somebody wants it to end. @return true if it may simply be dropped; else it goes on running
   /// until the axis is safe and then fails with `reason`.
   virtual bool cancel(const std::string& /*reason*/, const Context&) { return true; }
@@ -49,6 +51,16 @@ class Procedure {
   virtual bool leavesAlone(const Context&) const { return false; }
   /// It waits for the node to come back by itself.
   virtual bool survivesNodeLoss() const { return false; }
+
+ protected:
+  virtual Outcome advance(const Context& context) = 0;
+
+ private:
+  Outcome giveUp(const Context& context) const;
+
+  State seen_ = State::unknown;
+  unsigned changes_ = 0;  ///< of the drive's state since it began
+  bool watched_ = false;
 };
 
 /// Makes the procedure that was asked for, or says why the axis cannot do it now.

@@ -12,8 +12,6 @@ class ClearFaults : public Procedure {
     AxisCore& axis = context.axis;
     if (!begun_) {
       begun_ = true;
-      context.status.deadline = context.now + 3 * axis.profile().timing.state_change +
-                                FaultResetStep::kInterval + FaultResetStep::kWatch;
       if (!clearable(axis)) {
         return Outcome::done(axis.config().joint + ": no fault, nothing to clear");
       }

@@ -35,8 +35,6 @@ class Disable : public Procedure {
 
   void begin(const Context& context) {
     AxisCore& axis = context.axis;
-    context.status.deadline =
-        context.now + axis.stopTime() + 2 * axis.profile().timing.state_change;
     if (!axis.powerOff() && !axis.atStandstill()) {  // an unknown state counts as powered
       phase_ = Phase::stopping;
     } else {

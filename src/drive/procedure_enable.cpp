@@ -23,9 +23,6 @@ class Enable : public Procedure {
     begun_ = true;
     started_ = context.now;
     AxisCore& axis = context.axis;
-    const DriveProfile::Timing& timing = axis.profile().timing;
-    context.status.deadline =
-        context.now + 5 * timing.state_change + 2 * timing.mode_change + timing.brake_release;
     releasing_ = axis.inOperation();
     leaving_homing_ = releasing_ && axis.mode().spec->kind == ControlKind::homing;
     if (!releasing_ || !axis.halted() || leaving_homing_) return;

@@ -21,7 +21,7 @@ class Halt : public Procedure {
       return Outcome::done(axis.config().joint + ": halted at " + place(axis) +
                            "; enable releases the halt");
     }
-    if (context.now < context.status.deadline) return Outcome::running();
+    if (context.now < until_) return Outcome::running();
     const std::string velocity = number(axis.state().velocity);
     axis.setGoal(Goal::quick_stop);
     return Outcome::failed(axis.who() + ": halt did not bring the axis to standstill within " +
@@ -34,7 +34,7 @@ class Halt : public Procedure {
     AxisCore& axis = context.axis;
     begun_ = true;
     started_ = context.now;
-    context.status.deadline = context.now + axis.stopTime();
+    until_ = context.now + axis.stopTime();
     mode_ = axis.mode().spec->name;
     if (axis.inOperation()) {
       axis.beginHalt();
@@ -74,7 +74,7 @@ class Halt : public Procedure {
   bool begun_ = false, was_enabled_ = false;
   std::optional<QuickStopStep> quick_stop_;
   std::string mode_;
-  Time started_{};
+  Time started_{}, until_{};
 };
 
 }  // namespace

@@ -72,10 +72,7 @@ Outcome DriveHoming::advance(const Context& context) {
 
 void DriveHoming::begin(const Context& context) {
   AxisCore& axis = context.axis;
-  const DriveProfile::Timing& timing = axis.profile().timing;
   started_ = context.now;
-  context.status.deadline = context.now + axis.config().homing->timeout + 5 * timing.state_change +
-                            4 * timing.mode_change + timing.brake_release + kClearTime;
   axis.openLimits(true);
   enter(Phase::writing, context);
 }

@@ -4,6 +4,7 @@
 
 #include "cia402_driver/canopen/abort_code.h"
 #include "procedure.h"
+#include "procedure_limits.h"
 #include "sentence.h"
 
 namespace cia402::drive {
@@ -11,7 +12,6 @@ namespace {
 
 constexpr std::uint32_t kOnCommand = 1;  // capability bits of 1010h; of 1011h only the first
 constexpr std::uint32_t kByItself = 2;
-constexpr unsigned kBootAttempts = 3;
 
 /// What differs between the two objects.
 struct Storage {
@@ -126,22 +126,13 @@ class StorageStep {
   std::string done_;
 };
 
-Duration longest(const AxisCore& axis, std::size_t count) {
-  const DriveProfile& profile = axis.profile();
-  const Duration each =
-      profile.parameters.timeout + (profile.timing.sdo_retries + 1) * profile.timing.sdo;
-  return static_cast<int>(count) * each;
-}
-
 class SaveParameters : public Procedure {
  public:
   explicit SaveParameters(std::vector<std::uint8_t> subindices)
-      : count_(subindices.size()), storing_(saving(), std::move(subindices)) {}
+      : storing_(saving(), std::move(subindices)) {}
 
   Outcome advance(const Context& context) override {
     AxisCore& axis = context.axis;
-    if (!begun_) context.status.deadline = context.now + longest(axis, count_);
-    begun_ = true;
     const Outcome outcome = storing_.advance(context);
     if (!outcome.isDone()) return outcome;
     return Outcome::done(axis.who() + ": saved " + storing_.what() +
@@ -150,8 +141,6 @@ class SaveParameters : public Procedure {
   }
 
  private:
-  bool begun_ = false;
-  std::size_t count_;
   StorageStep storing_;
 };
 
@@ -160,13 +149,9 @@ class SaveParameters : public Procedure {
 class RestoreParameters : public Procedure {
  public:
   explicit RestoreParameters(std::vector<std::uint8_t> subindices)
-      : count_(subindices.size()), restoring_(restoring(), std::move(subindices)) {}
+      : restoring_(restoring(), std::move(subindices)) {}
 
   Outcome advance(const Context& context) override {
-    if (!begun_) {
-      begun_ = true;
-      context.status.deadline = context.now + longest(context.axis, count_) + bootTime(context);
-    }
     if (resetting_) return awaitBoot(context);
     const Outcome outcome = restoring_.advance(context);
     if (!outcome.isDone()) return outcome;
@@ -181,7 +166,7 @@ class RestoreParameters : public Procedure {
 
  private:
   static Duration bootTime(const Context& context) {
-    return kBootAttempts * context.axis.profile().timing.boot;
+    return kBootTimes * context.axis.profile().timing.boot;
   }
 
   Outcome awaitBoot(const Context& context) {
@@ -209,8 +194,7 @@ class RestoreParameters : public Procedure {
                            canopen::toString(health) + ", " + axis.node().bootStep());
   }
 
-  bool begun_ = false, resetting_ = false;
-  std::size_t count_;
+  bool resetting_ = false;
   StorageStep restoring_;
   Time reset_at_{};
 };

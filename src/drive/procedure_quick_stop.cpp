@@ -13,11 +13,6 @@ namespace {
 class QuickStop : public Procedure {
  public:
   Outcome advance(const Context& context) override {
-    AxisCore& axis = context.axis;
-    if (!begun_) {
-      begun_ = true;
-      context.status.deadline = context.now + axis.stopTime() + axis.profile().timing.state_change;
-    }
     if (!stopped_) {
       const Outcome outcome = stop_.advance(context);
       if (!outcome.isDone()) return outcome;
@@ -68,7 +63,7 @@ class QuickStop : public Procedure {
 
   QuickStopStep stop_;
   canopen::SdoTicket option_;
-  bool begun_ = false, stopped_ = false;
+  bool stopped_ = false;
   Time since_{};
 };
 

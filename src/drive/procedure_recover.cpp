@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "procedure.h"
+#include "procedure_limits.h"
 #include "sentence.h"
 #include "step_enable.h"
 #include "step_fault_reset.h"
@@ -48,7 +49,6 @@ class Recover : public Procedure {
   bool survivesNodeLoss() const override { return phase_ == Phase::booting; }
 
  private:
-  static constexpr int kBootTimes = 3;
   enum class Phase { begin, booting, feedback, clearing, enabling };
 
   static bool isWell(const AxisCore& axis) {
@@ -58,10 +58,7 @@ class Recover : public Procedure {
 
   void begin(const Context& context) {
     AxisCore& axis = context.axis;
-    const DriveProfile::Timing& timing = axis.profile().timing;
     started_ = context.now;
-    context.status.deadline = context.now + kBootTimes * timing.boot + 9 * timing.state_change +
-                              2 * timing.mode_change + timing.brake_release;
     if (axis.nodeReady()) {
       beginFeedback(context);
     } else {

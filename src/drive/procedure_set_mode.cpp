@@ -17,11 +17,6 @@ class SetMode : public Procedure {
     if (!begun_) {
       begun_ = true;
       started_ = context.now;
-      const DriveProfile::Timing& timing = axis.profile().timing;
-      context.status.deadline = context.now + 3 * timing.mode_change;
-      if (axis.profile().mode_change_needs_disabling) {
-        context.status.deadline += 8 * timing.state_change + timing.brake_release;
-      }
     }
     if (!standing_ && axis.inOperation()) {
       const Outcome standing = awaitStandstill(context, started_, "switching the mode");

@@ -23,6 +23,8 @@ Outcome EnableStep::advance(const Context& context) {
   switch (phase_) {
     case Phase::feedback:
       return awaitFeedback(context);
+    case Phase::standing:
+      return awaitRest(context);
     case Phase::writing: {
       const Outcome outcome = writes_.advance(context);
       if (!outcome.isDone()) return outcome;
@@ -33,12 +35,8 @@ Outcome EnableStep::advance(const Context& context) {
     }
     case Phase::limits:
       return awaitLimits(context);
-    case Phase::mode: {
-      const Outcome outcome = mode_.advance(context);
-      if (!outcome.isDone()) return outcome;
-      enter(Phase::transitions, context);
-      return climb(context);
-    }
+    case Phase::mode:
+      return awaitMode(context);
     case Phase::transitions:
       return climb(context);
     case Phase::brake:
@@ -49,8 +47,9 @@ Outcome EnableStep::advance(const Context& context) {
 
 Outcome EnableStep::awaitFeedback(const Context& context) {
   if (context.axis.state().feedback_valid) {
-    enter(Phase::writing, context);
-    return Outcome::running();
+    enter(Phase::standing, context);
+    context.show("waiting for standstill", "the axis to stand, before the power comes");
+    return awaitRest(context);
   }
   const Duration waited = context.now - since_;
   if (waited <= context.axis.profile().timing.state_change) return Outcome::running();
@@ -59,6 +58,27 @@ Outcome EnableStep::awaitFeedback(const Context& context) {
                            "(6064:00) within " +
                            seconds(waited) +
                            "; check the TPDOs, or recover the axis, which boots the drive");
+}
+
+Outcome EnableStep::awaitRest(const Context& context) {
+  AxisCore& axis = context.axis;
+  if (!axis.state().feedback_valid) {
+    enter(Phase::feedback, context);
+    return Outcome::running();
+  }
+  if (axis.atStandstill()) {
+    enter(Phase::writing, context);
+    return Outcome::running();
+  }
+  const bool off = axis.powerOff();
+  // What brakes it is neither cut short nor missed.
+  if (!off && axis.goal() != Goal::quick_stop) axis.setGoal(Goal::quick_stop);
+  const Duration waited = context.now - since_;
+  if (waited <= kComeToRest) return Outcome::running();
+  const std::string why = axis.who() + ": is not switched on, for it still moves after " +
+                          seconds(waited) + " (velocity " + number(axis.state().velocity) + ")";
+  return Outcome::failed(off ? why + " and nothing of the drive brakes it; bring it to rest"
+                             : why + ", quick stop is commanded; " + axis.report());
 }
 
 Outcome EnableStep::awaitLimits(const Context& context) {
@@ -73,6 +93,25 @@ Outcome EnableStep::awaitLimits(const Context& context) {
   }
   enter(Phase::mode, context);
   return Outcome::running();
+}
+
+/// Time has passed: it may have been moved, and its limits may be about to change.
+Outcome EnableStep::awaitMode(const Context& context) {
+  AxisCore& axis = context.axis;
+  const Outcome outcome = mode_.advance(context);
+  if (!outcome.isDone()) return outcome;
+  if (!axis.state().feedback_valid || !axis.atStandstill()) {
+    enter(Phase::standing, context);
+    context.show("waiting for standstill", "the axis to stand, before the power comes");
+    return Outcome::running();
+  }
+  if (!axis.limitsSettled()) {
+    enter(Phase::limits, context);
+    context.show("writing position limits", "the drive to take the joint's limits");
+    return Outcome::running();
+  }
+  enter(Phase::transitions, context);
+  return climb(context);
 }
 
 Outcome EnableStep::climb(const Context& context) {

@@ -6,20 +6,26 @@
 
 namespace cia402::drive {
 
-/// Brings a disabled axis into operation in a mode: fresh feedback, before_enable writes, position
-/// limits (PositionLimits), mode and neutral target on the wire, then each transition awaited, then
-/// the brake.
+/// Brings a disabled axis into operation in a mode: fresh feedback, standstill, before_enable
+/// writes, position limits (PositionLimits), mode and neutral target on the wire, then each
+/// transition awaited, then the brake.
 class EnableStep {
  public:
+  /// An axis that coasts gets this long to come to rest. Switched on in motion it would be pulled
+  /// back to where it was in that moment.
+  static constexpr Duration kComeToRest{std::chrono::seconds(10)};
+
   EnableStep(const ModeChannel& mode, const DriveProfile& profile)
       : writes_(profile.before_enable), mode_(mode) {}
   Outcome advance(const Context& context);
 
  private:
-  enum class Phase { feedback, writing, limits, mode, transitions, brake };
+  enum class Phase { feedback, standing, writing, limits, mode, transitions, brake };
   void enter(Phase phase, const Context& context);
   Outcome awaitFeedback(const Context& context);
+  Outcome awaitRest(const Context& context);
   Outcome awaitLimits(const Context& context);
+  Outcome awaitMode(const Context& context);
   Outcome climb(const Context& context);
   Outcome fail(const Context& context, std::string why);
 

@@ -133,6 +133,38 @@ TEST_F(ProcedureJobTest, RecoverTellsWhatIsTrueWhenItsLastAxisHasEnded) {
   EXPECT_THAT(answer.message, HasSubstr("shoulder is not enabled (switch on disabled): enable"));
 }
 
+TEST_F(ProcedureJobTest, EnableOfAllTellsOfAnAxisThatWasDisabledMeanwhile) {
+  ASSERT_TRUE(world.call(ProcedureKind::disable).success);
+  world.drives[1].deaf_to_controlword = true;
+  const auto enabling = world.begin(ProcedureKind::enable);
+  ASSERT_TRUE(world.runUntil([&] { return world.drives[0].enabled(); }));
+  world.run(20ms);
+  ASSERT_TRUE(world.call(ProcedureKind::disable, "shoulder").success);
+  ASSERT_TRUE(enabling->empty()) << enabling->front().message;
+  world.drives[1].deaf_to_controlword = false;
+  const Answer answer = world.wait(enabling);
+  EXPECT_FALSE(answer.success) << answer.message;
+  EXPECT_THAT(answer.message,
+              AllOf(HasSubstr("enable done on 1 of 2 axes"),
+                    HasSubstr("shoulder: enable had succeeded, but disable was called: it is "
+                              "switch on disabled")));
+  EXPECT_FALSE(world.drives[0].enabled());
+  EXPECT_TRUE(world.drives[1].enabled());
+}
+
+TEST_F(ProcedureJobTest, DisableOfAllTellsOfAnAxisThatWasEnabledMeanwhile) {
+  world.drives[1].deaf_to_controlword = true;
+  const auto disabling = world.begin(ProcedureKind::disable);
+  ASSERT_TRUE(world.runUntil([&] { return !world.drives[0].enabled(); }));
+  world.run(20ms);
+  ASSERT_TRUE(world.call(ProcedureKind::enable, "shoulder").success);
+  ASSERT_TRUE(disabling->empty()) << disabling->front().message;
+  world.drives[1].deaf_to_controlword = false;
+  const Answer answer = world.wait(disabling);
+  EXPECT_FALSE(answer.success) << answer.message;
+  EXPECT_THAT(answer.message, HasSubstr("shoulder: disable had succeeded, but enable was called"));
+}
+
 TEST(ProcedureJob, RefusesAnUnknownAxisAndHomingWithoutAnyHomingSection) {
   RobotWorld world;
   world.boot();

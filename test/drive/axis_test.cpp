@@ -318,7 +318,7 @@ TEST(Axis, RefusesASecondProcedureWhileOneRunsButAStopPreempts) {
   bench.drive.stuck.insert(FakeDrive::S::ready);
   const auto first = bench.axis.start({ProcedureKind::enable, {}, 0}, bench.now);
   ASSERT_TRUE(first.ok());
-  bench.run(milliseconds(60));
+  bench.run(milliseconds(200));
   EXPECT_THAT(bench.refusal(ProcedureKind::recover),
               HasSubstr("shoulder (node 3): recover is refused while enable runs (switching on)"));
   bench.drive.stuck.clear();

@@ -24,6 +24,8 @@ class FakeDrive : public can::Sink {
   // What the test may turn.
   S state = S::disabled;
   std::set<S> stuck;          ///< states that no command leaves
+  std::vector<S> shows;       ///< one a cycle, whatever it does
+  bool mute = false;          ///< answers no SDO, obeys no controlword
   double position = 12345.0;  ///< counts
   double velocity = 0.0;      ///< counts/s
   double coast = 0.0;         ///< counts/s that nothing stops
@@ -87,6 +89,7 @@ class FakeDrive : public can::Sink {
     if (pending_[0].size == 7) applyFirst(pending_[0]);
     if (pending_[1].size == 6) applySecond(pending_[1]);
     step(dt);
+    ++cycles_;
     if (silent) return {};
     const std::uint16_t word = statusword();
     const auto where = static_cast<std::uint32_t>(static_cast<std::int32_t>(position));
@@ -124,7 +127,7 @@ class FakeDrive : public can::Sink {
     static const std::map<S, unsigned> codes = {
         {S::start, 0x00},   {S::disabled, 0x40}, {S::ready, 0x21},    {S::on, 0x23},
         {S::enabled, 0x27}, {S::quick, 0x07},    {S::reaction, 0x0F}, {S::fault, 0x08}};
-    unsigned word = codes.at(state);
+    unsigned word = codes.at(shows.empty() ? state : shows[cycles_ % shows.size()]);
     if (voltage) word |= 0x0010;
     if (warning) word |= 0x0080;
     if (remote) word |= 0x0200;
@@ -159,6 +162,7 @@ class FakeDrive : public can::Sink {
   }
 
   void onSdo(const can::Frame& frame) {
+    if (mute) return;
     const unsigned index = static_cast<unsigned>(frame.data[1] | frame.data[2] << 8);
     const unsigned sub = frame.data[3];
     const auto key = std::make_pair(index, sub);
@@ -216,7 +220,7 @@ class FakeDrive : public can::Sink {
     if (state == S::reaction && --reaction_ <= 0) {
       state = S::fault;
       velocity = 0;
-    } else if (state == S::fault && fault_edge) {
+    } else if (state == S::fault && fault_edge && !mute) {
       ++resets;
       if (stuck.count(S::fault) != 0) return;
       state = S::disabled;
@@ -227,7 +231,7 @@ class FakeDrive : public can::Sink {
         error = 0;
       }
     }
-    if ((controlword & 0x80) != 0 || stuck.count(state) != 0) return;
+    if ((controlword & 0x80) != 0 || stuck.count(state) != 0 || mute) return;
     const unsigned c = controlword & 0x0F;
     const bool no_voltage = (c & 0x02) == 0;
     const bool quick_stop = !no_voltage && (c & 0x04) == 0;
@@ -345,6 +349,7 @@ class FakeDrive : public can::Sink {
   can::Frame pending_[2];
   std::uint16_t last_ = 0;
   int reaction_ = 0, mode_wait_ = 0, wait_ = 0;
+  std::size_t cycles_ = 0;
   double quick_velocity_ = 0.0;
   bool heard_ = false, acknowledged_ = false, taking_ = false, attained_ = false, homing_ = false,
        homing_error_ = false;

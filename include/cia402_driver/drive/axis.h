@@ -135,6 +135,8 @@ class Axis {
   /// Why the axis takes no command, and the call that helps: "elbow is halted: enable"; empty if it
   /// does. A procedure that runs is left out of account.
   std::string obstacle() const;
+  /// The mode that it is commanded to be in, by its canonical name.
+  const std::string& modeName() const;
 
   /// RPDOs do not reach the drive, or are not taken as SYNC is gone: a drive that may be enabled is
   /// quick-stopped by SDO and stays disabled; a procedure that would enable it is ended.

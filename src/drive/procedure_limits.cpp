@@ -1,0 +1,107 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "procedure_limits.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cia402_driver/drive/standstill.h"
+#include "procedure.h"
+#include "step_enable.h"
+#include "step_fault_reset.h"
+
+namespace cia402::drive {
+namespace {
+
+constexpr Duration kStopMargin{std::chrono::milliseconds(500)};
+/// Of the cycles between the steps; and a step's own limit, which knows more to tell, comes first.
+constexpr Duration kMargin{std::chrono::milliseconds(500)};
+constexpr Duration kStanding = 4 * Standstill::kWindow;  // awaitStandstill()
+constexpr int kLimitTransfers = 6;                       // PositionLimits: three for each side
+
+/// The sum of what steps may take. They are called by the names of the steps.
+struct Steps {
+  const AxisConfig& axis;
+  const DriveProfile& profile = *axis.profile;
+  const DriveProfile::Timing& timing = profile.timing;
+
+  Duration transfer() const { return (timing.sdo_retries + 1) * timing.sdo; }
+  Duration writes(const std::vector<NamedWrite>& list) const {
+    const auto copies = std::count_if(list.begin(), list.end(), [&](const NamedWrite& write) {
+      return profile.find(write.from) != nullptr;
+    });
+    return (static_cast<int>(list.size()) + static_cast<int>(copies)) * transfer();
+  }
+  Duration limits() const { return kLimitTransfers * transfer(); }
+  Duration mode() const {
+    Duration longest{0};
+    for (const ModeSpec& spec : profile.modes) {
+      longest = std::max(longest, writes(spec.entry_writes));
+    }
+    return longest + 2 * timing.mode_change + 2 * transfer();
+  }
+  /// From switch on disabled it takes three transitions, and one more out of quick stop active.
+  Duration enable() const {
+    return timing.state_change + EnableStep::kComeToRest + writes(profile.before_enable) +
+           limits() + mode() + 4 * timing.state_change +
+           std::max(timing.brake_release, kFollowPatience);
+  }
+  Duration change() const {  // SwitchStep
+    return profile.mode_change_needs_disabling ? timing.state_change + enable() : mode();
+  }
+  Duration reset() const {
+    return 4 * timing.state_change + FaultResetStep::kInterval + FaultResetStep::kWatch;
+  }
+  Duration boot() const { return kBootTimes * timing.boot; }
+  Duration declare() const { return 2 * kStanding + 2 * limits(); }
+  Duration home() const {
+    if (!axis.homing || profile.homing.kind != HomingSpec::Kind::drive) return declare();
+    return writes(profile.homing.writes) + limits() + enable() + timing.state_change +
+           axis.homing->timeout + transfer() + timing.state_change + limits() + change();
+  }
+  Duration store(const std::vector<std::uint8_t>& subindices) const {
+    return static_cast<int>(subindices.size()) * (profile.parameters.timeout + transfer());
+  }
+};
+
+}  // namespace
+
+Duration stopTime(const AxisConfig& config, double velocity) {
+  const double fastest = config.limits.velocity.value_or(0.0);
+  const double measured = std::isfinite(velocity) ? std::fabs(velocity) : 0.0;
+  const double ramp = std::max(fastest, measured) / stopDeceleration(config);
+  return std::max(config.profile->timing.state_change, fromSeconds(2.0 * ramp) + kStopMargin);
+}
+
+Duration timeLimit(ProcedureKind kind, const AxisConfig& config, double velocity) {
+  const Steps steps{config};
+  const Duration stop = stopTime(config, velocity), change = steps.timing.state_change;
+  switch (kind) {
+    case ProcedureKind::none:
+      break;
+    case ProcedureKind::enable:
+      return kMargin + std::max(steps.change(), steps.enable());
+    case ProcedureKind::disable:
+      return kMargin + stop + 2 * change;
+    case ProcedureKind::home:
+      return kMargin + steps.home();
+    case ProcedureKind::clear_faults:
+      return kMargin + steps.reset();
+    case ProcedureKind::recover:
+      return kMargin + 2 * change + steps.boot() + steps.reset() + steps.enable();
+    case ProcedureKind::quick_stop:
+      return kMargin + stop + std::max(change, steps.transfer());
+    case ProcedureKind::halt:
+      return kMargin + stop;
+    case ProcedureKind::set_mode:
+      return kMargin + kStanding + steps.change();
+    case ProcedureKind::set_position:
+      return kMargin + steps.declare();
+    case ProcedureKind::save_parameters:
+      return kMargin + steps.store(config.saved());
+    case ProcedureKind::restore_parameters:
+      return kMargin + steps.store(config.restored()) + steps.boot();
+  }
+  return kMargin;
+}
+
+}  // namespace cia402::drive

@@ -1,0 +1,20 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "cia402_driver/drive/axis.h"
+
+namespace cia402::drive {
+
+/// A node that boots gets so many times the profile's boot time: it tries again.
+inline constexpr int kBootTimes = 3;
+
+/// The longest that a stop may take, from the limit or from `velocity`, whichever is faster.
+/// @param velocity measured, rad/s or m/s; not finite: unknown
+Duration stopTime(const AxisConfig& config, double velocity);
+
+/// The longest that a procedure may take: what its steps may take, each once. A drive that goes to
+/// and fro between states begins the wait of a step again and again, so the whole has a limit.
+/// @param velocity as for stopTime()
+Duration timeLimit(ProcedureKind kind, const AxisConfig& config, double velocity);
+
+}  // namespace cia402::drive
