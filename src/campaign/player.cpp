@@ -31,6 +31,7 @@ Player::Player(Stage& stage, const Scene& scene, const RunOptions& options)
       random_(scene.seed),
       permits_(stage),
       oracles_(allOracles(stage)),
+      held_(stage.axes().size(), Time(-1h)),
       dead_(stage.axes().size()) {
   conditions_.axes.resize(stage.axes().size());
   for (auto& oracle : oracles_) {
@@ -90,6 +91,9 @@ void Player::look() {
   looked_ = stage_.now();
   stage_.look(truths_);
   permits_.watch(truths_, looked_);
+  for (std::size_t i = 0; i < truths_.size(); ++i) {
+    if ((truths_[i].statusword & 0x0800) != 0) held_[i] = looked_;
+  }
   const View seen = view();
   for (auto& oracle : oracles_) oracle->look(seen);
   watchDeadlines();

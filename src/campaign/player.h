@@ -107,6 +107,7 @@ class Player {
   std::vector<Stream> streams_;
   std::vector<Later> later_;
   std::map<std::size_t, std::string> follows_;  ///< the group that moved an axis last
+  std::vector<Time> held_;  ///< when a limit was last active (statusword bit 11)
   std::vector<bool> dead_;  ///< drives with a fault that only the power switch ends
   class Deaf : public sim::Listener {
     void onFrame(const can::Frame&, Time) override {}

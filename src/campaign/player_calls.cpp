@@ -18,11 +18,11 @@ struct Procedure {
 const std::map<std::string, Procedure>& procedures() {
   static const std::map<std::string, Procedure> kProcedures{
       {"enable", {ProcedureKind::enable, 16s}},
-      {"disable", {ProcedureKind::disable, 8s}},
+      {"disable", {ProcedureKind::disable, 18s}},
       {"home", {ProcedureKind::home, 20s}},  // and the time-outs of all homings
       {"clear_faults", {ProcedureKind::clear_faults, 9s}},
       {"recover", {ProcedureKind::recover, 60s}},
-      {"quick_stop", {ProcedureKind::quick_stop, 6s}},
+      {"quick_stop", {ProcedureKind::quick_stop, 8s}},
       {"halt", {ProcedureKind::halt, 4s}},
       {"set_mode", {ProcedureKind::set_mode, 24s}},
       {"set_position", {ProcedureKind::set_position, 3s}},

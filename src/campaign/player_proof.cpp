@@ -30,7 +30,10 @@ void Player::prove() {
     return;
   }
   for (const AxisFacts& facts : stage_.axes()) {
-    if (first.find(facts.name + " is halted: enable") == std::string::npos) continue;
+    if (stage_.host().robot().axes()[facts.index].obstacle().find(": enable") ==
+        std::string::npos) {
+      continue;
+    }
     if (!proveCall("enable", facts.name, kRecoverTime, answer)) return;
   }
   for (const AxisFacts& facts : stage_.axes()) {
@@ -122,9 +125,10 @@ void Player::proveMove(std::size_t axis, bool back) {
   const bool too_far =
       !torque && std::fabs(moved) > 3.0 * std::fabs(expected) +
                                         facts.velocity * facts.velocity / facts.acceleration;
-  if ((torque ? moved * sign > 0.0 : far_enough) && !too_far) return;
+  const bool outside = (limits.lower && at < *limits.lower) || (limits.upper && at > *limits.upper);
+  if ((torque ? moved * sign > 0.0 : far_enough) && (!too_far || outside)) return;
   // A switch may stand in the way: it lets the axis go back.
-  const bool held = facts.units_per_count != 0.0 && (truths_[axis].statusword & 0x0800) != 0;
+  const bool held = facts.units_per_count != 0.0 && stage_.now() - held_[axis] < 3s;
   if (held && !back) return proveMove(axis, true);
   report("no_recovery", facts.name,
          "was told to move by " + number(expected) + " in mode " + mode->name +

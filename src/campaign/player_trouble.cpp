@@ -254,6 +254,9 @@ void Player::calm() {
     ending.swap(later_);
     for (Later& item : ending) item.what();
   }
+  for (const config::GroupConfig& group : stage_.loaded().robot.groups) {
+    trajectory(group, {}, {}, false);
+  }
   rates_ = {};
   stage_.world().bus().faults().setRates(rates_);
   stage_.host().setLateness({});

@@ -123,6 +123,12 @@ void AxisCore::watchFollowing(Time now) {
     return;
   }
   if (running_since_ == kNever) running_since_ = now;
+  // What turns back towards a motor that is held would meet it at speed.
+  const double ahead = set_point_.value() - state_.position;
+  if ((state_.internal_limit || left_behind_) && ahead * set_point_.velocity() < 0.0) {
+    callBack();
+    return;
+  }
   const auto& bit = mode_->spec->follows_command_bit;
   const bool dropped = follows_shown_ && bit && ((state_.statusword >> *bit) & 1u) == 0;
   const Duration patience = state_.internal_limit || dropped ? kHeld : kLeftBehind;

@@ -1,5 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "procedure.h"
+#include "procedure_limits.h"
 #include "sentence.h"
 #include "step_stop.h"
 
@@ -21,10 +22,11 @@ class Disable : public Procedure {
       switchOff(context);
       return Outcome::running();
     }
-    if (axis.faulted() && axis.state().state == State::fault) {
-      return Outcome::done(axis.config().joint + ": disabled; " + axis.faultText());
+    const bool faulted = axis.faulted() && axis.state().state == State::fault;
+    if (faulted || axis.state().state == State::switch_on_disabled) {
+      if (axis.moving()) return awaitRest(context);
+      return finish(axis, faulted);
     }
-    if (axis.state().state == State::switch_on_disabled) return finish(axis);
     if (context.now - since_ <= 2 * axis.profile().timing.state_change) return Outcome::running();
     return Outcome::failed(axis.who() + ": disabling timed out after " +
                            seconds(context.now - since_) + "; " + axis.report());
@@ -49,19 +51,31 @@ class Disable : public Procedure {
     context.show("switching off", "the drive to show switch on disabled");
   }
 
-  Outcome finish(AxisCore& axis) const {
-    std::string text = axis.config().joint + ": disabled";
-    if (!stop_problem_.empty()) text += ", but " + stop_problem_;
-    if (stop_problem_.empty() && axis.moving()) {
-      text += "; it still moves (velocity " + number(axis.state().velocity) +
-              "), nothing of the drive brakes it";
+  /// Without power nothing can be done for an axis that coasts, but to say when it stands.
+  Outcome awaitRest(const Context& context) {
+    AxisCore& axis = context.axis;
+    if (!coasts_) {
+      coasts_ = true;
+      since_ = context.now;
+      context.show("coasting", "the axis to come to rest; its power is off, nothing brakes it");
     }
+    if (context.now - since_ <= kComeToRest) return Outcome::running();
+    return Outcome::failed(axis.who() + ": is disabled, but still moves after " +
+                           seconds(context.now - since_) + " (velocity " +
+                           number(axis.state().velocity) + "), nothing of the drive brakes it");
+  }
+
+  Outcome finish(AxisCore& axis, bool faulted) const {
+    std::string text = axis.config().joint + ": disabled";
+    if (faulted) text += "; " + axis.faultText();
+    if (!stop_problem_.empty()) text += ", but " + stop_problem_;
     return Outcome::done(text);
   }
 
   Phase phase_ = Phase::begin;
   QuickStopStep stop_;
   std::string stop_problem_;
+  bool coasts_ = false;
   bool cut_ = false;  ///< the quick stop did not do it: disable voltage, whatever the drive shows
   Time since_{};
 };

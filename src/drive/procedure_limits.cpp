@@ -41,9 +41,8 @@ struct Steps {
   }
   /// From switch on disabled it takes three transitions, and one more out of quick stop active.
   Duration enable() const {
-    return timing.state_change + EnableStep::kComeToRest + writes(profile.before_enable) +
-           limits() + mode() + 4 * timing.state_change +
-           std::max(timing.brake_release, kFollowPatience);
+    return timing.state_change + kComeToRest + writes(profile.before_enable) + limits() + mode() +
+           4 * timing.state_change + std::max(timing.brake_release, kFollowPatience);
   }
   Duration change() const {  // SwitchStep
     return profile.mode_change_needs_disabling ? timing.state_change + enable() : mode();
@@ -81,7 +80,7 @@ Duration timeLimit(ProcedureKind kind, const AxisConfig& config, double velocity
     case ProcedureKind::enable:
       return kMargin + std::max(steps.change(), steps.enable());
     case ProcedureKind::disable:
-      return kMargin + stop + 2 * change;
+      return kMargin + stop + 2 * change + kComeToRest;
     case ProcedureKind::home:
       return kMargin + steps.home();
     case ProcedureKind::clear_faults:

@@ -44,7 +44,9 @@ class Recover : public Procedure {
   }
 
   bool leavesAlone(const Context& context) const override {
-    return isWell(context.axis) && context.axis.brakeReleased(context.now);
+    const bool fresh =
+        context.now - context.axis.state().stamp <= 3 * context.axis.config().sync_period;
+    return fresh && isWell(context.axis) && context.axis.brakeReleased(context.now);
   }
   bool survivesNodeLoss() const override { return phase_ == Phase::booting; }
 

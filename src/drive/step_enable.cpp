@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "step_enable.h"
 
+#include "procedure_limits.h"
 #include "sentence.h"
 
 namespace cia402::drive {

@@ -11,10 +11,6 @@ namespace cia402::drive {
 /// transition awaited, then the brake.
 class EnableStep {
  public:
-  /// An axis that coasts gets this long to come to rest. Switched on in motion it would be pulled
-  /// back to where it was in that moment.
-  static constexpr Duration kComeToRest{std::chrono::seconds(10)};
-
   EnableStep(const ModeChannel& mode, const DriveProfile& profile)
       : writes_(profile.before_enable), mode_(mode) {}
   Outcome advance(const Context& context);

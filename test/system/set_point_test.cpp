@@ -194,6 +194,26 @@ TEST(SetPoints, AreCalledBackFromALimitSwitchAndSaySo) {
   EXPECT_NEAR(scene.position("left"), 0.2, 1e-2);
 }
 
+TEST(SetPoints, ThatTurnBackFromALimitSwitchBeginAtTheMotor) {
+  for (const Duration pushed : {310ms, 340ms, 370ms, 400ms}) {  // called back just before, or not
+    Rig scene(genericPair(", simulation: {upper_limit_switch: 0.1}"));
+    scene.stream("left", 2.0, pushed);
+    double before = scene.velocity("left"), hardest = 0.0;
+    const Time end = scene.now() + 400ms;
+    while (scene.now() < end) {
+      ASSERT_EQ(scene.setpoint("left", -1.0), "");
+      scene.run(20ms);
+      // It may stop at the switch as hard as it can, and has to leave it by its ramp.
+      if (scene.velocity("left") < before) {
+        hardest = std::max(hardest, (before - scene.velocity("left")) / 0.02);
+      }
+      before = scene.velocity("left");
+    }
+    EXPECT_LT(before, -0.5) << "it did not turn back";
+    EXPECT_LT(hardest, 1.3 * 4.0) << toSeconds(pushed);
+  }
+}
+
 TEST(SetPoints, AHaltDuringAQuickStopAnswersAtRest) {
   Rig scene(genericPair());
   scene.stream("left", 2.0, 700ms);

@@ -30,6 +30,7 @@ class Answers final : public Oracle {
     if (!answer.success) return;
     static const std::set<std::string> kStands{"halt",         "disable", "quick_stop", "set_mode",
                                                "set_position", "save",    "restore"};
+    const bool says_so = answer.message.find("still moves") != std::string::npos;
     static const std::set<std::string> kOff{"disable", "save", "restore"};
     static const std::set<std::string> kOn{"enable", "recover"};
     const auto says = [&](const std::set<std::string>& verbs) {
@@ -38,7 +39,7 @@ class Answers final : public Oracle {
     for (std::size_t i : call.axes) {
       const Seen& seen = seen_[i];
       const auto lately = [&](Time time) { return view.now - time <= kFeedbackAge; };
-      if (says(kStands) && !lately(seen.still)) {
+      if (says(kStands) && !says_so && !lately(seen.still)) {
         report(view, i,
                call.verb + " is answered with success (" + answer.message +
                    ") while the motor turns at " + number(view.truths[i].velocity) + " per s");
