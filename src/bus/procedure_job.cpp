@@ -52,6 +52,9 @@ ProcedureJob::ProcedureJob(drive::ProcedureRequest request, std::vector<Item> it
 
 bool ProcedureJob::step(std::vector<drive::Axis>& axes, Time now) {
   watch(axes);
+  const bool untouched = std::all_of(entries_.begin(), entries_.end(),
+                                     [](const Entry& e) { return e.stage == Stage::waiting; });
+  if (untouched && !held_ && allOrNone()) refuseUnlessAll(axes);
   const bool failed = std::any_of(entries_.begin(), entries_.end(),
                                   [](const Entry& e) { return e.stage == Stage::failed; });
   if (failed) {
@@ -61,6 +64,10 @@ bool ProcedureJob::step(std::vector<drive::Axis>& axes, Time now) {
   }
   if (!ended()) return false;
   judge(axes);
+  const bool all = std::all_of(entries_.begin(), entries_.end(),
+                               [](const Entry& e) { return e.stage == Stage::succeeded; });
+  if (!all && allOrNone()) restoreModes(axes, now);
+  if (!ended()) return false;
   if (reply_) reply_(answer(axes));
   return true;
 }
@@ -69,6 +76,54 @@ bool ProcedureJob::ended() const {
   return std::all_of(entries_.begin(), entries_.end(), [](const Entry& e) {
     return e.stage == Stage::succeeded || e.stage == Stage::failed;
   });
+}
+
+bool ProcedureJob::allOrNone() const {
+  return request_.kind == drive::ProcedureKind::set_mode && entries_.size() > 1;
+}
+
+/// Nothing is begun where one axis cannot.
+void ProcedureJob::refuseUnlessAll(const std::vector<drive::Axis>& axes) {
+  bool refused = false;
+  for (Entry& entry : entries_) {
+    entry.message = axes[entry.item.axis].refusal(request_);
+    if (entry.message.empty()) continue;
+    entry.stage = Stage::failed;
+    refused = true;
+  }
+  if (!refused) return;
+  for (Entry& entry : entries_) {
+    const drive::Axis& axis = axes[entry.item.axis];
+    if (entry.stage == Stage::waiting) refuseToBegin(entry, axis, "another axis cannot");
+  }
+}
+
+/// One axis has failed: the others go back to the mode that they had.
+void ProcedureJob::restoreModes(std::vector<drive::Axis>& axes, Time now) {
+  for (Entry& entry : entries_) {
+    drive::Axis& axis = axes[entry.item.axis];
+    const bool succeeded = entry.stage == Stage::succeeded;
+    if (succeeded) {
+      entry.stage = Stage::failed;
+      entry.message = axis.config().name + ": it stays in mode " + axis.modeName();
+    }
+    if (entry.mode.empty() || axis.modeName() == entry.mode) continue;
+    if (axis.procedure().id != entry.id && stops(axis.procedure().kind)) {
+      entry.message += ", as " + std::string(toString(axis.procedure().kind)) + " was called";
+      continue;  // who stopped it does not want it switched on again
+    }
+    drive::ProcedureRequest back = request_;
+    back.mode = entry.mode;
+    if (succeeded) entry.message = axis.config().name + ": another axis failed";
+    const Result<std::uint32_t> started = axis.start(back, now);
+    if (started) {
+      entry.stage = Stage::restoring;
+      entry.id = *started;
+    } else {
+      entry.message += "; it stays in mode " + axis.modeName() + ": " + started.error().message;
+    }
+    entry.mode.clear();  // it is tried once
+  }
 }
 
 /// What an axis answered may not be true any more when the last one has ended.
@@ -96,6 +151,7 @@ void ProcedureJob::startDue(std::vector<drive::Axis>& axes, Time now) {
   const int order = open->item.order;
   for (Entry& entry : entries_) {
     if (entry.stage != Stage::waiting || entry.item.order != order) continue;
+    if (allOrNone()) entry.mode = axes[entry.item.axis].modeName();
     const Result<std::uint32_t> started = axes[entry.item.axis].start(request_, now);
     entry.stage = started ? Stage::running : Stage::failed;
     if (started) {
@@ -111,11 +167,18 @@ void ProcedureJob::watch(std::vector<drive::Axis>& axes) {
   for (Entry& entry : entries_) {
     const drive::Axis& axis = axes[entry.item.axis];
     if (entry.stage == Stage::waiting) watchWaiting(entry, axis);
-    if (entry.stage != Stage::running) continue;
+    const bool restoring = entry.stage == Stage::restoring;
+    if (entry.stage != Stage::running && !restoring) continue;
     const bool replaced = axis.procedure().id != entry.id;
     const drive::ProcedureStatus& status =
         replaced ? axis.previousProcedure() : axis.procedure();  // which may have ended well
-    if (status.id != entry.id) {
+    if (restoring && (status.id != entry.id || !status.running)) {
+      const bool back = status.id == entry.id && status.success;
+      entry.stage = Stage::failed;
+      entry.message += (back ? "; it is back in mode " : "; it was not set back, it is in mode ") +
+                       axis.modeName();
+      if (!back && status.id == entry.id) entry.message += ": " + status.message;
+    } else if (status.id != entry.id) {
       entry.stage = Stage::failed;
       entry.message = axis.config().name + ": " + toString(request_.kind) + " was replaced by " +
                       toString(axis.procedure().kind);

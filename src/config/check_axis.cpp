@@ -167,6 +167,30 @@ void checkRange(YamlSection& section, const AxisConfig& axis) {
   }
 }
 
+// What cannot be had is told, not replaced.
+void checkQuickStop(YamlSection& section, const AxisConfig& axis) {
+  if (!axis.quick_stop_holds) return;
+  const auto at = section.get("quick_stop").value_or(section.value());
+  const auto chooses = [](const std::vector<drive::NamedWrite>& writes) {
+    return std::any_of(writes.begin(), writes.end(), [](const drive::NamedWrite& write) {
+      return write.from == "quick_stop.hold";
+    });
+  };
+  const DriveProfile& profile = *axis.profile;
+  const bool chosen = chooses(profile.startup) || chooses(profile.before_enable);
+  if (profile.quick_stop_holds.empty() || !chosen) {
+    at.problem("profile " + profile.name +
+               " does not say how its drives hold after a quick stop (`quick_stop_holds`, and a "
+               "write `from: quick_stop.hold`); write `disable` or leave it out");
+    return;
+  }
+  const drive::ObjectSpec* option = profile.find(canopen::ObjectId{0x605A, 0});
+  if (axis.eds == nullptr || option == nullptr) return;
+  if (axis.eds->dictionary.find(option->id) != nullptr) return;
+  at.problem("the drive cannot hold after a quick stop: " + axis.eds->file +
+             " has no 605A:00; write `disable` or leave it out");
+}
+
 void checkWrites(YamlSection& section, const AxisConfig& axis) {
   const auto check = [&](const std::vector<drive::NamedWrite>& writes, const drive::YamlValue& at) {
     for (const drive::NamedWrite& write : writes) {
@@ -174,6 +198,7 @@ void checkWrites(YamlSection& section, const AxisConfig& axis) {
       if (!resolved) at.problem(resolved.error().message);
     }
   };
+  if (axis.quick_stop_holds && axis.profile->quick_stop_holds.empty()) return;  // told already
   check(axis.profile->startup, section.get("limits").value_or(section.value()));
   check(axis.writes, section.get("write").value_or(section.value()));
   const ModeSpec* mode = axis.profile->mode(axis.mode);
@@ -192,6 +217,7 @@ void checkAxis(YamlSection& section, const AxisConfig& axis, RobotConfig& robot)
   checkRpdoObjects(section, axis);
   warnOfMissingLimits(section, axis, robot);
   checkHoming(section, axis, robot);
+  checkQuickStop(section, axis);
   checkRange(section, axis);
   const bool geometry_known = !counts(*axis.profile, Quantity::position, Base::count) ||
                               axis.geometry.counts_per_turn > 0.0;

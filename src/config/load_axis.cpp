@@ -130,6 +130,9 @@ void readAxis(const std::string& name, const YamlValue& value, ProfileCache& pro
   if (const auto action = section.get("command_timeout_action")) {
     axis.brake_after_effort = action->oneOf({"brake", "coast"}).value_or(0) == 0;
   }
+  if (const auto end = section.get("quick_stop")) {
+    axis.quick_stop_holds = end->oneOf({"disable", "hold"}).value_or(0) == 1;
+  }
   readSections(section, axis, robot);
   readWithProfile(section, axis);
   if (axis.profile && axis.mode.empty()) {

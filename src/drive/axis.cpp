@@ -118,11 +118,7 @@ Result<std::uint32_t> Axis::start(const ProcedureRequest& request, Time now) {
   if (impl.procedure && !failure.empty() && !impl.procedure->survivesNodeLoss()) {
     impl.finish(false, std::string(toString(impl.status.kind)) + " failed: " + failure);
   }
-  if (impl.status.running && !stops(request.kind)) {
-    return Error{impl.core.who() + ": " + toString(request.kind) + " is refused while " +
-                 toString(impl.status.kind) + " runs (" + impl.status.step +
-                 "); wait for its end, or stop it by halt, quick_stop or disable"};
-  }
+  if (impl.status.running && !stops(request.kind)) return Error{refusal(request)};
   auto procedure = makeProcedure(request, impl.core);
   if (!procedure) {
     if (!impl.status.running) return procedure.error();
@@ -145,6 +141,16 @@ Result<std::uint32_t> Axis::start(const ProcedureRequest& request, Time now) {
   if (impl.procedure->leavesAlone(impl.context(now))) impl.advance(now);
   impl.core.updateReadiness(impl.status.running, now);
   return id;
+}
+
+std::string Axis::refusal(const ProcedureRequest& request) const {
+  if (impl_->status.running && !stops(request.kind)) {
+    return impl_->core.who() + ": " + toString(request.kind) + " is refused while " +
+           toString(impl_->status.kind) + " runs (" + impl_->status.step +
+           "); wait for its end, or stop it by halt, quick_stop or disable";
+  }
+  const auto procedure = makeProcedure(request, impl_->core);
+  return procedure ? std::string() : procedure.error().message;
 }
 
 void Axis::cancel(const std::string& reason, Time now) {

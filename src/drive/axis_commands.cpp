@@ -26,7 +26,8 @@ std::uint64_t AxisCore::targetFrames() const {
 /// Nothing that moves anything; but a drive that was found moving is not left to coast either:
 /// "disable voltage" would cut its quick stop ramp short.
 std::uint16_t AxisCore::silentControlword() const {
-  const bool stopped = state_.state == State::quick_stop_active && atStandstill();
+  const bool stopped =
+      state_.state == State::quick_stop_active && atStandstill() && !config_.quick_stop_holds;
   if (powerOff() || stopped || state_.state == State::switched_on || faulted()) return 0;
   return controlword::kEnableVoltage;  // quick stop
 }

@@ -10,6 +10,8 @@
 namespace cia402::drive {
 namespace {
 
+constexpr char kHold[] = "quick_stop.hold";
+
 // What a write puts into the object: an SI value, a raw number, or a copy.
 struct Source {
   std::optional<double> value;
@@ -45,6 +47,8 @@ Source configured(const NamedWrite& write, const AxisConfig& axis, bool reversed
   } else if (from == "sync_period.value" || from == "sync_period.exponent") {
     const auto period = interpolationPeriod(axis.sync_period);
     if (period) source.raw = from == "sync_period.value" ? int{period->value} : period->exponent;
+  } else if (from == kHold) {
+    if (axis.quick_stop_holds) source.raw = axis.profile->quick_stop_holds.front();
   } else if (axis.homing && from == "homing.method") {
     source.raw = axis.homing->method;
   } else if (axis.homing && homing(from, *axis.homing)) {
@@ -134,7 +138,11 @@ Result<std::optional<ResolvedWrite>> resolveWrite(const NamedWrite& write, const
   ResolvedWrite resolved;
   resolved.object = *id;
   resolved.type = *type;
-  resolved.optional = write.optional;
+  const bool hold = write.from == kHold && axis.quick_stop_holds;
+  if (hold && axis.profile->quick_stop_holds.empty()) {
+    return refuse(axis, write.object, "the profile names no value that holds (quick_stop_holds)");
+  }
+  resolved.optional = write.optional && !hold;  // what was asked for is done or told
   resolved.name =
       (object != nullptr ? object->name + " " : "") + "(" + canopen::toString(*id) + ")";
 

@@ -33,7 +33,9 @@ class QuickStop : public Procedure {
   }
 
   bool holds(const AxisCore& axis) const {
-    if (!option_ || !option_->ok() || option_->data().size() > 8) return false;
+    if (!option_ || !option_->ok() || option_->data().size() > 8) {
+      return axis.config().quick_stop_holds;  // as it was told to
+    }
     const auto value = static_cast<std::int16_t>(canopen::toUnsigned(option_->data()));
     const std::vector<int>& held = axis.profile().quick_stop_holds;
     return std::find(held.begin(), held.end(), value) != held.end();

@@ -12,7 +12,7 @@ const std::vector<std::string>& configurationSources() {
       "limits.lower",  "limits.upper",           "limits.velocity",      "limits.acceleration",
       "limits.jerk",   "limits.effort",          "sync_period.value",    "sync_period.exponent",
       "homing.method", "homing.search_velocity", "homing.zero_velocity", "homing.acceleration",
-      "homing.offset",
+      "homing.offset", "quick_stop.hold",
   };
   return kSources;
 }

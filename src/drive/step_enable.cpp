@@ -61,6 +61,15 @@ Outcome EnableStep::awaitFeedback(const Context& context) {
                            "; check the TPDOs, or recover the axis, which boots the drive");
 }
 
+/// A drive that holds in quick stop active and takes no parameters there goes on with those that it
+/// was enabled with; its target follows the actual position meanwhile.
+bool EnableStep::resumes(const AxisCore& axis) const {
+  const DriveProfile& profile = axis.profile();
+  return axis.state().state == State::quick_stop_active && !profile.quick_stop_holds.empty() &&
+         profile.mode_change_needs_disabling && axis.config().quick_stop_holds &&
+         &axis.mode() == channel_ && axis.shownMode() == channel_->spec->value;
+}
+
 Outcome EnableStep::awaitRest(const Context& context) {
   AxisCore& axis = context.axis;
   if (!axis.state().feedback_valid) {
@@ -68,7 +77,7 @@ Outcome EnableStep::awaitRest(const Context& context) {
     return Outcome::running();
   }
   if (axis.atStandstill()) {
-    enter(Phase::writing, context);
+    enter(resumes(axis) ? Phase::transitions : Phase::writing, context);
     return Outcome::running();
   }
   const bool off = axis.powerOff();

@@ -12,19 +12,21 @@ namespace cia402::drive {
 class EnableStep {
  public:
   EnableStep(const ModeChannel& mode, const DriveProfile& profile)
-      : writes_(profile.before_enable), mode_(mode) {}
+      : channel_(&mode), writes_(profile.before_enable), mode_(mode) {}
   Outcome advance(const Context& context);
 
  private:
   enum class Phase { feedback, standing, writing, limits, mode, transitions, brake };
   void enter(Phase phase, const Context& context);
   Outcome awaitFeedback(const Context& context);
+  bool resumes(const AxisCore& axis) const;
   Outcome awaitRest(const Context& context);
   Outcome awaitLimits(const Context& context);
   Outcome awaitMode(const Context& context);
   Outcome climb(const Context& context);
   Outcome fail(const Context& context, std::string why);
 
+  const ModeChannel* channel_;
   WriteStep writes_;
   ModeStep mode_;
   Phase phase_ = Phase::feedback;

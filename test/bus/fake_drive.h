@@ -36,6 +36,7 @@ class FakeDrive {
   bool silent = false;      ///< hears nothing, says nothing
   bool sdo_silent = false;  ///< answers no SDO request
   bool deaf_to_controlword = false;
+  bool keeps_mode = false;       ///< takes no other
   bool blocked = false;          ///< does not move
   bool homing_fails = false;     ///< ends homing with an error
   bool homing_is_slow = false;   ///< never ends homing
@@ -140,7 +141,7 @@ class FakeDrive {
   void onRpdo1(const can::Frame& frame, Time now) {
     const std::uint16_t before = controlword;
     controlword = static_cast<std::uint16_t>(number(frame, 0, 2));
-    mode = static_cast<std::int8_t>(frame.data[2]);
+    if (!keeps_mode) mode = static_cast<std::int8_t>(frame.data[2]);
     target_position = static_cast<std::int32_t>(number(frame, 3, 4));
     if (enabled()) targets.push_back(target_position);
     if (!deaf_to_controlword) obey(before);

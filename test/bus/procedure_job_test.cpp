@@ -165,6 +165,53 @@ TEST_F(ProcedureJobTest, DisableOfAllTellsOfAnAxisThatWasEnabledMeanwhile) {
   EXPECT_THAT(answer.message, HasSubstr("shoulder: disable had succeeded, but enable was called"));
 }
 
+TEST_F(ProcedureJobTest, SetsTheModeOfAllAxesOrOfNone) {
+  world.drives[1].keeps_mode = true;
+  const Answer answer = world.call(ProcedureKind::set_mode, "", "cyclic_velocity");
+  EXPECT_FALSE(answer.success) << answer.message;
+  EXPECT_THAT(answer.message, AllOf(HasSubstr("set_mode done on 0 of 2 axes"),
+                                    HasSubstr("elbow (node 2): mode cyclic_velocity was not taken"),
+                                    HasSubstr("shoulder: another axis failed; it is back in mode "
+                                              "cyclic_position")));
+  EXPECT_EQ(world.drives[0].mode, 8);
+  EXPECT_EQ(world.drives[1].mode, 8);
+  EXPECT_TRUE(world.drives[0].enabled());
+  world.drives[1].keeps_mode = false;
+  EXPECT_TRUE(world.call(ProcedureKind::set_mode, "", "cyclic_velocity").success);
+  EXPECT_EQ(world.drives[0].mode, 9);
+  EXPECT_EQ(world.drives[1].mode, 9);
+}
+
+TEST_F(ProcedureJobTest, DoesNotBeginToSetModesWhereOneAxisCannot) {
+  world.drives[1].silent = true;
+  ASSERT_TRUE(
+      world.runUntil([&] { return world.axis(1).state().health == canopen::NodeHealth::lost; }));
+  const auto setting = world.begin(ProcedureKind::set_mode, "", "cyclic_velocity");
+  bool changed = false;
+  world.runUntil([&] {
+    changed |= world.drives[0].mode != 8;
+    return !setting->empty();
+  });
+  ASSERT_EQ(setting->size(), 1u);
+  EXPECT_FALSE(setting->front().success);
+  EXPECT_THAT(setting->front().message,
+              AllOf(HasSubstr("elbow (node 2): cannot set the mode"),
+                    HasSubstr("shoulder: not started, for another axis cannot")));
+  EXPECT_FALSE(changed);
+}
+
+TEST_F(ProcedureJobTest, SetsNoModeBackOnAnAxisThatSomebodyStopped) {
+  world.drives[1].keeps_mode = true;
+  const auto setting = world.begin(ProcedureKind::set_mode, "", "cyclic_velocity");
+  ASSERT_TRUE(world.runUntil([&] { return !world.axis(0).procedure().running; }));
+  ASSERT_TRUE(world.call(ProcedureKind::disable, "shoulder").success);
+  const Answer answer = world.wait(setting);
+  EXPECT_FALSE(answer.success);
+  EXPECT_THAT(answer.message, HasSubstr("shoulder: it stays in mode cyclic_velocity, as disable "
+                                        "was called"));
+  EXPECT_FALSE(world.drives[0].enabled());
+}
+
 TEST(ProcedureJob, RefusesAnUnknownAxisAndHomingWithoutAnyHomingSection) {
   RobotWorld world;
   world.boot();

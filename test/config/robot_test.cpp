@@ -56,6 +56,30 @@ TEST(RobotConfig, MergesDefaultsUnderEveryAxis) {
   EXPECT_EQ(shoulder.profile, loaded.robot.axes[1].profile) << "a profile is read once";
 }
 
+TEST(RobotConfig, ChoosesWhatFollowsAQuickStop) {
+  EXPECT_FALSE(load(kArm).robot.axes[0].quick_stop_holds);
+  const Loaded holding = changed("gear_ratio: 50.0", "quick_stop: hold");
+  EXPECT_EQ(holding.problems, "");
+  EXPECT_TRUE(holding.robot.axes[0].quick_stop_holds);
+  EXPECT_FALSE(holding.robot.axes[1].quick_stop_holds);
+  EXPECT_EQ(changed("gear_ratio: 50.0", "quick_stop: disable").problems, "");
+  EXPECT_THAT(changed("gear_ratio: 50.0", "quick_stop: brake").problems,
+              HasSubstr("axes/shoulder/quick_stop"));
+}
+
+TEST(RobotConfig, RefusesToHoldWhereTheProfileDoesNotSayHow) {
+  Problems problems;
+  const auto file = [](const std::string& drive) {
+    return cia402::test::testFolder() + "/config/" + drive + ".yaml";
+  };
+  loadRobot(YAML::Load("bus: {interface: can0}\naxes: {a: {node_id: 1, drive: own_pdos_drive,\n"
+                       "counts_per_turn: 1000, limits: {velocity: 1, acceleration: 1},\n"
+                       "quick_stop: hold}}"),
+            file, problems);
+  EXPECT_THAT(problems.text(), HasSubstr("axes/a/quick_stop: profile own_pdos_drive does not say "
+                                         "how its drives hold after a quick stop"));
+}
+
 TEST(RobotConfig, ChoosesWhatIsSavedAndRestored) {
   const Loaded loaded = changed("gear_ratio: 50.0", "parameters: {save: [2, 3]}");
   EXPECT_EQ(loaded.problems, "");

@@ -70,6 +70,24 @@ TEST(NamedWrite, LeavesOutWhatIsNotConfigured) {
   EXPECT_EQ(rawOf(with_default, axis), 500u);
 }
 
+TEST(NamedWrite, ChoosesTheQuickStopOption) {
+  AxisConfig axis = axisOf("generic_cia402");
+  NamedWrite option = write("quick_stop_option", "quick_stop.hold");
+  option.raw = 2;
+  option.optional = true;
+  EXPECT_EQ(rawOf(option, axis), 2u);
+  EXPECT_TRUE((*resolveWrite(option, axis))->optional) << "drives without 605Ah do that";
+  axis.quick_stop_holds = true;
+  EXPECT_EQ(rawOf(option, axis), 6u);
+  EXPECT_FALSE((*resolveWrite(option, axis))->optional) << "what was asked for is done or told";
+  DriveProfile profile = *axis.profile;
+  profile.quick_stop_holds.clear();
+  axis.profile = std::make_shared<const DriveProfile>(profile);
+  const auto resolved = resolveWrite(option, axis);
+  ASSERT_FALSE(resolved);
+  EXPECT_THAT(resolved.error().message, testing::HasSubstr("quick_stop_holds"));
+}
+
 TEST(NamedWrite, TakesTheHomingOptions) {
   AxisConfig axis = axisOf("generic_cia402");
   axis.homing = HomingOptions();

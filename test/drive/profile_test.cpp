@@ -93,7 +93,7 @@ TEST(DriveProfile, TheDamiaoOneSaysWhatTheManualSays) {
   EXPECT_EQ(damiao.homing.kind, HomingSpec::Kind::declare_zero);
   EXPECT_FALSE(damiao.halt_supported);
   EXPECT_TRUE(damiao.warning_stops);
-  EXPECT_THAT(damiao.quick_stop_holds, ElementsAre(3, 4));
+  EXPECT_THAT(damiao.quick_stop_holds, ElementsAre(4, 3));
   EXPECT_EQ(damiao.sync_counter, 240);
   EXPECT_EQ(damiao.sync_period_step, std::chrono::microseconds(500));
   EXPECT_TRUE(damiao.pdo_map_count_may_be_read_only);

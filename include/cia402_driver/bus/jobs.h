@@ -11,8 +11,8 @@
 namespace cia402::bus {
 
 /// A procedure on one or several axes, in the order that was asked for: axes of equal order run
-/// together; an order begins when the one before has succeeded on every axis. The answer says what
-/// is true of all axes when it is given.
+/// together; an order begins when the one before has succeeded on every axis. set_mode on several
+/// axes is done on all or none. The answer says what is true of all axes when it is given.
 class ProcedureJob {
  public:
   struct Item {
@@ -39,18 +39,22 @@ class ProcedureJob {
   void abandon(const std::string& why);
 
  private:
-  enum class Stage : std::uint8_t { waiting, running, succeeded, failed };
+  enum class Stage : std::uint8_t { waiting, running, succeeded, failed, restoring };
   struct Entry {
     Item item;
     Stage stage = Stage::waiting;
     std::uint32_t id = 0;  ///< of the procedure; while waiting: of the axis' last one
     bool seen = false;     ///< id is known while waiting
     std::string message;
+    std::string mode;  ///< before set_mode
   };
 
   void startDue(std::vector<drive::Axis>& axes, Time now);
   void watch(std::vector<drive::Axis>& axes);
   bool ended() const;
+  bool allOrNone() const;
+  void refuseUnlessAll(const std::vector<drive::Axis>& axes);
+  void restoreModes(std::vector<drive::Axis>& axes, Time now);
   void judge(const std::vector<drive::Axis>& axes);
   static void watchWaiting(Entry& entry, const drive::Axis& axis);
   static void refuseToBegin(Entry& entry, const drive::Axis& axis, const std::string& why);

@@ -117,6 +117,8 @@ class Axis {
   /// Starts a procedure. disable, quick_stop and halt pre-empt a running one; anything else is
   /// refused with a sentence while one runs or where the axis cannot do it.
   Result<std::uint32_t> start(const ProcedureRequest& request, Time now);
+  /// Why start() would refuse now, in words; empty if it would not.
+  std::string refusal(const ProcedureRequest& request) const;
   /// Ends a running procedure safely (homing: halt), e.g. the action was cancelled.
   void cancel(const std::string& reason, Time now);
 

@@ -68,6 +68,7 @@ struct AxisConfig {
   Duration sync_period{std::chrono::milliseconds(4)};  ///< of the bus
   Duration command_timeout{std::chrono::milliseconds(200)};
   bool brake_after_effort = true;  ///< when a stream of efforts ends; else the axis coasts
+  bool quick_stop_holds = false;   ///< ends in quick stop active, under power; else disabled
   /// A TPDO that fails to come so many times in a row is stale; where it brings statusword or
   /// position, an enabled axis is quick-stopped then.
   std::uint16_t stale_after = 10;

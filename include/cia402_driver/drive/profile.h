@@ -105,8 +105,9 @@ struct NamedWrite {
   /// A value of the configuration instead: "limits.lower", "limits.upper" (the one that is the
   /// smaller or larger number in the drive), "limits.velocity", "limits.acceleration",
   /// "limits.jerk", "limits.effort", "sync_period.value", "sync_period.exponent", "homing.method",
-  /// "homing.search_velocity", "homing.zero_velocity", "homing.acceleration", "homing.offset"; or
-  /// the name of a readable object, which is read and copied as it is. Where the configuration
+  /// "homing.search_velocity", "homing.zero_velocity", "homing.acceleration", "homing.offset",
+  /// "quick_stop.hold" (the first of quick_stop_holds, where the axis is to hold); or the name of a
+  /// readable object, which is read and copied as it is. Where the configuration
   /// does not name it, `value` or `raw` is taken; without these the write is skipped.
   std::string from;
   double times = 1.0;            ///< the configuration's value is multiplied by this
