@@ -129,6 +129,7 @@ void Node::tick(Time now) {
   impl_->runBoot(now);
   impl_->runProbe(now);
   impl_->checkSupervision(now);
+  impl_->last_stop.tick(now);
   impl_->tryAgain(now);
   impl_->refresh();
 }

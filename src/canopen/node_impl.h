@@ -10,6 +10,7 @@
 #include "cia402_driver/canopen/heartbeat.h"
 #include "cia402_driver/canopen/node.h"
 #include "cia402_driver/canopen/node_guarding.h"
+#include "last_stop.h"
 
 namespace cia402::canopen {
 
@@ -58,6 +59,7 @@ struct Node::Impl : Node::Front {
   NodeGuard guard;
   BootProcedure boot;
   BootRetry retry;
+  LastStop last_stop;
   SdoTicket probe;  ///< of the search for a node that does not answer
   NmtState nmt_state = NmtState::unknown;
   std::string problem;
