@@ -86,7 +86,7 @@ void Node::commanded(NmtCommand command, Time now) {
       break;
     case NmtCommand::reset_node:
     case NmtCommand::reset_communication:
-      impl_->startBoot(BootProcedure::From::reset, "", now);
+      impl_->startBoot(BootProcedure::From::reset, "", now, command);
       break;
   }
   impl_->refresh();

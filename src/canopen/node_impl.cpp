@@ -63,18 +63,20 @@ void Node::Impl::refresh() {
   pdos_live = boot.started() && (health == NodeHealth::ready || health == NodeHealth::booting);
 }
 
-void Node::Impl::startBoot(BootProcedure::From from, const std::string& why, Time now) {
+void Node::Impl::startBoot(BootProcedure::From from, const std::string& why, Time now,
+                           NmtCommand reset) {
   retry.reset();
   taken_out.clear();
-  beginBoot(from, why, now);
+  beginBoot(from, why, now, reset);
 }
 
-void Node::Impl::beginBoot(BootProcedure::From from, const std::string& why, Time now) {
+void Node::Impl::beginBoot(BootProcedure::From from, const std::string& why, Time now,
+                           NmtCommand reset) {
   begun = true;
   takeOut(NodeHealth::booting, why);
   if (from == BootProcedure::From::boot_up) sdo.serverRestarted();
   notes.clear();
-  boot.start(from, now);
+  boot.start(from, now, reset);
 }
 
 void Node::Impl::takeOut(NodeHealth as, const std::string& why) {
@@ -226,7 +228,7 @@ void Node::Impl::onHeartbeat(NmtState state, Time stamp, Time now) {
   nmt_state = state;
   consumer.heard(now);
   if (boot.running()) {
-    boot.heartbeatHeard(state);
+    boot.heartbeatHeard(state, now);
     runBoot(now);
     return;
   }

@@ -20,8 +20,11 @@ struct Node::Impl : Node::Front {
        SdoPacer* shared_turns, bool* changed, can::Pacer* wire);
 
   /// Begins a boot that is no repetition of a failed one.
-  void startBoot(BootProcedure::From from, const std::string& why, Time now);
-  void beginBoot(BootProcedure::From from, const std::string& why, Time now);
+  /// @param reset the command that was given, with From::reset
+  void startBoot(BootProcedure::From from, const std::string& why, Time now,
+                 NmtCommand reset = NmtCommand::reset_communication);
+  void beginBoot(BootProcedure::From from, const std::string& why, Time now,
+                 NmtCommand reset = NmtCommand::reset_communication);
   void runBoot(Time now);
   void succeed(Time now);
   void endBoot(NodeHealth end, Time now);
