@@ -124,8 +124,10 @@ bool Robot::mayProduceSync() {
 
 void Robot::sync(Time now) {
   if (mayProduceSync()) master_.sendSync(now);
-  statistics_.syncSent(now - next_sync_);
+  const Duration late = now - next_sync_;
+  statistics_.syncSent(late);
   const Duration period = config_.bus.sync_period;
+  if (late >= period / 4) noteLateness(late, now);
   const bool overtaken = next_cycle_ != kNever;
   if (overtaken) statistics_.cyclesSkipped(1);
   // Under load every SYNC might overtake the cycle before: then none would ever run.
@@ -266,8 +268,12 @@ void Robot::tell(Event::Severity severity, std::string_view text, Time now) {
 void Robot::onEmergency(canopen::Node& node, const canopen::Emergency& emergency) {
   const std::size_t index = axisOf(node);
   if (index == axes_.size()) return;
-  axes_[index].onEmergency(emergency, now_);
-  reporters_[index].emergency(emergency, now_);
+  const drive::DriveProfile& profile = *axes_[index].config().profile;
+  const bool misses =
+      drive::missingFrames(profile, emergency.code) != drive::ErrorText::Missing::nothing;
+  const std::string excuse = misses ? ownLateness(emergency.stamp) : std::string();
+  axes_[index].onEmergency(emergency, now_, excuse);
+  reporters_[index].emergency(emergency, now_, excuse);
 }
 
 void Robot::onMalformedEmergency(canopen::Node& node, std::size_t size) {

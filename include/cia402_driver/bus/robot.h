@@ -121,6 +121,9 @@ class Robot final : private canopen::MasterListener {
   /// Set-points do not reach the drives as they should: all that moves is stopped, by SDO.
   void stopForSync(const std::string& why, Time now);
   void noteSecondProducer(Time now);
+  void noteLateness(Duration late, Time now);
+  /// How this program was late itself around `stamp`, in words; empty if it was not.
+  std::string ownLateness(Time stamp) const;
   void watchSync(Time now);
   enum class SyncTrouble : std::uint8_t { none, second_producer, absent, wrong_form, wrong_period };
   SyncTrouble syncTrouble() const;
@@ -204,6 +207,8 @@ class Robot final : private canopen::MasterListener {
   std::uint64_t foreign_seen_ = 0;   ///< of them, at the last look
   unsigned foreign_looks_ = 0;       ///< in a row that found new ones
   Time last_foreign_sync_{}, sync_checked_{};
+  Duration lateness_{0};              ///< of the last SYNC of this program that was late
+  Time late_since_{}, late_until_{};  ///< what drives miss meanwhile may be because of it
   SyncTrouble sync_trouble_ = SyncTrouble::none;  // that was told
   SyncTrouble sync_seen_ = SyncTrouble::none;     // at the last look
   Time sync_seen_since_{};
