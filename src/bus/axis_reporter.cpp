@@ -36,13 +36,14 @@ AxisReporter::AxisReporter(std::size_t axis, std::string who,
                            std::shared_ptr<const drive::DriveProfile> profile, EventSink& events)
     : axis_(axis), who_(std::move(who)), profile_(std::move(profile)), events_(&events) {}
 
-void AxisReporter::emergency(const canopen::Emergency& emergency, Time now) {
+void AxisReporter::emergency(const canopen::Emergency& emergency, Time now,
+                             const std::string& excuse) {
   count(emergency);
   events_->onEmergency({axis_, emergency});
   const auto verdict = emergency_limit_.take(emergency.code, now);
   if (verdict == RepeatLimiter::Verdict::hold) return;
   tellUnlessHeld(verdict, emergency.code == 0 ? Event::Severity::info : Event::Severity::warning,
-                 textOf(emergency), now);
+                 textOf(emergency, excuse), now);
 }
 
 void AxisReporter::count(const canopen::Emergency& emergency) {
@@ -58,7 +59,13 @@ void AxisReporter::count(const canopen::Emergency& emergency) {
   place->last = emergency.stamp;
 }
 
-std::string AxisReporter::textOf(const canopen::Emergency& emergency) const {
+std::string AxisReporter::textOf(const canopen::Emergency& emergency,
+                                 const std::string& excuse) const {
+  if (!excuse.empty()) {
+    return "emergency: " + drive::hexWord(emergency.code) + " " +
+           drive::errorName(*profile_, emergency.code) + ": the cause is that " + excuse +
+           "; nothing is wrong with the drive, the axis goes on unless it says otherwise";
+  }
   std::string text =
       "emergency: " + (emergency.code == 0 ? canopen::emergencyText(0)
                                            : drive::errorCodeText(*profile_, emergency.code));

@@ -17,6 +17,7 @@ Robot::Robot(config::RobotConfig robot, canopen::MasterConfig master, can::Sink&
              EventSink& events)
     : config_(std::move(robot)),
       events_(events),
+      listener_(master, config_.bus.listen),
       master_(std::move(master), sink, this),
       sink_(sink),
       lss_(sink),
@@ -45,20 +46,6 @@ Robot::Robot(config::RobotConfig robot, canopen::MasterConfig master, can::Sink&
   lss_problems_.resize(axes_.size());
 }
 
-void Robot::start(Time now) {
-  if (started_) return;
-  started_ = true;
-  now_ = now;
-  lss_starting_ = beginLss();
-  if (!lss_starting_) begin(now);
-}
-
-void Robot::begin(Time now) {
-  next_sync_ = now + config_.bus.sync_period;
-  sync_held_ = master_.config().sync_counter != 0;
-  master_.start(now);
-}
-
 void Robot::busLost(const std::string& why, Time now) {
   now_ = now;
   if (!started_ || !bus_lost_.empty()) return;
@@ -81,6 +68,10 @@ void Robot::busBack(bool is_news, Time now) {
 
 void Robot::receive(const can::Frame& frame, Time stamp, Time now) {
   now_ = now;
+  if (listener_.listening()) {
+    listenTo(frame, now);
+    if (frame.id == canopen::kSyncCobId) return;  // there is no cycle yet that it could lead
+  }
   lss_.receive(frame, now);
   master_.receive(frame, stamp, now);
   const bool sdo_answer = frame.id > 0x580 && frame.id < 0x600;
@@ -104,6 +95,7 @@ void Robot::onSyncDue(Time now) {
 void Robot::tick(Time now) {
   if (!started_ || shutDown()) return;
   now_ = now;
+  if (listener_.listening()) return stepListening(now);
   if (now >= next_sync_) config_.bus.external_sync ? lackSync(now) : sync(now);
   if (now >= next_cycle_) cycle(now);
   if (now >= master_.nextDeadline()) master_.tick(now);
@@ -124,8 +116,10 @@ bool Robot::mayProduceSync() {
 
 void Robot::sync(Time now) {
   if (mayProduceSync()) master_.sendSync(now);
-  statistics_.syncSent(now - next_sync_);
+  const Duration late = now - next_sync_;
+  statistics_.syncSent(late);
   const Duration period = config_.bus.sync_period;
+  if (late >= period / 4) noteLateness(late, now);
   const bool overtaken = next_cycle_ != kNever;
   if (overtaken) statistics_.cyclesSkipped(1);
   // Under load every SYNC might overtake the cycle before: then none would ever run.
@@ -198,7 +192,9 @@ void Robot::withdrawEnabling(const std::string& why) {
 void Robot::beginShutdown(Time now) {
   if (shutdown_ != Shutdown::no) return;
   // Before the nodes were booted there is nothing to stop.
-  shutdown_ = started_ && !lss_starting_ ? Shutdown::stopping : Shutdown::done;
+  const bool booted = started_ && !lss_starting_ && !listener_.listening();
+  shutdown_ = booted ? Shutdown::stopping : Shutdown::done;
+  abandonStart("the driver is shutting down");
   shutdown_began_ = now;
   lss_.abandon("ended by the shutdown of the driver", now);
   // What waits for its turn must not begin any more.
@@ -266,8 +262,12 @@ void Robot::tell(Event::Severity severity, std::string_view text, Time now) {
 void Robot::onEmergency(canopen::Node& node, const canopen::Emergency& emergency) {
   const std::size_t index = axisOf(node);
   if (index == axes_.size()) return;
-  axes_[index].onEmergency(emergency, now_);
-  reporters_[index].emergency(emergency, now_);
+  const drive::DriveProfile& profile = *axes_[index].config().profile;
+  const bool misses =
+      drive::missingFrames(profile, emergency.code) != drive::ErrorText::Missing::nothing;
+  const std::string excuse = misses ? ownLateness(emergency.stamp) : std::string();
+  axes_[index].onEmergency(emergency, now_, excuse);
+  reporters_[index].emergency(emergency, now_, excuse);
 }
 
 void Robot::onMalformedEmergency(canopen::Node& node, std::size_t size) {

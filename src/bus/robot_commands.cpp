@@ -13,6 +13,10 @@ void Robot::execute(Command command, Time now) {
            "refused: the bus interface " + config_.bus.interface + " is not there yet");
     return;
   }
+  if (listener_.listening() && !std::holds_alternative<CallCommand>(command.body)) {
+    executeLater(std::move(command));
+    return;
+  }
   if (lss_starting_ && !std::holds_alternative<CallCommand>(command.body)) {
     refuse(command.reply,
            "refused: the drives are being given their node-IDs (" + lss_.step() + ")");

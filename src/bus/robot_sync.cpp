@@ -15,6 +15,7 @@ constexpr unsigned kForeignLooks = 3;  // in a row that found one: no stray fram
 constexpr Duration kPatience = std::chrono::seconds(1);  // with the first SYNC, before it is told
 constexpr Duration kLasting = std::chrono::seconds(1);   // trouble that is away so long is over
 constexpr int kMeasuredDigits = 3;
+constexpr Duration kLateAfter = std::chrono::milliseconds(50);  // an EMCY may come late itself
 
 std::string milliseconds(Duration duration, int digits = 6) {
   char text[32];
@@ -65,6 +66,18 @@ void Robot::stopForSync(const std::string& why, Time now) {
   stopMotion(why);
   withdrawEnabling(why);
   for (drive::Axis& axis : axes_) axis.stopBySdo(why, now);
+}
+
+void Robot::noteLateness(Duration late, Time now) {
+  lateness_ = late;
+  late_since_ = now - late;
+  late_until_ = now + kLateAfter;
+}
+
+std::string Robot::ownLateness(Time stamp) const {
+  if (stamp < late_since_ || stamp > late_until_ || lateness_ == Duration::zero()) return {};
+  return "this program sent SYNC " + milliseconds(lateness_, kMeasuredDigits) +
+         " late: the computer did not let it run in time (see `real time` in the diagnostics)";
 }
 
 void Robot::noteSecondProducer(Time now) {

@@ -1,15 +1,23 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "boot.h"
 
+#include <utility>
+
 #include "boot_steps.h"
 
 namespace cia402::canopen {
 namespace {
 
+constexpr std::size_t kBootUpWait = 0, kWake = 1;               // places in makeSteps()
+constexpr Duration kOnItsWay = std::chrono::milliseconds(20);   // a heartbeat of before a command
+constexpr Duration kResetTime = std::chrono::milliseconds(50);  // after which no old state is told
+constexpr unsigned kResets = 3;
+
 /// In this order; each step is skipped where the configuration asks nothing of it.
 std::vector<BootStepPointer> makeSteps(const NodeConfig& config) {
   std::vector<BootStepPointer> steps;
   steps.push_back(makeBootUpWait());
+  steps.push_back(makeWake());
   steps.push_back(makeProofOfLife());
   steps.push_back(makeIdentification());
   steps.push_back(makeStop());
@@ -31,16 +39,26 @@ BootProcedure::BootProcedure(const NodeConfig& config, const MasterConfig& maste
                              can::Sink& sink, SdoPacer& pacer)
     : boot_(config, master, sdo, sink, pacer) {}
 
-void BootProcedure::start(From from, Time now) {
+void BootProcedure::start(From from, Time now, NmtCommand reset) {
   boot_.reset();
-  steps_ = makeSteps(boot_.config);
   status_ = Status::running;
   boot_.absent_at = now + boot_.config.boot_timeout;
   boot_.found.after_reset = from == From::boot_up;
   if (boot_.restore_pending && from == From::boot_up) boot_.restored = boot_.must_configure = true;
   boot_.restore_pending = false;
-  if (from == From::unknown) boot_.command(NmtCommand::enter_pre_operational);
-  enter(from == From::reset ? 0 : 1, now);
+  if (from == From::unknown) boot_.command(NmtCommand::enter_pre_operational, now);
+  if (from == From::reset) {
+    boot_.reset_command = reset;
+    boot_.resetting = true;
+    boot_.resets_left = kResets;
+    boot_.commanded = now;
+  }
+  begin(from == From::reset ? kBootUpWait : kWake, now);
+}
+
+void BootProcedure::begin(std::size_t step, Time now) {
+  steps_ = makeSteps(boot_.config);
+  enter(step, now);
 }
 
 void BootProcedure::stop() {
@@ -72,7 +90,7 @@ BootProcedure::Status BootProcedure::advance(Time now) {
         enter(index_ + 1, now);
         break;
       case Progress::failed:
-        if (boot_.found.started) boot_.command(NmtCommand::enter_pre_operational);
+        if (boot_.found.started) boot_.command(NmtCommand::enter_pre_operational, now);
         boot_.found.started = false;
         boot_.sdo.holdUntil(Time());
         status_ = boot_.failure == BootFailure::absent ? Status::absent : Status::failed;
@@ -82,9 +100,38 @@ BootProcedure::Status BootProcedure::advance(Time now) {
   return status_;
 }
 
-void BootProcedure::heartbeatHeard(NmtState state) {
+void BootProcedure::heartbeatHeard(NmtState state, Time now) {
   boot_.found.heartbeat_heard = true;
-  if (started() && state == NmtState::operational) boot_.found.operational_heard = true;
+  if (started()) {
+    if (state == NmtState::operational) boot_.found.operational_heard = true;
+    return;
+  }
+  if (state == NmtState::pre_operational) boot_.found.stopped = false;
+  const bool disobeys = state == NmtState::operational || state == NmtState::stopped;
+  const Duration on_its_way = boot_.resetting ? kResetTime : kOnItsWay;
+  if (!disobeys || now < boot_.commanded + on_its_way) return;
+  if (boot_.resetting) {
+    boot_.command(boot_.reset_command, now);
+    boot_.resetting = --boot_.resets_left > 0;  // else it takes no reset
+  } else if (state == NmtState::stopped) {
+    stoppedHeard(now);
+  } else {
+    boot_.found.stopped = false;
+    boot_.command(NmtCommand::enter_pre_operational, now);
+  }
+}
+
+/// No SDO answer can come: what was asked is void, and begins again once the drive has woken up.
+void BootProcedure::stoppedHeard(Time now) {
+  BootFindings& found = boot_.found;
+  if (found.stopped_count++ == 0) found.stopped_since = now;
+  found.stopped_last = now;
+  if (std::exchange(found.stopped, true)) return;
+  boot_.sdo.cancelAll("its heartbeat says stopped");
+  boot_.ticket.reset();
+  boot_.notes.clear();
+  boot_.remarks.clear();
+  begin(kWake, now);
 }
 
 bool BootProcedure::tpdoHeard() {

@@ -27,14 +27,16 @@ class BootProcedure {
   BootProcedure(const NodeConfig& config, const MasterConfig& master, SdoClient& sdo,
                 can::Sink& sink, SdoPacer& pacer);
 
-  void start(From from, Time now);
+  /// @param reset the command that was given, with From::reset
+  void start(From from, Time now, NmtCommand reset = NmtCommand::reset_communication);
   void stop();
 
   /// Goes as far as the answers allow. To be called after every SDO answer and heartbeat and when
   /// deadline() has come. A boot-up message, expected or not, is a reason to start() again.
   Status advance(Time now);
-  /// A heartbeat, or an answer to guarding.
-  void heartbeatHeard(NmtState state);
+  /// A heartbeat, or an answer to guarding. One that shows that the last NMT command was lost makes
+  /// it be sent again.
+  void heartbeatHeard(NmtState state, Time now);
   /// A TPDO came: the node is operational. @return false if nobody waits for that.
   bool tpdoHeard();
   /// Somebody is to ask for the NMT state by a remote frame. Cleared by the question.
@@ -55,6 +57,8 @@ class BootProcedure {
 
  private:
   void enter(std::size_t step, Time now);
+  void begin(std::size_t step, Time now);
+  void stoppedHeard(Time now);
 
   BootContext boot_;
   Status status_ = Status::idle;

@@ -19,6 +19,8 @@ void BootContext::reset() {
   ticket.reset();
   deadline = kNever;
   absent_at = kNever;
+  resetting = false;
+  resets_left = 0;
   error.clear();
   failure = BootFailure::none;
   ask_state = false;
@@ -63,6 +65,16 @@ Progress BootContext::fail(BootFailure kind, const std::string& reason) {
 Progress BootContext::failTransfer() {
   return fail(refused() ? BootFailure::refused : BootFailure::timed_out,
               "boot failed while " + step + ": " + ticket->reason());
+}
+
+Progress BootContext::failStopped() {
+  return fail(BootFailure::timed_out,
+              "boot failed: its heartbeat says stopped (NMT state), still after " +
+                  std::to_string(found.wake_ups) + " commands to enter pre-operational within " +
+                  secondsText(found.stopped_last - found.stopped_since) +
+                  ", and a stopped drive answers no SDO; look for another NMT master that stops "
+                  "it, and whether the drive hears this one (wiring); then switch it off and on, "
+                  "or recover");
 }
 
 void BootContext::noteTransfer(const std::string& what) {

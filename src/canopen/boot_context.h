@@ -34,13 +34,17 @@ struct AdoptedCobId {
 /// What was found out about the node since the boot began.
 struct BootFindings {
   std::optional<Node::Identity> identity;
-  bool after_reset = false;        ///< its boot-up message was seen: it has just been reset
-  bool boot_up_missed = false;     ///< it was told to reset, and no boot-up message came
-  bool heartbeat_heard = false;    ///< or an answer to guarding
-  bool operational_heard = false;  ///< since it was told to start
-  bool supervised = false;         ///< its loss will be noticed: heartbeat or guarding is set up
-  bool guarded = false;            ///< ... by guarding
-  bool watches_master = false;     ///< it took what it needs to notice a dead master
+  bool after_reset = false;              ///< its boot-up message was seen: it has just been reset
+  bool boot_up_missed = false;           ///< it was told to reset, and no boot-up message came
+  bool heartbeat_heard = false;          ///< or an answer to guarding
+  bool operational_heard = false;        ///< since it was told to start
+  bool stopped = false;                  ///< its last heartbeat said so: it answers no SDO
+  unsigned stopped_count = 0;            ///< heartbeats that said so, ...
+  Time stopped_since{}, stopped_last{};  ///< ... the first and the last of them
+  unsigned wake_ups = 0;                 ///< NMT commands out of that state
+  bool supervised = false;      ///< its loss will be noticed: heartbeat or guarding is set up
+  bool guarded = false;         ///< ... by guarding
+  bool watches_master = false;  ///< it took what it needs to notice a dead master
   bool error_control_differed = false;  ///< 1016h and the like were not as the last boot left them
   bool has_signature = false;           ///< it has 1020h
   bool unchanged = false;               ///< 1020h says so: the configuration is not written again
@@ -75,7 +79,11 @@ class BootContext {
   SdoTicket ticket;        ///< of the transfer that the present step has asked for
   Time deadline = kNever;  ///< of the present step; SDO time-outs are the SDO client's
   Time absent_at = kNever;
-  bool ask_state = false;  ///< Node shall send a remote frame for the NMT state, now
+  Time commanded{};                                            ///< the last NMT command to the node
+  NmtCommand reset_command = NmtCommand::reset_communication;  ///< that it was given
+  bool resetting = false;    ///< its boot-up message is waited for
+  unsigned resets_left = 0;  ///< repetitions of a reset that shows no effect
+  bool ask_state = false;    ///< Node shall send a remote frame for the NMT state, now
   // These outlive the boot:
   bool restore_pending = false;  ///< 1011h was written, the drive has not yet started anew
   bool restored = false;         ///< ... and it has
@@ -94,7 +102,10 @@ class BootContext {
              std::optional<SdoOptions> options = {});
   /// Sends what is queued for the node as soon as it is its turn on the bus.
   void submit(Time now);
-  void command(NmtCommand command) { sink.send(nmtFrame(command, config.node_id)); }
+  void command(NmtCommand command, Time now) {
+    sink.send(nmtFrame(command, config.node_id));
+    commanded = now;
+  }
 
   bool answered() const { return ticket->done(); }
   bool ok() const { return ticket->ok(); }
@@ -109,6 +120,8 @@ class BootContext {
 
   /// Ends the boot. @param reason a sentence without the node's name.
   Progress fail(BootFailure kind, const std::string& reason);
+  /// Ends the boot of a drive that stays in the NMT state stopped.
+  Progress failStopped();
   /// Ends the boot because of the last transfer.
   Progress failTransfer();
   /// A warning: `what`, and why the last transfer did not succeed.

@@ -40,6 +40,7 @@ class BootUpWait : public BootStep {
   }
   Progress check(BootContext& boot, Time now) override {
     if (now < boot.deadline) return Progress::waiting;
+    boot.resetting = false;
     boot.found.boot_up_missed = true;
     boot.found.heartbeat_heard = false;  // those so far may have left before the reset
     return Progress::next;
@@ -58,15 +59,23 @@ class ProofOfLife : public BootStep {
   Progress check(BootContext& boot, Time now) override {
     if (!boot.answered()) return Progress::waiting;
     if (boot.ticket->failure() == SdoTransfer::Failure::timed_out) {
-      return now < boot.absent_at ? Progress::again : nobodyThere(boot);
+      if (now >= boot.absent_at) return nobodyThere(boot);
+      awaken(boot, now);
+      return Progress::again;
     }
     if (!boot.ok() && !boot.refused()) return boot.failTransfer();
     // The drive is there but took no notice of the reset: it may still be operational.
-    if (boot.found.boot_up_missed) boot.command(NmtCommand::enter_pre_operational);
+    if (boot.found.boot_up_missed) boot.command(NmtCommand::enter_pre_operational, now);
     return identify(boot);
   }
 
  private:
+  /// It may be stopped (NMT) without a heartbeat that says so: the command out of it was lost.
+  static void awaken(BootContext& boot, Time now) {
+    boot.command(NmtCommand::enter_pre_operational, now);
+    if (boot.config.error_control == ErrorControl::guarding) boot.ask_state = true;
+  }
+
   static Progress identify(BootContext& boot) {
     Node::Identity& identity = boot.found.identity.emplace();
     const std::optional<std::uint32_t>& configured = boot.config.device_type;
@@ -84,6 +93,7 @@ class ProofOfLife : public BootStep {
   }
 
   static Progress nobodyThere(BootContext& boot) {
+    if (boot.found.stopped_count > 0) return boot.failStopped();
     if (boot.found.heartbeat_heard) {
       return boot.fail(BootFailure::timed_out,
                        "sends heartbeats, but did not answer SDO requests (" + boot.step +

@@ -61,7 +61,7 @@ class Restore : public BootStep {
       return failed;
     }
     boot.restore_pending = true;
-    boot.command(NmtCommand::reset_node);
+    boot.command(NmtCommand::reset_node, now);
     phase_ = Phase::restarting;
     boot.step = "waiting for boot-up after its parameters were restored";
     boot.deadline = now + boot.config.boot_timeout;

@@ -63,7 +63,7 @@ class Start : public BootStep {
  private:
   /// Repeated until it shows: the command is not acknowledged.
   void command(BootContext& boot, Time now) {
-    boot.command(NmtCommand::start);
+    boot.command(NmtCommand::start, now);
     boot.deadline = std::min(end_, now + kRepeatTime);
     if (blind_ || boot.found.guarded) boot.ask_state = true;
   }

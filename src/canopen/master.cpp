@@ -105,12 +105,12 @@ void Master::start(Time now, bool reset) {
   sync_.restart();
   heartbeat_.start(sink_, now);
   time_.start(now);
-  if (reset) {
+  if (reset && config_.reset_all) {
     commandAll(NmtCommand::reset_communication, now);
     return;
   }
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    nodes_[i].boot(now, false);
+    nodes_[i].boot(now, reset);
     tell(i, now);
   }
 }

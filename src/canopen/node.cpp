@@ -86,7 +86,7 @@ void Node::commanded(NmtCommand command, Time now) {
       break;
     case NmtCommand::reset_node:
     case NmtCommand::reset_communication:
-      impl_->startBoot(BootProcedure::From::reset, "", now);
+      impl_->startBoot(BootProcedure::From::reset, "", now, command);
       break;
   }
   impl_->refresh();
@@ -129,6 +129,7 @@ void Node::tick(Time now) {
   impl_->runBoot(now);
   impl_->runProbe(now);
   impl_->checkSupervision(now);
+  impl_->last_stop.tick(now);
   impl_->tryAgain(now);
   impl_->refresh();
 }

@@ -37,7 +37,8 @@ Node::Impl::Impl(const NodeConfig& node_config, const MasterConfig& master, can:
       consumer(config.heartbeat_timeout),
       guard(config.node_id, config.guard_time, config.life_time_factor),
       boot(config, master, sdo, sink, shared_turns != nullptr ? *shared_turns : own_turns),
-      retry(config.boot) {
+      retry(config.boot),
+      last_stop(config, sdo, sink) {
   sdo.tellWhenQueued(changed);
 }
 
@@ -57,27 +58,30 @@ const std::string& Node::Impl::step() const {
 void Node::Impl::refresh() {
   ++changes;
   next = std::min({sdo.nextDeadline(), consumer.deadline(), guard.deadline(), boot.deadline(),
-                   retry.deadline()});
+                   retry.deadline(), last_stop.deadline()});
   if (deadlines_changed != nullptr) *deadlines_changed = true;
   pdos_live = boot.started() && (health == NodeHealth::ready || health == NodeHealth::booting);
 }
 
-void Node::Impl::startBoot(BootProcedure::From from, const std::string& why, Time now) {
+void Node::Impl::startBoot(BootProcedure::From from, const std::string& why, Time now,
+                           NmtCommand reset) {
   retry.reset();
   taken_out.clear();
-  beginBoot(from, why, now);
+  beginBoot(from, why, now, reset);
 }
 
-void Node::Impl::beginBoot(BootProcedure::From from, const std::string& why, Time now) {
+void Node::Impl::beginBoot(BootProcedure::From from, const std::string& why, Time now,
+                           NmtCommand reset) {
   begun = true;
   takeOut(NodeHealth::booting, why);
   if (from == BootProcedure::From::boot_up) sdo.serverRestarted();
   notes.clear();
-  boot.start(from, now);
+  boot.start(from, now, reset);
 }
 
 void Node::Impl::takeOut(NodeHealth as, const std::string& why) {
   boot.stop();
+  last_stop.end();
   consumer.disarm();
   guard.stop();
   sdo.cancelAll(why.empty() ? "the node is booted again" : "the node " + why);
@@ -106,11 +110,10 @@ void Node::Impl::takeOutBy(NmtCommand command) {
 }
 
 void Node::Impl::lose(const std::string& why, Time now) {
-  // It may still hear us and go on with its last set-point, which nobody sends any more.
-  sink.send(nmtFrame(NmtCommand::stop, config.node_id));
   sdo.cancelAll("the node is lost: " + why);
   takeOut(NodeHealth::lost,
           why + ": check power and cable; it is configured again when it is back");
+  last_stop.begin(now);
   retry.search(now);
 }
 
@@ -225,7 +228,7 @@ void Node::Impl::onHeartbeat(NmtState state, Time stamp, Time now) {
   nmt_state = state;
   consumer.heard(now);
   if (boot.running()) {
-    boot.heartbeatHeard(state);
+    boot.heartbeatHeard(state, now);
     runBoot(now);
     return;
   }
@@ -233,6 +236,7 @@ void Node::Impl::onHeartbeat(NmtState state, Time stamp, Time now) {
   if (isAway(health) && !taken_out.empty()) {
     takeOut(NodeHealth::failed, std::exchange(taken_out, {}));
   } else if (isAway(health)) {
+    if (last_stop.insists(state, now)) return;
     startBoot(BootProcedure::From::unknown, "", now);
   } else if (health == NodeHealth::ready && state != NmtState::operational &&
              state != NmtState::unknown) {

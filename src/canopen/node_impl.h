@@ -10,6 +10,7 @@
 #include "cia402_driver/canopen/heartbeat.h"
 #include "cia402_driver/canopen/node.h"
 #include "cia402_driver/canopen/node_guarding.h"
+#include "last_stop.h"
 
 namespace cia402::canopen {
 
@@ -19,8 +20,11 @@ struct Node::Impl : Node::Front {
        SdoPacer* shared_turns, bool* changed, can::Pacer* wire);
 
   /// Begins a boot that is no repetition of a failed one.
-  void startBoot(BootProcedure::From from, const std::string& why, Time now);
-  void beginBoot(BootProcedure::From from, const std::string& why, Time now);
+  /// @param reset the command that was given, with From::reset
+  void startBoot(BootProcedure::From from, const std::string& why, Time now,
+                 NmtCommand reset = NmtCommand::reset_communication);
+  void beginBoot(BootProcedure::From from, const std::string& why, Time now,
+                 NmtCommand reset = NmtCommand::reset_communication);
   void runBoot(Time now);
   void succeed(Time now);
   void endBoot(NodeHealth end, Time now);
@@ -58,6 +62,7 @@ struct Node::Impl : Node::Front {
   NodeGuard guard;
   BootProcedure boot;
   BootRetry retry;
+  LastStop last_stop;
   SdoTicket probe;  ///< of the search for a node that does not answer
   NmtState nmt_state = NmtState::unknown;
   std::string problem;

@@ -19,6 +19,12 @@ constexpr std::uint8_t kRequestDownloadExpedited = 0x23;  // size indicated
 constexpr std::uint8_t kRequestBlockUpload = 0xA4;        // CRC supported
 constexpr std::uint8_t kRequestBlockDownload = 0xC6;      // CRC supported, size indicated
 constexpr std::uint8_t kAbort = 0x80;
+constexpr std::size_t kMostExpedited = 4;  // bytes in the request itself
+
+/// Command of an expedited download of 1 to 4 bytes.
+std::uint8_t expedited(std::size_t size) {
+  return static_cast<std::uint8_t>(kRequestDownloadExpedited | (kMostExpedited - size) << 2U);
+}
 
 /// Up to here the server may answer a block upload by an ordinary one: that is fewer frames.
 constexpr std::uint32_t kSwitchThreshold = 28;  // bytes
@@ -83,6 +89,16 @@ SdoTicket SdoClient::downloadUrgent(ObjectId object, Bytes data, const std::stri
   transfer->urgent_ = true;
   makeWay(toString(object) + (name.empty() ? "" : " " + name));
   return enqueue(std::move(transfer), {});
+}
+
+bool SdoClient::post(ObjectId object, const Bytes& data) {
+  if (phase_ != Phase::idle || data.empty() || data.size() > kMostExpedited) return false;
+  sendRequest(expedited(data.size()), object, static_cast<std::uint32_t>(toUnsigned(data)));
+  if (!abandoned_) {  // else the fence that is due holds this answer back as well
+    abandoned_ = object;
+    fences_left_ = 1;
+  }
+  return true;
 }
 
 /// The transfer on the wire, unless it is urgent itself, is none any more.
@@ -196,10 +212,8 @@ void SdoClient::initiateDownload(Time now) {
     await(Phase::block_download_initiate, now);
     return;
   }
-  if (size >= 1 && size <= 4) {
-    const auto unused = static_cast<std::uint8_t>((4 - size) << 2);
-    sendInitiate(static_cast<std::uint8_t>(kRequestDownloadExpedited | unused),
-                 static_cast<std::uint32_t>(toUnsigned(data)));
+  if (size >= 1 && size <= kMostExpedited) {
+    sendInitiate(expedited(size), static_cast<std::uint32_t>(toUnsigned(data)));
   } else {
     sendInitiate(kRequestDownloadSegmented, size);
   }

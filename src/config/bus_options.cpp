@@ -62,6 +62,13 @@ void readTimeInterval(YamlSection& section, BusConfig& bus) {
   }
 }
 
+void readListen(YamlSection& section, BusConfig& bus) {
+  double listen = toSeconds(bus.listen);
+  if (section.read("listen", listen, drive::Range{0.0, 60.0, false})) {
+    bus.listen = fromSeconds(listen);
+  }
+}
+
 void readHeartbeat(YamlSection& section, BusConfig& bus) {
   double heartbeat = toSeconds(bus.heartbeat);
   if (!section.read("heartbeat", heartbeat, drive::Range{0.0, 65.535, false})) return;
@@ -172,6 +179,10 @@ void readBus(const YamlValue& value, BusConfig& bus, bool& counter_given) {
   readHeartbeat(section, bus);
   if (const auto sync = section.get("sync")) {
     bus.external_sync = sync->oneOf({"own", "external"}).value_or(0) == 1;
+  }
+  readListen(section, bus);
+  if (const auto reset = section.get("reset")) {
+    bus.reset_all = reset->oneOf({"each", "all"}).value_or(0) == 1;
   }
   readSyncWindow(section, bus);
   readTimeInterval(section, bus);

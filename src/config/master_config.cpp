@@ -226,6 +226,10 @@ canopen::MasterConfig makeMasterConfig(const RobotConfig& robot, Problems& probl
   master.sync_counter = robot.bus.sync_counter;
   master.bitrate = robot.bus.bitrate;
   master.external_sync = robot.bus.external_sync;
+  // Those that LSS gives another node-ID take it at a reset, which finds them by the old one.
+  const bool lss = std::any_of(robot.axes.begin(), robot.axes.end(),
+                               [](const AxisConfig& axis) { return axis.lss.has_value(); });
+  master.reset_all = robot.bus.reset_all || lss;
   master.time_interval = robot.bus.time_interval;
   for (const AxisConfig& axis : robot.axes) {
     if (axis.profile) master.nodes.push_back(makeNode(robot, axis, problems));

@@ -4,16 +4,11 @@
 #include <utility>
 
 #include "axis_core.h"
+#include "cia402_driver/drive/fault_text.h"
 #include "procedure.h"
 #include "procedure_limits.h"
 
 namespace cia402::drive {
-namespace {
-
-constexpr std::uint16_t kRpdoTimeout = 0x8250;  // CiA 301, table 26
-
-}  // namespace
-
 struct Axis::Impl {
   Impl(AxisConfig config, canopen::Node& node)
       : core(std::move(config), node), boot_ups(node.bootUps()) {}
@@ -173,13 +168,14 @@ void Axis::stopBySdo(const std::string& why, Time) {
   impl_->endEnabling(why);
 }
 
-void Axis::onEmergency(const canopen::Emergency& emergency, Time now) {
-  impl_->core.onEmergency(emergency);
-  if (emergency.code != kRpdoTimeout || !impl_->core.nodeReady()) return;
-  stopBySdo(
-      "the drive reports EMCY 0x8250: no RPDO reached it in time (1400:05); quick stop is "
-      "commanded by SDO. Check the bus and the COB-IDs of its RPDOs, then enable again",
-      now);
+void Axis::onEmergency(const canopen::Emergency& emergency, Time now, const std::string& excuse) {
+  impl_->core.onEmergency(emergency, excuse);
+  const bool no_rpdo = missingFrames(*config().profile, emergency.code) == ErrorText::Missing::rpdo;
+  if (!no_rpdo || !excuse.empty() || !impl_->core.nodeReady()) return;
+  stopBySdo("the drive reports EMCY " + hexWord(emergency.code) +
+                ": no RPDO reached it in time (1400:05); quick stop is commanded by SDO. Check the "
+                "bus and the COB-IDs of its RPDOs, then enable again",
+            now);
 }
 
 void Axis::onHealthChange(canopen::NodeHealth, Time) { impl_->watchNode(); }

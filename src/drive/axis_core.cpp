@@ -137,7 +137,7 @@ void AxisCore::onNodeLost() {
   poller_.reset();
   read_error_code_.reset();
   error_ticket_.reset();
-  emergency_code_ = state_.error_code = 0;
+  emergency_code_ = excused_code_ = state_.error_code = 0;
   base_controlword_ = controlword_ = 0;
   if (!absolute()) adoptDriveZero(0.0);
   limits_.forget();

@@ -44,7 +44,7 @@ class AxisCore {
   /// @param busy a procedure runs
   void updateReadiness(bool busy, Time now);
   void writeCommands(Time now);
-  void onEmergency(const canopen::Emergency& emergency);
+  void onEmergency(const canopen::Emergency& emergency, const std::string& excuse);
   void onBusLost(const std::string& why);
   /// Quick stop by SDO: RPDOs do not reach the drive.
   void stopBySdo(const std::string& why);
@@ -137,6 +137,8 @@ class AxisCore {
   /// Why there is no feedback: "TPDO 1 (COB-ID 0x183) did not come for 11 cycles".
   std::string feedbackText() const;
   std::string emergencyText() const;
+  /// An error code in words, with its excuse where it has one.
+  std::string codeText(std::uint16_t code) const;
   /// What was commanded, what the drive shows and its last EMCY.
   std::string report() const;
   std::string faultText() const;
@@ -236,6 +238,8 @@ class AxisCore {
 
   Time next_fault_reset_ = Time::min();
   std::uint16_t emergency_code_ = 0;
+  std::uint16_t excused_code_ = 0;  ///< an EMCY that this program itself has caused; 0: none
+  std::string excuse_;              ///< ... how, in words
   std::optional<std::uint16_t> read_error_code_;
   canopen::SdoTicket error_ticket_, stop_ticket_;
   std::string failure_, notice_;

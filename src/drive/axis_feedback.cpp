@@ -165,8 +165,14 @@ void AxisCore::readErrorCode() {
   state_.error_code = code;
 }
 
-void AxisCore::onEmergency(const canopen::Emergency& emergency) {
+void AxisCore::onEmergency(const canopen::Emergency& emergency, const std::string& excuse) {
   emergency_code_ = emergency.code;
+  if (!excuse.empty()) {
+    excused_code_ = emergency.code;
+    excuse_ = excuse;
+  } else if (emergency.code == excused_code_) {
+    excused_code_ = 0;
+  }
 }
 
 void AxisCore::forgetMotion() {

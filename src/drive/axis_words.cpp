@@ -29,7 +29,12 @@ std::string AxisCore::feedbackText() const {
 std::string AxisCore::emergencyText() const {
   const auto& emergency = node_.lastEmergency();
   if (!emergency || emergency->code == 0) return "no EMCY is pending";
-  return "last EMCY " + errorCodeText(profile(), emergency->code);
+  return "last EMCY " + codeText(emergency->code);
+}
+
+std::string AxisCore::codeText(std::uint16_t code) const {
+  const bool excused = code != 0 && code == excused_code_;
+  return errorCodeText(profile(), code) + (excused ? "; the cause is that " + excuse_ : "");
 }
 
 std::string AxisCore::report() const {
@@ -56,10 +61,10 @@ std::string AxisCore::faultText() const {
              ", no error code yet (603F:00 is 0 and no EMCY came); clear_faults, then look at the "
              "drive's own display or log";
     }
-    return who() + ": fault " + errorCodeText(profile(), state_.error_code) + reacting +
-           "; then clear_faults";
+    return who() + ": fault " + codeText(state_.error_code) + reacting + "; then clear_faults";
   }
-  if (state_.error_code != 0) {
+  const bool excused = state_.error_code == excused_code_;  // or there is none
+  if (state_.error_code != 0 && !excused) {
     return who() + ": " + (state_.warning ? "warning " : "error reported ") +
            errorCodeText(profile(), state_.error_code);
   }

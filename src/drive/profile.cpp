@@ -33,6 +33,15 @@ const ModeSpec* DriveProfile::mode(const std::string& mode_name) const {
   return found == modes.end() ? nullptr : &*found;
 }
 
+ErrorText::Missing missingFrames(const DriveProfile& profile, std::uint16_t code) {
+  constexpr std::uint16_t kRpdoTimeout = 0x8250;  // CiA 301, table 26
+  const auto known = profile.errors.find(code);
+  const bool told =
+      known != profile.errors.end() && known->second.missing != ErrorText::Missing::nothing;
+  if (told) return known->second.missing;
+  return code == kRpdoTimeout ? ErrorText::Missing::rpdo : ErrorText::Missing::nothing;
+}
+
 StopBy stopBy(const ModeSpec& mode, const DriveProfile& profile) {
   if (mode.stop) return *mode.stop;
   if (profile.halt_supported && !mode.cyclic) return StopBy::halt;

@@ -169,6 +169,11 @@ void readErrors(const YamlValue& value, DriveProfile& profile) {
       details.read("text", error.text);
       details.read("cause", error.cause);
       details.read("remedy", error.remedy);
+      using Missing = ErrorText::Missing;
+      if (const auto missing = details.get("missing")) {
+        const bool rpdo = missing->oneOf({"sync", "rpdo"}).value_or(0) == 1;
+        error.missing = rpdo ? Missing::rpdo : Missing::sync;
+      }
       details.finish();
     } else {
       error.text = entry.text().value_or("");

@@ -48,6 +48,15 @@ TEST_F(AxisReporterTest, PutsAnEmergencyIntoWordsWithItsManufacturerBytes) {
   EXPECT_EQ(emergencies[0].emergency.code, 0x8611);
 }
 
+TEST_F(AxisReporterTest, SaysWhereThisProgramItselfIsTheCause) {
+  canopen::Emergency given;
+  given.code = 0x8611;
+  reporter.emergency(given, now, "this program was late");
+  EXPECT_THAT(texts, ElementsAre("elbow (node 2): emergency: 0x8611 following error: the cause is "
+                                 "that this program was late; nothing is wrong with the drive, the "
+                                 "axis goes on unless it says otherwise"));
+}
+
 TEST_F(AxisReporterTest, LeavesManufacturerBytesOutThatSayNothing) {
   emergency(0x8611);
   EXPECT_THAT(texts.at(0), Not(HasSubstr("manufacturer")));

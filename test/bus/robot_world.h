@@ -101,6 +101,7 @@ inline config::RobotConfig testRobot() {
   config::RobotConfig robot;
   robot.bus.interface = "can0";
   robot.bus.sync_period = kPeriod;
+  robot.bus.listen = Duration::zero();
   robot.recorder.keep = 0;  // no files
   robot.axes = {testAxis("shoulder", 1), testAxis("elbow", 2)};
   config::GroupConfig arm;

@@ -44,6 +44,7 @@ class MasterTest : public ::testing::Test {
     config.nodes = {test::servoConfig(3, "shoulder"), test::servoConfig(5, "elbow")};
     test::addServo(peer, 3);
     test::addServo(peer, 5);
+    peer.on("000 82 03", "703 00").on("000 82 05", "705 00");
     peer.on("000 82 00", std::vector<std::string>{"703 00", "705 00"});
   }
   void create() { master.emplace(config, peer, &log); }
@@ -76,10 +77,19 @@ class MasterTest : public ::testing::Test {
   Time now{};
 };
 
-TEST_F(MasterTest, starts_with_its_boot_up_its_heartbeat_and_one_reset_for_all) {
+TEST_F(MasterTest, starts_with_its_boot_up_its_heartbeat_and_a_reset_for_each_of_its_nodes) {
+  create();
+  master->start(now);
+  EXPECT_EQ(peer.take(), (Lines{"77F 00", "77F 05", "000 82 03", "000 82 05"}));
+}
+
+TEST_F(MasterTest, starts_with_one_reset_for_all_where_that_is_configured) {
+  config.reset_all = true;
   create();
   master->start(now);
   EXPECT_EQ(peer.take(), (Lines{"77F 00", "77F 05", "000 82 00"}));
+  settle();
+  EXPECT_EQ(master->find(5)->health(), NodeHealth::ready);
 }
 
 TEST_F(MasterTest, boots_all_nodes_in_parallel) {
@@ -88,7 +98,7 @@ TEST_F(MasterTest, boots_all_nodes_in_parallel) {
   EXPECT_EQ(master->find(5)->health(), NodeHealth::ready);
   const Lines sent = peer.take();
   // Both are asked for their identity before either is configured.
-  EXPECT_EQ(Lines(sent.begin() + 3, sent.begin() + 7),
+  EXPECT_EQ(Lines(sent.begin() + 4, sent.begin() + 8),
             (Lines{"603 40 00 10 00 00 00 00 00", "605 40 00 10 00 00 00 00 00",
                    "603 40 18 10 01 00 00 00 00", "605 40 18 10 01 00 00 00 00"}));
 }

@@ -294,6 +294,20 @@ TEST(MasterConfig, SyncMayComeFromOutsideAndHaveAWindow) {
   EXPECT_THAT(problems, HasSubstr("bus/time_interval: must be 0"));
 }
 
+TEST(MasterConfig, ResetsItsOwnNodesUnlessToldOtherwiseOrLssNeedsIt) {
+  const auto resetsAll = [](const std::string& from, const std::string& to) {
+    std::string yaml = kTwo;
+    yaml.replace(yaml.find(from), from.size(), to);
+    return make(yaml).reset_all;
+  };
+  EXPECT_FALSE(make(kTwo).reset_all);
+  EXPECT_FALSE(resetsAll("heartbeat: 0.2", "reset: each"));
+  EXPECT_TRUE(resetsAll("heartbeat: 0.2", "reset: all"));
+  EXPECT_TRUE(resetsAll("    identity:",
+                        "    lss: {vendor_id: 1, product_code: 2, revision: 3, serial: 7}\n"
+                        "    identity:"));
+}
+
 TEST(MasterConfig, ModesThatCannotBeServedAreRefused) {
   std::string problems;
   servo("", ", modes: [cyclic_velocity, cyclic_spline]", problems);

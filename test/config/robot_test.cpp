@@ -186,6 +186,8 @@ const Mistake kMistakes[] = {
     {"sync_period: 0.004", "node_id: 1", "axes/shoulder/node_id: 1 is the master's own"},
     {"sync_period: 0.004", "heartbeat: -1", "bus/heartbeat: must be at least 0"},
     {"sync_period: 0.004", "sync_counter: 1", "bus/sync_counter: 1 is no counter"},
+    {"sync_period: 0.004", "listen: -0.1", "bus/listen: must be at least 0"},
+    {"sync_period: 0.004", "reset: none", "bus/reset: "},
     {"defaults: {", "defaults: {gear: 5, ", "  defaults/gear: unknown key"},
     {"node_id: 1,", "node_id: 128,", "axes/shoulder/node_id: must be between 1 and 127"},
     {"node_id: 1,", "", "axes/shoulder: `node_id` is missing"},

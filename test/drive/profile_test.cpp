@@ -102,6 +102,9 @@ TEST(DriveProfile, TheDamiaoOneSaysWhatTheManualSays) {
   EXPECT_EQ(damiao.before_enable[1].object, "target_position");
   EXPECT_EQ(damiao.before_enable[1].from, "position_actual");
   EXPECT_EQ(damiao.errors.count(0x8201) + damiao.errors.count(0x8250), 2u);
+  EXPECT_EQ(missingFrames(damiao, 0x8201), ErrorText::Missing::sync);
+  EXPECT_EQ(missingFrames(damiao, 0x8250), ErrorText::Missing::rpdo);
+  EXPECT_EQ(missingFrames(damiao, 0x2310), ErrorText::Missing::nothing);
 }
 
 struct Mistake {
@@ -156,6 +159,7 @@ const Mistake kMistakes[] = {
     {"pdos:", "homing: {kind: declare_zero, methods: {1: x}}\npdos:", "`methods` are for kind"},
     {"pdos:", "homing: {kind: drive, methods: {x: y}}\npdos:", "a homing method is a number"},
     {"pdos:", "errors: {0x12345: text}\npdos:", "an error code is a number"},
+    {"pdos:", "errors: {0x8201: {text: late, missing: tpdo}}\npdos:", "0x8201/missing: "},
     {"pdos:", "sync: {counter: 1}\npdos:", "1 is no counter"},
     {"pdos:", "startup: [{object: profile_velocity}]\npdos:", "has no value"},
     {"pdos:", "startup: [{object: profile_velocty, raw: 1}]\npdos:",

@@ -80,7 +80,7 @@ TEST(Guarding, AGuardedDriveWhoseAnswersWereLostIsFoundAgain) {
   answers.count = 3;
   scene.world().bus().faults().add(answers);
   ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health == NodeHealth::lost; }, 1s));
-  scene.run(1ms);
+  scene.run(50ms);
   EXPECT_EQ(scene.truth("left").nmt, canopen::NmtState::stopped);
   ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 6s)) << scene.told();
   EXPECT_FALSE(scene.truth("left").power_stage_on);

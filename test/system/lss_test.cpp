@@ -51,7 +51,7 @@ TEST(Lss, StepsAndProblemsAreShown) {
   Scene scene(
       loadText(genericPair(lssOf(111) + unconfigured(999), lssOf(222) + unconfigured(222))));
   scene.robot().start();
-  scene.run(30ms);
+  scene.run(180ms);
   bus::RobotSnapshot snapshot;
   scene.robot().robot().fill(snapshot);
   EXPECT_THAT(snapshot.axes[0].words.step.str(),
@@ -168,6 +168,7 @@ class BehindAScan : public testing::Test {
   void begin() {
     scene.robot().start();
     power(false);
+    scene.run(1s);
     ASSERT_TRUE(
         scene.runUntil([&] { return scene.state("left").health == NodeHealth::absent; }, 10s));
     scan = ask(scene, bus::LssScanCommand{100ms});

@@ -168,7 +168,7 @@ TEST(ExternalSyncWithoutAProducer, LetsTheNodesBootAndTheReasonIsSaid) {
 }
 
 TEST_F(ExternalSync, ASecondProducerBesideOurOwnSyncIsSaid) {
-  boot(genericPair(), every(40ms));
+  boot(withBus("listen: 0"), every(40ms));
   scene->run(1500ms);
   EXPECT_THAT(scene->told(), HasSubstr("another device produces SYNC (COB-ID 0x080), too"));
   EXPECT_GT(snapshot().foreign_syncs, 30u);

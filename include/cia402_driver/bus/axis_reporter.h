@@ -39,7 +39,8 @@ class AxisReporter {
                std::shared_ptr<const drive::DriveProfile> profile, EventSink& events);
 
   /// An emergency came: it is handed to EventSink::onEmergency() and told.
-  void emergency(const canopen::Emergency& emergency, Time now);
+  /// @param excuse how this program itself has caused it, in words; empty: it has not
+  void emergency(const canopen::Emergency& emergency, Time now, const std::string& excuse = {});
   /// A frame of `size` bytes came where an emergency was expected, without an error code.
   void malformedEmergency(std::size_t size, Time now);
   /// The axis has got a fault or a problem with this code (603Fh); `text` says all.
@@ -64,7 +65,7 @@ class AxisReporter {
   void tell(const char* prefix, const RepeatLimiter::Summary& summary, Time now);
   std::string kindText(std::uint32_t kind) const;
   void count(const canopen::Emergency& emergency);
-  std::string textOf(const canopen::Emergency& emergency) const;
+  std::string textOf(const canopen::Emergency& emergency, const std::string& excuse) const;
 
   std::size_t axis_;
   std::string who_;

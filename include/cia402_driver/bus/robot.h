@@ -6,6 +6,7 @@
 
 #include "cia402_driver/bus/axis_motion.h"
 #include "cia402_driver/bus/axis_reporter.h"
+#include "cia402_driver/bus/bus_listener.h"
 #include "cia402_driver/bus/command.h"
 #include "cia402_driver/bus/cycle_statistics.h"
 #include "cia402_driver/bus/dcf_job.h"
@@ -37,8 +38,8 @@ class Robot final : private canopen::MasterListener {
   Robot(const Robot&) = delete;
   Robot& operator=(const Robot&) = delete;
 
-  /// Begins to boot the drives and to cycle; to be called once the bus is there. Nothing is sent
-  /// before.
+  /// To be called once the bus is there; nothing is sent before. Begins to boot the drives and to
+  /// cycle once no other master has been heard for BusConfig::listen.
   void start(Time now);
   bool started() const { return started_; }
   /// A frame from the bus. @param stamp when it was on the wire.
@@ -121,6 +122,9 @@ class Robot final : private canopen::MasterListener {
   /// Set-points do not reach the drives as they should: all that moves is stopped, by SDO.
   void stopForSync(const std::string& why, Time now);
   void noteSecondProducer(Time now);
+  void noteLateness(Duration late, Time now);
+  /// How this program was late itself around `stamp`, in words; empty if it was not.
+  std::string ownLateness(Time stamp) const;
   void watchSync(Time now);
   enum class SyncTrouble : std::uint8_t { none, second_producer, absent, wrong_form, wrong_period };
   SyncTrouble syncTrouble() const;
@@ -151,6 +155,14 @@ class Robot final : private canopen::MasterListener {
   std::string activationRefusal(bool stored) const;
   /// Why no axis may be enabled now; empty if it may.
   std::string enableProblem() const;
+  // robot_start.cpp
+  void listenTo(const can::Frame& frame, Time now);
+  void stepListening(Time now);
+  void beginSending(Time now);
+  void executeLater(Command command);
+  void refuseForOtherMaster(const Reply& reply) const;
+  void abandonStart(const std::string& why);
+  void sayStep(const std::string& step);
   /// Boots the nodes and begins to cycle.
   void begin(Time now);
   /// nullptr if there is none; `reply` says so then.
@@ -174,6 +186,8 @@ class Robot final : private canopen::MasterListener {
 
   config::RobotConfig config_;
   EventSink& events_;
+  BusListener listener_;
+  std::vector<Command> deferred_;  ///< until the bus was listened to for long enough
   canopen::Master master_;
   std::vector<drive::Axis> axes_;
   std::vector<AxisMotion> motions_;
@@ -204,10 +218,12 @@ class Robot final : private canopen::MasterListener {
   std::uint64_t foreign_seen_ = 0;   ///< of them, at the last look
   unsigned foreign_looks_ = 0;       ///< in a row that found new ones
   Time last_foreign_sync_{}, sync_checked_{};
+  Duration lateness_{0};              ///< of the last SYNC of this program that was late
+  Time late_since_{}, late_until_{};  ///< what drives miss meanwhile may be because of it
   SyncTrouble sync_trouble_ = SyncTrouble::none;  // that was told
   SyncTrouble sync_seen_ = SyncTrouble::none;     // at the last look
   Time sync_seen_since_{};
-  FixedText<200> sync_problem_;  // sync_trouble_ in words
+  FixedText<256> sync_problem_;  // sync_trouble_ in words, or the other master
   Time next_sync_ = kNever, next_cycle_ = kNever, now_{};
   Shutdown shutdown_ = Shutdown::no;
   Time shutdown_began_{};

@@ -77,7 +77,7 @@ struct RobotSnapshot {
   double bus_load = 0.0;       ///< share of the bit rate over the last second, without stuff bits
   double most_bus_load = 0.0;  ///< with as many stuff bits as the frames could need
   CycleStatistics statistics;
-  FixedText<200> sync_problem;      ///< why SYNC is not as it must be, in words; empty if well
+  FixedText<256> sync_problem;      ///< why SYNC is not as it must be, or not sent; empty if well
   std::uint64_t missed_syncs = 0;   ///< of an external producer
   std::uint64_t foreign_syncs = 0;  ///< of others, while the driver produces SYNC
   bool shut_down = false;

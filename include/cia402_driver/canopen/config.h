@@ -89,6 +89,7 @@ struct MasterConfig {
   Duration sync_period{std::chrono::milliseconds(4)};
   std::uint8_t sync_counter = 0;  ///< overflow value of the SYNC counter (1019h): 0 or 2..240
   bool external_sync = false;     ///< another device produces SYNC, the master follows it
+  bool reset_all = false;         ///< starts with one reset to all nodes, also those of others
   Duration time_interval{0};      ///< of the TIME message; zero: none
   /// bit/s. Requests of booting nodes leave no faster than the bus carries them together with
   /// their answers, and long SDO transfers do not fill the interface's queue; 0: all at once.

@@ -41,7 +41,8 @@ class Master {
   Master(const Master&) = delete;  // the nodes know where it is
   Master& operator=(const Master&) = delete;
 
-  /// Boots all nodes in parallel (NMT reset communication to all first, if `reset`).
+  /// Boots all nodes in parallel. @param reset NMT reset communication to each of them first, or in
+  /// one frame to all nodes of the bus (MasterConfig::reset_all)
   void start(Time now, bool reset = true);
   void receive(const can::Frame& frame, Time stamp, Time now);
   /// Time-outs, heartbeat, SDO queues, boot procedures.

@@ -129,6 +129,11 @@ class SdoClient {
   /// abandon each other: they are done in the order in which they were asked for.
   SdoTicket downloadUrgent(ObjectId object, Bytes data, const std::string& name);
 
+  /// Writes 1 to 4 bytes at once and waits for no answer: a last word to a server that may be gone.
+  /// The answer, should it come, is taken for none to a later request.
+  /// @return false if that cannot be done: a transfer is on the wire, or the data are longer.
+  bool post(ObjectId object, const Bytes& data);
+
   /// Takes a frame of the channel's answer COB-ID; others and answers to nothing are ignored
   /// (counted).
   void receive(const can::Frame& frame, Time now);

@@ -23,8 +23,10 @@ struct BusConfig {
   Duration sync_period{std::chrono::milliseconds(4)};
   canopen::NodeId node_id = 127;
   Duration heartbeat{std::chrono::milliseconds(100)};
-  std::uint8_t sync_counter = 0;        ///< chosen from the profiles unless given
-  bool external_sync = false;           ///< another device produces SYNC, the node follows it
+  std::uint8_t sync_counter = 0;  ///< chosen from the profiles unless given
+  bool external_sync = false;     ///< another device produces SYNC, the node follows it
+  Duration listen{std::chrono::milliseconds(150)};  ///< for another master at start; zero: not
+  bool reset_all = false;  ///< starts with one NMT reset to all nodes, also those of others
   std::optional<Duration> sync_window;  ///< 1007h of the drives; none: not written
   Duration time_interval{0};            ///< of TIME messages; zero: none
 };

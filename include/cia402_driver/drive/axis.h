@@ -146,7 +146,9 @@ class Axis {
   void stopBySdo(const std::string& why, Time now);
 
   /// Node and axis events from the master.
-  void onEmergency(const canopen::Emergency& emergency, Time now);
+  /// @param excuse where this program itself is the cause of what the drive reports, as it was
+  /// late: in words. The axis goes on then, unless the drive stops by itself.
+  void onEmergency(const canopen::Emergency& emergency, Time now, const std::string& excuse = {});
   void onHealthChange(canopen::NodeHealth before, Time now);
   /// Nothing reaches the drive any more, for the reason `why` ("can0 is bus-off"): an axis in
   /// motion or enabled gets a quick stop as the first thing once the bus is back, and stays

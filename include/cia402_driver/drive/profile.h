@@ -151,7 +151,10 @@ struct HomingSpec {
 
 /// A known 603Fh / EMCY code of the family.
 struct ErrorText {
+  /// Frames that the drive reports as missing: those that this program sends.
+  enum class Missing : std::uint8_t { nothing, sync, rpdo };
   std::string text, cause, remedy;
+  Missing missing = Missing::nothing;
 };
 
 /// Where a PDO's COB-ID comes from.
@@ -236,6 +239,9 @@ struct DriveProfile {
   /// By logical name; nullptr if the family has no such mode.
   const ModeSpec* mode(const std::string& mode_name) const;
 };
+
+/// Which frames a 603Fh or EMCY code reports as missing: by the profile, else by CiA 301, table 26.
+ErrorText::Missing missingFrames(const DriveProfile& profile, std::uint16_t code);
 
 /// What stops the axis in `mode`: what the profile says; else the set-points in cyclic modes, and
 /// the halt bit where the drive plans the motion and has one. Torques cannot be ramped to rest, so

@@ -1,0 +1,125 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "bus/robot_world.h"
+
+namespace cia402::bus {
+namespace {
+
+using drive::ProcedureKind;
+using test::RobotWorld;
+using testing::AllOf;
+using testing::HasSubstr;
+using namespace std::chrono_literals;
+
+config::RobotConfig listening() {
+  config::RobotConfig robot = test::testRobot();
+  robot.bus.listen = 150ms;
+  return robot;
+}
+
+class RobotStart : public testing::Test {
+ protected:
+  RobotStart() : world(listening()) {}
+  void hear(const can::Frame& frame) { world.robot.receive(frame, world.now, world.now); }
+  std::string syncProblem() {
+    RobotSnapshot snapshot;
+    world.robot.fill(snapshot);
+    return snapshot.sync_problem.str();
+  }
+  RobotWorld world;
+};
+
+TEST_F(RobotStart, ListensBeforeTheFirstFrameIsSent) {
+  world.robot.start(world.now);
+  EXPECT_EQ(world.robot.nextDeadline(), world.now + 150ms);
+  world.run(149ms);
+  EXPECT_TRUE(world.sent.empty());
+  world.run(2ms);
+  ASSERT_GE(world.sent.size(), 4u);
+  EXPECT_EQ(world.sent[0].frame, can::Frame(0x77F, {0x00}));
+  EXPECT_EQ(world.sent[1].frame, can::Frame(0x77F, {0x05}));
+  EXPECT_EQ(world.sent[2].frame, can::Frame(0x000, {0x82, 0x01}));
+  EXPECT_EQ(world.sent[3].frame, can::Frame(0x000, {0x82, 0x02}));
+}
+
+TEST_F(RobotStart, SendsNothingWhileThereIsAnotherMasterAndSaysSo) {
+  world.robot.start(world.now);
+  for (int i = 0; i < 50; ++i) {
+    world.run(100ms);
+    hear(can::Frame(0x201, {0x0F, 0x00, 0x08, 0, 0, 0, 0}));
+  }
+  EXPECT_TRUE(world.sent.empty());
+  EXPECT_EQ(world.eventsWith("another master is on the bus, heard: RPDO 1 of shoulder (COB-ID "
+                             "0x201); nothing is sent until none for 0.15 s"),
+            1u);
+  EXPECT_THAT(syncProblem(), HasSubstr("another master is on the bus"));
+  const auto answers = world.begin(ProcedureKind::recover);
+  ASSERT_EQ(answers->size(), 1u);
+  EXPECT_FALSE(answers->front().success);
+  EXPECT_THAT(answers->front().message,
+              AllOf(HasSubstr("refused: another master is on the bus"), HasSubstr("0x201")));
+}
+
+TEST_F(RobotStart, GoesOnByItselfOnceTheBusIsFree) {
+  world.robot.start(world.now);
+  hear(can::Frame(0x000, {0x01, 0x00}));
+  world.run(100ms);
+  hear(can::Frame(0x080, {}));
+  world.run(149ms);
+  EXPECT_TRUE(world.sent.empty());
+  world.run(2ms);
+  EXPECT_FALSE(world.sent.empty());
+  EXPECT_EQ(world.eventsWith("there is no other master on the bus any more"), 1u);
+  EXPECT_EQ(syncProblem(), "");
+  EXPECT_TRUE(
+      world.runUntil([&] { return world.axis(0).state().health == canopen::NodeHealth::ready; }));
+}
+
+TEST_F(RobotStart, ACallDuringTheListeningWaitsForItsEnd) {
+  world.robot.start(world.now);
+  const auto answers = world.begin(ProcedureKind::recover);
+  world.run(140ms);
+  EXPECT_TRUE(answers->empty());
+  const Answer answer = world.wait(answers);
+  EXPECT_TRUE(answer.success) << answer.message;
+  EXPECT_TRUE(world.drives[0].enabled());
+}
+
+TEST_F(RobotStart, ACallThatWaitsIsRefusedWhenAnotherMasterIsHeard) {
+  world.robot.start(world.now);
+  const auto answers = world.begin(ProcedureKind::recover);
+  world.run(50ms);
+  hear(can::Frame(0x77F, {0x05}));
+  ASSERT_EQ(answers->size(), 1u);
+  EXPECT_THAT(answers->front().message, HasSubstr("a heartbeat with the master's node-ID"));
+}
+
+TEST_F(RobotStart, EndsWithoutAFrameWhenItIsShutDownMeanwhile) {
+  world.robot.start(world.now);
+  const auto answers = world.begin(ProcedureKind::recover);
+  world.run(50ms);
+  world.robot.beginShutdown(world.now);
+  EXPECT_TRUE(world.robot.shutDown());
+  ASSERT_EQ(answers->size(), 1u);
+  EXPECT_EQ(answers->front().message, "refused: the driver is shutting down");
+  world.run(1s);
+  EXPECT_TRUE(world.sent.empty());
+}
+
+TEST_F(RobotStart, WhatCouldNotBeHeardIsListenedToAnew) {
+  world.robot.start(world.now);
+  world.run(100ms);
+  world.robot.busLost("can0 is bus-off", world.now);
+  world.run(1s);
+  EXPECT_TRUE(world.sent.empty());
+  world.robot.busBack(true, world.now);
+  world.run(100ms);
+  EXPECT_TRUE(world.sent.empty());
+  world.run(100ms);
+  EXPECT_FALSE(world.sent.empty());
+}
+
+}  // namespace
+}  // namespace cia402::bus

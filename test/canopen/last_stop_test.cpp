@@ -1,0 +1,147 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "../../src/canopen/last_stop.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "canopen/node_fixture.h"
+
+namespace cia402::canopen {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using test::Lines;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+const char kStop[] = "000 02 03";
+const char kMotorStop[] = "603 2B 40 60 00 02 00 00 00";  // controlword 0x0002, quick stop
+
+class LastStopTest : public test::NodeFixture {
+ protected:
+  LastStopTest() {
+    StartupWrite stop;
+    stop.object = {0x6040, 0};
+    stop.name = "controlword";
+    stop.data = {0x02, 0x00};
+    stop.only_if_different = false;
+    stop.always = true;
+    config.writes = {stop};
+    config.boot.search_period = Duration::zero();
+    peer.on(kMotorStop, "583 60 40 60 00 00 00 00 00");
+  }
+  /// Until the last heartbeat is 0.3 s old. Nobody hears the node then, and it hears nobody.
+  void lose() {
+    boot();
+    ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
+    peer.take();
+    peer.forget(kMotorStop);
+    pass(milliseconds(300));
+    ASSERT_EQ(node->health(), NodeHealth::lost);
+  }
+  /// When each of `line` was sent, ms from now on.
+  std::vector<int> times(const char* line, Duration span) {
+    std::vector<int> at;
+    const Lines sent = peer.take();
+    const auto count = [&](const Lines& lines, int ms) {
+      for (const std::string& text : lines) {
+        if (text == line) at.push_back(ms);
+      }
+    };
+    count(sent, 0);
+    for (int ms = 1; milliseconds(ms) <= span; ++ms) {
+      pass(milliseconds(1));
+      count(peer.take(), ms);
+    }
+    return at;
+  }
+};
+
+TEST_F(LastStopTest, a_lost_node_is_told_to_stop_its_motor_by_sdo_and_then_by_nmt_again_and_again) {
+  lose();
+  EXPECT_THAT(times(kStop, milliseconds(450)), ElementsAre(40, 60, 80, 100, 120, 220, 320, 420));
+}
+
+TEST_F(LastStopTest, the_motor_is_stopped_before_nmt_takes_sdo_away) {
+  lose();
+  EXPECT_THAT(times(kMotorStop, milliseconds(450)), ElementsAre(0, 8, 16, 24, 32));
+}
+
+TEST_F(LastStopTest, without_anything_to_write_it_is_stopped_by_nmt_at_once) {
+  config.writes.clear();
+  lose();
+  EXPECT_THAT(times(kStop, milliseconds(250)), ElementsAre(0, 20, 40, 60, 80, 180));
+}
+
+TEST_F(LastStopTest, ends_three_seconds_after_the_loss) {
+  lose();
+  pass(milliseconds(2999));
+  peer.take();
+  pass(seconds(60));
+  EXPECT_THAT(peer.take(), IsEmpty());
+  EXPECT_EQ(node->nextDeadline(), kNever);
+}
+
+TEST_F(LastStopTest, a_node_that_says_operational_is_told_again_at_once_and_not_booted_yet) {
+  lose();
+  pass(milliseconds(160));
+  peer.take();
+  hear("703 05");
+  EXPECT_EQ(peer.take(), Lines{kMotorStop});
+  EXPECT_EQ(node->health(), NodeHealth::lost);
+  EXPECT_THAT(times(kStop, milliseconds(60)), ElementsAre(40, 60));
+}
+
+TEST_F(LastStopTest, a_node_that_says_stopped_is_booted_and_told_no_more) {
+  lose();
+  pass(milliseconds(50));
+  peer.on(kMotorStop, "583 60 40 60 00 00 00 00 00");
+  peer.take();
+  hear("703 04");
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  const Lines sent = peer.take();
+  EXPECT_EQ(sent[0], "000 80 03");
+  EXPECT_THAT(sent, Not(Contains(kStop)));
+  hear("703 05");
+  pass(milliseconds(200));
+  EXPECT_THAT(peer.take(), Not(Contains(kStop)));
+}
+
+TEST_F(LastStopTest, a_node_that_takes_no_nmt_stop_is_booted_half_a_second_after_its_loss) {
+  lose();
+  peer.on(kMotorStop, "583 60 40 60 00 00 00 00 00");
+  pass(milliseconds(499));
+  hear("703 05");
+  EXPECT_EQ(node->health(), NodeHealth::lost);
+  pass(milliseconds(1));
+  hear("703 05");
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+}
+
+TEST_F(LastStopTest, a_node_that_rebooted_is_told_no_more) {
+  lose();
+  peer.on(kMotorStop, "583 60 40 60 00 00 00 00 00");
+  peer.take();
+  hear("703 00");
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_THAT(peer.take(), Not(Contains(kStop)));
+}
+
+TEST_F(LastStopTest, an_answer_to_the_posted_stop_is_taken_for_none_to_a_later_request) {
+  lose();
+  peer.on(kMotorStop, "583 60 40 60 00 00 00 00 00");
+  peer.forget("603 40 00 10 00 00 00 00 00");
+  peer.take();
+  hear("703 04");
+  // The fence: an object that never changes is read before anything else.
+  EXPECT_EQ(peer.take(), (Lines{"000 80 03", "603 40 00 10 00 00 00 00 00"}));
+  hear("583 60 40 60 00 00 00 00 00");  // of the posted write, late
+  EXPECT_THAT(peer.take(), IsEmpty());
+  EXPECT_EQ(node->health(), NodeHealth::booting);
+}
+
+}  // namespace
+}  // namespace cia402::canopen

@@ -1,0 +1,80 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// A drive that homes by itself is lost by its heartbeat alone, on a bus that loses frames: the
+// motor stops all the same, soon, and stays where it is.
+#include "../../src/sim/drive_definition.h"
+#include "system/scene.h"
+
+namespace cia402 {
+namespace {
+
+using namespace std::chrono_literals;
+using canopen::NodeHealth;
+using drive::ProcedureKind;
+
+constexpr Duration kHeartbeatTimeout = 300ms;
+constexpr Duration kRepeats = 100ms;  // in which the commands to stop come again and again
+constexpr Duration kRamp = 100ms;     // 0.3 rad/s by the drive's quick stop, and the look at it
+
+struct Lost {
+  const char* name;
+  bool stops_by_nmt;  ///< the motor stops when the drive leaves operational
+  double loss;        ///< of each frame at each receiver
+  friend std::ostream& operator<<(std::ostream& out, const Lost& lost) { return out << lost.name; }
+};
+
+class LostDrive : public testing::TestWithParam<Lost> {
+ protected:
+  static LoadedRobot load() {
+    LoadedRobot loaded = loadText(genericPair(
+        ", simulation: {lower_limit_switch: -2.4}, homing: {method: 17, offset: 0.0, "
+        "search_velocity: 0.3, zero_velocity: 0.05, acceleration: 2.0, timeout: 30.0}"));
+    sim::DriveDefinition definition = *loaded.axes[0].definition;
+    definition.stops_outside_operational = GetParam().stops_by_nmt;
+    loaded.axes[0].definition = std::make_shared<const sim::DriveDefinition>(std::move(definition));
+    return loaded;
+  }
+  /// Homes, and hears no more of the drive: its heartbeats get lost, and then other frames, too.
+  void lose(Scene& scene) {
+    ASSERT_TRUE(scene.boot()) << scene.told();
+    if (!GetParam().stops_by_nmt) {
+      ASSERT_TRUE(call(scene, bus::WriteObjectCommand{"left", "6007:00", "0"}).success);
+    }
+    (void)scene.begin(ProcedureKind::home, "left");
+    ASSERT_TRUE(scene.runUntil([&] { return std::abs(scene.velocity("left")) > 0.25; }, 3s));
+    sim::FaultRule heartbeats;
+    heartbeats.id = 0x701;
+    heartbeats.count = 6;
+    scene.world().bus().faults().add(heartbeats);
+    const canopen::Node& node = scene.axis("left").node();
+    while (scene.now() < node.lastHeartbeat() + kHeartbeatTimeout - 1ms) scene.run(1ms);
+    sim::FaultRates rates;
+    rates.loss = GetParam().loss;
+    scene.world().bus().faults().setRates(rates);
+  }
+};
+
+TEST_P(LostDrive, ThatHomesStopsWithinTheTimeOutAndAFewRepetitions) {
+  unsigned moving = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    Scene scene(load(), seed);
+    ASSERT_NO_FATAL_FAILURE(lose(scene));
+    const Time heard = scene.axis("left").node().lastHeartbeat();
+    moving += std::abs(scene.velocity("left")) > 0.25 ? 1U : 0U;
+    while (scene.now() < heard + kHeartbeatTimeout + kRepeats + kRamp) scene.run(1ms);
+    EXPECT_LT(std::abs(scene.velocity("left")), 0.01) << "seed " << seed;
+    scene.forget();
+    scene.run(3s);
+    EXPECT_LT(scene.seen("left").travel(), 0.01) << "seed " << seed;
+  }
+  EXPECT_GE(moving, 30U) << "of 40 that were lost in motion";
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, LostDrive,
+                         testing::Values(Lost{"a_good_bus", true, 0.0},
+                                         Lost{"a_lossy_bus", true, 0.23},
+                                         Lost{"a_drive_deaf_to_nmt_stop", false, 0.0},
+                                         Lost{"that_on_a_lossy_bus", false, 0.23}),
+                         [](const auto& tested) { return std::string(tested.param.name); });
+
+}  // namespace
+}  // namespace cia402
