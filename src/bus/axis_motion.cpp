@@ -146,6 +146,7 @@ void AxisMotion::stepPosition(drive::Axis& axis) {
   }
   const motion::MotionState state = position_.step(clock_);
   at_rest_ = state.velocity == 0.0;
+  command_ = position_.goal();
   if (!axis.setTarget(state.position)) command_.reset();
 }
 

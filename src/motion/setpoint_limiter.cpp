@@ -140,7 +140,7 @@ double SetpointLimiter::slower(double dt) const {
 void PositionLimiter::reset(const MotionState& commanded, Time now) {
   resetTo(commanded, now);
   previous_command_ = commanded.position;
-  fresh_ = false;
+  fresh_ = met_ = false;
 }
 
 Result<void> PositionLimiter::command(double position, Time now) {
@@ -171,10 +171,16 @@ MotionState PositionLimiter::step(Time now) {
   const bool follow = hasCommand(now);
   const JointLimits& limits = config_.joint.limits;
   const double from = output_.position;
-  const double velocity = permitted(follow ? approach(dt) : slower(dt), from, dt, 0);
+  // Without a limit of acceleration the next step is at rest, at the command.
+  const bool ended =
+      follow && met_ && !fresh_ && output_.velocity != 0 && limits.acceleration.has_value();
+  const double wanted = follow && !ended ? approach(dt) : slower(dt);
+  const double velocity = permitted(wanted, from, dt, 0);
   const double to = withoutRounding(from + velocity * dt, from, limits);
+  if (ended) command_ = to;
   output_ = {to, velocity, (velocity - output_.velocity) / dt};
   limiting_ = follow && std::abs(to - *command_) > 1e-12 * (1 + std::abs(to));
+  met_ = follow && !limiting_;
   previous_command_ = to;
   if (command_) previous_command_ = fresh_ ? command_ : std::nullopt;
   fresh_ = false;

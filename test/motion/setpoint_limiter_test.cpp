@@ -93,6 +93,46 @@ TEST(PositionLimiter, AStreamWithinTheLimitsComesOutUnchanged) {
   }
 }
 
+TEST(PositionLimiter, AStreamThatEndsAtSpeedComesToRestAheadOfItsEnd) {
+  Position joint(elbow());
+  double target = 0, velocity = 0;
+  for (int i = 0; i < 100; ++i) {  // 0.8 rad/s after 0.2 s
+    velocity = std::min(0.8, velocity + 4.0 * kDt);
+    joint.follow(target += velocity * kDt);
+  }
+  double furthest = target;
+  for (int i = 0; i < 200; ++i) {
+    const MotionState state = joint.step();
+    EXPECT_GE(state.velocity, 0);
+    EXPECT_GE(state.acceleration, -5 - 1e-9);
+    furthest = std::max(furthest, state.position);
+  }
+  EXPECT_EQ(joint.limiter.output().velocity, 0);
+  EXPECT_EQ(joint.limiter.output().position, furthest);
+  EXPECT_NEAR(furthest, target + 0.8 * 0.8 / (2 * 5.0), 0.8 * kDt);
+  EXPECT_EQ(joint.limiter.goal(), furthest);
+}
+
+TEST(PositionLimiter, AGapInAStreamIsCaughtUp) {
+  Position joint(elbow());
+  double target = 0, velocity = 0;
+  for (int i = 0; i < 200; ++i) {
+    velocity = std::min(0.5, velocity + 4.0 * kDt);
+    target += velocity * kDt;
+    const bool gap = i == 100 || i == 101;
+    const MotionState state = gap ? joint.step() : joint.follow(target);
+    EXPECT_GE(state.velocity, 0);
+  }
+  EXPECT_NEAR(joint.limiter.output().position, target, 1e-9);
+}
+
+TEST(PositionLimiter, ATargetBehindAMovingJointIsReturnedTo) {
+  Position joint(elbow(), {0.0, 0.8, 0});
+  joint.follow(-0.2);
+  for (int i = 0; i < 500; ++i) joint.step();
+  EXPECT_NEAR(joint.limiter.output().position, -0.2, 1e-9);
+}
+
 TEST(PositionLimiter, TargetsBeyondAPositionLimitEndAtTheLimit) {
   Position joint(elbow());
   joint.follow(100);

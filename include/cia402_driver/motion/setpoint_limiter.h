@@ -62,7 +62,8 @@ class SetpointLimiter {
 
 /// Follows streamed positions. A stream that keeps the limits and gives a position each cycle comes
 /// out unchanged; anything else (steps, slower or irregular streams) is approached as fast as the
-/// limits permit, each position as one to stop at without overshoot.
+/// limits permit, each position as one to stop at without overshoot. A stream that was followed and
+/// ends at speed is brought to rest ahead of its last position; nothing turns back to that.
 class PositionLimiter : public SetpointLimiter {
  public:
   /// @pre check(config) is ok.
@@ -76,12 +77,16 @@ class PositionLimiter : public SetpointLimiter {
   Result<void> command(double position, Time now);
   /// The state to command now, to be called once a cycle with rising times.
   MotionState step(Time now);
+  /// Where the joint goes: the last command, or where it came to rest after a stream that ended at
+  /// speed; nothing before the first command.
+  const std::optional<double>& goal() const { return command_; }
 
  private:
   double approach(double dt) const;
 
   std::optional<double> previous_command_;  // the cycle before: its command, or where it held
   bool fresh_ = false;
+  bool met_ = false;  // the last step came out at the command
 };
 
 /// Follows streamed velocities.
