@@ -48,7 +48,7 @@ Result<ObjectJob> ObjectJob::write(drive::Axis& axis, const std::string& object,
     job.ticket_ = axis.node().sdo().upload(job.id_, job.name_);
     return found;
   }
-  const Result<canopen::Bytes> data = encodeObject(*job.spec_, axis.config(), value);
+  const Result<canopen::Bytes> data = encodeObject(*job.spec_, value);
   if (!data) return Error{job.who_ + ": " + job.name_ + " not written: " + data.error().message};
   if (const auto& eds = axis.config().eds) {
     const canopen::DictionaryEntry* entry = eds->dictionary.find(job.id_);
@@ -82,7 +82,9 @@ bool ObjectJob::step() {
 }
 
 bool ObjectJob::finishRead() {
-  const ObjectText text = describeObject(spec_, axis_->config(), ticket_->data());
+  const auto unnamed = unnamedFloat();
+  const ObjectText text =
+      describeObject(unnamed ? &*unnamed : spec_, axis_->config(), ticket_->data());
   Answer answer;
   answer.success = true;
   answer.message = who_ + ": " + name_ + " is " + text.value;
@@ -93,8 +95,15 @@ bool ObjectJob::finishRead() {
   return true;
 }
 
+std::optional<drive::ObjectSpec> ObjectJob::unnamedFloat() const {
+  if (spec_ != nullptr) return {};
+  return axis_->config().profile->unnamedFloat(id_, ticket_->data().size());
+}
+
 bool ObjectJob::writeWithAskedSize() {
-  const Result<canopen::Bytes> data = encodeUnlisted(value_, ticket_->data().size());
+  const auto unnamed = unnamedFloat();
+  const Result<canopen::Bytes> data =
+      unnamed ? encodeObject(*unnamed, value_) : encodeUnlisted(value_, ticket_->data().size());
   if (!data) return finish(false, who_ + ": " + name_ + " not written: " + data.error().message);
   stage_ = Stage::writing;
   ticket_ = axis_->node().sdo().download(id_, *data, name_);

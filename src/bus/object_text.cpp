@@ -3,31 +3,19 @@
 
 #include <cctype>
 #include <cerrno>
-#include <cmath>
 #include <cstdlib>
-#include <cstring>
 
 #include "cia402_driver/drive/conversion.h"
+#include "cia402_driver/drive/object_value.h"
 #include "cia402_driver/motion/joint.h"
 
 namespace cia402::bus {
 namespace {
 
 using canopen::Bytes;
-using drive::Encoding;
 using drive::ObjectSpec;
 
 bool isText(drive::DataType type) { return canopen::sizeBits(type) == 0; }
-
-/// The object without its physical meaning: converts between raw and device numbers only.
-Result<drive::Conversion> deviceNumbers(const ObjectSpec& spec, const drive::AxisConfig& axis) {
-  ObjectSpec plain = spec;
-  plain.quantity = drive::Quantity::none;
-  plain.factor = 1.0;
-  // The pattern of a float has a sign, even in an object that the drive calls unsigned.
-  if (plain.encoding == Encoding::float32) plain.type = drive::DataType::real32;
-  return drive::Conversion::create(plain, *axis.profile, axis.geometry);
-}
 
 const char* jointUnit(drive::Quantity quantity, const drive::AxisConfig& axis) {
   const bool linear = axis.geometry.type == drive::AxisGeometry::Type::prismatic;
@@ -99,10 +87,14 @@ IntegerRange rangeOfSize(unsigned size) {
           std::to_string(size) + (size == 1 ? " byte" : " bytes")};
 }
 
+bool isHexadecimal(const std::string& value) {
+  return value.size() > 2 && value[0] == '0' && std::tolower(value[1]) == 'x';
+}
+
 Result<Bytes> integerBytes(const std::string& value, const IntegerRange& range) {
   const bool negative = !value.empty() && value[0] == '-';
   const std::string digits = value.substr(negative ? 1 : 0);
-  const bool hexadecimal = digits.size() > 2 && digits[0] == '0' && std::tolower(digits[1]) == 'x';
+  const bool hexadecimal = isHexadecimal(digits);
   char* end = nullptr;
   errno = 0;
   const std::uint64_t magnitude = std::strtoull(digits.c_str(), &end, hexadecimal ? 16 : 10);
@@ -119,24 +111,29 @@ Result<Bytes> integerBytes(const std::string& value, const IntegerRange& range) 
   return canopen::toBytes(raw & range.highest_pattern, range.size);
 }
 
-Result<Bytes> floatBytes(const std::string& value, const ObjectSpec& spec,
-                         const drive::AxisConfig& axis) {
+/// A number, or its bits in hexadecimal.
+Result<Bytes> floatBytes(const std::string& value, const ObjectSpec& spec) {
+  const unsigned size = canopen::sizeBits(spec.type) / 8;
+  if (isHexadecimal(value)) {
+    const Result<Bytes> bits = integerBytes(value, rangeOfSize(size));
+    if (!bits) return bits;
+    const std::uint64_t raw = canopen::toUnsigned(*bits);
+    const auto finite = drive::sendable(spec.type, spec.encoding, raw);
+    if (!finite) return Error{drive::notFinite(spec.type, raw)};
+    return canopen::toBytes(*finite, size);
+  }
   char* end = nullptr;
   const double number = std::strtod(value.c_str(), &end);
   if (value.empty() || end == nullptr || *end != '\0') {
     return Error{"\"" + value + "\" is not a number; write e.g. -1.5"};
   }
-  std::uint64_t raw = 0;
-  if (spec.type == drive::DataType::real64) {
-    std::memcpy(&raw, &number, sizeof raw);
-    return canopen::toBytes(raw, sizeof raw);
+  const auto bits = drive::floatBits(spec.type, spec.encoding, number);
+  if (!bits) {
+    return Error{value +
+                 " cannot be sent: it is no finite number that fits the object; write e.g. "
+                 "-1.5"};
   }
-  const Result<drive::Conversion> conversion = deviceNumbers(spec, axis);
-  if (!conversion) return conversion.error();
-  if (!conversion->toDevice(number, raw)) {
-    return Error{value + " cannot be sent: it is not finite or does not fit the object"};
-  }
-  return canopen::toBytes(raw, canopen::sizeBits(spec.type) / 8);
+  return canopen::toBytes(*bits, size);
 }
 
 }  // namespace
@@ -165,17 +162,15 @@ ObjectText describeObject(const ObjectSpec* spec, const drive::AxisConfig& axis,
     return text;
   }
   const std::uint64_t raw = canopen::toUnsigned(data);
-  const Result<drive::Conversion> device = deviceNumbers(*spec, axis);
-  text.number = device ? device->toJoint(raw) : static_cast<double>(signExtended(raw, bits));
-  if (spec->type == drive::DataType::real64) text.number = canopen::realOf(data);
-  const bool whole = spec->encoding == Encoding::integer && spec->type != drive::DataType::real32 &&
-                     spec->type != drive::DataType::real64;
-  if (whole) {
-    text.value = canopen::isSigned(spec->type) ? std::to_string(signExtended(raw, bits))
-                                               : std::to_string(raw);
-    text.value += " (" + hexNumber(raw, static_cast<unsigned>(data.size())) + ")";
-  } else {
+  if (drive::holdsFloat(spec->type, spec->encoding)) {
+    text.number = drive::floatOf(spec->type, spec->encoding, raw);
     text.value = motion::formatNumber(text.number);
+  } else {
+    const bool with_sign = canopen::isSigned(spec->type);
+    const std::int64_t number = signExtended(raw, bits);
+    text.number = with_sign ? static_cast<double>(number) : static_cast<double>(raw);
+    text.value = (with_sign ? std::to_string(number) : std::to_string(raw)) + " (" +
+                 hexNumber(raw, static_cast<unsigned>(data.size())) + ")";
   }
   const char* unit = jointUnit(spec->quantity, axis);
   const Result<drive::Conversion> joint =
@@ -186,13 +181,9 @@ ObjectText describeObject(const ObjectSpec* spec, const drive::AxisConfig& axis,
   return text;
 }
 
-Result<Bytes> encodeObject(const ObjectSpec& spec, const drive::AxisConfig& axis,
-                           const std::string& value) {
+Result<Bytes> encodeObject(const ObjectSpec& spec, const std::string& value) {
   if (isText(spec.type)) return Bytes(value.begin(), value.end());
-  if (spec.encoding != Encoding::integer || spec.type == drive::DataType::real32 ||
-      spec.type == drive::DataType::real64) {
-    return floatBytes(value, spec, axis);
-  }
+  if (drive::holdsFloat(spec.type, spec.encoding)) return floatBytes(value, spec);
   return integerBytes(value, rangeOf(spec.type));
 }
 

@@ -1,5 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 
@@ -88,6 +89,10 @@ Result<void> checkWrite(const DictionaryEntry& entry, const ObjectValue& value,
   if (value.size() != (bits + 7) / 8) {
     return Error{source + " says that it is " + toString(entry.type) + ", not " +
                  std::to_string(value.size()) + " bytes long"};
+  }
+  if (isReal(entry.type) && !std::isfinite(realOf(value))) {
+    return Error{describeValue(entry.type, value) + " is no finite number, and " + source +
+                 " says that it is " + toString(entry.type) + "; it is never sent"};
   }
   const bool low = entry.low && compareValues(entry.type, value, *entry.low) < 0;
   const bool high = entry.high && compareValues(entry.type, value, *entry.high) > 0;

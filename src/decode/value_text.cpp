@@ -7,6 +7,7 @@
 
 #include "cia402_driver/canopen/emergency.h"
 #include "cia402_driver/decode/object_names.h"
+#include "cia402_driver/drive/object_value.h"
 
 namespace cia402::decode {
 namespace {
@@ -66,10 +67,7 @@ std::string plain(std::uint64_t raw, unsigned bits, bool is_signed) {
   return raw < 10 && !is_signed ? decimal : decimal + " (" + hexNumber(raw, (bits + 7) / 8) + ")";
 }
 
-bool isWhole(const ObjectSpec& spec) {
-  return spec.encoding == drive::Encoding::integer && spec.type != DataType::real32 &&
-         spec.type != DataType::real64;
-}
+bool isWhole(const ObjectSpec& spec) { return !drive::holdsFloat(spec.type, spec.encoding); }
 
 }  // namespace
 
@@ -156,9 +154,16 @@ std::string ValueText::words(const Known& known, std::uint64_t raw, unsigned bit
   return plain(raw, bits, canopen::isSigned(known.spec->type));
 }
 
+/// Of an object that nothing names: a float where its place says so.
+std::string ValueText::unnamed(ObjectId object, std::uint64_t raw, unsigned bits) const {
+  const auto spec =
+      axis_.profile && bits % 8 == 0 ? axis_.profile->unnamedFloat(object, bits / 8) : std::nullopt;
+  return spec ? number(drive::floatOf(spec->type, spec->encoding, raw)) : plain(raw, bits, false);
+}
+
 std::string ValueText::describe(ObjectId object, std::uint64_t raw, unsigned bits) const {
   const Known* known = find(object);
-  if (known == nullptr) return plain(raw, bits, false);
+  if (known == nullptr) return unnamed(object, raw, bits);
   const unsigned expected = canopen::sizeBits(known->spec->type);
   if (expected != bits) return plain(raw, bits, false);
   return words(*known, raw, bits);
@@ -169,8 +174,9 @@ std::string ValueText::describe(ObjectId object, const Bytes& data) const {
   const unsigned bits = known == nullptr ? 0 : canopen::sizeBits(known->spec->type);
   const auto size = static_cast<unsigned>(data.size());
   if (known == nullptr) {
-    return size == 0 || size == 3 || size > 4 ? bytesText(data)
-                                              : plain(canopen::toUnsigned(data), 8 * size, false);
+    return size == 0 || size == 3 || size > 4
+               ? bytesText(data)
+               : unnamed(object, canopen::toUnsigned(data), 8 * size);
   }
   if (bits == 0) return bytesText(data);
   if ((bits + 7) / 8 != size) {

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "cia402_driver/drive/object_value.h"
 #include "cia402_driver/drive/profile_reader.h"
 
 namespace cia402::drive {
@@ -109,7 +110,11 @@ std::uint64_t widest(const ResolvedWrite& write, const Conversion& conversion,
   const canopen::DictionaryEntry* entry =
       axis.eds != nullptr ? axis.eds->dictionary.find(write.object) : nullptr;
   const auto* bound = entry == nullptr ? nullptr : low ? &entry->low : &entry->high;
-  if (bound != nullptr && *bound) return canopen::toUnsigned(**bound);
+  const auto number = bound != nullptr && *bound
+                          ? sendable(write.type, axis.profile->encodingOf(write.object, write.type),
+                                     canopen::toUnsigned(**bound))
+                          : std::nullopt;
+  if (number) return *number;
   return low ? conversion.lowestRaw() : conversion.highestRaw();
 }
 
@@ -158,6 +163,9 @@ Result<std::optional<ResolvedWrite>> resolveWrite(const NamedWrite& write, const
     resolved.copied_from = source.copied_from;
   } else if (source.raw) {
     resolved.raw = masked(*source.raw, *type);
+    const auto finite = sendable(*type, axis.profile->encodingOf(*id, *type), resolved.raw);
+    if (!finite) return refuse(axis, resolved.name, notFinite(*type, resolved.raw));
+    resolved.raw = *finite;
   } else if (source.value && object != nullptr) {
     const auto conversion = Conversion::create(*object, *axis.profile, axis.geometry);
     if (!conversion && write.optional) return Resolved{};

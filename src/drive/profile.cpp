@@ -5,8 +5,17 @@
 #include <utility>
 
 #include "cia402_driver/canopen/object_dictionary.h"
+#include "profile_parts.h"
 
 namespace cia402::drive {
+
+Encoding encodingAt(const DriveProfile& profile, ObjectId id, DataType type) {
+  if (type == DataType::real32) return Encoding::float32;
+  const Encoding* encoding = profile.encodings.find(id);
+  if (encoding == nullptr || *encoding == Encoding::integer) return Encoding::integer;
+  const unsigned bits = *encoding == Encoding::float32 ? 32 : 16;
+  return canopen::sizeBits(type) == bits ? *encoding : Encoding::integer;
+}
 
 const ObjectSpec* DriveProfile::find(const std::string& object_name) const {
   const auto found = std::find_if(objects.begin(), objects.end(),
@@ -24,6 +33,21 @@ const ObjectSpec* DriveProfile::find(ObjectId id) const {
   const auto found = std::find_if(objects.begin(), objects.end(),
                                   [&](const ObjectSpec& object) { return object.id == id; });
   return found == objects.end() ? nullptr : &*found;
+}
+
+Encoding DriveProfile::encodingOf(ObjectId id, DataType type) const {
+  if (const ObjectSpec* object = find(id)) return object->encoding;
+  return encodingAt(*this, id, type);
+}
+
+std::optional<ObjectSpec> DriveProfile::unnamedFloat(ObjectId id, std::size_t bytes) const {
+  ObjectSpec object;
+  object.id = id;
+  object.type = bytes == 2 ? DataType::uint16 : DataType::uint32;
+  object.encoding = encodingAt(*this, id, object.type);
+  if (canopen::sizeBits(object.type) != 8 * bytes) return {};
+  if (object.encoding == Encoding::integer) return {};
+  return object;
 }
 
 const ModeSpec* DriveProfile::mode(const std::string& mode_name) const {

@@ -4,6 +4,8 @@
 #include <map>
 #include <set>
 
+#include "profile_parts.h"
+
 namespace cia402::drive {
 namespace {
 
@@ -25,11 +27,11 @@ std::map<std::string, int> countNames(const canopen::ObjectDictionary& dictionar
   return counts;
 }
 
-ObjectSpec specOf(const DictionaryEntry& entry) {
+ObjectSpec specOf(const DriveProfile& profile, const DictionaryEntry& entry) {
   ObjectSpec spec;
   spec.id = entry.id;
   spec.type = entry.type;
-  if (entry.type == DataType::real32) spec.encoding = Encoding::float32;
+  spec.encoding = encodingAt(profile, entry.id, entry.type);
   spec.readable = canopen::isReadable(entry.access);
   spec.writable = canopen::isWritable(entry.access);
   const bool mappable = entry.mappable && canopen::sizeBits(entry.type) != 0;
@@ -92,7 +94,7 @@ void compareMapping(const DriveProfile& profile, const std::vector<PdoLayout>& p
       const DictionaryEntry* entry =
           object != nullptr && !object->from_eds ? eds.dictionary.find(object->id) : nullptr;
       if (entry == nullptr) continue;
-      const ObjectSpec by_eds = specOf(*entry);
+      const ObjectSpec by_eds = specOf(profile, *entry);
       if (receive ? by_eds.rpdo : by_eds.tpdo) continue;
       found.warnings.push_back(name + " is mapped into " + (receive ? "RPDO " : "TPDO ") +
                                std::to_string(pdo.number) + " by profile " + profile.name +
@@ -120,7 +122,7 @@ DriveProfile withEds(DriveProfile profile, const AxisEds& eds) {
       const auto [place, fresh] = known.emplace(entry.id, profile.objects.size());
       const std::string full = eds.dictionary.fullName(entry);
       if (fresh) {
-        profile.objects.push_back(specOf(entry));
+        profile.objects.push_back(specOf(profile, entry));
         // An index in words would hide the object that really has it.
         const bool usable = names.count(full) == 0 && !canopen::parseObjectId(full);
         profile.objects.back().name = usable ? full : full + " (" + toString(entry.id) + ")";

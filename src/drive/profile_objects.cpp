@@ -21,14 +21,12 @@ void readType(YamlSection& section, ObjectSpec& object) {
                          "uint64", "real32", "visible_string", "octet_string", "domain"}));
 }
 
-void readEncoding(YamlSection& section, ObjectSpec& object) {
-  if (object.type == DataType::real32) object.encoding = Encoding::float32;
+void readEncoding(YamlSection& section, const DriveProfile& profile, ObjectSpec& object) {
+  object.encoding = encodingAt(profile, object.id, object.type);
   const auto value = section.get("encoding");
-  if (!value) return;
-  const auto index = value->oneOf(
-      {"integer", "float32", "half_float", "half_float_unsigned", "half_float_signed"});
-  if (!index) return;
-  object.encoding = static_cast<Encoding>(*index);
+  const auto encoding = value ? readEncodingWord(*value) : std::nullopt;
+  if (!encoding) return;
+  object.encoding = *encoding;
   const unsigned bits = canopen::sizeBits(object.type);
   const char* const type = canopen::toString(object.type);
   if (object.encoding == Encoding::float32 && bits != 32) {
@@ -98,7 +96,7 @@ ObjectSpec readObject(const std::string& name, const YamlValue& value,
     if (parsed) object.id = *parsed;
   }
   readType(section, object);
-  readEncoding(section, object);
+  readEncoding(section, profile, object);
   readAccess(section, object);
   readMeaning(section, object, profile);
   section.finish();
@@ -132,6 +130,28 @@ std::vector<std::string> objectNames(const DriveProfile& profile) {
   std::vector<std::string> names;
   for (const ObjectSpec& object : profile.objects) names.push_back(object.name);
   return names;
+}
+
+std::optional<Encoding> readEncodingWord(const YamlValue& value) {
+  const auto index =
+      value.oneOf({"integer", "float32", "half_float", "half_float_unsigned", "half_float_signed"});
+  if (!index) return {};
+  return static_cast<Encoding>(*index);
+}
+
+void readEncodings(const YamlValue& value, DriveProfile& profile) {
+  YamlSection section(value);
+  for (const auto& [key, entry] : section.entries()) {
+    const auto range = parseObjectRange(key);
+    if (!range) {
+      entry.problem("`" + key +
+                    "` is no range of objects; write for example \"2004\", "
+                    "\"2002:01-0C\" or \"2004-2006\"");
+    }
+    const auto encoding = readEncodingWord(entry);
+    if (range && encoding) profile.encodings.add(*range, *encoding);
+  }
+  section.finish();
 }
 
 void readObjects(const YamlValue& value, DriveProfile& profile) {

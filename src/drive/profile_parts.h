@@ -13,9 +13,16 @@ namespace cia402::drive {
 std::optional<UnitSpec> readUnit(const YamlValue& value, Quantity quantity);
 void readUnits(const YamlValue& value, DriveProfile& profile);
 void readObjects(const YamlValue& value, DriveProfile& profile);
+void readEncodings(const YamlValue& value, DriveProfile& profile);
 void readModes(const YamlValue& value, DriveProfile& profile);
 void readHoming(const YamlValue& value, DriveProfile& profile);
 void readErrors(const YamlValue& value, DriveProfile& profile);
+
+/// The words of `encoding`.
+std::optional<Encoding> readEncodingWord(const YamlValue& value);
+/// The encoding of ObjectRanges at this place, where the type is as wide; real32 is a float
+/// anywhere.
+Encoding encodingAt(const DriveProfile& profile, ObjectId id, DataType type);
 
 /// "position"; the words of profiles.
 std::optional<Quantity> readQuantity(const YamlValue& value);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cia402_driver/drive/object_value.h"
 #include "profile_parts.h"
 
 namespace cia402::drive {
@@ -46,15 +47,44 @@ const ObjectSpec* readTarget(YamlSection& section, const DriveProfile& profile, 
   return nullptr;
 }
 
-void readRaw(const YamlValue& value, DataType type, NamedWrite& write) {
-  if (canopen::sizeBits(type) == 0) {
+/// How the object holds its number.
+struct Coding {
+  DataType type;
+  Encoding encoding;
+};
+
+void readRaw(const YamlValue& value, Coding coding, NamedWrite& write) {
+  const unsigned bits = canopen::sizeBits(coding.type);
+  if (bits == 0) {
     value.problem("only numbers can be written");
     return;
   }
-  write.raw = value.integer(lowestOf(type), highestOf(type));
+  const auto raw = value.integer(lowestOf(coding.type), highestOf(coding.type));
+  if (!raw) return;
+  const std::uint64_t pattern =
+      static_cast<std::uint64_t>(*raw) & (~std::uint64_t{0} >> (64 - bits));
+  if (sendable(coding.type, coding.encoding, pattern)) {
+    write.raw = raw;
+  } else {
+    value.problem(notFinite(coding.type, pattern));
+  }
 }
 
-void readValue(YamlSection& section, const ObjectSpec* object, NamedWrite& write) {
+/// The drive's own number: a whole one, or the float of an object that holds one.
+void readDeviceNumber(const YamlValue& value, Coding coding, NamedWrite& write) {
+  if (!holdsFloat(coding.type, coding.encoding)) {
+    readRaw(value, coding, write);
+    return;
+  }
+  const auto number = value.number();
+  if (!number) return;
+  const auto bits = floatBits(coding.type, coding.encoding, *number);
+  if (bits) write.raw = static_cast<std::int64_t>(*bits);
+  if (!bits) value.problem("does not fit the float that the object holds");
+}
+
+void readValue(YamlSection& section, const DriveProfile& profile, const ObjectSpec* object,
+               NamedWrite& write) {
   const auto value = section.get("value");
   const auto raw = section.get("raw");
   if (value && raw) section.problem("has both `value` and `raw`; keep one");
@@ -63,27 +93,26 @@ void readValue(YamlSection& section, const ObjectSpec* object, NamedWrite& write
   }
   const std::optional<DataType> type = object != nullptr ? object->type : write.type;
   if (!type) return;
-  const bool by_index = object == nullptr || write.object != object->name;
-  if (raw) readRaw(*raw, *type, write);
-  if (!value) return;
-  if (object != nullptr && object->from_eds) {
-    if (object->encoding == Encoding::integer) {
-      readRaw(*value, *type, write);
-    } else {
-      write.value = value->number();
-    }
-    return;
+  Coding coding{*type, Encoding::integer};
+  if (object != nullptr) {
+    coding.encoding = object->encoding;
+  } else if (const auto id = canopen::parseObjectId(write.object)) {
+    coding.encoding = encodingAt(profile, *id, *type);
   }
-  if (!by_index) {
+  const bool by_index = object == nullptr || write.object != object->name;
+  if (raw) readRaw(*raw, coding, write);
+  if (!value) return;
+  if (!by_index && !object->from_eds) {
     write.value = value->number();
     return;
   }
-  if (object != nullptr && value->isScalar() && !parseInteger(value->node().Scalar())) {
+  if (object != nullptr && !object->from_eds && coding.encoding == Encoding::integer &&
+      value->isScalar() && !parseInteger(value->node().Scalar())) {
     value->problem("by index a value is the drive's own whole number; write `object: " +
                    object->name + "` to give it in SI units");
     return;
   }
-  readRaw(*value, *type, write);
+  readDeviceNumber(*value, coding, write);
 }
 
 void readFrom(YamlSection& section, const DriveProfile& profile, const ObjectSpec* object,
@@ -145,7 +174,7 @@ std::vector<NamedWrite> readWrites(const YamlValue& list, const DriveProfile& pr
     YamlSection section(value);
     const ObjectSpec* object = readTarget(section, profile, write);
     readFrom(section, profile, object, kind, write);
-    readValue(section, object, write);
+    readValue(section, profile, object, write);
     readWhen(section, object, kind, write);
     section.read("optional", write.optional);
     section.finish();

@@ -160,6 +160,7 @@ DriveProfile readProfile(const YamlValue& root) {
   if (const auto units = section.require("units", "how the drive counts")) {
     readUnits(*units, profile);
   }
+  if (const auto encodings = section.get("encodings")) readEncodings(*encodings, profile);
   if (const auto objects = section.require("objects", "the drive's objects by name")) {
     readObjects(*objects, profile);
     checkFixedObjects(section, profile);

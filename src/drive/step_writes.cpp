@@ -1,10 +1,9 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "step_writes.h"
 
-#include <cmath>
 #include <utility>
 
-#include "float_codec.h"
+#include "cia402_driver/drive/object_value.h"
 
 namespace cia402::drive {
 
@@ -24,7 +23,7 @@ Outcome WriteStep::advance(const Context& context) {
       if (copy(context, answer->data())) continue;
       if (!current_.optional) {
         return Outcome::failed(context.axis.who() + ": what was to be copied into " +
-                               current_.name + " is no finite number");
+                               current_.name + " is no finite number; look at it with read_object");
       }
     }
     ++next_;
@@ -58,10 +57,11 @@ bool WriteStep::begin(const Context& context, Outcome& problem) {
 /// @return false for NaN and infinity, which are never sent.
 bool WriteStep::copy(const Context& context, canopen::Bytes bytes) {
   const ObjectSpec* source = context.axis.profile().find(*current_.copied_from);
-  if (source != nullptr && source->encoding != Encoding::integer && bytes.size() <= 8) {
-    const std::uint64_t raw = canopen::toUnsigned(bytes);
-    if (std::isnan(decodeFloat(source->encoding, raw))) return false;
-    bytes = wireBytes(withoutNegativeZero(source->encoding, raw), source->type);
+  if (source != nullptr && holdsFloat(source->type, source->encoding)) {
+    if (bytes.size() * 8 != canopen::sizeBits(source->type)) return false;
+    const auto raw = sendable(source->type, source->encoding, canopen::toUnsigned(bytes));
+    if (!raw) return false;
+    bytes = wireBytes(*raw, source->type);
   }
   write(context, std::move(bytes));
   return true;

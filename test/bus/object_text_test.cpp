@@ -29,11 +29,11 @@ struct ObjectTextTest : testing::Test {
     return describeObject(&spec, axis, data);
   }
   std::string refusal(DataType type, const std::string& value) const {
-    const auto encoded = encodeObject(object(type), axis, value);
+    const auto encoded = encodeObject(object(type), value);
     return encoded ? "" : encoded.error().message;
   }
   Bytes encoded(const drive::ObjectSpec& spec, const std::string& value) const {
-    const auto bytes = encodeObject(spec, axis, value);
+    const auto bytes = encodeObject(spec, value);
     EXPECT_TRUE(bytes.ok()) << value << ": " << (bytes ? "" : bytes.error().message);
     return bytes ? *bytes : Bytes();
   }
@@ -142,6 +142,35 @@ TEST_F(ObjectTextTest, EncodesFloatsByTheObjectsEncoding) {
   EXPECT_THAT(refusal(DataType::real32, "fast"), HasSubstr("is not a number"));
   EXPECT_THAT(refusal(DataType::real32, "nan"), HasSubstr("cannot be sent"));
   EXPECT_THAT(refusal(DataType::real32, "1e99"), HasSubstr("cannot be sent"));
+}
+
+TEST_F(ObjectTextTest, RefusesWhatIsNotFiniteInEveryKindOfFloat) {
+  drive::ObjectSpec half = object(DataType::uint16);
+  half.encoding = Encoding::half_float;
+  const std::pair<drive::ObjectSpec, std::vector<const char*>> kinds[] = {
+      {object(DataType::real32), {"nan", "-inf", "1e39", "0x7F800001", "0xFFFFFFFF"}},
+      {object(DataType::real64), {"nan", "inf", "1e999", "0x7FF0000000000000"}},
+      {half, {"nan", "inf", "1e39", "0x7F80", "0xFFFF"}}};
+  for (const auto& [spec, values] : kinds) {
+    for (const char* value : values) {
+      const auto bytes = encodeObject(spec, value);
+      ASSERT_FALSE(bytes) << value;
+      EXPECT_THAT(bytes.error().message, testing::AllOf(HasSubstr(value), HasSubstr("finite")));
+    }
+  }
+}
+
+TEST_F(ObjectTextTest, TakesTheBitsOfAFloatInHexadecimal) {
+  EXPECT_EQ(encoded(DataType::real32, "0xBFC00000"), (Bytes{0x00, 0x00, 0xC0, 0xBF}));
+  EXPECT_EQ(encoded(DataType::real64, "0x3FF8000000000000"), (Bytes{0, 0, 0, 0, 0, 0, 0xF8, 0x3F}));
+  EXPECT_EQ(encoded(DataType::real64, "1.5"), (Bytes{0, 0, 0, 0, 0, 0, 0xF8, 0x3F}));
+  EXPECT_THAT(refusal(DataType::real32, "0x100000000"), HasSubstr("does not fit 4 bytes"));
+}
+
+TEST_F(ObjectTextTest, NeverSendsNegativeZero) {
+  EXPECT_EQ(encoded(DataType::real32, "-0.0"), (Bytes{0, 0, 0, 0}));
+  EXPECT_EQ(encoded(DataType::real32, "0x80000000"), (Bytes{0, 0, 0, 0}));
+  EXPECT_EQ(encoded(DataType::real64, "-0.0"), Bytes(8, 0));
 }
 
 TEST_F(ObjectTextTest, EncodesTextsAsTheyAre) {

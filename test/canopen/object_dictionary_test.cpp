@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "cia402_driver/canopen/object_dictionary.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace cia402::canopen {
@@ -62,6 +63,19 @@ TEST(ObjectDictionary, AWriteIsCheckedAgainstAccessLengthAndLimits) {
   entry.access = Access::constant;
   EXPECT_EQ(checkWrite(entry, {0, 0}, "m.eds").error().message,
             "m.eds says that it is const, not to be written");
+}
+
+TEST(ObjectDictionary, NothingThatIsNotFiniteIsWrittenIntoAFloat) {
+  const DictionaryEntry narrow = variable({0x2011, 0}, "Gain", DataType::real32);
+  EXPECT_TRUE(checkWrite(narrow, {0, 0, 0xC0, 0x3F}, "m.eds").ok());  // 1.5
+  for (const ObjectValue& value :
+       {ObjectValue{0, 0, 0x80, 0x7F}, ObjectValue{0xFF, 0xFF, 0xFF, 0xFF}}) {
+    EXPECT_THAT(checkWrite(narrow, value, "m.eds").error().message,
+                testing::HasSubstr("is no finite number, and m.eds says that it is real32"));
+  }
+  const DictionaryEntry wide = variable({0x2011, 0}, "Gain", DataType::real64);
+  EXPECT_TRUE(checkWrite(wide, {0, 0, 0, 0, 0, 0, 0xF8, 0x3F}, "m.eds").ok());
+  EXPECT_FALSE(checkWrite(wide, {0, 0, 0, 0, 0, 0, 0xF0, 0xFF}, "m.eds").ok());
 }
 
 TEST(ObjectDictionary, UnsignedAndRealNumbersAreComparedAsWhatTheyAre) {

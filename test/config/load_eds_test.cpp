@@ -46,6 +46,15 @@ canopen::NodeConfig nodeOf(const Loaded& loaded) {
   return master.nodes.at(0);
 }
 
+/// The name of an object in the EDS.
+std::string loadedName(const std::string& index) {
+  const Loaded loaded = load("");
+  const drive::ObjectSpec* object =
+      loaded.robot.axes[0].profile->find(*canopen::parseObjectId(index));
+  EXPECT_NE(object, nullptr);
+  return object == nullptr ? "" : object->name;
+}
+
 TEST(LoadEds, WithoutDamageItAddsNeitherProblemNorWarningButMissingObjects) {
   const Loaded loaded = load("");
   EXPECT_EQ(loaded.problems, "");
@@ -78,6 +87,17 @@ TEST(LoadEds, ObjectsAreWrittenAndMappedByTheirNamesInTheEds) {
     }
   }
   EXPECT_TRUE(mapped);
+}
+
+TEST(LoadEds, WhatIsNotFiniteIsNotWrittenIntoAFloatByAnyName) {
+  const std::string gain = loadedName("2011:00");
+  for (const std::string& name : {std::string("2011:00"), gain}) {
+    EXPECT_THAT(load(", write: [{object: \"" + name + "\", raw: 0x7FC00000}]").problems,
+                AllOf(HasSubstr("axes/shoulder/write[0]/raw"), HasSubstr("0x7FC00000"),
+                      HasSubstr("no finite number")));
+    EXPECT_THAT(load(", write: [{object: \"" + name + "\", value: .inf}]").problems,
+                HasSubstr("must be a finite number"));
+  }
 }
 
 bool maps(const Loaded& loaded, const std::string& object) {

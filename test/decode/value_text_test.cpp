@@ -34,6 +34,13 @@ TEST(ValueText, FloatsAreShownAsWhatTheyCarry) {
   EXPECT_EQ(values.describe(target->id, 0xBFC00000, 32), "-1.5 rad");
 }
 
+TEST(ValueText, AFloatThatNothingNamesIsOneByItsPlace) {
+  const ValueText values = valuesOf("gripper");
+  EXPECT_EQ(values.describe({0x200A, 3}, 0x42C80000, 32), "100");
+  EXPECT_EQ(values.describe({0x200A, 3}, Bytes{0x00, 0x00, 0xC8, 0x42}), "100");
+  EXPECT_EQ(values.describe({0x200A, 0}, Bytes{0x08}), "8") << "the number of sub-indices";
+}
+
 TEST(ValueText, WithoutARatedTorqueTheDevicesNumberIsShown) {
   EXPECT_EQ(valuesOf("slide").describe({0x6077, 0}, 0xFF06, 16), "-250 (0xFF06)");
 }

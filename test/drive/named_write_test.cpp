@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace cia402::drive {
 namespace {
 
@@ -137,6 +139,40 @@ TEST(NamedWrite, RefusesInWordsWhatDoesNotFit) {
   EXPECT_THAT(resolved.error().message,
               testing::HasSubstr("shoulder (node 3): software_limit_max (607D:02): 3e+06 does not "
                                  "fit; the object holds -2.14748e+06 to 2.14748e+06"));
+}
+
+TEST(NamedWrite, NothingThatIsNotFiniteGetsIntoAFloatHoweverItIsNamed) {
+  const AxisConfig axis = axisOf("damiao_dm");
+  for (const char* object : {"profile_velocity", "6081:00", "200A:03"}) {
+    for (const std::int64_t raw : {std::int64_t{-1}, std::int64_t{0x7F800000}}) {
+      NamedWrite named;
+      named.object = object;
+      named.type = DataType::uint32;
+      named.raw = raw;
+      const auto resolved = resolveWrite(named, axis);
+      ASSERT_FALSE(resolved) << object;
+      EXPECT_THAT(resolved.error().message,
+                  testing::AllOf(testing::HasSubstr("shoulder (node 3): "),
+                                 testing::HasSubstr(raw < 0 ? "0xFFFFFFFF" : "0x7F800000"),
+                                 testing::HasSubstr("no finite number"),
+                                 testing::HasSubstr("give the number itself")));
+    }
+  }
+  NamedWrite velocity;
+  velocity.object = "profile_velocity";
+  velocity.value = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(resolveWrite(velocity, axis));
+  NamedWrite zero;
+  zero.object = "6081:00";
+  zero.raw = 0x80000000;  // -0.0
+  EXPECT_EQ(rawOf(zero, axis), 0u);
+}
+
+TEST(NamedWrite, AWholeNumberMayHaveAnyBits) {
+  NamedWrite option;
+  option.object = "communication_error_behaviour";
+  option.raw = -1;
+  EXPECT_EQ(rawOf(option, axisOf("damiao_dm")), 0xFFu);
 }
 
 TEST(NamedWrite, IsLeftOutIfItIsOptionalAndCannotBeConverted) {

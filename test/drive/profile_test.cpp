@@ -182,6 +182,21 @@ const Mistake kMistakes[] = {
      "is for position objects with `from: limits.lower` or `limits.upper`"},
     {"pdos:", "startup: [{object: target_position, from: limits.lower, when: moved}]\npdos:",
      "unknown word `moved`"},
+    {"objects:", "encodings: {\"2001-1FFF\": float32}\nobjects:",
+     "encodings/2001-1FFF: `2001-1FFF` is no range of objects"},
+    {"objects:", "encodings: {\"2001\": float23}\nobjects:", "did you mean `float32`?"},
+    {"objects:",
+     "encodings: {\"2001\": float32}\nstartup: [{object: \"2001:01\", type: int32, "
+     "raw: -1}]\nobjects:",
+     "startup[0]/raw: 0xFFFFFFFF is no finite number in an object that holds a float"},
+    {"objects:",
+     "encodings: {\"2001\": float32}\nstartup: [{object: \"2001:01\", type: int32, "
+     "value: .nan}]\nobjects:",
+     "must be a finite number"},
+    {"objects:",
+     "encodings: {\"2001\": float32}\nstartup: [{object: \"2001:01\", type: int32, "
+     "value: 1e39}]\nobjects:",
+     "does not fit the float that the object holds"},
     {"pdos:", "startup: [{object: profile_velocity, value: 1, times: 2}]\npdos:",
      "there is no `from`"},
 };
@@ -190,6 +205,47 @@ TEST(DriveProfile, TellsEveryMistakeWithItsPlace) {
   for (const Mistake& mistake : kMistakes) {
     EXPECT_THAT(problemsOf(changed(mistake.from, mistake.to)), HasSubstr(mistake.problem))
         << mistake.to;
+  }
+}
+
+TEST(DriveProfile, ObjectsAreFloatsByTheirPlace) {
+  Problems problems;
+  const DriveProfile profile = parseDriveProfile(
+      changed("objects:",
+              "encodings: {\"2000-20FF\": float32, \"2003\": integer, \"2003:05-06\": "
+              "half_float}\nobjects:\n"
+              "  gain: {object: \"2001:02\", type: uint32}\n"
+              "  count: {object: \"2001:03\", type: uint32, encoding: integer}\n"
+              "  flag: {object: \"2001:04\", type: uint8}"),
+      "small.yaml", problems);
+  EXPECT_EQ(problems.text(), "");
+  EXPECT_EQ(profile.find("gain")->encoding, Encoding::float32);
+  EXPECT_EQ(profile.find("count")->encoding, Encoding::integer);
+  EXPECT_EQ(profile.find("flag")->encoding, Encoding::integer);
+  EXPECT_EQ(profile.encodingOf({0x2001, 2}, DataType::uint32), Encoding::float32);
+  EXPECT_EQ(profile.encodingOf({0x2001, 3}, DataType::uint32), Encoding::integer);
+  EXPECT_EQ(profile.encodingOf({0x20FF, 0xFF}, DataType::int32), Encoding::float32);
+  EXPECT_EQ(profile.encodingOf({0x2100, 0}, DataType::int32), Encoding::integer);
+  EXPECT_EQ(profile.encodingOf({0x2003, 1}, DataType::uint32), Encoding::integer);
+  EXPECT_EQ(profile.encodingOf({0x2003, 5}, DataType::uint16), Encoding::half_float);
+  EXPECT_EQ(profile.encodingOf({0x2100, 0}, DataType::real32), Encoding::float32);
+  ASSERT_TRUE(profile.unnamedFloat({0x2002, 1}, 4));
+  EXPECT_EQ(profile.unnamedFloat({0x2002, 1}, 4)->encoding, Encoding::float32);
+  EXPECT_FALSE(profile.unnamedFloat({0x2002, 0}, 1)) << "the number of sub-indices";
+  EXPECT_FALSE(profile.unnamedFloat({0x2003, 1}, 4));
+}
+
+TEST(DriveProfile, TheDamiaoManualsFloatsAreFloats) {
+  const DriveProfile damiao = shipped("damiao_dm");
+  for (const ObjectId id : {ObjectId{0x2002, 1}, ObjectId{0x2002, 9}, ObjectId{0x2002, 0x0C},
+                            ObjectId{0x2004, 3}, ObjectId{0x2005, 1}, ObjectId{0x2006, 2},
+                            ObjectId{0x2008, 1}, ObjectId{0x2009, 2}, ObjectId{0x200A, 4}}) {
+    EXPECT_TRUE(damiao.unnamedFloat(id, 4)) << canopen::toString(id);
+  }
+  for (const ObjectId id :
+       {ObjectId{0x2001, 3}, ObjectId{0x2002, 0x0A}, ObjectId{0x2002, 0x0D}, ObjectId{0x2002, 0x0E},
+        ObjectId{0x2003, 2}, ObjectId{0x2008, 2}, ObjectId{0x200B, 1}}) {
+    EXPECT_FALSE(damiao.unnamedFloat(id, 4)) << canopen::toString(id);
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -93,6 +94,8 @@ class ObjectJob {
   bool finish(bool success, std::string message);
   bool finishRead();
   bool writeWithAskedSize();
+  /// By what was read of it, if nothing names it.
+  std::optional<drive::ObjectSpec> unnamedFloat() const;
 
   drive::Axis* axis_ = nullptr;
   const drive::ObjectSpec* spec_ = nullptr;

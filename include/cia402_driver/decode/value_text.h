@@ -48,6 +48,7 @@ class ValueText {
   };
 
   const Known* find(canopen::ObjectId object) const;
+  std::string unnamed(canopen::ObjectId object, std::uint64_t raw, unsigned bits) const;
   std::string words(const Known& known, std::uint64_t raw, unsigned bits) const;
 
   drive::AxisConfig axis_;

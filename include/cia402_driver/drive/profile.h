@@ -11,6 +11,7 @@
 #include "cia402_driver/canopen/pdo.h"
 #include "cia402_driver/common/problems.h"
 #include "cia402_driver/common/time.h"
+#include "cia402_driver/drive/object_range.h"
 
 namespace cia402::drive {
 
@@ -190,6 +191,8 @@ struct DriveProfile {
   std::map<Quantity, UnitSpec> units;
   bool output_shaft = false;  ///< units count at the joint's side of the gear
   std::vector<ObjectSpec> objects;
+  /// How numbers sit in objects that have no name, or a name without an encoding of its own.
+  ObjectRanges<Encoding> encodings;
   std::vector<ModeSpec> modes;
   HomingSpec homing;
   bool halt_supported = true;
@@ -236,6 +239,12 @@ struct DriveProfile {
   /// By the profile's name, or by a name of the EDS without regard to case and blanks.
   const ObjectSpec* find(const std::string& object_name) const;
   const ObjectSpec* find(ObjectId id) const;
+  /// How a number of this type sits in the object: as its name says, else as its place says where
+  /// the type is as wide as that encoding.
+  Encoding encodingOf(ObjectId id, DataType type) const;
+  /// An object that nothing names but whose place says that it holds a float; nothing where it does
+  /// not, or not in so many bytes.
+  std::optional<ObjectSpec> unnamedFloat(ObjectId id, std::size_t bytes) const;
   /// By logical name; nullptr if the family has no such mode.
   const ModeSpec* mode(const std::string& mode_name) const;
 };
