@@ -3,6 +3,39 @@
 #include "cia402_driver/bus/object_text.h"
 
 namespace cia402::bus {
+namespace {
+
+using drive::CoordinateMark;
+
+/// A drive may confirm a new zero before it counts from it.
+constexpr Duration kSettling{std::chrono::milliseconds(250)};
+
+/// What there is instead of writing the object.
+std::string insteadOf(CoordinateMark mark, const std::string& axis) {
+  switch (mark) {
+    case CoordinateMark::set_position:
+      return "the service ~" + axis + "/set_position says where the joint stands without it";
+    case CoordinateMark::home:
+      return "the service ~" + axis +
+             "/home finds the zero, with homing/offset of the configuration";
+    case CoordinateMark::restore_parameters:
+      return "the service ~" + axis + "/restore_parameters does this";
+    case CoordinateMark::configuration:
+      return "give it in `write` of the axis' configuration, with `counts_per_turn`, `gear_ratio` "
+             "and `direction` to match";
+    case CoordinateMark::calibration:
+    case CoordinateMark::none:
+      break;
+  }
+  return "it is calibration, for which there is no service";
+}
+
+/// May the drive have taken it?
+bool mayBeWritten(const canopen::SdoTransfer& transfer) {
+  return transfer.failure() != canopen::SdoTransfer::Failure::aborted_by_server;
+}
+
+}  // namespace
 
 Result<ObjectJob> ObjectJob::find(drive::Axis& axis, const std::string& object, Reply reply) {
   ObjectJob job;
@@ -43,9 +76,13 @@ Result<ObjectJob> ObjectJob::write(drive::Axis& axis, const std::string& object,
   if (!found) return found;
   ObjectJob& job = found.value();
   job.value_ = value;
+  job.mark_ = axis.config().profile->coordinateMark(job.id_);
+  const std::string refusal = job.calibrationRefusal();
+  if (!refusal.empty()) return Error{job.who_ + ": " + job.name_ + " not written: " + refusal};
   if (job.spec_ == nullptr) {
     job.stage_ = Stage::asking_size;
     job.ticket_ = axis.node().sdo().upload(job.id_, job.name_);
+    job.lock();
     return found;
   }
   const Result<canopen::Bytes> data = encodeObject(*job.spec_, value);
@@ -58,27 +95,90 @@ Result<ObjectJob> ObjectJob::write(drive::Axis& axis, const std::string& object,
       return Error{job.who_ + ": " + job.name_ + " not written: " + allowed.error().message};
     }
   }
-  job.stage_ = Stage::writing;
-  job.ticket_ = axis.node().sdo().download(job.id_, *data, job.name_);
+  job.lock();
+  job.download(*data);
   return found;
 }
 
-bool ObjectJob::step() {
-  if (!ticket_->done()) return false;
-  if (!ticket_->ok()) {
-    return finish(false, who_ + ": " + name_ +
-                             (stage_ == Stage::reading ? " not read: " : " not written: ") +
-                             ticket_->reason());
+void ObjectJob::lock() {
+  if (mark_ == CoordinateMark::none) return;
+  axis_->beginCalibration(name_);
+  locked_ = true;
+}
+
+std::string ObjectJob::calibrationRefusal() const {
+  if (mark_ == CoordinateMark::none) return {};
+  const std::string why = axis_->calibrationRefusal();
+  if (why.empty()) return {};
+  return "it shifts the drive's coordinates or holds its calibration, and " + why +
+         ". Instead: " + insteadOf(mark_, axis_->config().name);
+}
+
+/// What gives a drive another zero is not written twice.
+void ObjectJob::download(const canopen::Bytes& data) {
+  stage_ = Stage::writing;
+  std::optional<canopen::SdoOptions> once;
+  if (locked_) {
+    once.emplace();
+    once->timeout = axis_->config().profile->timing.sdo;
+    once->retries = 0;
   }
+  ticket_ = axis_->node().sdo().download(id_, data, name_, once);
+}
+
+bool ObjectJob::step(Time now) {
+  if (!ticket_->done()) return false;
   switch (stage_) {
-    case Stage::reading:
-      return finishRead();
-    case Stage::asking_size:
-      return writeWithAskedSize();
+    case Stage::settling:
+    case Stage::measuring:
+      return measure(now);
     case Stage::writing:
+      return finishWrite(now);
+    case Stage::reading:
+    case Stage::asking_size:
       break;
   }
-  return finish(true, who_ + ": wrote " + value_ + " to " + name_);
+  const bool reading = stage_ == Stage::reading;
+  if (ticket_->ok()) return reading ? finishRead() : writeWithAskedSize();
+  return finish(false, who_ + ": " + name_ + (reading ? " not read: " : " not written: ") +
+                           ticket_->reason());
+}
+
+bool ObjectJob::finishWrite(Time now) {
+  if (locked_ && (ticket_->ok() || mayBeWritten(*ticket_))) {
+    axis_->loseZero();
+    stage_ = Stage::settling;
+    since_ = now;
+    return false;
+  }
+  if (ticket_->ok()) return finish(true, who_ + ": wrote " + value_ + " to " + name_);
+  return finish(false, who_ + ": " + name_ + " not written: " + ticket_->reason());
+}
+
+/// The axis stays locked until what it measures counts in the new coordinates.
+bool ObjectJob::measure(Time now) {
+  if (stage_ == Stage::settling) {
+    if (now < since_ + kSettling) return false;
+    axis_->measureAnew();
+    stage_ = Stage::measuring;
+    since_ = now;
+    return false;
+  }
+  const bool measured = axis_->state().feedback_valid;
+  if (!measured && now < since_ + axis_->config().profile->timing.state_change) return false;
+  const std::string& axis = axis_->config().name;
+  std::string text = ticket_->ok()
+                         ? who_ + ": wrote " + value_ + " to " + name_
+                         : who_ + ": it is not known whether " + value_ + " was written to " +
+                               name_ + " (" + ticket_->reason() + "); read it";
+  text += "; " + axis + " is not homed any more, for its zero may be another now: ";
+  if (mark_ == CoordinateMark::configuration) {
+    text += "see that `counts_per_turn`, `gear_ratio` and `direction` fit the drive, then ";
+  }
+  text += "~" + axis + "/set_position";
+  if (axis_->config().homing) text += " or ~" + axis + "/home";
+  if (!measured) text += "; the drive has not told its position since";
+  return finish(ticket_->ok(), std::move(text));
 }
 
 bool ObjectJob::finishRead() {
@@ -105,12 +205,13 @@ bool ObjectJob::writeWithAskedSize() {
   const Result<canopen::Bytes> data =
       unnamed ? encodeObject(*unnamed, value_) : encodeUnlisted(value_, ticket_->data().size());
   if (!data) return finish(false, who_ + ": " + name_ + " not written: " + data.error().message);
-  stage_ = Stage::writing;
-  ticket_ = axis_->node().sdo().download(id_, *data, name_);
+  download(*data);
   return false;
 }
 
 bool ObjectJob::finish(bool success, std::string message) {
+  if (locked_) axis_->endCalibration();
+  locked_ = false;
   Answer answer;
   answer.success = success;
   answer.message = std::move(message);

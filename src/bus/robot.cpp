@@ -172,7 +172,7 @@ void Robot::stepJobs(Time now) {
     if (!problem.empty()) withdrawEnabling(problem);
     keep_running(procedures_, [&](ProcedureJob& job) { return job.step(axes_, now); });
   }
-  if (!objects_.empty()) keep_running(objects_, [](ObjectJob& job) { return job.step(); });
+  if (!objects_.empty()) keep_running(objects_, [&](ObjectJob& job) { return job.step(now); });
   if (!nmt_.empty()) keep_running(nmt_, [&](NmtJob& job) { return job.step(axes_, now); });
   if (!histories_.empty()) keep_running(histories_, [](HistoryJob& job) { return job.step(); });
   if (!dcfs_.empty()) keep_running(dcfs_, [](DcfJob& job) { return job.step(); });

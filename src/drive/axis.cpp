@@ -17,6 +17,8 @@ struct Axis::Impl {
   void advance(Time now);
   void finish(bool success, std::string message);
   void preempt(ProcedureKind by);
+  /// Why nothing but a stop can begin now; empty: it can.
+  std::string busyRefusal(ProcedureKind kind) const;
   /// Ends a procedure that would enable the axis.
   void endEnabling(const std::string& why);
   Context context(Time now) { return {core, status, now}; }
@@ -27,8 +29,21 @@ struct Axis::Impl {
   bool was_ready = false;
   bool lost = false;  ///< since the last update(), though the node may be ready again
   std::uint32_t boot_ups = 0;
-  Time watched{};  ///< when watchNode() was called by readFeedback()
+  std::string calibrating;  ///< what is being written; empty: nothing
+  Time watched{};           ///< when watchNode() was called by readFeedback()
 };
+
+std::string Axis::Impl::busyRefusal(ProcedureKind kind) const {
+  const std::string what = core.who() + ": " + toString(kind) + " is refused while ";
+  if (stops(kind)) return {};
+  if (status.running) {
+    return what + toString(status.kind) + " runs (" + status.step +
+           "); wait for its end, or stop it by halt, quick_stop or disable";
+  }
+  if (calibrating.empty()) return {};
+  return what + calibrating +
+         " is being written, which may give the drive another zero; call it again";
+}
 
 /// Notices a node that is not what it was, even if nobody called onHealthChange().
 void Axis::Impl::watchNode() {
@@ -113,7 +128,8 @@ Result<std::uint32_t> Axis::start(const ProcedureRequest& request, Time now) {
   if (impl.procedure && !failure.empty() && !impl.procedure->survivesNodeLoss()) {
     impl.finish(false, std::string(toString(impl.status.kind)) + " failed: " + failure);
   }
-  if (impl.status.running && !stops(request.kind)) return Error{refusal(request)};
+  std::string busy = impl.busyRefusal(request.kind);
+  if (!busy.empty()) return Error{std::move(busy)};
   auto procedure = makeProcedure(request, impl.core);
   if (!procedure) {
     if (!impl.status.running) return procedure.error();
@@ -139,11 +155,8 @@ Result<std::uint32_t> Axis::start(const ProcedureRequest& request, Time now) {
 }
 
 std::string Axis::refusal(const ProcedureRequest& request) const {
-  if (impl_->status.running && !stops(request.kind)) {
-    return impl_->core.who() + ": " + toString(request.kind) + " is refused while " +
-           toString(impl_->status.kind) + " runs (" + impl_->status.step +
-           "); wait for its end, or stop it by halt, quick_stop or disable";
-  }
+  std::string busy = impl_->busyRefusal(request.kind);
+  if (!busy.empty()) return busy;
   const auto procedure = makeProcedure(request, impl_->core);
   return procedure ? std::string() : procedure.error().message;
 }
@@ -156,6 +169,18 @@ void Axis::cancel(const std::string& reason, Time now) {
   impl.finish(false,
               impl.core.who() + ": " + toString(impl.status.kind) + " was cancelled: " + reason);
 }
+
+std::string Axis::calibrationRefusal() const {
+  if (!impl_->calibrating.empty()) return impl_->calibrating + " is being written; call it again";
+  if (impl_->status.running) {
+    return std::string(toString(impl_->status.kind)) + " runs; wait for its end";
+  }
+  return impl_->core.calibrationRefusal();
+}
+void Axis::beginCalibration(std::string what) { impl_->calibrating = std::move(what); }
+void Axis::loseZero() { impl_->core.loseZero(); }
+void Axis::measureAnew() { impl_->core.measureAnew(); }
+void Axis::endCalibration() { impl_->calibrating.clear(); }
 
 bool Axis::setTarget(double value) { return impl_->core.setTarget(value); }
 void Axis::stopSetPoint() { impl_->core.stopSetPoint(); }

@@ -46,7 +46,9 @@ AxisCore::AxisCore(AxisConfig config, canopen::Node& node)
   state_.homed = absolute();
 }
 
-bool AxisCore::absolute() const { return !config_.homing || !config_.homing->required; }
+bool AxisCore::absolute() const {
+  return !zero_lost_ && (!config_.homing || !config_.homing->required);
+}
 
 const ModeChannel& AxisCore::workingMode() const {
   return mode_->spec->kind == ControlKind::homing ? *objects_.channel(config_.mode) : *mode_;
@@ -139,7 +141,7 @@ void AxisCore::onNodeLost() {
   error_ticket_.reset();
   emergency_code_ = excused_code_ = state_.error_code = 0;
   base_controlword_ = controlword_ = 0;
-  if (!absolute()) adoptDriveZero(0.0);
+  if (!absolute()) returnToDriveZero();
   limits_.forget();
   limits_due_ = true;
   state_.homed = absolute();
@@ -190,12 +192,54 @@ void AxisCore::notify(std::string text) {
 
 void AxisCore::declarePosition(double value) {
   if (!state_.feedback_valid) return;
+  zero_lost_ = false;
   setZero(zero_shift_ + (value - state_.position));
 }
 
 void AxisCore::adoptDriveZero(double shift) {
+  zero_lost_ = false;
   unwrap_.restart(mode_->spec->kind == ControlKind::homing);
   setZero(shift);
+}
+
+void AxisCore::returnToDriveZero() {
+  unwrap_.restart(mode_->spec->kind == ControlKind::homing);
+  setZero(0.0);
+}
+
+void AxisCore::loseZero() {
+  returnToDriveZero();
+  unwrap_.restart(true);  // what its number does until measureAnew() is no motion
+  zero_lost_ = true;
+  state_.homed = false;
+}
+
+/// A drive that sends its position on changes only has sent another one already.
+void AxisCore::measureAnew() {
+  unwrap_.restart(mode_->spec->kind == ControlKind::homing);
+  placeZero();
+  standstill_.reset();
+  const canopen::Slot slot = objects_.position.slot;
+  if (!nodeReady() || !image_.regular(slot)) return;
+  image_.forget(slot);
+  forgetMotion();
+}
+
+std::string AxisCore::calibrationRefusal() const {
+  if (!nodeReady()) {
+    return std::string("the node is ") + canopen::toString(node_.health()) +
+           ", so that nobody knows whether the axis is disabled; recover it first";
+  }
+  if (!state_.feedback_valid) {
+    return "no fresh statusword and position say that the axis is disabled and stands (" +
+           feedbackText() + "); recover it first";
+  }
+  if (!powerOff() || in_operation_ || goal_ == Goal::enabled) {
+    return std::string("the axis is not disabled (") + toString(state_.state) +
+           "); disable it first";
+  }
+  if (!standstill_.still()) return "the axis is not known to stand; wait until it is at rest";
+  return {};
 }
 
 void AxisCore::setZero(double shift) {

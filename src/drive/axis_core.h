@@ -119,6 +119,13 @@ class AxisCore {
   /// The drive has found its home by itself: what was declared before is void. @param shift joint
   /// value to add to what the drive's own zero says
   void adoptDriveZero(double shift);
+  /// The drive's zero may be another than before, and nobody has said where it lies: not homed,
+  /// also where no homing is required, until a position is declared or found.
+  void loseZero();
+  /// Forgets what was measured in other coordinates, until the drive tells anew.
+  void measureAnew();
+  /// Why an object that shifts coordinates must not be written now; empty: it may.
+  std::string calibrationRefusal() const;
 
   // --- Limits in the drive (607Dh), which follow the zero ---------------------------------------
   /// Keeps them open, for the drive is about to get another zero; or no more. The end of a
@@ -182,6 +189,7 @@ class AxisCore {
   void keepLimits();
   bool homedEnough() const;
   bool absolute() const;
+  void returnToDriveZero();
   void setZero(double shift);
   void placeZero();
   bool withinReach(double position) const;
@@ -213,7 +221,8 @@ class AxisCore {
   std::uint64_t shown_raw_ = 0;            ///< of 6061h, for which shown_mode_ was decoded
   Conversion position_, mode_conversion_;  ///< with what set_position declared
   double zero_shift_ = 0.0;
-  PositionUnwrap unwrap_;  ///< counts for continuous joints
+  bool zero_lost_ = false;  ///< by a write, and not declared or found since
+  PositionUnwrap unwrap_;   ///< counts for continuous joints
   PositionLimits limits_;
   bool limits_due_ = true, limits_open_ = false, limits_known_ = false;
 

@@ -77,24 +77,29 @@ std::string AxisCore::faultText() const {
 std::string AxisCore::obstacle() const {
   const std::string& name = config_.name;
   const bool homed = homedEnough();
+  const std::string zero = config_.homing ? "home" : "set_position";  // the call that gives it one
   if (!nodeReady())
     return name + ", its node is " + canopen::toString(node_.health()) + ": recover";
   if (!state_.feedback_valid) return name + " gives no fresh statusword and position: recover";
   if (faulted()) return name + " is in fault: recover";
   if (!in_operation_) return name + " is not enabled (" + toString(state_.state) + "): enable";
   if (mode_->spec->kind == ControlKind::homing) {
-    return name + " is left in its homing mode: enable" + (homed ? "" : ", then home");
+    return name + " is left in its homing mode: enable" + (homed ? "" : ", then " + zero);
   }
-  if (state_.halted) return name + " is halted: enable" + (homed ? "" : ", then home");
+  if (state_.halted) return name + " is halted: enable" + (homed ? "" : ", then " + zero);
   if (shown_mode_ != mode_->spec->value) {
     return name + " does not show that it is in mode " + mode_->spec->name + ": set_mode";
   }
-  return homed ? std::string() : name + " is not homed: home";
+  return homed ? std::string() : name + " is not homed: " + zero;
 }
 
 std::string AxisCore::motionRefusal(bool busy) const {
   if (state_.ready_for_motion) {
-    if (!homedEnough()) return who() + ": not homed; home it before position motion";
+    if (!homedEnough()) {
+      return who() + ": not homed; " +
+             (config_.homing ? "home it" : "say where it stands by set_position") +
+             " before position motion";
+    }
     return {};
   }
   if (!nodeReady()) {

@@ -14,6 +14,7 @@ std::optional<UnitSpec> readUnit(const YamlValue& value, Quantity quantity);
 void readUnits(const YamlValue& value, DriveProfile& profile);
 void readObjects(const YamlValue& value, DriveProfile& profile);
 void readEncodings(const YamlValue& value, DriveProfile& profile);
+void readCoordinates(const YamlValue& value, DriveProfile& profile);
 void readModes(const YamlValue& value, DriveProfile& profile);
 void readHoming(const YamlValue& value, DriveProfile& profile);
 void readErrors(const YamlValue& value, DriveProfile& profile);

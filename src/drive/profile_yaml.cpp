@@ -165,6 +165,7 @@ DriveProfile readProfile(const YamlValue& root) {
     readObjects(*objects, profile);
     checkFixedObjects(section, profile);
   }
+  if (const auto marks = section.get("coordinates")) readCoordinates(*marks, profile);
   readBehaviour(section, profile);
   if (const auto modes = section.require("modes", "at least one mode")) readModes(*modes, profile);
   if (const auto homing = section.get("homing")) readHoming(*homing, profile);

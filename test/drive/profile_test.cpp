@@ -182,6 +182,9 @@ const Mistake kMistakes[] = {
      "is for position objects with `from: limits.lower` or `limits.upper`"},
     {"pdos:", "startup: [{object: target_position, from: limits.lower, when: moved}]\npdos:",
      "unknown word `moved`"},
+    {"modes:", "coordinates: {profile_velocty: none}\nmodes:",
+     "`profile_velocty` is neither an object of the profile nor a range"},
+    {"modes:", "coordinates: {\"607C\": set_positon}\nmodes:", "did you mean `set_position`?"},
     {"objects:", "encodings: {\"2001-1FFF\": float32}\nobjects:",
      "encodings/2001-1FFF: `2001-1FFF` is no range of objects"},
     {"objects:", "encodings: {\"2001\": float23}\nobjects:", "did you mean `float32`?"},
@@ -247,6 +250,45 @@ TEST(DriveProfile, TheDamiaoManualsFloatsAreFloats) {
         ObjectId{0x2003, 2}, ObjectId{0x2008, 2}, ObjectId{0x200B, 1}}) {
     EXPECT_FALSE(damiao.unnamedFloat(id, 4)) << canopen::toString(id);
   }
+}
+
+TEST(DriveProfile, ObjectsThatShiftCoordinatesAreMarkedOnEveryDrive) {
+  Problems problems;
+  const DriveProfile profile = parseDriveProfile(kSmall, "small.yaml", problems);
+  using Mark = CoordinateMark;
+  EXPECT_EQ(profile.coordinateMark({0x607C, 0}), Mark::home);
+  EXPECT_EQ(profile.coordinateMark({0x687C, 0}), Mark::home) << "of the device's second axis";
+  EXPECT_EQ(profile.coordinateMark({0x6064, 0}), Mark::set_position);
+  EXPECT_EQ(profile.coordinateMark({0x1011, 4}), Mark::restore_parameters);
+  for (const ObjectId id : {ObjectId{0x607E, 0}, ObjectId{0x608F, 1}, ObjectId{0x6091, 1},
+                            ObjectId{0x6092, 2}, ObjectId{0x6093, 1}, ObjectId{0x6096, 1}}) {
+    EXPECT_EQ(profile.coordinateMark(id), Mark::configuration) << canopen::toString(id);
+  }
+  for (const ObjectId id : {ObjectId{0x1010, 1}, ObjectId{0x1017, 0}, ObjectId{0x2000, 1},
+                            ObjectId{0x6040, 0}, ObjectId{0x6065, 0}, ObjectId{0x607A, 0},
+                            ObjectId{0x607D, 1}, ObjectId{0x6098, 0}, ObjectId{0x60C2, 1}}) {
+    EXPECT_EQ(profile.coordinateMark(id), Mark::none) << canopen::toString(id);
+  }
+}
+
+TEST(DriveProfile, AProfileMarksItsOwnObjectsAndTakesMarksAway) {
+  Problems problems;
+  const DriveProfile profile = parseDriveProfile(
+      changed("modes:",
+              "coordinates: {\"607E\": none, \"2000-2001\": calibration, \"2001:03\": none, "
+              "profile_velocity: set_position}\nmodes:"),
+      "small.yaml", problems);
+  EXPECT_EQ(problems.text(), "");
+  using Mark = CoordinateMark;
+  EXPECT_EQ(profile.coordinateMark({0x607E, 0}), Mark::none);
+  EXPECT_EQ(profile.coordinateMark({0x607C, 0}), Mark::home);
+  EXPECT_EQ(profile.coordinateMark({0x2001, 2}), Mark::calibration);
+  EXPECT_EQ(profile.coordinateMark({0x2001, 3}), Mark::none);
+  EXPECT_EQ(profile.coordinateMark({0x6081, 0}), Mark::set_position);
+  const DriveProfile damiao = shipped("damiao_dm");
+  EXPECT_EQ(damiao.coordinateMark({0x200B, 2}), Mark::set_position);
+  EXPECT_EQ(damiao.coordinateMark({0x200B, 1}), Mark::none);
+  EXPECT_EQ(damiao.coordinateMark({0x2002, 0x0D}), Mark::calibration);
 }
 
 TEST(DriveProfile, OnlyFixedPdosMayShareAnObject) {

@@ -78,22 +78,30 @@ class ObjectJob {
   /// @param axis must outlive the job.
   static Result<ObjectJob> read(drive::Axis& axis, const std::string& object, Reply reply);
   /// Begins to write `value`: a number ("-5", "0x80000181", "1.5") or text, by the object's type.
-  /// The size of an object that the profile does not list is asked of the drive first.
+  /// The size of an object that the profile does not list is asked of the drive first. One that
+  /// shifts coordinates or holds calibration (drive::CoordinateMark) is refused unless the axis is
+  /// disabled and stands; nothing can enable the axis until it has told its position anew.
   static Result<ObjectJob> write(drive::Axis& axis, const std::string& object,
                                  const std::string& value, Reply reply);
 
   /// @return true once the reply was given.
-  bool step();
+  bool step(Time now);
   /// Gives a failed reply; for the end of the program.
   void abandon(const std::string& why) { finish(false, who_ + ": " + why); }
 
  private:
-  enum class Stage : std::uint8_t { reading, asking_size, writing };
+  enum class Stage : std::uint8_t { reading, asking_size, writing, settling, measuring };
 
   static Result<ObjectJob> find(drive::Axis& axis, const std::string& object, Reply reply);
   bool finish(bool success, std::string message);
   bool finishRead();
   bool writeWithAskedSize();
+  void download(const canopen::Bytes& data);
+  void lock();
+  /// Why an object with a mark cannot be written now; empty: it can.
+  std::string calibrationRefusal() const;
+  bool finishWrite(Time now);
+  bool measure(Time now);
   /// By what was read of it, if nothing names it.
   std::optional<drive::ObjectSpec> unnamedFloat() const;
 
@@ -102,6 +110,9 @@ class ObjectJob {
   std::string who_, name_, value_;
   canopen::ObjectId id_;
   Stage stage_ = Stage::reading;
+  drive::CoordinateMark mark_ = drive::CoordinateMark::none;  ///< of what is written
+  bool locked_ = false;                                       ///< Axis::beginCalibration()
+  Time since_{};                                              ///< of the stage
   canopen::SdoTicket ticket_;
   Reply reply_;
 };

@@ -106,6 +106,8 @@ class ProcessImage {
   std::size_t tpdoOf(Slot slot) const { return input_tpdos_[slot]; }
   /// The drive has another COB-ID than configured. No effect for a PDO that is not enabled.
   void setCobId(PdoDirection direction, unsigned number, std::uint16_t cob_id);
+  /// The value of an input is unknown until it comes again. @pre slot is that of an input
+  void forget(Slot slot) { inputs_[slot].valid = false; }
   /// Marks every input as unknown and sets every output to 0 (the node rebooted or was lost), so
   /// that no set-point or controlword of before is ever sent again.
   void invalidate();

@@ -122,6 +122,19 @@ class Axis {
   /// Ends a running procedure safely (homing: halt), e.g. the action was cancelled.
   void cancel(const std::string& reason, Time now);
 
+  /// Why an object that shifts the drive's coordinates or holds its calibration must not be written
+  /// now: the axis is not known to be switched off and to stand. Empty: it may.
+  std::string calibrationRefusal() const;
+  /// Such a write begins: until endCalibration() the axis takes no procedure but those that stop.
+  /// @param what is written, for messages
+  void beginCalibration(std::string what);
+  /// The drive has taken the write, or may have: the axis is not homed any more, positions count
+  /// from the drive's own zero.
+  void loseZero();
+  /// What was measured before counts in other coordinates: waits for the drive to tell anew.
+  void measureAnew();
+  void endCalibration();
+
   /// Set-point of the active mode for this cycle, in joint units (rad, m, per s, N m, N). Only
   /// taken while ready_for_motion. What moves must be given anew in every cycle: it is brought to
   /// rest where it is not (SetPoint). @return false (nothing changes) for NaN, out of limits or not

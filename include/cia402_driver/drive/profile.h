@@ -27,6 +27,17 @@ enum class Encoding : std::uint8_t {
   half_float_signed,    ///< 16-bit word n; pattern = n * 65535, n signed
 };
 
+/// Why an object must not be written while the axis may move: it shifts the drive's coordinates, or
+/// holds its calibration. Each word says what there is for people to do instead.
+enum class CoordinateMark : std::uint8_t {
+  none,                ///< an object like others
+  set_position,        ///< the service of that name declares where the joint stands
+  home,                ///< homing finds the zero; home offsets
+  restore_parameters,  ///< the service of that name; what it restores may hold all of it
+  configuration,       ///< factors, gears, polarity: `write` of the axis and its geometry
+  calibration,         ///< of motor and encoder; nothing but the maker's own way
+};
+
 /// What a value means physically; decides which entry of the profile's unit system scales it.
 enum class Quantity : std::uint8_t {
   none,
@@ -193,6 +204,8 @@ struct DriveProfile {
   std::vector<ObjectSpec> objects;
   /// How numbers sit in objects that have no name, or a name without an encoding of its own.
   ObjectRanges<Encoding> encodings;
+  /// Objects that shift coordinates or hold calibration, besides those of the standard.
+  ObjectRanges<CoordinateMark> coordinates;
   std::vector<ModeSpec> modes;
   HomingSpec homing;
   bool halt_supported = true;
@@ -245,12 +258,18 @@ struct DriveProfile {
   /// An object that nothing names but whose place says that it holds a float; nothing where it does
   /// not, or not in so many bytes.
   std::optional<ObjectSpec> unnamedFloat(ObjectId id, std::size_t bytes) const;
+  /// What the profile says of an object, else the standard (standardMark()).
+  CoordinateMark coordinateMark(ObjectId id) const;
   /// By logical name; nullptr if the family has no such mode.
   const ModeSpec* mode(const std::string& mode_name) const;
 };
 
 /// Which frames a 603Fh or EMCY code reports as missing: by the profile, else by CiA 301, table 26.
 ErrorText::Missing missingFrames(const DriveProfile& profile, std::uint16_t code);
+
+/// Of the objects of CiA 301 and CiA 402-2, those that shift coordinates. A profile may say
+/// otherwise.
+CoordinateMark standardMark(ObjectId id);
 
 /// What stops the axis in `mode`: what the profile says; else the set-points in cyclic modes, and
 /// the halt bit where the drive plans the motion and has one. Torques cannot be ramped to rest, so
