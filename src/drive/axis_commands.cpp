@@ -74,6 +74,7 @@ void AxisCore::writeCommands(Time now) {
 }
 
 void AxisCore::writeTarget(Time now) {
+  if (stop_point_after_ != kNever) renewStopPoint(now);
   if (set_point_.advance(now)) encodeTarget();
   if (effort_streamed_ && !set_point_.leased()) brakeEffort();
   const bool by_hand = mode_->spec->handshake == Handshake::new_set_point;

@@ -68,7 +68,8 @@ void AxisCore::switchOff() {
 void AxisCore::leaveOperation() {
   in_operation_ = state_.ready_for_motion = false;
   brake_released_ = running_since_ = kNever;
-  homing_start_ = halt_bit_ = state_.halted = braking_ = effort_streamed_ = false;
+  homing_start_ = effort_streamed_ = false;
+  releaseHalt();
   handshake_.reset(target_raw_);
   set_point_.rest(kindOf(*mode_->spec), SetPoint::kNone);
 }
@@ -82,7 +83,7 @@ bool AxisCore::powerOff() const { return powerStageOff(state_.state); }
 std::string AxisCore::supervise(Time now) {
   std::string failure;
   if (stop_ticket_) watchStopBySdo();
-  if (now > written_ + 2 * config_.sync_period && written_ != Time{}) set_point_.interrupt();
+  if (now > written_ + 2 * config_.sync_period && written_ != Time{}) onLateCycle(now);
   if (!failure_.empty()) failure = takeFailure();
   if (!nodeReady()) return failure;
   keepLimits();
@@ -122,6 +123,12 @@ std::string AxisCore::supervise(Time now) {
     neutralizeTarget();
   }
   return failure;
+}
+
+void AxisCore::onLateCycle(Time now) {
+  set_point_.interrupt();
+  const bool stopping = state_.halted && !halt_bit_ && set_point_.kind() == SetPointKind::goal;
+  if (stopping && stop_point_after_ == kNever) stop_point_after_ = now;
 }
 
 void AxisCore::updateReadiness(bool busy, Time now) {

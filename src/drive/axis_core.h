@@ -177,7 +177,10 @@ class AxisCore {
   StopBy stopBy() const { return drive::stopBy(*mode_->spec, profile()); }
   /// A torque is nobody's any more: the axis must not coast on (command_timeout_action).
   void brakeEffort();
-  void giveStopPoint();
+  void giveStopPoint(Time now);
+  void renewStopPoint(Time now);
+  /// Cycles were missed: nothing of them is made good.
+  void onLateCycle(Time now);
   void lookForFollowing(Time now);
   void watchFollowing(Time now);
   /// The set-points come back to where the motor stands.
@@ -208,6 +211,8 @@ class AxisCore {
   bool silent_ = true;  ///< nobody has asked for anything since the node came: controlword 0
   bool in_operation_ = false;
   bool fault_reset_ = false, homing_start_ = false, halt_bit_ = false;
+  double halted_goal_ = kUnknown;   ///< to which the drive was going by itself
+  Time stop_point_after_ = kNever;  ///< feedback newer than this has the stop point judged anew
   bool braking_ = false;      ///< the halt bit brakes an axis whose torque is nobody's any more
   bool voltage_off_ = false;  ///< the power stage is to be off, whatever the drive shows
   std::uint16_t controlword_ = 0, base_controlword_ = 0;

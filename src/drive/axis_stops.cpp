@@ -19,6 +19,8 @@ constexpr Duration kLeftBehind{std::chrono::milliseconds(150)},
     kHeld{std::chrono::milliseconds(60)};
 /// Only set-points that are so many times faster than standstill tell that a motor stays behind.
 constexpr double kClearlyMoving = 3.0;
+/// Of the way that braking takes, at least, a stop point is to be ahead.
+constexpr double kReachable = 0.98;
 
 }  // namespace
 
@@ -44,33 +46,50 @@ void AxisCore::beginHalt() {
       setGoal(Goal::quick_stop);
       return;
     case StopBy::set_points:
-      if (set_point_.kind() == SetPointKind::goal) giveStopPoint();
+      if (set_point_.kind() == SetPointKind::goal) {
+        halted_goal_ = set_point_.value();
+        stop_point_after_ = Time::min();
+      }
       break;
   }
   state_.halted = true;
   state_.ready_for_motion = false;
 }
 
-/// The drive plans by itself: it gets the nearest point where it can stop. What it does until it
-/// has that is added, for a point that is too near would make it turn back: it may still be gaining
-/// speed, and what it has planned is ahead of what is measured. It never goes beyond its goal.
-void AxisCore::giveStopPoint() {
+/// The drive plans by itself: it gets the nearest point where it can stop, from where it is by the
+/// newest feedback. What it does until it has that is added, for a point that is too near would
+/// make it turn back: it may still be gaining speed, what it has planned is ahead of what is
+/// measured, and what is measured may be old, in a late cycle. It never goes beyond its goal.
+void AxisCore::giveStopPoint(Time now) {
   if (!state_.feedback_valid) return;
-  const double goal = set_point_.value(), from = state_.position;
   const double velocity = std::isfinite(state_.velocity) ? state_.velocity : 0.0;
+  const double age = toSeconds(std::max(Duration(0), now - state_.stamp - config_.sync_period));
+  const double from = state_.position + velocity * age;
   const double sign = std::copysign(
-      1.0, std::fabs(velocity) > config_.standstill_velocity ? velocity : goal - from);
+      1.0, std::fabs(velocity) > config_.standstill_velocity ? velocity : halted_goal_ - from);
   const double reaction = toSeconds(kPlanningCycles * config_.sync_period);
   const double deceleration = stopDeceleration(config_), speed = std::fabs(velocity);
   const double faster = std::max(
       speed, std::min(speed + deceleration * reaction, config_.limits.velocity.value_or(1e9)));
   const double way = faster * reaction + faster * faster / (2.0 * deceleration);
   double point = from + sign * way;
-  if (sign * (goal - from) >= 0.0) point = sign * std::min(sign * point, sign * goal);
+  if (sign * (halted_goal_ - from) >= 0.0)
+    point = sign * std::min(sign * point, sign * halted_goal_);
   const AxisLimits& limits = config_.limits;
   if (limits.lower) point = std::max(point, std::min(*limits.lower, from));
   if (limits.upper) point = std::min(point, std::max(*limits.upper, from));
   set_point_.give(point);
+}
+
+/// After a late cycle the drive may have got its stop point so late that it lies behind it.
+void AxisCore::renewStopPoint(Time now) {
+  if (state_.stamp <= stop_point_after_) return;  // says where it was before
+  const bool first = stop_point_after_ == Time::min();
+  stop_point_after_ = kNever;
+  const double speed = std::isfinite(state_.velocity) ? std::fabs(state_.velocity) : 0.0;
+  const double way = speed * speed / (2.0 * stopDeceleration(config_));
+  const double ahead = (set_point_.value() - state_.position) * std::copysign(1.0, state_.velocity);
+  if (first || ahead < kReachable * way) giveStopPoint(now);
 }
 
 void AxisCore::brakeEffort() {
@@ -97,7 +116,10 @@ void AxisCore::replaceHaltedTarget() {
   if (mode_->spec->handshake == Handshake::new_set_point) handshake_.offer(target_raw_);
 }
 
-void AxisCore::releaseHalt() { halt_bit_ = state_.halted = braking_ = false; }
+void AxisCore::releaseHalt() {
+  halt_bit_ = state_.halted = braking_ = false;
+  stop_point_after_ = kNever;
+}
 
 /// Whether the drive shows that it follows; a drive that never does is waited for once.
 void AxisCore::lookForFollowing(Time now) {

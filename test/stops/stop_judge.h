@@ -1,0 +1,231 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// How far and how long an axis may go on after a stop, and what its motor did. The bounds are those
+// of docs/stops.md.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "stops/stop_run.h"
+
+namespace cia402::stops {
+
+/// From the stop to rest: rad, s, and the speed on the way, rad/s.
+struct Bound {
+  double distance = 0.0, time = 0.0, speed = 0.0;
+};
+
+/// A way to rest: on at `speed` for `reaction_s`, then by `deceleration`.
+struct Braking {
+  double reaction_s = 0.0, deceleration = 0.0;
+};
+
+constexpr double kCycleS = 0.004;
+/// A set-point is computed and sent within a cycle, taken with the SYNC of the next, and followed
+/// for one more.
+constexpr double kReactionS = 3 * kCycleS;
+/// The drive takes the master for lost after three heartbeats of 0.1 s.
+constexpr double kMasterLostS = 0.3;
+
+inline bool brakesByHaltBit(const Mover& mover) {
+  return mover.drive == "generic_cia402" && mover.mode != "cyclic_torque";
+}
+
+/// What brakes, for a stop that comes in time.
+inline Braking brakingOf(Stop stop, const Mover& mover) {
+  const Mechanics mechanics = mechanicsOf(mover.drive);
+  const double ramp = mechanics.acceleration, quick = 2.0 * ramp;
+  const bool effort = mover.motion == Motion::effort;
+  const double effort_ramp = brakesByHaltBit(mover) ? ramp : quick;
+  switch (stop) {
+    case Stop::halt:
+      return {kReactionS, effort ? effort_ramp : ramp};
+    case Stop::quick_stop:
+    case Stop::disable:
+      return {kReactionS, quick};
+    case Stop::end_of_stream:
+    case Stop::set_mode:
+      if (mover.motion == Motion::stream) return {kReactionS + kCycleS, ramp};
+      return {toSeconds(kCommandTimeout) + kReactionS + kCycleS, mover.coasts ? mechanics.friction
+                                                                 : effort     ? effort_ramp
+                                                                              : ramp};
+    case Stop::fault:
+      return {0.001, quick};
+    case Stop::coasting_fault:
+      return {0.001, mechanics.friction};
+    case Stop::shutdown:
+      if (effort || mover.motion == Motion::goal) return {kReactionS + kCycleS, quick};
+      return {kReactionS, ramp};
+    case Stop::host_death:
+      if (mover.motion == Motion::stream) return {2 * kCycleS, mechanics.hardest};
+      return {kMasterLostS, quick};
+  }
+  return {};
+}
+
+/// The motor behind its demand. A Damiao approaches a streamed target by a profile of its own, with
+/// ten times the acceleration.
+inline double lagOf(const Mover& mover) {
+  const Mechanics mechanics = mechanicsOf(mover.drive);
+  double lag = mechanics.lag_s;
+  if (mover.drive == "damiao_dm" && mover.motion == Motion::stream) {
+    lag += mover.speed / (2.0 * 10.0 * mechanics.acceleration);
+  }
+  return lag;
+}
+
+/// N m to rad/s², behind friction.
+inline double pushOf(const Mover& mover) {
+  constexpr double kTurn = 6.283185307179586;
+  if (mover.motion != Motion::effort || mover.drive == "damiao_dm") return 0.0;  // at its speed
+  return (mover.set_point / 64.0 - 0.05) * 300.0 * kTurn / 100.0;
+}
+
+inline Bound boundOf(Stop stop, const Mover& mover, double late_s) {
+  const Mechanics mechanics = mechanicsOf(mover.drive);
+  Braking braking = brakingOf(stop, mover);
+  const double lag = lagOf(mover), settling = 8.0 * lag;
+  double speed = mover.speed;
+  const bool by_goal = mover.motion == Motion::goal && mover.drive == "damiao_dm";
+  if (stop == Stop::set_mode && mover.motion == Motion::goal) {  // it goes on to its goal
+    const double ramp = speed * speed / (2.0 * mechanics.acceleration);
+    const double way = mover.set_point - ramp;
+    return {way + 0.002, way / speed + speed / (2.0 * mechanics.acceleration) + late_s + settling,
+            speed * 1.02};
+  }
+  if (stop == Stop::halt && by_goal) braking.reaction_s += 8 * kCycleS;  // the nearest goal
+  const double reaction = braking.reaction_s + late_s;
+  speed += pushOf(mover) * reaction;
+  const double stopping = speed / braking.deceleration;
+  return {1.02 * (speed * (reaction + lag) + 0.5 * speed * stopping) + 0.001,
+          1.02 * (reaction + stopping) + settling, 1.02 * speed + 0.005};
+}
+
+/// A drive that gets no SYNC stands at its last target. Its next SYNC brings the one set-point that
+/// was sent before.
+inline bool starved(const Case& tested) {
+  return tested.mover->motion == Motion::stream &&
+         (tested.late > 0ms || tested.follower == Follower::host_death ||
+          tested.stop == Stop::host_death);
+}
+/// The motor swings beyond the last target by what it cannot brake, once it has begun to.
+inline double swingOf(const Mover& mover) {
+  const Mechanics mechanics = mechanicsOf(mover.drive);
+  return mover.speed * mover.speed / (2.0 * mechanics.hardest) + mover.speed * mechanics.lag_s;
+}
+
+/// With what follows.
+inline Bound boundOf(const Case& tested, const Trace& trace) {
+  const double late = toSeconds(tested.late), after = toSeconds(tested.after);
+  const Mover& mover = *tested.mover;
+  Bound bound = boundOf(tested.stop, mover, late);
+  const auto orElse = [&bound](const Bound& other) {
+    bound.distance = std::max(bound.distance, other.distance);
+    bound.time = std::max(bound.time, other.time);
+    bound.speed = std::max(bound.speed, other.speed);
+  };
+  if (tested.follower == Follower::host_death) {
+    orElse(boundOf(Stop::host_death, mover, late + after));
+  }
+  // A change of mode has a drive begin its ramp anew, from the motor.
+  if (tested.follower == Follower::set_mode) bound.distance += mover.speed * lagOf(mover);
+  if (tested.follower == Follower::restart) orElse(boundOf(Stop::quick_stop, mover, after));
+  if (starved(tested)) bound.time += 2.0 * mover.speed / mechanicsOf(mover.drive).hardest;
+  if (!trace.taken) return bound;
+  if (mover.motion == Motion::stream || mover.motion == Motion::goal) {
+    const double way = *trace.taken - trace.samples.front().position;
+    const Mechanics mechanics = mechanicsOf(mover.drive);
+    bound.distance = std::max(bound.distance, way + 0.002);
+    bound.speed = 1.02 * mechanics.velocity;
+    bound.time += way / mover.speed + mover.speed / mechanics.acceleration + after;
+  } else {  // the stream ends with this one
+    bound = boundOf(tested.stop, mover, late + after);
+  }
+  return bound;
+}
+
+struct Verdict {
+  double distance = 0.0, time = 0.0;
+  Bound bound;
+  std::vector<std::string> findings;
+};
+
+constexpr double kSlow = 0.05;         ///< rad/s, below it the power stage may be switched
+constexpr double kRest = 0.01;         ///< rad/s, below it an axis stands
+constexpr double kTolerance = 0.0005;  ///< rad, that it may swing back
+
+inline std::string number(double value) {
+  char text[32];
+  (void)std::snprintf(text, sizeof text, "%.4f", value);
+  return text;
+}
+
+/// Success of these says that the axis stands; of `disable` where there is nothing to brake it,
+/// that it has no power.
+inline bool needsRest(const std::string& call, bool power) {
+  return call == "halt" || call == "quick_stop" || call == "set_position" ||
+         (power && call == "disable");
+}
+
+inline Verdict judge(const Case& tested, const Trace& trace) {
+  Verdict verdict;
+  if (!trace.problem.empty()) {
+    verdict.findings.push_back("cannot be played: " + trace.problem);
+    return verdict;
+  }
+  verdict.bound = boundOf(tested, trace);
+  const auto find = [&](std::string what) { verdict.findings.push_back(std::move(what)); };
+  const Mover& mover = *tested.mover;
+  const double swing = kTolerance + (starved(tested) ? swingOf(mover) : 0.0);
+  const double step = 2 * kTolerance + (starved(tested) ? mover.speed * kCycleS + swing : 0.0);
+  const double from = trace.samples.front().position;
+  double furthest = from, back = 0.0, fastest = 0.0, stood = 0.0, again = 0.0;
+  std::size_t quiet = 0, last = 0;
+  bool rested = false;
+  for (std::size_t i = 0; i < trace.samples.size(); ++i) {
+    const auto& [position, velocity, power] = trace.samples[i];
+    furthest = std::max(furthest, position);
+    back = std::max(back, furthest - position);
+    fastest = std::max(fastest, std::fabs(velocity));
+    const bool still = std::fabs(velocity) <= kRest;
+    const bool switched = i > 0 && power != trace.samples[i - 1].power;
+    if (switched && std::fabs(velocity) > kSlow && (power || tested.stop != Stop::coasting_fault)) {
+      find(std::string(power ? "gets" : "loses") + " power at " + number(velocity) + " rad/s");
+    }
+    if (!still) last = i + 1;
+    quiet = still ? quiet + 1 : 0;
+    if (!rested && quiet >= 20) {
+      rested = true;
+      stood = position;
+    }
+    if (rested) again = std::max(again, std::fabs(position - stood));
+  }
+  verdict.distance = furthest - from;
+  verdict.time = 0.001 * static_cast<double>(last);
+  const Bound& bound = verdict.bound;
+  if (verdict.distance > bound.distance) {
+    find("goes on for " + number(verdict.distance) + " rad, bound " + number(bound.distance));
+  }
+  if (verdict.time > bound.time) {
+    find("rests after " + number(verdict.time) + " s, bound " + number(bound.time));
+  }
+  if (fastest > bound.speed) {
+    find("turns at " + number(fastest) + " rad/s, bound " + number(bound.speed));
+  }
+  if (back > swing) find("turns back by " + number(back) + " rad");
+  if (!trace.taken && again > step) {
+    find("starts again after it stood, by " + number(again) + " rad");
+  }
+  for (const Trace::Answered& answer : trace.answers) {
+    const double turning = std::fabs(trace.samples[answer.at].velocity);
+    if (answer.success && needsRest(answer.call, answer.power) && turning > 2 * kRest) {
+      find(answer.call + " is answered at " + number(turning) + " rad/s: " + answer.message);
+    }
+  }
+  return verdict;
+}
+
+}  // namespace cia402::stops

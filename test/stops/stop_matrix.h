@@ -1,0 +1,203 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// What is stopped, by what, and what happens just after: the cases of docs/stops.md.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "system/robot_fixture.h"
+
+namespace cia402::stops {
+
+using namespace std::chrono_literals;
+
+/// What ends a motion.
+enum class Stop {
+  halt,
+  quick_stop,
+  disable,
+  end_of_stream,
+  set_mode,  ///< refused in motion; the stream ends with the call
+  fault,     ///< to which the drive reacts by its ramp
+  coasting_fault,
+  shutdown,
+  host_death,
+};
+constexpr Stop kStops[] = {Stop::halt,           Stop::quick_stop, Stop::disable,
+                           Stop::end_of_stream,  Stop::set_mode,   Stop::fault,
+                           Stop::coasting_fault, Stop::shutdown,   Stop::host_death};
+
+/// What may come within 10 ms of it.
+enum class Follower {
+  nothing,
+  halt,
+  quick_stop,
+  disable,
+  set_mode,
+  set_position,
+  home,  ///< which declares the present position
+  recover,
+  enable,
+  clear_faults,
+  set_point,
+  fault,
+  shutdown,
+  host_death,
+  restart,  ///< of a process that died
+};
+
+inline const char* toString(Stop stop) {
+  constexpr const char* kNames[] = {"halt",           "quick_stop", "disable",
+                                    "end_of_stream",  "set_mode",   "fault",
+                                    "coasting_fault", "shutdown",   "host_death"};
+  return kNames[static_cast<int>(stop)];
+}
+
+inline const char* toString(Follower follower) {
+  constexpr const char* kNames[] = {"nothing",  "halt",         "quick_stop",   "disable",
+                                    "set_mode", "set_position", "home",         "recover",
+                                    "enable",   "clear_faults", "a set-point",  "a fault",
+                                    "shutdown", "host death",   "a new process"};
+  return kNames[static_cast<int>(follower)];
+}
+
+/// What the axis was given before the stop.
+enum class Motion { stream, velocity, goal, effort };
+
+/// One drive in one mode, and how it is brought to speed.
+struct Mover {
+  std::string drive, mode;
+  Motion motion = Motion::stream;
+  bool coasts = false;     ///< command_timeout_action
+  double set_point = 0.0;  ///< rad/s of a stream or a velocity, rad of a goal, N m
+  double speed = 0.0;      ///< rad/s that it runs at, when it is stopped
+  std::string other_mode;  ///< for set_mode
+  std::string name() const { return drive + "_" + mode + (coasts ? "_coasting" : ""); }
+};
+
+constexpr Duration kCycle = 4ms;
+constexpr Duration kCommandTimeout = 60ms;
+
+/// What the robots below are made of, rad and s.
+struct Mechanics {
+  double velocity, acceleration;  ///< limits of the axis
+  double lag_s;                   ///< of the motor behind its demand
+  double friction;                ///< rad/s², that a coasting motor loses
+  double hardest;                 ///< rad/s², with which the effort limit can brake it
+};
+
+/// `motor` and `units` of config/simulated_drives: friction × rated_acceleration turns/s².
+inline Mechanics mechanicsOf(const std::string& drive) {
+  constexpr double kTurn = 6.283185307179586;
+  if (drive == "damiao_dm") return {2.0, 15.0, 0.005, 0.02 * 400.0 * kTurn, 150.0};
+  constexpr double kRated = 300.0 * kTurn / 100.0;  // rad/s² by the rated 64 N m
+  return {1.5, 6.0, 0.004, 0.05 * kRated, 120.0 / 64.0 * kRated};
+}
+
+inline std::string yamlOf(const Mover& mover) {
+  const bool damiao = mover.drive == "damiao_dm";
+  std::string yaml =
+      "bus: {interface: sim, bitrate: 1000000, sync_period: 0.004, heartbeat: 0.1}\n"
+      "axes:\n"
+      "  joint: {node_id: 1, command_timeout: 0.06, drive: " +
+      mover.drive + ", mode: " + mover.mode + ", modes: [" + mover.mode + ", " + mover.other_mode +
+      "],\n";
+  if (mover.coasts) yaml += "    command_timeout_action: coast,\n";
+  if (damiao) {
+    return yaml +
+           "    homing: {required: false}, simulation: {time_constant: 0.005},\n"
+           "    limits: {lower: -2.0, upper: 2.0, velocity: 2.0, acceleration: 15.0, jerk: 150.0,\n"
+           "             effort: 5.0}}\n";
+  }
+  return yaml +
+         "    counts_per_turn: 131072, gear_ratio: 100.0, rated_torque: 0.64,\n"
+         "    homing: {method: 37, required: false, search_velocity: 0.1, zero_velocity: 0.1,\n"
+         "             acceleration: 1.0}, simulation: {time_constant: 0.004},\n"
+         "    limits: {lower: -2.5, upper: 2.5, velocity: 1.5, acceleration: 6.0, jerk: 60.0,\n"
+         "             effort: 120.0}}\n";
+}
+
+inline std::vector<Mover> movers() {
+  const std::string g = "generic_cia402", d = "damiao_dm";
+  const std::string csp = "cyclic_position", csv = "cyclic_velocity", pv = "profile_velocity";
+  return {
+      {g, csp, Motion::stream, false, 1.2, 1.2, pv},
+      {g, csv, Motion::velocity, false, 1.2, 1.2, pv},
+      {g, "profile_position", Motion::goal, false, 1.8, 1.5, pv},
+      {g, pv, Motion::velocity, false, 1.2, 1.2, csp},
+      {g, "profile_torque", Motion::effort, false, 6.0, 0.5, csp},
+      {g, "cyclic_torque", Motion::effort, false, 6.0, 0.5, csp},
+      {g, "cyclic_torque", Motion::effort, true, 6.0, 0.5, csp},
+      {d, csp, Motion::stream, false, 1.6, 1.6, pv},
+      {d, csv, Motion::velocity, false, 1.6, 1.6, csp},
+      {d, "profile_position", Motion::goal, false, 1.8, 2.0, pv},
+      {d, "position_velocity", Motion::goal, false, 1.8, 2.0, pv},
+      {d, "position_velocity_torque", Motion::goal, false, 1.8, 2.0, pv},
+      {d, pv, Motion::velocity, false, 1.6, 1.6, csp},
+      {d, "velocity_torque", Motion::velocity, false, 1.6, 1.6, csp},
+      {d, "profile_torque", Motion::effort, false, 0.2, 2.0, csp},
+      {d, "profile_torque", Motion::effort, true, 0.2, 2.0, csp},
+  };
+}
+
+struct Case {
+  Stop stop = Stop::halt;
+  const Mover* mover = nullptr;
+  Follower follower = Follower::nothing;
+  Duration after{};              ///< of the stop, until what follows
+  Duration late{}, late_from{};  ///< the process gets no processor for so long, from then on
+};
+
+inline std::string text(Duration duration) {
+  return std::to_string(std::chrono::duration_cast<std::chrono::milliseconds>(duration).count()) +
+         " ms";
+}
+
+inline std::string text(const Case& tested) {
+  std::string text = std::string(toString(tested.stop)) + " in " + tested.mover->name();
+  if (tested.follower != Follower::nothing) {
+    text +=
+        ", " + std::string(toString(tested.follower)) + " " + stops::text(tested.after) + " later";
+  }
+  if (tested.late > 0ms) {
+    text += ", a cycle " + stops::text(tested.late) + " late from " +
+            stops::text(tested.late_from) + " on";
+  }
+  return text;
+}
+
+/// Whether the stop means anything there.
+inline bool applies(Stop stop, const Mover& mover) {
+  if (stop == Stop::end_of_stream) return mover.motion != Motion::goal;
+  return !mover.coasts;
+}
+
+/// @param whole with everything late that there is, else with a quarter of it.
+inline std::vector<Case> casesOf(Stop stop, const Mover& mover, bool whole) {
+  std::vector<Case> cases;
+  int count = 0;
+  const auto add = [&](Follower follower, Duration after, std::initializer_list<Duration> froms) {
+    cases.push_back({stop, &mover, follower, after, 0ms, 0ms});
+    if (stop == Stop::host_death) return;  // no cycle is left that could be late
+    for (const Duration late : {20ms, 60ms, 150ms}) {
+      for (const Duration from : froms) {
+        const bool chosen = whole || follower == Follower::nothing || ++count % 4 == 0;
+        if (chosen) cases.push_back({stop, &mover, follower, after, late, from});
+      }
+    }
+  };
+  add(Follower::nothing, 0ms, {1ms, 4ms, 7ms, 10ms});  // each phase of the cycle
+  const int last = static_cast<int>(Follower::restart);
+  for (int i = 1; i <= last; ++i) {
+    const auto follower = static_cast<Follower>(i);
+    const bool restarts = follower == Follower::restart;
+    if (restarts != (stop == Stop::host_death)) continue;  // nobody is there to be called
+    // recover switches an axis on that still coasts: not yet kept.
+    if (stop == Stop::coasting_fault && follower == Follower::recover) continue;
+    add(follower, 3ms, {1ms, 7ms});
+    add(follower, 8ms, {4ms, 10ms});
+  }
+  return cases;
+}
+
+}  // namespace cia402::stops

@@ -1,0 +1,112 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// Every stop in every mode, with whatever may follow within 10 ms, on time and late: docs/stops.md.
+//   CIA402_STOPS_WHOLE=1   plays all cases; else all that are on time and an eighth of the late
+//   ones CIA402_STOPS_WRITE=1   writes the table of docs/stops.md (with all cases and all tests)
+//   CIA402_STOPS_CASE=...  plays one case, by its words, and prints what the motor does
+#include <cstdlib>
+#include <iostream>
+#include <map>
+
+#include "stops/stop_table.h"
+#include "system/scene.h"
+
+namespace cia402::stops {
+namespace {
+
+bool asked(const char* variable) { return std::getenv(variable) != nullptr; }
+bool whole() { return asked("CIA402_STOPS_WHOLE"); }
+
+const LoadedRobot& robotOf(const Mover& mover) {
+  static std::map<std::string, LoadedRobot> robots;
+  const auto found = robots.find(mover.name());
+  if (found != robots.end()) return found->second;
+  return robots.emplace(mover.name(), loadText(yamlOf(mover))).first->second;
+}
+
+struct Cell {
+  Stop stop;
+  Mover mover;
+  friend std::ostream& operator<<(std::ostream& out, const Cell& cell) {
+    return out << rowName(cell.stop, cell.mover);
+  }
+};
+
+std::vector<Cell> cells() {
+  std::vector<Cell> made;
+  for (const Stop stop : kStops) {
+    for (const Mover& mover : movers()) {
+      if (applies(stop, mover)) made.push_back({stop, mover});
+    }
+  }
+  return made;
+}
+
+void print(const Trace& trace, const std::string& told) {
+  for (std::size_t i = 0; i < trace.samples.size(); ++i) {
+    std::cout << i << " ms  " << number(trace.samples[i].position) << " rad  "
+              << number(trace.samples[i].velocity) << " rad/s\n";
+  }
+  for (const Trace::Answered& answer : trace.answers) {
+    std::cout << answer.at << " ms  " << answer.call << (answer.success ? ": " : " failed: ")
+              << answer.message << "\n";
+  }
+  std::cout << told;
+}
+
+/// What was measured, for the table.
+std::map<std::string, Row>& measured() {
+  static std::map<std::string, Row> rows;
+  return rows;
+}
+
+class StopMatrix : public testing::TestWithParam<Cell> {};
+
+TEST_P(StopMatrix, ComesToRestWithinItsBound) {
+  const auto& [stop, mover] = GetParam();
+  const char* const chosen = std::getenv("CIA402_STOPS_CASE");
+  std::string failures;
+  std::size_t failed = 0, played = 0;
+  Row row;
+  for (const Case& tested : casesOf(stop, mover, whole() || chosen != nullptr)) {
+    if (chosen != nullptr && text(tested) != chosen) continue;
+    Play play(robotOf(mover), tested);
+    const Trace trace = play.play();
+    const Verdict verdict = judge(tested, trace);
+    ++played;
+    if (chosen != nullptr) print(trace, play.told());
+    const bool longer = tested.follower == Follower::host_death ||
+                        tested.follower == Follower::restart || trace.taken;
+    if (!longer) row.add(tested, verdict);
+    if (verdict.findings.empty()) continue;
+    ++failed;
+    failures += text(tested) + ":\n";
+    for (const std::string& finding : verdict.findings) failures += "    " + finding + "\n";
+  }
+  EXPECT_TRUE(failures.empty()) << failed << " of " << played << " cases:\n" << failures;
+  if (chosen != nullptr) return;
+  const std::string name = rowName(stop, mover);
+  measured()[name] = row;
+  if (whole() || asked("CIA402_STOPS_WRITE")) return;
+  EXPECT_EQ(compare(row, readTable()[name]), "") << name;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, StopMatrix, testing::ValuesIn(cells()), [](const auto& tested) {
+  return std::string(toString(tested.param.stop)) + "_in_" + tested.param.mover.name();
+});
+
+/// Rows of tests that were not run stay as they are.
+class Table : public testing::Environment {
+ public:
+  void TearDown() override {
+    if (!asked("CIA402_STOPS_WRITE")) return;
+    std::map<std::string, Row> rows = readTable();
+    for (const auto& [name, row] : measured()) rows[name] = row;
+    std::vector<std::string> order;
+    for (const Cell& cell : cells()) order.push_back(rowName(cell.stop, cell.mover));
+    writeTable(rows, order);
+  }
+};
+[[maybe_unused]] testing::Environment* const kTable = testing::AddGlobalTestEnvironment(new Table);
+
+}  // namespace
+}  // namespace cia402::stops
