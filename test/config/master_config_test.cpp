@@ -303,9 +303,10 @@ TEST(MasterConfig, ResetsItsOwnNodesUnlessToldOtherwiseOrLssNeedsIt) {
   EXPECT_FALSE(make(kTwo).reset_all);
   EXPECT_FALSE(resetsAll("heartbeat: 0.2", "reset: each"));
   EXPECT_TRUE(resetsAll("heartbeat: 0.2", "reset: all"));
-  EXPECT_TRUE(resetsAll("    identity:",
-                        "    lss: {vendor_id: 1, product_code: 2, revision: 3, serial: 7}\n"
-                        "    identity:"));
+  EXPECT_TRUE(
+      resetsAll("    identity:",
+                "    lss: {vendor_id: \"0x80000181\", product_code: 2, revision: 3, serial: 7}\n"
+                "    identity:"));
 }
 
 TEST(MasterConfig, ModesThatCannotBeServedAreRefused) {
