@@ -18,7 +18,7 @@ class SetMode : public Procedure {
       begun_ = true;
       started_ = context.now;
     }
-    if (!standing_ && axis.inOperation()) {
+    if (!standing_ && !axis.powerOff()) {
       const Outcome standing = awaitStandstill(context, started_, "switching the mode");
       if (!standing.isDone()) return standing;
     }
@@ -66,7 +66,7 @@ Result<std::unique_ptr<Procedure>> makeSetMode(AxisCore& axis, const std::string
   if (!axis.state().feedback_valid) {
     return Error{axis.who() + ": cannot set the mode: no fresh statusword and position"};
   }
-  if (axis.inOperation() && axis.moving()) {
+  if (!axis.powerOff() && axis.moving()) {
     return Error{axis.who() + ": mode " + name + " is refused in motion (velocity " +
                  number(axis.state().velocity) + "); stop the axis first"};
   }

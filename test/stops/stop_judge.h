@@ -130,8 +130,6 @@ inline Bound boundOf(const Case& tested, const Trace& trace) {
   if (tested.follower == Follower::host_death) {
     orElse(boundOf(Stop::host_death, mover, late + after));
   }
-  // A change of mode has a drive begin its ramp anew, from the motor.
-  if (tested.follower == Follower::set_mode) bound.distance += mover.speed * lagOf(mover);
   if (tested.follower == Follower::restart) orElse(boundOf(Stop::quick_stop, mover, after));
   if (starved(tested)) bound.time += 2.0 * mover.speed / mechanicsOf(mover.drive).hardest;
   if (!trace.taken) return bound;
@@ -163,11 +161,10 @@ inline std::string number(double value) {
   return text;
 }
 
-/// Success of these says that the axis stands; of `disable` where there is nothing to brake it,
-/// that it has no power.
+/// Success of these says that the axis stands; of `set_mode` where the power stage is on.
 inline bool needsRest(const std::string& call, bool power) {
-  return call == "halt" || call == "quick_stop" || call == "set_position" ||
-         (power && call == "disable");
+  return call == "halt" || call == "quick_stop" || call == "set_position" || call == "disable" ||
+         (power && call == "set_mode");
 }
 
 inline Verdict judge(const Case& tested, const Trace& trace) {

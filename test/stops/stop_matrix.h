@@ -192,8 +192,6 @@ inline std::vector<Case> casesOf(Stop stop, const Mover& mover, bool whole) {
     const auto follower = static_cast<Follower>(i);
     const bool restarts = follower == Follower::restart;
     if (restarts != (stop == Stop::host_death)) continue;  // nobody is there to be called
-    // recover switches an axis on that still coasts: not yet kept.
-    if (stop == Stop::coasting_fault && follower == Follower::recover) continue;
     add(follower, 3ms, {1ms, 7ms});
     add(follower, 8ms, {4ms, 10ms});
   }

@@ -96,6 +96,8 @@ class Play {
     const Mover& mover = *case_.mover;
     const Time from = host_.now();
     std::optional<Time> fast;
+    // Near the limit of speed an effort gets less (AxisCore::guardSpeed).
+    const double share = mover.motion == Motion::effort ? 0.85 : 0.97;
     begun_ = from;
     for (;;) {
       const Duration passed = host_.now() - from;
@@ -105,7 +107,7 @@ class Play {
       }
       host_.advance(host_.now() + kCycle);
       const bool effort = mover.motion == Motion::effort;  // gets faster on
-      if (!fast && velocity() >= 0.97 * mover.speed) fast = host_.now();
+      if (!fast && velocity() >= share * mover.speed) fast = host_.now();
       const Duration settling = effort ? 0ms : 24ms;
       if (fast && host_.now() - *fast >= settling) return true;
     }

@@ -39,7 +39,8 @@ class Answers final : public Oracle {
     for (std::size_t i : call.axes) {
       const Seen& seen = seen_[i];
       const auto lately = [&](Time time) { return view.now - time <= kFeedbackAge; };
-      if (says(kStands) && !says_so && !lately(seen.still)) {
+      const bool idle = call.verb == "set_mode" && !view.truths[i].power;
+      if (says(kStands) && !says_so && !idle && !lately(seen.still)) {
         report(view, i,
                call.verb + " is answered with success (" + answer.message +
                    ") while the motor turns at " + number(view.truths[i].velocity) + " per s");
