@@ -26,6 +26,7 @@ struct Axis::Impl {
   AxisCore core;
   ProcedureStatus status, previous;
   std::unique_ptr<Procedure> procedure;
+  bool begun = false;  ///< the procedure has been advanced
   bool was_ready = false;
   bool lost = false;  ///< since the last update(), though the node may be ready again
   std::uint32_t boot_ups = 0;
@@ -58,6 +59,7 @@ void Axis::Impl::watchNode() {
 }
 
 void Axis::Impl::advance(Time now) {
+  begun = true;
   Outcome outcome = procedure->step(context(now));
   if (!outcome.isRunning()) finish(outcome.isDone(), std::move(outcome.message));
 }
@@ -130,6 +132,8 @@ Result<std::uint32_t> Axis::start(const ProcedureRequest& request, Time now) {
   }
   std::string busy = impl.busyRefusal(request.kind);
   if (!busy.empty()) return Error{std::move(busy)};
+  // A stop that was called just now is not taken back by a softer one.
+  if (impl.procedure && stops(impl.status.kind) && !impl.begun) impl.advance(now);
   auto procedure = makeProcedure(request, impl.core);
   if (!procedure) {
     if (!impl.status.running) return procedure.error();
@@ -149,6 +153,7 @@ Result<std::uint32_t> Axis::start(const ProcedureRequest& request, Time now) {
   impl.status.deadline =
       now + timeLimit(request.kind, impl.core.config(), impl.core.state().velocity);
   impl.procedure = std::move(procedure.value());
+  impl.begun = false;
   if (impl.procedure->leavesAlone(impl.context(now))) impl.advance(now);
   impl.core.updateReadiness(impl.status.running, now);
   return id;

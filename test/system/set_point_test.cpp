@@ -224,6 +224,22 @@ TEST(SetPoints, AHaltDuringAQuickStopAnswersAtRest) {
   EXPECT_LT(std::abs(scene.velocity("left")), 0.02) << answer.message;
 }
 
+TEST(SetPoints, AHaltInTheSameCycleTakesNoQuickStopBack) {
+  for (const auto kind : {ProcedureKind::quick_stop, ProcedureKind::disable}) {
+    Rig scene(genericPair());
+    scene.stream("left", 2.0, 700ms);
+    const double speed = scene.velocity("left");
+    ASSERT_GT(speed, 1.0);
+    scene.forget();
+    (void)scene.begin(kind, "left");
+    const bus::Answer answer = scene.procedure(ProcedureKind::halt, "left");
+    EXPECT_TRUE(answer.success) << answer.message;
+    // 6085h is twice the acceleration limit; four cycles until it brakes.
+    EXPECT_LT(scene.seen("left").travel(), 1.05 * (speed * speed / (2 * 8.0) + speed * 0.016));
+    EXPECT_LT(std::abs(scene.velocity("left")), 0.02) << answer.message;
+  }
+}
+
 /// How far a motor turned back, at most.
 struct Reversal {
   double furthest = -1e9, back = 0.0;
