@@ -89,6 +89,7 @@ void AxisMotion::enter(const drive::Axis& axis) {
 void AxisMotion::resume(const drive::Axis& axis, Time at) {
   const drive::SetPoint& sent = axis.setPoint();
   breaks_ = sent.breaks();
+  given_up_ = sent.givenUp();
   interruptions_ = sent.interruptions();
   position_.reset({sent.value(), sent.velocity(), 0.0}, at);
   velocity_.reset({axis.state().position, sent.velocity(), 0.0}, at);
@@ -121,6 +122,10 @@ void AxisMotion::step(drive::Axis& axis, Time now) {
   at_rest_ = sent.atRest();
   if (!command_) return;
   if (sent.breaks() != breaks_ || sent.interruptions() != interruptions_) {
+    if (sent.givenUp() != given_up_) {
+      command_.reset();
+      return;
+    }
     resume(axis, clock_ - cycle_);
   }
   switch (mode_->kind) {

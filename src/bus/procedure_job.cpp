@@ -62,7 +62,7 @@ bool ProcedureJob::step(std::vector<drive::Axis>& axes, Time now) {
   } else if (!held_) {
     startDue(axes, now);
   }
-  if (!ended()) return false;
+  if (!ended() || awaitsNews(axes, now)) return false;
   judge(axes);
   const bool all = std::all_of(entries_.begin(), entries_.end(),
                                [](const Entry& e) { return e.stage == Stage::succeeded; });
@@ -136,6 +136,17 @@ void ProcedureJob::judge(const std::vector<drive::Axis>& axes) {
     entry.stage = Stage::failed;
     entry.message = lapsed;
   }
+}
+
+/// What is told of several axes is told of all by news: one that has been silent of late shows soon
+/// what became of it, or is known to be lost.
+bool ProcedureJob::awaitsNews(const std::vector<drive::Axis>& axes, Time now) const {
+  if (entries_.size() == 1 || !enables(request_.kind)) return false;
+  return std::any_of(entries_.begin(), entries_.end(), [&](const Entry& entry) {
+    const drive::Axis& axis = axes[entry.item.axis];
+    return entry.stage == Stage::succeeded && axis.state().feedback_valid &&
+           now - axis.state().stamp > 3 * axis.config().sync_period;
+  });
 }
 
 void ProcedureJob::abandon(const std::string& why) {

@@ -17,6 +17,8 @@ constexpr Duration kRecoverTime = 20s;
 void Player::prove() {
   calm();
   runTo(stage_.now() + 4s);
+  // A search for home may take its time.
+  while (!pending_.empty() && !failed()) runTo(stage_.now() + 10ms);
   if (failed()) return;
   bus::Answer answer;
   const Time began = stage_.now();
@@ -129,7 +131,11 @@ void Player::proveMove(std::size_t axis, bool back) {
   if ((torque ? moved * sign > 0.0 : far_enough) && (!too_far || outside)) return;
   // A switch may stand in the way: it lets the axis go back.
   const bool held = facts.units_per_count != 0.0 && stage_.now() - held_[axis] < 3s;
-  if (held && !back) return proveMove(axis, true);
+  if (held && !back) {
+    bus::Answer answer;
+    if (!proveCall("enable", facts.name, kRecoverTime, answer)) return;
+    return proveMove(axis, true);
+  }
   report("no_recovery", facts.name,
          "was told to move by " + number(expected) + " in mode " + mode->name +
              " when all was well again, and moved by " + number(moved));

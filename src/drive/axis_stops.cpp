@@ -139,15 +139,22 @@ void AxisCore::watchFollowing(Time now) {
   if (!follows_ || (follows_never_shown_ && !follows_shown_)) lookForFollowing(now);
   const bool runs = set_point_.kind() == SetPointKind::stream && !standstill_.moving() &&
                     std::fabs(set_point_.velocity()) > kClearlyMoving * config_.standstill_velocity;
+  const double ahead = set_point_.value() - state_.position;
   if (!runs) {
     running_since_ = kNever;
+    const bool rests = set_point_.kind() == SetPointKind::stream && set_point_.atRest() &&
+                       standstill_.still() && now - set_point_.movedAt() >= kHeld;
+    const double apart = kClearlyMoving * config_.standstill_velocity * toSeconds(kHeld);
+    if (state_.internal_limit && rests && std::fabs(ahead) > apart) callBack();
     if (standstill_.moving()) left_behind_ = false;
     return;
   }
   if (running_since_ == kNever) running_since_ = now;
   // What turns back towards a motor that is held would meet it at speed.
-  const double ahead = set_point_.value() - state_.position;
-  if ((state_.internal_limit || left_behind_) && ahead * set_point_.velocity() < 0.0) {
+  const double usual =
+      std::fabs(set_point_.velocity()) * 2 * toSeconds(kReactionCycles * config_.sync_period);
+  if ((state_.internal_limit || left_behind_) && ahead * set_point_.velocity() < 0.0 &&
+      std::fabs(ahead) > usual) {
     callBack();
     return;
   }
@@ -162,6 +169,7 @@ void AxisCore::watchFollowing(Time now) {
 void AxisCore::callBack() {
   const double ahead = set_point_.value() - state_.position;
   neutralizeTarget();
+  set_point_.giveUp();
   running_since_ = kNever;
   if (std::exchange(left_behind_, true)) return;
   const bool prismatic = config_.geometry.type == AxisGeometry::Type::prismatic;
@@ -170,7 +178,7 @@ void AxisCore::callBack() {
          (state_.internal_limit ? "internal limit active (statusword bit 11), a limit switch or a "
                                   "position limit of the drive holds it"
                                 : "the brake, a limit or the load holds it") +
-         ". They are called back to where it stands");
+         ". They are called back to where it stands, and what was commanded is given up");
 }
 
 }  // namespace cia402::drive

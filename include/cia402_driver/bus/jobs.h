@@ -56,6 +56,7 @@ class ProcedureJob {
   bool allOrNone() const;
   void refuseUnlessAll(const std::vector<drive::Axis>& axes);
   void restoreModes(std::vector<drive::Axis>& axes, Time now);
+  bool awaitsNews(const std::vector<drive::Axis>& axes, Time now) const;
   void judge(const std::vector<drive::Axis>& axes);
   static void watchWaiting(Entry& entry, const drive::Axis& axis);
   static void refuseToBegin(Entry& entry, const drive::Axis& axis, const std::string& why);

@@ -82,6 +82,10 @@ class SetPoint {
   /// Grows with all that ends a motion, other than who gives its set-points: a stop, another zero,
   /// a new beginning.
   std::uint32_t breaks() const { return breaks_; }
+  /// What was commanded cannot be reached: whoever gave it gives it no more.
+  void giveUp() { ++given_up_; }
+  /// How often that was so.
+  std::uint32_t givenUp() const { return given_up_; }
 
  private:
   void beginStop();
@@ -98,7 +102,7 @@ class SetPoint {
   bool has_given_ = false, stopping_ = false, leased_ = false;
   SoftStop ramp_;
   Time moved_at_ = Time::min();
-  std::uint32_t breaks_ = 0, interruptions_ = 0;
+  std::uint32_t breaks_ = 0, interruptions_ = 0, given_up_ = 0;
 };
 
 }  // namespace cia402::drive

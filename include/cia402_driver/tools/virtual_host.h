@@ -57,7 +57,10 @@ class VirtualHost final : private bus::EventSink {
   /// The process gets no processor for so long.
   void stall(Duration duration) { stalled_until_ = std::max(stalled_until_, now() + duration); }
   bool stalled() const { return now() < stalled_until_; }
-  void setLateness(Lateness lateness) { lateness_ = std::move(lateness); }
+  void setLateness(Lateness lateness) {
+    lateness_ = std::move(lateness);
+    late_ = {};
+  }
   void listen(Ear ear) { ear_ = std::move(ear); }
 
   /// Gives a command from another thread; lost where no process runs.

@@ -50,6 +50,7 @@ class MotorLimits final : public Oracle {
     if (shorter > 0.02) {
       squeeze_ = std::max(view.now < squeezed_ ? squeeze_ : 0.0, shorter);
       squeezed_ = view.now + kSyncMemory;
+      if (shorter > 0.05) starved_ = squeezed_;
     }
   }
   void look(const View& view) override {
@@ -76,8 +77,7 @@ class MotorLimits final : public Oracle {
                         view.now >= view.conditions.lossy && view.now >= view.conditions.foreign &&
                         view.now >= view.conditions.axes[i].cut_off;
     const Duration period = view.stage.loaded().robot.bus.sync_period;
-    if (view.now - last_sync_ > period + period / 2 || !judged)
-      axis.starved = view.now + kSyncMemory;
+    if (view.now - last_sync_ > period + 1ms || !judged) axis.starved = view.now + kSyncMemory;
     const bool lags = catchesUp(view, axis, facts, truth);
     if (!judged) {
       axis.count = 0;

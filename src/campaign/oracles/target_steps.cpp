@@ -81,7 +81,7 @@ class TargetSteps final : public Oracle {
     }
     float value = 0.0F;
     std::memcpy(&value, &raw, sizeof value);
-    return static_cast<double>(value);
+    return static_cast<double>(value) * facts.config->geometry.direction;
   }
   /// Is it enabled in a mode in which a target counts at once?
   bool streams(const View& view, std::size_t i) const {
