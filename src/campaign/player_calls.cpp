@@ -1,5 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // The services of a robot.
+#include <algorithm>
 #include <map>
 
 #include "player.h"
@@ -100,7 +101,11 @@ void Player::answered(const Call& call, const bus::Answer& answer) {
     oracle->onAnswer(call, answer, seen);
   }
   for (std::size_t i : call.axes) {
-    if (call.verb == "home") {
+    const auto homes_still = [&](const Pending& other) {
+      return other.call.verb == "home" && !*other.answered &&
+             std::count(other.call.axes.begin(), other.call.axes.end(), i) != 0;
+    };
+    if (call.verb == "home" && std::none_of(pending_.begin(), pending_.end(), homes_still)) {
       const double speed = truths_[i].velocity;
       permits_.cut(i, Permits::Source::homing,
                    now + (answer.success ? 0ms : stage_.axes()[i].stopTime(speed)));

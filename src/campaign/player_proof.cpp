@@ -131,6 +131,7 @@ void Player::proveMove(std::size_t axis, bool back) {
   if ((torque ? moved * sign > 0.0 : far_enough) && (!too_far || outside)) return;
   // A switch may stand in the way: it lets the axis go back.
   const bool held = facts.units_per_count != 0.0 && stage_.now() - held_[axis] < 3s;
+  if (held && outside) return;  // its limits lie beyond the switch, as its zero was declared
   if (held && !back) {
     bus::Answer answer;
     if (!proveCall("enable", facts.name, kRecoverTime, answer)) return;

@@ -14,7 +14,6 @@ namespace {
 
 using canopen::Bytes;
 using canopen::ObjectId;
-using drive::DataType;
 using drive::ObjectSpec;
 using drive::Quantity;
 

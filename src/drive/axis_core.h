@@ -182,6 +182,7 @@ class AxisCore {
   /// Cycles were missed: nothing of them is made good.
   void onLateCycle(Time now);
   void lookForFollowing(Time now);
+  bool goalIsStuck(Time now) const;
   void watchFollowing(Time now);
   /// The set-points come back to where the motor stands.
   void callBack();

@@ -16,7 +16,7 @@ constexpr int kPlanningCycles = 4;
 /// Set-points that run while the motor stands are called back after so long; sooner where the drive
 /// itself says that it does not follow.
 constexpr Duration kLeftBehind{std::chrono::milliseconds(150)},
-    kHeld{std::chrono::milliseconds(60)};
+    kHeld{std::chrono::milliseconds(60)}, kStuck{std::chrono::milliseconds(300)};
 /// Only set-points that are so many times faster than standstill tell that a motor stays behind.
 constexpr double kClearlyMoving = 3.0;
 /// Of the way that braking takes, at least, a stop point is to be ahead.
@@ -87,6 +87,7 @@ void AxisCore::renewStopPoint(Time now) {
   const bool first = stop_point_after_ == Time::min();
   stop_point_after_ = kNever;
   const double speed = std::isfinite(state_.velocity) ? std::fabs(state_.velocity) : 0.0;
+  if (!first && speed <= config_.standstill_velocity) return;  // it has stopped already
   const double way = speed * speed / (2.0 * stopDeceleration(config_));
   const double ahead = (set_point_.value() - state_.position) * std::copysign(1.0, state_.velocity);
   if (first || ahead < kReachable * way) giveStopPoint(now);
@@ -145,7 +146,12 @@ void AxisCore::watchFollowing(Time now) {
     const bool rests = set_point_.kind() == SetPointKind::stream && set_point_.atRest() &&
                        standstill_.still() && now - set_point_.movedAt() >= kHeld;
     const double apart = kClearlyMoving * config_.standstill_velocity * toSeconds(kHeld);
-    if (state_.internal_limit && rests && std::fabs(ahead) > apart) callBack();
+    const bool held = state_.internal_limit && std::fabs(ahead) > apart;
+    if (held && rests) callBack();
+    if (held && goalIsStuck(now)) {
+      callBack();
+      if (mode_->spec->handshake == Handshake::new_set_point) handshake_.offer(target_raw_);
+    }
     if (standstill_.moving()) left_behind_ = false;
     return;
   }
@@ -164,6 +170,12 @@ void AxisCore::watchFollowing(Time now) {
   const Time begun = running_since_ + kReactionCycles * config_.sync_period;
   const bool stands = standstill_.still() && standstill_.stillFrom() >= begun;
   if (stands && now - running_since_ >= patience) callBack();
+}
+
+/// A drive that goes to a goal by itself, and stands on the way.
+bool AxisCore::goalIsStuck(Time now) const {
+  return set_point_.kind() == SetPointKind::goal && state_.ready_for_motion &&
+         !state_.target_reached && standstill_.still() && now - set_point_.movedAt() >= kStuck;
 }
 
 void AxisCore::callBack() {

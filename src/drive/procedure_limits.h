@@ -8,8 +8,8 @@ namespace cia402::drive {
 /// A node that boots gets so many times the profile's boot time: it tries again.
 inline constexpr int kBootTimes = 3;
 
-/// An axis that coasts gets this long to come to rest. Switched on in motion it would be pulled back
-/// to where it was in that moment.
+/// An axis that coasts gets this long to come to rest. Switched on in motion it would be pulled
+/// back to where it was in that moment.
 inline constexpr Duration kComeToRest{std::chrono::seconds(10)};
 
 /// The longest that a stop may take, from the limit or from `velocity`, whichever is faster.

@@ -101,6 +101,12 @@ class Recover : public Procedure {
 
   Outcome awaitFeedback(const Context& context) {
     AxisCore& axis = context.axis;
+    // What was heard before the call may be of a drive that has gone since; one that sends only
+    // what changes is believed when it would have been missed by now.
+    const bool news =
+        axis.state().stamp > since_ ||
+        context.now - since_ > (axis.config().stale_after + 2) * axis.config().sync_period;
+    if (axis.state().feedback_valid && !news) return Outcome::running();
     if (axis.state().feedback_valid) {
       phase_ = clearable(axis) ? Phase::clearing : Phase::enabling;
       return Outcome::running();

@@ -52,8 +52,8 @@ class AxisMotion {
   Duration cycle_, timeout_;
   std::optional<double> effort_limit_;
   const std::string* owner_ = nullptr;
-  const drive::ModeSpec* mode_ = nullptr;         // for which the limiters were reset
-  std::uint32_t zero_changes_ = 0;                // of the axis, then
+  const drive::ModeSpec* mode_ = nullptr;  // for which the limiters were reset
+  std::uint32_t zero_changes_ = 0;         // of the axis, then
   std::uint32_t breaks_ = 0, interruptions_ = 0, given_up_ = 0;  // of its set-point, as last seen
   std::optional<double> command_;
   Time clock_{};      // one period a cycle, however late it is

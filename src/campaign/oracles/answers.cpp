@@ -1,5 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // What the answer to a call says is true of the motor.
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -10,7 +11,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// An answer speaks of feedback that is up to two cycles and their frames old.
+// An answer speaks of feedback that is up to three cycles and their frames old.
 constexpr Duration kFeedbackAge = 25ms;
 
 class Answers final : public Oracle {
@@ -38,7 +39,10 @@ class Answers final : public Oracle {
     };
     for (std::size_t i : call.axes) {
       const Seen& seen = seen_[i];
-      const auto lately = [&](Time time) { return view.now - time <= kFeedbackAge; };
+      const Duration cycles = 3 * view.stage.loaded().robot.bus.sync_period + 5ms;
+      const auto lately = [&](Time time) {
+        return view.now - time <= std::max(kFeedbackAge, cycles);
+      };
       const bool idle = call.verb == "set_mode" && !view.truths[i].power;
       if (says(kStands) && !says_so && !idle && !lately(seen.still)) {
         report(view, i,

@@ -77,7 +77,7 @@ class MotorLimits final : public Oracle {
                         view.now >= view.conditions.lossy && view.now >= view.conditions.foreign &&
                         view.now >= view.conditions.axes[i].cut_off;
     const Duration period = view.stage.loaded().robot.bus.sync_period;
-    if (view.now - last_sync_ > period + 1ms || !judged) axis.starved = view.now + kSyncMemory;
+    if (view.now - last_sync_ > period + 200us || !judged) axis.starved = view.now + kSyncMemory;
     const bool lags = catchesUp(view, axis, facts, truth);
     if (!judged) {
       axis.count = 0;
