@@ -34,6 +34,24 @@ AxisFacts factsOf(const drive::AxisConfig& axis, const config::BusConfig& bus, s
   return facts;
 }
 
+std::vector<RpdoPlace> rpdosOf(const Loaded& loaded) {
+  std::vector<RpdoPlace> places;
+  for (std::size_t i = 0; i < loaded.robot.axes.size(); ++i) {
+    for (const canopen::NodeConfig& node : loaded.master.nodes) {
+      if (node.node_id != loaded.robot.axes[i].node_id) continue;
+      for (const canopen::PdoConfig& pdo : node.pdos) {
+        if (pdo.direction != canopen::PdoDirection::rpdo || !pdo.enabled) continue;
+        unsigned bit = 0;
+        for (const canopen::PdoEntry& entry : pdo.entries) {
+          places.push_back({pdo.cob_id, entry.object, i, bit / 8});
+          bit += entry.bits;
+        }
+      }
+    }
+  }
+  return places;
+}
+
 double asFloat(std::uint64_t number) {
   const auto bits = static_cast<std::uint32_t>(number);
   float value = 0.0F;
@@ -72,7 +90,8 @@ drive::ControlKind AxisFacts::kind(int mode) const {
 Stage::Stage(Loaded loaded, std::uint64_t seed)
     : loaded_(std::move(loaded)),
       world_(loaded_.robot.bus.bitrate, seed),
-      host_(world_, loaded_.robot, loaded_.master) {
+      host_(world_, loaded_.robot, loaded_.master),
+      rpdos_(rpdosOf(loaded_)) {
   for (const sim::SimulatedAxis& axis : loaded_.axes) {
     sim::Drive& drive =
         world_.addDrive(axis.name, axis.definition, axis.node, axis.mechanics, axis.identity);

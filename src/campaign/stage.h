@@ -56,6 +56,14 @@ struct AxisFacts {
   double creep() const { return std::max(0.02 * velocity + 0.002, config->standstill_velocity); }
 };
 
+/// Where an RPDO, as the driver lays it out, holds an object of an axis.
+struct RpdoPlace {
+  std::uint32_t cob_id = 0;
+  canopen::ObjectId object;
+  std::size_t axis = 0;
+  unsigned byte = 0;
+};
+
 /// The world of a scene: drives, bus, and the computer with the driver.
 class Stage {
  public:
@@ -67,6 +75,8 @@ class Stage {
   const bus::Robot* driver() const { return host_.running() ? &host_.robot() : nullptr; }
   const Loaded& loaded() const { return loaded_; }
   const std::vector<AxisFacts>& axes() const { return facts_; }
+  /// All that the driver sends cyclically.
+  const std::vector<RpdoPlace>& rpdos() const { return rpdos_; }
   /// nullptr if there is none.
   const AxisFacts* find(const std::string& name) const;
   /// The axes that a call concerns: one by its name, or "all".
@@ -81,6 +91,7 @@ class Stage {
   sim::World world_;
   tools::VirtualHost host_;
   std::vector<AxisFacts> facts_;
+  std::vector<RpdoPlace> rpdos_;
   struct Objects {
     const sim::Entry *mode, *position, *effort;
   };

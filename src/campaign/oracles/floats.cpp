@@ -13,9 +13,11 @@ bool sound(std::uint32_t bits) { return (bits & 0x7F800000) != 0x7F800000 && bit
 class Floats final : public Oracle {
  public:
   explicit Floats(const Stage& stage) : received_(stage.axes().size()) {
-    for (const AxisFacts& facts : stage.axes()) {
-      for (const canopen::NodeConfig& node : stage.loaded().master.nodes) {
-        if (node.node_id == facts.config->node_id) findFloats(node, facts);
+    for (const RpdoPlace& place : stage.rpdos()) {
+      const AxisFacts& facts = stage.axes()[place.axis];
+      const drive::ObjectSpec* spec = facts.config->profile->find(place.object);
+      if (spec != nullptr && spec->encoding == drive::Encoding::float32) {
+        places_[place.cob_id].push_back(place);
       }
     }
   }
@@ -24,7 +26,7 @@ class Floats final : public Oracle {
   void onFrame(const can::Frame& frame, const View& view) override {
     const auto found = places_.find(frame.id);
     if (found == places_.end() || frame.error || frame.remote) return;
-    for (const Place& place : found->second) {
+    for (const RpdoPlace& place : found->second) {
       if (frame.size < place.byte + 4) continue;
       std::uint32_t bits = 0;
       for (unsigned i = 0; i < 4; ++i) {
@@ -43,31 +45,13 @@ class Floats final : public Oracle {
   }
 
  private:
-  struct Place {
-    std::size_t axis;
-    unsigned byte;
-  };
-
-  void findFloats(const canopen::NodeConfig& node, const AxisFacts& facts) {
-    for (const canopen::PdoConfig& pdo : node.pdos) {
-      if (pdo.direction != canopen::PdoDirection::rpdo || !pdo.enabled) continue;
-      unsigned bit = 0;
-      for (const canopen::PdoEntry& entry : pdo.entries) {
-        const drive::ObjectSpec* spec = facts.config->profile->find(entry.object);
-        if (spec != nullptr && spec->encoding == drive::Encoding::float32) {
-          places_[pdo.cob_id].push_back({facts.index, bit / 8});
-        }
-        bit += entry.bits;
-      }
-    }
-  }
   static std::string hex(std::uint32_t bits) {
     char text[16];
     std::snprintf(text, sizeof text, "0x%08X", bits);
     return text;
   }
 
-  std::map<std::uint32_t, std::vector<Place>> places_;
+  std::map<std::uint32_t, std::vector<RpdoPlace>> places_;
   std::vector<unsigned> received_;
 };
 

@@ -20,14 +20,7 @@ constexpr std::uint32_t kSync = 0x80;
 class MotorLimits final : public Oracle {
  public:
   explicit MotorLimits(const Stage& stage) : axes_(stage.axes().size()) {
-    for (const AxisFacts& facts : stage.axes()) {
-      for (const canopen::NodeConfig& node : stage.loaded().master.nodes) {
-        if (node.node_id != facts.config->node_id) continue;
-        for (const canopen::PdoConfig& pdo : node.pdos) {
-          if (pdo.direction == canopen::PdoDirection::rpdo) rpdos_[pdo.cob_id] = facts.index;
-        }
-      }
-    }
+    for (const RpdoPlace& place : stage.rpdos()) rpdos_[place.cob_id] = place.axis;
   }
   const char* name() const override { return "motor_limits"; }
 

@@ -19,10 +19,9 @@ constexpr canopen::ObjectId kTargetPosition{0x607A, 0}, kControlword{0x6040, 0};
 class TargetSteps final : public Oracle {
  public:
   explicit TargetSteps(const Stage& stage) {
-    for (const AxisFacts& facts : stage.axes()) {
-      for (const canopen::NodeConfig& node : stage.loaded().master.nodes) {
-        if (node.node_id == facts.config->node_id) findTargets(node, facts.index);
-      }
+    for (const RpdoPlace& place : stage.rpdos()) {
+      if (place.object == kTargetPosition) targets_[place.cob_id] = place;
+      if (place.object == kControlword) controls_[place.cob_id] = place;
     }
     last_.resize(stage.axes().size());
     controlwords_.resize(stage.axes().size());
@@ -39,7 +38,7 @@ class TargetSteps final : public Oracle {
     }
     const auto found = targets_.find(frame.id);
     if (found == targets_.end()) return;
-    const Place& place = found->second;
+    const RpdoPlace& place = found->second;
     if (frame.size < place.byte + 4) return;
     judge(view, place.axis, valueIn(frame, place, view.stage.axes()[place.axis]));
   }
@@ -54,24 +53,8 @@ class TargetSteps final : public Oracle {
   }
 
  private:
-  struct Place {
-    std::size_t axis = 0;
-    unsigned byte = 0;
-  };
-
-  void findTargets(const canopen::NodeConfig& node, std::size_t axis) {
-    for (const canopen::PdoConfig& pdo : node.pdos) {
-      if (pdo.direction != canopen::PdoDirection::rpdo || !pdo.enabled) continue;
-      unsigned bit = 0;
-      for (const canopen::PdoEntry& entry : pdo.entries) {
-        if (entry.object == kTargetPosition) targets_[pdo.cob_id] = {axis, bit / 8};
-        if (entry.object == kControlword) controls_[pdo.cob_id] = {axis, bit / 8};
-        bit += entry.bits;
-      }
-    }
-  }
   /// In joint units.
-  static double valueIn(const can::Frame& frame, const Place& place, const AxisFacts& facts) {
+  static double valueIn(const can::Frame& frame, const RpdoPlace& place, const AxisFacts& facts) {
     std::uint32_t raw = 0;
     for (unsigned i = 0; i < 4; ++i) {
       raw |= static_cast<std::uint32_t>(frame.data[place.byte + i]) << 8 * i;
@@ -116,7 +99,7 @@ class TargetSteps final : public Oracle {
     last_[i] = value;
   }
 
-  std::map<std::uint32_t, Place> targets_, controls_;  // by COB-ID
+  std::map<std::uint32_t, RpdoPlace> targets_, controls_;  // by COB-ID
   std::vector<int> controlwords_;
   std::vector<bool> unsure_;  // another mode than kMode was asked for at some time
   std::vector<std::optional<double>> last_;
