@@ -16,18 +16,6 @@ bus::Answer write(Scene& scene, const std::string& axis, const std::string& obje
   return call(scene, bus::WriteObjectCommand{axis, object, value});
 }
 
-bus::Answer declare(Scene& scene, const std::string& name, double position) {
-  drive::ProcedureRequest request;
-  request.kind = ProcedureKind::set_position;
-  request.position = position;
-  return call(scene, bus::ProcedureCommand{name, request});
-}
-
-void expectNothingMoved(Scene& scene, const std::string& name) {
-  EXPECT_LT(scene.seen(name).travel(), 1e-3) << scene.told();
-  EXPECT_EQ(scene.state(name).error_code, 0) << scene.told();
-}
-
 class SavedZero : public testing::Test {
  protected:
   void SetUp() override {

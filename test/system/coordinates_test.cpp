@@ -36,19 +36,6 @@ std::string homed(double offset) {
          std::to_string(offset) + "}" + standing(0.0, ", lower_limit_switch: -0.5");
 }
 
-bus::Answer declare(Scene& scene, const std::string& name, double position) {
-  drive::ProcedureRequest request;
-  request.kind = ProcedureKind::set_position;
-  request.position = position;
-  return call(scene, bus::ProcedureCommand{name, request});
-}
-
-void expectNothingMoved(Scene& scene, const std::string& name) {
-  EXPECT_LT(scene.seen(name).travel(), 1e-3) << scene.told();
-  EXPECT_LT(scene.seen(name).fastest, 0.02);
-  EXPECT_EQ(scene.state(name).error_code, 0) << scene.told();
-}
-
 TEST(Coordinates, EnablingBeforeHomingMovesNothingThoughTheDrivesZeroIsOutsideTheLimits) {
   Scene scene(loadText(genericPair(homed(0.25) + limits(0.2, 2.0))));
   ASSERT_TRUE(scene.boot());

@@ -7,19 +7,14 @@ namespace {
 
 using namespace std::chrono_literals;
 using drive::ProcedureKind;
+using testing::HasSubstr;
 
-void begin(Scene& scene) {
-  ASSERT_TRUE(scene.boot()) << scene.told();
-  const bus::Answer enabled = scene.procedure(ProcedureKind::enable);
-  ASSERT_TRUE(enabled.success) << enabled.message;
-  scene.run(100ms);
-}
+constexpr double kVelocity = 1.5;  // limit of genericPair()
 
 // The lengths of the stream end it in each phase of being called back.
 TEST(HeldMotor, StaysWhereItIsWhenItsLimitSwitchIsReleased) {
   for (const Duration pushed : {300ms, 320ms, 340ms, 360ms, 380ms, 400ms}) {
-    Scene scene(loadText(genericPair(", simulation: {upper_limit_switch: 0.1}")));
-    begin(scene);
+    ReadyScene scene(genericPair(", simulation: {upper_limit_switch: 0.1}"));
     scene.stream("left", 2.0, pushed);
     scene.run(1s);
     ASSERT_GT(scene.position("left"), 0.09) << "it did not reach the switch";
@@ -32,8 +27,7 @@ TEST(HeldMotor, StaysWhereItIsWhenItsLimitSwitchIsReleased) {
 
 TEST(HeldMotor, StaysWhereItIsWhenItsRotorIsLetGo) {
   for (const Duration pushed : {150ms, 200ms, 250ms, 300ms}) {
-    Scene scene(loadText(damiaoJoint()));
-    begin(scene);
+    ReadyScene scene(damiaoJoint());
     scene.inject("joint", "blocked_rotor");
     scene.stream("joint", -1.0, pushed);
     scene.run(1s);
@@ -42,6 +36,60 @@ TEST(HeldMotor, StaysWhereItIsWhenItsRotorIsLetGo) {
     scene.forget();
     scene.run(2s);
     EXPECT_LT(scene.seen("joint").travel(), 1e-3) << toSeconds(pushed);
+  }
+}
+
+TEST(HeldMotor, HasNoSetPointsRunAwayWhileItsBrakeHoldsIt) {
+  ReadyScene scene(genericPair(", simulation: {brake_delay: 0.3}"));
+  ASSERT_TRUE(scene.procedure(ProcedureKind::disable).success);
+  const auto enabled = scene.begin(ProcedureKind::enable, "left");
+  double highest_target = 0.0;
+  const Time end = scene.now() + 2s;
+  while (scene.now() < end) {
+    (void)scene.setpoint("left", 1.0);
+    if (scene.truth("left").power_stage_on && scene.position("left") < 0.01) {
+      highest_target = std::max(highest_target, scene.axis("left").target());
+    }
+    scene.run(4ms);
+  }
+  ASSERT_TRUE(enabled->has_value());
+  EXPECT_TRUE((*enabled)->success) << (*enabled)->message;
+  EXPECT_LT(highest_target, 0.02);
+  EXPECT_NE(scene.state("left").state, drive::State::fault) << scene.told();
+  EXPECT_LT(scene.seen("left").fastest, 1.05 * kVelocity);
+  EXPECT_NEAR(scene.position("left"), 1.0, 1e-3);
+}
+
+TEST(HeldMotor, HasItsSetPointsCalledBackAtALimitSwitch) {
+  ReadyScene scene(genericPair(", simulation: {upper_limit_switch: 0.5}"));
+  scene.forget();
+  scene.stream("left", 2.0, 2s);
+  EXPECT_THAT(scene.told(), HasSubstr("left (node 1): the motor stands while its set-points run"));
+  EXPECT_THAT(scene.told(), HasSubstr("internal limit active"));
+  EXPECT_LT(scene.axis("left").target(), 0.5 + 0.1);
+  scene.forget();
+  scene.stream("left", 0.2, 1s);  // the way back is free
+  EXPECT_LT(scene.seen("left").fastest, 1.05 * kVelocity);
+  EXPECT_NEAR(scene.position("left"), 0.2, 1e-2);
+}
+
+TEST(HeldMotor, TurnsBackFromALimitSwitchByItsRamp) {
+  for (const Duration pushed : {310ms, 340ms, 370ms, 400ms}) {  // called back just before, or not
+    ReadyScene scene(genericPair(", simulation: {upper_limit_switch: 0.1}"));
+    scene.stream("left", 2.0, pushed);
+    double before = scene.velocity("left"), hardest = 0.0;
+    const Time end = scene.now() + 400ms;
+    while (scene.now() < end) {
+      ASSERT_EQ(scene.setpoint("left", -1.0), "");
+      scene.run(20ms);
+      // It may stop at the switch as hard as it can, and has to leave it by its ramp.
+      if (scene.velocity("left") < before) {
+        hardest = std::max(hardest, (before - scene.velocity("left")) / 0.02);
+      }
+      before = scene.velocity("left");
+    }
+    EXPECT_LT(before, -0.5) << "it did not turn back";
+    EXPECT_LT(hardest, 1.3 * 4.0) << toSeconds(pushed);
   }
 }
 

@@ -254,4 +254,33 @@ std::shared_ptr<std::optional<bus::Answer>> ask(Scene& scene, Body body) {
   return answer;
 }
 
+/// A robot that is enabled, in the mode that its YAML says or in another one.
+struct ReadyScene : Scene {
+  explicit ReadyScene(const std::string& yaml, const std::string& mode = {})
+      : Scene(loadText(yaml)) {
+    EXPECT_TRUE(boot()) << told();
+    if (!mode.empty()) {
+      EXPECT_TRUE(procedure(drive::ProcedureKind::set_mode, {}, mode).success);
+    }
+    const bus::Answer enabled = procedure(drive::ProcedureKind::enable);
+    EXPECT_TRUE(enabled.success) << enabled.message;
+    run(std::chrono::milliseconds(100));
+  }
+};
+
+/// Calls the place where a joint stands `position`.
+inline bus::Answer declare(Scene& scene, const std::string& name, double position) {
+  drive::ProcedureRequest request;
+  request.kind = drive::ProcedureKind::set_position;
+  request.position = position;
+  return call(scene, bus::ProcedureCommand{name, request});
+}
+
+/// Since forget(), by its motor; and it has no error.
+inline void expectNothingMoved(Scene& scene, const std::string& name) {
+  EXPECT_LT(scene.seen(name).travel(), 1e-3) << scene.told();
+  EXPECT_LT(scene.seen(name).fastest, 0.02);
+  EXPECT_EQ(scene.state(name).error_code, 0) << scene.told();
+}
+
 }  // namespace cia402

@@ -11,31 +11,11 @@ using testing::HasSubstr;
 
 constexpr double kVelocity = 1.5;  // limit of genericPair()
 
-drive::ProcedureRequest declare(double position) {
-  drive::ProcedureRequest request;
-  request.kind = ProcedureKind::set_position;
-  request.position = position;
-  return request;
-}
-
-struct Rig : Scene {
-  explicit Rig(const std::string& yaml, const std::string& mode = "cyclic_position")
-      : Scene(loadText(yaml)) {
-    EXPECT_TRUE(boot()) << told();
-    if (mode != "cyclic_position") {
-      EXPECT_TRUE(procedure(ProcedureKind::set_mode, {}, mode).success);
-    }
-    const bus::Answer enabled = procedure(ProcedureKind::enable);
-    EXPECT_TRUE(enabled.success) << enabled.message;
-    run(100ms);
-  }
-};
-
 TEST(SetPoints, AVelocityThatIsNobodysAnyMoreEndsWithTheCallThatTookItsStream) {
-  Rig scene(genericPair(), "cyclic_velocity");
+  ReadyScene scene(genericPair(), "cyclic_velocity");
   ASSERT_EQ(scene.setpoint("left", 1.0), "");
   scene.run(8ms);
-  (void)call(scene, bus::ProcedureCommand{"left", declare(0.4)});
+  (void)declare(scene, "left", 0.4);
   scene.run(500ms);
   scene.forget();
   scene.run(2s);
@@ -43,9 +23,9 @@ TEST(SetPoints, AVelocityThatIsNobodysAnyMoreEndsWithTheCallThatTookItsStream) {
 }
 
 TEST(SetPoints, AStreamThatCreepsEndsWithTheCallThatTookIt) {
-  Rig scene(genericPair(), "cyclic_velocity");
+  ReadyScene scene(genericPair(), "cyclic_velocity");
   scene.stream("left", 0.008, 300ms);
-  (void)call(scene, bus::ProcedureCommand{"left", declare(0.4)});
+  (void)declare(scene, "left", 0.4);
   scene.run(1s);
   scene.forget();
   scene.run(5s);
@@ -53,7 +33,7 @@ TEST(SetPoints, AStreamThatCreepsEndsWithTheCallThatTookIt) {
 }
 
 TEST(SetPoints, ASecondHaltMovesNothing) {
-  Rig scene(genericPair());
+  ReadyScene scene(genericPair());
   scene.stream("left", 2.0, 700ms);
   ASSERT_GT(std::abs(scene.velocity("left")), 1.0);
   ASSERT_TRUE(scene.procedure(ProcedureKind::halt, "left").success);
@@ -67,13 +47,13 @@ TEST(SetPoints, ASecondHaltMovesNothing) {
 
 TEST(SetPoints, DeclaringThePositionOfAHaltedAxisMovesNothing) {
   for (const std::string& yaml : {genericPair(), damiaoJoint()}) {
-    Rig scene(yaml);
+    ReadyScene scene(yaml);
     const std::string axis = scene.loaded().robot.axes[0].name;
     scene.stream(axis, scene.state(axis).position + 0.3, 400ms);
     ASSERT_TRUE(scene.procedure(ProcedureKind::halt, axis).success);
     scene.run(300ms);
     scene.forget();
-    const bus::Answer answer = call(scene, bus::ProcedureCommand{axis, declare(0.3)});
+    const bus::Answer answer = declare(scene, axis, 0.3);
     scene.run(1s);
     EXPECT_LT(scene.seen(axis).travel(), 1e-3) << answer.message;
     EXPECT_NE(scene.state(axis).state, drive::State::fault);
@@ -82,7 +62,7 @@ TEST(SetPoints, DeclaringThePositionOfAHaltedAxisMovesNothing) {
 
 TEST(SetPoints, ALateCycleDuringAHaltMovesNothingAtOnce) {
   for (const std::string& yaml : {genericPair(), damiaoJoint()}) {
-    Rig scene(yaml);
+    ReadyScene scene(yaml);
     const std::string axis = scene.loaded().robot.axes[0].name;
     const double limit = *scene.loaded().robot.axes[0].limits.velocity;
     const double towards = scene.state(axis).position > 1.0 ? -1.5 : 2.0;
@@ -100,7 +80,7 @@ TEST(SetPoints, ALateCycleDuringAHaltMovesNothingAtOnce) {
 }
 
 TEST(SetPoints, ALateCycleDuringTheShutdownStartsNoVelocityAnew) {
-  Rig scene(genericPair(), "cyclic_velocity");
+  ReadyScene scene(genericPair(), "cyclic_velocity");
   scene.stream("left", 1.0, 700ms);
   scene.robot().robot().beginShutdown(scene.now());
   scene.run(120ms);  // of 250 ms
@@ -114,7 +94,7 @@ TEST(SetPoints, ALateCycleDuringTheShutdownStartsNoVelocityAnew) {
 }
 
 TEST(SetPoints, ATrajectoryGoesOnFromRestAfterALateCycle) {
-  Rig scene(genericPair());
+  ReadyScene scene(genericPair());
   ASSERT_TRUE(scene.move({1.2, 1.2}, 2s).success);
   scene.run(1s);
   ASSERT_GT(scene.velocity("left"), 0.8);
@@ -134,7 +114,7 @@ TEST(SetPoints, ATrajectoryGoesOnFromRestAfterALateCycle) {
 }
 
 TEST(SetPoints, ADisableWhoseDriveIsNotHeardDoesNotCutItsQuickStop) {
-  Rig scene(genericPair(), "cyclic_velocity");
+  ReadyScene scene(genericPair(), "cyclic_velocity");
   scene.stream("left", kVelocity, 800ms);
   ASSERT_GT(std::abs(scene.velocity("left")), 1.3);
   sim::FaultRule rule;  // no TPDO arrives any more
@@ -160,62 +140,8 @@ TEST(SetPoints, ADisableWhoseDriveIsNotHeardDoesNotCutItsQuickStop) {
   EXPECT_FALSE(scene.truth("left").power_stage_on);
 }
 
-TEST(SetPoints, DoNotRunAwayFromAMotorThatItsBrakeHolds) {
-  Rig scene(genericPair(", simulation: {brake_delay: 0.3}"));
-  ASSERT_TRUE(scene.procedure(ProcedureKind::disable).success);
-  const auto enabled = scene.begin(ProcedureKind::enable, "left");
-  double highest_target = 0.0;
-  const Time end = scene.now() + 2s;
-  while (scene.now() < end) {
-    (void)scene.setpoint("left", 1.0);
-    if (scene.truth("left").power_stage_on && scene.position("left") < 0.01) {
-      highest_target = std::max(highest_target, scene.axis("left").target());
-    }
-    scene.run(4ms);
-  }
-  ASSERT_TRUE(enabled->has_value());
-  EXPECT_TRUE((*enabled)->success) << (*enabled)->message;
-  EXPECT_LT(highest_target, 0.02);
-  EXPECT_NE(scene.state("left").state, drive::State::fault) << scene.told();
-  EXPECT_LT(scene.seen("left").fastest, 1.05 * kVelocity);
-  EXPECT_NEAR(scene.position("left"), 1.0, 1e-3);
-}
-
-TEST(SetPoints, AreCalledBackFromALimitSwitchAndSaySo) {
-  Rig scene(genericPair(", simulation: {upper_limit_switch: 0.5}"));
-  scene.forget();
-  scene.stream("left", 2.0, 2s);
-  EXPECT_THAT(scene.told(), HasSubstr("left (node 1): the motor stands while its set-points run"));
-  EXPECT_THAT(scene.told(), HasSubstr("internal limit active"));
-  EXPECT_LT(scene.axis("left").target(), 0.5 + 0.1);
-  scene.forget();
-  scene.stream("left", 0.2, 1s);  // the way back is free
-  EXPECT_LT(scene.seen("left").fastest, 1.05 * kVelocity);
-  EXPECT_NEAR(scene.position("left"), 0.2, 1e-2);
-}
-
-TEST(SetPoints, ThatTurnBackFromALimitSwitchBeginAtTheMotor) {
-  for (const Duration pushed : {310ms, 340ms, 370ms, 400ms}) {  // called back just before, or not
-    Rig scene(genericPair(", simulation: {upper_limit_switch: 0.1}"));
-    scene.stream("left", 2.0, pushed);
-    double before = scene.velocity("left"), hardest = 0.0;
-    const Time end = scene.now() + 400ms;
-    while (scene.now() < end) {
-      ASSERT_EQ(scene.setpoint("left", -1.0), "");
-      scene.run(20ms);
-      // It may stop at the switch as hard as it can, and has to leave it by its ramp.
-      if (scene.velocity("left") < before) {
-        hardest = std::max(hardest, (before - scene.velocity("left")) / 0.02);
-      }
-      before = scene.velocity("left");
-    }
-    EXPECT_LT(before, -0.5) << "it did not turn back";
-    EXPECT_LT(hardest, 1.3 * 4.0) << toSeconds(pushed);
-  }
-}
-
 TEST(SetPoints, AHaltDuringAQuickStopAnswersAtRest) {
-  Rig scene(genericPair());
+  ReadyScene scene(genericPair());
   scene.stream("left", 2.0, 700ms);
   (void)scene.begin(ProcedureKind::quick_stop, "left");
   scene.run(4ms);
@@ -226,7 +152,7 @@ TEST(SetPoints, AHaltDuringAQuickStopAnswersAtRest) {
 
 TEST(SetPoints, AHaltInTheSameCycleTakesNoQuickStopBack) {
   for (const auto kind : {ProcedureKind::quick_stop, ProcedureKind::disable}) {
-    Rig scene(genericPair());
+    ReadyScene scene(genericPair());
     scene.stream("left", 2.0, 700ms);
     const double speed = scene.velocity("left");
     ASSERT_GT(speed, 1.0);
@@ -264,7 +190,7 @@ class AStopJustAfterMotionBegan : public testing::TestWithParam<EarlyStop> {};
 TEST_P(AStopJustAfterMotionBegan, IsAnsweredAtRestAndTurnsNothingBack) {
   for (const auto kind : {ProcedureKind::halt, ProcedureKind::disable, ProcedureKind::quick_stop}) {
     for (const Duration after : {4ms, 8ms, 12ms, 20ms, 40ms, 60ms}) {
-      Rig scene(GetParam().yaml);
+      ReadyScene scene(GetParam().yaml);
       const std::string axis = scene.loaded().robot.axes[0].name;
       ASSERT_TRUE(scene.procedure(ProcedureKind::set_mode, axis, GetParam().mode).success);
       scene.run(200ms);
