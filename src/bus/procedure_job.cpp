@@ -139,13 +139,12 @@ void ProcedureJob::judge(const std::vector<drive::Axis>& axes) {
 }
 
 /// What is told of several axes is told of all by news: one that has been silent of late shows soon
-/// what became of it, or is known to be lost.
+/// what became of it, or its feedback is stale.
 bool ProcedureJob::awaitsNews(const std::vector<drive::Axis>& axes, Time now) const {
   if (entries_.size() == 1 || !enables(request_.kind)) return false;
   return std::any_of(entries_.begin(), entries_.end(), [&](const Entry& entry) {
     const drive::Axis& axis = axes[entry.item.axis];
-    return entry.stage == Stage::succeeded && axis.state().feedback_valid &&
-           now - axis.state().stamp > 3 * axis.config().sync_period;
+    return entry.stage == Stage::succeeded && axis.state().feedback_valid && !axis.heardLately(now);
   });
 }
 

@@ -31,11 +31,13 @@ void Robot::readHistoryAfterFault(std::size_t axis, Time now) {
 void Robot::watchAxes(Time now) {
   for (AxisReporter& reporter : reporters_) reporter.tick(now);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    watchPdos(i, now);
-    if (news_[i].history_wanted) readHistoryAfterFault(i, now);
+    AxisNews& news = news_[i];
+    const bool pdos_fail = nodes_[i]->image().troubles() != news.stale_count + news.wrong_lengths;
+    const bool failed_pdos_shown = !news.words.stale.empty();  // looked at again
+    if (pdos_fail || failed_pdos_shown) watchPdos(i, now);
+    if (news.history_wanted) readHistoryAfterFault(i, now);
     const drive::AxisState& state = axes_[i].state();
     const drive::ProcedureStatus& procedure = axes_[i].procedure();
-    AxisNews& news = news_[i];
     const bool well = state.health == canopen::NodeHealth::ready &&
                       state.state != drive::State::fault &&
                       state.state != drive::State::fault_reaction_active && !state.warning;

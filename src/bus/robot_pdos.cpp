@@ -16,8 +16,6 @@ void Robot::watchPdos(std::size_t axis, Time now) {
   const canopen::ProcessImage& image = node.image();
   const bool short_or_long = image.wrongLengths() != news.wrong_lengths;
   const bool stale = image.staleCount() != news.stale_count;
-  const bool shown = !news.words.stale.empty();  // looked at again, though nothing happened
-  if (!short_or_long && !stale && !shown) return;
   if (now < news.pdos_told + kPdoNewsInterval) return;
   news.pdos_told = now;
   const std::string overdue = canopen::staleText(image);

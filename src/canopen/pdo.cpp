@@ -81,12 +81,15 @@ void ProcessImage::add(const PdoConfig& config) {
   pdo.request_every = std::max<std::uint16_t>(config.request_every, 1);
   pdo.refresh_every = std::max<std::uint16_t>(config.refresh_every, 1);
   if (isCyclic(config.transmission)) {
-    pdo.silent_limit = std::uint32_t{config.stale_after} * config.transmission;
+    pdo.every = config.transmission;
+    pdo.silent_limit = std::uint32_t{config.stale_after} * pdo.every;
   } else if (isRequested(config.transmission)) {
-    pdo.silent_limit = std::uint32_t{config.stale_after} * pdo.request_every;
-  } else if (isEventDriven(config.transmission) && config.event_timer != 0) {
-    pdo.age_limit = config.stale_after * (std::chrono::milliseconds(config.event_timer) +
-                                          std::chrono::microseconds(100) * config.inhibit);
+    pdo.every = pdo.request_every;
+    pdo.silent_limit = std::uint32_t{config.stale_after} * pdo.every;
+  } else if (isEventDriven(config.transmission)) {
+    pdo.event_interval = std::chrono::milliseconds(config.event_timer) +
+                         std::chrono::microseconds(100) * config.inhibit;
+    if (config.event_timer != 0) pdo.age_limit = config.stale_after * pdo.event_interval;
   }
   (input ? tpdos_ : rpdos_).push_back(std::move(pdo));
 }

@@ -9,6 +9,7 @@
 #include "procedure_limits.h"
 
 namespace cia402::drive {
+
 struct Axis::Impl {
   Impl(AxisConfig config, canopen::Node& node)
       : core(std::move(config), node), boot_ups(node.bootUps()) {}
@@ -17,6 +18,7 @@ struct Axis::Impl {
   void advance(Time now);
   void finish(bool success, std::string message);
   void preempt(ProcedureKind by);
+  void stepProcedure(Time now);
   /// Why nothing but a stop can begin now; empty: it can.
   std::string busyRefusal(ProcedureKind kind) const;
   /// Ends a procedure that would enable the axis.
@@ -56,6 +58,18 @@ void Axis::Impl::watchNode() {
   }
   was_ready = ready;
   boot_ups = count;
+}
+
+/// What fails the procedure that runs is of no interest where none does.
+void Axis::Impl::stepProcedure(Time now) {
+  const std::string failure = core.takeFailure();
+  if (!procedure) return;
+  const bool waits = (lost || !core.nodeReady()) && procedure->survivesNodeLoss();
+  if (!failure.empty() && !waits) {
+    finish(false, std::string(toString(status.kind)) + " failed: " + failure);
+  } else {
+    advance(now);
+  }
 }
 
 void Axis::Impl::advance(Time now) {
@@ -108,15 +122,8 @@ void Axis::readFeedback(Time now) {
 void Axis::update(Time now) {
   Impl& impl = *impl_;
   if (impl.watched != now) impl.watchNode();  // else readFeedback() just did
-  std::string failure = impl.core.supervise(now);
-  if (impl.procedure) {
-    const bool waits = (impl.lost || !impl.core.nodeReady()) && impl.procedure->survivesNodeLoss();
-    if (!failure.empty() && !waits) {
-      impl.finish(false, std::string(toString(impl.status.kind)) + " failed: " + failure);
-    } else {
-      impl.advance(now);
-    }
-  }
+  impl.core.supervise(now);
+  if (impl.procedure || impl.core.failed()) impl.stepProcedure(now);
   impl.lost = false;
   impl.core.updateReadiness(impl.status.running, now);
 }
@@ -190,6 +197,7 @@ void Axis::endCalibration() { impl_->calibrating.clear(); }
 bool Axis::setTarget(double value) { return impl_->core.setTarget(value); }
 void Axis::stopSetPoint() { impl_->core.stopSetPoint(); }
 std::string Axis::motionRefusal() const { return impl_->core.motionRefusal(impl_->status.running); }
+bool Axis::heardLately(Time now) const { return impl_->core.heardLately(now); }
 std::string Axis::obstacle() const { return impl_->core.obstacle(); }
 const std::string& Axis::modeName() const { return impl_->core.mode().spec->name; }
 

@@ -31,7 +31,8 @@ AxisCore::AxisCore(AxisConfig config, canopen::Node& node)
       mode_(objects_.channel(config_.mode)),
       position_(objects_.position.conversion),
       limits_(config_),
-      set_point_(setPointLimits(config_), config_.sync_period) {
+      set_point_(setPointLimits(config_), config_.sync_period),
+      following_(config_.standstill_velocity, config_.sync_period) {
   std::size_t longest = 0;
   for (const ModeSpec& spec : profile().modes) {
     longest = std::max(longest, spec.entry_writes.size());
@@ -67,7 +68,8 @@ void AxisCore::switchOff() {
 
 void AxisCore::leaveOperation() {
   in_operation_ = state_.ready_for_motion = false;
-  brake_released_ = running_since_ = kNever;
+  brake_released_ = kNever;
+  following_.end();
   homing_start_ = effort_streamed_ = false;
   releaseHalt();
   handshake_.reset(target_raw_);
@@ -80,49 +82,50 @@ bool AxisCore::faulted() const {
 
 bool AxisCore::powerOff() const { return powerStageOff(state_.state); }
 
-std::string AxisCore::supervise(Time now) {
-  std::string failure;
+void AxisCore::supervise(Time now) {
   if (stop_ticket_) watchStopBySdo();
   if (now > written_ + 2 * config_.sync_period && written_ != Time{}) onLateCycle(now);
-  if (!failure_.empty()) failure = takeFailure();
-  if (!nodeReady()) return failure;
+  if (!nodeReady()) return;
   keepLimits();
   const bool commanded = goal_ != Goal::disabled && goal_ != Goal::quick_stop;
-  if (commanded && !state_.feedback_valid) {
-    setGoal(Goal::quick_stop);
-    failure = who() + ": no usable statusword (6041:00) and position (6064:00): " + feedbackText() +
-              "; quick stop is commanded. Check bus load, cable and the drive's TPDOs";
-    notify(failure);
-    return failure;
-  }
+  if (commanded && !state_.feedback_valid) return stopUnheard();
   const State state = state_.state;
-  const bool undecodable =
-      state == State::unknown && now - known_state_ <= config_.undecodable_timeout;
-  if (in_operation_ && state != State::operation_enabled && !undecodable) {
-    failure = who() + ": the drive left operation enabled by itself: " + stateText() + "; " +
-              (faulted() || state_.error_code != 0 ? faultText() : emergencyText()) +
-              (faulted() ? "" : "; enable brings it back once the reason is gone");
-    // Switching off would cut a quick stop ramp of the drive short.
-    setGoal(state == State::quick_stop_active ? Goal::quick_stop : Goal::disabled);
-    notify(failure);
-    return failure;
-  }
-  if (in_operation_ && state_.warning && profile().warning_stops) {
-    failure = who() + ": the drive warns (statusword bit 7), which makes it stop like a fault: " +
-              faultText();
-    setGoal(Goal::quick_stop);  // what the drive does itself; switching off would let it coast
-    notify(failure);
-    return failure;
-  }
-  if (in_operation_) watchFollowing(now);
-  if (!in_operation_ && goal_ == Goal::enabled && state == State::operation_enabled) {
+  if (in_operation_) {
+    const bool undecodable =
+        state == State::unknown && now - known_state_ <= config_.undecodable_timeout;
+    if (state != State::operation_enabled && !undecodable) return giveUpOperation();
+    if (state_.warning && profile().warning_stops) return stopForWarning();
+    const bool has_bit = mode_->spec->follows_command_bit.has_value();
+    if (!following_.leaves(standstill_.moving(), has_bit)) watchFollowing(now);
+  } else if (goal_ == Goal::enabled && state == State::operation_enabled) {
     in_operation_ = true;
     brake_released_ = now + profile().timing.brake_release;
-    in_operation_since_ = now;
-    follows_ = follows_shown_ = left_behind_ = false;
+    following_.begin(now);
     neutralizeTarget();
   }
-  return failure;
+}
+
+void AxisCore::stopUnheard() {
+  setGoal(Goal::quick_stop);
+  failure_ = who() + ": no usable statusword (6041:00) and position (6064:00): " + feedbackText() +
+             "; quick stop is commanded. Check bus load, cable and the drive's TPDOs";
+  notify(failure_);
+}
+
+void AxisCore::giveUpOperation() {
+  failure_ = who() + ": the drive left operation enabled by itself: " + stateText() + "; " +
+             (faulted() || state_.error_code != 0 ? faultText() : emergencyText()) +
+             (faulted() ? "" : "; enable brings it back once the reason is gone");
+  // Switching off would cut a quick stop ramp of the drive short.
+  setGoal(state_.state == State::quick_stop_active ? Goal::quick_stop : Goal::disabled);
+  notify(failure_);
+}
+
+void AxisCore::stopForWarning() {
+  failure_ = who() + ": the drive warns (statusword bit 7), which makes it stop like a fault: " +
+             faultText();
+  setGoal(Goal::quick_stop);  // what the drive does itself; switching off would let it coast
+  notify(failure_);
 }
 
 void AxisCore::onLateCycle(Time now) {

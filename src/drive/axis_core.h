@@ -13,12 +13,10 @@
 #include "cia402_driver/drive/set_point.h"
 #include "cia402_driver/drive/set_point_handshake.h"
 #include "cia402_driver/drive/standstill.h"
+#include "follow_watch.h"
 #include "position_limits.h"
 
 namespace cia402::drive {
-
-/// A drive that never shows that it follows its set-points is waited for so long, once.
-inline constexpr Duration kFollowPatience{std::chrono::seconds(1)};
 
 /// The axis without its procedures: feedback, state machine, targets, and the reactions that must
 /// not wait for anybody. Procedures tell it where to go and watch it.
@@ -37,9 +35,11 @@ class AxisCore {
 
   // --- The cycle -------------------------------------------------------------------------------
   void readFeedback(Time now);
-  /// Reacts to what the feedback says. @return why a running procedure must fail; empty: nothing
-  std::string supervise(Time now);
-  /// Why a procedure that ran until now must fail (the node was lost); empty: nothing.
+  /// Reacts to what the feedback says.
+  void supervise(Time now);
+  /// A procedure that runs must fail.
+  bool failed() const { return !failure_.empty(); }
+  /// Why: the node was lost, the drive does something else; empty: it need not.
   std::string takeFailure() { return std::exchange(failure_, std::string()); }
   /// @param busy a procedure runs
   void updateReadiness(bool busy, Time now);
@@ -62,11 +62,17 @@ class AxisCore {
   bool inOperation() const { return in_operation_; }
   /// In operation, and the drive follows its set-points: the time that the brake needs is over, and
   /// the mode's bit for it is set. A drive that never sets that bit is waited for once.
-  bool brakeReleased(Time now) const { return in_operation_ && now >= brake_released_ && follows_; }
+  bool brakeReleased(Time now) const {
+    return in_operation_ && now >= brake_released_ && following_.follows();
+  }
   /// RPDOs with the controlword sent so far.
   std::uint64_t controlwordFrames() const;
   /// No motion is possible by this drive: the power stage is off, as far as the statusword says.
   bool powerOff() const;
+
+  /// The newest feedback is as new as it can be: none that was due has failed to come. Of a drive
+  /// that sends only what changes nothing is due.
+  bool heardLately(Time now) const;
 
   // --- Modes -----------------------------------------------------------------------------------
   const ModeChannel& mode() const { return *mode_; }
@@ -181,8 +187,11 @@ class AxisCore {
   void renewStopPoint(Time now);
   /// Cycles were missed: nothing of them is made good.
   void onLateCycle(Time now);
-  void lookForFollowing(Time now);
-  bool goalIsStuck(Time now) const;
+  // Reactions of supervise(), with the reason in failure_.
+  void stopUnheard();
+  void giveUpOperation();
+  void stopForWarning();
+
   void watchFollowing(Time now);
   /// The set-points come back to where the motor stands.
   void callBack();
@@ -220,7 +229,7 @@ class AxisCore {
   Command command_ = nextCommand(State::unknown, Goal::disabled);  ///< of these two:
   State commanded_in_ = State::unknown;
   Goal commanded_for_ = Goal::disabled;
-  Time brake_released_ = kNever, in_operation_since_{}, known_state_{};
+  Time brake_released_ = kNever, known_state_{};
 
   const ModeChannel* mode_;
   std::optional<int> shown_mode_;
@@ -240,11 +249,7 @@ class AxisCore {
   SetPointHandshake handshake_;
   bool set_point_dropped_ = false;  ///< the drive does not have target_
   bool effort_streamed_ = false;    ///< and not braked since
-  bool follows_ = false;            ///< its set-points, as far as the drive shows that
-  bool follows_shown_ = false;  ///< the mode's bit for it was set since the axis is in operation
-  bool follows_never_shown_ = false;  ///< it never was, this drive does not use it
-  bool left_behind_ = false;          ///< and told so
-  Time running_since_ = kNever;       ///< set-points of a stream move since then
+  FollowWatch following_;
   struct Held {
     canopen::Slot slot;
     std::uint64_t raw;

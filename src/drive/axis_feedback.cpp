@@ -27,7 +27,12 @@ void AxisCore::readFeedback(Time now) {
   if (poller_.due(now)) poller_.advance(node_.sdo(), now);
   readMotion(now);
   readState(now);
-  readErrorCode();
+  const bool asked = read_error_code_ || error_ticket_;
+  if (objects_.error_code.mapped() || asked || faulted()) {
+    readErrorCode();
+  } else {
+    state_.error_code = emergency_code_;
+  }
 }
 
 void AxisCore::readState(Time now) {
@@ -65,6 +70,10 @@ void AxisCore::readMotion(Time now) {
     standstill_.update(joint, position.stamp);
     neutral_raw_ = objects_.position.conversion.sendable(position.raw);
     neutral_known_ = true;
+  } else if (!image_.regular(objects_.position.slot)) {
+    // Its silence says that nothing changes; what may be withheld still is not known yet.
+    const Duration withheld = image_.interval(objects_.position.slot, config_.sync_period);
+    standstill_.update(joint, now - withheld);
   }
   state_.stamp = position.stamp;
   state_.velocity = read(objects_.velocity, polled_velocity_, now);
@@ -144,7 +153,10 @@ void AxisCore::readErrorCode() {
     const canopen::ProcessValue& value = image_.input(objects_.error_code.slot);
     const bool fresh = image_.fresh(objects_.error_code.slot);
     if (fresh && value.raw != 0) code = static_cast<std::uint16_t>(value.raw);
-  } else if (faulted()) {
+  } else if (!faulted()) {
+    read_error_code_.reset();
+    error_ticket_.reset();
+  } else {
     if (error_ticket_ && error_ticket_->done()) {
       if (error_ticket_->ok() && error_ticket_->data().size() <= 8) {
         read_error_code_ = static_cast<std::uint16_t>(canopen::toUnsigned(error_ticket_->data()));
@@ -158,11 +170,14 @@ void AxisCore::readErrorCode() {
           node_.sdo().upload(objects_.error_code.spec->id, objects_.error_code.spec->name);
     }
     if (read_error_code_ && *read_error_code_ != 0) code = *read_error_code_;
-  } else {
-    read_error_code_.reset();
-    error_ticket_.reset();
   }
   state_.error_code = code;
+}
+
+bool AxisCore::heardLately(Time now) const {
+  const canopen::Slot slot = objects_.position.slot;
+  if (!image_.regular(slot)) return true;
+  return now - state_.stamp <= image_.interval(slot, config_.sync_period) + 2 * config_.sync_period;
 }
 
 void AxisCore::onEmergency(const canopen::Emergency& emergency, const std::string& excuse) {

@@ -9,16 +9,8 @@
 namespace cia402::drive {
 namespace {
 
-/// A drive may act on a set-point so many cycles after it was computed.
-constexpr int kReactionCycles = 2;
-/// The same for a drive that plans its motion, whose plan is ahead of the motor.
+/// As kReactionCycles, for a drive that plans its motion, whose plan is ahead of the motor.
 constexpr int kPlanningCycles = 4;
-/// Set-points that run while the motor stands are called back after so long; sooner where the drive
-/// itself says that it does not follow.
-constexpr Duration kLeftBehind{std::chrono::milliseconds(150)},
-    kHeld{std::chrono::milliseconds(60)}, kStuck{std::chrono::milliseconds(300)};
-/// Only set-points that are so many times faster than standstill tell that a motor stays behind.
-constexpr double kClearlyMoving = 3.0;
 /// Of the way that braking takes, at least, a stop point is to be ahead.
 constexpr double kReachable = 0.98;
 
@@ -122,75 +114,28 @@ void AxisCore::releaseHalt() {
   stop_point_after_ = kNever;
 }
 
-/// Whether the drive shows that it follows; a drive that never does is waited for once.
-void AxisCore::lookForFollowing(Time now) {
+void AxisCore::watchFollowing(Time now) {
   const auto& bit = mode_->spec->follows_command_bit;
   const bool shown = bit && state_.mode == mode_->spec && ((state_.statusword >> *bit) & 1u) != 0;
-  if (shown) follows_shown_ = true;
-  if (!bit || shown || follows_never_shown_) {
-    follows_ = true;
-  } else if (now - in_operation_since_ >= kFollowPatience) {
-    follows_ = follows_never_shown_ = true;
-  }
-}
-
-/// Set-points must not run away from a motor that stands: held by its brake, at a limit switch,
-/// blocked. It would leap after them when it is let go.
-void AxisCore::watchFollowing(Time now) {
-  if (!follows_ || (follows_never_shown_ && !follows_shown_)) lookForFollowing(now);
-  const bool runs = set_point_.kind() == SetPointKind::stream && !standstill_.moving() &&
-                    std::fabs(set_point_.velocity()) > kClearlyMoving * config_.standstill_velocity;
-  const double ahead = set_point_.value() - state_.position;
-  if (!runs) {
-    running_since_ = kNever;
-    const bool rests = set_point_.kind() == SetPointKind::stream && set_point_.atRest() &&
-                       standstill_.still() && now - set_point_.movedAt() >= kHeld;
-    const double apart = kClearlyMoving * config_.standstill_velocity * toSeconds(kHeld);
-    const bool held = state_.internal_limit && std::fabs(ahead) > apart;
-    if (held && rests) callBack();
-    if (held && goalIsStuck(now)) {
-      callBack();
-      if (mode_->spec->handshake == Handshake::new_set_point) handshake_.offer(target_raw_);
-    }
-    if (standstill_.moving()) left_behind_ = false;
-    return;
-  }
-  if (running_since_ == kNever) running_since_ = now;
-  // What turns back towards a motor that is held would meet it at speed.
-  const double usual =
-      std::fabs(set_point_.velocity()) * 2 * toSeconds(kReactionCycles * config_.sync_period);
-  if ((state_.internal_limit || left_behind_) && ahead * set_point_.velocity() < 0.0 &&
-      std::fabs(ahead) > usual) {
-    callBack();
-    return;
-  }
-  const auto& bit = mode_->spec->follows_command_bit;
-  const bool dropped = follows_shown_ && bit && ((state_.statusword >> *bit) & 1u) == 0;
-  const Duration patience = state_.internal_limit || dropped ? kHeld : kLeftBehind;
-  const Time begun = running_since_ + kReactionCycles * config_.sync_period;
-  const bool stands = standstill_.still() && standstill_.stillFrom() >= begun;
-  if (stands && now - running_since_ >= patience) callBack();
-}
-
-/// A drive that goes to a goal by itself, and stands on the way.
-bool AxisCore::goalIsStuck(Time now) const {
-  return set_point_.kind() == SetPointKind::goal && state_.ready_for_motion &&
-         !state_.target_reached && standstill_.still() && now - set_point_.movedAt() >= kStuck;
+  const FollowWatch::Look look{set_point_, standstill_, state_, bit.has_value(), shown};
+  if (following_.watch(look, now)) callBack();
 }
 
 void AxisCore::callBack() {
   const double ahead = set_point_.value() - state_.position;
   neutralizeTarget();
+  if (mode_->spec->handshake == Handshake::new_set_point) handshake_.offer(target_raw_);
   set_point_.giveUp();
-  running_since_ = kNever;
-  if (std::exchange(left_behind_, true)) return;
+  following_.end();
+  if (!following_.isNews()) return;
   const bool prismatic = config_.geometry.type == AxisGeometry::Type::prismatic;
   notify(who() + ": the motor stands while its set-points run, " + length(ahead, prismatic) +
          " ahead: " +
          (state_.internal_limit ? "internal limit active (statusword bit 11), a limit switch or a "
                                   "position limit of the drive holds it"
                                 : "the brake, a limit or the load holds it") +
-         ". They are called back to where it stands, and what was commanded is given up");
+         ". They are called back to where it stands, and what was commanded is given up: free the "
+         "axis or lead it back, then command it again");
 }
 
 }  // namespace cia402::drive

@@ -44,9 +44,8 @@ class Recover : public Procedure {
   }
 
   bool leavesAlone(const Context& context) const override {
-    const bool fresh =
-        context.now - context.axis.state().stamp <= 3 * context.axis.config().sync_period;
-    return fresh && isWell(context.axis) && context.axis.brakeReleased(context.now);
+    const AxisCore& axis = context.axis;
+    return axis.heardLately(context.now) && isWell(axis) && axis.brakeReleased(context.now);
   }
   bool survivesNodeLoss() const override { return phase_ == Phase::booting; }
 
@@ -101,13 +100,10 @@ class Recover : public Procedure {
 
   Outcome awaitFeedback(const Context& context) {
     AxisCore& axis = context.axis;
-    // What was heard before the call may be of a drive that has gone since; one that sends only
-    // what changes is believed when it would have been missed by now.
-    const bool news =
-        axis.state().stamp > since_ ||
-        context.now - since_ > (axis.config().stale_after + 2) * axis.config().sync_period;
-    if (axis.state().feedback_valid && !news) return Outcome::running();
-    if (axis.state().feedback_valid) {
+    // What was heard before the call may be of a drive that has gone since.
+    const bool valid = axis.state().feedback_valid;
+    if (valid && !axis.heardLately(context.now)) return Outcome::running();
+    if (valid) {
       phase_ = clearable(axis) ? Phase::clearing : Phase::enabling;
       return Outcome::running();
     }

@@ -343,9 +343,9 @@ void Device::clearEmergency(Time now) {
 }
 
 void Device::notifyChange(Time now) {
-  if (!powered()) return;
+  if (!powered() || !impl_->context.operational() || !impl_->pdos.sendsOnChange()) return;
   Call<Impl> call(*impl_, now);
-  if (impl_->context.operational()) impl_->pdos.notifyChange();
+  impl_->pdos.notifyChange();
 }
 
 DeviceBehaviour& Device::behaviour() { return impl_->context.behaviour; }

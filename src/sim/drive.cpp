@@ -144,7 +144,6 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
     device.sendEmergency(fault.code, error_register, fault.vendor, now);
   }
   void errorsGone() override { device.clearEmergency(now); }
-  void statusChanged() override { status_changed = true; }
 
   void bringTo(Time time) {
     now = std::max(now, time);
@@ -175,8 +174,6 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
   }
 
   void flushChanges() {
-    if (!status_changed && !core.motion().powered()) return;
-    status_changed = false;
     if (device.powered()) device.notifyChange(now);
   }
 
@@ -195,7 +192,6 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
   unsigned storm_count = 0;
   bool cold = false;
   bool first_power = true;
-  bool status_changed = false;
 };
 
 Drive::Drive(std::shared_ptr<const DriveDefinition> definition, canopen::NodeId node,

@@ -313,7 +313,6 @@ void DriveCore::updateStatusword() {
   if (word == statusword_) return;
   statusword_ = word;
   values_.setRaw(Role::statusword, word);
-  reports_.statusChanged();
 }
 
 }  // namespace cia402::sim

@@ -24,7 +24,6 @@ class DriveCore {
     virtual ~Reports() = default;
     virtual void emergency(const FaultDefinition& fault, std::uint8_t error_register) = 0;
     virtual void errorsGone() = 0;
-    virtual void statusChanged() = 0;
   };
 
   DriveCore(const DriveDefinition& definition, const AxisMechanics& mechanics,

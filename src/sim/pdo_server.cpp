@@ -89,9 +89,7 @@ void PdoServer::stop() {
 }
 
 void PdoServer::sendOnStart() {
-  const auto any = std::any_of(tpdos_.begin(), tpdos_.end(),
-                               [](const SlaveTpdo& pdo) { return pdo.sendsOnChange(); });
-  if (!any) return;
+  if (!sendsOnChange()) return;
   context_.application.beforeTpdo(context_.now);
   for (SlaveTpdo& pdo : tpdos_) pdo.onStart();
 }
@@ -122,6 +120,11 @@ void PdoServer::sendSynchronous(std::uint8_t counter) {
   if (due_.empty()) return;
   context_.application.beforeTpdo(context_.now);
   for (SlaveTpdo* pdo : due_) pdo->onSync();
+}
+
+bool PdoServer::sendsOnChange() const {
+  return std::any_of(tpdos_.begin(), tpdos_.end(),
+                     [](const SlaveTpdo& pdo) { return pdo.sendsOnChange(); });
 }
 
 void PdoServer::notifyChange() {

@@ -33,6 +33,8 @@ class PdoServer {
   void applySynchronous();
   /// TPDOs that the SYNC with this counter (0: none) asks for.
   void sendSynchronous(std::uint8_t counter);
+  /// Is any TPDO sent when its content changes?
+  bool sendsOnChange() const;
   void notifyChange();
   void tick();
   Time deadline() const;

@@ -66,5 +66,26 @@ TEST_F(Recovering, DoesNotCallAHaltedAxisWell) {
   EXPECT_EQ(scene.setpoint("right", 0.1), "");
 }
 
+/// Drives that send their position only when it changes: their silence is no news.
+TEST(Recovery, OfDrivesThatTellOnlyWhatChangesIsAnswered) {
+  const std::string event =
+      ", pdos: {rpdo1: [controlword, target_position],\n"
+      "    tpdo1: {objects: [statusword, position_actual, mode_display], transmission: 255}}";
+  Scene scene(loadText(genericPair(event, event)));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  const auto enabled = scene.procedure(ProcedureKind::enable);
+  EXPECT_TRUE(enabled.success) << enabled.message;
+  scene.run(1s);
+  const auto again = scene.procedure(ProcedureKind::enable);
+  EXPECT_TRUE(again.success) << again.message;
+  scene.inject("right", "overcurrent");
+  scene.run(500ms);
+  scene.inject("right", "clear");
+  const auto recovered = scene.procedure(ProcedureKind::recover);
+  EXPECT_TRUE(recovered.success) << recovered.message;
+  EXPECT_TRUE(scene.truth("left").power_stage_on);
+  EXPECT_TRUE(scene.truth("right").power_stage_on);
+}
+
 }  // namespace
 }  // namespace cia402

@@ -102,6 +102,13 @@ class ProcessImage {
     const Pdo& pdo = tpdos_[input_tpdos_[slot]];
     return pdo.silent_limit != 0 || pdo.age_limit != Duration::zero();
   }
+  /// The longest time between two receptions of a value that comes regularly; of another one, the
+  /// time for which its change may be withheld (inhibit time).
+  /// @param sync SYNC period  @pre slot is that of an input
+  Duration interval(Slot slot, Duration sync) const {
+    const Pdo& pdo = tpdos_[input_tpdos_[slot]];
+    return pdo.silent_limit != 0 ? pdo.every * sync : pdo.event_interval;
+  }
   /// The TPDO (index in tpdos()) that brings an input. @pre slot is that of an input
   std::size_t tpdoOf(Slot slot) const { return input_tpdos_[slot]; }
   /// The drive has another COB-ID than configured. No effect for a PDO that is not enabled.
@@ -126,6 +133,8 @@ class ProcessImage {
     std::uint32_t silent = 0;        ///< SYNCs since the last reception or transmission
     std::uint32_t silent_limit = 0;  ///< stale beyond; 0: its silence means nothing
     Duration age_limit{0};           ///< the same for an event timer; 0: none
+    std::uint16_t every = 1;         ///< SYNCs from one TPDO to the next, where these are limited
+    Duration event_interval{0};      ///< of event-driven ones: event timer and inhibit time
     std::uint16_t request_every = 1, refresh_every = 1;
     std::uint16_t since_request = 0;
     std::uint64_t sent = 0;  ///< content of the last transmission
@@ -145,6 +154,8 @@ class ProcessImage {
   std::uint64_t wrongLengths() const { return wrong_lengths_; }
   /// How often a TPDO became stale, all together.
   std::uint64_t staleCount() const { return stale_count_; }
+  /// Grows with both.
+  std::uint64_t troubles() const { return wrong_lengths_ + stale_count_; }
 
  private:
   void add(const PdoConfig& config);

@@ -1,0 +1,68 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "follow_watch.h"
+
+#include <cmath>
+
+namespace cia402::drive {
+namespace {
+
+/// Set-points that run while the motor stands are called back after so long; sooner where the drive
+/// itself says that it does not follow.
+constexpr Duration kLeftBehind{std::chrono::milliseconds(150)},
+    kHeld{std::chrono::milliseconds(60)};
+/// A drive that goes to a goal by itself, and stands at a limit on the way, gets so long.
+constexpr Duration kStuck{std::chrono::milliseconds(300)};
+
+}  // namespace
+
+void FollowWatch::begin(Time now) {
+  began_ = now;
+  running_since_ = kNever;
+  follows_ = shown_ = told_ = false;
+}
+
+void FollowWatch::lookForBit(const Look& look, Time now) {
+  shown_ = look.bit;
+  if (follows_) return;
+  if (!look.has_bit || look.bit || never_shown_) {
+    follows_ = true;
+  } else if (now - began_ >= kFollowPatience) {
+    follows_ = never_shown_ = true;
+  }
+}
+
+bool FollowWatch::watchStanding(const Look& look, Time now) {
+  const double ahead = look.sent.value() - look.state.position;
+  const bool runs =
+      look.sent.kind() == SetPointKind::stream && std::fabs(look.sent.velocity()) > clearly_;
+  if (!runs) {
+    running_since_ = kNever;
+    return look.state.internal_limit && restsAhead(look, ahead, now);
+  }
+  if (running_since_ == kNever) running_since_ = now;
+  return runsAway(look, ahead, now);
+}
+
+bool FollowWatch::runsAway(const Look& look, double ahead, Time now) const {
+  const bool limit = look.state.internal_limit;
+  // What turns back towards a motor that is held would meet it at speed.
+  const bool returns =
+      ahead * look.sent.velocity() < 0.0 &&
+      std::fabs(ahead) > 2 * std::fabs(look.sent.velocity()) * toSeconds(reaction_);
+  if (returns && (limit || told_)) return true;
+  const bool dropped = shown_ && look.has_bit && !look.bit;
+  const bool stands =
+      look.standstill.still() && look.standstill.stillFrom() >= running_since_ + reaction_;
+  return stands && now - running_since_ >= (limit || dropped ? kHeld : kLeftBehind);
+}
+
+bool FollowWatch::restsAhead(const Look& look, double ahead, Time now) const {
+  const bool apart = std::fabs(ahead) > clearly_ * toSeconds(kHeld);
+  if (!apart || !look.standstill.still()) return false;
+  const Duration rested = now - look.sent.movedAt();
+  if (look.sent.kind() == SetPointKind::stream) return look.sent.atRest() && rested >= kHeld;
+  return look.sent.kind() == SetPointKind::goal && look.state.ready_for_motion &&
+         !look.state.target_reached && rested >= kStuck;
+}
+
+}  // namespace cia402::drive

@@ -1,0 +1,185 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// When set-points are called back from a motor that does not follow them.
+#include "../../src/drive/follow_watch.h"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+
+namespace cia402::drive {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Duration kCycle = 4ms;
+constexpr double kStandstill = 0.01;  // rad/s
+/// A drive may react so late, and a standstill is seen in whole windows.
+constexpr Duration kSeen = 2 * kCycle + 2 * Standstill::kWindow + 2 * kCycle;
+
+/// An axis of which the motor does what `motor` says, cycle by cycle.
+struct Bench {
+  SetPoint sent{SetPointLimits{}, kCycle};
+  Standstill standstill{kStandstill, 1e-6};
+  AxisState state;
+  FollowWatch watch{kStandstill, kCycle};
+  Time now{1s};
+  bool has_bit = false, bit = false;
+
+  explicit Bench(SetPointKind kind = SetPointKind::stream) {
+    sent.rest(kind, 0.0);
+    state.position = 0.0;
+    state.ready_for_motion = true;
+    watch.begin(now);
+    stand(100ms);
+  }
+  /// One cycle: the motor is at `motor`, `target` is given. @return whether it is called back.
+  bool cycle(double motor, std::optional<double> target = {}) {
+    now += kCycle;
+    state.position = motor;
+    standstill.update(motor, now);
+    if (target) sent.give(*target);
+    sent.advance(now);
+    return watch.watch({sent, standstill, state, has_bit, bit}, now);
+  }
+  void stand(Duration duration) {
+    for (const Time end = now + duration; now < end;) {
+      ASSERT_FALSE(cycle(state.position, sent.value())) << "at rest";
+    }
+  }
+  /// The targets run at 1 rad/s while the motor stands. @return after how long they are called
+  /// back.
+  std::optional<Duration> runAhead(Duration longest = 1s) {
+    const Time began = now;
+    while (now - began < longest) {
+      if (cycle(state.position, sent.value() + 0.004)) return now - began;
+    }
+    return std::nullopt;
+  }
+};
+
+TEST(FollowWatch, CallsBackWhatRunsAwayFromAStandingMotor) {
+  Bench bench;
+  const auto after = bench.runAhead();
+  ASSERT_TRUE(after);
+  EXPECT_GT(*after, kSeen);
+  EXPECT_LE(*after, 150ms + 3 * kCycle);
+  EXPECT_TRUE(bench.watch.isNews());
+}
+
+TEST(FollowWatch, IsQuickerWhereTheDriveSaysThatALimitHoldsIt) {
+  Bench bench;
+  bench.state.internal_limit = true;
+  const auto after = bench.runAhead();
+  ASSERT_TRUE(after);
+  EXPECT_GE(*after, 60ms);
+  EXPECT_LE(*after, kSeen);
+}
+
+TEST(FollowWatch, IsQuickerWhereTheDriveTakesItsBitAway) {
+  Bench bench;
+  bench.has_bit = bench.bit = true;  // in another mode now: this one has the bit
+  bench.stand(20ms);
+  bench.bit = false;
+  const auto after = bench.runAhead();
+  ASSERT_TRUE(after);
+  EXPECT_GE(*after, 60ms);
+  EXPECT_LE(*after, kSeen);
+}
+
+TEST(FollowWatch, LeavesAMotorAloneThatMovesHoweverFarBehind) {
+  Bench bench;
+  double motor = 0.0;
+  for (int i = 0; i < 500; ++i) {
+    ASSERT_FALSE(bench.cycle(motor, bench.sent.value() + 0.004)) << "cycle " << i;
+    motor += 0.0005;  // an eighth as fast
+  }
+}
+
+TEST(FollowWatch, LeavesSetPointsAloneThatMoveNoFasterThanStandstill) {
+  Bench bench;
+  for (int i = 0; i < 500; ++i) {
+    ASSERT_FALSE(bench.cycle(0.0, bench.sent.value() + kStandstill * 0.004));
+  }
+}
+
+TEST(FollowWatch, CallsBackWhatRestsAheadOfAMotorAtALimit) {
+  Bench bench;
+  bench.state.internal_limit = true;
+  for (int i = 0; i < 5; ++i) {  // too short to be called back on the way
+    ASSERT_FALSE(bench.cycle(0.0, bench.sent.value() + 0.004));
+  }
+  const Time rested = bench.now;
+  while (bench.now - rested < 1s && !bench.cycle(0.0, bench.sent.value())) {
+  }
+  EXPECT_GE(bench.now - rested, 60ms - kCycle);
+  EXPECT_LE(bench.now - rested, 60ms + 2 * kCycle);
+}
+
+TEST(FollowWatch, LeavesWhatRestsAheadAloneWhereNothingSaysThatALimitHoldsTheMotor) {
+  Bench bench;
+  for (int i = 0; i < 5; ++i) ASSERT_FALSE(bench.cycle(0.0, bench.sent.value() + 0.004));
+  bench.stand(1s);  // friction, a soft loop
+}
+
+TEST(FollowWatch, CallsBackAtOnceWhatTurnsBackTowardsAMotorAtALimit) {
+  Bench bench;
+  bench.state.internal_limit = true;
+  for (int i = 0; i < 10; ++i) ASSERT_FALSE(bench.cycle(0.0, bench.sent.value() + 0.004));
+  EXPECT_TRUE(bench.cycle(0.0, bench.sent.value() - 0.004));
+}
+
+TEST(FollowWatch, TellsOnceUntilTheMotorMoves) {
+  Bench bench;
+  ASSERT_TRUE(bench.runAhead());
+  EXPECT_TRUE(bench.watch.isNews());
+  EXPECT_FALSE(bench.watch.isNews());
+  for (int i = 0; i < 20; ++i) bench.cycle(0.004 * i);
+  EXPECT_TRUE(bench.watch.isNews());
+}
+
+TEST(FollowWatch, GivesADriveThatPlansUntilItHasStoodForAWhileAtALimit) {
+  Bench bench(SetPointKind::goal);
+  bench.state.internal_limit = true;
+  ASSERT_FALSE(bench.cycle(0.0, 0.5));
+  const Time begun = bench.now;
+  while (bench.now - begun < 1s && !bench.cycle(0.0)) {
+  }
+  EXPECT_GE(bench.now - begun, 300ms - kCycle);
+  EXPECT_LE(bench.now - begun, 300ms + 2 * kCycle);
+}
+
+TEST(FollowWatch, AGoalThatIsReachedIsNotCalledBack) {
+  Bench bench(SetPointKind::goal);
+  bench.state.internal_limit = bench.state.target_reached = true;
+  ASSERT_FALSE(bench.cycle(0.0, 0.5));
+  for (int i = 0; i < 500; ++i) ASSERT_FALSE(bench.cycle(0.0));
+}
+
+TEST(FollowWatch, WaitsOnceForADriveThatNeverShowsItsBit) {
+  Bench bench;
+  bench.has_bit = true;
+  bench.watch.begin(bench.now);
+  const Time begun = bench.now;
+  while (bench.now - begun < 2s && !bench.watch.follows()) bench.cycle(0.0, 0.0);
+  EXPECT_GE(bench.now - begun, 1s);
+  EXPECT_LE(bench.now - begun, 1s + kCycle);
+  bench.watch.begin(bench.now);
+  EXPECT_FALSE(bench.watch.follows());
+  bench.cycle(0.0, 0.0);
+  EXPECT_TRUE(bench.watch.follows()) << "it is known by now";
+}
+
+TEST(FollowWatch, FollowsAtOnceWhereTheBitIsSetOrTheModeHasNone) {
+  Bench bench;
+  EXPECT_TRUE(bench.watch.follows());
+  bench.has_bit = true;
+  bench.watch.begin(bench.now);
+  bench.cycle(0.0, 0.0);
+  EXPECT_FALSE(bench.watch.follows());
+  bench.bit = true;
+  bench.cycle(0.0, 0.0);
+  EXPECT_TRUE(bench.watch.follows());
+}
+
+}  // namespace
+}  // namespace cia402::drive
