@@ -39,6 +39,10 @@ class Enable : public Procedure {
       leaving_homing_ = false;
       frames_ = axis.targetFrames();
     }
+    if (!axis.heardLately(context.now)) {  // its power may have gone since
+      context.show("asking whether it is enabled still", "fresh feedback");
+      return Outcome::running();
+    }
     if (!axis.halted()) {
       return Outcome::done(axis.config().joint + ": is enabled already, mode " +
                            axis.mode().spec->name);

@@ -48,8 +48,11 @@ std::string hex(std::uint64_t value) {
 std::string powerRefusal(const AxisCore& axis, const Storage& storage) {
   const std::string what = axis.who() + ": cannot " + storage.verb + " parameters: ";
   if (!axis.state().feedback_valid) return what + "no fresh statusword says that it is disabled";
-  if (axis.powerOff()) return {};
-  return what + "the axis is not disabled (" + toString(axis.state().state) + "); disable it first";
+  if (!axis.powerOff()) {
+    return what + "the axis is not disabled (" + toString(axis.state().state) +
+           "); disable it first";
+  }
+  return axis.moving() ? what + "the axis moves; wait until it is at rest" : std::string();
 }
 
 /// Writes the signature to each chosen sub-index of 1010h or 1011h that can be commanded so.
@@ -62,6 +65,10 @@ class StorageStep {
     while (next_ < subindices_.size()) {
       const std::string refusal = powerRefusal(context.axis, storage_);
       if (!refusal.empty()) return Outcome::failed(refusal + done());
+      if (next_ == 0 && !ticket_ && !context.axis.atStandstill()) {
+        context.show("waiting for rest", "the axis to be seen standing");
+        return Outcome::running();
+      }
       if (!ticket_) askCapability(context);
       if (!ticket_->done()) return Outcome::running();
       const std::string problem = judge();
