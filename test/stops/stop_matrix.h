@@ -146,6 +146,7 @@ struct Case {
   Follower follower = Follower::nothing;
   Duration after{};              ///< of the stop, until what follows
   Duration late{}, late_from{};  ///< the process gets no processor for so long, from then on
+  Duration young{};              ///< the stop comes so soon after the first set-point; 0: at speed
 };
 
 inline std::string text(Duration duration) {
@@ -163,6 +164,7 @@ inline std::string text(const Case& tested) {
     text += ", a cycle " + stops::text(tested.late) + " late from " +
             stops::text(tested.late_from) + " on";
   }
+  if (tested.young > 0ms) text += ", " + stops::text(tested.young) + " after it set off";
   return text;
 }
 
@@ -177,12 +179,12 @@ inline std::vector<Case> casesOf(Stop stop, const Mover& mover, bool whole) {
   std::vector<Case> cases;
   int count = 0;
   const auto add = [&](Follower follower, Duration after, std::initializer_list<Duration> froms) {
-    cases.push_back({stop, &mover, follower, after, 0ms, 0ms});
+    cases.push_back({stop, &mover, follower, after, 0ms, 0ms, 0ms});
     if (stop == Stop::host_death) return;  // no cycle is left that could be late
     for (const Duration late : {20ms, 60ms, 150ms}) {
       for (const Duration from : froms) {
         const bool chosen = whole || follower == Follower::nothing || ++count % 4 == 0;
-        if (chosen) cases.push_back({stop, &mover, follower, after, late, from});
+        if (chosen) cases.push_back({stop, &mover, follower, after, late, from, 0ms});
       }
     }
   };
@@ -194,6 +196,14 @@ inline std::vector<Case> casesOf(Stop stop, const Mover& mover, bool whole) {
     if (restarts != (stop == Stop::host_death)) continue;  // nobody is there to be called
     add(follower, 3ms, {1ms, 7ms});
     add(follower, 8ms, {4ms, 10ms});
+  }
+  const bool by_fault = stop == Stop::fault || stop == Stop::coasting_fault;
+  const bool goes_on = stop == Stop::set_mode && mover.motion == Motion::goal;
+  if (by_fault || goes_on || stop == Stop::host_death) return cases;
+  for (const Duration young : {4ms, 8ms, 16ms, 32ms}) {  // feedback does not show it yet
+    for (const Follower follower : {Follower::nothing, Follower::halt, Follower::set_position}) {
+      cases.push_back({stop, &mover, follower, 3ms, 0ms, 0ms, young});
+    }
   }
   return cases;
 }

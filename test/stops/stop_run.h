@@ -106,6 +106,7 @@ class Play {
         if (!giveSetPoint(toSeconds(passed))) return false;
       }
       host_.advance(host_.now() + kCycle);
+      if (case_.young > 0ms && host_.now() - from >= case_.young) return true;
       const bool effort = mover.motion == Motion::effort;  // gets faster on
       if (!fast && velocity() >= share * mover.speed) fast = host_.now();
       const Duration settling = effort ? 0ms : 24ms;
