@@ -78,7 +78,9 @@ class Author {
     if (random_.chance(0.08)) changeMode(axis);
     move(axis);
     if (random_.chance(0.3)) move(anyAxis());
-    double at = now_ + random_.between(0.005, 1.5);
+    // Often before the feedback shows that the axis has begun to move.
+    const bool young = random_.chance(0.25);
+    double at = now_ + (young ? random_.between(0.001, 0.03) : random_.between(0.005, 1.5));
     if (late_host_ && random_.chance(0.4)) late(at + random_.between(-0.02, 0.08));
     if (troubled_ && random_.chance(0.3)) trouble(at + random_.between(-0.05, 0.15), axis);
     const int calls = random_.pick({0, 1, 1, 2, 2, 3, 4});
