@@ -266,6 +266,8 @@ class Author {
         "encoder",      "hardware",    "following_error", "overtemperature_warning",
         "not_a_number", "0x7305",      "power_cycle"};
     add(at, "fault " + axis.name + " " + random_.pick(axis.damiao ? kDamiao : kGeneric));
+    // While it still coasts or brakes.
+    if (random_.chance(0.3)) add(at + random_.between(0.001, 0.3), "recover " + axis.name);
   }
 
   Random& random_;
