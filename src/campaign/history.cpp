@@ -73,6 +73,7 @@ class Author {
     }
     if (axis.homing && random_.chance(0.1)) {
       add(now_, "home " + axis.name);
+      if (troubled_ && random_.chance(0.15)) unheard(now_ + random_.between(0.1, 2.0), axis);
       now_ += random_.between(0.05, 3.0);
     }
     if (random_.chance(0.08)) changeMode(axis);
@@ -212,7 +213,18 @@ class Author {
     }
   }
 
+  /// Its feedback is stale at once, and it is lost where that lasts: who stops it is not told how.
+  void unheard(double at, const AxisPlan& axis) {
+    const std::string length = text(random_.between(0.05, 2.5));
+    const bool all = random_.chance(0.6);
+    add(at, "unheard " + axis.name + (all ? " all " : " service ") + length);
+    if (random_.chance(0.3)) add(at, "loss 0.25 " + length);
+    if (random_.chance(0.3)) return;
+    add(at + random_.between(0.03, 0.3),
+        random_.pick<std::string>({"disable ", "halt ", "quick_stop ", "recover "}) + axis.name);
+  }
   void trouble(double at, const AxisPlan& axis) {
+    if (random_.chance(0.08)) return unheard(at, axis);
     const std::string length = text(random_.between(0.02, 1.5));
     const double choice = random_.uniform();
     if (choice < 0.12) {

@@ -2,6 +2,7 @@
 // What goes wrong: the host, the bus, the drives, and strangers on the bus.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "player.h"
@@ -78,6 +79,28 @@ bool Player::actTrouble(const Words& words) {
       return true;
     }
     throw std::invalid_argument("no such NMT command");
+  }
+  // unheard A all|service SECONDS: it hears the host, the host hears nothing of it, or TPDOs only
+  if (verb == "unheard") {
+    const Duration length = seconds(words.at(3));
+    for (std::size_t i : stage_.named(words.at(1))) {
+      breakLink(i, length);
+      sim::FaultRule rule;
+      rule.count = std::numeric_limits<unsigned>::max();
+      rule.receiver = stage_.host().interface().port().name();
+      const std::uint32_t node = stage_.axes()[i].config->node_id;
+      const bool all = words.at(2) == "all";
+      if (all) rule.mask = 0x7F;
+      for (const std::uint32_t id : {0x580 + node, 0x700 + node}) {  // SDO, heartbeat
+        rule.id = id;
+        stage_.world().bus().faults().add(rule);
+      }
+    }
+    later(length, [this] {
+      stage_.world().bus().faults().clear();
+      stage_.world().bus().faults().setRates(rates_);
+    });
+    return true;
   }
   if (verb == "cable" || verb == "bus_off") {  // cable A|host SECONDS, bus_off A|host SECONDS
     const bool host = words.at(1) == "host";
