@@ -256,9 +256,13 @@ class Author {
     } else if (choice < 0.96) {
       add(at, "sync " + text(random_.pick({0.004, 0.01, 0.05})) + " " + length);
     } else {
-      add(at, "foreign_nmt " + whom(axis) + " " +
+      const std::string who = whom(axis);
+      add(at, "foreign_nmt " + who + " " +
                   random_.pick<std::string>(
                       {"stop", "pre_operational", "reset_node", "reset_communication", "start"}));
+      if (random_.chance(0.5)) {  // what the master answers to that is lost
+        add(at + 0.002, "nmt_loss " + who + " " + std::to_string(1 + random_.below(3)));
+      }
     }
   }
   void fault(double at, const AxisPlan& axis) {

@@ -102,6 +102,15 @@ bool Player::actTrouble(const Words& words) {
     });
     return true;
   }
+  if (verb == "nmt_loss") {  // nmt_loss A COUNT: so many NMT commands do not reach it
+    for (std::size_t i : stage_.named(words.at(1))) {
+      sim::FaultRule rule;
+      rule.count = static_cast<unsigned>(toNumber(words.at(2)));
+      rule.receiver = stage_.world().port(i).name();
+      stage_.world().bus().faults().add(rule);
+    }
+    return true;
+  }
   if (verb == "cable" || verb == "bus_off") {  // cable A|host SECONDS, bus_off A|host SECONDS
     const bool host = words.at(1) == "host";
     const Duration length = seconds(words.at(2));
@@ -281,7 +290,7 @@ void Player::calm() {
     trajectory(group, {}, {}, false);
   }
   rates_ = {};
-  stage_.world().bus().faults().setRates(rates_);
+  stage_.world().bus().faults().clear();
   stage_.host().setLateness({});
   foreign_->setAttached(false);
   for (std::size_t i = 0; i < stage_.axes().size(); ++i) {

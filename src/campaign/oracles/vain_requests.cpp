@@ -1,0 +1,45 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// A drive that says that it is stopped answers no SDO (CiA 301, table 38): it is not asked.
+#include "../oracle.h"
+
+namespace cia402::campaign {
+namespace {
+
+constexpr unsigned kTold = 3;   // heartbeats in a row: one may be lost, one not looked at yet
+constexpr unsigned kAsked = 2;  // requests: one may have been on its way
+
+class VainRequests final : public Oracle {
+ public:
+  explicit VainRequests(const Stage& stage) : axes_(stage.axes().size()) {}
+  const char* name() const override { return "vain_request"; }
+
+  void onFrame(const can::Frame& frame, const View& view) override {
+    if (frame.error || frame.remote || frame.size == 0) return;
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+      Axis& axis = axes_[i];
+      const std::uint32_t node = view.stage.axes()[i].config->node_id;
+      if (frame.id == 0x700 + node) {  // a heartbeat, or an answer to guarding
+        const bool heard =
+            view.now >= view.conditions.lossy && view.now >= view.conditions.axes[i].cut_off;
+        const bool stopped = heard && (frame.data[0] & 0x7F) == 0x04;
+        axis = stopped ? Axis{axis.told + 1, axis.asked} : Axis{};
+      }
+      if (frame.id != 0x600 + node || axis.told < kTold || ++axis.asked != kAsked) continue;
+      report(view, i, "says that it is stopped, and is asked by SDO again and again");
+    }
+  }
+
+ private:
+  struct Axis {
+    unsigned told = 0, asked = 0;  // since it said something else
+  };
+  std::vector<Axis> axes_;
+};
+
+}  // namespace
+
+std::unique_ptr<Oracle> makeVainRequests(const Stage& stage) {
+  return std::make_unique<VainRequests>(stage);
+}
+
+}  // namespace cia402::campaign
