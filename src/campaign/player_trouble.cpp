@@ -74,7 +74,9 @@ bool Player::actTrouble(const Words& words) {
       for (std::size_t i : stage_.named(words.at(1))) {
         Conditions::extend(conditions_.foreign, now + 500ms);
         if (code == 129) Conditions::extend(conditions_.axes[i].may_coast, now + 20ms);
-        breakLink(i, 1s);
+        const bool started =
+            code == 1 && !truths_.empty() && truths_[i].nmt == canopen::NmtState::operational;
+        if (!started) breakLink(i, 1s);
       }
       return true;
     }

@@ -15,6 +15,7 @@ using namespace std::chrono_literals;
 constexpr std::size_t kWindow = 20;  // ms over which acceleration is measured
 constexpr Duration kSyncMemory = 30ms;
 constexpr Duration kLongestLag = 500ms;
+constexpr Duration kUnseen = 200ms;  // a limit switch is seen within it, and set-points called back
 constexpr std::uint32_t kSync = 0x80;
 
 class MotorLimits final : public Oracle {
@@ -54,10 +55,12 @@ class MotorLimits final : public Oracle {
   struct Axis {
     std::array<double, kWindow> speeds{};
     std::size_t next = 0, count = 0;
-    bool fed = false;   // since the last SYNC
-    Time starved{};     // until then it lacks set-points
-    Time last{};        // it may take no longer than that
-    Time catches_up{};  // until then it makes good what that cost it
+    bool fed = false;     // since the last SYNC
+    Time starved{};       // until then it lacks set-points
+    Time last{};          // it may take no longer than that
+    Time catches_up{};    // until then it makes good what that cost it
+    Time held{};          // by a limit switch, since then; Time(): it is not
+    bool behind = false;  // its set-points, for some were lost; the drive cannot catch up
   };
 
   void look(const View& view, std::size_t i) {
@@ -71,7 +74,16 @@ class MotorLimits final : public Oracle {
                         view.now >= view.conditions.axes[i].cut_off;
     const Duration period = view.stage.loaded().robot.bus.sync_period;
     if (view.now - last_sync_ > period + 200us || !judged) axis.starved = view.now + kSyncMemory;
+    const bool by_float = facts.units_per_count == 0.0;  // it knows no limit switch
+    const bool at_limit = !by_float && (truth.statusword & 0x0800) != 0;
+    if (!at_limit) {
+      axis.held = Time();
+    } else if (axis.held == Time()) {
+      axis.held = view.now;
+    }
     const bool lags = catchesUp(view, axis, facts, truth);
+    axis.behind =
+        by_float && (!judged || (axis.behind && std::fabs(truth.velocity) > facts.creep()));
     if (!judged) {
       axis.count = 0;
       return;
@@ -87,8 +99,7 @@ class MotorLimits final : public Oracle {
     // Nor is it limited where an effort is commanded: it follows from the load.
     const bool effort = facts.kind(truth.mode) == drive::ControlKind::torque;
     // A limit switch stops a motor as hard as its drive can.
-    const bool at_limit = facts.units_per_count != 0.0 && (truth.statusword & 0x0800) != 0;
-    if (lags || effort || at_limit) axis.count = 0;
+    if (lags || effort || at_limit || axis.behind) axis.count = 0;
     if (axis.count == kWindow && squeeze == 0.0) {
       const double rate = (truth.velocity - axis.speeds[axis.next]) / (kWindow * 0.001);
       // A quick stop may take twice the limit.
@@ -107,7 +118,8 @@ class MotorLimits final : public Oracle {
   /// effort.
   bool catchesUp(const View& view, Axis& axis, const AxisFacts& facts,
                  const AxisTruth& truth) const {
-    if (view.now < std::max(starved_, axis.starved)) {
+    const bool held = axis.held != Time() && view.now - axis.held < kUnseen;
+    if (view.now < std::max(starved_, axis.starved) || held) {
       axis.catches_up = view.now + 20ms;
       axis.last = view.now + kLongestLag;
     }
