@@ -32,6 +32,7 @@ Player::Player(Stage& stage, const Scene& scene, const RunOptions& options)
       permits_(stage),
       oracles_(allOracles(stage)),
       held_(stage.axes().size(), Time(-1h)),
+      cuts_(stage.axes().size()),
       dead_(stage.axes().size()) {
   conditions_.axes.resize(stage.axes().size());
   for (auto& oracle : oracles_) {

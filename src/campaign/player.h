@@ -107,8 +107,9 @@ class Player {
   std::vector<Stream> streams_;
   std::vector<Later> later_;
   std::map<std::size_t, std::string> follows_;  ///< the group that moved an axis last
-  std::vector<Time> held_;  ///< when a limit was last active (statusword bit 11)
-  std::vector<bool> dead_;  ///< drives with a fault that only the power switch ends
+  std::vector<Time> held_;      ///< when a limit was last active (statusword bit 11)
+  std::vector<unsigned> cuts_;  ///< of a drive's power that have not ended
+  std::vector<bool> dead_;      ///< drives with a fault that only the power switch ends
   class Deaf : public sim::Listener {
     void onFrame(const can::Frame&, Time) override {}
   } deaf_;

@@ -96,12 +96,9 @@ bool Player::actTrouble(const Words& words) {
       for (const std::uint32_t id : {0x580 + node, 0x700 + node}) {  // SDO, heartbeat
         rule.id = id;
         stage_.world().bus().faults().add(rule);
+        later(length, [this, rule] { stage_.world().bus().faults().remove(rule); });
       }
     }
-    later(length, [this] {
-      stage_.world().bus().faults().clear();
-      stage_.world().bus().faults().setRates(rates_);
-    });
     return true;
   }
   if (verb == "nmt_loss") {  // nmt_loss A COUNT: so many NMT commands do not reach it
@@ -253,7 +250,10 @@ bool Player::actDrive(const Words& words) {
       const Duration length = seconds(words.at(2));
       breakLink(i, length);
       drive.powerOff(now);
-      later(length, [this, &drive] { drive.powerOn(stage_.now()); });
+      ++cuts_[i];
+      later(length, [this, &drive, i] {
+        if (--cuts_[i] == 0) drive.powerOn(stage_.now());
+      });
     } else if (verb == "silent") {  // silent A SECONDS: neither hears nor sends
       const Duration length = seconds(words.at(2));
       breakLink(i, length);

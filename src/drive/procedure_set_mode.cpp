@@ -22,7 +22,24 @@ class SetMode : public Procedure {
       const Outcome standing = awaitStandstill(context, started_, "switching the mode");
       if (!standing.isDone()) return standing;
     }
+    if (!standing_ && !axis.powerOff()) {
+      // An effort or a load may have moved it beyond a limit, to which the drive would take it.
+      axis.renewLimits();
+      context.show("writing position limits", "the drive to take the joint's limits");
+    }
     standing_ = true;
+    if (!limits_settled_ && !axis.powerOff()) {
+      if (!axis.limitsSettled()) return Outcome::running();
+      const std::string problem = axis.limits().problem();
+      if (!problem.empty()) {
+        return Outcome::failed(axis.who() +
+                               ": the mode is not switched, as the axis is beyond the "
+                               "position limits that the drive keeps, to which it "
+                               "would move: " +
+                               problem);
+      }
+    }
+    limits_settled_ = true;
     const Outcome outcome = step_.advance(context);
     if (!outcome.isDone()) return outcome;
     return Outcome::done(axis.config().joint + ": mode " + mode_->spec->name + " after " +
@@ -33,7 +50,7 @@ class SetMode : public Procedure {
  private:
   const ModeChannel* mode_;
   SwitchStep step_;
-  bool begun_ = false, standing_ = false;
+  bool begun_ = false, standing_ = false, limits_settled_ = false;
   Time started_{};
 };
 

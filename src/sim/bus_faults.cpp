@@ -1,6 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "cia402_driver/sim/bus_faults.h"
 
+#include <algorithm>
+
 namespace cia402::sim {
 
 BusFaults::BusFaults(std::uint64_t seed) : generator_(seed) {}
@@ -14,6 +16,14 @@ void BusFaults::setRates(const FaultRates& rates) {
 void BusFaults::add(const FaultRule& rule) {
   rules_.push_back(rule);
   active_ = true;
+}
+
+void BusFaults::remove(const FaultRule& rule) {
+  const auto place = std::find_if(rules_.begin(), rules_.end(), [&](const FaultRule& other) {
+    return other.kind == rule.kind && other.id == rule.id && other.mask == rule.mask &&
+           other.receiver == rule.receiver;
+  });
+  if (place != rules_.end()) rules_.erase(place);
 }
 
 void BusFaults::clear() {

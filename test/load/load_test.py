@@ -50,6 +50,7 @@ class Load(RobotTest):
         self.services, self.waiting = self.offered(), []
         self.problems = []
         self.calls = {}
+        self.cut_off = []
         self.sent = {}
 
     def start(self, work, *arguments):
@@ -79,7 +80,13 @@ class Load(RobotTest):
             if name not in proxies:
                 proxies[name] = rospy.ServiceProxy(name, rosservice.get_service_class_by_name(name))
             request = SERVICES[name.rsplit("/", 1)[-1]](chance, self.folder)
-            answer = proxies[name](**request)
+            try:
+                answer = proxies[name](**request)
+            except rospy.ServiceException as error:
+                # ROS itself may close a connection too many (it races with itself in close_socket)
+                lost = str(error).startswith("transport error")
+                (self.cut_off if lost else self.problems).append(f"{name} {request}: {error}")
+                continue
             if not answer.message:
                 self.problems.append(f"{name} {request}: answered without a word")
             with self.lock:
@@ -125,6 +132,7 @@ class Load(RobotTest):
             self.assertFalse(thread.is_alive(), "a call was not answered")
         print(f"{sum(self.calls.values())} calls, {sum(self.sent.values())} messages", flush=True)
         self.assertEqual(self.problems, [])
+        self.assertLess(len(self.cut_off), 5, self.cut_off)
         self.assertTrue(self.process.running())
         self.assertEqual(sorted(self.sent), sorted(topic for topic, _ in topics))
         self.assertEqual(sorted(self.calls), sorted(self.services))

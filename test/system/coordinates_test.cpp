@@ -193,5 +193,25 @@ TEST(Coordinates, AGoalThatTheDriveDidNotReachIsNotCalledReached) {
   EXPECT_THAT(scene.told(), HasSubstr("left"));
 }
 
+TEST(Coordinates, SwitchingToPositionsBeyondALimitMovesNothing) {
+  for (const char* back : {"cyclic_position", "profile_position"}) {
+    Scene scene(loadText(genericPair(limits(-1.0, 1.0) + standing(0.6) +
+                                     ", modes: [csp, pp, pt], write: "
+                                     "[{object: following_error_window, value: 0.05}]")));
+    ASSERT_TRUE(scene.boot()) << scene.told();
+    ASSERT_TRUE(declare(scene, "left", 0.6).success);
+    ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "left").success) << scene.told();
+    ASSERT_TRUE(scene.procedure(ProcedureKind::set_mode, "left", "profile_torque").success);
+    scene.stream("left", 60.0, 700ms);
+    scene.run(2s);
+    ASSERT_GT(scene.position("left"), 1.1) << "the effort took it beyond its limit";
+    scene.forget();
+    const auto switched = scene.procedure(ProcedureKind::set_mode, "left", back);
+    EXPECT_TRUE(switched.success) << switched.message;
+    scene.run(500ms);
+    expectNothingMoved(scene, "left");
+  }
+}
+
 }  // namespace
 }  // namespace cia402

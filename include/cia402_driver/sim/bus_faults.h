@@ -52,6 +52,8 @@ class BusFaults {
   const FaultRates& rates() const { return rates_; }
   /// Adds a rule. Not for the cyclic path: may allocate.
   void add(const FaultRule& rule);
+  /// Takes back one rule like this one, if it has not been used up.
+  void remove(const FaultRule& rule);
   /// Back to a perfect bus; the generator goes on.
   void clear();
   /// False as long as no frame can be hit.

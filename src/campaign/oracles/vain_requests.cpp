@@ -5,7 +5,8 @@
 namespace cia402::campaign {
 namespace {
 
-constexpr unsigned kTold = 3;   // heartbeats in a row: one may be lost, one not looked at yet
+constexpr unsigned kTold = 3;  // heartbeats in a row: one may be lost, one not looked at yet
+constexpr Duration kPatience = std::chrono::seconds(5);
 constexpr unsigned kAsked = 2;  // requests: one may have been on its way
 
 class VainRequests final : public Oracle {
@@ -13,6 +14,11 @@ class VainRequests final : public Oracle {
   explicit VainRequests(const Stage& stage) : axes_(stage.axes().size()) {}
   const char* name() const override { return "vain_request"; }
 
+  void onCall(const Call& call, const View& view) override {
+    const bool object = call.verb == "read" || call.verb == "write" || call.verb == "history";
+    if (!object) return;
+    for (std::size_t i : call.axes) axes_[i].people = view.now + kPatience;
+  }
   void onFrame(const can::Frame& frame, const View& view) override {
     if (frame.error || frame.remote || frame.size == 0) return;
     for (std::size_t i = 0; i < axes_.size(); ++i) {
@@ -22,9 +28,11 @@ class VainRequests final : public Oracle {
         const bool heard =
             view.now >= view.conditions.lossy && view.now >= view.conditions.axes[i].cut_off;
         const bool stopped = heard && (frame.data[0] & 0x7F) == 0x04;
-        axis = stopped ? Axis{axis.told + 1, axis.asked} : Axis{};
+        axis.told = stopped ? axis.told + 1 : 0;
+        if (!stopped) axis.asked = 0;
       }
-      if (frame.id != 0x600 + node || axis.told < kTold || ++axis.asked != kAsked) continue;
+      if (frame.id != 0x600 + node || axis.told < kTold || view.now < axis.people) continue;
+      if (++axis.asked != kAsked) continue;
       report(view, i, "says that it is stopped, and is asked by SDO again and again");
     }
   }
@@ -32,6 +40,7 @@ class VainRequests final : public Oracle {
  private:
   struct Axis {
     unsigned told = 0, asked = 0;  // since it said something else
+    Time people{};                 // until then they may want to read an object
   };
   std::vector<Axis> axes_;
 };
