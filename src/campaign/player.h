@@ -83,6 +83,7 @@ class Player {
   bool actHost(const Words& words);
   bool actDrive(const Words& words);
   void breakLink(std::size_t axis, Duration duration);
+  void loseCommands(std::size_t axis, Duration duration);
   void kill(Duration gone);
   void startHost();
   void calm();

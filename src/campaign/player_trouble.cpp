@@ -76,7 +76,7 @@ bool Player::actTrouble(const Words& words) {
         if (code == 129) Conditions::extend(conditions_.axes[i].may_coast, now + 20ms);
         const bool started =
             code == 1 && !truths_.empty() && truths_[i].nmt == canopen::NmtState::operational;
-        if (!started) breakLink(i, 1s);
+        if (!started) loseCommands(i, 1s);
       }
       return true;
     }
@@ -127,8 +127,13 @@ bool Player::actTrouble(const Words& words) {
   return actHost(words) || actDrive(words);
 }
 
-/// An axis that nothing reaches goes on with what it has until it misses the master.
 void Player::breakLink(std::size_t axis, Duration duration) {
+  Conditions::extend(conditions_.axes[axis].unheard, stage_.now() + duration + 500ms);
+  loseCommands(axis, duration);
+}
+
+/// An axis that nothing reaches goes on with what it has until it misses the master.
+void Player::loseCommands(std::size_t axis, Duration duration) {
   const Time now = stage_.now();
   const AxisFacts& facts = stage_.axes()[axis];
   Conditions::extend(conditions_.axes[axis].cut_off, now + duration + 500ms);

@@ -26,7 +26,7 @@ class VainRequests final : public Oracle {
       const std::uint32_t node = view.stage.axes()[i].config->node_id;
       if (frame.id == 0x700 + node) {  // a heartbeat, or an answer to guarding
         const bool heard =
-            view.now >= view.conditions.lossy && view.now >= view.conditions.axes[i].cut_off;
+            view.now >= view.conditions.lossy && view.now >= view.conditions.axes[i].unheard;
         const bool stopped = heard && (frame.data[0] & 0x7F) == 0x04;
         axis.told = stopped ? axis.told + 1 : 0;
         if (!stopped) axis.asked = 0;
