@@ -125,7 +125,7 @@ class MotorLimits final : public Oracle {
     }
     const double effort = facts.config->limits.effort.value_or(1e300);
     if (view.now < axis.catches_up && std::fabs(truth.effort) > 0.9 * effort) {
-      axis.catches_up = std::min(view.now + 20ms, axis.last);
+      axis.catches_up = std::min(view.now + 50ms, axis.last);
     }
     return view.now < axis.catches_up;
   }
