@@ -1,24 +1,25 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-// A drive that says that it is stopped answers no SDO (CiA 301, table 38): it is not asked.
+// A drive that says that it is stopped answers no SDO (CiA 301, table 38): who boots it starts it
+// first. People may ask it what they like.
 #include "../oracle.h"
 
 namespace cia402::campaign {
 namespace {
 
-constexpr unsigned kTold = 3;  // heartbeats in a row: one may be lost, one not looked at yet
-constexpr Duration kPatience = std::chrono::seconds(5);
+constexpr unsigned kTold = 3;   // heartbeats in a row: one may be lost, one not looked at yet
 constexpr unsigned kAsked = 2;  // requests: one may have been on its way
+
+/// The upload of 1000h, with which each boot begins.
+bool boots(const can::Frame& request) {
+  return request.size >= 4 && request.data[0] == 0x40 && request.data[1] == 0x00 &&
+         request.data[2] == 0x10 && request.data[3] == 0x00;
+}
 
 class VainRequests final : public Oracle {
  public:
   explicit VainRequests(const Stage& stage) : axes_(stage.axes().size()) {}
   const char* name() const override { return "vain_request"; }
 
-  void onCall(const Call& call, const View& view) override {
-    const bool object = call.verb == "read" || call.verb == "write" || call.verb == "history";
-    if (!object) return;
-    for (std::size_t i : call.axes) axes_[i].people = view.now + kPatience;
-  }
   void onFrame(const can::Frame& frame, const View& view) override {
     if (frame.error || frame.remote || frame.size == 0) return;
     for (std::size_t i = 0; i < axes_.size(); ++i) {
@@ -31,7 +32,7 @@ class VainRequests final : public Oracle {
         axis.told = stopped ? axis.told + 1 : 0;
         if (!stopped) axis.asked = 0;
       }
-      if (frame.id != 0x600 + node || axis.told < kTold || view.now < axis.people) continue;
+      if (frame.id != 0x600 + node || !boots(frame) || axis.told < kTold) continue;
       if (++axis.asked != kAsked) continue;
       report(view, i, "says that it is stopped, and is asked by SDO again and again");
     }
@@ -40,7 +41,6 @@ class VainRequests final : public Oracle {
  private:
   struct Axis {
     unsigned told = 0, asked = 0;  // since it said something else
-    Time people{};                 // until then they may want to read an object
   };
   std::vector<Axis> axes_;
 };
