@@ -218,10 +218,15 @@ class Author {
     const std::string length = text(random_.between(0.05, 2.5));
     const bool all = random_.chance(0.6);
     add(at, "unheard " + axis.name + (all ? " all " : " service ") + length);
-    if (random_.chance(0.3)) add(at, "loss 0.25 " + length);
-    if (random_.chance(0.3)) return;
-    add(at + random_.between(0.03, 0.3),
-        random_.pick<std::string>({"disable ", "halt ", "quick_stop ", "recover "}) + axis.name);
+    const double choice = random_.uniform();
+    if (choice < 0.25) add(at, "loss 0.25 " + length);
+    if (choice > 0.6) add(at, "nmt_loss " + axis.name + " " + std::to_string(1 + random_.below(3)));
+    double call = at + random_.between(0.03, 0.3);
+    while (!random_.chance(0.35)) {  // a stop upon a stop, that nobody can see
+      add(call,
+          random_.pick<std::string>({"disable ", "halt ", "quick_stop ", "recover "}) + axis.name);
+      call += random_.between(0.005, 0.1);
+    }
   }
   void trouble(double at, const AxisPlan& axis) {
     if (random_.chance(0.08)) return unheard(at, axis);
@@ -258,11 +263,12 @@ class Author {
     } else {
       const std::string who = whom(axis);
       add(at, "foreign_nmt " + who + " " +
-                  random_.pick<std::string>(
-                      {"stop", "pre_operational", "reset_node", "reset_communication", "start"}));
-      if (random_.chance(0.5)) {  // what the master answers to that is lost
-        add(at + 0.002, "nmt_loss " + who + " " + std::to_string(1 + random_.below(3)));
+                  random_.pick<std::string>({"stop", "stop", "pre_operational", "reset_node",
+                                             "reset_communication", "start"}));
+      if (random_.chance(0.6)) {  // what the master answers to that is lost
+        add(at + 0.002, "nmt_loss " + who + " " + std::to_string(1 + random_.below(4)));
       }
+      if (random_.chance(0.5)) add(at + random_.between(0.02, 0.8), "recover " + axis.name);
     }
   }
   void fault(double at, const AxisPlan& axis) {

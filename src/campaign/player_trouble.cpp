@@ -91,9 +91,12 @@ bool Player::actTrouble(const Words& words) {
       rule.count = std::numeric_limits<unsigned>::max();
       rule.receiver = stage_.host().interface().port().name();
       const std::uint32_t node = stage_.axes()[i].config->node_id;
-      const bool all = words.at(2) == "all";
-      if (all) rule.mask = 0x7F;
-      for (const std::uint32_t id : {0x580 + node, 0x700 + node}) {  // SDO, heartbeat
+      std::vector<std::uint32_t> ids{0x580 + node, 0x700 + node};  // SDO, heartbeat
+      if (words.at(2) == "all") {
+        ids = {node};
+        rule.mask = 0x7F;
+      }
+      for (const std::uint32_t id : ids) {
         rule.id = id;
         stage_.world().bus().faults().add(rule);
         later(length, [this, rule] { stage_.world().bus().faults().remove(rule); });

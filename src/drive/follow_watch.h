@@ -34,8 +34,7 @@ class FollowWatch {
   /// A motor that moves has nothing called back. @return true: that is all there is to see
   bool leaves(bool moving, bool has_bit) {
     if (!moving || !(shown_ || (follows_ && !has_bit))) return false;
-    running_since_ = kNever;
-    told_ = false;
+    noteMotion();
     return true;
   }
   /// The axis came into operation.
@@ -48,8 +47,7 @@ class FollowWatch {
   bool watch(const Look& look, Time now) {
     if (!shown_) lookForBit(look, now);
     if (!look.standstill.moving()) return watchStanding(look, now);
-    running_since_ = kNever;
-    told_ = false;
+    noteMotion();
     return false;
   }
   /// What was called back. @return true for the first time since the motor moved: people are told.
@@ -59,6 +57,10 @@ class FollowWatch {
   /// Only set-points that are so many times faster than standstill tell that a motor stays behind.
   static constexpr double kClearlyMoving = 3.0;
 
+  void noteMotion() {
+    running_since_ = kNever;
+    told_ = false;
+  }
   void lookForBit(const Look& look, Time now);
   bool watchStanding(const Look& look, Time now);
   bool runsAway(const Look& look, double ahead, Time now) const;

@@ -34,8 +34,8 @@ class SetMode : public Procedure {
       if (!problem.empty()) {
         return Outcome::failed(axis.who() +
                                ": the mode is not switched, as the axis is beyond the "
-                               "position limits that the drive keeps, to which it "
-                               "would move: " +
+                               "position limits that the drive keeps, to which it would move; "
+                               "lead it back by a velocity or an effort, or disable it: " +
                                problem);
       }
     }

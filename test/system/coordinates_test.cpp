@@ -213,5 +213,30 @@ TEST(Coordinates, SwitchingToPositionsBeyondALimitMovesNothing) {
   }
 }
 
+TEST(Coordinates, ADriveThatKeepsItsLimitsIsNotSwitchedToPositionsBeyondThem) {
+  Scene scene(loadText(genericPair(limits(-1.0, 1.0) + standing(0.6) +
+                                   ", modes: [csp, pt], write: "
+                                   "[{object: following_error_window, value: 0.05}]")));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  ASSERT_TRUE(declare(scene, "left", 0.6).success);
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "left").success) << scene.told();
+  ASSERT_TRUE(scene.procedure(ProcedureKind::set_mode, "left", "profile_torque").success);
+  for (const auto side : {std::uint8_t{1}, std::uint8_t{2}}) {  // only in other states
+    scene.drive("left").dictionary().onWriteCheck({0x607D, side},
+                                                  [](const auto&, auto) { return 0x08000022u; });
+  }
+  scene.stream("left", 60.0, 700ms);
+  scene.run(2s);
+  ASSERT_GT(scene.position("left"), 1.1) << "the effort took it beyond its limit";
+  scene.forget();
+  const auto refused = scene.procedure(ProcedureKind::set_mode, "left", "csp");
+  EXPECT_FALSE(refused.success);
+  EXPECT_THAT(refused.message, HasSubstr("lead it back by a velocity or an effort, or disable it"));
+  EXPECT_THAT(refused.message, HasSubstr("607D:02"));
+  EXPECT_EQ(scene.axis("left").modeName(), "profile_torque");
+  scene.run(500ms);
+  expectNothingMoved(scene, "left");
+}
+
 }  // namespace
 }  // namespace cia402
