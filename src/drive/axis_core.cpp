@@ -96,7 +96,7 @@ void AxisCore::supervise(Time now) {
     if (state != State::operation_enabled && !undecodable) return giveUpOperation();
     if (state_.warning && profile().warning_stops) return stopForWarning();
     const bool has_bit = mode_->spec->follows_command_bit.has_value();
-    if (!following_.leaves(standstill_.moving(), has_bit)) watchFollowing(now);
+    if (!following_.leaves(standstill_.moving(), has_bit, now)) watchFollowing(now);
   } else if (goal_ == Goal::enabled && state == State::operation_enabled) {
     in_operation_ = true;
     brake_released_ = now + profile().timing.brake_release;

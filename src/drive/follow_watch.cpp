@@ -22,13 +22,14 @@ void FollowWatch::begin(Time now) {
 }
 
 void FollowWatch::lookForBit(const Look& look, Time now) {
-  shown_ = look.bit;
-  if (follows_) return;
-  if (!look.has_bit || look.bit || never_shown_) {
+  if (!look.has_bit) {
+    began_ = now;  // another mode may have one, and is waited for then
     follows_ = true;
-  } else if (now - began_ >= kFollowPatience) {
-    follows_ = never_shown_ = true;
+    return;
   }
+  shown_ = look.bit;
+  never_shown_ = never_shown_ || (!shown_ && now - began_ >= kFollowPatience);
+  follows_ = shown_ || never_shown_;
 }
 
 bool FollowWatch::watchStanding(const Look& look, Time now) {

@@ -32,8 +32,9 @@ class FollowWatch {
   };
 
   /// A motor that moves has nothing called back. @return true: that is all there is to see
-  bool leaves(bool moving, bool has_bit) {
+  bool leaves(bool moving, bool has_bit, Time now) {
     if (!moving || !(shown_ || (follows_ && !has_bit))) return false;
+    if (!has_bit) began_ = now;
     noteMotion();
     return true;
   }
@@ -41,7 +42,7 @@ class FollowWatch {
   void begin(Time now);
   /// It left operation, or what was sent has been called back.
   void end() { running_since_ = kNever; }
-  /// The drive follows its set-points, as far as it shows that.
+  /// The drive follows its set-points, as far as the mode that was looked at last shows that.
   bool follows() const { return follows_; }
   /// @return true: what was sent is to be called back to where the motor stands, and given up.
   bool watch(const Look& look, Time now) {
@@ -72,7 +73,8 @@ class FollowWatch {
   bool shown_ = false;        ///< the mode's bit was set since the axis is in operation
   bool never_shown_ = false;  ///< it never was, this drive does not use it
   bool told_ = false;
-  Time began_{}, running_since_ = kNever;  ///< set-points of a stream move since then
+  Time began_{};                 ///< since then the bit is waited for
+  Time running_since_ = kNever;  ///< set-points of a stream move since then
 };
 
 }  // namespace cia402::drive

@@ -169,6 +169,17 @@ TEST(FollowWatch, WaitsOnceForADriveThatNeverShowsItsBit) {
   EXPECT_TRUE(bench.watch.follows()) << "it is known by now";
 }
 
+TEST(FollowWatch, AModeWithoutTheBitSaysNothingOfOneThatHasIt) {
+  Bench bench;
+  bench.stand(2s);  // homing, say: the brake still holds
+  bench.has_bit = true;
+  bench.cycle(0.0, 0.0);
+  EXPECT_FALSE(bench.watch.follows()) << "and is not counted as one that never shows it";
+  bench.bit = true;
+  bench.cycle(0.0, 0.0);
+  EXPECT_TRUE(bench.watch.follows());
+}
+
 TEST(FollowWatch, FollowsAtOnceWhereTheBitIsSetOrTheModeHasNone) {
   Bench bench;
   EXPECT_TRUE(bench.watch.follows());

@@ -60,6 +60,26 @@ TEST(HeldMotor, HasNoSetPointsRunAwayWhileItsBrakeHoldsIt) {
   EXPECT_NEAR(scene.position("left"), 1.0, 1e-3);
 }
 
+TEST(HeldMotor, HomedWhileItsBrakeHoldsItWaitsForItsRelease) {
+  Scene scene(loadText(genericPair(", homing: {method: 37}, simulation: {brake_delay: 0.3}")));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  const auto homed = scene.begin(ProcedureKind::home, "left");
+  double highest_target = 0.0;
+  const Time end = scene.now() + 2s;
+  while (scene.now() < end) {
+    (void)scene.setpoint("left", 1.0);
+    if (*homed && scene.position("left") < 0.01) {
+      highest_target = std::max(highest_target, scene.axis("left").target());
+    }
+    scene.run(4ms);
+  }
+  ASSERT_TRUE(homed->has_value());
+  EXPECT_TRUE((*homed)->success) << (*homed)->message;
+  EXPECT_LT(highest_target, 0.02);
+  EXPECT_LT(scene.seen("left").fastest, 1.05 * kVelocity);
+  EXPECT_NEAR(scene.position("left"), 1.0, 1e-3);
+}
+
 TEST(HeldMotor, HasItsSetPointsCalledBackAtALimitSwitch) {
   ReadyScene scene(genericPair(", simulation: {upper_limit_switch: 0.5}"));
   scene.forget();
