@@ -24,6 +24,7 @@ struct Bench {
   FollowWatch watch{kStandstill, kCycle};
   Time now{1s};
   bool has_bit = false, bit = false;
+  bool heard = true;  ///< its feedback arrives
 
   explicit Bench(SetPointKind kind = SetPointKind::stream) {
     sent.rest(kind, 0.0);
@@ -36,7 +37,7 @@ struct Bench {
   bool cycle(double motor, std::optional<double> target = {}) {
     now += kCycle;
     state.position = motor;
-    standstill.update(motor, now);
+    if (heard) standstill.update(motor, now);
     if (target) sent.give(*target);
     sent.advance(now);
     return watch.watch({sent, standstill, state, has_bit, bit}, now);
@@ -86,6 +87,29 @@ TEST(FollowWatch, IsQuickerWhereTheDriveTakesItsBitAway) {
   EXPECT_LE(*after, kSeen);
 }
 
+TEST(FollowWatch, IsNotQuickerWhereTheDriveNeverSetsItsBit) {
+  Bench bench;
+  bench.has_bit = true;
+  bench.watch.begin(bench.now);
+  bench.stand(2s);
+  const auto after = bench.runAhead();
+  ASSERT_TRUE(after);
+  EXPECT_GE(*after, 150ms);
+}
+
+TEST(FollowWatch, HoldsNothingAgainstAMotorThatWasSeenLastBeforeItsSetPointsRan) {
+  Bench bench;
+  bench.state.internal_limit = true;  // from which it is led away
+  bench.heard = false;                // its positions come every 100 ms
+  for (int i = 0; i < 25; ++i) {
+    ASSERT_FALSE(bench.cycle(0.004 * i, bench.sent.value() + 0.004)) << "cycle " << i;
+  }
+  bench.heard = true;
+  for (int i = 25; i < 100; ++i) {
+    ASSERT_FALSE(bench.cycle(0.004 * i, bench.sent.value() + 0.004)) << "cycle " << i;
+  }
+}
+
 TEST(FollowWatch, LeavesAMotorAloneThatMovesHoweverFarBehind) {
   Bench bench;
   double motor = 0.0;
@@ -128,6 +152,24 @@ TEST(FollowWatch, CallsBackAtOnceWhatTurnsBackTowardsAMotorAtALimit) {
   EXPECT_TRUE(bench.cycle(0.0, bench.sent.value() - 0.004));
 }
 
+TEST(FollowWatch, LetsSetPointsTurnBackWhereNothingSaysThatTheMotorIsHeld) {
+  Bench bench;
+  for (int i = 0; i < 15; ++i) ASSERT_FALSE(bench.cycle(0.0, bench.sent.value() + 0.004));
+  for (int i = 0; i < 10; ++i) {
+    ASSERT_FALSE(bench.cycle(0.0, bench.sent.value() - 0.004)) << "cycle " << i;
+  }
+}
+
+TEST(FollowWatch, CallsBackAtOnceWhatTurnsBackTowardsAMotorThatHadItCalledBackBefore) {
+  Bench bench;
+  ASSERT_TRUE(bench.runAhead());
+  ASSERT_TRUE(bench.watch.isNews());
+  bench.sent.rest(SetPointKind::stream, 0.0);
+  bench.watch.end();
+  for (int i = 0; i < 10; ++i) ASSERT_FALSE(bench.cycle(0.0, bench.sent.value() + 0.004));
+  EXPECT_TRUE(bench.cycle(0.0, bench.sent.value() - 0.004));
+}
+
 TEST(FollowWatch, TellsOnceUntilTheMotorMoves) {
   Bench bench;
   ASSERT_TRUE(bench.runAhead());
@@ -151,6 +193,14 @@ TEST(FollowWatch, GivesADriveThatPlansUntilItHasStoodForAWhileAtALimit) {
 TEST(FollowWatch, AGoalThatIsReachedIsNotCalledBack) {
   Bench bench(SetPointKind::goal);
   bench.state.internal_limit = bench.state.target_reached = true;
+  ASSERT_FALSE(bench.cycle(0.0, 0.5));
+  for (int i = 0; i < 500; ++i) ASSERT_FALSE(bench.cycle(0.0));
+}
+
+TEST(FollowWatch, AGoalIsNotCalledBackBeforeTheAxisIsReadyForIt) {
+  Bench bench(SetPointKind::goal);
+  bench.state.internal_limit = true;
+  bench.state.ready_for_motion = false;
   ASSERT_FALSE(bench.cycle(0.0, 0.5));
   for (int i = 0; i < 500; ++i) ASSERT_FALSE(bench.cycle(0.0));
 }
