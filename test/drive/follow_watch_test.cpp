@@ -219,6 +219,18 @@ TEST(FollowWatch, WaitsOnceForADriveThatNeverShowsItsBit) {
   EXPECT_TRUE(bench.watch.follows()) << "it is known by now";
 }
 
+TEST(FollowWatch, AMotorThatMovesIsStillWaitedForUntilItsBitIsSeen) {
+  Bench bench;
+  bench.has_bit = true;
+  bench.watch.begin(bench.now);
+  EXPECT_FALSE(bench.watch.leaves(true, true, bench.now)) << "the bit is to be looked for";
+  EXPECT_FALSE(bench.watch.leaves(true, false, bench.now)) << "or that there is none";
+  bench.bit = true;
+  bench.cycle(0.0, 0.0);
+  EXPECT_TRUE(bench.watch.leaves(true, true, bench.now));
+  EXPECT_FALSE(bench.watch.leaves(false, true, bench.now));
+}
+
 TEST(FollowWatch, AModeWithoutTheBitSaysNothingOfOneThatHasIt) {
   Bench bench;
   bench.stand(2s);  // homing, say: the brake still holds

@@ -79,6 +79,21 @@ TEST_F(ParametersScene, AMovingRobotIsNeitherSavedNorRestoredNorReset) {
   EXPECT_NEAR(scene.position("right"), 1.0, 1e-3);
 }
 
+TEST_F(ParametersScene, AnAxisThatCoastsIsNeitherSavedNorRestored) {
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
+  ASSERT_TRUE(scene.move({1.0, 1.0}, 2s).success);
+  scene.run(1s);
+  scene.inject("left", "hardware");
+  scene.run(20ms);
+  ASSERT_FALSE(scene.truth("left").power_stage_on);
+  for (const auto kind : {ProcedureKind::save_parameters, ProcedureKind::restore_parameters}) {
+    const auto refused = scene.procedure(kind, "left");
+    EXPECT_FALSE(refused.success);
+    EXPECT_THAT(refused.message, HasSubstr("the axis moves; wait until it is at rest"));
+    EXPECT_GT(std::fabs(scene.velocity("left")), 0.05) << "the answer is of this moment";
+  }
+}
+
 TEST_F(ParametersScene, AStoppedNodeIsStoppedAndComesBackByStart) {
   const auto stopped = nmt("left", "stop");
   ASSERT_TRUE(stopped.success) << stopped.message;
