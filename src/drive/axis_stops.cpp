@@ -116,8 +116,10 @@ void AxisCore::releaseHalt() {
 
 void AxisCore::watchFollowing(Time now) {
   const auto& bit = mode_->spec->follows_command_bit;
-  const bool shown = bit && state_.mode == mode_->spec && ((state_.statusword >> *bit) & 1u) != 0;
-  const FollowWatch::Look look{set_point_, standstill_, state_, bit.has_value(), shown};
+  const bool active = state_.mode == mode_->spec;
+  const bool shown = bit && active && ((state_.statusword >> *bit) & 1u) != 0;
+  const bool held = !active || halt_bit_ || state_.internal_limit;
+  const FollowWatch::Look look{set_point_, standstill_, state_, bit.has_value(), shown, held};
   if (following_.watch(look, now)) callBack();
 }
 

@@ -28,7 +28,12 @@ void FollowWatch::lookForBit(const Look& look, Time now) {
     return;
   }
   shown_ = look.bit;
-  never_shown_ = never_shown_ || (!shown_ && now - began_ >= kFollowPatience);
+  if (look.held) began_ = now;
+  if (shown_) {
+    never_shown_ = false;
+  } else if (now - began_ >= kFollowPatience) {
+    never_shown_ = true;
+  }
   follows_ = shown_ || never_shown_;
 }
 

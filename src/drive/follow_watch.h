@@ -29,6 +29,8 @@ class FollowWatch {
     const AxisState& state;
     /// Does the mode have a bit that says that the drive follows, and is it set?
     bool has_bit, bit;
+    /// Something explains that the bit is not set: the halt bit, a limit, another mode still.
+    bool held;
   };
 
   /// A motor that moves has nothing called back. @return true: that is all there is to see

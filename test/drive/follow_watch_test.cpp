@@ -25,6 +25,7 @@ struct Bench {
   Time now{1s};
   bool has_bit = false, bit = false;
   bool heard = true;  ///< its feedback arrives
+  bool held = false;
 
   explicit Bench(SetPointKind kind = SetPointKind::stream) {
     sent.rest(kind, 0.0);
@@ -40,7 +41,7 @@ struct Bench {
     if (heard) standstill.update(motor, now);
     if (target) sent.give(*target);
     sent.advance(now);
-    return watch.watch({sent, standstill, state, has_bit, bit}, now);
+    return watch.watch({sent, standstill, state, has_bit, bit, held}, now);
   }
   void stand(Duration duration) {
     for (const Time end = now + duration; now < end;) {
@@ -217,6 +218,34 @@ TEST(FollowWatch, WaitsOnceForADriveThatNeverShowsItsBit) {
   EXPECT_FALSE(bench.watch.follows());
   bench.cycle(0.0, 0.0);
   EXPECT_TRUE(bench.watch.follows()) << "it is known by now";
+}
+
+TEST(FollowWatch, DoesNotTakeADriveThatIsHeldForOneThatNeverShowsItsBit) {
+  Bench bench;
+  bench.has_bit = bench.held = true;
+  bench.watch.begin(bench.now);
+  bench.stand(3s);
+  EXPECT_FALSE(bench.watch.follows());
+  bench.held = false;
+  bench.stand(900ms);
+  EXPECT_FALSE(bench.watch.follows());
+  bench.bit = true;
+  bench.cycle(0.0, 0.0);
+  EXPECT_TRUE(bench.watch.follows());
+}
+
+TEST(FollowWatch, WaitsAgainForADriveThatShowsItsBitAfterAll) {
+  Bench bench;
+  bench.has_bit = true;
+  bench.watch.begin(bench.now);
+  bench.stand(2s);
+  ASSERT_TRUE(bench.watch.follows()) << "it seemed to have none";
+  bench.bit = true;
+  bench.cycle(0.0, 0.0);
+  bench.bit = false;
+  bench.watch.begin(bench.now);
+  bench.cycle(0.0, 0.0);
+  EXPECT_FALSE(bench.watch.follows());
 }
 
 TEST(FollowWatch, AMotorThatMovesIsStillWaitedForUntilItsBitIsSeen) {

@@ -80,6 +80,32 @@ TEST(HeldMotor, HomedWhileItsBrakeHoldsItWaitsForItsRelease) {
   EXPECT_NEAR(scene.position("left"), 1.0, 1e-3);
 }
 
+TEST(HeldMotor, IsWaitedForAlsoAfterItWasHaltedForLong) {
+  ReadyScene scene(genericPair(", modes: [csp, pp], simulation: {brake_delay: 0.3}"));
+  ASSERT_TRUE(scene.procedure(ProcedureKind::disable, "left").success);
+  ASSERT_TRUE(scene.procedure(ProcedureKind::set_mode, "left", "pp").success);
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "left").success);
+  ASSERT_TRUE(scene.procedure(ProcedureKind::halt, "left").success);
+  ASSERT_TRUE(scene.procedure(ProcedureKind::set_mode, "left", "csp").success);
+  scene.run(3s);  // a drive that is halted does not follow
+  ASSERT_TRUE(scene.procedure(ProcedureKind::disable, "left").success);
+  const auto enabled = scene.begin(ProcedureKind::enable, "left");
+  double highest_target = 0.0;
+  const Time end = scene.now() + 2s;
+  while (scene.now() < end) {
+    (void)scene.setpoint("left", 1.0);
+    if (scene.position("left") < 0.01) {
+      highest_target = std::max(highest_target, scene.axis("left").target());
+    }
+    scene.run(4ms);
+  }
+  ASSERT_TRUE(enabled->has_value());
+  EXPECT_TRUE((*enabled)->success) << (*enabled)->message;
+  EXPECT_LT(highest_target, 0.02);
+  EXPECT_LT(scene.seen("left").fastest, 1.05 * kVelocity);
+  EXPECT_NEAR(scene.position("left"), 1.0, 1e-3);
+}
+
 TEST(HeldMotor, HasItsSetPointsCalledBackAtALimitSwitch) {
   ReadyScene scene(genericPair(", simulation: {upper_limit_switch: 0.5}"));
   scene.forget();
