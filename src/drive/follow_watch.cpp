@@ -18,7 +18,7 @@ constexpr Duration kStuck{std::chrono::milliseconds(300)};
 void FollowWatch::begin(Time now) {
   began_ = now;
   running_since_ = kNever;
-  follows_ = shown_ = told_ = false;
+  follows_ = shown_ = told_ = excused_ = false;
 }
 
 void FollowWatch::lookForBit(const Look& look, Time now) {
@@ -28,13 +28,14 @@ void FollowWatch::lookForBit(const Look& look, Time now) {
     return;
   }
   shown_ = look.bit;
-  if (look.held) began_ = now;
+  excused_ = excused_ || look.held;
+  const bool late = now - began_ >= kFollowPatience;
   if (shown_) {
     never_shown_ = false;
-  } else if (now - began_ >= kFollowPatience) {
+  } else if (late && !excused_) {
     never_shown_ = true;
   }
-  follows_ = shown_ || never_shown_;
+  follows_ = shown_ || late || never_shown_;
 }
 
 bool FollowWatch::watchStanding(const Look& look, Time now) {

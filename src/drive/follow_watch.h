@@ -74,6 +74,7 @@ class FollowWatch {
   bool follows_ = false;
   bool shown_ = false;        ///< the mode's bit was set since the axis is in operation
   bool never_shown_ = false;  ///< it never was, this drive does not use it
+  bool excused_ = false;      ///< something explained since then that it was not set
   bool told_ = false;
   Time began_{};                 ///< since then the bit is waited for
   Time running_since_ = kNever;  ///< set-points of a stream move since then
