@@ -18,6 +18,7 @@ Permits::Permits(const Stage& stage) : stage_(stage), axes_(stage.axes().size())
 void Permits::allow(std::size_t axis, Source source, Time until) {
   Time& present = at(axis, source);
   present = std::max(present, until);
+  axes_[axis].given[static_cast<std::size_t>(source)] = stage_.now();
   if (source == Source::target) axes_[axis].moved = stage_.now();
   if (source == Source::homing) axes_[axis].homing_called = stage_.now();
 }
@@ -32,7 +33,11 @@ void Permits::cut(std::size_t axis, Time until) {
 
 void Permits::end(std::size_t axis, Time called, Time now) {
   for (const Source source : {Source::stream, Source::target, Source::trajectory}) {
-    cut(axis, source, now);
+    // What came in the cycle in which the call ended is commanded after it.
+    const bool after = axes_[axis].given[static_cast<std::size_t>(source)] +
+                           stage_.axes()[axis].config->sync_period >=
+                       now;
+    if (!after) cut(axis, source, now);
   }
   if (axes_[axis].homing_called <= called) cut(axis, Source::homing, now);
 }

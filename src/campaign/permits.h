@@ -40,7 +40,7 @@ class Permits {
 
  private:
   struct Axis {
-    std::array<Time, 4> until{};
+    std::array<Time, 4> until{}, given{};
     Time moved{}, homing_called{};
     Duration stretched{};
     Time stretched_until{};

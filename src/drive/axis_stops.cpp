@@ -124,20 +124,24 @@ void AxisCore::watchFollowing(Time now) {
 }
 
 void AxisCore::callBack() {
-  const double ahead = set_point_.value() - state_.position;
+  const bool turns = set_point_.kind() == SetPointKind::velocity;
+  const double ahead = turns ? set_point_.value() : set_point_.value() - state_.position;
   neutralizeTarget();
   if (mode_->spec->handshake == Handshake::new_set_point) handshake_.offer(target_raw_);
   set_point_.giveUp();
   following_.end();
   if (!following_.isNews()) return;
   const bool prismatic = config_.geometry.type == AxisGeometry::Type::prismatic;
-  notify(who() + ": the motor stands while its set-points run, " + length(ahead, prismatic) +
-         " ahead: " +
+  const std::string what =
+      turns ? "it is to turn at " + number(ahead) + (prismatic ? " m/s: " : " rad/s: ")
+            : "its set-points run, " + length(ahead, prismatic) + " ahead: ";
+  notify(who() + ": the motor stands while " + what +
          (state_.internal_limit ? "internal limit active (statusword bit 11), a limit switch or a "
                                   "position limit of the drive holds it"
                                 : "the brake, a limit or the load holds it") +
-         ". They are called back to where it stands, and what was commanded is given up: free the "
-         "axis or lead it back, then command it again");
+         (turns ? ". The velocity is set to 0" : ". They are called back to where it stands") +
+         ", and what was commanded is given up: free the axis or lead it back, then command it "
+         "again");
 }
 
 }  // namespace cia402::drive

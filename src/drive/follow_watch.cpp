@@ -39,9 +39,10 @@ void FollowWatch::lookForBit(const Look& look, Time now) {
 }
 
 bool FollowWatch::watchStanding(const Look& look, Time now) {
-  const double ahead = look.sent.value() - look.state.position;
-  const bool runs =
-      look.sent.kind() == SetPointKind::stream && std::fabs(look.sent.velocity()) > clearly_;
+  const bool turns = look.sent.kind() == SetPointKind::velocity;
+  const double ahead = turns ? 0.0 : look.sent.value() - look.state.position;
+  const bool streams = turns || look.sent.kind() == SetPointKind::stream;
+  const bool runs = streams && std::fabs(look.sent.velocity()) > clearly_;
   if (!runs) {
     running_since_ = kNever;
     return look.state.internal_limit && restsAhead(look, ahead, now);
@@ -60,7 +61,10 @@ bool FollowWatch::runsAway(const Look& look, double ahead, Time now) const {
   const bool dropped = shown_ && look.has_bit && !look.bit;
   const bool stands =
       look.standstill.still() && look.standstill.stillFrom() >= running_since_ + reaction_;
-  return stands && now - running_since_ >= (limit || dropped ? kHeld : kLeftBehind);
+  if (limit || dropped) return stands && now - running_since_ >= kHeld;
+  // A velocity winds nothing up: a load that it cannot turn is no reason to give it up.
+  const bool position = look.sent.kind() == SetPointKind::stream;
+  return position && stands && now - running_since_ >= kLeftBehind;
 }
 
 bool FollowWatch::restsAhead(const Look& look, double ahead, Time now) const {

@@ -88,6 +88,20 @@ TEST(FollowWatch, IsQuickerWhereTheDriveTakesItsBitAway) {
   EXPECT_LE(*after, kSeen);
 }
 
+TEST(FollowWatch, CallsAVelocityBackFromAMotorThatALimitHolds) {
+  Bench bench(SetPointKind::velocity);
+  for (int i = 0; i < 500; ++i) ASSERT_FALSE(bench.cycle(0.0, 0.5)) << "a load, says nothing";
+  bench.state.internal_limit = true;
+  ASSERT_TRUE(bench.cycle(0.0, 0.5));
+  Bench again(SetPointKind::velocity);
+  again.state.internal_limit = true;
+  const Time begun = again.now;
+  while (again.now - begun < 1s && !again.cycle(0.0, 0.5)) {
+  }
+  EXPECT_GE(again.now - begun, 60ms);
+  EXPECT_LE(again.now - begun, kSeen);
+}
+
 TEST(FollowWatch, IsNotQuickerWhereTheDriveNeverSetsItsBit) {
   Bench bench;
   bench.has_bit = true;

@@ -119,6 +119,22 @@ TEST(HeldMotor, HasItsSetPointsCalledBackAtALimitSwitch) {
   EXPECT_NEAR(scene.position("left"), 0.2, 1e-2);
 }
 
+TEST(HeldMotor, IsNotLeftWithAVelocityAtALimitSwitch) {
+  ReadyScene scene(genericPair(", simulation: {upper_limit_switch: 0.1}"), "csv");
+  scene.stream("left", 1.0, 1500ms);
+  ASSERT_GT(scene.position("left"), 0.09) << "it did not reach the switch";
+  EXPECT_THAT(scene.told(), HasSubstr("the motor stands while it is to turn at"));
+  EXPECT_THAT(scene.told(), HasSubstr("The velocity is set to 0"));
+  EXPECT_NEAR(scene.velocity("left"), 0.0, 1e-3);
+  scene.drive("left").mechanics().positive_limit_switch = 1e9;
+  double fastest = 0.0;
+  for (int i = 0; i < 30; ++i) {
+    scene.run(1ms);
+    fastest = std::max(fastest, std::fabs(scene.velocity("left")));
+  }
+  EXPECT_LT(fastest, 0.5) << "no more than its ramp has come to since";
+}
+
 TEST(HeldMotor, TurnsBackFromALimitSwitchByItsRamp) {
   for (const Duration pushed : {310ms, 340ms, 370ms, 400ms}) {  // called back just before, or not
     ReadyScene scene(genericPair(", simulation: {upper_limit_switch: 0.1}"));
