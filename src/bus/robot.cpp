@@ -244,6 +244,15 @@ drive::Axis* Robot::axisNamed(const std::string& name, const Reply& reply) {
   return nullptr;
 }
 
+drive::Axis* Robot::axisToAsk(const std::string& name, const Reply& reply) {
+  drive::Axis* axis = axisNamed(name, reply);
+  if (axis == nullptr || axis->node().nmtState() != canopen::NmtState::stopped) return axis;
+  refuse(reply, axis->node().who() +
+                    ": its heartbeat says stopped (NMT state), and a stopped drive answers no SDO; "
+                    "boot it (recover, or nmt start) to ask it");
+  return nullptr;
+}
+
 std::size_t Robot::axisOf(const canopen::Node& node) const {
   const auto axis = std::find_if(axes_.begin(), axes_.end(), [&](const drive::Axis& a) {
     return a.config().node_id == node.id();

@@ -82,5 +82,23 @@ TEST_F(StoppedDrive, ThatStaysStoppedIsToldAsThat) {
   EXPECT_TRUE(again.success) << again.message;
 }
 
+TEST_F(StoppedDrive, IsNotAskedForObjectsThatItCannotTell) {
+  boot();
+  ASSERT_TRUE(call(scene, bus::NmtServiceCommand{"left", "stop"}).success);
+  asked = 0;
+  const Time begin = scene.now();
+  for (const bus::Answer& answer : {call(scene, bus::ReadObjectCommand{"left", "6041:00"}),
+                                    call(scene, bus::WriteObjectCommand{"left", "6065:00", "1000"}),
+                                    call(scene, bus::ErrorHistoryCommand{"left"})}) {
+    EXPECT_FALSE(answer.success);
+    EXPECT_THAT(answer.message, AllOf(HasSubstr("left (node 1)"), HasSubstr("answers no SDO"),
+                                      HasSubstr("recover, or nmt start")));
+  }
+  EXPECT_LT(scene.now() - begin, 100ms);
+  EXPECT_EQ(asked, 0U);
+  EXPECT_TRUE(call(scene, bus::NmtServiceCommand{"left", "start"}).success);
+  EXPECT_TRUE(call(scene, bus::ReadObjectCommand{"left", "6041:00"}).success);
+}
+
 }  // namespace
 }  // namespace cia402
