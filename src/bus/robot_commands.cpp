@@ -87,7 +87,7 @@ void Robot::run(TrajectoryCommand& command, const Reply& reply, Time now) {
 }
 
 void Robot::run(ReadObjectCommand& command, const Reply& reply, Time) {
-  drive::Axis* axis = axisToAsk(command.axis, reply);
+  drive::Axis* axis = axisNamed(command.axis, reply);
   if (axis == nullptr) return;
   Result<ObjectJob> job = ObjectJob::read(*axis, command.object, reply);
   if (job) {
@@ -98,7 +98,7 @@ void Robot::run(ReadObjectCommand& command, const Reply& reply, Time) {
 }
 
 void Robot::run(WriteObjectCommand& command, const Reply& reply, Time) {
-  drive::Axis* axis = axisToAsk(command.axis, reply);
+  drive::Axis* axis = axisNamed(command.axis, reply);
   if (axis == nullptr) return;
   Result<ObjectJob> job = ObjectJob::write(*axis, command.object, command.value, reply);
   if (job) {
