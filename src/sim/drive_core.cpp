@@ -264,7 +264,7 @@ void DriveCore::startSegment() {
   double period =
       static_cast<double>(values_.raw(Role::interpolation_time, 0)) * std::pow(10.0, exponent);
   if (definition_.follows_sync_period || period <= 0.0) period = toSeconds(sync_interval_);
-  motion_.cyclicTarget(period);
+  motion_.cyclicTarget(period, toSeconds(now_ - Time{step_ * kDriveStep}));
 }
 
 void DriveCore::saveZero() {

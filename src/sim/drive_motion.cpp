@@ -215,11 +215,11 @@ void DriveMotion::acceptSetPoint(std::uint16_t controlword) {
   }
 }
 
-void DriveMotion::cyclicTarget(double seconds) {
+void DriveMotion::cyclicTarget(double seconds, double into) {
   if (mode_ == nullptr || mode_->behaviour != ModeBehaviour::cyclic_position) return;
   if (!powered_ || stop_ || held_) return;
   limited_ = false;
-  interpolator_.moveTo(trueTarget(values_.get(Role::target_position, 0.0)), seconds);
+  interpolator_.moveTo(trueTarget(values_.get(Role::target_position, 0.0)), seconds, into);
 }
 
 void DriveMotion::step() {

@@ -53,8 +53,9 @@ class DriveMotion {
 
   /// A controlword arrived while operation was enabled already.
   void controlBits(std::uint16_t controlword, std::uint16_t previous);
-  /// A new csp set-point becomes valid: it is reached `seconds` from now.
-  void cyclicTarget(double seconds);
+  /// A new csp set-point becomes valid: it is reached `seconds` from now, which is `into` seconds
+  /// after the last step.
+  void cyclicTarget(double seconds, double into);
 
   void step();  ///< one kDriveStep
   bool atRest() const { return motor_.atRest(); }

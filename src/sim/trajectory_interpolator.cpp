@@ -2,32 +2,44 @@
 #include "trajectory_interpolator.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "motor.h"
 
 namespace cia402::sim {
+namespace {
+
+constexpr double kInstant = 1e-9;  // s: bus time is in nanoseconds
+
+}  // namespace
 
 void LinearInterpolator::reset(double position) {
   position_ = position;
   target_ = position;
   velocity_ = 0.0;
-  steps_left_ = 0;
+  left_ = 0.0;
+  into_ = 0.0;
 }
 
-void LinearInterpolator::moveTo(double target, double seconds) {
+void LinearInterpolator::moveTo(double target, double seconds, double into) {
+  const double begin = std::clamp(into, into_, kDriveStepS);
+  advance(begin - into_);
+  into_ = begin;
   target_ = target;
-  steps_left_ = std::max(1L, std::lround(std::clamp(seconds, 0.0, 10.0) / kDriveStepS));
-  velocity_ = (target_ - position_) / (static_cast<double>(steps_left_) * kDriveStepS);
+  left_ = std::clamp(seconds, kDriveStepS, 10.0);
+  velocity_ = (target_ - position_) / left_;
 }
 
 void LinearInterpolator::step() {
-  if (steps_left_ == 0) {
-    velocity_ = 0.0;
-    return;
-  }
-  --steps_left_;
-  position_ = steps_left_ == 0 ? target_ : position_ + velocity_ * kDriveStepS;
+  if (left_ == 0.0 && into_ == 0.0) velocity_ = 0.0;
+  advance(kDriveStepS - into_);
+  into_ = 0.0;
+}
+
+void LinearInterpolator::advance(double seconds) {
+  if (left_ == 0.0) return;
+  left_ -= seconds;
+  if (left_ < kInstant) left_ = 0.0;
+  position_ = left_ == 0.0 ? target_ : position_ + velocity_ * seconds;
 }
 
 }  // namespace cia402::sim

@@ -89,5 +89,39 @@ TEST(LinearInterpolator, DrawsALineAndWaitsAtItsEnd) {
   EXPECT_EQ(line.velocity(), 0.0);
 }
 
+// Lines of 2 ms and 2 turns; the steps are 0.5 ms apart.
+TEST(LinearInterpolator, BeginsBetweenSteps) {
+  LinearInterpolator line;
+  line.moveTo(2.0, 0.002, 0.0002);
+  line.step();
+  EXPECT_NEAR(line.position(), 0.3, 1e-12);
+  for (int i = 0; i < 3; ++i) line.step();
+  EXPECT_NEAR(line.position(), 1.8, 1e-12);
+  line.step();  // it ends 0.2 ms into this one
+  EXPECT_EQ(line.position(), 2.0);
+  EXPECT_NEAR(line.velocity(), 1000.0, 1e-9);
+  line.step();
+  EXPECT_EQ(line.position(), 2.0);
+  EXPECT_EQ(line.velocity(), 0.0);
+}
+
+TEST(LinearInterpolator, GoesOnEvenlyWhereSyncComesALittleLateOrEarly) {
+  LinearInterpolator line;
+  line.moveTo(2.0, 0.002, 0.0);  // at the step, then 1 us late, at the step, 1 us early
+  for (int i = 0; i < 4; ++i) line.step();
+  line.moveTo(4.0, 0.002, 0.000001);
+  line.step();
+  EXPECT_NEAR(line.position(), 2.499, 1e-9);
+  for (int i = 0; i < 3; ++i) line.step();
+  line.moveTo(6.0, 0.002, 0.0);
+  EXPECT_NEAR(line.position(), 3.999, 1e-9);
+  for (int i = 0; i < 3; ++i) line.step();
+  line.moveTo(8.0, 0.002, 0.000499);
+  line.step();
+  EXPECT_NEAR(line.position(), 6.0, 0.002);
+  line.step();
+  EXPECT_NEAR(line.position(), 6.5, 0.002);
+}
+
 }  // namespace
 }  // namespace cia402::sim
