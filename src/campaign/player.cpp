@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "cia402_driver/can/candump_log.h"
+
 namespace cia402::campaign {
 namespace {
 
@@ -139,6 +141,16 @@ void Player::report(const char* oracle, const std::string& axis, const std::stri
   (ignored(oracle) ? ignored_ : findings_).push_back({oracle, axis, text, stage_.now()});
 }
 
+/// SYNC, and what passes between the master and the axis that is watched (CiA 301, 7.3.5: the
+/// predefined connection set carries the node-ID in the lowest seven bits).
+void Player::traceFrame(const can::Frame& frame) {
+  const AxisFacts* const watched = stage_.find(options_.watch);
+  if (watched == nullptr || frame.error) return;
+  if (frame.id != 0x80 && (frame.id & 0x7F) != watched->config->node_id) return;
+  const std::string line = can::formatLogLine({{}, "can", frame, can::Direction::unknown});
+  say(line.substr(line.find("can ")));
+}
+
 void Player::onFrame(const can::Frame& frame, Time now) {
   const auto mix = [this](std::uint64_t value) {
     fingerprint_ = (fingerprint_ ^ value) * 1099511628211U;
@@ -148,6 +160,7 @@ void Player::onFrame(const can::Frame& frame, Time now) {
   mix(frame.id | std::uint64_t{frame.size} << 32 | std::uint64_t{frame.remote} << 40 |
       std::uint64_t{frame.error} << 41);
   for (std::size_t i = 0; i < frame.size && i < 8; ++i) mix(frame.data[i]);
+  traceFrame(frame);
   if (truths_.empty()) return;
   View seen = view();
   seen.now = now;

@@ -54,6 +54,7 @@ class Player {
   void say(const std::string& line);
   bool ignored(const std::string& oracle) const;
   void report(const char* oracle, const std::string& axis, const std::string& text);
+  void traceFrame(const can::Frame& frame);
   void onFrame(const can::Frame& frame, Time now);
   View view() { return {stage_, truths_, permits_, conditions_, stage_.now()}; }
 

@@ -2,6 +2,7 @@
 // After the disturbances the robot comes back, and a small move works.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "player.h"
 
@@ -109,7 +110,11 @@ void Player::proveMove(std::size_t axis, bool back) {
   const double middle =
       limits.lower && limits.upper ? (*limits.lower + *limits.upper) / 2.0 : at + 1.0;
   const double sign = (middle >= at ? 1.0 : -1.0) * (back ? -1.0 : 1.0);
-  double expected = 0.05 * facts.velocity * sign;
+  // A zero that was declared may leave little between a switch and the limit on the other side.
+  const std::optional<double>& end = sign > 0.0 ? limits.upper : limits.lower;
+  const double room = end ? (*end - at) * sign : 1e300;
+  const double step = 0.05 * facts.velocity;
+  double expected = (room > 0.0 ? std::min(step, room) : step) * sign;
   double value = at + expected;
   if (mode->kind == drive::ControlKind::velocity) value = 0.2 * facts.velocity * sign;
   if (mode->kind == drive::ControlKind::torque) {
