@@ -195,6 +195,7 @@ void ProcedureJob::watch(std::vector<drive::Axis>& axes) {
     } else if (!status.running) {
       entry.stage = status.success ? Stage::succeeded : Stage::failed;
       entry.message = status.message;
+      entry.remark = status.remark;
     }
   }
 }
@@ -249,7 +250,8 @@ Answer ProcedureJob::answer(const std::vector<drive::Axis>& axes) const {
   answer.message = std::string(toString(request_.kind)) + " done on " + std::to_string(succeeded) +
                    " of " + std::to_string(entries_.size()) + " axes";
   for (const Entry& entry : entries_) {
-    if (entry.stage == Stage::failed || request_.kind == drive::ProcedureKind::home) {
+    if (entry.stage == Stage::failed || entry.remark ||
+        request_.kind == drive::ProcedureKind::home) {
       answer.message +=
           "; " +
           (entry.message.empty() ? axes[entry.item.axis].config().name + ": done" : entry.message);

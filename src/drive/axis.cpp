@@ -75,7 +75,9 @@ void Axis::Impl::stepProcedure(Time now) {
 void Axis::Impl::advance(Time now) {
   begun = true;
   Outcome outcome = procedure->step(context(now));
-  if (!outcome.isRunning()) finish(outcome.isDone(), std::move(outcome.message));
+  if (outcome.isRunning()) return;
+  finish(outcome.isDone(), std::move(outcome.message));
+  status.remark = outcome.remark;
 }
 
 void Axis::Impl::finish(bool success, std::string message) {

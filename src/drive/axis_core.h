@@ -105,6 +105,8 @@ class AxisCore {
   bool atStandstill() const;
   /// Has been seen to move, or is being moved.
   bool moving() const;
+  /// Is not known to stand; without feedback, which tells nothing, as moving().
+  bool mayMove() const;
 
   // --- Halt ------------------------------------------------------------------------------------
   /// Stops by what the mode has for it (stopBy()). By quick stop the axis leaves operation.

@@ -27,6 +27,8 @@ bool AxisCore::moving() const {
   return standstill_.moving() || (in_operation_ && !set_point_.atRest());
 }
 
+bool AxisCore::mayMove() const { return state_.feedback_valid ? !atStandstill() : moving(); }
+
 void AxisCore::beginHalt() {
   if (!in_operation_ || state_.halted) return;
   set_point_.stop();

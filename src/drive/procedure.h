@@ -14,10 +14,12 @@ struct Outcome {
   enum class Kind { running, done, failed };
   Kind kind = Kind::running;
   std::string message;
+  bool remark = false;  ///< done, but the message says more than that; told in a summary, too
 
   static Outcome running() { return {}; }
-  static Outcome done(std::string text = {}) { return {Kind::done, std::move(text)}; }
-  static Outcome failed(std::string text) { return {Kind::failed, std::move(text)}; }
+  static Outcome done(std::string text = {}) { return {Kind::done, std::move(text), false}; }
+  static Outcome remarked(std::string text) { return {Kind::done, std::move(text), true}; }
+  static Outcome failed(std::string text) { return {Kind::failed, std::move(text), false}; }
   bool isRunning() const { return kind == Kind::running; }
   bool isDone() const { return kind == Kind::done; }
   bool isFailed() const { return kind == Kind::failed; }

@@ -24,7 +24,7 @@ class Disable : public Procedure {
     }
     const bool faulted = axis.faulted() && axis.state().state == State::fault;
     if (faulted || axis.state().state == State::switch_on_disabled) {
-      if (axis.moving()) return awaitRest(context);
+      if (axis.mayMove()) return awaitRest(context);
       return finish(axis, faulted);
     }
     if (context.now - since_ <= 2 * axis.profile().timing.state_change) return Outcome::running();
@@ -66,10 +66,11 @@ class Disable : public Procedure {
   }
 
   Outcome finish(AxisCore& axis, bool faulted) const {
-    std::string text = axis.config().joint + ": disabled";
+    const std::string plain = axis.config().joint + ": disabled";
+    std::string text = plain;
     if (faulted) text += "; " + axis.faultText();
     if (!stop_problem_.empty()) text += ", but " + stop_problem_;
-    return Outcome::done(text);
+    return text == plain ? Outcome::done(text) : Outcome::remarked(text);
   }
 
   Phase phase_ = Phase::begin;

@@ -45,10 +45,11 @@ class Halt : public Procedure {
       was_enabled_ = true;
     } else if (axis.goal() == Goal::enabled) {  // the procedure before was switching it on
       axis.setGoal(Goal::disabled);
-      return Outcome::done(axis.config().joint +
-                           ": was being enabled, is switched off again instead");
-    } else if (axis.powerOff() && !axis.moving()) {
-      return Outcome::done(axis.config().joint + ": is not enabled, so nothing is to be halted");
+      return Outcome::remarked(axis.config().joint +
+                               ": was being enabled, is switched off again instead");
+    } else if (axis.powerOff()) {
+      was_off_ = true;
+      if (!axis.mayMove()) return nothingToHalt(axis);
     }
     quick_stop_.emplace();
     return quick_stop_->advance(context);
@@ -58,11 +59,16 @@ class Halt : public Procedure {
     AxisCore& axis = context.axis;
     const Outcome outcome = quick_stop_->advance(context);
     if (!outcome.isDone()) return outcome;
+    if (was_off_ && axis.powerOff()) return nothingToHalt(axis);
     std::string text =
         axis.config().joint + ": stands at " + place(axis) + ", stopped by a quick stop";
     if (was_enabled_) text += ", as mode " + mode_ + " has no other brake";
     return Outcome::done(text + (axis.powerOff() ? "; it is disabled, enable to go on"
                                                  : "; it holds its position, enable to go on"));
+  }
+
+  static Outcome nothingToHalt(const AxisCore& axis) {
+    return Outcome::done(axis.config().joint + ": is not enabled, so nothing is to be halted");
   }
 
   static std::string place(const AxisCore& axis) {
@@ -71,7 +77,7 @@ class Halt : public Procedure {
                   axis.config().geometry.type == AxisGeometry::Type::prismatic);
   }
 
-  bool begun_ = false, was_enabled_ = false;
+  bool begun_ = false, was_enabled_ = false, was_off_ = false;
   std::optional<QuickStopStep> quick_stop_;
   std::string mode_;
   Time started_{}, until_{};

@@ -45,7 +45,7 @@ class QuickStop : public Procedure {
     AxisCore& axis = context.axis;
     const std::string joint = axis.config().joint;
     if (axis.faulted()) {
-      return Outcome::done(joint + ": no motion is commanded; " + axis.faultText());
+      return Outcome::remarked(joint + ": no motion is commanded; " + axis.faultText());
     }
     if (axis.powerOff()) {
       axis.setGoal(Goal::disabled);
@@ -59,8 +59,8 @@ class QuickStop : public Procedure {
     }
     if (context.now - since_ <= axis.profile().timing.state_change / 2) return Outcome::running();
     axis.setGoal(Goal::disabled);  // transition 12 by hand: the drive did not take it by itself
-    return Outcome::done(joint + ": stopped; the drive stayed in quick stop active, so disable " +
-                         "voltage is commanded");
+    return Outcome::remarked(joint + ": stopped; the drive stayed in quick stop active, so " +
+                             "disable voltage is commanded");
   }
 
   QuickStopStep stop_;

@@ -63,5 +63,44 @@ TEST_F(Coasting, EnableAfterClearFaultsWaitsUntilItStands) {
   expectSoft();
 }
 
+/// What stops is asked for while nothing is known yet of how the axis moves: its power went, by a
+/// fault, just after it had begun to move.
+struct CoastingAtOnce : testing::TestWithParam<ProcedureKind> {
+  Scene scene{loadText(genericPair(", modes: [csp, csv]"))};
+
+  void SetUp() override {
+    ASSERT_TRUE(scene.boot());
+    const auto enabled = scene.procedure(ProcedureKind::enable);
+    ASSERT_TRUE(enabled.success) << enabled.message;
+    ASSERT_TRUE(scene.procedure(ProcedureKind::set_mode, "left", "csv").success);
+    scene.run(200ms);
+    ASSERT_EQ(scene.setpoint("left", 0.05), "");
+    scene.run(12ms);
+    scene.inject("left", "overcurrent");
+    scene.run(8ms);
+    ASSERT_FALSE(scene.truth("left").power_stage_on);
+    ASSERT_GT(scene.velocity("left"), 0.02) << "it coasts";
+  }
+};
+
+TEST_P(CoastingAtOnce, IsNotAnsweredBeforeItStands) {
+  const auto answer = scene.procedure(GetParam(), "left");
+  EXPECT_TRUE(answer.success) << answer.message;
+  EXPECT_NEAR(scene.velocity("left"), 0.0, 0.01) << answer.message;
+}
+
+INSTANTIATE_TEST_SUITE_P(Stop, CoastingAtOnce,
+                         testing::Values(ProcedureKind::disable, ProcedureKind::halt,
+                                         ProcedureKind::quick_stop),
+                         [](const auto& stop) { return std::string(toString(stop.param)); });
+
+TEST_F(Coasting, DisableOfTheWholeBusNamesTheFault) {
+  const auto disabled = scene.procedure(ProcedureKind::disable);
+  EXPECT_TRUE(disabled.success) << disabled.message;
+  EXPECT_THAT(disabled.message, HasSubstr("disable done on 2 of 2 axes; left: disabled; "));
+  EXPECT_THAT(disabled.message, HasSubstr("0x2310"));
+  EXPECT_THAT(disabled.message, testing::Not(HasSubstr("right")));
+}
+
 }  // namespace
 }  // namespace cia402

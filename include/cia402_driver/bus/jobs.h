@@ -44,6 +44,7 @@ class ProcedureJob {
   struct Entry {
     Item item;
     Stage stage = Stage::waiting;
+    bool remark = false;   ///< its success has a message that is told
     std::uint32_t id = 0;  ///< of the procedure; while waiting: of the axis' last one
     bool seen = false;     ///< id is known while waiting
     std::string message;

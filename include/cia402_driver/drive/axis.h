@@ -51,6 +51,7 @@ struct ProcedureStatus {
   std::string step;         ///< "switching on"
   std::string waiting_for;  ///< "statusword to show operation enabled"
   std::string message;      ///< the result as a sentence, once not running
+  bool remark = false;      ///< a success of which the message says more than that it is done
   Time started{}, deadline{};
 };
 
