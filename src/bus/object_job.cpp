@@ -59,11 +59,8 @@ Result<ObjectJob> ObjectJob::find(drive::Axis& axis, const std::string& object, 
                  config.profile->name + " nor an index such as 6041:00" + why};
   }
   job.name_ = canopen::toString(job.id_) + (job.spec_ ? " " + job.spec_->name : "");
-  if (axis.node().nmtState() == canopen::NmtState::stopped) {
-    return Error{job.who_ + ": " + job.name_ +
-                 " cannot be asked for: its heartbeat says stopped (NMT state), and a stopped "
-                 "drive answers no SDO; boot it (recover, or nmt start) first"};
-  }
+  std::string refusal = axis.node().stoppedRefusal(job.name_);
+  if (!refusal.empty()) return Error{std::move(refusal)};
   return job;
 }
 

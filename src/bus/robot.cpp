@@ -244,12 +244,13 @@ drive::Axis* Robot::axisNamed(const std::string& name, const Reply& reply) {
   return nullptr;
 }
 
-drive::Axis* Robot::axisToAsk(const std::string& name, const Reply& reply) {
+drive::Axis* Robot::axisToAsk(const std::string& name, const std::string& what,
+                              const Reply& reply) {
   drive::Axis* axis = axisNamed(name, reply);
-  if (axis == nullptr || axis->node().nmtState() != canopen::NmtState::stopped) return axis;
-  refuse(reply, axis->node().who() +
-                    ": its heartbeat says stopped (NMT state), and a stopped drive answers no SDO; "
-                    "boot it (recover, or nmt start) to ask it");
+  if (axis == nullptr) return nullptr;
+  const std::string refusal = axis->node().stoppedRefusal(what);
+  if (refusal.empty()) return axis;
+  refuse(reply, refusal);
   return nullptr;
 }
 

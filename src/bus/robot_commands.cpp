@@ -129,7 +129,7 @@ void Robot::run(NmtServiceCommand& command, const Reply& reply, Time now) {
 }
 
 void Robot::run(ErrorHistoryCommand& command, const Reply& reply, Time) {
-  drive::Axis* axis = axisToAsk(command.axis, reply);
+  drive::Axis* axis = axisToAsk(command.axis, "its error history (1003h)", reply);
   if (axis == nullptr) return;
   const std::string who = drive::whoIs(axis->config()) + ": error history (1003h): ";
   histories_.emplace_back(*axis, canopen::ErrorHistoryReader::kAll,
@@ -143,7 +143,7 @@ void Robot::run(ErrorHistoryCommand& command, const Reply& reply, Time) {
 }
 
 void Robot::run(SaveDcfCommand& command, const Reply& reply, Time) {
-  drive::Axis* axis = axisToAsk(command.axis, reply);
+  drive::Axis* axis = axisToAsk(command.axis, "its objects for a DCF", reply);
   if (axis == nullptr) return;
   dcfs_.emplace_back(*axis, command, config_.bus.bitrate, reply);
 }

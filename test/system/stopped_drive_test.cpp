@@ -87,12 +87,18 @@ TEST_F(StoppedDrive, IsNotAskedForObjectsThatItCannotTell) {
   ASSERT_TRUE(call(scene, bus::NmtServiceCommand{"left", "stop"}).success);
   asked = 0;
   const Time begin = scene.now();
-  for (const bus::Answer& answer : {call(scene, bus::ReadObjectCommand{"left", "6041:00"}),
-                                    call(scene, bus::WriteObjectCommand{"left", "6065:00", "1000"}),
-                                    call(scene, bus::ErrorHistoryCommand{"left"})}) {
+  const auto reading = std::make_shared<bus::DcfReading>();
+  const std::pair<const char*, bus::Answer> answers[] = {
+      {"6041:00 statusword", call(scene, bus::ReadObjectCommand{"left", "6041:00"})},
+      {"6065:00 ", call(scene, bus::WriteObjectCommand{"left", "6065:00", "1000"})},
+      {"its error history (1003h)", call(scene, bus::ErrorHistoryCommand{"left"})},
+      {"its objects for a DCF", call(scene, bus::SaveDcfCommand{"left", reading})},
+  };
+  for (const auto& [what, answer] : answers) {
     EXPECT_FALSE(answer.success);
-    EXPECT_THAT(answer.message, AllOf(HasSubstr("left (node 1)"), HasSubstr("answers no SDO"),
-                                      HasSubstr("recover, or nmt start")));
+    EXPECT_THAT(answer.message,
+                AllOf(HasSubstr("left (node 1): " + std::string(what)), HasSubstr("answers no SDO"),
+                      HasSubstr("recover, or nmt start")));
   }
   EXPECT_LT(scene.now() - begin, 100ms);
   EXPECT_EQ(asked, 0U);

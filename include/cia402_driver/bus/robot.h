@@ -167,8 +167,9 @@ class Robot final : private canopen::MasterListener {
   void begin(Time now);
   /// nullptr if there is none; `reply` says so then.
   drive::Axis* axisNamed(const std::string& name, const Reply& reply);
-  /// The same for what asks the drive by SDO, which it cannot answer while it is stopped (NMT).
-  drive::Axis* axisToAsk(const std::string& name, const Reply& reply);
+  /// The same for what asks the drive for `what` by SDO, which it cannot answer while it is stopped
+  /// (NMT).
+  drive::Axis* axisToAsk(const std::string& name, const std::string& what, const Reply& reply);
   std::size_t axisOf(const canopen::Node& node) const;
 
   void run(ProcedureCommand& command, Reply reply, Time now);

@@ -57,6 +57,10 @@ class Node {
   const std::string& bootStep() const;
   /// Why the boot failed or the node was lost, and what to do; empty when healthy.
   const std::string& problem() const;
+  /// Why a drive that says it is stopped (NMT) cannot be asked for `what`, e.g. "6041:00
+  /// statusword", and what to do; empty if it is not stopped. A stopped node answers no SDO (CiA
+  /// 301, 7.3.2.2).
+  std::string stoppedRefusal(const std::string& what) const;
   /// Identity read at boot.
   struct Identity {
     std::uint32_t device_type = 0, vendor_id = 0, product_code = 0, revision = 0, serial = 0;
