@@ -21,11 +21,11 @@ enum ServerCommand : unsigned {
 };
 
 constexpr std::uint8_t kAbortCommand = 0x80;
-constexpr std::uint8_t kExpedited = 0x02;      // upload initiate answer, bit e
-constexpr std::uint8_t kSizeIndicated = 0x01;  // upload initiate answer, bit s
+constexpr std::uint8_t kExpedited = 0x02;            // upload initiate answer, bit e
+constexpr std::uint8_t kUploadSizeIndicated = 0x01;  // upload initiate answer, bit s
 constexpr std::uint8_t kToggle = 0x10;
-constexpr std::uint8_t kLastSegment = 0x01;
-constexpr std::size_t kSegmentBytes = 7;
+constexpr std::uint8_t kNoMoreSegments = 0x01;
+constexpr std::size_t kSegmentData = 7;
 
 std::uint32_t dataField(const can::Frame& frame) {
   return static_cast<std::uint32_t>(frame.data[4]) |
@@ -154,7 +154,7 @@ SdoClient::Outcome SdoClient::onUploadInitiated(const can::Frame& frame, Time no
   if (!namesCurrentObject(frame)) return Outcome::stray;
   answered(now);
   const std::uint8_t command = frame.data[0];
-  const bool size_indicated = (command & kSizeIndicated) != 0;
+  const bool size_indicated = (command & kUploadSizeIndicated) != 0;
   if ((command & kExpedited) != 0) {
     const std::size_t size = size_indicated ? 4U - ((command >> 2) & 3U) : 4U;
     queue_.front()->data_.assign(frame.data.begin() + 4,
@@ -201,8 +201,8 @@ void SdoClient::requestSegment(Time now) {
 SdoClient::Outcome SdoClient::onUploadSegment(const can::Frame& frame, Time now) {
   if (toggleOf(frame) != toggle_) return onWrongToggle(frame, now);
   answered(now);
-  const std::size_t size = kSegmentBytes - ((frame.data[0] >> 1) & 7U);
-  const bool last = (frame.data[0] & kLastSegment) != 0;
+  const std::size_t size = kSegmentData - ((frame.data[0] >> 1) & 7U);
+  const bool last = (frame.data[0] & kNoMoreSegments) != 0;
   const std::size_t limit = announced_.value_or(queue_.front()->options_.longest_upload);
   if (received_.size() + size > limit) {
     abortTransfer(announced_ ? abort_code::kLengthTooHigh : abort_code::kOutOfMemory,
@@ -240,12 +240,12 @@ SdoClient::Outcome SdoClient::onDownloadInitiated(const can::Frame& frame, Time 
 
 void SdoClient::sendSegment(Time now) {
   const Bytes& data = queue_.front()->data_;
-  const std::size_t size = std::min(kSegmentBytes, data.size() - offset_);
+  const std::size_t size = std::min(kSegmentData, data.size() - offset_);
   const bool last = offset_ + size == data.size();
-  const std::size_t unused = (kSegmentBytes - size) << 1;
+  const std::size_t unused = (kSegmentData - size) << 1;
   can::Frame frame(request_id_, {0, 0, 0, 0, 0, 0, 0, 0});
   frame.data[0] =
-      static_cast<std::uint8_t>((toggle_ ? kToggle : 0U) | unused | (last ? kLastSegment : 0U));
+      static_cast<std::uint8_t>((toggle_ ? kToggle : 0U) | unused | (last ? kNoMoreSegments : 0U));
   std::copy_n(data.begin() + static_cast<std::ptrdiff_t>(offset_), size, frame.data.begin() + 1);
   offset_ += size;
   sink_.send(frame);

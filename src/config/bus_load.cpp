@@ -6,7 +6,6 @@ namespace cia402::config {
 namespace {
 
 constexpr unsigned kTimeBytes = 6;
-constexpr double kComfortable = 0.8;  // share of the bus that leaves room for SDO and emergencies
 
 // Bits per second, as a part that follows SYNC and a part that does not.
 struct Traffic {
@@ -68,7 +67,7 @@ BusLoad loadOf(const Traffic& traffic, double period_s, double bitrate) {
   load.worst = (traffic.per_sync.worst / period_s + traffic.per_second.worst) / bitrate;
   if (traffic.per_sync.worst > 0.0) {
     load.feasible_rate =
-        (kComfortable * bitrate - traffic.per_second.worst) / traffic.per_sync.worst;
+        (kComfortableLoad * bitrate - traffic.per_second.worst) / traffic.per_sync.worst;
   }
   return load;
 }

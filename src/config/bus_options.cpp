@@ -12,8 +12,6 @@ namespace {
 using drive::YamlSection;
 using drive::YamlValue;
 
-constexpr double kComfortable = 0.8;  // share of the bus that leaves room for SDO and emergencies
-
 void readBitrate(YamlSection& section, BusConfig& bus) {
   static const std::vector<std::int64_t> kRates = {10000,  20000,  50000,  100000, 125000,
                                                    250000, 500000, 800000, 1000000};
@@ -148,8 +146,8 @@ struct FeasibleCycle {
   double rate;  ///< Hz; the highest with the plan of that period
 };
 
-/// The shortest cycle that loads the bus to kComfortable at most. A slower cycle plans anew: what
-/// need not come so often comes with fewer of its SYNCs.
+/// The shortest cycle that loads the bus to kComfortableLoad at most. A slower cycle plans anew:
+/// what need not come so often comes with fewer of its SYNCs.
 std::optional<FeasibleCycle> feasibleCycle(RobotConfig robot, BusLoad load) {
   constexpr double kSlowest = 1.0;  // Hz
   std::int64_t us = 0;
@@ -159,7 +157,7 @@ std::optional<FeasibleCycle> feasibleCycle(RobotConfig robot, BusLoad load) {
     planAgain(robot, period);
     Problems ignored;
     load = busLoad(makeMasterConfig(robot, ignored), robot.bus.bitrate);
-    if (load.worst <= kComfortable) return FeasibleCycle{period, load.feasible_rate};
+    if (load.worst <= kComfortableLoad) return FeasibleCycle{period, load.feasible_rate};
   }
   return {};
 }
@@ -225,7 +223,7 @@ void checkBusLoad(const YamlValue& bus_section, RobotConfig& robot, Problems& pr
   const std::string share = "the PDOs need " + percent(load.worst) + " of the bus at " + rate +
                             " Hz in the worst case (" + percent(load.nominal) +
                             " without stuff bits)";
-  if (load.worst <= kComfortable) return;
+  if (load.worst <= kComfortableLoad) return;
   const auto cycle = feasibleCycle(robot, load);
   const std::string feasible = std::to_string(cycle ? static_cast<int>(cycle->rate) : 0);
   if (load.worst > 1.0) {

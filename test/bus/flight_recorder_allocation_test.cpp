@@ -10,7 +10,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-class NoSink : public can::Sink {
+class AnySink : public can::Sink {
  public:
   bool send(const can::Frame&) override { return true; }
 };
@@ -43,7 +43,7 @@ class RecorderAllocation : public testing::Test {
     robot.recorder.keep = 5;
     return robot;
   }
-  NoSink sink;
+  AnySink sink;
   config::RobotConfig config = configuration();
   test::RobotWorld world{config};
   FlightRecorder recorder{config, sink};

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using testing::HasSubstr;
 
-class NoSink : public can::Sink {
+class EverySink : public can::Sink {
  public:
   bool send(const can::Frame&) override { return true; }
 };
@@ -57,7 +57,7 @@ class Service : public testing::Test {
   }
 
   std::string root;
-  NoSink sink;
+  EverySink sink;
   config::RobotConfig robot = test::testRobot();
   BusTime time;
   std::optional<FlightRecorder> recorder;

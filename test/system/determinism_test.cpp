@@ -10,15 +10,17 @@ namespace {
 
 using namespace std::chrono_literals;
 
-struct Seen {
+struct SeenFrame {
   Time time;
   can::Frame frame;
 };
-bool operator==(const Seen& a, const Seen& b) { return a.time == b.time && a.frame == b.frame; }
+bool operator==(const SeenFrame& a, const SeenFrame& b) {
+  return a.time == b.time && a.frame == b.frame;
+}
 
 /// What a run left: every frame on the bus with its time, and where the joints stand at the end.
 struct Recording {
-  std::vector<Seen> frames;
+  std::vector<SeenFrame> frames;
   std::vector<double> positions;
 };
 

@@ -84,7 +84,7 @@ void push(Scene& scene, const std::string& axis, double velocity, double effort)
 class DamiaoMode : public testing::TestWithParam<const char*> {};
 
 TEST_P(DamiaoMode, KeepsTheLimitsOfVelocityAccelerationAndEffort) {
-  constexpr double kVelocity = 2.0, kAcceleration = 15.0, kEffort = 5.0;
+  constexpr double velocity = 2.0, acceleration = 15.0, effort = 5.0;
   Scene scene(loadText(
       damiaoJoint(", command_timeout_action: coast, modes: [" + std::string(GetParam()) + "]")));
   ASSERT_TRUE(scene.boot()) << scene.told();
@@ -92,19 +92,19 @@ TEST_P(DamiaoMode, KeepsTheLimitsOfVelocityAccelerationAndEffort) {
   const auto switched = scene.procedure(ProcedureKind::set_mode, "joint", GetParam());
   ASSERT_TRUE(switched.success) << switched.message;
   Motion motion(scene, "joint");
-  exert(scene, "joint", kVelocity, kEffort);
-  EXPECT_LE(motion.fastest, kVelocity * 1.01);
-  EXPECT_GT(motion.fastest, kVelocity * 0.9) << "the test asked for too little";
+  exert(scene, "joint", velocity, effort);
+  EXPECT_LE(motion.fastest, velocity * 1.01);
+  EXPECT_GT(motion.fastest, velocity * 0.9) << "the test asked for too little";
   if (scene.state("joint").mode->kind != ControlKind::torque) {
     // Of a stream the drive plans its own way to each set-point, with steeper ramps than the
     // limit's.
     const bool streamed = std::string(GetParam()) == "cyclic_position";
-    EXPECT_LE(motion.hardest, kAcceleration * (streamed ? 1.2 : 1.1));
+    EXPECT_LE(motion.hardest, acceleration * (streamed ? 1.2 : 1.1));
   }
   motion.forget();
-  push(scene, "joint", kVelocity, kEffort);
-  EXPECT_LE(motion.strongest, kEffort * 1.01);
-  EXPECT_GT(motion.strongest, kEffort * 0.3) << "the test asked for too little";
+  push(scene, "joint", velocity, effort);
+  EXPECT_LE(motion.strongest, effort * 1.01);
+  EXPECT_GT(motion.strongest, effort * 0.3) << "the test asked for too little";
 }
 
 INSTANTIATE_TEST_SUITE_P(All, DamiaoMode,
@@ -116,22 +116,22 @@ INSTANTIATE_TEST_SUITE_P(All, DamiaoMode,
 class GenericMode : public testing::TestWithParam<const char*> {};
 
 TEST_P(GenericMode, KeepsTheLimitsOfVelocityAccelerationAndEffort) {
-  constexpr double kVelocity = 1.5, kAcceleration = 4.0;
-  constexpr double kEffort = 120.0 / (0.64 * 100.0) * 1000.0;  // in 1/1000 of the rated torque
+  constexpr double velocity = 1.5, acceleration = 4.0;
+  constexpr double effort = 120.0 / (0.64 * 100.0) * 1000.0;  // in 1/1000 of the rated torque
   Scene scene(loadText(genericPair(", write: [{object: following_error_window, value: 0.5}]")));
   ASSERT_TRUE(scene.boot()) << scene.told();
   ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
   const auto switched = scene.procedure(ProcedureKind::set_mode, "left", GetParam());
   ASSERT_TRUE(switched.success) << switched.message;
   Motion motion(scene, "left");
-  exert(scene, "left", kVelocity, 0.0);
-  EXPECT_LE(motion.fastest, kVelocity * 1.01);
-  EXPECT_GT(motion.fastest, kVelocity * 0.9) << "the test asked for too little";
-  EXPECT_LE(motion.hardest, kAcceleration * 1.1);
+  exert(scene, "left", velocity, 0.0);
+  EXPECT_LE(motion.fastest, velocity * 1.01);
+  EXPECT_GT(motion.fastest, velocity * 0.9) << "the test asked for too little";
+  EXPECT_LE(motion.hardest, acceleration * 1.1);
   motion.forget();
-  push(scene, "left", kVelocity, 0.0);
-  EXPECT_LE(motion.strongest, kEffort * 1.01);
-  EXPECT_GT(motion.strongest, kEffort * 0.3) << "the test asked for too little";
+  push(scene, "left", velocity, 0.0);
+  EXPECT_LE(motion.strongest, effort * 1.01);
+  EXPECT_GT(motion.strongest, effort * 0.3) << "the test asked for too little";
 }
 
 INSTANTIATE_TEST_SUITE_P(All, GenericMode,

@@ -108,6 +108,8 @@ struct BusLoad {
   double nominal = 0.0, worst = 0.0;  ///< without stuff bits; with the most there can be
   double feasible_rate = 0.0;         ///< Hz of SYNC at which the worst case is 80 %
 };
+/// Of the bus; what is left is for SDO and emergencies.
+inline constexpr double kComfortableLoad = 0.8;
 BusLoad busLoad(const canopen::MasterConfig& master, double bitrate);
 /// The part of one PDO in it, the remote frames that ask for it included; zero if it is disabled.
 /// Nominal: an RPDO that is sent on change is sent at its refresh rate only.
