@@ -21,14 +21,16 @@ constexpr std::uint32_t kSync = 0x80;
 class MotorLimits final : public Oracle {
  public:
   explicit MotorLimits(const Stage& stage) : axes_(stage.axes().size()) {
-    for (const RpdoPlace& place : stage.rpdos()) rpdos_[place.cob_id] = place.axis;
+    for (const RpdoPlace& place : stage.rpdos()) rpdos_.emplace(place.cob_id, place);
   }
   const char* name() const override { return "motor_limits"; }
 
   void onFrame(const can::Frame& frame, const View& view) override {
     if (frame.error) return;
-    const auto rpdo = rpdos_.find(frame.id);
-    if (rpdo != rpdos_.end()) axes_[rpdo->second].fed = true;
+    const auto [first, last] = rpdos_.equal_range(frame.id);
+    for (auto rpdo = first; rpdo != last; ++rpdo) {
+      if (isTarget(rpdo->second, view)) axes_[rpdo->second.axis].fed = true;
+    }
     if (frame.id != kSync) return;
     // Without a set-point a drive stops where the last one was, as hard as it can.
     for (Axis& axis : axes_) {
@@ -55,13 +57,24 @@ class MotorLimits final : public Oracle {
   struct Axis {
     std::array<double, kWindow> speeds{};
     std::size_t next = 0, count = 0;
-    bool fed = false;     // since the last SYNC
+    bool fed = false;     // with a target, since the last SYNC
     Time starved{};       // until then it lacks set-points
     Time last{};          // it may take no longer than that
     Time catches_up{};    // until then it makes good what that cost it
     Time held{};          // by a limit switch, since then; Time(): it is not
     bool behind = false;  // its set-points, for some were lost; the drive cannot catch up
   };
+
+  /// The object is the target of the mode that its axis is in.
+  static bool isTarget(const RpdoPlace& place, const View& view) {
+    const drive::DriveProfile& profile = *view.stage.axes()[place.axis].config->profile;
+    const int mode = view.truths[place.axis].mode;
+    for (const drive::ModeSpec& spec : profile.modes) {
+      const drive::ObjectSpec* target = spec.value == mode ? profile.find(spec.target) : nullptr;
+      if (target != nullptr && target->id == place.object) return true;
+    }
+    return false;
+  }
 
   void look(const View& view, std::size_t i) {
     const AxisFacts& facts = view.stage.axes()[i];
@@ -131,7 +144,7 @@ class MotorLimits final : public Oracle {
   }
 
   std::vector<Axis> axes_;
-  std::map<std::uint32_t, std::size_t> rpdos_;  // COB-ID, axis
+  std::multimap<std::uint32_t, RpdoPlace> rpdos_;  // by COB-ID
   Time last_sync_{}, squeezed_{}, starved_{};
   double squeeze_ = 0.0;
 };
