@@ -6,7 +6,9 @@ Usage: run_clang_tidy.py REPOSITORY BUILD_DIRECTORY CACHE_DIRECTORY
 Files that passed are not checked again until they, a header of the repository they include, the
 compiler's arguments, .clang-tidy or clang-tidy change. Several files of a target are checked as one,
 for most of the time goes into the headers that they share; where that finds something, or they do not
-go together, each is checked by itself. Exit status 1 if a file fails.
+go together, each is checked by itself. Names that a source declares by `using` or `namespace x =` and
+does not use are found here: clang-tidy sees them in a file that is checked by itself only. Exit status
+1 if a file fails.
 """
 import concurrent.futures
 import hashlib
@@ -20,6 +22,7 @@ import sys
 
 BATCH = 8  # files
 TARGET = re.compile(r"/([^/ ]+)\.dir/")
+DECLARED = re.compile(r"^[ \t]*(?:using (?:\w+::)+(\w+);|namespace (\w+) = [\w:]+;).*$", re.MULTILINE)
 INCLUDE = re.compile(rb'^\s*#\s*include\s*"([^"]+)"', re.MULTILINE)
 
 
@@ -67,8 +70,22 @@ def flags(command):
     return kept
 
 
+def unused_names(source):
+    """A line for each name that the source declares and does not use."""
+    text = re.sub(r"//.*", "", source.read_text(encoding="utf-8"))
+    said = ""
+    for match in DECLARED.finditer(text):
+        name = match.group(1) or match.group(2)
+        if not re.search(rf"\b{name}\b", text[:match.start()] + text[match.end():]):
+            said += f"{source}: `{name}` is declared ({match.group().strip()}) and not used\n"
+    return said
+
+
 def check(repository, build, cache, batch):
     """Returns [(source, passed, what clang-tidy says)] of a list of (source, command)."""
+    unused = [(source, False, unused_names(source)) for source, _ in batch if unused_names(source)]
+    if unused:
+        return unused
     if len(batch) > 1:
         one = cache / f"batch_{os.getpid()}_{abs(hash(batch[0][0]))}.cpp"
         one.write_text("".join(f'#include "{source}"\n' for source, _ in batch))

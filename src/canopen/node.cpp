@@ -42,8 +42,7 @@ std::string Node::stoppedRefusal(const std::string& what) const {
   if (nmtState() != NmtState::stopped) return {};
   return who() + ": " + what +
          " cannot be asked for: the drive's heartbeat says stopped (NMT state), and a stopped "
-         "drive "
-         "answers no SDO; boot it (recover, or nmt start) first";
+         "drive answers no SDO; boot it (recover, or nmt start) first";
 }
 const std::optional<Node::Identity>& Node::identity() const { return impl_->boot.found().identity; }
 const std::vector<std::string>& Node::notes() const { return impl_->notes; }
