@@ -1,7 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Streamed position targets on the wire step by no more than velocity limit times cycle. A frame
 // that itself ends operation is no set-point: the drive does not follow the target in it. A target
-// that is called back to where the motor stands moves nothing either.
+// that is called back to where the motor stands, or stood when the drive last told of it, moves
+// nothing either.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -25,6 +26,7 @@ class TargetSteps final : public Oracle {
     }
     last_.resize(stage.axes().size());
     controlwords_.resize(stage.axes().size());
+    stood_.resize(stage.axes().size());
     for (const AxisFacts& facts : stage.axes()) unsure_.push_back(facts.config->mode != kMode);
   }
   const char* name() const override { return "target_step"; }
@@ -49,6 +51,7 @@ class TargetSteps final : public Oracle {
   void look(const View& view) override {
     for (std::size_t i = 0; i < last_.size(); ++i) {
       if (!streams(view, i)) last_[i].reset();
+      if (std::fabs(view.truths[i].velocity) <= view.stage.axes()[i].creep()) stood_[i] = view.now;
     }
   }
 
@@ -89,8 +92,8 @@ class TargetSteps final : public Oracle {
     const double step = last_[i] ? std::fabs(value - *last_[i]) : 0.0;
     const double allowed = 1.02 * facts.velocity * toSeconds(facts.config->sync_period) +
                            2 * std::fabs(facts.units_per_count) + 1e-6 * std::fabs(value);
-    const bool called_back = std::fabs(view.truths[i].velocity) <= facts.creep() &&
-                             std::fabs(value - view.truths[i].told) <= allowed;
+    const bool stands_as_told = view.now - stood_[i] <= facts.config->sync_period;
+    const bool called_back = stands_as_told && std::fabs(value - view.truths[i].told) <= allowed;
     if (last_[i] && !(step <= allowed) && !called_back) {
       report(view, i,
              "is sent a target that steps by " + number(step) + " in one cycle, " +
@@ -101,6 +104,7 @@ class TargetSteps final : public Oracle {
 
   std::map<std::uint32_t, RpdoPlace> targets_, controls_;  // by COB-ID
   std::vector<int> controlwords_;
+  std::vector<Time> stood_;   // when it last stood
   std::vector<bool> unsure_;  // another mode than kMode was asked for at some time
   std::vector<std::optional<double>> last_;
 };
