@@ -5,6 +5,7 @@
 #include <list>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -93,7 +94,8 @@ class Player {
   void prove();
   bool proveCall(const std::string& verb, const std::string& who, Duration limit,
                  bus::Answer& answer);
-  void proveMove(std::size_t axis, bool back = false);
+  /// @param tried the direction in which a limit held it, -1 or 1.
+  void proveMove(std::size_t axis, std::optional<double> tried = std::nullopt);
 
   Stage& stage_;
   const Scene& scene_;

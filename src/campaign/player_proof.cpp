@@ -93,7 +93,7 @@ bool Player::proveCall(const std::string& verb, const std::string& who, Duration
   return false;
 }
 
-void Player::proveMove(std::size_t axis, bool back) {
+void Player::proveMove(std::size_t axis, std::optional<double> tried) {
   const AxisFacts& facts = stage_.axes()[axis];
   const drive::DriveProfile& profile = *facts.config->profile;
   const auto mode =
@@ -109,7 +109,7 @@ void Player::proveMove(std::size_t axis, bool back) {
   const double from = truths_[axis].position, at = shown(axis);
   const double middle =
       limits.lower && limits.upper ? (*limits.lower + *limits.upper) / 2.0 : at + 1.0;
-  const double sign = (middle >= at ? 1.0 : -1.0) * (back ? -1.0 : 1.0);
+  const double sign = tried ? -*tried : middle >= at ? 1.0 : -1.0;
   // A zero that was declared may leave little between a switch and the limit on the other side.
   const std::optional<double>& end = sign > 0.0 ? limits.upper : limits.lower;
   const double room = end ? (*end - at) * sign : 1e300;
@@ -137,10 +137,10 @@ void Player::proveMove(std::size_t axis, bool back) {
   // A switch may stand in the way: it lets the axis go back.
   const bool held = facts.units_per_count != 0.0 && stage_.now() - held_[axis] < 3s;
   if (held && outside) return;  // its limits lie beyond the switch, as its zero was declared
-  if (held && !back) {
+  if (held && !tried) {
     bus::Answer answer;
     if (!proveCall("enable", facts.name, kRecoverTime, answer)) return;
-    return proveMove(axis, true);
+    return proveMove(axis, sign);
   }
   report("no_recovery", facts.name,
          "was told to move by " + number(expected) + " in mode " + mode->name +
