@@ -51,6 +51,17 @@ void Permits::delay(Duration duration, Time now) {
   }
 }
 
+void Permits::delay(Source source, Duration duration, Time now) {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    Time& time = at(i, source);
+    if (time > now && time != kNever) time += duration;
+  }
+}
+
+void Permits::hinder(std::size_t axis, Time until) {
+  axes_[axis].moved = std::max(axes_[axis].moved, until);
+}
+
 void Permits::endHomings(Time now) {
   for (std::size_t i = 0; i < axes_.size(); ++i) cut(i, Source::homing, now);
 }

@@ -30,6 +30,10 @@ class Permits {
   void delay(Duration duration, Time now);
   /// Everything that is under way may take so much longer, also what begins before `until`.
   void stretch(std::size_t axis, Duration duration, Time until);
+  /// All that is under way by `source` lasts so much longer.
+  void delay(Source source, Duration duration, Time now);
+  /// Something keeps it from moving until then: that it stands says nothing about its target.
+  void hinder(std::size_t axis, Time until);
   /// Homings that were pending end with the process.
   void endHomings(Time now);
   /// To be called with each look at the motors.

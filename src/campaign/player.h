@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <list>
 #include <map>
@@ -79,6 +80,8 @@ class Player {
   const config::GroupConfig* group(const std::string& name) const;
   std::size_t axisOf(const std::string& joint) const;
   double shown(std::size_t axis);
+  /// How long the host is going to be late, now and then.
+  Duration lateFor() const { return std::max(late_until_ - stage_.now(), Duration()); }
 
   // player_trouble.cpp
   bool actTrouble(const Words& words);
@@ -119,6 +122,7 @@ class Player {
   } deaf_;
   sim::Port* foreign_ = nullptr;
   sim::FaultRates rates_;
+  Time late_until_{};  // the host, now and then
   std::uint64_t fingerprint_ = 1469598103934665603U, frames_ = 0;
   Time looked_{};
   Duration taken_{};

@@ -141,7 +141,7 @@ void Player::trajectory(const config::GroupConfig& to, std::vector<motion::Traje
       follows_[i] = to.name;
       const double speed = truths_[i].velocity;
       const Time end = stop ? now + stage_.axes()[i].stopTime(speed)
-                            : std::max(base, has_start ? base : now) + last + 250ms;
+                            : std::max(base, has_start ? base : now) + last + lateFor() + 250ms;
       permits_.cut(i, Source::trajectory, end);
       if (!stop) permits_.allow(i, Source::trajectory, end);
     }
@@ -204,7 +204,8 @@ void Player::accepted(std::size_t axis, double value) {
     const double range = limits.lower && limits.upper ? *limits.upper - *limits.lower : way;
     permits_.allow(
         axis, Source::target,
-        now + fromSeconds(range / facts.velocity + facts.velocity / facts.acceleration * 3 + 1.0));
+        now + lateFor() +
+            fromSeconds(range / facts.velocity + facts.velocity / facts.acceleration * 3 + 1.0));
     return;
   }
   double speed = std::max(std::fabs(truths_[axis].velocity),

@@ -141,11 +141,8 @@ void Player::loseCommands(std::size_t axis, Duration duration) {
   const AxisFacts& facts = stage_.axes()[axis];
   Conditions::extend(conditions_.axes[axis].cut_off, now + duration + 500ms);
   if (truths_.empty()) return;
-  const double speed = truths_[axis].velocity;
   const Time end = now + facts.master_timeout + facts.stopTime(facts.velocity) + 100ms;
-  if (std::fabs(speed) > facts.creep() && permits_.allowed(axis, now)) {
-    permits_.allow(axis, Source::stream, end);
-  }
+  if (permits_.allowed(axis, now)) permits_.allow(axis, Source::stream, end);
   if (duration > facts.master_timeout) permits_.cut(axis, end);
 }
 
@@ -169,6 +166,11 @@ bool Player::actHost(const Words& words) {
     const double most = toNumber(words.at(1));
     const Time end = now + seconds(words.at(2));
     Conditions::extend(conditions_.host_late, end + 100ms);
+    // What leads to a place waits at each late cycle and starts anew from rest.
+    permits_.delay(Source::trajectory, end - now, now);
+    permits_.delay(Source::target, end - now, now);
+    for (std::size_t i = 0; i < truths_.size(); ++i) permits_.hinder(i, end);
+    late_until_ = std::max(late_until_, end);
     host.setLateness([this, most, end] {
       const Time time = stage_.now();
       if (time >= end) return Duration();
@@ -274,6 +276,7 @@ bool Player::actDrive(const Words& words) {
       const Duration length = seconds(words.at(2));
       inject("blocked_rotor");
       Conditions::extend(condition.blocked, now + length + 400ms);
+      permits_.hinder(i, now + length);
       clear_later(length);
     } else {  // switch A lower|upper SECONDS: a limit switch right where it stands
       sim::AxisMechanics& mechanics = drive.mechanics();

@@ -16,6 +16,7 @@ constexpr std::size_t kWindow = 20;  // ms over which acceleration is measured
 constexpr Duration kSyncMemory = 30ms;
 constexpr Duration kLongestLag = 500ms;
 constexpr Duration kUnseen = 200ms;  // a limit switch is seen within it, and set-points called back
+constexpr Duration kLed = 60ms;  // so far ahead a motor at a limit switch may be led, not further
 constexpr std::uint32_t kSync = 0x80;
 
 class MotorLimits final : public Oracle {
@@ -62,6 +63,7 @@ class MotorLimits final : public Oracle {
     Time last{};          // it may take no longer than that
     Time catches_up{};    // until then it makes good what that cost it
     Time held{};          // by a limit switch, since then; Time(): it is not
+    Time let_go{};        // until then it goes to where it was led against the switch
     bool behind = false;  // its set-points, for some were lost; the drive cannot catch up
   };
 
@@ -90,6 +92,7 @@ class MotorLimits final : public Oracle {
     const bool by_float = facts.units_per_count == 0.0;  // it knows no limit switch
     const bool at_limit = !by_float && (truth.statusword & 0x0800) != 0;
     if (!at_limit) {
+      if (axis.held != Time()) axis.let_go = view.now + kLed;
       axis.held = Time();
     } else if (axis.held == Time()) {
       axis.held = view.now;
@@ -112,7 +115,8 @@ class MotorLimits final : public Oracle {
     // Nor is it limited where an effort is commanded: it follows from the load.
     const bool effort = facts.kind(truth.mode) == drive::ControlKind::torque;
     // A limit switch stops a motor as hard as its drive can.
-    if (lags || effort || at_limit || axis.behind) axis.count = 0;
+    const bool let_go = view.now < axis.let_go;
+    if (lags || effort || at_limit || let_go || axis.behind) axis.count = 0;
     if (axis.count == kWindow && squeeze == 0.0) {
       const double rate = (truth.velocity - axis.speeds[axis.next]) / (kWindow * 0.001);
       // A quick stop may take twice the limit.
@@ -137,7 +141,7 @@ class MotorLimits final : public Oracle {
       axis.last = view.now + kLongestLag;
     }
     const double effort = facts.config->limits.effort.value_or(1e300);
-    if (view.now < axis.catches_up && std::fabs(truth.effort) > 0.9 * effort) {
+    if (view.now < axis.catches_up && std::fabs(truth.effort) > 0.5 * effort) {
       axis.catches_up = std::min(view.now + 50ms, axis.last);
     }
     return view.now < axis.catches_up;
