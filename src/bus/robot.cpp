@@ -43,6 +43,7 @@ Robot::Robot(config::RobotConfig robot, canopen::MasterConfig master, can::Sink&
   news_.resize(axes_.size());
   missed_feedback_.resize(axes_.size());
   last_feedback_.resize(axes_.size());
+  answered_.resize(axes_.size());
   lss_problems_.resize(axes_.size());
 }
 
@@ -76,9 +77,22 @@ void Robot::receive(const can::Frame& frame, Time stamp, Time now) {
   master_.receive(frame, stamp, now);
   const bool sdo_answer = frame.id > 0x580 && frame.id < 0x600;
   if (!sdo_answer) return;
-  for (drive::Axis& axis : axes_) {  // hurry its procedure along
-    if (axis.config().node_id == (frame.id & 0x7F)) axis.update(now);
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    if (axes_[i].config().node_id == (frame.id & 0x7F)) answered_[i] = any_answered_ = true;
   }
+}
+
+/// Whose drive answered by SDO need not wait for the next cycle, nor who called for the answer: the
+/// next cycle may be late, and the answer no longer true. Not in receive(), for behind the drive's
+/// answer there may be frames that tell what has become of it since.
+void Robot::hurryProcedures(Time now) {
+  if (!any_answered_) return;
+  any_answered_ = false;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    if (answered_[i]) axes_[i].update(now);
+    answered_[i] = false;
+  }
+  stepJobs(now);
 }
 
 Time Robot::nextDeadline() const {
@@ -96,6 +110,7 @@ void Robot::tick(Time now) {
   if (!started_ || shutDown()) return;
   now_ = now;
   if (listener_.listening()) return stepListening(now);
+  hurryProcedures(now);
   if (now >= next_sync_) config_.bus.external_sync ? lackSync(now) : sync(now);
   if (now >= next_cycle_) cycle(now);
   if (now >= master_.nextDeadline()) master_.tick(now);

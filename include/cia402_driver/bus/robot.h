@@ -113,6 +113,7 @@ class Robot final : private canopen::MasterListener {
   /// first SYNC waits until a drive is ready or none is booting.
   bool mayProduceSync();
   void onSyncDue(Time now);
+  void hurryProcedures(Time now);
   void sync(Time now);
   void cycle(Time now);
   /// SYNC of another device leads the cycle.
@@ -212,9 +213,11 @@ class Robot final : private canopen::MasterListener {
   std::vector<canopen::Node*> nodes_;  // of each axis
   std::vector<std::uint64_t> missed_feedback_;
   std::vector<Time> last_feedback_;
-  std::string bus_lost_;  ///< why; empty: it is there
+  std::vector<bool> answered_;  ///< by SDO, since tick()
+  std::string bus_lost_;        ///< why; empty: it is there
   CycleStatistics statistics_;
   Time last_cycle_{};
+  bool any_answered_ = false;
   bool started_ = false, sync_held_ = false;
   canopen::SyncConsumer external_sync_;
   std::uint64_t foreign_syncs_ = 0;  ///< of others, while this program produces SYNC
