@@ -76,7 +76,8 @@ std::string Group::refusal(const std::vector<drive::Axis>& axes,
 std::vector<motion::MotionState> Group::commandedAt(const std::vector<drive::Axis>& axes,
                                                     Time time) const {
   std::vector<motion::MotionState> states(axes_.size());
-  const bool planned = phase_ == Phase::following && clock_.rate() == 1.0;
+  // In the time of the clock, also where that lags: what comes next is given out by the same clock.
+  const bool planned = phase_ == Phase::following;
   if (planned) trajectory_->sample(time, states);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     if (planned && dropped_[i] == 0) continue;
