@@ -140,9 +140,15 @@ TEST_P(DisturbedServices, TheErrorHistoryIsTheDrivesOwn) {
       if (whole) {
         EXPECT_EQ(answer.history.recorded, objects.find({0x1003, 0})->number) << answer.message;
       }
+      const auto at = [&](std::uint8_t n) { return objects.find({0x1003, n})->number & 0xFFFF; };
       std::uint8_t place = 0;
+      // That it missed its master is an error of the drive's, too, which moves the others on.
+      constexpr std::uint16_t kMasterLost = 0x8130;
+      while (!whole && at(static_cast<std::uint8_t>(place + 1)) == kMasterLost) ++place;
+      const std::uint8_t newest = place;
       for (const canopen::ErrorHistoryEntry& entry : answer.history.entries) {
-        EXPECT_EQ(entry.code, objects.find({0x1003, ++place})->number & 0xFFFF) << answer.message;
+        if (!whole && place == newest && entry.code == kMasterLost) continue;
+        EXPECT_EQ(entry.code, at(++place)) << answer.message;
       }
       if (whole) {
         EXPECT_GE(place, 3) << answer.message;
