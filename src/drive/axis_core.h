@@ -103,6 +103,9 @@ class AxisCore {
   std::uint64_t targetFrames() const;
   /// Measured over a window that lies wholly after the last set-point that could have moved it.
   bool atStandstill() const;
+  /// The same by feedback that is no older than it must be, for answers: what comes late may tell
+  /// that it has begun to move.
+  bool seenToStand(Time now) const { return atStandstill() && heardLately(now); }
   /// Has been seen to move, or is being moved.
   bool moving() const;
   /// Is not known to stand; without feedback, which tells nothing, as moving().

@@ -37,7 +37,7 @@ class Disable : public Procedure {
 
   void begin(const Context& context) {
     AxisCore& axis = context.axis;
-    if (!axis.powerOff() && !axis.atStandstill()) {  // an unknown state counts as powered
+    if (!axis.powerOff() && !axis.seenToStand(context.now)) {  // an unknown state counts as powered
       phase_ = Phase::stopping;
     } else {
       switchOff(context);

@@ -17,7 +17,7 @@ class Halt : public Procedure {
     AxisCore& axis = context.axis;
     if (!begun_) return begin(context);
     if (quick_stop_) return awaitQuickStop(context);
-    if (axis.setPointsAtRest() && axis.atStandstill()) {
+    if (axis.setPointsAtRest() && axis.seenToStand(context.now)) {
       return Outcome::done(axis.config().joint + ": halted at " + place(axis) +
                            "; enable releases the halt");
     }
