@@ -51,11 +51,18 @@ class TargetSteps final : public Oracle {
   void look(const View& view) override {
     for (std::size_t i = 0; i < last_.size(); ++i) {
       if (!streams(view, i)) last_[i].reset();
-      if (std::fabs(view.truths[i].velocity) <= view.stage.axes()[i].creep()) stood_[i] = view.now;
+      const AxisTruth& truth = view.truths[i];
+      if (std::fabs(truth.velocity) <= view.stage.axes()[i].creep()) {
+        stood_[i] = {view.now, truth.told};
+      }
     }
   }
 
  private:
+  struct Stood {  ///< the last time that it did
+    Time at{};
+    double told = 0.0;
+  };
   /// In joint units.
   static double valueIn(const can::Frame& frame, const RpdoPlace& place, const AxisFacts& facts) {
     std::uint32_t raw = 0;
@@ -92,8 +99,8 @@ class TargetSteps final : public Oracle {
     const double step = last_[i] ? std::fabs(value - *last_[i]) : 0.0;
     const double allowed = 1.02 * facts.velocity * toSeconds(facts.config->sync_period) +
                            2 * std::fabs(facts.units_per_count) + 1e-6 * std::fabs(value);
-    const bool stands_as_told = view.now - stood_[i] <= facts.config->sync_period;
-    const bool called_back = stands_as_told && std::fabs(value - view.truths[i].told) <= allowed;
+    const bool stands_as_told = view.now - stood_[i].at <= facts.config->sync_period;
+    const bool called_back = stands_as_told && std::fabs(value - stood_[i].told) <= allowed;
     if (last_[i] && !(step <= allowed) && !called_back) {
       report(view, i,
              "is sent a target that steps by " + number(step) + " in one cycle, " +
@@ -104,7 +111,7 @@ class TargetSteps final : public Oracle {
 
   std::map<std::uint32_t, RpdoPlace> targets_, controls_;  // by COB-ID
   std::vector<int> controlwords_;
-  std::vector<Time> stood_;   // when it last stood
+  std::vector<Stood> stood_;
   std::vector<bool> unsure_;  // another mode than kMode was asked for at some time
   std::vector<std::optional<double>> last_;
 };
