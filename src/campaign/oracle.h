@@ -17,7 +17,8 @@ struct Call {
   std::string verb, who, mode;  ///< mode: of a set_mode
   std::vector<std::size_t> axes;
   Time at{};
-  Duration stalled{};  ///< Conditions::stalled at that time
+  Duration stalled{};        ///< Conditions::stalled at that time
+  std::vector<int> modes{};  ///< of all axes at that time, as their drives show them
 };
 
 /// What an oracle may look at: motors, wire, what was commanded and answered, and what is wrong

@@ -72,6 +72,7 @@ void Player::call(const Words& words, decltype(bus::Command::body) body, Duratio
                   stage_.named(words[1]),
                   stage_.now(),
                   conditions_.stalled};
+  for (const AxisTruth& truth : truths_) pending.call.modes.push_back(truth.mode);
   pending.deadline = stage_.now() + bound;
   pending_.push_back(pending);
   if (words[0] == "home") {
@@ -114,7 +115,10 @@ void Player::answered(const Call& call, const bus::Answer& answer) {
                         call.verb == "quick_stop" || call.verb == "set_mode" ||
                         call.verb == "set_position" || call.verb == "save" ||
                         call.verb == "restore";
-    if (stands && answer.success) permits_.end(i, call.at, now);
+    // The mode that it is in already is no reason to stop anything.
+    const bool same =
+        call.verb == "set_mode" && i < call.modes.size() && call.modes[i] == truths_[i].mode;
+    if (stands && answer.success && !same) permits_.end(i, call.at, now);
   }
 }
 

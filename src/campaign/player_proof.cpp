@@ -120,7 +120,10 @@ void Player::proveMove(std::size_t axis, std::optional<double> tried) {
   if (mode->kind == drive::ControlKind::torque) {
     value = 0.15 * limits.effort.value_or(1.0) * sign;
   }
-  if (mode->kind == drive::ControlKind::velocity) expected = value * 0.3;
+  if (mode->kind == drive::ControlKind::velocity) {
+    expected =
+        (room > 0.0 ? std::min(std::fabs(value) * 0.3, room) : std::fabs(value) * 0.3) * sign;
+  }
   const bool torque = mode->kind == drive::ControlKind::torque;
   stream(
       axis, [value](Duration) { return value; }, 0.3, 100.0);

@@ -30,7 +30,11 @@ bool Player::actTrouble(const Words& words) {
     if (verb == "delay") rates_.longest_delay = seconds(words.at(3));
     stage_.world().bus().faults().setRates(rates_);
     Conditions::extend(conditions_.lossy, now + length + 300ms);
-    for (std::size_t i = 0; i < truths_.size(); ++i) permits_.stretch(i, 500ms, now + length + 1s);
+    // Who follows a SYNC from elsewhere stands still where that is lost.
+    const Duration waits = stage_.loaded().robot.bus.external_sync ? length : 0ms;
+    for (std::size_t i = 0; i < truths_.size(); ++i) {
+      permits_.stretch(i, 500ms + waits, now + length + waits + 1s);
+    }
     later(length, [this, &rate] {
       rate = 0.0;
       stage_.world().bus().faults().setRates(rates_);
