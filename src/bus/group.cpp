@@ -183,8 +183,10 @@ double Group::permittedRise() const {
 }
 
 void Group::advanceClock(Time now) {
-  if (phase_ == Phase::stopping || clock_.time() < trajectory_->startTime()) {
-    clock_.idle(now);
+  const bool waits = phase_ == Phase::following && clock_.time() < trajectory_->startTime();
+  if (waits || phase_ == Phase::stopping) {
+    const Time next = next_ ? next_->startTime() : kNever;
+    clock_.idle(now, waits ? std::min(next, trajectory_->startTime()) : next);
   } else if (std::exchange(starts_, false)) {
     clock_.begin(now);
   } else {

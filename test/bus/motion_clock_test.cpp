@@ -49,10 +49,23 @@ TEST(MotionClock, StartsFromStandstillAfterMissedCycles) {
 TEST(MotionClock, GoesWithTheBusWhileNothingMoves) {
   MotionClock clock(4ms);
   clock.set(Time(1s));
-  clock.idle(Time(1s) + 100ms);
+  clock.idle(Time(1s) + 100ms, kNever);
   EXPECT_EQ(clock.time(), Time(1s) + 100ms);
   EXPECT_EQ(clock.at(Time(3s), Time(1s) + 100ms), Time(3s));
   clock.cycle(Time(1s) + 104ms);
+  EXPECT_EQ(clock.rate(), 1.0);
+}
+
+TEST(MotionClock, PassesWhatIsToStartByAPeriodAtMost) {
+  MotionClock clock(4ms);
+  clock.set(Time(1s));
+  clock.idle(Time(1s) + 4ms, Time(1s) + 10ms);
+  EXPECT_EQ(clock.time(), Time(1s) + 4ms);
+  clock.idle(Time(1s) + 12ms, Time(1s) + 10ms);
+  EXPECT_EQ(clock.time(), Time(1s) + 12ms);
+  clock.set(Time(1s));
+  clock.idle(Time(1s) + 500ms, Time(1s) + 10ms);  // cycles were missed
+  EXPECT_EQ(clock.time(), Time(1s) + 14ms);
   EXPECT_EQ(clock.rate(), 1.0);
 }
 

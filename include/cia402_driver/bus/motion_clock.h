@@ -19,9 +19,11 @@ class MotionClock {
     time_ = cycled_ = now;
     rate_ = 1.0;
   }
-  /// Nothing moves yet, or no more: goes with the time of the bus.
-  void idle(Time now) {
-    time_ += now - cycled_;
+  /// Nothing moves yet, or no more: goes with the time of the bus, but past `start` by one period
+  /// at most. What was to start while no cycle ran starts from its beginning.
+  void idle(Time now, Time start) {
+    const Time time = time_ + (now - cycled_);
+    time_ = start == kNever ? time : std::max(time_, std::min(time, start + period_));
     cycled_ = now;
     rate_ = 1.0;
   }
