@@ -19,7 +19,7 @@ void Permits::allow(std::size_t axis, Source source, Time until) {
   Time& present = at(axis, source);
   present = std::max(present, until);
   axes_[axis].given[static_cast<std::size_t>(source)] = stage_.now();
-  if (source == Source::target) axes_[axis].moved = stage_.now();
+  if (source == Source::target) hinder(axis, stage_.now());
   if (source == Source::homing) axes_[axis].homing_called = stage_.now();
 }
 
