@@ -43,12 +43,10 @@ void Permits::end(std::size_t axis, Time called, Time now) {
 }
 
 void Permits::delay(Duration duration, Time now) {
-  for (Axis& axis : axes_) {
-    for (Time& time : axis.until) {
-      if (time > now && time != kNever) time += duration;
-    }
-    axis.moved += duration;
+  for (const Source source : {Source::stream, Source::target, Source::trajectory, Source::homing}) {
+    delay(source, duration, now);
   }
+  for (Axis& axis : axes_) axis.moved += duration;
 }
 
 void Permits::delay(Source source, Duration duration, Time now) {

@@ -113,16 +113,13 @@ void Player::proveMove(std::size_t axis, std::optional<double> tried) {
   // A zero that was declared may leave little between a switch and the limit on the other side.
   const std::optional<double>& end = sign > 0.0 ? limits.upper : limits.lower;
   const double room = end ? (*end - at) * sign : 1e300;
-  const double step = 0.05 * facts.velocity;
-  double expected = (room > 0.0 ? std::min(step, room) : step) * sign;
+  const bool turns = mode->kind == drive::ControlKind::velocity;
+  const double step = (turns ? 0.06 : 0.05) * facts.velocity;
+  const double expected = (room > 0.0 ? std::min(step, room) : step) * sign;
   double value = at + expected;
-  if (mode->kind == drive::ControlKind::velocity) value = 0.2 * facts.velocity * sign;
+  if (turns) value = 0.2 * facts.velocity * sign;  // for 0.3 s
   if (mode->kind == drive::ControlKind::torque) {
     value = 0.15 * limits.effort.value_or(1.0) * sign;
-  }
-  if (mode->kind == drive::ControlKind::velocity) {
-    expected =
-        (room > 0.0 ? std::min(std::fabs(value) * 0.3, room) : std::fabs(value) * 0.3) * sign;
   }
   const bool torque = mode->kind == drive::ControlKind::torque;
   stream(

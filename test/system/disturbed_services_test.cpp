@@ -144,7 +144,9 @@ TEST_P(DisturbedServices, TheErrorHistoryIsTheDrivesOwn) {
       std::uint8_t place = 0;
       // That it missed its master is an error of the drive's, too, which moves the others on.
       constexpr std::uint16_t kMasterLost = 0x8130;
-      while (!whole && at(static_cast<std::uint8_t>(place + 1)) == kMasterLost) ++place;
+      while (!whole && place < at(0) && at(static_cast<std::uint8_t>(place + 1)) == kMasterLost) {
+        ++place;
+      }
       const std::uint8_t newest = place;
       for (const canopen::ErrorHistoryEntry& entry : answer.history.entries) {
         if (!whole && place == newest && entry.code == kMasterLost) continue;

@@ -16,7 +16,7 @@ constexpr std::size_t kWindow = 20;  // ms over which acceleration is measured
 constexpr Duration kSyncMemory = 30ms;
 constexpr Duration kLongestLag = 500ms;
 constexpr Duration kUnseen = 200ms;  // a limit switch is seen within it, and set-points called back
-constexpr Duration kLed = 60ms;  // so far ahead a motor at a limit switch may be led, not further
+constexpr Duration kLetGo = 60ms;    // a motor gets to where it was led against its limit switch
 constexpr std::uint32_t kSync = 0x80;
 
 class MotorLimits final : public Oracle {
@@ -92,7 +92,7 @@ class MotorLimits final : public Oracle {
     const bool by_float = facts.units_per_count == 0.0;  // it knows no limit switch
     const bool at_limit = !by_float && (truth.statusword & 0x0800) != 0;
     if (!at_limit) {
-      if (axis.held != Time()) axis.let_go = view.now + kLed;
+      if (axis.held != Time()) axis.let_go = view.now + kLetGo;
       axis.held = Time();
     } else if (axis.held == Time()) {
       axis.held = view.now;
