@@ -76,5 +76,32 @@ INSTANTIATE_TEST_SUITE_P(Of, LostDrive,
                                          Lost{"that_on_a_lossy_bus", false, 0.23}),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
+/// Nothing of the drive is heard since its motor stood, and it is not missed yet.
+TEST(OverdueDrive, IsBrakedBeforeItIsDisabled) {
+  Scene scene(loadText(
+      genericPair(", simulation: {lower_limit_switch: -2.4}, homing: {method: 17, offset: 0.0, "
+                  "search_velocity: 1.0, zero_velocity: 0.05, acceleration: 4.0, timeout: 30.0}")));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "left").success);
+  unsigned controlword = 0;
+  scene.world().bus().setMonitor([&](const can::Frame& frame, Time) {
+    if (frame.id == 0x201) controlword = frame.data[0] | frame.data[1] << 8;
+  });
+  (void)scene.begin(ProcedureKind::home, "left");
+  ASSERT_TRUE(scene.runUntil([&] { return (controlword & 0x0010) != 0; }, 3s));
+  sim::FaultRule all;
+  all.id = 1;
+  all.mask = 0x7F;
+  all.count = 1000;
+  all.receiver = "master";
+  scene.world().bus().faults().add(all);
+  ASSERT_TRUE(scene.runUntil([&] { return std::abs(scene.velocity("left")) > 0.05; }, 40ms));
+  ASSERT_TRUE(scene.state("left").feedback_valid);
+  (void)scene.begin(ProcedureKind::disable, "left");
+  scene.run(10ms);
+  ASSERT_GT(std::abs(scene.velocity("left")), 0.02);
+  EXPECT_EQ(controlword & 0x0087, 0x0002u) << "quick stop";
+}
+
 }  // namespace
 }  // namespace cia402

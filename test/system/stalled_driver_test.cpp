@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // The driver's thread is held up, as on a machine that sleeps or is overloaded, while the bus and
 // the kernel's queue go on: what came in time counts, though it is read late.
+#include "../../src/sim/drive_definition.h"
 #include "system/interface_scene.h"
 #include "system/synced_scene.h"
 
@@ -22,8 +23,9 @@ class Deaf : public sim::Listener {
 
 class StalledDriver : public testing::Test {
  protected:
-  void begin(const std::string& yaml) {
-    scene.emplace(loadText(yaml), sim::BusInterface::Options());
+  void begin(const std::string& yaml) { begin(loadText(yaml)); }
+  void begin(LoadedRobot loaded) {
+    scene.emplace(std::move(loaded), sim::BusInterface::Options());
     ASSERT_TRUE(scene->runUntil([&] { return scene->allReady(); }, 8s)) << scene->told();
     scene->run(500ms);
     scene->forgetTold();
@@ -87,6 +89,46 @@ TEST_F(StalledDriver, TakesAnAnswerThatCameInTime) {
     scene->run(100ms + i * 500us);
   }
   EXPECT_EQ(scene->robot().master().nodes()[0].sdo().counters().timeouts, 0u);
+}
+
+TEST_F(StalledDriver, SaysEnabledOnlyOfADriveThatIs) {
+  // A drive whose SDO answers come between its TPDO and the cycle that would look at it.
+  LoadedRobot loaded = loadText(damiaoJoint());
+  sim::DriveDefinition definition = *loaded.axes[0].definition;
+  definition.communication.sdo_latency = 2600us;
+  loaded.axes[0].definition = std::make_shared<const sim::DriveDefinition>(std::move(definition));
+  begin(std::move(loaded));
+  bool reading = false;
+  const auto read = [&] {  // so that an answer is under way all the time
+    if (std::exchange(reading, true)) return;
+    bus::Command command;
+    command.body = bus::ReadObjectCommand{"joint", "6041:00"};
+    command.reply = [&](const bus::Answer&) { reading = false; };
+    scene->robot().execute(std::move(command), scene->now());
+  };
+  int enabled = 0;
+  for (Duration offset{}; offset < 120ms; offset += 500us) {
+    drive::ProcedureRequest request;
+    request.kind = drive::ProcedureKind::enable;
+    bool answered = false;
+    bus::Command command;
+    command.body = bus::ProcedureCommand{"joint", request};
+    command.reply = [&](const bus::Answer& answer) {
+      answered = true;
+      if (!answer.success) return;
+      ++enabled;
+      EXPECT_TRUE(scene->truth(0).power_stage_on)
+          << answer.message << ", stalled at " << toSeconds(offset) << " s";
+    };
+    scene->robot().execute(std::move(command), scene->now());
+    for (const Time end = scene->now() + offset; scene->now() < end; scene->run(500us)) read();
+    scene->stall(500ms);  // it misses its master after 0.3 s
+    ASSERT_TRUE(scene->runUntil([&] { return answered; }, 5s));
+    scene->run(300ms);  // it is lost, if it is
+    ASSERT_TRUE(scene->runUntil([&] { return scene->allReady(); }, 8s)) << scene->told();
+    ASSERT_TRUE(scene->procedure(drive::ProcedureKind::disable).success) << scene->told();
+  }
+  EXPECT_GT(enabled, 0);
 }
 
 TEST_F(StalledDriver, DoesNotMissTheSyncOfAnotherDeviceThatWaitsInTheQueue) {
