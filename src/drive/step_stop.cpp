@@ -16,7 +16,7 @@ Outcome QuickStopStep::advance(const Context& context) {
   }
   const bool off = axis.powerOff();
   const bool stopped = off || axis.state().state == State::quick_stop_active;
-  const bool at_rest = axis.seenToStand(context.now) || (off && !axis.state().feedback_valid);
+  const bool at_rest = axis.atStandstill() || (off && !axis.state().feedback_valid);
   if (stopped && at_rest) return Outcome::done();
   const Duration waited = context.now - started_;
   if (waited <= axis.stopTime()) return Outcome::running();
