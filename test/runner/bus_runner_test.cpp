@@ -45,6 +45,13 @@ class SimulatedRunner : public testing::Test {
       std::this_thread::yield();
     }
   }
+  /// A clock that the runner may read until it is destroyed.
+  static std::function<Time()> clockThatJumps(int every_readings) {
+    auto readings = std::make_shared<std::atomic<int>>(0);
+    return [readings, every_readings] {
+      return bus::realNow() + ((*readings)++ / every_readings) * Duration(10s);
+    };
+  }
   template <typename Condition>
   bool all(Condition&& condition) {
     const bus::RobotSnapshot snapshot = runner->snapshot();
@@ -76,8 +83,7 @@ class SimulatedRunner : public testing::Test {
 };
 
 TEST_F(SimulatedRunner, KeepsItsDrivesOnAClockThatJumps) {
-  std::atomic<int> readings{0};
-  begin([&readings] { return bus::realNow() + (readings++ / 200) * Duration(10s); });
+  begin(clockThatJumps(200));
   ASSERT_TRUE(procedure(ProcedureKind::enable).success);
   waitCycles(500);
   EXPECT_TRUE(all([](const bus::AxisSnapshot& axis) {
@@ -88,8 +94,7 @@ TEST_F(SimulatedRunner, KeepsItsDrivesOnAClockThatJumps) {
 }
 
 TEST_F(SimulatedRunner, EndsOnAClockThatJumps) {
-  std::atomic<int> readings{0};
-  begin([&readings] { return bus::realNow() + (readings++ / 50) * Duration(10s); });
+  begin(clockThatJumps(50));
   ASSERT_TRUE(procedure(ProcedureKind::enable).success);
   runner->requestShutdown();
   runner->join();
