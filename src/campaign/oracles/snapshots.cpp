@@ -20,8 +20,10 @@ class Snapshots final : public Oracle {
   explicit Snapshots(const Stage& stage) : axes_(stage.axes().size()) {}
   const char* name() const override { return "untrue_snapshot"; }
 
-  void onCall(const Call& call, const View&) override { count(call, 1); }
-  void onAnswer(const Call& call, const bus::Answer&, const View&) override { count(call, -1); }
+  void onCall(const Call& call, const View& view) override { count(call, 1, view.now); }
+  void onAnswer(const Call& call, const bus::Answer&, const View& view) override {
+    count(call, -1, view.now);
+  }
   void look(const View& view) override {
     for (std::size_t i = 0; i < axes_.size(); ++i) remember(view, i);
     if (++looks_ % kEvery != 0) return;
@@ -34,16 +36,18 @@ class Snapshots final : public Oracle {
     std::size_t next = 0, count = 0;
     Time enabled{-1h}, not_enabled{-1h}, faulted{-1h}, sound{-1h}, moved{-1h};
     int calls = 0;               // under way that may set a new zero
+    Time called{-1h};            // the last of them began or ended: the drive's news is on its way
     std::optional<double> zero;  // what is shown minus what the drive tells
   };
 
-  void count(const Call& call, int step) {
+  void count(const Call& call, int step, Time now) {
     static const char* const kHarmless[] = {"halt",       "enable",       "disable",
                                             "quick_stop", "clear_faults", "read"};
     const auto* const end = std::end(kHarmless);
     if (std::find(std::begin(kHarmless), end, call.verb) != end) return;
     for (std::size_t i : call.axes) {
       axes_[i].calls += step;
+      axes_[i].called = now;
       axes_[i].zero.reset();
     }
   }
@@ -94,7 +98,8 @@ class Snapshots final : public Oracle {
   /// While it stands, what is shown differs from 6064h by the same zero, until that is set anew.
   void judgePlace(const View& view, std::size_t i, const drive::AxisState& shown) {
     Axis& axis = axes_[i];
-    if (lately(view, axis.moved) || axis.calls > 0 || !shown.feedback_valid) return;
+    if (lately(view, axis.moved) || lately(view, axis.called)) return;
+    if (axis.calls > 0 || !shown.feedback_valid) return;
     const AxisFacts& facts = view.stage.axes()[i];
     const double zero = shown.position - view.truths[i].told;
     const double margin = 2 * std::fabs(facts.units_per_count) + 1e-5;
