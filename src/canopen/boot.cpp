@@ -108,7 +108,10 @@ void BootProcedure::heartbeatHeard(NmtState state, Time now) {
   }
   if (state == NmtState::pre_operational) boot_.found.stopped = false;
   const bool disobeys = state == NmtState::operational || state == NmtState::stopped;
-  const Duration on_its_way = boot_.resetting ? kResetTime : kOnItsWay;
+  // One that is guarded answers a question that left behind the command.
+  const bool asked = boot_.config.error_control == ErrorControl::guarding;
+  const Duration unasked = asked ? Duration::zero() : kOnItsWay;
+  const Duration on_its_way = boot_.resetting ? kResetTime : unasked;
   if (!disobeys || now < boot_.commanded + on_its_way) return;
   if (boot_.resetting) {
     boot_.command(boot_.reset_command, now);
@@ -127,7 +130,7 @@ void BootProcedure::stoppedHeard(Time now) {
   if (found.stopped_count++ == 0) found.stopped_since = now;
   found.stopped_last = now;
   if (std::exchange(found.stopped, true)) return;
-  boot_.sdo.cancelAll("its heartbeat says stopped");
+  boot_.sdo.cancelAll("it says that it is stopped (NMT)");
   boot_.ticket.reset();
   boot_.notes.clear();
   boot_.remarks.clear();

@@ -69,7 +69,7 @@ Progress BootContext::failTransfer() {
 
 Progress BootContext::failStopped() {
   return fail(BootFailure::timed_out,
-              "boot failed: its heartbeat says stopped (NMT state), still after " +
+              "boot failed: it says that it is stopped (NMT state), still after " +
                   std::to_string(found.wake_ups) + " commands to enter pre-operational within " +
                   secondsText(found.stopped_last - found.stopped_since) +
                   ", and a stopped drive answers no SDO; look for another NMT master that stops "

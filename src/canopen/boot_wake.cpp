@@ -1,6 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-// A drive whose heartbeat says "stopped" answers no SDO (CiA 301, table 38): it is brought out of
-// that state first.
+// A drive that says "stopped", by heartbeat or asked by guarding, answers no SDO (CiA 301, table
+// 38): it is brought out of that state first.
 #include "boot_steps.h"
 #include "boot_text.h"
 
@@ -37,6 +37,7 @@ class Wake : public BootStep {
  private:
   void command(BootContext& boot, Time now) {
     boot.command(NmtCommand::enter_pre_operational, now);
+    if (boot.config.error_control == ErrorControl::guarding) boot.ask_state = true;
     ++boot.found.wake_ups;
     boot.deadline = now + (++sent_ < kQuick ? kQuickInterval : kSlowInterval);
   }

@@ -80,7 +80,7 @@ TEST_F(BootWakeTest, one_that_stays_stopped_is_told_as_that_with_the_remedy) {
   EXPECT_EQ(node->health(), NodeHealth::failed);
   EXPECT_EQ(
       node->problem(),
-      "shoulder (node 3): boot failed: its heartbeat says stopped (NMT state), still after 13 "
+      "shoulder (node 3): boot failed: it says that it is stopped (NMT state), still after 13 "
       "commands to enter pre-operational within 1 s, and a stopped drive answers no SDO; look "
       "for another NMT master that stops it, and whether the drive hears this one (wiring); "
       "then switch it off and on, or recover; it is tried again in 1 s (attempt 2 of 3)");

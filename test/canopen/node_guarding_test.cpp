@@ -206,6 +206,26 @@ TEST_F(NodeGuarding, a_lost_node_is_looked_for_and_booted_again) {
   EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
 }
 
+TEST_F(NodeGuarding, one_that_says_stopped_is_woken_at_once_and_asked_each_time) {
+  const std::string ask = test::request(3, "40 00 10 00 00 00 00 00");
+  peer.forget(ask);
+  boot(false);
+  answers({"703 04", "703 84", "703 04", "703 84", "703 FF", "703 05", "703 85"});
+  peer.take();
+  pass(milliseconds(500));  // no answer by SDO: it is commanded, and asked for its state
+  Lines sent = peer.take();
+  const auto of_sdo = [](const std::string& line) { return line.rfind("603 ", 0) == 0; };
+  sent.erase(std::remove_if(sent.begin(), sent.end(), of_sdo), sent.end());
+  EXPECT_THAT(sent, ElementsAre("000 80 03", "703 R1", "000 80 03", "703 R1"));
+  peer.on(ask, "583 43 00 10 00 92 01 02 00");
+  for (int i = 0; i < 2; ++i) {
+    pass(milliseconds(20));
+    EXPECT_THAT(peer.take(), ElementsAre("000 80 03", "703 R1"));
+  }
+  pass(milliseconds(20));  // now it says pre-operational
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+}
+
 TEST_F(NodeGuarding, no_request_leaves_while_the_node_is_not_there) {
   peer.forget("000 82 03");
   boot();

@@ -73,7 +73,7 @@ TEST_F(StoppedDrive, ThatStaysStoppedIsToldAsThat) {
   const auto recovered = scene.procedure(ProcedureKind::recover, "left");
   EXPECT_FALSE(recovered.success);
   EXPECT_THAT(recovered.message,
-              AllOf(HasSubstr("left (node 1)"), HasSubstr("its heartbeat says stopped"),
+              AllOf(HasSubstr("left (node 1)"), HasSubstr("it says that it is stopped"),
                     HasSubstr("look for another NMT master that stops it")));
   EXPECT_LT(scene.now() - begin, 3s);
   EXPECT_EQ(asked, 0U) << "it cannot answer";
