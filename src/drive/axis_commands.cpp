@@ -88,7 +88,7 @@ void AxisCore::encodeTarget() {
   const bool as_given = set_point_.value() == given_;
   if (!as_given && !mode_conversion_.toDevice(set_point_.value(), raw)) return;
   if (raw != target_raw_ && mode_->spec->handshake == Handshake::new_set_point) {
-    handshake_.offer(raw);
+    handshake_.offer(raw, state_.halted);  // where the drive is stopped by it
   }
   target_raw_ = raw;
 }

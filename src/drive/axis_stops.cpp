@@ -108,7 +108,7 @@ void AxisCore::brakeEffort() {
 void AxisCore::replaceHaltedTarget() {
   if (!halt_bit_) return;  // its set-points have come to rest
   neutralizeTarget();
-  if (mode_->spec->handshake == Handshake::new_set_point) handshake_.offer(target_raw_);
+  if (mode_->spec->handshake == Handshake::new_set_point) handshake_.offer(target_raw_, true);
 }
 
 void AxisCore::releaseHalt() {
@@ -129,7 +129,7 @@ void AxisCore::callBack() {
   const bool turns = set_point_.kind() == SetPointKind::velocity;
   const double ahead = turns ? set_point_.value() : set_point_.value() - state_.position;
   neutralizeTarget();
-  if (mode_->spec->handshake == Handshake::new_set_point) handshake_.offer(target_raw_);
+  if (mode_->spec->handshake == Handshake::new_set_point) handshake_.offer(target_raw_, true);
   set_point_.giveUp();
   following_.end();
   if (!following_.isNews()) return;

@@ -1,13 +1,16 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "cia402_driver/drive/set_point_handshake.h"
 
+#include <utility>
+
 namespace cia402::drive {
 namespace {
 constexpr std::uint64_t kPulseFrames = 2;  // a pulse without acknowledge is at least this long
 }  // namespace
 
-void SetPointHandshake::offer(std::uint64_t raw) {
+void SetPointHandshake::offer(std::uint64_t raw, bool twice) {
   next_ = raw;
+  next_twice_ = twice;
   pending_ = true;
 }
 
@@ -23,6 +26,14 @@ void SetPointHandshake::enter(Phase phase, std::uint64_t frames, Time now) {
   timing_ = true;
 }
 
+/// The target leaves, the edge follows.
+void SetPointHandshake::announce(const Input& input, Time now) {
+  raw_ = next_;
+  again_ = next_twice_;
+  pending_ = false;
+  enter(Phase::announced, input.target_frames, now);
+}
+
 bool SetPointHandshake::advance(const Input& input, Time now, Duration timeout) {
   switch (phase_) {
     case Phase::idle:
@@ -31,17 +42,11 @@ bool SetPointHandshake::advance(const Input& input, Time now, Duration timeout) 
         return true;
       }
       if (!timing_) enter(Phase::idle, 0, now);
-      if (!input.has_acknowledge || !input.acknowledged) {
-        raw_ = next_;
-        pending_ = false;
-        enter(Phase::announced, input.target_frames, now);
-      }
+      if (!input.has_acknowledge || !input.acknowledged) announce(input, now);
       break;
     case Phase::announced:
       if (pending_) {  // nothing has been handed over yet: the latest target wins
-        raw_ = next_;
-        pending_ = false;
-        enter(Phase::announced, input.target_frames, now);
+        announce(input, now);
       } else if (input.target_frames > frames_) {
         enter(Phase::raised, input.controlword_frames, now);
       }
@@ -57,6 +62,7 @@ bool SetPointHandshake::advance(const Input& input, Time now, Duration timeout) 
                                 : input.controlword_frames >= frames_ + kPulseFrames) {
         phase_ = Phase::idle;
         timing_ = false;
+        if (std::exchange(again_, false) && !pending_) enter(Phase::announced, 0, now);
       }
       break;
   }

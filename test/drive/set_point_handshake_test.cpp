@@ -56,6 +56,59 @@ TEST(SetPointHandshake, HoldsTheBitUntilAcknowledgedThenWaitsForTheFall) {
   EXPECT_FALSE(wire.handshake.busy());
 }
 
+/// A drive that looks at the controlword before the target of the same RPDO, and hears some frames
+/// only.
+struct HastyDrive {
+  std::uint64_t target = 0, taken = 0;
+  bool bit = false, acknowledges = false;
+  void hear(const SetPointHandshake& handshake) {
+    if (handshake.bit() && !bit) taken = target;
+    acknowledges = bit = handshake.bit();
+    target = handshake.raw();
+  }
+};
+
+TEST(SetPointHandshake, GivenTwiceIsTakenWhicheverFramesAreLost) {
+  int old_taken = 0;
+  for (unsigned lost = 0; lost < 1024; ++lost) {  // of the first ten frames, bit by bit
+    for (const bool twice : {false, true}) {
+      Wire wire;
+      HastyDrive drive;
+      wire.handshake.reset(7);
+      drive.target = drive.taken = 7;
+      wire.handshake.offer(100, twice);
+      for (unsigned frame = 0; frame < 40 && wire.handshake.busy(); ++frame) {
+        ASSERT_TRUE(wire.step(drive.acknowledges));
+        if (frame >= 10 || (lost >> frame & 1U) == 0) drive.hear(wire.handshake);
+      }
+      EXPECT_FALSE(wire.handshake.busy());
+      if (twice) {
+        EXPECT_EQ(drive.taken, 100u) << lost;
+      } else {
+        old_taken += drive.taken == 7;
+      }
+    }
+  }
+  EXPECT_GT(old_taken, 0) << "given once it may take the previous target";
+}
+
+TEST(SetPointHandshake, ANewerTargetNeedNotWaitForTheSecondTime) {
+  Wire wire;
+  wire.handshake.offer(100, true);
+  wire.step(false);
+  wire.step(false);
+  wire.handshake.offer(200);
+  wire.step(true);
+  wire.step(false);  // idle again
+  wire.step(false);
+  EXPECT_EQ(wire.handshake.raw(), 200u);
+  wire.step(false);
+  EXPECT_TRUE(wire.handshake.bit());
+  wire.step(true);
+  wire.step(false);
+  EXPECT_FALSE(wire.handshake.busy()) << "once";
+}
+
 TEST(SetPointHandshake, KeepsTheTargetUnchangedWhileTheBitIsHigh) {
   Wire wire;
   wire.handshake.offer(100);

@@ -8,9 +8,9 @@
 namespace cia402::drive {
 
 /// Hands set-points to a drive one by one with controlword bit 4 and statusword bit 12 (CiA 402-2,
-/// profile position mode). The target has left in a PDO before the edge of bit 4 is made, so that a
-/// drive can never take the edge with the previous target; a newer target waits until the drive
-/// has acknowledged, and the latest wins.
+/// profile position mode). The target has left in a PDO before the edge of bit 4 is made: a drive
+/// that looks at the controlword before the target takes the previous one only where that PDO was
+/// lost. A newer target waits until the drive has acknowledged, and the latest wins.
 class SetPointHandshake {
  public:
   /// What the axis sees in this cycle.
@@ -22,7 +22,10 @@ class SetPointHandshake {
   };
 
   /// Wants `raw` to be the set-point. Replaces one that has not been handed over yet.
-  void offer(std::uint64_t raw);
+  /// @param twice once more after the first acknowledge, which proves that the drive has the target
+  ///   where one RPDO holds both: then the second edge cannot take the previous one, whatever is
+  ///   lost
+  void offer(std::uint64_t raw, bool twice = false);
   /// Forgets everything, bit 4 falls. `raw` is what the target object shall hold meanwhile.
   void reset(std::uint64_t raw);
   /// One cycle. @return false if the drive has not answered for `timeout`: bit 4 falls and the
@@ -39,9 +42,11 @@ class SetPointHandshake {
  private:
   enum class Phase : std::uint8_t { idle, announced, raised, lowered };
   void enter(Phase phase, std::uint64_t frames, Time now);
+  void announce(const Input& input, Time now);
 
   Phase phase_ = Phase::idle;
   bool pending_ = false;
+  bool next_twice_ = false, again_ = false;
   bool timing_ = false;  ///< `since_` is valid while waiting in idle
   std::uint64_t raw_ = 0, next_ = 0, frames_ = 0;
   Time since_{};
