@@ -17,7 +17,7 @@ constexpr Duration kStuck{std::chrono::milliseconds(300)};
 
 void FollowWatch::begin(Time now) {
   began_ = now;
-  running_since_ = kNever;
+  end();
   follows_ = shown_ = told_ = excused_ = false;
 }
 
@@ -42,6 +42,7 @@ bool FollowWatch::watchStanding(const Look& look, Time now) {
   const bool turns = look.sent.kind() == SetPointKind::velocity;
   const double ahead = turns ? 0.0 : look.sent.value() - look.state.position;
   const bool streams = turns || look.sent.kind() == SetPointKind::stream;
+  if (staysApart(look, ahead, now)) return true;
   const bool runs = streams && std::fabs(look.sent.velocity()) > clearly_;
   if (!runs) {
     running_since_ = kNever;
@@ -67,9 +68,23 @@ bool FollowWatch::runsAway(const Look& look, double ahead, Time now) const {
   return position && stands && now - running_since_ >= kLeftBehind;
 }
 
+bool FollowWatch::apart(const Look& look, double ahead) const {
+  return std::fabs(ahead) > clearly_ * toSeconds(kHeld) && look.standstill.still();
+}
+
+/// A stream that pauses, or creeps, goes on from as far ahead of a motor that is held.
+bool FollowWatch::staysApart(const Look& look, double ahead, Time now) {
+  const bool stream = look.sent.kind() == SetPointKind::stream;
+  if (!stream || !look.state.internal_limit || !apart(look, ahead)) {
+    apart_since_ = kNever;
+    return false;
+  }
+  if (apart_since_ == kNever) apart_since_ = now;
+  return look.standstill.stillFrom() >= apart_since_ + reaction_ && now - apart_since_ >= kHeld;
+}
+
 bool FollowWatch::restsAhead(const Look& look, double ahead, Time now) const {
-  const bool apart = std::fabs(ahead) > clearly_ * toSeconds(kHeld);
-  if (!apart || !look.standstill.still()) return false;
+  if (!apart(look, ahead)) return false;
   const Duration rested = now - look.sent.movedAt();
   if (look.sent.kind() == SetPointKind::stream) return look.sent.atRest() && rested >= kHeld;
   return look.sent.kind() == SetPointKind::goal && look.state.ready_for_motion &&

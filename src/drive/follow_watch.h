@@ -43,7 +43,7 @@ class FollowWatch {
   /// The axis came into operation.
   void begin(Time now);
   /// It left operation, or what was sent has been called back.
-  void end() { running_since_ = kNever; }
+  void end() { running_since_ = apart_since_ = kNever; }
   /// The drive follows its set-points, as far as the mode that was looked at last shows that.
   bool follows() const { return follows_; }
   /// @return true: what was sent is to be called back to where the motor stands, and given up.
@@ -61,13 +61,15 @@ class FollowWatch {
   static constexpr double kClearlyMoving = 3.0;
 
   void noteMotion() {
-    running_since_ = kNever;
+    end();
     told_ = false;
   }
   void lookForBit(const Look& look, Time now);
   bool watchStanding(const Look& look, Time now);
   bool runsAway(const Look& look, double ahead, Time now) const;
   bool restsAhead(const Look& look, double ahead, Time now) const;
+  bool apart(const Look& look, double ahead) const;
+  bool staysApart(const Look& look, double ahead, Time now);
 
   double clearly_;     ///< per s
   Duration reaction_;  ///< of the drive
@@ -78,6 +80,7 @@ class FollowWatch {
   bool told_ = false;
   Time began_{};                 ///< since then the bit is waited for
   Time running_since_ = kNever;  ///< set-points of a stream move since then
+  Time apart_since_ = kNever;    ///< they are ahead of a motor that a limit holds since then
 };
 
 }  // namespace cia402::drive

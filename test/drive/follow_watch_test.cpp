@@ -77,6 +77,26 @@ TEST(FollowWatch, IsQuickerWhereTheDriveSaysThatALimitHoldsIt) {
   EXPECT_LE(*after, kSeen);
 }
 
+TEST(FollowWatch, CallsBackAStreamThatPausesAheadOfAMotorThatALimitHolds) {
+  Bench bench;
+  bench.state.internal_limit = true;
+  for (int i = 0; i < 12; ++i) ASSERT_FALSE(bench.cycle(0.0, bench.sent.value() + 0.0004));
+  const Time begun = bench.now;
+  while (bench.now - begun < 1s && !bench.cycle(0.0, bench.sent.value() + 0.00002)) {  // 5 mrad/s
+  }
+  EXPECT_LE(bench.now - begun, kSeen);
+}
+
+TEST(FollowWatch, CallsBackAStreamThatCreepsAwayFromAMotorThatALimitHolds) {
+  Bench bench;
+  bench.state.internal_limit = true;
+  bool called_back = false;
+  while (bench.sent.value() < 0.01 && !called_back) {
+    called_back = bench.cycle(0.0, bench.sent.value() + 0.00004);  // as fast as standstill
+  }
+  EXPECT_LT(bench.sent.value(), 0.003);
+}
+
 TEST(FollowWatch, IsQuickerWhereTheDriveTakesItsBitAway) {
   Bench bench;
   bench.has_bit = bench.bit = true;  // in another mode now: this one has the bit
