@@ -61,6 +61,27 @@ def wait_until(condition, what, deadline=DEADLINE):
         time.sleep(0.01)
 
 
+def thread_states(pid):
+    """What the threads of a process do: state and processor ticks, twice, and what they wait for.
+    Those that starve count on, those that wait for each other do not."""
+    def look():
+        found = {}
+        for task in os.listdir(f"/proc/{pid}/task"):
+            with open(f"/proc/{pid}/task/{task}/stat", encoding="ascii", errors="replace") as file:
+                fields = file.read().rpartition(")")[2].split()
+            with open(f"/proc/{pid}/task/{task}/wchan", encoding="ascii") as file:
+                found[task] = f"{fields[0]} {int(fields[11]) + int(fields[12])} {file.read()}"
+        return found
+    try:
+        first = look()
+        time.sleep(1.0)
+        second = look()
+        return "; ".join(f"{task}: {state} -> {second.get(task, 'ended')}"
+                         for task, state in first.items())
+    except OSError as error:
+        return f"not known: {error}"
+
+
 class Process:
     """A node as a child of the test, with its output."""
 
@@ -105,8 +126,10 @@ class Process:
         try:
             return self.wait()
         except subprocess.TimeoutExpired:
+            threads = thread_states(self._process.pid)
             self.kill()
-            raise
+            raise AssertionError(f"{self.name} has not ended {DEADLINE} s after SIGINT; its threads "
+                                 f"then and a second later: {threads}") from None
 
     def kill(self):
         if self.running():
