@@ -109,9 +109,8 @@ void BootProcedure::heartbeatHeard(NmtState state, Time now) {
   if (state == NmtState::pre_operational) boot_.found.stopped = false;
   const bool disobeys = state == NmtState::operational || state == NmtState::stopped;
   // One that is guarded answers a question that left behind the command.
-  const bool asked = boot_.config.error_control == ErrorControl::guarding;
-  const Duration unasked = asked ? Duration::zero() : kOnItsWay;
-  const Duration on_its_way = boot_.resetting ? kResetTime : unasked;
+  const Duration heard_late = boot_.guarded() ? Duration::zero() : kOnItsWay;
+  const Duration on_its_way = boot_.resetting ? kResetTime : heard_late;
   if (!disobeys || now < boot_.commanded + on_its_way) return;
   if (boot_.resetting) {
     boot_.command(boot_.reset_command, now);

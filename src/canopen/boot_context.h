@@ -106,6 +106,12 @@ class BootContext {
     sink.send(nmtFrame(command, config.node_id));
     commanded = now;
   }
+  /// Out of the NMT state stopped; one that does not tell its state by itself is asked for it.
+  void wake(Time now) {
+    command(NmtCommand::enter_pre_operational, now);
+    if (guarded()) ask_state = true;
+  }
+  bool guarded() const { return config.error_control == ErrorControl::guarding; }
 
   bool answered() const { return ticket->done(); }
   bool ok() const { return ticket->ok(); }

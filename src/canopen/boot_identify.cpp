@@ -60,7 +60,7 @@ class ProofOfLife : public BootStep {
     if (!boot.answered()) return Progress::waiting;
     if (boot.ticket->failure() == SdoTransfer::Failure::timed_out) {
       if (now >= boot.absent_at) return nobodyThere(boot);
-      awaken(boot, now);
+      boot.wake(now);  // it may be stopped (NMT) and not say so: the command out of it was lost
       return Progress::again;
     }
     if (!boot.ok() && !boot.refused()) return boot.failTransfer();
@@ -70,12 +70,6 @@ class ProofOfLife : public BootStep {
   }
 
  private:
-  /// It may be stopped (NMT) without a heartbeat that says so: the command out of it was lost.
-  static void awaken(BootContext& boot, Time now) {
-    boot.command(NmtCommand::enter_pre_operational, now);
-    if (boot.config.error_control == ErrorControl::guarding) boot.ask_state = true;
-  }
-
   static Progress identify(BootContext& boot) {
     Node::Identity& identity = boot.found.identity.emplace();
     const std::optional<std::uint32_t>& configured = boot.config.device_type;

@@ -36,8 +36,7 @@ class Wake : public BootStep {
 
  private:
   void command(BootContext& boot, Time now) {
-    boot.command(NmtCommand::enter_pre_operational, now);
-    if (boot.config.error_control == ErrorControl::guarding) boot.ask_state = true;
+    boot.wake(now);
     ++boot.found.wake_ups;
     boot.deadline = now + (++sent_ < kQuick ? kQuickInterval : kSlowInterval);
   }

@@ -80,7 +80,7 @@ bool FollowWatch::staysApart(const Look& look, double ahead, Time now) {
     return false;
   }
   if (apart_since_ == kNever) apart_since_ = now;
-  return look.standstill.stillFrom() >= apart_since_ + reaction_ && now - apart_since_ >= kHeld;
+  return look.standstill.stillFrom() >= apart_since_ + reaction_;
 }
 
 bool FollowWatch::restsAhead(const Look& look, double ahead, Time now) const {

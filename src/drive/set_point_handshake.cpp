@@ -62,7 +62,7 @@ bool SetPointHandshake::advance(const Input& input, Time now, Duration timeout) 
                                 : input.controlword_frames >= frames_ + kPulseFrames) {
         phase_ = Phase::idle;
         timing_ = false;
-        if (std::exchange(again_, false) && !pending_) enter(Phase::announced, 0, now);
+        if (std::exchange(again_, false)) enter(Phase::announced, 0, now);
       }
       break;
   }

@@ -33,6 +33,7 @@ class FakeDrive : public can::Sink {
   int acknowledge_delay = 0;  ///< cycles
   bool acknowledges = true;
   bool warning = false, voltage = true, remote = true;
+  bool at_limit = false;  ///< stands in profile position, and says so by statusword bit 11
   bool keeps_attained = false;  ///< statusword bit 12 survives leaving the homing mode
   bool never_homes = false, homing_fails = false, homing_moves = true;
   int homing_cycles = 50;
@@ -131,6 +132,7 @@ class FakeDrive : public can::Sink {
     if (voltage) word |= 0x0010;
     if (warning) word |= 0x0080;
     if (remote) word |= 0x0200;
+    if (at_limit) word |= 0x0800;
     if (mode == 6) {
       if (attained_) word |= 0x1000;
       if (homing_error_) word |= 0x2000;
@@ -291,7 +293,7 @@ class FakeDrive : public can::Sink {
       if (mode == 9 || mode == 3) velocity = target_velocity;
       if (mode == 1) profilePosition(dt, edge4);
       if (mode == 6) home(dt, edge4);
-      if (halted && mode != 8 && mode != 9) velocity = 0;
+      if ((halted && mode != 8 && mode != 9) || (at_limit && mode == 1)) velocity = 0;
       velocity += coast;
     }
     quick_velocity_ = velocity;

@@ -117,6 +117,12 @@ TEST(HaltProcedure, RampsCyclicPositionTargetsDownByTheAccelerationLimit) {
   EXPECT_THAT(bench.axis.motionRefusal(), HasSubstr("halted; enable releases the halt"));
 }
 
+/// The newest set-point was handed over once, and once more: the drive has it, whatever was lost.
+bool toldTwice(const test::FakeDrive& drive) {
+  const auto& accepted = drive.accepted;
+  return accepted.size() >= 2 && accepted.back() == accepted[accepted.size() - 2];
+}
+
 TEST(HaltProcedure, UsesTheHaltBitWhereTheDrivePlans) {
   Bench bench(inMode("profile_position"));
   ASSERT_TRUE(bench.boot());
@@ -133,6 +139,7 @@ TEST(HaltProcedure, UsesTheHaltBitWhereTheDrivePlans) {
   bench.run(milliseconds(500));
   EXPECT_EQ(bench.drive.controlword & 0x0100, 0);
   EXPECT_NEAR(bench.drive.position, halted_at, 1.0);
+  EXPECT_TRUE(toldTwice(bench.drive));
   EXPECT_TRUE(bench.axis.setTarget(2.0));
 }
 
@@ -152,6 +159,20 @@ TEST(HaltProcedure, GivesThePointWhereTheAxisCanStopWhereThereIsNoHaltBit) {
   EXPECT_GE(bench.axis.state().position - from, 2.0 * 2.0 / (2 * 8.0));
   EXPECT_LE(bench.axis.state().position - from, 2.0 * 2.0 / (2 * 8.0) + 6 * 0.004 * 2.0);
   EXPECT_EQ(bench.drive.controlword & 0x0100, 0);
+  EXPECT_TRUE(toldTwice(bench.drive));
+}
+
+TEST(HaltProcedure, AGoalThatALimitKeepsItFromIsCalledBackTwice) {
+  Bench bench(inMode("profile_position"));
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  ASSERT_TRUE(bench.axis.setTarget(3.0));
+  bench.run(milliseconds(200));
+  EXPECT_FALSE(toldTwice(bench.drive)) << "a motion is told once";
+  bench.drive.at_limit = true;
+  bench.run(milliseconds(1000));
+  EXPECT_NEAR(bench.drive.accepted_target, bench.drive.position, 1.0);
+  EXPECT_TRUE(toldTwice(bench.drive));
 }
 
 TEST(HaltProcedure, RampsVelocitySetPointsDownInCyclicVelocity) {
