@@ -33,7 +33,7 @@ class FakeDrive : public can::Sink {
   int acknowledge_delay = 0;  ///< cycles
   bool acknowledges = true;
   bool warning = false, voltage = true, remote = true;
-  bool at_limit = false;  ///< stands in profile position, and says so by statusword bit 11
+  bool at_limit = false;        ///< stands in profile position, and says so by statusword bit 11
   bool keeps_attained = false;  ///< statusword bit 12 survives leaving the homing mode
   bool never_homes = false, homing_fails = false, homing_moves = true;
   int homing_cycles = 50;
