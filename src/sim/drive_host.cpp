@@ -30,7 +30,7 @@ class DriveHost::Tap final : public can::Sink {
 };
 
 DriveHost::DriveHost(const std::vector<SimulatedAxis>& axes, can::Interface& interface, Time now)
-    : interface_(interface) {
+    : interface_(interface), at_(now) {
   for (const SimulatedAxis& axis : axes) {
     auto tap = std::make_unique<Tap>(interface);
     auto drive =
@@ -45,24 +45,31 @@ DriveHost::~DriveHost() = default;
 void DriveHost::step(Time now) {
   while (const auto received = interface_.receive(now)) {
     if (received->frame.error) continue;
-    for (Member& member : drives_) member.drive->receive(received->frame, now);
+    at_ = std::clamp(received->stamp, at_, std::max(at_, now));
+    for (Member& member : drives_) member.drive->receive(received->frame, at_);
+    hearEachOther();
   }
+  at_ = std::max(at_, now);
   for (Member& member : drives_) {
-    if (member.drive->nextEvent() <= now) member.drive->tick(now);
+    if (member.drive->nextEvent() <= at_) member.drive->tick(at_);
   }
+  hearEachOther();
+  interface_.maintain(now);
+}
+
+void DriveHost::hearEachOther() {
   for (int round = 0; round < kRounds; ++round) {
     bool quiet = true;
     for (Member& sender : drives_) {
       for (const can::Frame& frame : sender.tap->takeSent()) {
         quiet = false;
         for (Member& member : drives_) {
-          if (&member != &sender) member.drive->receive(frame, now);
+          if (&member != &sender) member.drive->receive(frame, at_);
         }
       }
     }
     if (quiet) break;
   }
-  interface_.maintain(now);
 }
 
 Time DriveHost::nextDeadline() const {

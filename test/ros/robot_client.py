@@ -231,7 +231,8 @@ class Robot:
 
     def wait_at(self, joint, goal, tolerance=0.01, deadline=DEADLINE):
         wait_until(lambda: abs(self.position(joint) - goal) <= tolerance,
-                   lambda: f"{joint} at {goal}, but at {self.position(joint)}", deadline)
+                   lambda: f"{joint} at {goal}, but at {self.position(joint)}\n{self.axis(joint)}",
+                   deadline)
 
     def wait_rest(self, joint, deadline=DEADLINE):
         """Until REST feedbacks in a row showed the same position. @return it."""

@@ -21,7 +21,8 @@ class DriveHost {
   DriveHost(const DriveHost&) = delete;
   DriveHost& operator=(const DriveHost&) = delete;
 
-  /// Takes what was received and does what is due.
+  /// Takes what was received, each frame at the time of its stamp, and does what is due. Called
+  /// late, the drives answer late, but miss nothing that was on the wire in time.
   void step(Time now);
   /// When step() is due if nothing is received.
   Time nextDeadline() const;
@@ -36,7 +37,10 @@ class DriveHost {
     std::unique_ptr<Drive> drive;
   };
 
+  void hearEachOther();
+
   can::Interface& interface_;
+  Time at_;  ///< how far the drives have come
   std::vector<Member> drives_;
 };
 

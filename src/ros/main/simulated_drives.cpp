@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "cia402_driver/bus/real_clock.h"
+#include "cia402_driver/bus/realtime.h"
 #include "cia402_driver/can/socketcan.h"
 #include "cia402_driver/ros/fault_service.h"
 #include "cia402_driver/ros/process_signals.h"
@@ -50,6 +51,10 @@ int main(int argc, char** argv) {
   ros::AsyncSpinner spinner(1);
   spinner.start();
   ROS_INFO_STREAM(axes->size() << " simulated drives on " << interface.describe());
+  const int priority = loaded->options.realtime_priority;
+  if (priority > 0 && !bus::makeRealtime(priority).complete()) {
+    ROS_INFO("the simulated drives do not run in real time and may answer late under load");
+  }
   while (!ros_node::endRequested()) {
     Time deadline;
     {
