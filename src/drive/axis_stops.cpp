@@ -53,7 +53,8 @@ void AxisCore::beginHalt() {
 /// The drive plans by itself: it gets the nearest point where it can stop, from where it is by the
 /// newest feedback. What it does until it has that is added, for a point that is too near would
 /// make it turn back: it may still be gaining speed, what it has planned is ahead of what is
-/// measured, and what is measured may be old, in a late cycle. It never goes beyond its goal.
+/// measured, and what is measured may be old, in a late cycle. It never goes beyond a goal at which
+/// it can stop; one that came nearer than that under way makes the drive turn back.
 void AxisCore::giveStopPoint(Time now) {
   if (!state_.feedback_valid) return;
   const double velocity = std::isfinite(state_.velocity) ? state_.velocity : 0.0;
@@ -67,7 +68,11 @@ void AxisCore::giveStopPoint(Time now) {
       speed, std::min(speed + deceleration * reaction, config_.limits.velocity.value_or(1e9)));
   const double way = faster * reaction + faster * faster / (2.0 * deceleration);
   double point = from + sign * way;
-  if (sign * (halted_goal_ - from) >= 0.0)
+  const double slowest = std::max(
+      0.0, speed - deceleration * toSeconds(kReactionCycles * config_.sync_period));  // by now
+  const double needed = slowest * slowest / (2.0 * deceleration);
+  const bool reachable = sign * (halted_goal_ - state_.position) >= needed;
+  if (reachable && sign * (halted_goal_ - from) >= 0.0)
     point = sign * std::min(sign * point, sign * halted_goal_);
   const AxisLimits& limits = config_.limits;
   if (limits.lower) point = std::max(point, std::min(*limits.lower, from));

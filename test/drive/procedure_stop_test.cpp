@@ -162,6 +162,41 @@ TEST(HaltProcedure, GivesThePointWhereTheAxisCanStopWhereThereIsNoHaltBit) {
   EXPECT_TRUE(toldTwice(bench.drive));
 }
 
+// The goal is ahead, but nearer than the motor can stop: left at that, it would turn back.
+TEST(HaltProcedure, GivesThePointWhereTheAxisCanStopWhereItsGoalCameTooNear) {
+  DriveProfile profile = testProfile();
+  profile.halt_supported = false;
+  AxisConfig config = testConfig(profile);
+  config.mode = "profile_position";
+  Bench bench(config);
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  ASSERT_TRUE(bench.axis.setTarget(3.0));
+  bench.run(milliseconds(200));
+  const double from = bench.axis.state().position;
+  ASSERT_TRUE(bench.axis.setTarget(from + 0.15));  // it needs 0.25
+  bench.run(milliseconds(20));
+  EXPECT_TRUE(bench.perform(ProcedureKind::halt).success);
+  EXPECT_GE(bench.axis.state().position - from, 2.0 * 2.0 / (2 * 8.0));
+}
+
+TEST(HaltProcedure, NeverGoesBeyondAGoalAtWhichItCanStop) {
+  DriveProfile profile = testProfile();
+  profile.halt_supported = false;
+  AxisConfig config = testConfig(profile);
+  config.mode = "profile_position";
+  Bench bench(config);
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  ASSERT_TRUE(bench.axis.setTarget(3.0));
+  bench.run(milliseconds(200));
+  const double goal = bench.axis.state().position + 0.28;  // it needs 0.25
+  ASSERT_TRUE(bench.axis.setTarget(goal));
+  bench.run(milliseconds(8));
+  EXPECT_TRUE(bench.perform(ProcedureKind::halt).success);
+  EXPECT_LE(bench.axis.state().position, goal + 1e-3);
+}
+
 TEST(HaltProcedure, AGoalThatALimitKeepsItFromIsCalledBackTwice) {
   Bench bench(inMode("profile_position"));
   ASSERT_TRUE(bench.boot());
