@@ -4,14 +4,17 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <map>
 #include <sstream>
 #include <string>
+#include <system_error>
 
 #include "cia402_driver/campaign/generator.h"
 #include "cia402_driver/campaign/runner.h"
@@ -59,7 +62,7 @@ std::string kind(const Finding& finding) {
   return finding.oracle + ' ' + finding.text.substr(0, finding.text.find(' '));
 }
 
-/// The smallest scene with the same finding, as a file. @return its path
+/// The smallest scene with the same finding, as a file. @return its path, or why there is none
 std::string keep(Scene scene, Finding finding, const Options& options) {
   const RunOptions run_options = runOptions(options);
   auto& actions = scene.actions;
@@ -78,8 +81,11 @@ std::string keep(Scene scene, Finding finding, const Options& options) {
   scene.about = describe(finding) + "\nfound by seed " + std::to_string(seed) + "\n";
   const std::string path =
       options.out + "/" + finding.oracle + "_" + std::to_string(seed) + ".yaml";
-  std::ofstream(path) << writeScene(scene);
-  return path;
+  std::error_code ignored;  // the file tells
+  std::filesystem::create_directories(options.out, ignored);
+  std::ofstream file(path);
+  file << writeScene(scene) << std::flush;
+  return file ? path : path + " (cannot be written: " + std::strerror(errno) + ")";
 }
 
 Result work(std::uint64_t seed, const Options& options) {
