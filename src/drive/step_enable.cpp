@@ -41,7 +41,7 @@ Outcome EnableStep::advance(const Context& context) {
     case Phase::transitions:
       return climb(context);
     case Phase::brake:
-      return context.axis.brakeReleased(context.now) ? Outcome::done() : Outcome::running();
+      return awaitBrake(context);
   }
   return Outcome::running();
 }
@@ -76,6 +76,7 @@ Outcome EnableStep::awaitRest(const Context& context) {
     enter(Phase::feedback, context);
     return Outcome::running();
   }
+  if (axis.atStandstill() && !axis.heardLately(context.now)) return Outcome::running();
   if (axis.atStandstill()) {
     enter(resumes(axis) ? Phase::transitions : Phase::writing, context);
     return Outcome::running();
@@ -110,7 +111,7 @@ Outcome EnableStep::awaitMode(const Context& context) {
   AxisCore& axis = context.axis;
   const Outcome outcome = mode_.advance(context);
   if (!outcome.isDone()) return outcome;
-  if (!axis.state().feedback_valid || !axis.atStandstill()) {
+  if (!axis.state().feedback_valid || !axis.seenToStand(context.now)) {
     enter(Phase::standing, context);
     context.show("waiting for standstill", "the axis to stand, before the power comes");
     return Outcome::running();
@@ -126,7 +127,7 @@ Outcome EnableStep::awaitMode(const Context& context) {
 
 Outcome EnableStep::climb(const Context& context) {
   AxisCore& axis = context.axis;
-  if (axis.inOperation()) {
+  if (axis.inOperation() && axis.heardLately(context.now)) {
     enter(Phase::brake, context);
     context.show("releasing the brake", seconds(axis.profile().timing.brake_release) +
                                             " to pass (profile, brake_release)");
@@ -152,6 +153,13 @@ Outcome EnableStep::climb(const Context& context) {
   return fail(context, axis.who() + ": enabling timed out: the drive has been in " +
                            toString(state) + " for " + seconds(context.now - since_) + "; " +
                            axis.report());
+}
+
+/// Its power may have gone since it was seen in operation; then its state says so, or it is lost.
+Outcome EnableStep::awaitBrake(const Context& context) {
+  const AxisCore& axis = context.axis;
+  const bool enabled = axis.inOperation() && axis.heardLately(context.now);
+  return enabled && axis.brakeReleased(context.now) ? Outcome::done() : Outcome::running();
 }
 
 Outcome EnableStep::fail(const Context& context, std::string why) {

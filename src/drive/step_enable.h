@@ -24,6 +24,7 @@ class EnableStep {
   Outcome awaitLimits(const Context& context);
   Outcome awaitMode(const Context& context);
   Outcome climb(const Context& context);
+  Outcome awaitBrake(const Context& context);
   Outcome fail(const Context& context, std::string why);
 
   const ModeChannel* channel_;

@@ -48,6 +48,19 @@ TEST(EnableStep, SaysSoWhereTheAxisDoesNotComeToRest) {
   EXPECT_THAT(status.message, HasSubstr("velocity 0.5"));
 }
 
+TEST(EnableStep, GoesByNothingThatADriveSaidBeforeItFellSilent) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  bench.run(100ms);
+  bench.axis.onBusLost("can0 was bus-off for a moment");
+  bench.drive.silent = true;  // its last word was "operation enabled"
+  bench.drive.state = S::disabled;
+  const ProcedureStatus& status = bench.perform(ProcedureKind::enable);
+  EXPECT_FALSE(status.success);
+  EXPECT_THAT(status.message, HasSubstr("no usable statusword"));
+}
+
 TEST(EnableStep, LooksAgainOnceTheModeIsThere) {
   DriveProfile profile = testProfile();
   profile.timing.mode_change = 5s;
