@@ -123,6 +123,8 @@ def sources_to_check(repository, build):
 def main():
     repository, build, cache = (pathlib.Path(argument).resolve() for argument in sys.argv[1:4])
     cache.mkdir(parents=True, exist_ok=True)
+    for left_over in cache.glob("batch_*.cpp"):  # of a run that was ended
+        left_over.unlink()
     version = subprocess.run(["clang-tidy", "--version"], stdout=subprocess.PIPE, check=True).stdout
     todo, marks = [], {}
     for source, command in sources_to_check(repository, build):
@@ -135,9 +137,9 @@ def main():
         return 1
     failed = 0
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        for results in pool.map(lambda batch: check(repository, build, cache, batch),
-                                batches(todo)):
-            for source, passed, said in results:
+        running = [pool.submit(check, repository, build, cache, batch) for batch in batches(todo)]
+        for ended in concurrent.futures.as_completed(running):
+            for source, passed, said in ended.result():
                 if passed:
                     marks[source].touch()
                 else:
