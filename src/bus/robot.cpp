@@ -218,6 +218,20 @@ void Robot::beginShutdown(Time now) {
   for (NmtJob& job : nmt_) job.abandon("ended by the shutdown of the driver");
   nmt_.clear();
   stopMotion("stopped: the driver is shutting down");
+  // What runs by itself would go on while the set-points of other axes are ramped down.
+  for (drive::Axis& axis : axes_) {
+    const drive::ProcedureStatus& procedure = axis.procedure();
+    const bool runs = procedure.running && !drive::stops(procedure.kind);
+    if (runs || axis.setPoint().kind() == drive::SetPointKind::goal) disableAtShutdown(axis, now);
+  }
+}
+
+void Robot::disableAtShutdown(drive::Axis& axis, Time now) {
+  drive::ProcedureRequest request;
+  request.kind = drive::ProcedureKind::disable;
+  const drive::ProcedureStatus& procedure = axis.procedure();
+  if (procedure.running && procedure.kind == request.kind) return;
+  (void)axis.start(request, now);  // not ready: nothing to do
 }
 
 void Robot::stepShutdown(Time now) {
@@ -229,9 +243,7 @@ void Robot::stepShutdown(Time now) {
                                       [](const Group& g) { return g.executing() || g.stopping(); });
     if (!at_rest && now < shutdown_began_ + kStopTime) return;
     shutdown_ = Shutdown::disabling;
-    drive::ProcedureRequest request;
-    request.kind = drive::ProcedureKind::disable;
-    for (drive::Axis& axis : axes_) (void)axis.start(request, now);  // not ready: nothing to do
+    for (drive::Axis& axis : axes_) disableAtShutdown(axis, now);
     return;
   }
   if (shutdown_ == Shutdown::disabling) {

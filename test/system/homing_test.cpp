@@ -72,6 +72,27 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{37, 1, -1.4, -1.4}, Case{37, -1, -1.4, -1.4}),
     nameOf);
 
+TEST(Homing, EndsAtOnceAtAShutdownThatRampsAnotherAxisDown) {
+  Scene scene(loadText(
+      genericPair(homing(17, 0.0) + switches(0.0),
+                  ", limits: {lower: -9.0, upper: 9.0, velocity: 1.5, acceleration: 1.0}")));
+  ASSERT_TRUE(scene.boot());
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "right").success);
+  const auto homed = scene.begin(ProcedureKind::home, "left");
+  scene.stream("right", 8.0, 1600ms);
+  ASSERT_FALSE(homed->has_value());
+  ASSERT_LT(scene.velocity("left"), -0.7);
+  ASSERT_GT(scene.velocity("right"), 1.3);
+  scene.robot().robot().beginShutdown(scene.now());
+  scene.run(300ms);  // 0.8 rad/s at 4 rad/s² take 200 ms
+  EXPECT_GT(scene.velocity("right"), 0.9) << "its ramp takes 1.5 s";
+  EXPECT_NEAR(scene.velocity("left"), 0.0, 0.01);
+  ASSERT_TRUE(homed->has_value());
+  EXPECT_FALSE((*homed)->success);
+  ASSERT_TRUE(scene.runUntil([&] { return scene.robot().robot().shutDown(); }, 2s));
+  EXPECT_FALSE(scene.truth("left").power_stage_on);
+}
+
 TEST(Homing, TimesOutInWordsWhenTheSwitchIsNeverFound) {
   Scene scene(loadText(genericPair(homing(17, 0.0, ", timeout: 2.0"))));
   ASSERT_TRUE(scene.boot());

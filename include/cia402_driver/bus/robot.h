@@ -134,6 +134,7 @@ class Robot final : private canopen::MasterListener {
   /// Why no axis may be enabled as SYNC is now, or was a moment ago; empty if it is well.
   std::string syncProblem() const;
   void stepJobs(Time now);
+  void disableAtShutdown(drive::Axis& axis, Time now);
   void stepShutdown(Time now);
   void stopMotion(const std::string& why);
   /// Nothing that was asked for before enables an axis any more.
