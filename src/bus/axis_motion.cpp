@@ -70,9 +70,13 @@ Result<void> AxisMotion::command(const drive::Axis& axis, double value, Time now
   commanded_ = now;
   if (mode_->kind == drive::ControlKind::velocity) return velocity_.command(value, clock_);
   if (mode_->kind != drive::ControlKind::position) return {};
-  const drive::AxisLimits& limits = axis.config().limits;
-  if (limits.lower) command_ = std::max(*command_, *limits.lower);
-  if (limits.upper) command_ = std::min(*command_, *limits.upper);
+  if (!mode_->cyclic) {
+    const drive::AxisLimits& limits = axis.config().limits;
+    motion::JointLimits range;
+    range.lower = limits.lower;
+    range.upper = limits.upper;
+    command_ = motion::withinReach(range, *command_, axis.state().position);
+  }
   return position_.command(*command_, clock_);
 }
 

@@ -1,12 +1,19 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "cia402_driver/motion/joint.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 
 namespace cia402::motion {
 
 const char* toString(JointUnit unit) { return unit == JointUnit::metre ? "m" : "rad"; }
+
+double withinReach(const JointLimits& limits, double wanted, double from) {
+  if (limits.lower) wanted = std::max(wanted, std::min(*limits.lower, from));
+  if (limits.upper) wanted = std::min(wanted, std::max(*limits.upper, from));
+  return wanted;
+}
 
 std::string formatNumber(double value) {
   std::array<char, 32> text{};

@@ -145,9 +145,7 @@ void PositionLimiter::reset(const MotionState& commanded, Time now) {
 
 Result<void> PositionLimiter::command(double position, Time now) {
   if (Result<void> taken = take(position, "", now); !taken) return taken;
-  const JointLimits& limits = config_.joint.limits;
-  if (limits.lower) command_ = std::max(*command_, *limits.lower);
-  if (limits.upper) command_ = std::min(*command_, *limits.upper);
+  command_ = withinReach(config_.joint.limits, *command_, output_.position);
   fresh_ = true;
   return {};
 }

@@ -145,14 +145,21 @@ TEST(PositionLimiter, TargetsBeyondAPositionLimitEndAtTheLimit) {
 
 TEST(PositionLimiter, ComesBackFromOutsideItsLimits) {
   Position joint(elbow(), {2.5, 0, 0});
-  double previous = 2.5;
   joint.follow(100);
-  for (int i = 0; i < 1000; ++i) {
-    const double position = joint.step().position;
-    ASSERT_LE(position, previous);
-    previous = position;
+  for (int i = 0; i < 1000; ++i) ASSERT_EQ(joint.step().position, 2.5) << "no way leads there";
+  double previous = 2.5;
+  for (const double goal : {2.3, 1.0}) {
+    joint.follow(goal);
+    for (int i = 0; i < 1000; ++i) {
+      const double position = joint.step().position;
+      ASSERT_LE(position, previous);
+      previous = position;
+    }
+    EXPECT_NEAR(previous, goal, 1e-9) << "as far as it is told";
   }
-  EXPECT_NEAR(previous, 2.0, 1e-9);
+  joint.follow(100);
+  for (int i = 0; i < 2000; ++i) ASSERT_LE(joint.step().position, 2.0);
+  EXPECT_NEAR(joint.limiter.output().position, 2.0, 1e-9);
 }
 
 TEST(PositionLimiter, StaleCommandStopsTheJointByTheStopDeceleration) {

@@ -94,11 +94,30 @@ TEST(Coordinates, AnAxisFoundOutsideItsLimitsIsEnabledWithoutMotionAndComesBack)
   ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "left").success);
   scene.run(500ms);
   expectNothingMoved(scene, "left");
+  ASSERT_EQ(scene.setpoint("left", 3.5), "");
+  scene.run(1s);
+  expectNothingMoved(scene, "left");
+  ASSERT_EQ(scene.setpoint("left", 2.65), "");
+  scene.run(1s);
+  EXPECT_NEAR(scene.position("left"), 2.65, 1e-3) << "as far as it is told";
   ASSERT_EQ(scene.setpoint("left", 2.0), "");
   scene.run(3s);
   EXPECT_NEAR(scene.position("left"), 2.0, 1e-3);
   EXPECT_LT(scene.seen("left").fastest, 1.5 * 1.02);
   EXPECT_NEAR(highest(scene, "left"), 2.5, 1e-6);
+}
+
+TEST(Coordinates, APlannedMotionFromOutsideTheLimitsGoesAsFarAsItIsTold) {
+  Scene scene(loadText(genericPair(standing(2.7) + ", mode: profile_position")));
+  ASSERT_TRUE(scene.boot());
+  scene.forget();
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "left").success);
+  ASSERT_EQ(scene.setpoint("left", 3.5), "");
+  scene.run(1s);
+  expectNothingMoved(scene, "left");
+  ASSERT_EQ(scene.setpoint("left", 2.65), "");
+  scene.run(1s);
+  EXPECT_NEAR(scene.position("left"), 2.65, 1e-3);
 }
 
 class Declared : public testing::Test {

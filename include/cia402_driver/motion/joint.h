@@ -20,6 +20,10 @@ struct JointLimits {
   bool continuous = false;  ///< turns without end: positions a full turn apart are one pose
 };
 
+/// The position nearest to `wanted` that a joint may go to from where it is: between its limits;
+/// from outside of them only back, and no further than it is told.
+double withinReach(const JointLimits& limits, double wanted, double from);
+
 /// One joint as the motion module sees it.
 struct Joint {
   std::string name;

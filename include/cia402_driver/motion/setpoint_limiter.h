@@ -28,8 +28,8 @@ Result<void> check(const LimiterConfig& config);
 /// the steps, so that what the drive is given keeps the limits exactly, whatever the jitter of the
 /// cycle. The joint can always be stopped before a position limit with the acceleration limit,
 /// unless it was not so when reset() was called; then it brakes with the acceleration limit. From
-/// outside the position limits it can only move back. No function allocates but command() when it
-/// refuses.
+/// outside the position limits it can only move back, as far as it is told. No function allocates
+/// but command() when it refuses.
 class SetpointLimiter {
  public:
   /// True from the first step() after the command became stale until a new command is taken.
