@@ -75,9 +75,9 @@ void HomingSequence::start(const HomingMethod& method, const AxisSwitches& switc
     edge_position_ = position;
     slow_ = true;
   } else {
-    const bool active = switches.active(method.edge, position);
-    direction_ = active ? outOf(method.edge) : method.start;
-    slow_ = active;
+    active_ = switches.active(method.edge, position);
+    direction_ = active_ ? outOf(method.edge) : method.start;
+    slow_ = active_;
   }
 }
 
@@ -119,22 +119,22 @@ void HomingSequence::findIndex(const AxisSwitches& switches, double from, double
 
 void HomingSequence::step(const AxisSwitches& switches, double from, double to) {
   if (phase_ != Phase::searching) return;
-  const int moving = to > from ? 1 : to < from ? -1 : 0;
-  if (!edge_found_ && moving != 0 &&
-      switches.active(method_.edge, from) != switches.active(method_.edge, to)) {
+  const bool active = method_.edge != H::none && switches.active(method_.edge, to);
+  if (!edge_found_ && active != active_) {
     HomingSwitch edge = method_.edge;
-    if (isHomeSwitch(edge)) {
-      const bool entered = switches.active(edge, to);
-      edge = entered == (moving > 0) ? H::home_low : H::home_high;
-    }
+    const bool passed = switches.active(edge, from) != active;  // else somebody has touched it
+    int moving = to > from ? 1 : -1;
+    if (!passed) moving = isHomeSwitch(edge) ? direction_ : active ? -outOf(edge) : outOf(edge);
+    if (isHomeSwitch(edge)) edge = active == (moving > 0) ? H::home_low : H::home_high;
     atEdge(edge, moving);
     if (edge_found_) {
-      edge_position_ = switches.edgePosition(edge);
+      edge_position_ = passed ? switches.edgePosition(edge) : to;
       home_ = edge_position_;
       if (!method_.index) phase_ = Phase::found;
       from = edge_position_;
     }
   }
+  active_ = active;
   if (phase_ == Phase::searching && edge_found_) findIndex(switches, from, to);
   if (phase_ == Phase::searching) atLimit(switches, to);
 }

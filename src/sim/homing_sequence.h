@@ -49,6 +49,7 @@ class HomingSequence {
   int direction_ = 0;
   bool slow_ = false;
   bool turned_at_limit_ = false;
+  bool active_ = false;  ///< the switch, when last looked at
   bool edge_found_ = false;
   double edge_position_ = 0.0;
   double home_ = 0.0;

@@ -120,6 +120,27 @@ TEST(Homing, FailsAtTheFirstLimitWhereTheMethodKnowsNone) {
   EXPECT_LT(b.highest, 3.2);
 }
 
+TEST(Homing, SeesASwitchThatIsTouchedOnTheWay) {
+  for (const int touched : {50, 2000}) {  // ms: it is let go before the motor has turned, or after
+    Homing b(axis(0.6));
+    b.write(0x6098, 0, 18, 1);
+    b.control(0x001F);
+    b.run(ms(500));
+    const double place = b.drive->truth(b.now).position_turns;
+    ASSERT_GT(place, 0.8);
+    ASSERT_LT(place, 2.9);
+    b.drive->mechanics().positive_limit_switch = place;
+    b.run(ms(touched));
+    b.drive->mechanics().positive_limit_switch = 3.0;
+    b.run(ms(5000));
+    EXPECT_EQ(b.bits(), 0x1400);
+    const double end = b.drive->truth(b.now).position_turns;
+    EXPECT_LT(std::abs(end - place), 1.0) << "it is not the switch at 3";
+    EXPECT_LT(end, 2.99);
+    EXPECT_LT(std::abs(b.position() - kOffset), 0.3 * kTurn) << "it stands near home";
+  }
+}
+
 TEST(Homing, ShowsNotStartedThenRunningThenAttainedInItsBits) {
   Homing b(axis(-1.0));
   EXPECT_EQ(b.bits(), 0x0400);
