@@ -24,6 +24,16 @@ class Snapshots final : public Oracle {
   void onAnswer(const Call& call, const bus::Answer&, const View& view) override {
     count(call, -1, view.now);
   }
+  /// A drive may be enabled, or in a fault, for less than the time from look to look, and tell it.
+  void onFrame(const can::Frame& frame, const View& view) override {
+    if (frame.error || frame.remote || frame.size < 2) return;
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+      if (frame.id != 0x180U + view.stage.axes()[i].config->node_id) continue;
+      AxisTruth told;  // TPDO 1 begins with the statusword
+      told.statusword = static_cast<std::uint16_t>(frame.data[0] | frame.data[1] << 8);
+      rememberState(axes_[i], told, view.now);
+    }
+  }
   void look(const View& view) override {
     for (std::size_t i = 0; i < axes_.size(); ++i) remember(view, i);
     if (++looks_ % kEvery != 0) return;
@@ -51,14 +61,17 @@ class Snapshots final : public Oracle {
       axes_[i].zero.reset();
     }
   }
+  static void rememberState(Axis& axis, const AxisTruth& truth, Time now) {
+    (truth.enabled() ? axis.enabled : axis.not_enabled) = now;
+    (truth.faulted() ? axis.faulted : axis.sound) = now;
+  }
   void remember(const View& view, std::size_t i) {
     const AxisTruth& truth = view.truths[i];
     Axis& axis = axes_[i];
     axis.speeds[axis.next] = truth.velocity;
     axis.next = (axis.next + 1) % kMemory;
     axis.count = std::min(axis.count + 1, kMemory);
-    (truth.enabled() ? axis.enabled : axis.not_enabled) = view.now;
-    (truth.faulted() ? axis.faulted : axis.sound) = view.now;
+    rememberState(axis, truth, view.now);
     if (std::fabs(truth.velocity) > 1e-4) axis.moved = view.now;
     const bool sound = view.conditions.quiet(i, view.now) &&
                        truth.nmt == canopen::NmtState::operational &&
