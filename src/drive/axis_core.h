@@ -118,6 +118,9 @@ class AxisCore {
   /// released once that is on the wire and handshakeBusy() is over.
   void replaceHaltedTarget();
   void releaseHalt();
+  /// A standing axis whose drive still goes to a position by itself, which something holds or which
+  /// has yet to set off, gets where it stands for that. @return whether that was so
+  bool giveUpGoal();
   bool halted() const { return state_.halted; }
   bool setPointsAtRest() const { return set_point_.atRest(); }
   /// The longest that a stop may take, from the fastest that the axis may go.

@@ -116,6 +116,15 @@ void AxisCore::replaceHaltedTarget() {
   if (mode_->spec->handshake == Handshake::new_set_point) handshake_.offer(target_raw_, true);
 }
 
+bool AxisCore::giveUpGoal() {
+  if (!in_operation_ || halt_bit_ || set_point_.kind() != SetPointKind::goal) return false;
+  const double ahead = set_point_.value() - state_.position;
+  if (state_.target_reached || !(std::fabs(ahead) > standstill_.tolerance())) return false;
+  set_point_.give(state_.position);
+  set_point_.giveUp();
+  return true;
+}
+
 void AxisCore::releaseHalt() {
   halt_bit_ = state_.halted = braking_ = false;
   stop_point_after_ = kNever;

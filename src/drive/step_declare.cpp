@@ -3,12 +3,12 @@
 
 namespace cia402::drive {
 
-bool DeclareStep::await(const Context& context, Phase next, Outcome& outcome) {
+bool DeclareStep::stands(const Context& context, Outcome& outcome) {
   if (since_ == kNever) since_ = context.now;
   outcome = awaitStandstill(context, since_, what_);
   if (!outcome.isDone()) return false;
   since_ = kNever;
-  phase_ = next;
+  outcome = Outcome::running();
   return true;
 }
 
@@ -17,14 +17,23 @@ Outcome DeclareStep::advance(const Context& context) {
   Outcome outcome;
   switch (phase_) {
     case Phase::standing:
-      if (!await(context, Phase::opening, outcome)) return outcome;
+    case Phase::giving_up:
+      if (!stands(context, outcome)) return outcome;
+      if (phase_ == Phase::standing && axis.giveUpGoal()) {
+        phase_ = Phase::giving_up;
+        context.show("giving up the goal", "the axis to stand without one");
+        return outcome;
+      }
+      if (axis.handshakeBusy()) return outcome;
+      phase_ = Phase::opening;
       axis.openLimits(true);
       context.show("opening position limits", "the drive to let go of those of the old zero");
       return Outcome::running();
     case Phase::opening:
       return open(context);
     case Phase::declaring:
-      if (!await(context, Phase::closing, outcome)) return outcome;
+      if (!stands(context, outcome)) return outcome;
+      phase_ = Phase::closing;
       before_ = axis.state().position;
       axis.declarePosition(position_);
       axis.openLimits(false);

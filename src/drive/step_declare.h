@@ -8,7 +8,8 @@
 
 namespace cia402::drive {
 
-/// Declares what the present position reads, at standstill. The position limits in the drive
+/// Declares what the present position reads, at standstill. A position that the drive would still
+/// go to by itself is given up first. The position limits in the drive
 /// follow: they are opened first and closed around the new zero afterwards, so that an enabled
 /// drive finds its target within them at any time. Where it does not let go of those that it has,
 /// nothing is declared.
@@ -22,10 +23,10 @@ class DeclareStep {
   double before() const { return before_; }  ///< what the position read
 
  private:
-  enum class Phase { standing, opening, declaring, closing };
+  enum class Phase { standing, giving_up, opening, declaring, closing };
   Outcome open(const Context& context);
   Outcome close(const Context& context);
-  bool await(const Context& context, Phase next, Outcome& outcome);
+  bool stands(const Context& context, Outcome& outcome);
 
   double position_, before_ = kUnknown;
   std::string what_, remark_;

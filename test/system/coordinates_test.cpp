@@ -120,6 +120,27 @@ TEST(Coordinates, APlannedMotionFromOutsideTheLimitsGoesAsFarAsItIsTold) {
   EXPECT_NEAR(scene.position("left"), 2.65, 1e-3);
 }
 
+TEST(Coordinates, AHeldMotorThatIsToldToReadOtherwiseForgetsWhereItWasGoing) {
+  for (const std::string& yaml : {genericPair(), damiaoJoint()}) {
+    ReadyScene scene(yaml, "profile_position");
+    const std::string axis = scene.loaded().robot.axes[0].name;
+    const double from = scene.position(axis);
+    scene.inject(axis, "blocked_rotor");
+    ASSERT_EQ(scene.setpoint(axis, from - 1.0), "");
+    scene.run(10ms);
+    drive::ProcedureRequest request;
+    request.kind = ProcedureKind::set_position;
+    request.position = 2.0;
+    const auto declared = call(scene, bus::ProcedureCommand{axis, request});
+    ASSERT_TRUE(declared.success) << declared.message;
+    scene.inject(axis, "clear");
+    scene.forget();
+    scene.run(3s);
+    EXPECT_NEAR(scene.position(axis), from, 0.02) << axis;
+    EXPECT_LT(scene.seen(axis).travel(), 0.3) << axis << " springs back, and goes nowhere";
+  }
+}
+
 class Declared : public testing::Test {
  protected:
   void SetUp() override {

@@ -26,6 +26,8 @@ class Standstill {
   Time stillFrom() const { return still_from_; }
   /// Has been seen to move; false, too, while a first window is not full yet.
   bool moving() const { return moving_; }
+  /// Two places no farther apart are one, rad or m.
+  double tolerance() const { return tolerance_; }
 
  private:
   double tolerance_;  ///< rad or m within a window
