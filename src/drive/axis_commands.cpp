@@ -65,6 +65,7 @@ void AxisCore::writeCommands(Time now) {
     writeNeutralTargets();
   }
   written_ = now;
+  if (movesItself()) moved_itself_ = now;
   controlword_ = composeControlword();
   image_.setOutput(objects_.controlword.slot, controlword_);
   if (objects_.mode.mapped()) {

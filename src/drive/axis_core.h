@@ -214,6 +214,9 @@ class AxisCore {
   void setZero(double shift);
   void placeZero();
   bool withinReach(double position) const;
+  bool goalAhead() const;
+  bool movesItself() const;
+  bool seenStill(Time from) const;
   bool neutralTarget(const ModeChannel& mode, std::uint64_t& raw) const;
 
   AxisConfig config_;
@@ -229,8 +232,9 @@ class AxisCore {
   bool silent_ = true;  ///< nobody has asked for anything since the node came: controlword 0
   bool in_operation_ = false;
   bool fault_reset_ = false, homing_start_ = false, halt_bit_ = false;
-  double halted_goal_ = kUnknown;   ///< to which the drive was going by itself
-  Time stop_point_after_ = kNever;  ///< feedback newer than this has the stop point judged anew
+  double halted_goal_ = kUnknown;    ///< to which the drive was going by itself
+  Time moved_itself_ = Time::min();  ///< the drive may have moved by itself until then
+  Time stop_point_after_ = kNever;   ///< feedback newer than this has the stop point judged anew
   bool braking_ = false;      ///< the halt bit brakes an axis whose torque is nobody's any more
   bool voltage_off_ = false;  ///< the power stage is to be off, whatever the drive shows
   std::uint16_t controlword_ = 0, base_controlword_ = 0;

@@ -1,5 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // How the axis comes to rest, and whether it is.
+#include <algorithm>
 #include <cmath>
 
 #include "axis_core.h"
@@ -18,9 +19,26 @@ constexpr double kReachable = 0.98;
 
 Duration AxisCore::stopTime() const { return drive::stopTime(config_, state_.velocity); }
 
-bool AxisCore::atStandstill() const {
+bool AxisCore::seenStill(Time from) const {
   return standstill_.still() &&
-         standstill_.stillFrom() >= set_point_.movedAt() + kReactionCycles * config_.sync_period;
+         standstill_.stillFrom() >= from + kReactionCycles * config_.sync_period;
+}
+
+bool AxisCore::atStandstill() const {
+  return seenStill(std::max(set_point_.movedAt(), moved_itself_));
+}
+
+/// The drive has not come to where it was sent.
+bool AxisCore::goalAhead() const {
+  return set_point_.kind() == SetPointKind::goal && !state_.target_reached &&
+         std::fabs(set_point_.value() - state_.position) > standstill_.tolerance();
+}
+
+/// The drive moves the axis as it sees fit, and what looks like standstill may be where it turns
+/// back.
+bool AxisCore::movesItself() const {
+  if (!in_operation_ || halt_bit_ || state_.halted) return false;
+  return homing_start_ || (goalAhead() && mode_->spec->target_reached_bit);
 }
 
 bool AxisCore::moving() const {
@@ -117,9 +135,7 @@ void AxisCore::replaceHaltedTarget() {
 }
 
 bool AxisCore::giveUpGoal() {
-  if (!in_operation_ || halt_bit_ || set_point_.kind() != SetPointKind::goal) return false;
-  const double ahead = set_point_.value() - state_.position;
-  if (state_.target_reached || !(std::fabs(ahead) > standstill_.tolerance())) return false;
+  if (!in_operation_ || halt_bit_ || !goalAhead() || !seenStill(set_point_.movedAt())) return false;
   set_point_.give(state_.position);
   set_point_.giveUp();
   return true;

@@ -18,12 +18,13 @@ Outcome DeclareStep::advance(const Context& context) {
   switch (phase_) {
     case Phase::standing:
     case Phase::giving_up:
-      if (!stands(context, outcome)) return outcome;
       if (phase_ == Phase::standing && axis.giveUpGoal()) {
         phase_ = Phase::giving_up;
+        since_ = kNever;
         context.show("giving up the goal", "the axis to stand without one");
-        return outcome;
+        return Outcome::running();
       }
+      if (!stands(context, outcome)) return outcome;
       if (axis.handshakeBusy()) return outcome;
       phase_ = Phase::opening;
       axis.openLimits(true);

@@ -127,6 +127,28 @@ TEST(Homing, QuickStopPreemptsItAndTheDriveStops) {
   EXPECT_GT(at, -1.5) << "stopped long before the switch";
 }
 
+TEST(Homing, IsNotTakenForStandingWhereItTurnsBack) {
+  // At 0.3 rad/s² a drive that turns back is slower than 0.015 rad/s for 0.1 s.
+  const std::string slow =
+      ", homing: {method: 17, search_velocity: 0.2, zero_velocity: 0.15, acceleration: 0.3}";
+  for (Duration later = 0ms; later <= 120ms; later += 8ms) {
+    Scene scene(loadText(genericPair(slow + switches(-1.9))));
+    ASSERT_TRUE(scene.boot());
+    const auto home = scene.begin(ProcedureKind::home, "left");
+    ASSERT_TRUE(scene.runUntil(
+        [&] { return scene.position("left") < -2.0 && scene.velocity("left") > -0.015; }, 5s));
+    scene.run(later);
+    ASSERT_FALSE(home->has_value());
+    const auto halted = scene.begin(ProcedureKind::halt, "left");
+    ASSERT_TRUE(scene.runUntil([&] { return halted->has_value(); }, 2s));
+    ASSERT_TRUE((*halted)->success) << (*halted)->message;
+    const double at = scene.position("left");
+    EXPECT_NEAR(scene.velocity("left"), 0.0, 1e-3) << toSeconds(later);
+    scene.run(1s);
+    EXPECT_NEAR(scene.position("left"), at, 1e-3) << toSeconds(later);
+  }
+}
+
 TEST(Homing, CancelledItStopsAndStaysEnabledInTheModeFromBefore) {
   Scene scene(loadText(genericPair(homing(17, 0.0) + switches(1.0))));
   ASSERT_TRUE(scene.boot());
