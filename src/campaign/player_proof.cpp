@@ -116,6 +116,8 @@ void Player::proveMove(std::size_t axis, std::optional<double> tried) {
   const bool turns = mode->kind == drive::ControlKind::velocity;
   const double step = (turns ? 0.06 : 0.05) * facts.velocity;
   const double expected = (room > 0.0 ? std::min(step, room) : step) * sign;
+  const bool goes = mode->kind == drive::ControlKind::position;
+  if (goes && std::fabs(expected) < 0.2 * step) return;  // no way is left that proves anything
   double value = at + expected;
   if (turns) value = 0.2 * facts.velocity * sign;  // for 0.3 s
   if (mode->kind == drive::ControlKind::torque) {

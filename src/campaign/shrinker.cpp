@@ -103,11 +103,18 @@ class Shrinker {
     }
     return better;
   }
+  /// Without it something else goes wrong: there is nothing to judge by, no switch to home to, or a
+  /// count is a leap.
+  static bool judges(const std::string& key) {
+    static const std::vector<std::string> kKeys = {
+        "limits",     "velocity",           "acceleration",       "gear_ratio",
+        "simulation", "lower_limit_switch", "upper_limit_switch", "home_switch"};
+    return std::find(kKeys.begin(), kKeys.end(), key) != kKeys.end();
+  }
   bool dropKeysOf(const std::vector<std::string>& path) {
     bool better = false;
     for (const std::string& key : keysOf(path)) {
-      // Without limits there is nothing to judge by.
-      if (key == "limits" || key == "velocity" || key == "acceleration") continue;
+      if (judges(key)) continue;
       Scene candidate = scene_;
       YAML::Node tree = YAML::Load(candidate.robot);
       YAML::Node node = at(tree, path);

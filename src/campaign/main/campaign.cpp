@@ -57,9 +57,16 @@ std::string describe(const Finding& finding) {
   return text.str();
 }
 
-/// Findings of one kind begin with the same word.
+/// Findings of one kind are of the same axis and begin with the same words, numbers left out.
 std::string kind(const Finding& finding) {
-  return finding.oracle + ' ' + finding.text.substr(0, finding.text.find(' '));
+  constexpr int kWords = 8;
+  std::string text = finding.oracle + ' ' + finding.axis;
+  std::istringstream words(finding.text);
+  std::string word;
+  for (int i = 0; i < kWords && words >> word; ++i) {
+    if (word.find_first_of("0123456789") == std::string::npos) text += ' ' + word;
+  }
+  return text;
 }
 
 /// The smallest scene with the same finding, as a file. @return its path, or why there is none

@@ -14,6 +14,7 @@ using namespace std::chrono_literals;
 
 constexpr std::size_t kWindow = 20;  // ms over which acceleration is measured
 constexpr Duration kSyncMemory = 30ms;
+constexpr Duration kLate = 200us;  // a drive has come to its last set-point, and stops, for so long
 constexpr Duration kLongestLag = 500ms;
 constexpr Duration kUnseen = 200ms;  // a limit switch is seen within it, and set-points called back
 constexpr Duration kLetGo = 60ms;    // a motor gets to where it was led against its limit switch
@@ -42,7 +43,7 @@ class MotorLimits final : public Oracle {
     const Duration period = view.stage.loaded().robot.bus.sync_period;
     const Duration since = view.now - last_sync_;
     last_sync_ = view.now;
-    if (since > period + period / 2) starved_ = view.now + kSyncMemory;
+    if (since > period + kLate) starved_ = view.now + kSyncMemory;
     const double shorter = 1.0 - toSeconds(since) / toSeconds(period);
     if (shorter > 0.02) {
       squeeze_ = std::max(view.now < squeezed_ ? squeeze_ : 0.0, shorter);
@@ -88,7 +89,7 @@ class MotorLimits final : public Oracle {
                         view.now >= view.conditions.lossy && view.now >= view.conditions.foreign &&
                         view.now >= view.conditions.axes[i].cut_off;
     const Duration period = view.stage.loaded().robot.bus.sync_period;
-    if (view.now - last_sync_ > period + 200us || !judged) axis.starved = view.now + kSyncMemory;
+    if (view.now - last_sync_ > period + kLate || !judged) axis.starved = view.now + kSyncMemory;
     const bool by_float = facts.units_per_count == 0.0;  // it knows no limit switch
     const bool at_limit = !by_float && (truth.statusword & 0x0800) != 0;
     if (!at_limit) {
