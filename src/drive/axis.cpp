@@ -209,7 +209,7 @@ void Axis::stopBySdo(const std::string& why, Time) {
 }
 
 void Axis::onEmergency(const canopen::Emergency& emergency, Time now, const std::string& excuse) {
-  impl_->core.onEmergency(emergency, excuse);
+  impl_->core.onEmergency(emergency, excuse, now);
   const bool no_rpdo = missingFrames(*config().profile, emergency.code) == ErrorText::Missing::rpdo;
   if (!no_rpdo || !excuse.empty() || !impl_->core.nodeReady()) return;
   stopBySdo("the drive reports EMCY " + hexWord(emergency.code) +

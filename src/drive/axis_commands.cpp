@@ -233,9 +233,7 @@ void AxisCore::advanceHandshake(Time now) {
 }
 
 void AxisCore::forgetFault() {
-  emergency_code_ = 0;
-  read_error_code_.reset();
-  error_ticket_.reset();
+  errors_.forget();
   state_.error_code = 0;
 }
 

@@ -147,9 +147,8 @@ void AxisCore::onNodeLost() {
   fault_reset_ = false;
   forgetFeedback();
   poller_.reset();
-  read_error_code_.reset();
-  error_ticket_.reset();
-  emergency_code_ = excused_code_ = state_.error_code = 0;
+  errors_ = ErrorEvidence();
+  state_.error_code = 0;
   base_controlword_ = controlword_ = 0;
   if (!absolute()) returnToDriveZero();
   limits_.forget();

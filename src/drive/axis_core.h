@@ -13,6 +13,7 @@
 #include "cia402_driver/drive/set_point.h"
 #include "cia402_driver/drive/set_point_handshake.h"
 #include "cia402_driver/drive/standstill.h"
+#include "error_evidence.h"
 #include "follow_watch.h"
 #include "position_limits.h"
 
@@ -44,7 +45,11 @@ class AxisCore {
   /// @param busy a procedure runs
   void updateReadiness(bool busy, Time now);
   void writeCommands(Time now);
-  void onEmergency(const canopen::Emergency& emergency, const std::string& excuse);
+  void onEmergency(const canopen::Emergency& emergency, const std::string& excuse, Time now) {
+    errors_.onEmergency(emergency, excuse, now);
+  }
+  /// An EMCY whose end the drive has not told; 0: none.
+  std::uint16_t pendingEmergency() const { return errors_.pending(); }
   void onBusLost(const std::string& why);
   /// Quick stop by SDO: RPDOs do not reach the drive.
   void stopBySdo(const std::string& why);
@@ -175,7 +180,7 @@ class AxisCore {
  private:
   void readState(Time now);
   void readMotion(Time now);
-  void readErrorCode();
+  void readError(Time now);
   void readDigitalInputs(Time now);
   void readMode(Time now);
   double read(const InputObject& object, int polled, Time now) const;
@@ -269,11 +274,8 @@ class AxisCore {
   std::vector<Held> held_;
 
   Time next_fault_reset_ = Time::min();
-  std::uint16_t emergency_code_ = 0;
-  std::uint16_t excused_code_ = 0;  ///< an EMCY that this program itself has caused; 0: none
-  std::string excuse_;              ///< ... how, in words
-  std::optional<std::uint16_t> read_error_code_;
-  canopen::SdoTicket error_ticket_, stop_ticket_;
+  ErrorEvidence errors_;
+  canopen::SdoTicket stop_ticket_;
   std::string failure_, notice_;
   std::uint32_t notices_ = 0;
 };

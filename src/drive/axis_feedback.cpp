@@ -27,12 +27,7 @@ void AxisCore::readFeedback(Time now) {
   if (poller_.due(now)) poller_.advance(node_.sdo(), now);
   readMotion(now);
   readState(now);
-  const bool asked = read_error_code_ || error_ticket_;
-  if (objects_.error_code.mapped() || asked || faulted()) {
-    readErrorCode();
-  } else {
-    state_.error_code = emergency_code_;
-  }
+  readError(now);
 }
 
 void AxisCore::readState(Time now) {
@@ -147,47 +142,23 @@ void AxisCore::putShownMode(std::uint64_t raw, Time now) {
   if (!objects_.mode_display.mapped()) readMode(now);
 }
 
-void AxisCore::readErrorCode() {
-  std::uint16_t code = emergency_code_;
-  if (objects_.error_code.mapped()) {
-    const canopen::ProcessValue& value = image_.input(objects_.error_code.slot);
-    const bool fresh = image_.fresh(objects_.error_code.slot);
-    if (fresh && value.raw != 0) code = static_cast<std::uint16_t>(value.raw);
-  } else if (!faulted()) {
-    read_error_code_.reset();
-    error_ticket_.reset();
-  } else {
-    if (error_ticket_ && error_ticket_->done()) {
-      if (error_ticket_->ok() && error_ticket_->data().size() <= 8) {
-        read_error_code_ = static_cast<std::uint16_t>(canopen::toUnsigned(error_ticket_->data()));
-      } else {
-        read_error_code_ = std::uint16_t{0};
-      }
-      error_ticket_.reset();
-    }
-    if (!read_error_code_ && !error_ticket_ && objects_.error_code.spec != nullptr) {
-      error_ticket_ =
-          node_.sdo().upload(objects_.error_code.spec->id, objects_.error_code.spec->name);
-    }
-    if (read_error_code_ && *read_error_code_ != 0) code = *read_error_code_;
+void AxisCore::readError(Time now) {
+  ErrorEvidence::Look look;
+  look.faulted = faulted();
+  look.warning = state_.warning;
+  if (!objects_.error_code.mapped()) {
+    look.by_sdo = objects_.error_code.spec;
+  } else if (image_.fresh(objects_.error_code.slot)) {
+    look.told = static_cast<std::uint16_t>(image_.input(objects_.error_code.slot).raw);
   }
-  state_.error_code = code;
+  errors_.update(look, node_.sdo(), now);
+  state_.error_code = errors_.code();
 }
 
 bool AxisCore::heardLately(Time now) const {
   const canopen::Slot slot = objects_.position.slot;
   if (!image_.regular(slot)) return true;
   return now - state_.stamp <= image_.interval(slot, config_.sync_period) + 2 * config_.sync_period;
-}
-
-void AxisCore::onEmergency(const canopen::Emergency& emergency, const std::string& excuse) {
-  emergency_code_ = emergency.code;
-  if (!excuse.empty()) {
-    excused_code_ = emergency.code;
-    excuse_ = excuse;
-  } else if (emergency.code == excused_code_) {
-    excused_code_ = 0;
-  }
 }
 
 void AxisCore::forgetMotion() {

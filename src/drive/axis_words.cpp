@@ -27,14 +27,14 @@ std::string AxisCore::feedbackText() const {
 }
 
 std::string AxisCore::emergencyText() const {
-  const auto& emergency = node_.lastEmergency();
-  if (!emergency || emergency->code == 0) return "no EMCY is pending";
-  return "last EMCY " + codeText(emergency->code);
+  if (errors_.pending() == 0) return "no EMCY is pending";
+  return "last EMCY " + codeText(errors_.pending());
 }
 
 std::string AxisCore::codeText(std::uint16_t code) const {
-  const bool excused = code != 0 && code == excused_code_;
-  return errorCodeText(profile(), code) + (excused ? "; the cause is that " + excuse_ : "");
+  const std::string* excuse = errors_.excuse(code);
+  return errorCodeText(profile(), code) +
+         (excuse != nullptr ? "; the cause is that " + *excuse : std::string());
 }
 
 std::string AxisCore::report() const {
@@ -63,8 +63,7 @@ std::string AxisCore::faultText() const {
     }
     return who() + ": fault " + codeText(state_.error_code) + reacting + "; then clear_faults";
   }
-  const bool excused = state_.error_code == excused_code_;  // or there is none
-  if (state_.error_code != 0 && !excused) {
+  if (state_.error_code != 0 && errors_.excuse(state_.error_code) == nullptr) {
     return who() + ": " + (state_.warning ? "warning " : "error reported ") +
            errorCodeText(profile(), state_.error_code);
   }

@@ -12,9 +12,7 @@ class ClearFaults : public Procedure {
     AxisCore& axis = context.axis;
     if (!begun_) {
       begun_ = true;
-      if (!clearable(axis)) {
-        return Outcome::done(axis.config().joint + ": no fault, nothing to clear");
-      }
+      if (!clearable(axis)) return nothingToClear(axis);
     }
     Outcome outcome = reset_.advance(context);
     if (outcome.isDone()) {
@@ -24,6 +22,17 @@ class ClearFaults : public Procedure {
   }
 
  private:
+  static Outcome nothingToClear(AxisCore& axis) {
+    const std::uint16_t code = axis.pendingEmergency();
+    if (code == 0) return Outcome::done(axis.config().joint + ": no fault, nothing to clear");
+    const std::string text = axis.codeText(code);
+    axis.forgetFault();
+    return Outcome::done(axis.config().joint +
+                         ": no fault; the emergency that the drive has not "
+                         "ended is forgotten: " +
+                         text);
+  }
+
   bool begun_ = false;
   FaultResetStep reset_;
 };

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -58,6 +59,9 @@ class FakeDrive : public can::Sink {
   bool operational = false;
   std::uint16_t error = 0;
 
+  /// 603Fh, whatever happens; not set: the error.
+  std::optional<std::uint16_t> error_object;
+
   FakeDrive() {
     dictionary[{0x1000, 0}] = {0x00020192, 4};
     for (unsigned sub = 1; sub <= 4; ++sub) dictionary[{0x1018, sub}] = {sub, 4};
@@ -95,13 +99,14 @@ class FakeDrive : public can::Sink {
     const std::uint16_t word = statusword();
     const auto where = static_cast<std::uint32_t>(static_cast<std::int32_t>(position));
     const auto speed = static_cast<std::uint32_t>(static_cast<std::int32_t>(velocity));
-    dictionary[{0x603F, 0}].first = error;
+    const std::uint16_t code = error_object.value_or(error);
+    dictionary[{0x603F, 0}].first = code;
     dictionary[{0x6061, 0}].first = static_cast<std::uint8_t>(mode);
     dictionary[{0x606C, 0}].first = speed;
     return {can::Frame(0x183, {byte(word, 0), byte(word, 1), byte(where, 0), byte(where, 1),
                                byte(where, 2), byte(where, 3), static_cast<std::uint8_t>(mode)}),
             can::Frame(0x283, {byte(speed, 0), byte(speed, 1), byte(speed, 2), byte(speed, 3), 0, 0,
-                               byte(error, 0), byte(error, 1)})};
+                               byte(code, 0), byte(code, 1)})};
   }
   can::Frame heartbeat() const {
     return can::Frame(0x703, {static_cast<std::uint8_t>(operational ? 0x05 : 0x7F)});
@@ -111,6 +116,9 @@ class FakeDrive : public can::Sink {
     state = S::reaction;
     reaction_ = 3;
     error = code;
+    return emergency(code);
+  }
+  static can::Frame emergency(std::uint16_t code) {
     return can::Frame(0x083, {byte(code, 0), byte(code, 1), 0x21, 0, 0, 0, 0, 0});
   }
   /// Power cycle: everything is forgotten. @return the boot-up message.
