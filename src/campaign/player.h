@@ -123,6 +123,7 @@ class Player {
   sim::Port* foreign_ = nullptr;
   sim::FaultRates rates_;
   Time late_until_{};  // the host, now and then
+  Time ends_at_{};     ///< the new driver after an orderly shutdown starts then
   std::uint64_t fingerprint_ = 1469598103934665603U, frames_ = 0;
   Time looked_{};
   Duration taken_{};

@@ -201,7 +201,8 @@ void Player::accepted(std::size_t axis, double value) {
   if (position) {
     const drive::AxisLimits& limits = facts.config->limits;
     const double way = std::min(std::fabs(value - shown(axis)), 3600.0 * facts.velocity);
-    const double range = limits.lower && limits.upper ? *limits.upper - *limits.lower : way;
+    const double range =
+        limits.lower && limits.upper ? std::max(*limits.upper - *limits.lower, way) : way;
     permits_.allow(
         axis, Source::target,
         now + lateFor() +

@@ -187,7 +187,8 @@ bool Player::actHost(const Words& words) {
   } else if (verb == "kill") {  // kill SECONDS: until a new process runs
     if (host.running()) kill(seconds(words.at(1)));
   } else if (verb == "shutdown") {
-    if (!host.running()) return true;
+    if (!host.running() || now < ends_at_) return true;
+    ends_at_ = now + 2500ms + seconds(words.at(1));
     host.stop();
     for (std::size_t i = 0; i < truths_.size(); ++i) permits_.cut(i, now + 2300ms);
     later(2500ms + seconds(words.at(1)), [this, stalled = conditions_.stalled] {

@@ -116,8 +116,7 @@ class MotorLimits final : public Oracle {
     // Nor is it limited where an effort is commanded: it follows from the load.
     const bool effort = facts.kind(truth.mode) == drive::ControlKind::torque;
     // A limit switch stops a motor as hard as its drive can.
-    const bool let_go = view.now < axis.let_go;
-    if (lags || effort || at_limit || let_go || axis.behind) axis.count = 0;
+    if (lags || effort || at_limit || axis.behind) axis.count = 0;
     if (axis.count == kWindow && squeeze == 0.0) {
       const double rate = (truth.velocity - axis.speeds[axis.next]) / (kWindow * 0.001);
       // A quick stop may take twice the limit.
@@ -133,11 +132,11 @@ class MotorLimits final : public Oracle {
   }
 
   /// A drive that lacked a set-point stops as hard as it can, and makes it good with all its
-  /// effort.
+  /// effort; so does one that its limit switch lets go.
   bool catchesUp(const View& view, Axis& axis, const AxisFacts& facts,
                  const AxisTruth& truth) const {
     const bool held = axis.held != Time() && view.now - axis.held < kUnseen;
-    if (view.now < std::max(starved_, axis.starved) || held) {
+    if (view.now < std::max({starved_, axis.starved, axis.let_go}) || held) {
       axis.catches_up = view.now + 20ms;
       axis.last = view.now + kLongestLag;
     }
