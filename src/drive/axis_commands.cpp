@@ -65,7 +65,8 @@ void AxisCore::writeCommands(Time now) {
     writeNeutralTargets();
   }
   written_ = now;
-  if (movesItself()) moved_itself_ = now;
+  const bool by_drive = homing_start_ || set_point_.kind() == SetPointKind::goal;
+  if (by_drive && movesItself()) moved_itself_ = now;
   controlword_ = composeControlword();
   image_.setOutput(objects_.controlword.slot, controlword_);
   if (objects_.mode.mapped()) {

@@ -143,14 +143,17 @@ void AxisCore::putShownMode(std::uint64_t raw, Time now) {
 }
 
 void AxisCore::readError(Time now) {
+  const InputObject& object = objects_.error_code;
+  const bool told = object.mapped() && image_.fresh(object.slot);
+  const std::uint16_t code =
+      told ? static_cast<std::uint16_t>(image_.input(object.slot).raw) : std::uint16_t{0};
+  const bool well = !state_.warning && !faulted() && (!told || errors_.knows(code));
+  if (well && errors_.quiet()) return;  // as in nearly every cycle
   ErrorEvidence::Look look;
   look.faulted = faulted();
   look.warning = state_.warning;
-  if (!objects_.error_code.mapped()) {
-    look.by_sdo = objects_.error_code.spec;
-  } else if (image_.fresh(objects_.error_code.slot)) {
-    look.told = static_cast<std::uint16_t>(image_.input(objects_.error_code.slot).raw);
-  }
+  if (told) look.told = code;
+  if (!object.mapped()) look.by_sdo = object.spec;
   errors_.update(look, node_.sdo(), now);
   state_.error_code = errors_.code();
 }

@@ -37,6 +37,11 @@ class ErrorEvidence {
     const ObjectSpec* by_sdo = nullptr;  ///< 603Fh where no TPDO has it
   };
   void update(const Look& look, canopen::SdoClient& sdo, Time now);
+  /// Nothing is known of any error: without fault and warning, and with 603Fh as it was, update()
+  /// would change nothing.
+  bool quiet() const { return code_ == 0 && pending_ == 0 && !faulted_; }
+  /// That is what a TPDO has told of 603Fh already.
+  bool knows(std::uint16_t object) const { return object_known_ && object == object_.code; }
 
   /// Of the fault, of the warning, or of an EMCY that still counts; 0: none.
   std::uint16_t code() const { return code_; }
