@@ -180,6 +180,7 @@ class AxisCore {
  private:
   void readState(Time now);
   void readMotion(Time now);
+  bool errorFree() const;
   void readError(Time now);
   void readDigitalInputs(Time now);
   void readMode(Time now);

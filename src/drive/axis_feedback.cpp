@@ -18,6 +18,14 @@ std::int16_t signedMode(std::uint64_t raw, DataType type) {
 
 }  // namespace
 
+/// As in nearly every cycle: readError() would change nothing.
+inline bool AxisCore::errorFree() const {
+  if (!errors_.quiet() || state_.warning || faulted()) return false;
+  const InputObject& object = objects_.error_code;
+  return !object.mapped() || !image_.fresh(object.slot) ||
+         errors_.knows(static_cast<std::uint16_t>(image_.input(object.slot).raw));
+}
+
 void AxisCore::readFeedback(Time now) {
   state_.health = node_.health();
   if (!nodeReady()) {
@@ -27,7 +35,7 @@ void AxisCore::readFeedback(Time now) {
   if (poller_.due(now)) poller_.advance(node_.sdo(), now);
   readMotion(now);
   readState(now);
-  readError(now);
+  if (!errorFree()) readError(now);
 }
 
 void AxisCore::readState(Time now) {
@@ -144,16 +152,14 @@ void AxisCore::putShownMode(std::uint64_t raw, Time now) {
 
 void AxisCore::readError(Time now) {
   const InputObject& object = objects_.error_code;
-  const bool told = object.mapped() && image_.fresh(object.slot);
-  const std::uint16_t code =
-      told ? static_cast<std::uint16_t>(image_.input(object.slot).raw) : std::uint16_t{0};
-  const bool well = !state_.warning && !faulted() && (!told || errors_.knows(code));
-  if (well && errors_.quiet()) return;  // as in nearly every cycle
   ErrorEvidence::Look look;
   look.faulted = faulted();
   look.warning = state_.warning;
-  if (told) look.told = code;
-  if (!object.mapped()) look.by_sdo = object.spec;
+  if (!object.mapped()) {
+    look.by_sdo = object.spec;
+  } else if (image_.fresh(object.slot)) {
+    look.told = static_cast<std::uint16_t>(image_.input(object.slot).raw);
+  }
   errors_.update(look, node_.sdo(), now);
   state_.error_code = errors_.code();
 }
