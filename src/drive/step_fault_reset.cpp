@@ -6,7 +6,7 @@
 
 namespace cia402::drive {
 namespace {
-constexpr std::uint64_t kFrames = 2;  // so many RPDOs with a level of bit 7: the drive has it
+constexpr std::uint64_t kResetFrames = 2;  // so many RPDOs with a level of bit 7: the drive has it
 }  // namespace
 
 bool clearable(const AxisCore& axis) {
@@ -33,7 +33,7 @@ Outcome FaultResetStep::advance(const Context& context) {
   AxisCore& axis = context.axis;
   const Duration waited = context.now - since_;
   const Duration limit = axis.profile().timing.state_change;
-  const bool sent = axis.controlwordFrames() >= frames_ + kFrames;
+  const bool sent = axis.controlwordFrames() >= frames_ + kResetFrames;
   switch (phase_) {
     case Phase::begin:
       code_ = axis.state().error_code;
