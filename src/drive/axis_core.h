@@ -19,6 +19,9 @@
 
 namespace cia402::drive {
 
+/// After so many RPDOs with a value, or a level of a bit, the drive has it.
+inline constexpr std::uint64_t kSureFrames = 2;
+
 /// The axis without its procedures: feedback, state machine, targets, and the reactions that must
 /// not wait for anybody. Procedures tell it where to go and watch it.
 class AxisCore {

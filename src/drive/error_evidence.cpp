@@ -15,7 +15,7 @@ constexpr Duration kMute =
 void ErrorEvidence::onEmergency(const canopen::Emergency& emergency, const std::string& excuse,
                                 Time now) {
   pending_ = emergency.code;
-  looked_ = now;
+  next_look_ = now + kLook;
   register_ticket_.reset();
   if (emergency.code != 0 && !(faulted_ && now > fault_since_ + kNaming)) {
     emergency_ = {emergency.code, now};
@@ -53,7 +53,7 @@ void ErrorEvidence::update(const Look& look, canopen::SdoClient& sdo, Time now) 
   readErrorRegister(look, sdo, now);
   if (faulted_) {
     code_ = nameOfFault();
-  } else if (look.warning && object_.code != 0 && object_.at >= emergency_.at) {
+  } else if (look.warning && object_.code != 0 && (pending_ == 0 || object_.at >= emergency_.at)) {
     code_ = object_.code;
   } else {
     code_ = pending_;
@@ -91,16 +91,15 @@ void ErrorEvidence::readErrorCode(const Look& look, canopen::SdoClient& sdo) {
 void ErrorEvidence::readErrorRegister(const Look& look, canopen::SdoClient& sdo, Time now) {
   if (pending_ == 0 || look.faulted || register_missing_) return;
   if (!register_ticket_) {
-    if (now < looked_ + kLook) return;
-    looked_ = now;
+    if (now < next_look_) return;
     register_ticket_ = sdo.upload(kErrorRegister, "error register");
   } else if (register_ticket_->done()) {
+    next_look_ = now + (register_ticket_->ok() ? kLook : kMute);
     if (register_ticket_->ok()) {
       if (canopen::toUnsigned(register_ticket_->data()) == 0) pending_ = 0;
     } else {
       register_missing_ =
           register_ticket_->failure() == canopen::SdoTransfer::Failure::aborted_by_server;
-      looked_ = now + kMute;
     }
     register_ticket_.reset();
   }

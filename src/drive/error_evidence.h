@@ -63,10 +63,11 @@ class ErrorEvidence {
   void readErrorRegister(const Look& look, canopen::SdoClient& sdo, Time now);
 
   std::uint16_t code_ = 0, pending_ = 0;
-  Told emergency_,
-      object_;  ///< the last EMCY that may name a fault; since when 603Fh is what it is
+  Told emergency_;  ///< the last that may name a fault
+  Told object_;     ///< 603Fh, and since when it is that
   bool object_known_ = false, faulted_ = false;
-  Time fault_since_ = Time::min(), looked_ = Time::min();
+  Time fault_since_ = Time::min();
+  Time next_look_ = Time::min();       ///< at 1001h
   std::optional<std::uint16_t> read_;  ///< 603Fh by SDO since the fault
   canopen::SdoTicket code_ticket_, register_ticket_;
   bool register_missing_ = false;

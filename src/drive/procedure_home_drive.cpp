@@ -8,7 +8,6 @@
 
 namespace cia402::drive {
 namespace {
-constexpr std::uint64_t kFrames = 2;  // so many RPDOs with a level of bit 4: the drive has it
 /// How long a drive may show the result of an earlier homing before bit 4 rises.
 constexpr Duration kClearTime{std::chrono::milliseconds(500)};
 /// After the edge the drive gets this long to drop an old result, or to stay "interrupted".
@@ -87,7 +86,7 @@ Outcome DriveHoming::enterHoming(const Context& context) {
 
 Outcome DriveHoming::clearOldResult(const Context& context) {
   AxisCore& axis = context.axis;
-  if (axis.controlwordFrames() < frames_ + kFrames) return Outcome::running();  // bit 4 is low
+  if (axis.controlwordFrames() < frames_ + kSureFrames) return Outcome::running();  // bit 4 is low
   const HomingStatus now = status(context);
   const bool clear = now == HomingStatus::in_progress || now == HomingStatus::interrupted;
   if (clear) {
@@ -118,7 +117,7 @@ void DriveHoming::start(const Context& context) {
 Outcome DriveHoming::search(const Context& context) {
   AxisCore& axis = context.axis;
   if (context.now >= end_) return timeOut(context);
-  if (axis.controlwordFrames() < frames_ + kFrames || !statuswordIsFresh(context)) {
+  if (axis.controlwordFrames() < frames_ + kSureFrames || !statuswordIsFresh(context)) {
     return Outcome::running();
   }
   const HomingStatus now = status(context);
@@ -204,7 +203,7 @@ void DriveHoming::adopt(const Context& context, double home_in_drive) {
 
 Outcome DriveHoming::settle(const Context& context) {
   AxisCore& axis = context.axis;
-  const bool sent = axis.controlwordFrames() >= frames_ + kFrames;
+  const bool sent = axis.controlwordFrames() >= frames_ + kSureFrames;
   if (sent && (axis.atStandstill() || context.now - since_ > axis.profile().timing.state_change)) {
     axis.openLimits(false);
     enter(Phase::limiting, context);
@@ -251,7 +250,7 @@ void DriveHoming::giveUp(const Context& context, std::string why) {
 
 Outcome DriveHoming::stop(const Context& context) {
   AxisCore& axis = context.axis;
-  const bool sent = axis.controlwordFrames() >= frames_ + kFrames;
+  const bool sent = axis.controlwordFrames() >= frames_ + kSureFrames;
   if (sent && axis.atStandstill()) {
     axis.setHaltBit(false);
     restore(context);

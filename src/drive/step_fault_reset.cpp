@@ -5,9 +5,6 @@
 #include "sentence.h"
 
 namespace cia402::drive {
-namespace {
-constexpr std::uint64_t kResetFrames = 2;  // so many RPDOs with a level of bit 7: the drive has it
-}  // namespace
 
 bool clearable(const AxisCore& axis) {
   return axis.faulted() || (axis.state().warning && axis.profile().warning_stops);
@@ -33,7 +30,7 @@ Outcome FaultResetStep::advance(const Context& context) {
   AxisCore& axis = context.axis;
   const Duration waited = context.now - since_;
   const Duration limit = axis.profile().timing.state_change;
-  const bool sent = axis.controlwordFrames() >= frames_ + kResetFrames;
+  const bool sent = axis.controlwordFrames() >= frames_ + kSureFrames;
   switch (phase_) {
     case Phase::begin:
       code_ = axis.state().error_code;

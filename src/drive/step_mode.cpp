@@ -5,7 +5,6 @@
 
 namespace cia402::drive {
 namespace {
-constexpr std::uint64_t kFrames = 2;  // so many RPDOs with a value: the drive has it
 constexpr Duration kQuestionInterval{std::chrono::milliseconds(20)};
 
 std::string modeText(int value, const AxisCore& axis) {
@@ -31,7 +30,7 @@ Outcome ModeStep::advance(const Context& context) {
     case Phase::presetting: {
       const std::uint64_t sent =
           mode_->target.mapped() ? axis.frames(mode_->target) : axis.controlwordFrames();
-      if (sent >= frames_ + kFrames) {
+      if (sent >= frames_ + kSureFrames) {
         select(context);
       } else if (context.now - started_ > axis.profile().timing.mode_change) {
         return Outcome::failed(axis.who() + ": no RPDO has left for " +
@@ -74,7 +73,7 @@ Outcome ModeStep::await(const Context& context) {
   AxisCore& axis = context.axis;
   askForDisplay(context);
   const bool shown = axis.shownMode() == mode_->spec->value;
-  if (shown && axis.targetFrames() >= controlword_frames_ + kFrames) return Outcome::done();
+  if (shown && axis.targetFrames() >= controlword_frames_ + kSureFrames) return Outcome::done();
   if (context.now - started_ <= axis.profile().timing.mode_change) return Outcome::running();
   const std::string shows = axis.shownMode() ? modeText(*axis.shownMode(), axis) : "nothing";
   return fail(context, "6061:00 mode display shows " + shows + " " +

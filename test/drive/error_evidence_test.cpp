@@ -9,7 +9,6 @@ using test::Bench;
 using test::FakeDrive;
 using test::HasSubstr;
 using test::milliseconds;
-using test::Not;
 using test::testConfig;
 
 canopen::NodeConfig withoutErrorCode() {
@@ -34,14 +33,16 @@ TEST(ErrorEvidence, AFaultIsNamedByItsEmergencyAndNotByTheWarningThatStoodBefore
 }
 
 TEST(ErrorEvidence, AFaultIsNamedByTheErrorCodeThatCameWithIt) {
-  Bench bench;
-  ASSERT_TRUE(bench.boot());
-  ASSERT_TRUE(bench.enable());
-  bench.deliver(FakeDrive::emergency(0x3220));  // long before, and it has never ended
-  bench.run(milliseconds(1000));
-  static_cast<void>(bench.drive.fail(0x8611));  // its own EMCY is lost
-  bench.run(milliseconds(100));
-  EXPECT_EQ(bench.axis.state().error_code, 0x8611);
+  for (const milliseconds before : {milliseconds(40), milliseconds(1000)}) {
+    Bench bench;
+    ASSERT_TRUE(bench.boot());
+    ASSERT_TRUE(bench.enable());
+    bench.deliver(FakeDrive::emergency(0x3220));  // it has never ended
+    bench.run(before);
+    static_cast<void>(bench.drive.fail(0x8611));  // its own EMCY is lost
+    bench.run(milliseconds(100));
+    EXPECT_EQ(bench.axis.state().error_code, 0x8611) << before.count();
+  }
 }
 
 TEST(ErrorEvidence, ADriveThatTellsOnlyByServiceDataObjectIsAsked) {
@@ -86,6 +87,17 @@ TEST(ErrorEvidence, AWarningIsNamedByTheErrorCode) {
   bench.run(milliseconds(40));
   EXPECT_EQ(bench.axis.state().error_code, 0) << "603Fh alone is a memory";
   EXPECT_EQ(bench.axis.faultText(), "");
+}
+
+TEST(ErrorEvidence, AWarningIsNotNamedByAnEmergencyThatHasEnded) {
+  Bench bench;
+  bench.drive.error_object = 0x4210;
+  ASSERT_TRUE(bench.boot());
+  bench.deliver(FakeDrive::emergency(0x8611));
+  bench.deliver(FakeDrive::emergency(0));
+  bench.drive.warning = true;
+  bench.run(milliseconds(40));
+  EXPECT_EQ(bench.axis.state().error_code, 0x4210);
 }
 
 TEST(ErrorEvidence, AnEmergencyThatNobodyEndsIsOverOnceTheErrorRegisterIsZero) {

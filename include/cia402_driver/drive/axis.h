@@ -75,7 +75,7 @@ struct AxisState {
   double following_error = kUnknown;  ///< commanded minus measured position, rad or m
   State state = State::unknown;
   std::uint16_t statusword = 0;
-  std::uint16_t error_code = 0;    ///< 603Fh or last EMCY; 0: none
+  std::uint16_t error_code = 0;    ///< of the fault, the warning, an EMCY not ended; 0: none
   std::int16_t mode_value = 0;     ///< 6061h
   const ModeSpec* mode = nullptr;  ///< active mode, nullptr while unknown
   bool homed = false;
