@@ -59,6 +59,7 @@ class BootProcedure {
   void enter(std::size_t step, Time now);
   void begin(std::size_t step, Time now);
   void stoppedHeard(Time now);
+  void tellWhatIsLacking();
 
   BootContext boot_;
   Status status_ = Status::idle;

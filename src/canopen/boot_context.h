@@ -31,6 +31,13 @@ struct AdoptedCobId {
   std::uint16_t cob_id;
 };
 
+/// An entry of a PDO that the drive does not have or cannot map.
+struct LeftOutEntry {
+  PdoDirection direction;
+  unsigned number;
+  ObjectId object;
+};
+
 /// What was found out about the node since the boot began.
 struct BootFindings {
   std::optional<Node::Identity> identity;
@@ -49,7 +56,10 @@ struct BootFindings {
   bool has_signature = false;           ///< it has 1020h
   bool unchanged = false;               ///< 1020h says so: the configuration is not written again
   std::vector<AdoptedCobId> cob_ids;
-  bool started = false;  ///< the NMT command was sent
+  std::vector<LeftOutEntry> left_out;
+  std::vector<std::string> lacking;  ///< what only defaults ask for, "606C:00 velocity_actual"
+  std::vector<std::string> lacking_optional;  ///< what is optional anyhow
+  bool started = false;                       ///< the NMT command was sent
 };
 
 /// What the steps of one boot share: the node's configuration, the SDO transfer on its way, what

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "boot_steps.h"
+#include "boot_text.h"
 #include "pdo_configurator.h"
 
 namespace cia402::canopen {
@@ -59,6 +60,7 @@ class Pdos : public BootStep {
         return Progress::waiting;
       case PdoConfigurator::Status::done:
         adoptCobId(boot);
+        leaveOut(boot);
         if (pdo_->changed()) patience_.renew();
         ++item_;
         return Progress::again;
@@ -76,6 +78,14 @@ class Pdos : public BootStep {
   }
 
  private:
+  void leaveOut(BootContext& boot) const {
+    const PdoConfig& pdo = pdos_[item_];
+    for (const PdoEntry& entry : pdo_->leftOut()) {
+      boot.found.left_out.push_back({pdo.direction, pdo.number, entry.object});
+      boot.found.lacking.push_back(objectText(entry.object, entry.name));
+    }
+  }
+
   void adoptCobId(BootContext& boot) const {
     const std::optional<std::uint16_t> cob_id = pdo_->adoptedCobId();
     if (!cob_id) return;

@@ -1,6 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // The start-up writes: those that are always done first of all, those of profile and user last.
 #include "boot_steps.h"
+#include "boot_text.h"
+#include "cia402_driver/canopen/abort_code.h"
 
 namespace cia402::canopen {
 namespace {
@@ -31,6 +33,7 @@ class Writes : public BootStep {
     if (boot.ok()) return done();
     const bool optional = boot.config.writes[item_].optional;
     if (!optional && patience_.grant(boot, boot.ticket->abortCode(), now)) return Progress::waiting;
+    if (!always_ && leaveOut(boot)) return done();
     if (!optional || !boot.refused()) return boot.failTransfer();
     boot.noteTransfer(always_ ? "was not told to stop before it was configured"
                               : "optional start-up write left out");
@@ -38,6 +41,18 @@ class Writes : public BootStep {
   }
 
  private:
+  /// What nobody asked for by name, and the drive does not have or does not let write.
+  bool leaveOut(BootContext& boot) const {
+    const StartupWrite& write = boot.config.writes[item_];
+    const std::uint32_t abort = boot.refused() ? boot.ticket->abortCode() : 0;
+    const bool lacks = abort == abort_code::kNoSuchObject || abort == abort_code::kNoSuchSubindex ||
+                       abort == abort_code::kReadOnly || abort == abort_code::kNotMappable;
+    if (!lacks || !(write.optional || write.by_default)) return false;
+    (write.by_default && !write.optional ? boot.found.lacking : boot.found.lacking_optional)
+        .push_back(objectText(write.object, write.name));
+    return true;
+  }
+
   Progress done() {
     ++item_;
     patience_.renew();

@@ -43,6 +43,7 @@ Node::Impl::Impl(const NodeConfig& node_config, const MasterConfig& master, can:
 }
 
 std::string Node::Impl::who() const {
+  if (!config.title.empty()) return config.title;
   const std::string node = "node " + std::to_string(config.node_id);
   return config.name.empty() ? node : config.name + " (" + node + ")";
 }
@@ -122,6 +123,7 @@ void Node::Impl::runBoot(Time now) {
   const std::size_t adopted = boot.found().cob_ids.size();
   const BootProcedure::Status status = boot.advance(now);
   if (boot.found().cob_ids.size() != adopted) adoptCobIds();
+  if (boot.found().left_out.size() != left_out) adoptLeftOut();
   switch (status) {
     case BootProcedure::Status::running:
       superviseWhileBooting(now);
@@ -145,6 +147,14 @@ void Node::Impl::adoptCobIds() {
   for (const AdoptedCobId& pdo : boot.found().cob_ids) {
     image.setCobId(pdo.direction, pdo.number, pdo.cob_id);
     cob_ids_changed = true;
+  }
+}
+
+void Node::Impl::adoptLeftOut() {
+  left_out = boot.found().left_out.size();
+  image.includeAll();
+  for (const LeftOutEntry& entry : boot.found().left_out) {
+    image.leaveOut(entry.direction, entry.number, entry.object);
   }
 }
 

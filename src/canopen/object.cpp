@@ -50,15 +50,39 @@ const TypeRow& row(DataType type) {
   return kTypes.back();
 }
 
+std::optional<unsigned> parseNumber(std::string_view text, int base, unsigned max) {
+  unsigned value = 0;
+  const char* const end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data(), end, value, base);
+  if (parsed.ec != std::errc() || parsed.ptr != end || value > max) return {};
+  return value;
+}
+
 std::optional<unsigned> parseHex(std::string_view text, unsigned max) {
   if (text.size() > 2 && text[0] == '0' && (text[1] == 'x' || text[1] == 'X')) {
     text.remove_prefix(2);
+  } else if (text.size() > 1 && (text.back() == 'h' || text.back() == 'H')) {
+    text.remove_suffix(1);
   }
-  unsigned value = 0;
-  const char* const end = text.data() + text.size();
-  const auto parsed = std::from_chars(text.data(), end, value, 16);
-  if (parsed.ec != std::errc() || parsed.ptr != end || value > max) return {};
-  return value;
+  return parseNumber(text, 16, max);
+}
+
+// YAML 1.1 takes digits with a colon for a number to the base of 60. The smallest index, 1000:00,
+// makes 60000, which as an index would be EA60h: CiA 301 reserves C000h to FFFFh.
+constexpr unsigned kSmallestBase60 = 60000, kLargestBase60 = 9999 * 60 + 59;
+constexpr unsigned kLastIndex = 0xBFFF;
+
+/// Of an address that YAML has made a number of five or six decimal digits of.
+std::optional<ObjectId> parseYamlNumber(std::string_view text) {
+  const std::optional<unsigned> number =
+      text.size() > 4 ? parseNumber(text, 10, kLargestBase60) : std::nullopt;
+  if (!number || text.front() == '0') return {};
+  if (*number <= kLastIndex) return ObjectId{static_cast<std::uint16_t>(*number), 0};
+  if (*number < kSmallestBase60) return {};
+  // The digits that stood there were hexadecimal ones.
+  const auto index = parseHex(std::to_string(*number / 60), 0xFFFF);
+  const auto subindex = parseHex(std::to_string(*number % 60), 0xFF);
+  return ObjectId{static_cast<std::uint16_t>(*index), static_cast<std::uint8_t>(*subindex)};
 }
 
 }  // namespace
@@ -79,6 +103,22 @@ std::optional<ObjectId> parseObjectId(std::string_view text) {
   return ObjectId{static_cast<std::uint16_t>(*index), static_cast<std::uint8_t>(*subindex)};
 }
 
+std::optional<ObjectId> parseObjectAddress(std::string_view text) {
+  const std::optional<ObjectId> object = parseObjectId(text);
+  return object ? object : parseYamlNumber(text);
+}
+
+bool isAmbiguousIndex(std::string_view text) {
+  return text.size() == 4 && parseNumber(text, 10, 9999).value_or(0) >= 0x1000;
+}
+
+std::string unambiguousIndex(std::string_view text) {
+  const std::string meant =
+      toString(ObjectId{static_cast<std::uint16_t>(parseNumber(text, 10, 9999).value_or(0)), 0})
+          .substr(0, 4);
+  return std::string(text) + "h or, if 0x" + meant + " is meant, " + meant + "h";
+}
+
 unsigned sizeBits(DataType type) { return row(type).bits; }
 bool isSigned(DataType type) { return row(type).is_signed; }
 const char* toString(DataType type) { return row(type).name; }
@@ -88,6 +128,17 @@ std::optional<DataType> parseDataType(std::string_view text) {
     if (text == candidate.name) return candidate.type;
   }
   return {};
+}
+
+std::optional<DataType> parseTypeWord(std::string_view text) {
+  if (text == "text") return DataType::visible_string;
+  if (text == "bytes") return DataType::octet_string;
+  if (text == "f32") return DataType::real32;
+  if (text == "f64") return DataType::real64;
+  const bool letter = text.size() > 1 && (text.front() == 'u' || text.front() == 'i');
+  const bool is_short = letter && text[1] >= '1' && text[1] <= '9';
+  if (!is_short) return parseDataType(text);
+  return parseDataType((text.front() == 'u' ? "uint" : "int") + std::string(text.substr(1)));
 }
 
 }  // namespace cia402::canopen

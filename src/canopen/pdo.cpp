@@ -78,6 +78,7 @@ void ProcessImage::add(const PdoConfig& config) {
     shift += entry.bits;
   }
   pdo.size = static_cast<std::uint8_t>((shift + 7) / 8);
+  pdo.all_fields = pdo.fields;
   pdo.request_every = std::max<std::uint16_t>(config.request_every, 1);
   pdo.refresh_every = std::max<std::uint16_t>(config.refresh_every, 1);
   if (isCyclic(config.transmission)) {
@@ -120,7 +121,7 @@ bool ProcessImage::receive(std::size_t tpdo, const can::Frame& frame, Time stamp
 void ProcessImage::age(Time now) {
   for (Pdo& pdo : tpdos_) {
     ++pdo.silent;
-    if (pdo.stale) continue;
+    if (pdo.stale || pdo.fields.empty()) continue;
     if (pdo.silent_limit == 0 && pdo.age_limit == Duration::zero()) continue;
     if (pdo.last == Time()) pdo.last = now;  // it is expected from now on
     const bool overdue =
@@ -134,7 +135,7 @@ void ProcessImage::age(Time now) {
 
 bool ProcessImage::requestDue(std::size_t tpdo, can::Frame& frame) {
   Pdo& pdo = tpdos_[tpdo];
-  if (++pdo.since_request < pdo.request_every) return false;
+  if (++pdo.since_request < pdo.request_every || pdo.fields.empty()) return false;
   pdo.since_request = 0;
   frame = can::Frame();
   frame.id = pdo.cob_id;
@@ -164,6 +165,7 @@ void ProcessImage::pack(std::size_t rpdo, can::Frame& frame) const {
 
 bool ProcessImage::packDue(std::size_t rpdo, can::Frame& frame, Time now) {
   Pdo& pdo = rpdos_[rpdo];
+  if (pdo.fields.empty()) return false;
   const std::uint64_t word = pack(pdo);
   if (++pdo.silent < pdo.refresh_every && pdo.sent_once && word == pdo.sent) return false;
   fillFrame(pdo, word, frame);
@@ -176,9 +178,50 @@ bool ProcessImage::packDue(std::size_t rpdo, can::Frame& frame, Time now) {
 }
 
 void ProcessImage::setCobId(PdoDirection direction, unsigned number, std::uint16_t cob_id) {
-  for (Pdo& pdo : direction == PdoDirection::tpdo ? tpdos_ : rpdos_) {
+  for (Pdo& pdo : pdosOf(direction)) {
     if (pdo.number == number) pdo.cob_id = cob_id;
   }
+}
+
+void ProcessImage::leaveOut(PdoDirection direction, unsigned number, ObjectId object) {
+  const bool input = direction == PdoDirection::tpdo;
+  const Slot slot = input ? inputSlot(object) : outputSlot(object);
+  for (Pdo& pdo : pdosOf(direction)) {
+    if (pdo.number != number) continue;
+    const auto gone = std::find_if(pdo.fields.begin(), pdo.fields.end(),
+                                   [slot](const Pdo::Field& field) { return field.slot == slot; });
+    if (gone == pdo.fields.end()) continue;
+    pdo.fields.erase(gone);
+    unsigned shift = 0;
+    for (Pdo::Field& field : pdo.fields) {
+      field.shift = static_cast<std::uint8_t>(shift);
+      shift += field.bits;
+    }
+    pdo.size = static_cast<std::uint8_t>((shift + 7) / 8);
+  }
+}
+
+void ProcessImage::includeAll() {
+  for (std::vector<Pdo>* pdos : {&tpdos_, &rpdos_}) {
+    for (Pdo& pdo : *pdos) {
+      pdo.fields = pdo.all_fields;
+      unsigned bits = 0;
+      for (const Pdo::Field& field : pdo.fields) bits += field.bits;
+      pdo.size = static_cast<std::uint8_t>((bits + 7) / 8);
+    }
+  }
+}
+
+bool ProcessImage::isLeftOut(PdoDirection direction, Slot slot) const {
+  const auto holds = [slot](const std::vector<Pdo::Field>& fields) {
+    return std::any_of(fields.begin(), fields.end(),
+                       [slot](const Pdo::Field& field) { return field.slot == slot; });
+  };
+  const std::vector<Pdo>& pdos = direction == PdoDirection::tpdo ? tpdos_ : rpdos_;
+  const bool mapped =
+      std::any_of(pdos.begin(), pdos.end(), [&](const Pdo& pdo) { return holds(pdo.all_fields); });
+  return mapped &&
+         std::none_of(pdos.begin(), pdos.end(), [&](const Pdo& pdo) { return holds(pdo.fields); });
 }
 
 void ProcessImage::invalidate() {

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "pdo_configurator.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "cia402_driver/canopen/abort_code.h"
@@ -25,6 +26,14 @@ unsigned totalBits(const PdoConfig& pdo) {
   unsigned bits = 0;
   for (const PdoEntry& entry : pdo.entries) bits += entry.bits;
   return bits;
+}
+
+/// 0x06040041 and what drives answer instead of it.
+bool isMissingOrUnmappable(const SdoTransfer& transfer) {
+  const std::uint32_t code = transfer.abortCode();
+  return transfer.failure() == SdoTransfer::Failure::aborted_by_server &&
+         (code == abort_code::kNoSuchObject || code == abort_code::kNoSuchSubindex ||
+          code == abort_code::kNotMappable);
 }
 
 }  // namespace
@@ -81,6 +90,8 @@ void PdoConfigurator::ask() {
     case Phase::write_count:
       return write({mapping_, 0}, static_cast<std::uint32_t>(wanted_.entries.size()), 1,
                    "number of entries");
+    case Phase::probe_entry:
+      return read(wanted_.entries[item_].object, entryName(item_));
     case Phase::write_parameter:
       return write({communication_, parameters_[item_].subindex}, parameters_[item_].wanted,
                    parameters_[item_].size, parameters_[item_].name);
@@ -118,6 +129,7 @@ void PdoConfigurator::answered(const SdoTransfer& transfer) {
 void PdoConfigurator::answeredRead(const SdoTransfer& transfer) {
   if (phase_ == Phase::read_cob_id) return answeredCobId(transfer);
   if (phase_ == Phase::read_parameter) return answeredParameter(transfer);
+  if (phase_ == Phase::probe_entry) return answeredProbe(transfer);
   if (!transfer.ok()) return failTransfer(transfer);
   const auto value = static_cast<std::uint32_t>(toUnsigned(transfer.data()));
   if (phase_ == Phase::read_count) {
@@ -136,6 +148,7 @@ void PdoConfigurator::answeredCobId(const SdoTransfer& transfer) {
   if (!transfer.ok()) {
     const bool answered = transfer.failure() == SdoTransfer::Failure::aborted_by_server;
     if (answered && options_.may_be_missing) return enter(Phase::done);
+    if (leaveOutWhole(transfer)) return enter(Phase::done);
     return failTransfer(transfer);
   }
   cob_id_ = static_cast<std::uint32_t>(toUnsigned(transfer.data()));
@@ -221,6 +234,7 @@ void PdoConfigurator::answeredWrite(const SdoTransfer& transfer) {
     return enterAfterDisable();
   }
   if (!transfer.ok()) {
+    if (leaveOutEntry(transfer) || probeEntries(transfer)) return;
     if (!refusedReadOnlyCount(transfer)) return failTransfer(transfer);
     map_refused_ = true;
   }
@@ -232,8 +246,7 @@ void PdoConfigurator::answeredWrite(const SdoTransfer& transfer) {
       return enterWriteParameter(0);
     case Phase::write_entry:
       if (item_ + 1 < wanted_.entries.size()) return enter(Phase::write_entry, item_ + 1);
-      if (!map_refused_) return enter(Phase::write_count);
-      return enterWriteParameter(0);
+      return afterEntries();
     case Phase::write_count:
       return enterWriteParameter(0);
     case Phase::write_parameter:
@@ -241,6 +254,76 @@ void PdoConfigurator::answeredWrite(const SdoTransfer& transfer) {
     default:  // enable: all is written
       return enterRead();
   }
+}
+
+/// All entries are written, or there are none left.
+void PdoConfigurator::afterEntries() {
+  if (!wanted_.entries.empty()) {
+    if (!map_refused_) return enter(Phase::write_count);
+    return enterWriteParameter(0);
+  }
+  wanted_.enabled = false;  // it is invalid already, and stays so
+  enterRead();
+}
+
+bool PdoConfigurator::leaveOutWhole(const SdoTransfer& transfer) {
+  if (!isMissingOrUnmappable(transfer) || nextOptional(0) == wanted_.entries.size()) return false;
+  const bool all = std::all_of(wanted_.entries.begin(), wanted_.entries.end(),
+                               [](const PdoEntry& entry) { return entry.optional; });
+  if (!all) return false;
+  while (!wanted_.entries.empty()) leaveOut(0);
+  return true;
+}
+
+/// Most drives judge an entry when it is written.
+bool PdoConfigurator::leaveOutEntry(const SdoTransfer& transfer) {
+  const bool optional = phase_ == Phase::write_entry && wanted_.entries[item_].optional;
+  if (!optional || !isMissingOrUnmappable(transfer)) return false;
+  leaveOut(item_);
+  if (item_ < wanted_.entries.size()) {
+    enter(Phase::write_entry, item_);
+  } else {
+    afterEntries();
+  }
+  return true;
+}
+
+/// Others judge all of them at the end, without a word about which one is wrong: those that it does
+/// not have are found by reading them.
+bool PdoConfigurator::probeEntries(const SdoTransfer& transfer) {
+  if (phase_ != Phase::write_count || !isMissingOrUnmappable(transfer)) return false;
+  const std::size_t first = nextOptional(0);
+  if (first == wanted_.entries.size()) return false;
+  left_out_before_probe_ = left_out_.size();
+  enter(Phase::probe_entry, first);
+  return true;
+}
+
+void PdoConfigurator::answeredProbe(const SdoTransfer& transfer) {
+  const bool aborted = transfer.failure() == SdoTransfer::Failure::aborted_by_server;
+  if (!transfer.ok() && !aborted) return failTransfer(transfer);
+  std::size_t next = item_ + 1;
+  if (!transfer.ok() && isMissingOrUnmappable(transfer)) leaveOut(next = item_);
+  next = nextOptional(next);
+  if (next < wanted_.entries.size()) return enter(Phase::probe_entry, next);
+  if (left_out_.size() == left_out_before_probe_) {  // it has them all: the last one goes
+    std::size_t last = nextOptional(0);
+    while (nextOptional(last + 1) < wanted_.entries.size()) last = nextOptional(last + 1);
+    leaveOut(last);
+  }
+  if (wanted_.entries.empty()) return afterEntries();
+  enter(Phase::clear_map);
+}
+
+void PdoConfigurator::leaveOut(std::size_t item) {
+  const auto gone = wanted_.entries.begin() + static_cast<std::ptrdiff_t>(item);
+  left_out_.push_back(*gone);
+  wanted_.entries.erase(gone);
+}
+
+std::size_t PdoConfigurator::nextOptional(std::size_t item) const {
+  while (item < wanted_.entries.size() && !wanted_.entries[item].optional) ++item;
+  return item;
 }
 
 bool PdoConfigurator::refusedReadOnlyCount(const SdoTransfer& transfer) const {

@@ -17,6 +17,8 @@ namespace cia402::canopen {
 /// communication parameters, make it valid. Everything is read first; only what differs is written
 /// and nothing at all where nothing differs; after writing everything is read back. Where the drive
 /// says that its COB-ID is read-only (0x06010002), or none is wanted, the drive's own is kept.
+/// Entries that are optional are left out where it says that it does not have or cannot map them; a
+/// PDO of such entries alone may be missing.
 class PdoConfigurator {
  public:
   struct Options {
@@ -42,6 +44,8 @@ class PdoConfigurator {
   std::uint32_t abortCode() const { return abort_code_; }
   /// The COB-ID of the PDO is the drive's own, not the one configured: which.
   std::optional<std::uint16_t> adoptedCobId() const { return adopted_; }
+  /// The entries that are left out.
+  const std::vector<PdoEntry>& leftOut() const { return left_out_; }
   /// True once something had to be written.
   bool changed() const { return changed_; }
 
@@ -55,6 +59,7 @@ class PdoConfigurator {
     clear_map,
     write_entry,
     write_count,
+    probe_entry,  ///< which of the optional ones is the one that the drive does not have?
     write_parameter,
     enable,
     done,
@@ -89,6 +94,14 @@ class PdoConfigurator {
   bool refusedCobId(const SdoTransfer& transfer);
   void enterAfterDisable();
   bool refusedReadOnlyCount(const SdoTransfer& transfer) const;
+  bool leaveOutWhole(const SdoTransfer& transfer);
+  bool leaveOutEntry(const SdoTransfer& transfer);
+  bool probeEntries(const SdoTransfer& transfer);
+  void answeredProbe(const SdoTransfer& transfer);
+  void leaveOut(std::size_t item);
+  void afterEntries();
+  /// The next optional entry from `item` on, or the number of entries.
+  std::size_t nextOptional(std::size_t item) const;
 
   std::string title() const;
   std::uint32_t enabledCobId() const;
@@ -113,6 +126,8 @@ class PdoConfigurator {
   bool cob_id_fixed_ = false;  ///< the drive refuses to make the PDO invalid, or valid elsewhere
   std::size_t count_ = 0;
   std::vector<std::uint32_t> entries_;
+  std::vector<PdoEntry> left_out_;
+  std::size_t left_out_before_probe_ = 0;
   SdoTicket ticket_;
   std::string step_, error_;
 };

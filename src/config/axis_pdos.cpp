@@ -13,6 +13,7 @@ using drive::AxisConfig;
 using drive::DriveProfile;
 using drive::ModeSpec;
 using drive::YamlSection;
+using drive::YamlValue;
 
 constexpr Duration kFresh = std::chrono::milliseconds(10);  // age of velocities, or one joint_state
 constexpr Duration kLeastRpdoTimeout = std::chrono::milliseconds(100);
@@ -27,6 +28,10 @@ std::vector<std::string> allModes(const DriveProfile& profile) {
   return names;
 }
 
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 std::vector<std::string> feedbackOf(const DriveProfile& profile) {
   if (!profile.feedback.empty()) return profile.feedback;
   return {std::begin(kFeedback), std::end(kFeedback)};
@@ -34,6 +39,7 @@ std::vector<std::string> feedbackOf(const DriveProfile& profile) {
 
 /// Does the drive's own description say that an object is not there, or in no PDO?
 bool ruledOut(const AxisConfig& axis, const std::string& name) {
+  if (contains(axis.lacks, name)) return true;
   const drive::ObjectSpec* object = axis.profile->find(name);
   if (axis.eds == nullptr || object == nullptr) return false;
   const canopen::DictionaryEntry* entry = axis.eds->dictionary.find(object->id);
@@ -47,6 +53,21 @@ void leaveOut(std::vector<std::string>& names, const Unwanted& unwanted) {
 
 Duration freshness(const RobotConfig& robot) {
   return std::min(kFresh, fromSeconds(1.0 / robot.joint_state_rate));
+}
+
+/// What is in the plan though nobody asked for it: default feedback, and the targets of default
+/// modes but that of the mode to start in.
+std::vector<std::string> defaultObjects(const AxisConfig& axis, const PdoNeeds& needs) {
+  std::vector<std::string> names;
+  if (!needs.feedback_required) names = needs.feedback;
+  if (needs.modes_required) return names;
+  const ModeSpec* start = axis.profile->mode(needs.mode);
+  for (const std::string& name : axis.modes) {
+    const ModeSpec* mode = axis.profile->mode(name);
+    if (mode == nullptr || mode->target.empty() || mode->target == start->target) continue;
+    names.push_back(mode->target);
+  }
+  return names;
 }
 
 bool plan(YamlSection& section, AxisConfig& axis, RobotConfig& robot, PdoNeeds needs) {
@@ -70,7 +91,31 @@ bool plan(YamlSection& section, AxisConfig& axis, RobotConfig& robot, PdoNeeds n
   axis.pdos = planned->pdos;
   axis.pdos_planned = true;
   axis.modes = planned->modes;
+  axis.default_objects = defaultObjects(axis, needs);
   return true;
+}
+
+/// Objects that an axis cannot do without.
+const char* const kNeeded[] = {"controlword", "statusword", "position_actual"};
+
+void readLacks(YamlSection& section, AxisConfig& axis) {
+  const auto lacks = section.get("lacks");
+  if (!lacks) return;
+  for (const YamlValue& entry : lacks->list()) {
+    const auto name = entry.text();
+    if (!name) continue;
+    const drive::ObjectSpec* object = drive::findObject(*axis.profile, *name);
+    const bool needed =
+        std::find(std::begin(kNeeded), std::end(kNeeded), *name) != std::end(kNeeded);
+    if (object == nullptr) {
+      entry.problem("profile " + axis.profile->name + " has no object `" + *name + "`" +
+                    drive::suggestion(*name, drive::objectNames(*axis.profile)));
+    } else if (needed) {
+      entry.problem("no axis can do without `" + *name + "`");
+    } else {
+      axis.lacks.push_back(object->name);
+    }
+  }
 }
 
 void readRpdoTimeout(YamlSection& section, AxisConfig& axis) {
@@ -111,11 +156,13 @@ bool choosePdos(YamlSection& section, AxisConfig& axis, RobotConfig& robot) {
     return false;
   }
   const DriveProfile& profile = *axis.profile;
+  readLacks(section, axis);
   readRpdoTimeout(section, axis);
   PdoNeeds needs;
   needs.modes_required = modes.has_value();
   needs.modes = modes ? drive::readModeNames(*modes, profile) : profile.default_modes;
   if (!modes && needs.modes.empty()) needs.modes = allModes(profile);
+  needs.feedback_required = feedback.has_value();
   needs.feedback = feedback ? drive::readFeedbackNames(*feedback, profile) : feedbackOf(profile);
   const auto ruled_out = [&](const std::string& name) { return ruledOut(axis, name); };
   const auto unreachable = [&](const std::string& name) {

@@ -70,13 +70,30 @@ void readMatrix(YamlSection& section, CouplingConfig& coupling) {
   }
 }
 
-// Joints of a group, and whether each of them can follow a stream of positions.
+// Whether the drive has room for a stream of positions.
 bool streamsPositions(const drive::AxisConfig& axis) {
-  if (!axis.profile) return true;  // told elsewhere
-  return std::any_of(axis.profile->modes.begin(), axis.profile->modes.end(),
-                     [](const drive::ModeSpec& mode) {
-                       return mode.cyclic && mode.kind == drive::ControlKind::position;
-                     });
+  if (!axis.profile || axis.pdos.empty()) return true;  // told elsewhere
+  return drive::trajectoryMode(axis) != nullptr;
+}
+
+// Why an axis cannot follow trajectories, and what to do.
+std::string incapacity(const RobotConfig& robot, const std::string& name) {
+  const auto axis = std::find_if(robot.axes.begin(), robot.axes.end(),
+                                 [&](const drive::AxisConfig& a) { return a.name == name; });
+  const std::string cannot = "`" + name + "` cannot follow trajectories: ";
+  const auto& modes = axis->profile->modes;
+  const auto mode = std::find_if(modes.begin(), modes.end(), [](const drive::ModeSpec& candidate) {
+    return candidate.cyclic && candidate.kind == drive::ControlKind::position;
+  });
+  if (mode == modes.end()) {
+    return cannot + "its profile has no cyclic position mode; leave its joint out of the group";
+  }
+  const std::string where = "axes/" + name + "/";
+  const std::string add = axis->pdos_planned
+                              ? "add " + mode->name + " to `" + where + "modes`"
+                              : "map " + mode->target + " into an RPDO in `" + where + "pdos`";
+  return cannot + "no RPDO holds the target of its mode " + mode->name + "; " + add +
+         ", or leave its joint out of the group";
 }
 
 std::vector<std::string> incapableAxes(const RobotConfig& robot, const std::string& joint) {
@@ -188,9 +205,7 @@ void readGroups(const YamlValue& value, RobotConfig& robot) {
     section.finish();
     for (const std::string& joint : group.joints) {
       for (const std::string& axis : incapableAxes(robot, joint)) {
-        section.get("joints")->problem("`" + axis +
-                                       "` cannot follow trajectories: its profile has "
-                                       "no cyclic position mode");
+        section.get("joints")->problem(incapacity(robot, axis));
       }
     }
     robot.groups.push_back(group);

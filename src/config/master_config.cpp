@@ -63,8 +63,10 @@ PdoConfig makePdo(const drive::PdoLayout& layout, const AxisConfig& axis) {
   for (const std::string& name : layout.objects) {
     const drive::ObjectSpec* object = drive::findObject(*axis.profile, name);
     if (object == nullptr) continue;  // refused by readPdos() already
-    pdo.entries.push_back(
-        {object->id, static_cast<std::uint8_t>(canopen::sizeBits(object->type)), object->name});
+    const auto& defaults = axis.default_objects;
+    const bool optional = std::find(defaults.begin(), defaults.end(), name) != defaults.end();
+    pdo.entries.push_back({object->id, static_cast<std::uint8_t>(canopen::sizeBits(object->type)),
+                           object->name, optional});
   }
   return pdo;
 }
@@ -122,9 +124,14 @@ void checkCobIds(const canopen::MasterConfig& master, Problems& problems) {
   }
 }
 
-void addWrites(const std::vector<drive::NamedWrite>& writes, const AxisConfig& axis,
+enum class AskedBy { profile, user };
+
+void addWrites(const std::vector<drive::NamedWrite>& writes, AskedBy who, const AxisConfig& axis,
                const std::string& path, NodeConfig& node, Problems& problems) {
   for (const drive::NamedWrite& write : writes) {
+    const bool lacking =
+        std::find(axis.lacks.begin(), axis.lacks.end(), write.object) != axis.lacks.end();
+    if (who == AskedBy::profile && lacking) continue;
     // The axis does that once it is homed; one that need not be is so from the start.
     if (write.when_homed && axis.homing && axis.homing->required) continue;
     const auto resolved = drive::resolveWrite(write, axis);
@@ -135,9 +142,11 @@ void addWrites(const std::vector<drive::NamedWrite>& writes, const AxisConfig& a
     if (!*resolved || (*resolved)->copied_from) continue;
     canopen::StartupWrite start;
     start.object = (*resolved)->object;
-    start.name = (*resolved)->name;
+    const drive::ObjectSpec* object = drive::findObject(*axis.profile, write.object);
+    if (object != nullptr) start.name = object->name;
     start.data = drive::wireBytes((*resolved)->raw, (*resolved)->type);
     start.optional = (*resolved)->optional;
+    start.by_default = who == AskedBy::profile && !(*resolved)->asked_for;
     node.writes.push_back(start);
   }
 }
@@ -195,6 +204,7 @@ NodeConfig makeNode(const RobotConfig& robot, const AxisConfig& axis, Problems& 
   NodeConfig node;
   node.node_id = axis.node_id;
   node.name = axis.name;
+  node.title = drive::whoIs(axis);
   node.device_type = profile.device_type;
   node.vendor_id = axis.vendor_id ? axis.vendor_id : profile.vendor_id;
   node.product_code = axis.product_code ? axis.product_code : profile.product_code;
@@ -211,8 +221,10 @@ NodeConfig makeNode(const RobotConfig& robot, const AxisConfig& axis, Problems& 
   node.boot_timeout = profile.timing.boot;
   addStop(profile, node);
   addSyncWindow(robot.bus, node);
-  addWrites(profile.startup, axis, "axes/" + axis.name, node, problems);
-  addWrites(axis.writes, axis, "axes/" + axis.name + "/write", node, problems);
+  const std::string path = "axes/" + axis.name;
+  addWrites(profile.startup, AskedBy::profile, axis, path, node, problems);
+  addWrites(axis.writes, AskedBy::user, axis, path + "/write", node, problems);
+  node.lacking_remedy = "`lacks` of " + path + " says that this is right";
   return node;
 }
 

@@ -18,6 +18,7 @@ struct PdoNeeds {
   /// Feedback beside statusword, position_actual and mode_display, most important first; what
   /// finds no room is left to SDO.
   std::vector<std::string> feedback;
+  bool feedback_required = false;  ///< somebody asked for it by name
   Duration cycle{std::chrono::milliseconds(4)};
   /// Velocity and torque shall not be older than this, where the cycle allows.
   Duration fresh{std::chrono::milliseconds(10)};

@@ -1,11 +1,17 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "cia402_driver/drive/axis_config.h"
 
+#include <algorithm>
+
+#include "cia402_driver/drive/profile_reader.h"
+
 namespace cia402::drive {
 namespace {
 
 constexpr double kDefaultDeceleration = 5.0;        // rad/s²
 constexpr double kDefaultLinearDeceleration = 0.5;  // m/s²
+
+bool hasAlias(const AxisConfig& axis) { return !axis.joint.empty() && axis.joint != axis.name; }
 
 }  // namespace
 
@@ -13,6 +19,34 @@ double stopDeceleration(const AxisConfig& axis) {
   if (axis.limits.acceleration) return *axis.limits.acceleration;
   return axis.geometry.type == AxisGeometry::Type::prismatic ? kDefaultLinearDeceleration
                                                              : kDefaultDeceleration;
+}
+
+std::string jointName(const AxisConfig& axis) {
+  return hasAlias(axis) ? axis.joint + " (axis " + axis.name + ")" : axis.name;
+}
+
+std::string whoIs(const AxisConfig& axis) {
+  const std::string node = "node " + std::to_string(axis.node_id) + ")";
+  return hasAlias(axis) ? axis.joint + " (axis " + axis.name + ", " + node
+                        : axis.name + " (" + node;
+}
+
+const ModeSpec* trajectoryMode(const AxisConfig& axis) {
+  const DriveProfile& profile = *axis.profile;
+  const auto sent = [&](const std::string& target) {
+    return std::any_of(axis.pdos.begin(), axis.pdos.end(), [&](const PdoLayout& pdo) {
+      return pdo.direction == canopen::PdoDirection::rpdo &&
+             std::any_of(pdo.objects.begin(), pdo.objects.end(), [&](const std::string& name) {
+               const ObjectSpec* object = findObject(profile, name);
+               return object != nullptr && object->name == target;
+             });
+    });
+  };
+  const auto found =
+      std::find_if(profile.modes.begin(), profile.modes.end(), [&](const ModeSpec& mode) {
+        return mode.cyclic && mode.kind == ControlKind::position && sent(mode.target);
+      });
+  return found == profile.modes.end() ? nullptr : &*found;
 }
 
 }  // namespace cia402::drive

@@ -102,6 +102,9 @@ class AxisCore {
   void stopSetPoint() { set_point_.stop(); }
   std::string motionRefusal(bool busy) const;
   std::string obstacle() const;
+  std::string unknownText() const;
+  /// Why a mode cannot be used with this drive; empty: it can.
+  std::string modeRefusal(const ModeChannel& mode) const;
   /// Target := actual in position modes, 0 in the others.
   void neutralizeTarget();
   /// Puts a neutral target of another mode into its RPDO, before that mode becomes active.

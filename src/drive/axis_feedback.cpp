@@ -81,7 +81,10 @@ void AxisCore::readMotion(Time now) {
   state_.stamp = position.stamp;
   state_.velocity = read(objects_.velocity, polled_velocity_, now);
   state_.effort = read(objects_.effort, polled_effort_, now);
-  if (objects_.following_error.spec != nullptr) {
+  const InputObject& following_error = objects_.following_error;
+  const bool told = following_error.mapped() ? image_.input(following_error.slot).valid
+                                             : poller_.has(polled_following_error_);
+  if (told) {
     state_.following_error = read(objects_.following_error, polled_following_error_, now);
   } else if (in_operation_ && mode_->spec->kind == ControlKind::position) {
     state_.following_error = target() - joint;

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "axis_objects.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace cia402::drive {
@@ -28,6 +29,8 @@ InputObject input(const AxisConfig& config, const canopen::Node& node, const cha
   InputObject result;
   result.spec = findObject(*config.profile, name, id);
   if (result.spec == nullptr) return result;
+  const auto& lacks = config.lacks;
+  if (std::find(lacks.begin(), lacks.end(), result.spec->name) != lacks.end()) return InputObject();
   result.slot = node.image().inputSlot(result.spec->id);
   const auto conversion = Conversion::create(*result.spec, *config.profile, config.geometry);
   if (conversion) {

@@ -9,9 +9,7 @@
 
 namespace cia402::drive {
 
-std::string AxisCore::who() const {
-  return config_.joint + " (node " + std::to_string(config_.node_id) + ")";
-}
+std::string AxisCore::who() const { return whoIs(config_); }
 
 std::string AxisCore::stateText() const {
   if (state_.state == State::unknown && state_.statusword == 0) return "no statusword";
@@ -24,6 +22,29 @@ std::string AxisCore::feedbackText() const {
   if (!text.empty()) return text;
   const bool come = image_.fresh(objects_.statusword.slot) && image_.fresh(objects_.position.slot);
   return come ? "the position that the drive sends is no finite number" : "none has come yet";
+}
+
+std::string AxisCore::unknownText() const {
+  const bool known = state_.feedback_valid && state_.state != State::unknown;
+  if (!nodeReady() || known) return {};
+  if (state_.feedback_valid) {
+    return who() + ": its state is unknown: statusword (6041:00) " + hexWord(state_.statusword) +
+           " is none of the states of CiA 402 (" + statuswordText(state_.statusword) +
+           "); is it the right drive profile?";
+  }
+  std::string why = canopen::missingText(image_);
+  if (why.empty()) why = feedbackText();
+  return who() +
+         ": its state is unknown: no usable statusword (6041:00) and position (6064:00): " + why +
+         "; check cable, bus load and the drive's TPDOs";
+}
+
+std::string AxisCore::modeRefusal(const ModeChannel& mode) const {
+  const bool left_out = mode.refusal.empty() && mode.target.mapped() &&
+                        image_.isLeftOut(canopen::PdoDirection::rpdo, mode.target.slot);
+  if (!left_out) return mode.refusal;
+  return "the drive does not have its target " + canopen::toString(mode.target.spec->id) + " " +
+         mode.target.spec->name + ", or cannot map it";
 }
 
 std::string AxisCore::emergencyText() const {
@@ -74,7 +95,7 @@ std::string AxisCore::faultText() const {
 }
 
 std::string AxisCore::obstacle() const {
-  const std::string& name = config_.name;
+  const std::string name = jointName(config_);
   const bool homed = homedEnough();
   const std::string zero = config_.homing ? "home" : "set_position";  // the call that gives it one
   if (!nodeReady())

@@ -135,7 +135,7 @@ Result<std::optional<ResolvedWrite>> resolveWrite(const NamedWrite& write, const
   using Resolved = std::optional<ResolvedWrite>;
   const ObjectSpec* object = findObject(*axis.profile, write.object);
   const auto id = object != nullptr ? std::optional<ObjectId>(object->id)
-                                    : canopen::parseObjectId(write.object);
+                                    : canopen::parseObjectAddress(write.object);
   const auto type = object != nullptr ? std::optional<DataType>(object->type) : write.type;
   if (!id || !type || canopen::sizeBits(*type) == 0) {
     return refuse(axis, write.object, sourceOf(*axis.profile) + " has no such number");
@@ -148,6 +148,7 @@ Result<std::optional<ResolvedWrite>> resolveWrite(const NamedWrite& write, const
     return refuse(axis, write.object, "the profile names no value that holds (quick_stop_holds)");
   }
   resolved.optional = write.optional && !hold;  // what was asked for is done or told
+  resolved.asked_for = hold;
   resolved.name =
       (object != nullptr ? object->name + " " : "") + "(" + canopen::toString(*id) + ")";
 

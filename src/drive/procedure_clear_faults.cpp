@@ -16,7 +16,8 @@ class ClearFaults : public Procedure {
     }
     Outcome outcome = reset_.advance(context);
     if (outcome.isDone()) {
-      outcome.message = axis.config().joint + ": " + outcome.message + "; the axis is disabled";
+      outcome.message =
+          jointName(axis.config()) + ": " + outcome.message + "; the axis is disabled";
     }
     return outcome;
   }
@@ -24,10 +25,10 @@ class ClearFaults : public Procedure {
  private:
   static Outcome nothingToClear(AxisCore& axis) {
     const std::uint16_t code = axis.pendingEmergency();
-    if (code == 0) return Outcome::done(axis.config().joint + ": no fault, nothing to clear");
+    if (code == 0) return Outcome::done(jointName(axis.config()) + ": no fault, nothing to clear");
     const std::string text = axis.codeText(code);
     axis.forgetFault();
-    return Outcome::done(axis.config().joint +
+    return Outcome::done(jointName(axis.config()) +
                          ": no fault; the emergency that the drive has not "
                          "ended is forgotten: " +
                          text);

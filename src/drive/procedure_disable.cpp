@@ -66,7 +66,7 @@ class Disable : public Procedure {
   }
 
   Outcome finish(AxisCore& axis, bool faulted) const {
-    const std::string plain = axis.config().joint + ": disabled";
+    const std::string plain = jointName(axis.config()) + ": disabled";
     std::string text = plain;
     if (faulted) text += "; " + axis.faultText();
     if (!stop_problem_.empty()) text += ", but " + stop_problem_;

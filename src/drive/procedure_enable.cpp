@@ -44,7 +44,7 @@ class Enable : public Procedure {
       return Outcome::running();
     }
     if (!axis.halted()) {
-      return Outcome::done(axis.config().joint + ": is enabled already, mode " +
+      return Outcome::done(jointName(axis.config()) + ": is enabled already, mode " +
                            axis.mode().spec->name);
     }
     if (axis.handshakeBusy() || axis.targetFrames() < frames_ + 2) {
@@ -57,7 +57,7 @@ class Enable : public Procedure {
                              axis.report());
     }
     axis.releaseHalt();
-    return Outcome::done(axis.config().joint +
+    return Outcome::done(jointName(axis.config()) +
                          ": the halt is released, the axis holds its position");
   }
 
@@ -65,7 +65,7 @@ class Enable : public Procedure {
     const Outcome outcome = enabling_.advance(context);
     if (!outcome.isDone()) return outcome;
     AxisCore& axis = context.axis;
-    return Outcome::done(axis.config().joint + ": enabled in mode " + axis.mode().spec->name +
+    return Outcome::done(jointName(axis.config()) + ": enabled in mode " + axis.mode().spec->name +
                          " after " + seconds(context.now - started_));
   }
 
@@ -83,8 +83,9 @@ Result<std::unique_ptr<Procedure>> makeEnable(AxisCore& axis) {
   if (!refusal.empty()) return Error{refusal};
   if (axis.faulted()) return Error{"cannot enable: " + axis.faultText()};
   const ModeChannel& mode = axis.workingMode();
-  if (!mode.refusal.empty()) {
-    return Error{axis.who() + ": cannot enable in mode " + mode.spec->name + ": " + mode.refusal};
+  const std::string unusable = axis.modeRefusal(mode);
+  if (!unusable.empty()) {
+    return Error{axis.who() + ": cannot enable in mode " + mode.spec->name + ": " + unusable};
   }
   return std::unique_ptr<Procedure>(std::make_unique<Enable>(axis));
 }

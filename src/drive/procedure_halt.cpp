@@ -18,7 +18,7 @@ class Halt : public Procedure {
     if (!begun_) return begin(context);
     if (quick_stop_) return awaitQuickStop(context);
     if (axis.setPointsAtRest() && axis.seenToStand(context.now)) {
-      return Outcome::done(axis.config().joint + ": halted at " + place(axis) +
+      return Outcome::done(jointName(axis.config()) + ": halted at " + place(axis) +
                            "; enable releases the halt");
     }
     if (context.now < until_) return Outcome::running();
@@ -45,7 +45,7 @@ class Halt : public Procedure {
       was_enabled_ = true;
     } else if (axis.goal() == Goal::enabled) {  // the procedure before was switching it on
       axis.setGoal(Goal::disabled);
-      return Outcome::remarked(axis.config().joint +
+      return Outcome::remarked(jointName(axis.config()) +
                                ": was being enabled, is switched off again instead");
     } else if (axis.powerOff()) {
       was_off_ = true;
@@ -61,14 +61,14 @@ class Halt : public Procedure {
     if (!outcome.isDone()) return outcome;
     if (was_off_ && axis.powerOff()) return nothingToHalt(axis);
     std::string text =
-        axis.config().joint + ": stands at " + place(axis) + ", stopped by a quick stop";
+        jointName(axis.config()) + ": stands at " + place(axis) + ", stopped by a quick stop";
     if (was_enabled_) text += ", as mode " + mode_ + " has no other brake";
     return Outcome::done(text + (axis.powerOff() ? "; it is disabled, enable to go on"
                                                  : "; it holds its position, enable to go on"));
   }
 
   static Outcome nothingToHalt(const AxisCore& axis) {
-    return Outcome::done(axis.config().joint + ": is not enabled, so nothing is to be halted");
+    return Outcome::done(jointName(axis.config()) + ": is not enabled, so nothing is to be halted");
   }
 
   static std::string place(const AxisCore& axis) {

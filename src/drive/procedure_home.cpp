@@ -19,7 +19,8 @@ class DeclareZero : public Procedure {
     if (!declared.isDone()) return declared;
     const double offset = axis.config().homing->offset;
     const bool prismatic = axis.config().geometry.type == AxisGeometry::Type::prismatic;
-    return Outcome::done(axis.config().joint + ": homed by declaring the present position to be " +
+    return Outcome::done(jointName(axis.config()) +
+                         ": homed by declaring the present position to be " +
                          length(offset, prismatic) + "; nothing moved" + declaring_.remark());
   }
 

@@ -283,7 +283,7 @@ Outcome DriveHoming::finishRestoring(const Context& context) {
     return Outcome::failed(axis.who() + ": homed by " + method(axis) + ", position " + where +
                            ", but then " + outcome.message + "; quick stop is commanded");
   }
-  return Outcome::done(axis.config().joint + ": homed by " + method(axis) + " in " +
+  return Outcome::done(jointName(axis.config()) + ": homed by " + method(axis) + " in " +
                        seconds(end_ - started_) + ", position " + where + axis.limits().remark());
 }
 

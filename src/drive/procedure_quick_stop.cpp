@@ -43,7 +43,7 @@ class QuickStop : public Procedure {
 
   Outcome settle(const Context& context) {
     AxisCore& axis = context.axis;
-    const std::string joint = axis.config().joint;
+    const std::string joint = jointName(axis.config());
     if (axis.faulted()) {
       return Outcome::remarked(joint + ": no motion is commanded; " + axis.faultText());
     }

@@ -122,7 +122,7 @@ class Recover : public Procedure {
     const AxisCore& axis = context.axis;
     const std::string obstacle = axis.obstacle();
     if (!obstacle.empty()) return Outcome::failed(obstacle);
-    return Outcome::done(axis.config().joint + ": is enabled and well, mode " +
+    return Outcome::done(jointName(axis.config()) + ": is enabled and well, mode " +
                          axis.mode().spec->name + "; it was left alone");
   }
 
@@ -132,7 +132,7 @@ class Recover : public Procedure {
     const std::string done = "recovered, enabled in mode " + axis.mode().spec->name + " after " +
                              seconds(context.now - started_);
     if (!obstacle.empty()) return Outcome::failed(obstacle + " (" + done + ")");
-    return Outcome::done(axis.config().joint + ": " + done);
+    return Outcome::done(jointName(axis.config()) + ": " + done);
   }
 
   Phase phase_ = Phase::begin;
@@ -146,8 +146,9 @@ class Recover : public Procedure {
 
 Result<std::unique_ptr<Procedure>> makeRecover(AxisCore& axis) {
   const ModeChannel& mode = axis.workingMode();
-  if (!mode.refusal.empty()) {
-    return Error{axis.who() + ": cannot enable in mode " + mode.spec->name + ": " + mode.refusal};
+  const std::string unusable = axis.modeRefusal(mode);
+  if (!unusable.empty()) {
+    return Error{axis.who() + ": cannot enable in mode " + mode.spec->name + ": " + unusable};
   }
   return std::unique_ptr<Procedure>(std::make_unique<Recover>(axis));
 }

@@ -42,7 +42,7 @@ class SetMode : public Procedure {
     limits_settled_ = true;
     const Outcome outcome = step_.advance(context);
     if (!outcome.isDone()) return outcome;
-    return Outcome::done(axis.config().joint + ": mode " + mode_->spec->name + " after " +
+    return Outcome::done(jointName(axis.config()) + ": mode " + mode_->spec->name + " after " +
                          seconds(context.now - started_) +
                          (step_.wasDisabled() ? ", disabled meanwhile as the drive demands" : ""));
   }
@@ -57,7 +57,9 @@ class SetMode : public Procedure {
 std::string knownModes(const AxisCore& axis) {
   std::string names;
   for (const ModeChannel& channel : axis.objects().modes) {
-    if (channel.spec->kind == ControlKind::homing || !channel.refusal.empty()) continue;
+    if (channel.spec->kind == ControlKind::homing || !axis.modeRefusal(channel).empty()) {
+      continue;
+    }
     names += (names.empty() ? "" : ", ") + channel.spec->name;
   }
   return names;
@@ -75,8 +77,9 @@ Result<std::unique_ptr<Procedure>> makeSetMode(AxisCore& axis, const std::string
   if (channel->spec->kind == ControlKind::homing) {
     return Error{axis.who() + ": " + name + " is not entered by set_mode; call home"};
   }
-  if (!channel->refusal.empty()) {
-    return Error{axis.who() + ": mode " + name + " cannot be used: " + channel->refusal};
+  const std::string unusable = axis.modeRefusal(*channel);
+  if (!unusable.empty()) {
+    return Error{axis.who() + ": mode " + name + " cannot be used: " + unusable};
   }
   const std::string refusal = nodeRefusal(axis, "set the mode");
   if (!refusal.empty()) return Error{refusal};

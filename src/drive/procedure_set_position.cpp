@@ -20,7 +20,7 @@ class SetPosition : public Procedure {
     const bool prismatic = axis.config().geometry.type == AxisGeometry::Type::prismatic;
     const Outcome declared = declaring_.advance(context);
     if (!declared.isDone()) return declared;
-    return Outcome::done(axis.config().joint + ": the present position is declared to be " +
+    return Outcome::done(jointName(axis.config()) + ": the present position is declared to be " +
                          length(position_, prismatic) + " (it read " +
                          length(declaring_.before(), prismatic) +
                          "); nothing moved, the axis counts as homed" + declaring_.remark());

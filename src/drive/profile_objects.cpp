@@ -118,7 +118,7 @@ std::int64_t highestOf(DataType type) {
 
 const ObjectSpec* findObject(const DriveProfile& profile, const std::string& name) {
   if (const ObjectSpec* object = profile.find(name)) return object;
-  const auto id = canopen::parseObjectId(name);
+  const auto id = canopen::parseObjectAddress(name);
   return id ? profile.find(*id) : nullptr;
 }
 

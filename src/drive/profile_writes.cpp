@@ -35,9 +35,12 @@ const ObjectSpec* readTarget(YamlSection& section, const DriveProfile& profile, 
     if (!object->writable) value->problem("`" + *text + "` is read-only");
     return object;
   }
-  if (!canopen::parseObjectId(*text)) {
+  if (!canopen::parseObjectAddress(*text)) {
     value->problem(sourceOf(profile) + " has no object `" + *text + "`" +
                    suggestion(*text, objectNames(profile)));
+  } else if (canopen::isAmbiguousIndex(*text)) {
+    value->problem("`" + *text + "` names no object for sure, as YAML makes a decimal number of " +
+                   "0x...: write " + canopen::unambiguousIndex(*text));
   } else if (!type_value) {
     value->problem(sourceOf(profile) + " does not name " + *text +
                    "; add its type, for example `type: uint16`");
@@ -96,7 +99,7 @@ void readValue(YamlSection& section, const DriveProfile& profile, const ObjectSp
   Coding coding{*type, Encoding::integer};
   if (object != nullptr) {
     coding.encoding = object->encoding;
-  } else if (const auto id = canopen::parseObjectId(write.object)) {
+  } else if (const auto id = canopen::parseObjectAddress(write.object)) {
     coding.encoding = encodingAt(profile, *id, *type);
   }
   const bool by_index = object == nullptr || write.object != object->name;

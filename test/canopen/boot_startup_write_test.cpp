@@ -9,6 +9,7 @@ namespace {
 
 using namespace std::chrono_literals;
 using test::Lines;
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -92,6 +93,33 @@ TEST_F(StartupWriteTest, a_refused_write_fails_the_boot_unless_optional) {
   EXPECT_THAT(node->notes(),
               ElementsAre(HasSubstr("optional start-up write left out: writing 0x00001388 to "
                                     "6065:00 following_error_window")));
+}
+
+TEST_F(StartupWriteTest, leaves_out_what_only_a_default_asked_for_and_the_drive_does_not_have) {
+  config.writes[0].by_default = true;
+  config.lacking_remedy = "name it in `lacks`";
+  for (const char* refusal : {"583 80 65 60 00 00 00 02 06", "583 80 65 60 00 41 00 04 06",
+                              "583 80 65 60 00 11 00 09 06", "583 80 65 60 00 02 00 01 06"}) {
+    peer.on(kRead, "583 80 65 60 00 00 00 02 06").on(kWrite, refusal);
+    boot();
+    EXPECT_EQ(node->health(), NodeHealth::ready) << refusal << ": " << node->problem();
+    EXPECT_THAT(node->notes(), ElementsAre(AllOf(HasSubstr("6065:00 following_error_window"),
+                                                 HasSubstr("name it in `lacks`"))));
+  }
+}
+
+TEST_F(StartupWriteTest, a_value_that_the_drive_refuses_is_an_error_though_a_default_asked_for_it) {
+  config.writes[0].by_default = true;
+  peer.on(kRead, "583 43 65 60 00 10 00 00 00").on(kWrite, "583 80 65 60 00 31 00 09 06");
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::failed);
+}
+
+TEST_F(StartupWriteTest, a_missing_object_that_was_asked_for_is_an_error) {
+  peer.on(kRead, "583 80 65 60 00 00 00 02 06").on(kWrite, "583 80 65 60 00 00 00 02 06");
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_THAT(node->problem(), HasSubstr("0x06020000"));
 }
 
 TEST_F(StartupWriteTest, keeps_the_order_of_the_configuration) {

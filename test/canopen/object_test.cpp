@@ -13,7 +13,8 @@ TEST(ObjectId, prints_four_and_two_upper_case_digits) {
 }
 
 TEST(ObjectId, reads_every_documented_spelling) {
-  for (const char* text : {"6041:00", "0x6041:0", "0x6041", "6041", "0X6041:0x00"}) {
+  for (const char* text :
+       {"6041:00", "0x6041:0", "0x6041", "6041", "0X6041:0x00", "6041h:0", "6041h", "6041H:00h"}) {
     EXPECT_EQ(parseObjectId(text), (ObjectId{0x6041, 0})) << text;
   }
   EXPECT_EQ(parseObjectId("1a00:0b"), (ObjectId{0x1A00, 0x0B}));
@@ -26,10 +27,51 @@ TEST(ObjectId, refuses_what_is_no_address) {
   }
 }
 
+// What `rosservice call ... 0x6041` and an unquoted `object: 6041:00` arrive as.
+TEST(ObjectId, reads_what_yaml_makes_of_an_address) {
+  EXPECT_EQ(parseObjectAddress("24641"), (ObjectId{0x6041, 0}));      // 0x6041
+  EXPECT_EQ(parseObjectAddress("12289"), (ObjectId{0x3001, 0}));      // 0x3001
+  EXPECT_EQ(parseObjectAddress("49151"), (ObjectId{0xBFFF, 0}));      // 0xBFFF
+  EXPECT_EQ(parseObjectAddress("362460"), (ObjectId{0x6041, 0}));     // 6041:00 = 6041 * 60
+  EXPECT_EQ(parseObjectAddress("363840"), (ObjectId{0x6064, 0}));     // 6064:00
+  EXPECT_EQ(parseObjectAddress("61081"), (ObjectId{0x1018, 1}));      // 1018:1
+  EXPECT_EQ(parseObjectAddress("60000"), (ObjectId{0x1000, 0}));      // 1000:00
+  EXPECT_EQ(parseObjectAddress("61090"), (ObjectId{0x1018, 0x10}));   // 1018:10
+  EXPECT_EQ(parseObjectAddress("599999"), (ObjectId{0x9999, 0x59}));  // 9999:59
+  EXPECT_EQ(parseObjectAddress("6041h:0"), (ObjectId{0x6041, 0}));
+  for (const char* text : {"49152", "59999", "600000", "024641", "4294967296"}) {
+    EXPECT_FALSE(parseObjectAddress(text).has_value()) << text;
+  }
+}
+
+TEST(ObjectId, knows_what_cannot_be_told_apart) {
+  EXPECT_TRUE(isAmbiguousIndex("4120"));  // 4120h, or 0x1018
+  EXPECT_TRUE(isAmbiguousIndex("4096"));
+  for (const char* text : {"4095", "1018", "24641", "4120h", "0x4120", "4120:0", "41A0", ""}) {
+    EXPECT_FALSE(isAmbiguousIndex(text)) << text;
+  }
+  EXPECT_EQ(unambiguousIndex("4120"), "4120h or, if 0x1018 is meant, 1018h");
+}
+
 TEST(ObjectId, is_ordered_by_index_then_sub_index) {
   EXPECT_LT((ObjectId{0x1018, 4}), (ObjectId{0x1019, 0}));
   EXPECT_LT((ObjectId{0x1018, 1}), (ObjectId{0x1018, 2}));
   EXPECT_FALSE((ObjectId{0x1018, 1}) < (ObjectId{0x1018, 1}));
+}
+
+TEST(DataType, has_short_words) {
+  EXPECT_EQ(parseTypeWord("u8"), DataType::uint8);
+  EXPECT_EQ(parseTypeWord("u24"), DataType::uint24);
+  EXPECT_EQ(parseTypeWord("i16"), DataType::int16);
+  EXPECT_EQ(parseTypeWord("i64"), DataType::int64);
+  EXPECT_EQ(parseTypeWord("f32"), DataType::real32);
+  EXPECT_EQ(parseTypeWord("f64"), DataType::real64);
+  EXPECT_EQ(parseTypeWord("text"), DataType::visible_string);
+  EXPECT_EQ(parseTypeWord("bytes"), DataType::octet_string);
+  EXPECT_EQ(parseTypeWord("uint16"), DataType::uint16);
+  for (const char* word : {"", "u", "i", "u7", "int", "u08", "U8", "ui8", "f16"}) {
+    EXPECT_FALSE(parseTypeWord(word).has_value()) << word;
+  }
 }
 
 TEST(DataType, knows_size_sign_and_name) {

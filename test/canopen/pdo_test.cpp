@@ -245,5 +245,47 @@ TEST(PdoText, names_what_is_overdue_and_what_has_a_wrong_length) {
             "for 11 cycles");
 }
 
+// Statusword, mode, position; without the mode the position moves up.
+TEST(ProcessImage, what_stands_behind_an_entry_that_is_left_out_moves_up) {
+  ProcessImage image({pdo(PdoDirection::tpdo, 1, 0x183,
+                          {{kStatusword, 16, ""}, {kMode, 8, ""}, {kPosition, 32, ""}})});
+  EXPECT_TRUE(image.receive(0, frame("183 37 02 08 78 56 34 12"), kStamp));
+  image.invalidate();
+  image.leaveOut(PdoDirection::tpdo, 1, kMode);
+  EXPECT_TRUE(image.isLeftOut(PdoDirection::tpdo, image.inputSlot(kMode)));
+  EXPECT_FALSE(image.isLeftOut(PdoDirection::tpdo, image.inputSlot(kPosition)));
+  EXPECT_TRUE(image.receive(0, frame("183 37 02 78 56 34 12"), kStamp));
+  EXPECT_EQ(image.input(image.inputSlot(kPosition)).raw, 0x12345678U);
+  EXPECT_FALSE(image.fresh(image.inputSlot(kMode)));
+  image.includeAll();
+  EXPECT_TRUE(image.receive(0, frame("183 37 02 08 78 56 34 12"), kStamp));
+  EXPECT_EQ(image.input(image.inputSlot(kPosition)).raw, 0x12345678U);
+  EXPECT_EQ(image.input(image.inputSlot(kMode)).raw, 8U);
+  EXPECT_FALSE(image.isLeftOut(PdoDirection::tpdo, image.inputSlot(kMode)));
+}
+
+TEST(ProcessImage, a_pdo_without_entries_is_neither_sent_nor_expected) {
+  ProcessImage image({pdo(PdoDirection::tpdo, 1, 0x183, {{kStatusword, 16, ""}}),
+                      pdo(PdoDirection::rpdo, 2, 0x303, {{kTarget, 32, ""}})});
+  image.leaveOut(PdoDirection::tpdo, 1, kStatusword);
+  image.leaveOut(PdoDirection::rpdo, 2, kTarget);
+  for (int cycle = 0; cycle < 1000; ++cycle) image.age(kStamp);
+  EXPECT_EQ(image.staleCount(), 0U);
+  can::Frame out;
+  EXPECT_FALSE(image.packDue(0, out, kStamp));
+  image.includeAll();
+  EXPECT_TRUE(image.packDue(0, out, kStamp));
+  for (int cycle = 0; cycle < 1000; ++cycle) image.age(kStamp);
+  EXPECT_EQ(image.staleCount(), 1U);
+}
+
+TEST(ProcessImage, an_object_that_another_pdo_still_has_is_not_left_out) {
+  ProcessImage image(servo());
+  image.leaveOut(PdoDirection::tpdo, 2, kStatusword);
+  EXPECT_FALSE(image.isLeftOut(PdoDirection::tpdo, image.inputSlot(kStatusword)));
+  image.leaveOut(PdoDirection::tpdo, 1, kStatusword);
+  EXPECT_TRUE(image.isLeftOut(PdoDirection::tpdo, image.inputSlot(kStatusword)));
+}
+
 }  // namespace
 }  // namespace cia402::canopen

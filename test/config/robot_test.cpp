@@ -224,6 +224,15 @@ const Mistake kMistakes[] = {
      "groups/elbow: is the name of an axis"},
     {"axes:", "groups: {arm: {joints: [elbow, elbow]}}\naxes:", "`elbow` is listed twice"},
     {"axes:", "groups: {arm: {joints: []}}\naxes:", "groups/arm/joints: must not be empty"},
+    {"axes:\n  shoulder: {",
+     "groups: {arm: {joints: [shoulder]}}\naxes:\n  shoulder: {mode: pv, modes: [], ",
+     "`shoulder` cannot follow trajectories: no RPDO holds the target of its mode cyclic_position; "
+     "add cyclic_position to `axes/shoulder/modes`"},
+    {"axes:\n  shoulder: {",
+     "groups: {arm: {joints: [shoulder]}}\naxes:\n  shoulder: {mode: pv, pdos: {rpdo1: "
+     "[controlword, "
+     "target_velocity], tpdo1: [statusword, position_actual]}, ",
+     "map target_position into an RPDO in `axes/shoulder/pdos`"},
     {"axes:", "groups: {arm: {joints: [elbow], constraints: {shoulder: {goal: 1}}}}\naxes:",
      "groups/arm/constraints/shoulder: unknown key"},
     {"axes:",

@@ -47,9 +47,12 @@ struct BootPolicy {
 /// A write to the drive's object dictionary during boot.
 struct StartupWrite {
   ObjectId object;
-  std::string name;               ///< for messages
-  Bytes data;                     ///< wire order
-  bool optional = false;          ///< an abort by the drive is noted, not an error
+  std::string name;       ///< for messages
+  Bytes data;             ///< wire order
+  bool optional = false;  ///< an abort by the drive is noted, not an error
+  /// Nobody has asked for it by name: left out where the drive does not have the object or does not
+  /// let it be written.
+  bool by_default = false;
   bool only_if_different = true;  ///< read first, write only what differs
   bool always = false;  ///< no configuration but what stops the drive: done at each boot, first
 };
@@ -57,7 +60,8 @@ struct StartupWrite {
 /// Everything the master must know of one node.
 struct NodeConfig {
   NodeId node_id = 0;
-  std::string name;  ///< for messages: the axis or joint
+  std::string name;   ///< of the axis
+  std::string title;  ///< for messages: "shoulder (node 3)"; empty: made of name and node-ID
   /// Identity the node must have where given: 1000h, 1018h:01..04.
   std::optional<std::uint32_t> device_type, vendor_id, product_code, revision, serial;
   ErrorControl error_control = ErrorControl::heartbeat;
@@ -76,6 +80,9 @@ struct NodeConfig {
   bool map_count_may_be_read_only = false;      ///< quirk: sub0 of 16xxh/1Axxh aborts 0x06010002
   std::vector<PdoConfig> pdos;
   std::vector<StartupWrite> writes;  ///< in this order, after the PDOs but for `always`
+  /// Behind the warning of what was left out (StartupWrite::by_default, PdoEntry::optional): what
+  /// to do about it.
+  std::string lacking_remedy;
   SdoOptions sdo;
   SdoChannel sdo_channel;                          ///< COB-IDs other than 600h and 580h + node-ID
   Duration boot_timeout{std::chrono::seconds(5)};  ///< from reset to boot-up or an SDO answer

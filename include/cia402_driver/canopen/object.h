@@ -28,8 +28,17 @@ constexpr bool operator<(ObjectId a, ObjectId b) {
 /// "6041:00": four and two upper-case hexadecimal digits.
 std::string toString(ObjectId object);
 
-/// Reads "6041:00", "0x6041:0", "0x6041" or "6041" (hexadecimal, sub-index 0 unless given).
+/// Reads "6041:00", "0x6041:0", "6041h:0", "0x6041" or "6041" (hexadecimal, sub-index 0 unless
+/// given).
 std::optional<ObjectId> parseObjectId(std::string_view text);
+/// The same, and what YAML makes of such an address where a person has not quoted it: of 0x6041 the
+/// number 24641, of 6041:00 the number 362460 (it counts in 60). Both can be told from a
+/// hexadecimal index unless they have four digits, see isAmbiguousIndex().
+std::optional<ObjectId> parseObjectAddress(std::string_view text);
+/// Four decimal digits, from 4096 on: "4120" is index 4120h, or what YAML made of 0x1018.
+bool isAmbiguousIndex(std::string_view text);
+/// What to write instead: "4120h or, if 0x1018 is meant, 1018h". @pre isAmbiguousIndex(text)
+std::string unambiguousIndex(std::string_view text);
 
 /// Basic data types of CiA 301, 7.4.7 that can stand in an object dictionary.
 enum class DataType : std::uint8_t {
@@ -66,5 +75,8 @@ bool isSigned(DataType type);
 /// "uint16"; the same words as in profiles.
 const char* toString(DataType type);
 std::optional<DataType> parseDataType(std::string_view text);
+/// The same, and the short words of services and commands: u8 to u64, i8 to i64, f32, f64, text,
+/// bytes.
+std::optional<DataType> parseTypeWord(std::string_view text);
 
 }  // namespace cia402::canopen

@@ -20,6 +20,7 @@ struct PdoEntry {
   ObjectId object;
   std::uint8_t bits = 0;  ///< 1..64
   std::string name;       ///< for messages
+  bool optional = false;  ///< left out where the drive does not have it or cannot map it
 };
 
 /// Transmission types (CiA 301, 7.5.2.35 and 7.5.2.37).
@@ -113,6 +114,14 @@ class ProcessImage {
   std::size_t tpdoOf(Slot slot) const { return input_tpdos_[slot]; }
   /// The drive has another COB-ID than configured. No effect for a PDO that is not enabled.
   void setCobId(PdoDirection direction, unsigned number, std::uint16_t cob_id);
+  /// The drive has been configured without this entry of a PDO: what stands behind it moves up. A
+  /// PDO without entries is neither sent nor expected. Its value is not fresh, what is set is not
+  /// sent. No effect for what is not mapped.
+  void leaveOut(PdoDirection direction, unsigned number, ObjectId object);
+  /// All entries are there again, as constructed.
+  void includeAll();
+  /// Has an entry of this slot been left out, of all PDOs of that direction?
+  bool isLeftOut(PdoDirection direction, Slot slot) const;
   /// The value of an input is unknown until it comes again. @pre slot is that of an input
   void forget(Slot slot) { inputs_[slot].valid = false; }
   /// Marks every input as unknown and sets every output to 0 (the node rebooted or was lost), so
@@ -145,7 +154,8 @@ class ProcessImage {
       std::uint8_t bits;
       std::uint64_t mask;  ///< as wide, not shifted
     };
-    std::vector<Field> fields;
+    std::vector<Field> fields;      ///< without those that are left out
+    std::vector<Field> all_fields;  ///< as constructed
   };
   /// Enabled TPDOs / RPDOs, in order of their number.
   const std::vector<Pdo>& tpdos() const { return tpdos_; }
@@ -159,6 +169,9 @@ class ProcessImage {
 
  private:
   void add(const PdoConfig& config);
+  std::vector<Pdo>& pdosOf(PdoDirection direction) {
+    return direction == PdoDirection::tpdo ? tpdos_ : rpdos_;
+  }
   std::uint64_t pack(const Pdo& pdo) const;
   void fillFrame(const Pdo& pdo, std::uint64_t word, can::Frame& frame) const;
 

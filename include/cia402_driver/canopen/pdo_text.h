@@ -11,6 +11,9 @@ namespace cia402::canopen {
 std::string pdoName(const ProcessImage::Pdo& pdo);
 /// The TPDOs that are overdue: "TPDO 1 (COB-ID 0x183) did not come for 11 cycles"; empty if none.
 std::string staleText(const ProcessImage& image);
+/// The same without numbers that grow: "TPDO 1 (COB-ID 0x183) does not come", "TPDO 2 (COB-ID
+/// 0x283) comes too short (3 bytes instead of 8)"; empty if none is overdue.
+std::string missingText(const ProcessImage& image);
 /// The TPDOs that came with a wrong length: "TPDO 2 (COB-ID 0x283) came with 3 bytes instead of 8:
 /// too short, not taken (17 so far)"; empty if none.
 std::string wrongLengthText(const ProcessImage& image);

@@ -174,6 +174,11 @@ class Axis {
   /// The present fault in words with cause and remedy; empty if none.
   std::string faultText() const;
 
+  /// Why the drive's state or position is unknown though its node is ready, in words that stay the
+  /// same as long as the reason does; empty if both are known. Between a boot and the first TPDOs
+  /// it is not empty either.
+  std::string unknownText() const;
+
   /// The last thing the axis did by itself (left operation, quick-stopped without feedback, dropped
   /// a set-point, lost its node), as a sentence; noticeCount() grows with each.
   const std::string& notice() const;

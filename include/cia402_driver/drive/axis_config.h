@@ -80,6 +80,9 @@ struct AxisConfig {
   std::vector<std::string> modes;  ///< that the PDOs serve: the one at start and those to switch to
   std::vector<PdoLayout> pdos;     ///< resolved layout (planned, the profile's or the user's)
   bool pdos_planned = false;       ///< for this cycle; another one may get another plan
+  /// Of what is in `pdos`, the objects that only defaults ask for.
+  std::vector<std::string> default_objects;
+  std::vector<std::string> lacks;  ///< objects of the profile that this drive does not have
   Duration rpdo_timeout{0};        ///< the drive reacts when none came for so long; zero: never
   std::vector<NamedWrite> writes;  ///< the user's extra start-up writes
   ErrorControlOptions error_control;
@@ -100,9 +103,11 @@ struct AxisConfig {
 /// where none is configured.
 double stopDeceleration(const AxisConfig& axis);
 
-/// "shoulder (node 3)", for messages.
-inline std::string whoIs(const AxisConfig& axis) {
-  return axis.name + " (node " + std::to_string(axis.node_id) + ")";
-}
+/// For messages: "shoulder", or "shoulder (axis m3)" where joint and axis have different names.
+std::string jointName(const AxisConfig& axis);
+/// For messages: "shoulder (node 3)", or "shoulder (axis m3, node 3)".
+std::string whoIs(const AxisConfig& axis);
+/// Of those that the axis can be in, the one in which it follows trajectories; nullptr: none.
+const ModeSpec* trajectoryMode(const AxisConfig& axis);
 
 }  // namespace cia402::drive

@@ -18,6 +18,7 @@ struct ResolvedWrite {
   DataType type = DataType::uint32;
   std::uint64_t raw = 0;                ///< as wide as the type
   std::optional<ObjectId> copied_from;  ///< read this object and write what it says; raw is unused
+  bool asked_for = false;  ///< by the axis' configuration, not by a default of the profile alone
   bool optional = false;
 };
 
