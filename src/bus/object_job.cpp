@@ -1,5 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "cia402_driver/bus/jobs.h"
+#include "cia402_driver/bus/object_address.h"
 #include "cia402_driver/bus/object_text.h"
 
 namespace cia402::bus {
@@ -41,24 +42,12 @@ Result<ObjectJob> ObjectJob::find(drive::Axis& axis, const std::string& object, 
   ObjectJob job;
   job.axis_ = &axis;
   job.reply_ = std::move(reply);
-  const drive::AxisConfig& config = axis.config();
-  job.who_ = drive::whoIs(config);
-  job.spec_ = config.profile->find(object);
-  if (job.spec_ != nullptr) {
-    job.id_ = job.spec_->id;
-  } else if (const auto id = canopen::parseObjectId(object)) {
-    job.id_ = *id;
-    job.spec_ = config.profile->find(*id);
-  } else {
-    std::string why;
-    if (config.eds != nullptr) {
-      const auto found = config.eds->dictionary.find(object);
-      if (!found) why = " (" + config.eds->file + ": " + found.error().message + ")";
-    }
-    return Error{job.who_ + ": \"" + object + "\" is neither an object of profile " +
-                 config.profile->name + " nor an index such as 6041:00" + why};
-  }
-  job.name_ = canopen::toString(job.id_) + (job.spec_ ? " " + job.spec_->name : "");
+  job.who_ = drive::whoIs(axis.config());
+  auto found = findObject(axis.config(), object);
+  if (!found) return Error{job.who_ + ": " + found.error().message};
+  job.id_ = found->id;
+  job.spec_ = std::move(found->spec);
+  job.name_ = found->title;
   std::string refusal = axis.node().stoppedRefusal(job.name_);
   if (!refusal.empty()) return Error{std::move(refusal)};
   return job;
@@ -81,7 +70,7 @@ Result<ObjectJob> ObjectJob::write(drive::Axis& axis, const std::string& object,
   job.mark_ = axis.config().profile->coordinateMark(job.id_);
   const std::string refusal = job.calibrationRefusal();
   if (!refusal.empty()) return Error{job.who_ + ": " + job.name_ + " not written: " + refusal};
-  if (job.spec_ == nullptr) {
+  if (!job.spec_) {
     job.stage_ = Stage::asking_size;
     job.ticket_ = axis.node().sdo().upload(job.id_, job.name_);
     job.lock();
@@ -97,6 +86,8 @@ Result<ObjectJob> ObjectJob::write(drive::Axis& axis, const std::string& object,
       return Error{job.who_ + ": " + job.name_ + " not written: " + allowed.error().message};
     }
   }
+  const std::string units = inJointUnits(*job.spec_, axis.config(), *data);
+  if (!units.empty()) job.units_ = " (" + units + ")";
   job.lock();
   job.download(*data);
   return found;
@@ -153,7 +144,7 @@ bool ObjectJob::finishWrite(Time now) {
     since_ = now;
     return false;
   }
-  if (ticket_->ok()) return finish(true, who_ + ": wrote " + value_ + " to " + name_);
+  if (ticket_->ok()) return finish(true, who_ + ": wrote " + value_ + " to " + name_ + units_);
   return finish(false, who_ + ": " + name_ + " not written: " + ticket_->reason());
 }
 
@@ -170,10 +161,11 @@ bool ObjectJob::measure(Time now) {
   if (!measured && now < since_ + axis_->config().profile->timing.state_change) return false;
   const std::string& axis = axis_->config().name;
   std::string text = ticket_->ok()
-                         ? who_ + ": wrote " + value_ + " to " + name_
+                         ? who_ + ": wrote " + value_ + " to " + name_ + units_
                          : who_ + ": it is not known whether " + value_ + " was written to " +
                                name_ + " (" + ticket_->reason() + "); read it";
-  text += "; " + axis + " is not homed any more, for its zero may be another now: ";
+  text += "; " + drive::jointName(axis_->config()) +
+          " is not homed any more, for its zero may be another now: ";
   if (mark_ == CoordinateMark::configuration) {
     text += "see that `counts_per_turn`, `gear_ratio` and `direction` fit the drive, then ";
   }
@@ -185,8 +177,10 @@ bool ObjectJob::measure(Time now) {
 
 bool ObjectJob::finishRead() {
   const auto unnamed = unnamedFloat();
-  const ObjectText text =
-      describeObject(unnamed ? &*unnamed : spec_, axis_->config(), ticket_->data());
+  const ObjectText text = describeObject(unnamed ? &*unnamed
+                                         : spec_ ? &*spec_
+                                                 : nullptr,
+                                         axis_->config(), ticket_->data());
   Answer answer;
   answer.success = true;
   answer.message = who_ + ": " + name_ + " is " + text.value;
@@ -198,7 +192,7 @@ bool ObjectJob::finishRead() {
 }
 
 std::optional<drive::ObjectSpec> ObjectJob::unnamedFloat() const {
-  if (spec_ != nullptr) return {};
+  if (spec_) return {};
   return axis_->config().profile->unnamedFloat(id_, ticket_->data().size());
 }
 

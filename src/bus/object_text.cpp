@@ -1,10 +1,13 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "cia402_driver/bus/object_text.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cerrno>
 #include <cstdlib>
+#include <sstream>
 
+#include "cia402_driver/decode/value_text.h"
 #include "cia402_driver/drive/conversion.h"
 #include "cia402_driver/drive/object_value.h"
 #include "cia402_driver/motion/joint.h"
@@ -17,45 +20,36 @@ using drive::ObjectSpec;
 
 bool isText(drive::DataType type) { return canopen::sizeBits(type) == 0; }
 
-const char* jointUnit(drive::Quantity quantity, const drive::AxisConfig& axis) {
-  const bool linear = axis.geometry.type == drive::AxisGeometry::Type::prismatic;
-  switch (quantity) {
-    case drive::Quantity::position:
-      return linear ? "m" : "rad";
-    case drive::Quantity::velocity:
-      return linear ? "m/s" : "rad/s";
-    case drive::Quantity::acceleration:
-      return linear ? "m/s^2" : "rad/s^2";
-    case drive::Quantity::torque:
-      return linear ? "N" : "N m";
-    default:
-      return nullptr;
-  }
-}
-
-std::string hexNumber(std::uint64_t raw, unsigned bytes) {
-  static const char* const kDigits = "0123456789ABCDEF";
-  std::string text = "0x";
-  for (unsigned i = 2 * bytes; i-- > 0;) text += kDigits[(raw >> (4 * i)) & 0xF];
-  return text;
-}
-
 std::int64_t signExtended(std::uint64_t raw, unsigned bits) {
   if (bits >= 64) return static_cast<std::int64_t>(raw);
   const std::uint64_t sign = std::uint64_t{1} << (bits - 1);
   return static_cast<std::int64_t>((raw ^ sign)) - static_cast<std::int64_t>(sign);
 }
 
+bool isPrintable(const Bytes& data) {
+  return !data.empty() && std::all_of(data.begin(), data.end(),
+                                      [](std::uint8_t byte) { return std::isprint(byte) != 0; });
+}
+
+/// "37 06"; "nothing" where there is none.
+std::string bytesOf(const Bytes& data) {
+  std::string text;
+  for (const std::uint8_t byte : data) {
+    text += (text.empty() ? "" : " ") + decode::hexNumber(byte, 1).substr(2);
+  }
+  return text.empty() ? "nothing" : text;
+}
+
+/// What it means is not guessed: two bytes may be a number with or without a sign, or a text.
 ObjectText describeUnlisted(const Bytes& data) {
   ObjectText text;
-  if (data.empty() || data.size() > 8) {
-    text.value = textOf(data);
-    return text;
-  }
-  const std::uint64_t raw = canopen::toUnsigned(data);
-  text.number = static_cast<double>(raw);
-  text.value =
-      std::to_string(raw) + " (" + hexNumber(raw, static_cast<unsigned>(data.size())) + ")";
+  const bool long_text = data.size() > 8 && isPrintable(data);
+  text.value = long_text ? textOf(data) : bytesOf(data);
+  if (data.empty() || long_text) return text;
+  text.value += std::string(" (") +
+                (data.size() == 1 ? "1 byte" : std::to_string(data.size()) + " bytes") +
+                (isPrintable(data) ? ", as text " + textOf(data) : "") +
+                "; its type is not known: give it behind the object, e.g. u16, i32, f32, text)";
   return text;
 }
 
@@ -111,6 +105,22 @@ Result<Bytes> integerBytes(const std::string& value, const IntegerRange& range) 
   return canopen::toBytes(raw & range.highest_pattern, range.size);
 }
 
+/// "01 2A FF".
+Result<Bytes> bytesFrom(const std::string& value) {
+  Bytes bytes;
+  std::istringstream words(value);
+  for (std::string word; words >> word;) {
+    const bool pair = word.size() == 2 && std::isxdigit(static_cast<unsigned char>(word[0])) != 0 &&
+                      std::isxdigit(static_cast<unsigned char>(word[1])) != 0;
+    if (!pair) {
+      return Error{"\"" + value + "\" is no row of bytes; write e.g. 01 2A FF"};
+    }
+    bytes.push_back(static_cast<std::uint8_t>(std::stoul(word, nullptr, 16)));
+  }
+  if (bytes.empty()) return Error{"there is no byte to write; write e.g. 01 2A FF"};
+  return bytes;
+}
+
 /// A number, or its bits in hexadecimal.
 Result<Bytes> floatBytes(const std::string& value, const ObjectSpec& spec) {
   const unsigned size = canopen::sizeBits(spec.type) / 8;
@@ -139,12 +149,15 @@ Result<Bytes> floatBytes(const std::string& value, const ObjectSpec& spec) {
 }  // namespace
 
 std::string textOf(const Bytes& data) {
-  std::string text;
-  bool printable = !data.empty();
-  for (std::uint8_t byte : data) printable = printable && std::isprint(byte) != 0;
-  if (printable) return "\"" + std::string(data.begin(), data.end()) + "\"";
-  for (std::uint8_t byte : data) text += (text.empty() ? "" : " ") + hexNumber(byte, 1).substr(2);
-  return text.empty() ? "nothing" : text;
+  return isPrintable(data) ? "\"" + std::string(data.begin(), data.end()) + "\"" : bytesOf(data);
+}
+
+std::string inJointUnits(const ObjectSpec& spec, const drive::AxisConfig& axis, const Bytes& data) {
+  const char* unit = decode::unitOf(spec.quantity, axis);
+  if (unit == nullptr || data.size() * 8 != canopen::sizeBits(spec.type)) return {};
+  const auto joint = drive::Conversion::create(spec, *axis.profile, axis.geometry);
+  if (!joint) return {};
+  return motion::formatNumber(joint->toJoint(canopen::toUnsigned(data))) + " " + unit;
 }
 
 ObjectText describeObject(const ObjectSpec* spec, const drive::AxisConfig& axis,
@@ -153,7 +166,7 @@ ObjectText describeObject(const ObjectSpec* spec, const drive::AxisConfig& axis,
   const unsigned bits = canopen::sizeBits(spec->type);
   ObjectText text;
   if (isText(spec->type)) {
-    text.value = textOf(data);
+    text.value = spec->type == drive::DataType::octet_string ? bytesOf(data) : textOf(data);
     return text;
   }
   if (data.size() * 8 != (bits == 1 ? 8 : bits)) {
@@ -170,18 +183,15 @@ ObjectText describeObject(const ObjectSpec* spec, const drive::AxisConfig& axis,
     const std::int64_t number = signExtended(raw, bits);
     text.number = with_sign ? static_cast<double>(number) : static_cast<double>(raw);
     text.value = (with_sign ? std::to_string(number) : std::to_string(raw)) + " (" +
-                 hexNumber(raw, static_cast<unsigned>(data.size())) + ")";
+                 decode::hexNumber(raw, static_cast<unsigned>(data.size())) + ")";
   }
-  const char* unit = jointUnit(spec->quantity, axis);
-  const Result<drive::Conversion> joint =
-      drive::Conversion::create(*spec, *axis.profile, axis.geometry);
-  if (unit != nullptr && joint) {
-    text.value += " = " + motion::formatNumber(joint->toJoint(raw)) + " " + unit;
-  }
+  const std::string joint = inJointUnits(*spec, axis, data);
+  if (!joint.empty()) text.value += " = " + joint;
   return text;
 }
 
 Result<Bytes> encodeObject(const ObjectSpec& spec, const std::string& value) {
+  if (spec.type == drive::DataType::octet_string) return bytesFrom(value);
   if (isText(spec.type)) return Bytes(value.begin(), value.end());
   if (drive::holdsFloat(spec.type, spec.encoding)) return floatBytes(value, spec);
   return integerBytes(value, rangeOf(spec.type));

@@ -19,6 +19,29 @@ using drive::Quantity;
 
 constexpr std::size_t kLongestBytes = 32;
 
+std::int64_t signExtended(std::uint64_t raw, unsigned bits) {
+  if (bits == 0 || bits >= 64) return static_cast<std::int64_t>(raw);
+  const std::uint64_t sign = std::uint64_t{1} << (bits - 1);
+  return static_cast<std::int64_t>(raw ^ sign) - static_cast<std::int64_t>(sign);
+}
+
+std::string number(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.6g", value);
+  return text.data();
+}
+
+/// Without knowledge of what it means: decimal and hexadecimal.
+std::string plain(std::uint64_t raw, unsigned bits, bool is_signed) {
+  const std::string decimal =
+      is_signed ? std::to_string(signExtended(raw, bits)) : std::to_string(raw);
+  return raw < 10 && !is_signed ? decimal : decimal + " (" + hexNumber(raw, (bits + 7) / 8) + ")";
+}
+
+bool isWhole(const ObjectSpec& spec) { return !drive::holdsFloat(spec.type, spec.encoding); }
+
+}  // namespace
+
 const char* unitOf(Quantity quantity, const drive::AxisConfig& axis) {
   const bool linear = axis.geometry.type == drive::AxisGeometry::Type::prismatic;
   switch (quantity) {
@@ -46,29 +69,6 @@ const char* unitOf(Quantity quantity, const drive::AxisConfig& axis) {
   }
   return nullptr;
 }
-
-std::int64_t signExtended(std::uint64_t raw, unsigned bits) {
-  if (bits == 0 || bits >= 64) return static_cast<std::int64_t>(raw);
-  const std::uint64_t sign = std::uint64_t{1} << (bits - 1);
-  return static_cast<std::int64_t>(raw ^ sign) - static_cast<std::int64_t>(sign);
-}
-
-std::string number(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.6g", value);
-  return text.data();
-}
-
-/// Without knowledge of what it means: decimal and hexadecimal.
-std::string plain(std::uint64_t raw, unsigned bits, bool is_signed) {
-  const std::string decimal =
-      is_signed ? std::to_string(signExtended(raw, bits)) : std::to_string(raw);
-  return raw < 10 && !is_signed ? decimal : decimal + " (" + hexNumber(raw, (bits + 7) / 8) + ")";
-}
-
-bool isWhole(const ObjectSpec& spec) { return !drive::holdsFloat(spec.type, spec.encoding); }
-
-}  // namespace
 
 std::string hexNumber(std::uint64_t raw, unsigned bytes) {
   static const char* const kDigits = "0123456789ABCDEF";

@@ -32,7 +32,7 @@ TEST_F(ObjectJobTest, ReadsByNameWithJointUnits) {
   const Answer answer = read("following_error_window");
   EXPECT_TRUE(answer.success);
   EXPECT_EQ(answer.message,
-            "shoulder (node 1): 6065:00 following_error_window is 10000 (0x00002710)");
+            "shoulder (node 1): 6065:00 following_error_window is 10000 (0x00002710) = 0.1 rad");
   EXPECT_EQ(answer.data, (Bytes{0x10, 0x27, 0x00, 0x00}));
   EXPECT_EQ(answer.number, 10000.0);
 }
@@ -45,7 +45,72 @@ TEST_F(ObjectJobTest, ReadsByIndexAndNamesTheObjectWhereTheProfileKnowsIt) {
 
 TEST_F(ObjectJobTest, ReadsWhatTheProfileDoesNotList) {
   stored(0x2001) = {0x34, 0x12};
-  EXPECT_EQ(read("2001:00").message, "shoulder (node 1): 2001:00 is 4660 (0x1234)");
+  const Answer answer = read("2001:00");
+  EXPECT_THAT(answer.message, AllOf(HasSubstr("shoulder (node 1): 2001:00 is 34 12 (2 bytes; its "
+                                              "type is not known"),
+                                    HasSubstr("u16")));
+  EXPECT_TRUE(std::isnan(answer.number));
+  EXPECT_EQ(answer.data, (Bytes{0x34, 0x12}));
+}
+
+TEST_F(ObjectJobTest, ReadsWhatTheProfileDoesNotListByTheTypeThatIsGiven) {
+  stored(0x2001) = {0xFE, 0xFF};
+  EXPECT_EQ(read("2001h:0 u16").message, "shoulder (node 1): 2001:00 is 65534 (0xFFFE)");
+  EXPECT_EQ(read("2001h:0 i16").message, "shoulder (node 1): 2001:00 is -2 (0xFFFE)");
+  EXPECT_EQ(read("2001h i16").number, -2.0);
+  EXPECT_EQ(read("2001h bytes").text, "FE FF");
+  stored(0x2001) = {0x00, 0x00, 0xC0, 0xBF};  // -1.5 in IEEE 754
+  EXPECT_EQ(read("0x2001:0 f32").number, -1.5);
+  stored(0x2001) = {'D', 'M'};
+  EXPECT_EQ(read("2001h text").text, "\"DM\"");
+  EXPECT_THAT(read("2001h u32").message, HasSubstr("2 bytes, but"));
+}
+
+TEST_F(ObjectJobTest, WritesByTheTypeThatIsGivenWithoutAskingFirst) {
+  EXPECT_FALSE(write("2001h:0", "1").success) << "the drive has no such object";
+  stored(0x2001) = {0, 0, 0, 0};
+  world.sent.clear();
+  EXPECT_EQ(write("2001h:0 i16", "-2").message, "shoulder (node 1): wrote -2 to 2001:00");
+  EXPECT_EQ(stored(0x2001), (Bytes{0xFE, 0xFF}));
+  EXPECT_EQ(world.sentWithId(0x601).size(), 1u);
+  EXPECT_TRUE(write("2001h f32", "-1.5").success);
+  EXPECT_EQ(stored(0x2001), (Bytes{0x00, 0x00, 0xC0, 0xBF}));
+  EXPECT_TRUE(write("2001h bytes", "01 2A ff").success);
+  EXPECT_EQ(stored(0x2001), (Bytes{0x01, 0x2A, 0xFF}));
+  EXPECT_TRUE(write("2001h text", "DM").success);
+  EXPECT_EQ(stored(0x2001), (Bytes{'D', 'M'}));
+}
+
+TEST_F(ObjectJobTest, RefusesValuesThatDoNotFitTheTypeThatIsGiven) {
+  world.drives[0].written.clear();
+  EXPECT_THAT(write("2001h u8", "256").message, HasSubstr("does not fit uint8"));
+  EXPECT_THAT(write("2001h f32", "nan").message, HasSubstr("cannot be sent"));
+  EXPECT_THAT(write("2001h f32", "0x7F800000").message, HasSubstr("no finite number"));
+  EXPECT_THAT(write("2001h bytes", "123").message, HasSubstr("01 2A FF"));
+  EXPECT_THAT(write("2001h bytes", "").message, HasSubstr("no byte"));
+  EXPECT_TRUE(world.drives[0].written.empty());
+}
+
+TEST_F(ObjectJobTest, RefusesATypeThatContradictsTheProfile) {
+  EXPECT_EQ(read("6098h u16").message,
+            "shoulder (node 1): 6098:00 homing_method is int8 by profile test_drive, not uint16; "
+            "leave the type out");
+  stored(0x6098) = {17};
+  EXPECT_EQ(read("homing_method i8").number, 17.0);
+}
+
+TEST_F(ObjectJobTest, TakesWhatYamlMakesOfAnIndex) {
+  stored(0x6098) = {17};
+  EXPECT_EQ(read("24728").number, 17.0);   // 0x6098 in decimal
+  EXPECT_EQ(read("365880").number, 17.0);  // 6098:00 = 6098 * 60
+  const Answer answer = read("4120");
+  EXPECT_FALSE(answer.success);
+  EXPECT_THAT(answer.message, AllOf(HasSubstr("4120h"), HasSubstr("1018h")));
+}
+
+TEST_F(ObjectJobTest, TellsWhatWasWrittenInJointUnits) {
+  EXPECT_EQ(write("following_error_window", "10000").message,
+            "shoulder (node 1): wrote 10000 to 6065:00 following_error_window (0.1 rad)");
 }
 
 TEST_F(ObjectJobTest, TellsAnAbortInWords) {
@@ -102,7 +167,7 @@ TEST_F(ObjectJobTest, RefusesAValueThatDoesNotFitWithoutAskingTheDrive) {
 TEST_F(ObjectJobTest, RefusesWhatIsNeitherANameNorAnIndexAndUnknownAxes) {
   EXPECT_EQ(read("homing_speed").message,
             "shoulder (node 1): \"homing_speed\" is neither an object of profile test_drive nor an "
-            "index such as 6041:00");
+            "index such as 6041h:0");
   EXPECT_EQ(read("6041:00", "wrist").message, "there is no axis \"wrist\"");
   EXPECT_EQ(world.call(WriteObjectCommand{"wrist", "6041:00", "1"}).message,
             "there is no axis \"wrist\"");

@@ -92,9 +92,12 @@ TEST_F(ObjectTextTest, TellsASizeThatContradictsTheProfile) {
   EXPECT_TRUE(std::isnan(text.number));
 }
 
-TEST_F(ObjectTextTest, ShowsUnlistedObjectsAsNumbersUpToEightBytes) {
-  EXPECT_EQ(describeObject(nullptr, axis, {0x92, 0x01, 0x02, 0x00}).value, "131474 (0x00020192)");
-  EXPECT_EQ(describeObject(nullptr, axis, {0x92}).number, 146.0);
+TEST_F(ObjectTextTest, ShowsWhatNothingNamesAsBytesAndSaysSo) {
+  const ObjectText text = describeObject(nullptr, axis, {0x92, 0x01, 0x02, 0x00});
+  EXPECT_THAT(text.value, HasSubstr("92 01 02 00 (4 bytes; its type is not known"));
+  EXPECT_TRUE(std::isnan(text.number));
+  EXPECT_THAT(describeObject(nullptr, axis, {'D', 'M'}).value,
+              HasSubstr("44 4D (2 bytes, as text \"DM\"; its type is not known"));
   EXPECT_EQ(describeObject(nullptr, axis, Bytes(9, 'x')).value, "\"xxxxxxxxx\"");
 }
 

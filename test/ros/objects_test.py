@@ -1,6 +1,8 @@
 #!/usr/bin/python3
 # Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 """Reading and writing objects of the drives by service."""
+import math
+
 from robot_client import RobotTest, main
 
 
@@ -14,14 +16,25 @@ class Objects(RobotTest):
         self.assertEqual(answer.raw, " ".join(f"{byte:02X}" for byte in answer.bytes))
 
     def test_read_by_index_in_all_spellings(self):
-        for spelling in ("6041", "6041:00", "0x6041:00"):
+        # The last two are what rosservice makes of 0x6041 and of 6041:00.
+        for spelling in ("6041", "6041h:0", "6041:00", "0x6041:00", "24641", "362460"):
             answer = self.succeed("wrist/read_object", "6041", object=spelling)
             self.assertEqual(len(answer.bytes), 2)
             self.assertEqual(int(answer.number) & 0x4F, 0x40)  # switch on disabled
 
     def test_read_of_text(self):
-        answer = self.succeed("shoulder/read_object", "1008", object="1008:00")
-        self.assertIn('"', answer.value)
+        answer = self.succeed("shoulder/read_object", "1008", object="1008h text")
+        text = bytes(answer.bytes).decode("ascii")
+        self.assertGreater(len(text), 3)
+        self.assertEqual(answer.value, f'"{text}"')
+        self.assertTrue(math.isnan(answer.number))
+
+    def test_a_type_that_nobody_names_is_not_guessed(self):
+        answer = self.succeed("shoulder/read_object", "4 bytes; its type is not known", object="1018h:1")
+        self.assertTrue(math.isnan(answer.number))
+        vendor = int.from_bytes(answer.bytes, "little")
+        answer = self.succeed("shoulder/read_object", object="1018h:1 u32")
+        self.assertEqual(answer.number, vendor)
 
     def test_read_of_a_missing_object_tells_the_abort_in_words(self):
         self.refuse("shoulder/read_object", "shoulder|5FFF|does not exist", object="5FFF:00")

@@ -57,14 +57,24 @@ TEST_F(FloatObjects, HexadecimalIsTheBitsUnderEveryName) {
 }
 
 TEST_F(FloatObjects, TheSubIndexThatCountsOthersIsNoFloat) {
-  const auto read = call(scene, bus::ReadObjectCommand{"joint", "2005:00"});
+  const auto read = call(scene, bus::ReadObjectCommand{"joint", "2005:00 u8"});
   EXPECT_EQ(read.number, 3.0);
   EXPECT_EQ(read.text, "3 (0x03)");
 }
 
 TEST_F(FloatObjects, WholeNumbersAmongThemStayWhole) {
-  const auto read = call(scene, bus::ReadObjectCommand{"joint", "2002:0D"});  // pole pairs
+  const auto read = call(scene, bus::ReadObjectCommand{"joint", "2002:0D u32"});  // pole pairs
   EXPECT_EQ(read.number, 14.0);
+}
+
+// A type must not be a way around what the profile says of the bits.
+TEST_F(FloatObjects, ATypeIsRefusedWhereTheProfileKnowsTheEncoding) {
+  for (const char* type : {"u32", "i32", "f32", "bytes", "text"}) {
+    const auto answer = write(std::string("200A:03 ") + type, "-1");
+    EXPECT_FALSE(answer.success) << type;
+    EXPECT_THAT(answer.message, HasSubstr("leave the type out")) << type;
+  }
+  EXPECT_EQ(held(kTemperatureLimit), 0x42C80000u);
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ class ProcedureJob {
 /// knows the quantity.
 class ObjectJob {
  public:
-  /// Begins to read. An error if `object` is neither a profile name nor "6041:00".
+  /// Begins to read. An error where findObject() does not know `object`.
   /// @param axis must outlive the job.
   static Result<ObjectJob> read(drive::Axis& axis, const std::string& object, Reply reply);
   /// Begins to write `value`: a number ("-5", "0x80000181", "1.5") or text, by the object's type.
@@ -108,8 +108,9 @@ class ObjectJob {
   std::optional<drive::ObjectSpec> unnamedFloat() const;
 
   drive::Axis* axis_ = nullptr;
-  const drive::ObjectSpec* spec_ = nullptr;
+  std::optional<drive::ObjectSpec> spec_;  ///< nothing names it where there is none
   std::string who_, name_, value_;
+  std::string units_;  ///< of what is written: " (0.1 rad)", or nothing
   canopen::ObjectId id_;
   Stage stage_ = Stage::reading;
   drive::CoordinateMark mark_ = drive::CoordinateMark::none;  ///< of what is written
