@@ -53,21 +53,23 @@ Result<void> AxisMotion::command(const drive::Axis& axis, double value, Time now
   const std::string refusal = axis.motionRefusal();
   if (!refusal.empty()) return Error{refusal};
   if (owner_ != nullptr) {
-    return Error{axis.config().name +
+    return Error{drive::jointName(axis.config()) +
                  ": set-point refused: the axis follows a trajectory of group " + *owner_ +
                  "; stop that first with an empty trajectory"};
   }
   if (!std::isfinite(value)) {
-    return Error{axis.config().name + ": set-point refused: it is not a finite number"};
+    return Error{drive::jointName(axis.config()) +
+                 ": set-point refused: it is not a finite number"};
   }
   if (!entered(axis)) enter(axis);
   if (mode_->kind == drive::ControlKind::homing) {
-    return Error{axis.config().name + ": set-point refused: mode " + mode_->name +
+    return Error{drive::jointName(axis.config()) + ": set-point refused: mode " + mode_->name +
                  " takes none; set_mode another first"};
   }
   if (!command_) resume(axis, clock_);
   command_ = value;
   commanded_ = now;
+  dried_up_ = false;
   if (mode_->kind == drive::ControlKind::velocity) return velocity_.command(value, clock_);
   if (mode_->kind != drive::ControlKind::position) return {};
   if (!mode_->cyclic) {
@@ -88,6 +90,7 @@ void AxisMotion::enter(const drive::Axis& axis) {
   mode_ = axis.state().mode;
   zero_changes_ = axis.state().zero_changes;
   command_.reset();
+  dried_up_ = false;
 }
 
 void AxisMotion::resume(const drive::Axis& axis, Time at) {
@@ -113,12 +116,14 @@ void AxisMotion::step(drive::Axis& axis, Time now) {
   clock_ += cycle_;
   if (owner_ != nullptr) {
     mode_ = nullptr;  // what the group does to the target is not known here
+    dried_up_ = false;
     return;
   }
   const drive::SetPoint& sent = axis.setPoint();
   if (!axis.state().ready_for_motion || axis.state().mode == nullptr) {
     mode_ = nullptr;
     command_.reset();
+    dried_up_ = false;
     at_rest_ = sent.atRest();
     return;
   }
@@ -161,6 +166,7 @@ void AxisMotion::stepPosition(drive::Axis& axis) {
 
 void AxisMotion::stepVelocity(drive::Axis& axis, Time now) {
   if (now - commanded_ > timeout_) {
+    dried_up_ = dried_up_ || *command_ != 0.0;
     command_ = 0.0;
     (void)velocity_.command(0.0, clock_);  // cannot be refused: zero is finite
   }
@@ -173,7 +179,9 @@ void AxisMotion::stepTorque(drive::Axis& axis, Time now) {
   double effort = *command_;
   if (effort_limit_) effort = std::clamp(effort, -*effort_limit_, *effort_limit_);
   at_rest_ = effort == 0.0;
-  if (now - commanded_ > timeout_ || !axis.setTarget(effort)) command_.reset();
+  const bool old = now - commanded_ > timeout_;
+  dried_up_ = old && *command_ != 0.0;
+  if (old || !axis.setTarget(effort)) command_.reset();
 }
 
 }  // namespace cia402::bus

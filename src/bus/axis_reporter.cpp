@@ -87,11 +87,12 @@ void AxisReporter::malformedEmergency(std::size_t size, Time now) {
                  now);
 }
 
-void AxisReporter::fault(std::uint16_t code, const std::string& text, Time now) {
+void AxisReporter::problem(Event::Severity severity, std::uint16_t code, const std::string& text,
+                           Time now) {
   const auto verdict = code == 0 ? RepeatLimiter::Verdict::tell : other_limit_.take(code, now);
   if (verdict == RepeatLimiter::Verdict::hold) return;
   Event event;
-  event.severity = Event::Severity::error;
+  event.severity = severity;
   event.stamp = now;
   event.text.assign(text);
   events_->onEvent(event);

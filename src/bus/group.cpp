@@ -28,6 +28,12 @@ std::vector<motion::TrajectoryPoint> reorder(const std::vector<motion::Trajector
   return ordered;
 }
 
+std::string switchAdvice(const drive::AxisConfig& axis) {
+  const drive::ModeSpec* mode = drive::trajectoryMode(axis);
+  return mode == nullptr ? "no mode that it can be in does"
+                         : "~" + axis.name + "/set_mode " + mode->name + " first";
+}
+
 }  // namespace
 
 Group::Group(config::GroupConfig config, std::vector<std::size_t> axes,
@@ -57,15 +63,16 @@ std::string Group::refusal(const std::vector<drive::Axis>& axes,
     const drive::ModeSpec* mode = axes[axis].state().mode;
     if (reason.empty() &&
         (mode == nullptr || !mode->cyclic || mode->kind != drive::ControlKind::position)) {
-      reason = axes[axis].config().name + " is in mode " + (mode ? mode->name : "unknown") +
-               ", which does not follow trajectories: set_mode cyclic_position first";
+      reason = drive::jointName(axes[axis].config()) + " is in mode " +
+               (mode ? mode->name : "unknown") +
+               ", which does not follow trajectories: " + switchAdvice(axes[axis].config());
     }
     const std::string* owner = motions[axis].owner();
     if (reason.empty() && owner != nullptr && owner != &config_.name) {
-      reason = axes[axis].config().name + " follows a trajectory of group " + *owner;
+      reason = drive::jointName(axes[axis].config()) + " follows a trajectory of group " + *owner;
     }
     if (reason.empty() && owner == nullptr && !motions[axis].atRest()) {
-      reason = axes[axis].config().name +
+      reason = drive::jointName(axes[axis].config()) +
                " is still moved by streamed set-points: end the stream and let it come to rest";
     }
     if (!reason.empty()) all += (all.empty() ? "" : "; ") + reason;

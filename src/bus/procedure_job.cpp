@@ -11,7 +11,8 @@ namespace {
 std::string lapse(const drive::ProcedureRequest& request, const drive::Axis& axis, bool replaced) {
   using drive::ProcedureKind;
   const drive::AxisState& state = axis.state();
-  const std::string began = axis.config().name + ": " + toString(request.kind) + " had succeeded, ";
+  const std::string began =
+      drive::jointName(axis.config()) + ": " + toString(request.kind) + " had succeeded, ";
   const std::string cause = replaced
                                 ? began + "but " + toString(axis.procedure().kind) + " was called: "
                                 : began + "but ";
@@ -105,7 +106,7 @@ void ProcedureJob::restoreModes(std::vector<drive::Axis>& axes, Time now) {
     const bool succeeded = entry.stage == Stage::succeeded;
     if (succeeded) {
       entry.stage = Stage::failed;
-      entry.message = axis.config().name + ": it stays in mode " + axis.modeName();
+      entry.message = drive::jointName(axis.config()) + ": it stays in mode " + axis.modeName();
     }
     if (entry.mode.empty() || axis.modeName() == entry.mode) continue;
     if (axis.procedure().id != entry.id && stops(axis.procedure().kind)) {
@@ -114,7 +115,7 @@ void ProcedureJob::restoreModes(std::vector<drive::Axis>& axes, Time now) {
     }
     drive::ProcedureRequest back = request_;
     back.mode = entry.mode;
-    if (succeeded) entry.message = axis.config().name + ": another axis failed";
+    if (succeeded) entry.message = drive::jointName(axis.config()) + ": another axis failed";
     const Result<std::uint32_t> started = axis.start(back, now);
     if (started) {
       entry.stage = Stage::restoring;
@@ -190,8 +191,8 @@ void ProcedureJob::watch(std::vector<drive::Axis>& axes) {
       if (!back && status.id == entry.id) entry.message += ": " + status.message;
     } else if (status.id != entry.id) {
       entry.stage = Stage::failed;
-      entry.message = axis.config().name + ": " + toString(request_.kind) + " was replaced by " +
-                      toString(axis.procedure().kind);
+      entry.message = drive::jointName(axis.config()) + ": " + toString(request_.kind) +
+                      " was replaced by " + toString(axis.procedure().kind);
     } else if (!status.running) {
       entry.stage = status.success ? Stage::succeeded : Stage::failed;
       entry.message = status.message;
@@ -202,7 +203,7 @@ void ProcedureJob::watch(std::vector<drive::Axis>& axes) {
 
 void ProcedureJob::refuseToBegin(Entry& entry, const drive::Axis& axis, const std::string& why) {
   entry.stage = Stage::failed;
-  entry.message = axis.config().name + ": not started, for " + why;
+  entry.message = drive::jointName(axis.config()) + ": not started, for " + why;
 }
 
 void ProcedureJob::withdraw(std::size_t axis, drive::ProcedureKind by,
@@ -252,9 +253,9 @@ Answer ProcedureJob::answer(const std::vector<drive::Axis>& axes) const {
   for (const Entry& entry : entries_) {
     if (entry.stage == Stage::failed || entry.remark ||
         request_.kind == drive::ProcedureKind::home) {
-      answer.message +=
-          "; " +
-          (entry.message.empty() ? axes[entry.item.axis].config().name + ": done" : entry.message);
+      answer.message += "; " + (entry.message.empty()
+                                    ? drive::jointName(axes[entry.item.axis].config()) + ": done"
+                                    : entry.message);
     }
   }
   answer.message += remark_;

@@ -1,5 +1,9 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // What people are told of the axes, as it happens.
+#include <algorithm>
+#include <cstdio>
+
+#include "cia402_driver/bus/axis_condition.h"
 #include "cia402_driver/bus/robot.h"
 
 namespace cia402::bus {
@@ -8,6 +12,24 @@ namespace {
 constexpr unsigned kHistoryAfterFault = 4;                      // entries
 constexpr Duration kHistoryInterval = std::chrono::seconds(5);  // at least, between two readings
 constexpr Duration kNewsInterval = std::chrono::milliseconds(100);
+constexpr Duration kFirstFeedback =
+    std::chrono::milliseconds(500);  // may take so long after a boot
+
+Event::Severity severityOf(Condition condition) {
+  return condition == Condition::error ? Event::Severity::error : Event::Severity::warning;
+}
+
+/// Why an axis is brought to rest though nobody stopped it.
+std::string dryText(const drive::AxisConfig& config, const drive::ModeSpec& mode) {
+  char timeout[24];
+  std::snprintf(timeout, sizeof timeout, "%g s", toSeconds(config.command_timeout));
+  const bool effort = mode.kind == drive::ControlKind::torque;
+  const char* then = !effort                     ? "it is ramped to rest"
+                     : config.brake_after_effort ? "it is braked (command_timeout_action: brake)"
+                                                 : "it coasts (command_timeout_action: coast)";
+  return std::string("its stream of ") + (effort ? "efforts" : "velocities") +
+         " ended without a zero: nothing came for " + timeout + " (command_timeout), so " + then;
+}
 
 }  // namespace
 
@@ -28,6 +50,31 @@ void Robot::readHistoryAfterFault(std::size_t axis, Time now) {
       });
 }
 
+/// Unknown is a problem once the drive has had the time to send its first TPDOs.
+std::string Robot::unknownProblem(std::size_t axis, Time now) {
+  AxisNews& news = news_[axis];
+  std::string text = axes_[axis].unknownText();
+  if (text.empty()) {
+    news.unknown_since = kNever;
+    return text;
+  }
+  news.unknown_since = std::min(news.unknown_since, now);
+  const drive::AxisConfig& config = config_.axes[axis];
+  const Duration patience = kFirstFeedback + config.stale_after * config.sync_period;
+  return now - news.unknown_since < patience ? std::string() : text;
+}
+
+void Robot::watchStream(std::size_t axis, Time now) {
+  AxisNews& news = news_[axis];
+  news.dried_up = motions_[axis].driedUp();
+  const drive::ModeSpec* mode = axes_[axis].state().mode;
+  const bool say = news.dried_up && mode != nullptr;
+  const std::string text = say ? dryText(config_.axes[axis], *mode) : std::string();
+  news.words.say(&AxisWords::stream, text);
+  const bool told = news.notices != axes_[axis].noticeCount();  // that it is braked, by the axis
+  if (say && !told) tell(Event::Severity::warning, nodes_[axis]->who() + ": " + text, now);
+}
+
 void Robot::watchAxes(Time now) {
   for (AxisReporter& reporter : reporters_) reporter.tick(now);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
@@ -36,11 +83,13 @@ void Robot::watchAxes(Time now) {
     const bool failed_pdos_shown = !news.words.stale.empty();  // looked at again
     if (pdos_fail || failed_pdos_shown) watchPdos(i, now);
     if (news.history_wanted) readHistoryAfterFault(i, now);
+    if (news.dried_up != motions_[i].driedUp()) watchStream(i, now);
     const drive::AxisState& state = axes_[i].state();
     const drive::ProcedureStatus& procedure = axes_[i].procedure();
-    const bool well = state.health == canopen::NodeHealth::ready &&
-                      state.state != drive::State::fault &&
-                      state.state != drive::State::fault_reaction_active && !state.warning;
+    const bool well =
+        state.health == canopen::NodeHealth::ready && state.state != drive::State::fault &&
+        state.state != drive::State::fault_reaction_active &&
+        state.state != drive::State::unknown && state.feedback_valid && !state.warning;
     const bool changed = news.state != state.state || news.health != state.health ||
                          news.error_code != state.error_code || news.procedure != procedure.id ||
                          news.running != procedure.running ||
@@ -67,6 +116,7 @@ void Robot::watchAxes(Time now) {
     news.words.say(&AxisWords::waiting_for,
                    procedure.running ? procedure.waiting_for : std::string());
     std::string problem = !node.problem().empty() ? node.problem() : axes_[i].faultText();
+    if (problem.empty()) problem = unknownProblem(i, now);
     if (state.health == canopen::NodeHealth::ready) lss_problems_[i].clear();
     if (!lss_problems_[i].empty()) problem = lss_problems_[i];  // the reason for what follows it
     const bool noticed = news.notices != axes_[i].noticeCount();
@@ -78,7 +128,10 @@ void Robot::watchAxes(Time now) {
     if (news.words.version == version) continue;
     const bool told =
         told_by_health || (noticed && axes_[i].notice().find(problem) != std::string::npos);
-    if (!problem.empty() && !told) reporters_[i].fault(state.error_code, problem, now);
+    if (problem.empty() || told) continue;
+    const bool stops = axes_[i].config().profile->warning_stops;
+    reporters_[i].problem(severityOf(conditionOf(state, stops, true)), state.error_code, problem,
+                          now);
   }
 }
 

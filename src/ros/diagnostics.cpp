@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "cia402_driver/bus/axis_condition.h"
 #include "cia402_driver/bus/real_clock.h"
 #include "cia402_driver/can/error_frame.h"
 #include "cia402_driver/drive/fault_text.h"
@@ -16,6 +17,18 @@ namespace {
 using diagnostic_msgs::DiagnosticStatus;
 
 constexpr double kHighLoad = 0.8;  // share of the bit rate
+
+unsigned char levelOf(bus::Condition condition) {
+  switch (condition) {
+    case bus::Condition::well:
+      return DiagnosticStatus::OK;
+    case bus::Condition::warning:
+      return DiagnosticStatus::WARN;
+    case bus::Condition::error:
+      break;
+  }
+  return DiagnosticStatus::ERROR;
+}
 
 std::string hardwareId(const bus::AxisSnapshot& axis, const drive::AxisConfig& config) {
   const std::uint32_t serial = axis.node.identity.serial;
@@ -230,20 +243,8 @@ void Diagnostics::reportAxis(std::size_t index, Status& status) {
   const drive::AxisConfig& config = robot_.axes[index];
   const drive::AxisState& state = axis.state;
   status.hardware_id = hardwareId(axis, config);
-  const bool fault =
-      state.state == drive::State::fault || state.state == drive::State::fault_reaction_active;
-  if (!axis.words.problem.empty() || fault) {
-    status.summary(
-        axis.node.may_be_absent ? DiagnosticStatus::WARN : DiagnosticStatus::ERROR,
-        axis.words.problem.empty() ? drive::toString(state.state) : axis.words.problem.str());
-  } else if (state.health != canopen::NodeHealth::ready) {
-    status.summary(DiagnosticStatus::WARN, "the drive is not ready");
-  } else if (state.warning) {
-    status.summary(DiagnosticStatus::WARN, "the drive shows a warning");
-  } else {
-    status.summary(DiagnosticStatus::OK, std::string(drive::toString(state.state)) +
-                                             (state.halted ? ", halted until `enable`" : ""));
-  }
+  const bus::AxisSummary summary = bus::summaryOf(axis, config.profile->warning_stops);
+  status.summary(levelOf(summary.condition), summary.text);
   const bool linear = config.geometry.type == drive::AxisGeometry::Type::prismatic;
   status.add("state", drive::toString(state.state));
   status.add("statusword", drive::statuswordText(state.statusword));

@@ -126,9 +126,11 @@ TEST_F(AxisReporterTest, TellsAShortFrame) {
 }
 
 TEST_F(AxisReporterTest, LimitsFaultsThatComeAndGoButTellsEachNewCode) {
-  for (int i = 0; i < 100; ++i) reporter.fault(0x8611, "elbow (node 2): fault", now);
+  for (int i = 0; i < 100; ++i) {
+    reporter.problem(Event::Severity::error, 0x8611, "elbow (node 2): fault", now);
+  }
   EXPECT_EQ(texts.size(), 3u);
-  reporter.fault(0x7305, "elbow (node 2): another fault", now);
+  reporter.problem(Event::Severity::error, 0x7305, "elbow (node 2): another fault", now);
   EXPECT_EQ(texts.back(), "elbow (node 2): another fault");
   reporter.flush(now);
   EXPECT_THAT(texts.back(), HasSubstr("problem 0x8611 following error: came 97 times"));

@@ -40,6 +40,8 @@ class FakeDrive {
   bool blocked = false;          ///< does not move
   bool homing_fails = false;     ///< ends homing with an error
   bool homing_is_slow = false;   ///< never ends homing
+  unsigned statusword_bits = 0;  ///< shown besides those of its state
+  std::size_t tpdo_bytes = 7;    ///< as long is its TPDO; 0: it sends none
   std::int32_t disturbance = 0;  ///< counts that the actual position is off
   std::map<canopen::ObjectId, Bytes> objects;
   std::map<canopen::ObjectId, std::uint32_t> aborts;  ///< codes with which access is refused
@@ -183,16 +185,18 @@ class FakeDrive {
     synced_ = now;
     if (!operational) return;
     if (enabled() && !blocked) move(dt);
-    unsigned word = statusword;
+    unsigned word = statusword | statusword_bits;
     if (enabled() && mode == 6) word |= homingBits(now);
     if (enabled() && mode == 1) {
       word |= (acknowledge_ ? 0x1000u : 0u) | (position == profile_target_ ? 0x0400u : 0u);
     }
+    if (tpdo_bytes == 0) return;
     const auto p = static_cast<std::uint32_t>(position + disturbance);
     send(0x180, {static_cast<std::uint8_t>(word & 0xFF), static_cast<std::uint8_t>(word >> 8),
                  static_cast<std::uint8_t>(mode), static_cast<std::uint8_t>(p & 0xFF),
                  static_cast<std::uint8_t>(p >> 8 & 0xFF),
                  static_cast<std::uint8_t>(p >> 16 & 0xFF), static_cast<std::uint8_t>(p >> 24)});
+    out.back().size = static_cast<std::uint8_t>(tpdo_bytes);
   }
 
   unsigned homingBits(Time now) const {

@@ -99,7 +99,7 @@ TEST_F(GroupTest, RefusesWhileAnAxisIsInAModeThatFollowsNoTrajectory) {
   ASSERT_TRUE(world.call(ProcedureKind::set_mode, "elbow", "cyclic_velocity").success);
   EXPECT_EQ(world.move({1.0, 0.0}, 1.0).message,
             "arm: trajectory refused: elbow is in mode cyclic_velocity, which does not follow "
-            "trajectories: set_mode cyclic_position first");
+            "trajectories: ~elbow/set_mode cyclic_position first");
 }
 
 TEST_F(GroupTest, RefusesWhileAnotherGroupMovesAnAxis) {

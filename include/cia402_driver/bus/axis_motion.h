@@ -37,6 +37,9 @@ class AxisMotion {
   void stop(drive::Axis& axis);
   /// Are the set-points of this cycle at rest?
   bool atRest() const { return at_rest_; }
+  /// The last velocity or effort that was commanded, unless it was zero, was given up for want of a
+  /// newer one (AxisConfig::command_timeout). Until the next command, or the mode is left.
+  bool driedUp() const { return dried_up_; }
 
  private:
   void enter(const drive::Axis& axis);
@@ -59,6 +62,7 @@ class AxisMotion {
   Time clock_{};      // one period a cycle, however late it is
   Time commanded_{};  // in the time of the bus
   bool at_rest_ = true;
+  bool dried_up_ = false;
 };
 
 }  // namespace cia402::bus

@@ -43,8 +43,8 @@ class AxisReporter {
   void emergency(const canopen::Emergency& emergency, Time now, const std::string& excuse = {});
   /// A frame of `size` bytes came where an emergency was expected, without an error code.
   void malformedEmergency(std::size_t size, Time now);
-  /// The axis has got a fault or a problem with this code (603Fh); `text` says all.
-  void fault(std::uint16_t code, const std::string& text, Time now);
+  /// The axis has got a fault, a problem or a warning with this code (603Fh); `text` says all.
+  void problem(Event::Severity severity, std::uint16_t code, const std::string& text, Time now);
   /// The drive has booted up, asked for or not.
   void bootUp(Time now);
 

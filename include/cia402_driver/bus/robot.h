@@ -101,6 +101,8 @@ class Robot final : private canopen::MasterListener {
     bool history_wanted = false;
     std::uint64_t stale_count = 0, wrong_lengths = 0;  // of the TPDOs
     Time pdos_told = Time::min();
+    bool dried_up = false;        // its stream of set-points
+    Time unknown_since = kNever;  // its state or position
   };
 
   void onEmergency(canopen::Node& node, const canopen::Emergency& emergency) override;
@@ -141,6 +143,8 @@ class Robot final : private canopen::MasterListener {
   void withdrawEnabling(const std::string& why);
   void watchAxes(Time now);
   void watchPdos(std::size_t axis, Time now);
+  void watchStream(std::size_t axis, Time now);
+  std::string unknownProblem(std::size_t axis, Time now);
   void tell(Event::Severity severity, std::string_view text, Time now);
   // robot_lss.cpp
   std::string motionOnBus() const;

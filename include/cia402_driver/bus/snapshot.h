@@ -35,7 +35,8 @@ struct AxisWords {
   FixedText<96> step;         ///< of the procedure or of the node's boot
   FixedText<160> waiting_for;
   FixedText<256> history;  ///< the drive's own error list, read after its last fault
-  FixedText<384> problem;  ///< fault or node problem; empty if well
+  FixedText<384> problem;  ///< fault, warning or node problem; empty if well
+  FixedText<192> stream;   ///< a stream of set-points that has dried up, while it lasts
 
   template <std::size_t N>
   void say(FixedText<N> AxisWords::*what, std::string_view text) {

@@ -1,0 +1,62 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/bus/axis_condition.h"
+
+namespace cia402::bus {
+namespace {
+
+using drive::State;
+
+bool inFault(const drive::AxisState& state) {
+  return state.state == State::fault || state.state == State::fault_reaction_active;
+}
+
+bool unknown(const drive::AxisState& state) {
+  return state.state == State::unknown || !state.feedback_valid;
+}
+
+/// What the summary says where no problem is told.
+std::string plainText(const AxisSnapshot& axis) {
+  const drive::AxisState& state = axis.state;
+  if (state.health == canopen::NodeHealth::booting) {
+    return "the drive is booting: " + axis.words.step.str();
+  }
+  if (state.health != canopen::NodeHealth::ready) {
+    return std::string("the node is ") + canopen::toString(state.health);
+  }
+  if (unknown(state)) {
+    return "its state is unknown: no usable statusword (6041:00) and position (6064:00) yet";
+  }
+  if (inFault(state)) return drive::toString(state.state);
+  if (state.warning) return "the drive shows a warning (statusword bit 7)";
+  if (!axis.words.stream.empty()) return axis.words.stream.str();
+  return std::string(drive::toString(state.state)) +
+         (state.halted ? ", halted until `enable`" : "");
+}
+
+}  // namespace
+
+Condition conditionOf(const drive::AxisState& state, bool warning_stops, bool problem) {
+  // Without a problem it is on its way: its turn to boot has not come, or it boots.
+  if (state.health != canopen::NodeHealth::ready) {
+    return problem ? Condition::error : Condition::warning;
+  }
+  if (inFault(state) || unknown(state)) return Condition::error;
+  if (state.warning) return warning_stops ? Condition::error : Condition::warning;
+  return problem ? Condition::warning : Condition::well;
+}
+
+AxisSummary summaryOf(const AxisSnapshot& axis, bool warning_stops) {
+  const AxisWords& words = axis.words;
+  AxisSummary summary;
+  summary.condition = conditionOf(axis.state, warning_stops, !words.problem.empty());
+  if (summary.condition == Condition::well && !words.stream.empty()) {
+    summary.condition = Condition::warning;
+  }
+  if (summary.condition == Condition::error && axis.node.may_be_absent) {
+    summary.condition = Condition::warning;
+  }
+  summary.text = words.problem.empty() ? plainText(axis) : words.problem.str();
+  return summary;
+}
+
+}  // namespace cia402::bus
