@@ -24,7 +24,7 @@ from cia402_driver.msg import AxisStates, BusState
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from demo_plot import draw  # noqa: E402
 
-ROBOT = "/robot"
+ROBOT = "/bus"
 GROUP = "arm"
 # Deadlines in s; generous, for slow machines. Nothing waits longer than it must.
 START_DEADLINE = 120.0
