@@ -16,8 +16,8 @@ struct AddressedObject {
   std::string title;                      ///< "6041:00 statusword"
 };
 
-/// Finds "statusword", a name of the EDS, or an index (canopen::parseObjectAddress()); for an object
-/// that neither profile nor EDS names its type may follow: "2003h:2 u32"
+/// Finds "statusword", a name of the EDS, or an index (canopen::parseObjectAddress()); for an
+/// object that neither profile nor EDS names its type may follow: "2003h:2 u32"
 /// (canopen::parseTypeWord()). An error, without the axis' name, if there is no such object, or its
 /// type is another one, or an index of four digits may be one that YAML has made a number of
 /// (canopen::isAmbiguousIndex()).
