@@ -34,6 +34,11 @@ std::optional<NmtCommand> commandOf(const std::string& word) {
 std::string refusal(drive::Axis& axis, const std::string& word, NmtCommand command) {
   if (command == NmtCommand::start) return {};  // at most, it boots
   const std::string refused = drive::whoIs(axis.config()) + ": nmt " + word + " is refused: ";
+  if (command == NmtCommand::reset_node && !axis.config().profile->nmt_reset_node) {
+    return refused +
+           "by its profile (nmt_reset_node) the drive must not get that command; use "
+           "reset_communication, or switch the drive off and on";
+  }
   if (axis.procedure().running) {
     return refused + toString(axis.procedure().kind) + " runs (" + axis.procedure().step +
            "); wait for its end, or stop it by halt, quick_stop or disable";

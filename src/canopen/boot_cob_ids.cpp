@@ -29,7 +29,7 @@ class CobIds : public BootStep {
   bool begin(BootContext& boot, Time now) override {
     if (boot.found.unchanged || item_ >= kCobIds.size()) return false;
     phase_ = Phase::reading;
-    boot.read(row().object, row().name, now);
+    boot.read(row().object, row().name, now, boot.ifThere());
     return true;
   }
 

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -110,6 +111,14 @@ class BootContext {
             std::optional<SdoOptions> options = {});
   void write(ObjectId object, Bytes data, const std::string& name, Time now,
              std::optional<SdoOptions> options = {});
+  /// For an object that the drive may lack: one that answers nothing for it, but does for others,
+  /// does not have it. Asked three times, for a lost frame must not look like that.
+  SdoOptions ifThere() const {
+    SdoOptions options = config.sdo;
+    options.silence_is_missing = true;
+    options.retries = std::max(options.retries, 2);
+    return options;
+  }
   /// Sends what is queued for the node as soon as it is its turn on the bus.
   void submit(Time now);
   void command(NmtCommand command, Time now) {

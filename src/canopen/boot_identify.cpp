@@ -106,7 +106,9 @@ class Identification : public BootStep {
  public:
   bool begin(BootContext& boot, Time now) override {
     if (item_ >= kIdentity.size()) return false;
-    boot.read({0x1018, kIdentity[item_].subindex}, kIdentity[item_].name, now);
+    const IdentityRow& row = kIdentity[item_];
+    const bool must_be = row.subindex == 1 || (boot.config.*row.configured).has_value();
+    boot.read({0x1018, row.subindex}, row.name, now, must_be ? boot.config.sdo : boot.ifThere());
     return true;
   }
 

@@ -42,6 +42,7 @@ class Pdos : public BootStep {
     PdoConfigurator::Options options;
     options.count_may_be_read_only = boot.config.map_count_may_be_read_only;
     options.may_be_missing = !wanted.enabled;
+    options.if_there = boot.ifThere();
     pdo_.emplace(boot.sdo, wanted, options);
     pdo_->advance();
     boot.step = pdo_->step();

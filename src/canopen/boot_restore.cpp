@@ -61,7 +61,9 @@ class Restore : public BootStep {
       return failed;
     }
     boot.restore_pending = true;
-    boot.command(NmtCommand::reset_node, now);
+    boot.command(
+        boot.config.reset_node_allowed ? NmtCommand::reset_node : NmtCommand::reset_communication,
+        now);
     phase_ = Phase::restarting;
     boot.step = "waiting for boot-up after its parameters were restored";
     boot.deadline = now + boot.config.boot_timeout;

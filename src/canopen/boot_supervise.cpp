@@ -25,9 +25,9 @@ class ErrorControlSetup : public BootStep {
     const Row& row = rows_[item_];
     comparing_ = boot.config.boot.check != ConfigurationCheck::none;
     if (comparing_) {
-      boot.read(row.object, row.name, now);
+      boot.read(row.object, row.name, now, boot.ifThere());
     } else {
-      boot.write(row.object, toBytes(row.value, row.size), row.name, now);
+      boot.write(row.object, toBytes(row.value, row.size), row.name, now, boot.ifThere());
     }
     return true;
   }
@@ -41,7 +41,7 @@ class ErrorControlSetup : public BootStep {
       // Not as the last boot left it: nor may be anything else.
       comparing_ = false;
       boot.found.error_control_differed = true;
-      boot.write(row.object, toBytes(row.value, row.size), row.name, now);
+      boot.write(row.object, toBytes(row.value, row.size), row.name, now, boot.ifThere());
       return Progress::waiting;
     }
     if (!boot.ok() && patience_.grant(boot, boot.ticket->abortCode(), now)) {

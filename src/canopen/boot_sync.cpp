@@ -41,11 +41,11 @@ class SyncSetup : public BootStep {
     switch (phase_) {
       case Phase::read_counter:
         if (!config.sync_counter) return false;
-        boot.read(kSyncCounter, kSyncCounterName, now);
+        boot.read(kSyncCounter, kSyncCounterName, now, boot.ifThere());
         return true;
       case Phase::read_period:
         if (!counter_differs_ && !config.sync_period_us) return false;
-        boot.read(kSyncPeriod, kSyncPeriodName, now);
+        boot.read(kSyncPeriod, kSyncPeriodName, now, boot.ifThere());
         return true;
       case Phase::stop:
         if (!counter_differs_ || period_.value_or(0) == 0) return false;

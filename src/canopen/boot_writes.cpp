@@ -19,7 +19,7 @@ class Writes : public BootStep {
     if (item_ >= writes.size()) return false;
     reading_ = writes[item_].only_if_different;
     if (reading_) {
-      boot.read(writes[item_].object, writes[item_].name, now);
+      boot.read(writes[item_].object, writes[item_].name, now, options(boot));
     } else {
       send(boot, now);
     }
@@ -41,6 +41,11 @@ class Writes : public BootStep {
   }
 
  private:
+  SdoOptions options(const BootContext& boot) const {
+    const StartupWrite& write = boot.config.writes[item_];
+    return write.optional || write.by_default ? boot.ifThere() : boot.config.sdo;
+  }
+
   /// What nobody asked for by name, and the drive does not have or does not let write.
   bool leaveOut(BootContext& boot) const {
     const StartupWrite& write = boot.config.writes[item_];
@@ -62,7 +67,7 @@ class Writes : public BootStep {
   void send(BootContext& boot, Time now) {
     const StartupWrite& wanted = boot.config.writes[item_];
     reading_ = false;
-    boot.write(wanted.object, wanted.data, wanted.name, now);
+    boot.write(wanted.object, wanted.data, wanted.name, now, options(boot));
   }
 
   Progress compare(BootContext& boot, Time now) {

@@ -106,7 +106,10 @@ void PdoConfigurator::ask() {
 void PdoConfigurator::read(ObjectId object, const std::string& name) {
   const std::string full_name = name + " of " + title();
   step_ = (verifying_ ? "reading back " : "reading ") + toString(object) + " " + full_name;
-  ticket_ = sdo_.upload(object, full_name);
+  const bool parameter = phase_ == Phase::read_parameter && parameters_[item_].missing_is_zero &&
+                         parameters_[item_].wanted == 0;
+  const bool may_lack = parameter || (phase_ == Phase::read_cob_id && options_.may_be_missing);
+  ticket_ = sdo_.upload(object, full_name, may_lack ? options_.if_there : std::nullopt);
 }
 
 void PdoConfigurator::write(ObjectId object, std::uint32_t value, unsigned size,

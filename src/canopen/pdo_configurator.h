@@ -24,6 +24,8 @@ class PdoConfigurator {
   struct Options {
     bool count_may_be_read_only = false;  ///< go on when sub-index 0 of the mapping is read-only
     bool may_be_missing = false;          ///< a PDO that cannot be read is none of our business
+    /// For what the drive need not have; absent: the SDO client's defaults.
+    std::optional<SdoOptions> if_there;
   };
   enum class Status { running, done, failed };
 

@@ -295,6 +295,14 @@ void SdoClient::onTimeout(Time now) {
     attempt(now);
     return;
   }
+  const bool answers_others = attempt_ > 1 && !at_fence;  // the fence before the last request
+  if (answers_others && options.silence_is_missing) {
+    fail(SdoTransfer::Failure::aborted_by_server, abort_code::kNoSuchObject,
+         "no answer to " + std::to_string(attempt_) +
+             " requests, though the drive answers for other objects: it counts as missing",
+         now);
+    return;
+  }
   std::string reason = "no answer within " + milliseconds(options.timeout);
   if (attempt_ > 1) reason += ", asked " + std::to_string(attempt_) + " times";
   if (at_fence && attempt_ == 1) reason += ", the device has been silent since an earlier request";

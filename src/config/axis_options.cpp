@@ -101,6 +101,7 @@ SimulationConfig readSimulation(const YamlValue& value) {
   SimulationConfig simulation;
   YamlSection section(value);
   section.read("drive", simulation.drive);
+  if (const auto with = section.get("with")) simulation.with = with->node();
   section.read("initial_position", simulation.initial_position);
   section.read("lower_limit_switch", simulation.lower_limit_switch);
   section.read("upper_limit_switch", simulation.upper_limit_switch);

@@ -219,6 +219,7 @@ NodeConfig makeNode(const RobotConfig& robot, const AxisConfig& axis, Problems& 
   node.sdo.retries = profile.timing.sdo_retries;
   node.sdo_channel = axis.sdo;
   node.boot_timeout = profile.timing.boot;
+  node.reset_node_allowed = profile.nmt_reset_node;
   addStop(profile, node);
   addSyncWindow(robot.bus, node);
   const std::string path = "axes/" + axis.name;

@@ -70,7 +70,8 @@ void AxisCore::writeCommands(Time now) {
   controlword_ = composeControlword();
   image_.setOutput(objects_.controlword.slot, controlword_);
   if (objects_.mode.mapped()) {
-    image_.setOutput(objects_.mode.slot, static_cast<std::uint64_t>(mode_->spec->value));
+    const int value = mode_override_.value_or(mode_->spec->value);
+    image_.setOutput(objects_.mode.slot, static_cast<std::uint64_t>(value));
   }
   for (const Held& held : held_) image_.setOutput(held.slot, held.raw);
 }
@@ -137,6 +138,7 @@ void AxisCore::neutralizeTarget() {
 
 void AxisCore::selectMode(const ModeChannel& mode) {
   mode_ = &mode;
+  mode_override_.reset();
   given_ = kUnknown;
   held_.clear();
   if (mode.spec->kind != ControlKind::homing) unwrap_.resume();

@@ -68,6 +68,7 @@ void AxisCore::switchOff() {
 
 void AxisCore::leaveOperation() {
   in_operation_ = state_.ready_for_motion = false;
+  mode_override_.reset();
   brake_released_ = kNever;
   following_.end();
   homing_start_ = effort_streamed_ = false;

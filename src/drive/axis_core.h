@@ -88,6 +88,9 @@ class AxisCore {
   const ModeChannel& workingMode() const;
   /// Makes `mode` the one whose value and target the RPDOs carry; its target becomes neutral.
   void selectMode(const ModeChannel& mode);
+  /// Another value of 6060h is sent instead of the mode's, where it travels by RPDO; until it is
+  /// taken back, another mode is selected, or the axis leaves operation.
+  void overrideMode(std::optional<int> value) { mode_override_ = value; }
   /// The value that 6061h shows, if known.
   std::optional<int> shownMode() const { return shown_mode_; }
   void putShownMode(std::uint64_t raw, Time now);
@@ -114,6 +117,8 @@ class AxisCore {
   std::uint64_t targetFrames() const;
   /// Measured over a window that lies wholly after the last set-point that could have moved it.
   bool atStandstill() const;
+  /// What is measured says that it stands, whatever the drive may do the next moment.
+  bool measuredStill() const { return standstill_.still(); }
   /// The same by feedback that is no older than it must be, for answers: what comes late may tell
   /// that it has begun to move.
   bool seenToStand(Time now) const { return atStandstill() && heardLately(now); }
@@ -249,6 +254,7 @@ class AxisCore {
   Time stop_point_after_ = kNever;   ///< feedback newer than this has the stop point judged anew
   bool braking_ = false;      ///< the halt bit brakes an axis whose torque is nobody's any more
   bool voltage_off_ = false;  ///< the power stage is to be off, whatever the drive shows
+  std::optional<int> mode_override_;  ///< commanded instead of mode_ for a moment
   std::uint16_t controlword_ = 0, base_controlword_ = 0;
   Command command_ = nextCommand(State::unknown, Goal::disabled);  ///< of these two:
   State commanded_in_ = State::unknown;

@@ -34,10 +34,12 @@ bool bitSet(std::uint16_t word, int bit) {
 
 const char* toString(HomingStatus status) { return kNames[static_cast<std::size_t>(status)]; }
 
-HomingStatus decodeHoming(std::uint16_t statusword, const ModeSpec& mode) {
+HomingStatus decodeHoming(std::uint16_t statusword, const ModeSpec& mode, bool stands) {
   const bool error = bitSet(statusword, mode.homing_error_bit.value_or(13));
   const bool attained = bitSet(statusword, mode.homing_attained_bit.value_or(12));
-  const bool reached = !mode.target_reached_bit || bitSet(statusword, *mode.target_reached_bit);
+  // Without that bit an axis that turns round at its switch must not look like one that has ended.
+  const bool reached = mode.target_reached_bit ? bitSet(statusword, *mode.target_reached_bit)
+                                               : stands && (attained || error);
   for (const Row& row : kTable) {
     if (row.error == error && row.attained == attained && row.reached == reached) return row.status;
   }

@@ -288,7 +288,8 @@ Outcome DriveHoming::finishRestoring(const Context& context) {
 }
 
 HomingStatus DriveHoming::status(const Context& context) const {
-  return decodeHoming(context.axis.state().statusword, *homing_->spec);
+  const AxisCore& axis = context.axis;
+  return decodeHoming(axis.state().statusword, *homing_->spec, axis.measuredStill());
 }
 
 bool DriveHoming::attained(const Context& context) const {

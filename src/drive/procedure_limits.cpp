@@ -42,13 +42,18 @@ struct Steps {
   /// From switch on disabled it takes three transitions, and one more out of quick stop active.
   Duration enable() const {
     return timing.state_change + kComeToRest + writes(profile.before_enable) + limits() + mode() +
-           4 * timing.state_change + std::max(timing.brake_release, kFollowPatience);
+           4 * timing.state_change + timing.mode_change +
+           std::max(timing.brake_release, kFollowPatience);
   }
   Duration change() const {  // SwitchStep
-    return profile.mode_change_needs_disabling ? timing.state_change + enable() : mode();
+    const ModeChange& rules = profile.mode_change;
+    const bool may_disable = rules.needs_disabling || !rules.detours.empty();
+    return may_disable ? timing.state_change + enable() + mode() : mode();
   }
   Duration reset() const {
-    return 4 * timing.state_change + FaultResetStep::kInterval + FaultResetStep::kWatch;
+    const Duration once =
+        5 * timing.state_change + FaultResetStep::kInterval + FaultResetStep::kWatch;
+    return profile.fault_reset_tries * once;
   }
   Duration boot() const { return kBootTimes * timing.boot; }
   Duration declare() const { return 2 * kStanding + 2 * limits(); }

@@ -165,7 +165,10 @@ class RestoreParameters : public Procedure {
     resetting_ = true;
     reset_at_ = context.now;
     context.show("booting the node", "the node to be identified, configured and started");
-    context.axis.node().command(canopen::NmtCommand::reset_node, context.now);
+    context.axis.node().command(context.axis.profile().nmt_reset_node
+                                    ? canopen::NmtCommand::reset_node
+                                    : canopen::NmtCommand::reset_communication,
+                                context.now);
     return Outcome::running();
   }
 
@@ -184,7 +187,11 @@ class RestoreParameters : public Procedure {
       return Outcome::done(restored +
                            "; the drive was reset, configured again by the driver and "
                            "is disabled" +
-                           (axis.state().homed ? "" : ", not homed"));
+                           (axis.state().homed ? "" : ", not homed") +
+                           (axis.profile().nmt_reset_node
+                                ? ""
+                                : "; only its communication was reset (nmt_reset_node of the "
+                                  "profile): switch it off and on for the values to count"));
     }
     const canopen::NodeHealth health = axis.node().health();
     const bool failed =

@@ -81,6 +81,11 @@ Result<std::unique_ptr<Procedure>> makeSetMode(AxisCore& axis, const std::string
   if (!unusable.empty()) {
     return Error{axis.who() + ": mode " + name + " cannot be used: " + unusable};
   }
+  if (axis.state().halted && !axis.profile().mode_change.while_halted) {
+    return Error{axis.who() + ": mode " + name +
+                 " is refused, for the axis is halted and the drive takes no mode then; enable "
+                 "releases the halt"};
+  }
   const std::string refusal = nodeRefusal(axis, "set the mode");
   if (!refusal.empty()) return Error{refusal};
   if (!axis.state().feedback_valid) {

@@ -50,6 +50,13 @@ std::optional<ObjectSpec> DriveProfile::unnamedFloat(ObjectId id, std::size_t by
   return object;
 }
 
+const ModeChange::Detour* ModeChange::detour(const std::string& from, const std::string& to) const {
+  const auto found = std::find_if(detours.begin(), detours.end(), [&](const Detour& candidate) {
+    return candidate.from == from && candidate.to == to;
+  });
+  return found == detours.end() ? nullptr : &*found;
+}
+
 const ModeSpec* DriveProfile::mode(const std::string& mode_name) const {
   const std::string canonical = canonicalModeName(mode_name);
   const auto found = std::find_if(modes.begin(), modes.end(),

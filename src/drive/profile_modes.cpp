@@ -92,8 +92,8 @@ ModeSpec readMode(const std::string& name, const YamlValue& value, const DrivePr
   if ((mode.controlword_bits & 0x008F) != 0) {
     section.problem("controlword_bits must leave bits 0 to 3 and 7 to the state machine");
   }
-  if (mode.kind == ControlKind::homing && (!mode.homing_attained_bit || !mode.target_reached_bit)) {
-    section.problem("homing needs status_bits homing_attained and target_reached");
+  if (mode.kind == ControlKind::homing && !mode.homing_attained_bit) {
+    section.problem("homing needs status_bits/homing_attained");
   }
   if (const auto writes = section.get("entry_writes")) {
     mode.entry_writes = readWrites(*writes, profile, WriteList::running);

@@ -133,10 +133,54 @@ void checkFixedObjects(const YamlSection& section, const DriveProfile& profile) 
   }
 }
 
-void readModeChange(YamlSection& section, DriveProfile& profile) {
-  const auto value = section.get("mode_change");
-  const auto index = value ? value->oneOf({"any", "disabled"}) : std::nullopt;
-  profile.mode_change_needs_disabling = index && *index == 1;
+void readModeChangeWord(const YamlValue& value, ModeChange& change) {
+  const auto index = value.oneOf({"any", "disabled"});
+  change.needs_disabling = index && *index == 1;
+}
+
+// profile_velocity: {cyclic_position: profile_position, cyclic_torque: disabled}
+void readDetours(const YamlValue& value, ModeChange& change) {
+  YamlSection section(value);
+  for (const auto& [from, entry] : section.entries()) {
+    YamlSection targets(entry);
+    for (const auto& [to, through] : targets.entries()) {
+      const auto text = through.text();
+      if (!text) continue;
+      const std::string between = *text == "disabled" ? "" : canonicalModeName(*text);
+      change.detours.push_back({canonicalModeName(from), canonicalModeName(to), between});
+    }
+    targets.finish();
+  }
+  section.finish();
+}
+
+void readModeChange(YamlSection& profile_section, DriveProfile& profile) {
+  const auto value = profile_section.get("mode_change");
+  if (!value) return;
+  ModeChange& change = profile.mode_change;
+  if (!value->isMap()) return readModeChangeWord(*value, change);
+  YamlSection section(*value);
+  if (const auto when = section.get("when")) readModeChangeWord(*when, change);
+  if (const auto shown = section.get("shown")) {
+    change.shown_when_enabled = shown->oneOf({"always", "enabled"}).value_or(0) == 1;
+  }
+  if (const auto again = section.get("again")) {
+    const auto index = again->oneOf({"never", "same", "through_zero"});
+    if (index) change.again = static_cast<ModeChange::Again>(*index);
+  }
+  section.read("while_halted", change.while_halted);
+  if (const auto detours = section.get("detours")) readDetours(*detours, change);
+  section.finish();
+}
+
+// The modes are known only once they are read.
+void checkDetours(const YamlSection& section, const DriveProfile& profile) {
+  for (const ModeChange::Detour& detour : profile.mode_change.detours) {
+    for (const std::string& name : {detour.from, detour.to, detour.through}) {
+      if (name.empty() || profile.mode(name) != nullptr) continue;
+      section.problem("mode_change/detours: there is no mode `" + name + "`");
+    }
+  }
 }
 
 void readBehaviour(YamlSection& section, DriveProfile& profile) {
@@ -144,6 +188,8 @@ void readBehaviour(YamlSection& section, DriveProfile& profile) {
   section.read("halt_supported", profile.halt_supported);
   section.read("warning_stops", profile.warning_stops);
   readModeChange(section, profile);
+  section.readInteger("fault_reset_tries", profile.fault_reset_tries, 1, 20);
+  section.read("nmt_reset_node", profile.nmt_reset_node);
   readQuickStop(section, profile);
   readSync(section, profile);
   readHeartbeat(section, profile);
@@ -168,6 +214,7 @@ DriveProfile readProfile(const YamlValue& root) {
   if (const auto marks = section.get("coordinates")) readCoordinates(*marks, profile);
   readBehaviour(section, profile);
   if (const auto modes = section.require("modes", "at least one mode")) readModes(*modes, profile);
+  checkDetours(section, profile);
   if (const auto homing = section.get("homing")) readHoming(*homing, profile);
   if (const auto writes = section.get("startup")) {
     profile.startup = readWrites(*writes, profile, WriteList::boot);

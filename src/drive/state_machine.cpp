@@ -24,6 +24,8 @@ constexpr StateCode kStateCodes[] = {
     {0x006F, 0x0007, State::quick_stop_active},       // xxxx xxxx x00x 0111
     {0x004F, 0x000F, State::fault_reaction_active},   // xxxx xxxx x0xx 1111
     {0x004F, 0x0008, State::fault},                   // xxxx xxxx x0xx 1000
+    // And bit 6, such as 0x0248 (Technosoft iPOS8020): a fault reset is what helps.
+    {0x000F, 0x0008, State::fault},  // xxxx xxxx xxxx 1000
 };
 
 constexpr const char* kStateNames[kStates] = {"not ready to switch on",

@@ -40,6 +40,8 @@ Outcome EnableStep::advance(const Context& context) {
       return awaitMode(context);
     case Phase::transitions:
       return climb(context);
+    case Phase::shown:
+      return awaitShown(context);
     case Phase::brake:
       return awaitBrake(context);
   }
@@ -66,7 +68,7 @@ Outcome EnableStep::awaitFeedback(const Context& context) {
 bool EnableStep::resumes(const AxisCore& axis) const {
   const DriveProfile& profile = axis.profile();
   return axis.state().state == State::quick_stop_active && !profile.quick_stop_holds.empty() &&
-         profile.mode_change_needs_disabling && axis.config().quick_stop_holds &&
+         profile.mode_change.needs_disabling && axis.config().quick_stop_holds &&
          &axis.mode() == channel_ && axis.shownMode() == channel_->spec->value;
 }
 
@@ -128,10 +130,8 @@ Outcome EnableStep::awaitMode(const Context& context) {
 Outcome EnableStep::climb(const Context& context) {
   AxisCore& axis = context.axis;
   if (axis.inOperation() && axis.heardLately(context.now)) {
-    enter(Phase::brake, context);
-    context.show("releasing the brake", seconds(axis.profile().timing.brake_release) +
-                                            " to pass (profile, brake_release)");
-    return Outcome::running();
+    enter(Phase::shown, context);
+    return awaitShown(context);
   }
   const State state = axis.state().state;
   const Duration limit = axis.profile().timing.state_change;
@@ -153,6 +153,22 @@ Outcome EnableStep::climb(const Context& context) {
   return fail(context, axis.who() + ": enabling timed out: the drive has been in " +
                            toString(state) + " for " + seconds(context.now - since_) + "; " +
                            axis.report());
+}
+
+/// Until the mode is shown the targets are neutral, and the axis takes no command.
+Outcome EnableStep::awaitShown(const Context& context) {
+  AxisCore& axis = context.axis;
+  const Outcome outcome = shown_.advance(context);
+  if (!outcome.isDone() && !axis.inOperation()) {
+    enter(Phase::transitions, context);  // which says why it is not enabled
+    return climb(context);
+  }
+  if (outcome.isFailed()) axis.setGoal(Goal::disabled);
+  if (!outcome.isDone()) return outcome;
+  enter(Phase::brake, context);
+  context.show("releasing the brake",
+               seconds(axis.profile().timing.brake_release) + " to pass (profile, brake_release)");
+  return Outcome::running();
 }
 
 /// Its power may have gone since it was seen in operation; then its state says so, or it is lost.

@@ -21,9 +21,43 @@ Outcome FaultResetStep::fail(const Context& context, const std::string& why) con
   return Outcome::failed(why);
 }
 
-Outcome FaultResetStep::cameBack(const Context& context) const {
+Outcome FaultResetStep::cameBack(const Context& context) {
+  if (tryAgain(context)) return Outcome::running();
   return fail(context, "the fault came back at once after the reset, its cause is still there: " +
                            context.axis.faultText());
+}
+
+Outcome FaultResetStep::awaitReset(const Context& context) {
+  AxisCore& axis = context.axis;
+  const Duration waited = context.now - since_;
+  if (axis.state().state == State::fault_reaction_active) return cameBack(context);
+  if (clearable(axis)) {
+    const bool last = tries_ >= axis.profile().fault_reset_tries;
+    if (waited <= (last ? axis.profile().timing.state_change : kInterval) || tryAgain(context)) {
+      return Outcome::running();
+    }
+    const std::string times = tries_ == 1 ? "" : " (" + std::to_string(tries_) + " tries)";
+    return fail(context, "the fault reset (6040:00 bit 7)" + times + " did not clear it within " +
+                             seconds(waited) + ": " + axis.faultText() + "; " + axis.report());
+  }
+  axis.setFaultReset(false);
+  axis.forgetFault();
+  enter(Phase::low_again, context);
+  context.show("fault reset", "controlword bit 7 to be sent low again");
+  return Outcome::running();
+}
+
+/// Drives are known that need up to five (Schunk modules).
+bool FaultResetStep::tryAgain(const Context& context) {
+  AxisCore& axis = context.axis;
+  const int most = axis.profile().fault_reset_tries;
+  if (tries_ >= most) return false;
+  ++tries_;
+  axis.setFaultReset(false);
+  const std::string number = "try " + std::to_string(tries_) + " of " + std::to_string(most);
+  enter(Phase::reacting, context);
+  context.show("resetting the fault again", number);
+  return true;
 }
 
 Outcome FaultResetStep::advance(const Context& context) {
@@ -61,17 +95,7 @@ Outcome FaultResetStep::advance(const Context& context) {
       context.show("resetting the fault", "the drive to leave fault");
       return Outcome::running();
     case Phase::high:
-      if (axis.state().state == State::fault_reaction_active) return cameBack(context);
-      if (clearable(axis)) {
-        if (waited <= limit) return Outcome::running();
-        return fail(context, "the fault reset (6040:00 bit 7) did not clear it within " +
-                                 seconds(waited) + ": " + axis.faultText() + "; " + axis.report());
-      }
-      axis.setFaultReset(false);
-      axis.forgetFault();
-      enter(Phase::low_again, context);
-      context.show("fault reset", "controlword bit 7 to be sent low again");
-      return Outcome::running();
+      return awaitReset(context);
     case Phase::low_again:
       if (!sent && waited <= limit) return Outcome::running();
       enter(Phase::watching, context);

@@ -7,7 +7,8 @@ namespace cia402::drive {
 
 /// Fault reset (transition 15) with a proper edge: controlword bit 7 low on the wire, then high
 /// until the drive has left the fault or the time is over, then low again, then a moment in which
-/// the fault may come back. Edges are at least kInterval apart, whoever asks for them.
+/// the fault may come back. Edges are at least kInterval apart, whoever asks for them. Where the
+/// profile says so (`fault_reset_tries`) it is tried several times.
 class FaultResetStep {
  public:
   static constexpr Duration kInterval{std::chrono::seconds(1)};
@@ -19,9 +20,12 @@ class FaultResetStep {
   enum class Phase { begin, reacting, low, high, low_again, watching };
   void enter(Phase phase, const Context& context);
   Outcome fail(const Context& context, const std::string& why) const;
-  Outcome cameBack(const Context& context) const;
+  Outcome cameBack(const Context& context);
+  Outcome awaitReset(const Context& context);
+  bool tryAgain(const Context& context);
 
   Phase phase_ = Phase::begin;
+  int tries_ = 1;  ///< begun
   std::uint16_t code_ = 0;
   std::uint64_t frames_ = 0;
   Time since_{};

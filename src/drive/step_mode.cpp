@@ -72,7 +72,9 @@ void ModeStep::select(const Context& context) {
 Outcome ModeStep::await(const Context& context) {
   AxisCore& axis = context.axis;
   askForDisplay(context);
-  const bool shown = axis.shownMode() == mode_->spec->value;
+  // Some show it in operation enabled only; what is shown counts before the axis takes a command.
+  const bool later = axis.profile().mode_change.shown_when_enabled && !axis.inOperation();
+  const bool shown = later || axis.shownMode() == mode_->spec->value;
   if (shown && axis.targetFrames() >= controlword_frames_ + kSureFrames) return Outcome::done();
   if (context.now - started_ <= axis.profile().timing.mode_change) return Outcome::running();
   const std::string shows = axis.shownMode() ? modeText(*axis.shownMode(), axis) : "nothing";

@@ -6,30 +6,50 @@
 namespace cia402::drive {
 
 Outcome SwitchStep::advance(const Context& context) {
-  AxisCore& axis = context.axis;
   switch (phase_) {
     case Phase::begin:
-      if (!axis.inOperation() || !axis.profile().mode_change_needs_disabling) {
-        phase_ = Phase::switching;
-        return Outcome::running();
-      }
-      if (&axis.mode() == channel_ && axis.shownMode() == channel_->spec->value) {
-        return Outcome::done();
-      }
-      phase_ = Phase::disabling;
-      since_ = context.now;
-      was_disabled_ = true;
-      axis.setGoal(Goal::disabled);
-      context.show("disabling, as the drive takes no mode while enabled",
-                   "the drive to show switch on disabled");
-      return Outcome::running();
+      return begin(context);
     case Phase::disabling:
       return awaitDisabled(context);
     case Phase::enabling:
       return enabling_.advance(context);
+    case Phase::detour: {
+      const Outcome outcome = between_->advance(context);
+      if (!outcome.isDone()) return outcome;
+      phase_ = Phase::switching;
+      return Outcome::running();
+    }
     case Phase::switching:
       return mode_.advance(context);
   }
+  return Outcome::running();
+}
+
+Outcome SwitchStep::begin(const Context& context) {
+  AxisCore& axis = context.axis;
+  const ModeChange& rules = axis.profile().mode_change;
+  const ModeChange::Detour* detour = rules.detour(axis.mode().spec->name, channel_->spec->name);
+  const ModeChannel* between =
+      detour == nullptr ? nullptr : axis.objects().channel(detour->through);
+  const bool by_disabling = rules.needs_disabling || (detour != nullptr && between == nullptr);
+  if (!axis.inOperation() || (!by_disabling && between == nullptr)) {
+    phase_ = Phase::switching;
+    return Outcome::running();
+  }
+  if (&axis.mode() == channel_ && axis.shownMode() == channel_->spec->value) {
+    return Outcome::done();
+  }
+  if (between != nullptr) {
+    between_.emplace(*between);
+    phase_ = Phase::detour;
+    return Outcome::running();
+  }
+  phase_ = Phase::disabling;
+  since_ = context.now;
+  was_disabled_ = true;
+  axis.setGoal(Goal::disabled);
+  context.show("disabling, as the drive does not take that mode while enabled",
+               "the drive to show switch on disabled");
   return Outcome::running();
 }
 

@@ -1,15 +1,17 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "procedure.h"
 #include "step_enable.h"
 #include "step_mode.h"
 
 namespace cia402::drive {
 
-/// Brings an axis into another mode, enabled or not. Where the drive takes no mode while its power
-/// stage is on (profile, `mode_change: disabled`), an enabled axis is disabled and enabled again.
-/// To be used at standstill.
+/// Brings an axis into another mode, enabled or not. Where the drive does not stand that change
+/// while its power stage is on (profile, `mode_change`), an enabled axis is disabled and enabled
+/// again, or goes through the mode that the profile names. To be used at standstill.
 class SwitchStep {
  public:
   SwitchStep(const ModeChannel& mode, const DriveProfile& profile)
@@ -19,11 +21,13 @@ class SwitchStep {
   bool wasDisabled() const { return was_disabled_; }
 
  private:
-  enum class Phase { begin, disabling, enabling, switching };
+  enum class Phase { begin, disabling, enabling, detour, switching };
+  Outcome begin(const Context& context);
   Outcome awaitDisabled(const Context& context);
 
   const ModeChannel* channel_;
   ModeStep mode_;
+  std::optional<ModeStep> between_;  ///< into the mode on the way
   EnableStep enabling_;
   Phase phase_ = Phase::begin;
   bool was_disabled_ = false;

@@ -11,6 +11,10 @@ void readCommunication(DefinitionReader& reader, DeviceBehaviour& out) {
   reader.read("accepts_plain_sync", out.accepts_plain_sync);
   reader.read("generic_length_abort", out.generic_length_abort);
   reader.read("upload_without_size", out.upload_without_size);
+  reader.read("silent_on_missing", out.silent_on_missing);
+  reader.read("echoes_writes", out.echoes_writes);
+  reader.read("leaves_rubbish", out.leaves_rubbish);
+  reader.read("answers_four_bytes", out.answers_four_bytes);
   reader.read("accepts_short_sdo", out.accepts_short_sdo);
   reader.read("sdo_block", out.sdo_block);
   reader.read("sdo_block_crc", out.sdo_block_crc);

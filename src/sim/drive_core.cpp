@@ -34,7 +34,11 @@ void DriveCore::start(bool cold, Time now) {
   on_ = true;
   if (cold && !definition_.absolute_encoder) motion_.setCounter(0.0);
   motion_.powerStage(false);
-  motion_.setMode(definition_.mode(values_.raw(Role::mode, 0)));
+  applied_mode_ = values_.raw(Role::mode, 0);
+  motion_.setMode(definition_.mode(applied_mode_));
+  enabled_at_ = kNever;
+  resets_ = 0;
+  last_mode_command_ = applied_mode_;
   state_ = PdsState::not_ready_to_switch_on;
   ready_at_ = now + definition_.initialisation;
   controlword_ = 0;
@@ -45,7 +49,7 @@ void DriveCore::start(bool cold, Time now) {
   limit_reported_ = false;
   last_sync_.reset();
   values_.setRaw(Role::error_code, 0);
-  values_.setRaw(Role::mode_display, values_.raw(Role::mode, 0));
+  showMode();
   if (now >= ready_at_) {
     ready_at_ = kNever;
     enter(PdsState::switch_on_disabled);
@@ -69,7 +73,8 @@ bool DriveCore::enabledState() const {
 }
 
 bool DriveCore::idle() const {
-  return !motion_.powered() && motion_.atRest() && (ready_at_ == kNever || !on_);
+  return enabled_at_ == kNever && !motion_.powered() && motion_.atRest() &&
+         (ready_at_ == kNever || !on_);
 }
 
 void DriveCore::advance(Time now) {
@@ -107,6 +112,11 @@ void DriveCore::step() {
     ready_at_ = kNever;
     enter(PdsState::switch_on_disabled);
   }
+  if (time >= enabled_at_) {
+    enabled_at_ = kNever;
+    enter(PdsState::operation_enabled);
+    onTargetPosition();
+  }
   if (state_ == PdsState::operation_enabled) motion_.hold(time < follow_at_);
   motion_.step();
   if (motion_.powered()) {
@@ -140,6 +150,21 @@ void DriveCore::enter(PdsState state) {
     }
   } else if (!enabledState() && was_enabled) {
     motion_.powerStage(false);
+  }
+  if (state != PdsState::switched_on) enabled_at_ = kNever;
+  showMode();
+}
+
+/// 0x0F in Switched on.
+void DriveCore::beginEnabling() {
+  const DriveQuirks& quirks = definition_.quirks;
+  if (quirks.mode_needed && applied_mode_ == 0) return;
+  if (quirks.enabling_time == Duration::zero()) {
+    enter(PdsState::operation_enabled);
+    // Without SYNC the set-point that stands in the dictionary counts at once.
+    onTargetPosition();
+  } else if (enabled_at_ == kNever) {
+    enabled_at_ = now_ + quirks.enabling_time;
   }
 }
 
@@ -183,9 +208,7 @@ void DriveCore::onControlword() {
 void DriveCore::execute(const PdsTransition& transition) {
   switch (transition.number) {
     case 4:
-      enter(PdsState::operation_enabled);
-      // Without SYNC the set-point that stands in the dictionary counts at once.
-      onTargetPosition();
+      beginEnabling();
       break;
     case 5:
       leaveEnabled(transition, definition_.disable_operation, Role::disable_operation_option);
@@ -238,12 +261,34 @@ void DriveCore::beginFaultReaction(Ramp ramp) {
 }
 
 void DriveCore::onMode() {
+  constexpr std::uint16_t kHalt = 0x0100;
+  const DriveQuirks& quirks = definition_.quirks;
   const std::int64_t wanted = values_.raw(Role::mode, 0);
-  const ModeDefinition* mode = definition_.mode(wanted);
-  if (wanted == values_.raw(Role::mode_display, 0) && motion_.mode() == mode) return;
-  values_.setRaw(Role::mode_display, wanted);
-  motion_.setMode(mode);
+  const bool changes = wanted != last_mode_command_;
+  last_mode_command_ = wanted;
+  if (quirks.mode_command != ModeCommand::any && !enabledState()) return;
+  if (quirks.mode_command == ModeCommand::change && !changes) return;
+  if (quirks.halt_blocks_mode && (controlword_ & kHalt) != 0) return;
+  if (wanted == applied_mode_ && motion_.mode() == definition_.mode(wanted)) return;
+  const auto faulty = std::make_pair(applied_mode_, wanted);
+  const auto& faults = quirks.mode_faults;
+  if (enabledState() && std::find(faults.begin(), faults.end(), faulty) != faults.end()) {
+    if (const FaultDefinition* fault = definition_.fault("mode_change")) return raise(*fault);
+  }
+  applyMode(wanted);
+}
+
+void DriveCore::applyMode(std::int64_t wanted) {
+  applied_mode_ = wanted;
+  motion_.setMode(definition_.mode(wanted));
+  showMode();
   updateStatusword();
+}
+
+void DriveCore::showMode() {
+  const bool hidden =
+      definition_.quirks.mode_shown_when_enabled && state_ != PdsState::operation_enabled;
+  values_.setRaw(Role::mode_display, hidden ? 0 : applied_mode_);
 }
 
 void DriveCore::onTargetPosition() {
@@ -280,7 +325,7 @@ std::uint32_t DriveCore::refuseWrite(const Entry& entry, std::uint64_t number) c
       canopen::isSigned(entry.type) ? asSigned(candidate) : static_cast<std::int64_t>(number);
   if (values_.entry(Role::mode) == &entry) {
     if (definition_.mode(value) == nullptr) return abort_code::kInvalidValue;
-    const bool change = value != values_.raw(Role::mode_display, 0);
+    const bool change = value != applied_mode_;
     if (change && enabledState() && !definition_.mode_change_while_enabled) {
       return abort_code::kDeviceState;
     }
@@ -299,6 +344,13 @@ std::uint32_t DriveCore::refuseWrite(const Entry& entry, std::uint64_t number) c
   return is_locked && enabledState() ? abort_code::kDeviceState : 0;
 }
 
+/// They mean nothing to anybody but the maker, and change as they like: here every 10 ms.
+std::uint16_t DriveCore::vendorBits() const {
+  const std::uint64_t turn = static_cast<std::uint64_t>(now_.time_since_epoch().count() / 10000000);
+  return static_cast<std::uint16_t>((turn * 0x9E3779B97F4A7C15U >> 40U) &
+                                    definition_.quirks.vendor_bits);
+}
+
 void DriveCore::updateStatusword() {
   std::uint16_t word = statusBits(state_);
   if (state_ != PdsState::not_ready_to_switch_on) {
@@ -309,7 +361,10 @@ void DriveCore::updateStatusword() {
     if (voltage) word |= kVoltageBit;
   }
   if (warning_) word |= kWarningBit;
+  if (state_ == PdsState::fault) word |= definition_.quirks.fault_bits;
   if (enabledState()) word = static_cast<std::uint16_t>(word | motion_.statusBits());
+  const std::uint16_t vendor = definition_.quirks.vendor_bits;
+  if (vendor != 0) word = static_cast<std::uint16_t>((word & ~vendor) | vendorBits());
   if (word == statusword_) return;
   statusword_ = word;
   values_.setRaw(Role::statusword, word);

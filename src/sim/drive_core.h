@@ -82,6 +82,10 @@ class DriveCore {
   void superviseMotion();
   void connectionLost(ConnectionLoss reaction);
   void startSegment();
+  void applyMode(std::int64_t wanted);
+  void showMode();
+  void beginEnabling();
+  std::uint16_t vendorBits() const;
   void updateStatusword();
   std::uint8_t errorRegister() const;
 
@@ -96,7 +100,11 @@ class DriveCore {
   bool on_ = false;
   PdsState state_ = PdsState::not_ready_to_switch_on;
   Time ready_at_ = kNever;
-  Time follow_at_{};  ///< end of the brake delay
+  Time follow_at_{};               ///< end of the brake delay
+  Time enabled_at_ = kNever;       ///< end of DriveQuirks::enabling_time
+  std::int64_t applied_mode_ = 0;  ///< in which it is, whatever 6061h shows
+  std::int64_t last_mode_command_ = 0;
+  std::int64_t resets_ = 0;  ///< of the present fault
   std::uint16_t controlword_ = 0;
   std::uint16_t statusword_ = 0;
   std::optional<PdsTransition> after_stop_;  ///< transition waiting for the slow-down ramp

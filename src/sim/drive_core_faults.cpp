@@ -11,7 +11,8 @@ constexpr std::uint8_t kGenericError = 0x01;  // 1001h bit 0 is set with every e
 }  // namespace
 
 std::uint8_t DriveCore::errorRegister() const {
-  std::uint8_t bits = causes_.empty() ? 0 : kGenericError;
+  const bool generic = !causes_.empty() && !definition_.quirks.no_generic_error_bit;
+  std::uint8_t bits = generic ? kGenericError : 0;
   for (const Cause& cause : causes_) {
     bits = static_cast<std::uint8_t>(bits | cause.fault->error_register);
   }
@@ -59,6 +60,7 @@ void DriveCore::resetFault() {
     reports_.emergency(*lasting, errorRegister());
     return;
   }
+  if (++resets_ < definition_.quirks.fault_reset_tries) return;
   clearErrors();
   if (state_ == PdsState::fault) enter(PdsState::switch_on_disabled);  // transition 15
   updateStatusword();
@@ -67,6 +69,7 @@ void DriveCore::resetFault() {
 void DriveCore::clearErrors() {
   causes_.clear();
   warning_ = false;
+  resets_ = 0;
   values_.setRaw(Role::error_code, 0);
   reports_.errorsGone();
 }

@@ -234,6 +234,35 @@ void readStateMachine(Reader& reader, DriveDefinition& out) {
   }
 }
 
+void readQuirks(Reader& reader, DriveQuirks& out) {
+  reader.read("mode_shown_when_enabled", out.mode_shown_when_enabled);
+  reader.read<ModeCommand>("mode_command", out.mode_command,
+                           {{"any", ModeCommand::any},
+                            {"enabled", ModeCommand::enabled},
+                            {"change", ModeCommand::change}});
+  reader.read("mode_needed", out.mode_needed);
+  reader.read("enabling_time", out.enabling_time);
+  reader.read("halt_blocks_mode", out.halt_blocks_mode);
+  std::int64_t bits = out.fault_bits;
+  reader.read("fault_bits", bits, 0, 0xFFFF);
+  out.fault_bits = static_cast<std::uint16_t>(bits);
+  bits = out.vendor_bits;
+  reader.read("vendor_bits", bits, 0, 0xFFFF);
+  out.vendor_bits = static_cast<std::uint16_t>(bits);
+  reader.read("homing_reaches_no_target", out.homing_reaches_no_target);
+  reader.read("fault_reset_tries", out.fault_reset_tries, 1, 20);
+  reader.read("no_generic_error_bit", out.no_generic_error_bit);
+  if (!reader.has("mode_faults")) return;
+  out.mode_faults.clear();
+  for (const YAML::Node& item : reader.node("mode_faults")) {
+    if (item.IsSequence() && item.size() == 2) {
+      out.mode_faults.emplace_back(item[0].as<std::int64_t>(0), item[1].as<std::int64_t>(0));
+    } else {
+      reader.problem("mode_faults", "must be a list of pairs of modes like [3, 8]");
+    }
+  }
+}
+
 void readHoming(Reader& reader, DriveDefinition& out) {
   reader.read<bool>("home_offset", out.home_offset_is_zero_shift,
                     {{"position_at_home", false}, {"shift_of_zero", true}});
@@ -328,6 +357,7 @@ void readDefinition(Reader& reader, bool extends, DriveDefinition& out) {
     readMode(number, node, reader, out);
   });
   reader.section("state_machine", [&](Reader& r) { readStateMachine(r, out); });
+  reader.section("quirks", [&](Reader& r) { readQuirks(r, out.quirks); });
   reader.section("homing", [&](Reader& r) { readHoming(r, out); });
   reader.section("float_traps", [&](Reader& r) {
     r.read("non_finite", out.traps_non_finite);
@@ -373,14 +403,23 @@ const ModeDefinition* DriveDefinition::mode(std::int64_t number) const {
   return found == modes.end() ? nullptr : &*found;
 }
 
-Result<std::shared_ptr<const DriveDefinition>> loadDriveDefinition(const std::string& path) {
+Result<std::shared_ptr<const DriveDefinition>> loadDriveDefinition(const std::string& path,
+                                                                   const YAML::Node& changes) {
   Problems problems;
   auto definition = std::make_shared<DriveDefinition>();
   readFile(path, 0, *definition, problems);
+  if (problems.empty() && changes.IsMap()) {
+    Reader reader(changes, "with", problems);
+    readDefinition(reader, true, *definition);
+  }
   if (problems.empty()) return std::shared_ptr<const DriveDefinition>(std::move(definition));
   std::string text = path + ": the simulated drive's definition has problems:";
   for (const std::string& problem : problems) text += "\n  " + problem;
   return Error{text};
+}
+
+Result<std::shared_ptr<const DriveDefinition>> loadDriveDefinition(const std::string& path) {
+  return loadDriveDefinition(path, YAML::Node());
 }
 
 }  // namespace cia402::sim

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cia402_driver/sim/device.h"
@@ -83,6 +84,30 @@ struct UnitScale {
   double factor = 1.0;     ///< device units per internal unit
 };
 
+/// A command of a mode that counts, where 6060h is forgotten while disabled.
+enum class ModeCommand : std::uint8_t {
+  any,      ///< each that comes, whenever
+  enabled,  ///< each that comes while enabled
+  change,   ///< one that differs from the last, while enabled
+};
+
+/// What drives in the field do otherwise than CiA 402 says; each was seen or told of, see
+/// docs/simulated_drives.md. All off: a drive by the book.
+struct DriveQuirks {
+  bool mode_shown_when_enabled = false;  ///< 6061h is 0 in all states but operation enabled
+  ModeCommand mode_command = ModeCommand::any;
+  bool mode_needed = false;       ///< 0x0F enables nothing while the mode is 0
+  Duration enabling_time{0};      ///< from 0x0F in Switched on to operation enabled
+  bool halt_blocks_mode = false;  ///< 6060h is ignored while controlword bit 8 is set
+  /// Changes of 6060h that it answers by a fault (`mode_change`) while enabled: from, to.
+  std::vector<std::pair<std::int64_t, std::int64_t>> mode_faults;
+  std::uint16_t fault_bits = 0;           ///< statusword bits beside those of the state fault
+  std::uint16_t vendor_bits = 0;          ///< statusword bits that change with everything else
+  bool homing_reaches_no_target = false;  ///< statusword bit 10 stays 0 in homing
+  std::int64_t fault_reset_tries = 1;     ///< edges of bit 7 that it takes
+  bool no_generic_error_bit = false;      ///< 1001h without bit 0
+};
+
 /// See docs/simulated_drives.md for the file format.
 struct DriveDefinition {
   std::string name;
@@ -107,6 +132,7 @@ struct DriveDefinition {
   bool warning_stops = false;        ///< a warning leads to the fault reaction
   bool follows_sync_period = false;  ///< csp interpolates over the SYNC period, not over 60C2h
   std::vector<canopen::ObjectId> locked_while_enabled;
+  DriveQuirks quirks;
   Duration initialisation{0};  ///< in Not ready to switch on
 
   OptionTable quick_stop, shutdown, disable_operation, halt_option, fault_reaction;
@@ -127,5 +153,9 @@ struct DriveDefinition {
   const FaultDefinition* fault(const std::string& fault_name) const;
   const ModeDefinition* mode(std::int64_t number) const;
 };
+
+/// As loadDriveDefinition(path), with a mapping of further keys of such a file on top of it.
+Result<std::shared_ptr<const DriveDefinition>> loadDriveDefinition(const std::string& path,
+                                                                   const YAML::Node& changes);
 
 }  // namespace cia402::sim

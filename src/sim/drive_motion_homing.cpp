@@ -52,7 +52,8 @@ std::uint16_t DriveMotion::homingBits() const {
   std::uint16_t bits = 0;
   const bool searching = homing_.phase() == HomingSequence::Phase::searching && !halted_;
   const bool at_rest = standing() && !homing_returning_;
-  if (!searching && at_rest) bits |= 0x0400;
+  const bool tells = !definition_.quirks.homing_reaches_no_target;
+  if (!searching && at_rest && tells) bits |= 0x0400;
   if (homing_attained_) bits |= 0x1000;
   if (homing_failed_) bits |= 0x2000;
   return bits;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "drive_definition.h"
 #include "slave_context.h"
 
 namespace cia402::sim {
@@ -56,7 +57,8 @@ std::vector<SimulatedAxis> simulatedAxes(const config::RobotConfig& robot,
         section == robot.simulated.end() ? config::SimulationConfig() : section->second;
     const std::string name = simulation.drive.empty() ? axis.profile->name : simulation.drive;
     const bool is_path = name.find('/') != std::string::npos;
-    auto definition = loadDriveDefinition(is_path ? name : folder + "/" + name + ".yaml");
+    auto definition =
+        loadDriveDefinition(is_path ? name : folder + "/" + name + ".yaml", simulation.with);
     if (!definition) {
       problems.add("axes/" + axis.name + "/simulation/drive", definition.error().message);
       continue;

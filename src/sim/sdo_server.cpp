@@ -35,6 +35,7 @@ constexpr std::uint8_t kLastSegment = 0x01;
 // Server command specifiers in place.
 constexpr std::uint8_t kDownloadSegmentDone = 0x20;
 constexpr std::uint8_t kDownloadInitiated = 0x60;
+constexpr std::uint32_t kRubbish = 0x8FAF;  // in the bytes that mean nothing
 constexpr std::uint8_t kUploadInitiated = 0x40;
 constexpr std::uint8_t kAborted = 0x80;
 
@@ -185,8 +186,10 @@ void SdoServer::finishDownload() {
   }
   if (const auto refused = context_.dictionary.write(object_, data_)) return abort(refused);
   transfer_ = Transfer::none;
-  if (!segmented) return answer(kDownloadInitiated);
-  confirmSegment();
+  if (segmented) return confirmSegment();
+  std::uint32_t echo = 0;
+  for (std::size_t i = data_.size(); i-- > 0;) echo = (echo << 8U) | data_[i];
+  answer(kDownloadInitiated, context_.behaviour.echoes_writes ? echo : 0);
 }
 
 void SdoServer::confirmSegment() {
@@ -207,7 +210,10 @@ void SdoServer::answerUpload() {
   const bool tell_size = !context_.behaviour.upload_without_size;
   if (!data_.empty() && data_.size() <= kExpeditedSize) {
     std::uint32_t value = 0;
+    const bool all_mean_something = context_.behaviour.answers_four_bytes;
+    if (context_.behaviour.leaves_rubbish && !all_mean_something) value = kRubbish;
     for (std::size_t i = data_.size(); i-- > 0;) value = (value << 8U) | data_[i];
+    if (context_.behaviour.answers_four_bytes) data_.resize(kExpeditedSize);
     const auto unused = static_cast<std::uint8_t>((kExpeditedSize - data_.size()) << 2U);
     const auto sized = static_cast<std::uint8_t>(unused | kSizeIndicated);
     return answer(
@@ -258,6 +264,8 @@ void SdoServer::answer(std::uint8_t command, std::uint32_t value) {
 
 void SdoServer::abort(std::uint32_t code) {
   transfer_ = Transfer::none;
+  const bool missing = code == abort_code::kNoSuchObject || code == abort_code::kNoSuchSubindex;
+  if (missing && context_.behaviour.silent_on_missing) return;
   const bool length = code == abort_code::kLengthTooHigh || code == abort_code::kLengthTooLow;
   answer(kAborted,
          length && context_.behaviour.generic_length_abort ? abort_code::kLengthMismatch : code);

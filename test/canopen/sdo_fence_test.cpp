@@ -245,5 +245,48 @@ TEST_F(SdoFenceTest, one_repetition_of_a_segment_is_no_toggle_error_a_second_one
   EXPECT_EQ(ticket->abortCode(), 0x05030000U);
 }
 
+SdoOptions ifThere() {
+  SdoOptions result;
+  result.timeout = milliseconds(50);
+  result.retries = 1;
+  result.silence_is_missing = true;
+  return result;
+}
+
+TEST_F(SdoFenceTest, silence_for_one_object_alone_counts_as_missing_where_that_is_asked_for) {
+  const SdoTicket ticket = client.upload(kStatusword, "", ifThere());
+  client.tick(now);
+  wait(50);
+  EXPECT_EQ(peer.take(), (Lines{kAskStatusword, kAbortStatusword, kAskDeviceType}));
+  receive(kDeviceType);
+  EXPECT_EQ(peer.take(), Lines{kAskStatusword});
+  wait(50);
+  ASSERT_TRUE(ticket->done());
+  EXPECT_EQ(ticket->failure(), Failure::aborted_by_server);
+  EXPECT_EQ(ticket->abortCode(), 0x06020000U);
+  EXPECT_THAT(ticket->reason(), ::testing::HasSubstr("counts as missing"));
+}
+
+TEST_F(SdoFenceTest, silence_for_all_objects_is_a_time_out) {
+  const SdoTicket ticket = client.upload(kStatusword, "", ifThere());
+  client.tick(now);
+  wait(50);
+  wait(50);
+  ASSERT_TRUE(ticket->done());
+  EXPECT_EQ(ticket->failure(), Failure::timed_out);
+}
+
+TEST_F(SdoFenceTest, silence_is_a_time_out_where_nothing_else_is_asked_for) {
+  SdoOptions must_be = ifThere();
+  must_be.silence_is_missing = false;
+  const SdoTicket ticket = client.upload(kStatusword, "", must_be);
+  client.tick(now);
+  wait(50);
+  receive(kDeviceType);
+  wait(50);
+  ASSERT_TRUE(ticket->done());
+  EXPECT_EQ(ticket->failure(), Failure::timed_out);
+}
+
 }  // namespace
 }  // namespace cia402::canopen

@@ -66,22 +66,22 @@ TEST(SoftStop, AtRestItIsFinishedAtOnce) {
 TEST(HomingStatus, DecodesTheTableOfTheStandard) {
   ModeSpec mode;
   mode.target_reached_bit = 10;
-  EXPECT_EQ(decodeHoming(0x0237, mode), HomingStatus::in_progress);
-  EXPECT_EQ(decodeHoming(0x0637, mode), HomingStatus::interrupted);
-  EXPECT_EQ(decodeHoming(0x1237, mode), HomingStatus::attained_moving);
-  EXPECT_EQ(decodeHoming(0x1637, mode), HomingStatus::completed);
-  EXPECT_EQ(decodeHoming(0x2237, mode), HomingStatus::error_moving);
-  EXPECT_EQ(decodeHoming(0x2637, mode), HomingStatus::error_stopped);
-  EXPECT_EQ(decodeHoming(0x3237, mode), HomingStatus::contradictory);
-  EXPECT_EQ(decodeHoming(0x3637, mode), HomingStatus::contradictory);
+  EXPECT_EQ(decodeHoming(0x0237, mode, true), HomingStatus::in_progress);
+  EXPECT_EQ(decodeHoming(0x0637, mode, true), HomingStatus::interrupted);
+  EXPECT_EQ(decodeHoming(0x1237, mode, true), HomingStatus::attained_moving);
+  EXPECT_EQ(decodeHoming(0x1637, mode, true), HomingStatus::completed);
+  EXPECT_EQ(decodeHoming(0x2237, mode, true), HomingStatus::error_moving);
+  EXPECT_EQ(decodeHoming(0x2637, mode, true), HomingStatus::error_stopped);
+  EXPECT_EQ(decodeHoming(0x3237, mode, true), HomingStatus::contradictory);
+  EXPECT_EQ(decodeHoming(0x3637, mode, true), HomingStatus::contradictory);
 }
 
 TEST(HomingStatus, UsesTheBitsOfTheProfile) {
   ModeSpec mode;
   mode.homing_attained_bit = 15;
   mode.homing_error_bit = 14;
-  EXPECT_EQ(decodeHoming(0x8237, mode), HomingStatus::completed);
-  EXPECT_EQ(decodeHoming(0x4237, mode), HomingStatus::error_stopped);
+  EXPECT_EQ(decodeHoming(0x8237, mode, true), HomingStatus::completed);
+  EXPECT_EQ(decodeHoming(0x4237, mode, true), HomingStatus::error_stopped);
 }
 
 TEST(FaultText, KnowsTheFamiliesCodes) {

@@ -28,7 +28,7 @@ void PrintTo(const Case& tested, std::ostream* out) { *out << tested.name; }
 
 AxisConfig deadlineConfig(ProcedureKind kind) {
   DriveProfile profile = testProfile();
-  profile.mode_change_needs_disabling = kind == ProcedureKind::set_mode;
+  profile.mode_change.needs_disabling = kind == ProcedureKind::set_mode;
   NamedWrite option;
   option.object = "quick_stop_option";
   option.raw = 2;
@@ -154,7 +154,7 @@ TEST(ProcedureDeadline, TellsWhatItWaitedForAndHowOftenTheDriveChanged) {
 
 TEST(ProcedureDeadline, ASwitchOfTheModeThatIsGivenUpEndsInAQuickStop) {
   DriveProfile profile = testProfile();
-  profile.mode_change_needs_disabling = true;
+  profile.mode_change.needs_disabling = true;
   Bench bench(testConfig(profile));
   ASSERT_TRUE(bench.boot());
   ASSERT_TRUE(bench.enable());

@@ -32,7 +32,7 @@ TEST(SetModeProcedure, SwitchesAnEnabledAxisAtStandstillWithoutMotion) {
 
 TEST(SetModeProcedure, DisablesADriveThatTakesNoModeWhileEnabled) {
   DriveProfile profile = testProfile();
-  profile.mode_change_needs_disabling = true;
+  profile.mode_change.needs_disabling = true;
   Bench bench(testConfig(profile));
   ASSERT_TRUE(bench.boot());
   ASSERT_TRUE(bench.enable());

@@ -56,6 +56,13 @@ TEST(StateMachine, IgnoresTheQuickStopBitOnlyWhereTheStandardDoes) {
   EXPECT_EQ(decodeState(0x0003), State::unknown);
 }
 
+// 0x0248: Technosoft iPOS8020 (OpenEtherCATsociety/SOEM#461); the standard has bit 6 at 0.
+TEST(StateMachine, AFaultWithBitsOfNoStateIsAFault) {
+  EXPECT_EQ(decodeState(0x0248), State::fault);
+  EXPECT_EQ(decodeState(0x004F), State::unknown);
+  EXPECT_EQ(decodeState(0xFFFF), State::unknown) << "ones everywhere are no answer";
+}
+
 TEST(StateMachine, BitsThatMatchNoStateAreUnknown) {
   for (int bits : {0x0002, 0x0004, 0x0005, 0x0006, 0x0009, 0x0022, 0x0061, 0x0067}) {
     const auto word = static_cast<std::uint16_t>(bits);

@@ -84,7 +84,9 @@ struct NodeConfig {
   /// to do about it.
   std::string lacking_remedy;
   SdoOptions sdo;
-  SdoChannel sdo_channel;                          ///< COB-IDs other than 600h and 580h + node-ID
+  SdoChannel sdo_channel;  ///< COB-IDs other than 600h and 580h + node-ID
+  /// It must not get NMT reset node: its communication is reset where it has to start anew.
+  bool reset_node_allowed = true;
   Duration boot_timeout{std::chrono::seconds(5)};  ///< from reset to boot-up or an SDO answer
   BootPolicy boot;
 };

@@ -32,6 +32,10 @@ struct SdoOptions {
   Block block = Block::automatic;
   std::size_t block_threshold = 256;                   ///< bytes
   std::size_t longest_upload = std::size_t{16} << 20;  ///< bytes; more are refused (0x05040005)
+  /// Some servers answer nothing where they should abort, as they do not have the object. Where the
+  /// server answers for another object between two such requests, the transfer ends as if it had
+  /// aborted it with 0x06020000. Needs `retries` of at least 1.
+  bool silence_is_missing = false;
 };
 
 /// The two COB-IDs of an SDO channel (1200h and on), 11 bits; 0: that of the predefined connection

@@ -59,6 +59,7 @@ struct FrameConfig {
 /// true coordinates (rad or m).
 struct SimulationConfig {
   std::string drive;  ///< definition of the simulated drive; default: the profile's name
+  YAML::Node with;    ///< keys of such a definition that count for this axis instead
   double initial_position = 0.0;  ///< where the joint stands at power-on
   std::optional<double> lower_limit_switch, upper_limit_switch;  ///< active beyond
   std::optional<std::pair<double, double>> home_switch;          ///< active from .. to

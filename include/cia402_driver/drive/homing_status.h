@@ -20,8 +20,9 @@ enum class HomingStatus : std::uint8_t {
 };
 const char* toString(HomingStatus status);
 
-/// Decodes with the bit numbers of the profile's homing mode (12, 13 and 10 unless it says so). A
-/// drive without a target-reached bit in this mode counts as having reached it.
-HomingStatus decodeHoming(std::uint16_t statusword, const ModeSpec& mode);
+/// Decodes with the bit numbers of the profile's homing mode (12 and 13 unless it says so). Of a
+/// drive that has no target-reached bit in this mode (JVL MIS) homing is over once it stands.
+/// @param stands the axis is known to stand
+HomingStatus decodeHoming(std::uint16_t statusword, const ModeSpec& mode, bool stands);
 
 }  // namespace cia402::drive

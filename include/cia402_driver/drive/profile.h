@@ -148,6 +148,31 @@ struct ModeSpec {
   std::vector<NamedWrite> entry_writes;
 };
 
+/// How a family takes another mode of operation (6060h), and shows it (6061h).
+struct ModeChange {
+  /// 6060h, or what goes with a mode, is refused while the power stage is on: to switch the mode
+  /// the axis is disabled and enabled again.
+  bool needs_disabling = false;
+  /// 6061h shows the mode in operation enabled only: before, it shows another one or 0.
+  bool shown_when_enabled = false;
+  /// What is commanded while disabled is forgotten, and is commanded once more when enabled.
+  enum class Again : std::uint8_t {
+    never,
+    same,          ///< the mode once more
+    through_zero,  ///< first mode 0: what does not change is not looked at
+  };
+  Again again = Again::never;
+  bool while_halted = true;  ///< else the halt bit (controlword bit 8) is in its way
+  /// A change that the drive does not stand while enabled.
+  struct Detour {
+    std::string from, to;  ///< canonical names
+    std::string through;   ///< the mode that goes between them; empty: the axis is disabled for it
+  };
+  std::vector<Detour> detours;
+  /// @return nullptr: there is none
+  const Detour* detour(const std::string& from, const std::string& to) const;
+};
+
 /// How the family finds its zero.
 struct HomingSpec {
   enum class Kind : std::uint8_t {
@@ -209,9 +234,11 @@ struct DriveProfile {
   std::vector<ModeSpec> modes;
   HomingSpec homing;
   bool halt_supported = true;
-  /// 6060h, or what goes with a mode, is refused while the power stage is on: to switch the mode
-  /// the axis is disabled and enabled again.
-  bool mode_change_needs_disabling = false;
+  ModeChange mode_change;
+  int fault_reset_tries = 1;  ///< edges of controlword bit 7 that it may take, 1 to 20
+  /// NMT reset node must not be sent: the drive disturbs the bus while it starts, or does not come
+  /// back. Its communication is reset instead.
+  bool nmt_reset_node = true;
   bool warning_stops = false;             ///< a warning makes the drive stop like a fault
   std::vector<int> quick_stop_holds;      ///< values of 605Ah after which quick stop stays active
   std::vector<NamedWrite> startup;        ///< at every boot

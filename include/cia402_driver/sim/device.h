@@ -45,6 +45,13 @@ struct DeviceBehaviour {
   // SDO server (7.2.4.3).
   bool generic_length_abort = false;  ///< 0x06070010 for every wrong length instead of ...12, ...13
   bool upload_without_size = false;   ///< upload answers do not tell the size (s = 0)
+  bool silent_on_missing = false;     ///< answers nothing where it should abort with 0x06020000 or
+                                      ///< 0x06090011 (the servo of canopen-python/canopen#278)
+  bool echoes_writes = false;         ///< confirms an expedited write with its data (NaviCAN)
+  bool leaves_rubbish = false;        ///< bytes of expedited answers that mean nothing are not 0
+                                      ///< (ros-industrial/ros_canopen#259)
+  bool answers_four_bytes = false;    ///< every expedited answer has four bytes, whatever the type
+                                      ///< (canopen-python/canopen#395)
   bool accepts_short_sdo = false;     ///< takes requests of fewer than 8 bytes, the rest as 0
   bool sdo_block = true;              ///< has block transfer (else 0x05040001)
   bool sdo_block_crc = true;          ///< computes the CRC of block transfers

@@ -1,0 +1,75 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "step_mode_shown.h"
+
+#include "sentence.h"
+
+namespace cia402::drive {
+
+Outcome ModeShownStep::advance(const Context& context) {
+  AxisCore& axis = context.axis;
+  const ModeChange& rules = axis.profile().mode_change;
+  const int wanted = mode_->spec->value;
+  switch (phase_) {
+    case Phase::begin:
+      since_ = context.now;
+      if (axis.shownMode() == wanted) return Outcome::done();
+      if (rules.again == ModeChange::Again::through_zero) {
+        command(context, Phase::zero, 0);
+      } else if (rules.again == ModeChange::Again::same) {
+        command(context, Phase::again, wanted);
+      } else {
+        phase_ = Phase::waiting;
+      }
+      context.show("waiting for the mode",
+                   "6061:00 to show " + std::to_string(wanted) + " (" + mode_->spec->name + ")");
+      return Outcome::running();
+    case Phase::zero:
+      if (sent(context)) command(context, Phase::again, wanted);
+      return await(context);
+    case Phase::again:
+      if (sent(context)) phase_ = Phase::waiting;
+      return await(context);
+    case Phase::waiting:
+      return await(context);
+  }
+  return Outcome::running();
+}
+
+void ModeShownStep::command(const Context& context, Phase phase, int value) {
+  AxisCore& axis = context.axis;
+  phase_ = phase;
+  frames_ = axis.controlwordFrames();
+  const OutputObject& object = axis.objects().mode;
+  if (object.mapped()) {
+    const bool is_mode = value == mode_->spec->value;
+    axis.overrideMode(is_mode ? std::optional<int>() : std::optional<int>(value));
+  } else if (object.spec != nullptr) {
+    ticket_ = axis.node().sdo().download(
+        object.spec->id, wireBytes(static_cast<std::uint64_t>(value), object.spec->type),
+        object.spec->name);
+  }
+}
+
+bool ModeShownStep::sent(const Context& context) const {
+  if (ticket_ != nullptr) return ticket_->done();
+  return context.axis.controlwordFrames() >= frames_ + kSureFrames;
+}
+
+Outcome ModeShownStep::await(const Context& context) {
+  AxisCore& axis = context.axis;
+  const bool shown = phase_ == Phase::waiting && axis.shownMode() == mode_->spec->value;
+  if (shown) return Outcome::done();
+  if (context.now - since_ <= axis.profile().timing.mode_change) return Outcome::running();
+  axis.overrideMode({});
+  const std::string shows =
+      axis.shownMode() ? std::to_string(*axis.shownMode()) : std::string("nothing");
+  return Outcome::failed(
+      axis.who() + ": the drive is in operation, but not in mode " + mode_->spec->name +
+      ": 6061:00 shows " + shows + " instead of " + std::to_string(mode_->spec->value) + " " +
+      seconds(context.now - since_) +
+      " after it was enabled; it is disabled. Look in its manual when it takes a "
+      "mode (mode_change of the profile); " +
+      axis.report());
+}
+
+}  // namespace cia402::drive

@@ -1,0 +1,276 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// Drives as they are met in the field: the generic one with what traces and reports show of others,
+// each alone and five at a time. Each lives through boot, enabling, motion, another mode, homing, a
+// fault and recovery; the motor is the judge.
+#include <unistd.h>
+
+#include <cstdio>
+#include <fstream>
+#include <random>
+#include <sstream>
+
+#include "system/scene.h"
+
+namespace cia402 {
+namespace {
+
+using namespace std::chrono_literals;
+using drive::ProcedureKind;
+using testing::HasSubstr;
+
+/// What a drive does otherwise, and what its profile says of that.
+struct Habit {
+  const char* name;
+  const char* source;
+  const char* behaviour;          // keys of the simulated drive, a line each
+  const char* mode_change;        // entries of that section of the profile
+  const char* profile;            // other keys at its top
+  bool known_by_profile = false;  // without its keys the driver cannot serve it
+};
+
+constexpr Habit kHabits[] = {
+    {"ShowsItsModeWhenEnabled", "Technosoft iPOS (roboticslab-uc3m/yarp-devices#215), Kinco iSWV",
+     "quirks/mode_shown_when_enabled: true", "shown: enabled", "", true},
+    {"ForgetsTheModeWhileDisabled", "Laifual (CoE)", "quirks/mode_command: enabled",
+     "shown: enabled, again: same", "", true},
+    {"WantsModeZeroFirst", "Laifual (CoE)", "quirks/mode_command: change",
+     "shown: enabled, again: through_zero", "", true},
+    {"EnablesInAModeOnly", "Nanotec PD4-C (ros-industrial/ros_canopen#331)",
+     "quirks/mode_needed: true", "", ""},
+    {"TakesItsTimeToEnable", "trace of a Technosoft iPOS", "quirks/enabling_time: 0.18", "", ""},
+    {"TakesNoModeWhileHalted", "Engel HBI (ros-industrial/ros2_canopen#234)",
+     "quirks/halt_blocks_mode: true", "while_halted: false", ""},
+    {"FaultsAtAChangeOfMode", "Technosoft iPOS (roboticslab-uc3m/yarp-devices#170)",
+     "quirks/mode_faults: [[3, 8]]",
+     "detours: {profile_velocity: {cyclic_position: profile_position}}", "", true},
+    {"DisablesForAChangeOfMode", "Technosoft iPOS (roboticslab-uc3m/yarp-devices#170)",
+     "quirks/mode_faults: [[3, 8]]", "detours: {profile_velocity: {cyclic_position: disabled}}", "",
+     true},
+    {"ShowsFaultWithBitsOfNoState", "Technosoft iPOS8020 (OpenEtherCATsociety/SOEM#461)",
+     "quirks/fault_bits: 0x0040", "", ""},
+    {"HasBitsOfItsMaker", "maxon EPOS (machinekit/machinekit#589) and others",
+     "quirks/vendor_bits: 0xC100", "", ""},
+    {"ReachesNoTargetInHoming", "JVL MIS (ros-industrial/ros2_canopen#245)",
+     "quirks/homing_reaches_no_target: true", "", "homing without target_reached", true},
+    {"NeedsSeveralFaultResets", "Schunk modules", "quirks/fault_reset_tries: 5", "",
+     "fault_reset_tries: 5", true},
+    {"LeavesBit0OfTheErrorRegister", "Leadshine iSV2 (ros-industrial/ros2_canopen#298)",
+     "quirks/no_generic_error_bit: true", "", ""},
+    {"SaysNothingOfMissingObjects", "the servo of canopen-python/canopen#306",
+     "communication/silent_on_missing: true", "", ""},
+    {"EchoesWhatIsWritten", "NaviCAN wheel servos", "communication/echoes_writes: true", "", ""},
+    {"LeavesRubbishInAnswers", "ros-industrial/ros_canopen#259",
+     "communication/leaves_rubbish: true", "", ""},
+    {"AnswersFourBytes", "canopen-python/canopen#395", "communication/answers_four_bytes: true", "",
+     ""},
+    {"AnswersLate", "ros-industrial/ros2_canopen#194", "communication/sdo_latency: 0.03", "", ""},
+    {"BootsLate", "231 ms in a trace of an unknown maker", "communication/boot_time: 0.231", "",
+     ""},
+};
+
+std::string profileText() {
+  std::ifstream file(test::configFolder() + "/drives/generic_cia402.yaml");
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+void replace(std::string& text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  ASSERT_NE(at, std::string::npos) << from;
+  text.replace(at, from.size(), to);
+}
+
+/// Writes a profile of the generic drive with what the habits ask for. @return its path.
+std::string profileFor(const std::vector<const Habit*>& habits) {
+  static int number = 0;
+  std::string text = profileText(), changes;
+  for (const Habit* habit : habits) {
+    const std::string more = habit->mode_change, key = habit->profile;
+    if (!more.empty()) changes += (changes.empty() ? "" : ", ") + more;
+    if (key == "homing without target_reached") {
+      replace(text, "{target_reached: 10, homing_attained: 12, homing_error: 13}",
+              "{homing_attained: 12, homing_error: 13}");
+    } else if (!key.empty()) {
+      text += "\n" + key + "\n";
+    }
+  }
+  if (!changes.empty()) text += "\nmode_change: {" + changes + "}\n";
+  replace(text, "  boot: 5.0\n", "  boot: 20.0\n");
+  const std::string path = testing::TempDir() + "field_drive_" + std::to_string(getpid()) + "_" +
+                           std::to_string(++number) + ".yaml";
+  std::ofstream(path) << text;
+  return path;
+}
+
+/// "quirks/mode_needed: true" of each as one mapping.
+std::string behaviourOf(const std::vector<const Habit*>& habits) {
+  std::string quirks, communication;
+  for (const Habit* habit : habits) {
+    const std::string line = habit->behaviour;
+    std::string& section = line.rfind("quirks/", 0) == 0 ? quirks : communication;
+    section += (section.empty() ? "" : ", ") + line.substr(line.find('/') + 1);
+  }
+  return "with: {quirks: {" + quirks + "}, communication: {" + communication + "}}";
+}
+
+std::string robotOf(const std::vector<const Habit*>& habits, bool with_keys = true) {
+  return genericPair(
+      ", drive: " + profileFor(with_keys ? habits : std::vector<const Habit*>()) +
+      ", modes: [csp, pv, pp, hm], homing: {method: 17, search_velocity: 0.5, zero_velocity: 0.1, "
+      "acceleration: 4.0, offset: -1.0, required: false}, simulation: {drive: generic_cia402, "
+      "lower_limit_switch: -1.0, " +
+      behaviourOf(habits) + "}");
+}
+
+/// One life of the left axis. @return what went wrong, in the driver's words or of the motor;
+/// empty: nothing.
+class Life {
+ public:
+  explicit Life(const std::string& robot) : scene_(loadText(robot)) {}
+
+  std::string live() {
+    scene_.robot().start();
+    const bool booted = scene_.runUntil([this] { return allReady(scene_.robot()); }, 60s);
+    if (!booted) return "no boot: " + scene_.told();
+    for (const auto step :
+         {&Life::enableAndMove, &Life::changeMode, &Life::halt, &Life::home, &Life::fault}) {
+      const std::string wrong = (this->*step)();
+      if (!wrong.empty()) return wrong;
+    }
+    return {};
+  }
+
+ private:
+  std::string call(ProcedureKind kind, const std::string& mode = {}) {
+    const bus::Answer answer = scene_.procedure(kind, "left", mode);
+    return answer.success ? "" : std::string(toString(kind)) + ": " + answer.message;
+  }
+  /// The motor goes by `distance` in `duration`, in cyclic_position.
+  std::string moveBy(double distance) {
+    const double from = scene_.position("left");
+    const double goal = scene_.state("left").position + distance;
+    const bus::Answer answer = scene_.move({goal, 0.0}, 1s);
+    if (!answer.success) return "move: " + answer.message;
+    scene_.run(1500ms);
+    const double moved = scene_.position("left") - from;
+    if (std::abs(moved - distance) < 0.002) return {};
+    return "the motor moved by " + std::to_string(moved) + "; " + scene_.told();
+  }
+  std::string enableAndMove() {
+    scene_.forget();
+    std::string wrong = call(ProcedureKind::enable);
+    if (!wrong.empty()) return wrong;
+    const bus::Answer right = scene_.procedure(ProcedureKind::enable, "right");
+    if (!right.success) return right.message;
+    scene_.run(300ms);
+    if (scene_.seen("left").travel() > 1e-4) return "enabling moved it";
+    if (!scene_.truth("left").power_stage_on) return "it has no power";
+    return moveBy(0.3);
+  }
+  std::string changeMode() {
+    std::string wrong = call(ProcedureKind::set_mode, "pv");
+    if (!wrong.empty()) return wrong;
+    scene_.stream("left", 0.2, 1s);
+    if (std::abs(scene_.velocity("left") - 0.2) > 0.02) return "no velocity of 0.2 rad/s";
+    scene_.run(1s);
+    if (std::abs(scene_.velocity("left")) > 1e-3) return "it did not stop after its stream";
+    scene_.forget();
+    wrong = call(ProcedureKind::set_mode, "csp");
+    if (!wrong.empty()) return wrong;
+    scene_.run(200ms);
+    if (scene_.seen("left").travel() > 2e-3) return "the change of mode moved it";
+    return moveBy(-0.2);
+  }
+  std::string halt() {
+    std::string wrong = call(ProcedureKind::set_mode, "pp");
+    if (wrong.empty()) wrong = call(ProcedureKind::halt);
+    if (!wrong.empty()) return wrong;
+    const std::string refused = call(ProcedureKind::set_mode, "csp");
+    // Either it is refused in words, or it is done.
+    if (refused.empty() != (scene_.axis("left").modeName() == "cyclic_position")) {
+      return "halted: " + refused;
+    }
+    wrong = call(ProcedureKind::enable);
+    if (wrong.empty()) wrong = call(ProcedureKind::set_mode, "csp");
+    return wrong.empty() ? moveBy(0.1) : wrong;
+  }
+  std::string home() {
+    const std::string wrong = call(ProcedureKind::home);
+    if (!wrong.empty()) return wrong;
+    if (std::abs(scene_.velocity("left")) > 1e-3) return "home was answered in motion";
+    if (std::abs(scene_.state("left").position - scene_.position("left")) > 0.01) {
+      return "homed to " + std::to_string(scene_.state("left").position) + " at " +
+             std::to_string(scene_.position("left"));
+    }
+    return moveBy(0.3);
+  }
+  std::string fault() {
+    scene_.inject("left", "overcurrent");
+    scene_.run(500ms);
+    if (scene_.state("left").state != drive::State::fault) return "the fault is not seen";
+    scene_.inject("left", "clear");
+    std::string wrong = call(ProcedureKind::clear_faults);
+    if (wrong.empty()) wrong = call(ProcedureKind::recover);
+    if (wrong.empty()) wrong = moveBy(-0.1);
+    return wrong.empty() ? call(ProcedureKind::disable) : wrong;
+  }
+
+  Scene scene_;
+};
+
+class FieldDrive : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(FieldDrive, Lives) {
+  const Habit& habit = kHabits[GetParam()];
+  EXPECT_EQ(Life(robotOf({&habit})).live(), "") << habit.source;
+}
+
+// Else the simulated drive would not do what it is said to do, or the key would not be needed.
+TEST_P(FieldDrive, CannotBeServedWithoutItsKeys) {
+  const Habit& habit = kHabits[GetParam()];
+  if (!habit.known_by_profile) return;
+  EXPECT_NE(Life(robotOf({&habit}, false)).live(), "") << habit.source;
+}
+
+INSTANTIATE_TEST_SUITE_P(Habits, FieldDrive, testing::Range<std::size_t>(0, std::size(kHabits)),
+                         [](const auto& param) { return std::string(kHabits[param.param].name); });
+
+/// Two of them cannot be habits of one drive.
+bool compatible(const Habit& a, const Habit& b) {
+  const auto about = [](const Habit& habit) {
+    const std::string line = habit.behaviour;
+    return line.substr(0, line.find(':'));
+  };
+  const bool both_detour = std::string(a.mode_change).rfind("detours", 0) == 0 &&
+                           std::string(b.mode_change).rfind("detours", 0) == 0;
+  const bool both_shown = std::string(a.mode_change).rfind("shown", 0) == 0 &&
+                          std::string(b.mode_change).rfind("shown", 0) == 0;
+  const std::string pair = about(a) + " " + about(b);
+  // What forgets its mode while disabled cannot need one to be enabled.
+  const bool impossible = pair.find("mode_needed") != std::string::npos &&
+                          pair.find("mode_command") != std::string::npos;
+  return about(a) != about(b) && !both_detour && !both_shown && !impossible;
+}
+
+class FieldDrives : public testing::TestWithParam<unsigned> {};
+
+TEST_P(FieldDrives, LiveWithFiveHabitsAtOnce) {
+  std::mt19937 random(GetParam());
+  std::vector<const Habit*> habits;
+  std::string names;
+  while (habits.size() < 5) {
+    const Habit& habit = kHabits[random() % std::size(kHabits)];
+    const bool fits = std::all_of(habits.begin(), habits.end(),
+                                  [&](const Habit* other) { return compatible(habit, *other); });
+    if (!fits) continue;
+    habits.push_back(&habit);
+    names += std::string(" ") + habit.name;
+  }
+  EXPECT_EQ(Life(robotOf(habits)).live(), "") << names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Random, FieldDrives, testing::Range(1U, 51U));
+
+}  // namespace
+}  // namespace cia402
