@@ -125,6 +125,8 @@ BootProcedure::Status BootProcedure::advance(Time now) {
 
 void BootProcedure::heartbeatHeard(NmtState state, Time now) {
   boot_.found.heartbeat_heard = true;
+  boot_.found.heartbeat_state = state;
+  boot_.found.heartbeat_at = now;
   if (started()) {
     if (state == NmtState::operational) boot_.found.operational_heard = true;
     return;

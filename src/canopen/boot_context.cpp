@@ -43,6 +43,7 @@ void BootContext::write(ObjectId object, Bytes data, const std::string& name, Ti
 }
 
 void BootContext::submit(Time now) {
+  asked = now;
   sdo.holdUntil(pacer.turn(now));
   sdo.tick(now);
 }
@@ -63,8 +64,15 @@ Progress BootContext::fail(BootFailure kind, const std::string& reason) {
 }
 
 Progress BootContext::failTransfer() {
+  const bool mute = ticket->failure() == SdoTransfer::Failure::timed_out;
   return fail(refused() ? BootFailure::refused : BootFailure::timed_out,
-              "boot failed while " + step + ": " + ticket->reason());
+              "boot failed while " + step + ": " + ticket->reason() + (mute ? muteText() : ""));
+}
+
+std::string BootContext::muteText() const {
+  if (!found.heartbeat_heard || found.heartbeat_at < asked) return {};
+  return std::string("; its heartbeat goes on (NMT state ") + toString(found.heartbeat_state) +
+         "): " + kMuteAdvice;
 }
 
 Progress BootContext::failStopped() {

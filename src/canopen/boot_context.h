@@ -42,14 +42,16 @@ struct LeftOutEntry {
 /// What was found out about the node since the boot began.
 struct BootFindings {
   std::optional<Node::Identity> identity;
-  bool after_reset = false;              ///< its boot-up message was seen: it has just been reset
-  bool boot_up_missed = false;           ///< it was told to reset, and no boot-up message came
-  bool heartbeat_heard = false;          ///< or an answer to guarding
-  bool operational_heard = false;        ///< since it was told to start
-  bool stopped = false;                  ///< its last heartbeat said so: it answers no SDO
-  unsigned stopped_count = 0;            ///< heartbeats that said so, ...
-  Time stopped_since{}, stopped_last{};  ///< ... the first and the last of them
-  unsigned wake_ups = 0;                 ///< NMT commands out of that state
+  bool after_reset = false;      ///< its boot-up message was seen: it has just been reset
+  bool boot_up_missed = false;   ///< it was told to reset, and no boot-up message came
+  bool heartbeat_heard = false;  ///< or an answer to guarding
+  NmtState heartbeat_state = NmtState::unknown;  ///< that it told last, ...
+  Time heartbeat_at{};                           ///< ... and when
+  bool operational_heard = false;                ///< since it was told to start
+  bool stopped = false;                          ///< its last heartbeat said so: it answers no SDO
+  unsigned stopped_count = 0;                    ///< heartbeats that said so, ...
+  Time stopped_since{}, stopped_last{};          ///< ... the first and the last of them
+  unsigned wake_ups = 0;                         ///< NMT commands out of that state
   bool supervised = false;      ///< its loss will be noticed: heartbeat or guarding is set up
   bool guarded = false;         ///< ... by guarding
   bool watches_master = false;  ///< it took what it needs to notice a dead master
@@ -91,6 +93,7 @@ class BootContext {
   Time deadline = kNever;  ///< of the present step; SDO time-outs are the SDO client's
   Time absent_at = kNever;
   Time commanded{};                                            ///< the last NMT command to the node
+  Time asked{};                                                ///< the last SDO request was queued
   NmtCommand reset_command = NmtCommand::reset_communication;  ///< that it was given
   bool resetting = false;    ///< its boot-up message is waited for
   unsigned resets_left = 0;  ///< repetitions of a reset that shows no effect
@@ -149,6 +152,9 @@ class BootContext {
   Progress failStopped();
   /// Ends the boot because of the last transfer.
   Progress failTransfer();
+  /// Where heartbeats came while nothing was answered: "; its heartbeat goes on (NMT state
+  /// operational): ..." with what to try; else empty.
+  std::string muteText() const;
   /// A warning: `what`, and why the last transfer did not succeed.
   void noteTransfer(const std::string& what);
 };

@@ -88,12 +88,18 @@ class ProofOfLife : public BootStep {
 
   static Progress nobodyThere(BootContext& boot) {
     if (boot.found.stopped_count > 0) return boot.failStopped();
+    const std::string unanswered = boot.step + " got no answer for " +
+                                   secondsText(boot.config.boot_timeout) +
+                                   ", asked again and again";
     if (boot.found.heartbeat_heard) {
       return boot.fail(BootFailure::timed_out,
-                       "sends heartbeats, but did not answer SDO requests (" + boot.step +
-                           ") for " + secondsText(boot.config.boot_timeout) +
-                           "; look for a second device with this node-ID, or raise the SDO "
-                           "time-out");
+                       std::string("boot failed: its heartbeat comes (NMT state ") +
+                           toString(boot.found.heartbeat_state) + "), but " + unanswered + ": " +
+                           kMuteAdvice);
+    }
+    if (boot.found.after_reset) {
+      return boot.fail(BootFailure::absent, "does not answer: its boot-up message came, but " +
+                                                unanswered + ": " + kMuteAdvice);
     }
     return boot.fail(BootFailure::absent,
                      "does not answer: neither a boot-up message nor an answer to " + boot.step +

@@ -70,8 +70,9 @@ class Pdos : public BootStep {
     }
     if (patience_.grant(boot, pdo_->abortCode(), now)) return Progress::waiting;
     if (pdos_[item_].enabled || pdo_->timedOut()) {
-      return boot.fail(pdo_->timedOut() ? BootFailure::timed_out : BootFailure::refused,
-                       "boot failed: " + pdo_->error());
+      return boot.fail(
+          pdo_->timedOut() ? BootFailure::timed_out : BootFailure::refused,
+          "boot failed: " + pdo_->error() + (pdo_->timedOut() ? boot.muteText() : std::string()));
     }
     boot.notes.push_back("a PDO that is not configured could not be disabled: " + pdo_->error());
     ++item_;

@@ -24,15 +24,23 @@ void BootRetry::failed(BootFailure failure, Time now) {
   due_ = now + policy_.retry_delay;
 }
 
-void BootRetry::search(Time now) {
+void BootRetry::search(Time now, Time earliest) {
   reset();
   if (policy_.search_period <= Duration::zero()) return;
   searching_ = true;
   period_ = policy_.search_period;
-  due_ = now + period_;
+  due_ = std::max(now + period_, earliest);
+}
+
+void BootRetry::look(Time at) {
+  searching_ = true;
+  period_ = policy_.search_period;
+  due_ = at;
 }
 
 void BootRetry::notFound(Time now) {
+  if (!searching_) return;
+  searching_ = policy_.search_period > Duration::zero();
   if (!searching_) return;
   period_ = std::min(2 * period_, std::max(policy_.search_period, policy_.search_period_max));
   due_ = now + period_;

@@ -17,8 +17,10 @@ class BootRetry {
   void reset();
   /// A boot failed; another attempt may become due.
   void failed(BootFailure failure, Time now);
-  /// Nobody answers: the node is looked for from now on.
-  void search(Time now);
+  /// Nobody answers: the node is looked for from now on, but not before `earliest`.
+  void search(Time now, Time earliest = Time());
+  /// It may answer by now: it is looked for at `at`, also where search_period says never.
+  void look(Time at);
   /// The search found nobody.
   void notFound(Time now);
 

@@ -17,6 +17,9 @@ bool missing(const SdoTransfer& transfer) {
          transfer.abortCode() == abort_code::kNoSuchSubindex;
 }
 
+/// "No data available": as many drives say that there is no error (CiA 301, 7.5.2.6).
+bool empty(const SdoTransfer& transfer) { return transfer.abortCode() == abort_code::kNoData; }
+
 }  // namespace
 
 bool ErrorHistoryReader::step(SdoClient& sdo) {
@@ -39,6 +42,10 @@ bool ErrorHistoryReader::end(std::string remark) {
 }
 
 bool ErrorHistoryReader::takeCount(SdoClient& sdo) {
+  if (empty(*ticket_)) {
+    history_.readable = true;
+    return true;
+  }
   if (!ticket_->ok()) {
     return end(missing(*ticket_) ? "the drive keeps no error history: 1003:00 does not exist"
                                  : "1003:00 not read: " + ticket_->reason());
@@ -57,6 +64,10 @@ bool ErrorHistoryReader::takeCount(SdoClient& sdo) {
 }
 
 bool ErrorHistoryReader::takeEntry(SdoClient& sdo) {
+  if (empty(*ticket_)) {  // the number is that of the places then
+    history_.recorded = sub_index_ - 1;
+    return true;
+  }
   if (!ticket_->ok()) {
     const std::string of = " of " + std::to_string(history_.recorded) + " errors";
     return end(

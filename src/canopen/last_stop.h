@@ -25,6 +25,8 @@ class LastStop {
   void end() { next_ = kNever; }
   void tick(Time now);
   Time deadline() const { return next_; }
+  /// When it is told to stop for the last time at the latest: what wakes it must wait so long.
+  Time over() const { return next_ == kNever ? Time() : end_; }
   /// A heartbeat tells the node's state. @return true: it has not stopped yet, it is told again at
   /// once, and shall not be booted before it has or its time is up (0.5 s after the loss).
   bool insists(NmtState state, Time now);

@@ -10,7 +10,9 @@ namespace {
 constexpr int kStartTries = 6;  // silent starts that are believed: nobody is left
 constexpr int kBitTries = 6;    // questions for 0 and for 1, each
 constexpr int kMoveTries = 3;
+constexpr int kFollowTries = 2;
 constexpr int kRestarts = 5;  // devices that fell silent under way, or were found again
+constexpr int kLostHere = 3;  // times in a row at the same bit: it does not come any further
 constexpr std::size_t kMostDevices = 127;
 
 std::string count(std::size_t devices) {
@@ -36,6 +38,8 @@ LssTask::Status LssScanTask::proceed(LssMaster& master, Time now) {
       return ask(master, now, "switching all devices to the waiting state", lssWaitingRequest());
     case Phase::starting:
       return start(master, now);
+    case Phase::following:
+      return judgeFollowing(master, now);
     case Phase::bits:
       return judgeBit(master, now);
     case Phase::moving:
@@ -59,14 +63,45 @@ LssTask::Status LssScanTask::start(LssMaster& master, Time now) {
                   lss::fastscan(0, lss::kFastscanStart, 0, 0));
 }
 
+/// All that take part wait for the vendor id.
 LssTask::Status LssScanTask::beginDevice(LssMaster& master, Time now) {
-  scanned_ = lss::Identity();
   part_ = 0;
-  bit_ = 31;
   tries_ = 0;
-  asked_one_ = false;
-  phase_ = Phase::bits;
-  return askBit(master, now);
+  return follow(master, now);
+}
+
+/// Asks for the parts that are known as a whole, and goes on behind them bit by bit.
+LssTask::Status LssScanTask::follow(LssMaster& master, Time now) {
+  if (part_ == lss::kParts) return foundAgain(master, now);
+  if (part_ == follow_) {
+    bit_ = std::exchange(resume_bit_, std::uint8_t{31});
+    // Bits below are those of the last device.
+    const std::uint32_t known = bit_ == 31 ? 0U : ~0U << (bit_ + 1U);
+    scanned_.setPart(part_, scanned_.part(part_) & known);
+    asked_one_ = false;
+    phase_ = Phase::bits;
+    return askBit(master, now);
+  }
+  phase_ = Phase::following;
+  ++tries_;
+  const auto next = static_cast<std::uint8_t>((part_ + 1) % lss::kParts);
+  return question(master, now, std::string("asking for the same ") + lss::partName(part_),
+                  lss::fastscan(scanned_.part(part_), 0, part_, next));
+}
+
+LssTask::Status LssScanTask::judgeFollowing(LssMaster& master, Time now) {
+  if (!master.silent()) {
+    tries_ = 0;
+    ++part_;
+    return follow(master, now);
+  }
+  if (tries_ < kFollowTries) return follow(master, now);
+  // Nobody has this number, or the one that has it went on and its answer was lost.
+  follow_ = part_;
+  resume_bit_ = 31;
+  tries_ = 0;
+  phase_ = Phase::starting;
+  return start(master, now);
 }
 
 LssTask::Status LssScanTask::askBit(LssMaster& master, Time now) {
@@ -110,36 +145,57 @@ LssTask::Status LssScanTask::judgeMove(LssMaster& master, Time now) {
   if (part_ + 1U == lss::kParts) return candidateFound(master, now);
   ++part_;
   bit_ = 31;
+  scanned_.setPart(part_, 0);
   phase_ = Phase::bits;
   return askBit(master, now);
 }
 
+/// Where others are left, they may be of the same kind.
 LssTask::Status LssScanTask::candidateFound(LssMaster& master, Time now) {
   const bool known =
       std::find(candidates_.begin(), candidates_.end(), scanned_) != candidates_.end();
-  if (!known) candidates_.push_back(scanned_);
-  if (known && ++restarts_ > kRestarts) {
+  if (known) return foundAgain(master, now);
+  candidates_.push_back(scanned_);
+  lost_here_ = 0;
+  follow_ = lss::kParts;
+  resume_bit_ = 31;
+  phase_ = Phase::starting;
+  return start(master, now);
+}
+
+/// It may not have heard that it was found.
+LssTask::Status LssScanTask::foundAgain(LssMaster& master, Time now) {
+  tries_ = 0;
+  if (++restarts_ > kRestarts) {
     trouble_ = "a device goes on answering after it was found (" + lss::toString(scanned_) +
                "): its LSS does not follow CiA 305, or two devices have the same identity";
     return beginConfirming(master, now);
   }
+  follow_ = lss::kParts;
   phase_ = Phase::starting;
   return start(master, now);
 }
 
 LssTask::Status LssScanTask::lostTrack(LssMaster& master, Time now) {
   tries_ = 0;
-  if (++restarts_ > kRestarts) {
+  const bool here = lost_here_ > 0 && part_ == lost_part_ && bit_ == lost_bit_;
+  lost_here_ = here ? lost_here_ + 1 : 1;
+  lost_part_ = part_;
+  lost_bit_ = bit_;
+  if (++restarts_ > kRestarts || lost_here_ >= kLostHere) {
     trouble_ =
         "while " + step() +
         ": nobody answers any more, neither to 0 nor to 1, again and again: frames are lost, "
-        "or a device takes longer to answer than the window of " +
+        "a device takes longer to answer than the window of " +
         std::to_string(
             std::chrono::duration_cast<std::chrono::milliseconds>(master.options().window)
                 .count()) +
-        " ms; check the cable, or scan with a longer window";
+        " ms, or its LSS does not follow CiA 305; check the cable, scan with a longer window, or "
+        "give it its node-ID by its identity (lss_assign)";
     return beginConfirming(master, now);
   }
+  follow_ = part_;
+  resume_bit_ = bit_;
   phase_ = Phase::starting;
   return start(master, now);
 }
@@ -159,7 +215,13 @@ LssTask::Status LssScanTask::confirm(LssMaster& master, Time now) {
     show(selection_->step());
     if (status == LssSelection::Status::running) return Status::running;
     if (status == LssSelection::Status::done) {
-      found_.push_back(candidate);
+      const std::uint8_t node = selection_->nodeId();
+      if (lss::isNodeId(node)) {
+        configured_ += "; " + toString(candidate) + " has node-ID " + std::to_string(node) +
+                       " and answers fastscan all the same, against CiA 305";
+      } else {
+        found_.push_back(candidate);
+      }
     } else {
       trouble_ += (trouble_.empty() ? "" : "; ") +
                   std::string("what looked like a device was not confirmed, ") +
@@ -177,7 +239,7 @@ LssTask::Status LssScanTask::leave(LssMaster& master, Time now) {
 }
 
 LssTask::Status LssScanTask::finish() {
-  std::string text = count(found_.size()) + " without a node-ID";
+  std::string text = count(found_.size()) + " without a node-ID" + configured_;
   if (!trouble_.empty()) text += ", but there may be more: " + trouble_;
   return incomplete() && found_.empty() ? fail(trouble_) : done(std::move(text));
 }

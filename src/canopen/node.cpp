@@ -77,6 +77,8 @@ void Node::boot(Time now, bool reset) {
   impl_->refresh();
 }
 
+void Node::look(Time at) { impl_->look(at); }
+
 void Node::command(NmtCommand command, Time now) {
   impl_->sink.send(nmtFrame(command, id()));
   commanded(command, now);

@@ -115,7 +115,7 @@ void Node::Impl::lose(const std::string& why, Time now) {
   takeOut(NodeHealth::lost,
           why + ": check power and cable; it is configured again when it is back");
   last_stop.begin(now);
-  retry.search(now);
+  retry.search(now, last_stop.over());
 }
 
 void Node::Impl::runBoot(Time now) {
@@ -294,14 +294,22 @@ void Node::Impl::tryAgain(Time now) {
     beginBoot(BootProcedure::From::unknown, "", now);
   } else if (retry.searchDue(now)) {
     retry.begun();
+    // It may have heard the stop after its loss, and a stopped node answers no SDO.
+    sink.send(nmtFrame(NmtCommand::enter_pre_operational, config.node_id));
     SdoOptions once = config.sdo;
     once.retries = 0;
     probe = sdo.upload({0x1000, 0}, "device type", once);
     sdo.tick(now);
-    // A guarded drive that heard the stop after its loss has no SDO, and tells its state if asked.
+    // A guarded drive that is deaf to NMT has no SDO in that state, and tells it if asked.
     const bool guarded = config.error_control == ErrorControl::guarding;
     if (guarded) sink.send(NodeGuard::request(config.node_id));
   }
+}
+
+void Node::Impl::look(Time at) {
+  if (!begun || !isAway(health) || !taken_out.empty() || probe) return;
+  retry.look(std::max(at, last_stop.over()));
+  refresh();
 }
 
 /// Any answer to the search, a refusal as well, tells that somebody is there.

@@ -45,6 +45,7 @@ struct Node::Impl : Node::Front {
   void superviseWhileBooting(Time now);
   void checkSupervision(Time now);
   void tryAgain(Time now);
+  void look(Time at);
   void runProbe(Time now);
   /// A drive exchanged while it was off is told where no serial number refuses it.
   void compareWithLastIdentity();

@@ -121,6 +121,8 @@ void Axis::readFeedback(Time now) {
   impl_->core.readFeedback(now);
 }
 
+void Axis::look() { impl_->core.look(); }
+
 void Axis::update(Time now) {
   Impl& impl = *impl_;
   if (impl.watched != now) impl.watchNode();  // else readFeedback() just did

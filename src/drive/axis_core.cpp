@@ -24,7 +24,8 @@ AxisCore::AxisCore(AxisConfig config, canopen::Node& node)
       objects_(config_, node),
       polled_velocity_(poller_.add(objects_.velocity)),
       polled_effort_(poller_.add(objects_.effort)),
-      polled_following_error_(poller_.add(objects_.following_error)),
+      polled_following_error_(
+          poller_.add(objects_.following_error, AxisPoller::Reading::when_looked_at)),
       polled_mode_(poller_.add(objects_.mode_display)),
       polled_inputs_(poller_.add(objects_.digital_inputs)),
       standstill_(config_.standstill_velocity, objects_.position.conversion.resolution()),

@@ -39,6 +39,7 @@ class AxisCore {
 
   // --- The cycle -------------------------------------------------------------------------------
   void readFeedback(Time now);
+  void look() { poller_.look(); }
   /// Reacts to what the feedback says.
   void supervise(Time now);
   /// A procedure that runs must fail.

@@ -1,12 +1,28 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "axis_poller.h"
 
+#include <algorithm>
+#include <utility>
+
 namespace cia402::drive {
 
-int AxisPoller::add(const InputObject& object) {
+int AxisPoller::add(const InputObject& object, Reading reading) {
   if (object.spec == nullptr || object.mapped() || !object.spec->readable) return -1;
-  items_.push_back({object.spec->id, object.spec->name, {}, false});
+  Item item;
+  item.object = object.spec->id;
+  item.name = object.spec->name;
+  item.for_looks = reading == Reading::when_looked_at;
+  item.wanted = !item.for_looks;
+  items_.push_back(std::move(item));
   return static_cast<int>(items_.size()) - 1;
+}
+
+void AxisPoller::look() {
+  for (Item& item : items_) {
+    if (!item.for_looks || item.refused) continue;
+    item.wanted = true;
+    next_ = std::min(next_, earliest_);
+  }
 }
 
 void AxisPoller::advance(canopen::SdoClient& sdo, Time now) {
@@ -27,9 +43,11 @@ void AxisPoller::advance(canopen::SdoClient& sdo, Time now) {
 void AxisPoller::ask(canopen::SdoClient& sdo, Time now) {
   for (std::size_t i = 0; i < items_.size(); ++i) {
     current_ = (current_ + 1) % items_.size();
-    if (items_[current_].refused) continue;
-    ticket_ = sdo.upload(items_[current_].object, items_[current_].name);
-    next_ = now + kInterval;
+    Item& item = items_[current_];
+    if (!item.due()) continue;
+    item.wanted = !item.for_looks;
+    ticket_ = sdo.upload(item.object, item.name);
+    next_ = earliest_ = now + kInterval;
     return;
   }
   next_ = kNever;
@@ -41,7 +59,7 @@ void AxisPoller::reset() {
     item.refused = false;
   }
   ticket_.reset();
-  next_ = Time{};
+  next_ = earliest_ = Time{};
 }
 
 void AxisPoller::put(int item, std::uint64_t raw, Time now) {

@@ -11,10 +11,17 @@ namespace cia402::drive {
 
 /// Reads objects that no TPDO brings by SDO, one after the other, whenever nobody else uses the
 /// channel. Never blocks; each value carries the time of its answer. A request allocates.
+///
+/// What the driver itself needs is read in turn without end; what is only shown is read once for
+/// each look at it, so that nobody's curiosity costs nothing.
 class AxisPoller {
  public:
   static constexpr Duration kInterval{std::chrono::milliseconds(50)};  ///< between two requests
   static constexpr Duration kStale{std::chrono::seconds(1)};  ///< older values are not believed
+  /// The same for what is read for a look: diagnostics look once a second.
+  static constexpr Duration kStaleLook{std::chrono::milliseconds(2500)};
+
+  enum class Reading : std::uint8_t { always, when_looked_at };
 
   struct Value {
     std::uint64_t raw = 0;
@@ -24,7 +31,9 @@ class AxisPoller {
 
   /// Adds `object` unless it is mapped or the family does not have it. @return its number for
   /// value(), or -1.
-  int add(const InputObject& object);
+  int add(const InputObject& object, Reading reading = Reading::always);
+  /// Somebody is about to look: what is read for that only is asked for once more.
+  void look();
   /// Is there anything for advance() to do?
   bool due(Time now) const { return ticket_ ? ticket_->done() : now >= next_ && !items_.empty(); }
   /// Takes an answer that has come and asks for the next value.
@@ -39,7 +48,8 @@ class AxisPoller {
   Value value(int item, Time now) const {
     if (item < 0) return {};
     const Value& value = items_[static_cast<std::size_t>(item)].value;
-    return value.valid && now - value.stamp <= kStale ? value : Value();
+    const Duration stale = items_[static_cast<std::size_t>(item)].for_looks ? kStaleLook : kStale;
+    return value.valid && now - value.stamp <= stale ? value : Value();
   }
 
  private:
@@ -48,6 +58,9 @@ class AxisPoller {
     std::string name;
     Value value;
     bool refused = false;  ///< the drive aborted: it does not have the object after all
+    bool for_looks = false, wanted = true;
+
+    bool due() const { return wanted && !refused; }
   };
   void ask(canopen::SdoClient& sdo, Time now);
 
@@ -55,6 +68,7 @@ class AxisPoller {
   std::size_t current_ = 0;
   canopen::SdoTicket ticket_;
   Time next_{};
+  Time earliest_{};  ///< of the next request, after the last one
 };
 
 }  // namespace cia402::drive

@@ -36,6 +36,17 @@ std::uint16_t readTime(YamlSection& section, const std::string& key, double unit
   return static_cast<std::uint16_t>(std::lround(seconds / unit));
 }
 
+// Such a TPDO would never come.
+void checkTimer(YamlSection& section, const DriveProfile& profile, const PdoLayout& pdo) {
+  const bool tpdo = pdo.direction == PdoDirection::tpdo;
+  if (!profile.type_255_by_timer || !tpdo || pdo.transmission != 255 || pdo.event_timer != 0) {
+    return;
+  }
+  section.get("transmission")
+      ->problem("255 without `event_timer` is never sent by this drive (" + sourceOf(profile) +
+                ", `type_255_by_timer`): give it an `event_timer`, or take 254 (on a change)");
+}
+
 // A COB-ID of a PDO: "0x1A5", "$NODEID+0x1A0", or `drive` for the drive's own.
 void readCobId(YamlSection& section, PdoLayout& pdo) {
   const auto value = section.get("cob_id");
@@ -159,6 +170,7 @@ std::vector<PdoLayout> readPdos(const YamlValue& value, const DriveProfile& prof
       readTransmission(details, *pdo);
       pdo->inhibit = readTime(details, "inhibit", 1e-4);
       pdo->event_timer = readTime(details, "event_timer", 1e-3);
+      checkTimer(details, profile, *pdo);
       readCobId(details, *pdo);
       const bool requested = canopen::isRequested(pdo->transmission);
       if (details.has("request_every") && !requested) {

@@ -32,6 +32,7 @@ void readPdoRules(YamlSection& profile_section, DriveProfile& profile) {
     profile.cob_ids_of_drive = cob_ids->oneOf({"predefined", "drive"}).value_or(0) == 1;
   }
   section.read("rpdo_deadline", profile.rpdo_deadline);
+  section.read("type_255_by_timer", profile.type_255_by_timer);
   if (const auto fixed = section.get("fixed")) {  // every default of CiA 402 has the controlword
     profile.fixed_pdos = readPdos(*fixed, profile, Sharing::allowed);
   }

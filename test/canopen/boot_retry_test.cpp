@@ -116,7 +116,7 @@ TEST_F(BootRetryTest, an_absent_node_is_asked_ever_less_often_and_for_ever) {
     pass(seconds(pause) - milliseconds(1));
     EXPECT_THAT(peer.take(), IsEmpty()) << pause;
     pass(milliseconds(1));
-    EXPECT_THAT(peer.take(), ElementsAre(kAskIdentityCount)) << pause;
+    EXPECT_THAT(peer.take(), ElementsAre("000 80 03", kAskIdentityCount)) << pause;
     pass(milliseconds(500));
     EXPECT_THAT(peer.take(), ElementsAre("603 80 00 10 00 00 00 04 05")) << "the abort";
     EXPECT_EQ(node->health(), NodeHealth::absent);
@@ -138,6 +138,64 @@ TEST_F(BootRetryTest, a_node_that_answers_the_search_boots_though_it_said_nothin
   for (int i = 0; i < 310 && node->health() == NodeHealth::absent; ++i) pass(milliseconds(100));
   EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
   EXPECT_TRUE(sentLine("000 80 03"));
+}
+
+/// As one that rebooted unheard does: it has no heartbeat any more, and was told to stop meanwhile.
+TEST_F(BootRetryTest, a_lost_node_that_obeyed_the_stop_is_woken_before_it_is_asked) {
+  boot();
+  ASSERT_EQ(node->health(), NodeHealth::ready);
+  peer.forget(kAskDeviceType);
+  peer.take();
+  pass(milliseconds(300));
+  ASSERT_EQ(node->health(), NodeHealth::lost);
+  pass(milliseconds(2999));
+  const Lines stops = peer.take();
+  EXPECT_EQ(std::count(stops.begin(), stops.end(), kAskDeviceType), 0)
+      << "not before it is told to stop no more";
+  EXPECT_EQ(stops.back(), "000 02 03");
+  pass(milliseconds(1));
+  const Lines search = peer.take();
+  ASSERT_GE(search.size(), 2u);
+  EXPECT_EQ(search[0], "000 80 03");
+  EXPECT_EQ(search[1], kAskDeviceType);
+}
+
+TEST_F(BootRetryTest, a_node_that_is_said_to_be_there_is_asked_when_it_is_said) {
+  config.boot.search_period = Duration::zero();
+  peer.forget("000 82 03");
+  peer.forget(kAskDeviceType);
+  peer.forget(kAskIdentityCount);
+  boot();
+  pass(milliseconds(6000));
+  ASSERT_EQ(node->health(), NodeHealth::absent);
+  peer.take();
+  node->look(now + milliseconds(500));
+  pass(milliseconds(499));
+  EXPECT_THAT(peer.take(), IsEmpty());
+  pass(milliseconds(1));
+  EXPECT_THAT(peer.take(), ElementsAre("000 80 03", kAskIdentityCount));
+  pass(milliseconds(500));
+  peer.take();
+  pass(seconds(600));
+  EXPECT_THAT(peer.take(), IsEmpty()) << "no search where none is wanted";
+  node->look(now);
+  peer.on(kAskIdentityCount, "583 4F 18 10 00 04 00 00 00");
+  peer.on(kAskDeviceType, "583 43 00 10 00 92 01 02 00");
+  pass(milliseconds(1));
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+}
+
+TEST_F(BootRetryTest, a_node_that_was_taken_out_of_operation_is_not_looked_for_though_it_is_there) {
+  peer.forget("000 82 03");
+  peer.forget(kAskDeviceType);
+  boot();
+  pass(milliseconds(5250));
+  ASSERT_EQ(node->health(), NodeHealth::absent);
+  node->command(NmtCommand::stop, now);
+  peer.take();
+  node->look(now);
+  pass(seconds(600));
+  EXPECT_THAT(peer.take(), IsEmpty());
 }
 
 TEST_F(BootRetryTest, a_refusal_of_the_search_is_a_sign_of_life_too) {

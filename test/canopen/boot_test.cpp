@@ -159,7 +159,50 @@ TEST_F(BootTest, a_node_with_heartbeat_but_without_sdo_answers_has_failed_not_va
   hear("703 7F");
   pass(seconds(4));
   EXPECT_EQ(node->health(), NodeHealth::failed);
-  EXPECT_THAT(node->problem(), HasSubstr("sends heartbeats, but did not answer SDO requests"));
+  EXPECT_THAT(
+      node->problem(),
+      HasSubstr("shoulder (node 3): boot failed: its heartbeat comes (NMT state "
+                "pre-operational), but reading 1000:00 device type got no answer for 5 s, "
+                "asked again and again: its SDO server is mute; look at the COB-IDs of that "
+                "server (1200h in the drive, `sdo` in the configuration), for another SDO "
+                "client (a maker's tool) or a second device with this node-ID, and whether "
+                "the drive is still starting up"));
+}
+
+TEST_F(BootTest, a_node_that_booted_up_and_answers_nothing_is_not_said_to_be_silent) {
+  peer.forget(kAskDeviceType);
+  boot();
+  pass(seconds(6));
+  EXPECT_EQ(node->health(), NodeHealth::absent) << "it is looked for";
+  EXPECT_THAT(node->problem(), HasSubstr("does not answer: its boot-up message came, but reading "
+                                         "1000:00 device type got no answer for 5 s"));
+  EXPECT_THAT(node->problem(), HasSubstr("1200h"));
+}
+
+TEST_F(BootTest, a_node_whose_sdo_server_falls_mute_under_way_is_told_with_its_heartbeat) {
+  peer.forget(kAskProduct);
+  boot();
+  pass(milliseconds(400));
+  hear("703 7F");
+  pass(seconds(1));
+  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_THAT(node->problem(),
+              HasSubstr("boot failed while reading 1018:02 product code: no answer within 500 ms, "
+                        "asked 2 times; its heartbeat goes on (NMT state pre-operational): its SDO "
+                        "server is mute"));
+}
+
+TEST_F(BootTest, without_a_heartbeat_since_the_question_nothing_is_said_of_the_sdo_server) {
+  peer.forget(kAskVendor);
+  boot();
+  hear("703 7F");
+  pass(milliseconds(100));
+  peer.forget(kAskProduct);
+  hear("583 43 18 10 01 CD AB 00 00");
+  pass(milliseconds(1500));
+  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_THAT(node->problem(), HasSubstr("1018:02 product code"));
+  EXPECT_THAT(node->problem(), Not(HasSubstr("heartbeat")));
 }
 
 TEST_F(BootTest, a_heartbeat_of_before_the_reset_is_no_sign_of_life) {

@@ -70,6 +70,24 @@ TEST_F(ErrorHistoryTest, TellsADriveWithoutOne) {
   EXPECT_EQ(history.remark, "the drive keeps no error history: 1003:00 does not exist");
 }
 
+TEST_F(ErrorHistoryTest, NoDataAvailableMeansThatThereIsNoError) {
+  hold("581 80 03 10 00 24 00 00 08");  // 0x08000024
+  const ErrorHistory history = read();
+  EXPECT_TRUE(history.readable);
+  EXPECT_EQ(history.recorded, 0u);
+  EXPECT_EQ(history.remark, "");
+}
+
+TEST_F(ErrorHistoryTest, WhereTheCountIsThatOfThePlacesTheErrorsEndWithTheData) {
+  hold("581 4F 03 10 00 08 00 00 00");
+  answer(1, "43 03 10 01 11 86 00 00");
+  answer(2, "80 03 10 02 24 00 00 08");
+  const ErrorHistory history = read();
+  EXPECT_EQ(history.recorded, 1u);
+  EXPECT_EQ(history.entries.size(), 1u);
+  EXPECT_EQ(history.remark, "");
+}
+
 TEST_F(ErrorHistoryTest, TellsADriveThatDoesNotAnswer) {
   ErrorHistoryReader reader;
   EXPECT_FALSE(reader.step(client));

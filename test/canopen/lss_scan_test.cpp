@@ -91,6 +91,70 @@ TEST_F(LssScan, TwoDevicesOfOneIdentityAreNotConfirmed) {
   EXPECT_THAT(task.error(), HasSubstr("2 answers came"));
 }
 
+TEST_F(LssScan, ADeviceThatHasANodeIdIsNeverReportedAlthoughItAnswersFastscan) {
+  wire.add(parts(kServo), 3).scanned_with_node_id = true;
+  wire.add(parts(kOther));
+  LssScanTask task;
+  ASSERT_TRUE(run(task)) << task.error();
+  EXPECT_THAT(task.found(), UnorderedElementsAre(kOther));
+  EXPECT_FALSE(task.incomplete());
+  EXPECT_THAT(task.result(), HasSubstr("1 device without a node-ID; vendor 0x0000ABCD"));
+  EXPECT_THAT(task.result(), HasSubstr("serial 12345 (0x00003039) has node-ID 3"));
+  EXPECT_FALSE(wire.slaves[0].configuration) << "left as it was";
+}
+
+TEST_F(LssScan, WhatDevicesOfAKindHaveInCommonIsScannedOnce) {
+  for (std::uint32_t i = 0; i < 4; ++i) wire.add({0x0000ABCD, 0x000D0117, 0x00010002, 1000 + i});
+  LssScanTask task;
+  ASSERT_TRUE(run(task));
+  EXPECT_EQ(task.found().size(), 4u);
+  EXPECT_EQ(sentCount("7E5 51 00 00 00 00 1F 00 00"), 1u) << "bit 31 of the vendor id";
+  EXPECT_EQ(sentCount("7E5 51 CD AB 00 00 00 00 01"), 7u)
+      << "once scanned; then asked for as a whole, twice for each further one: for the last "
+         "device, "
+         "and as that is not there any more, for one of its kind";
+}
+
+/// Slaves that mishandle fastscan, and a good one beside them that has the higher number.
+class MishandledScan : public LssFixture {
+ protected:
+  MishandledScan() : bad(wire.add(parts(kServo))) {}
+  /// @return how long it took with the usual window.
+  Duration scan(LssScanTask& scanning) {
+    const Time start = wire.now;
+    (void)run(scanning);
+    EXPECT_TRUE(scanning.incomplete());
+    return wire.now - start;
+  }
+  LssSlave& bad;
+  LssScanTask task;
+};
+
+TEST_F(MishandledScan, ADeviceThatIsFoundAgainAndAgainCostsLittleMoreThanOneScan) {
+  bad.never_found = true;
+  EXPECT_LE(scan(task), 5s);
+  EXPECT_THAT(task.found(), UnorderedElementsAre(kServo));
+  EXPECT_THAT(task.result(), HasSubstr("goes on answering after it was found"));
+}
+
+TEST_F(MishandledScan, ADeviceThatSaysYesToEverythingIsNobody) {
+  bad.says_yes = true;
+  EXPECT_LE(scan(task), 5s);
+  EXPECT_TRUE(task.found().empty());
+  EXPECT_THAT(task.error(), HasSubstr("does not follow CiA 305"));
+}
+
+TEST_F(MishandledScan, ADeviceThatIsDeafToANumberIsGivenUpWhereItFallsSilent) {
+  for (int part = 0; part < 4; ++part) {
+    bad.deaf_part = part;
+    LssScanTask each;
+    EXPECT_LE(scan(each), 5s) << part;
+    EXPECT_TRUE(each.found().empty());
+    EXPECT_THAT(each.error(), HasSubstr("nobody answers any more")) << part;
+    EXPECT_THAT(each.error(), HasSubstr("lss_assign")) << part;
+  }
+}
+
 void expectTruth(const LssScanTask& task, const LssWire& wire, unsigned seed) {
   for (const lss::Identity& found : task.found()) {
     const bool exists =

@@ -25,6 +25,12 @@ struct LssSlave {
   int activations = 0;
   std::size_t selected = 0, position = 0;
 
+  // What real slaves do otherwise.
+  bool scanned_with_node_id = false;  ///< fastscan asks for no node-ID (lely-core, src/co/lss.c)
+  bool never_found = false;           ///< goes on taking part after its last bit
+  bool says_yes = false;              ///< answers every question of fastscan
+  int deaf_part = -1;                 ///< answers no question about this number of its identity
+
   /// @return the first byte of an answer, or 0; `data` gets the bytes that follow.
   std::uint8_t hear(const can::Frame& f, std::array<std::uint8_t, 7>& data) {
     const std::uint8_t cs = f.data[0];
@@ -42,7 +48,7 @@ struct LssSlave {
         configuration = true;
         return 0x44;
       }
-    } else if (cs == 0x51 && !configuration && node_id == 0xFF) {
+    } else if (cs == 0x51 && !configuration && (node_id == 0xFF || scanned_with_node_id)) {
       return fastscan(f, number) ? 0x4F : 0;
     } else if (cs == 0x4C && node_id == 0xFF) {
       return 0x50;
@@ -55,13 +61,15 @@ struct LssSlave {
  private:
   bool fastscan(const can::Frame& f, std::uint32_t number) {
     const unsigned bit = f.data[5], sub = f.data[6], next = f.data[7];
+    if (says_yes) return true;
     if (bit == 0x80) {
       position = 0;
       return true;
     }
+    if (static_cast<int>(sub) == deaf_part) return false;
     if (sub != position || (number ^ identity[sub]) >> bit != 0) return false;
     position = next;
-    if (bit == 0 && next < sub) configuration = true;
+    if (bit == 0 && next < sub) configuration = !never_found;
     return true;
   }
 

@@ -105,7 +105,7 @@ TEST_F(NodeGuarding, a_node_that_heard_the_stop_after_its_loss_is_found_by_a_rem
   ASSERT_EQ(node->health(), NodeHealth::lost);
   peer.forget("603 40 00 10 00 00 00 00 00");  // stopped: no SDO, and nothing said unasked
   peer.take();
-  pass(seconds(2));
+  pass(seconds(3));
   EXPECT_EQ(node->health(), NodeHealth::lost);
   EXPECT_GE(requests(), 1U);
   answers({"703 84"});  // stopped, toggle bit 1
@@ -195,10 +195,10 @@ TEST_F(NodeGuarding, a_lost_node_is_looked_for_and_booted_again) {
   pass(milliseconds(300));
   ASSERT_EQ(node->health(), NodeHealth::lost);
   peer.take();
-  pass(milliseconds(2000));
+  pass(milliseconds(3000));
   Lines sent = peer.take();
   sent.erase(std::remove(sent.begin(), sent.end(), "000 02 03"), sent.end());  // again and again
-  EXPECT_EQ(sent, (Lines{ask, "703 R1"}));
+  EXPECT_EQ(sent, (Lines{"000 80 03", ask, "703 R1"}));
   EXPECT_EQ(node->bootStep(), "looked for 1 times, again every 2 s");
   peer.on(ask, "583 43 00 10 00 92 01 02 00");
   answers({"703 7F", "703 85", "703 05"});

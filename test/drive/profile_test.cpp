@@ -309,6 +309,22 @@ pdo_rules:
               HasSubstr("`controlword` is mapped already, in pdos/rpdo1"));
 }
 
+TEST(DriveProfile, AnEventDrivenTpdoThatWouldNeverComeIsRefusedWhereTheDriveSendsItByTimerOnly) {
+  const auto with = [](const std::string& tpdo, const std::string& rules) {
+    return changed("tpdo1: [statusword, position_actual]",
+                   "tpdo1: {objects: [statusword, position_actual], " + tpdo + "}") +
+           rules;
+  };
+  const std::string by_timer = "pdo_rules: {type_255_by_timer: true}\n";
+  EXPECT_THAT(problemsOf(with("transmission: 255", by_timer)),
+              HasSubstr("pdos/tpdo1/transmission: 255 without `event_timer` is never sent by this "
+                        "drive"));
+  EXPECT_EQ(problemsOf(with("transmission: 255, event_timer: 0.01", by_timer)), "");
+  EXPECT_EQ(problemsOf(with("transmission: 254", by_timer)), "");
+  EXPECT_EQ(problemsOf(with("transmission: 255", "")), "") << "on a change, as CiA 301 has it";
+  EXPECT_TRUE(shipped("damiao_dm").type_255_by_timer);
+}
+
 TEST(DriveProfile, RefusesMoreThanSixtyFourBitsInAPdo) {
   const std::string text =
       changed("[statusword, position_actual]", "[statusword, position_actual, mode_display]");

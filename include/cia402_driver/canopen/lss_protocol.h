@@ -18,6 +18,8 @@ inline constexpr std::uint32_t kAnswerId = 0x7E4;   ///< slaves to master
 
 /// Node-ID of a device that has none: "unconfigured", it takes part in fastscan.
 inline constexpr std::uint8_t kUnconfigured = 0xFF;
+/// 1 to 127: a device that has it takes no part in fastscan.
+inline constexpr bool isNodeId(std::uint8_t node) { return node >= 1 && node <= 127; }
 
 /// Command specifiers.
 enum class Command : std::uint8_t {

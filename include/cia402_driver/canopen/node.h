@@ -83,6 +83,10 @@ class Node {
   /// (Re)starts the boot procedure: identify, configure, start. @param reset send NMT reset
   /// communication first; without it the node is only brought to pre-operational.
   void boot(Time now, bool reset);
+  /// Somebody tells that the drive is there, without a sign of life on its node-ID yet: a node that
+  /// is away is asked for its device type at `at` instead of whenever the search comes to it. Not
+  /// while it is told to stop after its loss, nor where an NMT command took it out of operation.
+  void look(Time at);
   /// NMT command to this node alone. After stop and pre-operational the node is `failed` until
   /// boot() is called or it reboots, and one that is away is not looked for any more and `failed`
   /// once it is heard; after a reset it boots again by itself.

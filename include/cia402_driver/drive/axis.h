@@ -109,6 +109,9 @@ class Axis {
 
   /// Decodes the node's process image. Call after the TPDOs of a cycle.
   void readFeedback(Time now);
+  /// Somebody is about to look at values that are only shown (the following error): where no TPDO
+  /// brings them, each look has them read by SDO once more.
+  void look();
   /// Advances state machine and procedures. Call after readFeedback() and in each cycle; also when
   /// an SDO answer came, to hurry procedures along.
   void update(Time now);

@@ -250,6 +250,7 @@ struct DriveProfile {
   std::vector<PdoLayout> fixed_pdos;       ///< with a mapping that the drive does not let change
   bool cob_ids_of_drive = false;           ///< COB-IDs of PDOs are fixed: read and used
   bool rpdo_deadline = false;              ///< the drive reacts when RPDOs stay away (1400h:05)
+  bool type_255_by_timer = false;          ///< TPDOs of that type come by event timer only
   std::vector<std::string> default_modes;  ///< an axis can switch to; empty: all
   std::vector<std::string> feedback;       ///< by PDO where there is room, most important first
   bool pdo_map_count_may_be_read_only = false;

@@ -1,0 +1,78 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "../../src/drive/axis_poller.h"
+
+#include <algorithm>
+
+#include "canopen/sdo_client_fixture.h"
+
+namespace cia402::drive {
+namespace {
+
+using namespace std::chrono_literals;
+
+const char kAskError[] = "601 40 F4 60 00 00 00 00 00";
+const char kAskVelocity[] = "601 40 6C 60 00 00 00 00 00";
+
+class AxisPollerTest : public canopen::test::SdoClientFixture {
+ protected:
+  AxisPollerTest() {
+    error_spec.id = {0x60F4, 0};
+    velocity_spec.id = {0x606C, 0};
+    error.spec = &error_spec;
+    velocity.spec = &velocity_spec;
+    peer.on(kAskError, "581 43 F4 60 00 05 00 00 00");
+    peer.on(kAskVelocity, "581 43 6C 60 00 07 00 00 00");
+  }
+  /// A cycle of 4 ms each. @return how often `line` was asked.
+  long pass(Duration span, const char* line, Duration look_every = Duration::zero()) {
+    peer.take();
+    for (Duration past{}; past < span; past += 4ms) {
+      if (look_every > Duration::zero() && past % look_every == Duration::zero()) poller.look();
+      if (poller.due(now)) poller.advance(client, now);
+      run();
+      now += 4ms;
+    }
+    const auto sent = peer.take();
+    return std::count(sent.begin(), sent.end(), line);
+  }
+
+  ObjectSpec error_spec, velocity_spec;
+  InputObject error, velocity;
+  AxisPoller poller;
+};
+
+TEST_F(AxisPollerTest, WhatTheDriverNeedsIsReadEveryFiftyMilliseconds) {
+  const int item = poller.add(velocity);
+  EXPECT_EQ(pass(5200ms, kAskVelocity), 100);
+  EXPECT_EQ(poller.value(item, now).raw, 7u);
+}
+
+TEST_F(AxisPollerTest, WhatNobodyLooksAtIsNotRead) {
+  const int item = poller.add(error, AxisPoller::Reading::when_looked_at);
+  EXPECT_EQ(pass(60s, kAskError), 0);
+  EXPECT_FALSE(poller.value(item, now).valid);
+}
+
+TEST_F(AxisPollerTest, EachLookReadsOnce) {
+  const int item = poller.add(error, AxisPoller::Reading::when_looked_at);
+  EXPECT_EQ(pass(10s, kAskError, 1s), 10);
+  EXPECT_EQ(poller.value(item, now).raw, 5u) << "a second old, as the next look will find it";
+  EXPECT_EQ(pass(10s, kAskError, 100ms), 100);
+  pass(2500ms, kAskError);
+  EXPECT_FALSE(poller.value(item, now).valid) << "nobody has looked for long";
+}
+
+TEST_F(AxisPollerTest, ManyLooksReadNoOftenerThanTheIntervalAndDelayNothingElse) {
+  poller.add(velocity);
+  poller.add(error, AxisPoller::Reading::when_looked_at);
+  EXPECT_EQ(pass(5200ms, kAskVelocity, 4ms), 50) << "in turn";
+}
+
+TEST_F(AxisPollerTest, AnObjectThatTheDriveRefusesIsNotAskedForAtEveryLook) {
+  peer.replace(kAskError, "581 80 F4 60 00 00 00 02 06");
+  poller.add(error, AxisPoller::Reading::when_looked_at);
+  EXPECT_EQ(pass(10s, kAskError, 100ms), 1);
+}
+
+}  // namespace
+}  // namespace cia402::drive
