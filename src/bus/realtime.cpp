@@ -1,38 +1,54 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "cia402_driver/bus/realtime.h"
 
+#include <malloc.h>
 #include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 
-#include <array>
 #include <cerrno>
 #include <system_error>
+
+#include "cia402_driver/bus/memory_pages.h"
 
 namespace cia402::bus {
 namespace {
 
+constexpr int kMostInHeap = 1 << 20;    // bytes; what is larger is mapped, and unmapped when freed
+constexpr int kNeverTrimmed = 1 << 30;  // bytes of free heap that are left alone
+
 std::string words(int error) { return std::generic_category().message(error); }
 
-void touchStack() {
-  constexpr std::size_t kPage = 4096;
-  std::array<volatile char, 64 * kPage> stack;
-  for (std::size_t i = 0; i < stack.size(); i += kPage) stack[i] = 0;
+/// What has been touched stays in memory; what has not takes none. Kernels before 4.4 know only all
+/// or nothing: there all that is mapped is locked, the stacks of all threads, too.
+bool lockWhatIsTouched() {
+  constexpr int kAll = MCL_CURRENT | MCL_FUTURE;
+  if (mlockall(kAll | MCL_ONFAULT) == 0) return true;
+  return errno == EINVAL && mlockall(kAll) == 0;
 }
 
 }  // namespace
 
+void keepMemory() {
+  mallopt(M_MMAP_THRESHOLD, kMostInHeap);
+  mallopt(M_TRIM_THRESHOLD, kNeverTrimmed);
+  prctl(PR_SET_THP_DISABLE, 1, 0, 0, 0);
+}
+
 RealtimeReport makeRealtime(int priority) {
   RealtimeReport report;
+  keepMemory();
+  report.memory = lockWhatIsTouched();
+  const int memory = errno;
+  touchStack();
+  touchHeap();
+  touchProgram();
   sched_param parameters{};
   parameters.sched_priority = priority;
   const int scheduling = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);
   report.scheduling = scheduling == 0;
-  report.memory = mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
-  const int memory = errno;
   prctl(PR_SET_TIMERSLACK, 1);  // ns; only matters without SCHED_FIFO
-  touchStack();
   if (report.complete()) {
     report.text = "the bus thread runs at real-time priority " + std::to_string(priority) +
                   " with its memory locked";

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "cia402_driver/bus/recording_service.h"
 
+#include <pthread.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -32,6 +33,7 @@ RecordingService::~RecordingService() {
 }
 
 void RecordingService::run() {
+  pthread_setname_np(pthread_self(), "recorder");
   setpriority(PRIO_PROCESS, 0, kNiceness);  // of this thread alone (Linux)
   while (true) {
     while (sem_wait(&triggered_) != 0) {  // interrupted by a signal

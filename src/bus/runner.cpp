@@ -2,6 +2,7 @@
 #include "cia402_driver/bus/runner.h"
 
 #include <poll.h>
+#include <pthread.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
 
@@ -96,6 +97,7 @@ void BusRunner::onEmergency(const EmergencyEvent& event) {
 }
 
 void BusRunner::run() {
+  pthread_setname_np(pthread_self(), "bus");  // as ps and top show it
   if (options_.priority > 0) {
     const RealtimeReport report = makeRealtime(options_.priority);
     Event event;

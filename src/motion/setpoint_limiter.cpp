@@ -56,11 +56,11 @@ Result<void> check(const LimiterConfig& config) {
     return Error{problem(joint, "the velocity limit", *limits.velocity, "/s") + above_zero};
   }
   if (wrong(limits.acceleration)) {
-    return Error{problem(joint, "the acceleration limit", *limits.acceleration, "/s²") +
+    return Error{problem(joint, "the acceleration limit", *limits.acceleration, "/s^2") +
                  above_zero};
   }
   if (wrong(config.stop_deceleration)) {
-    return Error{problem(joint, "the stop deceleration", *config.stop_deceleration, "/s²") +
+    return Error{problem(joint, "the stop deceleration", *config.stop_deceleration, "/s^2") +
                  above_zero};
   }
   for (const auto& [name, limit] :

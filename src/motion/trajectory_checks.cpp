@@ -181,7 +181,7 @@ std::optional<TrajectoryError> checkLimits(const SplineSegment& segment, const P
   }
   const Range acceleration = segment.accelerationRange();
   if (exceeds(acceleration.largest(), limits.acceleration)) {
-    return beyond(place, acceleration.largest(), "acceleration", "/s²", "limit",
+    return beyond(place, acceleration.largest(), "acceleration", "/s^2", "limit",
                   *limits.acceleration);
   }
   return {};

@@ -2,6 +2,8 @@
 // The thread of the driver with simulated drives inside the process, and other threads around it.
 #include "cia402_driver/bus/runner.h"
 
+#include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <atomic>
@@ -32,7 +34,7 @@ class SimulatedRunner : public testing::Test {
     loaded.robot.recorder.directory = folder;
     loaded.robot.recorder.keep = 3;
     bus::BusRunner::Options options;
-    options.priority = 0;
+    options.priority = priority;
     options.time = bus::BusTime::Kind::simulated;
     options.clock = clock;
     auto interface = std::make_unique<sim::SimulatedInterface>(
@@ -41,6 +43,7 @@ class SimulatedRunner : public testing::Test {
     runner = std::make_unique<bus::BusRunner>(loaded.robot, loaded.master, std::move(interface),
                                               options);
     runner->start();
+    faults_at_start = pageFaults();
     while (!all([](const bus::AxisSnapshot& axis) { return axis.state.feedback_valid; })) {
       std::this_thread::yield();
     }
@@ -77,7 +80,19 @@ class SimulatedRunner : public testing::Test {
     return call(command);
   }
 
-  std::string folder;
+  /// Page faults that the thread of the bus has had so far, without and with reading from a disk.
+  std::string pageFaults() {
+    return call(bus::CallCommand{[](Time) {
+             rusage usage{};
+             getrusage(RUSAGE_THREAD, &usage);
+             return bus::answerOf(
+                 true, std::to_string(usage.ru_minflt) + ", " + std::to_string(usage.ru_majflt));
+           }})
+        .message;
+  }
+
+  int priority = 0;
+  std::string folder, faults_at_start;
   sim::SimulatedInterface* simulation = nullptr;
   std::unique_ptr<bus::BusRunner> runner;
 };
@@ -103,6 +118,40 @@ TEST_F(SimulatedRunner, EndsOnAClockThatJumps) {
     return axis.state.state != drive::State::operation_enabled;
   }));
 }
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they have heaps of their own
+// Boot, procedures, motion and failures; the simulated drives live in the same thread.
+TEST_F(SimulatedRunner, ThreadOfTheBusHasNoPageFaultOnceItRuns) {
+  priority = 1;
+  bus::keepMemory();
+  begin();
+  ASSERT_TRUE(procedure(ProcedureKind::enable).success);
+  bus::TrajectoryCommand trajectory;
+  trajectory.group = "pair";
+  trajectory.joints = {"left", "right"};
+  for (int i = 1; i <= 100; ++i) {
+    trajectory.points.push_back({{0.001 * i, 0.001 * i}, {0.0, 0.0}, {}, i * 1s});
+  }
+  const bus::Answer accepted = call(trajectory);
+  ASSERT_TRUE(accepted.success) << accepted.message;
+  waitCycles(100);
+  const auto inject = [this](const char* what) {
+    return call(bus::CallCommand{[this, what](Time now) {
+      return bus::answerOf(simulation->world().drive(0).inject(what, now).ok(), what);
+    }});
+  };
+  ASSERT_TRUE(inject("encoder").success);
+  waitCycles(100);
+  ASSERT_TRUE(inject("clear").success);
+  EXPECT_TRUE(call(bus::ErrorHistoryCommand{"left"}).success);
+  EXPECT_TRUE(procedure(ProcedureKind::recover).success);
+  EXPECT_TRUE(call(bus::ReadObjectCommand{"left", "6064"}).success);
+  EXPECT_FALSE(call(bus::WriteObjectCommand{"left", "none such", "1"}).success);
+  EXPECT_TRUE(procedure(ProcedureKind::quick_stop).success);
+  EXPECT_EQ(pageFaults(), faults_at_start);
+  munlockall();
+}
+#endif
 
 /// Everything that ROS does with it, from as many threads, with good and bad arguments.
 TEST_F(SimulatedRunner, AnswersEveryCallOfManyThreadsAtOnce) {
