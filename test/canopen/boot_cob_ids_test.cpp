@@ -44,6 +44,26 @@ TEST_F(BootCobIdsTest, another_sync_identifier_is_set_right_or_refused) {
   EXPECT_THAT(node->problem(), HasSubstr("the drive waits for another SYNC (1005:00"));
 }
 
+TEST_F(BootCobIdsTest, another_sync_identifier_matters_only_to_pdos_that_are_sent_by_sync) {
+  peer.replace("603 40 05 10 00 00 00 00 00", "583 43 05 10 00 81 00 00 00")
+      .on("603 23 05 10 00 80 00 00 00", "583 80 05 10 00 02 00 01 06");
+  const auto refused = [&](std::uint8_t transmission, bool enabled) {
+    for (PdoConfig& pdo : config.pdos) pdo.transmission = 254;
+    config.pdos.back().transmission = transmission;
+    config.pdos.back().enabled = enabled;
+    boot();
+    pass(std::chrono::seconds(10));
+    return node->problem().find("the drive waits for another SYNC (1005:00") != std::string::npos;
+  };
+  // CiA 301, 7.5.2.36: 0 to 240 with SYNC, 254 and 255 by events.
+  EXPECT_TRUE(refused(0, true));
+  EXPECT_TRUE(refused(1, true));
+  EXPECT_TRUE(refused(240, true));
+  EXPECT_FALSE(refused(254, true));
+  EXPECT_FALSE(refused(255, true));
+  EXPECT_FALSE(refused(1, false));
+}
+
 TEST_F(BootCobIdsTest, emergencies_under_another_identifier_are_switched_off_then_set_right) {
   peer.replace("603 40 14 10 00 00 00 00 00", "583 43 14 10 00 90 00 00 00")
       .on("603 23 14 10 00 90 00 00 80", "583 60 14 10 00 00 00 00 00")

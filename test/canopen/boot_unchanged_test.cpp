@@ -186,6 +186,38 @@ TEST_F(BootUnchanged,
   EXPECT_FALSE(sentLine(kAskMap)) << "that is what it holds";
 }
 
+// The same numbers in the same order, but for where the mapping of the first PDO ends.
+TEST(ConfigurationSignatureTest, tells_whose_mapping_an_entry_belongs_to) {
+  NodeConfig longer;
+  longer.boot.check = ConfigurationCheck::checksum;
+  PdoConfig first, second;
+  first.direction = PdoDirection::tpdo;
+  first.number = 1;
+  first.entries = {{{0x0000, 1}, 2, ""}};
+  second.direction = PdoDirection::tpdo;
+  second.number = 1;
+  second.enabled = true;
+  second.cob_id = 1;
+  second.transmission = 1;
+  second.inhibit = 5;
+  second.event_timer = 8;
+  longer.pdos = {first, second};
+  NodeConfig shorter = longer;
+  shorter.pdos[0].entries.clear();
+  shorter.pdos[1].direction = static_cast<PdoDirection>(1);  // the entry's object, 0000:01
+  shorter.pdos[1].number = 2;                                // its bits
+  shorter.pdos[1].enabled = true;                            // tpdo, 1
+  shorter.pdos[1].cob_id = 1;                                // the number
+  shorter.pdos[1].transmission = 1;                          // enabled
+  shorter.pdos[1].inhibit = 1;                               // the COB-ID
+  shorter.pdos[1].event_timer = 1;                           // the transmission type
+  shorter.pdos[1].entries = {{{0x0000, 5}, 8, ""}};          // inhibit time and event timer
+  ASSERT_EQ(static_cast<int>(PdoDirection::tpdo), 1);
+  const auto one = configurationSignature(longer, {}, false);
+  const auto other = configurationSignature(shorter, {}, false);
+  EXPECT_FALSE(one.date == other.date && one.time == other.time);
+}
+
 TEST(ConfigurationSignatureTest, changes_with_everything_that_a_boot_writes_and_with_the_device) {
   NodeConfig config = test::servoConfig(3, "shoulder");
   config.boot.check = ConfigurationCheck::checksum;
@@ -226,6 +258,10 @@ TEST(ConfigurationSignatureTest, changes_with_everything_that_a_boot_writes_and_
   EXPECT_TRUE(differs([](NodeConfig& c) { c.life_time_factor = 4; }));
   EXPECT_TRUE(differs([](NodeConfig& c) { c.sync_period_us = 4000; }));
   EXPECT_TRUE(differs([](NodeConfig& c) { c.sync_counter = 0; }));
+  EXPECT_TRUE(differs([](NodeConfig& c) { c.pdos[0].direction = PdoDirection::tpdo; }) ||
+              differs([](NodeConfig& c) { c.pdos[0].direction = PdoDirection::rpdo; }));
+  EXPECT_TRUE(differs([](NodeConfig& c) { c.pdos[0].number = 4; }));
+  EXPECT_TRUE(differs([](NodeConfig& c) { c.node_id = 4; }));
   external = true;  // 1005h may let a drive make SYNC
   EXPECT_NE(signature(config), first);
   external = false;

@@ -74,25 +74,46 @@ TEST(DataType, has_short_words) {
   }
 }
 
+// CiA 301, table 44; strings and domains have no fixed length.
 TEST(DataType, knows_size_sign_and_name) {
-  EXPECT_EQ(sizeBits(DataType::boolean), 1U);
-  EXPECT_EQ(sizeBits(DataType::int8), 8U);
-  EXPECT_EQ(sizeBits(DataType::uint16), 16U);
-  EXPECT_EQ(sizeBits(DataType::real32), 32U);
-  EXPECT_EQ(sizeBits(DataType::uint64), 64U);
-  EXPECT_EQ(sizeBits(DataType::visible_string), 0U);
-  EXPECT_TRUE(isSigned(DataType::int32));
-  EXPECT_TRUE(isSigned(DataType::real64));
-  EXPECT_FALSE(isSigned(DataType::uint32));
-  EXPECT_STREQ(toString(DataType::uint16), "uint16");
-}
-
-TEST(DataType, names_are_read_back) {
-  for (const DataType type :
-       {DataType::boolean, DataType::int8, DataType::int16, DataType::int32, DataType::int64,
-        DataType::uint8, DataType::uint16, DataType::uint32, DataType::uint64, DataType::real32,
-        DataType::real64, DataType::visible_string, DataType::octet_string, DataType::domain}) {
-    EXPECT_EQ(parseDataType(toString(type)), type) << toString(type);
+  struct Row {
+    DataType type;
+    const char* name;
+    unsigned bits;
+    bool is_signed;
+  };
+  const Row rows[] = {
+      {DataType::boolean, "boolean", 1, false},
+      {DataType::int8, "int8", 8, true},
+      {DataType::int16, "int16", 16, true},
+      {DataType::int24, "int24", 24, true},
+      {DataType::int32, "int32", 32, true},
+      {DataType::int40, "int40", 40, true},
+      {DataType::int48, "int48", 48, true},
+      {DataType::int56, "int56", 56, true},
+      {DataType::int64, "int64", 64, true},
+      {DataType::uint8, "uint8", 8, false},
+      {DataType::uint16, "uint16", 16, false},
+      {DataType::uint24, "uint24", 24, false},
+      {DataType::uint32, "uint32", 32, false},
+      {DataType::uint40, "uint40", 40, false},
+      {DataType::uint48, "uint48", 48, false},
+      {DataType::uint56, "uint56", 56, false},
+      {DataType::uint64, "uint64", 64, false},
+      {DataType::real32, "real32", 32, true},
+      {DataType::real64, "real64", 64, true},
+      {DataType::visible_string, "visible_string", 0, false},
+      {DataType::octet_string, "octet_string", 0, false},
+      {DataType::unicode_string, "unicode_string", 0, false},
+      {DataType::time_of_day, "time_of_day", 48, false},
+      {DataType::time_difference, "time_difference", 48, false},
+      {DataType::domain, "domain", 0, false},
+  };
+  for (const Row& row : rows) {
+    EXPECT_STREQ(toString(row.type), row.name);
+    EXPECT_EQ(sizeBits(row.type), row.bits) << row.name;
+    EXPECT_EQ(isSigned(row.type), row.is_signed) << row.name;
+    EXPECT_EQ(parseDataType(row.name), row.type) << row.name;
   }
   EXPECT_FALSE(parseDataType("float").has_value());
 }

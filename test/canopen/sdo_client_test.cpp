@@ -270,6 +270,24 @@ TEST_F(SdoClientTest, each_answer_gets_the_whole_time_out) {
   EXPECT_EQ(client.nextDeadline(), now + milliseconds(500));
 }
 
+TEST_F(SdoClientTest, counts_the_last_the_longest_and_the_mean_latency_of_answers) {
+  const auto read = [&](int ms) {
+    const SdoTicket ticket = client.upload({0x1000, 0}, "device type");
+    client.tick(now);
+    wait(ms);
+    receive("581 43 00 10 00 92 01 02 00");
+    ASSERT_TRUE(ticket->ok());
+    EXPECT_EQ(client.counters().last_latency, std::chrono::milliseconds(ms));
+  };
+  read(10);
+  EXPECT_EQ(client.counters().longest_latency, std::chrono::milliseconds(10));
+  read(40);
+  read(25);
+  EXPECT_EQ(client.counters().longest_latency, std::chrono::milliseconds(40));
+  EXPECT_EQ(client.counters().total_latency, std::chrono::milliseconds(75));
+  EXPECT_EQ(client.counters().meanLatency(), std::chrono::milliseconds(25));
+}
+
 TEST_F(SdoClientTest, has_one_transfer_on_the_wire_and_starts_the_next_with_the_answer) {
   const SdoTicket first = client.upload(kStatusword);
   const SdoTicket second = client.upload(kMode);

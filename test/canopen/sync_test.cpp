@@ -121,5 +121,27 @@ TEST(SyncConsumer, counts_counters_that_do_not_follow_each_other) {
   EXPECT_EQ(consumer.counterErrors(), 1U);
 }
 
+TEST(SyncConsumer, takes_any_counter_after_one_without) {
+  SyncConsumer consumer(kPeriod, 10);
+  int time = 0;
+  for (const char* text : {"080 02", "080", "080 07", "080 08"}) {
+    consumer.receive(sync(text), us(time += 4000));
+  }
+  EXPECT_EQ(consumer.counterErrors(), 0U);
+  consumer.receive(sync("080 0A"), us(time += 4000));
+  EXPECT_EQ(consumer.counterErrors(), 1U);
+}
+
+TEST(SyncConsumer, measures_anew_when_sync_comes_back) {
+  SyncConsumer consumer(kPeriod, 0);
+  for (int i = 0; i < SyncConsumer::kWindow; ++i) consumer.receive(sync(), us(i * 4000));
+  EXPECT_TRUE(consumer.tick(us(100000)));  // one interval was missing to a measurement
+  consumer.receive(sync(), us(100000));
+  for (int i = 1; i < SyncConsumer::kWindow; ++i) consumer.receive(sync(), us(100000 + i * 3000));
+  EXPECT_EQ(consumer.period(), Duration::zero());
+  consumer.receive(sync(), us(100000 + SyncConsumer::kWindow * 3000));
+  EXPECT_EQ(consumer.period(), std::chrono::milliseconds(3));
+}
+
 }  // namespace
 }  // namespace cia402::canopen

@@ -1,5 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Standstill, soft stop, homing status and fault texts.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "cia402_driver/drive/fault_text.h"
@@ -74,6 +75,16 @@ TEST(HomingStatus, DecodesTheTableOfTheStandard) {
   EXPECT_EQ(decodeHoming(0x2637, mode, true), HomingStatus::error_stopped);
   EXPECT_EQ(decodeHoming(0x3237, mode, true), HomingStatus::contradictory);
   EXPECT_EQ(decodeHoming(0x3637, mode, true), HomingStatus::contradictory);
+}
+
+TEST(HomingStatus, HasWords) {
+  EXPECT_STREQ(toString(HomingStatus::in_progress), "homing in progress");
+  EXPECT_STREQ(toString(HomingStatus::interrupted), "homing interrupted or not started");
+  EXPECT_STREQ(toString(HomingStatus::attained_moving), "home found, still moving");
+  EXPECT_STREQ(toString(HomingStatus::completed), "homing completed");
+  EXPECT_STREQ(toString(HomingStatus::error_moving), "homing error, still moving");
+  EXPECT_STREQ(toString(HomingStatus::error_stopped), "homing error, stopped");
+  EXPECT_THAT(toString(HomingStatus::contradictory), ::testing::HasSubstr("attained and error"));
 }
 
 TEST(HomingStatus, UsesTheBitsOfTheProfile) {

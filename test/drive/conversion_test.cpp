@@ -141,6 +141,28 @@ TEST(Conversion, DirectionTurnsSignedValuesRound) {
   EXPECT_TRUE(velocity.reversed());
 }
 
+TEST(Conversion, EverythingThatMovesTurnsRoundWithTheDirection) {
+  DriveProfile drive = countingDrive();
+  drive.units[Quantity::jerk] = {UnitSpec::Base::count, 3, false, 1.0};
+  for (const Quantity quantity : {Quantity::position, Quantity::distance, Quantity::velocity,
+                                  Quantity::acceleration, Quantity::jerk, Quantity::torque}) {
+    const auto conversion =
+        *Conversion::create(object(DataType::int32, quantity), drive, servo(-1));
+    EXPECT_TRUE(conversion.reversed()) << static_cast<int>(quantity);
+  }
+  const auto jerk = *Conversion::create(object(DataType::int32, Quantity::jerk), drive, servo(-1));
+  EXPECT_EQ(encode(jerk, 2 * kPi), 0xFFFFF060u);  // -4000 counts/s^3
+  const auto plain = *Conversion::create(object(DataType::int32, Quantity::none), drive, servo(-1));
+  EXPECT_FALSE(plain.reversed());
+}
+
+TEST(Conversion, AnUnsignedPositionHasNoOffset) {
+  const auto position = *Conversion::create(object(DataType::uint32, Quantity::position),
+                                            countingDrive(), servo(1, 1.0, 0.5));
+  EXPECT_EQ(encode(position, kPi / 2), 1000u);
+  EXPECT_DOUBLE_EQ(position.toJoint(1000), kPi / 2);
+}
+
 TEST(Conversion, UnsignedObjectsAreMagnitudesWhateverTheDirection) {
   const auto profile_velocity = *Conversion::create(object(DataType::uint32, Quantity::velocity),
                                                     countingDrive(), servo(-1, 1.0, 0.5));

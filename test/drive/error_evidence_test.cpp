@@ -53,6 +53,35 @@ TEST(ErrorEvidence, ADriveThatTellsOnlyByServiceDataObjectIsAsked) {
   EXPECT_EQ(bench.axis.state().error_code, 0x8611);
 }
 
+TEST(ErrorEvidence, WhatWasResetDoesNotNameTheNextFault) {
+  for (const canopen::NodeConfig& node : {test::nodeConfig(), withoutErrorCode()}) {
+    Bench bench(testConfig(), node);
+    bench.drive.error_object = 0;
+    ASSERT_TRUE(bench.boot());
+    bench.deliver(bench.drive.fail(0x8611));
+    bench.run(milliseconds(200));
+    ASSERT_EQ(bench.axis.state().error_code, 0x8611);
+    ASSERT_TRUE(bench.perform(ProcedureKind::clear_faults).success);
+    EXPECT_EQ(bench.axis.state().error_code, 0);
+    static_cast<void>(bench.drive.fail(0x7305));  // its EMCY is lost
+    bench.run(milliseconds(200));
+    EXPECT_EQ(bench.axis.state().state, State::fault);
+    EXPECT_EQ(bench.axis.state().error_code, 0);
+  }
+}
+
+TEST(ErrorEvidence, ADriveThatTellsOnlyByServiceDataObjectIsAskedAboutEachFault) {
+  Bench bench(testConfig(), withoutErrorCode());
+  ASSERT_TRUE(bench.boot());
+  static_cast<void>(bench.drive.fail(0x8611));
+  bench.run(milliseconds(100));
+  ASSERT_EQ(bench.axis.state().error_code, 0x8611);
+  ASSERT_TRUE(bench.perform(ProcedureKind::clear_faults).success);
+  static_cast<void>(bench.drive.fail(0x7305));
+  bench.run(milliseconds(100));
+  EXPECT_EQ(bench.axis.state().error_code, 0x7305);
+}
+
 TEST(ErrorEvidence, WhatComesLongAfterTheFaultDoesNotRenameIt) {
   Bench bench;
   bench.drive.error_object = 0;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 
 namespace cia402::drive {
 namespace {
@@ -141,6 +142,23 @@ TEST(StateMachine, CommandsEveryStateTowardsEveryGoal) {
           << where << ": " << command.text;
     }
   }
+}
+
+// CiA 402-2, figure of the power drive system's states: high-level power may be switched off up to
+// "ready to switch on" and in "fault".
+TEST(StateMachine, KnowsWhereThePowerStageIsOff) {
+  const std::pair<State, bool> rows[] = {
+      {State::not_ready_to_switch_on, true},
+      {State::switch_on_disabled, true},
+      {State::ready_to_switch_on, true},
+      {State::switched_on, false},
+      {State::operation_enabled, false},
+      {State::quick_stop_active, false},
+      {State::fault_reaction_active, false},
+      {State::fault, true},
+      {State::unknown, false},
+  };
+  for (const auto& [state, off] : rows) EXPECT_EQ(powerStageOff(state), off) << toString(state);
 }
 
 TEST(StateMachine, NoGoalEverSetsFaultResetOrHalt) {

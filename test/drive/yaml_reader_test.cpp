@@ -98,6 +98,39 @@ TEST(YamlReader, ReadsListsOfAKnownLength) {
   EXPECT_THAT(reader.text(), HasSubstr("top/none: must be a list"));
 }
 
+TEST(YamlReader, WhatIsNoTextNoWordAndNoNameIsTold) {
+  Reader reader("{empty: \"\", list: [1], word: thee, [a]: 1}");
+  std::string text = "kept";
+  EXPECT_FALSE(reader.section.read("empty", text));
+  EXPECT_FALSE(reader.section.read("list", text));
+  EXPECT_EQ(text, "kept");
+  EXPECT_FALSE(reader.section.get("word")->oneOf({"one", "two", "three"}));
+  EXPECT_EQ(reader.section.entries().size(), 3U);
+  EXPECT_THAT(reader.text(), HasSubstr("  top/empty: must be a text, not "));
+  EXPECT_THAT(reader.text(), HasSubstr("  top/list: must be a text, not a list\n"));
+  EXPECT_THAT(reader.text(), HasSubstr("  top/word: unknown word `thee`, did you mean `three`?\n"));
+  EXPECT_THAT(reader.text(), HasSubstr("  top: has a key that is not a name\n"));
+}
+
+TEST(YamlReader, TheBoundsThemselvesAreAllowed) {
+  Reader reader("{low: 1, high: 127, below: 0, above: 128}");
+  int id = 0;
+  EXPECT_TRUE(reader.section.readInteger("low", id, 1, 127));
+  EXPECT_EQ(id, 1);
+  EXPECT_TRUE(reader.section.readInteger("high", id, 1, 127));
+  EXPECT_EQ(id, 127);
+  EXPECT_FALSE(reader.section.readInteger("below", id, 1, 127));
+  EXPECT_FALSE(reader.section.readInteger("above", id, 1, 127));
+  double number = 5.0;
+  EXPECT_TRUE(reader.section.read("low", number, Range{1.0, 127.0, false}));
+  EXPECT_EQ(number, 1.0);
+  EXPECT_TRUE(reader.section.read("high", number, Range{1.0, 127.0, false}));
+  EXPECT_EQ(number, 127.0);
+  EXPECT_FALSE(reader.section.read("low", number, Range{1.0, 127.0, true}));
+  EXPECT_FALSE(reader.section.read("below", number, Range{1.0, 127.0, false}));
+  EXPECT_FALSE(reader.section.read("above", number, Range{1.0, 127.0, false}));
+}
+
 TEST(YamlReader, AScalarIsNoMapping) {
   Reader reader("just a text");
   EXPECT_EQ(reader.text(), "  top: must be a mapping (key: value), not `just a text`\n");

@@ -292,6 +292,22 @@ class Robot:
             return condition()
         wait_until(step, what, deadline)
 
+    def turn(self, velocities):
+        """Brings axes to turn in cyclic_velocity, which a drive goes on with where nobody ends it,
+        towards their middle. @param velocities {axis: rad/s}. Returns while they turn."""
+        for axis in velocities:
+            assert self.call(f"{axis}/set_mode", mode="csv").success
+            assert self.call(f"{axis}/enable").success
+        before = {axis: self.position(axis) for axis in velocities}
+        publishers = {axis: self.publisher(f"{axis}/command", Float64) for axis in velocities}
+
+        def step():
+            for axis, publisher in publishers.items():
+                publisher.publish(velocities[axis] * (1.0 if before[axis] < 0.0 else -1.0))
+            time.sleep(0.02)
+            return all(abs(self.position(axis) - before[axis]) > 0.1 for axis in velocities)
+        wait_until(step, f"they turn: {velocities}")
+
     def follow(self, joints, points):
         """Sends a trajectory. @param points (time, positions): at rest at the last one."""
         message = JointTrajectory(joint_names=list(joints))

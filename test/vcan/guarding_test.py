@@ -65,13 +65,16 @@ class Guarding(RobotTest):
 
     def test_03_node_killed_makes_the_guarded_drive_stop(self):
         wait_until(self.robot.recovered, "recovered")
-        self.robot.wait_axis("guarded", lambda axis: axis.state == "operation enabled", "enabled")
+        self.robot.turn({"guarded": 0.3})
         began = time.monotonic()
         self.process.kill()
+        self.assertGreater(self.wire.travel(1), 1000, "it turns on at first")
         wait_until(lambda: self.wire.first(
             began, lambda identifier, data: identifier == 0x81
             and data[:2] == bytes([0x30, 0x81])), "EMCY 8130 of the guarded drive")
-        self.assertEqual(self.requests(began + 1.0), [])
+        wait_until(lambda: self.wire.travel(1) == 0, "it stands", 10.0)
+        self.assertFalse(self.wire.powered(1))
+        self.assertEqual(self.wire.travel(1, 1.0), 0, "it stays there")
 
 
 if __name__ == "__main__":

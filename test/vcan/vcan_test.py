@@ -171,13 +171,21 @@ class Vcan(RobotTest):
         self.robot.wait_ready()
 
     def test_08_kill_9_in_motion_makes_the_drives_stop_by_themselves(self):
-        self.begin_motion()
+        self.settle()
+        self.home_and_enable()
+        self.robot.turn({"shoulder": 0.3, "wrist": 0.3})
         began = time.monotonic()
         self.process.kill()
+        for node in (1, 3):
+            self.assertGreater(self.wire.travel(node), 1000, f"node {node} turns on at first")
         for node in (1, 3):
             wait_until(lambda: self.wire.first(
                 began, lambda identifier, data: identifier == 0x80 + node
                 and data[:2] == bytes([0x30, 0x81])), f"EMCY 8130 of node {node}")
+        for node in (1, 3):
+            wait_until(lambda: self.wire.travel(node) == 0, f"node {node} stands", 10.0)
+            self.assertFalse(self.wire.powered(node))
+            self.assertEqual(self.wire.travel(node, 1.0), 0, f"node {node} stays there")
         self.start_node()
         self.robot.bus_state = None
         self.robot.wait_ready()
@@ -193,7 +201,8 @@ class Vcan(RobotTest):
                            interface="vcan0")
         self.assertNotEqual(mistaken.wait(), 0)
         self.assertIn("10 problems", mistaken.output())
-        self.assertEqual(self.wire.since(quiet), [])
+        self.wire.hear_itself()
+        self.assertEqual([frame[1:] for frame in self.wire.since(quiet)], [(0x7FF, b"heard")])
 
     def test_10_missing_interface_is_waited_for(self):
         late = Robot("late")

@@ -33,6 +33,7 @@ class Wire:
         self._socket = socket.socket(socket.PF_CAN, socket.SOCK_RAW, socket.CAN_RAW)
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 20)
         self._socket.setsockopt(socket.SOL_SOCKET, SO_TIMESTAMPNS, 1)
+        self._interface = interface
         self._socket.bind((interface,))
         self._socket.settimeout(0.1)
         self._distance = clock_distance()  # once: its system calls are dear in user-mode Linux
@@ -69,6 +70,13 @@ class Wire:
         self._thread.join()
         self._socket.close()
 
+    def hear_itself(self):
+        """Sends a frame of no service from another socket: who has not received that one cannot
+        say that nothing was sent."""
+        with socket.socket(socket.PF_CAN, socket.SOCK_RAW, socket.CAN_RAW) as other:
+            other.bind((self._interface,))
+            other.send(struct.pack("=IB3x8s", 0x7FF, 5, b"heard"))
+
     def since(self, when):
         """The data frames since then, up to this call."""
         self._catch_up()
@@ -92,6 +100,34 @@ class Wire:
         """Time of the first frame since then with condition(identifier, data), or None."""
         return next((at for at, identifier, data in self.since(when)
                      if condition(identifier, data)), None)
+
+    def send(self, identifier, data):
+        self._socket.send(struct.pack("=IB3x8s", identifier, len(data), data))
+
+    def upload(self, node, index, deadline=30.0):
+        """Reads an object of up to four bytes by SDO. Only where no other master lives, who would
+        ask the same drive meanwhile. @return its bytes."""
+        multiplexer = struct.pack("<HB", index, 0)
+        asked = time.monotonic()
+        self.send(0x600 + node, b"\x40" + multiplexer + bytes(4))
+        while True:
+            for _, identifier, data in self.since(asked - 0.001):
+                if identifier == 0x580 + node and data[1:4] == multiplexer and data[0] & 0xE3 == 0x43:
+                    return data[4:8 - (data[0] >> 2 & 3)]
+            if time.monotonic() > asked + deadline:
+                raise AssertionError(f"node {node} does not tell {index:04X}h")
+
+    def travel(self, node, seconds=0.3):
+        """What 6064h, where the motor stands, changes by meanwhile. See upload()."""
+        def position():
+            return int.from_bytes(self.upload(node, 0x6064), "little", signed=True)
+        before = position()
+        time.sleep(seconds)  # what is tested is what the motor does meanwhile
+        return abs(position() - before)
+
+    def powered(self, node):
+        """Whether the drive is in "operation enabled" (6041h). See upload()."""
+        return int.from_bytes(self.upload(node, 0x6041), "little") & 0x6F == 0x27
 
     def statusword(self, node, since=0.0):
         """The newest one of a node (first object of its TPDO 1), or None."""

@@ -1,0 +1,137 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// What an axis says of itself: why it takes no command, and what helps.
+#include "drive/axis_fixture.h"
+
+namespace cia402::drive {
+namespace {
+
+using test::Bench;
+using test::FakeDrive;
+using test::HasSubstr;
+using test::milliseconds;
+using test::testConfig;
+
+TEST(AxisWords, BeforeItsNodeIsThereTheNodeIsNamed) {
+  Bench bench;
+  EXPECT_EQ(bench.axis.obstacle(), "shoulder, its node is absent: recover");
+  EXPECT_EQ(bench.axis.motionRefusal(),
+            "shoulder (node 3): the node is absent; recover brings it back");
+  EXPECT_EQ(bench.axis.faultText(), "");
+}
+
+TEST(AxisWords, ADisabledAxisAsksToBeEnabled) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  EXPECT_EQ(bench.axis.obstacle(), "shoulder is not enabled (switch on disabled): enable");
+  // 0x0250: bits 4, 6 and 9.
+  EXPECT_EQ(bench.axis.motionRefusal(),
+            "shoulder (node 3): not enabled, statusword 0x0250 (switch on disabled: voltage "
+            "enabled, switch on disabled, remote); call enable");
+}
+
+TEST(AxisWords, AnAxisThatIsWellSaysNothing) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot() && bench.enable());
+  EXPECT_EQ(bench.axis.obstacle(), "");
+  EXPECT_EQ(bench.axis.motionRefusal(), "");
+  EXPECT_EQ(bench.axis.faultText(), "");
+}
+
+TEST(AxisWords, AHaltedAxisAsksForEnable) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot() && bench.enable());
+  ASSERT_TRUE(bench.perform(ProcedureKind::halt).success);
+  EXPECT_EQ(bench.axis.obstacle(), "shoulder is halted: enable");
+  EXPECT_EQ(bench.axis.motionRefusal(), "shoulder (node 3): halted; enable releases the halt");
+}
+
+TEST(AxisWords, WhileAProcedureRunsThereIsNoMotion) {
+  Bench bench;
+  bench.drive.mode_delay = 100;
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.axis.start({ProcedureKind::enable, {}, 0.0}, bench.now).ok());
+  bench.run(milliseconds(20));
+  EXPECT_EQ(bench.axis.motionRefusal(), "shoulder (node 3): a procedure is running");
+}
+
+TEST(AxisWords, WithoutFeedbackThatIsSaid) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot() && bench.enable());
+  bench.drive.silent = true;
+  bench.run(milliseconds(200));
+  EXPECT_EQ(bench.axis.obstacle(), "shoulder gives no fresh statusword and position: recover");
+  EXPECT_EQ(bench.axis.motionRefusal(),
+            "shoulder (node 3): no fresh position (6064:00) and statusword (6041:00)");
+}
+
+TEST(AxisWords, AFaultIsNamedWithCauseAndRemedy) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot() && bench.enable());
+  bench.deliver(bench.drive.fail(0x8611));
+  bench.run(milliseconds(8));
+  const std::string words =
+      "shoulder (node 3): fault 0x8611 following error: the axis is blocked or the gains are too "
+      "low; check the mechanics and 6065:00";
+  EXPECT_EQ(bench.axis.faultText(), words + " (the drive is still stopping); then clear_faults");
+  bench.run(milliseconds(100));
+  EXPECT_EQ(bench.axis.faultText(), words + "; then clear_faults");
+  EXPECT_EQ(bench.axis.motionRefusal(), words + "; then clear_faults");
+  EXPECT_EQ(bench.axis.obstacle(), "shoulder is in fault: recover");
+}
+
+TEST(AxisWords, AFaultWithoutACodeSaysWhereToLook) {
+  Bench bench;
+  bench.drive.error_object = 0;
+  ASSERT_TRUE(bench.boot());
+  static_cast<void>(bench.drive.fail(0x8611));  // its EMCY is lost
+  bench.run(milliseconds(100));
+  EXPECT_EQ(bench.axis.faultText(),
+            "shoulder (node 3): fault, no error code yet (603F:00 is 0 and no EMCY came); "
+            "clear_faults, then look at the drive's own display or log");
+}
+
+TEST(AxisWords, AWarningWithoutACodeMattersWhereWarningsStop) {
+  for (const bool stops : {false, true}) {
+    DriveProfile profile = test::testProfile();
+    profile.warning_stops = stops;
+    Bench bench(testConfig(profile));
+    bench.drive.warning = true;
+    bench.drive.error_object = 0;
+    ASSERT_TRUE(bench.boot());
+    bench.run(milliseconds(40));
+    EXPECT_EQ(
+        bench.axis.faultText(),
+        stops ? "shoulder (node 3): warning without a code (statusword bit 7); clear_faults" : "");
+  }
+}
+
+TEST(AxisWords, AnAxisWithoutZeroAsksForWhatGivesItOne) {
+  for (const bool homing : {false, true}) {
+    AxisConfig config = testConfig();
+    if (homing) {
+      config.homing.emplace();
+      config.homing->method = 37;
+      config.homing->search_velocity = config.homing->zero_velocity = 0.1;
+      config.homing->acceleration = 1.0;
+    }
+    Bench bench(config);
+    ASSERT_TRUE(bench.boot() && bench.enable());
+    EXPECT_EQ(bench.axis.obstacle(), homing ? "shoulder is not homed: home" : "");
+    EXPECT_EQ(bench.axis.motionRefusal(),
+              homing ? "shoulder (node 3): not homed; home it before position motion" : "");
+  }
+}
+
+TEST(AxisWords, ADriveThatShowsAnotherModeIsToldApart) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot() && bench.enable());
+  bench.drive.commanded_mode = bench.drive.mode = 3;  // by itself
+  bench.drive.mode_delay = 1000000;
+  bench.run(milliseconds(8));
+  EXPECT_THAT(bench.axis.obstacle(),
+              HasSubstr("shoulder does not show that it is in mode cyclic_position: set_mode"));
+  EXPECT_THAT(bench.axis.motionRefusal(), HasSubstr(" instead of 8 (cyclic_position)"));
+}
+
+}  // namespace
+}  // namespace cia402::drive
