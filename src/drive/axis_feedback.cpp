@@ -83,7 +83,7 @@ void AxisCore::readMotion(Time now) {
   state_.effort = read(objects_.effort, polled_effort_, now);
   const InputObject& following_error = objects_.following_error;
   const bool told = following_error.mapped() ? image_.input(following_error.slot).valid
-                                             : poller_.has(polled_following_error_);
+                                             : poller_.value(polled_following_error_, now).valid;
   if (told) {
     state_.following_error = read(objects_.following_error, polled_following_error_, now);
   } else if (in_operation_ && mode_->spec->kind == ControlKind::position) {

@@ -40,8 +40,6 @@ class AxisPoller {
   void advance(canopen::SdoClient& sdo, Time now);
   /// The node lost its state: nothing is known any more.
   void reset();
-  /// Is it asked for, and not refused by the drive?
-  bool has(int item) const { return item >= 0 && !items_[static_cast<std::size_t>(item)].refused; }
   /// Takes a value that somebody else has read.
   void put(int item, std::uint64_t raw, Time now);
   /// The value of an item; not valid if there is none younger than kStale.
