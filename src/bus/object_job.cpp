@@ -184,7 +184,7 @@ bool ObjectJob::measure(Time now) {
 }
 
 bool ObjectJob::finishRead() {
-  const auto unnamed = unnamedFloat();
+  const auto unnamed = unnamedObject();
   const ObjectText text =
       describeObject(unnamed ? &*unnamed : spec_, axis_->config(), ticket_->data());
   Answer answer;
@@ -197,13 +197,19 @@ bool ObjectJob::finishRead() {
   return true;
 }
 
-std::optional<drive::ObjectSpec> ObjectJob::unnamedFloat() const {
+std::optional<drive::ObjectSpec> ObjectJob::unnamedObject() const {
   if (spec_ != nullptr) return {};
+  if (canopen::isStandardText(id_)) {
+    drive::ObjectSpec text;
+    text.id = id_;
+    text.type = drive::DataType::visible_string;
+    return text;
+  }
   return axis_->config().profile->unnamedFloat(id_, ticket_->data().size());
 }
 
 bool ObjectJob::writeWithAskedSize() {
-  const auto unnamed = unnamedFloat();
+  const auto unnamed = unnamedObject();
   const Result<canopen::Bytes> data =
       unnamed ? encodeObject(*unnamed, value_) : encodeUnlisted(value_, ticket_->data().size());
   if (!data) return finish(false, who_ + ": " + name_ + " not written: " + data.error().message);

@@ -17,6 +17,12 @@ using drive::ObjectSpec;
 
 bool isText(drive::DataType type) { return canopen::sizeBits(type) == 0; }
 
+/// Drives written in C pad their texts with zeros.
+Bytes unpadded(Bytes data) {
+  while (data.size() > 1 && data.back() == 0) data.pop_back();
+  return data;
+}
+
 const char* jointUnit(drive::Quantity quantity, const drive::AxisConfig& axis) {
   const bool linear = axis.geometry.type == drive::AxisGeometry::Type::prismatic;
   switch (quantity) {
@@ -153,7 +159,8 @@ ObjectText describeObject(const ObjectSpec* spec, const drive::AxisConfig& axis,
   const unsigned bits = canopen::sizeBits(spec->type);
   ObjectText text;
   if (isText(spec->type)) {
-    text.value = textOf(data);
+    const bool visible = spec->type == drive::DataType::visible_string;
+    text.value = textOf(visible ? unpadded(data) : data);
     return text;
   }
   if (data.size() * 8 != (bits == 1 ? 8 : bits)) {

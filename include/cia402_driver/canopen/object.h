@@ -30,6 +30,9 @@ std::string toString(ObjectId object);
 
 /// Reads "6041:00", "0x6041:0", "0x6041" or "6041" (hexadecimal, sub-index 0 unless given).
 std::optional<ObjectId> parseObjectId(std::string_view text);
+/// Is it text in every device that has it: 1008h to 100Ah, device name and versions (CiA 301,
+/// 7.5.2.8 to 7.5.2.10)? Of up to four bytes it looks like a number on the wire.
+bool isStandardText(ObjectId id);
 
 /// Basic data types of CiA 301, 7.4.7 that can stand in an object dictionary.
 enum class DataType : std::uint8_t {
