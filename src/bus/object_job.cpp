@@ -176,7 +176,7 @@ bool ObjectJob::measure(Time now) {
 }
 
 bool ObjectJob::finishRead() {
-  const auto unnamed = unnamedFloat();
+  const auto unnamed = unnamedObject();
   const ObjectText text = describeObject(unnamed ? &*unnamed
                                          : spec_ ? &*spec_
                                                  : nullptr,
@@ -191,13 +191,19 @@ bool ObjectJob::finishRead() {
   return true;
 }
 
-std::optional<drive::ObjectSpec> ObjectJob::unnamedFloat() const {
+std::optional<drive::ObjectSpec> ObjectJob::unnamedObject() const {
   if (spec_) return {};
+  if (canopen::isStandardText(id_)) {
+    drive::ObjectSpec text;
+    text.id = id_;
+    text.type = drive::DataType::visible_string;
+    return text;
+  }
   return axis_->config().profile->unnamedFloat(id_, ticket_->data().size());
 }
 
 bool ObjectJob::writeWithAskedSize() {
-  const auto unnamed = unnamedFloat();
+  const auto unnamed = unnamedObject();
   const Result<canopen::Bytes> data =
       unnamed ? encodeObject(*unnamed, value_) : encodeUnlisted(value_, ticket_->data().size());
   if (!data) return finish(false, who_ + ": " + name_ + " not written: " + data.error().message);

@@ -20,6 +20,12 @@ using drive::ObjectSpec;
 
 bool isText(drive::DataType type) { return canopen::sizeBits(type) == 0; }
 
+/// Drives written in C pad their texts with zeros.
+Bytes unpadded(Bytes data) {
+  while (data.size() > 1 && data.back() == 0) data.pop_back();
+  return data;
+}
+
 std::int64_t signExtended(std::uint64_t raw, unsigned bits) {
   if (bits >= 64) return static_cast<std::int64_t>(raw);
   const std::uint64_t sign = std::uint64_t{1} << (bits - 1);
@@ -166,7 +172,9 @@ ObjectText describeObject(const ObjectSpec* spec, const drive::AxisConfig& axis,
   const unsigned bits = canopen::sizeBits(spec->type);
   ObjectText text;
   if (isText(spec->type)) {
-    text.value = spec->type == drive::DataType::octet_string ? bytesOf(data) : textOf(data);
+    const bool visible = spec->type == drive::DataType::visible_string;
+    const bool octets = spec->type == drive::DataType::octet_string;
+    text.value = octets ? bytesOf(data) : textOf(visible ? unpadded(data) : data);
     return text;
   }
   if (data.size() * 8 != (bits == 1 ? 8 : bits)) {

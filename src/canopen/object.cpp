@@ -94,6 +94,10 @@ std::string toString(ObjectId object) {
   return text.data();
 }
 
+bool isStandardText(ObjectId id) {
+  return id.index >= 0x1008 && id.index <= 0x100A && id.subindex == 0;
+}
+
 std::optional<ObjectId> parseObjectId(std::string_view text) {
   const std::size_t colon = text.find(':');
   const std::optional<unsigned> index = parseHex(text.substr(0, colon), 0xFFFF);

@@ -43,6 +43,11 @@ void readCommunication(DefinitionReader& reader, DeviceBehaviour& out) {
   reader.read("lss", out.lss);
   reader.read("lss_bit_timing", out.lss_bit_timing);
   reader.read("lss_store", out.lss_store);
+  reader.read("lss_identify_unconfigured", out.lss_identify_unconfigured);
+  reader.read("lss_scanned_with_node_id", out.lss_scanned_with_node_id);
+  reader.read("lss_never_found", out.lss_never_found);
+  reader.read("lss_waits_for_reset", out.lss_waits_for_reset);
+  reader.read("boot_up_message", out.boot_up_message);
   reader.read("sync_timeout", out.sync_timeout);
 }
 

@@ -151,7 +151,7 @@ void Device::Impl::silence(NmtState state) {
 
 void Device::Impl::takeNodeId() {
   const canopen::NodeId before = context.node;
-  context.node = lss.pendingNode();
+  context.node = context.application.ownNodeId().value_or(lss.pendingNode());
   if (context.node != before) context.application.onNodeId(before, context.node);
 }
 
@@ -248,6 +248,8 @@ void Device::Impl::hear(const can::Frame& frame) {
   // Still initialising; without a node-ID LSS alone works, once the device has started.
   const bool waits_for_id = context.node == kUnconfigured && boot_at == kNever;
   if (waits_for_id && frame.id == kLssRequest) lss.receive(frame);
+  const bool resets = context.behaviour.lss_waits_for_reset && frame.id == kNmt;
+  if (waits_for_id && resets) command(frame);
 }
 
 void Device::Impl::runDue() {

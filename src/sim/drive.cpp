@@ -128,6 +128,11 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
     core.start(cold, time);
     cold = false;
   }
+  std::optional<canopen::NodeId> ownNodeId() const override {
+    const Entry* entry = definition->node_id ? dictionary.find(*definition->node_id) : nullptr;
+    if (entry == nullptr) return {};
+    return static_cast<canopen::NodeId>(entry->initial_number);
+  }
   void onNodeId(canopen::NodeId before, canopen::NodeId now_is) override {
     for (const ObjectId id : definition->dictionary.nodeIdObjects()) {
       store.moveDefault(id, std::int64_t{now_is} - before);

@@ -95,6 +95,14 @@ void readObjects(Reader& reader, DriveDefinition& out) {
   });
 }
 
+void readNodeId(Reader& reader, DriveDefinition& out) {
+  std::string text;
+  reader.read("node_id", text);
+  if (text.empty()) return;
+  out.node_id = canopen::parseObjectId(text);
+  if (!out.node_id) reader.problem("node_id", "must be an object like \"2003:01\"");
+}
+
 void readMotor(Reader& reader, MotorParameters& out) {
   reader.read("rated_acceleration", out.rated_acceleration, 1e-3, 1e6);
   reader.read("max_torque", out.max_torque, 0.01, 100.0);
@@ -356,6 +364,7 @@ void readDefinition(Reader& reader, bool extends, DriveDefinition& out) {
   reader.each("modes", [&](const std::string& number, const YAML::Node& node) {
     readMode(number, node, reader, out);
   });
+  readNodeId(reader, out);
   reader.section("state_machine", [&](Reader& r) { readStateMachine(r, out); });
   reader.section("quirks", [&](Reader& r) { readQuirks(r, out.quirks); });
   reader.section("homing", [&](Reader& r) { readHoming(r, out); });

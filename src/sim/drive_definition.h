@@ -147,6 +147,7 @@ struct DriveDefinition {
   bool stops_outside_operational = true;
   bool traps_non_finite = false;  ///< NaN and infinity in a float object: fault "not_a_number"
   bool traps_negative_zero = false;
+  std::optional<canopen::ObjectId> node_id;  ///< object whose saved value is the node-ID
 
   std::vector<FaultDefinition> faults;
 

@@ -45,10 +45,16 @@ struct SlaveContext {
 
   /// What the loss of the master by heartbeat or life guarding does (CiA 301, 7.5.2.29).
   void masterLost() {
-    const std::uint64_t reaction = value({0x1029, 1});
+    behaveOnError(value({0x1029, 1}));
+    application.onMasterLost(now);
+  }
+  /// The same for the other errors of communication, where the device lets them be chosen
+  /// (1029h:02, Damiao L626); else they change no state.
+  void otherCommunicationError() { behaveOnError(value({0x1029, 2}, 1)); }
+  /// @param reaction 0 pre-operational, 1 none, 2 stopped
+  void behaveOnError(std::uint64_t reaction) {
     if (reaction == 0 && operational()) change_state(canopen::NmtState::pre_operational);
     if (reaction == 2) change_state(canopen::NmtState::stopped);
-    application.onMasterLost(now);
   }
 
   /// From an SDO request to its answer.

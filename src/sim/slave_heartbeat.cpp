@@ -61,7 +61,9 @@ void SlaveHeartbeat::reset() {
 }
 
 void SlaveHeartbeat::start() {
-  context_.sink.send(can::Frame(kErrorControl + context_.node, {0x00}));
+  if (context_.behaviour.boot_up_message) {
+    context_.sink.send(can::Frame(kErrorControl + context_.node, {0x00}));
+  }
   next_ = period() > Duration::zero() ? context_.now + period() : kNever;
   for (Consumer& consumer : consumers_) configure(consumer);
 }

@@ -101,7 +101,8 @@ void SlaveLss::switchGlobal(std::uint8_t mode) {
   reset();
   if (mode == 1) state_ = State::configuration;
   // A device that has just got its first node-ID begins to live with it.
-  const bool named = context_.node == kUnconfigured && pending_node_ != kUnconfigured;
+  const bool named = !context_.behaviour.lss_waits_for_reset && context_.node == kUnconfigured &&
+                     pending_node_ != kUnconfigured;
   if (before == State::configuration && mode == 0 && named) context_.reset_communication();
 }
 
@@ -139,12 +140,14 @@ void SlaveLss::identify(std::uint8_t command, std::uint32_t number) {
 }
 
 void SlaveLss::identifyUnconfigured() {
-  if (unconfigured()) answer(kIdentifiedUnconfigured);
+  if (unconfigured() && context_.behaviour.lss_identify_unconfigured) {
+    answer(kIdentifiedUnconfigured);
+  }
 }
 
 // Bits 31 to `bit` of one number are compared; with bit 0 the number is known and the next follows.
 void SlaveLss::fastscan(const can::Frame& frame) {
-  if (!unconfigured()) return;
+  if (!unconfigured() && !context_.behaviour.lss_scanned_with_node_id) return;
   const auto number = static_cast<std::uint32_t>(takeBytes(frame, 1, 4));
   const std::uint8_t bit = frame.data[5];
   const std::uint8_t part = frame.data[6];
@@ -156,7 +159,8 @@ void SlaveLss::fastscan(const can::Frame& frame) {
   if (bit > 31 || part > kLastPart || next > kLastPart || part != scan_part_) return;
   if (((number ^ identity(part)) >> bit) != 0) return;
   scan_part_ = next;
-  if (bit == 0 && next < part) state_ = State::configuration;
+  const bool last = bit == 0 && next < part;
+  if (last && !context_.behaviour.lss_never_found) state_ = State::configuration;
   answer(kIdentified);
 }
 

@@ -87,6 +87,7 @@ void SlaveRpdo::tick() {
   if (deadline_ > context_.now) return;
   deadline_ = kNever;
   emergency_.raise(timed_out_, kTimeout);
+  context_.otherCommunicationError();
 }
 
 }  // namespace cia402::sim

@@ -113,6 +113,16 @@ TEST_F(ObjectJobTest, TellsWhatWasWrittenInJointUnits) {
             "shoulder (node 1): wrote 10000 to 6065:00 following_error_window (0.1 rad)");
 }
 
+TEST_F(ObjectJobTest, ReadsAShortNameOrVersionAsText) {
+  stored(0x1008) = {'D', 'M'};
+  stored(0x1009) = {'s', 'i', 'm'};
+  stored(0x100A) = {'1', '.', '0', 0};  // padded as in C
+  EXPECT_EQ(read("1008:00").message, "shoulder (node 1): 1008:00 is \"DM\"");
+  EXPECT_EQ(read("1009:00").text, "\"sim\"");
+  EXPECT_EQ(read("100A:00").text, "\"1.0\"");
+  EXPECT_TRUE(std::isnan(read("1008:00").number));
+}
+
 TEST_F(ObjectJobTest, TellsAnAbortInWords) {
   const Answer answer = read("2002:05");
   EXPECT_FALSE(answer.success);

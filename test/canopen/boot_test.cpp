@@ -184,11 +184,11 @@ TEST_F(BootTest, a_node_whose_sdo_server_falls_mute_under_way_is_told_with_its_h
   boot();
   pass(milliseconds(400));
   hear("703 7F");
-  pass(seconds(1));
+  pass(milliseconds(1200));
   EXPECT_EQ(node->health(), NodeHealth::failed);
   EXPECT_THAT(node->problem(),
               HasSubstr("boot failed while reading 1018:02 product code: no answer within 500 ms, "
-                        "asked 2 times; its heartbeat goes on (NMT state pre-operational): its SDO "
+                        "asked 3 times; its heartbeat goes on (NMT state pre-operational): its SDO "
                         "server is mute"));
 }
 
@@ -199,7 +199,7 @@ TEST_F(BootTest, without_a_heartbeat_since_the_question_nothing_is_said_of_the_s
   pass(milliseconds(100));
   peer.forget(kAskProduct);
   hear("583 43 18 10 01 CD AB 00 00");
-  pass(milliseconds(1500));
+  pass(milliseconds(2000));
   EXPECT_EQ(node->health(), NodeHealth::failed);
   EXPECT_THAT(node->problem(), HasSubstr("1018:02 product code"));
   EXPECT_THAT(node->problem(), Not(HasSubstr("heartbeat")));

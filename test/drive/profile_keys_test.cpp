@@ -190,7 +190,7 @@ TEST_F(ProfileKeys, BehaviourIsAsWritten) {
   EXPECT_TRUE(profile.output_shaft);
   EXPECT_FALSE(profile.halt_supported);
   EXPECT_TRUE(profile.warning_stops);
-  EXPECT_TRUE(profile.mode_change_needs_disabling);
+  EXPECT_TRUE(profile.mode_change.needs_disabling);
   EXPECT_THAT(profile.quick_stop_holds, ElementsAre(5, -6));
   EXPECT_EQ(profile.sync_counter, 12);
   EXPECT_TRUE(profile.has_sync_counter_object);
@@ -283,7 +283,7 @@ TEST(ProfileDefaults, AreThoseOfTheStandards) {
   EXPECT_EQ(problems.text(), "");
   EXPECT_TRUE(profile.halt_supported);
   EXPECT_FALSE(profile.output_shaft || profile.warning_stops ||
-               profile.mode_change_needs_disabling);
+               profile.mode_change.needs_disabling);
   EXPECT_THAT(profile.quick_stop_holds, IsEmpty());
   EXPECT_FALSE(profile.sync_counter);
   EXPECT_TRUE(profile.has_sync_counter_object && profile.has_sync_period_object);

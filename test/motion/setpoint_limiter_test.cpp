@@ -64,7 +64,7 @@ TEST(PositionLimiter, HoldsStillWithoutACommand) {
 TEST(PositionLimiter, FirstStepTowardsAFarTargetIsOneAccelerationStep) {
   Position joint(elbow());
   const MotionState state = joint.follow(1);
-  EXPECT_NEAR(state.velocity, 0.02, 1e-12);  // 5 rad/s² * 4 ms
+  EXPECT_NEAR(state.velocity, 0.02, 1e-12);  // 5 rad/s^2 * 4 ms
   EXPECT_NEAR(state.acceleration, 5, 1e-9);
   EXPECT_NEAR(state.position, 8e-5, 1e-15);
   EXPECT_TRUE(joint.limiter.isLimiting());
@@ -74,7 +74,7 @@ TEST(PositionLimiter, StepIsReachedInTrapezoidTimeWithoutOvershoot) {
   Position joint(elbow());
   joint.follow(1);
   double highest = 0;
-  // 1 rad at 1 rad/s and 5 rad/s²: 1/1 + 1/5 s = 300 cycles; a few more for braking in steps
+  // 1 rad at 1 rad/s and 5 rad/s^2: 1/1 + 1/5 s = 300 cycles; a few more for braking in steps
   for (int i = 0; i < 310; ++i) highest = std::max(highest, joint.step().position);
   EXPECT_NEAR(joint.limiter.output().position, 1, 1e-6);
   EXPECT_LE(highest, 1 + 1e-12);
@@ -86,7 +86,7 @@ TEST(PositionLimiter, StepIsReachedInTrapezoidTimeWithoutOvershoot) {
 TEST(PositionLimiter, AStreamWithinTheLimitsComesOutUnchanged) {
   Position joint(elbow());
   for (int i = 1; i < 5000; ++i) {
-    // 0.9 rad/s and 4.05 rad/s² at most, from rest
+    // 0.9 rad/s and 4.05 rad/s^2 at most, from rest
     const double target = 0.2 * (1 - std::cos(4.5 * i * kDt));
     ASSERT_NEAR(joint.follow(target).position, target, 1e-12) << "cycle " << i;
     ASSERT_FALSE(joint.limiter.isLimiting());
@@ -172,7 +172,7 @@ TEST(PositionLimiter, StaleCommandStopsTheJointByTheStopDeceleration) {
   EXPECT_FALSE(joint.limiter.timedOut());
   const double speed = joint.limiter.output().velocity;
   EXPECT_NEAR(speed, 1, 1e-9);
-  EXPECT_NEAR(joint.step().velocity, speed - 0.01, 1e-12);  // 2.5 rad/s² * 4 ms
+  EXPECT_NEAR(joint.step().velocity, speed - 0.01, 1e-12);  // 2.5 rad/s^2 * 4 ms
   EXPECT_TRUE(joint.limiter.timedOut());
   for (int i = 0; i < 100; ++i) joint.step();
   EXPECT_EQ(joint.limiter.output().velocity, 0);
@@ -325,10 +325,10 @@ TEST(LimiterConfig, MistakesAreNamed) {
   expectWrong(config, "elbow: the velocity limit is 0 rad/s; it must be a finite number above 0");
   config = elbow();
   config.joint.limits.acceleration = INFINITY;
-  expectWrong(config, "elbow: the acceleration limit is inf rad/s²");
+  expectWrong(config, "elbow: the acceleration limit is inf rad/s^2");
   config = elbow();
   config.stop_deceleration = -1;
-  expectWrong(config, "elbow: the stop deceleration is -1 rad/s²");
+  expectWrong(config, "elbow: the stop deceleration is -1 rad/s^2");
   config = elbow();
   config.joint.limits.lower = std::nan("");
   expectWrong(config, "elbow: the lower limit is nan rad; it must be a finite number");

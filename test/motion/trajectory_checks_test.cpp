@@ -128,10 +128,10 @@ TEST_F(TrajectoryChecks, VelocityLimitHoldsBetweenThePoints) {
 
 TEST_F(TrajectoryChecks, AccelerationLimitHoldsBetweenThePoints) {
   joints[1].limits.acceleration = 5;
-  // a cubic over 1 m in 1 s that arrives with 0.4 m/s begins with 6 - 2 * 0.4 = 5.2 m/s²
+  // a cubic over 1 m in 1 s that arrives with 0.4 m/s begins with 6 - 2 * 0.4 = 5.2 m/s^2
   expectInvalid({point(1, {0, 0}, {0, 0}), point(2, {0, 1}, {0, 0.4}), point(9, {0, 1}, {0, 0})},
                 "lift: on the way from point 0 to point 1, at 1 s, the acceleration reaches 5.2 "
-                "m/s², beyond the limit 5 m/s²");
+                "m/s^2, beyond the limit 5 m/s^2");
   joints[1].limits.acceleration = 5.7735027;
   EXPECT_TRUE(create({point(1, {0, 1}, {0, 0}, {0, 0})}).ok());
 }

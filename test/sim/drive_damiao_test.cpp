@@ -42,6 +42,27 @@ TEST(DriveDamiao, ShowsItsIdentityAsPrinted) {
   EXPECT_EQ(b.abortOf({0x40, 0x03, 0x10, 0x01, 0, 0, 0, 0}), 0x08000024U);  // no error stored
 }
 
+TEST(DriveDamiao, ItsNodeIdIsTheSavedValueOf2003hFromTheNextResetOn) {
+  Damiao b;
+  EXPECT_EQ(b.read(0x2003, 1), 1U);
+  b.write(0x2003, 1, 5, 4);
+  b.nmt(0x81);  // reset node: nothing was saved
+  b.run(ms(100));
+  EXPECT_EQ(b.drive->device().node(), 1);
+  b.write(0x2003, 1, 5, 4);
+  b.write(0x1010, 1, 0x65766173, 4);  // "save"
+  b.run(ms(100));
+  EXPECT_EQ(b.drive->device().node(), 1) << "not before the reset";
+  b.nmt(0x81);
+  b.sent.clear();
+  b.run(ms(100));
+  EXPECT_EQ(b.drive->device().node(), 5);
+  ASSERT_FALSE(b.sent.empty());
+  EXPECT_EQ(b.sent[0].id, 0x705U) << "boot-up";
+  EXPECT_EQ(b.drive->dictionary().find({0x1400, 1})->number, 0x205U) << "as all that depends on it";
+  EXPECT_EQ(b.drive->dictionary().find({0x2003, 1})->number, 5U);
+}
+
 TEST(DriveDamiao, GoesThroughTheStatuswordsOfTheManual) {
   Damiao b;
   EXPECT_EQ(b.word(), 0x0250);

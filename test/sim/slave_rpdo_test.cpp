@@ -4,6 +4,7 @@
 namespace cia402::sim {
 namespace {
 
+using testing::Contains;
 using testing::ElementsAre;
 using testing::IsEmpty;
 using testing_support::microseconds;
@@ -71,6 +72,23 @@ TEST_F(SlaveRpdoTest, TooLongDataAreTakenAndReported) {
   EXPECT_EQ(value(0x6040), 0x0FU);
   EXPECT_EQ(value(0x607A), 0x04030201U);
   EXPECT_THAT(sent(), ElementsAre("081 20 82 11 00 00 00 00 00"));
+}
+
+TEST_F(SlaveRpdoTest, WhatItsTimeOutDoesIsSaidBy1029h02) {
+  add(0x1029, 2, DataType::uint8, Access::rw);
+  presetPdos(254, 1);
+  preset(0x1400, 5, 20);
+  const auto after = [this](std::uint8_t reaction) {
+    preset(0x1029, 2, reaction);
+    operate();
+    send(0x201, {0x0F, 0x00, 1, 2, 3, 4});
+    run(milliseconds(20));
+    EXPECT_THAT(sent(), Contains("081 50 82 11 00 00 00 00 00"));
+    return device.nmtState();
+  };
+  EXPECT_EQ(after(1), canopen::NmtState::operational);
+  EXPECT_EQ(after(0), canopen::NmtState::pre_operational);
+  EXPECT_EQ(after(2), canopen::NmtState::stopped);
 }
 
 TEST_F(SlaveRpdoTest, ItsEventTimerRunsFromTheFirstFrameOn) {

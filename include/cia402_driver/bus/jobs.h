@@ -105,7 +105,7 @@ class ObjectJob {
   bool finishWrite(Time now);
   bool measure(Time now);
   /// By what was read of it, if nothing names it.
-  std::optional<drive::ObjectSpec> unnamedFloat() const;
+  std::optional<drive::ObjectSpec> unnamedObject() const;
 
   drive::Axis* axis_ = nullptr;
   std::optional<drive::ObjectSpec> spec_;  ///< nothing names it where there is none

@@ -39,6 +39,9 @@ std::optional<ObjectId> parseObjectAddress(std::string_view text);
 bool isAmbiguousIndex(std::string_view text);
 /// What to write instead: "4120h or, if 0x1018 is meant, 1018h". @pre isAmbiguousIndex(text)
 std::string unambiguousIndex(std::string_view text);
+/// Is it text in every device that has it: 1008h to 100Ah, device name and versions (CiA 301,
+/// 7.5.2.8 to 7.5.2.10)? Of up to four bytes it looks like a number on the wire.
+bool isStandardText(ObjectId id);
 
 /// Basic data types of CiA 301, 7.4.7 that can stand in an object dictionary.
 enum class DataType : std::uint8_t {

@@ -81,8 +81,16 @@ struct DeviceBehaviour {
 
   // LSS (CiA 305), where 1018h has its four numbers.
   bool lss = true;
-  bool lss_bit_timing = true;  ///< has the bit rates of table 0 (else error 1)
-  bool lss_store = true;       ///< can store (else error 1)
+  bool lss_bit_timing = true;             ///< has the bit rates of table 0 (else error 1)
+  bool lss_store = true;                  ///< can store (else error 1)
+  bool lss_identify_unconfigured = true;  ///< knows command 4Ch (false: CANopenNode,
+                                          ///< 305/CO_LSSslave.c)
+  bool lss_scanned_with_node_id = false;  ///< takes part in fastscan though it has a node-ID
+                                          ///< (lely-core 2.3, src/co/lss.c)
+  bool lss_never_found = false;           ///< takes part in it after its last bit, too
+  bool lss_waits_for_reset = false;  ///< its first node-ID counts after an NMT reset only, of all
+                                     ///< or of node 255 (lely-core 2.3, src/co/nmt.c)
+  bool boot_up_message = true;       ///< false: enters pre-operational without a word
 
   // Supervision.
   bool sync_producer = true;  ///< can produce SYNC (1005h bit 30, 1006h; else 0x06090030)
@@ -108,6 +116,9 @@ class Device {
   class Application {
    public:
     virtual ~Application() = default;
+    /// The node-ID that an object of the device's own says, from the next reset on; nothing: LSS
+    /// says it.
+    virtual std::optional<canopen::NodeId> ownNodeId() const { return {}; }
     /// A reset begins with another node-ID than before: defaults that depend on it have changed.
     virtual void onNodeId(canopen::NodeId /*before*/, canopen::NodeId /*now*/) {}
     virtual void onPowerOn(Time) {}  ///< also after reset node / reset communication
