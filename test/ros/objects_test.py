@@ -21,7 +21,10 @@ class Objects(RobotTest):
 
     def test_read_of_text(self):
         answer = self.succeed("shoulder/read_object", "1008", object="1008:00")
-        self.assertIn('"', answer.value)
+        text = "Generic CiA 402 servo"  # config/simulated_drives/generic_cia402.yaml
+        self.assertEqual(answer.value, f'"{text}"')
+        self.assertEqual(bytes(answer.bytes), text.encode())
+        self.assertEqual(answer.raw, text.encode().hex(" ").upper())
 
     def test_read_of_a_missing_object_tells_the_abort_in_words(self):
         self.refuse("shoulder/read_object", "shoulder|5FFF|does not exist", object="5FFF:00")
