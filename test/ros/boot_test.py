@@ -10,6 +10,10 @@ from robot_client import ERROR, OK, Robot, RobotTest, main, wait_until
 from tf2_msgs.msg import TFMessage
 
 
+# Where the joints stand at first: `simulation:` of config/robots/demo.yaml, in the order of AXES.
+PLACES = [0.25, 0.0, -1.9, 0.0]
+
+
 class Boot(RobotTest):
     @classmethod
     def setUpClass(cls):
@@ -37,16 +41,24 @@ class Boot(RobotTest):
             self.assertFalse(axis.homed)
 
     def test_joint_states_keep_their_order_and_are_known(self):
-        for _, message in self.record(0.5):
+        self.robot.joint_states, self.robot.record = [], True
+        wait_until(lambda: len(self.robot.joint_states) >= 20, "twenty joint_states")
+        self.robot.record = False
+        for _, message in self.robot.joint_states:
             self.assertEqual(message.name, self.AXES)
-            for values in (message.position, message.velocity, message.effort):
+            for values, expected in ((message.position, PLACES), (message.velocity, [0.0] * 4),
+                                     (message.effort, [0.0] * 4)):
                 self.assertEqual(len(values), 4)
-                self.assertFalse(any(math.isnan(value) for value in values))
+                for value, right in zip(values, expected):
+                    self.assertAlmostEqual(value, right, delta=1e-3)
 
-    def test_joint_states_say_where_the_robot_stands(self):
-        self.assertAlmostEqual(self.robot.axis("wrist").position, self.robot.position("wrist"),
-                               delta=1e-3)
-        self.assertFalse(self.robot.axis("shoulder").homed)
+    def test_joint_states_say_what_the_drives_count(self):
+        """Counts per turn, gear and direction as config/robots/demo.yaml has them."""
+        for name, counts in (("shoulder", 131072 * 100), ("elbow", -131072 * 80),
+                             ("wrist", 65536 * 50)):
+            raw = self.robot.call(f"{name}/read_object", object="6064:00").number
+            self.assertAlmostEqual(self.robot.position(name), raw / counts * 2.0 * math.pi,
+                                   delta=1e-5)
 
     def test_joint_states_come_at_the_configured_rate(self):
         """Never faster for long, and as fast whenever the machine has half a second to spare."""

@@ -63,7 +63,9 @@ class Faults(RobotTest):
         self.succeed("gripper/enable")
         self.succeed("inject_fault", axis="gripper", fault="overtemperature")
         self.robot.wait_state("gripper", "fault")
-        self.robot.wait_diagnostic("gripper", ERROR, "gripper")
+        self.robot.wait_diagnostic("gripper", ERROR, "gripper (node 4): fault 0x4210|"
+                                   "device temperature too high|clear_faults")
+        self.assertEqual(self.robot.axis("gripper").error_code, 0x4210)
         self.succeed("inject_fault", axis="gripper", fault="clear")
         wait_until(lambda: self.robot.call("gripper/clear_faults").success, "cleared")
         self.succeed("gripper/enable")

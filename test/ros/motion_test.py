@@ -146,12 +146,14 @@ class Motion(RobotTest):
             self.robot.wait_axis(axis, lambda state: state.state != "operation enabled", "off")
 
     def test_halt_stops_and_keeps_the_power(self):
+        before = self.robot.position("shoulder")
+        goal = -0.5 if before < -1.5 else -2.5
         self.robot.follow(["shoulder", "elbow", "wrist", "gripper"],
-                          [(4.0, [-2.4, 0.0, 0.5, 0.0])])
-        before = self.robot.position("wrist")
-        wait_until(lambda: abs(self.robot.position("wrist") - before) > 0.05, "it moves")
-        self.succeed("shoulder/halt", "shoulder")
-        self.robot.wait_rest("shoulder")
+                          [(20.0, [goal, 0.0, 0.5, 0.0])])
+        wait_until(lambda: abs(self.robot.position("shoulder") - before) > 0.05, "it moves")
+        self.succeed("shoulder/halt", "shoulder: halted at ")
+        place = self.robot.wait_rest("shoulder")
+        self.assertGreater(abs(place - goal), 0.1, "it went on to the goal")
         self.assertEqual(self.robot.axis("shoulder").state, "operation enabled")
 
     def test_set_position_declares_where_the_axis_stands(self):

@@ -23,14 +23,17 @@ class Objects(RobotTest):
             self.assertEqual(int(answer.number) & 0x4F, 0x40)  # switch on disabled
 
     def test_read_of_text(self):
-        answer = self.succeed("shoulder/read_object", "1008", object="1008h text")
-        text = bytes(answer.bytes).decode("ascii")
-        self.assertGreater(len(text), 3)
-        self.assertEqual(answer.value, f'"{text}"')
-        self.assertTrue(math.isnan(answer.number))
+        text = "Generic CiA 402 servo"  # config/simulated_drives/generic_cia402.yaml
+        for spelling in ("1008:00", "1008h text"):
+            answer = self.succeed("shoulder/read_object", "1008", object=spelling)
+            self.assertEqual(answer.value, f'"{text}"')
+            self.assertEqual(bytes(answer.bytes), text.encode())
+            self.assertEqual(answer.raw, text.encode().hex(" ").upper())
+            self.assertTrue(math.isnan(answer.number))
 
     def test_a_type_that_nobody_names_is_not_guessed(self):
-        answer = self.succeed("shoulder/read_object", "4 bytes; its type is not known", object="1018h:1")
+        answer = self.succeed("shoulder/read_object", "4 bytes; its type is not known",
+                              object="1018h:1")
         self.assertTrue(math.isnan(answer.number))
         vendor = int.from_bytes(answer.bytes, "little")
         answer = self.succeed("shoulder/read_object", object="1018h:1 u32")
