@@ -14,9 +14,34 @@ using namespace std::chrono_literals;
 // An answer speaks of feedback that is up to three cycles and their frames old.
 constexpr Duration kFeedbackAge = 25ms;
 
+/// The TPDO in which a drive tells its statusword, and where.
+struct StatuswordPlace {
+  std::uint32_t cob_id = 0;
+  unsigned byte = 0;
+};
+
+StatuswordPlace statuswordOf(const Stage& stage, const AxisFacts& axis) {
+  for (const canopen::NodeConfig& node : stage.loaded().master.nodes) {
+    if (node.node_id != axis.config->node_id) continue;
+    for (const canopen::PdoConfig& pdo : node.pdos) {
+      unsigned bit = 0;
+      for (const canopen::PdoEntry& entry : pdo.entries) {
+        const bool statusword = entry.object == canopen::ObjectId{0x6041, 0} && bit % 8 == 0;
+        if (pdo.direction == canopen::PdoDirection::tpdo && pdo.enabled && statusword) {
+          return {pdo.cob_id, bit / 8};
+        }
+        bit += entry.bits;
+      }
+    }
+  }
+  return {};
+}
+
 class Answers final : public Oracle {
  public:
-  explicit Answers(const Stage& stage) : seen_(stage.axes().size()) {}
+  explicit Answers(const Stage& stage) : seen_(stage.axes().size()) {
+    for (const AxisFacts& axis : stage.axes()) told_.push_back(statuswordOf(stage, axis));
+  }
   const char* name() const override { return "untrue_answer"; }
 
   void look(const View& view) override {
@@ -25,6 +50,16 @@ class Answers final : public Oracle {
       if (truth.power) seen_[i].on = view.now;
       if (!truth.power) seen_[i].off = view.now;
       if (std::fabs(truth.velocity) <= view.stage.axes()[i].creep()) seen_[i].still = view.now;
+    }
+  }
+  /// A power stage may be on between two looks only; the drive's own frame tells it.
+  void onFrame(const can::Frame& frame, const View& view) override {
+    for (std::size_t i = 0; i < seen_.size(); ++i) {
+      const StatuswordPlace& place = told_[i];
+      const bool tells = place.cob_id != 0 && frame.id == place.cob_id && !frame.remote &&
+                         frame.size >= place.byte + 2;
+      if (!tells) continue;
+      if ((frame.data[place.byte] & 0x6F) == 0x27) seen_[i].on = view.now;
     }
   }
   void onAnswer(const Call& call, const bus::Answer& answer, const View& view) override {
@@ -67,6 +102,7 @@ class Answers final : public Oracle {
     Time on{-1h}, off{-1h}, still{-1h};
   };
   std::vector<Seen> seen_;
+  std::vector<StatuswordPlace> told_;
 };
 
 }  // namespace
