@@ -145,7 +145,9 @@ class Robot final : private canopen::MasterListener {
   // robot_lss.cpp
   std::string motionOnBus() const;
   std::vector<canopen::NodeId> nodesInOperation() const;
-  void assignByLss(std::size_t index, bool reset);
+  /// At the start all nodes are reset afterwards; a look that finds nobody is no news.
+  enum class LssOccasion : std::uint8_t { start, recover, look };
+  void assignByLss(std::size_t index, LssOccasion occasion);
   void lssAssigned(std::size_t index, const canopen::LssTask& task, const std::string& error,
                    Time now);
   bool beginLss();
