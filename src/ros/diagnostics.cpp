@@ -113,6 +113,7 @@ Diagnostics::Diagnostics(ros::NodeHandle& node, ros::NodeHandle& private_node,
   }
   timer_ = node.createTimer(ros::Duration(0.1), [this](const ros::TimerEvent&) {
     snapshot_ = runner_.snapshot();
+    runner_.look();
     updater_.update();
   });
 }

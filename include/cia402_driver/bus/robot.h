@@ -72,6 +72,10 @@ class Robot final : private canopen::MasterListener {
   /// Writes the state of everything but the bus interface. Allocates only if `snapshot` has not
   /// got the right sizes yet.
   void fill(RobotSnapshot& snapshot) const;
+  /// Somebody is about to look at the axes: see drive::Axis::look().
+  void look() {
+    for (drive::Axis& axis : axes_) axis.look();
+  }
 
   const config::RobotConfig& config() const { return config_; }
   std::vector<drive::Axis>& axes() { return axes_; }
