@@ -1,5 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // What people are told of the axes, as it happens.
+#include <cstdio>
+
 #include "cia402_driver/bus/robot.h"
 
 namespace cia402::bus {
@@ -8,6 +10,12 @@ namespace {
 constexpr unsigned kHistoryAfterFault = 4;                      // entries
 constexpr Duration kHistoryInterval = std::chrono::seconds(5);  // at least, between two readings
 constexpr Duration kNewsInterval = std::chrono::milliseconds(100);
+
+std::string joined(const std::vector<std::string>& sentences) {
+  std::string text;
+  for (const std::string& sentence : sentences) text += (text.empty() ? "" : "; ") + sentence;
+  return text;
+}
 
 }  // namespace
 
@@ -26,6 +34,24 @@ void Robot::readHistoryAfterFault(std::size_t axis, Time now) {
              nodes_[axis]->who() + ": the drive's error history (1003h), newest first: " + text,
              now_);
       });
+}
+
+/// One line in the log; what else there is to say of the boot stands in the words of the axis.
+void Robot::tellBooted(std::size_t axis, Time now) {
+  const canopen::Node& node = *nodes_[axis];
+  AxisNews& news = news_[axis];
+  char took[16];
+  std::snprintf(took, sizeof(took), "%.2f s", toSeconds(now - news.boot_began));
+  const std::string booted = std::string("booted in ") + took;
+  const std::string warnings = joined(node.notes());
+  const std::string remarks = joined(node.remarks());
+  news.words.say(&AxisWords::boot, booted + (warnings.empty() ? "" : "; " + warnings) +
+                                       (remarks.empty() ? "" : "; " + remarks));
+  const bool well = warnings.empty();
+  tell(well ? Event::Severity::info : Event::Severity::warning,
+       node.who() + ": " + booted + ": " +
+           (well ? "identified, configured and started" : "it works, but " + warnings),
+       now);
 }
 
 void Robot::watchAxes(Time now) {

@@ -186,6 +186,7 @@ void Diagnostics::reportNode(std::size_t index, Status& status) {
   const canopen::Node::Supervision& supervision = axis.node.supervision;
   if (health == canopen::NodeHealth::ready) {
     status.summary(DiagnosticStatus::OK, "configured and operational");
+    status.add("boot", axis.words.boot.str());
     if (!supervision.watched) {
       status.mergeSummary(DiagnosticStatus::WARN, "its loss would show in missing TPDOs only");
     }

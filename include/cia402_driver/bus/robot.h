@@ -103,6 +103,8 @@ class Robot final : private canopen::MasterListener {
     std::uint16_t error_code = 0;
     Time history_asked{};
     bool history_wanted = false;
+    Time boot_began{};
+    unsigned boot_ups = 0;  ///< messages since the last boot that succeeded
     std::uint64_t stale_count = 0, wrong_lengths = 0;  // of the TPDOs
     Time pdos_told = Time::min();
   };
@@ -111,6 +113,7 @@ class Robot final : private canopen::MasterListener {
   void onMalformedEmergency(canopen::Node& node, std::size_t size) override;
   void onBootUp(canopen::Node& node, Time now) override;
   void onHealthChange(canopen::Node& node, canopen::NodeHealth before, Time now) override;
+  void tellBooted(std::size_t axis, Time now);
   void onForeignSync(const can::Frame& frame, Time stamp, Time now) override;
 
   /// A counter in SYNC is an error to drives that are not yet configured for it (EMCY 0x8240): the

@@ -36,6 +36,7 @@ struct AxisWords {
   FixedText<160> waiting_for;
   FixedText<256> history;  ///< the drive's own error list, read after its last fault
   FixedText<384> problem;  ///< fault or node problem; empty if well
+  FixedText<384> boot;     ///< what the last boot that succeeded found, its warnings first
 
   template <std::size_t N>
   void say(FixedText<N> AxisWords::*what, std::string_view text) {
