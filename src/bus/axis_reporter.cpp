@@ -99,7 +99,10 @@ void AxisReporter::problem(Event::Severity severity, std::uint16_t code, const s
 }
 
 void AxisReporter::bootUp(Time now) {
-  tellUnlessHeld(other_limit_.take(kBootUp, now), Event::Severity::info, "booted up", now);
+  tellUnlessHeld(other_limit_.take(kBootUp, now), Event::Severity::warning,
+                 "boots up again and again before it is configured: look for a power dip or a "
+                 "watchdog reset",
+                 now);
 }
 
 void AxisReporter::sumUp(Time now) {

@@ -314,7 +314,9 @@ void Robot::onMalformedEmergency(canopen::Node& node, std::size_t size) {
 
 void Robot::onBootUp(canopen::Node& node, Time now) {
   const std::size_t index = axisOf(node);
-  if (index != axes_.size()) reporters_[index].bootUp(now);
+  if (index == axes_.size()) return;
+  // Part of the boot, which is told when it has ended; the second may come of factory settings.
+  if (++news_[index].boot_ups > 2) reporters_[index].bootUp(now);
 }
 
 void Robot::onHealthChange(canopen::Node& node, canopen::NodeHealth before, Time now) {
@@ -322,24 +324,19 @@ void Robot::onHealthChange(canopen::Node& node, canopen::NodeHealth before, Time
   if (index == axes_.size()) return;
   axes_[index].onHealthChange(before, now);
   const canopen::NodeHealth health = node.health();
+  AxisNews& news = news_[index];
+  if (health == canopen::NodeHealth::booting) {
+    news.boot_began = now;
+  } else {
+    news.boot_ups = 0;
+  }
   const bool asked_for = health == canopen::NodeHealth::booting || shutdown_ != Shutdown::no;
   if (asked_for) return;
-  const bool well = health == canopen::NodeHealth::ready;
+  if (health == canopen::NodeHealth::ready) return tellBooted(index, now);
   std::string text = node.problem();  // names the node itself
-  if (text.empty()) {
-    text = node.who() + ": " + (well ? "identified, configured and started" : toString(health));
-  }
-  const Event::Severity bad = node.excused() ? Event::Severity::warning : Event::Severity::error;
+  if (text.empty()) text = node.who() + ": " + toString(health);
   if (node.excused()) text += "; it is optional, the others go on without it";
-  tell(well ? Event::Severity::info : bad, text, now);
-  if (well) {
-    for (const std::string& remark : node.remarks()) {
-      tell(Event::Severity::info, node.who() + ": " + remark, now);
-    }
-    for (const std::string& note : node.notes()) {
-      tell(Event::Severity::warning, node.who() + ": " + note, now);
-    }
-  }
+  tell(node.excused() ? Event::Severity::warning : Event::Severity::error, text, now);
 }
 
 }  // namespace cia402::bus

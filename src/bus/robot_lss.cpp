@@ -14,6 +14,9 @@ using canopen::NodeHealth;
 namespace lss = canopen::lss;
 
 constexpr Duration kLookInterval = std::chrono::seconds(5);
+constexpr int kLookAttempts = 2;  // as it is looked for again anyway
+/// After which one that boots has sent its boot-up message; the others are asked.
+constexpr Duration kBootUpTime = std::chrono::milliseconds(500);
 
 // Waited for by the boot procedure, but silent since the start.
 bool neverHeard(const canopen::Node& node) {
@@ -58,18 +61,26 @@ std::vector<canopen::NodeId> Robot::nodesInOperation() const {
   return ids;
 }
 
-/// Gives the drive of an axis its node-ID. @param reset unless all nodes are reset afterwards
-void Robot::assignByLss(std::size_t index, bool reset) {
+/// Gives the drive of an axis its node-ID.
+void Robot::assignByLss(std::size_t index, LssOccasion occasion) {
   const drive::AxisConfig& axis = config_.axes[index];
   canopen::LssAssignTask::Options options;
   options.identity = axis.lss->identity;
   options.node_id = axis.node_id;
   options.store = axis.lss->store;
-  options.reset = reset;
-  if (reset) options.in_use = [this] { return nodesInOperation(); };
+  options.reset = occasion != LssOccasion::start;
+  if (options.reset) options.in_use = [this] { return nodesInOperation(); };
+  const bool looking = occasion == LssOccasion::look;
+  if (looking) options.attempts = kLookAttempts;
   lss_.add(axis.name, std::make_unique<canopen::LssAssignTask>(std::move(options), sink_),
-           [this, index](const canopen::LssTask& task, const std::string& error, Time now) {
-             if (shutdown_ == Shutdown::no) lssAssigned(index, task, error, now);
+           [=](const canopen::LssTask& task, const std::string& error, Time now) {
+             if (shutdown_ != Shutdown::no) return;
+             const auto& assigned = static_cast<const canopen::LssAssignTask&>(task);
+             if (occasion != LssOccasion::start && error.empty()) {
+               nodes_[index]->look(now + kBootUpTime);
+             }
+             const bool news = error.empty() ? assigned.changed() : !assigned.absent();
+             if (news || !looking) lssAssigned(index, task, error, now);
            });
 }
 
@@ -90,7 +101,7 @@ void Robot::lssAssigned(std::size_t index, const canopen::LssTask& task, const s
 /// @return true if node-IDs are given out before anything else.
 bool Robot::beginLss() {
   for (std::size_t i = 0; i < config_.axes.size(); ++i) {
-    if (config_.axes[i].lss) assignByLss(i, false);
+    if (config_.axes[i].lss) assignByLss(i, LssOccasion::start);
   }
   return lss_.busy();
 }
@@ -115,23 +126,17 @@ void Robot::stepLss(Time now) {
   for (ProcedureJob& job : procedures_) job.release();
 }
 
-/// A drive that comes without a node-ID cannot announce itself by a boot-up message: while a drive
-/// is away, all that have none are asked to speak up.
+/// A drive that comes without a node-ID cannot announce itself by a boot-up message: while one is
+/// away, it is called by its identity. Not by "identify non-configured remote slave" (4Ch), which
+/// many slaves do not know (CANopenNode, 305/CO_LSSslave.c).
 void Robot::lookForLostDrives(Time now) {
   if (lss_.busy() || now < next_lss_look_) return;
   next_lss_look_ = now + kLookInterval;
-  const bool missing = std::any_of(axes_.begin(), axes_.end(), [](const drive::Axis& axis) {
-    return axis.config().lss && canopen::isAway(axis.state().health);
-  });
-  if (!missing || shutdown_ != Shutdown::no) return;
-  lss_.add("", std::make_unique<canopen::LssLookTask>(),
-           [this](const canopen::LssTask& task, const std::string&, Time) {
-             if (!static_cast<const canopen::LssLookTask&>(task).found()) return;
-             for (std::size_t i = 0; i < axes_.size(); ++i) {
-               if (!config_.axes[i].lss) continue;
-               if (canopen::isAway(axes_[i].state().health)) assignByLss(i, true);
-             }
-           });
+  if (shutdown_ != Shutdown::no) return;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const bool away = canopen::isAway(axes_[i].state().health);
+    if (config_.axes[i].lss && away) assignByLss(i, LssOccasion::look);
+  }
 }
 
 /// Recovering begins with the node-ID where the drive may have lost it.
@@ -141,7 +146,7 @@ bool Robot::recoverByLss(const std::vector<ProcedureJob::Item>& items) {
     const NodeHealth health = axes_[item.axis].state().health;
     const bool there = health == NodeHealth::booting || health == NodeHealth::ready;
     if (!config_.axes[item.axis].lss || there) continue;
-    assignByLss(item.axis, true);
+    assignByLss(item.axis, LssOccasion::recover);
     needed = true;
   }
   return needed;
@@ -194,8 +199,11 @@ void Robot::run(LssAssignCommand& command, const Reply& reply, Time) {
   const std::string device = toString(command.identity);
   lss_.add(
       "", std::make_unique<canopen::LssAssignTask>(std::move(options), sink_),
-      [reply, device](const canopen::LssTask& task, const std::string& error, Time) {
+      [this, reply, device, node](const canopen::LssTask& task, const std::string& error,
+                                  Time now) {
         const bool success = error.empty();
+        canopen::Node* const own = success ? master_.find(node) : nullptr;
+        if (own != nullptr) own->look(now + kBootUpTime);
         give(reply, answerOf(success, device + ": " + (success ? task.result() : error)));
       },
       [this] { return motionOnBus(); });

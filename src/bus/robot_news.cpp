@@ -31,6 +31,12 @@ std::string dryText(const drive::AxisConfig& config, const drive::ModeSpec& mode
          " ended without a zero: nothing came for " + timeout + " (command_timeout), so " + then;
 }
 
+std::string joined(const std::vector<std::string>& sentences) {
+  std::string text;
+  for (const std::string& sentence : sentences) text += (text.empty() ? "" : "; ") + sentence;
+  return text;
+}
+
 }  // namespace
 
 void Robot::readHistoryAfterFault(std::size_t axis, Time now) {
@@ -73,6 +79,24 @@ void Robot::watchStream(std::size_t axis, Time now) {
   news.words.say(&AxisWords::stream, text);
   const bool told = news.notices != axes_[axis].noticeCount();  // that it is braked, by the axis
   if (say && !told) tell(Event::Severity::warning, nodes_[axis]->who() + ": " + text, now);
+}
+
+/// One line in the log; what else there is to say of the boot stands in the words of the axis.
+void Robot::tellBooted(std::size_t axis, Time now) {
+  const canopen::Node& node = *nodes_[axis];
+  AxisNews& news = news_[axis];
+  char took[16];
+  std::snprintf(took, sizeof(took), "%.2f s", toSeconds(now - news.boot_began));
+  const std::string booted = std::string("booted in ") + took;
+  const std::string warnings = joined(node.notes());
+  const std::string remarks = joined(node.remarks());
+  news.words.say(&AxisWords::boot, booted + (warnings.empty() ? "" : "; " + warnings) +
+                                       (remarks.empty() ? "" : "; " + remarks));
+  const bool well = warnings.empty();
+  tell(well ? Event::Severity::info : Event::Severity::warning,
+       node.who() + ": " + booted + ": " +
+           (well ? "identified, configured and started" : "it works, but " + warnings),
+       now);
 }
 
 void Robot::watchAxes(Time now) {

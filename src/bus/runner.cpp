@@ -133,6 +133,7 @@ void BusRunner::iterate(Time now) {
   if (robot.config().bus.time_interval > Duration::zero()) {
     robot.setWallTime(time_.toClock(now).time_since_epoch() + wallClockDistance(), now);
   }
+  if (looked_.exchange(false)) robot.look();
   loop_.step(now);
   Command command;
   while (mailbox_.pop(command)) robot.execute(std::move(command), now);

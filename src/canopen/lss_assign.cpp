@@ -78,13 +78,18 @@ LssTask::Status LssAssignTask::leave(LssMaster& master, Time now) {
   return ask(master, now, "leaving the configuration state", lssWaitingRequest());
 }
 
+/// CiA 305: what had no node-ID boots by itself; anything else takes the new one with a reset. The
+/// second is told to all that still go by 255: nobody who has a node-ID.
 LssTask::Status LssAssignTask::finish() {
   if (!failure_.empty()) return fail(failure_);
   const std::string id = std::to_string(options_.node_id);
-  if (!changed_) return done("the device has node-ID " + id + " already");
   const std::uint8_t before = selection_.nodeId();
-  const bool had_one = before >= 1 && before <= 127;
-  if (had_one && options_.reset) sink_.send(nmtFrame(NmtCommand::reset_communication, before));
+  const bool had_one = lss::isNodeId(before);
+  if (options_.reset) {
+    sink_.send(nmtFrame(NmtCommand::reset_communication, lss::kUnconfigured));
+    if (had_one && changed_) sink_.send(nmtFrame(NmtCommand::reset_communication, before));
+  }
+  if (!changed_) return done("the device has node-ID " + id + " already");
   return done("the device got node-ID " + id +
               (had_one ? " (it had " + std::to_string(before) + ")" : " (it had none)") +
               (options_.store ? " and stored it" : ", which it forgets without power"));

@@ -78,7 +78,7 @@ void LssMaster::tick(Time now) {
     deadline_ = kNever;
     return;
   }
-  if (attempt_ < options_.attempts) {
+  if (attempt_ < attempts()) {
     send(now);
     return;
   }

@@ -77,11 +77,14 @@ LssSelection::Status LssSelection::advance(LssMaster& master, Time now) {
       step_ = "switching all devices to the waiting state";
       master.begin(lssWaitingRequest(), now);
       break;
-    case Phase::leaving:
+    case Phase::leaving: {
       phase_ = Phase::selecting;
       step_ = "selecting the device with " + lss::toString(identity_);
-      master.begin(lssSelectRequest(identity_), now);
+      LssRequest request = lssSelectRequest(identity_);
+      request.attempts = attempts_;
+      master.begin(std::move(request), now);
       break;
+    }
     case Phase::selecting:
     case Phase::inquiring:
       phase_ = part_ < lss::kParts ? Phase::inquiring : Phase::node_id;
@@ -122,21 +125,6 @@ LssSelection::Status LssSelection::check(LssMaster& master) {
     node_id_ = lss::nodeIdOf(answer);
   }
   return Status::running;
-}
-
-LssTask::Status LssLookTask::proceed(LssMaster& master, Time now) {
-  if (asked_) {
-    found_ = !master.silent();
-    return done(found_ ? "there is a device without a node-ID"
-                       : "there is no device without a node-ID");
-  }
-  asked_ = true;
-  LssRequest request;
-  request.name = "identify non-configured remote slave";
-  request.frames = {lss::identifyUnconfigured()};
-  request.answer = lss::Command::identified_unconfigured;
-  request.many = true;
-  return ask(master, now, "looking for devices without a node-ID", std::move(request));
 }
 
 LssTask::Status LssBitTimingTask::proceed(LssMaster& master, Time now) {

@@ -126,6 +126,7 @@ Diagnostics::Diagnostics(ros::NodeHandle& node, ros::NodeHandle& private_node,
   }
   timer_ = node.createTimer(ros::Duration(0.1), [this](const ros::TimerEvent&) {
     snapshot_ = runner_.snapshot();
+    runner_.look();
     updater_.update();
   });
 }
@@ -198,6 +199,7 @@ void Diagnostics::reportNode(std::size_t index, Status& status) {
   const canopen::Node::Supervision& supervision = axis.node.supervision;
   if (health == canopen::NodeHealth::ready) {
     status.summary(DiagnosticStatus::OK, "configured and operational");
+    status.add("boot", axis.words.boot.str());
     if (!supervision.watched) {
       status.mergeSummary(DiagnosticStatus::WARN, "its loss would show in missing TPDOs only");
     }

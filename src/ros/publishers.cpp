@@ -136,6 +136,7 @@ void Publishers::publishStates(const ros::TimerEvent&) {
   const ros::Time now = ros::Time::now();
   const cia402_driver::AxisStates states = axisStates(snapshot);
   if (changed(states) || now - axis_states_sent_ >= kAxisStatesInterval) {
+    if (axis_states_pub_.getNumSubscribers() > 0) runner_.look();
     axis_states_sent_ = now;
     last_states_ = states;
     axis_states_pub_.publish(states);

@@ -35,8 +35,8 @@ TEST(Robot, BootsAndEnablesItsDrivesAndTellsSo) {
   world.enable();
   EXPECT_TRUE(world.drives[0].enabled());
   EXPECT_TRUE(world.drives[1].enabled());
-  EXPECT_EQ(world.eventsWith("shoulder (node 1): booted up"), 1u);
-  EXPECT_EQ(world.eventsWith("shoulder (node 1): identified, configured and started"), 1u);
+  EXPECT_EQ(world.eventsWith("shoulder (node 1): "), 1u) << "one line for a boot, of all that";
+  EXPECT_EQ(world.eventsWith("shoulder (node 1): booted in 0."), 1u);
 }
 
 TEST(Robot, SendsSyncAtExactDeadlines) {

@@ -155,7 +155,7 @@ TEST_F(BusRunnerTest, WaitsForAMissingInterfaceAndStartsTheRobotWhenItIsThere) {
   EXPECT_EQ(wire->frames, 0);
   wire->state = can::BusState::error_active;
   wire->first_frame.get_future().wait();
-  waitFor([&] { return seen("elbow (node 2): identified, configured and started"); });
+  waitFor([&] { return seen("elbow (node 2): booted in"); });
   EXPECT_EQ(runner->snapshot().bus_state, can::BusState::error_active);
 }
 

@@ -36,13 +36,38 @@ TEST_F(LssTaskTest, AnUnconfiguredDeviceGetsItsNodeIdByItsIdentity) {
   std::vector<std::string> lines;
   for (const can::Frame& f : wire.sent) lines.push_back(text(f));
   const std::string waiting = "7E5 04 00 00 00 00 00 00 00";
-  EXPECT_THAT(
-      lines, testing::ElementsAre(waiting, waiting, waiting, waiting, "7E5 40 CD AB 00 00 00 00 00",
-                                  "7E5 41 17 01 0D 00 00 00 00", "7E5 42 02 00 01 00 00 00 00",
-                                  "7E5 43 39 30 00 00 00 00 00", "7E5 5A 00 00 00 00 00 00 00",
-                                  "7E5 5B 00 00 00 00 00 00 00", "7E5 5C 00 00 00 00 00 00 00",
-                                  "7E5 5D 00 00 00 00 00 00 00", "7E5 5E 00 00 00 00 00 00 00",
-                                  "7E5 11 05 00 00 00 00 00 00", waiting, waiting, waiting));
+  EXPECT_THAT(lines, testing::ElementsAre(
+                         waiting, waiting, waiting, waiting, "7E5 40 CD AB 00 00 00 00 00",
+                         "7E5 41 17 01 0D 00 00 00 00", "7E5 42 02 00 01 00 00 00 00",
+                         "7E5 43 39 30 00 00 00 00 00", "7E5 5A 00 00 00 00 00 00 00",
+                         "7E5 5B 00 00 00 00 00 00 00", "7E5 5C 00 00 00 00 00 00 00",
+                         "7E5 5D 00 00 00 00 00 00 00", "7E5 5E 00 00 00 00 00 00 00",
+                         "7E5 11 05 00 00 00 00 00 00", waiting, waiting, waiting, "000 82 FF"))
+      << "at last those that wait for a reset, and have no node-ID yet, get one";
+}
+
+TEST_F(LssTaskTest, AtTheStartNobodyIsResetForAllAreAfterwards) {
+  wire.add(parts(kServo));
+  LssAssignTask::Options options;
+  options.identity = kServo;
+  options.node_id = 5;
+  options.reset = false;
+  LssAssignTask task(options, wire);
+  ASSERT_TRUE(run(task)) << task.error();
+  EXPECT_EQ(text(wire.sent.back()), "7E5 04 00 00 00 00 00 00 00");
+}
+
+TEST_F(LssTaskTest, ALookCallsTheIdentityNoOftenerThanAsked) {
+  wire.add(parts(kOther));
+  LssAssignTask::Options options;
+  options.identity = kServo;
+  options.node_id = 5;
+  options.attempts = 2;
+  LssAssignTask task(options, wire);
+  EXPECT_FALSE(run(task));
+  EXPECT_TRUE(task.absent());
+  EXPECT_EQ(sentCount("7E5 43 39 30 00 00 00 00 00"), 2u);
+  EXPECT_EQ(sentCount("7E5 4C 00 00 00 00 00 00 00"), 0u) << "many slaves do not know it";
 }
 
 TEST_F(LssTaskTest, ANodeIdIsStoredWhereAsked) {
@@ -61,6 +86,7 @@ TEST_F(LssTaskTest, ADeviceThatHasItsNodeIdIsLeftAlone) {
   EXPECT_EQ(slave.stored, 0xFF) << "no write to a memory that wears out, at every start";
   EXPECT_FALSE(slave.configuration);
   EXPECT_EQ(task.result(), "the device has node-ID 5 already");
+  EXPECT_EQ(text(wire.sent.back()), "000 82 FF") << "it may have got it, and wait for a reset";
 }
 
 TEST_F(LssTaskTest, ADeviceWithAnotherNodeIdIsResetToTakeTheNewOne) {
@@ -169,18 +195,6 @@ TEST_F(LssTaskTest, RefusalsAreToldInWordsAndTheDeviceIsReleased) {
   EXPECT_FALSE(run(again));
   EXPECT_THAT(again.error(), HasSubstr("cannot store its LSS settings"));
   EXPECT_THAT(again.error(), HasSubstr("store: false"));
-}
-
-TEST_F(LssTaskTest, LookingTellsWhetherAnybodyHasNoNodeId) {
-  wire.add(parts(kServo), 3);
-  LssLookTask nobody;
-  ASSERT_TRUE(run(nobody));
-  EXPECT_FALSE(nobody.found());
-  wire.add(parts(kOther));
-  wire.add({1, 2, 3, 4});
-  LssLookTask somebody;
-  ASSERT_TRUE(run(somebody));
-  EXPECT_TRUE(somebody.found()) << "two answers are as good as one";
 }
 
 TEST_F(LssTaskTest, BitTimingIsSetInOneDevice) {

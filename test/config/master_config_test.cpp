@@ -188,9 +188,9 @@ TEST(PdoTable, ShowsWhoSendsWhatWhenAndWhatItCosts) {
   // 6 bytes at 250 Hz: 95 * 250 = 2.375 %, 115 * 250 = 2.875 %.
   EXPECT_THAT(table, HasSubstr("servo                5  rpdo1   0x205   sync                 48"
                                "    2.38    2.88  controlword 6040:00, target_position 607A:00\n"));
-  // 2 bytes at 25 Hz: 63 * 25 = 0.16 %, 75 * 25 = 0.19 %.
-  EXPECT_THAT(table, HasSubstr("joint                6  tpdo3   0x386   sync / 10            16"
-                               "    0.16    0.19  error_code 603F:00\n"));
+  // 6 bytes at 25 Hz: 95 * 25 = 0.2375 %, 115 * 25 = 0.2875 %.
+  EXPECT_THAT(table, HasSubstr("joint                6  tpdo3   0x386   sync / 10            48"
+                               "    0.24    0.29  error_code 603F:00, following_error 60F4:00\n"));
   EXPECT_THAT(table, HasSubstr("total, with SYNC and heartbeats, at 1000000 bit/s and 250 Hz: "));
 }
 

@@ -67,11 +67,11 @@ TEST(PdoPlanner, ADamiaoServesAllItsModes) {
   PdoNeeds what = needs(profile);
   for (const drive::ModeSpec& mode : profile.modes) what.modes.push_back(mode.name);
   const PdoPlan plan = planned(profile, what);
-  EXPECT_THAT(lines(plan),
-              ElementsAre("rpdo1 /1: controlword target_position",
-                          "rpdo2 /10: target_velocity target_torque",
-                          "tpdo1 /1: statusword position_actual mode_display",
-                          "tpdo2 /2: velocity_actual torque_actual", "tpdo3 /10: error_code"));
+  EXPECT_THAT(lines(plan), ElementsAre("rpdo1 /1: controlword target_position",
+                                       "rpdo2 /10: target_velocity target_torque",
+                                       "tpdo1 /1: statusword position_actual mode_display",
+                                       "tpdo2 /2: velocity_actual torque_actual",
+                                       "tpdo3 /10: error_code following_error"));
   EXPECT_EQ(plan.modes.size(), profile.modes.size());
 }
 

@@ -76,6 +76,18 @@ INSTANTIATE_TEST_SUITE_P(Of, LostDrive,
                                          Lost{"that_on_a_lossy_bus", false, 0.23}),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
+/// It has no heartbeat any more, and the stop that it is told as a lost drive takes SDO from it.
+TEST(RebootedDrive, ThatNobodyHeardRebootIsFoundAgain) {
+  Scene scene(loadText(genericPair()));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  scene.drive("left").device().behaviour().boot_up_message = false;
+  scene.inject("left", "power_cycle");
+  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health == NodeHealth::lost; }, 1s));
+  ASSERT_TRUE(scene.runUntil(
+      [&] { return scene.drive("left").device().nmtState() == canopen::NmtState::stopped; }, 3s));
+  EXPECT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 4s)) << scene.told();
+}
+
 /// Nothing of the drive is heard since its motor stood, and it is not missed yet.
 TEST(OverdueDrive, IsBrakedBeforeItIsDisabled) {
   Scene scene(loadText(

@@ -46,7 +46,7 @@ class Vcan(RobotTest):
     @classmethod
     def start_node(cls):
         cls.process = Process("bus_node", "robot", CONFIG)
-        wait_until(lambda: "booted up" in cls.process.output() or cls.robot.bus_state, "node up")
+        wait_until(lambda: "booted in" in cls.process.output() or cls.robot.bus_state, "node up")
 
     @classmethod
     def tearDownClass(cls):

@@ -45,7 +45,7 @@ class AxisReporter {
   void malformedEmergency(std::size_t size, Time now);
   /// The axis has got a fault, a problem or a warning with this code (603Fh); `text` says all.
   void problem(Event::Severity severity, std::uint16_t code, const std::string& text, Time now);
-  /// The drive has booted up, asked for or not.
+  /// A boot-up message came once more before any boot was done.
   void bootUp(Time now);
 
   /// Tells the summaries that are due.

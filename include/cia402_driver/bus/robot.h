@@ -72,6 +72,10 @@ class Robot final : private canopen::MasterListener {
   /// Writes the state of everything but the bus interface. Allocates only if `snapshot` has not
   /// got the right sizes yet.
   void fill(RobotSnapshot& snapshot) const;
+  /// Somebody is about to look at the axes: see drive::Axis::look().
+  void look() {
+    for (drive::Axis& axis : axes_) axis.look();
+  }
 
   const config::RobotConfig& config() const { return config_; }
   std::vector<drive::Axis>& axes() { return axes_; }
@@ -99,6 +103,8 @@ class Robot final : private canopen::MasterListener {
     std::uint16_t error_code = 0;
     Time history_asked{};
     bool history_wanted = false;
+    Time boot_began{};
+    unsigned boot_ups = 0;  ///< messages since the last boot that succeeded
     std::uint64_t stale_count = 0, wrong_lengths = 0;  // of the TPDOs
     Time pdos_told = Time::min();
     bool dried_up = false;        // its stream of set-points
@@ -109,6 +115,7 @@ class Robot final : private canopen::MasterListener {
   void onMalformedEmergency(canopen::Node& node, std::size_t size) override;
   void onBootUp(canopen::Node& node, Time now) override;
   void onHealthChange(canopen::Node& node, canopen::NodeHealth before, Time now) override;
+  void tellBooted(std::size_t axis, Time now);
   void onForeignSync(const can::Frame& frame, Time stamp, Time now) override;
 
   /// A counter in SYNC is an error to drives that are not yet configured for it (EMCY 0x8240): the
@@ -149,7 +156,9 @@ class Robot final : private canopen::MasterListener {
   // robot_lss.cpp
   std::string motionOnBus() const;
   std::vector<canopen::NodeId> nodesInOperation() const;
-  void assignByLss(std::size_t index, bool reset);
+  /// At the start all nodes are reset afterwards; a look that finds nobody is no news.
+  enum class LssOccasion : std::uint8_t { start, recover, look };
+  void assignByLss(std::size_t index, LssOccasion occasion);
   void lssAssigned(std::size_t index, const canopen::LssTask& task, const std::string& error,
                    Time now);
   bool beginLss();

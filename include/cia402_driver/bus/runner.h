@@ -50,6 +50,9 @@ class BusRunner final : private EventSink {
   bool post(Command command);
   /// Any thread: the newest snapshot.
   RobotSnapshot snapshot();
+  /// Any thread: what a snapshot shows of the axes is shown to somebody, at the rate of these
+  /// calls. What no TPDO brings and only people want is read no oftener: drive::Axis::look().
+  void look() { looked_ = true; }
   /// One thread: the next event. @return false if there is none.
   bool nextEvent(Event& event) { return events_.pop(event); }
   /// One thread: the next emergency. @return false if there is none.
@@ -89,7 +92,7 @@ class BusRunner final : private EventSink {
   RealtimeReport realtime_;
   std::mutex realtime_mutex_;
   std::atomic<std::uint64_t> lost_events_{0}, lost_emergencies_{0};
-  std::atomic<bool> running_{false}, shutdown_requested_{false};
+  std::atomic<bool> running_{false}, shutdown_requested_{false}, looked_{false};
   std::uint64_t published_cycle_ = 0;
   Time published_{};
   Time due_ = kNever;  // when the loop has to go round again

@@ -37,6 +37,7 @@ struct AxisWords {
   FixedText<256> history;  ///< the drive's own error list, read after its last fault
   FixedText<384> problem;  ///< fault, warning or node problem; empty if well
   FixedText<192> stream;   ///< a stream of set-points that has dried up, while it lasts
+  FixedText<384> boot;     ///< what the last boot that succeeded found, its warnings first
 
   template <std::size_t N>
   void say(FixedText<N> AxisWords::*what, std::string_view text) {

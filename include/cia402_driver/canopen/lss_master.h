@@ -29,6 +29,7 @@ struct LssRequest {
   bool confirmed = true;           ///< false: nobody answers; ends after the window
   bool many = false;               ///< several devices may answer
   bool question = false;           ///< of fastscan: the window, one attempt; silence is an answer
+  int attempts = 0;                ///< at most; 0: LssOptions::attempts
 };
 
 /// LSS master (CiA 305): one request on the wire at a time, with time-outs and repetitions; counts
@@ -66,6 +67,7 @@ class LssMaster {
 
  private:
   void send(Time now);
+  int attempts() const { return request_.attempts > 0 ? request_.attempts : options_.attempts; }
   bool asItShould() const;
   std::string problemText() const;
 

@@ -55,7 +55,9 @@ LssRequest lssInquireNodeIdRequest();
 /// Part of other tasks.
 class LssSelection {
  public:
-  explicit LssSelection(const lss::Identity& identity) : identity_(identity) {}
+  /// @param attempts to select it, at most; 0: LssOptions::attempts.
+  explicit LssSelection(const lss::Identity& identity, int attempts = 0)
+      : identity_(identity), attempts_(attempts) {}
   enum class Status { running, done, absent, failed };
   /// As LssTask::advance(). `absent`: nobody has this identity.
   Status advance(LssMaster& master, Time now);
@@ -69,6 +71,7 @@ class LssSelection {
   Status check(LssMaster& master);
 
   lss::Identity identity_;
+  int attempts_;
   Phase phase_ = Phase::begin;
   std::size_t part_ = 0;
   std::uint8_t node_id_ = 0;
@@ -86,12 +89,17 @@ class LssAssignTask final : public LssTask {
     /// another has is neither given, nor left: the reset would hit both.
     std::function<std::vector<NodeId>()> in_use;
     /// Node-IDs become valid with the reset communication of all nodes at start-up; else the
-    /// device itself is reset (one without a node-ID boots by itself).
+    /// device itself is reset. One that had none boots by itself (CiA 305); as some wait for a
+    /// reset of node 255 or of all (lely-core, src/co/nmt.c), 255 is reset, too.
     bool reset = true;
+    /// How often the identity is called at most; 0: LssOptions::attempts.
+    int attempts = 0;
   };
   /// @param sink where the NMT reset goes; outlives the task.
   LssAssignTask(Options options, can::Sink& sink)
-      : options_(std::move(options)), sink_(sink), selection_(options_.identity) {}
+      : options_(std::move(options)),
+        sink_(sink),
+        selection_(options_.identity, options_.attempts) {}
 
   /// Nobody answered to the identity; valid once failed.
   bool absent() const { return absent_; }
@@ -113,16 +121,6 @@ class LssAssignTask final : public LssTask {
   Phase phase_ = Phase::selecting;
   bool absent_ = false, changed_ = false;
   std::string failure_;  ///< told once the device is back in the waiting state
-};
-
-/// Asks whether there is any device without a node-ID.
-class LssLookTask final : public LssTask {
- public:
-  bool found() const { return found_; }
-
- private:
-  Status proceed(LssMaster& master, Time now) override;
-  bool asked_ = false, found_ = false;
 };
 
 /// Writes the bit timing into one device and has it stored where asked. Nothing changes on the bus:
