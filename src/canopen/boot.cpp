@@ -87,10 +87,11 @@ void BootProcedure::tellWhatIsLacking() {
   const BootFindings& found = boot_.found;
   if (!found.lacking.empty()) {
     const std::string& remedy = boot_.config.lacking_remedy;
-    boot_.notes.push_back(
-        "left out, for only defaults ask for it and the drive does not have it, or "
-        "does not let it be written or mapped" +
-        (remedy.empty() ? "" : " (" + remedy + ")") + ": " + list(found.lacking));
+    boot_.notes.insert(boot_.notes.begin(),
+                       "left out, for only defaults ask for it and the drive does not have it, or "
+                       "does not let it be written or mapped" +
+                           (remedy.empty() ? "" : " (" + remedy + ")") + ": " +
+                           list(found.lacking));
   }
   if (!found.lacking_optional.empty()) {
     boot_.remarks.push_back(
