@@ -67,7 +67,6 @@ bool readDate(const std::string& text, canopen::BootPolicy& policy) {
   if (std::sscanf(text.c_str(), "%4u-%2u-%2u%n", &year, &month, &day, &used) != 3) return false;
   const std::string rest = text.substr(static_cast<std::size_t>(used));
   if (!rest.empty()) {
-    used = 0;
     const int times =
         std::sscanf(rest.c_str(), "%*1[T ]%2u:%2u:%2u%n", &hour, &minute, &second, &used);
     if (times != 3 || static_cast<std::size_t>(used) != rest.size()) return false;

@@ -67,9 +67,11 @@ TEST_F(DcfDraftTest, WithoutAnEdsTheProfileAndTheCommunicationObjectsAreRead) {
     drive.objects[id] = data;
   };
   give({0x1000, 0}, {0x92, 0x01, 0x02, 0x00});
-  give({0x1018, 0}, {2});
+  give({0x1018, 0}, {4});
   give({0x1018, 1}, {0xBC, 0x0A, 0, 0});
   give({0x1018, 2}, {7, 0, 0, 0});
+  give({0x1018, 3}, {2, 0, 1, 0});
+  give({0x1018, 4}, {0x39, 0x30, 0, 0});
   give({0x1017, 0}, {100, 0});
   give({0x6065, 0}, {0x10, 0x27, 0, 0});
   const Answer answer = save(1);
@@ -80,7 +82,9 @@ TEST_F(DcfDraftTest, WithoutAnEdsTheProfileAndTheCommunicationObjectsAreRead) {
   EXPECT_EQ(dcf.dictionary.find(ObjectId{0x6065, 0})->name, "following_error_window");
   EXPECT_EQ(dcf.info.vendor_number, 0xABCU);
   EXPECT_EQ(dcf.info.product_number, 7U);
-  EXPECT_EQ(dcf.dictionary.objects().at(0x1018).entries.size(), 3U);
+  EXPECT_EQ(dcf.info.revision_number, 0x00010002U);
+  EXPECT_EQ(dcf.info.lss_serial, 12345U);
+  EXPECT_EQ(dcf.dictionary.objects().at(0x1018).entries.size(), 5U);
   EXPECT_EQ(dcf.dictionary.find(ObjectId{0x1018, 1})->access, canopen::Access::ro);
   EXPECT_EQ(dcf.dictionary.find(ObjectId{0x1800, 1}), nullptr);
   EXPECT_THAT(answer.message, Not(HasSubstr("could not be read")));

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "bus/robot_world.h"
@@ -154,6 +156,34 @@ TEST(FlightRecorder, KnowsTheIdentifiersOfPdosAsTheDrivesKeepThem) {
   recorder.observe();
   EXPECT_EQ(identifierOf(2, canopen::PdoDirection::tpdo), 0x1E5U);
   EXPECT_EQ(identifierOf(1, canopen::PdoDirection::tpdo), 0x181U);
+}
+
+TEST(FlightRecorder, SamplesOfAnAxisHoldWhatItsDriveShows) {
+  NoSink sink;
+  const config::RobotConfig config = test::testRobot();
+  test::RobotWorld world{config};
+  FlightRecorder recorder(config, sink);
+  recorder.watch(world.robot);
+  world.drives[1].position = 50000;  // counts of 0.00001 rad
+  world.enable();
+  world.drives[1].disturbance = 2500;  // stands there, but was told to stand at 50000
+  world.run(20ms);
+  recorder.observe();
+  const auto axes = recorder.copy(world.now).axes;
+  const auto elbow = std::find_if(axes.rbegin(), axes.rend(),
+                                  [](const AxisRecord& record) { return record.axis == 1; });
+  ASSERT_NE(elbow, axes.rend());
+  EXPECT_FLOAT_EQ(elbow->position, 0.525F);
+  EXPECT_FLOAT_EQ(elbow->target, 0.5F);
+  EXPECT_FLOAT_EQ(elbow->following_error, -0.025F);
+  EXPECT_TRUE(std::isnan(elbow->velocity) && std::isnan(elbow->effort)) << "it tells neither";
+  EXPECT_EQ(elbow->statusword, 0x0237);
+  EXPECT_EQ(elbow->error_code, 0x0000);
+  EXPECT_EQ(elbow->mode, 8);
+  EXPECT_EQ(elbow->state, static_cast<int>(drive::State::operation_enabled));
+  EXPECT_EQ(elbow->health, static_cast<int>(canopen::NodeHealth::ready));
+  EXPECT_EQ(elbow->procedure, static_cast<int>(drive::ProcedureKind::enable));
+  EXPECT_EQ(elbow->flags, AxisRecord::homed | AxisRecord::ready_for_motion | AxisRecord::succeeded);
 }
 
 TEST(FlightRecorder, WithNothingToKeepFaultsAreNoTriggers) {

@@ -88,6 +88,24 @@ TEST_F(ProcedureJobTest, DoesOnAllAxesWhatItCanAndNamesThoseThatFail) {
   EXPECT_FALSE(world.drives[1].enabled());
 }
 
+TEST_F(ProcedureJobTest, WhatWaitsBeginsNoMoreOnceTheBusWasLost) {
+  const auto home = world.begin(ProcedureKind::home);
+  // The elbow is homed, and the job has not looked yet: the shoulder would be next.
+  while (world.axis(1).procedure().running) {
+    world.run(1ms);
+    world.axis(1).readFeedback(world.now);
+    world.axis(1).update(world.now);
+  }
+  ASSERT_TRUE(world.axis(1).procedure().success && home->empty());
+  world.robot.busLost("can0 is bus-off", world.now);
+  world.robot.busBack(false, world.now);
+  world.run(1s);
+  EXPECT_FALSE(world.drives[0].homing_began);
+  ASSERT_EQ(home->size(), 1u);
+  EXPECT_FALSE(home->front().success);
+  EXPECT_THAT(home->front().message, HasSubstr("shoulder: not started, for can0 is bus-off"));
+}
+
 TEST_F(ProcedureJobTest, RepliesOnceOnly) {
   const auto answers = world.begin(ProcedureKind::enable);
   world.run(1s);

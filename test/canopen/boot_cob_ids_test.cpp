@@ -59,6 +59,7 @@ TEST_F(BootCobIdsTest, another_sync_identifier_matters_only_to_pdos_that_are_sen
   EXPECT_TRUE(refused(0, true));
   EXPECT_TRUE(refused(1, true));
   EXPECT_TRUE(refused(240, true));
+  EXPECT_FALSE(refused(241, true)) << "reserved";
   EXPECT_FALSE(refused(254, true));
   EXPECT_FALSE(refused(255, true));
   EXPECT_FALSE(refused(1, false));

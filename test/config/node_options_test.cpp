@@ -196,6 +196,9 @@ TEST(NodeOptions, MistakesAreNamedWithARemedy) {
       {"configuration_check: 2026-02-30", "must be none, checksum, or the date"},
       {"configuration_check: 1983-12-31", "must be none, checksum, or the date"},
       {"configuration_check: 2026-11-21T15:30", "must be none, checksum, or the date"},
+      {"configuration_check: 2026-11-21T15:30:00Z", "must be none, checksum, or the date"},
+      {"configuration_check: 2026-11-21x", "must be none, checksum, or the date"},
+      {"configuration_check: 2026-11-2115:30:00", "must be none, checksum, or the date"},
       {"boot: {retries: -1}", "axes/a/boot/retries"},
       {"boot: {retry_delay: 0}", "axes/a/boot/retry_delay"}};
   for (const auto& [keys, problem] : cases) {
