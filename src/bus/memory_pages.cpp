@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kLeastPage = 4096;                  // bytes
 constexpr std::size_t kStackTouched = 64 * kLeastPage;    // bytes
-constexpr std::size_t kHeapBlock = 64 * 1024;             // bytes
+constexpr std::size_t kHeapBlock = 16 * kLeastPage;       // bytes
 constexpr std::size_t kHeapBlocks = 16;                   // 1 MB in all
 constexpr std::array<std::string_view, 7> kLibraries = {  // by the start of their file names
     "libstdc++.so", "libm.so", "libgcc_s.so", "libc.so", "libpthread.so", "librt.so", "ld-linux"};
