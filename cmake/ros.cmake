@@ -1,21 +1,23 @@
 # The part of the build that knows catkin: messages, the ros/ module, installation.
 
-# control_msgs is not in Debian: where none is installed or in the workspace, the minimal one of this
-# repository is built along. Decided once, for the next configuration finds the one built here.
+# catkin runs on the Python that its packages are installed for; another one may come first in PATH.
+# In a workspace catkin looks before it comes here: catkin_make -DPYTHON_EXECUTABLE=/usr/bin/python3.
+function(cia402_find_python)
+  foreach(python python3 /usr/bin/python3)
+    execute_process(COMMAND ${python} -c "import catkin_pkg, em, sys; print(sys.executable)"
+      OUTPUT_VARIABLE path RESULT_VARIABLE failed ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
+    if(NOT failed)
+      set(PYTHON_EXECUTABLE ${path} CACHE FILEPATH "Python that catkin is installed for")
+      return()
+    endif()
+  endforeach()
+endfunction()
+if(NOT PYTHON_EXECUTABLE)
+  cia402_find_python()
+endif()
 find_package(catkin REQUIRED)
-if(NOT DEFINED CIA402_OWN_CONTROL_MSGS)
-  find_package(control_msgs QUIET)
-  if(control_msgs_FOUND)
-    set(own OFF)
-  else()
-    set(own ON)
-  endif()
-  set(CIA402_OWN_CONTROL_MSGS ${own} CACHE BOOL "Build the control_msgs of this repository")
-endif()
-if(CIA402_OWN_CONTROL_MSGS)
-  add_subdirectory(control_msgs)
-  set(control_msgs_DIR ${CATKIN_DEVEL_PREFIX}/share/control_msgs/cmake CACHE PATH "" FORCE)
-endif()
+
+include(${CMAKE_CURRENT_LIST_DIR}/control_msgs.cmake)
 
 set(cia402_message_packages
   actionlib_msgs control_msgs diagnostic_msgs geometry_msgs sensor_msgs std_msgs std_srvs
@@ -54,6 +56,36 @@ function(cia402_ros_module)
       ${catkin_INCLUDE_DIRS})
     add_dependencies(cia402_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
   endif()
+endfunction()
+
+# Tests are built and run where catkin's testing is on: targets `tests` and `run_tests`.
+if(NOT CATKIN_ENABLE_TESTING)
+  set(CIA402_BUILD_TESTS OFF)
+endif()
+
+# Makes a test executable known to catkin. Those that need vcan0 are built, but not run.
+function(cia402_catkin_test target)
+  set_target_properties(${target} PROPERTIES EXCLUDE_FROM_ALL ON)
+  add_dependencies(tests ${target})
+  if(target MATCHES "_vcan$")
+    return()
+  endif()
+  set(report gtest-${target}.xml)
+  catkin_run_tests_target(gtest ${target} ${report} DEPENDENCIES ${target}
+    COMMAND "$<TARGET_FILE:${target}> --gtest_output=xml:${CATKIN_TEST_RESULTS_DIR}/${PROJECT_NAME}/${report}")
+endfunction()
+
+# The tests of the nodes with simulated drives inside. Those in test/vcan need vcan0, which
+# scripts/with_vcan provides.
+function(cia402_rostests)
+  if(NOT CIA402_BUILD_TESTS)
+    return()
+  endif()
+  find_package(rostest REQUIRED)
+  file(GLOB files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/test/ros/*.test)
+  foreach(file ${files})
+    add_rostest(${file} DEPENDENCIES cia402_run)
+  endforeach()
 endfunction()
 
 # What running the driver takes, without the tests: for a short first build.

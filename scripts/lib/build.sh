@@ -26,6 +26,8 @@ build() {
 build_ros() {
   build "$build_root/ros" "$1" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCIA402_WITH_ROS=ON \
     -DCIA402_BUILD_BENCHMARKS=ON
+  # rosrun passes over a folder `build` within a package, but looks here.
+  ln -sfn build/ros/devel "$repository/devel"
 }
 
 # Enters the environment of what build_ros built, with logs kept inside build/ and a master of its

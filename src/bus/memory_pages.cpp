@@ -18,20 +18,22 @@ namespace {
 
 constexpr std::size_t kLeastPage = 4096;                  // bytes
 constexpr std::size_t kStackTouched = 64 * kLeastPage;    // bytes
-constexpr std::size_t kHeapBlock = 64 * 1024;             // bytes
+constexpr std::size_t kHeapBlock = 16 * kLeastPage;       // bytes
 constexpr std::size_t kHeapBlocks = 16;                   // 1 MB in all
 constexpr std::array<std::string_view, 7> kLibraries = {  // by the start of their file names
     "libstdc++.so", "libm.so", "libgcc_s.so", "libc.so", "libpthread.so", "librt.so", "ld-linux"};
 
-/// Locks whole pages, which brings them into memory, those to be written as pages of this process.
-/// Where locking is refused reading them brings them in; the first write is a fault then.
-void bringIn(std::uintptr_t begin, std::uintptr_t end) {
+/// Locks whole pages, which brings them into memory, those to be written as pages of this process,
+/// and reads them, which makes them known to kernels that leave that to the first use (user-mode
+/// Linux). Where locking is refused the first write is a fault.
+__attribute__((no_sanitize("address", "thread"))) void bringIn(std::uintptr_t begin,
+                                                               std::uintptr_t end) {
   const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
   begin -= begin % page;
   // NOLINTNEXTLINE(performance-no-int-to-ptr): an address from the kernel or the linker
   const auto* first = reinterpret_cast<const volatile char*>(begin);
   const std::size_t length = end - begin;
-  if (mlock(const_cast<const char*>(first), length) == 0) return;
+  (void)mlock(const_cast<const char*>(first), length);
   for (std::size_t at = 0; at < length; at += page) (void)first[at];
 }
 

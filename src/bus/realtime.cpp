@@ -16,6 +16,7 @@ namespace cia402::bus {
 namespace {
 
 constexpr int kMostInHeap = 1 << 20;    // bytes; what is larger is mapped, and unmapped when freed
+constexpr int kMostArenas = 64;         // more than threads: none shares its share of the heap
 constexpr int kNeverTrimmed = 1 << 30;  // bytes of free heap that are left alone
 
 std::string words(int error) { return std::generic_category().message(error); }
@@ -31,6 +32,7 @@ bool lockWhatIsTouched() {
 }  // namespace
 
 void keepMemory() {
+  mallopt(M_ARENA_MAX, kMostArenas);
   mallopt(M_MMAP_THRESHOLD, kMostInHeap);
   mallopt(M_TRIM_THRESHOLD, kNeverTrimmed);
   prctl(PR_SET_THP_DISABLE, 1, 0, 0, 0);

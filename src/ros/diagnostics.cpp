@@ -124,11 +124,12 @@ Diagnostics::Diagnostics(ros::NodeHandle& node, ros::NodeHandle& private_node,
                  [this, i](Status& status) { reportNode(i, status); });
     updater_.add(axis.name, [this, i](Status& status) { reportAxis(i, status); });
   }
-  timer_ = node.createTimer(ros::Duration(0.1), [this](const ros::TimerEvent&) {
-    snapshot_ = runner_.snapshot();
-    runner_.look();
-    updater_.update();
-  });
+}
+
+void Diagnostics::update() {
+  snapshot_ = runner_.snapshot();
+  runner_.look();
+  updater_.update();
 }
 
 void Diagnostics::reportBus(Status& status) {

@@ -12,8 +12,6 @@ EventLog::EventLog(ros::NodeHandle& private_node, bus::BusRunner& runner, bus::R
                    const config::RobotConfig& robot)
     : runner_(runner), replies_(replies), robot_(robot) {
   emergencies_ = private_node.advertise<cia402_driver::Emergency>("emergencies", 10000);
-  timer_ =
-      private_node.createTimer(ros::Duration(0.02), [this](const ros::TimerEvent&) { drain(); });
 }
 
 void EventLog::drain() {

@@ -34,13 +34,11 @@ geometry_msgs::TransformStamped jointTransform(const config::FrameConfig& frame,
   return message;
 }
 
-Frames::Frames(ros::NodeHandle& node, bus::BusRunner& runner, const config::RobotConfig& robot)
-    : runner_(runner), robot_(robot) {
-  if (robot.frames.empty()) return;
-  timer_ = node.createTimer(ros::Duration(1.0 / robot.joint_state_rate), &Frames::publish, this);
-}
+Frames::Frames(bus::BusRunner& runner, const config::RobotConfig& robot)
+    : runner_(runner), robot_(robot) {}
 
-void Frames::publish(const ros::TimerEvent&) {
+void Frames::publish() {
+  if (robot_.frames.empty()) return;
   const bus::RobotSnapshot snapshot = runner_.snapshot();
   std::vector<geometry_msgs::TransformStamped> messages;
   for (const config::FrameConfig& frame : robot_.frames) {

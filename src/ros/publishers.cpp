@@ -11,9 +11,9 @@
 namespace cia402::ros_node {
 namespace {
 
-constexpr double kStateCheckRate = 50.0;       // Hz
-const ros::Duration kAxisStatesInterval(0.1);  // at the latest
-const ros::Duration kBusStateInterval(0.5);
+constexpr Duration kAxisStatesInterval = std::chrono::milliseconds(100);  // at the latest
+constexpr Duration kBusStateInterval = std::chrono::milliseconds(500);
+constexpr Duration kEarly = std::chrono::milliseconds(5);  // of timers, that is on time
 
 double age(Time since, Time now) {
   return since == Time() ? std::numeric_limits<double>::infinity() : toSeconds(now - since);
@@ -87,13 +87,9 @@ Publishers::Publishers(ros::NodeHandle& node, ros::NodeHandle& private_node, bus
     group_pubs_.push_back(private_node.advertise<control_msgs::JointTrajectoryControllerState>(
         group.name + "/state", 10));
   }
-  joint_timer_ = node.createTimer(ros::Duration(1.0 / robot.joint_state_rate),
-                                  &Publishers::publishJointStates, this);
-  state_timer_ =
-      node.createTimer(ros::Duration(1.0 / kStateCheckRate), &Publishers::publishStates, this);
 }
 
-void Publishers::publishJointStates(const ros::TimerEvent&) {
+void Publishers::publishJointStates() {
   const bus::RobotSnapshot snapshot = runner_.snapshot();
   Time newest{};
   for (std::size_t i = 0; i < snapshot.axes.size(); ++i) {
@@ -131,9 +127,9 @@ void Publishers::publishGroups(const bus::RobotSnapshot& snapshot) {
   }
 }
 
-void Publishers::publishStates(const ros::TimerEvent&) {
+void Publishers::publishStates() {
   const bus::RobotSnapshot snapshot = runner_.snapshot();
-  const ros::Time now = ros::Time::now();
+  const Time now = bus::realNow() + kEarly;
   const cia402_driver::AxisStates states = axisStates(snapshot);
   if (changed(states) || now - axis_states_sent_ >= kAxisStatesInterval) {
     if (axis_states_pub_.getNumSubscribers() > 0) runner_.look();

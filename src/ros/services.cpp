@@ -50,9 +50,9 @@ std::string hexBytes(const canopen::Bytes& data) {
 
 }  // namespace
 
-Services::Services(ros::NodeHandle& private_node, bus::BusRunner& runner,
+Services::Services(ros::NodeHandle& private_node, CallDesk& desk, bus::BusRunner& runner,
                    const config::RobotConfig& robot)
-    : runner_(runner), robot_(robot) {
+    : desk_(desk), runner_(runner), robot_(robot) {
   advertise(private_node, "");
   advertiseDump(private_node);
   for (const drive::AxisConfig& axis : robot.axes) {
@@ -62,19 +62,16 @@ Services::Services(ros::NodeHandle& private_node, bus::BusRunner& runner,
   }
 }
 
-unsigned Services::threads(const config::RobotConfig& robot) {
-  return static_cast<unsigned>(robot.axes.size()) + 4;
-}
-
 void Services::advertiseTrigger(ros::NodeHandle& node, const char* name, const std::string& axis,
                                 ProcedureKind kind) {
-  using Trigger = std_srvs::Trigger;
-  servers_.push_back(node.advertiseService<Trigger::Request, Trigger::Response>(
-      name, [this, axis, kind](Trigger::Request&, Trigger::Response& response) {
-        drive::ProcedureRequest request;
-        request.kind = kind;
-        return respond(call(runner_, bus::ProcedureCommand{axis, request}), response);
-      }));
+  servers_.push_back(desk_.advertise(node, name, [this, axis, kind](bus::Reply reply) {
+    drive::ProcedureRequest request;
+    request.kind = kind;
+    bus::Command command;
+    command.body = bus::ProcedureCommand{axis, request};
+    command.reply = std::move(reply);
+    runner_.post(std::move(command));
+  }));
 }
 
 void Services::advertiseDump(ros::NodeHandle& node) {

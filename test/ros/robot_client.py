@@ -110,6 +110,9 @@ class Process:
     def running(self):
         return self._process.poll() is None
 
+    def pid(self):
+        return self._process.pid
+
     def send(self, number):
         self._process.send_signal(number)
 

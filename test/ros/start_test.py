@@ -2,10 +2,14 @@
 # Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 """Starts that lead nowhere: a wrong configuration, an interface that is not there."""
 import math
+import os
+import signal
+import subprocess
+import tempfile
 import time
 import unittest
 
-from robot_client import ERROR, Process, Robot, main, wait_until
+from robot_client import DEADLINE, ERROR, Process, Robot, executable, main, wait_until
 
 # What the node must say about test/config/ten_mistakes.yaml: path and a word.
 MISTAKES = [
@@ -36,6 +40,55 @@ class WrongConfiguration(unittest.TestCase):
         process = Process("simulated_drives", "mistaken_drives", "test/config/ten_mistakes.yaml")
         self.assertNotEqual(process.wait(), 0)
         self.assertIn("10 problems", process.output())
+
+
+NODES = ("bus_node", "simulated_drives")
+
+
+class WithoutMaster(unittest.TestCase):
+    """Nobody listens on port 9: what asks a ROS master there waits for ever."""
+
+    ENVIRONMENT = {**os.environ, "ROS_MASTER_URI": "http://localhost:9"}
+
+    def ended_by(self, node, number):
+        """Sends a signal to a node that waits for the master. @return how it ended."""
+        with tempfile.TemporaryFile("w+") as output, subprocess.Popen(
+                [executable(node)], env=self.ENVIRONMENT, stdin=subprocess.DEVNULL, stdout=output,
+                stderr=subprocess.STDOUT) as process:
+            def said():
+                output.seek(0)
+                return output.read()
+            try:
+                wait_until(lambda: "Failed to contact master" in said(), "it waits for the master")
+                process.send_signal(number)
+                return process.wait(DEADLINE)
+            finally:
+                process.kill()
+
+    def test_a_signal_ends_the_wait(self):
+        for node in NODES:
+            for number in (signal.SIGINT, signal.SIGTERM):
+                self.assertEqual(self.ended_by(node, number), -number, node)
+
+    def run_with(self, node, *arguments):
+        return subprocess.run([executable(node), *arguments], env=self.ENVIRONMENT,
+                              stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, text=True, timeout=DEADLINE, check=False)
+
+    def test_help_is_printed_without_a_master(self):
+        for node in NODES:
+            for option in ("--help", "-h"):
+                ended = self.run_with(node, option)
+                self.assertEqual((ended.returncode, ended.stderr), (0, ""))
+                self.assertTrue(ended.stdout.startswith(f"Usage: {node} "), ended.stdout)
+                for word in ("roslaunch", "_interface:=", "_realtime_priority:=", "SIGTERM"):
+                    self.assertIn(word, ended.stdout)
+
+    def test_other_arguments_are_refused(self):
+        for node in NODES:
+            ended = self.run_with(node, "__name:=robot", "robot.yaml")
+            self.assertEqual((ended.returncode, ended.stdout), (2, ""))
+            self.assertIn('unknown argument "robot.yaml", see --help', ended.stderr)
 
 
 class MissingInterface(unittest.TestCase):

@@ -3,7 +3,6 @@
 
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/node_handle.h>
-#include <ros/timer.h>
 
 #include <set>
 #include <string>
@@ -21,6 +20,9 @@ class Diagnostics {
   Diagnostics(ros::NodeHandle& node, ros::NodeHandle& private_node, bus::BusRunner& runner,
               const config::RobotConfig& robot);
 
+  /// Publishes once a second; call it ten times as often.
+  void update();
+
  private:
   using Status = diagnostic_updater::DiagnosticStatusWrapper;
   void reportBus(Status& status);
@@ -34,7 +36,6 @@ class Diagnostics {
   can::LinkReader link_reader_;
   std::set<std::string> findings_told_;
   diagnostic_updater::Updater updater_;
-  ros::Timer timer_;
 };
 
 }  // namespace cia402::ros_node

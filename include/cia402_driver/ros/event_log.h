@@ -3,7 +3,6 @@
 
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
-#include <ros/timer.h>
 
 #include "cia402_driver/bus/reply_log.h"
 #include "cia402_driver/bus/runner.h"
@@ -18,7 +17,7 @@ class EventLog {
   EventLog(ros::NodeHandle& private_node, bus::BusRunner& runner, bus::ReplyLog& replies,
            const config::RobotConfig& robot);
 
-  /// Empties the queues of events and replies; also called at the end, when timers no longer run.
+  /// Empties the queues of events and replies.
   void drain();
 
  private:
@@ -29,7 +28,6 @@ class EventLog {
   bus::ReplyLog& replies_;
   const config::RobotConfig& robot_;
   ros::Publisher emergencies_;
-  ros::Timer timer_;
   std::uint64_t lost_told_ = 0, unpublished_told_ = 0, replies_lost_told_ = 0;
 };
 

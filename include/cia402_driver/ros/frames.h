@@ -1,8 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <ros/node_handle.h>
-#include <ros/timer.h>
 #include <tf2_ros/transform_broadcaster.h>
 
 #include "cia402_driver/bus/runner.h"
@@ -19,15 +17,14 @@ geometry_msgs::TransformStamped jointTransform(const config::FrameConfig& frame,
 /// known sends nothing.
 class Frames {
  public:
-  Frames(ros::NodeHandle& node, bus::BusRunner& runner, const config::RobotConfig& robot);
+  Frames(bus::BusRunner& runner, const config::RobotConfig& robot);
+
+  void publish();
 
  private:
-  void publish(const ros::TimerEvent&);
-
   bus::BusRunner& runner_;
   const config::RobotConfig& robot_;
   tf2_ros::TransformBroadcaster broadcaster_;
-  ros::Timer timer_;
 };
 
 }  // namespace cia402::ros_node

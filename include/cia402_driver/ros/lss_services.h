@@ -11,7 +11,7 @@
 namespace cia402::ros_node {
 
 /// The services of LSS: `~lss_scan`, `~lss_assign`, `~lss_set_bit_timing`. A call returns when the
-/// task has ended; give the node handle a callback queue with threads to spare.
+/// task has ended and keeps a thread of the node handle's callback queue until then.
 class LssServices {
  public:
   LssServices(ros::NodeHandle& private_node, bus::BusRunner& runner);

@@ -5,7 +5,6 @@
 #include <cia402_driver/BusState.h>
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
-#include <ros/timer.h>
 #include <sensor_msgs/JointState.h>
 
 #include <vector>
@@ -15,16 +14,19 @@
 
 namespace cia402::ros_node {
 
-/// joint_states at the configured rate, ~axis_states, ~bus_state and ~<group>/state.
+/// joint_states, ~axis_states, ~bus_state and ~<group>/state.
 class Publishers {
  public:
   /// @param node where joint_states is published, @param private_node for the rest.
   Publishers(ros::NodeHandle& node, ros::NodeHandle& private_node, bus::BusRunner& runner,
              const config::RobotConfig& robot);
 
+  /// Sends joint_states, and the states of groups to those who listen; at the configured rate.
+  void publishJointStates();
+  /// Sends ~axis_states if something has changed or 0.1 s have passed, ~bus_state every 0.5 s.
+  void publishStates();
+
  private:
-  void publishJointStates(const ros::TimerEvent&);
-  void publishStates(const ros::TimerEvent&);
   void publishGroups(const bus::RobotSnapshot& snapshot);
   cia402_driver::BusState busState(const bus::RobotSnapshot& snapshot) const;
   cia402_driver::AxisStates axisStates(const bus::RobotSnapshot& snapshot) const;
@@ -34,10 +36,9 @@ class Publishers {
   const config::RobotConfig& robot_;
   sensor_msgs::JointState joint_states_;
   cia402_driver::AxisStates last_states_;
-  ros::Time axis_states_sent_, bus_state_sent_;
+  Time axis_states_sent_{}, bus_state_sent_{};
   ros::Publisher joint_states_pub_, axis_states_pub_, bus_state_pub_;
   std::vector<ros::Publisher> group_pubs_;
-  ros::Timer joint_timer_, state_timer_;
 };
 
 /// What the fault or the procedure of an axis says, as cia402_driver::AxisState and diagnostics

@@ -1,7 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <ros/callback_queue.h>
 #include <ros/node_handle.h>
 #include <ros/service_server.h>
 
@@ -10,19 +9,19 @@
 
 #include "cia402_driver/bus/runner.h"
 #include "cia402_driver/config/robot.h"
+#include "cia402_driver/ros/call_desk.h"
 
 namespace cia402::ros_node {
 
 /// All services of the node, for the bus (`~name`) and for each axis (`~<axis>/name`). A call
-/// returns when its procedure has ended; give the node handle a callback queue with threads to
-/// spare, for each waiting call keeps one.
+/// returns when its procedure has ended. Those whose requests say nothing, every one that stops
+/// motion among them, wait at the desk and never for each other; the rest keep a thread of the
+/// node handle's callback queue while they wait.
 class Services {
  public:
-  Services(ros::NodeHandle& private_node, bus::BusRunner& runner, const config::RobotConfig& robot);
-
-  /// Calls that may wait at the same time: one for each service of each axis would be too many, so
-  /// one for each axis and some for the bus.
-  static unsigned threads(const config::RobotConfig& robot);
+  /// @param desk, @param runner, @param robot must outlive the services.
+  Services(ros::NodeHandle& private_node, CallDesk& desk, bus::BusRunner& runner,
+           const config::RobotConfig& robot);
 
  private:
   void advertise(ros::NodeHandle node, const std::string& axis);
@@ -31,8 +30,8 @@ class Services {
                         drive::ProcedureKind kind);
   void advertiseDump(ros::NodeHandle& node);
   void advertiseHistory(ros::NodeHandle& node, const std::string& axis);
-  /// Posts the command and waits for its reply.
 
+  CallDesk& desk_;
   bus::BusRunner& runner_;
   const config::RobotConfig& robot_;
   std::vector<ros::ServiceServer> servers_;

@@ -1,23 +1,27 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include <ros/callback_queue.h>
 #include <ros/ros.h>
 
 #include <memory>
 
 #include "cia402_driver/bus/real_clock.h"
+#include "cia402_driver/bus/realtime.h"
 #include "cia402_driver/bus/runner.h"
 #include "cia402_driver/can/socketcan.h"
 #include "cia402_driver/canopen/cyclic_identifiers.h"
+#include "cia402_driver/ros/call_desk.h"
 #include "cia402_driver/ros/command_call.h"
+#include "cia402_driver/ros/command_line.h"
 #include "cia402_driver/ros/command_topics.h"
 #include "cia402_driver/ros/diagnostics.h"
 #include "cia402_driver/ros/event_log.h"
+#include "cia402_driver/ros/event_loop.h"
 #include "cia402_driver/ros/fault_service.h"
 #include "cia402_driver/ros/frames.h"
 #include "cia402_driver/ros/lss_services.h"
 #include "cia402_driver/ros/process_signals.h"
 #include "cia402_driver/ros/publishers.h"
 #include "cia402_driver/ros/robot_loader.h"
+#include "cia402_driver/ros/service_pool.h"
 #include "cia402_driver/ros/services.h"
 #include "cia402_driver/sim/simulated_interface.h"
 
@@ -25,6 +29,37 @@ namespace {
 
 using cia402::ros_node::LoadedRobot;
 using namespace cia402;  // NOLINT: a main file
+
+constexpr char kHelp[] = R"(Usage: bus_node [name:=value...]
+
+The driver of one CAN bus. It takes the robot's file from its private parameters, so it is started
+by roslaunch:
+
+  roslaunch cia402_driver bus.launch config:=/path/to/robot.yaml
+  roslaunch cia402_driver bus.launch config:=/path/to/robot.yaml sim:=true    simulated drives
+  roslaunch cia402_driver bus.launch config:=/path/to/robot.yaml can:=can1    another interface
+
+or by hand:
+
+  rosparam load /path/to/robot.yaml /bus
+  rosrun cia402_driver bus_node __name:=bus _interface:=sim
+
+  _interface:=NAME          CAN interface instead of the file's; sim: simulated drives in the node
+  _profile_path:=FOLDER     a folder with further drive profiles
+  _realtime_priority:=80    SCHED_FIFO priority of the bus thread, 1 to 99; 0: no real time
+
+It waits for the ROS master and for the interface. SIGINT and SIGTERM stop and disable the drives.
+)";
+
+constexpr unsigned kWaitingCalls = 4;  // of services that keep a thread while they wait
+constexpr Duration kLongestTick = std::chrono::milliseconds(20);  // for states and the log
+constexpr Duration kDiagnosticsTick = std::chrono::milliseconds(100);
+
+/// A whole part of the period of joint_states, so that states and log need no waking of their own.
+Duration tickOf(Duration joint_states) {
+  const auto parts = (joint_states + kLongestTick - Duration(1)) / kLongestTick;
+  return joint_states / parts;
+}
 
 /// The interface the configuration names. `simulation` points into it where it is simulated.
 std::unique_ptr<can::Interface> openInterface(const LoadedRobot& loaded,
@@ -62,10 +97,12 @@ ros_node::FaultService::Inject injectThrough(bus::BusRunner& runner,
 }  // namespace
 
 int main(int argc, char** argv) {
-  ros_node::catchSignals();
+  if (const auto status = ros_node::readCommandLine(argc, argv, kHelp)) return *status;
+  bus::keepMemory();
   ros::init(argc, argv, "bus_node", ros::init_options::NoSigintHandler);
-  ros::NodeHandle node;
+  ros::NodeHandle node;  // waits for the ROS master
   ros::NodeHandle private_node("~");
+  ros_node::catchSignals();
 
   const auto loaded = ros_node::loadRobot(private_node);
   if (!loaded) return 1;
@@ -73,6 +110,12 @@ int main(int argc, char** argv) {
   std::unique_ptr<can::Interface> interface = openInterface(*loaded, simulation);
   if (!interface) return 1;
   ROS_INFO_STREAM("PDO plan:\n" << config::pdoTable(loaded->master, loaded->robot.bus.bitrate));
+
+  ros_node::EventLoop loop;
+  ros_node::CallDesk desk([&loop] { loop.wake(); });
+  ros_node::ServicePool pool(kWaitingCalls);
+  node.setCallbackQueue(loop.queue());
+  private_node.setCallbackQueue(loop.queue());
 
   bus::BusRunner::Options options;
   options.priority = loaded->options.realtime_priority;
@@ -83,31 +126,41 @@ int main(int argc, char** argv) {
   ros_node::EventLog events(private_node, runner, replies, loaded->robot);
   ros_node::Publishers publishers(node, private_node, runner, loaded->robot);
   ros_node::Diagnostics diagnostics(node, private_node, runner, loaded->robot);
-  ros_node::Frames frames(node, runner, loaded->robot);
+  ros_node::Frames frames(runner, loaded->robot);
   ros_node::CommandTopics topics(private_node, runner, replies, loaded->robot);
   runner.start();
 
-  ros::CallbackQueue service_queue;  // calls wait for their procedures: not in the way of topics
   ros::NodeHandle service_node("~");
-  service_node.setCallbackQueue(&service_queue);
-  ros_node::Services services(service_node, runner, loaded->robot);
+  service_node.setCallbackQueue(pool.queue());
+  ros_node::Services services(service_node, desk, runner, loaded->robot);
   ros_node::LssServices lss_services(service_node, runner);
   std::unique_ptr<ros_node::FaultService> faults;
   if (simulation != nullptr) {
     faults =
         std::make_unique<ros_node::FaultService>(service_node, injectThrough(runner, *simulation));
   }
-  ros::AsyncSpinner service_spinner(ros_node::Services::threads(loaded->robot), &service_queue);
-  ros::AsyncSpinner spinner(1);
-  service_spinner.start();
-  spinner.start();
 
-  ros_node::waitForEnd();
+  loop.always([&] { desk.answer(); });
+  const Duration joint_states = fromSeconds(1.0 / loaded->robot.joint_state_rate);
+  loop.every(tickOf(joint_states), [&] {
+    events.drain();
+    publishers.publishStates();
+  });
+  loop.every(joint_states, [&] {
+    publishers.publishJointStates();
+    frames.publish();
+  });
+  loop.every(kDiagnosticsTick, [&] { diagnostics.update(); });
+  ros_node::wakeOnSignals(loop.wakeFd());
+  while (!ros_node::endRequested()) loop.step();
+
   ROS_INFO("stopping the drives");
   runner.requestShutdown();
+  while (runner.running()) loop.step();
   runner.join();
-  spinner.stop();
   events.drain();
+  desk.answer();
+  pool.stop();
   ROS_INFO("stopped");
   ros::shutdown();
   return 0;

@@ -8,6 +8,7 @@
 #include "cia402_driver/bus/real_clock.h"
 #include "cia402_driver/bus/realtime.h"
 #include "cia402_driver/can/socketcan.h"
+#include "cia402_driver/ros/command_line.h"
 #include "cia402_driver/ros/fault_service.h"
 #include "cia402_driver/ros/process_signals.h"
 #include "cia402_driver/ros/robot_loader.h"
@@ -16,6 +17,25 @@
 namespace {
 
 using namespace cia402;  // NOLINT: a main file
+
+constexpr char kHelp[] = R"(Usage: simulated_drives [name:=value...]
+
+The simulated drives of a robot on a real CAN interface, for a bus_node in another process. It takes
+the robot's file from its private parameters, so it is started by roslaunch:
+
+  roslaunch cia402_driver sim.launch config:=/path/to/robot.yaml can:=vcan0
+
+or by hand:
+
+  rosparam load /path/to/robot.yaml /simulated_drives
+  rosrun cia402_driver simulated_drives _interface:=vcan0
+
+  _interface:=NAME          CAN interface instead of the file's
+  _profile_path:=FOLDER     a folder with further drive profiles
+  _realtime_priority:=80    SCHED_FIFO priority of the thread that plays the drives; 0: no real time
+
+It waits for the ROS master and for the interface. SIGINT and SIGTERM end it.
+)";
 
 constexpr Duration kLongestWait = std::chrono::milliseconds(20);
 
@@ -30,9 +50,10 @@ void waitForFrames(const can::Interface& interface, Time deadline) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  ros_node::catchSignals();
+  if (const auto status = ros_node::readCommandLine(argc, argv, kHelp)) return *status;
   ros::init(argc, argv, "simulated_drives", ros::init_options::NoSigintHandler);
-  ros::NodeHandle private_node("~");
+  ros::NodeHandle private_node("~");  // waits for the ROS master
+  ros_node::catchSignals();
   const auto loaded = ros_node::loadRobot(private_node);
   if (!loaded) return 1;
   const auto axes = ros_node::loadSimulation(loaded->robot);

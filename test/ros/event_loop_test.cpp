@@ -1,0 +1,67 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/ros/event_loop.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "cia402_driver/bus/real_clock.h"
+
+namespace cia402::ros_node {
+namespace {
+
+using namespace std::chrono_literals;
+
+class Callback : public ros::CallbackInterface {
+ public:
+  explicit Callback(std::function<void()> work) : work_(std::move(work)) {}
+  CallResult call() override {
+    work_();
+    return Success;
+  }
+
+ private:
+  std::function<void()> work_;
+};
+
+TEST(EventLoop, OneWakingServesTasksOfSeveralPeriods) {
+  EventLoop loop;
+  int often = 0, seldom = 0, steps = 0;
+  loop.every(10ms, [&] { ++often; });
+  loop.every(50ms, [&] { ++seldom; });
+  loop.always([&] { ++steps; });
+  while (seldom < 3) loop.step();
+  EXPECT_LE(often, steps);
+  EXPECT_LE(steps, 15 + 3);  // a busy machine leaves tasks out; the kernel may wake a moment early
+  EXPECT_GE(often, 3);
+}
+
+TEST(EventLoop, LeavesOutWhatIsTooLate) {
+  EventLoop loop;
+  int done = 0;
+  loop.every(1ms, [&] { ++done; });
+  const Time late = bus::realNow() + 30ms;
+  while (bus::realNow() < late) std::this_thread::yield();
+  loop.step();
+  EXPECT_EQ(done, 1);
+}
+
+TEST(EventLoop, IsWokenByCallbacksOfOtherThreads) {
+  EventLoop loop;
+  loop.every(1h, [] { FAIL() << "not due"; });
+  bool called = false;
+  std::thread other(
+      [&] { loop.queue()->addCallback(boost::make_shared<Callback>([&] { called = true; }), 1); });
+  while (!called) loop.step();
+  other.join();
+}
+
+TEST(EventLoop, DoesNotSleepWhereItWasWokenBefore) {
+  EventLoop loop;
+  loop.every(1h, [] { FAIL() << "not due"; });
+  loop.wake();
+  loop.step();
+}
+
+}  // namespace
+}  // namespace cia402::ros_node

@@ -1,0 +1,78 @@
+#!/usr/bin/python3
+# Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+"""What CMake finds out by itself: Python, control_msgs, whether tests are wanted."""
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
+
+# A python of the user's own, without catkin_pkg.
+OTHER_PYTHON = "#!/bin/sh\nexit 1\n"
+# What an installed package leaves for find_package().
+CONTROL_MSGS = "set(control_msgs_FOUND TRUE)\nset(control_msgs_FOUND_CATKIN_PROJECT TRUE)\n"
+
+
+class Configure(unittest.TestCase):
+    """Three configurations of one build folder."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="configure_"))
+        cls.prefix = cls.folder / "installed"
+        python = cls.folder / "bin/python3"
+        python.parent.mkdir()
+        python.write_text(OTHER_PYTHON, encoding="ascii")
+        python.chmod(0o755)
+        cls.without = cls.configure()
+        cls.kept = (cls.folder / "build/devel/share/control_msgs").exists()
+        config = cls.prefix / "share/control_msgs/cmake/control_msgsConfig.cmake"
+        config.parent.mkdir(parents=True)
+        config.write_text(CONTROL_MSGS, encoding="ascii")
+        cls.installed = cls.configure("-DCATKIN_ENABLE_TESTING=OFF")
+        cls.targets = subprocess.run(["cmake", "--build", cls.folder / "build", "--target", "help"],
+                                     stdout=subprocess.PIPE, text=True, timeout=300,
+                                     check=True).stdout
+        cls.removed = not (cls.folder / "build/devel/share/control_msgs").exists()
+        shutil.rmtree(cls.prefix)
+        cls.gone = cls.configure()
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.folder)
+
+    @classmethod
+    def configure(cls, *options):
+        """@return what CMake said."""
+        # As after `source devel/setup.bash`: what is built here is in the path, too.
+        prefixes = f"{cls.folder}/build/devel:{cls.prefix}"
+        path = f"{cls.folder}/bin:/usr/bin:/bin"
+        ended = subprocess.run(
+            ["cmake", "-G", "Ninja", "-S", REPOSITORY, "-B", cls.folder / "build", *options],
+            env={"PATH": path, "HOME": os.environ.get("HOME", "/"), "CMAKE_PREFIX_PATH": prefixes},
+            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+            timeout=600, check=False)
+        assert ended.returncode == 0, ended.stdout
+        return ended.stdout
+
+    def test_python_is_that_of_catkin(self):
+        self.assertIn("Using PYTHON_EXECUTABLE: /usr/bin/python3", self.without)
+
+    def test_control_msgs_is_built_only_where_none_is_installed(self):
+        none = "control_msgs: none installed, that of this repository is built"
+        self.assertIn(none, self.without)
+        self.assertTrue(self.kept)
+        self.assertIn(f"control_msgs: the one in {self.prefix}", self.installed)
+        self.assertTrue(self.removed)
+        self.assertIn(none, self.gone)
+
+    def test_tests_are_built_only_where_testing_is_on(self):
+        self.assertIn("bus_node:", self.targets)
+        self.assertNotIn("test_can:", self.targets)
+
+
+if __name__ == "__main__":
+    unittest.main()

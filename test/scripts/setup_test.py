@@ -1,0 +1,34 @@
+#!/usr/bin/python3
+# Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+"""What a user has who has run scripts/demo: the commands of ROS know the driver."""
+import os
+import pathlib
+import subprocess
+import unittest
+
+REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
+SETUP = REPOSITORY / "build/ros/devel/setup.bash"
+
+
+def in_new_terminal(command):
+    """Runs a command as a user would who has nothing but sourced the file that is told."""
+    environment = {"PATH": "/usr/bin:/bin", "HOME": os.environ.get("HOME", "/root")}
+    return subprocess.run(["bash", "-c", f"source '{SETUP}' && {command}"], env=environment,
+                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, text=True, timeout=120, check=False)
+
+
+class SetUp(unittest.TestCase):
+    def test_rosrun_finds_the_nodes(self):
+        for node in ("bus_node", "simulated_drives"):
+            ended = in_new_terminal(f"rosrun cia402_driver {node} --help")
+            self.assertEqual(ended.returncode, 0, ended.stdout)
+            self.assertIn(f"Usage: {node}", ended.stdout)
+
+    def test_roslaunch_finds_the_launch_files(self):
+        ended = in_new_terminal("roslaunch --nodes cia402_driver demo.launch")
+        self.assertEqual((ended.returncode, ended.stdout.strip()), (0, "/robot"))
+
+
+if __name__ == "__main__":
+    unittest.main()
