@@ -121,7 +121,9 @@ TEST(Coordinates, APlannedMotionFromOutsideTheLimitsGoesAsFarAsItIsTold) {
 }
 
 TEST(Coordinates, AHeldMotorThatIsToldToReadOtherwiseForgetsWhereItWasGoing) {
-  for (const std::string& yaml : {genericPair(), damiaoJoint()}) {
+  // Wide enough for the drive not to fault before the call is answered.
+  const std::string window = ", write: [{object: following_error_window, value: 0.2}]";
+  for (const std::string& yaml : {genericPair(window), damiaoJoint()}) {
     ReadyScene scene(yaml, "profile_position");
     const std::string axis = scene.loaded().robot.axes[0].name;
     const double from = scene.position(axis);

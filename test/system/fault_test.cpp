@@ -134,8 +134,11 @@ TEST(DamiaoFaults, AWarningStopsTheJointLikeAFault) {
   scene.run(500ms);
   EXPECT_FALSE(scene.truth("joint").power_stage_on);
   EXPECT_FALSE(scene.state("joint").ready_for_motion);
-  EXPECT_THAT(scene.told(), HasSubstr("joint (node 4)"));
-  EXPECT_THAT(scene.setpoint("joint", 0.0), HasSubstr("joint"));
+  EXPECT_EQ(scene.state("joint").error_code, 0x4210);
+  EXPECT_THAT(scene.axis("joint").faultText(),
+              HasSubstr("joint (node 4): fault 0x4210 device temperature too high"));
+  EXPECT_THAT(scene.told(), HasSubstr("joint (node 4): emergency: 0x4210"));
+  EXPECT_THAT(scene.setpoint("joint", 0.0), HasSubstr("0x4210"));
 }
 
 }  // namespace

@@ -274,9 +274,25 @@ TEST(DriveDeadline, StopsADriveThatLosesOnlyItsRpdos) {
   EXPECT_NEAR(scene.velocity("joint"), 0.0, 1e-3);
 }
 
-/// Boots the plan of every mode of a family, enables it there and, where the drive has it, moves.
+/// In the direction of a set-point of the mode that the axis is in, as the motor itself shows.
+void expectToMove(Scene& scene, const std::string& axis, const std::string& what) {
+  const double before = scene.position(axis);
+  const drive::ModeSpec* mode = scene.state(axis).mode;
+  ASSERT_NE(mode, nullptr) << what;
+  if (mode->kind == drive::ControlKind::position) {
+    EXPECT_EQ(scene.setpoint(axis, before + 0.1), "") << what;
+    scene.run(1s);
+    EXPECT_NEAR(scene.position(axis), before + 0.1, 1e-3) << what;
+  } else {
+    scene.stream(axis, mode->kind == drive::ControlKind::velocity ? 0.3 : 4.0, 200ms);
+    EXPECT_GT(scene.position(axis), before + 0.003) << what;
+  }
+}
+
+/// Boots the plan of every mode of a family, enables it there and moves. Homing is no mode to begin
+/// in (test/config/robot_test.cpp).
 TEST(PlannedPdos, OfEveryModeBootOnTheGenericDrive) {
-  for (const char* mode : {"pp", "pv", "csp", "csv"}) {
+  for (const char* mode : {"pp", "pv", "pt", "csp", "csv", "cst"}) {
     for (const char* modes : {"", ", modes: []", ", modes: [csp, csv]", ", feedback: []",
                               ", feedback: [following_error, digital_inputs, velocity_actual]"}) {
       std::string yaml = genericPair(", mode: " + std::string(mode) + modes);
@@ -286,6 +302,7 @@ TEST(PlannedPdos, OfEveryModeBootOnTheGenericDrive) {
       const auto enabled = scene.procedure(ProcedureKind::enable, "left");
       EXPECT_TRUE(enabled.success) << mode << modes << ": " << enabled.message;
       EXPECT_EQ(scene.state("left").mode->name, drive::canonicalModeName(mode));
+      expectToMove(scene, "left", std::string(mode) + modes);
     }
   }
 }
@@ -302,6 +319,7 @@ TEST(PlannedPdos, OfEveryModeBootOnTheDamiao) {
       const auto enabled = scene.procedure(ProcedureKind::enable);
       EXPECT_TRUE(enabled.success) << mode << modes << ": " << enabled.message;
       EXPECT_EQ(scene.state("joint").mode->name, mode);
+      expectToMove(scene, "joint", std::string(mode) + modes);
     }
   }
 }
