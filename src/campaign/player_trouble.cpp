@@ -15,6 +15,14 @@ using Source = Permits::Source;
 
 Duration seconds(const std::string& word) { return fromSeconds(toNumber(word)); }
 
+/// A drive that plans its motion itself goes on planning while its rotor is blocked: what it takes
+/// to stop that demand, and to come back from it to where the axis was told to stop meanwhile.
+Duration catchingUp(const AxisFacts& axis, Duration blocked) {
+  const double stop = axis.velocity / axis.acceleration;
+  const double ahead = axis.velocity * (toSeconds(blocked) + 0.5 * stop);
+  return fromSeconds(stop + 2.0 * std::sqrt(ahead / axis.acceleration));
+}
+
 }  // namespace
 
 bool Player::actTrouble(const Words& words) {
@@ -280,7 +288,8 @@ bool Player::actDrive(const Words& words) {
     } else if (verb == "block") {  // block A SECONDS: the rotor
       const Duration length = seconds(words.at(2));
       inject("blocked_rotor");
-      Conditions::extend(condition.blocked, now + length + 400ms);
+      Conditions::extend(condition.blocked,
+                         now + length + 400ms + catchingUp(stage_.axes()[i], length));
       permits_.hinder(i, now + length);
       clear_later(length);
     } else {  // switch A lower|upper SECONDS: a limit switch right where it stands

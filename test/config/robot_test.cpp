@@ -207,6 +207,8 @@ const Mistake kMistakes[] = {
     {"node_id: 1,", "node_id: 1, pdos: {rpdo1: [controlword, target_position]},",
      "`position_actual` must be in a TPDO"},
     {"node_id: 1,", "node_id: 1, write: [{object: \"0x2000:01\", value: 5}],", "add its type"},
+    {"node_id: 1,", "node_id: 1, write: [{object: 4120, value: 5, type: uint16}],",
+     "4120h or, if 0x1018 is meant, 1018h"},
     {"node_id: 1,", "node_id: 1, write: [{object: no_such, value: 5}],", "has no object `no_such`"},
     {"node_id: 1,", "node_id: 1, write: [{object: \"0x6065\", value: 0.5}],",
      "write `object: following_error_window`"},
@@ -248,6 +250,19 @@ TEST(RobotConfig, TellsEveryMistakeWithItsPath) {
   for (const Mistake& mistake : kMistakes) {
     EXPECT_THAT(changed(mistake.from, mistake.to).problems, HasSubstr(mistake.problem))
         << mistake.to;
+  }
+}
+
+// rosparam makes 24677 of an unquoted 0x6065, and 363900 of 6065:00.
+TEST(RobotConfig, TakesAnObjectsIndexForWhatYamlMadeOfIt) {
+  for (const char* index : {"24677", "363900", "6065h:0", "\"0x6065\""}) {
+    const Loaded loaded = changed(
+        "node_id: 1,", std::string("node_id: 1, write: [{object: ") + index + ", value: 5000}],");
+    EXPECT_EQ(loaded.problems, "") << index;
+    ASSERT_EQ(loaded.robot.axes[0].writes.size(), 1u) << index;
+    Problems problems;
+    const canopen::MasterConfig master = makeMasterConfig(loaded.robot, problems);
+    EXPECT_EQ(master.nodes[0].writes.back().object, (canopen::ObjectId{0x6065, 0})) << index;
   }
 }
 
