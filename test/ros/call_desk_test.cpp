@@ -60,6 +60,9 @@ TEST_F(CallDeskTest, BeginsEveryCallWhenItArrivesWhoeverWaits) {
   desk.answer();
   EXPECT_THAT(answers, IsEmpty());
   EXPECT_EQ(wakes, 0);
+  for (const bus::Reply& reply : replies) reply(bus::answerOf(true, "ended"));
+  desk.answer();
+  EXPECT_EQ(answers.size(), 5U);
 }
 
 TEST_F(CallDeskTest, AnswersInTheOrderOfTheReplies) {

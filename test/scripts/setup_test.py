@@ -27,7 +27,7 @@ class SetUp(unittest.TestCase):
 
     def test_roslaunch_finds_the_launch_files(self):
         ended = in_new_terminal("roslaunch --nodes cia402_driver demo.launch")
-        self.assertEqual((ended.returncode, ended.stdout.strip()), (0, "/robot"))
+        self.assertEqual((ended.returncode, ended.stdout.strip()), (0, "/bus"))
 
 
 if __name__ == "__main__":

@@ -23,7 +23,8 @@ namespace cia402::ros_node {
 /// when that has returned. Each of these services has a queue of its own that keeps it until then.
 class CallDesk {
  public:
-  /// What a call asks for: must not wait, and gives the reply once, from any thread.
+  /// What a call asks for: must not wait, and gives the reply exactly once, from any thread. A
+  /// reply that is dropped leaks its call.
   using Begin = std::function<void(bus::Reply reply)>;
 
   /// @param wake called where answer() has something to do; any thread, must not wait.
