@@ -46,7 +46,7 @@ Result<ObjectJob> ObjectJob::find(drive::Axis& axis, const std::string& object, 
   auto found = findObject(axis.config(), object);
   if (!found) return Error{job.who_ + ": " + found.error().message};
   job.id_ = found->id;
-  job.spec_ = std::move(found->spec);
+  job.spec_ = found->spec;
   job.name_ = found->title;
   std::string refusal = axis.node().stoppedRefusal(job.name_);
   if (!refusal.empty()) return Error{std::move(refusal)};

@@ -17,7 +17,7 @@ PLACES = [0.25, 0.0, -1.9, 0.0]
 class Boot(RobotTest):
     @classmethod
     def setUpClass(cls):
-        cls.robot = Robot()
+        cls.robot = Robot("bus")
         cls.robot.wait_ready()
 
     @classmethod
@@ -82,7 +82,7 @@ class Boot(RobotTest):
         self.assertLess(ages[len(ages) // 10], 0.05)  # others may have waited for a processor
 
     def test_axis_states_are_latched(self):
-        message = rospy.wait_for_message("/robot/axis_states", AxisStates, 10.0)
+        message = rospy.wait_for_message("/bus/axis_states", AxisStates, 10.0)
         self.assertEqual(message._connection_header["latching"], "1")
         self.assertEqual([axis.name for axis in message.axes], self.AXES)
 
