@@ -11,15 +11,15 @@ namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
+using test::kAskDeviceType;
+using test::kAskVendor;
 using test::Lines;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-const char kAskDeviceType[] = "603 40 00 10 00 00 00 00 00";
 const char kAskIdentityCount[] = "603 40 18 10 00 00 00 00 00";
-const char kAskVendor[] = "603 40 18 10 01 00 00 00 00";
 
 class BootRetryTest : public test::NodeFixture {
  protected:

@@ -9,6 +9,8 @@ namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
+using test::kAskDeviceType;
+using test::kAskVendor;
 using test::Lines;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -16,8 +18,6 @@ using ::testing::IsEmpty;
 
 class BootTest : public test::NodeFixture {};
 
-const char kAskDeviceType[] = "603 40 00 10 00 00 00 00 00";
-const char kAskVendor[] = "603 40 18 10 01 00 00 00 00";
 const char kAskProduct[] = "603 40 18 10 02 00 00 00 00";
 
 TEST_F(BootTest, identifies_configures_and_starts_a_drive_frame_by_frame) {

@@ -9,6 +9,8 @@ namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
+using test::kAskDeviceType;
+using test::kAskVendor;
 using test::Lines;
 using ::testing::Contains;
 using ::testing::Each;
@@ -16,8 +18,6 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-const char kAskDeviceType[] = "603 40 00 10 00 00 00 00 00";
-const char kAskVendor[] = "603 40 18 10 01 00 00 00 00";
 const char kPreOperational[] = "000 80 03";
 const char kReset[] = "000 82 03";
 

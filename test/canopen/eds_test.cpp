@@ -1,27 +1,19 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "cia402_driver/canopen/eds.h"
-#include "folders.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
+
+#include "canopen/eds_file.h"
 
 namespace cia402::canopen {
 namespace {
 
+using test::readFile;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
-
-// What is wrong in each file is told in its first lines; the files carry the damage of real ones.
-Eds readFile(const std::string& name, std::optional<NodeId> node_id = NodeId{5}) {
-  std::ifstream file(cia402::test::testFolder() + "/canopen/eds/" + name, std::ios::binary);
-  EXPECT_TRUE(file) << name;
-  const std::string text((std::istreambuf_iterator<char>(file)), {});
-  return readEds(text, node_id);
-}
 
 std::vector<std::string> problemsOf(const Eds& eds) {
   std::vector<std::string> texts;

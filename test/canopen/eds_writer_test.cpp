@@ -2,25 +2,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <iterator>
 #include <tuple>
 
+#include "canopen/eds_file.h"
 #include "cia402_driver/canopen/eds.h"
-#include "folders.h"
 
 namespace cia402::canopen {
 namespace {
 
+using test::readFile;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-Eds readFile(const std::string& name, std::optional<NodeId> node_id) {
-  std::ifstream file(cia402::test::testFolder() + "/canopen/eds/" + name, std::ios::binary);
-  EXPECT_TRUE(file) << name;
-  const std::string text((std::istreambuf_iterator<char>(file)), {});
-  return readEds(text, node_id);
-}
 
 // Everything but the lines of the file.
 auto fields(const DictionaryEntry& e) {

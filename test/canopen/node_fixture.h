@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "canopen/process_objects.h"
 #include "canopen/scripted_drive.h"
 #include "canopen/scripted_peer.h"
 #include "cia402_driver/canopen/node.h"
@@ -15,6 +16,10 @@
 namespace cia402::canopen::test {
 
 using Lines = std::vector<std::string>;
+
+/// What the boot of node 3 asks first: 1000h, and 1018h:01.
+constexpr char kAskDeviceType[] = "603 40 00 10 00 00 00 00 00";
+constexpr char kAskVendor[] = "603 40 18 10 01 00 00 00 00";
 
 /// Node 3, "shoulder", against a scripted servo, in virtual time.
 class NodeFixture : public ::testing::Test {

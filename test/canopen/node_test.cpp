@@ -12,11 +12,12 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 using test::frame;
+using test::kAskDeviceType;
+using test::kControlword;
+using test::kStatusword;
+using test::kTarget;
 using test::Lines;
 using ::testing::HasSubstr;
-
-constexpr ObjectId kStatusword{0x6041, 0}, kControlword{0x6040, 0}, kTarget{0x607A, 0};
-const char kAskDeviceType[] = "603 40 00 10 00 00 00 00 00";
 
 class NodeTest : public test::NodeFixture {
  protected:

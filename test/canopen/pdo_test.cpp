@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "canopen/process_objects.h"
 #include "canopen/scripted_peer.h"
 #include "cia402_driver/canopen/pdo_text.h"
 
@@ -10,10 +11,12 @@ namespace cia402::canopen {
 namespace {
 
 using test::frame;
+using test::kControlword;
+using test::kStatusword;
+using test::kTarget;
 
 constexpr Time kStamp(std::chrono::milliseconds(7));
-constexpr ObjectId kStatusword{0x6041, 0}, kPosition{0x6064, 0}, kMode{0x6061, 0};
-constexpr ObjectId kControlword{0x6040, 0}, kTarget{0x607A, 0};
+constexpr ObjectId kPosition{0x6064, 0}, kMode{0x6061, 0};
 
 PdoConfig pdo(PdoDirection direction, unsigned number, std::uint16_t cob_id,
               std::vector<PdoEntry> entries) {

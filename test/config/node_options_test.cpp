@@ -15,16 +15,16 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-struct Loaded {
+struct LoadedNode {
   std::string problems;
   RobotConfig robot;
   canopen::NodeConfig node;
   double load = 0.0;
 };
 
-Loaded load(const std::string& keys, const std::string& bus = "heartbeat: 0.1") {
+LoadedNode loadNode(const std::string& keys, const std::string& bus = "heartbeat: 0.1") {
   Problems problems;
-  Loaded loaded;
+  LoadedNode loaded;
   const YAML::Node tree =
       YAML::Load("bus: {interface: can0, " + bus +
                  "}\naxes: {a: {node_id: 1, drive: generic_cia402, counts_per_turn: 1000, limits: "
@@ -42,7 +42,7 @@ Loaded load(const std::string& keys, const std::string& bus = "heartbeat: 0.1") 
 }
 
 TEST(NodeOptions, WithoutThemTheBusHeartbeatIsWatchedBothWays) {
-  const canopen::NodeConfig node = load("").node;
+  const canopen::NodeConfig node = loadNode("").node;
   EXPECT_EQ(node.error_control, ErrorControl::heartbeat);
   EXPECT_EQ(node.heartbeat, milliseconds(100));
   EXPECT_EQ(node.heartbeat_timeout, milliseconds(300));
@@ -53,14 +53,14 @@ TEST(NodeOptions, WithoutThemTheBusHeartbeatIsWatchedBothWays) {
 
 TEST(NodeOptions, HeartbeatTimesGoByAxis) {
   const canopen::NodeConfig node =
-      load("error_control: {period: 0.25, timeout: 1.0, master_timeout: 0.5}").node;
+      loadNode("error_control: {period: 0.25, timeout: 1.0, master_timeout: 0.5}").node;
   EXPECT_EQ(node.heartbeat, milliseconds(250));
   EXPECT_EQ(node.heartbeat_timeout, milliseconds(1000));
   EXPECT_EQ(node.master_timeout, milliseconds(500));
 }
 
 TEST(NodeOptions, GuardingByAWordTakesTheTimesOfTheBus) {
-  const Loaded loaded = load("error_control: guarding");
+  const LoadedNode loaded = loadNode("error_control: guarding");
   EXPECT_EQ(loaded.problems, "");
   EXPECT_EQ(loaded.node.error_control, ErrorControl::guarding);
   EXPECT_EQ(loaded.node.guard_time, milliseconds(100));
@@ -72,18 +72,18 @@ TEST(NodeOptions, GuardingByAWordTakesTheTimesOfTheBus) {
 
 TEST(NodeOptions, GuardingCountsForTheBusLoadAsRequestAndAnswer) {
   // A heartbeat and an answer have 55 bits, a request 47, ten times a second.
-  EXPECT_NEAR(load("error_control: guarding").load - load("").load, 470.0 / 1e6, 1e-9);
+  EXPECT_NEAR(loadNode("error_control: guarding").load - loadNode("").load, 470.0 / 1e6, 1e-9);
 }
 
 TEST(NodeOptions, TheLifeTimeFactorIsTheRatioOfTheTimes) {
   const canopen::NodeConfig node =
-      load("error_control: {kind: guarding, period: 0.2, timeout: 1.0}").node;
+      loadNode("error_control: {kind: guarding, period: 0.2, timeout: 1.0}").node;
   EXPECT_EQ(node.guard_time, milliseconds(200));
   EXPECT_EQ(node.life_time_factor, 5);
 }
 
 TEST(NodeOptions, NoneIsPossibleAndWarnedOf) {
-  const Loaded loaded = load("error_control: none");
+  const LoadedNode loaded = loadNode("error_control: none");
   EXPECT_EQ(loaded.problems, "");
   EXPECT_EQ(loaded.node.error_control, ErrorControl::none);
   EXPECT_EQ(loaded.node.heartbeat, Duration(0));
@@ -94,20 +94,20 @@ TEST(NodeOptions, NoneIsPossibleAndWarnedOf) {
 
 TEST(NodeOptions, WithoutAHeartbeatOfTheBusEachAxisIsJudgedByItsOwn) {
   const auto warnings = [](const std::string& keys) {
-    return load(keys, "heartbeat: 0").robot.warnings;
+    return loadNode(keys, "heartbeat: 0").robot.warnings;
   };
   EXPECT_THAT(warnings(""), ElementsAre(HasSubstr("bus/heartbeat: is 0")));
   EXPECT_THAT(warnings("error_control: {kind: guarding, period: 0.1, timeout: 0.3}"), IsEmpty());
   EXPECT_THAT(warnings("error_control: {period: 0.1}"),
               ElementsAre(HasSubstr("axes/a: this drive watches no heartbeat")));
   EXPECT_THAT(
-      load("error_control: {period: 0.1, master_timeout: 0.3}", "heartbeat: 0").problems,
+      loadNode("error_control: {period: 0.1, master_timeout: 0.3}", "heartbeat: 0").problems,
       HasSubstr("`master_timeout` waits for the heartbeat of this program, which has none"));
 }
 
 TEST(NodeOptions, BootOptionsReachTheMaster) {
   const canopen::BootPolicy policy =
-      load(
+      loadNode(
           "optional: true, restore_before_configure: true, configuration_check: checksum, boot: "
           "{retries: 5, retry_delay: 0.5, search_period: 10}")
           .node.boot;
@@ -120,16 +120,17 @@ TEST(NodeOptions, BootOptionsReachTheMaster) {
 }
 
 TEST(NodeOptions, AnSdoChannelOfOtherCobIdsReachesTheMaster) {
-  const Loaded loaded = load("sdo: {request: 0x641, answer: 0x5C1}");
+  const LoadedNode loaded = loadNode("sdo: {request: 0x641, answer: 0x5C1}");
   EXPECT_EQ(loaded.problems, "");
   EXPECT_EQ(loaded.node.sdo_channel.request, 0x641);
   EXPECT_EQ(loaded.node.sdo_channel.answer, 0x5C1);
-  EXPECT_EQ(load("").node.sdo_channel.request, 0) << "the predefined ones";
+  EXPECT_EQ(loadNode("").node.sdo_channel.request, 0) << "the predefined ones";
 }
 
 TEST(NodeOptions, AnSdoChannelMayNotTakeTheIdentifiersOfOthers) {
   const auto problem = [](const char* request, const char* answer) {
-    return load(std::string("sdo: {request: ") + request + ", answer: " + answer + "}").problems;
+    return loadNode(std::string("sdo: {request: ") + request + ", answer: " + answer + "}")
+        .problems;
   };
   EXPECT_THAT(problem("0x641", "0x181"),
               HasSubstr("axes/a/sdo/answer: COB-ID 0x181 belongs to TPDO 1 of a already"));
@@ -140,12 +141,12 @@ TEST(NodeOptions, AnSdoChannelMayNotTakeTheIdentifiersOfOthers) {
   EXPECT_THAT(problem("0x641", "0x641"), HasSubstr("the SDO channel of a already"));
   EXPECT_EQ(problem("0x601", "0x581"), "") << "written out, the predefined ones";
   EXPECT_THAT(problem("0x800", "0x581"), HasSubstr("axes/a/sdo/request"));
-  EXPECT_THAT(load("sdo: {request: 0x641}").problems, HasSubstr("`answer` is missing"));
+  EXPECT_THAT(loadNode("sdo: {request: 0x641}").problems, HasSubstr("`answer` is missing"));
 }
 
 TEST(NodeOptions, WhatWouldBeIgnoredIsRefused) {
-  EXPECT_THAT(load("feedback: [velocity_actual], pdos: {rpdo1: [controlword, target_position], "
-                   "tpdo1: [statusword, position_actual]}")
+  EXPECT_THAT(loadNode("feedback: [velocity_actual], pdos: {rpdo1: [controlword, target_position], "
+                       "tpdo1: [statusword, position_actual]}")
                   .problems,
               HasSubstr("axes/a/feedback: says nothing beside `pdos`"));
   Problems problems;
@@ -165,11 +166,11 @@ TEST(NodeOptions, WhatWouldBeIgnoredIsRefused) {
 }
 
 TEST(NodeOptions, ADateBecomesTheNumbersOf1020h) {
-  const canopen::BootPolicy moment = load("configuration_check: 2026-11-21T15:30:00").node.boot;
+  const canopen::BootPolicy moment = loadNode("configuration_check: 2026-11-21T15:30:00").node.boot;
   EXPECT_EQ(moment.check, canopen::ConfigurationCheck::date);
   EXPECT_EQ(moment.date, 15665u);
   EXPECT_EQ(moment.time, 55800000u);
-  const canopen::BootPolicy day = load("configuration_check: 1984-03-01").node.boot;
+  const canopen::BootPolicy day = loadNode("configuration_check: 1984-03-01").node.boot;
   EXPECT_EQ(day.date, 60u) << "1984 is a leap year";
   EXPECT_EQ(day.time, 0u);
 }
@@ -202,9 +203,9 @@ TEST(NodeOptions, MistakesAreNamedWithARemedy) {
       {"boot: {retries: -1}", "axes/a/boot/retries"},
       {"boot: {retry_delay: 0}", "axes/a/boot/retry_delay"}};
   for (const auto& [keys, problem] : cases) {
-    EXPECT_THAT(load(keys).problems, HasSubstr(problem)) << keys;
+    EXPECT_THAT(loadNode(keys).problems, HasSubstr(problem)) << keys;
   }
-  EXPECT_THAT(load("error_control: guarding", "heartbeat: 0").problems,
+  EXPECT_THAT(loadNode("error_control: guarding", "heartbeat: 0").problems,
               HasSubstr("needs a `period`, as bus/heartbeat is 0"));
 }
 

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "cia402_driver/config/robot.h"
-#include "folders.h"
+#include "config/loaded.h"
 
 namespace cia402::config {
 namespace {
@@ -15,20 +15,6 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-struct Loaded {
-  RobotConfig robot;
-  std::string problems;
-};
-
-Loaded load(const std::string& yaml) {
-  Problems problems;
-  Loaded loaded;
-  loaded.robot =
-      loadRobot(YAML::Load(yaml), profilesIn({cia402::test::configFolder() + "/drives"}), problems);
-  loaded.problems = problems.text();
-  return loaded;
-}
 
 const char* const kFull = R"(
 bus: {interface: vcan7, bitrate: 500000, sync_period: 0.01, node_id: 126, heartbeat: 0.25,
@@ -74,7 +60,7 @@ class RobotKeys : public testing::Test {
     EXPECT_EQ(loaded.problems, "");
     EXPECT_EQ(robot.axes.size(), 2U);
   }
-  const Loaded loaded = load(kFull);
+  const LoadedRobot loaded = loadText(kFull);
   const RobotConfig& robot = loaded.robot;
 };
 
@@ -201,7 +187,7 @@ TEST_F(RobotKeys, OfAGroup) {
 }
 
 TEST(RobotDefaults, OfWhatIsNotGiven) {
-  const Loaded loaded = load(
+  const LoadedRobot loaded = loadText(
       "bus: {interface: can0}\n"
       "axes: {a: {node_id: 1, drive: generic_cia402, counts_per_turn: 1000,\n"
       "           limits: {velocity: 1, acceleration: 2}, homing: {method: 35}}}\n");
@@ -227,22 +213,6 @@ TEST(RobotDefaults, OfWhatIsNotGiven) {
   EXPECT_TRUE(group.stop_group_on_fault);
   EXPECT_EQ(group.goal_time, 1.0);
   EXPECT_THAT(group.tolerances, IsEmpty());
-}
-
-const char* const kArm = R"(
-bus: {interface: can0, sync_period: 0.004}
-defaults: {drive: generic_cia402, counts_per_turn: 4000, limits: {velocity: 2.0, acceleration: 8.0}}
-axes:
-  shoulder: {node_id: 1, gear_ratio: 50.0, limits: {lower: -3.0, upper: 3.0}}
-  elbow: {node_id: 2, homing: {method: 17}}
-)";
-
-/// The arm with the first `from` replaced by `to`.
-Loaded changed(const std::string& from, const std::string& to) {
-  std::string text = kArm;
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return load(text.replace(at, from.size(), to));
 }
 
 TEST(RobotMistakes, AreToldWithWhatToDo) {
@@ -323,7 +293,7 @@ TEST(RobotMistakes, AreToldWithWhatToDo) {
       {"axes:", "couplings: [{joints: [shoulder], axes: [elbow], matrix: [[1]]}]\naxes:",
        "couplings: the joint `shoulder` is that of an axis without coupling already"},
   };
-  ASSERT_EQ(load(kArm).problems, "");
+  ASSERT_EQ(loadText(kArm).problems, "");
   for (const Mistake& mistake : mistakes) {
     EXPECT_THAT(changed(mistake.from, mistake.to).problems, HasSubstr(mistake.problem))
         << mistake.to;
@@ -331,9 +301,9 @@ TEST(RobotMistakes, AreToldWithWhatToDo) {
 }
 
 TEST(RobotMistakes, WithoutAnyAxisThereIsNothingToDo) {
-  EXPECT_THAT(load("bus: {interface: can0}\naxes: {}\n").problems,
+  EXPECT_THAT(loadText("bus: {interface: can0}\naxes: {}\n").problems,
               HasSubstr("axes: must name at least one axis"));
-  EXPECT_THAT(load("bus: {interface: can0}\n").problems,
+  EXPECT_THAT(loadText("bus: {interface: can0}\n").problems,
               HasSubstr("axes: is missing: name at least one axis with its node_id and drive"));
 }
 

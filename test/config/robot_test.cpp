@@ -1,9 +1,10 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "cia402_driver/config/robot.h"
-#include "folders.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "config/loaded.h"
 
 namespace cia402::config {
 namespace {
@@ -12,38 +13,8 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-const char* const kArm = R"(
-bus: {interface: can0, sync_period: 0.004}
-defaults: {drive: generic_cia402, counts_per_turn: 4000, limits: {velocity: 2.0, acceleration: 8.0}}
-axes:
-  shoulder: {node_id: 1, gear_ratio: 50.0, limits: {lower: -3.0, upper: 3.0}}
-  elbow: {node_id: 2, homing: {method: 17}}
-)";
-
-struct Loaded {
-  RobotConfig robot;
-  std::string problems;
-};
-
-Loaded load(const std::string& yaml) {
-  Problems problems;
-  Loaded loaded;
-  loaded.robot =
-      loadRobot(YAML::Load(yaml), profilesIn({cia402::test::configFolder() + "/drives"}), problems);
-  loaded.problems = problems.text();
-  return loaded;
-}
-
-// The arm with the first `from` replaced by `to`.
-Loaded changed(const std::string& from, const std::string& to) {
-  std::string text = kArm;
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return load(text.replace(at, from.size(), to));
-}
-
 TEST(RobotConfig, MergesDefaultsUnderEveryAxis) {
-  const Loaded loaded = load(kArm);
+  const LoadedRobot loaded = loadText(kArm);
   EXPECT_EQ(loaded.problems, "");
   EXPECT_THAT(loaded.robot.warnings, IsEmpty());
   ASSERT_EQ(loaded.robot.axes.size(), 2u);
@@ -57,8 +28,8 @@ TEST(RobotConfig, MergesDefaultsUnderEveryAxis) {
 }
 
 TEST(RobotConfig, ChoosesWhatFollowsAQuickStop) {
-  EXPECT_FALSE(load(kArm).robot.axes[0].quick_stop_holds);
-  const Loaded holding = changed("gear_ratio: 50.0", "quick_stop: hold");
+  EXPECT_FALSE(loadText(kArm).robot.axes[0].quick_stop_holds);
+  const LoadedRobot holding = changed("gear_ratio: 50.0", "quick_stop: hold");
   EXPECT_EQ(holding.problems, "");
   EXPECT_TRUE(holding.robot.axes[0].quick_stop_holds);
   EXPECT_FALSE(holding.robot.axes[1].quick_stop_holds);
@@ -81,7 +52,7 @@ TEST(RobotConfig, RefusesToHoldWhereTheProfileDoesNotSayHow) {
 }
 
 TEST(RobotConfig, ChoosesWhatIsSavedAndRestored) {
-  const Loaded loaded = changed("gear_ratio: 50.0", "parameters: {save: [2, 3]}");
+  const LoadedRobot loaded = changed("gear_ratio: 50.0", "parameters: {save: [2, 3]}");
   EXPECT_EQ(loaded.problems, "");
   EXPECT_THAT(loaded.robot.axes[0].saved(), ElementsAre(2, 3));
   EXPECT_THAT(loaded.robot.axes[0].restored(), ElementsAre(1)) << "the profile's";
@@ -93,7 +64,7 @@ TEST(RobotConfig, ChoosesWhatIsSavedAndRestored) {
 }
 
 TEST(RobotConfig, TakesTheIdentityForLss) {
-  const Loaded by_identity = changed(
+  const LoadedRobot by_identity = changed(
       "gear_ratio: 50.0",
       "lss: true, identity: {vendor_id: 1, product_code: 2, revision: 3, serial: \"0x80000004\"}");
   EXPECT_EQ(by_identity.problems, "");
@@ -101,7 +72,7 @@ TEST(RobotConfig, TakesTheIdentityForLss) {
   EXPECT_EQ(by_identity.robot.axes[0].lss->identity, (canopen::lss::Identity{1, 2, 3, 0x80000004}));
   EXPECT_FALSE(by_identity.robot.axes[0].lss->store);
   EXPECT_FALSE(by_identity.robot.axes[1].lss);
-  const Loaded own =
+  const LoadedRobot own =
       changed("gear_ratio: 50.0",
               "lss: {vendor_id: 1, product_code: 2, revision: 3, serial: 4, store: true}");
   EXPECT_EQ(own.problems, "");
@@ -121,15 +92,16 @@ TEST(RobotConfig, RefusesAnLssThatCannotTellDrivesApart) {
                       "serial: 4}")
                   .problems,
               HasSubstr("axes/shoulder/lss/serial: is another number than that under `identity`"));
-  EXPECT_THAT(load(std::string(kArm).replace(
-                       std::string(kArm).find("defaults: {"), 11,
-                       "defaults: {lss: {vendor_id: 1, product_code: 2, revision: 3, serial: 4}, "))
-                  .problems,
-              HasSubstr("`shoulder` has the same identity: LSS cannot tell the drives apart"));
+  EXPECT_THAT(
+      loadText(std::string(kArm).replace(
+                   std::string(kArm).find("defaults: {"), 11,
+                   "defaults: {lss: {vendor_id: 1, product_code: 2, revision: 3, serial: 4}, "))
+          .problems,
+      HasSubstr("`shoulder` has the same identity: LSS cannot tell the drives apart"));
 }
 
 TEST(RobotConfig, WithoutGroupsAllPositionJointsFormOne) {
-  const Loaded loaded = load(kArm);
+  const LoadedRobot loaded = loadText(kArm);
   ASSERT_EQ(loaded.robot.groups.size(), 1u);
   EXPECT_EQ(loaded.robot.groups[0].name, "joints");
   EXPECT_THAT(loaded.robot.groups[0].joints, ElementsAre("shoulder", "elbow"));
@@ -256,7 +228,7 @@ TEST(RobotConfig, TellsEveryMistakeWithItsPath) {
 // rosparam makes 24677 of an unquoted 0x6065, and 363900 of 6065:00.
 TEST(RobotConfig, TakesAnObjectsIndexForWhatYamlMadeOfIt) {
   for (const char* index : {"24677", "363900", "6065h:0", "\"0x6065\""}) {
-    const Loaded loaded = changed(
+    const LoadedRobot loaded = changed(
         "node_id: 1,", std::string("node_id: 1, write: [{object: ") + index + ", value: 5000}],");
     EXPECT_EQ(loaded.problems, "") << index;
     ASSERT_EQ(loaded.robot.axes[0].writes.size(), 1u) << index;
@@ -275,18 +247,18 @@ TEST(RobotConfig, WarnsOfALoadOverEightyPercentAndRefusesOneOverAHundred) {
   // Two axes of 115 + 95 + 125 bits, and at 0.9 ms 115 / 11 + 115 / 44, each, 55 for SYNC: 751 bits
   // a cycle; at 0.7 ms 115 / 14 + 115 / 57: 745 bits; at 0.95 ms, the next period of 60C2h at
   // which all fits, 115 / 10 + 115 / 42: 753 bits. And 3 * 650 bits/s of heartbeats.
-  EXPECT_THAT(load(kArm).robot.warnings, IsEmpty());
-  const Loaded busy = changed("sync_period: 0.004", "sync_period: 0.0009");
+  EXPECT_THAT(loadText(kArm).robot.warnings, IsEmpty());
+  const LoadedRobot busy = changed("sync_period: 0.004", "sync_period: 0.0009");
   EXPECT_EQ(busy.problems, "");
   ASSERT_EQ(busy.robot.warnings.size(), 1u);
   EXPECT_THAT(busy.robot.warnings[0], HasSubstr("need 84 % of the bus at 1111 Hz"));
-  const Loaded full = changed("sync_period: 0.004", "sync_period: 0.0007");
+  const LoadedRobot full = changed("sync_period: 0.004", "sync_period: 0.0007");
   EXPECT_THAT(full.problems, HasSubstr("need 107 % of the bus at 1429 Hz"));
   EXPECT_THAT(full.problems, HasSubstr("at most 1059 Hz keep it below 80 %"));
 }
 
 TEST(RobotConfig, WarnsOfAnEffortLimitThatCannotBeSent) {
-  const Loaded loaded = changed("upper: 3.0", "upper: 3.0, effort: 10");
+  const LoadedRobot loaded = changed("upper: 3.0", "upper: 3.0, effort: 10");
   EXPECT_EQ(loaded.problems, "");
   ASSERT_EQ(loaded.robot.warnings.size(), 1u);
   EXPECT_THAT(loaded.robot.warnings[0], HasSubstr("give `rated_torque`"));
@@ -295,15 +267,15 @@ TEST(RobotConfig, WarnsOfAnEffortLimitThatCannotBeSent) {
 TEST(RobotConfig, DamiaoTakesOnlyItsOwnStepsOfThePeriod) {
   const std::string text =
       "bus: {interface: can0, sync_period: 0.0012}\naxes: {a: {node_id: 1, drive: damiao_dm}}\n";
-  EXPECT_THAT(load(text).problems,
+  EXPECT_THAT(loadText(text).problems,
               HasSubstr("`a` (profile damiao_dm) takes multiples of 0.0005 s"));
 }
 
 TEST(RobotConfig, CoupledAxesAreRefusedAsNothingWouldCoupleThem) {
-  const Loaded loaded = changed("axes:",
-                                "couplings: [{joints: [pitch, roll], axes: [shoulder, elbow], "
-                                "matrix: [[0.5, 0.5], [1, -1]]}]\n"
-                                "axes:");
+  const LoadedRobot loaded = changed("axes:",
+                                     "couplings: [{joints: [pitch, roll], axes: [shoulder, elbow], "
+                                     "matrix: [[0.5, 0.5], [1, -1]]}]\n"
+                                     "axes:");
   EXPECT_THAT(loaded.problems, HasSubstr("couplings: joints that several axes move together"));
   EXPECT_THAT(loaded.robot.groups.at(0).joints, ElementsAre("pitch", "roll"));
 }
@@ -313,15 +285,15 @@ TEST(RobotConfig, AnObjectThatNothingSetsIsNoObjectForAnRpdo) {
       "bus: {interface: can0}\naxes: {a: {node_id: 1, drive: generic_cia402, counts_per_turn: "
       "1000, rated_torque: 1.0, limits: {velocity: 1, acceleration: 1}, pdos: {rpdo1: "
       "[controlword, mode_of_operation, target_position], tpdo1: [statusword, position_actual]";
-  EXPECT_EQ(load(axis + "}}}").problems, "");
-  EXPECT_THAT(load(axis + ", rpdo2: [target_torque, max_torque]}}}").problems,
+  EXPECT_EQ(loadText(axis + "}}}").problems, "");
+  EXPECT_THAT(loadText(axis + ", rpdo2: [target_torque, max_torque]}}}").problems,
               HasSubstr("`max_torque` would be sent as 0 in every cycle"));
 }
 
 TEST(RobotConfig, WarnsOfWhatCannotBeNoticedOrLimited) {
   const std::string text =
       "bus: {interface: can0, heartbeat: 0}\naxes: {a: {node_id: 1, drive: damiao_dm}}\n";
-  const Loaded loaded = load(text);
+  const LoadedRobot loaded = loadText(text);
   EXPECT_EQ(loaded.problems, "");
   ASSERT_EQ(loaded.robot.warnings.size(), 2u);
   EXPECT_THAT(loaded.robot.warnings[0], HasSubstr("axes/a/limits: no velocity limit"));
@@ -329,8 +301,8 @@ TEST(RobotConfig, WarnsOfWhatCannotBeNoticedOrLimited) {
 }
 
 TEST(RobotConfig, NothingAtAllIsAProblemToo) {
-  EXPECT_THAT(load("").problems, HasSubstr("it needs `bus` and `axes`"));
-  const std::string empty = load("{}").problems;
+  EXPECT_THAT(loadText("").problems, HasSubstr("it needs `bus` and `axes`"));
+  const std::string empty = loadText("{}").problems;
   EXPECT_THAT(empty, HasSubstr("bus: `interface` is missing"));
   EXPECT_THAT(empty, HasSubstr("axes: is missing"));
 }

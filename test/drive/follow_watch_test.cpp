@@ -17,7 +17,7 @@ constexpr double kStandstill = 0.01;  // rad/s
 constexpr Duration kSeen = 2 * kCycle + 2 * Standstill::kWindow + 2 * kCycle;
 
 /// An axis of which the motor does what `motor` says, cycle by cycle.
-struct Bench {
+struct WatchBench {
   SetPoint sent{SetPointLimits{}, kCycle};
   Standstill standstill{kStandstill, 1e-6};
   AxisState state;
@@ -27,7 +27,7 @@ struct Bench {
   bool heard = true;  ///< its feedback arrives
   bool held = false;
 
-  explicit Bench(SetPointKind kind = SetPointKind::stream) {
+  explicit WatchBench(SetPointKind kind = SetPointKind::stream) {
     sent.rest(kind, 0.0);
     state.position = 0.0;
     state.ready_for_motion = true;
@@ -60,7 +60,7 @@ struct Bench {
 };
 
 TEST(FollowWatch, CallsBackWhatRunsAwayFromAStandingMotor) {
-  Bench bench;
+  WatchBench bench;
   const auto after = bench.runAhead();
   ASSERT_TRUE(after);
   EXPECT_GT(*after, kSeen);
@@ -69,7 +69,7 @@ TEST(FollowWatch, CallsBackWhatRunsAwayFromAStandingMotor) {
 }
 
 TEST(FollowWatch, IsQuickerWhereTheDriveSaysThatALimitHoldsIt) {
-  Bench bench;
+  WatchBench bench;
   bench.state.internal_limit = true;
   const auto after = bench.runAhead();
   ASSERT_TRUE(after);
@@ -78,7 +78,7 @@ TEST(FollowWatch, IsQuickerWhereTheDriveSaysThatALimitHoldsIt) {
 }
 
 TEST(FollowWatch, CallsBackAStreamThatPausesAheadOfAMotorThatALimitHolds) {
-  Bench bench;
+  WatchBench bench;
   bench.state.internal_limit = true;
   for (int i = 0; i < 12; ++i) ASSERT_FALSE(bench.cycle(0.0, bench.sent.value() + 0.0004));
   const Time begun = bench.now;
@@ -88,7 +88,7 @@ TEST(FollowWatch, CallsBackAStreamThatPausesAheadOfAMotorThatALimitHolds) {
 }
 
 TEST(FollowWatch, CallsBackAStreamThatCreepsAwayFromAMotorThatALimitHolds) {
-  Bench bench;
+  WatchBench bench;
   bench.state.internal_limit = true;
   bool called_back = false;
   while (bench.sent.value() < 0.01 && !called_back) {
@@ -98,7 +98,7 @@ TEST(FollowWatch, CallsBackAStreamThatCreepsAwayFromAMotorThatALimitHolds) {
 }
 
 TEST(FollowWatch, IsQuickerWhereTheDriveTakesItsBitAway) {
-  Bench bench;
+  WatchBench bench;
   bench.has_bit = bench.bit = true;  // in another mode now: this one has the bit
   bench.stand(20ms);
   bench.bit = false;
@@ -109,11 +109,11 @@ TEST(FollowWatch, IsQuickerWhereTheDriveTakesItsBitAway) {
 }
 
 TEST(FollowWatch, CallsAVelocityBackFromAMotorThatALimitHolds) {
-  Bench bench(SetPointKind::velocity);
+  WatchBench bench(SetPointKind::velocity);
   for (int i = 0; i < 500; ++i) ASSERT_FALSE(bench.cycle(0.0, 0.5)) << "a load, says nothing";
   bench.state.internal_limit = true;
   ASSERT_TRUE(bench.cycle(0.0, 0.5));
-  Bench again(SetPointKind::velocity);
+  WatchBench again(SetPointKind::velocity);
   again.state.internal_limit = true;
   const Time begun = again.now;
   while (again.now - begun < 1s && !again.cycle(0.0, 0.5)) {
@@ -123,7 +123,7 @@ TEST(FollowWatch, CallsAVelocityBackFromAMotorThatALimitHolds) {
 }
 
 TEST(FollowWatch, IsNotQuickerWhereTheDriveNeverSetsItsBit) {
-  Bench bench;
+  WatchBench bench;
   bench.has_bit = true;
   bench.watch.begin(bench.now);
   bench.stand(2s);
@@ -133,7 +133,7 @@ TEST(FollowWatch, IsNotQuickerWhereTheDriveNeverSetsItsBit) {
 }
 
 TEST(FollowWatch, HoldsNothingAgainstAMotorThatWasSeenLastBeforeItsSetPointsRan) {
-  Bench bench;
+  WatchBench bench;
   bench.state.internal_limit = true;  // from which it is led away
   bench.heard = false;                // its positions come every 100 ms
   for (int i = 0; i < 25; ++i) {
@@ -146,7 +146,7 @@ TEST(FollowWatch, HoldsNothingAgainstAMotorThatWasSeenLastBeforeItsSetPointsRan)
 }
 
 TEST(FollowWatch, LeavesAMotorAloneThatMovesHoweverFarBehind) {
-  Bench bench;
+  WatchBench bench;
   double motor = 0.0;
   for (int i = 0; i < 500; ++i) {
     ASSERT_FALSE(bench.cycle(motor, bench.sent.value() + 0.004)) << "cycle " << i;
@@ -155,14 +155,14 @@ TEST(FollowWatch, LeavesAMotorAloneThatMovesHoweverFarBehind) {
 }
 
 TEST(FollowWatch, LeavesSetPointsAloneThatMoveNoFasterThanStandstill) {
-  Bench bench;
+  WatchBench bench;
   for (int i = 0; i < 500; ++i) {
     ASSERT_FALSE(bench.cycle(0.0, bench.sent.value() + kStandstill * 0.004));
   }
 }
 
 TEST(FollowWatch, CallsBackWhatRestsAheadOfAMotorAtALimit) {
-  Bench bench;
+  WatchBench bench;
   bench.state.internal_limit = true;
   for (int i = 0; i < 5; ++i) {  // too short to be called back on the way
     ASSERT_FALSE(bench.cycle(0.0, bench.sent.value() + 0.004));
@@ -175,20 +175,20 @@ TEST(FollowWatch, CallsBackWhatRestsAheadOfAMotorAtALimit) {
 }
 
 TEST(FollowWatch, LeavesWhatRestsAheadAloneWhereNothingSaysThatALimitHoldsTheMotor) {
-  Bench bench;
+  WatchBench bench;
   for (int i = 0; i < 5; ++i) ASSERT_FALSE(bench.cycle(0.0, bench.sent.value() + 0.004));
   bench.stand(1s);  // friction, a soft loop
 }
 
 TEST(FollowWatch, CallsBackAtOnceWhatTurnsBackTowardsAMotorAtALimit) {
-  Bench bench;
+  WatchBench bench;
   bench.state.internal_limit = true;
   for (int i = 0; i < 10; ++i) ASSERT_FALSE(bench.cycle(0.0, bench.sent.value() + 0.004));
   EXPECT_TRUE(bench.cycle(0.0, bench.sent.value() - 0.004));
 }
 
 TEST(FollowWatch, LetsSetPointsTurnBackWhereNothingSaysThatTheMotorIsHeld) {
-  Bench bench;
+  WatchBench bench;
   for (int i = 0; i < 15; ++i) ASSERT_FALSE(bench.cycle(0.0, bench.sent.value() + 0.004));
   for (int i = 0; i < 10; ++i) {
     ASSERT_FALSE(bench.cycle(0.0, bench.sent.value() - 0.004)) << "cycle " << i;
@@ -196,7 +196,7 @@ TEST(FollowWatch, LetsSetPointsTurnBackWhereNothingSaysThatTheMotorIsHeld) {
 }
 
 TEST(FollowWatch, CallsBackAtOnceWhatTurnsBackTowardsAMotorThatHadItCalledBackBefore) {
-  Bench bench;
+  WatchBench bench;
   ASSERT_TRUE(bench.runAhead());
   ASSERT_TRUE(bench.watch.isNews());
   bench.sent.rest(SetPointKind::stream, 0.0);
@@ -206,7 +206,7 @@ TEST(FollowWatch, CallsBackAtOnceWhatTurnsBackTowardsAMotorThatHadItCalledBackBe
 }
 
 TEST(FollowWatch, TellsOnceUntilTheMotorMoves) {
-  Bench bench;
+  WatchBench bench;
   ASSERT_TRUE(bench.runAhead());
   EXPECT_TRUE(bench.watch.isNews());
   EXPECT_FALSE(bench.watch.isNews());
@@ -215,7 +215,7 @@ TEST(FollowWatch, TellsOnceUntilTheMotorMoves) {
 }
 
 TEST(FollowWatch, GivesADriveThatPlansUntilItHasStoodForAWhileAtALimit) {
-  Bench bench(SetPointKind::goal);
+  WatchBench bench(SetPointKind::goal);
   bench.state.internal_limit = true;
   ASSERT_FALSE(bench.cycle(0.0, 0.5));
   const Time begun = bench.now;
@@ -226,14 +226,14 @@ TEST(FollowWatch, GivesADriveThatPlansUntilItHasStoodForAWhileAtALimit) {
 }
 
 TEST(FollowWatch, AGoalThatIsReachedIsNotCalledBack) {
-  Bench bench(SetPointKind::goal);
+  WatchBench bench(SetPointKind::goal);
   bench.state.internal_limit = bench.state.target_reached = true;
   ASSERT_FALSE(bench.cycle(0.0, 0.5));
   for (int i = 0; i < 500; ++i) ASSERT_FALSE(bench.cycle(0.0));
 }
 
 TEST(FollowWatch, AGoalIsNotCalledBackBeforeTheAxisIsReadyForIt) {
-  Bench bench(SetPointKind::goal);
+  WatchBench bench(SetPointKind::goal);
   bench.state.internal_limit = true;
   bench.state.ready_for_motion = false;
   ASSERT_FALSE(bench.cycle(0.0, 0.5));
@@ -241,7 +241,7 @@ TEST(FollowWatch, AGoalIsNotCalledBackBeforeTheAxisIsReadyForIt) {
 }
 
 TEST(FollowWatch, WaitsOnceForADriveThatNeverShowsItsBit) {
-  Bench bench;
+  WatchBench bench;
   bench.has_bit = true;
   bench.watch.begin(bench.now);
   const Time begun = bench.now;
@@ -255,7 +255,7 @@ TEST(FollowWatch, WaitsOnceForADriveThatNeverShowsItsBit) {
 }
 
 TEST(FollowWatch, DoesNotTakeADriveThatIsHeldForOneThatNeverShowsItsBit) {
-  Bench bench;
+  WatchBench bench;
   bench.has_bit = bench.held = true;
   bench.watch.begin(bench.now);
   bench.stand(900ms);
@@ -270,7 +270,7 @@ TEST(FollowWatch, DoesNotTakeADriveThatIsHeldForOneThatNeverShowsItsBit) {
 }
 
 TEST(FollowWatch, WaitsAgainForADriveThatShowsItsBitAfterAll) {
-  Bench bench;
+  WatchBench bench;
   bench.has_bit = true;
   bench.watch.begin(bench.now);
   bench.stand(2s);
@@ -284,7 +284,7 @@ TEST(FollowWatch, WaitsAgainForADriveThatShowsItsBitAfterAll) {
 }
 
 TEST(FollowWatch, AMotorThatMovesIsStillWaitedForUntilItsBitIsSeen) {
-  Bench bench;
+  WatchBench bench;
   bench.has_bit = true;
   bench.watch.begin(bench.now);
   EXPECT_FALSE(bench.watch.leaves(true, true, bench.now)) << "the bit is to be looked for";
@@ -296,7 +296,7 @@ TEST(FollowWatch, AMotorThatMovesIsStillWaitedForUntilItsBitIsSeen) {
 }
 
 TEST(FollowWatch, AModeWithoutTheBitSaysNothingOfOneThatHasIt) {
-  Bench bench;
+  WatchBench bench;
   bench.stand(2s);  // homing, say: the brake still holds
   bench.has_bit = true;
   bench.cycle(0.0, 0.0);
@@ -307,7 +307,7 @@ TEST(FollowWatch, AModeWithoutTheBitSaysNothingOfOneThatHasIt) {
 }
 
 TEST(FollowWatch, FollowsAtOnceWhereTheBitIsSetOrTheModeHasNone) {
-  Bench bench;
+  WatchBench bench;
   EXPECT_TRUE(bench.watch.follows());
   bench.has_bit = true;
   bench.watch.begin(bench.now);

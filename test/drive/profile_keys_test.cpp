@@ -77,7 +77,7 @@ errors:
   0x8250: {text: late, cause: nobody sent, remedy: send, missing: rpdo}
 )";
 
-std::string problemsOf(const std::string& text) {
+std::string problemsOfFull(const std::string& text) {
   Problems problems;
   parseDriveProfile(text, "full.yaml", problems);
   return problems.text();
@@ -300,13 +300,13 @@ TEST(ProfileDefaults, AreThoseOfTheStandards) {
   EXPECT_EQ(profile.mode("csp")->handshake, Handshake::none);
 }
 
-struct Mistake {
+struct WrongKey {
   const char* text;  ///< after modes
   const char* problem;
 };
 
 TEST(ProfileMistakes, AreToldWithWhatToDo) {
-  const Mistake mistakes[] = {
+  const WrongKey mistakes[] = {
       {"  pt: {value: 4, control: torque, target: target_torque, stop: set_points}\n",
        "modes/pt/stop: a torque of 0 lets the axis coast; write halt or quick_stop"},
       {"  a: {value: 4, control: position}\n",
@@ -378,14 +378,14 @@ TEST(ProfileMistakes, AreToldWithWhatToDo) {
   const std::string head = std::string(kHead) +
                            "  csp: {value: 8, control: position, cyclic: true, target: "
                            "target_position}\n";
-  ASSERT_EQ(problemsOf(head), "");
-  for (const Mistake& mistake : mistakes) {
-    EXPECT_THAT(problemsOf(head + mistake.text), HasSubstr(mistake.problem)) << mistake.text;
+  ASSERT_EQ(problemsOfFull(head), "");
+  for (const WrongKey& mistake : mistakes) {
+    EXPECT_THAT(problemsOfFull(head + mistake.text), HasSubstr(mistake.problem)) << mistake.text;
   }
 }
 
 TEST(ProfileMistakes, OfObjectsAreToldWithWhatToDo) {
-  const Mistake mistakes[] = {
+  const WrongKey mistakes[] = {
       {"{object: \"2100:00\", type: real32, encoding: integer}",
        "real32 is a float, not an integer; leave `encoding` out"},
       {"{object: \"2100:00\", type: uint8, unit: count}", "a unit needs a `quantity`"},
@@ -403,11 +403,12 @@ TEST(ProfileMistakes, OfObjectsAreToldWithWhatToDo) {
   const std::string before = head.substr(0, head.find("modes:"));
   const std::string after =
       "\nmodes:\n  csp: {value: 8, control: position, target: target_position}\n";
-  for (const Mistake& mistake : mistakes) {
-    EXPECT_THAT(problemsOf(before + "  more: " + mistake.text + after), HasSubstr(mistake.problem))
+  for (const WrongKey& mistake : mistakes) {
+    EXPECT_THAT(problemsOfFull(before + "  more: " + mistake.text + after),
+                HasSubstr(mistake.problem))
         << mistake.text;
   }
-  EXPECT_THAT(problemsOf(before + "  \"2100\": {object: \"2100:00\", type: uint8}" + after),
+  EXPECT_THAT(problemsOfFull(before + "  \"2100\": {object: \"2100:00\", type: uint8}" + after),
               HasSubstr("the name reads like an index; choose another one"));
 }
 
@@ -439,7 +440,7 @@ TEST(ProfileMistakes, OfTheObjectsThatEveryAxisNeedsAreTold) {
                        "  csp: {value: 8, control: position, target: "
                        "target_position}\n";
     text.replace(text.find(change.from), std::string(change.from).size(), change.to);
-    EXPECT_THAT(problemsOf(text), HasSubstr(change.problem)) << change.to;
+    EXPECT_THAT(problemsOfFull(text), HasSubstr(change.problem)) << change.to;
   }
 }
 

@@ -5,31 +5,19 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <functional>
 #include <memory>
 #include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
+#include "ros/callback.h"
+
 namespace cia402::ros_node {
 namespace {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
-
-/// What roscpp gives to a callback queue for each call of a service.
-class Callback : public ros::CallbackInterface {
- public:
-  explicit Callback(std::function<void()> work) : work_(std::move(work)) {}
-  CallResult call() override {
-    work_();
-    return Success;
-  }
-
- private:
-  std::function<void()> work_;
-};
 
 struct CallDeskTest : testing::Test {
   /// A service whose calls begin something that ends when its reply is given.

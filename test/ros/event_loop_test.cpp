@@ -6,23 +6,12 @@
 #include <thread>
 
 #include "cia402_driver/bus/real_clock.h"
+#include "ros/callback.h"
 
 namespace cia402::ros_node {
 namespace {
 
 using namespace std::chrono_literals;
-
-class Callback : public ros::CallbackInterface {
- public:
-  explicit Callback(std::function<void()> work) : work_(std::move(work)) {}
-  CallResult call() override {
-    work_();
-    return Success;
-  }
-
- private:
-  std::function<void()> work_;
-};
 
 TEST(EventLoop, OneWakingServesTasksOfSeveralPeriods) {
   EventLoop loop;

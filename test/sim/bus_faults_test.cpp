@@ -14,9 +14,6 @@ using can::Frame;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-const Frame kSync(0x080, {});           // 51 bits with the intermission, see bit_timing_test.cpp
-const Frame kHeartbeat(0x701, {0x05});  // 58 bits
-
 FaultRule rule(FaultKind kind, std::uint32_t id, unsigned count) {
   FaultRule rule;
   rule.kind = kind;

@@ -13,8 +13,6 @@ using can::BusState;
 using can::Frame;
 using ::testing::HasSubstr;
 
-const Frame kSync(0x080, {});  // 51 bits with the intermission, see bit_timing_test.cpp
-
 class BusInterfaceTest : public ::testing::Test {
  protected:
   BusInterface::Options options() {

@@ -8,6 +8,10 @@
 
 namespace cia402::sim {
 
+// Lengths counted by hand in bit_timing_test.cpp, the intermission of 3 bits included.
+inline const can::Frame kSync(0x080, {});           ///< 51 bits
+inline const can::Frame kHeartbeat(0x701, {0x05});  ///< 58 bits
+
 /// A listener that keeps what it is told.
 struct BusRecorder : Listener {
   struct Event {

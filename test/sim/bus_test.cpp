@@ -16,10 +16,7 @@ using can::Frame;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-// Lengths counted by hand in bit_timing_test.cpp, the intermission of 3 bits included.
-const Frame kSync(0x080, {});           // 51 bits
-const Frame kHeartbeat(0x701, {0x05});  // 58 bits
-const Frame kNmtStart(0x000, {1, 0});   // 68 bits
+const Frame kNmtStart(0x000, {1, 0});  // 68 bits, see bit_timing_test.cpp
 
 class BusTest : public ::testing::Test {
  protected:

@@ -7,8 +7,9 @@ namespace {
 
 constexpr std::uint16_t kMask = 0x03FF;  // bits 0-9, as the tables print them
 
-struct Bench : DriveBench {
-  explicit Bench(const AxisMechanics& mechanics = {}) : DriveBench("generic_cia402", mechanics) {}
+struct MachineBench : DriveBench {
+  explicit MachineBench(const AxisMechanics& mechanics = {})
+      : DriveBench("generic_cia402", mechanics) {}
   int word() { return static_cast<int>(read(0x6041)) & kMask; }
   // Runs at 1 turn/s in profile velocity mode.
   void spin() {
@@ -21,7 +22,7 @@ struct Bench : DriveBench {
 };
 
 TEST(DriveStateMachine, GoesThroughAllCommandedTransitionsAndBack) {
-  Bench b;
+  MachineBench b;
   EXPECT_EQ(b.word(), 0x0250);  // 1
   b.control(0x0006);
   EXPECT_EQ(b.word(), 0x0231);  // 2
@@ -55,20 +56,20 @@ TEST(DriveStateMachine, GoesThroughAllCommandedTransitionsAndBack) {
 }
 
 TEST(DriveStateMachine, EnablesInOneStepFromReadyToSwitchOn) {
-  Bench b;
+  MachineBench b;
   b.control(0x0006);
   b.control(0x000F);
   EXPECT_EQ(b.word(), 0x0237);  // 3 and 4
 }
 
 TEST(DriveStateMachine, ShutdownDoesNotCareAboutBitThree) {
-  Bench b;
+  MachineBench b;
   b.control(0x000E);
   EXPECT_EQ(b.word(), 0x0231);
 }
 
 TEST(DriveStateMachine, IgnoresCommandsThatMeanNothingInAState) {
-  Bench b;
+  MachineBench b;
   for (const int word : {0x0007, 0x000F, 0x0002, 0x0000, 0x0080}) {
     b.control(static_cast<std::uint16_t>(word));
     EXPECT_EQ(b.word(), 0x0250) << std::hex << word;
@@ -83,7 +84,7 @@ TEST(DriveStateMachine, IgnoresCommandsThatMeanNothingInAState) {
 }
 
 TEST(DriveStateMachine, QuickStopSlowsDownBy6085AndDisables) {
-  Bench b;
+  MachineBench b;
   b.write(0x6085, 0, 262144, 4);  // 2 turns/s^2: half a second from 1 turn/s
   b.spin();
   b.control(0x0002);
@@ -97,7 +98,7 @@ TEST(DriveStateMachine, QuickStopSlowsDownBy6085AndDisables) {
 }
 
 TEST(DriveStateMachine, QuickStopOptionSixStaysAndResumes) {
-  Bench b;
+  MachineBench b;
   b.write(0x605A, 0, 6, 2);
   b.spin();
   b.control(0x0002);
@@ -114,7 +115,7 @@ TEST(DriveStateMachine, QuickStopOptionSixStaysAndResumes) {
 }
 
 TEST(DriveStateMachine, QuickStopOptionTwoCannotBeResumed) {
-  Bench b;
+  MachineBench b;
   b.write(0x6085, 0, 262144, 4);
   b.spin();
   b.control(0x0002);
@@ -125,7 +126,7 @@ TEST(DriveStateMachine, QuickStopOptionTwoCannotBeResumed) {
 }
 
 TEST(DriveStateMachine, QuickStopOptionZeroCoasts) {
-  Bench b;
+  MachineBench b;
   b.write(0x605A, 0, 0, 2);
   b.spin();
   b.control(0x0002);
@@ -135,7 +136,7 @@ TEST(DriveStateMachine, QuickStopOptionZeroCoasts) {
 }
 
 TEST(DriveStateMachine, DisableOperationRampsDownByDefaultAndShutdownCoasts) {
-  Bench b;
+  MachineBench b;
   b.write(0x6084, 0, 262144, 4);
   b.spin();
   b.control(0x0007);
@@ -153,7 +154,7 @@ TEST(DriveStateMachine, DisableOperationRampsDownByDefaultAndShutdownCoasts) {
 }
 
 TEST(DriveStateMachine, ShutdownOptionOneRampsAndEnableOperationCancelsIt) {
-  Bench b;
+  MachineBench b;
   b.write(0x605B, 0, 1, 2);
   b.write(0x6084, 0, 262144, 4);
   b.spin();
@@ -170,7 +171,7 @@ TEST(DriveStateMachine, ShutdownOptionOneRampsAndEnableOperationCancelsIt) {
 }
 
 TEST(DriveStateMachine, HaltStopsInOperationEnabledAndReleases) {
-  Bench b;
+  MachineBench b;
   b.spin();
   b.control(0x010F);
   b.run(ms(300));
@@ -183,7 +184,7 @@ TEST(DriveStateMachine, HaltStopsInOperationEnabledAndReleases) {
 }
 
 TEST(DriveStateMachine, FaultReactionDeceleratesThenFault) {
-  Bench b;
+  MachineBench b;
   b.write(0x6085, 0, 262144, 4);
   b.spin();
   ASSERT_TRUE(b.drive->inject("overtemperature", b.now).ok());
@@ -196,7 +197,7 @@ TEST(DriveStateMachine, FaultReactionDeceleratesThenFault) {
 }
 
 TEST(DriveStateMachine, FaultThatBreaksTheStageCoastsAtOnce) {
-  Bench b;
+  MachineBench b;
   b.spin();
   ASSERT_TRUE(b.drive->inject("overcurrent", b.now).ok());
   EXPECT_EQ(b.word(), 0x0218);
@@ -206,7 +207,7 @@ TEST(DriveStateMachine, FaultThatBreaksTheStageCoastsAtOnce) {
 }
 
 TEST(DriveStateMachine, ResetsAFaultOnlyOnARisingEdgeOfBitSeven) {
-  Bench b;
+  MachineBench b;
   b.control(0x0080);  // bit 7 is set already when the fault comes
   ASSERT_TRUE(b.drive->inject("encoder", b.now).ok());
   EXPECT_EQ(b.word(), 0x0218);
@@ -224,7 +225,7 @@ TEST(DriveStateMachine, ResetsAFaultOnlyOnARisingEdgeOfBitSeven) {
 }
 
 TEST(DriveStateMachine, RefusesTheResetWhileTheCauseLasts) {
-  Bench b;
+  MachineBench b;
   ASSERT_TRUE(b.drive->inject("overtemperature", b.now).ok());  // lasts 1 s
   const auto before = b.emergencies().size();
   b.control(0x0080);
@@ -238,7 +239,7 @@ TEST(DriveStateMachine, RefusesTheResetWhileTheCauseLasts) {
 }
 
 TEST(DriveStateMachine, FaultThatNeedsAPowerCycleStaysUntilThen) {
-  Bench b;
+  MachineBench b;
   ASSERT_TRUE(b.drive->inject("hardware", b.now).ok());
   b.run(ms(5000));
   b.control(0x0080);
@@ -250,7 +251,7 @@ TEST(DriveStateMachine, FaultThatNeedsAPowerCycleStaysUntilThen) {
 }
 
 TEST(DriveStateMachine, UndervoltageTakesTheVoltageBitAway) {
-  Bench b;
+  MachineBench b;
   ASSERT_TRUE(b.drive->inject("undervoltage", b.now).ok());
   EXPECT_EQ(b.word(), 0x0208);
   b.run(ms(200));
@@ -258,7 +259,7 @@ TEST(DriveStateMachine, UndervoltageTakesTheVoltageBitAway) {
 }
 
 TEST(DriveStateMachine, WarningSetsBitSevenAndBitSevenClearsIt) {
-  Bench b;
+  MachineBench b;
   b.enable();
   ASSERT_TRUE(b.drive->inject("overtemperature_warning", b.now).ok());
   EXPECT_EQ(b.word(), 0x02B7);
@@ -267,7 +268,7 @@ TEST(DriveStateMachine, WarningSetsBitSevenAndBitSevenClearsIt) {
 }
 
 TEST(DriveStateMachine, UnknownFaultNamesTheKnownOnes) {
-  Bench b;
+  MachineBench b;
   const auto refused = b.drive->inject("gremlin", b.now);
   ASSERT_FALSE(refused.ok());
   EXPECT_NE(refused.error().message.find("overcurrent"), std::string::npos);
@@ -277,7 +278,7 @@ TEST(DriveStateMachine, UnknownFaultNamesTheKnownOnes) {
 }
 
 TEST(DriveStateMachine, LostHeartbeatOfTheMasterStopsByTheQuickStopRampThenFault) {
-  Bench b;
+  MachineBench b;
   b.write(0x6085, 0, 262144, 4);
   b.nmt(0x01);
   b.spin();
@@ -296,7 +297,7 @@ TEST(DriveStateMachine, LostHeartbeatOfTheMasterStopsByTheQuickStopRampThenFault
 }
 
 TEST(DriveStateMachine, AbortConnectionOptionZeroGoesOnWhateverHappensToTheMaster) {
-  Bench b;
+  MachineBench b;
   b.write(0x6007, 0, 0, 2);
   b.write(0x1029, 1, 1, 1);  // no change of NMT state
   b.write(0x1016, 1, 0x007F0064, 4);
@@ -308,7 +309,7 @@ TEST(DriveStateMachine, AbortConnectionOptionZeroGoesOnWhateverHappensToTheMaste
 }
 
 TEST(DriveStateMachine, LeavingOperationalStopsAndDisables) {
-  Bench b;
+  MachineBench b;
   b.write(0x6085, 0, 262144, 4);
   b.nmt(0x01);
   b.spin();
@@ -320,9 +321,9 @@ TEST(DriveStateMachine, LeavingOperationalStopsAndDisables) {
 }
 
 TEST(DriveStateMachine, ResultDoesNotDependOnHowOftenItIsTicked) {
-  Bench often;
-  Bench seldom;
-  for (Bench* b : {&often, &seldom}) {
+  MachineBench often;
+  MachineBench seldom;
+  for (MachineBench* b : {&often, &seldom}) {
     b->write(0x6060, 0, 3, 1);
     b->write(0x60FF, 0, 131072, 4);
     b->enable();
@@ -338,7 +339,7 @@ TEST(DriveStateMachine, ResultDoesNotDependOnHowOftenItIsTicked) {
 }
 
 TEST(DriveStateMachine, RefusesUnsupportedModesBySdoAndIgnoresThemByPdo) {
-  Bench b;
+  MachineBench b;
   b.write(0x6060, 0, 3, 1);
   EXPECT_EQ(b.abortOf({0x2F, 0x60, 0x60, 0x00, 0x02, 0, 0, 0}), 0x06090030U);
   EXPECT_EQ(b.read(0x6061) & 0xFFU, 3U);
@@ -352,7 +353,7 @@ TEST(DriveStateMachine, RefusesUnsupportedModesBySdoAndIgnoresThemByPdo) {
 }
 
 TEST(DriveStateMachine, SendsItsStatusByTpdoWhenItChanges) {
-  Bench b;
+  MachineBench b;
   b.nmt(0x01);
   b.run(ms(2));
   b.sent.clear();

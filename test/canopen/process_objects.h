@@ -1,0 +1,10 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "cia402_driver/canopen/object.h"
+
+namespace cia402::canopen::test {
+
+constexpr ObjectId kStatusword{0x6041, 0}, kControlword{0x6040, 0}, kTarget{0x607A, 0};
+
+}  // namespace cia402::canopen::test
