@@ -22,10 +22,14 @@ build() {
 }
 
 # Builds a target, `all` or what running the driver takes (`cia402_run`); afterwards use_ros makes
-# the nodes known to roslaunch and its like.
+# the nodes known to roslaunch and its like. Further arguments go to cmake. Debug information tells
+# lines only, and sources are compiled several in one go: most builds of these scripts are made once.
 build_ros() {
-  build "$build_root/ros" "$1" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCIA402_WITH_ROS=ON \
-    -DCIA402_BUILD_BENCHMARKS=ON
+  local targets=$1
+  shift
+  build "$build_root/ros" "$targets" -DCMAKE_BUILD_TYPE=RelWithDebInfo \
+    '-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O2 -g1 -DNDEBUG' -DCIA402_UNITY_BUILD=ON \
+    -DCIA402_WITH_ROS=ON -DCIA402_BUILD_BENCHMARKS=ON "$@"
   # rosrun passes over a folder `build` within a package, but looks here.
   ln -sfn build/ros/devel "$repository/devel"
 }

@@ -5,8 +5,8 @@
 Usage: run_clang_tidy.py REPOSITORY BUILD_DIRECTORY CACHE_DIRECTORY
 Files that passed are not checked again until they, a header of the repository they include, the
 compiler's arguments, .clang-tidy or clang-tidy change. Several files of a target are checked as one,
-for most of the time goes into the headers that they share; where that finds something, or they do not
-go together, each is checked by itself. Names that a source declares by `using` or `namespace x =` and
+for most of the time goes into the headers that they share, also where they were compiled as one;
+where that finds something, or they do not go together, each is checked by itself. Names that a source declares by `using` or `namespace x =` and
 does not use are found here: clang-tidy sees them in a file that is checked by itself only. Exit status
 1 if a file fails.
 """
@@ -42,7 +42,7 @@ def own_files(repository, source, known):
 def fingerprint(repository, source, command, version):
     files = set()
     own_files(repository, source, files)
-    digest = hashlib.sha256(version + command.encode())
+    digest = hashlib.sha256(version + " ".join(flags(command)).encode())
     for path in [repository / ".clang-tidy"] + sorted(files):
         digest.update(str(path.relative_to(repository)).encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()
@@ -81,22 +81,23 @@ def unused_names(source):
     return said
 
 
-def check(repository, build, cache, batch):
+def check(repository, cache, batch):
     """Returns [(source, passed, what clang-tidy says)] of a list of (source, command)."""
     unused = [(source, False, unused_names(source)) for source, _ in batch if unused_names(source)]
     if unused:
         return unused
+    configuration = f"--config-file={repository / '.clang-tidy'}"
     if len(batch) > 1:
         one = cache / f"batch_{os.getpid()}_{abs(hash(batch[0][0]))}.cpp"
         one.write_text("".join(f'#include "{source}"\n' for source, _ in batch))
         # A batch includes sources, which is what one of the checks is about.
-        passed, _ = tidy([f"--config-file={repository / '.clang-tidy'}",
-                          "--checks=-bugprone-suspicious-include", str(one), "--"] +
+        passed, _ = tidy([configuration, "--checks=-bugprone-suspicious-include", str(one), "--"] +
                          flags(batch[0][1]))
         one.unlink()
         if passed:
             return [(source, True, "") for source, _ in batch]
-    return [(source,) + tidy(["-p", str(build), str(source)]) for source, _ in batch]
+    return [(source,) + tidy([configuration, str(source), "--"] + flags(command))
+            for source, command in batch]
 
 
 def batches(todo):
@@ -110,14 +111,22 @@ def batches(todo):
             yield files[at:at + BATCH]
 
 
+def compiled_by(file):
+    """The sources behind a file of compile_commands.json: itself, or those that CMake joined in it."""
+    if file.parent.name != "Unity":
+        return [file.resolve()]
+    joined = re.findall(r'^#include "(.+)"', file.read_text(encoding="utf-8"), re.MULTILINE)
+    return [pathlib.Path(path).resolve() for path in joined]
+
+
 def sources_to_check(repository, build):
     """(source, command) of every compiled file in the checked folders."""
     with open(build / "compile_commands.json", encoding="utf-8") as file:
         for entry in json.load(file):
-            source = pathlib.Path(entry["file"]).resolve()
-            if (repository / "src") in source.parents or \
-                    (repository / "benchmark") in source.parents:
-                yield source, entry["command"]
+            for source in compiled_by(pathlib.Path(entry["file"])):
+                if (repository / "src") in source.parents or \
+                        (repository / "benchmark") in source.parents:
+                    yield source, entry["command"]
 
 
 def main():
@@ -137,7 +146,7 @@ def main():
         return 1
     failed = 0
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        running = [pool.submit(check, repository, build, cache, batch) for batch in batches(todo)]
+        running = [pool.submit(check, repository, cache, batch) for batch in batches(todo)]
         for ended in concurrent.futures.as_completed(running):
             for source, passed, said in ended.result():
                 if passed:
