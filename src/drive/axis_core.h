@@ -196,7 +196,7 @@ class AxisCore {
   void readError(Time now);
   void readDigitalInputs(Time now);
   void readMode(Time now);
-  double read(const InputObject& object, int polled, Time now) const;
+  double read(const InputObject& object, int polled, Time now, Time& stamp) const;
   void forgetFeedback();
   void forgetMotion();
   void leaveOperation();

@@ -49,6 +49,13 @@ std::string withUnit(double value, const char* unit) {
   return text;
 }
 
+/// A measured value and how old it is.
+void addValue(diagnostic_updater::DiagnosticStatusWrapper& status, const std::string& key,
+              double value, const char* unit, Duration age) {
+  status.add(key, withUnit(value, unit));
+  status.add(key + " age", withUnit(std::isnan(value) ? value : toSeconds(age), "s"));
+}
+
 /// "emergencies: 1234", then a line for each code.
 void addEmergencies(diagnostic_updater::DiagnosticStatusWrapper& status,
                     const bus::EmergencyCounts& counts) {
@@ -128,11 +135,11 @@ Diagnostics::Diagnostics(ros::NodeHandle& node, ros::NodeHandle& private_node,
 
 void Diagnostics::update() {
   snapshot_ = runner_.snapshot();
-  runner_.look();
   updater_.update();
 }
 
 void Diagnostics::reportBus(Status& status) {
+  runner_.look();  // what the next report will show
   const bus::CycleStatistics& cycle = snapshot_.statistics;
   if (snapshot_.bus_state == can::BusState::error_active) {
     status.summary(DiagnosticStatus::OK, snapshot_.bus_text.str());
@@ -259,10 +266,13 @@ void Diagnostics::reportAxis(std::size_t index, Status& status) {
   status.add("step", stepText(axis));
   if (!axis.words.history.empty())
     status.add("error history after the last fault", axis.words.history.str());
-  status.add("position", withUnit(state.position, linear ? "m" : "rad"));
-  status.add("velocity", withUnit(state.velocity, linear ? "m/s" : "rad/s"));
-  status.add("effort", withUnit(state.effort, linear ? "N" : "N m"));
-  status.add("following error", withUnit(state.following_error, linear ? "m" : "rad"));
+  const auto add = [&](const char* key, double value, const char* unit, Time stamp) {
+    addValue(status, key, value, unit, snapshot_.now - stamp);
+  };
+  add("position", state.position, linear ? "m" : "rad", state.stamp);
+  add("velocity", state.velocity, linear ? "m/s" : "rad/s", state.stamps.velocity);
+  add("effort", state.effort, linear ? "N" : "N m", state.stamps.effort);
+  add("following error", state.following_error, linear ? "m" : "rad", state.stamps.following_error);
 }
 
 }  // namespace cia402::ros_node

@@ -116,6 +116,9 @@ class MissingInterface(unittest.TestCase):
             self.assertEqual(axis.state, "unknown")
             self.assertFalse(axis.homed)
             self.assertTrue(math.isinf(axis.feedback_age))
+            for age in (axis.mode_age, axis.velocity_age, axis.effort_age,
+                        axis.following_error_age, axis.digital_inputs_age):
+                self.assertTrue(math.isnan(age), axis)
             self.assertTrue(axis.stamp.is_zero())
 
     def test_diagnostics_tell_what_is_missing(self):
