@@ -39,7 +39,8 @@ class AxisCore {
 
   // --- The cycle -------------------------------------------------------------------------------
   void readFeedback(Time now);
-  void look() { poller_.look(); }
+  /// See Axis::look().
+  void look();
   /// Reacts to what the feedback says.
   void supervise(Time now);
   /// A procedure that runs must fail.

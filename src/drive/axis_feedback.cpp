@@ -82,11 +82,12 @@ void AxisCore::readMotion(Time now) {
   state_.velocity = read(objects_.velocity, polled_velocity_, now, state_.stamps.velocity);
   state_.effort = read(objects_.effort, polled_effort_, now, state_.stamps.effort);
   const InputObject& following_error = objects_.following_error;
-  const bool told = following_error.mapped() ? image_.input(following_error.slot).valid
-                                             : poller_.value(polled_following_error_, now).valid;
   Time& stamp = state_.stamps.following_error;
-  if (told) {
-    state_.following_error = read(following_error, polled_following_error_, now, stamp);
+  if (following_error.mapped() && image_.input(following_error.slot).valid) {
+    state_.following_error = read(following_error, -1, now, stamp);
+  } else if (const auto polled = poller_.value(polled_following_error_, now); polled.valid) {
+    state_.following_error = following_error.conversion.toJoint(polled.raw);
+    stamp = polled.stamp;
   } else if (in_operation_ && mode_->spec->kind == ControlKind::position) {
     state_.following_error = target() - joint;
     stamp = position.stamp;
@@ -94,6 +95,13 @@ void AxisCore::readMotion(Time now) {
     state_.following_error = kUnknown;
   }
   readDigitalInputs(now);
+}
+
+void AxisCore::look() {
+  const InputObject& object = objects_.following_error;
+  const bool travels =
+      object.mapped() && !image_.isLeftOut(canopen::PdoDirection::tpdo, object.slot);
+  if (!travels) poller_.look();
 }
 
 void AxisCore::readDigitalInputs(Time now) {

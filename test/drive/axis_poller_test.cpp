@@ -79,6 +79,15 @@ TEST_F(AxisPollerTest, EachValueCarriesTheTimeOfItsAnswerAndIsUnknownOnceItIsToo
   EXPECT_FALSE(poller.value(item, answered + AxisPoller::kStale + 1ms).valid);
 }
 
+TEST_F(AxisPollerTest, OfMappedObjectsThoseAreReadThatAreOnlyLookedAt) {
+  velocity.slot = error.slot = 3;
+  EXPECT_EQ(poller.add(velocity), -1);
+  const int item = poller.add(error, AxisPoller::Reading::when_looked_at);
+  EXPECT_EQ(pass(1s, kAskError), 0) << "the drive may map it: nobody has to ask";
+  EXPECT_EQ(pass(1s, kAskError, 100ms), 10) << "the drive turned out not to";
+  EXPECT_EQ(poller.value(item, now).raw, 5u);
+}
+
 TEST_F(AxisPollerTest, AnObjectThatTheDriveRefusesIsNotAskedForAtEveryLook) {
   peer.replace(kAskError, "581 80 F4 60 00 00 00 02 06");
   poller.add(error, AxisPoller::Reading::when_looked_at);
