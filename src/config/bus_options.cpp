@@ -186,6 +186,9 @@ void readBus(const YamlValue& value, BusConfig& bus, bool& counter_given) {
   if (const auto reset = section.get("reset")) {
     bus.reset_all = reset->oneOf({"each", "all"}).value_or(0) == 1;
   }
+  if (const auto receive = section.get("receive")) {
+    bus.receive_all = receive->oneOf({"configured", "all"}).value_or(0) == 1;
+  }
   readSyncWindow(section, bus);
   readTimeInterval(section, bus);
   counter_given = section.readInteger("sync_counter", bus.sync_counter, 0, 240);

@@ -121,8 +121,12 @@ void addSdo(diagnostic_updater::DiagnosticStatusWrapper& status,
 }  // namespace
 
 Diagnostics::Diagnostics(ros::NodeHandle& node, ros::NodeHandle& private_node,
-                         bus::BusRunner& runner, const config::RobotConfig& robot)
-    : runner_(runner), robot_(robot), snapshot_(runner.snapshot()), updater_(node, private_node) {
+                         bus::BusRunner& runner, LinkWatch& link, const config::RobotConfig& robot)
+    : runner_(runner),
+      robot_(robot),
+      snapshot_(runner.snapshot()),
+      link_(link),
+      updater_(node, private_node) {
   updater_.setHardwareID(robot.bus.interface);
   updater_.add("bus", this, &Diagnostics::reportBus);
   for (std::size_t i = 0; i < robot.axes.size(); ++i) {
@@ -135,6 +139,7 @@ Diagnostics::Diagnostics(ros::NodeHandle& node, ros::NodeHandle& private_node,
 
 void Diagnostics::update() {
   snapshot_ = runner_.snapshot();
+  link_.update(snapshot_);
   updater_.update();
 }
 
@@ -149,12 +154,13 @@ void Diagnostics::reportBus(Status& status) {
     status.summary(passing ? DiagnosticStatus::WARN : DiagnosticStatus::ERROR,
                    snapshot_.bus_text.str());
   }
-  if (snapshot_.bus_load > kHighLoad) {
-    status.mergeSummaryf(DiagnosticStatus::WARN, "bus load %.0f %%", 100.0 * snapshot_.bus_load);
+  const can::TrafficMeter::Load load = link_.load(snapshot_);
+  if (load.nominal > kHighLoad) {
+    status.mergeSummaryf(DiagnosticStatus::WARN, "bus load %.0f %%", 100.0 * load.nominal);
   }
   status.addf("state", "%s", can::toString(snapshot_.bus_state));
   status.addf("load", "%.1f %%, %.1f %% with all stuff bits that are possible",
-              100.0 * snapshot_.bus_load, 100.0 * snapshot_.most_bus_load);
+              100.0 * load.nominal, 100.0 * load.most);
   status.add("frames sent", snapshot_.counters.frames_sent);
   status.add("frames received", snapshot_.counters.frames_received);
   status.add("frames deferred", snapshot_.counters.frames_deferred);
@@ -183,7 +189,7 @@ void Diagnostics::reportBus(Status& status) {
 
 void Diagnostics::reportLink(Status& status) {
   if (robot_.bus.interface == "sim") return;
-  const auto link = link_reader_.read(robot_.bus.interface);
+  const auto& link = link_.settings();
   if (!link) return;
   addLink(status, *link);
   const auto findings = can::findingsOf(*link, static_cast<unsigned>(robot_.bus.bitrate),

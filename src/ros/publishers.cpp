@@ -90,8 +90,8 @@ std::string stepText(const bus::AxisSnapshot& axis) {
 }
 
 Publishers::Publishers(ros::NodeHandle& node, ros::NodeHandle& private_node, bus::BusRunner& runner,
-                       const config::RobotConfig& robot)
-    : runner_(runner), robot_(robot) {
+                       const LinkWatch& link, const config::RobotConfig& robot)
+    : runner_(runner), link_(link), robot_(robot) {
   for (const drive::AxisConfig& axis : robot.axes) joint_states_.name.push_back(axis.joint);
   joint_states_.position.resize(robot.axes.size());
   joint_states_.velocity.resize(robot.axes.size());
@@ -190,8 +190,9 @@ cia402_driver::BusState Publishers::busState(const bus::RobotSnapshot& snapshot)
   message.interface = robot_.bus.interface;
   message.state = can::toString(snapshot.bus_state);
   message.description = snapshot.bus_text.str();
-  message.load = snapshot.bus_load;
-  message.load_most = snapshot.most_bus_load;
+  const can::TrafficMeter::Load load = link_.load(snapshot);
+  message.load = load.nominal;
+  message.load_most = load.most;
   message.frames_sent = snapshot.counters.frames_sent;
   message.frames_received = snapshot.counters.frames_received;
   message.frames_deferred = snapshot.counters.frames_deferred;
