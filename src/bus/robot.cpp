@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "cia402_driver/canopen/received_identifiers.h"
 #include "cia402_driver/drive/fault_text.h"
 
 namespace cia402::bus {
@@ -18,6 +19,7 @@ Robot::Robot(config::RobotConfig robot, canopen::MasterConfig master, can::Sink&
     : config_(std::move(robot)),
       events_(events),
       listener_(master, config_.bus.listen),
+      foreseen_(canopen::receivedIdentifiers(master)),
       master_(std::move(master), sink, this),
       sink_(sink),
       lss_(sink),

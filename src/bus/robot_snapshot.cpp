@@ -1,11 +1,21 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // What the ROS side is shown of a robot.
+#include <algorithm>
+
 #include "cia402_driver/bus/robot.h"
 
 namespace cia402::bus {
 namespace {
 
-NodeSnapshot nodeSnapshot(const canopen::Node& node) {
+/// Boot has found a COB-ID that canopen::receivedIdentifiers() did not foresee.
+bool hasOwnCobIds(const canopen::Node& node, const std::bitset<2048>& foreseen) {
+  const auto& tpdos = node.image().tpdos();
+  return std::any_of(tpdos.begin(), tpdos.end(), [&](const canopen::ProcessImage::Pdo& pdo) {
+    return pdo.cob_id < foreseen.size() && !foreseen[pdo.cob_id];
+  });
+}
+
+NodeSnapshot nodeSnapshot(const canopen::Node& node, const std::bitset<2048>& foreseen) {
   NodeSnapshot snapshot;
   snapshot.changes = node.changes();
   snapshot.nmt = node.nmtState();
@@ -15,6 +25,7 @@ NodeSnapshot nodeSnapshot(const canopen::Node& node) {
   snapshot.supervision = node.supervision();
   snapshot.sdo = node.sdo().counters();
   snapshot.may_be_absent = node.excused();
+  snapshot.own_cob_ids = hasOwnCobIds(node, foreseen);
   return snapshot;
 }
 
@@ -34,7 +45,7 @@ void Robot::fill(RobotSnapshot& snapshot) const {
     axis.state = axes_[i].state();
     axis.target = axes_[i].target();
     const canopen::Node& node = *nodes_[i];
-    if (axis.node.changes != node.changes()) axis.node = nodeSnapshot(node);
+    if (axis.node.changes != node.changes()) axis.node = nodeSnapshot(node, foreseen_);
     const EmergencyCounts& emergencies = reporters_[i].emergencies();
     const bool more = axis.emergencies.total != emergencies.total ||
                       axis.emergencies.malformed != emergencies.malformed;

@@ -114,6 +114,17 @@ void takeLinkInfo(View info, LinkSettings& link) {
   });
 }
 
+// The first four counters of rtnl_link_stats64; the rest differs with the kernel's age.
+void takeStatistics(View content, LinkSettings& link) {
+  struct Counters {
+    std::uint64_t rx_packets, tx_packets, rx_bytes, tx_bytes;
+  };
+  const auto counters = content.as<Counters>();
+  if (!counters) return;
+  link.traffic = LinkSettings::Traffic{counters->rx_packets, counters->tx_packets,
+                                       counters->rx_bytes, counters->tx_bytes};
+}
+
 // Puts a message together.
 class Writer {
  public:
@@ -194,6 +205,7 @@ std::optional<LinkSettings> parseLink(const std::uint8_t* message, std::size_t s
     if (type == IFLA_IFNAME) link.name = content.text();
     if (type == IFLA_TXQLEN) link.tx_queue_length = content.as<std::uint32_t>();
     if (type == IFLA_LINKINFO) takeLinkInfo(content, link);
+    if (type == IFLA_STATS64) takeStatistics(content, link);
   });
   return link;
 }

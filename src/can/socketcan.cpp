@@ -159,7 +159,7 @@ void SocketCan::handleError(int error) {
     case ENODEV:
     case ENXIO:
       becomeUnusable(BusState::missing);
-      socket_->close();
+      closeSocket();
       break;
     default:
       break;  // concerns one frame only
@@ -240,14 +240,11 @@ void SocketCan::checkLink() {
   const Link link = probe_->look(name_);
   if (was_there && link.index != socket_->interfaceIndex()) {
     becomeUnusable(BusState::missing);
-    socket_->close();
+    closeSocket();
   }
   if (!link.exists) return;
   if (!socket_->isOpen()) {
-    open_error_ = probe_->isCan(name_)
-                      ? socket_->open(link.index, options_.filters, options_.receive_buffer,
-                                      options_.error_frames)
-                      : ENODEV;
+    open_error_ = probe_->isCan(name_) ? openSocket(link.index) : ENODEV;
     if (open_error_ != 0) return;
     batch_done_ = false;
     overflows_seen_ = 0;
@@ -271,7 +268,19 @@ void SocketCan::updateState(bool up, bool carrier) {
   }
 }
 
+int SocketCan::openSocket(int interface_index) {
+  const std::lock_guard<std::mutex> lock(opening_);
+  return socket_->open(interface_index, options_.filters, options_.receive_buffer,
+                       options_.error_frames);
+}
+
+void SocketCan::closeSocket() {
+  const std::lock_guard<std::mutex> lock(opening_);
+  socket_->close();
+}
+
 void SocketCan::setFilters(std::vector<ReceiveFilter> filters) {
+  const std::lock_guard<std::mutex> lock(opening_);
   options_.filters = std::move(filters);
   if (socket_->isOpen()) socket_->setFilters(options_.filters);
 }

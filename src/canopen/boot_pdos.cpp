@@ -84,7 +84,12 @@ class Pdos : public BootStep {
     const PdoConfig& pdo = pdos_[item_];
     for (const PdoEntry& entry : pdo_->leftOut()) {
       boot.found.left_out.push_back({pdo.direction, pdo.number, entry.object});
-      boot.found.lacking.push_back(objectText(entry.object, entry.name));
+      const std::string object = objectText(entry.object, entry.name);
+      if (entry.if_room) {
+        boot.remarks.push_back("the drive does not take " + object + " into a TPDO");
+      } else {
+        boot.found.lacking.push_back(object);
+      }
     }
   }
 

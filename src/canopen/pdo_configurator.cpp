@@ -237,7 +237,7 @@ void PdoConfigurator::answeredWrite(const SdoTransfer& transfer) {
     return enterAfterDisable();
   }
   if (!transfer.ok()) {
-    if (leaveOutEntry(transfer) || probeEntries(transfer)) return;
+    if (leaveOutEntry(transfer) || probeEntries(transfer) || leaveOutRider(transfer)) return;
     if (!refusedReadOnlyCount(transfer)) return failTransfer(transfer);
     map_refused_ = true;
   }
@@ -280,13 +280,34 @@ bool PdoConfigurator::leaveOutWhole(const SdoTransfer& transfer) {
 
 /// Most drives judge an entry when it is written.
 bool PdoConfigurator::leaveOutEntry(const SdoTransfer& transfer) {
-  const bool optional = phase_ == Phase::write_entry && wanted_.entries[item_].optional;
-  if (!optional || !isMissingOrUnmappable(transfer)) return false;
+  if (phase_ != Phase::write_entry) return false;
+  const PdoEntry& entry = wanted_.entries[item_];
+  const bool goes = entry.if_room ? transfer.failure() == SdoTransfer::Failure::aborted_by_server
+                                  : entry.optional && isMissingOrUnmappable(transfer);
+  if (!goes) return false;
   leaveOut(item_);
   if (item_ < wanted_.entries.size()) {
     enter(Phase::write_entry, item_);
   } else {
     afterEntries();
+  }
+  return true;
+}
+
+/// A PDO that the drive does not take as a whole may be one without what is there for the room
+/// only.
+bool PdoConfigurator::leaveOutRider(const SdoTransfer& transfer) {
+  const auto& entries = wanted_.entries;
+  const auto rider = std::find_if(entries.begin(), entries.end(),
+                                  [](const PdoEntry& entry) { return entry.if_room; });
+  const bool refused =
+      phase_ == Phase::write_count && transfer.failure() == SdoTransfer::Failure::aborted_by_server;
+  if (!refused || rider == entries.end() || refusedReadOnlyCount(transfer)) return false;
+  leaveOut(static_cast<std::size_t>(rider - entries.begin()));
+  if (wanted_.entries.empty()) {
+    afterEntries();
+  } else {
+    enter(Phase::clear_map);
   }
   return true;
 }

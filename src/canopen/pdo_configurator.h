@@ -99,6 +99,7 @@ class PdoConfigurator {
   bool leaveOutWhole(const SdoTransfer& transfer);
   bool leaveOutEntry(const SdoTransfer& transfer);
   bool probeEntries(const SdoTransfer& transfer);
+  bool leaveOutRider(const SdoTransfer& transfer);
   void answeredProbe(const SdoTransfer& transfer);
   void leaveOut(std::size_t item);
   void afterEntries();

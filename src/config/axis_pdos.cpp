@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Which objects of an axis travel by PDO.
 #include <algorithm>
+#include <iterator>
 
 #include "cia402_driver/drive/profile_reader.h"
 #include "pdo_planner.h"
@@ -60,6 +61,7 @@ Duration freshness(const RobotConfig& robot) {
 std::vector<std::string> defaultObjects(const AxisConfig& axis, const PdoNeeds& needs) {
   std::vector<std::string> names;
   if (!needs.feedback_required) names = needs.feedback;
+  names.insert(names.end(), axis.riders.begin(), axis.riders.end());
   if (needs.modes_required) return names;
   const ModeSpec* start = axis.profile->mode(needs.mode);
   for (const std::string& name : axis.modes) {
@@ -91,6 +93,7 @@ bool plan(YamlSection& section, AxisConfig& axis, RobotConfig& robot, PdoNeeds n
   axis.pdos = planned->pdos;
   axis.pdos_planned = true;
   axis.modes = planned->modes;
+  axis.riders = planned->riders;
   axis.default_objects = defaultObjects(axis, needs);
   return true;
 }
@@ -164,12 +167,14 @@ bool choosePdos(YamlSection& section, AxisConfig& axis, RobotConfig& robot) {
   if (!modes && needs.modes.empty()) needs.modes = allModes(profile);
   needs.feedback_required = feedback.has_value();
   needs.feedback = feedback ? drive::readFeedbackNames(*feedback, profile) : feedbackOf(profile);
+  if (!feedback) needs.if_room = profile.feedback_if_room;
   const auto ruled_out = [&](const std::string& name) { return ruledOut(axis, name); };
   const auto unreachable = [&](const std::string& name) {
     const ModeSpec* mode = profile.mode(name);
     return mode != nullptr && ruledOut(axis, mode->target);
   };
   if (!feedback) leaveOut(needs.feedback, ruled_out);
+  leaveOut(needs.if_room, ruled_out);
   if (!modes) leaveOut(needs.modes, unreachable);
   if (pdos && feedback) feedback->problem("says nothing beside `pdos`: keep one of them");
   if (!pdos && feedback && !profile.pdos.empty()) {
@@ -193,21 +198,48 @@ bool choosePdos(YamlSection& section, AxisConfig& axis, RobotConfig& robot) {
   return true;
 }
 
+namespace {
+
+/// What `axis` was planned for; its objects are those that found room.
+PdoNeeds needsOf(const AxisConfig& axis, const RobotConfig& robot) {
+  PdoNeeds needs;
+  needs.mode = axis.mode;
+  needs.modes = axis.modes;
+  for (const drive::PdoLayout& pdo : axis.pdos) {
+    if (pdo.direction != canopen::PdoDirection::tpdo) continue;
+    std::copy_if(pdo.objects.begin(), pdo.objects.end(), std::back_inserter(needs.feedback),
+                 [&](const std::string& name) { return !contains(axis.riders, name); });
+  }
+  needs.if_room = axis.riders;
+  needs.cycle = axis.sync_period;
+  needs.fresh = freshness(robot);
+  return needs;
+}
+
+void plan(AxisConfig& axis, const PdoNeeds& needs) {
+  const Result<PdoPlan> planned = planPdos(*axis.profile, needs);
+  if (!planned) return;
+  axis.pdos = planned->pdos;
+  axis.riders = planned->riders;
+  setRpdoTimeout(axis);
+}
+
+}  // namespace
+
 void planAgain(RobotConfig& robot, Duration cycle) {
   robot.bus.sync_period = cycle;
   for (AxisConfig& axis : robot.axes) {
     axis.sync_period = cycle;
-    if (!axis.pdos_planned) continue;
-    PdoNeeds needs;
-    needs.mode = axis.mode;
-    needs.modes = axis.modes;
-    for (const drive::PdoLayout& pdo : axis.pdos) {
-      if (pdo.direction != canopen::PdoDirection::tpdo) continue;
-      needs.feedback.insert(needs.feedback.end(), pdo.objects.begin(), pdo.objects.end());
-    }
-    needs.cycle = cycle;
-    needs.fresh = freshness(robot);
-    if (const Result<PdoPlan> planned = planPdos(*axis.profile, needs)) axis.pdos = planned->pdos;
+    if (axis.pdos_planned) plan(axis, needsOf(axis, robot));
+  }
+}
+
+void leaveRiders(RobotConfig& robot) {
+  for (AxisConfig& axis : robot.axes) {
+    if (axis.riders.empty()) continue;
+    PdoNeeds needs = needsOf(axis, robot);
+    needs.if_room.clear();
+    plan(axis, needs);
   }
 }
 

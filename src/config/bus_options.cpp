@@ -146,6 +146,11 @@ struct FeasibleCycle {
   double rate;  ///< Hz; the highest with the plan of that period
 };
 
+BusLoad planLoad(const RobotConfig& robot) {
+  Problems told_elsewhere;
+  return busLoad(makeMasterConfig(robot, told_elsewhere), robot.bus.bitrate);
+}
+
 /// The shortest cycle that loads the bus to kComfortableLoad at most. A slower cycle plans anew:
 /// what need not come so often comes with fewer of its SYNCs.
 std::optional<FeasibleCycle> feasibleCycle(RobotConfig robot, BusLoad load) {
@@ -155,8 +160,7 @@ std::optional<FeasibleCycle> feasibleCycle(RobotConfig robot, BusLoad load) {
     us = tellable(std::max(us + 1, static_cast<std::int64_t>(std::ceil(1e6 / load.feasible_rate))));
     const Duration period = std::chrono::microseconds(us);
     planAgain(robot, period);
-    Problems ignored;
-    load = busLoad(makeMasterConfig(robot, ignored), robot.bus.bitrate);
+    load = planLoad(robot);
     if (load.worst <= kComfortableLoad) return FeasibleCycle{period, load.feasible_rate};
   }
   return {};
@@ -181,6 +185,9 @@ void readBus(const YamlValue& value, BusConfig& bus, bool& counter_given) {
   readListen(section, bus);
   if (const auto reset = section.get("reset")) {
     bus.reset_all = reset->oneOf({"each", "all"}).value_or(0) == 1;
+  }
+  if (const auto receive = section.get("receive")) {
+    bus.receive_all = receive->oneOf({"configured", "all"}).value_or(0) == 1;
   }
   readSyncWindow(section, bus);
   readTimeInterval(section, bus);
@@ -217,6 +224,7 @@ void checkSync(const YamlValue& bus_section, bool counter_given, RobotConfig& ro
 }
 
 void checkBusLoad(const YamlValue& bus_section, RobotConfig& robot, Problems& problems) {
+  if (planLoad(robot).worst > kComfortableLoad) leaveRiders(robot);
   const canopen::MasterConfig master = makeMasterConfig(robot, problems);
   const BusLoad load = busLoad(master, robot.bus.bitrate);
   const std::string rate = std::to_string(std::lround(1.0 / toSeconds(robot.bus.sync_period)));

@@ -64,9 +64,11 @@ PdoConfig makePdo(const drive::PdoLayout& layout, const AxisConfig& axis) {
     const drive::ObjectSpec* object = drive::findObject(*axis.profile, name);
     if (object == nullptr) continue;  // refused by readPdos() already
     const auto& defaults = axis.default_objects;
+    const auto& riders = axis.riders;
     const bool optional = std::find(defaults.begin(), defaults.end(), name) != defaults.end();
+    const bool if_room = std::find(riders.begin(), riders.end(), name) != riders.end();
     pdo.entries.push_back({object->id, static_cast<std::uint8_t>(canopen::sizeBits(object->type)),
-                           object->name, optional});
+                           object->name, optional, if_room});
   }
   return pdo;
 }

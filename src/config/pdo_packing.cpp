@@ -77,6 +77,7 @@ class Search {
     --steps_;
     const Cost so_far = cost();  // what is yet to be placed can only add to it
     if (best_ && !(so_far < best_cost_)) return;
+    if (std::get<2>(so_far) > rules_.most) return;
     if (next == rest_.size()) return keep(so_far);
     const PackItem& item = items_[rest_[next]];
     const std::size_t open = bins_.size();  // more come and go in the search below

@@ -32,8 +32,9 @@ struct FixedPdo {
 
 /// What the drive allows in one direction.
 struct PackRules {
-  unsigned pdos = 4;     ///< how many there are, fixed ones included
-  unsigned entries = 8;  ///< objects in one PDO
+  unsigned pdos = 4;       ///< how many there are, fixed ones included
+  std::size_t most = 512;  ///< that may be used
+  unsigned entries = 8;    ///< objects in one PDO
   std::vector<FixedPdo> fixed;
   /// A PDO may change in every cycle, however seldom it must travel (RPDOs): the worst case of its
   /// load counts every cycle.

@@ -30,6 +30,10 @@ bool contains(const std::vector<std::string>& list, const std::string& name) {
   return std::find(list.begin(), list.end(), name) != list.end();
 }
 
+bool contains(const std::vector<PackItem>& items, const std::string& name) {
+  return std::any_of(items.begin(), items.end(), [&](const PackItem& i) { return i.name == name; });
+}
+
 std::string withBits(const std::vector<PackItem>& items) {
   std::string text;
   for (const PackItem& item : items) {
@@ -132,10 +136,7 @@ class Planner {
     }
     std::vector<PackItem> wider = items;
     const auto more = target(*mode, kRefreshEvery);
-    const bool there = !more || std::any_of(items.begin(), items.end(), [&](const PackItem& i) {
-      return i.name == more->name;
-    });
-    if (!there) wider.push_back(*more);
+    if (more && !contains(items, more->name)) wider.push_back(*more);
     if (auto better = packPdos(wider, limits)) {
       packed = *better;
       items = wider;
@@ -200,9 +201,7 @@ class Planner {
     wanted.insert(wanted.end(), needs_.feedback.begin(), needs_.feedback.end());
     for (const std::string& name : wanted) {
       const ObjectSpec* object = profile_.find(name);
-      const bool there = std::any_of(items.begin(), items.end(),
-                                     [&](const PackItem& i) { return i.name == name; });
-      if (object == nullptr || there) continue;
+      if (object == nullptr || contains(items, name)) continue;
       const unsigned often = name == "mode_display" ? 1 : every(*object);
       std::vector<PackItem> wider = items;
       wider.push_back(item(*object, often));
@@ -214,8 +213,25 @@ class Planner {
         plan_.by_sdo.push_back(name);
       }
     }
+    addRiders(limits, items, *packed);
     keep(*packed, PdoDirection::tpdo);
     return {};
+  }
+
+  /// What travels only where it costs no PDO.
+  void addRiders(PackRules limits, std::vector<PackItem> items, std::vector<PackedPdo>& packed) {
+    limits.most = packed.size();
+    for (const std::string& name : needs_.if_room) {
+      const ObjectSpec* object = profile_.find(name);
+      if (object == nullptr || !object->tpdo || contains(items, name)) continue;
+      std::vector<PackItem> wider = items;
+      wider.push_back(item(*object, every(*object)));
+      const auto better = packPdos(wider, limits);
+      if (!better) continue;
+      packed = *better;
+      items = wider;
+      plan_.riders.push_back(name);
+    }
   }
 
   void keep(const std::vector<PackedPdo>& packed, PdoDirection direction) {

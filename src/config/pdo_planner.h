@@ -19,6 +19,8 @@ struct PdoNeeds {
   /// finds no room is left to SDO.
   std::vector<std::string> feedback;
   bool feedback_required = false;  ///< somebody asked for it by name
+  /// Further feedback, where the PDOs that travel for the rest have room for it: no PDO more.
+  std::vector<std::string> if_room;
   Duration cycle{std::chrono::milliseconds(4)};
   /// Velocity and torque shall not be older than this, where the cycle allows.
   Duration fresh{std::chrono::milliseconds(10)};
@@ -28,6 +30,7 @@ struct PdoPlan {
   std::vector<drive::PdoLayout> pdos;
   std::vector<std::string> modes;   ///< that the plan serves, the one to start in first
   std::vector<std::string> by_sdo;  ///< feedback that found no room
+  std::vector<std::string> riders;  ///< of PdoNeeds::if_room, what has found some
 };
 
 /// Chooses the PDO mapping of one axis: controlword and target of the start mode in one RPDO where

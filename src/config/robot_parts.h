@@ -76,6 +76,8 @@ bool choosePdos(drive::YamlSection& section, drive::AxisConfig& axis, RobotConfi
 
 /// Plans what was planned once more, for another cycle; the same objects find room then.
 void planAgain(RobotConfig& robot, Duration cycle);
+/// Plans anew without what travels only because there was room.
+void leaveRiders(RobotConfig& robot);
 
 /// What the axis' keys mean together with its profile; `section` is the axis.
 void checkAxis(drive::YamlSection& section, const drive::AxisConfig& axis, RobotConfig& robot);

@@ -39,7 +39,8 @@ class AxisCore {
 
   // --- The cycle -------------------------------------------------------------------------------
   void readFeedback(Time now);
-  void look() { poller_.look(); }
+  /// See Axis::look().
+  void look();
   /// Reacts to what the feedback says.
   void supervise(Time now);
   /// A procedure that runs must fail.
@@ -196,7 +197,7 @@ class AxisCore {
   void readError(Time now);
   void readDigitalInputs(Time now);
   void readMode(Time now);
-  double read(const InputObject& object, int polled, Time now) const;
+  double read(const InputObject& object, int polled, Time now, Time& stamp) const;
   void forgetFeedback();
   void forgetMotion();
   void leaveOperation();

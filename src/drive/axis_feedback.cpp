@@ -79,19 +79,29 @@ void AxisCore::readMotion(Time now) {
     standstill_.update(joint, now - withheld);
   }
   state_.stamp = position.stamp;
-  state_.velocity = read(objects_.velocity, polled_velocity_, now);
-  state_.effort = read(objects_.effort, polled_effort_, now);
+  state_.velocity = read(objects_.velocity, polled_velocity_, now, state_.stamps.velocity);
+  state_.effort = read(objects_.effort, polled_effort_, now, state_.stamps.effort);
   const InputObject& following_error = objects_.following_error;
-  const bool told = following_error.mapped() ? image_.input(following_error.slot).valid
-                                             : poller_.value(polled_following_error_, now).valid;
-  if (told) {
-    state_.following_error = read(objects_.following_error, polled_following_error_, now);
+  Time& stamp = state_.stamps.following_error;
+  if (following_error.mapped() && image_.input(following_error.slot).valid) {
+    state_.following_error = read(following_error, -1, now, stamp);
+  } else if (const auto polled = poller_.value(polled_following_error_, now); polled.valid) {
+    state_.following_error = following_error.conversion.toJoint(polled.raw);
+    stamp = polled.stamp;
   } else if (in_operation_ && mode_->spec->kind == ControlKind::position) {
     state_.following_error = target() - joint;
+    stamp = position.stamp;
   } else {
     state_.following_error = kUnknown;
   }
   readDigitalInputs(now);
+}
+
+void AxisCore::look() {
+  const InputObject& object = objects_.following_error;
+  const bool travels =
+      object.mapped() && !image_.isLeftOut(canopen::PdoDirection::tpdo, object.slot);
+  if (!travels) poller_.look();
 }
 
 void AxisCore::readDigitalInputs(Time now) {
@@ -101,21 +111,26 @@ void AxisCore::readDigitalInputs(Time now) {
   if (objects_.digital_inputs.mapped()) {
     state_.digital_inputs_valid = image_.fresh(slot);
     raw = image_.input(slot).raw;
+    state_.stamps.digital_inputs = image_.input(slot).stamp;
   } else if (polled_inputs_ >= 0) {
     const AxisPoller::Value value = poller_.value(polled_inputs_, now);
     state_.digital_inputs_valid = value.valid;
     raw = value.raw;
+    state_.stamps.digital_inputs = value.stamp;
   }
   state_.digital_inputs = state_.digital_inputs_valid ? static_cast<std::uint32_t>(raw) : 0;
 }
 
-double AxisCore::read(const InputObject& object, int polled, Time now) const {
+double AxisCore::read(const InputObject& object, int polled, Time now, Time& stamp) const {
   if (object.mapped()) {
     if (!image_.fresh(object.slot)) return kUnknown;
-    return object.conversion.toJoint(image_.input(object.slot).raw);
+    const canopen::ProcessValue& value = image_.input(object.slot);
+    stamp = value.stamp;
+    return object.conversion.toJoint(value.raw);
   }
   if (polled < 0) return kUnknown;
   const AxisPoller::Value value = poller_.value(polled, now);
+  stamp = value.stamp;
   return value.valid ? object.conversion.toJoint(value.raw) : kUnknown;
 }
 
@@ -123,11 +138,16 @@ void AxisCore::readMode(Time now) {
   std::optional<std::uint64_t> raw;
   if (objects_.mode_display.mapped()) {
     const canopen::Slot slot = objects_.mode_display.slot;
-    if (image_.fresh(slot)) raw = image_.input(slot).raw;
+    if (image_.fresh(slot)) {
+      raw = image_.input(slot).raw;
+      state_.stamps.mode = image_.input(slot).stamp;
+    }
   } else if (polled_mode_ >= 0) {
     const AxisPoller::Value value = poller_.value(polled_mode_, now);
     if (value.valid) raw = value.raw;
+    state_.stamps.mode = value.stamp;
   } else {
+    state_.stamps.mode = state_.stamp;
     raw = static_cast<std::uint64_t>(mode_->spec->value);  // the family has no 6061h: believe
   }
   // Modes of one value differ in the driver only: the commanded one is active then.

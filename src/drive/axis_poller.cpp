@@ -7,7 +7,8 @@
 namespace cia402::drive {
 
 int AxisPoller::add(const InputObject& object, Reading reading) {
-  if (object.spec == nullptr || object.mapped() || !object.spec->readable) return -1;
+  if (object.spec == nullptr || !object.spec->readable) return -1;
+  if (object.mapped() && reading == Reading::always) return -1;
   Item item;
   item.object = object.spec->id;
   item.name = object.spec->name;

@@ -29,8 +29,9 @@ class AxisPoller {
     bool valid = false;
   };
 
-  /// Adds `object` unless it is mapped or the family does not have it. @return its number for
-  /// value(), or -1.
+  /// Adds `object` unless the family does not have it, or it is mapped; but what is read for looks
+  /// is added then, too, for a drive may turn out not to map it. @return its number for value(), or
+  /// -1.
   int add(const InputObject& object, Reading reading = Reading::always);
   /// Somebody is about to look: what is read for that only is asked for once more.
   void look();

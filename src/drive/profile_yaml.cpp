@@ -231,6 +231,9 @@ DriveProfile readProfile(const YamlValue& root) {
   if (const auto names = section.get("feedback")) {
     profile.feedback = readFeedbackNames(*names, profile);
   }
+  if (const auto names = section.get("feedback_if_room")) {
+    profile.feedback_if_room = readFeedbackNames(*names, profile);
+  }
   if (const auto errors = section.get("errors")) readErrors(*errors, profile);
   section.finish();
   return profile;

@@ -49,6 +49,13 @@ std::string withUnit(double value, const char* unit) {
   return text;
 }
 
+/// A measured value and how old it is.
+void addValue(diagnostic_updater::DiagnosticStatusWrapper& status, const std::string& key,
+              double value, const char* unit, Duration age) {
+  status.add(key, withUnit(value, unit));
+  status.add(key + " age", withUnit(std::isnan(value) ? value : toSeconds(age), "s"));
+}
+
 /// "emergencies: 1234", then a line for each code.
 void addEmergencies(diagnostic_updater::DiagnosticStatusWrapper& status,
                     const bus::EmergencyCounts& counts) {
@@ -114,8 +121,12 @@ void addSdo(diagnostic_updater::DiagnosticStatusWrapper& status,
 }  // namespace
 
 Diagnostics::Diagnostics(ros::NodeHandle& node, ros::NodeHandle& private_node,
-                         bus::BusRunner& runner, const config::RobotConfig& robot)
-    : runner_(runner), robot_(robot), snapshot_(runner.snapshot()), updater_(node, private_node) {
+                         bus::BusRunner& runner, LinkWatch& link, const config::RobotConfig& robot)
+    : runner_(runner),
+      robot_(robot),
+      snapshot_(runner.snapshot()),
+      link_(link),
+      updater_(node, private_node) {
   updater_.setHardwareID(robot.bus.interface);
   updater_.add("bus", this, &Diagnostics::reportBus);
   for (std::size_t i = 0; i < robot.axes.size(); ++i) {
@@ -128,11 +139,12 @@ Diagnostics::Diagnostics(ros::NodeHandle& node, ros::NodeHandle& private_node,
 
 void Diagnostics::update() {
   snapshot_ = runner_.snapshot();
-  runner_.look();
+  link_.update(snapshot_);
   updater_.update();
 }
 
 void Diagnostics::reportBus(Status& status) {
+  runner_.look();  // what the next report will show
   const bus::CycleStatistics& cycle = snapshot_.statistics;
   if (snapshot_.bus_state == can::BusState::error_active) {
     status.summary(DiagnosticStatus::OK, snapshot_.bus_text.str());
@@ -142,12 +154,13 @@ void Diagnostics::reportBus(Status& status) {
     status.summary(passing ? DiagnosticStatus::WARN : DiagnosticStatus::ERROR,
                    snapshot_.bus_text.str());
   }
-  if (snapshot_.bus_load > kHighLoad) {
-    status.mergeSummaryf(DiagnosticStatus::WARN, "bus load %.0f %%", 100.0 * snapshot_.bus_load);
+  const can::TrafficMeter::Load load = link_.load(snapshot_);
+  if (load.nominal > kHighLoad) {
+    status.mergeSummaryf(DiagnosticStatus::WARN, "bus load %.0f %%", 100.0 * load.nominal);
   }
   status.addf("state", "%s", can::toString(snapshot_.bus_state));
   status.addf("load", "%.1f %%, %.1f %% with all stuff bits that are possible",
-              100.0 * snapshot_.bus_load, 100.0 * snapshot_.most_bus_load);
+              100.0 * load.nominal, 100.0 * load.most);
   status.add("frames sent", snapshot_.counters.frames_sent);
   status.add("frames received", snapshot_.counters.frames_received);
   status.add("frames deferred", snapshot_.counters.frames_deferred);
@@ -176,7 +189,7 @@ void Diagnostics::reportBus(Status& status) {
 
 void Diagnostics::reportLink(Status& status) {
   if (robot_.bus.interface == "sim") return;
-  const auto link = link_reader_.read(robot_.bus.interface);
+  const auto& link = link_.settings();
   if (!link) return;
   addLink(status, *link);
   const auto findings = can::findingsOf(*link, static_cast<unsigned>(robot_.bus.bitrate),
@@ -259,10 +272,13 @@ void Diagnostics::reportAxis(std::size_t index, Status& status) {
   status.add("step", stepText(axis));
   if (!axis.words.history.empty())
     status.add("error history after the last fault", axis.words.history.str());
-  status.add("position", withUnit(state.position, linear ? "m" : "rad"));
-  status.add("velocity", withUnit(state.velocity, linear ? "m/s" : "rad/s"));
-  status.add("effort", withUnit(state.effort, linear ? "N" : "N m"));
-  status.add("following error", withUnit(state.following_error, linear ? "m" : "rad"));
+  const auto add = [&](const char* key, double value, const char* unit, Time stamp) {
+    addValue(status, key, value, unit, snapshot_.now - stamp);
+  };
+  add("position", state.position, linear ? "m" : "rad", state.stamp);
+  add("velocity", state.velocity, linear ? "m/s" : "rad/s", state.stamps.velocity);
+  add("effort", state.effort, linear ? "N" : "N m", state.stamps.effort);
+  add("following error", state.following_error, linear ? "m" : "rad", state.stamps.following_error);
 }
 
 }  // namespace cia402::ros_node

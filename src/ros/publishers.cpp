@@ -19,6 +19,22 @@ double age(Time since, Time now) {
   return since == Time() ? std::numeric_limits<double>::infinity() : toSeconds(now - since);
 }
 
+/// Of a value that may be unknown: NaN then.
+double age(bool known, Time since, Time now) {
+  return known ? toSeconds(now - since) : std::numeric_limits<double>::quiet_NaN();
+}
+
+void addAges(const drive::AxisState& state, Time now, cia402_driver::AxisState& message) {
+  const drive::AxisState::Stamps& stamps = state.stamps;
+  message.feedback_age = age(state.stamp, now);
+  message.mode_age = age(state.mode != nullptr, stamps.mode, now);
+  message.velocity_age = age(!std::isnan(state.velocity), stamps.velocity, now);
+  message.effort_age = age(!std::isnan(state.effort), stamps.effort, now);
+  message.following_error_age =
+      age(!std::isnan(state.following_error), stamps.following_error, now);
+  message.digital_inputs_age = age(state.digital_inputs_valid, stamps.digital_inputs, now);
+}
+
 cia402_driver::AxisState axisState(const bus::AxisSnapshot& axis, const drive::AxisConfig& config,
                                    const bus::BusTime& time) {
   cia402_driver::AxisState message;
@@ -42,7 +58,7 @@ cia402_driver::AxisState axisState(const bus::AxisSnapshot& axis, const drive::A
   message.following_error = axis.state.following_error;
   message.digital_inputs = axis.state.digital_inputs;
   message.digital_inputs_valid = axis.state.digital_inputs_valid;
-  message.feedback_age = age(axis.state.stamp, time.now());
+  addAges(axis.state, time.now(), message);
   if (axis.state.stamp != Time()) message.stamp = toRos(time, axis.state.stamp);
   return message;
 }
@@ -74,8 +90,8 @@ std::string stepText(const bus::AxisSnapshot& axis) {
 }
 
 Publishers::Publishers(ros::NodeHandle& node, ros::NodeHandle& private_node, bus::BusRunner& runner,
-                       const config::RobotConfig& robot)
-    : runner_(runner), robot_(robot) {
+                       const LinkWatch& link, const config::RobotConfig& robot)
+    : runner_(runner), link_(link), robot_(robot) {
   for (const drive::AxisConfig& axis : robot.axes) joint_states_.name.push_back(axis.joint);
   joint_states_.position.resize(robot.axes.size());
   joint_states_.velocity.resize(robot.axes.size());
@@ -174,8 +190,9 @@ cia402_driver::BusState Publishers::busState(const bus::RobotSnapshot& snapshot)
   message.interface = robot_.bus.interface;
   message.state = can::toString(snapshot.bus_state);
   message.description = snapshot.bus_text.str();
-  message.load = snapshot.bus_load;
-  message.load_most = snapshot.most_bus_load;
+  const can::TrafficMeter::Load load = link_.load(snapshot);
+  message.load = load.nominal;
+  message.load_most = load.most;
   message.frames_sent = snapshot.counters.frames_sent;
   message.frames_received = snapshot.counters.frames_received;
   message.frames_deferred = snapshot.counters.frames_deferred;

@@ -101,6 +101,18 @@ TEST(ParseLink, KnowsAnInterfaceWithoutAController) {
   EXPECT_FALSE(link->events);
 }
 
+TEST(ParseLink, TakesWhatTheKernelHasCounted) {
+  const Bytes counters = u32(7) + u32(1) + u32(300) + u32(0) + u32(50) + u32(0) + u32(80) + u32(0);
+  const auto link = parse(newLink(0x10041, attribute(23, counters + Bytes(160))));  // IFLA_STATS64
+  ASSERT_TRUE(link && link->traffic);
+  EXPECT_EQ(link->traffic->frames_received, 0x1'0000'0007u);
+  EXPECT_EQ(link->traffic->frames_sent, 300u);
+  EXPECT_EQ(link->traffic->bytes_received, 50u);
+  EXPECT_EQ(link->traffic->bytes_sent, 80u);
+  EXPECT_FALSE(parse(newLink(0x10041, attribute(23, Bytes(31))))->traffic);
+  EXPECT_FALSE(parse(newLink(0x10041, attribute(3, text("can0"))))->traffic);
+}
+
 TEST(ParseLink, DoesNotTakeAnotherKindsNumbersForThoseOfCan) {
   const auto link = parse(canLink(canData(3, 100, 0), "bridge"));
   ASSERT_TRUE(link);

@@ -169,6 +169,42 @@ TEST_F(PdoConfiguratorTest, an_optional_entry_that_is_refused_for_another_reason
   EXPECT_THAT(configurator->error(), HasSubstr("0x06040042"));
 }
 
+// The position is there only because there was room for it.
+PdoConfig withRider() {
+  PdoConfig wanted = withOptionalPosition();
+  wanted.entries[1].if_room = true;
+  return wanted;
+}
+
+TEST_F(PdoConfiguratorTest, what_is_there_for_the_room_only_is_left_out_whatever_the_reason) {
+  // 06040042: longer than the PDO; 08000000: general error; 06040043: incompatible parameters.
+  for (const char* refusal : {"583 80 00 1A 02 42 00 04 06", "583 80 00 1A 02 00 00 00 08",
+                              "583 80 00 1A 02 43 00 04 06"}) {
+    peer = ScriptedPeer();
+    peer.on(kReadCount, kCount0).on(kReadCount, kCount1);
+    peer.on(kReadCobId, kCobIdEnabled).on(kReadType, kType1).on(kReadInhibit, kInhibit0);
+    peer.on(kReadTimer, kTimer0).on(kReadEntry1, kEntry1);
+    peer.on(kDisable, kCobIdDone).on(kClearMap, kCountDone).on(kWriteEntry1, kEntry1Done);
+    peer.on(kWriteEntry2, refusal).on(kWriteCount1, kCountDone).on(kEnable, kCobIdDone);
+    EXPECT_EQ(run(withRider()), Status::done) << configurator->error();
+    ASSERT_EQ(configurator->leftOut().size(), 1U);
+    EXPECT_TRUE(configurator->leftOut()[0].if_room);
+  }
+}
+
+TEST_F(PdoConfiguratorTest,
+       what_is_there_for_the_room_only_goes_where_the_pdo_is_refused_as_a_whole) {
+  peer.on(kReadCount, kCount0).on(kReadCount, kCount1);
+  peer.on(kReadCobId, kCobIdEnabled).on(kReadType, kType1).on(kReadInhibit, kInhibit0);
+  peer.on(kReadTimer, kTimer0).on(kReadEntry1, kEntry1);
+  peer.on(kDisable, kCobIdDone).on(kClearMap, kCountDone).on(kWriteEntry1, kEntry1Done);
+  peer.on(kWriteEntry2, kEntry2Done).on(kWriteCount, "583 80 00 1A 00 42 00 04 06");
+  peer.on(kWriteCount1, kCountDone).on(kEnable, kCobIdDone);
+  EXPECT_EQ(run(withRider()), Status::done) << configurator->error();
+  ASSERT_EQ(configurator->leftOut().size(), 1U);
+  EXPECT_EQ(configurator->leftOut()[0].object, (ObjectId{0x6064, 0}));
+}
+
 // Entry 1 is the optional one; what follows moves up to its place.
 TEST_F(PdoConfiguratorTest, what_follows_an_entry_that_is_left_out_moves_up) {
   PdoConfig wanted = wantedTpdo();

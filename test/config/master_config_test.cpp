@@ -338,6 +338,35 @@ TEST(BusLoad, TellsTheLargestFeasibleRate) {
   EXPECT_THAT(problems.text(), HasSubstr("at most 532 Hz keep it below 80 %"));
 }
 
+/// That many generic axes at 250 Hz on 1 Mbit/s.
+RobotConfig genericAxes(int count) {
+  std::string yaml = "bus: {interface: can0}\ndefaults: {drive: generic_cia402, counts_per_turn: "
+                     "4000, limits: {velocity: 2.0, acceleration: 8.0}}\naxes:\n";
+  for (int i = 1; i <= count; ++i) {
+    yaml += "  a" + std::to_string(i) + ": {node_id: " + std::to_string(i) + "}\n";
+  }
+  Problems problems;
+  return loadRobot(YAML::Load(yaml),
+                   profilesIn({cia402::test::configFolder() + "/drives"}), problems);
+}
+
+TEST(BusLoad, WhatTravelsForTheRoomOnlyStaysAwayFromAFullBus) {
+  EXPECT_THAT(genericAxes(1).axes[0].riders, testing::ElementsAre("following_error"));
+  const RobotConfig full = genericAxes(8);
+  for (const drive::AxisConfig& axis : full.axes) {
+    EXPECT_TRUE(axis.riders.empty());
+    for (const drive::PdoLayout& pdo : axis.pdos) {
+      EXPECT_THAT(pdo.objects, testing::Not(testing::Contains("following_error")));
+    }
+  }
+  for (int count = 1; count <= 8; ++count) {
+    const RobotConfig robot = genericAxes(count);
+    Problems problems;
+    const double worst = busLoad(makeMasterConfig(robot, problems), robot.bus.bitrate).worst;
+    EXPECT_TRUE(worst <= 0.8 || robot.axes[0].riders.empty()) << count << ": " << worst;
+  }
+}
+
 TEST(BusLoad, TheRateThatIsToldIsFeasibleWithThePlanOfThatRate) {
   const auto yaml = [](const std::string& period) {
     return "bus: {interface: can0, bitrate: 250000, sync_period: " + period +

@@ -62,6 +62,32 @@ TEST(PdoPlanner, AGenericServoNeedsOneFrameEachWayPerCycle) {
                           "tpdo3 /10: error_code digital_inputs"));
 }
 
+TEST(PdoPlanner, WhatIsWantedIfThereIsRoomTravelsWhereItCostsNoPdo) {
+  const DriveProfile profile = family("generic_cia402");
+  PdoNeeds what = needs(profile);
+  what.if_room = profile.feedback_if_room;
+  const PdoPlan plan = planned(profile, what);
+  EXPECT_THAT(lines(plan),
+              ElementsAre("rpdo1 /1: controlword target_position", "rpdo2 /10: target_velocity",
+                          "tpdo1 /1: statusword position_actual mode_display",
+                          "tpdo2 /2: velocity_actual torque_actual error_code",
+                          "tpdo3 /10: digital_inputs following_error"))
+      << "64 and 64 bits; TPDO 4 stays free";
+  EXPECT_THAT(plan.riders, ElementsAre("following_error"));
+}
+
+TEST(PdoPlanner, WhatIsWantedIfThereIsRoomGetsNoPdoOfItsOwn) {
+  const DriveProfile profile = family("generic_cia402");
+  PdoNeeds what = needs(profile);
+  what.if_room = {"following_error", "dc_link_voltage"};
+  what.feedback = {};
+  EXPECT_THAT(lines(planned(profile, what)),
+              testing::Contains("tpdo1 /1: statusword position_actual mode_display"));
+  EXPECT_TRUE(planned(profile, what).riders.empty()) << "8 bits are left, of 32";
+  what.feedback = {"digital_inputs"};
+  EXPECT_THAT(planned(profile, what).riders, ElementsAre("following_error")) << "the first of them";
+}
+
 TEST(PdoPlanner, ADamiaoServesAllItsModes) {
   const DriveProfile profile = family("damiao_dm");
   PdoNeeds what = needs(profile);

@@ -19,7 +19,7 @@ using testing::IsEmpty;
 const char* const kFull = R"(
 bus: {interface: vcan7, bitrate: 500000, sync_period: 0.01, node_id: 126, heartbeat: 0.25,
       sync_counter: 9, sync: external, listen: 0.5, reset: all, sync_window: 0.002,
-      time_interval: 2.5}
+      time_interval: 2.5, receive: all}
 joint_state_rate: 33.0
 recorder: {duration: 12.5, post_trigger: 1.5, directory: /tmp/recordings, keep: 7}
 axes:
@@ -75,6 +75,7 @@ TEST_F(RobotKeys, OfTheBus) {
   EXPECT_TRUE(bus.external_sync);
   EXPECT_EQ(bus.listen, milliseconds(500));
   EXPECT_TRUE(bus.reset_all);
+  EXPECT_TRUE(bus.receive_all);
   EXPECT_EQ(bus.sync_window, milliseconds(2));
   EXPECT_EQ(bus.time_interval, milliseconds(2500));
   EXPECT_EQ(robot.joint_state_rate, 33.0);
@@ -198,7 +199,7 @@ TEST(RobotDefaults, OfWhatIsNotGiven) {
   EXPECT_EQ(bus.node_id, 127);
   EXPECT_EQ(bus.heartbeat, milliseconds(100));
   EXPECT_EQ(bus.sync_counter, 0);
-  EXPECT_FALSE(bus.external_sync || bus.reset_all || bus.sync_window);
+  EXPECT_FALSE(bus.external_sync || bus.reset_all || bus.sync_window || bus.receive_all);
   EXPECT_EQ(bus.listen, milliseconds(150));
   EXPECT_EQ(bus.time_interval, milliseconds(0));
   EXPECT_EQ(loaded.robot.joint_state_rate, 50.0);

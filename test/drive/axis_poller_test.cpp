@@ -68,6 +68,26 @@ TEST_F(AxisPollerTest, ManyLooksReadNoOftenerThanTheIntervalAndDelayNothingElse)
   EXPECT_EQ(pass(5200ms, kAskVelocity, 4ms), 50) << "in turn";
 }
 
+TEST_F(AxisPollerTest, EachValueCarriesTheTimeOfItsAnswerAndIsUnknownOnceItIsTooOld) {
+  const int item = poller.add(velocity);
+  pass(100ms, kAskVelocity);
+  const Time answered = poller.value(item, now).stamp;
+  EXPECT_GT(answered, now - 60ms);
+  peer.forget(kAskVelocity);  // no answer from now on
+  pass(AxisPoller::kStale - (now - answered), kAskVelocity);
+  EXPECT_EQ(poller.value(item, answered + AxisPoller::kStale).stamp, answered);
+  EXPECT_FALSE(poller.value(item, answered + AxisPoller::kStale + 1ms).valid);
+}
+
+TEST_F(AxisPollerTest, OfMappedObjectsThoseAreReadThatAreOnlyLookedAt) {
+  velocity.slot = error.slot = 3;
+  EXPECT_EQ(poller.add(velocity), -1);
+  const int item = poller.add(error, AxisPoller::Reading::when_looked_at);
+  EXPECT_EQ(pass(1s, kAskError), 0) << "the drive may map it: nobody has to ask";
+  EXPECT_EQ(pass(1s, kAskError, 100ms), 10) << "the drive turned out not to";
+  EXPECT_EQ(poller.value(item, now).raw, 5u);
+}
+
 TEST_F(AxisPollerTest, AnObjectThatTheDriveRefusesIsNotAskedForAtEveryLook) {
   peer.replace(kAskError, "581 80 F4 60 00 00 00 02 06");
   poller.add(error, AxisPoller::Reading::when_looked_at);

@@ -52,6 +52,22 @@ class Boot(RobotTest):
                 for value, right in zip(values, expected):
                     self.assertAlmostEqual(value, right, delta=1e-3)
 
+    def test_values_that_are_known_tell_their_age_and_no_others(self):
+        def ages(axis):
+            return {"mode": (bool(axis.mode), axis.mode_age),
+                    "velocity": (not math.isnan(axis.velocity), axis.velocity_age),
+                    "effort": (not math.isnan(axis.effort), axis.effort_age),
+                    "following error": (not math.isnan(axis.following_error),
+                                        axis.following_error_age),
+                    "inputs": (axis.digital_inputs_valid, axis.digital_inputs_age)}
+        for name in self.AXES:
+            for what, (known, age) in ages(self.robot.axis(name)).items():
+                self.assertEqual(known, not math.isnan(age), f"{name} {what}")
+                self.assertTrue(not known or 0.0 <= age < 2.6, f"{name} {what}: {age} s")
+            status = wait_until(lambda: self.robot.diagnostic(name), f"status of {name}")
+            told = {value.key: value.value for value in status.values}
+            self.assertRegex(told["velocity age"], r"^[0-9.e-]+ s$", told)
+
     def test_joint_states_say_what_the_drives_count(self):
         """Counts per turn, gear and direction as config/robots/demo.yaml has them."""
         for name, counts in (("shoulder", 131072 * 100), ("elbow", -131072 * 80),

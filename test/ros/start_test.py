@@ -41,6 +41,23 @@ class WrongConfiguration(unittest.TestCase):
         self.assertNotEqual(process.wait(), 0)
         self.assertIn("10 problems", process.output())
 
+    def test_private_parameters_that_nobody_reads_are_refused(self):
+        for name in ("diagnostic_period", "realtime_prioritty"):
+            process = Process("bus_node", f"with_{name}", "config/robots/demo.yaml",
+                              interface="sim", **{name: 1})
+            self.assertEqual(process.wait(), 1)
+            self.assertTrue(any(name in line and "unknown" in line
+                                for line in process.output().splitlines()), process.output())
+
+    def test_profile_path_is_searched_before_the_package(self):
+        with tempfile.TemporaryDirectory() as folder:
+            with open(os.path.join(folder, "generic_cia402.yaml"), "w", encoding="ascii") as file:
+                file.write("name: generic_cia402\ncolour: red\n")
+            process = Process("bus_node", "own_profile", "config/robots/demo.yaml",
+                              interface="sim", profile_path=folder)
+            self.assertEqual(process.wait(), 1)
+            self.assertIn("colour", process.output())
+
 
 NODES = ("bus_node", "simulated_drives")
 
@@ -116,10 +133,13 @@ class MissingInterface(unittest.TestCase):
             self.assertEqual(axis.state, "unknown")
             self.assertFalse(axis.homed)
             self.assertTrue(math.isinf(axis.feedback_age))
+            for age in (axis.mode_age, axis.velocity_age, axis.effort_age,
+                        axis.following_error_age, axis.digital_inputs_age):
+                self.assertTrue(math.isnan(age), axis)
             self.assertTrue(axis.stamp.is_zero())
 
     def test_diagnostics_tell_what_is_missing(self):
-        self.robot.wait_diagnostic("bus", ERROR, "vcan9")
+        self.robot.wait_diagnostic("bus", ERROR, "vcan9 does not exist: plug")  # as README.md says
         wait_until(lambda: self.robot.bus_state, "bus_state")
         self.assertEqual(self.robot.bus_state.frames_sent, 0)
 

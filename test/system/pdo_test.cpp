@@ -75,7 +75,7 @@ TEST(StaleFeedback, OfDigitalInputsIsNotShownAsLow) {
   ASSERT_TRUE(scene.boot());
   scene.run(200ms);
   EXPECT_TRUE(scene.state("left").digital_inputs_valid);
-  lose(scene, 0x381);  // error code and inputs, with every tenth SYNC
+  lose(scene, 0x381);  // inputs and following error, with every tenth SYNC
   scene.run(500ms);
   EXPECT_FALSE(scene.state("left").digital_inputs_valid);
   EXPECT_EQ(scene.state("left").digital_inputs, 0u);
@@ -322,6 +322,69 @@ TEST(PlannedPdos, OfEveryModeBootOnTheDamiao) {
       expectToMove(scene, "joint", std::string(mode) + modes);
     }
   }
+}
+
+/// The largest following error that is told while the joint moves, and when it was told.
+double mostFollowingError(Scene& scene, int looks_per_second) {
+  double most = 0.0;
+  const Duration pause = Duration(1s) / looks_per_second;
+  for (Duration past{}; past < 3s; past += pause) {
+    scene.axis("left").look();
+    scene.run(pause);
+    most = std::max(most, std::abs(scene.state("left").following_error));
+  }
+  return most;
+}
+
+/// SDO requests to node 1 for 60F4h, from now on.
+void countRequests(Scene& scene, int& requests) {
+  scene.world().bus().setMonitor([&requests](const can::Frame& frame, Time) {
+    if (frame.id == 0x601 && frame.data[1] == 0xF4 && frame.data[2] == 0x60) ++requests;
+  });
+}
+
+// The simulated drive lags behind its set-points by speed times time constant: 0.5 rad/s, 20 ms.
+constexpr char kLag[] = "time_constant: 0.02";
+constexpr double kMostError = 1.5 * 1.0 / 3.0 * 0.02;  // a cubic of 1 rad in 3 s
+
+TEST(FollowingError, TravelsByPdoWhereThereIsRoomAndIsTheDrives) {
+  Scene scene(loadText(genericPair(", simulation: {" + std::string(kLag) + "}")));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
+  int requests = 0;
+  countRequests(scene, requests);
+  ASSERT_TRUE(scene.move({1.0, 1.0}, 3s).success);
+  EXPECT_NEAR(mostFollowingError(scene, 100), kMostError, 0.1 * kMostError);
+  EXPECT_EQ(requests, 0);
+  EXPECT_LE(scene.now() - scene.state("left").stamps.following_error, 44ms);
+}
+
+TEST(FollowingError, IsPolledWhereTheDriveDoesNotMapItAndNobodyIsWarned) {
+  Scene scene(loadText(
+      genericPair(", simulation: {" + std::string(kLag) +
+                  ", with: {dictionary: [[0x60F4, 0, following_error, int32, ro, '-', 0]]}}")));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  EXPECT_THAT(scene.told(), testing::Not(HasSubstr("only defaults ask for")));
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
+  int requests = 0;
+  countRequests(scene, requests);
+  ASSERT_TRUE(scene.move({1.0, 1.0}, 3s).success);
+  EXPECT_NEAR(mostFollowingError(scene, 10), kMostError, 0.1 * kMostError);
+  EXPECT_GT(requests, 10);
+  EXPECT_TRUE(scene.state("left").digital_inputs_valid) << "what stands beside it still comes";
+}
+
+TEST(FollowingError, MayBeMissingInTheDrive) {
+  Scene scene(loadText(genericPair(", simulation: {with: {without: [0x60F4]}}")));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  EXPECT_THAT(scene.told(), testing::Not(HasSubstr("only defaults ask for")));
+  EXPECT_TRUE(std::isnan(scene.state("left").following_error));
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
+  ASSERT_TRUE(scene.move({1.0, 1.0}, 3s).success);
+  scene.run(4s);
+  EXPECT_NEAR(scene.position("left"), 1.0, 0.001);
+  EXPECT_LT(std::abs(scene.state("left").following_error), 0.001) << "set-point minus position";
+  EXPECT_TRUE(scene.state("left").digital_inputs_valid);
 }
 
 TEST(PlannedPdos, AModeThatWasNotPlannedIsRefusedInWords) {

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <bitset>
 #include <string>
 #include <vector>
 
@@ -205,6 +206,7 @@ class Robot final : private canopen::MasterListener {
   config::RobotConfig config_;
   EventSink& events_;
   BusListener listener_;
+  std::bitset<2048> foreseen_;     ///< identifiers that receive filters pass
   std::vector<Command> deferred_;  ///< until the bus was listened to for long enough
   canopen::Master master_;
   std::vector<drive::Axis> axes_;

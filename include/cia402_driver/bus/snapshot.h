@@ -25,6 +25,7 @@ struct NodeSnapshot {
   canopen::Node::Identity identity;        ///< zeros where not read
   canopen::Node::Supervision supervision;  ///< as found at the last boot
   bool may_be_absent = false;              ///< `optional`, and absent or lost
+  bool own_cob_ids = false;                ///< it insists on COB-IDs that no receive filter passes
   canopen::SdoClient::Counters sdo;        ///< since start
 };
 

@@ -35,6 +35,14 @@ struct LinkSettings {
                   restarts = 0;
   };
   std::optional<Events> events;
+  /// Frames and bytes of data since the interface was created, counted by the kernel: all that the
+  /// controller received and sent, whatever filters sockets have.
+  struct Traffic {
+    std::uint64_t frames_received = 0, frames_sent = 0, bytes_received = 0, bytes_sent = 0;
+    std::uint64_t frames() const { return frames_received + frames_sent; }
+    std::uint64_t bytes() const { return bytes_received + bytes_sent; }
+  };
+  std::optional<Traffic> traffic;
 };
 
 /// Something about the settings that people should know or change.

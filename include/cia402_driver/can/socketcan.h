@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "cia402_driver/can/bus.h"
 #include "cia402_driver/can/bus_off_recovery.h"
 #include "cia402_driver/can/pending_queue.h"
+#include "cia402_driver/can/receive_filters.h"
 
 namespace cia402::can {
 
@@ -20,13 +22,6 @@ class LinkProbe;
 class LinkReader;
 struct LinkSettings;
 class RawSocket;
-
-/// Frames to be received: those whose identifier equals `id` in the bits of `mask`.
-struct ReceiveFilter {
-  std::uint32_t id = 0;
-  std::uint32_t mask = 0;
-  bool extended = false;  ///< 29-bit identifiers; false: 11-bit
-};
 
 /// A CAN interface of Linux. Time stamps are the kernel's, mapped to CLOCK_MONOTONIC, which is the
 /// BusClock of the real world; a step of the wall clock does not reach them.
@@ -47,7 +42,8 @@ struct ReceiveFilter {
 /// drive after it.
 ///
 /// Frames sent here are seen by other sockets on this machine, not by this one. Nothing allocates
-/// once the object exists, but describe(), setFilters() and opening an interface. Not thread-safe.
+/// once the object exists, but describe(), setFilters() and opening an interface. Not thread-safe
+/// but for setFilters().
 class SocketCan final : public Interface {
  public:
   struct Options {
@@ -92,7 +88,9 @@ class SocketCan final : public Interface {
   std::string recovery() const override { return recovery_note_; }
   std::optional<ErrorCounters> errorCounters() const override { return error_counters_; }
 
-  /// Replaces the kernel's receive filters; an empty list receives everything.
+  /// Replaces the kernel's receive filters; an empty list receives everything. Any thread may call
+  /// it, and should, but the one of the cycle: the kernel may let it wait while another process
+  /// configures interfaces. Only opening or losing the interface waits for it.
   void setFilters(std::vector<ReceiveFilter> filters);
   /// The last error frame in words, or empty.
   std::string lastErrorFrame() const;
@@ -112,6 +110,8 @@ class SocketCan final : public Interface {
   void countOverflows();
   std::string describeMissing() const;
   void becomeUnusable(BusState state);
+  void closeSocket();
+  int openSocket(int interface_index);
   void handleError(int error);
   void handleErrorFrame(const Frame& frame, Time stamp);
   void countStale() { counters_.frames_stale = pending_.stale(); }
@@ -123,6 +123,7 @@ class SocketCan final : public Interface {
   Options options_;
   std::unique_ptr<LinkProbe> probe_;
   std::unique_ptr<RawSocket> socket_;
+  std::mutex opening_;  ///< the socket is opened or closed, or gets its filters
   PendingQueue pending_;
   std::unique_ptr<LinkReader> reader_;
   BusOffRecovery recovery_;

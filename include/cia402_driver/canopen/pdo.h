@@ -21,6 +21,9 @@ struct PdoEntry {
   std::uint8_t bits = 0;  ///< 1..64
   std::string name;       ///< for messages
   bool optional = false;  ///< left out where the drive does not have it or cannot map it
+  /// Wanted only where it costs nothing: left out where the drive refuses the mapping for whatever
+  /// reason, and no cause for a warning.
+  bool if_room = false;
 };
 
 /// Transmission types (CiA 301, 7.5.2.35 and 7.5.2.37).

@@ -29,6 +29,8 @@ struct BusConfig {
   bool reset_all = false;  ///< starts with one NMT reset to all nodes, also those of others
   std::optional<Duration> sync_window;  ///< 1007h of the drives; none: not written
   Duration time_interval{0};            ///< of TIME messages; zero: none
+  /// Frames that nothing in the configuration needs are received, too, and recorded.
+  bool receive_all = false;
 };
 
 /// Goal and path tolerances of one joint in a group; 0: none.

@@ -88,6 +88,12 @@ struct AxisState {
   std::uint32_t digital_inputs = 0;   ///< 60FDh
   bool digital_inputs_valid = false;  ///< false: not received, or not in time
   canopen::NodeHealth health = canopen::NodeHealth::absent;
+
+  /// When each value was on the wire, or its SDO answer taken; of a value that is unknown it says
+  /// nothing.
+  struct Stamps {
+    Time velocity{}, effort{}, following_error{}, mode{}, digital_inputs{};
+  } stamps;
 };
 
 /// One CiA 402 axis on a node: decodes feedback, drives the state machine, runs procedures, encodes

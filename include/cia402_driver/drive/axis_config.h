@@ -82,6 +82,8 @@ struct AxisConfig {
   bool pdos_planned = false;       ///< for this cycle; another one may get another plan
   /// Of what is in `pdos`, the objects that only defaults ask for.
   std::vector<std::string> default_objects;
+  /// Of these, the feedback that is there only because its PDOs had room for it.
+  std::vector<std::string> riders;
   std::vector<std::string> lacks;  ///< objects of the profile that this drive does not have
   Duration rpdo_timeout{0};        ///< the drive reacts when none came for so long; zero: never
   std::vector<NamedWrite> writes;  ///< the user's extra start-up writes

@@ -247,12 +247,13 @@ struct DriveProfile {
   std::vector<PdoLayout> pdos;
   unsigned max_rpdos = 4, max_tpdos = 4;
   unsigned max_pdo_entries = 8;
-  std::vector<PdoLayout> fixed_pdos;       ///< with a mapping that the drive does not let change
-  bool cob_ids_of_drive = false;           ///< COB-IDs of PDOs are fixed: read and used
-  bool rpdo_deadline = false;              ///< the drive reacts when RPDOs stay away (1400h:05)
-  bool type_255_by_timer = false;          ///< TPDOs of that type come by event timer only
-  std::vector<std::string> default_modes;  ///< an axis can switch to; empty: all
-  std::vector<std::string> feedback;       ///< by PDO where there is room, most important first
+  std::vector<PdoLayout> fixed_pdos;          ///< with a mapping that the drive does not let change
+  bool cob_ids_of_drive = false;              ///< COB-IDs of PDOs are fixed: read and used
+  bool rpdo_deadline = false;                 ///< the drive reacts when RPDOs stay away (1400h:05)
+  bool type_255_by_timer = false;             ///< TPDOs of that type come by event timer only
+  std::vector<std::string> default_modes;     ///< an axis can switch to; empty: all
+  std::vector<std::string> feedback;          ///< by PDO where there is room, most important first
+  std::vector<std::string> feedback_if_room;  ///< only in PDOs that travel for something else
   bool pdo_map_count_may_be_read_only = false;
   std::optional<std::uint8_t> sync_counter;  ///< overflow value wanted in 1019h; none: no counter
   bool has_sync_counter_object = true;       ///< 1019h exists

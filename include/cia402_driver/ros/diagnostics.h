@@ -8,8 +8,8 @@
 #include <string>
 
 #include "cia402_driver/bus/runner.h"
-#include "cia402_driver/can/link_settings.h"
 #include "cia402_driver/config/robot.h"
+#include "cia402_driver/ros/link_watch.h"
 
 namespace cia402::ros_node {
 
@@ -18,9 +18,9 @@ namespace cia402::ros_node {
 class Diagnostics {
  public:
   Diagnostics(ros::NodeHandle& node, ros::NodeHandle& private_node, bus::BusRunner& runner,
-              const config::RobotConfig& robot);
+              LinkWatch& link, const config::RobotConfig& robot);
 
-  /// Publishes once a second; call it ten times as often.
+  /// Publishes once a second, and has LinkWatch look; call it ten times as often.
   void update();
 
  private:
@@ -33,7 +33,7 @@ class Diagnostics {
   bus::BusRunner& runner_;
   const config::RobotConfig& robot_;
   bus::RobotSnapshot snapshot_;
-  can::LinkReader link_reader_;
+  LinkWatch& link_;
   std::set<std::string> findings_told_;
   diagnostic_updater::Updater updater_;
 };

@@ -11,6 +11,7 @@
 
 #include "cia402_driver/bus/runner.h"
 #include "cia402_driver/config/robot.h"
+#include "cia402_driver/ros/link_watch.h"
 
 namespace cia402::ros_node {
 
@@ -19,7 +20,7 @@ class Publishers {
  public:
   /// @param node where joint_states is published, @param private_node for the rest.
   Publishers(ros::NodeHandle& node, ros::NodeHandle& private_node, bus::BusRunner& runner,
-             const config::RobotConfig& robot);
+             const LinkWatch& link, const config::RobotConfig& robot);
 
   /// Sends joint_states, and the states of groups to those who listen; at the configured rate.
   void publishJointStates();
@@ -33,6 +34,7 @@ class Publishers {
   bool changed(const cia402_driver::AxisStates& states) const;
 
   bus::BusRunner& runner_;
+  const LinkWatch& link_;
   const config::RobotConfig& robot_;
   sensor_msgs::JointState joint_states_;
   cia402_driver::AxisStates last_states_;

@@ -8,6 +8,7 @@
 #include "cia402_driver/bus/runner.h"
 #include "cia402_driver/can/socketcan.h"
 #include "cia402_driver/canopen/cyclic_identifiers.h"
+#include "cia402_driver/canopen/received_identifiers.h"
 #include "cia402_driver/ros/call_desk.h"
 #include "cia402_driver/ros/command_call.h"
 #include "cia402_driver/ros/command_line.h"
@@ -17,6 +18,7 @@
 #include "cia402_driver/ros/event_loop.h"
 #include "cia402_driver/ros/fault_service.h"
 #include "cia402_driver/ros/frames.h"
+#include "cia402_driver/ros/link_watch.h"
 #include "cia402_driver/ros/lss_services.h"
 #include "cia402_driver/ros/process_signals.h"
 #include "cia402_driver/ros/publishers.h"
@@ -61,22 +63,39 @@ Duration tickOf(Duration joint_states) {
   return joint_states / parts;
 }
 
-/// The interface the configuration names. `simulation` points into it where it is simulated.
-std::unique_ptr<can::Interface> openInterface(const LoadedRobot& loaded,
-                                              sim::SimulatedInterface*& simulation) {
+/// The interface that the configuration names: one of these two.
+struct OpenInterface {
+  std::unique_ptr<can::Interface> interface;  ///< null: the problem has been told
+  can::SocketCan* socket = nullptr;           ///< the same, where it is one of the kernel
+  sim::SimulatedInterface* simulation = nullptr;
+};
+
+OpenInterface openSocket(const LoadedRobot& loaded) {
   const config::BusConfig& bus = loaded.robot.bus;
-  if (bus.interface != "sim") {
-    can::SocketCan::Options options;
-    options.bitrate = static_cast<unsigned>(bus.bitrate);
-    options.cyclic_lifetime = 2 * bus.sync_period;
-    for (const std::uint32_t id : canopen::cyclicIdentifiers(loaded.master)) options.cyclic.set(id);
-    return std::make_unique<can::SocketCan>(bus.interface, options);
+  can::SocketCan::Options options;
+  options.bitrate = static_cast<unsigned>(bus.bitrate);
+  options.cyclic_lifetime = 2 * bus.sync_period;
+  for (const std::uint32_t id : canopen::cyclicIdentifiers(loaded.master)) options.cyclic.set(id);
+  if (!bus.receive_all) {
+    options.filters = can::receiveFilters(canopen::receivedIdentifiers(loaded.master));
   }
+  auto socket = std::make_unique<can::SocketCan>(bus.interface, options);
+  OpenInterface open;
+  open.socket = socket.get();
+  open.interface = std::move(socket);
+  return open;
+}
+
+OpenInterface openInterface(const LoadedRobot& loaded) {
+  const config::BusConfig& bus = loaded.robot.bus;
+  if (bus.interface != "sim") return openSocket(loaded);
+  OpenInterface open;
   const auto axes = ros_node::loadSimulation(loaded.robot);
-  if (!axes) return nullptr;
+  if (!axes) return open;
   auto interface = std::make_unique<sim::SimulatedInterface>(*axes, bus.bitrate, bus::realNow());
-  simulation = interface.get();
-  return interface;
+  open.simulation = interface.get();
+  open.interface = std::move(interface);
+  return open;
 }
 
 /// Injects into a drive that lives in the bus thread.
@@ -106,9 +125,9 @@ int main(int argc, char** argv) {
 
   const auto loaded = ros_node::loadRobot(private_node);
   if (!loaded) return 1;
-  sim::SimulatedInterface* simulation = nullptr;
-  std::unique_ptr<can::Interface> interface = openInterface(*loaded, simulation);
-  if (!interface) return 1;
+  OpenInterface open = openInterface(*loaded);
+  if (!open.interface) return 1;
+  sim::SimulatedInterface* const simulation = open.simulation;
   ROS_INFO_STREAM("PDO plan:\n" << config::pdoTable(loaded->master, loaded->robot.bus.bitrate));
 
   ros_node::EventLoop loop;
@@ -121,11 +140,12 @@ int main(int argc, char** argv) {
   options.priority = loaded->options.realtime_priority;
   if (simulation != nullptr) options.time = bus::BusTime::Kind::simulated;
   bus::ReplyLog replies(loaded->robot.axes.size());
-  bus::BusRunner runner(loaded->robot, loaded->master, std::move(interface), options);
+  bus::BusRunner runner(loaded->robot, loaded->master, std::move(open.interface), options);
   ROS_INFO_STREAM(runner.recordings().describe());
   ros_node::EventLog events(private_node, runner, replies, loaded->robot);
-  ros_node::Publishers publishers(node, private_node, runner, loaded->robot);
-  ros_node::Diagnostics diagnostics(node, private_node, runner, loaded->robot);
+  ros_node::LinkWatch link(loaded->robot.bus, open.socket);
+  ros_node::Publishers publishers(node, private_node, runner, link, loaded->robot);
+  ros_node::Diagnostics diagnostics(node, private_node, runner, link, loaded->robot);
   ros_node::Frames frames(runner, loaded->robot);
   ros_node::CommandTopics topics(private_node, runner, replies, loaded->robot);
   runner.start();
