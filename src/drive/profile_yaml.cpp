@@ -1,4 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 
@@ -27,6 +28,9 @@ void readPdoRules(YamlSection& profile_section, DriveProfile& profile) {
   section.readInteger("max_rpdos", profile.max_rpdos, 1, 16);
   section.readInteger("max_tpdos", profile.max_tpdos, 1, 16);
   section.readInteger("max_entries", profile.max_pdo_entries, 1, 64);
+  if (section.readInteger("fixed_entries", profile.fixed_pdo_entries, 1, 64)) {
+    profile.max_pdo_entries = std::min(profile.max_pdo_entries, profile.fixed_pdo_entries);
+  }
   section.read("map_count_may_be_read_only", profile.pdo_map_count_may_be_read_only);
   if (const auto cob_ids = section.get("cob_ids")) {
     profile.cob_ids_of_drive = cob_ids->oneOf({"predefined", "drive"}).value_or(0) == 1;

@@ -8,6 +8,7 @@ void readCommunication(DefinitionReader& reader, DeviceBehaviour& out) {
   reader.read("sdo_latency", out.sdo_latency);
   reader.read("ignores_nmt_reset", out.ignores_nmt_reset);
   reader.read("map_count_read_only", out.map_count_read_only);
+  reader.read("fixed_map_entries", out.fixed_map_entries, 0, 64);
   reader.read("accepts_plain_sync", out.accepts_plain_sync);
   reader.read("generic_length_abort", out.generic_length_abort);
   reader.read("upload_without_size", out.upload_without_size);

@@ -22,7 +22,9 @@ class Mapping {
                              std::uint64_t count, PdoDirection direction);
 
   /// Takes the record `index` with its sub-index 0 over; an impossible one becomes empty.
-  void build(ObjectDictionary& dictionary, std::uint16_t index, PdoDirection direction);
+  /// @param fillers entries at its end that are 0 are none.
+  void build(ObjectDictionary& dictionary, std::uint16_t index, PdoDirection direction,
+             bool fillers);
 
   bool empty() const { return objects_.empty(); }
   /// Data bytes of the PDO.

@@ -28,7 +28,8 @@ inline constexpr std::uint8_t kSyncStart = 6;
 bool isValid(const SlaveContext& context, const PdoRecords& pdo);
 /// Whether sub-index 0 of the mapping cannot be written and follows the entries instead.
 bool countFollowsEntries(const SlaveContext& context, const PdoRecords& pdo);
-/// Sets sub-index 0 of such a mapping to the number of entries before the first zero.
+/// Sets sub-index 0 of such a mapping to the number of entries before the first zero, or to the
+/// number that it always has.
 void countEntries(SlaveContext& context, const PdoRecords& pdo);
 
 /// Checks a write to a communication or mapping record. @return abort code or 0.

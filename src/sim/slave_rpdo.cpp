@@ -33,7 +33,8 @@ void SlaveRpdo::configure() {
   synchronous_ = context_.value({index, pdo_sub::kType}, 255) <= kMaxSync;
   event_time_ = std::chrono::milliseconds(
       static_cast<std::int64_t>(context_.value({index, pdo_sub::kEventTimer})));
-  mapping_.build(context_.dictionary, records_.mapping, records_.direction);
+  const bool fillers = context_.behaviour.fixed_map_entries != 0;
+  mapping_.build(context_.dictionary, records_.mapping, records_.direction, fillers);
   stop();
 }
 

@@ -40,7 +40,8 @@ void SlaveTpdo::configure() {
   inhibit_time_ = kInhibitUnit * number(pdo_sub::kInhibitTime, 0);
   event_time_ = std::chrono::milliseconds(number(pdo_sub::kEventTimer, 0));
   sync_start_ = static_cast<std::uint8_t>(number(pdo_sub::kSyncStart, 0));
-  mapping_.build(context_.dictionary, records_.mapping, records_.direction);
+  const bool fillers = context_.behaviour.fixed_map_entries != 0;
+  mapping_.build(context_.dictionary, records_.mapping, records_.direction, fillers);
   if (running_) start();
 }
 

@@ -62,7 +62,7 @@ homing:
 startup: [{object: "2001:02", type: uint16, value: 0x1FF}, {object: plain, value: 9}]
 before_enable: [{object: target_position, from: position_actual}]
 pdo_rules: {max_rpdos: 5, max_tpdos: 6, max_entries: 3, map_count_may_be_read_only: true,
-  cob_ids: drive, rpdo_deadline: true, fixed: {tpdo6: [statusword]}}
+  fixed_entries: 6, cob_ids: drive, rpdo_deadline: true, fixed: {tpdo6: [statusword]}}
 pdos:
   rpdo1: [controlword, target_position]
   rpdo5: {objects: [target_torque], transmission: 254, event_timer: 0.123, refresh_every: 7,
@@ -233,6 +233,7 @@ TEST_F(ProfileKeys, PdosAreAsWritten) {
   EXPECT_EQ(profile.max_tpdos, 6U);
   EXPECT_EQ(profile.max_pdo_entries, 3U);
   EXPECT_TRUE(profile.pdo_map_count_may_be_read_only);
+  EXPECT_EQ(profile.fixed_pdo_entries, 6U);
   EXPECT_TRUE(profile.cob_ids_of_drive);
   EXPECT_TRUE(profile.rpdo_deadline);
   ASSERT_EQ(profile.fixed_pdos.size(), 1U);
@@ -293,6 +294,7 @@ TEST(ProfileDefaults, AreThoseOfTheStandards) {
   EXPECT_EQ(profile.max_rpdos, 4U);
   EXPECT_EQ(profile.max_tpdos, 4U);
   EXPECT_EQ(profile.max_pdo_entries, 8U);
+  EXPECT_EQ(profile.fixed_pdo_entries, 0U);
   EXPECT_FALSE(profile.pdo_map_count_may_be_read_only || profile.cob_ids_of_drive ||
                profile.rpdo_deadline);
   EXPECT_EQ(profile.homing.kind, HomingSpec::Kind::none);
@@ -364,6 +366,10 @@ TEST(ProfileMistakes, AreToldWithWhatToDo) {
       {"pdos: {tpdo1: {objects: [statusword], cob_id: \"$NODEID+0x17F\"}}\n", "+0x17F`"},
       {"pdo_rules: {max_entries: 1}\npdos: {tpdo1: [statusword, mode_display]}\n",
        "maps 2 objects, the drive takes 1 in a PDO"},
+      {"pdo_rules: {fixed_entries: 1}\npdos: {tpdo1: [statusword, mode_display]}\n",
+       "maps 2 objects, the drive takes 1 in a PDO"},
+      {"pdo_rules: {fixed_entries: 65}\n", "pdo_rules/fixed_entries: must be between 1 and 64"},
+      {"pdo_rules: {fixed_entries: all}\n", "pdo_rules/fixed_entries"},
       {"pdo_rules: {max_pdos: 2}\npdos: {tpdo3: [statusword]}\n",
        "there are rpdo1 to rpdo2 and tpdo1 to tpdo2"},
       {"default_modes: [cps]\n", "profile full has no mode `cps`"},

@@ -63,6 +63,8 @@ constexpr Habit kHabits[] = {
      "communication/leaves_rubbish: true", "", ""},
     {"AnswersFourBytes", "canopen-python/canopen#395", "communication/answers_four_bytes: true", "",
      ""},
+    {"HasAFixedNumberOfMappedObjects", "Curtis 1232E (canopen-python/canopen#88)",
+     "communication/fixed_map_entries: 8", "", "pdo_rules: {fixed_entries: 8}", true},
     {"AnswersLate", "ros-industrial/ros2_canopen#194", "communication/sdo_latency: 0.03", "", ""},
     {"BootsLate", "231 ms in a trace of an unknown maker", "communication/boot_time: 0.231", "",
      ""},

@@ -247,6 +247,7 @@ struct DriveProfile {
   std::vector<PdoLayout> pdos;
   unsigned max_rpdos = 4, max_tpdos = 4;
   unsigned max_pdo_entries = 8;
+  unsigned fixed_pdo_entries = 0;  ///< every mapping has so many, unused ones are 0; 0: as needed
   std::vector<PdoLayout> fixed_pdos;       ///< with a mapping that the drive does not let change
   bool cob_ids_of_drive = false;           ///< COB-IDs of PDOs are fixed: read and used
   bool rpdo_deadline = false;              ///< the drive reacts when RPDOs stay away (1400h:05)

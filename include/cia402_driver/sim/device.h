@@ -34,13 +34,15 @@ struct DeviceBehaviour {
   Duration sdo_latency{std::chrono::microseconds(200)};  ///< request to answer
   Duration store_time{};  ///< more for a write to 1010h or 1011h: the memory is slow
   bool ignores_nmt_reset = false;
-  bool starts_operational = false;   ///< enters NMT operational by itself after boot-up
-  Duration boots_again_after{};      ///< sends boot-up a second time so long after; 0: does not
-  Duration restart_after_bus_off{};  ///< leaves bus-off by itself after this time; 0: never
-  bool map_count_read_only = false;  ///< sub0 of 16xxh/1Axxh refuses writes with 0x06010002; it
-                                     ///< follows the entries written, which may be at any time
-  bool accepts_plain_sync = true;    ///< take an empty SYNC although 1019h is not 0
-  bool sdo_silent = false;           ///< never answers SDO
+  bool starts_operational = false;     ///< enters NMT operational by itself after boot-up
+  Duration boots_again_after{};        ///< sends boot-up a second time so long after; 0: does not
+  Duration restart_after_bus_off{};    ///< leaves bus-off by itself after this time; 0: never
+  bool map_count_read_only = false;    ///< sub0 of 16xxh/1Axxh refuses writes with 0x06010002; it
+                                       ///< follows the entries written, which may be at any time
+  std::int64_t fixed_map_entries = 0;  ///< sub0 is always this and refuses writes likewise; entries
+                                       ///< that are 0 map nothing (Curtis 1232E); 0: as written
+  bool accepts_plain_sync = true;      ///< take an empty SYNC although 1019h is not 0
+  bool sdo_silent = false;             ///< never answers SDO
 
   // SDO server (7.2.4.3).
   bool generic_length_abort = false;  ///< 0x06070010 for every wrong length instead of ...12, ...13
