@@ -88,6 +88,13 @@ void Mapping::build(ObjectDictionary& dictionary, std::uint16_t index, PdoDirect
   }
 }
 
+std::optional<unsigned> Mapping::placeOf(ObjectId id) const {
+  for (const Object& object : objects_) {
+    if (object.entry != nullptr && object.entry->id == id) return object.shift;
+  }
+  return std::nullopt;
+}
+
 std::uint64_t Mapping::pack() const {
   std::uint64_t data = 0;
   for (const Object& object : objects_) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "slave_context.h"
@@ -26,6 +27,8 @@ class Mapping {
   void build(ObjectDictionary& dictionary, std::uint16_t index, PdoDirection direction,
              bool fillers);
 
+  /// Where the object lies in the data: its lowest bit. Nothing: it is not mapped.
+  std::optional<unsigned> placeOf(ObjectId id) const;
   bool empty() const { return objects_.empty(); }
   /// Data bytes of the PDO.
   std::uint8_t size() const { return static_cast<std::uint8_t>((bits_ + 7U) / 8U); }

@@ -32,6 +32,9 @@ bool countFollowsEntries(const SlaveContext& context, const PdoRecords& pdo);
 /// number that it always has.
 void countEntries(SlaveContext& context, const PdoRecords& pdo);
 
+/// Sets bit 30 of the COB-ID of a TPDO, where the device insists on it.
+void setRtrBit(SlaveContext& context, const PdoRecords& pdo);
+
 /// Checks a write to a communication or mapping record. @return abort code or 0.
 std::uint32_t checkCommunication(const SlaveContext& context, const PdoRecords& pdo,
                                  const Entry& entry, std::uint64_t number);
