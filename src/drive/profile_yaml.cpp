@@ -194,6 +194,8 @@ void readBehaviour(YamlSection& section, DriveProfile& profile) {
   section.read("warning_stops", profile.warning_stops);
   readModeChange(section, profile);
   section.readInteger("fault_reset_tries", profile.fault_reset_tries, 1, 20);
+  readDuration(section, "fault_reset_nmt_stop", Range{0.0, 10.0, false},
+               profile.fault_reset_nmt_stop);
   section.read("nmt_reset_node", profile.nmt_reset_node);
   readQuickStop(section, profile);
   readSync(section, profile);

@@ -48,6 +48,8 @@ output_shaft: true
 halt_supported: false
 warning_stops: true
 mode_change: disabled
+fault_reset_tries: 4
+fault_reset_nmt_stop: 0.15
 quick_stop_holds: [5, -6]
 sync: {counter: 12, counter_object: true, period_object: false, period_step: 0.001}
 heartbeat: {producer: false, consumer: false, node_guarding: true}
@@ -208,6 +210,8 @@ TEST_F(ProfileKeys, BehaviourIsAsWritten) {
   EXPECT_THAT(profile.parameters.save, ElementsAre(2, 3));
   EXPECT_THAT(profile.parameters.restore, ElementsAre(4));
   EXPECT_EQ(profile.parameters.timeout, milliseconds(4500));
+  EXPECT_EQ(profile.fault_reset_tries, 4);
+  EXPECT_EQ(profile.fault_reset_nmt_stop, milliseconds(150));
 }
 
 TEST_F(ProfileKeys, WritesAreAsWritten) {
@@ -297,6 +301,8 @@ TEST(ProfileDefaults, AreThoseOfTheStandards) {
   EXPECT_EQ(profile.fixed_pdo_entries, 0U);
   EXPECT_FALSE(profile.pdo_map_count_may_be_read_only || profile.cob_ids_of_drive ||
                profile.rpdo_deadline);
+  EXPECT_EQ(profile.fault_reset_tries, 1);
+  EXPECT_EQ(profile.fault_reset_nmt_stop, Duration::zero());
   EXPECT_EQ(profile.homing.kind, HomingSpec::Kind::none);
   EXPECT_FALSE(profile.mode("csp")->cyclic);
   EXPECT_EQ(profile.mode("csp")->handshake, Handshake::none);
@@ -376,6 +382,8 @@ TEST(ProfileMistakes, AreToldWithWhatToDo) {
       {"feedback: [controlword]\n", "`controlword` cannot be mapped into a TPDO"},
       {"parameters: {save: []}\n", "must be a list of sub-indices"},
       {"parameters: {restore: [128]}\n", "must be between 1 and 127"},
+      {"fault_reset_nmt_stop: 11\n", "fault_reset_nmt_stop"},
+      {"fault_reset_nmt_stop: long\n", "fault_reset_nmt_stop"},
       {"timing: {boot: 0}\n", "timing/boot"},
       {"timing: {sdo_retries: 11}\n", "timing/sdo_retries: must be between 0 and 10"},
       {"heartbeat: {producr: false}\n", "did you mean `producer`"},

@@ -236,6 +236,9 @@ struct DriveProfile {
   bool halt_supported = true;
   ModeChange mode_change;
   int fault_reset_tries = 1;  ///< edges of controlword bit 7 that it may take, 1 to 20
+  /// Where these did not help the node is told NMT stop, so much later start, and resets once more;
+  /// 0: it is not.
+  Duration fault_reset_nmt_stop{0};
   /// NMT reset node must not be sent: the drive disturbs the bus while it starts, or does not come
   /// back. Its communication is reset instead.
   bool nmt_reset_node = true;
