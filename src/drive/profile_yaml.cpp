@@ -98,6 +98,7 @@ void readParameters(YamlSection& profile_section, DriveProfile& profile) {
   readSubindices(section, "save", profile.parameters.save);
   readSubindices(section, "restore", profile.parameters.restore);
   readDuration(section, "timeout", Range{0.001, 600.0, false}, profile.parameters.timeout);
+  section.read("power_cycle_after_save", profile.parameters.power_cycle_after_save);
   section.finish();
 }
 

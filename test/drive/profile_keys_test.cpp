@@ -55,7 +55,7 @@ sync: {counter: 12, counter_object: true, period_object: false, period_step: 0.0
 heartbeat: {producer: false, consumer: false, node_guarding: true}
 timing: {boot: 1.5, state_change: 2.5, mode_change: 3.5, brake_release: 0.25, sdo: 0.75,
   sdo_retries: 3}
-parameters: {save: [2, 3], restore: [4], timeout: 4.5}
+parameters: {save: [2, 3], restore: [4], timeout: 4.5, power_cycle_after_save: true}
 homing:
   kind: drive
   methods: {-1: to the stop, 35: here}
@@ -210,6 +210,7 @@ TEST_F(ProfileKeys, BehaviourIsAsWritten) {
   EXPECT_THAT(profile.parameters.save, ElementsAre(2, 3));
   EXPECT_THAT(profile.parameters.restore, ElementsAre(4));
   EXPECT_EQ(profile.parameters.timeout, milliseconds(4500));
+  EXPECT_TRUE(profile.parameters.power_cycle_after_save);
   EXPECT_EQ(profile.fault_reset_tries, 4);
   EXPECT_EQ(profile.fault_reset_nmt_stop, milliseconds(150));
 }
@@ -303,6 +304,7 @@ TEST(ProfileDefaults, AreThoseOfTheStandards) {
                profile.rpdo_deadline);
   EXPECT_EQ(profile.fault_reset_tries, 1);
   EXPECT_EQ(profile.fault_reset_nmt_stop, Duration::zero());
+  EXPECT_FALSE(profile.parameters.power_cycle_after_save);
   EXPECT_EQ(profile.homing.kind, HomingSpec::Kind::none);
   EXPECT_FALSE(profile.mode("csp")->cyclic);
   EXPECT_EQ(profile.mode("csp")->handshake, Handshake::none);
@@ -384,6 +386,7 @@ TEST(ProfileMistakes, AreToldWithWhatToDo) {
       {"parameters: {restore: [128]}\n", "must be between 1 and 127"},
       {"fault_reset_nmt_stop: 11\n", "fault_reset_nmt_stop"},
       {"fault_reset_nmt_stop: long\n", "fault_reset_nmt_stop"},
+      {"parameters: {power_cycle_after_save: 3}\n", "parameters/power_cycle_after_save"},
       {"timing: {boot: 0}\n", "timing/boot"},
       {"timing: {sdo_retries: 11}\n", "timing/sdo_retries: must be between 0 and 10"},
       {"heartbeat: {producr: false}\n", "did you mean `producer`"},

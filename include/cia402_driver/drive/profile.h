@@ -277,6 +277,7 @@ struct DriveProfile {
   struct Parameters {
     std::vector<std::uint8_t> save{1}, restore{1};
     Duration timeout{std::chrono::seconds(10)};  ///< for the drive to confirm one
+    bool power_cycle_after_save = false;         ///< it takes no enabling before
   } parameters;
   std::map<std::uint16_t, ErrorText> errors;
   std::string eds;  ///< file whose objects were added, for messages; empty: none
