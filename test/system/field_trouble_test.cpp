@@ -94,6 +94,25 @@ TEST(BootInErrorPassive, IsToldInWordsAndRecoverIsTheCure) {
   EXPECT_TRUE(recovered.success) << recovered.message;
 }
 
+class RecoverAsTheFirstEnabling : public testing::TestWithParam<const char*> {};
+
+TEST_P(RecoverAsTheFirstEnabling, CommandsTheModeAgain) {
+  const std::string command = GetParam();
+  const std::string again = command == "change" ? "through_zero" : "same";
+  Scene scene(loadText(fieldPair("mode_change: {shown: enabled, again: " + again + "}",
+                                 "quirks: {mode_command: " + command + "}")));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  const bus::Answer answer = scene.procedure(ProcedureKind::recover);
+  EXPECT_TRUE(answer.success) << answer.message;
+  const bus::Answer moved = scene.move({0.2, 0.0}, 1s);
+  EXPECT_TRUE(moved.success) << moved.message;
+  scene.run(1500ms);
+  EXPECT_NEAR(scene.position("left"), 0.2, 2e-3);
+}
+
+INSTANTIATE_TEST_SUITE_P(ModeCommands, RecoverAsTheFirstEnabling,
+                         testing::Values("enabled", "change"));
+
 TEST(OverrunsAfterBoot, AreTakenForNoFault) {
   ReadyScene scene(fieldPair("", "communication: {overruns_at_boot: 2}"));
   EXPECT_THAT(scene.told(), HasSubstr("0x8110 CAN overrun"));
