@@ -341,6 +341,7 @@ DriveTruth Drive::truth(Time now) {
   truth.power_stage_on = motion.powered();
   truth.moving = std::fabs(truth.velocity_turns) > 1e-3;
   truth.statusword = impl_->core.statusword();
+  truth.mode = static_cast<int>(impl_->core.mode());
   truth.nmt = impl_->device.nmtState();
   truth.bad_floats_received = impl_->non_finite;
   return truth;

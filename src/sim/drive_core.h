@@ -61,6 +61,7 @@ class DriveCore {
 
   PdsState state() const { return state_; }
   std::uint16_t statusword() const { return statusword_; }
+  std::int64_t mode() const { return applied_mode_; }
   const DriveMotion& motion() const { return motion_; }
 
  private:
