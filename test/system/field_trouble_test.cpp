@@ -42,6 +42,27 @@ TEST(FaultResetByNmtStop, ClearsWhatBit7AloneDoesNot) {
   EXPECT_TRUE(scene.procedure(ProcedureKind::recover, "left").success);
 }
 
+TEST(FaultResetByNmtStop, LeavesNoFalseAlarmInTheLog) {
+  FaultedScene scene(fieldPair("fault_reset_nmt_stop: 0.5", kWantsStop));
+  const std::string before = scene.told();
+  ASSERT_TRUE(scene.procedure(ProcedureKind::clear_faults, "left").success);
+  const std::string after = scene.told().substr(before.size());
+  EXPECT_THAT(after, Not(HasSubstr("did not come")));
+  EXPECT_THAT(after, Not(HasSubstr("reported")));
+  EXPECT_THAT(after, HasSubstr("error reset"));
+}
+
+TEST(FaultResetByNmtStop, WorksWithNodeGuarding) {
+  std::string yaml =
+      fieldPair("fault_reset_nmt_stop: 0.1", kWantsStop, ", error_control: guarding");
+  const std::string drive = "simulation: {drive: generic_cia402";
+  yaml.replace(yaml.find(drive), drive.size(), drive + "_guarding");
+  FaultedScene scene(yaml);
+  const bus::Answer answer = scene.procedure(ProcedureKind::clear_faults, "left");
+  EXPECT_TRUE(answer.success) << answer.message;
+  EXPECT_EQ(scene.state("left").health, canopen::NodeHealth::ready);
+}
+
 TEST(FaultResetByNmtStop, IsNotTriedUnlessTheProfileSaysSo) {
   FaultedScene scene(fieldPair("", kWantsStop));
   bool was_stopped = false;
