@@ -139,6 +139,7 @@ void Robot::watchAxes(Time now) {
                                                : procedure.step);
     news.words.say(&AxisWords::waiting_for,
                    procedure.running ? procedure.waiting_for : std::string());
+    if (node.paused()) continue;  // no feedback comes, and nothing is wrong with that
     std::string problem = !node.problem().empty() ? node.problem() : axes_[i].faultText();
     if (problem.empty()) problem = unknownProblem(i, now);
     if (state.health == canopen::NodeHealth::ready) lss_problems_[i].clear();

@@ -27,7 +27,7 @@ void Robot::watchPdos(std::size_t axis, Time now) {
              "; the drive maps other objects than configured, or another device uses that COB-ID",
          now);
   }
-  if (stale && !overdue.empty()) {
+  if (stale && !overdue.empty() && !node.paused()) {
     tell(Event::Severity::warning,
          who + overdue +
              ": its values are stale and shown as unknown; check cable, bus load and "

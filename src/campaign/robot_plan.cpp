@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "habits.h"
+
 namespace cia402::campaign {
 namespace {
 
@@ -120,6 +122,11 @@ class AxisWriter {
       add("error_control", "guarding");
       simulate("drive", "generic_cia402_guarding");
     }
+    if (!axis_.damiao && random_.chance(0.35)) live(drawHabits(random_));
+  }
+  void live(const Habits& habits) {
+    simulate("with", "{" + habits.simulation + "}");
+    if (!habits.profile.empty()) add("profile_keys", "{" + habits.profile + "}");
   }
 
   Random& random_;

@@ -1,8 +1,12 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "stage.h"
 
+#include <unistd.h>
+
 #include <cmath>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 
 #include "random.h"
 
@@ -52,6 +56,48 @@ std::vector<RpdoPlace> rpdosOf(const Loaded& loaded) {
   return places;
 }
 
+void merge(YAML::Node onto, const YAML::Node& more) {
+  for (const auto& pair : more) {
+    const auto key = pair.first.as<std::string>();
+    if (pair.second.IsMap() && onto[key] && onto[key].IsMap()) {
+      merge(onto[key], pair.second);
+    } else {
+      onto[key] = pair.second;
+    }
+  }
+}
+
+/// Axes with `profile_keys` get a profile of their own: that of their drive with these keys on top,
+/// in a file for as long as this lives.
+class OwnProfiles {
+ public:
+  OwnProfiles(YAML::Node robot, const std::string& folder) {
+    for (auto pair : robot["axes"]) {
+      YAML::Node axis = pair.second;
+      if (!axis.IsMap() || !axis["profile_keys"]) continue;
+      const auto drive = axis["drive"].as<std::string>();
+      YAML::Node profile = YAML::LoadFile(folder + drive + ".yaml");
+      merge(profile, axis["profile_keys"]);
+      axis.remove("profile_keys");
+      if (!axis["simulation"]["drive"]) axis["simulation"]["drive"] = drive;
+      files_.push_back(std::filesystem::temp_directory_path() /
+                       ("cia402_campaign_" + std::to_string(getpid()) + "_" +
+                        pair.first.as<std::string>() + ".yaml"));
+      std::ofstream(files_.back()) << profile;
+      axis["drive"] = files_.back().string();
+    }
+  }
+  ~OwnProfiles() {
+    std::error_code ignored;
+    for (const auto& file : files_) std::filesystem::remove(file, ignored);
+  }
+  OwnProfiles(const OwnProfiles&) = delete;
+  OwnProfiles& operator=(const OwnProfiles&) = delete;
+
+ private:
+  std::vector<std::filesystem::path> files_;
+};
+
 double asFloat(std::uint64_t number) {
   const auto bits = static_cast<std::uint32_t>(number);
   float value = 0.0F;
@@ -64,8 +110,9 @@ double asFloat(std::uint64_t number) {
 Result<Loaded> loadRobot(const std::string& yaml, const std::string& config_folder) try {
   Loaded loaded;
   Problems problems;
-  loaded.robot = config::loadRobot(YAML::Load(yaml),
-                                   config::profilesIn({config_folder + "/drives"}), problems);
+  YAML::Node tree = YAML::Load(yaml);
+  const OwnProfiles own(tree, config_folder + "/drives/");
+  loaded.robot = config::loadRobot(tree, config::profilesIn({config_folder + "/drives"}), problems);
   if (problems.empty()) loaded.master = config::makeMasterConfig(loaded.robot, problems);
   if (problems.empty()) {
     loaded.axes = sim::simulatedAxes(loaded.robot, config_folder + "/simulated_drives", problems);
@@ -96,7 +143,7 @@ Stage::Stage(Loaded loaded, std::uint64_t seed)
     sim::Drive& drive =
         world_.addDrive(axis.name, axis.definition, axis.node, axis.mechanics, axis.identity);
     const auto entry = [&](std::uint16_t object) { return drive.dictionary().find({object, 0}); };
-    objects_.push_back({entry(0x6061), entry(0x6064), entry(0x6077)});
+    objects_.push_back({entry(0x6064), entry(0x6077)});
   }
   for (std::size_t i = 0; i < loaded_.robot.axes.size(); ++i) {
     facts_.push_back(factsOf(loaded_.robot.axes[i], loaded_.robot.bus, i));
@@ -134,7 +181,7 @@ void Stage::look(std::vector<AxisTruth>& truths) {
     seen.statusword = truth.statusword;
     seen.bad_floats = truth.bad_floats_received;
     seen.nmt = truth.nmt;
-    seen.mode = static_cast<int>(sim::asSigned(*objects_[i].mode));
+    seen.mode = truth.mode;
     seen.told =
         facts_[i].units_per_count == 0.0
             ? asFloat(objects_[i].position->number) *

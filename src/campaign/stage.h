@@ -26,7 +26,7 @@ struct AxisTruth {
   double effort = 0.0;  ///< N m or N, 6077h
   bool power = false;
   std::uint16_t statusword = 0;
-  int mode = 0;             ///< 6061h
+  int mode = 0;             ///< in which it is, whatever 6061h shows
   double told = 0.0;        ///< 6064h, before position_offset and what set_position declared
   unsigned bad_floats = 0;  ///< received by it since the start
   canopen::NmtState nmt = canopen::NmtState::unknown;
@@ -93,7 +93,7 @@ class Stage {
   std::vector<AxisFacts> facts_;
   std::vector<RpdoPlace> rpdos_;
   struct Objects {
-    const sim::Entry *mode, *position, *effort;
+    const sim::Entry *position, *effort;
   };
   std::vector<Objects> objects_;
 };

@@ -41,6 +41,7 @@ class Pdos : public BootStep {
     const PdoConfig& wanted = pdos_[item_];
     PdoConfigurator::Options options;
     options.count_may_be_read_only = boot.config.map_count_may_be_read_only;
+    options.fixed_entries = boot.config.fixed_map_entries;
     options.may_be_missing = !wanted.enabled;
     options.if_there = boot.ifThere();
     pdo_.emplace(boot.sdo, wanted, options);

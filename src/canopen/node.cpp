@@ -100,6 +100,14 @@ void Node::commanded(NmtCommand command, Time now) {
   impl_->refresh();
 }
 
+void Node::stopAndStart(Duration stopped, Time now) {
+  if (impl_->health != NodeHealth::ready) return;
+  impl_->pause.begin(stopped, kStartPatience, impl_->boot.found().supervised, now);
+  impl_->refresh();
+}
+
+bool Node::paused() const { return impl_->pause.active(); }
+
 void Node::receive(const can::Frame& frame, Time stamp, Time now) {
   if (frame.id == impl_->sdo.answerId()) {
     impl_->sdo.receive(frame, now);
@@ -138,6 +146,7 @@ void Node::tick(Time now) {
   impl_->runProbe(now);
   impl_->checkSupervision(now);
   impl_->last_stop.tick(now);
+  impl_->continuePause(now);
   impl_->tryAgain(now);
   impl_->refresh();
 }

@@ -38,7 +38,8 @@ Node::Impl::Impl(const NodeConfig& node_config, const MasterConfig& master, can:
       guard(config.node_id, config.guard_time, config.life_time_factor),
       boot(config, master, sdo, sink, shared_turns != nullptr ? *shared_turns : own_turns),
       retry(config.boot),
-      last_stop(config, sdo, sink) {
+      last_stop(config, sdo, sink),
+      pause(config.node_id, sink) {
   sdo.tellWhenQueued(changed);
 }
 
@@ -59,7 +60,7 @@ const std::string& Node::Impl::step() const {
 void Node::Impl::refresh() {
   ++changes;
   next = std::min({sdo.nextDeadline(), consumer.deadline(), guard.deadline(), boot.deadline(),
-                   retry.deadline(), last_stop.deadline()});
+                   retry.deadline(), last_stop.deadline(), pause.deadline()});
   if (deadlines_changed != nullptr) *deadlines_changed = true;
   pdos_live = boot.started() && (health == NodeHealth::ready || health == NodeHealth::booting);
 }
@@ -83,6 +84,7 @@ void Node::Impl::beginBoot(BootProcedure::From from, const std::string& why, Tim
 void Node::Impl::takeOut(NodeHealth as, const std::string& why) {
   boot.stop();
   last_stop.end();
+  pause.end();
   consumer.disarm();
   guard.stop();
   sdo.cancelAll(why.empty() ? "the node is booted again" : "the node " + why);
@@ -242,6 +244,7 @@ void Node::Impl::onHeartbeat(NmtState state, Time stamp, Time now) {
     runBoot(now);
     return;
   }
+  if (pause.active()) return pause.heard(state);
   if (!begun) return;
   if (isAway(health) && !taken_out.empty()) {
     takeOut(NodeHealth::failed, std::exchange(taken_out, {}));
@@ -286,6 +289,14 @@ void Node::Impl::checkSupervision(Time now) {
   takeOut(NodeHealth::failed, why);
   retry.failed(BootFailure::timed_out, now);
   problem = sentence(why + retry.outlook());
+}
+
+void Node::Impl::continuePause(Time now) {
+  if (pause.tick(now)) return;
+  startBoot(BootProcedure::From::unknown,
+            "was stopped (NMT) for a fault reset and did not become operational again; it is "
+            "configured again and stays disabled",
+            now);
 }
 
 void Node::Impl::tryAgain(Time now) {

@@ -11,6 +11,7 @@
 #include "cia402_driver/canopen/node.h"
 #include "cia402_driver/canopen/node_guarding.h"
 #include "last_stop.h"
+#include "nmt_pause.h"
 
 namespace cia402::canopen {
 
@@ -44,6 +45,7 @@ struct Node::Impl : Node::Front {
   void adoptLeftOut();
   void superviseWhileBooting(Time now);
   void checkSupervision(Time now);
+  void continuePause(Time now);
   void tryAgain(Time now);
   void look(Time at);
   void runProbe(Time now);
@@ -65,6 +67,7 @@ struct Node::Impl : Node::Front {
   BootProcedure boot;
   BootRetry retry;
   LastStop last_stop;
+  NmtPause pause;
   SdoTicket probe;  ///< of the search for a node that does not answer
   NmtState nmt_state = NmtState::unknown;
   std::string problem;

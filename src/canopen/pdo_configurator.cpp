@@ -2,7 +2,6 @@
 #include "pdo_configurator.h"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "cia402_driver/canopen/abort_code.h"
 
@@ -10,30 +9,15 @@ namespace cia402::canopen {
 namespace {
 
 constexpr std::uint32_t kInvalidBit = 0x80000000;   // CiA 301, 7.5.2.35, bit 31
-constexpr std::uint32_t kNoRemoteBit = 0x40000000;  // bit 30: the drive's own choice, kept
 constexpr std::uint32_t kExtendedBit = 0x20000000;  // bit 29: an identifier of 29 bits
 constexpr std::uint32_t kCanIdMask = 0x1FFFFFFF;
 constexpr std::uint32_t kMaxCanId = 0x7FF;
 constexpr unsigned kMaxPdoBits = 64;
 
-std::string hex(std::uint32_t value, int digits) {
-  std::array<char, 16> text{};
-  std::snprintf(text.data(), text.size(), "0x%0*X", digits, static_cast<unsigned>(value));
-  return text.data();
-}
-
 unsigned totalBits(const PdoConfig& pdo) {
   unsigned bits = 0;
   for (const PdoEntry& entry : pdo.entries) bits += entry.bits;
   return bits;
-}
-
-/// 0x06040041 and what drives answer instead of it.
-bool isMissingOrUnmappable(const SdoTransfer& transfer) {
-  const std::uint32_t code = transfer.abortCode();
-  return transfer.failure() == SdoTransfer::Failure::aborted_by_server &&
-         (code == abort_code::kNoSuchObject || code == abort_code::kNoSuchSubindex ||
-          code == abort_code::kNotMappable);
 }
 
 }  // namespace
@@ -56,6 +40,9 @@ PdoConfigurator::Status PdoConfigurator::advance() {
       fail("there is no PDO of this number, 1..512 are allowed");
     } else if (totalBits(wanted_) > kMaxPdoBits) {
       fail("its entries have " + std::to_string(totalBits(wanted_)) + " bits, 64 fit in a PDO");
+    } else if (options_.fixed_entries != 0 && wanted_.entries.size() > options_.fixed_entries) {
+      fail("it has " + std::to_string(wanted_.entries.size()) +
+           " entries, the drive has room for " + std::to_string(options_.fixed_entries));
     } else {
       ask();
     }
@@ -85,6 +72,8 @@ void PdoConfigurator::ask() {
       return write({communication_, 1}, cob_id_ | kInvalidBit, 4, "COB-ID");
     case Phase::clear_map:
       return write({mapping_, 0}, 0, 1, "number of entries");
+    case Phase::clear_entry:
+      return write({mapping_, n}, 0, 4, "entry " + std::to_string(n));
     case Phase::write_entry:
       return write({mapping_, n}, entryValue(item_), 4, entryName(item_));
     case Phase::write_count:
@@ -136,15 +125,26 @@ void PdoConfigurator::answeredRead(const SdoTransfer& transfer) {
   if (!transfer.ok()) return failTransfer(transfer);
   const auto value = static_cast<std::uint32_t>(toUnsigned(transfer.data()));
   if (phase_ == Phase::read_count) {
-    count_ = value;
-    entries_.clear();
-    // Entries need no look where their number differs already.
-    if (count_ != wanted_.entries.size() || count_ == 0) return compare();
-    return enter(Phase::read_entry);
+    return answeredCount(value);
   }
   entries_.push_back(value);
   if (entries_.size() < count_) return enter(Phase::read_entry, item_ + 1);
+  leaveOutFillers();
   compare();
+}
+
+void PdoConfigurator::answeredCount(std::size_t count) {
+  count_ = count;
+  entries_.clear();
+  if (options_.fixed_entries == 0) {
+    // Entries need no look where their number differs already.
+    if (count_ != wanted_.entries.size() || count_ == 0) return compare();
+  } else if (count_ != options_.fixed_entries) {
+    return fail(toString(ObjectId{mapping_, 0}) + " is " + std::to_string(count_) +
+                ", but the profile says that it is always " +
+                std::to_string(options_.fixed_entries) + " (pdo_rules/fixed_entries)");
+  }
+  enter(Phase::read_entry);
 }
 
 void PdoConfigurator::answeredCobId(const SdoTransfer& transfer) {
@@ -207,24 +207,24 @@ void PdoConfigurator::compare() {
   if (verifying_) return verify();
   if (firstDifference().empty()) return enter(Phase::done);
   if ((cob_id_ & kInvalidBit) == 0) return enter(Phase::disable);
-  if (mapDiffers()) return enter(Phase::clear_map);
-  enterWriteParameter(0);
-}
-
-void PdoConfigurator::verify() {
-  const std::string difference = firstDifference();
-  if (difference.empty()) return enter(Phase::done);
-  std::string reason = "the drive took all writes, but " + difference;
-  if (map_refused_) {
-    reason = "the drive refuses to change the number of mapped objects (" +
-             toString(ObjectId{mapping_, 0}) + " is read-only), and " + difference;
-  }
-  fail(reason + "; choose a mapping that the drive can hold");
+  enterWrite();
 }
 
 void PdoConfigurator::enterAfterDisable() {
   if (!wanted_.enabled) return enterRead();
-  if (mapDiffers()) return enter(Phase::clear_map);
+  enterWrite();
+}
+
+void PdoConfigurator::enterWrite() {
+  if (!mapDiffers()) return enterWriteParameter(0);
+  if (options_.fixed_entries == 0) return enter(Phase::clear_map);
+  // The last first: at no time are there more than 64 bits, or a gap.
+  if (count_ != 0) return enter(Phase::clear_entry, count_ - 1);
+  enterEntries();
+}
+
+void PdoConfigurator::enterEntries() {
+  if (!wanted_.entries.empty()) return enter(Phase::write_entry);
   enterWriteParameter(0);
 }
 
@@ -245,8 +245,9 @@ void PdoConfigurator::answeredWrite(const SdoTransfer& transfer) {
     case Phase::disable:
       return enterAfterDisable();
     case Phase::clear_map:
-      if (!wanted_.entries.empty()) return enter(Phase::write_entry);
-      return enterWriteParameter(0);
+      return enterEntries();
+    case Phase::clear_entry:
+      return item_ == 0 ? enterEntries() : enter(Phase::clear_entry, item_ - 1);
     case Phase::write_entry:
       if (item_ + 1 < wanted_.entries.size()) return enter(Phase::write_entry, item_ + 1);
       return afterEntries();
@@ -262,92 +263,11 @@ void PdoConfigurator::answeredWrite(const SdoTransfer& transfer) {
 /// All entries are written, or there are none left.
 void PdoConfigurator::afterEntries() {
   if (!wanted_.entries.empty()) {
-    if (!map_refused_) return enter(Phase::write_count);
+    if (!map_refused_ && options_.fixed_entries == 0) return enter(Phase::write_count);
     return enterWriteParameter(0);
   }
   wanted_.enabled = false;  // it is invalid already, and stays so
   enterRead();
-}
-
-bool PdoConfigurator::leaveOutWhole(const SdoTransfer& transfer) {
-  if (!isMissingOrUnmappable(transfer) || nextOptional(0) == wanted_.entries.size()) return false;
-  const bool all = std::all_of(wanted_.entries.begin(), wanted_.entries.end(),
-                               [](const PdoEntry& entry) { return entry.optional; });
-  if (!all) return false;
-  while (!wanted_.entries.empty()) leaveOut(0);
-  return true;
-}
-
-/// Most drives judge an entry when it is written.
-bool PdoConfigurator::leaveOutEntry(const SdoTransfer& transfer) {
-  if (phase_ != Phase::write_entry) return false;
-  const PdoEntry& entry = wanted_.entries[item_];
-  const bool goes = entry.if_room ? transfer.failure() == SdoTransfer::Failure::aborted_by_server
-                                  : entry.optional && isMissingOrUnmappable(transfer);
-  if (!goes) return false;
-  leaveOut(item_);
-  if (item_ < wanted_.entries.size()) {
-    enter(Phase::write_entry, item_);
-  } else {
-    afterEntries();
-  }
-  return true;
-}
-
-/// A PDO that the drive does not take as a whole may be one without what is there for the room
-/// only.
-bool PdoConfigurator::leaveOutRider(const SdoTransfer& transfer) {
-  const auto& entries = wanted_.entries;
-  const auto rider = std::find_if(entries.begin(), entries.end(),
-                                  [](const PdoEntry& entry) { return entry.if_room; });
-  const bool refused =
-      phase_ == Phase::write_count && transfer.failure() == SdoTransfer::Failure::aborted_by_server;
-  if (!refused || rider == entries.end() || refusedReadOnlyCount(transfer)) return false;
-  leaveOut(static_cast<std::size_t>(rider - entries.begin()));
-  if (wanted_.entries.empty()) {
-    afterEntries();
-  } else {
-    enter(Phase::clear_map);
-  }
-  return true;
-}
-
-/// Others judge all of them at the end, without a word about which one is wrong: those that it does
-/// not have are found by reading them.
-bool PdoConfigurator::probeEntries(const SdoTransfer& transfer) {
-  if (phase_ != Phase::write_count || !isMissingOrUnmappable(transfer)) return false;
-  const std::size_t first = nextOptional(0);
-  if (first == wanted_.entries.size()) return false;
-  left_out_before_probe_ = left_out_.size();
-  enter(Phase::probe_entry, first);
-  return true;
-}
-
-void PdoConfigurator::answeredProbe(const SdoTransfer& transfer) {
-  const bool aborted = transfer.failure() == SdoTransfer::Failure::aborted_by_server;
-  if (!transfer.ok() && !aborted) return failTransfer(transfer);
-  std::size_t next = item_ + 1;
-  if (!transfer.ok() && isMissingOrUnmappable(transfer)) leaveOut(next = item_);
-  next = nextOptional(next);
-  if (next < wanted_.entries.size()) return enter(Phase::probe_entry, next);
-  if (left_out_.size() == left_out_before_probe_) {  // it has them all: the last one goes
-    std::size_t last = nextOptional(0);
-    while (nextOptional(last + 1) < wanted_.entries.size()) last = nextOptional(last + 1);
-    leaveOut(last);
-  }
-  if (wanted_.entries.empty()) return afterEntries();
-  enter(Phase::clear_map);
-}
-
-void PdoConfigurator::leaveOut(std::size_t item) {
-  const auto gone = wanted_.entries.begin() + static_cast<std::ptrdiff_t>(item);
-  left_out_.push_back(*gone);
-  wanted_.entries.erase(gone);
-}
-
-std::size_t PdoConfigurator::nextOptional(std::size_t item) const {
-  while (item < wanted_.entries.size() && !wanted_.entries[item].optional) ++item;
-  return item;
 }
 
 bool PdoConfigurator::refusedReadOnlyCount(const SdoTransfer& transfer) const {
@@ -396,61 +316,6 @@ void PdoConfigurator::failTransfer(const SdoTransfer& transfer) {
     }
   }
   fail(reason);
-}
-
-std::string PdoConfigurator::title() const {
-  return (wanted_.direction == PdoDirection::tpdo ? "TPDO " : "RPDO ") +
-         std::to_string(wanted_.number);
-}
-
-std::uint32_t PdoConfigurator::enabledCobId() const {
-  const bool requested =
-      wanted_.direction == PdoDirection::tpdo && isRequested(wanted_.transmission);
-  return (requested ? 0 : cob_id_ & kNoRemoteBit) | wanted_.cob_id;
-}
-
-std::uint32_t PdoConfigurator::entryValue(std::size_t item) const {
-  const PdoEntry& entry = wanted_.entries[item];
-  return static_cast<std::uint32_t>(entry.object.index) << 16 |
-         static_cast<std::uint32_t>(entry.object.subindex) << 8 | entry.bits;
-}
-
-std::string PdoConfigurator::entryName(std::size_t item) const {
-  const PdoEntry& entry = wanted_.entries[item];
-  std::string name = "entry " + std::to_string(item + 1) + " (" + toString(entry.object);
-  if (!entry.name.empty()) name += " " + entry.name;
-  return name + ")";
-}
-
-bool PdoConfigurator::mapDiffers() const {
-  if (count_ != wanted_.entries.size()) return true;
-  for (std::size_t i = 0; i < entries_.size(); ++i) {
-    if (entries_[i] != entryValue(i)) return true;
-  }
-  return false;
-}
-
-std::string PdoConfigurator::firstDifference() const {
-  const auto tell = [](ObjectId object, const std::string& is, const std::string& wanted) {
-    return toString(object) + " is " + is + ", wanted is " + wanted;
-  };
-  if (cob_id_ != enabledCobId()) {
-    return tell({communication_, 1}, hex(cob_id_, 8), hex(enabledCobId(), 8));
-  }
-  for (const Parameter& parameter : parameters_) {
-    if (parameter.actual == parameter.wanted) continue;
-    return tell({communication_, parameter.subindex}, std::to_string(parameter.actual.value_or(0)),
-                std::to_string(parameter.wanted));
-  }
-  if (count_ != wanted_.entries.size()) {
-    return tell({mapping_, 0}, std::to_string(count_), std::to_string(wanted_.entries.size()));
-  }
-  for (std::size_t i = 0; i < entries_.size(); ++i) {
-    if (entries_[i] == entryValue(i)) continue;
-    return tell({mapping_, static_cast<std::uint8_t>(i + 1)}, hex(entries_[i], 8),
-                hex(entryValue(i), 8));
-  }
-  return {};
 }
 
 }  // namespace cia402::canopen

@@ -23,7 +23,10 @@ class PdoConfigurator {
  public:
   struct Options {
     bool count_may_be_read_only = false;  ///< go on when sub-index 0 of the mapping is read-only
-    bool may_be_missing = false;          ///< a PDO that cannot be read is none of our business
+    /// Sub-index 0 of the mapping always says so many, and is not written; entries that are not
+    /// used are 0, which is no object. 0: as CiA 301 says.
+    std::size_t fixed_entries = 0;
+    bool may_be_missing = false;  ///< a PDO that cannot be read is none of our business
     /// For what the drive need not have; absent: the SDO client's defaults.
     std::optional<SdoOptions> if_there;
   };
@@ -59,6 +62,7 @@ class PdoConfigurator {
     read_entry,
     disable,
     clear_map,
+    clear_entry,  ///< instead, where their number is fixed
     write_entry,
     write_count,
     probe_entry,  ///< which of the optional ones is the one that the drive does not have?
@@ -82,12 +86,16 @@ class PdoConfigurator {
   void write(ObjectId object, std::uint32_t value, unsigned size, const std::string& name);
   void answered(const SdoTransfer& transfer);
   void answeredRead(const SdoTransfer& transfer);
+  void answeredCount(std::size_t count);
+  void leaveOutFillers();
   void answeredCobId(const SdoTransfer& transfer);
   void answeredParameter(const SdoTransfer& transfer);
   void answeredWrite(const SdoTransfer& transfer);
   void compare();
   void verify();
   void enter(Phase phase, std::size_t item = 0);
+  void enterWrite();
+  void enterEntries();
   void enterWriteParameter(std::size_t item);
   void enterRead();
   void fail(const std::string& reason);
@@ -106,6 +114,7 @@ class PdoConfigurator {
   /// The next optional entry from `item` on, or the number of entries.
   std::size_t nextOptional(std::size_t item) const;
 
+  static std::string hex(std::uint32_t value, int digits);
   std::string title() const;
   std::uint32_t enabledCobId() const;
   std::uint32_t entryValue(std::size_t item) const;
@@ -127,7 +136,7 @@ class PdoConfigurator {
   std::uint32_t cob_id_ = 0;
   std::optional<std::uint16_t> adopted_;
   bool cob_id_fixed_ = false;  ///< the drive refuses to make the PDO invalid, or valid elsewhere
-  std::size_t count_ = 0;
+  std::size_t count_ = 0;      ///< entries in use
   std::vector<std::uint32_t> entries_;
   std::vector<PdoEntry> left_out_;
   std::size_t left_out_before_probe_ = 0;

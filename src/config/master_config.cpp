@@ -216,6 +216,7 @@ NodeConfig makeNode(const RobotConfig& robot, const AxisConfig& axis, Problems& 
   setSupervision(robot.bus, axis, node);
   setSync(robot.bus, profile, node);
   node.map_count_may_be_read_only = profile.pdo_map_count_may_be_read_only;
+  node.fixed_map_entries = profile.fixed_pdo_entries;
   node.pdos = makePdos(axis, problems);
   node.sdo.timeout = profile.timing.sdo;
   node.sdo.retries = profile.timing.sdo_retries;

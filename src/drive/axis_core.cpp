@@ -253,6 +253,13 @@ std::string AxisCore::calibrationRefusal() const {
   return {};
 }
 
+std::string AxisCore::enablingRefusal() const {
+  if (power_cycle_after_ != node_.bootUps()) return {};
+  return who() +
+         ": is not enabled: its parameters were saved, after which the drive takes no enabling "
+         "(power_cycle_after_save of its profile); switch it off and on";
+}
+
 void AxisCore::setZero(double shift) {
   const double moved = shift - zero_shift_;
   zero_shift_ = shift;

@@ -156,6 +156,10 @@ class AxisCore {
   void loseZero();
   /// Forgets what was measured in other coordinates, until the drive tells anew.
   void measureAnew();
+  /// Parameters were saved, and the drive wants to be switched off and on before it is enabled.
+  void wantPowerCycle() { power_cycle_after_ = node_.bootUps(); }
+  /// Why the drive takes no enabling now; empty: it may.
+  std::string enablingRefusal() const;
   /// Why an object that shifts coordinates must not be written now; empty: it may.
   std::string calibrationRefusal() const;
 
@@ -289,6 +293,7 @@ class AxisCore {
   std::vector<Held> held_;
 
   Time next_fault_reset_ = Time::min();
+  std::optional<std::uint32_t> power_cycle_after_;  ///< boot-ups seen when it was asked for
   ErrorEvidence errors_;
   canopen::SdoTicket stop_ticket_;
   std::string failure_, notice_;

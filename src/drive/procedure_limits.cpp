@@ -53,7 +53,8 @@ struct Steps {
   Duration reset() const {
     const Duration once =
         5 * timing.state_change + FaultResetStep::kInterval + FaultResetStep::kWatch;
-    return profile.fault_reset_tries * once;
+    if (profile.fault_reset_nmt_stop == Duration::zero()) return profile.fault_reset_tries * once;
+    return (profile.fault_reset_tries + 1) * once + FaultResetStep::pause(profile);
   }
   Duration boot() const { return kBootTimes * timing.boot; }
   Duration declare() const { return 2 * kStanding + 2 * limits(); }

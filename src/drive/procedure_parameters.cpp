@@ -142,9 +142,12 @@ class SaveParameters : public Procedure {
     AxisCore& axis = context.axis;
     const Outcome outcome = storing_.advance(context);
     if (!outcome.isDone()) return outcome;
-    return Outcome::done(axis.who() + ": saved " + storing_.what() +
-                         " in the drive's memory after " +
-                         seconds(context.now - context.status.started));
+    const std::string saved = axis.who() + ": saved " + storing_.what() +
+                              " in the drive's memory after " +
+                              seconds(context.now - context.status.started);
+    if (!axis.profile().parameters.power_cycle_after_save) return Outcome::done(saved);
+    axis.wantPowerCycle();
+    return Outcome::remarked(saved + "; switch the drive off and on before it is enabled again");
   }
 
  private:

@@ -33,7 +33,7 @@ class Recover : public Procedure {
         return outcome.isDone() ? Outcome::running() : outcome;
       }
       case Phase::enabling: {
-        if (context.axis.inOperation()) {
+        if (context.axis.inOperation() && !enabling_.begun()) {  // it was enabled all the time
           return context.axis.brakeReleased(context.now) ? finish(context) : Outcome::running();
         }
         const Outcome outcome = enabling_.advance(context);

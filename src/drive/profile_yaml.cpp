@@ -1,4 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 
@@ -27,6 +28,9 @@ void readPdoRules(YamlSection& profile_section, DriveProfile& profile) {
   section.readInteger("max_rpdos", profile.max_rpdos, 1, 16);
   section.readInteger("max_tpdos", profile.max_tpdos, 1, 16);
   section.readInteger("max_entries", profile.max_pdo_entries, 1, 64);
+  if (section.readInteger("fixed_entries", profile.fixed_pdo_entries, 1, 64)) {
+    profile.max_pdo_entries = std::min(profile.max_pdo_entries, profile.fixed_pdo_entries);
+  }
   section.read("map_count_may_be_read_only", profile.pdo_map_count_may_be_read_only);
   if (const auto cob_ids = section.get("cob_ids")) {
     profile.cob_ids_of_drive = cob_ids->oneOf({"predefined", "drive"}).value_or(0) == 1;
@@ -94,6 +98,7 @@ void readParameters(YamlSection& profile_section, DriveProfile& profile) {
   readSubindices(section, "save", profile.parameters.save);
   readSubindices(section, "restore", profile.parameters.restore);
   readDuration(section, "timeout", Range{0.001, 600.0, false}, profile.parameters.timeout);
+  section.read("power_cycle_after_save", profile.parameters.power_cycle_after_save);
   section.finish();
 }
 
@@ -190,6 +195,8 @@ void readBehaviour(YamlSection& section, DriveProfile& profile) {
   section.read("warning_stops", profile.warning_stops);
   readModeChange(section, profile);
   section.readInteger("fault_reset_tries", profile.fault_reset_tries, 1, 20);
+  readDuration(section, "fault_reset_nmt_stop", Range{0.0, 10.0, false},
+               profile.fault_reset_nmt_stop);
   section.read("nmt_reset_node", profile.nmt_reset_node);
   readQuickStop(section, profile);
   readSync(section, profile);

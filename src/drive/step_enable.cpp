@@ -15,6 +15,8 @@ void EnableStep::enter(Phase phase, const Context& context) {
 Outcome EnableStep::advance(const Context& context) {
   if (!begun_) {
     begun_ = true;
+    const std::string refusal = context.axis.enablingRefusal();
+    if (!refusal.empty()) return fail(context, refusal);
     enter(Phase::feedback, context);
     context.show("reading feedback", "statusword and position from the drive");
   }

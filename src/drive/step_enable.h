@@ -15,6 +15,7 @@ class EnableStep {
   EnableStep(const ModeChannel& mode, const DriveProfile& profile)
       : channel_(&mode), writes_(profile.before_enable), mode_(mode), shown_(mode) {}
   Outcome advance(const Context& context);
+  bool begun() const { return begun_; }
 
  private:
   enum class Phase { feedback, standing, writing, limits, mode, transitions, shown, brake };

@@ -32,7 +32,7 @@ Outcome FaultResetStep::awaitReset(const Context& context) {
   const Duration waited = context.now - since_;
   if (axis.state().state == State::fault_reaction_active) return cameBack(context);
   if (clearable(axis)) {
-    const bool last = tries_ >= axis.profile().fault_reset_tries;
+    const bool last = tries_ >= axis.profile().fault_reset_tries && !mayPause(context);
     if (waited <= (last ? axis.profile().timing.state_change : kInterval) || tryAgain(context)) {
       return Outcome::running();
     }
@@ -51,13 +51,45 @@ Outcome FaultResetStep::awaitReset(const Context& context) {
 bool FaultResetStep::tryAgain(const Context& context) {
   AxisCore& axis = context.axis;
   const int most = axis.profile().fault_reset_tries;
-  if (tries_ >= most) return false;
-  ++tries_;
+  if (tries_ >= most && !mayPause(context)) return false;
   axis.setFaultReset(false);
+  if (tries_++ >= most) {
+    beginPause(context);
+    return true;
+  }
   const std::string number = "try " + std::to_string(tries_) + " of " + std::to_string(most);
   enter(Phase::reacting, context);
   context.show("resetting the fault again", number);
   return true;
+}
+
+bool FaultResetStep::mayPause(const Context& context) const {
+  return !paused_ && context.axis.profile().fault_reset_nmt_stop > Duration::zero();
+}
+
+void FaultResetStep::beginPause(const Context& context) {
+  AxisCore& axis = context.axis;
+  paused_ = true;
+  axis.node().stopAndStart(axis.profile().fault_reset_nmt_stop, context.now);
+  enter(Phase::paused, context);
+  context.show("taking the node through NMT stop and start for the fault reset",
+               "the drive to be operational and to send its feedback again");
+}
+
+Duration FaultResetStep::pause(const DriveProfile& profile) {
+  return profile.fault_reset_nmt_stop + canopen::Node::kStartPatience + profile.timing.state_change;
+}
+
+Outcome FaultResetStep::awaitPause(const Context& context) {
+  const AxisCore& axis = context.axis;
+  const bool heard = axis.state().feedback_valid && axis.heardLately(context.now);
+  if (!context.axis.node().paused() && heard) {
+    enter(Phase::reacting, context);
+    return Outcome::running();
+  }
+  if (context.now - since_ <= pause(axis.profile())) return Outcome::running();
+  return fail(context, axis.who() + ": after NMT stop and start no statusword came for " +
+                           seconds(context.now - since_) + ": " + axis.feedbackText());
 }
 
 Outcome FaultResetStep::advance(const Context& context) {
@@ -96,6 +128,8 @@ Outcome FaultResetStep::advance(const Context& context) {
       return Outcome::running();
     case Phase::high:
       return awaitReset(context);
+    case Phase::paused:
+      return awaitPause(context);
     case Phase::low_again:
       if (!sent && waited <= limit) return Outcome::running();
       enter(Phase::watching, context);

@@ -60,6 +60,8 @@ void Bus::setTime(Time now) {
   now_ = std::max(now_, now);
 }
 
+void Bus::jam(Time until) { idle_at_ = std::max(idle_at_, until); }
+
 void Bus::setMonitor(std::function<void(const can::Frame&, Time)> monitor) {
   monitor_ = std::move(monitor);
 }

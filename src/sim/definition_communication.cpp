@@ -8,6 +8,7 @@ void readCommunication(DefinitionReader& reader, DeviceBehaviour& out) {
   reader.read("sdo_latency", out.sdo_latency);
   reader.read("ignores_nmt_reset", out.ignores_nmt_reset);
   reader.read("map_count_read_only", out.map_count_read_only);
+  reader.read("fixed_map_entries", out.fixed_map_entries, 0, 64);
   reader.read("accepts_plain_sync", out.accepts_plain_sync);
   reader.read("generic_length_abort", out.generic_length_abort);
   reader.read("upload_without_size", out.upload_without_size);
@@ -15,6 +16,15 @@ void readCommunication(DefinitionReader& reader, DeviceBehaviour& out) {
   reader.read("echoes_writes", out.echoes_writes);
   reader.read("leaves_rubbish", out.leaves_rubbish);
   reader.read("answers_four_bytes", out.answers_four_bytes);
+  reader.read("announces_four_bytes", out.announces_four_bytes);
+  reader.read("answers_after_boot", out.answers_after_boot);
+  reader.read("keeps_rtr_bit", out.keeps_rtr_bit);
+  reader.read("misleading_cob_id_abort", out.misleading_cob_id_abort);
+  reader.read("rpdos_at_once", out.rpdos_at_once);
+  reader.read("stale_statusword", out.stale_statusword);
+  reader.read("boot_time_varies", out.boot_time_varies);
+  reader.read("overruns_at_boot", out.overruns_at_boot, 0, 16);
+  reader.read("reset_jams_bus", out.reset_jams_bus);
   reader.read("accepts_short_sdo", out.accepts_short_sdo);
   reader.read("sdo_block", out.sdo_block);
   reader.read("sdo_block_crc", out.sdo_block_crc);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "pdo_server.h"
 #include "sdo_server.h"
@@ -28,7 +29,10 @@ constexpr std::uint32_t kLssRequest = 0x7E5;
 constexpr std::uint32_t kFunctionCode = 0x780;
 constexpr std::uint32_t kNodeId = 0x07F;
 
+constexpr std::uint16_t kOverrun = 0x8110;
+constexpr std::uint8_t kCommunicationErrors = 0x11;  // bits of 1001h
 constexpr std::uint16_t kRecoveredFromBusOff = 0x8140;
+constexpr std::uint32_t kSdoRequest = 0x600;
 
 constexpr std::uint16_t kFirstCommunicationObject = 0x1000;
 constexpr std::uint16_t kLastCommunicationObject = 0x1FFF;
@@ -61,6 +65,9 @@ struct Device::Impl {
   SlaveLss lss;
   Time boot_at = kNever;
   Time boot_again_at = kNever;
+  Time jams_until = Time::min();
+  unsigned boots = 0;
+  std::vector<can::Frame> early_requests;  ///< of SDO, before boot-up
   Time next_event = kNever;
   unsigned depth = 0;
 
@@ -79,6 +86,7 @@ struct Device::Impl {
   void serveObjects();
   void releaseObjects();
   void beginBoot(bool reset_all);
+  Duration bootTime();
   void takeNodeId();
   void silence(NmtState state);
   void finishBoot();
@@ -138,6 +146,7 @@ void Device::Impl::releaseObjects() {
 void Device::Impl::silence(NmtState state) {
   context.state = state;
   boot_at = boot_again_at = kNever;
+  early_requests.clear();
   pdos.stop();
   heartbeat.reset();
   guarding.reset();
@@ -166,8 +175,15 @@ void Device::Impl::beginBoot(bool reset_all) {
     context.dictionary.restoreInitial(kFirstCommunicationObject, kLastCommunicationObject);
     context.application.onResetCommunication(context.now);
   }
-  boot_at = context.now + context.behaviour.boot_time;
+  boot_at = context.now + bootTime();
   context.application.onNmtState(NmtState::boot_up, context.now);
+}
+
+/// Each node and each boot has another one.
+Duration Device::Impl::bootTime() {
+  const std::uint64_t turn = (++boots * 256U + context.node) * 0x9E3779B97F4A7C15U >> 48U;
+  const auto part = static_cast<std::int64_t>(turn);  // of 65536
+  return context.behaviour.boot_time + context.behaviour.boot_time_varies * part / 65536;
 }
 
 void Device::Impl::finishBoot() {
@@ -183,6 +199,10 @@ void Device::Impl::finishBoot() {
     boot_again_at = context.now + context.behaviour.boots_again_after;
   }
   changeState(NmtState::pre_operational);
+  for (std::int64_t i = 0; i < context.behaviour.overruns_at_boot; ++i) {
+    emergency.send(kOverrun, kCommunicationErrors, {});
+  }
+  for (const can::Frame& request : std::exchange(early_requests, {})) sdo.receive(request);
   if (context.behaviour.starts_operational) changeState(NmtState::operational);
 }
 
@@ -211,8 +231,9 @@ void Device::Impl::command(const can::Frame& frame) {
     case NmtCommand::enter_pre_operational:
       return changeState(NmtState::pre_operational);
     case NmtCommand::reset_node:
-      if (!context.behaviour.ignores_nmt_reset) beginBoot(true);
-      return;
+      if (context.behaviour.ignores_nmt_reset) return;
+      jams_until = context.now + context.behaviour.reset_jams_bus;
+      return beginBoot(true);
     case NmtCommand::reset_communication:
       if (!context.behaviour.ignores_nmt_reset) beginBoot(false);
       return;
@@ -245,6 +266,9 @@ void Device::Impl::dispatch(const can::Frame& frame) {
 void Device::Impl::hear(const can::Frame& frame) {
   if (lss.deaf()) return;
   if (context.state != NmtState::boot_up) return dispatch(frame);
+  if (context.behaviour.answers_after_boot && frame.id == kSdoRequest + context.node) {
+    early_requests.push_back(frame);
+  }
   // Still initialising; without a node-ID LSS alone works, once the device has started.
   const bool waits_for_id = context.node == kUnconfigured && boot_at == kNever;
   if (waits_for_id && frame.id == kLssRequest) lss.receive(frame);
@@ -321,6 +345,8 @@ void Device::sendEmergency(std::uint16_t code, std::uint8_t error_register,
   Call<Impl> call(*impl_, now);
   impl_->emergency.send(code, error_register, vendor);
 }
+
+Time Device::jamsUntil() const { return impl_->jams_until; }
 
 std::optional<ReceivedTime> Device::lastTime() const { return impl_->clock.last(); }
 

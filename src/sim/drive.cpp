@@ -15,6 +15,8 @@ namespace {
 
 constexpr Duration kPowerCycle = std::chrono::milliseconds(500);
 constexpr Duration kStormInterval = std::chrono::milliseconds(1);
+constexpr unsigned kChatters = 6;
+constexpr Duration kChatterInterval = std::chrono::milliseconds(80);
 constexpr std::uint16_t kStormCode = 0x6100;  // internal software
 
 // Error register bits of a code's class (CiA 301, 7.2.7.1 and 7.5.2.2).
@@ -55,7 +57,9 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
         gate(sink),
         device(node, gate, dictionary, definition->communication, *this),
         core(*definition, mechanics, dictionary, *this),
-        store(dictionary, [this] { return !definition->stores_while_enabled && core.enabled(); }) {
+        store(
+            dictionary, [this] { return !definition->stores_while_enabled && core.enabled(); },
+            [this] { core.onParametersStored(); }) {
     installHooks();
   }
 
@@ -125,6 +129,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
   // Device::Application
   void onPowerOn(Time time) override {
     now = time;
+    heard = false;
     core.start(cold, time);
     cold = false;
   }
@@ -139,7 +144,10 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
     }
   }
   void onResetCommunication(Time) override {}  // the power drive system goes on
-  void onNmtState(canopen::NmtState state, Time) override { core.onNmtState(state); }
+  void onNmtState(canopen::NmtState state, Time) override {
+    core.onNmtState(state);
+    if (state == canopen::NmtState::pre_operational && !heard) core.onBootedAlone();
+  }
   void onSync(Time) override { core.onSync(); }
   void onMasterLost(Time) override { core.onMasterLost(); }
   bool hasFault() const override { return core.hasFault(); }
@@ -147,8 +155,26 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
   // DriveCore::Reports
   void emergency(const FaultDefinition& fault, std::uint8_t error_register) override {
     device.sendEmergency(fault.code, error_register, fault.vendor, now);
+    if (!definition->quirks.emergency_chatter) return;
+    chatter = {&fault, error_register, kChatters, now + kChatterInterval};
   }
-  void errorsGone() override { device.clearEmergency(now); }
+  void errorsGone() override {
+    const bool chatters = definition->quirks.emergency_chatter;
+    for (unsigned i = 0; i < (chatters ? kChatters : 1); ++i) device.clearEmergency(now);
+    chatter.at = kNever;
+  }
+
+  // The EMCY of a fault ends and comes again though the fault stays, at last it stands.
+  void tickChatter() {
+    if (chatter.at > now) return;
+    const bool ends = chatter.left-- % 2 == 0;
+    if (ends) {
+      device.clearEmergency(now);
+    } else {
+      device.sendEmergency(chatter.fault->code, chatter.error_register, chatter.fault->vendor, now);
+    }
+    chatter.at = chatter.left == 0 ? kNever : now + kChatterInterval;
+  }
 
   void bringTo(Time time) {
     now = std::max(now, time);
@@ -195,6 +221,13 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
   unsigned non_finite = 0;
   Time storm_at = kNever;
   unsigned storm_count = 0;
+  struct Chatter {
+    const FaultDefinition* fault = nullptr;
+    std::uint8_t error_register = 0;
+    unsigned left = 0;
+    Time at = kNever;
+  } chatter;
+  bool heard = false;  ///< anything, since power-on
   bool cold = false;
   bool first_power = true;
 };
@@ -222,6 +255,7 @@ void Drive::powerOff(Time now) {
 
 void Drive::receive(const can::Frame& frame, Time now) {
   impl_->bringTo(now);
+  impl_->heard = impl_->heard || !impl_->gate.closed;
   if (!impl_->gate.closed) impl_->device.receive(frame, now);
   impl_->flushChanges();
 }
@@ -230,11 +264,13 @@ void Drive::tick(Time now) {
   impl_->bringTo(now);
   impl_->device.tick(now);
   impl_->storm();
+  impl_->tickChatter();
   impl_->flushChanges();
 }
 
 Time Drive::nextEvent() const {
-  Time next = std::min({impl_->device.nextEvent(), impl_->core.nextEvent(), impl_->storm_at});
+  Time next = std::min(
+      {impl_->device.nextEvent(), impl_->core.nextEvent(), impl_->storm_at, impl_->chatter.at});
   if (impl_->restart_at) next = std::min(next, *impl_->restart_at);
   return next;
 }
@@ -305,6 +341,7 @@ DriveTruth Drive::truth(Time now) {
   truth.power_stage_on = motion.powered();
   truth.moving = std::fabs(truth.velocity_turns) > 1e-3;
   truth.statusword = impl_->core.statusword();
+  truth.mode = static_cast<int>(impl_->core.mode());
   truth.nmt = impl_->device.nmtState();
   truth.bad_floats_received = impl_->non_finite;
   return truth;

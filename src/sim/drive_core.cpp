@@ -10,7 +10,9 @@ namespace cia402::sim {
 namespace {
 
 constexpr Duration kSyncSilence = std::chrono::milliseconds(100);
+constexpr Duration kQuickStopFlash = std::chrono::milliseconds(2);
 constexpr Duration kWatchPeriod = std::chrono::milliseconds(1);
+constexpr std::uint16_t kFaultResetBit = 0x0080;  // of the controlword; others of the statusword
 constexpr std::uint16_t kWarningBit = 0x0080;
 constexpr std::uint16_t kVoltageBit = 0x0010;
 constexpr std::uint16_t kRemoteBit = 0x0200;
@@ -38,6 +40,10 @@ void DriveCore::start(bool cold, Time now) {
   motion_.setMode(definition_.mode(applied_mode_));
   enabled_at_ = kNever;
   resets_ = 0;
+  mode_commanded_ = was_stopped_ = false;
+  mode_at_ = stopped_since_ = kNever;
+  reset_low_since_ = now;
+  if (cold) stored_ = false;
   last_mode_command_ = applied_mode_;
   state_ = PdsState::not_ready_to_switch_on;
   ready_at_ = now + definition_.initialisation;
@@ -73,7 +79,7 @@ bool DriveCore::enabledState() const {
 }
 
 bool DriveCore::idle() const {
-  return enabled_at_ == kNever && !motion_.powered() && motion_.atRest() &&
+  return enabled_at_ == kNever && mode_at_ == kNever && !motion_.powered() && motion_.atRest() &&
          (ready_at_ == kNever || !on_);
 }
 
@@ -117,6 +123,7 @@ void DriveCore::step() {
     enter(PdsState::operation_enabled);
     onTargetPosition();
   }
+  if (time >= mode_at_) applyMode(values_.raw(Role::mode, 0));
   if (state_ == PdsState::operation_enabled) motion_.hold(time < follow_at_);
   motion_.step();
   if (motion_.powered()) {
@@ -155,19 +162,6 @@ void DriveCore::enter(PdsState state) {
   showMode();
 }
 
-/// 0x0F in Switched on.
-void DriveCore::beginEnabling() {
-  const DriveQuirks& quirks = definition_.quirks;
-  if (quirks.mode_needed && applied_mode_ == 0) return;
-  if (quirks.enabling_time == Duration::zero()) {
-    enter(PdsState::operation_enabled);
-    // Without SYNC the set-point that stands in the dictionary counts at once.
-    onTargetPosition();
-  } else if (enabled_at_ == kNever) {
-    enabled_at_ = now_ + quirks.enabling_time;
-  }
-}
-
 StopOption DriveCore::option(const OptionTable& table, Role role) const {
   const auto found = table.options.find(values_.raw(role, table.fallback));
   return found == table.options.end() ? StopOption{} : found->second;
@@ -178,9 +172,10 @@ void DriveCore::onControlword() {
   controlword_ = static_cast<std::uint16_t>(values_.raw(Role::controlword, 0));
   const PdsCommand command = decodeCommand(controlword_, previous);
   if (command == PdsCommand::fault_reset) {
-    resetFault();
+    if (seesResetEdge(previous)) resetFault();
     return;
   }
+  if ((previous & kFaultResetBit) != 0) reset_low_since_ = now_;
   const bool was_operating = state_ == PdsState::operation_enabled && !after_stop_;
   if (state_ == PdsState::operation_enabled && after_stop_ &&
       command == PdsCommand::enable_operation) {
@@ -247,6 +242,7 @@ void DriveCore::beginQuickStop(StopOption chosen) {
     return;
   }
   hold_after_quick_stop_ = chosen.hold;
+  quick_stop_since_ = now_;
   enter(PdsState::quick_stop_active);
   motion_.stop(chosen.ramp);
 }
@@ -258,37 +254,6 @@ void DriveCore::beginFaultReaction(Ramp ramp) {
   }
   enter(PdsState::fault_reaction_active);
   motion_.stop(ramp);
-}
-
-void DriveCore::onMode() {
-  constexpr std::uint16_t kHalt = 0x0100;
-  const DriveQuirks& quirks = definition_.quirks;
-  const std::int64_t wanted = values_.raw(Role::mode, 0);
-  const bool changes = wanted != last_mode_command_;
-  last_mode_command_ = wanted;
-  if (quirks.mode_command != ModeCommand::any && !enabledState()) return;
-  if (quirks.mode_command == ModeCommand::change && !changes) return;
-  if (quirks.halt_blocks_mode && (controlword_ & kHalt) != 0) return;
-  if (wanted == applied_mode_ && motion_.mode() == definition_.mode(wanted)) return;
-  const auto faulty = std::make_pair(applied_mode_, wanted);
-  const auto& faults = quirks.mode_faults;
-  if (enabledState() && std::find(faults.begin(), faults.end(), faulty) != faults.end()) {
-    if (const FaultDefinition* fault = definition_.fault("mode_change")) return raise(*fault);
-  }
-  applyMode(wanted);
-}
-
-void DriveCore::applyMode(std::int64_t wanted) {
-  applied_mode_ = wanted;
-  motion_.setMode(definition_.mode(wanted));
-  showMode();
-  updateStatusword();
-}
-
-void DriveCore::showMode() {
-  const bool hidden =
-      definition_.quirks.mode_shown_when_enabled && state_ != PdsState::operation_enabled;
-  values_.setRaw(Role::mode_display, hidden ? 0 : applied_mode_);
 }
 
 void DriveCore::onTargetPosition() {
@@ -344,15 +309,11 @@ std::uint32_t DriveCore::refuseWrite(const Entry& entry, std::uint64_t number) c
   return is_locked && enabledState() ? abort_code::kDeviceState : 0;
 }
 
-/// They mean nothing to anybody but the maker, and change as they like: here every 10 ms.
-std::uint16_t DriveCore::vendorBits() const {
-  const std::uint64_t turn = static_cast<std::uint64_t>(now_.time_since_epoch().count() / 10000000);
-  return static_cast<std::uint16_t>((turn * 0x9E3779B97F4A7C15U >> 40U) &
-                                    definition_.quirks.vendor_bits);
-}
-
 void DriveCore::updateStatusword() {
-  std::uint16_t word = statusBits(state_);
+  const bool flashed = definition_.quirks.quick_stop_flashes &&
+                       state_ == PdsState::quick_stop_active &&
+                       now_ - quick_stop_since_ > kQuickStopFlash;
+  std::uint16_t word = statusBits(flashed ? PdsState::switch_on_disabled : state_);
   if (state_ != PdsState::not_ready_to_switch_on) {
     word |= kRemoteBit;
     const bool voltage = std::none_of(causes_.begin(), causes_.end(), [this](const Cause& cause) {

@@ -42,6 +42,8 @@ class DriveCore {
   void onMode();
   void onTargetPosition();
   void onSync();  ///< a SYNC was received
+  void onParametersStored() { stored_ = true; }
+  void onBootedAlone();  ///< nobody was heard between power-on and boot-up
   void onNonFinite();
   void resetFault();  ///< what the rising edge of controlword bit 7 does
   void saveZero();    ///< the present position is 0 from now on
@@ -59,6 +61,7 @@ class DriveCore {
 
   PdsState state() const { return state_; }
   std::uint16_t statusword() const { return statusword_; }
+  std::int64_t mode() const { return applied_mode_; }
   const DriveMotion& motion() const { return motion_; }
 
  private:
@@ -84,6 +87,12 @@ class DriveCore {
   void startSegment();
   void applyMode(std::int64_t wanted);
   void showMode();
+  void changeMode(std::int64_t wanted);
+  bool ignoresMode(std::int64_t wanted);
+  bool seesResetEdge(std::uint16_t previous);
+  bool mayReset();
+  bool mayEnable();
+  void holdUnwatched();
   void beginEnabling();
   std::uint16_t vendorBits() const;
   void updateStatusword();
@@ -104,7 +113,14 @@ class DriveCore {
   Time enabled_at_ = kNever;       ///< end of DriveQuirks::enabling_time
   std::int64_t applied_mode_ = 0;  ///< in which it is, whatever 6061h shows
   std::int64_t last_mode_command_ = 0;
-  std::int64_t resets_ = 0;  ///< of the present fault
+  bool mode_commanded_ = false;  ///< since it started
+  Time mode_at_ = kNever;        ///< end of DriveQuirks::mode_change_time
+  std::int64_t resets_ = 0;      ///< of the present fault
+  Time stopped_since_ = kNever;  ///< by NMT
+  bool was_stopped_ = false;     ///< long enough, since the present fault
+  Time reset_low_since_{};       ///< controlword bit 7
+  Time quick_stop_since_{};
+  bool stored_ = false;  ///< parameters, since its power was off
   std::uint16_t controlword_ = 0;
   std::uint16_t statusword_ = 0;
   std::optional<PdsTransition> after_stop_;  ///< transition waiting for the slow-down ramp

@@ -24,6 +24,7 @@ void DriveCore::raise(const FaultDefinition& fault) {
   const auto same = std::find_if(causes_.begin(), causes_.end(),
                                  [&fault](const Cause& c) { return c.fault == &fault; });
   const Time until = fault.persists == Duration::max() ? kNever : now_ + fault.persists;
+  if (causes_.empty()) was_stopped_ = false;
   if (same != causes_.end()) {
     same->until = until;
   } else if (causes_.size() < causes_.capacity()) {
@@ -60,7 +61,7 @@ void DriveCore::resetFault() {
     reports_.emergency(*lasting, errorRegister());
     return;
   }
-  if (++resets_ < definition_.quirks.fault_reset_tries) return;
+  if (!mayReset()) return;
   clearErrors();
   if (state_ == PdsState::fault) enter(PdsState::switch_on_disabled);  // transition 15
   updateStatusword();
@@ -68,7 +69,7 @@ void DriveCore::resetFault() {
 
 void DriveCore::clearErrors() {
   causes_.clear();
-  warning_ = false;
+  warning_ = was_stopped_ = false;
   resets_ = 0;
   values_.setRaw(Role::error_code, 0);
   reports_.errorsGone();
@@ -99,6 +100,7 @@ void DriveCore::onNonFinite() {
 }
 
 void DriveCore::connectionLost(ConnectionLoss reaction) {
+  if (definition_.quirks.master_lost_holds) return holdUnwatched();
   switch (reaction) {
     case ConnectionLoss::none:
       return;
@@ -130,8 +132,15 @@ void DriveCore::onNmtState(canopen::NmtState state) {
   const bool left =
       nmt_ == canopen::NmtState::operational && state != canopen::NmtState::operational;
   nmt_ = state;
+  if (state == canopen::NmtState::stopped) {
+    stopped_since_ = now_;
+  } else if (stopped_since_ != kNever) {
+    was_stopped_ = now_ - stopped_since_ >= definition_.quirks.fault_reset_needs_stop;
+    stopped_since_ = kNever;
+  }
   if (!left || !definition_.stops_outside_operational) return;
   if (state_ != PdsState::operation_enabled && state_ != PdsState::quick_stop_active) return;
+  if (definition_.quirks.master_lost_holds) return holdUnwatched();
   beginQuickStop({Ramp::quick_stop, false});
   updateStatusword();
 }

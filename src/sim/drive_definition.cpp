@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "definition_communication.h"
+#include "definition_quirks.h"
 #include "definition_reader.h"
 #include "homing_sequence.h"
 
@@ -239,35 +240,6 @@ void readStateMachine(Reader& reader, DriveDefinition& out) {
       out.locked_while_enabled.push_back(*object);
     else
       reader.problem("locked_while_enabled", "must be a list of objects like \"6083:00\"");
-  }
-}
-
-void readQuirks(Reader& reader, DriveQuirks& out) {
-  reader.read("mode_shown_when_enabled", out.mode_shown_when_enabled);
-  reader.read<ModeCommand>("mode_command", out.mode_command,
-                           {{"any", ModeCommand::any},
-                            {"enabled", ModeCommand::enabled},
-                            {"change", ModeCommand::change}});
-  reader.read("mode_needed", out.mode_needed);
-  reader.read("enabling_time", out.enabling_time);
-  reader.read("halt_blocks_mode", out.halt_blocks_mode);
-  std::int64_t bits = out.fault_bits;
-  reader.read("fault_bits", bits, 0, 0xFFFF);
-  out.fault_bits = static_cast<std::uint16_t>(bits);
-  bits = out.vendor_bits;
-  reader.read("vendor_bits", bits, 0, 0xFFFF);
-  out.vendor_bits = static_cast<std::uint16_t>(bits);
-  reader.read("homing_reaches_no_target", out.homing_reaches_no_target);
-  reader.read("fault_reset_tries", out.fault_reset_tries, 1, 20);
-  reader.read("no_generic_error_bit", out.no_generic_error_bit);
-  if (!reader.has("mode_faults")) return;
-  out.mode_faults.clear();
-  for (const YAML::Node& item : reader.node("mode_faults")) {
-    if (item.IsSequence() && item.size() == 2) {
-      out.mode_faults.emplace_back(item[0].as<std::int64_t>(0), item[1].as<std::int64_t>(0));
-    } else {
-      reader.problem("mode_faults", "must be a list of pairs of modes like [3, 8]");
-    }
   }
 }
 

@@ -12,6 +12,7 @@
 #include "cia402_driver/sim/device.h"
 #include "cia402_driver/sim/dictionary_yaml.h"
 #include "cia402_driver/sim/drive.h"
+#include "drive_quirks.h"
 #include "drive_values.h"
 #include "motor.h"
 
@@ -82,30 +83,6 @@ struct FaultDefinition {
 struct UnitScale {
   bool per_count = false;  ///< times AxisMechanics::counts_per_turn
   double factor = 1.0;     ///< device units per internal unit
-};
-
-/// A command of a mode that counts, where 6060h is forgotten while disabled.
-enum class ModeCommand : std::uint8_t {
-  any,      ///< each that comes, whenever
-  enabled,  ///< each that comes while enabled
-  change,   ///< one that differs from the last, while enabled
-};
-
-/// What drives in the field do otherwise than CiA 402 says; each was seen or told of, see
-/// docs/simulated_drives.md. All off: a drive by the book.
-struct DriveQuirks {
-  bool mode_shown_when_enabled = false;  ///< 6061h is 0 in all states but operation enabled
-  ModeCommand mode_command = ModeCommand::any;
-  bool mode_needed = false;       ///< 0x0F enables nothing while the mode is 0
-  Duration enabling_time{0};      ///< from 0x0F in Switched on to operation enabled
-  bool halt_blocks_mode = false;  ///< 6060h is ignored while controlword bit 8 is set
-  /// Changes of 6060h that it answers by a fault (`mode_change`) while enabled: from, to.
-  std::vector<std::pair<std::int64_t, std::int64_t>> mode_faults;
-  std::uint16_t fault_bits = 0;           ///< statusword bits beside those of the state fault
-  std::uint16_t vendor_bits = 0;          ///< statusword bits that change with everything else
-  bool homing_reaches_no_target = false;  ///< statusword bit 10 stays 0 in homing
-  std::int64_t fault_reset_tries = 1;     ///< edges of bit 7 that it takes
-  bool no_generic_error_bit = false;      ///< 1001h without bit 0
 };
 
 /// See docs/simulated_drives.md for the file format.

@@ -48,8 +48,9 @@ bool isParameter(const Entry& entry) {
 
 }  // namespace
 
-ParameterStore::ParameterStore(ObjectDictionary& dictionary, std::function<bool()> enabled)
-    : dictionary_(dictionary), enabled_(std::move(enabled)) {
+ParameterStore::ParameterStore(ObjectDictionary& dictionary, std::function<bool()> enabled,
+                               std::function<void()> stored)
+    : dictionary_(dictionary), enabled_(std::move(enabled)), stored_(std::move(stored)) {
   for (const auto& pair : dictionary_.entries()) factory_[pair.first] = pair.second.initial_number;
   install(kStore, kSave);
   install(kRestore, kLoad);
@@ -94,6 +95,7 @@ void ParameterStore::store(std::uint8_t subindex) {
     if (!inGroup(pair.first.index, subindex) || !isParameter(pair.second)) continue;
     dictionary_.find(pair.first)->initial_number = pair.second.number;
   }
+  if (stored_) stored_();
 }
 
 void ParameterStore::restore(std::uint8_t subindex) {

@@ -17,7 +17,9 @@ namespace cia402::sim {
 class ParameterStore {
  public:
   /// Installs itself where `dictionary` has 1010h and 1011h; both must outlive it.
-  ParameterStore(ObjectDictionary& dictionary, std::function<bool()> enabled);
+  /// @param stored is called after a "save".
+  ParameterStore(ObjectDictionary& dictionary, std::function<bool()> enabled,
+                 std::function<void()> stored);
   /// What a "load" into the sub-index does.
   void restore(std::uint8_t subindex);
   /// The default of an object moves with the node-ID; what was saved in its place stays.
@@ -32,6 +34,7 @@ class ParameterStore {
 
   ObjectDictionary& dictionary_;
   std::function<bool()> enabled_;
+  std::function<void()> stored_;
   std::map<ObjectId, std::uint64_t> factory_;
 };
 

@@ -63,6 +63,7 @@ void PdoServer::configure() {
     pdo.configure();
   }
   for (SlaveTpdo& pdo : tpdos_) {
+    setRtrBit(context_, pdo.records());
     countEntries(context_, pdo.records());
     pdo.configure();
   }

@@ -223,7 +223,9 @@ void SdoServer::answerUpload() {
   toggle_ = false;
   sent_ = 0;
   if (!tell_size) return answer(kUploadInitiated);
-  answer(kUploadInitiated | kSizeIndicated, static_cast<std::uint32_t>(data_.size()));
+  const bool truly = !context_.behaviour.announces_four_bytes;
+  const std::size_t announced = truly ? data_.size() : kExpeditedSize;
+  answer(kUploadInitiated | kSizeIndicated, static_cast<std::uint32_t>(announced));
 }
 
 void SdoServer::uploadSegment(const can::Frame& request) {

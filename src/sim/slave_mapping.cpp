@@ -69,10 +69,12 @@ std::uint32_t Mapping::check(const ObjectDictionary& dictionary, std::uint16_t i
   return bits <= kMaxBits ? 0 : abort_code::kPdoLength;
 }
 
-void Mapping::build(ObjectDictionary& dictionary, std::uint16_t index, PdoDirection direction) {
+void Mapping::build(ObjectDictionary& dictionary, std::uint16_t index, PdoDirection direction,
+                    bool fillers) {
   objects_.clear();
   bits_ = 0;
-  const std::uint64_t count = mappingValue(dictionary, index, 0);
+  std::uint64_t count = mappingValue(dictionary, index, 0);
+  while (fillers && count > 0 && mappingValue(dictionary, index, count) == 0) --count;
   if (check(dictionary, index, count, direction) != 0) return;
   objects_.reserve(static_cast<std::size_t>(count));
   for (std::uint64_t place = 1; place <= count; ++place) {
@@ -84,6 +86,13 @@ void Mapping::build(ObjectDictionary& dictionary, std::uint16_t index, PdoDirect
                               bits_});
     bits_ += bitsOf(value);
   }
+}
+
+std::optional<unsigned> Mapping::placeOf(ObjectId id) const {
+  for (const Object& object : objects_) {
+    if (object.entry != nullptr && object.entry->id == id) return object.shift;
+  }
+  return std::nullopt;
 }
 
 std::uint64_t Mapping::pack() const {

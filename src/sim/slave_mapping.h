@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "slave_context.h"
@@ -22,8 +23,12 @@ class Mapping {
                              std::uint64_t count, PdoDirection direction);
 
   /// Takes the record `index` with its sub-index 0 over; an impossible one becomes empty.
-  void build(ObjectDictionary& dictionary, std::uint16_t index, PdoDirection direction);
+  /// @param fillers entries at its end that are 0 are none.
+  void build(ObjectDictionary& dictionary, std::uint16_t index, PdoDirection direction,
+             bool fillers);
 
+  /// Where the object lies in the data: its lowest bit. Nothing: it is not mapped.
+  std::optional<unsigned> placeOf(ObjectId id) const;
   bool empty() const { return objects_.empty(); }
   /// Data bytes of the PDO.
   std::uint8_t size() const { return static_cast<std::uint8_t>((bits_ + 7U) / 8U); }

@@ -26,6 +26,17 @@ bool idIsFixed(const SlaveContext& context, const Entry& entry, std::uint64_t nu
   return rule == PdoIdentifiers::read_only;
 }
 
+bool dropsRtrBit(const SlaveContext& context, const PdoRecords& pdo, std::uint64_t number) {
+  const bool kept = context.behaviour.keeps_rtr_bit && pdo.direction == PdoDirection::transmit;
+  return kept && (number & kCobIdNoRtr) == 0;
+}
+
+bool hasBadCobId(const SlaveContext& context, const PdoRecords& pdo) {
+  const auto cob_id = static_cast<std::uint32_t>(
+      context.value({pdo.communication, pdo_sub::kCobId}, kCobIdInvalid));
+  return checkCobId(kCobIdInvalid, cob_id & ~kCobIdInvalid, true) != 0;
+}
+
 std::uint32_t checkMappingEntry(const SlaveContext& context, const PdoRecords& pdo,
                                 const Entry& entry, std::uint64_t number) {
   const auto refused = Mapping::checkEntry(context.dictionary, number, pdo.direction);
@@ -45,18 +56,29 @@ bool isValid(const SlaveContext& context, const PdoRecords& pdo) {
 }
 
 bool countFollowsEntries(const SlaveContext& context, const PdoRecords& pdo) {
-  if (context.behaviour.map_count_read_only) return true;
+  const DeviceBehaviour& behaviour = context.behaviour;
+  if (behaviour.map_count_read_only || behaviour.fixed_map_entries != 0) return true;
   const Entry* count = context.dictionary.find({pdo.mapping, 0});
   return count != nullptr && count->access == Access::ro;
 }
 
 void countEntries(SlaveContext& context, const PdoRecords& pdo) {
   if (!countFollowsEntries(context, pdo)) return;
-  std::uint8_t count = 0;
-  while (count < 64 && context.value({pdo.mapping, static_cast<std::uint8_t>(count + 1)}) != 0) {
-    ++count;
+  auto count = static_cast<std::uint8_t>(context.behaviour.fixed_map_entries);
+  const auto isEntry = [&](unsigned place) {
+    return context.value({pdo.mapping, static_cast<std::uint8_t>(place)}) != 0;
+  };
+  if (count == 0) {
+    while (count < 64 && isEntry(count + 1U)) ++count;
   }
   if (Entry* entry = context.dictionary.find({pdo.mapping, 0})) entry->number = count;
+}
+
+void setRtrBit(SlaveContext& context, const PdoRecords& pdo) {
+  if (!context.behaviour.keeps_rtr_bit) return;
+  if (Entry* entry = context.dictionary.find({pdo.communication, pdo_sub::kCobId})) {
+    entry->number |= kCobIdNoRtr;
+  }
 }
 
 std::uint32_t checkCommunication(const SlaveContext& context, const PdoRecords& pdo,
@@ -65,6 +87,8 @@ std::uint32_t checkCommunication(const SlaveContext& context, const PdoRecords& 
   switch (entry.id.subindex) {
     case pdo_sub::kCobId:
       if (idIsFixed(context, entry, number)) return abort_code::kReadOnly;
+      if (dropsRtrBit(context, pdo, number)) return abort_code::kInvalidValue;
+      if (context.behaviour.misleading_cob_id_abort) return 0;
       return checkCobId(static_cast<std::uint32_t>(entry.number),
                         static_cast<std::uint32_t>(number),
                         context.behaviour.disable_may_change_id);
@@ -83,14 +107,19 @@ std::uint32_t checkCommunication(const SlaveContext& context, const PdoRecords& 
 std::uint32_t checkMapping(const SlaveContext& context, const PdoRecords& pdo, const Entry& entry,
                            std::uint64_t number) {
   const bool follows = countFollowsEntries(context, pdo);
+  const bool fixed = context.behaviour.fixed_map_entries != 0;
   const bool by_the_book = context.behaviour.mapping_requires_invalid && !follows;
+  const bool needs_invalid = by_the_book || (fixed && context.behaviour.mapping_requires_invalid);
   if (entry.id.subindex == 0) {
     if (follows) return abort_code::kReadOnly;
     if (by_the_book && isValid(context, pdo)) return abort_code::kDeviceState;
     return Mapping::check(context.dictionary, pdo.mapping, number, pdo.direction);
   }
-  if (by_the_book && isValid(context, pdo)) return abort_code::kDeviceState;
+  if (needs_invalid && isValid(context, pdo)) return abort_code::kDeviceState;
   if (by_the_book && context.value({pdo.mapping, 0}) != 0) return abort_code::kUnsupportedAccess;
+  if (context.behaviour.misleading_cob_id_abort && hasBadCobId(context, pdo)) {
+    return abort_code::kNotMappable;
+  }
   const bool check_now = follows || context.behaviour.map_entry_checked_on_write;
   return check_now && number != 0 ? checkMappingEntry(context, pdo, entry, number) : 0;
 }

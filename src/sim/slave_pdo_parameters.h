@@ -28,8 +28,12 @@ inline constexpr std::uint8_t kSyncStart = 6;
 bool isValid(const SlaveContext& context, const PdoRecords& pdo);
 /// Whether sub-index 0 of the mapping cannot be written and follows the entries instead.
 bool countFollowsEntries(const SlaveContext& context, const PdoRecords& pdo);
-/// Sets sub-index 0 of such a mapping to the number of entries before the first zero.
+/// Sets sub-index 0 of such a mapping to the number of entries before the first zero, or to the
+/// number that it always has.
 void countEntries(SlaveContext& context, const PdoRecords& pdo);
+
+/// Sets bit 30 of the COB-ID of a TPDO, where the device insists on it.
+void setRtrBit(SlaveContext& context, const PdoRecords& pdo);
 
 /// Checks a write to a communication or mapping record. @return abort code or 0.
 std::uint32_t checkCommunication(const SlaveContext& context, const PdoRecords& pdo,

@@ -30,10 +30,12 @@ void SlaveRpdo::configure() {
   const std::uint16_t index = records_.communication;
   const auto cob_id = static_cast<std::uint32_t>(context_.value({index, pdo_sub::kCobId}));
   can_id_ = isValid(context_, records_) ? cob_id & kCobIdMask : kNoCanId;
-  synchronous_ = context_.value({index, pdo_sub::kType}, 255) <= kMaxSync;
+  synchronous_ =
+      context_.value({index, pdo_sub::kType}, 255) <= kMaxSync && !context_.behaviour.rpdos_at_once;
   event_time_ = std::chrono::milliseconds(
       static_cast<std::int64_t>(context_.value({index, pdo_sub::kEventTimer})));
-  mapping_.build(context_.dictionary, records_.mapping, records_.direction);
+  const bool fillers = context_.behaviour.fixed_map_entries != 0;
+  mapping_.build(context_.dictionary, records_.mapping, records_.direction, fillers);
   stop();
 }
 

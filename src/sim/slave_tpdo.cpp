@@ -40,7 +40,8 @@ void SlaveTpdo::configure() {
   inhibit_time_ = kInhibitUnit * number(pdo_sub::kInhibitTime, 0);
   event_time_ = std::chrono::milliseconds(number(pdo_sub::kEventTimer, 0));
   sync_start_ = static_cast<std::uint8_t>(number(pdo_sub::kSyncStart, 0));
-  mapping_.build(context_.dictionary, records_.mapping, records_.direction);
+  const bool fillers = context_.behaviour.fixed_map_entries != 0;
+  mapping_.build(context_.dictionary, records_.mapping, records_.direction, fillers);
   if (running_) start();
 }
 
@@ -49,6 +50,7 @@ void SlaveTpdo::start() {
   counting_ = false;
   syncs_ = 0;
   sent_ = false;
+  shown_word_.reset();
   sampled_ = false;
   waiting_ = false;
   inhibited_until_ = Time::min();
@@ -82,10 +84,23 @@ bool SlaveTpdo::wantsSample(std::uint8_t counter) {
   return true;
 }
 
-void SlaveTpdo::onSync() {
+/// What a SYNC makes it send, with the statusword of a moment ago where the device is like that.
+std::uint64_t SlaveTpdo::sample() {
   const std::uint64_t data = mapping_.pack();
+  const auto place = mapping_.placeOf({0x6041, 0});
+  const Duration lag = context_.behaviour.stale_statusword;
+  if (lag == Duration::zero() || records_.mapping == kMapping || !place) return data;
+  const std::uint64_t word = data >> *place & 0xFFFFU;
+  if (word != newest_word_) word_since_ = context_.now;
+  newest_word_ = word;
+  if (!shown_word_ || context_.now - word_since_ >= lag) shown_word_ = word;
+  return (data & ~(std::uint64_t{0xFFFF} << *place)) | *shown_word_ << *place;
+}
+
+void SlaveTpdo::onSync() {
+  const std::uint64_t data = sample();
   if (type_ == kRequestSynchronous) {
-    sample_ = data;
+    sampled_data_ = data;
     sampled_ = true;
     return;
   }
@@ -105,7 +120,7 @@ void SlaveTpdo::onStart() {
 void SlaveTpdo::onRequest() {
   if (!active()) return;
   if (type_ != kRequestSynchronous) return transmit(mapping_.pack());
-  if (sampled_) transmit(sample_);
+  if (sampled_) transmit(sampled_data_);
 }
 
 void SlaveTpdo::trigger(std::uint64_t data) {

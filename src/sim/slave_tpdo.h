@@ -42,6 +42,7 @@ class SlaveTpdo {
   bool active() const { return running_ && can_id_ != kNoCanId && !mapping_.empty(); }
   bool eventDriven() const;
   bool isNew(std::uint64_t data) const { return !sent_ || data != last_; }
+  std::uint64_t sample();
   void trigger(std::uint64_t data);
   void transmit(std::uint64_t data);
 
@@ -60,8 +61,11 @@ class SlaveTpdo {
   unsigned syncs_ = 0;
   bool sent_ = false;
   std::uint64_t last_ = 0;
-  bool sampled_ = false;  // type 252: `sample_` holds the data of the last SYNC
-  std::uint64_t sample_ = 0;
+  std::optional<std::uint64_t> shown_word_;  // DeviceBehaviour::stale_statusword
+  std::uint64_t newest_word_ = 0;
+  Time word_since_{};
+  bool sampled_ = false;  // type 252: `sampled_data_` holds the data of the last SYNC
+  std::uint64_t sampled_data_ = 0;
   bool waiting_ = false;  // for the end of the inhibit time
   Time inhibited_until_ = Time::min();
   Time event_deadline_ = kNever;

@@ -11,13 +11,15 @@ class World::DriveNode final : public Listener {
  public:
   DriveNode(Bus& bus, std::string name, std::shared_ptr<const DriveDefinition> definition,
             canopen::NodeId node, const AxisMechanics& mechanics, const DriveIdentity& identity)
-      : port_(bus.attach(*this, std::move(name))),
+      : bus_(bus),
+        port_(bus.attach(*this, std::move(name))),
         drive_(std::move(definition), node, port_, mechanics, identity) {
     drive_.device().setBusBitrate(static_cast<std::uint32_t>(bus.bitrate()));
   }
 
   void onFrame(const can::Frame& frame, Time now) override {
     drive_.receive(frame, now);
+    if (drive_.device().jamsUntil() > now) bus_.jam(drive_.device().jamsUntil());
     refresh();
   }
   void onStateChange(can::BusState state, Time now) override {
@@ -57,6 +59,7 @@ class World::DriveNode final : public Listener {
     port_.setPowered(true);
   }
 
+  Bus& bus_;
   Port& port_;
   Drive drive_;
   Time next_event_ = kNever;

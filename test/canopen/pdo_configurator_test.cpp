@@ -326,6 +326,71 @@ TEST_F(PdoConfiguratorTest, the_quirk_excuses_no_other_object) {
   EXPECT_EQ(run(wantedTpdo(), options), Status::failed);
 }
 
+// Curtis: sub-index 0 is always the same, what is not used is 0.
+PdoConfigurator::Options threeEntries() {
+  PdoConfigurator::Options options;
+  options.fixed_entries = 3;
+  return options;
+}
+
+const char kReadEntry3[] = "603 40 00 1A 03 00 00 00 00";
+const char kCount3[] = "583 4F 00 1A 00 03 00 00 00";
+const char kNoEntry2[] = "583 43 00 1A 02 00 00 00 00";
+const char kNoEntry3[] = "583 43 00 1A 03 00 00 00 00";
+const char kClearEntry1[] = "603 23 00 1A 01 00 00 00 00";
+const char kClearEntry2[] = "603 23 00 1A 02 00 00 00 00";
+const char kClearEntry3[] = "603 23 00 1A 03 00 00 00 00";
+
+TEST_F(PdoConfiguratorTest, fillers_at_the_end_of_a_fixed_number_of_entries_are_no_objects) {
+  peer.on(kReadCount, kCount3).on(kReadEntry3, kNoEntry3);
+  allAsWanted();
+  EXPECT_EQ(run(wantedTpdo(), threeEntries()), Status::done) << configurator->error();
+  EXPECT_FALSE(configurator->changed());
+}
+
+TEST_F(PdoConfiguratorTest, a_fixed_number_of_entries_is_filled_and_never_written) {
+  peer.on(kReadCount, kCount3)
+      .on(kReadCount, kCount3)
+      .on(kReadEntry2, "583 43 00 1A 02 08 00 61 60")
+      .on(kReadEntry3, "583 43 00 1A 03 10 00 77 60")
+      .on(kReadEntry3, kNoEntry3)
+      .on(kClearEntry1, kEntry1Done)
+      .on(kClearEntry2, kEntry2Done)
+      .on(kClearEntry3, "583 60 00 1A 03 00 00 00 00");
+  allAsWanted();
+  allWritesTaken();
+  EXPECT_EQ(run(wantedTpdo(), threeEntries()), Status::done) << configurator->error();
+  const Lines sent = peer.take();
+  EXPECT_EQ(Lines(sent.begin() + 8, sent.begin() + 15),
+            (Lines{kDisable, kClearEntry3, kClearEntry2, kClearEntry1, kWriteEntry1, kWriteEntry2,
+                   kEnable}));
+}
+
+TEST_F(PdoConfiguratorTest, a_gap_before_the_last_entry_is_no_filler) {
+  peer.on(kReadCount, kCount3)
+      .on(kReadEntry2, kNoEntry2)
+      .on(kReadEntry3, "583 43 00 1A 03 20 00 64 60");
+  allAsWanted();
+  EXPECT_EQ(run(wantedTpdo(), threeEntries()), Status::running);
+  EXPECT_EQ(peer.take().back(), kDisable);
+}
+
+TEST_F(PdoConfiguratorTest, a_fixed_number_of_entries_that_the_drive_does_not_have_is_told) {
+  allAsWanted();
+  EXPECT_EQ(run(wantedTpdo(), threeEntries()), Status::failed);
+  EXPECT_EQ(configurator->error(),
+            "TPDO 1: 1A00:00 is 2, but the profile says that it is always 3 "
+            "(pdo_rules/fixed_entries)");
+}
+
+TEST_F(PdoConfiguratorTest, more_entries_than_there_are_places_are_refused_before_a_frame) {
+  PdoConfigurator::Options one;
+  one.fixed_entries = 1;
+  EXPECT_EQ(run(wantedTpdo(), one), Status::failed);
+  EXPECT_EQ(configurator->error(), "TPDO 1: it has 2 entries, the drive has room for 1");
+  EXPECT_TRUE(peer.take().empty());
+}
+
 TEST_F(PdoConfiguratorTest, an_unwanted_pdo_is_made_invalid_and_nothing_else) {
   PdoConfig unwanted = wantedTpdo();
   unwanted.enabled = false;

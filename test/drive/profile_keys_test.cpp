@@ -48,12 +48,14 @@ output_shaft: true
 halt_supported: false
 warning_stops: true
 mode_change: disabled
+fault_reset_tries: 4
+fault_reset_nmt_stop: 0.15
 quick_stop_holds: [5, -6]
 sync: {counter: 12, counter_object: true, period_object: false, period_step: 0.001}
 heartbeat: {producer: false, consumer: false, node_guarding: true}
 timing: {boot: 1.5, state_change: 2.5, mode_change: 3.5, brake_release: 0.25, sdo: 0.75,
   sdo_retries: 3}
-parameters: {save: [2, 3], restore: [4], timeout: 4.5}
+parameters: {save: [2, 3], restore: [4], timeout: 4.5, power_cycle_after_save: true}
 homing:
   kind: drive
   methods: {-1: to the stop, 35: here}
@@ -62,7 +64,7 @@ homing:
 startup: [{object: "2001:02", type: uint16, value: 0x1FF}, {object: plain, value: 9}]
 before_enable: [{object: target_position, from: position_actual}]
 pdo_rules: {max_rpdos: 5, max_tpdos: 6, max_entries: 3, map_count_may_be_read_only: true,
-  cob_ids: drive, rpdo_deadline: true, fixed: {tpdo6: [statusword]}}
+  fixed_entries: 6, cob_ids: drive, rpdo_deadline: true, fixed: {tpdo6: [statusword]}}
 pdos:
   rpdo1: [controlword, target_position]
   rpdo5: {objects: [target_torque], transmission: 254, event_timer: 0.123, refresh_every: 7,
@@ -208,6 +210,9 @@ TEST_F(ProfileKeys, BehaviourIsAsWritten) {
   EXPECT_THAT(profile.parameters.save, ElementsAre(2, 3));
   EXPECT_THAT(profile.parameters.restore, ElementsAre(4));
   EXPECT_EQ(profile.parameters.timeout, milliseconds(4500));
+  EXPECT_TRUE(profile.parameters.power_cycle_after_save);
+  EXPECT_EQ(profile.fault_reset_tries, 4);
+  EXPECT_EQ(profile.fault_reset_nmt_stop, milliseconds(150));
 }
 
 TEST_F(ProfileKeys, WritesAreAsWritten) {
@@ -233,6 +238,7 @@ TEST_F(ProfileKeys, PdosAreAsWritten) {
   EXPECT_EQ(profile.max_tpdos, 6U);
   EXPECT_EQ(profile.max_pdo_entries, 3U);
   EXPECT_TRUE(profile.pdo_map_count_may_be_read_only);
+  EXPECT_EQ(profile.fixed_pdo_entries, 6U);
   EXPECT_TRUE(profile.cob_ids_of_drive);
   EXPECT_TRUE(profile.rpdo_deadline);
   ASSERT_EQ(profile.fixed_pdos.size(), 1U);
@@ -293,8 +299,12 @@ TEST(ProfileDefaults, AreThoseOfTheStandards) {
   EXPECT_EQ(profile.max_rpdos, 4U);
   EXPECT_EQ(profile.max_tpdos, 4U);
   EXPECT_EQ(profile.max_pdo_entries, 8U);
+  EXPECT_EQ(profile.fixed_pdo_entries, 0U);
   EXPECT_FALSE(profile.pdo_map_count_may_be_read_only || profile.cob_ids_of_drive ||
                profile.rpdo_deadline);
+  EXPECT_EQ(profile.fault_reset_tries, 1);
+  EXPECT_EQ(profile.fault_reset_nmt_stop, Duration::zero());
+  EXPECT_FALSE(profile.parameters.power_cycle_after_save);
   EXPECT_EQ(profile.homing.kind, HomingSpec::Kind::none);
   EXPECT_FALSE(profile.mode("csp")->cyclic);
   EXPECT_EQ(profile.mode("csp")->handshake, Handshake::none);
@@ -364,12 +374,19 @@ TEST(ProfileMistakes, AreToldWithWhatToDo) {
       {"pdos: {tpdo1: {objects: [statusword], cob_id: \"$NODEID+0x17F\"}}\n", "+0x17F`"},
       {"pdo_rules: {max_entries: 1}\npdos: {tpdo1: [statusword, mode_display]}\n",
        "maps 2 objects, the drive takes 1 in a PDO"},
+      {"pdo_rules: {fixed_entries: 1}\npdos: {tpdo1: [statusword, mode_display]}\n",
+       "maps 2 objects, the drive takes 1 in a PDO"},
+      {"pdo_rules: {fixed_entries: 65}\n", "pdo_rules/fixed_entries: must be between 1 and 64"},
+      {"pdo_rules: {fixed_entries: all}\n", "pdo_rules/fixed_entries"},
       {"pdo_rules: {max_pdos: 2}\npdos: {tpdo3: [statusword]}\n",
        "there are rpdo1 to rpdo2 and tpdo1 to tpdo2"},
       {"default_modes: [cps]\n", "profile full has no mode `cps`"},
       {"feedback: [controlword]\n", "`controlword` cannot be mapped into a TPDO"},
       {"parameters: {save: []}\n", "must be a list of sub-indices"},
       {"parameters: {restore: [128]}\n", "must be between 1 and 127"},
+      {"fault_reset_nmt_stop: 11\n", "fault_reset_nmt_stop"},
+      {"fault_reset_nmt_stop: long\n", "fault_reset_nmt_stop"},
+      {"parameters: {power_cycle_after_save: 3}\n", "parameters/power_cycle_after_save"},
       {"timing: {boot: 0}\n", "timing/boot"},
       {"timing: {sdo_retries: 11}\n", "timing/sdo_retries: must be between 0 and 10"},
       {"heartbeat: {producr: false}\n", "did you mean `producer`"},

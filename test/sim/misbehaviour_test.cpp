@@ -57,6 +57,129 @@ TEST_F(MisbehaviourTest, SendsTpdosOfAWrongLength) {
   EXPECT_THAT(sent(), ElementsAre("181 00 00 11 22 33", "181 00 00 11 22 33 44 00"));
 }
 
+TEST_F(MisbehaviourTest, HasAFixedNumberOfMappedObjectsWithFillers) {
+  presetPdos(1, 1);
+  behaviour.fixed_map_entries = 4;
+  operate();
+  EXPECT_EQ(sdo({0x40, 0x00, 0x1A, 0, 0, 0, 0, 0}), "581 4F 00 1A 00 04 00 00 00");
+  EXPECT_EQ(sdo({0x40, 0x00, 0x1A, 3, 0, 0, 0, 0}), "581 43 00 1A 03 00 00 00 00");
+  EXPECT_EQ(sdo({0x2F, 0x00, 0x1A, 0, 0, 0, 0, 0}), "581 80 00 1A 00 02 00 01 06");
+  EXPECT_EQ(sdo({0x23, 0x00, 0x1A, 2, 0, 0, 0, 0}), "581 80 00 1A 02 22 00 00 08") << "valid";
+  EXPECT_EQ(sdo({0x23, 0x00, 0x18, 1, 0x81, 0x01, 0, 0x80}), "581 60 00 18 01 00 00 00 00");
+  EXPECT_EQ(sdo({0x23, 0x00, 0x1A, 2, 0x00, 0, 0, 0}), "581 60 00 1A 02 00 00 00 00");
+  EXPECT_EQ(sdo({0x23, 0x00, 0x18, 1, 0x81, 0x01, 0, 0x00}), "581 60 00 18 01 00 00 00 00");
+  forget();
+  send(0x080, {});
+  EXPECT_THAT(sent(), ElementsAre("181 00 00"));
+}
+
+TEST_F(MisbehaviourTest, InsistsOnBit30OfItsTpdos) {
+  presetPdos(1, 1);
+  behaviour.keeps_rtr_bit = true;
+  boot();
+  EXPECT_EQ(sdo({0x40, 0x00, 0x18, 1, 0, 0, 0, 0}), "581 43 00 18 01 81 01 00 40");
+  EXPECT_EQ(sdo({0x23, 0x00, 0x18, 1, 0x81, 0x01, 0, 0x80}), "581 80 00 18 01 30 00 09 06");
+  EXPECT_EQ(sdo({0x23, 0x00, 0x18, 1, 0x81, 0x01, 0, 0xC0}), "581 60 00 18 01 00 00 00 00");
+  EXPECT_EQ(sdo({0x23, 0x00, 0x14, 1, 0x01, 0x02, 0, 0x80}), "581 60 00 14 01 00 00 00 00");
+}
+
+TEST_F(MisbehaviourTest, TakesABadCobIdAndRefusesTheMapping) {
+  behaviour.misleading_cob_id_abort = true;
+  boot();
+  // 0x6E0 is no identifier of a PDO (CiA 301, table 42).
+  EXPECT_EQ(sdo({0x23, 0x01, 0x18, 1, 0xE0, 0x06, 0, 0x80}), "581 60 01 18 01 00 00 00 00");
+  EXPECT_EQ(sdo({0x23, 0x01, 0x1A, 2, 0x20, 0, 0x64, 0x60}), "581 80 01 1A 02 41 00 04 06");
+  EXPECT_EQ(sdo({0x23, 0x01, 0x18, 1, 0x81, 0x02, 0, 0x80}), "581 60 01 18 01 00 00 00 00");
+  EXPECT_EQ(sdo({0x23, 0x01, 0x1A, 2, 0x20, 0, 0x64, 0x60}), "581 60 01 1A 02 00 00 00 00");
+}
+
+TEST_F(MisbehaviourTest, AnnouncesFourBytesAndSendsMore) {
+  Entry& text = add(0x100A, 0, DataType::visible_string, Access::constant);
+  text.bytes = text.initial_bytes = {'1', '.', '2', '3', '4', '5'};
+  behaviour.announces_four_bytes = true;
+  boot();
+  EXPECT_EQ(sdo({0x40, 0x0A, 0x10, 0, 0, 0, 0, 0}), "581 41 0A 10 00 04 00 00 00");
+  EXPECT_EQ(sdo({0x60, 0, 0, 0, 0, 0, 0, 0}), "581 03 31 2E 32 33 34 35 00");
+  // Nothing is left to be sent: the abort names the last object.
+  EXPECT_EQ(sdo({0x60, 0, 0, 0, 0, 0, 0, 0}), "581 80 0A 10 00 01 00 04 05");
+}
+
+TEST_F(MisbehaviourTest, AnswersAfterItsBootWhatCameBefore) {
+  behaviour.answers_after_boot = true;
+  behaviour.boot_time = milliseconds(100);
+  device.behaviour() = behaviour;
+  device.powerOn(now);
+  run(milliseconds(50));
+  send(0x601, {0x40, 0x00, 0x10, 0, 0, 0, 0, 0});
+  send(0x601, {0x40, 0x00, 0x10, 0, 0, 0, 0, 0});
+  EXPECT_THAT(sent(), IsEmpty());
+  run(milliseconds(60));
+  EXPECT_THAT(sent(),
+              ElementsAre("701 00", "581 43 00 10 00 92 01 02 00", "581 43 00 10 00 92 01 02 00"));
+}
+
+TEST_F(MisbehaviourTest, ReportsOverrunsAfterItsBoot) {
+  behaviour.overruns_at_boot = 2;
+  device.behaviour() = behaviour;
+  device.powerOn(now);
+  run(behaviour.boot_time);
+  EXPECT_THAT(sent(),
+              ElementsAre("701 00", "081 10 81 11 00 00 00 00 00", "081 10 81 11 00 00 00 00 00"));
+}
+
+TEST_F(MisbehaviourTest, BootsInAnotherTimeEachTime) {
+  behaviour.boot_time_varies = milliseconds(200);
+  device.behaviour() = behaviour;
+  std::vector<Duration> times;
+  for (int i = 0; i < 3; ++i) {
+    device.powerOn(now);
+    const Time begin = now;
+    while (device.nmtState() == canopen::NmtState::boot_up) run(milliseconds(1));
+    times.push_back(now - begin);
+    EXPECT_GE(times.back(), behaviour.boot_time);
+    EXPECT_LE(times.back(), behaviour.boot_time + milliseconds(201));
+  }
+  EXPECT_TRUE(times[0] != times[1] && times[1] != times[2]);
+}
+
+TEST_F(MisbehaviourTest, TakesSynchronousRpdosAtOnce) {
+  presetPdos(1, 1);
+  behaviour.rpdos_at_once = true;
+  operate();
+  send(0x201, {0x06, 0x00, 0, 0, 0, 0});
+  EXPECT_EQ(dictionary.find({0x6040, 0})->number, 6U);
+}
+
+TEST_F(MisbehaviourTest, TellsTwoStatuswordsForAWhile) {
+  presetPdos(1, 1);
+  preset(0x1801, 1, 0x281);
+  preset(0x1801, 2, 1);
+  preset(0x1A01, 0, 1);
+  preset(0x1A01, 1, 0x60410010);
+  behaviour.stale_statusword = milliseconds(29);
+  operate();
+  send(0x080, {});
+  setValue(0x6041, 0x0631);
+  forget();
+  send(0x080, {});
+  EXPECT_THAT(sent(), ElementsAre("181 31 06 00 00 00 00", "281 00 00"));
+  run(milliseconds(29));
+  forget();
+  send(0x080, {});
+  EXPECT_THAT(sent(), ElementsAre("181 31 06 00 00 00 00", "281 31 06"));
+}
+
+TEST_F(MisbehaviourTest, NmtResetNodeHoldsTheBusButAPowerOnDoesNot) {
+  behaviour.reset_jams_bus = milliseconds(300);
+  boot();
+  EXPECT_LE(device.jamsUntil(), now);
+  send(0x000, {0x82, 0x01});
+  EXPECT_LE(device.jamsUntil(), now) << "reset communication";
+  run(behaviour.boot_time);
+  send(0x000, {0x81, 0x01});
+  EXPECT_EQ(device.jamsUntil(), now + milliseconds(300));
+}
+
 TEST(Misbehaviour, AStormOfEmergenciesEndsWhenItIsCleared) {
   DriveBench bench("generic_cia402");
   ASSERT_TRUE(bench.drive->inject("emergency_storm", bench.now));

@@ -78,6 +78,7 @@ struct NodeConfig {
   std::optional<std::uint8_t> sync_counter;     ///< 1019h to write; none: not written
   std::optional<std::uint32_t> sync_period_us;  ///< 1006h to write; none: not written
   bool map_count_may_be_read_only = false;      ///< quirk: sub0 of 16xxh/1Axxh aborts 0x06010002
+  std::size_t fixed_map_entries = 0;  ///< quirk: sub0 is always this, unused entries are 0; 0: no
   std::vector<PdoConfig> pdos;
   std::vector<StartupWrite> writes;  ///< in this order, after the PDOs but for `always`
   /// Behind the warning of what was left out (StartupWrite::by_default, PdoEntry::optional): what

@@ -94,6 +94,13 @@ class Node {
   /// The same after the master has sent `command` to all nodes at once: nothing is sent.
   void commanded(NmtCommand command, Time now);
 
+  /// Takes a node that is ready through NMT stop and, after `stopped`, start. It stays ready, with
+  /// the configuration that it has; where it does not start again it is booted.
+  static constexpr Duration kStartPatience{std::chrono::seconds(1)};
+  void stopAndStart(Duration stopped, Time now);
+  /// That is under way.
+  bool paused() const;
+
   /// To be used at once, not kept: the node looks at its transfers' deadlines anew after each call.
   SdoClient& sdo();
   const SdoClient& sdo() const;

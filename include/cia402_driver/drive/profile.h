@@ -236,6 +236,9 @@ struct DriveProfile {
   bool halt_supported = true;
   ModeChange mode_change;
   int fault_reset_tries = 1;  ///< edges of controlword bit 7 that it may take, 1 to 20
+  /// Where these did not help the node is told NMT stop, so much later start, and resets once more;
+  /// 0: it is not.
+  Duration fault_reset_nmt_stop{0};
   /// NMT reset node must not be sent: the drive disturbs the bus while it starts, or does not come
   /// back. Its communication is reset instead.
   bool nmt_reset_node = true;
@@ -247,6 +250,7 @@ struct DriveProfile {
   std::vector<PdoLayout> pdos;
   unsigned max_rpdos = 4, max_tpdos = 4;
   unsigned max_pdo_entries = 8;
+  unsigned fixed_pdo_entries = 0;  ///< every mapping has so many, unused ones are 0; 0: as needed
   std::vector<PdoLayout> fixed_pdos;          ///< with a mapping that the drive does not let change
   bool cob_ids_of_drive = false;              ///< COB-IDs of PDOs are fixed: read and used
   bool rpdo_deadline = false;                 ///< the drive reacts when RPDOs stay away (1400h:05)
@@ -274,6 +278,7 @@ struct DriveProfile {
   struct Parameters {
     std::vector<std::uint8_t> save{1}, restore{1};
     Duration timeout{std::chrono::seconds(10)};  ///< for the drive to confirm one
+    bool power_cycle_after_save = false;         ///< it takes no enabling before
   } parameters;
   std::map<std::uint16_t, ErrorText> errors;
   std::string eds;  ///< file whose objects were added, for messages; empty: none

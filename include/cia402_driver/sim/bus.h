@@ -162,6 +162,10 @@ class Bus {
   /// still open to arbitration afterwards.
   void advance(Time now);
 
+  /// A node holds the bus dominant until then: nobody can begin to send, what is given to the
+  /// controllers waits. (A real one would count errors, too.)
+  void jam(Time until);
+
   /// Sees every frame on the wire, at its end, before the ports do; error frames as can::Frame with
   /// `error` set (class bits of linux/can/error.h).
   void setMonitor(std::function<void(const can::Frame&, Time)> monitor);

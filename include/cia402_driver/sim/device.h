@@ -34,13 +34,18 @@ struct DeviceBehaviour {
   Duration sdo_latency{std::chrono::microseconds(200)};  ///< request to answer
   Duration store_time{};  ///< more for a write to 1010h or 1011h: the memory is slow
   bool ignores_nmt_reset = false;
-  bool starts_operational = false;   ///< enters NMT operational by itself after boot-up
-  Duration boots_again_after{};      ///< sends boot-up a second time so long after; 0: does not
-  Duration restart_after_bus_off{};  ///< leaves bus-off by itself after this time; 0: never
-  bool map_count_read_only = false;  ///< sub0 of 16xxh/1Axxh refuses writes with 0x06010002; it
-                                     ///< follows the entries written, which may be at any time
-  bool accepts_plain_sync = true;    ///< take an empty SYNC although 1019h is not 0
-  bool sdo_silent = false;           ///< never answers SDO
+  bool starts_operational = false;     ///< enters NMT operational by itself after boot-up
+  Duration boots_again_after{};        ///< sends boot-up a second time so long after; 0: does not
+  Duration boot_time_varies{};         ///< at most so much more, another time at each boot
+  std::int64_t overruns_at_boot = 0;   ///< EMCYs 0x8110 right after boot-up, which nothing ends
+  Duration reset_jams_bus{};           ///< NMT reset node keeps the bus dominant for so long (Elmo)
+  Duration restart_after_bus_off{};    ///< leaves bus-off by itself after this time; 0: never
+  bool map_count_read_only = false;    ///< sub0 of 16xxh/1Axxh refuses writes with 0x06010002; it
+                                       ///< follows the entries written, which may be at any time
+  std::int64_t fixed_map_entries = 0;  ///< sub0 is always this and refuses writes likewise; entries
+                                       ///< that are 0 map nothing (Curtis 1232E); 0: as written
+  bool accepts_plain_sync = true;      ///< take an empty SYNC although 1019h is not 0
+  bool sdo_silent = false;             ///< never answers SDO
 
   // SDO server (7.2.4.3).
   bool generic_length_abort = false;  ///< 0x06070010 for every wrong length instead of ...12, ...13
@@ -52,6 +57,10 @@ struct DeviceBehaviour {
                                       ///< (ros-industrial/ros_canopen#259)
   bool answers_four_bytes = false;    ///< every expedited answer has four bytes, whatever the type
                                       ///< (canopen-python/canopen#395)
+  bool announces_four_bytes = false;  ///< segmented uploads announce four bytes, whatever comes
+                                      ///< (canopen-python/canopen#135)
+  bool answers_after_boot = false;    ///< SDO requests that come before boot-up are answered after
+                                      ///< it (Ingenia)
   bool accepts_short_sdo = false;     ///< takes requests of fewer than 8 bytes, the rest as 0
   bool sdo_block = true;              ///< has block transfer (else 0x05040001)
   bool sdo_block_crc = true;          ///< computes the CRC of block transfers
@@ -70,9 +79,15 @@ struct DeviceBehaviour {
   bool timers_require_invalid = false;  ///< inhibit time and SYNC start value can be written only
                                         ///< while bit 31 of the COB-ID is set (else 0x08000022)
   PdoIdentifiers pdo_identifiers = PdoIdentifiers::writable;
+  bool keeps_rtr_bit = false;            ///< TPDOs have bit 30 of the COB-ID set and refuse it as 0
+                                         ///< (0x06090030; Roboteq)
+  bool misleading_cob_id_abort = false;  ///< takes any COB-ID, and refuses the entries of a PDO
+                                         ///< with a bad one (0x06040041; EPOS4)
   bool rtr_types = true;  ///< TPDO types 252 and 253 exist (else 0x06090030)
 
   // PDO transmission (7.2.2).
+  bool rpdos_at_once = false;   ///< synchronous RPDOs act when they come (Kinco)
+  Duration stale_statusword{};  ///< in TPDOs but the first the statusword is so much older
   int tpdo_size_error =
       0;  ///< bytes that TPDOs are too long, or, negative, too short; 0 to 8 leave
   bool type255_event_timer_only = false;   ///< type 255 sends when the event timer ends, never on a
@@ -165,6 +180,8 @@ class Device {
   void setBusBitrate(std::uint32_t bitrate);
   /// `unknown` without power, `boot_up` while initialising.
   canopen::NmtState nmtState() const;
+  /// Until when it holds the bus dominant (DeviceBehaviour::reset_jams_bus).
+  Time jamsUntil() const;
   /// Sends an EMCY and enters it into 1003h; 1001h := error_register. The frame waits (at most 16)
   /// while the inhibit time 1015h runs or the NMT state forbids it; it is lost where 1014h is
   /// disabled or missing. CiA 301, 7.2.7.

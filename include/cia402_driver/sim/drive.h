@@ -45,6 +45,7 @@ struct DriveTruth {
   bool power_stage_on = false;
   bool moving = false;
   std::uint16_t statusword = 0;
+  int mode = 0;  ///< in which it is, whatever 6061h shows
   canopen::NmtState nmt = canopen::NmtState::unknown;
   unsigned bad_floats_received = 0;  ///< NaN, infinity, -0.0 in float objects, where trapped
 };

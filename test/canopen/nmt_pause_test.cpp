@@ -1,0 +1,107 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// A node that works is taken through NMT stop and start, and keeps its configuration.
+#include "../../src/canopen/nmt_pause.h"
+
+#include "canopen/node_fixture.h"
+
+namespace cia402::canopen {
+namespace {
+
+using std::chrono::milliseconds;
+using test::Lines;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const char kStop[] = "000 02 03";
+const char kStart[] = "000 01 03";
+
+class NmtPauseTest : public test::NodeFixture {
+ protected:
+  void pauseReadyNode() {
+    boot();
+    hear("703 05");
+    ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
+    peer.take();
+    peer.forget(kStart);  // else it answers at once
+    node->stopAndStart(milliseconds(100), now);
+  }
+};
+
+TEST_F(NmtPauseTest, StopsTwiceAndStartsUntilTheHeartbeatSaysOperational) {
+  pauseReadyNode();
+  EXPECT_EQ(peer.take(), Lines{kStop});
+  pass(milliseconds(119));
+  EXPECT_EQ(peer.take(), Lines{kStop}) << "the first may be lost";
+  pass(milliseconds(1));
+  EXPECT_EQ(peer.take(), Lines{kStart});
+  pass(milliseconds(20));
+  EXPECT_EQ(peer.take(), Lines{kStart});
+  EXPECT_TRUE(node->paused());
+  hear("703 05");
+  EXPECT_FALSE(node->paused());
+  pass(milliseconds(60));
+  EXPECT_EQ(peer.take(), Lines{});
+  EXPECT_EQ(node->health(), NodeHealth::ready);
+}
+
+TEST_F(NmtPauseTest, AHeartbeatThatSaysStoppedIsNoSurpriseThen) {
+  pauseReadyNode();
+  pass(milliseconds(50));
+  hear("703 04");
+  pass(milliseconds(80));
+  hear("703 04");
+  EXPECT_EQ(node->health(), NodeHealth::ready);
+  hear("703 05");
+  EXPECT_FALSE(node->paused());
+  hear("703 04");
+  EXPECT_EQ(node->health(), NodeHealth::booting) << "now it is one";
+}
+
+TEST_F(NmtPauseTest, AHeartbeatFromBeforeTheStopEndsNothing) {
+  pauseReadyNode();
+  hear("703 05");
+  EXPECT_TRUE(node->paused());
+}
+
+TEST_F(NmtPauseTest, ANodeThatDoesNotStartAgainIsBooted) {
+  pauseReadyNode();
+  for (int i = 0; i < 12; ++i) {
+    pass(milliseconds(100));
+    hear("703 04");
+  }
+  EXPECT_FALSE(node->paused());
+  EXPECT_NE(node->health(), NodeHealth::ready);
+  EXPECT_THAT(node->problem(), HasSubstr("did not become operational again"));
+}
+
+TEST_F(NmtPauseTest, ABootUpMessageEndsIt) {
+  pauseReadyNode();
+  hear("703 00");
+  EXPECT_FALSE(node->paused());
+  peer.take();
+  pass(milliseconds(100));
+  EXPECT_THAT(peer.take(), Not(Contains(kStop)));
+}
+
+TEST_F(NmtPauseTest, ANodeThatIsNotReadyIsLeftAlone) {
+  create();
+  node->stopAndStart(milliseconds(100), now);
+  EXPECT_FALSE(node->paused());
+  EXPECT_EQ(peer.take(), Lines{});
+}
+
+TEST(NmtPauseOfASilentNode, CountsAsOverAfterThreeStarts) {
+  test::ScriptedPeer peer;
+  NmtPause pause(3, peer);
+  Time now{};
+  pause.begin(milliseconds(40), milliseconds(500), false, now);
+  while (pause.active()) {
+    now = pause.deadline();
+    EXPECT_TRUE(pause.tick(now));
+  }
+  EXPECT_EQ(peer.take(), (Lines{kStop, kStop, kStart, kStart, kStart}));
+}
+
+}  // namespace
+}  // namespace cia402::canopen
