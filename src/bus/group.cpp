@@ -71,7 +71,10 @@ std::string Group::refusal(const std::vector<drive::Axis>& axes,
     if (reason.empty() && owner != nullptr && owner != &config_.name) {
       reason = drive::jointName(axes[axis].config()) + " follows a trajectory of group " + *owner;
     }
-    if (reason.empty() && owner == nullptr && !motions[axis].atRest()) {
+    // In the cycle in which a trajectory has ended, the motion still knows the way to its goal
+    // only.
+    const bool rests = motions[axis].atRest() || axes[axis].setPoint().atRest();
+    if (reason.empty() && owner == nullptr && !rests) {
       reason = drive::jointName(axes[axis].config()) +
                " is still moved by streamed set-points: end the stream and let it come to rest";
     }

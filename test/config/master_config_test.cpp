@@ -340,14 +340,15 @@ TEST(BusLoad, TellsTheLargestFeasibleRate) {
 
 /// That many generic axes at 250 Hz on 1 Mbit/s.
 RobotConfig genericAxes(int count) {
-  std::string yaml = "bus: {interface: can0}\ndefaults: {drive: generic_cia402, counts_per_turn: "
-                     "4000, limits: {velocity: 2.0, acceleration: 8.0}}\naxes:\n";
+  std::string yaml =
+      "bus: {interface: can0}\ndefaults: {drive: generic_cia402, counts_per_turn: "
+      "4000, limits: {velocity: 2.0, acceleration: 8.0}}\naxes:\n";
   for (int i = 1; i <= count; ++i) {
     yaml += "  a" + std::to_string(i) + ": {node_id: " + std::to_string(i) + "}\n";
   }
   Problems problems;
-  return loadRobot(YAML::Load(yaml),
-                   profilesIn({cia402::test::configFolder() + "/drives"}), problems);
+  return loadRobot(YAML::Load(yaml), profilesIn({cia402::test::configFolder() + "/drives"}),
+                   problems);
 }
 
 TEST(BusLoad, WhatTravelsForTheRoomOnlyStaysAwayFromAFullBus) {

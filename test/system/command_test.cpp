@@ -13,6 +13,27 @@ using testing::HasSubstr;
 
 constexpr double kRadPerCount = 6.283185307179586 / (131072 * 100.0);
 
+/// Joints that nobody streams to are at rest once a trajectory has told its end.
+TEST(Trajectories, FollowEachOtherAsSoonAsOneHasEnded) {
+  Scene scene(loadText(genericPair()));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
+  scene.run(500ms);
+  for (const double goal : {0.2, 0.4, 0.1}) {
+    const std::size_t before = scene.robot().events().size();
+    const bus::Answer moved = scene.move({goal, -goal}, 1s);
+    ASSERT_TRUE(moved.success) << moved.message;
+    const auto ended = [&] {
+      const auto& events = scene.robot().events();
+      return std::any_of(
+          events.begin() + static_cast<std::ptrdiff_t>(before), events.end(),
+          [](const bus::Event& event) { return event.text.str() == "pair: goal reached"; });
+    };
+    ASSERT_TRUE(scene.runUntil(ended, 3s)) << scene.told();
+    EXPECT_NEAR(scene.position("left"), goal, 0.01);
+  }
+}
+
 /// 607Ah as it was on the wire (RPDO1, bytes 2 to 5) of node 1, in rad, with its steps.
 class WireTargets {
  public:
