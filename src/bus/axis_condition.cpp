@@ -6,10 +6,6 @@ namespace {
 
 using drive::State;
 
-bool inFault(const drive::AxisState& state) {
-  return state.state == State::fault || state.state == State::fault_reaction_active;
-}
-
 bool unknown(const drive::AxisState& state) {
   return state.state == State::unknown || !state.feedback_valid;
 }
@@ -26,7 +22,7 @@ std::string plainText(const AxisSnapshot& axis) {
   if (unknown(state)) {
     return "its state is unknown: no usable statusword (6041:00) and position (6064:00) yet";
   }
-  if (inFault(state)) return drive::toString(state.state);
+  if (drive::isFault(state.state)) return drive::toString(state.state);
   if (state.warning) return "the drive shows a warning (statusword bit 7)";
   if (!axis.words.stream.empty()) return axis.words.stream.str();
   return std::string(drive::toString(state.state)) +
@@ -40,7 +36,7 @@ Condition conditionOf(const drive::AxisState& state, bool warning_stops, bool pr
   if (state.health != canopen::NodeHealth::ready) {
     return problem ? Condition::error : Condition::warning;
   }
-  if (inFault(state) || unknown(state)) return Condition::error;
+  if (drive::isFault(state.state) || unknown(state)) return Condition::error;
   if (state.warning) return warning_stops ? Condition::error : Condition::warning;
   return problem ? Condition::warning : Condition::well;
 }

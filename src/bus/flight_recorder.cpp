@@ -20,10 +20,6 @@ std::size_t recordsIn(Duration time, double per_second) {
   return static_cast<std::size_t>(toSeconds(time) * per_second) + kLeastRecords;
 }
 
-bool isFault(drive::State state) {
-  return state == drive::State::fault || state == drive::State::fault_reaction_active;
-}
-
 bool isLost(can::BusState state) {
   return state == can::BusState::missing || state == can::BusState::down;
 }
@@ -195,7 +191,7 @@ void FlightRecorder::observeGroups(Time now) {
 
 void FlightRecorder::lookForFault(std::size_t index, const drive::AxisState& state, Time now) {
   Watched& watched = watched_[index];
-  const bool faulted = isFault(state.state) && !isFault(watched.state);
+  const bool faulted = drive::isFault(state.state) && !drive::isFault(watched.state);
   const bool fell = state.health != watched.health && !robot_->shutDown();
   watched.state = state.state;
   watched.health = state.health;

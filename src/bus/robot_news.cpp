@@ -103,61 +103,74 @@ void Robot::watchAxes(Time now) {
   for (AxisReporter& reporter : reporters_) reporter.tick(now);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     AxisNews& news = news_[i];
-    const bool pdos_fail = nodes_[i]->image().troubles() != news.stale_count + news.wrong_lengths;
+    const bool pdos_fail = nodes_[i]->image().troubles() != news.pdo_troubles;
     const bool failed_pdos_shown = !news.words.stale.empty();  // looked at again
     if (pdos_fail || failed_pdos_shown) watchPdos(i, now);
     if (news.history_wanted) readHistoryAfterFault(i, now);
     if (news.dried_up != motions_[i].driedUp()) watchStream(i, now);
-    const drive::AxisState& state = axes_[i].state();
-    const drive::ProcedureStatus& procedure = axes_[i].procedure();
-    const bool well =
-        state.health == canopen::NodeHealth::ready && state.state != drive::State::fault &&
-        state.state != drive::State::fault_reaction_active &&
-        state.state != drive::State::unknown && state.feedback_valid && !state.warning;
-    const bool changed = news.state != state.state || news.health != state.health ||
-                         news.error_code != state.error_code || news.procedure != procedure.id ||
-                         news.running != procedure.running ||
-                         news.notices != axes_[i].noticeCount();
-    const bool stale = (!well || procedure.running || !news.words.problem.empty()) &&
-                       now >= news.checked + kNewsInterval;
-    if (!changed && !stale) continue;
-    const auto faulty = [](drive::State s) {
-      return s == drive::State::fault || s == drive::State::fault_reaction_active;
-    };
-    if (faulty(state.state) && !faulty(news.state)) news.history_wanted = true;
-    news.state = state.state;
-    news.health = state.health;
-    news.error_code = state.error_code;
-    news.procedure = procedure.id;
-    news.running = procedure.running;
-    news.checked = now;
-    const canopen::Node& node = axes_[i].node();
-    const bool booting = state.health != canopen::NodeHealth::ready;
-    const bool in_lss = lss_.busy() && lss_.who() == config_.axes[i].name;
-    news.words.say(&AxisWords::step, in_lss    ? lss_.step()
-                                     : booting ? node.bootStep()
-                                               : procedure.step);
-    news.words.say(&AxisWords::waiting_for,
-                   procedure.running ? procedure.waiting_for : std::string());
-    if (node.paused()) continue;  // no feedback comes, and nothing is wrong with that
-    std::string problem = !node.problem().empty() ? node.problem() : axes_[i].faultText();
-    if (problem.empty()) problem = unknownProblem(i, now);
-    if (state.health == canopen::NodeHealth::ready) lss_problems_[i].clear();
-    if (!lss_problems_[i].empty()) problem = lss_problems_[i];  // the reason for what follows it
-    const bool noticed = news.notices != axes_[i].noticeCount();
-    const bool told_by_health = !node.problem().empty();
-    news.notices = axes_[i].noticeCount();
-    if (noticed && !told_by_health) tell(Event::Severity::error, axes_[i].notice(), now);
-    const std::uint32_t version = news.words.version;
-    news.words.say(&AxisWords::problem, problem);
-    if (news.words.version == version) continue;
-    const bool told =
-        told_by_health || (noticed && axes_[i].notice().find(problem) != std::string::npos);
-    if (problem.empty() || told) continue;
-    const bool stops = axes_[i].config().profile->warning_stops;
-    reporters_[i].problem(severityOf(conditionOf(state, stops, true)), state.error_code, problem,
-                          now);
+    if (news.differ(axes_[i])) {
+      tellNews(i, now);
+    } else if (now >= news.checked + kNewsInterval) {
+      news.checked = now;
+      if (isUnwell(i)) tellNews(i, now);
+    }
   }
+}
+
+/// What it says of itself may change without its state.
+bool Robot::isUnwell(std::size_t axis) const {
+  const drive::AxisState& state = axes_[axis].state();
+  const bool well = state.health == canopen::NodeHealth::ready && !drive::isFault(state.state) &&
+                    state.state != drive::State::unknown && state.feedback_valid && !state.warning;
+  return !well || axes_[axis].procedure().running || !news_[axis].words.problem.empty();
+}
+
+void Robot::tellNews(std::size_t axis, Time now) {
+  AxisNews& news = news_[axis];
+  const drive::AxisState& state = axes_[axis].state();
+  const drive::ProcedureStatus& procedure = axes_[axis].procedure();
+  if (drive::isFault(state.state) && !drive::isFault(news.state)) news.history_wanted = true;
+  news.state = state.state;
+  news.health = state.health;
+  news.error_code = state.error_code;
+  news.feedback_valid = state.feedback_valid;
+  news.warning = state.warning;
+  news.procedure = procedure.id;
+  news.running = procedure.running;
+  news.checked = now;
+  const canopen::Node& node = axes_[axis].node();
+  const bool booting = state.health != canopen::NodeHealth::ready;
+  const bool in_lss = lss_.busy() && lss_.who() == config_.axes[axis].name;
+  news.words.say(&AxisWords::step, in_lss    ? lss_.step()
+                                   : booting ? node.bootStep()
+                                             : procedure.step);
+  news.words.say(&AxisWords::waiting_for,
+                 procedure.running ? procedure.waiting_for : std::string());
+  if (node.paused()) return;  // no feedback comes, and nothing is wrong with that
+  tellProblem(axis, now);
+}
+
+void Robot::tellProblem(std::size_t axis, Time now) {
+  AxisNews& news = news_[axis];
+  const drive::AxisState& state = axes_[axis].state();
+  const canopen::Node& node = axes_[axis].node();
+  std::string problem = !node.problem().empty() ? node.problem() : axes_[axis].faultText();
+  if (problem.empty()) problem = unknownProblem(axis, now);
+  if (state.health == canopen::NodeHealth::ready) lss_problems_[axis].clear();
+  if (!lss_problems_[axis].empty()) problem = lss_problems_[axis];  // the reason for what follows
+  const bool noticed = news.notices != axes_[axis].noticeCount();
+  const bool told_by_health = !node.problem().empty();
+  news.notices = axes_[axis].noticeCount();
+  if (noticed && !told_by_health) tell(Event::Severity::error, axes_[axis].notice(), now);
+  const std::uint32_t version = news.words.version;
+  news.words.say(&AxisWords::problem, problem);
+  if (news.words.version == version) return;
+  const bool told =
+      told_by_health || (noticed && axes_[axis].notice().find(problem) != std::string::npos);
+  if (problem.empty() || told) return;
+  const bool stops = axes_[axis].config().profile->warning_stops;
+  reporters_[axis].problem(severityOf(conditionOf(state, stops, true)), state.error_code, problem,
+                           now);
 }
 
 }  // namespace cia402::bus

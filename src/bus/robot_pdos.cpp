@@ -36,6 +36,7 @@ void Robot::watchPdos(std::size_t axis, Time now) {
   }
   news.wrong_lengths = image.wrongLengths();
   news.stale_count = image.staleCount();
+  news.pdo_troubles = image.troubles();
 }
 
 }  // namespace cia402::bus

@@ -113,7 +113,7 @@ bool ProcessImage::receive(std::size_t tpdo, const can::Frame& frame, Time stamp
   pdo.stale = false;
   const std::uint64_t word = loadLittleEndian(frame.data);
   for (const Pdo::Field& field : pdo.fields) {
-    inputs_[field.slot] = {(word >> field.shift) & field.mask, stamp, true};
+    inputs_[field.slot] = {(word >> field.shift) & field.mask, stamp, true, true};
   }
   return exact;
 }
@@ -128,6 +128,7 @@ void ProcessImage::age(Time now) {
         pdo.silent_limit != 0 ? pdo.silent > pdo.silent_limit : now - pdo.last > pdo.age_limit;
     if (!overdue) continue;
     pdo.stale = true;
+    for (const Pdo::Field& field : pdo.fields) inputs_[field.slot].fresh = false;
     ++pdo.stale_count;
     ++stale_count_;
   }

@@ -78,9 +78,7 @@ void AxisCore::leaveOperation() {
   set_point_.rest(kindOf(*mode_->spec), SetPoint::kNone);
 }
 
-bool AxisCore::faulted() const {
-  return state_.state == State::fault || state_.state == State::fault_reaction_active;
-}
+bool AxisCore::faulted() const { return isFault(state_.state); }
 
 bool AxisCore::powerOff() const { return powerStageOff(state_.state); }
 

@@ -201,6 +201,12 @@ class AxisCore {
   void readError(Time now);
   void readDigitalInputs(Time now);
   void readMode(Time now);
+  void showMode(std::uint64_t raw);
+  /// The raw value of an object that is mapped or polled; none where it is unknown or too old.
+  const canopen::ProcessValue* told(const InputObject& object, int polled, Time now) const {
+    if (!object.mapped()) return poller_.value(polled, now);
+    return image_.fresh(object.slot) ? &image_.input(object.slot) : nullptr;
+  }
   double read(const InputObject& object, int polled, Time now, Time& stamp) const;
   void forgetFeedback();
   void forgetMotion();

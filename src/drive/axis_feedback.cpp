@@ -85,9 +85,9 @@ void AxisCore::readMotion(Time now) {
   Time& stamp = state_.stamps.following_error;
   if (following_error.mapped() && image_.input(following_error.slot).valid) {
     state_.following_error = read(following_error, -1, now, stamp);
-  } else if (const auto polled = poller_.value(polled_following_error_, now); polled.valid) {
-    state_.following_error = following_error.conversion.toJoint(polled.raw);
-    stamp = polled.stamp;
+  } else if (const auto* polled = poller_.value(polled_following_error_, now)) {
+    state_.following_error = following_error.conversion.toJoint(polled->raw);
+    stamp = polled->stamp;
   } else if (in_operation_ && mode_->spec->kind == ControlKind::position) {
     state_.following_error = target() - joint;
     stamp = position.stamp;
@@ -105,63 +105,42 @@ void AxisCore::look() {
 }
 
 void AxisCore::readDigitalInputs(Time now) {
-  const canopen::Slot slot = objects_.digital_inputs.slot;
-  std::uint64_t raw = 0;
-  state_.digital_inputs_valid = false;
-  if (objects_.digital_inputs.mapped()) {
-    state_.digital_inputs_valid = image_.fresh(slot);
-    raw = image_.input(slot).raw;
-    state_.stamps.digital_inputs = image_.input(slot).stamp;
-  } else if (polled_inputs_ >= 0) {
-    const AxisPoller::Value value = poller_.value(polled_inputs_, now);
-    state_.digital_inputs_valid = value.valid;
-    raw = value.raw;
-    state_.stamps.digital_inputs = value.stamp;
-  }
-  state_.digital_inputs = state_.digital_inputs_valid ? static_cast<std::uint32_t>(raw) : 0;
+  const canopen::ProcessValue* told = this->told(objects_.digital_inputs, polled_inputs_, now);
+  state_.digital_inputs_valid = told != nullptr;
+  state_.digital_inputs = told != nullptr ? static_cast<std::uint32_t>(told->raw) : 0;
+  if (told != nullptr) state_.stamps.digital_inputs = told->stamp;
 }
 
 double AxisCore::read(const InputObject& object, int polled, Time now, Time& stamp) const {
-  if (object.mapped()) {
-    if (!image_.fresh(object.slot)) return kUnknown;
-    const canopen::ProcessValue& value = image_.input(object.slot);
-    stamp = value.stamp;
-    return object.conversion.toJoint(value.raw);
-  }
-  if (polled < 0) return kUnknown;
-  const AxisPoller::Value value = poller_.value(polled, now);
-  stamp = value.stamp;
-  return value.valid ? object.conversion.toJoint(value.raw) : kUnknown;
+  const canopen::ProcessValue* value = told(object, polled, now);
+  if (value == nullptr) return kUnknown;
+  stamp = value->stamp;
+  return object.conversion.toJoint(value->raw);
 }
 
 void AxisCore::readMode(Time now) {
-  std::optional<std::uint64_t> raw;
-  if (objects_.mode_display.mapped()) {
-    const canopen::Slot slot = objects_.mode_display.slot;
-    if (image_.fresh(slot)) {
-      raw = image_.input(slot).raw;
-      state_.stamps.mode = image_.input(slot).stamp;
-    }
-  } else if (polled_mode_ >= 0) {
-    const AxisPoller::Value value = poller_.value(polled_mode_, now);
-    if (value.valid) raw = value.raw;
-    state_.stamps.mode = value.stamp;
-  } else {
-    state_.stamps.mode = state_.stamp;
-    raw = static_cast<std::uint64_t>(mode_->spec->value);  // the family has no 6061h: believe
-  }
-  // Modes of one value differ in the driver only: the commanded one is active then.
-  const bool commanded = state_.mode == mode_->spec || state_.mode_value != mode_->spec->value;
-  if (raw && shown_mode_ && *raw == shown_raw_ && state_.mode != nullptr && commanded) return;
-  if (!raw) {
-    shown_mode_.reset();
-    state_.mode = nullptr;
+  if (const auto* shown = told(objects_.mode_display, polled_mode_, now)) {
+    state_.stamps.mode = shown->stamp;
+    const bool same = shown_mode_ && shown->raw == shown_raw_ && state_.mode == mode_->spec;
+    if (!same) showMode(shown->raw);
     return;
   }
+  if (!objects_.mode_display.mapped() && polled_mode_ < 0) {
+    state_.stamps.mode = state_.stamp;
+    return showMode(static_cast<std::uint64_t>(mode_->spec->value));  // no 6061h: believe
+  }
+  shown_mode_.reset();
+  state_.mode = nullptr;
+}
+
+void AxisCore::showMode(std::uint64_t raw) {
+  // Modes of one value differ in the driver only: the commanded one is active then.
+  const bool commanded = state_.mode == mode_->spec || state_.mode_value != mode_->spec->value;
+  if (shown_mode_ && raw == shown_raw_ && state_.mode != nullptr && commanded) return;
   const DataType type =
       objects_.mode_display.spec != nullptr ? objects_.mode_display.spec->type : DataType::int16;
-  const std::int16_t value = signedMode(*raw, type);
-  shown_raw_ = *raw;
+  const std::int16_t value = signedMode(raw, type);
+  shown_raw_ = raw;
   shown_mode_ = value;
   state_.mode_value = value;
   const ModeChannel* channel = value == mode_->spec->value ? mode_ : objects_.channelOfValue(value);

@@ -32,7 +32,7 @@ void AxisPoller::advance(canopen::SdoClient& sdo, Time now) {
     if (!ticket_->done()) return;
     Item& item = items_[current_];
     if (ticket_->ok() && ticket_->data().size() <= 8) {
-      item.value = {canopen::toUnsigned(ticket_->data()), now, true};
+      item.value = {canopen::toUnsigned(ticket_->data()), now, true, true};
     } else if (ticket_->failure() == canopen::SdoTransfer::Failure::aborted_by_server) {
       item.refused = true;
     }
@@ -64,7 +64,7 @@ void AxisPoller::reset() {
 }
 
 void AxisPoller::put(int item, std::uint64_t raw, Time now) {
-  if (item >= 0) items_[static_cast<std::size_t>(item)].value = {raw, now, true};
+  if (item >= 0) items_[static_cast<std::size_t>(item)].value = {raw, now, true, true};
 }
 
 }  // namespace cia402::drive

@@ -23,12 +23,6 @@ class AxisPoller {
 
   enum class Reading : std::uint8_t { always, when_looked_at };
 
-  struct Value {
-    std::uint64_t raw = 0;
-    Time stamp{};
-    bool valid = false;
-  };
-
   /// Adds `object` unless the family does not have it, or it is mapped; but what is read for looks
   /// is added then, too, for a drive may turn out not to map it. @return its number for value(), or
   /// -1.
@@ -43,19 +37,19 @@ class AxisPoller {
   void reset();
   /// Takes a value that somebody else has read.
   void put(int item, std::uint64_t raw, Time now);
-  /// The value of an item; not valid if there is none younger than kStale.
-  Value value(int item, Time now) const {
-    if (item < 0) return {};
-    const Value& value = items_[static_cast<std::size_t>(item)].value;
-    const Duration stale = items_[static_cast<std::size_t>(item)].for_looks ? kStaleLook : kStale;
-    return value.valid && now - value.stamp <= stale ? value : Value();
+  /// The value of an item, none where it is unknown or too old. @param item of add(); -1: no value.
+  const canopen::ProcessValue* value(int item, Time now) const {
+    if (item < 0) return nullptr;
+    const Item& asked = items_[static_cast<std::size_t>(item)];
+    const Duration stale = asked.for_looks ? kStaleLook : kStale;
+    return asked.value.valid && now - asked.value.stamp <= stale ? &asked.value : nullptr;
   }
 
  private:
   struct Item {
     canopen::ObjectId object;
     std::string name;
-    Value value;
+    canopen::ProcessValue value;
     bool refused = false;  ///< the drive aborted: it does not have the object after all
     bool for_looks = false, wanted = true;
 

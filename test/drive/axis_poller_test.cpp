@@ -44,22 +44,22 @@ class AxisPollerTest : public canopen::test::SdoClientFixture {
 TEST_F(AxisPollerTest, WhatTheDriverNeedsIsReadEveryFiftyMilliseconds) {
   const int item = poller.add(velocity);
   EXPECT_EQ(pass(5200ms, kAskVelocity), 100);
-  EXPECT_EQ(poller.value(item, now).raw, 7u);
+  EXPECT_EQ(poller.value(item, now)->raw, 7u);
 }
 
 TEST_F(AxisPollerTest, WhatNobodyLooksAtIsNotRead) {
   const int item = poller.add(error, AxisPoller::Reading::when_looked_at);
   EXPECT_EQ(pass(60s, kAskError), 0);
-  EXPECT_FALSE(poller.value(item, now).valid);
+  EXPECT_EQ(poller.value(item, now), nullptr);
 }
 
 TEST_F(AxisPollerTest, EachLookReadsOnce) {
   const int item = poller.add(error, AxisPoller::Reading::when_looked_at);
   EXPECT_EQ(pass(10s, kAskError, 1s), 10);
-  EXPECT_EQ(poller.value(item, now).raw, 5u) << "a second old, as the next look will find it";
+  EXPECT_EQ(poller.value(item, now)->raw, 5u) << "a second old, as the next look will find it";
   EXPECT_EQ(pass(10s, kAskError, 100ms), 100);
   pass(2500ms, kAskError);
-  EXPECT_FALSE(poller.value(item, now).valid) << "nobody has looked for long";
+  EXPECT_EQ(poller.value(item, now), nullptr) << "nobody has looked for long";
 }
 
 TEST_F(AxisPollerTest, ManyLooksReadNoOftenerThanTheIntervalAndDelayNothingElse) {
@@ -71,12 +71,12 @@ TEST_F(AxisPollerTest, ManyLooksReadNoOftenerThanTheIntervalAndDelayNothingElse)
 TEST_F(AxisPollerTest, EachValueCarriesTheTimeOfItsAnswerAndIsUnknownOnceItIsTooOld) {
   const int item = poller.add(velocity);
   pass(100ms, kAskVelocity);
-  const Time answered = poller.value(item, now).stamp;
+  const Time answered = poller.value(item, now)->stamp;
   EXPECT_GT(answered, now - 60ms);
   peer.forget(kAskVelocity);  // no answer from now on
   pass(AxisPoller::kStale - (now - answered), kAskVelocity);
-  EXPECT_EQ(poller.value(item, answered + AxisPoller::kStale).stamp, answered);
-  EXPECT_FALSE(poller.value(item, answered + AxisPoller::kStale + 1ms).valid);
+  EXPECT_EQ(poller.value(item, answered + AxisPoller::kStale)->stamp, answered);
+  EXPECT_EQ(poller.value(item, answered + AxisPoller::kStale + 1ms), nullptr);
 }
 
 TEST_F(AxisPollerTest, OfMappedObjectsThoseAreReadThatAreOnlyLookedAt) {
@@ -85,7 +85,7 @@ TEST_F(AxisPollerTest, OfMappedObjectsThoseAreReadThatAreOnlyLookedAt) {
   const int item = poller.add(error, AxisPoller::Reading::when_looked_at);
   EXPECT_EQ(pass(1s, kAskError), 0) << "the drive may map it: nobody has to ask";
   EXPECT_EQ(pass(1s, kAskError, 100ms), 10) << "the drive turned out not to";
-  EXPECT_EQ(poller.value(item, now).raw, 5u);
+  EXPECT_EQ(poller.value(item, now)->raw, 5u);
 }
 
 TEST_F(AxisPollerTest, AnObjectThatTheDriveRefusesIsNotAskedForAtEveryLook) {

@@ -100,16 +100,25 @@ class Robot final : private canopen::MasterListener {
     drive::State state = drive::State::unknown;
     canopen::NodeHealth health = canopen::NodeHealth::absent;
     std::uint32_t procedure = 0, notices = 0;
-    bool running = false;
+    bool running = false, feedback_valid = false, warning = false;
     std::uint16_t error_code = 0;
     Time history_asked{};
     bool history_wanted = false;
     Time boot_began{};
     unsigned boot_ups = 0;  ///< messages since the last boot that succeeded
     std::uint64_t stale_count = 0, wrong_lengths = 0;  // of the TPDOs
+    std::uint64_t pdo_troubles = 0;                    // both together
     Time pdos_told = Time::min();
     bool dried_up = false;        // its stream of set-points
     Time unknown_since = kNever;  // its state or position
+
+    bool differ(const drive::Axis& axis) const {
+      const drive::AxisState& shown = axis.state();
+      return state != shown.state || health != shown.health || error_code != shown.error_code ||
+             feedback_valid != shown.feedback_valid || warning != shown.warning ||
+             procedure != axis.procedure().id || running != axis.procedure().running ||
+             notices != axis.noticeCount();
+    }
   };
 
   void onEmergency(canopen::Node& node, const canopen::Emergency& emergency) override;
@@ -150,6 +159,9 @@ class Robot final : private canopen::MasterListener {
   /// Nothing that was asked for before enables an axis any more.
   void withdrawEnabling(const std::string& why);
   void watchAxes(Time now);
+  bool isUnwell(std::size_t axis) const;
+  void tellNews(std::size_t axis, Time now);
+  void tellProblem(std::size_t axis, Time now);
   void watchPdos(std::size_t axis, Time now);
   void watchStream(std::size_t axis, Time now);
   std::string unknownProblem(std::size_t axis, Time now);

@@ -59,6 +59,7 @@ struct ProcessValue {
   std::uint64_t raw = 0;  ///< zero-extended
   Time stamp{};           ///< when the frame that brought it was on the wire
   bool valid = false;     ///< false until the first reception since boot
+  bool fresh = false;     ///< valid, and what brings it comes as it should
 };
 
 /// Index into a node's process image; kNoSlot if the object is not mapped.
@@ -99,7 +100,7 @@ class ProcessImage {
   const std::vector<std::size_t>& requested() const { return requested_; }
   /// Has the value come, and in time? A slot of an object that is not mapped is not fresh.
   bool fresh(Slot slot) const {
-    return slot != kNoSlot && inputs_[slot].valid && !tpdos_[input_tpdos_[slot]].stale;
+    return slot != kNoSlot && inputs_[slot].fresh;
   }
   /// Does the value come at a known rate, whether it changes or not? @pre slot is that of an input
   bool regular(Slot slot) const {

@@ -22,6 +22,10 @@ enum class State : std::uint8_t {
 const char* toString(State state);
 /// The power stage is off in this state: no motion is possible by this drive.
 bool powerStageOff(State state);
+/// "fault", or the drive still reacts to one.
+inline bool isFault(State state) {
+  return state == State::fault || state == State::fault_reaction_active;
+}
 
 /// The state that a statusword shows, by mask and value as CiA 402-2 lists them.
 State decodeState(std::uint16_t statusword);
