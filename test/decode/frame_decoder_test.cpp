@@ -49,8 +49,11 @@ TEST_F(Decoder, ATpdoIsItsObjectsInJointUnitsAndWords) {
             "TPDO1|shoulder (1)|statusword 0x1237 operation enabled; voltage enabled, remote, "
             "follows the command | position_actual 0.1 rad (208608) | mode_display 8 "
             "cyclic_position");
-  EXPECT_EQ(line({0x281, {0x00, 0x00, 0x00, 0x00, 0x06, 0xFF}}),
-            "TPDO2|shoulder (1)|velocity_actual 0 rad/s (0) | torque_actual -16 N m (-250)");
+  EXPECT_EQ(line({0x281, {0x00, 0x00, 0x00, 0x00, 0x06, 0xFF, 0x11, 0x86}}),
+            "TPDO2|shoulder (1)|velocity_actual 0 rad/s (0) | torque_actual -16 N m (-250) | "
+            "error_code 0x8611 following error");
+  EXPECT_EQ(line({0x381, {0x00, 0x00, 0x00, 0x00, 0x20, 0xD1, 0xFC, 0xFF}}),
+            "TPDO3|shoulder (1)|digital_inputs 0 | following_error -0.1 rad (-208608)");
 }
 
 TEST_F(Decoder, AnRpdoIsACommandAndASetPoint) {
