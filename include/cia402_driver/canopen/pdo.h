@@ -127,7 +127,7 @@ class ProcessImage {
   /// Has an entry of this slot been left out, of all PDOs of that direction?
   bool isLeftOut(PdoDirection direction, Slot slot) const;
   /// The value of an input is unknown until it comes again. @pre slot is that of an input
-  void forget(Slot slot) { inputs_[slot].valid = false; }
+  void forget(Slot slot) { inputs_[slot].valid = inputs_[slot].fresh = false; }
   /// Marks every input as unknown and sets every output to 0 (the node rebooted or was lost), so
   /// that no set-point or controlword of before is ever sent again.
   void invalidate();
