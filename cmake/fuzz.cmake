@@ -17,7 +17,7 @@ function(cia402_fuzz_targets)
       target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/fuzz)
       target_compile_definitions(${target} PRIVATE
         CIA402_CORPUS="${PROJECT_SOURCE_DIR}/fuzz/corpus/${name}" CIA402_FUZZ_NAME=${name})
-      target_link_libraries(${target} PRIVATE GTest::gtest_main)
+      target_link_libraries(${target} PRIVATE cia402_googletest)
       set_property(GLOBAL APPEND PROPERTY cia402_tests ${PROJECT_BINARY_DIR}/${target})
       add_test(NAME fuzz_${name} COMMAND ${target})
     else()

@@ -81,7 +81,7 @@ ProfileLookup profilesIn(std::vector<std::string> folders) {
 
 YAML::Node readRobotFile(const std::string& path, Problems& problems) {
   try {
-    return YAML::LoadFile(path);
+    return drive::parseYamlFile(path);
   } catch (const YAML::BadFile&) {
     problems.add(path, "cannot be read");
   } catch (const YAML::Exception& error) {

@@ -270,7 +270,7 @@ DriveProfile parseDriveProfile(const std::string& text, const std::string& sourc
                                Problems& problems) {
   YAML::Node root;
   try {
-    root = YAML::Load(text);
+    root = parseYaml(text);
   } catch (const YAML::Exception& error) {
     problems.add(source + ":" + std::to_string(error.mark.line + 1), "is no YAML: " + error.msg);
     return {};

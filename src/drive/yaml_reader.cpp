@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
 #include <numeric>
 #include <set>
 #include <sstream>
@@ -71,6 +72,16 @@ std::string suggestion(std::string_view name, const std::vector<std::string>& ca
   std::string all;
   for (const std::string& candidate : candidates) all += (all.empty() ? "" : ", ") + candidate;
   return "; known are " + all;
+}
+
+YAML::Node parseYaml(const std::string& text) { return YAML::Load(text + '\n'); }
+
+YAML::Node parseYamlFile(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) return YAML::LoadFile(path);  // throws, with what its version has to say
+  std::ostringstream text;
+  text << file.rdbuf();
+  return parseYaml(text.str());
 }
 
 std::optional<std::int64_t> parseInteger(const std::string& text) {

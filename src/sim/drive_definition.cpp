@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "cia402_driver/drive/yaml_reader.h"
 #include "definition_communication.h"
 #include "definition_quirks.h"
 #include "definition_reader.h"
@@ -352,7 +353,7 @@ void readDefinition(Reader& reader, bool extends, DriveDefinition& out) {
 // The drive that the file extends lies beside it.
 void readFile(const std::string& path, int depth, DriveDefinition& out, Problems& problems) {
   try {
-    const YAML::Node file = YAML::LoadFile(path);
+    const YAML::Node file = drive::parseYamlFile(path);
     Reader reader(file, "", problems);
     std::string base;
     reader.read("extends", base);

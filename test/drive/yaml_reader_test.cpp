@@ -17,6 +17,11 @@ struct Reader {
   std::string text() const { return problems.text(); }
 };
 
+TEST(YamlReader, ComesToAnEndWithATextThatEndsBehindAColon) {
+  EXPECT_THROW(parseYaml("a: {b:"), YAML::ParserException);
+  EXPECT_EQ(parseYaml("a: {b: 1}")["a"]["b"].as<int>(), 1);
+}
+
 TEST(YamlReader, SuggestsTheNearestKnownKey) {
   Reader reader("{velocty: 1.0}");
   double velocity = 0.0;

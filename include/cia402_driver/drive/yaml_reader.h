@@ -20,6 +20,12 @@ std::string nearestName(std::string_view name, const std::vector<std::string>& c
 /// ", did you mean `velocity`?" or, where nothing is near, "; known are a, b, c".
 std::string suggestion(std::string_view name, const std::vector<std::string>& candidates);
 
+/// YAML text, or that of a file, as a tree. To be used instead of YAML::Load and YAML::LoadFile:
+/// before version 0.7 these never return from a text that ends behind the colon of a flow mapping.
+/// @throws YAML::ParserException with line and reason; YAML::BadFile for a file that cannot be read
+YAML::Node parseYaml(const std::string& text);
+YAML::Node parseYamlFile(const std::string& path);
+
 /// A whole number from a YAML scalar: decimal or 0x hexadecimal.
 std::optional<std::int64_t> parseInteger(const std::string& text);
 /// A number from a YAML scalar; also .inf and .nan, which callers must refuse.
