@@ -99,9 +99,7 @@ class ProcessImage {
   /// Indices of the TPDOs that remote frames ask for.
   const std::vector<std::size_t>& requested() const { return requested_; }
   /// Has the value come, and in time? A slot of an object that is not mapped is not fresh.
-  bool fresh(Slot slot) const {
-    return slot != kNoSlot && inputs_[slot].fresh;
-  }
+  bool fresh(Slot slot) const { return slot != kNoSlot && inputs_[slot].fresh; }
   /// Does the value come at a known rate, whether it changes or not? @pre slot is that of an input
   bool regular(Slot slot) const {
     const Pdo& pdo = tpdos_[input_tpdos_[slot]];

@@ -83,7 +83,7 @@ struct DeviceBehaviour {
                                          ///< (0x06090030; Roboteq)
   bool misleading_cob_id_abort = false;  ///< takes any COB-ID, and refuses the entries of a PDO
                                          ///< with a bad one (0x06040041; EPOS4)
-  bool rtr_types = true;  ///< TPDO types 252 and 253 exist (else 0x06090030)
+  bool rtr_types = true;                 ///< TPDO types 252 and 253 exist (else 0x06090030)
 
   // PDO transmission (7.2.2).
   bool rpdos_at_once = false;   ///< synchronous RPDOs act when they come (Kinco)
