@@ -65,11 +65,11 @@ bool countFollowsEntries(const SlaveContext& context, const PdoRecords& pdo) {
 void countEntries(SlaveContext& context, const PdoRecords& pdo) {
   if (!countFollowsEntries(context, pdo)) return;
   auto count = static_cast<std::uint8_t>(context.behaviour.fixed_map_entries);
-  const auto isEntry = [&](unsigned place) {
+  const auto is_entry = [&](unsigned place) {
     return context.value({pdo.mapping, static_cast<std::uint8_t>(place)}) != 0;
   };
   if (count == 0) {
-    while (count < 64 && isEntry(count + 1U)) ++count;
+    while (count < 64 && is_entry(count + 1U)) ++count;
   }
   if (Entry* entry = context.dictionary.find({pdo.mapping, 0})) entry->number = count;
 }
