@@ -6,9 +6,9 @@ Usage: run_clang_tidy.py REPOSITORY BUILD_DIRECTORY CACHE_DIRECTORY
 Files that passed are not checked again until they, a header of the repository they include, the
 compiler's arguments, .clang-tidy or clang-tidy change. Several files of a target are checked as one,
 for most of the time goes into the headers that they share, also where they were compiled as one;
-where that finds something, or they do not go together, each is checked by itself. Names that a source declares by `using` or `namespace x =` and
-does not use are found here: clang-tidy sees them in a file that is checked by itself only. Exit status
-1 if a file fails.
+where that finds something, or they do not go together, each is checked by itself. Names that a source
+declares by `using` or `namespace x =` and does not use are found here: clang-tidy sees them in a file
+that is checked by itself only. Exit status 1 if a file fails.
 """
 import concurrent.futures
 import hashlib
