@@ -164,8 +164,12 @@ void BootProcedure::stoppedHeard(Time now) {
 
 bool BootProcedure::tpdoHeard() {
   if (!running() || !started() || boot_.found.operational_heard) return false;
-  boot_.found.operational_heard = true;
+  boot_.found.operational_heard = boot_.found.only_by_tpdo = true;
   return true;
+}
+
+bool BootProcedure::overtakenByTpdo(NmtState state) {
+  return std::exchange(boot_.found.only_by_tpdo, false) && state == NmtState::pre_operational;
 }
 
 }  // namespace cia402::canopen

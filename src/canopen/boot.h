@@ -39,6 +39,9 @@ class BootProcedure {
   void heartbeatHeard(NmtState state, Time now);
   /// A TPDO came: the node is operational. @return false if nobody waits for that.
   bool tpdoHeard();
+  /// @return true for the heartbeat that a TPDO, of higher priority, may have overtaken: the first
+  /// one after a TPDO alone showed that the node is operational, if it says pre-operational.
+  bool overtakenByTpdo(NmtState state);
   /// Somebody is to ask for the NMT state by a remote frame. Cleared by the question.
   bool takeStateRequest() { return std::exchange(boot_.ask_state, false); }
   /// The time by which the present step must have ended (SDO time-outs are the SDO client's).

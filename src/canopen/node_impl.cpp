@@ -237,8 +237,9 @@ void Node::Impl::onErrorControl(std::uint8_t byte, Time stamp, Time now) {
 
 void Node::Impl::onHeartbeat(NmtState state, Time stamp, Time now) {
   last_heartbeat = stamp;
-  nmt_state = state;
   consumer.heard(now);
+  if (boot.overtakenByTpdo(state)) return;
+  nmt_state = state;
   if (boot.running()) {
     boot.heartbeatHeard(state, now);
     runBoot(now);

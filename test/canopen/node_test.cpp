@@ -178,6 +178,38 @@ TEST_F(NodeTest, a_ready_node_that_becomes_pre_operational_by_itself_is_configur
   EXPECT_EQ(node->problem(), "");
 }
 
+// On a full bus a heartbeat, of low priority, may leave the drive long after the TPDO that was made
+// after it.
+TEST_F(NodeTest, a_heartbeat_of_before_its_start_may_come_after_the_tpdo_that_shows_it) {
+  peer.forget("000 01 03");
+  boot();
+  tpdo("183 37 02 01 00 00 00");
+  pass(milliseconds(0));
+  ASSERT_EQ(node->health(), NodeHealth::ready);
+  peer.take();
+  hear("703 7F");
+  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(peer.take(), Lines{});
+  EXPECT_EQ(node->lastHeartbeat(), now);
+  beat(1);
+  EXPECT_EQ(node->nmtState(), NmtState::operational);
+  peer.forget(kAskDeviceType);
+  hear("703 7F");
+  EXPECT_EQ(node->health(), NodeHealth::booting);
+}
+
+TEST_F(NodeTest, a_second_heartbeat_of_before_its_start_tells_that_it_is_not_operational) {
+  peer.forget("000 01 03");
+  boot();
+  tpdo("183 37 02 01 00 00 00");
+  pass(milliseconds(0));
+  ASSERT_EQ(node->health(), NodeHealth::ready);
+  peer.forget(kAskDeviceType);
+  beat(2, "703 7F");
+  EXPECT_EQ(node->health(), NodeHealth::booting);
+  EXPECT_THAT(node->problem(), HasSubstr("became pre-operational without our command"));
+}
+
 TEST_F(NodeTest, a_ready_node_that_was_stopped_by_somebody_is_configured_again) {
   bootReady();
   hear("703 04");
