@@ -48,7 +48,7 @@ struct BootFindings {
   NmtState heartbeat_state = NmtState::unknown;  ///< that it told last, ...
   Time heartbeat_at{};                           ///< ... and when
   bool operational_heard = false;                ///< since it was told to start
-  bool only_by_tpdo = false;  ///< a heartbeat of before its start may still be on its way
+  bool only_by_tpdo = false;                     ///< a heartbeat may still say what was before
   bool stopped = false;                          ///< its last heartbeat said so: it answers no SDO
   unsigned stopped_count = 0;                    ///< heartbeats that said so, ...
   Time stopped_since{}, stopped_last{};          ///< ... the first and the last of them
