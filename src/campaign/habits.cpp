@@ -16,12 +16,15 @@ struct Habit {
   const char* profile;      ///< other keys of it
 };
 
+constexpr const char* kForgetful = "shown: enabled, again: same";  // what is told while disabled
+constexpr const char* kDisablingDetour = "detours: {profile_velocity: {cyclic_position: disabled}}";
+
 // docs/simulated_drives.md says what each is. Left out is what costs more than a history has time
 // for (modes and searches of seconds, a power cycle after each save), what holds the whole bus, and
 // what hides from the statusword that there is power.
 constexpr Habit kHabits[] = {
     {"mode", "quirks", "mode_shown_when_enabled: true", "shown: enabled", ""},
-    {"mode", "quirks", "mode_command: enabled", "shown: enabled, again: same", ""},
+    {"mode", "quirks", "mode_command: enabled", kForgetful, ""},
     {"mode", "quirks", "mode_command: change", "shown: enabled, again: through_zero", ""},
     {"mode", "quirks", "mode_needed: true", "", ""},
     {"mode", "quirks", "mode_change_time: 0.3", "", ""},
@@ -30,8 +33,7 @@ constexpr Habit kHabits[] = {
     {"halt", "quirks", "halt_blocks_mode: true", "while_halted: false", ""},
     {"detour", "quirks", "mode_faults: [[3, 8]]",
      "detours: {profile_velocity: {cyclic_position: profile_position}}", ""},
-    {"detour", "quirks", "mode_faults: [[3, 8]]",
-     "detours: {profile_velocity: {cyclic_position: disabled}}", ""},
+    {"detour", "quirks", "mode_faults: [[3, 8]]", kDisablingDetour, ""},
     {"fault", "quirks", "fault_bits: 0x0040", "", ""},
     {"vendor", "quirks", "vendor_bits: 0xC100", "", ""},
     {"reset", "quirks", "fault_reset_tries: 3", "", "fault_reset_tries: 3"},
@@ -55,6 +57,14 @@ constexpr Habit kHabits[] = {
     {"word", "communication", "stale_statusword: 0.029", "", ""},
 };
 
+/// A drive that has both could never be brought from the one mode into the other.
+bool contradict(const std::string& mode_change, const Habit& habit) {
+  const bool forgetful = mode_change.find(kForgetful) != std::string::npos;
+  const bool by_disabling = mode_change.find(kDisablingDetour) != std::string::npos;
+  return (forgetful && habit.mode_change == kDisablingDetour) ||
+         (by_disabling && habit.mode_change == kForgetful);
+}
+
 void append(std::string& list, const std::string& more) {
   if (!more.empty()) list += (list.empty() ? "" : ", ") + more;
 }
@@ -69,6 +79,7 @@ Habits drawHabits(Random& random) {
   for (std::size_t left = 1 + random.below(3); left > 0; --left) {
     const Habit& habit = kHabits[random.below(std::size(kHabits))];
     if (std::find(taken.begin(), taken.end(), habit.about) != taken.end()) continue;
+    if (contradict(mode_change, habit)) continue;
     taken.emplace_back(habit.about);
     append(sections[habit.section], habit.key);
     append(mode_change, habit.mode_change);

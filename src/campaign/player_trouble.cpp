@@ -199,8 +199,9 @@ bool Player::actHost(const Words& words) {
     ends_at_ = now + 2500ms + seconds(words.at(1));
     host.stop();
     for (std::size_t i = 0; i < truths_.size(); ++i) permits_.cut(i, now + 2300ms);
-    later(2500ms + seconds(words.at(1)), [this, stalled = conditions_.stalled] {
-      if (stage_.host().running() && conditions_.stalled == stalled) {
+    later(2500ms + seconds(words.at(1)), [this, due = now + 2500ms, stalled = conditions_.stalled] {
+      // Earlier only where the history ends sooner.
+      if (stage_.now() >= due && stage_.host().running() && conditions_.stalled == stalled) {
         report("late_shutdown", "", "the driver has not ended 2.5 s after it was asked to");
       }
       stage_.host().kill();
