@@ -25,6 +25,12 @@ class Enable : public Procedure {
     AxisCore& axis = context.axis;
     releasing_ = axis.inOperation();
     leaving_homing_ = releasing_ && axis.mode().spec->kind == ControlKind::homing;
+    if (leaving_homing_ && axis.halted() && !axis.profile().mode_change.while_halted) {
+      // The start bit of homing has been 0 since the halt: without the halt bit nothing begins.
+      axis.releaseHalt();
+      released_ = true;
+      frames_ = axis.controlwordFrames();
+    }
     if (!releasing_ || !axis.halted() || leaving_homing_) return;
     axis.replaceHaltedTarget();
     frames_ = axis.targetFrames();
@@ -34,6 +40,7 @@ class Enable : public Procedure {
   Outcome release(const Context& context) {
     AxisCore& axis = context.axis;
     if (leaving_homing_) {
+      if (released_ && axis.controlwordFrames() < frames_ + kSureFrames) return Outcome::running();
       const Outcome outcome = mode_.advance(context);
       if (!outcome.isDone()) return outcome;
       leaving_homing_ = false;
@@ -43,6 +50,7 @@ class Enable : public Procedure {
       context.show("asking whether it is enabled still", "fresh feedback");
       return Outcome::running();
     }
+    if (released_) return released(axis);
     if (!axis.halted()) {
       return Outcome::done(jointName(axis.config()) + ": is enabled already, mode " +
                            axis.mode().spec->name);
@@ -57,6 +65,10 @@ class Enable : public Procedure {
                              axis.report());
     }
     axis.releaseHalt();
+    return released(axis);
+  }
+
+  static Outcome released(const AxisCore& axis) {
     return Outcome::done(jointName(axis.config()) +
                          ": the halt is released, the axis holds its position");
   }
@@ -71,7 +83,7 @@ class Enable : public Procedure {
 
   EnableStep enabling_;
   SwitchStep mode_;
-  bool begun_ = false, releasing_ = false, leaving_homing_ = false;
+  bool begun_ = false, releasing_ = false, leaving_homing_ = false, released_ = false;
   std::uint64_t frames_ = 0;
   Time started_{};
 };

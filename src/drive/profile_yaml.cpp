@@ -186,6 +186,11 @@ void checkDetours(const YamlSection& section, const DriveProfile& profile) {
       if (name.empty() || profile.mode(name) != nullptr) continue;
       section.problem("mode_change/detours: there is no mode `" + name + "`");
     }
+    if (detour.through.empty() && profile.mode_change.again == ModeChange::Again::same) {
+      section.problem("mode_change/detours: " + detour.from + " to " + detour.to +
+                      " is to go by disabling, but the drive forgets what it is told while "
+                      "disabled (again: same); name a mode to go through instead of `disabled`");
+    }
   }
 }
 

@@ -15,6 +15,8 @@ Outcome ModeShownStep::advance(const Context& context) {
       if (axis.shownMode() == wanted) return Outcome::done();
       if (rules.again == ModeChange::Again::through_zero) {
         command(context, Phase::zero, 0);
+      } else if (rules.again == ModeChange::Again::same && beginDetour(axis)) {
+        return Outcome::running();
       } else if (rules.again == ModeChange::Again::same) {
         command(context, Phase::again, wanted);
       } else {
@@ -26,6 +28,14 @@ Outcome ModeShownStep::advance(const Context& context) {
     case Phase::zero:
       if (sent(context)) command(context, Phase::again, wanted);
       return await(context);
+    case Phase::between: {
+      const Outcome outcome = between_->advance(context);
+      if (!outcome.isDone()) return outcome;
+      phase_ = Phase::detour;
+      return Outcome::running();
+    }
+    case Phase::detour:
+      return last_->advance(context);
     case Phase::again:
       if (sent(context)) phase_ = Phase::waiting;
       return await(context);
@@ -33,6 +43,22 @@ Outcome ModeShownStep::advance(const Context& context) {
       return await(context);
   }
   return Outcome::running();
+}
+
+/// What it shows is the mode that it was in before it was disabled: the one that it leaves.
+bool ModeShownStep::beginDetour(const AxisCore& axis) {
+  if (!axis.shownMode()) return false;
+  const ModeChannel* shown = axis.objects().channelOfValue(*axis.shownMode());
+  if (shown == nullptr) return false;
+  const ModeChange::Detour* detour =
+      axis.profile().mode_change.detour(shown->spec->name, mode_->spec->name);
+  const ModeChannel* between =
+      detour == nullptr ? nullptr : axis.objects().channel(detour->through);
+  if (between == nullptr) return false;
+  between_.emplace(*between);
+  last_.emplace(*mode_);
+  phase_ = Phase::between;
+  return true;
 }
 
 void ModeShownStep::command(const Context& context, Phase phase, int value) {

@@ -391,6 +391,11 @@ TEST(ProfileMistakes, AreToldWithWhatToDo) {
       {"timing: {sdo_retries: 11}\n", "timing/sdo_retries: must be between 0 and 10"},
       {"heartbeat: {producr: false}\n", "did you mean `producer`"},
       {"mode_change: sometimes\n", "mode_change: unknown word `sometimes`"},
+      {"mode_change: {detours: {csp: {csv: disabled}}}\n",
+       "mode_change/detours: there is no mode `cyclic_velocity`"},
+      {"mode_change: {again: same, detours: {csp: {csp: disabled}}}\n",
+       "cyclic_position to cyclic_position is to go by disabling, but the drive forgets what it is "
+       "told while disabled (again: same); name a mode to go through instead of `disabled`"},
   };
   const std::string head = std::string(kHead) +
                            "  csp: {value: 8, control: position, cyclic: true, target: "

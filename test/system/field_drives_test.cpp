@@ -171,7 +171,7 @@ class Life {
     const bool booted = scene_.runUntil([this] { return allReady(scene_.robot()); }, 60s);
     if (!booted) return "no boot: " + scene_.told();
     for (const auto step : {&Life::settle, &Life::enableAndMove, &Life::changeMode, &Life::halt,
-                            &Life::quickStop, &Life::home, &Life::fault}) {
+                            &Life::quickStop, &Life::haltHoming, &Life::home, &Life::fault}) {
       const std::string wrong = (this->*step)();
       if (!wrong.empty()) return wrong;
     }
@@ -250,6 +250,21 @@ class Life {
     if (wrong.empty()) wrong = call(ProcedureKind::enable);
     return wrong.empty() ? moveBy(-0.15) : wrong;
   }
+  /// The second halt comes while the first one would lead back into the mode from before.
+  std::string haltHoming() {
+    const auto home = scene_.begin(ProcedureKind::home, "left");
+    scene_.run(300ms);
+    if (home->has_value()) return "home: " + (*home)->message;
+    const auto halt = scene_.begin(ProcedureKind::halt, "left");
+    scene_.run(8ms);
+    std::string wrong = call(ProcedureKind::halt);
+    if (wrong.empty()) wrong = call(ProcedureKind::enable);
+    if (!wrong.empty()) return wrong;
+    scene_.forget();
+    scene_.run(500ms);
+    if (scene_.seen("left").travel() > 2e-3) return "it went on with its homing";
+    return moveBy(0.1);
+  }
   std::string home() {
     const std::string wrong = call(ProcedureKind::home);
     if (!wrong.empty()) return wrong;
@@ -309,9 +324,12 @@ bool compatible(const Habit& a, const Habit& b) {
   const bool both_shown = std::string(a.mode_change).rfind("shown", 0) == 0 &&
                           std::string(b.mode_change).rfind("shown", 0) == 0;
   const std::string pair = std::string(a.behaviour) + " " + b.behaviour;
-  // What forgets its mode while disabled cannot need one to be enabled.
-  const bool impossible = pair.find("mode_needed") != std::string::npos &&
-                          pair.find("mode_command") != std::string::npos;
+  // What forgets its mode while disabled cannot need one to be enabled, nor be disabled to change
+  // it.
+  const bool impossible = pair.find("mode_command") != std::string::npos &&
+                          (pair.find("mode_needed") != std::string::npos ||
+                           std::string(a.mode_change).find("disabled") != std::string::npos ||
+                           std::string(b.mode_change).find("disabled") != std::string::npos);
   return !share && !both_detour && !both_shown && !impossible;
 }
 
@@ -330,6 +348,18 @@ TEST_P(FieldDrives, LiveWithFiveHabitsAtOnce) {
     names += std::string(" ") + habit.name;
   }
   EXPECT_EQ(Life(robotOf(habits)).live(), "") << names;
+}
+
+TEST(FieldDrivePair, IsLedToTheModeThatItForgotThroughTheModeThatItStands) {
+  std::vector<const Habit*> habits;
+  for (const Habit& habit : kHabits) {
+    const std::string name = habit.name;
+    if (name == "ForgetsTheModeWhileDisabled" || name == "FaultsAtAChangeOfMode") {
+      habits.push_back(&habit);
+    }
+  }
+  ASSERT_EQ(habits.size(), 2U);
+  EXPECT_EQ(Life(robotOf(habits)).live(), "");
 }
 
 INSTANTIATE_TEST_SUITE_P(Random, FieldDrives, testing::Range(1U, 51U));
