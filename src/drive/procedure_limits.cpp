@@ -39,11 +39,15 @@ struct Steps {
     }
     return longest + 2 * timing.mode_change + 2 * transfer();
   }
+  Duration shown() const {  // ModeShownStep
+    const ModeChange& rules = profile.mode_change;
+    const bool detour = rules.again == ModeChange::Again::same && !rules.detours.empty();
+    return detour ? 2 * mode() : timing.mode_change;
+  }
   /// From switch on disabled it takes three transitions, and one more out of quick stop active.
   Duration enable() const {
     return timing.state_change + kComeToRest + writes(profile.before_enable) + limits() + mode() +
-           4 * timing.state_change + timing.mode_change +
-           std::max(timing.brake_release, kFollowPatience);
+           4 * timing.state_change + shown() + std::max(timing.brake_release, kFollowPatience);
   }
   Duration change() const {  // SwitchStep
     const ModeChange& rules = profile.mode_change;
