@@ -138,6 +138,7 @@ void AxisCore::neutralizeTarget() {
 
 void AxisCore::selectMode(const ModeChannel& mode) {
   mode_ = &mode;
+  bound_for_ = nullptr;
   mode_override_.reset();
   given_ = kUnknown;
   held_.clear();

@@ -53,6 +53,7 @@ bool AxisCore::absolute() const {
 }
 
 const ModeChannel& AxisCore::workingMode() const {
+  if (bound_for_ != nullptr) return *bound_for_;
   return mode_->spec->kind == ControlKind::homing ? *objects_.channel(config_.mode) : *mode_;
 }
 

@@ -86,10 +86,13 @@ class AxisCore {
 
   // --- Modes -----------------------------------------------------------------------------------
   const ModeChannel& mode() const { return *mode_; }
-  /// The mode to enable in: the selected one, or the configured one where a homing was cut off.
+  /// The mode to enable in: the selected one; or the configured one where a homing was cut off, or
+  /// the one that the axis is bound for where the way there was.
   const ModeChannel& workingMode() const;
   /// Makes `mode` the one whose value and target the RPDOs carry; its target becomes neutral.
   void selectMode(const ModeChannel& mode);
+  /// The selected mode only lies on the way to another one. Until a mode is selected.
+  void bindFor(const ModeChannel& mode) { bound_for_ = &mode; }
   /// Another value of 6060h is sent instead of the mode's, where it travels by RPDO; until it is
   /// taken back, another mode is selected, or the axis leaves operation.
   void overrideMode(std::optional<int> value) { mode_override_ = value; }
@@ -266,6 +269,7 @@ class AxisCore {
   Time stop_point_after_ = kNever;   ///< feedback newer than this has the stop point judged anew
   bool braking_ = false;      ///< the halt bit brakes an axis whose torque is nobody's any more
   bool voltage_off_ = false;  ///< the power stage is to be off, whatever the drive shows
+  const ModeChannel* bound_for_ = nullptr;
   std::optional<int> mode_override_;  ///< commanded instead of mode_ for a moment
   std::uint16_t controlword_ = 0, base_controlword_ = 0;
   Command command_ = nextCommand(State::unknown, Goal::disabled);  ///< of these two:

@@ -49,10 +49,15 @@ Outcome ModeStep::advance(const Context& context) {
   return Outcome::running();
 }
 
+void ModeStep::enter(AxisCore& axis, const ModeChannel& mode) const {
+  axis.selectMode(mode);
+  if (bound_for_ != nullptr) axis.bindFor(*bound_for_);
+}
+
 void ModeStep::select(const Context& context) {
   AxisCore& axis = context.axis;
   before_ = &axis.mode();
-  axis.selectMode(*mode_);
+  enter(axis, *mode_);
   for (const WriteStep::Mapped& mapped : writes_.mapped()) axis.holdOutput(mapped.slot, mapped.raw);
   started_ = context.now;
   controlword_frames_ = axis.targetFrames();
@@ -101,7 +106,7 @@ void ModeStep::askForDisplay(const Context& context) {
 Outcome ModeStep::fail(const Context& context, const std::string& why) {
   AxisCore& axis = context.axis;
   if (before_ != nullptr && before_ != mode_) {
-    axis.selectMode(*before_);
+    enter(axis, *before_);
     const OutputObject& object = axis.objects().mode;
     if (!object.mapped() && object.spec != nullptr) {
       axis.node().sdo().download(

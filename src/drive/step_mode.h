@@ -11,17 +11,22 @@ namespace cia402::drive {
 /// If the drive does not follow, the mode from before is commanded again.
 class ModeStep {
  public:
-  explicit ModeStep(const ModeChannel& mode) : mode_(&mode), writes_(mode.spec->entry_writes) {}
+  /// @param bound_for where that mode or the one from before only lies on the way to another one:
+  /// what the axis is to be enabled in should it be cut off there.
+  explicit ModeStep(const ModeChannel& mode, const ModeChannel* bound_for = nullptr)
+      : mode_(&mode), bound_for_(bound_for), writes_(mode.spec->entry_writes) {}
   Outcome advance(const Context& context);
 
  private:
   enum class Phase { writing, presetting, sending, waiting };
   void select(const Context& context);
+  void enter(AxisCore& axis, const ModeChannel& mode) const;
   Outcome await(const Context& context);
   void askForDisplay(const Context& context);
   Outcome fail(const Context& context, const std::string& why);
 
   const ModeChannel* mode_;
+  const ModeChannel* bound_for_;
   const ModeChannel* before_ = nullptr;
   WriteStep writes_;
   Phase phase_ = Phase::writing;

@@ -55,8 +55,8 @@ bool ModeShownStep::beginDetour(const AxisCore& axis) {
   const ModeChannel* between =
       detour == nullptr ? nullptr : axis.objects().channel(detour->through);
   if (between == nullptr) return false;
-  between_.emplace(*between);
-  last_.emplace(*mode_);
+  between_.emplace(*between, mode_);
+  last_.emplace(*mode_, mode_);
   phase_ = Phase::between;
   return true;
 }

@@ -350,7 +350,8 @@ TEST_P(FieldDrives, LiveWithFiveHabitsAtOnce) {
   EXPECT_EQ(Life(robotOf(habits)).live(), "") << names;
 }
 
-TEST(FieldDrivePair, IsLedToTheModeThatItForgotThroughTheModeThatItStands) {
+/// It forgets its mode while disabled, and faults at a change to which it is to be led.
+std::string forgetfulRobot() {
   std::vector<const Habit*> habits;
   for (const Habit& habit : kHabits) {
     const std::string name = habit.name;
@@ -358,8 +359,30 @@ TEST(FieldDrivePair, IsLedToTheModeThatItForgotThroughTheModeThatItStands) {
       habits.push_back(&habit);
     }
   }
-  ASSERT_EQ(habits.size(), 2U);
-  EXPECT_EQ(Life(robotOf(habits)).live(), "");
+  return robotOf(habits);
+}
+
+TEST(ForgetfulDrive, IsLedToItsModeThroughTheOneThatItStands) {
+  EXPECT_EQ(Life(forgetfulRobot()).live(), "");
+}
+
+TEST(ForgetfulDrive, KeepsItsModeWhereTheWayToItIsCutOff) {
+  Scene scene(loadText(forgetfulRobot()));
+  ASSERT_TRUE(scene.boot());
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "left").success);
+  ASSERT_TRUE(scene.procedure(ProcedureKind::set_mode, "left", "pv").success);
+  ASSERT_TRUE(scene.procedure(ProcedureKind::disable, "left").success);
+  ASSERT_TRUE(scene.procedure(ProcedureKind::set_mode, "left", "csp").success);
+  const auto enabled = scene.begin(ProcedureKind::enable, "left");
+  const auto mode = [&] { return std::string(scene.axis("left").modeName()); };
+  ASSERT_TRUE(scene.runUntil([&] { return mode() == "profile_position"; }, 2s));
+  scene.inject("left", "overcurrent");
+  ASSERT_TRUE(scene.runUntil([&] { return enabled->has_value(); }, 5s));
+  EXPECT_FALSE((*enabled)->success);
+  scene.inject("left", "clear");
+  const bus::Answer recovered = scene.procedure(ProcedureKind::recover, "left");
+  ASSERT_TRUE(recovered.success) << recovered.message;
+  EXPECT_EQ(mode(), "cyclic_position");
 }
 
 INSTANTIATE_TEST_SUITE_P(Random, FieldDrives, testing::Range(1U, 51U));
