@@ -12,6 +12,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Duration kRecoverTime = 20s;
+constexpr const char* kDisableFirst = ": disable, then enable";  // the words of an axis
 
 }  // namespace
 
@@ -27,16 +28,17 @@ void Player::prove() {
   if (!proveCall("recover", "all", kRecoverTime, answer)) return;
   const std::string first = answer.success ? std::string() : answer.message;
   const bool asks = first.find(": enable") != std::string::npos ||
+                    first.find(kDisableFirst) != std::string::npos ||
                     first.find(" is not homed: home") != std::string::npos;
   if (!first.empty() && !asks) {
     report("no_recovery", "", "recover fails when all is well again: " + first);
     return;
   }
   for (const AxisFacts& facts : stage_.axes()) {
-    if (stage_.host().robot().axes()[facts.index].obstacle().find(": enable") ==
-        std::string::npos) {
-      continue;
-    }
+    const std::string obstacle = stage_.host().robot().axes()[facts.index].obstacle();
+    const bool disable = obstacle.find(kDisableFirst) != std::string::npos;
+    if (!disable && obstacle.find(": enable") == std::string::npos) continue;
+    if (disable && !proveCall("disable", facts.name, kRecoverTime, answer)) return;
     if (!proveCall("enable", facts.name, kRecoverTime, answer)) return;
   }
   for (const AxisFacts& facts : stage_.axes()) {
@@ -61,9 +63,10 @@ bool Player::proveCall(const std::string& verb, const std::string& who, Duration
   const auto done = std::make_shared<std::optional<bus::Answer>>();
   bus::Command command;
   drive::ProcedureRequest request;
-  request.kind = verb == "home"     ? drive::ProcedureKind::home
-                 : verb == "enable" ? drive::ProcedureKind::enable
-                                    : drive::ProcedureKind::recover;
+  request.kind = verb == "home"      ? drive::ProcedureKind::home
+                 : verb == "enable"  ? drive::ProcedureKind::enable
+                 : verb == "disable" ? drive::ProcedureKind::disable
+                                     : drive::ProcedureKind::recover;
   command.body = bus::ProcedureCommand{who == "all" ? std::string() : who, request};
   const auto axes = stage_.named(who);
   const Call call{verb, who, "", axes, stage_.now(), conditions_.stalled};

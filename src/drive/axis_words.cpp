@@ -106,9 +106,14 @@ std::string AxisCore::obstacle() const {
   if (mode_->spec->kind == ControlKind::homing) {
     return name + " is left in its homing mode: enable" + (homed ? "" : ", then " + zero);
   }
+  const bool shown = shown_mode_ == mode_->spec->value;
+  if (state_.halted && !shown && !profile().mode_change.while_halted) {
+    return name + " is halted, is not in mode " + mode_->spec->name +
+           ", and takes no mode while halted: disable, then enable";
+  }
   if (state_.halted) return name + " is halted: enable" + (homed ? "" : ", then " + zero);
-  if (shown_mode_ != mode_->spec->value) {
-    return name + " does not show that it is in mode " + mode_->spec->name + ": set_mode";
+  if (!shown) {
+    return name + " does not show that it is in mode " + mode_->spec->name + ": enable";
   }
   return homed ? std::string() : name + " is not homed: " + zero;
 }

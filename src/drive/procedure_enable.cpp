@@ -24,14 +24,17 @@ class Enable : public Procedure {
     started_ = context.now;
     AxisCore& axis = context.axis;
     releasing_ = axis.inOperation();
-    leaving_homing_ = releasing_ && axis.mode().spec->kind == ControlKind::homing;
-    if (leaving_homing_ && axis.halted() && !axis.profile().mode_change.while_halted) {
+    const bool homing = axis.mode().spec->kind == ControlKind::homing;
+    changing_mode_ = releasing_ && (homing || axis.shownMode() != axis.mode().spec->value);
+    blocked_ = changing_mode_ && axis.halted() && !axis.profile().mode_change.while_halted;
+    if (blocked_ && homing) {
       // The start bit of homing has been 0 since the halt: without the halt bit nothing begins.
       axis.releaseHalt();
+      blocked_ = false;
       released_ = true;
       frames_ = axis.controlwordFrames();
     }
-    if (!releasing_ || !axis.halted() || leaving_homing_) return;
+    if (!releasing_ || !axis.halted() || changing_mode_) return;
     axis.replaceHaltedTarget();
     frames_ = axis.targetFrames();
     context.show("releasing the halt", "the drive to take its present position as set-point");
@@ -39,11 +42,13 @@ class Enable : public Procedure {
 
   Outcome release(const Context& context) {
     AxisCore& axis = context.axis;
-    if (leaving_homing_) {
+    if (blocked_) return Outcome::failed(axis.obstacle());
+    if (changing_mode_) {
       if (released_ && axis.controlwordFrames() < frames_ + kSureFrames) return Outcome::running();
       const Outcome outcome = mode_.advance(context);
       if (!outcome.isDone()) return outcome;
-      leaving_homing_ = false;
+      changing_mode_ = false;
+      mode_changed_ = true;
       frames_ = axis.targetFrames();
     }
     if (!axis.heardLately(context.now)) {  // its power may have gone since
@@ -52,8 +57,10 @@ class Enable : public Procedure {
     }
     if (released_) return released(axis);
     if (!axis.halted()) {
-      return Outcome::done(jointName(axis.config()) + ": is enabled already, mode " +
-                           axis.mode().spec->name);
+      return Outcome::done(
+          jointName(axis.config()) +
+          (mode_changed_ ? ": is enabled and brought into mode " : ": is enabled already, mode ") +
+          axis.mode().spec->name);
     }
     if (axis.handshakeBusy() || axis.targetFrames() < frames_ + 2) {
       if (context.now - started_ <= 2 * axis.profile().timing.state_change) {
@@ -83,7 +90,10 @@ class Enable : public Procedure {
 
   EnableStep enabling_;
   SwitchStep mode_;
-  bool begun_ = false, releasing_ = false, leaving_homing_ = false, released_ = false;
+  bool begun_ = false, releasing_ = false, released_ = false;
+  bool changing_mode_ = false;  ///< the drive is not, or does not show to be, in the mode to be in
+  bool mode_changed_ = false;
+  bool blocked_ = false;  ///< the halt is in the way of the mode
   std::uint64_t frames_ = 0;
   Time started_{};
 };

@@ -129,7 +129,7 @@ TEST(AxisWords, ADriveThatShowsAnotherModeIsToldApart) {
   bench.drive.mode_delay = 1000000;
   bench.run(milliseconds(8));
   EXPECT_THAT(bench.axis.obstacle(),
-              HasSubstr("shoulder does not show that it is in mode cyclic_position: set_mode"));
+              HasSubstr("shoulder does not show that it is in mode cyclic_position: enable"));
   EXPECT_THAT(bench.axis.motionRefusal(), HasSubstr(" instead of 8 (cyclic_position)"));
 }
 

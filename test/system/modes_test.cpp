@@ -1,6 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Every mode of both families on a whole robot: nothing jumps, and the drives do what was said.
-#include "system/scene.h"
+#include "system/field_profile.h"
 
 namespace cia402 {
 namespace {
@@ -206,6 +206,45 @@ TEST(Modes, SetPointsThatAreNoNumbersAreRefusedAndReachNobody) {
   }
   EXPECT_EQ(scene.badFloats(), 0u);
 }
+
+class CutOffSwitch : public testing::TestWithParam<bool> {};
+
+// Parameter: the drive takes no mode while halted.
+TEST_P(CutOffSwitch, IsMadeGoodByEnable) {
+  const std::string keys = GetParam() ? "mode_change: {while_halted: false}" : "";
+  const std::string habit = GetParam() ? "quirks: {halt_blocks_mode: true}" : "";
+  Scene scene(loadText(fieldPair(keys, habit, ", modes: [csp, pp]")));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "left").success);
+  scene.inject("left", "sdo_silent");
+  const auto switched = scene.begin(ProcedureKind::set_mode, "left", "pp");
+  scene.run(300ms);
+  ASSERT_TRUE(scene.procedure(ProcedureKind::halt, "left").success);
+  ASSERT_TRUE(switched->has_value() && !(*switched)->success);
+  scene.run(5s);  // what is asked in vain has ended
+  scene.inject("left", "clear");
+  scene.run(100ms);
+  const std::string advice = scene.procedure(ProcedureKind::recover, "left").message;
+  EXPECT_THAT(advice, HasSubstr("left is halted"));
+  scene.forget();
+  if (GetParam()) {
+    EXPECT_THAT(advice, HasSubstr("disable, then enable"));
+    EXPECT_FALSE(scene.procedure(ProcedureKind::enable, "left").success);
+    ASSERT_TRUE(scene.procedure(ProcedureKind::disable, "left").success);
+  }
+  const auto enabled = scene.procedure(ProcedureKind::enable, "left");
+  EXPECT_TRUE(enabled.success) << enabled.message;
+  EXPECT_THAT(call(scene, bus::ReadObjectCommand{"left", "6061:00"}).message, HasSubstr(" 1"));
+  const auto recovered = scene.procedure(ProcedureKind::recover, "left");
+  EXPECT_TRUE(recovered.success) << recovered.message;
+  scene.run(300ms);
+  EXPECT_LT(scene.seen("left").travel(), kNoJump);
+}
+
+INSTANTIATE_TEST_SUITE_P(OfADriveThatWhileHaltedTakes, CutOffSwitch, testing::Bool(),
+                         [](const auto& param) {
+                           return std::string(param.param ? "NoMode" : "AMode");
+                         });
 
 }  // namespace
 }  // namespace cia402

@@ -156,10 +156,12 @@ class Scene {
   }
   /// Starts a procedure and does not wait; its answer goes to the returned place.
   std::shared_ptr<std::optional<bus::Answer>> begin(drive::ProcedureKind kind,
-                                                    const std::string& name) {
+                                                    const std::string& name,
+                                                    const std::string& mode = {}) {
     auto answer = std::make_shared<std::optional<bus::Answer>>();
     drive::ProcedureRequest request;
     request.kind = kind;
+    request.mode = mode;
     bus::Command given = command(bus::ProcedureCommand{name, request});
     given.reply = [answer](const bus::Answer& a) { *answer = a; };
     robot_.robot().execute(std::move(given), now());
