@@ -66,7 +66,7 @@ void AxisCore::writeCommands(Time now) {
   }
   written_ = now;
   const bool by_drive = homing_start_ || set_point_.kind() == SetPointKind::goal;
-  if (by_drive && movesItself()) moved_itself_ = now;
+  if (by_drive) watchDrive(now);
   controlword_ = composeControlword();
   image_.setOutput(objects_.controlword.slot, controlword_);
   if (objects_.mode.mapped()) {

@@ -248,6 +248,8 @@ class AxisCore {
   bool withinReach(double position) const;
   bool goalAhead() const;
   bool movesItself() const;
+  bool mayTurnBack(Time now) const;
+  void watchDrive(Time now);
   bool seenStill(Time from) const;
   bool neutralTarget(const ModeChannel& mode, std::uint64_t& raw) const;
 
@@ -265,6 +267,7 @@ class AxisCore {
   bool in_operation_ = false;
   bool fault_reset_ = false, homing_start_ = false, halt_bit_ = false;
   double halted_goal_ = kUnknown;    ///< to which the drive was going by itself
+  Time seen_moving_ = Time::min();   ///< by the drive itself: not seen to stand until then
   Time moved_itself_ = Time::min();  ///< the drive may have moved by itself until then
   Time stop_point_after_ = kNever;   ///< feedback newer than this has the stop point judged anew
   bool braking_ = false;      ///< the halt bit brakes an axis whose torque is nobody's any more

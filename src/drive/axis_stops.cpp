@@ -14,6 +14,8 @@ namespace {
 constexpr int kPlanningCycles = 4;
 /// Of the way that braking takes, at least, a stop point is to be ahead.
 constexpr double kReachable = 0.98;
+/// Of two places that count as one: so far from its stop point a drive may have gone beyond it.
+constexpr double kOffStopPoint = 0.25;
 
 }  // namespace
 
@@ -39,6 +41,22 @@ bool AxisCore::goalAhead() const {
 bool AxisCore::movesItself() const {
   if (!in_operation_ || halt_bit_ || state_.halted) return false;
   return homing_start_ || (goalAhead() && mode_->spec->target_reached_bit);
+}
+
+/// Halted by a stop point that it has passed, since that reached it late, a drive goes back to it,
+/// and where it turns it seems to stand. One that stands for longer than it takes to be seen to
+/// move again is held there.
+bool AxisCore::mayTurnBack(Time now) const {
+  if (!state_.halted || halt_bit_ || set_point_.kind() != SetPointKind::goal) return false;
+  const double away = std::fabs(set_point_.value() - state_.position);
+  const double slow = standstill_.tolerance() / toSeconds(Standstill::kWindow);  // per second
+  const Duration unseen = fromSeconds(slow / stopDeceleration(config_)) + Standstill::kWindow;
+  return away > kOffStopPoint * standstill_.tolerance() && now < seen_moving_ + unseen;
+}
+
+void AxisCore::watchDrive(Time now) {
+  if (!standstill_.still()) seen_moving_ = now;
+  if (movesItself() || mayTurnBack(now)) moved_itself_ = now;
 }
 
 bool AxisCore::moving() const {
