@@ -145,7 +145,7 @@ void AxisCore::selectMode(const ModeChannel& mode) {
   if (mode.spec->kind != ControlKind::homing) unwrap_.resume();
   placeZero();
   homing_start_ = false;
-  if (braking_) braking_ = halt_bit_ = false;  // it belongs to the mode that is left, at rest
+  endBraking();  // it belongs to the mode that is left, at rest
   neutralizeTarget();
 }
 
@@ -212,7 +212,7 @@ bool AxisCore::setTarget(double value) {
   if (!mode_->target.mapped() || !mode_conversion_.toDevice(value, raw)) return false;
   if (mode_->spec->kind == ControlKind::torque) {
     effort_streamed_ = config_.brake_after_effort;
-    if (braking_) braking_ = halt_bit_ = false;
+    endBraking();
   }
   if (set_point_dropped_ && raw == target_raw_) handshake_.offer(raw);  // once more
   set_point_dropped_ = false;

@@ -143,6 +143,10 @@ class AxisCore {
   /// has yet to set off, gets where it stands for that. @return whether that was so
   bool giveUpGoal();
   bool halted() const { return state_.halted; }
+  /// Takes back the halt bit that brakes an axis at rest whose efforts have ended.
+  void endBraking() {
+    if (braking_) braking_ = halt_bit_ = false;
+  }
   bool setPointsAtRest() const { return set_point_.atRest(); }
   /// The longest that a stop may take, from the fastest that the axis may go.
   Duration stopTime() const;

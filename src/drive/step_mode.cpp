@@ -21,7 +21,10 @@ Outcome ModeStep::advance(const Context& context) {
       const Outcome outcome = writes_.advance(context);
       if (!outcome.isDone()) return outcome;
       axis.presetTarget(*mode_);
+      // What brakes at rest would be in the way of the mode; it ends with the mode anyway.
+      if (!axis.profile().mode_change.while_halted) axis.endBraking();
       frames_ = mode_->target.mapped() ? axis.frames(mode_->target) : axis.controlwordFrames();
+      controlword_frames_ = axis.controlwordFrames();
       started_ = context.now;
       phase_ = Phase::presetting;
       context.show("setting the target to the actual value", "its RPDO to be sent");
@@ -30,7 +33,8 @@ Outcome ModeStep::advance(const Context& context) {
     case Phase::presetting: {
       const std::uint64_t sent =
           mode_->target.mapped() ? axis.frames(mode_->target) : axis.controlwordFrames();
-      if (sent >= frames_ + kSureFrames) {
+      const bool unbraked = axis.controlwordFrames() >= controlword_frames_ + kSureFrames;
+      if (sent >= frames_ + kSureFrames && unbraked) {
         select(context);
       } else if (context.now - started_ > axis.profile().timing.mode_change) {
         return Outcome::failed(axis.who() + ": no RPDO has left for " +

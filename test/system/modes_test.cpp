@@ -246,5 +246,21 @@ INSTANTIATE_TEST_SUITE_P(OfADriveThatWhileHaltedTakes, CutOffSwitch, testing::Bo
                            return std::string(param.param ? "NoMode" : "AMode");
                          });
 
+TEST(Modes, ADriveThatTakesNoModeWhileHaltedIsNotBrakedWhenItChanges) {
+  Scene scene(loadText(fieldPair("mode_change: {while_halted: false}",
+                                 "quirks: {halt_blocks_mode: true}", ", modes: [csp, pt]")));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "left").success);
+  ASSERT_TRUE(scene.procedure(ProcedureKind::set_mode, "left", "pt").success);
+  scene.stream("left", 2.0, 200ms);
+  scene.run(2s);  // the end of the stream braked it
+  ASSERT_NEAR(scene.velocity("left"), 0.0, 1e-3);
+  scene.forget();
+  const auto switched = scene.procedure(ProcedureKind::set_mode, "left", "csp");
+  EXPECT_TRUE(switched.success) << switched.message;
+  scene.run(300ms);
+  EXPECT_LT(scene.seen("left").travel(), kNoJump);
+}
+
 }  // namespace
 }  // namespace cia402
