@@ -143,7 +143,7 @@ std::string AxisCore::motionRefusal(bool busy) const {
   if (shown_mode_ != mode_->spec->value) {
     return who() + ": 6061:00 shows mode " +
            (shown_mode_ ? std::to_string(*shown_mode_) : std::string("unknown")) + " instead of " +
-           std::to_string(mode_->spec->value) + " (" + mode_->spec->name + ")";
+           std::to_string(mode_->spec->value) + " (" + mode_->spec->name + "); call enable";
   }
   return who() +
          ": the brake is being released, or the drive does not follow its set-points yet (" +

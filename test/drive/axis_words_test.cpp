@@ -130,7 +130,8 @@ TEST(AxisWords, ADriveThatShowsAnotherModeIsToldApart) {
   bench.run(milliseconds(8));
   EXPECT_THAT(bench.axis.obstacle(),
               HasSubstr("shoulder does not show that it is in mode cyclic_position: enable"));
-  EXPECT_THAT(bench.axis.motionRefusal(), HasSubstr(" instead of 8 (cyclic_position)"));
+  EXPECT_THAT(bench.axis.motionRefusal(),
+              HasSubstr(" instead of 8 (cyclic_position); call enable"));
 }
 
 }  // namespace
