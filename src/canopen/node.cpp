@@ -40,9 +40,7 @@ const std::string& Node::bootStep() const { return impl_->step(); }
 const std::string& Node::problem() const { return impl_->problem; }
 std::string Node::stoppedRefusal(const std::string& what) const {
   if (nmtState() != NmtState::stopped) return {};
-  return who() + ": " + what +
-         " cannot be asked for: the drive's heartbeat says stopped (NMT state), and a stopped "
-         "drive answers no SDO; boot it (recover, or nmt start) first";
+  return who() + ": " + what + " cannot be asked for: " + kStoppedIsMute;
 }
 const std::optional<Node::Identity>& Node::identity() const { return impl_->boot.found().identity; }
 const std::vector<std::string>& Node::notes() const { return impl_->notes; }

@@ -246,6 +246,8 @@ void Node::Impl::onHeartbeat(NmtState state, Time stamp, Time now) {
     return;
   }
   if (pause.active()) return pause.heard(state);
+  // What was asked for before its heartbeat told can only time out.
+  if (state == NmtState::stopped && !isAway(health) && !sdo.idle()) sdo.cancelAll(kStoppedIsMute);
   if (!begun) return;
   if (isAway(health) && !taken_out.empty()) {
     takeOut(NodeHealth::failed, std::exchange(taken_out, {}));

@@ -15,6 +15,11 @@
 
 namespace cia402::canopen {
 
+/// Why a drive in the NMT state stopped is not asked by SDO (CiA 301, table 38).
+inline constexpr char kStoppedIsMute[] =
+    "the drive's heartbeat says stopped (NMT state), and a stopped drive answers no SDO; boot it "
+    "(recover, or nmt start) first";
+
 /// The parts of a node and what one's news mean to the others.
 struct Node::Impl : Node::Front {
   Impl(const NodeConfig& node_config, const MasterConfig& master, can::Sink& frame_sink,

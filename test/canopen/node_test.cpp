@@ -239,6 +239,24 @@ TEST_F(NodeTest, our_own_command_out_of_operation_starts_no_boot) {
   EXPECT_EQ(node->health(), NodeHealth::ready);
 }
 
+TEST_F(NodeTest, a_transfer_of_a_node_that_says_stopped_is_given_up_and_not_asked_again) {
+  bootReady();
+  node->command(NmtCommand::stop, now);
+  const SdoTicket reading = node->sdo().upload({0x6065, 0}, "following error window");
+  const SdoTicket waiting = node->sdo().upload({0x6066, 0});
+  node->tick(now);
+  ASSERT_EQ(peer.take(), (Lines{"000 02 03", "603 40 65 60 00 00 00 00 00"}));
+  hear("703 04");
+  EXPECT_EQ(peer.take(), Lines{"603 80 65 60 00 00 00 00 08"});  // general error: it may be heard
+  for (const SdoTicket& ticket : {reading, waiting}) {
+    ASSERT_TRUE(ticket->done());
+    EXPECT_FALSE(ticket->ok());
+    EXPECT_THAT(ticket->reason(), HasSubstr("a stopped drive answers no SDO; boot it (recover"));
+  }
+  pass(seconds(2));
+  EXPECT_EQ(peer.take(), Lines{});
+}
+
 TEST_F(NodeTest, a_commanded_reset_leads_to_a_new_boot) {
   peer.on("000 81 03", "703 00");
   bootReady();
