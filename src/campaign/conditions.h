@@ -21,6 +21,7 @@ struct Conditions {
   Time lossy{};        ///< until then frames may be lost, late or doubled
   Time foreign{};      ///< until then others send SYNC or NMT
   Time host_late{};    ///< until then the host stands still or is late, a little longer
+  Time ended{};        ///< until then the driver is shutting down, or has ended
   Duration stalled{};  ///< how long the host has stood still or been dead so far
 
   static void extend(Time& what, Time until) { what = std::max(what, until); }

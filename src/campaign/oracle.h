@@ -14,7 +14,7 @@ namespace cia402::campaign {
 
 /// A call of a service, as it was made.
 struct Call {
-  std::string verb, who, mode;  ///< mode: of a set_mode
+  std::string verb, who, argument;  ///< mode of a set_mode, command of an nmt
   std::vector<std::size_t> axes;
   Time at{};
   Duration stalled{};        ///< Conditions::stalled at that time
@@ -57,6 +57,7 @@ class Oracle {
 std::string number(double value);
 
 std::unique_ptr<Oracle> makeCommandedMotion(const Stage& stage);
+std::unique_ptr<Oracle> makeSlowStops(const Stage& stage);
 std::unique_ptr<Oracle> makePowerOracle(const Stage& stage);
 std::unique_ptr<Oracle> makeTargetSteps(const Stage& stage);
 std::unique_ptr<Oracle> makeMotorLimits(const Stage& stage);

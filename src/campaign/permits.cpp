@@ -69,6 +69,11 @@ void Permits::stretch(std::size_t axis, Duration duration, Time until) {
   axes_[axis].stretched_until = std::max(axes_[axis].stretched_until, until);
 }
 
+Time Permits::given(std::size_t axis) const {
+  const auto& given = axes_[axis].given;
+  return *std::max_element(given.begin(), given.end());
+}
+
 Time Permits::until(std::size_t axis) const {
   const Axis& state = axes_[axis];
   const Time latest = *std::max_element(state.until.begin(), state.until.end());

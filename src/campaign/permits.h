@@ -39,6 +39,8 @@ class Permits {
   /// To be called with each look at the motors.
   void watch(const std::vector<AxisTruth>& truths, Time now);
 
+  /// When something was commanded last that may move the axis.
+  Time given(std::size_t axis) const;
   Time until(std::size_t axis) const;
   bool allowed(std::size_t axis, Time now) const { return now <= until(axis); }
 

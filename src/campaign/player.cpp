@@ -45,9 +45,13 @@ Player::Player(Stage& stage, const Scene& scene, const RunOptions& options)
   foreign_->setAttached(false);
   stage_.world().bus().setMonitor(
       [this](const can::Frame& frame, Time now) { onFrame(frame, now); });
-  if (options_.trace) {
-    stage_.host().listen([this](const bus::Event& event) { say("    " + event.text.str()); });
-  }
+  stage_.host().listen([this](const bus::Event& event) {
+    const std::string text = event.text.str();
+    say("    " + text);
+    for (const config::GroupConfig& group : stage_.loaded().robot.groups) {
+      if (text == group.name + ": goal reached") goalReached(group);
+    }
+  });
 }
 
 void Player::play() {

@@ -40,6 +40,11 @@ class Player {
     Time began{}, next{}, end{};
     Duration period{};
   };
+  /// How far a trajectory is to take a motor, and from where.
+  struct Goal {
+    std::size_t axis = 0;
+    double from = 0.0, way = 0.0, slack = 0.0;
+  };
   struct Later {
     Time at{};
     std::function<void()> what;
@@ -77,6 +82,8 @@ class Player {
                   Duration start, bool has_start);
   std::vector<double> reachable(const config::GroupConfig& to, const std::vector<double>& from,
                                 const Words& words, std::size_t first, double seconds) const;
+  /// The driver says that the trajectory of a group has reached its goal: have its motors?
+  void goalReached(const config::GroupConfig& to);
   const config::GroupConfig* group(const std::string& name) const;
   std::size_t axisOf(const std::string& joint) const;
   double shown(std::size_t axis);
@@ -113,7 +120,8 @@ class Player {
   std::list<Pending> pending_;
   std::vector<Stream> streams_;
   std::vector<Later> later_;
-  std::map<std::size_t, std::string> follows_;  ///< the group that moved an axis last
+  std::map<std::size_t, std::string> follows_;      ///< the group that moved an axis last
+  std::map<std::string, std::vector<Goal>> goals_;  ///< of the groups' trajectories under way
   std::vector<Time> held_;      ///< when a limit was last active (statusword bit 11)
   std::vector<unsigned> cuts_;  ///< of a drive's power that have not ended
   std::vector<bool> dead_;      ///< drives with a fault that only the power switch ends

@@ -68,7 +68,7 @@ void Player::call(const Words& words, decltype(bus::Command::body) body, Duratio
   Pending pending;
   pending.call = {words[0],
                   words[1],
-                  words[0] == "set_mode" ? words.at(2) : "",
+                  words[0] == "set_mode" || words[0] == "nmt" ? words.at(2) : "",
                   stage_.named(words[1]),
                   stage_.now(),
                   conditions_.stalled};

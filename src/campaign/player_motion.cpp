@@ -12,6 +12,9 @@ namespace {
 using namespace std::chrono_literals;
 using Source = Permits::Source;
 
+constexpr double kShownAge = 0.03;  // s, of what the driver shows
+constexpr double kArrived = 0.01;   // rad or m: how near the driver calls reached by itself
+
 }  // namespace
 
 bool Player::actMotion(const Words& words) {
@@ -122,6 +125,14 @@ void Player::trajectory(const config::GroupConfig& to, std::vector<motion::Traje
   const Duration last = points.empty() ? Duration() : points.back().time_from_start;
   std::vector<std::size_t> axes;
   for (const std::string& joint : to.joints) axes.push_back(axisOf(joint));
+  // As the driver shows it now, which is as old as its feedback.
+  std::vector<Goal> goals;
+  for (std::size_t i = 0; i < axes.size() && !points.empty(); ++i) {
+    if (i >= points.back().positions.size()) break;
+    const AxisTruth& truth = truths_[axes[i]];
+    goals.push_back({axes[i], truth.position, points.back().positions[i] - shown(axes[i]),
+                     std::fabs(truth.velocity) * kShownAge});
+  }
   bus::TrajectoryCommand body;
   body.group = to.name;
   body.joints = to.joints;
@@ -136,6 +147,7 @@ void Player::trajectory(const config::GroupConfig& to, std::vector<motion::Traje
     if (!answer.success) return;
     const Time now = stage_.now();
     stage_.look(truths_);
+    goals_[to.name] = goals;
     for (std::size_t i : axes) {
       if (stop && follows_[i] != to.name) continue;  // another group moves it
       follows_[i] = to.name;
@@ -147,6 +159,24 @@ void Player::trajectory(const config::GroupConfig& to, std::vector<motion::Traje
     }
   };
   stage_.host().post(std::move(command));
+}
+
+void Player::goalReached(const config::GroupConfig& to) {
+  stage_.look(truths_);
+  for (const Goal& goal : goals_[to.name]) {
+    const AxisFacts& facts = stage_.axes()[goal.axis];
+    const AxisTruth& truth = truths_[goal.axis];
+    const auto tolerance = to.tolerances.find(facts.config->joint);
+    const bool told = tolerance != to.tolerances.end() && tolerance->second.goal > 0.0;
+    const double missing = truth.position - goal.from - goal.way;
+    const double bound = (told ? tolerance->second.goal : kArrived) + goal.slack +
+                         std::fabs(truth.velocity) * kShownAge +
+                         2.0 * std::fabs(facts.units_per_count);
+    if (std::fabs(missing) <= bound) continue;
+    report("untrue_answer", facts.name,
+           to.name + " has reached its goal, is said, and the motor is " + number(missing) +
+               " away from it");
+  }
 }
 
 void Player::stream(std::size_t axis, std::function<double(Duration)> value, double seconds,

@@ -197,6 +197,8 @@ bool Player::actHost(const Words& words) {
   } else if (verb == "shutdown") {
     if (!host.running() || now < ends_at_) return true;
     ends_at_ = now + 2500ms + seconds(words.at(1));
+    Call call{"shutdown", "all", "", stage_.named("all"), now, conditions_.stalled};
+    for (auto& oracle : oracles_) oracle->onCall(call, view());
     host.stop();
     for (std::size_t i = 0; i < truths_.size(); ++i) permits_.cut(i, now + 2300ms);
     later(2500ms + seconds(words.at(1)), [this, due = now + 2500ms, stalled = conditions_.stalled] {
@@ -208,7 +210,7 @@ bool Player::actHost(const Words& words) {
       dropCalls();
       startHost();
     });
-    Conditions::extend(conditions_.host_late, now + 2500ms + seconds(words.at(1)));
+    Conditions::extend(conditions_.ended, now + 2500ms + seconds(words.at(1)));
   } else {
     return false;
   }

@@ -14,6 +14,7 @@ std::string number(double value) {
 std::vector<std::unique_ptr<Oracle>> allOracles(const Stage& stage) {
   std::vector<std::unique_ptr<Oracle>> oracles;
   oracles.push_back(makeCommandedMotion(stage));
+  oracles.push_back(makeSlowStops(stage));
   oracles.push_back(makePowerOracle(stage));
   oracles.push_back(makeTargetSteps(stage));
   oracles.push_back(makeMotorLimits(stage));

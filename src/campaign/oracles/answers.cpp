@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // What the answer to a call says is true of the motor.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -50,6 +51,10 @@ class Answers final : public Oracle {
       if (truth.power) seen_[i].on = view.now;
       if (!truth.power) seen_[i].off = view.now;
       if (std::fabs(truth.velocity) <= view.stage.axes()[i].creep()) seen_[i].still = view.now;
+      if (!truth.faulted()) seen_[i].well = view.now;
+      for (NmtSeen& state : seen_[i].nmt) {
+        if (truth.nmt == state.state) state.last = view.now;
+      }
     }
   }
   /// A power stage may be on between two looks only; the drive's own frame tells it.
@@ -65,7 +70,7 @@ class Answers final : public Oracle {
   void onAnswer(const Call& call, const bus::Answer& answer, const View& view) override {
     if (!answer.success) return;
     static const std::set<std::string> kStands{"halt",         "disable", "quick_stop", "set_mode",
-                                               "set_position", "save",    "restore"};
+                                               "set_position", "save",    "restore",    "home"};
     const bool says_so = answer.message.find("still moves") != std::string::npos;
     static const std::set<std::string> kOff{"disable", "save", "restore"};
     static const std::set<std::string> kOn{"enable", "recover"};
@@ -94,13 +99,46 @@ class Answers final : public Oracle {
                call.verb + " is answered with success (" + answer.message +
                    ") while the power stage is off");
       }
+      if (call.verb == "clear_faults" && !lately(seen.well)) {
+        report(view, i,
+               "clear_faults is answered with success (" + answer.message +
+                   ") while the drive shows a fault");
+      }
+      // Others' commands, and heartbeats that are late, make an answer old before it is given.
+      const bool told = call.verb == "nmt" && view.now >= view.conditions.foreign &&
+                        view.now >= view.conditions.lossy &&
+                        view.now >= view.conditions.axes[i].cut_off;
+      if (told && !lately(seen.inState(wanted(call.argument)))) {
+        report(view, i,
+               "nmt " + call.argument + " is answered with success (" + answer.message +
+                   ") while the drive is " + canopen::toString(view.truths[i].nmt));
+      }
     }
   }
 
  private:
-  struct Seen {
-    Time on{-1h}, off{-1h}, still{-1h};
+  struct NmtSeen {
+    canopen::NmtState state;
+    Time last{-1h};
   };
+  struct Seen {
+    Time on{-1h}, off{-1h}, still{-1h}, well{-1h};
+    std::array<NmtSeen, 3> nmt{{{canopen::NmtState::stopped},
+                                {canopen::NmtState::pre_operational},
+                                {canopen::NmtState::operational}}};
+    Time inState(canopen::NmtState state) const {
+      for (const NmtSeen& known : nmt) {
+        if (known.state == state) return known.last;
+      }
+      return Time(-1h);
+    }
+  };
+  /// Where a drive is after an NMT command that was obeyed: a reset is followed by a boot.
+  static canopen::NmtState wanted(const std::string& command) {
+    if (command == "stop") return canopen::NmtState::stopped;
+    if (command == "pre_operational") return canopen::NmtState::pre_operational;
+    return canopen::NmtState::operational;
+  }
   std::vector<Seen> seen_;
   std::vector<StatuswordPlace> told_;
 };

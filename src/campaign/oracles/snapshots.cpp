@@ -73,7 +73,7 @@ class Snapshots final : public Oracle {
     axis.count = std::min(axis.count + 1, kMemory);
     rememberState(axis, truth, view.now);
     if (std::fabs(truth.velocity) > 1e-4) axis.moved = view.now;
-    const bool sound = view.conditions.quiet(i, view.now) &&
+    const bool sound = view.conditions.quiet(i, view.now) && view.now >= view.conditions.ended &&
                        truth.nmt == canopen::NmtState::operational &&
                        view.stage.driver() != nullptr;
     if (view.stage.driver() == nullptr) axis.calls = 0;

@@ -45,7 +45,7 @@ class TargetSteps final : public Oracle {
     judge(view, place.axis, valueIn(frame, place, view.stage.axes()[place.axis]));
   }
   void onCall(const Call& call, const View&) override {
-    if (call.verb != "set_mode" || call.mode == kMode) return;
+    if (call.verb != "set_mode" || call.argument == kMode) return;
     for (std::size_t i : call.axes) unsure_[i] = true;
   }
   void look(const View& view) override {
