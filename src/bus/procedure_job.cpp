@@ -25,6 +25,8 @@ std::string lapse(const drive::ProcedureRequest& request, const drive::Axis& axi
       return enabled ? std::string() : cause + now;
     case ProcedureKind::disable:
       return powerStageOff(state.state) ? std::string() : cause + now;
+    case ProcedureKind::clear_faults:
+      return isFault(state.state) ? cause + now : std::string();
     case ProcedureKind::home:
     case ProcedureKind::set_position:
       return state.homed ? std::string() : cause + "it is not homed";

@@ -151,6 +151,22 @@ TEST_F(ProcedureJobTest, RecoverTellsWhatIsTrueWhenItsLastAxisHasEnded) {
   EXPECT_THAT(answer.message, HasSubstr("shoulder is not enabled (switch on disabled): enable"));
 }
 
+TEST_F(ProcedureJobTest, ClearFaultsOfAllTellsOfAnAxisThatHasFaultedMeanwhile) {
+  ASSERT_TRUE(world.call(ProcedureKind::home).success);
+  world.drives[1].fault(0x8611);
+  world.run(20ms);
+  const auto clearing = world.begin(ProcedureKind::clear_faults);
+  world.run(200ms);  // the elbow's fault reset takes longer; the shoulder had none
+  ASSERT_TRUE(clearing->empty());
+  world.drives[0].fault(0x2340);
+  const Answer answer = world.wait(clearing);
+  EXPECT_FALSE(answer.success) << answer.message;
+  EXPECT_THAT(answer.message, AllOf(HasSubstr("clear_faults done on 1 of 2 axes"),
+                                    HasSubstr("shoulder: clear_faults had succeeded, but it is "
+                                              "fault")));
+  EXPECT_EQ(world.drives[1].statusword & 0x0008, 0) << "the elbow's is cleared";
+}
+
 TEST_F(ProcedureJobTest, EnableOfAllTellsOfAnAxisThatWasDisabledMeanwhile) {
   ASSERT_TRUE(world.call(ProcedureKind::disable).success);
   world.drives[1].deaf_to_controlword = true;
