@@ -168,7 +168,10 @@ void Player::goalReached(const config::GroupConfig& to) {
     const AxisTruth& truth = truths_[goal.axis];
     const auto tolerance = to.tolerances.find(facts.config->joint);
     const bool told = tolerance != to.tolerances.end() && tolerance->second.goal > 0.0;
-    const double missing = truth.position - goal.from - goal.way;
+    double missing = truth.position - goal.from - goal.way;
+    // The way to the first point is the shorter one, whole turns off.
+    const bool turns = facts.config->geometry.type == drive::AxisGeometry::Type::continuous;
+    if (turns) missing = std::remainder(missing, kTwoPi);
     const double bound = (told ? tolerance->second.goal : kArrived) + goal.slack +
                          std::fabs(truth.velocity) * kShownAge +
                          2.0 * std::fabs(facts.units_per_count);
