@@ -100,7 +100,7 @@ class MotorLimits final : public Oracle {
     }
     const bool lags = catchesUp(view, axis, facts, truth);
     axis.behind =
-        by_float && (!judged || (axis.behind && std::fabs(truth.velocity) > facts.creep()));
+        by_float && (!judged || lags || (axis.behind && std::fabs(truth.velocity) > facts.creep()));
     if (!judged) {
       axis.count = 0;
       return;
