@@ -1,4 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include "cia402_driver/bus/jobs.h"
 #include "cia402_driver/bus/object_address.h"
 #include "cia402_driver/bus/object_text.h"
@@ -29,6 +31,21 @@ std::string insteadOf(CoordinateMark mark, const std::string& axis) {
       break;
   }
   return "it is calibration, for which there is no service";
+}
+
+/// Offsets that a drive adds to each set-point (CiA 402-2: 60B0h, 60B1h, 60B2h; of further axes
+/// 800h later): what is in them moves it, now or with the next set-point.
+bool addsToSetPoints(canopen::ObjectId id) {
+  constexpr unsigned kFirst = 0x60B0, kLast = 0x60B2, kAxisSize = 0x800, kEnd = 0xA000;
+  if (id.index < kFirst || id.index >= kEnd) return false;
+  return (id.index - kFirst) % kAxisSize <= kLast - kFirst;
+}
+
+std::string offsetRefusal(canopen::ObjectId id, const canopen::Bytes& data) {
+  const bool nothing = std::all_of(data.begin(), data.end(), [](auto byte) { return byte == 0; });
+  if (nothing || !addsToSetPoints(id)) return {};
+  return "the drive adds it to each of its set-points, so that it would move by it though nobody "
+         "commands that; add it to the set-points, and leave 0 here";
 }
 
 /// May the drive have taken it?
@@ -78,6 +95,8 @@ Result<ObjectJob> ObjectJob::write(drive::Axis& axis, const std::string& object,
   }
   const Result<canopen::Bytes> data = encodeObject(*job.spec_, value);
   if (!data) return Error{job.who_ + ": " + job.name_ + " not written: " + data.error().message};
+  const std::string moves = offsetRefusal(job.id_, *data);
+  if (!moves.empty()) return Error{job.who_ + ": " + job.name_ + " not written: " + moves};
   if (const auto& eds = axis.config().eds) {
     const canopen::DictionaryEntry* entry = eds->dictionary.find(job.id_);
     const auto allowed =
@@ -207,6 +226,8 @@ bool ObjectJob::writeWithAskedSize() {
   const Result<canopen::Bytes> data =
       unnamed ? encodeObject(*unnamed, value_) : encodeUnlisted(value_, ticket_->data().size());
   if (!data) return finish(false, who_ + ": " + name_ + " not written: " + data.error().message);
+  const std::string moves = offsetRefusal(id_, *data);
+  if (!moves.empty()) return finish(false, who_ + ": " + name_ + " not written: " + moves);
   download(*data);
   return false;
 }

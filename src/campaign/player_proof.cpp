@@ -29,7 +29,8 @@ void Player::prove() {
   const std::string first = answer.success ? std::string() : answer.message;
   const bool asks = first.find(": enable") != std::string::npos ||
                     first.find(kDisableFirst) != std::string::npos ||
-                    first.find(" is not homed: home") != std::string::npos;
+                    first.find(" is not homed: home") != std::string::npos ||
+                    first.find(" is not homed: set_position") != std::string::npos;
   if (!first.empty() && !asks) {
     report("no_recovery", "", "recover fails when all is well again: " + first);
     return;
@@ -42,11 +43,15 @@ void Player::prove() {
     if (!proveCall("enable", facts.name, kRecoverTime, answer)) return;
   }
   for (const AxisFacts& facts : stage_.axes()) {
-    if (!facts.config->homing) continue;
-    if (stage_.host().robot().axes()[facts.index].state().homed) continue;
-    if (!proveCall("home", facts.name, facts.homing_timeout + 10s, answer)) return;
+    const drive::Axis& axis = stage_.host().robot().axes()[facts.index];
+    if (axis.state().homed) continue;
+    const bool homes = facts.config->homing.has_value();
+    // An absolute axis has lost its zero where the factory's values were restored.
+    if (!homes && axis.obstacle().find(": set_position") == std::string::npos) continue;
+    const std::string verb = homes ? "home" : "set_position";
+    if (!proveCall(verb, facts.name, facts.homing_timeout + 10s, answer)) return;
     if (answer.success) continue;
-    report("no_recovery", facts.name, "home fails when all is well again: " + answer.message);
+    report("no_recovery", facts.name, verb + " fails when all is well again: " + answer.message);
     return;
   }
   if (!first.empty() && !proveCall("recover", "all", kRecoverTime, answer)) return;
@@ -63,12 +68,14 @@ bool Player::proveCall(const std::string& verb, const std::string& who, Duration
   const auto done = std::make_shared<std::optional<bus::Answer>>();
   bus::Command command;
   drive::ProcedureRequest request;
-  request.kind = verb == "home"      ? drive::ProcedureKind::home
-                 : verb == "enable"  ? drive::ProcedureKind::enable
-                 : verb == "disable" ? drive::ProcedureKind::disable
-                                     : drive::ProcedureKind::recover;
+  request.kind = verb == "home"           ? drive::ProcedureKind::home
+                 : verb == "set_position" ? drive::ProcedureKind::set_position
+                 : verb == "enable"       ? drive::ProcedureKind::enable
+                 : verb == "disable"      ? drive::ProcedureKind::disable
+                                          : drive::ProcedureKind::recover;
   command.body = bus::ProcedureCommand{who == "all" ? std::string() : who, request};
   const auto axes = stage_.named(who);
+  if (verb == "set_position") request.position = shown(axes.front());
   const Call call{verb, who, "", axes, stage_.now(), conditions_.stalled};
   for (auto& oracle : oracles_) oracle->onCall(call, view());
   command.reply = [this, done, call](const bus::Answer& given) {

@@ -71,6 +71,10 @@ class StorageStep {
       }
       if (!ticket_) askCapability(context);
       if (!ticket_->done()) return Outcome::running();
+      if (writing_ && mayHaveMovedZero()) {
+        context.axis.loseZero();
+        context.axis.measureAnew();
+      }
       const std::string problem = judge();
       if (!problem.empty()) return Outcome::failed(context.axis.who() + ": " + problem + done());
       if (!writing_) {
@@ -109,6 +113,14 @@ class StorageStep {
     patient.retries = 0;
     ticket_ =
         context.axis.node().sdo().download(object(), storage_.signature, storage_.name, patient);
+  }
+
+  /// What the factory set may hold another zero; what only concerns the communication does not.
+  bool mayHaveMovedZero() const {
+    constexpr std::uint8_t kCommunication = 2;
+    const bool refused =
+        !ticket_->ok() && ticket_->failure() == canopen::SdoTransfer::Failure::aborted_by_server;
+    return storage_.index == restoring().index && !refused && subindices_[next_] != kCommunication;
   }
 
   std::string judge() const {

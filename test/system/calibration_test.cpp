@@ -10,6 +10,7 @@ using namespace std::chrono_literals;
 using drive::ProcedureKind;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 bus::Answer write(Scene& scene, const std::string& axis, const std::string& object,
                   const std::string& value) {
@@ -182,6 +183,39 @@ TEST(StandardCalibration, AnAbsoluteAxisDoesNotCountAsHomedAgainByLosingItsNode)
   ASSERT_TRUE(declare(scene, "left", 0.0).success);
   EXPECT_TRUE(scene.state("left").homed);
   EXPECT_EQ(scene.setpoint("left", 0.1), "");
+}
+
+TEST(StandardCalibration, TheFactorysValuesMayHoldAnotherZero) {
+  Scene scene(loadText(genericPair()));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  ASSERT_TRUE(scene.state("left").homed) << "its encoder is absolute";
+  const auto restored = scene.procedure(ProcedureKind::restore_parameters, "left");
+  ASSERT_TRUE(restored.success) << restored.message;
+  EXPECT_THAT(restored.message, HasSubstr("is disabled, not homed"));
+  EXPECT_FALSE(scene.state("left").homed);
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "left").success);
+  EXPECT_THAT(scene.setpoint("left", 0.1), HasSubstr("not homed"));
+  expectNothingMoved(scene, "left");
+}
+
+TEST(StandardCalibration, TheFactorysCommunicationHoldsNoZero) {
+  Scene scene(loadText(genericPair(", parameters: {restore: [2]}")));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  const auto restored = scene.procedure(ProcedureKind::restore_parameters, "left");
+  ASSERT_TRUE(restored.success) << restored.message;
+  EXPECT_TRUE(scene.state("left").homed);
+}
+
+TEST(StandardCalibration, WhatADriveAddsToItsSetPointsIsNotWritten) {
+  Scene scene(loadText(genericPair()));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  for (const char* const object : {"60B0:00", "60B1:00", "60B2:00", "68B0:00"}) {
+    const auto refused = write(scene, "left", std::string(object) + " i32", "1000");
+    EXPECT_FALSE(refused.success);
+    EXPECT_THAT(refused.message, AllOf(HasSubstr("left (node 1)"), HasSubstr(object),
+                                       HasSubstr("the drive adds it to each of its set-points")));
+  }
+  EXPECT_THAT(write(scene, "left", "60B0:00 i32", "0").message, Not(HasSubstr("set-points")));
 }
 
 TEST(StandardCalibration, ADriveFarFromItsBusIsNotWritten) {
