@@ -129,7 +129,7 @@ class AxisCore {
   bool seenToStand(Time now) const { return atStandstill() && heardLately(now); }
   /// Has been seen to move, or is being moved.
   bool moving() const;
-  /// Is not known to stand; without feedback, which tells nothing, as moving().
+  /// Is not known to stand. Without feedback one that stood without power still does.
   bool mayMove() const;
 
   // --- Halt ------------------------------------------------------------------------------------
@@ -186,6 +186,8 @@ class AxisCore {
   std::string stateText() const;  ///< "statusword 0x0233 (switched on: ...)"
   /// Why there is no feedback: "TPDO 1 (COB-ID 0x183) did not come for 11 cycles".
   std::string feedbackText() const;
+  /// Why an axis without power is not known to stand.
+  std::string coastingText() const;
   std::string emergencyText() const;
   /// An error code in words, with its excuse where it has one.
   std::string codeText(std::uint16_t code) const;
@@ -265,6 +267,7 @@ class AxisCore {
   AxisPoller poller_;
   int polled_velocity_, polled_effort_, polled_following_error_, polled_mode_, polled_inputs_;
   Standstill standstill_;
+  bool stood_without_power_ = false;  ///< when its feedback ended
 
   Goal goal_ = Goal::disabled;
   bool silent_ = true;  ///< nobody has asked for anything since the node came: controlword 0

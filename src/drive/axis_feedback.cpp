@@ -173,6 +173,7 @@ bool AxisCore::heardLately(Time now) const {
 }
 
 void AxisCore::forgetMotion() {
+  if (state_.feedback_valid) stood_without_power_ = powerOff() && atStandstill();
   state_.feedback_valid = false;
   state_.position = state_.velocity = state_.effort = state_.following_error = kUnknown;
   neutral_known_ = false;

@@ -63,7 +63,9 @@ bool AxisCore::moving() const {
   return standstill_.moving() || (in_operation_ && !set_point_.atRest());
 }
 
-bool AxisCore::mayMove() const { return state_.feedback_valid ? !atStandstill() : moving(); }
+bool AxisCore::mayMove() const {
+  return state_.feedback_valid ? !atStandstill() : !stood_without_power_;
+}
 
 void AxisCore::beginHalt() {
   if (!in_operation_ || state_.halted) return;

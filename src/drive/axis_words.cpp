@@ -24,6 +24,12 @@ std::string AxisCore::feedbackText() const {
   return come ? "the position that the drive sends is no finite number" : "none has come yet";
 }
 
+std::string AxisCore::coastingText() const {
+  if (!state_.feedback_valid) return "nothing tells whether it stands: " + feedbackText();
+  return "the axis still moves (velocity " + number(state_.velocity) +
+         "): nothing of the drive brakes it";
+}
+
 std::string AxisCore::unknownText() const {
   const bool known = state_.feedback_valid && state_.state != State::unknown;
   if (!nodeReady() || known) return {};

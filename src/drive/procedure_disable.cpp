@@ -60,9 +60,8 @@ class Disable : public Procedure {
       context.show("coasting", "the axis to come to rest; its power is off, nothing brakes it");
     }
     if (context.now - since_ <= kComeToRest) return Outcome::running();
-    return Outcome::failed(axis.who() + ": is disabled, but still moves after " +
-                           seconds(context.now - since_) + " (velocity " +
-                           number(axis.state().velocity) + "), nothing of the drive brakes it");
+    return Outcome::failed(axis.who() + ": is disabled, but after " +
+                           seconds(context.now - since_) + " " + axis.coastingText());
   }
 
   Outcome finish(AxisCore& axis, bool faulted) const {

@@ -16,14 +16,13 @@ Outcome QuickStopStep::advance(const Context& context) {
   }
   const bool off = axis.powerOff();
   const bool stopped = off || axis.state().state == State::quick_stop_active;
-  const bool at_rest = axis.atStandstill() || (off && !axis.state().feedback_valid);
+  const bool at_rest = off ? !axis.mayMove() : axis.atStandstill();
   if (stopped && at_rest) return Outcome::done();
   const Duration waited = context.now - started_;
   if (waited <= axis.stopTime()) return Outcome::running();
   if (off) {
-    return Outcome::failed(
-        axis.who() + ": the power stage is off, but the axis still moves after " + seconds(waited) +
-        " (velocity " + number(axis.state().velocity) + "): nothing of the drive brakes it");
+    return Outcome::failed(axis.who() + ": the power stage is off, but after " + seconds(waited) +
+                           " " + axis.coastingText());
   }
   return Outcome::failed(axis.who() + ": the quick stop did not end at standstill within " +
                          seconds(waited) + "; " + axis.report());

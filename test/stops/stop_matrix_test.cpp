@@ -1,7 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Every stop in every mode, with whatever may follow within 10 ms, on time and late: docs/stops.md.
-//   CIA402_STOPS_WHOLE=1   plays all cases; else all that are on time and an eighth of the late
-//   ones CIA402_STOPS_WRITE=1   writes the table of docs/stops.md (with all cases and all tests)
+//   CIA402_STOPS_WHOLE=1   plays all cases; else all that are on time, all of a stop that nothing
+//                          follows, and a quarter of the other late ones
+//   CIA402_STOPS_WRITE=1   writes the rows of the tests that run to docs/stops.md
 //   CIA402_STOPS_CASE=...  plays one case, by its words, and prints what the motor does
 #include <cstdlib>
 #include <iostream>

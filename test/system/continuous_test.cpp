@@ -94,6 +94,25 @@ TEST_P(Continuous, AVelocityCrossesTheWrapAgainAndAgain) {
   EXPECT_NEAR(scene->state("table").position, goal, 1e-3);
 }
 
+TEST_P(Continuous, AGoalOfTheDriveCrossesTheWrapThereAndBack) {
+  begin(", modes: [profile_position]");
+  ASSERT_TRUE(scene->procedure(ProcedureKind::set_mode, "table", "profile_position").success);
+  for (const double goal : {7.5, 5.0, 10.0, 14.0, 8.0, 2.0}) {
+    const double way = goal - std::abs(scene->position("table"));
+    const double from = scene->position("table");
+    scene->forget();
+    ASSERT_EQ(scene->setpoint("table", sign() * goal), "");
+    scene->run(6s);
+    EXPECT_NEAR(scene->position("table"), sign() * goal, 1e-3) << scene->told();
+    EXPECT_NEAR(scene->state("table").position, sign() * goal, 1e-3);
+    EXPECT_TRUE(scene->state("table").target_reached);
+    EXPECT_LT(scene->seen("table").travel(), std::abs(way) + 0.01)
+        << "straight there from " << from;
+  }
+  EXPECT_LE(largest_step, kStep);
+  EXPECT_LE(off, kOld);
+}
+
 TEST_P(Continuous, ADeclaredPositionHoldsOverTheWrap) {
   begin();
   ASSERT_EQ(scene->setpoint("table", sign() * 7.0), "");

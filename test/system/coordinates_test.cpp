@@ -143,6 +143,39 @@ TEST(Coordinates, AHeldMotorThatIsToldToReadOtherwiseForgetsWhereItWasGoing) {
   }
 }
 
+/// Homed where they stand: by the drive's method 37 or its older number, or by the driver.
+TEST(Coordinates, DeclaringAHaltedAxisHomeMovesNothing) {
+  for (const std::string& yaml :
+       {genericPair(", homing: {method: 37, offset: 0.7, required: false}"),
+        genericPair(", homing: {method: 35, offset: 0.7, required: false}"),
+        damiaoJoint(", homing: {offset: 0.7, required: false}")}) {
+    for (const char* mode : {"cyclic_position", "profile_position"}) {
+      ReadyScene scene(yaml, mode);
+      const std::string axis = scene.loaded().robot.axes[0].name;
+      scene.stream(axis, scene.state(axis).position - 1.0, 400ms);
+      ASSERT_LT(scene.velocity(axis), -0.5) << axis;
+      ASSERT_TRUE(scene.procedure(ProcedureKind::halt, axis).success);
+      scene.run(300ms);
+      const double stood = scene.position(axis);
+      scene.forget();
+      const auto home = scene.procedure(ProcedureKind::home, axis);
+      ASSERT_TRUE(home.success) << home.message << scene.told();
+      EXPECT_NEAR(scene.state(axis).position, 0.7, 1e-3);
+      const bool streams = scene.axis(axis).setPoint().kind() == drive::SetPointKind::stream;
+      if (streams) {
+        EXPECT_NEAR(scene.axis(axis).target(), 0.7, 1e-3) << axis;
+      }
+      scene.run(500ms);
+      ASSERT_TRUE(scene.procedure(ProcedureKind::enable, axis).success) << scene.told();
+      scene.run(500ms);
+      expectNothingMoved(scene, axis);
+      ASSERT_EQ(scene.setpoint(axis, 0.5), "");
+      scene.run(2s);
+      EXPECT_NEAR(scene.position(axis), stood + (0.5 - 0.7), 2e-3) << axis << " in " << mode;
+    }
+  }
+}
+
 class Declared : public testing::Test {
  protected:
   void SetUp() override {

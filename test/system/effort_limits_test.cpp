@@ -37,6 +37,34 @@ struct Pushed : Scene {
   }
 };
 
+// 6087h: the limit of effort in a twentieth of a second; in thousandths of the rated torque, or N
+// m.
+TEST(EffortSlope, IsToldToADriveThatHasOneInItsTorqueMode) {
+  Pushed scene("", "profile_torque");
+  const auto* slope = scene.drive("left").dictionary().find({0x6087, 0});
+  EXPECT_NEAR(static_cast<double>(slope->number), 120.0 / (0.64 * 100.0) * 1000.0 * 20.0, 1.0);
+  double speed = 0.0, pushed = 0.0, steepest = 0.0;
+  for (int i = 0; i < 40; ++i) {
+    ASSERT_EQ(scene.setpoint("left", kEffort), "");
+    scene.run(1ms);
+    const double gained = (scene.velocity("left") - speed) / 0.001;
+    steepest = std::max(steepest, gained - pushed);
+    pushed = gained;
+    speed = scene.velocity("left");
+  }
+  EXPECT_LT(steepest, 1.2 * kPushed / 25.0) << "rad/s^2 in a millisecond, of 25 to half the limit";
+  EXPECT_GT(pushed, 0.9 * kPushed);
+}
+
+TEST(EffortSlope, IsToldToADamiaoInItsTorqueModes) {
+  Scene scene(loadText(damiaoJoint(", modes: [csp, profile_torque]")));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  ASSERT_TRUE(scene.procedure(ProcedureKind::set_mode, "joint", "profile_torque").success);
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "joint").success);
+  const auto* slope = scene.drive("joint").dictionary().find({0x6087, 0});
+  EXPECT_EQ(slope->number, 0x42C80000u) << "100.0f: 20 times 5 N m";
+}
+
 class EffortLimits : public testing::TestWithParam<const char*> {};
 
 TEST_P(EffortLimits, TheDriveIsToldTheLimitOfSpeed) {

@@ -60,6 +60,30 @@ TEST(HeldMotor, HasNoSetPointsRunAwayWhileItsBrakeHoldsIt) {
   EXPECT_NEAR(scene.position("left"), 1.0, 1e-3);
 }
 
+TEST(HeldMotor, HasNoVelocityRunUpWhileItsBrakeHoldsIt) {
+  ReadyScene scene(genericPair(", simulation: {brake_delay: 0.3}"), "csv");
+  ASSERT_TRUE(scene.procedure(ProcedureKind::disable).success);
+  const auto enabled = scene.begin(ProcedureKind::enable, "left");
+  scene.forget();
+  double before = 0.0, hardest = 0.0, held = 0.0;
+  const Time end = scene.now() + 1500ms;
+  while (scene.now() < end) {
+    (void)scene.setpoint("left", 1.0);
+    scene.run(4ms);
+    const double velocity = scene.velocity("left");
+    const bool holds = scene.truth("left").power_stage_on && velocity < 0.001;
+    if (holds) held = std::max(held, scene.axis("left").target());
+    hardest = std::max(hardest, (velocity - before) / 0.004);
+    before = velocity;
+  }
+  ASSERT_TRUE(enabled->has_value());
+  EXPECT_TRUE((*enabled)->success) << (*enabled)->message;
+  EXPECT_LT(held, 0.05) << "rad/s, told to a motor that is held";
+  EXPECT_LT(hardest, 1.5 * 4.0) << "rad/s^2; the limit is 4";
+  EXPECT_LT(scene.seen("left").fastest, 1.05 * 1.0);
+  EXPECT_NEAR(scene.velocity("left"), 1.0, 0.02);
+}
+
 TEST(HeldMotor, HomedWhileItsBrakeHoldsItWaitsForItsRelease) {
   Scene scene(loadText(genericPair(", homing: {method: 37}, simulation: {brake_delay: 0.3}")));
   ASSERT_TRUE(scene.boot()) << scene.told();

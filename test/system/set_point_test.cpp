@@ -218,7 +218,59 @@ INSTANTIATE_TEST_SUITE_P(
                     EarlyStop{"generic_pv", genericPair(), "profile_velocity", 1.5},
                     EarlyStop{"damiao_csp", damiaoJoint(), "cyclic_position", 1.9},
                     EarlyStop{"damiao_csv", damiaoJoint(), "cyclic_velocity", 1.5},
-                    EarlyStop{"damiao_pp", damiaoJoint(), "profile_position", 1.9}),
+                    EarlyStop{"damiao_pp", damiaoJoint(), "profile_position", 1.9},
+                    EarlyStop{"damiao_pos_vel", damiaoJoint(), "position_velocity", 1.9}),
+    [](const auto& tested) { return tested.param.name; });
+
+/// Another mode is asked for just after a drive that plans its motion was sent off.
+class AModeJustAfterMotionBegan : public testing::TestWithParam<EarlyStop> {};
+
+TEST_P(AModeJustAfterMotionBegan, IsTakenAtRestOrNotAndTurnsNothingBack) {
+  for (const char* other : {"cyclic_position", "cyclic_velocity"}) {
+    for (const Duration after : {0ms, 1ms, 4ms, 8ms, 12ms, 20ms, 40ms, 60ms}) {
+      ReadyScene scene(GetParam().yaml, GetParam().mode);
+      const std::string axis = scene.loaded().robot.axes[0].name;
+      scene.run(100ms);
+      ASSERT_EQ(scene.setpoint(axis, GetParam().set_point), "");
+      scene.run(after);
+      Reversal reversal;
+      bool on = true;
+      double switched_at = 0.0;  // the power stage, of a drive that takes a mode without it only
+      scene.watch([&] {
+        reversal.see(scene.position(axis));
+        if (scene.truth(axis).power_stage_on == on) return;
+        on = !on;
+        switched_at = std::max(switched_at, std::abs(scene.velocity(axis)));
+      });
+      const bus::Answer answer = scene.procedure(ProcedureKind::set_mode, axis, other);
+      const std::string where = std::string(other) + " after " + std::to_string(toSeconds(after)) +
+                                " s: " + answer.message;
+      const double told_at = scene.position(axis);
+      if (answer.success) {
+        EXPECT_LT(std::abs(scene.velocity(axis)), 0.02) << where;
+      }
+      scene.run(4s);
+      EXPECT_LT(reversal.back, 2e-4) << where;
+      EXPECT_LT(switched_at, 0.01) << where;
+      EXPECT_EQ(scene.axis(axis).modeName(), answer.success ? other : GetParam().mode) << where;
+      const bool goal = std::string(GetParam().mode).find("position") != std::string::npos;
+      if (answer.success || goal) {
+        EXPECT_NEAR(scene.position(axis), answer.success ? told_at : GetParam().set_point, 1e-3)
+            << where;
+      }
+      EXPECT_LT(std::abs(scene.velocity(axis)), 0.02) << where;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    From, AModeJustAfterMotionBegan,
+    testing::Values(EarlyStop{"generic_pp", genericPair(), "profile_position", 2.0},
+                    EarlyStop{"generic_pv", genericPair(), "profile_velocity", 1.5},
+                    EarlyStop{"damiao_pp", damiaoJoint(), "profile_position", 1.9},
+                    EarlyStop{"damiao_pos_vel", damiaoJoint(), "position_velocity", 1.9},
+                    EarlyStop{"damiao_pos_vel_torque", damiaoJoint(), "position_velocity_torque",
+                              1.9}),
     [](const auto& tested) { return tested.param.name; });
 
 /// The modes that push: effort, and what ends a stream of it.
