@@ -147,7 +147,9 @@ void Player::trajectory(const config::GroupConfig& to, std::vector<motion::Traje
     if (!answer.success) return;
     const Time now = stage_.now();
     stage_.look(truths_);
-    goals_[to.name] = goals;
+    const bool seen = std::all_of(axes.begin(), axes.end(),
+                                  [&](std::size_t i) { return conditions_.quiet(i, now); });
+    goals_[to.name] = seen ? goals : std::vector<Goal>();
     for (std::size_t i : axes) {
       if (stop && follows_[i] != to.name) continue;  // another group moves it
       follows_[i] = to.name;

@@ -11,8 +11,8 @@ class ClearFaults : public Procedure {
   Outcome advance(const Context& context) override {
     AxisCore& axis = context.axis;
     if (!begun_) {
+      if (!clearable(axis)) return findNothing(context);
       begun_ = true;
-      if (!clearable(axis)) return nothingToClear(axis);
     }
     Outcome outcome = reset_.advance(context);
     if (outcome.isDone()) {
@@ -23,6 +23,18 @@ class ClearFaults : public Procedure {
   }
 
  private:
+  /// What the drive said before it fell silent, or the host stood still, tells nothing of now.
+  static Outcome findNothing(const Context& context) {
+    AxisCore& axis = context.axis;
+    const bool told = axis.state().feedback_valid && axis.state().state != State::unknown;
+    if (told && axis.heardLately(context.now)) return nothingToClear(axis);
+    const Duration waited = context.now - context.status.started;
+    context.show("waiting for the statusword", "the drive to tell whether it has a fault");
+    if (waited <= axis.profile().timing.state_change) return Outcome::running();
+    return Outcome::failed(axis.who() + ": nothing tells whether it has a fault: " +
+                           (axis.state().feedback_valid ? axis.stateText() : axis.feedbackText()));
+  }
+
   static Outcome nothingToClear(AxisCore& axis) {
     const std::uint16_t code = axis.pendingEmergency();
     if (code == 0) return Outcome::done(jointName(axis.config()) + ": no fault, nothing to clear");

@@ -56,6 +56,33 @@ TEST(ClearFaultsProcedure, WithoutAFaultHasNothingToClear) {
   EXPECT_EQ(bench.drive.controlword, 0x000F);
 }
 
+TEST(ClearFaultsProcedure, OfADriveThatIsSilentWaitsForWhatItSaysNext) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  bench.drive.silent = true;
+  bench.run(milliseconds(40));
+  ASSERT_TRUE(bench.axis.state().feedback_valid) << "not yet stale";
+  bench.drive.fail(0x8611);  // nobody hears of it
+  ASSERT_TRUE(bench.axis.start({ProcedureKind::clear_faults, "", 0.0}, bench.now));
+  bench.run(milliseconds(30));
+  EXPECT_TRUE(bench.axis.procedure().running) << bench.axis.procedure().message;
+  bench.drive.silent = false;
+  ASSERT_TRUE(bench.runUntil([&] { return !bench.axis.procedure().running; }));
+  EXPECT_TRUE(bench.axis.procedure().success) << bench.axis.procedure().message;
+  EXPECT_EQ(bench.drive.resets, 1);
+  EXPECT_EQ(bench.drive.state, FakeDrive::S::disabled);
+}
+
+TEST(ClearFaultsProcedure, OfADriveThatStaysSilentDoesNotSayThatThereIsNoFault) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  bench.drive.silent = true;
+  bench.run(milliseconds(40));
+  const ProcedureStatus& status = bench.perform(ProcedureKind::clear_faults);
+  EXPECT_FALSE(status.success);
+  EXPECT_THAT(status.message, HasSubstr("nothing tells whether it has a fault: "));
+}
+
 TEST(ClearFaultsProcedure, AFaultThatComesBackIsToldWithCauseAndRemedy) {
   Bench bench;
   ASSERT_TRUE(bench.boot());

@@ -105,8 +105,10 @@ class Answers final : public Oracle {
                    ") while the drive shows a fault");
       }
       // Others' commands, and heartbeats that are late, make an answer old before it is given.
-      const bool told = call.verb == "nmt" && view.now >= view.conditions.foreign &&
-                        view.now >= view.conditions.lossy &&
+      // One without heartbeat tells nobody, and its answer says so.
+      const bool told = call.verb == "nmt" &&
+                        answer.message.find("to tell whether") == std::string::npos &&
+                        view.now >= view.conditions.foreign && view.now >= view.conditions.lossy &&
                         view.now >= view.conditions.axes[i].cut_off;
       if (told && !lately(seen.inState(wanted(call.argument)))) {
         report(view, i,
