@@ -39,6 +39,19 @@ TEST(AxisCondition, IsWellWhileItDoesWhatItIsTold) {
   EXPECT_EQ(summary(world).text, "operation enabled");
 }
 
+TEST(AxisCondition, IsWellButSaysSoWhileItIsHalted) {
+  RobotWorld world;
+  world.enable();
+  ASSERT_TRUE(world.call(ProcedureKind::halt, "shoulder").success);
+  EXPECT_TRUE(snapshotOf(world).state.halted);
+  EXPECT_EQ(summary(world).condition, Condition::well);
+  EXPECT_EQ(summary(world).text, "operation enabled, halted until `enable`");
+  EXPECT_FALSE(snapshotOf(world, 1).state.halted);
+  ASSERT_TRUE(world.call(ProcedureKind::enable, "shoulder").success);
+  EXPECT_FALSE(snapshotOf(world).state.halted);
+  EXPECT_EQ(summary(world).text, "operation enabled");
+}
+
 TEST(AxisCondition, WarnsOfADriveThatWarns) {
   RobotWorld world;
   world.enable();

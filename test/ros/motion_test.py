@@ -1,9 +1,12 @@
 #!/usr/bin/python3
 # Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 """Homing, trajectories and set-points, with the answers a person gets."""
+import math
+
 import rospy
 from cia402_driver.msg import AxisStates
-from robot_client import RobotTest, main, wait_until
+from robot_client import OK, RobotTest, main, wait_until
+from tf2_msgs.msg import TFMessage
 
 HOME = {"shoulder": -2.6, "elbow": 0.2906, "wrist": 0.0, "gripper": 0.0}
 
@@ -156,12 +159,65 @@ class Motion(RobotTest):
         self.assertGreater(abs(place - goal), 0.1, "it went on to the goal")
         self.assertEqual(self.robot.axis("shoulder").state, "operation enabled")
 
+    def test_a_halted_axis_is_shown_as_such_until_enable_releases_it(self):
+        self.succeed("wrist/halt", "wrist: halted at ")
+        self.robot.wait_axis("wrist", lambda axis: axis.halted, "halted")
+        self.assertFalse(self.robot.axis("elbow").halted)
+        status = self.robot.wait_diagnostic("wrist", OK, "halted until `enable`")
+        self.assertIn(("halted", "yes"), [(value.key, value.value) for value in status.values])
+        self.succeed("wrist/enable")
+        self.robot.wait_axis("wrist", lambda axis: not axis.halted, "released")
+
+        def released():
+            status = self.robot.diagnostic("wrist")
+            return ("halted", "no") in [(value.key, value.value) for value in status.values]
+        wait_until(released, "diagnostics of a released axis")
+        self.assertNotIn("halted", self.robot.diagnostic("wrist").message)
+
     def test_set_position_declares_where_the_axis_stands(self):
         self.succeed("wrist/disable")
         before = self.robot.wait_rest("wrist")
         self.succeed("wrist/set_position", "wrist", position=before + 0.25)
         self.robot.wait_at("wrist", before + 0.25, 0.002)
         self.succeed("wrist/set_position", position=before)
+
+
+class Turntable(RobotTest):
+    """A joint that turns without end; the 32 bits of its drive wrap at 8.04 rad, within a turn."""
+
+    CONFIG = "test/ros/turntable.yaml"
+    AXES = ["table"]
+    FASTEST = 1.05 * 1.5  # rad/s
+
+    def assert_no_step(self, places, difference):
+        """@param places (stamp, rad) in their order"""
+        self.assertGreater(len(places), 10)
+        for (before, start), (after, end) in zip(places, places[1:]):
+            self.assertLessEqual(abs(difference(end, start)),
+                                 self.FASTEST * (after - before).to_sec() + 1e-3,
+                                 f"from {start} at {before} to {end} at {after}")
+
+    def test_no_joint_state_and_no_transform_has_a_step_where_the_drive_wraps(self):
+        turned = []
+
+        def take(message):
+            for transform in message.transforms:
+                if transform.child_frame_id == "plate":
+                    turn = transform.transform.rotation
+                    turned.append((transform.header.stamp, 2.0 * math.atan2(turn.z, turn.w)))
+        subscriber = rospy.Subscriber("/tf", TFMessage, take)
+        self.succeed("enable")
+        self.robot.record = True
+        for place in (8.8, 7.3):
+            self.robot.command("table", place)
+            self.robot.wait_at("table", place)
+        self.robot.record = False
+        subscriber.unregister()
+        places = [(message.header.stamp, message.position[0])
+                  for _, message in self.robot.joint_states]
+        self.assertGreater(max(place for _, place in places), 8.7)
+        self.assert_no_step(places, lambda end, start: end - start)
+        self.assert_no_step(turned, lambda end, start: math.remainder(end - start, 2.0 * math.pi))
 
 
 if __name__ == "__main__":
