@@ -21,12 +21,18 @@ namespace cia402::campaign {
 class Player {
  public:
   Player(Stage& stage, const Scene& scene, const RunOptions& options);
+  virtual ~Player() = default;
 
   /// @return the time that was simulated.
   void play();
   std::vector<Finding>& findings() { return findings_; }
   std::uint64_t fingerprint() const { return fingerprint_; }
   std::uint64_t frames() const { return frames_; }
+  const Permits& permits() const { return permits_; }
+
+ protected:
+  /// Gives a call to the driver; where a test can come between the two.
+  virtual void post(bus::Command command) { stage_.host().post(std::move(command)); }
 
  private:
   struct Pending {

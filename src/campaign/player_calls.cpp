@@ -88,7 +88,7 @@ void Player::call(const Words& words, decltype(bus::Command::body) body, Duratio
     *done = true;
     answered(call, answer);
   };
-  stage_.host().post(std::move(command));
+  post(std::move(command));
 }
 
 void Player::answered(const Call& call, const bus::Answer& answer) {
