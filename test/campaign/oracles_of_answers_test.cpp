@@ -12,7 +12,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr const char* kStandVerbs[] = {"halt",         "disable", "quick_stop", "set_mode",
-                                       "set_position", "save",    "restore"};
+                                       "set_position", "save",    "restore",    "home"};
 constexpr const char* kOffVerbs[] = {"disable", "save", "restore"};
 constexpr const char* kOnVerbs[] = {"enable", "recover"};
 
@@ -69,9 +69,47 @@ TEST_F(AnswerTest, SaysNoMoreThanItsCallDoes) {
   for (const std::string verb : kOnVerbs) {
     EXPECT_EQ(answerAfter(verb, 100ms, true, 1.0, true, 1.0), "") << verb << " in motion";
   }
-  for (const std::string verb : {"home", "clear_faults", "nmt", "read", "write"}) {
+  for (const std::string verb : {"clear_faults", "read", "write"}) {
     EXPECT_EQ(answerAfter(verb, 100ms, true, 1.0, true, 1.0), "") << verb;
   }
+}
+
+TEST_F(AnswerTest, ThatFaultsAreClearedIsUntrueOfADriveWithOne) {
+  look();
+  mark();
+  truths_[0].statusword = 0x0008;
+  lookFor(25ms);
+  answer("clear_faults", "a1");
+  EXPECT_EQ(found(), "") << "it may have come since";
+  look();
+  answer("clear_faults", "a1");
+  EXPECT_EQ(found(), "untrue_answer a1 +26 ms");
+}
+
+TEST_F(AnswerTest, OfNmtIsUntrueOfADriveInAnotherState) {
+  const auto answered = [&](const char* command, canopen::NmtState state,
+                            const std::string& message = "done") {
+    findings_.clear();
+    truths_[0].nmt = state;
+    lookFor(26ms);
+    mark();
+    oracle_->onAnswer(callOf("nmt", "a1", command), bus::answerOf(true, message), view());
+    return found();
+  };
+  using canopen::NmtState;
+  const std::string untrue = "untrue_answer a1 +0 ms";
+  EXPECT_EQ(answered("stop", NmtState::stopped), "");
+  EXPECT_EQ(answered("stop", NmtState::operational), untrue);
+  EXPECT_EQ(answered("pre_operational", NmtState::pre_operational), "");
+  EXPECT_EQ(answered("pre_operational", NmtState::stopped), untrue);
+  for (const char* const command : {"start", "reset_node", "reset_communication"}) {
+    EXPECT_EQ(answered(command, NmtState::operational), "") << command;
+    EXPECT_EQ(answered(command, NmtState::pre_operational), untrue) << command;
+  }
+  EXPECT_EQ(answered("stop", NmtState::operational, "the drive has no heartbeat to tell whether"),
+            "");
+  conditions_.foreign = now() + 1s;
+  EXPECT_EQ(answered("stop", NmtState::operational), "") << "another master may have started it";
 }
 
 TEST_F(AnswerTest, OfAFailureSaysNothing) {

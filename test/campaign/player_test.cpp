@@ -259,9 +259,9 @@ TEST_F(PlayerTest, PermitsTheTrajectoryThatWentOnAfterAFailure) {
       if (player.loses) command.reply(bus::answerOf(false, "no"));
     };
   };
-  EXPECT_EQ(play({"2 enable a1", "4 goal g1 3.0 0.9", "5 halt a1", "8 end"},
-                 playedRobot("cyclic_position"), fails),
-            "");
+  const std::string found = play({"2 enable a1", "4 goal g1 3.0 0.9", "5 halt a1", "8 end"},
+                                 playedRobot("cyclic_position"), fails);
+  EXPECT_EQ(found.rfind("slow_stop a1", 0), 0U) << found << ", as nobody stopped it";
   EXPECT_NEAR(permitAtEnd(), 4 + 3.0 + 0.25, 0.006);
 }
 
