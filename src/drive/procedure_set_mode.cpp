@@ -18,28 +18,11 @@ class SetMode : public Procedure {
       begun_ = true;
       started_ = context.now;
     }
-    if (!standing_ && !axis.powerOff()) {
-      const Outcome standing = awaitStandstill(context, started_, "switching the mode");
-      if (!standing.isDone()) return standing;
+    if (!ready_) {
+      const Outcome ready = waiting_.advance(context);
+      if (!ready.isDone()) return ready;
+      ready_ = true;
     }
-    if (!standing_ && !axis.powerOff()) {
-      // An effort or a load may have moved it beyond a limit, to which the drive would take it.
-      axis.renewLimits();
-      context.show("writing position limits", "the drive to take the joint's limits");
-    }
-    standing_ = true;
-    if (!limits_settled_ && !axis.powerOff()) {
-      if (!axis.limitsSettled()) return Outcome::running();
-      const std::string problem = axis.limits().problem();
-      if (!problem.empty()) {
-        return Outcome::failed(axis.who() +
-                               ": the mode is not switched, as the axis is beyond the "
-                               "position limits that the drive keeps, to which it would move; "
-                               "lead it back by a velocity or an effort, or disable it: " +
-                               problem);
-      }
-    }
-    limits_settled_ = true;
     const Outcome outcome = step_.advance(context);
     if (!outcome.isDone()) return outcome;
     return Outcome::done(jointName(axis.config()) + ": mode " + mode_->spec->name + " after " +
@@ -50,7 +33,8 @@ class SetMode : public Procedure {
  private:
   const ModeChannel* mode_;
   SwitchStep step_;
-  bool begun_ = false, standing_ = false, limits_settled_ = false;
+  ReadyToSwitchStep waiting_;
+  bool begun_ = false, ready_ = false;
   Time started_{};
 };
 

@@ -5,6 +5,31 @@
 
 namespace cia402::drive {
 
+Outcome ReadyToSwitchStep::advance(const Context& context) {
+  AxisCore& axis = context.axis;
+  if (!begun_) started_ = context.now;
+  begun_ = true;
+  if (settled_ || axis.powerOff()) return Outcome::done();
+  if (!standing_) {
+    const Outcome standing = awaitStandstill(context, started_, "switching the mode");
+    if (!standing.isDone()) return standing;
+    standing_ = true;
+    axis.renewLimits();
+    context.show("writing position limits", "the drive to take the joint's limits");
+  }
+  if (!axis.limitsSettled()) return Outcome::running();
+  const std::string problem = axis.limits().problem();
+  if (!problem.empty()) {
+    return Outcome::failed(axis.who() +
+                           ": the mode is not switched, as the axis is beyond the position limits "
+                           "that the drive keeps, to which it would move; lead it back by a "
+                           "velocity or an effort, or disable it: " +
+                           problem);
+  }
+  settled_ = true;
+  return Outcome::done();
+}
+
 Outcome SwitchStep::advance(const Context& context) {
   switch (phase_) {
     case Phase::begin:

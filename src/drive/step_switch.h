@@ -9,6 +9,17 @@
 
 namespace cia402::drive {
 
+/// What an axis with power waits for before it gets another mode: it stands, and the drive's own
+/// position limits, beyond which an effort, a load or a homing may have taken it, are open there.
+class ReadyToSwitchStep {
+ public:
+  Outcome advance(const Context& context);
+
+ private:
+  bool begun_ = false, standing_ = false, settled_ = false;
+  Time started_{};
+};
+
 /// Brings an axis into another mode, enabled or not. Where the drive does not stand that change
 /// while its power stage is on (profile, `mode_change`), an enabled axis is disabled and enabled
 /// again, or goes through the mode that the profile names. To be used at standstill.

@@ -107,6 +107,30 @@ TEST(Coordinates, AnAxisFoundOutsideItsLimitsIsEnabledWithoutMotionAndComesBack)
   EXPECT_NEAR(highest(scene, "left"), 2.5, 1e-6);
 }
 
+// An axis with an absolute encoder has its limits again as soon as its homing is stopped, and comes
+// to rest beyond them.
+TEST(Coordinates, AHomingThatWasHaltedOutsideTheLimitsIsLeftWithoutMotion) {
+  Scene scene(loadText(genericPair(
+      ", homing: {method: 17, search_velocity: 0.8, zero_velocity: 0.05, acceleration: 4.0, "
+      "required: false}, simulation: {initial_position: -2.2, lower_limit_switch: -2.8}")));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  ASSERT_TRUE(scene.state("left").homed);
+  const auto homing = scene.begin(ProcedureKind::home, "left");
+  ASSERT_TRUE(scene.runUntil([&] { return scene.position("left") < -2.49; }, 3s));
+  const auto halted = scene.procedure(ProcedureKind::halt, "left");
+  ASSERT_TRUE(halted.success) << halted.message;
+  ASSERT_LT(scene.position("left"), -2.51) << "the lower limit is -2.5";
+  scene.run(200ms);
+  scene.forget();
+  const auto enabled = scene.procedure(ProcedureKind::enable, "left");
+  EXPECT_TRUE(enabled.success) << enabled.message;
+  scene.run(500ms);
+  expectNothingMoved(scene, "left");
+  ASSERT_EQ(scene.setpoint("left", -2.4), "");
+  scene.run(1s);
+  EXPECT_NEAR(scene.position("left"), -2.4, 1e-3);
+}
+
 TEST(Coordinates, APlannedMotionFromOutsideTheLimitsGoesAsFarAsItIsTold) {
   Scene scene(loadText(genericPair(standing(2.7) + ", mode: profile_position")));
   ASSERT_TRUE(scene.boot());
