@@ -202,6 +202,7 @@ bool Axis::setTarget(double value) { return impl_->core.setTarget(value); }
 void Axis::stopSetPoint() { impl_->core.stopSetPoint(); }
 std::string Axis::motionRefusal() const { return impl_->core.motionRefusal(impl_->status.running); }
 bool Axis::heardLately(Time now) const { return impl_->core.heardLately(now); }
+bool Axis::mayMove() const { return impl_->core.mayMove(); }
 std::string Axis::obstacle() const { return impl_->core.obstacle(); }
 const std::string& Axis::modeName() const { return impl_->core.mode().spec->name; }
 

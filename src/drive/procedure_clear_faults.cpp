@@ -23,11 +23,9 @@ class ClearFaults : public Procedure {
   }
 
  private:
-  /// What the drive said before it fell silent, or the host stood still, tells nothing of now.
   static Outcome findNothing(const Context& context) {
     AxisCore& axis = context.axis;
-    const bool told = axis.state().feedback_valid && axis.state().state != State::unknown;
-    if (told && axis.heardLately(context.now)) return nothingToClear(axis);
+    if (tellsState(axis, context.now)) return nothingToClear(axis);
     const Duration waited = context.now - context.status.started;
     context.show("waiting for the statusword", "the drive to tell whether it has a fault");
     if (waited <= axis.profile().timing.state_change) return Outcome::running();

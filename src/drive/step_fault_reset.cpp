@@ -10,6 +10,11 @@ bool clearable(const AxisCore& axis) {
   return axis.faulted() || (axis.state().warning && axis.profile().warning_stops);
 }
 
+bool tellsState(const AxisCore& axis, Time now) {
+  const AxisState& state = axis.state();
+  return state.feedback_valid && state.state != State::unknown && axis.heardLately(now);
+}
+
 void FaultResetStep::enter(Phase phase, const Context& context) {
   phase_ = phase;
   since_ = context.now;
@@ -27,6 +32,15 @@ Outcome FaultResetStep::cameBack(const Context& context) {
                            context.axis.faultText());
 }
 
+Outcome FaultResetStep::awaitNews(const Context& context) {
+  const AxisCore& axis = context.axis;
+  const Duration waited = context.now - since_;
+  if (waited <= axis.profile().timing.state_change) return Outcome::running();
+  return fail(context, axis.who() +
+                           ": nothing tells whether the fault reset has cleared its fault: " +
+                           (axis.state().feedback_valid ? axis.stateText() : axis.feedbackText()));
+}
+
 Outcome FaultResetStep::awaitReset(const Context& context) {
   AxisCore& axis = context.axis;
   const Duration waited = context.now - since_;
@@ -40,6 +54,7 @@ Outcome FaultResetStep::awaitReset(const Context& context) {
     return fail(context, "the fault reset (6040:00 bit 7)" + times + " did not clear it within " +
                              seconds(waited) + ": " + axis.faultText() + "; " + axis.report());
   }
+  if (!tellsState(axis, context.now)) return awaitNews(context);
   axis.setFaultReset(false);
   axis.forgetFault();
   enter(Phase::low_again, context);
@@ -138,6 +153,7 @@ Outcome FaultResetStep::advance(const Context& context) {
     case Phase::watching:
       if (clearable(axis)) return cameBack(context);
       if (waited < kWatch) return Outcome::running();
+      if (!tellsState(axis, context.now)) return awaitNews(context);
       return Outcome::done(code_ == 0 ? std::string("fault cleared")
                                       : "fault " + errorCodeText(axis.profile(), code_) +
                                             "; it is cleared");

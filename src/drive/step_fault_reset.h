@@ -25,6 +25,7 @@ class FaultResetStep {
   Outcome fail(const Context& context, const std::string& why) const;
   Outcome cameBack(const Context& context);
   Outcome awaitReset(const Context& context);
+  Outcome awaitNews(const Context& context);
   bool tryAgain(const Context& context);
   bool mayPause(const Context& context) const;
   void beginPause(const Context& context);
@@ -40,5 +41,8 @@ class FaultResetStep {
 
 /// Something that a fault reset could clear.
 bool clearable(const AxisCore& axis);
+/// What the drive says of its state is of now: what it said before it fell silent, or before the
+/// host stood still, tells of no fault that is there, or gone.
+bool tellsState(const AxisCore& axis, Time now);
 
 }  // namespace cia402::drive

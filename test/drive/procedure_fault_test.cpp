@@ -83,6 +83,18 @@ TEST(ClearFaultsProcedure, OfADriveThatStaysSilentDoesNotSayThatThereIsNoFault) 
   EXPECT_THAT(status.message, HasSubstr("nothing tells whether it has a fault: "));
 }
 
+TEST(ClearFaultsProcedure, OfADriveThatFallsSilentDoesNotSayThatItIsCleared) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  fault(bench);
+  ASSERT_TRUE(bench.axis.start({ProcedureKind::clear_faults, "", 0.0}, bench.now));
+  bench.drive.silent = true;
+  ASSERT_TRUE(bench.runUntil([&] { return !bench.axis.procedure().running; }));
+  EXPECT_FALSE(bench.axis.procedure().success);
+  EXPECT_THAT(bench.axis.procedure().message,
+              HasSubstr("nothing tells whether the fault reset has cleared its fault: "));
+}
+
 TEST(ClearFaultsProcedure, AFaultThatComesBackIsToldWithCauseAndRemedy) {
   Bench bench;
   ASSERT_TRUE(bench.boot());
