@@ -1,10 +1,18 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 
 #include "cia402_driver/bus/jobs.h"
+#include "cia402_driver/motion/joint.h"
 
 namespace cia402::bus {
 namespace {
+
+std::string motionOf(const drive::AxisState& state) {
+  if (!state.feedback_valid) return "nothing tells whether it stands";
+  if (std::isnan(state.velocity)) return "it moves";
+  return "it moves (velocity " + motion::formatNumber(state.velocity) + ")";
+}
 
 /// Why what a procedure has achieved is not so any more; empty if it is.
 /// @param replaced another one was called since
@@ -24,7 +32,8 @@ std::string lapse(const drive::ProcedureRequest& request, const drive::Axis& axi
     case ProcedureKind::enable:
       return enabled ? std::string() : cause + now;
     case ProcedureKind::disable:
-      return powerStageOff(state.state) ? std::string() : cause + now;
+      if (!powerStageOff(state.state)) return cause + now;
+      return axis.mayMove() ? cause + motionOf(state) : std::string();
     case ProcedureKind::clear_faults:
       return isFault(state.state) ? cause + now : std::string();
     case ProcedureKind::home:
@@ -35,7 +44,8 @@ std::string lapse(const drive::ProcedureRequest& request, const drive::Axis& axi
       return cause + "it is in mode " + axis.modeName();
     case ProcedureKind::halt:
     case ProcedureKind::quick_stop:
-      return replaced && enables(axis.procedure().kind) ? cause + now : std::string();
+      if (replaced && enables(axis.procedure().kind)) return cause + now;
+      return axis.mayMove() ? cause + motionOf(state) : std::string();
     default:
       return {};
   }

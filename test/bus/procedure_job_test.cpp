@@ -186,6 +186,28 @@ TEST_F(ProcedureJobTest, EnableOfAllTellsOfAnAxisThatWasDisabledMeanwhile) {
   EXPECT_TRUE(world.drives[1].enabled());
 }
 
+TEST_F(ProcedureJobTest, StopsOfAllTellOfAnAxisThatMovesMeanwhile) {
+  for (const ProcedureKind kind : {ProcedureKind::disable, ProcedureKind::quick_stop}) {
+    ASSERT_TRUE(world.call(ProcedureKind::disable).success);
+    ASSERT_TRUE(world.call(ProcedureKind::enable, "elbow").success);
+    world.drives[1].deaf_to_controlword = true;
+    const auto stopping = world.begin(kind);  // the shoulder's ends at once
+    world.run(50ms);
+    world.drives[1].deaf_to_controlword = false;
+    for (int i = 0; i < 300 && stopping->empty(); ++i) {
+      world.drives[0].disturbance += 1000;  // 1 rad/s by nobody's will
+      world.run(10ms);
+    }
+    ASSERT_EQ(stopping->size(), 1U);
+    EXPECT_FALSE(stopping->front().success) << stopping->front().message;
+    EXPECT_THAT(stopping->front().message,
+                AllOf(HasSubstr("done on 1 of 2 axes"),
+                      HasSubstr(std::string("shoulder: ") + toString(kind) +
+                                " had succeeded, but it moves")));
+    world.run(500ms);
+  }
+}
+
 TEST_F(ProcedureJobTest, DisableOfAllTellsOfAnAxisThatWasEnabledMeanwhile) {
   world.drives[1].deaf_to_controlword = true;
   const auto disabling = world.begin(ProcedureKind::disable);

@@ -126,6 +126,8 @@ class Axis {
 
   /// The newest feedback is as new as it can be; false: some that was due has failed to come.
   bool heardLately(Time now) const;
+  /// Is not known to stand. Without feedback one that stood without power still does.
+  bool mayMove() const;
   /// Starts a procedure. disable, quick_stop and halt pre-empt a running one; anything else is
   /// refused with a sentence while one runs or where the axis cannot do it.
   Result<std::uint32_t> start(const ProcedureRequest& request, Time now);
