@@ -1,0 +1,354 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// The oracles that compare what the driver says with what is true find what they are for.
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "oracle_fixture.h"
+
+namespace cia402::campaign {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr const char* kStandVerbs[] = {"halt",         "disable", "quick_stop", "set_mode",
+                                       "set_position", "save",    "restore"};
+constexpr const char* kOffVerbs[] = {"disable", "save", "restore"};
+constexpr const char* kOnVerbs[] = {"enable", "recover"};
+
+class AnswerTest : public OracleTest {
+ protected:
+  explicit AnswerTest(const std::string& robot = kJudgedRobot) : OracleTest(makeAnswers, robot) {}
+
+  void state(bool power, double speed) {
+    truths_[0].power = power;
+    truths_[0].velocity = speed;
+    look();
+  }
+  /// It was in this state last so long before the answer, and with power, or in motion, since.
+  std::string answerAfter(const std::string& verb, Duration ago, bool power, double speed,
+                          bool power_since, double speed_since) {
+    findings_.clear();
+    state(power, speed);
+    mark();
+    for (const Time end = now() + ago; now() < end;) state(power_since, speed_since);
+    answer(verb, "a1");
+    return found();
+  }
+};
+
+// It stands below 2 % of 1 rad/s, or did in the last 25 ms.
+TEST_F(AnswerTest, ThatItStandsIsUntrueOfAMotorThatTurns) {
+  for (const std::string verb : kStandVerbs) {
+    const bool off = verb == "disable" || verb == "save" || verb == "restore";
+    EXPECT_EQ(answerAfter(verb, 26ms, !off, 0.0, !off, 0.025), "untrue_answer a1 +26 ms") << verb;
+    EXPECT_EQ(answerAfter(verb, 25ms, !off, 0.0, !off, -0.025), "") << verb;
+    EXPECT_EQ(answerAfter(verb, 100ms, !off, 0.0, !off, 0.019), "") << verb;
+  }
+}
+
+TEST_F(AnswerTest, ThatThePowerIsOffIsUntrueOfADriveWithPower) {
+  for (const std::string verb : kOffVerbs) {
+    EXPECT_EQ(answerAfter(verb, 26ms, false, 0.0, true, 0.0), "untrue_answer a1 +26 ms") << verb;
+    EXPECT_EQ(answerAfter(verb, 25ms, false, 0.0, true, 0.0), "") << verb;
+  }
+}
+
+TEST_F(AnswerTest, ThatThePowerIsOnIsUntrueOfADriveWithout) {
+  for (const std::string verb : kOnVerbs) {
+    EXPECT_EQ(answerAfter(verb, 26ms, true, 0.0, false, 0.0), "untrue_answer a1 +26 ms") << verb;
+    EXPECT_EQ(answerAfter(verb, 25ms, true, 0.0, false, 0.0), "") << verb;
+  }
+}
+
+TEST_F(AnswerTest, SaysNoMoreThanItsCallDoes) {
+  for (const std::string verb : {"halt", "quick_stop", "set_mode", "set_position"}) {
+    EXPECT_EQ(answerAfter(verb, 100ms, true, 0.0, true, 0.0), "") << verb << " with power";
+    EXPECT_EQ(answerAfter(verb, 100ms, false, 0.0, false, 0.0), "") << verb << " without";
+  }
+  for (const std::string verb : kOnVerbs) {
+    EXPECT_EQ(answerAfter(verb, 100ms, true, 1.0, true, 1.0), "") << verb << " in motion";
+  }
+  for (const std::string verb : {"home", "clear_faults", "nmt", "read", "write"}) {
+    EXPECT_EQ(answerAfter(verb, 100ms, true, 1.0, true, 1.0), "") << verb;
+  }
+}
+
+TEST_F(AnswerTest, OfAFailureSaysNothing) {
+  truths_[0].velocity = 1.0;
+  lookFor(100ms);
+  for (const char* verb : kStandVerbs) answer(verb, "a1", false);
+  truths_[0].power = false;
+  lookFor(100ms);
+  for (const char* verb : kOnVerbs) answer(verb, "a1", false);
+  EXPECT_EQ(found(), "");
+}
+
+TEST_F(AnswerTest, ThatSaysThatTheMotorStillMovesIsTrue) {
+  truths_[0].velocity = 1.0;
+  lookFor(100ms);
+  answer("halt", "a1", true, "done; it still moves");
+  EXPECT_EQ(found(), "");
+}
+
+TEST_F(AnswerTest, OfAModeWithoutPowerIsNoMatterWhatTurnsTheMotor) {
+  EXPECT_EQ(answerAfter("set_mode", 100ms, false, 1.0, false, 1.0), "");
+  EXPECT_EQ(answerAfter("halt", 100ms, false, 1.0, false, 1.0), "untrue_answer a1 +100 ms");
+}
+
+TEST_F(AnswerTest, IsJudgedOfEachAxisThatItConcerns) {
+  truths_[1].velocity = 1.0;
+  lookFor(100ms);
+  answer("halt", "a1");
+  EXPECT_EQ(found(), "");
+  answer("halt", "all");
+  EXPECT_EQ(allFound(), "untrue_answer a2 +100 ms");
+}
+
+TEST_F(AnswerTest, ThatThePowerIsOnIsTrueWhereTheStatuswordToldSo) {
+  truths_[0].power = false;
+  lookFor(100ms);
+  frame(0x181, {0x37, 0x06, 0, 0, 0, 0, 0, 0});  // operation enabled
+  lookFor(25ms);
+  answer("enable", "a1");
+  EXPECT_EQ(found(), "");
+  look();
+  answer("enable", "a1");
+  EXPECT_EQ(found(), "untrue_answer a1 +126 ms");
+}
+
+TEST_F(AnswerTest, ThatThePowerIsOnIsUntrueWhereTheStatuswordToldSomethingElse) {
+  truths_[0].power = false;
+  lookFor(100ms);
+  frame(0x181, {0x33, 0x06, 0, 0, 0, 0, 0, 0});  // switched on
+  frame(0x182, {0x37, 0x06, 0, 0, 0, 0, 0, 0});  // another drive
+  answer("enable", "a1");
+  EXPECT_EQ(found(), "untrue_answer a1 +100 ms");
+}
+
+class SlowCycleAnswerTest : public AnswerTest {
+ protected:
+  SlowCycleAnswerTest()
+      : AnswerTest(
+            "bus: {interface: can0, bitrate: 1000000, sync_period: 0.01}\naxes:\n"
+            "  a1: {node_id: 1, drive: generic_cia402, counts_per_turn: 4096, gear_ratio: 50.0,\n"
+            "    limits: {lower: -3, upper: 3, velocity: 1, acceleration: 4}}\n") {}
+};
+
+// Three cycles of 10 ms and 5 ms.
+TEST_F(SlowCycleAnswerTest, MaySpeakOfThreeCyclesAgo) {
+  EXPECT_EQ(answerAfter("halt", 35ms, true, 0.0, true, 0.1), "");
+  EXPECT_EQ(answerAfter("halt", 36ms, true, 0.0, true, 0.1), "untrue_answer a1 +36 ms");
+}
+
+/// A driver that runs, and truths that differ from those of its drives as a test wants.
+class SnapshotTest : public OracleTest {
+ protected:
+  SnapshotTest()
+      : OracleTest(makeSnapshots,
+                   "bus: {interface: can0, bitrate: 1000000, sync_period: 0.004}\naxes:\n"
+                   "  a1: {node_id: 1, drive: generic_cia402, counts_per_turn: 4096,\n"
+                   "    gear_ratio: 50.0, limits: {lower: -3, upper: 3, velocity: 1,\n"
+                   "    acceleration: 4}}\n") {
+    stage_.world().powerOn();
+    stage_.host().start();
+    wait(3s);
+    settle();
+  }
+  /// All is as it seems for long enough to be judged; the next judgement is 10 ms away.
+  void settle() {
+    differs_ = nullptr;
+    lookFor(200ms);
+    EXPECT_EQ(found(), "");
+    mark();
+  }
+  void enable() {
+    bus::Command command;
+    drive::ProcedureRequest request;
+    request.kind = drive::ProcedureKind::enable;
+    command.body = bus::ProcedureCommand{"a1", request};
+    stage_.host().post(std::move(command));
+    lookFor(3s);
+    ASSERT_TRUE(truths_[0].enabled());
+    settle();
+  }
+  void look() override {
+    wait(1ms);
+    stage_.look(truths_);
+    if (differs_) differs_(truths_[0]);
+    oracle_->look(view());
+  }
+  void lookAt(std::function<void(AxisTruth&)> differs, Duration duration) {
+    differs_ = std::move(differs);
+    lookFor(duration);
+  }
+  static void enabled(AxisTruth& truth) { truth.statusword = 0x0237; }
+  static void disabled(AxisTruth& truth) { truth.statusword = 0x0240; }
+  static void faulty(AxisTruth& truth) { truth.statusword = 0x0208; }
+  static void turns(AxisTruth& truth) { truth.velocity = 0.2; }
+  /// The place that the drive tells is three counts of 3.068e-5 rad away; two may be.
+  static void shifted(AxisTruth& truth) { truth.told += 9.2e-5; }
+
+  std::function<void(AxisTruth&)> differs_;
+};
+
+// What was true in the last 60 ms may be shown; each tenth millisecond is judged.
+TEST_F(SnapshotTest, OfADriveThatIsEnabledAndNotShownSoIsFound) {
+  lookAt(enabled, 80ms);
+  EXPECT_EQ(found(), "untrue_snapshot a1 +70 ms");
+}
+
+TEST_F(SnapshotTest, OfADriveThatWasEnabledForLessIsNot) {
+  lookAt(enabled, 60ms);
+  settle();
+}
+
+TEST_F(SnapshotTest, OfADriveThatIsShownEnabledAndIsNotIsFound) {
+  enable();
+  lookAt(disabled, 80ms);
+  EXPECT_EQ(found(), "untrue_snapshot a1 +70 ms");
+}
+
+TEST_F(SnapshotTest, OfADriveThatWasNotEnabledForLessIsNot) {
+  enable();
+  lookAt(disabled, 60ms);
+  settle();
+}
+
+TEST_F(SnapshotTest, OfADriveThatIsShownInAFaultAndHasNoneIsFound) {
+  ASSERT_TRUE(stage_.world().drive(0).inject("overtemperature", now()));
+  lookFor(1s);
+  ASSERT_TRUE(truths_[0].faulted());
+  settle();
+  lookAt(disabled, 80ms);
+  EXPECT_EQ(found(), "untrue_snapshot a1 +70 ms");
+  findings_.clear();
+  settle();
+  lookAt(disabled, 60ms);
+  settle();
+}
+
+TEST_F(SnapshotTest, MayBeTrueOfADriveFromLookToLookAsItsFrameTells) {
+  enable();
+  lookAt(disabled, 50ms);
+  frame(0x181, {0x37, 0x02, 0, 0, 0, 0, 0, 0});
+  lookFor(60ms);
+  EXPECT_EQ(found(), "") << "60 ms after the frame";
+  lookFor(10ms);
+  EXPECT_EQ(found(), "untrue_snapshot a1 +120 ms");
+}
+
+// 10 % of 1 rad/s.
+TEST_F(SnapshotTest, OfAnotherSpeedIsFound) {
+  lookAt([](AxisTruth& truth) { truth.velocity = 0.11; }, 70ms);
+  EXPECT_EQ(found(), "untrue_snapshot a1 +60 ms");
+}
+
+TEST_F(SnapshotTest, OfAnotherSpeedBackwardsIsFound) {
+  lookAt([](AxisTruth& truth) { truth.velocity = -0.11; }, 70ms);
+  EXPECT_EQ(found(), "untrue_snapshot a1 +60 ms");
+}
+
+TEST_F(SnapshotTest, OfASpeedWithinTheBoundIsNot) {
+  lookAt([](AxisTruth& truth) { truth.velocity = 0.099; }, 200ms);
+  EXPECT_EQ(found(), "");
+}
+
+TEST_F(SnapshotTest, OfASpeedThatItHadOfLateIsNot) {
+  lookAt(turns, 59ms);
+  settle();
+}
+
+TEST_F(SnapshotTest, ThatShiftsIsFound) {
+  lookAt(shifted, 10ms);
+  EXPECT_EQ(found(), "untrue_snapshot a1 +10 ms");
+}
+
+TEST_F(SnapshotTest, ThatShiftsBackwardsIsFound) {
+  lookAt([](AxisTruth& truth) { truth.told -= 9.2e-5; }, 10ms);
+  EXPECT_EQ(found(), "untrue_snapshot a1 +10 ms");
+}
+
+TEST_F(SnapshotTest, ThatShiftsByTwoCountsIsNot) {
+  lookAt([](AxisTruth& truth) { truth.told += 6.13e-5; }, 200ms);
+  EXPECT_EQ(found(), "");
+}
+
+TEST_F(SnapshotTest, MayShiftWhileTheAxisMovesAndNoLongerThan60MsAfter) {
+  const auto moves = [](AxisTruth& truth) {
+    shifted(truth);
+    truth.velocity = 0.01;
+  };
+  lookAt(moves, 50ms);
+  lookAt(shifted, 60ms);
+  EXPECT_EQ(found(), "");
+  lookFor(10ms);
+  EXPECT_EQ(found(), "untrue_snapshot a1 +120 ms");
+}
+
+TEST_F(SnapshotTest, MayShiftWhileAZeroIsSet) {
+  call("set_position", "a1");
+  lookFor(200ms);
+  lookAt(shifted, 300ms);
+  answer("set_position", "a1");
+  lookFor(500ms);
+  EXPECT_EQ(found(), "") << "the new zero";
+  lookAt([](AxisTruth& truth) { truth.told += 2 * 9.2e-5; }, 10ms);
+  EXPECT_EQ(found(), "untrue_snapshot a1 +1010 ms") << "nobody sets one any more";
+}
+
+TEST_F(SnapshotTest, MayNotShiftForCallsThatSetNoZero) {
+  for (const char* verb : {"halt", "enable", "disable", "quick_stop", "clear_faults", "read"}) {
+    findings_.clear();
+    settle();
+    call(verb, "a1");
+    lookAt(shifted, 10ms);
+    EXPECT_EQ(found(), "untrue_snapshot a1 +10 ms") << verb;
+    answer(verb, "a1");
+  }
+}
+
+TEST_F(SnapshotTest, IsNotJudgedWhileFramesMayBeLostNorFor60MsAfter) {
+  Time Conditions::*const kinds[] = {&Conditions::lossy, &Conditions::foreign,
+                                     &Conditions::host_late};
+  for (const auto kind : kinds) {
+    findings_.clear();
+    settle();
+    conditions_.*kind = now() + 101ms;
+    lookAt(turns, 159ms);
+    EXPECT_EQ(found(), "");
+    lookFor(11ms);
+    EXPECT_EQ(found(), "untrue_snapshot a1 +160 ms");
+  }
+}
+
+TEST_F(SnapshotTest, IsNotJudgedWhileTheDriveIsCutOffOrBlockedNorFor60MsAfter) {
+  Time Conditions::Axis::*const kinds[] = {&Conditions::Axis::cut_off, &Conditions::Axis::blocked};
+  for (const auto kind : kinds) {
+    findings_.clear();
+    settle();
+    conditions_.axes[0].*kind = now() + 101ms;
+    lookAt(turns, 159ms);
+    EXPECT_EQ(found(), "");
+    lookFor(11ms);
+    EXPECT_EQ(found(), "untrue_snapshot a1 +160 ms");
+  }
+}
+
+TEST_F(SnapshotTest, IsNotJudgedOfADriveThatIsNotOperational) {
+  const auto stopped = [](AxisTruth& truth) {
+    turns(truth);
+    truth.nmt = canopen::NmtState::stopped;
+  };
+  lookAt(stopped, 500ms);
+  EXPECT_EQ(found(), "");
+}
+
+TEST_F(SnapshotTest, IsNoneWithoutADriver) {
+  stage_.host().kill();
+  lookAt(turns, 500ms);
+  EXPECT_EQ(found(), "");
+}
+
+}  // namespace
+}  // namespace cia402::campaign
