@@ -326,7 +326,8 @@ TEST_F(SnapshotTest, MayShiftWhileTheAxisMovesAndNoLongerThan60MsAfter) {
 
 TEST_F(SnapshotTest, MayShiftWhileAZeroIsSet) {
   call("set_position", "a1");
-  lookAt(shifted, 500ms);
+  lookFor(200ms);
+  lookAt(shifted, 300ms);
   answer("set_position", "a1");
   lookFor(500ms);
   EXPECT_EQ(found(), "") << "the new zero";

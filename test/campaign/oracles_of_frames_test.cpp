@@ -143,6 +143,16 @@ TEST_F(TargetStepTest, BackToWhereTheMotorStandsIsNone) {
   EXPECT_EQ(found(), "");
 }
 
+TEST_F(TargetStepTest, BackToWhereTheMotorStoodACycleAgoIsNone) {
+  target(1500);
+  truths_[0].velocity = 0.0;
+  truths_[0].told = 0.03068;
+  look();
+  truths_[0].velocity = 0.5;
+  target(1000);
+  EXPECT_EQ(found(), "") << "4 ms ago";
+}
+
 TEST_F(TargetStepTest, AwayFromWhereTheMotorStandsIsFound) {
   truths_[0].velocity = 0.0;
   truths_[0].told = 0.03068;
@@ -158,9 +168,9 @@ TEST_F(TargetStepTest, BackToWhereTheMotorStoodMoreThanACycleAgoIsFound) {
   look();
   truths_[0].velocity = 0.5;
   target(1600);
-  lookFor(1ms);
-  target(1000);
-  EXPECT_EQ(found(), "target_step a1 +14 ms");
+  look();
+  rpdos(0, {{kControlwordObject, 0x000F}, {kTargetObject, 1000}});
+  EXPECT_EQ(found(), "target_step a1 +10 ms") << "5 ms ago";
 }
 
 class FloatTest : public OracleTest {

@@ -148,6 +148,27 @@ TEST_F(PlayerTest, FindsAnAnswerThatIsNotTrueOfTheMotor) {
             "untrue_answer a1 at 2 s");
 }
 
+// --- power
+
+TEST_F(PlayerTest, ExcusesPowerThatIsLostInMotionForACause) {
+  for (const char* cause :
+       {"5 fault a1 overcurrent", "5 power a1 0.5", "5 foreign_nmt a1 reset_node"}) {
+    EXPECT_EQ(play({"2 enable a1", "4 goal g1 2.0 0.6", cause, "7 end"}), "") << cause;
+  }
+}
+
+TEST_F(PlayerTest, FindsPowerThatIsLostInMotionWithoutACause) {
+  const auto cuts = [](Tapped& player, Stage& stage) {
+    player.tap = [&stage](bus::Command&) {
+      if (stage.now() >= Time(5s)) stage.world().drive(0).powerOff(stage.now());
+    };
+  };
+  const std::string findings =
+      play({"2 enable a1", "4 goal g1 2.0 0.6", "5 read a1 6041:00", "5.1 end"},
+           playedRobot("cyclic_position"), cuts);
+  EXPECT_EQ(findings.substr(0, 28), "power_at_speed a1 at 5.001 s");
+}
+
 // --- the end of a process
 
 TEST_F(PlayerTest, FindsAProcessThatDoesNotEndInTime) {
@@ -209,6 +230,16 @@ TEST_F(PlayerTest, PermitsATrajectoryLaterByWhatTheHostStoodStill) {
 TEST_F(PlayerTest, PermitsATrajectoryThatIsRefusedNothing) {
   play({"2 enable a1", "4 goal g1 0.01 2.5", "8 end"});
   EXPECT_EQ(permitAtEnd(), 0.0);
+}
+
+TEST_F(PlayerTest, PermitsATrajectoryLaterByAsLongAsTheHostIsLateNowAndThen) {
+  EXPECT_EQ(play({"2 enable a1", "4 goal g1 3.0 0.3", "5 late 0 1", "5.001 end"}), "");
+  EXPECT_NEAR(permitAtEnd(), 4 + 3.0 + 0.25 + 1.0, 0.006);
+}
+
+TEST_F(PlayerTest, PermitsCommandsHalfASecondLongerWhileFramesAreLost) {
+  EXPECT_EQ(play({"2 enable a1", "4 goal g1 3.0 0.3", "5 loss 0 1", "5.001 end"}), "");
+  EXPECT_NEAR(permitAtEnd(), 4 + 3.0 + 0.25 + 0.5, 0.006);
 }
 
 // Halfway a cubic of 0.6 rad in 2 s has 1.5 * 0.6 / 2 = 0.45 rad/s.
