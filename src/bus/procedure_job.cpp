@@ -24,7 +24,7 @@ std::string lapse(const drive::ProcedureRequest& request, const drive::Axis& axi
     case ProcedureKind::enable:
       return enabled ? std::string() : cause + now;
     case ProcedureKind::disable:
-      return powerStageOff(state.state) ? std::string() : cause + now;
+      return powerStageOff(state.state, state.statusword) ? std::string() : cause + now;
     case ProcedureKind::clear_faults:
       return isFault(state.state) ? cause + now : std::string();
     case ProcedureKind::home:

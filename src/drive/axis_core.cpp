@@ -81,7 +81,7 @@ void AxisCore::leaveOperation() {
 
 bool AxisCore::faulted() const { return isFault(state_.state); }
 
-bool AxisCore::powerOff() const { return powerStageOff(state_.state); }
+bool AxisCore::powerOff() const { return powerStageOff(state_.state, state_.statusword); }
 
 void AxisCore::supervise(Time now) {
   if (stop_ticket_) watchStopBySdo();
