@@ -411,7 +411,12 @@ bool compatible(const Habit& a, const Habit& b) {
                           (pair.find("mode_needed") != std::string::npos ||
                            std::string(a.mode_change).find("disabled") != std::string::npos ||
                            std::string(b.mode_change).find("disabled") != std::string::npos);
-  return !share && !both_detour && !both_shown && !impossible;
+  // Nor does what takes seconds for its mode enable in time where it needs one, unless it shows it.
+  // And mode 0 is commanded for a moment on the way to another, too short to be seen by that one.
+  const bool slow = pair.find("mode_change_time") != std::string::npos &&
+                    (pair.find("mode_needed") != std::string::npos ||
+                     pair.find("mode_command: change") != std::string::npos);
+  return !share && !both_detour && !both_shown && !impossible && !slow;
 }
 
 class FieldDrives : public testing::TestWithParam<unsigned> {};
