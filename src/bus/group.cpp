@@ -48,6 +48,7 @@ Group::Group(config::GroupConfig config, std::vector<std::size_t> axes,
       notices_(axes_.size(), 0) {
   for (std::size_t axis : axes_) {
     joints_.push_back(jointOf(all[axis].config()));
+    names_.push_back(drive::jointName(all[axis].config()));
     accelerations_.push_back(drive::stopDeceleration(all[axis].config()));
     const auto tolerance = config_.tolerances.find(joints_.back().name);
     tolerances_.push_back(tolerance == config_.tolerances.end() ? config::JointTolerance()
@@ -278,7 +279,7 @@ void Group::sendSetpoints(std::vector<drive::Axis>& axes) {
     // An axis that fell out of operation holds or stops by itself; the others go on as configured.
     // Enabled again, it must not jump to where the trajectory is by now.
     if (dropped_[i] == 0 && !axes[axes_[i]].setTarget(commanded_[i].position)) {
-      refused_ = &joints_[i];
+      refused_ = &names_[i];
     }
   }
 }
@@ -310,13 +311,13 @@ std::string Group::dropReason(const std::vector<drive::Axis>& axes, std::size_t 
   const std::string reason = axis.motionRefusal();
   if (!reason.empty()) return reason;
   if (axis.noticeCount() != notices_[joint]) return axis.notice();
-  return joints_[joint].name + " fell out of operation or got another zero on the way";
+  return names_[joint] + " fell out of operation or got another zero on the way";
 }
 
 std::optional<TrajectoryOutcome> Group::checkRefusal() const {
   if (refused_ == nullptr) return std::nullopt;
   return TrajectoryOutcome{TrajectoryErrorCode::path_tolerance_violated,
-                           config_.name + ": trajectory stopped: " + refused_->name +
+                           config_.name + ": trajectory stopped: " + *refused_ +
                                " refused a set-point: it does not fit the drive or is beyond the "
                                "joint's limits"};
 }
@@ -329,7 +330,7 @@ std::optional<TrajectoryOutcome> Group::checkPath(const std::vector<drive::Axis>
     if (began_ < state.stamp && std::abs(error) > tolerances_[i].trajectory) {
       return TrajectoryOutcome{
           TrajectoryErrorCode::path_tolerance_violated,
-          config_.name + ": trajectory stopped: " + joints_[i].name + " is " +
+          config_.name + ": trajectory stopped: " + names_[i] + " is " +
               motion::formatNumber(std::abs(error)) + " " + motion::toString(joints_[i].unit) +
               " off its path, the tolerance is " + motion::formatNumber(tolerances_[i].trajectory)};
     }
@@ -350,7 +351,7 @@ std::optional<TrajectoryOutcome> Group::checkGoal(const std::vector<drive::Axis>
     if (error <= (judged ? tolerances_[i].goal : kArrived)) continue;
     if (clock_.time() < trajectory_->endTime() + fromSeconds(config_.goal_time))
       return std::nullopt;
-    const std::string where = joints_[i].name + " is " + motion::formatNumber(error) + " " +
+    const std::string where = names_[i] + " is " + motion::formatNumber(error) + " " +
                               motion::toString(joints_[i].unit) + " away";
     if (judged) {
       return TrajectoryOutcome{TrajectoryErrorCode::goal_tolerance_violated,

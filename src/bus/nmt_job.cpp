@@ -45,7 +45,7 @@ std::string refusal(drive::Axis& axis, const std::string& word, NmtCommand comma
   }
   if (axis.node().health() != NodeHealth::ready) return {};
   const drive::AxisState& state = axis.state();
-  if (state.feedback_valid && drive::powerStageOff(state.state)) return {};
+  if (state.feedback_valid && drive::powerStageOff(state.state, state.statusword)) return {};
   return refused + "the axis is not disabled (" +
          (state.feedback_valid ? toString(state.state) : "no fresh statusword") +
          "), and NMT does not stop a motor: what a drive does without set-points is its own "

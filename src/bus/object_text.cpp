@@ -51,11 +51,12 @@ ObjectText describeUnlisted(const Bytes& data) {
   ObjectText text;
   const bool long_text = data.size() > 8 && isPrintable(data);
   text.value = long_text ? textOf(data) : bytesOf(data);
-  if (data.empty() || long_text) return text;
+  if (data.empty()) return text;
   text.value += std::string(" (") +
                 (data.size() == 1 ? "1 byte" : std::to_string(data.size()) + " bytes") +
-                (isPrintable(data) ? ", as text " + textOf(data) : "") +
-                "; its type is not known: give it behind the object, e.g. u16, i32, f32, text)";
+                (isPrintable(data) && !long_text ? ", as text " + textOf(data) : "") +
+                "; its type is not known: give it behind the object, e.g. " +
+                (long_text ? "text, bytes)" : "u16, i32, f32, text)");
   return text;
 }
 

@@ -32,7 +32,7 @@ std::string lapse(const drive::ProcedureRequest& request, const drive::Axis& axi
     case ProcedureKind::enable:
       return enabled ? std::string() : cause + now;
     case ProcedureKind::disable:
-      if (!powerStageOff(state.state)) return cause + now;
+      if (!powerStageOff(state.state, state.statusword)) return cause + now;
       return axis.mayMove() ? cause + motionOf(state) : std::string();
     case ProcedureKind::clear_faults:
       return isFault(state.state) ? cause + now : std::string();

@@ -45,7 +45,7 @@ void Robot::run(ProcedureCommand& command, Reply reply, Time now) {
     const bool named = axis.name == command.axis;
     const bool concerned = command.axis.empty() && (!homing || axis.homing);
     if (concerned && axes_[i].node().excused()) {
-      left_out += "; " + axis.name + " is optional and not there, it was left out";
+      left_out += "; " + drive::jointName(axis) + " is optional and not there, it was left out";
       continue;
     }
     if (!named && !concerned) continue;

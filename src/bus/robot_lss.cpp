@@ -45,7 +45,7 @@ std::string Robot::motionOnBus() const {
     const drive::AxisState& state = axis.state();
     if (state.health != NodeHealth::ready) continue;
     const bool still = std::abs(state.velocity) < axis.config().standstill_velocity;
-    if (!still && !(state.feedback_valid && drive::powerStageOff(state.state))) {
+    if (!still && !(state.feedback_valid && drive::powerStageOff(state.state, state.statusword))) {
       return "refused: " + drive::whoIs(axis.config()) + " may be in motion; stop it first";
     }
   }
@@ -219,7 +219,7 @@ std::string Robot::notDisabled(std::size_t index) const {
     return who + " is not disabled for good: " + toString(procedure.kind) + " runs (" +
            procedure.step + ")";
   }
-  const bool off = state.feedback_valid && drive::powerStageOff(state.state);
+  const bool off = state.feedback_valid && drive::powerStageOff(state.state, state.statusword);
   return state.health == NodeHealth::ready && !off ? who + " is not disabled" : std::string();
 }
 

@@ -161,7 +161,10 @@ void Robot::tellProblem(std::size_t axis, Time now) {
   const bool noticed = news.notices != axes_[axis].noticeCount();
   const bool told_by_health = !node.problem().empty();
   news.notices = axes_[axis].noticeCount();
-  if (noticed && !told_by_health) tell(Event::Severity::error, axes_[axis].notice(), now);
+  if (noticed && !told_by_health) {
+    tell(axes_[axis].noticeWarns() ? Event::Severity::warning : Event::Severity::error,
+         axes_[axis].notice(), now);
+  }
   const std::uint32_t version = news.words.version;
   news.words.say(&AxisWords::problem, problem);
   if (news.words.version == version) return;

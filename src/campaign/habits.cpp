@@ -20,8 +20,10 @@ constexpr const char* kForgetful = "shown: enabled, again: same";  // what is to
 constexpr const char* kDisablingDetour = "detours: {profile_velocity: {cyclic_position: disabled}}";
 
 // docs/simulated_drives.md says what each is. Left out is what costs more than a history has time
-// for (modes and searches of seconds, a power cycle after each save), what holds the whole bus, and
-// what hides from the statusword that there is power.
+// for (modes and searches of seconds, a power cycle after each save), what holds the whole bus,
+// what hides from the statusword that there is power, what fixes the homing method, which is drawn
+// beside (homing_is_fixed), and what only acts where the drive holds a bad COB-ID, which nobody
+// here writes (misleading_cob_id_abort).
 constexpr Habit kHabits[] = {
     {"mode", "quirks", "mode_shown_when_enabled: true", "shown: enabled", ""},
     {"mode", "quirks", "mode_command: enabled", kForgetful, ""},
@@ -36,8 +38,13 @@ constexpr Habit kHabits[] = {
     {"detour", "quirks", "mode_faults: [[3, 8]]", kDisablingDetour, ""},
     {"fault", "quirks", "fault_bits: 0x0040", "", ""},
     {"vendor", "quirks", "vendor_bits: 0xC100", "", ""},
+    {"vendor", "quirks", "vendor_bits: 0x8200", "", ""},
+    {"target", "quirks", "homing_reaches_no_target: true", "",
+     "modes: {homing: {status_bits: {target_reached: ~}}}"},
     {"reset", "quirks", "fault_reset_tries: 3", "", "fault_reset_tries: 3"},
     {"reset", "quirks", "fault_reset_needs_stop: 0.1", "", "fault_reset_nmt_stop: 0.1"},
+    {"history", "quirks", "fault_reset_needs_empty_history: true", "",
+     "fault_reset_clears_history: true"},
     {"edge", "quirks", "reset_edge_time: 0.001", "", ""},
     {"register", "quirks", "no_generic_error_bit: true", "", ""},
     {"chatter", "quirks", "emergency_chatter: true", "", ""},

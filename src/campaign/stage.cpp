@@ -56,10 +56,13 @@ std::vector<RpdoPlace> rpdosOf(const Loaded& loaded) {
   return places;
 }
 
+/// `~` takes a key away.
 void merge(YAML::Node onto, const YAML::Node& more) {
   for (const auto& pair : more) {
     const auto key = pair.first.as<std::string>();
-    if (pair.second.IsMap() && onto[key] && onto[key].IsMap()) {
+    if (pair.second.IsNull()) {
+      onto.remove(key);
+    } else if (pair.second.IsMap() && onto[key] && onto[key].IsMap()) {
       merge(onto[key], pair.second);
     } else {
       onto[key] = pair.second;

@@ -50,9 +50,7 @@ class Writes : public BootStep {
   bool leaveOut(BootContext& boot) const {
     const StartupWrite& write = boot.config.writes[item_];
     const std::uint32_t abort = boot.refused() ? boot.ticket->abortCode() : 0;
-    const bool lacks = abort == abort_code::kNoSuchObject || abort == abort_code::kNoSuchSubindex ||
-                       abort == abort_code::kReadOnly || abort == abort_code::kNotMappable;
-    if (!lacks || !(write.optional || write.by_default)) return false;
+    if (!abort_code::saysLacking(abort) || !(write.optional || write.by_default)) return false;
     (write.by_default && !write.optional ? boot.found.lacking : boot.found.lacking_optional)
         .push_back(objectText(write.object, write.name));
     return true;

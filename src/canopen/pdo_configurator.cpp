@@ -309,6 +309,13 @@ void PdoConfigurator::failTransfer(const SdoTransfer& transfer) {
   } else if (phase_ == Phase::read_cob_id &&
              transfer.failure() == SdoTransfer::Failure::aborted_by_server) {
     reason += "; the drive has no such PDO, use another number";
+  } else if (phase_ == Phase::write_entry && abort_code_ == abort_code::kNotMappable &&
+             (cob_id_ & kCanIdMask) != wanted_.cob_id) {
+    // maxon EPOS4 takes a COB-ID that it cannot have, and refuses the mapping for it.
+    reason += "; if it can be mapped, the cause may be that " +
+              toString(ObjectId{communication_, 1}) + " still holds the COB-ID " +
+              hex(cob_id_ & kCanIdMask, 8) +
+              ": write a valid one there first, or restore the drive's parameters (1011h)";
   } else if (phase_ == Phase::write_count && !timed_out_) {
     // Drives check the entries when they are written, or all of them only now.
     for (std::size_t i = 0; i < wanted_.entries.size(); ++i) {

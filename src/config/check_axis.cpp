@@ -139,7 +139,15 @@ void checkHoming(YamlSection& section, const AxisConfig& axis, RobotConfig& robo
     method->problem("profile " + axis.profile->name + " has no method " +
                     std::to_string(*axis.homing->method) + "; it has " + known);
   }
-  const double offset = axis.homing->offset;
+  for (const drive::NamedWrite& write : spec.writes) {
+    const std::string key = write.from.substr(write.from.find('.') + 1);
+    // The method is known beside, and the driver counts an offset itself.
+    if (key == "method" || key == "offset" || !homing_section.has(key)) continue;
+    if (!drive::saidToLack(axis, write.object)) continue;
+    homing_section.get(key)->problem("`lacks` says that the drive has no `" + write.object +
+                                     "` to take it; remove one of the two");
+  }
+  const double offset = axis.homing->atHome();
   if ((axis.limits.lower && offset < *axis.limits.lower) ||
       (axis.limits.upper && offset > *axis.limits.upper)) {
     robot.warnings.push_back(homing.path() +

@@ -131,9 +131,7 @@ enum class AskedBy { profile, user };
 void addWrites(const std::vector<drive::NamedWrite>& writes, AskedBy who, const AxisConfig& axis,
                const std::string& path, NodeConfig& node, Problems& problems) {
   for (const drive::NamedWrite& write : writes) {
-    const bool lacking =
-        std::find(axis.lacks.begin(), axis.lacks.end(), write.object) != axis.lacks.end();
-    if (who == AskedBy::profile && lacking) continue;
+    if (who == AskedBy::profile && drive::saidToLack(axis, write.object)) continue;
     // The axis does that once it is homed; one that need not be is so from the start.
     if (write.when_homed && axis.homing && axis.homing->required) continue;
     const auto resolved = drive::resolveWrite(write, axis);

@@ -38,6 +38,12 @@ std::string plain(std::uint64_t raw, unsigned bits, bool is_signed) {
   return raw < 10 && !is_signed ? decimal : decimal + " (" + hexNumber(raw, (bits + 7) / 8) + ")";
 }
 
+/// Drives written in C pad their texts with zeros.
+Bytes unpadded(Bytes data) {
+  while (data.size() > 1 && data.back() == 0) data.pop_back();
+  return data;
+}
+
 bool isWhole(const ObjectSpec& spec) { return !drive::holdsFloat(spec.type, spec.encoding); }
 
 }  // namespace
@@ -172,6 +178,7 @@ std::string ValueText::describe(ObjectId object, const Bytes& data) const {
   const Known* known = find(object);
   const unsigned bits = known == nullptr ? 0 : canopen::sizeBits(known->spec->type);
   const auto size = static_cast<unsigned>(data.size());
+  if (known == nullptr && canopen::isStandardText(object)) return bytesText(unpadded(data));
   if (known == nullptr) {
     return size == 0 || size == 3 || size > 4
                ? bytesText(data)

@@ -231,5 +231,6 @@ void Axis::onBusLost(const std::string& why) {
 std::string Axis::faultText() const { return impl_->core.faultText(); }
 std::string Axis::unknownText() const { return impl_->core.unknownText(); }
 const std::string& Axis::notice() const { return impl_->core.notice(); }
+bool Axis::noticeWarns() const { return impl_->core.noticeWarns(); }
 
 }  // namespace cia402::drive

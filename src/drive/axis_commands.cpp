@@ -28,7 +28,8 @@ std::uint64_t AxisCore::targetFrames() const {
 std::uint16_t AxisCore::silentControlword() const {
   const bool stopped =
       state_.state == State::quick_stop_active && atStandstill() && !config_.quick_stop_holds;
-  if (powerOff() || stopped || state_.state == State::switched_on || faulted()) return 0;
+  const bool reacting = state_.state == State::fault_reaction_active;
+  if (powerOff() || stopped || state_.state == State::switched_on || reacting) return 0;
   return controlword::kEnableVoltage;  // quick stop
 }
 
@@ -38,7 +39,10 @@ std::uint16_t AxisCore::composeControlword() {
   // An undecodable word is no reason to switch anything off: the last command stands.
   if (state_.state != State::unknown || goal_ != Goal::enabled) {
     if (state_.state != commanded_in_ || goal_ != commanded_for_) {
-      command_ = nextCommand(state_.state, goal_);
+      // A fault in which there may be power is none in which an axis is let go.
+      const bool maybe_powered = state_.state == State::fault && !powerOff();
+      command_ = maybe_powered ? nextCommand(State::unknown, Goal::quick_stop)
+                               : nextCommand(state_.state, goal_);
       commanded_in_ = state_.state;
       commanded_for_ = goal_;
     }

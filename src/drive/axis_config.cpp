@@ -31,6 +31,13 @@ std::string whoIs(const AxisConfig& axis) {
                         : axis.name + " (" + node;
 }
 
+bool saidToLack(const AxisConfig& axis, const std::string& object) {
+  if (axis.lacks.empty()) return false;
+  const ObjectSpec* known = findObject(*axis.profile, object);
+  const std::string& name = known != nullptr ? known->name : object;
+  return std::find(axis.lacks.begin(), axis.lacks.end(), name) != axis.lacks.end();
+}
+
 const ModeSpec* trajectoryMode(const AxisConfig& axis) {
   const DriveProfile& profile = *axis.profile;
   const auto sent = [&](const std::string& target) {

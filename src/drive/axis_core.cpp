@@ -81,7 +81,7 @@ void AxisCore::leaveOperation() {
 
 bool AxisCore::faulted() const { return isFault(state_.state); }
 
-bool AxisCore::powerOff() const { return powerStageOff(state_.state); }
+bool AxisCore::powerOff() const { return powerStageOff(state_.state, state_.statusword); }
 
 void AxisCore::supervise(Time now) {
   if (stop_ticket_) watchStopBySdo();
@@ -197,7 +197,15 @@ void AxisCore::watchStopBySdo() {
 
 void AxisCore::notify(std::string text) {
   notice_ = std::move(text);
+  notice_warns_ = false;
   ++notices_;
+}
+
+void AxisCore::warnOnce(std::string text) {
+  if (std::find(warned_.begin(), warned_.end(), text) != warned_.end()) return;
+  warned_.push_back(text);
+  notify(std::move(text));
+  notice_warns_ = true;
 }
 
 void AxisCore::declarePosition(double value) {

@@ -202,6 +202,9 @@ class AxisCore {
   const std::string& notice() const { return notice_; }
   const std::uint32_t& noticeCount() const { return notices_; }
   void notify(std::string text);
+  /// A notice of what stops nothing, told once.
+  void warnOnce(std::string text);
+  bool noticeWarns() const { return notice_warns_; }
 
  private:
   void readState(Time now);
@@ -317,6 +320,8 @@ class AxisCore {
   ErrorEvidence errors_;
   canopen::SdoTicket stop_ticket_;
   std::string failure_, notice_;
+  bool notice_warns_ = false;
+  std::vector<std::string> warned_;  ///< of warnOnce()
   std::uint32_t notices_ = 0;
 };
 

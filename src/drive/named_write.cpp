@@ -30,14 +30,21 @@ std::optional<double> limit(const std::string& name, const AxisLimits& limits, b
   return {};
 }
 
-// An option that is 0 was not configured; the offset counts always.
+// An option that is 0 was not configured; the offset counts always, as 0 by default.
 std::optional<double> homing(const std::string& name, const HomingOptions& options) {
   const auto positive = [](double v) { return v > 0.0 ? std::optional<double>(v) : std::nullopt; };
   if (name == "homing.search_velocity") return positive(options.search_velocity);
   if (name == "homing.zero_velocity") return positive(options.zero_velocity);
   if (name == "homing.acceleration") return positive(options.acceleration);
-  if (name == "homing.offset") return options.offset;
+  if (name == "homing.offset") return options.atHome();
   return {};
+}
+
+/// Is it an option of the axis' `homing` section that it has?
+bool asksForHoming(const std::string& from, const AxisConfig& axis) {
+  if (!axis.homing) return false;
+  if (from == "homing.offset") return axis.homing->offset.has_value();
+  return from == "homing.method" || homing(from, *axis.homing).has_value();
 }
 
 Source configured(const NamedWrite& write, const AxisConfig& axis, bool reversed) {
@@ -148,7 +155,7 @@ Result<std::optional<ResolvedWrite>> resolveWrite(const NamedWrite& write, const
     return refuse(axis, write.object, "the profile names no value that holds (quick_stop_holds)");
   }
   resolved.optional = write.optional && !hold;  // what was asked for is done or told
-  resolved.asked_for = hold;
+  resolved.asked_for = hold || asksForHoming(write.from, axis);
   resolved.name =
       (object != nullptr ? object->name + " " : "") + "(" + canopen::toString(*id) + ")";
 

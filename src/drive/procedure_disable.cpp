@@ -22,7 +22,7 @@ class Disable : public Procedure {
       switchOff(context);
       return Outcome::running();
     }
-    const bool faulted = axis.faulted() && axis.state().state == State::fault;
+    const bool faulted = axis.state().state == State::fault && axis.powerOff();
     if (faulted || axis.state().state == State::switch_on_disabled) {
       if (axis.mayMove()) return awaitRest(context);
       return finish(axis, faulted);

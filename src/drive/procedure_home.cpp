@@ -17,7 +17,7 @@ class DeclareZero : public Procedure {
     AxisCore& axis = context.axis;
     const Outcome declared = declaring_.advance(context);
     if (!declared.isDone()) return declared;
-    const double offset = axis.config().homing->offset;
+    const double offset = axis.config().homing->atHome();
     const bool prismatic = axis.config().geometry.type == AxisGeometry::Type::prismatic;
     return Outcome::done(jointName(axis.config()) +
                          ": homed by declaring the present position to be " +
@@ -58,7 +58,7 @@ Result<std::unique_ptr<Procedure>> makeHome(AxisCore& axis) {
   switch (axis.profile().homing.kind) {
     case HomingSpec::Kind::declare_zero:
       return std::unique_ptr<Procedure>(
-          std::make_unique<DeclareZero>(axis.config().homing->offset));
+          std::make_unique<DeclareZero>(axis.config().homing->atHome()));
     case HomingSpec::Kind::drive:
       return makeDriveHoming(axis);
     case HomingSpec::Kind::none:

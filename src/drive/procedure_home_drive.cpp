@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "cia402_driver/canopen/abort_code.h"
 #include "sentence.h"
 
 namespace cia402::drive {
@@ -171,9 +172,10 @@ void DriveHoming::succeed(const Context& context) {
   AxisCore& axis = context.axis;
   end_ = context.now;
   const ObjectSpec* object = axis.profile().find(canopen::ObjectId{0x607C, 0});
-  if (offsetIsWritten(axis)) {
-    adopt(context, axis.config().homing->offset);
-  } else if (object != nullptr && object->readable) {
+  const bool lacks = object == nullptr || saidToLack(axis.config(), object->name);
+  if (offsetIsWritten(axis) && !writes_.leftOut("homing.offset")) {
+    adopt(context, axis.config().homing->atHome());
+  } else if (!lacks && object->readable) {
     offset_ = axis.node().sdo().upload(object->id, object->name);
     enter(Phase::reading_offset, context);
     context.show("reading the home offset", "607C:00 home offset");
@@ -184,6 +186,13 @@ void DriveHoming::succeed(const Context& context) {
 
 Outcome DriveHoming::readOffset(const Context& context) {
   if (!offset_->done()) return Outcome::running();
+  const bool missing = offset_->failure() == canopen::SdoTransfer::Failure::aborted_by_server &&
+                       (offset_->abortCode() == canopen::abort_code::kNoSuchObject ||
+                        offset_->abortCode() == canopen::abort_code::kNoSuchSubindex);
+  if (missing) {  // the home position is its zero then
+    adopt(context, context.axis.objects().position.conversion.toJoint(0));
+    return Outcome::running();
+  }
   if (!offset_->ok() || offset_->data().size() > 8) {
     giveUp(context, "home was found, but the home offset could not be read: " + offset_->message());
     return Outcome::running();
@@ -196,7 +205,7 @@ Outcome DriveHoming::readOffset(const Context& context) {
 void DriveHoming::adopt(const Context& context, double home_in_drive) {
   AxisCore& axis = context.axis;
   axis.setHomingStart(false);
-  axis.adoptDriveZero(axis.config().homing->offset - home_in_drive);
+  axis.adoptDriveZero(axis.config().homing->atHome() - home_in_drive);
   enter(Phase::settling, context);
   context.show("home found", "standstill");
 }

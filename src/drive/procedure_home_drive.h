@@ -15,8 +15,8 @@ namespace cia402::drive {
 /// The profile writes 607Ch from `homing.offset`, that is the device value of the joint position
 /// `homing.offset` under the configured `position_offset`; the drive then sets 6064h = 607Ch at
 /// home, so the joint reads `homing.offset` there and device zero stays at `position_offset`. Where
-/// the profile does not write 607Ch, it is read (0 if there is none) and the joint's zero is
-/// shifted in software by what is missing.
+/// the profile does not write 607Ch, or the drive does not take it, it is read (0 if there is none)
+/// and the joint's zero is shifted in software by what is missing.
 class DriveHoming : public Procedure {
  public:
   DriveHoming(AxisCore& axis, const ModeChannel& homing);

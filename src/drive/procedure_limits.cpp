@@ -57,8 +57,11 @@ struct Steps {
   Duration reset() const {
     const Duration once =
         5 * timing.state_change + FaultResetStep::kInterval + FaultResetStep::kWatch;
-    if (profile.fault_reset_nmt_stop == Duration::zero()) return profile.fault_reset_tries * once;
-    return (profile.fault_reset_tries + 1) * once + FaultResetStep::pause(profile);
+    const Duration clearing = profile.fault_reset_clears_history ? transfer() : Duration(0);
+    if (profile.fault_reset_nmt_stop == Duration::zero()) {
+      return clearing + profile.fault_reset_tries * once;
+    }
+    return clearing + (profile.fault_reset_tries + 1) * once + FaultResetStep::pause(profile);
   }
   Duration boot() const { return kBootTimes * timing.boot; }
   Duration declare() const { return 2 * kStanding + 2 * limits(); }

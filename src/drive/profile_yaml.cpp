@@ -202,6 +202,7 @@ void readBehaviour(YamlSection& section, DriveProfile& profile) {
   section.readInteger("fault_reset_tries", profile.fault_reset_tries, 1, 20);
   readDuration(section, "fault_reset_nmt_stop", Range{0.0, 10.0, false},
                profile.fault_reset_nmt_stop);
+  section.read("fault_reset_clears_history", profile.fault_reset_clears_history);
   section.read("nmt_reset_node", profile.nmt_reset_node);
   readQuickStop(section, profile);
   readSync(section, profile);

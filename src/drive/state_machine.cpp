@@ -24,8 +24,10 @@ constexpr StateCode kStateCodes[] = {
     {0x006F, 0x0007, State::quick_stop_active},       // xxxx xxxx x00x 0111
     {0x004F, 0x000F, State::fault_reaction_active},   // xxxx xxxx x0xx 1111
     {0x004F, 0x0008, State::fault},                   // xxxx xxxx x0xx 1000
-    // And bit 6, such as 0x0248 (Technosoft iPOS8020): a fault reset is what helps.
-    {0x000F, 0x0008, State::fault},  // xxxx xxxx xxxx 1000
+    // Bit 3 with bits of no state, such as 0x0248 (Technosoft iPOS8020): a fault reset is what
+    // helps.
+    {0x000F, 0x000F, State::fault_reaction_active},  // xxxx xxxx xxxx 1111
+    {0x0008, 0x0008, State::fault},                  // xxxx xxxx xxxx 1xxx
 };
 
 constexpr const char* kStateNames[kStates] = {"not ready to switch on",
@@ -106,9 +108,11 @@ const char* toString(State state) {
   return kStateNames[index < kStates ? index : kStates - 1];
 }
 
-bool powerStageOff(State state) {
+bool powerStageOff(State state, std::uint16_t statusword) {
+  constexpr std::uint16_t kInOperation = 0x0007;
+  if (state == State::fault) return (statusword & kInOperation) == 0;
   return state == State::switch_on_disabled || state == State::ready_to_switch_on ||
-         state == State::fault || state == State::not_ready_to_switch_on;
+         state == State::not_ready_to_switch_on;
 }
 
 State decodeState(std::uint16_t statusword) {

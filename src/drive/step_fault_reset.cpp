@@ -107,6 +107,12 @@ Outcome FaultResetStep::awaitPause(const Context& context) {
                            seconds(context.now - since_) + ": " + axis.feedbackText());
 }
 
+Outcome FaultResetStep::awaitReaction(const Context& context) {
+  enter(Phase::reacting, context);
+  context.show("waiting for the fault reaction to end", "the drive to show fault");
+  return Outcome::running();
+}
+
 Outcome FaultResetStep::advance(const Context& context) {
   AxisCore& axis = context.axis;
   const Duration waited = context.now - since_;
@@ -117,9 +123,13 @@ Outcome FaultResetStep::advance(const Context& context) {
       code_ = axis.state().error_code;
       axis.setGoal(Goal::disabled);
       axis.setFaultReset(false);
-      enter(Phase::reacting, context);
-      context.show("waiting for the fault reaction to end", "the drive to show fault");
+      if (!axis.profile().fault_reset_clears_history) return awaitReaction(context);
+      clearing_ = axis.node().sdo().download({0x1003, 0}, {0}, "error history");
+      enter(Phase::clearing, context);
+      context.show("clearing the error history", "the drive to take 1003:00 = 0");
       return Outcome::running();
+    case Phase::clearing:  // a drive that refuses it may still take the reset
+      return clearing_->done() ? awaitReaction(context) : Outcome::running();
     case Phase::reacting:
       if (axis.state().state == State::fault_reaction_active) {
         if (waited <= limit) return Outcome::running();

@@ -8,8 +8,9 @@ namespace cia402::drive {
 /// Fault reset (transition 15) with a proper edge: controlword bit 7 low on the wire, then high
 /// until the drive has left the fault or the time is over, then low again, then a moment in which
 /// the fault may come back. Edges are at least kInterval apart, whoever asks for them. Where the
-/// profile says so it is tried several times (`fault_reset_tries`), and once more after the node
-/// was taken through NMT stop and start (`fault_reset_nmt_stop`).
+/// profile says so the error history is cleared before (`fault_reset_clears_history`), it is tried
+/// several times (`fault_reset_tries`), and once more after the node was taken through NMT stop and
+/// start (`fault_reset_nmt_stop`).
 class FaultResetStep {
  public:
   static constexpr Duration kInterval{std::chrono::seconds(1)};
@@ -20,9 +21,10 @@ class FaultResetStep {
   static Duration pause(const DriveProfile& profile);
 
  private:
-  enum class Phase { begin, reacting, low, high, low_again, watching, paused };
+  enum class Phase { begin, clearing, reacting, low, high, low_again, watching, paused };
   void enter(Phase phase, const Context& context);
   Outcome fail(const Context& context, const std::string& why) const;
+  Outcome awaitReaction(const Context& context);
   Outcome cameBack(const Context& context);
   Outcome awaitReset(const Context& context);
   Outcome awaitNews(const Context& context);
@@ -37,6 +39,7 @@ class FaultResetStep {
   std::uint16_t code_ = 0;
   std::uint64_t frames_ = 0;
   Time since_{};
+  canopen::SdoTicket clearing_;
 };
 
 /// Something that a fault reset could clear.

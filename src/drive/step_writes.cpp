@@ -1,11 +1,32 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "step_writes.h"
 
+#include <algorithm>
 #include <utility>
 
+#include "cia402_driver/canopen/abort_code.h"
 #include "cia402_driver/drive/object_value.h"
+#include "cia402_driver/drive/profile_reader.h"
 
 namespace cia402::drive {
+namespace {
+
+/// Some drives answer nothing for what they do not have.
+canopen::SdoOptions ifThere(const DriveProfile& profile) {
+  canopen::SdoOptions options;
+  options.timeout = profile.timing.sdo;
+  options.retries = std::max(profile.timing.sdo_retries, 2);
+  options.silence_is_missing = true;
+  return options;
+}
+
+/// The drive refused it, as it does not have the object or does not let it be written.
+bool lacking(const canopen::SdoTransfer& answer) {
+  return answer.failure() == canopen::SdoTransfer::Failure::aborted_by_server &&
+         canopen::abort_code::saysLacking(answer.abortCode());
+}
+
+}  // namespace
 
 Outcome WriteStep::advance(const Context& context) {
   while (true) {
@@ -16,8 +37,9 @@ Outcome WriteStep::advance(const Context& context) {
     }
     if (!ticket_->done()) return Outcome::running();
     const canopen::SdoTicket answer = std::exchange(ticket_, nullptr);
-    if (!answer->ok() && !current_.optional) {
-      return Outcome::failed(context.axis.who() + ": " + answer->message());
+    if (!answer->ok() && !current_.optional && !mayLeaveOut(context, *answer)) {
+      return Outcome::failed(context.axis.who() + ": " + answer->message() +
+                             (lacking(*answer) ? advice(context) : ""));
     }
     if (answer->ok() && answer->direction() == canopen::SdoTransfer::Direction::upload) {
       if (copy(context, answer->data())) continue;
@@ -40,7 +62,9 @@ bool WriteStep::begin(const Context& context, Outcome& problem) {
     problem = Outcome::failed(context.axis.who() + ": " + resolved.error().message);
     return false;
   }
-  if (!resolved->has_value()) {
+  const bool lacks = saidToLack(context.axis.config(), (*writes_)[next_].object);
+  if (!resolved->has_value() || lacks) {
+    if (lacks) left_out_.push_back((*writes_)[next_].from);
     ++next_;
     return true;
   }
@@ -52,6 +76,29 @@ bool WriteStep::begin(const Context& context, Outcome& problem) {
     write(context, wireBytes(current_.raw, current_.type));
   }
   return true;
+}
+
+bool WriteStep::mayLeaveOut(const Context& context, const canopen::SdoTransfer& answer) {
+  if (current_.asked_for || !lacking(answer)) return false;
+  left_out_.push_back((*writes_)[next_].from);
+  context.axis.warnOnce(context.axis.who() + ": " + current_.name +
+                        " is left out, for only a default asks for it and the drive does not take "
+                        "it: " +
+                        answer.reason() + advice(context));
+  return true;
+}
+
+/// The key that says that the drive does not have the object.
+std::string WriteStep::advice(const Context& context) const {
+  const AxisConfig& axis = context.axis.config();
+  const ObjectSpec* object = findObject(*axis.profile, (*writes_)[next_].object);
+  if (object == nullptr) return {};
+  return "; `lacks: [" + object->name + "]` of axes/" + axis.name +
+         " says that the drive does without it";
+}
+
+bool WriteStep::leftOut(const std::string& from) const {
+  return std::find(left_out_.begin(), left_out_.end(), from) != left_out_.end();
 }
 
 /// @return false for NaN and infinity, which are never sent.
@@ -72,7 +119,10 @@ void WriteStep::write(const Context& context, canopen::Bytes bytes) {
   if (slot != canopen::kNoSlot && bytes.size() <= 8) {
     mapped_.push_back({slot, canopen::toUnsigned(bytes)});
   }
-  ticket_ = context.axis.node().sdo().download(current_.object, std::move(bytes), current_.name);
+  const bool by_default = !current_.asked_for && !current_.optional;
+  ticket_ = context.axis.node().sdo().download(
+      current_.object, std::move(bytes), current_.name,
+      by_default ? std::optional(ifThere(context.axis.profile())) : std::nullopt);
 }
 
 }  // namespace cia402::drive

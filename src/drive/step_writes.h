@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "cia402_driver/drive/named_write.h"
@@ -9,7 +10,8 @@
 namespace cia402::drive {
 
 /// Writes objects by SDO one after the other, copying what has to be copied. An abort by the drive
-/// fails, unless the write is optional.
+/// fails, unless the write is optional. What `lacks` of the axis names is not written; what only a
+/// default asks for is left out with a warning where the drive does not have it.
 class WriteStep {
  public:
   explicit WriteStep(const std::vector<NamedWrite>& writes) : writes_(&writes) {}
@@ -20,8 +22,12 @@ class WriteStep {
     std::uint64_t raw;
   };
   const std::vector<Mapped>& mapped() const { return mapped_; }
+  /// Was the write of what NamedWrite::from calls `from` left out?
+  bool leftOut(const std::string& from) const;
 
  private:
+  bool mayLeaveOut(const Context& context, const canopen::SdoTransfer& answer);
+  std::string advice(const Context& context) const;
   bool begin(const Context& context, Outcome& problem);
   bool copy(const Context& context, canopen::Bytes bytes);
   void write(const Context& context, canopen::Bytes bytes);
@@ -31,6 +37,7 @@ class WriteStep {
   ResolvedWrite current_;
   canopen::SdoTicket ticket_;
   std::vector<Mapped> mapped_;
+  std::vector<std::string> left_out_;  ///< NamedWrite::from
 };
 
 }  // namespace cia402::drive

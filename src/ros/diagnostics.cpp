@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "cia402_driver/ros/diagnostics.h"
 
+#include <diagnostic_msgs/DiagnosticArray.h>
 #include <ros/console.h>
 
 #include <cmath>
@@ -126,7 +127,8 @@ Diagnostics::Diagnostics(ros::NodeHandle& node, ros::NodeHandle& private_node,
       robot_(robot),
       snapshot_(runner.snapshot()),
       link_(link),
-      updater_(node, private_node) {
+      updater_(node, private_node),
+      topic_(node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1)) {
   updater_.setHardwareID(robot.bus.interface);
   updater_.add("bus", this, &Diagnostics::reportBus);
   for (std::size_t i = 0; i < robot.axes.size(); ++i) {
@@ -144,7 +146,7 @@ void Diagnostics::update() {
 }
 
 void Diagnostics::reportBus(Status& status) {
-  runner_.look();  // what the next report will show
+  if (topic_.getNumSubscribers() > 0) runner_.look();  // what the next report will show
   const bus::CycleStatistics& cycle = snapshot_.statistics;
   if (snapshot_.bus_state == can::BusState::error_active) {
     status.summary(DiagnosticStatus::OK, snapshot_.bus_text.str());

@@ -26,6 +26,7 @@ DriveCore::DriveCore(const DriveDefinition& definition, const AxisMechanics& mec
     : definition_(definition),
       mechanics_(mechanics),
       values_(definition, dictionary, mechanics.counts_per_turn),
+      history_count_(dictionary.find({0x1003, 0})),
       motion_(definition, mechanics, values_),
       reports_(reports) {
   causes_.reserve(16);
@@ -296,6 +297,8 @@ std::uint32_t DriveCore::refuseWrite(const Entry& entry, std::uint64_t number) c
     }
     return 0;
   }
+  const bool of_homing = entry.id.index == 0x6098 || entry.id.index == 0x6099;
+  if (definition_.quirks.homing_is_fixed && of_homing) return abort_code::kReadOnly;
   if (values_.entry(Role::homing_method) == &entry) {
     const auto& methods = definition_.homing_methods;
     const bool known = std::find(methods.begin(), methods.end(), value) != methods.end();

@@ -101,6 +101,7 @@ class DriveCore {
   const DriveDefinition& definition_;
   const AxisMechanics& mechanics_;
   DriveValues values_;
+  const Entry* history_count_;  ///< 1003h:00; nullptr: there is none
   DriveMotion motion_;
   Reports& reports_;
 

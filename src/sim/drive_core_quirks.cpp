@@ -93,6 +93,8 @@ bool DriveCore::seesResetEdge(std::uint16_t previous) {
 /// One more try to reset a fault whose cause is gone.
 bool DriveCore::mayReset() {
   const DriveQuirks& quirks = definition_.quirks;
+  const bool history = history_count_ != nullptr && history_count_->number != 0;
+  if (quirks.fault_reset_needs_empty_history && history) return false;
   if (++resets_ < quirks.fault_reset_tries) return false;
   return quirks.fault_reset_needs_stop == Duration::zero() || was_stopped_;
 }

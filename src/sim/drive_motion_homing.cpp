@@ -4,6 +4,11 @@
 #include "drive_motion.h"
 
 namespace cia402::sim {
+namespace {
+
+constexpr double kHard = 300.0;  // turns/s^2 where there is no 609Ah
+
+}  // namespace
 
 void DriveMotion::startHoming() {
   const HomingMethod* method = findHomingMethod(values_.raw(Role::homing_method, 0));
@@ -24,7 +29,7 @@ void DriveMotion::finishHoming() {
 }
 
 void DriveMotion::stepHoming(double from) {
-  const double acceleration = values_.get(Role::homing_acceleration, 0.0);
+  const double acceleration = values_.get(Role::homing_acceleration, kHard);
   const bool searching = homing_.phase() == HomingSequence::Phase::searching;
   if (homing_returning_) {
     profile_.reset(demand_, demand_velocity_);

@@ -98,7 +98,9 @@ TEST_F(ObjectTextTest, ShowsWhatNothingNamesAsBytesAndSaysSo) {
   EXPECT_TRUE(std::isnan(text.number));
   EXPECT_THAT(describeObject(nullptr, axis, {'D', 'M'}).value,
               HasSubstr("44 4D (2 bytes, as text \"DM\"; its type is not known"));
-  EXPECT_EQ(describeObject(nullptr, axis, Bytes(9, 'x')).value, "\"xxxxxxxxx\"");
+  EXPECT_EQ(describeObject(nullptr, axis, Bytes(9, 'x')).value,
+            "\"xxxxxxxxx\" (9 bytes; its type is not known: give it behind the object, e.g. text, "
+            "bytes)");
 }
 
 TEST_F(ObjectTextTest, EncodesNumbersInWireOrder) {

@@ -54,6 +54,18 @@ TEST(ProfileKeys, AreOnTopOfTheProfileOfTheirAxisAlone) {
   EXPECT_EQ(loaded->robot.axes[1].profile->fault_reset_tries, 1);
 }
 
+TEST(ProfileKeys, AreTakenAwayByANull) {
+  Habits habits;
+  habits.simulation = "quirks: {homing_reaches_no_target: true}";
+  habits.profile = "modes: {homing: {status_bits: {target_reached: ~}}}";
+  const auto loaded = loadRobot(robotWith(habits), cia402::test::configFolder());
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  const drive::ModeSpec* homing = loaded->robot.axes[0].profile->mode("homing");
+  ASSERT_NE(homing, nullptr);
+  EXPECT_FALSE(homing->target_reached_bit);
+  EXPECT_EQ(homing->homing_attained_bit, 12) << "beside it the keys stay";
+}
+
 TEST(ProfileKeys, ThatNobodyKnowsAreRefused) {
   Habits habits;
   habits.simulation = "quirks: {}";

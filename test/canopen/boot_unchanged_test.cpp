@@ -141,6 +141,16 @@ TEST_F(BootUnchanged, a_drive_that_kept_1020h_but_lost_its_heartbeat_time_is_cau
   EXPECT_THAT(node->notes(), ElementsAre(HasSubstr("its error control objects were not as")));
 }
 
+// canopen-python/canopen#395: every answer has four bytes, whatever the type.
+TEST_F(BootUnchanged, a_drive_whose_answers_have_four_bytes_is_not_configured_for_that) {
+  peer.replace("603 40 17 10 00 00 00 00 00", "583 43 17 10 00 64 00 00 00");
+  boot();
+  ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_FALSE(sentLine("603 2B 17 10 00 64 00 00 00"));
+  EXPECT_FALSE(sentLine(kAskMap));
+  EXPECT_THAT(node->notes(), IsEmpty());
+}
+
 TEST_F(BootUnchanged, a_boot_that_fails_on_its_way_leaves_no_proof) {
   peer.replace(kReadDate, kNoDate);
   config.pdos[0].entries.pop_back();

@@ -266,6 +266,10 @@ TEST(RobotMistakes, AreToldWithWhatToDo) {
        "`statusword` must be in a TPDO: the axis needs it in every cycle"},
       {"method: 17", "order: 1001, method: 17", "axes/elbow/homing/order: must be between -1000"},
       {"method: 17", "method: 17, timeout: 0", "axes/elbow/homing/timeout: must be greater than 0"},
+      {"homing: {method: 17", "lacks: [homing_acceleration], homing: {acceleration: 1, method: 17",
+       "axes/elbow/homing/acceleration: `lacks` says that the drive has no `homing_acceleration` "
+       "to "
+       "take it; remove one of the two"},
       {"node_id: 1, gear_ratio: 50.0, limits: {lower: -3.0, upper: 3.0}}\n  elbow: {node_id: 2, ",
        "node_id: 1, frame: {parent: a, child: b}}\n  elbow: {node_id: 2, frame: {parent: b, child: "
        "b}, ",

@@ -60,6 +60,16 @@ TEST(ValueText, BytesAreTextOrHexadecimal) {
   EXPECT_EQ(bytesText(Bytes(33, 'x')), "\"" + std::string(32, 'x') + "\"...");
 }
 
+// VISIBLE_STRINGs by CiA 301, 7.5.2.8 to 7.5.2.10.
+TEST(ValueText, NamesAndVersionsAreTextsHoweverShort) {
+  const ValueText values = valuesOf("shoulder");
+  EXPECT_EQ(values.describe({0x1008, 0}, Bytes{'D', 'M'}), "\"DM\"");
+  EXPECT_EQ(values.describe({0x1009, 0}, Bytes{'A'}), "\"A\"");
+  EXPECT_EQ(values.describe({0x100A, 0}, Bytes{'1', '.', '0', '2'}), "\"1.02\"");
+  EXPECT_EQ(values.describe({0x100A, 0}, Bytes{'1', '.', '0', 0}), "\"1.0\"") << "padded as in C";
+  EXPECT_EQ(values.describe({0x1008, 1}, Bytes{2}), "2") << "no such object";
+}
+
 TEST(ValueText, TitlesHoldTheName) {
   const ValueText values = valuesOf("shoulder");
   EXPECT_EQ(values.title({0x6041, 0}), "6041:00 statusword");

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <string>
 #include <utility>
 
@@ -57,17 +58,35 @@ TEST(StateMachine, IgnoresTheQuickStopBitOnlyWhereTheStandardDoes) {
   EXPECT_EQ(decodeState(0x0003), State::unknown);
 }
 
-// 0x0248: Technosoft iPOS8020 (OpenEtherCATsociety/SOEM#461); the standard has bit 6 at 0.
+// 0x0248: Technosoft iPOS8020 (OpenEtherCATsociety/SOEM#461); the standard has bit 6 at 0. Bit 3 is
+// "fault" by CiA 402-2, table of the statusword; with bits 0 to 2 all set the drive still reacts.
 TEST(StateMachine, AFaultWithBitsOfNoStateIsAFault) {
-  EXPECT_EQ(decodeState(0x0248), State::fault);
-  EXPECT_EQ(decodeState(0x004F), State::unknown);
-  EXPECT_EQ(decodeState(0xFFFF), State::unknown) << "ones everywhere are no answer";
+  for (int bits : {0x0248, 0x0048, 0x0068, 0x0009, 0x000A, 0x000B, 0x000C, 0x000D, 0x000E, 0x0029,
+                   0x0249, 0x006E}) {
+    const auto word = static_cast<std::uint16_t>(bits);
+    EXPECT_EQ(decodeState(word), State::fault) << std::hex << word;
+  }
+  for (int bits : {0x004F, 0x006F, 0x024F, 0xFFFF}) {
+    const auto word = static_cast<std::uint16_t>(bits);
+    EXPECT_EQ(decodeState(word), State::fault_reaction_active) << std::hex << word;
+  }
 }
 
 TEST(StateMachine, BitsThatMatchNoStateAreUnknown) {
-  for (int bits : {0x0002, 0x0004, 0x0005, 0x0006, 0x0009, 0x0022, 0x0061, 0x0067}) {
+  for (int bits : {0x0002, 0x0004, 0x0005, 0x0006, 0x0022, 0x0061, 0x0067, 0xFFF7}) {
     const auto word = static_cast<std::uint16_t>(bits);
     EXPECT_EQ(decodeState(word), State::unknown) << std::hex << word;
+  }
+}
+
+// Bits of "switched on" and "operation enabled" beside the fault: whether there is power nobody
+// knows.
+TEST(StateMachine, APowerStageIsOffInAFaultOnlyWhereTheStandardSaysSo) {
+  for (int bits : {0x0008, 0x0218, 0x0248, 0xFFF8 & ~0x0040}) {
+    EXPECT_TRUE(powerStageOff(State::fault, static_cast<std::uint16_t>(bits))) << bits;
+  }
+  for (int bits : {0x0009, 0x000A, 0x000C, 0x000E, 0x0249}) {
+    EXPECT_FALSE(powerStageOff(State::fault, static_cast<std::uint16_t>(bits))) << bits;
   }
 }
 
@@ -147,18 +166,21 @@ TEST(StateMachine, CommandsEveryStateTowardsEveryGoal) {
 // CiA 402-2, figure of the power drive system's states: high-level power may be switched off up to
 // "ready to switch on" and in "fault".
 TEST(StateMachine, KnowsWhereThePowerStageIsOff) {
-  const std::pair<State, bool> rows[] = {
-      {State::not_ready_to_switch_on, true},
-      {State::switch_on_disabled, true},
-      {State::ready_to_switch_on, true},
-      {State::switched_on, false},
-      {State::operation_enabled, false},
-      {State::quick_stop_active, false},
-      {State::fault_reaction_active, false},
-      {State::fault, true},
-      {State::unknown, false},
+  const std::pair<std::uint16_t, bool> rows[] = {
+      {0x0000, true},   // not ready to switch on
+      {0x0040, true},   // switch on disabled
+      {0x0021, true},   // ready to switch on
+      {0x0023, false},  // switched on
+      {0x0027, false},  // operation enabled
+      {0x0007, false},  // quick stop active
+      {0x000F, false},  // fault reaction active
+      {0x0008, true},   // fault
+      {0x0001, false},  // no state
   };
-  for (const auto& [state, off] : rows) EXPECT_EQ(powerStageOff(state), off) << toString(state);
+  for (const auto& [word, off] : rows) {
+    EXPECT_EQ(powerStageOff(decodeState(word), word), off) << std::hex << word;
+  }
+  EXPECT_FALSE(powerStageOff(State::unknown, 0)) << "no statusword yet";
 }
 
 TEST(StateMachine, NoGoalEverSetsFaultResetOrHalt) {

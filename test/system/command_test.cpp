@@ -243,5 +243,62 @@ TEST(Configuration, WithMistakesIsRefusedWithAllOfThemAtOnce) {
   EXPECT_EQ(problems.list().size(), 10u) << problems.text();
 }
 
+/// What the loader has to say of a robot's text.
+std::string problemsOf(const std::string& yaml) {
+  Problems problems;
+  const auto profiles = config::profilesIn({cia402::test::configFolder() + "/drives"});
+  config::loadRobot(YAML::Load(yaml), profiles, problems);
+  return problems.text();
+}
+
+struct Advice {
+  const char* axis;     ///< options of the left axis with which its group is refused
+  const char* says;     ///< the advice
+  const char* follows;  ///< the options with which it was followed
+};
+
+class RefusedGroup : public testing::TestWithParam<Advice> {};
+
+TEST_P(RefusedGroup, FollowsTrajectoriesOnceItsAdviceIsFollowed) {
+  const Advice& advice = GetParam();
+  const std::string problems = problemsOf(genericPair(advice.axis));
+  EXPECT_THAT(problems, HasSubstr("`left` cannot follow trajectories"));
+  EXPECT_THAT(problems, HasSubstr(advice.says));
+  const std::string followed = genericPair(advice.follows);
+  ASSERT_EQ(problemsOf(followed), "");
+  Scene scene(loadText(followed));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success) << scene.told();
+  const bus::Answer switched = scene.procedure(ProcedureKind::set_mode, "left", "csp");
+  ASSERT_TRUE(switched.success) << switched.message;
+  const bus::Answer moved = scene.move({0.4, -0.3}, 1s);
+  ASSERT_TRUE(moved.success) << moved.message;
+  scene.run(2s);
+  EXPECT_NEAR(scene.position("left"), 0.4, 0.001);
+  EXPECT_NEAR(scene.position("right"), -0.3, 0.001);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Advice, RefusedGroup,
+    testing::Values(
+        Advice{", mode: pv, modes: []", "add cyclic_position to `axes/left/modes`",
+               ", mode: pv, modes: [cyclic_position]"},
+        Advice{
+            ", mode: pv, pdos: {rpdo1: [controlword, mode_of_operation, target_velocity], tpdo1: "
+            "[statusword, position_actual, mode_display]}",
+            "map target_position into an RPDO in `axes/left/pdos`",
+            ", mode: pv, pdos: {rpdo1: [controlword, mode_of_operation, target_velocity], rpdo2: "
+            "[target_position], tpdo1: [statusword, position_actual, mode_display]}"}),
+    [](const auto& param) {
+      return std::string(param.index == 0 ? "AddTheMode" : "MapTheTarget");
+    });
+
+TEST(RefusedGroupOfTwo, LoadsWithoutTheJoint) {
+  std::string yaml = genericPair(", mode: pv, modes: []");
+  EXPECT_THAT(problemsOf(yaml), HasSubstr("or leave its joint out of the group"));
+  yaml.replace(yaml.find("joints: [left, right]"), 21, "joints: [right]");
+  EXPECT_EQ(problemsOf(yaml), "");
+}
+
 }  // namespace
 }  // namespace cia402

@@ -64,6 +64,34 @@ TEST_F(Names, JointAndAxisStandInWhatIsReadAndWritten) {
   EXPECT_THAT(scene.call(std::move(write)).message, StartsWith(kWho));
 }
 
+/// A group that ends otherwise than at its goal, as its rotor is blocked.
+std::string outcomeOf(const std::string& tolerances) {
+  std::string yaml = genericPair(", joint: hip", "", tolerances);
+  ReadyScene scene(yaml.replace(yaml.find("joints: [left"), 13, "joints: [hip"));
+  scene.inject("left", "blocked_rotor");
+  EXPECT_TRUE(scene.move({0.004, 0.0}, 500ms).success);
+  scene.run(2s);
+  return scene.told();
+}
+
+TEST(NamesOfTrajectories, JointAndAxisStandInEveryOutcome) {
+  EXPECT_THAT(outcomeOf(", constraints: {hip: {trajectory: 0.002}}"),
+              HasSubstr(std::string("trajectory stopped: ") + kName + " is "));
+  EXPECT_THAT(outcomeOf(", constraints: {goal_time: 0.2, hip: {goal: 0.001}}"),
+              HasSubstr(std::string("goal missed: ") + kName + " is "));
+}
+
+TEST(NamesOfOptionalAxes, JointAndAxisStandInWhatIsLeftOut) {
+  std::string yaml = genericPair(", joint: hip, optional: true");
+  Scene scene(loadText(yaml.replace(yaml.find("joints: [left"), 13, "joints: [hip")));
+  scene.robot().start();
+  scene.drive("left").powerOff(scene.now());
+  scene.port("left").setPowered(false);
+  scene.run(8s);
+  EXPECT_THAT(scene.procedure(ProcedureKind::enable).message,
+              HasSubstr(std::string(kName) + " is optional and not there"));
+}
+
 TEST_F(Names, EveryLineOfTheLogThatNamesTheNodeNamesJointAndAxis) {
   ASSERT_TRUE(scene.boot());
   ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);

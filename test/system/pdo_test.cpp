@@ -274,6 +274,32 @@ TEST(DriveDeadline, StopsADriveThatLosesOnlyItsRpdos) {
   EXPECT_NEAR(scene.velocity("joint"), 0.0, 1e-3);
 }
 
+// 1029h:02, what a communication error other than a missing heartbeat leads to (CiA 301, 7.5.2.36):
+// 1 from the factory, nothing; 0, out of operational.
+TEST(DriveDeadline, OfADriveThatHearsNothingElseIsKeptByItsErrorBehaviour) {
+  struct Case {
+    const char* options;
+    bool power;
+    canopen::NmtState nmt;
+  };
+  for (const Case& c : {Case{"", true, canopen::NmtState::operational},
+                        Case{", write: [{object: other_error_behaviour, raw: 0}]", false,
+                             canopen::NmtState::pre_operational}}) {
+    Scene scene(loadText(damiaoJoint(c.options)));
+    ASSERT_TRUE(scene.boot()) << scene.told();
+    ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
+    ASSERT_TRUE(scene.procedure(ProcedureKind::set_mode, "joint", "csv").success);
+    scene.stream("joint", -0.5, 500ms);
+    ASSERT_NEAR(scene.velocity("joint"), -0.5, 0.05);
+    lose(scene, 0x204, "joint");
+    lose(scene, 0x604, "joint");  // nor the quick stop by SDO
+    scene.run(1s);
+    EXPECT_EQ(scene.truth("joint").power_stage_on, c.power) << c.options;
+    EXPECT_EQ(scene.truth("joint").nmt, c.nmt) << c.options;
+    EXPECT_LT(std::abs(scene.velocity("joint")), 0.01) << c.options;
+  }
+}
+
 /// In the direction of a set-point of the mode that the axis is in, as the motor itself shows.
 void expectToMove(Scene& scene, const std::string& axis, const std::string& what) {
   const double before = scene.position(axis);

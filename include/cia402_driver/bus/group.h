@@ -85,6 +85,7 @@ class Group {
   config::GroupConfig config_;
   std::vector<std::size_t> axes_;
   std::vector<motion::Joint> joints_;
+  std::vector<std::string> names_;  // of them, for messages
   std::vector<config::JointTolerance> tolerances_;
   MotionClock clock_;
   bool starts_ = false;                // no cycle has passed since it was set
@@ -97,8 +98,8 @@ class Group {
   std::vector<std::uint32_t> breaks_;       // of the joints' set-points, as last seen
   std::vector<std::uint32_t> notices_;      // of the axes, when a trajectory was taken
   Time began_{};                            // the trajectory, in the time of the bus
-  const motion::Joint* refused_ = nullptr;  // whose axis did not take its set-point
-  TrajectoryOutcome outcome_;               // of a stopping trajectory
+  const std::string* refused_ = nullptr;  // name of the joint whose axis did not take its set-point
+  TrajectoryOutcome outcome_;             // of a stopping trajectory
 };
 
 }  // namespace cia402::bus

@@ -34,6 +34,11 @@ inline constexpr std::uint32_t kCannotTransfer = 0x08000020;
 inline constexpr std::uint32_t kLocalControl = 0x08000021;
 inline constexpr std::uint32_t kDeviceState = 0x08000022;
 inline constexpr std::uint32_t kNoData = 0x08000024;
+/// It says that the object is not there, or is not for writing or mapping, whatever the value.
+constexpr bool saysLacking(std::uint32_t code) {
+  return code == kNoSuchObject || code == kNoSuchSubindex || code == kReadOnly ||
+         code == kNotMappable;
+}
 }  // namespace abort_code
 
 /// The code with its meaning in words: "0x06010002 (attempt to write a read-only object)". Unknown

@@ -193,6 +193,8 @@ class Axis {
   /// The last thing the axis did by itself (left operation, quick-stopped without feedback, dropped
   /// a set-point, lost its node), as a sentence; noticeCount() grows with each.
   const std::string& notice() const;
+  /// It is a warning of a procedure, and stops nothing.
+  bool noticeWarns() const;
   std::uint32_t noticeCount() const { return *notices_; }
 
  private:

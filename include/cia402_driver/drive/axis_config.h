@@ -25,11 +25,13 @@ struct HomingOptions {
   std::optional<int> method;
   double search_velocity = 0.0;  ///< rad/s or m/s, > 0
   double zero_velocity = 0.0;
-  double acceleration = 0.0;  ///< rad/s^2 or m/s^2
-  double offset = 0.0;        ///< joint position at the home point, rad or m
+  double acceleration = 0.0;     ///< rad/s^2 or m/s^2
+  std::optional<double> offset;  ///< rad or m, see atHome()
   Duration timeout{std::chrono::seconds(30)};
   bool required = true;  ///< no position motion before homing
   int order = 0;         ///< axes of a lower order home first
+  /// Joint position at the home point.
+  double atHome() const { return offset.value_or(0.0); }
 };
 
 /// The EDS or DCF of an axis' drive.
@@ -109,6 +111,8 @@ double stopDeceleration(const AxisConfig& axis);
 std::string jointName(const AxisConfig& axis);
 /// For messages: "shoulder (node 3)", or "shoulder (axis m3, node 3)".
 std::string whoIs(const AxisConfig& axis);
+/// Does `lacks` of the axis name the object, which is given by profile name or index?
+bool saidToLack(const AxisConfig& axis, const std::string& object);
 /// Of those that the axis can be in, the one in which it follows trajectories; nullptr: none.
 const ModeSpec* trajectoryMode(const AxisConfig& axis);
 

@@ -239,6 +239,7 @@ struct DriveProfile {
   /// Where these did not help the node is told NMT stop, so much later start, and resets once more;
   /// 0: it is not.
   Duration fault_reset_nmt_stop{0};
+  bool fault_reset_clears_history = false;  ///< 1003h:00 = 0 is written before a fault reset
   /// NMT reset node must not be sent: the drive disturbs the bus while it starts, or does not come
   /// back. Its communication is reset instead.
   bool nmt_reset_node = true;

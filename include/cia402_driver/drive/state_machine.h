@@ -20,14 +20,16 @@ enum class State : std::uint8_t {
 };
 /// "operation enabled".
 const char* toString(State state);
-/// The power stage is off in this state: no motion is possible by this drive.
-bool powerStageOff(State state);
+/// The power stage is off in this state: no motion is possible by this drive. In a fault that shows
+/// bits of operation beside it (0x0009) nobody knows.
+bool powerStageOff(State state, std::uint16_t statusword);
 /// "fault", or the drive still reacts to one.
 inline bool isFault(State state) {
   return state == State::fault || state == State::fault_reaction_active;
 }
 
-/// The state that a statusword shows, by mask and value as CiA 402-2 lists them.
+/// The state that a statusword shows, by mask and value as CiA 402-2 lists them; with bit 3 (fault)
+/// set and other bits of no state it is a fault.
 State decodeState(std::uint16_t statusword);
 /// Set bits by name: "ready to switch on, voltage enabled, warning".
 std::string statuswordText(std::uint16_t statusword);

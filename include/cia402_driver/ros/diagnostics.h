@@ -3,6 +3,7 @@
 
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/node_handle.h>
+#include <ros/publisher.h>
 
 #include <set>
 #include <string>
@@ -36,6 +37,7 @@ class Diagnostics {
   LinkWatch& link_;
   std::set<std::string> findings_told_;
   diagnostic_updater::Updater updater_;
+  ros::Publisher topic_;  ///< of the updater, which does not tell who listens
 };
 
 }  // namespace cia402::ros_node
