@@ -38,7 +38,8 @@ class Configure(unittest.TestCase):
                                      check=True).stdout
         cls.removed = not (cls.folder / "build/devel/share/control_msgs").exists()
         shutil.rmtree(cls.prefix)
-        cls.gone = cls.configure()
+        cls.gone = cls.configure("-DCATKIN_ENABLE_TESTING=ON")
+        cls.of_all, cls.of_run_tests = cls.commands("all"), cls.commands("run_tests")
 
     @classmethod
     def tearDownClass(cls):
@@ -58,6 +59,12 @@ class Configure(unittest.TestCase):
         assert ended.returncode == 0, ended.stdout
         return ended.stdout
 
+    @classmethod
+    def commands(cls, target):
+        """@return all commands that building a target takes."""
+        return subprocess.run(["ninja", "-C", cls.folder / "build", "-t", "commands", target],
+                              stdout=subprocess.PIPE, text=True, timeout=300, check=True).stdout
+
     def test_python_is_that_of_catkin(self):
         self.assertIn("Using PYTHON_EXECUTABLE: /usr/bin/python3", self.without)
 
@@ -72,6 +79,25 @@ class Configure(unittest.TestCase):
     def test_tests_are_built_only_where_testing_is_on(self):
         self.assertIn("bus_node:", self.targets)
         self.assertNotIn("test_can:", self.targets)
+
+    def test_all_builds_no_test_and_none_of_what_only_tests_need(self):
+        self.assertIn("/src/ros/main/bus_node.cpp", self.of_all)
+        for words in ("/test/", "/fuzz/", "/src/campaign/"):
+            self.assertNotIn(words, self.of_all)
+
+    def test_run_tests_builds_all_tests_and_runs_those_that_need_no_vcan0(self):
+        for source in (*REPOSITORY.glob("test/*/*_test.cpp"), *REPOSITORY.glob("fuzz/*.cpp")):
+            self.assertIn(str(source), self.of_run_tests)
+        programs = (self.folder / "build/tests.txt").read_text(encoding="utf-8").split()
+        self.assertGreater(len(programs), 15)
+        for program in map(pathlib.Path, programs):
+            self.assertEqual(f"/gtest-{program.name}.xml" in self.of_run_tests,
+                             not program.name.endswith("_vcan"), program)
+        for file in (*REPOSITORY.glob("test/*_test.py"), *REPOSITORY.glob("test/scripts/*_test.py")):
+            self.assertEqual(f"/unittest-{file.stem}.xml" in self.of_run_tests,
+                             file.stem not in ("setup_test", "with_vcan_test"), file)
+        for file in REPOSITORY.glob("test/ros/*.test"):
+            self.assertIn(str(file), self.of_run_tests)
 
 
 if __name__ == "__main__":
