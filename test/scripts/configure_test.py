@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 # Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-"""What CMake finds out by itself: Python, control_msgs, whether tests are wanted."""
+"""What CMake finds out by itself, alone and in a workspace: Python, control_msgs, which tests there are."""
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import tempfile
@@ -98,6 +99,28 @@ class Configure(unittest.TestCase):
                              file.stem not in ("setup_test", "with_vcan_test"), file)
         for file in REPOSITORY.glob("test/ros/*.test"):
             self.assertIn(str(file), self.of_run_tests)
+
+
+class Workspace(unittest.TestCase):
+    def test_the_line_of_the_readme_configures_where_another_python_comes_first(self):
+        readme = (REPOSITORY / "README.md").read_text(encoding="utf-8")
+        line = re.search(r"`(catkin_make -D[^`]*)`", readme)[1]
+        with tempfile.TemporaryDirectory(prefix="workspace_") as folder:
+            workspace = pathlib.Path(folder)
+            (workspace / "src").mkdir()
+            (workspace / "src/cia402_driver").symlink_to(REPOSITORY)
+            python = workspace / "bin/python3"
+            python.parent.mkdir()
+            python.write_text(OTHER_PYTHON, encoding="ascii")
+            python.chmod(0o755)
+            ended = subprocess.run(  # with a target that needs no compiler
+                [*line.split(), "clean_test_results_cia402_driver"], cwd=workspace,
+                env={"PATH": f"{python.parent}:/usr/bin:/bin", "HOME": os.environ.get("HOME", "/")},
+                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                text=True, timeout=600, check=False)
+        self.assertEqual(ended.returncode, 0, ended.stdout)
+        self.assertIn("Using PYTHON_EXECUTABLE: /usr/bin/python3", ended.stdout)
+        self.assertIn("+++ processing catkin package: 'cia402_driver'", ended.stdout)
 
 
 if __name__ == "__main__":
