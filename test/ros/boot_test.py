@@ -14,8 +14,8 @@ from tf2_msgs.msg import TFMessage
 # Where the joints stand at first: `simulation:` of config/robots/demo.yaml, in the order of AXES.
 PLACES = [0.25, 0.0, -1.9, 0.0]
 
-# What a steady speed takes at the joint, N m: Coulomb friction of the simulated motor in rated torques
-# (config/simulated_drives), rated torque and gear (config/robots/demo.yaml).
+# What a steady speed takes at the joint, N m: Coulomb friction of the simulated motor in rated
+# torques (config/simulated_drives), rated torque and gear (config/robots/demo.yaml).
 FRICTION = {"elbow": 0.05 * 0.64 * 80.0, "gripper": 0.02 * 3.0, "shoulder": 0.05 * 0.64 * 100.0,
             "wrist": 0.05 * 0.32 * 50.0}
 

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-"""What CMake finds out by itself, alone and in a workspace: Python, control_msgs, which tests there are."""
+"""What CMake finds out by itself, alone and in a workspace: Python, control_msgs, wanted tests."""
 import os
 import pathlib
 import re
