@@ -63,10 +63,15 @@ if(NOT CATKIN_ENABLE_TESTING)
   set(CIA402_BUILD_TESTS OFF)
 endif()
 
-# Makes a test executable known to catkin. Those that need vcan0 are built, but not run.
-function(cia402_catkin_test target)
+# Leaves a target to `tests`: `all` does not build it.
+function(cia402_with_tests target)
   set_target_properties(${target} PROPERTIES EXCLUDE_FROM_ALL ON)
   add_dependencies(tests ${target})
+endfunction()
+
+# Makes a test executable known to catkin. Those that need vcan0 are built, but not run.
+function(cia402_catkin_test target)
+  cia402_with_tests(${target})
   if(target MATCHES "_vcan$")
     return()
   endif()
@@ -85,6 +90,24 @@ function(cia402_rostests)
   file(GLOB files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/test/ros/*.test)
   foreach(file ${files})
     add_rostest(${file} DEPENDENCIES cia402_run)
+  endforeach()
+endfunction()
+
+# The tests of scripts and messages. Left to scripts/test are those that ask what scripts/demo has
+# built (setup) and that start user-mode Linux (with_vcan).
+function(cia402_python_tests)
+  if(NOT CIA402_BUILD_TESTS)
+    return()
+  endif()
+  file(GLOB files CONFIGURE_DEPENDS
+    ${PROJECT_SOURCE_DIR}/test/*_test.py ${PROJECT_SOURCE_DIR}/test/scripts/*_test.py)
+  list(FILTER files EXCLUDE REGEX "/(setup|with_vcan)_test.py$")
+  foreach(file ${files})
+    get_filename_component(name ${file} NAME_WE)
+    set(report unittest-${name}.xml)
+    set(reports ${CATKIN_TEST_RESULTS_DIR}/${PROJECT_NAME})
+    catkin_run_tests_target(unittest ${name} ${report} DEPENDENCIES cia402_run
+      COMMAND "${PYTHON_EXECUTABLE} ${PROJECT_SOURCE_DIR}/scripts/lib/run_tests.py --junit ${reports}/${report} unittest ${PROJECT_BINARY_DIR}/unittest ${file}")
   endforeach()
 endfunction()
 

@@ -2,8 +2,28 @@
 # Building and using what was built; sourced after common.sh.
 # shellcheck shell=bash
 
+# Where progress is shown: the terminal also where a script keeps the words of a build in a log.
+exec {progress}>&2
+
+# Shows how far ninja is, from its output: on a terminal in one line that is written again and again,
+# elsewhere in a line for each tenth.
+show_progress() {
+  local line shown=0 tenths
+  while IFS= read -r line; do
+    [[ $line =~ ^\[([0-9]+)/([0-9]+)\]\  ]] || continue
+    tenths=$((10 * BASH_REMATCH[1] / BASH_REMATCH[2]))
+    if [ -t "$progress" ]; then
+      printf '\r   %d of %d ' "${BASH_REMATCH[1]}" "${BASH_REMATCH[2]}" >&"$progress"
+    elif [ "$tenths" -gt "$shown" ]; then
+      say "  ${BASH_REMATCH[1]} of ${BASH_REMATCH[2]}" 2>&"$progress"
+    fi
+    shown=$tenths
+  done
+  [ ! -t "$progress" ] || printf '\r\033[K' >&"$progress"
+}
+
 # Configures into directory $1 and builds the targets $2 there; further arguments go to cmake. Quick
-# when nothing has changed. Prints the compiler's words only if it fails.
+# when nothing has changed. Shows how far it is, and the compiler's words only if it fails.
 build() {
   local directory=$1 targets
   read -ra targets <<<"$2"
@@ -13,8 +33,8 @@ build() {
   {
     cmake -S "$repository" -B "$directory" -G Ninja \
       -DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DPYTHON_EXECUTABLE="$system_python" "$@" &&
-      cmake --build "$directory" --target "${targets[@]}" --parallel "$(build_jobs)"
-  } >"$directory/build.log" 2>&1 || {
+      NINJA_STATUS='[%f/%t] ' cmake --build "$directory" --target "${targets[@]}" --parallel "$(build_jobs)"
+  } 2>&1 | tee "$directory/build.log" | show_progress || {
     grep -vE '^(-- |Generating |\[[0-9]+/[0-9]+\] )' "$directory/build.log" |
       tail -n 60 >&2
     die "the build failed, see $directory/build.log"

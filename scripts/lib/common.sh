@@ -7,8 +7,8 @@ build_root=$repository/build
 # ROS of Debian is built for this one; another python3 may come first in PATH.
 system_python=/usr/bin/python3
 
-# A heading on the terminal, so that a long run can be followed.
-say() { printf '== %s\n' "$*" >&2; }
+# A heading on the terminal with the minutes since the start, so that a long run can be followed.
+say() { printf '== %2d:%02d %s\n' $((SECONDS / 60)) $((SECONDS % 60)) "$*" >&2; }
 
 # Ends the script with a sentence.
 die() {

@@ -2,13 +2,14 @@
 # Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 """Runs tests of three kinds and notes every single case in one file of results.
 
-Usage: run_tests.py gtest    LOGS EXECUTABLE...
-       run_tests.py unittest LOGS FILE.py...
-       run_tests.py rostest  LOGS FILE.test...
+Usage: run_tests.py [--junit REPORT] gtest    LOGS EXECUTABLE...
+       run_tests.py [--junit REPORT] unittest LOGS FILE.py...
+       run_tests.py [--junit REPORT] rostest  LOGS FILE.test...
 
 Appends to LOGS/results.tsv a line per case: passed or failed, name, log file, and what was said of
 a failure, cut short. A case that did not run (crash, time-out, skipped, disabled) has failed. Exit
-status 1 if any case failed.
+status 1 if any case failed. With --junit the cases of this run are written to REPORT, too, as
+catkin wants to read them.
 """
 import concurrent.futures
 import json
@@ -32,13 +33,29 @@ class Results:
     def __init__(self, logs):
         self.logs = logs
         self.failed = 0
+        self._cases = []  # (name, why it failed or None)
 
     def note(self, name, log, why=None):
         """@param why what was said of the failure, or None: passed."""
         self.failed += why is not None
+        self._cases.append((name, why))
         words = " ".join((why or "").split())[:300]
         with open(self.logs / "results.tsv", "a", encoding="utf-8") as file:
             file.write(f"{'passed' if why is None else 'failed'}\t{name}\t{log}\t{words}\n")
+
+    def write_junit(self, report):
+        """All cases so far as JUnit XML."""
+        suite = ElementTree.Element("testsuite", name=report.stem, tests=str(len(self._cases)),
+                                    failures=str(self.failed), errors="0")
+        for name, why in self._cases:
+            suite_name, _, case_name = name.rpartition(".")
+            case = ElementTree.SubElement(suite, "testcase", classname=suite_name, name=case_name)
+            if why is not None:
+                # XML 1.0 has no control characters, not even as references.
+                ElementTree.SubElement(case, "failure").text = "".join(
+                    c if c in "\n\t" or c >= " " else "?" for c in why)
+        report.parent.mkdir(parents=True, exist_ok=True)
+        ElementTree.ElementTree(suite).write(report, encoding="utf-8", xml_declaration=True)
 
 
 def interrupt(process):
@@ -221,13 +238,19 @@ def run_file(kind, results, file):
 
 
 def main():
-    kind, logs, files = sys.argv[1], pathlib.Path(sys.argv[2]).resolve(), sys.argv[3:]
+    arguments = sys.argv[1:]
+    report = None
+    if arguments[0] == "--junit":
+        report, arguments = pathlib.Path(arguments[1]).resolve(), arguments[2:]
+    kind, logs, files = arguments[0], pathlib.Path(arguments[1]).resolve(), arguments[2:]
     logs.mkdir(parents=True, exist_ok=True)
     results = Results(logs)
     # Nodes of a ROS graph need the processors for themselves.
     at_once = os.cpu_count() if kind == "gtest" else 1
     with concurrent.futures.ThreadPoolExecutor(at_once) as pool:
         list(pool.map(lambda file: run_file(kind, results, file), files))
+    if report is not None:
+        results.write_junit(report)
     return 1 if results.failed else 0
 
 

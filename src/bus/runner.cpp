@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <ctime>
 #include <system_error>
 #include <utility>
 
@@ -165,7 +166,8 @@ void BusRunner::wait() {
   const Time now = time_.now();
   const Time deadline = std::min(due_, now + kIdleInterval);
   const std::int64_t left = std::max<std::int64_t>((deadline - now).count(), 0);
-  const timespec timeout{left / 1'000'000'000, left % 1'000'000'000};
+  const timespec timeout{static_cast<std::time_t>(left / 1'000'000'000),
+                         static_cast<long>(left % 1'000'000'000)};
   const nfds_t count = sources[1].fd >= 0 ? 2 : 1;
   if (ppoll(sources, count, &timeout, nullptr) > 0 && sources[0].revents != 0) {
     std::uint64_t wakes = 0;

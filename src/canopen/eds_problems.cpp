@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "eds_text.h"
+
 namespace cia402::canopen {
 namespace {
 
@@ -42,7 +44,7 @@ std::string quoteEds(std::string_view text) {
   const bool cut = text.size() > kLongestQuote;
   std::string quoted = "`";
   for (char c : text.substr(0, kLongestQuote)) {
-    quoted += (c >= ' ' || c < '\0') && c != '\x7F' ? c : '?';
+    quoted += isControl(c) ? '?' : c;
   }
   return quoted + (cut ? "...`" : "`");
 }

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "eds_strings.h"
 
+#include <algorithm>
 #include <cstdio>
 
 namespace cia402::canopen {
@@ -99,10 +100,7 @@ std::optional<std::string> fromUtf16(const ObjectValue& bytes) {
 bool fitsALine(const std::string& text) {
   if (text.empty() || trimmed(text).size() != text.size() || !isUtf8(text)) return false;
   if (text[0] == ';' || text.find(" ;") != std::string::npos) return false;
-  for (char c : text) {
-    if ((c >= '\0' && c < ' ') || c == '\x7F') return false;
-  }
-  return true;
+  return std::none_of(text.begin(), text.end(), isControl);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@ namespace {
 constexpr char kEndOfFile = '\x1A';  // Ctrl-Z of DOS
 constexpr std::string_view kUtf8Mark = "\xEF\xBB\xBF";
 
-bool isBlank(char c) { return (c >= '\0' && c <= ' ') || c == '\x7F'; }
+bool isBlank(char c) { return c == ' ' || isControl(c); }
 
 // How many bytes follow the first one of a UTF-8 sequence; -1: it is none.
 int following(unsigned char first) {
@@ -19,6 +19,11 @@ int following(unsigned char first) {
 }
 
 }  // namespace
+
+bool isControl(char c) {
+  const auto byte = static_cast<unsigned char>(c);
+  return byte < 0x20 || byte == 0x7F;
+}
 
 bool isUtf8(std::string_view text) {
   for (std::size_t i = 0; i < text.size();) {

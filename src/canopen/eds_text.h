@@ -58,6 +58,8 @@ class EdsText {
 };
 
 bool isUtf8(std::string_view text);
+/// A control character of ASCII; the bytes of UTF-8 above it are none, whatever the sign of `char`.
+bool isControl(char c);
 /// Without blanks, tabs and other control characters at both ends.
 std::string_view trimmed(std::string_view text);
 

@@ -41,7 +41,7 @@ class DcfText {
 // one line is replaced.
 std::string oneLine(std::string_view text) {
   std::string line;
-  for (char c : text) line += (c >= '\0' && c < ' ') || c == '\x7F' ? ' ' : c;
+  for (char c : text) line += isControl(c) ? ' ' : c;
   for (std::size_t at = 0; (at = line.find(';', at)) != std::string::npos; ++at) {
     if (at == 0 || line[at - 1] == ' ') line[at] = ',';
   }

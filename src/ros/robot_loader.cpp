@@ -4,6 +4,10 @@
 #include <ros/console.h>
 #include <ros/package.h>
 
+#include <utility>
+
+#include "cia402_driver/config/ready_robot.h"
+
 namespace cia402::ros_node {
 namespace {
 
@@ -42,15 +46,11 @@ std::optional<LoadedRobot> loadRobot(const ros::NodeHandle& private_node) {
   if (!parameters.options.profile_path.empty()) {
     folders.insert(folders.begin(), parameters.options.profile_path);
   }
-  LoadedRobot loaded;
-  loaded.options = parameters.options;
-  loaded.robot = config::loadRobot(parameters.robot, lookup(folders), problems);
-  const std::string where = "configuration of " + private_node.getNamespace();
-  if (report(problems, where)) return std::nullopt;
-  loaded.master = config::makeMasterConfig(loaded.robot, problems);
-  if (report(problems, where)) return std::nullopt;
-  for (const std::string& warning : loaded.robot.warnings) ROS_WARN_STREAM(warning);
-  return loaded;
+  auto ready = config::readyRobot(parameters.robot, lookup(folders), problems);
+  report(problems, "configuration of " + private_node.getNamespace());
+  if (!ready) return std::nullopt;
+  for (const std::string& warning : ready->robot.warnings) ROS_WARN_STREAM(warning);
+  return LoadedRobot{parameters.options, std::move(ready->robot), std::move(ready->master)};
 }
 
 std::optional<std::vector<sim::SimulatedAxis>> loadSimulation(const config::RobotConfig& robot) {

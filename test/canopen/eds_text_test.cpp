@@ -39,6 +39,12 @@ TEST(EdsText, WellFormedUtf8IsKnownByItsBytes) {
   }
 }
 
+// Of a `char` without a sign all bytes of UTF-8 are above 0, of one with a sign all are below it.
+TEST(EdsText, ControlCharactersAreThoseOfAsciiWhateverTheSignOfChar) {
+  for (const char c : {'\0', '\t', '\x1F', '\x7F'}) EXPECT_TRUE(isControl(c)) << int{c};
+  for (const char c : {' ', 'a', '~', '\x80', '\xC3', '\xFF'}) EXPECT_FALSE(isControl(c)) << int{c};
+}
+
 TEST(EdsText, BytesThatAreNoUtf8AreKnown) {
   for (const char* text : {
            "\x80",

@@ -7,11 +7,17 @@ import time
 import rospy
 from cia402_driver.msg import AxisStates
 from robot_client import ERROR, OK, Robot, RobotTest, main, wait_until
+from std_msgs.msg import Float64
 from tf2_msgs.msg import TFMessage
 
 
 # Where the joints stand at first: `simulation:` of config/robots/demo.yaml, in the order of AXES.
 PLACES = [0.25, 0.0, -1.9, 0.0]
+
+# What a steady speed takes at the joint, N m: Coulomb friction of the simulated motor in rated
+# torques (config/simulated_drives), rated torque and gear (config/robots/demo.yaml).
+FRICTION = {"elbow": 0.05 * 0.64 * 80.0, "gripper": 0.02 * 3.0, "shoulder": 0.05 * 0.64 * 100.0,
+            "wrist": 0.05 * 0.32 * 50.0}
 
 
 class Boot(RobotTest):
@@ -152,6 +158,40 @@ class Boot(RobotTest):
         for name in self.AXES:
             self.assertAlmostEqual(self.robot.position(name), before[name], delta=1e-3)
         self.assertNotEqual(self.robot.diagnostic("shoulder").level, ERROR)
+
+    def test_zz_velocity_and_effort_are_those_of_the_motor_in_either_direction(self):
+        speeds = {"elbow": -0.4, "gripper": -0.6, "shoulder": 0.4, "wrist": 0.5}
+        for name in self.AXES:
+            self.assertTrue(self.robot.call(f"{name}/set_mode", mode="csv").success)
+            self.assertTrue(self.robot.call(f"{name}/enable").success)
+        for sign in (1.0, -1.0):
+            steady = self.steady({name: sign * speed for name, speed in speeds.items()})
+            for i, name in enumerate(self.AXES):
+                for what, values, right in (
+                        ("velocity", steady.velocity, sign * speeds[name]),
+                        ("effort", steady.effort, math.copysign(FRICTION[name],
+                                                                sign * speeds[name]))):
+                    with self.subTest(axis=name, what=what, sign=sign):
+                        self.assertAlmostEqual(values[i], right, delta=0.05 * abs(right))
+
+    def steady(self, speeds):
+        """Streams velocities until the positions of half a second have changed by just these.
+        @return the newest of these joint_states."""
+        publishers = {name: self.robot.publisher(f"{name}/command", Float64) for name in speeds}
+        self.robot.joint_states, self.robot.record = [], True
+
+        def look():
+            for name, speed in speeds.items():
+                publishers[name].publish(speed)
+            time.sleep(0.02)
+            last = [message for _, message in self.robot.joint_states[-26:]]
+            seconds = (last[-1].header.stamp - last[0].header.stamp).to_sec() if last else 0.0
+            return last[-1] if seconds > 0.4 and all(
+                abs((last[-1].position[i] - last[0].position[i]) / seconds - speeds[name])
+                < 0.02 * abs(speeds[name]) for i, name in enumerate(self.AXES)) else None
+        message = wait_until(look, lambda: f"{speeds}, but {self.robot.joint_state}")
+        self.robot.record = False
+        return message
 
 
 if __name__ == "__main__":

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 # Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-"""What CMake finds out by itself: Python, control_msgs, whether tests are wanted."""
+"""What CMake finds out by itself, alone and in a workspace: Python, control_msgs, wanted tests."""
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import tempfile
@@ -38,7 +39,8 @@ class Configure(unittest.TestCase):
                                      check=True).stdout
         cls.removed = not (cls.folder / "build/devel/share/control_msgs").exists()
         shutil.rmtree(cls.prefix)
-        cls.gone = cls.configure()
+        cls.gone = cls.configure("-DCATKIN_ENABLE_TESTING=ON")
+        cls.of_all, cls.of_run_tests = cls.commands("all"), cls.commands("run_tests")
 
     @classmethod
     def tearDownClass(cls):
@@ -58,6 +60,12 @@ class Configure(unittest.TestCase):
         assert ended.returncode == 0, ended.stdout
         return ended.stdout
 
+    @classmethod
+    def commands(cls, target):
+        """@return all commands that building a target takes."""
+        return subprocess.run(["ninja", "-C", cls.folder / "build", "-t", "commands", target],
+                              stdout=subprocess.PIPE, text=True, timeout=300, check=True).stdout
+
     def test_python_is_that_of_catkin(self):
         self.assertIn("Using PYTHON_EXECUTABLE: /usr/bin/python3", self.without)
 
@@ -72,6 +80,47 @@ class Configure(unittest.TestCase):
     def test_tests_are_built_only_where_testing_is_on(self):
         self.assertIn("bus_node:", self.targets)
         self.assertNotIn("test_can:", self.targets)
+
+    def test_all_builds_no_test_and_none_of_what_only_tests_need(self):
+        self.assertIn("/src/ros/main/bus_node.cpp", self.of_all)
+        for words in ("/test/", "/fuzz/", "/src/campaign/"):
+            self.assertNotIn(words, self.of_all)
+
+    def test_run_tests_builds_all_tests_and_runs_those_that_need_no_vcan0(self):
+        for source in (*REPOSITORY.glob("test/*/*_test.cpp"), *REPOSITORY.glob("fuzz/*.cpp")):
+            self.assertIn(str(source), self.of_run_tests)
+        programs = (self.folder / "build/tests.txt").read_text(encoding="utf-8").split()
+        self.assertGreater(len(programs), 15)
+        for program in map(pathlib.Path, programs):
+            self.assertEqual(f"/gtest-{program.name}.xml" in self.of_run_tests,
+                             not program.name.endswith("_vcan"), program)
+        for file in (*REPOSITORY.glob("test/*_test.py"), *REPOSITORY.glob("test/scripts/*_test.py")):
+            self.assertEqual(f"/unittest-{file.stem}.xml" in self.of_run_tests,
+                             file.stem not in ("setup_test", "with_vcan_test"), file)
+        for file in REPOSITORY.glob("test/ros/*.test"):
+            self.assertIn(str(file), self.of_run_tests)
+
+
+class Workspace(unittest.TestCase):
+    def test_the_line_of_the_readme_configures_where_another_python_comes_first(self):
+        readme = (REPOSITORY / "README.md").read_text(encoding="utf-8")
+        line = re.search(r"`(catkin_make -D[^`]*)`", readme)[1]
+        with tempfile.TemporaryDirectory(prefix="workspace_") as folder:
+            workspace = pathlib.Path(folder)
+            (workspace / "src").mkdir()
+            (workspace / "src/cia402_driver").symlink_to(REPOSITORY)
+            python = workspace / "bin/python3"
+            python.parent.mkdir()
+            python.write_text(OTHER_PYTHON, encoding="ascii")
+            python.chmod(0o755)
+            ended = subprocess.run(  # with a target that needs no compiler
+                [*line.split(), "clean_test_results_cia402_driver"], cwd=workspace,
+                env={"PATH": f"{python.parent}:/usr/bin:/bin", "HOME": os.environ.get("HOME", "/")},
+                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                text=True, timeout=600, check=False)
+        self.assertEqual(ended.returncode, 0, ended.stdout)
+        self.assertIn("Using PYTHON_EXECUTABLE: /usr/bin/python3", ended.stdout)
+        self.assertIn("+++ processing catkin package: 'cia402_driver'", ended.stdout)
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import xml.etree.ElementTree as ElementTree
 
 LIB = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "lib"
 sys.path.insert(0, str(LIB))
@@ -45,13 +46,13 @@ class RunTests(unittest.TestCase):
         self.addCleanup(directory.cleanup)
         self.path = pathlib.Path(directory.name)
 
-    def run_on(self, kind, name, text):
+    def run_on(self, kind, name, text, *options):
         """@return exit status, {test: (passed or failed, reason)}."""
         file = self.path / name
         file.write_text(text)
         file.chmod(0o755)
         logs = self.path / "logs"
-        run = subprocess.run(["/usr/bin/python3", LIB / "run_tests.py", kind, logs, file],
+        run = subprocess.run(["/usr/bin/python3", LIB / "run_tests.py", *options, kind, logs, file],
                              stdout=subprocess.DEVNULL, check=False)
         lines = (logs / "results.tsv").read_text().splitlines()
         fields = [line.split("\t") for line in lines]
@@ -99,6 +100,20 @@ class RunTests(unittest.TestCase):
         status, results = self.run_on("gtest", "suite", GTEST.format(report=GOOD_REPORT, status=0))
         self.assertEqual(status, 0)
         self.assertEqual([outcome for outcome, _ in results.values()], ["passed"] * 3)
+
+    def test_the_report_for_catkin(self):
+        report = self.path / "reports/three.xml"
+        self.run_on("unittest", "three_test.py", UNITTEST, "--junit", report)
+        suite = ElementTree.parse(report).getroot()
+        self.assertEqual([suite.get(key) for key in ("tests", "failures", "errors")],
+                         ["5", "4", "0"])
+        self.assertEqual(dict(run_tests.xml_cases([report])), {
+            "three_test.Three.test_good": None,
+            "three_test.Three.test_unequal": "1 != 2 : one\n is not two",
+            "three_test.Three.test_raises": "ValueError('x')",
+            "three_test.Three.test_left_out": "did not run",
+            "three_test.Three.test_parts": "a part",
+        })
 
     def test_the_xml_of_rostest(self):
         report = self.path / "rosunit-x.xml"

@@ -306,7 +306,7 @@ void expectToMove(Scene& scene, const std::string& axis, const std::string& what
   const drive::ModeSpec* mode = scene.state(axis).mode;
   ASSERT_NE(mode, nullptr) << what;
   if (mode->kind == drive::ControlKind::position) {
-    EXPECT_EQ(scene.setpoint(axis, before + 0.1), "") << what;
+    EXPECT_EQ(scene.setpoint(axis, scene.state(axis).position + 0.1), "") << what;
     scene.run(1s);
     EXPECT_NEAR(scene.position(axis), before + 0.1, 1e-3) << what;
   } else {
@@ -315,19 +315,31 @@ void expectToMove(Scene& scene, const std::string& axis, const std::string& what
   }
 }
 
-/// Boots the plan of every mode of a family, enables it there and moves. Homing is no mode to begin
-/// in (test/config/robot_test.cpp).
+/// Homes where it stands, which is 0.5 rad then, and comes back to the mode that the axis was in.
+void expectToHome(Scene& scene, const std::string& axis, const std::string& what) {
+  const drive::ModeSpec* mode = scene.state(axis).mode;
+  const auto homed = scene.procedure(ProcedureKind::home, axis);
+  EXPECT_TRUE(homed.success) << what << ": " << homed.message;
+  EXPECT_NEAR(scene.state(axis).position, 0.5, 1e-3) << what;
+  EXPECT_TRUE(scene.state(axis).homed) << what;
+  EXPECT_EQ(scene.state(axis).mode, mode) << what;
+}
+
+/// Boots the plan of every mode of a family, enables it there and moves. Homing, the seventh mode
+/// of the generic drive, is none to begin in (test/config/robot_test.cpp): each homes.
 TEST(PlannedPdos, OfEveryModeBootOnTheGenericDrive) {
   for (const char* mode : {"pp", "pv", "pt", "csp", "csv", "cst"}) {
     for (const char* modes : {"", ", modes: []", ", modes: [csp, csv]", ", feedback: []",
                               ", feedback: [following_error, digital_inputs, velocity_actual]"}) {
-      std::string yaml = genericPair(", mode: " + std::string(mode) + modes);
+      std::string yaml =
+          genericPair(", homing: {method: 37, offset: 0.5}, mode: " + std::string(mode) + modes);
       yaml.erase(yaml.find("groups:"));  // not every such axis could serve one
       Scene scene(loadText(yaml));
       ASSERT_TRUE(scene.boot()) << mode << modes << scene.told();
       const auto enabled = scene.procedure(ProcedureKind::enable, "left");
       EXPECT_TRUE(enabled.success) << mode << modes << ": " << enabled.message;
       EXPECT_EQ(scene.state("left").mode->name, drive::canonicalModeName(mode));
+      expectToHome(scene, "left", std::string(mode) + modes);
       expectToMove(scene, "left", std::string(mode) + modes);
     }
   }
