@@ -60,10 +60,6 @@ void Permits::hinder(std::size_t axis, Time until) {
   axes_[axis].moved = std::max(axes_[axis].moved, until);
 }
 
-void Permits::endHomings(Time now) {
-  for (std::size_t i = 0; i < axes_.size(); ++i) cut(i, Source::homing, now);
-}
-
 void Permits::stretch(std::size_t axis, Duration duration, Time until) {
   axes_[axis].stretched = duration;
   axes_[axis].stretched_until = std::max(axes_[axis].stretched_until, until);

@@ -34,8 +34,6 @@ class Permits {
   void delay(Source source, Duration duration, Time now);
   /// Something keeps it from moving until then: that it stands says nothing about its target.
   void hinder(std::size_t axis, Time until);
-  /// Homings that were pending end with the process.
-  void endHomings(Time now);
   /// To be called with each look at the motors.
   void watch(const std::vector<AxisTruth>& truths, Time now);
 

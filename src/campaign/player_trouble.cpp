@@ -201,11 +201,13 @@ bool Player::actHost(const Words& words) {
     for (auto& oracle : oracles_) oracle->onCall(call, view());
     host.stop();
     for (std::size_t i = 0; i < truths_.size(); ++i) permits_.cut(i, now + 2300ms);
-    later(2500ms + seconds(words.at(1)), [this, due = now + 2500ms, stalled = conditions_.stalled] {
+    later(2500ms, [this, due = now + 2500ms, stalled = conditions_.stalled] {
       // Earlier only where the history ends sooner.
       if (stage_.now() >= due && stage_.host().running() && conditions_.stalled == stalled) {
         report("late_shutdown", "", "the driver has not ended 2.5 s after it was asked to");
       }
+    });
+    later(2500ms + seconds(words.at(1)), [this] {
       stage_.host().kill();
       dropCalls();
       startHost();

@@ -78,6 +78,16 @@ TEST_F(MotorLimitsTest, FindTooFastAMotor) {
   EXPECT_EQ(found(), "motor_limits a1 +201 ms");
 }
 
+// No RPDO holds a target of that mode: it lacks none.
+TEST_F(MotorLimitsTest, FindTooFastAMotorThatHomes) {
+  truths_[0].mode = 6;
+  lookFor(200ms);
+  mark();
+  for (double speed = 0.2; speed < 1.1; speed += 0.2) turn(speed, 40ms);
+  turn(kTooFast, 1ms);
+  EXPECT_EQ(found(), "motor_limits a1 +201 ms");
+}
+
 TEST_F(MotorLimitsTest, FindTooFastAMotorBackwards) {
   for (double speed = -0.2; speed > -1.1; speed -= 0.2) turn(speed, 40ms);
   turn(-kTooFast, 1ms);

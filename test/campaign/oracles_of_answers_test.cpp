@@ -266,6 +266,16 @@ TEST_F(SnapshotTest, OfADriveThatIsShownInAFaultAndHasNoneIsFound) {
   settle();
 }
 
+TEST_F(SnapshotTest, OfADriveThatIsInAFaultAndNotShownSoIsFound) {
+  const auto faulted = [](AxisTruth& truth) { truth.statusword = 0x0008; };
+  lookAt(faulted, 80ms);
+  EXPECT_EQ(found(), "untrue_snapshot a1 +70 ms");
+  findings_.clear();
+  settle();
+  lookAt(faulted, 60ms);
+  settle();
+}
+
 TEST_F(SnapshotTest, MayBeTrueOfADriveFromLookToLookAsItsFrameTells) {
   enable();
   lookAt(disabled, 50ms);

@@ -149,7 +149,7 @@ TEST_F(PermitsTest, OfAHomingOutlastFaultAndPowerAsItEnablesFirst) {
   truths_[0].power = false;
   wait(1s);
   EXPECT_TRUE(mayMove());
-  permits_.endHomings(now());
+  permits_.cut(0, Source::homing, now());
   wait(2ms);
   EXPECT_FALSE(mayMove());
 }

@@ -178,6 +178,9 @@ TEST_F(PlayerTest, FindsAProcessThatDoesNotEndInTime) {
   };
   EXPECT_EQ(play({"3 shutdown 0", "6 end"}, playedRobot("cyclic_position"), sleeps),
             "late_shutdown  at 5.5 s");
+  EXPECT_EQ(play({"3 shutdown 1", "7 end"}, playedRobot("cyclic_position"), sleeps),
+            "late_shutdown  at 5.5 s")
+      << "however long it is gone";
 }
 
 TEST_F(PlayerTest, FindsNothingInAProcessThatEndsInTime) {

@@ -35,8 +35,9 @@ class MotorLimits final : public Oracle {
     }
     if (frame.id != kSync) return;
     // Without a set-point a drive stops where the last one was, as hard as it can.
-    for (Axis& axis : axes_) {
-      if (!axis.fed)
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+      Axis& axis = axes_[i];
+      if (!axis.fed && needsTargets(view, i))
         axis.starved = view.now + view.stage.loaded().robot.bus.sync_period + kSyncMemory;
       axis.fed = false;
     }
@@ -67,6 +68,13 @@ class MotorLimits final : public Oracle {
     Time let_go{};        // until then it goes to where it was led against the switch
     bool behind = false;  // its set-points, for some were lost; the drive cannot catch up
   };
+
+  /// It follows a target from an RPDO; one that homes does not.
+  bool needsTargets(const View& view, std::size_t i) const {
+    return std::any_of(rpdos_.begin(), rpdos_.end(), [&](const auto& rpdo) {
+      return rpdo.second.axis == i && isTarget(rpdo.second, view);
+    });
+  }
 
   /// The object is the target of the mode that its axis is in.
   static bool isTarget(const RpdoPlace& place, const View& view) {

@@ -94,6 +94,9 @@ class Snapshots final : public Oracle {
     if (known && !enabled && !lately(view, axis.not_enabled)) {
       report(view, i, "is enabled, and is not shown so");
     }
+    if (known && !drive::isFault(shown.state) && !lately(view, axis.sound)) {
+      report(view, i, "is in a fault, and is not shown so");
+    }
     judgeSpeed(view, i, shown);
     judgePlace(view, i, shown);
   }
