@@ -126,14 +126,13 @@ void Player::proveMove(std::size_t axis, std::optional<double> tried) {
   const bool turns = mode->kind == drive::ControlKind::velocity;
   const double step = (turns ? 0.06 : 0.05) * facts.velocity;
   const double expected = (room > 0.0 ? std::min(step, room) : step) * sign;
-  const bool goes = mode->kind == drive::ControlKind::position;
-  if (goes && std::fabs(expected) < 0.2 * step) return;  // no way is left that proves anything
+  const bool torque = mode->kind == drive::ControlKind::torque;
+  if (!torque && std::fabs(expected) < 0.2 * step) return;  // no way is left that proves anything
   double value = at + expected;
   if (turns) value = 0.2 * facts.velocity * sign;  // for 0.3 s
-  if (mode->kind == drive::ControlKind::torque) {
+  if (torque) {
     value = 0.15 * limits.effort.value_or(1.0) * sign;
   }
-  const bool torque = mode->kind == drive::ControlKind::torque;
   stream(
       axis, [value](Duration) { return value; }, 0.3, 100.0);
   runTo(stage_.now() + 300ms + facts.config->command_timeout + facts.stopTime(facts.velocity) +

@@ -45,11 +45,8 @@ class Enable : public Procedure {
     if (blocked_) return Outcome::failed(axis.obstacle());
     if (changing_mode_) {
       if (released_ && axis.controlwordFrames() < frames_ + kSureFrames) return Outcome::running();
-      if (!ready_) {
-        const Outcome ready = waiting_.advance(context);
-        if (!ready.isDone()) return ready;
-        ready_ = true;
-      }
+      const Outcome ready = waiting_.advance(context);
+      if (!ready.isDone()) return ready;
       const Outcome outcome = mode_.advance(context);
       if (!outcome.isDone()) return outcome;
       changing_mode_ = false;
@@ -98,7 +95,6 @@ class Enable : public Procedure {
   SwitchStep mode_;
   bool begun_ = false, releasing_ = false, released_ = false;
   bool changing_mode_ = false;  ///< the drive is not, or does not show to be, in the mode to be in
-  bool ready_ = false;          ///< for that change
   bool mode_changed_ = false;
   bool blocked_ = false;  ///< the halt is in the way of the mode
   std::uint64_t frames_ = 0;

@@ -18,11 +18,8 @@ class SetMode : public Procedure {
       begun_ = true;
       started_ = context.now;
     }
-    if (!ready_) {
-      const Outcome ready = waiting_.advance(context);
-      if (!ready.isDone()) return ready;
-      ready_ = true;
-    }
+    const Outcome ready = waiting_.advance(context);
+    if (!ready.isDone()) return ready;
     const Outcome outcome = step_.advance(context);
     if (!outcome.isDone()) return outcome;
     return Outcome::done(jointName(axis.config()) + ": mode " + mode_->spec->name + " after " +
@@ -34,7 +31,7 @@ class SetMode : public Procedure {
   const ModeChannel* mode_;
   SwitchStep step_;
   ReadyToSwitchStep waiting_;
-  bool begun_ = false, ready_ = false;
+  bool begun_ = false;
   Time started_{};
 };
 

@@ -9,7 +9,8 @@ Outcome ReadyToSwitchStep::advance(const Context& context) {
   AxisCore& axis = context.axis;
   if (!begun_) started_ = context.now;
   begun_ = true;
-  if (settled_ || axis.powerOff()) return Outcome::done();
+  ready_ = ready_ || axis.powerOff();
+  if (ready_) return Outcome::done();
   if (!standing_) {
     const Outcome standing = awaitStandstill(context, started_, "switching the mode");
     if (!standing.isDone()) return standing;
@@ -26,7 +27,7 @@ Outcome ReadyToSwitchStep::advance(const Context& context) {
                            "velocity or an effort, or disable it: " +
                            problem);
   }
-  settled_ = true;
+  ready_ = true;
   return Outcome::done();
 }
 

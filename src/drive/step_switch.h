@@ -16,7 +16,7 @@ class ReadyToSwitchStep {
   Outcome advance(const Context& context);
 
  private:
-  bool begun_ = false, standing_ = false, settled_ = false;
+  bool begun_ = false, standing_ = false, ready_ = false;
   Time started_{};
 };
 
