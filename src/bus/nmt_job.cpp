@@ -73,8 +73,10 @@ Result<NmtJob> NmtJob::start(const std::string& word, const std::vector<std::siz
   job.reply_ = std::move(reply);
   job.began_ = now;
   for (const std::size_t index : which) {
-    job.entries_.push_back({index, false, false, {}});
     canopen::Node& node = axes[index].node();
+    const bool mute = node.health() == NodeHealth::ready && !node.supervision().watched;
+    const bool tells = node.config().heartbeat > Duration::zero() && !mute;
+    job.entries_.push_back({index, tells, false, false, {}});
     if (*command == NmtCommand::start) {
       const bool needed =
           node.health() != NodeHealth::ready && node.health() != NodeHealth::booting;
@@ -110,12 +112,15 @@ void NmtJob::watch(Entry& entry, drive::Axis& axis, Time now) const {
   entry.message = drive::whoIs(axis.config()) + ": nmt " + word_ + ": " + entry.message;
 }
 
-/// Start and the resets end with the node configured and operational.
+/// Start and the resets end with the node configured and operational, by what it told since.
 void NmtJob::watchBoot(Entry& entry, drive::Axis& axis, Time now) const {
   canopen::Node& node = axis.node();
   const NodeHealth health = node.health();
   const Duration patience = kBootTimes * node.config().boot_timeout + kLeastWait;
-  entry.success = health == NodeHealth::ready;
+  // An older heartbeat may not have told yet that the drive left that state.
+  const bool told = !node.supervision().watched ||
+                    (node.lastHeartbeat() > began_ && node.nmtState() == NmtState::operational);
+  entry.success = health == NodeHealth::ready && told;
   entry.ended = entry.success || health == NodeHealth::failed || health == NodeHealth::absent ||
                 now >= began_ + patience;
   if (entry.success) {
@@ -124,7 +129,9 @@ void NmtJob::watchBoot(Entry& entry, drive::Axis& axis, Time now) const {
                     (was_reset ? "; it is disabled" : "");
   } else if (entry.ended) {
     entry.message = "sent, but the node is not operational: " +
-                    (node.problem().empty() ? node.bootStep() : node.problem());
+                    (health == NodeHealth::ready ? "its heartbeat does not say so"
+                     : node.problem().empty()    ? node.bootStep()
+                                                 : node.problem());
   }
 }
 
@@ -134,13 +141,12 @@ void NmtJob::watchState(Entry& entry, drive::Axis& axis, Time now) const {
       command_ == NmtCommand::stop ? NmtState::stopped : NmtState::pre_operational;
   const bool heard = node.nmtState() == wanted && node.lastHeartbeat() > began_;
   const Duration heartbeat = node.config().heartbeat;
-  const bool tells = heartbeat > Duration::zero();
-  entry.success = heard || !tells;
+  entry.success = heard || !entry.tells;
   entry.ended = entry.success || now >= began_ + std::max(kLeastWait, 3 * heartbeat);
   if (heard) {
     entry.message = std::string("the drive is ") + canopen::toString(wanted) +
                     "; `start` or `recover` configures and starts it again";
-  } else if (!tells) {
+  } else if (!entry.tells) {
     entry.message = "sent; the drive has no heartbeat to tell whether it obeyed";
   } else if (entry.ended) {
     entry.message =

@@ -109,6 +109,26 @@ TEST_F(NmtJobTest, StartOfAnEnabledAxisChangesNothing) {
   EXPECT_TRUE(world.drives[0].enabled());
 }
 
+TEST_F(NmtJobTest, StartIsAnsweredByWhatTheDriveTellsAfterIt) {
+  world.boot();
+  world.drives[0].operational = false;  // as after a bus-off; its last heartbeat said operational
+  const Answer answer = world.call(nmt("shoulder", "start"));
+  EXPECT_TRUE(answer.success) << answer.message;
+  EXPECT_TRUE(world.drives[0].operational);
+  EXPECT_EQ(world.axis(0).node().health(), NodeHealth::ready);
+}
+
+TEST_F(NmtJobTest, ADriveWithoutHeartbeatIsNotWaitedFor) {
+  world.drives[0].aborts[{0x1017, 0}] = 0x06020000;
+  world.boot();
+  const Time before = world.now;
+  EXPECT_TRUE(world.call(nmt("shoulder", "start")).success);
+  const Answer answer = world.call(nmt("shoulder", "stop"));
+  EXPECT_TRUE(answer.success) << answer.message;
+  EXPECT_THAT(answer.message, HasSubstr("has no heartbeat to tell whether it obeyed"));
+  EXPECT_LT(world.now - before, 100ms);
+}
+
 TEST_F(NmtJobTest, ARunningProcedureIsNotCutOff) {
   world.boot();
   world.drives[0].deaf_to_controlword = true;

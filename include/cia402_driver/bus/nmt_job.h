@@ -34,6 +34,7 @@ class NmtJob {
  private:
   struct Entry {
     std::size_t axis = 0;
+    bool tells = true;  ///< its heartbeat, or answers to guarding, will tell the state
     bool ended = false, success = false;
     std::string message;
   };
