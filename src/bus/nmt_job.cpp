@@ -96,14 +96,30 @@ bool NmtJob::step(std::vector<drive::Axis>& axes, Time now) {
   }
   const bool ended =
       std::all_of(entries_.begin(), entries_.end(), [](const Entry& e) { return e.ended; });
-  if (ended && reply_) reply_(answer());
-  return ended;
+  if (!ended) return false;
+  if (staysDown()) {
+    for (Entry& entry : entries_) lookAgain(entry, axes[entry.axis]);
+  }
+  if (reply_) reply_(answer());
+  return true;
+}
+
+/// While the others were waited for, a later call may have booted a node again.
+void NmtJob::lookAgain(Entry& entry, drive::Axis& axis) const {
+  const NodeHealth health = axis.node().health();
+  if (!entry.success || (health != NodeHealth::ready && health != NodeHealth::booting)) return;
+  entry.success = false;
+  entry.message = drive::whoIs(axis.config()) + ": nmt " + word_ +
+                  ": the drive did so, but by now it is configured and started again";
+}
+
+bool NmtJob::staysDown() const {
+  return command_ == NmtCommand::stop || command_ == NmtCommand::enter_pre_operational;
 }
 
 void NmtJob::watch(Entry& entry, drive::Axis& axis, Time now) const {
   if (now <= began_) return;
-  const bool stays = command_ == NmtCommand::stop || command_ == NmtCommand::enter_pre_operational;
-  if (stays) {
+  if (staysDown()) {
     watchState(entry, axis, now);
   } else {
     watchBoot(entry, axis, now);

@@ -118,6 +118,20 @@ TEST_F(NmtJobTest, StartIsAnsweredByWhatTheDriveTellsAfterIt) {
   EXPECT_EQ(world.axis(0).node().health(), NodeHealth::ready);
 }
 
+TEST_F(NmtJobTest, ANodeThatIsStartedAgainWhileTheOthersAreWaitedForIsTold) {
+  world.boot();
+  world.drives[1].silent = true;  // its heartbeat is waited for
+  const auto answers = world.begin(nmt("", "pre_operational"));
+  world.run(600ms);
+  ASSERT_TRUE(answers->empty());
+  EXPECT_TRUE(world.call(nmt("shoulder", "start")).success);
+  const Answer answer = world.wait(answers);
+  EXPECT_TRUE(world.drives[0].operational);
+  EXPECT_THAT(answer.message, HasSubstr("nmt pre_operational done on 0 of 2 nodes"));
+  EXPECT_THAT(answer.message, HasSubstr("shoulder (node 1): nmt pre_operational: the drive did so, "
+                                        "but by now it is configured and started again"));
+}
+
 TEST_F(NmtJobTest, ADriveWithoutHeartbeatIsNotWaitedFor) {
   world.drives[0].aborts[{0x1017, 0}] = 0x06020000;
   world.boot();

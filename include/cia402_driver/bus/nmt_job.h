@@ -41,6 +41,8 @@ class NmtJob {
   void watch(Entry& entry, drive::Axis& axis, Time now) const;
   void watchBoot(Entry& entry, drive::Axis& axis, Time now) const;
   void watchState(Entry& entry, drive::Axis& axis, Time now) const;
+  void lookAgain(Entry& entry, drive::Axis& axis) const;
+  bool staysDown() const;  ///< stop and pre_operational: until somebody boots the node
   Answer answer() const;
 
   std::string word_;
