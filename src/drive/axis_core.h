@@ -131,6 +131,10 @@ class AxisCore {
   bool moving() const;
   /// Is not known to stand. Without feedback one that stood without power still does.
   bool mayMove() const;
+  /// Takes a target that an enabled axis at rest has not come to back to where it stands: what
+  /// holds the motor may let go. @return how long the drive may take to come back from it; nothing
+  /// if there was none.
+  std::optional<Duration> withdrawTarget();
 
   // --- Halt ------------------------------------------------------------------------------------
   /// Stops by what the mode has for it (stopBy()). By quick stop the axis leaves operation.
@@ -244,6 +248,7 @@ class AxisCore {
   void watchFollowing(Time now);
   /// The set-points come back to where the motor stands.
   void callBack();
+  void takeTargetBack();
   bool leadsInside(double value) const;
   double guardSpeed(double effort) const;
   bool withinLimits(double value) const;

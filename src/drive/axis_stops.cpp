@@ -2,6 +2,7 @@
 // How the axis comes to rest, and whether it is.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "axis_core.h"
 #include "procedure_limits.h"
@@ -65,6 +66,27 @@ bool AxisCore::moving() const {
 
 bool AxisCore::mayMove() const {
   return state_.feedback_valid ? !atStandstill() : !stood_without_power_;
+}
+
+std::optional<Duration> AxisCore::withdrawTarget() {
+  const bool position = mode_->spec->kind == ControlKind::position;
+  if (!in_operation_ || !position || !state_.feedback_valid) return {};
+  const double away = std::fabs(set_point_.value() - state_.position);
+  if (away <= standstill_.tolerance()) return {};
+  const bool planned = set_point_.kind() == SetPointKind::goal;
+  takeTargetBack();
+  const Duration reaction = kReactionCycles * config_.sync_period;
+  if (!planned) return reaction;
+  // What the drive has planned may be on its way still: it turns round and comes back.
+  const double speed = config_.limits.velocity.value_or(std::numeric_limits<double>::infinity());
+  const double ramp = stopDeceleration(config_);
+  const double fastest = std::min(speed, std::sqrt(2.0 * ramp * away));
+  return reaction + fromSeconds(3.0 * fastest / ramp + away / fastest);
+}
+
+void AxisCore::takeTargetBack() {
+  neutralizeTarget();
+  if (mode_->spec->handshake == Handshake::new_set_point) handshake_.offer(target_raw_, true);
 }
 
 void AxisCore::beginHalt() {
@@ -178,8 +200,7 @@ void AxisCore::watchFollowing(Time now) {
 void AxisCore::callBack() {
   const bool turns = set_point_.kind() == SetPointKind::velocity;
   const double ahead = turns ? set_point_.value() : set_point_.value() - state_.position;
-  neutralizeTarget();
-  if (mode_->spec->handshake == Handshake::new_set_point) handshake_.offer(target_raw_, true);
+  takeTargetBack();
   set_point_.giveUp();
   following_.end();
   if (!following_.isNews()) return;

@@ -12,8 +12,17 @@ Outcome ReadyToSwitchStep::advance(const Context& context) {
   ready_ = ready_ || axis.powerOff();
   if (ready_) return Outcome::done();
   if (!standing_) {
+    if (context.now < started_) return Outcome::running();
     const Outcome standing = awaitStandstill(context, started_, "switching the mode");
     if (!standing.isDone()) return standing;
+    // Without power, or in another mode, nothing would hold it that is let go just now.
+    const auto back = withdrawn_ ? std::nullopt : axis.withdrawTarget();
+    withdrawn_ = true;
+    if (back) {
+      started_ = context.now + *back;
+      context.show("taking back a target that was not reached", "the drive to be done with it");
+      return Outcome::running();
+    }
     standing_ = true;
     axis.renewLimits();
     context.show("writing position limits", "the drive to take the joint's limits");

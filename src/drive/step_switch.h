@@ -9,14 +9,15 @@
 
 namespace cia402::drive {
 
-/// What an axis with power waits for before it gets another mode: it stands, and the drive's own
-/// position limits, beyond which an effort, a load or a homing may have taken it, are open there.
+/// What an axis with power waits for before it gets another mode: it stands, no target leads it
+/// away from there, and the drive's own position limits, beyond which an effort, a load or a homing
+/// may have taken it, are open there.
 class ReadyToSwitchStep {
  public:
   Outcome advance(const Context& context);
 
  private:
-  bool begun_ = false, standing_ = false, ready_ = false;
+  bool begun_ = false, standing_ = false, withdrawn_ = false, ready_ = false;
   Time started_{};
 };
 

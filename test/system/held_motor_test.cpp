@@ -39,6 +39,34 @@ TEST(HeldMotor, StaysWhereItIsWhenItsRotorIsLetGo) {
   }
 }
 
+// A Damiao calls a target within 0.1 rad reached (6067h), and is disabled for another mode.
+TEST(HeldMotor, IsNotLeftWithoutPowerInMotionWhereItIsLetGoWhileItsModeIsSwitched) {
+  ReadyScene scene(damiaoJoint());
+  ASSERT_TRUE(scene.procedure(ProcedureKind::set_mode, "joint", "position_velocity").success);
+  double fastest_cut = 0.0;
+  bool powered = true;
+  scene.watch([&] {
+    const bool on = scene.truth("joint").power_stage_on;
+    if (powered && !on) {
+      fastest_cut = std::max(fastest_cut, std::fabs(scene.velocity("joint")));
+    }
+    powered = on;
+  });
+  for (Duration held = 0ms; held < 140ms; held += 1ms) {
+    const bool up = scene.position("joint") < 0.0;
+    scene.inject("joint", "blocked_rotor");
+    EXPECT_EQ(scene.setpoint("joint", scene.position("joint") + (up ? 0.09 : -0.09)), "");
+    scene.run(12ms);
+    const auto switched = scene.begin(ProcedureKind::set_mode, "joint", "velocity_torque");
+    scene.run(held);
+    scene.inject("joint", "clear");
+    ASSERT_TRUE(scene.runUntil([&] { return switched->has_value(); }, 2s)) << toSeconds(held);
+    scene.run(300ms);
+    ASSERT_TRUE(scene.procedure(ProcedureKind::set_mode, "joint", "position_velocity").success);
+  }
+  EXPECT_LT(fastest_cut, 0.3);
+}
+
 TEST(HeldMotor, HasNoSetPointsRunAwayWhileItsBrakeHoldsIt) {
   ReadyScene scene(genericPair(", simulation: {brake_delay: 0.3}"));
   ASSERT_TRUE(scene.procedure(ProcedureKind::disable).success);
