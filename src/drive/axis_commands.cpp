@@ -83,7 +83,7 @@ void AxisCore::writeCommands(Time now) {
 void AxisCore::writeTarget(Time now) {
   if (stop_point_after_ != kNever) renewStopPoint(now);
   if (set_point_.advance(now)) encodeTarget();
-  if (effort_streamed_ && !set_point_.leased()) brakeEffort();
+  if (effort_streamed_) set_point_.leased() ? followByBrakeMode() : brakeEffort(now);
   const bool by_hand = mode_->spec->handshake == Handshake::new_set_point;
   if (by_hand) advanceHandshake(now);
   if (!mode_->target.mapped()) return;
@@ -142,7 +142,9 @@ void AxisCore::neutralizeTarget() {
 
 void AxisCore::selectMode(const ModeChannel& mode) {
   mode_ = &mode;
-  bound_for_ = nullptr;
+  bound_for_ = braked_in_ = nullptr;
+  braking_mode_shown_ = false;
+  brake_ticket_.reset();
   mode_override_.reset();
   given_ = kUnknown;
   held_.clear();

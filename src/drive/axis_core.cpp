@@ -54,6 +54,7 @@ bool AxisCore::absolute() const {
 
 const ModeChannel& AxisCore::workingMode() const {
   if (bound_for_ != nullptr) return *bound_for_;
+  if (braked_in_ != nullptr) return *braked_in_;
   return mode_->spec->kind == ControlKind::homing ? *objects_.channel(config_.mode) : *mode_;
 }
 
@@ -96,6 +97,7 @@ void AxisCore::supervise(Time now) {
         state == State::unknown && now - known_state_ <= config_.undecodable_timeout;
     if (state != State::operation_enabled && !undecodable) return giveUpOperation();
     if (state_.warning && profile().warning_stops) return stopForWarning();
+    if (braked_in_ != nullptr) watchBrakeMode(now);
     const bool has_bit = mode_->spec->follows_command_bit.has_value();
     if (!following_.leaves(standstill_.moving(), has_bit, now)) watchFollowing(now);
   } else if (goal_ == Goal::enabled && state == State::operation_enabled) {

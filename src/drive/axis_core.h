@@ -138,7 +138,7 @@ class AxisCore {
 
   // --- Halt ------------------------------------------------------------------------------------
   /// Stops by what the mode has for it (stopBy()). By quick stop the axis leaves operation.
-  void beginHalt();
+  void beginHalt(Time now);
   /// Replaces the set-point that a halted drive would go on to by "stay here". The halt itself is
   /// released once that is on the wire and handshakeBusy() is over.
   void replaceHaltedTarget();
@@ -235,7 +235,7 @@ class AxisCore {
   void encodeTarget();
   StopBy stopBy() const { return drive::stopBy(*mode_->spec, profile()); }
   /// A torque is nobody's any more: the axis must not coast on (command_timeout_action).
-  void brakeEffort();
+  void brakeEffort(Time now);
   void giveStopPoint(Time now);
   void renewStopPoint(Time now);
   /// Cycles were missed: nothing of them is made good.
@@ -249,6 +249,11 @@ class AxisCore {
   /// The set-points come back to where the motor stands.
   void callBack();
   void takeTargetBack();
+  const ModeChannel* brakeMode() const;
+  bool brakeByMode(Time now);
+  void followByBrakeMode();
+  void watchBrakeMode(Time now);
+  void arrest();
   bool leadsInside(double value) const;
   double guardSpeed(double effort) const;
   bool withinLimits(double value) const;
@@ -288,6 +293,10 @@ class AxisCore {
   bool braking_ = false;      ///< the halt bit brakes an axis whose torque is nobody's any more
   bool voltage_off_ = false;  ///< the power stage is to be off, whatever the drive shows
   const ModeChannel* bound_for_ = nullptr;
+  const ModeChannel* braked_in_ = nullptr;  ///< the mode that mode_ brakes, see StopBy::mode
+  Time braked_at_{};
+  bool braking_mode_shown_ = false;
+  canopen::SdoTicket brake_ticket_;
   std::optional<int> mode_override_;  ///< commanded instead of mode_ for a moment
   std::uint16_t controlword_ = 0, base_controlword_ = 0;
   Command command_ = nextCommand(State::unknown, Goal::disabled);  ///< of these two:

@@ -89,7 +89,7 @@ void AxisCore::takeTargetBack() {
   if (mode_->spec->handshake == Handshake::new_set_point) handshake_.offer(target_raw_, true);
 }
 
-void AxisCore::beginHalt() {
+void AxisCore::beginHalt(Time now) {
   if (!in_operation_ || state_.halted) return;
   set_point_.stop();
   switch (stopBy()) {
@@ -98,6 +98,9 @@ void AxisCore::beginHalt() {
       break;
     case StopBy::quick_stop:
       setGoal(Goal::quick_stop);
+      return;
+    case StopBy::mode:
+      if (!brakeByMode(now)) setGoal(Goal::quick_stop);
       return;
     case StopBy::set_points:
       if (set_point_.kind() == SetPointKind::goal) {
@@ -152,7 +155,70 @@ void AxisCore::renewStopPoint(Time now) {
   if (first || ahead < kReachable * way) giveStopPoint(now);
 }
 
-void AxisCore::brakeEffort() {
+/// The mode that brakes this one, where its target travels in every cycle.
+const ModeChannel* AxisCore::brakeMode() const {
+  if (mode_->spec->stop_mode.empty()) return nullptr;
+  const ModeChannel* brake = objects_.channel(mode_->spec->stop_mode);
+  const bool usable = brake != nullptr && brake->target.mapped() && modeRefusal(*brake).empty();
+  return usable ? brake : nullptr;
+}
+
+/// So that the mode that brakes finds the motor's own velocity as its target when it comes.
+void AxisCore::followByBrakeMode() {
+  const ModeChannel* brake = brakeMode();
+  std::uint64_t raw = 0;
+  if (brake == nullptr || !std::isfinite(state_.velocity)) return;
+  if (brake->conversion.toDevice(state_.velocity, raw)) image_.setOutput(brake->target.slot, raw);
+}
+
+/// @return false if it cannot, and a quick stop has to do it
+bool AxisCore::brakeByMode(Time now) {
+  const ModeChannel* brake = brakeMode();
+  if (brake == nullptr || !state_.feedback_valid || !std::isfinite(state_.velocity)) return false;
+  const ModeChannel* pushes = mode_;
+  if (pushes->target.mapped()) image_.setOutput(pushes->target.slot, 0);
+  selectMode(*brake);
+  braked_in_ = pushes;
+  braked_at_ = now;
+  const ObjectSpec* object = objects_.mode.spec;
+  if (!objects_.mode.mapped() && object != nullptr) {
+    const auto value = static_cast<std::uint64_t>(brake->spec->value);
+    brake_ticket_ =
+        node_.sdo().downloadUrgent(object->id, wireBytes(value, object->type), object->name);
+  }
+  arrest();
+  effort_streamed_ = false;
+  state_.halted = true;
+  state_.ready_for_motion = false;
+  return true;
+}
+
+void AxisCore::arrest() {
+  set_point_.arrest(state_.velocity);
+  encodeTarget();
+}
+
+/// The ramp begins when the drive has taken the mode: until then it coasts.
+void AxisCore::watchBrakeMode(Time now) {
+  if (braking_mode_shown_) return;
+  const bool refused = brake_ticket_ && brake_ticket_->done() && !brake_ticket_->ok();
+  if (shown_mode_ == mode_->spec->value && !refused) {
+    braking_mode_shown_ = true;
+    return;
+  }
+  const Duration patience = profile().timing.mode_change;
+  if (!refused && now <= braked_at_ + patience) {
+    if (std::isfinite(state_.velocity)) arrest();
+    return;
+  }
+  notify(who() + ": mode " + mode_->spec->name + " (6060:00 = " +
+         std::to_string(mode_->spec->value) + "), which is to brake, was not taken" +
+         (refused ? ": " + brake_ticket_->message() : " within " + seconds(patience)) +
+         "; quick stop is commanded. " + report());
+  setGoal(Goal::quick_stop);
+}
+
+void AxisCore::brakeEffort(Time now) {
   if (set_point_.atRest() && atStandstill()) {
     effort_streamed_ = false;
     return;
@@ -161,6 +227,13 @@ void AxisCore::brakeEffort() {
   set_point_.stop();
   if (stopBy() == StopBy::halt) {
     braking_ = halt_bit_ = true;
+    return;
+  }
+  const std::string pushing = mode_->spec->name;
+  if (stopBy() == StopBy::mode && brakeByMode(now)) {
+    notify(who() + ": the stream of efforts ended; the axis is braked and held by mode " +
+           mode_->spec->name + ". enable brings it back into " + pushing +
+           ", or let it coast by command_timeout_action: coast");
     return;
   }
   setGoal(Goal::quick_stop);

@@ -25,7 +25,8 @@ class Enable : public Procedure {
     AxisCore& axis = context.axis;
     releasing_ = axis.inOperation();
     const bool homing = axis.mode().spec->kind == ControlKind::homing;
-    changing_mode_ = releasing_ && (homing || axis.shownMode() != axis.mode().spec->value);
+    const bool elsewhere = &axis.mode() != &axis.workingMode();  // homing, or braked by a mode
+    changing_mode_ = releasing_ && (elsewhere || axis.shownMode() != axis.mode().spec->value);
     blocked_ = changing_mode_ && axis.halted() && !axis.profile().mode_change.while_halted;
     if (blocked_ && homing) {
       // The start bit of homing has been 0 since the halt: without the halt bit nothing begins.

@@ -37,7 +37,7 @@ class Halt : public Procedure {
     until_ = context.now + axis.stopTime();
     mode_ = axis.mode().spec->name;
     if (axis.inOperation()) {
-      axis.beginHalt();
+      axis.beginHalt(context.now);
       if (axis.inOperation()) {
         context.show("halting", "standstill");
         return Outcome::running();

@@ -23,7 +23,7 @@ DriveHoming::DriveHoming(AxisCore& axis, const ModeChannel& homing)
     : homing_(&homing),
       before_(axis.mode().spec->kind == ControlKind::homing
                   ? axis.objects().channel(axis.config().mode)
-                  : &axis.mode()),
+                  : &axis.workingMode()),
       writes_(axis.profile().homing.writes),
       mode_(homing, axis.profile()),
       enabling_(homing, axis.profile()),

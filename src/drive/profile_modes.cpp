@@ -66,11 +66,20 @@ void readHandshake(YamlSection& section, ModeSpec& mode) {
 
 void readStop(YamlSection& section, ModeSpec& mode) {
   const auto value = section.get("stop");
-  const auto index = value ? value->oneOf({"set_points", "halt", "quick_stop"}) : std::nullopt;
-  if (!index) return;
-  mode.stop = static_cast<StopBy>(*index);
+  const auto index =
+      value ? value->oneOf({"set_points", "halt", "quick_stop", "mode"}) : std::nullopt;
+  std::string stop_mode;
+  section.read("stop_mode", stop_mode);
+  mode.stop_mode = canonicalModeName(stop_mode);
+  if (index) mode.stop = static_cast<StopBy>(*index);
+  if ((mode.stop == StopBy::mode) == stop_mode.empty()) {
+    section.problem("`stop: mode` and `stop_mode`, the mode that brakes, go together");
+  }
   if (mode.stop == StopBy::set_points && mode.kind == ControlKind::torque) {
-    value->problem("a torque of 0 lets the axis coast; write halt or quick_stop");
+    value->problem("a torque of 0 lets the axis coast; write halt, quick_stop or mode");
+  }
+  if (mode.stop == StopBy::mode && mode.kind != ControlKind::torque) {
+    value->problem("another mode brakes torque modes only; write set_points, halt or quick_stop");
   }
 }
 

@@ -194,6 +194,25 @@ void checkDetours(const YamlSection& section, const DriveProfile& profile) {
   }
 }
 
+void checkStopModes(YamlSection& section, const DriveProfile& profile) {
+  for (const ModeSpec& mode : profile.modes) {
+    if (mode.stop_mode.empty()) continue;
+    const std::string at = "modes/" + mode.name + "/stop_mode: ";
+    const ModeSpec* brake = profile.mode(mode.stop_mode);
+    if (brake == nullptr) {
+      section.problem(at + "there is no mode `" + mode.stop_mode + "`");
+    } else if (brake->kind != ControlKind::velocity || !brake->cyclic) {
+      section.problem(at + "`" + brake->name +
+                      "` follows no stream of velocities, so that the "
+                      "axis could not be led to rest in it");
+    } else if (profile.mode_change.needs_disabling ||
+               profile.mode_change.detour(mode.name, brake->name) != nullptr) {
+      section.problem(at + "the drive does not go into `" + brake->name +
+                      "` while enabled (mode_change); write `stop: quick_stop`");
+    }
+  }
+}
+
 void readBehaviour(YamlSection& section, DriveProfile& profile) {
   section.read("output_shaft", profile.output_shaft);
   section.read("halt_supported", profile.halt_supported);
@@ -229,6 +248,7 @@ DriveProfile readProfile(const YamlValue& root) {
   readBehaviour(section, profile);
   if (const auto modes = section.require("modes", "at least one mode")) readModes(*modes, profile);
   checkDetours(section, profile);
+  checkStopModes(section, profile);
   if (const auto homing = section.get("homing")) readHoming(*homing, profile);
   if (const auto writes = section.get("startup")) {
     profile.startup = readWrites(*writes, profile, WriteList::boot);

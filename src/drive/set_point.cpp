@@ -41,6 +41,11 @@ void SetPoint::rest(SetPointKind kind, double value) {
   ++breaks_;
 }
 
+void SetPoint::arrest(double velocity) {
+  rest(SetPointKind::velocity, velocity);
+  beginStop();
+}
+
 void SetPoint::give(double value) {
   given_ = value;
   has_given_ = true;

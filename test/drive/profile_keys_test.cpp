@@ -169,6 +169,7 @@ TEST_F(ProfileKeys, ModesHaveTheirBits) {
   EXPECT_EQ(pt->speed_zero_bit, 9);
   EXPECT_EQ(pt->follows_command_bit, 14);
   EXPECT_EQ(pt->stop, StopBy::quick_stop);
+  EXPECT_EQ(pt->stop_mode, "");
   ASSERT_EQ(pt->entry_writes.size(), 1U);
   EXPECT_EQ(pt->entry_writes[0].object, "profile_velocity");
   EXPECT_EQ(pt->entry_writes[0].from, "limits.velocity");
@@ -318,7 +319,22 @@ struct WrongKey {
 TEST(ProfileMistakes, AreToldWithWhatToDo) {
   const WrongKey mistakes[] = {
       {"  pt: {value: 4, control: torque, target: target_torque, stop: set_points}\n",
-       "modes/pt/stop: a torque of 0 lets the axis coast; write halt or quick_stop"},
+       "modes/pt/stop: a torque of 0 lets the axis coast; write halt, quick_stop or mode"},
+      {"  pt: {value: 4, control: torque, target: target_torque, stop: mode}\n",
+       "modes/pt: `stop: mode` and `stop_mode`, the mode that brakes, go together"},
+      {"  pt: {value: 4, control: torque, target: target_torque, stop_mode: csp}\n",
+       "modes/pt: `stop: mode` and `stop_mode`, the mode that brakes, go together"},
+      {"  pt: {value: 4, control: torque, target: target_torque, stop: mode, stop_mode: csv}\n",
+       "modes/profile_torque/stop_mode: there is no mode `cyclic_velocity`"},
+      {"  pt: {value: 4, control: torque, target: target_torque, stop: mode, stop_mode: csp}\n",
+       "modes/profile_torque/stop_mode: `cyclic_position` follows no stream of velocities"},
+      {"  pp: {value: 1, control: position, target: target_position, stop: mode, stop_mode: csp}\n",
+       "modes/pp/stop: another mode brakes torque modes only"},
+      {"  pt: {value: 4, control: torque, target: target_torque, stop: mode, stop_mode: csv}\n"
+       "  csv: {value: 9, control: velocity, cyclic: true, target: profile_velocity}\n"
+       "mode_change: disabled\n",
+       "modes/profile_torque/stop_mode: the drive does not go into `cyclic_velocity` while "
+       "enabled"},
       {"  a: {value: 4, control: position}\n",
        "modes/a: `target` is missing: the object that takes the mode's set-points"},
       {"  a: {control: position, target: target_position}\n",

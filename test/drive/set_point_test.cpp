@@ -66,6 +66,19 @@ TEST(SetPoint, SlowsAVelocityDownByTheDecelerationWhereItIsNotRenewed) {
   EXPECT_TRUE(rig.point.atRest());
 }
 
+TEST(SetPoint, TakesOverAMotorThatTurnsAndRampsItToRest) {
+  Rig rig(SetPointKind::torque);
+  rig.point.arrest(-1.0);
+  EXPECT_EQ(rig.point.kind(), SetPointKind::velocity);
+  EXPECT_EQ(rig.point.value(), -1.0);
+  EXPECT_FALSE(rig.point.atRest());
+  rig.cycle();
+  EXPECT_NEAR(rig.point.value(), -1.0 + kDeceleration * 0.01, 1e-12);
+  rig.cycles(30);
+  EXPECT_EQ(rig.point.value(), 0.0);
+  EXPECT_TRUE(rig.point.atRest());
+}
+
 TEST(SetPoint, DropsATorqueAtOnceWhereItIsNotRenewed) {
   Rig rig(SetPointKind::torque);
   rig.point.give(3.0);

@@ -106,6 +106,8 @@ enum class StopBy : std::uint8_t {
   halt,        ///< controlword bit 8
   quick_stop,  ///< nothing else brakes in this mode: the drive's own ramp, after which it switches
                ///< off or holds as 605Ah says
+  mode,        ///< another mode brakes, ModeSpec::stop_mode: it begins at the measured velocity,
+               ///< which is ramped to 0, and holds that until the axis is enabled anew
 };
 
 /// A write by profile name: value in the object's unit system (SI after conversion) or raw.
@@ -139,6 +141,7 @@ struct ModeSpec {
   std::string target;   ///< name of the target object; empty for homing
   Handshake handshake = Handshake::none;
   std::optional<StopBy> stop;          ///< absent: by the kind of mode, see stopBy()
+  std::string stop_mode;               ///< with StopBy::mode: a cyclic velocity mode's name
   std::uint16_t controlword_bits = 0;  ///< held while the mode is active in Operation enabled
   std::optional<int> target_reached_bit, following_error_bit, set_point_acknowledge_bit,
       speed_zero_bit, homing_attained_bit, homing_error_bit, follows_command_bit;

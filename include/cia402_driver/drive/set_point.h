@@ -44,6 +44,8 @@ class SetPoint {
 
   /// Begins anew, at rest: at the position `value`, or with no velocity or torque.
   void rest(SetPointKind kind, double value);
+  /// Takes over a motor that turns: begins at its velocity, per s, and ramps that to rest.
+  void arrest(double velocity);
   /// The set-point of this cycle; in a stream it is approached no faster than the velocity limit.
   /// Ends a stop. @pre value is finite
   void give(double value);
