@@ -72,13 +72,15 @@ std::vector<std::string> defaultObjects(const AxisConfig& axis, const PdoNeeds& 
   return names;
 }
 
-/// What brakes in a mode is planned with it.
-void addStopModes(const DriveProfile& profile, std::vector<std::string>& names) {
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const ModeSpec* mode = profile.mode(names[i]);
+/// What brakes in a mode, that to start in included, is planned with it.
+void addStopModes(const AxisConfig& axis, std::vector<std::string>& names) {
+  std::vector<std::string> pushing = names;
+  pushing.push_back(axis.mode);
+  for (const std::string& name : pushing) {
+    const ModeSpec* mode = axis.profile->mode(name);
     if (mode == nullptr || mode->stop_mode.empty()) continue;
     const bool there = std::find(names.begin(), names.end(), mode->stop_mode) != names.end();
-    if (!there && profile.mode(mode->stop_mode) != nullptr) names.push_back(mode->stop_mode);
+    if (!there) names.push_back(mode->stop_mode);
   }
 }
 
@@ -175,7 +177,7 @@ bool choosePdos(YamlSection& section, AxisConfig& axis, RobotConfig& robot) {
   needs.modes_required = modes.has_value();
   needs.modes = modes ? drive::readModeNames(*modes, profile) : profile.default_modes;
   if (!modes && needs.modes.empty()) needs.modes = allModes(profile);
-  addStopModes(profile, needs.modes);
+  addStopModes(axis, needs.modes);
   needs.feedback_required = feedback.has_value();
   needs.feedback = feedback ? drive::readFeedbackNames(*feedback, profile) : feedbackOf(profile);
   if (!feedback) needs.if_room = profile.feedback_if_room;

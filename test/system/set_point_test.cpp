@@ -377,16 +377,22 @@ TEST_P(EffortMode, AnEffortAfterTheBrakeMovesAgainWhereItStaysEnabled) {
   speedUp();
 }
 
+/// Pushes the left axis until it turns. @return false if it does not
+bool pushed(Scene& scene) {
+  return scene.runUntil(
+      [&] {
+        EXPECT_EQ(scene.setpoint("left", 6.0), "");
+        return std::abs(scene.velocity("left")) > 0.5;
+      },
+      5s);
+}
+
 TEST(SetPoints, AnEffortIsBrakedByAnotherModeByItsRampAndHeldThere) {
   Scene scene(loadText(brakedByVelocity()));
   ASSERT_TRUE(scene.boot()) << scene.told();
   ASSERT_TRUE(scene.procedure(ProcedureKind::set_mode, "left", "cst").success);
   ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "left").success);
-  const auto push = [&] {
-    EXPECT_EQ(scene.setpoint("left", 6.0), "");
-    return std::abs(scene.velocity("left")) > 0.5;
-  };
-  ASSERT_TRUE(scene.runUntil(push, 5s));
+  ASSERT_TRUE(pushed(scene));
   std::deque<double> speeds;
   double hardest = 0.0;  // rad/s lost within 20 ms: what is measured is a cycle or two old
   scene.watch([&] {
@@ -408,7 +414,7 @@ TEST(SetPoints, AnEffortIsBrakedByAnotherModeByItsRampAndHeldThere) {
   const bus::Answer enabled = scene.procedure(ProcedureKind::enable, "left");
   EXPECT_TRUE(enabled.success) << enabled.message;
   EXPECT_EQ(scene.axis("left").modeName(), "cyclic_torque");
-  EXPECT_TRUE(scene.runUntil(push, 5s));
+  EXPECT_TRUE(pushed(scene));
 }
 
 TEST(SetPoints, AnEffortWhoseBrakeTheDriveDoesNotTakeEndsInAQuickStop) {
@@ -418,12 +424,7 @@ TEST(SetPoints, AnEffortWhoseBrakeTheDriveDoesNotTakeEndsInAQuickStop) {
     ASSERT_TRUE(scene.procedure(ProcedureKind::set_mode, "left", "cst").success);
     ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "left").success);
     if (mute) scene.inject("left", "sdo_silent");
-    ASSERT_TRUE(scene.runUntil(
-        [&] {
-          EXPECT_EQ(scene.setpoint("left", 6.0), "");
-          return std::abs(scene.velocity("left")) > 0.5;
-        },
-        5s));
+    ASSERT_TRUE(pushed(scene));
     scene.run(3s);
     EXPECT_THAT(scene.told(), HasSubstr(mute ? "(6060:00 = 9), which is to brake, was not taken"
                                              : "(6060:00 = 11), which is to brake, was not taken"));
@@ -431,6 +432,19 @@ TEST(SetPoints, AnEffortWhoseBrakeTheDriveDoesNotTakeEndsInAQuickStop) {
     EXPECT_FALSE(scene.truth("left").power_stage_on);
     EXPECT_LT(std::abs(scene.velocity("left")), 1e-3);
   }
+}
+
+TEST(SetPoints, TheModeThatBrakesTheOneToStartInIsPlannedWithIt) {
+  std::string yaml = brakedByVelocity();
+  const std::string modes = "mode: cyclic_position, modes: [csp, cyclic_torque]";
+  yaml.replace(yaml.find(modes), modes.size(), "mode: cyclic_torque, modes: [csp]");
+  Scene scene(loadText(yaml));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "left").success);
+  ASSERT_TRUE(pushed(scene));
+  scene.run(1s);
+  EXPECT_TRUE(scene.truth("left").power_stage_on) << scene.told();
+  EXPECT_LT(std::abs(scene.velocity("left")), 1e-3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Modes, EffortMode, testing::ValuesIn(efforts()),
