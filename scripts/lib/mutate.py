@@ -2,13 +2,14 @@
 # Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 """Breaks lines of a copy of the sources, one at a time, and tells which test sees it.
 
-See scripts/mutate --help. The copy and its build are DIRECTORY/tree and DIRECTORY/tree/build/ros: as
-deep below the repository as the build of scripts/test, so that ccache knows what is not broken.
+See scripts/mutate --help. Several are judged at once, each in a copy and a build of its own,
+DIRECTORY/N/tree and DIRECTORY/N/tree/build; ccache knows what was built in another one.
 """
 import argparse
 import fcntl
 import hashlib
 import json
+import multiprocessing
 import os
 import pathlib
 import re
@@ -21,7 +22,8 @@ import time
 
 import mutations
 
-COPIED = ("cmake", "config", "fuzz", "include", "src", "test")
+COPIED = ("cmake", "config", "docs", "fuzz", "include", "src", "test")
+FILES = ("CMakeLists.txt", "README.md")
 MODULES = ("drive", "motion", "canopen", "bus", "config")
 MALFORMED, SAME = "does not compile", "the compiler makes the same program of it"
 MEMORY = 4 << 30  # bytes, for a test that a mutation lets allocate for ever
@@ -40,7 +42,8 @@ def synchronise(repository, tree):
             (tree / folder / file).unlink()
         for file in wanted:
             copy(repository / folder / file, tree / folder / file)
-    copy(repository / "CMakeLists.txt", tree / "CMakeLists.txt")
+    for file in FILES:
+        copy(repository / file, tree / file)
 
 
 def copy(source, target):
@@ -55,21 +58,22 @@ class Build:
 
     def __init__(self, directory, jobs):
         self.directory = directory
-        self._jobs = jobs
+        self.jobs = jobs
         self.tree = directory / "tree"
-        self.build = self.tree / "build" / "ros"
+        self.build = self.tree / "build"
 
     def configure(self):
         self.build.mkdir(parents=True, exist_ok=True)
         return self._log(["cmake", "-S", self.tree, "-B", self.build, "-G", "Ninja",
                           "-DCMAKE_CXX_COMPILER_LAUNCHER=ccache", "-DCMAKE_BUILD_TYPE=RelWithDebInfo",
+                          "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O2 -DNDEBUG",
                           "-DCMAKE_EXE_LINKER_FLAGS=-s -Wl,--build-id=none",
-                          "-DCIA402_WITH_ROS=OFF"])
+                          "-DCIA402_UNITY_BUILD=TESTS", "-DCIA402_WITH_ROS=OFF"])
 
     def make(self, target):
         """@return whether the target could be built."""
         return self._log(["cmake", "--build", self.build, "--target", target, "--parallel",
-                          self._jobs])
+                          self.jobs])
 
     def tests(self):
         names = [pathlib.Path(line).name for line in
@@ -81,7 +85,9 @@ class Build:
         return hashlib.sha256(path.read_bytes()).hexdigest() if path.exists() else ""
 
     def _log(self, command):
-        return run([str(part) for part in command], self.directory / "build.log", None) == 0
+        environment = dict(os.environ, CCACHE_BASEDIR=str(self.tree))
+        return run([str(part) for part in command], self.directory / "build.log", None,
+                   env=environment) == 0
 
 
 def run(command, log, limit, **options):
@@ -130,18 +136,22 @@ class Trial:
         self._seconds = {}
         self._unbroken = {}  # digests
 
-    def prepare(self):
-        """Builds and runs all tests unbroken: how long each takes. @return a problem, or None."""
+    def prepare(self, like=None):
+        """Builds all tests unbroken and runs them: how long each takes. @param like a trial that knows
+        that already. @return a problem, or None."""
         if not self._build.configure():
             return f"cmake failed, see {self._build.directory}/build.log"
         self._say("building what is not broken")
         if not self._build.make("cia402_tests"):
             return f"the tests cannot be built, see {self._build.directory}/build.log"
+        self._unbroken = {test: self._build.digest(test) for test in self._build.tests()}
+        if like:
+            self._seconds = like._seconds  # pylint: disable=protected-access
+            return None
         memory = self._build.directory / "durations.json"
         known = json.loads(memory.read_text(encoding="utf-8")) if memory.exists() else {}
-        for test in self._build.tests():
+        for test, digest in self._unbroken.items():
             self._say(f"running {test}, with nothing broken")
-            digest = self._build.digest(test)
             if known.get(test, [""])[0] != digest:
                 began = time.monotonic()
                 why = run_test(self._build.build / test, self._build.directory / "test.log", 3600)
@@ -149,7 +159,7 @@ class Trial:
                     return f"{test} fails though nothing is broken: {why}"
                 known[test] = [digest, time.monotonic() - began]
                 memory.write_text(json.dumps(known), encoding="utf-8")
-            self._unbroken[test], self._seconds[test] = known[test]
+            self._seconds[test] = known[test][1]
         return None
 
     def judge(self, mutation):
@@ -172,7 +182,7 @@ class Trial:
             if self._build.digest(test) == self._unbroken[test]:
                 continue  # the line is not in it
             why = run_test(self._build.build / test, self._build.directory / "test.log",
-                           60.0 + 10.0 * self._seconds[test])
+                           60.0 + 5.0 * self._seconds[test])
             if why is not None:
                 return f"seen by {test}: {why}"
             verdict = "survived"
@@ -197,15 +207,55 @@ def at(place, repository):
             if mutation.line == int(line)]
 
 
-def trials(chosen, judge, count):
-    """Judges mutations until `count` have changed the program; yields (mutation, verdict) of all."""
-    done = 0
-    for mutation in chosen:
-        if done == count:
+def work(trial, tasks, verdicts):
+    """A process that judges: (number, mutation) to (number, verdict), or what kept it from that."""
+    for number, mutation in iter(tasks.get, None):
+        try:
+            verdicts.put((number, trial.judge(mutation)))
+        except Exception as error:  # pylint: disable=broad-exception-caught
+            verdicts.put((number, error))
+
+
+def judged(chosen, trials, count):
+    """Judges mutations until `count` have changed the program, as many at once as there are trials.
+    Yields (mutation, verdict) of all in their order."""
+    tasks, verdicts = multiprocessing.SimpleQueue(), multiprocessing.SimpleQueue()
+    crew = [multiprocessing.Process(target=work, args=(trial, tasks, verdicts), daemon=True)
+            for trial in trials]
+    for one in crew:
+        one.start()
+    try:
+        yield from in_order(chosen, tasks.put, verdicts.get, 8 * len(crew), count)
+    finally:
+        for one in crew:
+            one.terminate()
+        for one in crew:
+            one.join()
+
+
+def in_order(chosen, put, get, ahead, count):
+    """Puts up to `ahead` mutations more than were yielded, each with its number, and gets their
+    verdicts in any order."""
+    chosen = iter(chosen)
+    under_way, known, number, done = {}, {}, 0, 0
+    while done < count:
+        while len(under_way) < ahead:
+            mutation = next(chosen, None)
+            if mutation is None:
+                break
+            under_way[number + len(under_way)] = mutation
+            put((number + len(under_way) - 1, mutation))
+        if not under_way:
             return
-        verdict = judge(mutation)
+        while number not in known:
+            other, verdict = get()
+            if isinstance(verdict, Exception):
+                raise verdict
+            known[other] = verdict
+        verdict = known.pop(number)
         done += verdict not in (MALFORMED, SAME)
-        yield mutation, verdict
+        yield under_way.pop(number), verdict
+        number += 1
 
 
 def summary(verdicts):
@@ -221,7 +271,7 @@ def arguments(words):
     parser = argparse.ArgumentParser(add_help=False)
     parser.add_argument("--repository", type=pathlib.Path, required=True)
     parser.add_argument("--build", type=pathlib.Path, required=True)
-    parser.add_argument("--jobs", type=int, default=1)  # of the build
+    parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--count", type=int, default=20)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--dir", nargs="+", default=[f"src/{module}" for module in MODULES])
@@ -249,20 +299,25 @@ def main():
 
     def say(text):
         print(f"== {text}", file=sys.stderr, flush=True)
-    build = Build(options.build, options.jobs)
-    build.directory.mkdir(parents=True, exist_ok=True)
-    lock = open(build.directory / "lock", "w", encoding="utf-8")  # until the end
+    options.build.mkdir(parents=True, exist_ok=True)
+    lock = open(options.build / "lock", "w", encoding="utf-8")  # until the end
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError:
-        sys.exit(f"mutate: another one works in {build.directory}; wait for its end")
-    synchronise(repository, build.tree)
-    trial = Trial(build, say)
-    problem = trial.prepare()
-    if problem:
-        sys.exit(f"mutate: {problem}")
+        sys.exit(f"mutate: another one works in {options.build}; wait for its end")
+    trials = []
+    for number in range(min(options.jobs, count)):
+        build = Build(options.build / str(number + 1), options.jobs)
+        build.tree.mkdir(parents=True, exist_ok=True)
+        synchronise(repository, build.tree)
+        trial = Trial(build, say)
+        problem = trial.prepare(like=trials[0] if trials else None)
+        if problem:
+            sys.exit(f"mutate: {problem}")
+        build.jobs = 1
+        trials.append(trial)
     verdicts = []
-    for mutation, verdict in trials(chosen, trial.judge, count):
+    for mutation, verdict in judged(chosen, trials, count):
         verdicts.append(verdict)
         print(f"{head}{mutation}: {verdict}", flush=True)
     print(f"{head}{summary(verdicts)}")

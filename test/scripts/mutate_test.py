@@ -235,22 +235,51 @@ class Judging(unittest.TestCase):
         self.assertEqual(trial.prepare(), "test_drive fails though nothing is broken: status 3")
 
 
+class FakeTrial:
+    """Knows the verdicts of five mutations."""
+
+    VERDICTS = {"a": "survived", "b": mutate.MALFORMED, "c": mutate.SAME,
+                "d": "seen by test_x: T.t", "e": "survived"}
+
+    def judge(self, letter):
+        return self.VERDICTS[letter]
+
+
 class Run(unittest.TestCase):
     def test_what_breaks_nothing_is_drawn_anew(self):
-        verdicts = {"a": "survived", "b": mutate.MALFORMED, "c": mutate.SAME,
-                    "d": "seen by test_x: T.t", "e": "survived"}
-        tried = list(mutate.trials("abcde", verdicts.get, 2))
+        tried = list(mutate.judged("abcde", [FakeTrial(), FakeTrial()], 2))
         self.assertEqual([mutation for mutation, _ in tried], list("abcd"))
         self.assertEqual(mutate.summary([verdict for _, verdict in tried]),
                          "2 lines broken, 1 seen, 1 survived; drawn anew: 1 that did not compile, "
                          "1 of which the compiler made the same program")
+
+    def test_verdicts_are_told_in_the_order_of_drawing(self):
+        queue = []
+
+        def latest():
+            number, letter = queue.pop()
+            return number, FakeTrial.VERDICTS[letter]
+        tried = list(mutate.in_order("edcbad", queue.append, latest, 3, 9))
+        self.assertEqual(tried, [(letter, FakeTrial.VERDICTS[letter]) for letter in "edcbad"])
+
+    def test_no_more_are_begun_than_may_be_needed(self):
+        queue = []
+        tried = mutate.in_order("deadeadea", queue.append,
+                                lambda: (queue.pop(0)[0], "survived"), 3, 2)
+        self.assertEqual(len(list(tried)), 2)
+        self.assertEqual([letter for _, letter in queue], list("ad"))
+
+    def test_what_keeps_one_from_judging_ends_the_run(self):
+        with self.assertRaises(KeyError):
+            list(mutate.judged("ax", [FakeTrial()], 2))
 
     def test_the_copy_becomes_what_the_repository_is(self):
         with tempfile.TemporaryDirectory() as directory:
             repository, tree = pathlib.Path(directory, "a"), pathlib.Path(directory, "b")
             for folder in mutate.COPIED:
                 (repository / folder).mkdir(parents=True)
-            (repository / "CMakeLists.txt").write_text("project()", encoding="utf-8")
+            for file in mutate.FILES:
+                (repository / file).write_text("1", encoding="utf-8")
             same, changed = repository / "src/same.cpp", repository / "src/deep/changed.cpp"
             changed.parent.mkdir()
             same.write_text("1", encoding="utf-8")
