@@ -39,8 +39,10 @@ class Restore : public BootStep {
     }
     if (now < boot.deadline) return Progress::waiting;
     return boot.fail(BootFailure::refused,
-                     "boot failed: the drive restored its parameters (1011:01), but did not reset "
-                     "when told so (NMT reset node); switch its power off and on");
+                     std::string("boot failed: the drive restored its parameters (1011:01), but "
+                                 "did not reset when told so (NMT reset ") +
+                         (boot.config.reset_node_allowed ? "node" : "communication") +
+                         "); switch its power off and on");
   }
 
  private:

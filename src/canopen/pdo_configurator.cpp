@@ -97,7 +97,9 @@ void PdoConfigurator::read(ObjectId object, const std::string& name) {
   step_ = (verifying_ ? "reading back " : "reading ") + toString(object) + " " + full_name;
   const bool parameter = phase_ == Phase::read_parameter && parameters_[item_].missing_is_zero &&
                          parameters_[item_].wanted == 0;
-  const bool may_lack = parameter || (phase_ == Phase::read_cob_id && options_.may_be_missing);
+  const bool may_lack =
+      parameter || phase_ == Phase::probe_entry ||
+      (phase_ == Phase::read_cob_id && (options_.may_be_missing || allOptional()));
   ticket_ = sdo_.upload(object, full_name, may_lack ? options_.if_there : std::nullopt);
 }
 
@@ -107,7 +109,11 @@ void PdoConfigurator::write(ObjectId object, std::uint32_t value, unsigned size,
   const std::string full_name = name + " of " + title();
   step_ = "writing " + hex(value, static_cast<int>(2 * size)) + " to " + toString(object) + " " +
           full_name;
-  ticket_ = sdo_.download(object, toBytes(value, size), full_name);
+  const bool may_lack = (phase_ == Phase::write_entry &&
+                         (wanted_.entries[item_].optional || wanted_.entries[item_].if_room)) ||
+                        (phase_ == Phase::write_count && anyOptional());
+  ticket_ = sdo_.download(object, toBytes(value, size), full_name,
+                          may_lack ? options_.if_there : std::nullopt);
 }
 
 void PdoConfigurator::answered(const SdoTransfer& transfer) {

@@ -111,6 +111,8 @@ class PdoConfigurator {
   void answeredProbe(const SdoTransfer& transfer);
   void leaveOut(std::size_t item);
   void afterEntries();
+  bool anyOptional() const { return nextOptional(0) < wanted_.entries.size(); }
+  bool allOptional() const;
   /// The next optional entry from `item` on, or the number of entries.
   std::size_t nextOptional(std::size_t item) const;
 

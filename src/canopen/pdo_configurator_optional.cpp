@@ -18,10 +18,7 @@ bool isMissingOrUnmappable(const SdoTransfer& transfer) {
 }  // namespace
 
 bool PdoConfigurator::leaveOutWhole(const SdoTransfer& transfer) {
-  if (!isMissingOrUnmappable(transfer) || nextOptional(0) == wanted_.entries.size()) return false;
-  const bool all = std::all_of(wanted_.entries.begin(), wanted_.entries.end(),
-                               [](const PdoEntry& entry) { return entry.optional; });
-  if (!all) return false;
+  if (!isMissingOrUnmappable(transfer) || !allOptional()) return false;
   while (!wanted_.entries.empty()) leaveOut(0);
   return true;
 }
@@ -64,10 +61,9 @@ bool PdoConfigurator::leaveOutRider(const SdoTransfer& transfer) {
 /// not have are found by reading them.
 bool PdoConfigurator::probeEntries(const SdoTransfer& transfer) {
   if (phase_ != Phase::write_count || !isMissingOrUnmappable(transfer)) return false;
-  const std::size_t first = nextOptional(0);
-  if (first == wanted_.entries.size()) return false;
+  if (!anyOptional()) return false;
   left_out_before_probe_ = left_out_.size();
-  enter(Phase::probe_entry, first);
+  enter(Phase::probe_entry, nextOptional(0));
   return true;
 }
 
@@ -91,6 +87,12 @@ void PdoConfigurator::leaveOut(std::size_t item) {
   const auto gone = wanted_.entries.begin() + static_cast<std::ptrdiff_t>(item);
   left_out_.push_back(*gone);
   wanted_.entries.erase(gone);
+}
+
+bool PdoConfigurator::allOptional() const {
+  return !wanted_.entries.empty() &&
+         std::all_of(wanted_.entries.begin(), wanted_.entries.end(),
+                     [](const PdoEntry& entry) { return entry.optional; });
 }
 
 std::size_t PdoConfigurator::nextOptional(std::size_t item) const {

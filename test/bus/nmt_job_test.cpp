@@ -75,6 +75,29 @@ TEST_F(NmtJobTest, AResetIsAnsweredOnceTheNodeIsConfiguredAgain) {
   }
 }
 
+// Elmo's pull the CAN lines down for a while when they are reset (ros-industrial/ros_canopen#334).
+TEST(NmtJob, ResetsNoNodeWhoseProfileForbidsIt) {
+  config::RobotConfig config = testRobot();
+  auto profile = std::make_shared<drive::DriveProfile>(*config.axes[1].profile);
+  profile->nmt_reset_node = false;
+  config.axes[1].profile = profile;
+  RobotWorld world(config);
+  world.boot();
+  world.sent.clear();
+  for (const char* axis : {"elbow", ""}) {
+    const Answer answer = world.call(nmt(axis, "reset_node"));
+    EXPECT_FALSE(answer.success);
+    EXPECT_THAT(answer.message, HasSubstr("elbow (node 2): nmt reset_node is refused: by its "
+                                          "profile (nmt_reset_node)"));
+    EXPECT_THAT(answer.message, HasSubstr("use reset_communication"));
+  }
+  EXPECT_TRUE(world.sentWithId(0x000).empty());
+  const Answer communication = world.call(nmt("elbow", "reset_communication"));
+  EXPECT_TRUE(communication.success) << communication.message;
+  const Answer other = world.call(nmt("shoulder", "reset_node"));
+  EXPECT_TRUE(other.success) << other.message;
+}
+
 TEST_F(NmtJobTest, NothingIsSentWhileAnAxisIsEnabled) {
   world.enable();
   forget();

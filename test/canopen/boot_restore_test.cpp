@@ -96,6 +96,28 @@ TEST_F(BootRestore, a_drive_that_does_not_reset_is_not_configured) {
   EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
 }
 
+// Elmo's pull the CAN lines down for a while when they are reset (ros-industrial/ros_canopen#334).
+TEST_F(BootRestore, resets_the_communication_alone_where_the_node_must_not_be_reset) {
+  config.reset_node_allowed = false;
+  const char kResetCommunication[] = "000 82 03";  // also how each boot begins
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(count(kResetNode), 0);
+  const auto load = std::find(peer.sent.begin(), peer.sent.end(), kLoad);
+  ASSERT_NE(load, peer.sent.end());
+  EXPECT_EQ(*(load + 1), kResetCommunication);
+  EXPECT_EQ(count(kLoad), 1);
+}
+
+TEST_F(BootRestore, tells_by_which_command_a_drive_did_not_reset) {
+  config.reset_node_allowed = false;
+  peer.on("000 82 03", Lines{});  // the second time
+  boot();
+  pass(seconds(5));
+  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_THAT(node->problem(), HasSubstr("did not reset when told so (NMT reset communication)"));
+}
+
 TEST_F(BootRestore, what_1020h_said_before_does_not_count_any_more) {
   config.boot.check = ConfigurationCheck::date;
   config.boot.date = 1;

@@ -47,6 +47,26 @@ TEST(MinimalDrive, RunsATrajectory) {
   EXPECT_TRUE(linesWith(scene, bus::Event::Severity::error).empty()) << scene.told();
 }
 
+// A servo in canopen-python/canopen#306 answers nothing where it should abort.
+TEST(MinimalDrive, ThatSaysNothingOfMissingObjectsRunsATrajectory) {
+  Scene scene(loadText(genericPair(", simulation: {drive: generic_cia402_minimal, "
+                                   "with: {communication: {silent_on_missing: true}}}")));
+  // Each of its twenty silences takes 1.5 s: three requests without an answer.
+  ASSERT_TRUE(scene.boot(120s)) << scene.told();
+  const bus::Answer enabled = scene.procedure(ProcedureKind::enable);
+  ASSERT_TRUE(enabled.success) << enabled.message;
+  ASSERT_TRUE(scene.move({0.8, -0.5}, 2s).success);
+  scene.run(3s);
+  EXPECT_NEAR(scene.position("left"), 0.8, 0.001);
+  EXPECT_NEAR(scene.position("right"), -0.5, 0.001);
+  const auto lines = linesWith(scene, bus::Event::Severity::warning, "only defaults ask for");
+  ASSERT_EQ(lines.size(), 1u) << scene.told();
+  EXPECT_THAT(lines[0],
+              AllOf(HasSubstr("606C:00 velocity_actual"), HasSubstr("6081:00 profile_velocity"),
+                    HasSubstr("60FF:00 target_velocity"), Not(HasSubstr("6040:00"))));
+  EXPECT_TRUE(linesWith(scene, bus::Event::Severity::error).empty()) << scene.told();
+}
+
 TEST(MinimalDrive, IsStoppedLikeAnyOther) {
   Scene scene(loadText(withMinimal()));
   ASSERT_TRUE(scene.boot()) << scene.told();

@@ -132,9 +132,9 @@ class Scene {
     return true;
   }
   /// Powers the drives on, starts the driver and boots all nodes.
-  bool boot() {
+  bool boot(Duration limit = std::chrono::seconds(8)) {
     robot_.start();
-    return runUntil([this] { return allReady(robot_); }, std::chrono::seconds(8));
+    return runUntil([this] { return allReady(robot_); }, limit);
   }
 
   bus::Answer call(bus::Command command, Duration limit = std::chrono::seconds(120)) {
