@@ -82,6 +82,7 @@ class DriveCore {
   StopOption option(const OptionTable& table, Role role) const;
   void clearErrors();
   const FaultDefinition* lastingCause(bool warnings) const;
+  void endWarnings();
   void superviseMotion();
   void connectionLost(ConnectionLoss reaction);
   void startSegment();

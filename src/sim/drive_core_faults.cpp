@@ -78,7 +78,18 @@ void DriveCore::clearErrors() {
 void DriveCore::removeCauses() {
   for (Cause& cause : causes_) cause.until = now_;
   motion_.motor().block(false);
+  if (!definition_.warning_stops) endWarnings();
   updateStatusword();
+}
+
+/// A warning lasts as long as what it warns of, while a fault waits for its reset.
+void DriveCore::endWarnings() {
+  if (!warning_) return;
+  causes_.erase(std::remove_if(causes_.begin(), causes_.end(),
+                               [](const Cause& cause) { return cause.fault->warning; }),
+                causes_.end());
+  warning_ = false;
+  if (causes_.empty()) clearErrors();
 }
 
 void DriveCore::superviseMotion() {

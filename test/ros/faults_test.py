@@ -5,7 +5,7 @@ import math
 import time
 
 import rospy
-from robot_client import ERROR, OK, RobotTest, main, wait_until
+from robot_client import ERROR, OK, WARN, RobotTest, main, wait_until
 
 
 class Faults(RobotTest):
@@ -40,6 +40,22 @@ class Faults(RobotTest):
         self.robot.wait_diagnostic("elbow", OK, "")
         self.succeed("elbow/enable")
         self.robot.wait_state("elbow", "operation enabled")
+
+    def test_warning_is_shown_as_one_and_stops_nothing(self):
+        self.home_and_enable()
+        self.robot.wait_diagnostic("elbow", OK)
+        self.succeed("inject_fault", axis="elbow", fault="overtemperature_warning")
+        status = self.robot.wait_diagnostic("elbow", WARN, "elbow (node 2)|0x4210")
+        self.assertNotIn("fault", status.message)
+        axis = self.robot.axis("elbow")
+        self.assertEqual(axis.state, "operation enabled")
+        self.assertTrue(axis.warning)
+        goal = self.robot.position("elbow") - 0.1
+        self.robot.command("elbow", goal)
+        self.robot.wait_at("elbow", goal, 0.005)
+        self.succeed("inject_fault", axis="elbow", fault="clear")
+        self.robot.wait_diagnostic("elbow", OK)
+        self.assertEqual(self.robot.axis("elbow").state, "operation enabled")
 
     def test_fault_of_one_axis_stops_its_group_only_in_motion(self):
         self.home_and_enable()

@@ -5,7 +5,7 @@ import math
 
 import rospy
 from cia402_driver.msg import AxisStates
-from robot_client import OK, RobotTest, main, wait_until
+from robot_client import OK, WARN, RobotTest, main, wait_until
 from tf2_msgs.msg import TFMessage
 
 HOME = {"shoulder": -2.6, "elbow": 0.2906, "wrist": 0.0, "gripper": 0.0}
@@ -103,6 +103,9 @@ class Motion(RobotTest):
         place = self.robot.wait_rest("wrist")
         self.assertLess(place, before + 1.5)
         self.assertEqual(self.robot.axis("wrist").state, "operation enabled")
+        self.robot.wait_diagnostic("wrist", WARN, "stream of velocities ended")
+        self.succeed("wrist/disable")
+        self.robot.wait_diagnostic("wrist", OK)
 
     def test_profile_position_makes_its_own_way(self):
         self.succeed("elbow/set_mode", "profile_position", mode="pp")

@@ -267,6 +267,18 @@ TEST(DriveStateMachine, WarningSetsBitSevenAndBitSevenClearsIt) {
   EXPECT_EQ(b.word(), 0x0237);
 }
 
+TEST(DriveStateMachine, WarningEndsWithWhatItWarnsOf) {
+  MachineBench b;
+  b.enable();
+  ASSERT_TRUE(b.drive->inject("overtemperature_warning", b.now).ok());
+  EXPECT_EQ(b.word(), 0x02B7);
+  EXPECT_EQ(b.read(0x603F), 0x4210U);
+  ASSERT_TRUE(b.drive->inject("clear", b.now).ok());
+  EXPECT_EQ(b.word(), 0x0237);
+  EXPECT_EQ(b.read(0x603F), 0U);
+  EXPECT_EQ(b.read(0x1001), 0U);
+}
+
 TEST(DriveStateMachine, UnknownFaultNamesTheKnownOnes) {
   MachineBench b;
   const auto refused = b.drive->inject("gremlin", b.now);
