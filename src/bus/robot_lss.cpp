@@ -164,13 +164,13 @@ void Robot::run(LssScanCommand& command, const Reply& reply, Time) {
         for (const lss::Identity& identity : scan.found()) {
           answer.devices.push_back(identity);
           answer.device_axes.emplace_back();
+          std::string owner;
           for (const drive::AxisConfig& axis : config_.axes) {
             const bool its = axis.lss && axis.lss->identity == identity;
             if (its) answer.device_axes.back() = axis.name;
+            if (its) owner = " is that of " + drive::whoIs(axis);
           }
-          answer.message += "; " + toString(identity);
-          const std::string& axis = answer.device_axes.back();
-          if (!axis.empty()) answer.message += " is that of " + axis;
+          answer.message += "; " + toString(identity) + owner;
         }
         give(reply, answer);
       },

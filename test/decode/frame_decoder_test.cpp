@@ -31,6 +31,14 @@ TEST_F(Decoder, NmtCommandsNameWhomTheyAreFor) {
   EXPECT_EQ(line({0x000, {0x01}}), "NMT||too short: 01");
 }
 
+TEST_F(Decoder, AJointThatIsCalledOtherwiseThanItsAxisIsNamedFirst) {
+  robot.axes[0].joint = "hip";
+  robot.axes[1].joint = robot.axes[1].name;
+  const FrameDecoder renamed(robot, test::master(robot));
+  EXPECT_EQ(renamed.decode(Frame(0x000, {0x01, 0x01})).node, "hip (axis shoulder, 1)");
+  EXPECT_EQ(renamed.decode(Frame(0x000, {0x01, 0x02})).node, "slide (2)");
+}
+
 TEST_F(Decoder, SyncTellsItsCounter) {
   EXPECT_EQ(line({0x080, {}}), "SYNC||");
   EXPECT_EQ(line({0x080, {0x05}}), "SYNC||counter 5");

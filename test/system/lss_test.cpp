@@ -207,6 +207,20 @@ TEST(Lss, AStoredNodeIdOutlivesThePower) {
   EXPECT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 4s)) << scene.told();
 }
 
+TEST(Lss, ScanTellsWhoseDeviceItIs) {
+  // The device beside `right` has no node-ID, and the identity that `left` is to have.
+  std::string yaml =
+      genericPair(", joint: hip, simulation: {serial: 111}" + lssOf(111), unconfigured(111));
+  yaml.replace(yaml.find("joints: [left"), 13, "joints: [hip");
+  Scene scene(loadText(yaml));
+  scene.robot().start();
+  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health == NodeHealth::ready; }, 10s));
+  scene.drive("left").device().behaviour().lss = false;  // so that one answers, not both
+  const auto scan = call(scene, bus::LssScanCommand{});
+  EXPECT_EQ(scan.device_axes, std::vector<std::string>{"left"});
+  EXPECT_THAT(scan.message, HasSubstr("is that of hip (axis left, node 1)"));
+}
+
 TEST(Lss, ScanFindsDevicesAssignNamesOneAndNobodyInOperationIsTouched) {
   Scene scene(loadText(genericPair(unconfigured(111))));
   scene.robot().start();
