@@ -21,6 +21,7 @@ import sys
 import time
 
 import mutations
+import switches
 
 COPIED = ("cmake", "config", "docs", "fuzz", "include", "src", "test")
 FILES = ("CMakeLists.txt", "README.md")
@@ -56,9 +57,10 @@ def copy(source, target):
 class Build:
     """The copy of the sources, and what is built of it."""
 
-    def __init__(self, directory, jobs):
+    def __init__(self, directory, jobs, flags="-O2 -DNDEBUG"):
         self.directory = directory
         self.jobs = jobs
+        self._flags = flags
         self.tree = directory / "tree"
         self.build = self.tree / "build"
 
@@ -66,7 +68,7 @@ class Build:
         self.build.mkdir(parents=True, exist_ok=True)
         return self._log(["cmake", "-S", self.tree, "-B", self.build, "-G", "Ninja",
                           "-DCMAKE_CXX_COMPILER_LAUNCHER=ccache", "-DCMAKE_BUILD_TYPE=RelWithDebInfo",
-                          "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O2 -DNDEBUG",
+                          f"-DCMAKE_CXX_FLAGS_RELWITHDEBINFO={self._flags}",
                           "-DCMAKE_EXE_LINKER_FLAGS=-s -Wl,--build-id=none",
                           "-DCIA402_UNITY_BUILD=TESTS", "-DCIA402_WITH_ROS=OFF"])
 
@@ -109,7 +111,7 @@ def run(command, log, limit, **options):
             process.wait()
 
 
-def run_test(executable, log, limit):
+def run_test(executable, log, limit, **environment):
     """Runs a GoogleTest executable up to its first failure. @return why it failed, or None."""
     def bound():
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
@@ -118,7 +120,7 @@ def run_test(executable, log, limit):
     shutil.rmtree(directory, ignore_errors=True)
     directory.mkdir(parents=True)
     status = run([executable, "--gtest_brief=1", "--gtest_fail_fast"], log, limit, cwd=directory,
-                 preexec_fn=bound)
+                 preexec_fn=bound, env=dict(os.environ, **environment))
     if status is None:
         return f"not ended after {limit:.0f} s"
     if status == 0:
@@ -173,7 +175,7 @@ class Trial:
             path.write_text(text, encoding="utf-8")
 
     def _run(self, mutation):
-        own = "test_" + pathlib.PurePath(mutation.file).parts[1]
+        own = own_test(mutation)
         others = sorted(self._seconds, key=self._seconds.get)
         verdict = SAME
         for test in sorted(others, key=lambda name: name != own):
@@ -187,6 +189,63 @@ class Trial:
                 return f"seen by {test}: {why}"
             verdict = "survived"
         return verdict
+
+
+def own_test(mutation):
+    return "test_" + pathlib.PurePath(mutation.file).parts[1]
+
+
+class SwitchedTrial:
+    """Judges mutations that are all in one build, by the tests of their modules alone."""
+
+    def __init__(self, build, directory):
+        self._build, self._log = build, directory / "test.log"
+        self._seconds = {}
+        directory.mkdir(parents=True, exist_ok=True)
+
+    def prepare(self, tests):
+        for test in tests:
+            began = time.monotonic()
+            why = run_test(self._build.build / test, self._log, 3600)
+            if why is not None:
+                return f"{test} fails though nothing is broken: {why}"
+            self._seconds[test] = time.monotonic() - began
+        return None
+
+    def judge(self, switch):
+        number, mutation = switch
+        test = own_test(mutation)
+        why = run_test(self._build.build / test, self._log, 5.0 + 5.0 * self._seconds[test],
+                       **{switches.VARIABLE: str(number)})
+        return "survived" if why is None else f"seen by {test}: {why}"
+
+
+def switched(options, folders, say):
+    """Builds with all switches in place. @return [(number, mutation)] in the drawn order, trials."""
+    build = Build(options.build / "switched", options.jobs,
+                  f"-O1 -DNDEBUG -include {options.build / 'switched' / 'tree' / 'mistake.h'}")
+    build.tree.mkdir(parents=True, exist_ok=True)
+    synchronise(options.repository, build.tree)
+    put = switches.Switches(options.repository, build)
+    put.put(folders, options.seed)
+    if not build.configure():
+        sys.exit(f"mutate: cmake failed, see {build.directory}/build.log")
+    say(f"looking which of {len(put.mutations)} switches compile")
+    problem = put.take_away_malformed(options.jobs)
+    if problem:
+        sys.exit(f"mutate: what is broken does not compile:\n{problem}")
+    tests = sorted({own_test(mutation) for mutation in put.mutations.values()})
+    say(f"building {len(put.mutations)} switches")
+    if not all(build.make(test) for test in tests):
+        sys.exit(f"mutate: the tests cannot be built, see {build.directory}/build.log")
+    trials = [SwitchedTrial(build, build.directory / f"run{i}") for i in range(options.jobs)]
+    for trial in trials:
+        problem = trial.prepare(tests)
+        if problem:
+            sys.exit(f"mutate: {problem}")
+    numbers = {id(mutation): number for number, mutation in put.mutations.items()}
+    drawn = mutations.drawn(put.mutations.values(), options.seed)
+    return [(numbers[id(mutation)], mutation) for mutation in drawn], trials
 
 
 def all_mutations(repository, folders):
@@ -277,17 +336,36 @@ def arguments(words):
     parser.add_argument("--dir", nargs="+", default=[f"src/{module}" for module in MODULES])
     parser.add_argument("--at", action="append", default=[])
     parser.add_argument("--list", action="store_true")
+    parser.add_argument("--switched", action="store_true")
     return parser.parse_args(words)
+
+
+def trials_of(options, count, say):
+    """As many as may be judged at once."""
+    trials = []
+    for number in range(min(options.jobs, count)):
+        build = Build(options.build / str(number + 1), options.jobs)
+        build.tree.mkdir(parents=True, exist_ok=True)
+        synchronise(options.repository, build.tree)
+        trial = Trial(build, say)
+        problem = trial.prepare(like=trials[0] if trials else None)
+        if problem:
+            sys.exit(f"mutate: {problem}")
+        build.jobs = 1
+        trials.append(trial)
+    return trials
 
 
 def main():
     options = arguments(sys.argv[1:])
     repository = options.repository
+    folders = [folder.rstrip("/") for folder in options.dir]
+    if options.at and options.switched:
+        sys.exit("mutate: --at and --switched do not go together")
     if options.at:
         chosen = [mutation for place in options.at for mutation in at(place, repository)]
         head, count = "", len(chosen)
     else:
-        folders = [folder.rstrip("/") for folder in options.dir]
         chosen = list(mutations.drawn(all_mutations(repository, folders), options.seed))
         head, count = f"seed {options.seed}: ", options.count
     if not chosen:
@@ -305,21 +383,14 @@ def main():
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError:
         sys.exit(f"mutate: another one works in {options.build}; wait for its end")
-    trials = []
-    for number in range(min(options.jobs, count)):
-        build = Build(options.build / str(number + 1), options.jobs)
-        build.tree.mkdir(parents=True, exist_ok=True)
-        synchronise(repository, build.tree)
-        trial = Trial(build, say)
-        problem = trial.prepare(like=trials[0] if trials else None)
-        if problem:
-            sys.exit(f"mutate: {problem}")
-        build.jobs = 1
-        trials.append(trial)
+    if options.switched:
+        chosen, trials = switched(options, folders, say)
+    else:
+        trials = trials_of(options, count, say)
     verdicts = []
     for mutation, verdict in judged(chosen, trials, count):
         verdicts.append(verdict)
-        print(f"{head}{mutation}: {verdict}", flush=True)
+        print(f"{head}{mutation[1] if options.switched else mutation}: {verdict}", flush=True)
     print(f"{head}{summary(verdicts)}")
 
 
