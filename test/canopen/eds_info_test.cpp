@@ -145,22 +145,22 @@ TEST(EdsInfo, OnlySimpleDataTypesAreWrittenAsDummies) {
 }
 
 /// A file of all keys in which one line is another.
-Eds withLine(const std::string& from, const std::string& to) {
+Eds headWith(const std::string& from, const std::string& to) {
   std::string text = std::string(kHead) + kLists;
   text.replace(text.find(from), from.size(), to);
   return readEds(text);
 }
 
 TEST(EdsInfo, NodeId0IsNone) {
-  EXPECT_FALSE(withLine("NodeID=0x20\r\n", "NodeID=0\r\n").info.node_id);
-  EXPECT_FALSE(withLine("NodeID=0x20\r\n", "NodeID=\r\n").info.node_id);
-  EXPECT_EQ(withLine("NodeID=0x20\r\n", "NodeID=1\r\n").info.node_id, NodeId{1});
-  EXPECT_EQ(withLine("NodeID=0x20\r\n", "NodeID=127\r\n").info.node_id, NodeId{127});
+  EXPECT_FALSE(headWith("NodeID=0x20\r\n", "NodeID=0\r\n").info.node_id);
+  EXPECT_FALSE(headWith("NodeID=0x20\r\n", "NodeID=\r\n").info.node_id);
+  EXPECT_EQ(headWith("NodeID=0x20\r\n", "NodeID=1\r\n").info.node_id, NodeId{1});
+  EXPECT_EQ(headWith("NodeID=0x20\r\n", "NodeID=127\r\n").info.node_id, NodeId{127});
 }
 
 TEST(EdsInfo, CommentsAreReadWithoutTheirNumberToo) {
-  EXPECT_THAT(withLine("Lines=2\r\n", "").info.comments, ElementsAre("one", "two"));
-  EXPECT_THAT(withLine("Lines=2\r\n", "Lines=1\r\n").info.comments, ElementsAre("one", "two"));
+  EXPECT_THAT(headWith("Lines=2\r\n", "").info.comments, ElementsAre("one", "two"));
+  EXPECT_THAT(headWith("Lines=2\r\n", "Lines=1\r\n").info.comments, ElementsAre("one", "two"));
 }
 
 TEST(EdsInfo, NumbersBeyondTheirRangeAreToldAndLeftOut) {
@@ -190,7 +190,7 @@ TEST(EdsInfo, NumbersBeyondTheirRangeAreToldAndLeftOut) {
   };
   for (const Row& row : rows) {
     std::string problems;
-    for (const EdsProblem& problem : withLine(row.from, row.to).problems)
+    for (const EdsProblem& problem : headWith(row.from, row.to).problems)
       problems += toString(problem) + "\n";
     EXPECT_THAT(problems, HasSubstr(row.problem)) << row.to;
   }

@@ -16,8 +16,8 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 /// The sections of a text, and what is wrong with it.
-struct Read {
-  explicit Read(std::string_view text) : sections(text, problems_) {
+struct ReadText {
+  explicit ReadText(std::string_view text) : sections(text, problems_) {
     Eds eds;
     problems_.moveTo(eds);
     for (const EdsProblem& problem : eds.problems) problems.push_back(toString(problem));
@@ -111,41 +111,41 @@ TEST(EdsText, BytesBehindTheTextDoNotCount) {
 }
 
 TEST(EdsText, TheLastLineNeedsNoEnd) {
-  const Read read("[2001]\nDataType=7");
+  const ReadText read("[2001]\nDataType=7");
   EXPECT_THAT(read.problems, IsEmpty());
   EXPECT_EQ(read.value("2001", "datatype"), "7");
   EXPECT_EQ(read.sections.lastLine(), 2U);
 }
 
 TEST(EdsText, BlanksBeforeALineDoNotMatter) {
-  const Read read("  [2001]  \n \tDataType = 7 \n  ; comment\n\t# comment\n   \n");
+  const ReadText read("  [2001]  \n \tDataType = 7 \n  ; comment\n\t# comment\n   \n");
   EXPECT_THAT(read.problems, IsEmpty());
   EXPECT_EQ(read.value("2001", "datatype"), "7");
 }
 
 TEST(EdsText, LinesBeforeTheFirstSectionAreToldOnce) {
-  const Read read("one\ntwo=2\n[2001]\nDataType=7\n");
+  const ReadText read("one\ntwo=2\n[2001]\nDataType=7\n");
   EXPECT_THAT(read.problems,
               ElementsAre("line 1: error: `one` stands before the first section and is ignored"));
   EXPECT_EQ(read.value("2001", "datatype"), "7");
 }
 
 TEST(EdsText, LinesOfASectionWithoutANameAreToldWithIt) {
-  const Read read("[ ]\none\ntwo=2\n");
+  const ReadText read("[ ]\none\ntwo=2\n");
   EXPECT_THAT(read.problems,
               ElementsAre("line 1: error: a section without a name; its lines are ignored"));
   EXPECT_THAT(read.sections.sections(), IsEmpty());
 }
 
 TEST(EdsText, ACommentBehindANameWithoutItsBracketIsNoPartOfIt) {
-  const Read read("[2001 ; the gain\nDataType=7\n");
+  const ReadText read("[2001 ; the gain\nDataType=7\n");
   EXPECT_EQ(read.value("2001", "datatype"), "7");
   EXPECT_THAT(read.problems, ElementsAre(HasSubstr("line 1: warning: the `]` behind")));
 }
 
 TEST(EdsText, ControlCharactersBecomeQuestionMarksAndTabulatorsBlanks) {
   const char bytes[] = "[2001]\nParameterName=a\0b\x1B[\x7F]\nDenotation=a\tb\nDataType=7\n";
-  const Read read(std::string_view(bytes, sizeof bytes - 1));
+  const ReadText read(std::string_view(bytes, sizeof bytes - 1));
   EXPECT_EQ(read.value("2001", "parametername"), "a?b?[?]");
   EXPECT_EQ(read.value("2001", "denotation"), "a b");
   EXPECT_EQ(read.value("2001", "datatype"), "7");
@@ -156,11 +156,11 @@ TEST(EdsText, TheLongestFileIsReadAndALongerOneIsCutOff) {
   const std::string end = "\n[2001]\nDataType=7";
   std::string text = ";" + std::string(kLongestEds - 1 - end.size(), 'x') + end;
   ASSERT_EQ(text.size(), kLongestEds);
-  const Read longest(text);
+  const ReadText longest(text);
   EXPECT_THAT(longest.problems, IsEmpty());
   EXPECT_EQ(longest.value("2001", "datatype"), "7");
   text += "89";
-  const Read longer(text);
+  const ReadText longer(text);
   EXPECT_THAT(longer.problems, ElementsAre("line 1: error: the file is longer than 32 MiB; the "
                                            "rest is not read"));
   EXPECT_EQ(longer.value("2001", "datatype"), "7");

@@ -18,7 +18,7 @@ using ::testing::IsEmpty;
 
 constexpr NodeId kNode = 5;
 
-ObjectValue text(const std::string& bytes) { return {bytes.begin(), bytes.end()}; }
+ObjectValue textBytes(const std::string& bytes) { return {bytes.begin(), bytes.end()}; }
 
 /// In its scope numbers have a decimal comma and dots between thousands, as in Germany.
 class GermanNumbers {
@@ -213,9 +213,9 @@ TEST(EdsValue, WhatALineCanHoldIsKnown) {
       {DataType::uint16, {1, 2, 3}, false},
       {DataType::boolean, {1}, true},
       {DataType::boolean, {2}, false},
-      {DataType::visible_string, text("a;b c"), true},
-      {DataType::visible_string, text("a ;b"), false},  // would begin a comment
-      {DataType::visible_string, text("a\nb"), false},
+      {DataType::visible_string, textBytes("a;b c"), true},
+      {DataType::visible_string, textBytes("a ;b"), false},  // would begin a comment
+      {DataType::visible_string, textBytes("a\nb"), false},
       {DataType::visible_string, {}, false},
       {DataType::domain, {0}, true},
       {DataType::domain, {}, false},
