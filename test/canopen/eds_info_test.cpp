@@ -163,6 +163,16 @@ TEST(EdsInfo, CommentsAreReadWithoutTheirNumberToo) {
   EXPECT_THAT(headWith("Lines=2\r\n", "Lines=1\r\n").info.comments, ElementsAre("one", "two"));
 }
 
+TEST(EdsInfo, ANumberOfCommentsThatIsNoneIsNotComparedToo) {
+  const Eds eds = headWith("Lines=2\r\n", "Lines=many\r\n");
+  std::vector<std::string> problems;
+  for (const EdsProblem& problem : eds.problems) {
+    if (problem.line == 57) problems.push_back(problem.message);
+  }
+  EXPECT_THAT(problems, ElementsAre("Lines=`many` is no whole number"));
+  EXPECT_THAT(eds.info.comments, ElementsAre("one", "two"));
+}
+
 TEST(EdsInfo, NumbersBeyondTheirRangeAreToldAndLeftOut) {
   struct Row {
     const char *from, *to, *problem;
@@ -190,8 +200,8 @@ TEST(EdsInfo, NumbersBeyondTheirRangeAreToldAndLeftOut) {
   };
   for (const Row& row : rows) {
     std::string problems;
-    for (const EdsProblem& problem : headWith(row.from, row.to).problems)
-      problems += toString(problem) + "\n";
+    const Eds eds = headWith(row.from, row.to);
+    for (const EdsProblem& problem : eds.problems) problems += toString(problem) + "\n";
     EXPECT_THAT(problems, HasSubstr(row.problem)) << row.to;
   }
 }

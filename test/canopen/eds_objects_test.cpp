@@ -141,10 +141,18 @@ TEST(EdsObjects, SectionsOfOtherNamesAreTold) {
 }
 
 TEST(EdsObjects, OddWritingsOfASubIndexAreReadAndTold) {
-  for (const char* name : {"0x2001sub1", "2001sub0x1", "2001sub0X01", "2001SubIndex1"}) {
-    const Eds eds = objectsWith("[2001sub1]", "[" + std::string(name) + "]");
+  const struct {
+    const char *name, *odd;
+  } rows[] = {{"0x2001sub1", "0x"},
+              {"2001sub0x1", "0x"},
+              {"2001sub0X01", "0x"},
+              {"2001SubIndex1", "index"}};
+  for (const auto& row : rows) {
+    const std::string name = "[" + std::string(row.name) + "]";
+    const Eds eds = objectsWith("[2001sub1]", name);
     EXPECT_EQ(described(eds, {0x2001, 1}).name, "First") << name;
-    EXPECT_THAT(problemsIn(eds), HasSubstr("line 23: warning: [" + std::string(name) + "]"));
+    EXPECT_THAT(problemsIn(eds), HasSubstr("line 23: warning: " + name +
+                                           " should have its numbers without " + row.odd + "\n"));
   }
   const Eds eds = objectsWith("[2001sub1]", "[2001sub01]");
   EXPECT_EQ(described(eds, {0x2001, 1}).name, "First");
@@ -156,6 +164,8 @@ TEST(EdsObjects, TheSameSubIndexIsTakenFromOneSectionOnly) {
               HasSubstr("describes 2001:01 a second time and is not read"));
   EXPECT_THAT(problemsIn(readEds(std::string(kObjects) + "\n[0x2001]\nParameterName=Again\n")),
               HasSubstr("describes 2001:00 a second time and is not read"));
+  EXPECT_THAT(problemsIn(readEds(std::string(kObjects) + "\n[0x2002Name]\n1=Again\n")),
+              HasSubstr("a second time and is not read"));
 }
 
 // CiA 306: an object of ObjectType DOMAIN needs no DataType.
@@ -189,6 +199,15 @@ TEST(EdsObjects, ACompactArrayGivesItsEntriesNamesOfTheirOwn) {
     EXPECT_EQ(described(eds, {0x2002, subindex}).line, 34U) << int{subindex};
     EXPECT_THAT(described(eds, {0x2002, subindex}).denotation, IsEmpty()) << int{subindex};
   }
+}
+
+TEST(EdsObjects, ACompactArrayWithoutANameIsToldOnce) {
+  const Eds eds = objectsWith("ParameterName=Table\n", "");
+  std::vector<std::string> told;
+  for (const EdsProblem& problem : eds.problems) {
+    if (problem.line == 34) told.push_back(problem.message);
+  }
+  EXPECT_THAT(told, ElementsAre("[2002] has no ParameterName"));
 }
 
 TEST(EdsObjects, ACompactArrayCanHaveOneEntry) {

@@ -40,7 +40,7 @@ TEST(EdsValue, TextIsReadAsItsType) {
     const char* text;
     ObjectValue bytes;
   } rows[] = {
-      {DataType::uint8, " 7\t", {7}},
+      {DataType::uint8, "7", {7}},
       {DataType::uint16, "2.0", {2, 0}},
       {DataType::int8, "-3.0", {0xFD}},
       {DataType::boolean, "true", {1}},
@@ -125,6 +125,9 @@ TEST(EdsValue, AFormulaIsTheNodeIdWithOneNumberAddedToIt) {
   EXPECT_EQ(sum("$NODEID").bytes, (ObjectValue{5, 0, 0, 0, 0, 0, 0, 0}));
   EXPECT_EQ(sum("$nodeid + 0x7FFFFFFFFFFFFFFF").bytes, (ObjectValue{4, 0, 0, 0, 0, 0, 0, 0x80}));
   EXPECT_EQ(sum("0x180+$NODEID").bytes, (ObjectValue{0x85, 1, 0, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(sum("$NODEID+0xFFFFFFFFFFFFFFFA").bytes, ObjectValue(8, 0xFF));
+  EXPECT_FALSE(sum("$NODEID+0xFFFFFFFFFFFFFFFB").bytes);
+  EXPECT_THAT(sum("$NODEID+0xFFFFFFFFFFFFFFFB").error, HasSubstr("does not fit uint64"));
   for (const char* wrong : {"$NODEID+", "+$NODEID", "$NODEID-5", "$NODEID+-5", "-5+$NODEID",
                             "$NODEID+x", "x+$NODEID", "$NODEID 5", "5 $NODEID"}) {
     EXPECT_FALSE(sum(wrong).bytes) << wrong;
