@@ -38,7 +38,6 @@ void ErrorEvidence::forget() {
   object_.at = Time::min();
   read_.reset();
   code_ticket_.reset();
-  register_ticket_.reset();
 }
 
 void ErrorEvidence::update(const Look& look, canopen::SdoClient& sdo, Time now) {
