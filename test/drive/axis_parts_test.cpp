@@ -107,5 +107,12 @@ TEST(FaultText, FallsBackToTheClassesOfTheStandard) {
   EXPECT_EQ(errorCodeText(DriveProfile(), 0x8611).substr(0, 22), "0x8611 following error");
 }
 
+TEST(FaultText, NamesAnErrorByTheProfileElseByTheStandard) {
+  DriveProfile profile;
+  profile.errors[0x7305] = {"encoder", "no signal", "check the plug"};
+  EXPECT_EQ(errorName(profile, 0x7305), "encoder");
+  EXPECT_EQ(errorName(profile, 0x8611), "following error");
+}
+
 }  // namespace
 }  // namespace cia402::drive
