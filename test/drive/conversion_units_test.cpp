@@ -172,6 +172,8 @@ TEST(ConversionUnits, HalfFloatsAreRoundedToTheNearest) {
       {Encoding::half_float, 0x3F817FFF, 0x3F81},
       {Encoding::half_float, 0x3F818000, 0x3F82},
       {Encoding::half_float, 0xBF818000, 0xBF82},
+      {Encoding::half_float, 0x00800000, 0x0080},  // the smallest that is not too small
+      {Encoding::half_float, 0x007FFFFF, 0},
       // 0x3F80 * 65535 = 0x3F7FC080, and 32767 of 65535 more
       {Encoding::half_float_unsigned, 0x3F80407F, 0x3F80},
       {Encoding::half_float_unsigned, 0x3F804080, 0x3F81},
@@ -185,6 +187,31 @@ TEST(ConversionUnits, HalfFloatsAreRoundedToTheNearest) {
     const auto half = *Conversion::create(object(DataType::int16, Quantity::position, row.encoding),
                                           radians, geared(1.0));
     EXPECT_EQ(encode(half, exact.toJoint(row.bits)), row.word) << std::hex << row.bits;
+  }
+}
+
+TEST(ConversionUnits, FloatsHaveBoundsOfTheirOwn) {
+  struct Row {
+    DataType type;
+    Encoding encoding;
+    std::uint64_t low, high;  ///< on the wire
+  };
+  const Row rows[] = {
+      {DataType::int32, Encoding::float32, 0xFF7FFFFF, 0x7F7FFFFF},
+      {DataType::uint32, Encoding::float32, 0, 0x7F7FFFFF},
+      {DataType::int16, Encoding::half_float, 0xFF7F, 0x7F7F},
+      // -129 * 65535 = 0xFF7F0081, and -128 * 65535 would be no number
+      {DataType::int16, Encoding::half_float_signed, 0xFF7F, 0x7F80},
+      {DataType::uint16, Encoding::half_float, 0, 0x7F7F},
+  };
+  for (const Row& row : rows) {
+    SCOPED_TRACE(row.high);
+    const auto conversion = *Conversion::create(object(row.type, Quantity::none, row.encoding),
+                                                DriveProfile(), geared(1.0));
+    EXPECT_EQ(conversion.lowestRaw(), row.low);
+    EXPECT_EQ(conversion.highestRaw(), row.high);
+    EXPECT_EQ(encode(conversion, conversion.highest()), row.high);
+    EXPECT_EQ(encode(conversion, conversion.lowest()), row.low);
   }
 }
 

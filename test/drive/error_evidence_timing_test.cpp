@@ -244,5 +244,42 @@ TEST_F(ErrorEvidenceTiming, AnErrorCodeOfMoreThanEightBytesIsNone) {
   EXPECT_EQ(evidence.code(), 0);
 }
 
+TEST_F(ErrorEvidenceTiming, KnowsTheErrorCodeThatWasToldLast) {
+  EXPECT_FALSE(evidence.knows(0));
+  show(false, 0x8611);
+  EXPECT_TRUE(evidence.knows(0x8611));
+  EXPECT_FALSE(evidence.knows(0));
+  show(false, 0);
+  EXPECT_TRUE(evidence.knows(0));
+  EXPECT_FALSE(evidence.knows(0x8611));
+}
+
+TEST_F(ErrorEvidenceTiming, IsQuietWithoutFaultAndEmergencyOnly) {
+  EXPECT_TRUE(evidence.quiet());
+  emergency(0x4210);
+  EXPECT_FALSE(evidence.quiet());
+  show(false);
+  EXPECT_FALSE(evidence.quiet());
+  emergency(0);
+  show(false);
+  EXPECT_TRUE(evidence.quiet());
+  show(true);
+  EXPECT_FALSE(evidence.quiet()) << "a fault without a code";
+  evidence.forget();
+  show(false);
+  EXPECT_TRUE(evidence.quiet());
+}
+
+TEST_F(ErrorEvidenceTiming, WhatWasToldBeforeAResetDoesNotNameTheFaultRightAfterIt) {
+  show(false, 0);
+  show(true, 0x8611);
+  ASSERT_EQ(evidence.code(), 0x8611);
+  evidence.forget();
+  emergency(0x7305);
+  show(false, 0x8611);
+  show(true, 0x8611);
+  EXPECT_EQ(evidence.code(), 0x7305);
+}
+
 }  // namespace
 }  // namespace cia402::drive

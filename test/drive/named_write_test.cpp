@@ -361,5 +361,13 @@ TEST(NamedWrite, APositionLimitSaysWhichWayItHoldsTheJoint) {
   EXPECT_FALSE(*none);
 }
 
+TEST(NamedWrite, APositionLimitThatDoesNotFitIsRefused) {
+  AxisConfig axis = axisOf("generic_cia402");
+  axis.limits.upper = 3e6;
+  const auto refused = resolveLimit(write("software_limit_max", "limits.upper"), axis);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, testing::HasSubstr("3e+06 does not fit"));
+}
+
 }  // namespace
 }  // namespace cia402::drive

@@ -199,5 +199,17 @@ TEST(ProfileBehaviour, AMarkThatIsMisspeltMarksNothing) {
   EXPECT_EQ(profile.coordinateMark({0, 0}), CoordinateMark::none);
 }
 
+TEST(ProfileBehaviour, WithAnEdsObjectsAreFoundByItsNamesToo) {
+  DriveProfile profile = profileWith("");
+  ASSERT_FALSE(profile.objects.empty());
+  profile.objects.back().eds_keys = {"positionactualvalue", "readback"};
+  EXPECT_EQ(profile.find("Position actual value"), nullptr) << "there is no EDS";
+  profile.eds = "motor.eds";
+  EXPECT_EQ(profile.find("Position actual value"), &profile.objects.back());
+  EXPECT_EQ(profile.find("Read back"), &profile.objects.back());
+  EXPECT_EQ(profile.find("position_actual"), &profile.objects.back());
+  EXPECT_EQ(profile.find("Position demand value"), nullptr);
+}
+
 }  // namespace
 }  // namespace cia402::drive

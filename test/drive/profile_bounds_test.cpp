@@ -21,9 +21,9 @@ objects:
   target_position: {object: "607A:00", type: int32, quantity: position, pdo: rpdo}
   position_actual: {object: "6064:00", type: int32, quantity: position, access: ro, pdo: tpdo}
   label: {object: "2000:01", type: visible_string}
-  small: {object: "2000:02", type: uint8}
+  small: {object: "2000:02", type: uint8, pdo: rpdo}
   short: {object: "2000:03", type: int16}
-  wide: {object: "2000:04", type: uint64}
+  wide: {object: "2000:04", type: uint64, pdo: rpdo}
 )";
 const char* const kModes =
     "modes:\n"
@@ -242,13 +242,6 @@ TEST(ProfileBounds, WhatIsNoNumberIsNotWritten) {
       HasSubstr("startup[0]/type: only numbers can be written"));
 }
 
-TEST(ProfileBounds, AnUntypedWriteIsToldOnce) {
-  Problems problems;
-  profileWith("startup: [{object: \"2100:00\", raw: 300}]", problems);
-  ASSERT_EQ(problems.list().size(), 1U) << problems.text();
-  EXPECT_THAT(problems.text(), HasSubstr("add its type"));
-}
-
 TEST(ProfileBounds, UnitsHaveNoOtherPartsThanTheStandardOnes) {
   const auto velocity = [](const char* unit) {
     return problemsOf(std::string("  o: {object: \"2100:00\", type: int32, quantity: velocity, "
@@ -275,6 +268,77 @@ TEST(ProfileBounds, UnitsHaveNoOtherPartsThanTheStandardOnes) {
     EXPECT_THAT(acceleration(bad), HasSubstr("is no unit of acceleration; write for example `count/"
                                              "s^2`"))
         << bad;
+  }
+}
+
+TEST(ProfileBounds, APdoHoldsSixtyFourBits) {
+  EXPECT_EQ(problemsOf("pdos: {rpdo1: [wide]}"), "");
+  EXPECT_THAT(problemsOf("pdos: {rpdo1: [wide, small]}"),
+              HasSubstr("pdos/rpdo1: is 72 bits long (64 + 8), a PDO holds 64"));
+}
+
+TEST(ProfileBounds, AMistakeIsToldOnceWithoutOthersThatFollowFromIt) {
+  for (const char* text : {"startup: [{object: \"2100:00\", raw: 300}]",
+                           "  o: {object: \"2100:00\", type: uint8, access: rx, pdo: rpdo}",
+                           "  o: {object: \"2100:00\", type: unit8}",
+                           "  a: {value: 1, control: positon, target: target_position}",
+                           "  a: {value: 300, control: position, target: target_position}"}) {
+    Problems problems;
+    profileWith(text, problems);
+    EXPECT_EQ(problems.list().size(), 1U) << text << "\n" << problems.text();
+  }
+}
+
+TEST(ProfileBounds, AWriteIsCodedAsItsObjectIs) {
+  const std::string object =
+      "  o: {object: \"2100:00\", type: uint32, encoding: float32, quantity: position}\n";
+  const auto startup = [&](const char* write, Problems& problems) {
+    return parseDriveProfile(kHead + object + kModes + "startup: [{" + write + "}]\n",
+                             "tested.yaml", problems)
+        .startup;
+  };
+  Problems none;
+  EXPECT_EQ(startup("object: o, raw: 0x3FC00000", none)[0].raw, 0x3FC00000);
+  EXPECT_EQ(startup("object: o, value: 1.5", none)[0].value, 1.5) << "in SI units";
+  EXPECT_EQ(startup("object: \"2100:00\", value: 1.5", none)[0].raw, 0x3FC00000)
+      << "in those of the drive";
+  EXPECT_EQ(none.text(), "");
+  for (const char* write : {"object: o, raw: 0x7F800000", "object: \"2100:00\", raw: 0x7F800000"}) {
+    Problems problems;
+    startup(write, problems);
+    EXPECT_THAT(problems.text(), HasSubstr("startup[0]/raw: 0x7F800000 is no finite number"));
+  }
+}
+
+TEST(ProfileBounds, APdoWithOptionsMapsWhatItLists) {
+  Problems problems;
+  const DriveProfile profile = profileWith(
+      "pdos: {rpdo2: {objects: [controlword, target_position], transmission: 254}}", problems);
+  EXPECT_EQ(problems.text(), "");
+  ASSERT_EQ(profile.pdos.size(), 1U);
+  EXPECT_THAT(profile.pdos[0].objects, testing::ElementsAre("controlword", "target_position"));
+  EXPECT_EQ(profile.pdos[0].number, 2U);
+}
+
+TEST(ProfileBounds, UnitsAreGivenForWhatHasOneOfItsOwn) {
+  const auto units = [](const std::string& more, Problems& problems) {
+    std::string text = std::string(kHead) + kModes;
+    text.insert(text.find("velocity: count/s}"), more + ", ");
+    return parseDriveProfile(text, "tested.yaml", problems).units;
+  };
+  Problems none;
+  const auto read = units("voltage: {unit: V, scale: 0.01}, jerk: turn/s^3", none);
+  EXPECT_EQ(none.text(), "");
+  EXPECT_EQ(read.at(Quantity::voltage).base, UnitSpec::Base::volt);
+  EXPECT_EQ(read.at(Quantity::voltage).scale, 0.01);
+  EXPECT_EQ(read.at(Quantity::jerk).base, UnitSpec::Base::turn);
+  EXPECT_EQ(read.at(Quantity::jerk).scale, 1.0);
+  EXPECT_EQ(read.at(Quantity::position).base, UnitSpec::Base::count);
+  EXPECT_EQ(read.count(Quantity::torque), 0U);
+  for (const std::string wrong : {"distance", "none", "jrk"}) {
+    Problems problems;
+    units(wrong + ": count", problems);
+    EXPECT_THAT(problems.text(), HasSubstr("units/" + wrong + ": unknown key"));
   }
 }
 

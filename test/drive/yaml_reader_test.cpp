@@ -175,6 +175,7 @@ TEST(YamlReader, TheNearestNameIsMeantUpToTwoMistakesOrAThirdOfItsLetters) {
   EXPECT_EQ(nearestName("modesss", {"mode"}), "");            // three
   EXPECT_EQ(nearestName("abcdefxyz", {"abcdef"}), "abcdef");  // three of nine
   EXPECT_EQ(nearestName("abcdefwxyz", {"abcdef"}), "");       // four of ten
+  EXPECT_EQ(nearestName("pqcdefrs", {"xpcdefyr"}), "") << "moved and swapped are not the same";
   EXPECT_EQ(nearestName("xy", {"ab"}), "") << "nothing of it is left";
 }
 
@@ -244,6 +245,13 @@ TEST(YamlReader, AListMayHaveAnyLength) {
   EXPECT_EQ(reader.text(),
             "  top/map: must be a list, not a mapping\n"
             "  top/word: must be a list, not `x`\n");
+}
+
+TEST(YamlReader, AListIsNoMapping) {
+  Reader list("[a, b]");
+  list.section.finish();
+  EXPECT_TRUE(list.section.entries().empty());
+  EXPECT_EQ(list.text(), "  top: must be a mapping (key: value), not a list\n");
 }
 
 TEST(YamlReader, NothingAtAllIsAnEmptyMapping) {
