@@ -200,6 +200,7 @@ TEST(ConversionUnits, FloatsHaveBoundsOfTheirOwn) {
       {DataType::int32, Encoding::float32, 0xFF7FFFFF, 0x7F7FFFFF},
       {DataType::uint32, Encoding::float32, 0, 0x7F7FFFFF},
       {DataType::int16, Encoding::half_float, 0xFF7F, 0x7F7F},
+      {DataType::int16, Encoding::half_float_unsigned, 0xFF80, 0x7F80},  // * 65535 = 0xFF7F0080
       // -129 * 65535 = 0xFF7F0081, and -128 * 65535 would be no number
       {DataType::int16, Encoding::half_float_signed, 0xFF7F, 0x7F80},
       {DataType::uint16, Encoding::half_float, 0, 0x7F7F},
