@@ -122,6 +122,9 @@ TEST(Sentence, LengthsHaveTheUnitOfTheJoint) {
   EXPECT_EQ(number(-3.05), "-3.050");
   EXPECT_EQ(seconds(milliseconds(350)), "0.35 s");
   EXPECT_EQ(seconds(std::chrono::seconds(2)), "2 s");
+  EXPECT_EQ(seconds(std::chrono::seconds(999)), "999 s");
+  EXPECT_EQ(seconds(milliseconds(999600)), "1000 s");
+  EXPECT_EQ(seconds(std::chrono::seconds(3600)), "3600 s");
 }
 
 }  // namespace
