@@ -342,5 +342,23 @@ TEST(ProfileBounds, UnitsAreGivenForWhatHasOneOfItsOwn) {
   }
 }
 
+TEST(ProfileBounds, TheModeIsANumberAsLongAsItsObject) {
+  const auto problems = [](const char* object, const char* type) {
+    std::string text = std::string(kHead) + kModes;
+    const std::string from = std::string(object) + "\", type: int8";
+    text.replace(text.find(from), from.size(), std::string(object) + "\", type: " + type);
+    Problems found;
+    parseDriveProfile(text, "tested.yaml", found);
+    return found.text();
+  };
+  EXPECT_EQ(problems("6060:00", "uint16"), "");
+  EXPECT_THAT(problems("6060:00", "boolean"),
+              HasSubstr("modes/csp/value: must be between 0 and 1, not `8`"));
+  EXPECT_THAT(problems("6060:00", "visible_string"),
+              HasSubstr("objects/mode_of_operation must be a number"));
+  EXPECT_THAT(problems("6061:00", "visible_string"),
+              HasSubstr("objects/mode_display must be a number"));
+}
+
 }  // namespace
 }  // namespace cia402::drive
