@@ -129,19 +129,21 @@ TEST_F(ErrorEvidenceTiming, ADriveThatDidNotAnswerIsAskedAgainAfterTenSeconds) {
 }
 
 TEST_F(ErrorEvidenceTiming, AnExcuseIsForItsCodeUntilTheDriveSendsThatOnItsOwn) {
-  for (const std::uint16_t none : {0x0000, 0x0001, 0x8130}) {
+  const std::uint16_t at_first[] = {0x0000, 0x0001, 0x8130};
+  for (const std::uint16_t none : at_first) {
     EXPECT_EQ(evidence.excuse(none), nullptr) << none;
   }
   emergency(0x8130, "its heartbeat was stopped");
   ASSERT_NE(evidence.excuse(0x8130), nullptr);
   EXPECT_EQ(*evidence.excuse(0x8130), "its heartbeat was stopped");
-  for (const std::uint16_t other : {0x0000, 0x0001, 0x8611}) {
+  const std::uint16_t others[] = {0x0000, 0x0001, 0x8611};
+  for (const std::uint16_t other : others) {
     EXPECT_EQ(evidence.excuse(other), nullptr) << other;
   }
   emergency(0x8611);
   EXPECT_NE(evidence.excuse(0x8130), nullptr) << "another error excuses nothing and ends nothing";
   emergency(0x8130);
-  for (const std::uint16_t none : {0x0000, 0x0001, 0x8130}) {
+  for (const std::uint16_t none : at_first) {
     EXPECT_EQ(evidence.excuse(none), nullptr) << none;
   }
 }

@@ -29,8 +29,8 @@ modes:
 DriveProfile profileWith(const std::string& text, const std::string& problem = "") {
   Problems problems;
   const DriveProfile profile = parseDriveProfile(kSmall + text, "small.yaml", problems);
-  if (problem.empty()) EXPECT_EQ(problems.text(), "") << text;
-  if (!problem.empty()) EXPECT_THAT(problems.text(), HasSubstr(problem)) << text;
+  EXPECT_EQ(problems.text().empty(), problem.empty()) << text << "\n" << problems.text();
+  EXPECT_THAT(problems.text(), HasSubstr(problem)) << text;
   return profile;
 }
 
