@@ -13,9 +13,9 @@ namespace {
 using testing::HasSubstr;
 using Base = UnitSpec::Base;
 
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kHalfTurn = 3.14159265358979323846;
 
-ObjectSpec object(DataType type, Quantity quantity, Encoding encoding = Encoding::integer) {
+ObjectSpec specOf(DataType type, Quantity quantity, Encoding encoding = Encoding::integer) {
   ObjectSpec spec;
   spec.name = "tested";
   spec.id = {0x607A, 0};
@@ -39,20 +39,22 @@ AxisGeometry geared(double gear_ratio) {
   return geometry;
 }
 
-std::uint64_t encode(const Conversion& conversion, double value) {
+std::uint64_t rawOf(const Conversion& conversion, double value) {
   std::uint64_t raw = 0xDEAD;
   EXPECT_TRUE(conversion.toDevice(value, raw)) << value;
   return raw;
 }
 
 TEST(ConversionUnits, AnglesOfTheMotorAreDividedByTheGear) {
-  const std::pair<Base, double> degrees_per_unit[] = {
-      {Base::turn, 360.0}, {Base::degree, 1.0}, {Base::radian, 180.0 / kPi}, {Base::count, 0.09}};
+  const std::pair<Base, double> degrees_per_unit[] = {{Base::turn, 360.0},
+                                                      {Base::degree, 1.0},
+                                                      {Base::radian, 180.0 / kHalfTurn},
+                                                      {Base::count, 0.09}};
   for (const auto& [base, degrees] : degrees_per_unit) {
     SCOPED_TRACE(static_cast<int>(base));
     DriveProfile profile = counted(Quantity::position, base);
-    const ObjectSpec position = object(DataType::int32, Quantity::position);
-    const double radians = degrees * kPi / 180.0;
+    const ObjectSpec position = specOf(DataType::int32, Quantity::position);
+    const double radians = degrees * kHalfTurn / 180.0;
     EXPECT_DOUBLE_EQ(Conversion::create(position, profile, geared(10.0))->toJoint(3),
                      0.3 * radians);
     profile.output_shaft = true;
@@ -71,12 +73,12 @@ TEST(ConversionUnits, WhatDoesNotMoveIsOnlyScaled) {
   geometry.position_offset = 0.5;
   for (const auto& [quantity, base] : still) {
     SCOPED_TRACE(static_cast<int>(quantity));
-    const auto conversion = Conversion::create(object(DataType::int16, quantity),
+    const auto conversion = Conversion::create(specOf(DataType::int16, quantity),
                                                counted(quantity, base, 0.001), geometry);
     ASSERT_TRUE(conversion);
     EXPECT_DOUBLE_EQ(conversion->toJoint(1500), 1.5);
     EXPECT_DOUBLE_EQ(conversion->toJoint(0xFFFF), -0.001);
-    EXPECT_EQ(encode(*conversion, -1.5), 0xFA24U);
+    EXPECT_EQ(rawOf(*conversion, -1.5), 0xFA24U);
     EXPECT_FALSE(conversion->reversed());
   }
 }
@@ -86,30 +88,30 @@ TEST(ConversionUnits, FloatsAreScaledTurnedAndShiftedAsWholeNumbersAre) {
   geometry.direction = -1;
   geometry.position_offset = 0.25;
   const auto position =
-      *Conversion::create(object(DataType::int32, Quantity::position, Encoding::float32),
+      *Conversion::create(specOf(DataType::int32, Quantity::position, Encoding::float32),
                           counted(Quantity::position, Base::degree), geometry);
-  EXPECT_DOUBLE_EQ(position.toJoint(0x42B40000), 0.25 - kPi / 4);  // 90 degrees of the motor
-  EXPECT_EQ(encode(position, 0.25 - kPi / 4), 0x42B40000U);
+  EXPECT_DOUBLE_EQ(position.toJoint(0x42B40000), 0.25 - kHalfTurn / 4);  // 90 degrees of the motor
+  EXPECT_EQ(rawOf(position, 0.25 - kHalfTurn / 4), 0x42B40000U);
   EXPECT_DOUBLE_EQ(position.toJoint(0), 0.25);
   const auto torque =
-      *Conversion::create(object(DataType::int32, Quantity::torque, Encoding::float32),
+      *Conversion::create(specOf(DataType::int32, Quantity::torque, Encoding::float32),
                           counted(Quantity::torque, Base::newton_metre), geared(10.0));
   EXPECT_DOUBLE_EQ(torque.toJoint(0x40200000), 25.0);  // 2.5 N m of the motor
-  EXPECT_EQ(encode(torque, -25.0), 0xC0200000U);
+  EXPECT_EQ(rawOf(torque, -25.0), 0xC0200000U);
 }
 
 TEST(ConversionUnits, AReversedAxisHasItsBoundsTheOtherWayRound) {
   AxisGeometry geometry = geared(1.0);
   geometry.direction = -1;
   geometry.position_offset = 0.5;
-  const auto position = *Conversion::create(object(DataType::int16, Quantity::position),
+  const auto position = *Conversion::create(specOf(DataType::int16, Quantity::position),
                                             counted(Quantity::position, Base::radian), geometry);
   EXPECT_DOUBLE_EQ(position.lowest(), 0.5 - 32767.0);
   EXPECT_DOUBLE_EQ(position.highest(), 0.5 + 32768.0);
-  EXPECT_EQ(encode(position, position.lowest()), 0x7FFFU);
-  EXPECT_EQ(encode(position, position.highest()), 0x8000U);
+  EXPECT_EQ(rawOf(position, position.lowest()), 0x7FFFU);
+  EXPECT_EQ(rawOf(position, position.highest()), 0x8000U);
   geometry.direction = 1;
-  const auto straight = *Conversion::create(object(DataType::int16, Quantity::position),
+  const auto straight = *Conversion::create(specOf(DataType::int16, Quantity::position),
                                             counted(Quantity::position, Base::radian), geometry);
   EXPECT_DOUBLE_EQ(straight.lowest(), 0.5 - 32768.0);
   EXPECT_DOUBLE_EQ(straight.highest(), 0.5 + 32767.0);
@@ -144,7 +146,7 @@ TEST(ConversionUnits, WhatCannotBeConvertedIsToldWithTheObjectAndWhatIsMissing) 
   };
   for (const Row& row : rows) {
     SCOPED_TRACE(row.lacks);
-    const auto conversion = Conversion::create(object(row.type, row.quantity),
+    const auto conversion = Conversion::create(specOf(row.type, row.quantity),
                                                counted(row.quantity, row.base), row.geometry);
     ASSERT_FALSE(conversion);
     EXPECT_THAT(conversion.error().message, HasSubstr("tested (607A:00) cannot be converted: "));
@@ -159,7 +161,7 @@ TEST(ConversionUnits, HalfFloatsAreRoundedToTheNearest) {
     return profile;
   }();
   const auto exact = *Conversion::create(
-      object(DataType::int32, Quantity::position, Encoding::float32), radians, geared(1.0));
+      specOf(DataType::int32, Quantity::position, Encoding::float32), radians, geared(1.0));
   struct Row {
     Encoding encoding;
     std::uint32_t bits;  ///< of the float to be sent
@@ -184,9 +186,9 @@ TEST(ConversionUnits, HalfFloatsAreRoundedToTheNearest) {
       {Encoding::half_float_signed, 0xBF7FC080, 0xBF7F},
   };
   for (const Row& row : rows) {
-    const auto half = *Conversion::create(object(DataType::int16, Quantity::position, row.encoding),
+    const auto half = *Conversion::create(specOf(DataType::int16, Quantity::position, row.encoding),
                                           radians, geared(1.0));
-    EXPECT_EQ(encode(half, exact.toJoint(row.bits)), row.word) << std::hex << row.bits;
+    EXPECT_EQ(rawOf(half, exact.toJoint(row.bits)), row.word) << std::hex << row.bits;
   }
 }
 
@@ -207,12 +209,12 @@ TEST(ConversionUnits, FloatsHaveBoundsOfTheirOwn) {
   };
   for (const Row& row : rows) {
     SCOPED_TRACE(row.high);
-    const auto conversion = *Conversion::create(object(row.type, Quantity::none, row.encoding),
+    const auto conversion = *Conversion::create(specOf(row.type, Quantity::none, row.encoding),
                                                 DriveProfile(), geared(1.0));
     EXPECT_EQ(conversion.lowestRaw(), row.low);
     EXPECT_EQ(conversion.highestRaw(), row.high);
-    EXPECT_EQ(encode(conversion, conversion.highest()), row.high);
-    EXPECT_EQ(encode(conversion, conversion.lowest()), row.low);
+    EXPECT_EQ(rawOf(conversion, conversion.highest()), row.high);
+    EXPECT_EQ(rawOf(conversion, conversion.lowest()), row.low);
   }
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 using testing::HasSubstr;
 
-const char* const kSmall = R"(name: small
+const char* const kFewKeys = R"(name: small
 units: {position: count, velocity: count/s}
 objects:
   controlword: {object: "6040:00", type: uint16, pdo: rpdo}
@@ -28,7 +28,7 @@ modes:
 
 DriveProfile profileWith(const std::string& text, const std::string& problem = "") {
   Problems problems;
-  const DriveProfile profile = parseDriveProfile(kSmall + text, "small.yaml", problems);
+  const DriveProfile profile = parseDriveProfile(kFewKeys + text, "small.yaml", problems);
   EXPECT_EQ(problems.text().empty(), problem.empty()) << text << "\n" << problems.text();
   EXPECT_THAT(problems.text(), HasSubstr(problem)) << text;
   return profile;
@@ -101,7 +101,7 @@ TEST(ProfileBehaviour, ADriveThatForgetsWhatItIsToldWhileDisabledTakesOtherDetou
 TEST(ProfileBehaviour, AModeThatBrakesMustBeReachableWhileEnabled) {
   const std::string cst =
       "  cst: {value: 10, control: torque, target: target_torque, stop: mode, stop_mode: csv}\n";
-  std::string text = std::string(kSmall) + cst;
+  std::string text = std::string(kFewKeys) + cst;
   text.replace(text.find("velocity: count/s}"), 18, "velocity: count/s, torque: N.m}");
   text.insert(text.find("modes:"),
               "  target_torque: {object: \"6071:00\", type: int16, quantity: torque, pdo: rpdo}\n");

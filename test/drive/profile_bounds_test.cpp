@@ -11,7 +11,7 @@ namespace {
 
 using testing::HasSubstr;
 
-const char* const kHead = R"(name: tested
+const char* const kPlainHead = R"(name: tested
 units: {position: count, velocity: count/s}
 objects:
   controlword: {object: "6040:00", type: uint16, pdo: rpdo}
@@ -25,7 +25,7 @@ objects:
   short: {object: "2000:03", type: int16}
   wide: {object: "2000:04", type: uint64, pdo: rpdo}
 )";
-const char* const kModes =
+const char* const kPlainModes =
     "modes:\n"
     "  csp: {value: 8, control: position, cyclic: true, target: target_position}\n"
     "  homing: {value: 6, control: homing, status_bits: {homing_attained: 12}}\n";
@@ -33,11 +33,12 @@ const char* const kModes =
 /// The profile with `text` behind it, or, where that gives the objects or modes more, in it.
 DriveProfile profileWith(const std::string& text, Problems& problems) {
   const bool object = text.compare(0, 4, "  o:") == 0;
-  return parseDriveProfile(object ? kHead + text + "\n" + kModes : kHead + (kModes + text) + "\n",
-                           "tested.yaml", problems);
+  return parseDriveProfile(
+      object ? kPlainHead + text + "\n" + kPlainModes : kPlainHead + (kPlainModes + text) + "\n",
+      "tested.yaml", problems);
 }
 
-std::string problemsOf(const std::string& text) {
+std::string problemsWith(const std::string& text) {
   Problems problems;
   profileWith(text, problems);
   return problems.text();
@@ -172,10 +173,10 @@ TEST(ProfileBounds, AreThemselvesAllowedAndNothingBeyond) {
   };
   for (const Bounds& bounds : all) {
     for (const char* value : bounds.allowed) {
-      EXPECT_EQ(problemsOf(with(bounds.text, value)), "") << with(bounds.text, value);
+      EXPECT_EQ(problemsWith(with(bounds.text, value)), "") << with(bounds.text, value);
     }
     for (const char* value : bounds.refused) {
-      EXPECT_THAT(problemsOf(with(bounds.text, value)), HasSubstr(bounds.path))
+      EXPECT_THAT(problemsWith(with(bounds.text, value)), HasSubstr(bounds.path))
           << with(bounds.text, value);
     }
   }
@@ -209,7 +210,7 @@ TEST(ProfileBounds, WhatNoPartKnowsIsTold) {
        "objects/o/unit/xyzzy: unknown key"},
   };
   for (const Unknown& unknown : all) {
-    EXPECT_THAT(problemsOf(unknown.text), HasSubstr(unknown.path)) << unknown.text;
+    EXPECT_THAT(problemsWith(unknown.text), HasSubstr(unknown.path)) << unknown.text;
   }
 }
 
@@ -230,28 +231,29 @@ TEST(ProfileBounds, WhatIsGivenTwiceIsTold) {
        "mode_change/detours/csp/csp: is given twice"},
   };
   for (const Unknown& twice : all) {
-    EXPECT_THAT(problemsOf(twice.text), HasSubstr(twice.path)) << twice.text;
+    EXPECT_THAT(problemsWith(twice.text), HasSubstr(twice.path)) << twice.text;
   }
 }
 
 TEST(ProfileBounds, WhatIsNoNumberIsNotWritten) {
-  EXPECT_THAT(problemsOf("startup: [{object: label, raw: 1}]"),
+  EXPECT_THAT(problemsWith("startup: [{object: label, raw: 1}]"),
               HasSubstr("startup[0]/raw: only numbers can be written"));
   EXPECT_THAT(
-      problemsOf("startup: [{object: \"2100:00\", type: visible_string, from: limits.effort}]"),
+      problemsWith("startup: [{object: \"2100:00\", type: visible_string, from: limits.effort}]"),
       HasSubstr("startup[0]/type: only numbers can be written"));
 }
 
 TEST(ProfileBounds, UnitsHaveNoOtherPartsThanTheStandardOnes) {
   const auto velocity = [](const char* unit) {
-    return problemsOf(std::string("  o: {object: \"2100:00\", type: int32, quantity: velocity, "
-                                  "unit: ") +
-                      unit + "}");
+    return problemsWith(std::string("  o: {object: \"2100:00\", type: int32, quantity: velocity, "
+                                    "unit: ") +
+                        unit + "}");
   };
   const auto acceleration = [](const char* unit) {
-    return problemsOf(std::string("  o: {object: \"2100:00\", type: int32, quantity: acceleration, "
-                                  "unit: ") +
-                      unit + "}");
+    return problemsWith(
+        std::string("  o: {object: \"2100:00\", type: int32, quantity: acceleration, "
+                    "unit: ") +
+        unit + "}");
   };
   for (const char* good : {"count/s", "turn/min", "deg/s^1", "rad/s"}) {
     EXPECT_EQ(velocity(good), "") << good;
@@ -272,8 +274,8 @@ TEST(ProfileBounds, UnitsHaveNoOtherPartsThanTheStandardOnes) {
 }
 
 TEST(ProfileBounds, APdoHoldsSixtyFourBits) {
-  EXPECT_EQ(problemsOf("pdos: {rpdo1: [wide]}"), "");
-  EXPECT_THAT(problemsOf("pdos: {rpdo1: [wide, small]}"),
+  EXPECT_EQ(problemsWith("pdos: {rpdo1: [wide]}"), "");
+  EXPECT_THAT(problemsWith("pdos: {rpdo1: [wide, small]}"),
               HasSubstr("pdos/rpdo1: is 72 bits long (64 + 8), a PDO holds 64"));
 }
 
@@ -293,7 +295,7 @@ TEST(ProfileBounds, AWriteIsCodedAsItsObjectIs) {
   const std::string object =
       "  o: {object: \"2100:00\", type: uint32, encoding: float32, quantity: position}\n";
   const auto startup = [&](const char* write, Problems& problems) {
-    return parseDriveProfile(kHead + object + kModes + "startup: [{" + write + "}]\n",
+    return parseDriveProfile(kPlainHead + object + kPlainModes + "startup: [{" + write + "}]\n",
                              "tested.yaml", problems)
         .startup;
   };
@@ -322,7 +324,7 @@ TEST(ProfileBounds, APdoWithOptionsMapsWhatItLists) {
 
 TEST(ProfileBounds, UnitsAreGivenForWhatHasOneOfItsOwn) {
   const auto units = [](const std::string& more, Problems& problems) {
-    std::string text = std::string(kHead) + kModes;
+    std::string text = std::string(kPlainHead) + kPlainModes;
     text.insert(text.find("velocity: count/s}"), more + ", ");
     return parseDriveProfile(text, "tested.yaml", problems).units;
   };
@@ -344,7 +346,7 @@ TEST(ProfileBounds, UnitsAreGivenForWhatHasOneOfItsOwn) {
 
 TEST(ProfileBounds, TheModeIsANumberAsLongAsItsObject) {
   const auto problems = [](const char* object, const char* type) {
-    std::string text = std::string(kHead) + kModes;
+    std::string text = std::string(kPlainHead) + kPlainModes;
     const std::string from = std::string(object) + "\", type: int8";
     text.replace(text.find(from), from.size(), std::string(object) + "\", type: " + type);
     Problems found;

@@ -180,7 +180,8 @@ TEST(YamlReader, TheNearestNameIsMeantUpToTwoMistakesOrAThirdOfItsLetters) {
 }
 
 TEST(YamlReader, ReadsFilesAsText) {
-  const YAML::Node profile = parseYamlFile(test::configFolder() + "/drives/generic_cia402.yaml");
+  const YAML::Node profile =
+      parseYamlFile(cia402::test::configFolder() + "/drives/generic_cia402.yaml");
   EXPECT_EQ(profile["name"].as<std::string>(), "generic_cia402");
   EXPECT_THROW(parseYamlFile("/nowhere/x.yaml"), YAML::BadFile);
 }
