@@ -318,5 +318,29 @@ TEST_F(BootRetryTest, another_drive_than_before_is_told_where_no_serial_refuses_
   EXPECT_THAT(node->notes(), IsEmpty()) << "told once";
 }
 
+TEST_F(BootRetryTest, a_node_that_was_stopped_while_lost_and_booted_since_boots_at_its_heartbeat) {
+  boot();
+  pass(seconds(1));
+  ASSERT_EQ(node->health(), NodeHealth::lost);
+  node->command(NmtCommand::stop, now);
+  node->boot(now, false);
+  settle();
+  ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  pass(seconds(1));
+  ASSERT_EQ(node->health(), NodeHealth::lost);
+  hear("703 7F");
+  EXPECT_EQ(node->health(), NodeHealth::ready) << "that command is over";
+}
+
+TEST(BootRetry, a_search_that_somebody_asked_for_goes_on_as_slowly_as_one_from_a_loss) {
+  BootRetry retry{BootPolicy{}};  // every 2 s at first, twice as long each time
+  const Time now{seconds(100)};
+  retry.look(now);
+  EXPECT_TRUE(retry.searchDue(now));
+  retry.begun();
+  retry.notFound(now);
+  EXPECT_EQ(retry.deadline(), now + seconds(4));
+}
+
 }  // namespace
 }  // namespace cia402::canopen

@@ -135,5 +135,39 @@ TEST_F(StartupWriteTest, keeps_the_order_of_the_configuration) {
             (Lines{kWrite, "603 2B 5A 60 00 02 00 00 00", "000 01 03"}));
 }
 
+TEST_F(StartupWriteTest, a_read_that_is_not_answered_fails_the_boot_before_anything_is_written) {
+  boot();
+  pass(1000ms);
+  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_THAT(node->problem(),
+              HasSubstr("boot failed while reading 6065:00 following_error_window: no answer"));
+  EXPECT_FALSE(sentLine(kWrite));
+}
+
+// A drive that is silent where it should abort: asked three times (canopen/boot_context.h).
+TEST_F(StartupWriteTest, an_optional_object_that_is_silent_while_others_answer_is_missing) {
+  config.writes[0].optional = true;
+  config.writes[0].only_if_different = false;
+  boot();
+  for (int i = 0; i < 50 && node->health() == NodeHealth::booting; ++i) {
+    hear("703 7F");
+    pass(100ms);
+  }
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(std::count(peer.sent.begin(), peer.sent.end(), kWrite), 3);
+}
+
+TEST_F(StartupWriteTest, what_was_asked_for_is_written_as_patiently_as_configured) {
+  config.writes[0].only_if_different = false;
+  config.sdo.timeout = 250ms;
+  config.sdo.retries = 0;
+  boot();
+  pass(249ms);
+  EXPECT_EQ(node->health(), NodeHealth::booting);
+  pass(1ms);
+  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_THAT(node->problem(), HasSubstr("no answer within 250 ms"));
+}
+
 }  // namespace
 }  // namespace cia402::canopen

@@ -196,6 +196,15 @@ TEST_F(BootUnchanged,
   EXPECT_FALSE(sentLine(kAskMap)) << "that is what it holds";
 }
 
+TEST_F(BootUnchanged, a_pdo_that_is_not_used_is_no_sample) {
+  config.pdos[0].enabled = false;
+  config.pdos[0].cob_id = 0x3FF;
+  boot();
+  ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_FALSE(sentLine("603 40 00 14 01 00 00 00 00"));
+  EXPECT_FALSE(sentLine(kAskMap)) << "it is unchanged";
+}
+
 // The same numbers in the same order, but for where the mapping of the first PDO ends.
 TEST(ConfigurationSignatureTest, tells_whose_mapping_an_entry_belongs_to) {
   NodeConfig longer;

@@ -159,5 +159,20 @@ TEST_F(BootWakeTest, one_that_is_still_operational_is_made_pre_operational_again
   EXPECT_THAT(peer.take(), Not(Contains(kPreOperational)));
 }
 
+TEST_F(BootWakeTest, a_heartbeat_that_was_on_its_way_when_it_was_commanded_tells_nothing) {
+  peer.forget(kAskVendor);
+  boot(false);
+  pass(milliseconds(100));
+  peer.take();
+  hear("703 05");
+  ASSERT_EQ(peer.take(), Lines{kPreOperational});
+  pass(milliseconds(19));
+  hear("703 05");
+  EXPECT_THAT(peer.take(), Not(Contains(kPreOperational)));
+  pass(milliseconds(1));
+  hear("703 05");
+  EXPECT_EQ(peer.take(), Lines{kPreOperational});
+}
+
 }  // namespace
 }  // namespace cia402::canopen

@@ -45,5 +45,14 @@ TEST(CyclicIdentifiers, IncludeAnRpdoInThePlaceOfAnSdoRequest) {
   EXPECT_THAT(cyclicIdentifiers(masterWith({rpdo(0x610)})), testing::Contains(0x610U));
 }
 
+TEST(CyclicIdentifiers, DoNotDependOnAnSdoChannelOf29Bits) {
+  MasterConfig master = masterWith({});
+  const auto without = cyclicIdentifiers(master);
+  for (const std::uint32_t request : {0x800U, 0x1FFFFFFFU}) {
+    master.nodes[0].sdo_channel = {request, 0x5F0};
+    EXPECT_EQ(cyclicIdentifiers(master), without) << std::hex << request;
+  }
+}
+
 }  // namespace
 }  // namespace cia402::canopen

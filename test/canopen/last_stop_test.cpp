@@ -143,5 +143,16 @@ TEST_F(LastStopTest, an_answer_to_the_posted_stop_is_taken_for_none_to_a_later_r
   EXPECT_EQ(node->health(), NodeHealth::booting);
 }
 
+TEST_F(LastStopTest, is_told_nothing_any_more_when_three_seconds_are_over_to_the_moment) {
+  lose();
+  pass(milliseconds(180));
+  peer.take();
+  hear("703 05");  // told anew: NMT stop 40 ms later, then four more, then every 100 ms
+  const std::vector<int> at = times(kStop, milliseconds(2900));
+  ASSERT_FALSE(at.empty());
+  EXPECT_EQ(at.front(), 40);
+  EXPECT_EQ(at.back(), 2720) << "2.9 s after the loss; the next would be after 3 s";
+}
+
 }  // namespace
 }  // namespace cia402::canopen

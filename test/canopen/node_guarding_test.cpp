@@ -233,5 +233,39 @@ TEST_F(NodeGuarding, no_request_leaves_while_the_node_is_not_there) {
   EXPECT_EQ(requests(), 0U);
 }
 
+TEST_F(NodeGuarding, a_drive_without_life_time_factor_cannot_notice_a_dead_master_either) {
+  peer.replace("603 2F 0D 10 00 03 00 00 00", "583 80 0D 10 00 00 00 02 06");
+  bootReady();
+  EXPECT_THAT(node->notes(), ElementsAre(HasSubstr("cannot notice a dead master: writing 0x03 to "
+                                                   "100D:00 life time factor")));
+  EXPECT_TRUE(node->supervision().watched);
+  EXPECT_FALSE(node->supervision().watches_master);
+}
+
+TEST_F(NodeGuarding, a_heartbeat_that_stays_on_beside_it_is_told) {
+  peer.replace("603 2B 17 10 00 00 00 00 00", "583 80 17 10 00 02 00 01 06");  // read-only
+  bootReady();
+  EXPECT_THAT(node->notes(), ElementsAre(HasSubstr("its heartbeat could not be switched off for "
+                                                   "node guarding: writing 0x0000 to 1017:00")));
+}
+
+TEST_F(NodeGuarding, waits_for_the_answer_that_says_operational) {
+  answers({"703 7F"});
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::booting);
+  EXPECT_EQ(node->bootStep(), "waiting for an answer to guarding that says operational");
+}
+
+TEST_F(NodeGuarding, a_node_that_answered_and_falls_silent_while_it_boots_is_lost) {
+  peer.forget("603 40 00 16 00 00 00 00 00");
+  answers({"703 7F"});
+  boot();
+  ASSERT_EQ(node->health(), NodeHealth::booting);
+  peer.forget("703 R1");
+  pass(milliseconds(300));
+  EXPECT_EQ(node->health(), NodeHealth::lost);
+  EXPECT_THAT(node->problem(), HasSubstr("no answer to node guarding for 0.3 s"));
+}
+
 }  // namespace
 }  // namespace cia402::canopen

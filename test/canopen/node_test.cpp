@@ -299,8 +299,10 @@ TEST_F(NodeTest, keeps_the_last_emergency) {
   hear("083 00 00 00 00 00 00 00 00");
   EXPECT_EQ(node->lastEmergency()->code, 0x0000);
   EXPECT_EQ(node->emergencies(), 2U);
+  EXPECT_EQ(node->malformedEmergencies(), 0U);
   hear("083 11");  // no code
   EXPECT_EQ(node->emergencies(), 2U);
+  EXPECT_EQ(node->malformedEmergencies(), 1U);
 }
 
 TEST_F(NodeTest, a_queued_sdo_transfer_wakes_it_at_once) {
@@ -311,6 +313,43 @@ TEST_F(NodeTest, a_queued_sdo_transfer_wakes_it_at_once) {
   node->tick(now);
   EXPECT_EQ(peer.take(), Lines{"603 40 41 60 00 00 00 00 00"});
   EXPECT_GT(node->nextDeadline(), now);
+}
+
+TEST_F(NodeTest, believes_no_tpdo_before_the_first_boot) {
+  create();
+  tpdo("183 37 02 01 00 00 00");
+  EXPECT_FALSE(statusword().valid);
+}
+
+TEST_F(NodeTest, a_command_out_of_operation_before_the_first_boot_only_leaves) {
+  create();
+  node->command(NmtCommand::stop, now);
+  EXPECT_EQ(peer.take(), Lines{"000 02 03"});
+  EXPECT_EQ(node->health(), NodeHealth::absent);
+  EXPECT_EQ(node->problem(), "");
+  hear("703 04");
+  EXPECT_EQ(node->health(), NodeHealth::absent);
+}
+
+TEST_F(NodeTest, a_boot_that_failed_is_not_called_a_loss_when_its_heartbeat_ends) {
+  peer.replace("603 40 00 18 01 00 00 00 00", "583 80 00 18 01 00 00 02 06");
+  peer.forget("603 40 00 16 00 00 00 00 00");
+  boot();
+  hear("703 7F");  // supervised from here on
+  hear("583 4F 00 16 00 02 00 00 00");
+  ASSERT_EQ(node->health(), NodeHealth::failed);
+  pass(seconds(1));
+  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_THAT(node->problem(), HasSubstr("1800:01"));
+}
+
+TEST_F(NodeTest, a_boot_is_news) {
+  bool deadlines_changed = false;
+  node.emplace(config, master, peer, nullptr, &deadlines_changed);
+  const std::uint32_t before = node->changes();
+  node->boot(now, false);
+  EXPECT_GT(node->changes(), before);
+  EXPECT_TRUE(deadlines_changed);
 }
 
 TEST(NodeHealthText, is_one_word_each) {
