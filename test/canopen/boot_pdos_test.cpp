@@ -11,22 +11,23 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-constexpr ObjectId kPosition{0x6064, 0};
-const char kReadCount[] = "603 40 00 1A 00 00 00 00 00";
-const char kCount0[] = "583 4F 00 1A 00 00 00 00 00", kCount1[] = "583 4F 00 1A 00 01 00 00 00",
-           kCount2[] = "583 4F 00 1A 00 02 00 00 00";
-const char kClearMap[] = "603 2F 00 1A 00 00 00 00 00";
-const char kWriteEntry2[] = "603 23 00 1A 02 20 00 64 60";
+constexpr ObjectId kActualPosition{0x6064, 0};
+const char kAskTpdoCount[] = "603 40 00 1A 00 00 00 00 00";
+const char kNoEntries[] = "583 4F 00 1A 00 00 00 00 00",
+           kOneEntry[] = "583 4F 00 1A 00 01 00 00 00",
+           kTwoEntries[] = "583 4F 00 1A 00 02 00 00 00";
+const char kClearTpdo[] = "603 2F 00 1A 00 00 00 00 00";
+const char kMapPosition[] = "603 23 00 1A 02 20 00 64 60";
 
 /// TPDO 1 has no entries yet, and takes 6041:00 and 6064:00.
 class BootPdosTest : public test::NodeFixture {
  protected:
   BootPdosTest() {
-    peer.replace(kReadCount, kCount0);
+    peer.replace(kAskTpdoCount, kNoEntries);
     peer.on("603 23 00 18 01 83 01 00 80", "583 60 00 18 01 00 00 00 00");
-    peer.on(kClearMap, "583 60 00 1A 00 00 00 00 00");
+    peer.on(kClearTpdo, "583 60 00 1A 00 00 00 00 00");
     peer.on("603 23 00 1A 01 10 00 41 60", "583 60 00 1A 01 00 00 00 00");
-    peer.on(kWriteEntry2, "583 60 00 1A 02 00 00 00 00");
+    peer.on(kMapPosition, "583 60 00 1A 02 00 00 00 00");
     for (const char* count : {"603 2F 00 1A 00 01 00 00 00", "603 2F 00 1A 00 02 00 00 00"}) {
       peer.on(count, "583 60 00 1A 00 00 00 00 00");
     }
@@ -34,15 +35,15 @@ class BootPdosTest : public test::NodeFixture {
   }
   bool leftOut() {
     const ProcessImage& image = node->image();
-    return image.isLeftOut(PdoDirection::tpdo, image.inputSlot(kPosition));
+    return image.isLeftOut(PdoDirection::tpdo, image.inputSlot(kActualPosition));
   }
-  ProcessValue position() { return node->image().input(node->image().inputSlot(kPosition)); }
+  ProcessValue position() { return node->image().input(node->image().inputSlot(kActualPosition)); }
 };
 
 TEST_F(BootPdosTest, an_entry_that_the_drive_does_not_map_is_not_expected_in_its_frames) {
   config.pdos[1].entries[1].optional = true;
-  peer.on(kReadCount, kCount1);
-  peer.replace(kWriteEntry2, "583 80 00 1A 02 41 00 04 06");
+  peer.on(kAskTpdoCount, kOneEntry);
+  peer.replace(kMapPosition, "583 80 00 1A 02 41 00 04 06");
   boot();
   ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
   EXPECT_THAT(node->notes(), ElementsAre(HasSubstr("6064:00 position")));
@@ -54,13 +55,13 @@ TEST_F(BootPdosTest, an_entry_that_the_drive_does_not_map_is_not_expected_in_its
 
 TEST_F(BootPdosTest, an_entry_that_was_left_out_is_there_again_once_the_drive_takes_it) {
   config.pdos[1].entries[1].optional = true;
-  peer.on(kReadCount, kCount1);
-  peer.replace(kWriteEntry2, "583 80 00 1A 02 41 00 04 06");
+  peer.on(kAskTpdoCount, kOneEntry);
+  peer.replace(kMapPosition, "583 80 00 1A 02 41 00 04 06");
   boot();
   ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
   ASSERT_TRUE(leftOut());
-  peer.replace(kReadCount, kCount1).on(kReadCount, kCount2);  // another firmware by now
-  peer.replace(kWriteEntry2, "583 60 00 1A 02 00 00 00 00");
+  peer.replace(kAskTpdoCount, kOneEntry).on(kAskTpdoCount, kTwoEntries);  // another firmware by now
+  peer.replace(kMapPosition, "583 60 00 1A 02 00 00 00 00");
   hear("703 00");
   ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
   EXPECT_THAT(node->notes(), IsEmpty());
@@ -70,8 +71,8 @@ TEST_F(BootPdosTest, an_entry_that_was_left_out_is_there_again_once_the_drive_ta
 }
 
 TEST_F(BootPdosTest, a_number_of_entries_that_is_read_only_is_excused_where_the_profile_says_so) {
-  peer.on(kReadCount, kCount2);  // the entries that were written count by themselves
-  peer.replace(kClearMap, "583 80 00 1A 00 02 00 01 06");
+  peer.on(kAskTpdoCount, kTwoEntries);  // the entries that were written count by themselves
+  peer.replace(kClearTpdo, "583 80 00 1A 00 02 00 01 06");
   config.map_count_may_be_read_only = true;
   boot();
   EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();

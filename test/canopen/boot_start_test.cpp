@@ -14,8 +14,8 @@ class BootStartTest : public test::NodeFixture {
     peer.forget("000 01 03");
   }
   /// What the boot waits for with TPDO 1 of this transmission type.
-  std::string stepWith(std::uint8_t transmission) {
-    config.pdos[1].transmission = transmission;
+  std::string stepWith(unsigned transmission) {
+    config.pdos[1].transmission = static_cast<std::uint8_t>(transmission);
     char type[40];
     std::snprintf(type, sizeof(type), "583 4F 00 18 02 %02X 00 00 00", transmission);
     peer.replace("603 40 00 18 02 00 00 00 00", type);
@@ -28,11 +28,11 @@ class BootStartTest : public test::NodeFixture {
 // CiA 301, table 72: 1 to 240 are sent with SYNC, each or every so many; 0 only after an event,
 // 252 and 253 after a remote frame, 254 and 255 after an event.
 TEST_F(BootStartTest, a_tpdo_is_waited_for_where_sync_brings_it) {
-  for (const std::uint8_t type : {1, 2, 239, 240}) {
-    EXPECT_EQ(stepWith(type), "waiting for the first TPDO") << unsigned{type};
+  for (const unsigned type : {1U, 2U, 239U, 240U}) {
+    EXPECT_EQ(stepWith(type), "waiting for the first TPDO") << type;
   }
-  for (const std::uint8_t type : {0, 241, 253, 254, 255}) {
-    EXPECT_EQ(stepWith(type), "asking for the NMT state") << unsigned{type};
+  for (const unsigned type : {0U, 241U, 253U, 254U, 255U}) {
+    EXPECT_EQ(stepWith(type), "asking for the NMT state") << type;
   }
 }
 
