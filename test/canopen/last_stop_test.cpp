@@ -95,6 +95,15 @@ TEST_F(LastStopTest, a_node_that_says_operational_is_told_again_at_once_and_not_
   EXPECT_THAT(times(kStop, milliseconds(60)), ElementsAre(40, 60));
 }
 
+TEST_F(LastStopTest, what_was_on_its_way_when_it_was_told_is_no_reason_to_tell_it_again) {
+  lose();
+  pass(milliseconds(49));
+  peer.take();
+  hear("703 05");  // told 9 ms ago
+  EXPECT_THAT(times(kStop, milliseconds(31)), ElementsAre(11, 31));
+  EXPECT_EQ(node->health(), NodeHealth::lost);
+}
+
 TEST_F(LastStopTest, a_node_that_says_stopped_is_booted_and_told_no_more) {
   lose();
   pass(milliseconds(50));

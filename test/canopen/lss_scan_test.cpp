@@ -30,6 +30,7 @@ TEST_F(LssScan, OneDeviceIsFoundByItsBits) {
   EXPECT_EQ(task.result(), "1 device without a node-ID");
   // Vendor 0x0000ABCD: bits 31..16 are 0, bit 15 is 1, bit 14 is 0.
   EXPECT_EQ(sentCount("7E5 51 00 00 00 00 1F 00 00"), 1u);
+  EXPECT_EQ(sentCount("7E5 51 00 00 00 80 1F 00 00"), 0u) << "0 is asked for first";
   EXPECT_EQ(sentCount("7E5 51 00 00 00 00 0F 00 00"), 1u);
   EXPECT_EQ(sentCount("7E5 51 00 80 00 00 0F 00 00"), 1u);
   EXPECT_EQ(sentCount("7E5 51 00 80 00 00 0E 00 00"), 1u);
@@ -113,6 +114,8 @@ TEST_F(LssScan, WhatDevicesOfAKindHaveInCommonIsScannedOnce) {
       << "once scanned; then asked for as a whole, twice for each further one: for the last "
          "device, "
          "and as that is not there any more, for one of its kind";
+  EXPECT_EQ(sentCount("7E5 51 E8 03 00 00 00 03 00"), 3u)
+      << "serial 1000: told that it was found, then asked twice whether there is another one";
 }
 
 /// Slaves that mishandle fastscan, and a good one beside them that has the higher number.
@@ -155,12 +158,32 @@ TEST_F(MishandledScan, ADeviceThatIsDeafToANumberIsGivenUpWhereItFallsSilent) {
   }
 }
 
+TEST_F(MishandledScan, ADeviceThatFallsSilentAtABitIsTakenUpThereAndGivenUpAfterTheThirdTime) {
+  bad.deaf_part = 2;  // revision 0x00010002
+  bad.deaf_bit = 20;
+  scan(task);
+  EXPECT_THAT(task.error(), HasSubstr("scanning bit 20 of the revision number of device 1"));
+  EXPECT_EQ(sentCount("7E5 51 00 00 00 00 80 00 00"), 3u) << "is there anybody?";
+  EXPECT_EQ(sentCount("7E5 51 00 00 00 00 1F 02 02"), 1u) << "bit 31 is known by then";
+  EXPECT_EQ(sentCount("7E5 51 00 00 00 00 15 02 02"), 1u) << "bit 21, too";
+  EXPECT_EQ(sentCount("7E5 51 00 00 00 00 14 02 02"), 18u) << "0, six times each time";
+  EXPECT_EQ(sentCount("7E5 51 00 00 10 00 14 02 02"), 18u) << "1, as often";
+}
+
+TEST_F(LssScan, FindsAsManyDevicesAsABusCanHaveAndNoMore) {
+  for (std::uint32_t i = 0; i < 128; ++i) wire.add({0x0000ABCD, 0x000D0117, 0x00010002, i});
+  LssScanTask task;
+  ASSERT_TRUE(run(task)) << task.error();
+  EXPECT_EQ(task.found().size(), 127u);
+}
+
 void expectTruth(const LssScanTask& task, const LssWire& wire, unsigned seed) {
   for (const lss::Identity& found : task.found()) {
     const bool exists =
         std::any_of(wire.slaves.begin(), wire.slaves.end(),
                     [&](const LssSlave& slave) { return slave.identity == parts(found); });
     EXPECT_TRUE(exists) << "seed " << seed << ": " << toString(found);
+    EXPECT_EQ(std::count(task.found().begin(), task.found().end(), found), 1) << "seed " << seed;
   }
   if (task.found().size() < wire.slaves.size()) {
     EXPECT_TRUE(task.incomplete()) << "seed " << seed << ": one is missing, and nobody says so";
