@@ -170,6 +170,34 @@ TEST_F(MishandledScan, ADeviceThatFallsSilentAtABitIsTakenUpThereAndGivenUpAfter
   EXPECT_EQ(sentCount("7E5 51 00 00 10 00 14 02 02"), 18u) << "1, as often";
 }
 
+TEST_F(MishandledScan, ADeviceThatIsDeafFromTheBeginningIsAskedAsOften) {
+  bad.deaf_part = 0;
+  scan(task);
+  EXPECT_EQ(sentCount("7E5 51 00 00 00 00 1F 00 00"), 18u);
+  EXPECT_EQ(sentCount("7E5 51 00 00 00 80 1F 00 00"), 18u);
+}
+
+TEST_F(MishandledScan, ADeviceThatIsScannedAgainBitByBitIsFoundOnce) {
+  bad.never_found = bad.mute_moves = true;
+  scan(task);
+  EXPECT_THAT(task.found(), UnorderedElementsAre(kServo));
+}
+
+TEST_F(LssScan, NobodyIsLeftWhenSixQuestionsInARowWereInVain) {
+  wire.add(parts(kServo));
+  wire.add(parts(kOther));
+  LssScanTask task;
+  while (task.step() != "asking for the same vendor id") {
+    ASSERT_EQ(task.advance(master, wire.now), LssTask::Status::running);
+    finish();
+  }
+  const std::size_t before = sentCount("7E5 51 00 00 00 00 80 00 00");
+  wire.slaves.pop_back();  // switched off
+  ASSERT_TRUE(run(task));
+  EXPECT_THAT(task.found(), UnorderedElementsAre(kServo));
+  EXPECT_EQ(sentCount("7E5 51 00 00 00 00 80 00 00"), before + 6);
+}
+
 TEST_F(LssScan, FindsAsManyDevicesAsABusCanHaveAndNoMore) {
   for (std::uint32_t i = 0; i < 128; ++i) wire.add({0x0000ABCD, 0x000D0117, 0x00010002, i});
   LssScanTask task;

@@ -103,6 +103,24 @@ TEST(ProcessImage, takes_the_mapped_part_of_a_frame_that_is_too_long_but_counts_
   EXPECT_EQ(image.tpdos()[0].too_long, 1U);
 }
 
+TEST(ProcessImage, packs_each_byte_in_its_place) {
+  ProcessImage image({pdo(PdoDirection::rpdo, 1, 0x203, {{{0x2001, 0}, 64, ""}})});
+  image.setOutput(0, 0x8807060504030201U);
+  can::Frame packed;
+  image.pack(0, packed);
+  EXPECT_EQ(test::text(packed), "203 01 02 03 04 05 06 07 88");
+}
+
+TEST(ProcessImage, counts_frames_of_a_wrong_length) {
+  ProcessImage image(servo());
+  image.receive(0, frame("183 37 02 01 00 00 00"), kStamp);
+  EXPECT_EQ(image.wrongLengths(), 0U);
+  image.receive(0, frame("183 37 02 01 00 00"), kStamp);
+  image.receive(1, frame("283 08 50 02 00"), kStamp);
+  EXPECT_EQ(image.wrongLengths(), 2U);
+  EXPECT_EQ(image.troubles(), 2U);
+}
+
 TEST(ProcessImage, has_no_slots_for_disabled_pdos) {
   std::vector<PdoConfig> pdos = servo();
   pdos[0].enabled = false;
@@ -228,6 +246,70 @@ TEST(ProcessImage, an_rpdo_leaves_when_its_content_changes_and_at_its_refresh_ra
   image.invalidate();
   EXPECT_TRUE(due()) << "the drive has rebooted";
   EXPECT_EQ(image.rpdos()[0].count, 5U);
+}
+
+TEST(ProcessImage, after_a_reboot_a_tpdo_has_as_long_to_come_as_at_first) {
+  ProcessImage image({tpdoOfType(1)});
+  for (int i = 0; i < 3; ++i) image.age(kStamp);
+  image.invalidate();
+  EXPECT_EQ(syncsUntilStale(image), 4);
+}
+
+TEST(ProcessImage, after_a_reboot_a_tpdo_with_an_event_timer_is_expected_from_then_on) {
+  PdoConfig config = tpdoOfType(255);
+  config.event_timer = 20;  // ms, stale after three of them
+  ProcessImage image({config});
+  image.receive(0, frame("183 37 02"), at(0));
+  image.invalidate();
+  image.age(at(1000));
+  EXPECT_FALSE(image.tpdos()[0].stale);
+  image.age(at(1060));
+  EXPECT_FALSE(image.tpdos()[0].stale);
+  image.age(at(1061));
+  EXPECT_TRUE(image.tpdos()[0].stale);
+}
+
+TEST(ProcessImage, after_a_reboot_a_tpdo_is_asked_for_at_its_rate_from_then_on) {
+  PdoConfig config = tpdoOfType(252);
+  config.request_every = 3;
+  ProcessImage image({config});
+  can::Frame request;
+  image.requestDue(0, request);
+  image.requestDue(0, request);
+  image.invalidate();
+  EXPECT_FALSE(image.requestDue(0, request));
+  EXPECT_FALSE(image.requestDue(0, request));
+  EXPECT_TRUE(image.requestDue(0, request));
+}
+
+TEST(ProcessImage, a_request_is_a_plain_remote_frame_whatever_the_frame_was_before) {
+  ProcessImage image({tpdoOfType(252)});
+  can::Frame request = frame("7FF 01 02 03 04 05 06 07 08");
+  request.extended = request.error = true;
+  ASSERT_TRUE(image.requestDue(0, request));
+  EXPECT_EQ(test::text(request), "183 R2");
+  EXPECT_FALSE(request.extended || request.error);
+}
+
+TEST(ProcessImage, remembers_when_an_rpdo_was_sent) {
+  ProcessImage image({pdo(PdoDirection::rpdo, 1, 0x203, {{kControlword, 16, ""}})});
+  can::Frame out;
+  ASSERT_TRUE(image.packDue(0, out, kStamp));
+  EXPECT_EQ(image.rpdos()[0].last, kStamp);
+}
+
+TEST(PdoText, names_what_is_missing_and_why) {
+  ProcessImage image(servo());
+  EXPECT_EQ(missingText(image), "");
+  for (int i = 0; i < 11; ++i) {
+    image.age(kStamp);
+    image.receive(0, frame("183 37 02"), kStamp);
+  }
+  EXPECT_EQ(missingText(image),
+            "TPDO 1 (COB-ID 0x183) comes too short (2 bytes instead of 6), "
+            "TPDO 2 (COB-ID 0x283) does not come");
+  image.receive(1, frame("283 08 50 02"), kStamp);
+  EXPECT_EQ(missingText(image), "TPDO 1 (COB-ID 0x183) comes too short (2 bytes instead of 6)");
 }
 
 TEST(PdoText, names_what_is_overdue_and_what_has_a_wrong_length) {
