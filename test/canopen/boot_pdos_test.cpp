@@ -70,6 +70,13 @@ TEST_F(BootPdosTest, an_entry_that_was_left_out_is_there_again_once_the_drive_ta
   EXPECT_EQ(position().raw, 0x12345678U);
 }
 
+TEST_F(BootPdosTest, a_fixed_number_of_entries_is_the_room_that_there_is) {
+  config.fixed_map_entries = 1;
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_THAT(node->problem(), HasSubstr("it has 2 entries, the drive has room for 1"));
+}
+
 TEST_F(BootPdosTest, a_number_of_entries_that_is_read_only_is_excused_where_the_profile_says_so) {
   peer.on(kAskTpdoCount, kTwoEntries);  // the entries that were written count by themselves
   peer.replace(kClearTpdo, "583 80 00 1A 00 02 00 01 06");

@@ -316,6 +316,10 @@ TEST_F(BootRetryTest, another_drive_than_before_is_told_where_no_serial_refuses_
                                     "12346, it was 12345; check its position")));
   hear("703 00");
   EXPECT_THAT(node->notes(), IsEmpty()) << "told once";
+  peer.replace("603 40 18 10 02 00 00 00 00", "583 43 18 10 02 18 01 0D 00");
+  hear("703 00");
+  EXPECT_THAT(node->notes(),
+              ElementsAre(HasSubstr(", and its vendor or product is another one, too; check")));
 }
 
 TEST_F(BootRetryTest, a_node_that_was_stopped_while_lost_and_booted_since_boots_at_its_heartbeat) {
@@ -330,6 +334,18 @@ TEST_F(BootRetryTest, a_node_that_was_stopped_while_lost_and_booted_since_boots_
   ASSERT_EQ(node->health(), NodeHealth::lost);
   hear("703 7F");
   EXPECT_EQ(node->health(), NodeHealth::ready) << "that command is over";
+}
+
+TEST(BootRetry, another_attempt_is_not_due_any_more_where_nobody_answers_and_nobody_is_looked_for) {
+  BootPolicy policy;
+  policy.search_period = Duration::zero();
+  BootRetry retry{policy};
+  const Time now{seconds(100)};
+  retry.failed(BootFailure::timed_out, now);
+  ASSERT_EQ(retry.deadline(), now + seconds(1));
+  retry.search(now);
+  EXPECT_EQ(retry.deadline(), kNever);
+  EXPECT_EQ(retry.attemptText(), "");
 }
 
 TEST(BootRetry, a_search_that_somebody_asked_for_goes_on_as_slowly_as_one_from_a_loss) {

@@ -22,6 +22,14 @@ TEST_F(BootSuperviseTest, a_drive_that_took_the_consumer_heartbeat_time_notices_
   EXPECT_FALSE(node->supervision().watches_master);
 }
 
+TEST_F(BootSuperviseTest, nobody_notices_a_dead_master_where_that_is_not_asked_for) {
+  config.master_timeout = Duration::zero();
+  boot();
+  ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_FALSE(node->supervision().watches_master);
+  EXPECT_TRUE(node->supervision().watched);
+}
+
 // 16 bits of milliseconds (CiA 301, 7.5.2.18); 0 would switch the heartbeat off.
 TEST_F(BootSuperviseTest, a_heartbeat_time_is_the_nearest_that_the_object_can_hold) {
   struct Case {

@@ -86,5 +86,17 @@ TEST_F(BootSyncTest, a_drive_without_sync_period_goes_without_and_that_is_told) 
   EXPECT_FALSE(sentLine("603 23 06 10 00 A0 0F 00 00"));
 }
 
+TEST_F(BootSyncTest, a_period_of_zero_is_written_once_where_it_is_also_the_wanted_one) {
+  config.sync_counter = 10;
+  config.sync_period_us = 0;
+  peer.on("603 40 19 10 00 00 00 00 00", "583 4F 19 10 00 00 00 00 00")
+      .on("603 40 06 10 00 00 00 00 00", "583 43 06 10 00 10 27 00 00")
+      .on("603 23 06 10 00 00 00 00 00", "583 60 06 10 00 00 00 00 00")
+      .on("603 2F 19 10 00 0A 00 00 00", "583 60 19 10 00 00 00 00 00");
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(std::count(peer.sent.begin(), peer.sent.end(), "603 23 06 10 00 00 00 00 00"), 1);
+}
+
 }  // namespace
 }  // namespace cia402::canopen

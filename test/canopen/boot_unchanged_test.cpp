@@ -66,6 +66,9 @@ TEST_F(BootUnchanged, leaves_out_what_1020h_proves_and_still_looks_at_samples) {
                    "000 01 03"}));
   EXPECT_THAT(node->remarks(), ElementsAre(HasSubstr("configuration is unchanged (1020h)")));
   EXPECT_THAT(node->notes(), IsEmpty());
+  hear("703 00");
+  EXPECT_THAT(node->remarks(), ElementsAre(HasSubstr("configuration is unchanged (1020h)")))
+      << "of the last boot alone";
 }
 
 TEST_F(BootUnchanged, writes_that_are_no_configuration_are_done_all_the_same) {
@@ -203,6 +206,25 @@ TEST_F(BootUnchanged, a_pdo_that_is_not_used_is_no_sample) {
   ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
   EXPECT_FALSE(sentLine("603 40 00 14 01 00 00 00 00"));
   EXPECT_FALSE(sentLine(kAskMap)) << "it is unchanged";
+}
+
+TEST_F(BootUnchanged, nothing_is_configured_before_the_old_proof_is_void) {
+  peer.replace(kReadTime, "583 43 20 10 02 C1 70 53 03");
+  peer.forget(kVoidTime);
+  boot();
+  EXPECT_EQ(peer.take().back(), kVoidTime);
+  EXPECT_EQ(node->bootStep(), "writing 0x00000000 to 1020:02 configuration time");
+  hear("583 60 20 10 02 00 00 00 00");
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_TRUE(sentLine(kAskMap));
+}
+
+TEST_F(BootUnchanged, half_a_proof_that_says_nothing_need_not_be_made_void) {
+  peer.replace(kReadDate, kNoDate).replace(kReadTime, "583 80 20 10 02 11 00 09 06");
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_FALSE(sentLine(kVoidDate));
+  EXPECT_TRUE(sentLine(kAskMap));
 }
 
 // The same numbers in the same order, but for where the mapping of the first PDO ends.

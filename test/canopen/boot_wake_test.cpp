@@ -174,5 +174,17 @@ TEST_F(BootWakeTest, a_heartbeat_that_was_on_its_way_when_it_was_commanded_tells
   EXPECT_EQ(peer.take(), Lines{kPreOperational});
 }
 
+TEST_F(BootWakeTest, one_that_took_no_notice_of_the_reset_is_not_reset_while_it_is_configured) {
+  peer.forget(kReset);
+  peer.forget(kAskVendor);
+  boot();
+  pass(milliseconds(1250));  // no boot-up message, but it answers
+  ASSERT_EQ(node->bootStep(), "reading 1018:01 vendor id");
+  pass(milliseconds(100));
+  peer.take();
+  hear("703 05");
+  EXPECT_EQ(peer.take(), Lines{kPreOperational});
+}
+
 }  // namespace
 }  // namespace cia402::canopen

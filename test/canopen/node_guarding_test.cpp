@@ -23,6 +23,30 @@ TEST(NodeGuardText, asks_with_a_remote_frame_for_one_byte) {
   EXPECT_EQ(request.size, 1);
 }
 
+TEST(NodeGuard, gives_a_node_its_life_time_for_the_first_answer_too) {
+  test::ScriptedPeer peer;
+  const Time now(seconds(100));
+  NodeGuard guard(3, milliseconds(100), 3);
+  EXPECT_FALSE(guard.receive(0x05, now)) << "nobody has asked";
+  EXPECT_FALSE(guard.answered());
+  guard.start(true, peer, now);
+  EXPECT_EQ(peer.take(), Lines{"703 R1"});
+  EXPECT_EQ(guard.deadline(), now + milliseconds(100));
+  EXPECT_FALSE(guard.expired(now + milliseconds(299)));
+  EXPECT_TRUE(guard.expired(now + milliseconds(300)));
+}
+
+TEST(NodeGuard, tells_of_wrong_toggle_bits_since_the_last_right_answer_only) {
+  test::ScriptedPeer peer;
+  const Time now(seconds(100));
+  NodeGuard guard(3, milliseconds(100), 3);
+  guard.start(true, peer, now);
+  EXPECT_FALSE(guard.receive(0x85, now)) << "the first one has toggle bit 0";
+  EXPECT_THAT(guard.loss(), HasSubstr("the toggle bit of 1 answers did not alternate"));
+  EXPECT_TRUE(guard.receive(0x05, now));
+  EXPECT_EQ(guard.loss(), "no answer to node guarding for 0.3 s (asked every 0.1 s)");
+}
+
 /// A drive without heartbeat, guarded every 100 ms, lost after 300 ms.
 class NodeGuarding : public test::NodeFixture {
  protected:
@@ -265,6 +289,26 @@ TEST_F(NodeGuarding, a_node_that_answered_and_falls_silent_while_it_boots_is_los
   pass(milliseconds(300));
   EXPECT_EQ(node->health(), NodeHealth::lost);
   EXPECT_THAT(node->problem(), HasSubstr("no answer to node guarding for 0.3 s"));
+}
+
+TEST_F(NodeGuarding, answers_of_before_a_reboot_tell_nothing_of_the_drive_that_boots) {
+  bootReady();
+  peer.forget("703 R1");
+  hear("703 00");
+  pass(milliseconds(300));
+  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_THAT(node->problem(), HasSubstr("if the drive has no node guarding"));
+}
+
+TEST_F(NodeGuarding, a_node_whose_boot_failed_is_guarded_no_more) {
+  peer.replace("603 40 00 18 01 00 00 00 00", "583 80 00 18 01 00 00 02 06");
+  boot();
+  ASSERT_EQ(node->health(), NodeHealth::failed);
+  requests();
+  pass(seconds(1));
+  EXPECT_EQ(requests(), 0U);
+  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_THAT(node->problem(), HasSubstr("1800:01"));
 }
 
 }  // namespace
