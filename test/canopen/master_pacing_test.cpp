@@ -86,6 +86,17 @@ TEST_F(MasterPacing, a_frame_of_another_holds_a_long_transfer_up_as_long_as_it_t
   EXPECT_GE(count("605 "), 1);
 }
 
+TEST_F(MasterPacing, segments_that_leave_with_an_answer_count_from_then_on) {
+  SdoOptions block;
+  block.block = SdoOptions::Block::always;
+  master->find(5)->sdo().download({0x1F50, 1}, Bytes(889, 7), "program", block);
+  master->tick(now);
+  peer.take();
+  now += milliseconds(400);  // a slow server
+  hear("585 A4 50 1F 01 7F 00 00 00");
+  EXPECT_LE(count("605 "), 5) << "about four frames wait";
+}
+
 TEST_F(MasterPacing, commands_to_all_nodes_that_wait_hold_a_long_transfer_up) {
   for (int i = 0; i < 10; ++i) master->commandAll(NmtCommand::start, now);
   EXPECT_EQ(beginDownload(), 0) << "more than four frames' worth of bits wait already";

@@ -265,12 +265,13 @@ TEST_F(MasterTest, finds_configured_nodes_only) {
 TEST_F(MasterTest, refuses_node_ids_and_cob_ids_that_cannot_be) {
   config.nodes[1].node_id = 3;
   EXPECT_THROW(create(), std::invalid_argument);
-  for (const NodeId none : {0, 128}) {
+  for (const NodeId none : {NodeId{0}, NodeId{128}}) {
     config.nodes[1].node_id = none;
     EXPECT_THROW(create(), std::invalid_argument) << unsigned{none};
   }
-  for (const NodeId last : {1, 126}) {
+  for (const NodeId last : {NodeId{1}, NodeId{127}}) {
     config.nodes[1].node_id = last;
+    if (last == 127) config.node_id = 126;
     EXPECT_NO_THROW(create()) << unsigned{last};
   }
   config.nodes[1] = test::servoConfig(5, "elbow");
@@ -328,6 +329,9 @@ TEST_F(MasterTest, refuses_a_drive_that_insists_on_the_cob_id_of_another) {
   EXPECT_EQ(master->find(5)->health(), NodeHealth::ready);
   for (int i = 0; i < 3; ++i) hear("703 7F");
   EXPECT_EQ(std::count(peer.sent.begin(), peer.sent.end(), "000 80 03"), 1) << "refused once";
+  master->find(3)->sdo().upload({0x1008, 0});
+  pass(milliseconds(1));
+  EXPECT_EQ(std::count(peer.sent.begin(), peer.sent.end(), "000 80 03"), 1) << "whatever follows";
   hear("185 37 02 2A 00 00 00");
   const ProcessImage& elbow = master->find(5)->image();
   EXPECT_EQ(elbow.input(elbow.inputSlot({0x6064, 0})).raw, 42U);

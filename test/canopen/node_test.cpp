@@ -315,28 +315,6 @@ TEST_F(NodeTest, a_queued_sdo_transfer_wakes_it_at_once) {
   EXPECT_GT(node->nextDeadline(), now);
 }
 
-TEST_F(NodeTest, is_excused_while_it_is_away_and_may_be) {
-  for (const bool optional : {false, true}) {
-    config.boot.optional = optional;
-    boot();
-    ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
-    EXPECT_FALSE(node->excused()) << "it is there";
-    pass(milliseconds(300));
-    ASSERT_EQ(node->health(), NodeHealth::lost);
-    EXPECT_EQ(node->excused(), optional);
-  }
-}
-
-TEST_F(NodeTest, tells_why_a_stopped_drive_cannot_be_asked) {
-  bootReady();
-  EXPECT_EQ(node->stoppedRefusal("6041:00 statusword"), "");
-  node->command(NmtCommand::stop, now);
-  hear("703 04");
-  EXPECT_THAT(node->stoppedRefusal("6041:00 statusword"),
-              HasSubstr("shoulder (node 3): 6041:00 statusword cannot be asked for: the drive's "
-                        "heartbeat says stopped"));
-}
-
 TEST_F(NodeTest, answers_by_sdo_are_signs_of_life_while_it_is_configured) {
   const char kAskSync[] = "603 40 05 10 00 00 00 00 00";
   peer.forget(kAskSync);
@@ -361,34 +339,6 @@ TEST_F(NodeTest, counts_the_syncs_without_a_tpdo) {
   EXPECT_FALSE(statusword().fresh);
 }
 
-TEST_F(NodeTest, one_that_is_refused_is_made_pre_operational_and_tells_why) {
-  bootReady();
-  const std::uint32_t before = node->changes();
-  node->refuse("cannot be used: two have one COB-ID", now);
-  EXPECT_EQ(peer.take(), Lines{"000 80 03"});
-  EXPECT_EQ(node->health(), NodeHealth::failed);
-  EXPECT_EQ(node->problem(), "shoulder (node 3): cannot be used: two have one COB-ID");
-  EXPECT_GT(node->changes(), before);
-  tpdo("183 37 02 01 00 00 00");
-  EXPECT_FALSE(statusword().valid);
-}
-
-TEST_F(NodeTest, believes_no_tpdo_before_the_first_boot) {
-  create();
-  tpdo("183 37 02 01 00 00 00");
-  EXPECT_FALSE(statusword().valid);
-}
-
-TEST_F(NodeTest, a_command_out_of_operation_before_the_first_boot_only_leaves) {
-  create();
-  node->command(NmtCommand::stop, now);
-  EXPECT_EQ(peer.take(), Lines{"000 02 03"});
-  EXPECT_EQ(node->health(), NodeHealth::absent);
-  EXPECT_EQ(node->problem(), "");
-  hear("703 04");
-  EXPECT_EQ(node->health(), NodeHealth::absent);
-}
-
 TEST_F(NodeTest, a_boot_that_failed_is_not_called_a_loss_when_its_heartbeat_ends) {
   peer.replace("603 40 00 18 01 00 00 00 00", "583 80 00 18 01 00 00 02 06");
   peer.forget("603 40 00 16 00 00 00 00 00");
@@ -399,15 +349,6 @@ TEST_F(NodeTest, a_boot_that_failed_is_not_called_a_loss_when_its_heartbeat_ends
   pass(seconds(1));
   EXPECT_EQ(node->health(), NodeHealth::failed);
   EXPECT_THAT(node->problem(), HasSubstr("1800:01"));
-}
-
-TEST_F(NodeTest, a_boot_is_news) {
-  bool deadlines_changed = false;
-  node.emplace(config, master, peer, nullptr, &deadlines_changed);
-  const std::uint32_t before = node->changes();
-  node->boot(now, false);
-  EXPECT_GT(node->changes(), before);
-  EXPECT_TRUE(deadlines_changed);
 }
 
 TEST(NodeHealthText, is_one_word_each) {
