@@ -131,7 +131,6 @@ void Node::Impl::runBoot(Time now) {
       superviseWhileBooting(now);
       break;
     case BootProcedure::Status::done:
-      superviseWhileBooting(now);
       succeed(now);
       break;
     case BootProcedure::Status::failed:

@@ -2,6 +2,7 @@
 #include "pdo_configurator.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "cia402_driver/canopen/abort_code.h"
 
@@ -48,8 +49,7 @@ PdoConfigurator::Status PdoConfigurator::advance() {
     }
   }
   while (ticket_ && ticket_->done()) {
-    const SdoTicket finished = std::move(ticket_);
-    ticket_.reset();
+    const SdoTicket finished = std::exchange(ticket_, {});
     answered(*finished);
     if (phase_ != Phase::done && phase_ != Phase::failed) ask();
   }
