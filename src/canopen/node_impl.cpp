@@ -328,8 +328,7 @@ void Node::Impl::look(Time at) {
 /// Any answer to the search, a refusal as well, tells that somebody is there.
 void Node::Impl::runProbe(Time now) {
   if (!probe || !probe->done()) return;
-  const SdoTicket answer = std::move(probe);
-  probe.reset();
+  const SdoTicket answer = std::exchange(probe, {});
   if (answer->ok() || answer->failure() == SdoTransfer::Failure::aborted_by_server) {
     startBoot(BootProcedure::From::unknown, "", now);
   } else {

@@ -53,6 +53,17 @@ TEST_F(BootPdosTest, an_entry_that_the_drive_does_not_map_is_not_expected_in_its
   EXPECT_FALSE(position().valid);
 }
 
+TEST_F(BootPdosTest, an_entry_that_was_there_for_the_room_only_is_no_cause_for_a_warning) {
+  config.pdos[1].entries[1].optional = config.pdos[1].entries[1].if_room = true;
+  peer.on(kAskTpdoCount, kOneEntry);
+  peer.replace(kMapPosition, "583 80 00 1A 02 42 00 04 06");
+  boot();
+  ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_THAT(node->notes(), IsEmpty());
+  EXPECT_THAT(node->remarks(), ElementsAre("the drive does not take 6064:00 position into a TPDO"));
+  EXPECT_TRUE(leftOut());
+}
+
 TEST_F(BootPdosTest, an_entry_that_was_left_out_is_there_again_once_the_drive_takes_it) {
   config.pdos[1].entries[1].optional = true;
   peer.on(kAskTpdoCount, kOneEntry);

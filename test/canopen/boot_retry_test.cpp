@@ -348,6 +348,15 @@ TEST(BootRetry, another_attempt_is_not_due_any_more_where_nobody_answers_and_nob
   EXPECT_EQ(retry.attemptText(), "");
 }
 
+TEST(BootRetry, what_was_refused_is_not_due_again) {
+  BootRetry retry{BootPolicy{}};
+  const Time now{seconds(100)};
+  retry.failed(BootFailure::timed_out, now);
+  retry.failed(BootFailure::refused, now);
+  EXPECT_EQ(retry.deadline(), kNever);
+  EXPECT_EQ(retry.outlook(), "");
+}
+
 TEST(BootRetry, a_search_that_somebody_asked_for_goes_on_as_slowly_as_one_from_a_loss) {
   BootRetry retry{BootPolicy{}};  // every 2 s at first, twice as long each time
   const Time now{seconds(100)};

@@ -199,5 +199,18 @@ TEST_F(BootStop, each_start_up_write_that_is_refused_has_its_own_three_seconds) 
   EXPECT_EQ(bootPatiently(), 4s);
 }
 
+TEST_F(BootStop, each_pdo_that_is_made_invalid_has_its_own_three_seconds) {
+  for (const char* pdo : {"01 18", "02 18"}) {
+    const std::string object = std::string(pdo) + " 01";
+    const std::string read = "603 40 " + object + " 00 00 00 00";
+    peer.forget(read);
+    for (int i = 0; i < 41; ++i) peer.on(read, {"583 43 " + object + " 33 03 00 00"});
+    peer.on(read, {"583 43 " + object + " 33 03 00 80"});
+    refuse(40, "603 23 " + object + " 33 03 00 80", object);
+  }
+  EXPECT_EQ(bootPatiently(), 4s);
+  EXPECT_THAT(node->notes(), IsEmpty());
+}
+
 }  // namespace
 }  // namespace cia402::canopen

@@ -48,5 +48,11 @@ TEST_F(BootSuperviseTest, a_heartbeat_time_is_the_nearest_that_the_object_can_ho
   }
 }
 
+TEST(ErrorControlText, is_one_word_each) {
+  EXPECT_STREQ(toString(ErrorControl::none), "none");
+  EXPECT_STREQ(toString(ErrorControl::heartbeat), "heartbeat");
+  EXPECT_STREQ(toString(ErrorControl::guarding), "guarding");
+}
+
 }  // namespace
 }  // namespace cia402::canopen

@@ -62,6 +62,15 @@ TEST_F(LssScan, StepsAreToldInWords) {
   finish();
   task.advance(master, wire.now);
   EXPECT_EQ(task.step(), "scanning bit 31 of the vendor id of device 1");
+  while (task.step().find("serial number of device 1") == std::string::npos) {
+    finish();
+    task.advance(master, wire.now);
+  }
+  while (task.step().find("selecting") == std::string::npos) {
+    finish();
+    ASSERT_EQ(task.advance(master, wire.now), LssTask::Status::running);
+  }
+  EXPECT_EQ(task.step(), "selecting the device with " + toString(kServo));
 }
 
 TEST_F(LssScan, DevicesThatAnswerTooLateAreNoInventedOnes) {
@@ -138,6 +147,9 @@ TEST_F(MishandledScan, ADeviceThatIsFoundAgainAndAgainCostsLittleMoreThanOneScan
   EXPECT_LE(scan(task), 5s);
   EXPECT_THAT(task.found(), UnorderedElementsAre(kServo));
   EXPECT_THAT(task.result(), HasSubstr("goes on answering after it was found"));
+  EXPECT_EQ(sentCount("7E5 51 00 00 00 00 80 00 00"), 7u)
+      << "is there anybody? At first, once it is found, and each of five times that it is found "
+         "again";
 }
 
 TEST_F(MishandledScan, ADeviceThatSaysYesToEverythingIsNobody) {

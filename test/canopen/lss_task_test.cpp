@@ -248,6 +248,16 @@ TEST_F(LssTaskTest, EachStepIsToldInWords) {
                                           "leaving the configuration state", "done"));
 }
 
+TEST_F(LssTaskTest, ASelectionWaitsForTheAnswerToWhatItAsked) {
+  wire.add(parts(kServo));
+  LssSelection selection(kServo);
+  EXPECT_EQ(selection.advance(master, wire.now), LssSelection::Status::running);
+  const std::size_t sent = wire.sent.size();
+  EXPECT_EQ(selection.advance(master, wire.now), LssSelection::Status::running);
+  EXPECT_EQ(selection.step(), "switching all devices to the waiting state");
+  EXPECT_EQ(wire.sent.size(), sent);
+}
+
 /// A device that falls silent once it has told its node-ID.
 class VanishingDevice : public LssTaskTest {
  protected:

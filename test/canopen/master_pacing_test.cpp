@@ -97,6 +97,47 @@ TEST_F(MasterPacing, segments_that_leave_with_an_answer_count_from_then_on) {
   EXPECT_LE(count("605 "), 5) << "about four frames wait";
 }
 
+TEST_F(MasterPacing, segments_that_leave_late_count_from_then_on) {
+  beginDownload();
+  now = master->nextDeadline() + milliseconds(5);  // the thread was held up
+  master->tick(now);
+  EXPECT_LE(count("605 "), 5);
+}
+
+TEST_F(MasterPacing, nothing_waits_when_the_next_sync_is_due) {
+  config.sync_period = milliseconds(1);
+  master.emplace(config, peer);
+  master->sendSync(now);
+  const Time next_sync = now + milliseconds(1);
+  std::ptrdiff_t sent = beginDownload();
+  while (master->nextDeadline() < next_sync) {
+    pass(master->nextDeadline() - now);
+    sent += count("605 ");
+  }
+  // SYNC, request and answer take more than 250 us, a segment of eight bytes at least 108.
+  EXPECT_LE(sent, 6);
+  EXPECT_GE(sent, 3);
+  EXPECT_EQ(master->nextDeadline(), next_sync);
+}
+
+TEST_F(MasterPacing, the_commands_of_the_start_hold_a_long_transfer_up) {
+  peer.forget("000 82 03");
+  peer.forget("000 82 05");
+  master->start(now);
+  EXPECT_EQ(beginDownload(), 0);
+}
+
+TEST_F(MasterPacing, rpdos_that_wait_hold_a_long_transfer_up) {
+  master->start(now, false);
+  settle();
+  pass(milliseconds(50));
+  ASSERT_EQ(master->find(5)->health(), NodeHealth::ready) << master->find(5)->problem();
+  peer.take();
+  for (int i = 0; i < 5; ++i) master->sendRpdos(now);
+  EXPECT_EQ(count("205 "), 5);
+  EXPECT_EQ(beginDownload(), 0);
+}
+
 TEST_F(MasterPacing, commands_to_all_nodes_that_wait_hold_a_long_transfer_up) {
   for (int i = 0; i < 10; ++i) master->commandAll(NmtCommand::start, now);
   EXPECT_EQ(beginDownload(), 0) << "more than four frames' worth of bits wait already";

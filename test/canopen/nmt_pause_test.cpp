@@ -103,5 +103,17 @@ TEST(NmtPauseOfASilentNode, CountsAsOverAfterThreeStarts) {
   EXPECT_EQ(peer.take(), (Lines{kStop, kStop, kStart, kStart, kStart}));
 }
 
+TEST(NmtPauseOfANodeThatTells, IsOverWhenItsPatienceIs) {
+  test::ScriptedPeer peer;
+  NmtPause pause(3, peer);
+  const Time now(std::chrono::seconds(100));
+  pause.begin(milliseconds(40), milliseconds(500), true, now);
+  Time at = now;
+  while (pause.tick(at)) at = pause.deadline();
+  EXPECT_EQ(at, now + milliseconds(20 + 40 + 500));
+  EXPECT_FALSE(pause.active());
+  EXPECT_TRUE(pause.tick(at)) << "told once";
+}
+
 }  // namespace
 }  // namespace cia402::canopen

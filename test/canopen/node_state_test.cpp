@@ -81,5 +81,25 @@ TEST_F(NodeStateTest, a_boot_is_news) {
   EXPECT_TRUE(deadlines_changed);
 }
 
+TEST_F(NodeStateTest, one_that_rebooted_is_in_no_other_state) {
+  bootReady();
+  peer.forget(test::kAskDeviceType);
+  hear("703 00");
+  EXPECT_EQ(node->nmtState(), NmtState::boot_up);
+}
+
+TEST_F(NodeStateTest, one_that_is_booted_is_asked_for_no_tpdo) {
+  config.pdos[1].transmission = 253;
+  peer.replace("603 40 00 18 02 00 00 00 00", "583 4F 00 18 02 FD 00 00 00");
+  bootReady();
+  node->onSync(now);
+  EXPECT_EQ(peer.take(), Lines{"183 R6"});
+  peer.forget(test::kAskDeviceType);
+  hear("703 00");
+  peer.take();
+  node->onSync(now);
+  EXPECT_TRUE(peer.take().empty());
+}
+
 }  // namespace
 }  // namespace cia402::canopen

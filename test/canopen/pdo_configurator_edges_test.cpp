@@ -111,6 +111,44 @@ TEST_F(PdoConfiguratorEdges, a_tpdo_that_is_asked_for_must_allow_remote_frames) 
   EXPECT_EQ(peer.take()[7], kAllow);
 }
 
+TEST_F(PdoConfiguratorEdges, a_pdo_without_entries_is_cleared_and_its_parameters_are_written) {
+  PdoConfig wanted = wantedTpdo();
+  wanted.entries.clear();
+  peer.on(kReadType, kType255).on(kReadCount, kCount2).on(kReadCount, kCount0);
+  peer.on(kReadCobId, kCobIdEnabled).on(kReadType, kType1);
+  peer.on(kReadInhibit, kInhibit0).on(kReadTimer, kTimer0);
+  allWritesTaken();
+  EXPECT_EQ(run(wanted), Status::done) << configurator->error();
+  const Lines sent = peer.take();
+  EXPECT_EQ(Lines(sent.begin() + 5, sent.begin() + 9),
+            (Lines{kDisable, kClearMap, kWriteType, kEnable}));
+}
+
+TEST_F(PdoConfiguratorEdges, a_fixed_number_of_places_that_are_all_free_is_filled) {
+  PdoConfigurator::Options options;
+  options.fixed_entries = 2;
+  parametersAsWanted();
+  peer.on(kReadCount, kCount2);
+  peer.on(kReadEntry1, "583 43 00 1A 01 00 00 00 00").on(kReadEntry1, kEntry1);
+  peer.on(kReadEntry2, "583 43 00 1A 02 00 00 00 00").on(kReadEntry2, kEntry2);
+  allWritesTaken();
+  EXPECT_EQ(run(wantedTpdo(), options), Status::done) << configurator->error();
+  const Lines sent = peer.take();
+  EXPECT_EQ(Lines(sent.begin() + 7, sent.begin() + 11),
+            (Lines{kDisable, kWriteEntry1, kWriteEntry2, kEnable}));
+}
+
+TEST_F(PdoConfiguratorEdges, a_cob_id_that_is_not_kept_is_told_with_both_numbers) {
+  parametersAsWanted();
+  peer.replace(kReadCobId, "583 43 00 18 01 85 01 00 00");  // 185h, whatever is written
+  peer.on("603 23 00 18 01 85 01 00 80", kCobIdDone);
+  peer.on(kReadCount, kCount2).on(kReadEntry1, kEntry1).on(kReadEntry2, kEntry2);
+  allWritesTaken();
+  EXPECT_EQ(run(wantedTpdo()), Status::failed);
+  EXPECT_THAT(configurator->error(),
+              HasSubstr("1800:01 is 0x00000185, wanted is 0x00000183; choose"));
+}
+
 TEST_F(PdoConfiguratorEdges, an_unwanted_pdo_that_stays_valid_is_told) {
   PdoConfig unwanted = wantedTpdo();
   unwanted.enabled = false;
@@ -219,6 +257,37 @@ TEST_F(PdoConfiguratorEdges, the_only_optional_entry_goes_though_it_is_the_first
   allWritesTaken();
   EXPECT_EQ(run(wanted), Status::done) << configurator->error();
   EXPECT_THAT(leftOut(), ElementsAre(ObjectId{0x6041, 0}));
+}
+
+TEST_F(PdoConfiguratorEdges, all_optional_entries_are_looked_for_before_one_goes) {
+  PdoConfig wanted = wantedTpdo();
+  wanted.entries = {entry(0x6041, 16, true), entry(0x6064, 32, true), entry(0x6061, 8, true)};
+  parametersAsWanted();
+  peer.on(kReadCount, kCount0).on(kReadCount, {count(2)});
+  peer.on(kReadEntry1, kEntry1).on(kReadEntry2, "583 43 00 1A 02 08 00 61 60");
+  peer.on("603 23 00 1A 03 08 00 61 60", "583 60 00 1A 03 00 00 00 00");
+  peer.on("603 23 00 1A 02 08 00 61 60", kEntry2Done);
+  peer.on(writeCount(3), "583 80 00 1A 00 41 00 04 06");
+  peer.on("603 40 41 60 00 00 00 00 00", "583 4B 41 60 00 50 02 00 00");
+  peer.on("603 40 64 60 00 00 00 00 00", "583 80 64 60 00 00 00 02 06");
+  peer.on("603 40 61 60 00 00 00 00 00", "583 4F 61 60 00 08 00 00 00");
+  allWritesTaken();
+  EXPECT_EQ(run(wanted), Status::done) << configurator->error();
+  EXPECT_THAT(leftOut(), ElementsAre(ObjectId{0x6064, 0}));
+}
+
+TEST_F(PdoConfiguratorEdges, a_pdo_whose_only_entry_is_found_missing_at_the_end_stays_invalid) {
+  PdoConfig wanted = wantedTpdo();
+  wanted.entries.pop_back();
+  wanted.entries[0].optional = true;
+  peer.on(kReadCobId, kCobIdEnabled).on(kReadCobId, kCobIdDisabled);
+  peer.on(kReadType, kType1).on(kReadInhibit, kInhibit0).on(kReadTimer, kTimer0);
+  peer.on(kReadCount, kCount0).on(writeCount(1), "583 80 00 1A 00 41 00 04 06");
+  peer.on("603 40 41 60 00 00 00 00 00", "583 80 41 60 00 00 00 02 06");
+  allWritesTaken();
+  EXPECT_EQ(run(wanted), Status::done) << configurator->error();
+  EXPECT_THAT(leftOut(), ElementsAre(ObjectId{0x6041, 0}));
+  EXPECT_EQ(peer.take().back(), kReadCobId);
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 
 #include "canopen/process_objects.h"
 #include "canopen/scripted_peer.h"
-#include "cia402_driver/canopen/pdo_text.h"
 
 namespace cia402::canopen {
 namespace {
@@ -53,6 +52,27 @@ TEST(ProcessImage, orders_pdos_by_number_and_shares_the_slot_of_an_object_mapped
   image.receive(1, frame("283 08 50 02"), kStamp);
   EXPECT_EQ(image.input(image.inputSlot(kStatusword)).raw, 0x0250U);
   EXPECT_EQ(image.input(image.inputSlot(kMode)).raw, 0x08U);
+  EXPECT_EQ(image.tpdoOf(image.inputSlot(kStatusword)), 0U) << "the first that brings it";
+  EXPECT_EQ(image.tpdoOf(image.inputSlot(kMode)), 1U);
+}
+
+TEST(ProcessImage, orders_rpdos_by_number) {
+  ProcessImage image({pdo(PdoDirection::rpdo, 2, 0x303, {{kTarget, 32, ""}}),
+                      pdo(PdoDirection::rpdo, 1, 0x203, {{kControlword, 16, ""}})});
+  ASSERT_EQ(image.rpdos().size(), 2U);
+  EXPECT_EQ(image.rpdos()[0].cob_id, 0x203);
+  EXPECT_EQ(image.rpdos()[1].cob_id, 0x303);
+}
+
+TEST(ProcessImage, takes_no_entry_that_does_not_fit_nor_one_behind_it) {
+  ProcessImage image({pdo(PdoDirection::tpdo, 1, 0x183,
+                          {{kStatusword, 16, ""}, {kPosition, 48, ""}, {kMode, 8, ""}}),
+                      pdo(PdoDirection::tpdo, 2, 0x283, {{kTarget, 0, ""}, {kMode, 8, ""}})});
+  EXPECT_EQ(image.tpdos()[0].size, 8);
+  EXPECT_NE(image.inputSlot(kPosition), kNoSlot) << "64 bits";
+  EXPECT_EQ(image.tpdos()[1].size, 0);
+  EXPECT_EQ(image.inputSlot(kTarget), kNoSlot);
+  EXPECT_EQ(image.inputSlot(kMode), kNoSlot);
 }
 
 TEST(ProcessImage, keeps_the_two_directions_apart) {
@@ -250,9 +270,13 @@ TEST(ProcessImage, an_rpdo_leaves_when_its_content_changes_and_at_its_refresh_ra
 
 TEST(ProcessImage, after_a_reboot_a_tpdo_has_as_long_to_come_as_at_first) {
   ProcessImage image({tpdoOfType(1)});
-  for (int i = 0; i < 3; ++i) image.age(kStamp);
-  image.invalidate();
-  EXPECT_EQ(syncsUntilStale(image), 4);
+  for (const int syncs : {3, 4}) {
+    for (int i = 0; i < syncs; ++i) image.age(kStamp);
+    image.invalidate();
+    EXPECT_FALSE(image.tpdos()[0].stale);
+    EXPECT_EQ(syncsUntilStale(image), 4);
+    image.invalidate();
+  }
 }
 
 TEST(ProcessImage, after_a_reboot_a_tpdo_with_an_event_timer_is_expected_from_then_on) {
@@ -296,38 +320,6 @@ TEST(ProcessImage, remembers_when_an_rpdo_was_sent) {
   can::Frame out;
   ASSERT_TRUE(image.packDue(0, out, kStamp));
   EXPECT_EQ(image.rpdos()[0].last, kStamp);
-}
-
-TEST(PdoText, names_what_is_missing_and_why) {
-  ProcessImage image(servo());
-  EXPECT_EQ(missingText(image), "");
-  for (int i = 0; i < 11; ++i) {
-    image.age(kStamp);
-    image.receive(0, frame("183 37 02"), kStamp);
-  }
-  EXPECT_EQ(missingText(image),
-            "TPDO 1 (COB-ID 0x183) comes too short (2 bytes instead of 6), "
-            "TPDO 2 (COB-ID 0x283) does not come");
-  image.receive(1, frame("283 08 50 02"), kStamp);
-  EXPECT_EQ(missingText(image), "TPDO 1 (COB-ID 0x183) comes too short (2 bytes instead of 6)");
-}
-
-TEST(PdoText, names_what_is_overdue_and_what_has_a_wrong_length) {
-  ProcessImage image(servo());
-  EXPECT_EQ(staleText(image), "");
-  EXPECT_EQ(wrongLengthText(image), "");
-  image.receive(0, frame("183 37 02"), kStamp);
-  image.receive(1, frame("283 08 50 02 00"), kStamp);
-  image.receive(1, frame("283 08 50 02 00"), kStamp);
-  EXPECT_EQ(
-      wrongLengthText(image),
-      "TPDO 1 (COB-ID 0x183) came with 2 bytes instead of 6: too short, not taken (1 so far), "
-      "TPDO 2 (COB-ID 0x283) came with 4 bytes instead of 3: too long, its beginning was taken "
-      "(2 so far)");
-  for (int i = 0; i < 11; ++i) image.age(kStamp);
-  EXPECT_EQ(staleText(image),
-            "TPDO 1 (COB-ID 0x183) did not come for 11 cycles, TPDO 2 (COB-ID 0x283) did not come "
-            "for 11 cycles");
 }
 
 // Statusword, mode, position; without the mode the position moves up.

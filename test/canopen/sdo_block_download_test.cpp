@@ -260,6 +260,22 @@ TEST_F(SdoBlockDownloadTest, ignores_answers_that_come_twice) {
   EXPECT_EQ(client.counters().stray_frames, 3U);
 }
 
+TEST_F(SdoBlockDownloadTest, begins_with_the_answer_to_its_own_request_only) {
+  const SdoTicket ticket = start();
+  peer.take();
+  receive("581 A4 51 1F 01 7F 00 00 00");  // another object
+  receive("581 A1 50 1F 01 7F 00 00 00");  // the end of a block transfer
+  EXPECT_TRUE(peer.take().empty());
+  EXPECT_EQ(client.counters().stray_frames, 2U);
+  receive("581 A4 50 1F 01 7F 00 00 00");
+  EXPECT_EQ(peer.take().size(), 3U);
+  receive("581 A2 03 7F 00 00 00 00 00");
+  receive("581 A2 03 7F 00 00 00 00 00");
+  EXPECT_FALSE(ticket->done()) << "the acknowledge came twice, the end is still to come";
+  receive(kEnded);
+  EXPECT_TRUE(ticket->ok()) << ticket->message();
+}
+
 TEST_F(SdoBlockDownloadTest, one_follows_another_with_a_crc_of_its_own) {
   for (int i = 0; i < 2; ++i) {
     const SdoTicket ticket = start();

@@ -79,5 +79,63 @@ TEST(SdoBlockPacing, goes_on_a_little_later_where_the_queue_of_the_interface_is_
                                       "601 83 07 07 07 07 07 07 00"}));
 }
 
+/// A sub-block of 127 segments is under way on a bus of 10 kbit/s, where it takes about 1.7 s.
+class SdoBlockOnASlowBus : public ::testing::Test {
+ protected:
+  SdoBlockOnASlowBus() {
+    pacer.setTime(now);
+    ticket = client.download({0x1F50, 1}, Bytes(910, 7));  // 130 segments
+    client.tick(now);
+    now += milliseconds(100);
+    pacer.setTime(now);
+    peer.take();
+  }
+  void receive(const char* line) {
+    pacer.setTime(now);
+    client.receive(test::frame(line), now);
+  }
+  /// Until so many segments were sent since the last call.
+  void feed(std::size_t segments) {
+    while (peer.sent.size() < segments && !ticket->done()) {
+      now = client.nextDeadline();
+      pacer.setTime(now);
+      client.tick(now);
+    }
+    EXPECT_FALSE(ticket->done()) << ticket->message();
+    peer.take();
+  }
+
+  test::ScriptedPeer peer;
+  can::Pacer pacer{peer, 10e3};
+  SdoClient client{1, pacer, block(), {}, &pacer};
+  SdoTicket ticket;
+  Time now{std::chrono::seconds(1)};
+};
+
+TEST_F(SdoBlockOnASlowBus, may_take_longer_than_the_server_has_for_an_answer) {
+  const Time start = now;
+  receive(kInitiated);
+  feed(127);
+  EXPECT_GT(now - start, std::chrono::seconds(1));
+  receive("581 A2 7F 7F 00 00 00 00 00");
+  feed(3);
+  receive("581 A2 03 7F 00 00 00 00 00");
+  receive("581 A1 00 00 00 00 00 00 00");
+  EXPECT_TRUE(ticket->ok()) << ticket->message();
+}
+
+TEST_F(SdoBlockOnASlowBus, takes_no_notice_of_an_acknowledge_that_comes_twice_while_it_sends) {
+  receive("581 A4 50 1F 01 0A 00 00 00");  // ten segments
+  feed(10);
+  receive("581 A2 0A 7F 00 00 00 00 00");
+  receive("581 A2 0A 7F 00 00 00 00 00");
+  EXPECT_FALSE(ticket->done()) << ticket->message();
+  EXPECT_EQ(client.counters().stray_frames, 1U);
+  feed(120);
+  receive("581 A2 78 7F 00 00 00 00 00");
+  receive("581 A1 00 00 00 00 00 00 00");
+  EXPECT_TRUE(ticket->ok()) << ticket->message();
+}
+
 }  // namespace
 }  // namespace cia402::canopen

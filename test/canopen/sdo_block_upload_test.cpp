@@ -293,5 +293,31 @@ TEST_F(SdoBlockUploadTest, waits_the_whole_time_out_for_what_follows_an_acknowle
   EXPECT_EQ(client.nextDeadline(), now + milliseconds(500));
 }
 
+TEST_F(SdoBlockUploadTest, each_segment_and_each_repetition_gets_the_whole_time_out) {
+  start(kSized);
+  wait(500);
+  EXPECT_EQ(peer.take().back(), kStart);
+  EXPECT_EQ(client.nextDeadline(), now + milliseconds(500));
+  now += milliseconds(400);
+  receive(kSegment1);
+  EXPECT_EQ(client.nextDeadline(), now + milliseconds(500));
+}
+
+TEST_F(SdoBlockUploadTest, after_a_gap_and_a_silence_it_goes_on_without_a_gap) {
+  const SdoTicket ticket = start("581 C2 08 10 00 18 00 00 00");  // 24 bytes
+  receive("581 01 01 02 03 04 05 06 07");
+  receive("581 03 0F 10 11 12 13 14 15");  // the second was lost, and so is what follows
+  peer.take();
+  wait(500);
+  EXPECT_EQ(peer.take(), Lines{"601 A2 01 7F 00 00 00 00 00"});
+  receive("581 01 08 09 0A 0B 0C 0D 0E");
+  receive("581 02 0F 10 11 12 13 14 15");
+  receive("581 83 16 17 18 00 00 00 00");
+  EXPECT_EQ(peer.take(), Lines{"601 A2 03 7F 00 00 00 00 00"});
+  receive("581 D1 00 00 00 00 00 00 00");  // four bytes unused
+  ASSERT_TRUE(ticket->ok()) << ticket->message();
+  for (std::size_t i = 0; i < 24; ++i) EXPECT_EQ(ticket->data()[i], i + 1);
+}
+
 }  // namespace
 }  // namespace cia402::canopen

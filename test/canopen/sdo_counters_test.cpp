@@ -74,5 +74,14 @@ TEST_F(SdoCountersTest, of_block_transfers) {
   EXPECT_EQ(client.counters().last_latency, milliseconds(30));
 }
 
+TEST_F(SdoCountersTest, busy_is_the_time_of_transfers_not_that_between_them) {
+  for (int i = 1; i <= 2; ++i) {
+    client.upload({0x6041, 0});
+    expectCounted({"581 4B 41 60 00 37 02 00 00"});
+    EXPECT_EQ(client.counters().busy, i * milliseconds(10));
+    now += milliseconds(1000);
+  }
+}
+
 }  // namespace
 }  // namespace cia402::canopen
