@@ -13,8 +13,8 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const char kStop[] = "000 02 03";
-const char kStart[] = "000 01 03";
+const char kStopCommand[] = "000 02 03";
+const char kStartCommand[] = "000 01 03";
 
 class NmtPauseTest : public test::NodeFixture {
  protected:
@@ -23,20 +23,20 @@ class NmtPauseTest : public test::NodeFixture {
     hear("703 05");
     ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
     peer.take();
-    peer.forget(kStart);  // else it answers at once
+    peer.forget(kStartCommand);  // else it answers at once
     node->stopAndStart(milliseconds(100), now);
   }
 };
 
 TEST_F(NmtPauseTest, StopsTwiceAndStartsUntilTheHeartbeatSaysOperational) {
   pauseReadyNode();
-  EXPECT_EQ(peer.take(), Lines{kStop});
+  EXPECT_EQ(peer.take(), Lines{kStopCommand});
   pass(milliseconds(119));
-  EXPECT_EQ(peer.take(), Lines{kStop}) << "the first may be lost";
+  EXPECT_EQ(peer.take(), Lines{kStopCommand}) << "the first may be lost";
   pass(milliseconds(1));
-  EXPECT_EQ(peer.take(), Lines{kStart});
+  EXPECT_EQ(peer.take(), Lines{kStartCommand});
   pass(milliseconds(20));
-  EXPECT_EQ(peer.take(), Lines{kStart});
+  EXPECT_EQ(peer.take(), Lines{kStartCommand});
   EXPECT_TRUE(node->paused());
   hear("703 05");
   EXPECT_FALSE(node->paused());
@@ -81,7 +81,7 @@ TEST_F(NmtPauseTest, ABootUpMessageEndsIt) {
   EXPECT_FALSE(node->paused());
   peer.take();
   pass(milliseconds(100));
-  EXPECT_THAT(peer.take(), Not(Contains(kStop)));
+  EXPECT_THAT(peer.take(), Not(Contains(kStopCommand)));
 }
 
 TEST_F(NmtPauseTest, ANodeThatIsNotReadyIsLeftAlone) {
@@ -100,7 +100,8 @@ TEST(NmtPauseOfASilentNode, CountsAsOverAfterThreeStarts) {
     now = pause.deadline();
     EXPECT_TRUE(pause.tick(now));
   }
-  EXPECT_EQ(peer.take(), (Lines{kStop, kStop, kStart, kStart, kStart}));
+  EXPECT_EQ(peer.take(),
+            (Lines{kStopCommand, kStopCommand, kStartCommand, kStartCommand, kStartCommand}));
 }
 
 TEST(NmtPauseOfANodeThatTells, IsOverWhenItsPatienceIs) {

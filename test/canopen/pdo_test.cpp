@@ -165,12 +165,12 @@ PdoConfig tpdoOfType(std::uint8_t type) {
   return config;
 }
 
-Time at(int ms) { return Time(std::chrono::seconds(5) + std::chrono::milliseconds(ms)); }
+Time afterMs(int ms) { return Time(std::chrono::seconds(5) + std::chrono::milliseconds(ms)); }
 
 /// SYNCs without a TPDO until it is stale; 0: it never is.
 int syncsUntilStale(ProcessImage& image) {
   for (int sync = 1; sync <= 1000; ++sync) {
-    image.age(at(4 * sync));
+    image.age(afterMs(4 * sync));
     if (image.tpdos()[0].stale) return sync;
   }
   return 0;
@@ -223,10 +223,10 @@ TEST(ProcessImage, an_event_timer_tells_how_long_a_tpdo_may_be_away) {
   config.inhibit = 50;      // 5 ms
   ProcessImage image({config});
   EXPECT_TRUE(image.regular(image.inputSlot(kStatusword)));
-  image.receive(0, frame("183 37 02"), at(0));
-  image.age(at(75));
+  image.receive(0, frame("183 37 02"), afterMs(0));
+  image.age(afterMs(75));
   EXPECT_FALSE(image.tpdos()[0].stale);
-  image.age(at(76));  // more than three times 25 ms
+  image.age(afterMs(76));  // more than three times 25 ms
   EXPECT_TRUE(image.tpdos()[0].stale);
 }
 
@@ -283,13 +283,13 @@ TEST(ProcessImage, after_a_reboot_a_tpdo_with_an_event_timer_is_expected_from_th
   PdoConfig config = tpdoOfType(255);
   config.event_timer = 20;  // ms, stale after three of them
   ProcessImage image({config});
-  image.receive(0, frame("183 37 02"), at(0));
+  image.receive(0, frame("183 37 02"), afterMs(0));
   image.invalidate();
-  image.age(at(1000));
+  image.age(afterMs(1000));
   EXPECT_FALSE(image.tpdos()[0].stale);
-  image.age(at(1060));
+  image.age(afterMs(1060));
   EXPECT_FALSE(image.tpdos()[0].stale);
-  image.age(at(1061));
+  image.age(afterMs(1061));
   EXPECT_TRUE(image.tpdos()[0].stale);
 }
 
