@@ -156,7 +156,6 @@ void BootProcedure::stoppedHeard(Time now) {
   found.stopped_last = now;
   if (std::exchange(found.stopped, true)) return;
   boot_.sdo.cancelAll("it says that it is stopped (NMT)");
-  boot_.ticket.reset();
   boot_.notes.clear();
   boot_.remarks.clear();
   begin(kWake, now);

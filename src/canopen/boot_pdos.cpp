@@ -36,7 +36,7 @@ class Pdos : public BootStep {
  public:
   explicit Pdos(const NodeConfig& config) : pdos_(withUnlistedDisabled(config.pdos)) {}
 
-  bool begin(BootContext& boot, Time now) override {
+  bool begin(BootContext& boot, Time) override {
     if (boot.found.unchanged || item_ >= pdos_.size()) return false;
     const PdoConfig& wanted = pdos_[item_];
     PdoConfigurator::Options options;
@@ -45,9 +45,6 @@ class Pdos : public BootStep {
     options.may_be_missing = !wanted.enabled;
     options.if_there = boot.ifThere();
     pdo_.emplace(boot.sdo, wanted, options);
-    pdo_->advance();
-    boot.step = pdo_->step();
-    boot.submit(now);
     return true;
   }
 

@@ -74,8 +74,6 @@ class UnchangedCheck : public BootStep {
       case Phase::void_time:
         boot.write(kTime, toBytes(0, 4), kTimeName, now);
         return true;
-      case Phase::done:
-        break;
     }
     return false;
   }
@@ -94,15 +92,13 @@ class UnchangedCheck : public BootStep {
         phase_ = Phase::void_time;
         return Progress::again;
       case Phase::void_time:
-      case Phase::done:
         break;
     }
-    phase_ = Phase::done;
     return Progress::next;
   }
 
  private:
-  enum class Phase { date, time, sample, void_date, void_time, done };
+  enum class Phase { date, time, sample, void_date, void_time };
 
   Progress takeDate(BootContext& boot) {
     if (!boot.ok()) {

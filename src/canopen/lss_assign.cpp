@@ -49,7 +49,6 @@ LssTask::Status LssAssignTask::select(LssMaster& master, Time now) {
   changed_ = true;
   phase_ = Phase::configuring;
   LssRequest request;
-  request.name = "configure node-ID";
   request.frames = {lss::configureNodeId(options_.node_id)};
   request.answer = lss::Command::configure_node_id;
   return ask(master, now, "setting its node-ID to " + std::to_string(options_.node_id),
@@ -67,7 +66,6 @@ LssTask::Status LssAssignTask::configure(LssMaster& master, Time now) {
   if (!failure_.empty() || phase_ == Phase::storing || !options_.store) return leave(master, now);
   phase_ = Phase::storing;
   LssRequest request;
-  request.name = "store configuration";
   request.frames = {lss::store()};
   request.answer = lss::Command::store;
   return ask(master, now, "storing its node-ID", std::move(request));

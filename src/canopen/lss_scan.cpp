@@ -24,7 +24,6 @@ std::string count(std::size_t devices) {
 LssTask::Status LssScanTask::question(LssMaster& master, Time now, std::string step,
                                       const can::Frame& frame) {
   LssRequest request;
-  request.name = "fastscan";
   request.frames = {frame};
   request.answer = lss::Command::identified;
   request.question = true;
@@ -74,10 +73,8 @@ LssTask::Status LssScanTask::beginDevice(LssMaster& master, Time now) {
 LssTask::Status LssScanTask::follow(LssMaster& master, Time now) {
   if (part_ == lss::kParts) return foundAgain(master, now);
   if (part_ == follow_) {
-    bit_ = std::exchange(resume_bit_, std::uint8_t{31});
-    // Bits below are those of the last device.
-    const std::uint32_t known = bit_ == 31 ? 0U : ~0U << (bit_ + 1U);
-    scanned_.setPart(part_, scanned_.part(part_) & known);
+    bit_ = resume_bit_;
+    if (bit_ == 31) scanned_.setPart(part_, 0);  // what is there is of the last device
     asked_one_ = false;
     phase_ = Phase::bits;
     return askBit(master, now);
@@ -158,7 +155,6 @@ LssTask::Status LssScanTask::candidateFound(LssMaster& master, Time now) {
   candidates_.push_back(scanned_);
   lost_here_ = 0;
   follow_ = lss::kParts;
-  resume_bit_ = 31;
   phase_ = Phase::starting;
   return start(master, now);
 }
@@ -202,8 +198,6 @@ LssTask::Status LssScanTask::lostTrack(LssMaster& master, Time now) {
 
 LssTask::Status LssScanTask::beginConfirming(LssMaster& master, Time now) {
   phase_ = Phase::confirming;
-  confirming_ = 0;
-  selection_.reset();
   return confirm(master, now);
 }
 

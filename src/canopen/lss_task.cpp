@@ -27,13 +27,8 @@ LssTask::Status LssTask::fail(std::string error) {
   return Status::failed;
 }
 
-LssTask::Status LssTask::failRequest(const LssMaster& master, const std::string& what_to_do) {
-  return fail("while " + step_ + ": " + master.problem() + what_to_do);
-}
-
 LssRequest lssWaitingRequest() {
   LssRequest request;
-  request.name = "switch state global";
   request.confirmed = false;
   // Nobody confirms it, and a device that missed it would listen to what is meant for another.
   const can::Frame waiting = lss::switchGlobal(lss::State::waiting);
@@ -43,7 +38,6 @@ LssRequest lssWaitingRequest() {
 
 LssRequest lssSelectRequest(const lss::Identity& identity) {
   LssRequest request;
-  request.name = "switch state selective";
   // A device that is in the configuration state already does not answer to its identity.
   request.frames = {lss::switchGlobal(lss::State::waiting)};
   for (const can::Frame& frame : lss::switchSelective(identity)) request.frames.push_back(frame);
@@ -53,7 +47,6 @@ LssRequest lssSelectRequest(const lss::Identity& identity) {
 
 LssRequest lssInquireRequest(std::size_t part) {
   LssRequest request;
-  request.name = std::string("inquire ") + lss::partName(part);
   request.frames = {lss::inquire(part)};
   request.answer = static_cast<lss::Command>(request.frames.front().data[0]);
   return request;
@@ -61,7 +54,6 @@ LssRequest lssInquireRequest(std::size_t part) {
 
 LssRequest lssInquireNodeIdRequest() {
   LssRequest request;
-  request.name = "inquire node-ID";
   request.frames = {lss::inquireNodeId()};
   request.answer = lss::Command::inquire_node_id;
   return request;
@@ -139,7 +131,6 @@ LssTask::Status LssBitTimingTask::proceed(LssMaster& master, Time now) {
       }
       phase_ = Phase::configuring;
       LssRequest request;
-      request.name = "configure bit timing";
       request.frames = {lss::configureBitTiming(*lss::bitTimingIndex(kbit_per_s_))};
       request.answer = lss::Command::configure_bit_timing;
       return ask(master, now, "setting the bit timing", std::move(request));
@@ -152,7 +143,6 @@ LssTask::Status LssBitTimingTask::proceed(LssMaster& master, Time now) {
       if (!failure_.empty() || phase_ == Phase::storing || !store_) return leave(master, now);
       phase_ = Phase::storing;
       LssRequest request;
-      request.name = "store configuration";
       request.frames = {lss::store()};
       request.answer = lss::Command::store;
       return ask(master, now, "storing the bit timing", std::move(request));
@@ -175,14 +165,12 @@ LssTask::Status LssActivateTask::proceed(LssMaster& master, Time now) {
   request.confirmed = false;
   switch (phase_++) {
     case 0: {
-      request.name = "switch state global";
       const can::Frame all = lss::switchGlobal(lss::State::configuration);
       request.frames = {all, all, all};
       return ask(master, now, "switching all devices to the configuration state",
                  std::move(request));
     }
     case 1:
-      request.name = "activate bit timing";
       request.frames = {lss::activateBitTiming(delay_ms_)};
       return ask(master, now, "activating the bit timing", std::move(request));
     default:

@@ -131,7 +131,6 @@ void Node::Impl::runBoot(Time now) {
       superviseWhileBooting(now);
       break;
     case BootProcedure::Status::done:
-      superviseWhileBooting(now);
       succeed(now);
       break;
     case BootProcedure::Status::failed:
@@ -329,8 +328,7 @@ void Node::Impl::look(Time at) {
 /// Any answer to the search, a refusal as well, tells that somebody is there.
 void Node::Impl::runProbe(Time now) {
   if (!probe || !probe->done()) return;
-  const SdoTicket answer = std::move(probe);
-  probe.reset();
+  const SdoTicket answer = std::exchange(probe, {});
   if (answer->ok() || answer->failure() == SdoTransfer::Failure::aborted_by_server) {
     startBoot(BootProcedure::From::unknown, "", now);
   } else {

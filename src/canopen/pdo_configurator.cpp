@@ -2,6 +2,7 @@
 #include "pdo_configurator.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "cia402_driver/canopen/abort_code.h"
 
@@ -28,7 +29,6 @@ PdoConfigurator::PdoConfigurator(SdoClient& sdo, const PdoConfig& wanted, Option
   const auto offset = static_cast<std::uint16_t>(wanted.number - 1);
   communication_ = static_cast<std::uint16_t>((tpdo ? 0x1800 : 0x1400) + offset);
   mapping_ = static_cast<std::uint16_t>((tpdo ? 0x1A00 : 0x1600) + offset);
-  if (!wanted.enabled) return;
   parameters_.push_back({2, 1, "transmission type", wanted.transmission, false, {}});
   if (tpdo) parameters_.push_back({3, 2, "inhibit time", wanted.inhibit, true, {}});
   parameters_.push_back({5, 2, "event timer", wanted.event_timer, true, {}});
@@ -48,8 +48,7 @@ PdoConfigurator::Status PdoConfigurator::advance() {
     }
   }
   while (ticket_ && ticket_->done()) {
-    const SdoTicket finished = std::move(ticket_);
-    ticket_.reset();
+    const SdoTicket finished = std::exchange(ticket_, {});
     answered(*finished);
     if (phase_ != Phase::done && phase_ != Phase::failed) ask();
   }

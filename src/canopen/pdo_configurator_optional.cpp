@@ -30,12 +30,8 @@ bool PdoConfigurator::leaveOutEntry(const SdoTransfer& transfer) {
   const bool goes = entry.if_room ? transfer.failure() == SdoTransfer::Failure::aborted_by_server
                                   : entry.optional && isMissingOrUnmappable(transfer);
   if (!goes) return false;
-  leaveOut(item_);
-  if (item_ < wanted_.entries.size()) {
-    enter(Phase::write_entry, item_);
-  } else {
-    afterEntries();
-  }
+  leaveOut(item_);  // the next one has its place then
+  if (item_ == wanted_.entries.size()) afterEntries();
   return true;
 }
 

@@ -90,7 +90,6 @@ void SdoClient::feedBlock(Time now) {
     block_.last = (frame.data[0] & kLastSegment) != 0;
     await(Phase::block_download_segments, now);
   }
-  feed_at_ = kNever;
   await(Phase::block_download_acknowledge, now);
 }
 
@@ -119,7 +118,6 @@ SdoClient::Outcome SdoClient::onBlockAcknowledged(const can::Frame& frame, Time 
     return Outcome::taken;
   }
   if (!sending) answered(now);
-  feed_at_ = kNever;
   block_.vain = taken == 0 ? block_.vain + 1 : 0;
   if (taken < block_.sequence) ++counters_.retries;
   const bool finished = block_.last && taken == block_.sequence;

@@ -166,7 +166,6 @@ void SdoClient::attempt(Time now) {
 
 void SdoClient::initiate(Time now) {
   toggle_ = false;
-  repetition_seen_ = false;
   offset_ = 0;
   announced_.reset();
   received_.clear();

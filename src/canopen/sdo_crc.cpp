@@ -25,7 +25,7 @@ std::uint16_t sdoCrc(std::uint16_t crc, const std::uint8_t* bytes, std::size_t s
   for (std::size_t i = 0; i < size; ++i) {
     const unsigned before = crc;
     const unsigned index = (before >> 8U ^ bytes[i]) & 0xFFU;
-    crc = static_cast<std::uint16_t>((before << 8U & 0xFF00U) ^ kTable[index]);
+    crc = static_cast<std::uint16_t>(before << 8U ^ kTable[index]);
   }
   return crc;
 }

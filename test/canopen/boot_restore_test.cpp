@@ -139,5 +139,12 @@ TEST_F(BootRestore, what_1020h_said_before_does_not_count_any_more) {
   EXPECT_FALSE(sentLine("603 40 00 1A 01 00 00 00 00")) << "unchanged since";
 }
 
+TEST_F(BootRestore, says_that_it_waits_for_the_boot_up_after_the_reset) {
+  peer.forget(kResetNode);
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::booting);
+  EXPECT_EQ(node->bootStep(), "waiting for boot-up after its parameters were restored");
+}
+
 }  // namespace
 }  // namespace cia402::canopen

@@ -316,6 +316,55 @@ TEST_F(BootRetryTest, another_drive_than_before_is_told_where_no_serial_refuses_
                                     "12346, it was 12345; check its position")));
   hear("703 00");
   EXPECT_THAT(node->notes(), IsEmpty()) << "told once";
+  peer.replace("603 40 18 10 02 00 00 00 00", "583 43 18 10 02 18 01 0D 00");
+  hear("703 00");
+  EXPECT_THAT(node->notes(),
+              ElementsAre(HasSubstr(", and its vendor or product is another one, too; check")));
+}
+
+TEST_F(BootRetryTest, a_node_that_was_stopped_while_lost_and_booted_since_boots_at_its_heartbeat) {
+  boot();
+  pass(seconds(1));
+  ASSERT_EQ(node->health(), NodeHealth::lost);
+  node->command(NmtCommand::stop, now);
+  node->boot(now, false);
+  settle();
+  ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  pass(seconds(1));
+  ASSERT_EQ(node->health(), NodeHealth::lost);
+  hear("703 7F");
+  EXPECT_EQ(node->health(), NodeHealth::ready) << "that command is over";
+}
+
+TEST(BootRetry, another_attempt_is_not_due_any_more_where_nobody_answers_and_nobody_is_looked_for) {
+  BootPolicy policy;
+  policy.search_period = Duration::zero();
+  BootRetry retry{policy};
+  const Time now{seconds(100)};
+  retry.failed(BootFailure::timed_out, now);
+  ASSERT_EQ(retry.deadline(), now + seconds(1));
+  retry.search(now);
+  EXPECT_EQ(retry.deadline(), kNever);
+  EXPECT_EQ(retry.attemptText(), "");
+}
+
+TEST(BootRetry, what_was_refused_is_not_due_again) {
+  BootRetry retry{BootPolicy{}};
+  const Time now{seconds(100)};
+  retry.failed(BootFailure::timed_out, now);
+  retry.failed(BootFailure::refused, now);
+  EXPECT_EQ(retry.deadline(), kNever);
+  EXPECT_EQ(retry.outlook(), "");
+}
+
+TEST(BootRetry, a_search_that_somebody_asked_for_goes_on_as_slowly_as_one_from_a_loss) {
+  BootRetry retry{BootPolicy{}};  // every 2 s at first, twice as long each time
+  const Time now{seconds(100)};
+  retry.look(now);
+  EXPECT_TRUE(retry.searchDue(now));
+  retry.begun();
+  retry.notFound(now);
+  EXPECT_EQ(retry.deadline(), now + seconds(4));
 }
 
 }  // namespace

@@ -68,6 +68,19 @@ TEST_F(StartupWriteTest, tries_again_what_the_present_state_forbids) {
   EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
 }
 
+TEST_F(StartupWriteTest, rests_before_it_tries_again_whatever_else_is_heard) {
+  peer.on(kRead, "583 43 65 60 00 10 00 00 00").on(kWrite, kNotInThisState);
+  boot();
+  for (int i = 0; i < 4; ++i) {
+    pass(10ms);
+    hear("703 7F");
+  }
+  const auto tries = [&] { return std::count(peer.sent.begin(), peer.sent.end(), kWrite); };
+  EXPECT_EQ(tries(), 1);
+  pass(10ms);
+  EXPECT_EQ(tries(), 2);
+}
+
 TEST_F(StartupWriteTest, gives_up_after_three_seconds_in_a_state_that_forbids_it) {
   peer.on(kRead, "583 43 65 60 00 10 00 00 00").on(kWrite, kNotInThisState);
   boot();
@@ -93,6 +106,18 @@ TEST_F(StartupWriteTest, a_refused_write_fails_the_boot_unless_optional) {
   EXPECT_THAT(node->notes(),
               ElementsAre(HasSubstr("optional start-up write left out: writing 0x00001388 to "
                                     "6065:00 following_error_window")));
+}
+
+TEST_F(StartupWriteTest, tells_values_of_up_to_eight_bytes) {
+  config.writes[0].only_if_different = false;
+  config.writes[0].data = {1, 2, 3, 4, 5, 6, 7, 8};
+  peer.on("603 21 65 60 00 08 00 00 00", "583 80 65 60 00 31 00 09 06");
+  boot();
+  EXPECT_THAT(node->problem(), HasSubstr("while writing 0x0807060504030201 to 6065:00"));
+  config.writes[0].data.push_back(9);
+  peer.on("603 21 65 60 00 09 00 00 00", "583 80 65 60 00 31 00 09 06");
+  boot();
+  EXPECT_THAT(node->problem(), HasSubstr("while writing 9 bytes to 6065:00"));
 }
 
 TEST_F(StartupWriteTest, leaves_out_what_only_a_default_asked_for_and_the_drive_does_not_have) {
@@ -133,6 +158,40 @@ TEST_F(StartupWriteTest, keeps_the_order_of_the_configuration) {
   const Lines sent = peer.take();
   EXPECT_EQ(Lines(sent.end() - 3, sent.end()),
             (Lines{kWrite, "603 2B 5A 60 00 02 00 00 00", "000 01 03"}));
+}
+
+TEST_F(StartupWriteTest, a_read_that_is_not_answered_fails_the_boot_before_anything_is_written) {
+  boot();
+  pass(1000ms);
+  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_THAT(node->problem(),
+              HasSubstr("boot failed while reading 6065:00 following_error_window: no answer"));
+  EXPECT_FALSE(sentLine(kWrite));
+}
+
+// A drive that is silent where it should abort: asked three times (canopen/boot_context.h).
+TEST_F(StartupWriteTest, an_optional_object_that_is_silent_while_others_answer_is_missing) {
+  config.writes[0].optional = true;
+  config.writes[0].only_if_different = false;
+  boot();
+  for (int i = 0; i < 50 && node->health() == NodeHealth::booting; ++i) {
+    hear("703 7F");
+    pass(100ms);
+  }
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(std::count(peer.sent.begin(), peer.sent.end(), kWrite), 3);
+}
+
+TEST_F(StartupWriteTest, what_was_asked_for_is_written_as_patiently_as_configured) {
+  config.writes[0].only_if_different = false;
+  config.sdo.timeout = 250ms;
+  config.sdo.retries = 0;
+  boot();
+  pass(249ms);
+  EXPECT_EQ(node->health(), NodeHealth::booting);
+  pass(1ms);
+  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_THAT(node->problem(), HasSubstr("no answer within 250 ms"));
 }
 
 }  // namespace

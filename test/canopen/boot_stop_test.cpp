@@ -40,11 +40,15 @@ class BootStop : public test::NodeFixture {
     }
     return lines;
   }
-  /// The drive refuses `write` by 0x08000022 for as long as it is enabled: three times.
-  void refuseThrice(const std::string& write, const std::string& object) {
+  /// The drive refuses `write` by 0x08000022 for as long as it is enabled.
+  void refuse(int times, const std::string& write, const std::string& object) {
     const std::string refusal = "583 80 " + object + " 22 00 00 08";
-    for (int i = 0; i < 3; ++i) peer.on(write, {refusal});
+    peer.forget(write);
+    for (int i = 0; i < times; ++i) peer.on(write, {refusal});
     peer.on(write, {"583 60 " + object + " 00 00 00 00"});
+  }
+  void refuseThrice(const std::string& write, const std::string& object) {
+    refuse(3, write, object);
   }
   /// @return how long the boot took.
   Duration bootPatiently() {
@@ -160,6 +164,52 @@ TEST_F(BootStop, a_heartbeat_time_that_is_refused_until_the_drive_has_stopped_is
   refuseThrice("603 2B 17 10 00 64 00 00 00", "17 10 00");
   EXPECT_EQ(bootPatiently(), 150ms);
   EXPECT_TRUE(node->supervision().watched);
+}
+
+// 40 refusals, 50 ms apart, are 2 s of the three that each object has.
+TEST_F(BootStop, each_object_that_is_refused_has_its_own_three_seconds) {
+  peer.replace("603 40 05 10 00 00 00 00 00", "583 43 05 10 00 80 00 00 40");
+  peer.replace("603 40 14 10 00 00 00 00 00", "583 43 14 10 00 83 00 00 80");
+  refuse(40, "603 23 05 10 00 80 00 00 00", "05 10 00");
+  refuse(40, "603 23 14 10 00 83 00 00 00", "14 10 00");
+  EXPECT_EQ(bootPatiently(), 4s);
+  EXPECT_THAT(node->notes(), IsEmpty()) << "its emergencies are heard";
+}
+
+TEST_F(BootStop, each_sync_object_that_is_refused_has_its_own_three_seconds) {
+  config.sync_counter = 10;
+  config.sync_period_us = 4000;
+  peer.on("603 40 19 10 00 00 00 00 00", "583 4F 19 10 00 00 00 00 00");
+  peer.on("603 40 06 10 00 00 00 00 00", "583 43 06 10 00 00 00 00 00");
+  refuse(40, "603 2F 19 10 00 0A 00 00 00", "19 10 00");
+  refuse(40, "603 23 06 10 00 A0 0F 00 00", "06 10 00");
+  EXPECT_EQ(bootPatiently(), 4s);
+}
+
+TEST_F(BootStop, each_start_up_write_that_is_refused_has_its_own_three_seconds) {
+  for (const std::uint16_t index : {std::uint16_t{0x6065}, std::uint16_t{0x6066}}) {
+    StartupWrite write;
+    write.object = {index, 0};
+    write.data = {0x88, 0x13};
+    write.only_if_different = false;
+    config.writes.push_back(write);
+  }
+  refuse(40, "603 2B 65 60 00 88 13 00 00", "65 60 00");
+  refuse(40, "603 2B 66 60 00 88 13 00 00", "66 60 00");
+  EXPECT_EQ(bootPatiently(), 4s);
+}
+
+TEST_F(BootStop, each_pdo_that_is_made_invalid_has_its_own_three_seconds) {
+  for (const char* pdo : {"01 18", "02 18"}) {
+    const std::string object = std::string(pdo) + " 01";
+    const std::string read = "603 40 " + object + " 00 00 00 00";
+    peer.forget(read);
+    for (int i = 0; i < 41; ++i) peer.on(read, {"583 43 " + object + " 33 03 00 00"});
+    peer.on(read, {"583 43 " + object + " 33 03 00 80"});
+    refuse(40, "603 23 " + object + " 33 03 00 80", object);
+  }
+  EXPECT_EQ(bootPatiently(), 4s);
+  EXPECT_THAT(node->notes(), IsEmpty());
 }
 
 }  // namespace

@@ -8,6 +8,7 @@ namespace cia402::canopen {
 namespace {
 
 using test::Lines;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 class BootSyncTest : public test::NodeFixture {};
@@ -59,6 +60,42 @@ TEST_F(BootSyncTest, a_drive_without_sync_counter_is_right_for_a_plain_sync_only
   boot();
   EXPECT_EQ(node->health(), NodeHealth::failed);
   EXPECT_THAT(node->problem(), HasSubstr("1019:00 synchronous counter overflow value"));
+}
+
+TEST_F(BootSyncTest, a_sync_counter_that_the_drive_refuses_fails_the_boot) {
+  config.sync_counter = 10;
+  peer.on("603 40 19 10 00 00 00 00 00", "583 4F 19 10 00 00 00 00 00")
+      .on("603 40 06 10 00 00 00 00 00", "583 43 06 10 00 10 27 00 00")
+      .on("603 23 06 10 00 00 00 00 00", "583 60 06 10 00 00 00 00 00")
+      .on("603 2F 19 10 00 0A 00 00 00", "583 80 19 10 00 02 00 01 06")
+      .on("603 23 06 10 00 10 27 00 00", "583 60 06 10 00 00 00 00 00");
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_THAT(node->problem(), HasSubstr("writing 0x0A to 1019:00 synchronous counter overflow "
+                                         "value: the drive refused: 0x06010002"));
+  EXPECT_FALSE(sentLine("000 01 03"));
+}
+
+TEST_F(BootSyncTest, a_drive_without_sync_period_goes_without_and_that_is_told) {
+  config.sync_period_us = 4000;
+  peer.on("603 40 06 10 00 00 00 00 00", "583 80 06 10 00 00 00 02 06");
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_THAT(node->notes(), ElementsAre(HasSubstr("does not know the SYNC period: reading "
+                                                   "1006:00 communication cycle period")));
+  EXPECT_FALSE(sentLine("603 23 06 10 00 A0 0F 00 00"));
+}
+
+TEST_F(BootSyncTest, a_period_of_zero_is_written_once_where_it_is_also_the_wanted_one) {
+  config.sync_counter = 10;
+  config.sync_period_us = 0;
+  peer.on("603 40 19 10 00 00 00 00 00", "583 4F 19 10 00 00 00 00 00")
+      .on("603 40 06 10 00 00 00 00 00", "583 43 06 10 00 10 27 00 00")
+      .on("603 23 06 10 00 00 00 00 00", "583 60 06 10 00 00 00 00 00")
+      .on("603 2F 19 10 00 0A 00 00 00", "583 60 19 10 00 00 00 00 00");
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(std::count(peer.sent.begin(), peer.sent.end(), "603 23 06 10 00 00 00 00 00"), 1);
 }
 
 }  // namespace

@@ -66,6 +66,9 @@ TEST_F(BootUnchanged, leaves_out_what_1020h_proves_and_still_looks_at_samples) {
                    "000 01 03"}));
   EXPECT_THAT(node->remarks(), ElementsAre(HasSubstr("configuration is unchanged (1020h)")));
   EXPECT_THAT(node->notes(), IsEmpty());
+  hear("703 00");
+  EXPECT_THAT(node->remarks(), ElementsAre(HasSubstr("configuration is unchanged (1020h)")))
+      << "of the last boot alone";
 }
 
 TEST_F(BootUnchanged, writes_that_are_no_configuration_are_done_all_the_same) {
@@ -196,6 +199,70 @@ TEST_F(BootUnchanged,
   EXPECT_FALSE(sentLine(kAskMap)) << "that is what it holds";
 }
 
+TEST_F(BootUnchanged, a_pdo_that_is_not_used_is_no_sample) {
+  config.pdos[0].enabled = false;
+  config.pdos[0].cob_id = 0x3FF;
+  boot();
+  ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_FALSE(sentLine("603 40 00 14 01 00 00 00 00"));
+  EXPECT_FALSE(sentLine(kAskMap)) << "it is unchanged";
+}
+
+TEST_F(BootUnchanged, pdos_with_cob_ids_of_the_drive_are_asked_for_at_each_boot) {
+  config.pdos[0].cob_id = 0;
+  const char kAskSyncId[] = "603 40 05 10 00 00 00 00 00";
+  peer.forget(kAskSyncId);
+  boot();
+  pass(std::chrono::milliseconds(100));
+  hear("703 04");  // and what it says is told once, though it begins again
+  peer.on(kAskSyncId, "583 43 05 10 00 80 00 00 00");
+  hear("703 7F");
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_TRUE(sentLine(kVoidDate));
+  EXPECT_TRUE(sentLine(kAskMap));
+  EXPECT_THAT(node->remarks(), ElementsAre(HasSubstr("its PDOs are asked for at each boot")));
+  EXPECT_THAT(node->notes(), IsEmpty());
+}
+
+TEST_F(BootUnchanged, an_error_control_object_that_cannot_be_set_right_is_tried_once) {
+  peer.replace("603 40 17 10 00 00 00 00 00", "583 4B 17 10 00 00 00 00 00");
+  peer.replace("603 2B 17 10 00 64 00 00 00", "583 80 17 10 00 02 00 01 06");
+  boot();
+  node->receiveTpdo(0, test::frame("183 37 02 01 00 00 00"), now);
+  pass(std::chrono::milliseconds(0));
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(std::count(peer.sent.begin(), peer.sent.end(), "603 2B 17 10 00 64 00 00 00"), 1);
+  EXPECT_FALSE(node->supervision().watched);
+}
+
+TEST_F(BootUnchanged, a_proof_that_is_not_confirmed_fails_the_boot) {
+  peer.replace(kReadDate, kNoDate).replace(kReadTime, kNoTime);
+  peer.forget(kWriteDate);
+  boot();
+  pass(std::chrono::seconds(1));
+  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_THAT(node->problem(), HasSubstr("1020:01 configuration date: no answer"));
+}
+
+TEST_F(BootUnchanged, nothing_is_configured_before_the_old_proof_is_void) {
+  peer.replace(kReadTime, "583 43 20 10 02 C1 70 53 03");
+  peer.forget(kVoidTime);
+  boot();
+  EXPECT_EQ(peer.take().back(), kVoidTime);
+  EXPECT_EQ(node->bootStep(), "writing 0x00000000 to 1020:02 configuration time");
+  hear("583 60 20 10 02 00 00 00 00");
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_TRUE(sentLine(kAskMap));
+}
+
+TEST_F(BootUnchanged, half_a_proof_that_says_nothing_need_not_be_made_void) {
+  peer.replace(kReadDate, kNoDate).replace(kReadTime, "583 80 20 10 02 11 00 09 06");
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_FALSE(sentLine(kVoidDate));
+  EXPECT_TRUE(sentLine(kAskMap));
+}
+
 // The same numbers in the same order, but for where the mapping of the first PDO ends.
 TEST(ConfigurationSignatureTest, tells_whose_mapping_an_entry_belongs_to) {
   NodeConfig longer;
@@ -226,6 +293,22 @@ TEST(ConfigurationSignatureTest, tells_whose_mapping_an_entry_belongs_to) {
   const auto one = configurationSignature(longer, {}, false);
   const auto other = configurationSignature(shorter, {}, false);
   EXPECT_FALSE(one.date == other.date && one.time == other.time);
+}
+
+// 6065:00 is 00 65 60 00 00 00 00 00 among the bytes that are summed up.
+TEST(ConfigurationSignatureTest, tells_where_the_data_of_a_write_end) {
+  NodeConfig one;
+  one.boot.check = ConfigurationCheck::checksum;
+  StartupWrite first, second;
+  first.object = {0x6067, 0};
+  first.data = {0x00, 0x65, 0x60, 0x00, 0x00, 0x00, 0x00, 0x00};
+  second.object = {0x6065, 0};
+  one.writes = {first, second};
+  NodeConfig other = one;
+  std::swap(other.writes[0].data, other.writes[1].data);
+  const auto sum = configurationSignature(one, {}, false);
+  const auto other_sum = configurationSignature(other, {}, false);
+  EXPECT_FALSE(sum.date == other_sum.date && sum.time == other_sum.time);
 }
 
 TEST(ConfigurationSignatureTest, changes_with_everything_that_a_boot_writes_and_with_the_device) {

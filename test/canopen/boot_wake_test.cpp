@@ -159,5 +159,65 @@ TEST_F(BootWakeTest, one_that_is_still_operational_is_made_pre_operational_again
   EXPECT_THAT(peer.take(), Not(Contains(kPreOperational)));
 }
 
+TEST_F(BootWakeTest, a_heartbeat_that_was_on_its_way_when_it_was_commanded_tells_nothing) {
+  peer.forget(kAskVendor);
+  boot(false);
+  pass(milliseconds(100));
+  peer.take();
+  hear("703 05");
+  ASSERT_EQ(peer.take(), Lines{kPreOperational});
+  pass(milliseconds(19));
+  hear("703 05");
+  EXPECT_THAT(peer.take(), Not(Contains(kPreOperational)));
+  pass(milliseconds(1));
+  hear("703 05");
+  EXPECT_EQ(peer.take(), Lines{kPreOperational});
+}
+
+TEST_F(BootWakeTest, one_that_took_no_notice_of_the_reset_is_not_reset_while_it_is_configured) {
+  peer.forget(kReset);
+  peer.forget(kAskVendor);
+  boot();
+  pass(milliseconds(1250));  // no boot-up message, but it answers
+  ASSERT_EQ(node->bootStep(), "reading 1018:01 vendor id");
+  pass(milliseconds(100));
+  peer.take();
+  hear("703 05");
+  EXPECT_EQ(peer.take(), Lines{kPreOperational});
+}
+
+TEST_F(BootWakeTest, one_that_says_operational_after_all_is_commanded_and_asked) {
+  beginStopped();
+  pass(milliseconds(30));
+  hear("703 04");
+  pass(milliseconds(85));  // 25 ms after the last command
+  peer.take();
+  wake();
+  hear("703 05");
+  const Lines sent = peer.take();
+  ASSERT_GE(sent.size(), 2U);
+  EXPECT_EQ(sent[0], kPreOperational);
+  EXPECT_EQ(sent.back(), "000 01 03") << "it was asked at once, and configured";
+}
+
+TEST_F(BootWakeTest, one_that_falls_silent_is_asked_after_half_a_second) {
+  beginStopped();
+  pass(milliseconds(30));
+  hear("703 04");
+  pass(milliseconds(499));
+  EXPECT_THAT(peer.take(), Not(Contains("603 40 18 10 00 00 00 00 00")));
+  pass(milliseconds(101));  // with the next command at the latest
+  EXPECT_THAT(peer.take(), Contains("603 40 18 10 00 00 00 00 00"));
+}
+
+TEST_F(BootWakeTest, one_that_said_stopped_once_and_no_more_is_told_with_that) {
+  beginStopped();
+  pass(milliseconds(30));
+  hear("703 04");
+  pass(seconds(6));
+  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_THAT(node->problem(), ::testing::HasSubstr("it says that it is stopped (NMT state)"));
+}
+
 }  // namespace
 }  // namespace cia402::canopen

@@ -45,5 +45,26 @@ TEST(CyclicIdentifiers, IncludeAnRpdoInThePlaceOfAnSdoRequest) {
   EXPECT_THAT(cyclicIdentifiers(masterWith({rpdo(0x610)})), testing::Contains(0x610U));
 }
 
+TEST(CyclicIdentifiers, DoNotDependOnAnSdoChannelBeyond11Bits) {
+  MasterConfig master = masterWith({});
+  const auto without = cyclicIdentifiers(master);
+  for (const std::uint16_t request : {std::uint16_t{0x800}, std::uint16_t{0xFFFF}}) {
+    master.nodes[0].sdo_channel = {request, 0x5F0};
+    EXPECT_EQ(cyclicIdentifiers(master), without) << std::hex << request;
+  }
+}
+
+TEST(CyclicIdentifiers, LeaveATpdoOutThatLiesWhereRequestsDo) {
+  PdoConfig tpdo = rpdo(0x610);
+  tpdo.direction = PdoDirection::tpdo;
+  EXPECT_THAT(cyclicIdentifiers(masterWith({tpdo})), testing::Not(testing::Contains(0x610U)));
+}
+
+TEST(CyclicIdentifiers, HaveElevenBits) {
+  const auto identifiers = cyclicIdentifiers(masterWith({rpdo(0x800)}));
+  EXPECT_EQ(identifiers.back(), 0x7FFU);
+  EXPECT_EQ(identifiers, cyclicIdentifiers(masterWith({})));
+}
+
 }  // namespace
 }  // namespace cia402::canopen

@@ -133,5 +133,20 @@ TEST_F(ErrorHistoryTest, RefusesAnEntryOfOneByte) {
   EXPECT_EQ(read().remark, "entry 1 of 1003h has 1 bytes instead of 4");
 }
 
+TEST_F(ErrorHistoryTest, WaitsForEachAnswer) {
+  ErrorHistoryReader reader;
+  EXPECT_FALSE(reader.step(client));
+  client.tick(now);
+  EXPECT_FALSE(reader.step(client)) << "none has come yet";
+  receive("581 4F 03 10 00 01 00 00 00");
+  EXPECT_FALSE(reader.step(client));
+  client.tick(now);
+  EXPECT_FALSE(reader.step(client));
+  receive("581 43 03 10 01 11 86 00 00");
+  EXPECT_TRUE(reader.step(client));
+  EXPECT_EQ(reader.history().remark, "");
+  EXPECT_EQ(reader.history().entries.size(), 1u);
+}
+
 }  // namespace
 }  // namespace cia402::canopen

@@ -95,6 +95,15 @@ TEST_F(LastStopTest, a_node_that_says_operational_is_told_again_at_once_and_not_
   EXPECT_THAT(times(kNmtStop, milliseconds(60)), ElementsAre(40, 60));
 }
 
+TEST_F(LastStopTest, what_was_on_its_way_when_it_was_told_is_no_reason_to_tell_it_again) {
+  lose();
+  pass(milliseconds(49));
+  peer.take();
+  hear("703 05");  // told 9 ms ago
+  EXPECT_THAT(times(kNmtStop, milliseconds(31)), ElementsAre(11, 31));
+  EXPECT_EQ(node->health(), NodeHealth::lost);
+}
+
 TEST_F(LastStopTest, a_node_that_says_stopped_is_booted_and_told_no_more) {
   lose();
   pass(milliseconds(50));
@@ -141,6 +150,17 @@ TEST_F(LastStopTest, an_answer_to_the_posted_stop_is_taken_for_none_to_a_later_r
   hear("583 60 40 60 00 00 00 00 00");  // of the posted write, late
   EXPECT_THAT(peer.take(), IsEmpty());
   EXPECT_EQ(node->health(), NodeHealth::booting);
+}
+
+TEST_F(LastStopTest, is_told_nothing_any_more_when_three_seconds_are_over_to_the_moment) {
+  lose();
+  pass(milliseconds(180));
+  peer.take();
+  hear("703 05");  // told anew: NMT stop 40 ms later, then four more, then every 100 ms
+  const std::vector<int> at = times(kNmtStop, milliseconds(2900));
+  ASSERT_FALSE(at.empty());
+  EXPECT_EQ(at.front(), 40);
+  EXPECT_EQ(at.back(), 2720) << "2.9 s after the loss; the next would be after 3 s";
 }
 
 }  // namespace

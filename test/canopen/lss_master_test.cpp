@@ -141,5 +141,16 @@ TEST_F(LssMasterTest, ABabblingDeviceDoesNotFillTheMemory) {
   EXPECT_EQ(master.answers().size(), 256u);
 }
 
+TEST_F(LssMasterTest, ARequestMayHaveFewerAttempts) {
+  LssRequest request = lssInquireRequest(3);
+  request.attempts = 2;
+  master.begin(request, now);
+  pass(100ms);
+  EXPECT_TRUE(master.busy());
+  pass(100ms);
+  EXPECT_EQ(master.problem(), "nobody answered within 0.1 s, asked 2 times");
+  EXPECT_EQ(wire.sent.size(), 2u);
+}
+
 }  // namespace
 }  // namespace cia402::canopen

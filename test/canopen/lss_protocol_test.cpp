@@ -34,6 +34,7 @@ TEST(LssProtocol, InquiresIdentityAndNodeId) {
   EXPECT_EQ(text(lss::inquire(3)), "7E5 5D 00 00 00 00 00 00 00");
   EXPECT_EQ(text(lss::inquireNodeId()), "7E5 5E 00 00 00 00 00 00 00");
   EXPECT_EQ(lss::numberOf(frame("7E4 5D 39 30 00 80 00 00 00")), 0x80003039u);
+  EXPECT_EQ(lss::numberOf(frame("7E4 5D 39 30 00 80 FF FF FF")), 0x80003039u) << "four bytes";
   EXPECT_EQ(lss::nodeIdOf(frame("7E4 5E FF 00 00 00 00 00 00")), lss::kUnconfigured);
 }
 

@@ -30,6 +30,7 @@ TEST_F(LssScan, OneDeviceIsFoundByItsBits) {
   EXPECT_EQ(task.result(), "1 device without a node-ID");
   // Vendor 0x0000ABCD: bits 31..16 are 0, bit 15 is 1, bit 14 is 0.
   EXPECT_EQ(sentCount("7E5 51 00 00 00 00 1F 00 00"), 1u);
+  EXPECT_EQ(sentCount("7E5 51 00 00 00 80 1F 00 00"), 0u) << "0 is asked for first";
   EXPECT_EQ(sentCount("7E5 51 00 00 00 00 0F 00 00"), 1u);
   EXPECT_EQ(sentCount("7E5 51 00 80 00 00 0F 00 00"), 1u);
   EXPECT_EQ(sentCount("7E5 51 00 80 00 00 0E 00 00"), 1u);
@@ -61,6 +62,15 @@ TEST_F(LssScan, StepsAreToldInWords) {
   finish();
   task.advance(master, wire.now);
   EXPECT_EQ(task.step(), "scanning bit 31 of the vendor id of device 1");
+  while (task.step().find("serial number of device 1") == std::string::npos) {
+    finish();
+    task.advance(master, wire.now);
+  }
+  while (task.step().find("selecting") == std::string::npos) {
+    finish();
+    ASSERT_EQ(task.advance(master, wire.now), LssTask::Status::running);
+  }
+  EXPECT_EQ(task.step(), "selecting the device with " + toString(kServo));
 }
 
 TEST_F(LssScan, DevicesThatAnswerTooLateAreNoInventedOnes) {
@@ -113,6 +123,8 @@ TEST_F(LssScan, WhatDevicesOfAKindHaveInCommonIsScannedOnce) {
       << "once scanned; then asked for as a whole, twice for each further one: for the last "
          "device, "
          "and as that is not there any more, for one of its kind";
+  EXPECT_EQ(sentCount("7E5 51 E8 03 00 00 00 03 00"), 3u)
+      << "serial 1000: told that it was found, then asked twice whether there is another one";
 }
 
 /// Slaves that mishandle fastscan, and a good one beside them that has the higher number.
@@ -135,6 +147,9 @@ TEST_F(MishandledScan, ADeviceThatIsFoundAgainAndAgainCostsLittleMoreThanOneScan
   EXPECT_LE(scan(task), 5s);
   EXPECT_THAT(task.found(), UnorderedElementsAre(kServo));
   EXPECT_THAT(task.result(), HasSubstr("goes on answering after it was found"));
+  EXPECT_EQ(sentCount("7E5 51 00 00 00 00 80 00 00"), 7u)
+      << "is there anybody? At first, once it is found, and each of five times that it is found "
+         "again";
 }
 
 TEST_F(MishandledScan, ADeviceThatSaysYesToEverythingIsNobody) {
@@ -155,12 +170,60 @@ TEST_F(MishandledScan, ADeviceThatIsDeafToANumberIsGivenUpWhereItFallsSilent) {
   }
 }
 
+TEST_F(MishandledScan, ADeviceThatFallsSilentAtABitIsTakenUpThereAndGivenUpAfterTheThirdTime) {
+  bad.deaf_part = 2;  // revision 0x00010002
+  bad.deaf_bit = 20;
+  scan(task);
+  EXPECT_THAT(task.error(), HasSubstr("scanning bit 20 of the revision number of device 1"));
+  EXPECT_EQ(sentCount("7E5 51 00 00 00 00 80 00 00"), 3u) << "is there anybody?";
+  EXPECT_EQ(sentCount("7E5 51 00 00 00 00 1F 02 02"), 1u) << "bit 31 is known by then";
+  EXPECT_EQ(sentCount("7E5 51 00 00 00 00 15 02 02"), 1u) << "bit 21, too";
+  EXPECT_EQ(sentCount("7E5 51 00 00 00 00 14 02 02"), 18u) << "0, six times each time";
+  EXPECT_EQ(sentCount("7E5 51 00 00 10 00 14 02 02"), 18u) << "1, as often";
+}
+
+TEST_F(MishandledScan, ADeviceThatIsDeafFromTheBeginningIsAskedAsOften) {
+  bad.deaf_part = 0;
+  scan(task);
+  EXPECT_EQ(sentCount("7E5 51 00 00 00 00 1F 00 00"), 18u);
+  EXPECT_EQ(sentCount("7E5 51 00 00 00 80 1F 00 00"), 18u);
+}
+
+TEST_F(MishandledScan, ADeviceThatIsScannedAgainBitByBitIsFoundOnce) {
+  bad.never_found = bad.mute_moves = true;
+  scan(task);
+  EXPECT_THAT(task.found(), UnorderedElementsAre(kServo));
+}
+
+TEST_F(LssScan, NobodyIsLeftWhenSixQuestionsInARowWereInVain) {
+  wire.add(parts(kServo));
+  wire.add(parts(kOther));
+  LssScanTask task;
+  while (task.step() != "asking for the same vendor id") {
+    ASSERT_EQ(task.advance(master, wire.now), LssTask::Status::running);
+    finish();
+  }
+  const std::size_t before = sentCount("7E5 51 00 00 00 00 80 00 00");
+  wire.slaves.pop_back();  // switched off
+  ASSERT_TRUE(run(task));
+  EXPECT_THAT(task.found(), UnorderedElementsAre(kServo));
+  EXPECT_EQ(sentCount("7E5 51 00 00 00 00 80 00 00"), before + 6);
+}
+
+TEST_F(LssScan, FindsAsManyDevicesAsABusCanHaveAndNoMore) {
+  for (std::uint32_t i = 0; i < 128; ++i) wire.add({0x0000ABCD, 0x000D0117, 0x00010002, i});
+  LssScanTask task;
+  ASSERT_TRUE(run(task)) << task.error();
+  EXPECT_EQ(task.found().size(), 127u);
+}
+
 void expectTruth(const LssScanTask& task, const LssWire& wire, unsigned seed) {
   for (const lss::Identity& found : task.found()) {
     const bool exists =
         std::any_of(wire.slaves.begin(), wire.slaves.end(),
                     [&](const LssSlave& slave) { return slave.identity == parts(found); });
     EXPECT_TRUE(exists) << "seed " << seed << ": " << toString(found);
+    EXPECT_EQ(std::count(task.found().begin(), task.found().end(), found), 1) << "seed " << seed;
   }
   if (task.found().size() < wire.slaves.size()) {
     EXPECT_TRUE(task.incomplete()) << "seed " << seed << ": one is missing, and nobody says so";

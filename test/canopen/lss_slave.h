@@ -29,7 +29,9 @@ struct LssSlave {
   bool scanned_with_node_id = false;  ///< fastscan asks for no node-ID (lely-core, src/co/lss.c)
   bool never_found = false;           ///< goes on taking part after its last bit
   bool says_yes = false;              ///< answers every question of fastscan
-  int deaf_part = -1;                 ///< answers no question about this number of its identity
+  bool mute_moves = false;            ///< goes on to its next number without a word
+  int deaf_part = -1;      ///< answers no question about this number of its identity, ...
+  unsigned deaf_bit = 31;  ///< ... from this bit down
 
   /// @return the first byte of an answer, or 0; `data` gets the bytes that follow.
   std::uint8_t hear(const can::Frame& f, std::array<std::uint8_t, 7>& data) {
@@ -66,11 +68,11 @@ struct LssSlave {
       position = 0;
       return true;
     }
-    if (static_cast<int>(sub) == deaf_part) return false;
+    if (static_cast<int>(sub) == deaf_part && bit <= deaf_bit) return false;
     if (sub != position || (number ^ identity[sub]) >> bit != 0) return false;
     position = next;
     if (bit == 0 && next < sub) configuration = !never_found;
-    return true;
+    return !mute_moves || next == sub;
   }
 
   std::uint8_t configure(const can::Frame& f, std::array<std::uint8_t, 7>& data) {

@@ -229,6 +229,71 @@ TEST_F(LssTaskTest, ActivationReachesAllDevicesOnce) {
   EXPECT_EQ(text(wire.sent.back()), "7E5 15 F4 01 00 00 00 00 00");
 }
 
+TEST_F(LssTaskTest, EachStepIsToldInWords) {
+  wire.add(parts(kServo));
+  auto task = assign(kServo, 5, true);
+  std::vector<std::string> steps;
+  LssTask::Status status = LssTask::Status::running;
+  while (status == LssTask::Status::running) {
+    status = task.advance(master, wire.now);
+    if (steps.empty() || steps.back() != task.step()) steps.push_back(task.step());
+    finish();
+  }
+  EXPECT_THAT(steps, testing::ElementsAre("switching all devices to the waiting state",
+                                          "selecting the device with " + toString(kServo),
+                                          "inquiring its vendor id", "inquiring its product code",
+                                          "inquiring its revision number",
+                                          "inquiring its serial number", "inquiring its node-ID",
+                                          "setting its node-ID to 5", "storing its node-ID",
+                                          "leaving the configuration state", "done"));
+}
+
+TEST_F(LssTaskTest, ASelectionWaitsForTheAnswerToWhatItAsked) {
+  wire.add(parts(kServo));
+  LssSelection selection(kServo);
+  EXPECT_EQ(selection.advance(master, wire.now), LssSelection::Status::running);
+  const std::size_t sent = wire.sent.size();
+  EXPECT_EQ(selection.advance(master, wire.now), LssSelection::Status::running);
+  EXPECT_EQ(selection.step(), "switching all devices to the waiting state");
+  EXPECT_EQ(wire.sent.size(), sent);
+}
+
+/// A device that falls silent once it has told its node-ID.
+class VanishingDevice : public LssTaskTest {
+ protected:
+  VanishingDevice() { wire.add(parts(kServo), 3); }
+  bool runUntilItVanishes(LssTask& task) {
+    while (task.step() != "inquiring its node-ID") {
+      task.advance(master, wire.now);
+      step();
+    }
+    finish();
+    wire.slaves.clear();
+    return run(task);
+  }
+};
+
+TEST_F(VanishingDevice, WasNotGivenANodeId) {
+  auto task = assign(kServo, 5);
+  EXPECT_FALSE(runUntilItVanishes(task));
+  EXPECT_THAT(task.error(), HasSubstr("while setting its node-ID to 5: nobody answered"));
+}
+
+TEST_F(VanishingDevice, WasNotGivenABitTiming) {
+  LssBitTimingTask task(kServo, 250, true);
+  EXPECT_FALSE(runUntilItVanishes(task));
+  EXPECT_THAT(task.error(), HasSubstr("while setting the bit timing: nobody answered"));
+  EXPECT_EQ(sentCount("7E5 17 00 00 00 00 00 00 00"), 0u) << "nothing to store";
+}
+
+TEST_F(LssTaskTest, ABitTimingForADeviceThatIsNotThereIsNoneThatWasSet) {
+  wire.add(parts(kOther));
+  LssBitTimingTask task(kServo, 250, false);
+  EXPECT_FALSE(run(task));
+  EXPECT_THAT(task.error(), HasSubstr("serial 12345"));
+  EXPECT_THAT(task.error(), HasSubstr("nobody answered"));
+}
+
 /// Every second of these frames or so is lost; whatever is said at the end must be true.
 TEST_F(LssTaskTest, UnderLossADeviceGetsItsNodeIdOrAReason) {
   int assigned = 0;

@@ -24,6 +24,9 @@ class Log : public MasterListener {
   void onEmergency(Node& node, const Emergency& emergency) override {
     lines.push_back(node.name() + " emergency " + emergencyText(emergency.code));
   }
+  void onMalformedEmergency(Node& node, std::size_t size) override {
+    lines.push_back(node.name() + " malformed emergency of " + std::to_string(size) + " bytes");
+  }
   void onBootUp(Node& node, Time) override { lines.push_back(node.name() + " boot-up"); }
   void onHealthChange(Node& node, NodeHealth before, Time) override {
     lines.push_back(node.name() + " " + toString(before) + " -> " + toString(node.health()));
@@ -144,6 +147,8 @@ TEST_F(MasterTest, tells_emergencies) {
   hear("083 10 23 03 00 00 00 00 00");
   EXPECT_THAT(log.take(),
               ElementsAre("shoulder emergency continuous overcurrent, device output side"));
+  hear("083 11");
+  EXPECT_THAT(log.take(), ElementsAre("shoulder malformed emergency of 1 bytes"));
 }
 
 TEST_F(MasterTest, gives_each_tpdo_to_its_node) {
@@ -192,6 +197,10 @@ TEST_F(MasterTest, sends_sync_without_and_with_counter) {
   create();
   for (int i = 0; i < 3; ++i) master->sendSync(now);
   EXPECT_EQ(peer.take(), (Lines{"080 01", "080 02", "080 01"}));
+  master->start(now);  // CiA 301, 7.2.5.3.1: after reset communication the first one is 1
+  peer.take();
+  master->sendSync(now);
+  EXPECT_EQ(peer.take(), Lines{"080 01"});
 }
 
 TEST_F(MasterTest, sends_the_rpdos_of_ready_nodes_only) {
@@ -256,8 +265,15 @@ TEST_F(MasterTest, finds_configured_nodes_only) {
 TEST_F(MasterTest, refuses_node_ids_and_cob_ids_that_cannot_be) {
   config.nodes[1].node_id = 3;
   EXPECT_THROW(create(), std::invalid_argument);
-  config.nodes[1].node_id = 128;
-  EXPECT_THROW(create(), std::invalid_argument);
+  for (const NodeId none : {NodeId{0}, NodeId{128}}) {
+    config.nodes[1].node_id = none;
+    EXPECT_THROW(create(), std::invalid_argument) << unsigned{none};
+  }
+  for (const NodeId last : {NodeId{1}, NodeId{127}}) {
+    config.nodes[1].node_id = last;
+    if (last == 127) config.node_id = 126;
+    EXPECT_NO_THROW(create()) << unsigned{last};
+  }
   config.nodes[1] = test::servoConfig(5, "elbow");
   config.nodes[1].pdos[1].cob_id = 0x183;
   EXPECT_THROW(create(), std::invalid_argument);
@@ -311,6 +327,11 @@ TEST_F(MasterTest, refuses_a_drive_that_insists_on_the_cob_id_of_another) {
       master->find(3)->problem(),
       ::testing::HasSubstr("TPDO 1 with COB-ID 0x185: that is used twice, by elbow already"));
   EXPECT_EQ(master->find(5)->health(), NodeHealth::ready);
+  for (int i = 0; i < 3; ++i) hear("703 7F");
+  EXPECT_EQ(std::count(peer.sent.begin(), peer.sent.end(), "000 80 03"), 1) << "refused once";
+  master->find(3)->sdo().upload({0x1008, 0});
+  pass(milliseconds(1));
+  EXPECT_EQ(std::count(peer.sent.begin(), peer.sent.end(), "000 80 03"), 1) << "whatever follows";
   hear("185 37 02 2A 00 00 00");
   const ProcessImage& elbow = master->find(5)->image();
   EXPECT_EQ(elbow.input(elbow.inputSlot({0x6064, 0})).raw, 42U);
@@ -337,6 +358,28 @@ TEST_F(MasterTest, tells_syncs_of_others_and_does_not_call_them_stray) {
   hear("080");
   EXPECT_EQ(log.foreign_syncs, 1);
   EXPECT_EQ(master->strayFrames(), 0U);
+}
+
+TEST_F(MasterTest, pdos_whose_cob_ids_the_drives_will_tell_are_in_nobodys_way) {
+  for (NodeConfig& node : config.nodes) {
+    for (PdoConfig& pdo : node.pdos) pdo.cob_id = 0;
+  }
+  EXPECT_NO_THROW(create());
+  hear("000 01 03");  // another master
+  EXPECT_EQ(master->strayFrames(), 1U);
+}
+
+TEST_F(MasterTest, sends_time_from_its_start_on_once_it_knows_it) {
+  config.nodes.clear();
+  config.heartbeat = Duration::zero();
+  config.time_interval = seconds(1);
+  now = Time(seconds(1));
+  create();
+  master->setWallTime(seconds(441763200), now);  // 1984-01-01 00:00 UTC
+  master->start(now);
+  peer.take();
+  pass(milliseconds(1999));
+  EXPECT_EQ(peer.take(), (Lines{"100 00 00 00 00 00 00", "100 E8 03 00 00 00 00"}));
 }
 
 }  // namespace

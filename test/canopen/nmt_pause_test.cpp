@@ -13,8 +13,8 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const char kStopNode[] = "000 02 03";
-const char kStart[] = "000 01 03";
+const char kStopCommand[] = "000 02 03";
+const char kStartCommand[] = "000 01 03";
 
 class NmtPauseTest : public test::NodeFixture {
  protected:
@@ -23,20 +23,20 @@ class NmtPauseTest : public test::NodeFixture {
     hear("703 05");
     ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
     peer.take();
-    peer.forget(kStart);  // else it answers at once
+    peer.forget(kStartCommand);  // else it answers at once
     node->stopAndStart(milliseconds(100), now);
   }
 };
 
 TEST_F(NmtPauseTest, StopsTwiceAndStartsUntilTheHeartbeatSaysOperational) {
   pauseReadyNode();
-  EXPECT_EQ(peer.take(), Lines{kStopNode});
+  EXPECT_EQ(peer.take(), Lines{kStopCommand});
   pass(milliseconds(119));
-  EXPECT_EQ(peer.take(), Lines{kStopNode}) << "the first may be lost";
+  EXPECT_EQ(peer.take(), Lines{kStopCommand}) << "the first may be lost";
   pass(milliseconds(1));
-  EXPECT_EQ(peer.take(), Lines{kStart});
+  EXPECT_EQ(peer.take(), Lines{kStartCommand});
   pass(milliseconds(20));
-  EXPECT_EQ(peer.take(), Lines{kStart});
+  EXPECT_EQ(peer.take(), Lines{kStartCommand});
   EXPECT_TRUE(node->paused());
   hear("703 05");
   EXPECT_FALSE(node->paused());
@@ -81,7 +81,7 @@ TEST_F(NmtPauseTest, ABootUpMessageEndsIt) {
   EXPECT_FALSE(node->paused());
   peer.take();
   pass(milliseconds(100));
-  EXPECT_THAT(peer.take(), Not(Contains(kStopNode)));
+  EXPECT_THAT(peer.take(), Not(Contains(kStopCommand)));
 }
 
 TEST_F(NmtPauseTest, ANodeThatIsNotReadyIsLeftAlone) {
@@ -100,7 +100,20 @@ TEST(NmtPauseOfASilentNode, CountsAsOverAfterThreeStarts) {
     now = pause.deadline();
     EXPECT_TRUE(pause.tick(now));
   }
-  EXPECT_EQ(peer.take(), (Lines{kStopNode, kStopNode, kStart, kStart, kStart}));
+  EXPECT_EQ(peer.take(),
+            (Lines{kStopCommand, kStopCommand, kStartCommand, kStartCommand, kStartCommand}));
+}
+
+TEST(NmtPauseOfANodeThatTells, IsOverWhenItsPatienceIs) {
+  test::ScriptedPeer peer;
+  NmtPause pause(3, peer);
+  const Time now(std::chrono::seconds(100));
+  pause.begin(milliseconds(40), milliseconds(500), true, now);
+  Time at = now;
+  while (pause.tick(at)) at = pause.deadline();
+  EXPECT_EQ(at, now + milliseconds(20 + 40 + 500));
+  EXPECT_FALSE(pause.active());
+  EXPECT_TRUE(pause.tick(at)) << "told once";
 }
 
 }  // namespace

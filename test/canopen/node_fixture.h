@@ -58,7 +58,7 @@ class NodeFixture : public ::testing::Test {
   NodeConfig config = servoConfig(3, "shoulder");
   MasterConfig master;
   std::optional<Node> node;
-  Time now{};
+  Time now{std::chrono::hours(1)};  // as a running clock has it
 };
 
 }  // namespace cia402::canopen::test

@@ -23,6 +23,30 @@ TEST(NodeGuardText, asks_with_a_remote_frame_for_one_byte) {
   EXPECT_EQ(request.size, 1);
 }
 
+TEST(NodeGuard, gives_a_node_its_life_time_for_the_first_answer_too) {
+  test::ScriptedPeer peer;
+  const Time now(seconds(100));
+  NodeGuard guard(3, milliseconds(100), 3);
+  EXPECT_FALSE(guard.receive(0x05, now)) << "nobody has asked";
+  EXPECT_FALSE(guard.answered());
+  guard.start(true, peer, now);
+  EXPECT_EQ(peer.take(), Lines{"703 R1"});
+  EXPECT_EQ(guard.deadline(), now + milliseconds(100));
+  EXPECT_FALSE(guard.expired(now + milliseconds(299)));
+  EXPECT_TRUE(guard.expired(now + milliseconds(300)));
+}
+
+TEST(NodeGuard, tells_of_wrong_toggle_bits_since_the_last_right_answer_only) {
+  test::ScriptedPeer peer;
+  const Time now(seconds(100));
+  NodeGuard guard(3, milliseconds(100), 3);
+  guard.start(true, peer, now);
+  EXPECT_FALSE(guard.receive(0x85, now)) << "the first one has toggle bit 0";
+  EXPECT_THAT(guard.loss(), HasSubstr("the toggle bit of 1 answers did not alternate"));
+  EXPECT_TRUE(guard.receive(0x05, now));
+  EXPECT_EQ(guard.loss(), "no answer to node guarding for 0.3 s (asked every 0.1 s)");
+}
+
 /// A drive without heartbeat, guarded every 100 ms, lost after 300 ms.
 class NodeGuarding : public test::NodeFixture {
  protected:
@@ -231,6 +255,60 @@ TEST_F(NodeGuarding, no_request_leaves_while_the_node_is_not_there) {
   boot();
   pass(milliseconds(1200));
   EXPECT_EQ(requests(), 0U);
+}
+
+TEST_F(NodeGuarding, a_drive_without_life_time_factor_cannot_notice_a_dead_master_either) {
+  peer.replace("603 2F 0D 10 00 03 00 00 00", "583 80 0D 10 00 00 00 02 06");
+  bootReady();
+  EXPECT_THAT(node->notes(), ElementsAre(HasSubstr("cannot notice a dead master: writing 0x03 to "
+                                                   "100D:00 life time factor")));
+  EXPECT_TRUE(node->supervision().watched);
+  EXPECT_FALSE(node->supervision().watches_master);
+}
+
+TEST_F(NodeGuarding, a_heartbeat_that_stays_on_beside_it_is_told) {
+  peer.replace("603 2B 17 10 00 00 00 00 00", "583 80 17 10 00 02 00 01 06");  // read-only
+  bootReady();
+  EXPECT_THAT(node->notes(), ElementsAre(HasSubstr("its heartbeat could not be switched off for "
+                                                   "node guarding: writing 0x0000 to 1017:00")));
+}
+
+TEST_F(NodeGuarding, waits_for_the_answer_that_says_operational) {
+  answers({"703 7F"});
+  boot();
+  EXPECT_EQ(node->health(), NodeHealth::booting);
+  EXPECT_EQ(node->bootStep(), "waiting for an answer to guarding that says operational");
+}
+
+TEST_F(NodeGuarding, a_node_that_answered_and_falls_silent_while_it_boots_is_lost) {
+  peer.forget("603 40 00 16 00 00 00 00 00");
+  answers({"703 7F"});
+  boot();
+  ASSERT_EQ(node->health(), NodeHealth::booting);
+  peer.forget("703 R1");
+  pass(milliseconds(300));
+  EXPECT_EQ(node->health(), NodeHealth::lost);
+  EXPECT_THAT(node->problem(), HasSubstr("no answer to node guarding for 0.3 s"));
+}
+
+TEST_F(NodeGuarding, answers_of_before_a_reboot_tell_nothing_of_the_drive_that_boots) {
+  bootReady();
+  peer.forget("703 R1");
+  hear("703 00");
+  pass(milliseconds(300));
+  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_THAT(node->problem(), HasSubstr("if the drive has no node guarding"));
+}
+
+TEST_F(NodeGuarding, a_node_whose_boot_failed_is_guarded_no_more) {
+  peer.replace("603 40 00 18 01 00 00 00 00", "583 80 00 18 01 00 00 02 06");
+  boot();
+  ASSERT_EQ(node->health(), NodeHealth::failed);
+  requests();
+  pass(seconds(1));
+  EXPECT_EQ(requests(), 0U);
+  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_THAT(node->problem(), HasSubstr("1800:01"));
 }
 
 }  // namespace

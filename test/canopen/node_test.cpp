@@ -299,8 +299,10 @@ TEST_F(NodeTest, keeps_the_last_emergency) {
   hear("083 00 00 00 00 00 00 00 00");
   EXPECT_EQ(node->lastEmergency()->code, 0x0000);
   EXPECT_EQ(node->emergencies(), 2U);
+  EXPECT_EQ(node->malformedEmergencies(), 0U);
   hear("083 11");  // no code
   EXPECT_EQ(node->emergencies(), 2U);
+  EXPECT_EQ(node->malformedEmergencies(), 1U);
 }
 
 TEST_F(NodeTest, a_queued_sdo_transfer_wakes_it_at_once) {
@@ -311,6 +313,42 @@ TEST_F(NodeTest, a_queued_sdo_transfer_wakes_it_at_once) {
   node->tick(now);
   EXPECT_EQ(peer.take(), Lines{"603 40 41 60 00 00 00 00 00"});
   EXPECT_GT(node->nextDeadline(), now);
+}
+
+TEST_F(NodeTest, answers_by_sdo_are_signs_of_life_while_it_is_configured) {
+  const char kAskSync[] = "603 40 05 10 00 00 00 00 00";
+  peer.forget(kAskSync);
+  peer.forget("603 40 14 10 00 00 00 00 00");
+  boot();
+  hear("703 7F");  // supervised from here on
+  pass(milliseconds(200));
+  hear("583 43 05 10 00 80 00 00 00");
+  pass(milliseconds(299));
+  EXPECT_EQ(node->health(), NodeHealth::booting);
+  pass(milliseconds(1));
+  EXPECT_EQ(node->health(), NodeHealth::lost);
+}
+
+TEST_F(NodeTest, counts_the_syncs_without_a_tpdo) {
+  config.pdos[1].stale_after = 3;
+  bootReady();
+  tpdo("183 37 02 01 00 00 00");
+  for (int i = 0; i < 3; ++i) node->onSync(now);
+  EXPECT_TRUE(statusword().fresh);
+  node->onSync(now);
+  EXPECT_FALSE(statusword().fresh);
+}
+
+TEST_F(NodeTest, a_boot_that_failed_is_not_called_a_loss_when_its_heartbeat_ends) {
+  peer.replace("603 40 00 18 01 00 00 00 00", "583 80 00 18 01 00 00 02 06");
+  peer.forget("603 40 00 16 00 00 00 00 00");
+  boot();
+  hear("703 7F");  // supervised from here on
+  hear("583 4F 00 16 00 02 00 00 00");
+  ASSERT_EQ(node->health(), NodeHealth::failed);
+  pass(seconds(1));
+  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_THAT(node->problem(), HasSubstr("1800:01"));
 }
 
 TEST(NodeHealthText, is_one_word_each) {

@@ -5,7 +5,6 @@
 
 #include "canopen/process_objects.h"
 #include "canopen/scripted_peer.h"
-#include "cia402_driver/canopen/pdo_text.h"
 
 namespace cia402::canopen {
 namespace {
@@ -53,6 +52,27 @@ TEST(ProcessImage, orders_pdos_by_number_and_shares_the_slot_of_an_object_mapped
   image.receive(1, frame("283 08 50 02"), kStamp);
   EXPECT_EQ(image.input(image.inputSlot(kStatusword)).raw, 0x0250U);
   EXPECT_EQ(image.input(image.inputSlot(kMode)).raw, 0x08U);
+  EXPECT_EQ(image.tpdoOf(image.inputSlot(kStatusword)), 0U) << "the first that brings it";
+  EXPECT_EQ(image.tpdoOf(image.inputSlot(kMode)), 1U);
+}
+
+TEST(ProcessImage, orders_rpdos_by_number) {
+  ProcessImage image({pdo(PdoDirection::rpdo, 2, 0x303, {{kTarget, 32, ""}}),
+                      pdo(PdoDirection::rpdo, 1, 0x203, {{kControlword, 16, ""}})});
+  ASSERT_EQ(image.rpdos().size(), 2U);
+  EXPECT_EQ(image.rpdos()[0].cob_id, 0x203);
+  EXPECT_EQ(image.rpdos()[1].cob_id, 0x303);
+}
+
+TEST(ProcessImage, takes_no_entry_that_does_not_fit_nor_one_behind_it) {
+  ProcessImage image({pdo(PdoDirection::tpdo, 1, 0x183,
+                          {{kStatusword, 16, ""}, {kPosition, 48, ""}, {kMode, 8, ""}}),
+                      pdo(PdoDirection::tpdo, 2, 0x283, {{kTarget, 0, ""}, {kMode, 8, ""}})});
+  EXPECT_EQ(image.tpdos()[0].size, 8);
+  EXPECT_NE(image.inputSlot(kPosition), kNoSlot) << "64 bits";
+  EXPECT_EQ(image.tpdos()[1].size, 0);
+  EXPECT_EQ(image.inputSlot(kTarget), kNoSlot);
+  EXPECT_EQ(image.inputSlot(kMode), kNoSlot);
 }
 
 TEST(ProcessImage, keeps_the_two_directions_apart) {
@@ -103,6 +123,24 @@ TEST(ProcessImage, takes_the_mapped_part_of_a_frame_that_is_too_long_but_counts_
   EXPECT_EQ(image.tpdos()[0].too_long, 1U);
 }
 
+TEST(ProcessImage, packs_each_byte_in_its_place) {
+  ProcessImage image({pdo(PdoDirection::rpdo, 1, 0x203, {{{0x2001, 0}, 64, ""}})});
+  image.setOutput(0, 0x8807060504030201U);
+  can::Frame packed;
+  image.pack(0, packed);
+  EXPECT_EQ(test::text(packed), "203 01 02 03 04 05 06 07 88");
+}
+
+TEST(ProcessImage, counts_frames_of_a_wrong_length) {
+  ProcessImage image(servo());
+  image.receive(0, frame("183 37 02 01 00 00 00"), kStamp);
+  EXPECT_EQ(image.wrongLengths(), 0U);
+  image.receive(0, frame("183 37 02 01 00 00"), kStamp);
+  image.receive(1, frame("283 08 50 02 00"), kStamp);
+  EXPECT_EQ(image.wrongLengths(), 2U);
+  EXPECT_EQ(image.troubles(), 2U);
+}
+
 TEST(ProcessImage, has_no_slots_for_disabled_pdos) {
   std::vector<PdoConfig> pdos = servo();
   pdos[0].enabled = false;
@@ -127,12 +165,12 @@ PdoConfig tpdoOfType(std::uint8_t type) {
   return config;
 }
 
-Time timeAt(int ms) { return Time(std::chrono::seconds(5) + std::chrono::milliseconds(ms)); }
+Time afterMs(int ms) { return Time(std::chrono::seconds(5) + std::chrono::milliseconds(ms)); }
 
 /// SYNCs without a TPDO until it is stale; 0: it never is.
 int syncsUntilStale(ProcessImage& image) {
   for (int sync = 1; sync <= 1000; ++sync) {
-    image.age(timeAt(4 * sync));
+    image.age(afterMs(4 * sync));
     if (image.tpdos()[0].stale) return sync;
   }
   return 0;
@@ -185,10 +223,10 @@ TEST(ProcessImage, an_event_timer_tells_how_long_a_tpdo_may_be_away) {
   config.inhibit = 50;      // 5 ms
   ProcessImage image({config});
   EXPECT_TRUE(image.regular(image.inputSlot(kStatusword)));
-  image.receive(0, frame("183 37 02"), timeAt(0));
-  image.age(timeAt(75));
+  image.receive(0, frame("183 37 02"), afterMs(0));
+  image.age(afterMs(75));
   EXPECT_FALSE(image.tpdos()[0].stale);
-  image.age(timeAt(76));  // more than three times 25 ms
+  image.age(afterMs(76));  // more than three times 25 ms
   EXPECT_TRUE(image.tpdos()[0].stale);
 }
 
@@ -230,22 +268,58 @@ TEST(ProcessImage, an_rpdo_leaves_when_its_content_changes_and_at_its_refresh_ra
   EXPECT_EQ(image.rpdos()[0].count, 5U);
 }
 
-TEST(PdoText, names_what_is_overdue_and_what_has_a_wrong_length) {
-  ProcessImage image(servo());
-  EXPECT_EQ(staleText(image), "");
-  EXPECT_EQ(wrongLengthText(image), "");
-  image.receive(0, frame("183 37 02"), kStamp);
-  image.receive(1, frame("283 08 50 02 00"), kStamp);
-  image.receive(1, frame("283 08 50 02 00"), kStamp);
-  EXPECT_EQ(
-      wrongLengthText(image),
-      "TPDO 1 (COB-ID 0x183) came with 2 bytes instead of 6: too short, not taken (1 so far), "
-      "TPDO 2 (COB-ID 0x283) came with 4 bytes instead of 3: too long, its beginning was taken "
-      "(2 so far)");
-  for (int i = 0; i < 11; ++i) image.age(kStamp);
-  EXPECT_EQ(staleText(image),
-            "TPDO 1 (COB-ID 0x183) did not come for 11 cycles, TPDO 2 (COB-ID 0x283) did not come "
-            "for 11 cycles");
+TEST(ProcessImage, after_a_reboot_a_tpdo_has_as_long_to_come_as_at_first) {
+  ProcessImage image({tpdoOfType(1)});
+  for (const int syncs : {3, 4}) {
+    for (int i = 0; i < syncs; ++i) image.age(kStamp);
+    image.invalidate();
+    EXPECT_FALSE(image.tpdos()[0].stale);
+    EXPECT_EQ(syncsUntilStale(image), 4);
+    image.invalidate();
+  }
+}
+
+TEST(ProcessImage, after_a_reboot_a_tpdo_with_an_event_timer_is_expected_from_then_on) {
+  PdoConfig config = tpdoOfType(255);
+  config.event_timer = 20;  // ms, stale after three of them
+  ProcessImage image({config});
+  image.receive(0, frame("183 37 02"), afterMs(0));
+  image.invalidate();
+  image.age(afterMs(1000));
+  EXPECT_FALSE(image.tpdos()[0].stale);
+  image.age(afterMs(1060));
+  EXPECT_FALSE(image.tpdos()[0].stale);
+  image.age(afterMs(1061));
+  EXPECT_TRUE(image.tpdos()[0].stale);
+}
+
+TEST(ProcessImage, after_a_reboot_a_tpdo_is_asked_for_at_its_rate_from_then_on) {
+  PdoConfig config = tpdoOfType(252);
+  config.request_every = 3;
+  ProcessImage image({config});
+  can::Frame request;
+  image.requestDue(0, request);
+  image.requestDue(0, request);
+  image.invalidate();
+  EXPECT_FALSE(image.requestDue(0, request));
+  EXPECT_FALSE(image.requestDue(0, request));
+  EXPECT_TRUE(image.requestDue(0, request));
+}
+
+TEST(ProcessImage, a_request_is_a_plain_remote_frame_whatever_the_frame_was_before) {
+  ProcessImage image({tpdoOfType(252)});
+  can::Frame request = frame("7FF 01 02 03 04 05 06 07 08");
+  request.extended = request.error = true;
+  ASSERT_TRUE(image.requestDue(0, request));
+  EXPECT_EQ(test::text(request), "183 R2");
+  EXPECT_FALSE(request.extended || request.error);
+}
+
+TEST(ProcessImage, remembers_when_an_rpdo_was_sent) {
+  ProcessImage image({pdo(PdoDirection::rpdo, 1, 0x203, {{kControlword, 16, ""}})});
+  can::Frame out;
+  ASSERT_TRUE(image.packDue(0, out, kStamp));
+  EXPECT_EQ(image.rpdos()[0].last, kStamp);
 }
 
 // Statusword, mode, position; without the mode the position moves up.

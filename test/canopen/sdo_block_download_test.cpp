@@ -260,5 +260,60 @@ TEST_F(SdoBlockDownloadTest, ignores_answers_that_come_twice) {
   EXPECT_EQ(client.counters().stray_frames, 3U);
 }
 
+TEST_F(SdoBlockDownloadTest, begins_with_the_answer_to_its_own_request_only) {
+  const SdoTicket ticket = start();
+  peer.take();
+  receive("581 A4 51 1F 01 7F 00 00 00");  // another object
+  receive("581 A1 50 1F 01 7F 00 00 00");  // the end of a block transfer
+  EXPECT_TRUE(peer.take().empty());
+  EXPECT_EQ(client.counters().stray_frames, 2U);
+  receive("581 A4 50 1F 01 7F 00 00 00");
+  EXPECT_EQ(peer.take().size(), 3U);
+  receive("581 A2 03 7F 00 00 00 00 00");
+  receive("581 A2 03 7F 00 00 00 00 00");
+  EXPECT_FALSE(ticket->done()) << "the acknowledge came twice, the end is still to come";
+  receive(kEnded);
+  EXPECT_TRUE(ticket->ok()) << ticket->message();
+}
+
+TEST_F(SdoBlockDownloadTest, one_follows_another_with_a_crc_of_its_own) {
+  for (int i = 0; i < 2; ++i) {
+    const SdoTicket ticket = start();
+    receive("581 A4 50 1F 01 7F 00 00 00");
+    receive("581 A2 03 7F 00 00 00 00 00");
+    EXPECT_EQ(peer.take(), (Lines{kInitiate, kSegment1, kSegment2, kSegment3, kEnd})) << i;
+    receive(kEnded);
+    EXPECT_TRUE(ticket->ok()) << ticket->message();
+  }
+}
+
+TEST_F(SdoBlockDownloadTest, a_segment_that_is_taken_gives_the_server_all_its_tries_again) {
+  const SdoTicket ticket = start();
+  receive("581 A4 50 1F 01 7F 00 00 00");
+  for (int i = 0; i < 10; ++i) receive("581 A2 00 7F 00 00 00 00 00");
+  receive("581 A2 01 7F 00 00 00 00 00");
+  for (int i = 0; i < 10; ++i) receive("581 A2 00 7F 00 00 00 00 00");
+  EXPECT_FALSE(ticket->done()) << ticket->message();
+  receive("581 A2 00 7F 00 00 00 00 00");
+  expectAbort(ticket, 0x05040003, "601 80 50 1F 01 03 00 04 05");
+}
+
+// 0x05040001, the command is not known, is said of blocks; 0x08000000 may be said of anything.
+TEST_F(SdoBlockDownloadTest, remembers_a_server_that_does_not_know_blocks_whatever_follows) {
+  const auto nextBegins = [&](const char* refusal) {
+    client.serverRestarted();
+    start();
+    receive(std::string("581 80 50 1F 01 ") + refusal);
+    receive("581 80 50 1F 01 02 00 01 06");  // not in segments either
+    peer.take();
+    start();
+    const Lines sent = peer.take();
+    receive("581 80 50 1F 01 02 00 01 06");
+    return sent;
+  };
+  EXPECT_EQ(nextBegins("01 00 04 05"), Lines{"601 21 50 1F 01 14 00 00 00"});
+  EXPECT_EQ(nextBegins("00 00 00 08"), Lines{kInitiate});
+}
+
 }  // namespace
 }  // namespace cia402::canopen

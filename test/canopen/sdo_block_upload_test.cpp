@@ -115,6 +115,7 @@ TEST_F(SdoBlockUploadTest, repeats_its_own_word_when_that_may_have_been_lost) {
   EXPECT_EQ(peer.take(), Lines{kAcknowledge2});
   receive(kEnd);
   expectName(ticket);
+  EXPECT_EQ(client.counters().retries, 2U);
 }
 
 TEST_F(SdoBlockUploadTest, begins_anew_when_that_does_not_help) {
@@ -236,6 +237,86 @@ TEST_F(SdoBlockUploadTest, takes_an_empty_object) {
   receive("581 DD 00 00 00 00 00 00 00");
   ASSERT_TRUE(ticket->ok()) << ticket->message();
   EXPECT_TRUE(ticket->data().empty());
+}
+
+TEST_F(SdoBlockUploadTest, goes_on_over_several_sub_blocks) {
+  const SdoTicket ticket = start("581 C2 08 10 00 7C 03 00 00");  // 892 = 127 * 7 + 3 bytes
+  for (unsigned i = 1; i <= 127; ++i) {
+    char line[40];
+    std::snprintf(line, sizeof line, "581 %02X 01 01 01 01 01 01 01", i);
+    receive(line);
+  }
+  EXPECT_EQ(peer.take(), (Lines{kStart, "601 A2 7F 7F 00 00 00 00 00"}));
+  receive("581 81 02 03 04 00 00 00 00");
+  EXPECT_EQ(peer.take(), Lines{"601 A2 01 7F 00 00 00 00 00"});
+  receive("581 D1 00 00 00 00 00 00 00");  // four bytes unused
+  ASSERT_TRUE(ticket->ok()) << ticket->message();
+  EXPECT_EQ(ticket->data().size(), 892U);
+  EXPECT_EQ(ticket->data().back(), 4);
+}
+
+TEST_F(SdoBlockUploadTest, takes_no_notice_of_a_segment_of_before) {
+  const SdoTicket ticket = start("581 C2 08 10 00 11 00 00 00");  // 17 bytes, no CRC
+  receive("581 01 01 02 03 04 05 06 07");
+  receive("581 02 08 09 0A 0B 0C 0D 0E");
+  receive("581 01 01 02 03 04 05 06 07");
+  receive("581 83 0F 10 11 00 00 00 00");
+  EXPECT_EQ(peer.take(), (Lines{kStart, "601 A2 03 7F 00 00 00 00 00"}));
+  receive("581 D1 00 00 00 00 00 00 00");
+  EXPECT_TRUE(ticket->ok()) << ticket->message();
+  EXPECT_EQ(client.counters().retries, 0U);
+  EXPECT_EQ(client.counters().stray_frames, 1U);
+}
+
+TEST_F(SdoBlockUploadTest, a_crc_proves_a_repetition_once_it_has_seen_more_than_zeros) {
+  const SdoTicket proved = start("581 C4 08 10 00 00 00 00 00");  // CRC, no size
+  receive("581 01 01 02 03 04 05 06 07");
+  receive("581 02 08 09 0A 0B 0C 0D 0E");
+  receive("581 84 16 17 18 00 00 00 00");  // the third was lost
+  EXPECT_EQ(peer.take(), (Lines{kStart, "601 A2 02 7F 00 00 00 00 00"}));
+  EXPECT_FALSE(proved->done());
+  client.cancelAll("enough");
+  client.serverRestarted();
+  peer.take();
+  const SdoTicket zeros = start("581 C4 08 10 00 00 00 00 00");
+  receive("581 01 00 00 00 00 00 00 00");
+  receive("581 02 00 00 00 00 00 00 00");
+  receive("581 84 16 17 18 00 00 00 00");
+  expectAbort(zeros, 0x05040003, "601 80 08 10 00 03 00 04 05");
+}
+
+TEST_F(SdoBlockUploadTest, waits_the_whole_time_out_for_what_follows_an_acknowledge) {
+  start(kSized);
+  receive(kSegment1);
+  now += milliseconds(400);
+  receive(kSegment2);
+  EXPECT_EQ(client.nextDeadline(), now + milliseconds(500));
+}
+
+TEST_F(SdoBlockUploadTest, each_segment_and_each_repetition_gets_the_whole_time_out) {
+  start(kSized);
+  wait(500);
+  EXPECT_EQ(peer.take().back(), kStart);
+  EXPECT_EQ(client.nextDeadline(), now + milliseconds(500));
+  now += milliseconds(400);
+  receive(kSegment1);
+  EXPECT_EQ(client.nextDeadline(), now + milliseconds(500));
+}
+
+TEST_F(SdoBlockUploadTest, after_a_gap_and_a_silence_it_goes_on_without_a_gap) {
+  const SdoTicket ticket = start("581 C2 08 10 00 18 00 00 00");  // 24 bytes
+  receive("581 01 01 02 03 04 05 06 07");
+  receive("581 03 0F 10 11 12 13 14 15");  // the second was lost, and so is what follows
+  peer.take();
+  wait(500);
+  EXPECT_EQ(peer.take(), Lines{"601 A2 01 7F 00 00 00 00 00"});
+  receive("581 01 08 09 0A 0B 0C 0D 0E");
+  receive("581 02 0F 10 11 12 13 14 15");
+  receive("581 83 16 17 18 00 00 00 00");
+  EXPECT_EQ(peer.take(), Lines{"601 A2 03 7F 00 00 00 00 00"});
+  receive("581 D1 00 00 00 00 00 00 00");  // four bytes unused
+  ASSERT_TRUE(ticket->ok()) << ticket->message();
+  for (std::size_t i = 0; i < 24; ++i) EXPECT_EQ(ticket->data()[i], i + 1);
 }
 
 }  // namespace

@@ -308,8 +308,10 @@ TEST_F(SdoClientTest, cancels_running_and_queued_transfers_with_a_reason) {
   client.tick(now);
   peer.take();
   client.cancelAll("the node rebooted");
-  EXPECT_EQ(running->failure(), Failure::cancelled);
-  EXPECT_EQ(queued->failure(), Failure::cancelled);
+  for (const SdoTicket& ticket : {running, queued}) {
+    EXPECT_EQ(ticket->failure(), Failure::cancelled);
+    EXPECT_EQ(ticket->abortCode(), 0U) << "nobody aborted it";
+  }
   EXPECT_THAT(queued->message(), HasSubstr("cancelled: the node rebooted"));
   EXPECT_TRUE(client.idle());
   EXPECT_EQ(peer.take(), Lines{"601 80 41 60 00 00 00 00 08"});
@@ -322,6 +324,38 @@ TEST_F(SdoClientTest, survives_a_dropped_ticket) {
   client.upload(kStatusword);
   run();
   EXPECT_EQ(client.counters().completed, 1U);
+}
+
+TEST_F(SdoClientTest, an_unknown_command_specifier_for_another_object_is_none_of_its_business) {
+  const SdoTicket ticket = client.upload(kStatusword);
+  client.tick(now);
+  receive("581 E0 42 60 00 00 00 00 00");
+  EXPECT_FALSE(ticket->done());
+  EXPECT_EQ(client.counters().stray_frames, 1U);
+  receive("581 4B 41 60 00 37 02 00 00");
+  EXPECT_TRUE(ticket->ok());
+}
+
+TEST_F(SdoClientTest, has_nothing_to_say_of_a_transfer_that_went_well) {
+  peer.on(kAskStatusword, "581 4B 41 60 00 37 02 00 00");
+  const SdoTicket ticket = client.upload(kStatusword, "statusword");
+  run();
+  ASSERT_TRUE(ticket->ok());
+  EXPECT_EQ(ticket->message(), "");
+  EXPECT_EQ(ticket->reason(), "");
+  EXPECT_EQ(ticket->abortCode(), 0U);
+}
+
+TEST_F(SdoClientTest, shows_the_first_eight_bytes_of_what_could_not_be_written) {
+  const SdoTicket eight = client.download({0x2000, 1}, {1, 2, 3, 4, 5, 6, 7, 8});
+  client.tick(now);
+  receive("581 80 00 20 01 02 00 01 06");
+  EXPECT_THAT(eight->message(), HasSubstr("write 01 02 03 04 05 06 07 08: the drive refused"));
+  const SdoTicket nine = client.download({0x2000, 1}, {1, 2, 3, 4, 5, 6, 7, 8, 9});
+  client.tick(now);
+  receive("581 80 00 20 01 02 00 01 06");
+  EXPECT_THAT(nine->message(),
+              HasSubstr("write 01 02 03 04 05 06 07 08 ... (9 bytes): the drive refused"));
 }
 
 TEST(SdoBytes, are_little_endian) {

@@ -288,5 +288,55 @@ TEST_F(SdoFenceTest, silence_is_a_time_out_where_nothing_else_is_asked_for) {
   EXPECT_EQ(ticket->failure(), Failure::timed_out);
 }
 
+TEST_F(SdoFenceTest, one_question_is_too_few_to_call_an_object_missing) {
+  SdoOptions single = ifThere();
+  single.retries = 0;
+  const SdoTicket ticket = client.upload(kStatusword, "", single);
+  client.tick(now);
+  wait(50);
+  EXPECT_EQ(ticket->failure(), Failure::timed_out);
+}
+
+TEST_F(SdoFenceTest, goes_up_after_a_last_word_for_which_nobody_waits) {
+  ASSERT_TRUE(client.post({0x6040, 0}, {2, 0}));
+  EXPECT_EQ(peer.take(), Lines{"601 2B 40 60 00 02 00 00 00"});
+  const SdoTicket next = client.download({0x6040, 0}, {6, 0});
+  client.tick(now);
+  EXPECT_EQ(peer.take(), Lines{kAskDeviceType});
+  receive("581 60 40 60 00 00 00 00 00");  // to that word
+  EXPECT_FALSE(next->done());
+  receive(kDeviceType);
+  EXPECT_EQ(peer.take(), Lines{"601 2B 40 60 00 06 00 00 00"});
+}
+
+TEST_F(SdoFenceTest, a_last_word_takes_no_read_away_that_an_abandoned_block_upload_needs) {
+  SdoOptions block = once();
+  block.block = SdoOptions::Block::always;
+  client.upload(kName, "", block);
+  client.tick(now);
+  receive("581 C0 08 10 00 00 00 00 00");
+  wait(50);
+  ASSERT_TRUE(client.post({0x6040, 0}, {2, 0}));
+  peer.take();
+  client.upload(kStatusword);
+  client.tick(now);
+  EXPECT_EQ(peer.take(), Lines{kAskIdentity});
+  receive(kIdentity);
+  EXPECT_EQ(peer.take(), Lines{kAskDeviceType});
+}
+
+TEST_F(SdoFenceTest, a_last_word_has_one_to_four_bytes_and_a_free_wire) {
+  EXPECT_FALSE(client.post({0x6040, 0}, {}));
+  EXPECT_FALSE(client.post({0x6040, 0}, {1, 2, 3, 4, 5}));
+  client.upload(kStatusword);
+  client.tick(now);
+  peer.take();
+  EXPECT_FALSE(client.post({0x6040, 0}, {2, 0}));
+  EXPECT_TRUE(peer.take().empty());
+  client.cancelAll("it is lost");
+  EXPECT_TRUE(client.post({0x2000, 1}, {1, 2, 3, 4}));
+  EXPECT_EQ(peer.take().back(), "601 23 00 20 01 01 02 03 04");
+}
+
 }  // namespace
 }  // namespace cia402::canopen

@@ -143,5 +143,42 @@ TEST_F(SdoUrgentTest, two_are_done_one_after_the_other) {
   EXPECT_FALSE(queued->done());
 }
 
+TEST_F(SdoUrgentTest, has_all_its_tries_where_it_takes_over_the_question_of_another) {
+  client.upload(kStatusword);
+  client.tick(now);
+  wait(500);  // asked again, behind a read of the device type
+  EXPECT_EQ(peer.take().back(), kAskDeviceType);
+  const SdoTicket ticket = client.downloadUrgent(kControlword, {2, 0}, "controlword");
+  wait(500);
+  EXPECT_FALSE(ticket->done()) << ticket->message();
+  EXPECT_EQ(peer.take().back(), kAskDeviceType);
+  receive(kDeviceType);
+  EXPECT_EQ(peer.take(), Lines{kStop});
+  receive(kStopped);
+  EXPECT_TRUE(ticket->ok()) << ticket->message();
+}
+
+TEST_F(SdoUrgentTest, tells_nothing_of_whether_the_server_takes_blocks) {
+  SdoOptions block = options();
+  block.block = SdoOptions::Block::always;
+  const char kInitiate[] = "601 C6 50 1F 01 14 00 00 00";
+  client.download({0x1F50, 1}, Bytes(20, 7), "program", block);
+  client.tick(now);
+  EXPECT_EQ(peer.take(), Lines{kInitiate});
+  wait(500);  // no answer: that may be for the blocks
+  client.downloadUrgent(kControlword, {2, 0}, "controlword");
+  receive(kDeviceType);
+  peer.take();
+  receive(kStopped);
+  EXPECT_EQ(peer.take(), Lines{kInitiate});
+}
+
+TEST_F(SdoUrgentTest, is_told_by_its_name_where_it_is_refused) {
+  const SdoTicket ticket = stop();
+  receive("581 80 40 60 00 22 00 00 08");
+  EXPECT_THAT(ticket->message(),
+              ::testing::HasSubstr("object 6040:00 controlword, write 02 00: the drive refused"));
+}
+
 }  // namespace
 }  // namespace cia402::canopen

@@ -36,6 +36,7 @@ TEST(SyncProducer, restarts_at_1) {
   EXPECT_EQ(test::text(sync.next()), "080 01");
 }
 
+using std::chrono::milliseconds;
 constexpr Duration kPeriod = std::chrono::milliseconds(4);
 Time us(int value) { return Time(std::chrono::seconds(1) + std::chrono::microseconds(value)); }
 can::Frame sync(const char* text = "080") { return test::frame(text); }
@@ -105,6 +106,10 @@ TEST(SyncConsumer, sees_a_counter_that_is_missing_or_not_expected) {
   EXPECT_TRUE(without.formWrong());
   without.receive(sync(), us(16000));
   EXPECT_FALSE(without.formWrong());
+  for (int i = 1; i < SyncConsumer::kOddForms; ++i) {
+    without.receive(sync("080 01"), us(16000 + 4000 * i));
+  }
+  EXPECT_FALSE(without.formWrong()) << "not three in a row";
   SyncConsumer with(kPeriod, 3);
   for (int i = 1; i <= SyncConsumer::kOddForms; ++i) with.receive(sync(), us(4000 * i));
   EXPECT_TRUE(with.formWrong());
@@ -141,6 +146,35 @@ TEST(SyncConsumer, measures_anew_when_sync_comes_back) {
   EXPECT_EQ(consumer.period(), Duration::zero());
   consumer.receive(sync(), us(100000 + SyncConsumer::kWindow * 3000));
   EXPECT_EQ(consumer.period(), std::chrono::milliseconds(3));
+}
+
+TEST(SyncConsumer, lacks_no_sync_in_an_interval_of_one_and_a_half_periods) {
+  SyncConsumer consumer(kPeriod, 0);
+  consumer.receive(sync(), us(0));
+  EXPECT_EQ(consumer.receive(sync(), us(6000)).missed, 0U);
+  EXPECT_EQ(consumer.receive(sync(), us(6000 + 6001)).missed, 1U);
+}
+
+TEST(SyncConsumer, takes_long_intervals_for_the_period_where_most_are_long) {
+  const auto measured = [](int of_4_ms, int of_8_ms) {
+    SyncConsumer consumer(kPeriod, 0);
+    int time = 0;
+    consumer.receive(sync(), us(time));
+    for (int i = 0; i < of_4_ms; ++i) consumer.receive(sync(), us(time += 4000));
+    for (int i = 0; i < of_8_ms; ++i) consumer.receive(sync(), us(time += 8000));
+    return consumer.period();
+  };
+  EXPECT_EQ(measured(9, 7), milliseconds(4));
+  EXPECT_EQ(measured(7, 9), std::chrono::microseconds(6250)) << "(7 * 4 + 9 * 8) / 16 ms";
+}
+
+TEST(SyncConsumer, forgets_what_it_measured_before) {
+  SyncConsumer consumer(kPeriod, 0);
+  int time = 0;
+  consumer.receive(sync(), us(time));
+  for (int i = 0; i < SyncConsumer::kWindow; ++i) consumer.receive(sync(), us(time += 4000));
+  for (int i = 0; i < SyncConsumer::kWindow; ++i) consumer.receive(sync(), us(time += 5000));
+  EXPECT_EQ(consumer.period(), milliseconds(5));
 }
 
 }  // namespace

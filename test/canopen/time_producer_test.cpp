@@ -54,6 +54,28 @@ TEST(TimeProducer, sends_at_its_interval_once_it_knows_the_time) {
   EXPECT_EQ(producer.deadline(), now + seconds(6));
 }
 
+TEST(TimeProducer, woken_late_keeps_its_beat_and_sends_no_second_one) {
+  test::ScriptedPeer peer;
+  TimeProducer producer(seconds(1));
+  const Time now(seconds(100));
+  producer.setWallTime(seconds(441763200), now);
+  producer.start(now);
+  producer.tick(peer, now + milliseconds(5));
+  EXPECT_EQ(producer.deadline(), now + seconds(1));
+  producer.tick(peer, now + seconds(2));  // by a whole interval
+  EXPECT_EQ(producer.deadline(), now + seconds(3));
+  EXPECT_EQ(peer.take(), (Lines{"100 05 00 00 00 00 00", "100 D0 07 00 00 00 00"}));
+}
+
+TEST(TimeProducer, takes_the_clock_of_the_process_for_no_wall_clock) {
+  test::ScriptedPeer peer;
+  TimeProducer producer(seconds(1));
+  const Time now(seconds(500000000));  // up for sixteen years
+  producer.start(now);
+  producer.tick(peer, now);
+  EXPECT_EQ(peer.take(), Lines{});
+}
+
 TEST(TimeProducer, is_silent_unless_configured) {
   TimeProducer producer{Duration::zero()};
   producer.start(Time(seconds(1)));

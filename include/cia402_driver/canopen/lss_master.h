@@ -23,7 +23,6 @@ struct LssOptions {
 
 /// One confirmed or unconfirmed LSS service on the wire.
 struct LssRequest {
-  std::string name;                ///< for messages: "switch state selective"
   std::vector<can::Frame> frames;  ///< sent one after the other
   lss::Command answer{};           ///< specifier of the answer
   bool confirmed = true;           ///< false: nobody answers; ends after the window

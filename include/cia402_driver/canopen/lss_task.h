@@ -36,8 +36,6 @@ class LssTask {
   Status ask(LssMaster& master, Time now, std::string step, LssRequest request);
   Status done(std::string result);
   Status fail(std::string error);
-  /// "while inquiring the serial number: nobody answered within 0.1 s".
-  Status failRequest(const LssMaster& master, const std::string& what_to_do);
   void show(std::string step) { step_ = std::move(step); }
 
  private:

@@ -270,7 +270,7 @@ class SdoClient {
   Counters counters_;
   Phase phase_ = Phase::idle;
   Time deadline_ = kNever, held_until_{};
-  Time feed_at_ = kNever;  ///< when more of a sub-block may be sent
+  Time feed_at_ = kNever;  ///< when more of a sub-block may be sent, in that phase
   Time started_at_{}, asked_at_{};
   int attempt_ = 0;
   bool toggle_ = false;
