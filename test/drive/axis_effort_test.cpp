@@ -231,6 +231,36 @@ TEST(EffortStream, ThatEndsIsQuickStoppedWhereTheTargetOfTheModeThatBrakesIsMiss
   EXPECT_THAT(axis.axis.notice(), HasSubstr("braked by a quick stop, as mode torque has no other"));
 }
 
+// The place of 6060h in RPDO 1 has another object, and what the drive shows is sent by the test.
+TEST(EffortStream, ThatEndsHasTheModeThatBrakesWrittenWhereNoRpdoBringsIt) {
+  canopen::NodeConfig node = test::nodeConfig();
+  node.pdos[0].entries[1] = {{0x6098, 0}, 8, "homing_method"};
+  Bench bench(pushing(StopBy::mode), node);
+  ASSERT_TRUE(bench.boot());
+  bench.drive.silent = true;
+  const auto byte = [](unsigned word, unsigned n) {
+    return static_cast<std::uint8_t>(word >> (8 * n));
+  };
+  bool pushed = true;
+  bench.each_cycle = [&] {
+    const unsigned word = bench.drive.statusword();
+    const auto mode = static_cast<std::uint8_t>(bench.drive.dictionary[{0x6060, 0}].first);
+    bench.deliver(can::Frame(0x183, {byte(word, 0), byte(word, 1), 0x39, 0x30, 0x00, 0x00, mode}));
+    bench.deliver(can::Frame(0x283, {0x88, 0x13, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00}));  // 5000
+    if (pushed) static_cast<void>(bench.axis.setTarget(0.5));
+  };
+  ASSERT_TRUE(bench.enable());
+  bench.run(milliseconds(40));
+  ASSERT_EQ(bench.drive.target_torque, 250);
+  ASSERT_TRUE(bench.axis.start({ProcedureKind::halt, {}, 0.0}, bench.now).ok());
+  pushed = false;
+  bench.run(milliseconds(12));
+  EXPECT_EQ(bench.drive.dictionary[std::make_pair(0x6060u, 0u)].first, 9u);
+  EXPECT_EQ(bench.axis.state().mode->name, "cyclic_velocity");
+  EXPECT_EQ(bench.drive.controlword, 0x000F);
+  ASSERT_TRUE(bench.runUntil([&] { return bench.drive.target_velocity == 0; }, milliseconds(100)));
+}
+
 TEST(EffortHalt, StopsByTheModeThatBrakesAndStaysEnabled) {
   PushedAxis axis(pushing(StopBy::mode));
   axis.letGo();

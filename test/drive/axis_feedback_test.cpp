@@ -246,6 +246,20 @@ TEST(AxisFeedback, ADriveThatCannotShowItsModeIsBelieved) {
   EXPECT_EQ(bench.axis.state().mode->name, "cyclic_velocity");
 }
 
+TEST(AxisFeedback, AModeThatASwitchHasReadIsKnownAtOnce) {
+  canopen::NodeConfig node = test::nodeConfig();
+  node.pdos[2].entries.pop_back();  // 6061h
+  node.pdos.pop_back();             // and much else that is read in turn
+  Bench bench(testConfig(), node);
+  ASSERT_TRUE(bench.boot() && bench.enable());
+  bench.run(milliseconds(200));
+  for (const char* mode : {"pp", "csp", "pp", "csp", "pp", "csp"}) {
+    const Time asked = bench.now;
+    ASSERT_TRUE(bench.perform(ProcedureKind::set_mode, mode).success);
+    EXPECT_LE(bench.now - asked, milliseconds(80)) << mode;
+  }
+}
+
 TEST(AxisFeedback, OfTwoModesWithOneValueTheCommandedOneIsActive) {
   DriveProfile profile = testProfile();
   profile.modes.push_back(

@@ -116,6 +116,8 @@ TEST(MeasureAnew, KeepsAPositionThatIsOnlySentOnChange) {
   bench.run(milliseconds(200));
   bench.drive.silent = true;
   bench.axis.loseZero();
+  bench.run(milliseconds(200));
+  ASSERT_FALSE(bench.axis.mayMove());
   bench.axis.measureAnew();
   bench.cycle();
   EXPECT_TRUE(bench.axis.state().feedback_valid);
@@ -165,6 +167,21 @@ TEST(ContinuousJoint, WhatItsNumberDoesBetweenTwoZerosIsNoMotion) {
   EXPECT_NEAR(bench.axis.state().position, -214748.3, 1e-6);
   turnTo(bench, 2147483000);  // and counts from here on
   EXPECT_NEAR(bench.axis.state().position, -214748.4296, 1e-6);
+}
+
+// Some drives say that home is attained before their position counts from there.
+TEST(ContinuousJoint, WhatItsNumberDoesBeforeHomingIsOverIsNoMotion) {
+  Bench bench(homedFirst(continuous()));
+  ASSERT_TRUE(bench.boot());
+  int after = 0;
+  bench.each_cycle = [&] {
+    if (!bench.axis.state().homed) return;
+    if (++after == 1) bench.drive.position = 2147483000;
+    if (after == 2) bench.drive.position = -2147483000;
+  };
+  ASSERT_TRUE(bench.perform(ProcedureKind::home).success) << bench.axis.procedure().message;
+  ASSERT_GT(after, 2);
+  EXPECT_NEAR(bench.axis.state().position, -214748.3, 1e-6);
 }
 
 TEST(ContinuousJoint, CountsOnAfterHoming) {
