@@ -33,7 +33,7 @@ DriveProfile withFollowingError() {
   return withObject(test::object("following_error", 0x60F4, DataType::int32, Quantity::distance));
 }
 
-AxisConfig inMode(const std::string& mode) {
+AxisConfig startingIn(const std::string& mode) {
   AxisConfig config = testConfig();
   config.mode = mode;
   return config;
@@ -166,7 +166,7 @@ TEST(AxisFeedback, TheFollowingErrorOfPositionModesIsTheSetPointLessThePosition)
 }
 
 TEST(AxisFeedback, AVelocityHasNoFollowingError) {
-  Bench bench(inMode("cyclic_velocity"));
+  Bench bench(startingIn("cyclic_velocity"));
   ASSERT_TRUE(bench.boot() && bench.enable());
   bench.follow(0.5);
   bench.run(milliseconds(40));
@@ -303,8 +303,11 @@ TEST(AxisStandstill, OfAnAxisThatMovesOrHasPowerEndsWithItsFeedback) {
     SCOPED_TRACE(enabled ? "enabled, at rest" : "disabled, pushed by hand");
     Bench bench;
     ASSERT_TRUE(bench.boot());
-    if (enabled) ASSERT_TRUE(bench.enable());
-    if (!enabled) bench.drive.coast = 5000;
+    if (enabled) {
+      ASSERT_TRUE(bench.enable());
+    } else {
+      bench.drive.coast = 5000;
+    }
     bench.run(milliseconds(120));
     bench.drive.silent = true;
     bench.run(milliseconds(100));

@@ -186,6 +186,25 @@ TEST(SwitchingTheMode, PutsTheNewTargetOnTheWireFirst) {
   EXPECT_EQ(last, static_cast<std::int32_t>(bench.drive.position));
 }
 
+// The drive is told mode 0 on the way to one that it has forgotten; a halt ends that.
+TEST(SwitchingTheMode, EndsWhatAnEnablingThatWasCutOffHasTheDriveTold) {
+  DriveProfile profile = testProfile();
+  profile.mode_change.shown_when_enabled = true;
+  profile.mode_change.again = ModeChange::Again::through_zero;
+  Bench bench(testConfig(std::move(profile)));
+  bench.drive.mode_delay = 150;
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.axis.start({ProcedureKind::enable, {}, 0.0}, bench.now).ok());
+  ASSERT_TRUE(bench.runUntil([&] {
+    return bench.drive.state == FakeDrive::S::enabled && bench.drive.commanded_mode == 0;
+  }));
+  ASSERT_TRUE(bench.perform(ProcedureKind::halt).success);
+  ASSERT_EQ(bench.drive.commanded_mode, 0);
+  const ProcedureStatus& status = bench.perform(ProcedureKind::set_mode, "csv");
+  EXPECT_TRUE(status.success) << status.message;
+  EXPECT_EQ(bench.drive.commanded_mode, 9);
+}
+
 // --- Set-points that are called back -------------------------------------------------------------
 
 TEST(CalledBack, AStreamBeforeAMotorThatStands) {

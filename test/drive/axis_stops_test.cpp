@@ -179,30 +179,65 @@ TEST(ModeBits, AreHeldInOperationOnly) {
   EXPECT_EQ(bench.drive.controlword, 0x000F);
 }
 
-/// How long it takes from operation enabled until the axis takes commands, where the drive shows
-/// with statusword bit 12 that it follows them.
-Duration untilReady(bool bit_12) {
-  DriveProfile profile = testProfile();
-  profile.modes[4].follows_command_bit = 12;
-  Bench bench(testConfig(profile));
-  EXPECT_TRUE(bench.boot());
-  bench.drive.silent = true;  // the test sends for it
-  bench.each_cycle = [&] {
-    const auto word = static_cast<std::uint16_t>(bench.drive.statusword() | (bit_12 ? 0x1000 : 0));
-    bench.deliver(
-        can::Frame(0x183, {static_cast<std::uint8_t>(word), static_cast<std::uint8_t>(word >> 8),
-                           0x39, 0x30, 0x00, 0x00, static_cast<std::uint8_t>(bench.drive.mode)}));
-  };
-  EXPECT_TRUE(bench.axis.start({ProcedureKind::enable, {}, 0.0}, bench.now).ok());
-  EXPECT_TRUE(bench.runUntil([&] { return bench.axis.state().state == State::operation_enabled; }));
-  const Time enabled = bench.now;
-  EXPECT_TRUE(bench.runUntil([&] { return bench.axis.state().ready_for_motion; }));
-  return bench.now - enabled;
-}
+/// A drive that may show by statusword bit 12 that it follows its set-points, and its mode once it
+/// is enabled.
+struct FollowingDrive : Bench {
+  bool bit_12 = false;
+  Duration mode_after{0};  ///< of operation enabled
+  Time enabled = kNever;
+
+  FollowingDrive() : Bench(config()) {
+    EXPECT_TRUE(boot());
+    drive.silent = true;  // the test sends for it
+    each_cycle = [this] {
+      if (drive.state != FakeDrive::S::enabled)
+        enabled = kNever;
+      else if (enabled == kNever)
+        enabled = now;
+      const bool shown = enabled != kNever && now - enabled >= mode_after;
+      const auto word = static_cast<std::uint16_t>(drive.statusword() | (bit_12 ? 0x1000 : 0));
+      deliver(
+          can::Frame(0x183, {static_cast<std::uint8_t>(word), static_cast<std::uint8_t>(word >> 8),
+                             0x39, 0x30, 0x00, 0x00, static_cast<std::uint8_t>(shown ? 8 : 0)}));
+    };
+  }
+  static AxisConfig config() {
+    DriveProfile profile = testProfile();
+    profile.modes[4].follows_command_bit = 12;
+    profile.mode_change.shown_when_enabled = true;
+    return testConfig(std::move(profile));
+  }
+  /// From operation enabled until the axis takes commands.
+  Duration untilReady() {
+    EXPECT_TRUE(enable());
+    EXPECT_TRUE(runUntil([&] { return axis.state().ready_for_motion; }));
+    return now - enabled;
+  }
+  void disable() { EXPECT_TRUE(perform(ProcedureKind::disable).success); }
+};
 
 TEST(ModeBits, ADriveThatShowsThatItFollowsIsWaitedForNoLonger) {
-  EXPECT_LE(untilReady(true), milliseconds(100));
-  EXPECT_GE(untilReady(false), milliseconds(1000));
+  FollowingDrive drive;
+  drive.bit_12 = true;
+  EXPECT_LE(drive.untilReady(), milliseconds(100));
+}
+
+TEST(ModeBits, ADriveThatNeverShowsThatItFollowsIsWaitedForOnce) {
+  FollowingDrive drive;
+  EXPECT_GE(drive.untilReady(), milliseconds(1000));
+  drive.disable();
+  EXPECT_LE(drive.untilReady(), milliseconds(100));
+}
+
+TEST(ModeBits, ADriveThatWasLateInItsModeMayHaveTheBit) {
+  FollowingDrive drive;
+  drive.mode_after = milliseconds(200);
+  EXPECT_GE(drive.untilReady(), milliseconds(1000));
+  drive.disable();
+  drive.mode_after = milliseconds(0);
+  EXPECT_GE(drive.untilReady(), milliseconds(1000));
+  drive.disable();
+  EXPECT_LE(drive.untilReady(), milliseconds(100));
 }
 
 // --- Warnings ------------------------------------------------------------------------------------

@@ -80,7 +80,9 @@ TEST(LostZero, IsStillLostAfterARebootAndOnceDeclaredIsNot) {
     bench.axis.loseZero();
     bench.axis.measureAnew();
     bench.run(milliseconds(200));
-    if (declared) ASSERT_TRUE(bench.perform(ProcedureKind::set_position, {}, 0.5).success);
+    if (declared) {
+      ASSERT_TRUE(bench.perform(ProcedureKind::set_position, {}, 0.5).success);
+    }
     bench.deliver(bench.drive.reboot());
     ASSERT_TRUE(bench.runUntil([&] { return bench.axis.state().feedback_valid; }));
     EXPECT_EQ(bench.axis.state().homed, declared);
