@@ -140,6 +140,20 @@ TEST(StopPoint, OfAnAxisThatStandsIsNotGivenAnewAfterALateCycle) {
   EXPECT_TRUE(axis.axis.state().halted);
 }
 
+TEST(StopPoint, ThatABusLossComesBeforeIsNotGivenToTheEnabledAxisLater) {
+  TravellingAxis axis;
+  axis.halt();
+  axis.each_cycle = [&] { axis.axis.onBusLost("can0 is bus-off"); };
+  axis.cycle();  // halted, and lost before anything was sent
+  axis.each_cycle = nullptr;
+  ASSERT_TRUE(axis.runUntil([&] { return axis.drive.state == FakeDrive::S::disabled; }));
+  axis.run(milliseconds(200));
+  axis.drive.accepted.clear();
+  ASSERT_TRUE(axis.enable());
+  axis.run(milliseconds(100));
+  EXPECT_TRUE(axis.drive.accepted.empty());
+}
+
 /// How long a halted axis that stands so many counts beyond its stop point may still move.
 Duration mayMoveAtStopPoint(double beyond) {
   TravellingAxis axis;
