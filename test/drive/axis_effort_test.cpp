@@ -130,6 +130,17 @@ TEST(EffortStream, ThatEndsInMotionIsBrakedByTheHaltBitUntilTheNextEffort) {
   EXPECT_EQ(axis.axis.noticeCount(), 0u);
 }
 
+TEST(EffortStream, ItsBrakeEndsWithItsMode) {
+  PushedAxis axis(pushing(std::nullopt, false));
+  axis.letGo();
+  axis.run(milliseconds(40));
+  turn(axis.drive, 0);
+  axis.run(milliseconds(200));
+  ASSERT_EQ(axis.drive.controlword, 0x000F | kHaltBit);
+  ASSERT_TRUE(axis.perform(ProcedureKind::set_mode, "csv").success);
+  EXPECT_EQ(axis.drive.controlword, 0x000F);
+}
+
 TEST(EffortStream, ThatEndsAtRestNeedsNoBrake) {
   PushedAxis axis(pushing(StopBy::quick_stop));
   turn(axis.drive, 0);

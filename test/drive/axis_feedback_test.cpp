@@ -116,6 +116,39 @@ TEST(AxisFeedback, IsHeardLatelyUntilACycleAndTwoMoreHavePassedInSilence) {
   EXPECT_FALSE(bench.axis.heardLately(bench.now));
 }
 
+TEST(AxisFeedback, ThatComesOnChangeOnlyIsAsNewAsItCanBe) {
+  canopen::NodeConfig node = test::nodeConfig();
+  node.pdos[2].transmission = 254;
+  Bench bench(testConfig(), node);
+  ASSERT_TRUE(bench.boot());
+  bench.drive.silent = true;
+  bench.run(milliseconds(400));
+  EXPECT_TRUE(bench.axis.heardLately(bench.now));
+}
+
+TEST(AxisFeedback, SaysHowItsNodeIsWhileThatBoots) {
+  Bench bench;
+  EXPECT_EQ(bench.axis.state().health, canopen::NodeHealth::absent);
+  bool booting = false;
+  bench.each_cycle = [&] {
+    booting = booting || bench.axis.state().health == canopen::NodeHealth::booting;
+    EXPECT_EQ(bench.axis.state().health, bench.node().health());
+  };
+  ASSERT_TRUE(bench.boot());
+  EXPECT_TRUE(booting);
+}
+
+TEST(AxisFeedback, AnEmergencyIsForgottenWithItsNode) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  bench.deliver(FakeDrive::emergency(0x4210));
+  bench.run(milliseconds(20));
+  ASSERT_EQ(bench.axis.state().error_code, 0x4210);
+  bench.deliver(bench.drive.reboot());
+  ASSERT_TRUE(bench.runUntil([&] { return bench.axis.state().feedback_valid; }));
+  EXPECT_EQ(bench.axis.state().error_code, 0);
+}
+
 TEST(AxisFeedback, DigitalInputsThatNoTpdoBringsAreReadAndGetOld) {
   Bench bench(testConfig(withInputs()));
   bench.drive.dictionary[{0x60FD, 0}] = {0x00030001, 4};
@@ -163,6 +196,11 @@ TEST(AxisFeedback, TheFollowingErrorOfPositionModesIsTheSetPointLessThePosition)
   bench.drive.silent = true;  // what was measured last counts
   bench.run(milliseconds(20));
   EXPECT_NEAR(largest, 1.25 - 1.2345, 1e-6);
+  bench.each_cycle = nullptr;
+  bench.drive.silent = false;
+  ASSERT_TRUE(bench.perform(ProcedureKind::disable).success);
+  bench.cycle();
+  EXPECT_TRUE(std::isnan(state.following_error));
 }
 
 TEST(AxisFeedback, AVelocityHasNoFollowingError) {
@@ -230,6 +268,17 @@ TEST(AxisFeedback, AModeThatIsShownNoMoreIsUnknown) {
   EXPECT_EQ(bench.axis.state().mode, nullptr);
   EXPECT_FALSE(bench.axis.state().ready_for_motion);
   EXPECT_THAT(bench.axis.motionRefusal(), HasSubstr("6061:00 shows mode unknown instead of 8"));
+}
+
+TEST(AxisFeedback, NoModeIsShownAsZero) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot() && bench.enable());
+  bench.drive.silent = true;
+  bench.deliver(can::Frame(0x183, {0x37, 0x02, 0x39, 0x30, 0x00, 0x00, 0x00}));
+  bench.cycle();
+  EXPECT_EQ(bench.axis.state().mode_value, 0);
+  EXPECT_EQ(bench.axis.state().mode, nullptr);
+  EXPECT_FALSE(bench.axis.state().ready_for_motion);
 }
 
 TEST(AxisFeedback, ADriveThatCannotShowItsModeIsBelieved) {

@@ -23,8 +23,9 @@ AxisConfig withMode(const std::string& mode, DriveProfile profile = testProfile(
 /// Follows positions in a mode in which the motor of the fake drive never moves. Their target
 /// travels in the place of the target velocity.
 struct HeldAxis : Bench {
-  explicit HeldAxis(AxisConfig config = withMode("interpolated_position"))
+  explicit HeldAxis(AxisConfig config = withMode("interpolated_position"), double position = 12345)
       : Bench(std::move(config), nodes()) {
+    drive.position = position;
     EXPECT_TRUE(boot() && enable());
   }
   static canopen::NodeConfig nodes() {
@@ -205,6 +206,30 @@ TEST(SwitchingTheMode, EndsWhatAnEnablingThatWasCutOffHasTheDriveTold) {
   EXPECT_EQ(bench.drive.commanded_mode, 9);
 }
 
+TEST(SwitchingTheMode, EndsWhatTheModeBeforeHeldInAnRpdo) {
+  DriveProfile profile = testProfile();
+  NamedWrite speed;
+  speed.object = "target_velocity";
+  speed.value = 0.7;
+  profile.modes[4].entry_writes = {speed};  // the speed limit of a position mode
+  Bench bench(testConfig(std::move(profile)));
+  ASSERT_TRUE(bench.boot() && bench.enable());
+  ASSERT_EQ(bench.drive.target_velocity, 7000);
+  ASSERT_TRUE(bench.perform(ProcedureKind::set_mode, "csv").success);
+  EXPECT_EQ(bench.drive.target_velocity, 0);
+  bench.follow(0.5);
+  bench.run(milliseconds(40));
+  EXPECT_EQ(bench.drive.target_velocity, 5000);
+}
+
+TEST(SwitchingTheMode, IsForgottenWithTheNode) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot() && bench.enable());
+  ASSERT_TRUE(bench.perform(ProcedureKind::set_mode, "csv").success);
+  bench.deliver(bench.drive.reboot());
+  EXPECT_EQ(bench.axis.modeName(), "cyclic_position");
+}
+
 // --- Set-points that are called back -------------------------------------------------------------
 
 TEST(CalledBack, AStreamBeforeAMotorThatStands) {
@@ -248,6 +273,17 @@ TEST(CalledBack, AVelocityOfAMotorThatALimitHolds) {
     bench.run(milliseconds(12));
     EXPECT_EQ(bench.drive.target_velocity, 0);
   }
+}
+
+// 0.0001 rad a count; beyond 2147483647 the numbers of 32 bits go on at -2147483648.
+TEST(ContinuousJoint, ItsTargetsWrapAsItsPositionsDo) {
+  AxisConfig config = withMode("interpolated_position");
+  config.geometry.type = AxisGeometry::Type::continuous;
+  config.limits.lower.reset();
+  config.limits.upper.reset();
+  HeldAxis axis(config, 2147483000);
+  axis.lead(214748.3 + 0.07);  // 700 counts on
+  EXPECT_NEAR(axis.sent(), -2147483648 + 52, 1);
 }
 
 TEST(HaltedStream, ReleasedItHoldsWhereItsSetPointsCameToRest) {

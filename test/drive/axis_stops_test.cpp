@@ -72,6 +72,19 @@ TEST(StopBySdo, StopsADriveThatSomebodyElseEnabledWithoutAWord) {
   EXPECT_EQ(bench.axis.noticeCount(), 0u) << "it was not commanded";
 }
 
+TEST(StopBySdo, IsNotToldOfAnAxisThatWasSwitchedOff) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot() && bench.enable());
+  ASSERT_TRUE(bench.perform(ProcedureKind::disable).success);
+  bench.drive.state = FakeDrive::S::enabled;  // by somebody else
+  bench.drive.stuck.insert(FakeDrive::S::enabled);
+  bench.run(milliseconds(40));
+  bench.axis.stopBySdo("SYNC is gone", bench.now);
+  bench.run(milliseconds(12));
+  EXPECT_EQ(quickStopsBySdo(bench.drive), 1u);
+  EXPECT_EQ(bench.axis.noticeCount(), 0u);
+}
+
 TEST(StopBySdo, ThatTheDriveRefusesIsTold) {
   Bench bench;
   ASSERT_TRUE(bench.boot() && bench.enable());
@@ -84,14 +97,65 @@ TEST(StopBySdo, ThatTheDriveRefusesIsTold) {
   EXPECT_THAT(bench.axis.notice(), HasSubstr("switch its power off"));
 }
 
+TEST(BusLoss, QuickStopsAnEnabledAxisAndSaysWhy) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot() && bench.enable());
+  bench.axis.onBusLost("can0 is bus-off");
+  EXPECT_EQ(bench.axis.noticeCount(), 1u);
+  EXPECT_THAT(bench.axis.notice(),
+              HasSubstr("shoulder (node 3): can0 is bus-off: nothing reaches"));
+  bench.run(milliseconds(12));
+  EXPECT_EQ(bench.drive.controlword, 0x0002);
+  bench.axis.onBusLost("can0 is bus-off");
+  EXPECT_EQ(bench.axis.noticeCount(), 1u);
+}
+
+TEST(BusLoss, LeavesADisabledAxisAlone) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot() && bench.enable());
+  ASSERT_TRUE(bench.perform(ProcedureKind::disable).success);
+  bench.axis.onBusLost("can0 is bus-off");
+  bench.run(milliseconds(12));
+  EXPECT_EQ(bench.axis.noticeCount(), 0u);
+  EXPECT_EQ(bench.drive.controlword, 0x0000);
+}
+
+// Disable operation, 0007h, would wait for a drive that does not listen to the state commands.
+TEST(SwitchingOff, OfAnAxisThatNoQuickStopBrakesIsDisableVoltageWhateverTheDriveShows) {
+  AxisConfig config = testConfig();
+  config.mode = "cyclic_velocity";
+  Bench bench(config);
+  ASSERT_TRUE(bench.boot() && bench.enable());
+  bench.drive.coast = 3000;
+  bench.drive.stuck.insert(FakeDrive::S::enabled);
+  bench.drive.controlwords.clear();
+  EXPECT_FALSE(bench.perform(ProcedureKind::disable).success);
+  EXPECT_EQ(bench.drive.controlwords, (std::vector<std::uint16_t>{0x0002, 0x0000}));
+}
+
+// Two periods after the last set-point a cycle is in time.
+TEST(LateCycle, InterruptsAStream) {
+  for (const bool late : {false, true}) {
+    Bench bench;
+    ASSERT_TRUE(bench.boot() && bench.enable());
+    bench.follow(3.0);
+    bench.run(milliseconds(40));
+    ASSERT_NE(bench.axis.setPoint().velocity(), 0.0);
+    bench.now += milliseconds(late ? 5 : 4);
+    bench.cycle();
+    EXPECT_EQ(bench.axis.setPoint().interruptions(), late ? 1u : 0u);
+  }
+}
+
 // --- Halts where the drive plans -----------------------------------------------------------------
 
-/// On its way to 3.0 rad at 2 rad/s, which takes 0.25 rad to stop from.
+/// On its way to a limit at 2 rad/s, which takes 0.25 rad to stop from.
 struct TravellingAxis : Bench {
   explicit TravellingAxis(double until = 1.6) : Bench(planned()) {
     EXPECT_TRUE(boot() && enable());
-    EXPECT_TRUE(axis.setTarget(3.1));
-    EXPECT_TRUE(runUntil([&] { return axis.state().position > until; }));
+    const bool up = until > axis.state().position;
+    EXPECT_TRUE(axis.setTarget(up ? 3.1 : -3.1));
+    EXPECT_TRUE(runUntil([&] { return (axis.state().position > until) == up; }));
   }
   void halt() { EXPECT_TRUE(axis.start({ProcedureKind::halt, {}, 0.0}, now).ok()); }
   bool halted() {
@@ -105,10 +169,43 @@ struct TravellingAxis : Bench {
 };
 
 TEST(StopPoint, StaysWithinTheLimits) {
-  TravellingAxis axis(2.9);  // cannot stop before 3.15
+  for (const double side : {1.0, -1.0}) {
+    TravellingAxis axis(2.9 * side);  // cannot stop before 3.15
+    axis.halt();
+    ASSERT_TRUE(axis.halted());
+    EXPECT_EQ(axis.drive.accepted_target, 31000 * side);
+  }
+}
+
+TEST(StopPoint, CountsFromWhereTheAxisIsByNowWhereItsFeedbackIsOld) {
+  TravellingAxis axis;
+  axis.drive.silent = true;
+  axis.run(milliseconds(28));
+  axis.halt();
+  axis.cycle();
+  const double from = axis.drive.position;
+  ASSERT_TRUE(axis.runUntil([&] { return axis.drive.accepted_target != 31000; }));
+  EXPECT_GE(axis.drive.accepted_target, from + 2500);
+}
+
+TEST(StopPoint, IsNotMovedByASecondHalt) {
+  TravellingAxis axis;
+  axis.halt();
+  axis.run(milliseconds(60));
+  const std::int32_t point = axis.drive.accepted_target;
   axis.halt();
   ASSERT_TRUE(axis.halted());
-  EXPECT_EQ(axis.drive.accepted_target, 31000);
+  EXPECT_EQ(axis.drive.accepted_target, point);
+}
+
+TEST(StopPoint, StaysAfterALateCycleWhereItIsFarEnoughStill) {
+  TravellingAxis axis;
+  axis.halt();
+  axis.cycle();
+  axis.pass(milliseconds(6), 20000);
+  const double point = axis.axis.target();
+  ASSERT_TRUE(axis.halted());
+  EXPECT_EQ(axis.axis.target(), point);
 }
 
 // The drive may have got the point so late that it lies too near, or behind it.

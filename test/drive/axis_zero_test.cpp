@@ -89,6 +89,21 @@ TEST(LostZero, IsStillLostAfterARebootAndOnceDeclaredIsNot) {
   }
 }
 
+TEST(LostZero, ThatHomingFoundAgainIsNotLostAnyMore) {
+  AxisConfig config = homedFirst(testConfig());
+  config.homing->required = false;
+  Bench bench(config);
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.axis.state().homed);
+  bench.axis.loseZero();
+  bench.axis.measureAnew();
+  bench.run(milliseconds(200));
+  ASSERT_FALSE(bench.axis.state().homed);
+  ASSERT_TRUE(bench.perform(ProcedureKind::home).success) << bench.axis.procedure().message;
+  bench.deliver(bench.drive.reboot());
+  EXPECT_TRUE(bench.axis.state().homed);
+}
+
 TEST(MeasureAnew, BelievesNothingThatCameBefore) {
   Bench bench;
   ASSERT_TRUE(bench.boot());
