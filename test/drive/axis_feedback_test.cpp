@@ -165,6 +165,18 @@ TEST(AxisFeedback, DigitalInputsThatNoTpdoBringsAreReadAndGetOld) {
   EXPECT_EQ(state.digital_inputs, 0u);
 }
 
+TEST(AxisFeedback, WhatWasReadFromANodeIsForgottenWithIt) {
+  Bench bench(testConfig(withInputs()));
+  bench.drive.dictionary[{0x60FD, 0}] = {0x00030001, 4};
+  ASSERT_TRUE(bench.boot());
+  bench.run(milliseconds(400));
+  ASSERT_TRUE(bench.axis.state().digital_inputs_valid);
+  bench.deliver(bench.drive.reboot());
+  bench.drive.dictionary.erase({0x60FD, 0});  // is not told again
+  ASSERT_TRUE(bench.runUntil([&] { return bench.axis.state().feedback_valid; }));
+  EXPECT_FALSE(bench.axis.state().digital_inputs_valid);
+}
+
 TEST(AxisFeedback, DigitalInputsOfATpdoAreUnknownUntilItComes) {
   canopen::NodeConfig node = test::nodeConfig();
   node.pdos.push_back(third({{0x60FD, 0}, 32, "digital_inputs"}));
