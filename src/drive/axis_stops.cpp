@@ -157,7 +157,6 @@ void AxisCore::renewStopPoint(Time now) {
 
 /// The mode that brakes this one, where its target travels in every cycle.
 const ModeChannel* AxisCore::brakeMode() const {
-  if (mode_->spec->stop_mode.empty()) return nullptr;
   const ModeChannel* brake = objects_.channel(mode_->spec->stop_mode);
   const bool usable = brake != nullptr && brake->target.mapped() && modeRefusal(*brake).empty();
   return usable ? brake : nullptr;
