@@ -165,6 +165,25 @@ TEST(PdoPlanner, SaysThatATargetCannotBeMapped) {
   EXPECT_THAT(plan.error().message, HasSubstr("`target_velocity`, which cannot be mapped"));
 }
 
+TEST(PdoPlanner, AModeIsSelectedBySdoOrByPdo) {
+  DriveProfile profile = family("generic_cia402");
+  const auto selectable = [&](bool writable, bool mappable) {
+    for (drive::ObjectSpec& object : profile.objects) {
+      if (object.name != "mode_of_operation") continue;
+      object.writable = writable;
+      object.rpdo = mappable;
+    }
+    return planPdos(profile, needs(profile));
+  };
+  EXPECT_TRUE(selectable(true, false).ok());
+  EXPECT_TRUE(selectable(false, true).ok());
+  const auto plan = selectable(false, false);
+  ASSERT_FALSE(plan.ok());
+  EXPECT_THAT(plan.error().message, HasSubstr("mode `cyclic_position` cannot be selected: "
+                                              "mode_of_operation can neither be written nor "
+                                              "mapped"));
+}
+
 TEST(PdoPlanner, DoesNotUseAFixedRpdoThatWouldSendWhatNobodySets) {
   DriveProfile profile = family("generic_cia402");
   PdoLayout fixed;

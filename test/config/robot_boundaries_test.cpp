@@ -1,0 +1,197 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// The first and the last value that a key takes, what no section knows, and several mistakes at
+// once.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "../../src/config/robot_parts.h"
+#include "config/loaded.h"
+
+namespace cia402::config {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+/// The arm with further keys for the shoulder.
+LoadedRobot shoulderWith(const std::string& keys) {
+  return changed("node_id: 1,", "node_id: 1, " + keys + ",");
+}
+
+TEST(RobotBoundaries, NumbersOfAnIdentityHave32Bits) {
+  for (const std::string section : {"identity", "simulation", "lss"}) {
+    const bool simulated = section == "simulation";
+    const std::string others = section == "lss" ? "vendor_id: 1, product_code: 1, revision: 1, "
+                                                  "serial: 1"
+                                                : "";
+    for (const std::string key : {simulated ? "vendor" : "vendor_id",
+                                  simulated ? "product" : "product_code", "revision", "serial"}) {
+      const auto problems = [&](const std::string& value) {
+        std::string keys = others;
+        const std::size_t at = keys.find(key + ": 1");
+        if (at != std::string::npos) {
+          keys.replace(at, key.size() + 3, key + ": " + value);
+        } else {
+          keys = key + ": " + value;
+        }
+        return shoulderWith(section + ": {" + keys + "}").problems;
+      };
+      SCOPED_TRACE(section + "/" + key);
+      EXPECT_EQ(problems("0"), "");
+      EXPECT_EQ(problems("0xFFFFFFFF"), "");
+      const auto refused =
+          HasSubstr("axes/shoulder/" + section + "/" + key + ": must be between 0 and 4294967295");
+      EXPECT_THAT(problems("-1"), refused);
+      EXPECT_THAT(problems("0x100000000"), refused);
+    }
+  }
+}
+
+TEST(RobotBoundaries, OfTheBoot) {
+  struct Key {
+    const char *name, *first, *last, *before, *behind;
+  };
+  const Key keys[] = {{"retries", "0", "1000", "-1", "1001"},
+                      {"retry_delay", "0.01", "3600", "0.009", "3600.1"},
+                      {"search_period", "0", "3600", "-0.1", "3600.1"}};
+  for (const Key& key : keys) {
+    const auto problems = [&](const char* value) {
+      return shoulderWith("boot: {" + std::string(key.name) + ": " + value + "}").problems;
+    };
+    SCOPED_TRACE(key.name);
+    EXPECT_EQ(problems(key.first), "");
+    EXPECT_EQ(problems(key.last), "");
+    EXPECT_THAT(problems(key.before), HasSubstr("axes/shoulder/boot/" + std::string(key.name)));
+    EXPECT_THAT(problems(key.behind), HasSubstr("axes/shoulder/boot/" + std::string(key.name)));
+  }
+}
+
+TEST(RobotBoundaries, LimitsMayBeAsWideAsTheDrivesPosition) {
+  const auto problems = [](const std::string& limits) {
+    return changed("gear_ratio: 50.0, limits: {lower: -3.0, upper: 3.0}",
+                   "type: prismatic, lead: 1, counts_per_turn: 1, limits: {" + limits + "}")
+        .problems;
+  };
+  // A count is a metre.
+  EXPECT_EQ(problems("lower: -2147483648, upper: 2147483647"), "");
+  const auto refused = HasSubstr("axes/shoulder/limits: `position_actual` holds");
+  EXPECT_THAT(problems("upper: 2147483648"), refused);
+  EXPECT_THAT(problems("lower: -2147483649"), refused);
+}
+
+TEST(RobotBoundaries, ANameBeginsWithALetterOfTheAlphabet) {
+  for (const char* name : {"a", "z", "A", "Z", "zZ", "a0", "a9", "a_", "fuzz_AZ_az_09"}) {
+    EXPECT_TRUE(isGraphName(name)) << name;
+  }
+  for (const char* name : {"", "0", "9a", "_a", "a-b", "a/b", "a b", "a.b", "a{", "a`", "a@", "a[",
+                           "a:", "\xC3\xA4"}) {
+    EXPECT_FALSE(isGraphName(name)) << name;
+  }
+}
+
+TEST(RobotMistakes, AKeyThatASectionDoesNotKnowIsTold) {
+  struct Section {
+    const char *from, *to, *path;
+  };
+  const Section sections[] = {
+      {"bus:", "colour: red\nbus:", "  colour"},
+      {"interface: can0", "interface: can0, colour: red", "bus/colour"},
+      {"axes:", "recorder: {colour: red}\naxes:", "recorder/colour"},
+      {"axes:", "groups: {arm: {joints: [elbow], colour: red}}\naxes:", "groups/arm/colour"},
+      {"axes:", "groups: {arm: {joints: [elbow], constraints: {elbow: {colour: red}}}}\naxes:",
+       "groups/arm/constraints/elbow/colour"},
+      {"axes:", "couplings: [{joints: [p], axes: [elbow], matrix: [[1]], colour: red}]\naxes:",
+       "couplings[0]/colour"},
+      {"upper: 3.0", "upper: 3.0, colour: red", "axes/shoulder/limits/colour"},
+      {"method: 17", "method: 17, colour: red", "axes/elbow/homing/colour"},
+      {"node_id: 1,", "node_id: 1, identity: {colour: red},", "axes/shoulder/identity/colour"},
+      {"node_id: 1,",
+       "node_id: 1, lss: {vendor_id: 1, product_code: 2, revision: 3, serial: 4, colour: red},",
+       "axes/shoulder/lss/colour"},
+      {"node_id: 1,", "node_id: 1, parameters: {colour: red},", "axes/shoulder/parameters/colour"},
+      {"node_id: 1,", "node_id: 1, boot: {colour: red},", "axes/shoulder/boot/colour"},
+      {"node_id: 1,", "node_id: 1, error_control: {colour: red},",
+       "axes/shoulder/error_control/colour"},
+      {"node_id: 1,", "node_id: 1, sdo: {request: 0x641, answer: 0x5C1, colour: red},",
+       "axes/shoulder/sdo/colour"},
+      {"node_id: 1,", "node_id: 1, simulation: {colour: red},", "axes/shoulder/simulation/colour"},
+      {"node_id: 1,", "node_id: 1, frame: {parent: a, child: b, colour: red},",
+       "axes/shoulder/frame/colour"},
+      {"node_id: 1,", "node_id: 1, frame: {parent: a, child: b, origin: {colour: red}},",
+       "axes/shoulder/frame/origin/colour"},
+  };
+  for (const Section& section : sections) {
+    EXPECT_THAT(changed(section.from, section.to).problems,
+                HasSubstr(std::string(section.path) + ": unknown key"));
+  }
+}
+
+TEST(RobotMistakes, AGroupIsGivenOnce) {
+  EXPECT_THAT(changed("axes:", "groups: {arm: {joints: [elbow]}, arm: {joints: [shoulder]}}\naxes:")
+                  .problems,
+              HasSubstr("groups/arm: is given twice"));
+}
+
+TEST(RobotMistakes, AnUnknownDriveIsTheOnlyProblemWhateverElseTheAxisSays) {
+  const std::string problems =
+      shoulderWith(
+          "lead: 0.1, mode: pv, modes: [pv], feedback: [velocity_actual], stale_after: 3, "
+          "rpdo_timeout: 0.1, pdos: {rpdo1: [controlword]}, write: [{object: abc, value: 1}], "
+          "error_control: {kind: guarding, period: 0.1}, homing: {method: 99}, quick_stop: hold, "
+          "drive: nobodys")
+          .problems;
+  EXPECT_THAT(problems, HasSubstr("  axes/shoulder/drive: there is no drive profile `nobodys`"));
+  EXPECT_EQ(std::count(problems.begin(), problems.end(), '\n'), 1) << problems;
+}
+
+TEST(RobotMistakes, AWriteThatDoesNotFitIsToldTogetherWithTheOthers) {
+  std::string text = kArm;
+  text.replace(text.find("node_id: 1,"), 11,
+               "node_id: 1, write: [{object: position_window, value: 1.0e+9}],");
+  text.replace(text.find("node_id: 2,"), 11, "node_id: 2, lead: 0.1,");
+  EXPECT_THAT(loadText(text).problems,
+              AllOf(HasSubstr("axes/shoulder/write: shoulder (node 1): position_window (6067:00): "
+                              "1e+09 does not fit"),
+                    HasSubstr("axes/elbow/lead: is for prismatic axes")));
+}
+
+TEST(RobotMistakes, ADefaultOfAnotherKindThanTheAxisHasIsNoneForIt) {
+  std::string text = kArm;
+  text.replace(text.find("{velocity: 2.0, acceleration: 8.0}"), 34, "[2.0, 8.0]");
+  text.replace(text.find("upper: 3.0"), 10, "upper: -3.0");
+  EXPECT_THAT(loadText(text).problems,
+              AllOf(HasSubstr("  axes/shoulder/limits/upper: must be greater than lower"),
+                    HasSubstr("  defaults/limits: must be a mapping (key: value), not a list")));
+}
+
+TEST(RobotConfig, LssMayBeLeftOutOrTellDrivesApart) {
+  EXPECT_EQ(shoulderWith("lss: false").problems, "");
+  std::string text = kArm;
+  const std::string lss = "lss: {vendor_id: 1, product_code: 2, revision: 3, serial: ";
+  text.replace(text.find("node_id: 1,"), 11, "node_id: 1, " + lss + "4},");
+  EXPECT_EQ(loadText(text).problems, "") << "the elbow has none";
+  text.replace(text.find("node_id: 2,"), 11, "node_id: 2, " + lss + "5},");
+  const LoadedRobot both = loadText(text);
+  EXPECT_EQ(both.problems, "");
+  EXPECT_EQ(both.robot.axes[1].lss->identity, (canopen::lss::Identity{1, 2, 3, 5}));
+}
+
+TEST(RobotConfig, AJointThatAnAxisCannotStreamToIsInNoGroup) {
+  std::string text = kArm;
+  text.replace(text.find("node_id: 1,"), 11, "node_id: 1, mode: pv, modes: [],");
+  const LoadedRobot single = loadText(text);
+  EXPECT_EQ(single.problems, "");
+  EXPECT_THAT(single.robot.groups.at(0).joints, testing::ElementsAre("elbow"));
+  text.replace(text.find("axes:"), 5,
+               "couplings: [{joints: [pitch, roll], axes: [shoulder, elbow], matrix: [[0.5, 0.5], "
+               "[1, -1]]}]\naxes:");
+  EXPECT_TRUE(loadText(text).robot.groups.empty()) << "the shoulder moves both";
+  text.replace(text.find("axes:\n"), 6, "groups: {arm: {joints: [roll]}}\naxes:\n");
+  EXPECT_THAT(loadText(text).problems,
+              AllOf(HasSubstr("groups/arm/joints: `shoulder` cannot follow trajectories"),
+                    Not(HasSubstr("`elbow` cannot follow"))));
+}
+
+}  // namespace
+}  // namespace cia402::config
