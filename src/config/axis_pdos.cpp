@@ -167,7 +167,7 @@ bool choosePdos(YamlSection& section, AxisConfig& axis, RobotConfig& robot) {
   const auto feedback = section.get("feedback");
   section.readInteger("stale_after", axis.stale_after, 1, 1000);
   if (!axis.profile) {
-    section.get("rpdo_timeout");
+    for (const char* key : {"lacks", "rpdo_timeout"}) section.get(key);
     return false;
   }
   const DriveProfile& profile = *axis.profile;
@@ -213,7 +213,8 @@ bool choosePdos(YamlSection& section, AxisConfig& axis, RobotConfig& robot) {
 
 namespace {
 
-/// What `axis` was planned for; its objects are those that found room.
+/// What `axis` was planned for, but for what travels only because there was room; its objects are
+/// those that found room.
 PdoNeeds needsOf(const AxisConfig& axis, const RobotConfig& robot) {
   PdoNeeds needs;
   needs.mode = axis.mode;
@@ -223,7 +224,6 @@ PdoNeeds needsOf(const AxisConfig& axis, const RobotConfig& robot) {
     std::copy_if(pdo.objects.begin(), pdo.objects.end(), std::back_inserter(needs.feedback),
                  [&](const std::string& name) { return !contains(axis.riders, name); });
   }
-  needs.if_room = axis.riders;
   needs.cycle = axis.sync_period;
   needs.fresh = freshness(robot);
   return needs;
@@ -249,10 +249,7 @@ void planAgain(RobotConfig& robot, Duration cycle) {
 
 void leaveRiders(RobotConfig& robot) {
   for (AxisConfig& axis : robot.axes) {
-    if (axis.riders.empty()) continue;
-    PdoNeeds needs = needsOf(axis, robot);
-    needs.if_room.clear();
-    plan(axis, needs);
+    if (!axis.riders.empty()) plan(axis, needsOf(axis, robot));
   }
 }
 

@@ -136,7 +136,8 @@ TEST(RobotMistakes, AGroupIsGivenOnce) {
 TEST(RobotMistakes, AnUnknownDriveIsTheOnlyProblemWhateverElseTheAxisSays) {
   const std::string problems =
       shoulderWith(
-          "lead: 0.1, mode: pv, modes: [pv], feedback: [velocity_actual], stale_after: 3, "
+          "lead: 0.1, mode: pv, modes: [pv], feedback: [velocity_actual], lacks: [abc], "
+          "stale_after: 3, "
           "rpdo_timeout: 0.1, pdos: {rpdo1: [controlword]}, write: [{object: abc, value: 1}], "
           "error_control: {kind: guarding, period: 0.1}, homing: {method: 99}, quick_stop: hold, "
           "drive: nobodys")
