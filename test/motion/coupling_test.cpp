@@ -83,6 +83,7 @@ TEST(Coupling, SingularMatrixIsRefusedInWords) {
 TEST(Coupling, UnequalScalesAreNotMistakenForSingularity) {
   EXPECT_TRUE(wrist(matrix2(1e-6, 0, 0, 1e6)));
   EXPECT_TRUE(wrist(matrix2(1e-7, 1e-7, 1e5, -1e5)));
+  EXPECT_TRUE(wrist(matrix2(1, 1e12, 1, -1e12))) << "one axis has a large gear ratio";
 }
 
 TEST(Coupling, WrongSizesAreRefusedInWords) {

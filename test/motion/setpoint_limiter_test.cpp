@@ -195,6 +195,12 @@ TEST(PositionLimiter, AfterAResetNothingOfBeforeIsLeft) {
   EXPECT_FALSE(joint.limiter.timedOut()) << "no command came that could be late";
 }
 
+TEST(PositionLimiter, AnUnknownVelocityCountsAsRest) {
+  Position joint(elbow(), {0.3, std::nan(""), 0});
+  EXPECT_EQ(joint.step().velocity, 0);
+  EXPECT_NEAR(joint.follow(1).velocity, 0.02, 1e-12);
+}
+
 TEST(PositionLimiter, StaleCommandStopsTheJointByTheStopDeceleration) {
   LimiterConfig config = elbow();
   config.command_timeout = std::chrono::milliseconds(200);
