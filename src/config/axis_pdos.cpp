@@ -144,6 +144,9 @@ void readRpdoTimeout(YamlSection& section, AxisConfig& axis) {
     section.get("rpdo_timeout")
         ->problem("must be 0 (none) or at least two cycles, " +
                   std::to_string(2.0 * toSeconds(axis.sync_period)) + " s");
+  } else if (axis.rpdo_timeout % std::chrono::milliseconds(1) != Duration(0)) {
+    section.get("rpdo_timeout")
+        ->problem("must be a whole number of milliseconds, as 1400h:05 counts in them");
   }
 }
 
@@ -154,7 +157,7 @@ void setRpdoTimeout(AxisConfig& axis) {
     const auto& objects = pdo.objects;
     const bool commands = std::find(objects.begin(), objects.end(), "controlword") != objects.end();
     if (pdo.direction != canopen::PdoDirection::rpdo || !commands || pdo.event_timer != 0) continue;
-    pdo.event_timer = static_cast<std::uint16_t>(std::clamp<std::int64_t>(ms, 0, 0xFFFF));
+    pdo.event_timer = static_cast<std::uint16_t>(ms);
     return;
   }
 }

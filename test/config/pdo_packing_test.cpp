@@ -69,6 +69,10 @@ TEST(PackPdos, FillsFurtherPdosOnlyWithinTheRules) {
   rules.entries = 1;
   EXPECT_FALSE(packPdos({{"a", 8, 1}, {"b", 8, 1}}, rules));
   EXPECT_FALSE(packPdos({{"a", 65, 1}}, {}));
+  std::vector<PackItem> wide = {{"a", 64, 1}, {"b", 64, 1}, {"c", 64, 1}, {"d", 64, 1}};
+  EXPECT_TRUE(packPdos(wide, {}));
+  wide.push_back({"e", 64, 1});
+  EXPECT_FALSE(packPdos(wide, {})) << "there are four";
   std::vector<PackItem> bytes;
   for (const char* name : {"a", "b", "c", "d", "e", "f", "g", "h"}) bytes.push_back({name, 7, 1});
   EXPECT_EQ(packPdos(bytes, {})->size(), 1u);

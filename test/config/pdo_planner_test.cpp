@@ -107,6 +107,16 @@ TEST(PdoPlanner, TheTargetOfTheStartModeTravelsWithTheControlword) {
               testing::Contains("rpdo1 /1: controlword target_velocity"));
 }
 
+TEST(PdoPlanner, WhatMayChangeAtAnyTimeTravelsWhereItsWorstCaseIsLeast) {
+  const DriveProfile profile = family("generic_cia402");
+  PdoNeeds what = needs(profile);
+  what.modes = {"cyclic_torque"};
+  // 8 bytes, 135 bits, in a cycle in which the torque changes; apart 115 + 75, though that is less
+  // where it does not.
+  EXPECT_THAT(lines(planned(profile, what)),
+              testing::Contains("rpdo1 /1: controlword target_position target_torque"));
+}
+
 TEST(PdoPlanner, ASlowCycleBringsEverythingInEachCycle) {
   const DriveProfile profile = family("generic_cia402");
   PdoNeeds what = needs(profile);
@@ -193,6 +203,18 @@ TEST(PdoPlanner, DoesNotUseAFixedRpdoThatWouldSendWhatNobodySets) {
   profile.fixed_pdos = {fixed};
   EXPECT_THAT(lines(planned(profile, needs(profile))),
               testing::Contains("rpdo2 /1: controlword target_position"));
+}
+
+TEST(PdoPlanner, UsesAFixedRpdoWhereThereIsNoOther) {
+  DriveProfile profile = family("generic_cia402");
+  PdoLayout fixed;
+  fixed.direction = PdoDirection::rpdo;
+  fixed.number = 1;
+  fixed.objects = {"controlword", "target_position"};
+  profile.fixed_pdos = {fixed};
+  profile.max_rpdos = 1;
+  EXPECT_THAT(lines(planned(profile, needs(profile))),
+              testing::Contains("rpdo1 /1: controlword target_position"));
 }
 
 /// A family made up by chance: rules, mappability and widths.

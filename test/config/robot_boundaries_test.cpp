@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "../../src/config/robot_parts.h"
 #include "config/loaded.h"
 
@@ -67,6 +69,24 @@ TEST(RobotBoundaries, OfTheBoot) {
   }
 }
 
+TEST(RobotBoundaries, TheDrivesOwnDeadlineHas16BitsOfMilliseconds) {
+  const auto timer = [](const char* timeout) {
+    const LoadedRobot loaded = shoulderWith(std::string("rpdo_timeout: ") + timeout);
+    EXPECT_EQ(loaded.problems, "");
+    return loaded.robot.axes[0].pdos.at(0).event_timer;
+  };
+  EXPECT_EQ(timer("65.535"), 65535);
+  EXPECT_EQ(timer("0.008"), 8) << "two cycles";
+  EXPECT_EQ(timer("0"), 0);
+  EXPECT_THAT(shoulderWith("rpdo_timeout: 65.536").problems,
+              HasSubstr("axes/shoulder/rpdo_timeout: must be at least 0 and at most 65.535"));
+  EXPECT_THAT(shoulderWith("rpdo_timeout: 0.007").problems,
+              HasSubstr("axes/shoulder/rpdo_timeout: must be 0 (none) or at least two cycles"));
+  EXPECT_THAT(shoulderWith("rpdo_timeout: 0.0085").problems,
+              HasSubstr("axes/shoulder/rpdo_timeout: must be a whole number of milliseconds, as "
+                        "1400h:05 counts in them"));
+}
+
 TEST(RobotBoundaries, LimitsMayBeAsWideAsTheDrivesPosition) {
   const auto problems = [](const std::string& limits) {
     return changed("gear_ratio: 50.0, limits: {lower: -3.0, upper: 3.0}",
@@ -127,6 +147,30 @@ TEST(RobotMistakes, AKeyThatASectionDoesNotKnowIsTold) {
   }
 }
 
+TEST(RobotMistakes, PositionsInCountsNeedTheCountsOfATurn) {
+  EXPECT_THAT(changed("counts_per_turn: 4000, ", "").problems,
+              HasSubstr("axes/shoulder: `counts_per_turn` is missing: the drive's position counts "
+                        "per motor turn"));
+}
+
+TEST(RobotMistakes, ADriveIsNamedByAText) {
+  const std::string problems = shoulderWith("drive: [generic_cia402]").problems;
+  EXPECT_THAT(problems, HasSubstr("axes/shoulder/drive: must be a text, not a list"));
+  EXPECT_THAT(problems, Not(HasSubstr("there is no drive profile")));
+}
+
+TEST(RobotMistakes, AnUnknownHomingMethodIsToldWithThoseThereAre) {
+  EXPECT_THAT(changed("method: 17", "method: 15").problems,
+              HasSubstr("axes/elbow/homing/method: profile generic_cia402 has no method 15; it has "
+                        "1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 17, 18, 19, 20, 21, 22, "
+                        "23, 24, 25, 26, 27, 28, 29, 30, 33, 34, 35, 37\n"));
+}
+
+TEST(RobotMistakes, AnAxisIsGivenOnce) {
+  EXPECT_THAT(changed("elbow: {node_id: 2,", "shoulder: {joint: elbow, node_id: 2,").problems,
+              HasSubstr("axes/shoulder: is given twice"));
+}
+
 TEST(RobotMistakes, AGroupIsGivenOnce) {
   EXPECT_THAT(changed("axes:", "groups: {arm: {joints: [elbow]}, arm: {joints: [shoulder]}}\naxes:")
                   .problems,
@@ -176,6 +220,34 @@ TEST(RobotConfig, LssMayBeLeftOutOrTellDrivesApart) {
   const LoadedRobot both = loadText(text);
   EXPECT_EQ(both.problems, "");
   EXPECT_EQ(both.robot.axes[1].lss->identity, (canopen::lss::Identity{1, 2, 3, 5}));
+}
+
+TEST(RobotConfig, WhatADriveLacksDoesNotTravelThoughThereIsRoom) {
+  const LoadedRobot loaded = shoulderWith("lacks: [following_error]");
+  EXPECT_EQ(loaded.problems, "");
+  EXPECT_THAT(loaded.robot.axes[0].riders, testing::IsEmpty());
+  EXPECT_THAT(loaded.robot.axes[1].riders, testing::ElementsAre("following_error"));
+}
+
+TEST(RobotConfig, OnAFullBusVelocitiesStillComeForEveryJointState) {
+  // 5 ms: in every cycle of 4 ms, though for 10 ms every second one would do. In a cycle each axis
+  // needs 115 + 95 bits of RPDOs and 125 + 115 of TPDOs: 8 of them more than 3200 of 4000.
+  std::string text =
+      "bus: {interface: can0}\njoint_state_rate: 200\ndefaults: {drive: generic_cia402, "
+      "counts_per_turn: 4000, limits: {velocity: 2.0, acceleration: 8.0}}\naxes:\n";
+  for (int i = 1; i <= 8; ++i) {
+    text += "  a" + std::to_string(i) + ": {node_id: " + std::to_string(i) + "}\n";
+  }
+  const LoadedRobot loaded = loadText(text);
+  EXPECT_EQ(loaded.problems, "");
+  for (const drive::AxisConfig& axis : loaded.robot.axes) {
+    EXPECT_TRUE(axis.riders.empty()) << axis.name;
+    for (const drive::PdoLayout& pdo : axis.pdos) {
+      const auto& objects = pdo.objects;
+      if (std::find(objects.begin(), objects.end(), "velocity_actual") == objects.end()) continue;
+      EXPECT_EQ(pdo.transmission, 1) << axis.name;
+    }
+  }
 }
 
 TEST(RobotConfig, AJointThatAnAxisCannotStreamToIsInNoGroup) {

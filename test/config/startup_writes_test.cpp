@@ -89,6 +89,12 @@ TEST(StartupWrites, AValueThatDoesNotFitIsAProblemOfItsAxis) {
                         "1e+12 does not fit; the object holds 0 to "));
 }
 
+TEST(StartupWrites, WhatIsLeftOutIsSaidToBeRightByTheKeyLacks) {
+  Problems problems;
+  EXPECT_THAT(makeMasterConfig(bootedServo(""), problems).nodes.at(0).lacking_remedy,
+              HasSubstr("`lacks` of axes/servo"));
+}
+
 /// The entry of the plan that carries `object`.
 canopen::PdoEntry plannedEntry(const RobotConfig& robot, const std::string& object) {
   Problems problems;
