@@ -50,6 +50,41 @@ TEST(RobotBoundaries, NumbersOfAnIdentityHave32Bits) {
   }
 }
 
+TEST(RobotBoundaries, OfTheBus) {
+  const auto problems = [](const std::string& key) {
+    return changed("sync_period: 0.004", key).problems;
+  };
+  for (const char* allowed :
+       {"sync_period: 1", "node_id: 3", "node_id: 127", "heartbeat: 0", "heartbeat: 65.535",
+        "listen: 0", "listen: 60", "sync_window: 0", "sync_window: 0.004", "time_interval: 0",
+        "time_interval: 0.01", "time_interval: 86400", "sync_counter: 0", "sync_counter: 2",
+        "sync_counter: 240", "bitrate: 1000000"}) {
+    EXPECT_EQ(problems(allowed), "") << allowed;
+  }
+  struct Refused {
+    const char *key, *problem;
+  };
+  const Refused refused[] = {
+      {"sync_period: 0", "bus/sync_period: must be greater than 0 and at most 1"},
+      {"sync_period: 1.000001", "bus/sync_period: must be greater than 0 and at most 1"},
+      {"sync_period: 0.000099", "bus/sync_period: must be at least 0.0001 s"},
+      {"node_id: 0", "bus/node_id: must be between 1 and 127"},
+      {"heartbeat: 65.536", "bus/heartbeat: must be at least 0 and at most 65.535"},
+      {"listen: 60.1", "bus/listen: must be at least 0 and at most 60"},
+      {"sync_window: 0.004001", "bus/sync_window: must not be longer than sync_period"},
+      {"sync_window: 1.1", "bus/sync_window: must be at least 0 and at most 1"},
+      {"time_interval: 86400.1", "bus/time_interval: must be at least 0 and at most 86400"},
+      {"sync_counter: -1", "bus/sync_counter: must be between 0 and 240"},
+      {"bitrate: 0", "bus/bitrate: must be between 1 and 1000000"},
+      {"bitrate: 1000001", "bus/bitrate: must be between 1 and 1000000"},
+  };
+  for (const Refused& test : refused) {
+    EXPECT_THAT(problems(test.key), HasSubstr(test.problem)) << test.key;
+  }
+  EXPECT_EQ(changed("can0", "abcdefghijklmno").problems, "") << "15 letters";
+  EXPECT_THAT(problems("sync_period: 0.0001"), Not(HasSubstr("must be at least")));
+}
+
 TEST(RobotBoundaries, OfTheBoot) {
   struct Key {
     const char *name, *first, *last, *before, *behind;
@@ -229,12 +264,13 @@ TEST(RobotConfig, WhatADriveLacksDoesNotTravelThoughThereIsRoom) {
   EXPECT_THAT(loaded.robot.axes[1].riders, testing::ElementsAre("following_error"));
 }
 
-TEST(RobotConfig, OnAFullBusVelocitiesStillComeForEveryJointState) {
+TEST(RobotConfig, OnAFullBusVelocitiesComeForEveryJointStateAndDeadlinesStay) {
   // 5 ms: in every cycle of 4 ms, though for 10 ms every second one would do. In a cycle each axis
   // needs 115 + 95 bits of RPDOs and 125 + 115 of TPDOs: 8 of them more than 3200 of 4000.
   std::string text =
       "bus: {interface: can0}\njoint_state_rate: 200\ndefaults: {drive: generic_cia402, "
-      "counts_per_turn: 4000, limits: {velocity: 2.0, acceleration: 8.0}}\naxes:\n";
+      "counts_per_turn: 4000, rpdo_timeout: 0.1, limits: {velocity: 2.0, acceleration: "
+      "8.0}}\naxes:\n";
   for (int i = 1; i <= 8; ++i) {
     text += "  a" + std::to_string(i) + ": {node_id: " + std::to_string(i) + "}\n";
   }
@@ -242,6 +278,8 @@ TEST(RobotConfig, OnAFullBusVelocitiesStillComeForEveryJointState) {
   EXPECT_EQ(loaded.problems, "");
   for (const drive::AxisConfig& axis : loaded.robot.axes) {
     EXPECT_TRUE(axis.riders.empty()) << axis.name;
+    EXPECT_EQ(axis.pdos.at(0).objects.front(), "controlword");
+    EXPECT_EQ(axis.pdos.at(0).event_timer, 100) << axis.name;
     for (const drive::PdoLayout& pdo : axis.pdos) {
       const auto& objects = pdo.objects;
       if (std::find(objects.begin(), objects.end(), "velocity_actual") == objects.end()) continue;
