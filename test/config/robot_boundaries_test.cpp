@@ -85,6 +85,17 @@ TEST(RobotBoundaries, OfTheBus) {
   EXPECT_THAT(problems("sync_period: 0.0001"), Not(HasSubstr("must be at least")));
 }
 
+TEST(RobotBoundaries, OfTheRateOfJointStates) {
+  const auto problems = [](const std::string& rate) {
+    return changed("axes:", "joint_state_rate: " + rate + "\naxes:").problems;
+  };
+  EXPECT_EQ(problems("0.1"), "");
+  EXPECT_EQ(problems("1000"), "");
+  const auto refused = HasSubstr("joint_state_rate: must be greater than 0 and at most 1000");
+  EXPECT_THAT(problems("0"), refused);
+  EXPECT_THAT(problems("1001"), refused);
+}
+
 TEST(RobotBoundaries, OfTheBoot) {
   struct Key {
     const char *name, *first, *last, *before, *behind;
