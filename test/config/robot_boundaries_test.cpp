@@ -115,6 +115,20 @@ TEST(RobotBoundaries, OfTheBoot) {
   }
 }
 
+TEST(RobotBoundaries, OfAnSdoChannel) {
+  const auto problems = [](const std::string& request, const std::string& answer) {
+    return shoulderWith("sdo: {request: " + request + ", answer: " + answer + "}").problems;
+  };
+  EXPECT_EQ(problems("1", "0x7FF"), "");
+  EXPECT_EQ(problems("0x7FF", "1"), "");
+  for (const char* refused : {"0", "0x800"}) {
+    EXPECT_THAT(problems(refused, "0x5C1"),
+                HasSubstr("axes/shoulder/sdo/request: must be between 1 and 2047"));
+    EXPECT_THAT(problems("0x641", refused),
+                HasSubstr("axes/shoulder/sdo/answer: must be between 1 and 2047"));
+  }
+}
+
 TEST(RobotBoundaries, TheDrivesOwnDeadlineHas16BitsOfMilliseconds) {
   const auto timer = [](const char* timeout) {
     const LoadedRobot loaded = shoulderWith(std::string("rpdo_timeout: ") + timeout);
@@ -236,15 +250,30 @@ TEST(RobotMistakes, AnUnknownDriveIsTheOnlyProblemWhateverElseTheAxisSays) {
   EXPECT_EQ(std::count(problems.begin(), problems.end(), '\n'), 1) << problems;
 }
 
-TEST(RobotMistakes, AWriteThatDoesNotFitIsToldTogetherWithTheOthers) {
+TEST(RobotMistakes, AValueThatDoesNotFitIsToldWhereItComesFromTogetherWithTheOthers) {
+  struct Value {
+    const char *keys, *problem;
+  };
+  const Value values[] = {
+      {"write: [{object: position_window, value: 1.0e+9}]",
+       "axes/shoulder/write: shoulder (node 1): position_window (6067:00): 1e+09 does not fit"},
+      {"limits: {velocity: 1.0e+12}",
+       "axes/shoulder/limits: shoulder (node 1): profile_velocity (6081:00): 1e+12 does not fit"},
+      {"mode: pt, rated_torque: 1.0, limits: {effort: 1.0e+9}",
+       "axes/shoulder/limits: shoulder (node 1): torque_slope (6087:00): 2e+10 does not fit"},
+      {"homing: {method: 17, search_velocity: 1.0e+12}",
+       "axes/shoulder/homing: shoulder (node 1): homing_search_velocity (6099:01): 1e+12 does not "
+       "fit"},
+  };
   std::string text = kArm;
-  text.replace(text.find("node_id: 1,"), 11,
-               "node_id: 1, write: [{object: position_window, value: 1.0e+9}],");
+  const std::string limits = "gear_ratio: 50.0, limits: {lower: -3.0, upper: 3.0}";
+  const std::size_t at = text.find(limits);
   text.replace(text.find("node_id: 2,"), 11, "node_id: 2, lead: 0.1,");
-  EXPECT_THAT(loadText(text).problems,
-              AllOf(HasSubstr("axes/shoulder/write: shoulder (node 1): position_window (6067:00): "
-                              "1e+09 does not fit"),
-                    HasSubstr("axes/elbow/lead: is for prismatic axes")));
+  for (const Value& value : values) {
+    std::string changed_text = text;
+    EXPECT_THAT(loadText(changed_text.replace(at, limits.size(), value.keys)).problems,
+                AllOf(HasSubstr(value.problem), HasSubstr("axes/elbow/lead: is for prismatic")));
+  }
 }
 
 TEST(RobotMistakes, ADefaultOfAnotherKindThanTheAxisHasIsNoneForIt) {

@@ -117,6 +117,7 @@ TEST(PlannedObjects, AreOptionalWhereOnlyDefaultsAskForThem) {
   EXPECT_TRUE(plannedEntry(plain, "velocity_actual").optional);
   EXPECT_FALSE(plannedEntry(plain, "velocity_actual").if_room);
   EXPECT_TRUE(plannedEntry(plain, "following_error").if_room);
+  EXPECT_TRUE(plannedEntry(plain, "following_error").optional);
   const RobotConfig asked = bootedServo(", modes: [csv], feedback: [velocity_actual]");
   EXPECT_FALSE(plannedEntry(asked, "target_velocity").optional);
   EXPECT_FALSE(plannedEntry(asked, "velocity_actual").optional);
