@@ -66,6 +66,7 @@ TEST(NodeOptions, GuardingByAWordTakesTheTimesOfTheBus) {
   EXPECT_EQ(loaded.node.guard_time, milliseconds(100));
   EXPECT_EQ(loaded.node.life_time_factor, 3);
   EXPECT_EQ(loaded.node.heartbeat, Duration(0));
+  EXPECT_EQ(loaded.node.heartbeat_timeout, Duration(0));
   EXPECT_EQ(loaded.node.master_timeout, Duration(0));
   EXPECT_TRUE(loaded.robot.warnings.empty());
 }

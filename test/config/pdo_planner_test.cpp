@@ -150,6 +150,14 @@ TEST(PdoPlanner, SaysWhichModeFindsNoRoomAndWhatToLeaveOut) {
       "(32) would need another one; leave out `cyclic_velocity` or one of the modes before it");
 }
 
+TEST(PdoPlanner, TheTargetOfTheStartModeTravelsInEveryCycleAlsoByItself) {
+  DriveProfile profile = family("generic_cia402");
+  profile.max_pdo_entries = 1;
+  EXPECT_THAT(lines(planned(profile, needs(profile))),
+              testing::IsSupersetOf({"rpdo1 /1: controlword", "rpdo2 /1: target_position",
+                                     "rpdo3 /10: target_velocity"}));
+}
+
 TEST(PdoPlanner, SaysWhyTheStartModeCannotBeServed) {
   DriveProfile profile = family("generic_cia402");
   profile.max_rpdos = 1;

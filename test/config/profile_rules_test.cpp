@@ -86,13 +86,15 @@ TEST(ProfileRules, CobIdsOfTheDriveAreLeftAlone) {
 
 TEST(ProfileRules, ReachTheNode) {
   const OwnProfile profile{"identity: {vendor_id: 17, product_code: 18}\nnmt_reset_node: false",
-                           "sdo_retries: 1", "sdo_retries: 3"};
+                           "  boot: 5.0\n", "  boot: 7.5\n"};
   const canopen::NodeConfig node = loadOwn(profile).node;
   EXPECT_EQ(node.vendor_id, 17U);
   EXPECT_EQ(node.product_code, 18U);
   EXPECT_FALSE(node.revision);
-  EXPECT_EQ(node.sdo.retries, 3);
+  EXPECT_EQ(node.boot_timeout, std::chrono::milliseconds(7500));
   EXPECT_FALSE(node.reset_node_allowed);
+  EXPECT_EQ(node.title, "a (node 1)");
+  EXPECT_EQ(loadOwn({"", "sdo_retries: 1", "sdo_retries: 3"}).node.sdo.retries, 3);
   const canopen::NodeConfig other = loadOwn(profile, ", identity: {product_code: 19}").node;
   EXPECT_EQ(other.vendor_id, 17U);
   EXPECT_EQ(other.product_code, 19U) << "that of the axis counts";

@@ -297,6 +297,16 @@ TEST(RobotConfig, LssMayBeLeftOutOrTellDrivesApart) {
   EXPECT_EQ(both.robot.axes[1].lss->identity, (canopen::lss::Identity{1, 2, 3, 5}));
 }
 
+TEST(RobotMistakes, NoAxisCanDoWithoutItsWordsAndPosition) {
+  for (const std::string needed : {"controlword", "statusword", "position_actual"}) {
+    EXPECT_THAT(shoulderWith("lacks: [" + needed + "]").problems,
+                HasSubstr("axes/shoulder/lacks[0]: no axis can do without `" + needed + "`"));
+  }
+  EXPECT_THAT(shoulderWith("lacks: [torque_actual, torque_actul]").problems,
+              HasSubstr("axes/shoulder/lacks[1]: profile generic_cia402 has no object "
+                        "`torque_actul`, did you mean `torque_actual`?"));
+}
+
 TEST(RobotConfig, WhatADriveLacksDoesNotTravelThoughThereIsRoom) {
   const LoadedRobot loaded = shoulderWith("lacks: [following_error]");
   EXPECT_EQ(loaded.problems, "");

@@ -123,6 +123,26 @@ TEST(PlannedObjects, AreOptionalWhereOnlyDefaultsAskForThem) {
   EXPECT_FALSE(plannedEntry(asked, "velocity_actual").optional);
 }
 
+TEST(PlannedObjects, VelocitiesComeAsOftenAsJointStates) {
+  const auto every = [](const std::string& rate, const std::string& cycle = "0.004") {
+    const LoadedRobot loaded =
+        changed("0.004}", cycle + "}" + (rate.empty() ? "" : "\njoint_state_rate: " + rate));
+    EXPECT_EQ(loaded.problems, "");
+    for (const drive::PdoLayout& pdo : loaded.robot.axes[0].pdos) {
+      for (const std::string& object : pdo.objects) {
+        if (object == "velocity_actual") return unsigned{pdo.transmission};
+      }
+    }
+    return 0U;
+  };
+  EXPECT_EQ(every(""), 2U) << "10 ms in a cycle of 4 ms";
+  EXPECT_EQ(every("100"), 2U);
+  EXPECT_EQ(every("200"), 1U) << "5 ms";
+  EXPECT_EQ(every("10"), 2U) << "never older than 10 ms";
+  EXPECT_EQ(every("", "0.002"), 5U);
+  EXPECT_EQ(every("", "0.01"), 1U);
+}
+
 TEST(CobIds, AreThoseThatCiA301LeavesToPdos) {
   const auto problems = [](const std::string& cob_id) {
     return loadText(
