@@ -121,6 +121,10 @@ TEST(RobotBoundaries, OfAnSdoChannel) {
   };
   EXPECT_EQ(problems("1", "0x7FF"), "");
   EXPECT_EQ(problems("0x7FF", "1"), "");
+  EXPECT_THAT(problems("0x602", "0x5C1"),
+              HasSubstr("axes/shoulder/sdo/request: COB-ID 0x602 belongs to SDO of elbow already"));
+  EXPECT_THAT(problems("0x641", "0x582"),
+              HasSubstr("axes/shoulder/sdo/answer: COB-ID 0x582 belongs to SDO of elbow already"));
   for (const char* refused : {"0", "0x800"}) {
     EXPECT_THAT(problems(refused, "0x5C1"),
                 HasSubstr("axes/shoulder/sdo/request: must be between 1 and 2047"));
@@ -305,6 +309,9 @@ TEST(RobotMistakes, NoAxisCanDoWithoutItsWordsAndPosition) {
   EXPECT_THAT(shoulderWith("lacks: [torque_actual, torque_actul]").problems,
               HasSubstr("axes/shoulder/lacks[1]: profile generic_cia402 has no object "
                         "`torque_actul`, did you mean `torque_actual`?"));
+  EXPECT_THAT(shoulderWith("lacks: [[torque_actual]]").problems,
+              AllOf(HasSubstr("axes/shoulder/lacks[0]: must be a text, not a list"),
+                    Not(HasSubstr("has no object"))));
 }
 
 TEST(RobotConfig, WhatADriveLacksDoesNotTravelThoughThereIsRoom) {
