@@ -186,6 +186,7 @@ TEST(NodeOptions, MistakesAreNamedWithARemedy) {
       {"error_control: {kind: guarding, master_timeout: 0.3}",
        "`master_timeout` is for heartbeats"},
       {"error_control: {period: 0.2, timeout: 0.1}", "must be longer than `period`"},
+      {"error_control: {period: 0.2, timeout: 0.2}", "must be longer than `period`"},
       {"error_control: {period: 0.0004}", "axes/a/error_control/period"},
       {"error_control: {period: 0.1005}", "whole number of milliseconds"},
       {"error_control: {period: 66}", "axes/a/error_control/period"},

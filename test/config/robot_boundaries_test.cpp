@@ -289,6 +289,20 @@ TEST(RobotMistakes, ADefaultOfAnotherKindThanTheAxisHasIsNoneForIt) {
                     HasSubstr("  defaults/limits: must be a mapping (key: value), not a list")));
 }
 
+TEST(RobotMistakes, InAListOfTheDefaultsAreToldOnce) {
+  const std::string problems =
+      changed("defaults: {", "defaults: {write: [{object: position_window, value: fast}], ")
+          .problems;
+  EXPECT_THAT(problems, HasSubstr("  defaults/write[0]/value: must be a number, not `fast`"));
+  EXPECT_EQ(std::count(problems.begin(), problems.end(), '\n'), 1) << problems;
+}
+
+TEST(RobotMistakes, AFileThatIsNotThereIsToldByItsName) {
+  Problems problems;
+  readRobotFile("/nowhere/robot.yaml", problems);
+  EXPECT_EQ(problems.text(), "  /nowhere/robot.yaml: cannot be read\n");
+}
+
 TEST(RobotConfig, LssMayBeLeftOutOrTellDrivesApart) {
   EXPECT_EQ(shoulderWith("lss: false").problems, "");
   std::string text = kArm;
