@@ -144,6 +144,9 @@ void readRpdoTimeout(YamlSection& section, AxisConfig& axis) {
     section.get("rpdo_timeout")
         ->problem("must be 0 (none) or at least two cycles, " +
                   std::to_string(2.0 * toSeconds(axis.sync_period)) + " s");
+  } else if (axis.rpdo_timeout % std::chrono::milliseconds(1) != Duration(0)) {
+    section.get("rpdo_timeout")
+        ->problem("must be a whole number of milliseconds, as 1400h:05 counts in them");
   }
 }
 
@@ -154,7 +157,7 @@ void setRpdoTimeout(AxisConfig& axis) {
     const auto& objects = pdo.objects;
     const bool commands = std::find(objects.begin(), objects.end(), "controlword") != objects.end();
     if (pdo.direction != canopen::PdoDirection::rpdo || !commands || pdo.event_timer != 0) continue;
-    pdo.event_timer = static_cast<std::uint16_t>(std::clamp<std::int64_t>(ms, 0, 0xFFFF));
+    pdo.event_timer = static_cast<std::uint16_t>(ms);
     return;
   }
 }
@@ -167,7 +170,7 @@ bool choosePdos(YamlSection& section, AxisConfig& axis, RobotConfig& robot) {
   const auto feedback = section.get("feedback");
   section.readInteger("stale_after", axis.stale_after, 1, 1000);
   if (!axis.profile) {
-    section.get("rpdo_timeout");
+    for (const char* key : {"lacks", "rpdo_timeout"}) section.get(key);
     return false;
   }
   const DriveProfile& profile = *axis.profile;
@@ -213,7 +216,8 @@ bool choosePdos(YamlSection& section, AxisConfig& axis, RobotConfig& robot) {
 
 namespace {
 
-/// What `axis` was planned for; its objects are those that found room.
+/// What `axis` was planned for, but for what travels only because there was room; its objects are
+/// those that found room.
 PdoNeeds needsOf(const AxisConfig& axis, const RobotConfig& robot) {
   PdoNeeds needs;
   needs.mode = axis.mode;
@@ -223,7 +227,6 @@ PdoNeeds needsOf(const AxisConfig& axis, const RobotConfig& robot) {
     std::copy_if(pdo.objects.begin(), pdo.objects.end(), std::back_inserter(needs.feedback),
                  [&](const std::string& name) { return !contains(axis.riders, name); });
   }
-  needs.if_room = axis.riders;
   needs.cycle = axis.sync_period;
   needs.fresh = freshness(robot);
   return needs;
@@ -249,10 +252,7 @@ void planAgain(RobotConfig& robot, Duration cycle) {
 
 void leaveRiders(RobotConfig& robot) {
   for (AxisConfig& axis : robot.axes) {
-    if (axis.riders.empty()) continue;
-    PdoNeeds needs = needsOf(axis, robot);
-    needs.if_room.clear();
-    plan(axis, needs);
+    if (!axis.riders.empty()) plan(axis, needsOf(axis, robot));
   }
 }
 

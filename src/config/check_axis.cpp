@@ -217,7 +217,6 @@ void checkWrites(YamlSection& section, const AxisConfig& axis) {
 }  // namespace
 
 void checkAxis(YamlSection& section, const AxisConfig& axis, RobotConfig& robot) {
-  if (!axis.profile) return;
   checkGeometry(section, axis);
   checkMode(section, axis);
   const bool planned = !axis.pdos.empty() || section.has("pdos");  // else checkMode() has told why

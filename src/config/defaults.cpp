@@ -13,7 +13,8 @@ bool contains(YAML::Node node, const std::string& path) {
   std::istringstream keys(path);
   std::string key;
   while (std::getline(keys, key, '/')) {
-    key = key.substr(0, key.find('['));
+    const std::size_t element = key.find('[');
+    key = key.substr(0, element);
     if (!node.IsMap()) return false;
     bool found = false;
     for (const auto& pair : node) {
@@ -23,6 +24,7 @@ bool contains(YAML::Node node, const std::string& path) {
       break;
     }
     if (!found) return false;
+    if (element != std::string::npos) return true;
   }
   return true;
 }

@@ -33,6 +33,7 @@ std::vector<std::string> readNames(YamlSection& section, const std::string& key,
   return names;
 }
 
+/// The magnitude of the determinant.
 double determinant(std::vector<std::vector<double>> m) {
   double product = 1.0;
   for (std::size_t column = 0; column < m.size(); ++column) {
@@ -41,7 +42,6 @@ double determinant(std::vector<std::vector<double>> m) {
       if (std::fabs(m[row][column]) > std::fabs(m[pivot][column])) pivot = row;
     }
     if (m[pivot][column] == 0.0) return 0.0;
-    if (pivot != column) product = -product;
     std::swap(m[pivot], m[column]);
     product *= m[column][column];
     for (std::size_t row = column + 1; row < m.size(); ++row) {
@@ -49,7 +49,7 @@ double determinant(std::vector<std::vector<double>> m) {
       for (std::size_t i = column; i < m.size(); ++i) m[row][i] -= factor * m[column][i];
     }
   }
-  return product;
+  return std::fabs(product);
 }
 
 void readMatrix(YamlSection& section, CouplingConfig& coupling) {
@@ -65,7 +65,7 @@ void readMatrix(YamlSection& section, CouplingConfig& coupling) {
   for (const YamlValue& row : rows) {
     if (const auto numbers = row.numbers(size)) coupling.matrix.push_back(*numbers);
   }
-  if (coupling.matrix.size() == size && std::fabs(determinant(coupling.matrix)) < 1e-12) {
+  if (coupling.matrix.size() == size && determinant(coupling.matrix) < 1e-12) {
     value->problem("has no inverse: some joint motion would need no axis, or all of them");
   }
 }

@@ -37,7 +37,6 @@ class Search {
  private:
   /// Uses the fixed PDOs whose bit is set in `subset`, and distributes what they do not carry.
   void tryFixed(std::size_t subset) {
-    bins_.clear();
     fixed_.clear();
     std::vector<bool> carried(items_.size(), false);
     for (std::size_t f = 0; f < std::min(rules_.fixed.size(), kMaxFixed); ++f) {

@@ -74,12 +74,13 @@ SimulationConfig readSimulation(const drive::YamlValue& value);
 /// @return false if there is none; the problem is told.
 bool choosePdos(drive::YamlSection& section, drive::AxisConfig& axis, RobotConfig& robot);
 
-/// Plans what was planned once more, for another cycle; the same objects find room then.
+/// Plans what was planned once more, for another cycle; the same objects find room then, but for
+/// what travels only because there was room.
 void planAgain(RobotConfig& robot, Duration cycle);
 /// Plans anew without what travels only because there was room.
 void leaveRiders(RobotConfig& robot);
 
-/// What the axis' keys mean together with its profile; `section` is the axis.
+/// What the axis' keys mean together with its profile, which it has; `section` is the axis.
 void checkAxis(drive::YamlSection& section, const drive::AxisConfig& axis, RobotConfig& robot);
 
 void readCouplings(const drive::YamlValue& value, RobotConfig& robot);

@@ -1,8 +1,11 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <fstream>
+#include <sstream>
 
 #include "cia402_driver/config/robot.h"
 #include "folders.h"
@@ -148,6 +151,20 @@ TEST(LoadEds, AnotherLengthThanInTheProfileIsAProblemWithBothSources) {
               Contains(AllOf(HasSubstr("controlword is mapped into RPDO 1 by profile"),
                              HasSubstr("contradicting.eds:16 says that it cannot be (ro, "
                                        "PDOMapping=0)"))));
+}
+
+TEST(LoadEds, HoldingAfterAQuickStopNeeds605Ah) {
+  EXPECT_THAT(load(", quick_stop: hold").problems,
+              HasSubstr("axes/shoulder/quick_stop: the drive cannot hold after a quick stop: "
+                        "motor.eds has no 605A:00"));
+  std::ifstream file(cia402::test::testFolder() + "/config/motor.eds");
+  std::ostringstream motor;
+  motor << file.rdbuf();
+  const std::string path = testing::TempDir() + "holding_" + std::to_string(getpid()) + ".eds";
+  std::ofstream(path) << motor.str()
+                      << "\n[605A]\nParameterName=Quick stop option code\nObjectType=7\n"
+                         "DataType=3\nAccessType=rw\nPDOMapping=0\n";
+  EXPECT_EQ(load(", quick_stop: hold", path).problems, "");
 }
 
 TEST(LoadEds, DamageInTheFileIsAWarningWithItsLineOnceAFile) {

@@ -66,6 +66,7 @@ TEST(NodeOptions, GuardingByAWordTakesTheTimesOfTheBus) {
   EXPECT_EQ(loaded.node.guard_time, milliseconds(100));
   EXPECT_EQ(loaded.node.life_time_factor, 3);
   EXPECT_EQ(loaded.node.heartbeat, Duration(0));
+  EXPECT_EQ(loaded.node.heartbeat_timeout, Duration(0));
   EXPECT_EQ(loaded.node.master_timeout, Duration(0));
   EXPECT_TRUE(loaded.robot.warnings.empty());
 }
@@ -185,6 +186,7 @@ TEST(NodeOptions, MistakesAreNamedWithARemedy) {
       {"error_control: {kind: guarding, master_timeout: 0.3}",
        "`master_timeout` is for heartbeats"},
       {"error_control: {period: 0.2, timeout: 0.1}", "must be longer than `period`"},
+      {"error_control: {period: 0.2, timeout: 0.2}", "must be longer than `period`"},
       {"error_control: {period: 0.0004}", "axes/a/error_control/period"},
       {"error_control: {period: 0.1005}", "whole number of milliseconds"},
       {"error_control: {period: 66}", "axes/a/error_control/period"},

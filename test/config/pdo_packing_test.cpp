@@ -69,6 +69,15 @@ TEST(PackPdos, FillsFurtherPdosOnlyWithinTheRules) {
   rules.entries = 1;
   EXPECT_FALSE(packPdos({{"a", 8, 1}, {"b", 8, 1}}, rules));
   EXPECT_FALSE(packPdos({{"a", 65, 1}}, {}));
+  std::vector<PackItem> wide = {{"a", 64, 1}, {"b", 64, 1}, {"c", 64, 1}, {"d", 64, 1}};
+  EXPECT_TRUE(packPdos(wide, {}));
+  wide.push_back({"e", 64, 1});
+  EXPECT_FALSE(packPdos(wide, {})) << "there are four";
+  std::vector<PackItem> bytes;
+  for (const char* name : {"a", "b", "c", "d", "e", "f", "g", "h"}) bytes.push_back({name, 7, 1});
+  EXPECT_EQ(packPdos(bytes, {})->size(), 1u);
+  bytes.push_back({"i", 7, 1});
+  EXPECT_EQ(packPdos(bytes, {})->size(), 2u) << "63 bits, but nine objects";
 }
 
 TEST(PackPdos, ComesToAnEndWithManyObjects) {
@@ -97,6 +106,19 @@ TEST(PackPdos, UsesAFixedPdoThatCarriesWhatIsWanted) {
   EXPECT_THAT(mixed->at(0).items, ElementsAre("mode"));
   EXPECT_EQ(mixed->at(0).number, 1u);
   EXPECT_THAT(mixed->at(1).items, ElementsAre("statusword", "position"));
+}
+
+TEST(PackPdos, AFixedPdoCostsItsFrameAndNoBitMore) {
+  // 6 bytes in every cycle, 115 bits, are cheaper than 75 and, every second cycle, 95; 7 would not
+  // be. The drive lets one object be mapped into a PDO, its own carries two.
+  PackRules rules;
+  rules.entries = 1;
+  rules.fixed = {{2, {{"statusword", 16, 1}, {"position", 32, 2}}}};
+  const auto packed = packPdos({{"statusword", 16, 1}, {"position", 32, 2}}, rules);
+  ASSERT_TRUE(packed);
+  ASSERT_EQ(packed->size(), 1u);
+  EXPECT_EQ(packed->front().number, 2u);
+  EXPECT_EQ(packed->front().every, 1u);
 }
 
 TEST(PackPdos, CannotPutAnythingElseIntoAFixedPdo) {

@@ -107,6 +107,16 @@ TEST(PdoPlanner, TheTargetOfTheStartModeTravelsWithTheControlword) {
               testing::Contains("rpdo1 /1: controlword target_velocity"));
 }
 
+TEST(PdoPlanner, WhatMayChangeAtAnyTimeTravelsWhereItsWorstCaseIsLeast) {
+  const DriveProfile profile = family("generic_cia402");
+  PdoNeeds what = needs(profile);
+  what.modes = {"cyclic_torque"};
+  // 8 bytes, 135 bits, in a cycle in which the torque changes; apart 115 + 75, though that is less
+  // where it does not.
+  EXPECT_THAT(lines(planned(profile, what)),
+              testing::Contains("rpdo1 /1: controlword target_position target_torque"));
+}
+
 TEST(PdoPlanner, ASlowCycleBringsEverythingInEachCycle) {
   const DriveProfile profile = family("generic_cia402");
   PdoNeeds what = needs(profile);
@@ -140,6 +150,14 @@ TEST(PdoPlanner, SaysWhichModeFindsNoRoomAndWhatToLeaveOut) {
       "(32) would need another one; leave out `cyclic_velocity` or one of the modes before it");
 }
 
+TEST(PdoPlanner, TheTargetOfTheStartModeTravelsInEveryCycleAlsoByItself) {
+  DriveProfile profile = family("generic_cia402");
+  profile.max_pdo_entries = 1;
+  EXPECT_THAT(lines(planned(profile, needs(profile))),
+              testing::IsSupersetOf({"rpdo1 /1: controlword", "rpdo2 /1: target_position",
+                                     "rpdo3 /10: target_velocity"}));
+}
+
 TEST(PdoPlanner, SaysWhyTheStartModeCannotBeServed) {
   DriveProfile profile = family("generic_cia402");
   profile.max_rpdos = 1;
@@ -165,6 +183,25 @@ TEST(PdoPlanner, SaysThatATargetCannotBeMapped) {
   EXPECT_THAT(plan.error().message, HasSubstr("`target_velocity`, which cannot be mapped"));
 }
 
+TEST(PdoPlanner, AModeIsSelectedBySdoOrByPdo) {
+  DriveProfile profile = family("generic_cia402");
+  const auto selectable = [&](bool writable, bool mappable) {
+    for (drive::ObjectSpec& object : profile.objects) {
+      if (object.name != "mode_of_operation") continue;
+      object.writable = writable;
+      object.rpdo = mappable;
+    }
+    return planPdos(profile, needs(profile));
+  };
+  EXPECT_TRUE(selectable(true, false).ok());
+  EXPECT_TRUE(selectable(false, true).ok());
+  const auto plan = selectable(false, false);
+  ASSERT_FALSE(plan.ok());
+  EXPECT_THAT(plan.error().message, HasSubstr("mode `cyclic_position` cannot be selected: "
+                                              "mode_of_operation can neither be written nor "
+                                              "mapped"));
+}
+
 TEST(PdoPlanner, DoesNotUseAFixedRpdoThatWouldSendWhatNobodySets) {
   DriveProfile profile = family("generic_cia402");
   PdoLayout fixed;
@@ -174,6 +211,18 @@ TEST(PdoPlanner, DoesNotUseAFixedRpdoThatWouldSendWhatNobodySets) {
   profile.fixed_pdos = {fixed};
   EXPECT_THAT(lines(planned(profile, needs(profile))),
               testing::Contains("rpdo2 /1: controlword target_position"));
+}
+
+TEST(PdoPlanner, UsesAFixedRpdoWhereThereIsNoOther) {
+  DriveProfile profile = family("generic_cia402");
+  PdoLayout fixed;
+  fixed.direction = PdoDirection::rpdo;
+  fixed.number = 1;
+  fixed.objects = {"controlword", "target_position"};
+  profile.fixed_pdos = {fixed};
+  profile.max_rpdos = 1;
+  EXPECT_THAT(lines(planned(profile, needs(profile))),
+              testing::Contains("rpdo1 /1: controlword target_position"));
 }
 
 /// A family made up by chance: rules, mappability and widths.

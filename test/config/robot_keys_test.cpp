@@ -46,7 +46,7 @@ axes:
     simulation: {drive: generic_cia402_guarding, initial_position: 0.4, lower_limit_switch: -0.6,
                  upper_limit_switch: 0.8, home_switch: [-0.1, 0.1], index_offset: 0.75,
                  time_constant: 0.02, brake_delay: 0.3, unconfigured: true, vendor: 21,
-                 product: 22, revision: 23, serial: 24}
+                 product: 22, revision: 23, serial: 24, with: {quirks: {colour: red}}}
   turn: {node_id: 4, drive: generic_cia402, counts_per_turn: 1000,
          limits: {velocity: 1, acceleration: 2}}
 groups:
@@ -166,6 +166,7 @@ TEST_F(RobotKeys, OfTheSimulation) {
   EXPECT_EQ(simulation.product, 22U);
   EXPECT_EQ(simulation.revision, 23U);
   EXPECT_EQ(simulation.serial, 24U);
+  EXPECT_EQ(simulation.with["quirks"]["colour"].Scalar(), "red");
   const SimulationConfig& plain = robot.simulated.at("turn");
   EXPECT_EQ(plain.drive, "generic_cia402") << "the profile's name";
   EXPECT_EQ(plain.initial_position, 0.0);

@@ -80,9 +80,16 @@ TEST(Coupling, SingularMatrixIsRefusedInWords) {
   EXPECT_FALSE(wrist(matrix2(1, 0, 2, 0)));
 }
 
+TEST(Coupling, IsSingularWhereTheSmallestSingularValueIsBelowABillionthOfTheLargest) {
+  // 2 and d / 2 are the singular values of these
+  EXPECT_FALSE(wrist(matrix2(1, 1, 1, 1 + 3e-9)));
+  EXPECT_TRUE(wrist(matrix2(1, 1, 1, 1 + 5e-9)));
+}
+
 TEST(Coupling, UnequalScalesAreNotMistakenForSingularity) {
   EXPECT_TRUE(wrist(matrix2(1e-6, 0, 0, 1e6)));
   EXPECT_TRUE(wrist(matrix2(1e-7, 1e-7, 1e5, -1e5)));
+  EXPECT_TRUE(wrist(matrix2(1, 1e12, 1, -1e12))) << "one axis has a large gear ratio";
 }
 
 TEST(Coupling, WrongSizesAreRefusedInWords) {

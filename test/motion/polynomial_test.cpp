@@ -40,6 +40,13 @@ TEST(Polynomial, FindsATripleRoot) {
   EXPECT_NEAR(roots.x[0], 0.5, 1e-5);
 }
 
+TEST(Polynomial, NoRootIsTwiceInTheList) {
+  const Roots once = rootsInUnitInterval(Polynomial{{0.25, -1, 1}});  // (x-0.5)^2
+  ASSERT_EQ(once.count, 1U);
+  EXPECT_EQ(once.x[0], 0.5);
+  EXPECT_EQ(rootsInUnitInterval(Polynomial{{0, 0, 1}}).count, 1U);  // x^2
+}
+
 TEST(Polynomial, FindsRootsAtBothEnds) {
   const Roots roots = rootsInUnitInterval(Polynomial{{0, -1, 1}});  // x(x-1)
   ASSERT_EQ(roots.count, 2U);

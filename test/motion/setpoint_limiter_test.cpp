@@ -143,6 +143,14 @@ TEST(PositionLimiter, TargetsBeyondAPositionLimitEndAtTheLimit) {
   EXPECT_NEAR(joint.limiter.output().position, -1.5, 1e-9);
 }
 
+TEST(PositionLimiter, ATargetBeyondAPositionLimitCountsAsTheLimit) {
+  Position joint(elbow(), {1.9, 0, 0});
+  joint.follow(100);
+  EXPECT_EQ(joint.limiter.goal(), 2.0);
+  for (int i = 0; i < 500; ++i) joint.step();
+  EXPECT_FALSE(joint.limiter.isLimiting()) << "it stands where the command counts to be";
+}
+
 TEST(PositionLimiter, ComesBackFromOutsideItsLimits) {
   Position joint(elbow(), {2.5, 0, 0});
   joint.follow(100);
@@ -160,6 +168,38 @@ TEST(PositionLimiter, ComesBackFromOutsideItsLimits) {
   joint.follow(100);
   for (int i = 0; i < 2000; ++i) ASSERT_LE(joint.step().position, 2.0);
   EXPECT_NEAR(joint.limiter.output().position, 2.0, 1e-9);
+}
+
+TEST(PositionLimiter, ATargetThatIsTakenBackButStillAheadDoesNotTurnTheJointBack) {
+  Position joint(elbow());
+  EXPECT_NEAR(joint.follow(2.0).velocity, 0.02, 1e-12);  // 5 rad/s^2 * 4 ms
+  EXPECT_NEAR(joint.follow(0.5).velocity, 0.04, 1e-12) << "nobody moves by -1.5 rad in a cycle";
+}
+
+TEST(PositionLimiter, AfterAResetNothingOfBeforeIsLeft) {
+  LimiterConfig config = elbow();
+  config.command_timeout = std::chrono::milliseconds(10);
+  Position joint(config);
+  joint.follow(1);
+  joint.limiter.reset({0.3, 0, 0}, joint.now);
+  EXPECT_FALSE(joint.limiter.goal());
+  EXPECT_FALSE(joint.limiter.isLimiting());
+  EXPECT_EQ(joint.step().position, 0.3) << "not on its way to the command of before";
+
+  joint.follow(1);
+  for (int i = 0; i < 3; ++i) joint.step();
+  ASSERT_TRUE(joint.limiter.timedOut());
+  joint.limiter.reset({0.3, 0, 0}, joint.now);
+  EXPECT_FALSE(joint.limiter.timedOut());
+  EXPECT_EQ(joint.step().position, 0.3);
+  EXPECT_FALSE(joint.limiter.timedOut()) << "no command came that could be late";
+}
+
+TEST(PositionLimiter, AnUnknownVelocityCountsAsRest) {
+  Position joint(elbow(), {0.3, std::nan(""), 0});
+  EXPECT_NEAR(joint.follow(1).velocity, 0.02, 1e-12) << "not at full speed at once";
+  Position resting(elbow(), {0.3, std::nan(""), 0});
+  EXPECT_EQ(resting.step().velocity, 0);
 }
 
 TEST(PositionLimiter, StaleCommandStopsTheJointByTheStopDeceleration) {
@@ -228,6 +268,17 @@ TEST(VelocityLimiter, AcceleratesToTheCommandAtTheLimit) {
   joint.step();
   EXPECT_FALSE(joint.limiter.isLimiting());
   EXPECT_NEAR(joint.follow(-9).velocity, 0.48, 1e-12);
+}
+
+TEST(VelocityLimiter, TimeThatStandsStillOrRunsBackChangesNothing) {
+  Velocity joint(elbow());
+  joint.follow(0.5);
+  for (const Time now : {joint.now, joint.now - kCycle}) {
+    const MotionState state = joint.limiter.step(now, 1.0);
+    EXPECT_EQ(state.position, 0);
+    EXPECT_NEAR(state.velocity, 0.02, 1e-12);
+    EXPECT_NEAR(state.acceleration, 5, 1e-9);
+  }
 }
 
 TEST(VelocityLimiter, NeverFasterThanTheLimit) {

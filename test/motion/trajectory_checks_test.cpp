@@ -64,7 +64,8 @@ TEST_F(TrajectoryChecks, MustEndAtRest) {
   expectInvalid({point(1, {1, 2}, {0, 0}), point(2, {1, 2}, {0, 0.2})},
                 "lift: the last point (point 1) has velocity 0.2 m/s; it must be 0");
   expectInvalid({point(1, {1, 2}, {-0.3, 0})}, "velocity -0.3 rad/s");
-  EXPECT_TRUE(create({point(1, {1, 2}, {0.0009, 0})}).ok());
+  EXPECT_TRUE(create({point(1, {1, 2}, {0.001, -0.001})}).ok()) << "so much counts as rest";
+  expectInvalid({point(1, {1, 2}, {0.00101, 0})}, "velocity 0.00101 rad/s");
 }
 
 TEST_F(TrajectoryChecks, ThePresentStateMustBeKnownForEachJoint) {

@@ -44,6 +44,21 @@ TEST_F(TrajectorySampling, AccelerationsGiveQuintics) {
   EXPECT_NEAR(trajectory->sample(0, at(0.5)).velocity, 1.875, 1e-12);
 }
 
+TEST_F(TrajectorySampling, PassesAPointAsItIsGiven) {
+  const auto trajectory =
+      create({point(1, {1, -2}, {0.5, 0.25}, {2, -3}), point(2, {2, -2}, {0, 0}, {0, 0})});
+  ASSERT_TRUE(trajectory.ok());
+  const MotionState given[] = {{1, 0.5, 2}, {-2, 0.25, -3}};
+  for (const Time time : {at(1) - Duration(1), at(1)}) {
+    for (std::size_t j = 0; j < 2; ++j) {
+      const MotionState state = trajectory->sample(j, time);
+      EXPECT_NEAR(state.position, given[j].position, 1e-8) << j;
+      EXPECT_NEAR(state.velocity, given[j].velocity, 1e-8) << j;
+      EXPECT_NEAR(state.acceleration, given[j].acceleration, 1e-6) << j;
+    }
+  }
+}
+
 TEST_F(TrajectorySampling, ASegmentHasOnlyTheOrderThatBothItsEndsCarry) {
   const auto trajectory = create({point(1, {1, 0}, {0, 0}, {0, 0}), point(2, {2, 0}, {0, 0}),
                                   point(3, {3, 0}), point(4, {4, 0}, {0, 0})});

@@ -69,8 +69,8 @@ class PositionLimiter : public SetpointLimiter {
   /// @pre check(config) is ok.
   explicit PositionLimiter(LimiterConfig config) : SetpointLimiter(std::move(config)) {}
 
-  /// Starts from the present commanded state, without a command. @pre the position is finite; where
-  /// it is not, no output is.
+  /// Starts from the present commanded state, without a command. A velocity that is not finite
+  /// counts as 0. @pre the position is finite; where it is not, no output is.
   void reset(const MotionState& commanded, Time now);
   /// A new set-point, in rad or m. Beyond the position limits it counts as the limit. Refused, and
   /// the previous one kept to age on, if it is not finite.
