@@ -31,6 +31,8 @@ class FakeDrive : public can::Sink {
   double velocity = 0.0;      ///< counts/s
   double coast = 0.0;         ///< counts/s that nothing stops
   int mode_delay = 0;         ///< cycles until 6061h follows 6060h, shows -1 meanwhile
+  bool forgets_mode = false;  ///< takes a mode when it is commanded in operation enabled only
+  bool mode_by_sdo = false;   ///< 6060h is in no RPDO: something else has its place
   int acknowledge_delay = 0;  ///< cycles
   bool acknowledges = true;
   bool warning = false, voltage = true, remote = true;
@@ -197,7 +199,10 @@ class FakeDrive : public can::Sink {
       const std::uint64_t mask = (std::uint64_t{1} << (8 * size)) - 1;
       dictionary[key] = {dword(frame, 4) & mask, size};
       writes.emplace_back(index, dword(frame, 4) & mask);
-      if (index == 0x6060) commanded_mode = static_cast<std::int8_t>(frame.data[4]);
+      if (index == 0x6060) {
+        commanded_mode = static_cast<std::int8_t>(frame.data[4]);
+        mode_written_ = true;
+      }
       if (unanswered.count(key) != 0) return;
       return reply(0x60, 0);
     }
@@ -206,7 +211,7 @@ class FakeDrive : public can::Sink {
   void applyFirst(const can::Frame& frame) {
     const std::uint16_t before =
         std::exchange(controlword, static_cast<std::uint16_t>(frame.data[0] | frame.data[1] << 8));
-    commanded_mode = static_cast<std::int8_t>(frame.data[2]);
+    if (!mode_by_sdo) commanded_mode = static_cast<std::int8_t>(frame.data[2]);
     target_position = static_cast<std::int32_t>(dword(frame, 3));
     if (!heard_ || before != controlword) controlwords.push_back(controlword);
     heard_ = true;
@@ -279,8 +284,16 @@ class FakeDrive : public can::Sink {
     }
   }
 
+  /// What an RPDO repeats is no command; an SDO is one each time.
+  bool modeIsCommanded() {
+    const bool changed = std::exchange(seen_mode_, commanded_mode) != commanded_mode;
+    return std::exchange(mode_written_, false) || changed;
+  }
+
   void switchMode() {
+    const bool commanded = modeIsCommanded();
     if (commanded_mode == mode) return;
+    if (forgets_mode && (!commanded || state != S::enabled)) return;
     if (mode_delay > 0 && ++mode_wait_ <= mode_delay) {
       mode = -1;
       return;
@@ -361,6 +374,8 @@ class FakeDrive : public can::Sink {
   int reaction_ = 0, mode_wait_ = 0, wait_ = 0;
   std::size_t cycles_ = 0;
   double quick_velocity_ = 0.0;
+  std::int8_t seen_mode_ = 0;
+  bool mode_written_ = false;
   bool heard_ = false, acknowledged_ = false, taking_ = false, attained_ = false, homing_ = false,
        homing_error_ = false;
 };

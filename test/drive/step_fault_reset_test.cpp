@@ -22,8 +22,8 @@ AxisConfig withTries(int tries, Duration nmt_stop = Duration::zero()) {
   return testConfig(profile);
 }
 
-struct World : Bench {
-  explicit World(AxisConfig config = testConfig()) : Bench(std::move(config)) {
+struct FaultedBench : Bench {
+  explicit FaultedBench(AxisConfig config = testConfig()) : Bench(std::move(config)) {
     EXPECT_TRUE(boot());
     deliver(drive.fail(0x8611));
     run(milliseconds(40));
@@ -47,7 +47,7 @@ struct World : Bench {
 };
 
 TEST(FaultResetStep, TellsWhatItWaitsFor) {
-  World world;
+  FaultedBench world;
   EXPECT_EQ(
       stepsOf(world, ProcedureKind::clear_faults),
       (std::vector<std::string>{"waiting for the fault reaction to end | the drive to show fault",
@@ -59,7 +59,7 @@ TEST(FaultResetStep, TellsWhatItWaitsFor) {
 }
 
 TEST(FaultResetStep, TriesAsOftenAsTheProfileSaysAndASecondApart) {
-  World world(withTries(3));
+  FaultedBench world(withTries(3));
   world.drive.stuck.insert(S::fault);
   const std::vector<std::string> steps = stepsOf(world, ProcedureKind::clear_faults);
   EXPECT_FALSE(world.axis.procedure().success);
@@ -77,7 +77,7 @@ TEST(FaultResetStep, TriesAsOftenAsTheProfileSaysAndASecondApart) {
 }
 
 TEST(FaultResetStep, StopsTryingOnceTheFaultIsGone) {
-  World world(withTries(3));
+  FaultedBench world(withTries(3));
   world.drive.stuck.insert(S::fault);
   const auto count = world.each_cycle;
   world.each_cycle = [&] {
@@ -92,7 +92,7 @@ TEST(FaultResetStep, StopsTryingOnceTheFaultIsGone) {
 TEST(FaultResetStep, ResetsOnceMoreWhatCameBackWhereTheProfileAllowsIt) {
   for (const int until : {1, 2}) {  // resets that do not help
     SCOPED_TRACE(until);
-    World world(withTries(2));
+    FaultedBench world(withTries(2));
     const auto count = world.each_cycle;
     world.each_cycle = [&] {
       count();
@@ -107,7 +107,7 @@ TEST(FaultResetStep, ResetsOnceMoreWhatCameBackWhereTheProfileAllowsIt) {
 }
 
 TEST(FaultResetStep, TakesTheNodeThroughNmtStopAndStartAndResetsOnceMore) {
-  World world(withTries(2, 500ms));
+  FaultedBench world(withTries(2, 500ms));
   world.drive.stuck.insert(S::fault);
   Time stopped{}, started{};
   const auto count = world.each_cycle;
@@ -130,7 +130,7 @@ TEST(FaultResetStep, TakesTheNodeThroughNmtStopAndStartAndResetsOnceMore) {
 }
 
 TEST(FaultResetStep, TakesTheNodeThroughNmtStopAndStartOnce) {
-  World world(withTries(1, 500ms));
+  FaultedBench world(withTries(1, 500ms));
   world.drive.stuck.insert(S::fault);
   const ProcedureStatus& status = world.perform(ProcedureKind::clear_faults);
   EXPECT_FALSE(status.success);
@@ -140,7 +140,7 @@ TEST(FaultResetStep, TakesTheNodeThroughNmtStopAndStartOnce) {
 }
 
 TEST(FaultResetStep, SaysWhereNothingComesAfterNmtStopAndStart) {
-  World world(withTries(1, 500ms));
+  FaultedBench world(withTries(1, 500ms));
   world.drive.stuck.insert(S::fault);
   const auto count = world.each_cycle;
   world.each_cycle = [&] {
@@ -159,7 +159,7 @@ TEST(FaultResetStep, ClearsTheErrorHistoryFirstWhereTheProfileSaysSo) {
     SCOPED_TRACE(refused);
     DriveProfile profile = testProfile();
     profile.fault_reset_clears_history = true;
-    World world(testConfig(profile));
+    FaultedBench world(testConfig(profile));
     if (refused) world.drive.aborts[{0x1003, 0}] = 0x06090030;
     world.drive.writes.clear();
     const auto count = world.each_cycle;
@@ -179,7 +179,7 @@ TEST(FaultResetStep, ClearsTheErrorHistoryFirstWhereTheProfileSaysSo) {
 }
 
 TEST(FaultResetStep, AFaultReactionThatDoesNotEndIsNoTimeForAReset) {
-  World world;
+  FaultedBench world;
   world.drive.shows = {S::reaction};
   world.run(milliseconds(8));
   const Time began = world.now;
@@ -191,7 +191,7 @@ TEST(FaultResetStep, AFaultReactionThatDoesNotEndIsNoTimeForAReset) {
 }
 
 TEST(FaultResetStep, ADriveThatIsSilentForAWhileAfterTheResetIsWaitedFor) {
-  World world;
+  FaultedBench world;
   const auto count = world.each_cycle;
   Time silent_from{};
   world.each_cycle = [&] {
@@ -208,7 +208,7 @@ TEST(FaultResetStep, ADriveThatIsSilentForAWhileAfterTheResetIsWaitedFor) {
 }
 
 TEST(FaultResetStep, ADriveThatFallsSilentWhileTheFaultIsToStayAwayIsNotSaidToBeCleared) {
-  World world;
+  FaultedBench world;
   const auto count = world.each_cycle;
   world.each_cycle = [&] {
     count();
