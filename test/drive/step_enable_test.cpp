@@ -175,6 +175,19 @@ TEST(EnableStep, SaysSoWhereTheAxisIsPushedAwayOnceTheModeIsThere) {
   EXPECT_EQ(bench.drive.state, S::disabled);
 }
 
+TEST(EnableStep, AFaultOfAnAxisThatCoastsIsToldAtOnce) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  bench.drive.coast = 5000;
+  bench.run(200ms);
+  ASSERT_TRUE(bench.axis.start({ProcedureKind::enable, {}, 0.0}, bench.now).ok());
+  bench.run(100ms);
+  bench.deliver(bench.drive.fail(0x8611));
+  bench.run(20ms);
+  EXPECT_FALSE(bench.axis.procedure().running);
+  EXPECT_THAT(bench.axis.procedure().message, HasSubstr("fault 0x8611 following error"));
+}
+
 TEST(EnableStep, AnAxisThatADriveHoldsByAQuickStopGoesOnWithTheParametersThatItHas) {
   DriveProfile profile = testProfile();
   profile.quick_stop_holds = {6};
