@@ -1,5 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // How procedures begin, end and give way to each other; what an axis notices meanwhile.
+#include <cmath>
+
 #include "drive/procedure_steps.h"
 
 namespace cia402::drive {
@@ -173,12 +175,68 @@ TEST(AxisStart, LimitsThatWereOpenedForAnotherZeroAreClosedWhereThatIsCutOff) {
 
 TEST(AxisObjects, ReportsNameTheRpdoThatBringsTheControlword) {
   canopen::NodeConfig node = test::nodeConfig();
-  std::swap(node.pdos[0], node.pdos[1]);  // RPDO2 is listed first
+  node.pdos[0].number = 2;
+  node.pdos[1].number = 1;
   Bench bench(testConfig(), node);
   ASSERT_TRUE(bench.boot());
   bench.drive.stuck.insert(S::on);
   EXPECT_THAT(bench.perform(ProcedureKind::enable).message,
-              HasSubstr("sent in RPDO1 (COB-ID 0x0203"));
+              HasSubstr("sent in RPDO2 (COB-ID 0x0203"));
+}
+
+TEST(AxisObjects, ReportsTellThatNoRpdoHasLeft) {
+  // A cycle that sends none.
+  Bench bench;
+  bench.node().boot(bench.now, true);
+  const auto cycle = [&] {
+    bench.now += Bench::kCycle;
+    bench.deliver(bench.drive.heartbeat());
+    bench.node().onSync(bench.now);
+    for (const can::Frame& frame : bench.drive.sync(0.004)) bench.deliver(frame);
+    bench.axis.readFeedback(bench.now);
+    bench.axis.update(bench.now);
+    bench.axis.writeCommands(bench.now);
+    bench.node().tick(bench.now);
+    for (const can::Frame& frame : bench.drive.answer()) bench.deliver(frame);
+  };
+  for (int i = 0; i < 2000 && !bench.axis.state().feedback_valid; ++i) cycle();
+  ASSERT_TRUE(bench.axis.state().feedback_valid);
+  bench.drive.state = S::on;  // by somebody else
+  bench.drive.stuck = {S::on};
+  cycle();
+  ASSERT_TRUE(bench.axis.start({ProcedureKind::disable, {}, 0.0}, bench.now).ok());
+  for (int i = 0; i < 2000 && bench.axis.procedure().running; ++i) cycle();
+  EXPECT_THAT(bench.axis.procedure().message, HasSubstr("0 frames so far)"));
+  EXPECT_THAT(bench.axis.procedure().message,
+              HasSubstr("; no RPDO has left: is the cycle running?"));
+  bench.drive.stuck.clear();
+  ASSERT_TRUE(bench.axis.start({ProcedureKind::enable, {}, 0.0}, bench.now).ok());
+  for (int i = 0; i < 2000 && bench.axis.procedure().running; ++i) cycle();
+  EXPECT_THAT(bench.axis.procedure().message, HasSubstr("no RPDO has left for 1"));
+}
+
+TEST(AxisObjects, AStatuswordIsKnownByItsIndexWhateverItsName) {
+  DriveProfile profile = testProfile();
+  for (ObjectSpec& object : profile.objects) {
+    if (object.name == "statusword") object.name = "status_of_the_drive";
+  }
+  Bench bench(testConfig(profile));
+  ASSERT_TRUE(bench.boot());
+  EXPECT_EQ(bench.axis.state().state, State::switch_on_disabled);
+}
+
+TEST(AxisObjects, AControlwordMustBeMapped) {
+  canopen::NodeConfig node = test::nodeConfig();
+  node.pdos[0].entries.erase(node.pdos[0].entries.begin());
+  EXPECT_THROW(Bench(testConfig(), node), std::invalid_argument);
+}
+
+TEST(AxisObjects, ATorqueThatNothingScalesIsUnknown) {
+  AxisConfig config = testConfig();
+  config.geometry.rated_torque = 0.0;
+  Bench bench(config);
+  ASSERT_TRUE(bench.boot());
+  EXPECT_TRUE(std::isnan(bench.axis.state().effort));
 }
 
 TEST(AxisObjects, ATargetCodedLikeThePositionTakesOverItsVeryCounts) {

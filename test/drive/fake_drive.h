@@ -45,8 +45,9 @@ class FakeDrive : public can::Sink {
   bool quick_stop_ends = true;           ///< transition 12 by itself
   double quick_stop_deceleration = 1e6;  ///< counts/s^2
   bool silent = false;                   ///< sends no PDO
-  std::map<std::pair<unsigned, unsigned>, std::uint32_t> aborts;  ///< SDO writes refused
-  std::set<std::pair<unsigned, unsigned>> unanswered;             ///< SDO writes taken in silence
+  std::map<std::pair<unsigned, unsigned>, std::uint32_t> aborts;       ///< SDO writes refused
+  std::map<std::pair<unsigned, unsigned>, std::uint32_t> read_aborts;  ///< SDO reads refused
+  std::set<std::pair<unsigned, unsigned>> unanswered;  ///< SDO writes taken in silence
   std::map<std::pair<unsigned, unsigned>, std::pair<std::uint64_t, unsigned>> dictionary;
 
   // What the test may look at.
@@ -184,6 +185,7 @@ class FakeDrive : public can::Sink {
                              byte(data, 1), byte(data, 2), byte(data, 3)}));
     };
     if (frame.data[0] == 0x40) {
+      if (read_aborts.count(key) != 0) return reply(0x80, read_aborts[key]);
       if (dictionary.count(key) == 0 && index >= 0x1010 && index < 0x1C00) {
         const bool wide = (index >= 0x1600 && index < 0x1800) || index >= 0x1A00;
         dictionary[key] = {0, sub == 0 ? 1u : wide || sub == 1 ? 4u : sub == 2 ? 1u : 2u};

@@ -213,6 +213,32 @@ TEST(ProcedureSteps, OfSetPositionOpenTheLimitsAndCloseThem) {
                    "writing position limits | the drive to take those of the new zero"}));
 }
 
+TEST(ProcedureSteps, OfSetPositionGiveUpAGoalThatTheAxisHasNotComeTo) {
+  Bench bench(startsIn("profile_position"));
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  ASSERT_TRUE(bench.axis.setTarget(3.0));
+  bench.run(100ms);
+  bench.drive.at_limit = true;
+  bench.run(160ms);
+  ASSERT_EQ(bench.drive.accepted, (std::vector<std::int32_t>{30000}));
+  bench.drive.acknowledge_delay = 100;  // 400 ms
+  bool declared_early = false;
+  bench.each_cycle = [&] {
+    declared_early |= bench.axis.procedure().step == "opening position limits" &&
+                      (bench.drive.accepted.size() < 2 || (bench.drive.controlword & 0x0010) != 0);
+  };
+  const double before = bench.drive.position;
+  EXPECT_EQ(stepsOf(bench, ProcedureKind::set_position, {}, 0.5),
+            (Steps{"giving up the goal | the axis to stand without one",
+                   "opening position limits | the drive to let go of those of the old zero",
+                   "writing position limits | the drive to take those of the new zero"}));
+  EXPECT_TRUE(bench.axis.procedure().success) << bench.axis.procedure().message;
+  EXPECT_FALSE(declared_early) << "the drive would take it for a place of the new zero";
+  EXPECT_NEAR(bench.drive.accepted.back(), before, 1.0);
+  EXPECT_EQ(bench.drive.position, before);
+}
+
 TEST(ProcedureSteps, RecoverBootsANodeThatIsNotReadyOnly) {
   Bench bench;
   const char boots[] = "booting the node | the node to be identified, configured and started";

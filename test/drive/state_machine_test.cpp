@@ -214,5 +214,9 @@ TEST(StateMachine, NamesStatuswordBits) {
   EXPECT_EQ(statuswordText(0x0000), "no bit set");
 }
 
+TEST(StateMachine, WhatIsNoStateIsUnknown) {
+  for (const int value : {9, 10, 255}) EXPECT_STREQ(toString(static_cast<State>(value)), "unknown");
+}
+
 }  // namespace
 }  // namespace cia402::drive
