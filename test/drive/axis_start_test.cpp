@@ -185,33 +185,22 @@ TEST(AxisObjects, ReportsNameTheRpdoThatBringsTheControlword) {
 }
 
 TEST(AxisObjects, ReportsTellThatNoRpdoHasLeft) {
-  // A cycle that sends none.
   Bench bench;
   bench.node().boot(bench.now, true);
-  const auto cycle = [&] {
-    bench.now += Bench::kCycle;
-    bench.deliver(bench.drive.heartbeat());
-    bench.node().onSync(bench.now);
-    for (const can::Frame& frame : bench.drive.sync(0.004)) bench.deliver(frame);
-    bench.axis.readFeedback(bench.now);
-    bench.axis.update(bench.now);
-    bench.axis.writeCommands(bench.now);
-    bench.node().tick(bench.now);
-    for (const can::Frame& frame : bench.drive.answer()) bench.deliver(frame);
-  };
-  for (int i = 0; i < 2000 && !bench.axis.state().feedback_valid; ++i) cycle();
+  for (int i = 0; i < 2000 && !bench.axis.state().feedback_valid; ++i)
+    test::cycleWithoutRpdos(bench);
   ASSERT_TRUE(bench.axis.state().feedback_valid);
   bench.drive.state = S::on;  // by somebody else
   bench.drive.stuck = {S::on};
-  cycle();
+  test::cycleWithoutRpdos(bench);
   ASSERT_TRUE(bench.axis.start({ProcedureKind::disable, {}, 0.0}, bench.now).ok());
-  for (int i = 0; i < 2000 && bench.axis.procedure().running; ++i) cycle();
+  for (int i = 0; i < 2000 && bench.axis.procedure().running; ++i) test::cycleWithoutRpdos(bench);
   EXPECT_THAT(bench.axis.procedure().message, HasSubstr("0 frames so far)"));
   EXPECT_THAT(bench.axis.procedure().message,
               HasSubstr("; no RPDO has left: is the cycle running?"));
   bench.drive.stuck.clear();
   ASSERT_TRUE(bench.axis.start({ProcedureKind::enable, {}, 0.0}, bench.now).ok());
-  for (int i = 0; i < 2000 && bench.axis.procedure().running; ++i) cycle();
+  for (int i = 0; i < 2000 && bench.axis.procedure().running; ++i) test::cycleWithoutRpdos(bench);
   EXPECT_THAT(bench.axis.procedure().message, HasSubstr("no RPDO has left for 1"));
 }
 

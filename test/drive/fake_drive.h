@@ -57,6 +57,7 @@ class FakeDrive : public can::Sink {
   std::int16_t target_torque = 0;
   std::vector<std::uint16_t> controlwords;                 ///< each change
   std::vector<std::pair<unsigned, std::uint64_t>> writes;  ///< SDO writes: index, value
+  std::map<std::pair<unsigned, unsigned>, int> reads;      ///< SDO reads of each object
   std::vector<std::int32_t> accepted;  ///< set-points taken by the edge of bit 4
   int homings = 0, resets = 0;
   bool operational = false;
@@ -185,6 +186,7 @@ class FakeDrive : public can::Sink {
                              byte(data, 1), byte(data, 2), byte(data, 3)}));
     };
     if (frame.data[0] == 0x40) {
+      ++reads[key];
       if (read_aborts.count(key) != 0) return reply(0x80, read_aborts[key]);
       if (dictionary.count(key) == 0 && index >= 0x1010 && index < 0x1C00) {
         const bool wide = (index >= 0x1600 && index < 0x1800) || index >= 0x1A00;
