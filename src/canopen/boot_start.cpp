@@ -74,6 +74,9 @@ class Start : public BootStep {
                                                   : "none of its TPDOs came";
     return boot.fail(BootFailure::timed_out,
                      std::string("boot failed: the drive was started (NMT), but ") + missing +
+                         (boot.found.heartbeat_heard
+                              ? std::string(" (but ") + toString(boot.found.heartbeat_state) + ")"
+                              : std::string()) +
                          " in time; read its error register 1001:00 and emergencies");
   }
 

@@ -1,4 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <iterator>
 #include <utility>
 
@@ -41,7 +42,7 @@ void EdsReader::expandCompact(DictionaryObject& object, const EdsSection& sectio
     problems_.warning(sub_number->line,
                       "[" + section.name + "] has both SubNumber and CompactSubObj");
   }
-  const DictionaryEntry model = readEntry(section, {object.index, 1}, ObjectCode::variable);
+  const DictionaryEntry model = readEntry(section, {object.index, 0}, ObjectCode::variable);
   for (unsigned i = 1; i <= count && hasRoom(section.line); ++i) {
     DictionaryEntry& entry = object.entries[static_cast<std::uint8_t>(i)];
     entry = model;
@@ -106,7 +107,7 @@ void EdsReader::addCompactPdos(std::uint16_t parameters, std::uint16_t mappings,
   };
   unsigned explicit_count = 0;
   for (unsigned n = 0; n < kPdos; ++n) explicit_count += described(n) ? 1 : 0;
-  unsigned left = wanted > explicit_count ? wanted - explicit_count : 0;
+  unsigned left = wanted - std::min(wanted, explicit_count);
   for (unsigned n = 0; n < kPdos; ++n) {
     if (!described(n) && left == 0) continue;
     if (!described(n)) --left;

@@ -129,11 +129,6 @@ void EdsReader::readDummies() {
 void EdsReader::readComments() {
   const EdsSection* section = text_.find("comments");
   if (section == nullptr) return;
-  const EdsKey* lines = section->given("lines");
-  if (lines == nullptr) {
-    problems_.warning(section->line, "[" + section->name + "] has no Lines");
-  }
-  const std::uint64_t wanted = lines != nullptr ? numberOf(*lines, 0xFFFF).value_or(0) : 0;
   std::size_t found = 0;
   for (std::size_t i = 1; i <= section->keys.size(); ++i) {
     const EdsKey* line = section->find("line" + std::to_string(i));
@@ -141,9 +136,12 @@ void EdsReader::readComments() {
     eds_.info.comments.push_back(line->value);
     ++found;
   }
-  if (lines != nullptr && found != wanted) {
+  const EdsKey* lines = section->given("lines");
+  if (lines == nullptr) {
+    problems_.warning(section->line, "[" + section->name + "] has no Lines");
+  } else if (numberOf(*lines, 0xFFFF).value_or(found) != found) {
     problems_.warning(lines->line, "[" + section->name + "] has " + std::to_string(found) +
-                                       " lines, not " + std::to_string(wanted));
+                                       " lines, not " + lines->value);
   }
 }
 

@@ -9,8 +9,8 @@ struct SectionName {
   enum class Kind : std::uint8_t { object, entry, compact_list, known, unknown };
   Kind kind = Kind::unknown;
   ObjectId id;
-  char list = ' ';  ///< 'n'ame, 'v'alue, 'd'enotation
-  bool odd = false;
+  char list = ' ';            ///< 'n'ame, 'v'alue, 'd'enotation
+  const char* odd = nullptr;  ///< what stands before one of its numbers and should not
 };
 
 std::optional<unsigned> hexNumber(std::string_view text, std::size_t digits) {
@@ -47,16 +47,18 @@ SectionName parseName(std::string_view key) {
   }
   if (startsWith(key, "0x")) {
     key.remove_prefix(2);
-    name.odd = true;
+    name.odd = "0x";
   }
   const std::size_t sub = key.find("sub");
   std::string_view index = key.substr(0, sub);
   auto kind = SectionName::Kind::object;
   if (sub != std::string_view::npos) {
     std::string_view digits = key.substr(sub + 3);
-    if (startsWith(digits, "0x") || startsWith(digits, "index")) {
-      digits.remove_prefix(digits[0] == '0' ? 2 : 5);
-      name.odd = true;
+    for (const std::string_view odd : {"0x", "index"}) {
+      if (!startsWith(digits, odd)) continue;
+      digits.remove_prefix(odd.size());
+      name.odd = odd.data();
+      break;
     }
     const auto number = hexNumber(digits, 2);
     if (!number) return name;
@@ -91,7 +93,7 @@ void EdsReader::sortSections() {
         fresh = sub_sections_[name.id.index].emplace(name.id.subindex, &section).second;
         break;
       case SectionName::Kind::compact_list:
-        compact_lists_.emplace(std::make_pair(name.id.index, name.list), &section);
+        fresh = compact_lists_.emplace(std::make_pair(name.id.index, name.list), &section).second;
         break;
       case SectionName::Kind::known:
         break;
@@ -102,8 +104,9 @@ void EdsReader::sortSections() {
     if (!fresh) {
       problems_.error(section.line, "[" + section.name + "] describes " + toString(name.id) +
                                         " a second time and is not read");
-    } else if (name.odd) {
-      problems_.warning(section.line, "[" + section.name + "] should have its numbers without 0x");
+    } else if (name.odd != nullptr) {
+      problems_.warning(section.line,
+                        "[" + section.name + "] should have its numbers without " + name.odd);
     }
   }
 }
@@ -160,7 +163,7 @@ void EdsReader::readObject(std::uint16_t index, const EdsSection& section) {
     object.code = ObjectCode::record;
   }
   const auto compact = static_cast<unsigned>(numberOr0(section, "compactsubobj", 254));
-  if ((structured || compact > 0) && !has_entries && compact > 0) {
+  if (compact > 0 && !has_entries) {
     if (!structured) object.code = ObjectCode::array;
     expandCompact(object, section, compact);
   } else if (structured || has_entries) {

@@ -37,7 +37,6 @@ void EdsProblems::moveTo(Eds& eds) {
                    [](const EdsProblem& a, const EdsProblem& b) { return a.line < b.line; });
   eds.problems = std::move(list_);
   eds.problems_left_out = left_out_;
-  list_.clear();
 }
 
 std::string quoteEds(std::string_view text) {

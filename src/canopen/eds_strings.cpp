@@ -38,10 +38,10 @@ char32_t nextCharacter(std::string_view& text) {
   const auto first = static_cast<unsigned char>(text[0]);
   const std::size_t size = first < 0x80 ? 1 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
   char32_t character = size == 1 ? first : first & (0xFFU >> (size + 1));
-  for (std::size_t i = 1; i < size && i < text.size(); ++i) {
+  for (std::size_t i = 1; i < size; ++i) {
     character = character << 6U | (static_cast<unsigned char>(text[i]) & 0x3FU);
   }
-  text.remove_prefix(size < text.size() ? size : text.size());
+  text.remove_prefix(size);
   return character;
 }
 
@@ -85,10 +85,10 @@ std::optional<std::string> fromUtf16(const ObjectValue& bytes) {
   std::string text;
   for (std::size_t i = 0; i < bytes.size(); i += 2) {
     char32_t character = unit(i);
-    if (character >= 0xDC00 && character < 0xE000) return {};
-    if (character >= 0xD800 && character < 0xDC00) {
+    if (character >= 0xD800 && character < 0xE000) {  // half of one
       i += 2;
-      if (i >= bytes.size() || unit(i) < 0xDC00 || unit(i) >= 0xE000) return {};
+      if (character >= 0xDC00 || i >= bytes.size()) return {};
+      if (unit(i) < 0xDC00 || unit(i) >= 0xE000) return {};
       character = 0x10000 + ((character - 0xD800) << 10U) + (unit(i) - 0xDC00);
     }
     appendUtf8(text, character);

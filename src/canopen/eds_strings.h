@@ -10,7 +10,7 @@ namespace cia402::canopen {
 std::optional<double> parseEdsReal(std::string_view text);
 
 /// The text of a value of any length: strings as they are (UNICODE_STRING: UTF-16 on the wire),
-/// OCTET_STRING and DOMAIN as hexadecimal bytes with or without blanks.
+/// OCTET_STRING and DOMAIN as hexadecimal bytes with or without blanks. `text` must be UTF-8.
 EdsValue stringText(std::string_view text, DataType type);
 std::optional<std::string> formatString(const ObjectValue& value, DataType type);
 

@@ -135,8 +135,7 @@ void EdsText::readLine(std::string_view line) {
 void EdsText::readSection(std::string_view line) {
   const std::size_t end = line.find(']');
   section_ = nullptr;
-  section_lost_ = true;
-  told_of_lost_lines_ = false;
+  told_of_lost_lines_ = true;  // from here on only those of a section without a name are lost
   std::string_view name = line.substr(1, end == std::string_view::npos ? end : end - 1);
   if (end == std::string_view::npos) {
     problems_.warning(line_, "the `]` behind " + quoteEds(line) + " is missing");
@@ -169,7 +168,7 @@ void EdsText::readSection(std::string_view line) {
 void EdsText::readKey(std::string_view line) {
   const std::size_t equals = line.find('=');
   if (section_ == nullptr) {
-    if (!section_lost_ && !told_of_lost_lines_) {
+    if (!told_of_lost_lines_) {
       problems_.error(line_, quoteEds(line) + " stands before the first section and is ignored");
     }
     told_of_lost_lines_ = true;

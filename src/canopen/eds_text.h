@@ -51,7 +51,6 @@ class EdsText {
   EdsProblems& problems_;
   std::map<std::string, EdsSection> sections_;
   EdsSection* section_ = nullptr;
-  bool section_lost_ = false;
   bool told_of_lost_lines_ = false;
   unsigned line_ = 0;
   bool latin1_told_ = false;

@@ -149,7 +149,7 @@ EdsValue formula(std::string_view text, std::size_t at, DataType type, NodeId no
     if (!offset || offset->negative) return wrong;
     number = *offset;
   }
-  if (number.magnitude > maskOf(63)) return doesNotFit(text, type);
+  if (number.magnitude > maskOf(64) - node_id) return doesNotFit(text, type);
   number.magnitude += node_id;
   EdsValue value = integerValue(text, number, type);
   value.adds_node_id = true;
@@ -250,7 +250,6 @@ std::optional<double> parseEdsReal(std::string_view text) {
 }
 
 EdsValue parseEdsValue(std::string_view text, DataType type, NodeId node_id) {
-  text = trimmed(text);
   switch (type) {
     case DataType::real32:
     case DataType::real64:
@@ -271,15 +270,14 @@ std::optional<std::string> formatEdsValue(const ObjectValue& value, DataType typ
   if (value.size() != (bits + 7) / 8) return {};
   if (type == DataType::boolean && value[0] > 1) return {};
   const bool real = type == DataType::real32 || type == DataType::real64;
-  const double number = real ? realOf(value) : 0.0;
+  if (isSigned(type) && !real) return describeValue(type, value);
   std::ostringstream text;
   text.imbue(std::locale::classic());
-  if (real && std::isfinite(number)) {
+  if (real && std::isfinite(realOf(value))) {
     text.precision(type == DataType::real32 ? 9 : 17);
-    text << number;
+    text << realOf(value);
     return text.str();
   }
-  if (isSigned(type) && !real) return describeValue(type, value);
   std::uint64_t raw = 0;
   for (std::size_t i = value.size(); i-- > 0;) raw = raw << 8U | value[i];
   text << "0x" << std::hex << std::uppercase;

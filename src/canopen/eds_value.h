@@ -27,7 +27,8 @@ struct EdsValue {
   std::string note;   ///< what was repaired
   std::string error;  ///< why it cannot be taken, with what to write
 };
-/// Reads the text of DefaultValue, LowLimit, HighLimit and ParameterValue.
+/// Reads the text of DefaultValue, LowLimit, HighLimit and ParameterValue: UTF-8 without blanks
+/// around it.
 EdsValue parseEdsValue(std::string_view text, DataType type, NodeId node_id);
 
 /// The same in the other direction; nothing if no line of text can hold it.

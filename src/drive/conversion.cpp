@@ -128,7 +128,7 @@ Result<Conversion> Conversion::create(const ObjectSpec& object, const DriveProfi
   result.low_ = result.signed_ ? -power : 0.0;
   if (floating) {
     result.high_ = largestFloat(object.encoding);
-    result.low_ = result.signed_ ? -result.high_ : 0.0;
+    result.low_ = result.signed_ ? lowestFloat(object.encoding) : 0.0;
   }
   return result;
 }

@@ -38,7 +38,6 @@ void ErrorEvidence::forget() {
   object_.at = Time::min();
   read_.reset();
   code_ticket_.reset();
-  register_ticket_.reset();
 }
 
 void ErrorEvidence::update(const Look& look, canopen::SdoClient& sdo, Time now) {
@@ -84,7 +83,6 @@ void ErrorEvidence::readErrorCode(const Look& look, canopen::SdoClient& sdo) {
   } else if (code_ticket_->done()) {
     const bool fits = code_ticket_->ok() && code_ticket_->data().size() <= 8;
     read_ = fits ? static_cast<std::uint16_t>(canopen::toUnsigned(code_ticket_->data())) : 0;
-    code_ticket_.reset();
   }
 }
 

@@ -82,4 +82,10 @@ inline double largestFloat(Encoding encoding) {
   return decodeFloat(encoding, encoding == Encoding::half_float ? 0x7F7F : 0x7F80);
 }
 
+/// Lowest value that it holds: not in each encoding the opposite of the largest.
+inline double lowestFloat(Encoding encoding) {
+  if (encoding == Encoding::float32) return -largestFloat(encoding);
+  return decodeFloat(encoding, encoding == Encoding::half_float_unsigned ? 0xFF80 : 0xFF7F);
+}
+
 }  // namespace cia402::drive

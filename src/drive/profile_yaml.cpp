@@ -126,6 +126,8 @@ void checkFixedObjects(const YamlSection& section, const DriveProfile& profile) 
     const ObjectSpec* object = profile.find(fixed.name);
     if (object == nullptr) {
       section.problem("objects/" + std::string(fixed.name) + " is missing; every axis needs it");
+    } else if (canopen::sizeBits(object->type) == 0) {
+      section.problem("objects/" + std::string(fixed.name) + " must be a number");
     } else if ((fixed.rpdo && !object->rpdo) || (fixed.tpdo && !object->tpdo)) {
       section.problem("objects/" + std::string(fixed.name) + " must be mappable into " +
                       (fixed.rpdo ? "an RPDO" : "a TPDO"));

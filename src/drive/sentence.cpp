@@ -13,7 +13,10 @@ std::string print(const char* format, double value) {
 }
 }  // namespace
 
-std::string seconds(Duration duration) { return print("%.3g s", toSeconds(duration)); }
+std::string seconds(Duration duration) {
+  const double value = toSeconds(duration);
+  return print(value < 999.5 ? "%.3g s" : "%.0f s", value);  // not "1.2e+03 s"
+}
 
 std::string number(double value) { return print("%.3f", value); }
 

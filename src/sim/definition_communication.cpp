@@ -40,6 +40,7 @@ void readCommunication(DefinitionReader& reader, DeviceBehaviour& out) {
   reader.read("sends_event_tpdos_on_start", out.sends_event_tpdos_on_start);
   reader.read("store_time", out.store_time);
   reader.read("starts_operational", out.starts_operational);
+  reader.read("stays_pre_operational", out.stays_pre_operational);
   reader.read("boots_again_after", out.boots_again_after);
   reader.read("restart_after_bus_off", out.restart_after_bus_off);
   reader.read<PdoIdentifiers>("pdo_identifiers", out.pdo_identifiers,

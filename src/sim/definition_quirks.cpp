@@ -33,6 +33,7 @@ void readQuirks(DefinitionReader& reader, DriveQuirks& out) {
   reader.read("quick_stop_flashes", out.quick_stop_flashes);
   reader.read("master_lost_holds", out.master_lost_holds);
   reader.read("needs_power_cycle_to_save", out.needs_power_cycle_to_save);
+  reader.read("shows_no_state", out.shows_no_state);
   if (!reader.has("mode_faults")) return;
   out.mode_faults.clear();
   for (const YAML::Node& item : reader.node("mode_faults")) {

@@ -225,6 +225,7 @@ void Device::Impl::command(const can::Frame& frame) {
   if (frame.data[1] != 0 && frame.data[1] != context.node) return;
   switch (static_cast<NmtCommand>(frame.data[0])) {
     case NmtCommand::start:
+      if (context.behaviour.stays_pre_operational) return;
       return changeState(NmtState::operational);
     case NmtCommand::stop:
       return changeState(NmtState::stopped);

@@ -119,6 +119,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
     if (role == Role::target_position) core.onTargetPosition();
     if (role == Role::clear_errors && entry.number != 0) core.resetFault();
     if (role == Role::save_zero && entry.number != 0) core.saveZero();
+    if (role == Role::homing_start && entry.number == 1) core.onHomingStart();
   }
 
   bool badFloat(double value) const {

@@ -278,6 +278,10 @@ void DriveCore::startSegment() {
   motion_.cyclicTarget(period, toSeconds(now_ - Time{step_ * kDriveStep}));
 }
 
+void DriveCore::onHomingStart() {
+  if (state_ == PdsState::operation_enabled) motion_.homeByObject();
+}
+
 void DriveCore::saveZero() {
   motion_.setCounter(0.0);
   motion_.publish();
@@ -316,7 +320,8 @@ void DriveCore::updateStatusword() {
   const bool flashed = definition_.quirks.quick_stop_flashes &&
                        state_ == PdsState::quick_stop_active &&
                        now_ - quick_stop_since_ > kQuickStopFlash;
-  std::uint16_t word = statusBits(flashed ? PdsState::switch_on_disabled : state_);
+  const bool hidden = flashed || definition_.quirks.shows_no_state;
+  std::uint16_t word = statusBits(hidden ? PdsState::switch_on_disabled : state_);
   if (state_ != PdsState::not_ready_to_switch_on) {
     word |= kRemoteBit;
     const bool voltage = std::none_of(causes_.begin(), causes_.end(), [this](const Cause& cause) {
@@ -325,7 +330,7 @@ void DriveCore::updateStatusword() {
     if (voltage) word |= kVoltageBit;
   }
   if (warning_) word |= kWarningBit;
-  if (state_ == PdsState::fault) word |= definition_.quirks.fault_bits;
+  if (state_ == PdsState::fault && !hidden) word |= definition_.quirks.fault_bits;
   if (enabledState()) word = static_cast<std::uint16_t>(word | motion_.statusBits());
   const std::uint16_t vendor = definition_.quirks.vendor_bits;
   if (vendor != 0) word = static_cast<std::uint16_t>((word & ~vendor) | vendorBits());

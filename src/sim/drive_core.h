@@ -45,8 +45,9 @@ class DriveCore {
   void onParametersStored() { stored_ = true; }
   void onBootedAlone();  ///< nobody was heard between power-on and boot-up
   void onNonFinite();
-  void resetFault();  ///< what the rising edge of controlword bit 7 does
-  void saveZero();    ///< the present position is 0 from now on
+  void resetFault();     ///< what the rising edge of controlword bit 7 does
+  void onHomingStart();  ///< by the object for it
+  void saveZero();       ///< the present position is 0 from now on
   /// SDO abort code against writing an object now, 0 if allowed.
   std::uint32_t refuseWrite(const Entry& entry, std::uint64_t number) const;
 

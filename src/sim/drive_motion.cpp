@@ -182,7 +182,7 @@ void DriveMotion::controlBits(std::uint16_t controlword, std::uint16_t previous)
     if (rising && !acknowledged_) acceptSetPoint(controlword);
     if (!bit_4_) acknowledged_ = buffered_.has_value();
   }
-  if (mode_->behaviour == ModeBehaviour::homing) {
+  if (mode_->behaviour == ModeBehaviour::homing && !homesByObject()) {
     if (rising) startHoming();
     if (!bit_4_ && homing_.phase() == HomingSequence::Phase::searching) homing_.stop();
   }

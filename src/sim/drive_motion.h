@@ -63,6 +63,8 @@ class DriveMotion {
   bool standing() const;
   /// Bits 10-13 for the present mode; only meaningful while operation is enabled.
   std::uint16_t statusBits() const;
+  /// Begins to home where an object does that instead of bit 4.
+  void homeByObject();
   bool followingErrorExceeded() const { return following_error_exceeded_; }
   bool limitSwitchHit() const { return limit_switch_hit_; }
   /// Actual and demand values, inputs into the dictionary.
@@ -102,6 +104,7 @@ class DriveMotion {
   void acceptSetPoint(std::uint16_t controlword);
   void startHoming();
   void finishHoming();
+  bool homesByObject() const { return values_.entry(Role::homing_start) != nullptr; }
   std::uint16_t homingBits() const;
 
   const DriveDefinition& definition_;
@@ -132,6 +135,7 @@ class DriveMotion {
   bool homing_attained_ = false;
   bool homing_failed_ = false;
   bool homing_returning_ = false;
+  unsigned publications_ = 0;  ///< while it homes by an object
 
   HeldCondition following_, position_reached_, velocity_reached_, zero_speed_;
   bool following_error_exceeded_ = false;

@@ -21,6 +21,10 @@ void DriveMotion::startHoming() {
   if (homing_.phase() == HomingSequence::Phase::found) finishHoming();
 }
 
+void DriveMotion::homeByObject() {
+  if (mode_ != nullptr && mode_->behaviour == ModeBehaviour::homing) startHoming();
+}
+
 void DriveMotion::finishHoming() {
   const double offset = values_.get(Role::home_offset, 0.0);
   frame_ = homing_.home() - (definition_.home_offset_is_zero_shift ? -offset : offset);
@@ -52,8 +56,9 @@ void DriveMotion::stepHoming(double from) {
   if (homing_.phase() == HomingSequence::Phase::failed) homing_failed_ = true;
 }
 
-// CiA 402-2, table of bits 10, 12 and 13 in homing mode.
+// CiA 402-2, table of bits 10, 12 and 13 in homing mode; bit 15 where an object begins it.
 std::uint16_t DriveMotion::homingBits() const {
+  if (homesByObject()) return homing_attained_ ? 0x8000 : 0;
   std::uint16_t bits = 0;
   const bool searching = homing_.phase() == HomingSequence::Phase::searching && !halted_;
   const bool at_rest = standing() && !homing_returning_;

@@ -7,6 +7,7 @@ namespace cia402::sim {
 namespace {
 
 constexpr double kStandingSpeed = 1e-3;  // turns/s, where there is no 606Fh
+constexpr unsigned kZeroReading = 64;    // every so many readings are 0 while it homes by an object
 
 }  // namespace
 
@@ -72,7 +73,9 @@ std::uint16_t DriveMotion::statusBits() const {
 
 void DriveMotion::publish() {
   const double position = motor_.position() - frame_;
-  values_.set(Role::position_actual, position);
+  const bool searching = homing_.phase() == HomingSequence::Phase::searching;
+  const bool nothing = homesByObject() && searching && ++publications_ % kZeroReading == 0;
+  values_.set(Role::position_actual, nothing ? 0.0 : position);
   values_.set(Role::position_internal, position);
   values_.set(Role::velocity_actual, motor_.velocity());
   values_.set(Role::torque_actual, motor_.torque());

@@ -45,6 +45,7 @@ struct DriveQuirks {
   bool quick_stop_flashes = false;         ///< shows quick stop active for 2 ms only
   bool master_lost_holds = false;          ///< halts with torque then, and outside NMT operational
   bool needs_power_cycle_to_save = false;  ///< no enabling after 1010h until its power was off
+  bool shows_no_state = false;             ///< statusword always that of switch on disabled
 };
 
 }  // namespace cia402::sim

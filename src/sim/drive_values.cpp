@@ -67,6 +67,7 @@ constexpr RoleInfo kRoles[] = {
     {R::target_velocity, "target_velocity", {0x60FF, 0}, Q::velocity},
     {R::clear_errors, "clear_errors", {0, 0}, Q::none},
     {R::save_zero, "save_zero", {0, 0}, Q::none},
+    {R::homing_start, "homing_start", {0, 0}, Q::none},
 };
 static_assert(sizeof(kRoles) / sizeof(kRoles[0]) == kRoleCount, "one line for each role");
 

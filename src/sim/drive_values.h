@@ -68,6 +68,7 @@ enum class Role : std::uint8_t {
   target_velocity,
   clear_errors,  ///< vendor object: a write that is not 0 resets faults
   save_zero,     ///< vendor object: the present position becomes 0
+  homing_start,  ///< vendor object: 1 begins homing instead of controlword bit 4
   count,
 };
 inline constexpr std::size_t kRoleCount = static_cast<std::size_t>(Role::count);

@@ -15,12 +15,39 @@ using testing::Not;
 
 struct DcfDraftTest : test::DcfWorld {
   /// The file, or why there is none.
-  Answer save(std::size_t axis = 0) {
-    DcfDraft draft(world.axis(axis).config(), stamp());
+  Answer save(const drive::AxisConfig& config) {
+    DcfDraft draft(config, stamp());
     const Answer answer = world.call(draft.command());
     return answer.success ? draft.finish() : answer;
   }
+  Answer save(std::size_t axis = 0) { return save(world.axis(axis).config()); }
+  /// That of the shoulder, as if its EDS were another.
+  Answer saveWithEds(const std::string& text) {
+    drive::AxisConfig config = world.axis(0).config();
+    config.eds = test::robotWithEds(text).axes[0].eds;
+    return save(config);
+  }
+  /// The drive of the elbow, which has no EDS, without any communication object.
+  test::FakeDrive& bareDrive() {
+    test::FakeDrive& drive = world.drives[1];
+    for (std::uint32_t index = 0x1000; index < 0x2000; ++index) {
+      for (std::uint8_t subindex = 0; subindex < 9; ++subindex) {
+        const ObjectId id{static_cast<std::uint16_t>(index), subindex};
+        drive.aborts[id] = subindex == 0 ? 0x06020000 : 0x06090011;
+      }
+    }
+    return drive;
+  }
+  void give(ObjectId id, const Bytes& data) {
+    world.drives[1].aborts.erase(id);
+    world.drives[1].objects[id] = data;
+  }
 };
+
+/// An object of an EDS: an uint16 that can be written.
+std::string word(const std::string& index) {
+  return "[" + index + "]\nParameterName=Word " + index + "\nDataType=6\nAccessType=rw\n";
+}
 
 TEST_F(DcfDraftTest, ReadsWhatTheEdsCallsReadableAndTellsWhatCouldNotBeRead) {
   const Answer answer = save();
@@ -55,17 +82,7 @@ TEST_F(DcfDraftTest, TextThatNoLineCanHoldIsLeftOutAndTold) {
 }
 
 TEST_F(DcfDraftTest, WithoutAnEdsTheProfileAndTheCommunicationObjectsAreRead) {
-  test::FakeDrive& drive = world.drives[1];
-  for (std::uint32_t index = 0x1000; index < 0x2000; ++index) {
-    for (std::uint8_t subindex = 0; subindex < 9; ++subindex) {
-      const ObjectId id{static_cast<std::uint16_t>(index), subindex};
-      if (index != 0x1017) drive.aborts[id] = subindex == 0 ? 0x06020000 : 0x06090011;
-    }
-  }
-  const auto give = [&](ObjectId id, const Bytes& data) {
-    drive.aborts.erase(id);
-    drive.objects[id] = data;
-  };
+  bareDrive();
   give({0x1000, 0}, {0x92, 0x01, 0x02, 0x00});
   give({0x1018, 0}, {4});
   give({0x1018, 1}, {0xBC, 0x0A, 0, 0});
@@ -88,6 +105,165 @@ TEST_F(DcfDraftTest, WithoutAnEdsTheProfileAndTheCommunicationObjectsAreRead) {
   EXPECT_EQ(dcf.dictionary.find(ObjectId{0x1018, 1})->access, canopen::Access::ro);
   EXPECT_EQ(dcf.dictionary.find(ObjectId{0x1800, 1}), nullptr);
   EXPECT_THAT(answer.message, Not(HasSubstr("could not be read")));
+}
+
+TEST_F(DcfDraftTest, WithoutAnEdsTheFileTellsWhatItWasMadeBy) {
+  bareDrive();
+  give({0x1008, 0}, {'M', '7', 0, 0});
+  give({0x1400, 0}, {1});  // a PDO whose mapping cannot be read
+  const canopen::EdsInfo info = canopen::readEds(save(1).text).info;
+  EXPECT_THAT(info.description, HasSubstr("test_drive"));
+  EXPECT_EQ(info.product_name, "M7");
+  EXPECT_EQ(info.granularity, 8);
+  EXPECT_EQ(info.rpdo_count, 1);
+  EXPECT_EQ(info.tpdo_count, 0);
+  EXPECT_EQ(info.creation_date, "11-21-2026");
+  EXPECT_EQ(info.creation_time, "03:40PM");
+  EXPECT_EQ(info.created_by, "cia402_driver");
+  EXPECT_EQ(info.modification_date, "11-21-2026");
+  EXPECT_EQ(info.modification_time, "03:40PM");
+  EXPECT_EQ(info.modified_by, "cia402_driver");
+}
+
+TEST_F(DcfDraftTest, WithAnEdsItsHeadIsKept) {
+  const Answer answer = saveWithEds(
+      "[FileInfo]\nCreationDate=01-02-2020\nCreationTime=09:10AM\nCreatedBy=somebody\n"
+      "Description=a motor\n[DeviceInfo]\nProductName=Motor\nNrOfRXPDO=2\nNrOfTXPDO=3\n" +
+      word("2001"));
+  ASSERT_TRUE(answer.success) << answer.message;
+  const canopen::EdsInfo info = canopen::readEds(answer.text).info;
+  EXPECT_EQ(info.creation_date, "01-02-2020");
+  EXPECT_EQ(info.creation_time, "09:10AM");
+  EXPECT_EQ(info.created_by, "somebody");
+  EXPECT_EQ(info.modification_date, "11-21-2026");
+  EXPECT_EQ(info.modification_time, "03:40PM");
+  EXPECT_EQ(info.modified_by, "cia402_driver");
+  EXPECT_EQ(info.description, "a motor");
+  EXPECT_EQ(info.product_name, "Motor");
+  EXPECT_EQ(info.rpdo_count, 2);
+  EXPECT_EQ(info.tpdo_count, 3);
+}
+
+TEST_F(DcfDraftTest, AValueOfTheEdsThatTheDriveDidNotConfirmIsNotWritten) {
+  const Answer answer =
+      saveWithEds(word("2001") + "ParameterValue=1\n" + word("3001") + "ParameterValue=2\n");
+  ASSERT_TRUE(answer.success) << answer.message;
+  const canopen::Eds dcf = canopen::readEds(answer.text);
+  EXPECT_EQ(dcf.dictionary.find(ObjectId{0x2001, 0})->value, (Bytes{0x34, 0x12}));
+  EXPECT_FALSE(dcf.dictionary.find(ObjectId{0x3001, 0})->value);
+}
+
+TEST_F(DcfDraftTest, ARecordOfTheEdsIsReadWithoutItsSubIndex0Too) {
+  world.drives[0].objects[ObjectId{0x3001, 1}] = {7, 0};
+  const Answer answer = saveWithEds("[3001]\nParameterName=x\nObjectType=9\nSubNumber=2\n" +
+                                    word("3001sub0") + word("3001sub1"));
+  ASSERT_TRUE(answer.success) << answer.message;
+  const canopen::Eds dcf = canopen::readEds(answer.text);
+  EXPECT_EQ(dcf.dictionary.find(ObjectId{0x3001, 1})->value, (Bytes{7, 0}));
+  EXPECT_FALSE(dcf.dictionary.find(ObjectId{0x3001, 0})->value);
+}
+
+TEST_F(DcfDraftTest, TenObjectsThatCouldNotBeReadAreNamedAndNoMore) {
+  std::string text = word("2001");
+  for (const char last : {'0', '1', '2', '3', '4', '5', '6', '7', '8', '9'}) {
+    text += word(std::string("300") + last);
+  }
+  const std::string ten = saveWithEds(text).message;
+  EXPECT_THAT(ten, HasSubstr("10 could not be read: 3000:00 Word 3000"));
+  EXPECT_THAT(ten, HasSubstr("3009:00 Word 3009"));
+  EXPECT_THAT(ten, Not(HasSubstr("...")));
+  const std::string eleven = saveWithEds(text + word("300A")).message;
+  EXPECT_THAT(eleven, HasSubstr("11 could not be read: 3000:00 Word 3000"));
+  EXPECT_THAT(eleven, HasSubstr("3009:00 Word 3009"));
+  EXPECT_THAT(eleven, HasSubstr("; ..."));
+  EXPECT_THAT(eleven, Not(HasSubstr("300A")));
+}
+
+// Access and types of CiA 301, 7.5.2.
+TEST_F(DcfDraftTest, WithoutAnEdsTheObjectsAreWhatTheProfileAndTheStandardSay) {
+  drive::AxisConfig config = world.axis(1).config();
+  auto profile = std::make_shared<drive::DriveProfile>(*config.profile);
+  profile->max_rpdos = 1;
+  profile->max_tpdos = 2;
+  const auto name = [&](const char* word, ObjectId id, canopen::DataType type, bool writable) {
+    drive::ObjectSpec spec;
+    spec.name = word;
+    spec.id = id;
+    spec.type = type;
+    spec.writable = writable;
+    profile->objects.push_back(spec);
+  };
+  name("lower_limit", {0x607D, 1}, canopen::DataType::int32, true);
+  name("upper_limit", {0x607D, 2}, canopen::DataType::int32, true);
+  name("serial", {0x1018, 4}, canopen::DataType::uint32, false);
+  config.profile = profile;
+  bareDrive();
+  for (const std::uint16_t index :
+       {std::uint16_t{0x607D}, std::uint16_t{0x1016}, std::uint16_t{0x1018}, std::uint16_t{0x1400},
+        std::uint16_t{0x1401}, std::uint16_t{0x1600}, std::uint16_t{0x1800}, std::uint16_t{0x1A00},
+        std::uint16_t{0x1801}, std::uint16_t{0x1A01}, std::uint16_t{0x1802}}) {
+    give({index, 0}, {4});
+    give({index, 1}, {1, 0, 0, 0});
+  }
+  give({0x607D, 2}, {2, 0, 0, 0});
+  give({0x1018, 4}, {0x39, 0x30, 0, 0});
+  give({0x1400, 2}, {1});
+  give({0x1400, 5}, {100, 0});  // and no inhibit time, sub-index 3
+  give({0x6040, 0}, {0, 0});
+  give({0x6041, 0}, {0, 0});
+  const Answer answer = save(config);
+  ASSERT_TRUE(answer.success) << answer.message;
+  EXPECT_THAT(answer.message, Not(HasSubstr("could not be read")));
+  const canopen::Eds dcf = canopen::readEds(answer.text);
+
+  using canopen::Access;
+  using canopen::DataType;
+  const struct {
+    ObjectId id;
+    const char* name;
+    DataType type;
+    Access access;
+    bool mappable;
+  } entries[] = {
+      {{0x1016, 0}, "Highest sub-index supported", DataType::uint8, Access::ro, false},
+      {{0x1016, 1}, "Consumer heartbeat time 1", DataType::uint32, Access::rw, false},
+      {{0x1018, 4}, "serial", DataType::uint32, Access::ro, false},
+      {{0x1400, 0}, "Highest sub-index supported", DataType::uint8, Access::ro, false},
+      {{0x1400, 1}, "COB-ID", DataType::uint32, Access::rw, false},
+      {{0x1400, 2}, "Transmission type", DataType::uint8, Access::rw, false},
+      {{0x1400, 5}, "Event timer", DataType::uint16, Access::rw, false},
+      {{0x1600, 0}, "Number of mapped objects", DataType::uint8, Access::rw, false},
+      {{0x1600, 1}, "Mapped object 1", DataType::uint32, Access::rw, false},
+      {{0x6040, 0}, "controlword", DataType::uint16, Access::rw, true},
+      {{0x6041, 0}, "statusword", DataType::uint16, Access::ro, true},
+      {{0x6065, 0}, "following_error_window", DataType::uint32, Access::rw, false},
+      {{0x607D, 0}, "Highest sub-index supported", DataType::uint8, Access::ro, false},
+      {{0x607D, 2}, "upper_limit", DataType::int32, Access::rw, false},
+  };
+  for (const auto& row : entries) {
+    const canopen::DictionaryEntry* entry = dcf.dictionary.find(row.id);
+    ASSERT_NE(entry, nullptr) << toString(row.id);
+    EXPECT_EQ(entry->name, row.name) << toString(row.id);
+    EXPECT_EQ(entry->type, row.type) << toString(row.id);
+    EXPECT_EQ(entry->access, row.access) << toString(row.id);
+    EXPECT_EQ(entry->mappable, row.mappable) << toString(row.id);
+    EXPECT_TRUE(entry->value) << toString(row.id);
+  }
+  const auto object = [&](std::uint16_t index) { return dcf.dictionary.objects().at(index); };
+  EXPECT_EQ(object(0x1400).name, "RPDO communication parameter");
+  EXPECT_EQ(object(0x1600).name, "RPDO mapping parameter");
+  EXPECT_EQ(object(0x1801).name, "TPDO communication parameter");
+  EXPECT_EQ(object(0x1A01).name, "TPDO mapping parameter");
+  EXPECT_EQ(object(0x607D).name, "607D");
+  EXPECT_EQ(object(0x607D).code, canopen::ObjectCode::record);
+  EXPECT_EQ(object(0x6065).code, canopen::ObjectCode::variable);
+  EXPECT_EQ(object(0x1400).entries.size(), 4U) << "the drive lacks sub-indices 3, 4 and 6";
+  EXPECT_EQ(object(0x1018).entries.size(), 2U) << "the profile names one";
+  for (const std::uint16_t index : {std::uint16_t{0x1401}, std::uint16_t{0x1802}}) {
+    EXPECT_EQ(dcf.dictionary.objects().count(index), 0U) << "the profile has no more PDOs";
+  }
+  EXPECT_EQ(dcf.info.rpdo_count, 1);
+  EXPECT_EQ(dcf.info.tpdo_count, 2);
 }
 
 TEST_F(DcfDraftTest, ADriveThatGivesNothingHasNoFile) {

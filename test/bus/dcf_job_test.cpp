@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "bus/dcf_world.h"
 
 namespace cia402::bus {
@@ -45,6 +47,43 @@ TEST_F(DcfJobTest, ASilentDriveEndsItSoon) {
   EXPECT_THAT(answer.message,
               AllOf(HasSubstr("shoulder (node 1): no DCF: node 1, object 2004:00 Not there"),
                     HasSubstr("no answer within 100 ms")));
+}
+
+TEST_F(DcfJobTest, TwoTransfersInARowMayGoUnanswered) {
+  std::string text;
+  for (const char last : {'0', '1', '2', '3', '4', '5'}) {
+    text += std::string("[300") + last + "]\nParameterName=x\nDataType=6\nAccessType=ro\n";
+    world.drives[0].objects[ObjectId{static_cast<std::uint16_t>(0x3000 + last - '0'), 0}] = {1, 0};
+  }
+  drive::AxisConfig config = world.axis(0).config();
+  config.eds = test::robotWithEds(text).axes[0].eds;
+  const SaveDcfCommand command = DcfDraft(config, stamp()).command();
+  const auto count = [&](DcfReading::Outcome outcome) {
+    const auto& items = command.reading->items;
+    return std::count_if(items.begin(), items.end(),
+                         [&](const auto& item) { return item.outcome == outcome; });
+  };
+  const auto answers = world.begin(command);
+  ASSERT_TRUE(world.runUntil([&] { return count(DcfReading::Outcome::read) > 0; }));
+  world.drives[0].sdo_silent = true;
+  ASSERT_TRUE(world.runUntil([&] { return count(DcfReading::Outcome::refused) > 0; }));
+  world.run(std::chrono::milliseconds(50));  // half of the time of the next transfer
+  world.drives[0].sdo_silent = false;
+  ASSERT_TRUE(world.runUntil([&] { return !answers->empty(); }));
+  EXPECT_TRUE(answers->front().success) << answers->front().message;
+  EXPECT_EQ(count(DcfReading::Outcome::refused), 2);
+  EXPECT_EQ(count(DcfReading::Outcome::read), 4);
+}
+
+TEST_F(DcfJobTest, TheReadingIsTheCallersAloneFromTheReplyOn) {
+  const SaveDcfCommand save = DcfDraft(world.axis(0).config(), stamp()).command();
+  long owners = 0;
+  Command command;
+  command.body = save;
+  command.reply = [&](const Answer&) { owners = save.reading.use_count(); };
+  world.robot.execute(std::move(command), world.now);
+  ASSERT_TRUE(world.runUntil([&] { return owners != 0; }));
+  EXPECT_EQ(owners, 1);
 }
 
 TEST_F(DcfJobTest, AnUnknownAxisIsRefused) {

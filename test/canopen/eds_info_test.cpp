@@ -135,6 +135,44 @@ TEST(EdsInfo, WhatIsNotThereIsNotWritten) {
   EXPECT_THAT(text, HasSubstr("Dummy0007=0\r\n\r\n")) << "the last one that is always told";
 }
 
+// 1Bh, UNSIGNED64, is the last simple data type of CiA 301, table 44.
+TEST(EdsInfo, OnlySimpleDataTypesAreWrittenAsDummies) {
+  EdsInfo info;
+  info.dummies = {0x1B, 0x1C};
+  const std::string text = writeDcf(info, {});
+  EXPECT_THAT(text, HasSubstr("Dummy001B=1\r\n"));
+  EXPECT_EQ(text.find("Dummy001C"), std::string::npos);
+}
+
+/// A file of all keys in which one line is another.
+Eds headWith(const std::string& from, const std::string& to) {
+  std::string text = std::string(kHead) + kLists;
+  text.replace(text.find(from), from.size(), to);
+  return readEds(text);
+}
+
+TEST(EdsInfo, NodeId0IsNone) {
+  EXPECT_FALSE(headWith("NodeID=0x20\r\n", "NodeID=0\r\n").info.node_id);
+  EXPECT_FALSE(headWith("NodeID=0x20\r\n", "NodeID=\r\n").info.node_id);
+  EXPECT_EQ(headWith("NodeID=0x20\r\n", "NodeID=1\r\n").info.node_id, NodeId{1});
+  EXPECT_EQ(headWith("NodeID=0x20\r\n", "NodeID=127\r\n").info.node_id, NodeId{127});
+}
+
+TEST(EdsInfo, CommentsAreReadWithoutTheirNumberToo) {
+  EXPECT_THAT(headWith("Lines=2\r\n", "").info.comments, ElementsAre("one", "two"));
+  EXPECT_THAT(headWith("Lines=2\r\n", "Lines=1\r\n").info.comments, ElementsAre("one", "two"));
+}
+
+TEST(EdsInfo, ANumberOfCommentsThatIsNoneIsNotComparedToo) {
+  const Eds eds = headWith("Lines=2\r\n", "Lines=many\r\n");
+  std::vector<std::string> problems;
+  for (const EdsProblem& problem : eds.problems) {
+    if (problem.line == 57) problems.push_back(problem.message);
+  }
+  EXPECT_THAT(problems, ElementsAre("Lines=`many` is no whole number"));
+  EXPECT_THAT(eds.info.comments, ElementsAre("one", "two"));
+}
+
 TEST(EdsInfo, NumbersBeyondTheirRangeAreToldAndLeftOut) {
   struct Row {
     const char *from, *to, *problem;
@@ -146,6 +184,9 @@ TEST(EdsInfo, NumbersBeyondTheirRangeAreToldAndLeftOut) {
       {"Granularity=8", "Granularity=65", "Granularity=`65` is not 0 to 64"},
       {"NodeID=0x20", "NodeID=128", "NodeID=`128` is not 0 to 127"},
       {"Baudrate=500", "Baudrate=1001", "Baudrate=`1001` is not 0 to 1000"},
+      {"LSS_SerialNumber=0x00003039", "LSS_SerialNumber=0x100000000",
+       "LSS_SerialNumber=`0x100000000` is not 0 to 4294967295"},
+      {"NrOfRXPDO=3", "NrOfRXPDO=010", "NrOfRXPDO: `010` is octal, 8"},
       {"NrOfRXPDO=3", "NrOfRXPDO=-1", "NrOfRXPDO=`-1` is not 0 to 512"},
       {"NrOfRXPDO=3", "NrOfRXPDO=many", "NrOfRXPDO=`many` is no whole number"},
       {"Dummy0005=1", "Dummy0000=1", "`Dummy0000` is no data type like Dummy0005"},
@@ -158,10 +199,9 @@ TEST(EdsInfo, NumbersBeyondTheirRangeAreToldAndLeftOut) {
       {"[DeviceInfo]", "[DeviceInf]", "section [DeviceInfo] is missing"},
   };
   for (const Row& row : rows) {
-    std::string text = std::string(kHead) + kLists;
-    text.replace(text.find(row.from), std::string(row.from).size(), row.to);
     std::string problems;
-    for (const EdsProblem& problem : readEds(text).problems) problems += toString(problem) + "\n";
+    const Eds eds = headWith(row.from, row.to);
+    for (const EdsProblem& problem : eds.problems) problems += toString(problem) + "\n";
     EXPECT_THAT(problems, HasSubstr(row.problem)) << row.to;
   }
 }

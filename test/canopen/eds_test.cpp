@@ -4,8 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "canopen/eds_file.h"
 
 namespace cia402::canopen {
@@ -341,27 +339,37 @@ TEST(Eds, WhatIsNoEdsAtAllIsTold) {
 
 TEST(Eds, AFloodOfProblemsIsCountedNotKept) {
   std::string text = "[2001]\n";
+  const std::size_t others = readEds(text).problems.size();
   for (int i = 0; i < 5000; ++i) text += "no equals sign\n";
   const Eds eds = readEds(text);
   EXPECT_EQ(eds.problems.size(), kMostEdsProblems);
-  EXPECT_GT(eds.problems_left_out, 4000U);
+  EXPECT_EQ(eds.problems_left_out, others + 5000 - kMostEdsProblems);
 }
 
 TEST(Eds, AFileThatUnfoldsIntoTooManyEntriesIsCutOff) {
+  const auto name = [](unsigned index) {
+    return toString(ObjectId{static_cast<std::uint16_t>(index), 0}).substr(0, 4);
+  };
+  const std::string keys = "]\nParameterName=x\nDataType=7\nAccessType=rw\n";
   std::string text;
-  for (unsigned i = 0; i < 4000; ++i) {
-    text += "[" + toString(ObjectId{static_cast<std::uint16_t>(0x2000 + i), 0}).substr(0, 4) +
-            "]\nObjectType=8\nDataType=7\nAccessType=rw\nCompactSubObj=254\n";
+  // 1176 arrays of 255 sub-indices are 299880; of the 200 of [5000] there is room for 120.
+  for (unsigned i = 0; i < 1176; ++i) {
+    text += "[" + name(0x2000 + i) + keys + "ObjectType=8\nCompactSubObj=254\n";
   }
+  text += "[5000" + keys + "ObjectType=9\nSubNumber=200\n";
+  for (unsigned i = 0; i < 200; ++i) text += "[5000sub" + name(i).substr(2) + keys;
+  text += "[5001" + keys;
   const Eds eds = readEds(text);
-  EXPECT_LE(eds.dictionary.size(), kMostEdsEntries);
-  EXPECT_GT(eds.dictionary.size(), kMostEdsEntries - 300);
-  EXPECT_TRUE(std::any_of(eds.problems.begin(), eds.problems.end(),
-                          [](const EdsProblem& problem) {
-                            return problem.message ==
-                                   "more than 300000 entries; the rest is not read";
-                          }) ||
-              eds.problems_left_out > 0);
+  EXPECT_EQ(eds.dictionary.size(), kMostEdsEntries);
+  EXPECT_EQ(eds.dictionary.objects().at(0x5000).entries.size(), 120U);
+  EXPECT_EQ(eds.dictionary.objects().count(0x5001), 0U);
+  // Each array has six lines, [5000] too, each of its sub-indices four.
+  std::vector<std::string> cut_off;
+  for (const std::string& problem : problemsOf(eds)) {
+    if (problem.find("more than") != std::string::npos) cut_off.push_back(problem);
+  }
+  EXPECT_THAT(cut_off,
+              ElementsAre("line 7543: error: more than 300000 entries; the rest is not read"));
 }
 
 }  // namespace

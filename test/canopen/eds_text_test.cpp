@@ -1,12 +1,40 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "../../src/canopen/eds_text.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
 
+#include "cia402_driver/canopen/eds.h"
+
 namespace cia402::canopen {
 namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+/// The sections of a text, and what is wrong with it.
+struct ReadText {
+  explicit ReadText(std::string_view text) : sections(text, problems_) {
+    Eds eds;
+    problems_.moveTo(eds);
+    for (const EdsProblem& problem : eds.problems) problems.push_back(toString(problem));
+  }
+  std::string value(const std::string& section, const std::string& key) const {
+    const EdsSection* found = sections.find(section);
+    const EdsKey* line = found != nullptr ? found->find(key) : nullptr;
+    return line != nullptr ? line->value : "none";
+  }
+
+ private:
+  EdsProblems problems_;
+
+ public:
+  const EdsText sections;
+  std::vector<std::string> problems;
+};
 
 // The Unicode Standard, table 3-7, "Well-Formed UTF-8 Byte Sequences": the ends of each row.
 TEST(EdsText, WellFormedUtf8IsKnownByItsBytes) {
@@ -75,6 +103,67 @@ TEST(EdsText, BytesThatAreNoUtf8AreKnown) {
        }) {
     EXPECT_FALSE(isUtf8(text)) << testing::PrintToString(std::string(text));
   }
+}
+
+TEST(EdsText, BytesBehindTheTextDoNotCount) {
+  EXPECT_TRUE(isUtf8(std::string_view("a\xFF", 1)));
+  EXPECT_FALSE(isUtf8(std::string_view("\xC2\x80", 1)));
+}
+
+TEST(EdsText, TheLastLineNeedsNoEnd) {
+  const ReadText read("[2001]\nDataType=7");
+  EXPECT_THAT(read.problems, IsEmpty());
+  EXPECT_EQ(read.value("2001", "datatype"), "7");
+  EXPECT_EQ(read.sections.lastLine(), 2U);
+}
+
+TEST(EdsText, BlanksBeforeALineDoNotMatter) {
+  const ReadText read("  [2001]  \n \tDataType = 7 \n  ; comment\n\t# comment\n   \n");
+  EXPECT_THAT(read.problems, IsEmpty());
+  EXPECT_EQ(read.value("2001", "datatype"), "7");
+}
+
+TEST(EdsText, LinesBeforeTheFirstSectionAreToldOnce) {
+  const ReadText read("one\ntwo=2\n[2001]\nDataType=7\n");
+  EXPECT_THAT(read.problems,
+              ElementsAre("line 1: error: `one` stands before the first section and is ignored"));
+  EXPECT_EQ(read.value("2001", "datatype"), "7");
+}
+
+TEST(EdsText, LinesOfASectionWithoutANameAreToldWithIt) {
+  const ReadText read("[ ]\none\ntwo=2\n");
+  EXPECT_THAT(read.problems,
+              ElementsAre("line 1: error: a section without a name; its lines are ignored"));
+  EXPECT_THAT(read.sections.sections(), IsEmpty());
+}
+
+TEST(EdsText, ACommentBehindANameWithoutItsBracketIsNoPartOfIt) {
+  const ReadText read("[2001 ; the gain\nDataType=7\n");
+  EXPECT_EQ(read.value("2001", "datatype"), "7");
+  EXPECT_THAT(read.problems, ElementsAre(HasSubstr("line 1: warning: the `]` behind")));
+}
+
+TEST(EdsText, ControlCharactersBecomeQuestionMarksAndTabulatorsBlanks) {
+  const char bytes[] = "[2001]\nParameterName=a\0b\x1B[\x7F]\nDenotation=a\tb\nDataType=7\n";
+  const ReadText read(std::string_view(bytes, sizeof bytes - 1));
+  EXPECT_EQ(read.value("2001", "parametername"), "a?b?[?]");
+  EXPECT_EQ(read.value("2001", "denotation"), "a b");
+  EXPECT_EQ(read.value("2001", "datatype"), "7");
+  EXPECT_THAT(read.problems, ElementsAre("line 2: warning: a control character is read as `?`"));
+}
+
+TEST(EdsText, TheLongestFileIsReadAndALongerOneIsCutOff) {
+  const std::string end = "\n[2001]\nDataType=7";
+  std::string text = ";" + std::string(kLongestEds - 1 - end.size(), 'x') + end;
+  ASSERT_EQ(text.size(), kLongestEds);
+  const ReadText longest(text);
+  EXPECT_THAT(longest.problems, IsEmpty());
+  EXPECT_EQ(longest.value("2001", "datatype"), "7");
+  text += "89";
+  const ReadText longer(text);
+  EXPECT_THAT(longer.problems, ElementsAre("line 1: error: the file is longer than 32 MiB; the "
+                                           "rest is not read"));
+  EXPECT_EQ(longer.value("2001", "datatype"), "7");
 }
 
 }  // namespace

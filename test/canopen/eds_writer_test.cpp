@@ -95,6 +95,57 @@ TEST(EdsWriter, TheTextIsThatOfTheStandard) {
                               "PDOMapping=0\r\nParameterValue=0x800001A0\r\n"));
 }
 
+// CiA 306: 1000h, 1001h and 1018h are mandatory, 2000h to 5FFFh the manufacturer's, the others
+// optional. Data types stand below 1000h and in no list.
+TEST(EdsWriter, EachObjectStandsInTheListOfItsKind) {
+  ObjectDictionary dictionary;
+  for (const unsigned index : {0x0FFFU, 0x1000U, 0x1001U, 0x1002U, 0x1017U, 0x1018U, 0x1019U,
+                               0x1FFFU, 0x2000U, 0x5FFFU, 0x6000U, 0x9FFFU}) {
+    DictionaryObject object{static_cast<std::uint16_t>(index), "x", ObjectCode::variable, {}};
+    object.entries[0].id.index = object.index;
+    dictionary.set(object);
+  }
+  EXPECT_THAT(
+      writeDcf({}, dictionary),
+      HasSubstr("[MandatoryObjects]\r\nSupportedObjects=3\r\n1=0x1000\r\n2=0x1001\r\n3=0x1018\r\n"
+                "\r\n[OptionalObjects]\r\nSupportedObjects=6\r\n1=0x1002\r\n2=0x1017\r\n3=0x1019"
+                "\r\n4=0x1FFF\r\n5=0x6000\r\n6=0x9FFF\r\n"
+                "\r\n[ManufacturerObjects]\r\nSupportedObjects=2\r\n1=0x2000\r\n2=0x5FFF\r\n"));
+}
+
+TEST(EdsWriter, NoNameEndsItsLineOrBeginsAComment) {
+  const auto line = [](const char* name) {
+    ObjectDictionary dictionary;
+    DictionaryObject object{0x2001, name, ObjectCode::variable, {}};
+    object.entries[0].id.index = 0x2001;
+    dictionary.set(object);
+    return readEds(writeDcf({}, dictionary)).dictionary.objects().at(0x2001).name;
+  };
+  EXPECT_EQ(line(";first"), ",first");
+  EXPECT_EQ(line("a;b"), "a;b");
+  EXPECT_EQ(line("a ; b ;;"), "a , b ,;");
+  EXPECT_EQ(line("two\r\nlines"), "two  lines");
+  EXPECT_EQ(line(" blanks\t"), "blanks");
+}
+
+TEST(EdsWriter, WhatWasTakenBackIsNotWritten) {
+  ObjectDictionary dictionary;
+  DictionaryEntry& entry = dictionary.set({0x2001, "x", ObjectCode::variable, {}}).entries[0];
+  entry.id.index = 0x2001;
+  entry.low = entry.high = entry.default_value = entry.value = ObjectValue{1, 0, 0, 0};
+  const std::string text = writeDcf({}, dictionary);
+  for (const char* key : {"LowLimit", "HighLimit", "DefaultValue", "ParameterValue"}) {
+    EXPECT_THAT(text, HasSubstr(key + std::string("=0x00000001\r\n")));
+  }
+  entry.low.reset();
+  entry.high.reset();
+  entry.default_value.reset();
+  entry.value.reset();
+  EXPECT_THAT(writeDcf({}, dictionary),
+              HasSubstr("[2001]\r\nParameterName=x\r\nObjectType=0x7\r\nDataType=0x0007\r\n"
+                        "AccessType=rw\r\nPDOMapping=0\r\n"));
+}
+
 TEST(EdsWriter, AValueThatNoLineCanHoldIsLeftOut) {
   ObjectDictionary dictionary;
   DictionaryObject object{0x1008, "Device name", ObjectCode::variable, {}};

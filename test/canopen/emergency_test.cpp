@@ -85,6 +85,15 @@ TEST(DecodeEmergency, TakesAShortFrameAsFarAsItGoes) {
   EXPECT_FALSE(decodeEmergency(can::Frame(0x083, {}), Time()));
 }
 
+TEST(DecodeEmergency, TakesNothingFromBehindTheEndOfAFrame) {
+  can::Frame frame(0x083, {0x30, 0x81, 0x11, 0xAB, 0xEE, 0xEE, 0xEE, 0xEE});
+  frame.size = 4;
+  EXPECT_EQ(decodeEmergency(frame, Time())->vendor,
+            (std::array<std::uint8_t, 5>{0xAB, 0, 0, 0, 0}));
+  frame.size = 2;
+  EXPECT_EQ(decodeEmergency(frame, Time())->error_register, 0);
+}
+
 TEST(VendorBytesText, IsHexadecimalAndEmptyWhereThereIsNothing) {
   Emergency emergency;
   EXPECT_EQ(vendorBytesText(emergency), "");

@@ -17,7 +17,7 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-const char kStop[] = "000 02 03";
+const char kNmtStop[] = "000 02 03";
 const char kMotorStop[] = "603 2B 40 60 00 02 00 00 00";  // controlword 0x0002, quick stop
 
 class LastStopTest : public test::NodeFixture {
@@ -62,7 +62,7 @@ class LastStopTest : public test::NodeFixture {
 
 TEST_F(LastStopTest, a_lost_node_is_told_to_stop_its_motor_by_sdo_and_then_by_nmt_again_and_again) {
   lose();
-  EXPECT_THAT(times(kStop, milliseconds(450)), ElementsAre(40, 60, 80, 100, 120, 220, 320, 420));
+  EXPECT_THAT(times(kNmtStop, milliseconds(450)), ElementsAre(40, 60, 80, 100, 120, 220, 320, 420));
 }
 
 TEST_F(LastStopTest, the_motor_is_stopped_before_nmt_takes_sdo_away) {
@@ -73,7 +73,7 @@ TEST_F(LastStopTest, the_motor_is_stopped_before_nmt_takes_sdo_away) {
 TEST_F(LastStopTest, without_anything_to_write_it_is_stopped_by_nmt_at_once) {
   config.writes.clear();
   lose();
-  EXPECT_THAT(times(kStop, milliseconds(250)), ElementsAre(0, 20, 40, 60, 80, 180));
+  EXPECT_THAT(times(kNmtStop, milliseconds(250)), ElementsAre(0, 20, 40, 60, 80, 180));
 }
 
 TEST_F(LastStopTest, ends_three_seconds_after_the_loss) {
@@ -92,7 +92,7 @@ TEST_F(LastStopTest, a_node_that_says_operational_is_told_again_at_once_and_not_
   hear("703 05");
   EXPECT_EQ(peer.take(), Lines{kMotorStop});
   EXPECT_EQ(node->health(), NodeHealth::lost);
-  EXPECT_THAT(times(kStop, milliseconds(60)), ElementsAre(40, 60));
+  EXPECT_THAT(times(kNmtStop, milliseconds(60)), ElementsAre(40, 60));
 }
 
 TEST_F(LastStopTest, a_node_that_says_stopped_is_booted_and_told_no_more) {
@@ -104,10 +104,10 @@ TEST_F(LastStopTest, a_node_that_says_stopped_is_booted_and_told_no_more) {
   EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
   const Lines sent = peer.take();
   EXPECT_EQ(sent[0], "000 80 03");
-  EXPECT_THAT(sent, Not(Contains(kStop)));
+  EXPECT_THAT(sent, Not(Contains(kNmtStop)));
   hear("703 05");
   pass(milliseconds(200));
-  EXPECT_THAT(peer.take(), Not(Contains(kStop)));
+  EXPECT_THAT(peer.take(), Not(Contains(kNmtStop)));
 }
 
 TEST_F(LastStopTest, a_node_that_takes_no_nmt_stop_is_booted_half_a_second_after_its_loss) {
@@ -127,7 +127,7 @@ TEST_F(LastStopTest, a_node_that_rebooted_is_told_no_more) {
   peer.take();
   hear("703 00");
   EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
-  EXPECT_THAT(peer.take(), Not(Contains(kStop)));
+  EXPECT_THAT(peer.take(), Not(Contains(kNmtStop)));
 }
 
 TEST_F(LastStopTest, an_answer_to_the_posted_stop_is_taken_for_none_to_a_later_request) {

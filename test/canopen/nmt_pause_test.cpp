@@ -13,7 +13,7 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const char kStop[] = "000 02 03";
+const char kStopNode[] = "000 02 03";
 const char kStart[] = "000 01 03";
 
 class NmtPauseTest : public test::NodeFixture {
@@ -30,9 +30,9 @@ class NmtPauseTest : public test::NodeFixture {
 
 TEST_F(NmtPauseTest, StopsTwiceAndStartsUntilTheHeartbeatSaysOperational) {
   pauseReadyNode();
-  EXPECT_EQ(peer.take(), Lines{kStop});
+  EXPECT_EQ(peer.take(), Lines{kStopNode});
   pass(milliseconds(119));
-  EXPECT_EQ(peer.take(), Lines{kStop}) << "the first may be lost";
+  EXPECT_EQ(peer.take(), Lines{kStopNode}) << "the first may be lost";
   pass(milliseconds(1));
   EXPECT_EQ(peer.take(), Lines{kStart});
   pass(milliseconds(20));
@@ -81,7 +81,7 @@ TEST_F(NmtPauseTest, ABootUpMessageEndsIt) {
   EXPECT_FALSE(node->paused());
   peer.take();
   pass(milliseconds(100));
-  EXPECT_THAT(peer.take(), Not(Contains(kStop)));
+  EXPECT_THAT(peer.take(), Not(Contains(kStopNode)));
 }
 
 TEST_F(NmtPauseTest, ANodeThatIsNotReadyIsLeftAlone) {
@@ -100,7 +100,7 @@ TEST(NmtPauseOfASilentNode, CountsAsOverAfterThreeStarts) {
     now = pause.deadline();
     EXPECT_TRUE(pause.tick(now));
   }
-  EXPECT_EQ(peer.take(), (Lines{kStop, kStop, kStart, kStart, kStart}));
+  EXPECT_EQ(peer.take(), (Lines{kStopNode, kStopNode, kStart, kStart, kStart}));
 }
 
 }  // namespace

@@ -48,6 +48,17 @@ TEST(ObjectDictionary, TellsWhichObjectsAnAmbiguousNameMeans) {
   EXPECT_FALSE(dictionary().find("").ok());
 }
 
+TEST(ObjectDictionary, AnObjectGoesBeforeAnEntryOfTheSameName) {
+  ObjectDictionary all = dictionary();
+  DictionaryObject cob_id{0x2001, "COB-ID", ObjectCode::variable, {}};
+  cob_id.entries[0] = variable({0x2001, 0}, "COB-ID");
+  all.set(cob_id);
+  ASSERT_TRUE(all.find("COB-ID").ok()) << all.find("COB-ID").error().message;
+  EXPECT_EQ((*all.find("COB-ID"))->id, (ObjectId{0x2001, 0}));
+  EXPECT_EQ((*all.find("TPDO parameter/COB-ID"))->id, (ObjectId{0x1800, 1}));
+  EXPECT_FALSE(all.find("COB-ID/COB-ID").ok()) << "a variable has no entries to be named";
+}
+
 TEST(ObjectDictionary, AWriteIsCheckedAgainstAccessLengthAndLimits) {
   DictionaryEntry entry = variable({0x607A, 0}, "Target position", DataType::int16);
   entry.low = ObjectValue{0xF6, 0xFF};   // -10
@@ -87,6 +98,20 @@ TEST(ObjectDictionary, UnsignedAndRealNumbersAreComparedAsWhatTheyAre) {
   EXPECT_EQ(describeValue(DataType::real32, {0, 0, 0, 0xC0}), "-2");
   EXPECT_EQ(describeValue(DataType::octet_string, {1, 0xAB}), "01 AB");
   EXPECT_EQ(describeValue(DataType::visible_string, {}), "\"\"");
+}
+
+TEST(ObjectDictionary, TheSmallestTypeIsComparedAndTypesThatAreNoNumbersAreNot) {
+  EXPECT_LT(compareValues(DataType::boolean, {0}, {1}), 0);
+  EXPECT_GT(compareValues(DataType::boolean, {1}, {0}), 0);
+  for (const DataType type : {DataType::visible_string, DataType::octet_string, DataType::domain}) {
+    EXPECT_EQ(compareValues(type, {'a'}, {'b'}), 0) << toString(type);
+  }
+}
+
+TEST(ObjectDictionary, TextIsDescribedAsTextWhereAllOfItCanBeRead) {
+  EXPECT_EQ(describeValue(DataType::visible_string, {' ', '~'}), "\" ~\"");
+  EXPECT_EQ(describeValue(DataType::visible_string, {'a', 0x1F}), "61 1F");
+  EXPECT_EQ(describeValue(DataType::visible_string, {'a', 0x7F}), "61 7F");
 }
 
 }  // namespace

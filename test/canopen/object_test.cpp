@@ -59,6 +59,19 @@ TEST(ObjectId, is_ordered_by_index_then_sub_index) {
   EXPECT_FALSE((ObjectId{0x1018, 1}) < (ObjectId{0x1018, 1}));
 }
 
+// CiA 301, 7.5.2.8 to 7.5.2.10: device name, hardware and software version.
+TEST(ObjectId, knows_the_texts_that_every_device_has) {
+  for (const std::uint16_t index :
+       {std::uint16_t{0x1008}, std::uint16_t{0x1009}, std::uint16_t{0x100A}}) {
+    EXPECT_TRUE(isStandardText({index, 0})) << std::hex << index;
+    EXPECT_FALSE(isStandardText({index, 1})) << std::hex << index;
+  }
+  for (const std::uint16_t index :
+       {std::uint16_t{0x1007}, std::uint16_t{0x100B}, std::uint16_t{0x6041}}) {
+    EXPECT_FALSE(isStandardText({index, 0})) << std::hex << index;
+  }
+}
+
 TEST(DataType, has_short_words) {
   EXPECT_EQ(parseTypeWord("u8"), DataType::uint8);
   EXPECT_EQ(parseTypeWord("u24"), DataType::uint24);

@@ -127,12 +127,12 @@ PdoConfig tpdoOfType(std::uint8_t type) {
   return config;
 }
 
-Time at(int ms) { return Time(std::chrono::seconds(5) + std::chrono::milliseconds(ms)); }
+Time timeAt(int ms) { return Time(std::chrono::seconds(5) + std::chrono::milliseconds(ms)); }
 
 /// SYNCs without a TPDO until it is stale; 0: it never is.
 int syncsUntilStale(ProcessImage& image) {
   for (int sync = 1; sync <= 1000; ++sync) {
-    image.age(at(4 * sync));
+    image.age(timeAt(4 * sync));
     if (image.tpdos()[0].stale) return sync;
   }
   return 0;
@@ -185,10 +185,10 @@ TEST(ProcessImage, an_event_timer_tells_how_long_a_tpdo_may_be_away) {
   config.inhibit = 50;      // 5 ms
   ProcessImage image({config});
   EXPECT_TRUE(image.regular(image.inputSlot(kStatusword)));
-  image.receive(0, frame("183 37 02"), at(0));
-  image.age(at(75));
+  image.receive(0, frame("183 37 02"), timeAt(0));
+  image.age(timeAt(75));
   EXPECT_FALSE(image.tpdos()[0].stale);
-  image.age(at(76));  // more than three times 25 ms
+  image.age(timeAt(76));  // more than three times 25 ms
   EXPECT_TRUE(image.tpdos()[0].stale);
 }
 

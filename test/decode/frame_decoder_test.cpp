@@ -34,7 +34,7 @@ TEST_F(Decoder, NmtCommandsNameWhomTheyAreFor) {
 TEST_F(Decoder, AJointThatIsCalledOtherwiseThanItsAxisIsNamedFirst) {
   robot.axes[0].joint = "hip";
   robot.axes[1].joint = robot.axes[1].name;
-  const FrameDecoder renamed(robot, test::master(robot));
+  FrameDecoder renamed(robot, test::master(robot));
   EXPECT_EQ(renamed.decode(Frame(0x000, {0x01, 0x01})).node, "hip (axis shoulder, 1)");
   EXPECT_EQ(renamed.decode(Frame(0x000, {0x01, 0x02})).node, "slide (2)");
 }

@@ -1,5 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-// Standstill, soft stop, homing status and fault texts.
+// Standstill, soft stop, homing status, fault texts and numbers in sentences.
+#include "../../src/drive/sentence.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -137,6 +139,24 @@ TEST(FaultText, KnowsTheFamiliesCodes) {
 
 TEST(FaultText, FallsBackToTheClassesOfTheStandard) {
   EXPECT_EQ(errorCodeText(DriveProfile(), 0x8611).substr(0, 22), "0x8611 following error");
+}
+
+TEST(FaultText, NamesAnErrorByTheProfileElseByTheStandard) {
+  DriveProfile profile;
+  profile.errors[0x7305] = {"encoder", "no signal", "check the plug"};
+  EXPECT_EQ(errorName(profile, 0x7305), "encoder");
+  EXPECT_EQ(errorName(profile, 0x8611), "following error");
+}
+
+TEST(Sentence, LengthsHaveTheUnitOfTheJoint) {
+  EXPECT_EQ(length(-3.05, false), "-3.050 rad");
+  EXPECT_EQ(length(0.12, true), "0.120 m");
+  EXPECT_EQ(number(-3.05), "-3.050");
+  EXPECT_EQ(seconds(milliseconds(350)), "0.35 s");
+  EXPECT_EQ(seconds(std::chrono::seconds(2)), "2 s");
+  EXPECT_EQ(seconds(std::chrono::seconds(999)), "999 s");
+  EXPECT_EQ(seconds(milliseconds(999600)), "1000 s");
+  EXPECT_EQ(seconds(std::chrono::seconds(3600)), "3600 s");
 }
 
 }  // namespace

@@ -193,5 +193,181 @@ TEST(NamedWrite, BytesAreLittleEndianAndAsManyAsTheType) {
   EXPECT_THAT(wireBytes(0x08, DataType::int8), testing::ElementsAre(0x08));
 }
 
+// The axis with an EDS that knows the object and its limits.
+AxisConfig withEds(AxisConfig axis, ObjectId id, DataType type,
+                   std::optional<canopen::ObjectValue> low,
+                   std::optional<canopen::ObjectValue> high) {
+  canopen::DictionaryObject object;
+  object.index = id.index;
+  canopen::DictionaryEntry& entry = object.entries[id.subindex];
+  entry.id = id;
+  entry.type = type;
+  entry.low = std::move(low);
+  entry.high = std::move(high);
+  AxisEds eds;
+  eds.file = "motor.eds";
+  eds.dictionary.set(std::move(object));
+  axis.eds = std::make_shared<const AxisEds>(std::move(eds));
+  return axis;
+}
+
+TEST(NamedWrite, EachLimitHasItsOwnSource) {
+  AxisConfig axis = axisOf("generic_cia402");
+  axis.geometry.rated_torque = 2.0;
+  axis.limits.velocity = 0.2;
+  axis.limits.acceleration = 0.3;
+  axis.limits.jerk = 0.4;
+  axis.limits.effort = 0.5;
+  DriveProfile profile = *axis.profile;
+  ObjectSpec jerk = *profile.find("profile_acceleration");
+  jerk.name = "profile_jerk";
+  jerk.id = {0x60A4, 1};
+  jerk.quantity = Quantity::jerk;
+  profile.objects.push_back(jerk);
+  axis.profile = std::make_shared<const DriveProfile>(profile);
+  EXPECT_EQ(rawOf(write("profile_velocity", "limits.velocity"), axis), 200u);
+  EXPECT_EQ(rawOf(write("profile_acceleration", "limits.acceleration"), axis), 300u);
+  EXPECT_EQ(rawOf(write("profile_jerk", "limits.jerk"), axis), 400u);
+  EXPECT_EQ(rawOf(write("max_torque", "limits.effort"), axis), 250u);  // 1/1000 of 2 N m
+}
+
+TEST(NamedWrite, AHomingOptionThatIsGivenIsAskedForAndADefaultIsNot) {
+  AxisConfig axis = axisOf("generic_cia402");
+  const auto asked = [&](const char* object, const char* from) {
+    NamedWrite named = write(object, from);
+    named.raw = 1;  // what the profile has instead
+    const auto resolved = resolveWrite(named, axis);
+    return resolved && *resolved && (*resolved)->asked_for;
+  };
+  EXPECT_FALSE(asked("home_offset", "homing.offset"));
+  EXPECT_FALSE(asked("homing_method", "homing.method"));
+  EXPECT_FALSE(asked("homing_search_velocity", "homing.search_velocity"));
+  axis.homing = HomingOptions();
+  axis.homing->method = 35;
+  EXPECT_TRUE(asked("homing_method", "homing.method"));
+  EXPECT_FALSE(asked("home_offset", "homing.offset")) << "0 by default";
+  EXPECT_FALSE(asked("homing_search_velocity", "homing.search_velocity"));
+  axis.homing->offset = 0.0;
+  axis.homing->search_velocity = 0.1;
+  EXPECT_TRUE(asked("home_offset", "homing.offset"));
+  EXPECT_TRUE(asked("homing_search_velocity", "homing.search_velocity"));
+  axis.limits.velocity = 1.0;
+  EXPECT_FALSE(asked("profile_velocity", "limits.velocity")) << "of every axis";
+}
+
+TEST(NamedWrite, AHomingOptionThatIsNotGivenLeavesWhatTheProfileHas) {
+  AxisConfig axis = axisOf("generic_cia402");
+  axis.homing = HomingOptions();
+  for (const char* from :
+       {"homing.search_velocity", "homing.zero_velocity", "homing.acceleration"}) {
+    NamedWrite named = write("homing_search_velocity", from);
+    named.raw = 77;
+    EXPECT_EQ(rawOf(named, axis), 77u) << from;
+  }
+  axis.homing->search_velocity = 0.25;
+  NamedWrite slower = write("homing_zero_velocity", "homing.search_velocity");
+  slower.times = 0.5;
+  EXPECT_EQ(rawOf(slower, axis), 125u);
+}
+
+TEST(NamedWrite, PeriodsHaveOneToTwoHundredAndFiftyFiveOfAPowerOfTen) {
+  struct Row {
+    Duration period;
+    int value, exponent;
+  };
+  const Row rows[] = {
+      {std::chrono::microseconds(1), 1, -6},     {std::chrono::microseconds(7), 7, -6},
+      {std::chrono::microseconds(255), 255, -6}, {std::chrono::milliseconds(255), 255, -3},
+      {std::chrono::seconds(255), 255, 0},       {std::chrono::seconds(1), 1, 0},
+      {std::chrono::milliseconds(100), 1, -1}};
+  for (const Row& row : rows) {
+    SCOPED_TRACE(row.period.count());
+    const auto found = interpolationPeriod(row.period);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->value, row.value);
+    EXPECT_EQ(found->exponent, row.exponent);
+  }
+  for (const Duration none :
+       {Duration(std::chrono::nanoseconds(100)), Duration(std::chrono::microseconds(256)),
+        Duration(std::chrono::milliseconds(256)), Duration(std::chrono::seconds(256)),
+        Duration(-std::chrono::milliseconds(4))}) {
+    EXPECT_FALSE(interpolationPeriod(none)) << none.count();
+  }
+}
+
+TEST(NamedWrite, WhatTheEdsForbidsIsRefusedWithItsLimit) {
+  AxisConfig axis = withEds(axisOf("generic_cia402"), {0x6081, 0}, DataType::uint32,
+                            canopen::ObjectValue{0xF4, 0x01, 0, 0},   // 500
+                            canopen::ObjectValue{0xD0, 0x07, 0, 0});  // 2000
+  const NamedWrite velocity = write("profile_velocity", "limits.velocity");
+  axis.limits.velocity = 2.0;
+  EXPECT_EQ(rawOf(velocity, axis), 2000u);
+  axis.limits.velocity = 0.5;
+  EXPECT_EQ(rawOf(velocity, axis), 500u);
+  for (const auto& [limit, words] : {std::make_pair(2.001, "2001 is above the limit 2000"),
+                                     std::make_pair(0.499, "499 is below the limit 500")}) {
+    axis.limits.velocity = limit;
+    const auto refused = resolveWrite(velocity, axis);
+    ASSERT_FALSE(refused) << words;
+    EXPECT_THAT(refused.error().message,
+                testing::AllOf(testing::HasSubstr("shoulder (node 3): profile_velocity (6081:00)"),
+                               testing::HasSubstr(words), testing::HasSubstr("motor.eds")));
+  }
+  const auto copy = resolveWrite(write("profile_velocity", "position_actual"), axis);
+  ASSERT_TRUE(copy && *copy) << "what will be read is not known yet";
+}
+
+TEST(NamedWrite, APositionLimitIsOpenAsFarAsTheObjectOrTheEdsGoes) {
+  AxisConfig axis = axisOf("generic_cia402");
+  axis.limits.lower = -1.0;
+  axis.limits.upper = 3.0;
+  const auto limit = [](const NamedWrite& named, const AxisConfig& of) {
+    const auto resolved = resolveLimit(named, of);
+    EXPECT_TRUE(resolved && *resolved);
+    return resolved && *resolved ? **resolved : ResolvedLimit();
+  };
+  const NamedWrite lower = write("software_limit_min", "limits.lower");
+  const NamedWrite upper = write("software_limit_max", "limits.upper");
+  EXPECT_EQ(limit(lower, axis).open, 0x80000000u);
+  EXPECT_EQ(limit(upper, axis).open, 0x7FFFFFFFu);
+  const canopen::ObjectValue low{0xB0, 0x3C, 0xFF, 0xFF}, high{0x50, 0xC3, 0, 0};  // -+50000
+  EXPECT_EQ(limit(lower, withEds(axis, {0x607D, 1}, DataType::int32, low, high)).open, 0xFFFF3CB0u);
+  EXPECT_EQ(limit(upper, withEds(axis, {0x607D, 2}, DataType::int32, low, high)).open, 0xC350u);
+  EXPECT_EQ(limit(upper, withEds(axis, {0x607D, 2}, DataType::int32, low, {})).open, 0x7FFFFFFFu);
+  EXPECT_EQ(limit(lower, withEds(axis, {0x607D, 1}, DataType::int32, {}, high)).open, 0x80000000u);
+}
+
+TEST(NamedWrite, APositionLimitSaysWhichWayItHoldsTheJoint) {
+  AxisConfig axis = axisOf("generic_cia402");
+  axis.limits.lower = -1.0;
+  axis.limits.upper = 3.0;
+  NamedWrite minimum = write("software_limit_min", "limits.lower");
+  minimum.times = 2.0;
+  const auto straight = resolveLimit(minimum, axis);
+  ASSERT_TRUE(straight && *straight);
+  EXPECT_TRUE((*straight)->lower);
+  EXPECT_DOUBLE_EQ((*straight)->value, -2.0);
+  EXPECT_EQ((*straight)->write.raw, 0xFFFFF830u);  // -2000
+  axis.geometry.direction = -1;
+  const auto reversed = resolveLimit(minimum, axis);
+  ASSERT_TRUE(reversed && *reversed);
+  EXPECT_FALSE((*reversed)->lower) << "the smaller number is the joint's upper end";
+  EXPECT_DOUBLE_EQ((*reversed)->value, 6.0);
+  EXPECT_EQ((*reversed)->write.raw, 0xFFFFE890u);  // -6000
+  EXPECT_DOUBLE_EQ((*reversed)->conversion.toJoint(1000), -1.0);
+  axis.limits.upper.reset();
+  const auto none = resolveLimit(minimum, axis);
+  ASSERT_TRUE(none);
+  EXPECT_FALSE(*none);
+}
+
+TEST(NamedWrite, APositionLimitThatDoesNotFitIsRefused) {
+  AxisConfig axis = axisOf("generic_cia402");
+  axis.limits.upper = 3e6;
+  const auto refused = resolveLimit(write("software_limit_max", "limits.upper"), axis);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, testing::HasSubstr("3e+06 does not fit"));
+}
+
 }  // namespace
 }  // namespace cia402::drive

@@ -11,23 +11,23 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr Duration kCycle = milliseconds(10);
+constexpr Duration kStepTime = milliseconds(10);
 constexpr double kVelocity = 2.0, kDeceleration = 4.0;
 
 SetPointLimits limits() { return {-1.0, 1.0, kVelocity, kDeceleration}; }
 
 struct Rig {
-  explicit Rig(SetPointKind kind, double value = 0.0) : point(limits(), kCycle) {
+  explicit Rig(SetPointKind kind, double value = 0.0) : point(limits(), kStepTime) {
     point.rest(kind, value);
   }
-  void cycle() { point.advance(now += kCycle); }
+  void cycle() { point.advance(now += kStepTime); }
   void cycles(int count) {
     for (int i = 0; i < count; ++i) cycle();
   }
   /// A stream that moves at `velocity` for so many cycles.
   void move(double velocity, int count) {
     for (int i = 0; i < count; ++i) {
-      point.give(point.value() + velocity * toSeconds(kCycle));
+      point.give(point.value() + velocity * toSeconds(kStepTime));
       cycle();
     }
   }
@@ -94,7 +94,7 @@ TEST(SetPoint, LeavesAGoalToTheDrive) {
   rig.cycles(100);
   EXPECT_EQ(rig.point.value(), 0.7);
   EXPECT_TRUE(rig.point.atRest());
-  EXPECT_EQ(rig.point.movedAt(), Time(std::chrono::seconds(1)) + kCycle);
+  EXPECT_EQ(rig.point.movedAt(), Time(std::chrono::seconds(1)) + kStepTime);
 }
 
 TEST(SetPoint, StepsNoFurtherThanTheVelocityLimitAllows) {

@@ -1,8 +1,11 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "cia402_driver/drive/yaml_reader.h"
+#include "folders.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <limits>
 
 namespace cia402::drive {
 namespace {
@@ -145,6 +148,118 @@ TEST(YamlReader, AScalarIsNoMapping) {
 TEST(YamlReader, FindsSwappedLettersButNotEveryShortWord) {
   EXPECT_EQ(nearestName("shoudler", {"elbow", "shoulder"}), "shoulder");
   EXPECT_EQ(nearestName("xyz", {"abc"}), "");
+}
+
+TEST(YamlReader, ListsEachKnownKeyOnceAndInOrder) {
+  Reader reader("{colour: red}");
+  for (const char* key : {"mode", "lead", "gear_ratio", "mode", "lead"}) reader.section.has(key);
+  reader.section.finish();
+  EXPECT_EQ(reader.text(), "  top/colour: unknown key; known are gear_ratio, lead, mode\n");
+}
+
+TEST(YamlReader, ListsSixtyNamesAndNotMore) {
+  std::vector<std::string> names(60, "gear_ratio");
+  EXPECT_EQ(suggestion("xy", names).substr(0, 22), "; known are gear_ratio");
+  names.emplace_back("gear_ratio");
+  EXPECT_EQ(suggestion("xy", names), "") << "would hide what is said";
+  EXPECT_EQ(suggestion("gear_rato", names), ", did you mean `gear_ratio`?");
+  EXPECT_EQ(suggestion("xy", {}), "");
+}
+
+TEST(YamlReader, TheNearestNameIsMeantUpToTwoMistakesOrAThirdOfItsLetters) {
+  EXPECT_EQ(nearestName("veloc", {"volec", "veloce"}), "veloce");
+  EXPECT_EQ(nearestName("lead", {"load"}), "load");           // one replaced
+  EXPECT_EQ(nearestName("laed", {"lead"}), "lead");           // two neighbours swapped
+  EXPECT_EQ(nearestName("mode", {"modes"}), "modes");         // one missing
+  EXPECT_EQ(nearestName("modess", {"mode"}), "mode");         // two too many
+  EXPECT_EQ(nearestName("modesss", {"mode"}), "");            // three
+  EXPECT_EQ(nearestName("abcdefxyz", {"abcdef"}), "abcdef");  // three of nine
+  EXPECT_EQ(nearestName("abcdefwxyz", {"abcdef"}), "");       // four of ten
+  EXPECT_EQ(nearestName("pqcdefrs", {"xpcdefyr"}), "") << "moved and swapped are not the same";
+  EXPECT_EQ(nearestName("xy", {"ab"}), "") << "nothing of it is left";
+}
+
+TEST(YamlReader, ReadsFilesAsText) {
+  const YAML::Node profile =
+      parseYamlFile(cia402::test::configFolder() + "/drives/generic_cia402.yaml");
+  EXPECT_EQ(profile["name"].as<std::string>(), "generic_cia402");
+  EXPECT_THROW(parseYamlFile("/nowhere/x.yaml"), YAML::BadFile);
+}
+
+TEST(YamlReader, ReadsNumbersAsPeopleWriteThem) {
+  EXPECT_EQ(parseNumber("1.5"), 1.5);
+  EXPECT_EQ(parseNumber("-2e-3"), -2e-3);
+  EXPECT_EQ(parseNumber("0x1F"), 31.0);
+  EXPECT_EQ(parseNumber("010"), 10.0);
+  EXPECT_EQ(parseInteger("+7"), 7);
+  EXPECT_EQ(parseInteger("0X1f"), 31);
+  EXPECT_EQ(parseInteger("-0x10"), -16);
+  EXPECT_EQ(parseInteger("9223372036854775807"), 9223372036854775807);
+  for (const char* bad : {"", "fast", "1.5x", "--1", "+ 7", "9223372036854775808"}) {
+    EXPECT_FALSE(parseInteger(bad)) << bad;
+  }
+  for (const char* bad : {"", "fast", "1.5x"}) EXPECT_FALSE(parseNumber(bad)) << bad;
+}
+
+TEST(YamlReader, SaysWhichNumbersAKeyTakes) {
+  Reader reader("{a: 3}");
+  double number = 0.0;
+  EXPECT_FALSE(reader.section.read("a", number, Range{4.0, 5.0, false}));
+  EXPECT_FALSE(reader.section.read("a", number, Range{3.0, 5.0, true}));
+  EXPECT_FALSE(reader.section.read("a", number, Range{-std::numeric_limits<double>::max(), 2.0}));
+  EXPECT_FALSE(reader.section.read("a", number, Range{4.0}));
+  EXPECT_EQ(reader.text(),
+            "  top/a: must be at least 4 and at most 5, not `3`\n"
+            "  top/a: must be greater than 3 and at most 5, not `3`\n"
+            "  top/a: must be at most 2, not `3`\n"
+            "  top/a: must be at least 4, not `3`\n");
+}
+
+TEST(YamlReader, WhatIsNotThereKeepsItsValue) {
+  Reader reader("{wrong: [1], right: 2.5}");
+  std::optional<double> maybe;
+  EXPECT_FALSE(reader.section.read("missing", maybe));
+  EXPECT_FALSE(reader.section.read("wrong", maybe));
+  EXPECT_FALSE(maybe);
+  EXPECT_TRUE(reader.section.read("right", maybe));
+  EXPECT_EQ(maybe, 2.5);
+  std::optional<int> whole;
+  EXPECT_FALSE(reader.section.readInteger("missing", whole, 0, 9));
+  EXPECT_FALSE(whole);
+  bool truth = true;
+  EXPECT_FALSE(reader.section.read("missing", truth));
+  EXPECT_TRUE(truth);
+  EXPECT_FALSE(reader.section.require("missing", "write it"));
+  EXPECT_TRUE(reader.section.require("right", "write it"));
+  EXPECT_EQ(reader.text(),
+            "  top/wrong: must be a number, not a list\n"
+            "  top: `missing` is missing: write it\n");
+}
+
+TEST(YamlReader, AListMayHaveAnyLength) {
+  Reader reader("{three: [1, 2, 3], none: [], map: {a: 1}, word: x}");
+  EXPECT_EQ(reader.section.get("three")->numbers(), (std::vector<double>{1, 2, 3}));
+  EXPECT_EQ(reader.section.get("none")->numbers(), std::vector<double>());
+  EXPECT_EQ(reader.text(), "");
+  EXPECT_FALSE(reader.section.get("map")->numbers());
+  EXPECT_TRUE(reader.section.get("word")->list().empty());
+  EXPECT_EQ(reader.text(),
+            "  top/map: must be a list, not a mapping\n"
+            "  top/word: must be a list, not `x`\n");
+}
+
+TEST(YamlReader, AListIsNoMapping) {
+  Reader list("[a, b]");
+  list.section.finish();
+  EXPECT_TRUE(list.section.entries().empty());
+  EXPECT_EQ(list.text(), "  top: must be a mapping (key: value), not a list\n");
+}
+
+TEST(YamlReader, NothingAtAllIsAnEmptyMapping) {
+  Reader nothing("");
+  nothing.section.finish();
+  EXPECT_TRUE(nothing.section.entries().empty());
+  EXPECT_EQ(nothing.text(), "");
 }
 
 }  // namespace

@@ -31,6 +31,38 @@ struct QuirkBench : DriveBench {
   }
 };
 
+TEST(DriveQuirks, NoStateIsShownThoughThereIsPower) {
+  QuirkBench bench("shows_no_state: true");
+  bench.enable();
+  EXPECT_TRUE(bench.drive->truth(bench.now).power_stage_on);
+  EXPECT_EQ(bench.read(0x6041) & 0x006F, 0x0040U);
+  bench.control(0x0000);
+  bench.run(ms(5));
+  EXPECT_FALSE(bench.drive->truth(bench.now).power_stage_on);
+  EXPECT_EQ(bench.read(0x6041) & 0x006F, 0x0040U);
+}
+
+// Method 37 declares the present position to be home: it needs no motion to be found.
+TEST(DriveQuirks, HomingBeginsWithAnObjectAndEndsWithBit15) {
+  DriveBench bench(loadDriveDefinition(
+                       cia402::test::configFolder() + "/simulated_drives/generic_cia402.yaml",
+                       YAML::Load("{objects: {homing_start: \"60FB:04\"}, dictionary: [[0x60FB, 4, "
+                                  "homing_start, uint8, rw, \"-\", 0]]}")),
+                   {});
+  bench.write(0x6098, 0, 37, 1);
+  bench.write(0x6060, 0, 6, 1);
+  bench.write(0x60FB, 4, 1, 1);
+  bench.run(ms(5));
+  EXPECT_EQ(bench.read(0x6041) & 0x8000, 0U) << "not while disabled";
+  bench.enable();
+  bench.control(0x001F);
+  bench.run(ms(50));
+  EXPECT_EQ(bench.read(0x6041) & 0xB400, 0U) << "bit 4 begins nothing";
+  bench.write(0x60FB, 4, 1, 1);
+  bench.run(ms(50));
+  EXPECT_EQ(bench.read(0x6041) & 0xB400, 0x8000U);
+}
+
 TEST(DriveQuirks, AFaultIsResetOnlyAfterAnNmtStopOfSomeLength) {
   QuirkBench bench("fault_reset_needs_stop: 0.1");
   bench.fault();

@@ -20,6 +20,18 @@ TEST_F(MisbehaviourTest, StartsItselfOperational) {
   EXPECT_EQ(device.nmtState(), canopen::NmtState::operational);
 }
 
+TEST_F(MisbehaviourTest, TakesNoNoticeOfNmtStart) {
+  behaviour.stays_pre_operational = true;
+  preset(0x1017, 0, 50);
+  boot();
+  send(0x000, {0x01, 0x01});
+  run(milliseconds(60));
+  EXPECT_EQ(device.nmtState(), canopen::NmtState::pre_operational);
+  EXPECT_THAT(sent(), ElementsAre("701 7F"));
+  send(0x000, {0x02, 0x01});
+  EXPECT_EQ(device.nmtState(), canopen::NmtState::stopped);
+}
+
 TEST_F(MisbehaviourTest, SendsBootUpTwice) {
   behaviour.boots_again_after = milliseconds(70);
   preset(0x1017, 0, 50);

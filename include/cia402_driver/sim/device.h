@@ -35,6 +35,7 @@ struct DeviceBehaviour {
   Duration store_time{};  ///< more for a write to 1010h or 1011h: the memory is slow
   bool ignores_nmt_reset = false;
   bool starts_operational = false;     ///< enters NMT operational by itself after boot-up
+  bool stays_pre_operational = false;  ///< takes no notice of NMT start (Tongyi IxL)
   Duration boots_again_after{};        ///< sends boot-up a second time so long after; 0: does not
   Duration boot_time_varies{};         ///< at most so much more, another time at each boot
   std::int64_t overruns_at_boot = 0;   ///< EMCYs 0x8110 right after boot-up, which nothing ends
