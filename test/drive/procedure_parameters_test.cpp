@@ -178,7 +178,7 @@ TEST_F(Parameters, WaitUntilTheAxisIsSeenToStand) {
 }
 
 TEST(RestoredParameters, MayHoldAnotherZeroUnlessTheyAreOfTheCommunication) {
-  for (const std::uint8_t subindex : {1, 2, 3, 4}) {
+  for (const std::uint8_t subindex : std::vector<std::uint8_t>{1, 2, 3, 4}) {
     SCOPED_TRACE(int{subindex});
     Bench bench(configured({}, {subindex}));
     bench.drive.dictionary[{0x1011, subindex}] = {1, 4};

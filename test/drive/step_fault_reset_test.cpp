@@ -102,7 +102,9 @@ TEST(FaultResetStep, ResetsOnceMoreWhatCameBackWhereTheProfileAllowsIt) {
     const ProcedureStatus& status = world.perform(ProcedureKind::clear_faults);
     EXPECT_EQ(status.success, until < 2) << status.message;
     EXPECT_EQ(world.drive.resets, 2);
-    if (until == 2) EXPECT_THAT(status.message, HasSubstr("came back at once after the reset"));
+    if (until == 2) {
+      EXPECT_THAT(status.message, HasSubstr("came back at once after the reset"));
+    }
   }
 }
 
@@ -165,7 +167,9 @@ TEST(FaultResetStep, ClearsTheErrorHistoryFirstWhereTheProfileSaysSo) {
     const auto count = world.each_cycle;
     world.each_cycle = [&] {
       count();
-      if (!refused && world.drive.resets > 0) EXPECT_EQ(world.drive.writes.size(), 1u);
+      if (!refused && world.drive.resets > 0) {
+        EXPECT_EQ(world.drive.writes.size(), 1u);
+      }
     };
     const std::vector<std::string> steps = stepsOf(world, ProcedureKind::clear_faults);
     EXPECT_TRUE(world.axis.procedure().success) << world.axis.procedure().message;
