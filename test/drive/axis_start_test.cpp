@@ -243,5 +243,30 @@ TEST(AxisObjects, ATargetCodedLikeThePositionTakesOverItsVeryCounts) {
   }
 }
 
+TEST(AxisStart, AStopBySdoEndsEnablingAndReachesTheDriveWithoutRpdos) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  bench.drive.stuck.insert(S::on);
+  ASSERT_TRUE(bench.axis.start({ProcedureKind::enable, {}, 0.0}, bench.now).ok());
+  bench.run(100ms);
+  bench.drive.writes.clear();
+  bench.axis.stopBySdo("no RPDO reaches it", bench.now);
+  EXPECT_FALSE(bench.axis.procedure().running);
+  EXPECT_FALSE(bench.axis.procedure().success);
+  EXPECT_THAT(bench.axis.procedure().message, HasSubstr("enable was ended: no RPDO reaches it"));
+  bench.run(20ms);
+  EXPECT_THAT(bench.drive.writes, testing::Contains(std::make_pair(0x6040u, std::uint64_t{2})));
+}
+
+TEST(AxisStart, ACalibrationWaitsForTheOneThatIsBeingWritten) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  bench.run(100ms);
+  bench.axis.beginCalibration("608F:01");
+  EXPECT_EQ(bench.axis.calibrationRefusal(), "608F:01 is being written; call it again");
+  bench.axis.endCalibration();
+  EXPECT_EQ(bench.axis.calibrationRefusal(), "");
+}
+
 }  // namespace
 }  // namespace cia402::drive

@@ -220,5 +220,26 @@ TEST_F(Parameters, ANodeThatIsNotThereIsRefused) {
               HasSubstr("cannot save parameters: the node is lost"));
 }
 
+TEST(SavedParameters, AfterWhichADriveWantsToBeSwitchedOffKeepItFromBeingEnabled) {
+  for (const bool wants : {true, false}) {
+    SCOPED_TRACE(wants);
+    DriveProfile profile = test::testProfile();
+    profile.parameters.power_cycle_after_save = wants;
+    Bench bench(testConfig(profile));
+    bench.drive.dictionary[{0x1010, 1}] = {1, 4};
+    ASSERT_TRUE(bench.boot());
+    const ProcedureStatus saved = bench.perform(ProcedureKind::save_parameters);
+    ASSERT_TRUE(saved.success) << saved.message;
+    EXPECT_EQ(saved.remark, wants);
+    const ProcedureStatus& status = bench.perform(ProcedureKind::enable);
+    EXPECT_EQ(status.success, !wants);
+    if (!wants) continue;
+    EXPECT_THAT(saved.message, HasSubstr("switch the drive off and on before it is enabled"));
+    EXPECT_THAT(status.message, HasSubstr("is not enabled: its parameters were saved"));
+    bench.deliver(bench.drive.reboot());
+    EXPECT_TRUE(bench.perform(ProcedureKind::recover).success);
+  }
+}
+
 }  // namespace
 }  // namespace cia402::drive

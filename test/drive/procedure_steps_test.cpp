@@ -301,5 +301,32 @@ TEST(ProcedureSteps, RecoverGoesByNothingThatTheDriveSaidBeforeItFellSilent) {
   EXPECT_TRUE(bench.axis.procedure().success) << bench.axis.procedure().message;
 }
 
+TEST(ProcedureSteps, NothingIsWaitedForAtTheEnd) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  EXPECT_EQ(bench.perform(ProcedureKind::enable).waiting_for, "");
+}
+
+TEST(ProcedureSteps, OfAQuickStopNameItsRamp) {
+  Bench bench(startsIn("cyclic_velocity"));
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  bench.follow(1.0);
+  bench.run(200ms);
+  bench.each_cycle = nullptr;
+  bench.drive.quick_stop_deceleration = 20000;  // half a second
+  EXPECT_THAT(stepsOf(bench, ProcedureKind::quick_stop),
+              Contains("stopping | the quick stop ramp to end at standstill"));
+}
+
+TEST(ProcedureSteps, OfClearFaultsNameTheStatuswordThatIsMissing) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  bench.drive.silent = true;
+  bench.run(40ms);
+  EXPECT_THAT(stepsOf(bench, ProcedureKind::clear_faults),
+              Contains("waiting for the statusword | the drive to tell whether it has a fault"));
+}
+
 }  // namespace
 }  // namespace cia402::drive
