@@ -70,7 +70,6 @@ namespace {
 /// The axis is not to move by what was given up. @return what was done, in words
 std::string makeSafe(AxisCore& axis, ProcedureKind kind) {
   if (!axis.nodeReady()) return "nothing reaches the drive";
-  axis.setHomingStart(false);
   const bool off = kind == ProcedureKind::disable && axis.atStandstill();
   if (!enables(kind) && !stops(kind)) return "nothing moves by it";
   if (axis.mode().spec->kind == ControlKind::homing) axis.selectMode(axis.workingMode());

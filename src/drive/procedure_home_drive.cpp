@@ -162,7 +162,6 @@ Outcome DriveHoming::timeOut(const Context& context) {
                           "and homing: {timeout}. "
                         : "The drive never started. ";
   why += axis.report();
-  axis.setHomingStart(false);
   axis.setGoal(Goal::quick_stop);
   axis.selectMode(*before_);
   return Outcome::failed(why);

@@ -7,17 +7,11 @@ namespace cia402::drive {
 
 void Standstill::update(double position, Time stamp) {
   const bool moved = !(std::fabs(position - anchor_) <= tolerance_);
-  if (!started_) {
-    still_ = moving_ = false;
-  } else if (moved) {
-    still_ = false;
-    moving_ = true;
-  } else if (stamp - anchored_ < kWindow) {
-    return;
-  } else {
-    still_ = true;
-    still_from_ = anchored_;
-    moving_ = false;
+  if (started_ && !moved && stamp - anchored_ < kWindow) return;
+  if (started_) {
+    still_ = !moved;
+    moving_ = moved;
+    if (still_) still_from_ = anchored_;
   }
   started_ = true;
   anchor_ = position;

@@ -122,7 +122,6 @@ Outcome FaultResetStep::advance(const Context& context) {
     case Phase::begin:
       code_ = axis.state().error_code;
       axis.setGoal(Goal::disabled);
-      axis.setFaultReset(false);
       if (!axis.profile().fault_reset_clears_history) return awaitReaction(context);
       clearing_ = axis.node().sdo().download({0x1003, 0}, {0}, "error history");
       enter(Phase::clearing, context);

@@ -86,7 +86,6 @@ Outcome ModeShownStep::await(const Context& context) {
   const bool shown = phase_ == Phase::waiting && axis.shownMode() == mode_->spec->value;
   if (shown) return Outcome::done();
   if (context.now - since_ <= axis.profile().timing.mode_change) return Outcome::running();
-  axis.overrideMode({});
   const std::string shows =
       axis.shownMode() ? std::to_string(*axis.shownMode()) : std::string("nothing");
   return Outcome::failed(

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "cia402_driver/drive/fault_text.h"
 #include "cia402_driver/drive/homing_status.h"
 #include "cia402_driver/drive/soft_stop.h"
@@ -64,6 +66,36 @@ TEST(SoftStop, AtRestItIsFinishedAtOnce) {
   stop.begin(0.3, 0.0, 1.0);
   EXPECT_TRUE(stop.finished());
   EXPECT_EQ(stop.position(), 0.3);
+}
+
+TEST(SoftStop, AVelocityThatIsNoNumberIsNone) {
+  for (const double velocity : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+    SoftStop stop;
+    stop.begin(0.3, velocity, 1.0);
+    EXPECT_TRUE(stop.finished());
+    EXPECT_EQ(stop.velocity(), 0.0);
+  }
+}
+
+TEST(SoftStop, GoesNowhereWhereNoTimeHasPassed) {
+  SoftStop stop;
+  stop.begin(0.3, 1.0, 2.0);
+  for (const Duration none : {Duration(0), -Duration(milliseconds(10))}) {
+    stop.advance(none);
+    EXPECT_EQ(stop.position(), 0.3);
+    EXPECT_EQ(stop.velocity(), 1.0);
+  }
+}
+
+TEST(SoftStop, IsFinishedHoweverTheNumbersRound) {
+  for (int i = 1; i < 50; ++i) {
+    for (int j = 1; j < 50; ++j) {
+      SoftStop stop;
+      stop.begin(0.0, 0.1 * i, 0.3 * j);
+      stop.advance(std::chrono::hours(1));
+      EXPECT_TRUE(stop.finished()) << i << ", " << j << ": " << stop.velocity();
+    }
+  }
 }
 
 TEST(HomingStatus, DecodesTheTableOfTheStandard) {

@@ -94,5 +94,41 @@ TEST_F(AxisPollerTest, AnObjectThatTheDriveRefusesIsNotAskedForAtEveryLook) {
   EXPECT_EQ(pass(10s, kAskError, 100ms), 1);
 }
 
+TEST_F(AxisPollerTest, AfterAResetNothingIsKnownAndWhatWasRefusedIsAskedAnew) {
+  const int value = poller.add(velocity);
+  const int refused = poller.add(error);
+  peer.replace(kAskError, "581 80 F4 60 00 00 00 02 06");
+  pass(500ms, kAskError);
+  ASSERT_NE(poller.value(value, now), nullptr);
+  poller.reset();
+  EXPECT_EQ(poller.value(value, now), nullptr);
+  peer.replace(kAskError, "581 43 F4 60 00 05 00 00 00");
+  EXPECT_GT(pass(500ms, kAskError), 0);
+  ASSERT_NE(poller.value(refused, now), nullptr);
+  EXPECT_EQ(poller.value(refused, now)->raw, 5u);
+  EXPECT_EQ(poller.value(value, now)->raw, 7u);
+}
+
+TEST_F(AxisPollerTest, AnAnswerThatAResetMadeVoidIsNotTaken) {
+  const int item = poller.add(velocity);
+  peer.forget(kAskVelocity);
+  poller.advance(client, now);  // asked, not answered
+  run();
+  poller.reset();
+  peer.on(kAskVelocity, "581 43 6C 60 00 09 00 00 00");
+  EXPECT_TRUE(poller.due(now));
+  EXPECT_EQ(poller.value(item, now), nullptr);
+}
+
+TEST_F(AxisPollerTest, TakesWhatSomebodyElseHasRead) {
+  const int item = poller.add(velocity);
+  poller.put(item, 42, now);
+  ASSERT_NE(poller.value(item, now), nullptr);
+  EXPECT_EQ(poller.value(item, now)->raw, 42u);
+  EXPECT_EQ(poller.value(item, now)->stamp, now);
+  poller.put(-1, 43, now);  // what is no item is nothing to it
+  EXPECT_EQ(poller.value(item, now)->raw, 42u);
+}
+
 }  // namespace
 }  // namespace cia402::drive

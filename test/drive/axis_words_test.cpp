@@ -10,6 +10,7 @@ using test::FakeDrive;
 using test::HasSubstr;
 using test::milliseconds;
 using test::testConfig;
+using testing::Not;
 
 TEST(AxisWords, BeforeItsNodeIsThereTheNodeIsNamed) {
   Bench bench;
@@ -132,6 +133,59 @@ TEST(AxisWords, ADriveThatShowsAnotherModeIsToldApart) {
               HasSubstr("shoulder does not show that it is in mode cyclic_position: enable"));
   EXPECT_THAT(bench.axis.motionRefusal(),
               HasSubstr(" instead of 8 (cyclic_position); call enable"));
+}
+
+TEST(AxisWords, AStateThatIsKnownNeedsNoWords) {
+  Bench bench;
+  EXPECT_EQ(bench.axis.unknownText(), "") << "its node is not there: that is told elsewhere";
+  ASSERT_TRUE(bench.boot());
+  EXPECT_EQ(bench.axis.unknownText(), "");
+}
+
+TEST(AxisWords, AStatuswordOfNoStateIsShownWithItsBits) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  bench.drive.silent = true;
+  bench.cycle();
+  bench.deliver(can::Frame(0x183, {0x02, 0x02, 0x39, 0x30, 0x00, 0x00, 0x08}));
+  bench.cycle();
+  EXPECT_THAT(bench.axis.unknownText(),
+              HasSubstr("shoulder (node 3): its state is unknown: statusword (6041:00) 0x0202 is "
+                        "none of the states of CiA 402 (switched on, remote)"));
+}
+
+TEST(AxisWords, AStateThatNothingTellsIsUnknown) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  bench.drive.silent = true;
+  bench.run(milliseconds(200));
+  EXPECT_THAT(bench.axis.unknownText(),
+              HasSubstr("shoulder (node 3): its state is unknown: no usable statusword (6041:00) "
+                        "and position (6064:00): "));
+}
+
+TEST(AxisWords, AStatuswordOfZeroIsAStatusword) {
+  Bench bench;
+  ASSERT_TRUE(bench.boot());
+  bench.drive.state = FakeDrive::S::start;
+  bench.drive.voltage = bench.drive.remote = false;
+  bench.run(milliseconds(8));
+  EXPECT_EQ(bench.axis.motionRefusal(),
+            "shoulder (node 3): not enabled, statusword 0x0000 (not ready to switch on: no bit "
+            "set); call enable");
+}
+
+TEST(AxisWords, FeedbackIsMissingUntilBothStatuswordAndPositionHaveCome) {
+  canopen::NodeConfig node = test::nodeConfig();
+  node.pdos[2].entries = {{{0x6041, 0}, 16, "statusword"}};
+  node.pdos.push_back(
+      test::pdo(canopen::PdoDirection::tpdo, 3, 0x383, {{{0x6064, 0}, 32, "position_actual"}}));
+  Bench bench(testConfig(), node);
+  bench.node().boot(bench.now, true);
+  ASSERT_TRUE(bench.runUntil([&] { return bench.node().health() == canopen::NodeHealth::ready; }));
+  bench.run(milliseconds(8));
+  ASSERT_FALSE(bench.axis.state().feedback_valid);
+  EXPECT_THAT(bench.axis.unknownText(), Not(HasSubstr("finite")));
 }
 
 }  // namespace

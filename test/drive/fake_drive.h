@@ -31,6 +31,8 @@ class FakeDrive : public can::Sink {
   double velocity = 0.0;      ///< counts/s
   double coast = 0.0;         ///< counts/s that nothing stops
   int mode_delay = 0;         ///< cycles until 6061h follows 6060h, shows -1 meanwhile
+  bool forgets_mode = false;  ///< takes a mode when it is commanded in operation enabled only
+  bool mode_by_sdo = false;   ///< 6060h is in no RPDO: something else has its place
   int acknowledge_delay = 0;  ///< cycles
   bool acknowledges = true;
   bool warning = false, voltage = true, remote = true;
@@ -43,8 +45,9 @@ class FakeDrive : public can::Sink {
   bool quick_stop_ends = true;           ///< transition 12 by itself
   double quick_stop_deceleration = 1e6;  ///< counts/s^2
   bool silent = false;                   ///< sends no PDO
-  std::map<std::pair<unsigned, unsigned>, std::uint32_t> aborts;  ///< SDO writes refused
-  std::set<std::pair<unsigned, unsigned>> unanswered;             ///< SDO writes taken in silence
+  std::map<std::pair<unsigned, unsigned>, std::uint32_t> aborts;       ///< SDO writes refused
+  std::map<std::pair<unsigned, unsigned>, std::uint32_t> read_aborts;  ///< SDO reads refused
+  std::set<std::pair<unsigned, unsigned>> unanswered;  ///< SDO writes taken in silence
   std::map<std::pair<unsigned, unsigned>, std::pair<std::uint64_t, unsigned>> dictionary;
 
   // What the test may look at.
@@ -54,6 +57,7 @@ class FakeDrive : public can::Sink {
   std::int16_t target_torque = 0;
   std::vector<std::uint16_t> controlwords;                 ///< each change
   std::vector<std::pair<unsigned, std::uint64_t>> writes;  ///< SDO writes: index, value
+  std::map<std::pair<unsigned, unsigned>, int> reads;      ///< SDO reads of each object
   std::vector<std::int32_t> accepted;  ///< set-points taken by the edge of bit 4
   int homings = 0, resets = 0;
   bool operational = false;
@@ -182,6 +186,8 @@ class FakeDrive : public can::Sink {
                              byte(data, 1), byte(data, 2), byte(data, 3)}));
     };
     if (frame.data[0] == 0x40) {
+      ++reads[key];
+      if (read_aborts.count(key) != 0) return reply(0x80, read_aborts[key]);
       if (dictionary.count(key) == 0 && index >= 0x1010 && index < 0x1C00) {
         const bool wide = (index >= 0x1600 && index < 0x1800) || index >= 0x1A00;
         dictionary[key] = {0, sub == 0 ? 1u : wide || sub == 1 ? 4u : sub == 2 ? 1u : 2u};
@@ -197,7 +203,10 @@ class FakeDrive : public can::Sink {
       const std::uint64_t mask = (std::uint64_t{1} << (8 * size)) - 1;
       dictionary[key] = {dword(frame, 4) & mask, size};
       writes.emplace_back(index, dword(frame, 4) & mask);
-      if (index == 0x6060) commanded_mode = static_cast<std::int8_t>(frame.data[4]);
+      if (index == 0x6060) {
+        commanded_mode = static_cast<std::int8_t>(frame.data[4]);
+        mode_written_ = true;
+      }
       if (unanswered.count(key) != 0) return;
       return reply(0x60, 0);
     }
@@ -206,7 +215,7 @@ class FakeDrive : public can::Sink {
   void applyFirst(const can::Frame& frame) {
     const std::uint16_t before =
         std::exchange(controlword, static_cast<std::uint16_t>(frame.data[0] | frame.data[1] << 8));
-    commanded_mode = static_cast<std::int8_t>(frame.data[2]);
+    if (!mode_by_sdo) commanded_mode = static_cast<std::int8_t>(frame.data[2]);
     target_position = static_cast<std::int32_t>(dword(frame, 3));
     if (!heard_ || before != controlword) controlwords.push_back(controlword);
     heard_ = true;
@@ -279,8 +288,16 @@ class FakeDrive : public can::Sink {
     }
   }
 
+  /// What an RPDO repeats is no command; an SDO is one each time.
+  bool modeIsCommanded() {
+    const bool changed = std::exchange(seen_mode_, commanded_mode) != commanded_mode;
+    return std::exchange(mode_written_, false) || changed;
+  }
+
   void switchMode() {
+    const bool commanded = modeIsCommanded();
     if (commanded_mode == mode) return;
+    if (forgets_mode && (!commanded || state != S::enabled)) return;
     if (mode_delay > 0 && ++mode_wait_ <= mode_delay) {
       mode = -1;
       return;
@@ -361,6 +378,8 @@ class FakeDrive : public can::Sink {
   int reaction_ = 0, mode_wait_ = 0, wait_ = 0;
   std::size_t cycles_ = 0;
   double quick_velocity_ = 0.0;
+  std::int8_t seen_mode_ = 0;
+  bool mode_written_ = false;
   bool heard_ = false, acknowledged_ = false, taking_ = false, attained_ = false, homing_ = false,
        homing_error_ = false;
 };

@@ -160,5 +160,59 @@ TEST(PositionLimits, AreOpenOnTheSideBeyondWhichTheAxisStands) {
   EXPECT_EQ(world.upper(), 31000);
 }
 
+TEST(PositionLimits, AreWrittenAgainToADriveThatHasForgottenThem) {
+  World world;
+  ASSERT_TRUE(world.boot());
+  world.run(milliseconds(100));
+  world.deliver(world.drive.reboot());
+  world.hold(0, 0);
+  ASSERT_TRUE(world.perform(ProcedureKind::recover).success);
+  world.run(milliseconds(100));
+  EXPECT_EQ(world.lower(), -31000);
+  EXPECT_EQ(world.upper(), 31000);
+}
+
+TEST(PositionLimits, ThatTheJointDoesNotHaveAreNotWritten) {
+  AxisConfig config = limited();
+  config.limits.upper.reset();
+  Bench bench(config);
+  bench.drive.dictionary[kLower] = bench.drive.dictionary[kUpper] = {20000, 4};
+  ASSERT_TRUE(bench.boot());
+  bench.run(milliseconds(100));
+  EXPECT_EQ(static_cast<std::int32_t>(bench.drive.dictionary[kLower].first), -31000);
+  EXPECT_EQ(bench.drive.dictionary[kUpper].first, 20000u);
+}
+
+TEST(PositionLimits, ThatCannotBeReadAreWrittenAllTheSame) {
+  World world;
+  world.drive.read_aborts[kLower] = world.drive.read_aborts[kUpper] = 0x06010001;  // write-only
+  ASSERT_TRUE(world.boot());
+  world.run(milliseconds(100));
+  EXPECT_EQ(world.lower(), -31000);
+  EXPECT_EQ(world.upper(), 31000);
+}
+
+TEST(PositionLimits, ThatNobodyKnowsAndTheDriveDoesNotTakeLetTheAxisBeEnabled) {
+  World world;
+  world.drive.read_aborts[kLower] = world.drive.read_aborts[kUpper] = 0x06010001;
+  world.refuse();
+  ASSERT_TRUE(world.boot());
+  EXPECT_TRUE(world.enable());
+}
+
+TEST(PositionLimits, ThatTheDriveKeepsOpenForANewZeroAreToldSo) {
+  World world;
+  ASSERT_TRUE(world.boot());
+  world.run(milliseconds(100));
+  world.each_cycle = [&] {
+    if (world.upper() == std::numeric_limits<std::int32_t>::max()) world.refuse();
+  };
+  const ProcedureStatus& status = world.perform(ProcedureKind::set_position, {}, 0.5);
+  EXPECT_TRUE(status.success) << status.message;
+  EXPECT_THAT(status.message, HasSubstr("the drive's own position limits stay as they are until it "
+                                        "is enabled again: "));
+  EXPECT_THAT(status.message, HasSubstr("0x08000022"));
+}
+
 }  // namespace
 }  // namespace cia402::drive

@@ -156,11 +156,89 @@ TEST_F(Parameters, ADriveThatDoesNotComeBackIsTold) {
                         "but it did not boot"));
 }
 
+TEST(ParametersBySubIndex, EachIsAskedForItselfAndWhatWasDoneBeforeIsTold) {
+  Bench bench(configured({2, 3}, {}));
+  bench.drive.dictionary[{0x1010, 2}] = {1, 4};
+  bench.drive.dictionary[{0x1010, 3}] = {0, 4};  // not on command
+  ASSERT_TRUE(bench.boot());
+  const ProcedureStatus& status = bench.perform(ProcedureKind::save_parameters);
+  EXPECT_FALSE(status.success);
+  EXPECT_THAT(status.message, HasSubstr("does not save 1010:03 (application parameters)"));
+  EXPECT_THAT(status.message, HasSubstr("; done before that: 1010:02 (communication parameters)"));
+  EXPECT_EQ((bench.drive.dictionary[{0x1010, 3}].first), 0u);
+}
+
+TEST_F(Parameters, WaitUntilTheAxisIsSeenToStand) {
+  ASSERT_TRUE(bench.axis.start({ProcedureKind::save_parameters, {}, 0.0}, bench.now));
+  bench.cycle();
+  EXPECT_EQ(bench.axis.procedure().step, "waiting for rest");
+  EXPECT_EQ(bench.axis.procedure().waiting_for, "the axis to be seen standing");
+  bench.run(200ms);
+  EXPECT_TRUE(bench.axis.procedure().success) << bench.axis.procedure().message;
+}
+
+TEST(RestoredParameters, MayHoldAnotherZeroUnlessTheyAreOfTheCommunication) {
+  for (const std::uint8_t subindex : std::vector<std::uint8_t>{1, 2, 3, 4}) {
+    SCOPED_TRACE(int{subindex});
+    Bench bench(configured({}, {subindex}));
+    bench.drive.dictionary[{0x1011, subindex}] = {1, 4};
+    ASSERT_TRUE(bench.boot());
+    ASSERT_TRUE(bench.axis.state().homed);
+    const ProcedureStatus& status = bench.perform(ProcedureKind::restore_parameters);
+    ASSERT_TRUE(status.success) << status.message;
+    EXPECT_EQ(bench.axis.state().homed, subindex == 2);
+    EXPECT_EQ(status.message.find("not homed") == std::string::npos, subindex == 2);
+  }
+}
+
+TEST(RestoredParameters, ThatTheDriveRefusesLeaveTheZero) {
+  Bench bench(configured({}, {1}));
+  bench.drive.dictionary[{0x1011, 1}] = {1, 4};
+  ASSERT_TRUE(bench.boot());
+  bench.drive.aborts[{0x1011, 1}] = kHardwareError;
+  EXPECT_FALSE(bench.perform(ProcedureKind::restore_parameters).success);
+  EXPECT_TRUE(bench.axis.state().homed);
+}
+
+TEST_F(Parameters, ADriveThatTakesItsTimeToComeBackIsWaitedFor) {
+  bench.run(60s);
+  ASSERT_TRUE(bench.axis.start({ProcedureKind::restore_parameters, {}, 0.0}, bench.now));
+  Time reset{};
+  bench.each_cycle = [&] {
+    if (reset == Time{} && bench.axis.procedure().step == "booting the node") reset = bench.now;
+    bench.drive.mute = reset != Time{} && bench.now - reset < 300ms;
+  };
+  ASSERT_TRUE(bench.runUntil([&] { return !bench.axis.procedure().running; }));
+  EXPECT_TRUE(bench.axis.procedure().success) << bench.axis.procedure().message;
+  EXPECT_GE(bench.now - reset, 300ms);
+}
+
 TEST_F(Parameters, ANodeThatIsNotThereIsRefused) {
   bench.dead = true;
   ASSERT_TRUE(bench.runUntil([&] { return bench.node().health() == canopen::NodeHealth::lost; }));
   EXPECT_THAT(bench.refusal(ProcedureKind::save_parameters),
               HasSubstr("cannot save parameters: the node is lost"));
+}
+
+TEST(SavedParameters, AfterWhichADriveWantsToBeSwitchedOffKeepItFromBeingEnabled) {
+  for (const bool wants : {true, false}) {
+    SCOPED_TRACE(wants);
+    DriveProfile profile = test::testProfile();
+    profile.parameters.power_cycle_after_save = wants;
+    Bench bench(testConfig(profile));
+    bench.drive.dictionary[{0x1010, 1}] = {1, 4};
+    ASSERT_TRUE(bench.boot());
+    const ProcedureStatus saved = bench.perform(ProcedureKind::save_parameters);
+    ASSERT_TRUE(saved.success) << saved.message;
+    EXPECT_EQ(saved.remark, wants);
+    const ProcedureStatus& status = bench.perform(ProcedureKind::enable);
+    EXPECT_EQ(status.success, !wants);
+    if (!wants) continue;
+    EXPECT_THAT(saved.message, HasSubstr("switch the drive off and on before it is enabled"));
+    EXPECT_THAT(status.message, HasSubstr("is not enabled: its parameters were saved"));
+    bench.deliver(bench.drive.reboot());
+    EXPECT_TRUE(bench.perform(ProcedureKind::recover).success);
+  }
 }
 
 }  // namespace

@@ -158,5 +158,16 @@ TEST(SetPointHandshake, PulsesWithoutAnAcknowledgeBit) {
   EXPECT_FALSE(wire.handshake.busy());
 }
 
+TEST(SetPointHandshake, AnAcknowledgeThatFallsAtTheLastMomentCounts) {
+  Wire wire;
+  wire.handshake.offer(100);
+  wire.step(false);
+  wire.step(false);
+  ASSERT_TRUE(wire.step(true));
+  for (int i = 0; i < 999; ++i) ASSERT_TRUE(wire.step(true)) << i;
+  EXPECT_TRUE(wire.step(false)) << "1 s after it was to fall";
+  EXPECT_FALSE(wire.handshake.busy());
+}
+
 }  // namespace
 }  // namespace cia402::drive

@@ -179,5 +179,49 @@ TEST(SetPoint, TellsWhereAStopWillBringIt) {
   EXPECT_NEAR(end.position, rig.point.stopPosition(), 1e-9);
 }
 
+TEST(SetPoint, AStopDropsWhatWasGivenForTheNextCycle) {
+  Rig rig(SetPointKind::goal, 0.1);
+  rig.point.give(0.7);
+  rig.point.stop();
+  rig.cycle();
+  EXPECT_EQ(rig.point.value(), 0.1);
+}
+
+TEST(SetPoint, ANewZeroDropsWhatWasGivenInTheOldOne) {
+  Rig rig(SetPointKind::goal, 0.1);
+  rig.point.give(0.7);
+  rig.point.shift(0.3);
+  rig.cycle();
+  EXPECT_NEAR(rig.point.value(), 0.4, 1e-12);
+}
+
+TEST(SetPoint, CountsEachThingThatEndsAMotion) {
+  Rig rig(SetPointKind::stream);
+  std::uint32_t breaks = rig.point.breaks();
+  rig.point.rest(SetPointKind::stream, 0.0);
+  EXPECT_EQ(rig.point.breaks(), ++breaks) << "a new beginning";
+  rig.move(1.0, 10);
+  EXPECT_EQ(rig.point.breaks(), breaks);
+  rig.point.stop();
+  EXPECT_EQ(rig.point.breaks(), ++breaks);
+  rig.point.stop();
+  rig.cycles(60);
+  rig.point.stop();
+  EXPECT_EQ(rig.point.breaks(), breaks) << "it is being stopped, or at rest";
+  rig.point.shift(0.1);
+  EXPECT_EQ(rig.point.breaks(), ++breaks) << "another zero";
+}
+
+TEST(SetPoint, MissedCyclesInterruptNothingThatRests) {
+  Rig rig(SetPointKind::stream);
+  rig.point.interrupt();
+  EXPECT_EQ(rig.point.interruptions(), 0u);
+  rig.move(1.0, 10);
+  rig.point.stop();
+  rig.cycles(60);
+  rig.point.interrupt();
+  EXPECT_EQ(rig.point.interruptions(), 0u) << "its ramp is over";
+}
+
 }  // namespace
 }  // namespace cia402::drive
