@@ -24,13 +24,14 @@ class Queue : public can::Interface {
   }
   void maintain(Time) override {}
   int fd() const override { return -1; }
-  can::BusState state() const override { return can::BusState::error_active; }
+  can::BusState state() const override { return now_is; }
   const can::BusCounters& counters() const override { return counters_; }
   std::string describe() const override { return "can0"; }
 
   long waiting = 0;
   Time stamp = Time::max();  ///< of the frames, at the latest
   int syncs = 0;
+  can::BusState now_is = can::BusState::error_active;
 
  private:
   can::BusCounters counters_;
@@ -92,6 +93,20 @@ TEST_F(BusLoopTest, GoesOnInAFloodThatComesFasterThanItIsRead) {
     ASSERT_GT(lastCycle(), now - 2 * test::kPeriod);
   }
   EXPECT_NEAR(queue.syncs - syncs, 250, 2);
+}
+
+TEST_F(BusLoopTest, ABusOffIsATriggerOfTheRecorder) {
+  robot.recorder.keep = 1;
+  BusLoop recording(robot, test::masterOf(robot), queue, *this);
+  recording.step(now);
+  EXPECT_FALSE(recording.recorder().triggered());
+  queue.now_is = can::BusState::bus_off;
+  recording.step(now + 1ms);
+  EXPECT_TRUE(recording.recorder().triggered());
+  RecordingTrigger trigger;
+  ASSERT_TRUE(recording.recorder().nextTrigger(trigger));
+  EXPECT_EQ(trigger.kind, RecordingTrigger::Kind::bus_off);
+  EXPECT_EQ(trigger.stamp, now + 1ms);
 }
 
 }  // namespace

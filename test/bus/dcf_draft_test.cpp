@@ -90,6 +90,57 @@ TEST_F(DcfDraftTest, WithoutAnEdsTheProfileAndTheCommunicationObjectsAreRead) {
   EXPECT_THAT(answer.message, Not(HasSubstr("could not be read")));
 }
 
+// CiA 301: 1400h.. and 1800h.. are the parameters of PDOs, 1600h.. and 1A00h.. their mappings.
+TEST_F(DcfDraftTest, WithoutAnEdsThePdosThatTheProfileAllowsAreRead) {
+  test::FakeDrive& drive = world.drives[1];
+  const std::size_t sizes[] = {1, 4, 1, 2, 1, 2, 1};
+  for (std::uint32_t index = 0x1000; index < 0x2000; ++index) {
+    const std::uint32_t kind = index & 0xFE00;
+    const bool mapping = kind == 0x1600 || kind == 0x1A00;
+    const bool parameter = kind == 0x1400 || kind == 0x1800;
+    for (std::uint8_t subindex = 0; subindex < 9; ++subindex) {
+      const ObjectId id{static_cast<std::uint16_t>(index), subindex};
+      if (parameter && subindex < 7) {
+        drive.objects[id] = Bytes(sizes[subindex], subindex);
+      } else if (mapping) {
+        drive.objects[id] = Bytes(subindex == 0 ? 1 : 4, subindex);
+      } else if (index != 0x1017) {
+        drive.aborts[id] = 0x06020000;
+      }
+    }
+  }
+  const Answer answer = save(1);
+  ASSERT_TRUE(answer.success) << answer.message;
+  EXPECT_THAT(answer.message, Not(HasSubstr("could not be read"))) << answer.message;
+  const canopen::Eds dcf = canopen::readEds(answer.text);
+  for (const std::uint16_t base : {std::uint16_t{0x1400}, std::uint16_t{0x1600},
+                                   std::uint16_t{0x1800}, std::uint16_t{0x1A00}}) {
+    const bool mapping = (base & 0x0200) != 0, receive = base < 0x1800;
+    const std::string name = receive ? "RPDO " : "TPDO ";
+    for (std::uint16_t pdo = 0; pdo < 4; ++pdo) {
+      const auto index = static_cast<std::uint16_t>(base + pdo);
+      SCOPED_TRACE(canopen::toString(ObjectId{index, 0}));
+      const auto object = dcf.dictionary.objects().find(index);
+      ASSERT_NE(object, dcf.dictionary.objects().end());
+      EXPECT_EQ(object->second.name,
+                name + (mapping ? "mapping parameter" : "communication parameter"));
+      EXPECT_EQ(object->second.entries.size(), mapping ? 9u : 7u);
+      EXPECT_EQ(object->second.entries.at(0).access,
+                mapping ? canopen::Access::rw : canopen::Access::ro);
+      const canopen::DictionaryEntry& first = object->second.entries.at(1);
+      EXPECT_EQ(first.name, mapping ? "Mapped object 1" : "COB-ID");
+      EXPECT_EQ(first.type, canopen::DataType::uint32);
+      EXPECT_EQ(first.access, canopen::Access::rw);
+      EXPECT_EQ(first.value, (Bytes{1, 1, 1, 1}));
+    }
+    EXPECT_EQ(dcf.dictionary.objects().count(static_cast<std::uint16_t>(base + 4)), 0u);
+  }
+  EXPECT_EQ(dcf.dictionary.find(ObjectId{0x1803, 5})->name, "Event timer");
+  EXPECT_EQ(dcf.dictionary.find(ObjectId{0x1803, 5})->value, (Bytes{5, 5}));
+  EXPECT_EQ(dcf.info.rpdo_count, 4u);
+  EXPECT_EQ(dcf.info.tpdo_count, 4u);
+}
+
 TEST_F(DcfDraftTest, ADriveThatGivesNothingHasNoFile) {
   for (const auto& [id, data] : world.drives[0].objects) world.drives[0].aborts[id] = 0x08000022;
   const Answer answer = save();

@@ -186,6 +186,31 @@ TEST(FlightRecorder, SamplesOfAnAxisHoldWhatItsDriveShows) {
   EXPECT_EQ(elbow->flags, AxisRecord::homed | AxisRecord::ready_for_motion | AxisRecord::succeeded);
 }
 
+TEST(FlightRecorder, NotesWhenAGroupMovesStopsAndRests) {
+  NoSink sink;
+  const config::RobotConfig config = test::testRobot();
+  test::RobotWorld world{config};
+  FlightRecorder recorder(config, sink);
+  recorder.watch(world.robot);
+  world.enable();
+  const auto observe = [&](Duration duration) {
+    for (const Time end = world.now + duration; world.now < end;) {
+      world.run(test::kPeriod);
+      recorder.observe();
+    }
+  };
+  ASSERT_TRUE(world.move({1.0, 0.0}, 1.0).success);
+  observe(500ms);
+  ASSERT_TRUE(world.call(world.trajectory("arm", {})).success);
+  observe(1s);
+  std::vector<std::string> notes;
+  for (const NoteRecord& note : recorder.copy(world.now).notes) {
+    if (note.kind == NoteRecord::Kind::group) notes.emplace_back(note.view());
+  }
+  EXPECT_THAT(notes, testing::ElementsAre("arm: follows a trajectory", "arm: is brought to rest",
+                                          "arm: at rest"));
+}
+
 TEST(FlightRecorder, WithNothingToKeepFaultsAreNoTriggers) {
   NoSink sink;
   config::RobotConfig config = test::testRobot();

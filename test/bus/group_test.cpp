@@ -155,6 +155,36 @@ TEST_F(GroupTest, TakesOverAtAStartTimeInTheFutureWithoutAJump) {
   expectSmooth(1);
 }
 
+// 3t² - 2t³: 1.125 rad/s and 3 rad/s² after a quarter of the time.
+TEST_F(GroupTest, GoesOnFromStandstillWhereItWasAfterMissedCycles) {
+  ASSERT_TRUE(world.move({1.0, 0.0}, 1.0).success);
+  world.run(250ms);
+  const double from = world.group().commanded()[0].position;
+  const double before = world.group().commanded()[0].velocity;
+  EXPECT_NEAR(before, 1.125, 0.02);
+  world.now += 50ms;
+  world.drives[0].targets.clear();
+  ASSERT_TRUE(world.runUntil([&] { return !world.drives[0].targets.empty(); }, 10ms));
+  const motion::MotionState first = world.group().commanded()[0];
+  EXPECT_NEAR(first.position, from, 3e-4);
+  // 10 rad/s² in a cycle of 4 ms are 0.04 rad/s, 1/28 of the speed planned.
+  EXPECT_NEAR(first.velocity, 0.04, 0.001);
+  EXPECT_NEAR(first.acceleration, 3.0 / (28.125 * 28.125), 1e-3);
+  double last = first.velocity;
+  for (int cycle = 0; cycle < 24; ++cycle) {
+    world.run(test::kPeriod);
+    const double velocity = world.group().commanded()[0].velocity;
+    EXPECT_LE(velocity - last, 0.04 + 1e-3) << cycle;
+    EXPECT_GE(velocity, last) << cycle;
+    last = velocity;
+  }
+  EXPECT_GT(last, 0.8);
+  world.run(1s);
+  EXPECT_EQ(world.drives[0].position, 100000);
+  EXPECT_EQ(world.eventsWith("arm: goal reached"), 1u);
+  expectSmooth(0);
+}
+
 TEST_F(GroupTest, StopsByARampOnAnEmptyTrajectory) {
   ASSERT_TRUE(world.move({1.0, -1.0}, 1.0).success);
   world.run(500ms);

@@ -186,6 +186,21 @@ TEST_F(ProcedureJobTest, EnableOfAllTellsOfAnAxisThatWasDisabledMeanwhile) {
   EXPECT_TRUE(world.drives[1].enabled());
 }
 
+TEST_F(ProcedureJobTest, EnableOfAllWaitsForNewsOfAnAxisThatHasFallenSilent) {
+  ASSERT_TRUE(world.call(ProcedureKind::disable).success);
+  world.drives[1].deaf_to_controlword = true;
+  const auto enabling = world.begin(ProcedureKind::enable);
+  ASSERT_TRUE(world.runUntil([&] { return world.axis(0).procedure().success; }));
+  world.drives[0].silent = true;
+  world.run(5 * test::kPeriod);
+  ASSERT_TRUE(world.axis(0).state().feedback_valid) << "it is not missed yet";
+  world.drives[1].deaf_to_controlword = false;
+  ASSERT_TRUE(world.runUntil([&] { return world.drives[1].enabled(); }));
+  const Answer answer = world.wait(enabling);
+  EXPECT_FALSE(answer.success) << answer.message;
+  EXPECT_THAT(answer.message, HasSubstr("enable done on 1 of 2 axes; shoulder"));
+}
+
 TEST_F(ProcedureJobTest, StopsOfAllTellOfAnAxisThatMovesMeanwhile) {
   for (const ProcedureKind kind : {ProcedureKind::disable, ProcedureKind::quick_stop}) {
     ASSERT_TRUE(world.call(ProcedureKind::disable).success);

@@ -44,6 +44,24 @@ TEST_F(RobotStart, ListensBeforeTheFirstFrameIsSent) {
   EXPECT_EQ(world.sent[3].frame, can::Frame(0x000, {0x82, 0x02}));
 }
 
+TEST_F(RobotStart, ShowsWhatItWaitsFor) {
+  const auto step = [&] {
+    RobotSnapshot snapshot;
+    world.robot.fill(snapshot);
+    EXPECT_EQ(snapshot.axes[0].words.step.str(), snapshot.axes[1].words.step.str());
+    return snapshot.axes[0].words.step.str();
+  };
+  world.robot.start(world.now);
+  EXPECT_EQ(step(), "listening for another master");
+  world.run(50ms);
+  hear(can::Frame(0x77F, {0x05}));
+  EXPECT_EQ(step(), "waiting until there is no other master on the bus");
+  world.run(149ms);
+  EXPECT_EQ(step(), "waiting until there is no other master on the bus");
+  world.run(2ms);
+  EXPECT_THAT(step(), testing::Not(HasSubstr("master on the bus")));
+}
+
 TEST_F(RobotStart, SendsNothingWhileThereIsAnotherMasterAndSaysSo) {
   world.robot.start(world.now);
   for (int i = 0; i < 50; ++i) {

@@ -187,6 +187,65 @@ TEST(Robot, RunsACallInTheBusThread) {
   EXPECT_TRUE(world.call(call).success);
 }
 
+TEST(Robot, TakesAnAnswerBySdoBeforeTheNextCycle) {
+  config::RobotConfig config = test::testRobot();
+  config.axes.resize(1);
+  config.groups.clear();
+  RobotWorld world(config);
+  world.boot();
+  ASSERT_TRUE(world.runUntil([&] { return world.robot.lastCycle() == world.now; }));
+  world.run(1ms);  // the next cycle is 3 ms away
+  const auto read = world.begin(ReadObjectCommand{"shoulder", "6098:00"});
+  world.run(1ms);
+  world.robot.tick(world.now);
+  EXPECT_EQ(read->size(), 1u);
+}
+
+TEST(Robot, ShowsTheTimeOfTheLastCommand) {
+  RobotWorld world;
+  world.boot();
+  world.now += 1ms;
+  CallCommand call;
+  call.function = [](Time) { return Answer(); };
+  (void)world.call(call);
+  RobotSnapshot snapshot;
+  world.robot.fill(snapshot);
+  EXPECT_EQ(snapshot.now, world.now);
+}
+
+TEST(Robot, RefusesToAskAStoppedDriveAndSaysSo) {
+  RobotWorld world;
+  world.boot();
+  const auto stopped = world.begin(NmtServiceCommand{"shoulder", "stop"});
+  world.run(20ms);
+  world.robot.receive(can::Frame(0x701, {0x04}), world.now, world.now);
+  ASSERT_EQ(world.axis(0).node().nmtState(), canopen::NmtState::stopped);
+  SaveDcfCommand save;
+  save.axis = "shoulder";
+  const auto history = world.begin(ErrorHistoryCommand{"shoulder"}), dcf = world.begin(save);
+  ASSERT_EQ(history->size(), 1u);
+  EXPECT_THAT(history->front().message,
+              HasSubstr("shoulder (node 1): its error history (1003h) cannot be asked for"));
+  ASSERT_EQ(dcf->size(), 1u);
+  EXPECT_THAT(dcf->front().message,
+              HasSubstr("shoulder (node 1): its objects for a DCF cannot be asked for"));
+}
+
+TEST(Robot, ShowsADriveThatInsistsOnACobIdWhichNobodyForesaw) {
+  RobotWorld world;
+  world.boot();
+  const auto insists = [&](std::size_t axis) {
+    RobotSnapshot snapshot;
+    world.robot.fill(snapshot);
+    return snapshot.axes[axis].node.own_cob_ids;
+  };
+  EXPECT_FALSE(insists(0));
+  EXPECT_FALSE(insists(1));
+  world.robot.master().nodes()[1].image().setCobId(canopen::PdoDirection::tpdo, 1, 0x1E5);
+  EXPECT_FALSE(insists(0));
+  EXPECT_TRUE(insists(1));
+}
+
 // --- Shutdown ------------------------------------------------------------------------------------
 
 struct RobotShutdown : testing::Test {
@@ -275,6 +334,31 @@ TEST_F(RobotShutdown, GivesAllPendingRepliesAndTakesNoMoreCommands) {
   EXPECT_EQ(reads.back()->front().message, "elbow (node 2): ended by the shutdown of the driver");
   EXPECT_EQ(world.begin(ProcedureKind::enable)->front().message,
             "refused: the driver is shutting down");
+}
+
+TEST_F(RobotShutdown, AnswersWhatRunsOnceOnlyAndWhatIsReadWithTheReason) {
+  config::RobotConfig config = test::testRobot();
+  config.axes[0].homing = test::homingOfOrder(0);
+  RobotWorld homing(config);
+  homing.enable();
+  homing.drives[0].homing_is_slow = true;
+  homing.drives[0].deaf_to_controlword = true;
+  homing.drives[1].sdo_silent = true;
+  const auto home = homing.begin(ProcedureKind::home, "shoulder");
+  homing.run(50ms);
+  std::vector<std::shared_ptr<std::vector<Answer>>> histories;
+  for (int i = 0; i < 30; ++i) histories.push_back(homing.begin(ErrorHistoryCommand{"elbow"}));
+  homing.robot.beginShutdown(homing.now);
+  ASSERT_TRUE(homing.runUntil([&] { return homing.robot.shutDown(); }, 2s));
+  ASSERT_EQ(home->size(), 1u);
+  EXPECT_EQ(home->front().message, "home: ended by the shutdown of the driver");
+  for (const auto& history : histories) {
+    ASSERT_EQ(history->size(), 1u);
+    EXPECT_FALSE(history->front().success);
+  }
+  EXPECT_THAT(histories.back()->front().message,
+              AllOf(HasSubstr("elbow (node 2): error history (1003h)"),
+                    HasSubstr("ended by the shutdown of the driver")));
 }
 
 }  // namespace
