@@ -109,7 +109,9 @@ TEST_F(ObjectCalibration, IsNotWrittenTwiceThoughNoAnswerComesAndMayHaveBeenTake
   const auto written = begin("607C:00 i32", "1000"), other = begin("2001:00 u16", "7", "elbow");
   world.run(50ms);
   for (test::FakeDrive& drive : world.drives) drive.sdo_silent = false;
+  const Time from = world.now - 50ms;
   const Answer answer = world.wait(written);
+  EXPECT_NEAR(toSeconds(world.now - from), 0.1 + 0.25, 0.02) << "0.1 s are the profile's";
   EXPECT_FALSE(answer.success);
   EXPECT_EQ(downloads(1, kOffset), 1u);
   EXPECT_THAT(answer.message,
@@ -138,12 +140,13 @@ TEST_F(ObjectCalibration, AValueThatDoesNotFitTheAskedSizeChangesNothing) {
 
 TEST_F(ObjectCalibration, ADriveThatTellsNoPositionAfterwardsIsSaidToDoSo) {
   const auto written = begin("607C:00 i32", "1000");
-  world.run(100ms);
-  world.drives[0].tpdo_bytes = 0;
-  const Time from = world.now;
+  world.run(240ms);
+  world.drives[0].tpdo_bytes = 0;  // what it told last counts from the old zero
+  const Time from = world.now - 240ms;
   const Answer answer = world.wait(written);
   EXPECT_THAT(answer.message, HasSubstr("; the drive has not told its position since"));
-  EXPECT_NEAR(toSeconds(world.now - from), 1.15, 0.02) << "state_change of the profile is 1 s";
+  EXPECT_NEAR(toSeconds(world.now - from), 0.25 + 1.0, 0.02)
+      << "state_change of the profile is 1 s";
 }
 
 TEST_F(ObjectCalibration, OfAnEnabledAxisIsRefusedWithTheServiceThatHelps) {

@@ -37,6 +37,14 @@ TEST_F(ObjectJobTest, ReadsByNameWithJointUnits) {
   EXPECT_EQ(answer.number, 10000.0);
 }
 
+TEST_F(ObjectJobTest, AnswersOnceOnly) {
+  const auto read = world.begin(ReadObjectCommand{"shoulder", "6098:00"});
+  const auto written = world.begin(WriteObjectCommand{"shoulder", "6098:00", "1"});
+  world.run(1s);
+  EXPECT_EQ(read->size(), 1u);
+  EXPECT_EQ(written->size(), 1u);
+}
+
 TEST_F(ObjectJobTest, ReadsByIndexAndNamesTheObjectWhereTheProfileKnowsIt) {
   stored(0x6098) = {17};
   EXPECT_EQ(read("6098:00").message, "shoulder (node 1): 6098:00 homing_method is 17 (0x11)");
@@ -214,6 +222,8 @@ TEST_F(ObjectJobTest, RefusesWhatIsNeitherANameNorAnIndexAndUnknownAxes) {
   EXPECT_EQ(read("homing_speed").message,
             "shoulder (node 1): \"homing_speed\" is neither an object of profile test_drive nor an "
             "index such as 6041h:0");
+  EXPECT_THAT(write("homing_speed", "1").message,
+              HasSubstr("\"homing_speed\" is neither an object of profile test_drive"));
   EXPECT_EQ(read("6041:00", "wrist").message, "there is no axis \"wrist\"");
   EXPECT_EQ(world.call(WriteObjectCommand{"wrist", "6041:00", "1"}).message,
             "there is no axis \"wrist\"");

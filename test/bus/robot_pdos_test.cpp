@@ -69,6 +69,16 @@ TEST_F(RobotPdos, ThatDoNotComeAreToldOnceAndShownWhileItLasts) {
   EXPECT_EQ(shown(1).words.stale.str(), "");
 }
 
+TEST_F(RobotPdos, WhatWasToldOfTheirLengthIsNotToldAgainWithWhatComesLater) {
+  intrude(1);
+  world.run(2s);
+  ASSERT_EQ(world.eventsWith("bytes instead of"), 1u);
+  world.drives[1].tpdo_bytes = 0;
+  world.run(5s);
+  EXPECT_EQ(world.eventsWith("did not come for"), 1u);
+  EXPECT_EQ(world.eventsWith("came with 2 bytes instead of"), 1u) << world.allEvents();
+}
+
 TEST_F(RobotPdos, OfADriveThatWasTakenOutOfOperationAreNotMissed) {
   const auto answer = world.begin(NmtServiceCommand{"elbow", "pre_operational"});
   world.run(3s);

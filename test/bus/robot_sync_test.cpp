@@ -73,6 +73,13 @@ TEST_F(SecondProducer, ThatIsHeardAtThreeLooksInARowStopsWhatMoves) {
   EXPECT_TRUE(world.drives[0].enabled());
   hear(2);
   EXPECT_FALSE(moves());
+  EXPECT_EQ(std::count_if(world.events.begin(), world.events.end(),
+                          [](const Event& event) {
+                            return event.text.str().rfind("stopped: another device produces SYNC",
+                                                          0) == 0;
+                          }),
+            1)
+      << "why the trajectory has ended";
   world.run(1s);
   EXPECT_FALSE(world.drives[0].enabled());
   EXPECT_FALSE(world.drives[1].enabled());
@@ -237,6 +244,48 @@ TEST_F(ExternalSyncTest, MissingOnesAreCountedAndThreeInARowStopWhatMoves) {
   EXPECT_EQ(problem(), "");
 }
 
+TEST_F(ExternalSyncTest, WhatDoesNotComeForTenOfThemIsStale) {
+  enable();
+  world.drives[1].tpdo_bytes = 0;
+  lead(9 * kPeriod);
+  EXPECT_TRUE(world.axis(1).state().feedback_valid);
+  lead(3 * kPeriod);
+  EXPECT_FALSE(world.axis(1).state().feedback_valid);
+  EXPECT_TRUE(world.axis(0).state().feedback_valid);
+  world.run(200ms);  // without SYNC nothing comes from the other either
+  EXPECT_FALSE(world.axis(0).state().feedback_valid);
+}
+
+TEST_F(ExternalSyncTest, WhatWaitsToEnableAnAxisIsWithdrawnWhenItIsLost) {
+  config::RobotConfig config = led();
+  config.axes[0].homing = test::homingOfOrder(1);
+  config.axes[1].homing = test::homingOfOrder(0);
+  RobotWorld homing(config);
+  takeControlwordsBySdo(homing);
+  homing.robot.start(homing.now);
+  const auto lead = [&](Duration duration) {
+    for (const Time end = homing.now + duration; homing.now < end;) {
+      const can::Frame frame(0x080, {});
+      for (test::FakeDrive& drive : homing.drives) drive.receive(frame, homing.now);
+      homing.robot.receive(frame, homing.now, homing.now);
+      homing.run(kPeriod);
+    }
+  };
+  lead(3s);
+  const auto enabled = homing.begin(ProcedureKind::enable);
+  lead(1s);
+  ASSERT_TRUE(enabled->size() == 1 && enabled->front().success);
+  const auto homed = homing.begin(ProcedureKind::home);
+  lead(50ms);
+  homing.run(20ms);
+  lead(3s);
+  ASSERT_EQ(homed->size(), 1u);
+  EXPECT_FALSE(homed->front().success);
+  EXPECT_THAT(homed->front().message,
+              AllOf(HasSubstr("shoulder: not started, for "), HasSubstr("no SYNC")));
+  EXPECT_FALSE(homing.drives[0].homing_began);
+}
+
 TEST_F(ExternalSyncTest, OfAnotherPeriodStopsWhatMovesAndIsToldWithIt) {
   enable();
   ASSERT_TRUE(world.move({2.0, -2.0}, 4.0).success);
@@ -321,6 +370,16 @@ TEST_F(LateSync, IsNoReasonForOtherErrorsNorLongAgoNorByALittle) {
   emergencyAfter(5ms, 60ms);   // it may come 50 ms late itself
   emergencyAfter(900us, 1ms);  // less than a quarter of a period
   EXPECT_GE(world.eventsWith("0x8201"), 1u) << world.allEvents();
+  EXPECT_EQ(world.eventsWith("this program sent SYNC"), 0u) << world.allEvents();
+}
+
+TEST_F(LateSync, IsNoReasonForWhatWasMissedBeforeItWasDue) {
+  const Time due = world.sentWithId(0x080).back().time + kPeriod;
+  world.now = due + 5ms;
+  world.run(1ms);
+  world.robot.receive(can::Frame(0x081, {0x01, 0x82, 1, 0, 0, 0, 0, 0}), due - 1ms, world.now);
+  world.run(20ms);
+  EXPECT_EQ(world.eventsWith("emergency: 0x8201"), 1u);
   EXPECT_EQ(world.eventsWith("this program sent SYNC"), 0u) << world.allEvents();
 }
 

@@ -213,6 +213,65 @@ TEST(Robot, ShowsTheTimeOfTheLastCommand) {
   EXPECT_EQ(snapshot.now, world.now);
 }
 
+TEST(Robot, ShowsItsAxesNodesAndGroups) {
+  RobotWorld world;
+  for (std::uint8_t part = 1; part <= 4; ++part) {
+    world.drives[1].objects[{0x1018, part}] = {part, 0, 0, 0};
+  }
+  world.enable();
+  ASSERT_TRUE(world.move({1.0, -1.0}, 1.0).success);
+  world.run(500ms);
+  world.drives[0].silent = true;
+  world.run(60ms);
+  RobotSnapshot shot;
+  world.robot.fill(shot);
+  drive::Axis& elbow = world.axis(1);
+  EXPECT_GT(shot.statistics.cycles(), 100u);
+  EXPECT_FALSE(shot.shut_down);
+  EXPECT_EQ(shot.axes[1].state.state, drive::State::operation_enabled);
+  EXPECT_LT(shot.axes[1].state.position, -0.4);
+  EXPECT_EQ(shot.axes[1].target, elbow.target());
+  EXPECT_LT(shot.axes[1].target, -0.4);
+  EXPECT_EQ(shot.axes[1].procedure, ProcedureKind::enable);
+  EXPECT_FALSE(shot.axes[1].procedure_running);
+  EXPECT_EQ(shot.axes[1].node.changes, elbow.node().changes());
+  EXPECT_EQ(shot.axes[1].node.nmt, canopen::NmtState::operational);
+  EXPECT_GT(shot.axes[1].node.last_heartbeat, world.now - 200ms);
+  EXPECT_EQ(shot.axes[1].node.boot_ups, 1u);
+  EXPECT_EQ(shot.axes[1].node.identity.vendor_id, 1u);
+  EXPECT_EQ(shot.axes[1].node.identity.serial, 4u);
+  EXPECT_TRUE(shot.axes[1].node.supervision.watched);
+  EXPECT_FALSE(shot.axes[1].node.may_be_absent);
+  EXPECT_EQ(shot.axes[0].stale_feedback, 1u);
+  EXPECT_EQ(shot.axes[1].stale_feedback, 0u);
+  ASSERT_EQ(shot.groups.size(), 1u);
+  EXPECT_TRUE(shot.groups[0].stopping);
+  EXPECT_FALSE(shot.groups[0].executing);
+  world.drives[1].deaf_to_controlword = true;
+  const auto disabling = world.begin(ProcedureKind::disable, "elbow");
+  world.run(20ms);
+  world.robot.fill(shot);
+  EXPECT_EQ(shot.axes[1].procedure, ProcedureKind::disable);
+  EXPECT_TRUE(shot.axes[1].procedure_running);
+  world.robot.beginShutdown(world.now);
+  ASSERT_TRUE(world.runUntil([&] { return world.robot.shutDown(); }, 2s));
+  world.robot.fill(shot);
+  EXPECT_TRUE(shot.shut_down);
+}
+
+TEST(Robot, ShowsThatAnOptionalDriveIsNotThere) {
+  config::RobotConfig config = test::testRobot();
+  config.axes[1].boot.optional = true;
+  RobotWorld world(config);
+  world.drives[1].silent = true;
+  world.robot.start(world.now);
+  world.run(5s);
+  RobotSnapshot shot;
+  world.robot.fill(shot);
+  EXPECT_FALSE(shot.axes[0].node.may_be_absent);
+  EXPECT_TRUE(shot.axes[1].node.may_be_absent);
+}
+
 TEST(Robot, RefusesToAskAStoppedDriveAndSaysSo) {
   RobotWorld world;
   world.boot();
