@@ -171,6 +171,21 @@ TEST(ProcessImage, a_frame_that_is_too_short_does_not_keep_a_tpdo_fresh) {
   EXPECT_TRUE(image.tpdos()[0].stale);
 }
 
+TEST(ProcessImage, a_tpdo_that_was_too_short_once_and_fails_to_come_later_does_not_come) {
+  ProcessImage image({tpdoOfType(1)});
+  image.receive(0, frame("183 37"), kStamp);
+  syncsUntilStale(image);
+  EXPECT_EQ(missingText(image), "TPDO 1 (COB-ID 0x183) comes too short (1 bytes instead of 2)");
+  image.receive(0, frame("183 37 02"), kStamp);
+  EXPECT_EQ(missingText(image), "");
+  syncsUntilStale(image);
+  EXPECT_EQ(missingText(image), "TPDO 1 (COB-ID 0x183) does not come");
+  image.receive(0, frame("183 37"), kStamp);
+  image.invalidate();  // the drive restarts
+  syncsUntilStale(image);
+  EXPECT_EQ(missingText(image), "TPDO 1 (COB-ID 0x183) does not come");
+}
+
 TEST(ProcessImage, tpdos_without_a_rate_are_never_stale) {
   for (const int type : {0, 254, 255}) {
     ProcessImage image({tpdoOfType(static_cast<std::uint8_t>(type))});
