@@ -48,6 +48,19 @@ TEST_F(ProcedureJobTest, LeavesLaterOrdersUnstartedAfterAFailureAndSaysSo) {
   EXPECT_FALSE(world.drives[0].homing_began);
 }
 
+TEST_F(ProcedureJobTest, AnAxisThatIsStoppedWhileItWaitsForItsTurnIsNotMoved) {
+  const auto home = world.begin(ProcedureKind::home);
+  world.run(20ms);
+  drive::ProcedureRequest halt;
+  halt.kind = ProcedureKind::halt;
+  ASSERT_TRUE(world.axis(0).start(halt, world.now));
+  const Answer answer = world.wait(home);
+  EXPECT_FALSE(answer.success);
+  EXPECT_THAT(answer.message, HasSubstr("shoulder: not started, for halt was called"));
+  world.run(1s);
+  EXPECT_FALSE(world.drives[0].homing_began);
+}
+
 TEST_F(ProcedureJobTest, HomesOneAxisAloneWhateverItsOrder) {
   const Answer answer = world.call(ProcedureKind::home, "shoulder");
   EXPECT_TRUE(answer.success) << answer.message;

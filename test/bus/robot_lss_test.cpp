@@ -158,6 +158,26 @@ TEST(RobotLss, ADriveThatIsNotThereIsToldOnceAndLookedForEveryFiveSeconds) {
   EXPECT_EQ(world.shown().axes[0].words.problem.str(), "");
 }
 
+TEST(RobotLss, AnAxisThatIsNotLookedForShowsWhatItDoesItself) {
+  LssWorld world(1);
+  world.takeAway(0);
+  world.robot.start(world.now);
+  ASSERT_TRUE(world.runUntil([&] { return world.health(1) == NodeHealth::ready; }));
+  ASSERT_TRUE(world.runUntil([&] { return canopen::isAway(world.health(0)); }));
+  world.drives[1].deaf_to_controlword = true;
+  bool enabling = false;
+  ASSERT_TRUE(world.runUntil([&] {
+    if (!world.axis(1).procedure().running) (void)world.begin(ProcedureKind::enable, "elbow");
+    const RobotSnapshot shot = world.shown();
+    const bool looks = shot.axes[0].words.step.str().rfind("LSS: ", 0) == 0;
+    enabling |= !shot.axes[1].words.step.empty();
+    EXPECT_NE(shot.axes[1].words.step.str().rfind("LSS: ", 0), 0u);
+    return looks && enabling;
+  }));
+  world.run(200ms);
+  EXPECT_NE(world.shown().axes[1].words.step.str().rfind("LSS: ", 0), 0u);
+}
+
 TEST(RobotLss, RecoverAloneBeginsWithTheNodeId) {
   LssWorld world(1);
   world.robot.start(world.now);
