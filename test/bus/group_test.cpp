@@ -191,7 +191,10 @@ TEST_F(GroupTest, StopsByARampOnAnEmptyTrajectory) {
   const std::int32_t from = world.drives[0].position;
   ASSERT_EQ(world.call(world.trajectory("arm", {})).message, "arm: stopping");
   EXPECT_TRUE(world.group().stopping());
-  world.run(300ms);
+  world.run(140ms);
+  EXPECT_TRUE(world.group().stopping()) << "the ramp takes 150 ms";
+  EXPECT_EQ(world.eventsWith("arm: stopped"), 0u);
+  world.run(160ms);
   EXPECT_FALSE(world.group().stopping());
   // 1.5 rad/s at 10 rad/s² take 0.1125 rad
   EXPECT_NEAR(world.drives[0].position - from, 11250, 1500);
