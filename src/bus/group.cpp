@@ -155,7 +155,6 @@ void Group::noteDropped(const std::vector<drive::Axis>& axes) {
     if (!axis.state().ready_for_motion || axis.setPoint().breaks() != breaks_[i]) {
       dropped_[i] = next_dropped_[i] = 1;
     }
-    breaks_[i] = axis.setPoint().breaks();
   }
 }
 
