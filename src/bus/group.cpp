@@ -249,9 +249,9 @@ std::optional<TrajectoryOutcome> Group::step(std::vector<drive::Axis>& axes,
   advanceClock(now);
   if (next_ && clock_.time() >= next_->startTime()) beginNext(now);
   if (phase_ == Phase::following) {
-    auto ended = checkAxes(axes);
+    auto ended = checkRefusal();  // which ends the axis' set-points, too
+    if (!ended) ended = checkAxes(axes);
     if (!ended) ended = checkPath(axes);
-    if (!ended) ended = checkRefusal();
     if (ended) {
       outcome_ = *ended;
       beginStop(axes);

@@ -158,6 +158,16 @@ TEST(RobotLss, ADriveThatIsNotThereIsToldOnceAndLookedForEveryFiveSeconds) {
   EXPECT_EQ(world.shown().axes[0].words.problem.str(), "");
 }
 
+TEST(RobotLss, ANodeIdIsStoredWhereTheConfigurationSaysSo) {
+  config::RobotConfig config = byIdentity(2);
+  config.axes[1].lss->store = true;
+  LssWorld world(2, config);
+  world.robot.start(world.now);
+  ASSERT_TRUE(ready(world)) << world.allEvents();
+  EXPECT_EQ(world.slaves[0].stored, 0xFF);
+  EXPECT_EQ(world.slaves[1].stored, 2);
+}
+
 TEST(RobotLss, AnAxisThatIsNotLookedForShowsWhatItDoesItself) {
   LssWorld world(1);
   world.takeAway(0);
@@ -193,9 +203,17 @@ TEST(RobotLss, RecoverAloneBeginsWithTheNodeId) {
   EXPECT_EQ(world.asked(0x43), 0u);
   EXPECT_TRUE(world.call(ProcedureKind::recover, "elbow").success);
   EXPECT_EQ(world.asked(0x43), 0u) << "it is there";
-  const Answer recovered = world.call(ProcedureKind::recover, "shoulder");
+  const Time called = world.now;
+  const auto recovering = world.begin(ProcedureKind::recover, "shoulder");
+  LssBitTimingCommand timing;
+  timing.kbit_per_s = 500;
+  timing.activate = true;
+  EXPECT_TRUE(world.call(ProcedureKind::disable, "elbow").success);
+  EXPECT_THAT(world.call(timing).message, HasSubstr("refused: recover waits for its turn"));
+  const Answer recovered = world.wait(recovering);
   EXPECT_TRUE(recovered.success) << recovered.message;
   EXPECT_EQ(world.asked(0x43), 1u);
+  EXPECT_LT(world.now - called, 2s) << "not by the next look";
   EXPECT_TRUE(world.drives[0].enabled());
 }
 
@@ -222,6 +240,16 @@ TEST(RobotLss, AScanTellsWhoseDeviceItIsAndWaitsForTheWindow) {
                                   [](const auto& sent) { return sent.frame.data[0] == 0x51; });
   ASSERT_NE(first, requests.end());
   EXPECT_EQ((first + 1)->time - first->time, 10ms);
+
+  world.bringBack(0);
+  world.slaves[0].identity[3] = 33;
+  const Answer other = world.call(command);
+  EXPECT_TRUE(other.success) << other.message;
+  EXPECT_EQ(other.device_axes, std::vector<std::string>{""});
+  EXPECT_THAT(other.message, Not(HasSubstr("is that of")));
+  world.bringBack(0);
+  world.slaves[0].deaf_part = 3;
+  EXPECT_FALSE(world.call(command).success) << "there is one that it cannot name";
 }
 
 TEST(RobotLss, NothingIsScannedOrAssignedWhileAnAxisMayMove) {
@@ -286,6 +314,22 @@ TEST(RobotLss, AssignsNodeIdsThatNobodyHas) {
   const Answer absent = world.call(assign);
   EXPECT_FALSE(absent.success);
   EXPECT_THAT(absent.message, AllOf(HasSubstr("serial 44"), HasSubstr("nobody answered")));
+}
+
+TEST(RobotLss, TheNodeIdOfADriveThatWasNeverHeardIsFree) {
+  LssWorld world(0);
+  world.takeAway(1);
+  world.robot.start(world.now);
+  ASSERT_TRUE(world.runUntil([&] { return world.health(0) == NodeHealth::ready; }));
+  ASSERT_EQ(world.health(1), NodeHealth::booting);
+  world.slaves[1].identity[3] = 33;
+  world.bringBack(1);
+  LssAssignCommand assign;
+  assign.identity = {0xABC, 7, 0x10002, 33};
+  assign.node_id = 2;
+  const Answer assigned = world.call(assign);
+  EXPECT_TRUE(assigned.success) << assigned.message;
+  EXPECT_TRUE(ready(world)) << world.allEvents();
 }
 
 // --- Bit timing ----------------------------------------------------------------------------------
@@ -426,6 +470,20 @@ TEST_F(RobotBitTiming, IsNeitherSetNorActivatedWhereAnAxisIsEnabledByThen) {
     ASSERT_TRUE(world.call(ProcedureKind::disable).success);
   }
   EXPECT_EQ(world.asked(0x15), 0u);
+}
+
+TEST(RobotBitTimingByIdentity, IsSetInTheDriveThatTheConfigurationNames) {
+  LssWorld world(2);
+  world.drives[0].objects[{0x1018, 4}] = {99, 0, 0, 0};  // what it tells besides
+  world.robot.start(world.now);
+  ASSERT_TRUE(ready(world)) << world.allEvents();
+  world.run(100ms);
+  LssBitTimingCommand timing;
+  timing.kbit_per_s = 250;
+  const Answer set = world.call(timing);
+  EXPECT_TRUE(set.success) << set.message;
+  EXPECT_EQ(world.slaves[0].bit_timing, 3);
+  EXPECT_EQ(world.slaves[1].bit_timing, 3);
 }
 
 TEST(RobotBitTimingOfAStranger, IsRefusedWhileItsIdentityIsNotKnown) {
