@@ -155,7 +155,6 @@ void Group::noteDropped(const std::vector<drive::Axis>& axes) {
     if (!axis.state().ready_for_motion || axis.setPoint().breaks() != breaks_[i]) {
       dropped_[i] = next_dropped_[i] = 1;
     }
-    breaks_[i] = axis.setPoint().breaks();
   }
 }
 
@@ -250,9 +249,9 @@ std::optional<TrajectoryOutcome> Group::step(std::vector<drive::Axis>& axes,
   advanceClock(now);
   if (next_ && clock_.time() >= next_->startTime()) beginNext(now);
   if (phase_ == Phase::following) {
-    auto ended = checkAxes(axes);
+    auto ended = checkRefusal();  // which ends the axis' set-points, too
+    if (!ended) ended = checkAxes(axes);
     if (!ended) ended = checkPath(axes);
-    if (!ended) ended = checkRefusal();
     if (ended) {
       outcome_ = *ended;
       beginStop(axes);

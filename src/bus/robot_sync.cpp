@@ -64,7 +64,6 @@ void Robot::lackSync(Time now) {
 
 void Robot::stopForSync(const std::string& why, Time now) {
   stopMotion(why);
-  withdrawEnabling(why);
   for (drive::Axis& axis : axes_) axis.stopBySdo(why, now);
 }
 

@@ -105,8 +105,9 @@ bool ProcessImage::receive(std::size_t tpdo, const can::Frame& frame, Time stamp
     ++wrong_lengths_;
     pdo.wrong_size = frame.size;
     ++(frame.size < pdo.size ? pdo.too_short : pdo.too_long);
-    if (frame.size < pdo.size) return false;
   }
+  pdo.last_too_short = frame.size < pdo.size;
+  if (pdo.last_too_short) return false;
   ++pdo.count;
   pdo.last = stamp;
   pdo.silent = 0;
@@ -229,7 +230,7 @@ void ProcessImage::invalidate() {
   std::fill(inputs_.begin(), inputs_.end(), ProcessValue{});
   std::fill(outputs_.begin(), outputs_.end(), std::uint64_t{0});
   for (Pdo& pdo : tpdos_) {
-    pdo.stale = false;
+    pdo.stale = pdo.last_too_short = false;
     pdo.silent = pdo.since_request = 0;
     pdo.last = Time();
   }

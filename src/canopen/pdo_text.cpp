@@ -29,10 +29,9 @@ std::string missingText(const ProcessImage& image) {
   for (const ProcessImage::Pdo& pdo : image.tpdos()) {
     if (!pdo.stale) continue;
     text += (text.empty() ? "" : ", ") + pdoName(pdo);
-    const bool too_short = pdo.too_short != 0 && pdo.wrong_size < pdo.size;
-    text += too_short ? " comes too short (" + std::to_string(pdo.wrong_size) +
-                            " bytes instead of " + std::to_string(pdo.size) + ")"
-                      : " does not come";
+    text += pdo.last_too_short ? " comes too short (" + std::to_string(pdo.wrong_size) +
+                                     " bytes instead of " + std::to_string(pdo.size) + ")"
+                               : " does not come";
   }
   return text;
 }

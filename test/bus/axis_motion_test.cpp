@@ -71,6 +71,65 @@ TEST(AxisMotion, StopsAStreamedPositionAtTheLimitOfTheJoint) {
   EXPECT_EQ(rig.drive().position, 300000);
 }
 
+TEST(AxisMotion, StopsAStreamedPositionAtTheLowerLimitToo) {
+  Rig rig("cyclic_position");
+  ASSERT_EQ(rig.command(-10.0), "");
+  rig.world.run(4s);
+  EXPECT_EQ(rig.drive().position, -300000);
+}
+
+TEST(AxisMotion, AJointHasTheLimitsAndTheUnitOfItsAxis) {
+  drive::AxisConfig config = test::testAxis("lift", 3);
+  config.joint = "lift_joint";
+  config.limits.lower = -0.1;
+  config.limits.upper = 0.7;
+  config.limits.velocity = 0.5;
+  config.limits.acceleration = 3.0;
+  config.limits.jerk = 40.0;
+  config.limits.effort = 120.0;
+  config.geometry.type = drive::AxisGeometry::Type::prismatic;
+  const motion::Joint lift = jointOf(config);
+  EXPECT_EQ(lift.name, "lift_joint");
+  EXPECT_EQ(lift.limits.lower, -0.1);
+  EXPECT_EQ(lift.limits.upper, 0.7);
+  EXPECT_EQ(lift.limits.velocity, 0.5);
+  EXPECT_EQ(lift.limits.acceleration, 3.0);
+  EXPECT_EQ(lift.limits.jerk, 40.0);
+  EXPECT_EQ(lift.limits.effort, 120.0);
+  EXPECT_FALSE(lift.limits.continuous);
+  EXPECT_EQ(lift.unit, motion::JointUnit::metre);
+  config.geometry.type = drive::AxisGeometry::Type::continuous;
+  EXPECT_TRUE(jointOf(config).limits.continuous);
+  EXPECT_EQ(jointOf(config).unit, motion::JointUnit::radian);
+}
+
+TEST(AxisMotion, GoesOnSmoothlyToItsGoalAfterMissedCycles) {
+  Rig rig("cyclic_position");
+  ASSERT_EQ(rig.command(1.0), "");
+  rig.world.run(300ms);  // at 2 rad/s
+  rig.world.now += 50ms;
+  rig.world.run(4ms);
+  rig.drive().targets.clear();
+  rig.world.run(2s);
+  EXPECT_EQ(rig.drive().targets.back(), 100000);
+  EXPECT_LE(largestStep(rig.drive().targets), kLargestStep);
+  EXPECT_LE(largestChangeOfStep(rig.drive().targets), kLargestChange);
+}
+
+TEST(AxisMotion, DoesNotGoOnBehindAMotorThatStoodInItsWay) {
+  Rig rig("cyclic_position");
+  ASSERT_EQ(rig.command(1.0), "");
+  rig.world.run(100ms);
+  rig.drive().blocked = true;
+  rig.world.run(1s);  // its set-point was called back
+  rig.drive().blocked = false;
+  rig.world.run(20ms);
+  const std::int32_t position = rig.drive().position;
+  EXPECT_LT(position, 50000);
+  rig.world.run(1s);
+  EXPECT_EQ(rig.drive().position, position);
+}
+
 TEST(AxisMotion, RampsAStreamedVelocityUpAndStopsItByARampWhenTheStreamDriesUp) {
   Rig rig("cyclic_velocity");
   for (int i = 0; i < 25; ++i) {
@@ -109,6 +168,24 @@ TEST(AxisMotion, ClampsATorqueAndDropsItWhenTheStreamDriesUp) {
   EXPECT_EQ(rig.drive().target_torque, -500);
   rig.world.run(170ms);
   EXPECT_EQ(rig.drive().target_torque, 0);
+}
+
+TEST(AxisMotion, SaysThatAStreamDriedUpUnlessItEndedWithAZero) {
+  for (const char* const mode : {"cyclic_velocity", "cyclic_torque"}) {
+    for (const double last : {0.5, 0.0}) {
+      SCOPED_TRACE(std::string(mode) + " that ends with " + std::to_string(last));
+      config::RobotConfig config = oneAxis(mode);
+      config.axes[0].brake_after_effort = false;  // it coasts, and stays as it is
+      Rig rig(config);
+      ASSERT_EQ(rig.command(0.5), "");
+      rig.world.run(20ms);
+      ASSERT_EQ(rig.command(last), "");
+      rig.world.run(190ms);  // command_timeout is 200 ms
+      EXPECT_FALSE(rig.world.robot.motions()[0].driedUp());
+      rig.world.run(20ms);
+      EXPECT_EQ(rig.world.robot.motions()[0].driedUp(), last != 0.0);
+    }
+  }
 }
 
 TEST(AxisMotion, HandsAProfilePositionToTheDriveWithinTheLimits) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "bus/robot_world.h"
 
 namespace cia402::bus {
@@ -20,17 +22,19 @@ class Queue : public can::Interface {
   std::optional<can::ReceivedFrame> receive(Time now) override {
     if (waiting == 0) return std::nullopt;
     --waiting;
-    return can::ReceivedFrame{can::Frame(0x7A0, {}), std::min(now, stamp)};
+    return can::ReceivedFrame{frame, std::min(now, stamp)};
   }
   void maintain(Time) override {}
   int fd() const override { return -1; }
-  can::BusState state() const override { return can::BusState::error_active; }
+  can::BusState state() const override { return now_is; }
   const can::BusCounters& counters() const override { return counters_; }
   std::string describe() const override { return "can0"; }
 
   long waiting = 0;
+  can::Frame frame{0x7A0, {}};
   Time stamp = Time::max();  ///< of the frames, at the latest
   int syncs = 0;
+  can::BusState now_is = can::BusState::error_active;
 
  private:
   can::BusCounters counters_;
@@ -92,6 +96,36 @@ TEST_F(BusLoopTest, GoesOnInAFloodThatComesFasterThanItIsRead) {
     ASSERT_GT(lastCycle(), now - 2 * test::kPeriod);
   }
   EXPECT_NEAR(queue.syncs - syncs, 250, 2);
+}
+
+TEST_F(BusLoopTest, WhatItReceivesIsRecordedAndGoesToTheRobot) {
+  run(10ms);
+  queue.frame = can::Frame(0x702, {0x00});  // the elbow boots
+  queue.stamp = now - 1ms;
+  queue.waiting = 1;
+  loop.step(now);
+  EXPECT_EQ(loop.robot().master().nodes()[1].bootUps(), 1u);
+  const auto frames = loop.recorder().copy(now).frames;
+  const auto heard = std::find_if(frames.begin(), frames.end(), [](const can::FrameRecord& record) {
+    return record.direction() == can::Direction::received;
+  });
+  ASSERT_NE(heard, frames.end());
+  EXPECT_EQ(heard->frame(), queue.frame);
+  EXPECT_EQ(heard->stamp(), now - 1ms);
+}
+
+TEST_F(BusLoopTest, ABusOffIsATriggerOfTheRecorder) {
+  robot.recorder.keep = 1;
+  BusLoop recording(robot, test::masterOf(robot), queue, *this);
+  recording.step(now);
+  EXPECT_FALSE(recording.recorder().triggered());
+  queue.now_is = can::BusState::bus_off;
+  recording.step(now + 1ms);
+  EXPECT_TRUE(recording.recorder().triggered());
+  RecordingTrigger trigger;
+  ASSERT_TRUE(recording.recorder().nextTrigger(trigger));
+  EXPECT_EQ(trigger.kind, RecordingTrigger::Kind::bus_off);
+  EXPECT_EQ(trigger.stamp, now + 1ms);
 }
 
 }  // namespace

@@ -34,6 +34,21 @@ TEST_F(DcfJobTest, HandsBackWhatItReadAndLeavesTheWordsToTheCaller) {
   EXPECT_EQ(command.reading.use_count(), 1) << "the bus thread frees nothing";
 }
 
+// The same EDS says what may be written.
+TEST_F(DcfJobTest, WhatTheEdsDoesNotAllowIsNotWrittenEither) {
+  const auto write = [&](const char* object, const char* value) {
+    return world.call(WriteObjectCommand{"shoulder", object, value});
+  };
+  const Answer written = write("2001:00 u16", "7");
+  EXPECT_TRUE(written.success) << written.message;
+  world.drives[0].written.clear();
+  const Answer refused = write("2005:00 text", "M8");
+  EXPECT_FALSE(refused.success);
+  EXPECT_THAT(refused.message, AllOf(HasSubstr("shoulder (node 1): 2005:00"),
+                                     HasSubstr("not written: "), HasSubstr("motor.eds")));
+  EXPECT_TRUE(world.drives[0].written.empty());
+}
+
 TEST_F(DcfJobTest, NothingIsWrittenToTheDrive) {
   world.drives[0].written.clear();
   read();

@@ -136,6 +136,11 @@ class FakeDrive {
         heartbeat_ms_ = static_cast<int>(number(frame, 4, 2));
         next_heartbeat_ = heartbeat_ms_ > 0 ? Time{} : kNever;
       }
+      if (id.index == 0x6040) {
+        const std::uint16_t before = controlword;
+        controlword = static_cast<std::uint16_t>(number(frame, 4, 2));
+        if (!deaf_to_controlword) obey(before);
+      }
       send(0x580, {0x60, low, high, sub, 0, 0, 0, 0});
     }
   }

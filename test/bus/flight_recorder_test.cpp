@@ -186,6 +186,66 @@ TEST(FlightRecorder, SamplesOfAnAxisHoldWhatItsDriveShows) {
   EXPECT_EQ(elbow->flags, AxisRecord::homed | AxisRecord::ready_for_motion | AxisRecord::succeeded);
 }
 
+TEST(FlightRecorder, NotesWhenAGroupMovesStopsAndRests) {
+  NoSink sink;
+  const config::RobotConfig config = test::testRobot();
+  test::RobotWorld world{config};
+  FlightRecorder recorder(config, sink);
+  recorder.watch(world.robot);
+  world.enable();
+  const auto observe = [&](Duration duration) {
+    for (const Time end = world.now + duration; world.now < end;) {
+      world.run(test::kPeriod);
+      recorder.observe();
+    }
+  };
+  ASSERT_TRUE(world.move({1.0, 0.0}, 1.0).success);
+  observe(500ms);
+  ASSERT_TRUE(world.call(world.trajectory("arm", {})).success);
+  observe(1s);
+  std::vector<std::string> notes;
+  for (const NoteRecord& note : recorder.copy(world.now).notes) {
+    if (note.kind == NoteRecord::Kind::group) notes.emplace_back(note.view());
+  }
+  EXPECT_THAT(notes, testing::ElementsAre("arm: follows a trajectory", "arm: is brought to rest",
+                                          "arm: at rest"));
+}
+
+TEST(FlightRecorder, NotesEachStepOfAProcedureOnce) {
+  NoSink sink;
+  const config::RobotConfig config = test::testRobot();
+  test::RobotWorld world{config};
+  FlightRecorder recorder(config, sink);
+  recorder.watch(world.robot);
+  world.boot();
+  world.drives[1].deaf_to_controlword = true;
+  const auto steps = [&] {
+    (void)world.begin(drive::ProcedureKind::enable, "elbow");
+    for (int cycle = 0; cycle < 20; ++cycle) {
+      world.run(test::kPeriod);
+      recorder.observe();
+    }
+    std::vector<std::string> all;
+    for (const NoteRecord& note : recorder.copy(world.now).notes) {
+      if (note.kind != NoteRecord::Kind::step) continue;
+      EXPECT_EQ(note.axis, 1U);
+      all.emplace_back(note.view());
+    }
+    return all;
+  };
+  const std::vector<std::string> once = steps();
+  ASSERT_FALSE(once.empty());
+  EXPECT_EQ(std::adjacent_find(once.begin(), once.end()), once.end());
+  world.run(2s);  // it has failed
+  ASSERT_FALSE(world.axis(1).procedure().running);
+  const std::vector<std::string> twice = steps();
+  EXPECT_EQ(std::adjacent_find(twice.begin(), twice.end()), twice.end());
+  for (const char* const step : {"waiting for standstill", "switching the mode"}) {
+    EXPECT_EQ(std::count(once.begin(), once.end(), step), 1) << step;
+    EXPECT_EQ(std::count(twice.begin(), twice.end(), step), 2) << "of another procedure: " << step;
+  }
+}
+
 TEST(FlightRecorder, WithNothingToKeepFaultsAreNoTriggers) {
   NoSink sink;
   config::RobotConfig config = test::testRobot();

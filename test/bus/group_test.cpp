@@ -155,13 +155,48 @@ TEST_F(GroupTest, TakesOverAtAStartTimeInTheFutureWithoutAJump) {
   expectSmooth(1);
 }
 
+// 3t² - 2t³: 1.125 rad/s and 3 rad/s² after a quarter of the time.
+TEST_F(GroupTest, GoesOnFromStandstillWhereItWasAfterMissedCycles) {
+  ASSERT_TRUE(world.move({1.0, 0.0}, 1.0).success);
+  world.run(250ms);
+  const double from = world.group().commanded()[0].position;
+  const double before = world.group().commanded()[0].velocity;
+  EXPECT_NEAR(before, 1.125, 0.02);
+  world.now += 50ms;
+  world.drives[0].targets.clear();
+  ASSERT_TRUE(world.runUntil([&] { return !world.drives[0].targets.empty(); }, 10ms));
+  const motion::MotionState first = world.group().commanded()[0];
+  EXPECT_NEAR(first.position, from, 3e-4);
+  // 10 rad/s² in a cycle of 4 ms are 0.04 rad/s, 1/28 of the speed planned.
+  EXPECT_NEAR(first.velocity, 0.04, 0.001);
+  EXPECT_NEAR(first.acceleration, 3.0 / (28.125 * 28.125), 1e-3);
+  double last = first.velocity;
+  for (int cycle = 0; cycle < 24; ++cycle) {
+    world.run(test::kPeriod);
+    const double velocity = world.group().commanded()[0].velocity;
+    EXPECT_LE(velocity - last, 0.04 + 1e-3) << cycle;
+    EXPECT_GE(velocity, last) << cycle;
+    last = velocity;
+  }
+  EXPECT_GT(last, 0.8);
+  world.run(1s);
+  EXPECT_EQ(world.drives[0].position, 100000);
+  EXPECT_EQ(world.eventsWith("arm: goal reached"), 1u);
+  expectSmooth(0);
+}
+
 TEST_F(GroupTest, StopsByARampOnAnEmptyTrajectory) {
   ASSERT_TRUE(world.move({1.0, -1.0}, 1.0).success);
   world.run(500ms);
   const std::int32_t from = world.drives[0].position;
   ASSERT_EQ(world.call(world.trajectory("arm", {})).message, "arm: stopping");
   EXPECT_TRUE(world.group().stopping());
-  world.run(300ms);
+  world.run(140ms);
+  EXPECT_TRUE(world.group().stopping()) << "the ramp takes 150 ms";
+  EXPECT_NEAR(world.group().commanded()[0].position, world.drives[0].target_position / 1e5, 1e-3);
+  EXPECT_EQ(world.group().commanded()[0].acceleration, 0.0);
+  EXPECT_EQ(world.eventsWith("arm: stopped"), 0u);
+  world.run(160ms);
   EXPECT_FALSE(world.group().stopping());
   // 1.5 rad/s at 10 rad/s² take 0.1125 rad
   EXPECT_NEAR(world.drives[0].position - from, 11250, 1500);
@@ -187,6 +222,86 @@ TEST_F(GroupTest, TakesOverFromAStopRampNowAndLater) {
     expectSmooth(0);
     expectSmooth(1);
   }
+}
+
+TEST_F(GroupTest, DropsATrajectoryThatWaitsBehindAStopWhenItIsStoppedAgain) {
+  ASSERT_TRUE(world.move({1.0, -1.0}, 1.0).success);
+  world.run(500ms);
+  ASSERT_TRUE(world.call(world.trajectory("arm", {})).success);
+  TrajectoryCommand command = world.trajectory("arm", {{{0.0, 0.0}, 2.0}});
+  command.start_time = world.now + 1s;
+  ASSERT_TRUE(world.call(command).success);
+  world.run(300ms);
+  ASSERT_TRUE(world.group().executing()) << "its beginning is awaited";
+  ASSERT_TRUE(world.call(world.trajectory("arm", {})).success);
+  const std::int32_t position = world.drives[0].position;
+  world.run(3s);
+  EXPECT_EQ(world.drives[0].position, position);
+  EXPECT_FALSE(world.group().executing() || world.group().stopping());
+}
+
+TEST_F(GroupTest, DropsAWaitingTrajectoryWhenAJointFaults) {
+  ASSERT_TRUE(world.move({1.0, -1.0}, 1.0).success);
+  world.run(300ms);
+  TrajectoryCommand command = world.trajectory("arm", {{{0.0, 0.0}, 2.0}});
+  command.start_time = world.now + 400ms;
+  ASSERT_TRUE(world.call(command).success);
+  world.drives[1].fault(0x8611);
+  world.run(250ms);
+  EXPECT_FALSE(world.group().executing() || world.group().stopping());
+  world.run(3s);
+  EXPECT_EQ(world.eventsWith("arm: trajectory stopped"), 1u) << world.allEvents();
+}
+
+TEST_F(GroupTest, StartsOnTimeThoughCyclesWereMissedWhileItWaited) {
+  TrajectoryCommand command = world.trajectory("arm", {{{1.0, 0.0}, 1.0}});
+  const Time start = world.now + 400ms;
+  command.start_time = start;
+  ASSERT_TRUE(world.call(command).success);
+  world.run(200ms);
+  world.now += 50ms;
+  world.run(start + 500ms - world.now);
+  const double t = toSeconds(world.robot.lastCycle() - start);
+  EXPECT_NEAR(world.group().commanded()[0].position, 3 * t * t - 2 * t * t * t, 1e-4);
+}
+
+TEST_F(GroupTest, CountsItsTimeFromTheMomentInWhichItWasTaken) {
+  ASSERT_TRUE(world.runUntil([&] { return world.robot.lastCycle() == world.now; }));
+  world.run(3ms);  // a millisecond before the next cycle
+  const Time taken = world.now;
+  ASSERT_TRUE(world.move({1.0, 0.0}, 1.0).success);
+  world.run(500ms);
+  const double t = toSeconds(world.robot.lastCycle() - taken);
+  EXPECT_NEAR(world.group().commanded()[0].position, 3 * t * t - 2 * t * t * t, 1e-4);
+}
+
+TEST_F(GroupTest, TakesTheNextOneInTheCycleInWhichOneHasEnded) {
+  ASSERT_TRUE(world.move({0.2, 0.0}, 1.0).success);
+  ASSERT_TRUE(world.runUntil([&] { return world.eventsWith("arm: goal reached") == 1; }));
+  const Answer next = world.move({0.0, 0.2}, 1.0);
+  EXPECT_TRUE(next.success) << next.message;
+}
+
+// At a tenth of a radian per second the joints are as fast as before in a few cycles.
+TEST_F(GroupTest, IsSoonAsFastAsBeforeAfterMissedCyclesOfASlowTrajectory) {
+  ASSERT_TRUE(world.move({0.1, 0.0}, 2.0).success);
+  world.run(1s);  // 0.075 rad/s
+  world.now += 50ms;
+  world.run(24ms);
+  EXPECT_NEAR(world.group().commanded()[0].velocity, 0.075, 0.001);
+  expectSmooth(0);
+}
+
+TEST(Group, GoesTheShorterWayOfAJointThatTurnsWithoutEnd) {
+  config::RobotConfig config = test::testRobot();
+  config.axes[0].geometry.type = drive::AxisGeometry::Type::continuous;
+  config.axes[0].limits.lower.reset();
+  config.axes[0].limits.upper.reset();
+  RobotWorld world(config);
+  world.enable();
+  ASSERT_TRUE(world.move({6.2831853 + 0.1, 0.0}, 1.0).success);
+  world.run(1100ms);
+  EXPECT_NEAR(world.drives[0].position, 10000, 1);
 }
 
 TEST_F(GroupTest, DropsAWaitingTrajectoryWhenItIsStopped) {
@@ -257,136 +372,6 @@ TEST_F(LooseGroupTest, DoesNotMoveAJointThatIsEnabledAgainUnderWay) {
   EXPECT_EQ(world.drives[1].position, 0);
   expectSmooth(0);
   expectSmooth(1);
-}
-
-// --- Tolerances: a group of its own on the robot's axes, to see the codes
-// -------------------------
-
-struct GroupToleranceTest : testing::Test {
-  GroupToleranceTest() { world.enable(); }
-  Group make(config::JointTolerance elbow) {
-    config::GroupConfig config;
-    config.name = "test";
-    config.joints = {"shoulder", "elbow"};
-    config.goal_time = 0.5;
-    config.tolerances["elbow"] = elbow;
-    for (const drive::Axis& axis : world.robot.axes()) {
-      motions.emplace_back(axis.config(), test::kPeriod);
-    }
-    return Group(config, {0, 1}, world.robot.axes());
-  }
-  TrajectoryOutcome start(Group& group, double shoulder, double elbow) {
-    const auto points = world.trajectory("arm", {{{shoulder, elbow}, 1.0}}).points;
-    return group.start({"shoulder", "elbow"}, points, {}, world.robot.axes(), motions, world.now);
-  }
-  /// The outcome and, in `took`, after how long.
-  TrajectoryOutcome follow(Group& group) {
-    const Time begun = world.now;
-    while (world.now < begun + 5s) {
-      world.run(test::kPeriod);
-      const auto outcome = group.step(world.robot.axes(), motions, world.now);
-      took = world.now - begun;
-      if (outcome) return *outcome;
-    }
-    return {TrajectoryErrorCode::successful, "never ended"};
-  }
-  RobotWorld world;
-  std::vector<AxisMotion> motions;
-  Duration took{};
-};
-
-TEST_F(GroupToleranceTest, EndsWithSuccessWithinTheTolerances) {
-  Group group = make({0.05, 0.01});
-  ASSERT_EQ(start(group, 0.5, -0.5).code, TrajectoryErrorCode::successful);
-  const TrajectoryOutcome outcome = follow(group);
-  EXPECT_EQ(outcome.code, TrajectoryErrorCode::successful);
-  EXPECT_EQ(outcome.message, "test: goal reached");
-  EXPECT_NEAR(toSeconds(took), 1.0, 0.02);
-  EXPECT_EQ(motions[1].owner(), nullptr);
-}
-
-TEST_F(GroupToleranceTest, EndsWithMinus4OffThePathAndStopsByARamp) {
-  Group group = make({0.05, 0.01});
-  ASSERT_EQ(start(group, 0.5, -0.5).code, TrajectoryErrorCode::successful);
-  world.run(test::kPeriod);
-  world.drives[1].disturbance = 5100;  // 0.051 rad off
-  const TrajectoryOutcome outcome = follow(group);
-  EXPECT_EQ(static_cast<int>(outcome.code), -4);
-  EXPECT_THAT(outcome.message, AllOf(HasSubstr("test: trajectory stopped: elbow is 0.05"),
-                                     HasSubstr("rad off its path, the tolerance is 0.05")));
-  EXPECT_LT(took, 600ms);
-  EXPECT_LT(world.drives[0].radians(), 0.3);
-}
-
-TEST_F(GroupToleranceTest, EndsWithMinus5WhenTheGoalIsMissedAfterTheGoalTime) {
-  Group group = make({0.0, 0.01});
-  ASSERT_EQ(start(group, 0.5, -0.5).code, TrajectoryErrorCode::successful);
-  world.drives[1].disturbance = 2000;  // 0.02 rad off
-  const TrajectoryOutcome outcome = follow(group);
-  EXPECT_EQ(static_cast<int>(outcome.code), -5);
-  EXPECT_EQ(outcome.message,
-            "test: goal missed: elbow is 0.02 rad away after 0.5 s, the tolerance is 0.01");
-  EXPECT_NEAR(toSeconds(took), 1.5, 0.02);
-}
-
-TEST_F(GroupToleranceTest, CallsASetPointBackThatRunsAwayFromAMotorThatStands) {
-  Group group = make({0.0, 0.01});
-  world.drives[1].blocked = true;
-  ASSERT_EQ(start(group, 0.5, -0.5).code, TrajectoryErrorCode::successful);
-  const TrajectoryOutcome outcome = follow(group);
-  EXPECT_EQ(static_cast<int>(outcome.code), -4);
-  EXPECT_THAT(outcome.message, AllOf(HasSubstr("test: trajectory stopped: elbow (node 2)"),
-                                     HasSubstr("the motor stands while its set-points run")));
-  world.run(100ms);
-  EXPECT_EQ(world.drives[1].targets.back(), 0);
-  EXPECT_LT(world.drives[0].radians(), 0.1);
-}
-
-TEST_F(GroupToleranceTest, SucceedsWhenTheGoalIsReachedWithinTheGoalTime) {
-  Group group = make({0.0, 0.01});
-  world.drives[1].disturbance = 2000;  // 0.02 rad off
-  ASSERT_EQ(start(group, 0.5, -0.5).code, TrajectoryErrorCode::successful);
-  world.drives[1].blocked = false;
-  const Time begun = world.now;
-  std::optional<TrajectoryOutcome> outcome;
-  while (!outcome && world.now < begun + 3s) {
-    world.run(test::kPeriod);
-    if (world.now > begun + 1200ms) world.drives[1].disturbance = 0;
-    outcome = group.step(world.robot.axes(), motions, world.now);
-  }
-  ASSERT_TRUE(outcome.has_value());
-  EXPECT_EQ(outcome->code, TrajectoryErrorCode::successful);
-  EXPECT_NEAR(toSeconds(world.now - begun), 1.2, 0.03);
-}
-
-TEST_F(GroupToleranceTest, DoesNotJudgeTheFirstCycleByAnEarlierTrajectory) {
-  Group group = make({0.05, 0.01});
-  ASSERT_EQ(start(group, 0.5, -0.5).code, TrajectoryErrorCode::successful);
-  ASSERT_EQ(follow(group).code, TrajectoryErrorCode::successful);
-  world.run(2 * test::kPeriod);
-  // Meanwhile the elbow moves on by other means.
-  ASSERT_TRUE(world.move({0.5, 0.5}, 1.0).success);
-  world.run(1100ms);
-  world.run(1ms);  // so that feedback comes between the start and the first cycle
-  ASSERT_EQ(start(group, 0.5, 0.0).code, TrajectoryErrorCode::successful);
-  const TrajectoryOutcome outcome = follow(group);
-  EXPECT_EQ(outcome.code, TrajectoryErrorCode::successful) << outcome.message;
-}
-
-TEST_F(GroupToleranceTest, GivesTheCodesOfRefusals) {
-  Group group = make({});
-  EXPECT_EQ(group.start({"shoulder"}, {}, {}, world.robot.axes(), motions, world.now).code,
-            TrajectoryErrorCode::successful);  // stop needs no joints
-  const auto points = world.trajectory("arm", {{{0.5, 0.5}, 1.0}}).points;
-  EXPECT_EQ(group.start({"shoulder"}, points, {}, world.robot.axes(), motions, world.now).code,
-            TrajectoryErrorCode::invalid_joints);
-  EXPECT_EQ(start(group, 99.0, 0.0).code, TrajectoryErrorCode::invalid_goal);
-  EXPECT_EQ(group
-                .start({"shoulder", "elbow"}, points, world.now - 2s, world.robot.axes(), motions,
-                       world.now)
-                .code,
-            TrajectoryErrorCode::old_header_timestamp);
-  EXPECT_FALSE(group.executing());
 }
 
 }  // namespace

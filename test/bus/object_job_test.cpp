@@ -37,6 +37,14 @@ TEST_F(ObjectJobTest, ReadsByNameWithJointUnits) {
   EXPECT_EQ(answer.number, 10000.0);
 }
 
+TEST_F(ObjectJobTest, AnswersOnceOnly) {
+  const auto read = world.begin(ReadObjectCommand{"shoulder", "6098:00"});
+  const auto written = world.begin(WriteObjectCommand{"shoulder", "6098:00", "1"});
+  world.run(1s);
+  EXPECT_EQ(read->size(), 1u);
+  EXPECT_EQ(written->size(), 1u);
+}
+
 TEST_F(ObjectJobTest, ReadsByIndexAndNamesTheObjectWhereTheProfileKnowsIt) {
   stored(0x6098) = {17};
   EXPECT_EQ(read("6098:00").message, "shoulder (node 1): 6098:00 homing_method is 17 (0x11)");
@@ -174,10 +182,48 @@ TEST_F(ObjectJobTest, RefusesAValueThatDoesNotFitWithoutAskingTheDrive) {
   EXPECT_TRUE(world.drives[0].written.empty());
 }
 
+// CiA 402-2: 60B0h, 60B1h and 60B2h of the first of eight axes, which are 800h apart.
+TEST_F(ObjectJobTest, WritesNothingThatADriveAddsToItsSetPoints) {
+  for (const unsigned index : {0x60B0U, 0x60B1U, 0x60B2U, 0x68B0U, 0x70B1U, 0x98B0U, 0x98B2U}) {
+    char object[16];
+    std::snprintf(object, sizeof object, "%04X:00", index);
+    SCOPED_TRACE(object);
+    const auto id = static_cast<std::uint16_t>(index);
+    stored(id) = {0, 0, 0, 0};
+    for (const std::string& typed : {std::string(), std::string(" i32")}) {
+      world.drives[0].written.clear();
+      for (const char* const value : {"1", "256", "-1"}) {
+        const Answer refused = write(object + typed, value);
+        EXPECT_FALSE(refused.success);
+        EXPECT_THAT(refused.message,
+                    AllOf(HasSubstr("shoulder (node 1): " + std::string(object) + " not written"),
+                          HasSubstr("adds it to each of its set-points"), HasSubstr("leave 0")));
+      }
+      EXPECT_TRUE(world.drives[0].written.empty());
+      EXPECT_TRUE(write(object + typed, "0").success) << "moves nothing";
+      EXPECT_EQ(stored(id), (Bytes{0, 0, 0, 0}));
+    }
+  }
+}
+
+TEST_F(ObjectJobTest, WritesWhatLiesBesideThoseOffsets) {
+  for (const unsigned index : {0x58B0U, 0x60AFU, 0x60B3U, 0x68AFU, 0x68B3U, 0x98B3U, 0xA0B0U}) {
+    char object[16];
+    std::snprintf(object, sizeof object, "%04X:00", index);
+    const auto id = static_cast<std::uint16_t>(index);
+    stored(id) = {0, 0};
+    const Answer written = write(object, "0x1234");
+    EXPECT_TRUE(written.success) << written.message;
+    EXPECT_EQ(stored(id), (Bytes{0x34, 0x12})) << object;
+  }
+}
+
 TEST_F(ObjectJobTest, RefusesWhatIsNeitherANameNorAnIndexAndUnknownAxes) {
   EXPECT_EQ(read("homing_speed").message,
             "shoulder (node 1): \"homing_speed\" is neither an object of profile test_drive nor an "
             "index such as 6041h:0");
+  EXPECT_THAT(write("homing_speed", "1").message,
+              HasSubstr("\"homing_speed\" is neither an object of profile test_drive"));
   EXPECT_EQ(read("6041:00", "wrist").message, "there is no axis \"wrist\"");
   EXPECT_EQ(world.call(WriteObjectCommand{"wrist", "6041:00", "1"}).message,
             "there is no axis \"wrist\"");

@@ -48,6 +48,19 @@ TEST_F(ProcedureJobTest, LeavesLaterOrdersUnstartedAfterAFailureAndSaysSo) {
   EXPECT_FALSE(world.drives[0].homing_began);
 }
 
+TEST_F(ProcedureJobTest, AnAxisThatIsStoppedWhileItWaitsForItsTurnIsNotMoved) {
+  const auto home = world.begin(ProcedureKind::home);
+  world.run(20ms);
+  drive::ProcedureRequest halt;
+  halt.kind = ProcedureKind::halt;
+  ASSERT_TRUE(world.axis(0).start(halt, world.now));
+  const Answer answer = world.wait(home);
+  EXPECT_FALSE(answer.success);
+  EXPECT_THAT(answer.message, HasSubstr("shoulder: not started, for halt was called"));
+  world.run(1s);
+  EXPECT_FALSE(world.drives[0].homing_began);
+}
+
 TEST_F(ProcedureJobTest, HomesOneAxisAloneWhateverItsOrder) {
   const Answer answer = world.call(ProcedureKind::home, "shoulder");
   EXPECT_TRUE(answer.success) << answer.message;
@@ -184,6 +197,21 @@ TEST_F(ProcedureJobTest, EnableOfAllTellsOfAnAxisThatWasDisabledMeanwhile) {
                               "switch on disabled")));
   EXPECT_FALSE(world.drives[0].enabled());
   EXPECT_TRUE(world.drives[1].enabled());
+}
+
+TEST_F(ProcedureJobTest, EnableOfAllWaitsForNewsOfAnAxisThatHasFallenSilent) {
+  ASSERT_TRUE(world.call(ProcedureKind::disable).success);
+  world.drives[1].deaf_to_controlword = true;
+  const auto enabling = world.begin(ProcedureKind::enable);
+  ASSERT_TRUE(world.runUntil([&] { return world.axis(0).procedure().success; }));
+  world.drives[0].silent = true;
+  world.run(5 * test::kPeriod);
+  ASSERT_TRUE(world.axis(0).state().feedback_valid) << "it is not missed yet";
+  world.drives[1].deaf_to_controlword = false;
+  ASSERT_TRUE(world.runUntil([&] { return world.drives[1].enabled(); }));
+  const Answer answer = world.wait(enabling);
+  EXPECT_FALSE(answer.success) << answer.message;
+  EXPECT_THAT(answer.message, HasSubstr("enable done on 1 of 2 axes; shoulder"));
 }
 
 TEST_F(ProcedureJobTest, StopsOfAllTellOfAnAxisThatMovesMeanwhile) {

@@ -44,6 +44,24 @@ TEST_F(RobotStart, ListensBeforeTheFirstFrameIsSent) {
   EXPECT_EQ(world.sent[3].frame, can::Frame(0x000, {0x82, 0x02}));
 }
 
+TEST_F(RobotStart, ShowsWhatItWaitsFor) {
+  const auto step = [&] {
+    RobotSnapshot snapshot;
+    world.robot.fill(snapshot);
+    EXPECT_EQ(snapshot.axes[0].words.step.str(), snapshot.axes[1].words.step.str());
+    return snapshot.axes[0].words.step.str();
+  };
+  world.robot.start(world.now);
+  EXPECT_EQ(step(), "listening for another master");
+  world.run(50ms);
+  hear(can::Frame(0x77F, {0x05}));
+  EXPECT_EQ(step(), "waiting until there is no other master on the bus");
+  world.run(149ms);
+  EXPECT_EQ(step(), "waiting until there is no other master on the bus");
+  world.run(2ms);
+  EXPECT_THAT(step(), testing::Not(HasSubstr("master on the bus")));
+}
+
 TEST_F(RobotStart, SendsNothingWhileThereIsAnotherMasterAndSaysSo) {
   world.robot.start(world.now);
   for (int i = 0; i < 50; ++i) {
@@ -75,6 +93,48 @@ TEST_F(RobotStart, GoesOnByItselfOnceTheBusIsFree) {
   EXPECT_EQ(syncProblem(), "");
   EXPECT_TRUE(
       world.runUntil([&] { return world.axis(0).state().health == canopen::NodeHealth::ready; }));
+}
+
+TEST_F(RobotStart, ASecondStartChangesNothing) {
+  world.robot.start(world.now);
+  world.run(100ms);
+  world.robot.start(world.now);
+  world.run(52ms);
+  EXPECT_FALSE(world.sent.empty());
+  const std::size_t resets = world.sentWithId(0x000).size();
+  world.robot.start(world.now);
+  world.run(10ms);
+  EXPECT_EQ(world.sentWithId(0x000).size(), resets);
+}
+
+TEST_F(RobotStart, ListensForAsLongAgainAfterEachFrameOfAnotherMasterAndSendsNoCycleWithIt) {
+  world.robot.start(world.now);
+  world.run(100ms);
+  hear(can::Frame(0x77F, {0x05}));
+  EXPECT_EQ(world.robot.nextDeadline(), world.now + 150ms);
+  world.run(100ms);
+  hear(can::Frame(0x77F, {0x05}));
+  EXPECT_EQ(world.robot.nextDeadline(), world.now + 150ms) << "nothing new, but it is still there";
+  EXPECT_EQ(world.eventsWith("another master is on the bus"), 1u);
+  EXPECT_EQ(world.robot.lastCycle(), Time());
+  const Time free = world.now + 150ms;
+  ASSERT_TRUE(world.runUntil([&] { return !world.sent.empty(); }));
+  EXPECT_EQ(world.sent.front().time, free);
+  world.run(1ms);
+  EXPECT_EQ(world.robot.lastCycle(), Time()) << "the first SYNC comes after a period";
+}
+
+TEST_F(RobotStart, SixtyFourCallsWaitAtMostAndSetPointsDoNot) {
+  world.robot.start(world.now);
+  EXPECT_THAT(world.begin(SetpointCommand{0, 1.0})->at(0).message,
+              HasSubstr("refused: the bus is still listened to for another master; try again"));
+  EXPECT_EQ(world.begin(world.trajectory("arm", {{{1.0, 0.0}, 1.0}}))->size(), 1u);
+  for (int i = 0; i < 64; ++i) {
+    EXPECT_TRUE(world.begin(ReadObjectCommand{"shoulder", "6098:00"})->empty()) << i;
+  }
+  const auto refused = world.begin(ReadObjectCommand{"shoulder", "6098:00"});
+  ASSERT_EQ(refused->size(), 1u);
+  EXPECT_THAT(refused->front().message, HasSubstr("try again"));
 }
 
 TEST_F(RobotStart, ACallDuringTheListeningWaitsForItsEnd) {

@@ -187,94 +187,122 @@ TEST(Robot, RunsACallInTheBusThread) {
   EXPECT_TRUE(world.call(call).success);
 }
 
-// --- Shutdown ------------------------------------------------------------------------------------
+TEST(Robot, TakesAnAnswerBySdoBeforeTheNextCycle) {
+  config::RobotConfig config = test::testRobot();
+  config.axes.resize(1);
+  config.groups.clear();
+  RobotWorld world(config);
+  world.boot();
+  ASSERT_TRUE(world.runUntil([&] { return world.robot.lastCycle() == world.now; }));
+  world.run(1ms);  // the next cycle is 3 ms away
+  const auto read = world.begin(ReadObjectCommand{"shoulder", "6098:00"});
+  world.run(1ms);
+  world.robot.tick(world.now);
+  EXPECT_EQ(read->size(), 1u);
+}
 
-struct RobotShutdown : testing::Test {
-  bool shutDownIn(Duration limit) {
-    const Time begun = world.now;
-    world.robot.beginShutdown(world.now);
-    const bool done = world.runUntil([&] { return world.robot.shutDown(); }, limit);
-    took = world.now - begun;
-    return done;
-  }
-  void expectPreOperationalLast() const {
-    ASSERT_FALSE(world.sent.empty());
-    EXPECT_EQ(world.sent.back().frame, can::Frame(0x000, {0x80, 0x00}));
-  }
+TEST(Robot, ShowsTheTimeOfTheLastCommand) {
   RobotWorld world;
-  Duration took{};
-};
-
-TEST_F(RobotShutdown, IsDoneAtOnceIfNothingWasStarted) {
-  world.robot.beginShutdown(world.now);
-  EXPECT_TRUE(world.robot.shutDown());
-  EXPECT_TRUE(world.sent.empty());
+  world.boot();
+  world.now += 1ms;
+  CallCommand call;
+  call.function = [](Time) { return Answer(); };
+  (void)world.call(call);
+  RobotSnapshot snapshot;
+  world.robot.fill(snapshot);
+  EXPECT_EQ(snapshot.now, world.now);
 }
 
-TEST_F(RobotShutdown, RampsMotionDownThenDisablesThenSendsPreOperational) {
-  world.enable();
-  ASSERT_TRUE(world.move({1.0, -1.0}, 1.0).success);
-  world.run(500ms);  // 1.5 rad/s
-  world.drives[0].targets.clear();
-  ASSERT_TRUE(shutDownIn(2s));
-  EXPECT_LT(took, 1s);
-  const auto& targets = world.drives[0].targets;
-  ASSERT_GT(targets.size(), 30u);  // 1.5 rad/s at 10 rad/s² take 150 ms
-  for (std::size_t i = 2; i < targets.size(); ++i) {
-    const int change = targets[i] - 2 * targets[i - 1] + targets[i - 2];
-    EXPECT_LE(std::abs(change), 16 + 3) << i;  // 10 rad/s² * (4 ms)², rounded
+TEST(Robot, ShowsItsAxesNodesAndGroups) {
+  RobotWorld world;
+  for (std::uint8_t part = 1; part <= 4; ++part) {
+    world.drives[1].objects[{0x1018, part}] = {part, 0, 0, 0};
   }
-  EXPECT_LE(targets.back() - targets[targets.size() - 2], 3);  // came to rest
-  EXPECT_EQ(world.drives[0].statusword, 0x0250);
-  EXPECT_EQ(world.drives[1].statusword, 0x0250);
-  expectPreOperationalLast();
-  EXPECT_EQ(world.robot.nextDeadline(), kNever);
-  world.sent.clear();
-  world.run(1s);
-  EXPECT_TRUE(world.sent.empty());
-}
-
-TEST_F(RobotShutdown, EndsInTimeThoughTheDrivesDoNotObey) {
   world.enable();
   ASSERT_TRUE(world.move({1.0, -1.0}, 1.0).success);
   world.run(500ms);
-  for (auto& drive : world.drives) drive.deaf_to_controlword = true;
-  ASSERT_TRUE(shutDownIn(2s));
-  EXPECT_GE(took, 1700ms);  // they were given their time
-  expectPreOperationalLast();
+  world.drives[0].silent = true;
+  world.run(60ms);
+  RobotSnapshot shot;
+  world.robot.fill(shot);
+  drive::Axis& elbow = world.axis(1);
+  EXPECT_GT(shot.statistics.cycles(), 100u);
+  EXPECT_FALSE(shot.shut_down);
+  EXPECT_EQ(shot.axes[1].state.state, drive::State::operation_enabled);
+  EXPECT_LT(shot.axes[1].state.position, -0.4);
+  EXPECT_EQ(shot.axes[1].target, elbow.target());
+  EXPECT_LT(shot.axes[1].target, -0.4);
+  EXPECT_EQ(shot.axes[1].procedure, ProcedureKind::enable);
+  EXPECT_FALSE(shot.axes[1].procedure_running);
+  EXPECT_EQ(shot.axes[1].node.changes, elbow.node().changes());
+  EXPECT_EQ(shot.axes[1].node.nmt, canopen::NmtState::operational);
+  EXPECT_GT(shot.axes[1].node.last_heartbeat, world.now - 200ms);
+  EXPECT_EQ(shot.axes[1].node.boot_ups, 1u);
+  EXPECT_EQ(shot.axes[1].node.identity.vendor_id, 1u);
+  EXPECT_EQ(shot.axes[1].node.identity.serial, 4u);
+  EXPECT_TRUE(shot.axes[1].node.supervision.watched);
+  EXPECT_FALSE(shot.axes[1].node.may_be_absent);
+  EXPECT_EQ(shot.axes[0].stale_feedback, 1u);
+  EXPECT_EQ(shot.axes[1].stale_feedback, 0u);
+  ASSERT_EQ(shot.groups.size(), 1u);
+  EXPECT_TRUE(shot.groups[0].stopping);
+  EXPECT_FALSE(shot.groups[0].executing);
+  world.drives[1].deaf_to_controlword = true;
+  const auto disabling = world.begin(ProcedureKind::disable, "elbow");
+  world.run(20ms);
+  world.robot.fill(shot);
+  EXPECT_EQ(shot.axes[1].procedure, ProcedureKind::disable);
+  EXPECT_TRUE(shot.axes[1].procedure_running);
+  world.robot.beginShutdown(world.now);
+  ASSERT_TRUE(world.runUntil([&] { return world.robot.shutDown(); }, 2s));
+  world.robot.fill(shot);
+  EXPECT_TRUE(shot.shut_down);
 }
 
-TEST_F(RobotShutdown, EndsInTimeThoughNobodyIsThere) {
-  world.enable();
-  for (auto& drive : world.drives) drive.silent = true;
-  ASSERT_TRUE(shutDownIn(2s));
-  expectPreOperationalLast();
-}
-
-TEST_F(RobotShutdown, EndsWhileTheDrivesBoot) {
+TEST(Robot, ShowsThatAnOptionalDriveIsNotThere) {
+  config::RobotConfig config = test::testRobot();
+  config.axes[1].boot.optional = true;
+  RobotWorld world(config);
+  world.drives[1].silent = true;
   world.robot.start(world.now);
-  world.run(10ms);
-  ASSERT_TRUE(shutDownIn(2s));
-  expectPreOperationalLast();
+  world.run(5s);
+  RobotSnapshot shot;
+  world.robot.fill(shot);
+  EXPECT_FALSE(shot.axes[0].node.may_be_absent);
+  EXPECT_TRUE(shot.axes[1].node.may_be_absent);
 }
 
-TEST_F(RobotShutdown, GivesAllPendingRepliesAndTakesNoMoreCommands) {
-  world.enable();
-  world.drives[0].deaf_to_controlword = true;
-  const auto disable = world.begin(ProcedureKind::disable, "shoulder");
-  world.drives[1].sdo_silent = true;
-  std::vector<std::shared_ptr<std::vector<Answer>>> reads;
-  for (int i = 0; i < 30; ++i) reads.push_back(world.begin(ReadObjectCommand{"elbow", "6098:00"}));
-  ASSERT_TRUE(shutDownIn(2s));
-  EXPECT_EQ(disable->size(), 1u);
-  EXPECT_FALSE(disable->front().success);
-  for (const auto& read : reads) {
-    ASSERT_EQ(read->size(), 1u);
-    EXPECT_FALSE(read->front().success);
-  }
-  EXPECT_EQ(reads.back()->front().message, "elbow (node 2): ended by the shutdown of the driver");
-  EXPECT_EQ(world.begin(ProcedureKind::enable)->front().message,
-            "refused: the driver is shutting down");
+TEST(Robot, RefusesToAskAStoppedDriveAndSaysSo) {
+  RobotWorld world;
+  world.boot();
+  const auto stopped = world.begin(NmtServiceCommand{"shoulder", "stop"});
+  world.run(20ms);
+  world.robot.receive(can::Frame(0x701, {0x04}), world.now, world.now);
+  ASSERT_EQ(world.axis(0).node().nmtState(), canopen::NmtState::stopped);
+  SaveDcfCommand save;
+  save.axis = "shoulder";
+  const auto history = world.begin(ErrorHistoryCommand{"shoulder"}), dcf = world.begin(save);
+  ASSERT_EQ(history->size(), 1u);
+  EXPECT_THAT(history->front().message,
+              HasSubstr("shoulder (node 1): its error history (1003h) cannot be asked for"));
+  ASSERT_EQ(dcf->size(), 1u);
+  EXPECT_THAT(dcf->front().message,
+              HasSubstr("shoulder (node 1): its objects for a DCF cannot be asked for"));
+}
+
+TEST(Robot, ShowsADriveThatInsistsOnACobIdWhichNobodyForesaw) {
+  RobotWorld world;
+  world.boot();
+  const auto insists = [&](std::size_t axis) {
+    RobotSnapshot snapshot;
+    world.robot.fill(snapshot);
+    return snapshot.axes[axis].node.own_cob_ids;
+  };
+  EXPECT_FALSE(insists(0));
+  EXPECT_FALSE(insists(1));
+  world.robot.master().nodes()[1].image().setCobId(canopen::PdoDirection::tpdo, 1, 0x1E5);
+  EXPECT_FALSE(insists(0));
+  EXPECT_TRUE(insists(1));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <deque>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -136,6 +137,8 @@ class RobotWorld : private can::Sink, private EventSink {
   std::vector<Event> events;
   std::vector<EmergencyEvent> emergencies;
   std::deque<FakeDrive> drives;  ///< in the order of the axes
+  /// Other devices: hear what is sent, and may answer.
+  std::function<std::optional<can::Frame>(const can::Frame&)> bystanders;
   Robot robot;
 
   drive::Axis& axis(std::size_t index) { return robot.axes()[index]; }
@@ -253,6 +256,8 @@ class RobotWorld : private can::Sink, private EventSink {
     sent.push_back({now, frame});
     for (FakeDrive& drive : drives) drive.receive(frame, now);
     collect();
+    const auto answer = bystanders ? bystanders(frame) : std::nullopt;
+    if (answer) wire_.push_back({now + kFrameTime, *answer});
     return true;
   }
   void onEvent(const Event& event) override { events.push_back(event); }

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <future>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -25,6 +26,7 @@ struct Wire {
   std::atomic<can::BusState> state{can::BusState::error_active};
   std::atomic<int> frames{0};
   std::atomic<std::uint64_t> bus_off_events{0};
+  std::atomic<long> rounds{0};  ///< of the bus thread
   std::promise<void> first_frame, shut_down;
   std::function<void()> while_flushing;  ///< called once, after the last frame was sent
 };
@@ -56,6 +58,7 @@ class FakeInterface : public can::Interface {
     return std::nullopt;
   }
   void maintain(Time) override {
+    ++wire_->rounds;
     counters_.bus_off_events = wire_->bus_off_events;
     if (rounds_left_ > 0 && --rounds_left_ == 0 && wire_->while_flushing) wire_->while_flushing();
   }
@@ -173,6 +176,16 @@ TEST_F(BusRunnerTest, CarriesCommandsOutAndShowsTheResultInItsSnapshot) {
   EXPECT_EQ(runner->lostEvents(), 0u);
 }
 
+TEST_F(BusRunnerTest, SleepsUntilSomethingIsDue) {
+  runner->start();
+  waitFor([&] { return ready(); });
+  const auto cycles = [&] { return runner->snapshot().statistics.cycles(); };
+  const std::uint64_t from = cycles();
+  const long before = wire->rounds;
+  while (cycles() < from + 20) std::this_thread::yield();
+  EXPECT_LT(wire->rounds - before, 20 * 100);
+}
+
 TEST_F(BusRunnerTest, RefusesCommandsAfterItsEnd) {
   runner->start();
   wire->first_frame.get_future().wait();
@@ -255,11 +268,17 @@ TEST_F(BusRunnerTest, TellsWhatTheOperatingSystemGranted) {
   options.priority = 1;
   runner = std::make_unique<BusRunner>(robot, test::masterOf(robot),
                                        std::make_unique<FakeInterface>(wire), options);
+  const Time before = realNow();
   runner->start();
   meet();
   const RealtimeReport report = runner->realtime();
   EXPECT_THAT(report.text, HasSubstr("bus thread"));
-  EXPECT_TRUE(seen(report.text.substr(0, 100)));
+  Event event;
+  do {
+    ASSERT_TRUE(runner->nextEvent(event)) << report.text;
+  } while (event.text.str().substr(0, 100) != report.text.substr(0, 100));
+  EXPECT_GE(event.stamp, before);
+  EXPECT_LE(event.stamp, realNow());
   runner.reset();
   munlockall();
 }

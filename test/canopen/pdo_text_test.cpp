@@ -35,6 +35,27 @@ TEST(PdoText, names_what_is_missing_and_why) {
   EXPECT_EQ(missingText(image), "TPDO 1 (COB-ID 0x183) comes too short (2 bytes instead of 6)");
 }
 
+TEST(PdoText, a_tpdo_that_was_too_short_once_and_fails_to_come_later_does_not_come) {
+  PdoConfig statusword;
+  statusword.cob_id = 0x183;
+  statusword.entries = {{{0x6041, 0}, 16, ""}};
+  ProcessImage image({statusword});
+  const auto silence = [&image] {
+    for (int i = 0; i < 11; ++i) image.age(kNoon);
+  };
+  image.receive(0, test::frame("183 37"), kNoon);
+  silence();
+  EXPECT_EQ(missingText(image), "TPDO 1 (COB-ID 0x183) comes too short (1 bytes instead of 2)");
+  image.receive(0, test::frame("183 37 02"), kNoon);
+  EXPECT_EQ(missingText(image), "");
+  silence();
+  EXPECT_EQ(missingText(image), "TPDO 1 (COB-ID 0x183) does not come");
+  image.receive(0, test::frame("183 37"), kNoon);
+  image.invalidate();  // the drive restarts
+  silence();
+  EXPECT_EQ(missingText(image), "TPDO 1 (COB-ID 0x183) does not come");
+}
+
 TEST(PdoText, names_what_is_overdue_and_what_has_a_wrong_length) {
   ProcessImage image = twoTpdos();
   EXPECT_EQ(staleText(image), "");

@@ -95,7 +95,7 @@ class Group {
   std::vector<motion::MotionState> commanded_;
   std::vector<std::uint8_t> dropped_;       // joints that fell out of operation under way
   std::vector<std::uint8_t> next_dropped_;  // the same since next_ was planned
-  std::vector<std::uint32_t> breaks_;       // of the joints' set-points, as last seen
+  std::vector<std::uint32_t> breaks_;       // of their set-points, at its beginning or stop
   std::vector<std::uint32_t> notices_;      // of the axes, when a trajectory was taken
   Time began_{};                            // the trajectory, in the time of the bus
   const std::string* refused_ = nullptr;  // name of the joint whose axis did not take its set-point

@@ -139,6 +139,7 @@ class ProcessImage {
     Time last{};        ///< last reception or transmission
     std::uint64_t count = 0, too_short = 0, too_long = 0;
     std::uint8_t wrong_size = 0;     ///< bytes of the last one that was too short or too long
+    bool last_too_short = false;     ///< nothing that could be taken came since
     bool stale = false;              ///< TPDO: due for too long; see PdoConfig::stale_after
     std::uint64_t stale_count = 0;   ///< how often it became stale
     std::uint32_t silent = 0;        ///< SYNCs since the last reception or transmission

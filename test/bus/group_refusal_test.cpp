@@ -1,0 +1,34 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "bus/robot_world.h"
+
+namespace cia402::bus {
+namespace {
+
+using test::RobotWorld;
+using namespace std::chrono_literals;
+
+// 32 bits of 0.00001 rad end at 21474.8 rad.
+TEST(GroupRefusal, OfASetPointThatDoesNotFitTheDriveIsToldAsTheReason) {
+  config::RobotConfig config = test::testRobot();
+  for (drive::AxisConfig& axis : config.axes) {
+    axis.limits.lower.reset();
+    axis.limits.upper.reset();
+    axis.limits.velocity = 1e5;
+    axis.limits.acceleration = 1e6;
+  }
+  RobotWorld world(config);
+  world.enable();
+  ASSERT_TRUE(world.move({30000.0, 0.0}, 2.0).success);
+  world.run(2s);
+  EXPECT_EQ(world.eventsWith("arm: trajectory stopped: shoulder refused a set-point: it does not "
+                             "fit the drive"),
+            1u)
+      << world.allEvents();
+  EXPECT_EQ(world.eventsWith("fell out of operation"), 0u);
+  EXPECT_FALSE(world.group().executing());
+}
+
+}  // namespace
+}  // namespace cia402::bus
