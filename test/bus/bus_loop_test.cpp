@@ -15,8 +15,8 @@ using namespace std::chrono_literals;
 /// An interface with frames of nobody in its queue.
 class Queue : public can::Interface {
  public:
-  bool send(const can::Frame& frame) override {
-    syncs += frame.id == 0x080 ? 1 : 0;
+  bool send(const can::Frame& sent) override {
+    syncs += sent.id == 0x080 ? 1 : 0;
     return true;
   }
   std::optional<can::ReceivedFrame> receive(Time now) override {

@@ -265,79 +265,81 @@ TEST_F(DcfDraftTest, WithoutAnEdsTheObjectsAreWhatTheProfileAndTheStandardSay) {
   }
   EXPECT_EQ(dcf.info.rpdo_count, 1);
   EXPECT_EQ(dcf.info.tpdo_count, 2);
-  // CiA 301: 1400h.. and 1800h.. are the parameters of PDOs, 1600h.. and 1A00h.. their mappings.
-  TEST_F(DcfDraftTest, WithoutAnEdsThePdosThatTheProfileAllowsAreRead) {
-    test::FakeDrive& drive = world.drives[1];
-    const std::size_t sizes[] = {1, 4, 1, 2, 1, 2, 1};
-    for (std::uint32_t index = 0x1000; index < 0x2000; ++index) {
-      const std::uint32_t kind = index & 0xFE00;
-      const bool mapping = kind == 0x1600 || kind == 0x1A00;
-      const bool parameter = kind == 0x1400 || kind == 0x1800;
-      for (std::uint8_t subindex = 0; subindex < 9; ++subindex) {
-        const ObjectId id{static_cast<std::uint16_t>(index), subindex};
-        if (parameter && subindex < 7) {
-          drive.objects[id] = Bytes(sizes[subindex], subindex);
-        } else if (mapping) {
-          drive.objects[id] = Bytes(subindex == 0 ? 1 : 4, subindex);
-        } else if (index != 0x1017) {
-          drive.aborts[id] = 0x06020000;
-        }
+}
+
+// CiA 301: 1400h.. and 1800h.. are the parameters of PDOs, 1600h.. and 1A00h.. their mappings.
+TEST_F(DcfDraftTest, WithoutAnEdsThePdosThatTheProfileAllowsAreRead) {
+  test::FakeDrive& drive = world.drives[1];
+  const std::size_t sizes[] = {1, 4, 1, 2, 1, 2, 1};
+  for (std::uint32_t index = 0x1000; index < 0x2000; ++index) {
+    const std::uint32_t kind = index & 0xFE00;
+    const bool mapping = kind == 0x1600 || kind == 0x1A00;
+    const bool parameter = kind == 0x1400 || kind == 0x1800;
+    for (std::uint8_t subindex = 0; subindex < 9; ++subindex) {
+      const ObjectId id{static_cast<std::uint16_t>(index), subindex};
+      if (parameter && subindex < 7) {
+        drive.objects[id] = Bytes(sizes[subindex], subindex);
+      } else if (mapping) {
+        drive.objects[id] = Bytes(subindex == 0 ? 1 : 4, subindex);
+      } else if (index != 0x1017) {
+        drive.aborts[id] = 0x06020000;
       }
     }
-    const Answer answer = save(1);
-    ASSERT_TRUE(answer.success) << answer.message;
-    EXPECT_THAT(answer.message, Not(HasSubstr("could not be read"))) << answer.message;
-    const canopen::Eds dcf = canopen::readEds(answer.text);
-    for (const std::uint16_t base : {std::uint16_t{0x1400}, std::uint16_t{0x1600},
-                                     std::uint16_t{0x1800}, std::uint16_t{0x1A00}}) {
-      const bool mapping = (base & 0x0200) != 0, receive = base < 0x1800;
-      const std::string name = receive ? "RPDO " : "TPDO ";
-      for (std::uint16_t pdo = 0; pdo < 4; ++pdo) {
-        const auto index = static_cast<std::uint16_t>(base + pdo);
-        SCOPED_TRACE(canopen::toString(ObjectId{index, 0}));
-        const auto object = dcf.dictionary.objects().find(index);
-        ASSERT_NE(object, dcf.dictionary.objects().end());
-        EXPECT_EQ(object->second.name,
-                  name + (mapping ? "mapping parameter" : "communication parameter"));
-        EXPECT_EQ(object->second.entries.size(), mapping ? 9u : 7u);
-        EXPECT_EQ(object->second.entries.at(0).access,
-                  mapping ? canopen::Access::rw : canopen::Access::ro);
-        const canopen::DictionaryEntry& first = object->second.entries.at(1);
-        EXPECT_EQ(first.name, mapping ? "Mapped object 1" : "COB-ID");
-        EXPECT_EQ(first.type, canopen::DataType::uint32);
-        EXPECT_EQ(first.access, canopen::Access::rw);
-        EXPECT_EQ(first.value, (Bytes{1, 1, 1, 1}));
-      }
-      EXPECT_EQ(dcf.dictionary.objects().count(static_cast<std::uint16_t>(base + 4)), 0u);
+  }
+  const Answer answer = save(1);
+  ASSERT_TRUE(answer.success) << answer.message;
+  EXPECT_THAT(answer.message, Not(HasSubstr("could not be read"))) << answer.message;
+  const canopen::Eds dcf = canopen::readEds(answer.text);
+  for (const std::uint16_t base : {std::uint16_t{0x1400}, std::uint16_t{0x1600},
+                                   std::uint16_t{0x1800}, std::uint16_t{0x1A00}}) {
+    const bool mapping = (base & 0x0200) != 0, receive = base < 0x1800;
+    const std::string name = receive ? "RPDO " : "TPDO ";
+    for (std::uint16_t pdo = 0; pdo < 4; ++pdo) {
+      const auto index = static_cast<std::uint16_t>(base + pdo);
+      SCOPED_TRACE(canopen::toString(ObjectId{index, 0}));
+      const auto object = dcf.dictionary.objects().find(index);
+      ASSERT_NE(object, dcf.dictionary.objects().end());
+      EXPECT_EQ(object->second.name,
+                name + (mapping ? "mapping parameter" : "communication parameter"));
+      EXPECT_EQ(object->second.entries.size(), mapping ? 9u : 7u);
+      EXPECT_EQ(object->second.entries.at(0).access,
+                mapping ? canopen::Access::rw : canopen::Access::ro);
+      const canopen::DictionaryEntry& first = object->second.entries.at(1);
+      EXPECT_EQ(first.name, mapping ? "Mapped object 1" : "COB-ID");
+      EXPECT_EQ(first.type, canopen::DataType::uint32);
+      EXPECT_EQ(first.access, canopen::Access::rw);
+      EXPECT_EQ(first.value, (Bytes{1, 1, 1, 1}));
     }
-    EXPECT_EQ(dcf.dictionary.find(ObjectId{0x1803, 5})->name, "Event timer");
-    EXPECT_EQ(dcf.dictionary.find(ObjectId{0x1803, 5})->value, (Bytes{5, 5}));
-    EXPECT_EQ(dcf.info.rpdo_count, 4u);
-    EXPECT_EQ(dcf.info.tpdo_count, 4u);
-    // They are counted by their communication parameters.
-    drive.aborts[ObjectId{0x1600, 0}] = drive.aborts[ObjectId{0x1A00, 0}] = 0x06020000;
-    const canopen::Eds without = canopen::readEds(save(1).text);
-    EXPECT_EQ(without.info.rpdo_count, 4u);
-    EXPECT_EQ(without.info.tpdo_count, 4u);
+    EXPECT_EQ(dcf.dictionary.objects().count(static_cast<std::uint16_t>(base + 4)), 0u);
   }
+  EXPECT_EQ(dcf.dictionary.find(ObjectId{0x1803, 5})->name, "Event timer");
+  EXPECT_EQ(dcf.dictionary.find(ObjectId{0x1803, 5})->value, (Bytes{5, 5}));
+  EXPECT_EQ(dcf.info.rpdo_count, 4u);
+  EXPECT_EQ(dcf.info.tpdo_count, 4u);
+  // They are counted by their communication parameters.
+  drive.aborts[ObjectId{0x1600, 0}] = drive.aborts[ObjectId{0x1A00, 0}] = 0x06020000;
+  const canopen::Eds without = canopen::readEds(save(1).text);
+  EXPECT_EQ(without.info.rpdo_count, 4u);
+  EXPECT_EQ(without.info.tpdo_count, 4u);
+}
 
-  TEST_F(DcfDraftTest, TheFileSaysWhatItIsAndWhoMadeIt) {
-    world.drives[1].objects[ObjectId{0x1008, 0}] = {'D', 'M', 0, 0};
-    const canopen::EdsInfo made = canopen::readEds(save(1).text).info;
-    EXPECT_EQ(made.description, "Written without an EDS, by profile test_drive");
-    EXPECT_EQ(made.granularity, 8u);
-    EXPECT_EQ(made.product_name, "DM");
-    EXPECT_EQ(made.modification_date, "11-21-2026");
-    EXPECT_EQ(made.modification_time, "03:40PM");
-    EXPECT_EQ(made.modified_by, "cia402_driver");
-    EXPECT_EQ(made.creation_date, "11-21-2026");
-    EXPECT_EQ(made.creation_time, "03:40PM");
-    EXPECT_EQ(made.created_by, "cia402_driver");
-    EXPECT_EQ(made.last_eds, "");
-  }
+TEST_F(DcfDraftTest, TheFileSaysWhatItIsAndWhoMadeIt) {
+  world.drives[1].objects[ObjectId{0x1008, 0}] = {'D', 'M', 0, 0};
+  const canopen::EdsInfo made = canopen::readEds(save(1).text).info;
+  EXPECT_EQ(made.description, "Written without an EDS, by profile test_drive");
+  EXPECT_EQ(made.granularity, 8u);
+  EXPECT_EQ(made.product_name, "DM");
+  EXPECT_EQ(made.modification_date, "11-21-2026");
+  EXPECT_EQ(made.modification_time, "03:40PM");
+  EXPECT_EQ(made.modified_by, "cia402_driver");
+  EXPECT_EQ(made.creation_date, "11-21-2026");
+  EXPECT_EQ(made.creation_time, "03:40PM");
+  EXPECT_EQ(made.created_by, "cia402_driver");
+  EXPECT_EQ(made.last_eds, "");
+}
 
-  TEST(DcfDraft, ADcfTakesOverWhoMadeTheEdsButNoneOfItsValues) {
-    RobotWorld world(test::robotWithEds(R"([FileInfo]
+TEST(DcfDraft, ADcfTakesOverWhoMadeTheEdsButNoneOfItsValues) {
+  RobotWorld world(test::robotWithEds(R"([FileInfo]
 CreationDate=01-02-2003
 CreationTime=04:05AM
 CreatedBy=maker
@@ -358,95 +360,95 @@ DataType=6
 AccessType=rw
 ParameterValue=6
 )"));
-    world.boot();
-    world.drives[0].objects[ObjectId{0x1008, 0}] = {'D', 'M', 0, 0};
-    world.drives[0].objects[ObjectId{0x2001, 0}] = {0x34, 0x12};
-    DcfDraft draft(world.axis(0).config(), {"shoulder.dcf", "11-21-2026", "03:40PM"});
-    ASSERT_TRUE(world.call(draft.command()).success);
-    const canopen::Eds dcf = canopen::readEds(draft.finish().text);
-    EXPECT_EQ(dcf.info.creation_date, "01-02-2003");
-    EXPECT_EQ(dcf.info.creation_time, "04:05AM");
-    EXPECT_EQ(dcf.info.created_by, "maker");
-    EXPECT_EQ(dcf.info.modified_by, "cia402_driver");
-    EXPECT_EQ(dcf.info.product_name, "M9");
-    EXPECT_EQ(dcf.dictionary.find(ObjectId{0x2001, 0})->value, (Bytes{0x34, 0x12}));
-    EXPECT_FALSE(dcf.dictionary.find(ObjectId{0x2002, 0})->value) << "the drive has no such object";
-  }
+  world.boot();
+  world.drives[0].objects[ObjectId{0x1008, 0}] = {'D', 'M', 0, 0};
+  world.drives[0].objects[ObjectId{0x2001, 0}] = {0x34, 0x12};
+  DcfDraft draft(world.axis(0).config(), {"shoulder.dcf", "11-21-2026", "03:40PM"});
+  ASSERT_TRUE(world.call(draft.command()).success);
+  const canopen::Eds dcf = canopen::readEds(draft.finish().text);
+  EXPECT_EQ(dcf.info.creation_date, "01-02-2003");
+  EXPECT_EQ(dcf.info.creation_time, "04:05AM");
+  EXPECT_EQ(dcf.info.created_by, "maker");
+  EXPECT_EQ(dcf.info.modified_by, "cia402_driver");
+  EXPECT_EQ(dcf.info.product_name, "M9");
+  EXPECT_EQ(dcf.dictionary.find(ObjectId{0x2001, 0})->value, (Bytes{0x34, 0x12}));
+  EXPECT_FALSE(dcf.dictionary.find(ObjectId{0x2002, 0})->value) << "the drive has no such object";
+}
 
-  TEST(DcfDraft, ObjectsOfTheProfileKeepTheirNamesAndAreRecordsWhereTheyHaveSubIndices) {
-    config::RobotConfig config = test::testRobot();
-    auto profile = std::make_shared<drive::DriveProfile>(*config.axes[0].profile);
-    const auto add = [&](ObjectId id, const char* name) {
-      drive::ObjectSpec spec;
-      spec.id = id;
-      spec.name = name;
-      spec.type = canopen::DataType::uint32;
-      profile->objects.push_back(spec);
-    };
-    add({0x2010, 1}, "gain");
-    add({0x1018, 1}, "maker");
-    add({0x1014, 0}, "emergency_identifier");
-    config.axes[0].profile = profile;
-    RobotWorld world(config);
-    world.boot();
-    world.drives[0].objects[ObjectId{0x2010, 0}] = {1};
-    world.drives[0].objects[ObjectId{0x2010, 1}] = {7, 0, 0, 0};
-    world.drives[0].objects[ObjectId{0x1018, 0}] = {4};
-    world.drives[0].objects[ObjectId{0x6041, 0}] = {0x50, 0x02};
-    DcfDraft draft(world.axis(0).config(), {"shoulder.dcf", "11-21-2026", "03:40PM"});
-    ASSERT_TRUE(world.call(draft.command()).success);
-    const canopen::Eds dcf = canopen::readEds(draft.finish().text);
-    const auto& objects = dcf.dictionary.objects();
-    ASSERT_EQ(objects.count(0x2010), 1u);
-    EXPECT_EQ(objects.at(0x2010).code, canopen::ObjectCode::record);
-    EXPECT_EQ(objects.at(0x2010).name, "2010");
-    EXPECT_EQ(objects.at(0x2010).entries.at(0).name, "Highest sub-index supported");
-    EXPECT_EQ(objects.at(0x2010).entries.at(1).name, "gain");
-    EXPECT_EQ(objects.at(0x2010).entries.at(1).value, (Bytes{7, 0, 0, 0}));
-    EXPECT_EQ(objects.at(0x6041).code, canopen::ObjectCode::variable);
-    EXPECT_EQ(objects.at(0x6041).name, "statusword");
-    EXPECT_TRUE(objects.at(0x6041).entries.at(0).mappable) << "in a TPDO";
-    EXPECT_FALSE(objects.at(0x6065).entries.at(0).mappable);
-    EXPECT_EQ(objects.at(0x1018).entries.at(1).name, "maker");
-    EXPECT_EQ(objects.at(0x1018).entries.size(), 2u);
-    EXPECT_EQ(objects.at(0x1014).entries.at(0).name, "emergency_identifier");
-  }
+TEST(DcfDraft, ObjectsOfTheProfileKeepTheirNamesAndAreRecordsWhereTheyHaveSubIndices) {
+  config::RobotConfig config = test::testRobot();
+  auto profile = std::make_shared<drive::DriveProfile>(*config.axes[0].profile);
+  const auto add = [&](ObjectId id, const char* name) {
+    drive::ObjectSpec spec;
+    spec.id = id;
+    spec.name = name;
+    spec.type = canopen::DataType::uint32;
+    profile->objects.push_back(spec);
+  };
+  add({0x2010, 1}, "gain");
+  add({0x1018, 1}, "maker");
+  add({0x1014, 0}, "emergency_identifier");
+  config.axes[0].profile = profile;
+  RobotWorld world(config);
+  world.boot();
+  world.drives[0].objects[ObjectId{0x2010, 0}] = {1};
+  world.drives[0].objects[ObjectId{0x2010, 1}] = {7, 0, 0, 0};
+  world.drives[0].objects[ObjectId{0x1018, 0}] = {4};
+  world.drives[0].objects[ObjectId{0x6041, 0}] = {0x50, 0x02};
+  DcfDraft draft(world.axis(0).config(), {"shoulder.dcf", "11-21-2026", "03:40PM"});
+  ASSERT_TRUE(world.call(draft.command()).success);
+  const canopen::Eds dcf = canopen::readEds(draft.finish().text);
+  const auto& objects = dcf.dictionary.objects();
+  ASSERT_EQ(objects.count(0x2010), 1u);
+  EXPECT_EQ(objects.at(0x2010).code, canopen::ObjectCode::record);
+  EXPECT_EQ(objects.at(0x2010).name, "2010");
+  EXPECT_EQ(objects.at(0x2010).entries.at(0).name, "Highest sub-index supported");
+  EXPECT_EQ(objects.at(0x2010).entries.at(1).name, "gain");
+  EXPECT_EQ(objects.at(0x2010).entries.at(1).value, (Bytes{7, 0, 0, 0}));
+  EXPECT_EQ(objects.at(0x6041).code, canopen::ObjectCode::variable);
+  EXPECT_EQ(objects.at(0x6041).name, "statusword");
+  EXPECT_TRUE(objects.at(0x6041).entries.at(0).mappable) << "in a TPDO";
+  EXPECT_FALSE(objects.at(0x6065).entries.at(0).mappable);
+  EXPECT_EQ(objects.at(0x1018).entries.at(1).name, "maker");
+  EXPECT_EQ(objects.at(0x1018).entries.size(), 2u);
+  EXPECT_EQ(objects.at(0x1014).entries.at(0).name, "emergency_identifier");
+}
 
-  TEST_F(DcfDraftTest, ASubIndexThatTheDriveDoesNotHaveIsLeftOut) {
-    test::FakeDrive& drive = world.drives[1];
-    drive.objects[ObjectId{0x1018, 0}] = {3};
-    drive.aborts[ObjectId{0x1018, 4}] = 0x06090011;
-    const canopen::Eds dcf = canopen::readEds(save(1).text);
-    EXPECT_EQ(dcf.dictionary.objects().at(0x1018).entries.size(), 4u);
-    EXPECT_EQ(dcf.dictionary.find(ObjectId{0x1018, 4}), nullptr);
-  }
+TEST_F(DcfDraftTest, ASubIndexThatTheDriveDoesNotHaveIsLeftOut) {
+  test::FakeDrive& drive = world.drives[1];
+  drive.objects[ObjectId{0x1018, 0}] = {3};
+  drive.aborts[ObjectId{0x1018, 4}] = 0x06090011;
+  const canopen::Eds dcf = canopen::readEds(save(1).text);
+  EXPECT_EQ(dcf.dictionary.objects().at(0x1018).entries.size(), 4u);
+  EXPECT_EQ(dcf.dictionary.find(ObjectId{0x1018, 4}), nullptr);
+}
 
-  TEST(DcfDraft, NamesTenObjectsThatCouldNotBeReadAtMost) {
-    for (const unsigned absent : {10U, 11U}) {
-      std::string eds = "[2001]\nParameterName=Gain\nDataType=6\nAccessType=rw\n";
-      for (unsigned i = 0; i < absent; ++i) {
-        eds += "[30" + std::to_string(10 + i) + "]\nParameterName=Absent\nDataType=6\n" +
-               "AccessType=rw\n";
-      }
-      RobotWorld world(test::robotWithEds(eds));
-      world.boot();
-      world.drives[0].objects[ObjectId{0x2001, 0}] = {1, 0};
-      DcfDraft draft(world.axis(0).config(), {"shoulder.dcf", "11-21-2026", "03:40PM"});
-      ASSERT_TRUE(world.call(draft.command()).success);
-      const std::string message = draft.finish().message;
-      EXPECT_THAT(message, HasSubstr(std::to_string(absent) + " could not be read: 3010:00"));
-      EXPECT_THAT(message, HasSubstr("3019:00"));
-      EXPECT_THAT(message, Not(HasSubstr("3020:00")));
-      EXPECT_EQ(message.find("; ...") != std::string::npos, absent == 11) << message;
+TEST(DcfDraft, NamesTenObjectsThatCouldNotBeReadAtMost) {
+  for (const unsigned absent : {10U, 11U}) {
+    std::string eds = "[2001]\nParameterName=Gain\nDataType=6\nAccessType=rw\n";
+    for (unsigned i = 0; i < absent; ++i) {
+      eds += "[30" + std::to_string(10 + i) + "]\nParameterName=Absent\nDataType=6\n" +
+             "AccessType=rw\n";
     }
+    RobotWorld world(test::robotWithEds(eds));
+    world.boot();
+    world.drives[0].objects[ObjectId{0x2001, 0}] = {1, 0};
+    DcfDraft draft(world.axis(0).config(), {"shoulder.dcf", "11-21-2026", "03:40PM"});
+    ASSERT_TRUE(world.call(draft.command()).success);
+    const std::string message = draft.finish().message;
+    EXPECT_THAT(message, HasSubstr(std::to_string(absent) + " could not be read: 3010:00"));
+    EXPECT_THAT(message, HasSubstr("3019:00"));
+    EXPECT_THAT(message, Not(HasSubstr("3020:00")));
+    EXPECT_EQ(message.find("; ...") != std::string::npos, absent == 11) << message;
   }
+}
 
-  TEST_F(DcfDraftTest, ADriveThatGivesNothingHasNoFile) {
-    for (const auto& [id, data] : world.drives[0].objects) world.drives[0].aborts[id] = 0x08000022;
-    const Answer answer = save();
-    EXPECT_FALSE(answer.success);
-    EXPECT_EQ(answer.message, "shoulder (node 1): no DCF: the drive gave none of its objects");
-  }
+TEST_F(DcfDraftTest, ADriveThatGivesNothingHasNoFile) {
+  for (const auto& [id, data] : world.drives[0].objects) world.drives[0].aborts[id] = 0x08000022;
+  const Answer answer = save();
+  EXPECT_FALSE(answer.success);
+  EXPECT_EQ(answer.message, "shoulder (node 1): no DCF: the drive gave none of its objects");
+}
 
 }  // namespace
 }  // namespace cia402::bus
