@@ -49,8 +49,9 @@ TEST(MinimalDrive, RunsATrajectory) {
 
 // A servo in canopen-python/canopen#306 answers nothing where it should abort.
 TEST(MinimalDrive, ThatSaysNothingOfMissingObjectsRunsATrajectory) {
-  Scene scene(loadText(genericPair(", simulation: {drive: generic_cia402_minimal, "
-                                   "with: {communication: {silent_on_missing: true}}}")));
+  Scene scene(
+      loadText(genericPair(", simulation: {drive: generic_cia402_minimal, "
+                           "with: {communication: {silent_on_missing: true}}}")));
   // Each of its twenty silences takes 1.5 s: three requests without an answer.
   ASSERT_TRUE(scene.boot(120s)) << scene.told();
   const bus::Answer enabled = scene.procedure(ProcedureKind::enable);
