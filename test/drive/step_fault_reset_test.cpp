@@ -194,6 +194,19 @@ TEST(FaultResetStep, AFaultReactionThatDoesNotEndIsNoTimeForAReset) {
   EXPECT_THAT(status.message, HasSubstr("the drive's fault reaction did not end within 2"));
 }
 
+// Bit 7 that stays high would be no edge when the next reset is asked for.
+TEST(FaultResetStep, OneThatIsCutOffTakesItsBitBack) {
+  FaultedBench world;
+  world.drive.stuck.insert(S::fault);
+  ASSERT_TRUE(world.axis.start({ProcedureKind::clear_faults, {}, 0.0}, world.now));
+  ASSERT_TRUE(world.runUntil([&] { return (world.drive.controlword & 0x80) != 0; }));
+  ASSERT_TRUE(world.axis.start({ProcedureKind::disable, {}, 0.0}, world.now));
+  world.run(milliseconds(20));
+  EXPECT_EQ(world.drive.controlword & 0x80, 0);
+  world.drive.stuck.clear();
+  EXPECT_TRUE(world.perform(ProcedureKind::clear_faults).success);
+}
+
 TEST(FaultResetStep, ADriveThatIsSilentForAWhileAfterTheResetIsWaitedFor) {
   FaultedBench world;
   const auto count = world.each_cycle;
