@@ -72,10 +72,7 @@ FrameDecoder::FrameDecoder(const config::RobotConfig& robot, const canopen::Mast
     : master_(master.node_id) {
   for (const drive::AxisConfig& axis : robot.axes) {
     Node& node = nodes_[axis.node_id];
-    const std::string number = std::to_string(axis.node_id) + ")";
-    node.name = axis.joint.empty() || axis.joint == axis.name
-                    ? axis.name + " (" + number
-                    : axis.joint + " (axis " + axis.name + ", " + number;
+    node.name = drive::whoIs(axis, "");
     node.values = std::make_unique<ValueText>(axis);
     node.sdo = SdoDecoder(node.values.get());
   }

@@ -25,8 +25,8 @@ std::string jointName(const AxisConfig& axis) {
   return hasAlias(axis) ? axis.joint + " (axis " + axis.name + ")" : axis.name;
 }
 
-std::string whoIs(const AxisConfig& axis) {
-  const std::string node = "node " + std::to_string(axis.node_id) + ")";
+std::string whoIs(const AxisConfig& axis, const char* before_node_id) {
+  const std::string node = before_node_id + std::to_string(axis.node_id) + ")";
   return hasAlias(axis) ? axis.joint + " (axis " + axis.name + ", " + node
                         : axis.name + " (" + node;
 }

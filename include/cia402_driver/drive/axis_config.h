@@ -110,7 +110,8 @@ double stopDeceleration(const AxisConfig& axis);
 /// For messages: "shoulder", or "shoulder (axis m3)" where joint and axis have different names.
 std::string jointName(const AxisConfig& axis);
 /// For messages: "shoulder (node 3)", or "shoulder (axis m3, node 3)".
-std::string whoIs(const AxisConfig& axis);
+/// @param before_node_id "" where there is little room: "shoulder (3)"
+std::string whoIs(const AxisConfig& axis, const char* before_node_id = "node ");
 /// Does `lacks` of the axis name the object, which is given by profile name or index?
 bool saidToLack(const AxisConfig& axis, const std::string& object);
 /// Of those that the axis can be in, the one in which it follows trajectories; nullptr: none.
