@@ -189,5 +189,16 @@ TEST(AxisCondition, IsAnErrorWhereTheNodeIsLostButNotWhereItMayBeAbsent) {
   EXPECT_EQ(summaryOf(optional, false).condition, Condition::warning);
 }
 
+// Nothing has been told of it yet.
+TEST(AxisCondition, AFaultIsCalledAFaultAlsoWhereTheDriveWarnsBesides) {
+  AxisSnapshot axis;
+  axis.state.health = canopen::NodeHealth::ready;
+  axis.state.feedback_valid = true;
+  axis.state.state = drive::State::fault;
+  axis.state.warning = true;
+  EXPECT_EQ(summaryOf(axis, false).condition, Condition::error);
+  EXPECT_EQ(summaryOf(axis, false).text, "fault");
+}
+
 }  // namespace
 }  // namespace cia402::bus

@@ -20,6 +20,7 @@ struct AxisReporterTest : testing::Test, EventSink {
   void onEvent(const Event& event) override {
     texts.push_back(event.text.str());
     severities.push_back(event.severity);
+    stamps.push_back(event.stamp);
   }
   void onEmergency(const EmergencyEvent& event) override { emergencies.push_back(event); }
   void emergency(std::uint16_t code, std::array<std::uint8_t, 5> vendor = {}) {
@@ -32,6 +33,7 @@ struct AxisReporterTest : testing::Test, EventSink {
   }
   std::vector<std::string> texts;
   std::vector<Event::Severity> severities;
+  std::vector<Time> stamps;
   std::vector<EmergencyEvent> emergencies;
   Time now{10s};
   AxisReporter reporter{1, "elbow (node 2)", test::testProfile(), *this};
@@ -93,6 +95,32 @@ TEST_F(AxisReporterTest, CountsEveryCodeForItself) {
   EXPECT_EQ(counts.of[1].code, 0x0000);
   EXPECT_EQ(counts.of[1].count, 5u);
   EXPECT_EQ(counts.total, 12u);
+}
+
+TEST_F(AxisReporterTest, KnowsWhenEachCodeCameLast) {
+  emergency(0x8611);
+  now += 1s;
+  emergency(0x0000);
+  now += 1s;
+  emergency(0x8611);
+  EXPECT_EQ(reporter.emergencies().of[0].last, Time(12s));
+  EXPECT_EQ(reporter.emergencies().of[1].last, Time(11s));
+}
+
+TEST_F(AxisReporterTest, StampsWhatItTellsWithTheTimeInWhichItIsTold) {
+  emergency(0x8611);
+  now += 1s;
+  reporter.problem(Event::Severity::error, 0x7305, "elbow (node 2): fault", now);
+  now += 1s;
+  reporter.bootUp(now);
+  EXPECT_THAT(stamps, ElementsAre(Time(10s), Time(11s), Time(12s)));
+}
+
+// CiA 301: FFxxh are codes of the manufacturer.
+TEST_F(AxisReporterTest, SumsUpTheHighestCodeAsACode) {
+  for (int i = 0; i < 10; ++i) emergency(0xFFFF);
+  reporter.flush(now);
+  EXPECT_THAT(texts.back(), HasSubstr("elbow (node 2): emergency 0xFFFF "));
 }
 
 TEST_F(AxisReporterTest, CountsMoreCodesThanItHasRoomForInTheTotal) {
