@@ -30,5 +30,29 @@ TEST(GroupRefusal, OfASetPointThatDoesNotFitTheDriveIsToldAsTheReason) {
   EXPECT_FALSE(world.group().executing());
 }
 
+// The reason of one trajectory is none of the next.
+TEST(GroupRefusal, OfASetPointDoesNotEndTheNextTrajectory) {
+  config::RobotConfig config = test::testRobot();
+  for (drive::AxisConfig& axis : config.axes) {
+    axis.limits.lower.reset();
+    axis.limits.upper.reset();
+    axis.limits.velocity = 1e5;
+    axis.limits.acceleration = 1e6;
+  }
+  RobotWorld world(config);
+  world.enable();
+  ASSERT_TRUE(world.move({21474.0, 0.0}, 2.0).success);
+  world.run(3s);
+  world.events.clear();
+  ASSERT_TRUE(world.move({21480.0, 0.0}, 2.0).success);
+  world.run(3s);
+  ASSERT_FALSE(world.group().executing() || world.group().stopping());
+  ASSERT_TRUE(world.move({21470.0, 1.0}, 2.0).success);
+  world.run(3s);
+  EXPECT_EQ(world.eventsWith("refused a set-point"), 1u) << world.allEvents();
+  EXPECT_EQ(world.eventsWith("arm: goal reached"), 1u) << world.allEvents();
+  EXPECT_EQ(world.drives[1].position, 100000);
+}
+
 }  // namespace
 }  // namespace cia402::bus

@@ -374,5 +374,22 @@ TEST_F(LooseGroupTest, DoesNotMoveAJointThatIsEnabledAgainUnderWay) {
   expectSmooth(1);
 }
 
+TEST_F(LooseGroupTest, DoesNotTellOldNewsAsTheReasonForAMissedGoal) {
+  world.drives[1].blocked = true;
+  ASSERT_TRUE(world.move({0.5, 0.5}, 1.0).success);
+  world.run(2s);
+  ASSERT_EQ(world.eventsWith("the motor stands while its set-points run"), 2u) << world.allEvents();
+  world.drives[1].blocked = false;
+  world.run(100ms);
+  world.events.clear();
+  ASSERT_TRUE(world.move({0.0, 0.5}, 2.0).success);
+  world.run(500ms);
+  ASSERT_TRUE(world.call(ProcedureKind::disable, "elbow").success);
+  ASSERT_TRUE(world.call(ProcedureKind::enable, "elbow").success);
+  world.run(2s);
+  EXPECT_EQ(world.eventsWith("arm: goal missed: elbow fell out of operation"), 1u)
+      << world.allEvents();
+}
+
 }  // namespace
 }  // namespace cia402::bus

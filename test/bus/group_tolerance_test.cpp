@@ -142,5 +142,17 @@ TEST_F(GroupToleranceTest, GivesTheCodesOfRefusals) {
   EXPECT_FALSE(group.executing());
 }
 
+TEST_F(GroupToleranceTest, DoesNotJudgeByWhatWasMeasuredBeforeItBegan) {
+  Group group = make({0.05, 0.01});
+  world.drives[1].disturbance = 6000;  // 0.06 rad off
+  world.run(3 * test::kPeriod);
+  ASSERT_EQ(start(group, 0.5, -0.5).code, TrajectoryErrorCode::successful);
+  world.drives[1].disturbance = 0;
+  EXPECT_FALSE(group.step(world.robot.axes(), motions, world.now).has_value());
+  EXPECT_TRUE(group.executing());
+  const TrajectoryOutcome outcome = follow(group);
+  EXPECT_EQ(outcome.message, "test: goal reached");
+}
+
 }  // namespace
 }  // namespace cia402::bus
