@@ -87,6 +87,8 @@ TEST_F(BusListenerTest, IsOverOnceTheBusWasFreeForLongEnough) {
   listener.finish();
   EXPECT_FALSE(listener.listening());
   EXPECT_FALSE(hear(can::Frame(0x080, {})));
+  EXPECT_FALSE(hear(can::Frame(0x000, {0x01, 0x00}))) << "news, but nobody listens";
+  EXPECT_FALSE(listener.listening());
 }
 
 TEST_F(BusListenerTest, AllKindsAreNamedUpToThree) {
@@ -121,6 +123,17 @@ TEST(BusListener, WithADurationOfZeroNobodyListens) {
   listener.start(Time(1s));
   EXPECT_FALSE(listener.listening());
   EXPECT_EQ(listener.deadline(), kNever);
+}
+
+TEST_F(BusListenerTest, ErrorFramesAndIdentifiersOf29BitsMeanNothing) {
+  can::Frame frame(0x080, {});
+  frame.extended = true;
+  EXPECT_FALSE(hear(frame));
+  frame.extended = false;
+  frame.error = true;
+  EXPECT_FALSE(hear(frame));
+  EXPECT_FALSE(listener.heard());
+  EXPECT_EQ(listener.deadline(), now + 150ms);
 }
 
 }  // namespace

@@ -247,5 +247,112 @@ TEST(RobotLss, TheNodeIdOfADriveThatWasNeverHeardIsFree) {
   EXPECT_TRUE(ready(world)) << world.allEvents();
 }
 
+TEST(RobotLss, ARecoveredDriveThatIsThereKeepsItsNodeIdUnasked) {
+  LssWorld world(1);
+  world.robot.start(world.now);
+  ASSERT_TRUE(ready(world)) << world.allEvents();
+  world.run(100ms);
+  world.sent.clear();
+  EXPECT_TRUE(world.call(ProcedureKind::recover, "shoulder").success);
+  EXPECT_TRUE(world.sentWithId(0x7E5).empty());
+}
+
+TEST(RobotLss, WhatMayNotBeginNowIsRefusedAtOnce) {
+  LssWorld world(0);
+  world.boot();
+  world.run(100ms);
+  const auto scan = world.begin(LssScanCommand{});
+  ASSERT_TRUE(scan->empty()) << "it is at work";
+  ASSERT_TRUE(world.call(ProcedureKind::enable, "elbow").success);
+  LssAssignCommand assign;
+  assign.node_id = 9;
+  for (const auto& refused : {world.begin(LssScanCommand{}), world.begin(assign)}) {
+    ASSERT_EQ(refused->size(), 1u);
+    EXPECT_FALSE(refused->front().success);
+    EXPECT_EQ(refused->front().message, "refused: elbow (node 2) may be in motion; stop it first");
+  }
+}
+
+TEST(RobotLss, AScanThatDidNotTakePlaceIsNoSuccess) {
+  LssWorld world(0);
+  world.boot();
+  world.run(100ms);
+  const auto first = world.begin(LssScanCommand{});
+  const auto second = world.begin(LssScanCommand{});
+  world.robot.beginShutdown(world.now);
+  ASSERT_EQ(second->size(), 1u);
+  EXPECT_FALSE(second->front().success);
+  EXPECT_EQ(second->front().message, "ended by the shutdown of the driver");
+}
+
+TEST(RobotLss, TheDriveOfAnotherAxisDoesNotLoseItsNodeId) {
+  LssWorld world(0);
+  world.boot();
+  world.run(100ms);
+  LssAssignCommand assign;
+  assign.identity = kIdentities[0];  // shoulder, in operation as node 1
+  assign.node_id = 9;
+  const Answer refused = world.call(assign);
+  EXPECT_FALSE(refused.success);
+  EXPECT_THAT(refused.message,
+              HasSubstr("the device has node-ID 1, which is that of a drive in operation"));
+  EXPECT_EQ(world.slaves[0].pending, 1);
+}
+
+TEST(RobotLss, ALostDriveThatComesBackAsAnotherOneIsLeftAlone) {
+  LssWorld world(1);
+  world.robot.start(world.now);
+  ASSERT_TRUE(ready(world)) << world.allEvents();
+  world.takeAway(0);
+  ASSERT_TRUE(world.runUntil([&] { return world.health(0) == NodeHealth::lost; }));
+  world.bringBack(0);
+  world.slaves[0].node_id = world.slaves[0].pending = 2;  // that of elbow
+  world.sent.clear();
+  ASSERT_TRUE(world.runUntil([&] {
+    return world.eventsWith("the device has node-ID 2, which is that of a drive in operation") > 0;
+  })) << world.allEvents();
+  EXPECT_EQ(world.slaves[0].pending, 2);
+  for (const auto& nmt : world.sentWithId(0x000)) EXPECT_NE(nmt.frame.data[1], 2);
+  EXPECT_EQ(world.health(1), NodeHealth::ready);
+}
+
+TEST(RobotLss, TheNodeIdOfADriveThatWasStoppedAndFellSilentIsFree) {
+  LssWorld world(0);
+  world.boot();
+  world.run(100ms);
+  ASSERT_TRUE(world.call(NmtServiceCommand{"elbow", "pre_operational"}).success);
+  LssAssignCommand assign;
+  assign.identity = {0xABC, 7, 0x10002, 33};
+  assign.node_id = 2;
+  EXPECT_THAT(world.call(assign).message, HasSubstr("is that of a drive in operation"));
+  world.takeAway(1);
+  world.run(2s);
+  ASSERT_EQ(world.health(1), NodeHealth::failed);
+  world.slaves[1].identity[3] = 33;
+  world.bringBack(1);
+  const Answer assigned = world.call(assign);
+  EXPECT_TRUE(assigned.success) << assigned.message;
+}
+
+TEST(RobotLss, ADriveThatWasFoundIsAskedHalfASecondLaterAndHasNoProblemAnyMore) {
+  LssWorld world(1);
+  world.takeAway(0);
+  world.robot.start(world.now);
+  ASSERT_TRUE(world.runUntil([&] { return canopen::isAway(world.health(0)); }));
+  world.run(60s);
+  world.sent.clear();
+  world.run(20s);
+  EXPECT_LE(world.sentWithId(0x601).size(), 2u) << "no more often than every 30 s by SDO";
+  world.bringBack(0);
+  ASSERT_TRUE(world.runUntil([&] { return world.slaves[0].node_id == 1; }));
+  world.run(50ms);
+  world.sent.clear();
+  world.run(400ms);
+  EXPECT_TRUE(world.sentWithId(0x601).empty()) << "its boot-up message is awaited";
+  EXPECT_THAT(world.shown().axes[0].words.problem.str(), Not(HasSubstr("LSS: ")));
+  world.run(150ms);
+  EXPECT_FALSE(world.sentWithId(0x601).empty());
+}
+
 }  // namespace
 }  // namespace cia402::bus
