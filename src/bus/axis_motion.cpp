@@ -10,7 +10,6 @@ namespace {
 motion::LimiterConfig limiterConfig(const drive::AxisConfig& config) {
   motion::LimiterConfig limiter;
   limiter.joint = jointOf(config);
-  limiter.stop_deceleration = drive::stopDeceleration(config);
   return limiter;
 }
 
@@ -109,19 +108,17 @@ void AxisMotion::stop(drive::Axis& axis) {
   if (owner_ != nullptr) return;
   command_.reset();
   axis.stopSetPoint();
-  at_rest_ = axis.setPoint().atRest();
 }
 
 void AxisMotion::step(drive::Axis& axis, Time now) {
   clock_ += cycle_;
   if (owner_ != nullptr) {
-    mode_ = nullptr;  // what the group does to the target is not known here
+    command_.reset();
     dried_up_ = false;
     return;
   }
   const drive::SetPoint& sent = axis.setPoint();
   if (!axis.state().ready_for_motion || axis.state().mode == nullptr) {
-    mode_ = nullptr;
     command_.reset();
     dried_up_ = false;
     at_rest_ = sent.atRest();
@@ -166,8 +163,7 @@ void AxisMotion::stepPosition(drive::Axis& axis) {
 
 void AxisMotion::stepVelocity(drive::Axis& axis, Time now) {
   if (now - commanded_ > timeout_) {
-    dried_up_ = dried_up_ || *command_ != 0.0;
-    command_ = 0.0;
+    dried_up_ = *command_ != 0.0;
     (void)velocity_.command(0.0, clock_);  // cannot be refused: zero is finite
   }
   const motion::MotionState state = velocity_.step(clock_, axis.state().position);

@@ -219,7 +219,6 @@ void Group::scaleCommanded() {
 }
 
 void Group::showSent(const std::vector<drive::Axis>& axes) {
-  commanded_.resize(axes_.size());
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const drive::SetPoint& sent = axes[axes_[i]].setPoint();
     commanded_[i] = {sent.value(), sent.velocity(), 0.0};
@@ -286,7 +285,6 @@ void Group::sendSetpoints(std::vector<drive::Axis>& axes) {
 void Group::release(std::vector<AxisMotion>& motions) {
   for (std::size_t axis : axes_) motions[axis].setOwner(nullptr);
   trajectory_.reset();
-  next_.reset();
   phase_ = Phase::idle;
 }
 
