@@ -94,5 +94,15 @@ TEST_F(HistoryJobTest, DoesNotHoldTheCycleUp) {
   EXPECT_THAT(world.wait(answer).message, HasSubstr("1003:00 not read"));
 }
 
+TEST_F(HistoryJobTest, IsNotToldOfADriveThatKeepsNone) {
+  world.drives[0].aborts[ObjectId{0x1003, 0}] = 0x06020000;
+  world.drives[0].fault(0x8611);
+  world.run(500ms);
+  EXPECT_EQ(world.eventsWith("error history"), 0u) << world.allEvents();
+  RobotSnapshot snapshot;
+  world.robot.fill(snapshot);
+  EXPECT_THAT(snapshot.axes[0].words.history.str(), HasSubstr("the drive keeps no error history"));
+}
+
 }  // namespace
 }  // namespace cia402::bus

@@ -222,5 +222,29 @@ TEST_F(NmtJobTest, AShutdownAnswersWhatWaits) {
   EXPECT_THAT(answers->front().message, HasSubstr("shutdown"));
 }
 
+TEST_F(NmtJobTest, WhatWasAskedForIsTold) {
+  world.boot();
+  EXPECT_TRUE(world.call(nmt("elbow", "pre_operational")).success);
+  EXPECT_TRUE(world.call(nmt("", "start")).success);
+  EXPECT_EQ(world.eventsWith("nmt pre_operational to elbow was asked for"), 1u);
+  EXPECT_EQ(world.eventsWith("nmt start to all nodes was asked for"), 1u) << world.allEvents();
+}
+
+// A second after the command; the cycle before is the one at 0.999 s.
+TEST_F(NmtJobTest, OfADriveThatDoesNotObeyTheLastHeartbeatIsTold) {
+  world.boot();
+  ASSERT_TRUE(world.runUntil([&] { return world.robot.lastCycle() == world.now; }));
+  world.run(1ms);
+  world.drives[0].silent = true;
+  const auto answers = world.begin(nmt("shoulder", "stop"));
+  world.run(1001ms);
+  ASSERT_TRUE(answers->empty());
+  world.robot.receive(can::Frame(0x701, {0x7F}), world.now, world.now);
+  world.run(4ms);
+  ASSERT_EQ(answers->size(), 1u);
+  EXPECT_THAT(answers->front().message,
+              HasSubstr("sent, but the drive's heartbeat says pre-operational"));
+}
+
 }  // namespace
 }  // namespace cia402::bus::test

@@ -14,6 +14,7 @@ using test::homingOfOrder;
 using test::RobotWorld;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 using namespace std::chrono_literals;
 
 config::RobotConfig homingRobot() {
@@ -232,6 +233,7 @@ TEST_F(ProcedureJobTest, StopsOfAllTellOfAnAxisThatMovesMeanwhile) {
                 AllOf(HasSubstr("done on 1 of 2 axes"),
                       HasSubstr(std::string("shoulder: ") + toString(kind) +
                                 " had succeeded, but it moves")));
+    EXPECT_THAT(stopping->front().message, Not(HasSubstr("velocity"))) << "which is not known";
     world.run(500ms);
   }
 }
@@ -294,6 +296,58 @@ TEST_F(ProcedureJobTest, SetsNoModeBackOnAnAxisThatSomebodyStopped) {
   EXPECT_THAT(answer.message, HasSubstr("shoulder: it stays in mode cyclic_velocity, as disable "
                                         "was called"));
   EXPECT_FALSE(world.drives[0].enabled());
+}
+
+TEST_F(ProcedureJobTest, AStopFromBeforeTheCallDoesNotCount) {
+  ASSERT_TRUE(world.call(ProcedureKind::home).success);
+  ASSERT_TRUE(world.call(ProcedureKind::halt, "shoulder").success);
+  world.drives[0].homing_began.reset();
+  const Answer answer = world.call(ProcedureKind::home);
+  EXPECT_TRUE(answer.success) << answer.message;
+  EXPECT_TRUE(world.drives[0].homing_began);
+}
+
+TEST_F(ProcedureJobTest, AStopOfAllDoesNotWaitForNewsOfAnAxisThatHasFallenSilent) {
+  world.drives[1].deaf_to_controlword = true;
+  const auto disabling = world.begin(ProcedureKind::disable);
+  ASSERT_TRUE(world.runUntil([&] { return world.axis(0).procedure().success; }));
+  world.drives[0].silent = true;
+  world.run(5 * test::kPeriod);
+  world.drives[1].deaf_to_controlword = false;
+  ASSERT_TRUE(world.runUntil([&] { return world.axis(1).procedure().success; }));
+  world.run(1ms);
+  ASSERT_TRUE(world.axis(0).state().feedback_valid) << "it is not missed yet";
+  ASSERT_EQ(disabling->size(), 1u);
+  EXPECT_TRUE(disabling->front().success) << disabling->front().message;
+}
+
+TEST_F(ProcedureJobTest, WhatWaitsIsWithdrawnWhileSyncIsInTrouble) {
+  const auto home = world.begin(ProcedureKind::home);
+  world.run(50ms);
+  world.robot.receive(can::Frame(0x080, {}), world.now, world.now);  // of another device
+  const Answer answer = world.wait(home);
+  EXPECT_FALSE(answer.success);
+  EXPECT_THAT(answer.message, AllOf(HasSubstr("home done on 1 of 2 axes"),
+                                    HasSubstr("shoulder: not started, for another device produces "
+                                              "SYNC")));
+  EXPECT_FALSE(world.drives[0].homing_began);
+}
+
+TEST_F(ProcedureJobTest, WhatStopsNothingWithdrawsNothing) {
+  const auto home = world.begin(ProcedureKind::home);
+  world.run(20ms);
+  EXPECT_TRUE(world.call(ProcedureKind::enable, "shoulder").success) << "it is that already";
+  EXPECT_TRUE(world.wait(home).success) << home->front().message;
+  EXPECT_TRUE(world.drives[0].homing_began);
+}
+
+TEST_F(ProcedureJobTest, OfOneAxisWhoseModeWasNotSetSaysNoMoreThanTheAxis) {
+  world.drives[1].keeps_mode = true;
+  const auto setting = world.begin(ProcedureKind::set_mode, "elbow", "cyclic_velocity");
+  world.run(50ms);
+  ASSERT_TRUE(world.call(ProcedureKind::disable, "elbow").success);
+  ASSERT_EQ(setting->size(), 1u);
+  EXPECT_EQ(setting->front().message, world.axis(1).previousProcedure().message);
 }
 
 TEST(ProcedureJob, RefusesAnUnknownAxisAndHomingWithoutAnyHomingSection) {

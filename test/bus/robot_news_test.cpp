@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "bus/robot_world.h"
 
 namespace cia402::bus {
@@ -122,6 +124,11 @@ TEST_F(RobotNews, FeedbackThatIsMissingIsAProblemOnceItHadTheTimeToCome) {
   world.drives[1].tpdo_bytes = 7;
   world.run(200ms);
   EXPECT_EQ(words(world, 1).problem.str(), "");
+  world.drives[1].tpdo_bytes = 0;
+  world.run(530ms);
+  EXPECT_EQ(words(world, 1).problem.str(), "") << "so it is when it fails to come again";
+  world.run(200ms);
+  EXPECT_NE(words(world, 1).problem.str(), "");
 }
 
 TEST_F(RobotNews, StepsOfProceduresAreShownWhileTheyRun) {
@@ -141,6 +148,60 @@ TEST_F(RobotNews, StepsOfProceduresAreShownWhileTheyRun) {
   ASSERT_TRUE(world.wait(enabling).success);
   world.run(200ms);
   EXPECT_EQ(words(world, 1).waiting_for.str(), "");
+}
+
+TEST_F(RobotNews, ABootIsToldWithTheTimeThatItTook) {
+  const Time begun = world.now;
+  world.boot();
+  const Event event = eventWith(world, "shoulder (node 1): booted in ");
+  const long hundredths = std::lround(100 * toSeconds(event.stamp - begun));
+  ASSERT_GT(hundredths, 1);
+  ASSERT_LT(hundredths, 100);
+  const std::string digits = std::to_string(100 + hundredths).substr(1);
+  EXPECT_THAT(event.text.str(), HasSubstr("booted in 0." + digits + " s")) << hundredths;
+}
+
+TEST_F(RobotNews, AThirdBootUpMessageWithinOneBootIsTold) {
+  world.drives[0].sdo_silent = true;
+  world.robot.start(world.now);
+  world.run(20ms);
+  const auto bootUp = [&] { world.robot.receive(can::Frame(0x701, {0x00}), world.now, world.now); };
+  bootUp();
+  EXPECT_EQ(world.eventsWith("boots up again and again"), 0u);
+  bootUp();
+  EXPECT_EQ(world.eventsWith("shoulder (node 1): boots up again and again"), 1u)
+      << world.allEvents();
+}
+
+// Factory settings may be loaded in a boot, and take a reset.
+TEST_F(RobotNews, ASecondBootUpMessageWithinALaterBootIsNotTold) {
+  world.boot();
+  world.drives[0].sdo_silent = true;
+  const auto reset = world.begin(NmtServiceCommand{"shoulder", "reset_node"});
+  world.run(20ms);
+  ASSERT_EQ(world.axis(0).node().bootUps(), 2u);
+  world.robot.receive(can::Frame(0x701, {0x00}), world.now, world.now);
+  EXPECT_EQ(world.eventsWith("boots up again and again"), 0u) << world.allEvents();
+}
+
+TEST_F(RobotNews, BootUpMessagesOfSeveralBootsAreNotAddedUp) {
+  world.boot();
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_TRUE(world.call(NmtServiceCommand{"shoulder", "reset_node"}).success);
+  }
+  EXPECT_EQ(world.axis(0).node().bootUps(), 4u);
+  EXPECT_EQ(world.eventsWith("boots up again and again"), 0u) << world.allEvents();
+}
+
+TEST_F(RobotNews, AnEmergencyWithoutACodeIsCountedAndToldOfItsDrive) {
+  world.boot();
+  world.robot.receive(can::Frame(0x082, {0x11}), world.now, world.now);
+  EXPECT_EQ(world.eventsWith("elbow (node 2): an emergency frame of 1 byte has no error code"), 1u)
+      << world.allEvents();
+  RobotSnapshot snapshot;
+  world.robot.fill(snapshot);
+  EXPECT_EQ(snapshot.axes[0].emergencies.malformed, 0u);
+  EXPECT_EQ(snapshot.axes[1].emergencies.malformed, 1u);
 }
 
 }  // namespace

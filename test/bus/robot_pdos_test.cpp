@@ -87,5 +87,13 @@ TEST_F(RobotPdos, OfADriveThatWasTakenOutOfOperationAreNotMissed) {
   EXPECT_EQ(world.eventsWith("did not come for"), 0u) << world.allEvents();
 }
 
+TEST_F(RobotPdos, OfAWrongLengthAreToldAtOnceAfterASecondWithoutAny) {
+  intrude(1);
+  world.run(2500ms);
+  intrude(1);
+  world.run(20ms);
+  EXPECT_EQ(world.eventsWith("too short, not taken (2 so far)"), 1u) << world.allEvents();
+}
+
 }  // namespace
 }  // namespace cia402::bus

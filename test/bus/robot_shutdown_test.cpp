@@ -126,5 +126,24 @@ TEST_F(RobotShutdown, AnswersWhatRunsOnceOnlyAndWhatIsReadWithTheReason) {
                     HasSubstr("ended by the shutdown of the driver")));
 }
 
+TEST_F(RobotShutdown, AnswersAnNmtCommandOnceThoughItIsDoneMeanwhile) {
+  world.boot();
+  ASSERT_TRUE(world.call(ProcedureKind::enable, "shoulder").success);
+  world.drives[0].deaf_to_controlword = true;  // the shutdown waits for it
+  const auto answers = world.begin(NmtServiceCommand{"elbow", "pre_operational"});
+  ASSERT_TRUE(shutDownIn(2s));
+  EXPECT_GT(took, 1s);
+  ASSERT_EQ(answers->size(), 1u);
+  EXPECT_THAT(answers->front().message, HasSubstr("ended by the shutdown of the driver"));
+}
+
+TEST_F(RobotShutdown, IsFollowedByNoSync) {
+  world.boot();
+  ASSERT_TRUE(shutDownIn(2s));
+  world.sent.clear();
+  world.robot.produceSync(world.now + 1s);
+  EXPECT_TRUE(world.sent.empty());
+}
+
 }  // namespace
 }  // namespace cia402::bus

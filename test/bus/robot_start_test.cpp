@@ -181,5 +181,30 @@ TEST_F(RobotStart, WhatCouldNotBeHeardIsListenedToAnew) {
   EXPECT_FALSE(world.sent.empty());
 }
 
+TEST_F(RobotStart, WhatElseIsHeardOfAnotherMasterIsShownAndNotToldAgain) {
+  world.robot.start(world.now);
+  hear(can::Frame(0x77F, {0x05}));
+  hear(can::Frame(0x201, {0x0F, 0x00, 0x08, 0, 0, 0, 0}));
+  EXPECT_EQ(world.eventsWith("another master is on the bus"), 1u) << world.allEvents();
+  EXPECT_THAT(syncProblem(), AllOf(HasSubstr("a heartbeat with the master's node-ID"),
+                                   HasSubstr("RPDO 1 of shoulder (COB-ID 0x201)")));
+}
+
+TEST_F(RobotStart, HearsNoOtherMasterOnceItIsShutDown) {
+  world.robot.start(world.now);
+  world.robot.beginShutdown(world.now);
+  hear(can::Frame(0x77F, {0x05}));
+  EXPECT_EQ(world.eventsWith("another master"), 0u) << world.allEvents();
+  EXPECT_EQ(syncProblem(), "");
+}
+
+TEST_F(RobotStart, ASyncDuringTheListeningIsNoneBesideItsOwn) {
+  world.robot.start(world.now);
+  hear(can::Frame(0x080, {}));
+  RobotSnapshot snapshot;
+  world.robot.fill(snapshot);
+  EXPECT_EQ(snapshot.foreign_syncs, 0u);
+}
+
 }  // namespace
 }  // namespace cia402::bus

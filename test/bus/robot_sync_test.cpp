@@ -97,6 +97,11 @@ TEST_F(SecondProducer, AStraySyncIsToldAndNoReasonToStop) {
   EXPECT_EQ(world.eventsWith("SYNC is as it should be"), 1u);
 }
 
+TEST_F(SecondProducer, ForbidsToEnableFromItsFirstSyncOn) {
+  hear();
+  EXPECT_THAT(world.call(ProcedureKind::enable).message, HasSubstr("another device produces SYNC"));
+}
+
 // It counts as heard for a second, and its trouble must be away for another.
 TEST_F(SecondProducer, IsOverOnceItWasAwayForASecondLongerThanOneIsHeard) {
   hear();

@@ -305,5 +305,53 @@ TEST(Robot, ShowsADriveThatInsistsOnACobIdWhichNobodyForesaw) {
   EXPECT_TRUE(insists(1));
 }
 
+TEST(Robot, ShowsTheTimeThatItWasGivenLast) {
+  RobotWorld world;
+  for (test::FakeDrive& drive : world.drives) drive.silent = true;
+  world.robot.start(world.now);
+  world.run(100ms);
+  world.robot.tick(world.now);
+  EXPECT_EQ(world.robot.now(), world.now) << "though nothing is received";
+  const Time later = world.now + 50ms;
+  world.robot.produceSync(later);
+  EXPECT_EQ(world.robot.now(), later);
+  world.robot.receive(can::Frame(0x701, {0x05}), later, later + 1ms);
+  EXPECT_EQ(world.robot.now(), later + 1ms);
+  world.robot.busLost("can0 is bus-off", later + 2ms);
+  EXPECT_EQ(world.robot.now(), later + 2ms);
+}
+
+TEST(Robot, ASetPointThatIsNotTakenIsAnsweredWithTheReason) {
+  RobotWorld world;
+  world.boot();
+  const auto answers = world.begin(SetpointCommand{0, 0.5});
+  ASSERT_EQ(answers->size(), 1u);
+  EXPECT_FALSE(answers->front().success);
+  EXPECT_EQ(answers->front().message, world.axis(0).motionRefusal());
+  EXPECT_EQ(world.call(world.trajectory("leg", {})).message, "there is no group \"leg\"");
+}
+
+TEST(Robot, AProcedureGoesOnWithAnAnswerBySdoBeforeTheNextCycle) {
+  config::RobotConfig config = test::testRobot();
+  auto profile = std::make_shared<drive::DriveProfile>(*config.axes[0].profile);
+  ASSERT_EQ(profile->homing.writes.size(), 1u);
+  profile->homing.writes.push_back(profile->homing.writes.front());
+  config.axes[0].profile = profile;
+  config.axes[0].homing = test::homingOfOrder(0);
+  RobotWorld world(config);
+  world.enable();
+  ASSERT_TRUE(world.runUntil([&] { return world.robot.lastCycle() == world.now; }));
+  drive::ProcedureRequest home;
+  home.kind = ProcedureKind::home;
+  ASSERT_TRUE(world.axis(0).start(home, world.now));
+  world.drives[0].written.clear();
+  ASSERT_TRUE(world.runUntil([&] { return !world.drives[0].written.empty(); }));
+  const Time cycle = world.robot.lastCycle();
+  world.run(1ms);
+  world.robot.tick(world.now);
+  EXPECT_EQ(world.robot.lastCycle(), cycle);
+  EXPECT_EQ(world.drives[0].written.size(), 2u) << "the second follows the first";
+}
+
 }  // namespace
 }  // namespace cia402::bus
