@@ -233,6 +233,8 @@ TEST_F(NmtJobTest, WhatWasAskedForIsTold) {
 // A second after the command; the cycle before is the one at 0.999 s.
 TEST_F(NmtJobTest, OfADriveThatDoesNotObeyTheLastHeartbeatIsTold) {
   world.boot();
+  world.run(200ms);
+  ASSERT_EQ(world.axis(0).node().nmtState(), canopen::NmtState::operational);
   ASSERT_TRUE(world.runUntil([&] { return world.robot.lastCycle() == world.now; }));
   world.run(1ms);
   world.drives[0].silent = true;
