@@ -22,9 +22,9 @@ class Queue : public can::Interface {
   std::optional<can::ReceivedFrame> receive(Time now) override {
     if (waiting == 0) return std::nullopt;
     --waiting;
-    return can::ReceivedFrame{frame, std::min(now, stamp)};
+    return can::ReceivedFrame{frame, std::min(now, stamp) + ahead};
   }
-  void maintain(Time) override {}
+  void maintain(Time now) override { maintained = now; }
   int fd() const override { return -1; }
   can::BusState state() const override { return now_is; }
   const can::BusCounters& counters() const override { return counters_; }
@@ -33,7 +33,9 @@ class Queue : public can::Interface {
   long waiting = 0;
   can::Frame frame{0x7A0, {}};
   Time stamp = Time::max();  ///< of the frames, at the latest
+  Duration ahead{};          ///< of the frames: they are stamped so much later
   int syncs = 0;
+  Time maintained{};
   can::BusState now_is = can::BusState::error_active;
 
  private:
@@ -85,6 +87,42 @@ TEST_F(BusLoopTest, ProducesSyncWhileItReadsButNoCycleBeforeItHasReadThePast) {
   loop.step(now);
   EXPECT_EQ(queue.syncs, syncs + 1);
   EXPECT_EQ(lastCycle(), now);
+}
+
+TEST_F(BusLoopTest, FramesThatCameAfterItsTimeKeepNoCycleFromIt) {
+  run(101ms);
+  now += 100ms;
+  queue.ahead = 10us;  // they came while it read
+  queue.waiting = 300;
+  loop.step(now);
+  EXPECT_EQ(queue.waiting, 44);
+  EXPECT_EQ(lastCycle(), now);
+}
+
+TEST_F(BusLoopTest, RecordsTheAxesOfItsCycles) {
+  run(100ms);
+  EXPECT_FALSE(loop.recorder().copy(now).axes.empty());
+}
+
+TEST_F(BusLoopTest, LooksAfterItsInterfaceInEveryRound) {
+  for (int i = 0; i < 3; ++i) {
+    now += 1ms;
+    loop.step(now);
+    EXPECT_EQ(queue.maintained, now);
+  }
+}
+
+// 1000 frames of 8 bytes have 47 + 64 bits each, of 10^6 in a second.
+TEST_F(BusLoopTest, TellsTheLoadOfTheLastSecondWithAllThatItReceives) {
+  queue.now_is = can::BusState::missing;  // it sends nothing
+  loop.step(now);
+  queue.frame = can::Frame(0x7A0, {0, 0, 0, 0, 0, 0, 0, 0});
+  queue.waiting = 1000;
+  run(1s);
+  EXPECT_EQ(queue.waiting, 0);
+  now += 1ms;
+  loop.step(now);
+  EXPECT_NEAR(loop.meter().load(), 0.111, 0.001);
 }
 
 TEST_F(BusLoopTest, GoesOnInAFloodThatComesFasterThanItIsRead) {

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "bus/robot_world.h"
@@ -35,6 +36,7 @@ struct BusWatchTest : testing::Test, EventSink {
   void onEvent(const Event& event) override {
     texts.push_back(event.text.str());
     severities.push_back(event.severity);
+    EXPECT_EQ(event.stamp, now);
   }
   void update(Duration later = 0ms) {
     now += later;
@@ -76,6 +78,9 @@ TEST_F(BusWatchTest, TellsAChangeOnlyOnceAndKeepsTheTextFresh) {
   EXPECT_EQ(watch.text(), "can0 is passive");
   update(1ms);
   EXPECT_EQ(watch.text(), "can0 is passive (transmit errors 130)");
+  interface.words = "can0 is passive (transmit errors 131)";
+  update(199ms);
+  EXPECT_EQ(watch.text(), "can0 is passive (transmit errors 130)") << "five times a second";
   EXPECT_THAT(texts, IsEmpty());
 }
 
@@ -86,6 +91,20 @@ TEST_F(BusWatchTest, TellsWhatIsDoneAboutBusOffOnce) {
   update(200ms);
   update(200ms);
   EXPECT_THAT(texts, ElementsAre("may not restart it"));
+}
+
+TEST_F(BusWatchTest, TellsWhatIsDoneAnewOnlyIfTheBusWasWellInBetween) {
+  become(BusState::bus_off, "can0 is off");
+  interface.remedy = "may not restart it";
+  update(200ms);
+  become(BusState::down, "can0 is down");
+  become(BusState::bus_off, "can0 is off");
+  update(200ms);
+  EXPECT_EQ(std::count(texts.begin(), texts.end(), "may not restart it"), 1);
+  become(BusState::error_active, "can0 is up");
+  become(BusState::bus_off, "can0 is off");
+  update(200ms);
+  EXPECT_EQ(std::count(texts.begin(), texts.end(), "may not restart it"), 2);
 }
 
 TEST_F(BusWatchTest, SumsUpAStateThatFlutters) {
@@ -150,6 +169,9 @@ TEST_F(BusWatchOfAMove, TakesAnInterfaceThatWentDownBetweenTwoLooksForALoss) {
   EXPECT_EQ(unseen, BusState::down);
   EXPECT_THAT(texts, ElementsAre(HasSubstr("can0 was down for a moment: look who takes it down")));
   expectStoppedFor("can0 was down for a moment");
+  update();
+  EXPECT_FALSE(unseen) << "taken once";
+  EXPECT_EQ(texts.size(), 1u);
 }
 
 TEST_F(BusWatchOfAMove, TakesABusOffThatLeftAWarningBehindForALoss) {

@@ -123,6 +123,20 @@ TEST_F(Recorder, AStormOfEmergenciesIsOneRecordingAndTheRestIsCounted) {
   EXPECT_EQ(recorder.suppressed(), 949U);
 }
 
+TEST_F(Recorder, EmergenciesOfAllAxesAreOneStorm) {
+  recorder.onEmergency(emergency(0, 0x2310, kStart));
+  recorder.onEmergency(emergency(1, 0x2310, kStart + 3s));
+  EXPECT_EQ(triggers().size(), 1U);
+  EXPECT_EQ(recorder.suppressed(), 1U);
+}
+
+TEST_F(Recorder, WhatFindsNoRoomBeforeTheWriterTakesItIsCounted) {
+  for (int i = 0; i < 100; ++i) recorder.onEmergency(emergency(0, 0x2310, kStart + i * 1ms));
+  const std::uint64_t taken = triggers().size();
+  EXPECT_LT(taken, 100U);
+  EXPECT_EQ(taken + recorder.suppressed(), 100U);
+}
+
 TEST_F(Recorder, AStormOfEmergenciesHidesNoFailure) {
   for (int i = 0; i < 200; ++i) recorder.onEmergency(emergency(0, 0x2310, kStart + i * 10ms));
   triggers();

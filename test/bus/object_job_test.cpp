@@ -159,6 +159,16 @@ TEST_F(ObjectJobTest, AsksTheDriveForTheSizeOfAnUnlistedObjectBeforeWriting) {
   EXPECT_EQ(stored(0x2001), (Bytes{0xCD, 0xAB}));
 }
 
+TEST_F(ObjectJobTest, AValueThatDoesNotFitTheSizeThatTheDriveToldIsAFailure) {
+  stored(0x2001) = {0, 0};
+  world.drives[0].written.clear();
+  const Answer answer = write("2001:00", "65536");
+  EXPECT_FALSE(answer.success);
+  EXPECT_EQ(answer.message,
+            "shoulder (node 1): 2001:00 not written: 65536 does not fit 2 bytes (-32768..65535)");
+  EXPECT_TRUE(world.drives[0].written.empty());
+}
+
 TEST_F(ObjectJobTest, WritesNothingIfTheUnlistedObjectCannotBeRead) {
   world.drives[0].aborts[ObjectId{0x2001, 0}] = 0x06010001;
   const Answer answer = write("2001:00", "1");

@@ -196,5 +196,29 @@ TEST_F(ObjectTextTest, ShowsBytesAsTextOnlyIfAllArePrintable) {
   EXPECT_EQ(textOf({'o', 0x07}), "6F 07");
 }
 
+TEST_F(ObjectTextTest, ShowsOneLetterPaddedWithZerosAsALetter) {
+  EXPECT_EQ(describe(object(DataType::visible_string), {'A', 0}).value, "\"A\"");
+  EXPECT_EQ(describe(object(DataType::visible_string), {'A', 0, 0}).value, "\"A\"");
+}
+
+// Eight bytes may be a number, more are none.
+TEST_F(ObjectTextTest, ShowsEightPrintableBytesThatNothingNamesAsBytes) {
+  EXPECT_THAT(describeObject(nullptr, axis, Bytes(8, 'x')).value,
+              HasSubstr("78 78 78 78 78 78 78 78 (8 bytes, as text \"xxxxxxxx\"; its type is not "
+                        "known: give it behind the object, e.g. u16"));
+}
+
+TEST_F(ObjectTextTest, EncodesUnlistedNumbersOfEightBytes) {
+  EXPECT_EQ(*encodeUnlisted("18446744073709551615", 8), Bytes(8, 0xFF));
+  EXPECT_EQ(*encodeUnlisted("1", 8), (Bytes{1, 0, 0, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(*encodeUnlisted("-9223372036854775808", 8), (Bytes{0, 0, 0, 0, 0, 0, 0, 0x80}));
+  EXPECT_FALSE(encodeUnlisted("-9223372036854775809", 8).ok());
+}
+
+TEST_F(ObjectTextTest, RefusesNoNumberAtAllForAFloat) {
+  EXPECT_EQ(refusal(DataType::real32, ""), "\"\" is not a number; write e.g. -1.5");
+  EXPECT_EQ(refusal(DataType::real32, "1.5 "), "\"1.5 \" is not a number; write e.g. -1.5");
+}
+
 }  // namespace
 }  // namespace cia402::bus

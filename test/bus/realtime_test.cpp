@@ -4,7 +4,9 @@
 #include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 
+#include <system_error>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -36,6 +38,35 @@ TEST(Realtime, TellsWhatWasGrantedAndForTheRestHowToGetIt) {
   }
   EXPECT_EQ(!report.scheduling, report.text.find("rtprio") != std::string::npos) << report.text;
   EXPECT_EQ(!report.memory, report.text.find("memlock") != std::string::npos) << report.text;
+}
+
+// Where anybody else is granted it, so is the thread of the bus.
+TEST(Realtime, AsksForThePriorityAndTheMemoryThatTheSystemGrants) {
+  int refused = 0, policy = SCHED_OTHER;
+  std::thread([&] {
+    sched_param parameters{};
+    parameters.sched_priority = 10;
+    refused = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);
+  }).join();
+  const bool locked = mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0;
+  munlockall();
+  const RealtimeReport report = reportFor(10, policy);
+  EXPECT_EQ(report.scheduling, refused == 0);
+  EXPECT_EQ(report.memory, locked);
+  if (refused != 0) {
+    EXPECT_THAT(report.text, HasSubstr(std::generic_category().message(refused)));
+  }
+}
+
+// Joining pages into huge ones takes time in the middle of a cycle.
+TEST(Realtime, KeepsTheSystemFromJoiningItsPages) {
+  const int before = prctl(PR_GET_THP_DISABLE, 0, 0, 0, 0);
+  if (before < 0) GTEST_SKIP() << "this system does not know that";
+  prctl(PR_SET_THP_DISABLE, 0, 0, 0, 0);
+  int policy = SCHED_OTHER;
+  reportFor(10, policy);
+  EXPECT_EQ(prctl(PR_GET_THP_DISABLE, 0, 0, 0, 0), 1);
+  prctl(PR_SET_THP_DISABLE, static_cast<unsigned long>(before), 0, 0, 0);
 }
 
 // No system grants a priority that does not exist, whoever asks.

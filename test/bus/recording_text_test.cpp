@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <limits>
 #include <sstream>
 
@@ -146,6 +147,27 @@ TEST(RecordingText, NotesThatAreTooLongAreCut) {
   EXPECT_EQ(note.view(), std::string(240, 'x') + "1234");
   note.append("5");
   EXPECT_EQ(note.view(), std::string(240, 'x') + "1...");
+}
+
+TEST(RecordingText, ANoteThatIsTooLongLeavesTheNextOneAlone) {
+  std::array<NoteRecord, 2> notes;
+  notes[0].append(std::string(244, 'x'));
+  notes[0].append("y");
+  EXPECT_EQ(notes[0].view(), std::string(241, 'x') + "...");
+  EXPECT_EQ(notes[1].stamp, Time{});
+}
+
+TEST(RecordingText, AnAxisThatTheConfigurationDoesNotHaveIsLeftOut) {
+  const config::RobotConfig robot = test::testRobot();
+  Recording recording;
+  recording.triggers.resize(1);
+  recording.axes = {record(drive::State::fault), record(drive::State::fault)};
+  recording.axes[0].axis = 2;
+  recording.axes[1].axis = 1;
+  std::ostringstream out;
+  writeText(out, recording, robot, test::masterOf(robot), 0s);
+  EXPECT_THAT(out.str(), HasSubstr("--  axis       elbow (2)         fault; "));
+  EXPECT_THAT(out.str(), testing::Not(HasSubstr("axis       -")));
 }
 
 TEST(RecordingTriggerText, NamesAxisAndErrorForPeopleAndFiles) {

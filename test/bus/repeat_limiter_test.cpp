@@ -119,5 +119,17 @@ TEST_F(RepeatLimiterTest, LosesNoCountWhateverComes) {
   EXPECT_EQ(counted, came);
 }
 
+TEST_F(RepeatLimiterTest, KnowsWhenEachKindCameLast) {
+  take(7);
+  now += 1s;
+  for (int i = 0; i < 4; ++i) take(7);
+  const Time last = now;
+  now += 1s;
+  take(8);
+  ASSERT_EQ(limiter.kinds(), 2u);
+  EXPECT_EQ(limiter.count(0).last, last) << "though it was held back";
+  EXPECT_EQ(limiter.count(1).last, now);
+}
+
 }  // namespace
 }  // namespace cia402::bus

@@ -1,11 +1,15 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "cia402_driver/bus/runner.h"
 
+#include <pthread.h>
 #include <sys/mman.h>
 
+#include <array>
 #include <atomic>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <future>
 #include <thread>
 
@@ -29,6 +33,9 @@ struct Wire {
   std::atomic<long> rounds{0};  ///< of the bus thread
   std::promise<void> first_frame, shut_down;
   std::function<void()> while_flushing;  ///< called once, after the last frame was sent
+  std::atomic<int> emergencies{0};       ///< that the shoulder has still to send
+  std::atomic<bool> flood{false};        ///< always another frame
+  std::promise<std::array<std::uint8_t, 8>> first_time;  ///< message of the service TIME
 };
 
 /// An interface with the drives shoulder and elbow behind it; used by the bus thread only.
@@ -42,11 +49,17 @@ class FakeInterface : public can::Interface {
       wire_->shut_down.set_value();
       rounds_left_ = 3;
     }
+    if (frame.id == 0x100 && times_++ == 0) wire_->first_time.set_value(frame.data);
     for (FakeDrive& drive : drives_) drive.receive(frame, now_);
     return true;
   }
   std::optional<can::ReceivedFrame> receive(Time now) override {
     now_ = now;
+    if (wire_->flood) return can::ReceivedFrame{can::Frame(0x7A0, {}), now};
+    if (wire_->emergencies > 0) {
+      --wire_->emergencies;
+      return can::ReceivedFrame{can::Frame(0x081, {0x00, 0x10, 0x01, 0, 0, 0, 0, 0}), now};
+    }
     for (FakeDrive& drive : drives_) {
       drive.tick(now);
       if (drive.out.empty()) continue;
@@ -75,13 +88,15 @@ class FakeInterface : public can::Interface {
   std::string describe() const override {
     return std::string("can0 is ") + can::toString(wire_->state);
   }
+  std::size_t pending() const override { return 3; }
+  std::optional<ErrorCounters> errorCounters() const override { return ErrorCounters{12, 34}; }
 
  private:
   std::shared_ptr<Wire> wire_;
   std::array<FakeDrive, 2> drives_{FakeDrive(1), FakeDrive(2)};
   can::BusCounters counters_;
   Time now_{};
-  int rounds_left_ = 0;
+  int rounds_left_ = 0, times_ = 0;
 };
 
 struct BusRunnerTest : testing::Test {
@@ -174,6 +189,105 @@ TEST_F(BusRunnerTest, CarriesCommandsOutAndShowsTheResultInItsSnapshot) {
   EXPECT_GT(snapshot.counters.frames_received, 0u);
   EXPECT_EQ(snapshot.axes.size(), 2u);
   EXPECT_EQ(runner->lostEvents(), 0u);
+}
+
+TEST_F(BusRunnerTest, ShowsItsInterfaceInItsSnapshot) {
+  wire->state = can::BusState::error_passive;
+  std::atomic<std::int64_t> ahead_ms{0};
+  BusRunner::Options ahead = options();
+  ahead.clock = [&] { return realNow() + std::chrono::milliseconds(ahead_ms); };
+  const config::RobotConfig robot = test::testRobot();
+  runner = std::make_unique<BusRunner>(robot, test::masterOf(robot),
+                                       std::make_unique<FakeInterface>(wire), ahead);
+  runner->start();
+  waitFor([&] { return ready(); });
+  const Time before = runner->time().now();
+  ahead_ms = 2000;  // the second in which frames are counted is over
+  waitFor([&] { return runner->snapshot().now > before + std::chrono::milliseconds(1000); });
+  const RobotSnapshot snapshot = runner->snapshot();
+  EXPECT_EQ(snapshot.bus_text, "can0 is error passive");
+  EXPECT_EQ(snapshot.pending, 3u);
+  ASSERT_TRUE(snapshot.error_counters);
+  EXPECT_EQ(snapshot.error_counters->transmit, 12);
+  EXPECT_EQ(snapshot.error_counters->receive, 34);
+  EXPECT_GT(snapshot.bus_load, 0.0);
+  EXPECT_GT(snapshot.most_bus_load, snapshot.bus_load) << "with the most stuff bits";
+  EXPECT_LT(snapshot.most_bus_load, 1.0);
+  EXPECT_LE(snapshot.now, runner->time().now());
+  runner.reset();
+}
+
+TEST_F(BusRunnerTest, CountsTheEmergenciesThatNobodyTakes) {
+  runner->start();
+  waitFor([&] { return ready(); });
+  wire->emergencies = 5000;
+  waitFor([&] { return wire->emergencies == 0; });
+  meet();
+  std::uint64_t taken = 0;
+  EmergencyEvent event;
+  while (runner->nextEmergency(event)) ++taken;
+  EXPECT_LT(taken, 5000u);
+  EXPECT_EQ(taken + runner->lostEmergencies(), 5000u);
+}
+
+// CiA 301, 7.2.6: milliseconds since midnight and days since 1 January 1984, here in UTC.
+TEST_F(BusRunnerTest, SendsTheTimeOfTheWallClock) {
+  config::RobotConfig robot = test::testRobot();
+  robot.bus.time_interval = std::chrono::seconds(1);
+  runner = std::make_unique<BusRunner>(robot, test::masterOf(robot),
+                                       std::make_unique<FakeInterface>(wire), options());
+  using std::chrono::milliseconds;
+  const auto wall = [] {
+    return std::chrono::duration_cast<milliseconds>(
+        std::chrono::system_clock::now().time_since_epoch());
+  };
+  const milliseconds before = wall();
+  runner->start();
+  const std::array<std::uint8_t, 8> sent = wire->first_time.get_future().get();
+  const std::int64_t of_day = sent[0] | sent[1] << 8 | sent[2] << 16 | sent[3] << 24;
+  const std::int64_t days = sent[4] | sent[5] << 8;
+  const milliseconds time(of_day + (days + 5113) * 86'400'000);
+  EXPECT_GE(time, before - milliseconds(2)) << "to the millisecond";
+  EXPECT_LE(time, wall() + milliseconds(2));
+}
+
+TEST_F(BusRunnerTest, AFloodDoesNotKeepItFromItsEnd) {
+  wire->while_flushing = [&] { wire->flood = true; };
+  runner->start();
+  wire->first_frame.get_future().wait();
+  runner->requestShutdown();
+  runner->join();
+  EXPECT_TRUE(wire->flood);
+  EXPECT_FALSE(runner->running());
+}
+
+TEST_F(BusRunnerTest, ItsThreadIsKnownByItsName) {
+  runner->start();
+  std::array<char, 16> name{};
+  CallCommand call;
+  call.function = [&](Time) {
+    pthread_getname_np(pthread_self(), name.data(), name.size());
+    return Answer();
+  };
+  post(call).wait();
+  EXPECT_STREQ(name.data(), "bus");
+}
+
+TEST_F(BusRunnerTest, EventsAreInItsRecordings) {
+  char folder[] = "/tmp/runner_test_XXXXXX";
+  config::RobotConfig robot = test::testRobot();
+  robot.recorder.directory = mkdtemp(folder);
+  runner = std::make_unique<BusRunner>(robot, test::masterOf(robot),
+                                       std::make_unique<FakeInterface>(wire), options());
+  runner->start();
+  waitFor([&] { return seen("elbow (node 2): booted in"); });
+  const RecordingService::News news = runner->recordings().request();
+  EXPECT_TRUE(news.written) << news.text;
+  std::ifstream in(news.log.substr(0, news.log.rfind('.')) + ".txt");
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  EXPECT_THAT(text, HasSubstr("elbow (node 2): booted in"));
+  runner.reset();
+  std::filesystem::remove_all(folder);
 }
 
 TEST_F(BusRunnerTest, SleepsUntilSomethingIsDue) {
