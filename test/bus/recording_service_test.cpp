@@ -2,6 +2,7 @@
 #include "cia402_driver/bus/recording_service.h"
 
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <filesystem>
@@ -84,6 +85,55 @@ TEST_F(Service, AFaultIsRecordedByItselfAndToldOnce) {
   RecordingService::News more;
   EXPECT_FALSE(service->nextNews(more));
   EXPECT_EQ(files(), 2U);
+}
+
+TEST_F(Service, AllTriggersUpToHalfASecondAfterTheFirstAreOneRecording) {
+  const Time first = realNow() - 60s;
+  EmergencyEvent event;
+  event.emergency.code = 0x8611;
+  event.emergency.stamp = first;
+  recorder->onEmergency(event);
+  event.emergency.code = 0x8130;
+  event.emergency.stamp = first + robot.recorder.post_trigger;
+  recorder->onEmergency(event);
+  recorder->onInterface(can::BusState::bus_off, first + robot.recorder.post_trigger);
+  event.emergency.code = 0x2310;
+  event.emergency.stamp = first + 30s;
+  recorder->onEmergency(event);
+  service->wake();
+  const auto news = nextNews();
+  EXPECT_THAT(news.text, HasSubstr("emergency 0x8611"));
+  EXPECT_THAT(news.text, HasSubstr("; shoulder (node 1): emergency 0x8130"));
+  EXPECT_THAT(news.text, HasSubstr("; bus-off"));
+  EXPECT_THAT(news.text, testing::Not(HasSubstr("0x2310")));
+  EXPECT_EQ(news.axes, std::vector<std::uint16_t>{0}) << "once";
+  const auto another = nextNews();
+  EXPECT_THAT(another.text, HasSubstr("(shoulder (node 1): emergency 0x2310"));
+  EXPECT_EQ(files(), 4U);
+}
+
+TEST_F(Service, ABusOffIsOfNoAxis) {
+  recorder->onInterface(can::BusState::bus_off, realNow() - 1s);
+  service->wake();
+  const auto news = nextNews();
+  EXPECT_THAT(news.text, HasSubstr("bus-off"));
+  EXPECT_TRUE(news.axes.empty());
+}
+
+TEST_F(Service, ItsThreadIsKnownByItsNameAndLessUrgentThanTheOthers) {
+  emergency(realNow() - 1s);
+  nextNews();
+  int found = 0;
+  for (const auto& task : fs::directory_iterator("/proc/self/task")) {
+    std::ifstream comm(task.path() / "comm");
+    std::string name;
+    std::getline(comm, name);
+    if (name != "recorder") continue;
+    ++found;
+    const auto thread = static_cast<id_t>(std::stoul(task.path().filename().string()));
+    EXPECT_GT(getpriority(PRIO_PROCESS, thread), getpriority(PRIO_PROCESS, 0));
+  }
+  EXPECT_EQ(found, 1);
 }
 
 TEST_F(Service, TheEndOfTheProgramDoesNotLoseTheFault) {

@@ -116,7 +116,8 @@ TEST(RecordingText, PdosAreKnownByTheIdentifiersThatTheDrivesKept) {
   const config::RobotConfig robot = test::testRobot();
   Recording recording;
   recording.frames = {{can::Frame(0x1E5, {0x37, 0x02}), Time(1ms), false},
-                      {can::Frame(0x182, {0x37, 0x02}), Time(2ms), false}};
+                      {can::Frame(0x182, {0x37, 0x02}), Time(2ms), false},
+                      {can::Frame(0x181, {0x37, 0x02}), Time(3ms), false}};
   recording.identifiers = {{2, canopen::PdoDirection::tpdo, 1, 0x1E5},
                            {2, canopen::PdoDirection::rpdo, 1, 0x202}};
   recording.triggers.resize(1);
@@ -124,6 +125,36 @@ TEST(RecordingText, PdosAreKnownByTheIdentifiersThatTheDrivesKept) {
   writeText(out, recording, robot, test::masterOf(robot), 0s);
   EXPECT_THAT(out.str(), HasSubstr("rx  TPDO1      elbow (2)         too short, 2 of "));
   EXPECT_THAT(out.str(), HasSubstr("rx  ?          -                 0x0182: 37 02"));
+  EXPECT_THAT(out.str(), HasSubstr("rx  TPDO1      shoulder (1)      too short, 2 of "));
+}
+
+TEST(RecordingText, AfterTheFirstRecordOfAnAxisOnlyWhatChangesIsTold) {
+  const config::RobotConfig robot = test::testRobot();
+  Recording recording;
+  recording.triggers.resize(1);
+  recording.axes = {record(drive::State::switched_on), record(drive::State::fault)};
+  recording.axes[1].stamp = Time(1ms);
+  std::ostringstream out;
+  writeText(out, recording, robot, test::masterOf(robot), 0s);
+  EXPECT_THAT(out.str(), HasSubstr("shoulder (1)      switched on; node ready; mode 8"));
+  EXPECT_THAT(out.str(), HasSubstr("shoulder (1)      switched on -> fault; at 0 rad\n"));
+}
+
+TEST(RecordingText, AFrameComesBeforeWhatItMakesOfTheAxisAndThatBeforeWords) {
+  const config::RobotConfig robot = test::testRobot();
+  Recording recording;
+  recording.triggers.resize(1);
+  recording.frames = {{can::Frame(0x181, {0x37, 0x02}), Time(1ms), false}};
+  recording.axes = {record(drive::State::fault)};
+  recording.axes[0].stamp = Time(1ms);
+  recording.notes = {{NoteRecord::Kind::event, NoteRecord::kNoAxis, "something", Time(1ms)}};
+  std::ostringstream out;
+  writeText(out, recording, robot, test::masterOf(robot), 0s);
+  const std::size_t frame = out.str().find("TPDO1"), axis = out.str().find("--  axis"),
+                    words = out.str().find("something");
+  EXPECT_LT(frame, axis);
+  EXPECT_LT(axis, words);
+  EXPECT_NE(words, std::string::npos);
 }
 
 TEST(RecordingText, FramesAreLoggedWithTheirDirection) {
@@ -164,10 +195,12 @@ TEST(RecordingText, AnAxisThatTheConfigurationDoesNotHaveIsLeftOut) {
   recording.axes = {record(drive::State::fault), record(drive::State::fault)};
   recording.axes[0].axis = 2;
   recording.axes[1].axis = 1;
+  recording.notes = {{NoteRecord::Kind::step, 2, "whose", Time(1ms)}};
   std::ostringstream out;
   writeText(out, recording, robot, test::masterOf(robot), 0s);
   EXPECT_THAT(out.str(), HasSubstr("--  axis       elbow (2)         fault; "));
   EXPECT_THAT(out.str(), testing::Not(HasSubstr("axis       -")));
+  EXPECT_THAT(out.str(), HasSubstr("--  step       -                 whose\n"));
 }
 
 TEST(RecordingTriggerText, NamesAxisAndErrorForPeopleAndFiles) {
@@ -187,6 +220,15 @@ TEST(RecordingTriggerText, NamesAxisAndErrorForPeopleAndFiles) {
   trigger.kind = RecordingTrigger::Kind::node_lost;
   trigger.code = 0;
   EXPECT_EQ(triggerName(trigger, robot), "elbow_node_lost");
+}
+
+TEST(RecordingTriggerText, AnAxisThatTheConfigurationDoesNotHaveIsNotNamed) {
+  const config::RobotConfig robot = test::testRobot();
+  RecordingTrigger trigger;
+  trigger.kind = RecordingTrigger::Kind::fault;
+  trigger.axis = 2;
+  EXPECT_EQ(triggerText(trigger, robot), "fault");
+  EXPECT_EQ(triggerName(trigger, robot), "fault");
 }
 
 }  // namespace
