@@ -27,7 +27,7 @@ class Queue : public can::Interface {
   void maintain(Time now) override { maintained = now; }
   int fd() const override { return -1; }
   can::BusState state() const override { return now_is; }
-  const can::BusCounters& counters() const override { return counters_; }
+  const can::BusCounters& counters() const override { return counted; }
   std::string describe() const override { return "can0"; }
 
   long waiting = 0;
@@ -37,9 +37,7 @@ class Queue : public can::Interface {
   int syncs = 0;
   Time maintained{};
   can::BusState now_is = can::BusState::error_active;
-
- private:
-  can::BusCounters counters_;
+  can::BusCounters counted;
 };
 
 class BusLoopTest : public testing::Test, protected EventSink {
@@ -160,6 +158,18 @@ TEST_F(BusLoopTest, ABusOffIsATriggerOfTheRecorder) {
   queue.now_is = can::BusState::bus_off;
   recording.step(now + 1ms);
   EXPECT_TRUE(recording.recorder().triggered());
+  RecordingTrigger trigger;
+  ASSERT_TRUE(recording.recorder().nextTrigger(trigger));
+  EXPECT_EQ(trigger.kind, RecordingTrigger::Kind::bus_off);
+  EXPECT_EQ(trigger.stamp, now + 1ms);
+}
+
+TEST_F(BusLoopTest, ABusOffThatIsOverBeforeTheNextRoundIsATriggerToo) {
+  robot.recorder.keep = 1;
+  BusLoop recording(robot, test::masterOf(robot), queue, *this);
+  recording.step(now);
+  ++queue.counted.bus_off_events;
+  recording.step(now + 1ms);
   RecordingTrigger trigger;
   ASSERT_TRUE(recording.recorder().nextTrigger(trigger));
   EXPECT_EQ(trigger.kind, RecordingTrigger::Kind::bus_off);

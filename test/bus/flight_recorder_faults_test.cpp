@@ -124,6 +124,7 @@ TEST_F(RecordedRobot, ADriveThatFallsSilentIsOneTriggerWhateverElseChangesWhileI
   observe(20ms);
   ASSERT_FALSE(world.axis(1).state().homed);
   EXPECT_TRUE(triggers().empty());
+  EXPECT_EQ(recorder.suppressed(), 0U);
 }
 
 TEST_F(RecordedRobot, ANodeThatIsTakenOutOfOperationIsOneTrigger) {

@@ -79,6 +79,7 @@ TEST(Realtime, SaysWhyAPriorityWasRefusedAndWhatToDo) {
   EXPECT_THAT(report.text, HasSubstr("real-time priority 1000 was refused (Invalid argument)"));
   EXPECT_THAT(report.text, HasSubstr("/etc/security/limits.conf"));
   EXPECT_THAT(report.text, HasSubstr("SYNC will be late"));
+  EXPECT_EQ(report.text.find("memlock") != std::string::npos, !report.memory) << report.text;
   EXPECT_EQ(report.text.back(), '.');
 }
 

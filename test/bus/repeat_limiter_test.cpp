@@ -131,5 +131,20 @@ TEST_F(RepeatLimiterTest, KnowsWhenEachKindCameLast) {
   EXPECT_EQ(limiter.count(1).last, now);
 }
 
+TEST_F(RepeatLimiterTest, SumsUpNoKindBeforeItsOwnIntervalIsOver) {
+  for (int i = 0; i < 4; ++i) take(1);
+  now += 3s;
+  for (int i = 0; i < 4; ++i) take(2);
+  now += 2s;
+  const auto first = limiter.due(now);
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->kind, 1u);
+  EXPECT_FALSE(limiter.due(now));
+  now += 3s;
+  const auto second = limiter.due(now);
+  ASSERT_TRUE(second);
+  EXPECT_EQ(second->kind, 2u);
+}
+
 }  // namespace
 }  // namespace cia402::bus

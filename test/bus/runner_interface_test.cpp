@@ -152,6 +152,24 @@ TEST_F(BusRunnerTest, TellsWhatTheOperatingSystemGranted) {
   munlockall();
 }
 
+// No system grants a priority that does not exist.
+TEST_F(BusRunnerTest, WarnsWhereTheOperatingSystemRefuses) {
+  BusRunner::Options impossible;
+  impossible.priority = 1000;
+  const config::RobotConfig robot = test::testRobot();
+  runner = std::make_unique<BusRunner>(robot, test::masterOf(robot),
+                                       std::make_unique<test::RunnerInterface>(wire), impossible);
+  runner->start();
+  meet();
+  Event event;
+  do {
+    ASSERT_TRUE(runner->nextEvent(event));
+  } while (event.text.str().find("real-time priority 1000 was refused") == std::string::npos);
+  EXPECT_EQ(event.severity, Event::Severity::warning);
+  runner.reset();
+  munlockall();
+}
+
 TEST_F(BusRunnerTest, LeavesSchedulingAloneWhereItIsToldTo) {
   runner->start();
   waitFor([&] { return ready(); });

@@ -27,8 +27,10 @@ TEST_F(BusRunnerTest, EndsCleanlyThoughItWasNeverStarted) {
 
 TEST_F(BusRunnerTest, WaitsForAMissingInterfaceAndStartsTheRobotWhenItIsThere) {
   wire->state = can::BusState::missing;
+  const Time before = realNow();
   runner->start();
   waitFor([&] { return seen("can0 is missing"); });
+  EXPECT_GE(runner->snapshot().now, before);
   EXPECT_EQ(post(ProcedureKind::enable).get().message,
             "refused: the bus interface can0 is not there yet");
   EXPECT_EQ(wire->frames, 0);
