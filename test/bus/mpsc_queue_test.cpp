@@ -77,7 +77,7 @@ int outOfOrder(std::size_t capacity, int count) {
 // On one processor the threads take turns as often as the queue is full, and each turn may wait for
 // other programs: few elements through the small queue, many through the large one.
 TEST(MpscQueue, LosesAndDoublesNothingOfSeveralThreads) {
-  EXPECT_EQ(outOfOrder(2, 150), 0);
+  EXPECT_EQ(outOfOrder(2, 50), 0);
   EXPECT_EQ(outOfOrder(4000, 150000), 0);
 }
 
