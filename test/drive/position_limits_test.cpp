@@ -24,11 +24,12 @@ NamedWrite limit(const char* object, const char* source) {
 }
 
 /// Limits of +-3.1 rad, 0.0001 rad a count.
-AxisConfig limited(bool homing = false) {
+AxisConfig limited(bool homing = false, bool optional = true) {
   DriveProfile profile = test::testProfile();
   profile.objects.push_back(test::object("lower", 0x607D, DataType::int32, Quantity::position, 1));
   profile.objects.push_back(test::object("upper", 0x607D, DataType::int32, Quantity::position, 2));
   profile.startup = {limit("lower", "limits.lower"), limit("upper", "limits.upper")};
+  for (NamedWrite& write : profile.startup) write.optional = optional;
   AxisConfig config = test::testConfig(std::move(profile));
   if (!homing) return config;
   config.homing = HomingOptions();
@@ -38,7 +39,8 @@ AxisConfig limited(bool homing = false) {
 }
 
 struct World : Bench {
-  explicit World(bool homing = false) : Bench(limited(homing)) { hold(0, 0); }
+  explicit World(bool homing = false) : World(limited(homing)) {}
+  explicit World(AxisConfig config) : Bench(std::move(config)) { hold(0, 0); }
   void hold(std::int32_t lower, std::int32_t upper) {
     drive.dictionary[kLower] = {static_cast<std::uint32_t>(lower), 4};
     drive.dictionary[kUpper] = {static_cast<std::uint32_t>(upper), 4};
@@ -97,6 +99,19 @@ TEST(PositionLimits, ThatTheDriveRefusesWhileEnabledStayOpenAfterHoming) {
   EXPECT_EQ(world.upper(), 31000);
 }
 
+TEST(PositionLimits, ThatTheDriveRefusedAreNotOfferedAgainAfterEachCall) {
+  World world(true);
+  ASSERT_TRUE(world.boot());
+  ASSERT_TRUE(world.enable());
+  world.refuse();
+  ASSERT_TRUE(world.perform(ProcedureKind::home).success);
+  world.run(milliseconds(100));
+  world.drive.aborts.clear();
+  ASSERT_TRUE(world.perform(ProcedureKind::halt).success);
+  world.run(milliseconds(100));
+  EXPECT_EQ(world.upper(), std::numeric_limits<std::int32_t>::max());
+}
+
 TEST(PositionLimits, ThatTheDriveKeepsWhileEnabledRefuseAnotherZero) {
   World world;
   ASSERT_TRUE(world.boot());
@@ -126,6 +141,17 @@ TEST(PositionLimits, NarrowerOnesThatStayKeepTheAxisDisabled) {
   EXPECT_FALSE(status.success);
   EXPECT_THAT(status.message, HasSubstr("position limits of another zero"));
   EXPECT_THAT(status.message, HasSubstr("0x08000022"));
+  EXPECT_NE(world.drive.state, FakeDrive::S::enabled);
+}
+
+TEST(PositionLimits, ThatMustNotBeRefusedKeepTheAxisDisabledWhereOneIs) {
+  World world(limited(false, false));
+  world.drive.aborts[kUpper] = kNotNow;
+  ASSERT_TRUE(world.boot());
+  const ProcedureStatus& status = world.perform(ProcedureKind::enable);
+  EXPECT_FALSE(status.success);
+  EXPECT_THAT(status.message, HasSubstr("0x08000022"));
+  EXPECT_EQ(world.lower(), -31000) << "taken";
   EXPECT_NE(world.drive.state, FakeDrive::S::enabled);
 }
 
