@@ -78,7 +78,9 @@ TEST(PositionLimits, StandOpenUntilTheAxisIsHomed) {
   ASSERT_TRUE(world.enable());
   EXPECT_EQ(world.lower(), std::numeric_limits<std::int32_t>::min());
   EXPECT_EQ(world.upper(), std::numeric_limits<std::int32_t>::max());
-  ASSERT_TRUE(world.perform(ProcedureKind::home).success);
+  const ProcedureStatus& status = world.perform(ProcedureKind::home);
+  ASSERT_TRUE(status.success);
+  EXPECT_THAT(status.message, Not(HasSubstr("position limits")));
   EXPECT_EQ(world.lower(), -31000);
   EXPECT_EQ(world.upper(), 31000);
 }
@@ -145,14 +147,16 @@ TEST(PositionLimits, NarrowerOnesThatStayKeepTheAxisDisabled) {
 }
 
 TEST(PositionLimits, ThatMustNotBeRefusedKeepTheAxisDisabledWhereOneIs) {
-  World world(limited(false, false));
-  world.drive.aborts[kUpper] = kNotNow;
-  ASSERT_TRUE(world.boot());
-  const ProcedureStatus& status = world.perform(ProcedureKind::enable);
-  EXPECT_FALSE(status.success);
-  EXPECT_THAT(status.message, HasSubstr("0x08000022"));
-  EXPECT_EQ(world.lower(), -31000) << "taken";
-  EXPECT_NE(world.drive.state, FakeDrive::S::enabled);
+  for (const auto& refused : {kLower, kUpper}) {
+    World world(limited(false, false));
+    world.drive.aborts[refused] = kNotNow;
+    ASSERT_TRUE(world.boot());
+    const ProcedureStatus& status = world.perform(ProcedureKind::enable);
+    EXPECT_FALSE(status.success);
+    EXPECT_THAT(status.message, HasSubstr("0x08000022"));
+    EXPECT_EQ(world.written(), 1u) << "the other one";
+    EXPECT_NE(world.drive.state, FakeDrive::S::enabled);
+  }
 }
 
 TEST(PositionLimits, ADriveWithoutThemIsEnabled) {
