@@ -164,8 +164,7 @@ void BusRunner::wait() {
   pollfd sources[2] = {{wake_fd_, POLLIN, 0}, {interface_->fd(), POLLIN, 0}};
   due_ = loop_.nextDeadline();
   const Time now = time_.now();
-  const Time deadline = std::min(due_, now + kIdleInterval);
-  const std::int64_t left = std::max<std::int64_t>((deadline - now).count(), 0);
+  const std::int64_t left = (std::clamp(due_, now, now + kIdleInterval) - now).count();
   const timespec timeout{static_cast<std::time_t>(left / 1'000'000'000),
                          static_cast<long>(left % 1'000'000'000)};
   const nfds_t count = sources[1].fd >= 0 ? 2 : 1;

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -62,6 +63,13 @@ TEST_F(BusRunnerTest, CountsTheEmergenciesThatNobodyTakes) {
   while (runner->nextEmergency(event)) ++taken;
   EXPECT_LT(taken, 5000u);
   EXPECT_EQ(taken + runner->lostEmergencies(), 5000u);
+}
+
+TEST_F(BusRunnerTest, TakesInAllThatWaitsWithoutBeingWoken) {
+  runner->start();
+  waitFor([&] { return ready(); });
+  wire->emergencies = 1000;  // some rounds of the thread
+  while (wire->emergencies > 0) std::this_thread::yield();
 }
 
 // CiA 301, 7.2.6: milliseconds since midnight and days since 1 January 1984, here in UTC.
