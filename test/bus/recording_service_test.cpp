@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <thread>
 
 #include "bus/robot_world.h"
 #include "cia402_driver/bus/real_clock.h"
@@ -153,7 +154,10 @@ TEST_F(Service, WhileARecordingIsBeingWrittenAnotherOneIsRefusedInWords) {
   ASSERT_EQ(mkfifo(log.c_str(), 0600), 0);
   emergency(stamp);
   RecordingService::News refused = service->request();
-  while (refused.written) refused = service->request();  // the thread has not begun yet
+  while (refused.written) {  // the thread has not begun yet: it gets its turn
+    std::this_thread::sleep_for(1ms);
+    refused = service->request();
+  }
   EXPECT_THAT(refused.text, HasSubstr("refused: a recording is being written"));
   std::ifstream reader(log);
   std::string line;
