@@ -9,8 +9,9 @@ namespace {
 using test::RobotWorld;
 using namespace std::chrono_literals;
 
-// 32 bits of 0.00001 rad end at 21474.8 rad.
-TEST(GroupRefusal, OfASetPointThatDoesNotFitTheDriveIsToldAsTheReason) {
+/// Joints that may be sent farther than their drives count: 32 bits of 0.00001 rad end at 21474.8
+/// rad.
+config::RobotConfig beyondTheDrive() {
   config::RobotConfig config = test::testRobot();
   for (drive::AxisConfig& axis : config.axes) {
     axis.limits.lower.reset();
@@ -18,7 +19,11 @@ TEST(GroupRefusal, OfASetPointThatDoesNotFitTheDriveIsToldAsTheReason) {
     axis.limits.velocity = 1e5;
     axis.limits.acceleration = 1e6;
   }
-  RobotWorld world(config);
+  return config;
+}
+
+TEST(GroupRefusal, OfASetPointThatDoesNotFitTheDriveIsToldAsTheReason) {
+  RobotWorld world(beyondTheDrive());
   world.enable();
   ASSERT_TRUE(world.move({30000.0, 0.0}, 2.0).success);
   world.run(2s);
@@ -32,14 +37,7 @@ TEST(GroupRefusal, OfASetPointThatDoesNotFitTheDriveIsToldAsTheReason) {
 
 // The reason of one trajectory is none of the next.
 TEST(GroupRefusal, OfASetPointDoesNotEndTheNextTrajectory) {
-  config::RobotConfig config = test::testRobot();
-  for (drive::AxisConfig& axis : config.axes) {
-    axis.limits.lower.reset();
-    axis.limits.upper.reset();
-    axis.limits.velocity = 1e5;
-    axis.limits.acceleration = 1e6;
-  }
-  RobotWorld world(config);
+  RobotWorld world(beyondTheDrive());
   world.enable();
   ASSERT_TRUE(world.move({21474.0, 0.0}, 2.0).success);
   world.run(3s);

@@ -257,22 +257,6 @@ TEST(RobotLss, ARecoveredDriveThatIsThereKeepsItsNodeIdUnasked) {
   EXPECT_TRUE(world.sentWithId(0x7E5).empty());
 }
 
-TEST(RobotLss, WhatMayNotBeginNowIsRefusedAtOnce) {
-  LssWorld world(0);
-  world.boot();
-  world.run(100ms);
-  const auto scan = world.begin(LssScanCommand{});
-  ASSERT_TRUE(scan->empty()) << "it is at work";
-  ASSERT_TRUE(world.call(ProcedureKind::enable, "elbow").success);
-  LssAssignCommand assign;
-  assign.node_id = 9;
-  for (const auto& refused : {world.begin(LssScanCommand{}), world.begin(assign)}) {
-    ASSERT_EQ(refused->size(), 1u);
-    EXPECT_FALSE(refused->front().success);
-    EXPECT_EQ(refused->front().message, "refused: elbow (node 2) may be in motion; stop it first");
-  }
-}
-
 TEST(RobotLss, AScanThatDidNotTakePlaceIsNoSuccess) {
   LssWorld world(0);
   world.boot();

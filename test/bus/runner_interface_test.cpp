@@ -23,6 +23,23 @@ namespace {
 using test::BusRunnerTest;
 using testing::HasSubstr;
 
+/// Its recordings lie in a folder of their own, and end with the trigger.
+struct RecordingRunner : BusRunnerTest {
+  RecordingRunner() {
+    config::RobotConfig robot = test::testRobot();
+    robot.recorder.directory = mkdtemp(folder);
+    robot.recorder.keep = 1;
+    robot.recorder.post_trigger = Duration::zero();
+    runner = std::make_unique<BusRunner>(robot, test::masterOf(robot),
+                                         std::make_unique<test::RunnerInterface>(wire), options());
+  }
+  ~RecordingRunner() override {
+    runner.reset();
+    std::filesystem::remove_all(folder);
+  }
+  char folder[24] = "/tmp/runner_test_XXXXXX";
+};
+
 TEST_F(BusRunnerTest, ShowsItsInterfaceInItsSnapshot) {
   wire->state = can::BusState::error_passive;
   std::atomic<std::int64_t> ahead_ms{0};
@@ -105,12 +122,7 @@ TEST_F(BusRunnerTest, ItsThreadIsKnownByItsName) {
   EXPECT_STREQ(name.data(), "bus");
 }
 
-TEST_F(BusRunnerTest, EventsAreInItsRecordings) {
-  char folder[] = "/tmp/runner_test_XXXXXX";
-  config::RobotConfig robot = test::testRobot();
-  robot.recorder.directory = mkdtemp(folder);
-  runner = std::make_unique<BusRunner>(robot, test::masterOf(robot),
-                                       std::make_unique<test::RunnerInterface>(wire), options());
+TEST_F(RecordingRunner, EventsAreInItsRecordings) {
   runner->start();
   waitFor([&] { return seen("elbow (node 2): booted in"); });
   const RecordingService::News news = runner->recordings().request();
@@ -118,18 +130,9 @@ TEST_F(BusRunnerTest, EventsAreInItsRecordings) {
   std::ifstream in(news.log.substr(0, news.log.rfind('.')) + ".txt");
   const std::string text{std::istreambuf_iterator<char>(in), {}};
   EXPECT_THAT(text, HasSubstr("elbow (node 2): booted in"));
-  runner.reset();
-  std::filesystem::remove_all(folder);
 }
 
-TEST_F(BusRunnerTest, RecordsABusOffThatIsOverBeforeItLooks) {
-  char folder[] = "/tmp/runner_test_XXXXXX";
-  config::RobotConfig robot = test::testRobot();
-  robot.recorder.directory = mkdtemp(folder);
-  robot.recorder.keep = 1;
-  robot.recorder.post_trigger = Duration::zero();
-  runner = std::make_unique<BusRunner>(robot, test::masterOf(robot),
-                                       std::make_unique<test::RunnerInterface>(wire), options());
+TEST_F(RecordingRunner, RecordsABusOffThatIsOverBeforeItLooks) {
   runner->start();
   wire->first_frame.get_future().wait();
   wire->bus_off_events = 1;
@@ -137,8 +140,6 @@ TEST_F(BusRunnerTest, RecordsABusOffThatIsOverBeforeItLooks) {
   waitFor([&] { return runner->recordings().nextNews(news); });
   EXPECT_THAT(news.text, HasSubstr("bus-off"));
   EXPECT_TRUE(seen("can0 was bus-off for a moment"));
-  runner.reset();
-  std::filesystem::remove_all(folder);
 }
 
 TEST_F(BusRunnerTest, TellsWhatTheOperatingSystemGranted) {
@@ -188,22 +189,13 @@ TEST_F(BusRunnerTest, LeavesSchedulingAloneWhereItIsToldTo) {
   EXPECT_FALSE(seen("the bus thread"));
 }
 
-TEST_F(BusRunnerTest, RecordsAnEmergencyByItself) {
-  char folder[] = "/tmp/runner_test_XXXXXX";
-  config::RobotConfig robot = test::testRobot();
-  robot.recorder.directory = mkdtemp(folder);
-  robot.recorder.keep = 1;
-  robot.recorder.post_trigger = Duration::zero();
-  runner = std::make_unique<BusRunner>(robot, test::masterOf(robot),
-                                       std::make_unique<test::RunnerInterface>(wire), options());
+TEST_F(RecordingRunner, RecordsAnEmergencyByItself) {
   runner->start();
   waitFor([&] { return ready(); });
   wire->emergencies = 1;
   RecordingService::News news;
   waitFor([&] { return runner->recordings().nextNews(news); });
   EXPECT_THAT(news.text, HasSubstr("shoulder (node 1): emergency 0x1000"));
-  runner.reset();
-  std::filesystem::remove_all(folder);
 }
 
 TEST_F(BusRunnerTest, LeavesNoFileOpen) {
