@@ -25,7 +25,7 @@ struct Boot {
 
 bool allReady(bus::Robot& robot) {
   for (const canopen::Node& node : robot.master().nodes()) {
-    if (node.health() != canopen::NodeHealth::ready) return false;
+    if (node.health() != fieldbus::Health::ready) return false;
   }
   return true;
 }
@@ -44,7 +44,7 @@ Boot boot(const Row& row) {
   while (!allReady(world.robot()) && world.now() < end) world.run(std::chrono::microseconds(100));
   for (const canopen::Node& node : world.robot().master().nodes()) {
     const std::uint32_t boot_ups = node.bootUps() - 1;  // the first one told that it has power
-    const bool well = node.health() == canopen::NodeHealth::ready && boot_ups == 1 &&
+    const bool well = node.health() == fieldbus::Health::ready && boot_ups == 1 &&
                       node.notes().empty() && node.emergencies() == 0;
     if (!well) {
       throw std::runtime_error(

@@ -34,7 +34,7 @@ DrivenRobot::DrivenRobot(int axes, double sync_period_s, int cycles)
   outgoing_.reserve(256);
   robot_.start(now_);
   const auto ready = [](const drive::Axis& axis) {
-    return axis.state().health == canopen::NodeHealth::ready && axis.state().feedback_valid;
+    return axis.state().health == fieldbus::Health::ready && axis.state().feedback_valid;
   };
   while (!std::all_of(robot_.axes().begin(), robot_.axes().end(), ready)) step();
   bus::Command enable;

@@ -66,8 +66,8 @@ void ScriptedDrives::onSync(std::vector<can::Frame>& out) {
 }
 
 void ScriptedDrives::onSdo(Drive& drive, const can::Frame& frame, std::vector<can::Frame>& out) {
-  const canopen::ObjectId object{static_cast<std::uint16_t>(frame.data[1] | frame.data[2] << 8),
-                                 frame.data[3]};
+  const fieldbus::ObjectId object{static_cast<std::uint16_t>(frame.data[1] | frame.data[2] << 8),
+                                  frame.data[3]};
   const auto answer = [&](std::uint8_t command, std::uint32_t value) {
     out.push_back({frame.id - 0x80,
                    {command, frame.data[1], frame.data[2], frame.data[3], byte(value, 0),

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "cia402_driver/can/frame.h"
-#include "cia402_driver/canopen/object.h"
 #include "cia402_driver/common/time.h"
+#include "cia402_driver/fieldbus/object.h"
 
 namespace cia402::benchmark {
 
@@ -33,7 +33,7 @@ class ScriptedDrives {
     std::uint8_t mode = 0;
     Duration heartbeat{};
     Time next_heartbeat = kNever;
-    std::map<canopen::ObjectId, std::uint32_t> objects;
+    std::map<fieldbus::ObjectId, std::uint32_t> objects;
   };
 
   void onNmt(const can::Frame& frame, std::vector<can::Frame>& out);

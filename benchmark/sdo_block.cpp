@@ -10,20 +10,20 @@
 namespace cia402::benchmark {
 namespace {
 
-constexpr canopen::ObjectId kObject{0x1F50, 1};
+constexpr fieldbus::ObjectId kObject{0x1F50, 1};
 constexpr std::size_t kSize = 1'000'000;  // bytes
 constexpr std::size_t kSegmentBytes = 7;
 
-canopen::Bytes randomBytes() {
+fieldbus::Bytes randomBytes() {
   std::mt19937 random(1);
-  canopen::Bytes data(kSize);
+  fieldbus::Bytes data(kSize);
   for (std::uint8_t& byte : data) byte = static_cast<std::uint8_t>(random());
   return data;
 }
 
 /// Bits of all segments on the wire, each with its true stuff bits, and of nothing else. `id`:
 /// whose identifier they carry.
-double segmentTime(const canopen::Bytes& data, std::uint32_t id, double bitrate) {
+double segmentTime(const fieldbus::Bytes& data, std::uint32_t id, double bitrate) {
   std::uint64_t bits = 0;
   unsigned sequence = 0;
   for (std::size_t at = 0; at < data.size(); at += kSegmentBytes) {
@@ -40,16 +40,17 @@ double segmentTime(const canopen::Bytes& data, std::uint32_t id, double bitrate)
 }
 
 int measure(const char* name, bool download) {
-  const canopen::Bytes data = randomBytes();
+  const fieldbus::Bytes data = randomBytes();
   tools::SdoBus bus;
-  bus.addDomain(kObject, download ? canopen::Bytes() : data);
+  bus.addDomain(kObject, download ? fieldbus::Bytes() : data);
   bus.start();
   canopen::SdoOptions options;
   options.block = canopen::SdoOptions::Block::always;
   const canopen::SdoTicket ticket = download ? bus.client().download(kObject, data, "", options)
                                              : bus.client().upload(kObject, "", options);
   const Duration took = bus.finish(ticket);
-  const canopen::Bytes& arrived = download ? bus.dictionary().find(kObject)->bytes : ticket->data();
+  const fieldbus::Bytes& arrived =
+      download ? bus.dictionary().find(kObject)->bytes : ticket->data();
   if (!ticket->ok() || arrived != data) {
     throw std::runtime_error("the transfer failed: " + ticket->message());
   }

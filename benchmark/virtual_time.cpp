@@ -18,7 +18,7 @@ constexpr double kTolerance = 0.05;  // rad between the sine and the drives
 
 bool allReady(tools::VirtualRobot& robot) {
   for (const drive::Axis& axis : robot.robot().axes()) {
-    if (axis.state().health != canopen::NodeHealth::ready) return false;
+    if (axis.state().health != fieldbus::Health::ready) return false;
   }
   return true;
 }

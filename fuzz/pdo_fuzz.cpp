@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/canopen/pdo.h"
+#include "cia402_driver/canopen/pdo_image.h"
 #include "input.h"
 
 // The process image with any mapping and any frames. An output that is packed into a frame and
@@ -28,9 +28,9 @@ std::vector<PdoConfig> readMapping(Input& input) {
   return pdos;
 }
 
-void checkLayout(const ProcessImage::Pdo& pdo) {
+void checkLayout(const PdoImage::Pdo& pdo) {
   unsigned bits = 0;
-  for (const ProcessImage::Pdo::Field& field : pdo.fields) {
+  for (const PdoImage::Pdo::Field& field : pdo.fields) {
     require(field.bits >= 1 && field.shift == bits, "fields follow each other");
     bits += field.bits;
   }
@@ -44,13 +44,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace cia402;
   fuzz::Input input(data, size);
   std::vector<canopen::PdoConfig> mapping = fuzz::readMapping(input);
-  canopen::ProcessImage image(mapping);
+  canopen::PdoImage image(mapping);
   // The other end: what the one sends is what the other receives.
   for (canopen::PdoConfig& pdo : mapping) {
     pdo.direction = pdo.direction == canopen::PdoDirection::rpdo ? canopen::PdoDirection::tpdo
                                                                  : canopen::PdoDirection::rpdo;
   }
-  canopen::ProcessImage mirror(mapping);
+  canopen::PdoImage mirror(mapping);
   for (const auto& pdo : image.tpdos()) fuzz::checkLayout(pdo);
   for (const auto& pdo : image.rpdos()) fuzz::checkLayout(pdo);
   fuzz::require(image.rpdos().size() == mirror.tpdos().size(), "both ends have the same PDOs");

@@ -10,13 +10,15 @@ import re
 import sys
 
 # What a module may include besides itself.
-MODEL = ["common", "can", "canopen", "drive", "config"]
+MODEL = ["common", "yaml", "can", "fieldbus", "canopen", "drive", "config"]
 MAY_INCLUDE = {
     "common": [],
-    "can": MODEL[:1],
-    "canopen": MODEL[:2],
-    "drive": MODEL[:3],
-    "config": MODEL[:4],
+    "yaml": ["common"],
+    "can": ["common"],
+    "fieldbus": ["common"],
+    "canopen": ["common", "can", "fieldbus"],
+    "drive": ["common", "fieldbus"],
+    "config": ["common", "yaml", "can", "fieldbus", "canopen", "drive"],
     "motion": ["common"],
     "decode": MODEL,
     "bus": MODEL + ["motion", "decode"],
@@ -28,7 +30,8 @@ MAY_INCLUDE = {
 # sim/ takes only types and numbers from the master's stack: what encodes, decodes or decides there
 # must not do so here, or a mistake would meet itself on both ends of the wire and stay unseen.
 SIM_MAY_NOT_INCLUDE = re.compile(
-    r"canopen/(sdo|pdo|emergency|heartbeat|sync|master|node|boot)|drive/(axis\.h|state_machine|conversion)")
+    r"canopen/(sdo|pdo|emergency|heartbeat|sync|master|node|boot)|fieldbus/(bytes|emergency|device)"
+    r"|drive/(axis\.h|state_machine|conversion)")
 
 SANS_IO = MODEL + ["motion", "decode", "sim"]
 # The edge of can/ towards the kernel.

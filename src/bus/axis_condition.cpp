@@ -13,11 +13,11 @@ bool unknown(const drive::AxisState& state) {
 /// What the summary says where no problem is told.
 std::string plainText(const AxisSnapshot& axis) {
   const drive::AxisState& state = axis.state;
-  if (state.health == canopen::NodeHealth::booting) {
+  if (state.health == fieldbus::Health::booting) {
     return "the drive is booting: " + axis.words.step.str();
   }
-  if (state.health != canopen::NodeHealth::ready) {
-    return std::string("the node is ") + canopen::toString(state.health);
+  if (state.health != fieldbus::Health::ready) {
+    return std::string("the node is ") + fieldbus::toString(state.health);
   }
   if (unknown(state)) {
     return "its state is unknown: no usable statusword (6041:00) and position (6064:00) yet";
@@ -33,7 +33,7 @@ std::string plainText(const AxisSnapshot& axis) {
 
 Condition conditionOf(const drive::AxisState& state, bool warning_stops, bool problem) {
   // Without a problem it is on its way: its turn to boot has not come, or it boots.
-  if (state.health != canopen::NodeHealth::ready) {
+  if (state.health != fieldbus::Health::ready) {
     return problem ? Condition::error : Condition::warning;
   }
   if (drive::isFault(state.state) || unknown(state)) return Condition::error;

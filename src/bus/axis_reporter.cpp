@@ -36,7 +36,7 @@ AxisReporter::AxisReporter(std::size_t axis, std::string who,
                            std::shared_ptr<const drive::DriveProfile> profile, EventSink& events)
     : axis_(axis), who_(std::move(who)), profile_(std::move(profile)), events_(&events) {}
 
-void AxisReporter::emergency(const canopen::Emergency& emergency, Time now,
+void AxisReporter::emergency(const fieldbus::Emergency& emergency, Time now,
                              const std::string& excuse) {
   count(emergency);
   events_->onEmergency({axis_, emergency});
@@ -46,7 +46,7 @@ void AxisReporter::emergency(const canopen::Emergency& emergency, Time now,
                  textOf(emergency, excuse), now);
 }
 
-void AxisReporter::count(const canopen::Emergency& emergency) {
+void AxisReporter::count(const fieldbus::Emergency& emergency) {
   ++counts_.total;
   const auto end = counts_.of.begin() + static_cast<std::ptrdiff_t>(counts_.codes);
   auto place = std::find_if(counts_.of.begin(), end, [&](const EmergencyCount& known) {
@@ -59,7 +59,7 @@ void AxisReporter::count(const canopen::Emergency& emergency) {
   place->last = emergency.stamp;
 }
 
-std::string AxisReporter::textOf(const canopen::Emergency& emergency,
+std::string AxisReporter::textOf(const fieldbus::Emergency& emergency,
                                  const std::string& excuse) const {
   if (!excuse.empty()) {
     return "emergency: " + drive::hexWord(emergency.code) + " " +
@@ -67,12 +67,12 @@ std::string AxisReporter::textOf(const canopen::Emergency& emergency,
            "; nothing is wrong with the drive, the axis goes on unless it says otherwise";
   }
   std::string text =
-      "emergency: " + (emergency.code == 0 ? canopen::emergencyText(0)
+      "emergency: " + (emergency.code == 0 ? fieldbus::emergencyText(0)
                                            : drive::errorCodeText(*profile_, emergency.code));
-  text += "; error register: " + canopen::errorRegisterText(emergency.error_register);
-  const std::string vendor = canopen::vendorBytesText(emergency);
+  text += "; error register: " + fieldbus::errorRegisterText(emergency.error_register);
+  const std::string vendor = fieldbus::vendorBytesText(emergency);
   if (!vendor.empty()) text += "; manufacturer bytes: " + vendor;
-  if (emergency.size != canopen::Emergency::kSize) {
+  if (emergency.size != fieldbus::Emergency::kSize) {
     text += "; the frame has " + std::to_string(emergency.size) + " bytes instead of 8";
   }
   return text;
@@ -134,7 +134,7 @@ std::string AxisReporter::kindText(std::uint32_t kind) const {
   if (kind == kMalformed) return "emergency frame without an error code";
   const auto code = static_cast<std::uint16_t>(kind);
   return drive::hexWord(code) + " " +
-         (code == 0 ? canopen::emergencyText(0) : drive::errorName(*profile_, code));
+         (code == 0 ? fieldbus::emergencyText(0) : drive::errorName(*profile_, code));
 }
 
 void AxisReporter::tell(const char* prefix, const RepeatLimiter::Summary& summary, Time now) {

@@ -9,19 +9,19 @@
 namespace cia402::bus {
 namespace {
 
-using canopen::Access;
-using canopen::DataType;
-using canopen::DictionaryEntry;
-using canopen::DictionaryObject;
-using canopen::ObjectCode;
-using canopen::ObjectId;
+using fieldbus::Access;
+using fieldbus::DataType;
+using fieldbus::DictionaryEntry;
+using fieldbus::DictionaryObject;
+using fieldbus::ObjectCode;
+using fieldbus::ObjectId;
 
 constexpr std::size_t kMostNamed = 10;
 constexpr const char* kHighest = "Highest sub-index supported";
 constexpr std::uint32_t kNotToBeRead = 0x2;  // ObjFlags of CiA 306
 
 // C drives pad their names with zeros.
-canopen::Bytes withoutPadding(canopen::Bytes data) {
+fieldbus::Bytes withoutPadding(fieldbus::Bytes data) {
   while (!data.empty() && data.back() == 0) data.pop_back();
   return data;
 }
@@ -36,26 +36,27 @@ DictionaryEntry entryOf(ObjectId id, std::string name, DataType type, Access acc
 }
 
 std::string nameOf(const DcfReading::Item& item, const std::string& problem) {
-  return canopen::toString(item.id) + " " + item.name + " (" + problem + ")";
+  return fieldbus::toString(item.id) + " " + item.name + " (" + problem + ")";
 }
 
 }  // namespace
 
-DcfDraft::DcfDraft(const drive::AxisConfig& config, const DcfStamp& stamp)
-    : axis_(config.name), who_(drive::whoIs(config)), has_eds_(config.eds != nullptr) {
+DcfDraft::DcfDraft(const drive::AxisConfig& axis, const canopen::DeviceConfig& device,
+                   const DcfStamp& stamp)
+    : axis_(axis.name), who_(drive::whoIs(axis)), has_eds_(device.eds != nullptr) {
   if (has_eds_) {
-    info_ = config.eds->info;
-    info_.last_eds = config.eds->file;
-    dictionary_ = config.eds->dictionary;
+    info_ = *device.eds;
+    info_.last_eds = axis.description->file;
+    dictionary_ = axis.description->dictionary;
   } else {
-    info_.description = "Written without an EDS, by profile " + config.profile->name;
+    info_.description = "Written without an EDS, by profile " + axis.profile->name;
     info_.granularity = 8;
-    addProfileObjects(*config.profile);
-    addCommunicationObjects(*config.profile);
+    addProfileObjects(*axis.profile);
+    addCommunicationObjects(*device.profile);
   }
   info_.file_name = stamp.file_name;
-  info_.node_id = config.node_id;
-  info_.node_name = config.name;
+  info_.node_id = device.node_id;
+  info_.node_name = axis.name;
   info_.modification_date = stamp.date;
   info_.modification_time = stamp.time;
   info_.modified_by = "cia402_driver";
@@ -98,7 +99,7 @@ void DcfDraft::addProfileObjects(const drive::DriveProfile& profile) {
                                entryOf({spec.id.index, 0}, kHighest, DataType::uint8, Access::ro));
     const bool single = first && spec.id.subindex == 0;
     object.code = single ? ObjectCode::variable : ObjectCode::record;
-    object.name = single ? spec.name : canopen::toString(spec.id).substr(0, 4);
+    object.name = single ? spec.name : fieldbus::toString(spec.id).substr(0, 4);
   }
 }
 
@@ -116,7 +117,7 @@ void DcfDraft::addRecord(std::uint16_t index, const char* name, const std::vecto
   }
 }
 
-void DcfDraft::addCommunicationObjects(const drive::DriveProfile& profile) {
+void DcfDraft::addCommunicationObjects(const canopen::DeviceProfile& profile) {
   static constexpr struct {
     std::uint16_t index;
     const char* name;
@@ -208,10 +209,10 @@ void DcfDraft::take(const DcfReading::Item& item) {
 
 void DcfDraft::store(const DcfReading::Item& item) {
   DictionaryEntry& entry = dictionary_.objects().at(item.id.index).entries.at(item.id.subindex);
-  const unsigned bits = canopen::sizeBits(entry.type);
+  const unsigned bits = fieldbus::sizeBits(entry.type);
   if (bits != 0 && item.data.size() != (bits + 7) / 8) {
     unread_.push_back(nameOf(item, std::to_string(item.data.size()) + " bytes, but it should be " +
-                                       canopen::toString(entry.type)));
+                                       fieldbus::toString(entry.type)));
     return;
   }
   ++read_;
@@ -224,7 +225,7 @@ void DcfDraft::setIdentity() {
   const auto number = [&](std::uint8_t subindex) -> std::optional<std::uint32_t> {
     const DictionaryEntry* entry = dictionary_.find(ObjectId{0x1018, subindex});
     if (entry == nullptr || !entry->value || entry->value->size() != 4) return {};
-    return static_cast<std::uint32_t>(canopen::toUnsigned(*entry->value));
+    return static_cast<std::uint32_t>(fieldbus::toUnsigned(*entry->value));
   };
   if (!info_.vendor_number) info_.vendor_number = number(1);
   if (!info_.product_number) info_.product_number = number(2);

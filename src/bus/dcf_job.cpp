@@ -1,8 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "cia402_driver/bus/dcf_job.h"
 
-#include "cia402_driver/canopen/abort_code.h"
 #include "cia402_driver/drive/fault_text.h"
+#include "cia402_driver/fieldbus/abort_code.h"
 
 namespace cia402::bus {
 namespace {
@@ -12,8 +12,8 @@ using Outcome = DcfReading::Outcome;
 constexpr unsigned kMostSilent = 3;
 
 bool isAbsent(std::uint32_t abort_code) {
-  return abort_code == canopen::abort_code::kNoSuchObject ||
-         abort_code == canopen::abort_code::kNoSuchSubindex;
+  return abort_code == fieldbus::abort_code::kNoSuchObject ||
+         abort_code == fieldbus::abort_code::kNoSuchSubindex;
 }
 
 }  // namespace
@@ -38,17 +38,17 @@ bool DcfJob::finish(const Answer& answer) {
 bool DcfJob::askNext() {
   if (next_ == reading_->items.size()) return false;
   const DcfReading::Item& item = reading_->items[next_++];
-  ticket_ = axis_->node().sdo().upload(item.id, item.name);
+  ticket_ = axis_->device().objects().upload(item.id, item.name);
   return true;
 }
 
 bool DcfJob::step() {
   if (ticket_ != nullptr) {
     if (!ticket_->done()) return false;
-    if (ticket_->failure() == canopen::SdoTransfer::Failure::cancelled) {
+    if (ticket_->failure() == fieldbus::Transfer::Failure::cancelled) {
       return fail(ticket_->reason());
     }
-    const bool silent = ticket_->failure() == canopen::SdoTransfer::Failure::timed_out;
+    const bool silent = ticket_->failure() == fieldbus::Transfer::Failure::timed_out;
     silent_ = silent ? silent_ + 1 : 0;
     if (silent_ >= kMostSilent) return fail(ticket_->message());
     take(*ticket_);
@@ -56,7 +56,7 @@ bool DcfJob::step() {
   return askNext() ? false : finish(answerOf(true, {}));
 }
 
-void DcfJob::take(const canopen::SdoTransfer& transfer) {
+void DcfJob::take(const fieldbus::Transfer& transfer) {
   auto& items = reading_->items;
   DcfReading::Item& item = items[next_ - 1];
   if (transfer.ok()) {

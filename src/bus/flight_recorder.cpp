@@ -116,7 +116,7 @@ FlightRecorder::FlightRecorder(const config::RobotConfig& robot, can::Sink& sink
 
 void FlightRecorder::watch(const Robot& robot) {
   robot_ = &robot;
-  forEachPdo(robot, [&](const canopen::Node& node, const canopen::ProcessImage::Pdo& pdo) {
+  forEachPdo(robot, [&](const canopen::Node& node, const canopen::PdoImage::Pdo& pdo) {
     identifiers_.push_back({node.id(), pdo.direction, pdo.number, pdo.cob_id});
   });
   cob_ids_ = std::vector<std::atomic<std::uint16_t>>(identifiers_.size());
@@ -125,7 +125,7 @@ void FlightRecorder::watch(const Robot& robot) {
 
 void FlightRecorder::observeIdentifiers() {
   auto place = cob_ids_.begin();
-  forEachPdo(*robot_, [&](const canopen::Node&, const canopen::ProcessImage::Pdo& pdo) {
+  forEachPdo(*robot_, [&](const canopen::Node&, const canopen::PdoImage::Pdo& pdo) {
     (place++)->store(pdo.cob_id, std::memory_order_relaxed);
   });
 }
@@ -196,8 +196,8 @@ void FlightRecorder::lookForFault(std::size_t index, const drive::AxisState& sta
   watched.state = state.state;
   watched.health = state.health;
   if (faulted) trigger(Kind::fault, index, state.error_code, now);
-  if (fell && state.health == canopen::NodeHealth::lost) trigger(Kind::node_lost, index, 0, now);
-  if (fell && state.health == canopen::NodeHealth::failed) {
+  if (fell && state.health == fieldbus::Health::lost) trigger(Kind::node_lost, index, 0, now);
+  if (fell && state.health == fieldbus::Health::failed) {
     trigger(Kind::node_failed, index, 0, now);
   }
 }

@@ -11,7 +11,7 @@ HistoryJob::HistoryJob(drive::Axis& axis, unsigned most, Done done)
     : axis_(&axis), reader_(most), done_(std::move(done)) {}
 
 bool HistoryJob::step() {
-  if (!reader_.step(axis_->node().sdo())) return false;
+  if (!reader_.step(axis_->device().objects())) return false;
   done_(reader_.history());
   return true;
 }

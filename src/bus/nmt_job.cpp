@@ -9,7 +9,7 @@ namespace {
 
 using canopen::NmtCommand;
 using canopen::NmtState;
-using canopen::NodeHealth;
+using fieldbus::Health;
 
 constexpr struct {
   const char* word;
@@ -31,10 +31,11 @@ std::optional<NmtCommand> commandOf(const std::string& word) {
   return {};
 }
 
-std::string refusal(drive::Axis& axis, const std::string& word, NmtCommand command) {
+std::string refusal(drive::Axis& axis, const canopen::Node& node, const std::string& word,
+                    NmtCommand command) {
   if (command == NmtCommand::start) return {};  // at most, it boots
   const std::string refused = drive::whoIs(axis.config()) + ": nmt " + word + " is refused: ";
-  if (command == NmtCommand::reset_node && !axis.config().profile->nmt_reset_node) {
+  if (command == NmtCommand::reset_node && !node.config().reset_node_allowed) {
     return refused +
            "by its profile (nmt_reset_node) the drive must not get that command; use "
            "reset_communication, or switch the drive off and on";
@@ -43,7 +44,7 @@ std::string refusal(drive::Axis& axis, const std::string& word, NmtCommand comma
     return refused + toString(axis.procedure().kind) + " runs (" + axis.procedure().step +
            "); wait for its end, or stop it by halt, quick_stop or disable";
   }
-  if (axis.node().health() != NodeHealth::ready) return {};
+  if (axis.device().health() != Health::ready) return {};
   const drive::AxisState& state = axis.state();
   if (state.feedback_valid && drive::powerStageOff(state.state, state.statusword)) return {};
   return refused + "the axis is not disabled (" +
@@ -55,8 +56,8 @@ std::string refusal(drive::Axis& axis, const std::string& word, NmtCommand comma
 }  // namespace
 
 Result<NmtJob> NmtJob::start(const std::string& word, const std::vector<std::size_t>& which,
-                             bool all, std::vector<drive::Axis>& axes, canopen::Master& master,
-                             Reply reply, Time now) {
+                             bool all, std::vector<drive::Axis>& axes, const Nodes& nodes,
+                             canopen::Master& master, Reply reply, Time now) {
   const auto command = commandOf(word);
   if (!command) {
     std::string known;
@@ -64,7 +65,7 @@ Result<NmtJob> NmtJob::start(const std::string& word, const std::vector<std::siz
     return Error{"nmt: unknown command \"" + word + "\"; there are " + known};
   }
   for (const std::size_t index : which) {
-    const std::string why = refusal(axes[index], word, *command);
+    const std::string why = refusal(axes[index], *nodes[index], word, *command);
     if (!why.empty()) return Error{why};
   }
   NmtJob job;
@@ -73,13 +74,12 @@ Result<NmtJob> NmtJob::start(const std::string& word, const std::vector<std::siz
   job.reply_ = std::move(reply);
   job.began_ = now;
   for (const std::size_t index : which) {
-    canopen::Node& node = axes[index].node();
-    const bool mute = node.health() == NodeHealth::ready && !node.supervision().watched;
+    canopen::Node& node = *nodes[index];
+    const bool mute = node.health() == Health::ready && !node.supervision().watched;
     const bool tells = node.config().heartbeat > Duration::zero() && !mute;
-    job.entries_.push_back({index, tells, false, false, {}});
+    job.entries_.push_back({index, drive::whoIs(axes[index].config()), tells, false, false, {}});
     if (*command == NmtCommand::start) {
-      const bool needed =
-          node.health() != NodeHealth::ready && node.health() != NodeHealth::booting;
+      const bool needed = node.health() != Health::ready && node.health() != Health::booting;
       // A drive that is not configured must not be started as it is: its PDOs may mean anything.
       if (needed) node.boot(now, false);
     } else if (!all) {
@@ -90,54 +90,54 @@ Result<NmtJob> NmtJob::start(const std::string& word, const std::vector<std::siz
   return job;
 }
 
-bool NmtJob::step(std::vector<drive::Axis>& axes, Time now) {
+bool NmtJob::step(const Nodes& nodes, Time now) {
   for (Entry& entry : entries_) {
-    if (!entry.ended) watch(entry, axes[entry.axis], now);
+    if (!entry.ended) watch(entry, *nodes[entry.axis], now);
   }
   const bool ended =
       std::all_of(entries_.begin(), entries_.end(), [](const Entry& e) { return e.ended; });
   if (!ended) return false;
   if (staysDown()) {
-    for (Entry& entry : entries_) lookAgain(entry, axes[entry.axis]);
+    for (Entry& entry : entries_) lookAgain(entry, *nodes[entry.axis]);
   }
   if (reply_) reply_(answer());
   return true;
 }
 
 /// While the others were waited for, a later call may have booted a node again.
-void NmtJob::lookAgain(Entry& entry, drive::Axis& axis) const {
-  const NodeHealth health = axis.node().health();
-  if (!entry.success || (health != NodeHealth::ready && health != NodeHealth::booting)) return;
+void NmtJob::lookAgain(Entry& entry, const canopen::Node& node) const {
+  const Health health = node.health();
+  if (!entry.success || (health != Health::ready && health != Health::booting)) return;
   entry.success = false;
-  entry.message = drive::whoIs(axis.config()) + ": nmt " + word_ +
-                  ": the drive did so, but by now it is configured and started again";
+  entry.message = about(entry) + "the drive did so, but by now it is configured and started again";
 }
+
+std::string NmtJob::about(const Entry& entry) const { return entry.who + ": nmt " + word_ + ": "; }
 
 bool NmtJob::staysDown() const {
   return command_ == NmtCommand::stop || command_ == NmtCommand::enter_pre_operational;
 }
 
-void NmtJob::watch(Entry& entry, drive::Axis& axis, Time now) const {
+void NmtJob::watch(Entry& entry, const canopen::Node& node, Time now) const {
   if (now <= began_) return;
   if (staysDown()) {
-    watchState(entry, axis, now);
+    watchState(entry, node, now);
   } else {
-    watchBoot(entry, axis, now);
+    watchBoot(entry, node, now);
   }
   if (!entry.ended) return;
-  entry.message = drive::whoIs(axis.config()) + ": nmt " + word_ + ": " + entry.message;
+  entry.message = about(entry) + entry.message;
 }
 
 /// Start and the resets end with the node configured and operational, by what it told since.
-void NmtJob::watchBoot(Entry& entry, drive::Axis& axis, Time now) const {
-  canopen::Node& node = axis.node();
-  const NodeHealth health = node.health();
+void NmtJob::watchBoot(Entry& entry, const canopen::Node& node, Time now) const {
+  const Health health = node.health();
   const Duration patience = kBootTimes * node.config().boot_timeout + kLeastWait;
   // An older heartbeat may not have told yet that the drive left that state.
   const bool told = !node.supervision().watched ||
                     (node.lastHeartbeat() > began_ && node.nmtState() == NmtState::operational);
-  entry.success = health == NodeHealth::ready && told;
-  entry.ended = entry.success || health == NodeHealth::failed || health == NodeHealth::absent ||
+  entry.success = health == Health::ready && told;
+  entry.ended = entry.success || health == Health::failed || health == Health::absent ||
                 now >= began_ + patience;
   if (entry.success) {
     const bool was_reset = command_ != NmtCommand::start;
@@ -145,14 +145,13 @@ void NmtJob::watchBoot(Entry& entry, drive::Axis& axis, Time now) const {
                     (was_reset ? "; it is disabled" : "");
   } else if (entry.ended) {
     entry.message = "sent, but the node is not operational: " +
-                    (health == NodeHealth::ready ? "its heartbeat does not say so"
-                     : node.problem().empty()    ? node.bootStep()
-                                                 : node.problem());
+                    (health == Health::ready  ? "its heartbeat does not say so"
+                     : node.problem().empty() ? node.bootStep()
+                                              : node.problem());
   }
 }
 
-void NmtJob::watchState(Entry& entry, drive::Axis& axis, Time now) const {
-  canopen::Node& node = axis.node();
+void NmtJob::watchState(Entry& entry, const canopen::Node& node, Time now) const {
   const NmtState wanted =
       command_ == NmtCommand::stop ? NmtState::stopped : NmtState::pre_operational;
   const bool heard = node.nmtState() == wanted && node.lastHeartbeat() > began_;

@@ -35,13 +35,13 @@ std::string insteadOf(CoordinateMark mark, const std::string& axis) {
 
 /// Offsets that a drive adds to each set-point (CiA 402-2: 60B0h, 60B1h, 60B2h; of further axes
 /// 800h later): what is in them moves it, now or with the next set-point.
-bool addsToSetPoints(canopen::ObjectId id) {
+bool addsToSetPoints(fieldbus::ObjectId id) {
   constexpr unsigned kFirst = 0x60B0, kLast = 0x60B2, kAxisSize = 0x800, kEnd = 0xA000;
   if (id.index < kFirst || id.index >= kEnd) return false;
   return (id.index - kFirst) % kAxisSize <= kLast - kFirst;
 }
 
-std::string offsetRefusal(canopen::ObjectId id, const canopen::Bytes& data) {
+std::string offsetRefusal(fieldbus::ObjectId id, const fieldbus::Bytes& data) {
   const bool nothing = std::all_of(data.begin(), data.end(), [](auto byte) { return byte == 0; });
   if (nothing || !addsToSetPoints(id)) return {};
   return "the drive adds it to each of its set-points, so that it would move by it though nobody "
@@ -49,8 +49,8 @@ std::string offsetRefusal(canopen::ObjectId id, const canopen::Bytes& data) {
 }
 
 /// May the drive have taken it?
-bool mayBeWritten(const canopen::SdoTransfer& transfer) {
-  return transfer.failure() != canopen::SdoTransfer::Failure::aborted_by_server;
+bool mayBeWritten(const fieldbus::Transfer& transfer) {
+  return transfer.failure() != fieldbus::Transfer::Failure::aborted_by_server;
 }
 
 }  // namespace
@@ -65,7 +65,7 @@ Result<ObjectJob> ObjectJob::find(drive::Axis& axis, const std::string& object, 
   job.id_ = found->id;
   job.spec_ = found->spec;
   job.name_ = found->title;
-  std::string refusal = axis.node().stoppedRefusal(job.name_);
+  std::string refusal = axis.device().askingRefusal(job.name_);
   if (!refusal.empty()) return Error{std::move(refusal)};
   return job;
 }
@@ -73,7 +73,7 @@ Result<ObjectJob> ObjectJob::find(drive::Axis& axis, const std::string& object, 
 Result<ObjectJob> ObjectJob::read(drive::Axis& axis, const std::string& object, Reply reply) {
   Result<ObjectJob> job = find(axis, object, std::move(reply));
   if (job) {
-    job.value().ticket_ = axis.node().sdo().upload(job.value().id_, job.value().name_);
+    job.value().ticket_ = axis.device().objects().upload(job.value().id_, job.value().name_);
   }
   return job;
 }
@@ -89,18 +89,18 @@ Result<ObjectJob> ObjectJob::write(drive::Axis& axis, const std::string& object,
   if (!refusal.empty()) return Error{job.who_ + ": " + job.name_ + " not written: " + refusal};
   if (!job.spec_) {
     job.stage_ = Stage::asking_size;
-    job.ticket_ = axis.node().sdo().upload(job.id_, job.name_);
+    job.ticket_ = axis.device().objects().upload(job.id_, job.name_);
     job.lock();
     return found;
   }
-  const Result<canopen::Bytes> data = encodeObject(*job.spec_, value);
+  const Result<fieldbus::Bytes> data = encodeObject(*job.spec_, value);
   if (!data) return Error{job.who_ + ": " + job.name_ + " not written: " + data.error().message};
   const std::string moves = offsetRefusal(job.id_, *data);
   if (!moves.empty()) return Error{job.who_ + ": " + job.name_ + " not written: " + moves};
-  if (const auto& eds = axis.config().eds) {
-    const canopen::DictionaryEntry* entry = eds->dictionary.find(job.id_);
+  if (const auto& eds = axis.config().description) {
+    const fieldbus::DictionaryEntry* entry = eds->dictionary.find(job.id_);
     const auto allowed =
-        entry != nullptr ? canopen::checkWrite(*entry, *data, eds->file) : Result<void>();
+        entry != nullptr ? fieldbus::checkWrite(*entry, *data, eds->file) : Result<void>();
     if (!allowed) {
       return Error{job.who_ + ": " + job.name_ + " not written: " + allowed.error().message};
     }
@@ -127,15 +127,14 @@ std::string ObjectJob::calibrationRefusal() const {
 }
 
 /// What gives a drive another zero is not written twice.
-void ObjectJob::download(const canopen::Bytes& data) {
+void ObjectJob::download(const fieldbus::Bytes& data) {
   stage_ = Stage::writing;
-  std::optional<canopen::SdoOptions> once;
+  std::optional<fieldbus::AccessOptions> once;
   if (locked_) {
-    once.emplace();
-    once->timeout = axis_->config().profile->timing.sdo;
+    once = axis_->device().times().access;
     once->retries = 0;
   }
-  ticket_ = axis_->node().sdo().download(id_, data, name_, once);
+  ticket_ = axis_->device().objects().download(id_, data, name_, once);
 }
 
 bool ObjectJob::step(Time now) {
@@ -212,7 +211,7 @@ bool ObjectJob::finishRead() {
 
 std::optional<drive::ObjectSpec> ObjectJob::unnamedObject() const {
   if (spec_) return {};
-  if (canopen::isStandardText(id_)) {
+  if (fieldbus::isStandardText(id_)) {
     drive::ObjectSpec text;
     text.id = id_;
     text.type = drive::DataType::visible_string;
@@ -223,7 +222,7 @@ std::optional<drive::ObjectSpec> ObjectJob::unnamedObject() const {
 
 bool ObjectJob::writeWithAskedSize() {
   const auto unnamed = unnamedObject();
-  const Result<canopen::Bytes> data =
+  const Result<fieldbus::Bytes> data =
       unnamed ? encodeObject(*unnamed, value_) : encodeUnlisted(value_, ticket_->data().size());
   if (!data) return finish(false, who_ + ": " + name_ + " not written: " + data.error().message);
   const std::string moves = offsetRefusal(id_, *data);

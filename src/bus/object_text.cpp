@@ -15,10 +15,10 @@
 namespace cia402::bus {
 namespace {
 
-using canopen::Bytes;
 using drive::ObjectSpec;
+using fieldbus::Bytes;
 
-bool isText(drive::DataType type) { return canopen::sizeBits(type) == 0; }
+bool isText(drive::DataType type) { return fieldbus::sizeBits(type) == 0; }
 
 /// Drives written in C pad their texts with zeros.
 Bytes unpadded(Bytes data) {
@@ -70,14 +70,14 @@ struct IntegerRange {
 };
 
 IntegerRange rangeOf(drive::DataType type) {
-  const unsigned bits = canopen::sizeBits(type);
+  const unsigned bits = fieldbus::sizeBits(type);
   const std::uint64_t all = bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
   IntegerRange range;
-  range.highest = canopen::isSigned(type) ? all >> 1 : all;
-  range.lowest = canopen::isSigned(type) ? -static_cast<std::int64_t>(all >> 1) - 1 : 0;
+  range.highest = fieldbus::isSigned(type) ? all >> 1 : all;
+  range.lowest = fieldbus::isSigned(type) ? -static_cast<std::int64_t>(all >> 1) - 1 : 0;
   range.highest_pattern = all;
   range.size = bits == 1 ? 1 : bits / 8;
-  range.type = canopen::toString(type);
+  range.type = fieldbus::toString(type);
   return range;
 }
 
@@ -109,7 +109,7 @@ Result<Bytes> integerBytes(const std::string& value, const IntegerRange& range) 
     return Error{value + " does not fit " + range.type + " (" + std::to_string(range.lowest) +
                  ".." + std::to_string(range.highest) + ")"};
   }
-  return canopen::toBytes(raw & range.highest_pattern, range.size);
+  return fieldbus::toBytes(raw & range.highest_pattern, range.size);
 }
 
 /// "01 2A FF".
@@ -130,14 +130,14 @@ Result<Bytes> bytesFrom(const std::string& value) {
 
 /// A number, or its bits in hexadecimal.
 Result<Bytes> floatBytes(const std::string& value, const ObjectSpec& spec) {
-  const unsigned size = canopen::sizeBits(spec.type) / 8;
+  const unsigned size = fieldbus::sizeBits(spec.type) / 8;
   if (isHexadecimal(value)) {
     const Result<Bytes> bits = integerBytes(value, rangeOfSize(size));
     if (!bits) return bits;
-    const std::uint64_t raw = canopen::toUnsigned(*bits);
+    const std::uint64_t raw = fieldbus::toUnsigned(*bits);
     const auto finite = drive::sendable(spec.type, spec.encoding, raw);
     if (!finite) return Error{drive::notFinite(spec.type, raw)};
-    return canopen::toBytes(*finite, size);
+    return fieldbus::toBytes(*finite, size);
   }
   char* end = nullptr;
   const double number = std::strtod(value.c_str(), &end);
@@ -150,7 +150,7 @@ Result<Bytes> floatBytes(const std::string& value, const ObjectSpec& spec) {
                  " cannot be sent: it is no finite number that fits the object; write e.g. "
                  "-1.5"};
   }
-  return canopen::toBytes(*bits, size);
+  return fieldbus::toBytes(*bits, size);
 }
 
 }  // namespace
@@ -161,16 +161,16 @@ std::string textOf(const Bytes& data) {
 
 std::string inJointUnits(const ObjectSpec& spec, const drive::AxisConfig& axis, const Bytes& data) {
   const char* unit = decode::unitOf(spec.quantity, axis);
-  if (unit == nullptr || data.size() * 8 != canopen::sizeBits(spec.type)) return {};
+  if (unit == nullptr || data.size() * 8 != fieldbus::sizeBits(spec.type)) return {};
   const auto joint = drive::Conversion::create(spec, *axis.profile, axis.geometry);
   if (!joint) return {};
-  return motion::formatNumber(joint->toJoint(canopen::toUnsigned(data))) + " " + unit;
+  return motion::formatNumber(joint->toJoint(fieldbus::toUnsigned(data))) + " " + unit;
 }
 
 ObjectText describeObject(const ObjectSpec* spec, const drive::AxisConfig& axis,
                           const Bytes& data) {
   if (spec == nullptr) return describeUnlisted(data);
-  const unsigned bits = canopen::sizeBits(spec->type);
+  const unsigned bits = fieldbus::sizeBits(spec->type);
   ObjectText text;
   if (isText(spec->type)) {
     const bool visible = spec->type == drive::DataType::visible_string;
@@ -180,15 +180,15 @@ ObjectText describeObject(const ObjectSpec* spec, const drive::AxisConfig& axis,
   }
   if (data.size() * 8 != (bits == 1 ? 8 : bits)) {
     text.value = textOf(data) + " (" + std::to_string(data.size()) +
-                 " bytes, but the profile says " + canopen::toString(spec->type) + ")";
+                 " bytes, but the profile says " + fieldbus::toString(spec->type) + ")";
     return text;
   }
-  const std::uint64_t raw = canopen::toUnsigned(data);
+  const std::uint64_t raw = fieldbus::toUnsigned(data);
   if (drive::holdsFloat(spec->type, spec->encoding)) {
     text.number = drive::floatOf(spec->type, spec->encoding, raw);
     text.value = motion::formatNumber(text.number);
   } else {
-    const bool with_sign = canopen::isSigned(spec->type);
+    const bool with_sign = fieldbus::isSigned(spec->type);
     const std::int64_t number = signExtended(raw, bits);
     text.number = with_sign ? static_cast<double>(number) : static_cast<double>(raw);
     text.value = (with_sign ? std::to_string(number) : std::to_string(raw)) + " (" +

@@ -78,7 +78,7 @@ std::string stateWords(std::uint8_t state, const drive::AxisConfig&) {
   return drive::toString(static_cast<drive::State>(state));
 }
 std::string healthWords(std::uint8_t health, const drive::AxisConfig&) {
-  return canopen::toString(static_cast<canopen::NodeHealth>(health));
+  return fieldbus::toString(static_cast<fieldbus::Health>(health));
 }
 std::string modeWords(std::int16_t mode, const drive::AxisConfig& axis) {
   return decode::modeText(mode, *axis.profile);
@@ -143,7 +143,8 @@ class Teller {
     }
   }
   std::string nameOf(std::size_t axis) const {
-    return axis < robot_.axes.size() ? decoder_.nodeName(robot_.axes[axis].node_id) : "";
+    return axis < robot_.axes.size() ? decoder_.nodeName(robot_.deviceOf(robot_.axes[axis]).node_id)
+                                     : "";
   }
   void tellAxis(const AxisRecord& record) {
     if (record.axis >= robot_.axes.size()) return;

@@ -26,7 +26,7 @@ Robot::Robot(config::RobotConfig robot, canopen::MasterConfig master, can::Sink&
       external_sync_(config_.bus.sync_period, config_.bus.sync_counter) {
   const Duration cycle = config_.bus.sync_period;
   for (const drive::AxisConfig& axis : config_.axes) {
-    nodes_.push_back(master_.find(axis.node_id));
+    nodes_.push_back(master_.find(config_.deviceOf(axis).node_id));
     axes_.emplace_back(axis, *nodes_.back());
     motions_.emplace_back(axis, cycle);
   }
@@ -80,7 +80,7 @@ void Robot::receive(const can::Frame& frame, Time stamp, Time now) {
   const bool sdo_answer = frame.id > 0x580 && frame.id < 0x600;
   if (!sdo_answer) return;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    if (axes_[i].config().node_id == (frame.id & 0x7F)) answered_[i] = any_answered_ = true;
+    if (nodes_[i]->id() == (frame.id & 0x7F)) answered_[i] = any_answered_ = true;
   }
 }
 
@@ -122,12 +122,12 @@ void Robot::tick(Time now) {
 bool Robot::mayProduceSync() {
   if (!sync_held_) return true;
   const auto& nodes = master_.nodes();
-  const auto is = [](canopen::NodeHealth health) {
+  const auto is = [](fieldbus::Health health) {
     return [health](const canopen::Node& node) { return node.health() == health; };
   };
   const auto started = [](const canopen::Node& node) { return node.started(); };
   sync_held_ = std::none_of(nodes.begin(), nodes.end(), started) &&
-               std::any_of(nodes.begin(), nodes.end(), is(canopen::NodeHealth::booting));
+               std::any_of(nodes.begin(), nodes.end(), is(fieldbus::Health::booting));
   return !sync_held_;
 }
 
@@ -156,7 +156,7 @@ void Robot::cycle(Time now) {
     axes_[i].readFeedback(now);
     axes_[i].update(now);
     const drive::AxisState& state = axes_[i].state();
-    if (state.health == canopen::NodeHealth::ready && state.stamp == last_feedback_[i]) {
+    if (state.health == fieldbus::Health::ready && state.stamp == last_feedback_[i]) {
       ++missed_feedback_[i];
     }
     last_feedback_[i] = state.stamp;
@@ -190,7 +190,7 @@ void Robot::stepJobs(Time now) {
     keep_running(procedures_, [&](ProcedureJob& job) { return job.step(axes_, now); });
   }
   if (!objects_.empty()) keep_running(objects_, [&](ObjectJob& job) { return job.step(now); });
-  if (!nmt_.empty()) keep_running(nmt_, [&](NmtJob& job) { return job.step(axes_, now); });
+  if (!nmt_.empty()) keep_running(nmt_, [&](NmtJob& job) { return job.step(nodes_, now); });
   if (!histories_.empty()) keep_running(histories_, [](HistoryJob& job) { return job.step(); });
   if (!dcfs_.empty()) keep_running(dcfs_, [](DcfJob& job) { return job.step(); });
 }
@@ -250,7 +250,7 @@ void Robot::stepShutdown(Time now) {
   }
   if (shutdown_ == Shutdown::disabling) {
     const bool disabled = std::none_of(axes_.begin(), axes_.end(), [](const drive::Axis& axis) {
-      return axis.state().health == canopen::NodeHealth::ready && axis.procedure().running;
+      return axis.state().health == fieldbus::Health::ready && axis.procedure().running;
     });
     if (!disabled && now < shutdown_began_ + kDisableTime) return;
     master_.commandAll(canopen::NmtCommand::enter_pre_operational, now);
@@ -277,17 +277,15 @@ drive::Axis* Robot::axisToAsk(const std::string& name, const std::string& what,
                               const Reply& reply) {
   drive::Axis* axis = axisNamed(name, reply);
   if (axis == nullptr) return nullptr;
-  const std::string refusal = axis->node().stoppedRefusal(what);
+  const std::string refusal = axis->device().askingRefusal(what);
   if (refusal.empty()) return axis;
   refuse(reply, refusal);
   return nullptr;
 }
 
 std::size_t Robot::axisOf(const canopen::Node& node) const {
-  const auto axis = std::find_if(axes_.begin(), axes_.end(), [&](const drive::Axis& a) {
-    return a.config().node_id == node.id();
-  });
-  return static_cast<std::size_t>(axis - axes_.begin());
+  const auto found = std::find(nodes_.begin(), nodes_.end(), &node);
+  return static_cast<std::size_t>(found - nodes_.begin());
 }
 
 void Robot::tell(Event::Severity severity, std::string_view text, Time now) {
@@ -298,7 +296,7 @@ void Robot::tell(Event::Severity severity, std::string_view text, Time now) {
   events_.onEvent(event);
 }
 
-void Robot::onEmergency(canopen::Node& node, const canopen::Emergency& emergency) {
+void Robot::onEmergency(canopen::Node& node, const fieldbus::Emergency& emergency) {
   const std::size_t index = axisOf(node);
   if (index == axes_.size()) return;
   const drive::DriveProfile& profile = *axes_[index].config().profile;
@@ -321,20 +319,20 @@ void Robot::onBootUp(canopen::Node& node, Time now) {
   if (++news_[index].boot_ups > 2) reporters_[index].bootUp(now);
 }
 
-void Robot::onHealthChange(canopen::Node& node, canopen::NodeHealth before, Time now) {
+void Robot::onHealthChange(canopen::Node& node, fieldbus::Health before, Time now) {
   const std::size_t index = axisOf(node);
   if (index == axes_.size()) return;
   axes_[index].onHealthChange(before, now);
-  const canopen::NodeHealth health = node.health();
+  const fieldbus::Health health = node.health();
   AxisNews& news = news_[index];
-  if (health == canopen::NodeHealth::booting) {
+  if (health == fieldbus::Health::booting) {
     news.boot_began = now;
   } else {
     news.boot_ups = 0;
   }
-  const bool asked_for = health == canopen::NodeHealth::booting || shutdown_ != Shutdown::no;
+  const bool asked_for = health == fieldbus::Health::booting || shutdown_ != Shutdown::no;
   if (asked_for) return;
-  if (health == canopen::NodeHealth::ready) return tellBooted(index, now);
+  if (health == fieldbus::Health::ready) return tellBooted(index, now);
   std::string text = node.problem();  // names the node itself
   if (text.empty()) text = node.who() + ": " + toString(health);
   if (node.excused()) text += "; it is optional, the others go on without it";

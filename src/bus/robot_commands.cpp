@@ -44,7 +44,7 @@ void Robot::run(ProcedureCommand& command, Reply reply, Time now) {
     const drive::AxisConfig& axis = axes_[i].config();
     const bool named = axis.name == command.axis;
     const bool concerned = command.axis.empty() && (!homing || axis.homing);
-    if (concerned && axes_[i].node().excused()) {
+    if (concerned && axes_[i].device().excused()) {
       left_out += "; " + drive::jointName(axis) + " is optional and not there, it was left out";
       continue;
     }
@@ -117,8 +117,8 @@ void Robot::run(NmtServiceCommand& command, const Reply& reply, Time now) {
     refuse(reply, noSuchAxis(command.axis));
     return;
   }
-  Result<NmtJob> job =
-      NmtJob::start(command.command, which, command.axis.empty(), axes_, master_, reply, now);
+  Result<NmtJob> job = NmtJob::start(command.command, which, command.axis.empty(), axes_, nodes_,
+                                     master_, reply, now);
   if (!job) {
     refuse(reply, job.error().message);
     return;

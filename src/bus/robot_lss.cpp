@@ -10,7 +10,7 @@
 namespace cia402::bus {
 namespace {
 
-using canopen::NodeHealth;
+using fieldbus::Health;
 namespace lss = canopen::lss;
 
 constexpr Duration kLookInterval = std::chrono::seconds(5);
@@ -27,7 +27,7 @@ bool neverHeard(const canopen::Node& node) {
 
 /// It failed, or was taken out of operation, and its heartbeat has ended since.
 bool fellSilent(const canopen::Node& node, Time now) {
-  return node.health() == NodeHealth::failed &&
+  return node.health() == Health::failed &&
          node.supervision().kind == canopen::ErrorControl::heartbeat &&
          now > node.lastHeartbeat() + node.config().heartbeat_timeout;
 }
@@ -43,7 +43,7 @@ std::string Robot::motionOnBus() const {
   }
   for (const drive::Axis& axis : axes_) {
     const drive::AxisState& state = axis.state();
-    if (state.health != NodeHealth::ready) continue;
+    if (state.health != Health::ready) continue;
     const bool still = std::abs(state.velocity) < axis.config().standstill_velocity;
     if (!still && !(state.feedback_valid && drive::powerStageOff(state.state, state.statusword))) {
       return "refused: " + drive::whoIs(axis.config()) + " may be in motion; stop it first";
@@ -55,7 +55,7 @@ std::string Robot::motionOnBus() const {
 std::vector<canopen::NodeId> Robot::nodesInOperation() const {
   std::vector<canopen::NodeId> ids = {config_.bus.node_id};
   for (const canopen::Node& node : master_.nodes()) {
-    if (canopen::isAway(node.health()) || neverHeard(node) || fellSilent(node, now_)) continue;
+    if (fieldbus::isAway(node.health()) || neverHeard(node) || fellSilent(node, now_)) continue;
     ids.push_back(node.id());
   }
   return ids;
@@ -65,9 +65,10 @@ std::vector<canopen::NodeId> Robot::nodesInOperation() const {
 void Robot::assignByLss(std::size_t index, LssOccasion occasion) {
   const drive::AxisConfig& axis = config_.axes[index];
   canopen::LssAssignTask::Options options;
-  options.identity = axis.lss->identity;
-  options.node_id = axis.node_id;
-  options.store = axis.lss->store;
+  const canopen::DeviceConfig& device = config_.deviceOf(axis);
+  options.identity = device.lss->identity;
+  options.node_id = device.node_id;
+  options.store = device.lss->store;
   options.reset = occasion != LssOccasion::start;
   if (options.reset) options.in_use = [this] { return nodesInOperation(); };
   const bool looking = occasion == LssOccasion::look;
@@ -101,7 +102,7 @@ void Robot::lssAssigned(std::size_t index, const canopen::LssTask& task, const s
 /// @return true if node-IDs are given out before anything else.
 bool Robot::beginLss() {
   for (std::size_t i = 0; i < config_.axes.size(); ++i) {
-    if (config_.axes[i].lss) assignByLss(i, LssOccasion::start);
+    if (config_.deviceOf(config_.axes[i]).lss) assignByLss(i, LssOccasion::start);
   }
   return lss_.busy();
 }
@@ -134,8 +135,8 @@ void Robot::lookForLostDrives(Time now) {
   next_lss_look_ = now + kLookInterval;
   if (shutdown_ != Shutdown::no) return;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    const bool away = canopen::isAway(axes_[i].state().health);
-    if (config_.axes[i].lss && away) assignByLss(i, LssOccasion::look);
+    const bool away = fieldbus::isAway(axes_[i].state().health);
+    if (config_.deviceOf(config_.axes[i]).lss && away) assignByLss(i, LssOccasion::look);
   }
 }
 
@@ -143,9 +144,9 @@ void Robot::lookForLostDrives(Time now) {
 bool Robot::recoverByLss(const std::vector<ProcedureJob::Item>& items) {
   bool needed = false;
   for (const ProcedureJob::Item& item : items) {
-    const NodeHealth health = axes_[item.axis].state().health;
-    const bool there = health == NodeHealth::booting || health == NodeHealth::ready;
-    if (!config_.axes[item.axis].lss || there) continue;
+    const Health health = axes_[item.axis].state().health;
+    const bool there = health == Health::booting || health == Health::ready;
+    if (!config_.deviceOf(config_.axes[item.axis]).lss || there) continue;
     assignByLss(item.axis, LssOccasion::recover);
     needed = true;
   }
@@ -166,7 +167,8 @@ void Robot::run(LssScanCommand& command, const Reply& reply, Time) {
           answer.device_axes.emplace_back();
           std::string owner;
           for (const drive::AxisConfig& axis : config_.axes) {
-            const bool its = axis.lss && axis.lss->identity == identity;
+            const auto& assigned = config_.deviceOf(axis).lss;
+            const bool its = assigned && assigned->identity == identity;
             if (its) answer.device_axes.back() = axis.name;
             if (its) owner = " is that of " + drive::whoIs(axis);
           }
@@ -220,7 +222,7 @@ std::string Robot::notDisabled(std::size_t index) const {
            procedure.step + ")";
   }
   const bool off = state.feedback_valid && drive::powerStageOff(state.state, state.statusword);
-  return state.health == NodeHealth::ready && !off ? who + " is not disabled" : std::string();
+  return state.health == Health::ready && !off ? who + " is not disabled" : std::string();
 }
 
 /// Why not all devices may be told to take their new bit timing; empty if they may.
@@ -255,8 +257,8 @@ std::string Robot::bitTimingRefusal(std::size_t index, lss::Identity& identity) 
   const drive::AxisConfig& config = axes_[index].config();
   const std::string why = notDisabled(index);
   if (!why.empty()) return "refused: " + why + "; disable it first";
-  if (config.lss) {
-    identity = config.lss->identity;
+  if (const auto& assigned = config_.deviceOf(config).lss) {
+    identity = assigned->identity;
   } else if (const auto& read = nodes_[index]->identity()) {
     identity = {read->vendor_id, read->product_code, read->revision, read->serial};
   } else {

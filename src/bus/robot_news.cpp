@@ -66,7 +66,8 @@ std::string Robot::unknownProblem(std::size_t axis, Time now) {
   }
   news.unknown_since = std::min(news.unknown_since, now);
   const drive::AxisConfig& config = config_.axes[axis];
-  const Duration patience = kFirstFeedback + config.stale_after * config.sync_period;
+  const Duration patience =
+      kFirstFeedback + config_.deviceOf(config).stale_after * config.sync_period;
   return now - news.unknown_since < patience ? std::string() : text;
 }
 
@@ -120,7 +121,7 @@ void Robot::watchAxes(Time now) {
 /// What it says of itself may change without its state.
 bool Robot::isUnwell(std::size_t axis) const {
   const drive::AxisState& state = axes_[axis].state();
-  const bool well = state.health == canopen::NodeHealth::ready && !drive::isFault(state.state) &&
+  const bool well = state.health == fieldbus::Health::ready && !drive::isFault(state.state) &&
                     state.state != drive::State::unknown && state.feedback_valid && !state.warning;
   return !well || axes_[axis].procedure().running || !news_[axis].words.problem.empty();
 }
@@ -138,8 +139,8 @@ void Robot::tellNews(std::size_t axis, Time now) {
   news.procedure = procedure.id;
   news.running = procedure.running;
   news.checked = now;
-  const canopen::Node& node = axes_[axis].node();
-  const bool booting = state.health != canopen::NodeHealth::ready;
+  fieldbus::Device& node = axes_[axis].device();
+  const bool booting = state.health != fieldbus::Health::ready;
   const bool in_lss = lss_.busy() && lss_.who() == config_.axes[axis].name;
   news.words.say(&AxisWords::step, in_lss    ? lss_.step()
                                    : booting ? node.bootStep()
@@ -153,10 +154,10 @@ void Robot::tellNews(std::size_t axis, Time now) {
 void Robot::tellProblem(std::size_t axis, Time now) {
   AxisNews& news = news_[axis];
   const drive::AxisState& state = axes_[axis].state();
-  const canopen::Node& node = axes_[axis].node();
+  fieldbus::Device& node = axes_[axis].device();
   std::string problem = !node.problem().empty() ? node.problem() : axes_[axis].faultText();
   if (problem.empty()) problem = unknownProblem(axis, now);
-  if (state.health == canopen::NodeHealth::ready) lss_problems_[axis].clear();
+  if (state.health == fieldbus::Health::ready) lss_problems_[axis].clear();
   if (!lss_problems_[axis].empty()) problem = lss_problems_[axis];  // the reason for what follows
   const bool noticed = news.notices != axes_[axis].noticeCount();
   const bool told_by_health = !node.problem().empty();

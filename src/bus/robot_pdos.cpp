@@ -13,7 +13,7 @@ constexpr Duration kPdoNewsInterval = std::chrono::seconds(1);  // per node
 void Robot::watchPdos(std::size_t axis, Time now) {
   AxisNews& news = news_[axis];
   const canopen::Node& node = *nodes_[axis];
-  const canopen::ProcessImage& image = node.image();
+  const canopen::PdoImage& image = node.image();
   const bool short_or_long = image.wrongLengths() != news.wrong_lengths;
   const bool stale = image.staleCount() != news.stale_count;
   if (now < news.pdos_told + kPdoNewsInterval) return;

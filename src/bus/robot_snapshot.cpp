@@ -10,7 +10,7 @@ namespace {
 /// Boot has found a COB-ID that canopen::receivedIdentifiers() did not foresee.
 bool hasOwnCobIds(const canopen::Node& node, const std::bitset<2048>& foreseen) {
   const auto& tpdos = node.image().tpdos();
-  return std::any_of(tpdos.begin(), tpdos.end(), [&](const canopen::ProcessImage::Pdo& pdo) {
+  return std::any_of(tpdos.begin(), tpdos.end(), [&](const canopen::PdoImage::Pdo& pdo) {
     return pdo.cob_id < foreseen.size() && !foreseen[pdo.cob_id];
   });
 }

@@ -150,7 +150,7 @@ void Player::report(const char* oracle, const std::string& axis, const std::stri
 void Player::traceFrame(const can::Frame& frame) {
   const AxisFacts* const watched = stage_.find(options_.watch);
   if (watched == nullptr || frame.error) return;
-  if (frame.id != 0x80 && (frame.id & 0x7F) != watched->config->node_id) return;
+  if (frame.id != 0x80 && (frame.id & 0x7F) != watched->node_id) return;
   const std::string line = can::formatLogLine({{}, "can", frame, can::Direction::unknown});
   say(line.substr(line.find("can ")));
 }

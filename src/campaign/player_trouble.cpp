@@ -81,7 +81,7 @@ bool Player::actTrouble(const Words& words) {
       if (words.at(2) != name) continue;
       const AxisFacts* const facts = stage_.find(words.at(1));
       if (facts == nullptr && words.at(1) != "all") return true;
-      const std::uint8_t node = facts != nullptr ? facts->config->node_id : std::uint8_t{0};
+      const std::uint8_t node = facts != nullptr ? facts->node_id : std::uint8_t{0};
       foreign_->send(can::Frame(0x000, {code, node}), now);
       for (std::size_t i : stage_.named(words.at(1))) {
         Conditions::extend(conditions_.foreign, now + 500ms);
@@ -102,7 +102,7 @@ bool Player::actTrouble(const Words& words) {
       sim::FaultRule rule;
       rule.count = std::numeric_limits<unsigned>::max();
       rule.receiver = stage_.host().interface().port().name();
-      const std::uint32_t node = stage_.axes()[i].config->node_id;
+      const std::uint32_t node = stage_.axes()[i].node_id;
       std::vector<std::uint32_t> ids{0x580 + node, 0x700 + node};  // SDO, heartbeat
       if (words.at(2) == "all") {
         ids = {node};

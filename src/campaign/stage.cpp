@@ -13,11 +13,14 @@
 namespace cia402::campaign {
 namespace {
 
-AxisFacts factsOf(const drive::AxisConfig& axis, const config::BusConfig& bus, std::size_t index) {
+AxisFacts factsOf(const config::RobotConfig& robot, std::size_t index) {
+  const drive::AxisConfig& axis = robot.axes[index];
+  const canopen::DeviceConfig& device = robot.deviceOf(axis);
   AxisFacts facts;
   facts.name = axis.name;
   facts.index = index;
   facts.config = &axis;
+  facts.node_id = device.node_id;
   const drive::AxisGeometry& geometry = axis.geometry;
   const bool linear = geometry.type == drive::AxisGeometry::Type::prismatic;
   const double ratio = axis.profile->output_shaft ? 1.0 : geometry.gear_ratio;
@@ -29,7 +32,7 @@ AxisFacts factsOf(const drive::AxisConfig& axis, const config::BusConfig& bus, s
   }
   facts.velocity = axis.limits.velocity.value_or(1.0);
   facts.acceleration = axis.limits.acceleration.value_or(linear ? 0.5 : 5.0);
-  facts.master_timeout = axis.error_control.master_timeout.value_or(3 * bus.heartbeat);
+  facts.master_timeout = device.error_control.master_timeout.value_or(3 * robot.bus.heartbeat);
   if (axis.homing) {
     const int method = axis.homing->method.value_or(37);
     facts.homes_by_moving = method != 35 && method != 37;
@@ -42,7 +45,7 @@ std::vector<RpdoPlace> rpdosOf(const Loaded& loaded) {
   std::vector<RpdoPlace> places;
   for (std::size_t i = 0; i < loaded.robot.axes.size(); ++i) {
     for (const canopen::NodeConfig& node : loaded.master.nodes) {
-      if (node.node_id != loaded.robot.axes[i].node_id) continue;
+      if (node.node_id != loaded.robot.deviceOf(loaded.robot.axes[i]).node_id) continue;
       for (const canopen::PdoConfig& pdo : node.pdos) {
         if (pdo.direction != canopen::PdoDirection::rpdo || !pdo.enabled) continue;
         unsigned bit = 0;
@@ -149,7 +152,7 @@ Stage::Stage(Loaded loaded, std::uint64_t seed)
     objects_.push_back({entry(0x6064), entry(0x6077)});
   }
   for (std::size_t i = 0; i < loaded_.robot.axes.size(); ++i) {
-    facts_.push_back(factsOf(loaded_.robot.axes[i], loaded_.robot.bus, i));
+    facts_.push_back(factsOf(loaded_.robot, i));
   }
   const config::BusConfig& bus = loaded_.robot.bus;
   if (bus.external_sync) {

@@ -40,6 +40,7 @@ struct AxisFacts {
   std::string name;
   std::size_t index = 0;
   const drive::AxisConfig* config = nullptr;
+  std::uint8_t node_id = 0;
   double units_per_turn = 1.0;    ///< of the shaft that the simulated drive turns; signed
   double units_per_count = 0.0;   ///< of 607Ah and 6064h; 0: they are floats
   double effort_per_count = 0.0;  ///< of 6077h; 0: it is a float
@@ -59,7 +60,7 @@ struct AxisFacts {
 /// Where an RPDO, as the driver lays it out, holds an object of an axis.
 struct RpdoPlace {
   std::uint32_t cob_id = 0;
-  canopen::ObjectId object;
+  fieldbus::ObjectId object;
   std::size_t axis = 0;
   unsigned byte = 0;
 };

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "boot_text.h"
-#include "cia402_driver/canopen/abort_code.h"
+#include "cia402_driver/fieldbus/abort_code.h"
 
 namespace cia402::canopen {
 namespace {
@@ -49,7 +49,7 @@ void BootContext::submit(Time now) {
 }
 
 bool BootContext::refused() const {
-  return ticket->failure() == SdoTransfer::Failure::aborted_by_server;
+  return ticket->failure() == fieldbus::Transfer::Failure::aborted_by_server;
 }
 
 bool BootContext::refusedAsMissing() const {
@@ -64,7 +64,7 @@ Progress BootContext::fail(BootFailure kind, const std::string& reason) {
 }
 
 Progress BootContext::failTransfer() {
-  const bool mute = ticket->failure() == SdoTransfer::Failure::timed_out;
+  const bool mute = ticket->failure() == fieldbus::Transfer::Failure::timed_out;
   return fail(refused() ? BootFailure::refused : BootFailure::timed_out,
               "boot failed while " + step + ": " + ticket->reason() + (mute ? muteText() : ""));
 }

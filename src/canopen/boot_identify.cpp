@@ -58,7 +58,7 @@ class ProofOfLife : public BootStep {
 
   Progress check(BootContext& boot, Time now) override {
     if (!boot.answered()) return Progress::waiting;
-    if (boot.ticket->failure() == SdoTransfer::Failure::timed_out) {
+    if (boot.ticket->failure() == fieldbus::Transfer::Failure::timed_out) {
       if (now >= boot.absent_at) return nobodyThere(boot);
       boot.wake(now);  // it may be stopped (NMT) and not say so: the command out of it was lost
       return Progress::again;

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "cia402_driver/canopen/object_dictionary.h"
+#include "cia402_driver/canopen/eds.h"
 
 namespace cia402::canopen {
 

@@ -1,10 +1,12 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "cia402_driver/canopen/error_history.h"
 
+#include "cia402_driver/canopen/object.h"
+
 #include <algorithm>
 #include <utility>
 
-#include "cia402_driver/canopen/abort_code.h"
+#include "cia402_driver/fieldbus/abort_code.h"
 
 namespace cia402::canopen {
 namespace {
@@ -12,28 +14,30 @@ namespace {
 constexpr std::uint16_t kErrorHistory = 0x1003;
 constexpr const char* kName = "error history";
 
-bool missing(const SdoTransfer& transfer) {
+bool missing(const fieldbus::Transfer& transfer) {
   return transfer.abortCode() == abort_code::kNoSuchObject ||
          transfer.abortCode() == abort_code::kNoSuchSubindex;
 }
 
 /// "No data available": as many drives say that there is no error (CiA 301, 7.5.2.6).
-bool empty(const SdoTransfer& transfer) { return transfer.abortCode() == abort_code::kNoData; }
+bool empty(const fieldbus::Transfer& transfer) {
+  return transfer.abortCode() == abort_code::kNoData;
+}
 
 }  // namespace
 
-bool ErrorHistoryReader::step(SdoClient& sdo) {
+bool ErrorHistoryReader::step(fieldbus::ObjectAccess& objects) {
   if (!ticket_) {
-    ask(sdo, 0);
+    ask(objects, 0);
     return false;
   }
   if (!ticket_->done()) return false;
-  return sub_index_ == 0 ? takeCount(sdo) : takeEntry(sdo);
+  return sub_index_ == 0 ? takeCount(objects) : takeEntry(objects);
 }
 
-void ErrorHistoryReader::ask(SdoClient& sdo, unsigned sub_index) {
+void ErrorHistoryReader::ask(fieldbus::ObjectAccess& objects, unsigned sub_index) {
   sub_index_ = sub_index;
-  ticket_ = sdo.upload({kErrorHistory, static_cast<std::uint8_t>(sub_index)}, kName);
+  ticket_ = objects.upload({kErrorHistory, static_cast<std::uint8_t>(sub_index)}, kName);
 }
 
 bool ErrorHistoryReader::end(std::string remark) {
@@ -41,7 +45,7 @@ bool ErrorHistoryReader::end(std::string remark) {
   return true;
 }
 
-bool ErrorHistoryReader::takeCount(SdoClient& sdo) {
+bool ErrorHistoryReader::takeCount(fieldbus::ObjectAccess& objects) {
   if (empty(*ticket_)) {
     history_.readable = true;
     return true;
@@ -59,11 +63,11 @@ bool ErrorHistoryReader::takeCount(SdoClient& sdo) {
   history_.readable = true;
   history_.recorded = static_cast<unsigned>(toUnsigned(data));
   if (history_.recorded == 0) return true;
-  ask(sdo, 1);
+  ask(objects, 1);
   return false;
 }
 
-bool ErrorHistoryReader::takeEntry(SdoClient& sdo) {
+bool ErrorHistoryReader::takeEntry(fieldbus::ObjectAccess& objects) {
   if (empty(*ticket_)) {  // the number is that of the places then
     history_.recorded = sub_index_ - 1;
     return true;
@@ -84,7 +88,7 @@ bool ErrorHistoryReader::takeEntry(SdoClient& sdo) {
   history_.entries.push_back(
       {static_cast<std::uint16_t>(raw & 0xFFFF), static_cast<std::uint16_t>(raw >> 16)});
   if (sub_index_ == std::min(history_.recorded, most_)) return true;
-  ask(sdo, sub_index_ + 1);
+  ask(objects, sub_index_ + 1);
   return false;
 }
 

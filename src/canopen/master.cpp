@@ -23,7 +23,7 @@ Master::Master(MasterConfig config, can::Sink& sink, MasterListener* listener)
       sink_(sink, config_.bitrate),
       listener_(listener),
       pacer_(config_.bitrate),
-      told_(config_.nodes.size(), NodeHealth::absent),
+      told_(config_.nodes.size(), Health::absent),
       sync_(config_.sync_counter),
       heartbeat_(config_.node_id, config_.heartbeat),
       time_(config_.time_interval) {
@@ -54,7 +54,7 @@ void Master::addRoutes(std::size_t node) {
 /// drive knows (0) follow when it boots.
 /// @return what is in the way, in words
 std::string Master::addPdoRoutes(std::size_t node) {
-  const ProcessImage& image = nodes_[node].image();
+  const PdoImage& image = nodes_[node].image();
   for (const Service service : {Service::tpdo, Service::rpdo}) {
     const auto& pdos = service == Service::tpdo ? image.tpdos() : image.rpdos();
     for (std::size_t i = 0; i < pdos.size(); ++i) {
@@ -168,7 +168,7 @@ void Master::tick(Time now) {
 
 /// Tells the listener what it does not know yet; a node may also have been commanded from outside.
 void Master::tell(std::size_t node, Time now) {
-  const NodeHealth before = std::exchange(told_[node], nodes_[node].health());
+  const Health before = std::exchange(told_[node], nodes_[node].health());
   if (listener_ == nullptr || before == told_[node]) return;
   listener_->onHealthChange(nodes_[node], before, now);
 }
@@ -193,7 +193,7 @@ void Master::syncPassed(Time now) {
 void Master::sendRpdos(Time now) {
   sink_.setTime(now);
   for (Node& node : nodes_) {
-    if (node.health() != NodeHealth::ready) continue;
+    if (node.health() != Health::ready) continue;
     node.sendRpdos(now);
     pacer_.occupied(static_cast<unsigned>(node.image().rpdos().size()), now);
   }

@@ -4,29 +4,15 @@
 #include <algorithm>
 #include <utility>
 
+#include "cia402_driver/canopen/pdo_text.h"
 #include "node_impl.h"
 
 namespace cia402::canopen {
-const char* toString(NodeHealth health) {
-  switch (health) {
-    case NodeHealth::absent:
-      return "absent";
-    case NodeHealth::booting:
-      return "booting";
-    case NodeHealth::ready:
-      return "ready";
-    case NodeHealth::failed:
-      return "failed";
-    case NodeHealth::lost:
-      break;
-  }
-  return "lost";
-}
 
 Node::Node(const NodeConfig& config, const MasterConfig& master, can::Sink& sink, SdoPacer* turns,
            bool* deadlines_changed, can::Pacer* wire)
-    : impl_(std::make_unique<Impl>(config, master, sink, turns, deadlines_changed, wire)),
-      front_(impl_.get()) {}
+    : Node(std::make_unique<Impl>(config, master, sink, turns, deadlines_changed, wire)) {}
+Node::Node(std::unique_ptr<Impl> impl) : Device(*impl), impl_(std::move(impl)) {}
 Node::~Node() = default;
 Node::Node(Node&&) noexcept = default;
 
@@ -38,7 +24,7 @@ bool Node::excused() const { return config().boot.optional && isAway(impl_->heal
 NmtState Node::nmtState() const { return impl_->nmt_state; }
 const std::string& Node::bootStep() const { return impl_->step(); }
 const std::string& Node::problem() const { return impl_->problem; }
-std::string Node::stoppedRefusal(const std::string& what) const {
+std::string Node::askingRefusal(const std::string& what) const {
   if (nmtState() != NmtState::stopped) return {};
   return who() + ": " + what + " cannot be asked for: " + kStoppedIsMute;
 }
@@ -63,6 +49,13 @@ const std::optional<Emergency>& Node::lastEmergency() const { return impl_->last
 
 SdoClient& Node::sdo() { return impl_->sdo; }
 const SdoClient& Node::sdo() const { return impl_->sdo; }
+fieldbus::ObjectAccess& Node::objects() { return impl_->sdo; }
+fieldbus::DeviceTimes Node::times() const { return {config().boot_timeout, config().sdo}; }
+std::string Node::overdueText() const { return staleText(image()); }
+std::string Node::missingText() const { return canopen::missingText(image()); }
+std::string Node::carrierText(fieldbus::Slot output) const {
+  return pdoName(image().rpdos()[image().carrierOf(output)]);
+}
 
 Time Node::nextDeadline() const { return std::min(impl_->next, impl_->sdo.nextDeadline()); }
 
@@ -73,6 +66,16 @@ void Node::boot(Time now, bool reset) {
   }
   impl_->startBoot(BootProcedure::From::unknown, "", now);
   impl_->refresh();
+}
+
+void Node::restart(Time now) {
+  command(config().reset_node_allowed ? NmtCommand::reset_node : NmtCommand::reset_communication,
+          now);
+}
+
+std::string Node::restartGap() const {
+  if (config().reset_node_allowed) return {};
+  return "only its communication was reset (nmt_reset_node of the profile): switch it off and on";
 }
 
 void Node::look(Time at) { impl_->look(at); }
@@ -99,7 +102,7 @@ void Node::commanded(NmtCommand command, Time now) {
 }
 
 void Node::stopAndStart(Duration stopped, Time now) {
-  if (impl_->health != NodeHealth::ready) return;
+  if (impl_->health != Health::ready) return;
   impl_->pause.begin(stopped, kStartPatience, impl_->boot.found().supervised, now);
   impl_->refresh();
 }
@@ -133,7 +136,7 @@ void Node::receive(const can::Frame& frame, Time stamp, Time now) {
 void Node::receiveTpdo(std::size_t tpdo, const can::Frame& frame, Time stamp) {
   if (!impl_->pdos_live) return;
   impl_->image.receive(tpdo, frame, stamp);
-  if (impl_->health != NodeHealth::booting || !impl_->boot.tpdoHeard()) return;
+  if (impl_->health != Health::booting || !impl_->boot.tpdoHeard()) return;
   impl_->next = Time();  // the boot goes on at the next tick
   if (impl_->deadlines_changed != nullptr) *impl_->deadlines_changed = true;
 }
@@ -150,8 +153,8 @@ void Node::tick(Time now) {
 }
 
 void Node::onSync(Time now) {
-  if (impl_->health != NodeHealth::ready) return;
-  ProcessImage& image = impl_->image;
+  if (impl_->health != Health::ready) return;
+  PdoImage& image = impl_->image;
   image.age(now);
   can::Frame frame;
   for (const std::size_t tpdo : image.requested()) {
@@ -163,13 +166,13 @@ bool Node::takeCobIdChange() { return std::exchange(impl_->cob_ids_changed, fals
 
 void Node::refuse(const std::string& why, Time) {
   impl_->sink.send(nmtFrame(NmtCommand::enter_pre_operational, id()));
-  impl_->takeOut(NodeHealth::failed, why);
+  impl_->takeOut(Health::failed, why);
   impl_->refresh();
 }
 
 void Node::sendRpdos(Time now) {
-  if (impl_->health != NodeHealth::ready) return;
-  ProcessImage& image = impl_->image;
+  if (impl_->health != Health::ready) return;
+  PdoImage& image = impl_->image;
   can::Frame frame;
   for (std::size_t i = 0; i < image.rpdos().size(); ++i) {
     if (!image.packDue(i, frame, now)) continue;

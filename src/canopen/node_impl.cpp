@@ -29,7 +29,7 @@ NmtState stateOf(std::uint8_t byte) {
 
 Node::Impl::Impl(const NodeConfig& node_config, const MasterConfig& master, can::Sink& frame_sink,
                  SdoPacer* shared_turns, bool* changed, can::Pacer* wire)
-    : Front(node_config.pdos),
+    : image(node_config.pdos),
       config(node_config),
       sink(frame_sink),
       deadlines_changed(changed),
@@ -40,6 +40,7 @@ Node::Impl::Impl(const NodeConfig& node_config, const MasterConfig& master, can:
       retry(config.boot),
       last_stop(config, sdo, sink),
       pause(config.node_id, sink) {
+  process = &image;
   sdo.tellWhenQueued(changed);
 }
 
@@ -62,7 +63,7 @@ void Node::Impl::refresh() {
   next = std::min({sdo.nextDeadline(), consumer.deadline(), guard.deadline(), boot.deadline(),
                    retry.deadline(), last_stop.deadline(), pause.deadline()});
   if (deadlines_changed != nullptr) *deadlines_changed = true;
-  pdos_live = boot.started() && (health == NodeHealth::ready || health == NodeHealth::booting);
+  pdos_live = boot.started() && (health == Health::ready || health == Health::booting);
 }
 
 void Node::Impl::startBoot(BootProcedure::From from, const std::string& why, Time now,
@@ -75,13 +76,13 @@ void Node::Impl::startBoot(BootProcedure::From from, const std::string& why, Tim
 void Node::Impl::beginBoot(BootProcedure::From from, const std::string& why, Time now,
                            NmtCommand reset) {
   begun = true;
-  takeOut(NodeHealth::booting, why);
+  takeOut(Health::booting, why);
   if (from == BootProcedure::From::boot_up) sdo.serverRestarted();
   notes.clear();
   boot.start(from, now, reset);
 }
 
-void Node::Impl::takeOut(NodeHealth as, const std::string& why) {
+void Node::Impl::takeOut(Health as, const std::string& why) {
   boot.stop();
   last_stop.end();
   pause.end();
@@ -104,8 +105,8 @@ void Node::Impl::takeOutBy(NmtCommand command) {
   if (isAway(health)) {  // it may be optional, so it stays away until it is heard
     taken_out = why;
     takeOut(health, std::string("is ") + toString(health) + " and " + why);
-  } else if (health != NodeHealth::failed) {
-    takeOut(NodeHealth::failed, why);
+  } else if (health != Health::failed) {
+    takeOut(Health::failed, why);
   } else if (repeats) {
     problem.resize(problem.size() - outlook.size());
     problem += "; it is not tried again, for it " + why;
@@ -114,8 +115,7 @@ void Node::Impl::takeOutBy(NmtCommand command) {
 
 void Node::Impl::lose(const std::string& why, Time now) {
   sdo.cancelAll("the node is lost: " + why);
-  takeOut(NodeHealth::lost,
-          why + ": check power and cable; it is configured again when it is back");
+  takeOut(Health::lost, why + ": check power and cable; it is configured again when it is back");
   last_stop.begin(now);
   retry.search(now, last_stop.over());
 }
@@ -134,10 +134,10 @@ void Node::Impl::runBoot(Time now) {
       succeed(now);
       break;
     case BootProcedure::Status::failed:
-      endBoot(NodeHealth::failed, now);
+      endBoot(Health::failed, now);
       break;
     case BootProcedure::Status::absent:
-      endBoot(NodeHealth::absent, now);
+      endBoot(Health::absent, now);
       break;
     case BootProcedure::Status::idle:
       break;
@@ -176,7 +176,7 @@ void Node::Impl::superviseWhileBooting(Time now) {
 }
 
 void Node::Impl::succeed(Time now) {
-  health = NodeHealth::ready;
+  health = Health::ready;
   problem.clear();
   retry.reset();
   if (boot.found().supervised && !boot.found().guarded) consumer.arm(now);
@@ -200,12 +200,12 @@ void Node::Impl::compareWithLastIdentity() {
   last_identity = now;
 }
 
-void Node::Impl::endBoot(NodeHealth end, Time now) {
+void Node::Impl::endBoot(Health end, Time now) {
   consumer.disarm();
   guard.stop();
   health = end;
   notes = boot.notes();
-  if (end == NodeHealth::absent) {
+  if (end == Health::absent) {
     retry.search(now);
   } else {
     retry.failed(boot.failure(), now);
@@ -217,7 +217,7 @@ void Node::Impl::onBootUp(Time now) {
   ++boot_ups;
   nmt_state = NmtState::boot_up;
   if (!begun) return;
-  const bool surprise = health == NodeHealth::ready;
+  const bool surprise = health == Health::ready;
   startBoot(BootProcedure::From::boot_up,
             surprise
                 ? "rebooted by itself (boot-up message in operation): look for a power dip or a "
@@ -249,11 +249,11 @@ void Node::Impl::onHeartbeat(NmtState state, Time stamp, Time now) {
   if (state == NmtState::stopped && !isAway(health) && !sdo.idle()) sdo.cancelAll(kStoppedIsMute);
   if (!begun) return;
   if (isAway(health) && !taken_out.empty()) {
-    takeOut(NodeHealth::failed, std::exchange(taken_out, {}));
+    takeOut(Health::failed, std::exchange(taken_out, {}));
   } else if (isAway(health)) {
     if (last_stop.insists(state, now)) return;
     startBoot(BootProcedure::From::unknown, "", now);
-  } else if (health == NodeHealth::ready && state != NmtState::operational &&
+  } else if (health == Health::ready && state != NmtState::operational &&
              state != NmtState::unknown) {
     startBoot(BootProcedure::From::unknown,
               std::string("became ") + toString(state) +
@@ -288,7 +288,7 @@ void Node::Impl::checkSupervision(Time now) {
   }
   const std::string why = "boot failed: " + guard.loss() +
                           "; if the drive has no node guarding, choose another `error_control`";
-  takeOut(NodeHealth::failed, why);
+  takeOut(Health::failed, why);
   retry.failed(BootFailure::timed_out, now);
   problem = sentence(why + retry.outlook());
 }
@@ -329,7 +329,7 @@ void Node::Impl::look(Time at) {
 void Node::Impl::runProbe(Time now) {
   if (!probe || !probe->done()) return;
   const SdoTicket answer = std::exchange(probe, {});
-  if (answer->ok() || answer->failure() == SdoTransfer::Failure::aborted_by_server) {
+  if (answer->ok() || answer->failure() == fieldbus::Transfer::Failure::aborted_by_server) {
     startBoot(BootProcedure::From::unknown, "", now);
   } else {
     retry.notFound(now);

@@ -22,6 +22,8 @@ inline constexpr char kStoppedIsMute[] =
 
 /// The parts of a node and what one's news mean to the others.
 struct Node::Impl : Node::Front {
+  PdoImage image;
+
   Impl(const NodeConfig& node_config, const MasterConfig& master, can::Sink& frame_sink,
        SdoPacer* shared_turns, bool* changed, can::Pacer* wire);
 
@@ -33,9 +35,9 @@ struct Node::Impl : Node::Front {
                  NmtCommand reset = NmtCommand::reset_communication);
   void runBoot(Time now);
   void succeed(Time now);
-  void endBoot(NodeHealth end, Time now);
+  void endBoot(Health end, Time now);
   /// Whatever was known of the node or on its way to it is void.
-  void takeOut(NodeHealth as, const std::string& why);
+  void takeOut(Health as, const std::string& why);
   /// Stop or enter pre-operational, on purpose: nothing but its own boot-up message boots it again
   /// before somebody asks for it.
   void takeOutBy(NmtCommand command);

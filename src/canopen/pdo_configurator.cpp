@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "cia402_driver/canopen/abort_code.h"
+#include "cia402_driver/fieldbus/abort_code.h"
 
 namespace cia402::canopen {
 namespace {
@@ -115,15 +115,15 @@ void PdoConfigurator::write(ObjectId object, std::uint32_t value, unsigned size,
                           may_lack ? options_.if_there : std::nullopt);
 }
 
-void PdoConfigurator::answered(const SdoTransfer& transfer) {
-  if (transfer.direction() == SdoTransfer::Direction::upload) {
+void PdoConfigurator::answered(const fieldbus::Transfer& transfer) {
+  if (transfer.direction() == fieldbus::Transfer::Direction::upload) {
     answeredRead(transfer);
   } else {
     answeredWrite(transfer);
   }
 }
 
-void PdoConfigurator::answeredRead(const SdoTransfer& transfer) {
+void PdoConfigurator::answeredRead(const fieldbus::Transfer& transfer) {
   if (phase_ == Phase::read_cob_id) return answeredCobId(transfer);
   if (phase_ == Phase::read_parameter) return answeredParameter(transfer);
   if (phase_ == Phase::probe_entry) return answeredProbe(transfer);
@@ -152,9 +152,9 @@ void PdoConfigurator::answeredCount(std::size_t count) {
   enter(Phase::read_entry);
 }
 
-void PdoConfigurator::answeredCobId(const SdoTransfer& transfer) {
+void PdoConfigurator::answeredCobId(const fieldbus::Transfer& transfer) {
   if (!transfer.ok()) {
-    const bool answered = transfer.failure() == SdoTransfer::Failure::aborted_by_server;
+    const bool answered = transfer.failure() == fieldbus::Transfer::Failure::aborted_by_server;
     if (answered && options_.may_be_missing) return enter(Phase::done);
     if (leaveOutWhole(transfer)) return enter(Phase::done);
     return failTransfer(transfer);
@@ -182,9 +182,9 @@ bool PdoConfigurator::adoptCobId() {
 }
 
 /// The drive has a COB-ID that it does not give up: then that is the one, if it is valid.
-bool PdoConfigurator::refusedCobId(const SdoTransfer& transfer) {
+bool PdoConfigurator::refusedCobId(const fieldbus::Transfer& transfer) {
   if (cob_id_fixed_ || !wanted_.enabled ||
-      transfer.failure() != SdoTransfer::Failure::aborted_by_server ||
+      transfer.failure() != fieldbus::Transfer::Failure::aborted_by_server ||
       transfer.abortCode() != abort_code::kReadOnly) {
     return false;
   }
@@ -194,11 +194,11 @@ bool PdoConfigurator::refusedCobId(const SdoTransfer& transfer) {
   return !differs || adoptCobId();
 }
 
-void PdoConfigurator::answeredParameter(const SdoTransfer& transfer) {
+void PdoConfigurator::answeredParameter(const fieldbus::Transfer& transfer) {
   Parameter& parameter = parameters_[item_];
   if (transfer.ok()) {
     parameter.actual = static_cast<std::uint32_t>(toUnsigned(transfer.data()));
-  } else if (transfer.failure() == SdoTransfer::Failure::aborted_by_server &&
+  } else if (transfer.failure() == fieldbus::Transfer::Failure::aborted_by_server &&
              parameter.missing_is_zero && parameter.wanted == 0) {
     parameter.actual = 0;
   } else {
@@ -233,7 +233,7 @@ void PdoConfigurator::enterEntries() {
   enterWriteParameter(0);
 }
 
-void PdoConfigurator::answeredWrite(const SdoTransfer& transfer) {
+void PdoConfigurator::answeredWrite(const fieldbus::Transfer& transfer) {
   const bool cob_id = phase_ == Phase::disable || phase_ == Phase::enable;
   if (!transfer.ok() && cob_id) {
     const bool was_disabled = phase_ == Phase::enable;
@@ -275,9 +275,9 @@ void PdoConfigurator::afterEntries() {
   enterRead();
 }
 
-bool PdoConfigurator::refusedReadOnlyCount(const SdoTransfer& transfer) const {
+bool PdoConfigurator::refusedReadOnlyCount(const fieldbus::Transfer& transfer) const {
   return options_.count_may_be_read_only &&
-         transfer.failure() == SdoTransfer::Failure::aborted_by_server &&
+         transfer.failure() == fieldbus::Transfer::Failure::aborted_by_server &&
          transfer.abortCode() == abort_code::kReadOnly &&
          transfer.object() == ObjectId{mapping_, 0};
 }
@@ -304,15 +304,15 @@ void PdoConfigurator::fail(const std::string& reason) {
   phase_ = Phase::failed;
 }
 
-void PdoConfigurator::failTransfer(const SdoTransfer& transfer) {
-  timed_out_ = transfer.failure() != SdoTransfer::Failure::aborted_by_server;
+void PdoConfigurator::failTransfer(const fieldbus::Transfer& transfer) {
+  timed_out_ = transfer.failure() != fieldbus::Transfer::Failure::aborted_by_server;
   if (!timed_out_) abort_code_ = transfer.abortCode();
   std::string reason = step_ + ": " + transfer.reason();
   if (transfer.abortCode() == abort_code::kReadOnly && transfer.object().index == mapping_ &&
       transfer.object().subindex == 0) {
     reason += "; if the drive's number of entries is fixed, say so in its profile";
   } else if (phase_ == Phase::read_cob_id &&
-             transfer.failure() == SdoTransfer::Failure::aborted_by_server) {
+             transfer.failure() == fieldbus::Transfer::Failure::aborted_by_server) {
     reason += "; the drive has no such PDO, use another number";
   } else if (phase_ == Phase::write_entry && abort_code_ == abort_code::kNotMappable &&
              (cob_id_ & kCanIdMask) != wanted_.cob_id) {

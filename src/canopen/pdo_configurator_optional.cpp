@@ -1,34 +1,35 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "cia402_driver/canopen/abort_code.h"
+#include "cia402_driver/fieldbus/abort_code.h"
 #include "pdo_configurator.h"
 
 namespace cia402::canopen {
 namespace {
 
 /// 0x06040041 and what drives answer instead of it.
-bool isMissingOrUnmappable(const SdoTransfer& transfer) {
+bool isMissingOrUnmappable(const fieldbus::Transfer& transfer) {
   const std::uint32_t code = transfer.abortCode();
-  return transfer.failure() == SdoTransfer::Failure::aborted_by_server &&
+  return transfer.failure() == fieldbus::Transfer::Failure::aborted_by_server &&
          (code == abort_code::kNoSuchObject || code == abort_code::kNoSuchSubindex ||
           code == abort_code::kNotMappable);
 }
 
 }  // namespace
 
-bool PdoConfigurator::leaveOutWhole(const SdoTransfer& transfer) {
+bool PdoConfigurator::leaveOutWhole(const fieldbus::Transfer& transfer) {
   if (!isMissingOrUnmappable(transfer) || !allOptional()) return false;
   while (!wanted_.entries.empty()) leaveOut(0);
   return true;
 }
 
 /// Most drives judge an entry when it is written.
-bool PdoConfigurator::leaveOutEntry(const SdoTransfer& transfer) {
+bool PdoConfigurator::leaveOutEntry(const fieldbus::Transfer& transfer) {
   if (phase_ != Phase::write_entry) return false;
   const PdoEntry& entry = wanted_.entries[item_];
-  const bool goes = entry.if_room ? transfer.failure() == SdoTransfer::Failure::aborted_by_server
-                                  : entry.optional && isMissingOrUnmappable(transfer);
+  const bool goes = entry.if_room
+                        ? transfer.failure() == fieldbus::Transfer::Failure::aborted_by_server
+                        : entry.optional && isMissingOrUnmappable(transfer);
   if (!goes) return false;
   leaveOut(item_);  // the next one has its place then
   if (item_ == wanted_.entries.size()) afterEntries();
@@ -37,12 +38,12 @@ bool PdoConfigurator::leaveOutEntry(const SdoTransfer& transfer) {
 
 /// A PDO that the drive does not take as a whole may be one without what is there for the room
 /// only.
-bool PdoConfigurator::leaveOutRider(const SdoTransfer& transfer) {
+bool PdoConfigurator::leaveOutRider(const fieldbus::Transfer& transfer) {
   const auto& entries = wanted_.entries;
   const auto rider = std::find_if(entries.begin(), entries.end(),
                                   [](const PdoEntry& entry) { return entry.if_room; });
-  const bool refused =
-      phase_ == Phase::write_count && transfer.failure() == SdoTransfer::Failure::aborted_by_server;
+  const bool refused = phase_ == Phase::write_count &&
+                       transfer.failure() == fieldbus::Transfer::Failure::aborted_by_server;
   if (!refused || rider == entries.end() || refusedReadOnlyCount(transfer)) return false;
   leaveOut(static_cast<std::size_t>(rider - entries.begin()));
   if (wanted_.entries.empty()) {
@@ -55,7 +56,7 @@ bool PdoConfigurator::leaveOutRider(const SdoTransfer& transfer) {
 
 /// Others judge all of them at the end, without a word about which one is wrong: those that it does
 /// not have are found by reading them.
-bool PdoConfigurator::probeEntries(const SdoTransfer& transfer) {
+bool PdoConfigurator::probeEntries(const fieldbus::Transfer& transfer) {
   if (phase_ != Phase::write_count || !isMissingOrUnmappable(transfer)) return false;
   if (!anyOptional()) return false;
   left_out_before_probe_ = left_out_.size();
@@ -63,8 +64,8 @@ bool PdoConfigurator::probeEntries(const SdoTransfer& transfer) {
   return true;
 }
 
-void PdoConfigurator::answeredProbe(const SdoTransfer& transfer) {
-  const bool aborted = transfer.failure() == SdoTransfer::Failure::aborted_by_server;
+void PdoConfigurator::answeredProbe(const fieldbus::Transfer& transfer) {
+  const bool aborted = transfer.failure() == fieldbus::Transfer::Failure::aborted_by_server;
   if (!transfer.ok() && !aborted) return failTransfer(transfer);
   std::size_t next = item_ + 1;
   if (!transfer.ok() && isMissingOrUnmappable(transfer)) leaveOut(next = item_);

@@ -6,7 +6,7 @@
 
 namespace cia402::canopen {
 
-std::string pdoName(const ProcessImage::Pdo& pdo) {
+std::string pdoName(const PdoImage::Pdo& pdo) {
   std::array<char, 48> text{};
   std::snprintf(text.data(), text.size(), "%s %u (COB-ID 0x%03X)",
                 pdo.direction == PdoDirection::tpdo ? "TPDO" : "RPDO", pdo.number,
@@ -14,9 +14,9 @@ std::string pdoName(const ProcessImage::Pdo& pdo) {
   return text.data();
 }
 
-std::string staleText(const ProcessImage& image) {
+std::string staleText(const PdoImage& image) {
   std::string text;
-  for (const ProcessImage::Pdo& pdo : image.tpdos()) {
+  for (const PdoImage::Pdo& pdo : image.tpdos()) {
     if (!pdo.stale) continue;
     text += (text.empty() ? "" : ", ") + pdoName(pdo) + " did not come for " +
             std::to_string(pdo.silent) + " cycles";
@@ -24,9 +24,9 @@ std::string staleText(const ProcessImage& image) {
   return text;
 }
 
-std::string missingText(const ProcessImage& image) {
+std::string missingText(const PdoImage& image) {
   std::string text;
-  for (const ProcessImage::Pdo& pdo : image.tpdos()) {
+  for (const PdoImage::Pdo& pdo : image.tpdos()) {
     if (!pdo.stale) continue;
     text += (text.empty() ? "" : ", ") + pdoName(pdo);
     text += pdo.last_too_short ? " comes too short (" + std::to_string(pdo.wrong_size) +
@@ -36,9 +36,9 @@ std::string missingText(const ProcessImage& image) {
   return text;
 }
 
-std::string wrongLengthText(const ProcessImage& image) {
+std::string wrongLengthText(const PdoImage& image) {
   std::string text;
-  for (const ProcessImage::Pdo& pdo : image.tpdos()) {
+  for (const PdoImage::Pdo& pdo : image.tpdos()) {
     const std::uint64_t count = pdo.too_short + pdo.too_long;
     if (count == 0) continue;
     const bool short_one = pdo.wrong_size < pdo.size;

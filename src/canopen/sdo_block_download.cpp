@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <string>
 
-#include "cia402_driver/canopen/abort_code.h"
 #include "cia402_driver/canopen/sdo_client.h"
+#include "cia402_driver/fieldbus/abort_code.h"
 #include "sdo_block.h"
 
 namespace cia402::canopen {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <string>
 
-#include "cia402_driver/canopen/abort_code.h"
 #include "cia402_driver/canopen/sdo_client.h"
+#include "cia402_driver/fieldbus/abort_code.h"
 #include "sdo_block.h"
 #include "sdo_crc.h"
 

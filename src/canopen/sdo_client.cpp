@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "cia402_driver/canopen/abort_code.h"
+#include "cia402_driver/fieldbus/abort_code.h"
 #include "sdo_block.h"
 
 namespace cia402::canopen {
@@ -115,6 +115,24 @@ void SdoClient::makeWay(const std::string& urgent) {
          "cancelled: it made way for an urgent write to " + urgent);
   queue_.pop_front();
   phase_ = Phase::idle;
+}
+
+std::optional<SdoOptions> SdoClient::completed(
+    const std::optional<fieldbus::AccessOptions>& options) const {
+  if (!options) return std::nullopt;
+  SdoOptions all = defaults_;
+  static_cast<fieldbus::AccessOptions&>(all) = *options;
+  return all;
+}
+
+SdoTicket SdoClient::queueUpload(ObjectId object, std::string name,
+                                 const std::optional<fieldbus::AccessOptions>& options) {
+  return upload(object, std::move(name), completed(options));
+}
+
+SdoTicket SdoClient::queueDownload(ObjectId object, Bytes data, std::string name,
+                                   const std::optional<fieldbus::AccessOptions>& options) {
+  return download(object, std::move(data), std::move(name), completed(options));
 }
 
 SdoTicket SdoClient::enqueue(Transfer transfer, const std::optional<SdoOptions>& options) {
@@ -360,22 +378,6 @@ void SdoClient::cancelAll(const std::string& reason) {
     finish(*transfer, SdoTransfer::Failure::cancelled, 0, "cancelled: " + reason);
   }
   queue_.clear();
-}
-
-std::uint64_t toUnsigned(const Bytes& bytes) {
-  std::uint64_t value = 0;
-  for (std::size_t i = 0; i < std::min<std::size_t>(bytes.size(), 8); ++i) {
-    value |= static_cast<std::uint64_t>(bytes[i]) << (8 * i);
-  }
-  return value;
-}
-
-Bytes toBytes(std::uint64_t value, unsigned size) {
-  Bytes bytes(std::min(size, 8U));
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
-    bytes[i] = static_cast<std::uint8_t>(value >> (8 * i));
-  }
-  return bytes;
 }
 
 }  // namespace cia402::canopen

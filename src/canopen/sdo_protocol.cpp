@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <string>
 
-#include "cia402_driver/canopen/abort_code.h"
 #include "cia402_driver/canopen/sdo_client.h"
+#include "cia402_driver/fieldbus/abort_code.h"
 
 namespace cia402::canopen {
 namespace {

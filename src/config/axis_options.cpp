@@ -1,25 +1,20 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
-#include "cia402_driver/drive/profile_reader.h"
+#include "profile/parts.h"
 #include "robot_parts.h"
 
 namespace cia402::config {
 
-using drive::kNotNegative;
-using drive::kPositive;
-using drive::YamlSection;
-using drive::YamlValue;
-
-drive::AxisLimits readLimits(const YamlValue& value, drive::AxisGeometry::Type type) {
+drive::AxisLimits readLimits(const yaml::Value& value, drive::AxisGeometry::Type type) {
   drive::AxisLimits limits;
-  YamlSection section(value);
+  yaml::Section section(value);
   section.read("lower", limits.lower);
   section.read("upper", limits.upper);
-  section.read("velocity", limits.velocity, kPositive);
-  section.read("acceleration", limits.acceleration, kPositive);
-  section.read("jerk", limits.jerk, kPositive);
-  section.read("effort", limits.effort, kPositive);
+  section.read("velocity", limits.velocity, yaml::kPositive);
+  section.read("acceleration", limits.acceleration, yaml::kPositive);
+  section.read("jerk", limits.jerk, yaml::kPositive);
+  section.read("effort", limits.effort, yaml::kPositive);
   section.finish();
   const auto upper = section.get("upper");
   if (limits.lower && limits.upper && !(*limits.lower < *limits.upper)) {
@@ -32,16 +27,16 @@ drive::AxisLimits readLimits(const YamlValue& value, drive::AxisGeometry::Type t
   return limits;
 }
 
-drive::HomingOptions readHoming(const YamlValue& value) {
+drive::HomingOptions readHoming(const yaml::Value& value) {
   drive::HomingOptions homing;
-  YamlSection section(value);
+  yaml::Section section(value);
   section.readInteger("method", homing.method, -128, 127);
-  section.read("search_velocity", homing.search_velocity, kPositive);
-  section.read("zero_velocity", homing.zero_velocity, kPositive);
-  section.read("acceleration", homing.acceleration, kPositive);
+  section.read("search_velocity", homing.search_velocity, yaml::kPositive);
+  section.read("zero_velocity", homing.zero_velocity, yaml::kPositive);
+  section.read("acceleration", homing.acceleration, yaml::kPositive);
   section.read("offset", homing.offset);
   double timeout = toSeconds(homing.timeout);
-  section.read("timeout", timeout, drive::Range{0.0, 3600.0, true});
+  section.read("timeout", timeout, yaml::Range{0.0, 3600.0, true});
   homing.timeout = fromSeconds(timeout);
   section.read("required", homing.required);
   section.readInteger("order", homing.order, -1000, 1000);
@@ -49,25 +44,25 @@ drive::HomingOptions readHoming(const YamlValue& value) {
   return homing;
 }
 
-void readIdentity(const YamlValue& value, drive::AxisConfig& axis) {
-  YamlSection section(value);
-  section.readInteger("vendor_id", axis.vendor_id, 0, 0xFFFFFFFF);
-  section.readInteger("product_code", axis.product_code, 0, 0xFFFFFFFF);
-  section.readInteger("revision", axis.revision, 0, 0xFFFFFFFF);
-  section.readInteger("serial", axis.serial, 0, 0xFFFFFFFF);
+void readIdentity(const yaml::Value& value, canopen::DeviceConfig& device) {
+  yaml::Section section(value);
+  section.readInteger("vendor_id", device.vendor_id, 0, 0xFFFFFFFF);
+  section.readInteger("product_code", device.product_code, 0, 0xFFFFFFFF);
+  section.readInteger("revision", device.revision, 0, 0xFFFFFFFF);
+  section.readInteger("serial", device.serial, 0, 0xFFFFFFFF);
   section.finish();
 }
 
-void readParameters(const YamlValue& value, drive::AxisConfig& axis) {
-  YamlSection section(value);
-  drive::readSubindices(section, "save", axis.save);
-  drive::readSubindices(section, "restore", axis.restore);
+void readParameters(const yaml::Value& value, drive::AxisConfig& axis) {
+  yaml::Section section(value);
+  readSubindices(section, "save", axis.save);
+  readSubindices(section, "restore", axis.restore);
   section.finish();
 }
 
 namespace {
 
-void readVector(YamlSection& section, const std::string& key, double (&target)[3]) {
+void readVector(yaml::Section& section, const std::string& key, double (&target)[3]) {
   const auto value = section.get(key);
   const auto numbers = value ? value->numbers(3) : std::nullopt;
   for (std::size_t i = 0; numbers && i < 3; ++i) target[i] = (*numbers)[i];
@@ -75,16 +70,16 @@ void readVector(YamlSection& section, const std::string& key, double (&target)[3
 
 }  // namespace
 
-FrameConfig readFrame(const YamlValue& value, const std::string& joint) {
+FrameConfig readFrame(const yaml::Value& value, const std::string& joint) {
   FrameConfig frame;
   frame.joint = joint;
-  YamlSection section(value);
+  yaml::Section section(value);
   section.require("parent", "the tf frame that the joint is fixed to");
   section.require("child", "the tf frame that the joint moves");
   section.read("parent", frame.parent);
   section.read("child", frame.child);
   if (const auto origin = section.get("origin")) {
-    YamlSection origin_section(*origin);
+    yaml::Section origin_section(*origin);
     readVector(origin_section, "xyz", frame.xyz);
     readVector(origin_section, "rpy", frame.rpy);
     origin_section.finish();
@@ -97,9 +92,9 @@ FrameConfig readFrame(const YamlValue& value, const std::string& joint) {
   return frame;
 }
 
-SimulationConfig readSimulation(const YamlValue& value) {
+SimulationConfig readSimulation(const yaml::Value& value) {
   SimulationConfig simulation;
-  YamlSection section(value);
+  yaml::Section section(value);
   section.read("drive", simulation.drive);
   if (const auto with = section.get("with")) simulation.with = with->node();
   section.read("initial_position", simulation.initial_position);
@@ -113,9 +108,9 @@ SimulationConfig readSimulation(const YamlValue& value) {
       simulation.home_switch = std::make_pair((*range)[0], (*range)[1]);
     }
   }
-  section.read("index_offset", simulation.index_offset, drive::Range{0.0, 1.0, false});
-  section.read("time_constant", simulation.time_constant, kPositive);
-  section.read("brake_delay", simulation.brake_delay, kNotNegative);
+  section.read("index_offset", simulation.index_offset, yaml::Range{0.0, 1.0, false});
+  section.read("time_constant", simulation.time_constant, yaml::kPositive);
+  section.read("brake_delay", simulation.brake_delay, yaml::kNotNegative);
   section.read("unconfigured", simulation.unconfigured);
   constexpr std::int64_t kHighest = 0xFFFFFFFF;
   section.readInteger("vendor", simulation.vendor, 0, kHighest);

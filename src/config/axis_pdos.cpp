@@ -3,18 +3,15 @@
 #include <algorithm>
 #include <iterator>
 
-#include "cia402_driver/drive/profile_reader.h"
 #include "pdo_planner.h"
+#include "profile/parts.h"
 #include "robot_parts.h"
 
 namespace cia402::config {
 namespace {
 
+using canopen::DeviceConfig;
 using drive::AxisConfig;
-using drive::DriveProfile;
-using drive::ModeSpec;
-using drive::YamlSection;
-using drive::YamlValue;
 
 constexpr Duration kFresh = std::chrono::milliseconds(10);  // age of velocities, or one joint_state
 constexpr Duration kLeastRpdoTimeout = std::chrono::milliseconds(100);
@@ -42,8 +39,8 @@ std::vector<std::string> feedbackOf(const DriveProfile& profile) {
 bool ruledOut(const AxisConfig& axis, const std::string& name) {
   if (contains(axis.lacks, name)) return true;
   const drive::ObjectSpec* object = axis.profile->find(name);
-  if (axis.eds == nullptr || object == nullptr) return false;
-  const canopen::DictionaryEntry* entry = axis.eds->dictionary.find(object->id);
+  if (axis.description == nullptr || object == nullptr) return false;
+  const fieldbus::DictionaryEntry* entry = axis.description->dictionary.find(object->id);
   return entry == nullptr || !entry->mappable;
 }
 
@@ -58,10 +55,11 @@ Duration freshness(const RobotConfig& robot) {
 
 /// What is in the plan though nobody asked for it: default feedback, and the targets of default
 /// modes but that of the mode to start in.
-std::vector<std::string> defaultObjects(const AxisConfig& axis, const PdoNeeds& needs) {
+std::vector<std::string> defaultObjects(const AxisDraft& draft, const PdoNeeds& needs) {
+  const AxisConfig& axis = draft.axis;
   std::vector<std::string> names;
   if (!needs.feedback_required) names = needs.feedback;
-  names.insert(names.end(), axis.riders.begin(), axis.riders.end());
+  names.insert(names.end(), draft.device.riders.begin(), draft.device.riders.end());
   if (needs.modes_required) return names;
   const ModeSpec* start = axis.profile->mode(needs.mode);
   for (const std::string& name : axis.modes) {
@@ -84,13 +82,26 @@ void addStopModes(const AxisConfig& axis, std::vector<std::string>& names) {
   }
 }
 
-bool plan(YamlSection& section, AxisConfig& axis, RobotConfig& robot, PdoNeeds needs) {
+/// What the PDOs bring to the drive in every cycle.
+void setOutputs(AxisConfig& axis, const DeviceConfig& device) {
+  axis.outputs.clear();
+  for (const canopen::PdoLayout& pdo : device.pdos) {
+    if (pdo.direction != canopen::PdoDirection::rpdo) continue;
+    for (const std::string& name : pdo.objects) {
+      const ObjectSpec* object = drive::findObject(*axis.profile, name);
+      if (object != nullptr) axis.outputs.push_back(object->name);
+    }
+  }
+}
+
+bool plan(yaml::Section& section, AxisDraft& draft, RobotConfig& robot, PdoNeeds needs) {
+  AxisConfig& axis = draft.axis;
   const DriveProfile& profile = *axis.profile;
   const auto modes = section.get("modes");
   needs.mode = axis.mode;
   needs.cycle = axis.sync_period;
   needs.fresh = freshness(robot);
-  const Result<PdoPlan> planned = planPdos(profile, needs);
+  const Result<PdoPlan> planned = planPdos(profile, *draft.device.profile, needs);
   if (!planned) {
     const auto at = modes ? *modes : section.get("mode").value_or(section.value());
     at.problem("profile " + profile.name + ": " + planned.error().message);
@@ -102,21 +113,21 @@ bool plan(YamlSection& section, AxisConfig& axis, RobotConfig& robot, PdoNeeds n
                                "` finds no room in the TPDOs and is read by SDO, which is slow");
     }
   }
-  axis.pdos = planned->pdos;
-  axis.pdos_planned = true;
+  draft.device.pdos = planned->pdos;
+  draft.device.pdos_planned = true;
   axis.modes = planned->modes;
-  axis.riders = planned->riders;
-  axis.default_objects = defaultObjects(axis, needs);
+  draft.device.riders = planned->riders;
+  draft.device.default_objects = defaultObjects(draft, needs);
   return true;
 }
 
 /// Objects that an axis cannot do without.
 const char* const kNeeded[] = {"controlword", "statusword", "position_actual"};
 
-void readLacks(YamlSection& section, AxisConfig& axis) {
+void readLacks(yaml::Section& section, AxisConfig& axis) {
   const auto lacks = section.get("lacks");
   if (!lacks) return;
-  for (const YamlValue& entry : lacks->list()) {
+  for (const yaml::Value& entry : lacks->list()) {
     const auto name = entry.text();
     if (!name) continue;
     const drive::ObjectSpec* object = drive::findObject(*axis.profile, *name);
@@ -124,7 +135,7 @@ void readLacks(YamlSection& section, AxisConfig& axis) {
         std::find(std::begin(kNeeded), std::end(kNeeded), *name) != std::end(kNeeded);
     if (object == nullptr) {
       entry.problem("profile " + axis.profile->name + " has no object `" + *name + "`" +
-                    drive::suggestion(*name, drive::objectNames(*axis.profile)));
+                    yaml::suggestion(*name, drive::objectNames(*axis.profile)));
     } else if (needed) {
       entry.problem("no axis can do without `" + *name + "`");
     } else {
@@ -133,27 +144,28 @@ void readLacks(YamlSection& section, AxisConfig& axis) {
   }
 }
 
-void readRpdoTimeout(YamlSection& section, AxisConfig& axis) {
-  if (axis.profile->rpdo_deadline) {
-    axis.rpdo_timeout = std::max(kLeastRpdoTimeout, kRpdoTimeoutCycles * axis.sync_period);
+void readRpdoTimeout(yaml::Section& section, DeviceConfig& device, Duration cycle) {
+  if (device.profile->rpdo_deadline) {
+    device.rpdo_timeout = std::max(kLeastRpdoTimeout, kRpdoTimeoutCycles * cycle);
   }
-  double timeout = toSeconds(axis.rpdo_timeout);
-  if (!section.read("rpdo_timeout", timeout, drive::Range{0.0, 65.535, false})) return;
-  axis.rpdo_timeout = fromSeconds(timeout);
-  if (timeout > 0.0 && axis.rpdo_timeout < 2 * axis.sync_period) {
+  double timeout = toSeconds(device.rpdo_timeout);
+  if (!section.read("rpdo_timeout", timeout, yaml::Range{0.0, 65.535, false})) return;
+  device.rpdo_timeout = fromSeconds(timeout);
+  if (timeout > 0.0 && device.rpdo_timeout < 2 * cycle) {
     section.get("rpdo_timeout")
         ->problem("must be 0 (none) or at least two cycles, " +
-                  std::to_string(2.0 * toSeconds(axis.sync_period)) + " s");
-  } else if (axis.rpdo_timeout % std::chrono::milliseconds(1) != Duration(0)) {
+                  std::to_string(2.0 * toSeconds(cycle)) + " s");
+  } else if (device.rpdo_timeout % std::chrono::milliseconds(1) != Duration(0)) {
     section.get("rpdo_timeout")
         ->problem("must be a whole number of milliseconds, as 1400h:05 counts in them");
   }
 }
 
 /// The drive's own deadline stands on the RPDO that carries the controlword in every cycle.
-void setRpdoTimeout(AxisConfig& axis) {
-  const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(axis.rpdo_timeout).count();
-  for (drive::PdoLayout& pdo : axis.pdos) {
+void setRpdoTimeout(DeviceConfig& device) {
+  const auto ms =
+      std::chrono::duration_cast<std::chrono::milliseconds>(device.rpdo_timeout).count();
+  for (canopen::PdoLayout& pdo : device.pdos) {
     const auto& objects = pdo.objects;
     const bool commands = std::find(objects.begin(), objects.end(), "controlword") != objects.end();
     if (pdo.direction != canopen::PdoDirection::rpdo || !commands || pdo.event_timer != 0) continue;
@@ -164,25 +176,27 @@ void setRpdoTimeout(AxisConfig& axis) {
 
 }  // namespace
 
-bool choosePdos(YamlSection& section, AxisConfig& axis, RobotConfig& robot) {
+bool choosePdos(yaml::Section& section, AxisDraft& draft, RobotConfig& robot) {
+  AxisConfig& axis = draft.axis;
+  DeviceConfig& device = draft.device;
   const auto pdos = section.get("pdos");
   const auto modes = section.get("modes");
   const auto feedback = section.get("feedback");
-  section.readInteger("stale_after", axis.stale_after, 1, 1000);
+  section.readInteger("stale_after", device.stale_after, 1, 1000);
   if (!axis.profile) {
     for (const char* key : {"lacks", "rpdo_timeout"}) section.get(key);
     return false;
   }
   const DriveProfile& profile = *axis.profile;
   readLacks(section, axis);
-  readRpdoTimeout(section, axis);
+  readRpdoTimeout(section, device, axis.sync_period);
   PdoNeeds needs;
   needs.modes_required = modes.has_value();
-  needs.modes = modes ? drive::readModeNames(*modes, profile) : profile.default_modes;
+  needs.modes = modes ? readModeNames(*modes, profile) : profile.default_modes;
   if (!modes && needs.modes.empty()) needs.modes = allModes(profile);
   addStopModes(axis, needs.modes);
   needs.feedback_required = feedback.has_value();
-  needs.feedback = feedback ? drive::readFeedbackNames(*feedback, profile) : feedbackOf(profile);
+  needs.feedback = feedback ? readFeedbackNames(*feedback, profile) : feedbackOf(profile);
   if (!feedback) needs.if_room = profile.feedback_if_room;
   const auto ruled_out = [&](const std::string& name) { return ruledOut(axis, name); };
   const auto unreachable = [&](const std::string& name) {
@@ -193,12 +207,12 @@ bool choosePdos(YamlSection& section, AxisConfig& axis, RobotConfig& robot) {
   leaveOut(needs.if_room, ruled_out);
   if (!modes) leaveOut(needs.modes, unreachable);
   if (pdos && feedback) feedback->problem("says nothing beside `pdos`: keep one of them");
-  if (!pdos && feedback && !profile.pdos.empty()) {
+  if (!pdos && feedback && !device.profile->pdos.empty()) {
     feedback->problem("says nothing here: profile " + profile.name +
                       " has PDOs of its own; give the axis `pdos` instead");
   }
-  if (pdos || !profile.pdos.empty()) {
-    axis.pdos = pdos ? drive::readPdos(*pdos, profile) : profile.pdos;
+  if (pdos || !device.profile->pdos.empty()) {
+    device.pdos = pdos ? readPdos(*pdos, profile, *device.profile) : device.profile->pdos;
     axis.modes = needs.modes;
   } else {
     const ModeSpec* start = profile.mode(axis.mode);
@@ -208,9 +222,10 @@ bool choosePdos(YamlSection& section, AxisConfig& axis, RobotConfig& robot) {
     if (start == nullptr || start->kind == drive::ControlKind::homing) {
       return true;  // checkMode() tells
     }
-    if (!known || !plan(section, axis, robot, needs)) return false;
+    if (!known || !plan(section, draft, robot, needs)) return false;
   }
-  setRpdoTimeout(axis);
+  setRpdoTimeout(device);
+  setOutputs(axis, device);
   return true;
 }
 
@@ -219,25 +234,28 @@ namespace {
 /// What `axis` was planned for, but for what travels only because there was room; its objects are
 /// those that found room.
 PdoNeeds needsOf(const AxisConfig& axis, const RobotConfig& robot) {
+  const DeviceConfig& device = robot.deviceOf(axis);
   PdoNeeds needs;
   needs.mode = axis.mode;
   needs.modes = axis.modes;
-  for (const drive::PdoLayout& pdo : axis.pdos) {
+  for (const canopen::PdoLayout& pdo : device.pdos) {
     if (pdo.direction != canopen::PdoDirection::tpdo) continue;
     std::copy_if(pdo.objects.begin(), pdo.objects.end(), std::back_inserter(needs.feedback),
-                 [&](const std::string& name) { return !contains(axis.riders, name); });
+                 [&](const std::string& name) { return !contains(device.riders, name); });
   }
   needs.cycle = axis.sync_period;
   needs.fresh = freshness(robot);
   return needs;
 }
 
-void plan(AxisConfig& axis, const PdoNeeds& needs) {
-  const Result<PdoPlan> planned = planPdos(*axis.profile, needs);
+void plan(AxisConfig& axis, RobotConfig& robot) {
+  DeviceConfig& device = robot.deviceOf(axis);
+  const Result<PdoPlan> planned = planPdos(*axis.profile, *device.profile, needsOf(axis, robot));
   if (!planned) return;
-  axis.pdos = planned->pdos;
-  axis.riders = planned->riders;
-  setRpdoTimeout(axis);
+  device.pdos = planned->pdos;
+  device.riders = planned->riders;
+  setRpdoTimeout(device);
+  setOutputs(axis, device);
 }
 
 }  // namespace
@@ -246,13 +264,13 @@ void planAgain(RobotConfig& robot, Duration cycle) {
   robot.bus.sync_period = cycle;
   for (AxisConfig& axis : robot.axes) {
     axis.sync_period = cycle;
-    if (axis.pdos_planned) plan(axis, needsOf(axis, robot));
+    if (robot.deviceOf(axis).pdos_planned) plan(axis, robot);
   }
 }
 
 void leaveRiders(RobotConfig& robot) {
   for (AxisConfig& axis : robot.axes) {
-    if (!axis.riders.empty()) plan(axis, needsOf(axis, robot));
+    if (!robot.deviceOf(axis).riders.empty()) plan(axis, robot);
   }
 }
 

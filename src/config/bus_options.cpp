@@ -9,10 +9,7 @@
 namespace cia402::config {
 namespace {
 
-using drive::YamlSection;
-using drive::YamlValue;
-
-void readBitrate(YamlSection& section, BusConfig& bus) {
+void readBitrate(yaml::Section& section, BusConfig& bus) {
   static const std::vector<std::int64_t> kRates = {10000,  20000,  50000,  100000, 125000,
                                                    250000, 500000, 800000, 1000000};
   const auto value = section.get("bitrate");
@@ -26,9 +23,9 @@ void readBitrate(YamlSection& section, BusConfig& bus) {
   bus.bitrate = static_cast<double>(*rate);
 }
 
-void readSyncPeriod(YamlSection& section, BusConfig& bus) {
+void readSyncPeriod(yaml::Section& section, BusConfig& bus) {
   double period = toSeconds(bus.sync_period);
-  if (!section.read("sync_period", period, drive::Range{0.0, 1.0, true})) return;
+  if (!section.read("sync_period", period, yaml::Range{0.0, 1.0, true})) return;
   const auto value = *section.get("sync_period");
   bus.sync_period = fromSeconds(period);
   if (bus.sync_period < std::chrono::microseconds(100)) {
@@ -38,9 +35,9 @@ void readSyncPeriod(YamlSection& section, BusConfig& bus) {
   }
 }
 
-void readSyncWindow(YamlSection& section, BusConfig& bus) {
+void readSyncWindow(yaml::Section& section, BusConfig& bus) {
   double window = 0.0;
-  if (!section.read("sync_window", window, drive::Range{0.0, 1.0, false})) return;
+  if (!section.read("sync_window", window, yaml::Range{0.0, 1.0, false})) return;
   const auto value = *section.get("sync_window");
   bus.sync_window = fromSeconds(window);
   if (bus.sync_window->count() % 1000 != 0) {
@@ -51,25 +48,25 @@ void readSyncWindow(YamlSection& section, BusConfig& bus) {
   }
 }
 
-void readTimeInterval(YamlSection& section, BusConfig& bus) {
+void readTimeInterval(yaml::Section& section, BusConfig& bus) {
   double interval = 0.0;
-  if (!section.read("time_interval", interval, drive::Range{0.0, 86400.0, false})) return;
+  if (!section.read("time_interval", interval, yaml::Range{0.0, 86400.0, false})) return;
   bus.time_interval = fromSeconds(interval);
   if (interval > 0.0 && interval < 0.01) {
     section.get("time_interval")->problem("must be 0 (no TIME messages) or at least 0.01 s");
   }
 }
 
-void readListen(YamlSection& section, BusConfig& bus) {
+void readListen(yaml::Section& section, BusConfig& bus) {
   double listen = toSeconds(bus.listen);
-  if (section.read("listen", listen, drive::Range{0.0, 60.0, false})) {
+  if (section.read("listen", listen, yaml::Range{0.0, 60.0, false})) {
     bus.listen = fromSeconds(listen);
   }
 }
 
-void readHeartbeat(YamlSection& section, BusConfig& bus) {
+void readHeartbeat(yaml::Section& section, BusConfig& bus) {
   double heartbeat = toSeconds(bus.heartbeat);
-  if (!section.read("heartbeat", heartbeat, drive::Range{0.0, 65.535, false})) return;
+  if (!section.read("heartbeat", heartbeat, yaml::Range{0.0, 65.535, false})) return;
   bus.heartbeat = fromSeconds(heartbeat);
   if (bus.heartbeat.count() % 1000000 != 0) {
     section.get("heartbeat")->problem("must be a whole number of milliseconds, as 1017h counts");
@@ -84,11 +81,12 @@ std::string seconds(Duration duration) {
 
 std::string percent(double share) { return std::to_string(std::lround(share * 100.0)) + " %"; }
 
-void checkPeriod(const YamlValue& at, const RobotConfig& robot) {
+void checkPeriod(const yaml::Value& at, const RobotConfig& robot) {
   for (const drive::AxisConfig& axis : robot.axes) {
     if (!axis.profile) continue;
-    const Duration step = axis.profile->sync_period_step;
-    if (axis.profile->has_sync_period_object && robot.bus.sync_period % step != Duration(0)) {
+    const canopen::DeviceProfile& device = *robot.deviceOf(axis).profile;
+    const Duration step = device.sync_period_step;
+    if (device.has_sync_period_object && robot.bus.sync_period % step != Duration(0)) {
       at.problem("`" + axis.name + "` (profile " + axis.profile->name + ") takes multiples of " +
                  seconds(step) + " in 1006h");
     }
@@ -108,11 +106,12 @@ void checkPeriod(const YamlValue& at, const RobotConfig& robot) {
 }
 
 void warnOfUnnoticedLoss(RobotConfig& robot) {
-  const auto unsupervised = [&](const drive::AxisConfig& axis) {
-    return !axis.profile || planErrorControl(robot.bus, axis).kind == canopen::ErrorControl::none;
+  const auto unsupervised = [&](const canopen::DeviceConfig& device) {
+    return !device.profile ||
+           planErrorControl(robot.bus, device).kind == canopen::ErrorControl::none;
   };
   if (robot.bus.heartbeat == Duration(0) &&
-      std::all_of(robot.axes.begin(), robot.axes.end(), unsupervised)) {
+      std::all_of(robot.devices.begin(), robot.devices.end(), unsupervised)) {
     robot.warnings.emplace_back(
         "bus/heartbeat: is 0: should this program die, no drive would notice and stop; nor would a "
         "lost drive be noticed but by its missing TPDOs");
@@ -120,7 +119,7 @@ void warnOfUnnoticedLoss(RobotConfig& robot) {
   }
   for (const drive::AxisConfig& axis : robot.axes) {
     if (!axis.profile) continue;
-    const ErrorControlPlan plan = planErrorControl(robot.bus, axis);
+    const ErrorControlPlan plan = planErrorControl(robot.bus, robot.deviceOf(axis));
     if (plan.kind == canopen::ErrorControl::guarding) continue;
     if (plan.kind == canopen::ErrorControl::none) {
       robot.warnings.push_back("axes/" + axis.name +
@@ -168,8 +167,8 @@ std::optional<FeasibleCycle> feasibleCycle(RobotConfig robot, BusLoad load) {
 
 }  // namespace
 
-void readBus(const YamlValue& value, BusConfig& bus, bool& counter_given) {
-  YamlSection section(value);
+void readBus(const yaml::Value& value, BusConfig& bus, bool& counter_given) {
+  yaml::Section section(value);
   section.require("interface", "the CAN interface (can0), or `sim` for simulated drives");
   section.read("interface", bus.interface);
   if (bus.interface.size() > 15) {
@@ -198,32 +197,32 @@ void readBus(const YamlValue& value, BusConfig& bus, bool& counter_given) {
   section.finish();
 }
 
-void checkSync(const YamlValue& bus_section, bool counter_given, RobotConfig& robot) {
-  YamlSection section(bus_section);
+void checkSync(const yaml::Value& bus_section, bool counter_given, RobotConfig& robot) {
+  yaml::Section section(bus_section);
   warnOfUnnoticedLoss(robot);
   checkPeriod(section.get("sync_period").value_or(bus_section), robot);
-  const drive::AxisConfig* chooser = nullptr;
-  for (const drive::AxisConfig& axis : robot.axes) {
-    if (counter_given || !axis.profile || !axis.profile->sync_counter) continue;
-    if (chooser != nullptr && *axis.profile->sync_counter != robot.bus.sync_counter) {
-      bus_section.problem("`" + chooser->name + "` and `" + axis.name +
+  const canopen::DeviceConfig* chooser = nullptr;
+  for (const canopen::DeviceConfig& device : robot.devices) {
+    if (counter_given || !device.profile || !device.profile->sync_counter) continue;
+    if (chooser != nullptr && *device.profile->sync_counter != robot.bus.sync_counter) {
+      bus_section.problem("`" + chooser->name + "` and `" + device.name +
                           "` want different SYNC "
                           "counters; choose with `sync_counter`");
     }
-    chooser = chooser != nullptr ? chooser : &axis;
-    robot.bus.sync_counter = *axis.profile->sync_counter;
+    chooser = chooser != nullptr ? chooser : &device;
+    robot.bus.sync_counter = *device.profile->sync_counter;
   }
-  for (const drive::AxisConfig& axis : robot.axes) {
-    if (robot.bus.sync_counter == 0 || !axis.profile || axis.profile->has_sync_counter_object) {
+  for (const canopen::DeviceConfig& device : robot.devices) {
+    if (robot.bus.sync_counter == 0 || !device.profile || device.profile->has_sync_counter_object) {
       continue;
     }
-    robot.warnings.push_back("axes/" + axis.name +
+    robot.warnings.push_back("axes/" + device.name +
                              ": SYNC carries a counter, but this drive has no "
                              "1019h; if it takes no SYNC, write `sync_counter: 0` under `bus`");
   }
 }
 
-void checkBusLoad(const YamlValue& bus_section, RobotConfig& robot, Problems& problems) {
+void checkBusLoad(const yaml::Value& bus_section, RobotConfig& robot, Problems& problems) {
   if (planLoad(robot).worst > kComfortableLoad) leaveRiders(robot);
   const canopen::MasterConfig master = makeMasterConfig(robot, problems);
   const BusLoad load = busLoad(master, robot.bus.bitrate);
@@ -235,7 +234,7 @@ void checkBusLoad(const YamlValue& bus_section, RobotConfig& robot, Problems& pr
   const auto cycle = feasibleCycle(robot, load);
   const std::string feasible = std::to_string(cycle ? static_cast<int>(cycle->rate) : 0);
   if (load.worst > 1.0) {
-    YamlSection section(bus_section);
+    yaml::Section section(bus_section);
     const auto at = section.get("sync_period").value_or(bus_section);
     if (!cycle) {
       at.problem(share + "; heartbeats and events alone fill it: make `heartbeat` longer, give " +

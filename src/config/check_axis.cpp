@@ -9,6 +9,7 @@
 namespace cia402::config {
 namespace {
 
+using canopen::DeviceConfig;
 using canopen::PdoDirection;
 using drive::AxisConfig;
 using drive::AxisGeometry;
@@ -17,7 +18,6 @@ using drive::DriveProfile;
 using drive::ModeSpec;
 using drive::Quantity;
 using drive::UnitSpec;
-using drive::YamlSection;
 using Base = UnitSpec::Base;
 
 bool counts(const DriveProfile& profile, Quantity quantity, Base base) {
@@ -25,7 +25,7 @@ bool counts(const DriveProfile& profile, Quantity quantity, Base base) {
   return unit != profile.units.end() && unit->second.base == base;
 }
 
-void checkGeometry(YamlSection& section, const AxisConfig& axis) {
+void checkGeometry(yaml::Section& section, const AxisConfig& axis) {
   const bool needs_counts = counts(*axis.profile, Quantity::position, Base::count) ||
                             counts(*axis.profile, Quantity::velocity, Base::count);
   if (needs_counts && !section.has("counts_per_turn")) {
@@ -40,8 +40,8 @@ void checkGeometry(YamlSection& section, const AxisConfig& axis) {
   }
 }
 
-bool maps(const AxisConfig& axis, PdoDirection direction, const std::string& object) {
-  return std::any_of(axis.pdos.begin(), axis.pdos.end(), [&](const drive::PdoLayout& pdo) {
+bool maps(const DeviceConfig& device, PdoDirection direction, const std::string& object) {
+  return std::any_of(device.pdos.begin(), device.pdos.end(), [&](const canopen::PdoLayout& pdo) {
     return pdo.direction == direction &&
            std::find(pdo.objects.begin(), pdo.objects.end(), object) != pdo.objects.end();
   });
@@ -55,22 +55,24 @@ std::vector<std::string> startModes(const DriveProfile& profile) {
   return names;
 }
 
-void checkMode(YamlSection& section, const AxisConfig& axis) {
+void checkMode(yaml::Section& section, const AxisDraft& draft) {
+  const AxisConfig& axis = draft.axis;
+  const DeviceConfig& device = draft.device;
   const auto at = section.get("mode").value_or(section.value());
   const ModeSpec* mode = axis.profile->mode(axis.mode);
   if (mode == nullptr || mode->kind == drive::ControlKind::homing) {
     at.problem("profile " + axis.profile->name + " has no mode `" + axis.mode + "` to start in" +
-               drive::suggestion(axis.mode, startModes(*axis.profile)));
+               yaml::suggestion(axis.mode, startModes(*axis.profile)));
     return;
   }
-  if (!maps(axis, PdoDirection::rpdo, mode->target)) {
+  if (!maps(device, PdoDirection::rpdo, mode->target)) {
     at.problem("mode `" + axis.mode + "` needs `" + mode->target +
                "` in an RPDO; add it to `pdos`, or choose a mode whose target is mapped");
   }
   for (const std::string& name : section.has("modes") ? axis.modes : std::vector<std::string>()) {
     const ModeSpec* other = axis.profile->mode(name);
     if (other == nullptr || other->target.empty()) continue;
-    if (maps(axis, PdoDirection::rpdo, other->target)) continue;
+    if (maps(device, PdoDirection::rpdo, other->target)) continue;
     section.get("modes")->problem("mode `" + name + "` needs `" + other->target +
                                   "` in an RPDO; add it to `pdos`, or leave the mode out");
   }
@@ -80,10 +82,10 @@ void checkMode(YamlSection& section, const AxisConfig& axis) {
   }
 }
 
-void checkCyclicObjects(YamlSection& section, const AxisConfig& axis) {
+void checkCyclicObjects(yaml::Section& section, const DeviceConfig& device) {
   const auto at = section.get("pdos").value_or(section.value());
   const auto need = [&](PdoDirection direction, const char* object, const char* kind) {
-    if (!maps(axis, direction, object)) {
+    if (!maps(device, direction, object)) {
       at.problem("`" + std::string(object) + "` must be in " + kind + ": the axis needs it in " +
                  "every cycle");
     }
@@ -95,12 +97,12 @@ void checkCyclicObjects(YamlSection& section, const AxisConfig& axis) {
 
 // What an RPDO carries is sent in every cycle, over whatever an SDO wrote: a torque limit that
 // nobody sets would be 0 and drop the load.
-void checkRpdoObjects(YamlSection& section, const AxisConfig& axis) {
+void checkRpdoObjects(yaml::Section& section, const AxisDraft& draft) {
   const auto at = section.get("pdos").value_or(section.value());
-  for (const drive::PdoLayout& pdo : axis.pdos) {
+  for (const canopen::PdoLayout& pdo : draft.device.pdos) {
     if (pdo.direction != PdoDirection::rpdo) continue;
     for (const std::string& object : pdo.objects) {
-      if (isSetByDriver(*axis.profile, object)) continue;
+      if (isSetByDriver(*draft.axis.profile, object)) continue;
       at.problem("`" + object +
                  "` would be sent as 0 in every cycle, as nothing sets it: take it " +
                  "out of the RPDO; `write` sets it by SDO when the drive boots");
@@ -109,7 +111,7 @@ void checkRpdoObjects(YamlSection& section, const AxisConfig& axis) {
 }
 
 // Set-points are only slowed down by limits that are there.
-void warnOfMissingLimits(YamlSection& section, const AxisConfig& axis, RobotConfig& robot) {
+void warnOfMissingLimits(yaml::Section& section, const AxisConfig& axis, RobotConfig& robot) {
   const bool velocity = axis.limits.velocity.has_value();
   if (velocity && axis.limits.acceleration) return;
   robot.warnings.push_back(section.value().path() + "/limits: no " +
@@ -117,11 +119,11 @@ void warnOfMissingLimits(YamlSection& section, const AxisConfig& axis, RobotConf
                            " limit: the axis follows set-points however fast they are");
 }
 
-void checkHoming(YamlSection& section, const AxisConfig& axis, RobotConfig& robot) {
+void checkHoming(yaml::Section& section, const AxisConfig& axis, RobotConfig& robot) {
   if (!axis.homing) return;
   const drive::HomingSpec& spec = axis.profile->homing;
   const auto homing = *section.get("homing");
-  YamlSection homing_section(homing);
+  yaml::Section homing_section(homing);
   const auto method = homing_section.get("method");
   if (spec.kind == drive::HomingSpec::Kind::none) {
     homing.problem("profile " + axis.profile->name + " has no homing; remove the section");
@@ -157,7 +159,7 @@ void checkHoming(YamlSection& section, const AxisConfig& axis, RobotConfig& robo
 }
 
 // Positions beyond what the object holds would wrap around.
-void checkRange(YamlSection& section, const AxisConfig& axis) {
+void checkRange(yaml::Section& section, const AxisConfig& axis) {
   for (const char* name : {"position_actual", "target_position"}) {
     const drive::ObjectSpec* object = axis.profile->find(name);
     if (object == nullptr) continue;
@@ -176,7 +178,7 @@ void checkRange(YamlSection& section, const AxisConfig& axis) {
 }
 
 // What cannot be had is told, not replaced.
-void checkQuickStop(YamlSection& section, const AxisConfig& axis) {
+void checkQuickStop(yaml::Section& section, const AxisConfig& axis) {
   if (!axis.quick_stop_holds) return;
   const auto at = section.get("quick_stop").value_or(section.value());
   const auto chooses = [](const std::vector<drive::NamedWrite>& writes) {
@@ -192,15 +194,15 @@ void checkQuickStop(YamlSection& section, const AxisConfig& axis) {
                "write `from: quick_stop.hold`); write `disable` or leave it out");
     return;
   }
-  const drive::ObjectSpec* option = profile.find(canopen::ObjectId{0x605A, 0});
-  if (axis.eds == nullptr || option == nullptr) return;
-  if (axis.eds->dictionary.find(option->id) != nullptr) return;
-  at.problem("the drive cannot hold after a quick stop: " + axis.eds->file +
+  const drive::ObjectSpec* option = profile.find(fieldbus::ObjectId{0x605A, 0});
+  if (axis.description == nullptr || option == nullptr) return;
+  if (axis.description->dictionary.find(option->id) != nullptr) return;
+  at.problem("the drive cannot hold after a quick stop: " + axis.description->file +
              " has no 605A:00; write `disable` or leave it out");
 }
 
-void checkWrites(YamlSection& section, const AxisConfig& axis) {
-  const auto check = [&](const std::vector<drive::NamedWrite>& writes, const drive::YamlValue& at) {
+void checkWrites(yaml::Section& section, const AxisConfig& axis) {
+  const auto check = [&](const std::vector<drive::NamedWrite>& writes, const yaml::Value& at) {
     for (const drive::NamedWrite& write : writes) {
       const auto resolved = drive::resolveWrite(write, axis);
       if (!resolved) at.problem(resolved.error().message);
@@ -216,12 +218,14 @@ void checkWrites(YamlSection& section, const AxisConfig& axis) {
 
 }  // namespace
 
-void checkAxis(YamlSection& section, const AxisConfig& axis, RobotConfig& robot) {
+void checkAxis(yaml::Section& section, const AxisDraft& draft, RobotConfig& robot) {
+  const AxisConfig& axis = draft.axis;
   checkGeometry(section, axis);
-  checkMode(section, axis);
-  const bool planned = !axis.pdos.empty() || section.has("pdos");  // else checkMode() has told why
-  if (planned) checkCyclicObjects(section, axis);
-  checkRpdoObjects(section, axis);
+  checkMode(section, draft);
+  const bool planned =
+      !draft.device.pdos.empty() || section.has("pdos");  // else checkMode() has told why
+  if (planned) checkCyclicObjects(section, draft.device);
+  checkRpdoObjects(section, draft);
   warnOfMissingLimits(section, axis, robot);
   checkHoming(section, axis, robot);
   checkQuickStop(section, axis);

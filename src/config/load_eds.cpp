@@ -2,7 +2,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "cia402_driver/drive/profile_eds.h"
+#include "profile/parts.h"
 #include "robot_parts.h"
 
 namespace cia402::config {
@@ -12,17 +12,15 @@ std::string fileOf(const std::string& path) { return path.substr(path.find_last_
 
 }  // namespace
 
-std::shared_ptr<const drive::AxisEds> ProfileCache::eds(const drive::YamlValue& name,
-                                                        canopen::NodeId node_id,
-                                                        RobotConfig& robot) {
+SharedEds ProfileCache::eds(const yaml::Value& name, canopen::NodeId node_id, RobotConfig& robot) {
   const auto text = name.text();
-  if (!text) return nullptr;
+  if (!text) return {};
   const std::string path = lookup_(*text);
   std::ifstream file(path, std::ios::binary);
   if (path.empty() || !file) {
     name.problem("there is no file `" + *text +
                  "`; give a path, or the name of a file beside the drive profiles");
-    return nullptr;
+    return {};
   }
   const std::string content((std::istreambuf_iterator<char>(file)), {});
   canopen::Eds read = canopen::readEds(content, node_id);
@@ -37,25 +35,29 @@ std::shared_ptr<const drive::AxisEds> ProfileCache::eds(const drive::YamlValue& 
   }
   if (read.dictionary.objects().empty()) {
     name.problem("`" + path + "` describes no object: it is no EDS or DCF, or it is damaged");
-    return nullptr;
+    return {};
   }
-  return std::make_shared<const drive::AxisEds>(
-      drive::AxisEds{fileOf(path), std::move(read.info), std::move(read.dictionary)});
+  return {std::make_shared<const fieldbus::DeviceDescription>(
+              fieldbus::DeviceDescription{fileOf(path), std::move(read.dictionary)}),
+          std::make_shared<const canopen::EdsInfo>(std::move(read.info))};
 }
 
-void readEds(drive::YamlSection& section, drive::AxisConfig& axis, ProfileCache& cache,
-             RobotConfig& robot) {
+void readEds(yaml::Section& section, AxisDraft& draft, ProfileCache& cache, RobotConfig& robot) {
   const auto value = section.get("eds");
   if (!value) return;
-  axis.eds = cache.eds(*value, axis.node_id, robot);
-  if (axis.eds == nullptr || axis.profile == nullptr) return;
+  drive::AxisConfig& axis = draft.axis;
+  const SharedEds eds = cache.eds(*value, draft.device.node_id, robot);
+  axis.description = eds.description;
+  draft.device.eds = eds.info;
+  if (axis.description == nullptr || axis.profile == nullptr) return;
   axis.profile =
-      std::make_shared<const drive::DriveProfile>(drive::withEds(*axis.profile, *axis.eds));
+      std::make_shared<const drive::DriveProfile>(withEds(*axis.profile, *axis.description));
 }
 
-void checkEds(drive::YamlSection& section, const drive::AxisConfig& axis, RobotConfig& robot) {
-  if (axis.eds == nullptr || axis.profile == nullptr) return;
-  const auto found = drive::compareWithEds(*axis.profile, axis.pdos, *axis.eds);
+void checkEds(yaml::Section& section, const AxisDraft& draft, RobotConfig& robot) {
+  const drive::AxisConfig& axis = draft.axis;
+  if (axis.description == nullptr || axis.profile == nullptr) return;
+  const auto found = compareWithEds(*axis.profile, draft.device, *axis.description);
   for (const std::string& problem : found.problems) section.get("eds")->problem(problem);
   for (const std::string& warning : found.warnings) {
     robot.warnings.push_back(section.value().path() + "/eds: " + warning);

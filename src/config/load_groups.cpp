@@ -8,21 +8,17 @@
 namespace cia402::config {
 namespace {
 
-using drive::kNotNegative;
-using drive::YamlSection;
-using drive::YamlValue;
-
-std::vector<std::string> readNames(YamlSection& section, const std::string& key,
+std::vector<std::string> readNames(yaml::Section& section, const std::string& key,
                                    const std::vector<std::string>& known, const char* what) {
   std::vector<std::string> names;
   const auto list = section.require(key, std::string("list the ") + what + "s");
   if (!list) return names;
-  for (const YamlValue& value : list->list()) {
+  for (const yaml::Value& value : list->list()) {
     const auto name = value.text();
     if (!name) continue;
     if (!known.empty() && std::find(known.begin(), known.end(), *name) == known.end()) {
       value.problem("there is no " + std::string(what) + " `" + *name + "`" +
-                    drive::suggestion(*name, known));
+                    yaml::suggestion(*name, known));
     } else if (std::find(names.begin(), names.end(), *name) != names.end()) {
       value.problem("`" + *name + "` is listed twice");
     } else {
@@ -52,17 +48,17 @@ double determinant(std::vector<std::vector<double>> m) {
   return std::fabs(product);
 }
 
-void readMatrix(YamlSection& section, CouplingConfig& coupling) {
+void readMatrix(yaml::Section& section, CouplingConfig& coupling) {
   const auto value = section.require("matrix", "joint space = matrix * axis space");
   if (!value) return;
   const std::size_t size = coupling.axes.size();
-  const std::vector<YamlValue> rows = value->list();
+  const std::vector<yaml::Value> rows = value->list();
   if (rows.size() != size) {
     value->problem("must have a row for each joint: " + std::to_string(size) + ", not " +
                    std::to_string(rows.size()));
     return;
   }
-  for (const YamlValue& row : rows) {
+  for (const yaml::Value& row : rows) {
     if (const auto numbers = row.numbers(size)) coupling.matrix.push_back(*numbers);
   }
   if (coupling.matrix.size() == size && determinant(coupling.matrix) < 1e-12) {
@@ -72,7 +68,7 @@ void readMatrix(YamlSection& section, CouplingConfig& coupling) {
 
 // Whether the drive has room for a stream of positions.
 bool streamsPositions(const drive::AxisConfig& axis) {
-  if (!axis.profile || axis.pdos.empty()) return true;  // told elsewhere
+  if (!axis.profile || axis.outputs.empty()) return true;  // told elsewhere
   return drive::trajectoryMode(axis) != nullptr;
 }
 
@@ -89,7 +85,7 @@ std::string incapacity(const RobotConfig& robot, const std::string& name) {
     return cannot + "its profile has no cyclic position mode; leave its joint out of the group";
   }
   const std::string where = "axes/" + name + "/";
-  const std::string add = axis->pdos_planned
+  const std::string add = robot.deviceOf(*axis).pdos_planned
                               ? "add " + mode->name + " to `" + where + "modes`"
                               : "map " + mode->target + " into an RPDO in `" + where + "pdos`";
   return cannot + "no RPDO holds the target of its mode " + mode->name + "; " + add +
@@ -112,16 +108,16 @@ std::vector<std::string> incapableAxes(const RobotConfig& robot, const std::stri
   return incapable;
 }
 
-void readConstraints(const YamlValue& value, GroupConfig& group) {
-  YamlSection section(value);
-  section.read("goal_time", group.goal_time, kNotNegative);
+void readConstraints(const yaml::Value& value, GroupConfig& group) {
+  yaml::Section section(value);
+  section.read("goal_time", group.goal_time, yaml::kNotNegative);
   for (const std::string& joint : group.joints) {
     const auto tolerance = section.get(joint);
     if (!tolerance) continue;
-    YamlSection tolerance_section(*tolerance);
+    yaml::Section tolerance_section(*tolerance);
     JointTolerance& target = group.tolerances[joint];
-    tolerance_section.read("trajectory", target.trajectory, kNotNegative);
-    tolerance_section.read("goal", target.goal, kNotNegative);
+    tolerance_section.read("trajectory", target.trajectory, yaml::kNotNegative);
+    tolerance_section.read("goal", target.goal, yaml::kNotNegative);
     tolerance_section.finish();
   }
   section.finish();
@@ -134,13 +130,13 @@ bool isAxisName(const RobotConfig& robot, const std::string& name) {
 
 }  // namespace
 
-void readCouplings(const YamlValue& value, RobotConfig& robot) {
+void readCouplings(const yaml::Value& value, RobotConfig& robot) {
   std::vector<std::string> axis_names;
   for (const drive::AxisConfig& axis : robot.axes) axis_names.push_back(axis.name);
   std::set<std::string> coupled, joints;
-  for (const YamlValue& entry : value.list()) {
+  for (const yaml::Value& entry : value.list()) {
     CouplingConfig coupling;
-    YamlSection section(entry);
+    yaml::Section section(entry);
     coupling.axes = readNames(section, "axes", axis_names, "axis");
     coupling.joints = readNames(section, "joints", {}, "joint");
     if (coupling.joints.size() != coupling.axes.size()) {
@@ -186,9 +182,9 @@ std::vector<std::string> jointNames(const RobotConfig& robot) {
   return names;
 }
 
-void readGroups(const YamlValue& value, RobotConfig& robot) {
+void readGroups(const yaml::Value& value, RobotConfig& robot) {
   const std::vector<std::string> known = jointNames(robot);
-  YamlSection groups(value);
+  yaml::Section groups(value);
   for (const auto& [name, entry] : groups.entries()) {
     GroupConfig group;
     group.name = name;
@@ -198,7 +194,7 @@ void readGroups(const YamlValue& value, RobotConfig& robot) {
     if (isAxisName(robot, name)) {
       entry.problem("is the name of an axis, too; their topics would be the same");
     }
-    YamlSection section(entry);
+    yaml::Section section(entry);
     group.joints = readNames(section, "joints", known, "joint");
     section.read("stop_group_on_fault", group.stop_group_on_fault);
     if (const auto constraints = section.get("constraints")) readConstraints(*constraints, group);

@@ -9,14 +9,14 @@ constexpr int kMostKept = 1000;
 
 }  // namespace
 
-void readRecorder(const drive::YamlValue& value, RecorderConfig& recorder) {
-  drive::YamlSection section(value);
+void readRecorder(const yaml::Value& value, RecorderConfig& recorder) {
+  yaml::Section section(value);
   double duration = toSeconds(recorder.duration);
-  if (section.read("duration", duration, drive::Range{1.0, kLongest, false})) {
+  if (section.read("duration", duration, yaml::Range{1.0, kLongest, false})) {
     recorder.duration = fromSeconds(duration);
   }
   double post_trigger = toSeconds(recorder.post_trigger);
-  if (section.read("post_trigger", post_trigger, drive::Range{0.0, kLongest, false})) {
+  if (section.read("post_trigger", post_trigger, yaml::Range{0.0, kLongest, false})) {
     recorder.post_trigger = fromSeconds(post_trigger);
   }
   if (recorder.post_trigger >= recorder.duration) {

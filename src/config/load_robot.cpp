@@ -7,21 +7,18 @@
 namespace cia402::config {
 namespace {
 
-using drive::YamlSection;
-using drive::YamlValue;
-
-void readAxes(const YamlValue& value, const YAML::Node& defaults, ProfileCache& profiles,
+void readAxes(const yaml::Value& value, const YAML::Node& defaults, ProfileCache& profiles,
               RobotConfig& robot) {
-  YamlSection section(value);
+  yaml::Section section(value);
   for (const auto& [name, entry] : section.entries()) {
-    const YamlValue merged(mergeDefaults(defaults, entry.node()), entry.path(), entry.problems());
+    const yaml::Value merged(mergeDefaults(defaults, entry.node()), entry.path(), entry.problems());
     readAxis(name, merged, profiles, robot);
   }
   section.finish();
   if (robot.axes.empty()) value.problem("must name at least one axis");
 }
 
-void checkFrames(const YamlValue& axes, const RobotConfig& robot) {
+void checkFrames(const yaml::Value& axes, const RobotConfig& robot) {
   std::set<std::string> children;
   for (const FrameConfig& frame : robot.frames) {
     if (!frame.child.empty() && !children.insert(frame.child).second) {
@@ -33,16 +30,16 @@ void checkFrames(const YamlValue& axes, const RobotConfig& robot) {
 RobotConfig readRobot(const YAML::Node& tree, const ProfileLookup& lookup, Problems& problems) {
   RobotConfig robot;
   ProfileCache profiles(lookup, problems);
-  const YamlValue root(tree, "", problems);
-  YamlSection section(root);
-  const YamlValue missing(YAML::Node(YAML::NodeType::Map), "bus", problems);
+  const yaml::Value root(tree, "", problems);
+  yaml::Section section(root);
+  const yaml::Value missing(YAML::Node(YAML::NodeType::Map), "bus", problems);
   bool counter_given = false;
 
   const auto bus = section.get("bus");
   readBus(bus.value_or(missing), robot.bus, counter_given);
   const auto defaults = section.get("defaults");
-  if (defaults) YamlSection check_kind(*defaults);
-  section.read("joint_state_rate", robot.joint_state_rate, drive::Range{0.0, 1000.0, true});
+  if (defaults) yaml::Section check_kind(*defaults);
+  section.read("joint_state_rate", robot.joint_state_rate, yaml::Range{0.0, 1000.0, true});
   const auto axes = section.get("axes");
   if (axes) {
     readAxes(*axes, defaults ? defaults->node() : YAML::Node(), profiles, robot);
@@ -67,7 +64,7 @@ RobotConfig readRobot(const YAML::Node& tree, const ProfileLookup& lookup, Probl
 ProfileLookup profilesIn(std::vector<std::string> folders) {
   return [folders = std::move(folders)](const std::string& name) -> std::string {
     const std::size_t dot = name.find_last_of("./");
-    const std::string ending = dot == std::string::npos ? "" : canopen::nameKey(name.substr(dot));
+    const std::string ending = dot == std::string::npos ? "" : fieldbus::nameKey(name.substr(dot));
     const bool is_path = name.find('/') != std::string::npos || ending == ".yaml" ||
                          ending == ".eds" || ending == ".dcf";
     if (is_path && std::ifstream(name)) return name;
@@ -81,7 +78,7 @@ ProfileLookup profilesIn(std::vector<std::string> folders) {
 
 YAML::Node readRobotFile(const std::string& path, Problems& problems) {
   try {
-    return drive::parseYamlFile(path);
+    return yaml::parseFile(path);
   } catch (const YAML::BadFile&) {
     problems.add(path, "cannot be read");
   } catch (const YAML::Exception& error) {

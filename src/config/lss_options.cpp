@@ -4,48 +4,46 @@
 namespace cia402::config {
 namespace {
 
-using drive::AxisConfig;
-using drive::YamlSection;
-using drive::YamlValue;
+using canopen::DeviceConfig;
 using Number = std::optional<std::uint32_t>;
 
 struct Row {
   const char* key;
-  Number AxisConfig::*expected;
+  Number DeviceConfig::*expected;
 };
 constexpr Row kRows[] = {
-    {"vendor_id", &AxisConfig::vendor_id},
-    {"product_code", &AxisConfig::product_code},
-    {"revision", &AxisConfig::revision},
-    {"serial", &AxisConfig::serial},
+    {"vendor_id", &DeviceConfig::vendor_id},
+    {"product_code", &DeviceConfig::product_code},
+    {"revision", &DeviceConfig::revision},
+    {"serial", &DeviceConfig::serial},
 };
 
-Number ofProfile(const AxisConfig& axis, std::size_t part) {
-  if (!axis.profile || part > 1) return {};
-  return part == 0 ? axis.profile->vendor_id : axis.profile->product_code;
+Number ofProfile(const DeviceConfig& device, std::size_t part) {
+  if (!device.profile || part > 1) return {};
+  return part == 0 ? device.profile->vendor_id : device.profile->product_code;
 }
 
 }  // namespace
 
-void readLss(const YamlValue& value, AxisConfig& axis, const RobotConfig& robot) {
-  drive::AxisLss lss;
+void readLss(const yaml::Value& value, DeviceConfig& device, const RobotConfig& robot) {
+  canopen::DeviceLss lss;
   const bool mapping = value.isMap();
   if (!mapping) {
     const auto wanted = value.boolean();
     if (!wanted || !*wanted) return;
   }
-  YamlSection section(mapping ? value
-                              : YamlValue(YAML::Node(YAML::NodeType::Map), value.path(),
-                                          value.problems(), value.source()));
+  yaml::Section section(mapping ? value
+                                : yaml::Value(YAML::Node(YAML::NodeType::Map), value.path(),
+                                              value.problems(), value.source()));
   std::string missing;
   for (std::size_t part = 0; part < canopen::lss::kParts; ++part) {
-    Number given, &expected = axis.*kRows[part].expected;
+    Number given, &expected = device.*kRows[part].expected;
     section.readInteger(kRows[part].key, given, 0, 0xFFFFFFFF);
     if (given && expected && *given != *expected) {
       section.get(kRows[part].key)->problem("is another number than that under `identity`");
     }
     if (!expected) expected = given;
-    if (!expected) expected = ofProfile(axis, part);
+    if (!expected) expected = ofProfile(device, part);
     if (expected) {
       lss.identity.setPart(part, *expected);
     } else if (!section.has(kRows[part].key)) {
@@ -61,11 +59,11 @@ void readLss(const YamlValue& value, AxisConfig& axis, const RobotConfig& robot)
         missing);
     return;
   }
-  for (const AxisConfig& other : robot.axes) {
+  for (const DeviceConfig& other : robot.devices) {
     if (!other.lss || other.lss->identity != lss.identity) continue;
     value.problem("`" + other.name + "` has the same identity: LSS cannot tell the drives apart");
   }
-  axis.lss = lss;
+  device.lss = lss;
 }
 
 }  // namespace cia402::config

@@ -4,7 +4,6 @@
 #include <map>
 
 #include "cia402_driver/drive/named_write.h"
-#include "cia402_driver/drive/profile_reader.h"
 #include "robot_parts.h"
 
 namespace cia402::config {
@@ -12,6 +11,7 @@ namespace {
 
 constexpr std::uint64_t kQuickStopCommand = 0x0002;  // enable voltage without "no quick stop"
 
+using canopen::DeviceConfig;
 using canopen::NodeConfig;
 using canopen::PdoConfig;
 using canopen::PdoDirection;
@@ -31,74 +31,76 @@ std::string hexId(unsigned cob_id) {
 }
 
 /// 0: the drive's own.
-unsigned cobId(const drive::PdoLayout& layout, const AxisConfig& axis) {
-  using Kind = drive::CobIdSpec::Kind;
+unsigned cobId(const canopen::PdoLayout& layout, const DeviceConfig& device) {
+  using Kind = canopen::CobIdSpec::Kind;
   const unsigned base = layout.direction == PdoDirection::rpdo ? 0x200 : 0x180;
   switch (layout.cob_id.kind) {
     case Kind::absolute:
       return layout.cob_id.value;
     case Kind::node_id:
-      return unsigned{layout.cob_id.value} + axis.node_id;
+      return unsigned{layout.cob_id.value} + device.node_id;
     case Kind::drive:
       return 0;
     case Kind::predefined:
       break;
   }
-  if (axis.profile->cob_ids_of_drive) return 0;
-  return base + 0x100 * (layout.number - 1) + axis.node_id;  // only asked for up to the fourth
+  if (device.profile->cob_ids_of_drive) return 0;
+  return base + 0x100 * (layout.number - 1) + device.node_id;  // only asked for up to the fourth
 }
 
-PdoConfig makePdo(const drive::PdoLayout& layout, const AxisConfig& axis) {
+PdoConfig makePdo(const canopen::PdoLayout& layout, const AxisConfig& axis,
+                  const DeviceConfig& device) {
   PdoConfig pdo;
   pdo.direction = layout.direction;
   pdo.number = layout.number;
-  pdo.cob_id = static_cast<std::uint16_t>(cobId(layout, axis));
+  pdo.cob_id = static_cast<std::uint16_t>(cobId(layout, device));
   pdo.transmission = layout.transmission;
   pdo.inhibit = layout.inhibit;
   pdo.event_timer = layout.event_timer;
-  pdo.stale_after = axis.stale_after;
+  pdo.stale_after = device.stale_after;
   pdo.request_every = layout.request_every;
   pdo.refresh_every = layout.refresh_every;
   pdo.enabled = !layout.objects.empty();
   for (const std::string& name : layout.objects) {
     const drive::ObjectSpec* object = drive::findObject(*axis.profile, name);
     if (object == nullptr) continue;  // refused by readPdos() already
-    const auto& defaults = axis.default_objects;
-    const auto& riders = axis.riders;
+    const auto& defaults = device.default_objects;
+    const auto& riders = device.riders;
     const bool optional = std::find(defaults.begin(), defaults.end(), name) != defaults.end();
     const bool if_room = std::find(riders.begin(), riders.end(), name) != riders.end();
-    pdo.entries.push_back({object->id, static_cast<std::uint8_t>(canopen::sizeBits(object->type)),
+    pdo.entries.push_back({object->id, static_cast<std::uint8_t>(fieldbus::sizeBits(object->type)),
                            object->name, optional, if_room});
   }
   return pdo;
 }
 
-bool hasCobId(const drive::PdoLayout& layout, const AxisConfig& axis) {
-  return layout.number <= kPredefinedPdos || axis.profile->cob_ids_of_drive ||
-         layout.cob_id.kind != drive::CobIdSpec::Kind::predefined;
+bool hasCobId(const canopen::PdoLayout& layout, const DeviceConfig& device) {
+  return layout.number <= kPredefinedPdos || device.profile->cob_ids_of_drive ||
+         layout.cob_id.kind != canopen::CobIdSpec::Kind::predefined;
 }
 
 // The layout's PDOs; all others that the drive has are made invalid.
-std::vector<PdoConfig> makePdos(const AxisConfig& axis, Problems& problems) {
+std::vector<PdoConfig> makePdos(const AxisConfig& axis, const DeviceConfig& device,
+                                Problems& problems) {
   std::vector<PdoConfig> pdos;
   const std::string path = "axes/" + axis.name + "/pdos";
   for (const PdoDirection direction : {PdoDirection::rpdo, PdoDirection::tpdo}) {
     const bool rpdo = direction == PdoDirection::rpdo;
-    const unsigned count = rpdo ? axis.profile->max_rpdos : axis.profile->max_tpdos;
+    const unsigned count = rpdo ? device.profile->max_rpdos : device.profile->max_tpdos;
     for (unsigned number = 1; number <= count; ++number) {
-      drive::PdoLayout layout;
+      canopen::PdoLayout layout;
       layout.direction = direction;
       layout.number = number;
-      for (const drive::PdoLayout& entry : axis.pdos) {
+      for (const canopen::PdoLayout& entry : device.pdos) {
         if (entry.direction == direction && entry.number == number) layout = entry;
       }
       const std::string name = (rpdo ? "rpdo" : "tpdo") + std::to_string(number);
-      if (!layout.objects.empty() && !hasCobId(layout, axis)) {
+      if (!layout.objects.empty() && !hasCobId(layout, device)) {
         problems.add(path, name + " has no COB-ID: the predefined connection set ends with the " +
                                "fourth; give it a `cob_id`");
         continue;
       }
-      pdos.push_back(makePdo(layout, axis));
+      pdos.push_back(makePdo(layout, axis, device));
       const unsigned cob_id = pdos.back().cob_id;
       if (pdos.back().enabled && cob_id != 0 && !isPdoCobId(cob_id)) {
         problems.add(path, name + " would have the COB-ID " + hexId(cob_id) +
@@ -166,8 +168,8 @@ void addStop(const drive::DriveProfile& profile, NodeConfig& node) {
   node.writes.push_back(stop);
 }
 
-void setSupervision(const BusConfig& bus, const AxisConfig& axis, NodeConfig& node) {
-  const ErrorControlPlan plan = planErrorControl(bus, axis);
+void setSupervision(const BusConfig& bus, const DeviceConfig& device, NodeConfig& node) {
+  const ErrorControlPlan plan = planErrorControl(bus, device);
   const bool guarding = plan.kind == canopen::ErrorControl::guarding;
   node.error_control = plan.kind;
   node.heartbeat = guarding ? Duration(0) : plan.period;
@@ -184,12 +186,12 @@ void addSyncWindow(const BusConfig& bus, NodeConfig& node) {
   canopen::StartupWrite write;
   write.object = {0x1007, 0};
   write.name = "synchronous window length";
-  write.data = canopen::toBytes(static_cast<std::uint64_t>(bus.sync_window->count() / 1000), 4);
+  write.data = fieldbus::toBytes(static_cast<std::uint64_t>(bus.sync_window->count() / 1000), 4);
   write.optional = true;  // few drives have it
   node.writes.push_back(write);
 }
 
-void setSync(const BusConfig& bus, const drive::DriveProfile& profile, NodeConfig& node) {
+void setSync(const BusConfig& bus, const canopen::DeviceProfile& profile, NodeConfig& node) {
   // Without a counter on the bus only drives that expect one must be told so.
   if (profile.has_sync_counter_object && (bus.sync_counter != 0 || profile.sync_counter)) {
     node.sync_counter = bus.sync_counter;
@@ -201,26 +203,27 @@ void setSync(const BusConfig& bus, const drive::DriveProfile& profile, NodeConfi
 
 NodeConfig makeNode(const RobotConfig& robot, const AxisConfig& axis, Problems& problems) {
   const drive::DriveProfile& profile = *axis.profile;
+  const DeviceConfig& device = robot.deviceOf(axis);
+  const canopen::DeviceProfile& family = *device.profile;
   NodeConfig node;
-  node.node_id = axis.node_id;
-  node.name = axis.name;
-  node.title = drive::whoIs(axis);
-  node.device_type = profile.device_type;
-  node.vendor_id = axis.vendor_id ? axis.vendor_id : profile.vendor_id;
-  node.product_code = axis.product_code ? axis.product_code : profile.product_code;
-  node.revision = axis.revision;
-  node.serial = axis.serial;
-  node.boot = axis.boot;
-  setSupervision(robot.bus, axis, node);
-  setSync(robot.bus, profile, node);
-  node.map_count_may_be_read_only = profile.pdo_map_count_may_be_read_only;
-  node.fixed_map_entries = profile.fixed_pdo_entries;
-  node.pdos = makePdos(axis, problems);
-  node.sdo.timeout = profile.timing.sdo;
-  node.sdo.retries = profile.timing.sdo_retries;
-  node.sdo_channel = axis.sdo;
-  node.boot_timeout = profile.timing.boot;
-  node.reset_node_allowed = profile.nmt_reset_node;
+  node.node_id = device.node_id;
+  node.name = device.name;
+  node.title = device.title;
+  node.device_type = family.device_type;
+  node.vendor_id = device.vendor_id ? device.vendor_id : family.vendor_id;
+  node.product_code = device.product_code ? device.product_code : family.product_code;
+  node.revision = device.revision;
+  node.serial = device.serial;
+  node.boot = device.boot;
+  setSupervision(robot.bus, device, node);
+  setSync(robot.bus, family, node);
+  node.map_count_may_be_read_only = family.pdo_map_count_may_be_read_only;
+  node.fixed_map_entries = family.fixed_pdo_entries;
+  node.pdos = makePdos(axis, device, problems);
+  static_cast<fieldbus::AccessOptions&>(node.sdo) = family.sdo;
+  node.sdo_channel = device.sdo;
+  node.boot_timeout = family.boot_time;
+  node.reset_node_allowed = family.nmt_reset_node;
   addStop(profile, node);
   addSyncWindow(robot.bus, node);
   const std::string path = "axes/" + axis.name;
@@ -241,8 +244,8 @@ canopen::MasterConfig makeMasterConfig(const RobotConfig& robot, Problems& probl
   master.bitrate = robot.bus.bitrate;
   master.external_sync = robot.bus.external_sync;
   // Those that LSS gives another node-ID take it at a reset, which finds them by the old one.
-  const bool lss = std::any_of(robot.axes.begin(), robot.axes.end(),
-                               [](const AxisConfig& axis) { return axis.lss.has_value(); });
+  const bool lss = std::any_of(robot.devices.begin(), robot.devices.end(),
+                               [](const DeviceConfig& device) { return device.lss.has_value(); });
   master.reset_all = robot.bus.reset_all || lss;
   master.time_interval = robot.bus.time_interval;
   for (const AxisConfig& axis : robot.axes) {

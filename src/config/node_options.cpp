@@ -8,29 +8,26 @@
 namespace cia402::config {
 namespace {
 
+using canopen::DeviceConfig;
 using canopen::ErrorControl;
-using drive::AxisConfig;
-using drive::Range;
-using drive::YamlSection;
-using drive::YamlValue;
 
 const std::vector<std::string> kKinds{"none", "heartbeat", "guarding"};
 constexpr std::int64_t kMillisecond = 1000000;  // ns
 
 /// A time that an object of 16 bits holds in milliseconds.
-std::optional<Duration> readMilliseconds(YamlSection& section, const std::string& key) {
+std::optional<Duration> readMilliseconds(yaml::Section& section, const std::string& key) {
   double seconds = 0.0;
-  if (!section.read(key, seconds, Range{0.001, 65.535, false})) return std::nullopt;
+  if (!section.read(key, seconds, yaml::Range{0.001, 65.535, false})) return std::nullopt;
   const Duration time = fromSeconds(seconds);
   if (time.count() % kMillisecond == 0) return time;
   section.get(key)->problem("must be a whole number of milliseconds, as the drive counts in them");
   return std::nullopt;
 }
 
-void readErrorControl(const YamlValue& value, drive::ErrorControlOptions& options) {
+void readErrorControl(const yaml::Value& value, canopen::ErrorControlOptions& options) {
   std::optional<std::size_t> kind;
   if (value.isMap()) {
-    YamlSection section(value);
+    yaml::Section section(value);
     const auto name = section.get("kind");
     kind = name ? name->oneOf(kKinds) : std::nullopt;
     options.period = readMilliseconds(section, "period");
@@ -78,7 +75,7 @@ bool readDate(const std::string& text, canopen::BootPolicy& policy) {
   return true;
 }
 
-void readCheck(const YamlValue& value, canopen::BootPolicy& policy) {
+void readCheck(const yaml::Value& value, canopen::BootPolicy& policy) {
   const auto text = value.text();
   if (!text) return;
   if (*text == "none") {
@@ -94,20 +91,20 @@ void readCheck(const YamlValue& value, canopen::BootPolicy& policy) {
   }
 }
 
-void readRetries(const YamlValue& value, canopen::BootPolicy& policy) {
-  YamlSection section(value);
-  const auto seconds = [&section](const std::string& key, Range range, Duration& target) {
+void readRetries(const yaml::Value& value, canopen::BootPolicy& policy) {
+  yaml::Section section(value);
+  const auto seconds = [&section](const std::string& key, yaml::Range range, Duration& target) {
     double time = toSeconds(target);
     if (section.read(key, time, range)) target = fromSeconds(time);
   };
   section.readInteger("retries", policy.retries, 0, 1000);
-  seconds("retry_delay", Range{0.01, 3600.0, false}, policy.retry_delay);
-  seconds("search_period", Range{0.0, 3600.0, false}, policy.search_period);
+  seconds("retry_delay", yaml::Range{0.01, 3600.0, false}, policy.retry_delay);
+  seconds("search_period", yaml::Range{0.0, 3600.0, false}, policy.search_period);
   section.finish();
 }
 
-void readChannel(const YamlValue& value, canopen::SdoChannel& channel) {
-  YamlSection section(value);
+void readChannel(const yaml::Value& value, canopen::SdoChannel& channel) {
+  yaml::Section section(value);
   const std::string hint =
       "both COB-IDs of the channel, as the drive has them: {request: 0x641, "
       "answer: 0x5C1}";
@@ -122,14 +119,14 @@ std::string secondsText(Duration time) {
   return text;
 }
 
-void checkMasterTimeout(const YamlValue& at, const drive::ErrorControlOptions& options,
-                        ErrorControl kind, const BusConfig& bus,
-                        const drive::DriveProfile& profile) {
+void checkMasterTimeout(const yaml::Value& at, const canopen::ErrorControlOptions& options,
+                        ErrorControl kind, const BusConfig& bus, const std::string& profile_name,
+                        const canopen::DeviceProfile& profile) {
   if (!options.master_timeout) return;
   if (kind == ErrorControl::guarding) {
     at.problem("`master_timeout` is for heartbeats; with guarding `timeout` goes for both");
   } else if (!profile.heartbeat_consumer_supported) {
-    at.problem("`master_timeout`: profile " + profile.name +
+    at.problem("`master_timeout`: profile " + profile_name +
                " says that the drive watches no heartbeat");
   } else if (bus.heartbeat == Duration(0)) {
     at.problem(
@@ -143,9 +140,9 @@ void checkMasterTimeout(const YamlValue& at, const drive::ErrorControlOptions& o
 
 }  // namespace
 
-ErrorControlPlan planErrorControl(const BusConfig& bus, const AxisConfig& axis) {
-  const drive::DriveProfile& profile = *axis.profile;
-  const drive::ErrorControlOptions& options = axis.error_control;
+ErrorControlPlan planErrorControl(const BusConfig& bus, const DeviceConfig& device) {
+  const canopen::DeviceProfile& profile = *device.profile;
+  const canopen::ErrorControlOptions& options = device.error_control;
   ErrorControlPlan plan;
   plan.kind = options.kind.value_or(profile.heartbeat_supported       ? ErrorControl::heartbeat
                                     : profile.node_guarding_supported ? ErrorControl::guarding
@@ -160,24 +157,26 @@ ErrorControlPlan planErrorControl(const BusConfig& bus, const AxisConfig& axis) 
   return plan;
 }
 
-void readNodeOptions(YamlSection& section, AxisConfig& axis) {
+void readNodeOptions(yaml::Section& section, DeviceConfig& device) {
   if (const auto value = section.get("error_control")) {
-    readErrorControl(*value, axis.error_control);
+    readErrorControl(*value, device.error_control);
   }
-  if (const auto value = section.get("sdo")) readChannel(*value, axis.sdo);
-  section.read("optional", axis.boot.optional);
-  section.read("restore_before_configure", axis.boot.restore_before_configure);
-  if (const auto value = section.get("configuration_check")) readCheck(*value, axis.boot);
-  if (const auto value = section.get("boot")) readRetries(*value, axis.boot);
+  if (const auto value = section.get("sdo")) readChannel(*value, device.sdo);
+  section.read("optional", device.boot.optional);
+  section.read("restore_before_configure", device.boot.restore_before_configure);
+  if (const auto value = section.get("configuration_check")) readCheck(*value, device.boot);
+  if (const auto value = section.get("boot")) readRetries(*value, device.boot);
 }
 
-void checkErrorControl(YamlSection& section, const AxisConfig& axis, const RobotConfig& robot) {
+void checkErrorControl(yaml::Section& section, const AxisDraft& draft, const RobotConfig& robot) {
+  const DeviceConfig& device = draft.device;
   const auto at = section.get("error_control");
-  if (!at || !axis.profile) return;
-  const drive::ErrorControlOptions& options = axis.error_control;
-  const ErrorControlPlan plan = planErrorControl(robot.bus, axis);
-  if (options.kind == ErrorControl::heartbeat && !axis.profile->heartbeat_supported) {
-    at->problem("profile " + axis.profile->name +
+  if (!at || !draft.axis.profile) return;
+  const std::string& profile_name = draft.axis.profile->name;
+  const canopen::ErrorControlOptions& options = device.error_control;
+  const ErrorControlPlan plan = planErrorControl(robot.bus, device);
+  if (options.kind == ErrorControl::heartbeat && !device.profile->heartbeat_supported) {
+    at->problem("profile " + profile_name +
                 " says that the drive sends no heartbeat; write `guarding`, or `none`");
   }
   if (options.kind == ErrorControl::none && (options.period || options.timeout)) {
@@ -185,7 +184,7 @@ void checkErrorControl(YamlSection& section, const AxisConfig& axis, const Robot
   } else if (plan.kind == ErrorControl::none && options.kind.value_or(plan.kind) != plan.kind) {
     at->problem("needs a `period`, as bus/heartbeat is 0");
   }
-  checkMasterTimeout(*at, options, plan.kind, robot.bus, *axis.profile);
+  checkMasterTimeout(*at, options, plan.kind, robot.bus, profile_name, *device.profile);
   if (plan.kind == ErrorControl::none) return;
   const bool multiple = plan.timeout % plan.period == Duration(0);
   const std::int64_t factor = plan.timeout / plan.period;

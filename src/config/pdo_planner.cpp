@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "cia402_driver/canopen/object.h"
+#include "cia402_driver/fieldbus/object.h"
 #include "pdo_packing.h"
 
 namespace cia402::config {
@@ -23,7 +23,7 @@ unsigned cyclesIn(Duration time, Duration cycle) {
 }
 
 PackItem item(const ObjectSpec& object, unsigned every) {
-  return {object.name, canopen::sizeBits(object.type), every};
+  return {object.name, fieldbus::sizeBits(object.type), every};
 }
 
 bool contains(const std::vector<std::string>& list, const std::string& name) {
@@ -44,7 +44,8 @@ std::string withBits(const std::vector<PackItem>& items) {
 
 class Planner {
  public:
-  Planner(const DriveProfile& profile, const PdoNeeds& needs) : profile_(profile), needs_(needs) {}
+  Planner(const DriveProfile& profile, const canopen::DeviceProfile& device, const PdoNeeds& needs)
+      : profile_(profile), device_(device), needs_(needs) {}
 
   Result<PdoPlan> run() {
     Result<void> outputs = planOutputs();
@@ -58,10 +59,10 @@ class Planner {
   PackRules rules(PdoDirection direction) const {
     const bool rpdo = direction == PdoDirection::rpdo;
     PackRules rules;
-    rules.pdos = rpdo ? profile_.max_rpdos : profile_.max_tpdos;
-    rules.entries = profile_.max_pdo_entries;
+    rules.pdos = rpdo ? device_.max_rpdos : device_.max_tpdos;
+    rules.entries = device_.max_pdo_entries;
     rules.may_change_every_cycle = rpdo;
-    for (const drive::PdoLayout& layout : profile_.fixed_pdos) {
+    for (const canopen::PdoLayout& layout : device_.fixed_pdos) {
       if (layout.direction != direction) continue;
       FixedPdo fixed;
       fixed.number = layout.number;
@@ -236,10 +237,10 @@ class Planner {
 
   void keep(const std::vector<PackedPdo>& packed, PdoDirection direction) {
     for (const PackedPdo& pdo : packed) {
-      drive::PdoLayout layout;
+      canopen::PdoLayout layout;
       layout.direction = direction;
       layout.number = pdo.number;
-      for (const drive::PdoLayout& fixed : profile_.fixed_pdos) {
+      for (const canopen::PdoLayout& fixed : device_.fixed_pdos) {
         if (fixed.direction == direction && fixed.number == pdo.number) layout = fixed;
       }
       layout.objects = pdo.items;
@@ -253,6 +254,7 @@ class Planner {
   }
 
   const DriveProfile& profile_;
+  const canopen::DeviceProfile& device_;
   const PdoNeeds& needs_;
   PdoPlan plan_;
 };
@@ -269,8 +271,9 @@ bool isSetByDriver(const DriveProfile& profile, const std::string& object) {
   });
 }
 
-Result<PdoPlan> planPdos(const DriveProfile& profile, const PdoNeeds& needs) {
-  return Planner(profile, needs).run();
+Result<PdoPlan> planPdos(const DriveProfile& profile, const canopen::DeviceProfile& device,
+                         const PdoNeeds& needs) {
+  return Planner(profile, device, needs).run();
 }
 
 }  // namespace cia402::config

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "cia402_driver/canopen/device_profile.h"
 #include "cia402_driver/common/result.h"
 #include "cia402_driver/common/time.h"
 #include "cia402_driver/drive/profile.h"
@@ -27,7 +28,7 @@ struct PdoNeeds {
 };
 
 struct PdoPlan {
-  std::vector<drive::PdoLayout> pdos;
+  std::vector<canopen::PdoLayout> pdos;
   std::vector<std::string> modes;   ///< that the plan serves, the one to start in first
   std::vector<std::string> by_sdo;  ///< feedback that found no room
   std::vector<std::string> riders;  ///< of PdoNeeds::if_room, what has found some
@@ -37,7 +38,8 @@ struct PdoPlan {
 /// they fit, the targets of the other modes beside them, statusword, position and mode in a TPDO of
 /// every cycle, the rest in slower ones; as little load on the bus as the profile's rules allow.
 /// @return a sentence that says which rule is in the way and what to leave out, if there is no way.
-Result<PdoPlan> planPdos(const drive::DriveProfile& profile, const PdoNeeds& needs);
+Result<PdoPlan> planPdos(const drive::DriveProfile& profile, const canopen::DeviceProfile& device,
+                         const PdoNeeds& needs);
 
 /// True if the driver sets `object` of an RPDO in every cycle: controlword, mode_of_operation, and
 /// what modes write. Any other would be sent as 0.

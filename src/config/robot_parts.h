@@ -7,27 +7,44 @@
 #include <string>
 
 #include "cia402_driver/config/robot.h"
-#include "cia402_driver/drive/yaml_reader.h"
+#include "cia402_driver/yaml/reader.h"
 
 // The parts of a robot configuration, each read by a function of its own.
 namespace cia402::config {
 
-/// Drive profiles already read, by file; nullptr for one with problems.
+/// What the profile of a drive says; both nullptr where it has problems.
+struct SharedFamily {
+  std::shared_ptr<const drive::DriveProfile> drive;
+  std::shared_ptr<const canopen::DeviceProfile> device;
+};
+
+/// An axis, and the device that it sits in, while they are read.
+struct AxisDraft {
+  drive::AxisConfig axis;
+  canopen::DeviceConfig device;
+};
+
+/// An EDS or DCF that was read.
+struct SharedEds {
+  std::shared_ptr<const fieldbus::DeviceDescription> description;
+  std::shared_ptr<const canopen::EdsInfo> info;
+};
+
+/// Drive profiles already read, by file.
 class ProfileCache {
  public:
   ProfileCache(const ProfileLookup& lookup, Problems& problems)
       : lookup_(lookup), problems_(problems) {}
-  /// nullptr (and problems) if there is no valid profile of that name.
-  std::shared_ptr<const drive::DriveProfile> get(const drive::YamlValue& name);
-  /// The EDS or DCF of that name; what is wrong in it becomes warnings, once a file. nullptr (and
+  /// Empty (and problems) if there is no valid profile of that name.
+  SharedFamily get(const yaml::Value& name);
+  /// The EDS or DCF of that name; what is wrong in it becomes warnings, once a file. Empty (and
   /// problems) if there is none.
-  std::shared_ptr<const drive::AxisEds> eds(const drive::YamlValue& name, canopen::NodeId node_id,
-                                            RobotConfig& robot);
+  SharedEds eds(const yaml::Value& name, canopen::NodeId node_id, RobotConfig& robot);
 
  private:
   const ProfileLookup& lookup_;
   Problems& problems_;
-  std::map<std::string, std::shared_ptr<const drive::DriveProfile>> profiles_;
+  std::map<std::string, SharedFamily> profiles_;
   std::set<std::string> eds_told_;
 };
 
@@ -36,43 +53,41 @@ YAML::Node mergeDefaults(const YAML::Node& defaults, const YAML::Node& axis);
 /// Problems of what an axis took from `defaults` get the path "defaults/..." and are told once.
 void nameDefaults(const YAML::Node& tree, const Problems& from, Problems& to);
 
-void readBus(const drive::YamlValue& value, BusConfig& bus, bool& counter_given);
-void readRecorder(const drive::YamlValue& value, RecorderConfig& recorder);
+void readBus(const yaml::Value& value, BusConfig& bus, bool& counter_given);
+void readRecorder(const yaml::Value& value, RecorderConfig& recorder);
 /// Reads one axis with its frame and simulation into `robot`.
-void readAxis(const std::string& name, const drive::YamlValue& value, ProfileCache& profiles,
+void readAxis(const std::string& name, const yaml::Value& value, ProfileCache& profiles,
               RobotConfig& robot);
 
 /// Reads `eds` and widens the axis' profile by its objects; checkEds() compares both.
-void readEds(drive::YamlSection& section, drive::AxisConfig& axis, ProfileCache& cache,
-             RobotConfig& robot);
-void checkEds(drive::YamlSection& section, const drive::AxisConfig& axis, RobotConfig& robot);
+void readEds(yaml::Section& section, AxisDraft& draft, ProfileCache& cache, RobotConfig& robot);
+void checkEds(yaml::Section& section, const AxisDraft& draft, RobotConfig& robot);
 
-drive::AxisLimits readLimits(const drive::YamlValue& value, drive::AxisGeometry::Type type);
-drive::HomingOptions readHoming(const drive::YamlValue& value);
+drive::AxisLimits readLimits(const yaml::Value& value, drive::AxisGeometry::Type type);
+drive::HomingOptions readHoming(const yaml::Value& value);
 /// `error_control`, `sdo`, `optional`, `boot` and the like.
-void readNodeOptions(drive::YamlSection& section, drive::AxisConfig& axis);
+void readNodeOptions(yaml::Section& section, canopen::DeviceConfig& device);
 /// What `error_control` means together with profile and bus; `section` is the axis.
-void checkErrorControl(drive::YamlSection& section, const drive::AxisConfig& axis,
-                       const RobotConfig& robot);
+void checkErrorControl(yaml::Section& section, const AxisDraft& draft, const RobotConfig& robot);
 /// How master and drive notice each other's loss; zero: not at all.
 struct ErrorControlPlan {
   canopen::ErrorControl kind = canopen::ErrorControl::none;
   Duration period{0}, timeout{0}, master_timeout{0};
 };
-ErrorControlPlan planErrorControl(const BusConfig& bus, const drive::AxisConfig& axis);
+ErrorControlPlan planErrorControl(const BusConfig& bus, const canopen::DeviceConfig& device);
 /// COB-IDs of `sdo` that somebody else has become problems.
 void checkSdoChannels(const canopen::MasterConfig& master, Problems& problems);
-void readIdentity(const drive::YamlValue& value, drive::AxisConfig& axis);
+void readIdentity(const yaml::Value& value, canopen::DeviceConfig& device);
 /// `true`, or a mapping; the numbers that it leaves out are those of `identity`, which gets those
 /// that it lacks: what LSS selects is also what the boot expects.
-void readLss(const drive::YamlValue& value, drive::AxisConfig& axis, const RobotConfig& robot);
-void readParameters(const drive::YamlValue& value, drive::AxisConfig& axis);
-FrameConfig readFrame(const drive::YamlValue& value, const std::string& joint);
-SimulationConfig readSimulation(const drive::YamlValue& value);
+void readLss(const yaml::Value& value, canopen::DeviceConfig& device, const RobotConfig& robot);
+void readParameters(const yaml::Value& value, drive::AxisConfig& axis);
+FrameConfig readFrame(const yaml::Value& value, const std::string& joint);
+SimulationConfig readSimulation(const yaml::Value& value);
 
 /// Chooses the PDO mapping: the axis' `pdos`, the profile's, or one made for its modes.
 /// @return false if there is none; the problem is told.
-bool choosePdos(drive::YamlSection& section, drive::AxisConfig& axis, RobotConfig& robot);
+bool choosePdos(yaml::Section& section, AxisDraft& draft, RobotConfig& robot);
 
 /// Plans what was planned once more, for another cycle; the same objects find room then, but for
 /// what travels only because there was room.
@@ -81,18 +96,18 @@ void planAgain(RobotConfig& robot, Duration cycle);
 void leaveRiders(RobotConfig& robot);
 
 /// What the axis' keys mean together with its profile, which it has; `section` is the axis.
-void checkAxis(drive::YamlSection& section, const drive::AxisConfig& axis, RobotConfig& robot);
+void checkAxis(yaml::Section& section, const AxisDraft& draft, RobotConfig& robot);
 
-void readCouplings(const drive::YamlValue& value, RobotConfig& robot);
-void readGroups(const drive::YamlValue& value, RobotConfig& robot);
+void readCouplings(const yaml::Value& value, RobotConfig& robot);
+void readGroups(const yaml::Value& value, RobotConfig& robot);
 /// The group `joints` of all joints that can follow a stream of positions.
 void addDefaultGroup(RobotConfig& robot);
 /// Names of all joints: of axes without a coupling, and of the couplings.
 std::vector<std::string> jointNames(const RobotConfig& robot);
 
 /// Chooses the SYNC counter and checks the period against what the drives take.
-void checkSync(const drive::YamlValue& bus_section, bool counter_given, RobotConfig& robot);
-void checkBusLoad(const drive::YamlValue& bus_section, RobotConfig& robot, Problems& problems);
+void checkSync(const yaml::Value& bus_section, bool counter_given, RobotConfig& robot);
+void checkBusLoad(const yaml::Value& bus_section, RobotConfig& robot, Problems& problems);
 
 /// True for names that can stand in a topic: a letter, then letters, digits and underscores.
 bool isGraphName(const std::string& name);

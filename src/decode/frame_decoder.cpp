@@ -4,8 +4,8 @@
 #include <cstdio>
 
 #include "cia402_driver/can/error_frame.h"
-#include "cia402_driver/canopen/emergency.h"
 #include "cia402_driver/canopen/nmt.h"
+#include "cia402_driver/fieldbus/emergency.h"
 
 namespace cia402::decode {
 namespace {
@@ -23,7 +23,7 @@ std::uint64_t wordOf(const Frame& frame) {
 
 std::string dataText(const Frame& frame) {
   if (frame.remote) return "remote request, " + std::to_string(frame.size) + " bytes";
-  return bytesText(canopen::Bytes(frame.data.begin(), frame.data.begin() + frame.size));
+  return bytesText(fieldbus::Bytes(frame.data.begin(), frame.data.begin() + frame.size));
 }
 
 std::string hexBytes(const Frame& frame, std::size_t begin) {
@@ -71,8 +71,9 @@ std::string nmtCommandText(std::uint8_t command) {
 FrameDecoder::FrameDecoder(const config::RobotConfig& robot, const canopen::MasterConfig& master)
     : master_(master.node_id) {
   for (const drive::AxisConfig& axis : robot.axes) {
-    Node& node = nodes_[axis.node_id];
-    node.name = drive::whoIs(axis, "");
+    const canopen::NodeId id = robot.deviceOf(axis).node_id;
+    Node& node = nodes_[id];
+    node.name = drive::whoIs(axis, std::to_string(id));
     node.values = std::make_unique<ValueText>(axis);
     node.sdo = SdoDecoder(node.values.get());
   }
@@ -140,7 +141,7 @@ std::string FrameDecoder::pdoText(const Pdo& pdo, const Frame& frame) {
   for (const Field& field : pdo.fields) {
     if (!present(field)) break;
     text += (text.empty() ? "" : " | ") +
-            (field.name.empty() ? canopen::toString(field.object) : field.name) + " " +
+            (field.name.empty() ? fieldbus::toString(field.object) : field.name) + " " +
             values->describe(field.object, raw(field), field.bits);
   }
   return text;
@@ -152,9 +153,9 @@ std::string FrameDecoder::emergencyText(const Frame& frame, NodeId id) {
   const ValueText* const values = nodeOf(id).values.get();
   std::string text = code == 0           ? "0x0000 error reset or no error"
                      : values != nullptr ? errorText(code, *values->axis().profile)
-                                         : hexNumber(code, 2) + " " + canopen::emergencyText(code);
+                                         : hexNumber(code, 2) + " " + fieldbus::emergencyText(code);
   text += "; error register " + hexNumber(frame.data[2], 1) + " " +
-          canopen::errorRegisterText(frame.data[2]);
+          fieldbus::errorRegisterText(frame.data[2]);
   const std::string vendor = hexBytes(frame, 3);
   if (vendor.find_first_not_of("0 ") != std::string::npos) text += "; manufacturer " + vendor;
   return text;

@@ -63,7 +63,7 @@ std::string pdoName(const char* kind, unsigned number, bool mapping, unsigned su
 
 }  // namespace
 
-std::string communicationObjectName(canopen::ObjectId object) {
+std::string communicationObjectName(fieldbus::ObjectId object) {
   if (object.index >= 0x1400 && object.index < 0x1C00) {
     const unsigned group = (object.index - 0x1400U) / 0x200U;
     return pdoName(group < 2 ? "RPDO" : "TPDO", object.index % 0x200U + 1, group % 2 == 1,

@@ -3,14 +3,14 @@
 
 #include <algorithm>
 
-#include "cia402_driver/canopen/abort_code.h"
+#include "cia402_driver/fieldbus/abort_code.h"
 
 namespace cia402::decode {
 namespace {
 
 using can::Frame;
-using canopen::Bytes;
-using canopen::ObjectId;
+using fieldbus::Bytes;
+using fieldbus::ObjectId;
 
 constexpr std::size_t kKept = 64;  // bytes of a transfer that are remembered for its text
 constexpr std::uint8_t kAbort = 0x80;
@@ -58,7 +58,7 @@ std::string unknown(const Frame& frame) { return "no SDO command: " + hexNumber(
 }  // namespace
 
 std::string SdoDecoder::title(ObjectId object) const {
-  return values_ != nullptr ? values_->title(object) : canopen::toString(object);
+  return values_ != nullptr ? values_->title(object) : fieldbus::toString(object);
 }
 
 std::string SdoDecoder::current() const {
@@ -96,7 +96,7 @@ void SdoDecoder::collect(const Frame& frame, std::size_t count) {
 std::string SdoDecoder::abort(const Frame& frame) {
   transfer_ = Transfer::none;
   in_block_ = known_ = false;
-  return "abort " + title(objectOf(frame)) + ": " + canopen::abortText(longOf(frame));
+  return "abort " + title(objectOf(frame)) + ": " + fieldbus::abortText(longOf(frame));
 }
 
 /// The data of a segment (download by the client, upload by the server).

@@ -5,17 +5,17 @@
 #include <cctype>
 #include <cstdio>
 
-#include "cia402_driver/canopen/emergency.h"
 #include "cia402_driver/decode/object_names.h"
 #include "cia402_driver/drive/object_value.h"
+#include "cia402_driver/fieldbus/emergency.h"
 
 namespace cia402::decode {
 namespace {
 
-using canopen::Bytes;
-using canopen::ObjectId;
 using drive::ObjectSpec;
 using drive::Quantity;
+using fieldbus::Bytes;
+using fieldbus::ObjectId;
 
 constexpr std::size_t kLongestBytes = 32;
 
@@ -122,13 +122,13 @@ std::string ValueText::name(ObjectId object) const {
 
 std::string ValueText::title(ObjectId object) const {
   const std::string words = name(object);
-  return canopen::toString(object) + (words.empty() ? "" : " " + words);
+  return fieldbus::toString(object) + (words.empty() ? "" : " " + words);
 }
 
 void ValueText::note(ObjectId object, std::uint64_t raw) {
   const Known* known = find(object);
   if (known == nullptr || known->spec->name != "mode_display") return;
-  const auto value = signExtended(raw, canopen::sizeBits(known->spec->type));
+  const auto value = signExtended(raw, fieldbus::sizeBits(known->spec->type));
   mode_ = nullptr;
   for (const drive::ModeSpec& mode : axis_.profile->modes) {
     if (mode.value == value) mode_ = &mode;
@@ -151,12 +151,12 @@ std::string ValueText::words(const Known& known, std::uint64_t raw, unsigned bit
         !whole || known.conversion->resolution() == 1.0
             ? ""
             : " (" +
-                  (canopen::isSigned(known.spec->type) ? std::to_string(signExtended(raw, bits))
-                                                       : std::to_string(raw)) +
+                  (fieldbus::isSigned(known.spec->type) ? std::to_string(signExtended(raw, bits))
+                                                        : std::to_string(raw)) +
                   ")";
     return value + (known.unit != nullptr ? std::string(" ") + known.unit : "") + device;
   }
-  return plain(raw, bits, canopen::isSigned(known.spec->type));
+  return plain(raw, bits, fieldbus::isSigned(known.spec->type));
 }
 
 /// Of an object that nothing names: a float where its place says so.
@@ -169,27 +169,27 @@ std::string ValueText::unnamed(ObjectId object, std::uint64_t raw, unsigned bits
 std::string ValueText::describe(ObjectId object, std::uint64_t raw, unsigned bits) const {
   const Known* known = find(object);
   if (known == nullptr) return unnamed(object, raw, bits);
-  const unsigned expected = canopen::sizeBits(known->spec->type);
+  const unsigned expected = fieldbus::sizeBits(known->spec->type);
   if (expected != bits) return plain(raw, bits, false);
   return words(*known, raw, bits);
 }
 
 std::string ValueText::describe(ObjectId object, const Bytes& data) const {
   const Known* known = find(object);
-  const unsigned bits = known == nullptr ? 0 : canopen::sizeBits(known->spec->type);
+  const unsigned bits = known == nullptr ? 0 : fieldbus::sizeBits(known->spec->type);
   const auto size = static_cast<unsigned>(data.size());
-  if (known == nullptr && canopen::isStandardText(object)) return bytesText(unpadded(data));
+  if (known == nullptr && fieldbus::isStandardText(object)) return bytesText(unpadded(data));
   if (known == nullptr) {
     return size == 0 || size == 3 || size > 4
                ? bytesText(data)
-               : unnamed(object, canopen::toUnsigned(data), 8 * size);
+               : unnamed(object, fieldbus::toUnsigned(data), 8 * size);
   }
   if (bits == 0) return bytesText(data);
   if ((bits + 7) / 8 != size) {
     return bytesText(data) + " (" + std::to_string(size) + " bytes, but the profile says " +
-           canopen::toString(known->spec->type) + ")";
+           fieldbus::toString(known->spec->type) + ")";
   }
-  return words(*known, canopen::toUnsigned(data), bits);
+  return words(*known, fieldbus::toUnsigned(data), bits);
 }
 
 std::string modeText(int value, const drive::DriveProfile& profile) {
@@ -203,7 +203,7 @@ std::string errorText(std::uint16_t code, const drive::DriveProfile& profile) {
   if (code == 0) return "0x0000 none";
   const auto known = profile.errors.find(code);
   return hexNumber(code, 2) + " " +
-         (known != profile.errors.end() ? known->second.text : canopen::emergencyText(code));
+         (known != profile.errors.end() ? known->second.text : fieldbus::emergencyText(code));
 }
 
 }  // namespace cia402::decode

@@ -11,8 +11,8 @@
 namespace cia402::drive {
 
 struct Axis::Impl {
-  Impl(AxisConfig config, canopen::Node& node)
-      : core(std::move(config), node), boot_ups(node.bootUps()) {}
+  Impl(AxisConfig config, fieldbus::Device& device)
+      : core(std::move(config), device), boot_ups(device.bootUps()) {}
 
   void watchNode();
   void advance(Time now);
@@ -51,7 +51,7 @@ std::string Axis::Impl::busyRefusal(ProcedureKind kind) const {
 /// Notices a node that is not what it was, even if nobody called onHealthChange().
 void Axis::Impl::watchNode() {
   const bool ready = core.nodeReady();
-  const std::uint32_t count = core.node().bootUps();
+  const std::uint32_t count = core.device().bootUps();
   if (was_ready && (!ready || count != boot_ups)) {
     core.onNodeLost();
     lost = true;
@@ -102,8 +102,8 @@ void Axis::Impl::endEnabling(const std::string& why) {
   finish(false, core.who() + ": " + toString(status.kind) + " was ended: " + why);
 }
 
-Axis::Axis(AxisConfig config, canopen::Node& node)
-    : impl_(std::make_unique<Impl>(std::move(config), node)),
+Axis::Axis(AxisConfig config, fieldbus::Device& device)
+    : impl_(std::make_unique<Impl>(std::move(config), device)),
       state_(&impl_->core.state()),
       procedure_(&impl_->status),
       notices_(&impl_->core.noticeCount()),
@@ -112,7 +112,7 @@ Axis::~Axis() = default;
 Axis::Axis(Axis&&) noexcept = default;
 
 const AxisConfig& Axis::config() const { return impl_->core.config(); }
-canopen::Node& Axis::node() { return impl_->core.node(); }
+fieldbus::Device& Axis::device() { return impl_->core.device(); }
 const ProcedureStatus& Axis::previousProcedure() const { return impl_->previous; }
 
 void Axis::readFeedback(Time now) {
@@ -161,8 +161,8 @@ Result<std::uint32_t> Axis::start(const ProcedureRequest& request, Time now) {
   impl.status.running = true;
   impl.status.step = "starting";
   impl.status.started = now;
-  impl.status.deadline =
-      now + timeLimit(request.kind, impl.core.config(), impl.core.state().velocity);
+  impl.status.deadline = now + timeLimit(request.kind, impl.core.config(),
+                                         impl.core.device().times(), impl.core.state().velocity);
   impl.procedure = std::move(procedure.value());
   impl.begun = false;
   if (impl.procedure->leavesAlone(impl.context(now))) impl.advance(now);
@@ -211,7 +211,7 @@ void Axis::stopBySdo(const std::string& why, Time) {
   impl_->endEnabling(why);
 }
 
-void Axis::onEmergency(const canopen::Emergency& emergency, Time now, const std::string& excuse) {
+void Axis::onEmergency(const fieldbus::Emergency& emergency, Time now, const std::string& excuse) {
   impl_->core.onEmergency(emergency, excuse, now);
   const bool no_rpdo = missingFrames(*config().profile, emergency.code) == ErrorText::Missing::rpdo;
   if (!no_rpdo || !excuse.empty() || !impl_->core.nodeReady()) return;
@@ -221,7 +221,7 @@ void Axis::onEmergency(const canopen::Emergency& emergency, Time now, const std:
             now);
 }
 
-void Axis::onHealthChange(canopen::NodeHealth, Time) { impl_->watchNode(); }
+void Axis::onHealthChange(fieldbus::Health, Time) { impl_->watchNode(); }
 
 void Axis::onBusLost(const std::string& why) {
   impl_->core.onBusLost(why);

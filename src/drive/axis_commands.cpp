@@ -13,14 +13,10 @@ constexpr double kFreeSpeed = 0.9;  ///< of the velocity limit, up to which an e
 
 }  // namespace
 
-std::uint64_t AxisCore::frames(const OutputObject& object) const {
-  return image_.rpdos()[object.rpdo].count;
-}
-
-std::uint64_t AxisCore::controlwordFrames() const { return frames(objects_.controlword); }
+std::uint64_t AxisCore::controlwordFrames() const { return image_.sent(objects_.controlword.slot); }
 
 std::uint64_t AxisCore::targetFrames() const {
-  return mode_->target.mapped() ? frames(mode_->target) : controlwordFrames();
+  return mode_->target.mapped() ? image_.sent(mode_->target.slot) : controlwordFrames();
 }
 
 /// Nothing that moves anything; but a drive that was found moving is not left to coast either:
@@ -155,7 +151,7 @@ void AxisCore::selectMode(const ModeChannel& mode) {
   neutralizeTarget();
 }
 
-void AxisCore::holdOutput(canopen::Slot slot, std::uint64_t raw) {
+void AxisCore::holdOutput(fieldbus::Slot slot, std::uint64_t raw) {
   for (Held& held : held_) {
     if (held.slot == slot) {
       held.raw = raw;

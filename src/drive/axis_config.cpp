@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "cia402_driver/drive/profile_reader.h"
-
 namespace cia402::drive {
 namespace {
 
@@ -25,10 +23,11 @@ std::string jointName(const AxisConfig& axis) {
   return hasAlias(axis) ? axis.joint + " (axis " + axis.name + ")" : axis.name;
 }
 
-std::string whoIs(const AxisConfig& axis, const char* before_node_id) {
-  const std::string node = before_node_id + std::to_string(axis.node_id) + ")";
-  return hasAlias(axis) ? axis.joint + " (axis " + axis.name + ", " + node
-                        : axis.name + " (" + node;
+std::string whoIs(const AxisConfig& axis) { return whoIs(axis, axis.place); }
+
+std::string whoIs(const AxisConfig& axis, const std::string& place) {
+  return hasAlias(axis) ? axis.joint + " (axis " + axis.name + ", " + place + ")"
+                        : axis.name + " (" + place + ")";
 }
 
 bool saidToLack(const AxisConfig& axis, const std::string& object) {
@@ -41,13 +40,7 @@ bool saidToLack(const AxisConfig& axis, const std::string& object) {
 const ModeSpec* trajectoryMode(const AxisConfig& axis) {
   const DriveProfile& profile = *axis.profile;
   const auto sent = [&](const std::string& target) {
-    return std::any_of(axis.pdos.begin(), axis.pdos.end(), [&](const PdoLayout& pdo) {
-      return pdo.direction == canopen::PdoDirection::rpdo &&
-             std::any_of(pdo.objects.begin(), pdo.objects.end(), [&](const std::string& name) {
-               const ObjectSpec* object = findObject(profile, name);
-               return object != nullptr && object->name == target;
-             });
-    });
+    return std::find(axis.outputs.begin(), axis.outputs.end(), target) != axis.outputs.end();
   };
   const auto found =
       std::find_if(profile.modes.begin(), profile.modes.end(), [&](const ModeSpec& mode) {

@@ -17,11 +17,11 @@ SetPointLimits setPointLimits(const AxisConfig& config) {
 
 }  // namespace
 
-AxisCore::AxisCore(AxisConfig config, canopen::Node& node)
+AxisCore::AxisCore(AxisConfig config, fieldbus::Device& device)
     : config_(std::move(config)),
-      node_(node),
-      image_(node.image()),
-      objects_(config_, node),
+      device_(device),
+      image_(device.image()),
+      objects_(config_, device),
       polled_velocity_(poller_.add(objects_.velocity)),
       polled_effort_(poller_.add(objects_.effort)),
       polled_following_error_(
@@ -42,7 +42,7 @@ AxisCore::AxisCore(AxisConfig config, canopen::Node& node)
   const ObjectSpec& position = *objects_.position.spec;
   const bool continuous = config_.geometry.type == AxisGeometry::Type::continuous;
   if (continuous && position.encoding == Encoding::integer) {
-    unwrap_ = {canopen::sizeBits(position.type), canopen::isSigned(position.type)};
+    unwrap_ = {fieldbus::sizeBits(position.type), fieldbus::isSigned(position.type)};
   }
   selectMode(*mode_);
   state_.homed = absolute();
@@ -88,7 +88,7 @@ void AxisCore::supervise(Time now) {
   if (stop_ticket_) watchStopBySdo();
   if (now > written_ + 2 * config_.sync_period && written_ != Time{}) onLateCycle(now);
   if (!nodeReady()) return;
-  keepLimits();
+  if (!limits_.idle() || limits_due_ || limitsBelong() != limits_known_) keepLimits();
   const bool commanded = goal_ != Goal::disabled && goal_ != Goal::quick_stop;
   if (commanded && !state_.feedback_valid) return stopUnheard();
   const State state = state_.state;
@@ -158,10 +158,10 @@ void AxisCore::onNodeLost() {
   limits_due_ = true;
   state_.homed = absolute();
   state_.ready_for_motion = false;
-  state_.health = node_.health();
+  state_.health = device_.health();
   selectMode(*objects_.channel(config_.mode));
-  failure_ = who() + ": the node is " + canopen::toString(node_.health());
-  if (!node_.problem().empty()) failure_ += " (" + node_.problem() + ")";
+  failure_ = who() + ": the node is " + fieldbus::toString(device_.health());
+  if (!device_.problem().empty()) failure_ += " (" + device_.problem() + ")";
   failure_ += "; the axis stays disabled until recover or enable";
   if (was_commanded) notify(failure_);
 }
@@ -181,8 +181,8 @@ void AxisCore::stopBySdo(const std::string& why) {
   const bool was_commanded = !silent_ && goal_ != Goal::disabled;
   setGoal(Goal::quick_stop);
   const ObjectSpec* object = objects_.controlword.spec;
-  stop_ticket_ = node_.sdo().downloadUrgent(
-      object->id, canopen::toBytes(controlword::kEnableVoltage, 2), object->name);
+  stop_ticket_ = device_.objects().downloadUrgent(
+      object->id, fieldbus::toBytes(controlword::kEnableVoltage, 2), object->name);
   if (!was_commanded) return;
   failure_ = who() + ": " + why;
   notify(failure_);
@@ -191,7 +191,7 @@ void AxisCore::stopBySdo(const std::string& why) {
 /// Where that failed as well, nothing but the drive itself can stop the motor.
 void AxisCore::watchStopBySdo() {
   if (!stop_ticket_ || !stop_ticket_->done()) return;
-  const canopen::SdoTicket ended = std::exchange(stop_ticket_, nullptr);
+  const fieldbus::Ticket ended = std::exchange(stop_ticket_, nullptr);
   if (ended->ok()) return;
   notify(who() + ": the quick stop by SDO failed: " + ended->message() +
          "; the drive may go on: switch its power off if it does not stop by itself");
@@ -239,7 +239,7 @@ void AxisCore::measureAnew() {
   unwrap_.restart(mode_->spec->kind == ControlKind::homing);
   placeZero();
   standstill_.reset();
-  const canopen::Slot slot = objects_.position.slot;
+  const fieldbus::Slot slot = objects_.position.slot;
   if (!nodeReady() || !image_.regular(slot)) return;
   image_.forget(slot);
   forgetMotion();
@@ -247,7 +247,7 @@ void AxisCore::measureAnew() {
 
 std::string AxisCore::calibrationRefusal() const {
   if (!nodeReady()) {
-    return std::string("the node is ") + canopen::toString(node_.health()) +
+    return std::string("the node is ") + fieldbus::toString(device_.health()) +
            ", so that nobody knows whether the axis is disabled; recover it first";
   }
   if (!state_.feedback_valid) {
@@ -263,7 +263,7 @@ std::string AxisCore::calibrationRefusal() const {
 }
 
 std::string AxisCore::enablingRefusal() const {
-  if (power_cycle_after_ != node_.bootUps()) return {};
+  if (power_cycle_after_ != device_.bootUps()) return {};
   return who() +
          ": is not enabled: its parameters were saved, after which the drive takes no enabling "
          "(power_cycle_after_save of its profile); switch it off and on";
@@ -302,8 +302,7 @@ void AxisCore::openLimits(bool open) {
 }
 
 void AxisCore::keepLimits() {
-  const bool known = state_.homed && !limits_open_;
-  if (limits_.idle() && !limits_due_ && known == limits_known_) return;
+  const bool known = limitsBelong();
   if (state_.feedback_valid) {
     if (std::exchange(limits_due_, false) || known != limits_known_) {
       limits_known_ = known;
@@ -311,7 +310,7 @@ void AxisCore::keepLimits() {
     }
     limits_.closeIfInside(state_.position, in_operation_ ? target() : state_.position);
   }
-  limits_.advance(node_.sdo());
+  limits_.advance(device_.objects());
 }
 
 }  // namespace cia402::drive

@@ -26,16 +26,16 @@ inline constexpr std::uint64_t kSureFrames = 2;
 /// not wait for anybody. Procedures tell it where to go and watch it.
 class AxisCore {
  public:
-  AxisCore(AxisConfig config, canopen::Node& node);
+  AxisCore(AxisConfig config, fieldbus::Device& device);
   AxisCore(const AxisCore&) = delete;
   AxisCore& operator=(const AxisCore&) = delete;
 
   const AxisConfig& config() const { return config_; }
   const DriveProfile& profile() const { return *config_.profile; }
   const AxisObjects& objects() const { return objects_; }
-  canopen::Node& node() { return node_; }
+  fieldbus::Device& device() { return device_; }
   const AxisState& state() const { return state_; }
-  bool nodeReady() const { return node_.health() == canopen::NodeHealth::ready; }
+  bool nodeReady() const { return device_.health() == fieldbus::Health::ready; }
 
   // --- The cycle -------------------------------------------------------------------------------
   void readFeedback(Time now);
@@ -50,7 +50,7 @@ class AxisCore {
   /// @param busy a procedure runs
   void updateReadiness(bool busy, Time now);
   void writeCommands(Time now);
-  void onEmergency(const canopen::Emergency& emergency, const std::string& excuse, Time now) {
+  void onEmergency(const fieldbus::Emergency& emergency, const std::string& excuse, Time now) {
     errors_.onEmergency(emergency, excuse, now);
   }
   /// An EMCY whose end the drive has not told; 0: none.
@@ -100,7 +100,7 @@ class AxisCore {
   std::optional<int> shownMode() const { return shown_mode_; }
   void putShownMode(std::uint64_t raw, Time now);
   /// Keeps `raw` in an RPDO object while the mode is active (ModeSpec::entry_writes).
-  void holdOutput(canopen::Slot slot, std::uint64_t raw);
+  void holdOutput(fieldbus::Slot slot, std::uint64_t raw);
 
   // --- Targets ---------------------------------------------------------------------------------
   bool setTarget(double value);
@@ -117,7 +117,6 @@ class AxisCore {
   void neutralizeTarget();
   /// Puts a neutral target of another mode into its RPDO, before that mode becomes active.
   void presetTarget(const ModeChannel& mode);
-  std::uint64_t frames(const OutputObject& object) const;
   /// RPDOs with the active mode's target (or the controlword where it has none) sent so far.
   std::uint64_t targetFrames() const;
   /// Measured over a window that lies wholly after the last set-point that could have moved it.
@@ -168,7 +167,7 @@ class AxisCore {
   /// Forgets what was measured in other coordinates, until the drive tells anew.
   void measureAnew();
   /// Parameters were saved, and the drive wants to be switched off and on before it is enabled.
-  void wantPowerCycle() { power_cycle_after_ = node_.bootUps(); }
+  void wantPowerCycle() { power_cycle_after_ = device_.bootUps(); }
   /// Why the drive takes no enabling now; empty: it may.
   std::string enablingRefusal() const;
   /// Why an object that shifts coordinates must not be written now; empty: it may.
@@ -219,7 +218,7 @@ class AxisCore {
   void readMode(Time now);
   void showMode(std::uint64_t raw);
   /// The raw value of an object that is mapped or polled; none where it is unknown or too old.
-  const canopen::ProcessValue* told(const InputObject& object, int polled, Time now) const {
+  const fieldbus::ProcessValue* told(const InputObject& object, int polled, Time now) const {
     if (!object.mapped()) return poller_.value(polled, now);
     return image_.fresh(object.slot) ? &image_.input(object.slot) : nullptr;
   }
@@ -258,6 +257,8 @@ class AxisCore {
   double guardSpeed(double effort) const;
   bool withinLimits(double value) const;
   void watchStopBySdo();
+  /// Limits of the position belong into the drive: its coordinates are known, and stay.
+  bool limitsBelong() const { return state_.homed && !limits_open_; }
   void keepLimits();
   bool homedEnough() const;
   bool absolute() const;
@@ -273,8 +274,8 @@ class AxisCore {
   bool neutralTarget(const ModeChannel& mode, std::uint64_t& raw) const;
 
   AxisConfig config_;
-  canopen::Node& node_;
-  canopen::ProcessImage& image_;
+  fieldbus::Device& device_;
+  fieldbus::ProcessImage& image_;
   AxisObjects objects_;
   AxisState state_;
   AxisPoller poller_;
@@ -296,7 +297,7 @@ class AxisCore {
   const ModeChannel* braked_in_ = nullptr;  ///< the mode that mode_ brakes, see StopBy::mode
   Time braked_at_{};
   bool braking_mode_shown_ = false;
-  canopen::SdoTicket brake_ticket_;
+  fieldbus::Ticket brake_ticket_;
   std::optional<int> mode_override_;  ///< commanded instead of mode_ for a moment
   std::uint16_t controlword_ = 0, base_controlword_ = 0;
   Command command_ = nextCommand(State::unknown, Goal::disabled);  ///< of these two:
@@ -324,7 +325,7 @@ class AxisCore {
   bool effort_streamed_ = false;    ///< and not braked since
   FollowWatch following_;
   struct Held {
-    canopen::Slot slot;
+    fieldbus::Slot slot;
     std::uint64_t raw;
   };
   std::vector<Held> held_;
@@ -332,7 +333,7 @@ class AxisCore {
   Time next_fault_reset_ = Time::min();
   std::optional<std::uint32_t> power_cycle_after_;  ///< boot-ups seen when it was asked for
   ErrorEvidence errors_;
-  canopen::SdoTicket stop_ticket_;
+  fieldbus::Ticket stop_ticket_;
   std::string failure_, notice_;
   bool notice_warns_ = false;
   std::vector<std::string> warned_;  ///< of warnOnce()

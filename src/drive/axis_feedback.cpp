@@ -12,7 +12,8 @@ bool bitSet(std::uint16_t word, const std::optional<int>& bit) {
 }
 
 std::int16_t signedMode(std::uint64_t raw, DataType type) {
-  if (canopen::sizeBits(type) == 8 && canopen::isSigned(type)) return static_cast<std::int8_t>(raw);
+  if (fieldbus::sizeBits(type) == 8 && fieldbus::isSigned(type))
+    return static_cast<std::int8_t>(raw);
   return static_cast<std::int16_t>(raw);
 }
 
@@ -27,19 +28,19 @@ inline bool AxisCore::errorFree() const {
 }
 
 void AxisCore::readFeedback(Time now) {
-  state_.health = node_.health();
+  state_.health = device_.health();
   if (!nodeReady()) {
     forgetFeedback();
     return;
   }
-  if (poller_.due(now)) poller_.advance(node_.sdo(), now);
+  if (poller_.due(now)) poller_.advance(device_.objects(), now);
   readMotion(now);
   readState(now);
   if (!errorFree()) readError(now);
 }
 
 void AxisCore::readState(Time now) {
-  const canopen::ProcessValue& word = image_.input(objects_.statusword.slot);
+  const fieldbus::ProcessValue& word = image_.input(objects_.statusword.slot);
   if (!image_.fresh(objects_.statusword.slot)) {
     state_.state = State::unknown;
     forgetMotion();
@@ -59,7 +60,7 @@ void AxisCore::readState(Time now) {
 }
 
 void AxisCore::readMotion(Time now) {
-  const canopen::ProcessValue& position = image_.input(objects_.position.slot);
+  const fieldbus::ProcessValue& position = image_.input(objects_.position.slot);
   const bool fresh = image_.fresh(objects_.position.slot);
   if (fresh && unwrap_.update(position.raw)) placeZero();
   const double joint = fresh ? position_.toJoint(position.raw) : kUnknown;
@@ -99,20 +100,19 @@ void AxisCore::readMotion(Time now) {
 
 void AxisCore::look() {
   const InputObject& object = objects_.following_error;
-  const bool travels =
-      object.mapped() && !image_.isLeftOut(canopen::PdoDirection::tpdo, object.slot);
+  const bool travels = object.mapped() && !image_.inputLeftOut(object.slot);
   if (!travels) poller_.look();
 }
 
 void AxisCore::readDigitalInputs(Time now) {
-  const canopen::ProcessValue* told = this->told(objects_.digital_inputs, polled_inputs_, now);
+  const fieldbus::ProcessValue* told = this->told(objects_.digital_inputs, polled_inputs_, now);
   state_.digital_inputs_valid = told != nullptr;
   state_.digital_inputs = told != nullptr ? static_cast<std::uint32_t>(told->raw) : 0;
   if (told != nullptr) state_.stamps.digital_inputs = told->stamp;
 }
 
 double AxisCore::read(const InputObject& object, int polled, Time now, Time& stamp) const {
-  const canopen::ProcessValue* value = told(object, polled, now);
+  const fieldbus::ProcessValue* value = told(object, polled, now);
   if (value == nullptr) return kUnknown;
   stamp = value->stamp;
   return object.conversion.toJoint(value->raw);
@@ -162,12 +162,12 @@ void AxisCore::readError(Time now) {
   } else if (image_.fresh(object.slot)) {
     look.told = static_cast<std::uint16_t>(image_.input(object.slot).raw);
   }
-  errors_.update(look, node_.sdo(), now);
+  errors_.update(look, device_.objects(), now);
   state_.error_code = errors_.code();
 }
 
 bool AxisCore::heardLately(Time now) const {
-  const canopen::Slot slot = objects_.position.slot;
+  const fieldbus::Slot slot = objects_.position.slot;
   if (!image_.regular(slot)) return true;
   return now - state_.stamp <= image_.interval(slot, config_.sync_period) + 2 * config_.sync_period;
 }

@@ -7,7 +7,7 @@
 namespace cia402::drive {
 namespace {
 
-using canopen::ObjectId;
+using fieldbus::ObjectId;
 
 /// The fixed name of the profile format, or else the standard's own index.
 const ObjectSpec* findObject(const DriveProfile& profile, const char* name, ObjectId id) {
@@ -15,39 +15,29 @@ const ObjectSpec* findObject(const DriveProfile& profile, const char* name, Obje
   return spec != nullptr ? spec : profile.find(id);
 }
 
-std::size_t rpdoOf(const canopen::ProcessImage& image, canopen::Slot slot) {
-  for (std::size_t i = 0; i < image.rpdos().size(); ++i) {
-    for (const canopen::ProcessImage::Pdo::Field& field : image.rpdos()[i].fields) {
-      if (field.slot == slot) return i;
-    }
-  }
-  return 0;
-}
-
-InputObject input(const AxisConfig& config, const canopen::Node& node, const char* name,
+InputObject input(const AxisConfig& config, const fieldbus::Device& device, const char* name,
                   ObjectId id) {
   InputObject result;
   result.spec = findObject(*config.profile, name, id);
   if (result.spec == nullptr) return result;
   const auto& lacks = config.lacks;
   if (std::find(lacks.begin(), lacks.end(), result.spec->name) != lacks.end()) return InputObject();
-  result.slot = node.image().inputSlot(result.spec->id);
+  result.slot = device.image().inputSlot(result.spec->id);
   const auto conversion = Conversion::create(*result.spec, *config.profile, config.geometry);
   if (conversion) {
     result.conversion = *conversion;
   } else if (result.spec->quantity != Quantity::none) {
     result.spec = nullptr;  // e.g. torque without a rated torque: unknown rather than wrong
-    result.slot = canopen::kNoSlot;
+    result.slot = fieldbus::kNoSlot;
   }
   return result;
 }
 
-OutputObject output(const canopen::Node& node, const ObjectSpec* spec) {
+OutputObject output(const fieldbus::Device& device, const ObjectSpec* spec) {
   OutputObject result;
   result.spec = spec;
   if (spec == nullptr) return result;
-  result.slot = node.image().outputSlot(spec->id);
-  if (result.mapped()) result.rpdo = rpdoOf(node.image(), result.slot);
+  result.slot = device.image().outputSlot(spec->id);
   return result;
 }
 
@@ -56,19 +46,19 @@ bool sameCoding(const ObjectSpec& a, const ObjectSpec& b) {
          a.factor == b.factor && !a.unit && !b.unit;
 }
 
-ModeChannel modeChannel(const AxisConfig& config, const canopen::Node& node, const ModeSpec& spec,
-                        const ObjectSpec* position) {
+ModeChannel modeChannel(const AxisConfig& config, const fieldbus::Device& device,
+                        const ModeSpec& spec, const ObjectSpec* position) {
   ModeChannel channel;
   channel.spec = &spec;
   if (spec.target.empty()) return channel;
   const ObjectSpec* object = config.profile->find(spec.target);
-  channel.target = output(node, object);
+  channel.target = output(device, object);
   if (object == nullptr) {
     channel.refusal = "the drive profile does not name its target object " + spec.target;
     return channel;
   }
   if (!channel.target.mapped()) {
-    channel.refusal = "its target " + canopen::toString(object->id) + " " + object->name +
+    channel.refusal = "its target " + fieldbus::toString(object->id) + " " + object->name +
                       " is not mapped into an RPDO; name the mode in `modes:` of the axis";
     return channel;
   }
@@ -89,24 +79,24 @@ void require(bool mapped, const AxisConfig& config, const char* what) {
 
 }  // namespace
 
-AxisObjects::AxisObjects(const AxisConfig& config, const canopen::Node& node) {
-  statusword = input(config, node, "statusword", {0x6041, 0});
-  position = input(config, node, "position_actual", {0x6064, 0});
-  velocity = input(config, node, "velocity_actual", {0x606C, 0});
-  effort = input(config, node, "torque_actual", {0x6077, 0});
-  following_error = input(config, node, "following_error", {0x60F4, 0});
-  mode_display = input(config, node, "mode_display", {0x6061, 0});
-  error_code = input(config, node, "error_code", {0x603F, 0});
-  digital_inputs = input(config, node, "digital_inputs", {0x60FD, 0});
-  controlword = output(node, findObject(*config.profile, "controlword", {0x6040, 0}));
-  mode = output(node, findObject(*config.profile, "mode_of_operation", {0x6060, 0}));
+AxisObjects::AxisObjects(const AxisConfig& config, const fieldbus::Device& device) {
+  statusword = input(config, device, "statusword", {0x6041, 0});
+  position = input(config, device, "position_actual", {0x6064, 0});
+  velocity = input(config, device, "velocity_actual", {0x606C, 0});
+  effort = input(config, device, "torque_actual", {0x6077, 0});
+  following_error = input(config, device, "following_error", {0x60F4, 0});
+  mode_display = input(config, device, "mode_display", {0x6061, 0});
+  error_code = input(config, device, "error_code", {0x603F, 0});
+  digital_inputs = input(config, device, "digital_inputs", {0x60FD, 0});
+  controlword = output(device, findObject(*config.profile, "controlword", {0x6040, 0}));
+  mode = output(device, findObject(*config.profile, "mode_of_operation", {0x6060, 0}));
   require(statusword.mapped(), config, "the statusword (6041:00)");
   require(position.mapped(), config, "the actual position (6064:00)");
   require(controlword.mapped(), config, "the controlword (6040:00)");
 
   modes.reserve(config.profile->modes.size());
   for (const ModeSpec& spec : config.profile->modes) {
-    modes.push_back(modeChannel(config, node, spec, position.spec));
+    modes.push_back(modeChannel(config, device, spec, position.spec));
   }
   if (channel(config.mode) == nullptr) {
     throw std::invalid_argument(config.name + ": the drive profile " + config.profile->name +

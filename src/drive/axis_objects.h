@@ -5,25 +5,24 @@
 #include <string>
 #include <vector>
 
-#include "cia402_driver/canopen/node.h"
 #include "cia402_driver/drive/axis_config.h"
+#include "cia402_driver/fieldbus/device.h"
 
 namespace cia402::drive {
 
 /// A value that the drive reports: by TPDO where it is mapped, else it has to be read by SDO.
 struct InputObject {
   const ObjectSpec* spec = nullptr;  ///< nullptr: the family has no such object
-  canopen::Slot slot = canopen::kNoSlot;
+  fieldbus::Slot slot = fieldbus::kNoSlot;
   Conversion conversion;
-  bool mapped() const { return slot != canopen::kNoSlot; }
+  bool mapped() const { return slot != fieldbus::kNoSlot; }
 };
 
 /// A value that the master sends by RPDO.
 struct OutputObject {
   const ObjectSpec* spec = nullptr;
-  canopen::Slot slot = canopen::kNoSlot;
-  std::size_t rpdo = 0;  ///< index in ProcessImage::rpdos()
-  bool mapped() const { return slot != canopen::kNoSlot; }
+  fieldbus::Slot slot = fieldbus::kNoSlot;
+  bool mapped() const { return slot != fieldbus::kNoSlot; }
 };
 
 /// A mode of the profile with its target resolved.
@@ -38,7 +37,7 @@ struct ModeChannel {
 /// Where everything that an axis needs is in the process image, worked out once.
 struct AxisObjects {
   /// @throws std::invalid_argument if controlword, statusword or actual position are not mapped.
-  AxisObjects(const AxisConfig& config, const canopen::Node& node);
+  AxisObjects(const AxisConfig& config, const fieldbus::Device& device);
 
   InputObject statusword, position, velocity, effort, following_error, mode_display, error_code,
       digital_inputs;

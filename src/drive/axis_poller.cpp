@@ -26,28 +26,28 @@ void AxisPoller::look() {
   }
 }
 
-void AxisPoller::advance(canopen::SdoClient& sdo, Time now) {
+void AxisPoller::advance(fieldbus::ObjectAccess& objects, Time now) {
   if (items_.empty()) return;
   if (ticket_) {
     if (!ticket_->done()) return;
     Item& item = items_[current_];
     if (ticket_->ok() && ticket_->data().size() <= 8) {
-      item.value = {canopen::toUnsigned(ticket_->data()), now, true, true};
-    } else if (ticket_->failure() == canopen::SdoTransfer::Failure::aborted_by_server) {
+      item.value = {fieldbus::toUnsigned(ticket_->data()), now, true, true};
+    } else if (ticket_->failure() == fieldbus::Transfer::Failure::aborted_by_server) {
       item.refused = true;
     }
     ticket_.reset();
   }
-  if (now >= next_ && sdo.idle()) ask(sdo, now);
+  if (now >= next_ && objects.idle()) ask(objects, now);
 }
 
-void AxisPoller::ask(canopen::SdoClient& sdo, Time now) {
+void AxisPoller::ask(fieldbus::ObjectAccess& objects, Time now) {
   for (std::size_t i = 0; i < items_.size(); ++i) {
     current_ = (current_ + 1) % items_.size();
     Item& item = items_[current_];
     if (!item.due()) continue;
     item.wanted = !item.for_looks;
-    ticket_ = sdo.upload(item.object, item.name);
+    ticket_ = objects.upload(item.object, item.name);
     next_ = earliest_ = now + kInterval;
     return;
   }

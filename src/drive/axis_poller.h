@@ -32,13 +32,13 @@ class AxisPoller {
   /// Is there anything for advance() to do?
   bool due(Time now) const { return ticket_ ? ticket_->done() : now >= next_ && !items_.empty(); }
   /// Takes an answer that has come and asks for the next value.
-  void advance(canopen::SdoClient& sdo, Time now);
+  void advance(fieldbus::ObjectAccess& objects, Time now);
   /// The node lost its state: nothing is known any more.
   void reset();
   /// Takes a value that somebody else has read.
   void put(int item, std::uint64_t raw, Time now);
   /// The value of an item, none where it is unknown or too old. @param item of add(); -1: no value.
-  const canopen::ProcessValue* value(int item, Time now) const {
+  const fieldbus::ProcessValue* value(int item, Time now) const {
     if (item < 0) return nullptr;
     const Item& asked = items_[static_cast<std::size_t>(item)];
     const Duration stale = asked.for_looks ? kStaleLook : kStale;
@@ -47,19 +47,19 @@ class AxisPoller {
 
  private:
   struct Item {
-    canopen::ObjectId object;
+    fieldbus::ObjectId object;
     std::string name;
-    canopen::ProcessValue value;
+    fieldbus::ProcessValue value;
     bool refused = false;  ///< the drive aborted: it does not have the object after all
     bool for_looks = false, wanted = true;
 
     bool due() const { return wanted && !refused; }
   };
-  void ask(canopen::SdoClient& sdo, Time now);
+  void ask(fieldbus::ObjectAccess& objects, Time now);
 
   std::vector<Item> items_;
   std::size_t current_ = 0;
-  canopen::SdoTicket ticket_;
+  fieldbus::Ticket ticket_;
   Time next_{};
   Time earliest_{};  ///< of the next request, after the last one
 };

@@ -183,7 +183,7 @@ bool AxisCore::brakeByMode(Time now) {
   if (!objects_.mode.mapped() && object != nullptr) {
     const auto value = static_cast<std::uint64_t>(brake->spec->value);
     brake_ticket_ =
-        node_.sdo().downloadUrgent(object->id, wireBytes(value, object->type), object->name);
+        device_.objects().downloadUrgent(object->id, wireBytes(value, object->type), object->name);
   }
   arrest();
   effort_streamed_ = false;

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "axis_core.h"
-#include "cia402_driver/canopen/pdo_text.h"
 #include "cia402_driver/drive/fault_text.h"
 #include "sentence.h"
 
@@ -18,7 +17,7 @@ std::string AxisCore::stateText() const {
 }
 
 std::string AxisCore::feedbackText() const {
-  std::string text = canopen::staleText(image_);
+  std::string text = device_.overdueText();
   if (!text.empty()) return text;
   const bool come = image_.fresh(objects_.statusword.slot) && image_.fresh(objects_.position.slot);
   return come ? "the position that the drive sends is no finite number" : "none has come yet";
@@ -38,7 +37,7 @@ std::string AxisCore::unknownText() const {
            " is none of the states of CiA 402 (" + statuswordText(state_.statusword) +
            "); is it the right drive profile?";
   }
-  std::string why = canopen::missingText(image_);
+  std::string why = device_.missingText();
   if (why.empty()) why = feedbackText();
   return who() +
          ": its state is unknown: no usable statusword (6041:00) and position (6064:00): " + why +
@@ -46,10 +45,10 @@ std::string AxisCore::unknownText() const {
 }
 
 std::string AxisCore::modeRefusal(const ModeChannel& mode) const {
-  const bool left_out = mode.refusal.empty() && mode.target.mapped() &&
-                        image_.isLeftOut(canopen::PdoDirection::rpdo, mode.target.slot);
+  const bool left_out =
+      mode.refusal.empty() && mode.target.mapped() && image_.outputLeftOut(mode.target.slot);
   if (!left_out) return mode.refusal;
-  return "the drive does not have its target " + canopen::toString(mode.target.spec->id) + " " +
+  return "the drive does not have its target " + fieldbus::toString(mode.target.spec->id) + " " +
          mode.target.spec->name + ", or cannot map it";
 }
 
@@ -65,12 +64,13 @@ std::string AxisCore::codeText(std::uint16_t code) const {
 }
 
 std::string AxisCore::report() const {
-  const canopen::ProcessImage::Pdo& rpdo = node_.image().rpdos()[objects_.controlword.rpdo];
+  const fieldbus::Slot slot = objects_.controlword.slot;
+  const std::uint64_t sent = image_.sent(slot);
   std::string text = "controlword 6040:00 = " + hexWord(controlword_) + ", " + command_.text +
-                     ", sent in RPDO" + std::to_string(rpdo.number) + " (COB-ID " +
-                     hexWord(rpdo.cob_id) + ", " + std::to_string(rpdo.count) + " frames so far)";
+                     ", sent in " + device_.carrierText(slot) + ", " + std::to_string(sent) +
+                     " frames so far";
   text += "; the drive shows " + stateText() + "; " + emergencyText();
-  if (rpdo.count == 0) text += "; no RPDO has left: is the cycle running?";
+  if (sent == 0) text += "; no RPDO has left: is the cycle running?";
   if ((state_.statusword & statusword::kVoltageEnabled) == 0) {
     text += "; voltage enabled is 0: check the main supply and the safety (STO) inputs";
   } else if ((state_.statusword & statusword::kRemote) == 0) {
@@ -105,7 +105,7 @@ std::string AxisCore::obstacle() const {
   const bool homed = homedEnough();
   const std::string zero = config_.homing ? "home" : "set_position";  // the call that gives it one
   if (!nodeReady())
-    return name + ", its node is " + canopen::toString(node_.health()) + ": recover";
+    return name + ", its node is " + fieldbus::toString(device_.health()) + ": recover";
   if (!state_.feedback_valid) return name + " gives no fresh statusword and position: recover";
   if (faulted()) return name + " is in fault: recover";
   if (!in_operation_) return name + " is not enabled (" + toString(state_.state) + "): enable";
@@ -134,7 +134,7 @@ std::string AxisCore::motionRefusal(bool busy) const {
     return {};
   }
   if (!nodeReady()) {
-    return who() + ": the node is " + canopen::toString(node_.health()) +
+    return who() + ": the node is " + fieldbus::toString(device_.health()) +
            "; recover brings it back";
   }
   if (!state_.feedback_valid) {

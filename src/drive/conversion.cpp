@@ -22,7 +22,7 @@ bool isMotion(Quantity quantity) {
 }
 
 Error lacks(const ObjectSpec& object, const std::string& what) {
-  return Error{object.name + " (" + canopen::toString(object.id) +
+  return Error{object.name + " (" + fieldbus::toString(object.id) +
                ") cannot be converted: " + what};
 }
 
@@ -95,9 +95,9 @@ const UnitSpec* unitOf(const ObjectSpec& object, const DriveProfile& profile) {
 
 Result<Conversion> Conversion::create(const ObjectSpec& object, const DriveProfile& profile,
                                       const AxisGeometry& geometry) {
-  const unsigned bits = canopen::sizeBits(object.type);
+  const unsigned bits = fieldbus::sizeBits(object.type);
   if (bits == 0 || object.type == DataType::real64) {
-    return lacks(object, std::string("a ") + canopen::toString(object.type) +
+    return lacks(object, std::string("a ") + fieldbus::toString(object.type) +
                              " holds no number that can be scaled");
   }
   double scale = 1.0 / object.factor;
@@ -114,7 +114,7 @@ Result<Conversion> Conversion::create(const ObjectSpec& object, const DriveProfi
   result.encoding_ = object.encoding;
   result.shift_ = static_cast<std::uint8_t>(64 - bits);
   result.mask_ = ~std::uint64_t{0} >> result.shift_;
-  result.signed_ = canopen::isSigned(object.type) || object.type == DataType::real32;
+  result.signed_ = fieldbus::isSigned(object.type) || object.type == DataType::real32;
   const bool directed = isMotion(object.quantity) || object.quantity == Quantity::torque;
   result.factor_ = result.signed_ && directed && geometry.direction < 0 ? -scale : scale;
   result.inverse_ = 1.0 / result.factor_;

@@ -1,6 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Which objects shift the drive's coordinates or hold its calibration.
-#include "profile_parts.h"
+#include "cia402_driver/drive/profile.h"
 
 namespace cia402::drive {
 namespace {
@@ -40,24 +40,6 @@ CoordinateMark standardMark(ObjectId id) {
 CoordinateMark DriveProfile::coordinateMark(ObjectId id) const {
   const CoordinateMark* mark = coordinates.find(id);
   return mark != nullptr ? *mark : standardMark(id);
-}
-
-void readCoordinates(const YamlValue& value, DriveProfile& profile) {
-  YamlSection section(value);
-  for (const auto& [key, entry] : section.entries()) {
-    const ObjectSpec* object = profile.find(key);
-    std::optional<ObjectRange> range = parseObjectRange(key);
-    if (object != nullptr) range = ObjectRange{object->id, object->id};
-    if (!range) {
-      entry.problem("`" + key +
-                    "` is neither an object of the profile nor a range such as \"607C\" "
-                    "or \"2002:01-0C\"");
-    }
-    const auto index = entry.oneOf(
-        {"none", "set_position", "home", "restore_parameters", "configuration", "calibration"});
-    if (range && index) profile.coordinates.add(*range, static_cast<CoordinateMark>(*index));
-  }
-  section.finish();
 }
 
 }  // namespace cia402::drive

@@ -1,18 +1,18 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "error_evidence.h"
 
-#include "cia402_driver/canopen/object.h"
+#include "cia402_driver/fieldbus/object.h"
 
 namespace cia402::drive {
 namespace {
 
-constexpr canopen::ObjectId kErrorRegister{0x1001, 0};
+constexpr fieldbus::ObjectId kErrorRegister{0x1001, 0};
 constexpr Duration kMute =
     std::chrono::seconds(10);  // until a drive that did not answer is asked again
 
 }  // namespace
 
-void ErrorEvidence::onEmergency(const canopen::Emergency& emergency, const std::string& excuse,
+void ErrorEvidence::onEmergency(const fieldbus::Emergency& emergency, const std::string& excuse,
                                 Time now) {
   pending_ = emergency.code;
   next_look_ = now + kLook;
@@ -40,7 +40,7 @@ void ErrorEvidence::forget() {
   code_ticket_.reset();
 }
 
-void ErrorEvidence::update(const Look& look, canopen::SdoClient& sdo, Time now) {
+void ErrorEvidence::update(const Look& look, fieldbus::ObjectAccess& objects, Time now) {
   if (look.faulted && !faulted_) fault_since_ = now;
   faulted_ = look.faulted;
   if (look.told && (!object_known_ || *look.told != object_.code)) {
@@ -48,8 +48,8 @@ void ErrorEvidence::update(const Look& look, canopen::SdoClient& sdo, Time now) 
     object_ = {*look.told, in_time ? now : Time::min()};
     object_known_ = true;
   }
-  readErrorCode(look, sdo);
-  readErrorRegister(look, sdo, now);
+  readErrorCode(look, objects);
+  readErrorRegister(look, objects, now);
   if (faulted_) {
     code_ = nameOfFault();
   } else if (look.warning && object_.code != 0 && (pending_ == 0 || object_.at >= emergency_.at)) {
@@ -71,7 +71,7 @@ std::uint16_t ErrorEvidence::nameOfFault() const {
   return object_.code != 0 ? object_.code : emergency_.code;
 }
 
-void ErrorEvidence::readErrorCode(const Look& look, canopen::SdoClient& sdo) {
+void ErrorEvidence::readErrorCode(const Look& look, fieldbus::ObjectAccess& objects) {
   if (!faulted_ || look.by_sdo == nullptr) {
     read_.reset();
     code_ticket_.reset();
@@ -79,25 +79,25 @@ void ErrorEvidence::readErrorCode(const Look& look, canopen::SdoClient& sdo) {
   }
   if (read_) return;
   if (!code_ticket_) {
-    code_ticket_ = sdo.upload(look.by_sdo->id, look.by_sdo->name);
+    code_ticket_ = objects.upload(look.by_sdo->id, look.by_sdo->name);
   } else if (code_ticket_->done()) {
     const bool fits = code_ticket_->ok() && code_ticket_->data().size() <= 8;
-    read_ = fits ? static_cast<std::uint16_t>(canopen::toUnsigned(code_ticket_->data())) : 0;
+    read_ = fits ? static_cast<std::uint16_t>(fieldbus::toUnsigned(code_ticket_->data())) : 0;
   }
 }
 
-void ErrorEvidence::readErrorRegister(const Look& look, canopen::SdoClient& sdo, Time now) {
+void ErrorEvidence::readErrorRegister(const Look& look, fieldbus::ObjectAccess& objects, Time now) {
   if (pending_ == 0 || look.faulted || register_missing_) return;
   if (!register_ticket_) {
     if (now < next_look_) return;
-    register_ticket_ = sdo.upload(kErrorRegister, "error register");
+    register_ticket_ = objects.upload(kErrorRegister, "error register");
   } else if (register_ticket_->done()) {
     next_look_ = now + (register_ticket_->ok() ? kLook : kMute);
     if (register_ticket_->ok()) {
-      if (canopen::toUnsigned(register_ticket_->data()) == 0) pending_ = 0;
+      if (fieldbus::toUnsigned(register_ticket_->data()) == 0) pending_ = 0;
     } else {
       register_missing_ =
-          register_ticket_->failure() == canopen::SdoTransfer::Failure::aborted_by_server;
+          register_ticket_->failure() == fieldbus::Transfer::Failure::aborted_by_server;
     }
     register_ticket_.reset();
   }

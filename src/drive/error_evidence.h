@@ -6,8 +6,8 @@
 #include <string>
 
 #include "axis_objects.h"
-#include "cia402_driver/canopen/emergency.h"
-#include "cia402_driver/canopen/sdo_client.h"
+#include "cia402_driver/fieldbus/emergency.h"
+#include "cia402_driver/fieldbus/object_access.h"
 
 namespace cia402::drive {
 
@@ -28,7 +28,7 @@ class ErrorEvidence {
   static constexpr Duration kLook{std::chrono::seconds(1)};
 
   /// @param excuse why this program itself has caused it, in words; empty: it has not
-  void onEmergency(const canopen::Emergency& emergency, const std::string& excuse, Time now);
+  void onEmergency(const fieldbus::Emergency& emergency, const std::string& excuse, Time now);
 
   /// What the drive shows in this cycle.
   struct Look {
@@ -36,7 +36,7 @@ class ErrorEvidence {
     std::optional<std::uint16_t> told;   ///< 603Fh by a TPDO
     const ObjectSpec* by_sdo = nullptr;  ///< 603Fh where no TPDO has it
   };
-  void update(const Look& look, canopen::SdoClient& sdo, Time now);
+  void update(const Look& look, fieldbus::ObjectAccess& objects, Time now);
   /// Nothing is known of any error: without fault and warning, and with 603Fh as it was, update()
   /// would change nothing.
   bool quiet() const { return code_ == 0 && pending_ == 0 && !faulted_; }
@@ -59,8 +59,8 @@ class ErrorEvidence {
   };
   std::uint16_t nameOfFault() const;
   bool withFault(const Told& told) const;
-  void readErrorCode(const Look& look, canopen::SdoClient& sdo);
-  void readErrorRegister(const Look& look, canopen::SdoClient& sdo, Time now);
+  void readErrorCode(const Look& look, fieldbus::ObjectAccess& objects);
+  void readErrorRegister(const Look& look, fieldbus::ObjectAccess& objects, Time now);
 
   std::uint16_t code_ = 0, pending_ = 0;
   Told emergency_;  ///< the last that may name a fault
@@ -69,7 +69,7 @@ class ErrorEvidence {
   Time fault_since_ = Time::min();
   Time next_look_ = Time::min();       ///< at 1001h
   std::optional<std::uint16_t> read_;  ///< 603Fh by SDO since the fault
-  canopen::SdoTicket code_ticket_, register_ticket_;
+  fieldbus::Ticket code_ticket_, register_ticket_;
   bool register_missing_ = false;
   std::uint16_t excused_ = 0;  ///< an EMCY that this program itself has caused; 0: none
   std::string excuse_;

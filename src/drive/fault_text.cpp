@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdio>
 
-#include "cia402_driver/canopen/emergency.h"
+#include "cia402_driver/fieldbus/emergency.h"
 
 namespace cia402::drive {
 
@@ -16,13 +16,13 @@ std::string hexWord(std::uint16_t word) {
 
 std::string errorName(const DriveProfile& profile, std::uint16_t code) {
   const auto known = profile.errors.find(code);
-  return known == profile.errors.end() ? canopen::emergencyText(code) : known->second.text;
+  return known == profile.errors.end() ? fieldbus::emergencyText(code) : known->second.text;
 }
 
 std::string errorCodeText(const DriveProfile& profile, std::uint16_t code) {
   const auto known = profile.errors.find(code);
   if (known == profile.errors.end()) {
-    return hexWord(code) + " " + canopen::emergencyText(code) +
+    return hexWord(code) + " " + fieldbus::emergencyText(code) +
            ": the drive's manual says more about this code";
   }
   std::string text = hexWord(code) + " " + known->second.text;

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "cia402_driver/drive/object_value.h"
-#include "cia402_driver/drive/profile_reader.h"
+#include "cia402_driver/fieldbus/bytes.h"
 
 namespace cia402::drive {
 namespace {
@@ -99,27 +99,27 @@ Result<std::uint64_t> encode(const NamedWrite& write, double value, const Conver
 }
 
 std::uint64_t masked(std::int64_t value, DataType type) {
-  const unsigned bits = canopen::sizeBits(type);
+  const unsigned bits = fieldbus::sizeBits(type);
   return static_cast<std::uint64_t>(value) & (~std::uint64_t{0} >> (64 - bits));
 }
 
 // Access, length and limits as the EDS tells them.
 Result<void> checkAgainstEds(const ResolvedWrite& write, const AxisConfig& axis) {
-  const canopen::DictionaryEntry* entry =
-      axis.eds != nullptr ? axis.eds->dictionary.find(write.object) : nullptr;
+  const fieldbus::DictionaryEntry* entry =
+      axis.description != nullptr ? axis.description->dictionary.find(write.object) : nullptr;
   if (entry == nullptr || write.copied_from) return {};
-  return canopen::checkWrite(*entry, wireBytes(write.raw, write.type), axis.eds->file);
+  return fieldbus::checkWrite(*entry, wireBytes(write.raw, write.type), axis.description->file);
 }
 
 // The number that limits nothing: as far as the object goes, or as the EDS lets it.
 std::uint64_t widest(const ResolvedWrite& write, const Conversion& conversion,
                      const AxisConfig& axis, bool low) {
-  const canopen::DictionaryEntry* entry =
-      axis.eds != nullptr ? axis.eds->dictionary.find(write.object) : nullptr;
+  const fieldbus::DictionaryEntry* entry =
+      axis.description != nullptr ? axis.description->dictionary.find(write.object) : nullptr;
   const auto* bound = entry == nullptr ? nullptr : low ? &entry->low : &entry->high;
   const auto number = bound != nullptr && *bound
                           ? sendable(write.type, axis.profile->encodingOf(write.object, write.type),
-                                     canopen::toUnsigned(**bound))
+                                     fieldbus::toUnsigned(**bound))
                           : std::nullopt;
   if (number) return *number;
   return low ? conversion.lowestRaw() : conversion.highestRaw();
@@ -142,9 +142,9 @@ Result<std::optional<ResolvedWrite>> resolveWrite(const NamedWrite& write, const
   using Resolved = std::optional<ResolvedWrite>;
   const ObjectSpec* object = findObject(*axis.profile, write.object);
   const auto id = object != nullptr ? std::optional<ObjectId>(object->id)
-                                    : canopen::parseObjectAddress(write.object);
+                                    : fieldbus::parseObjectAddress(write.object);
   const auto type = object != nullptr ? std::optional<DataType>(object->type) : write.type;
-  if (!id || !type || canopen::sizeBits(*type) == 0) {
+  if (!id || !type || fieldbus::sizeBits(*type) == 0) {
     return refuse(axis, write.object, sourceOf(*axis.profile) + " has no such number");
   }
   ResolvedWrite resolved;
@@ -157,7 +157,7 @@ Result<std::optional<ResolvedWrite>> resolveWrite(const NamedWrite& write, const
   resolved.optional = write.optional && !hold;  // what was asked for is done or told
   resolved.asked_for = hold || asksForHoming(write.from, axis);
   resolved.name =
-      (object != nullptr ? object->name + " " : "") + "(" + canopen::toString(*id) + ")";
+      (object != nullptr ? object->name + " " : "") + "(" + fieldbus::toString(*id) + ")";
 
   Source source;
   if (!write.from.empty()) {
@@ -211,7 +211,7 @@ Result<std::optional<ResolvedLimit>> resolveLimit(const NamedWrite& write, const
 
 std::vector<std::uint8_t> wireBytes(std::uint64_t raw, DataType type) {
   std::vector<std::uint8_t> bytes;
-  for (unsigned bit = 0; bit < canopen::sizeBits(type); bit += 8) {
+  for (unsigned bit = 0; bit < fieldbus::sizeBits(type); bit += 8) {
     bytes.push_back(static_cast<std::uint8_t>(raw >> bit));
   }
   return bytes;

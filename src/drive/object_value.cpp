@@ -50,7 +50,7 @@ std::optional<std::uint64_t> sendable(DataType type, Encoding encoding, std::uin
 
 std::string notFinite(DataType type, std::uint64_t raw) {
   char text[24];
-  const auto digits = static_cast<int>(canopen::sizeBits(type) / 4);
+  const auto digits = static_cast<int>(fieldbus::sizeBits(type) / 4);
   std::snprintf(text, sizeof text, "0x%0*llX", digits, static_cast<unsigned long long>(raw));
   return std::string(text) +
          " is no finite number in an object that holds a float, and is never sent; give the number "

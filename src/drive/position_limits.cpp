@@ -9,7 +9,7 @@ namespace {
 constexpr std::uint32_t kNoObject = 0x06020000, kNoSubindex = 0x06090011;  // CiA 301, 7.2.4.3.17
 constexpr double kInside = 1e-4;  // rad or m; more than the noise of an encoder at a limit
 
-using Failure = canopen::SdoTransfer::Failure;
+using Failure = fieldbus::Transfer::Failure;
 
 }  // namespace
 
@@ -72,10 +72,10 @@ bool PositionLimits::reached(const Side& side) const {
   return side.absent || !side.aimed || side.held == side.wanted;
 }
 
-void PositionLimits::advance(canopen::SdoClient& sdo) {
+void PositionLimits::advance(fieldbus::ObjectAccess& objects) {
   if (ticket_) {
     if (!ticket_->done()) return;
-    const canopen::SdoTicket answer = std::exchange(ticket_, nullptr);
+    const fieldbus::Ticket answer = std::exchange(ticket_, nullptr);
     take(sides_[busy_], *answer);
   }
   for (busy_ = 0; busy_ < count_; ++busy_) {
@@ -83,23 +83,23 @@ void PositionLimits::advance(canopen::SdoClient& sdo) {
     if (reached(side) || !side.refusal.empty()) continue;
     const ResolvedWrite& write = side.limit.write;
     sent_ = side.wanted;
-    ticket_ = side.asked ? sdo.download(write.object, wireBytes(sent_, write.type), write.name)
-                         : sdo.upload(write.object, write.name);
+    ticket_ = side.asked ? objects.download(write.object, wireBytes(sent_, write.type), write.name)
+                         : objects.upload(write.object, write.name);
     return;
   }
   idle_ = true;
   for (std::size_t i = 0; i < count_; ++i) idle_ = idle_ && sides_[i].aimed && !sides_[i].left_open;
 }
 
-void PositionLimits::take(Side& side, const canopen::SdoTransfer& answer) {
-  if (answer.direction() == canopen::SdoTransfer::Direction::upload) {
+void PositionLimits::take(Side& side, const fieldbus::Transfer& answer) {
+  if (answer.direction() == fieldbus::Transfer::Direction::upload) {
     side.asked = true;
     const bool none = answer.abortCode() == kNoObject || answer.abortCode() == kNoSubindex;
     side.absent =
         none && answer.failure() == Failure::aborted_by_server && side.limit.write.optional;
-    const std::size_t size = canopen::sizeBits(side.limit.write.type) / 8;
+    const std::size_t size = fieldbus::sizeBits(side.limit.write.type) / 8;
     if (answer.ok() && answer.data().size() == size) {
-      side.held = canopen::toUnsigned(answer.data());
+      side.held = fieldbus::toUnsigned(answer.data());
     }
     return;
   }

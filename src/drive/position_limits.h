@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "cia402_driver/canopen/sdo_client.h"
 #include "cia402_driver/drive/named_write.h"
+#include "cia402_driver/fieldbus/object_access.h"
 
 namespace cia402::drive {
 
@@ -29,7 +29,7 @@ class PositionLimits {
   /// Closes a side that was left open, once `position` and `target` are inside. NaN is nowhere.
   void closeIfInside(double position, double target);
   /// Reads and writes; to be called in every cycle of a node that is ready.
-  void advance(canopen::SdoClient& sdo);
+  void advance(fieldbus::ObjectAccess& objects);
 
   bool settled() const;
   /// Neither closeIfInside() nor advance() has anything to do until aim() or forget().
@@ -54,14 +54,14 @@ class PositionLimits {
   };
   bool reached(const Side& side) const;
   bool narrower(const Side& side) const;
-  void take(Side& side, const canopen::SdoTransfer& answer);
+  void take(Side& side, const fieldbus::Transfer& answer);
 
   std::array<Side, 2> sides_;
   std::size_t count_ = 0;
   bool idle_ = false;
   std::size_t busy_ = 0;  ///< whose transfer `ticket_` is
   std::uint64_t sent_ = 0;
-  canopen::SdoTicket ticket_;
+  fieldbus::Ticket ticket_;
 };
 
 }  // namespace cia402::drive

@@ -117,9 +117,9 @@ Outcome awaitStandstill(const Context& context, Time since, const std::string& w
 
 std::string nodeRefusal(AxisCore& axis, const char* what) {
   if (axis.nodeReady()) return {};
-  std::string text =
-      axis.who() + ": cannot " + what + ": the node is " + canopen::toString(axis.node().health());
-  if (!axis.node().problem().empty()) text += " (" + axis.node().problem() + ")";
+  std::string text = axis.who() + ": cannot " + what + ": the node is " +
+                     fieldbus::toString(axis.device().health());
+  if (!axis.device().problem().empty()) text += " (" + axis.device().problem() + ")";
   return text + "; recover boots it again";
 }
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "cia402_driver/canopen/abort_code.h"
+#include "cia402_driver/fieldbus/abort_code.h"
 #include "sentence.h"
 
 namespace cia402::drive {
@@ -170,12 +170,12 @@ Outcome DriveHoming::timeOut(const Context& context) {
 void DriveHoming::succeed(const Context& context) {
   AxisCore& axis = context.axis;
   end_ = context.now;
-  const ObjectSpec* object = axis.profile().find(canopen::ObjectId{0x607C, 0});
+  const ObjectSpec* object = axis.profile().find(fieldbus::ObjectId{0x607C, 0});
   const bool lacks = object == nullptr || saidToLack(axis.config(), object->name);
   if (offsetIsWritten(axis) && !writes_.leftOut("homing.offset")) {
     adopt(context, axis.config().homing->atHome());
   } else if (!lacks && object->readable) {
-    offset_ = axis.node().sdo().upload(object->id, object->name);
+    offset_ = axis.device().objects().upload(object->id, object->name);
     enter(Phase::reading_offset, context);
     context.show("reading the home offset", "607C:00 home offset");
   } else {
@@ -185,9 +185,9 @@ void DriveHoming::succeed(const Context& context) {
 
 Outcome DriveHoming::readOffset(const Context& context) {
   if (!offset_->done()) return Outcome::running();
-  const bool missing = offset_->failure() == canopen::SdoTransfer::Failure::aborted_by_server &&
-                       (offset_->abortCode() == canopen::abort_code::kNoSuchObject ||
-                        offset_->abortCode() == canopen::abort_code::kNoSuchSubindex);
+  const bool missing = offset_->failure() == fieldbus::Transfer::Failure::aborted_by_server &&
+                       (offset_->abortCode() == fieldbus::abort_code::kNoSuchObject ||
+                        offset_->abortCode() == fieldbus::abort_code::kNoSuchSubindex);
   if (missing) {  // the home position is its zero then
     adopt(context, context.axis.objects().position.conversion.toJoint(0));
     return Outcome::running();
@@ -197,7 +197,7 @@ Outcome DriveHoming::readOffset(const Context& context) {
     return Outcome::running();
   }
   adopt(context,
-        context.axis.objects().position.conversion.toJoint(canopen::toUnsigned(offset_->data())));
+        context.axis.objects().position.conversion.toJoint(fieldbus::toUnsigned(offset_->data())));
   return Outcome::running();
 }
 
@@ -308,7 +308,7 @@ bool DriveHoming::attained(const Context& context) const {
 bool DriveHoming::statuswordIsFresh(const Context& context) const {
   AxisCore& axis = context.axis;
   const InputObject& object = axis.objects().statusword;
-  const canopen::ProcessImage& image = axis.node().image();
+  const fieldbus::ProcessImage& image = axis.device().image();
   if (!image.regular(object.slot)) return context.now - since_ > std::chrono::milliseconds(20);
   return image.input(object.slot).stamp > since_;
 }

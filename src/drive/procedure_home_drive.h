@@ -66,7 +66,7 @@ class DriveHoming : public Procedure {
   SwitchStep mode_;
   EnableStep enabling_;
   std::optional<SwitchStep> restoring_;
-  canopen::SdoTicket offset_;
+  fieldbus::Ticket offset_;
 
   Phase phase_ = Phase::begin;
   bool moves_nothing_;  ///< methods 35 and 37: the present position is home

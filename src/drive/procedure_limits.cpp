@@ -21,10 +21,11 @@ constexpr int kLimitTransfers = 6;                       // PositionLimits: thre
 /// The sum of what steps may take. They are called by the names of the steps.
 struct Steps {
   const AxisConfig& axis;
+  const fieldbus::DeviceTimes& device;
   const DriveProfile& profile = *axis.profile;
   const DriveProfile::Timing& timing = profile.timing;
 
-  Duration transfer() const { return (timing.sdo_retries + 1) * timing.sdo; }
+  Duration transfer() const { return device.transfer(); }
   Duration writes(const std::vector<NamedWrite>& list) const {
     const auto copies = std::count_if(list.begin(), list.end(), [&](const NamedWrite& write) {
       return profile.find(write.from) != nullptr;
@@ -63,7 +64,7 @@ struct Steps {
     }
     return clearing + (profile.fault_reset_tries + 1) * once + FaultResetStep::pause(profile);
   }
-  Duration boot() const { return kBootTimes * timing.boot; }
+  Duration boot() const { return kBootTimes * device.boot; }
   Duration declare() const { return 2 * kStanding + 2 * limits(); }
   Duration home() const {
     if (!axis.homing || profile.homing.kind != HomingSpec::Kind::drive) return declare();
@@ -84,8 +85,9 @@ Duration stopTime(const AxisConfig& config, double velocity) {
   return std::max(config.profile->timing.state_change, fromSeconds(2.0 * ramp) + kStopMargin);
 }
 
-Duration timeLimit(ProcedureKind kind, const AxisConfig& config, double velocity) {
-  const Steps steps{config};
+Duration timeLimit(ProcedureKind kind, const AxisConfig& config,
+                   const fieldbus::DeviceTimes& device, double velocity) {
+  const Steps steps{config, device};
   const Duration stop = stopTime(config, velocity), change = steps.timing.state_change;
   switch (kind) {
     case ProcedureKind::none:

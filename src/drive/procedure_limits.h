@@ -5,7 +5,7 @@
 
 namespace cia402::drive {
 
-/// A node that boots gets so many times the profile's boot time: it tries again.
+/// A device that boots gets so many times its boot time: it tries again.
 inline constexpr int kBootTimes = 3;
 
 /// An axis that coasts gets this long to come to rest. Switched on in motion it would be pulled
@@ -18,7 +18,8 @@ Duration stopTime(const AxisConfig& config, double velocity);
 
 /// The longest that a procedure may take: what its steps may take, each once. A drive that goes to
 /// and fro between states begins the wait of a step again and again, so the whole has a limit.
-/// @param velocity as for stopTime()
-Duration timeLimit(ProcedureKind kind, const AxisConfig& config, double velocity);
+/// @param device that the axis sits in. @param velocity as for stopTime()
+Duration timeLimit(ProcedureKind kind, const AxisConfig& config,
+                   const fieldbus::DeviceTimes& device, double velocity);
 
 }  // namespace cia402::drive

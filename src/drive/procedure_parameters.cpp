@@ -2,7 +2,7 @@
 // Store and restore parameters, CiA 301, 7.5.2.13 (1010h) and 7.5.2.14 (1011h).
 #include <cstdio>
 
-#include "cia402_driver/canopen/abort_code.h"
+#include "cia402_driver/fieldbus/abort_code.h"
 #include "procedure.h"
 #include "procedure_limits.h"
 #include "sentence.h"
@@ -18,7 +18,7 @@ struct Storage {
   const char* verb;  ///< "save"
   std::uint16_t index;
   const char* name;  ///< of the object
-  canopen::Bytes signature;
+  fieldbus::Bytes signature;
 };
 const Storage& saving() {
   static const Storage kSaving{"save", 0x1010, "store_parameters", {0x73, 0x61, 0x76, 0x65}};
@@ -34,7 +34,7 @@ const Storage& restoring() {
 std::string groupText(const Storage& storage, std::uint8_t subindex) {
   constexpr const char* kNames[] = {"", "all parameters", "communication parameters",
                                     "application parameters"};
-  return canopen::toString(ObjectId{storage.index, subindex}) + " (" +
+  return fieldbus::toString(ObjectId{storage.index, subindex}) + " (" +
          (subindex <= 3 ? kNames[subindex] : "parameters of the maker") + ")";
 }
 
@@ -101,25 +101,25 @@ class StorageStep {
     context.show(storage_.index == saving().index ? "asking what can be saved"
                                                   : "asking what can be restored",
                  "the drive to tell " + groupText(storage_, subindices_[next_]));
-    ticket_ = context.axis.node().sdo().upload(object(), storage_.name);
+    ticket_ = context.axis.device().objects().upload(object(), storage_.name);
   }
 
   void command(const Context& context) {
     writing_ = true;
     context.show(storage_.index == saving().index ? "saving parameters" : "restoring parameters",
                  "the drive to confirm " + groupText(storage_, subindices_[next_]));
-    canopen::SdoOptions patient;  // memory is slow, and a second command would find it busy
+    fieldbus::AccessOptions patient;  // memory is slow, and a second command would find it busy
     patient.timeout = context.axis.profile().parameters.timeout;
     patient.retries = 0;
-    ticket_ =
-        context.axis.node().sdo().download(object(), storage_.signature, storage_.name, patient);
+    ticket_ = context.axis.device().objects().download(object(), storage_.signature, storage_.name,
+                                                       patient);
   }
 
   /// What the factory set may hold another zero; what only concerns the communication does not.
   bool mayHaveMovedZero() const {
     constexpr std::uint8_t kCommunication = 2;
     const bool refused =
-        !ticket_->ok() && ticket_->failure() == canopen::SdoTransfer::Failure::aborted_by_server;
+        !ticket_->ok() && ticket_->failure() == fieldbus::Transfer::Failure::aborted_by_server;
     return storage_.index == restoring().index && !refused && subindices_[next_] != kCommunication;
   }
 
@@ -129,11 +129,11 @@ class StorageStep {
       return std::string("cannot ") + storage_.verb + " " + group + ": " + ticket_->reason();
     }
     if (writing_) return {};
-    const std::uint64_t capability = canopen::toUnsigned(ticket_->data());
+    const std::uint64_t capability = fieldbus::toUnsigned(ticket_->data());
     if ((capability & kOnCommand) != 0) return {};
     const bool by_itself = storage_.index == saving().index && (capability & kByItself) != 0;
     return std::string("the drive does not ") + storage_.verb + " " + group + " on command (" +
-           canopen::toString(object()) + " is " + hex(capability) + ")" +
+           fieldbus::toString(object()) + " is " + hex(capability) + ")" +
            (by_itself ? "; it saves by itself" : "; choose others with `parameters`");
   }
 
@@ -141,7 +141,7 @@ class StorageStep {
   std::vector<std::uint8_t> subindices_;
   std::size_t next_ = 0;
   bool writing_ = false;
-  canopen::SdoTicket ticket_;
+  fieldbus::Ticket ticket_;
   std::string done_;
 };
 
@@ -180,10 +180,7 @@ class RestoreParameters : public Procedure {
     resetting_ = true;
     reset_at_ = context.now;
     context.show("booting the node", "the node to be identified, configured and started");
-    context.axis.node().command(context.axis.profile().nmt_reset_node
-                                    ? canopen::NmtCommand::reset_node
-                                    : canopen::NmtCommand::reset_communication,
-                                context.now);
+    context.axis.device().restart(context.now);
     return Outcome::running();
   }
 
@@ -191,7 +188,7 @@ class RestoreParameters : public Procedure {
 
  private:
   static Duration bootTime(const Context& context) {
-    return kBootTimes * context.axis.profile().timing.boot;
+    return kBootTimes * context.axis.device().times().boot;
   }
 
   Outcome awaitBoot(const Context& context) {
@@ -199,28 +196,24 @@ class RestoreParameters : public Procedure {
     const std::string restored =
         axis.who() + ": restored the factory's values of " + restoring_.what();
     if (axis.nodeReady()) {
+      const std::string gap = axis.device().restartGap();
       return Outcome::done(restored +
-                           "; the drive was reset, configured again by the driver and "
-                           "is disabled" +
+                           "; the drive was reset, configured again by the driver and is disabled" +
                            (axis.state().homed ? "" : ", not homed") +
-                           (axis.profile().nmt_reset_node
-                                ? ""
-                                : "; only its communication was reset (nmt_reset_node of the "
-                                  "profile): switch it off and on for the values to count"));
+                           (gap.empty() ? "" : "; " + gap + " for the values to count"));
     }
-    const canopen::NodeHealth health = axis.node().health();
-    const bool failed =
-        health == canopen::NodeHealth::failed || health == canopen::NodeHealth::absent;
+    const fieldbus::Health health = axis.device().health();
+    const bool failed = health == fieldbus::Health::failed || health == fieldbus::Health::absent;
     if (failed && context.now > reset_at_) {
       return Outcome::failed(restored +
                              " and reset it, but it did not boot (has it got the "
                              "factory's node-ID or bit rate?): " +
-                             axis.node().problem());
+                             axis.device().problem());
     }
     if (context.now < reset_at_ + bootTime(context)) return Outcome::running();
     return Outcome::failed(restored + " and reset it, but it was not ready within " +
                            seconds(context.now - reset_at_) + ", it is " +
-                           canopen::toString(health) + ", " + axis.node().bootStep());
+                           fieldbus::toString(health) + ", " + axis.device().bootStep());
   }
 
   bool resetting_ = false;

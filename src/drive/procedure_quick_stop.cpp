@@ -28,15 +28,15 @@ class QuickStop : public Procedure {
     AxisCore& axis = context.axis;
     context.show("stopped", "the drive to switch off or to hold (605A:00 quick stop option)");
     if (axis.profile().quick_stop_holds.empty()) return;
-    const ObjectSpec* object = axis.profile().find(canopen::ObjectId{0x605A, 0});
-    if (object != nullptr) option_ = axis.node().sdo().upload(object->id, object->name);
+    const ObjectSpec* object = axis.profile().find(fieldbus::ObjectId{0x605A, 0});
+    if (object != nullptr) option_ = axis.device().objects().upload(object->id, object->name);
   }
 
   bool holds(const AxisCore& axis) const {
     if (!option_ || !option_->ok() || option_->data().size() > 8) {
       return axis.config().quick_stop_holds;  // as it was told to
     }
-    const auto value = static_cast<std::int16_t>(canopen::toUnsigned(option_->data()));
+    const auto value = static_cast<std::int16_t>(fieldbus::toUnsigned(option_->data()));
     const std::vector<int>& held = axis.profile().quick_stop_holds;
     return std::find(held.begin(), held.end(), value) != held.end();
   }
@@ -64,7 +64,7 @@ class QuickStop : public Procedure {
   }
 
   QuickStopStep stop_;
-  canopen::SdoTicket option_;
+  fieldbus::Ticket option_;
   bool stopped_ = false;
   Time since_{};
 };

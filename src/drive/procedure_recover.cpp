@@ -72,7 +72,7 @@ class Recover : public Procedure {
     phase_ = Phase::booting;
     booted_ = context.now;
     context.show("booting the node", "the node to be identified, configured and started");
-    if (axis.node().health() != canopen::NodeHealth::booting) axis.node().boot(context.now, true);
+    if (axis.device().health() != fieldbus::Health::booting) axis.device().boot(context.now, true);
   }
 
   void beginFeedback(const Context& context) {
@@ -87,15 +87,15 @@ class Recover : public Procedure {
       beginFeedback(context);
       return Outcome::running();
     }
-    const bool failed = axis.node().health() == canopen::NodeHealth::failed ||
-                        axis.node().health() == canopen::NodeHealth::absent;
+    const bool failed = axis.device().health() == fieldbus::Health::failed ||
+                        axis.device().health() == fieldbus::Health::absent;
     if (failed && context.now > *booted_) {
-      return Outcome::failed(axis.who() + ": the node did not boot: " + axis.node().problem());
+      return Outcome::failed(axis.who() + ": the node did not boot: " + axis.device().problem());
     }
-    if (context.now < *booted_ + kBootTimes * axis.profile().timing.boot) return Outcome::running();
-    return Outcome::failed(axis.who() + ": the node did not become ready within " +
-                           seconds(context.now - *booted_) + ", it is " +
-                           canopen::toString(axis.node().health()) + ", " + axis.node().bootStep());
+    if (context.now < *booted_ + kBootTimes * axis.device().times().boot) return Outcome::running();
+    return Outcome::failed(
+        axis.who() + ": the node did not become ready within " + seconds(context.now - *booted_) +
+        ", it is " + fieldbus::toString(axis.device().health()) + ", " + axis.device().bootStep());
   }
 
   Outcome awaitFeedback(const Context& context) {

@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "cia402_driver/canopen/object_dictionary.h"
-#include "profile_parts.h"
+#include "cia402_driver/fieldbus/object_dictionary.h"
 
 namespace cia402::drive {
 
@@ -14,7 +13,7 @@ Encoding encodingAt(const DriveProfile& profile, ObjectId id, DataType type) {
   const Encoding* encoding = profile.encodings.find(id);
   if (encoding == nullptr || *encoding == Encoding::integer) return Encoding::integer;
   const unsigned bits = *encoding == Encoding::float32 ? 32 : 16;
-  return canopen::sizeBits(type) == bits ? *encoding : Encoding::integer;
+  return fieldbus::sizeBits(type) == bits ? *encoding : Encoding::integer;
 }
 
 const ObjectSpec* DriveProfile::find(const std::string& object_name) const {
@@ -22,7 +21,7 @@ const ObjectSpec* DriveProfile::find(const std::string& object_name) const {
                                   [&](const ObjectSpec& o) { return o.name == object_name; });
   if (found != objects.end()) return &*found;
   if (eds.empty()) return nullptr;
-  const std::string key = canopen::nameKey(object_name);
+  const std::string key = fieldbus::nameKey(object_name);
   const auto by_key = std::find_if(objects.begin(), objects.end(), [&](const ObjectSpec& o) {
     return std::find(o.eds_keys.begin(), o.eds_keys.end(), key) != o.eds_keys.end();
   });
@@ -45,7 +44,7 @@ std::optional<ObjectSpec> DriveProfile::unnamedFloat(ObjectId id, std::size_t by
   object.id = id;
   object.type = bytes == 2 ? DataType::uint16 : DataType::uint32;
   object.encoding = encodingAt(*this, id, object.type);
-  if (canopen::sizeBits(object.type) != 8 * bytes) return {};
+  if (fieldbus::sizeBits(object.type) != 8 * bytes) return {};
   if (object.encoding == Encoding::integer) return {};
   return object;
 }
@@ -62,6 +61,22 @@ const ModeSpec* DriveProfile::mode(const std::string& mode_name) const {
   const auto found = std::find_if(modes.begin(), modes.end(),
                                   [&](const ModeSpec& m) { return m.name == canonical; });
   return found == modes.end() ? nullptr : &*found;
+}
+
+const ObjectSpec* findObject(const DriveProfile& profile, const std::string& name) {
+  if (const ObjectSpec* object = profile.find(name)) return object;
+  const auto id = fieldbus::parseObjectAddress(name);
+  return id ? profile.find(*id) : nullptr;
+}
+
+std::string sourceOf(const DriveProfile& profile) {
+  return "profile " + profile.name + (profile.eds.empty() ? "" : " with " + profile.eds);
+}
+
+std::vector<std::string> objectNames(const DriveProfile& profile) {
+  std::vector<std::string> names;
+  for (const ObjectSpec& object : profile.objects) names.push_back(object.name);
+  return names;
 }
 
 ErrorText::Missing missingFrames(const DriveProfile& profile, std::uint16_t code) {

@@ -85,20 +85,21 @@ bool FaultResetStep::mayPause(const Context& context) const {
 void FaultResetStep::beginPause(const Context& context) {
   AxisCore& axis = context.axis;
   paused_ = true;
-  axis.node().stopAndStart(axis.profile().fault_reset_nmt_stop, context.now);
+  axis.device().stopAndStart(axis.profile().fault_reset_nmt_stop, context.now);
   enter(Phase::paused, context);
   context.show("taking the node through NMT stop and start for the fault reset",
                "the drive to be operational and to send its feedback again");
 }
 
 Duration FaultResetStep::pause(const DriveProfile& profile) {
-  return profile.fault_reset_nmt_stop + canopen::Node::kStartPatience + profile.timing.state_change;
+  return profile.fault_reset_nmt_stop + fieldbus::Device::kStartPatience +
+         profile.timing.state_change;
 }
 
 Outcome FaultResetStep::awaitPause(const Context& context) {
   const AxisCore& axis = context.axis;
   const bool heard = axis.state().feedback_valid && axis.heardLately(context.now);
-  if (!context.axis.node().paused() && heard) {
+  if (!context.axis.device().paused() && heard) {
     enter(Phase::reacting, context);
     return Outcome::running();
   }
@@ -123,7 +124,7 @@ Outcome FaultResetStep::advance(const Context& context) {
       code_ = axis.state().error_code;
       axis.setGoal(Goal::disabled);
       if (!axis.profile().fault_reset_clears_history) return awaitReaction(context);
-      clearing_ = axis.node().sdo().download({0x1003, 0}, {0}, "error history");
+      clearing_ = axis.device().objects().download({0x1003, 0}, {0}, "error history");
       enter(Phase::clearing, context);
       context.show("clearing the error history", "the drive to take 1003:00 = 0");
       return Outcome::running();

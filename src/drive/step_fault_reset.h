@@ -39,7 +39,7 @@ class FaultResetStep {
   std::uint16_t code_ = 0;
   std::uint64_t frames_ = 0;
   Time since_{};
-  canopen::SdoTicket clearing_;
+  fieldbus::Ticket clearing_;
 };
 
 /// Something that a fault reset could clear.

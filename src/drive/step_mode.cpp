@@ -23,7 +23,8 @@ Outcome ModeStep::advance(const Context& context) {
       axis.presetTarget(*mode_);
       // What brakes at rest would be in the way of the mode; it ends with the mode anyway.
       if (!axis.profile().mode_change.while_halted) axis.endBraking();
-      frames_ = mode_->target.mapped() ? axis.frames(mode_->target) : axis.controlwordFrames();
+      frames_ = mode_->target.mapped() ? axis.device().image().sent(mode_->target.slot)
+                                       : axis.controlwordFrames();
       controlword_frames_ = axis.controlwordFrames();
       started_ = context.now;
       phase_ = Phase::presetting;
@@ -31,8 +32,9 @@ Outcome ModeStep::advance(const Context& context) {
       return Outcome::running();
     }
     case Phase::presetting: {
-      const std::uint64_t sent =
-          mode_->target.mapped() ? axis.frames(mode_->target) : axis.controlwordFrames();
+      const std::uint64_t sent = mode_->target.mapped()
+                                     ? axis.device().image().sent(mode_->target.slot)
+                                     : axis.controlwordFrames();
       const bool unbraked = axis.controlwordFrames() >= controlword_frames_ + kSureFrames;
       if (sent >= frames_ + kSureFrames && unbraked) {
         select(context);
@@ -69,7 +71,7 @@ void ModeStep::select(const Context& context) {
   if (object.mapped() || object.spec == nullptr) {
     phase_ = Phase::waiting;
   } else {
-    command_ = axis.node().sdo().download(
+    command_ = axis.device().objects().download(
         object.spec->id,
         wireBytes(static_cast<std::uint64_t>(mode_->spec->value), object.spec->type),
         object.spec->name);
@@ -97,13 +99,13 @@ void ModeStep::askForDisplay(const Context& context) {
   if (object.spec == nullptr || object.mapped()) return;
   if (display_ && display_->done()) {
     if (display_->ok() && display_->data().size() <= 8) {
-      context.axis.putShownMode(canopen::toUnsigned(display_->data()), context.now);
+      context.axis.putShownMode(fieldbus::toUnsigned(display_->data()), context.now);
     }
     display_.reset();
     next_question_ = context.now + kQuestionInterval;
   }
   if (!display_ && context.now >= next_question_) {
-    display_ = context.axis.node().sdo().upload(object.spec->id, object.spec->name);
+    display_ = context.axis.device().objects().upload(object.spec->id, object.spec->name);
   }
 }
 
@@ -113,7 +115,7 @@ Outcome ModeStep::fail(const Context& context, const std::string& why) {
     enter(axis, *before_);
     const OutputObject& object = axis.objects().mode;
     if (!object.mapped() && object.spec != nullptr) {
-      axis.node().sdo().download(
+      axis.device().objects().download(
           object.spec->id,
           wireBytes(static_cast<std::uint64_t>(before_->spec->value), object.spec->type),
           object.spec->name);

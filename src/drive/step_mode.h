@@ -30,7 +30,7 @@ class ModeStep {
   const ModeChannel* before_ = nullptr;
   WriteStep writes_;
   Phase phase_ = Phase::writing;
-  canopen::SdoTicket command_, display_;
+  fieldbus::Ticket command_, display_;
   std::uint64_t frames_ = 0, controlword_frames_ = 0;
   Time started_{}, next_question_{};
 };

@@ -70,7 +70,7 @@ void ModeShownStep::command(const Context& context, Phase phase, int value) {
     const bool is_mode = value == mode_->spec->value;
     axis.overrideMode(is_mode ? std::optional<int>() : std::optional<int>(value));
   } else if (object.spec != nullptr) {
-    ticket_ = axis.node().sdo().download(
+    ticket_ = axis.device().objects().download(
         object.spec->id, wireBytes(static_cast<std::uint64_t>(value), object.spec->type),
         object.spec->name);
   }

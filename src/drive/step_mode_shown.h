@@ -28,7 +28,7 @@ class ModeShownStep {
   const ModeChannel* mode_;
   std::optional<ModeStep> between_, last_;  ///< of the detour
   Phase phase_ = Phase::begin;
-  canopen::SdoTicket ticket_;
+  fieldbus::Ticket ticket_;
   std::uint64_t frames_ = 0;
   Time since_{};
 };

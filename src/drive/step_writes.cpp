@@ -4,26 +4,24 @@
 #include <algorithm>
 #include <utility>
 
-#include "cia402_driver/canopen/abort_code.h"
 #include "cia402_driver/drive/object_value.h"
-#include "cia402_driver/drive/profile_reader.h"
+#include "cia402_driver/fieldbus/abort_code.h"
 
 namespace cia402::drive {
 namespace {
 
 /// Some drives answer nothing for what they do not have.
-canopen::SdoOptions ifThere(const DriveProfile& profile) {
-  canopen::SdoOptions options;
-  options.timeout = profile.timing.sdo;
-  options.retries = std::max(profile.timing.sdo_retries, 2);
+fieldbus::AccessOptions ifThere(const fieldbus::Device& device) {
+  fieldbus::AccessOptions options = device.times().access;
+  options.retries = std::max(options.retries, 2);
   options.silence_is_missing = true;
   return options;
 }
 
 /// The drive refused it, as it does not have the object or does not let it be written.
-bool lacking(const canopen::SdoTransfer& answer) {
-  return answer.failure() == canopen::SdoTransfer::Failure::aborted_by_server &&
-         canopen::abort_code::saysLacking(answer.abortCode());
+bool lacking(const fieldbus::Transfer& answer) {
+  return answer.failure() == fieldbus::Transfer::Failure::aborted_by_server &&
+         fieldbus::abort_code::saysLacking(answer.abortCode());
 }
 
 }  // namespace
@@ -36,12 +34,12 @@ Outcome WriteStep::advance(const Context& context) {
       if (!ticket_) continue;  // nothing configured for this one
     }
     if (!ticket_->done()) return Outcome::running();
-    const canopen::SdoTicket answer = std::exchange(ticket_, nullptr);
+    const fieldbus::Ticket answer = std::exchange(ticket_, nullptr);
     if (!answer->ok() && !current_.optional && !mayLeaveOut(context, *answer)) {
       return Outcome::failed(context.axis.who() + ": " + answer->message() +
                              (lacking(*answer) ? advice(context) : ""));
     }
-    if (answer->ok() && answer->direction() == canopen::SdoTransfer::Direction::upload) {
+    if (answer->ok() && answer->direction() == fieldbus::Transfer::Direction::upload) {
       if (copy(context, answer->data())) continue;
       if (!current_.optional) {
         return Outcome::failed(context.axis.who() + ": what was to be copied into " +
@@ -71,14 +69,14 @@ bool WriteStep::begin(const Context& context, Outcome& problem) {
   current_ = **resolved;
   context.show("writing parameters", "the drive to take " + current_.name);
   if (current_.copied_from) {
-    ticket_ = context.axis.node().sdo().upload(*current_.copied_from, current_.name);
+    ticket_ = context.axis.device().objects().upload(*current_.copied_from, current_.name);
   } else {
     write(context, wireBytes(current_.raw, current_.type));
   }
   return true;
 }
 
-bool WriteStep::mayLeaveOut(const Context& context, const canopen::SdoTransfer& answer) {
+bool WriteStep::mayLeaveOut(const Context& context, const fieldbus::Transfer& answer) {
   if (current_.asked_for || !lacking(answer)) return false;
   left_out_.push_back((*writes_)[next_].from);
   context.axis.warnOnce(context.axis.who() + ": " + current_.name +
@@ -102,11 +100,11 @@ bool WriteStep::leftOut(const std::string& from) const {
 }
 
 /// @return false for NaN and infinity, which are never sent.
-bool WriteStep::copy(const Context& context, canopen::Bytes bytes) {
+bool WriteStep::copy(const Context& context, fieldbus::Bytes bytes) {
   const ObjectSpec* source = context.axis.profile().find(*current_.copied_from);
   if (source != nullptr && holdsFloat(source->type, source->encoding)) {
-    if (bytes.size() * 8 != canopen::sizeBits(source->type)) return false;
-    const auto raw = sendable(source->type, source->encoding, canopen::toUnsigned(bytes));
+    if (bytes.size() * 8 != fieldbus::sizeBits(source->type)) return false;
+    const auto raw = sendable(source->type, source->encoding, fieldbus::toUnsigned(bytes));
     if (!raw) return false;
     bytes = wireBytes(*raw, source->type);
   }
@@ -114,15 +112,15 @@ bool WriteStep::copy(const Context& context, canopen::Bytes bytes) {
   return true;
 }
 
-void WriteStep::write(const Context& context, canopen::Bytes bytes) {
-  const canopen::Slot slot = context.axis.node().image().outputSlot(current_.object);
-  if (slot != canopen::kNoSlot && bytes.size() <= 8) {
-    mapped_.push_back({slot, canopen::toUnsigned(bytes)});
+void WriteStep::write(const Context& context, fieldbus::Bytes bytes) {
+  const fieldbus::Slot slot = context.axis.device().image().outputSlot(current_.object);
+  if (slot != fieldbus::kNoSlot && bytes.size() <= 8) {
+    mapped_.push_back({slot, fieldbus::toUnsigned(bytes)});
   }
   const bool by_default = !current_.asked_for && !current_.optional;
-  ticket_ = context.axis.node().sdo().download(
+  ticket_ = context.axis.device().objects().download(
       current_.object, std::move(bytes), current_.name,
-      by_default ? std::optional(ifThere(context.axis.profile())) : std::nullopt);
+      by_default ? std::optional(ifThere(context.axis.device())) : std::nullopt);
 }
 
 }  // namespace cia402::drive

@@ -18,7 +18,7 @@ class WriteStep {
   Outcome advance(const Context& context);
   /// What was written to objects that an RPDO carries, too.
   struct Mapped {
-    canopen::Slot slot;
+    fieldbus::Slot slot;
     std::uint64_t raw;
   };
   const std::vector<Mapped>& mapped() const { return mapped_; }
@@ -26,16 +26,16 @@ class WriteStep {
   bool leftOut(const std::string& from) const;
 
  private:
-  bool mayLeaveOut(const Context& context, const canopen::SdoTransfer& answer);
+  bool mayLeaveOut(const Context& context, const fieldbus::Transfer& answer);
   std::string advice(const Context& context) const;
   bool begin(const Context& context, Outcome& problem);
-  bool copy(const Context& context, canopen::Bytes bytes);
-  void write(const Context& context, canopen::Bytes bytes);
+  bool copy(const Context& context, fieldbus::Bytes bytes);
+  void write(const Context& context, fieldbus::Bytes bytes);
 
   const std::vector<NamedWrite>* writes_;  ///< in the profile, which outlives every procedure
   std::size_t next_ = 0;
   ResolvedWrite current_;
-  canopen::SdoTicket ticket_;
+  fieldbus::Ticket ticket_;
   std::vector<Mapped> mapped_;
   std::vector<std::string> left_out_;  ///< NamedWrite::from
 };

@@ -33,8 +33,7 @@ unsigned char levelOf(bus::Condition condition) {
 
 std::string hardwareId(const bus::AxisSnapshot& axis, const drive::AxisConfig& config) {
   const std::uint32_t serial = axis.node.identity.serial;
-  return serial != 0 ? std::to_string(serial)
-                     : config.profile->name + " node " + std::to_string(config.node_id);
+  return serial != 0 ? std::to_string(serial) : config.profile->name + " " + config.place;
 }
 
 void addHex(diagnostic_updater::DiagnosticStatusWrapper& status, const char* key,
@@ -133,8 +132,7 @@ Diagnostics::Diagnostics(ros::NodeHandle& node, ros::NodeHandle& private_node,
   updater_.add("bus", this, &Diagnostics::reportBus);
   for (std::size_t i = 0; i < robot.axes.size(); ++i) {
     const drive::AxisConfig& axis = robot.axes[i];
-    updater_.add("node " + std::to_string(axis.node_id),
-                 [this, i](Status& status) { reportNode(i, status); });
+    updater_.add(axis.place, [this, i](Status& status) { reportNode(i, status); });
     updater_.add(axis.name, [this, i](Status& status) { reportAxis(i, status); });
   }
 }
@@ -211,9 +209,9 @@ void Diagnostics::reportLink(Status& status) {
 void Diagnostics::reportNode(std::size_t index, Status& status) {
   const bus::AxisSnapshot& axis = snapshot_.axes[index];
   status.hardware_id = hardwareId(axis, robot_.axes[index]);
-  const canopen::NodeHealth health = axis.state.health;
+  const fieldbus::Health health = axis.state.health;
   const canopen::Node::Supervision& supervision = axis.node.supervision;
-  if (health == canopen::NodeHealth::ready) {
+  if (health == fieldbus::Health::ready) {
     status.summary(DiagnosticStatus::OK, "configured and operational");
     status.add("boot", axis.words.boot.str());
     if (!supervision.watched) {
@@ -222,12 +220,12 @@ void Diagnostics::reportNode(std::size_t index, Status& status) {
     if (!supervision.watches_master) {
       status.mergeSummary(DiagnosticStatus::WARN, "it cannot notice a dead master");
     }
-  } else if (health == canopen::NodeHealth::booting) {
+  } else if (health == fieldbus::Health::booting) {
     status.summary(DiagnosticStatus::WARN, "booting: " + axis.words.step.str());
   } else {
     status.summary(
         axis.node.may_be_absent ? DiagnosticStatus::WARN : DiagnosticStatus::ERROR,
-        axis.words.problem.empty() ? canopen::toString(health) : axis.words.problem.str());
+        axis.words.problem.empty() ? fieldbus::toString(health) : axis.words.problem.str());
     status.add("boot", axis.words.step.str());
   }
   status.add("error control", canopen::toString(supervision.kind));

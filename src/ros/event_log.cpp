@@ -78,7 +78,7 @@ void EventLog::publish(const bus::EmergencyEvent& event) {
   const drive::AxisConfig& axis = robot_.axes[event.axis];
   cia402_driver::Emergency message;
   message.header.stamp = toRos(runner_.time(), event.emergency.stamp);
-  message.node_id = axis.node_id;
+  message.node_id = robot_.deviceOf(axis).node_id;
   message.axes = {axis.name};
   message.error_code = event.emergency.code;
   message.error_register = event.emergency.error_register;
@@ -86,7 +86,7 @@ void EventLog::publish(const bus::EmergencyEvent& event) {
             message.manufacturer.begin());
   const auto known = axis.profile->errors.find(event.emergency.code);
   if (known == axis.profile->errors.end()) {
-    message.text = canopen::emergencyText(event.emergency.code);
+    message.text = fieldbus::emergencyText(event.emergency.code);
   } else {
     message.text = known->second.text;
     message.remedy =

@@ -64,12 +64,12 @@ cia402_driver::AxisState axisState(const bus::AxisSnapshot& axis, const drive::A
 }
 
 cia402_driver::NodeState nodeState(const bus::AxisSnapshot& axis, const drive::AxisConfig& config,
-                                   Time now) {
+                                   canopen::NodeId node_id, Time now) {
   cia402_driver::NodeState message;
-  message.node_id = config.node_id;
+  message.node_id = node_id;
   message.axes = {config.name};
   message.nmt_state = canopen::toString(axis.node.nmt);
-  message.ready = axis.state.health == canopen::NodeHealth::ready;
+  message.ready = axis.state.health == fieldbus::Health::ready;
   message.step = message.ready ? "" : axis.words.step.str();
   message.heartbeat_age = age(axis.node.last_heartbeat, now);
   message.boot_ups = axis.node.boot_ups;
@@ -222,7 +222,8 @@ cia402_driver::BusState Publishers::busState(const bus::RobotSnapshot& snapshot)
   const Time now = runner_.time().now();
   for (std::size_t i = 0; i < snapshot.axes.size(); ++i) {
     message.missed_feedback += snapshot.axes[i].missed_feedback;
-    message.nodes.push_back(nodeState(snapshot.axes[i], robot_.axes[i], now));
+    const drive::AxisConfig& axis = robot_.axes[i];
+    message.nodes.push_back(nodeState(snapshot.axes[i], axis, robot_.deviceOf(axis).node_id, now));
   }
   return message;
 }

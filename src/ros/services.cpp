@@ -37,7 +37,7 @@ constexpr struct {
     {"restore_parameters", ProcedureKind::restore_parameters},
 };
 
-std::string hexBytes(const canopen::Bytes& data) {
+std::string hexBytes(const fieldbus::Bytes& data) {
   static const char* const kDigits = "0123456789ABCDEF";
   std::string text;
   for (std::uint8_t byte : data) {
@@ -114,7 +114,7 @@ void Services::advertiseSaveDcf(ros::NodeHandle& node, const drive::AxisConfig& 
           response.message = stamp.error().message;
           return true;
         }
-        bus::DcfDraft draft(axis, *stamp);
+        bus::DcfDraft draft(axis, robot_.deviceOf(axis), *stamp);
         bus::Answer answer = call(runner_, draft.command());
         if (answer.success) answer = draft.finish();
         response.message = answer.message;

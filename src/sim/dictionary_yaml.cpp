@@ -120,7 +120,7 @@ bool DictionaryReader::readSubindex(const YAML::Node& node, std::uint8_t& subind
 }
 
 bool DictionaryReader::readType(const YAML::Node& node, DataType& type) {
-  const auto known = canopen::parseDataType(textOf(node));
+  const auto known = fieldbus::parseDataType(textOf(node));
   if (!known) {
     problem(node, "unknown type '" + textOf(node) +
                       "' (boolean, int8 to int64, uint8 to uint64, "

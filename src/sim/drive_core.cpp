@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cia402_driver/canopen/abort_code.h"
+#include "cia402_driver/fieldbus/abort_code.h"
 
 namespace cia402::sim {
 namespace {
@@ -288,11 +288,11 @@ void DriveCore::saveZero() {
 }
 
 std::uint32_t DriveCore::refuseWrite(const Entry& entry, std::uint64_t number) const {
-  namespace abort_code = canopen::abort_code;
+  namespace abort_code = fieldbus::abort_code;
   Entry candidate = entry;
   candidate.number = number;
   const std::int64_t value =
-      canopen::isSigned(entry.type) ? asSigned(candidate) : static_cast<std::int64_t>(number);
+      fieldbus::isSigned(entry.type) ? asSigned(candidate) : static_cast<std::int64_t>(number);
   if (values_.entry(Role::mode) == &entry) {
     if (definition_.mode(value) == nullptr) return abort_code::kInvalidValue;
     const bool change = value != applied_mode_;

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "cia402_driver/drive/yaml_reader.h"
+#include "cia402_driver/yaml/reader.h"
 #include "definition_communication.h"
 #include "definition_quirks.h"
 #include "definition_reader.h"
@@ -81,13 +81,13 @@ void readUnits(Reader& reader, DriveDefinition& out) {
 void readObjects(Reader& reader, DriveDefinition& out) {
   reader.each("objects", [&](const std::string& key, const YAML::Node& value) {
     const auto role = findRole(key);
-    const auto object = value.IsScalar() ? canopen::parseObjectId(value.Scalar()) : std::nullopt;
+    const auto object = value.IsScalar() ? fieldbus::parseObjectId(value.Scalar()) : std::nullopt;
     if (!role) return reader.problem("objects", "'" + key + "' is no role of an object");
     if (!object) return reader.problem("objects", key + ": must be an object like \"6041:00\"");
     out.objects[*role] = *object;
   });
   reader.each("encodings", [&](const std::string& key, const YAML::Node& value) {
-    const auto object = canopen::parseObjectId(key);
+    const auto object = fieldbus::parseObjectId(key);
     if (!object) return reader.problem("encodings", "'" + key + "' is no object like \"6071:00\"");
     const auto word = std::find_if(kEncodings.begin(), kEncodings.end(), [&](const auto& pair) {
       return value.IsScalar() && value.Scalar() == pair.first;
@@ -101,7 +101,7 @@ void readNodeId(Reader& reader, DriveDefinition& out) {
   std::string text;
   reader.read("node_id", text);
   if (text.empty()) return;
-  out.node_id = canopen::parseObjectId(text);
+  out.node_id = fieldbus::parseObjectId(text);
   if (!out.node_id) reader.problem("node_id", "must be an object like \"2003:01\"");
 }
 
@@ -236,7 +236,7 @@ void readStateMachine(Reader& reader, DriveDefinition& out) {
   if (!reader.has("locked_while_enabled")) return;
   out.locked_while_enabled.clear();
   for (const YAML::Node& item : reader.node("locked_while_enabled")) {
-    const auto object = item.IsScalar() ? canopen::parseObjectId(item.Scalar()) : std::nullopt;
+    const auto object = item.IsScalar() ? fieldbus::parseObjectId(item.Scalar()) : std::nullopt;
     if (object)
       out.locked_while_enabled.push_back(*object);
     else
@@ -353,7 +353,7 @@ void readDefinition(Reader& reader, bool extends, DriveDefinition& out) {
 // The drive that the file extends lies beside it.
 void readFile(const std::string& path, int depth, DriveDefinition& out, Problems& problems) {
   try {
-    const YAML::Node file = drive::parseYamlFile(path);
+    const YAML::Node file = yaml::parseFile(path);
     Reader reader(file, "", problems);
     std::string base;
     reader.read("extends", base);

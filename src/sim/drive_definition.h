@@ -92,8 +92,8 @@ struct DriveDefinition {
   DeviceBehaviour communication;
   std::array<UnitScale, kQuantityCount> units;
   Encoding encoding = Encoding::integer;
-  std::map<canopen::ObjectId, Encoding> encodings;
-  std::map<Role, canopen::ObjectId> objects;  ///< instead of the standard's
+  std::map<fieldbus::ObjectId, Encoding> encodings;
+  std::map<Role, fieldbus::ObjectId> objects;  ///< instead of the standard's
   MotorParameters motor;
   std::vector<ModeDefinition> modes;
 
@@ -108,7 +108,7 @@ struct DriveDefinition {
   bool internal_limit_bit = true;
   bool warning_stops = false;        ///< a warning leads to the fault reaction
   bool follows_sync_period = false;  ///< csp interpolates over the SYNC period, not over 60C2h
-  std::vector<canopen::ObjectId> locked_while_enabled;
+  std::vector<fieldbus::ObjectId> locked_while_enabled;
   DriveQuirks quirks;
   Duration initialisation{0};  ///< in Not ready to switch on
 
@@ -124,7 +124,7 @@ struct DriveDefinition {
   bool stops_outside_operational = true;
   bool traps_non_finite = false;  ///< NaN and infinity in a float object: fault "not_a_number"
   bool traps_negative_zero = false;
-  std::optional<canopen::ObjectId> node_id;  ///< object whose saved value is the node-ID
+  std::optional<fieldbus::ObjectId> node_id;  ///< object whose saved value is the node-ID
 
   std::vector<FaultDefinition> faults;
 

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "cia402_driver/canopen/abort_code.h"
+#include "cia402_driver/fieldbus/abort_code.h"
 
 namespace cia402::sim {
 namespace {
@@ -62,8 +62,8 @@ void ParameterStore::install(std::uint16_t index, std::uint64_t signature) {
     const ObjectId id{index, sub};
     if (dictionary_.find(id) == nullptr) continue;
     dictionary_.onWriteCheck(id, [this, signature](const Entry&, std::uint64_t number) {
-      if (number != signature) return canopen::abort_code::kCannotTransfer;
-      return enabled_() ? canopen::abort_code::kDeviceState : 0U;
+      if (number != signature) return fieldbus::abort_code::kCannotTransfer;
+      return enabled_() ? fieldbus::abort_code::kDeviceState : 0U;
     });
     dictionary_.onWrite(id, [this, index](const Entry& entry) {
       const std::uint8_t subindex = entry.id.subindex;

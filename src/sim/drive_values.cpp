@@ -100,7 +100,7 @@ std::optional<Role> findRole(std::string_view name) {
   return std::nullopt;
 }
 
-std::optional<Role> findRole(canopen::ObjectId object) {
+std::optional<Role> findRole(fieldbus::ObjectId object) {
   for (const RoleInfo& info : kRoles) {
     if (object == info.object && object.index != 0) return info.role;
   }
@@ -121,8 +121,8 @@ double decodeNumber(const Entry& entry, Encoding encoding) {
     case Encoding::integer:
       break;
   }
-  return canopen::isSigned(entry.type) ? static_cast<double>(asSigned(entry))
-                                       : static_cast<double>(entry.number);
+  return fieldbus::isSigned(entry.type) ? static_cast<double>(asSigned(entry))
+                                        : static_cast<double>(entry.number);
 }
 
 std::uint64_t encodeNumber(double value, const Entry& entry, Encoding encoding) {
@@ -146,7 +146,7 @@ DriveValues::DriveValues(const DriveDefinition& definition, ObjectDictionary& di
                          double counts_per_turn) {
   for (const RoleInfo& info : kRoles) {
     const auto moved = definition.objects.find(info.role);
-    const canopen::ObjectId object =
+    const fieldbus::ObjectId object =
         moved == definition.objects.end() ? info.object : moved->second;
     Slot& slot = slots_[static_cast<std::size_t>(info.role)];
     slot.entry = dictionary.find(object);
@@ -180,8 +180,8 @@ void DriveValues::set(Role role, double value) {
 std::int64_t DriveValues::raw(Role role, std::int64_t fallback) const {
   const Slot& s = slot(role);
   if (s.entry == nullptr) return fallback;
-  return canopen::isSigned(s.entry->type) ? asSigned(*s.entry)
-                                          : static_cast<std::int64_t>(s.entry->number);
+  return fieldbus::isSigned(s.entry->type) ? asSigned(*s.entry)
+                                           : static_cast<std::int64_t>(s.entry->number);
 }
 
 void DriveValues::setRaw(Role role, std::int64_t value) {

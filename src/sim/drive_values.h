@@ -99,13 +99,13 @@ enum class Encoding : std::uint8_t {
 struct RoleInfo {
   Role role;
   const char* name;
-  canopen::ObjectId object;
+  fieldbus::ObjectId object;
   Quantity quantity;
 };
 const RoleInfo& roleInfo(Role role);
 std::optional<Role> findRole(std::string_view name);
 /// The role whose standard object this is.
-std::optional<Role> findRole(canopen::ObjectId object);
+std::optional<Role> findRole(fieldbus::ObjectId object);
 
 /// Decodes as the drive's firmware does. @return quiet NaN where the bits say so.
 double decodeNumber(const Entry& entry, Encoding encoding);

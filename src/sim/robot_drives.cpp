@@ -63,7 +63,8 @@ std::vector<SimulatedAxis> simulatedAxes(const config::RobotConfig& robot,
       problems.add("axes/" + axis.name + "/simulation/drive", definition.error().message);
       continue;
     }
-    const canopen::NodeId node = simulation.unconfigured ? kUnconfigured : axis.node_id;
+    const canopen::NodeId node =
+        simulation.unconfigured ? kUnconfigured : robot.deviceOf(axis).node_id;
     const DriveIdentity identity{simulation.vendor, simulation.product, simulation.revision,
                                  simulation.serial};
     axes.push_back({axis.name, node, *definition, mechanicsOf(axis, simulation), identity});

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 
-#include "cia402_driver/canopen/abort_code.h"
+#include "cia402_driver/fieldbus/abort_code.h"
 #include "slave_frame.h"
 
 namespace cia402::sim {
 
-namespace abort_code = canopen::abort_code;
+namespace abort_code = fieldbus::abort_code;
 
 namespace {
 

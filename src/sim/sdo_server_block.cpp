@@ -2,13 +2,13 @@
 // Block transfer of the simulated SDO server (CiA 301, 7.2.4.3.8 to 7.2.4.3.16).
 #include <algorithm>
 
-#include "cia402_driver/canopen/abort_code.h"
+#include "cia402_driver/fieldbus/abort_code.h"
 #include "sdo_server.h"
 #include "slave_frame.h"
 
 namespace cia402::sim {
 
-namespace abort_code = canopen::abort_code;
+namespace abort_code = fieldbus::abort_code;
 
 namespace {
 

@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "slave_cob_id.h"
 
-#include "cia402_driver/canopen/abort_code.h"
+#include "cia402_driver/fieldbus/abort_code.h"
 
 namespace cia402::sim {
 
@@ -38,12 +38,12 @@ std::uint32_t checkCobId(std::uint32_t old, std::uint32_t next, bool disable_may
   const bool was_valid = (old & kCobIdInvalid) == 0;
   const bool stays_valid = (next & kCobIdInvalid) == 0;
   const bool changes = ((old ^ next) & kFixedWhileValid) != 0;
-  if ((next & kNotElevenBits) != 0) return canopen::abort_code::kInvalidValue;
+  if ((next & kNotElevenBits) != 0) return fieldbus::abort_code::kInvalidValue;
   if (stays_valid && isRestrictedCanId(next & kCobIdMask)) {
-    return canopen::abort_code::kInvalidValue;
+    return fieldbus::abort_code::kInvalidValue;
   }
   if (was_valid && changes && (stays_valid || !disable_may_change_id)) {
-    return canopen::abort_code::kInvalidValue;
+    return fieldbus::abort_code::kInvalidValue;
   }
   return 0;
 }

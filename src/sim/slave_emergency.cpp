@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "slave_emergency.h"
 
-#include "cia402_driver/canopen/abort_code.h"
+#include "cia402_driver/fieldbus/abort_code.h"
 #include "slave_cob_id.h"
 #include "slave_frame.h"
 
@@ -32,14 +32,14 @@ void SlaveEmergency::serveObjects() {
   context_.serveWrites(
       kErrorCount,
       [](const Entry&, std::uint64_t number) {
-        return number == 0 ? 0U : canopen::abort_code::kInvalidValue;
+        return number == 0 ? 0U : fieldbus::abort_code::kInvalidValue;
       },
       [this](const Entry&) { clearHistory(); });
   for (unsigned sub = 1; sub <= 0xFE; ++sub) {
     const ObjectId id{kErrorHistory, static_cast<std::uint8_t>(sub)};
     if (context_.dictionary.find(id) == nullptr) continue;
     context_.dictionary.onRead(id, [this](const Entry& entry) {
-      return entry.id.subindex <= context_.value(kErrorCount) ? 0U : canopen::abort_code::kNoData;
+      return entry.id.subindex <= context_.value(kErrorCount) ? 0U : fieldbus::abort_code::kNoData;
     });
     context_.hooked.push_back(id);
   }

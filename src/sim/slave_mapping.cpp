@@ -1,11 +1,11 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "slave_mapping.h"
 
-#include "cia402_driver/canopen/abort_code.h"
+#include "cia402_driver/fieldbus/abort_code.h"
 
 namespace cia402::sim {
 
-namespace abort_code = canopen::abort_code;
+namespace abort_code = fieldbus::abort_code;
 
 namespace {
 

@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "slave_time.h"
 
-#include "cia402_driver/canopen/abort_code.h"
+#include "cia402_driver/fieldbus/abort_code.h"
 #include "slave_cob_id.h"
 #include "slave_frame.h"
 
@@ -18,7 +18,7 @@ constexpr std::uint64_t kMillisecondBits = 0x0FFFFFFF;  // 28 bits, four more ar
 std::uint32_t checkTimeCobId(const Entry& entry, std::uint64_t number) {
   const auto old = static_cast<std::uint32_t>(entry.number);
   const auto next = static_cast<std::uint32_t>(number);
-  if ((next & kProduces) != 0) return canopen::abort_code::kInvalidValue;
+  if ((next & kProduces) != 0) return fieldbus::abort_code::kInvalidValue;
   // checkCobId() takes bit 31 for "does not exist", here it says "listens".
   return checkCobId(old ^ kCobIdInvalid, next ^ kCobIdInvalid, true);
 }

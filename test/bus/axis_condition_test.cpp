@@ -125,8 +125,8 @@ TEST(AxisCondition, OnlyWarnsBetweenBootAndTheFirstTpdo) {
   RobotWorld world;
   world.drives[0].tpdo_bytes = 0;
   world.robot.start(world.now);
-  ASSERT_TRUE(world.runUntil(
-      [&] { return world.axis(0).state().health == canopen::NodeHealth::ready; }, 5s));
+  ASSERT_TRUE(
+      world.runUntil([&] { return world.axis(0).state().health == fieldbus::Health::ready; }, 5s));
   world.run(300ms);
   EXPECT_EQ(world.eventsWith("its state is unknown"), 0u) << world.allEvents();
   world.run(700ms);
@@ -192,7 +192,7 @@ TEST(AxisCondition, IsAnErrorWhereTheNodeIsLostButNotWhereItMayBeAbsent) {
 // Nothing has been told of it yet.
 TEST(AxisCondition, AFaultIsCalledAFaultAlsoWhereTheDriveWarnsBesides) {
   AxisSnapshot axis;
-  axis.state.health = canopen::NodeHealth::ready;
+  axis.state.health = fieldbus::Health::ready;
   axis.state.feedback_valid = true;
   axis.state.state = drive::State::fault;
   axis.state.warning = true;

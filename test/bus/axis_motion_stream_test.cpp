@@ -16,6 +16,7 @@ using namespace std::chrono_literals;
 config::RobotConfig shoulderIn(const std::string& mode) {
   config::RobotConfig robot = test::testRobot();
   robot.axes.resize(1);
+  robot.devices.resize(1);
   robot.axes[0].mode = mode;
   robot.groups[0].joints = {"shoulder"};
   return robot;

@@ -24,7 +24,7 @@ struct AxisReporterTest : testing::Test, EventSink {
   }
   void onEmergency(const EmergencyEvent& event) override { emergencies.push_back(event); }
   void emergency(std::uint16_t code, std::array<std::uint8_t, 5> vendor = {}) {
-    canopen::Emergency given;
+    fieldbus::Emergency given;
     given.code = code;
     given.error_register = 0x11;
     given.vendor = vendor;
@@ -51,7 +51,7 @@ TEST_F(AxisReporterTest, PutsAnEmergencyIntoWordsWithItsManufacturerBytes) {
 }
 
 TEST_F(AxisReporterTest, SaysWhereThisProgramItselfIsTheCause) {
-  canopen::Emergency given;
+  fieldbus::Emergency given;
   given.code = 0x8611;
   reporter.emergency(given, now, "this program was late");
   EXPECT_THAT(texts, ElementsAre("elbow (node 2): emergency: 0x8611 following error: the cause is "
@@ -142,7 +142,7 @@ TEST_F(AxisReporterTest, TellsHowManyWereHeldBackAtTheEnd) {
 }
 
 TEST_F(AxisReporterTest, TellsAShortFrame) {
-  canopen::Emergency given;
+  fieldbus::Emergency given;
   given.code = 0x8611;
   given.size = 3;
   reporter.emergency(given, now);

@@ -8,7 +8,7 @@
 namespace cia402::bus {
 namespace {
 
-using canopen::ObjectId;
+using fieldbus::ObjectId;
 using test::Bytes;
 using test::RobotWorld;
 using testing::HasSubstr;
@@ -16,17 +16,18 @@ using testing::Not;
 
 struct DcfDraftTest : test::DcfWorld {
   /// The file, or why there is none.
-  Answer save(const drive::AxisConfig& config) {
-    DcfDraft draft(config, stamp());
+  Answer save(const drive::AxisConfig& config, const canopen::DeviceConfig& device) {
+    DcfDraft draft(config, device, stamp());
     const Answer answer = world.call(draft.command());
     return answer.success ? draft.finish() : answer;
   }
-  Answer save(std::size_t axis = 0) { return save(world.axis(axis).config()); }
+  Answer save(std::size_t axis = 0) { return save(world.axis(axis).config(), world.device(axis)); }
   /// That of the shoulder, as if its EDS were another.
   Answer saveWithEds(const std::string& text) {
     drive::AxisConfig config = world.axis(0).config();
-    config.eds = test::robotWithEds(text).axes[0].eds;
-    return save(config);
+    const config::RobotConfig robot = test::robotWithEds(text);
+    config.description = robot.axes[0].description;
+    return save(config, robot.devices[0]);
   }
   /// The drive of the elbow, which has no EDS, without any communication object.
   test::FakeDrive& bareDrive() {
@@ -103,7 +104,7 @@ TEST_F(DcfDraftTest, WithoutAnEdsTheProfileAndTheCommunicationObjectsAreRead) {
   EXPECT_EQ(dcf.info.revision_number, 0x00010002U);
   EXPECT_EQ(dcf.info.lss_serial, 12345U);
   EXPECT_EQ(dcf.dictionary.objects().at(0x1018).entries.size(), 5U);
-  EXPECT_EQ(dcf.dictionary.find(ObjectId{0x1018, 1})->access, canopen::Access::ro);
+  EXPECT_EQ(dcf.dictionary.find(ObjectId{0x1018, 1})->access, fieldbus::Access::ro);
   EXPECT_EQ(dcf.dictionary.find(ObjectId{0x1800, 1}), nullptr);
   EXPECT_THAT(answer.message, Not(HasSubstr("could not be read")));
 }
@@ -184,9 +185,12 @@ TEST_F(DcfDraftTest, TenObjectsThatCouldNotBeReadAreNamedAndNoMore) {
 TEST_F(DcfDraftTest, WithoutAnEdsTheObjectsAreWhatTheProfileAndTheStandardSay) {
   drive::AxisConfig config = world.axis(1).config();
   auto profile = std::make_shared<drive::DriveProfile>(*config.profile);
-  profile->max_rpdos = 1;
-  profile->max_tpdos = 2;
-  const auto name = [&](const char* word, ObjectId id, canopen::DataType type, bool writable) {
+  canopen::DeviceConfig device = world.device(1);
+  auto family = std::make_shared<canopen::DeviceProfile>(*device.profile);
+  family->max_rpdos = 1;
+  family->max_tpdos = 2;
+  device.profile = family;
+  const auto name = [&](const char* word, ObjectId id, fieldbus::DataType type, bool writable) {
     drive::ObjectSpec spec;
     spec.name = word;
     spec.id = id;
@@ -194,9 +198,9 @@ TEST_F(DcfDraftTest, WithoutAnEdsTheObjectsAreWhatTheProfileAndTheStandardSay) {
     spec.writable = writable;
     profile->objects.push_back(spec);
   };
-  name("lower_limit", {0x607D, 1}, canopen::DataType::int32, true);
-  name("upper_limit", {0x607D, 2}, canopen::DataType::int32, true);
-  name("serial", {0x1018, 4}, canopen::DataType::uint32, false);
+  name("lower_limit", {0x607D, 1}, fieldbus::DataType::int32, true);
+  name("upper_limit", {0x607D, 2}, fieldbus::DataType::int32, true);
+  name("serial", {0x1018, 4}, fieldbus::DataType::uint32, false);
   config.profile = profile;
   bareDrive();
   for (const std::uint16_t index :
@@ -212,13 +216,13 @@ TEST_F(DcfDraftTest, WithoutAnEdsTheObjectsAreWhatTheProfileAndTheStandardSay) {
   give({0x1400, 5}, {100, 0});  // and no inhibit time, sub-index 3
   give({0x6040, 0}, {0, 0});
   give({0x6041, 0}, {0, 0});
-  const Answer answer = save(config);
+  const Answer answer = save(config, device);
   ASSERT_TRUE(answer.success) << answer.message;
   EXPECT_THAT(answer.message, Not(HasSubstr("could not be read")));
   const canopen::Eds dcf = canopen::readEds(answer.text);
 
-  using canopen::Access;
-  using canopen::DataType;
+  using fieldbus::Access;
+  using fieldbus::DataType;
   const struct {
     ObjectId id;
     const char* name;
@@ -242,7 +246,7 @@ TEST_F(DcfDraftTest, WithoutAnEdsTheObjectsAreWhatTheProfileAndTheStandardSay) {
       {{0x607D, 2}, "upper_limit", DataType::int32, Access::rw, false},
   };
   for (const auto& row : entries) {
-    const canopen::DictionaryEntry* entry = dcf.dictionary.find(row.id);
+    const fieldbus::DictionaryEntry* entry = dcf.dictionary.find(row.id);
     ASSERT_NE(entry, nullptr) << toString(row.id);
     EXPECT_EQ(entry->name, row.name) << toString(row.id);
     EXPECT_EQ(entry->type, row.type) << toString(row.id);
@@ -256,8 +260,8 @@ TEST_F(DcfDraftTest, WithoutAnEdsTheObjectsAreWhatTheProfileAndTheStandardSay) {
   EXPECT_EQ(object(0x1801).name, "TPDO communication parameter");
   EXPECT_EQ(object(0x1A01).name, "TPDO mapping parameter");
   EXPECT_EQ(object(0x607D).name, "607D");
-  EXPECT_EQ(object(0x607D).code, canopen::ObjectCode::record);
-  EXPECT_EQ(object(0x6065).code, canopen::ObjectCode::variable);
+  EXPECT_EQ(object(0x607D).code, fieldbus::ObjectCode::record);
+  EXPECT_EQ(object(0x6065).code, fieldbus::ObjectCode::variable);
   EXPECT_EQ(object(0x1400).entries.size(), 4U) << "the drive lacks sub-indices 3, 4 and 6";
   EXPECT_EQ(object(0x1018).entries.size(), 2U) << "the profile names one";
   for (const std::uint16_t index : {std::uint16_t{0x1401}, std::uint16_t{0x1802}}) {
@@ -296,18 +300,18 @@ TEST_F(DcfDraftTest, WithoutAnEdsThePdosThatTheProfileAllowsAreRead) {
     const std::string name = receive ? "RPDO " : "TPDO ";
     for (std::uint16_t pdo = 0; pdo < 4; ++pdo) {
       const auto index = static_cast<std::uint16_t>(base + pdo);
-      SCOPED_TRACE(canopen::toString(ObjectId{index, 0}));
+      SCOPED_TRACE(fieldbus::toString(ObjectId{index, 0}));
       const auto object = dcf.dictionary.objects().find(index);
       ASSERT_NE(object, dcf.dictionary.objects().end());
       EXPECT_EQ(object->second.name,
                 name + (mapping ? "mapping parameter" : "communication parameter"));
       EXPECT_EQ(object->second.entries.size(), mapping ? 9u : 7u);
       EXPECT_EQ(object->second.entries.at(0).access,
-                mapping ? canopen::Access::rw : canopen::Access::ro);
-      const canopen::DictionaryEntry& first = object->second.entries.at(1);
+                mapping ? fieldbus::Access::rw : fieldbus::Access::ro);
+      const fieldbus::DictionaryEntry& first = object->second.entries.at(1);
       EXPECT_EQ(first.name, mapping ? "Mapped object 1" : "COB-ID");
-      EXPECT_EQ(first.type, canopen::DataType::uint32);
-      EXPECT_EQ(first.access, canopen::Access::rw);
+      EXPECT_EQ(first.type, fieldbus::DataType::uint32);
+      EXPECT_EQ(first.access, fieldbus::Access::rw);
       EXPECT_EQ(first.value, (Bytes{1, 1, 1, 1}));
     }
     EXPECT_EQ(dcf.dictionary.objects().count(static_cast<std::uint16_t>(base + 4)), 0u);
@@ -363,7 +367,8 @@ ParameterValue=6
   world.boot();
   world.drives[0].objects[ObjectId{0x1008, 0}] = {'D', 'M', 0, 0};
   world.drives[0].objects[ObjectId{0x2001, 0}] = {0x34, 0x12};
-  DcfDraft draft(world.axis(0).config(), {"shoulder.dcf", "11-21-2026", "03:40PM"});
+  DcfDraft draft(world.axis(0).config(), world.device(0),
+                 {"shoulder.dcf", "11-21-2026", "03:40PM"});
   ASSERT_TRUE(world.call(draft.command()).success);
   const canopen::Eds dcf = canopen::readEds(draft.finish().text);
   EXPECT_EQ(dcf.info.creation_date, "01-02-2003");
@@ -382,7 +387,7 @@ TEST(DcfDraft, ObjectsOfTheProfileKeepTheirNamesAndAreRecordsWhereTheyHaveSubInd
     drive::ObjectSpec spec;
     spec.id = id;
     spec.name = name;
-    spec.type = canopen::DataType::uint32;
+    spec.type = fieldbus::DataType::uint32;
     profile->objects.push_back(spec);
   };
   add({0x2010, 1}, "gain");
@@ -395,17 +400,18 @@ TEST(DcfDraft, ObjectsOfTheProfileKeepTheirNamesAndAreRecordsWhereTheyHaveSubInd
   world.drives[0].objects[ObjectId{0x2010, 1}] = {7, 0, 0, 0};
   world.drives[0].objects[ObjectId{0x1018, 0}] = {4};
   world.drives[0].objects[ObjectId{0x6041, 0}] = {0x50, 0x02};
-  DcfDraft draft(world.axis(0).config(), {"shoulder.dcf", "11-21-2026", "03:40PM"});
+  DcfDraft draft(world.axis(0).config(), world.device(0),
+                 {"shoulder.dcf", "11-21-2026", "03:40PM"});
   ASSERT_TRUE(world.call(draft.command()).success);
   const canopen::Eds dcf = canopen::readEds(draft.finish().text);
   const auto& objects = dcf.dictionary.objects();
   ASSERT_EQ(objects.count(0x2010), 1u);
-  EXPECT_EQ(objects.at(0x2010).code, canopen::ObjectCode::record);
+  EXPECT_EQ(objects.at(0x2010).code, fieldbus::ObjectCode::record);
   EXPECT_EQ(objects.at(0x2010).name, "2010");
   EXPECT_EQ(objects.at(0x2010).entries.at(0).name, "Highest sub-index supported");
   EXPECT_EQ(objects.at(0x2010).entries.at(1).name, "gain");
   EXPECT_EQ(objects.at(0x2010).entries.at(1).value, (Bytes{7, 0, 0, 0}));
-  EXPECT_EQ(objects.at(0x6041).code, canopen::ObjectCode::variable);
+  EXPECT_EQ(objects.at(0x6041).code, fieldbus::ObjectCode::variable);
   EXPECT_EQ(objects.at(0x6041).name, "statusword");
   EXPECT_TRUE(objects.at(0x6041).entries.at(0).mappable) << "in a TPDO";
   EXPECT_FALSE(objects.at(0x6065).entries.at(0).mappable);
@@ -433,7 +439,8 @@ TEST(DcfDraft, NamesTenObjectsThatCouldNotBeReadAtMost) {
     RobotWorld world(test::robotWithEds(eds));
     world.boot();
     world.drives[0].objects[ObjectId{0x2001, 0}] = {1, 0};
-    DcfDraft draft(world.axis(0).config(), {"shoulder.dcf", "11-21-2026", "03:40PM"});
+    DcfDraft draft(world.axis(0).config(), world.device(0),
+                   {"shoulder.dcf", "11-21-2026", "03:40PM"});
     ASSERT_TRUE(world.call(draft.command()).success);
     const std::string message = draft.finish().message;
     EXPECT_THAT(message, HasSubstr(std::to_string(absent) + " could not be read: 3010:00"));

@@ -10,17 +10,20 @@
 namespace cia402::bus {
 namespace {
 
-using canopen::ObjectId;
+using fieldbus::ObjectId;
 using test::Bytes;
 using testing::AllOf;
 using testing::HasSubstr;
 
 struct DcfJobTest : test::DcfWorld {
-  Answer read() { return world.call(DcfDraft(world.axis(0).config(), stamp()).command()); }
+  Answer read() {
+    return world.call(DcfDraft(world.axis(0).config(), world.device(0), stamp()).command());
+  }
 };
 
 TEST_F(DcfJobTest, HandsBackWhatItReadAndLeavesTheWordsToTheCaller) {
-  const SaveDcfCommand command = DcfDraft(world.axis(0).config(), stamp()).command();
+  const SaveDcfCommand command =
+      DcfDraft(world.axis(0).config(), world.device(0), stamp()).command();
   const Answer answer = world.call(command);
   EXPECT_TRUE(answer.success);
   EXPECT_TRUE(answer.text.empty());
@@ -71,8 +74,9 @@ TEST_F(DcfJobTest, TwoTransfersInARowMayGoUnanswered) {
     world.drives[0].objects[ObjectId{static_cast<std::uint16_t>(0x3000 + last - '0'), 0}] = {1, 0};
   }
   drive::AxisConfig config = world.axis(0).config();
-  config.eds = test::robotWithEds(text).axes[0].eds;
-  const SaveDcfCommand command = DcfDraft(config, stamp()).command();
+  const config::RobotConfig robot = test::robotWithEds(text);
+  config.description = robot.axes[0].description;
+  const SaveDcfCommand command = DcfDraft(config, robot.devices[0], stamp()).command();
   const auto count = [&](DcfReading::Outcome outcome) {
     const auto& items = command.reading->items;
     return std::count_if(items.begin(), items.end(),
@@ -91,7 +95,7 @@ TEST_F(DcfJobTest, TwoTransfersInARowMayGoUnanswered) {
 }
 
 TEST_F(DcfJobTest, TheReadingIsTheCallersAloneFromTheReplyOn) {
-  const SaveDcfCommand save = DcfDraft(world.axis(0).config(), stamp()).command();
+  const SaveDcfCommand save = DcfDraft(world.axis(0).config(), world.device(0), stamp()).command();
   long owners = 0;
   Command command;
   command.body = save;
@@ -102,7 +106,7 @@ TEST_F(DcfJobTest, TheReadingIsTheCallersAloneFromTheReplyOn) {
 }
 
 TEST_F(DcfJobTest, AnUnknownAxisIsRefused) {
-  SaveDcfCommand command = DcfDraft(world.axis(0).config(), stamp()).command();
+  SaveDcfCommand command = DcfDraft(world.axis(0).config(), world.device(0), stamp()).command();
   command.axis = "nobody";
   EXPECT_EQ(world.call(command).message, "there is no axis \"nobody\"");
 }

@@ -45,8 +45,9 @@ ObjFlags=2
 inline config::RobotConfig robotWithEds(const std::string& text = kEds) {
   config::RobotConfig robot = testRobot();
   canopen::Eds eds = canopen::readEds(text, canopen::NodeId{1});
-  robot.axes[0].eds =
-      std::make_shared<const drive::AxisEds>(drive::AxisEds{"motor.eds", eds.info, eds.dictionary});
+  robot.axes[0].description = std::make_shared<const fieldbus::DeviceDescription>(
+      fieldbus::DeviceDescription{"motor.eds", eds.dictionary});
+  robot.devices[0].eds = std::make_shared<const canopen::EdsInfo>(eds.info);
   return robot;
 }
 
@@ -54,11 +55,11 @@ inline config::RobotConfig robotWithEds(const std::string& text = kEds) {
 struct DcfWorld : testing::Test {
   DcfWorld() : world(robotWithEds()) {
     world.boot();
-    world.drives[0].objects[canopen::ObjectId{0x2001, 0}] = {0x34, 0x12};
-    world.drives[0].objects[canopen::ObjectId{0x2002, 0}] = {1, 0};
-    world.drives[0].objects[canopen::ObjectId{0x2003, 0}] = {1, 0};
-    world.drives[0].objects[canopen::ObjectId{0x2005, 0}] = {'M', '7', 0, 0};
-    world.drives[0].objects[canopen::ObjectId{0x2006, 0}] = {1, 0};
+    world.drives[0].objects[fieldbus::ObjectId{0x2001, 0}] = {0x34, 0x12};
+    world.drives[0].objects[fieldbus::ObjectId{0x2002, 0}] = {1, 0};
+    world.drives[0].objects[fieldbus::ObjectId{0x2003, 0}] = {1, 0};
+    world.drives[0].objects[fieldbus::ObjectId{0x2005, 0}] = {'M', '7', 0, 0};
+    world.drives[0].objects[fieldbus::ObjectId{0x2006, 0}] = {1, 0};
   }
   static DcfStamp stamp() { return {"shoulder.dcf", "11-21-2026", "03:40PM"}; }
   RobotWorld world;

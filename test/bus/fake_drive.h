@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "cia402_driver/can/frame.h"
-#include "cia402_driver/canopen/object.h"
 #include "cia402_driver/common/time.h"
+#include "cia402_driver/fieldbus/object.h"
 
 namespace cia402::bus::test {
 
@@ -43,9 +43,9 @@ class FakeDrive {
   unsigned statusword_bits = 0;  ///< shown besides those of its state
   std::size_t tpdo_bytes = 7;    ///< as long is its TPDO; 0: it sends none
   std::int32_t disturbance = 0;  ///< counts that the actual position is off
-  std::map<canopen::ObjectId, Bytes> objects;
-  std::map<canopen::ObjectId, std::uint32_t> aborts;  ///< codes with which access is refused
-  std::vector<canopen::ObjectId> written;
+  std::map<fieldbus::ObjectId, Bytes> objects;
+  std::map<fieldbus::ObjectId, std::uint32_t> aborts;  ///< codes with which access is refused
+  std::vector<fieldbus::ObjectId> written;
 
   std::uint16_t statusword = kSwitchOnDisabled, controlword = 0;
   std::int8_t mode = 0;
@@ -111,7 +111,7 @@ class FakeDrive {
   }
 
   void onSdo(const can::Frame& frame) {
-    const canopen::ObjectId id{static_cast<std::uint16_t>(number(frame, 1, 2)), frame.data[3]};
+    const fieldbus::ObjectId id{static_cast<std::uint16_t>(number(frame, 1, 2)), frame.data[3]};
     const std::uint8_t low = frame.data[1], high = frame.data[2], sub = frame.data[3];
     const auto refuse = [&](std::uint32_t code) {
       send(0x580,

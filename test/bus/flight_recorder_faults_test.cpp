@@ -112,7 +112,7 @@ TEST_F(RecordedRobot, ADriveThatFallsSilentIsOneTriggerWhateverElseChangesWhileI
   EXPECT_TRUE(triggers().empty());
   world.drives[1].silent = true;
   observe(2s);
-  ASSERT_EQ(world.axis(1).state().health, canopen::NodeHealth::lost);
+  ASSERT_EQ(world.axis(1).state().health, fieldbus::Health::lost);
   const auto found = triggers();
   EXPECT_EQ(std::count_if(found.begin(), found.end(),
                           [](const RecordingTrigger& trigger) {
@@ -138,7 +138,7 @@ TEST_F(RecordedRobot, ANodeThatIsTakenOutOfOperationIsOneTrigger) {
   world.robot.receive(can::Frame(0x702, {0x04}), world.now, world.now);  // it is stopped
   observe(100ms);
   ASSERT_EQ(answers->size(), 1U);
-  ASSERT_EQ(world.axis(1).state().health, canopen::NodeHealth::failed);
+  ASSERT_EQ(world.axis(1).state().health, fieldbus::Health::failed);
   expectOne(triggers(), Kind::node_failed);
 }
 

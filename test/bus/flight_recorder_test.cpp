@@ -195,7 +195,7 @@ TEST(FlightRecorder, SamplesOfAnAxisHoldWhatItsDriveShows) {
   EXPECT_EQ(elbow->error_code, 0x0000);
   EXPECT_EQ(elbow->mode, 8);
   EXPECT_EQ(elbow->state, static_cast<int>(drive::State::operation_enabled));
-  EXPECT_EQ(elbow->health, static_cast<int>(canopen::NodeHealth::ready));
+  EXPECT_EQ(elbow->health, static_cast<int>(fieldbus::Health::ready));
   EXPECT_EQ(elbow->procedure, static_cast<int>(drive::ProcedureKind::enable));
   EXPECT_EQ(elbow->flags, AxisRecord::homed | AxisRecord::ready_for_motion | AxisRecord::succeeded);
 }

@@ -9,7 +9,7 @@
 namespace cia402::bus {
 namespace {
 
-using canopen::ObjectId;
+using fieldbus::ObjectId;
 using test::RobotWorld;
 using testing::HasSubstr;
 using testing::Not;

@@ -15,8 +15,8 @@ inline constexpr const char* kShoulder =
 inline config::RobotConfig byIdentity(std::size_t axes) {
   config::RobotConfig robot = testRobot();
   for (std::size_t i = 0; i < axes; ++i) {
-    robot.axes[i].lss = drive::AxisLss();
-    robot.axes[i].lss->identity = kIdentities[i];
+    robot.devices[i].lss = canopen::DeviceLss();
+    robot.devices[i].lss->identity = kIdentities[i];
   }
   return robot;
 }
@@ -59,7 +59,7 @@ struct LssWorld : RobotWorld {
     robot.fill(snapshot);
     return snapshot;
   }
-  canopen::NodeHealth health(std::size_t axis) const { return robot.axes()[axis].state().health; }
+  fieldbus::Health health(std::size_t axis) const { return robot.axes()[axis].state().health; }
   /// LSS requests that begin with these bytes.
   std::size_t asked(std::uint8_t command, int second = -1, int third = -1) const {
     std::size_t count = 0;
@@ -91,8 +91,7 @@ struct LssWorld : RobotWorld {
 
 inline bool ready(LssWorld& world) {
   return world.runUntil([&] {
-    return world.health(0) == canopen::NodeHealth::ready &&
-           world.health(1) == canopen::NodeHealth::ready;
+    return world.health(0) == fieldbus::Health::ready && world.health(1) == fieldbus::Health::ready;
   });
 }
 

@@ -10,7 +10,7 @@ namespace cia402::bus::test {
 namespace {
 
 using namespace std::chrono_literals;
-using canopen::NodeHealth;
+using fieldbus::Health;
 using testing::HasSubstr;
 
 NmtServiceCommand nmt(const std::string& axis, const std::string& word) {
@@ -43,12 +43,12 @@ TEST_F(NmtJobTest, StopTakesOneNodeOutUntilItIsStartedAgain) {
   const Answer stopped = world.wait(answers);
   EXPECT_TRUE(stopped.success) << stopped.message;
   EXPECT_THAT(stopped.message, HasSubstr("shoulder (node 1): nmt stop: the drive is stopped"));
-  EXPECT_EQ(world.axis(0).node().health(), NodeHealth::failed);
-  EXPECT_EQ(world.axis(1).node().health(), NodeHealth::ready);
+  EXPECT_EQ(world.node(0).health(), Health::failed);
+  EXPECT_EQ(world.node(1).health(), Health::ready);
   const Answer started = world.call(nmt("shoulder", "start"));
   EXPECT_TRUE(started.success) << started.message;
   EXPECT_THAT(started.message, HasSubstr("nmt start: the drive is configured and operational"));
-  EXPECT_EQ(world.axis(0).node().health(), NodeHealth::ready);
+  EXPECT_EQ(world.node(0).health(), Health::ready);
 }
 
 TEST_F(NmtJobTest, PreOperationalForAllIsOneFrameAndWaitsForAll) {
@@ -71,16 +71,16 @@ TEST_F(NmtJobTest, AResetIsAnsweredOnceTheNodeIsConfiguredAgain) {
     EXPECT_THAT(answer.message, HasSubstr("it is disabled"));
     ASSERT_FALSE(commands().empty());
     EXPECT_EQ(commands().front(), can::Frame(0x000, {static_cast<std::uint8_t>(specifier), 2}));
-    EXPECT_EQ(world.axis(1).node().health(), NodeHealth::ready);
+    EXPECT_EQ(world.node(1).health(), Health::ready);
   }
 }
 
 // Elmo's pull the CAN lines down for a while when they are reset (ros-industrial/ros_canopen#334).
 TEST(NmtJob, ResetsNoNodeWhoseProfileForbidsIt) {
   config::RobotConfig config = testRobot();
-  auto profile = std::make_shared<drive::DriveProfile>(*config.axes[1].profile);
+  auto profile = std::make_shared<canopen::DeviceProfile>(*config.devices[1].profile);
   profile->nmt_reset_node = false;
-  config.axes[1].profile = profile;
+  config.devices[1].profile = profile;
   RobotWorld world(config);
   world.boot();
   world.sent.clear();
@@ -138,7 +138,7 @@ TEST_F(NmtJobTest, StartIsAnsweredByWhatTheDriveTellsAfterIt) {
   const Answer answer = world.call(nmt("shoulder", "start"));
   EXPECT_TRUE(answer.success) << answer.message;
   EXPECT_TRUE(world.drives[0].operational);
-  EXPECT_EQ(world.axis(0).node().health(), NodeHealth::ready);
+  EXPECT_EQ(world.node(0).health(), Health::ready);
 }
 
 TEST_F(NmtJobTest, ANodeThatIsStartedAgainWhileTheOthersAreWaitedForIsTold) {
@@ -179,7 +179,7 @@ TEST_F(NmtJobTest, ARecoverThatWaitsForItsNodeIsNotCutOff) {
   world.boot();
   world.drives[0].silent = true;
   world.run(1s);
-  ASSERT_NE(world.axis(0).state().health, canopen::NodeHealth::ready);
+  ASSERT_NE(world.axis(0).state().health, fieldbus::Health::ready);
   const auto recovering = world.begin(drive::ProcedureKind::recover, "shoulder");
   world.run(20ms);
   ASSERT_TRUE(recovering->empty());
@@ -234,7 +234,7 @@ TEST_F(NmtJobTest, WhatWasAskedForIsTold) {
 TEST_F(NmtJobTest, OfADriveThatDoesNotObeyTheLastHeartbeatIsTold) {
   world.boot();
   world.run(200ms);
-  ASSERT_EQ(world.axis(0).node().nmtState(), canopen::NmtState::operational);
+  ASSERT_EQ(world.node(0).nmtState(), canopen::NmtState::operational);
   ASSERT_TRUE(world.runUntil([&] { return world.robot.lastCycle() == world.now; }));
   world.run(1ms);
   world.drives[0].silent = true;

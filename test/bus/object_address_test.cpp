@@ -9,8 +9,8 @@
 namespace cia402::bus {
 namespace {
 
-using canopen::DataType;
-using canopen::ObjectId;
+using fieldbus::DataType;
+using fieldbus::ObjectId;
 using testing::AllOf;
 using testing::HasSubstr;
 
@@ -70,7 +70,7 @@ TEST_F(ObjectAddress, TakesAnyTypeForWhatTheProfileExceptsFromItsFloats) {
 }
 
 TEST_F(ObjectAddress, WhatTheEdsDoesNotNameEitherIsSaidOfIt) {
-  axis.eds = test::robotWithEds().axes[0].eds;
+  axis.description = test::robotWithEds().axes[0].description;
   EXPECT_THAT(refusal("homing_speed"),
               AllOf(HasSubstr("is neither an object of profile test_drive nor an index"),
                     HasSubstr(" (motor.eds: ")));

@@ -9,8 +9,8 @@
 namespace cia402::bus {
 namespace {
 
-using canopen::ObjectId;
 using drive::ProcedureKind;
+using fieldbus::ObjectId;
 using test::Bytes;
 using test::RobotWorld;
 using testing::AllOf;
@@ -21,9 +21,9 @@ using namespace std::chrono_literals;
 /// The shoulder has no homing, the elbow has; requests are repeated twice.
 config::RobotConfig repeating() {
   config::RobotConfig robot = test::testRobot();
-  auto profile = std::make_shared<drive::DriveProfile>(*robot.axes[0].profile);
-  profile->timing.sdo_retries = 2;
-  for (drive::AxisConfig& axis : robot.axes) axis.profile = profile;
+  auto profile = std::make_shared<canopen::DeviceProfile>(*robot.devices[0].profile);
+  profile->sdo.retries = 2;
+  for (canopen::DeviceConfig& device : robot.devices) device.profile = profile;
   robot.axes[1].homing = test::homingOfOrder(0);
   return robot;
 }

@@ -8,7 +8,7 @@
 namespace cia402::bus {
 namespace {
 
-using canopen::ObjectId;
+using fieldbus::ObjectId;
 using test::Bytes;
 using test::RobotWorld;
 using testing::AllOf;

@@ -9,10 +9,10 @@
 namespace cia402::bus {
 namespace {
 
-using canopen::Bytes;
 using drive::DataType;
 using drive::Encoding;
 using drive::Quantity;
+using fieldbus::Bytes;
 using testing::HasSubstr;
 
 struct ObjectTextTest : testing::Test {

@@ -106,9 +106,9 @@ TEST_F(ProcedureAnswer, OfAModeThatCannotBeSetBackSaysSoAfterOneTry) {
 
 TEST(ProcedureAnswerOfAnOptionalDrive, SaysThatItWasLeftOut) {
   config::RobotConfig config = test::testRobot();
-  config.axes[1].boot.optional = true;
+  config.devices[1].boot.optional = true;
   for (const bool is_there_a_third : {false, true}) {
-    if (is_there_a_third) config.axes.push_back(test::testAxis("wrist", 3));
+    if (is_there_a_third) test::addAxis(config, "wrist", 3);
     RobotWorld world(config);
     world.drives[1].silent = true;
     world.robot.start(world.now);

@@ -94,7 +94,7 @@ TEST_F(ProcedureJobTest, RefusesWhatTheAxisRefusesWithItsSentence) {
 TEST_F(ProcedureJobTest, DoesOnAllAxesWhatItCanAndNamesThoseThatFail) {
   world.drives[0].silent = true;
   ASSERT_TRUE(
-      world.runUntil([&] { return world.axis(0).state().health == canopen::NodeHealth::lost; }));
+      world.runUntil([&] { return world.axis(0).state().health == fieldbus::Health::lost; }));
   const Answer answer = world.call(ProcedureKind::disable);
   EXPECT_FALSE(answer.success);
   EXPECT_THAT(answer.message,
@@ -271,7 +271,7 @@ TEST_F(ProcedureJobTest, SetsTheModeOfAllAxesOrOfNone) {
 TEST_F(ProcedureJobTest, DoesNotBeginToSetModesWhereOneAxisCannot) {
   world.drives[1].silent = true;
   ASSERT_TRUE(
-      world.runUntil([&] { return world.axis(1).state().health == canopen::NodeHealth::lost; }));
+      world.runUntil([&] { return world.axis(1).state().health == fieldbus::Health::lost; }));
   const auto setting = world.begin(ProcedureKind::set_mode, "", "cyclic_velocity");
   bool changed = false;
   world.runUntil([&] {

@@ -18,7 +18,7 @@ using testing::HasSubstr;
 AxisRecord record(drive::State state, std::uint8_t flags = 0) {
   AxisRecord one;
   one.state = static_cast<std::uint8_t>(state);
-  one.health = static_cast<std::uint8_t>(canopen::NodeHealth::ready);
+  one.health = static_cast<std::uint8_t>(fieldbus::Health::ready);
   one.mode = 8;
   one.flags = flags;
   one.velocity = one.effort = one.following_error = std::numeric_limits<float>::quiet_NaN();

@@ -8,8 +8,8 @@
 namespace cia402::bus {
 namespace {
 
-using canopen::NodeHealth;
 using drive::ProcedureKind;
+using fieldbus::Health;
 using test::LssWorld;
 using test::ready;
 using testing::AllOf;
@@ -173,7 +173,7 @@ TEST(RobotBitTimingOfAStranger, IsRefusedWhileItsIdentityIsNotKnown) {
   LssWorld world(0);
   world.takeAway(1);
   world.robot.start(world.now);
-  ASSERT_TRUE(world.runUntil([&] { return world.health(0) == NodeHealth::ready; }));
+  ASSERT_TRUE(world.runUntil([&] { return world.health(0) == Health::ready; }));
   LssBitTimingCommand timing;
   timing.kbit_per_s = 500;
   EXPECT_THAT(world.call(timing).message,

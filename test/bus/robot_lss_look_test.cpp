@@ -9,8 +9,8 @@
 namespace cia402::bus {
 namespace {
 
-using canopen::NodeHealth;
 using drive::ProcedureKind;
+using fieldbus::Health;
 using test::byIdentity;
 using test::LssWorld;
 using test::ready;
@@ -23,7 +23,7 @@ void lose(LssWorld& world) {
   world.robot.start(world.now);
   ASSERT_TRUE(ready(world)) << world.allEvents();
   world.takeAway(0);
-  ASSERT_TRUE(world.runUntil([&] { return world.health(0) == NodeHealth::lost; }));
+  ASSERT_TRUE(world.runUntil([&] { return world.health(0) == Health::lost; }));
 }
 
 TEST(RobotLssLook, ADriveThatGotItsNodeIdIsAskedOnceItHadTheTimeForItsBootUpMessage) {
@@ -60,14 +60,14 @@ TEST(RobotLssLook, AProblemOfTheNodeIdIsOverOnceTheDriveHasIt) {
   LssWorld world(1);
   world.takeAway(0);
   world.robot.start(world.now);
-  ASSERT_TRUE(world.runUntil([&] { return world.health(1) == NodeHealth::ready; }));
-  ASSERT_TRUE(world.runUntil([&] { return canopen::isAway(world.health(0)); }));
+  ASSERT_TRUE(world.runUntil([&] { return world.health(1) == Health::ready; }));
+  ASSERT_TRUE(world.runUntil([&] { return fieldbus::isAway(world.health(0)); }));
   ASSERT_THAT(world.shown().axes[0].words.problem.str(), HasSubstr("LSS: "));
   world.drives[0].sdo_silent = true;  // it does not boot with it
   world.bringBack(0);
   ASSERT_TRUE(world.runUntil([&] { return world.slaves[0].node_id == 1; }));
   world.run(1s);
-  ASSERT_NE(world.health(0), NodeHealth::ready);
+  ASSERT_NE(world.health(0), Health::ready);
   EXPECT_THAT(world.shown().axes[0].words.problem.str(), Not(HasSubstr("LSS: ")));
 }
 
@@ -100,7 +100,7 @@ TEST(RobotLssLook, ARecoverThatWaitsForTheNodeIdEnablesNothingOnceTheAxisWasToSt
   world.robot.start(world.now);
   ASSERT_TRUE(ready(world)) << world.allEvents();
   world.takeAway(0);
-  ASSERT_TRUE(world.runUntil([&] { return world.health(0) == NodeHealth::lost; }));
+  ASSERT_TRUE(world.runUntil([&] { return world.health(0) == Health::lost; }));
   world.bringBack(0);
   const auto recovering = world.begin(ProcedureKind::recover, "shoulder");
   EXPECT_FALSE(world.call(ProcedureKind::disable, "shoulder").success) << "it is not there";

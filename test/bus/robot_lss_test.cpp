@@ -8,8 +8,8 @@
 namespace cia402::bus {
 namespace {
 
-using canopen::NodeHealth;
 using drive::ProcedureKind;
+using fieldbus::Health;
 using test::byIdentity;
 using test::kIdentities;
 using test::kShoulder;
@@ -44,13 +44,13 @@ TEST(RobotLss, ADriveThatIsNotThereIsToldOnceAndLookedForEveryFiveSeconds) {
   LssWorld world(1);
   world.takeAway(0);
   world.robot.start(world.now);
-  ASSERT_TRUE(world.runUntil([&] { return world.health(1) == NodeHealth::ready; }));
+  ASSERT_TRUE(world.runUntil([&] { return world.health(1) == Health::ready; }));
   const std::string problem =
       std::string("shoulder (node 1): LSS: while selecting the device with ") + kShoulder +
       ": nobody answered";
   EXPECT_EQ(world.eventsWith(problem), 1u) << world.allEvents();
   EXPECT_EQ(world.asked(0x43, 11), 5u) << "times, at the start";
-  ASSERT_TRUE(world.runUntil([&] { return canopen::isAway(world.health(0)); }));
+  ASSERT_TRUE(world.runUntil([&] { return fieldbus::isAway(world.health(0)); }));
   ASSERT_TRUE(world.runUntil([&] { return world.asked(0x43, 11) > 5; }));
   world.run(1s);
   world.sent.clear();
@@ -75,7 +75,7 @@ TEST(RobotLss, ADriveThatIsNotThereIsToldOnceAndLookedForEveryFiveSeconds) {
 
 TEST(RobotLss, ANodeIdIsStoredWhereTheConfigurationSaysSo) {
   config::RobotConfig config = byIdentity(2);
-  config.axes[1].lss->store = true;
+  config.devices[1].lss->store = true;
   LssWorld world(2, config);
   world.robot.start(world.now);
   ASSERT_TRUE(ready(world)) << world.allEvents();
@@ -87,8 +87,8 @@ TEST(RobotLss, AnAxisThatIsNotLookedForShowsWhatItDoesItself) {
   LssWorld world(1);
   world.takeAway(0);
   world.robot.start(world.now);
-  ASSERT_TRUE(world.runUntil([&] { return world.health(1) == NodeHealth::ready; }));
-  ASSERT_TRUE(world.runUntil([&] { return canopen::isAway(world.health(0)); }));
+  ASSERT_TRUE(world.runUntil([&] { return world.health(1) == Health::ready; }));
+  ASSERT_TRUE(world.runUntil([&] { return fieldbus::isAway(world.health(0)); }));
   world.drives[1].deaf_to_controlword = true;
   bool enabling = false;
   ASSERT_TRUE(world.runUntil([&] {
@@ -108,7 +108,7 @@ TEST(RobotLss, RecoverAloneBeginsWithTheNodeId) {
   world.robot.start(world.now);
   ASSERT_TRUE(ready(world)) << world.allEvents();
   world.takeAway(0);
-  ASSERT_TRUE(world.runUntil([&] { return world.health(0) == NodeHealth::lost; }));
+  ASSERT_TRUE(world.runUntil([&] { return world.health(0) == Health::lost; }));
   ASSERT_TRUE(world.runUntil([&] { return world.asked(0x43) == 3; })) << "a look";
   world.bringBack(0);
   world.run(1s);
@@ -136,8 +136,8 @@ TEST(RobotLss, AScanTellsWhoseDeviceItIsAndWaitsForTheWindow) {
   LssWorld world(1);
   world.takeAway(0);
   world.robot.start(world.now);
-  ASSERT_TRUE(world.runUntil([&] { return world.health(1) == NodeHealth::ready; }));
-  ASSERT_TRUE(world.runUntil([&] { return canopen::isAway(world.health(0)); }));
+  ASSERT_TRUE(world.runUntil([&] { return world.health(1) == Health::ready; }));
+  ASSERT_TRUE(world.runUntil([&] { return fieldbus::isAway(world.health(0)); }));
   ASSERT_TRUE(world.runUntil([&] { return world.asked(0x43, 11) > 5; }));
   world.run(1s);
   world.bringBack(0);
@@ -189,7 +189,7 @@ TEST(RobotLss, NothingIsScannedOrAssignedWhileAnAxisMayMove) {
   EXPECT_EQ(world.call(LssScanCommand{}).message,
             "refused: elbow (node 2) may be in motion; stop it first");
   world.takeAway(1);
-  ASSERT_TRUE(world.runUntil([&] { return world.health(1) == NodeHealth::lost; }));
+  ASSERT_TRUE(world.runUntil([&] { return world.health(1) == Health::lost; }));
   EXPECT_TRUE(world.call(LssScanCommand{}).success) << "it is not there";
 }
 
@@ -212,7 +212,7 @@ TEST(RobotLss, AssignsNodeIdsThatNobodyHas) {
   }
   EXPECT_TRUE(world.sentWithId(0x7E5).empty());
   world.takeAway(1);
-  ASSERT_TRUE(world.runUntil([&] { return world.health(1) == NodeHealth::lost; }));
+  ASSERT_TRUE(world.runUntil([&] { return world.health(1) == Health::lost; }));
   world.slaves[1].identity[3] = 33;  // another device in its place
   world.bringBack(1);
   for (const int id : {3, 126}) {
@@ -235,8 +235,8 @@ TEST(RobotLss, TheNodeIdOfADriveThatWasNeverHeardIsFree) {
   LssWorld world(0);
   world.takeAway(1);
   world.robot.start(world.now);
-  ASSERT_TRUE(world.runUntil([&] { return world.health(0) == NodeHealth::ready; }));
-  ASSERT_EQ(world.health(1), NodeHealth::booting);
+  ASSERT_TRUE(world.runUntil([&] { return world.health(0) == Health::ready; }));
+  ASSERT_EQ(world.health(1), Health::booting);
   world.slaves[1].identity[3] = 33;
   world.bringBack(1);
   LssAssignCommand assign;
@@ -288,7 +288,7 @@ TEST(RobotLss, ALostDriveThatComesBackAsAnotherOneIsLeftAlone) {
   world.robot.start(world.now);
   ASSERT_TRUE(ready(world)) << world.allEvents();
   world.takeAway(0);
-  ASSERT_TRUE(world.runUntil([&] { return world.health(0) == NodeHealth::lost; }));
+  ASSERT_TRUE(world.runUntil([&] { return world.health(0) == Health::lost; }));
   world.bringBack(0);
   world.slaves[0].node_id = world.slaves[0].pending = 2;  // that of elbow
   world.sent.clear();
@@ -297,7 +297,7 @@ TEST(RobotLss, ALostDriveThatComesBackAsAnotherOneIsLeftAlone) {
   })) << world.allEvents();
   EXPECT_EQ(world.slaves[0].pending, 2);
   for (const auto& nmt : world.sentWithId(0x000)) EXPECT_NE(nmt.frame.data[1], 2);
-  EXPECT_EQ(world.health(1), NodeHealth::ready);
+  EXPECT_EQ(world.health(1), Health::ready);
 }
 
 TEST(RobotLss, TheNodeIdOfADriveThatWasStoppedAndFellSilentIsFree) {
@@ -311,7 +311,7 @@ TEST(RobotLss, TheNodeIdOfADriveThatWasStoppedAndFellSilentIsFree) {
   EXPECT_THAT(world.call(assign).message, HasSubstr("is that of a drive in operation"));
   world.takeAway(1);
   world.run(2s);
-  ASSERT_EQ(world.health(1), NodeHealth::failed);
+  ASSERT_EQ(world.health(1), Health::failed);
   world.slaves[1].identity[3] = 33;
   world.bringBack(1);
   const Answer assigned = world.call(assign);
@@ -322,7 +322,7 @@ TEST(RobotLss, ADriveThatWasFoundIsAskedHalfASecondLaterAndHasNoProblemAnyMore) 
   LssWorld world(1);
   world.takeAway(0);
   world.robot.start(world.now);
-  ASSERT_TRUE(world.runUntil([&] { return canopen::isAway(world.health(0)); }));
+  ASSERT_TRUE(world.runUntil([&] { return fieldbus::isAway(world.health(0)); }));
   world.run(60s);
   world.sent.clear();
   world.run(20s);

@@ -99,7 +99,7 @@ TEST_F(RobotNews, ALostDriveIsAnError) {
 
 TEST(RobotNewsOfAnOptionalDrive, AreAWarning) {
   config::RobotConfig config = test::testRobot();
-  config.axes[0].boot.optional = true;
+  config.devices[0].boot.optional = true;
   RobotWorld world(config);
   world.boot();
   world.drives[0].silent = true;
@@ -114,7 +114,7 @@ TEST_F(RobotNews, FeedbackThatIsMissingIsAProblemOnceItHadTheTimeToCome) {
   world.drives[1].tpdo_bytes = 0;
   world.robot.start(world.now);
   ASSERT_TRUE(
-      world.runUntil([&] { return world.axis(1).state().health == canopen::NodeHealth::ready; }));
+      world.runUntil([&] { return world.axis(1).state().health == fieldbus::Health::ready; }));
   world.run(530ms);
   EXPECT_EQ(words(world, 1).problem.str(), "");
   world.run(200ms);
@@ -179,7 +179,7 @@ TEST_F(RobotNews, ASecondBootUpMessageWithinALaterBootIsNotTold) {
   world.drives[0].sdo_silent = true;
   const auto reset = world.begin(NmtServiceCommand{"shoulder", "reset_node"});
   world.run(20ms);
-  ASSERT_EQ(world.axis(0).node().bootUps(), 2u);
+  ASSERT_EQ(world.node(0).bootUps(), 2u);
   world.robot.receive(can::Frame(0x701, {0x00}), world.now, world.now);
   EXPECT_EQ(world.eventsWith("boots up again and again"), 0u) << world.allEvents();
 }
@@ -189,7 +189,7 @@ TEST_F(RobotNews, BootUpMessagesOfSeveralBootsAreNotAddedUp) {
   for (int i = 0; i < 3; ++i) {
     ASSERT_TRUE(world.call(NmtServiceCommand{"shoulder", "reset_node"}).success);
   }
-  EXPECT_EQ(world.axis(0).node().bootUps(), 4u);
+  EXPECT_EQ(world.node(0).bootUps(), 4u);
   EXPECT_EQ(world.eventsWith("boots up again and again"), 0u) << world.allEvents();
 }
 

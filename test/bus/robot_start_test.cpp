@@ -92,7 +92,7 @@ TEST_F(RobotStart, GoesOnByItselfOnceTheBusIsFree) {
   EXPECT_EQ(world.eventsWith("there is no other master on the bus any more"), 1u);
   EXPECT_EQ(syncProblem(), "");
   EXPECT_TRUE(
-      world.runUntil([&] { return world.axis(0).state().health == canopen::NodeHealth::ready; }));
+      world.runUntil([&] { return world.axis(0).state().health == fieldbus::Health::ready; }));
 }
 
 TEST_F(RobotStart, ASecondStartChangesNothing) {

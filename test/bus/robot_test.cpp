@@ -170,8 +170,8 @@ TEST(Robot, LosesASilentDriveAndBringsItBackDisabled) {
   ASSERT_TRUE(world.runUntil([&] { return world.eventsWith("no heartbeat") > 0; }, 1s));
   EXPECT_TRUE(world.drives[1].enabled());
   world.drives[0].silent = false;
-  ASSERT_TRUE(world.runUntil(
-      [&] { return world.axis(0).state().health == canopen::NodeHealth::ready; }, 5s));
+  ASSERT_TRUE(
+      world.runUntil([&] { return world.axis(0).state().health == fieldbus::Health::ready; }, 5s));
   world.run(200ms);
   EXPECT_FALSE(world.drives[0].enabled());
 }
@@ -190,6 +190,7 @@ TEST(Robot, RunsACallInTheBusThread) {
 TEST(Robot, TakesAnAnswerBySdoBeforeTheNextCycle) {
   config::RobotConfig config = test::testRobot();
   config.axes.resize(1);
+  config.devices.resize(1);
   config.groups.clear();
   RobotWorld world(config);
   world.boot();
@@ -234,7 +235,7 @@ TEST(Robot, ShowsItsAxesNodesAndGroups) {
   EXPECT_LT(shot.axes[1].target, -0.4);
   EXPECT_EQ(shot.axes[1].procedure, ProcedureKind::enable);
   EXPECT_FALSE(shot.axes[1].procedure_running);
-  EXPECT_EQ(shot.axes[1].node.changes, elbow.node().changes());
+  EXPECT_EQ(shot.axes[1].node.changes, elbow.device().changes());
   EXPECT_EQ(shot.axes[1].node.nmt, canopen::NmtState::operational);
   EXPECT_GT(shot.axes[1].node.last_heartbeat, world.now - 200ms);
   EXPECT_EQ(shot.axes[1].node.boot_ups, 1u);
@@ -261,7 +262,7 @@ TEST(Robot, ShowsItsAxesNodesAndGroups) {
 
 TEST(Robot, ShowsThatAnOptionalDriveIsNotThere) {
   config::RobotConfig config = test::testRobot();
-  config.axes[1].boot.optional = true;
+  config.devices[1].boot.optional = true;
   RobotWorld world(config);
   world.drives[1].silent = true;
   world.robot.start(world.now);
@@ -278,7 +279,7 @@ TEST(Robot, RefusesToAskAStoppedDriveAndSaysSo) {
   const auto stopped = world.begin(NmtServiceCommand{"shoulder", "stop"});
   world.run(20ms);
   world.robot.receive(can::Frame(0x701, {0x04}), world.now, world.now);
-  ASSERT_EQ(world.axis(0).node().nmtState(), canopen::NmtState::stopped);
+  ASSERT_EQ(world.node(0).nmtState(), canopen::NmtState::stopped);
   SaveDcfCommand save;
   save.axis = "shoulder";
   const auto history = world.begin(ErrorHistoryCommand{"shoulder"}), dcf = world.begin(save);

@@ -12,6 +12,7 @@
 
 #include "bus/fake_drive.h"
 #include "cia402_driver/bus/robot.h"
+#include "cia402_driver/config/drive_family.h"
 #include "cia402_driver/config/robot.h"
 
 namespace cia402::bus::test {
@@ -19,7 +20,7 @@ namespace cia402::bus::test {
 inline constexpr Duration kPeriod = std::chrono::milliseconds(4);
 inline constexpr Duration kFrameTime = std::chrono::microseconds(100);
 
-inline std::shared_ptr<const drive::DriveProfile> testProfile() {
+inline const config::DriveFamily& testFamily() {
   static const char* const kText = R"(
 name: test_drive
 description: Drive of the tests
@@ -62,18 +63,24 @@ timing: {boot: 2.0, state_change: 1.0, mode_change: 0.5, sdo: 0.1, sdo_retries: 
 errors:
   0x8611: {text: following error, cause: blocked, remedy: check the mechanics}
 )";
-  Problems problems;
-  auto profile = std::make_shared<drive::DriveProfile>(
-      drive::parseDriveProfile(kText, "test_drive.yaml", problems));
-  if (!problems.empty()) throw std::invalid_argument(problems.text());
-  return profile;
+  static const config::DriveFamily kFamily = [] {
+    Problems problems;
+    config::DriveFamily family = config::parseDriveFamily(kText, "test_drive.yaml", problems);
+    if (!problems.empty()) throw std::invalid_argument(problems.text());
+    return family;
+  }();
+  return kFamily;
+}
+
+inline std::shared_ptr<const drive::DriveProfile> testProfile() {
+  return std::make_shared<const drive::DriveProfile>(testFamily().drive);
 }
 
 /// An axis that needs no homing: -3..3 rad, 2 rad/s, 10 rad/s², 5 N m.
 inline drive::AxisConfig testAxis(const std::string& name, canopen::NodeId node) {
   drive::AxisConfig axis;
   axis.name = axis.joint = name;
-  axis.node_id = node;
+  axis.place = "node " + std::to_string(node);
   axis.profile = testProfile();
   axis.geometry.counts_per_turn = 1000;
   axis.geometry.rated_torque = 10.0;
@@ -84,8 +91,27 @@ inline drive::AxisConfig testAxis(const std::string& name, canopen::NodeId node)
   axis.limits.effort = 5.0;
   axis.mode = "cyclic_position";
   axis.sync_period = kPeriod;
-  axis.pdos = axis.profile->pdos;
+  axis.outputs = {"controlword", "mode_of_operation", "target_position", "target_velocity",
+                  "target_torque"};
   return axis;
+}
+
+/// The device that such an axis sits in.
+inline canopen::DeviceConfig testDevice(const drive::AxisConfig& axis, canopen::NodeId node) {
+  canopen::DeviceConfig device;
+  device.name = axis.name;
+  device.title = drive::whoIs(axis);
+  device.node_id = node;
+  device.profile = std::make_shared<const canopen::DeviceProfile>(testFamily().device);
+  device.pdos = device.profile->pdos;
+  return device;
+}
+
+/// Adds an axis of that name in a device of its own.
+inline void addAxis(config::RobotConfig& robot, const std::string& name, canopen::NodeId node) {
+  robot.axes.push_back(testAxis(name, node));
+  robot.axes.back().device = robot.devices.size();
+  robot.devices.push_back(testDevice(robot.axes.back(), node));
 }
 
 inline drive::HomingOptions homingOfOrder(int order) {
@@ -104,7 +130,8 @@ inline config::RobotConfig testRobot() {
   robot.bus.sync_period = kPeriod;
   robot.bus.listen = Duration::zero();
   robot.recorder.keep = 0;  // no files
-  robot.axes = {testAxis("shoulder", 1), testAxis("elbow", 2)};
+  addAxis(robot, "shoulder", 1);
+  addAxis(robot, "elbow", 2);
   config::GroupConfig arm;
   arm.name = "arm";
   arm.joints = {"shoulder", "elbow"};
@@ -129,7 +156,7 @@ class RobotWorld : private can::Sink, private EventSink {
 
   explicit RobotWorld(const config::RobotConfig& config = testRobot())
       : robot(config, masterOf(config), *this, *this) {
-    for (const drive::AxisConfig& axis : config.axes) drives.emplace_back(axis.node_id);
+    for (const canopen::DeviceConfig& device : config.devices) drives.emplace_back(device.node_id);
   }
 
   Time now{std::chrono::seconds(1)};
@@ -142,6 +169,10 @@ class RobotWorld : private can::Sink, private EventSink {
   Robot robot;
 
   drive::Axis& axis(std::size_t index) { return robot.axes()[index]; }
+  canopen::Node& node(std::size_t index) { return robot.node(index); }
+  const canopen::DeviceConfig& device(std::size_t index) {
+    return robot.config().deviceOf(axis(index).config());
+  }
 
   /// Lets `duration` pass.
   void run(Duration duration) {
@@ -165,7 +196,7 @@ class RobotWorld : private can::Sink, private EventSink {
     robot.start(now);
     const bool ready = runUntil([&] {
       return std::all_of(robot.axes().begin(), robot.axes().end(), [](const drive::Axis& a) {
-        return a.state().health == canopen::NodeHealth::ready && a.state().feedback_valid;
+        return a.state().health == fieldbus::Health::ready && a.state().feedback_valid;
       });
     });
     if (!ready) throw std::runtime_error("the drives did not boot: " + allEvents());

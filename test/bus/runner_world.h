@@ -134,7 +134,7 @@ struct BusRunnerTest : testing::Test {
   bool ready() {
     const RobotSnapshot snapshot = runner->snapshot();
     return std::all_of(snapshot.axes.begin(), snapshot.axes.end(), [](const AxisSnapshot& axis) {
-      return axis.state.health == canopen::NodeHealth::ready && axis.state.feedback_valid;
+      return axis.state.health == fieldbus::Health::ready && axis.state.feedback_valid;
     });
   }
 

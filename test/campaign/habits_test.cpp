@@ -49,8 +49,9 @@ TEST(ProfileKeys, AreOnTopOfTheProfileOfTheirAxisAlone) {
   ASSERT_TRUE(loaded) << loaded.error().message;
   const drive::DriveProfile& own = *loaded->robot.axes[0].profile;
   EXPECT_EQ(own.fault_reset_tries, 7);
-  EXPECT_EQ(own.timing.sdo, std::chrono::milliseconds(700));
-  EXPECT_EQ(own.timing.boot, std::chrono::seconds(5)) << "beside it the keys stay";
+  const canopen::DeviceProfile& device = *loaded->robot.devices[0].profile;
+  EXPECT_EQ(device.sdo.timeout, std::chrono::milliseconds(700));
+  EXPECT_EQ(device.boot_time, std::chrono::seconds(5)) << "beside it the keys stay";
   EXPECT_EQ(loaded->robot.axes[1].profile->fault_reset_tries, 1);
 }
 

@@ -14,12 +14,12 @@ class BootIdentifyTest : public test::NodeFixture {};
 TEST_F(BootIdentifyTest, a_device_type_that_is_refused_matters_only_if_configured) {
   peer.replace(kAskDeviceType, "583 80 00 10 00 00 00 00 08");
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_THAT(node->notes(), ElementsAre(HasSubstr("its device type is unknown: reading 1000:00")));
   peer.take();
   config.device_type = 0x00020192;
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
   EXPECT_THAT(node->problem(), HasSubstr("boot failed while reading 1000:00 device type: the drive "
                                          "refused: 0x08000000"));
   EXPECT_FALSE(sentLine(kAskVendor)) << "who it is is not known";

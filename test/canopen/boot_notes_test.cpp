@@ -23,19 +23,19 @@ class BootNotesTest : public test::NodeFixture {
 
 TEST_F(BootNotesTest, do_not_pile_up_from_boot_to_boot) {
   boot();
-  ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  ASSERT_EQ(node->health(), Health::ready) << node->problem();
   expectOneNote();
   hear("703 00");
-  ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  ASSERT_EQ(node->health(), Health::ready) << node->problem();
   expectOneNote();
 }
 
 TEST_F(BootNotesTest, of_the_boot_before_are_gone_when_the_next_begins) {
   boot();
-  ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  ASSERT_EQ(node->health(), Health::ready) << node->problem();
   peer.forget(kAskDeviceType);
   hear("703 00");
-  ASSERT_EQ(node->health(), NodeHealth::booting);
+  ASSERT_EQ(node->health(), Health::booting);
   EXPECT_THAT(node->notes(), IsEmpty());
 }
 
@@ -47,14 +47,14 @@ TEST_F(BootNotesTest, are_told_once_where_a_drive_that_was_stopped_begins_again)
   hear("703 04");
   peer.on(kAskSyncId, "583 43 05 10 00 80 00 00 00");
   hear("703 7F");
-  ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  ASSERT_EQ(node->health(), Health::ready) << node->problem();
   expectOneNote();
 }
 
 TEST_F(BootNotesTest, are_told_of_a_boot_that_failed_too) {
   peer.replace("603 40 00 18 01 00 00 00 00", "583 80 00 18 01 00 00 02 06");
   boot();
-  ASSERT_EQ(node->health(), NodeHealth::failed);
+  ASSERT_EQ(node->health(), Health::failed);
   expectOneNote();
 }
 

@@ -34,10 +34,12 @@ class BootPdosTest : public test::NodeFixture {
     peer.on("603 23 00 18 01 83 01 00 00", "583 60 00 18 01 00 00 00 00");
   }
   bool leftOut() {
-    const ProcessImage& image = node->image();
-    return image.isLeftOut(PdoDirection::tpdo, image.inputSlot(kActualPosition));
+    const PdoImage& image = node->image();
+    return image.inputLeftOut(image.inputSlot(kActualPosition));
   }
-  ProcessValue position() { return node->image().input(node->image().inputSlot(kActualPosition)); }
+  fieldbus::ProcessValue position() {
+    return node->image().input(node->image().inputSlot(kActualPosition));
+  }
 };
 
 TEST_F(BootPdosTest, an_entry_that_the_drive_does_not_map_is_not_expected_in_its_frames) {
@@ -45,7 +47,7 @@ TEST_F(BootPdosTest, an_entry_that_the_drive_does_not_map_is_not_expected_in_its
   peer.on(kAskTpdoCount, kOneEntry);
   peer.replace(kMapPosition, "583 80 00 1A 02 41 00 04 06");
   boot();
-  ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  ASSERT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_THAT(node->notes(), ElementsAre(HasSubstr("6064:00 position")));
   EXPECT_TRUE(leftOut());
   node->receiveTpdo(0, frame("183 37 02"), now);
@@ -58,7 +60,7 @@ TEST_F(BootPdosTest, an_entry_that_was_there_for_the_room_only_is_no_cause_for_a
   peer.on(kAskTpdoCount, kOneEntry);
   peer.replace(kMapPosition, "583 80 00 1A 02 42 00 04 06");
   boot();
-  ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  ASSERT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_THAT(node->notes(), IsEmpty());
   EXPECT_THAT(node->remarks(), ElementsAre("the drive does not take 6064:00 position into a TPDO"));
   EXPECT_TRUE(leftOut());
@@ -69,12 +71,12 @@ TEST_F(BootPdosTest, an_entry_that_was_left_out_is_there_again_once_the_drive_ta
   peer.on(kAskTpdoCount, kOneEntry);
   peer.replace(kMapPosition, "583 80 00 1A 02 41 00 04 06");
   boot();
-  ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  ASSERT_EQ(node->health(), Health::ready) << node->problem();
   ASSERT_TRUE(leftOut());
   peer.replace(kAskTpdoCount, kOneEntry).on(kAskTpdoCount, kTwoEntries);  // another firmware by now
   peer.replace(kMapPosition, "583 60 00 1A 02 00 00 00 00");
   hear("703 00");
-  ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  ASSERT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_THAT(node->notes(), IsEmpty());
   EXPECT_FALSE(leftOut());
   node->receiveTpdo(0, frame("183 37 02 78 56 34 12"), now);
@@ -84,7 +86,7 @@ TEST_F(BootPdosTest, an_entry_that_was_left_out_is_there_again_once_the_drive_ta
 TEST_F(BootPdosTest, a_fixed_number_of_entries_is_the_room_that_there_is) {
   config.fixed_map_entries = 1;
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
   EXPECT_THAT(node->problem(), HasSubstr("it has 2 entries, the drive has room for 1"));
 }
 
@@ -93,7 +95,7 @@ TEST_F(BootPdosTest, a_number_of_entries_that_is_read_only_is_excused_where_the_
   peer.replace(kClearTpdo, "583 80 00 1A 00 02 00 01 06");
   config.map_count_may_be_read_only = true;
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_FALSE(sentLine("603 2F 00 1A 00 02 00 00 00"));
 }
 

@@ -29,7 +29,7 @@ class BootRestore : public test::NodeFixture {
 
 TEST_F(BootRestore, restores_resets_the_node_and_configures_it_once_per_start) {
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_EQ(node->bootUps(), 2U);
   const auto load = std::find(peer.sent.begin(), peer.sent.end(), kLoad);
   ASSERT_NE(load, peer.sent.end());
@@ -38,10 +38,10 @@ TEST_F(BootRestore, restores_resets_the_node_and_configures_it_once_per_start) {
   EXPECT_EQ(*(load + 2), "603 40 00 10 00 00 00 00 00");
   EXPECT_EQ(count(kLoad), 1);
   hear("703 00");  // a reboot later
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
   node->boot(now, true);
   settle();
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
   EXPECT_EQ(count(kLoad), 1);
 }
 
@@ -61,23 +61,23 @@ TEST_F(BootRestore, a_drive_that_may_still_move_is_stopped_first) {
   EXPECT_EQ(count(kLoad), 0);
   pass(milliseconds(1));
   EXPECT_EQ(count(kLoad), 1);
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
 }
 
 TEST_F(BootRestore, takes_its_time_for_a_slow_memory) {
   peer.forget(kLoad);
   boot();
   pass(seconds(9));
-  EXPECT_EQ(node->health(), NodeHealth::booting);
+  EXPECT_EQ(node->health(), Health::booting);
   EXPECT_EQ(node->bootStep(), "writing 0x64616F6C to 1011:01 restore all default parameters");
   hear("583 60 11 10 01 00 00 00 00");
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
 }
 
 TEST_F(BootRestore, a_refusal_is_an_error_with_a_remedy) {
   peer.replace(kLoad, "583 80 11 10 01 20 00 00 08");
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
   EXPECT_THAT(node->problem(), HasSubstr("1011:01 restore all default parameters: the drive "
                                          "refused: 0x08000020"));
   EXPECT_THAT(node->problem(), HasSubstr("leave out `restore_before_configure`"));
@@ -88,12 +88,12 @@ TEST_F(BootRestore, a_drive_that_does_not_reset_is_not_configured) {
   peer.forget(kResetNode);
   boot();
   pass(seconds(5));
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
   EXPECT_THAT(node->problem(), HasSubstr("did not reset when told so (NMT reset node); switch its "
                                          "power off and on"));
   EXPECT_FALSE(sentLine("603 2B 17 10 00 64 00 00 00"));
   hear("703 00");  // somebody did
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
 }
 
 // Elmo's pull the CAN lines down for a while when they are reset (ros-industrial/ros_canopen#334).
@@ -101,7 +101,7 @@ TEST_F(BootRestore, resets_the_communication_alone_where_the_node_must_not_be_re
   config.reset_node_allowed = false;
   const char kResetCommunication[] = "000 82 03";  // also how each boot begins
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_EQ(count(kResetNode), 0);
   const auto load = std::find(peer.sent.begin(), peer.sent.end(), kLoad);
   ASSERT_NE(load, peer.sent.end());
@@ -114,7 +114,7 @@ TEST_F(BootRestore, tells_by_which_command_a_drive_did_not_reset) {
   peer.on("000 82 03", Lines{});  // the second time
   boot();
   pass(seconds(5));
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
   EXPECT_THAT(node->problem(), HasSubstr("did not reset when told so (NMT reset communication)"));
 }
 
@@ -131,18 +131,18 @@ TEST_F(BootRestore, what_1020h_said_before_does_not_count_any_more) {
   peer.on("603 23 20 10 01 01 00 00 00", "583 60 20 10 01 00 00 00 00");
   peer.on("603 23 20 10 02 02 00 00 00", "583 60 20 10 02 00 00 00 00");
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_TRUE(sentLine("603 40 00 1A 01 00 00 00 00")) << "configured, the drive kept 1020h";
   peer.take();
   hear("703 00");
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
   EXPECT_FALSE(sentLine("603 40 00 1A 01 00 00 00 00")) << "unchanged since";
 }
 
 TEST_F(BootRestore, says_that_it_waits_for_the_boot_up_after_the_reset) {
   peer.forget(kResetNode);
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::booting);
+  EXPECT_EQ(node->health(), Health::booting);
   EXPECT_EQ(node->bootStep(), "waiting for boot-up after its parameters were restored");
 }
 

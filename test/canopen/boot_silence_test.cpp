@@ -43,7 +43,7 @@ class BootSilence : public test::NodeFixture, public testing::WithParamInterface
   void bootWithout(const char* request) {
     peer.forget(request);
     boot();
-    for (int i = 0; i < 100 && node->health() == NodeHealth::booting; ++i) {
+    for (int i = 0; i < 100 && node->health() == Health::booting; ++i) {
       hear("703 7F");
       pass(milliseconds(100));
     }
@@ -57,7 +57,7 @@ class BootWithout : public BootSilence {};
 
 TEST_P(BootWithout, IsDoneAfterThreeRequests) {
   bootWithout(GetParam().request);
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_EQ(asked(), 3);
 }
 
@@ -68,7 +68,7 @@ class BootFailsWithout : public BootSilence {};
 
 TEST_P(BootFailsWithout, NamesTheObject) {
   bootWithout(GetParam().request);
-  EXPECT_NE(node->health(), NodeHealth::ready);
+  EXPECT_NE(node->health(), Health::ready);
   const std::string request = GetParam().request;  // "603 40 lo hi sub ..."
   const std::string object =
       request.substr(10, 2) + request.substr(7, 2) + ":" + request.substr(13, 2);

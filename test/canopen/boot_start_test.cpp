@@ -40,15 +40,15 @@ TEST_F(BootStartTest, a_tpdo_that_comes_seldom_has_three_of_its_periods) {
   master.sync_period = milliseconds(4);
   stepWith(240);  // every 960 ms
   pass(milliseconds(2879));
-  EXPECT_EQ(node->health(), NodeHealth::booting);
+  EXPECT_EQ(node->health(), Health::booting);
   pass(milliseconds(1));
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
 }
 
 TEST_F(BootStartTest, one_that_did_not_start_does_not_count_as_started) {
   stepWith(1);
   pass(milliseconds(1000));
-  ASSERT_EQ(node->health(), NodeHealth::failed);
+  ASSERT_EQ(node->health(), Health::failed);
   EXPECT_FALSE(node->started()) << "its PDOs are not to be believed";
 }
 

@@ -30,21 +30,21 @@ class StartupWriteTest : public test::NodeFixture {
 TEST_F(StartupWriteTest, writes_what_differs) {
   peer.on(kRead, "583 43 65 60 00 10 00 00 00").on(kWrite, kDone);
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_TRUE(sentLine(kWrite));
 }
 
 TEST_F(StartupWriteTest, does_not_write_what_is_as_wanted) {
   peer.on(kRead, "583 43 65 60 00 88 13 00 00");
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
   EXPECT_FALSE(sentLine(kWrite));
 }
 
 TEST_F(StartupWriteTest, writes_an_object_that_cannot_be_read) {
   peer.on(kRead, "583 80 65 60 00 01 00 01 06").on(kWrite, kDone);
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
   EXPECT_TRUE(sentLine(kWrite));
 }
 
@@ -52,7 +52,7 @@ TEST_F(StartupWriteTest, does_not_read_first_where_not_wanted) {
   config.writes[0].only_if_different = false;
   peer.on(kWrite, kDone);
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
   EXPECT_FALSE(sentLine(kRead));
 }
 
@@ -63,9 +63,9 @@ TEST_F(StartupWriteTest, tries_again_what_the_present_state_forbids) {
   peer.on(kRead, "583 43 65 60 00 10 00 00 00");
   peer.on(kWrite, kNotInThisState).on(kWrite, kNotInThisState).on(kWrite, kDone);
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::booting);
+  EXPECT_EQ(node->health(), Health::booting);
   pass(200ms);
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
 }
 
 TEST_F(StartupWriteTest, rests_before_it_tries_again_whatever_else_is_heard) {
@@ -85,16 +85,16 @@ TEST_F(StartupWriteTest, gives_up_after_three_seconds_in_a_state_that_forbids_it
   peer.on(kRead, "583 43 65 60 00 10 00 00 00").on(kWrite, kNotInThisState);
   boot();
   pass(2900ms);
-  EXPECT_EQ(node->health(), NodeHealth::booting);
+  EXPECT_EQ(node->health(), Health::booting);
   pass(300ms);
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
   EXPECT_THAT(node->problem(), HasSubstr("following_error_window: the drive refused: 0x08000022"));
 }
 
 TEST_F(StartupWriteTest, a_refused_write_fails_the_boot_unless_optional) {
   peer.on(kRead, "583 43 65 60 00 10 00 00 00").on(kWrite, "583 80 65 60 00 31 00 09 06");
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
   EXPECT_EQ(node->problem(),
             "shoulder (node 3): boot failed while writing 0x00001388 to 6065:00 "
             "following_error_window: the drive refused: 0x06090031 (value of parameter written too "
@@ -102,7 +102,7 @@ TEST_F(StartupWriteTest, a_refused_write_fails_the_boot_unless_optional) {
   EXPECT_FALSE(sentLine("000 01 03"));
   config.writes[0].optional = true;
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
   EXPECT_THAT(node->notes(),
               ElementsAre(HasSubstr("optional start-up write left out: writing 0x00001388 to "
                                     "6065:00 following_error_window")));
@@ -127,7 +127,7 @@ TEST_F(StartupWriteTest, leaves_out_what_only_a_default_asked_for_and_the_drive_
                               "583 80 65 60 00 11 00 09 06", "583 80 65 60 00 02 00 01 06"}) {
     peer.on(kRead, "583 80 65 60 00 00 00 02 06").on(kWrite, refusal);
     boot();
-    EXPECT_EQ(node->health(), NodeHealth::ready) << refusal << ": " << node->problem();
+    EXPECT_EQ(node->health(), Health::ready) << refusal << ": " << node->problem();
     EXPECT_THAT(node->notes(), ElementsAre(AllOf(HasSubstr("6065:00 following_error_window"),
                                                  HasSubstr("name it in `lacks`"))));
   }
@@ -137,13 +137,13 @@ TEST_F(StartupWriteTest, a_value_that_the_drive_refuses_is_an_error_though_a_def
   config.writes[0].by_default = true;
   peer.on(kRead, "583 43 65 60 00 10 00 00 00").on(kWrite, "583 80 65 60 00 31 00 09 06");
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
 }
 
 TEST_F(StartupWriteTest, a_missing_object_that_was_asked_for_is_an_error) {
   peer.on(kRead, "583 80 65 60 00 00 00 02 06").on(kWrite, "583 80 65 60 00 00 00 02 06");
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
   EXPECT_THAT(node->problem(), HasSubstr("0x06020000"));
 }
 
@@ -163,7 +163,7 @@ TEST_F(StartupWriteTest, keeps_the_order_of_the_configuration) {
 TEST_F(StartupWriteTest, a_read_that_is_not_answered_fails_the_boot_before_anything_is_written) {
   boot();
   pass(1000ms);
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
   EXPECT_THAT(node->problem(),
               HasSubstr("boot failed while reading 6065:00 following_error_window: no answer"));
   EXPECT_FALSE(sentLine(kWrite));
@@ -174,11 +174,11 @@ TEST_F(StartupWriteTest, an_optional_object_that_is_silent_while_others_answer_i
   config.writes[0].optional = true;
   config.writes[0].only_if_different = false;
   boot();
-  for (int i = 0; i < 50 && node->health() == NodeHealth::booting; ++i) {
+  for (int i = 0; i < 50 && node->health() == Health::booting; ++i) {
     hear("703 7F");
     pass(100ms);
   }
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_EQ(std::count(peer.sent.begin(), peer.sent.end(), kWrite), 3);
 }
 
@@ -188,9 +188,9 @@ TEST_F(StartupWriteTest, what_was_asked_for_is_written_as_patiently_as_configure
   config.sdo.retries = 0;
   boot();
   pass(249ms);
-  EXPECT_EQ(node->health(), NodeHealth::booting);
+  EXPECT_EQ(node->health(), Health::booting);
   pass(1ms);
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
   EXPECT_THAT(node->problem(), HasSubstr("no answer within 250 ms"));
 }
 

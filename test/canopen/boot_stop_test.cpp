@@ -53,10 +53,10 @@ class BootStop : public test::NodeFixture {
   /// @return how long the boot took.
   Duration bootPatiently() {
     boot();
-    EXPECT_EQ(node->health(), NodeHealth::booting);
+    EXPECT_EQ(node->health(), Health::booting);
     const Time begin = now;
-    while (node->health() == NodeHealth::booting && now < begin + 10s) pass(10ms);
-    EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+    while (node->health() == Health::booting && now < begin + 10s) pass(10ms);
+    EXPECT_EQ(node->health(), Health::ready) << node->problem();
     return now - begin;
   }
 };
@@ -69,7 +69,7 @@ TEST_F(BootStop, comes_right_after_the_identification_frame_by_frame) {
   config.writes.insert(config.writes.begin(), window);
   peer.on("603 23 65 60 00 88 13 00 00", "583 60 65 60 00 00 00 00 00");
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
   const Lines sent = peer.take();
   EXPECT_EQ(Lines(sent.begin(), sent.begin() + 9),
             (Lines{"000 82 03",                    // reset communication, then boot-up
@@ -89,14 +89,14 @@ TEST_F(BootStop, comes_right_after_the_identification_frame_by_frame) {
 TEST_F(BootStop, is_not_sent_to_a_strange_drive) {
   config.serial = 4711;
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
   EXPECT_THAT(writes(), IsEmpty());
 }
 
 TEST_F(BootStop, a_refusal_is_told_and_the_boot_goes_on) {
   peer.replace(kStop, "583 80 40 60 00 22 00 00 08");
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_THAT(node->notes(), ElementsAre(HasSubstr("was not told to stop before it was configured: "
                                                    "writing 0x0002 to 6040:00 controlword")));
 }
@@ -128,9 +128,9 @@ TEST_F(BootStop, a_map_that_stays_refused_fails_the_boot_after_three_seconds) {
   peer.on("603 23 00 18 01 83 01 00 80", "583 80 00 18 01 22 00 00 08");
   boot();
   pass(2900ms);
-  EXPECT_EQ(node->health(), NodeHealth::booting);
+  EXPECT_EQ(node->health(), Health::booting);
   pass(300ms);
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
   EXPECT_THAT(node->problem(),
               HasSubstr("1800:01 COB-ID of TPDO 1: the drive refused: 0x08000022"));
 }

@@ -11,13 +11,13 @@ class BootSuperviseTest : public test::NodeFixture {};
 
 TEST_F(BootSuperviseTest, a_drive_that_took_the_consumer_heartbeat_time_notices_a_dead_master) {
   boot();
-  ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  ASSERT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_EQ(node->supervision().kind, ErrorControl::heartbeat);
   EXPECT_TRUE(node->supervision().watched);
   EXPECT_TRUE(node->supervision().watches_master);
   peer.replace("603 23 16 10 01 2C 01 7F 00", "583 80 16 10 01 00 00 02 06");
   boot();
-  ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  ASSERT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_TRUE(node->supervision().watched);
   EXPECT_FALSE(node->supervision().watches_master);
 }
@@ -25,7 +25,7 @@ TEST_F(BootSuperviseTest, a_drive_that_took_the_consumer_heartbeat_time_notices_
 TEST_F(BootSuperviseTest, nobody_notices_a_dead_master_where_that_is_not_asked_for) {
   config.master_timeout = Duration::zero();
   boot();
-  ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  ASSERT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_FALSE(node->supervision().watches_master);
   EXPECT_TRUE(node->supervision().watched);
 }

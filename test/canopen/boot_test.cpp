@@ -25,7 +25,7 @@ TEST_F(BootTest, identifies_configures_and_starts_a_drive_frame_by_frame) {
   peer.replace("603 40 00 14 01 00 00 00 00", "583 80 00 14 01 00 00 02 06");
   peer.replace("603 40 00 18 01 00 00 00 00", "583 80 00 18 01 00 00 02 06");
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_EQ(peer.take(),
             (Lines{"000 82 03",                    // reset communication, then boot-up
                    "603 40 00 10 00 00 00 00 00",  // device type
@@ -59,7 +59,7 @@ TEST_F(BootTest, identifies_configures_and_starts_a_drive_frame_by_frame) {
 
 TEST_F(BootTest, goes_on_with_each_answer_without_any_tick) {
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
 }
 
 TEST_F(BootTest, writes_nothing_to_pdos_that_are_as_wanted) {
@@ -75,7 +75,7 @@ TEST_F(BootTest, a_boot_up_followed_at_once_by_a_heartbeat_is_not_missed) {
   peer.replace("000 82 03", {"703 00", "703 7F"});
   const Time start = now;
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
   EXPECT_EQ(node->bootUps(), 1U);
   EXPECT_EQ(now, start);
 }
@@ -86,10 +86,10 @@ TEST_F(BootTest, waits_for_the_boot_up_before_it_asks_anything) {
   pass(milliseconds(1000));
   hear("703 7F");  // a heartbeat of before the reset
   EXPECT_EQ(peer.take(), Lines{"000 82 03"});
-  EXPECT_EQ(node->health(), NodeHealth::booting);
+  EXPECT_EQ(node->health(), Health::booting);
   EXPECT_EQ(node->bootStep(), "waiting for boot-up");
   hear("703 00");
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
 }
 
 TEST_F(BootTest, a_drive_that_ignores_the_reset_is_found_by_asking_and_made_pre_operational) {
@@ -98,7 +98,7 @@ TEST_F(BootTest, a_drive_that_ignores_the_reset_is_found_by_asking_and_made_pre_
   pass(milliseconds(1249));
   EXPECT_EQ(peer.take(), Lines{"000 82 03"});
   pass(milliseconds(1));
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
   const Lines sent = peer.take();
   EXPECT_EQ(sent[0], kAskDeviceType);
   EXPECT_EQ(sent[1], "000 80 03");
@@ -106,7 +106,7 @@ TEST_F(BootTest, a_drive_that_ignores_the_reset_is_found_by_asking_and_made_pre_
 
 TEST_F(BootTest, without_a_reset_it_is_made_pre_operational_first) {
   boot(false);
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
   const Lines sent = peer.take();
   EXPECT_EQ(sent[0], "000 80 03");
   EXPECT_EQ(sent[1], kAskDeviceType);
@@ -118,10 +118,10 @@ TEST_F(BootTest, nobody_there_is_absent_and_told_what_to_check) {
   const Time start = now;
   boot();
   pass(milliseconds(4999));
-  EXPECT_EQ(node->health(), NodeHealth::booting);
+  EXPECT_EQ(node->health(), Health::booting);
   EXPECT_EQ(node->bootStep(), "reading 1000:00 device type");
   pass(milliseconds(500));
-  EXPECT_EQ(node->health(), NodeHealth::absent);
+  EXPECT_EQ(node->health(), Health::absent);
   EXPECT_EQ(node->problem(),
             "shoulder (node 3): does not answer: neither a boot-up message nor an answer to "
             "reading 1000:00 device type came within 5 s; check power, cable and termination, bit "
@@ -134,10 +134,10 @@ TEST_F(BootTest, an_absent_node_boots_when_it_is_switched_on_later) {
   peer.forget(kAskDeviceType);
   boot();
   pass(seconds(10));
-  ASSERT_EQ(node->health(), NodeHealth::absent);
+  ASSERT_EQ(node->health(), Health::absent);
   peer.on(kAskDeviceType, "583 43 00 10 00 92 01 02 00");
   hear("703 00");
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
   EXPECT_EQ(node->problem(), "");
 }
 
@@ -149,7 +149,7 @@ TEST_F(BootTest, an_absent_node_boots_at_its_first_heartbeat) {
   peer.take();
   peer.on(kAskDeviceType, "583 43 00 10 00 92 01 02 00");
   hear("703 05");
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
   EXPECT_EQ(peer.take()[0], "000 80 03");
 }
 
@@ -160,7 +160,7 @@ TEST_F(BootTest, a_node_with_heartbeat_but_without_sdo_answers_has_failed_not_va
   pass(seconds(2));
   hear("703 7F");
   pass(seconds(4));
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
   EXPECT_THAT(
       node->problem(),
       HasSubstr("shoulder (node 3): boot failed: its heartbeat comes (NMT state "
@@ -175,7 +175,7 @@ TEST_F(BootTest, a_node_that_booted_up_and_answers_nothing_is_not_said_to_be_sil
   peer.forget(kAskDeviceType);
   boot();
   pass(seconds(6));
-  EXPECT_EQ(node->health(), NodeHealth::absent) << "it is looked for";
+  EXPECT_EQ(node->health(), Health::absent) << "it is looked for";
   EXPECT_THAT(node->problem(), HasSubstr("does not answer: its boot-up message came, but reading "
                                          "1000:00 device type got no answer for 5 s"));
   EXPECT_THAT(node->problem(), HasSubstr("1200h"));
@@ -188,7 +188,7 @@ TEST_F(BootTest, a_node_whose_sdo_server_falls_mute_under_way_is_told_with_its_h
   pass(milliseconds(400));
   hear("703 7F");
   pass(seconds(1));
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
   EXPECT_THAT(node->problem(),
               HasSubstr("boot failed while reading 1018:02 product code: no answer within 500 ms, "
                         "asked 2 times; its heartbeat goes on (NMT state pre-operational): its SDO "
@@ -204,7 +204,7 @@ TEST_F(BootTest, without_a_heartbeat_since_the_question_nothing_is_said_of_the_s
   peer.forget(kAskProduct);
   hear("583 43 18 10 01 CD AB 00 00");
   pass(milliseconds(1500));
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
   EXPECT_THAT(node->problem(), HasSubstr("1018:02 product code"));
   EXPECT_THAT(node->problem(), Not(HasSubstr("heartbeat")));
 }
@@ -215,14 +215,14 @@ TEST_F(BootTest, a_heartbeat_of_before_the_reset_is_no_sign_of_life) {
   boot();
   hear("703 05");
   pass(seconds(6));
-  EXPECT_EQ(node->health(), NodeHealth::absent);
+  EXPECT_EQ(node->health(), Health::absent);
 }
 
 TEST_F(BootTest, another_product_than_configured_is_told_with_both_numbers) {
   config.product_code = 0x000D0117;
   peer.replace(kAskProduct, "583 43 18 10 02 05 00 00 00");
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
   EXPECT_EQ(node->problem(),
             "shoulder (node 3): is another drive than configured: 1018:02 product code is "
             "0x00000005, configured is 0x000D0117; check node-ID and wiring, or correct "
@@ -237,7 +237,7 @@ TEST_F(BootTest, compares_every_part_of_the_identity_that_is_configured) {
   config.revision = 0x00010002;
   config.serial = 12345;
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
   const auto mismatch = [&](std::optional<std::uint32_t> NodeConfig::*part) {
     const std::optional<std::uint32_t> right = config.*part;
     config.*part = 1;
@@ -254,10 +254,10 @@ TEST_F(BootTest, compares_every_part_of_the_identity_that_is_configured) {
 TEST_F(BootTest, missing_identity_entries_matter_only_if_configured) {
   peer.replace(kAskProduct, "583 80 18 10 02 11 00 09 06");
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
   config.product_code = 7;
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
   EXPECT_EQ(node->problem(),
             "shoulder (node 3): boot failed while reading 1018:02 product code: the drive refused: "
             "0x06090011 (sub-index does not exist)");
@@ -268,16 +268,16 @@ TEST_F(BootTest, a_time_out_is_retried_then_told_with_step_object_and_reason) {
   boot();
   EXPECT_EQ(node->bootStep(), "reading 1018:01 vendor id");
   pass(milliseconds(999));
-  EXPECT_EQ(node->health(), NodeHealth::booting);
+  EXPECT_EQ(node->health(), Health::booting);
   pass(milliseconds(1));
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
   EXPECT_EQ(node->problem(),
             "shoulder (node 3): boot failed while reading 1018:01 vendor id: no answer within 500 "
             "ms, asked 2 times; it is tried again in 1 s (attempt 2 of 3)");
   peer.on(kAskVendor, "583 43 18 10 01 CD AB 00 00");
   node->boot(now, true);
   settle();
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
 }
 
 TEST_F(BootTest, a_second_boot_up_during_boot_starts_over) {
@@ -287,7 +287,7 @@ TEST_F(BootTest, a_second_boot_up_during_boot_starts_over) {
   peer.take();
   peer.on(kAskVendor, "583 43 18 10 01 CD AB 00 00");
   hear("703 00");
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
   EXPECT_EQ(node->bootUps(), 2U);
   const Lines sent = peer.take();
   EXPECT_EQ(sent[1], kAskDeviceType);  // after the abort of the interrupted read
@@ -297,7 +297,7 @@ TEST_F(BootTest, refused_heartbeat_objects_are_notes_not_errors) {
   peer.replace("603 23 16 10 01 2C 01 7F 00", "583 80 16 10 01 00 00 02 06");
   peer.replace("603 2B 17 10 00 64 00 00 00", "583 80 17 10 00 00 00 02 06");
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
   EXPECT_THAT(
       node->notes(),
       ElementsAre(
@@ -307,7 +307,7 @@ TEST_F(BootTest, refused_heartbeat_objects_are_notes_not_errors) {
           "heartbeat time: the drive refused: 0x06020000 (object does not exist in the object "
           "dictionary)"));
   pass(seconds(10));
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
 }
 
 TEST_F(BootTest, disables_an_enabled_pdo_that_nobody_configured) {
@@ -315,7 +315,7 @@ TEST_F(BootTest, disables_an_enabled_pdo_that_nobody_configured) {
       .on("603 40 02 18 01 00 00 00 00", "583 43 02 18 01 83 03 00 C0")
       .on("603 23 02 18 01 83 03 00 C0", "583 60 02 18 01 00 00 00 00");
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_TRUE(sentLine("603 23 02 18 01 83 03 00 C0"));
 }
 
@@ -323,7 +323,7 @@ TEST_F(BootTest, notes_an_unconfigured_pdo_that_cannot_be_disabled) {
   peer.replace("603 40 02 18 01 00 00 00 00", "583 43 02 18 01 83 03 00 00")
       .on("603 23 02 18 01 83 03 00 80", "583 80 02 18 01 02 00 01 06");
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_THAT(node->notes(),
               ElementsAre(HasSubstr("a PDO that is not configured could not be disabled: TPDO 3")));
 }
@@ -333,7 +333,7 @@ TEST_F(BootTest, a_pdo_that_cannot_be_configured_fails_the_boot) {
       .on("603 23 00 18 01 83 01 00 80", "583 60 00 18 01 00 00 00 00")
       .on("603 2F 00 1A 00 00 00 00 00", "583 80 00 1A 00 20 00 00 08");
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
   EXPECT_EQ(node->problem(),
             "shoulder (node 3): boot failed: TPDO 1: writing 0x00 to 1A00:00 number of entries of "
             "TPDO 1: the drive refused: 0x08000020 (data cannot be transferred or stored to the "
@@ -345,9 +345,9 @@ TEST_F(BootTest, is_ready_only_when_the_heartbeat_says_operational) {
   boot();
   EXPECT_EQ(node->bootStep(), "waiting for the heartbeat to say operational");
   hear("703 7F");  // was on its way
-  EXPECT_EQ(node->health(), NodeHealth::booting);
+  EXPECT_EQ(node->health(), Health::booting);
   hear("703 05");
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
 }
 
 TEST_F(BootTest, fails_when_the_drive_does_not_become_operational) {
@@ -357,7 +357,7 @@ TEST_F(BootTest, fails_when_the_drive_does_not_become_operational) {
     hear("703 7F");
     pass(milliseconds(100));
   }
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
   EXPECT_THAT(node->problem(), HasSubstr("did not say operational"));
   EXPECT_EQ(peer.take().back(), "000 80 03");
 }
@@ -367,7 +367,7 @@ TEST_F(BootTest, without_heartbeat_its_first_tpdo_tells_that_it_is_operational) 
   config.master_timeout = Duration::zero();
   peer.forget("000 01 03");
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::booting);
+  EXPECT_EQ(node->health(), Health::booting);
   EXPECT_EQ(node->bootStep(), "waiting for the first TPDO");
   EXPECT_FALSE(sentLine("603 2B 17 10 00 64 00 00 00"));
   EXPECT_FALSE(sentLine("603 23 16 10 01 2C 01 7F 00"));
@@ -376,7 +376,7 @@ TEST_F(BootTest, without_heartbeat_its_first_tpdo_tells_that_it_is_operational) 
   EXPECT_EQ(peer.take(), Lines{"000 01 03"}) << "the first one may have been lost";
   node->receiveTpdo(0, test::frame("183 37 02 01 00 00 00"), now);
   pass(milliseconds(0));
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
   EXPECT_THAT(node->notes(), ElementsAre(HasSubstr("cannot notice a dead master: neither"),
                                          HasSubstr("not supervised, its loss will show in missing "
                                                    "TPDOs only")));
@@ -387,7 +387,7 @@ TEST_F(BootTest, without_heartbeat_and_without_tpdos_in_time_the_boot_fails) {
   peer.forget("000 01 03");
   boot();
   pass(milliseconds(1000));
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
   EXPECT_THAT(node->problem(),
               HasSubstr("was started (NMT), but none of its TPDOs came in time; read its error"));
   EXPECT_EQ(peer.take().back(), "000 80 03");
@@ -400,13 +400,13 @@ TEST_F(BootTest, where_no_tpdo_comes_by_itself_it_is_asked_for_its_state) {
   peer.forget("000 01 03");
   peer.on("703 R1", "703 05");
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_THAT(node->notes(), ElementsAre(HasSubstr("not supervised")));
   peer.forget("703 R1");
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::booting);
+  EXPECT_EQ(node->health(), Health::booting);
   pass(milliseconds(100));
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
   EXPECT_THAT(node->notes().back(), HasSubstr("nothing tells whether it became operational"));
 }
 
@@ -417,7 +417,7 @@ TEST_F(BootTest, a_start_command_that_was_lost_is_repeated) {
   hear("703 7F");
   peer.on("000 01 03", "703 05");
   pass(milliseconds(250));
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
   EXPECT_EQ(peer.take(), Lines{"000 01 03"});
 }
 

@@ -56,7 +56,7 @@ TEST_F(BootTurnsTest, a_boot_that_failed_waits_for_no_turn_any_more) {
     hear("703 04");  // stopped, and stays so
     if (i < 10) pass(milliseconds(100));
   }
-  ASSERT_EQ(node->health(), NodeHealth::failed) << node->bootStep();
+  ASSERT_EQ(node->health(), Health::failed) << node->bootStep();
   hear("703 7F");
   EXPECT_TRUE(asksAtOnce());
 }

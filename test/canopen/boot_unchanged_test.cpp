@@ -39,7 +39,7 @@ class BootUnchanged : public test::NodeFixture {
     peer.on(kVoidTime, "583 60 20 10 02 00 00 00 00");
   }
   void expectConfigured() {
-    EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+    EXPECT_EQ(node->health(), Health::ready) << node->problem();
     EXPECT_TRUE(sentLine(kAskMap));
     EXPECT_TRUE(sentLine(kWriteDate) && sentLine(kWriteTime)) << "the proof for the next boot";
     EXPECT_THAT(node->remarks(), IsEmpty());
@@ -50,7 +50,7 @@ TEST_F(BootUnchanged, leaves_out_what_1020h_proves_and_still_looks_at_samples) {
   config.sync_period_us = 4000;
   peer.on("603 40 06 10 00 00 00 00 00", "583 43 06 10 00 A0 0F 00 00");
   boot();
-  ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  ASSERT_EQ(node->health(), Health::ready) << node->problem();
   const Lines sent = peer.take();
   EXPECT_EQ(Lines(sent.begin() + 6, sent.end()),
             (Lines{"603 40 16 10 01 00 00 00 00",  // error control is looked at, not rewritten
@@ -83,7 +83,7 @@ TEST_F(BootUnchanged, writes_that_are_no_configuration_are_done_all_the_same) {
   config.writes = {window, stop};
   peer.on("603 2B 40 60 00 02 00 00 00", "583 60 40 60 00 00 00 00 00");
   boot();
-  ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  ASSERT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_TRUE(sentLine("603 2B 40 60 00 02 00 00 00"));
   EXPECT_FALSE(sentLine("603 2B 65 60 00 02 00 00 00"));
 }
@@ -117,7 +117,7 @@ TEST_F(BootUnchanged, half_a_date_is_none) {
 TEST_F(BootUnchanged, a_drive_without_1020h_is_configured_at_each_boot_and_that_is_told) {
   peer.replace(kReadDate, "583 80 20 10 01 00 00 02 06");
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_TRUE(sentLine(kAskMap));
   EXPECT_FALSE(sentLine(kWriteDate));
   EXPECT_THAT(node->notes(), ElementsAre(HasSubstr("cannot be proved unchanged and is written at "
@@ -148,7 +148,7 @@ TEST_F(BootUnchanged, a_drive_that_kept_1020h_but_lost_its_heartbeat_time_is_cau
 TEST_F(BootUnchanged, a_drive_whose_answers_have_four_bytes_is_not_configured_for_that) {
   peer.replace("603 40 17 10 00 00 00 00 00", "583 43 17 10 00 64 00 00 00");
   boot();
-  ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  ASSERT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_FALSE(sentLine("603 2B 17 10 00 64 00 00 00"));
   EXPECT_FALSE(sentLine(kAskMap));
   EXPECT_THAT(node->notes(), IsEmpty());
@@ -159,7 +159,7 @@ TEST_F(BootUnchanged, a_boot_that_fails_on_its_way_leaves_no_proof) {
   config.pdos[0].entries.pop_back();
   peer.on("603 23 00 14 01 03 02 00 80", "583 80 00 14 01 20 00 00 08");
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
   EXPECT_TRUE(sentLine(kVoidTime));
   EXPECT_FALSE(sentLine(kWriteDate));
 }
@@ -168,7 +168,7 @@ TEST_F(BootUnchanged, a_drive_that_refuses_the_proof_is_ready_all_the_same) {
   peer.replace(kReadDate, kNoDate).replace(kReadTime, kNoTime);
   peer.replace(kWriteDate, "583 80 20 10 01 02 00 01 06");
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
   EXPECT_THAT(node->notes(), ElementsAre(HasSubstr("will be written again at the next boot")));
 }
 
@@ -189,13 +189,13 @@ TEST_F(BootUnchanged,
   peer.on(line("603 23", 1, own.date), "583 60 20 10 01 00 00 00 00");
   peer.on(line("603 23", 2, own.time), "583 60 20 10 02 00 00 00 00");
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_TRUE(sentLine(kAskMap));
   EXPECT_TRUE(sentLine(line("603 23", 1, own.date)));
   peer.take();
   master.external_sync = true;
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_FALSE(sentLine(kAskMap)) << "that is what it holds";
 }
 
@@ -203,7 +203,7 @@ TEST_F(BootUnchanged, a_pdo_that_is_not_used_is_no_sample) {
   config.pdos[0].enabled = false;
   config.pdos[0].cob_id = 0x3FF;
   boot();
-  ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  ASSERT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_FALSE(sentLine("603 40 00 14 01 00 00 00 00"));
   EXPECT_FALSE(sentLine(kAskMap)) << "it is unchanged";
 }
@@ -217,7 +217,7 @@ TEST_F(BootUnchanged, pdos_with_cob_ids_of_the_drive_are_asked_for_at_each_boot)
   hear("703 04");  // and what it says is told once, though it begins again
   peer.on(kAskSyncId, "583 43 05 10 00 80 00 00 00");
   hear("703 7F");
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_TRUE(sentLine(kVoidDate));
   EXPECT_TRUE(sentLine(kAskMap));
   EXPECT_THAT(node->remarks(), ElementsAre(HasSubstr("its PDOs are asked for at each boot")));
@@ -230,7 +230,7 @@ TEST_F(BootUnchanged, an_error_control_object_that_cannot_be_set_right_is_tried_
   boot();
   node->receiveTpdo(0, test::frame("183 37 02 01 00 00 00"), now);
   pass(std::chrono::milliseconds(0));
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_EQ(std::count(peer.sent.begin(), peer.sent.end(), "603 2B 17 10 00 64 00 00 00"), 1);
   EXPECT_FALSE(node->supervision().watched);
 }
@@ -240,7 +240,7 @@ TEST_F(BootUnchanged, a_proof_that_is_not_confirmed_fails_the_boot) {
   peer.forget(kWriteDate);
   boot();
   pass(std::chrono::seconds(1));
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
   EXPECT_THAT(node->problem(), HasSubstr("1020:01 configuration date: no answer"));
 }
 
@@ -251,14 +251,14 @@ TEST_F(BootUnchanged, nothing_is_configured_before_the_old_proof_is_void) {
   EXPECT_EQ(peer.take().back(), kVoidTime);
   EXPECT_EQ(node->bootStep(), "writing 0x00000000 to 1020:02 configuration time");
   hear("583 60 20 10 02 00 00 00 00");
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_TRUE(sentLine(kAskMap));
 }
 
 TEST_F(BootUnchanged, half_a_proof_that_says_nothing_need_not_be_made_void) {
   peer.replace(kReadDate, kNoDate).replace(kReadTime, "583 80 20 10 02 11 00 09 06");
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_FALSE(sentLine(kVoidDate));
   EXPECT_TRUE(sentLine(kAskMap));
 }

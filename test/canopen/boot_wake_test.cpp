@@ -67,7 +67,7 @@ TEST_F(BootWakeTest, nothing_is_asked_by_sdo_before_it_has_left_that_state) {
   EXPECT_THAT(peer.take(), Each(kPreOperational));
   wake();
   hear("703 7F");
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
 }
 
 TEST_F(BootWakeTest, one_that_stays_stopped_is_told_as_that_with_the_remedy) {
@@ -77,7 +77,7 @@ TEST_F(BootWakeTest, one_that_stays_stopped_is_told_as_that_with_the_remedy) {
     hear("703 04");
     if (i < 10) pass(milliseconds(100));
   }
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
   EXPECT_EQ(
       node->problem(),
       "shoulder (node 3): boot failed: it says that it is stopped (NMT state), still after 13 "
@@ -96,7 +96,7 @@ TEST_F(BootWakeTest, a_reset_that_was_lost_is_given_again_where_the_heartbeat_sh
   pass(milliseconds(60));
   peer.on(kReset, "703 00");
   hear("703 04");
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_EQ(peer.take()[0], kReset);
 }
 
@@ -120,7 +120,7 @@ TEST_F(BootWakeTest, one_that_takes_no_reset_is_told_three_times_more_and_woken_
   hear("703 04");
   EXPECT_EQ(peer.take(), Lines{kPreOperational});
   hear("703 7F");
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
 }
 
 TEST_F(BootWakeTest, without_a_heartbeat_the_command_comes_with_each_question) {
@@ -143,7 +143,7 @@ TEST_F(BootWakeTest, one_that_is_stopped_while_it_is_configured_begins_again) {
   EXPECT_THAT(peer.take(), Contains(kPreOperational));
   peer.on(kAskVendor, "583 43 18 10 01 CD AB 00 00");
   hear("703 7F");
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_THAT(peer.take(), Contains(kAskDeviceType));
 }
 
@@ -215,7 +215,7 @@ TEST_F(BootWakeTest, one_that_said_stopped_once_and_no_more_is_told_with_that) {
   pass(milliseconds(30));
   hear("703 04");
   pass(seconds(6));
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
   EXPECT_THAT(node->problem(), ::testing::HasSubstr("it says that it is stopped (NMT state)"));
 }
 

@@ -36,11 +36,11 @@ class LastStopTest : public test::NodeFixture {
   /// Until the last heartbeat is 0.3 s old. Nobody hears the node then, and it hears nobody.
   void lose() {
     boot();
-    ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
+    ASSERT_EQ(node->health(), Health::ready) << node->problem();
     peer.take();
     peer.forget(kMotorStop);
     pass(milliseconds(300));
-    ASSERT_EQ(node->health(), NodeHealth::lost);
+    ASSERT_EQ(node->health(), Health::lost);
   }
   /// When each of `line` was sent, ms from now on.
   std::vector<int> times(const char* line, Duration span) {
@@ -91,7 +91,7 @@ TEST_F(LastStopTest, a_node_that_says_operational_is_told_again_at_once_and_not_
   peer.take();
   hear("703 05");
   EXPECT_EQ(peer.take(), Lines{kMotorStop});
-  EXPECT_EQ(node->health(), NodeHealth::lost);
+  EXPECT_EQ(node->health(), Health::lost);
   EXPECT_THAT(times(kNmtStop, milliseconds(60)), ElementsAre(40, 60));
 }
 
@@ -101,7 +101,7 @@ TEST_F(LastStopTest, what_was_on_its_way_when_it_was_told_is_no_reason_to_tell_i
   peer.take();
   hear("703 05");  // told 9 ms ago
   EXPECT_THAT(times(kNmtStop, milliseconds(31)), ElementsAre(11, 31));
-  EXPECT_EQ(node->health(), NodeHealth::lost);
+  EXPECT_EQ(node->health(), Health::lost);
 }
 
 TEST_F(LastStopTest, a_node_that_says_stopped_is_booted_and_told_no_more) {
@@ -110,7 +110,7 @@ TEST_F(LastStopTest, a_node_that_says_stopped_is_booted_and_told_no_more) {
   peer.on(kMotorStop, "583 60 40 60 00 00 00 00 00");
   peer.take();
   hear("703 04");
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
   const Lines sent = peer.take();
   EXPECT_EQ(sent[0], "000 80 03");
   EXPECT_THAT(sent, Not(Contains(kNmtStop)));
@@ -124,10 +124,10 @@ TEST_F(LastStopTest, a_node_that_takes_no_nmt_stop_is_booted_half_a_second_after
   peer.on(kMotorStop, "583 60 40 60 00 00 00 00 00");
   pass(milliseconds(499));
   hear("703 05");
-  EXPECT_EQ(node->health(), NodeHealth::lost);
+  EXPECT_EQ(node->health(), Health::lost);
   pass(milliseconds(1));
   hear("703 05");
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
 }
 
 TEST_F(LastStopTest, a_node_that_rebooted_is_told_no_more) {
@@ -135,7 +135,7 @@ TEST_F(LastStopTest, a_node_that_rebooted_is_told_no_more) {
   peer.on(kMotorStop, "583 60 40 60 00 00 00 00 00");
   peer.take();
   hear("703 00");
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
   EXPECT_THAT(peer.take(), Not(Contains(kNmtStop)));
 }
 
@@ -149,7 +149,7 @@ TEST_F(LastStopTest, an_answer_to_the_posted_stop_is_taken_for_none_to_a_later_r
   EXPECT_EQ(peer.take(), (Lines{"000 80 03", "603 40 00 10 00 00 00 00 00"}));
   hear("583 60 40 60 00 00 00 00 00");  // of the posted write, late
   EXPECT_THAT(peer.take(), IsEmpty());
-  EXPECT_EQ(node->health(), NodeHealth::booting);
+  EXPECT_EQ(node->health(), Health::booting);
 }
 
 TEST_F(LastStopTest, is_told_nothing_any_more_when_three_seconds_are_over_to_the_moment) {

@@ -131,7 +131,7 @@ TEST_F(MasterPacing, rpdos_that_wait_hold_a_long_transfer_up) {
   master->start(now, false);
   settle();
   pass(milliseconds(50));
-  ASSERT_EQ(master->find(5)->health(), NodeHealth::ready) << master->find(5)->problem();
+  ASSERT_EQ(master->find(5)->health(), Health::ready) << master->find(5)->problem();
   peer.take();
   for (int i = 0; i < 5; ++i) master->sendRpdos(now);
   EXPECT_EQ(count("205 "), 5);
@@ -152,8 +152,8 @@ TEST_F(MasterPacing, rpdos_push_the_requests_of_booting_nodes_back) {
   master->start(now, false);
   settle();
   pass(milliseconds(50));
-  ASSERT_EQ(master->find(3)->health(), NodeHealth::ready) << master->find(3)->problem();
-  ASSERT_EQ(master->find(5)->health(), NodeHealth::ready) << master->find(5)->problem();
+  ASSERT_EQ(master->find(3)->health(), Health::ready) << master->find(3)->problem();
+  ASSERT_EQ(master->find(5)->health(), Health::ready) << master->find(5)->problem();
   const std::string ask_type = "605 40 00 10 00 00 00 00 00";
   const std::string ask_vendor = "605 40 18 10 01 00 00 00 00";
   peer.forget(ask_type);
@@ -174,7 +174,7 @@ TEST_F(MasterPacing, tpdos_push_the_requests_of_booting_nodes_back) {
   master->start(now, false);
   settle();
   pass(milliseconds(50));
-  ASSERT_EQ(master->find(5)->health(), NodeHealth::ready) << master->find(5)->problem();
+  ASSERT_EQ(master->find(5)->health(), Health::ready) << master->find(5)->problem();
   const std::string ask_vendor = "605 40 18 10 01 00 00 00 00";
   peer.forget("605 40 00 10 00 00 00 00 00");
   hear("705 00");

@@ -22,13 +22,13 @@ using Lines = std::vector<std::string>;
 class Log : public MasterListener {
  public:
   void onEmergency(Node& node, const Emergency& emergency) override {
-    lines.push_back(node.name() + " emergency " + emergencyText(emergency.code));
+    lines.push_back(node.name() + " emergency " + fieldbus::emergencyText(emergency.code));
   }
   void onMalformedEmergency(Node& node, std::size_t size) override {
     lines.push_back(node.name() + " malformed emergency of " + std::to_string(size) + " bytes");
   }
   void onBootUp(Node& node, Time) override { lines.push_back(node.name() + " boot-up"); }
-  void onHealthChange(Node& node, NodeHealth before, Time) override {
+  void onHealthChange(Node& node, Health before, Time) override {
     lines.push_back(node.name() + " " + toString(before) + " -> " + toString(node.health()));
   }
   void onForeignSync(const can::Frame&, Time, Time) override { ++foreign_syncs; }
@@ -92,13 +92,13 @@ TEST_F(MasterTest, starts_with_one_reset_for_all_where_that_is_configured) {
   master->start(now);
   EXPECT_EQ(peer.take(), (Lines{"77F 00", "77F 05", "000 82 00"}));
   settle();
-  EXPECT_EQ(master->find(5)->health(), NodeHealth::ready);
+  EXPECT_EQ(master->find(5)->health(), Health::ready);
 }
 
 TEST_F(MasterTest, boots_all_nodes_in_parallel) {
   start();
-  EXPECT_EQ(master->find(3)->health(), NodeHealth::ready);
-  EXPECT_EQ(master->find(5)->health(), NodeHealth::ready);
+  EXPECT_EQ(master->find(3)->health(), Health::ready);
+  EXPECT_EQ(master->find(5)->health(), Health::ready);
   const Lines sent = peer.take();
   // Both are asked for their identity before either is configured.
   EXPECT_EQ(Lines(sent.begin() + 4, sent.begin() + 8),
@@ -109,8 +109,8 @@ TEST_F(MasterTest, boots_all_nodes_in_parallel) {
 TEST_F(MasterTest, a_silent_node_does_not_delay_the_others) {
   peer.forget("605 40 18 10 01 00 00 00 00");
   start();
-  EXPECT_EQ(master->find(3)->health(), NodeHealth::ready);
-  EXPECT_EQ(master->find(5)->health(), NodeHealth::booting);
+  EXPECT_EQ(master->find(3)->health(), Health::ready);
+  EXPECT_EQ(master->find(5)->health(), Health::booting);
 }
 
 TEST_F(MasterTest, without_reset_brings_each_node_to_pre_operational) {
@@ -121,7 +121,7 @@ TEST_F(MasterTest, without_reset_brings_each_node_to_pre_operational) {
   EXPECT_THAT(sent, Contains("000 80 05"));
   EXPECT_THAT(sent, ::testing::Not(Contains("000 82 00")));
   settle();
-  EXPECT_EQ(master->find(5)->health(), NodeHealth::ready);
+  EXPECT_EQ(master->find(5)->health(), Health::ready);
 }
 
 TEST_F(MasterTest, tells_boot_ups_and_changes_of_health) {
@@ -154,8 +154,8 @@ TEST_F(MasterTest, tells_emergencies) {
 TEST_F(MasterTest, gives_each_tpdo_to_its_node) {
   start();
   hear("185 37 02 2A 00 00 00");
-  const ProcessImage& elbow = master->find(5)->image();
-  const ProcessImage& shoulder = master->find(3)->image();
+  const PdoImage& elbow = master->find(5)->image();
+  const PdoImage& shoulder = master->find(3)->image();
   EXPECT_EQ(elbow.input(elbow.inputSlot({0x6064, 0})).raw, 42U);
   EXPECT_FALSE(shoulder.input(shoulder.inputSlot({0x6064, 0})).valid);
   EXPECT_EQ(master->strayFrames(), 0U);
@@ -228,11 +228,11 @@ TEST_F(MasterTest, a_missing_node_stays_missing_when_all_are_commanded) {
     pass(milliseconds(100));
     hear("703 05");
   }
-  ASSERT_EQ(master->find(5)->health(), NodeHealth::absent);
-  ASSERT_EQ(master->find(3)->health(), NodeHealth::ready);
+  ASSERT_EQ(master->find(5)->health(), Health::absent);
+  ASSERT_EQ(master->find(3)->health(), Health::ready);
   master->commandAll(NmtCommand::stop, now);
-  EXPECT_EQ(master->find(5)->health(), NodeHealth::absent);
-  EXPECT_EQ(master->find(3)->health(), NodeHealth::failed);
+  EXPECT_EQ(master->find(5)->health(), Health::absent);
+  EXPECT_EQ(master->find(3)->health(), Health::failed);
 }
 
 TEST_F(MasterTest, tells_a_change_that_was_commanded_at_the_node_itself) {
@@ -308,7 +308,7 @@ TEST_F(MasterTest, follows_a_tpdo_to_the_cob_id_that_the_drive_insists_on) {
   peer.on("603 23 00 18 01 A3 01 00 80", "583 80 00 18 01 02 00 01 06");       // read-only
   start();
   const Node& shoulder = *master->find(3);
-  ASSERT_EQ(shoulder.health(), NodeHealth::ready) << shoulder.problem();
+  ASSERT_EQ(shoulder.health(), Health::ready) << shoulder.problem();
   EXPECT_THAT(
       shoulder.notes(),
       Contains(::testing::HasSubstr("TPDO 1 has the COB-ID 0x1A3 that the drive insists on")));
@@ -322,18 +322,18 @@ TEST_F(MasterTest, refuses_a_drive_that_insists_on_the_cob_id_of_another) {
   peer.replace("603 40 00 18 01 00 00 00 00", "583 43 00 18 01 85 01 00 00");  // elbow's 185h
   peer.on("603 23 00 18 01 85 01 00 80", "583 80 00 18 01 02 00 01 06");
   start();
-  EXPECT_EQ(master->find(3)->health(), NodeHealth::failed);
+  EXPECT_EQ(master->find(3)->health(), Health::failed);
   EXPECT_THAT(
       master->find(3)->problem(),
       ::testing::HasSubstr("TPDO 1 with COB-ID 0x185: that is used twice, by elbow already"));
-  EXPECT_EQ(master->find(5)->health(), NodeHealth::ready);
+  EXPECT_EQ(master->find(5)->health(), Health::ready);
   for (int i = 0; i < 3; ++i) hear("703 7F");
   EXPECT_EQ(std::count(peer.sent.begin(), peer.sent.end(), "000 80 03"), 1) << "refused once";
   master->find(3)->sdo().upload({0x1008, 0});
   pass(milliseconds(1));
   EXPECT_EQ(std::count(peer.sent.begin(), peer.sent.end(), "000 80 03"), 1) << "whatever follows";
   hear("185 37 02 2A 00 00 00");
-  const ProcessImage& elbow = master->find(5)->image();
+  const PdoImage& elbow = master->find(5)->image();
   EXPECT_EQ(elbow.input(elbow.inputSlot({0x6064, 0})).raw, 42U);
 }
 
@@ -347,7 +347,7 @@ TEST_F(MasterTest, asks_for_tpdos_by_remote_frame_right_after_sync) {
   config.nodes[0].pdos[1].transmission = 253;
   peer.replace("603 40 00 18 02 00 00 00 00", "583 4F 00 18 02 FD 00 00 00");
   start();
-  ASSERT_EQ(master->find(3)->health(), NodeHealth::ready) << master->find(3)->problem();
+  ASSERT_EQ(master->find(3)->health(), Health::ready) << master->find(3)->problem();
   peer.take();
   master->sendSync(now);
   EXPECT_EQ(peer.take(), (Lines{"080", "183 R6"}));

@@ -21,7 +21,7 @@ class NmtPauseTest : public test::NodeFixture {
   void pauseReadyNode() {
     boot();
     hear("703 05");
-    ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
+    ASSERT_EQ(node->health(), Health::ready) << node->problem();
     peer.take();
     peer.forget(kStartCommand);  // else it answers at once
     node->stopAndStart(milliseconds(100), now);
@@ -42,7 +42,7 @@ TEST_F(NmtPauseTest, StopsTwiceAndStartsUntilTheHeartbeatSaysOperational) {
   EXPECT_FALSE(node->paused());
   pass(milliseconds(60));
   EXPECT_EQ(peer.take(), Lines{});
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
 }
 
 TEST_F(NmtPauseTest, AHeartbeatThatSaysStoppedIsNoSurpriseThen) {
@@ -51,11 +51,11 @@ TEST_F(NmtPauseTest, AHeartbeatThatSaysStoppedIsNoSurpriseThen) {
   hear("703 04");
   pass(milliseconds(80));
   hear("703 04");
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
   hear("703 05");
   EXPECT_FALSE(node->paused());
   hear("703 04");
-  EXPECT_EQ(node->health(), NodeHealth::booting) << "now it is one";
+  EXPECT_EQ(node->health(), Health::booting) << "now it is one";
 }
 
 TEST_F(NmtPauseTest, AHeartbeatFromBeforeTheStopEndsNothing) {
@@ -71,7 +71,7 @@ TEST_F(NmtPauseTest, ANodeThatDoesNotStartAgainIsBooted) {
     hear("703 04");
   }
   EXPECT_FALSE(node->paused());
-  EXPECT_NE(node->health(), NodeHealth::ready);
+  EXPECT_NE(node->health(), Health::ready);
   EXPECT_THAT(node->problem(), HasSubstr("did not become operational again"));
 }
 

@@ -65,7 +65,7 @@ class NodeGuarding : public test::NodeFixture {
   }
   void bootReady() {
     boot();
-    ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem() << node->bootStep();
+    ASSERT_EQ(node->health(), Health::ready) << node->problem() << node->bootStep();
   }
   /// From now on the answers are these, the last one again and again.
   void answers(const Lines& lines) {
@@ -104,7 +104,7 @@ TEST_F(NodeGuarding, asks_every_guard_time_as_long_as_it_is_answered) {
   EXPECT_EQ(requests(), 1U);
   pass(seconds(5));
   EXPECT_EQ(requests(), 50U);
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
   EXPECT_EQ(node->nmtState(), NmtState::operational);
 }
 
@@ -113,9 +113,9 @@ TEST_F(NodeGuarding, a_node_that_answers_no_more_is_lost_after_its_life_time) {
   peer.take();
   peer.forget("703 R1");
   pass(milliseconds(299));
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
   pass(milliseconds(1));
-  EXPECT_EQ(node->health(), NodeHealth::lost);
+  EXPECT_EQ(node->health(), Health::lost);
   EXPECT_EQ(node->problem(),
             "shoulder (node 3): no answer to node guarding for 0.3 s (asked every 0.1 s): check "
             "power and cable; it is configured again when it is back");
@@ -126,24 +126,24 @@ TEST_F(NodeGuarding, a_node_that_heard_the_stop_after_its_loss_is_found_by_a_rem
   bootReady();
   peer.forget("703 R1");
   pass(milliseconds(300));
-  ASSERT_EQ(node->health(), NodeHealth::lost);
+  ASSERT_EQ(node->health(), Health::lost);
   peer.forget("603 40 00 10 00 00 00 00 00");  // stopped: no SDO, and nothing said unasked
   peer.take();
   pass(seconds(3));
-  EXPECT_EQ(node->health(), NodeHealth::lost);
+  EXPECT_EQ(node->health(), Health::lost);
   EXPECT_GE(requests(), 1U);
   answers({"703 84"});  // stopped, toggle bit 1
-  for (int i = 0; i < 300 && node->health() == NodeHealth::lost; ++i) pass(milliseconds(100));
-  EXPECT_EQ(node->health(), NodeHealth::booting) << node->problem();
+  for (int i = 0; i < 300 && node->health() == Health::lost; ++i) pass(milliseconds(100));
+  EXPECT_EQ(node->health(), Health::booting) << node->problem();
 }
 
 TEST_F(NodeGuarding, a_toggle_bit_that_stands_still_is_no_answer) {
   bootReady();
   answers({"703 05"});  // right once, then always the same
   pass(milliseconds(399));
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
   pass(milliseconds(1));
-  EXPECT_EQ(node->health(), NodeHealth::lost);
+  EXPECT_EQ(node->health(), Health::lost);
   EXPECT_THAT(node->problem(), HasSubstr("no valid answer to node guarding for 0.3 s (asked every "
                                          "0.1 s): the toggle bit of 2 answers did not alternate; "
                                          "look for a second device with this node-ID"));
@@ -155,28 +155,28 @@ TEST_F(NodeGuarding, one_lost_request_or_answer_does_no_harm) {
   pass(milliseconds(150));  // asked once in vain: the drive did not toggle
   answers({"703 05", "703 85", "703 85", "703 05", "703 85", "703 05", "703 85"});
   pass(milliseconds(700));
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
 }
 
 TEST_F(NodeGuarding, an_answer_that_was_lost_lets_the_next_one_seem_wrong_only_once) {
   bootReady();                                        // last answer: toggle 1
   answers({"703 85", "703 05", "703 85", "703 05"});  // that with toggle 0 was lost
   pass(milliseconds(400));
-  EXPECT_EQ(node->health(), NodeHealth::ready);
+  EXPECT_EQ(node->health(), Health::ready);
 }
 
 TEST_F(NodeGuarding, after_a_boot_up_the_first_answer_must_have_toggle_bit_0) {
   answers({"703 FF"});  // pre-operational, but toggle bit 1 from the beginning
   boot();
   pass(milliseconds(300));
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
   EXPECT_THAT(node->problem(), HasSubstr("boot failed: no valid answer to node guarding"));
 }
 
 TEST_F(NodeGuarding, without_a_reset_the_toggle_bit_may_begin_either_way) {
   answers({"703 FF", "703 05", "703 85"});
   boot(false);
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
 }
 
 TEST_F(NodeGuarding, another_state_than_expected_is_told_and_set_right) {
@@ -184,7 +184,7 @@ TEST_F(NodeGuarding, another_state_than_expected_is_told_and_set_right) {
   peer.forget(test::request(3, "40 00 10 00 00 00 00 00"));
   answers({"703 04"});
   pass(milliseconds(100));
-  EXPECT_EQ(node->health(), NodeHealth::booting);
+  EXPECT_EQ(node->health(), Health::booting);
   EXPECT_THAT(node->problem(), HasSubstr("became stopped without our command"));
 }
 
@@ -204,7 +204,7 @@ TEST_F(NodeGuarding, a_drive_that_answers_sdo_but_no_guarding_fails_with_a_remed
   peer.forget("703 R1");
   boot();
   pass(milliseconds(300));
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
   EXPECT_EQ(node->problem(),
             "shoulder (node 3): boot failed: no answer to node guarding for 0.3 s (asked every 0.1 "
             "s); if the drive has no node guarding, choose another `error_control`; it is tried "
@@ -217,7 +217,7 @@ TEST_F(NodeGuarding, a_lost_node_is_looked_for_and_booted_again) {
   const std::string ask = test::request(3, "40 00 10 00 00 00 00 00");
   peer.forget(ask);
   pass(milliseconds(300));
-  ASSERT_EQ(node->health(), NodeHealth::lost);
+  ASSERT_EQ(node->health(), Health::lost);
   peer.take();
   pass(milliseconds(3000));
   Lines sent = peer.take();
@@ -227,7 +227,7 @@ TEST_F(NodeGuarding, a_lost_node_is_looked_for_and_booted_again) {
   peer.on(ask, "583 43 00 10 00 92 01 02 00");
   answers({"703 7F", "703 85", "703 05"});
   pass(milliseconds(4500));
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
 }
 
 TEST_F(NodeGuarding, one_that_says_stopped_is_woken_at_once_and_asked_each_time) {
@@ -247,7 +247,7 @@ TEST_F(NodeGuarding, one_that_says_stopped_is_woken_at_once_and_asked_each_time)
     EXPECT_THAT(peer.take(), ElementsAre("000 80 03", "703 R1"));
   }
   pass(milliseconds(20));  // now it says pre-operational
-  EXPECT_EQ(node->health(), NodeHealth::ready) << node->problem();
+  EXPECT_EQ(node->health(), Health::ready) << node->problem();
 }
 
 TEST_F(NodeGuarding, no_request_leaves_while_the_node_is_not_there) {
@@ -276,7 +276,7 @@ TEST_F(NodeGuarding, a_heartbeat_that_stays_on_beside_it_is_told) {
 TEST_F(NodeGuarding, waits_for_the_answer_that_says_operational) {
   answers({"703 7F"});
   boot();
-  EXPECT_EQ(node->health(), NodeHealth::booting);
+  EXPECT_EQ(node->health(), Health::booting);
   EXPECT_EQ(node->bootStep(), "waiting for an answer to guarding that says operational");
 }
 
@@ -284,10 +284,10 @@ TEST_F(NodeGuarding, a_node_that_answered_and_falls_silent_while_it_boots_is_los
   peer.forget("603 40 00 16 00 00 00 00 00");
   answers({"703 7F"});
   boot();
-  ASSERT_EQ(node->health(), NodeHealth::booting);
+  ASSERT_EQ(node->health(), Health::booting);
   peer.forget("703 R1");
   pass(milliseconds(300));
-  EXPECT_EQ(node->health(), NodeHealth::lost);
+  EXPECT_EQ(node->health(), Health::lost);
   EXPECT_THAT(node->problem(), HasSubstr("no answer to node guarding for 0.3 s"));
 }
 
@@ -296,18 +296,18 @@ TEST_F(NodeGuarding, answers_of_before_a_reboot_tell_nothing_of_the_drive_that_b
   peer.forget("703 R1");
   hear("703 00");
   pass(milliseconds(300));
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
   EXPECT_THAT(node->problem(), HasSubstr("if the drive has no node guarding"));
 }
 
 TEST_F(NodeGuarding, a_node_whose_boot_failed_is_guarded_no_more) {
   peer.replace("603 40 00 18 01 00 00 00 00", "583 80 00 18 01 00 00 02 06");
   boot();
-  ASSERT_EQ(node->health(), NodeHealth::failed);
+  ASSERT_EQ(node->health(), Health::failed);
   requests();
   pass(seconds(1));
   EXPECT_EQ(requests(), 0U);
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
   EXPECT_THAT(node->problem(), HasSubstr("1800:01"));
 }
 

@@ -15,31 +15,33 @@ class NodeStateTest : public test::NodeFixture {
  protected:
   void bootReady() {
     boot();
-    ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
+    ASSERT_EQ(node->health(), Health::ready) << node->problem();
     peer.take();
   }
   void tpdo(const std::string& text) { node->receiveTpdo(0, frame(text), now); }
-  ProcessValue statusword() { return node->image().input(node->image().inputSlot(kStatusword)); }
+  fieldbus::ProcessValue statusword() {
+    return node->image().input(node->image().inputSlot(kStatusword));
+  }
 };
 
 TEST_F(NodeStateTest, is_excused_while_it_is_away_and_may_be) {
   for (const bool optional : {false, true}) {
     config.boot.optional = optional;
     boot();
-    ASSERT_EQ(node->health(), NodeHealth::ready) << node->problem();
+    ASSERT_EQ(node->health(), Health::ready) << node->problem();
     EXPECT_FALSE(node->excused()) << "it is there";
     pass(milliseconds(300));
-    ASSERT_EQ(node->health(), NodeHealth::lost);
+    ASSERT_EQ(node->health(), Health::lost);
     EXPECT_EQ(node->excused(), optional);
   }
 }
 
 TEST_F(NodeStateTest, tells_why_a_stopped_drive_cannot_be_asked) {
   bootReady();
-  EXPECT_EQ(node->stoppedRefusal("6041:00 statusword"), "");
+  EXPECT_EQ(node->askingRefusal("6041:00 statusword"), "");
   node->command(NmtCommand::stop, now);
   hear("703 04");
-  EXPECT_THAT(node->stoppedRefusal("6041:00 statusword"),
+  EXPECT_THAT(node->askingRefusal("6041:00 statusword"),
               HasSubstr("shoulder (node 3): 6041:00 statusword cannot be asked for: the drive's "
                         "heartbeat says stopped"));
 }
@@ -49,7 +51,7 @@ TEST_F(NodeStateTest, one_that_is_refused_is_made_pre_operational_and_tells_why)
   const std::uint32_t before = node->changes();
   node->refuse("cannot be used: two have one COB-ID", now);
   EXPECT_EQ(peer.take(), Lines{"000 80 03"});
-  EXPECT_EQ(node->health(), NodeHealth::failed);
+  EXPECT_EQ(node->health(), Health::failed);
   EXPECT_EQ(node->problem(), "shoulder (node 3): cannot be used: two have one COB-ID");
   EXPECT_GT(node->changes(), before);
   tpdo("183 37 02 01 00 00 00");
@@ -66,10 +68,10 @@ TEST_F(NodeStateTest, a_command_out_of_operation_before_the_first_boot_only_leav
   create();
   node->command(NmtCommand::stop, now);
   EXPECT_EQ(peer.take(), Lines{"000 02 03"});
-  EXPECT_EQ(node->health(), NodeHealth::absent);
+  EXPECT_EQ(node->health(), Health::absent);
   EXPECT_EQ(node->problem(), "");
   hear("703 04");
-  EXPECT_EQ(node->health(), NodeHealth::absent);
+  EXPECT_EQ(node->health(), Health::absent);
 }
 
 TEST_F(NodeStateTest, a_boot_is_news) {

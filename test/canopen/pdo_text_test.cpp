@@ -11,18 +11,18 @@ namespace {
 constexpr Time kNoon(std::chrono::hours(12));
 
 /// TPDO 1 of six bytes on 183h, TPDO 2 of three on 283h.
-ProcessImage twoTpdos() {
+PdoImage twoTpdos() {
   PdoConfig first, second;
   first.cob_id = 0x183;
   first.entries = {{{0x6041, 0}, 16, ""}, {{0x6064, 0}, 32, ""}};
   second.number = 2;
   second.cob_id = 0x283;
   second.entries = {{{0x6061, 0}, 8, ""}, {{0x6041, 0}, 16, ""}};
-  return ProcessImage({first, second});
+  return PdoImage({first, second});
 }
 
 TEST(PdoText, names_what_is_missing_and_why) {
-  ProcessImage image = twoTpdos();
+  PdoImage image = twoTpdos();
   EXPECT_EQ(missingText(image), "");
   for (int i = 0; i < 11; ++i) {
     image.age(kNoon);
@@ -39,7 +39,7 @@ TEST(PdoText, a_tpdo_that_was_too_short_once_and_fails_to_come_later_does_not_co
   PdoConfig statusword;
   statusword.cob_id = 0x183;
   statusword.entries = {{{0x6041, 0}, 16, ""}};
-  ProcessImage image({statusword});
+  PdoImage image({statusword});
   const auto silence = [&image] {
     for (int i = 0; i < 11; ++i) image.age(kNoon);
   };
@@ -57,7 +57,7 @@ TEST(PdoText, a_tpdo_that_was_too_short_once_and_fails_to_come_later_does_not_co
 }
 
 TEST(PdoText, names_what_is_overdue_and_what_has_a_wrong_length) {
-  ProcessImage image = twoTpdos();
+  PdoImage image = twoTpdos();
   EXPECT_EQ(staleText(image), "");
   EXPECT_EQ(wrongLengthText(image), "");
   image.receive(0, test::frame("183 37 02"), kNoon);

@@ -53,7 +53,7 @@ canopen::NodeConfig nodeOf(const Loaded& loaded) {
 std::string loadedName(const std::string& index) {
   const Loaded loaded = load("");
   const drive::ObjectSpec* object =
-      loaded.robot.axes[0].profile->find(*canopen::parseObjectId(index));
+      loaded.robot.axes[0].profile->find(*fieldbus::parseObjectId(index));
   EXPECT_NE(object, nullptr);
   return object == nullptr ? "" : object->name;
 }
@@ -65,7 +65,7 @@ TEST(LoadEds, WithoutDamageItAddsNeitherProblemNorWarningButMissingObjects) {
   EXPECT_THAT(loaded.robot.warnings[0],
               AllOf(HasSubstr("axes/shoulder/eds: motor.eds does not have"),
                     HasSubstr("objects of profile generic_cia402: ")));
-  EXPECT_EQ(loaded.robot.axes[0].eds->file, "motor.eds");
+  EXPECT_EQ(loaded.robot.axes[0].description->file, "motor.eds");
 }
 
 TEST(LoadEds, ObjectsAreWrittenAndMappedByTheirNamesInTheEds) {
@@ -75,18 +75,18 @@ TEST(LoadEds, ObjectsAreWrittenAndMappedByTheirNamesInTheEds) {
       "[statusword, position_actual, Motor temperature]}");
   EXPECT_EQ(loaded.problems, "");
   const canopen::NodeConfig node = nodeOf(loaded);
-  const auto write = [&](canopen::ObjectId id) {
+  const auto write = [&](fieldbus::ObjectId id) {
     for (const canopen::StartupWrite& entry : node.writes) {
       if (entry.object == id) return entry.data;
     }
-    return canopen::Bytes{};
+    return fieldbus::Bytes{};
   };
-  EXPECT_EQ(write({0x2010, 1}), (canopen::Bytes{0xBC, 0x02}));
-  EXPECT_EQ(write({0x2011, 0}), (canopen::Bytes{0, 0, 0xC0, 0x3F}));
+  EXPECT_EQ(write({0x2010, 1}), (fieldbus::Bytes{0xBC, 0x02}));
+  EXPECT_EQ(write({0x2011, 0}), (fieldbus::Bytes{0, 0, 0xC0, 0x3F}));
   bool mapped = false;
   for (const canopen::PdoConfig& pdo : node.pdos) {
     for (const canopen::PdoEntry& entry : pdo.entries) {
-      mapped = mapped || (entry.object == canopen::ObjectId{0x2012, 0} && entry.bits == 16);
+      mapped = mapped || (entry.object == fieldbus::ObjectId{0x2012, 0} && entry.bits == 16);
     }
   }
   EXPECT_TRUE(mapped);
@@ -104,7 +104,7 @@ TEST(LoadEds, WhatIsNotFiniteIsNotWrittenIntoAFloatByAnyName) {
 }
 
 bool maps(const Loaded& loaded, const std::string& object) {
-  for (const drive::PdoLayout& pdo : loaded.robot.axes[0].pdos) {
+  for (const canopen::PdoLayout& pdo : loaded.robot.devices[0].pdos) {
     if (std::find(pdo.objects.begin(), pdo.objects.end(), object) != pdo.objects.end()) return true;
   }
   return false;

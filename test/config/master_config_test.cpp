@@ -35,7 +35,7 @@ axes:
   joint: {node_id: 6, drive: damiao_dm, limits: {velocity: 2.0, effort: 7.0}}
 )";
 
-std::vector<std::uint8_t> written(const NodeConfig& node, canopen::ObjectId object) {
+std::vector<std::uint8_t> written(const NodeConfig& node, fieldbus::ObjectId object) {
   for (const auto& write : node.writes) {
     if (write.object == object) return write.data;
   }
@@ -65,9 +65,9 @@ TEST(MasterConfig, MapsTheLayoutAndDisablesTheRest) {
   const PdoConfig& first = pdo(master.nodes.at(0), canopen::PdoDirection::rpdo, 1);
   EXPECT_TRUE(first.enabled);
   ASSERT_EQ(first.entries.size(), 2u);
-  EXPECT_EQ(first.entries[0].object, (canopen::ObjectId{0x6040, 0}));
+  EXPECT_EQ(first.entries[0].object, (fieldbus::ObjectId{0x6040, 0}));
   EXPECT_EQ(first.entries[0].bits, 16);
-  EXPECT_EQ(first.entries[1].object, (canopen::ObjectId{0x607A, 0}));
+  EXPECT_EQ(first.entries[1].object, (fieldbus::ObjectId{0x607A, 0}));
   EXPECT_EQ(first.entries[1].bits, 32);
   EXPECT_FALSE(pdo(master.nodes.at(0), canopen::PdoDirection::rpdo, 3).enabled);
   EXPECT_EQ(pdo(master.nodes.at(0), canopen::PdoDirection::tpdo, 3).transmission, 10);
@@ -352,11 +352,11 @@ RobotConfig genericAxes(int count) {
 }
 
 TEST(BusLoad, WhatTravelsForTheRoomOnlyStaysAwayFromAFullBus) {
-  EXPECT_THAT(genericAxes(1).axes[0].riders, testing::ElementsAre("following_error"));
+  EXPECT_THAT(genericAxes(1).devices[0].riders, testing::ElementsAre("following_error"));
   const RobotConfig full = genericAxes(8);
-  for (const drive::AxisConfig& axis : full.axes) {
-    EXPECT_TRUE(axis.riders.empty());
-    for (const drive::PdoLayout& pdo : axis.pdos) {
+  for (const canopen::DeviceConfig& device : full.devices) {
+    EXPECT_TRUE(device.riders.empty());
+    for (const canopen::PdoLayout& pdo : device.pdos) {
       EXPECT_THAT(pdo.objects, testing::Not(testing::Contains("following_error")));
     }
   }
@@ -364,7 +364,7 @@ TEST(BusLoad, WhatTravelsForTheRoomOnlyStaysAwayFromAFullBus) {
     const RobotConfig robot = genericAxes(count);
     Problems problems;
     const double worst = busLoad(makeMasterConfig(robot, problems), robot.bus.bitrate).worst;
-    EXPECT_TRUE(worst <= 0.8 || robot.axes[0].riders.empty()) << count << ": " << worst;
+    EXPECT_TRUE(worst <= 0.8 || robot.devices[0].riders.empty()) << count << ": " << worst;
   }
 }
 

@@ -104,8 +104,8 @@ TEST(ProfileRules, LssTakesTheDrivesPartOfTheIdentity) {
   const OwnProfile profile{"identity: {vendor_id: 17, product_code: 18}", "", ""};
   const OwnDrive loaded = loadOwn(profile, ", lss: {revision: 3, serial: 4}");
   EXPECT_EQ(loaded.problems.text(), "");
-  ASSERT_TRUE(loaded.robot.axes[0].lss);
-  EXPECT_EQ(loaded.robot.axes[0].lss->identity, (canopen::lss::Identity{17, 18, 3, 4}));
+  ASSERT_TRUE(loaded.robot.devices[0].lss);
+  EXPECT_EQ(loaded.robot.devices[0].lss->identity, (canopen::lss::Identity{17, 18, 3, 4}));
   EXPECT_THAT(loadOwn(profile, ", lss: true").problems.text(),
               HasSubstr("axes/a/lss: needs all four numbers of the drive's identity (1018h), here "
                         "or under `identity`; missing: revision, serial"));
@@ -118,7 +118,7 @@ TEST(ProfileRules, WhatBrakesInAModeIsPlannedWithIt) {
     const OwnDrive loaded = loadOwn(profile, ", rated_torque: 1.0" + axis);
     EXPECT_EQ(loaded.problems.text(), "");
     std::vector<std::string> targets;
-    for (const drive::PdoLayout& pdo : loaded.robot.axes[0].pdos) {
+    for (const canopen::PdoLayout& pdo : loaded.robot.devices[0].pdos) {
       targets.insert(targets.end(), pdo.objects.begin(), pdo.objects.end());
     }
     EXPECT_THAT(targets, Contains("target_velocity"));

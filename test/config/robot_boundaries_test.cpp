@@ -137,7 +137,7 @@ TEST(RobotBoundaries, TheDrivesOwnDeadlineHas16BitsOfMilliseconds) {
   const auto timer = [](const char* timeout) {
     const LoadedRobot loaded = shoulderWith(std::string("rpdo_timeout: ") + timeout);
     EXPECT_EQ(loaded.problems, "");
-    return loaded.robot.axes[0].pdos.at(0).event_timer;
+    return loaded.robot.devices[0].pdos.at(0).event_timer;
   };
   EXPECT_EQ(timer("65.535"), 65535);
   EXPECT_EQ(timer("0.008"), 8) << "two cycles";
@@ -312,7 +312,7 @@ TEST(RobotConfig, LssMayBeLeftOutOrTellDrivesApart) {
   text.replace(text.find("node_id: 2,"), 11, "node_id: 2, " + lss + "5},");
   const LoadedRobot both = loadText(text);
   EXPECT_EQ(both.problems, "");
-  EXPECT_EQ(both.robot.axes[1].lss->identity, (canopen::lss::Identity{1, 2, 3, 5}));
+  EXPECT_EQ(both.robot.devices[1].lss->identity, (canopen::lss::Identity{1, 2, 3, 5}));
 }
 
 TEST(RobotMistakes, NoAxisCanDoWithoutItsWordsAndPosition) {
@@ -331,8 +331,8 @@ TEST(RobotMistakes, NoAxisCanDoWithoutItsWordsAndPosition) {
 TEST(RobotConfig, WhatADriveLacksDoesNotTravelThoughThereIsRoom) {
   const LoadedRobot loaded = shoulderWith("lacks: [following_error]");
   EXPECT_EQ(loaded.problems, "");
-  EXPECT_THAT(loaded.robot.axes[0].riders, testing::IsEmpty());
-  EXPECT_THAT(loaded.robot.axes[1].riders, testing::ElementsAre("following_error"));
+  EXPECT_THAT(loaded.robot.devices[0].riders, testing::IsEmpty());
+  EXPECT_THAT(loaded.robot.devices[1].riders, testing::ElementsAre("following_error"));
 }
 
 TEST(RobotConfig, OnAFullBusVelocitiesComeForEveryJointStateAndDeadlinesStay) {
@@ -347,11 +347,11 @@ TEST(RobotConfig, OnAFullBusVelocitiesComeForEveryJointStateAndDeadlinesStay) {
   }
   const LoadedRobot loaded = loadText(text);
   EXPECT_EQ(loaded.problems, "");
-  for (const drive::AxisConfig& axis : loaded.robot.axes) {
+  for (const canopen::DeviceConfig& axis : loaded.robot.devices) {
     EXPECT_TRUE(axis.riders.empty()) << axis.name;
     EXPECT_EQ(axis.pdos.at(0).objects.front(), "controlword");
     EXPECT_EQ(axis.pdos.at(0).event_timer, 100) << axis.name;
-    for (const drive::PdoLayout& pdo : axis.pdos) {
+    for (const canopen::PdoLayout& pdo : axis.pdos) {
       const auto& objects = pdo.objects;
       if (std::find(objects.begin(), objects.end(), "velocity_actual") == objects.end()) continue;
       EXPECT_EQ(pdo.transmission, 1) << axis.name;

@@ -92,7 +92,9 @@ TEST_F(RobotKeys, OfAnAxis) {
   const drive::AxisConfig& slide = robot.axes[0];
   EXPECT_EQ(slide.name, "slide");
   EXPECT_EQ(slide.joint, "lift");
-  EXPECT_EQ(slide.node_id, 3);
+  const canopen::DeviceConfig& device = robot.deviceOf(slide);
+  EXPECT_EQ(device.name, "slide");
+  EXPECT_EQ(device.node_id, 3);
   EXPECT_EQ(slide.sync_period, milliseconds(10));
   EXPECT_EQ(slide.geometry.type, drive::AxisGeometry::Type::prismatic);
   EXPECT_EQ(slide.geometry.counts_per_turn, 4096.0);
@@ -111,10 +113,10 @@ TEST_F(RobotKeys, OfAnAxis) {
   EXPECT_EQ(slide.command_timeout, milliseconds(750));
   EXPECT_FALSE(slide.brake_after_effort);
   EXPECT_EQ(slide.standstill_velocity, 0.002) << "m/s, as it is prismatic";
-  EXPECT_EQ(slide.vendor_id, 11U);
-  EXPECT_EQ(slide.product_code, 12U);
-  EXPECT_EQ(slide.revision, 13U);
-  EXPECT_EQ(slide.serial, 14U);
+  EXPECT_EQ(device.vendor_id, 11U);
+  EXPECT_EQ(device.product_code, 12U);
+  EXPECT_EQ(device.revision, 13U);
+  EXPECT_EQ(device.serial, 14U);
   const drive::AxisConfig& turn = robot.axes[1];
   EXPECT_EQ(turn.joint, "turn");
   EXPECT_EQ(turn.geometry.type, drive::AxisGeometry::Type::revolute);
@@ -124,7 +126,9 @@ TEST_F(RobotKeys, OfAnAxis) {
   EXPECT_EQ(turn.command_timeout, milliseconds(200));
   EXPECT_TRUE(turn.brake_after_effort);
   EXPECT_EQ(turn.standstill_velocity, 0.01);
-  EXPECT_FALSE(turn.homing || turn.vendor_id || turn.product_code || turn.revision || turn.serial);
+  const canopen::DeviceConfig& other = robot.deviceOf(turn);
+  EXPECT_FALSE(turn.homing || other.vendor_id || other.product_code || other.revision ||
+               other.serial);
 }
 
 TEST_F(RobotKeys, OfHoming) {

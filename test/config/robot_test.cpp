@@ -68,17 +68,18 @@ TEST(RobotConfig, TakesTheIdentityForLss) {
       "gear_ratio: 50.0",
       "lss: true, identity: {vendor_id: 1, product_code: 2, revision: 3, serial: \"0x80000004\"}");
   EXPECT_EQ(by_identity.problems, "");
-  ASSERT_TRUE(by_identity.robot.axes[0].lss);
-  EXPECT_EQ(by_identity.robot.axes[0].lss->identity, (canopen::lss::Identity{1, 2, 3, 0x80000004}));
-  EXPECT_FALSE(by_identity.robot.axes[0].lss->store);
-  EXPECT_FALSE(by_identity.robot.axes[1].lss);
+  ASSERT_TRUE(by_identity.robot.devices[0].lss);
+  EXPECT_EQ(by_identity.robot.devices[0].lss->identity,
+            (canopen::lss::Identity{1, 2, 3, 0x80000004}));
+  EXPECT_FALSE(by_identity.robot.devices[0].lss->store);
+  EXPECT_FALSE(by_identity.robot.devices[1].lss);
   const LoadedRobot own =
       changed("gear_ratio: 50.0",
               "lss: {vendor_id: 1, product_code: 2, revision: 3, serial: 4, store: true}");
   EXPECT_EQ(own.problems, "");
-  EXPECT_TRUE(own.robot.axes[0].lss->store);
-  EXPECT_EQ(own.robot.axes[0].serial, 4u) << "the boot compares what LSS has selected";
-  EXPECT_FALSE(changed("gear_ratio: 50.0", "lss: false").robot.axes[0].lss);
+  EXPECT_TRUE(own.robot.devices[0].lss->store);
+  EXPECT_EQ(own.robot.devices[0].serial, 4u) << "the boot compares what LSS has selected";
+  EXPECT_FALSE(changed("gear_ratio: 50.0", "lss: false").robot.devices[0].lss);
 }
 
 TEST(RobotConfig, RefusesAnLssThatCannotTellDrivesApart) {
@@ -234,7 +235,7 @@ TEST(RobotConfig, TakesAnObjectsIndexForWhatYamlMadeOfIt) {
     ASSERT_EQ(loaded.robot.axes[0].writes.size(), 1u) << index;
     Problems problems;
     const canopen::MasterConfig master = makeMasterConfig(loaded.robot, problems);
-    EXPECT_EQ(master.nodes[0].writes.back().object, (canopen::ObjectId{0x6065, 0})) << index;
+    EXPECT_EQ(master.nodes[0].writes.back().object, (fieldbus::ObjectId{0x6065, 0})) << index;
   }
 }
 

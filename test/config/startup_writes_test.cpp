@@ -30,7 +30,7 @@ std::vector<StartupWrite> writesOf(const RobotConfig& robot) {
   return master.nodes.at(0).writes;
 }
 
-StartupWrite writeTo(const std::vector<StartupWrite>& writes, canopen::ObjectId object) {
+StartupWrite writeTo(const std::vector<StartupWrite>& writes, fieldbus::ObjectId object) {
   for (const StartupWrite& write : writes) {
     if (write.object == object) return write;
   }
@@ -41,7 +41,7 @@ StartupWrite writeTo(const std::vector<StartupWrite>& writes, canopen::ObjectId 
 TEST(StartupWrites, AQuickStopComesFirstAtEveryBoot) {
   const std::vector<StartupWrite> writes = writesOf(bootedServo(""));
   const StartupWrite& stop = writes.at(0);
-  EXPECT_EQ(stop.object, (canopen::ObjectId{0x6040, 0}));
+  EXPECT_EQ(stop.object, (fieldbus::ObjectId{0x6040, 0}));
   EXPECT_EQ(stop.name, "controlword");
   EXPECT_THAT(stop.data, ElementsAre(0x02, 0x00));  // enable voltage without "no quick stop"
   EXPECT_TRUE(stop.always);
@@ -128,7 +128,7 @@ TEST(PlannedObjects, VelocitiesComeAsOftenAsJointStates) {
     const LoadedRobot loaded =
         changed("0.004}", cycle + "}" + (rate.empty() ? "" : "\njoint_state_rate: " + rate));
     EXPECT_EQ(loaded.problems, "");
-    for (const drive::PdoLayout& pdo : loaded.robot.axes[0].pdos) {
+    for (const canopen::PdoLayout& pdo : loaded.robot.devices[0].pdos) {
       for (const std::string& object : pdo.objects) {
         if (object == "velocity_actual") return unsigned{pdo.transmission};
       }

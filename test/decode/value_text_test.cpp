@@ -10,7 +10,7 @@
 namespace cia402::decode {
 namespace {
 
-using canopen::Bytes;
+using fieldbus::Bytes;
 
 ValueText valuesOf(const std::string& axis) {
   const config::RobotConfig robot = test::robot();

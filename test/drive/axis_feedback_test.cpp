@@ -67,7 +67,7 @@ TEST(AxisFeedback, OfALostNodeNothingIsKnown) {
     EXPECT_FALSE(state.ready_for_motion);
   };
   bench.deliver(bench.drive.reboot());
-  EXPECT_NE(state.health, canopen::NodeHealth::ready);
+  EXPECT_NE(state.health, fieldbus::Health::ready);
   EXPECT_EQ(state.health, bench.node().health());
   nothing();
   bench.dead = true;
@@ -128,10 +128,10 @@ TEST(AxisFeedback, ThatComesOnChangeOnlyIsAsNewAsItCanBe) {
 
 TEST(AxisFeedback, SaysHowItsNodeIsWhileThatBoots) {
   Bench bench;
-  EXPECT_EQ(bench.axis.state().health, canopen::NodeHealth::absent);
+  EXPECT_EQ(bench.axis.state().health, fieldbus::Health::absent);
   bool booting = false;
   bench.each_cycle = [&] {
-    booting = booting || bench.axis.state().health == canopen::NodeHealth::booting;
+    booting = booting || bench.axis.state().health == fieldbus::Health::booting;
     EXPECT_EQ(bench.axis.state().health, bench.node().health());
   };
   ASSERT_TRUE(bench.boot());

@@ -109,7 +109,7 @@ inline DriveProfile testProfile() {
 inline AxisConfig testConfig(DriveProfile profile = testProfile()) {
   AxisConfig config;
   config.name = config.joint = "shoulder";
-  config.node_id = 3;
+  config.place = "node 3";
   config.profile = std::make_shared<const DriveProfile>(std::move(profile));
   config.geometry.rated_torque = 2.0;
   config.limits.lower = -3.1;
@@ -164,7 +164,7 @@ class Bench {
   /// Boots the node. @return whether it became ready.
   bool boot() {
     node_.boot(now, true);
-    return runUntil([&] { return node_.health() == canopen::NodeHealth::ready; }) &&
+    return runUntil([&] { return node_.health() == fieldbus::Health::ready; }) &&
            runUntil([&] { return axis.state().feedback_valid; });
   }
 

@@ -50,7 +50,7 @@ TEST(AxisStart, ARefusedStopEndsWhatRuns) {
   ASSERT_TRUE(bench.boot());
   ASSERT_TRUE(bench.perform(ProcedureKind::disable).success);
   bench.dead = true;
-  ASSERT_TRUE(bench.runUntil([&] { return bench.node().health() == canopen::NodeHealth::lost; }));
+  ASSERT_TRUE(bench.runUntil([&] { return bench.node().health() == fieldbus::Health::lost; }));
   ASSERT_TRUE(bench.axis.start({ProcedureKind::recover, {}, 0.0}, bench.now).ok());
   bench.run(8ms);
   ASSERT_TRUE(bench.axis.procedure().running);
@@ -138,7 +138,7 @@ TEST(AxisStart, ALostNodeIsNoticedThoughNobodyTells) {
   ASSERT_TRUE(bench.perform(ProcedureKind::home).success);
   ASSERT_TRUE(bench.axis.state().homed);
   bench.dead = true;
-  ASSERT_TRUE(bench.runUntil([&] { return bench.node().health() == canopen::NodeHealth::lost; }));
+  ASSERT_TRUE(bench.runUntil([&] { return bench.node().health() == fieldbus::Health::lost; }));
   bench.cycle();
   EXPECT_FALSE(bench.axis.state().homed) << "it may have been switched off and moved";
 }
@@ -181,7 +181,7 @@ TEST(AxisObjects, ReportsNameTheRpdoThatBringsTheControlword) {
   ASSERT_TRUE(bench.boot());
   bench.drive.stuck.insert(S::on);
   EXPECT_THAT(bench.perform(ProcedureKind::enable).message,
-              HasSubstr("sent in RPDO2 (COB-ID 0x0203"));
+              HasSubstr("sent in RPDO 2 (COB-ID 0x203), "));
 }
 
 TEST(AxisObjects, ReportsTellThatNoRpdoHasLeft) {
@@ -195,7 +195,7 @@ TEST(AxisObjects, ReportsTellThatNoRpdoHasLeft) {
   test::cycleWithoutRpdos(bench);
   ASSERT_TRUE(bench.axis.start({ProcedureKind::disable, {}, 0.0}, bench.now).ok());
   for (int i = 0; i < 2000 && bench.axis.procedure().running; ++i) test::cycleWithoutRpdos(bench);
-  EXPECT_THAT(bench.axis.procedure().message, HasSubstr("0 frames so far)"));
+  EXPECT_THAT(bench.axis.procedure().message, HasSubstr(", 0 frames so far; "));
   EXPECT_THAT(bench.axis.procedure().message,
               HasSubstr("; no RPDO has left: is the cycle running?"));
   bench.drive.stuck.clear();

@@ -182,7 +182,7 @@ TEST(AxisWords, FeedbackIsMissingUntilBothStatuswordAndPositionHaveCome) {
       test::pdo(canopen::PdoDirection::tpdo, 3, 0x383, {{{0x6064, 0}, 32, "position_actual"}}));
   Bench bench(testConfig(), node);
   bench.node().boot(bench.now, true);
-  ASSERT_TRUE(bench.runUntil([&] { return bench.node().health() == canopen::NodeHealth::ready; }));
+  ASSERT_TRUE(bench.runUntil([&] { return bench.node().health() == fieldbus::Health::ready; }));
   bench.run(milliseconds(8));
   ASSERT_FALSE(bench.axis.state().feedback_valid);
   EXPECT_THAT(bench.axis.unknownText(), Not(HasSubstr("finite")));

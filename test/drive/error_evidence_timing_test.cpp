@@ -19,7 +19,7 @@ class ErrorEvidenceTiming : public canopen::test::SdoClientFixture {
     code_spec.name = "error_code";
   }
   void emergency(std::uint16_t code, const std::string& excuse = {}) {
-    canopen::Emergency message;
+    fieldbus::Emergency message;
     message.code = code;
     evidence.onEmergency(message, excuse, now);
   }

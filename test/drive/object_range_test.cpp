@@ -6,7 +6,7 @@
 namespace cia402::drive {
 namespace {
 
-using canopen::ObjectId;
+using fieldbus::ObjectId;
 
 void expectRange(const char* text, ObjectId first, ObjectId last) {
   const auto range = parseObjectRange(text);

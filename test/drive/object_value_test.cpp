@@ -56,7 +56,7 @@ TEST(ObjectValue, MinusZeroIsSentAsZeroAndWhatIsNotFiniteNever) {
        0xFFFFFFFFFFFFFFFF},
   };
   for (const Row& row : rows) {
-    SCOPED_TRACE(canopen::toString(row.type));
+    SCOPED_TRACE(fieldbus::toString(row.type));
     EXPECT_EQ(floatBits(row.type, row.encoding, -0.0), 0U);
     EXPECT_EQ(sendable(row.type, row.encoding, row.minus_zero), 0U);
     for (const std::uint64_t bad : {row.infinity, row.nan}) {

@@ -65,7 +65,7 @@ TEST(EnableProcedure, ATimeOutNamesTransitionControlwordPdoStatuswordAndEmergenc
                                         "in switched on for 2"));
   EXPECT_THAT(status.message,
               HasSubstr("controlword 6040:00 = 0x000F, enable operation (transition 4)"));
-  EXPECT_THAT(status.message, HasSubstr("sent in RPDO1 (COB-ID 0x0203"));
+  EXPECT_THAT(status.message, HasSubstr("sent in RPDO 1 (COB-ID 0x203), "));
   EXPECT_THAT(status.message, HasSubstr("statusword 0x0233 (switched on: ready to switch on, "
                                         "switched on, voltage enabled, quick stop inactive, "
                                         "remote)"));

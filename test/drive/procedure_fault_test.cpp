@@ -169,12 +169,12 @@ TEST(RecoverProcedure, BootsALostNodeAgain) {
   ASSERT_TRUE(bench.boot());
   ASSERT_TRUE(bench.enable());
   bench.dead = true;
-  ASSERT_TRUE(bench.runUntil([&] { return bench.node().health() == canopen::NodeHealth::lost; }));
+  ASSERT_TRUE(bench.runUntil([&] { return bench.node().health() == fieldbus::Health::lost; }));
   bench.drive.reboot();  // power is back, the boot-up message got lost
   bench.dead = false;
   const ProcedureStatus& status = bench.perform(ProcedureKind::recover);
   EXPECT_TRUE(status.success) << status.message;
-  EXPECT_EQ(bench.node().health(), canopen::NodeHealth::ready);
+  EXPECT_EQ(bench.node().health(), fieldbus::Health::ready);
   EXPECT_TRUE(bench.axis.state().ready_for_motion);
 }
 

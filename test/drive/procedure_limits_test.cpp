@@ -4,6 +4,7 @@
 #include "../../src/drive/procedure_limits.h"
 
 #include <limits>
+#include <type_traits>
 
 #include "cia402_driver/drive/standstill.h"
 #include "drive/axis_fixture.h"
@@ -44,7 +45,6 @@ constexpr Waits kProcedures[] = {
 
 DriveProfile slowProfile() {
   DriveProfile profile = testProfile();
-  profile.timing.sdo_retries = 0;
   profile.fault_reset_tries = 2;
   NamedWrite option;
   option.object = "quick_stop_option";
@@ -58,6 +58,13 @@ DriveProfile slowProfile() {
   return profile;
 }
 
+/// A device that answers at the first time or never.
+fieldbus::DeviceTimes slowDevice() {
+  fieldbus::DeviceTimes device;
+  device.access.retries = 0;
+  return device;
+}
+
 /// Stops in 4 s.
 AxisConfig slowAxis(DriveProfile profile = slowProfile()) {
   AxisConfig config = testConfig(std::move(profile));
@@ -69,18 +76,29 @@ AxisConfig slowAxis(DriveProfile profile = slowProfile()) {
   return config;
 }
 
-Duration limitOf(ProcedureKind kind, const DriveProfile& profile) {
-  return timeLimit(kind, slowAxis(profile), 0.0);
+Duration limitOf(ProcedureKind kind, const DriveProfile& profile,
+                 const fieldbus::DeviceTimes& device = slowDevice()) {
+  return timeLimit(kind, slowAxis(profile), device, 0.0);
+}
+
+Duration limitOf(ProcedureKind kind, const AxisConfig& axis, double velocity = 0.0) {
+  return timeLimit(kind, axis, slowDevice(), velocity);
 }
 
 class LimitOf : public testing::TestWithParam<Waits> {
  protected:
   /// By how much the limit grows where `change` makes something 100 ms slower.
-  int growth(const std::function<void(DriveProfile&)>& change) const {
+  template <typename Change>
+  int growth(const Change& change) const {
     DriveProfile slower = slowProfile();
-    change(slower);
+    fieldbus::DeviceTimes device = slowDevice();
+    if constexpr (std::is_invocable_v<Change, DriveProfile&>) {
+      change(slower);
+    } else {
+      change(device);
+    }
     const Duration more =
-        limitOf(GetParam().kind, slower) - limitOf(GetParam().kind, slowProfile());
+        limitOf(GetParam().kind, slower, device) - limitOf(GetParam().kind, slowProfile());
     EXPECT_EQ(more % 100ms, Duration(0));
     return static_cast<int>(more / Duration(100ms));
   }
@@ -92,8 +110,9 @@ TEST_P(LimitOf, GrowsWithAllThatItWaitsFor) {
             waits.state_changes);
   EXPECT_EQ(growth([](DriveProfile& drive) { drive.timing.mode_change += 100ms; }),
             waits.mode_changes);
-  EXPECT_EQ(growth([](DriveProfile& drive) { drive.timing.sdo += 100ms; }), waits.transfers);
-  EXPECT_EQ(growth([](DriveProfile& drive) { drive.timing.boot += 100ms; }), waits.boots);
+  EXPECT_EQ(growth([](fieldbus::DeviceTimes& device) { device.access.timeout += 100ms; }),
+            waits.transfers);
+  EXPECT_EQ(growth([](fieldbus::DeviceTimes& device) { device.boot += 100ms; }), waits.boots);
   EXPECT_EQ(growth([](DriveProfile& drive) { drive.parameters.timeout += 100ms; }), waits.saves);
 }
 
@@ -101,11 +120,11 @@ INSTANTIATE_TEST_SUITE_P(Procedures, LimitOf, testing::ValuesIn(kProcedures),
                          [](const auto& param) { return std::string(param.param.name); });
 
 TEST(ProcedureLimits, ATransferThatIsRepeatedCountsAsOften) {
-  DriveProfile patient = slowProfile();
-  patient.timing.sdo = 100ms;
-  const Duration once = limitOf(ProcedureKind::set_position, patient);
-  patient.timing.sdo_retries = 2;
-  EXPECT_EQ(limitOf(ProcedureKind::set_position, patient) - once, 12 * 2 * 100ms);
+  fieldbus::DeviceTimes patient = slowDevice();
+  patient.access.timeout = 100ms;
+  const Duration once = limitOf(ProcedureKind::set_position, slowProfile(), patient);
+  patient.access.retries = 2;
+  EXPECT_EQ(limitOf(ProcedureKind::set_position, slowProfile(), patient) - once, 12 * 2 * 100ms);
 }
 
 TEST(ProcedureLimits, ABrakeIsWaitedForWhereItTakesLongerThanFollowing) {
@@ -125,7 +144,7 @@ TEST(ProcedureLimits, AModeThatIsCommandedAgainByADetourTakesItTwice) {
   const Duration without = limitOf(ProcedureKind::enable, forgetful);
   EXPECT_EQ(without, limitOf(ProcedureKind::enable, slowProfile()));
   forgetful.mode_change.detours = {{"profile_velocity", "cyclic_position", "profile_position"}};
-  const Duration mode = 2 * forgetful.timing.mode_change + 5 * forgetful.timing.sdo;
+  const Duration mode = 2 * forgetful.timing.mode_change + 5 * slowDevice().access.timeout;
   // An axis that is enabled in another mode may have to be disabled for it.
   const Duration disabled = forgetful.timing.state_change + mode;
   EXPECT_EQ(limitOf(ProcedureKind::enable, forgetful),
@@ -151,7 +170,7 @@ TEST(ProcedureLimits, AHistoryThatIsClearedBeforeAResetTakesATransfer) {
   DriveProfile clears = slowProfile();
   const Duration without = limitOf(ProcedureKind::clear_faults, clears);
   clears.fault_reset_clears_history = true;
-  EXPECT_EQ(limitOf(ProcedureKind::clear_faults, clears), without + clears.timing.sdo);
+  EXPECT_EQ(limitOf(ProcedureKind::clear_faults, clears), without + slowDevice().access.timeout);
 }
 
 TEST(ProcedureLimits, AModeForWhichTheAxisIsDisabledTakesAnEnablingMore) {
@@ -166,18 +185,18 @@ TEST(ProcedureLimits, AModeForWhichTheAxisIsDisabledTakesAnEnablingMore) {
 TEST(ProcedureLimits, ADeclaredHomeTakesNoLongerThanADeclaredPosition) {
   AxisConfig config = slowAxis();
   config.homing.reset();
-  const Duration declared = timeLimit(ProcedureKind::set_position, config, 0.0);
-  EXPECT_EQ(timeLimit(ProcedureKind::home, config, 0.0), declared);
+  const Duration declared = limitOf(ProcedureKind::set_position, config);
+  EXPECT_EQ(limitOf(ProcedureKind::home, config), declared);
   DriveProfile declares = slowProfile();
   declares.homing.kind = HomingSpec::Kind::declare_zero;
-  EXPECT_EQ(timeLimit(ProcedureKind::home, slowAxis(declares), 0.0), declared);
+  EXPECT_EQ(limitOf(ProcedureKind::home, slowAxis(declares)), declared);
 }
 
 TEST(ProcedureLimits, HomingHasTheTimeThatTheFileGivesIt) {
   AxisConfig config = slowAxis();
-  const Duration before = timeLimit(ProcedureKind::home, config, 0.0);
+  const Duration before = limitOf(ProcedureKind::home, config);
   config.homing->timeout += 60s;
-  EXPECT_EQ(timeLimit(ProcedureKind::home, config, 0.0), before + 60s);
+  EXPECT_EQ(limitOf(ProcedureKind::home, config), before + 60s);
 }
 
 // From 2 rad/s at 0.5 rad/s^2 it takes 4 s; twice that and half a second are waited.
@@ -188,9 +207,9 @@ TEST(ProcedureLimits, AStopHasTwiceTheTimeOfItsRamp) {
   EXPECT_EQ(stopTime(config, std::numeric_limits<double>::quiet_NaN()), 8500ms) << "not known";
   EXPECT_EQ(stopTime(config, 3.0), 12500ms) << "faster than it may";
   EXPECT_EQ(stopTime(config, -3.0), 12500ms);
-  EXPECT_EQ(timeLimit(ProcedureKind::halt, config, 3.0), 13s);
-  EXPECT_EQ(timeLimit(ProcedureKind::disable, config, 3.0),
-            timeLimit(ProcedureKind::disable, config, 0.0) + 4s);
+  EXPECT_EQ(limitOf(ProcedureKind::halt, config, 3.0), 13s);
+  EXPECT_EQ(limitOf(ProcedureKind::disable, config, 3.0),
+            limitOf(ProcedureKind::disable, config) + 4s);
   AxisConfig unlimited = config;
   unlimited.limits.velocity.reset();
   EXPECT_EQ(stopTime(unlimited, 0.0), 2s) << "a change of state, at least";
@@ -203,9 +222,11 @@ TEST(ProcedureLimits, AStopHasTwiceTheTimeOfItsRamp) {
 // It must stand for four windows of the detector of standstill, before and after.
 TEST(ProcedureLimits, DeclaringAPositionWaitsForStandstillTwice) {
   DriveProfile profile = slowProfile();
-  profile.timing.sdo = Duration::zero();
-  EXPECT_EQ(limitOf(ProcedureKind::set_position, profile), 500ms + 2 * 4 * Standstill::kWindow);
-  EXPECT_EQ(limitOf(ProcedureKind::set_mode, profile) - 2 * profile.timing.mode_change,
+  fieldbus::DeviceTimes device = slowDevice();
+  device.access.timeout = Duration::zero();
+  EXPECT_EQ(limitOf(ProcedureKind::set_position, profile, device),
+            500ms + 2 * 4 * Standstill::kWindow);
+  EXPECT_EQ(limitOf(ProcedureKind::set_mode, profile, device) - 2 * profile.timing.mode_change,
             500ms + 4 * Standstill::kWindow);
 }
 

@@ -215,7 +215,7 @@ TEST_F(Parameters, ADriveThatTakesItsTimeToComeBackIsWaitedFor) {
 
 TEST_F(Parameters, ANodeThatIsNotThereIsRefused) {
   bench.dead = true;
-  ASSERT_TRUE(bench.runUntil([&] { return bench.node().health() == canopen::NodeHealth::lost; }));
+  ASSERT_TRUE(bench.runUntil([&] { return bench.node().health() == fieldbus::Health::lost; }));
   EXPECT_THAT(bench.refusal(ProcedureKind::save_parameters),
               HasSubstr("cannot save parameters: the node is lost"));
 }

@@ -128,7 +128,7 @@ TEST(FaultResetStep, TakesTheNodeThroughNmtStopAndStartAndResetsOnceMore) {
   EXPECT_THAT(steps, testing::Contains(
                          "taking the node through NMT stop and start for the fault reset | the "
                          "drive to be operational and to send its feedback again"));
-  EXPECT_EQ(world.node().health(), canopen::NodeHealth::ready);
+  EXPECT_EQ(world.node().health(), fieldbus::Health::ready);
 }
 
 TEST(FaultResetStep, TakesTheNodeThroughNmtStopAndStartOnce) {

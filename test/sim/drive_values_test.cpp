@@ -52,9 +52,9 @@ TEST(DriveValues, IntegersRoundToNearestAndWrapInTheirWidth) {
 
 TEST(DriveValues, KnowsRolesByNameAndByTheStandardsObject) {
   EXPECT_EQ(findRole("target_position"), Role::target_position);
-  EXPECT_EQ(findRole(canopen::ObjectId{0x6099, 2}), Role::homing_zero_speed);
+  EXPECT_EQ(findRole(fieldbus::ObjectId{0x6099, 2}), Role::homing_zero_speed);
   EXPECT_FALSE(findRole("nothing").has_value());
-  EXPECT_FALSE(findRole(canopen::ObjectId{0, 0}).has_value());
+  EXPECT_FALSE(findRole(fieldbus::ObjectId{0, 0}).has_value());
 }
 
 }  // namespace

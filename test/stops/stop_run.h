@@ -88,7 +88,7 @@ class Play {
   }
   bool booted() {
     return host_.running() &&
-           host_.robot().axes().front().state().health == canopen::NodeHealth::ready;
+           host_.robot().axes().front().state().health == fieldbus::Health::ready;
   }
 
   /// Brings the axis to its speed, and to one moment of the cycle.

@@ -1,15 +1,15 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Whole robots whose drives boot as real ones do: late, twice, not at all, exchanged.
 #include "../../src/sim/drive_definition.h"
-#include "cia402_driver/canopen/object.h"
+#include "cia402_driver/fieldbus/object.h"
 #include "system/scene.h"
 
 namespace cia402 {
 namespace {
 
 using namespace std::chrono_literals;
-using canopen::NodeHealth;
 using drive::ProcedureKind;
+using fieldbus::Health;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -25,9 +25,9 @@ TEST(LateDrives, OneThatIgnoresTheResetAndIsStillEnabledIsStoppedAndConfigured) 
   ASSERT_TRUE(scene.boot());
   ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
   scene.drive("left").device().behaviour().ignores_nmt_reset = true;
-  scene.axis("left").node().boot(scene.now(), true);
+  scene.node("left").boot(scene.now(), true);
   scene.run(100ms);
-  ASSERT_EQ(scene.state("left").health, NodeHealth::booting);
+  ASSERT_EQ(scene.state("left").health, Health::booting);
   ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 8s)) << scene.told();
   scene.run(500ms);
   EXPECT_FALSE(scene.truth("left").power_stage_on) << "nobody asked for it";
@@ -47,11 +47,11 @@ class LeftTurning : public testing::Test {
     return loaded;
   }
   LeftTurning() : scene(load()) {}
-  void write(canopen::ObjectId object, std::uint64_t value, unsigned size) {
-    EXPECT_EQ(scene.drive("left").dictionary().write(object, canopen::toBytes(value, size)), 0u)
-        << canopen::toString(object);
+  void write(fieldbus::ObjectId object, std::uint64_t value, unsigned size) {
+    EXPECT_EQ(scene.drive("left").dictionary().write(object, fieldbus::toBytes(value, size)), 0u)
+        << fieldbus::toString(object);
   }
-  void lockWhileEnabled(canopen::ObjectId object) {
+  void lockWhileEnabled(fieldbus::ObjectId object) {
     sim::ObjectDictionary& dictionary = scene.drive("left").dictionary();
     if (dictionary.find(object) == nullptr) return;
     dictionary.onWriteCheck(object, [this, before = dictionary.hooks(object).check](
@@ -78,8 +78,8 @@ class LeftTurning : public testing::Test {
       scene.run(50ms);
     }
     scene.run(3s);
-    for (const canopen::ObjectId object :
-         {canopen::ObjectId{0x1005, 0}, {0x1006, 0}, {0x1019, 0}, {0x1800, 1}, {0x1A00, 0}}) {
+    for (const fieldbus::ObjectId object :
+         {fieldbus::ObjectId{0x1005, 0}, {0x1006, 0}, {0x1019, 0}, {0x1800, 1}, {0x1A00, 0}}) {
       lockWhileEnabled(object);
     }
   }
@@ -114,7 +114,7 @@ TEST(LateDrives, OneThatIsSwitchedOnMinutesLaterIsTakenIn) {
   scene.drive("left").powerOff(scene.now());
   scene.port("left").setPowered(false);
   scene.run(180s);
-  EXPECT_EQ(scene.state("left").health, NodeHealth::absent);
+  EXPECT_EQ(scene.state("left").health, Health::absent);
   scene.port("left").setPowered(true);
   scene.drive("left").powerOn(scene.now());
   ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 2s)) << scene.told();
@@ -126,7 +126,7 @@ TEST(LateDrives, OneWhoseBootUpIsLostIsFoundByTheSearch) {
   scene.drive("left").powerOff(scene.now());
   scene.port("left").setPowered(false);
   scene.run(60s);
-  ASSERT_EQ(scene.state("left").health, NodeHealth::absent);
+  ASSERT_EQ(scene.state("left").health, Health::absent);
   sim::FaultRule rule;
   rule.id = 0x701;
   rule.count = 1;
@@ -134,7 +134,7 @@ TEST(LateDrives, OneWhoseBootUpIsLostIsFoundByTheSearch) {
   scene.port("left").setPowered(true);
   scene.drive("left").powerOn(scene.now());
   scene.run(1s);
-  EXPECT_EQ(scene.state("left").health, NodeHealth::absent) << "it said nothing that was heard";
+  EXPECT_EQ(scene.state("left").health, Health::absent) << "it said nothing that was heard";
   ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 33s)) << scene.told();
 }
 
@@ -145,7 +145,7 @@ TEST(LateDrives, OneThatSaysBootUpTwiceStartsOver) {
   scene.drive("left").powerOff(scene.now());
   scene.drive("left").powerOn(scene.now());
   ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 8s)) << scene.told();
-  EXPECT_GE(scene.axis("left").node().bootUps(), 2u);
+  EXPECT_GE(scene.node("left").bootUps(), 2u);
   EXPECT_TRUE(scene.procedure(ProcedureKind::enable).success);
 }
 
@@ -155,7 +155,7 @@ TEST(OptionalNodes, AnAbsentOneIsLeftOutAndNoError) {
   scene.drive("left").powerOff(scene.now());
   scene.port("left").setPowered(false);
   scene.run(8s);
-  ASSERT_EQ(scene.state("left").health, NodeHealth::absent);
+  ASSERT_EQ(scene.state("left").health, Health::absent);
   for (const bus::Event& event : scene.robot().events()) {
     EXPECT_NE(event.severity, bus::Event::Severity::error) << event.text.str();
   }
@@ -202,7 +202,7 @@ TEST(Unchanged, ADriveThatStoredItsConfigurationIsNotConfiguredAgainAfterAPowerF
   ASSERT_TRUE(saved.success) << saved.message;
   writes = 0;
   scene.inject("left", "power_cycle");
-  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health != NodeHealth::ready; }, 2s));
+  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health != Health::ready; }, 2s));
   ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 8s)) << scene.told();
   EXPECT_EQ(writes, 0u);
   EXPECT_THAT(bootWords(scene), HasSubstr("its configuration is unchanged (1020h)"));
@@ -217,7 +217,7 @@ TEST(Unchanged, ADriveThatForgotIsConfigured) {
   const unsigned first = writes;
   writes = 0;
   scene.inject("left", "power_cycle");
-  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health != NodeHealth::ready; }, 2s));
+  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health != Health::ready; }, 2s));
   ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 8s)) << scene.told();
   EXPECT_EQ(writes, first);
   EXPECT_THAT(bootWords(scene),
@@ -231,7 +231,7 @@ TEST(RestoreBeforeConfigure, WhatSomebodyStoredInTheDriveIsGone) {
   window.number = window.initial_number = 4321;
   ASSERT_TRUE(scene.boot()) << scene.told();
   EXPECT_EQ(window.number, factory);
-  EXPECT_EQ(scene.state("left").health, NodeHealth::ready);
+  EXPECT_EQ(scene.state("left").health, Health::ready);
 }
 
 TEST(BlockTransfer, ADriveThatHasNoneGetsTheDownloadInSegments) {
@@ -243,14 +243,14 @@ TEST(BlockTransfer, ADriveThatHasNoneGetsTheDownloadInSegments) {
     scene.drive("left").dictionary().add(entry);
     scene.drive("left").device().behaviour().sdo_block = has_block;
     ASSERT_TRUE(scene.boot()) << scene.told();
-    canopen::Bytes program(5000);
+    fieldbus::Bytes program(5000);
     for (std::size_t i = 0; i < program.size(); ++i) program[i] = static_cast<std::uint8_t>(i * 7);
     const canopen::SdoTicket ticket =
-        scene.axis("left").node().sdo().download({0x1F50, 1}, program, "program");
+        scene.node("left").sdo().download({0x1F50, 1}, program, "program");
     ASSERT_TRUE(scene.runUntil([&] { return ticket->done(); }, 20s));
     EXPECT_TRUE(ticket->ok()) << ticket->message();
     EXPECT_EQ(scene.drive("left").dictionary().find({0x1F50, 1})->bytes, program);
-    EXPECT_EQ(scene.state("right").health, NodeHealth::ready);
+    EXPECT_EQ(scene.state("right").health, Health::ready);
   }
 }
 
@@ -282,9 +282,9 @@ TEST(ExchangedDrives, AnotherSerialNumberIsRefusedWhereOneIsConfiguredAndToldWhe
     scene.drive(name).powerOn(scene.now());
   }
   scene.run(3s);
-  EXPECT_EQ(scene.state("left").health, NodeHealth::failed);
+  EXPECT_EQ(scene.state("left").health, Health::failed);
   EXPECT_THAT(scene.told(), HasSubstr("left (node 1): is another drive than configured: 1018:04"));
-  EXPECT_EQ(scene.state("right").health, NodeHealth::ready) << scene.told();
+  EXPECT_EQ(scene.state("right").health, Health::ready) << scene.told();
   EXPECT_THAT(scene.told(),
               testing::ContainsRegex("right \\(node 2\\): booted in [^\n]*is another drive than "
                                      "before: its serial number \\(1018:04\\) is 77, "
@@ -304,7 +304,7 @@ TEST(Reboot, TheOthersMissNoCycleWhileOneIsSwitchedOffAndOn) {
   scene.inject("left", "power_cycle");
   scene.run(5s);
   scene.robot().robot().fill(after);
-  EXPECT_EQ(scene.state("left").health, NodeHealth::ready) << scene.told();
+  EXPECT_EQ(scene.state("left").health, Health::ready) << scene.told();
   EXPECT_EQ(after.axes[1].missed_feedback, before.axes[1].missed_feedback);
   EXPECT_EQ(after.axes[1].node.boot_ups, before.axes[1].node.boot_ups);
   EXPECT_GT(after.axes[0].node.boot_ups, before.axes[0].node.boot_ups);

@@ -8,8 +8,8 @@ namespace {
 
 using namespace std::chrono_literals;
 using can::BusState;
-using canopen::NodeHealth;
 using drive::ProcedureKind;
+using fieldbus::Health;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
@@ -88,7 +88,7 @@ TEST_F(BusOffOfTheDriver, ThatIsShortLeavesTheAxesDisabledToo) {
   ASSERT_TRUE(back());
   const double at_return = scene->state(0).position;
   expectLeftDisabled();
-  EXPECT_EQ(scene->state(0).health, NodeHealth::ready) << "never lost";
+  EXPECT_EQ(scene->state(0).health, Health::ready) << "never lost";
   EXPECT_LT(std::abs(scene->state(0).position - at_return), 0.2) << "a quick stop, no move";
   expectUsableAgain();
 }
@@ -124,7 +124,7 @@ TEST_F(BusOffOfTheDriver, RefusesCommandsWithTheReason) {
   EXPECT_THAT(scene->told(), HasSubstr("the driver may not restart it"));
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_FALSE(scene->truth(i).moving) << "stopped by itself for want of a heartbeat";
-    EXPECT_EQ(scene->state(i).health, NodeHealth::lost);
+    EXPECT_EQ(scene->state(i).health, Health::lost);
   }
   scene->run(10s);
   EXPECT_EQ(scene->interface().state(), BusState::bus_off);
@@ -192,7 +192,7 @@ TEST_F(BusOffOfTheDriver, ACablePulledAndPluggedAgainNeedsNoRestart) {
   EXPECT_THAT(scene->told(), HasSubstr("error passive"));
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_FALSE(scene->truth(i).moving);
-    EXPECT_EQ(scene->state(i).health, NodeHealth::lost);
+    EXPECT_EQ(scene->state(i).health, Health::lost);
   }
   scene->port().setAttached(true);
   expectLeftDisabled();

@@ -6,8 +6,8 @@ namespace cia402 {
 namespace {
 
 using namespace std::chrono_literals;
-using canopen::NodeHealth;
 using drive::ProcedureKind;
+using fieldbus::Health;
 using testing::HasSubstr;
 
 struct Trouble {
@@ -33,9 +33,9 @@ TEST_P(DisturbedBus, BootsOrSaysWhyNotAndMovesWithinTheLimits) {
   scene.robot().start();
   scene.runUntil([&] { return allReady(scene.robot()); }, 20s);
   for (drive::Axis& axis : scene.robot().robot().axes()) {
-    if (axis.state().health == NodeHealth::ready) continue;
-    if (axis.state().health == NodeHealth::booting) continue;
-    EXPECT_NE(axis.node().problem(), "") << axis.config().name;
+    if (axis.state().health == Health::ready) continue;
+    if (axis.state().health == Health::booting) continue;
+    EXPECT_NE(axis.device().problem(), "") << axis.config().name;
   }
   (void)scene.procedure(ProcedureKind::enable);
   (void)scene.move({2.0, -2.0}, 5s);
@@ -65,7 +65,7 @@ TEST(BusOff, OfADriveLosesThatDriveAlone) {
   ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
   ASSERT_TRUE(scene.move({2.0}, 4s, 1).success);
   scene.port("left").forceBusOff();
-  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health == NodeHealth::lost; }, 1s));
+  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health == Health::lost; }, 1s));
   scene.run(5s);
   EXPECT_FALSE(scene.truth("left").power_stage_on);
   EXPECT_NEAR(scene.position("right"), 2.0, 1e-3);
@@ -86,7 +86,7 @@ TEST(BusOff, OfTheMasterStopsAllDrivesAndRecovers) {
   for (const char* axis : {"left", "right"}) {
     EXPECT_FALSE(scene.truth(axis).power_stage_on) << axis;
     EXPECT_FALSE(scene.truth(axis).moving) << axis;
-    EXPECT_EQ(scene.state(axis).health, NodeHealth::lost) << axis;
+    EXPECT_EQ(scene.state(axis).health, Health::lost) << axis;
   }
   scene.robot().port().requestRecovery();
   ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 8s)) << scene.told();

@@ -11,11 +11,11 @@ namespace {
 
 using namespace std::chrono_literals;
 using canopen::NmtState;
-using canopen::NodeHealth;
 using drive::ProcedureKind;
+using fieldbus::Health;
 using testing::HasSubstr;
 
-constexpr canopen::ObjectId kErrorTime{0x6066, 0};  // following error time out, ms
+constexpr fieldbus::ObjectId kErrorTime{0x6066, 0};  // following error time out, ms
 
 class DisturbedServices : public testing::TestWithParam<Disturbance> {
  protected:
@@ -55,8 +55,7 @@ class DisturbedServices : public testing::TestWithParam<Disturbance> {
   std::uint64_t errorTime() { return scene->drive("left").dictionary().find(kErrorTime)->number; }
   void powerCycle() {
     scene->inject("left", "power_cycle");
-    ASSERT_TRUE(
-        scene->runUntil([&] { return scene->state("left").health != NodeHealth::ready; }, 2s));
+    ASSERT_TRUE(scene->runUntil([&] { return scene->state("left").health != Health::ready; }, 2s));
     ASSERT_TRUE(scene->runUntil([&] { return allReady(scene->robot()); }, 20s)) << scene->told();
   }
   /// @param at_one_in_ten share of what works where one frame in ten is disturbed.
@@ -212,7 +211,7 @@ TEST_P(DisturbedServices, GuardingKeepsADriveOrSaysWhyItIsLost) {
     std::size_t told = 0;
     for (int i = 0; i < 20'000; ++i) {
       scene->run(1ms);
-      const bool ready = scene->state("left").health == NodeHealth::ready;
+      const bool ready = scene->state("left").health == Health::ready;
       if (was_ready && !ready) {
         EXPECT_THAT(scene->told().substr(told), HasSubstr("left (node 1): no "));
         told = scene->told().size();
@@ -221,13 +220,13 @@ TEST_P(DisturbedServices, GuardingKeepsADriveOrSaysWhyItIsLost) {
       ASSERT_FALSE(scene->truth("left").power_stage_on);
     }
     calm();
-    const canopen::Node& node = scene->axis("left").node();
+    const canopen::Node& node = scene->node("left");
     const auto settled = [&] {  // between two attempts it has failed for the time being
       const bool waits = node.problem().find("it is tried again in") != std::string::npos;
-      return node.health() == NodeHealth::ready || (node.health() == NodeHealth::failed && !waits);
+      return node.health() == Health::ready || (node.health() == Health::failed && !waits);
     };
     ASSERT_TRUE(scene->runUntil(settled, 40s)) << scene->told();
-    if (node.health() == NodeHealth::failed) {
+    if (node.health() == Health::failed) {
       EXPECT_THAT(node.problem(), HasSubstr("given up after 3 attempts"));
     }
     const auto recovered = scene->procedure(ProcedureKind::recover, "left");

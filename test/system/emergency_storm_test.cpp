@@ -11,7 +11,7 @@ using testing::HasSubstr;
 
 /// Sends emergencies with this code from the drive's own controller.
 void cry(Scene& scene, const std::string& axis, std::uint16_t code) {
-  const auto node = scene.axis(axis).config().node_id;
+  const auto node = scene.node(axis).id();
   const bool taken = scene.port(axis).send(
       can::Frame(0x080U + node, {static_cast<std::uint8_t>(code & 0xFF),
                                  static_cast<std::uint8_t>(code >> 8), 0x10, 1, 2, 3, 4, 5}));

@@ -38,7 +38,7 @@ TEST(FaultResetByNmtStop, ClearsWhatBit7AloneDoesNot) {
   EXPECT_FALSE(had_power);
   EXPECT_LT(scene.seen("left").travel(), 1e-4);
   EXPECT_EQ(scene.state("left").state, drive::State::switch_on_disabled);
-  EXPECT_EQ(scene.state("left").health, canopen::NodeHealth::ready);
+  EXPECT_EQ(scene.state("left").health, fieldbus::Health::ready);
   EXPECT_TRUE(scene.procedure(ProcedureKind::recover, "left").success);
 }
 
@@ -60,7 +60,7 @@ TEST(FaultResetByNmtStop, WorksWithNodeGuarding) {
   FaultedScene scene(yaml);
   const bus::Answer answer = scene.procedure(ProcedureKind::clear_faults, "left");
   EXPECT_TRUE(answer.success) << answer.message;
-  EXPECT_EQ(scene.state("left").health, canopen::NodeHealth::ready);
+  EXPECT_EQ(scene.state("left").health, fieldbus::Health::ready);
 }
 
 TEST(FaultResetByNmtStop, IsNotTriedUnlessTheProfileSaysSo) {
@@ -78,7 +78,7 @@ TEST(FaultResetByNmtStop, TellsThatItDidNotHelpEither) {
   const bus::Answer answer = scene.procedure(ProcedureKind::clear_faults, "left");
   EXPECT_FALSE(answer.success);
   EXPECT_THAT(answer.message, HasSubstr("(2 tries)"));
-  EXPECT_EQ(scene.state("left").health, canopen::NodeHealth::ready);
+  EXPECT_EQ(scene.state("left").health, fieldbus::Health::ready);
 }
 
 TEST(FaultResetByNmtStop, LeavesTheZeroAndTheOtherAxisAlone) {
@@ -186,7 +186,7 @@ bool restoresAlone(const std::string& keys) {
   const bool still_enabled = scene.truth("right").power_stage_on;
   scene.run(3s);
   EXPECT_LT(std::abs(scene.velocity("right")), 1e-3);
-  return still_enabled && scene.state("right").health == canopen::NodeHealth::ready;
+  return still_enabled && scene.state("right").health == fieldbus::Health::ready;
 }
 
 TEST(BusThatAResetPullsDown, StaysUpWhereTheProfileForbidsTheReset) {

@@ -8,7 +8,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-constexpr canopen::ObjectId kTemperatureLimit{0x200A, 3};  // MOSFET, nobody names it
+constexpr fieldbus::ObjectId kTemperatureLimit{0x200A, 3};  // MOSFET, nobody names it
 
 class FloatObjects : public testing::Test {
  protected:
@@ -16,7 +16,7 @@ class FloatObjects : public testing::Test {
   bus::Answer write(const std::string& object, const std::string& value) {
     return call(scene, bus::WriteObjectCommand{"joint", object, value});
   }
-  std::uint64_t held(canopen::ObjectId id) {
+  std::uint64_t held(fieldbus::ObjectId id) {
     return scene.drive("joint").dictionary().find(id)->number;
   }
   Scene scene{loadText(damiaoJoint())};

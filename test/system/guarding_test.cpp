@@ -6,8 +6,8 @@ namespace cia402 {
 namespace {
 
 using namespace std::chrono_literals;
-using canopen::NodeHealth;
 using drive::ProcedureKind;
+using fieldbus::Health;
 using testing::HasSubstr;
 
 TEST(Guarding, ADriveWithoutHeartbeatIsGuardedBesideOneWithIt) {
@@ -26,7 +26,7 @@ TEST(Guarding, ADriveWithoutHeartbeatIsGuardedBesideOneWithIt) {
   EXPECT_NEAR(requests, 100, 1);
   EXPECT_EQ(answers, requests);
   EXPECT_NEAR(odd, 50, 1) << "operational, every other answer with the toggle bit";
-  EXPECT_EQ(scene.state("left").health, NodeHealth::ready);
+  EXPECT_EQ(scene.state("left").health, Health::ready);
   EXPECT_TRUE(scene.procedure(ProcedureKind::enable).success);
 }
 
@@ -49,10 +49,9 @@ TEST(Guarding, AGuardedDriveThatFallsSilentIsLostInWordsAndTakenInAgain) {
   ASSERT_TRUE(scene.boot()) << scene.told();
   ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
   scene.port("left").setAttached(false);
-  ASSERT_TRUE(
-      scene.runUntil([&] { return scene.state("left").health == NodeHealth::lost; }, 400ms));
+  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health == Health::lost; }, 400ms));
   EXPECT_THAT(scene.told(), HasSubstr("left (node 1): no answer to node guarding for 0.3 s"));
-  EXPECT_EQ(scene.state("right").health, NodeHealth::ready);
+  EXPECT_EQ(scene.state("right").health, Health::ready);
   scene.port("left").setAttached(true);
   ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 8s)) << scene.told();
   scene.run(500ms);
@@ -65,10 +64,10 @@ TEST(Guarding, APowerCycledGuardedDriveIsConfiguredAgain) {
   Scene scene(loadText(genericPair(kGuarded)));
   ASSERT_TRUE(scene.boot()) << scene.told();
   scene.inject("left", "power_cycle");
-  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health != NodeHealth::ready; }, 2s));
+  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health != Health::ready; }, 2s));
   ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 6s)) << scene.told();
   scene.run(5s);
-  EXPECT_EQ(scene.state("left").health, NodeHealth::ready) << scene.told();
+  EXPECT_EQ(scene.state("left").health, Health::ready) << scene.told();
 }
 
 TEST(Guarding, AGuardedDriveWhoseAnswersWereLostIsFoundAgain) {
@@ -79,7 +78,7 @@ TEST(Guarding, AGuardedDriveWhoseAnswersWereLostIsFoundAgain) {
   answers.receiver = "master";
   answers.count = 3;
   scene.world().bus().faults().add(answers);
-  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health == NodeHealth::lost; }, 1s));
+  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health == Health::lost; }, 1s));
   scene.run(50ms);
   EXPECT_EQ(scene.truth("left").nmt, canopen::NmtState::stopped);
   ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 6s)) << scene.told();

@@ -43,7 +43,7 @@ class InterfaceScene : private bus::EventSink {
   sim::DriveTruth truth(std::size_t i) { return world_.drive(i).truth(now_); }
   bool allReady() {
     for (const drive::Axis& axis : robot().axes()) {
-      if (axis.state().health != canopen::NodeHealth::ready || !axis.state().feedback_valid) {
+      if (axis.state().health != fieldbus::Health::ready || !axis.state().feedback_valid) {
         return false;
       }
     }

@@ -36,7 +36,7 @@ class Motion {
       hardest = std::max(hardest, std::abs(velocity - velocities_.front()) / 0.008);
     }
     const auto* torque = scene_.drive(axis_).dictionary().find({0x6077, 0});
-    if (torque->type == canopen::DataType::int16) {
+    if (torque->type == fieldbus::DataType::int16) {
       strongest = std::max(
           strongest, std::abs(static_cast<double>(static_cast<std::int16_t>(torque->number))));
     } else {

@@ -8,8 +8,8 @@ namespace cia402 {
 namespace {
 
 using namespace std::chrono_literals;
-using canopen::NodeHealth;
 using drive::ProcedureKind;
+using fieldbus::Health;
 
 constexpr Duration kHeartbeatTimeout = 300ms;
 constexpr Duration kRepeats = 100ms;  // in which the commands to stop come again and again
@@ -45,7 +45,7 @@ class LostDrive : public testing::TestWithParam<Lost> {
     heartbeats.id = 0x701;
     heartbeats.count = 6;
     scene.world().bus().faults().add(heartbeats);
-    const canopen::Node& node = scene.axis("left").node();
+    const canopen::Node& node = scene.node("left");
     while (scene.now() < node.lastHeartbeat() + kHeartbeatTimeout - 1ms) scene.run(1ms);
     sim::FaultRates rates;
     rates.loss = GetParam().loss;
@@ -58,7 +58,7 @@ TEST_P(LostDrive, ThatHomesStopsWithinTheTimeOutAndAFewRepetitions) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     Scene scene(load(), seed);
     ASSERT_NO_FATAL_FAILURE(lose(scene));
-    const Time heard = scene.axis("left").node().lastHeartbeat();
+    const Time heard = scene.node("left").lastHeartbeat();
     moving += std::abs(scene.velocity("left")) > 0.25 ? 1U : 0U;
     while (scene.now() < heard + kHeartbeatTimeout + kRepeats + kRamp) scene.run(1ms);
     EXPECT_LT(std::abs(scene.velocity("left")), 0.01) << "seed " << seed;
@@ -82,7 +82,7 @@ TEST(RebootedDrive, ThatNobodyHeardRebootIsFoundAgain) {
   ASSERT_TRUE(scene.boot()) << scene.told();
   scene.drive("left").device().behaviour().boot_up_message = false;
   scene.inject("left", "power_cycle");
-  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health == NodeHealth::lost; }, 1s));
+  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health == Health::lost; }, 1s));
   ASSERT_TRUE(scene.runUntil(
       [&] { return scene.drive("left").device().nmtState() == canopen::NmtState::stopped; }, 3s));
   EXPECT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 4s)) << scene.told();

@@ -6,8 +6,8 @@ namespace cia402 {
 namespace {
 
 using namespace std::chrono_literals;
-using canopen::NodeHealth;
 using drive::ProcedureKind;
+using fieldbus::Health;
 using testing::HasSubstr;
 
 TEST(BitTiming, IsSetInDisabledDrivesAndWhatFollowsIsSaid) {
@@ -46,8 +46,8 @@ TEST(BitTiming, ActivationSwitchesAllDrivesAndSaysThatTheBusMustFollow) {
   EXPECT_THAT(set.message, HasSubstr("all devices switch in 100 ms"));
   EXPECT_THAT(set.message, HasSubstr("bitrate 500000"));
   scene.run(3s);
-  EXPECT_EQ(scene.state("left").health, NodeHealth::lost);
-  EXPECT_EQ(scene.state("right").health, NodeHealth::lost);
+  EXPECT_EQ(scene.state("left").health, Health::lost);
+  EXPECT_EQ(scene.state("right").health, Health::lost);
 }
 
 /// Bit timing for all, to be activated, on drives that are disabled.

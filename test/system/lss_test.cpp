@@ -7,8 +7,8 @@ namespace cia402 {
 namespace {
 
 using namespace std::chrono_literals;
-using canopen::NodeHealth;
 using drive::ProcedureKind;
+using fieldbus::Health;
 using testing::HasSubstr;
 using testing::UnorderedElementsAre;
 
@@ -37,8 +37,7 @@ TEST(Lss, ADriveThatIsNotThereIsToldAndTheOtherWorks) {
   Scene scene(
       loadText(genericPair(lssOf(111) + unconfigured(999), lssOf(222) + unconfigured(222))));
   scene.robot().start();
-  ASSERT_TRUE(
-      scene.runUntil([&] { return scene.state("right").health == NodeHealth::ready; }, 10s));
+  ASSERT_TRUE(scene.runUntil([&] { return scene.state("right").health == Health::ready; }, 10s));
   scene.run(10s);
   EXPECT_THAT(scene.told(), HasSubstr("left (node 1): LSS: while selecting the device with vendor "
                                       "0x000004D2, product 0x00000402, revision 0x00010000, serial "
@@ -71,7 +70,7 @@ TEST(Lss, ADriveThatForgotItsNodeIdGetsItAgainWhileTheOtherMoves) {
   ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
   ASSERT_TRUE(scene.move({2.0}, 12s, 1).success);
   scene.inject("left", "power_cycle");
-  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health != NodeHealth::ready; }, 2s));
+  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health != Health::ready; }, 2s));
   ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 12s)) << scene.told();
   EXPECT_EQ(scene.drive("left").device().node(), 1);
   EXPECT_FALSE(scene.truth("left").power_stage_on) << "left disabled";
@@ -105,7 +104,7 @@ TEST_P(QuirkyLss, ADriveThatForgotItsNodeIdGetsItAgain) {
   GetParam().set(scene.drive("left").device().behaviour());
   ASSERT_TRUE(boots(scene)) << scene.told();
   scene.inject("left", "power_cycle");
-  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health != NodeHealth::ready; }, 2s));
+  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health != Health::ready; }, 2s));
   ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 12s)) << scene.told();
   EXPECT_EQ(scene.drive("left").device().node(), 1);
 }
@@ -115,7 +114,7 @@ TEST_P(QuirkyLss, ADriveThatIsGivenItsNodeIdByHandIsBooted) {
   GetParam().set(scene.drive("left").device().behaviour());
   scene.robot().start();
   scene.run(40s);  // the search has become slow
-  ASSERT_EQ(scene.state("left").health, NodeHealth::absent);
+  ASSERT_EQ(scene.state("left").health, Health::absent);
   bus::LssAssignCommand assign;
   assign.identity = device(111);
   assign.node_id = 1;
@@ -129,7 +128,7 @@ TEST_P(QuirkyLss, RecoverGivesItItsNodeIdAndEnablesIt) {
   GetParam().set(scene.drive("left").device().behaviour());
   ASSERT_TRUE(boots(scene)) << scene.told();
   scene.inject("left", "power_cycle");
-  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health == NodeHealth::lost; }, 2s));
+  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health == Health::lost; }, 2s));
   scene.run(600ms);
   const auto recovered = scene.procedure(ProcedureKind::recover, "left");
   EXPECT_TRUE(recovered.success) << recovered.message;
@@ -143,22 +142,20 @@ TEST(Lss, ADriveThatHasItsNodeIdIsNeverReportedAsOneWithout) {
   Scene scene(loadText(genericPair(unconfigured(111), ", simulation: {serial: 222}")));
   scene.drive("right").device().behaviour().lss_scanned_with_node_id = true;
   scene.robot().start();
-  ASSERT_TRUE(
-      scene.runUntil([&] { return scene.state("right").health == NodeHealth::ready; }, 10s));
+  ASSERT_TRUE(scene.runUntil([&] { return scene.state("right").health == Health::ready; }, 10s));
   const auto scan = call(scene, bus::LssScanCommand{});
   EXPECT_TRUE(scan.success) << scan.message;
   EXPECT_THAT(scan.devices, UnorderedElementsAre(device(111)));
   EXPECT_THAT(scan.message, HasSubstr("1 device without a node-ID"));
   EXPECT_THAT(scan.message, HasSubstr("serial 222 (0x000000DE) has node-ID 2"));
-  EXPECT_EQ(scene.state("right").health, NodeHealth::ready);
+  EXPECT_EQ(scene.state("right").health, Health::ready);
 }
 
 TEST(Lss, ADriveThatGoesOnAnsweringAfterItWasFoundHoldsTheScanUpForNoLongerThanFiveSeconds) {
   Scene scene(loadText(genericPair(unconfigured(111))));
   scene.drive("left").device().behaviour().lss_never_found = true;
   scene.robot().start();
-  ASSERT_TRUE(
-      scene.runUntil([&] { return scene.state("right").health == NodeHealth::ready; }, 10s));
+  ASSERT_TRUE(scene.runUntil([&] { return scene.state("right").health == Health::ready; }, 10s));
   const Time start = scene.now();
   const auto scan = call(scene, bus::LssScanCommand{});
   EXPECT_LE(scene.now() - start, 5s);
@@ -170,7 +167,7 @@ TEST(Lss, RecoverBeginsWithTheNodeId) {
   Scene scene(loadText(genericPair(lssOf(111) + unconfigured(111))));
   ASSERT_TRUE(boots(scene)) << scene.told();
   scene.inject("left", "power_cycle");
-  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health == NodeHealth::lost; }, 2s));
+  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health == Health::lost; }, 2s));
   scene.run(400ms);
   const auto recovered = scene.procedure(ProcedureKind::recover, "left");
   EXPECT_TRUE(recovered.success) << recovered.message;
@@ -191,7 +188,7 @@ TEST(Lss, RecoverGivesItBackToADriveThatWasTakenOutOfOperationAndThenSwitchedOff
   EXPECT_THAT(call(scene, assign).message, HasSubstr("node-ID 1 is that of a drive in operation"));
   scene.inject("left", "power_cycle");
   scene.run(2s);
-  ASSERT_EQ(scene.state("left").health, NodeHealth::failed) << "nobody asked for it";
+  ASSERT_EQ(scene.state("left").health, Health::failed) << "nobody asked for it";
   ASSERT_EQ(scene.drive("left").device().node(), 255);
   const auto recovered = scene.procedure(ProcedureKind::recover, "left");
   EXPECT_TRUE(recovered.success) << recovered.message;
@@ -214,7 +211,7 @@ TEST(Lss, ScanTellsWhoseDeviceItIs) {
   yaml.replace(yaml.find("joints: [left"), 13, "joints: [hip");
   Scene scene(loadText(yaml));
   scene.robot().start();
-  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health == NodeHealth::ready; }, 10s));
+  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health == Health::ready; }, 10s));
   scene.drive("left").device().behaviour().lss = false;  // so that one answers, not both
   const auto scan = call(scene, bus::LssScanCommand{});
   EXPECT_EQ(scan.device_axes, std::vector<std::string>{"left"});
@@ -224,15 +221,14 @@ TEST(Lss, ScanTellsWhoseDeviceItIs) {
 TEST(Lss, ScanFindsDevicesAssignNamesOneAndNobodyInOperationIsTouched) {
   Scene scene(loadText(genericPair(unconfigured(111))));
   scene.robot().start();
-  ASSERT_TRUE(
-      scene.runUntil([&] { return scene.state("right").health == NodeHealth::ready; }, 10s));
+  ASSERT_TRUE(scene.runUntil([&] { return scene.state("right").health == Health::ready; }, 10s));
   const auto scan = call(scene, bus::LssScanCommand{});
   ASSERT_TRUE(scan.success) << scan.message;
   EXPECT_THAT(scan.devices, UnorderedElementsAre(device(111)));
   EXPECT_THAT(scan.message, HasSubstr("1 device without a node-ID"));
   EXPECT_THAT(scan.message, HasSubstr("serial 111"));
   EXPECT_EQ(scan.device_axes, std::vector<std::string>{""});
-  EXPECT_EQ(scene.state("right").health, NodeHealth::ready);
+  EXPECT_EQ(scene.state("right").health, Health::ready);
 
   bus::LssAssignCommand assign;
   assign.identity = device(111);
@@ -270,8 +266,7 @@ class BehindAScan : public testing::Test {
     scene.robot().start();
     power(false);
     scene.run(1s);
-    ASSERT_TRUE(
-        scene.runUntil([&] { return scene.state("left").health == NodeHealth::absent; }, 10s));
+    ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health == Health::absent; }, 10s));
     scan = ask(scene, bus::LssScanCommand{100ms});
   }
   void power(bool on) {
@@ -280,8 +275,7 @@ class BehindAScan : public testing::Test {
   }
   void switchOnAndEnable() {
     power(true);
-    ASSERT_TRUE(
-        scene.runUntil([&] { return scene.state("left").health == NodeHealth::ready; }, 5s));
+    ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health == Health::ready; }, 5s));
     ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "left").success);
     ASSERT_FALSE(scan->has_value()) << "the test needs a longer scan";
   }
@@ -305,7 +299,7 @@ TEST_F(BehindAScan, ADriveThatWasEnabledMeanwhileKeepsItsNodeIdAndIsNotReset) {
   EXPECT_THAT((*answer)->message,
               HasSubstr("the device has node-ID 1, which is that of a drive in operation"));
   scene.run(500ms);
-  EXPECT_EQ(scene.state("left").health, NodeHealth::ready);
+  EXPECT_EQ(scene.state("left").health, Health::ready);
   EXPECT_TRUE(scene.truth("left").power_stage_on);
 }
 
@@ -345,8 +339,7 @@ TEST(Lss, AShutdownAtTheStartIsOrderly) {
 TEST(Lss, WhoWaitsForLssAtAShutdownIsAnswered) {
   Scene scene(loadText(genericPair(unconfigured(111))));
   scene.robot().start();
-  ASSERT_TRUE(
-      scene.runUntil([&] { return scene.state("right").health == NodeHealth::ready; }, 10s));
+  ASSERT_TRUE(scene.runUntil([&] { return scene.state("right").health == Health::ready; }, 10s));
   std::vector<std::string> answers;
   const auto ask = [&](decltype(bus::Command::body) body) {
     bus::Command command;

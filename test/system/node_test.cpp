@@ -6,8 +6,8 @@ namespace cia402 {
 namespace {
 
 using namespace std::chrono_literals;
-using canopen::NodeHealth;
 using drive::ProcedureKind;
+using fieldbus::Health;
 using testing::HasSubstr;
 
 constexpr const char* kHome = ", homing: {method: 37, offset: 0.0}";
@@ -39,7 +39,7 @@ class Nodes : public testing::Test {
 TEST_F(Nodes, ARebootedDriveIsConfiguredAgainAndLeftDisabled) {
   begin();
   scene.inject("left", "power_cycle");
-  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health != NodeHealth::ready; }, 2s));
+  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health != Health::ready; }, 2s));
   ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 6s)) << scene.told();
   scene.run(500ms);
   EXPECT_FALSE(scene.truth("left").power_stage_on);
@@ -67,7 +67,7 @@ TEST_F(Nodes, APulledCableLosesTheNodeAndTheDriveStopsByItself) {
   scene.port("left").setAttached(false);
   ASSERT_TRUE(scene.runUntil([&] { return !scene.truth("left").power_stage_on; }, 1500ms));
   EXPECT_FALSE(scene.truth("left").moving);
-  EXPECT_TRUE(scene.runUntil([&] { return scene.state("left").health == NodeHealth::lost; }, 100ms))
+  EXPECT_TRUE(scene.runUntil([&] { return scene.state("left").health == Health::lost; }, 100ms))
       << "within a period of the drive, which began to watch at another moment";
   EXPECT_THAT(scene.told(), HasSubstr("left (node 1): no heartbeat for 0.3 s: check power and "
                                       "cable"));
@@ -90,7 +90,7 @@ TEST_F(Nodes, APulledCableLosesTheNodeAndTheDriveStopsByItself) {
 TEST_F(Nodes, ADriveThatFallsSilentIsLostAndTheOthersGoOn) {
   begin();
   scene.inject("left", "silent");
-  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health == NodeHealth::lost; }, 1s));
+  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health == Health::lost; }, 1s));
   const auto refused = scene.procedure(ProcedureKind::enable, "left");
   EXPECT_FALSE(refused.success);
   EXPECT_THAT(refused.message, HasSubstr("cannot enable: the node is lost"));
@@ -101,9 +101,9 @@ TEST(Boot, AnSdoSilentNodeFailsInWordsAndTheOtherWorks) {
   Scene scene(loadText(genericPair()));
   scene.robot().start();
   scene.inject("left", "sdo_silent");
-  ASSERT_TRUE(scene.runUntil([&] { return scene.state("right").health == NodeHealth::ready; }, 3s));
+  ASSERT_TRUE(scene.runUntil([&] { return scene.state("right").health == Health::ready; }, 3s));
   scene.run(12s);
-  EXPECT_NE(scene.state("left").health, NodeHealth::ready);
+  EXPECT_NE(scene.state("left").health, Health::ready);
   EXPECT_THAT(scene.told(), HasSubstr("left (node 1)"));
   EXPECT_THAT(scene.told(), HasSubstr("does not answer"));
   EXPECT_TRUE(scene.procedure(ProcedureKind::enable, "right").success);
@@ -119,7 +119,7 @@ TEST(Boot, AnAbsentNodeIsToldAndTakenInOncePoweredOn) {
   scene.drive("left").powerOff(scene.now());
   scene.port("left").setPowered(false);
   scene.run(8s);
-  EXPECT_EQ(scene.state("left").health, NodeHealth::absent);
+  EXPECT_EQ(scene.state("left").health, Health::absent);
   EXPECT_THAT(scene.told(), HasSubstr("left (node 1): does not answer: neither a boot-up message"));
   ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "right").success);
   scene.port("left").setPowered(true);
@@ -137,7 +137,7 @@ TEST(Boot, SwappedDrivesAreRefusedWhileTheRestWorks) {
   Scene scene(std::move(loaded));
   scene.robot().start();
   scene.run(6s);
-  EXPECT_EQ(scene.state("left").health, NodeHealth::failed);
+  EXPECT_EQ(scene.state("left").health, Health::failed);
   EXPECT_THAT(scene.told(), HasSubstr("is another drive than configured: 1018:04"));
   EXPECT_THAT(scene.told(), HasSubstr("check node-ID and wiring"));
   EXPECT_NE(scene.truth("left").nmt, canopen::NmtState::operational);
@@ -153,10 +153,10 @@ TEST(Boot, AWrongDeviceTypeIsRefusedInWords) {
   Scene scene(std::move(loaded));
   scene.robot().start();
   scene.run(6s);
-  EXPECT_EQ(scene.state("left").health, NodeHealth::failed);
+  EXPECT_EQ(scene.state("left").health, Health::failed);
   EXPECT_THAT(scene.told(),
               HasSubstr("1000:00 device type is 0x00030000, configured is 0x00020192"));
-  EXPECT_EQ(scene.state("right").health, NodeHealth::ready);
+  EXPECT_EQ(scene.state("right").health, Health::ready);
 }
 
 TEST(Boot, AnObjectThatTheDriveLacksIsNamed) {
@@ -166,11 +166,11 @@ TEST(Boot, AnObjectThatTheDriveLacksIsNamed) {
                   "dc_link_voltage]}")));
   scene.robot().start();
   scene.run(6s);
-  EXPECT_EQ(scene.state("left").health, NodeHealth::failed);
+  EXPECT_EQ(scene.state("left").health, Health::failed);
   EXPECT_THAT(scene.told(), HasSubstr("one of these cannot be mapped: "));
   EXPECT_THAT(scene.told(), HasSubstr("6079:00"));
   EXPECT_THAT(scene.told(), HasSubstr("left (node 1)"));
-  EXPECT_EQ(scene.state("right").health, NodeHealth::ready);
+  EXPECT_EQ(scene.state("right").health, Health::ready);
 }
 
 TEST(Boot, ADriveLeftEnabledByADeadDriverDoesNotMoveAndIsDisabled) {
@@ -179,7 +179,7 @@ TEST(Boot, ADriveLeftEnabledByADeadDriverDoesNotMoveAndIsDisabled) {
   ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
   scene.forget();
   drive::Axis& axis = scene.axis("left");
-  axis.node().boot(scene.now(), false);
+  axis.device().boot(scene.now(), false);
   ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 6s));
   scene.run(500ms);
   EXPECT_FALSE(scene.truth("left").power_stage_on);
@@ -193,7 +193,7 @@ TEST(Boot, ADriveThatLocksItsParametersWhileEnabledComesBackAfterAPulledCable) {
   scene.forget();
   scene.robot().port().setAttached(false);  // the driver's end of the cable
   scene.run(1s);
-  ASSERT_NE(scene.state("joint").health, NodeHealth::ready);
+  ASSERT_NE(scene.state("joint").health, Health::ready);
   scene.robot().port().setAttached(true);
   ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 8s)) << scene.told();
   scene.run(500ms);

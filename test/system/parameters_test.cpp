@@ -7,11 +7,11 @@ namespace {
 
 using namespace std::chrono_literals;
 using canopen::NmtState;
-using canopen::NodeHealth;
 using drive::ProcedureKind;
+using fieldbus::Health;
 using testing::HasSubstr;
 
-constexpr canopen::ObjectId kErrorTime{0x6066, 0};  // following error time out, ms
+constexpr fieldbus::ObjectId kErrorTime{0x6066, 0};  // following error time out, ms
 
 class ParametersScene : public testing::Test {
  protected:
@@ -28,8 +28,7 @@ class ParametersScene : public testing::Test {
   }
   void powerCycle() {
     scene.inject("left", "power_cycle");
-    ASSERT_TRUE(
-        scene.runUntil([&] { return scene.state("left").health != NodeHealth::ready; }, 2s));
+    ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health != Health::ready; }, 2s));
     ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 6s)) << scene.told();
   }
   Scene scene;

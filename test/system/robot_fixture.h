@@ -48,7 +48,7 @@ inline std::string told(const tools::VirtualRobot& robot) {
 
 inline bool allReady(tools::VirtualRobot& robot) {
   for (const drive::Axis& axis : robot.robot().axes()) {
-    if (axis.state().health != canopen::NodeHealth::ready) return false;
+    if (axis.state().health != fieldbus::Health::ready) return false;
   }
   return true;
 }

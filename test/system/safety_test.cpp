@@ -248,13 +248,13 @@ TEST_P(StopDuringRecover, EndsTheRecoveryOfAnAxisWhoseNodeStillBoots) {
   boot(kOneAxis);
   inject("power_cycle");
   ASSERT_TRUE(
-      robot->runUntil([&] { return axis().state().health == canopen::NodeHealth::booting; }, 10s));
+      robot->runUntil([&] { return axis().state().health == fieldbus::Health::booting; }, 10s));
   post(ProcedureKind::recover);
   robot->run(2ms);
-  ASSERT_NE(axis().state().health, canopen::NodeHealth::ready);
+  ASSERT_NE(axis().state().health, fieldbus::Health::ready);
   post(GetParam());
   robot->run(5s);
-  ASSERT_EQ(axis().state().health, canopen::NodeHealth::ready) << told(*robot);
+  ASSERT_EQ(axis().state().health, fieldbus::Health::ready) << told(*robot);
   EXPECT_FALSE(truth().power_stage_on);
 }
 

@@ -95,6 +95,7 @@ class Scene {
     return static_cast<std::size_t>(axis - axes.begin());
   }
   drive::Axis& axis(const std::string& name) { return robot_.robot().axes()[index(name)]; }
+  canopen::Node& node(const std::string& name) { return robot_.robot().node(index(name)); }
   const drive::AxisState& state(const std::string& name) { return axis(name).state(); }
   sim::Port& port(const std::string& name) { return world().port(index(name)); }
   sim::Drive& drive(const std::string& name) { return world().drive(index(name)); }

@@ -11,11 +11,11 @@
 namespace cia402 {
 namespace {
 
-using canopen::Bytes;
-using canopen::ObjectId;
 using canopen::SdoOptions;
 using canopen::SdoTicket;
-using canopen::SdoTransfer;
+using fieldbus::Bytes;
+using fieldbus::ObjectId;
+using fieldbus::Transfer;
 using std::chrono::milliseconds;
 
 struct Kind {
@@ -98,7 +98,7 @@ class SdoFaults {
   Bytes held(const Kind& kind) {
     const sim::Entry& entry = *bus.dictionary().find(kind.object);
     if (kind.size > 4) return entry.bytes;
-    return canopen::toBytes(entry.number, 4);
+    return fieldbus::toBytes(entry.number, 4);
   }
   SdoTicket run(SdoTicket ticket) {
     bus.finish(ticket, std::chrono::seconds(20));

@@ -13,11 +13,11 @@
 namespace cia402 {
 namespace {
 
-using canopen::Bytes;
+using fieldbus::Bytes;
 using std::chrono::microseconds;
 
 constexpr Duration kFrame = microseconds(135);  // eight bytes with all stuff bits, 1 Mbit/s
-constexpr canopen::ObjectId kProgram{0x1F50, 1};
+constexpr fieldbus::ObjectId kProgram{0x1F50, 1};
 
 /// A master that sends SYNC and downloads, a device that takes it, and a third party that fills
 /// half of the bus with TPDOs.

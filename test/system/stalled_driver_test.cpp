@@ -9,7 +9,7 @@ namespace cia402 {
 namespace {
 
 using namespace std::chrono_literals;
-using canopen::NodeHealth;
+using fieldbus::Health;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -46,7 +46,7 @@ TEST_F(StalledDriver, LosesNoDriveWhoseHeartbeatsWaitInTheQueue) {
   begin(genericPair(kPatientDrive, kPatientDrive));
   stallInAllPhases(1s, [&] {
     for (std::size_t i = 0; i < 2; ++i) {
-      ASSERT_EQ(scene->state(i).health, NodeHealth::ready) << scene->told();
+      ASSERT_EQ(scene->state(i).health, Health::ready) << scene->told();
       ASSERT_TRUE(scene->state(i).feedback_valid) << scene->told();
     }
   });
@@ -71,8 +71,8 @@ TEST_F(StalledDriver, LosesADriveThatWasSilentMeanwhile) {
   scene->world().drive(0).powerOff(scene->now());
   scene->stall(1s);
   scene->run(20ms);
-  EXPECT_EQ(scene->state(0).health, NodeHealth::lost);
-  EXPECT_EQ(scene->state(1).health, NodeHealth::ready);
+  EXPECT_EQ(scene->state(0).health, Health::lost);
+  EXPECT_EQ(scene->state(1).health, Health::ready);
 }
 
 TEST_F(StalledDriver, TakesAnAnswerThatCameInTime) {

@@ -46,7 +46,7 @@ class StalledProcess : public testing::Test, private bus::EventSink {
   bool allReady() {
     const auto& axes = loop->robot().axes();
     return std::all_of(axes.begin(), axes.end(), [](const drive::Axis& axis) {
-      return axis.state().health == canopen::NodeHealth::ready && axis.state().feedback_valid;
+      return axis.state().health == fieldbus::Health::ready && axis.state().feedback_valid;
     });
   }
   bus::Answer call(decltype(bus::Command::body) body) {

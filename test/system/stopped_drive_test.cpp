@@ -7,8 +7,8 @@ namespace {
 
 using namespace std::chrono_literals;
 using canopen::NmtState;
-using canopen::NodeHealth;
 using drive::ProcedureKind;
+using fieldbus::Health;
 using testing::AllOf;
 using testing::HasSubstr;
 
@@ -45,7 +45,7 @@ TEST_F(StoppedDrive, IsBackSoonThoughTheCommandsOutOfItWereLost) {
   boot();
   stop(3);
   const Time begin = scene.now();
-  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health != NodeHealth::ready; }, 1s));
+  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health != Health::ready; }, 1s));
   const auto recovered = scene.procedure(ProcedureKind::recover, "left");
   EXPECT_TRUE(recovered.success) << recovered.message;
   EXPECT_LT(scene.now() - begin, 2s);

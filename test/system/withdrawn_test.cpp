@@ -105,8 +105,8 @@ class ARecoverThatWaitsForLss : public testing::Test {
   void beginRecover(const std::string& axes) {
     ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 20s)) << scene.told();
     scene.inject("right", "power_cycle");
-    ASSERT_TRUE(scene.runUntil(
-        [&] { return scene.state("right").health == canopen::NodeHealth::lost; }, 2s));
+    ASSERT_TRUE(
+        scene.runUntil([&] { return scene.state("right").health == fieldbus::Health::lost; }, 2s));
     scene.run(400ms);
     recovering = scene.begin(ProcedureKind::recover, axes);
     scene.run(5ms);

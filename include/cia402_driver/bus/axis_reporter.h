@@ -9,8 +9,8 @@
 
 #include "cia402_driver/bus/event.h"
 #include "cia402_driver/bus/repeat_limiter.h"
-#include "cia402_driver/canopen/emergency.h"
 #include "cia402_driver/drive/profile.h"
+#include "cia402_driver/fieldbus/emergency.h"
 
 namespace cia402::bus {
 
@@ -40,7 +40,7 @@ class AxisReporter {
 
   /// An emergency came: it is handed to EventSink::onEmergency() and told.
   /// @param excuse how this program itself has caused it, in words; empty: it has not
-  void emergency(const canopen::Emergency& emergency, Time now, const std::string& excuse = {});
+  void emergency(const fieldbus::Emergency& emergency, Time now, const std::string& excuse = {});
   /// A frame of `size` bytes came where an emergency was expected, without an error code.
   void malformedEmergency(std::size_t size, Time now);
   /// The axis has got a fault, a problem or a warning with this code (603Fh); `text` says all.
@@ -64,8 +64,8 @@ class AxisReporter {
                       const std::string& text, Time now);
   void tell(const char* prefix, const RepeatLimiter::Summary& summary, Time now);
   std::string kindText(std::uint32_t kind) const;
-  void count(const canopen::Emergency& emergency);
-  std::string textOf(const canopen::Emergency& emergency, const std::string& excuse) const;
+  void count(const fieldbus::Emergency& emergency);
+  std::string textOf(const fieldbus::Emergency& emergency, const std::string& excuse) const;
 
   std::size_t axis_;
   std::string who_;

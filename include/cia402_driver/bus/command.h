@@ -22,7 +22,7 @@ namespace cia402::bus {
 struct Answer {
   bool success = false;
   std::string message;                                       ///< a sentence
-  canopen::Bytes data;                                       ///< read_object: wire order
+  fieldbus::Bytes data;                                      ///< read_object: wire order
   double number = std::numeric_limits<double>::quiet_NaN();  ///< read_object: in device units
   std::string text;  ///< read_object: value with unit; DcfDraft: the file
   std::vector<canopen::lss::Identity> devices;  ///< lss_scan: without a node-ID

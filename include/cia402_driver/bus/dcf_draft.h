@@ -8,6 +8,7 @@
 
 #include "cia402_driver/bus/command.h"
 #include "cia402_driver/bus/dcf_reading.h"
+#include "cia402_driver/canopen/device_config.h"
 #include "cia402_driver/canopen/eds.h"
 #include "cia402_driver/drive/axis_config.h"
 
@@ -28,7 +29,8 @@ struct DcfStamp {
 ///     if (answer.success) answer = draft.finish();
 class DcfDraft {
  public:
-  DcfDraft(const drive::AxisConfig& config, const DcfStamp& stamp);
+  DcfDraft(const drive::AxisConfig& axis, const canopen::DeviceConfig& device,
+           const DcfStamp& stamp);
 
   /// Has the objects read; to be given once.
   SaveDcfCommand command() const { return {axis_, reading_}; }
@@ -39,10 +41,11 @@ class DcfDraft {
  private:
   void plan();
   void addProfileObjects(const drive::DriveProfile& profile);
-  void addCommunicationObjects(const drive::DriveProfile& profile);
-  void addRecord(std::uint16_t index, const char* name, const std::vector<canopen::DataType>& types,
-                 const std::vector<const char*>& names, canopen::Access count,
-                 canopen::Access others);
+  void addCommunicationObjects(const canopen::DeviceProfile& profile);
+  void addRecord(std::uint16_t index, const char* name,
+                 const std::vector<fieldbus::DataType>& types,
+                 const std::vector<const char*>& names, fieldbus::Access count,
+                 fieldbus::Access others);
   void take(const DcfReading::Item& item);
   void store(const DcfReading::Item& item);
   void setIdentity();
@@ -50,7 +53,7 @@ class DcfDraft {
   std::string axis_, who_;
   bool has_eds_;
   canopen::EdsInfo info_;
-  canopen::ObjectDictionary dictionary_;
+  fieldbus::ObjectDictionary dictionary_;
   std::shared_ptr<DcfReading> reading_ = std::make_shared<DcfReading>();
   std::size_t read_ = 0, unwritable_ = 0;
   std::vector<std::string> unread_;

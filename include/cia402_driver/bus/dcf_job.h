@@ -24,7 +24,7 @@ class DcfJob {
   void abandon(const std::string& why);
 
  private:
-  void take(const canopen::SdoTransfer& transfer);
+  void take(const fieldbus::Transfer& transfer);
   bool askNext();
   bool finish(const Answer& answer);
   bool fail(const std::string& why);

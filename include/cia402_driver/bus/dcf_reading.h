@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cia402_driver/canopen/object.h"
+#include "cia402_driver/fieldbus/object.h"
 
 namespace cia402::bus {
 
@@ -19,11 +19,11 @@ struct DcfReading {
     refused,  ///< or not answered, see `problem`
   };
   struct Item {
-    canopen::ObjectId id;
+    fieldbus::ObjectId id;
     std::string name;
     bool guessed = false;  ///< not known to be there: that it is not is no failure
     Outcome outcome = Outcome::not_asked;
-    canopen::Bytes data;  ///< that was read
+    fieldbus::Bytes data;  ///< that was read
     std::string problem;
   };
   std::vector<Item> items;  ///< by rising index and sub-index

@@ -5,8 +5,8 @@
 #include <cstdint>
 
 #include "cia402_driver/bus/fixed_text.h"
-#include "cia402_driver/canopen/emergency.h"
 #include "cia402_driver/common/time.h"
+#include "cia402_driver/fieldbus/emergency.h"
 
 namespace cia402::bus {
 
@@ -22,7 +22,7 @@ struct Event {
 /// One emergency message, for programs: every single one is handed on.
 struct EmergencyEvent {
   std::size_t axis = 0;  ///< index in the configuration
-  canopen::Emergency emergency;
+  fieldbus::Emergency emergency;
 };
 
 /// Takes events in the bus thread. Never blocks. Emergencies go their own way: a storm of them

@@ -79,7 +79,7 @@ class FlightRecorder final : public can::Sink {
   struct Watched {  // of an axis, as it was recorded last
     std::uint64_t signature = 0;
     drive::State state = drive::State::unknown;
-    canopen::NodeHealth health = canopen::NodeHealth::absent;
+    fieldbus::Health health = fieldbus::Health::absent;
     std::uint32_t procedure = 0;
     FixedText<96> step;
   };

@@ -98,7 +98,7 @@ class ObjectJob {
   bool finish(bool success, std::string message);
   bool finishRead();
   bool writeWithAskedSize();
-  void download(const canopen::Bytes& data);
+  void download(const fieldbus::Bytes& data);
   void lock();
   /// Why an object with a mark cannot be written now; empty: it can.
   std::string calibrationRefusal() const;
@@ -111,7 +111,7 @@ class ObjectJob {
   std::optional<drive::ObjectSpec> spec_;  ///< nothing names it where there is none
   std::string who_, name_, value_;
   std::string units_;  ///< of what is written: " (0.1 rad)", or nothing
-  canopen::ObjectId id_;
+  fieldbus::ObjectId id_;
   Stage stage_ = Stage::reading;
   drive::CoordinateMark mark_ = drive::CoordinateMark::none;  ///< of what is written
   bool locked_ = false;                                       ///< Axis::beginCalibration()

@@ -20,28 +20,34 @@ namespace cia402::bus {
 /// stop.
 class NmtJob {
  public:
-  /// Sends the command. @param which indices in `axes`; with `all` they are all of them, and the
-  /// command goes out as one frame. @return why not, in words; then nothing was sent.
+  using Nodes = std::vector<canopen::Node*>;
+
+  /// Sends the command. @param nodes of each axis. @param which indices in `axes`; with `all` they
+  /// are all of them, and the command goes out as one frame. @return why not, in words; then
+  /// nothing was sent.
   static Result<NmtJob> start(const std::string& word, const std::vector<std::size_t>& which,
-                              bool all, std::vector<drive::Axis>& axes, canopen::Master& master,
-                              Reply reply, Time now);
+                              bool all, std::vector<drive::Axis>& axes, const Nodes& nodes,
+                              canopen::Master& master, Reply reply, Time now);
 
   /// @return true once the reply was given.
-  bool step(std::vector<drive::Axis>& axes, Time now);
+  bool step(const Nodes& nodes, Time now);
   /// Gives a failed reply; for the end of the program.
   void abandon(const std::string& why);
 
  private:
   struct Entry {
     std::size_t axis = 0;
+    std::string who;
     bool tells = true;  ///< its heartbeat, or answers to guarding, will tell the state
     bool ended = false, success = false;
     std::string message;
   };
-  void watch(Entry& entry, drive::Axis& axis, Time now) const;
-  void watchBoot(Entry& entry, drive::Axis& axis, Time now) const;
-  void watchState(Entry& entry, drive::Axis& axis, Time now) const;
-  void lookAgain(Entry& entry, drive::Axis& axis) const;
+  void watch(Entry& entry, const canopen::Node& node, Time now) const;
+  void watchBoot(Entry& entry, const canopen::Node& node, Time now) const;
+  void watchState(Entry& entry, const canopen::Node& node, Time now) const;
+  void lookAgain(Entry& entry, const canopen::Node& node) const;
+  /// "shoulder (node 3): nmt stop: ".
+  std::string about(const Entry& entry) const;
   bool staysDown() const;  ///< stop and pre_operational: until somebody boots the node
   Answer answer() const;
 

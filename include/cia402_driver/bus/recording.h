@@ -34,7 +34,7 @@ struct AxisRecord {
   std::uint16_t statusword = 0, error_code = 0;
   std::int16_t mode = 0;
   std::uint8_t state = 0;      ///< drive::State
-  std::uint8_t health = 0;     ///< canopen::NodeHealth
+  std::uint8_t health = 0;     ///< fieldbus::Health
   std::uint8_t procedure = 0;  ///< drive::ProcedureKind
   std::uint8_t flags = 0;
 };

@@ -81,6 +81,8 @@ class Robot final : private canopen::MasterListener {
   const config::RobotConfig& config() const { return config_; }
   std::vector<drive::Axis>& axes() { return axes_; }
   const std::vector<Group>& groups() const { return groups_; }
+  /// The node that an axis sits in. @param axis index in axes()
+  canopen::Node& node(std::size_t axis) { return *nodes_[axis]; }
   canopen::Master& master() { return master_; }
   const canopen::Master& master() const { return master_; }
   const CycleStatistics& statistics() const { return statistics_; }
@@ -98,7 +100,7 @@ class Robot final : private canopen::MasterListener {
     AxisWords words;
     Time checked{};
     drive::State state = drive::State::unknown;
-    canopen::NodeHealth health = canopen::NodeHealth::absent;
+    fieldbus::Health health = fieldbus::Health::absent;
     std::uint32_t procedure = 0, notices = 0;
     bool running = false, feedback_valid = false, warning = false;
     std::uint16_t error_code = 0;
@@ -121,10 +123,10 @@ class Robot final : private canopen::MasterListener {
     }
   };
 
-  void onEmergency(canopen::Node& node, const canopen::Emergency& emergency) override;
+  void onEmergency(canopen::Node& node, const fieldbus::Emergency& emergency) override;
   void onMalformedEmergency(canopen::Node& node, std::size_t size) override;
   void onBootUp(canopen::Node& node, Time now) override;
-  void onHealthChange(canopen::Node& node, canopen::NodeHealth before, Time now) override;
+  void onHealthChange(canopen::Node& node, fieldbus::Health before, Time now) override;
   void tellBooted(std::size_t axis, Time now);
   void onForeignSync(const can::Frame& frame, Time stamp, Time now) override;
 

@@ -9,9 +9,23 @@
 #include <string_view>
 #include <vector>
 
-#include "cia402_driver/canopen/object_dictionary.h"
+#include "cia402_driver/canopen/object.h"
+#include "cia402_driver/fieldbus/object_dictionary.h"
 
 namespace cia402::canopen {
+
+using fieldbus::Access;
+using fieldbus::compareValues;
+using fieldbus::dataTypeCode;
+using fieldbus::dataTypeOfCode;
+using fieldbus::describeValue;
+using fieldbus::DictionaryEntry;
+using fieldbus::DictionaryObject;
+using fieldbus::nameKey;
+using fieldbus::ObjectCode;
+using fieldbus::ObjectDictionary;
+using fieldbus::ObjectValue;
+using fieldbus::realOf;
 
 /// One thing wrong in an EDS or DCF file.
 struct EdsProblem {

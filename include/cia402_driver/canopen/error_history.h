@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cia402_driver/canopen/sdo_client.h"
+#include "cia402_driver/fieldbus/object_access.h"
 
 namespace cia402::canopen {
 
@@ -37,18 +37,18 @@ class ErrorHistoryReader {
 
   /// Begins, looks whether an answer has come, asks for the next. @param sdo the client of the
   /// node, always the same. @return true once history() is complete.
-  bool step(SdoClient& sdo);
+  bool step(fieldbus::ObjectAccess& objects);
   const ErrorHistory& history() const { return history_; }
 
  private:
-  bool takeCount(SdoClient& sdo);
-  bool takeEntry(SdoClient& sdo);
-  void ask(SdoClient& sdo, unsigned sub_index);
+  bool takeCount(fieldbus::ObjectAccess& objects);
+  bool takeEntry(fieldbus::ObjectAccess& objects);
+  void ask(fieldbus::ObjectAccess& objects, unsigned sub_index);
   bool end(std::string remark);
 
   unsigned most_;
   unsigned sub_index_ = 0;  // asked for at the moment
-  SdoTicket ticket_;
+  fieldbus::Ticket ticket_;
   ErrorHistory history_;
 };
 

@@ -25,7 +25,7 @@ class MasterListener {
   /// A frame of so many bytes where an emergency was expected: it holds no error code.
   virtual void onMalformedEmergency(Node&, std::size_t /*size*/) {}
   virtual void onBootUp(Node&, Time) {}  ///< a boot-up frame, expected or not
-  virtual void onHealthChange(Node&, NodeHealth /*before*/, Time) {}
+  virtual void onHealthChange(Node&, Health /*before*/, Time) {}
   /// Another device has sent SYNC. @param stamp when it was on the wire
   virtual void onForeignSync(const can::Frame&, Time /*stamp*/, Time /*now*/) {}
 };
@@ -88,7 +88,7 @@ class Master {
   struct Route {
     Service service = Service::none;
     std::uint8_t node = 0;  ///< index in nodes_
-    std::uint8_t pdo = 0;   ///< index in ProcessImage::tpdos() or rpdos()
+    std::uint8_t pdo = 0;   ///< index in PdoImage::tpdos() or rpdos()
   };
   static constexpr std::size_t kIdentifiers = 2048;  ///< of 11 bits
 
@@ -103,7 +103,7 @@ class Master {
   MasterListener* listener_;
   SdoPacer pacer_;
   std::vector<Node> nodes_;
-  std::vector<NodeHealth> told_;  ///< what the listener knows of each node
+  std::vector<Health> told_;  ///< what the listener knows of each node
   std::array<Route, kIdentifiers> routes_{};
   SyncProducer sync_;
   HeartbeatProducer heartbeat_;

@@ -11,36 +11,26 @@
 #include "cia402_driver/canopen/config.h"
 #include "cia402_driver/canopen/emergency.h"
 #include "cia402_driver/canopen/nmt.h"
-#include "cia402_driver/canopen/pdo.h"
+#include "cia402_driver/canopen/pdo_image.h"
 #include "cia402_driver/canopen/sdo_client.h"
 #include "cia402_driver/canopen/sdo_pacer.h"
+#include "cia402_driver/fieldbus/device.h"
 
 namespace cia402::canopen {
 
-/// Health of a node as the master sees it.
-enum class NodeHealth : std::uint8_t {
-  absent,   ///< never heard of, or boot timed out
-  booting,  ///< identified and configured at the moment; bootStep() says how far
-  ready,    ///< configured and started (operational)
-  failed,   ///< boot failed, or commanded out of operation; problem() says why; boot() tries again
-  lost,     ///< heartbeat, or answer to guarding, missing
-};
-const char* toString(NodeHealth health);
-/// Nobody answers.
-inline bool isAway(NodeHealth health) {
-  return health == NodeHealth::absent || health == NodeHealth::lost;
-}
+using fieldbus::Health;
+using fieldbus::isAway;
 
 /// The master's side of one node: SDO client, process image, supervision and boot procedure.
 /// Owned by Master.
-class Node {
+class Node final : public fieldbus::Device {
  public:
   /// @param turns gives turns to the requests of all booting nodes; none: they leave at once.
   /// @param deadlines_changed set whenever nextDeadline() may have become another one.
   /// @param wire the sink where it is a pacer, for SDO block transfers. All outlive the node.
   Node(const NodeConfig& config, const MasterConfig& master, can::Sink& sink,
        SdoPacer* turns = nullptr, bool* deadlines_changed = nullptr, can::Pacer* wire = nullptr);
-  ~Node();
+  ~Node() override;
   Node(Node&&) noexcept;
 
   NodeId id() const;
@@ -48,19 +38,14 @@ class Node {
   /// "shoulder (node 3)", for messages.
   std::string who() const;
   const NodeConfig& config() const;
-  /// It is away, and the configuration says that it may be.
-  bool excused() const;
+  bool excused() const override;
 
-  NodeHealth health() const { return front_->health; }
   NmtState nmtState() const;
-  /// Step of the boot procedure in words: "reading 1018:01 vendor id", "waiting for boot-up".
-  const std::string& bootStep() const;
-  /// Why the boot failed or the node was lost, and what to do; empty when healthy.
-  const std::string& problem() const;
-  /// Why a drive that says it is stopped (NMT) cannot be asked for `what`, e.g. "6041:00
-  /// statusword", and what to do; empty if it is not stopped. A stopped node answers no SDO (CiA
-  /// 301, 7.3.2.2).
-  std::string stoppedRefusal(const std::string& what) const;
+  const std::string& bootStep() const override;
+  const std::string& problem() const override;
+  fieldbus::DeviceTimes times() const override;
+  /// A drive that says it is stopped (NMT) answers no SDO (CiA 301, 7.3.2.2).
+  std::string askingRefusal(const std::string& what) const override;
   /// Identity read at boot.
   struct Identity {
     std::uint32_t device_type = 0, vendor_id = 0, product_code = 0, revision = 0, serial = 0;
@@ -80,9 +65,12 @@ class Node {
   /// It was told to start: its PDOs are as configured.
   bool started() const;
 
-  /// (Re)starts the boot procedure: identify, configure, start. @param reset send NMT reset
-  /// communication first; without it the node is only brought to pre-operational.
-  void boot(Time now, bool reset);
+  /// @param reset send NMT reset communication first; without it the node is only brought to
+  /// pre-operational.
+  void boot(Time now, bool reset) override;
+  /// By NMT reset node, or reset communication where that is not allowed.
+  void restart(Time now) override;
+  std::string restartGap() const override;
   /// Somebody tells that the drive is there, without a sign of life on its node-ID yet: a node that
   /// is away is asked for its device type at `at` instead of whenever the search comes to it. Not
   /// while it is told to stop after its loss, nor where an NMT command took it out of operation.
@@ -94,25 +82,21 @@ class Node {
   /// The same after the master has sent `command` to all nodes at once: nothing is sent.
   void commanded(NmtCommand command, Time now);
 
-  /// Takes a node that is ready through NMT stop and, after `stopped`, start. It stays ready, with
-  /// the configuration that it has; where it does not start again it is booted.
-  static constexpr Duration kStartPatience{std::chrono::seconds(1)};
-  void stopAndStart(Duration stopped, Time now);
-  /// That is under way.
-  bool paused() const;
+  /// By NMT stop and start.
+  void stopAndStart(Duration stopped, Time now) override;
+  bool paused() const override;
 
-  /// To be used at once, not kept: the node looks at its transfers' deadlines anew after each call.
   SdoClient& sdo();
   const SdoClient& sdo() const;
-  ProcessImage& image() { return front_->image; }
-  const ProcessImage& image() const { return front_->image; }
+  fieldbus::ObjectAccess& objects() override;
+  PdoImage& image() { return static_cast<PdoImage&>(Device::image()); }
+  const PdoImage& image() const { return static_cast<const PdoImage&>(Device::image()); }
+  std::string overdueText() const override;
+  std::string missingText() const override;
+  std::string carrierText(fieldbus::Slot output) const override;
 
-  /// Boot-ups seen since start. A change tells that the node lost its configuration.
-  std::uint32_t bootUps() const { return front_->boot_ups; }
   Time lastHeartbeat() const;
-  /// Grows with everything that is new of the node but what PDOs bring.
-  std::uint32_t changes() const { return front_->changes; }
-  const std::optional<Emergency>& lastEmergency() const;
+  const std::optional<Emergency>& lastEmergency() const override;
   /// Emergencies received since start, error resets included.
   std::uint32_t emergencies() const;
   /// Emergency frames without an error code, not counted in emergencies().
@@ -137,15 +121,8 @@ class Node {
 
  private:
   struct Impl;
-  /// The part of Impl that every cycle looks at.
-  struct Front {
-    explicit Front(const std::vector<PdoConfig>& pdos) : image(pdos) {}
-    ProcessImage image;
-    NodeHealth health = NodeHealth::absent;
-    std::uint32_t boot_ups = 0, changes = 1;
-  };
+  explicit Node(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
-  Front* front_;
 };
 
 }  // namespace cia402::canopen

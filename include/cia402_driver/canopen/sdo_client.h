@@ -13,13 +13,12 @@
 #include "cia402_driver/can/pacer.h"
 #include "cia402_driver/canopen/object.h"
 #include "cia402_driver/common/time.h"
+#include "cia402_driver/fieldbus/object_access.h"
 
 namespace cia402::canopen {
 
-using Bytes = std::vector<std::uint8_t>;
-
-/// How a transfer is done. Aborts by the server are answers: they are never retried.
-struct SdoOptions {
+/// How a transfer is done.
+struct SdoOptions : fieldbus::AccessOptions {
   /// Where block transfer (CiA 301, 7.2.4.2.9 and on) is used. A server that refuses it gets the
   /// same transfer in segments, and all later ones until it boots again.
   enum class Block {
@@ -27,15 +26,9 @@ struct SdoOptions {
     automatic,  ///< downloads of more than `block_threshold` bytes
     always,     ///< uploads, too: the object may be large
   };
-  Duration timeout = std::chrono::milliseconds(500);  ///< for each answer of the server
-  int retries = 1;                                    ///< how often to start again after a time-out
   Block block = Block::automatic;
   std::size_t block_threshold = 256;                   ///< bytes
   std::size_t longest_upload = std::size_t{16} << 20;  ///< bytes; more are refused (0x05040005)
-  /// Some servers answer nothing where they should abort, as they do not have the object. Where the
-  /// server answers for another object between two such requests, the transfer ends as if it had
-  /// aborted it with 0x06020000. Needs `retries` of at least 1.
-  bool silence_is_missing = false;
 };
 
 /// The two COB-IDs of an SDO channel (1200h and on), 11 bits; 0: that of the predefined connection
@@ -45,43 +38,13 @@ struct SdoChannel {
   std::uint16_t answer = 0;   ///< server to client, sub-index 2
 };
 
-/// One transfer, shared by the client and whoever asked for it. Whoever asked polls `done()`; a
-/// dropped ticket only means that nobody wants the result.
-class SdoTransfer {
- public:
-  enum class Direction { upload, download };
-  enum class Failure { none, aborted_by_server, timed_out, protocol_error, cancelled };
-
-  bool done() const { return done_; }
-  /// Valid once done() and ok: what was read; for a download what was written.
-  const Bytes& data() const { return data_; }
-  bool ok() const { return done_ && failure_ == Failure::none; }
-  Failure failure() const { return failure_; }
-  /// The server's or our own abort code; 0 if there was none.
-  std::uint32_t abortCode() const { return abort_code_; }
-  /// In words: "node 3, object 6060:00 mode_of_operation, write 08: the drive refused:
-  /// 0x06090030 (invalid value)". Empty while running or when ok.
-  const std::string& message() const { return message_; }
-  /// The last part of message() alone: "the drive refused: 0x06090030 (invalid value)".
-  const std::string& reason() const { return reason_; }
-  const std::string& name() const { return name_; }
-  ObjectId object() const { return object_; }
-  Direction direction() const { return direction_; }
-
- private:
+/// One transfer by SDO.
+class SdoTransfer final : public fieldbus::Transfer {
   friend class SdoClient;
-  ObjectId object_;
-  std::string name_;
-  Direction direction_ = Direction::upload;
   SdoOptions options_;
-  Bytes data_;
   bool urgent_ = false;
-  bool done_ = false;
-  Failure failure_ = Failure::none;
-  std::uint32_t abort_code_ = 0;
-  std::string message_, reason_;
 };
-using SdoTicket = std::shared_ptr<const SdoTransfer>;
+using SdoTicket = fieldbus::Ticket;
 
 /// SDO client for one node (CiA 301, 7.2.4): a queue of transfers, one on the wire at a time,
 /// expedited, segmented or in blocks. Sans-IO: all nodes' clients run at once in one thread.
@@ -91,7 +54,7 @@ using SdoTicket = std::shared_ptr<const SdoTransfer>;
 /// its answer may still come; so before the next one an object that never changes is read, the
 /// device type or identity. A server answers in order: once that answer is there, nothing older
 /// can follow. A transfer without trouble costs no frame more for it.
-class SdoClient {
+class SdoClient final : public fieldbus::ObjectAccess {
  public:
   struct Counters {
     std::uint64_t completed = 0;  ///< transfers
@@ -126,12 +89,9 @@ class SdoClient {
   /// Queues a write of `data` in wire order (little-endian).
   SdoTicket download(ObjectId object, Bytes data, std::string name = {},
                      std::optional<SdoOptions> = {});
-  /// A write that waits for nothing, e.g. a stop: it is the first of the queue, holdUntil() does
-  /// not hold it, and the transfer on the wire is abandoned, whose ticket fails (`cancelled`, with
-  /// the urgent object in the reason). As its answer may still come, one read of an object that
-  /// never changes precedes the write then. The other queued transfers follow. Urgent writes do not
-  /// abandon each other: they are done in the order in which they were asked for.
-  SdoTicket downloadUrgent(ObjectId object, Bytes data, const std::string& name);
+  /// holdUntil() does not hold it. As the answer of what is abandoned may still come, one read of
+  /// an object that never changes precedes the write then.
+  SdoTicket downloadUrgent(ObjectId object, Bytes data, const std::string& name) override;
 
   /// Writes 1 to 4 bytes at once and waits for no answer: a last word to a server that may be gone.
   /// The answer, should it come, is taken for none to a later request.
@@ -157,7 +117,7 @@ class SdoClient {
   /// block transfers is open again. To be called after cancelAll().
   void serverRestarted();
 
-  bool idle() const;
+  bool idle() const override;
   const Counters& counters() const { return counters_; }
   NodeId node() const { return node_; }
   /// Default options of transfers that are queued without their own.
@@ -199,6 +159,11 @@ class SdoClient {
     unsigned vain = 0;  ///< sub-blocks or time-outs in a row that brought nothing
   };
 
+  SdoTicket queueUpload(ObjectId object, std::string name,
+                        const std::optional<fieldbus::AccessOptions>& options) override;
+  SdoTicket queueDownload(ObjectId object, Bytes data, std::string name,
+                          const std::optional<fieldbus::AccessOptions>& options) override;
+  std::optional<SdoOptions> completed(const std::optional<fieldbus::AccessOptions>& options) const;
   SdoTicket enqueue(Transfer transfer, const std::optional<SdoOptions>& options);
   void makeWay(const std::string& urgent);
   void startNext(Time now);
@@ -285,10 +250,5 @@ class SdoClient {
   std::optional<ObjectId> abandoned_;  ///< its answer may still come
   unsigned fences_left_ = 0;           ///< answers that prove that it cannot
 };
-
-/// A little-endian unsigned number from up to eight bytes. @pre bytes.size() <= 8
-std::uint64_t toUnsigned(const Bytes& bytes);
-/// `size` little-endian bytes of `value`. @pre size <= 8
-Bytes toBytes(std::uint64_t value, unsigned size);
 
 }  // namespace cia402::canopen

@@ -12,6 +12,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "cia402_driver/canopen/config.h"
+#include "cia402_driver/canopen/device_config.h"
 #include "cia402_driver/common/problems.h"
 #include "cia402_driver/drive/axis_config.h"
 
@@ -84,6 +85,11 @@ struct RobotConfig {
   BusConfig bus;
   RecorderConfig recorder;
   std::vector<drive::AxisConfig> axes;
+  std::vector<canopen::DeviceConfig> devices;  ///< that the axes sit in: AxisConfig::device
+  const canopen::DeviceConfig& deviceOf(const drive::AxisConfig& axis) const {
+    return devices[axis.device];
+  }
+  canopen::DeviceConfig& deviceOf(const drive::AxisConfig& axis) { return devices[axis.device]; }
   std::vector<CouplingConfig> couplings;
   std::vector<GroupConfig> groups;
   std::vector<FrameConfig> frames;

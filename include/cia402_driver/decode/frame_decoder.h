@@ -41,7 +41,7 @@ class FrameDecoder {
 
  private:
   struct Field {
-    canopen::ObjectId object;
+    fieldbus::ObjectId object;
     std::string name;
     unsigned shift, bits;
   };

@@ -3,12 +3,12 @@
 
 #include <string>
 
-#include "cia402_driver/canopen/object.h"
+#include "cia402_driver/fieldbus/object.h"
 
 namespace cia402::decode {
 
 /// Name of an object of the communication profile (CiA 301, 7.5): "heartbeat time",
 /// "TPDO2 mapping, entry 1"; empty if it is none.
-std::string communicationObjectName(canopen::ObjectId object);
+std::string communicationObjectName(fieldbus::ObjectId object);
 
 }  // namespace cia402::decode

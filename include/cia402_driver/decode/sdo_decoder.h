@@ -35,17 +35,17 @@ class SdoDecoder {
   std::string initiate(const can::Frame& frame, const char* verb, Transfer transfer);
   void begin(const can::Frame& frame, Transfer transfer);
   void collect(const can::Frame& frame, std::size_t count);
-  std::string title(canopen::ObjectId object) const;
+  std::string title(fieldbus::ObjectId object) const;
   std::string current() const;
   std::string whole() const;
-  std::string value(canopen::ObjectId object, const canopen::Bytes& data) const;
+  std::string value(fieldbus::ObjectId object, const fieldbus::Bytes& data) const;
 
   const ValueText* values_;
   Transfer transfer_ = Transfer::none;
   bool in_block_ = false;  ///< frames of the sender are segments without a command
   bool known_ = false;     ///< object_ is that of the transfer under way
-  canopen::ObjectId object_;
-  canopen::Bytes data_;  ///< of the transfer so far, the beginning only
+  fieldbus::ObjectId object_;
+  fieldbus::Bytes data_;  ///< of the transfer so far, the beginning only
   std::size_t received_ = 0;
   std::size_t block_began_ = 0;  ///< received_ at the beginning of the block
   bool last_segment_seen_ = false;

@@ -17,7 +17,7 @@ const char* unitOf(drive::Quantity quantity, const drive::AxisConfig& axis);
 /// "0x6041": so many bytes of a number in hexadecimal.
 std::string hexNumber(std::uint64_t raw, unsigned bytes);
 /// Bytes as a quoted text if they are printable, else in hexadecimal; long ones are cut.
-std::string bytesText(const canopen::Bytes& data);
+std::string bytesText(const fieldbus::Bytes& data);
 
 /// Words for the values of one drive's objects: units of the joint, names of states and modes. With
 /// a memory for the mode that the drive shows, by which bits of status- and controlword are named.
@@ -26,18 +26,18 @@ class ValueText {
   explicit ValueText(const drive::AxisConfig& axis);
 
   /// Does the profile list it?
-  bool lists(canopen::ObjectId object) const { return find(object) != nullptr; }
+  bool lists(fieldbus::ObjectId object) const { return find(object) != nullptr; }
   /// Name of an object: the profile's, else that of CiA 301, else nothing.
-  std::string name(canopen::ObjectId object) const;
+  std::string name(fieldbus::ObjectId object) const;
   /// "6041:00 statusword".
-  std::string title(canopen::ObjectId object) const;
+  std::string title(fieldbus::ObjectId object) const;
 
   /// A value of so many bits from a PDO: "0.0118 rad (1234)", "0x0237 operation enabled; remote".
-  std::string describe(canopen::ObjectId object, std::uint64_t raw, unsigned bits) const;
+  std::string describe(fieldbus::ObjectId object, std::uint64_t raw, unsigned bits) const;
   /// A value that an SDO carried.
-  std::string describe(canopen::ObjectId object, const canopen::Bytes& data) const;
+  std::string describe(fieldbus::ObjectId object, const fieldbus::Bytes& data) const;
   /// Looks at a value for the mode of operation.
-  void note(canopen::ObjectId object, std::uint64_t raw);
+  void note(fieldbus::ObjectId object, std::uint64_t raw);
 
   const drive::AxisConfig& axis() const { return axis_; }
 
@@ -49,12 +49,12 @@ class ValueText {
     const char* unit = nullptr;
   };
 
-  const Known* find(canopen::ObjectId object) const;
-  std::string unnamed(canopen::ObjectId object, std::uint64_t raw, unsigned bits) const;
+  const Known* find(fieldbus::ObjectId object) const;
+  std::string unnamed(fieldbus::ObjectId object, std::uint64_t raw, unsigned bits) const;
   std::string words(const Known& known, std::uint64_t raw, unsigned bits) const;
 
   drive::AxisConfig axis_;
-  std::map<canopen::ObjectId, Known> objects_;
+  std::map<fieldbus::ObjectId, Known> objects_;
   const drive::ModeSpec* mode_ = nullptr;
 };
 

@@ -7,11 +7,11 @@
 #include <optional>
 #include <string>
 
-#include "cia402_driver/canopen/node.h"
 #include "cia402_driver/common/result.h"
 #include "cia402_driver/drive/axis_config.h"
 #include "cia402_driver/drive/set_point.h"
 #include "cia402_driver/drive/state_machine.h"
+#include "cia402_driver/fieldbus/device.h"
 
 namespace cia402::drive {
 
@@ -87,7 +87,7 @@ struct AxisState {
   bool ready_for_motion = false;  ///< operation enabled, mode active, brake released, no procedure
   std::uint32_t digital_inputs = 0;   ///< 60FDh
   bool digital_inputs_valid = false;  ///< false: not received, or not in time
-  canopen::NodeHealth health = canopen::NodeHealth::absent;
+  fieldbus::Health health = fieldbus::Health::absent;
 
   /// When each value was on the wire, or its SDO answer taken; of a value that is unknown it says
   /// nothing.
@@ -102,12 +102,12 @@ struct AxisState {
 class Axis {
  public:
   /// @throws std::invalid_argument if the configuration lacks what it was validated for.
-  Axis(AxisConfig config, canopen::Node& node);
+  Axis(AxisConfig config, fieldbus::Device& device);
   ~Axis();
   Axis(Axis&&) noexcept;
 
   const AxisConfig& config() const;
-  canopen::Node& node();
+  fieldbus::Device& device();
   const AxisState& state() const { return *state_; }
   const ProcedureStatus& procedure() const { return *procedure_; }
   /// The one before; ended, e.g. because disable, quick_stop or halt pre-empted it.
@@ -175,8 +175,8 @@ class Axis {
   /// Node and axis events from the master.
   /// @param excuse where this program itself is the cause of what the drive reports, as it was
   /// late: in words. The axis goes on then, unless the drive stops by itself.
-  void onEmergency(const canopen::Emergency& emergency, Time now, const std::string& excuse = {});
-  void onHealthChange(canopen::NodeHealth before, Time now);
+  void onEmergency(const fieldbus::Emergency& emergency, Time now, const std::string& excuse = {});
+  void onHealthChange(fieldbus::Health before, Time now);
   /// Nothing reaches the drive any more, for the reason `why` ("can0 is bus-off"): an axis in
   /// motion or enabled gets a quick stop as the first thing once the bus is back, and stays
   /// disabled; a procedure that would enable it is ended.

@@ -1,17 +1,15 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <map>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "cia402_driver/canopen/config.h"
-#include "cia402_driver/canopen/eds.h"
-#include "cia402_driver/canopen/lss_protocol.h"
 #include "cia402_driver/drive/conversion.h"
 #include "cia402_driver/drive/profile.h"
+#include "cia402_driver/fieldbus/object_dictionary.h"
 
 namespace cia402::drive {
 
@@ -34,35 +32,15 @@ struct HomingOptions {
   double atHome() const { return offset.value_or(0.0); }
 };
 
-/// The EDS or DCF of an axis' drive.
-struct AxisEds {
-  std::string file;  ///< without its folder, for messages
-  canopen::EdsInfo info;
-  canopen::ObjectDictionary dictionary;
-};
-
-/// A drive that gets its node-ID by LSS at start-up, see bus::Robot.
-struct AxisLss {
-  canopen::lss::Identity identity;
-  bool store = false;  ///< in the drive, where it was another one
-};
-
-/// How the loss of the drive, and of the master, is noticed; what is not given is as profile and
-/// bus have it.
-struct ErrorControlOptions {
-  std::optional<canopen::ErrorControl> kind;
-  std::optional<Duration> period;          ///< of heartbeats, or guard time
-  std::optional<Duration> timeout;         ///< until the drive is lost
-  std::optional<Duration> master_timeout;  ///< until the drive takes the master for lost
-};
-
 /// Typed configuration of one axis.
 struct AxisConfig {
-  std::string name;   ///< key in the YAML
-  std::string joint;  ///< joint name
-  canopen::NodeId node_id = 0;
+  std::string name;        ///< key in the YAML
+  std::string joint;       ///< joint name
+  std::size_t device = 0;  ///< that it sits in, index in config::RobotConfig::devices
+  std::string place;       ///< of that device on its bus, for messages: "node 3"
   std::shared_ptr<const DriveProfile> profile;  ///< with the objects of the EDS added
-  std::shared_ptr<const AxisEds> eds;           ///< nullptr: none was given
+  /// What the device's maker says of its objects (EDS or DCF); nullptr: nothing.
+  std::shared_ptr<const fieldbus::DeviceDescription> description;
   AxisGeometry geometry;
   AxisLimits limits;
   std::string mode;  ///< canonical name; mode at start
@@ -71,29 +49,15 @@ struct AxisConfig {
   Duration command_timeout{std::chrono::milliseconds(200)};
   bool brake_after_effort = true;  ///< when a stream of efforts ends; else the axis coasts
   bool quick_stop_holds = false;   ///< ends in quick stop active, under power; else disabled
-  /// A TPDO that fails to come so many times in a row is stale; where it brings statusword or
-  /// position, an enabled axis is quick-stopped then.
-  std::uint16_t stale_after = 10;
   /// A statusword that no state of CiA 402 shows is put up with for so long.
   Duration undecodable_timeout{std::chrono::milliseconds(100)};
   /// Below this the axis stands still (mode changes, homing, set_position), rad/s or m/s; a
   /// prismatic one gets 0.002.
   double standstill_velocity = 0.01;
-  std::vector<std::string> modes;  ///< that the PDOs serve: the one at start and those to switch to
-  std::vector<PdoLayout> pdos;     ///< resolved layout (planned, the profile's or the user's)
-  bool pdos_planned = false;       ///< for this cycle; another one may get another plan
-  /// Of what is in `pdos`, the objects that only defaults ask for.
-  std::vector<std::string> default_objects;
-  /// Of these, the feedback that is there only because its PDOs had room for it.
-  std::vector<std::string> riders;
-  std::vector<std::string> lacks;  ///< objects of the profile that this drive does not have
-  Duration rpdo_timeout{0};        ///< the drive reacts when none came for so long; zero: never
-  std::vector<NamedWrite> writes;  ///< the user's extra start-up writes
-  ErrorControlOptions error_control;
-  canopen::SdoChannel sdo;  ///< COB-IDs other than the predefined ones
-  canopen::BootPolicy boot;
-  std::optional<std::uint32_t> vendor_id, product_code, revision, serial;  ///< expected identity
-  std::optional<AxisLss> lss;
+  std::vector<std::string> modes;  ///< that can be served: the one at start and those to switch to
+  std::vector<std::string> outputs;  ///< objects that travel to the drive in every cycle, by name
+  std::vector<std::string> lacks;    ///< objects of the profile that this drive does not have
+  std::vector<NamedWrite> writes;    ///< the user's extra start-up writes
   std::vector<std::uint8_t> save, restore;  ///< sub-indices of 1010h, 1011h; empty: the profile's
   const std::vector<std::uint8_t>& saved() const {
     return save.empty() ? profile->parameters.save : save;
@@ -110,8 +74,9 @@ double stopDeceleration(const AxisConfig& axis);
 /// For messages: "shoulder", or "shoulder (axis m3)" where joint and axis have different names.
 std::string jointName(const AxisConfig& axis);
 /// For messages: "shoulder (node 3)", or "shoulder (axis m3, node 3)".
-/// @param before_node_id "" where there is little room: "shoulder (3)"
-std::string whoIs(const AxisConfig& axis, const char* before_node_id = "node ");
+std::string whoIs(const AxisConfig& axis);
+/// The same with another word for where it sits, as there is little room: "shoulder (3)".
+std::string whoIs(const AxisConfig& axis, const std::string& place);
 /// Does `lacks` of the axis name the object, which is given by profile name or index?
 bool saidToLack(const AxisConfig& axis, const std::string& object);
 /// Of those that the axis can be in, the one in which it follows trajectories; nullptr: none.

@@ -7,20 +7,20 @@
 #include <utility>
 #include <vector>
 
-#include "cia402_driver/canopen/object.h"
+#include "cia402_driver/fieldbus/object.h"
 
 namespace cia402::drive {
 
 /// A stretch of the object dictionary, both ends included.
 struct ObjectRange {
-  canopen::ObjectId first, last;
+  fieldbus::ObjectId first, last;
 
-  bool holds(canopen::ObjectId id) const { return !(id < first) && !(last < id); }
+  bool holds(fieldbus::ObjectId id) const { return !(id < first) && !(last < id); }
   /// How many sub-indices lie between the ends.
   std::uint32_t width() const { return place(last) - place(first); }
 
  private:
-  static std::uint32_t place(canopen::ObjectId id) { return id.index * 256U + id.subindex; }
+  static std::uint32_t place(fieldbus::ObjectId id) { return id.index * 256U + id.subindex; }
 };
 
 /// Reads "2004" (all its sub-indices), "2004:01", "2004:01-03", "2004:01-2006:02" or "2004-2006",
@@ -35,7 +35,7 @@ class ObjectRanges {
   void add(ObjectRange range, Value value) { entries_.emplace_back(range, value); }
   bool empty() const { return entries_.empty(); }
   /// @return nullptr where nothing is said
-  const Value* find(canopen::ObjectId id) const {
+  const Value* find(fieldbus::ObjectId id) const {
     const std::pair<ObjectRange, Value>* best = nullptr;
     for (const auto& entry : entries_) {
       if (!entry.first.holds(id)) continue;

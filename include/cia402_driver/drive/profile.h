@@ -7,16 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "cia402_driver/canopen/object.h"
-#include "cia402_driver/canopen/pdo.h"
-#include "cia402_driver/common/problems.h"
 #include "cia402_driver/common/time.h"
 #include "cia402_driver/drive/object_range.h"
+#include "cia402_driver/fieldbus/object.h"
 
 namespace cia402::drive {
 
-using canopen::DataType;
-using canopen::ObjectId;
+using fieldbus::DataType;
+using fieldbus::ObjectId;
 
 /// How a number sits in an object.
 enum class Encoding : std::uint8_t {
@@ -88,7 +86,7 @@ struct ObjectSpec {
   bool rpdo = false;                  ///< may be mapped into an RPDO
   bool tpdo = false;                  ///< may be mapped into a TPDO
   bool from_eds = false;              ///< the axis' EDS names it, the profile does not
-  std::vector<std::string> eds_keys;  ///< further names, from the EDS (canopen::nameKey())
+  std::vector<std::string> eds_keys;  ///< further names, from the EDS (fieldbus::nameKey())
 };
 
 /// What a mode controls, for everything above the drive that does not care for mode numbers.
@@ -197,36 +195,12 @@ struct ErrorText {
   Missing missing = Missing::nothing;
 };
 
-/// Where a PDO's COB-ID comes from.
-struct CobIdSpec {
-  enum class Kind : std::uint8_t {
-    predefined,  ///< of the predefined connection set, PDOs 1 to 4
-    absolute,    ///< `value`
-    node_id,     ///< `value` plus the node-ID
-    drive,       ///< whatever the drive has, read when it boots
-  };
-  Kind kind = Kind::predefined;
-  std::uint16_t value = 0;
-};
-
-/// One PDO of a layout.
-struct PdoLayout {
-  canopen::PdoDirection direction = canopen::PdoDirection::tpdo;
-  unsigned number = 1;
-  std::uint8_t transmission = 1;
-  std::uint16_t inhibit = 0;        ///< 100 us
-  std::uint16_t event_timer = 0;    ///< ms
-  std::uint16_t request_every = 1;  ///< cycles; TPDO of type 252, 253
-  std::uint16_t refresh_every = 1;  ///< cycles; RPDO whose content does not change
-  CobIdSpec cob_id;
-  std::vector<std::string> objects;  ///< profile names or "6041:00"
-};
-
-/// A drive family as data. Loaded from config/drives/<name>.yaml; documented in
-/// docs/drive_profiles.md. No code anywhere asks for `name`.
+/// A drive family as data: what it is as a drive, whatever bus it hangs on. With what it is as a
+/// device on the bus it makes a config::DriveFamily, which is loaded from
+/// config/drives/<name>.yaml; documented in docs/drive_profiles.md. No code anywhere asks for
+/// `name`.
 struct DriveProfile {
   std::string name, description;
-  std::optional<std::uint32_t> device_type, vendor_id, product_code;
   std::map<Quantity, UnitSpec> units;
   bool output_shaft = false;  ///< units count at the joint's side of the gear
   std::vector<ObjectSpec> objects;
@@ -243,39 +217,17 @@ struct DriveProfile {
   /// 0: it is not.
   Duration fault_reset_nmt_stop{0};
   bool fault_reset_clears_history = false;  ///< 1003h:00 = 0 is written before a fault reset
-  /// NMT reset node must not be sent: the drive disturbs the bus while it starts, or does not come
-  /// back. Its communication is reset instead.
-  bool nmt_reset_node = true;
-  bool warning_stops = false;             ///< a warning makes the drive stop like a fault
-  std::vector<int> quick_stop_holds;      ///< values of 605Ah after which quick stop stays active
-  std::vector<NamedWrite> startup;        ///< at every boot
-  std::vector<NamedWrite> before_enable;  ///< by SDO, each time before enabling
-  /// A layout for all axes of the family; empty: each axis gets one that suits its modes.
-  std::vector<PdoLayout> pdos;
-  unsigned max_rpdos = 4, max_tpdos = 4;
-  unsigned max_pdo_entries = 8;
-  unsigned fixed_pdo_entries = 0;  ///< every mapping has so many, unused ones are 0; 0: as needed
-  std::vector<PdoLayout> fixed_pdos;          ///< with a mapping that the drive does not let change
-  bool cob_ids_of_drive = false;              ///< COB-IDs of PDOs are fixed: read and used
-  bool rpdo_deadline = false;                 ///< the drive reacts when RPDOs stay away (1400h:05)
-  bool type_255_by_timer = false;             ///< TPDOs of that type come by event timer only
-  std::vector<std::string> default_modes;     ///< an axis can switch to; empty: all
-  std::vector<std::string> feedback;          ///< by PDO where there is room, most important first
+  bool warning_stops = false;               ///< a warning makes the drive stop like a fault
+  std::vector<int> quick_stop_holds;        ///< values of 605Ah after which quick stop stays active
+  std::vector<NamedWrite> startup;          ///< at every boot
+  std::vector<NamedWrite> before_enable;    ///< by SDO, each time before enabling
+  std::vector<std::string> default_modes;   ///< an axis can switch to; empty: all
+  std::vector<std::string> feedback;        ///< by PDO where there is room, most important first
   std::vector<std::string> feedback_if_room;  ///< only in PDOs that travel for something else
-  bool pdo_map_count_may_be_read_only = false;
-  std::optional<std::uint8_t> sync_counter;  ///< overflow value wanted in 1019h; none: no counter
-  bool has_sync_counter_object = true;       ///< 1019h exists
-  bool has_sync_period_object = true;        ///< 1006h exists
-  Duration sync_period_step{std::chrono::microseconds(1)};  ///< 1006h takes multiples of this
-  bool heartbeat_supported = true, heartbeat_consumer_supported = true;
-  bool node_guarding_supported = false;  ///< 100Ch and 100Dh; used where there is no heartbeat
   struct Timing {
-    Duration boot{std::chrono::seconds(5)};
     Duration state_change{std::chrono::seconds(2)};
     Duration mode_change{std::chrono::seconds(1)};
     Duration brake_release{0};  ///< Operation enabled until set-points are followed
-    Duration sdo{std::chrono::milliseconds(500)};
-    int sdo_retries = 1;
   } timing;
   /// Which sub-indices of 1010h and 1011h save and restore parameters: 1 all, 2 communication, 3
   /// application, 4.. the maker's.
@@ -302,6 +254,16 @@ struct DriveProfile {
   const ModeSpec* mode(const std::string& mode_name) const;
 };
 
+/// The object that a name or an index ("6041:00") means; nullptr if the profile has none.
+const ObjectSpec* findObject(const DriveProfile& profile, const std::string& name);
+/// The encoding of ObjectRanges at this place, where the type is as wide; real32 is a float
+/// anywhere.
+Encoding encodingAt(const DriveProfile& profile, ObjectId id, DataType type);
+/// "profile generic_cia402", and the EDS that it was widened by.
+std::string sourceOf(const DriveProfile& profile);
+/// Names of all objects, for suggestions.
+std::vector<std::string> objectNames(const DriveProfile& profile);
+
 /// Which frames a 603Fh or EMCY code reports as missing: by the profile, else by CiA 301, table 26.
 ErrorText::Missing missingFrames(const DriveProfile& profile, std::uint16_t code);
 
@@ -316,12 +278,5 @@ StopBy stopBy(const ModeSpec& mode, const DriveProfile& profile);
 
 /// "csp" -> "cyclic_position"; names that are no short form come back as they are.
 std::string canonicalModeName(const std::string& name);
-
-/// Reads config/drives/<name>.yaml. Every problem is added with "file:line" paths; the profile is
-/// only valid if none was added.
-DriveProfile loadDriveProfile(const std::string& path, Problems& problems);
-/// The same from text (tests). @param source name for messages.
-DriveProfile parseDriveProfile(const std::string& text, const std::string& source,
-                               Problems& problems);
 
 }  // namespace cia402::drive

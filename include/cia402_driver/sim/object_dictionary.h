@@ -10,12 +10,12 @@
 #include <utility>
 #include <vector>
 
-#include "cia402_driver/canopen/object.h"
+#include "cia402_driver/fieldbus/object.h"
 
 namespace cia402::sim {
 
-using canopen::DataType;
-using canopen::ObjectId;
+using fieldbus::DataType;
+using fieldbus::ObjectId;
 
 /// Access rights of an entry as CiA 306 names them.
 enum class Access : std::uint8_t { ro, wo, rw, constant };

@@ -31,13 +31,13 @@ class SdoBus final : private sim::Listener, private sim::Device::Application {
   SdoBus(const SdoBus&) = delete;
   SdoBus& operator=(const SdoBus&) = delete;
 
-  void addNumber(canopen::ObjectId id, std::uint64_t value) {
+  void addNumber(fieldbus::ObjectId id, std::uint64_t value) {
     sim::Entry entry;
     entry.id = id;
     entry.number = value;
     dictionary_.add(entry);
   }
-  void addDomain(canopen::ObjectId id, std::vector<std::uint8_t> bytes) {
+  void addDomain(fieldbus::ObjectId id, std::vector<std::uint8_t> bytes) {
     sim::Entry entry;
     entry.id = id;
     entry.type = sim::DataType::domain;

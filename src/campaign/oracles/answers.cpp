@@ -23,11 +23,11 @@ struct StatuswordPlace {
 
 StatuswordPlace statuswordOf(const Stage& stage, const AxisFacts& axis) {
   for (const canopen::NodeConfig& node : stage.loaded().master.nodes) {
-    if (node.node_id != axis.config->node_id) continue;
+    if (node.node_id != axis.node_id) continue;
     for (const canopen::PdoConfig& pdo : node.pdos) {
       unsigned bit = 0;
       for (const canopen::PdoEntry& entry : pdo.entries) {
-        const bool statusword = entry.object == canopen::ObjectId{0x6041, 0} && bit % 8 == 0;
+        const bool statusword = entry.object == fieldbus::ObjectId{0x6041, 0} && bit % 8 == 0;
         if (pdo.direction == canopen::PdoDirection::tpdo && pdo.enabled && statusword) {
           return {pdo.cob_id, bit / 8};
         }

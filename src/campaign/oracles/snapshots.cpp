@@ -28,7 +28,7 @@ class Snapshots final : public Oracle {
   void onFrame(const can::Frame& frame, const View& view) override {
     if (frame.error || frame.remote || frame.size < 2) return;
     for (std::size_t i = 0; i < axes_.size(); ++i) {
-      if (frame.id != 0x180U + view.stage.axes()[i].config->node_id) continue;
+      if (frame.id != 0x180U + view.stage.axes()[i].node_id) continue;
       AxisTruth told;  // TPDO 1 begins with the statusword
       told.statusword = static_cast<std::uint16_t>(frame.data[0] | frame.data[1] << 8);
       rememberState(axes_[i], told, view.now);

@@ -15,7 +15,7 @@ namespace cia402::campaign {
 namespace {
 
 constexpr const char* kMode = "cyclic_position";
-constexpr canopen::ObjectId kTargetPosition{0x607A, 0}, kControlword{0x6040, 0};
+constexpr fieldbus::ObjectId kTargetPosition{0x607A, 0}, kControlword{0x6040, 0};
 
 class TargetSteps final : public Oracle {
  public:

@@ -24,7 +24,7 @@ class VainRequests final : public Oracle {
     if (frame.error || frame.remote || frame.size == 0) return;
     for (std::size_t i = 0; i < axes_.size(); ++i) {
       Axis& axis = axes_[i];
-      const std::uint32_t node = view.stage.axes()[i].config->node_id;
+      const std::uint32_t node = view.stage.axes()[i].node_id;
       // An emergency or an answer proves that it left the state since.
       if (frame.id == 0x080 + node || frame.id == 0x580 + node) axis.told = axis.asked = 0;
       if (frame.id == 0x700 + node) {  // a heartbeat, or an answer to guarding

@@ -1,0 +1,97 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// What a drive family is as a device on the bus.
+#include <algorithm>
+
+#include "parts.h"
+
+namespace cia402::config {
+namespace {
+
+void readIdentity(yaml::Section& profile_section, canopen::DeviceProfile& device) {
+  const auto value = profile_section.get("identity");
+  if (!value) return;
+  yaml::Section section(*value);
+  section.readInteger("device_type", device.device_type, 0, 0xFFFFFFFF);
+  section.readInteger("vendor_id", device.vendor_id, 0, 0xFFFFFFFF);
+  section.readInteger("product_code", device.product_code, 0, 0xFFFFFFFF);
+  section.finish();
+}
+
+void readPdoRules(yaml::Section& profile_section, const DriveProfile& profile,
+                  canopen::DeviceProfile& device) {
+  const auto value = profile_section.get("pdo_rules");
+  if (!value) return;
+  yaml::Section section(*value);
+  if (section.readInteger("max_pdos", device.max_rpdos, 1, 16)) {
+    device.max_tpdos = device.max_rpdos;
+  }
+  section.readInteger("max_rpdos", device.max_rpdos, 1, 16);
+  section.readInteger("max_tpdos", device.max_tpdos, 1, 16);
+  section.readInteger("max_entries", device.max_pdo_entries, 1, 64);
+  if (section.readInteger("fixed_entries", device.fixed_pdo_entries, 1, 64)) {
+    device.max_pdo_entries = std::min(device.max_pdo_entries, device.fixed_pdo_entries);
+  }
+  section.read("map_count_may_be_read_only", device.pdo_map_count_may_be_read_only);
+  if (const auto cob_ids = section.get("cob_ids")) {
+    device.cob_ids_of_drive = cob_ids->oneOf({"predefined", "drive"}).value_or(0) == 1;
+  }
+  section.read("rpdo_deadline", device.rpdo_deadline);
+  section.read("type_255_by_timer", device.type_255_by_timer);
+  if (const auto fixed = section.get("fixed")) {  // every default of CiA 402 has the controlword
+    device.fixed_pdos = readPdos(*fixed, profile, device, Sharing::allowed);
+  }
+  section.finish();
+}
+
+void readSync(yaml::Section& profile_section, canopen::DeviceProfile& device) {
+  const auto value = profile_section.get("sync");
+  if (!value) return;
+  yaml::Section section(*value);
+  section.read("counter_object", device.has_sync_counter_object);
+  section.read("period_object", device.has_sync_period_object);
+  const auto counter = section.get("counter");
+  const auto overflow = counter ? counter->integer(0, 240) : std::nullopt;
+  if (overflow == 1) counter->problem("1 is no counter; use 0 (none) or 2 to 240");
+  if (overflow) device.sync_counter = static_cast<std::uint8_t>(*overflow);
+  if (overflow && !device.has_sync_counter_object) {
+    counter->problem("a counter needs the object 1019h, but `counter_object` is false");
+  }
+  double step = toSeconds(device.sync_period_step);
+  section.read("period_step", step, yaml::Range{1e-6, 1.0, false});
+  device.sync_period_step = fromSeconds(step);
+  section.finish();
+}
+
+void readHeartbeat(yaml::Section& profile_section, canopen::DeviceProfile& device) {
+  const auto value = profile_section.get("heartbeat");
+  if (!value) return;
+  yaml::Section section(*value);
+  section.read("producer", device.heartbeat_supported);
+  section.read("consumer", device.heartbeat_consumer_supported);
+  section.read("node_guarding", device.node_guarding_supported);
+  section.finish();
+}
+
+}  // namespace
+
+void readDevice(yaml::Section& section, yaml::Section& timing, const DriveProfile& profile,
+                canopen::DeviceProfile& device) {
+  readIdentity(section, device);
+  section.read("nmt_reset_node", device.nmt_reset_node);
+  readSync(section, device);
+  readHeartbeat(section, device);
+  const yaml::Range deadline{0.001, 600.0, false};
+  readDuration(timing, "boot", deadline, device.boot_time);
+  readDuration(timing, "sdo", deadline, device.sdo.timeout);
+  timing.readInteger("sdo_retries", device.sdo.retries, 0, 10);
+  readPdoRules(section, profile, device);
+  if (const auto pdos = section.get("pdos")) device.pdos = readPdos(*pdos, profile, device);
+}
+
+void readDuration(yaml::Section& section, const std::string& key, yaml::Range range,
+                  Duration& target) {
+  double seconds = toSeconds(target);
+  if (section.read(key, seconds, range)) target = fromSeconds(seconds);
+}
+
+}  // namespace cia402::config

@@ -1,0 +1,255 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "cia402_driver/config/drive_family.h"
+#include "parts.h"
+
+namespace cia402::config {
+namespace {
+
+void readTiming(yaml::Section& section, DriveProfile& profile) {
+  const yaml::Range deadline{0.001, 600.0, false};
+  readDuration(section, "state_change", deadline, profile.timing.state_change);
+  readDuration(section, "mode_change", deadline, profile.timing.mode_change);
+  readDuration(section, "brake_release", yaml::Range{0.0, 60.0, false},
+               profile.timing.brake_release);
+}
+
+void readParameters(yaml::Section& profile_section, DriveProfile& profile) {
+  const auto value = profile_section.get("parameters");
+  if (!value) return;
+  yaml::Section section(*value);
+  readSubindices(section, "save", profile.parameters.save);
+  readSubindices(section, "restore", profile.parameters.restore);
+  readDuration(section, "timeout", yaml::Range{0.001, 600.0, false}, profile.parameters.timeout);
+  section.read("power_cycle_after_save", profile.parameters.power_cycle_after_save);
+  section.finish();
+}
+
+void readQuickStop(yaml::Section& section, DriveProfile& profile) {
+  const auto value = section.get("quick_stop_holds");
+  if (!value) return;
+  for (const yaml::Value& entry : value->list()) {
+    const auto option = entry.integer(-32768, 32767);
+    if (option) profile.quick_stop_holds.push_back(static_cast<int>(*option));
+  }
+}
+
+// Objects that the axis uses by their fixed names whatever the mode.
+void checkFixedObjects(const yaml::Section& section, const DriveProfile& profile) {
+  struct Fixed {
+    const char* name;
+    bool rpdo, tpdo;
+  };
+  constexpr Fixed kFixed[] = {
+      {"controlword", true, false},        {"statusword", false, true},
+      {"mode_of_operation", false, false}, {"mode_display", false, false},
+      {"position_actual", false, true},
+  };
+  for (const Fixed& fixed : kFixed) {
+    const ObjectSpec* object = profile.find(fixed.name);
+    if (object == nullptr) {
+      section.problem("objects/" + std::string(fixed.name) + " is missing; every axis needs it");
+    } else if (fieldbus::sizeBits(object->type) == 0) {
+      section.problem("objects/" + std::string(fixed.name) + " must be a number");
+    } else if ((fixed.rpdo && !object->rpdo) || (fixed.tpdo && !object->tpdo)) {
+      section.problem("objects/" + std::string(fixed.name) + " must be mappable into " +
+                      (fixed.rpdo ? "an RPDO" : "a TPDO"));
+    }
+  }
+  for (const char* word : {"controlword", "statusword"}) {
+    const ObjectSpec* object = profile.find(word);
+    if (object != nullptr && object->type != DataType::uint16) {
+      section.problem("objects/" + std::string(word) + " must be a uint16");
+    }
+  }
+}
+
+void readModeChangeWord(const yaml::Value& value, ModeChange& change) {
+  const auto index = value.oneOf({"any", "disabled"});
+  change.needs_disabling = index && *index == 1;
+}
+
+// profile_velocity: {cyclic_position: profile_position, cyclic_torque: disabled}
+void readDetours(const yaml::Value& value, ModeChange& change) {
+  yaml::Section section(value);
+  for (const auto& [from, entry] : section.entries()) {
+    yaml::Section targets(entry);
+    for (const auto& [to, through] : targets.entries()) {
+      const auto text = through.text();
+      if (!text) continue;
+      const std::string between = *text == "disabled" ? "" : drive::canonicalModeName(*text);
+      change.detours.push_back(
+          {drive::canonicalModeName(from), drive::canonicalModeName(to), between});
+    }
+    targets.finish();
+  }
+  section.finish();
+}
+
+void readModeChange(yaml::Section& profile_section, DriveProfile& profile) {
+  const auto value = profile_section.get("mode_change");
+  if (!value) return;
+  ModeChange& change = profile.mode_change;
+  if (!value->isMap()) return readModeChangeWord(*value, change);
+  yaml::Section section(*value);
+  if (const auto when = section.get("when")) readModeChangeWord(*when, change);
+  if (const auto shown = section.get("shown")) {
+    change.shown_when_enabled = shown->oneOf({"always", "enabled"}).value_or(0) == 1;
+  }
+  if (const auto again = section.get("again")) {
+    const auto index = again->oneOf({"never", "same", "through_zero"});
+    if (index) change.again = static_cast<ModeChange::Again>(*index);
+  }
+  section.read("while_halted", change.while_halted);
+  if (const auto detours = section.get("detours")) readDetours(*detours, change);
+  section.finish();
+}
+
+// The modes are known only once they are read.
+void checkDetours(const yaml::Section& section, const DriveProfile& profile) {
+  for (const ModeChange::Detour& detour : profile.mode_change.detours) {
+    for (const std::string& name : {detour.from, detour.to, detour.through}) {
+      if (name.empty() || profile.mode(name) != nullptr) continue;
+      section.problem("mode_change/detours: there is no mode `" + name + "`");
+    }
+    if (detour.through.empty() && profile.mode_change.again == ModeChange::Again::same) {
+      section.problem("mode_change/detours: " + detour.from + " to " + detour.to +
+                      " is to go by disabling, but the drive forgets what it is told while "
+                      "disabled (again: same); name a mode to go through instead of `disabled`");
+    }
+  }
+}
+
+void checkStopModes(yaml::Section& section, const DriveProfile& profile) {
+  for (const ModeSpec& mode : profile.modes) {
+    if (mode.stop_mode.empty()) continue;
+    const std::string at = "modes/" + mode.name + "/stop_mode: ";
+    const ModeSpec* brake = profile.mode(mode.stop_mode);
+    if (brake == nullptr) {
+      section.problem(at + "there is no mode `" + mode.stop_mode + "`");
+    } else if (brake->kind != ControlKind::velocity || !brake->cyclic) {
+      section.problem(at + "`" + brake->name +
+                      "` follows no stream of velocities, so that the "
+                      "axis could not be led to rest in it");
+    } else if (profile.mode_change.needs_disabling ||
+               profile.mode_change.detour(mode.name, brake->name) != nullptr) {
+      section.problem(at + "the drive does not go into `" + brake->name +
+                      "` while enabled (mode_change); write `stop: quick_stop`");
+    }
+  }
+}
+
+void readBehaviour(yaml::Section& section, DriveProfile& profile) {
+  section.read("output_shaft", profile.output_shaft);
+  section.read("halt_supported", profile.halt_supported);
+  section.read("warning_stops", profile.warning_stops);
+  readModeChange(section, profile);
+  section.readInteger("fault_reset_tries", profile.fault_reset_tries, 1, 20);
+  readDuration(section, "fault_reset_nmt_stop", yaml::Range{0.0, 10.0, false},
+               profile.fault_reset_nmt_stop);
+  section.read("fault_reset_clears_history", profile.fault_reset_clears_history);
+  readQuickStop(section, profile);
+  readParameters(section, profile);
+}
+
+void readDrive(yaml::Section& section, yaml::Section& timing, DriveProfile& profile) {
+  if (section.require("name", "the file's name without .yaml")) section.read("name", profile.name);
+  section.read("description", profile.description);
+  if (const auto units = section.require("units", "how the drive counts")) {
+    readUnits(*units, profile);
+  }
+  if (const auto encodings = section.get("encodings")) readEncodings(*encodings, profile);
+  if (const auto objects = section.require("objects", "the drive's objects by name")) {
+    readObjects(*objects, profile);
+    checkFixedObjects(section, profile);
+  }
+  if (const auto marks = section.get("coordinates")) readCoordinates(*marks, profile);
+  readBehaviour(section, profile);
+  readTiming(timing, profile);
+  if (const auto modes = section.require("modes", "at least one mode")) readModes(*modes, profile);
+  checkDetours(section, profile);
+  checkStopModes(section, profile);
+  if (const auto homing = section.get("homing")) readHoming(*homing, profile);
+  if (const auto writes = section.get("startup")) {
+    profile.startup = readWrites(*writes, profile, WriteList::boot);
+  }
+  if (const auto writes = section.get("before_enable")) {
+    profile.before_enable = readWrites(*writes, profile, WriteList::running);
+  }
+  if (const auto names = section.get("default_modes")) {
+    profile.default_modes = readModeNames(*names, profile);
+  }
+  if (const auto names = section.get("feedback")) {
+    profile.feedback = readFeedbackNames(*names, profile);
+  }
+  if (const auto names = section.get("feedback_if_room")) {
+    profile.feedback_if_room = readFeedbackNames(*names, profile);
+  }
+  if (const auto errors = section.get("errors")) readErrors(*errors, profile);
+}
+
+DriveFamily readFamily(const yaml::Value& root) {
+  DriveFamily family;
+  yaml::Section section(root);
+  const yaml::Value none(YAML::Node(YAML::NodeType::Map), "timing", root.problems(), root.source());
+  yaml::Section timing(section.get("timing").value_or(none));
+  readDrive(section, timing, family.drive);
+  readDevice(section, timing, family.drive, family.device);
+  timing.finish();
+  section.finish();
+  return family;
+}
+
+}  // namespace
+
+void readSubindices(yaml::Section& section, const std::string& key,
+                    std::vector<std::uint8_t>& subindices) {
+  const auto value = section.get(key);
+  if (!value) return;
+  std::vector<std::uint8_t> read;
+  for (const yaml::Value& entry : value->list()) {
+    const auto subindex = entry.integer(1, 127);
+    if (subindex) read.push_back(static_cast<std::uint8_t>(*subindex));
+  }
+  if (read.empty()) {
+    value->problem(
+        "must be a list of sub-indices: 1 all parameters, 2 communication, 3 "
+        "application, 4 and more the maker's");
+  } else {
+    subindices = std::move(read);
+  }
+}
+
+DriveFamily parseDriveFamily(const std::string& text, const std::string& source,
+                             Problems& problems) {
+  YAML::Node root;
+  try {
+    root = yaml::parse(text);
+  } catch (const YAML::Exception& error) {
+    problems.add(source + ":" + std::to_string(error.mark.line + 1), "is no YAML: " + error.msg);
+    return {};
+  }
+  if (!root.IsMap()) {
+    problems.add(source,
+                 "is no drive profile: it must be a mapping with name, units, objects "
+                 "and modes");
+    return {};
+  }
+  return readFamily(yaml::Value(root, "", problems, source));
+}
+
+DriveFamily loadDriveFamily(const std::string& path, Problems& problems) {
+  std::ifstream file(path);
+  std::ostringstream text;
+  text << file.rdbuf();
+  if (!file) {
+    problems.add(path, "cannot be read");
+    return {};
+  }
+  return parseDriveFamily(text.str(), path, problems);
+}
+
+}  // namespace cia402::config

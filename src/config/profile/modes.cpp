@@ -1,0 +1,197 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "parts.h"
+
+namespace cia402::config {
+namespace {
+
+void readValue(yaml::Section& section, const DriveProfile& profile, ModeSpec& mode) {
+  if (!section.require("value", "the number that mode_of_operation (6060h) takes")) return;
+  const ObjectSpec* object = profile.find("mode_of_operation");
+  const DataType type = object != nullptr ? object->type : DataType::int8;
+  if (fieldbus::sizeBits(type) != 0) {
+    section.readInteger("value", mode.value, lowestOf(type), highestOf(type));
+  }
+}
+
+void readStatusBits(yaml::Section& mode_section, ModeSpec& mode) {
+  const auto value = mode_section.get("status_bits");
+  if (!value) return;
+  yaml::Section section(*value);
+  section.readInteger("target_reached", mode.target_reached_bit, 0, 15);
+  section.readInteger("following_error", mode.following_error_bit, 0, 15);
+  section.readInteger("set_point_acknowledge", mode.set_point_acknowledge_bit, 0, 15);
+  section.readInteger("speed_zero", mode.speed_zero_bit, 0, 15);
+  section.readInteger("homing_attained", mode.homing_attained_bit, 0, 15);
+  section.readInteger("homing_error", mode.homing_error_bit, 0, 15);
+  section.readInteger("follows_command", mode.follows_command_bit, 0, 15);
+  section.finish();
+}
+
+Quantity quantityOf(ControlKind kind) {
+  if (kind == ControlKind::velocity) return Quantity::velocity;
+  return kind == ControlKind::torque ? Quantity::torque : Quantity::position;
+}
+
+void readTarget(yaml::Section& section, const DriveProfile& profile, ModeSpec& mode) {
+  if (mode.kind == ControlKind::homing) {
+    if (section.has("target")) section.problem("homing has no target");
+    return;
+  }
+  const auto value = section.require("target", "the object that takes the mode's set-points");
+  const auto text = value ? value->text() : std::nullopt;
+  if (!text) return;
+  mode.target = *text;
+  const ObjectSpec* object = profile.find(*text);
+  if (object == nullptr) {
+    value->problem("the profile has no object `" + *text + "`" +
+                   yaml::suggestion(*text, drive::objectNames(profile)));
+  } else if (object->quantity != quantityOf(mode.kind)) {
+    value->problem("`" + *text + "` does not measure what the mode controls; see its `quantity`");
+  } else if (!object->rpdo) {
+    value->problem("`" + *text + "` cannot be in an RPDO, so no set-point could reach the drive");
+  }
+}
+
+void readHandshake(yaml::Section& section, ModeSpec& mode) {
+  const auto value = section.get("handshake");
+  const auto index = value ? value->oneOf({"none", "new_set_point"}) : std::nullopt;
+  if (index) mode.handshake = static_cast<Handshake>(*index);
+  if (mode.handshake == Handshake::new_set_point && !mode.set_point_acknowledge_bit) {
+    value->problem("new_set_point needs status_bits/set_point_acknowledge");
+  }
+  if (mode.handshake == Handshake::new_set_point && mode.cyclic) {
+    value->problem("a cyclic mode cannot wait for an acknowledgement of each set-point");
+  }
+}
+
+void readStop(yaml::Section& section, ModeSpec& mode) {
+  const auto value = section.get("stop");
+  const auto index =
+      value ? value->oneOf({"set_points", "halt", "quick_stop", "mode"}) : std::nullopt;
+  std::string stop_mode;
+  section.read("stop_mode", stop_mode);
+  mode.stop_mode = drive::canonicalModeName(stop_mode);
+  if (index) mode.stop = static_cast<StopBy>(*index);
+  if ((mode.stop == StopBy::mode) == stop_mode.empty()) {
+    section.problem("`stop: mode` and `stop_mode`, the mode that brakes, go together");
+  }
+  if (mode.stop == StopBy::set_points && mode.kind == ControlKind::torque) {
+    value->problem("a torque of 0 lets the axis coast; write halt, quick_stop or mode");
+  }
+  if (mode.stop == StopBy::mode && mode.kind != ControlKind::torque) {
+    value->problem("another mode brakes torque modes only; write set_points, halt or quick_stop");
+  }
+}
+
+ModeSpec readMode(const std::string& name, const yaml::Value& value, const DriveProfile& profile) {
+  ModeSpec mode;
+  mode.name = drive::canonicalModeName(name);
+  yaml::Section section(value);
+  readValue(section, profile, mode);
+  const auto control = section.require("control", "position, velocity, torque or homing");
+  const auto kind =
+      control ? control->oneOf({"position", "velocity", "torque", "homing"}) : std::nullopt;
+  if (kind) mode.kind = static_cast<ControlKind>(*kind);
+  section.read("cyclic", mode.cyclic);
+  readTarget(section, profile, mode);
+  readStatusBits(section, mode);
+  readHandshake(section, mode);
+  readStop(section, mode);
+  section.readInteger("controlword_bits", mode.controlword_bits, 0, 0xFFFF);
+  if ((mode.controlword_bits & 0x008F) != 0) {
+    section.problem("controlword_bits must leave bits 0 to 3 and 7 to the state machine");
+  }
+  if (mode.kind == ControlKind::homing && !mode.homing_attained_bit) {
+    section.problem("homing needs status_bits/homing_attained");
+  }
+  if (const auto writes = section.get("entry_writes")) {
+    mode.entry_writes = readWrites(*writes, profile, WriteList::running);
+  }
+  section.finish();
+  return mode;
+}
+
+void readMethods(const yaml::Value& value, HomingSpec& homing) {
+  yaml::Section section(value);
+  for (const auto& [key, text] : section.entries()) {
+    const auto number = yaml::parseInteger(key);
+    if (!number || *number < -128 || *number > 127) {
+      text.problem("a homing method is a number from -128 to 127, not `" + key + "`");
+    } else if (const auto meaning = text.text()) {
+      homing.methods[static_cast<int>(*number)] = *meaning;
+    }
+  }
+  section.finish();
+}
+
+}  // namespace
+
+void readModes(const yaml::Value& value, DriveProfile& profile) {
+  yaml::Section section(value);
+  for (const auto& [name, entry] : section.entries()) {
+    const ModeSpec mode = readMode(name, entry, profile);
+    if (profile.mode(mode.name) != nullptr) {
+      entry.problem("the mode " + mode.name + " is given already");
+      continue;
+    }
+    profile.modes.push_back(mode);
+  }
+  section.finish();
+}
+
+void readHoming(const yaml::Value& value, DriveProfile& profile) {
+  HomingSpec& homing = profile.homing;
+  yaml::Section section(value);
+  const auto kind_value = section.require("kind", "none, drive or declare_zero");
+  const auto kind =
+      kind_value ? kind_value->oneOf({"none", "drive", "declare_zero"}) : std::nullopt;
+  if (kind) homing.kind = static_cast<HomingSpec::Kind>(*kind);
+  if (const auto methods = section.get("methods")) readMethods(*methods, homing);
+  section.read("needs_zero_attained_before_start", homing.needs_zero_attained_before_start);
+  if (const auto writes = section.get("writes")) {
+    homing.writes = readWrites(*writes, profile, WriteList::running);
+  }
+  if (homing.kind == HomingSpec::Kind::drive && homing.methods.empty()) {
+    section.problem("a drive that homes by itself needs `methods`: number and meaning");
+  }
+  if (homing.kind != HomingSpec::Kind::drive && !homing.methods.empty()) {
+    section.problem("`methods` are for kind `drive`");
+  }
+  if (homing.kind == HomingSpec::Kind::drive && profile.mode("homing") == nullptr) {
+    section.problem("a drive that homes by itself needs a mode `homing`");
+  }
+  section.finish();
+}
+
+void readErrors(const yaml::Value& value, DriveProfile& profile) {
+  yaml::Section section(value);
+  for (const auto& [key, entry] : section.entries()) {
+    const auto code = yaml::parseInteger(key);
+    if (!code || *code < 1 || *code > 0xFFFF) {
+      entry.problem("an error code is a number from 0x0001 to 0xFFFF, not `" + key + "`");
+      continue;
+    }
+    ErrorText error;
+    if (entry.isMap()) {
+      yaml::Section details(entry);
+      details.require("text", "say in words what the code means");
+      details.read("text", error.text);
+      details.read("cause", error.cause);
+      details.read("remedy", error.remedy);
+      using Missing = ErrorText::Missing;
+      if (const auto missing = details.get("missing")) {
+        const bool rpdo = missing->oneOf({"sync", "rpdo"}).value_or(0) == 1;
+        error.missing = rpdo ? Missing::rpdo : Missing::sync;
+      }
+      details.finish();
+    } else {
+      error.text = entry.text().value_or("");
+    }
+    if (!profile.errors.emplace(static_cast<std::uint16_t>(*code), error).second) {
+      entry.problem("the code is given twice");
+    }
+  }
+  section.finish();
+}
+
+}  // namespace cia402::config

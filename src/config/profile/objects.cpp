@@ -1,0 +1,159 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include <limits>
+#include <map>
+
+#include "parts.h"
+
+namespace cia402::config {
+namespace {
+
+void readType(yaml::Section& section, ObjectSpec& object) {
+  const auto value = section.require("type", "write for example `type: uint16`");
+  const auto text = value ? value->text() : std::nullopt;
+  if (!text) return;
+  if (const auto type = fieldbus::parseDataType(*text)) {
+    object.type = *type;
+    return;
+  }
+  value->problem("unknown type" +
+                 yaml::suggestion(*text, {"boolean", "int8", "int16", "int32", "int64", "uint8",
+                                          "uint16", "uint32", "uint64", "real32", "visible_string",
+                                          "octet_string", "domain"}));
+}
+
+void readEncoding(yaml::Section& section, const DriveProfile& profile, ObjectSpec& object) {
+  object.encoding = drive::encodingAt(profile, object.id, object.type);
+  const auto value = section.get("encoding");
+  const auto encoding = value ? readEncodingWord(*value) : std::nullopt;
+  if (!encoding) return;
+  object.encoding = *encoding;
+  const unsigned bits = fieldbus::sizeBits(object.type);
+  const char* const type = fieldbus::toString(object.type);
+  if (object.encoding == Encoding::float32 && bits != 32) {
+    value->problem(std::string("float32 needs a type of 32 bits, not ") + type);
+  } else if (object.encoding > Encoding::float32 && bits != 16) {
+    value->problem(std::string("half floats need a type of 16 bits, not ") + type);
+  } else if (object.encoding == Encoding::integer && object.type == DataType::real32) {
+    value->problem("real32 is a float, not an integer; leave `encoding` out");
+  }
+}
+
+void readAccess(yaml::Section& section, ObjectSpec& object) {
+  if (const auto value = section.get("access")) {
+    const std::size_t index = value->oneOf({"rw", "ro", "wo", "const"}).value_or(0);
+    object.readable = index != 2;
+    object.writable = index == 0 || index == 2;
+  }
+  const auto value = section.get("pdo");
+  const auto index = value ? value->oneOf({"none", "rpdo", "tpdo", "both"}) : std::nullopt;
+  if (!index) return;
+  object.rpdo = *index == 1 || *index == 3;
+  object.tpdo = *index == 2 || *index == 3;
+  if (*index == 0) return;
+  const unsigned bits = fieldbus::sizeBits(object.type);
+  if (bits == 0) {
+    value->problem(std::string("a ") + fieldbus::toString(object.type) +
+                   " has no fixed length and cannot be mapped into a PDO");
+  }
+  if (object.rpdo && !object.writable) value->problem("a read-only object cannot be in an RPDO");
+  if (object.tpdo && !object.readable) value->problem("a write-only object cannot be in a TPDO");
+}
+
+void readMeaning(yaml::Section& section, ObjectSpec& object, const DriveProfile& profile) {
+  if (const auto value = section.get("quantity")) {
+    object.quantity = readQuantity(*value).value_or(Quantity::none);
+  }
+  const auto factor = section.get("factor");
+  const auto number = factor ? factor->number() : std::nullopt;
+  if (number && *number == 0.0) factor->problem("must not be 0");
+  if (number && *number != 0.0) object.factor = *number;
+  const auto unit = section.get("unit");
+  if (object.quantity == Quantity::none) {
+    if (unit) unit->problem("a unit needs a `quantity`");
+    return;
+  }
+  if (unit) object.unit = readUnit(*unit, object.quantity);
+  if (fieldbus::sizeBits(object.type) == 0 || object.type == DataType::boolean) {
+    section.problem(std::string("a ") + fieldbus::toString(object.type) + " measures no quantity");
+  }
+  const Quantity counted =
+      object.quantity == Quantity::distance ? Quantity::position : object.quantity;
+  if (!unit && profile.units.count(counted) == 0) {
+    section.problem("`units` has no entry for what it measures, and it has no `unit` of its own");
+  }
+}
+
+ObjectSpec readObject(const std::string& name, const yaml::Value& value,
+                      const DriveProfile& profile) {
+  ObjectSpec object;
+  object.name = name;
+  yaml::Section section(value);
+  const auto id = section.require("object", "write index and sub-index, for example \"6041:00\"");
+  const auto text = id ? id->text() : std::nullopt;
+  if (text) {
+    const auto parsed = fieldbus::parseObjectId(*text);
+    if (!parsed) id->problem("`" + *text + "` is no object; write for example \"6041:00\"");
+    if (parsed) object.id = *parsed;
+  }
+  readType(section, object);
+  readEncoding(section, profile, object);
+  readAccess(section, object);
+  readMeaning(section, object, profile);
+  section.finish();
+  return object;
+}
+
+}  // namespace
+
+std::int64_t lowestOf(DataType type) {
+  const unsigned bits = fieldbus::sizeBits(type);
+  return fieldbus::isSigned(type) ? -(std::int64_t{1} << (bits - 2)) * 2 : 0;
+}
+
+std::int64_t highestOf(DataType type) {
+  const unsigned bits = fieldbus::sizeBits(type) - (fieldbus::isSigned(type) ? 1 : 0);
+  if (bits >= 63) return std::numeric_limits<std::int64_t>::max();
+  return (std::int64_t{1} << bits) - 1;
+}
+
+std::optional<Encoding> readEncodingWord(const yaml::Value& value) {
+  const auto index =
+      value.oneOf({"integer", "float32", "half_float", "half_float_unsigned", "half_float_signed"});
+  if (!index) return {};
+  return static_cast<Encoding>(*index);
+}
+
+void readEncodings(const yaml::Value& value, DriveProfile& profile) {
+  yaml::Section section(value);
+  for (const auto& [key, entry] : section.entries()) {
+    const auto range = drive::parseObjectRange(key);
+    if (!range) {
+      entry.problem("`" + key +
+                    "` is no range of objects; write for example \"2004\", "
+                    "\"2002:01-0C\" or \"2004-2006\"");
+    }
+    const auto encoding = readEncodingWord(entry);
+    if (range && encoding) profile.encodings.add(*range, *encoding);
+  }
+  section.finish();
+}
+
+void readObjects(const yaml::Value& value, DriveProfile& profile) {
+  yaml::Section section(value);
+  std::map<ObjectId, std::string> names;
+  for (const auto& [name, entry] : section.entries()) {
+    const ObjectSpec object = readObject(name, entry, profile);
+    if (fieldbus::parseObjectId(name)) {
+      entry.problem("the name reads like an index; choose another one");
+    }
+    const auto [first, fresh] = names.emplace(object.id, name);
+    if (!fresh && object.id.index != 0) {
+      entry.problem(fieldbus::toString(object.id) + " has the name `" + first->second +
+                    "` already");
+    }
+    if (profile.find(name) == nullptr) profile.objects.push_back(object);
+  }
+  section.finish();
+}
+
+}  // namespace cia402::config

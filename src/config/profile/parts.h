@@ -1,0 +1,102 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cia402_driver/canopen/device_config.h"
+#include "cia402_driver/drive/profile.h"
+#include "cia402_driver/yaml/reader.h"
+
+// The parts of a profile file, each read by a function of its own into the profile.
+namespace cia402::config {
+
+using drive::ControlKind;
+using drive::CoordinateMark;
+using drive::DriveProfile;
+using drive::Encoding;
+using drive::ErrorText;
+using drive::Handshake;
+using drive::HomingSpec;
+using drive::ModeChange;
+using drive::ModeSpec;
+using drive::NamedWrite;
+using drive::ObjectSpec;
+using drive::Quantity;
+using drive::StopBy;
+using drive::UnitSpec;
+using fieldbus::DataType;
+using fieldbus::ObjectId;
+
+/// A unit such as "count/s" or "turn/min"; adds a problem if it does not suit the quantity.
+std::optional<UnitSpec> readUnit(const yaml::Value& value, Quantity quantity);
+void readUnits(const yaml::Value& value, DriveProfile& profile);
+void readObjects(const yaml::Value& value, DriveProfile& profile);
+void readEncodings(const yaml::Value& value, DriveProfile& profile);
+void readCoordinates(const yaml::Value& value, DriveProfile& profile);
+void readModes(const yaml::Value& value, DriveProfile& profile);
+void readHoming(const yaml::Value& value, DriveProfile& profile);
+void readErrors(const yaml::Value& value, DriveProfile& profile);
+
+/// The words of `encoding`.
+std::optional<Encoding> readEncodingWord(const yaml::Value& value);
+/// "position"; the words of profiles.
+std::optional<Quantity> readQuantity(const yaml::Value& value);
+
+/// Smallest and largest whole number that an integer type holds (64 bits: as far as int64 goes).
+std::int64_t lowestOf(DataType type);
+std::int64_t highestOf(DataType type);
+
+/// Where a list of writes stands; decides what its entries may do.
+enum class WriteList : std::uint8_t {
+  boot,     ///< fixed before the drive is asked anything: values, no copies of other objects
+  running,  ///< done by the axis: may copy another object
+};
+
+/// Reads a list of writes (docs/drive_profiles.md, "Writes"); what is wrong adds problems. By index
+/// (`object: "6065:00"`) a value is the drive's own whole number; by name it is in SI units.
+std::vector<NamedWrite> readWrites(const yaml::Value& list, const DriveProfile& profile,
+                                   WriteList kind);
+
+/// May two PDOs of one direction carry the same object?
+enum class Sharing : std::uint8_t { refused, allowed };
+
+/// Reads a PDO layout (docs/drive_profiles.md, "PDOs") against the objects and limits of a family.
+std::vector<canopen::PdoLayout> readPdos(const yaml::Value& value, const DriveProfile& profile,
+                                         const canopen::DeviceProfile& device,
+                                         Sharing sharing = Sharing::refused);
+
+/// Reads a list of sub-indices of 1010h or 1011h into `subindices`, which keeps what it has if the
+/// key is missing or wrong.
+void readSubindices(yaml::Section& section, const std::string& key,
+                    std::vector<std::uint8_t>& subindices);
+
+/// Reads a list of the profile's modes; canonical names.
+std::vector<std::string> readModeNames(const yaml::Value& list, const DriveProfile& profile);
+/// Reads a list of objects that can be in a TPDO; their profile names.
+std::vector<std::string> readFeedbackNames(const yaml::Value& list, const DriveProfile& profile);
+
+/// Reads how a device of the family behaves on the bus: `identity`, `pdo_rules`, `sync`,
+/// `heartbeat`, `nmt_reset_node`, `pdos`. @param timing the section of that name, of which it reads
+/// `boot`, `sdo` and `sdo_retries`. @param profile whose objects its PDOs map
+void readDevice(yaml::Section& section, yaml::Section& timing, const DriveProfile& profile,
+                canopen::DeviceProfile& device);
+/// A time in seconds.
+void readDuration(yaml::Section& section, const std::string& key, yaml::Range range,
+                  Duration& target);
+
+/// `profile` with the objects of an EDS: those that it does not name get the EDS' names and types
+/// and count in device units; those that it does can be called by the EDS' names, too.
+DriveProfile withEds(DriveProfile profile, const fieldbus::DeviceDescription& eds);
+
+/// Where a profile and an EDS contradict each other. Each sentence names both sources.
+struct EdsContradictions {
+  std::vector<std::string> problems;  ///< another length: nothing can be sent
+  std::vector<std::string> warnings;  ///< another sign, maker or PDO mapping, objects missing
+};
+/// @param pdos layout that is to be mapped.
+EdsContradictions compareWithEds(const DriveProfile& profile, const canopen::DeviceConfig& device,
+                                 const fieldbus::DeviceDescription& eds);
+
+}  // namespace cia402::config

@@ -1,0 +1,25 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/fieldbus/bytes.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace cia402::fieldbus {
+
+std::uint64_t toUnsigned(const Bytes& bytes) {
+  std::uint64_t value = 0;
+  for (std::size_t i = 0; i < std::min<std::size_t>(bytes.size(), 8); ++i) {
+    value |= static_cast<std::uint64_t>(bytes[i]) << (8 * i);
+  }
+  return value;
+}
+
+Bytes toBytes(std::uint64_t value, unsigned size) {
+  Bytes bytes(std::min(size, 8U));
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    bytes[i] = static_cast<std::uint8_t>(value >> (8 * i));
+  }
+  return bytes;
+}
+
+}  // namespace cia402::fieldbus
