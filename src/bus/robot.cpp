@@ -77,12 +77,9 @@ void Robot::receive(const can::Frame& frame, Time stamp, Time now) {
   }
   lss_.receive(frame, now);
   master_.receive(frame, stamp, now);
-  const bool sdo_answer = frame.id > 0x580 && frame.id < 0x600;
-  if (!sdo_answer) return;
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
-    if (nodes_[i]->id() == (frame.id & 0x7F)) answered_[i] = any_answered_ = true;
-  }
 }
+
+void Robot::onSdoAnswer(canopen::Node& node) { answered_[axisOf(node)] = any_answered_ = true; }
 
 /// Whose drive answered by SDO need not wait for the next cycle, nor who called for the answer: the
 /// next cycle may be late, and the answer no longer true. Not in receive(), for behind the drive's

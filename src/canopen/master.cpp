@@ -145,6 +145,7 @@ void Master::receive(const can::Frame& frame, Time stamp, Time now) {
   node.receive(frame, stamp, now);
   if (node.takeCobIdChange()) followCobIds(route.node, now);
   if (listener_ != nullptr) {
+    if (route.service == Service::sdo) listener_->onSdoAnswer(node);
     if (node.emergencies() != emergencies) listener_->onEmergency(node, *node.lastEmergency());
     if (node.malformedEmergencies() != malformed) {
       listener_->onMalformedEmergency(node, frame.size);

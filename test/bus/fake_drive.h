@@ -33,8 +33,9 @@ class FakeDrive {
   std::deque<can::Frame> out;  ///< what it wants to send
 
   // What a test may change or look at
-  bool silent = false;      ///< hears nothing, says nothing
-  bool sdo_silent = false;  ///< answers no SDO request
+  bool silent = false;                              ///< hears nothing, says nothing
+  bool sdo_silent = false;                          ///< answers no SDO request
+  std::uint32_t requests = 0x600, answers = 0x580;  ///< COB-IDs of SDO without the node-ID
   bool deaf_to_controlword = false;
   bool keeps_mode = false;       ///< takes no other
   bool blocked = false;          ///< does not move
@@ -70,7 +71,7 @@ class FakeDrive {
     if (silent) return;
     if (frame.id == 0x000) return onNmt(frame);
     if (frame.id == 0x080) return onSync(now);
-    if (frame.id == 0x600u + node && !sdo_silent) return onSdo(frame);
+    if (frame.id == requests + node && !sdo_silent) return onSdo(frame);
     if (!operational) return;
     if (frame.id == 0x200u + node) onRpdo1(frame, now);
     if (frame.id == 0x300u + node) onRpdo2(frame);
@@ -114,7 +115,7 @@ class FakeDrive {
     const fieldbus::ObjectId id{static_cast<std::uint16_t>(number(frame, 1, 2)), frame.data[3]};
     const std::uint8_t low = frame.data[1], high = frame.data[2], sub = frame.data[3];
     const auto refuse = [&](std::uint32_t code) {
-      send(0x580,
+      send(answers,
            {0x80, low, high, sub, static_cast<std::uint8_t>(code & 0xFF),
             static_cast<std::uint8_t>(code >> 8 & 0xFF),
             static_cast<std::uint8_t>(code >> 16 & 0xFF), static_cast<std::uint8_t>(code >> 24)});
@@ -126,7 +127,7 @@ class FakeDrive {
       Bytes data = objects.count(id) != 0 ? objects[id] : Bytes{0, 0, 0, 0};
       const auto command = static_cast<std::uint8_t>(0x43 | (4 - data.size()) << 2);
       data.resize(4);
-      send(0x580, {command, low, high, sub, data[0], data[1], data[2], data[3]});
+      send(answers, {command, low, high, sub, data[0], data[1], data[2], data[3]});
     } else if ((frame.data[0] & 0xE0) == 0x20) {
       const std::size_t size = 4 - (frame.data[0] >> 2 & 3);
       objects[id] =
@@ -141,7 +142,7 @@ class FakeDrive {
         controlword = static_cast<std::uint16_t>(number(frame, 4, 2));
         if (!deaf_to_controlword) obey(before);
       }
-      send(0x580, {0x60, low, high, sub, 0, 0, 0, 0});
+      send(answers, {0x60, low, high, sub, 0, 0, 0, 0});
     }
   }
 

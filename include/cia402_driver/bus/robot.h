@@ -125,6 +125,7 @@ class Robot final : private canopen::MasterListener {
 
   void onEmergency(canopen::Node& node, const fieldbus::Emergency& emergency) override;
   void onMalformedEmergency(canopen::Node& node, std::size_t size) override;
+  void onSdoAnswer(canopen::Node& node) override;
   void onBootUp(canopen::Node& node, Time now) override;
   void onHealthChange(canopen::Node& node, fieldbus::Health before, Time now) override;
   void tellBooted(std::size_t axis, Time now);

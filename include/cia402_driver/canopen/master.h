@@ -24,6 +24,8 @@ class MasterListener {
   virtual void onEmergency(Node&, const Emergency&) {}
   /// A frame of so many bytes where an emergency was expected: it holds no error code.
   virtual void onMalformedEmergency(Node&, std::size_t /*size*/) {}
+  /// A frame came on the COB-ID on which a node answers by SDO.
+  virtual void onSdoAnswer(Node&) {}
   virtual void onBootUp(Node&, Time) {}  ///< a boot-up frame, expected or not
   virtual void onHealthChange(Node&, Health /*before*/, Time) {}
   /// Another device has sent SYNC. @param stamp when it was on the wire
