@@ -4,12 +4,11 @@
 #include <map>
 
 #include "cia402_driver/drive/named_write.h"
+#include "cia402_driver/drive/state_machine.h"
 #include "robot_parts.h"
 
 namespace cia402::config {
 namespace {
-
-constexpr std::uint64_t kQuickStopCommand = 0x0002;  // enable voltage without "no quick stop"
 
 using canopen::DeviceConfig;
 using canopen::NodeConfig;
@@ -161,7 +160,7 @@ void addStop(const drive::DriveProfile& profile, NodeConfig& node) {
   canopen::StartupWrite stop;
   stop.object = controlword->id;
   stop.name = controlword->name;
-  stop.data = drive::wireBytes(kQuickStopCommand, controlword->type);
+  stop.data = drive::wireBytes(drive::controlword::kQuickStopCommand, controlword->type);
   stop.optional = true;
   stop.only_if_different = false;  // one answer sooner
   stop.always = true;

@@ -26,7 +26,7 @@ std::uint16_t AxisCore::silentControlword() const {
       state_.state == State::quick_stop_active && atStandstill() && !config_.quick_stop_holds;
   const bool reacting = state_.state == State::fault_reaction_active;
   if (powerOff() || stopped || state_.state == State::switched_on || reacting) return 0;
-  return controlword::kEnableVoltage;  // quick stop
+  return controlword::kQuickStopCommand;
 }
 
 std::uint16_t AxisCore::composeControlword() {

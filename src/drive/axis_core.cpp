@@ -182,7 +182,7 @@ void AxisCore::stopBySdo(const std::string& why) {
   setGoal(Goal::quick_stop);
   const ObjectSpec* object = objects_.controlword.spec;
   stop_ticket_ = device_.objects().downloadUrgent(
-      object->id, fieldbus::toBytes(controlword::kEnableVoltage, 2), object->name);
+      object->id, fieldbus::toBytes(controlword::kQuickStopCommand, 2), object->name);
   if (!was_commanded) return;
   failure_ = who() + ": " + why;
   notify(failure_);

@@ -26,11 +26,11 @@ inline std::uint32_t bitsFromFloat(float value) {
 inline double decodeFloat(Encoding encoding, std::uint64_t raw) {
   const auto word = static_cast<std::uint16_t>(raw);
   auto bits = static_cast<std::uint32_t>(raw);
-  if (encoding == Encoding::half_float) {
+  if (encoding == Encoding::bfloat16) {
     bits = static_cast<std::uint32_t>(word) << 16;
-  } else if (encoding == Encoding::half_float_unsigned) {
+  } else if (encoding == Encoding::float32_by_65535_unsigned) {
     bits = static_cast<std::uint32_t>(word) * 65535U;
-  } else if (encoding == Encoding::half_float_signed) {
+  } else if (encoding == Encoding::float32_by_65535_signed) {
     bits = static_cast<std::uint32_t>(static_cast<std::int16_t>(word) * 65535);
   }
   const float value = floatFromBits(bits);
@@ -40,10 +40,10 @@ inline double decodeFloat(Encoding encoding, std::uint64_t raw) {
 
 /// The 16-bit word whose decoding is nearest to the float `bits`.
 inline std::uint16_t halfWord(Encoding encoding, std::uint32_t bits) {
-  if (encoding == Encoding::half_float) {  // to nearest, ties to even
+  if (encoding == Encoding::bfloat16) {  // to nearest, ties to even
     return static_cast<std::uint16_t>((std::uint64_t{bits} + 0x7FFF + ((bits >> 16) & 1)) >> 16);
   }
-  if (encoding == Encoding::half_float_unsigned) {
+  if (encoding == Encoding::float32_by_65535_unsigned) {
     return static_cast<std::uint16_t>((std::uint64_t{bits} + 32767) / 65535);
   }
   const auto pattern = static_cast<std::int64_t>(static_cast<std::int32_t>(bits));
@@ -79,13 +79,13 @@ inline std::uint64_t withoutNegativeZero(Encoding encoding, std::uint64_t raw) {
 /// Largest value that the encoding holds.
 inline double largestFloat(Encoding encoding) {
   if (encoding == Encoding::float32) return static_cast<double>(std::numeric_limits<float>::max());
-  return decodeFloat(encoding, encoding == Encoding::half_float ? 0x7F7F : 0x7F80);
+  return decodeFloat(encoding, encoding == Encoding::bfloat16 ? 0x7F7F : 0x7F80);
 }
 
 /// Lowest value that it holds: not in each encoding the opposite of the largest.
 inline double lowestFloat(Encoding encoding) {
   if (encoding == Encoding::float32) return -largestFloat(encoding);
-  return decodeFloat(encoding, encoding == Encoding::half_float_unsigned ? 0xFF80 : 0xFF7F);
+  return decodeFloat(encoding, encoding == Encoding::float32_by_65535_unsigned ? 0xFF80 : 0xFF7F);
 }
 
 }  // namespace cia402::drive

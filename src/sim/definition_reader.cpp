@@ -6,7 +6,7 @@
 
 namespace cia402::sim {
 
-DefinitionReader::DefinitionReader(const YAML::Node& node, std::string path, Problems& problems)
+DefinitionReader::DefinitionReader(const YAML::Node& node, std::string path, ProblemTexts& problems)
     : node_(node), path_(std::move(path)), problems_(problems) {
   if (!node_.IsMap()) {
     problems_.push_back((path_.empty() ? "the file" : path_) + ": must be a map");

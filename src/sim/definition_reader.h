@@ -13,12 +13,12 @@
 namespace cia402::sim {
 
 /// Everything wrong with one file, gathered.
-using Problems = std::vector<std::string>;
+using ProblemTexts = std::vector<std::string>;
 
 /// One map of a YAML file. Notes wrong types, values and, at finish(), keys nobody asked for.
 class DefinitionReader {
  public:
-  DefinitionReader(const YAML::Node& node, std::string path, Problems& problems);
+  DefinitionReader(const YAML::Node& node, std::string path, ProblemTexts& problems);
   ~DefinitionReader();
   DefinitionReader(const DefinitionReader&) = delete;
   DefinitionReader& operator=(const DefinitionReader&) = delete;
@@ -54,12 +54,12 @@ class DefinitionReader {
 
   void problem(const std::string& key, const std::string& text);
   std::string pathOf(const std::string& key) const;
-  Problems& problems() { return problems_; }
+  ProblemTexts& problems() { return problems_; }
 
  private:
   YAML::Node node_;
   std::string path_;
-  Problems& problems_;
+  ProblemTexts& problems_;
   std::set<std::string> asked_;
 };
 

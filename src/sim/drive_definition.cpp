@@ -351,7 +351,7 @@ void readDefinition(Reader& reader, bool extends, DriveDefinition& out) {
 }
 
 // The drive that the file extends lies beside it.
-void readFile(const std::string& path, int depth, DriveDefinition& out, Problems& problems) {
+void readFile(const std::string& path, int depth, DriveDefinition& out, ProblemTexts& problems) {
   try {
     const YAML::Node file = yaml::parseFile(path);
     Reader reader(file, "", problems);
@@ -361,7 +361,7 @@ void readFile(const std::string& path, int depth, DriveDefinition& out, Problems
       return reader.problem("extends", "is too deep: do the files extend each other?");
     }
     if (!base.empty()) {
-      Problems of_base;
+      ProblemTexts of_base;
       readFile(path.substr(0, path.rfind('/') + 1) + base + ".yaml", depth + 1, out, of_base);
       for (const std::string& problem : of_base) reader.problem("extends", base + ": " + problem);
     }
@@ -387,7 +387,7 @@ const ModeDefinition* DriveDefinition::mode(std::int64_t number) const {
 
 Result<std::shared_ptr<const DriveDefinition>> loadDriveDefinition(const std::string& path,
                                                                    const YAML::Node& changes) {
-  Problems problems;
+  ProblemTexts problems;
   auto definition = std::make_shared<DriveDefinition>();
   readFile(path, 0, *definition, problems);
   if (problems.empty() && changes.IsMap()) {

@@ -19,7 +19,7 @@ struct ObjectAddress : testing::Test {
   ObjectAddress() {
     auto profile = std::make_shared<drive::DriveProfile>(*axis.profile);
     profile->encodings.add({{0x2000, 0}, {0x2000, 0xFF}}, drive::Encoding::float32);
-    profile->encodings.add({{0x2001, 0}, {0x2001, 0xFF}}, drive::Encoding::half_float);
+    profile->encodings.add({{0x2001, 0}, {0x2001, 0xFF}}, drive::Encoding::bfloat16);
     axis.profile = profile;
   }
   std::string refusal(const std::string& text) const {

@@ -151,7 +151,7 @@ TEST_F(ObjectTextTest, EncodesFloatsByTheObjectsEncoding) {
 
 TEST_F(ObjectTextTest, RefusesWhatIsNotFiniteInEveryKindOfFloat) {
   drive::ObjectSpec half = object(DataType::uint16);
-  half.encoding = Encoding::half_float;
+  half.encoding = Encoding::bfloat16;
   const std::pair<drive::ObjectSpec, std::vector<const char*>> kinds[] = {
       {object(DataType::real32), {"nan", "-inf", "1e39", "0x7F800001", "0xFFFFFFFF"}},
       {object(DataType::real64), {"nan", "inf", "1e999", "0x7FF0000000000000"}},

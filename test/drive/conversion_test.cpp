@@ -262,8 +262,9 @@ TEST(Conversion, NeverSendsNaNOrInfinity) {
   std::uint64_t raw = 7;
   const auto integer =
       *Conversion::create(object(DataType::int32, Quantity::position), countingDrive(), servo());
-  for (const Encoding encoding : {Encoding::float32, Encoding::half_float,
-                                  Encoding::half_float_unsigned, Encoding::half_float_signed}) {
+  for (const Encoding encoding :
+       {Encoding::float32, Encoding::bfloat16, Encoding::float32_by_65535_unsigned,
+        Encoding::float32_by_65535_signed}) {
     const DataType type = encoding == Encoding::float32 ? DataType::int32 : DataType::int16;
     const auto floating =
         *Conversion::create(object(type, Quantity::position, encoding), floatDrive(), servo());
@@ -322,24 +323,25 @@ Conversion half(Encoding encoding) {
 TEST(Conversion, DecodesHalfFloatsInAllThreeWays) {
   for (const HalfRow& row : kHalfRows) {
     const double slack = 1e-8 * std::fabs(row.upper_value) + 1e-9;
-    EXPECT_NEAR(half(Encoding::half_float_unsigned).toJoint(row.word), row.unsigned_value, slack);
-    EXPECT_NEAR(half(Encoding::half_float_signed).toJoint(row.word), row.signed_value, slack);
-    EXPECT_NEAR(half(Encoding::half_float).toJoint(row.word), row.upper_value, slack);
+    EXPECT_NEAR(half(Encoding::float32_by_65535_unsigned).toJoint(row.word), row.unsigned_value,
+                slack);
+    EXPECT_NEAR(half(Encoding::float32_by_65535_signed).toJoint(row.word), row.signed_value, slack);
+    EXPECT_NEAR(half(Encoding::bfloat16).toJoint(row.word), row.upper_value, slack);
   }
 }
 
 TEST(Conversion, HalfFloatsDoNotDriftOverReadingAndWriting) {
-  for (const Encoding encoding :
-       {Encoding::half_float, Encoding::half_float_unsigned, Encoding::half_float_signed}) {
+  for (const Encoding encoding : {Encoding::bfloat16, Encoding::float32_by_65535_unsigned,
+                                  Encoding::float32_by_65535_signed}) {
     for (const HalfRow& row : kHalfRows) {
       EXPECT_EQ(encode(half(encoding), half(encoding).toJoint(row.word)), row.word);
     }
     EXPECT_EQ(encode(half(encoding), -0.0), 0u) << "0x8000 reads as NaN";
     EXPECT_EQ(encode(half(encoding), -1e-40), 0u);
   }
-  EXPECT_EQ(encode(half(Encoding::half_float), 0.3), 0x3E9Au);
-  EXPECT_EQ(encode(half(Encoding::half_float_unsigned), 0.3), 0x3E9Au);
-  EXPECT_EQ(encode(half(Encoding::half_float_unsigned), 0.1), 0x3DCDu);
+  EXPECT_EQ(encode(half(Encoding::bfloat16), 0.3), 0x3E9Au);
+  EXPECT_EQ(encode(half(Encoding::float32_by_65535_unsigned), 0.3), 0x3E9Au);
+  EXPECT_EQ(encode(half(Encoding::float32_by_65535_unsigned), 0.1), 0x3DCDu);
 }
 
 TEST(Conversion, ReturnsWhatWentInToHalfADeviceUnit) {

@@ -168,22 +168,22 @@ TEST(ConversionUnits, HalfFloatsAreRoundedToTheNearest) {
     std::uint16_t word;  ///< on the wire
   };
   const Row rows[] = {
-      {Encoding::half_float, 0x3F807FFF, 0x3F80},  // below the middle
-      {Encoding::half_float, 0x3F808000, 0x3F80},  // the middle: to the even word
-      {Encoding::half_float, 0x3F808001, 0x3F81},
-      {Encoding::half_float, 0x3F817FFF, 0x3F81},
-      {Encoding::half_float, 0x3F818000, 0x3F82},
-      {Encoding::half_float, 0xBF818000, 0xBF82},
-      {Encoding::half_float, 0x00800000, 0x0080},  // the smallest that is not too small
-      {Encoding::half_float, 0x007FFFFF, 0},
+      {Encoding::bfloat16, 0x3F807FFF, 0x3F80},  // below the middle
+      {Encoding::bfloat16, 0x3F808000, 0x3F80},  // the middle: to the even word
+      {Encoding::bfloat16, 0x3F808001, 0x3F81},
+      {Encoding::bfloat16, 0x3F817FFF, 0x3F81},
+      {Encoding::bfloat16, 0x3F818000, 0x3F82},
+      {Encoding::bfloat16, 0xBF818000, 0xBF82},
+      {Encoding::bfloat16, 0x00800000, 0x0080},  // the smallest that is not too small
+      {Encoding::bfloat16, 0x007FFFFF, 0},
       // 0x3F80 * 65535 = 0x3F7FC080, and 32767 of 65535 more
-      {Encoding::half_float_unsigned, 0x3F80407F, 0x3F80},
-      {Encoding::half_float_unsigned, 0x3F804080, 0x3F81},
-      {Encoding::half_float_signed, 0x3F80407F, 0x3F80},
-      {Encoding::half_float_signed, 0x3F804080, 0x3F81},
+      {Encoding::float32_by_65535_unsigned, 0x3F80407F, 0x3F80},
+      {Encoding::float32_by_65535_unsigned, 0x3F804080, 0x3F81},
+      {Encoding::float32_by_65535_signed, 0x3F80407F, 0x3F80},
+      {Encoding::float32_by_65535_signed, 0x3F804080, 0x3F81},
       // 0xBF80 is -16512, * 65535 = 0xBF804080, and 32767 of 65535 less
-      {Encoding::half_float_signed, 0xBF7FC081, 0xBF80},
-      {Encoding::half_float_signed, 0xBF7FC080, 0xBF7F},
+      {Encoding::float32_by_65535_signed, 0xBF7FC081, 0xBF80},
+      {Encoding::float32_by_65535_signed, 0xBF7FC080, 0xBF7F},
   };
   for (const Row& row : rows) {
     const auto half = *Conversion::create(specOf(DataType::int16, Quantity::position, row.encoding),
@@ -201,11 +201,12 @@ TEST(ConversionUnits, FloatsHaveBoundsOfTheirOwn) {
   const Row rows[] = {
       {DataType::int32, Encoding::float32, 0xFF7FFFFF, 0x7F7FFFFF},
       {DataType::uint32, Encoding::float32, 0, 0x7F7FFFFF},
-      {DataType::int16, Encoding::half_float, 0xFF7F, 0x7F7F},
-      {DataType::int16, Encoding::half_float_unsigned, 0xFF80, 0x7F80},  // * 65535 = 0xFF7F0080
+      {DataType::int16, Encoding::bfloat16, 0xFF7F, 0x7F7F},
+      {DataType::int16, Encoding::float32_by_65535_unsigned, 0xFF80,
+       0x7F80},  // * 65535 = 0xFF7F0080
       // -129 * 65535 = 0xFF7F0081, and -128 * 65535 would be no number
-      {DataType::int16, Encoding::half_float_signed, 0xFF7F, 0x7F80},
-      {DataType::uint16, Encoding::half_float, 0, 0x7F7F},
+      {DataType::int16, Encoding::float32_by_65535_signed, 0xFF7F, 0x7F80},
+      {DataType::uint16, Encoding::bfloat16, 0, 0x7F7F},
   };
   for (const Row& row : rows) {
     SCOPED_TRACE(row.high);

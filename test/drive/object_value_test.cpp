@@ -15,7 +15,7 @@ TEST(ObjectValue, FloatsAreThoseOfTheirTypeOrTheirEncoding) {
   EXPECT_TRUE(holdsFloat(DataType::real32, Encoding::integer));
   EXPECT_TRUE(holdsFloat(DataType::real64, Encoding::integer));
   EXPECT_TRUE(holdsFloat(DataType::uint32, Encoding::float32));
-  EXPECT_TRUE(holdsFloat(DataType::int16, Encoding::half_float));
+  EXPECT_TRUE(holdsFloat(DataType::int16, Encoding::bfloat16));
   EXPECT_FALSE(holdsFloat(DataType::uint32, Encoding::integer));
 }
 
@@ -29,7 +29,7 @@ TEST(ObjectValue, FloatsHaveTheBitsOfTheStandard) {
   const Row rows[] = {
       {DataType::real32, Encoding::integer, 1.5, 0x3FC00000},
       {DataType::uint32, Encoding::float32, -1.5, 0xBFC00000},
-      {DataType::uint16, Encoding::half_float, 1.5, 0x3FC0},
+      {DataType::uint16, Encoding::bfloat16, 1.5, 0x3FC0},
       {DataType::real64, Encoding::integer, 1.5, 0x3FF8000000000000},
       {DataType::real64, Encoding::integer, -2.0, 0xC000000000000000},
       {DataType::real64, Encoding::integer, 1e39, 0x48078287F49C4A1D},
@@ -51,7 +51,7 @@ TEST(ObjectValue, MinusZeroIsSentAsZeroAndWhatIsNotFiniteNever) {
   const Row rows[] = {
       {DataType::real32, Encoding::integer, 0x80000000, 0x7F800000, 0xFFFFFFFF},
       {DataType::uint32, Encoding::float32, 0x80000000, 0xFF800000, 0x7FC00000},
-      {DataType::uint16, Encoding::half_float, 0x8000, 0x7F80, 0x7FC0},
+      {DataType::uint16, Encoding::bfloat16, 0x8000, 0x7F80, 0x7FC0},
       {DataType::real64, Encoding::integer, 0x8000000000000000, 0x7FF0000000000000,
        0xFFFFFFFFFFFFFFFF},
   };

@@ -181,7 +181,7 @@ TEST(ProfileBehaviour, AnRpdoTimeoutIsThatOfTheStandardUnlessTheProfileSaysOther
 TEST(ProfileBehaviour, AFloatThatNothingNamesHasItsPlaceAndAsManyBitsAsItsBytes) {
   DriveProfile profile;
   profile.encodings.add({{0x2000, 0}, {0x2000, 0xFF}}, Encoding::float32);
-  profile.encodings.add({{0x2001, 0}, {0x2001, 0xFF}}, Encoding::half_float);
+  profile.encodings.add({{0x2001, 0}, {0x2001, 0xFF}}, Encoding::bfloat16);
   const auto single = profile.unnamedFloat({0x2000, 3}, 4);
   ASSERT_TRUE(single);
   EXPECT_EQ(single->id, (ObjectId{0x2000, 3}));
@@ -191,7 +191,7 @@ TEST(ProfileBehaviour, AFloatThatNothingNamesHasItsPlaceAndAsManyBitsAsItsBytes)
   ASSERT_TRUE(half);
   EXPECT_EQ(half->id, (ObjectId{0x2001, 4}));
   EXPECT_EQ(fieldbus::sizeBits(half->type), 16U);
-  EXPECT_EQ(half->encoding, Encoding::half_float);
+  EXPECT_EQ(half->encoding, Encoding::bfloat16);
   for (const std::size_t bytes : {0U, 1U, 3U, 5U, 8U}) {
     EXPECT_FALSE(profile.unnamedFloat({0x2000, 3}, bytes)) << bytes;
   }

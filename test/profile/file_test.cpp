@@ -133,8 +133,8 @@ const Mistake kMistakes[] = {
     {"  statusword:", "  controlword:", "objects/statusword is missing"},
     {"  statusword:", "  controlword:", "small.yaml:5: objects/controlword: is given twice"},
     {"pdo: tpdo}\n  mode_of", "pdo: rpdo}\n  mode_of", "a read-only object cannot be in an RPDO"},
-    {"quantity: position, pdo: rpdo", "encoding: half_float, quantity: position, pdo: rpdo",
-     "half floats need a type of 16 bits, not int32"},
+    {"quantity: position, pdo: rpdo", "encoding: bfloat16, quantity: position, pdo: rpdo",
+     "floats of 16 bits need a type as wide, not int32"},
     {"\"6060:00\", type: int8", "\"6060:00\", type: int8, encoding: float32",
      "float32 needs a type of 32 bits, not int8"},
     {"quantity: velocity}", "quantity: torque}", "`units` has no entry for what it measures"},
@@ -224,7 +224,7 @@ TEST(DriveProfile, ObjectsAreFloatsByTheirPlace) {
   const WholeProfile profile = parseDriveFamily(
       changed("objects:",
               "encodings: {\"2000-20FF\": float32, \"2003\": integer, \"2003:05-06\": "
-              "half_float}\nobjects:\n"
+              "bfloat16}\nobjects:\n"
               "  gain: {object: \"2001:02\", type: uint32}\n"
               "  count: {object: \"2001:03\", type: uint32, encoding: integer}\n"
               "  flag: {object: \"2001:04\", type: uint8}"),
@@ -238,7 +238,7 @@ TEST(DriveProfile, ObjectsAreFloatsByTheirPlace) {
   EXPECT_EQ(profile.encodingOf({0x20FF, 0xFF}, DataType::int32), Encoding::float32);
   EXPECT_EQ(profile.encodingOf({0x2100, 0}, DataType::int32), Encoding::integer);
   EXPECT_EQ(profile.encodingOf({0x2003, 1}, DataType::uint32), Encoding::integer);
-  EXPECT_EQ(profile.encodingOf({0x2003, 5}, DataType::uint16), Encoding::half_float);
+  EXPECT_EQ(profile.encodingOf({0x2003, 5}, DataType::uint16), Encoding::bfloat16);
   EXPECT_EQ(profile.encodingOf({0x2100, 0}, DataType::real32), Encoding::float32);
   ASSERT_TRUE(profile.unnamedFloat({0x2002, 1}, 4));
   EXPECT_EQ(profile.unnamedFloat({0x2002, 1}, 4)->encoding, Encoding::float32);

@@ -18,11 +18,11 @@ using fieldbus::ObjectId;
 
 /// How a number sits in an object.
 enum class Encoding : std::uint8_t {
-  integer,              ///< a plain integer, scaled by the profile's units
-  float32,              ///< the bit pattern of an IEEE-754 float in a 32-bit integer object
-  half_float,           ///< the upper 16 bits of such a pattern in a 16-bit object (value << 16)
-  half_float_unsigned,  ///< 16-bit word n; pattern = n * 65535, n unsigned
-  half_float_signed,    ///< 16-bit word n; pattern = n * 65535, n signed
+  integer,   ///< a plain integer, scaled by the profile's units
+  float32,   ///< the bit pattern of an IEEE-754 float in a 32-bit integer object
+  bfloat16,  ///< the upper 16 bits of such a pattern in a 16-bit object (value << 16)
+  float32_by_65535_unsigned,  ///< 16-bit word n; pattern = n * 65535, n unsigned
+  float32_by_65535_signed,    ///< 16-bit word n; pattern = n * 65535, n signed
 };
 
 /// Why an object must not be written while the axis may move: it shifts the drive's coordinates, or

@@ -52,7 +52,9 @@ inline constexpr std::uint16_t kSwitchOn = 1u << 0, kEnableVoltage = 1u << 1, kQ
                                kEnableOperation = 1u << 3, kNewSetPoint = 1u << 4,
                                kHomingStart = 1u << 4, kChangeImmediately = 1u << 5,
                                kRelative = 1u << 6, kFaultReset = 1u << 7, kHalt = 1u << 8;
-}
+/// The command "quick stop": the voltage stays, the bit that is named after it is 0.
+inline constexpr std::uint16_t kQuickStopCommand = kEnableVoltage;
+}  // namespace controlword
 namespace statusword {
 inline constexpr std::uint16_t kVoltageEnabled = 1u << 4, kWarning = 1u << 7, kRemote = 1u << 9,
                                kTargetReached = 1u << 10, kInternalLimit = 1u << 11;

@@ -32,7 +32,7 @@ void readEncoding(yaml::Section& section, const DriveProfile& profile, ObjectSpe
   if (object.encoding == Encoding::float32 && bits != 32) {
     value->problem(std::string("float32 needs a type of 32 bits, not ") + type);
   } else if (object.encoding > Encoding::float32 && bits != 16) {
-    value->problem(std::string("half floats need a type of 16 bits, not ") + type);
+    value->problem(std::string("floats of 16 bits need a type as wide, not ") + type);
   } else if (object.encoding == Encoding::integer && object.type == DataType::real32) {
     value->problem("real32 is a float, not an integer; leave `encoding` out");
   }
@@ -117,8 +117,8 @@ std::int64_t highestOf(DataType type) {
 }
 
 std::optional<Encoding> readEncodingWord(const yaml::Value& value) {
-  const auto index =
-      value.oneOf({"integer", "float32", "half_float", "half_float_unsigned", "half_float_signed"});
+  const auto index = value.oneOf(
+      {"integer", "float32", "bfloat16", "float32_by_65535_unsigned", "float32_by_65535_signed"});
   if (!index) return {};
   return static_cast<Encoding>(*index);
 }
