@@ -234,7 +234,7 @@ TEST(EffortStream, ThatEndsIsQuickStoppedWhereTheModeThatBrakesIsNotTaken) {
 
 TEST(EffortStream, ThatEndsIsQuickStoppedWhereTheTargetOfTheModeThatBrakesIsMissing) {
   PushedAxis axis(pushing(StopBy::mode));
-  axis.node().image().leaveOut(canopen::PdoDirection::rpdo, 2, {0x60FF, 0});
+  axis.device().leaveOut({0x60FF, 0});
   axis.letGo();
   axis.run(milliseconds(12));
   EXPECT_EQ(axis.drive.controlword, 0x0002);
@@ -242,22 +242,20 @@ TEST(EffortStream, ThatEndsIsQuickStoppedWhereTheTargetOfTheModeThatBrakesIsMiss
   EXPECT_THAT(axis.axis.notice(), HasSubstr("braked by a quick stop, as mode torque has no other"));
 }
 
-// The place of 6060h in RPDO 1 has another object, and what the drive shows is sent by the test.
+// The place of 6060h among the outputs has another object, and what the drive shows is sent by the
+// test.
 TEST(EffortStream, ThatEndsHasTheModeThatBrakesWrittenWhereNoRpdoBringsIt) {
-  canopen::NodeConfig node = test::nodeConfig();
-  node.pdos[0].entries[1] = {{0x6098, 0}, 8, "homing_method"};
-  Bench bench(pushing(StopBy::mode), node);
+  test::Layout layout = test::testLayout();
+  layout.outputs[0].objects[1] = {{0x6098, 0}, 8};
+  Bench bench(pushing(StopBy::mode), layout);
   ASSERT_TRUE(bench.boot());
   bench.drive.silent = true;
-  const auto byte = [](unsigned word, unsigned n) {
-    return static_cast<std::uint8_t>(word >> (8 * n));
-  };
   bool pushed = true;
   bench.each_cycle = [&] {
-    const unsigned word = bench.drive.statusword();
     const auto mode = static_cast<std::uint8_t>(bench.drive.dictionary[{0x6060, 0}].first);
-    bench.deliver(can::Frame(0x183, {byte(word, 0), byte(word, 1), 0x39, 0x30, 0x00, 0x00, mode}));
-    bench.deliver(can::Frame(0x283, {0x88, 0x13, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00}));  // 5000
+    bench.bring(
+        {{{0x6041, 0}, bench.drive.statusword()}, {{0x6064, 0}, 12345}, {{0x6061, 0}, mode}});
+    bench.bring({{{0x606C, 0}, 5000}, {{0x6077, 0}, 0}, {{0x603F, 0}, 0}});
     if (pushed) static_cast<void>(bench.axis.setTarget(0.5));
   };
   ASSERT_TRUE(bench.enable());
@@ -289,7 +287,7 @@ TEST(EffortHalt, StopsByTheModeThatBrakesAndStaysEnabled) {
 TEST(EffortHalt, StopsByAQuickStopWhereNothingElseBrakes) {
   for (const bool missing : {false, true}) {
     PushedAxis axis(pushing(missing ? StopBy::mode : StopBy::quick_stop));
-    if (missing) axis.node().image().leaveOut(canopen::PdoDirection::rpdo, 2, {0x60FF, 0});
+    if (missing) axis.device().leaveOut({0x60FF, 0});
     axis.letGo();
     ASSERT_TRUE(axis.axis.start({ProcedureKind::halt, {}, 0.0}, axis.now).ok());
     axis.run(milliseconds(12));

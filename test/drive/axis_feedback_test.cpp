@@ -14,11 +14,6 @@ using test::milliseconds;
 using test::testConfig;
 using test::testProfile;
 
-/// The TPDO that brings `entry` besides those of the fixture, 383h.
-canopen::PdoConfig third(const canopen::PdoEntry& entry) {
-  return test::pdo(canopen::PdoDirection::tpdo, 3, 0x383, {entry});
-}
-
 DriveProfile withObject(const ObjectSpec& object) {
   DriveProfile profile = testProfile();
   profile.objects.push_back(object);
@@ -66,11 +61,11 @@ TEST(AxisFeedback, OfALostNodeNothingIsKnown) {
     EXPECT_FALSE(state.digital_inputs_valid);
     EXPECT_FALSE(state.ready_for_motion);
   };
-  bench.deliver(bench.drive.reboot());
+  bench.reboot();
   EXPECT_NE(state.health, fieldbus::Health::ready);
-  EXPECT_EQ(state.health, bench.node().health());
+  EXPECT_EQ(state.health, bench.device().health());
   nothing();
-  bench.dead = true;
+  bench.drive.dead = true;
   bench.run(milliseconds(40));
   nothing();
 }
@@ -78,13 +73,13 @@ TEST(AxisFeedback, OfALostNodeNothingIsKnown) {
 TEST(AxisFeedback, ALostNodeIsToldOnceAndLeavesNoSetPoint) {
   Bench bench;
   ASSERT_TRUE(bench.boot() && bench.enable());
-  bench.deliver(bench.drive.reboot());
+  bench.reboot();
   EXPECT_TRUE(std::isnan(bench.axis.target()));
   EXPECT_TRUE(bench.axis.setPoint().atRest());
   ASSERT_TRUE(bench.runUntil([&] { return bench.axis.state().feedback_valid; }));
   bench.run(milliseconds(100));
   EXPECT_EQ(bench.axis.noticeCount(), 1u);
-  bench.deliver(bench.drive.reboot());  // nobody has asked for anything since
+  bench.reboot();  // nobody has asked for anything since
   bench.run(milliseconds(100));
   EXPECT_EQ(bench.axis.noticeCount(), 1u);
 }
@@ -117,9 +112,9 @@ TEST(AxisFeedback, IsHeardLatelyUntilACycleAndTwoMoreHavePassedInSilence) {
 }
 
 TEST(AxisFeedback, ThatComesOnChangeOnlyIsAsNewAsItCanBe) {
-  canopen::NodeConfig node = test::nodeConfig();
-  node.pdos[2].transmission = 254;
-  Bench bench(testConfig(), node);
+  test::Layout layout = test::testLayout();
+  layout.inputs[0].every_cycle = false;
+  Bench bench(testConfig(), layout);
   ASSERT_TRUE(bench.boot());
   bench.drive.silent = true;
   bench.run(milliseconds(400));
@@ -132,7 +127,7 @@ TEST(AxisFeedback, SaysHowItsNodeIsWhileThatBoots) {
   bool booting = false;
   bench.each_cycle = [&] {
     booting = booting || bench.axis.state().health == fieldbus::Health::booting;
-    EXPECT_EQ(bench.axis.state().health, bench.node().health());
+    EXPECT_EQ(bench.axis.state().health, bench.device().health());
   };
   ASSERT_TRUE(bench.boot());
   EXPECT_TRUE(booting);
@@ -141,10 +136,10 @@ TEST(AxisFeedback, SaysHowItsNodeIsWhileThatBoots) {
 TEST(AxisFeedback, AnEmergencyIsForgottenWithItsNode) {
   Bench bench;
   ASSERT_TRUE(bench.boot());
-  bench.deliver(FakeDrive::emergency(0x4210));
+  bench.emergency(0x4210);
   bench.run(milliseconds(20));
   ASSERT_EQ(bench.axis.state().error_code, 0x4210);
-  bench.deliver(bench.drive.reboot());
+  bench.reboot();
   ASSERT_TRUE(bench.runUntil([&] { return bench.axis.state().feedback_valid; }));
   EXPECT_EQ(bench.axis.state().error_code, 0);
 }
@@ -171,24 +166,24 @@ TEST(AxisFeedback, WhatWasReadFromANodeIsForgottenWithIt) {
   ASSERT_TRUE(bench.boot());
   bench.run(milliseconds(400));
   ASSERT_TRUE(bench.axis.state().digital_inputs_valid);
-  bench.deliver(bench.drive.reboot());
+  bench.reboot();
   bench.drive.dictionary.erase({0x60FD, 0});  // is not told again
   ASSERT_TRUE(bench.runUntil([&] { return bench.axis.state().feedback_valid; }));
   EXPECT_FALSE(bench.axis.state().digital_inputs_valid);
 }
 
 TEST(AxisFeedback, DigitalInputsOfATpdoAreUnknownUntilItComes) {
-  canopen::NodeConfig node = test::nodeConfig();
-  node.pdos.push_back(third({{0x60FD, 0}, 32, "digital_inputs"}));
-  Bench bench(testConfig(withInputs()), node);
+  test::Layout layout = test::testLayout();
+  layout.inputs.push_back(test::thirdInput({0x60FD, 0}, 32));
+  Bench bench(testConfig(withInputs()), layout);
   ASSERT_TRUE(bench.boot());
   EXPECT_FALSE(bench.axis.state().digital_inputs_valid);
-  bench.deliver(can::Frame(0x383, {0x04, 0x00, 0x00, 0x00}));
-  const Time delivered = bench.now;
+  bench.bring({0x60FD, 0}, 4);
+  const Time brought = bench.now;
   bench.cycle();
   EXPECT_TRUE(bench.axis.state().digital_inputs_valid);
   EXPECT_EQ(bench.axis.state().digital_inputs, 4u);
-  EXPECT_EQ(bench.axis.state().stamps.digital_inputs, delivered);
+  EXPECT_EQ(bench.axis.state().stamps.digital_inputs, brought);
 }
 
 TEST(AxisFeedback, TheFollowingErrorOfPositionModesIsTheSetPointLessThePosition) {
@@ -238,25 +233,25 @@ TEST(AxisFeedback, AFollowingErrorThatNoTpdoBringsIsReadForALook) {
 }
 
 TEST(AxisFeedback, AFollowingErrorOfATpdoIsNotReadForALook) {
-  canopen::NodeConfig node = test::nodeConfig();
-  node.pdos.push_back(third({{0x60F4, 0}, 32, "following_error"}));
-  Bench bench(testConfig(withFollowingError()), node);
+  test::Layout layout = test::testLayout();
+  layout.inputs.push_back(test::thirdInput({0x60F4, 0}, 32));
+  Bench bench(testConfig(withFollowingError()), layout);
   bench.drive.dictionary[{0x60F4, 0}] = {100, 4};
   ASSERT_TRUE(bench.boot());
   bench.axis.look();
   bench.run(milliseconds(200));
   EXPECT_TRUE(std::isnan(bench.axis.state().following_error));
-  bench.deliver(can::Frame(0x383, {0xC8, 0x00, 0x00, 0x00}));
+  bench.bring({0x60F4, 0}, 200);
   bench.cycle();
   EXPECT_NEAR(bench.axis.state().following_error, 0.02, 1e-9);
 }
 
 TEST(AxisFeedback, APositionThatEndsTakesTheFeedbackAlong) {
-  canopen::NodeConfig node = test::nodeConfig();
-  node.pdos[2].entries = {{{0x6041, 0}, 16, "statusword"}};
-  node.pdos.push_back(third({{0x6064, 0}, 32, "position_actual"}));
-  Bench bench(testConfig(), node);
-  bench.each_cycle = [&] { bench.deliver(can::Frame(0x383, {0xE8, 0x03, 0x00, 0x00})); };
+  test::Layout layout = test::testLayout();
+  layout.inputs[0].objects = {{{0x6041, 0}, 16}};
+  layout.inputs.push_back(test::thirdInput({0x6064, 0}, 32));
+  Bench bench(testConfig(), layout);
+  bench.each_cycle = [&] { bench.bring({0x6064, 0}, 1000); };
   ASSERT_TRUE(bench.boot());
   bench.each_cycle = nullptr;
   bench.run(milliseconds(150));
@@ -267,11 +262,11 @@ TEST(AxisFeedback, APositionThatEndsTakesTheFeedbackAlong) {
 }
 
 TEST(AxisFeedback, AModeThatIsShownNoMoreIsUnknown) {
-  canopen::NodeConfig node = test::nodeConfig();
-  node.pdos[2].entries.pop_back();
-  node.pdos.push_back(third({{0x6061, 0}, 8, "mode_display"}));
-  Bench bench(testConfig(), node);
-  bench.each_cycle = [&] { bench.deliver(can::Frame(0x383, {0x08})); };
+  test::Layout layout = test::testLayout();
+  layout.inputs[0].objects.pop_back();
+  layout.inputs.push_back(test::thirdInput({0x6061, 0}, 8));
+  Bench bench(testConfig(), layout);
+  bench.each_cycle = [&] { bench.bring({0x6061, 0}, 8); };
   ASSERT_TRUE(bench.boot() && bench.enable());
   ASSERT_TRUE(bench.axis.state().ready_for_motion);
   bench.each_cycle = nullptr;
@@ -286,7 +281,7 @@ TEST(AxisFeedback, NoModeIsShownAsZero) {
   Bench bench;
   ASSERT_TRUE(bench.boot() && bench.enable());
   bench.drive.silent = true;
-  bench.deliver(can::Frame(0x183, {0x37, 0x02, 0x39, 0x30, 0x00, 0x00, 0x00}));
+  bench.bring({{{0x6041, 0}, 0x0237}, {{0x6064, 0}, 12345}, {{0x6061, 0}, 0}});
   bench.cycle();
   EXPECT_EQ(bench.axis.state().mode_value, 0);
   EXPECT_EQ(bench.axis.state().mode, nullptr);
@@ -296,9 +291,9 @@ TEST(AxisFeedback, NoModeIsShownAsZero) {
 TEST(AxisFeedback, ADriveThatCannotShowItsModeIsBelieved) {
   DriveProfile profile = testProfile();
   profile.objects.erase(profile.objects.begin() + 3);  // mode_display
-  canopen::NodeConfig node = test::nodeConfig();
-  node.pdos[2].entries.pop_back();
-  Bench bench(testConfig(profile), node);
+  test::Layout layout = test::testLayout();
+  layout.inputs[0].objects.pop_back();
+  Bench bench(testConfig(profile), layout);
   ASSERT_TRUE(bench.boot() && bench.enable());
   EXPECT_EQ(bench.axis.state().mode->name, "cyclic_position");
   EXPECT_EQ(bench.axis.state().stamps.mode, bench.axis.state().stamp);
@@ -308,10 +303,10 @@ TEST(AxisFeedback, ADriveThatCannotShowItsModeIsBelieved) {
 }
 
 TEST(AxisFeedback, AModeThatASwitchHasReadIsKnownAtOnce) {
-  canopen::NodeConfig node = test::nodeConfig();
-  node.pdos[2].entries.pop_back();  // 6061h
-  node.pdos.pop_back();             // and much else that is read in turn
-  Bench bench(testConfig(), node);
+  test::Layout layout = test::testLayout();
+  layout.inputs[0].objects.pop_back();  // 6061h
+  layout.inputs.pop_back();             // and much else that is read in turn
+  Bench bench(testConfig(), layout);
   ASSERT_TRUE(bench.boot() && bench.enable());
   bench.run(milliseconds(200));
   for (const char* mode : {"pp", "csp", "pp", "csp", "pp", "csp"}) {

@@ -8,9 +8,8 @@
 #include <memory>
 #include <string>
 
-#include "cia402_driver/canopen/node.h"
 #include "cia402_driver/drive/axis.h"
-#include "drive/fake_drive.h"
+#include "drive/fake_device.h"
 
 namespace cia402::drive::test {
 
@@ -121,70 +120,43 @@ inline AxisConfig testConfig(DriveProfile profile = testProfile()) {
   return config;
 }
 
-inline canopen::PdoConfig pdo(canopen::PdoDirection direction, unsigned number,
-                              std::uint16_t cob_id, std::vector<canopen::PdoEntry> entries) {
-  canopen::PdoConfig config;
-  config.direction = direction;
-  config.number = number;
-  config.cob_id = cob_id;
-  config.entries = std::move(entries);
-  return config;
+/// Two groups each way.
+inline Layout testLayout() {
+  Layout layout;
+  layout.outputs = {
+      {"RPDO 1 (COB-ID 0x203)", {{{0x6040, 0}, 16}, {{0x6060, 0}, 8}, {{0x607A, 0}, 32}}},
+      {"RPDO 2 (COB-ID 0x303)", {{{0x60FF, 0}, 32}, {{0x6071, 0}, 16}}}};
+  layout.inputs = {
+      {"TPDO 1 (COB-ID 0x183)", {{{0x6041, 0}, 16}, {{0x6064, 0}, 32}, {{0x6061, 0}, 8}}},
+      {"TPDO 2 (COB-ID 0x283)", {{{0x606C, 0}, 32}, {{0x6077, 0}, 16}, {{0x603F, 0}, 16}}}};
+  return layout;
 }
 
-inline canopen::NodeConfig nodeConfig() {
-  using canopen::PdoDirection;
-  canopen::NodeConfig node;
-  node.node_id = 3;
-  node.name = "shoulder";
-  node.pdos = {pdo(PdoDirection::rpdo, 1, 0x203,
-                   {{{0x6040, 0}, 16, "controlword"},
-                    {{0x6060, 0}, 8, "mode"},
-                    {{0x607A, 0}, 32, "target_position"}}),
-               pdo(PdoDirection::rpdo, 2, 0x303,
-                   {{{0x60FF, 0}, 32, "target_velocity"}, {{0x6071, 0}, 16, "target_torque"}}),
-               pdo(PdoDirection::tpdo, 1, 0x183,
-                   {{{0x6041, 0}, 16, "statusword"},
-                    {{0x6064, 0}, 32, "position_actual"},
-                    {{0x6061, 0}, 8, "mode_display"}}),
-               pdo(PdoDirection::tpdo, 2, 0x283,
-                   {{{0x606C, 0}, 32, "velocity_actual"},
-                    {{0x6077, 0}, 16, "torque_actual"},
-                    {{0x603F, 0}, 16, "error_code"}})};
-  return node;
+/// An input that comes besides those, whenever the test brings it.
+inline Group thirdInput(fieldbus::ObjectId object, unsigned bits) {
+  Group group;
+  group.name = "TPDO 3 (COB-ID 0x383)";
+  group.objects = {{object, bits}};
+  group.by_test = true;
+  return group;
 }
 
-/// One axis, one node, one fake drive and a clock that only the test moves.
+/// One axis, its device, one fake drive and a clock that only the test moves.
 class Bench {
  public:
-  explicit Bench(AxisConfig config = testConfig(), canopen::NodeConfig node = nodeConfig())
-      : node_config_(std::move(node)),
-        node_(node_config_, master_, drive),
-        axis(std::move(config), node_) {}
+  explicit Bench(AxisConfig config = testConfig(), const Layout& layout = testLayout())
+      : device_(layout, drive), axis(std::move(config), device_) {}
 
-  /// Boots the node. @return whether it became ready.
+  /// Boots the device. @return whether it became ready.
   bool boot() {
-    node_.boot(now, true);
-    return runUntil([&] { return node_.health() == fieldbus::Health::ready; }) &&
+    device_.boot(now, true);
+    return runUntil([&] { return device_.health() == fieldbus::Health::ready; }) &&
            runUntil([&] { return axis.state().feedback_valid; });
   }
 
-  void cycle() {
-    now += kCycle;
-    if (now - last_heartbeat_ >= milliseconds(50) && !dead) {
-      last_heartbeat_ = now;
-      deliver(drive.heartbeat());
-    }
-    node_.onSync(now);
-    if (!dead) {
-      for (const can::Frame& frame : drive.sync(toSeconds(kCycle))) deliver(frame);
-    }
-    axis.readFeedback(now);
-    axis.update(now);
-    if (each_cycle) each_cycle();
-    axis.writeCommands(now);
-    node_.sendRpdos(now);
-    exchange();
-  }
+  void cycle() { pass(true); }
+  /// A cycle in which no output leaves, such as of a bus that is full: the drive goes by the last.
+  void cycleWithoutOutputs() { pass(false); }
   void run(Duration time) {
     for (const Time end = now + time; now < end;) cycle();
   }
@@ -224,38 +196,57 @@ class Bench {
     EXPECT_TRUE(status.success) << status.message;
     return status.success;
   }
-  void deliver(const can::Frame& frame) {
-    const auto& tpdos = node_.image().tpdos();
-    for (std::size_t i = 0; i < tpdos.size(); ++i) {
-      if (tpdos[i].cob_id == frame.id) return node_.receiveTpdo(i, frame, now);
-    }
-    const auto before = node_.health();
-    node_.receive(frame, now, now);
-    if (before != node_.health()) axis.onHealthChange(before, now);
-    if (frame.id == 0x083) axis.onEmergency(*node_.lastEmergency(), now);
+  /// An input comes, or more of them at once, as if the drive had sent it.
+  void bring(fieldbus::ObjectId object, std::uint64_t raw) { bring({{object, raw}}); }
+  void bring(const Values& values) { device_.bring(values, true, now); }
+  /// The drive starts anew, which nobody has asked for.
+  void reboot() {
+    drive.reboot();
+    tell([&] { device_.restarted(now); });
   }
-  canopen::Node& node() { return node_; }
+  /// An emergency comes.
+  void emergency(std::uint16_t code) {
+    device_.hearEmergency(code, now);
+    axis.onEmergency(*device_.lastEmergency(), now);
+  }
+  /// The drive fails, and says so by an emergency.
+  void fail(std::uint16_t code) {
+    drive.fail(code);
+    emergency(code);
+  }
+  FakeDevice& device() { return device_; }
 
   static constexpr Duration kCycle = milliseconds(4);
   FakeDrive drive;
   Time now{std::chrono::seconds(1)};
-  bool dead = false;  ///< the drive is off: nothing comes from it
   std::function<void()> each_cycle;
 
  private:
-  void exchange() {
-    for (int i = 0; i < 50; ++i) {
-      node_.tick(now);
-      const auto frames = drive.answer();
-      if (frames.empty()) return;
-      if (dead) continue;
-      for (const can::Frame& frame : frames) deliver(frame);
+  void pass(bool outputs_leave) {
+    now += kCycle;
+    if (now - last_sign_ >= milliseconds(50) && !drive.dead) {
+      last_sign_ = now;
+      tell([&] { device_.hear(now); });
     }
+    device_.age(now);
+    device_.bring(drive.cycle(toSeconds(kCycle)), false, now);
+    axis.readFeedback(now);
+    axis.update(now);
+    if (each_cycle) each_cycle();
+    axis.writeCommands(now);
+    if (outputs_leave) device_.send();
+    tell([&] { device_.exchange(now); });
+    device_.supervise(now);
   }
-  canopen::NodeConfig node_config_;
-  canopen::MasterConfig master_;
-  canopen::Node node_;
-  Time last_heartbeat_{};
+  /// What the device hears may change its health, of which the axis is told.
+  void tell(const std::function<void()>& news) {
+    const auto before = device_.health();
+    news();
+    if (before != device_.health()) axis.onHealthChange(before, now);
+  }
+
+  FakeDevice device_;
+  Time last_sign_{};  ///< of life
 
  public:
   Axis axis;

@@ -24,16 +24,16 @@ AxisConfig withMode(const std::string& mode, DriveProfile profile = testProfile(
 /// travels in the place of the target velocity.
 struct HeldAxis : Bench {
   explicit HeldAxis(AxisConfig config = withMode("interpolated_position"), double position = 12345)
-      : Bench(std::move(config), nodes()) {
+      : Bench(std::move(config), layout()) {
     drive.position = position;
     EXPECT_TRUE(boot() && enable());
   }
-  static canopen::NodeConfig nodes() {
-    canopen::NodeConfig node = test::nodeConfig();
-    node.pdos[1].entries[0] = {{0x60C1, 1}, 32, "interpolation_target"};
-    return node;
+  static test::Layout layout() {
+    test::Layout layout = test::testLayout();
+    layout.outputs[1].objects[0] = {{0x60C1, 1}, 32};
+    return layout;
   }
-  std::int32_t sent() const { return drive.target_velocity; }
+  std::int32_t sent() const { return static_cast<std::int32_t>(drive.received.at({0x60C1, 1})); }
   void lead(double value) {
     follow(value);
     run(milliseconds(40));
@@ -226,7 +226,7 @@ TEST(SwitchingTheMode, IsForgottenWithTheNode) {
   Bench bench;
   ASSERT_TRUE(bench.boot() && bench.enable());
   ASSERT_TRUE(bench.perform(ProcedureKind::set_mode, "csv").success);
-  bench.deliver(bench.drive.reboot());
+  bench.reboot();
   EXPECT_EQ(bench.axis.modeName(), "cyclic_position");
 }
 

@@ -20,7 +20,7 @@ using namespace std::chrono_literals;
 TEST(AxisStart, CountsProceduresUpAndForgetsHowTheLastOneEnded) {
   Bench bench;
   ASSERT_TRUE(bench.boot());
-  bench.deliver(bench.drive.fail(0x8611));
+  bench.fail(0x8611);
   bench.run(100ms);
   ASSERT_TRUE(bench.perform(ProcedureKind::disable).remark);
   const std::uint32_t first = bench.axis.procedure().id;
@@ -49,8 +49,8 @@ TEST(AxisStart, ARefusedStopEndsWhatRuns) {
   Bench bench;
   ASSERT_TRUE(bench.boot());
   ASSERT_TRUE(bench.perform(ProcedureKind::disable).success);
-  bench.dead = true;
-  ASSERT_TRUE(bench.runUntil([&] { return bench.node().health() == fieldbus::Health::lost; }));
+  bench.drive.dead = true;
+  ASSERT_TRUE(bench.runUntil([&] { return bench.device().health() == fieldbus::Health::lost; }));
   ASSERT_TRUE(bench.axis.start({ProcedureKind::recover, {}, 0.0}, bench.now).ok());
   bench.run(8ms);
   ASSERT_TRUE(bench.axis.procedure().running);
@@ -96,7 +96,7 @@ TEST(AxisStart, AProcedureWhoseNodeIsLostFailsBeforeTheNextOneBegins) {
   bench.drive.stuck.insert(S::ready);
   ASSERT_TRUE(bench.axis.start({ProcedureKind::enable, {}, 0.0}, bench.now).ok());
   bench.run(100ms);
-  bench.deliver(bench.drive.reboot());
+  bench.reboot();
   ASSERT_TRUE(bench.axis.procedure().running);
   bench.refusal(ProcedureKind::disable);
   EXPECT_FALSE(bench.axis.procedure().running);
@@ -137,8 +137,8 @@ TEST(AxisStart, ALostNodeIsNoticedThoughNobodyTells) {
   ASSERT_TRUE(bench.boot());
   ASSERT_TRUE(bench.perform(ProcedureKind::home).success);
   ASSERT_TRUE(bench.axis.state().homed);
-  bench.dead = true;
-  ASSERT_TRUE(bench.runUntil([&] { return bench.node().health() == fieldbus::Health::lost; }));
+  bench.drive.dead = true;
+  ASSERT_TRUE(bench.runUntil([&] { return bench.device().health() == fieldbus::Health::lost; }));
   bench.cycle();
   EXPECT_FALSE(bench.axis.state().homed) << "it may have been switched off and moved";
 }
@@ -174,10 +174,10 @@ TEST(AxisStart, LimitsThatWereOpenedForAnotherZeroAreClosedWhereThatIsCutOff) {
 }
 
 TEST(AxisObjects, ReportsNameTheRpdoThatBringsTheControlword) {
-  canopen::NodeConfig node = test::nodeConfig();
-  node.pdos[0].number = 2;
-  node.pdos[1].number = 1;
-  Bench bench(testConfig(), node);
+  test::Layout layout = test::testLayout();
+  std::swap(layout.outputs[0], layout.outputs[1]);
+  layout.outputs[1].name = "RPDO 2 (COB-ID 0x203)";
+  Bench bench(testConfig(), layout);
   ASSERT_TRUE(bench.boot());
   bench.drive.stuck.insert(S::on);
   EXPECT_THAT(bench.perform(ProcedureKind::enable).message,
@@ -186,21 +186,20 @@ TEST(AxisObjects, ReportsNameTheRpdoThatBringsTheControlword) {
 
 TEST(AxisObjects, ReportsTellThatNoRpdoHasLeft) {
   Bench bench;
-  bench.node().boot(bench.now, true);
-  for (int i = 0; i < 2000 && !bench.axis.state().feedback_valid; ++i)
-    test::cycleWithoutRpdos(bench);
+  bench.device().boot(bench.now, true);
+  for (int i = 0; i < 2000 && !bench.axis.state().feedback_valid; ++i) bench.cycleWithoutOutputs();
   ASSERT_TRUE(bench.axis.state().feedback_valid);
   bench.drive.state = S::on;  // by somebody else
   bench.drive.stuck = {S::on};
-  test::cycleWithoutRpdos(bench);
+  bench.cycleWithoutOutputs();
   ASSERT_TRUE(bench.axis.start({ProcedureKind::disable, {}, 0.0}, bench.now).ok());
-  for (int i = 0; i < 2000 && bench.axis.procedure().running; ++i) test::cycleWithoutRpdos(bench);
+  for (int i = 0; i < 2000 && bench.axis.procedure().running; ++i) bench.cycleWithoutOutputs();
   EXPECT_THAT(bench.axis.procedure().message, HasSubstr(", 0 frames so far; "));
   EXPECT_THAT(bench.axis.procedure().message,
               HasSubstr("; no RPDO has left: is the cycle running?"));
   bench.drive.stuck.clear();
   ASSERT_TRUE(bench.axis.start({ProcedureKind::enable, {}, 0.0}, bench.now).ok());
-  for (int i = 0; i < 2000 && bench.axis.procedure().running; ++i) test::cycleWithoutRpdos(bench);
+  for (int i = 0; i < 2000 && bench.axis.procedure().running; ++i) bench.cycleWithoutOutputs();
   EXPECT_THAT(bench.axis.procedure().message, HasSubstr("no RPDO has left for 1"));
 }
 
@@ -215,9 +214,9 @@ TEST(AxisObjects, AStatuswordIsKnownByItsIndexWhateverItsName) {
 }
 
 TEST(AxisObjects, AControlwordMustBeMapped) {
-  canopen::NodeConfig node = test::nodeConfig();
-  node.pdos[0].entries.erase(node.pdos[0].entries.begin());
-  EXPECT_THROW(Bench(testConfig(), node), std::invalid_argument);
+  test::Layout layout = test::testLayout();
+  layout.outputs[0].objects.erase(layout.outputs[0].objects.begin());
+  EXPECT_THROW(Bench(testConfig(), layout), std::invalid_argument);
 }
 
 TEST(AxisObjects, ATorqueThatNothingScalesIsUnknown) {

@@ -307,9 +307,7 @@ struct FollowingDrive : Bench {
         enabled = now;
       const bool shown = enabled != kNever && now - enabled >= mode_after;
       const auto word = static_cast<std::uint16_t>(drive.statusword() | (bit_12 ? 0x1000 : 0));
-      deliver(
-          can::Frame(0x183, {static_cast<std::uint8_t>(word), static_cast<std::uint8_t>(word >> 8),
-                             0x39, 0x30, 0x00, 0x00, static_cast<std::uint8_t>(shown ? 8 : 0)}));
+      bring({{{0x6041, 0}, word}, {{0x6064, 0}, 12345}, {{0x6061, 0}, shown ? 8u : 0u}});
     };
   }
   static AxisConfig config() {
@@ -367,7 +365,7 @@ TEST(AxisWarnings, AreToldOnceAndAreToldFromWhatStopsTheAxis) {
   ASSERT_TRUE(bench.perform(ProcedureKind::disable).success);
   ASSERT_TRUE(bench.enable());
   EXPECT_EQ(bench.axis.noticeCount(), 1u);
-  bench.deliver(bench.drive.fail(0x8611));
+  bench.fail(0x8611);
   bench.run(milliseconds(20));
   EXPECT_EQ(bench.axis.noticeCount(), 2u);
   EXPECT_FALSE(bench.axis.noticeWarns());

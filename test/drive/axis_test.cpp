@@ -18,9 +18,9 @@ using test::testConfig;
 using test::testProfile;
 
 TEST(Axis, IsRefusedWithoutAMappedStatusword) {
-  canopen::NodeConfig node = test::nodeConfig();
-  node.pdos[2].entries.erase(node.pdos[2].entries.begin());
-  EXPECT_THROW(Bench(testConfig(), node), std::invalid_argument);
+  test::Layout layout = test::testLayout();
+  layout.inputs[0].objects.erase(layout.inputs[0].objects.begin());
+  EXPECT_THROW(Bench(testConfig(), layout), std::invalid_argument);
 }
 
 TEST(Axis, KnowsNothingBeforeTheNodeIsReady) {
@@ -53,12 +53,11 @@ TEST(Axis, UntilToldItOnlyStopsADriveThatItFindsEnabled) {
 }
 
 TEST(Axis, APositionWithoutAStatuswordIsNotBelieved) {
-  canopen::NodeConfig node = test::nodeConfig();
-  node.pdos[2].entries = {{{0x6041, 0}, 16, "statusword"}};
-  node.pdos.push_back(
-      test::pdo(canopen::PdoDirection::tpdo, 3, 0x383, {{{0x6064, 0}, 32, "position_actual"}}));
-  Bench bench(testConfig(), node);
-  bench.each_cycle = [&] { bench.deliver(can::Frame(0x383, {0xE8, 0x03, 0x00, 0x00})); };
+  test::Layout layout = test::testLayout();
+  layout.inputs[0].objects = {{{0x6041, 0}, 16}};
+  layout.inputs.push_back(test::thirdInput({0x6064, 0}, 32));
+  Bench bench(testConfig(), layout);
+  bench.each_cycle = [&] { bench.bring({0x6064, 0}, 1000); };
   ASSERT_TRUE(bench.boot());
   bench.run(milliseconds(20));
   EXPECT_NEAR(bench.axis.state().position, 0.1, 1e-9);
@@ -162,7 +161,7 @@ TEST(Axis, AFaultDisablesForGoodAndSaysWhy) {
   Bench bench;
   ASSERT_TRUE(bench.boot());
   ASSERT_TRUE(bench.enable());
-  bench.deliver(bench.drive.fail(0x8611));
+  bench.fail(0x8611);
   bench.run(milliseconds(40));
   EXPECT_EQ(bench.axis.state().state, State::fault);
   EXPECT_FALSE(bench.axis.state().ready_for_motion);
@@ -200,7 +199,7 @@ TEST(Axis, OneUndecodableStatuswordSwitchesNothingOff) {
   bench.drive.silent = true;
   bench.cycle();
   // 0x0002: no state of the table; position and mode as before.
-  bench.deliver(can::Frame(0x183, {0x02, 0x02, 0x39, 0x30, 0x00, 0x00, 0x08}));
+  bench.bring({{{0x6041, 0}, 0x0202}, {{0x6064, 0}, 12345}, {{0x6061, 0}, 8}});
   bench.cycle();
   bench.drive.silent = false;
   bench.run(milliseconds(40));
@@ -250,11 +249,9 @@ TEST(Axis, SilentFeedbackQuickStopsAnEnabledAxis) {
 }
 
 TEST(Axis, FeedbackThatOnlyComesOnChangeDoesNotGetOld) {
-  canopen::NodeConfig node = test::nodeConfig();
-  for (canopen::PdoConfig& pdo : node.pdos) {
-    if (pdo.direction == canopen::PdoDirection::tpdo) pdo.transmission = 254;
-  }
-  Bench bench(testConfig(), node);
+  test::Layout layout = test::testLayout();
+  for (test::Group& input : layout.inputs) input.every_cycle = false;
+  Bench bench(testConfig(), layout);
   ASSERT_TRUE(bench.boot());
   ASSERT_TRUE(bench.enable());
   bench.drive.silent = true;
@@ -272,7 +269,7 @@ TEST(Axis, ARebootedDriveIsLeftDisabledAndForgotten) {
   ASSERT_TRUE(bench.perform(ProcedureKind::set_position, {}, 0.5).success);
   ASSERT_TRUE(bench.enable());
   ASSERT_TRUE(bench.axis.state().homed);
-  bench.deliver(bench.drive.reboot());
+  bench.reboot();
   EXPECT_FALSE(bench.axis.state().ready_for_motion);
   EXPECT_FALSE(bench.axis.state().homed);
   EXPECT_THAT(bench.axis.notice(), HasSubstr("stays disabled until recover or enable"));
@@ -290,7 +287,7 @@ TEST(Axis, ALostNodeFailsTheRunningProcedure) {
   bench.drive.stuck.insert(FakeDrive::S::ready);
   ASSERT_TRUE(bench.axis.start({ProcedureKind::enable, {}, 0}, bench.now).ok());
   bench.run(milliseconds(100));
-  bench.deliver(bench.drive.reboot());
+  bench.reboot();
   bench.cycle();
   EXPECT_FALSE(bench.axis.procedure().running);
   EXPECT_FALSE(bench.axis.procedure().success);
@@ -299,15 +296,15 @@ TEST(Axis, ALostNodeFailsTheRunningProcedure) {
 }
 
 TEST(Axis, ReadsByServiceDataObjectWhatIsNotMapped) {
-  canopen::NodeConfig node = test::nodeConfig();
-  node.pdos.pop_back();  // velocity, torque, error code
-  Bench bench(testConfig(), node);
+  test::Layout layout = test::testLayout();
+  layout.inputs.pop_back();  // velocity, torque, error code
+  Bench bench(testConfig(), layout);
   ASSERT_TRUE(bench.boot());
   ASSERT_TRUE(bench.enable());
   bench.drive.coast = 0;
   bench.run(milliseconds(300));
   EXPECT_NEAR(bench.axis.state().velocity, 0.0, 1e-9);
-  bench.deliver(bench.drive.fail(0x8611));
+  bench.fail(0x8611);
   bench.run(milliseconds(100));
   EXPECT_EQ(bench.axis.state().error_code, 0x8611);
 }

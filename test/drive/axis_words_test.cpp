@@ -68,7 +68,7 @@ TEST(AxisWords, WithoutFeedbackThatIsSaid) {
 TEST(AxisWords, AFaultIsNamedWithCauseAndRemedy) {
   Bench bench;
   ASSERT_TRUE(bench.boot() && bench.enable());
-  bench.deliver(bench.drive.fail(0x8611));
+  bench.fail(0x8611);
   bench.run(milliseconds(8));
   const std::string words =
       "shoulder (node 3): fault 0x8611 following error: the axis is blocked or the gains are too "
@@ -84,7 +84,7 @@ TEST(AxisWords, AFaultWithoutACodeSaysWhereToLook) {
   Bench bench;
   bench.drive.error_object = 0;
   ASSERT_TRUE(bench.boot());
-  static_cast<void>(bench.drive.fail(0x8611));  // its EMCY is lost
+  bench.drive.fail(0x8611);  // its EMCY is lost
   bench.run(milliseconds(100));
   EXPECT_EQ(bench.axis.faultText(),
             "shoulder (node 3): fault, no error code yet (603F:00 is 0 and no EMCY came); "
@@ -147,7 +147,7 @@ TEST(AxisWords, AStatuswordOfNoStateIsShownWithItsBits) {
   ASSERT_TRUE(bench.boot());
   bench.drive.silent = true;
   bench.cycle();
-  bench.deliver(can::Frame(0x183, {0x02, 0x02, 0x39, 0x30, 0x00, 0x00, 0x08}));
+  bench.bring({{{0x6041, 0}, 0x0202}, {{0x6064, 0}, 12345}, {{0x6061, 0}, 8}});
   bench.cycle();
   EXPECT_THAT(bench.axis.unknownText(),
               HasSubstr("shoulder (node 3): its state is unknown: statusword (6041:00) 0x0202 is "
@@ -176,13 +176,12 @@ TEST(AxisWords, AStatuswordOfZeroIsAStatusword) {
 }
 
 TEST(AxisWords, FeedbackIsMissingUntilBothStatuswordAndPositionHaveCome) {
-  canopen::NodeConfig node = test::nodeConfig();
-  node.pdos[2].entries = {{{0x6041, 0}, 16, "statusword"}};
-  node.pdos.push_back(
-      test::pdo(canopen::PdoDirection::tpdo, 3, 0x383, {{{0x6064, 0}, 32, "position_actual"}}));
-  Bench bench(testConfig(), node);
-  bench.node().boot(bench.now, true);
-  ASSERT_TRUE(bench.runUntil([&] { return bench.node().health() == fieldbus::Health::ready; }));
+  test::Layout layout = test::testLayout();
+  layout.inputs[0].objects = {{{0x6041, 0}, 16}};
+  layout.inputs.push_back(test::thirdInput({0x6064, 0}, 32));
+  Bench bench(testConfig(), layout);
+  bench.device().boot(bench.now, true);
+  ASSERT_TRUE(bench.runUntil([&] { return bench.device().health() == fieldbus::Health::ready; }));
   bench.run(milliseconds(8));
   ASSERT_FALSE(bench.axis.state().feedback_valid);
   EXPECT_THAT(bench.axis.unknownText(), Not(HasSubstr("finite")));

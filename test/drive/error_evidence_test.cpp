@@ -11,21 +11,21 @@ using test::HasSubstr;
 using test::milliseconds;
 using test::testConfig;
 
-canopen::NodeConfig withoutErrorCode() {
-  canopen::NodeConfig node = test::nodeConfig();
-  node.pdos.pop_back();  // velocity, torque, error code
-  return node;
+test::Layout withoutErrorCode() {
+  test::Layout layout = test::testLayout();
+  layout.inputs.pop_back();  // velocity, torque, error code
+  return layout;
 }
 
 TEST(ErrorEvidence, AFaultIsNamedByItsEmergencyAndNotByTheWarningThatStoodBefore) {
-  for (const canopen::NodeConfig& node : {test::nodeConfig(), withoutErrorCode()}) {
-    Bench bench(testConfig(), node);
+  for (const test::Layout& layout : {test::testLayout(), withoutErrorCode()}) {
+    Bench bench(testConfig(), layout);
     bench.drive.warning = true;
     bench.drive.error_object = 0x3220;
     ASSERT_TRUE(bench.boot());
     ASSERT_TRUE(bench.enable());
     bench.run(milliseconds(500));
-    bench.deliver(bench.drive.fail(0x8611));
+    bench.fail(0x8611);
     bench.run(milliseconds(200));
     EXPECT_EQ(bench.axis.state().error_code, 0x8611);
     EXPECT_THAT(bench.axis.faultText(), HasSubstr("fault 0x8611 following error"));
@@ -37,9 +37,9 @@ TEST(ErrorEvidence, AFaultIsNamedByTheErrorCodeThatCameWithIt) {
     Bench bench;
     ASSERT_TRUE(bench.boot());
     ASSERT_TRUE(bench.enable());
-    bench.deliver(FakeDrive::emergency(0x3220));  // it has never ended
+    bench.emergency(0x3220);  // it has never ended
     bench.run(before);
-    static_cast<void>(bench.drive.fail(0x8611));  // its own EMCY is lost
+    bench.drive.fail(0x8611);  // its own EMCY is lost
     bench.run(milliseconds(100));
     EXPECT_EQ(bench.axis.state().error_code, 0x8611) << before.count();
   }
@@ -48,22 +48,22 @@ TEST(ErrorEvidence, AFaultIsNamedByTheErrorCodeThatCameWithIt) {
 TEST(ErrorEvidence, ADriveThatTellsOnlyByServiceDataObjectIsAsked) {
   Bench bench(testConfig(), withoutErrorCode());
   ASSERT_TRUE(bench.boot());
-  static_cast<void>(bench.drive.fail(0x8611));
+  bench.drive.fail(0x8611);
   bench.run(milliseconds(100));
   EXPECT_EQ(bench.axis.state().error_code, 0x8611);
 }
 
 TEST(ErrorEvidence, WhatWasResetDoesNotNameTheNextFault) {
-  for (const canopen::NodeConfig& node : {test::nodeConfig(), withoutErrorCode()}) {
-    Bench bench(testConfig(), node);
+  for (const test::Layout& layout : {test::testLayout(), withoutErrorCode()}) {
+    Bench bench(testConfig(), layout);
     bench.drive.error_object = 0;
     ASSERT_TRUE(bench.boot());
-    bench.deliver(bench.drive.fail(0x8611));
+    bench.fail(0x8611);
     bench.run(milliseconds(200));
     ASSERT_EQ(bench.axis.state().error_code, 0x8611);
     ASSERT_TRUE(bench.perform(ProcedureKind::clear_faults).success);
     EXPECT_EQ(bench.axis.state().error_code, 0);
-    static_cast<void>(bench.drive.fail(0x7305));  // its EMCY is lost
+    bench.drive.fail(0x7305);  // its EMCY is lost
     bench.run(milliseconds(200));
     EXPECT_EQ(bench.axis.state().state, State::fault);
     EXPECT_EQ(bench.axis.state().error_code, 0);
@@ -73,11 +73,11 @@ TEST(ErrorEvidence, WhatWasResetDoesNotNameTheNextFault) {
 TEST(ErrorEvidence, ADriveThatTellsOnlyByServiceDataObjectIsAskedAboutEachFault) {
   Bench bench(testConfig(), withoutErrorCode());
   ASSERT_TRUE(bench.boot());
-  static_cast<void>(bench.drive.fail(0x8611));
+  bench.drive.fail(0x8611);
   bench.run(milliseconds(100));
   ASSERT_EQ(bench.axis.state().error_code, 0x8611);
   ASSERT_TRUE(bench.perform(ProcedureKind::clear_faults).success);
-  static_cast<void>(bench.drive.fail(0x7305));
+  bench.drive.fail(0x7305);
   bench.run(milliseconds(100));
   EXPECT_EQ(bench.axis.state().error_code, 0x7305);
 }
@@ -86,9 +86,9 @@ TEST(ErrorEvidence, WhatComesLongAfterTheFaultDoesNotRenameIt) {
   Bench bench;
   bench.drive.error_object = 0;
   ASSERT_TRUE(bench.boot());
-  bench.deliver(bench.drive.fail(0x8611));
+  bench.fail(0x8611);
   bench.run(milliseconds(700));
-  bench.deliver(FakeDrive::emergency(0x8130));
+  bench.emergency(0x8130);
   bench.run(milliseconds(100));
   EXPECT_EQ(bench.axis.state().error_code, 0x8611);
 }
@@ -97,9 +97,9 @@ TEST(ErrorEvidence, AnEmergencyWhileTheDriveStopsIsNewerThanTheErrorCode) {
   Bench bench;
   bench.drive.error_object = 0x3220;
   ASSERT_TRUE(bench.boot());
-  static_cast<void>(bench.drive.fail(0x8611));
+  bench.drive.fail(0x8611);
   bench.run(milliseconds(40));
-  bench.deliver(FakeDrive::emergency(0x8611));
+  bench.emergency(0x8611);
   bench.run(milliseconds(40));
   EXPECT_EQ(bench.axis.state().error_code, 0x8611);
 }
@@ -122,8 +122,8 @@ TEST(ErrorEvidence, AWarningIsNotNamedByAnEmergencyThatHasEnded) {
   Bench bench;
   bench.drive.error_object = 0x4210;
   ASSERT_TRUE(bench.boot());
-  bench.deliver(FakeDrive::emergency(0x8611));
-  bench.deliver(FakeDrive::emergency(0));
+  bench.emergency(0x8611);
+  bench.emergency(0);
   bench.drive.warning = true;
   bench.run(milliseconds(40));
   EXPECT_EQ(bench.axis.state().error_code, 0x4210);
@@ -133,7 +133,7 @@ TEST(ErrorEvidence, AnEmergencyThatNobodyEndsIsOverOnceTheErrorRegisterIsZero) {
   Bench bench;
   bench.drive.dictionary[{0x1001, 0}] = {0x09, 1};
   ASSERT_TRUE(bench.boot());
-  bench.deliver(FakeDrive::emergency(0x4210));
+  bench.emergency(0x4210);
   bench.run(milliseconds(5000));
   EXPECT_EQ(bench.axis.state().error_code, 0x4210);
   EXPECT_THAT(bench.axis.faultText(), HasSubstr("error reported 0x4210"));
@@ -148,7 +148,7 @@ TEST(ErrorEvidence, ADriveThatAnswersNothingIsAskedAgainLater) {
   bench.drive.dictionary[{0x1001, 0}] = {0, 1};
   ASSERT_TRUE(bench.boot());
   bench.drive.mute = true;
-  bench.deliver(FakeDrive::emergency(0x4210));
+  bench.emergency(0x4210);
   bench.run(milliseconds(6000));
   EXPECT_EQ(bench.axis.state().error_code, 0x4210);
   bench.drive.mute = false;
@@ -160,7 +160,7 @@ TEST(ErrorEvidence, WithoutAnErrorRegisterClearFaultsForgetsTheEmergency) {
   Bench bench;  // has no 1001h, and answers so
   ASSERT_TRUE(bench.boot());
   ASSERT_TRUE(bench.enable());
-  bench.deliver(FakeDrive::emergency(0x8611));
+  bench.emergency(0x8611);
   bench.run(milliseconds(5000));
   EXPECT_EQ(bench.axis.state().error_code, 0x8611);
   const ProcedureStatus& status = bench.perform(ProcedureKind::clear_faults);
@@ -175,10 +175,10 @@ TEST(ErrorEvidence, WithoutAnErrorRegisterClearFaultsForgetsTheEmergency) {
 TEST(ErrorEvidence, TheDriveItselfEndsAnEmergency) {
   Bench bench;
   ASSERT_TRUE(bench.boot());
-  bench.deliver(FakeDrive::emergency(0x8611));
+  bench.emergency(0x8611);
   bench.run(milliseconds(8));
   EXPECT_EQ(bench.axis.state().error_code, 0x8611);
-  bench.deliver(FakeDrive::emergency(0));
+  bench.emergency(0);
   bench.run(milliseconds(8));
   EXPECT_EQ(bench.axis.state().error_code, 0);
 }

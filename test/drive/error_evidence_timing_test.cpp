@@ -2,33 +2,36 @@
 // EMCY, 603Fh and 1001h to the millisecond, and what this program itself has caused.
 #include "../../src/drive/error_evidence.h"
 
-#include <algorithm>
-
-#include "canopen/sdo_client_fixture.h"
+#include "drive/objects_fixture.h"
 
 namespace cia402::drive {
 namespace {
 
 using namespace std::chrono_literals;
 
-/// The evidence alone, at node 1, against a scripted server and a clock of milliseconds.
-class ErrorEvidenceTiming : public canopen::test::SdoClientFixture {
+using test::FakeDrive;
+
+const FakeDrive::Key kRegister{0x1001, 0}, kCode{0x603F, 0};
+
+/// The evidence alone, against a drive that is asked for objects and a clock of milliseconds.
+class ErrorEvidenceTiming : public test::ObjectsFixture {
  protected:
   ErrorEvidenceTiming() {
     code_spec.id = {0x603F, 0};
     code_spec.name = "error_code";
+    drive.unanswered_reads = {kRegister};  // where the test does not say what it is
   }
   void emergency(std::uint16_t code, const std::string& excuse = {}) {
     fieldbus::Emergency message;
     message.code = code;
     evidence.onEmergency(message, excuse, now);
   }
-  /// A cycle in which the drive shows fault or not, and 603Fh by TPDO if it is given.
+  /// A cycle in which the drive shows fault or not, and tells 603Fh if that is given.
   void show(bool faulted, std::optional<std::uint16_t> told = {}) {
     ErrorEvidence::Look look;
     look.faulted = faulted;
     look.told = told;
-    evidence.update(look, client, now);
+    evidence.update(look, objects, now);
   }
   /// A cycle in which 603Fh can only be read; what was asked before is answered first.
   void showUntold(bool faulted) {
@@ -36,22 +39,25 @@ class ErrorEvidenceTiming : public canopen::test::SdoClientFixture {
     look.faulted = faulted;
     look.by_sdo = &code_spec;
     run();
-    evidence.update(look, client, now);
+    evidence.update(look, objects, now);
   }
-  /// Lets the client work. @return how often 1001h was asked
-  long looks() {
+  /// The error register holds `value` from now on.
+  void setRegister(std::uint8_t value) {
+    drive.dictionary[kRegister] = {value, 1};
+    drive.unanswered_reads.clear();
+  }
+  /// Has the drive asked. @return how often for 1001h
+  int looks() {
+    drive.reads.clear();
     run();
-    const auto sent = peer.take();
-    return std::count(sent.begin(), sent.end(), kAskRegister);
+    return drive.reads[kRegister];
   }
-  static constexpr char kAskRegister[] = "601 40 01 10 00 00 00 00 00";
-  static constexpr char kAskCode[] = "601 40 3F 60 00 00 00 00 00";
   ObjectSpec code_spec;
   ErrorEvidence evidence;
 };
 
 TEST_F(ErrorEvidenceTiming, TheErrorRegisterIsReadASecondAfterTheEmergencyAndAfterEachAnswer) {
-  peer.on(kAskRegister, "581 4F 01 10 00 01 00 00 00");
+  setRegister(1);
   show(false);
   emergency(0x4210);
   now += 999ms;
@@ -64,7 +70,7 @@ TEST_F(ErrorEvidenceTiming, TheErrorRegisterIsReadASecondAfterTheEmergencyAndAft
   now += 999ms;
   show(false);
   EXPECT_EQ(looks(), 0);
-  peer.replace(kAskRegister, "581 4F 01 10 00 00 00 00 00");
+  setRegister(0);
   now += 1ms;
   show(false);
   EXPECT_EQ(looks(), 1);
@@ -86,7 +92,7 @@ TEST_F(ErrorEvidenceTiming, EachEmergencyPutsOffTheLookAtTheErrorRegister) {
 }
 
 TEST_F(ErrorEvidenceTiming, AnAnswerFromBeforeTheEmergencyDoesNotEndIt) {
-  peer.on(kAskRegister, "581 4F 01 10 00 00 00 00 00");
+  setRegister(0);
   emergency(0x4210);
   now += 1s;
   show(false);
@@ -97,7 +103,8 @@ TEST_F(ErrorEvidenceTiming, AnAnswerFromBeforeTheEmergencyDoesNotEndIt) {
 }
 
 TEST_F(ErrorEvidenceTiming, ADriveThatHasNoErrorRegisterIsAskedOnce) {
-  peer.on(kAskRegister, "581 80 01 10 00 00 00 02 06");
+  drive.unanswered_reads.clear();
+  drive.read_aborts[kRegister] = 0x06020000;
   emergency(0x4210);
   long asked = 0;
   for (int i = 0; i < 30; ++i) {
@@ -110,15 +117,11 @@ TEST_F(ErrorEvidenceTiming, ADriveThatHasNoErrorRegisterIsAskedOnce) {
 }
 
 TEST_F(ErrorEvidenceTiming, ADriveThatDidNotAnswerIsAskedAgainAfterTenSeconds) {
-  const char ask_device_type[] =
-      "601 40 00 10 00 00 00 00 00";  // the client does before it asks anew
-  peer.on(ask_device_type, "581 43 00 10 00 92 01 02 00");
   emergency(0x4210);
   now += 1s;
   show(false);
   ASSERT_EQ(looks(), 1);
-  while (!client.idle()) wait(500);
-  peer.take();
+  while (!objects.idle()) wait(500ms);
   show(false);
   now += 9999ms;
   show(false);
@@ -175,7 +178,7 @@ TEST_F(ErrorEvidenceTiming, AnEmergencyNamesTheFaultUpToHalfASecondAfterIt) {
 }
 
 TEST_F(ErrorEvidenceTiming, AnEmergencyNamesTheFaultThatComesUpToATenthOfASecondLater) {
-  peer.on(kAskCode, "581 4B 3F 60 00 11 86 00 00");
+  drive.dictionary[kCode] = {0x8611, 2};
   for (const auto& [before, code] :
        {std::make_pair(100ms, 0x4210), std::make_pair(101ms, 0x8611)}) {
     evidence = ErrorEvidence();
@@ -198,7 +201,7 @@ TEST_F(ErrorEvidenceTiming, WhereNothingCameWithAFaultTheLastEmergencyNamesIt) {
 }
 
 TEST_F(ErrorEvidenceTiming, TheErrorCodeIsReadAnewForAFaultThatFollowsOneThatWentByItself) {
-  peer.on(kAskCode, "581 4B 3F 60 00 11 86 00 00").on(kAskCode, "581 4B 3F 60 00 05 73 00 00");
+  drive.next_reads[kCode] = {0x8611, 0x7305};
   showUntold(true);
   showUntold(true);
   EXPECT_EQ(evidence.code(), 0x8611);
@@ -212,8 +215,7 @@ TEST_F(ErrorEvidenceTiming, TheErrorCodeIsReadAnewForAFaultThatFollowsOneThatWen
 TEST_F(ErrorEvidenceTiming, AnAnswerAboutAFaultThatIsOverDoesNotNameTheNextOne) {
   for (const bool reset : {false, true}) {
     evidence = ErrorEvidence();
-    peer.replace(kAskCode, "581 4B 3F 60 00 11 86 00 00")
-        .on(kAskCode, "581 4B 3F 60 00 05 73 00 00");
+    drive.next_reads[kCode] = {0x8611, 0x7305};
     showUntold(true);  // asks; the answer to that comes with the next cycle
     if (reset) evidence.forget();
     if (!reset) showUntold(false);
@@ -224,7 +226,7 @@ TEST_F(ErrorEvidenceTiming, AnAnswerAboutAFaultThatIsOverDoesNotNameTheNextOne) 
 }
 
 TEST_F(ErrorEvidenceTiming, AResetForgetsTheErrorCodeThatWasRead) {
-  peer.on(kAskCode, "581 4B 3F 60 00 11 86 00 00").on(kAskCode, "581 4B 3F 60 00 05 73 00 00");
+  drive.next_reads[kCode] = {0x8611, 0x7305};
   showUntold(true);
   showUntold(true);
   ASSERT_EQ(evidence.code(), 0x8611);
@@ -236,13 +238,11 @@ TEST_F(ErrorEvidenceTiming, AResetForgetsTheErrorCodeThatWasRead) {
 }
 
 TEST_F(ErrorEvidenceTiming, AnErrorCodeOfMoreThanEightBytesIsNone) {
-  peer.on(kAskCode, "581 41 3F 60 00 09 00 00 00")
-      .on("601 60 00 00 00 00 00 00 00", "581 00 11 86 00 00 00 00 00")
-      .on("601 70 00 00 00 00 00 00 00", "581 1B 00 00 00 00 00 00 00");
+  drive.dictionary[kCode] = {0x8611, 9};
   showUntold(true);
   showUntold(true);
-  ASSERT_TRUE(client.idle());
-  ASSERT_EQ(client.counters().completed, 1U);
+  ASSERT_TRUE(objects.idle());
+  ASSERT_EQ(objects.completed(), 1U);
   EXPECT_EQ(evidence.code(), 0);
 }
 

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -9,30 +10,45 @@
 #include <utility>
 #include <vector>
 
-#include "cia402_driver/can/bus.h"
-#include "cia402_driver/common/time.h"
+#include "cia402_driver/fieldbus/bytes.h"
+#include "cia402_driver/fieldbus/object.h"
 
 namespace cia402::drive::test {
 
-/// A small CiA 402 drive at node 3, written from the standard's tables and independent of the code
-/// under test. It sees only frames. RPDO1 203h: controlword, mode, target position; RPDO2 303h:
-/// target velocity, target torque; TPDO1 183h: statusword, position, mode; TPDO2 283h: velocity,
-/// torque, error code. Device units: 0.0001 rad, 0.0001 rad/s, 0.001 of the rated torque.
-class FakeDrive : public can::Sink {
+/// What an object holds when it travels in a cycle.
+struct Value {
+  fieldbus::ObjectId object;
+  std::uint64_t raw = 0;
+};
+using Values = std::vector<Value>;
+
+/// What a drive says when it is asked to give or to take the value of an object.
+struct Answer {
+  std::uint32_t abort = 0;  ///< why it refuses; 0: it does not
+  fieldbus::Bytes data;     ///< what was read
+};
+
+/// A small CiA 402 drive, written from the standard's tables and independent of the code under
+/// test. It knows no bus, only values: those of the objects that reach it and leave it in each
+/// cycle, and those that it is asked for beside that. Device units: 0.0001 rad, 0.0001 rad/s, 0.001
+/// of the rated torque.
+class FakeDrive {
  public:
+  using Key = std::pair<unsigned, unsigned>;  ///< index, sub-index
+
   enum class S { start, disabled, ready, on, enabled, quick, reaction, fault };
 
   // What the test may turn.
   S state = S::disabled;
   std::set<S> stuck;          ///< states that no command leaves
   std::vector<S> shows;       ///< one a cycle, whatever it does
-  bool mute = false;          ///< answers no SDO, obeys no controlword
+  bool dead = false;          ///< is off: nothing reaches it, nothing comes from it
+  bool mute = false;          ///< answers for no object, obeys no controlword
   double position = 12345.0;  ///< counts
   double velocity = 0.0;      ///< counts/s
   double coast = 0.0;         ///< counts/s that nothing stops
   int mode_delay = 0;         ///< cycles until 6061h follows 6060h, shows -1 meanwhile
   bool forgets_mode = false;  ///< takes a mode when it is commanded in operation enabled only
-  bool mode_by_sdo = false;   ///< 6060h is in no RPDO: something else has its place
   int acknowledge_delay = 0;  ///< cycles
   bool acknowledges = true;
   bool warning = false, voltage = true, remote = true;
@@ -40,15 +56,17 @@ class FakeDrive : public can::Sink {
   bool keeps_attained = false;  ///< statusword bit 12 survives leaving the homing mode
   bool never_homes = false, homing_fails = false, homing_moves = true;
   int homing_cycles = 50;
-  std::int32_t homing_speed = -1000;     ///< counts/s
-  bool fault_persists = false;           ///< comes back right after a reset
-  bool quick_stop_ends = true;           ///< transition 12 by itself
-  double quick_stop_deceleration = 1e6;  ///< counts/s^2
-  bool silent = false;                   ///< sends no PDO
-  std::map<std::pair<unsigned, unsigned>, std::uint32_t> aborts;       ///< SDO writes refused
-  std::map<std::pair<unsigned, unsigned>, std::uint32_t> read_aborts;  ///< SDO reads refused
-  std::set<std::pair<unsigned, unsigned>> unanswered;  ///< SDO writes taken in silence
-  std::map<std::pair<unsigned, unsigned>, std::pair<std::uint64_t, unsigned>> dictionary;
+  std::int32_t homing_speed = -1000;         ///< counts/s
+  bool fault_persists = false;               ///< comes back right after a reset
+  bool quick_stop_ends = true;               ///< transition 12 by itself
+  double quick_stop_deceleration = 1e6;      ///< counts/s^2
+  bool silent = false;                       ///< gives nothing in its cycles
+  std::map<Key, std::uint32_t> aborts;       ///< writes refused
+  std::map<Key, std::uint32_t> read_aborts;  ///< reads refused
+  std::set<Key> unanswered;                  ///< writes taken in silence
+  std::set<Key> unanswered_reads;
+  std::map<Key, std::pair<std::uint64_t, unsigned>> dictionary;  ///< value, bytes
+  std::map<Key, std::deque<std::uint64_t>> next_reads;  ///< what the next reads find there instead
 
   // What the test may look at.
   std::uint16_t controlword = 0;
@@ -56,8 +74,9 @@ class FakeDrive : public can::Sink {
   std::int32_t target_position = 0, target_velocity = 0, accepted_target = 0;
   std::int16_t target_torque = 0;
   std::vector<std::uint16_t> controlwords;                 ///< each change
-  std::vector<std::pair<unsigned, std::uint64_t>> writes;  ///< SDO writes: index, value
-  std::map<std::pair<unsigned, unsigned>, int> reads;      ///< SDO reads of each object
+  std::vector<std::pair<unsigned, std::uint64_t>> writes;  ///< by request: index, value
+  std::map<Key, int> reads;                                ///< requests for each object
+  std::map<fieldbus::ObjectId, std::uint64_t> received;    ///< what its cycles brought last
   std::vector<std::int32_t> accepted;  ///< set-points taken by the edge of bit 4
   int homings = 0, resets = 0;
   bool operational = false;
@@ -68,7 +87,6 @@ class FakeDrive : public can::Sink {
 
   FakeDrive() {
     dictionary[{0x1000, 0}] = {0x00020192, 4};
-    for (unsigned sub = 1; sub <= 4; ++sub) dictionary[{0x1018, sub}] = {sub, 4};
     dictionary[{0x607C, 0}] = {0, 4};
     dictionary[{0x605A, 0}] = {2, 2};
     dictionary[{0x603F, 0}] = {0, 2};
@@ -76,65 +94,76 @@ class FakeDrive : public can::Sink {
     dictionary[{0x606C, 0}] = {0, 4};
   }
 
-  bool send(const can::Frame& frame) override {
-    inbox_.push_back(frame);
-    return true;
+  /// What the master sends in a cycle: it counts from the next one on.
+  void receive(const Values& values) {
+    if (dead || !operational) return;
+    for (const Value& value : values) received[value.object] = value.raw;
   }
-  /// Handles what the master has sent. @return the frames that it sends back.
-  std::vector<can::Frame> answer() {
-    while (!inbox_.empty()) {
-      const can::Frame frame = inbox_.front();
-      inbox_.pop_front();
-      if (frame.id == 0x000) onNmt(frame);
-      if (frame.id == 0x603) onSdo(frame);
-      if (frame.id == 0x203 && operational) pending_[0] = frame;
-      if (frame.id == 0x303 && operational) pending_[1] = frame;
-    }
-    return std::exchange(outbox_, {});
-  }
-  /// SYNC: applies the last RPDOs, moves, and gives the TPDOs.
-  std::vector<can::Frame> sync(double dt) {
-    if (!operational) return {};
-    if (pending_[0].size == 7) applyFirst(pending_[0]);
-    if (pending_[1].size == 6) applySecond(pending_[1]);
+  /// A cycle: applies what was received last, moves, and gives its feedback.
+  Values cycle(double dt) {
+    if (dead || !operational) return {};
+    apply();
     step(dt);
     ++cycles_;
     if (silent) return {};
-    const std::uint16_t word = statusword();
     const auto where = static_cast<std::uint32_t>(static_cast<std::int32_t>(position));
     const auto speed = static_cast<std::uint32_t>(static_cast<std::int32_t>(velocity));
+    const auto shown = static_cast<std::uint8_t>(mode);
     const std::uint16_t code = error_object.value_or(error);
     dictionary[{0x603F, 0}].first = code;
-    dictionary[{0x6061, 0}].first = static_cast<std::uint8_t>(mode);
+    dictionary[{0x6061, 0}].first = shown;
     dictionary[{0x606C, 0}].first = speed;
-    return {can::Frame(0x183, {byte(word, 0), byte(word, 1), byte(where, 0), byte(where, 1),
-                               byte(where, 2), byte(where, 3), static_cast<std::uint8_t>(mode)}),
-            can::Frame(0x283, {byte(speed, 0), byte(speed, 1), byte(speed, 2), byte(speed, 3), 0, 0,
-                               byte(code, 0), byte(code, 1)})};
+    return {{{0x6041, 0}, statusword()}, {{0x6064, 0}, where}, {{0x6061, 0}, shown},
+            {{0x606C, 0}, speed},        {{0x6077, 0}, 0},     {{0x603F, 0}, code}};
   }
-  can::Frame heartbeat() const {
-    return can::Frame(0x703, {static_cast<std::uint8_t>(operational ? 0x05 : 0x7F)});
+  /// Somebody asks for an object beside the cycle. @return nothing: it does not answer
+  std::optional<Answer> read(fieldbus::ObjectId object) {
+    if (dead || mute) return {};
+    const Key key{object.index, object.subindex};
+    ++reads[key];
+    if (unanswered_reads.count(key) != 0) return {};
+    if (read_aborts.count(key) != 0) return Answer{read_aborts[key], {}};
+    const bool communication = object.index >= 0x1010 && object.index < 0x1C00;
+    if (dictionary.count(key) == 0 && !communication) return Answer{0x06020000, {}};
+    auto [value, size] =
+        dictionary.count(key) != 0 ? dictionary[key] : std::make_pair(std::uint64_t{0}, 4u);
+    if (std::deque<std::uint64_t>& next = next_reads[key]; !next.empty()) {
+      value = next.front();
+      next.pop_front();
+    }
+    fieldbus::Bytes data = fieldbus::toBytes(value, std::min(size, 8u));
+    data.resize(size);
+    return Answer{0, data};
   }
-  /// Fault reaction, EMCY; the fault itself follows.
-  can::Frame fail(std::uint16_t code) {
+  std::optional<Answer> write(fieldbus::ObjectId object, const fieldbus::Bytes& data) {
+    if (dead || mute) return {};
+    const Key key{object.index, object.subindex};
+    if (aborts.count(key) != 0) return Answer{aborts[key], {}};
+    const std::uint64_t value = fieldbus::toUnsigned(data);
+    dictionary[key] = {value, static_cast<unsigned>(data.size())};
+    writes.emplace_back(object.index, value);
+    if (object.index == 0x6060) {
+      commanded_mode = static_cast<std::int8_t>(value);
+      mode_written_ = true;
+    }
+    if (unanswered.count(key) != 0) return {};
+    return Answer{};
+  }
+  /// Fault reaction; the fault itself follows.
+  void fail(std::uint16_t code) {
     state = S::reaction;
     reaction_ = 3;
     error = code;
-    return emergency(code);
   }
-  static can::Frame emergency(std::uint16_t code) {
-    return can::Frame(0x083, {byte(code, 0), byte(code, 1), 0x21, 0, 0, 0, 0, 0});
-  }
-  /// Power cycle: everything is forgotten. @return the boot-up message.
-  can::Frame reboot() {
+  /// Power cycle: everything is forgotten.
+  void reboot() {
     state = S::disabled;
     operational = false;
     mode = commanded_mode = 0;
     controlword = last_ = 0;
     velocity = coast = 0;
     error = 0;
-    pending_[0] = pending_[1] = can::Frame();
-    return can::Frame(0x703, {0x00});
+    received.clear();
   }
   std::uint16_t statusword() const {
     static const std::map<S, unsigned> codes = {
@@ -157,72 +186,22 @@ class FakeDrive : public can::Sink {
   }
 
  private:
+  /// What a cycle has brought of an object, or `otherwise`.
   template <typename T>
-  static std::uint8_t byte(T value, unsigned n) {
-    return static_cast<std::uint8_t>(static_cast<std::uint64_t>(value) >> (8 * n));
-  }
-  static std::uint32_t dword(const can::Frame& frame, unsigned at) {
-    return static_cast<std::uint32_t>(frame.data[at] | frame.data[at + 1] << 8 |
-                                      frame.data[at + 2] << 16) |
-           static_cast<std::uint32_t>(frame.data[at + 3]) << 24;
+  T brought(fieldbus::ObjectId object, T otherwise) const {
+    const auto found = received.find(object);
+    return found == received.end() ? otherwise : static_cast<T>(found->second);
   }
 
-  void onNmt(const can::Frame& frame) {
-    if (frame.data[1] != 0 && frame.data[1] != 3) return;
-    if (frame.data[0] == 0x01) operational = true;
-    if (frame.data[0] == 0x80 || frame.data[0] == 0x02) operational = false;
-    if (frame.data[0] == 0x81 || frame.data[0] == 0x82) outbox_.push_back(reboot());
-    if (frame.data[0] == 0x01) outbox_.push_back(heartbeat());
-  }
-
-  void onSdo(const can::Frame& frame) {
-    if (mute) return;
-    const unsigned index = static_cast<unsigned>(frame.data[1] | frame.data[2] << 8);
-    const unsigned sub = frame.data[3];
-    const auto key = std::make_pair(index, sub);
-    const auto reply = [&](std::uint8_t command, std::uint32_t data) {
-      outbox_.push_back(
-          can::Frame(0x583, {command, frame.data[1], frame.data[2], frame.data[3], byte(data, 0),
-                             byte(data, 1), byte(data, 2), byte(data, 3)}));
-    };
-    if (frame.data[0] == 0x40) {
-      ++reads[key];
-      if (read_aborts.count(key) != 0) return reply(0x80, read_aborts[key]);
-      if (dictionary.count(key) == 0 && index >= 0x1010 && index < 0x1C00) {
-        const bool wide = (index >= 0x1600 && index < 0x1800) || index >= 0x1A00;
-        dictionary[key] = {0, sub == 0 ? 1u : wide || sub == 1 ? 4u : sub == 2 ? 1u : 2u};
-      }
-      if (dictionary.count(key) == 0) return reply(0x80, 0x06020000);
-      const auto& [value, size] = dictionary[key];
-      return reply(static_cast<std::uint8_t>(0x43 | (4 - size) << 2),
-                   static_cast<std::uint32_t>(value));
-    }
-    if ((frame.data[0] & 0xE3) == 0x23) {
-      if (aborts.count(key) != 0) return reply(0x80, aborts[key]);
-      const unsigned size = 4 - ((frame.data[0] >> 2) & 3u);
-      const std::uint64_t mask = (std::uint64_t{1} << (8 * size)) - 1;
-      dictionary[key] = {dword(frame, 4) & mask, size};
-      writes.emplace_back(index, dword(frame, 4) & mask);
-      if (index == 0x6060) {
-        commanded_mode = static_cast<std::int8_t>(frame.data[4]);
-        mode_written_ = true;
-      }
-      if (unanswered.count(key) != 0) return;
-      return reply(0x60, 0);
-    }
-  }
-
-  void applyFirst(const can::Frame& frame) {
-    const std::uint16_t before =
-        std::exchange(controlword, static_cast<std::uint16_t>(frame.data[0] | frame.data[1] << 8));
-    if (!mode_by_sdo) commanded_mode = static_cast<std::int8_t>(frame.data[2]);
-    target_position = static_cast<std::int32_t>(dword(frame, 3));
+  void apply() {
+    if (received.empty()) return;
+    const std::uint16_t before = std::exchange(controlword, brought({0x6040, 0}, controlword));
+    commanded_mode = brought({0x6060, 0}, commanded_mode);
+    target_position = brought({0x607A, 0}, target_position);
+    target_velocity = brought({0x60FF, 0}, target_velocity);
+    target_torque = brought({0x6071, 0}, target_torque);
     if (!heard_ || before != controlword) controlwords.push_back(controlword);
     heard_ = true;
-  }
-  void applySecond(const can::Frame& frame) {
-    target_velocity = static_cast<std::int32_t>(dword(frame, 0));
-    target_torque = static_cast<std::int16_t>(frame.data[4] | frame.data[5] << 8);
   }
 
   void step(double dt) {
@@ -288,7 +267,7 @@ class FakeDrive : public can::Sink {
     }
   }
 
-  /// What an RPDO repeats is no command; an SDO is one each time.
+  /// What each cycle repeats is no command; a write by request is one each time.
   bool modeIsCommanded() {
     const bool changed = std::exchange(seen_mode_, commanded_mode) != commanded_mode;
     return std::exchange(mode_written_, false) || changed;
@@ -371,9 +350,6 @@ class FakeDrive : public can::Sink {
     }
   }
 
-  std::deque<can::Frame> inbox_;
-  std::vector<can::Frame> outbox_;
-  can::Frame pending_[2];
   std::uint16_t last_ = 0;
   int reaction_ = 0, mode_wait_ = 0, wait_ = 0;
   std::size_t cycles_ = 0;

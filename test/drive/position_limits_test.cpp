@@ -194,7 +194,7 @@ TEST(PositionLimits, AreWrittenAgainToADriveThatHasForgottenThem) {
   World world;
   ASSERT_TRUE(world.boot());
   world.run(milliseconds(100));
-  world.deliver(world.drive.reboot());
+  world.reboot();
   world.hold(0, 0);
   ASSERT_TRUE(world.perform(ProcedureKind::recover).success);
   world.run(milliseconds(100));

@@ -26,7 +26,7 @@ TEST(PowerCycle, IsWhatASavedDriveNeedsBeforeItIsEnabledWhereItsProfileSaysSo) {
     EXPECT_THAT(status.message, HasSubstr("switch it off and on"));
     EXPECT_TRUE(bench.drive.controlwords.empty());
     EXPECT_EQ(bench.drive.state, FakeDrive::S::disabled);
-    bench.deliver(bench.drive.reboot());
+    bench.reboot();
     ASSERT_TRUE(bench.runUntil([&] { return bench.axis.state().feedback_valid; }));
     EXPECT_TRUE(bench.perform(ProcedureKind::enable).success) << bench.axis.procedure().message;
   }

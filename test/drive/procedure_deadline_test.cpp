@@ -61,7 +61,7 @@ class Deadline : public testing::TestWithParam<Case> {
       bench.each_cycle = nullptr;
     }
     if (GetParam().begins_faulted) {
-      bench.deliver(bench.drive.fail(0x8611));
+      bench.fail(0x8611);
       bench.run(40ms);
     }
   }

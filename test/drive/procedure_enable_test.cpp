@@ -113,9 +113,9 @@ TEST(EnableProcedure, AModeThatNeverShowsFailsBeforeThePowerStageIsOn) {
 }
 
 TEST(EnableProcedure, WritesTheModeBySdoWhereItIsNotMapped) {
-  canopen::NodeConfig node = test::nodeConfig();
-  node.pdos[2].entries.pop_back();  // 6061h
-  Bench bench(testConfig(), node);
+  test::Layout layout = test::testLayout();
+  layout.inputs[0].objects.pop_back();  // 6061h
+  Bench bench(testConfig(), layout);
   ASSERT_TRUE(bench.boot());
   EXPECT_TRUE(bench.enable()) << "6061h is read by SDO";
   EXPECT_EQ(bench.axis.state().mode->name, "cyclic_position");
@@ -124,7 +124,7 @@ TEST(EnableProcedure, WritesTheModeBySdoWhereItIsNotMapped) {
 TEST(EnableProcedure, RefusesAFaultedAxisWithTheRemedy) {
   Bench bench;
   ASSERT_TRUE(bench.boot());
-  bench.deliver(bench.drive.fail(0x8611));
+  bench.fail(0x8611);
   bench.run(milliseconds(40));
   EXPECT_THAT(bench.refusal(ProcedureKind::enable),
               HasSubstr("cannot enable: shoulder (node 3): fault 0x8611 following error"));
@@ -136,7 +136,7 @@ TEST(EnableProcedure, AFaultOnTheWayFailsIt) {
   bench.drive.stuck.insert(FakeDrive::S::ready);
   ASSERT_TRUE(bench.axis.start({ProcedureKind::enable, {}, 0}, bench.now).ok());
   bench.run(milliseconds(100));
-  bench.deliver(bench.drive.fail(0x3220));
+  bench.fail(0x3220);
   ASSERT_TRUE(bench.runUntil([&] { return !bench.axis.procedure().running; }));
   EXPECT_FALSE(bench.axis.procedure().success);
   EXPECT_THAT(bench.axis.procedure().message, HasSubstr("shoulder (node 3): fault 0x3220"));

@@ -15,7 +15,7 @@ using test::testConfig;
 using test::testProfile;
 
 void fault(Bench& bench, std::uint16_t code = 0x8611) {
-  bench.deliver(bench.drive.fail(code));
+  bench.fail(code);
   bench.run(milliseconds(40));
 }
 
@@ -39,7 +39,7 @@ TEST(ClearFaultsProcedure, WaitsForTheFaultReactionToEnd) {
   Bench bench;
   ASSERT_TRUE(bench.boot());
   ASSERT_TRUE(bench.enable());
-  bench.deliver(bench.drive.fail(0x8611));
+  bench.fail(0x8611);
   bench.cycle();
   EXPECT_EQ(bench.drive.state, FakeDrive::S::reaction);
   EXPECT_TRUE(bench.perform(ProcedureKind::clear_faults).success);
@@ -168,19 +168,19 @@ TEST(RecoverProcedure, BootsALostNodeAgain) {
   Bench bench;
   ASSERT_TRUE(bench.boot());
   ASSERT_TRUE(bench.enable());
-  bench.dead = true;
-  ASSERT_TRUE(bench.runUntil([&] { return bench.node().health() == fieldbus::Health::lost; }));
+  bench.drive.dead = true;
+  ASSERT_TRUE(bench.runUntil([&] { return bench.device().health() == fieldbus::Health::lost; }));
   bench.drive.reboot();  // power is back, the boot-up message got lost
-  bench.dead = false;
+  bench.drive.dead = false;
   const ProcedureStatus& status = bench.perform(ProcedureKind::recover);
   EXPECT_TRUE(status.success) << status.message;
-  EXPECT_EQ(bench.node().health(), fieldbus::Health::ready);
+  EXPECT_EQ(bench.device().health(), fieldbus::Health::ready);
   EXPECT_TRUE(bench.axis.state().ready_for_motion);
 }
 
 TEST(RecoverProcedure, SaysWhyANodeDoesNotBoot) {
   Bench bench;
-  bench.dead = true;
+  bench.drive.dead = true;
   const ProcedureStatus& status = bench.perform(ProcedureKind::recover);
   EXPECT_FALSE(status.success);
   EXPECT_THAT(status.message, HasSubstr("shoulder (node 3): the node did not boot"));

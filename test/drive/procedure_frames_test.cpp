@@ -6,7 +6,6 @@ namespace cia402::drive {
 namespace {
 
 using test::Bench;
-using test::cycleWithoutRpdos;
 using test::FakeDrive;
 using test::HasSubstr;
 using test::testConfig;
@@ -22,8 +21,8 @@ struct WireBench : Bench {
   bool reach(const std::string& step) {
     return runUntil([&] { return axis.procedure().step == step; });
   }
-  void runWithoutRpdos(Duration time) {
-    for (const Time end = now + time; now < end;) cycleWithoutRpdos(*this);
+  void runWithoutOutputs(Duration time) {
+    for (const Time end = now + time; now < end;) cycleWithoutOutputs();
   }
   const std::string& step() const { return axis.procedure().step; }
   bool ends() {
@@ -41,10 +40,10 @@ AxisConfig homes(DriveProfile profile = testProfile()) {
 TEST(ProcedureFrames, AFaultResetNeedsBitSevenLowOnTheWireFirst) {
   WireBench bench;
   ASSERT_TRUE(bench.boot());
-  bench.deliver(bench.drive.fail(0x8611));
+  bench.fail(0x8611);
   bench.run(100ms);
   bench.begin(ProcedureKind::clear_faults);
-  bench.runWithoutRpdos(3s);
+  bench.runWithoutOutputs(3s);
   EXPECT_FALSE(bench.axis.procedure().running);
   EXPECT_THAT(bench.axis.procedure().message,
               HasSubstr("no RPDO has left for 2 s; is the cycle running?"));
@@ -57,7 +56,7 @@ TEST(ProcedureFrames, AHomingStartsOnceBitFourWasLow) {
   ASSERT_TRUE(bench.boot());
   bench.begin(ProcedureKind::home);
   ASSERT_TRUE(bench.reach("preparing the start"));
-  bench.runWithoutRpdos(400ms);
+  bench.runWithoutOutputs(400ms);
   EXPECT_EQ(bench.step(), "preparing the start");
   EXPECT_TRUE(bench.ends()) << bench.axis.procedure().message;
   EXPECT_EQ(bench.drive.homings, 1);
@@ -68,7 +67,7 @@ TEST(ProcedureFrames, AHomingIsOverOnceBitFourIsLowAgain) {
   ASSERT_TRUE(bench.boot());
   bench.begin(ProcedureKind::home);
   ASSERT_TRUE(bench.reach("home found"));
-  bench.runWithoutRpdos(400ms);
+  bench.runWithoutOutputs(400ms);
   EXPECT_EQ(bench.step(), "home found");
   EXPECT_TRUE(bench.ends()) << bench.axis.procedure().message;
 }
@@ -83,7 +82,7 @@ TEST(ProcedureFrames, AHaltIsReleasedOnTheWireBeforeAModeThatItWouldBeInTheWayOf
   ASSERT_TRUE(bench.runUntil([&] { return bench.drive.velocity < 0; }));
   ASSERT_TRUE(bench.perform(ProcedureKind::halt).success);
   bench.begin(ProcedureKind::enable);
-  bench.runWithoutRpdos(400ms);
+  bench.runWithoutOutputs(400ms);
   EXPECT_EQ(bench.step(), "starting");
   EXPECT_TRUE(bench.ends()) << bench.axis.procedure().message;
 }
@@ -95,7 +94,7 @@ TEST(ProcedureFrames, AModeIsCommandedOnTheWireBeforeThePowerComes) {
   ASSERT_TRUE(bench.boot());
   bench.begin(ProcedureKind::enable);
   ASSERT_TRUE(bench.reach("switching the mode"));
-  bench.runWithoutRpdos(400ms);
+  bench.runWithoutOutputs(400ms);
   EXPECT_EQ(bench.step(), "switching the mode");
   EXPECT_TRUE(bench.ends()) << bench.axis.procedure().message;
 }
@@ -107,7 +106,7 @@ TEST(ProcedureFrames, ATargetThatLeftLateLeavesTheModeItsTime) {
   bench.drive.mode_delay = 125;  // half a second
   bench.begin(ProcedureKind::set_mode, "csv");
   ASSERT_TRUE(bench.reach("setting the target to the actual value"));
-  bench.runWithoutRpdos(900ms);
+  bench.runWithoutOutputs(900ms);
   EXPECT_EQ(bench.step(), "setting the target to the actual value");
   EXPECT_TRUE(bench.ends()) << bench.axis.procedure().message;
 }
@@ -117,7 +116,7 @@ TEST(ProcedureFrames, ATargetThatDoesNotLeaveEndsInATimeOut) {
   ASSERT_TRUE(bench.boot());
   bench.begin(ProcedureKind::enable);
   ASSERT_TRUE(bench.reach("setting the target to the actual value"));
-  bench.runWithoutRpdos(1100ms);
+  bench.runWithoutOutputs(1100ms);
   EXPECT_FALSE(bench.axis.procedure().running);
   EXPECT_THAT(bench.axis.procedure().message,
               HasSubstr("shoulder (node 3): no RPDO has left for 1 s; is the cycle running?"));
@@ -125,11 +124,11 @@ TEST(ProcedureFrames, ATargetThatDoesNotLeaveEndsInATimeOut) {
 }
 
 TEST(ProcedureFrames, AModeDisplayThatIsNotMappedIsAskedForOftenButNotInEachCycle) {
-  canopen::NodeConfig node = test::nodeConfig();
-  node.pdos[2].entries.pop_back();  // 6061h
+  test::Layout layout = test::testLayout();
+  layout.inputs[0].objects.pop_back();  // 6061h
   DriveProfile profile = testProfile();
   profile.timing.mode_change = 5s;
-  WireBench bench(testConfig(profile), node);
+  WireBench bench(testConfig(profile), layout);
   ASSERT_TRUE(bench.boot());
   bench.drive.mode = 1;
   bench.drive.mode_delay = 500;

@@ -86,7 +86,9 @@ TEST(HomeProcedure, AnOldResultThatStaysIsNotBelievedEither) {
   bench.each_cycle = [&] {
     if (bench.drive.mode == 6) bench.drive.silent = true;
     if (bench.drive.silent) {
-      bench.deliver(can::Frame(0x183, {0x37, 0x16, 0xDC, 0x88, 0xFF, 0xFF, 0x06}));
+      bench.bring({{{0x6041, 0}, 0x1637},
+                   {{0x6064, 0}, static_cast<std::uint32_t>(-30500)},
+                   {{0x6061, 0}, 6}});
     }
   };
   const ProcedureStatus& status = bench.perform(ProcedureKind::home);
@@ -164,7 +166,7 @@ TEST(HomeProcedure, AFaultDuringTheSearchFailsItInWords) {
   ASSERT_TRUE(bench.boot());
   ASSERT_TRUE(bench.axis.start({ProcedureKind::home, {}, 0}, bench.now).ok());
   ASSERT_TRUE(bench.runUntil([&] { return bench.drive.velocity < 0; }));
-  bench.deliver(bench.drive.fail(0x8611));
+  bench.fail(0x8611);
   ASSERT_TRUE(bench.runUntil([&] { return !bench.axis.procedure().running; }));
   EXPECT_THAT(bench.axis.procedure().message,
               HasSubstr("home failed: shoulder (node 3): the drive left operation enabled"));

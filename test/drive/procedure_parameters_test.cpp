@@ -116,7 +116,7 @@ TEST_F(Parameters, ASlowMemoryIsWaitedForAndNotAskedTwice) {
   EXPECT_EQ(bench.axis.procedure().waiting_for, "the drive to confirm 1010:01 (all parameters)");
   EXPECT_EQ(count(0x1010), 1u);
   EXPECT_THAT(bench.refusal(ProcedureKind::enable), HasSubstr("while save_parameters runs"));
-  bench.deliver(can::Frame(0x583, {0x60, 0x10, 0x10, 0x01, 0, 0, 0, 0}));
+  bench.device().confirm({0x1010, 1});
   bench.run(20ms);
   EXPECT_TRUE(bench.axis.procedure().success) << bench.axis.procedure().message;
 }
@@ -132,14 +132,14 @@ TEST_F(Parameters, AMemoryThatNeverConfirmsEndsInATimeOut) {
 }
 
 TEST_F(Parameters, AreRestoredAndTheNodeIsResetAndConfiguredAgain) {
-  const std::uint32_t before = bench.node().bootUps();
+  const std::uint32_t before = bench.device().bootUps();
   const ProcedureStatus& status = bench.perform(ProcedureKind::restore_parameters);
   ASSERT_TRUE(status.success) << status.message;
   EXPECT_THAT(status.message, HasSubstr("shoulder (node 3): restored the factory's values of "
                                         "1011:01 (all parameters); the drive was reset, configured "
                                         "again by the driver and is disabled"));
   EXPECT_EQ(bench.drive.writes.front(), std::make_pair(0x1011u, kLoad));
-  EXPECT_EQ(bench.node().bootUps(), before + 1);
+  EXPECT_EQ(bench.device().bootUps(), before + 1);
   EXPECT_TRUE(bench.drive.operational);
   EXPECT_EQ(bench.drive.state, FakeDrive::S::disabled);
   bench.run(100ms);
@@ -148,7 +148,7 @@ TEST_F(Parameters, AreRestoredAndTheNodeIsResetAndConfiguredAgain) {
 
 TEST_F(Parameters, ADriveThatDoesNotComeBackIsTold) {
   ASSERT_TRUE(bench.axis.start({ProcedureKind::restore_parameters, {}, 0.0}, bench.now));
-  bench.each_cycle = [&] { bench.dead = bench.axis.procedure().step == "booting the node"; };
+  bench.each_cycle = [&] { bench.drive.dead = bench.axis.procedure().step == "booting the node"; };
   ASSERT_TRUE(bench.runUntil([&] { return !bench.axis.procedure().running; }));
   EXPECT_FALSE(bench.axis.procedure().success);
   EXPECT_THAT(bench.axis.procedure().message,
@@ -214,8 +214,8 @@ TEST_F(Parameters, ADriveThatTakesItsTimeToComeBackIsWaitedFor) {
 }
 
 TEST_F(Parameters, ANodeThatIsNotThereIsRefused) {
-  bench.dead = true;
-  ASSERT_TRUE(bench.runUntil([&] { return bench.node().health() == fieldbus::Health::lost; }));
+  bench.drive.dead = true;
+  ASSERT_TRUE(bench.runUntil([&] { return bench.device().health() == fieldbus::Health::lost; }));
   EXPECT_THAT(bench.refusal(ProcedureKind::save_parameters),
               HasSubstr("cannot save parameters: the node is lost"));
 }
@@ -236,7 +236,7 @@ TEST(SavedParameters, AfterWhichADriveWantsToBeSwitchedOffKeepItFromBeingEnabled
     if (!wants) continue;
     EXPECT_THAT(saved.message, HasSubstr("switch the drive off and on before it is enabled"));
     EXPECT_THAT(status.message, HasSubstr("is not enabled: its parameters were saved"));
-    bench.deliver(bench.drive.reboot());
+    bench.reboot();
     EXPECT_TRUE(bench.perform(ProcedureKind::recover).success);
   }
 }

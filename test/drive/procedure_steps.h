@@ -24,17 +24,4 @@ inline std::vector<std::string> stepsOf(Bench& bench, ProcedureKind kind,
   return steps;
 }
 
-/// A cycle in which no RPDO leaves, such as of a bus that is full: the drive goes by the last one.
-inline void cycleWithoutRpdos(Bench& bench) {
-  bench.now += Bench::kCycle;
-  bench.deliver(bench.drive.heartbeat());
-  bench.node().onSync(bench.now);
-  for (const can::Frame& frame : bench.drive.sync(toSeconds(Bench::kCycle))) bench.deliver(frame);
-  bench.axis.readFeedback(bench.now);
-  bench.axis.update(bench.now);
-  bench.axis.writeCommands(bench.now);
-  bench.node().tick(bench.now);
-  for (const can::Frame& frame : bench.drive.answer()) bench.deliver(frame);
-}
-
 }  // namespace cia402::drive::test

@@ -59,7 +59,7 @@ TEST(ProcedureSteps, DisableGivesBothStatesTheirTime) {
 TEST(ProcedureSteps, DisableOfAFaultedAxisSaysWhichFaultItIs) {
   Bench bench;
   ASSERT_TRUE(bench.boot());
-  bench.deliver(bench.drive.fail(0x8611));
+  bench.fail(0x8611);
   bench.run(200ms);
   const ProcedureStatus& status = bench.perform(ProcedureKind::disable);
   EXPECT_TRUE(status.success);
@@ -256,9 +256,9 @@ TEST(ProcedureSteps, RecoverBootsANodeThatIsNotReadyOnly) {
 
 TEST(ProcedureSteps, RecoverResetsTheCommunicationOfANodeThatItBoots) {
   Bench bench;
-  const auto before = bench.node().bootUps();
+  const auto before = bench.device().bootUps();
   ASSERT_TRUE(bench.perform(ProcedureKind::recover).success);
-  EXPECT_EQ(bench.node().bootUps(), before + 1);
+  EXPECT_EQ(bench.device().bootUps(), before + 1);
 }
 
 TEST(ProcedureSteps, RecoverBootsAReadyNodeThatStaysSilentAndThenSaysSo) {

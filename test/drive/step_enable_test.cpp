@@ -182,7 +182,7 @@ TEST(EnableStep, AFaultOfAnAxisThatCoastsIsToldAtOnce) {
   bench.run(200ms);
   ASSERT_TRUE(bench.axis.start({ProcedureKind::enable, {}, 0.0}, bench.now).ok());
   bench.run(100ms);
-  bench.deliver(bench.drive.fail(0x8611));
+  bench.fail(0x8611);
   bench.run(20ms);
   EXPECT_FALSE(bench.axis.procedure().running);
   EXPECT_THAT(bench.axis.procedure().message, HasSubstr("fault 0x8611 following error"));

@@ -25,7 +25,7 @@ AxisConfig withTries(int tries, Duration nmt_stop = Duration::zero()) {
 struct FaultedBench : Bench {
   explicit FaultedBench(AxisConfig config = testConfig()) : Bench(std::move(config)) {
     EXPECT_TRUE(boot());
-    deliver(drive.fail(0x8611));
+    fail(0x8611);
     run(milliseconds(40));
     each_cycle = [this] {
       if (drive.resets != seen_) edges.push_back(now);
@@ -128,7 +128,7 @@ TEST(FaultResetStep, TakesTheNodeThroughNmtStopAndStartAndResetsOnceMore) {
   EXPECT_THAT(steps, testing::Contains(
                          "taking the node through NMT stop and start for the fault reset | the "
                          "drive to be operational and to send its feedback again"));
-  EXPECT_EQ(world.node().health(), fieldbus::Health::ready);
+  EXPECT_EQ(world.device().health(), fieldbus::Health::ready);
 }
 
 TEST(FaultResetStep, TakesTheNodeThroughNmtStopAndStartOnce) {

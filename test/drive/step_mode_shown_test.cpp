@@ -24,14 +24,14 @@ DriveProfile forgetful(Again again) {
 }
 
 /// 6060h goes by SDO: another object has its place in RPDO1.
-canopen::NodeConfig modeBySdo() {
-  canopen::NodeConfig node = test::nodeConfig();
-  node.pdos[0].entries[1] = {{0x2000, 0}, 8, "spare"};
-  return node;
+test::Layout modeBySdo() {
+  test::Layout layout = test::testLayout();
+  layout.outputs[0].objects[1] = {{0x2000, 0}, 8};
+  return layout;
 }
 
 struct ForgetfulBench : Bench {
-  explicit ForgetfulBench(DriveProfile profile, canopen::NodeConfig node = test::nodeConfig())
+  explicit ForgetfulBench(DriveProfile profile, test::Layout node = test::testLayout())
       : Bench(testConfig(std::move(profile)), std::move(node)) {
     drive.forgets_mode = true;
     EXPECT_TRUE(boot());
@@ -68,7 +68,6 @@ TEST(ModeShownStep, CommandsTheModeOnceMoreBySdo) {
   for (const Again again : {Again::same, Again::through_zero}) {
     SCOPED_TRACE(static_cast<int>(again));
     ForgetfulBench world(forgetful(again), modeBySdo());
-    world.drive.mode_by_sdo = true;
     world.drive.mode = 1;
     world.drive.writes.clear();
     EXPECT_THAT(stepsOf(world, ProcedureKind::enable), testing::Contains(kWaitsForMode));
@@ -139,7 +138,6 @@ TEST(ModeShownStep, GoesByTheModeBetweenWhereTheDriveDoesNotStandTheChange) {
   DriveProfile profile = forgetful(Again::same);
   profile.mode_change.detours = {{"cyclic_position", "cyclic_velocity", "profile_velocity"}};
   ForgetfulBench world(profile, modeBySdo());
-  world.drive.mode_by_sdo = true;
   world.drive.mode = 8;
   ASSERT_TRUE(world.perform(ProcedureKind::set_mode, "csv").success);
   EXPECT_EQ(world.drive.mode, 8) << "forgotten, for it is disabled";
