@@ -228,7 +228,7 @@ class Bench {
       last_sign_ = now;
       tell([&] { device_.hear(now); });
     }
-    device_.age(now);
+    device_.age();
     device_.bring(drive.cycle(toSeconds(kCycle)), false, now);
     axis.readFeedback(now);
     axis.update(now);

@@ -49,8 +49,8 @@ class FakeDevice final : public fieldbus::Device {
     state_->heard_at = now;
     if (state_->begun && isAway(health())) boot(now, false);
   }
-  void age(Time now) {
-    if (ready()) state_->image.age(now);
+  void age() {
+    if (ready()) state_->image.age();
   }
   /// Inputs come. @param by_test or from the drive
   void bring(const Values& values, bool by_test, Time now) {

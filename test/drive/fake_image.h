@@ -25,8 +25,7 @@ struct Group {
   std::string name;  ///< for messages: "TPDO 1 (COB-ID 0x183)"
   std::vector<Mapped> objects;
   bool every_cycle = true;    ///< an input that comes with each cycle, else on change
-  Duration interval{0};       ///< on change: it comes at least so often; zero: no matter how long
-  unsigned stale_after = 10;  ///< cycles, or intervals, without it
+  unsigned stale_after = 10;  ///< cycles without it
   bool by_test = false;       ///< the drive does not send it: it comes by Bench::bring() only
 };
 
@@ -45,9 +44,7 @@ class FakeImage final : public fieldbus::ProcessImage {
       for (const Mapped& mapped : input.group.objects) {
         const fieldbus::Slot slot = addInput(mapped.object);
         const bool cycles = input.group.every_cycle;
-        const bool regular = cycles || input.group.interval != Duration::zero();
-        setDelivery(slot, {regular, cycles ? std::uint16_t{1} : std::uint16_t{0},
-                           cycles ? Duration::zero() : input.group.interval});
+        setDelivery(slot, {cycles, cycles ? std::uint16_t{1} : std::uint16_t{0}, Duration::zero()});
         input.fields.push_back({slot, mapped});
       }
     }
@@ -72,16 +69,15 @@ class FakeImage final : public fieldbus::ProcessImage {
         take(field.slot, value->raw & maskOf(field.mapped), now);
         input.silent = 0;
         input.stale = false;
-        input.last = now;
       }
     }
   }
   /// One cycle more without what did not come.
-  void age(Time now) {
+  void age() {
     for (Input& input : inputs_) {
       ++input.silent;
-      if (input.last == Time()) input.last = now;  // it is expected from now on
-      if (input.stale || !overdue(input, now)) continue;
+      const bool overdue = input.group.every_cycle && input.silent > input.group.stale_after;
+      if (input.stale || !overdue) continue;
       input.stale = true;
       for (const Field& field : input.fields) outdate(field.slot);
     }
@@ -115,7 +111,6 @@ class FakeImage final : public fieldbus::ProcessImage {
     for (Input& input : inputs_) {
       input.silent = 0;
       input.stale = false;
-      input.last = Time();
     }
   }
 
@@ -141,7 +136,6 @@ class FakeImage final : public fieldbus::ProcessImage {
     std::vector<Field> fields;
     unsigned silent = 0;  ///< cycles since it came
     bool stale = false;
-    Time last{};
   };
   struct Output {
     Group group;
@@ -150,12 +144,6 @@ class FakeImage final : public fieldbus::ProcessImage {
 
   static std::uint64_t maskOf(const Mapped& mapped) {
     return (std::uint64_t{1} << mapped.bits) - 1;
-  }
-  static bool overdue(const Input& input, Time now) {
-    const Group& group = input.group;
-    if (group.every_cycle) return input.silent > group.stale_after;
-    return group.interval != Duration::zero() &&
-           now - input.last > group.stale_after * group.interval;
   }
   template <typename Words>
   std::string text(Words words) const {

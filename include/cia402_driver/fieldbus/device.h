@@ -87,7 +87,7 @@ class Device {
   /// The same without numbers that grow, and with what comes but cannot be used: "TPDO 1 (COB-ID
   /// 0x183) does not come"; empty if nothing is.
   virtual std::string missingText() const = 0;
-  /// What carries an output: "RPDO1 (COB-ID 0x203)".
+  /// What carries an output: "RPDO 1 (COB-ID 0x203)".
   virtual std::string carrierText(Slot output) const = 0;
 
  protected:
