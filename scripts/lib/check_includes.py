@@ -46,7 +46,7 @@ FORBIDDEN = [
     (re.compile(r"\bstd::(thread|mutex|shared_mutex|recursive_mutex|condition_variable|lock_guard|"
                 r"unique_lock|scoped_lock|future|promise|async)\b"), "thread or lock"),
 ]
-INCLUDE = re.compile(r'#include\s*[<"]cia402_driver/([a-z_]+)/([^">]+)[">]')
+INCLUDE = re.compile(r'#include\s*[<"](?:cia402_driver/)?([a-z_]+)/([^">]+)[">]')
 ROS_INCLUDE = re.compile(r"#include\s*[<\"](ros|tf2|tf2_ros|actionlib|[a-z0-9]+_(msgs|srvs))/")
 
 

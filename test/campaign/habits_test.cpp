@@ -1,12 +1,12 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "../../src/campaign/habits.h"
+#include "campaign/habits.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "../../src/campaign/stage.h"
+#include "campaign/stage.h"
 #include "folders.h"
 
 namespace cia402::campaign {

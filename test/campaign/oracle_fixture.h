@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "../../src/campaign/oracle.h"
+#include "campaign/oracle.h"
 #include "folders.h"
 
 namespace cia402::campaign {

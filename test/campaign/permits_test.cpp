@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // What may move an axis, and until when, by what is seen of its motor; player_test.cpp has
 // what is commanded and answered.
-#include "../../src/campaign/permits.h"
+#include "campaign/permits.h"
 
 #include <gtest/gtest.h>
 

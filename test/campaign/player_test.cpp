@@ -1,6 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // What the player itself finds, what its commands permit, and that it plays a scene alike twice.
-#include "../../src/campaign/player.h"
+#include "campaign/player.h"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 
 #include <algorithm>
 
-#include "../../src/config/robot_parts.h"
 #include "config/loaded.h"
+#include "config/robot_parts.h"
 
 namespace cia402::config {
 namespace {

@@ -1,6 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Standstill, soft stop, homing status, fault texts and numbers in sentences.
-#include "../../src/drive/sentence.h"
+#include "drive/sentence.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // How long procedures may take: for each thing that a drive may take its time for, the limit grows
 // as often as the procedure may have to wait for it.
-#include "../../src/drive/procedure_limits.h"
+#include "drive/procedure_limits.h"
 
 #include <limits>
 #include <type_traits>

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <yaml-cpp/yaml.h>
 
-#include "../../src/sim/drive_definition.h"
 #include "generic_bench.h"
+#include "sim/drive_definition.h"
 
 namespace cia402::sim {
 namespace {

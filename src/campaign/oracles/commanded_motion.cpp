@@ -3,7 +3,7 @@
 #include <cmath>
 #include <optional>
 
-#include "../oracle.h"
+#include "campaign/oracle.h"
 
 namespace cia402::campaign {
 namespace {

@@ -2,7 +2,7 @@
 // No motor is driven harder than its limit of effort, in whatever mode and however it stops.
 #include <cmath>
 
-#include "../oracle.h"
+#include "campaign/oracle.h"
 
 namespace cia402::campaign {
 namespace {

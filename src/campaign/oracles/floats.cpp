@@ -2,7 +2,7 @@
 // Nothing that is not finite, nor -0.0, leaves in an object that holds a float.
 #include <map>
 
-#include "../oracle.h"
+#include "campaign/oracle.h"
 
 namespace cia402::campaign {
 namespace {

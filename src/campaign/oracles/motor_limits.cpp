@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "../oracle.h"
+#include "campaign/oracle.h"
 
 namespace cia402::campaign {
 namespace {

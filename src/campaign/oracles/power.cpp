@@ -2,7 +2,7 @@
 // The power stage is neither switched off nor on while the motor turns.
 #include <cmath>
 
-#include "../oracle.h"
+#include "campaign/oracle.h"
 
 namespace cia402::campaign {
 namespace {

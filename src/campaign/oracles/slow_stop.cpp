@@ -5,7 +5,7 @@
 #include <optional>
 #include <set>
 
-#include "../oracle.h"
+#include "campaign/oracle.h"
 
 namespace cia402::campaign {
 namespace {

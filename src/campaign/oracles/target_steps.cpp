@@ -9,7 +9,7 @@
 #include <map>
 #include <optional>
 
-#include "../oracle.h"
+#include "campaign/oracle.h"
 
 namespace cia402::campaign {
 namespace {

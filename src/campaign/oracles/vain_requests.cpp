@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // A drive that says that it is stopped answers no SDO (CiA 301, table 38): who boots it starts it
 // first. People may ask it what they like.
-#include "../oracle.h"
+#include "campaign/oracle.h"
 
 namespace cia402::campaign {
 namespace {
