@@ -125,18 +125,20 @@ void checkHoming(yaml::Section& section, const AxisConfig& axis, RobotConfig& ro
   const auto homing = *section.get("homing");
   yaml::Section homing_section(homing);
   const auto method = homing_section.get("method");
-  if (spec.kind == drive::HomingSpec::Kind::none) {
+  const bool by_driver = spec.methods.count(std::nullopt) != 0;
+  const bool by_drive = spec.methods.size() > (by_driver ? 1 : 0);
+  if (spec.methods.empty()) {
     homing.problem("profile " + axis.profile->name + " has no homing; remove the section");
-  } else if (spec.kind == drive::HomingSpec::Kind::declare_zero && method) {
+  } else if (!by_drive && method) {
     method->problem(
         "this drive has no homing methods: the present position is declared to be "
         "`offset`; remove the method");
-  } else if (spec.kind == drive::HomingSpec::Kind::drive && !method) {
+  } else if (!by_driver && !method) {
     homing.problem("`method` is missing: the number of a homing method of the drive");
   } else if (axis.homing->method && method && spec.methods.count(*axis.homing->method) == 0) {
     std::string known;
     for (const auto& entry : spec.methods) {
-      known += (known.empty() ? "" : ", ") + std::to_string(entry.first);
+      if (entry.first) known += (known.empty() ? "" : ", ") + std::to_string(*entry.first);
     }
     method->problem("profile " + axis.profile->name + " has no method " +
                     std::to_string(*axis.homing->method) + "; it has " + known);

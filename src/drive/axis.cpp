@@ -3,10 +3,10 @@
 
 #include <utility>
 
-#include "axis_core.h"
 #include "cia402_driver/drive/fault_text.h"
-#include "procedure.h"
-#include "procedure_limits.h"
+#include "drive/axis_words.h"
+#include "drive/procedure.h"
+#include "drive/procedure_limits.h"
 
 namespace cia402::drive {
 
@@ -62,7 +62,7 @@ void Axis::Impl::watchNode() {
 
 /// What fails the procedure that runs is of no interest where none does.
 void Axis::Impl::stepProcedure(Time now) {
-  const std::string failure = core.takeFailure();
+  const std::string failure = core.notices().takeFailure();
   if (!procedure) return;
   const bool waits = (lost || !core.nodeReady()) && procedure->survivesNodeLoss();
   if (!failure.empty() && !waits) {
@@ -81,9 +81,9 @@ void Axis::Impl::advance(Time now) {
 }
 
 void Axis::Impl::finish(bool success, std::string message) {
-  core.setFaultReset(false);
-  core.setHomingStart(false);
-  core.openLimits(false);
+  core.control().setFaultReset(false);
+  core.control().setHomingStart(false);
+  core.limits().open(false);
   status.running = false;
   status.success = success;
   status.message = std::move(message);
@@ -106,8 +106,8 @@ Axis::Axis(AxisConfig config, fieldbus::Device& device)
     : impl_(std::make_unique<Impl>(std::move(config), device)),
       state_(&impl_->core.state()),
       procedure_(&impl_->status),
-      notices_(&impl_->core.noticeCount()),
-      set_point_(&impl_->core.setPoint()) {}
+      notices_(&impl_->core.notices().count()),
+      set_point_(&impl_->core.generator().sent()) {}
 Axis::~Axis() = default;
 Axis::Axis(Axis&&) noexcept = default;
 
@@ -121,13 +121,17 @@ void Axis::readFeedback(Time now) {
   impl_->core.readFeedback(now);
 }
 
-void Axis::look() { impl_->core.look(); }
+std::vector<ShownSignal> Axis::signals(Time now) const {
+  return impl_->core.objects().signals.shown(now);
+}
+
+void Axis::look() { impl_->core.basis().objects.signals.look(); }
 
 void Axis::update(Time now) {
   Impl& impl = *impl_;
   if (impl.watched != now) impl.watchNode();  // else readFeedback() just did
   impl.core.supervise(now);
-  if (impl.procedure || impl.core.failed()) impl.stepProcedure(now);
+  if (impl.procedure || impl.core.notices().failed()) impl.stepProcedure(now);
   impl.lost = false;
   impl.core.updateReadiness(impl.status.running, now);
 }
@@ -137,7 +141,7 @@ void Axis::writeCommands(Time now) { impl_->core.writeCommands(now); }
 Result<std::uint32_t> Axis::start(const ProcedureRequest& request, Time now) {
   Impl& impl = *impl_;
   impl.watchNode();
-  const std::string failure = impl.core.takeFailure();
+  const std::string failure = impl.core.notices().takeFailure();
   if (impl.procedure && !failure.empty() && !impl.procedure->survivesNodeLoss()) {
     impl.finish(false, std::string(toString(impl.status.kind)) + " failed: " + failure);
   }
@@ -191,28 +195,30 @@ std::string Axis::calibrationRefusal() const {
   if (impl_->status.running) {
     return std::string(toString(impl_->status.kind)) + " runs; wait for its end";
   }
-  return impl_->core.calibrationRefusal();
+  return drive::calibrationRefusal(impl_->core);
 }
 void Axis::beginCalibration(std::string what) { impl_->calibrating = std::move(what); }
 void Axis::loseZero() { impl_->core.loseZero(); }
 void Axis::measureAnew() { impl_->core.measureAnew(); }
 void Axis::endCalibration() { impl_->calibrating.clear(); }
 
-bool Axis::setTarget(double value) { return impl_->core.setTarget(value); }
-void Axis::stopSetPoint() { impl_->core.stopSetPoint(); }
-std::string Axis::motionRefusal() const { return impl_->core.motionRefusal(impl_->status.running); }
-bool Axis::heardLately(Time now) const { return impl_->core.heardLately(now); }
-bool Axis::mayMove() const { return impl_->core.mayMove(); }
-std::string Axis::obstacle() const { return impl_->core.obstacle(); }
-const std::string& Axis::modeName() const { return impl_->core.mode().spec->name; }
+bool Axis::setTarget(double value) { return impl_->core.generator().take(value); }
+void Axis::stopSetPoint() { impl_->core.generator().stop(); }
+std::string Axis::motionRefusal() const {
+  return drive::motionRefusal(impl_->core, impl_->status.running);
+}
+bool Axis::heardLately(Time now) const { return impl_->core.feedback().heardLately(now); }
+bool Axis::mayMove() const { return impl_->core.feedback().mayMove(); }
+std::string Axis::obstacle() const { return drive::obstacle(impl_->core); }
+const std::string& Axis::modeName() const { return impl_->core.mode().spec().name; }
 
 void Axis::stopBySdo(const std::string& why, Time) {
-  impl_->core.stopBySdo(why);
+  impl_->core.stops().stopUrgently(why);
   impl_->endEnabling(why);
 }
 
 void Axis::onEmergency(const fieldbus::Emergency& emergency, Time now, const std::string& excuse) {
-  impl_->core.onEmergency(emergency, excuse, now);
+  impl_->core.faults().onEmergency(emergency, excuse, now);
   const bool no_rpdo = missingFrames(*config().profile, emergency.code) == ErrorText::Missing::rpdo;
   if (!no_rpdo || !excuse.empty() || !impl_->core.nodeReady()) return;
   stopBySdo("the drive reports EMCY " + hexWord(emergency.code) +
@@ -228,9 +234,9 @@ void Axis::onBusLost(const std::string& why) {
   impl_->endEnabling(why + ": nothing reaches the drive");
 }
 
-std::string Axis::faultText() const { return impl_->core.faultText(); }
-std::string Axis::unknownText() const { return impl_->core.unknownText(); }
-const std::string& Axis::notice() const { return impl_->core.notice(); }
-bool Axis::noticeWarns() const { return impl_->core.noticeWarns(); }
+std::string Axis::faultText() const { return impl_->core.faults().text(); }
+std::string Axis::unknownText() const { return impl_->core.feedback().unknownText(); }
+const std::string& Axis::notice() const { return impl_->core.notices().text(); }
+bool Axis::noticeWarns() const { return impl_->core.notices().warns(); }
 
 }  // namespace cia402::drive

@@ -1,7 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "axis_objects.h"
+#include "drive/axis_objects.h"
 
-#include <algorithm>
 #include <stdexcept>
 
 namespace cia402::drive {
@@ -13,24 +12,6 @@ using fieldbus::ObjectId;
 const ObjectSpec* findObject(const DriveProfile& profile, const char* name, ObjectId id) {
   const ObjectSpec* spec = profile.find(name);
   return spec != nullptr ? spec : profile.find(id);
-}
-
-InputObject input(const AxisConfig& config, const fieldbus::Device& device, const char* name,
-                  ObjectId id) {
-  InputObject result;
-  result.spec = findObject(*config.profile, name, id);
-  if (result.spec == nullptr) return result;
-  const auto& lacks = config.lacks;
-  if (std::find(lacks.begin(), lacks.end(), result.spec->name) != lacks.end()) return InputObject();
-  result.slot = device.image().inputSlot(result.spec->id);
-  const auto conversion = Conversion::create(*result.spec, *config.profile, config.geometry);
-  if (conversion) {
-    result.conversion = *conversion;
-  } else if (result.spec->quantity != Quantity::none) {
-    result.spec = nullptr;  // e.g. torque without a rated torque: unknown rather than wrong
-    result.slot = fieldbus::kNoSlot;
-  }
-  return result;
 }
 
 OutputObject output(const fieldbus::Device& device, const ObjectSpec* spec) {
@@ -72,31 +53,20 @@ ModeChannel modeChannel(const AxisConfig& config, const fieldbus::Device& device
   return channel;
 }
 
-void require(bool mapped, const AxisConfig& config, const char* what) {
-  if (mapped) return;
-  throw std::invalid_argument(whoIs(config) + ": " + what + " must be mapped into a PDO");
-}
-
 }  // namespace
 
-AxisObjects::AxisObjects(const AxisConfig& config, const fieldbus::Device& device) {
-  statusword = input(config, device, "statusword", {0x6041, 0});
-  position = input(config, device, "position_actual", {0x6064, 0});
-  velocity = input(config, device, "velocity_actual", {0x606C, 0});
-  effort = input(config, device, "torque_actual", {0x6077, 0});
-  following_error = input(config, device, "following_error", {0x60F4, 0});
-  mode_display = input(config, device, "mode_display", {0x6061, 0});
-  error_code = input(config, device, "error_code", {0x603F, 0});
-  digital_inputs = input(config, device, "digital_inputs", {0x60FD, 0});
+AxisObjects::AxisObjects(const AxisConfig& config, fieldbus::Device& device)
+    : signals(config, device) {
   controlword = output(device, findObject(*config.profile, "controlword", {0x6040, 0}));
   mode = output(device, findObject(*config.profile, "mode_of_operation", {0x6060, 0}));
-  require(statusword.mapped(), config, "the statusword (6041:00)");
-  require(position.mapped(), config, "the actual position (6064:00)");
-  require(controlword.mapped(), config, "the controlword (6040:00)");
+  if (!controlword.mapped()) {
+    throw std::invalid_argument(whoIs(config) +
+                                ": the controlword (6040:00) must be mapped into a PDO");
+  }
 
   modes.reserve(config.profile->modes.size());
   for (const ModeSpec& spec : config.profile->modes) {
-    modes.push_back(modeChannel(config, device, spec, position.spec));
+    modes.push_back(modeChannel(config, device, spec, signals[SignalId::position].spec));
   }
   if (channel(config.mode) == nullptr) {
     throw std::invalid_argument(config.name + ": the drive profile " + config.profile->name +

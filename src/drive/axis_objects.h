@@ -7,16 +7,9 @@
 
 #include "cia402_driver/drive/axis_config.h"
 #include "cia402_driver/fieldbus/device.h"
+#include "drive/signals.h"
 
 namespace cia402::drive {
-
-/// A value that the drive reports: by TPDO where it is mapped, else it has to be read by SDO.
-struct InputObject {
-  const ObjectSpec* spec = nullptr;  ///< nullptr: the family has no such object
-  fieldbus::Slot slot = fieldbus::kNoSlot;
-  Conversion conversion;
-  bool mapped() const { return slot != fieldbus::kNoSlot; }
-};
 
 /// A value that the master sends by RPDO.
 struct OutputObject {
@@ -37,10 +30,9 @@ struct ModeChannel {
 /// Where everything that an axis needs is in the process image, worked out once.
 struct AxisObjects {
   /// @throws std::invalid_argument if controlword, statusword or actual position are not mapped.
-  AxisObjects(const AxisConfig& config, const fieldbus::Device& device);
+  AxisObjects(const AxisConfig& config, fieldbus::Device& device);
 
-  InputObject statusword, position, velocity, effort, following_error, mode_display, error_code,
-      digital_inputs;
+  Signals signals;
   OutputObject controlword, mode;
   std::vector<ModeChannel> modes;
 

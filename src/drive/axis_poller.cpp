@@ -1,29 +1,28 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "axis_poller.h"
+#include "drive/axis_poller.h"
 
 #include <algorithm>
 #include <utility>
 
 namespace cia402::drive {
 
-int AxisPoller::add(const InputObject& object, Reading reading) {
-  if (object.spec == nullptr || !object.spec->readable) return -1;
-  if (object.mapped() && reading == Reading::always) return -1;
+int AxisPoller::add(const Signal& signal, Reading reading) {
+  if (reading == Reading::never || signal.spec == nullptr || !signal.spec->readable) return -1;
+  if (signal.mapped() && reading == Reading::always) return -1;
   Item item;
-  item.object = object.spec->id;
-  item.name = object.spec->name;
+  item.object = signal.spec->id;
+  item.name = signal.spec->name;
   item.for_looks = reading == Reading::when_looked_at;
   item.wanted = !item.for_looks;
   items_.push_back(std::move(item));
   return static_cast<int>(items_.size()) - 1;
 }
 
-void AxisPoller::look() {
-  for (Item& item : items_) {
-    if (!item.for_looks || item.refused) continue;
-    item.wanted = true;
-    next_ = std::min(next_, earliest_);
-  }
+void AxisPoller::look(int item) {
+  Item& shown = items_[static_cast<std::size_t>(item)];
+  if (!shown.for_looks || shown.refused) return;
+  shown.wanted = true;
+  next_ = std::min(next_, earliest_);
 }
 
 void AxisPoller::advance(fieldbus::ObjectAccess& objects, Time now) {

@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "axis_objects.h"
+#include "cia402_driver/fieldbus/device.h"
+#include "drive/signal.h"
 
 namespace cia402::drive {
 
@@ -21,14 +22,15 @@ class AxisPoller {
   /// The same for what is read for a look: diagnostics look once a second.
   static constexpr Duration kStaleLook{std::chrono::milliseconds(2500)};
 
-  enum class Reading : std::uint8_t { always, when_looked_at };
+  enum class Reading : std::uint8_t { never, always, when_looked_at };
 
-  /// Adds `object` unless the family does not have it, or it is mapped; but what is read for looks
+  /// Adds `signal` unless the drive does not have it, or it is mapped; but what is read for looks
   /// is added then, too, for a drive may turn out not to map it. @return its number for value(), or
   /// -1.
-  int add(const InputObject& object, Reading reading = Reading::always);
-  /// Somebody is about to look: what is read for that only is asked for once more.
-  void look();
+  int add(const Signal& signal, Reading reading = Reading::always);
+  /// Somebody is about to look at an item: if it is read for that only, it is asked for once more.
+  /// @param item of add(), not -1
+  void look(int item);
   /// Is there anything for advance() to do?
   bool due(Time now) const { return ticket_ ? ticket_->done() : now >= next_ && !items_.empty(); }
   /// Takes an answer that has come and asks for the next value.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "float_codec.h"
+#include "drive/float_codec.h"
 
 namespace cia402::drive {
 namespace {

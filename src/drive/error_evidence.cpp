@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "error_evidence.h"
+#include "drive/error_evidence.h"
 
 #include "cia402_driver/fieldbus/object.h"
 

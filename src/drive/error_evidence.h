@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
-#include "axis_objects.h"
 #include "cia402_driver/fieldbus/emergency.h"
 #include "cia402_driver/fieldbus/object_access.h"
+#include "drive/axis_objects.h"
 
 namespace cia402::drive {
 

@@ -4,12 +4,10 @@
 #include <utility>
 
 #include "cia402_driver/drive/axis.h"
-#include "cia402_driver/drive/standstill.h"
+#include "drive/feedback.h"
 
 namespace cia402::drive {
 
-/// A drive may act on a set-point so many cycles after it was computed.
-inline constexpr int kReactionCycles = 2;
 /// A drive that never shows that it follows its set-points is waited for so long, once.
 inline constexpr Duration kFollowPatience{std::chrono::seconds(1)};
 

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <limits>
 
-#include "float_codec.h"
+#include "drive/float_codec.h"
 
 namespace cia402::drive {
 namespace {

@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "procedure.h"
+#include "drive/procedure.h"
 
-#include "sentence.h"
+#include "drive/sentence.h"
 
 namespace cia402::drive {
 
@@ -70,9 +70,9 @@ namespace {
 /// The axis is not to move by what was given up. @return what was done, in words
 std::string makeSafe(AxisCore& axis, ProcedureKind kind) {
   if (!axis.nodeReady()) return "nothing reaches the drive";
-  const bool off = kind == ProcedureKind::disable && axis.atStandstill();
+  const bool off = kind == ProcedureKind::disable && axis.feedback().atStandstill();
   if (!enables(kind) && !stops(kind)) return "nothing moves by it";
-  if (axis.mode().spec->kind == ControlKind::homing) axis.selectMode(axis.workingMode());
+  if (axis.mode().spec().kind == ControlKind::homing) axis.selectMode(axis.mode().working());
   off ? axis.switchOff() : axis.setGoal(Goal::quick_stop);
   return off ? "disable voltage is commanded" : "quick stop is commanded";
 }
@@ -97,8 +97,8 @@ Outcome Procedure::giveUp(const Context& context) const {
                      seconds(context.now - status.started) + " while " + status.step;
   if (!status.waiting_for.empty()) text += ", waiting for " + status.waiting_for;
   text += "; the drive changed its state " + std::to_string(changes_) + " times meanwhile. ";
-  const std::string report = axis.report();
-  return Outcome::failed(text + makeSafe(axis, status.kind) + "; " + report);
+  const std::string shown = report(axis);
+  return Outcome::failed(text + makeSafe(axis, status.kind) + "; " + shown);
 }
 
 Outcome awaitStandstill(const Context& context, Time since, const std::string& what) {
@@ -109,8 +109,8 @@ Outcome awaitStandstill(const Context& context, Time since, const std::string& w
     return Outcome::failed(axis.who() + ": " + what +
                            ": no fresh statusword (6041:00) and position (6064:00)");
   }
-  if (axis.atStandstill()) return Outcome::done();
-  if (!axis.moving() && patient) return Outcome::running();
+  if (axis.feedback().atStandstill()) return Outcome::done();
+  if (!axis.generator().moving() && patient) return Outcome::running();
   return Outcome::failed(axis.who() + ": " + what + " needs standstill (velocity " +
                          number(axis.state().velocity) + "); stop the axis first");
 }

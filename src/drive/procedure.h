@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "axis_core.h"
+#include "drive/axis_words.h"
 
 namespace cia402::drive {
 

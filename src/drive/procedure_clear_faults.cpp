@@ -1,6 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "procedure.h"
-#include "step_fault_reset.h"
+#include "drive/procedure.h"
+#include "drive/step_fault_reset.h"
 
 namespace cia402::drive {
 namespace {
@@ -29,15 +29,16 @@ class ClearFaults : public Procedure {
     const Duration waited = context.now - context.status.started;
     context.show("waiting for the statusword", "the drive to tell whether it has a fault");
     if (waited <= axis.profile().timing.state_change) return Outcome::running();
-    return Outcome::failed(axis.who() + ": nothing tells whether it has a fault: " +
-                           (axis.state().feedback_valid ? axis.stateText() : axis.feedbackText()));
+    return Outcome::failed(
+        axis.who() + ": nothing tells whether it has a fault: " +
+        (axis.state().feedback_valid ? axis.feedback().stateText() : axis.feedback().text()));
   }
 
   static Outcome nothingToClear(AxisCore& axis) {
-    const std::uint16_t code = axis.pendingEmergency();
+    const std::uint16_t code = axis.faults().pendingEmergency();
     if (code == 0) return Outcome::done(jointName(axis.config()) + ": no fault, nothing to clear");
-    const std::string text = axis.codeText(code);
-    axis.forgetFault();
+    const std::string text = axis.faults().codeText(code);
+    axis.faults().forgetFault();
     return Outcome::done(jointName(axis.config()) +
                          ": no fault; the emergency that the drive has not "
                          "ended is forgotten: " +

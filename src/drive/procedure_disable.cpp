@@ -1,8 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "procedure.h"
-#include "procedure_limits.h"
-#include "sentence.h"
-#include "step_stop.h"
+#include "drive/procedure.h"
+#include "drive/procedure_limits.h"
+#include "drive/sentence.h"
+#include "drive/step_stop.h"
 
 namespace cia402::drive {
 namespace {
@@ -24,12 +24,14 @@ class Disable : public Procedure {
     }
     const bool faulted = axis.state().state == State::fault && axis.powerOff();
     if (faulted || axis.state().state == State::switch_on_disabled) {
-      if (axis.mayMove()) return awaitRest(context);
+      if (axis.feedback().mayMove()) return awaitRest(context);
       return finish(axis, faulted);
     }
-    if (context.now - since_ <= 2 * axis.profile().timing.state_change) return Outcome::running();
+    const DriveProfile::Timing& timing = axis.profile().timing;
+    if (context.now - since_ <= timing.transition(5) + timing.transition(10))
+      return Outcome::running();
     return Outcome::failed(axis.who() + ": disabling timed out after " +
-                           seconds(context.now - since_) + "; " + axis.report());
+                           seconds(context.now - since_) + "; " + report(axis));
   }
 
  private:
@@ -37,7 +39,8 @@ class Disable : public Procedure {
 
   void begin(const Context& context) {
     AxisCore& axis = context.axis;
-    if (!axis.powerOff() && !axis.seenToStand(context.now)) {  // an unknown state counts as powered
+    if (!axis.powerOff() &&
+        !axis.feedback().seenToStand(context.now)) {  // an unknown state counts as powered
       phase_ = Phase::stopping;
     } else {
       switchOff(context);
@@ -61,13 +64,13 @@ class Disable : public Procedure {
     }
     if (context.now - since_ <= kComeToRest) return Outcome::running();
     return Outcome::failed(axis.who() + ": is disabled, but after " +
-                           seconds(context.now - since_) + " " + axis.coastingText());
+                           seconds(context.now - since_) + " " + axis.feedback().coastingText());
   }
 
   Outcome finish(AxisCore& axis, bool faulted) const {
     const std::string plain = jointName(axis.config()) + ": disabled";
     std::string text = plain;
-    if (faulted) text += "; " + axis.faultText();
+    if (faulted) text += "; " + axis.faults().text();
     if (!stop_problem_.empty()) text += ", but " + stop_problem_;
     return text == plain ? Outcome::done(text) : Outcome::remarked(text);
   }

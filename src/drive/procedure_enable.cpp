@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "procedure.h"
-#include "sentence.h"
-#include "step_switch.h"
+#include "drive/procedure.h"
+#include "drive/sentence.h"
+#include "drive/step_switch.h"
 
 namespace cia402::drive {
 namespace {
@@ -11,7 +11,8 @@ namespace {
 class Enable : public Procedure {
  public:
   explicit Enable(AxisCore& axis)
-      : enabling_(axis.workingMode(), axis.profile()), mode_(axis.workingMode(), axis.profile()) {}
+      : enabling_(axis.mode().working(), axis.profile()),
+        mode_(axis.mode().working(), axis.profile()) {}
 
   Outcome advance(const Context& context) override {
     if (!begun_) begin(context);
@@ -24,57 +25,59 @@ class Enable : public Procedure {
     started_ = context.now;
     AxisCore& axis = context.axis;
     releasing_ = axis.inOperation();
-    const bool homing = axis.mode().spec->kind == ControlKind::homing;
-    const bool elsewhere = &axis.mode() != &axis.workingMode();  // homing, or braked by a mode
-    changing_mode_ = releasing_ && (elsewhere || axis.shownMode() != axis.mode().spec->value);
-    blocked_ = changing_mode_ && axis.halted() && !axis.profile().mode_change.while_halted;
+    const bool homing = axis.mode().spec().kind == ControlKind::homing;
+    const bool elsewhere =
+        &axis.mode().channel() != &axis.mode().working();  // homing, or braked by a mode
+    changing_mode_ =
+        releasing_ && (elsewhere || axis.feedback().shownMode() != axis.mode().spec().value);
+    blocked_ = changing_mode_ && axis.state().halted && !axis.profile().mode_change.while_halted;
     if (blocked_ && homing) {
       // The start bit of homing has been 0 since the halt: without the halt bit nothing begins.
-      axis.releaseHalt();
+      axis.stops().endHalt();
       blocked_ = false;
       released_ = true;
-      frames_ = axis.controlwordFrames();
+      frames_ = axis.control().frames();
     }
-    if (!releasing_ || !axis.halted() || changing_mode_) return;
-    axis.replaceHaltedTarget();
-    frames_ = axis.targetFrames();
+    if (!releasing_ || !axis.state().halted || changing_mode_) return;
+    axis.stops().replaceHaltedTarget();
+    frames_ = axis.generator().targetFrames();
     context.show("releasing the halt", "the drive to take its present position as set-point");
   }
 
   Outcome release(const Context& context) {
     AxisCore& axis = context.axis;
-    if (blocked_) return Outcome::failed(axis.obstacle());
+    if (blocked_) return Outcome::failed(drive::obstacle(axis));
     if (changing_mode_) {
-      if (released_ && axis.controlwordFrames() < frames_ + kSureFrames) return Outcome::running();
+      if (released_ && axis.control().frames() < frames_ + kSureFrames) return Outcome::running();
       const Outcome ready = waiting_.advance(context);
       if (!ready.isDone()) return ready;
       const Outcome outcome = mode_.advance(context);
       if (!outcome.isDone()) return outcome;
       changing_mode_ = false;
       mode_changed_ = true;
-      frames_ = axis.targetFrames();
+      frames_ = axis.generator().targetFrames();
     }
-    if (!axis.heardLately(context.now)) {  // its power may have gone since
+    if (!axis.feedback().heardLately(context.now)) {  // its power may have gone since
       context.show("asking whether it is enabled still", "fresh feedback");
       return Outcome::running();
     }
     if (released_) return released(axis);
-    if (!axis.halted()) {
+    if (!axis.state().halted) {
       return Outcome::done(
           jointName(axis.config()) +
           (mode_changed_ ? ": is enabled and brought into mode " : ": is enabled already, mode ") +
-          axis.mode().spec->name);
+          axis.mode().spec().name);
     }
-    if (axis.handshakeBusy() || axis.targetFrames() < frames_ + 2) {
+    if (axis.generator().handingOver() || axis.generator().targetFrames() < frames_ + 2) {
       if (context.now - started_ <= 2 * axis.profile().timing.state_change) {
         return Outcome::running();
       }
       return Outcome::failed(axis.who() +
                              ": the halt was not released: the drive does not take a new set-point "
                              "while halted; disable and enable instead. " +
-                             axis.report());
+                             report(axis));
     }
-    axis.releaseHalt();
+    axis.stops().endHalt();
     return released(axis);
   }
 
@@ -87,7 +90,7 @@ class Enable : public Procedure {
     const Outcome outcome = enabling_.advance(context);
     if (!outcome.isDone()) return outcome;
     AxisCore& axis = context.axis;
-    return Outcome::done(jointName(axis.config()) + ": enabled in mode " + axis.mode().spec->name +
+    return Outcome::done(jointName(axis.config()) + ": enabled in mode " + axis.mode().spec().name +
                          " after " + seconds(context.now - started_));
   }
 
@@ -107,9 +110,9 @@ class Enable : public Procedure {
 Result<std::unique_ptr<Procedure>> makeEnable(AxisCore& axis) {
   const std::string refusal = nodeRefusal(axis, "enable");
   if (!refusal.empty()) return Error{refusal};
-  if (axis.faulted()) return Error{"cannot enable: " + axis.faultText()};
-  const ModeChannel& mode = axis.workingMode();
-  const std::string unusable = axis.modeRefusal(mode);
+  if (axis.faulted()) return Error{"cannot enable: " + axis.faults().text()};
+  const ModeChannel& mode = axis.mode().working();
+  const std::string unusable = axis.mode().refusal(mode);
   if (!unusable.empty()) {
     return Error{axis.who() + ": cannot enable in mode " + mode.spec->name + ": " + unusable};
   }

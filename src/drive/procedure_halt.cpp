@@ -1,9 +1,10 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <optional>
 
-#include "procedure.h"
-#include "sentence.h"
-#include "step_stop.h"
+#include "drive/procedure.h"
+#include "drive/procedure_limits.h"
+#include "drive/sentence.h"
+#include "drive/step_stop.h"
 
 namespace cia402::drive {
 namespace {
@@ -17,7 +18,7 @@ class Halt : public Procedure {
     AxisCore& axis = context.axis;
     if (!begun_) return begin(context);
     if (quick_stop_) return awaitQuickStop(context);
-    if (axis.setPointsAtRest() && axis.seenToStand(context.now)) {
+    if (axis.generator().sent().atRest() && axis.feedback().seenToStand(context.now)) {
       return Outcome::done(jointName(axis.config()) + ": halted at " + place(axis) +
                            "; enable releases the halt");
     }
@@ -26,7 +27,7 @@ class Halt : public Procedure {
     axis.setGoal(Goal::quick_stop);
     return Outcome::failed(axis.who() + ": halt did not bring the axis to standstill within " +
                            seconds(context.now - started_) + " (velocity " + velocity +
-                           "); quick stop is commanded. " + axis.report());
+                           "); quick stop is commanded. " + report(axis));
   }
 
  private:
@@ -34,10 +35,10 @@ class Halt : public Procedure {
     AxisCore& axis = context.axis;
     begun_ = true;
     started_ = context.now;
-    until_ = context.now + axis.stopTime();
-    mode_ = axis.mode().spec->name;
+    until_ = context.now + stopTime(axis.config(), axis.state().velocity);
+    mode_ = axis.mode().spec().name;
     if (axis.inOperation()) {
-      axis.beginHalt(context.now);
+      axis.stops().halt(context.now);
       if (axis.inOperation()) {
         context.show("halting", "standstill");
         return Outcome::running();
@@ -49,7 +50,7 @@ class Halt : public Procedure {
                                ": was being enabled, is switched off again instead");
     } else if (axis.powerOff()) {
       was_off_ = true;
-      if (!axis.mayMove()) return nothingToHalt(axis);
+      if (!axis.feedback().mayMove()) return nothingToHalt(axis);
     }
     quick_stop_.emplace();
     return quick_stop_->advance(context);

@@ -1,8 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "procedure.h"
-#include "procedure_home_drive.h"
-#include "sentence.h"
-#include "step_declare.h"
+#include "drive/procedure.h"
+#include "drive/procedure_home_drive.h"
+#include "drive/sentence.h"
+#include "drive/step_declare.h"
 
 namespace cia402::drive {
 namespace {
@@ -29,6 +29,7 @@ class DeclareZero : public Procedure {
 };
 
 Result<std::unique_ptr<Procedure>> makeDriveHoming(AxisCore& axis) {
+  const auto& methods = axis.profile().homing.methods;
   const ModeChannel* homing = axis.objects().homingChannel();
   if (homing == nullptr) {
     return Error{axis.who() + ": cannot home: the drive profile " + axis.profile().name +
@@ -39,11 +40,13 @@ Result<std::unique_ptr<Procedure>> makeDriveHoming(AxisCore& axis) {
                  ": cannot home: no homing method is configured; set homing: "
                  "{method: ...}"};
   }
-  if (axis.moving()) {
+  if (axis.generator().moving()) {
     return Error{axis.who() + ": homing is only started at standstill (velocity " +
                  number(axis.state().velocity) + ")"};
   }
-  return std::unique_ptr<Procedure>(std::make_unique<DriveHoming>(axis, *homing));
+  const auto method = methods.find(axis.config().homing->method);
+  return std::unique_ptr<Procedure>(std::make_unique<DriveHoming>(
+      axis, *homing, method != methods.end() ? method->second : HomingMethod()));
 }
 
 }  // namespace
@@ -54,18 +57,15 @@ Result<std::unique_ptr<Procedure>> makeHome(AxisCore& axis) {
   }
   const std::string refusal = nodeRefusal(axis, "home");
   if (!refusal.empty()) return Error{refusal};
-  if (axis.faulted()) return Error{"cannot home: " + axis.faultText()};
-  switch (axis.profile().homing.kind) {
-    case HomingSpec::Kind::declare_zero:
-      return std::unique_ptr<Procedure>(
-          std::make_unique<DeclareZero>(axis.config().homing->atHome()));
-    case HomingSpec::Kind::drive:
-      return makeDriveHoming(axis);
-    case HomingSpec::Kind::none:
-      break;
+  if (axis.faulted()) return Error{"cannot home: " + axis.faults().text()};
+  const auto& methods = axis.profile().homing.methods;
+  if (methods.empty()) {
+    return Error{axis.who() + ": cannot home: the drive family " + axis.profile().name +
+                 " knows no homing; set_position declares the present position"};
   }
-  return Error{axis.who() + ": cannot home: the drive family " + axis.profile().name +
-               " knows no homing; set_position declares the present position"};
+  const bool declared = !axis.config().homing->method && methods.count(std::nullopt) != 0;
+  if (!declared) return makeDriveHoming(axis);
+  return std::unique_ptr<Procedure>(std::make_unique<DeclareZero>(axis.config().homing->atHome()));
 }
 
 }  // namespace cia402::drive

@@ -1,11 +1,11 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "procedure_home_drive.h"
+#include "drive/procedure_home_drive.h"
 
 #include <algorithm>
 #include <utility>
 
 #include "cia402_driver/fieldbus/abort_code.h"
-#include "sentence.h"
+#include "drive/sentence.h"
 
 namespace cia402::drive {
 namespace {
@@ -19,20 +19,20 @@ bool prismatic(const AxisCore& axis) {
 }
 }  // namespace
 
-DriveHoming::DriveHoming(AxisCore& axis, const ModeChannel& homing)
+DriveHoming::DriveHoming(AxisCore& axis, const ModeChannel& homing, const HomingMethod& method)
     : homing_(&homing),
-      before_(axis.mode().spec->kind == ControlKind::homing
+      before_(axis.mode().spec().kind == ControlKind::homing
                   ? axis.objects().channel(axis.config().mode)
-                  : &axis.workingMode()),
+                  : &axis.mode().working()),
       writes_(axis.profile().homing.writes),
       mode_(homing, axis.profile()),
       enabling_(homing, axis.profile()),
-      moves_nothing_(*axis.config().homing->method == 35 || *axis.config().homing->method == 37) {}
+      method_(method) {}
 
 void DriveHoming::enter(Phase phase, const Context& context) {
   phase_ = phase;
   since_ = context.now;
-  frames_ = context.axis.controlwordFrames();
+  frames_ = context.axis.control().frames();
 }
 
 Outcome DriveHoming::advance(const Context& context) {
@@ -43,7 +43,7 @@ Outcome DriveHoming::advance(const Context& context) {
     case Phase::writing: {
       const Outcome outcome = writes_.advance(context);
       if (!outcome.isDone()) return outcome;
-      if (!context.axis.setPointsAtRest() || !context.axis.limitsSettled()) {
+      if (!context.axis.generator().sent().atRest() || !context.axis.limits().settled()) {
         return Outcome::running();
       }
       entered_by_mode_ = context.axis.inOperation();
@@ -73,7 +73,7 @@ Outcome DriveHoming::advance(const Context& context) {
 void DriveHoming::begin(const Context& context) {
   AxisCore& axis = context.axis;
   started_ = context.now;
-  axis.openLimits(true);
+  axis.limits().open(true);
   enter(Phase::writing, context);
 }
 
@@ -87,7 +87,7 @@ Outcome DriveHoming::enterHoming(const Context& context) {
 
 Outcome DriveHoming::clearOldResult(const Context& context) {
   AxisCore& axis = context.axis;
-  if (axis.controlwordFrames() < frames_ + kSureFrames) return Outcome::running();  // bit 4 is low
+  if (axis.control().frames() < frames_ + kSureFrames) return Outcome::running();  // bit 4 is low
   const HomingStatus now = status(context);
   const bool clear = now == HomingStatus::in_progress || now == HomingStatus::interrupted;
   if (clear) {
@@ -106,7 +106,7 @@ Outcome DriveHoming::clearOldResult(const Context& context) {
 
 void DriveHoming::start(const Context& context) {
   AxisCore& axis = context.axis;
-  axis.setHomingStart(true);
+  axis.control().setHomingStart(true);
   end_ = context.now + axis.config().homing->timeout;
   enter(Phase::searching, context);
   context.show("searching home",
@@ -118,7 +118,7 @@ void DriveHoming::start(const Context& context) {
 Outcome DriveHoming::search(const Context& context) {
   AxisCore& axis = context.axis;
   if (context.now >= end_) return timeOut(context);
-  if (axis.controlwordFrames() < frames_ + kSureFrames || !statuswordIsFresh(context)) {
+  if (axis.control().frames() < frames_ + kSureFrames || !statuswordIsFresh(context)) {
     return Outcome::running();
   }
   const HomingStatus now = status(context);
@@ -129,20 +129,20 @@ Outcome DriveHoming::search(const Context& context) {
       break;
     case HomingStatus::completed:
       // Methods that do not move are over at once: an old result that stays is the new one, too.
-      if (!old_result_ || (moves_nothing_ && context.now - since_ > kReaction)) succeed(context);
+      if (!old_result_ || (!method_.moves && context.now - since_ > kReaction)) succeed(context);
       return Outcome::running();
     case HomingStatus::error_moving:
     case HomingStatus::error_stopped:
     case HomingStatus::contradictory:
-      giveUp(context, std::string("the drive reports ") + toString(now) + " (" + axis.stateText() +
-                          "), " + axis.emergencyText());
+      giveUp(context, std::string("the drive reports ") + toString(now) + " (" +
+                          axis.feedback().stateText() + "), " + axis.faults().emergencyText());
       return Outcome::running();
     case HomingStatus::interrupted:
       if (!was_running_) break;
       if (interrupted_since_ == Time{}) interrupted_since_ = context.now;
       if (context.now - interrupted_since_ <= kReaction) return Outcome::running();
-      giveUp(context,
-             "the drive interrupted it (" + axis.stateText() + "), " + axis.emergencyText());
+      giveUp(context, "the drive interrupted it (" + axis.feedback().stateText() + "), " +
+                          axis.faults().emergencyText());
       return Outcome::running();
     case HomingStatus::attained_moving:
       break;
@@ -161,7 +161,7 @@ Outcome DriveHoming::timeOut(const Context& context) {
          : was_running_ ? "The drive was still searching: check switches, direction of the method "
                           "and homing: {timeout}. "
                         : "The drive never started. ";
-  why += axis.report();
+  why += report(axis);
   axis.setGoal(Goal::quick_stop);
   axis.selectMode(*before_);
   return Outcome::failed(why);
@@ -179,7 +179,7 @@ void DriveHoming::succeed(const Context& context) {
     enter(Phase::reading_offset, context);
     context.show("reading the home offset", "607C:00 home offset");
   } else {
-    adopt(context, axis.objects().position.conversion.toJoint(0));
+    adopt(context, axis.objects().signals[SignalId::position].conversion.toJoint(0));
   }
 }
 
@@ -189,21 +189,21 @@ Outcome DriveHoming::readOffset(const Context& context) {
                        (offset_->abortCode() == fieldbus::abort_code::kNoSuchObject ||
                         offset_->abortCode() == fieldbus::abort_code::kNoSuchSubindex);
   if (missing) {  // the home position is its zero then
-    adopt(context, context.axis.objects().position.conversion.toJoint(0));
+    adopt(context, context.axis.objects().signals[SignalId::position].conversion.toJoint(0));
     return Outcome::running();
   }
   if (!offset_->ok() || offset_->data().size() > 8) {
     giveUp(context, "home was found, but the home offset could not be read: " + offset_->message());
     return Outcome::running();
   }
-  adopt(context,
-        context.axis.objects().position.conversion.toJoint(fieldbus::toUnsigned(offset_->data())));
+  adopt(context, context.axis.objects().signals[SignalId::position].conversion.toJoint(
+                     fieldbus::toUnsigned(offset_->data())));
   return Outcome::running();
 }
 
 void DriveHoming::adopt(const Context& context, double home_in_drive) {
   AxisCore& axis = context.axis;
-  axis.setHomingStart(false);
+  axis.control().setHomingStart(false);
   axis.adoptDriveZero(axis.config().homing->atHome() - home_in_drive);
   enter(Phase::settling, context);
   context.show("home found", "standstill");
@@ -211,9 +211,10 @@ void DriveHoming::adopt(const Context& context, double home_in_drive) {
 
 Outcome DriveHoming::settle(const Context& context) {
   AxisCore& axis = context.axis;
-  const bool sent = axis.controlwordFrames() >= frames_ + kSureFrames;
-  if (sent && (axis.atStandstill() || context.now - since_ > axis.profile().timing.state_change)) {
-    axis.openLimits(false);
+  const bool sent = axis.control().frames() >= frames_ + kSureFrames;
+  if (sent && (axis.feedback().atStandstill() ||
+               context.now - since_ > axis.profile().timing.state_change)) {
+    axis.limits().open(false);
     enter(Phase::limiting, context);
     context.show("writing position limits", "the drive to take those of the new zero");
   }
@@ -223,7 +224,7 @@ Outcome DriveHoming::settle(const Context& context) {
 /// Before a mode comes back in which the drive would clamp its target to those of another zero.
 Outcome DriveHoming::limit(const Context& context) {
   AxisCore& axis = context.axis;
-  if (!axis.limitsSettled()) return Outcome::running();
+  if (!axis.limits().settled()) return Outcome::running();
   const std::string problem = axis.limits().problem();
   if (problem.empty()) {
     restore(context);
@@ -250,17 +251,17 @@ bool DriveHoming::cancel(const std::string& reason, const Context& context) {
 void DriveHoming::giveUp(const Context& context, std::string why) {
   AxisCore& axis = context.axis;
   failure_ = std::move(why);
-  axis.setHomingStart(false);
-  axis.setHaltBit(axis.profile().halt_supported);
+  axis.control().setHomingStart(false);
+  axis.control().setHalt(axis.profile().halt_supported);
   enter(Phase::stopping, context);
   context.show("stopping", "standstill after controlword bit 4 was dropped");
 }
 
 Outcome DriveHoming::stop(const Context& context) {
   AxisCore& axis = context.axis;
-  const bool sent = axis.controlwordFrames() >= frames_ + kSureFrames;
-  if (sent && axis.atStandstill()) {
-    axis.setHaltBit(false);
+  const bool sent = axis.control().frames() >= frames_ + kSureFrames;
+  if (sent && axis.feedback().atStandstill()) {
+    axis.control().setHalt(false);
     restore(context);
     return Outcome::running();
   }
@@ -297,7 +298,7 @@ Outcome DriveHoming::finishRestoring(const Context& context) {
 
 HomingStatus DriveHoming::status(const Context& context) const {
   const AxisCore& axis = context.axis;
-  return decodeHoming(axis.state().statusword, *homing_->spec, axis.measuredStill());
+  return decodeHoming(axis.state().statusword, *homing_->spec, axis.feedback().measuredStill());
 }
 
 bool DriveHoming::attained(const Context& context) const {
@@ -307,7 +308,7 @@ bool DriveHoming::attained(const Context& context) const {
 
 bool DriveHoming::statuswordIsFresh(const Context& context) const {
   AxisCore& axis = context.axis;
-  const InputObject& object = axis.objects().statusword;
+  const Signal& object = axis.objects().signals[SignalId::statusword];
   const fieldbus::ProcessImage& image = axis.device().image();
   if (!image.regular(object.slot)) return context.now - since_ > std::chrono::milliseconds(20);
   return image.input(object.slot).stamp > since_;
@@ -320,11 +321,8 @@ bool DriveHoming::offsetIsWritten(const AxisCore& axis) const {
 }
 
 std::string DriveHoming::method(const AxisCore& axis) const {
-  const int number = *axis.config().homing->method;
-  const auto& methods = axis.profile().homing.methods;
-  const auto known = methods.find(number);
-  std::string text = "method " + std::to_string(number);
-  if (known != methods.end()) text += " (" + known->second + ")";
+  std::string text = "method " + std::to_string(*axis.config().homing->method);
+  if (!method_.text.empty()) text += " (" + method_.text + ")";
   return text;
 }
 

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "cia402_driver/drive/homing_status.h"
-#include "procedure.h"
-#include "step_switch.h"
+#include "drive/procedure.h"
+#include "drive/step_switch.h"
 
 namespace cia402::drive {
 
@@ -19,7 +19,8 @@ namespace cia402::drive {
 /// and the joint's zero is shifted in software by what is missing.
 class DriveHoming : public Procedure {
  public:
-  DriveHoming(AxisCore& axis, const ModeChannel& homing);
+  /// @param homing the profile's homing mode, @param method that is configured; its number is known
+  DriveHoming(AxisCore& axis, const ModeChannel& homing, const HomingMethod& method);
   Outcome advance(const Context& context) override;
   bool cancel(const std::string& reason, const Context& context) override;
 
@@ -69,7 +70,7 @@ class DriveHoming : public Procedure {
   fieldbus::Ticket offset_;
 
   Phase phase_ = Phase::begin;
-  bool moves_nothing_;  ///< methods 35 and 37: the present position is home
+  HomingMethod method_;  ///< that is configured
   bool entered_by_mode_ = false;
   bool old_result_ = false;   ///< the drive shows "attained" before the start
   bool was_running_ = false;  ///< it showed "in progress" after the start

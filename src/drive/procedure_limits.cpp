@@ -1,13 +1,13 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "procedure_limits.h"
+#include "drive/procedure_limits.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "cia402_driver/drive/standstill.h"
-#include "procedure.h"
-#include "step_enable.h"
-#include "step_fault_reset.h"
+#include "drive/procedure.h"
+#include "drive/step_enable.h"
+#include "drive/step_fault_reset.h"
 
 namespace cia402::drive {
 namespace {
@@ -45,19 +45,23 @@ struct Steps {
     const bool detour = rules.again == ModeChange::Again::same && !rules.detours.empty();
     return detour ? 2 * mode() : timing.mode_change;
   }
-  /// From switch on disabled it takes three transitions, and one more out of quick stop active.
+  /// From switch on disabled three transitions, and one more out of quick stop active.
+  Duration climb() const {
+    return (timing.transition(16) + timing.transition(12)) / 2 + timing.transition(2) +
+           timing.transition(3) + timing.transition(4);
+  }
   Duration enable() const {
     return timing.state_change + kComeToRest + writes(profile.before_enable) + limits() + mode() +
-           4 * timing.state_change + shown() + std::max(timing.brake_release, kFollowPatience);
+           climb() + shown() + std::max(timing.brake_release, kFollowPatience);
   }
   Duration change() const {  // SwitchStep
     const ModeChange& rules = profile.mode_change;
     const bool may_disable = rules.needs_disabling || !rules.detours.empty();
-    return may_disable ? timing.state_change + enable() + mode() : mode();
+    return may_disable ? timing.disabling() + enable() + mode() : mode();
   }
   Duration reset() const {
-    const Duration once =
-        5 * timing.state_change + FaultResetStep::kInterval + FaultResetStep::kWatch;
+    const Duration once = timing.transition(14) + timing.transition(15) + 3 * timing.state_change +
+                          FaultResetStep::kInterval + FaultResetStep::kWatch;
     const Duration clearing = profile.fault_reset_clears_history ? transfer() : Duration(0);
     if (profile.fault_reset_nmt_stop == Duration::zero()) {
       return clearing + profile.fault_reset_tries * once;
@@ -67,7 +71,9 @@ struct Steps {
   Duration boot() const { return kBootTimes * device.boot; }
   Duration declare() const { return 2 * kStanding + 2 * limits(); }
   Duration home() const {
-    if (!axis.homing || profile.homing.kind != HomingSpec::Kind::drive) return declare();
+    const bool by_drive = axis.homing && profile.homing.methods.count(axis.homing->method) != 0 &&
+                          axis.homing->method;
+    if (!by_drive) return declare();
     return writes(profile.homing.writes) + limits() + enable() + timing.state_change +
            axis.homing->timeout + transfer() + timing.state_change + limits() + change();
   }
@@ -95,7 +101,8 @@ Duration timeLimit(ProcedureKind kind, const AxisConfig& config,
     case ProcedureKind::enable:
       return kMargin + std::max(steps.change(), steps.enable());
     case ProcedureKind::disable:
-      return kMargin + stop + 2 * change + kComeToRest;
+      return kMargin + stop + steps.timing.transition(5) + steps.timing.transition(10) +
+             kComeToRest;
     case ProcedureKind::home:
       return kMargin + steps.home();
     case ProcedureKind::clear_faults:
@@ -103,7 +110,7 @@ Duration timeLimit(ProcedureKind kind, const AxisConfig& config,
     case ProcedureKind::recover:
       return kMargin + 2 * change + steps.boot() + steps.reset() + steps.enable();
     case ProcedureKind::quick_stop:
-      return kMargin + stop + std::max(change, steps.transfer());
+      return kMargin + stop + std::max(steps.timing.transition(12), steps.transfer());
     case ProcedureKind::halt:
       return kMargin + stop;
     case ProcedureKind::set_mode:

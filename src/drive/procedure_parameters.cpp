@@ -3,9 +3,9 @@
 #include <cstdio>
 
 #include "cia402_driver/fieldbus/abort_code.h"
-#include "procedure.h"
-#include "procedure_limits.h"
-#include "sentence.h"
+#include "drive/procedure.h"
+#include "drive/procedure_limits.h"
+#include "drive/sentence.h"
 
 namespace cia402::drive {
 namespace {
@@ -52,7 +52,8 @@ std::string powerRefusal(const AxisCore& axis, const Storage& storage) {
     return what + "the axis is not disabled (" + toString(axis.state().state) +
            "); disable it first";
   }
-  return axis.moving() ? what + "the axis moves; wait until it is at rest" : std::string();
+  return axis.generator().moving() ? what + "the axis moves; wait until it is at rest"
+                                   : std::string();
 }
 
 /// Writes the signature to each chosen sub-index of 1010h or 1011h that can be commanded so.
@@ -65,7 +66,7 @@ class StorageStep {
     while (next_ < subindices_.size()) {
       const std::string refusal = powerRefusal(context.axis, storage_);
       if (!refusal.empty()) return Outcome::failed(refusal + done());
-      if (next_ == 0 && !ticket_ && !context.axis.atStandstill()) {
+      if (next_ == 0 && !ticket_ && !context.axis.feedback().atStandstill()) {
         context.show("waiting for rest", "the axis to be seen standing");
         return Outcome::running();
       }
@@ -158,7 +159,7 @@ class SaveParameters : public Procedure {
                               " in the drive's memory after " +
                               seconds(context.now - context.status.started);
     if (!axis.profile().parameters.power_cycle_after_save) return Outcome::done(saved);
-    axis.wantPowerCycle();
+    axis.control().wantPowerCycle();
     return Outcome::remarked(saved + "; switch the drive off and on before it is enabled again");
   }
 

@@ -1,9 +1,9 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "procedure.h"
-#include "sentence.h"
-#include "step_stop.h"
+#include "drive/procedure.h"
+#include "drive/sentence.h"
+#include "drive/step_stop.h"
 
 namespace cia402::drive {
 namespace {
@@ -45,7 +45,7 @@ class QuickStop : public Procedure {
     AxisCore& axis = context.axis;
     const std::string joint = jointName(axis.config());
     if (axis.faulted()) {
-      return Outcome::remarked(joint + ": no motion is commanded; " + axis.faultText());
+      return Outcome::remarked(joint + ": no motion is commanded; " + axis.faults().text());
     }
     if (axis.powerOff()) {
       axis.setGoal(Goal::disabled);
@@ -57,7 +57,7 @@ class QuickStop : public Procedure {
                            ": stopped, holds its position in quick stop active; enable to " +
                            "go on or disable");
     }
-    if (context.now - since_ <= axis.profile().timing.state_change / 2) return Outcome::running();
+    if (context.now - since_ <= axis.profile().timing.transition(12) / 2) return Outcome::running();
     axis.setGoal(Goal::disabled);  // transition 12 by hand: the drive did not take it by itself
     return Outcome::remarked(joint + ": stopped; the drive stayed in quick stop active, so " +
                              "disable voltage is commanded");

@@ -1,11 +1,11 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <optional>
 
-#include "procedure.h"
-#include "procedure_limits.h"
-#include "sentence.h"
-#include "step_enable.h"
-#include "step_fault_reset.h"
+#include "drive/procedure.h"
+#include "drive/procedure_limits.h"
+#include "drive/sentence.h"
+#include "drive/step_enable.h"
+#include "drive/step_fault_reset.h"
 
 namespace cia402::drive {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 /// is enabled and well is left alone, also in motion. Succeeds if the axis takes commands then.
 class Recover : public Procedure {
  public:
-  explicit Recover(AxisCore& axis) : enabling_(axis.workingMode(), axis.profile()) {}
+  explicit Recover(AxisCore& axis) : enabling_(axis.mode().working(), axis.profile()) {}
 
   Outcome advance(const Context& context) override {
     switch (phase_) {
@@ -45,7 +45,8 @@ class Recover : public Procedure {
 
   bool leavesAlone(const Context& context) const override {
     const AxisCore& axis = context.axis;
-    return axis.heardLately(context.now) && isWell(axis) && axis.brakeReleased(context.now);
+    return axis.feedback().heardLately(context.now) && isWell(axis) &&
+           axis.brakeReleased(context.now);
   }
   bool survivesNodeLoss() const override { return phase_ == Phase::booting; }
 
@@ -102,7 +103,7 @@ class Recover : public Procedure {
     AxisCore& axis = context.axis;
     // What was heard before the call may be of a drive that has gone since.
     const bool valid = axis.state().feedback_valid;
-    if (valid && !axis.heardLately(context.now)) return Outcome::running();
+    if (valid && !axis.feedback().heardLately(context.now)) return Outcome::running();
     if (valid) {
       phase_ = clearable(axis) ? Phase::clearing : Phase::enabling;
       return Outcome::running();
@@ -114,22 +115,22 @@ class Recover : public Procedure {
     }
     return Outcome::failed(axis.who() + ": no usable statusword (6041:00) and position (6064:00) " +
                            "within " + seconds(context.now - since_) +
-                           " after the node was ready: " + axis.feedbackText() +
+                           " after the node was ready: " + axis.feedback().text() +
                            "; check bus load, cable and the drive's TPDOs");
   }
 
   static Outcome leave(const Context& context) {
     const AxisCore& axis = context.axis;
-    const std::string obstacle = axis.obstacle();
+    const std::string obstacle = drive::obstacle(axis);
     if (!obstacle.empty()) return Outcome::failed(obstacle);
     return Outcome::done(jointName(axis.config()) + ": is enabled and well, mode " +
-                         axis.mode().spec->name + "; it was left alone");
+                         axis.mode().spec().name + "; it was left alone");
   }
 
   Outcome finish(const Context& context) {
     const AxisCore& axis = context.axis;
-    const std::string obstacle = axis.obstacle();
-    const std::string done = "recovered, enabled in mode " + axis.mode().spec->name + " after " +
+    const std::string obstacle = drive::obstacle(axis);
+    const std::string done = "recovered, enabled in mode " + axis.mode().spec().name + " after " +
                              seconds(context.now - started_);
     if (!obstacle.empty()) return Outcome::failed(obstacle + " (" + done + ")");
     return Outcome::done(jointName(axis.config()) + ": " + done);
@@ -145,8 +146,8 @@ class Recover : public Procedure {
 }  // namespace
 
 Result<std::unique_ptr<Procedure>> makeRecover(AxisCore& axis) {
-  const ModeChannel& mode = axis.workingMode();
-  const std::string unusable = axis.modeRefusal(mode);
+  const ModeChannel& mode = axis.mode().working();
+  const std::string unusable = axis.mode().refusal(mode);
   if (!unusable.empty()) {
     return Error{axis.who() + ": cannot enable in mode " + mode.spec->name + ": " + unusable};
   }

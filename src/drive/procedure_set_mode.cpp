@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "procedure.h"
-#include "sentence.h"
-#include "step_switch.h"
+#include "drive/procedure.h"
+#include "drive/sentence.h"
+#include "drive/step_switch.h"
 
 namespace cia402::drive {
 namespace {
@@ -38,7 +38,7 @@ class SetMode : public Procedure {
 std::string knownModes(const AxisCore& axis) {
   std::string names;
   for (const ModeChannel& channel : axis.objects().modes) {
-    if (channel.spec->kind == ControlKind::homing || !axis.modeRefusal(channel).empty()) {
+    if (channel.spec->kind == ControlKind::homing || !axis.mode().refusal(channel).empty()) {
       continue;
     }
     names += (names.empty() ? "" : ", ") + channel.spec->name;
@@ -58,7 +58,7 @@ Result<std::unique_ptr<Procedure>> makeSetMode(AxisCore& axis, const std::string
   if (channel->spec->kind == ControlKind::homing) {
     return Error{axis.who() + ": " + name + " is not entered by set_mode; call home"};
   }
-  const std::string unusable = axis.modeRefusal(*channel);
+  const std::string unusable = axis.mode().refusal(*channel);
   if (!unusable.empty()) {
     return Error{axis.who() + ": mode " + name + " cannot be used: " + unusable};
   }
@@ -72,7 +72,7 @@ Result<std::unique_ptr<Procedure>> makeSetMode(AxisCore& axis, const std::string
   if (!axis.state().feedback_valid) {
     return Error{axis.who() + ": cannot set the mode: no fresh statusword and position"};
   }
-  if (!axis.powerOff() && axis.moving()) {
+  if (!axis.powerOff() && axis.generator().moving()) {
     return Error{axis.who() + ": mode " + name + " is refused in motion (velocity " +
                  number(axis.state().velocity) + "); stop the axis first"};
   }

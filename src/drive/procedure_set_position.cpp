@@ -1,9 +1,9 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
-#include "procedure.h"
-#include "sentence.h"
-#include "step_declare.h"
+#include "drive/procedure.h"
+#include "drive/sentence.h"
+#include "drive/step_declare.h"
 
 namespace cia402::drive {
 namespace {

@@ -2,6 +2,7 @@
 #include "cia402_driver/drive/profile.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "cia402_driver/fieldbus/object_dictionary.h"
@@ -54,6 +55,17 @@ const ModeChange::Detour* ModeChange::detour(const std::string& from, const std:
     return candidate.from == from && candidate.to == to;
   });
   return found == detours.end() ? nullptr : &*found;
+}
+
+bool movesByStandard(int method) {
+  constexpr std::array<int, 2> kOnPresentPosition = {35, 37};
+  return std::find(kOnPresentPosition.begin(), kOnPresentPosition.end(), method) ==
+         kOnPresentPosition.end();
+}
+
+Duration DriveProfile::Timing::transition(int number) const {
+  const auto own = transitions.find(number);
+  return own != transitions.end() ? own->second : state_change;
 }
 
 const ModeSpec* DriveProfile::mode(const std::string& mode_name) const {

@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "step_declare.h"
+#include "drive/step_declare.h"
 
 namespace cia402::drive {
 
@@ -18,16 +18,16 @@ Outcome DeclareStep::advance(const Context& context) {
   switch (phase_) {
     case Phase::standing:
     case Phase::giving_up:
-      if (phase_ == Phase::standing && axis.giveUpGoal()) {
+      if (phase_ == Phase::standing && axis.generator().giveUpGoal()) {
         phase_ = Phase::giving_up;
         since_ = kNever;
         context.show("giving up the goal", "the axis to stand without one");
         return Outcome::running();
       }
       if (!stands(context, outcome)) return outcome;
-      if (axis.handshakeBusy()) return outcome;
+      if (axis.generator().handingOver()) return outcome;
       phase_ = Phase::opening;
-      axis.openLimits(true);
+      axis.limits().open(true);
       context.show("opening position limits", "the drive to let go of those of the old zero");
       return Outcome::running();
     case Phase::opening:
@@ -37,7 +37,7 @@ Outcome DeclareStep::advance(const Context& context) {
       phase_ = Phase::closing;
       before_ = axis.state().position;
       axis.declarePosition(position_);
-      axis.openLimits(false);
+      axis.limits().open(false);
       context.show("writing position limits", "the drive to take those of the new zero");
       return Outcome::running();
     case Phase::closing:
@@ -48,13 +48,13 @@ Outcome DeclareStep::advance(const Context& context) {
 
 Outcome DeclareStep::open(const Context& context) {
   AxisCore& axis = context.axis;
-  if (!axis.limitsSettled()) return Outcome::running();
+  if (!axis.limits().settled()) return Outcome::running();
   const std::string problem = axis.limits().problem();
   if (problem.empty()) {
     phase_ = Phase::declaring;
     return Outcome::running();
   }
-  axis.openLimits(false);
+  axis.limits().open(false);
   return Outcome::failed(axis.who() + ": " + what_ +
                          " is refused: the drive's position limits would be those of the old zero, "
                          "for it does not take others now" +
@@ -64,7 +64,7 @@ Outcome DeclareStep::open(const Context& context) {
 
 Outcome DeclareStep::close(const Context& context) {
   AxisCore& axis = context.axis;
-  if (!axis.limitsSettled()) return Outcome::running();
+  if (!axis.limits().settled()) return Outcome::running();
   remark_ = axis.limits().remark();
   return Outcome::done();
 }

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "procedure.h"
+#include "drive/procedure.h"
 
 namespace cia402::drive {
 

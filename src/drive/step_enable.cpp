@@ -1,8 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "step_enable.h"
+#include "drive/step_enable.h"
 
-#include "procedure_limits.h"
-#include "sentence.h"
+#include "drive/procedure_limits.h"
+#include "drive/sentence.h"
 
 namespace cia402::drive {
 
@@ -15,13 +15,13 @@ void EnableStep::enter(Phase phase, const Context& context) {
 Outcome EnableStep::advance(const Context& context) {
   if (!begun_) {
     begun_ = true;
-    const std::string refusal = context.axis.enablingRefusal();
+    const std::string refusal = enablingRefusal(context.axis);
     if (!refusal.empty()) return fail(context, refusal);
     enter(Phase::feedback, context);
     context.show("reading feedback", "statusword and position from the drive");
   }
   if (phase_ != Phase::feedback && context.axis.faulted()) {
-    return fail(context, context.axis.faultText());
+    return fail(context, context.axis.faults().text());
   }
   switch (phase_) {
     case Phase::feedback:
@@ -32,7 +32,7 @@ Outcome EnableStep::advance(const Context& context) {
       const Outcome outcome = writes_.advance(context);
       if (!outcome.isDone()) return outcome;
       enter(Phase::limits, context);
-      context.axis.renewLimits();
+      context.axis.limits().renew();
       context.show("writing position limits", "the drive to take the joint's limits");
       return Outcome::running();
     }
@@ -71,7 +71,7 @@ bool EnableStep::resumes(const AxisCore& axis) const {
   const DriveProfile& profile = axis.profile();
   return axis.state().state == State::quick_stop_active && !profile.quick_stop_holds.empty() &&
          profile.mode_change.needs_disabling && axis.config().quick_stop_holds &&
-         &axis.mode() == channel_ && axis.shownMode() == channel_->spec->value;
+         &axis.mode().channel() == channel_ && axis.feedback().shownMode() == channel_->spec->value;
 }
 
 Outcome EnableStep::awaitRest(const Context& context) {
@@ -80,8 +80,9 @@ Outcome EnableStep::awaitRest(const Context& context) {
     enter(Phase::feedback, context);
     return Outcome::running();
   }
-  if (axis.atStandstill() && !axis.heardLately(context.now)) return Outcome::running();
-  if (axis.atStandstill()) {
+  if (axis.feedback().atStandstill() && !axis.feedback().heardLately(context.now))
+    return Outcome::running();
+  if (axis.feedback().atStandstill()) {
     enter(resumes(axis) ? Phase::transitions : Phase::writing, context);
     return Outcome::running();
   }
@@ -93,12 +94,12 @@ Outcome EnableStep::awaitRest(const Context& context) {
   const std::string why = axis.who() + ": is not switched on, for it still moves after " +
                           seconds(waited) + " (velocity " + number(axis.state().velocity) + ")";
   return Outcome::failed(off ? why + " and nothing of the drive brakes it; bring it to rest"
-                             : why + ", quick stop is commanded; " + axis.report());
+                             : why + ", quick stop is commanded; " + report(axis));
 }
 
 Outcome EnableStep::awaitLimits(const Context& context) {
   AxisCore& axis = context.axis;
-  if (!axis.limitsSettled()) return Outcome::running();
+  if (!axis.limits().settled()) return Outcome::running();
   const std::string problem = axis.limits().problem();
   if (!problem.empty()) {
     return fail(context, axis.who() +
@@ -115,12 +116,12 @@ Outcome EnableStep::awaitMode(const Context& context) {
   AxisCore& axis = context.axis;
   const Outcome outcome = mode_.advance(context);
   if (!outcome.isDone()) return outcome;
-  if (!axis.state().feedback_valid || !axis.seenToStand(context.now)) {
+  if (!axis.state().feedback_valid || !axis.feedback().seenToStand(context.now)) {
     enter(Phase::standing, context);
     context.show("waiting for standstill", "the axis to stand, before the power comes");
     return Outcome::running();
   }
-  if (!axis.limitsSettled()) {
+  if (!axis.limits().settled()) {
     enter(Phase::limits, context);
     context.show("writing position limits", "the drive to take the joint's limits");
     return Outcome::running();
@@ -131,12 +132,11 @@ Outcome EnableStep::awaitMode(const Context& context) {
 
 Outcome EnableStep::climb(const Context& context) {
   AxisCore& axis = context.axis;
-  if (axis.inOperation() && axis.heardLately(context.now)) {
+  if (axis.inOperation() && axis.feedback().heardLately(context.now)) {
     enter(Phase::shown, context);
     return awaitShown(context);
   }
   const State state = axis.state().state;
-  const Duration limit = axis.profile().timing.state_change;
   if (state != last_) {
     last_ = state;
     since_ = context.now;
@@ -144,17 +144,20 @@ Outcome EnableStep::climb(const Context& context) {
   }
   // From quick stop active by transition 16 where the drive holds there; by 12 where it does not,
   // or does not answer to 16.
-  const bool by_disabling =
-      state == State::quick_stop_active &&
-      (axis.profile().quick_stop_holds.empty() || context.now - since_ > limit / 2);
+  const DriveProfile::Timing& timing = axis.profile().timing;
+  const bool stopped = state == State::quick_stop_active;
+  const bool by_disabling = stopped && (axis.profile().quick_stop_holds.empty() ||
+                                        context.now - since_ > timing.transition(16) / 2);
   Goal goal = by_disabling ? Goal::disabled : Goal::enabled;
   // A quick stop under way is neither cut short nor left in motion.
-  if (state == State::quick_stop_active && axis.moving()) goal = Goal::quick_stop;
+  if (stopped && axis.generator().moving()) goal = Goal::quick_stop;
   if (axis.goal() != goal) axis.setGoal(goal);
+  const Duration limit = stopped ? (timing.transition(16) + timing.transition(12)) / 2
+                                 : timing.transition(nextCommand(state, goal).transition);
   if (context.now - since_ <= limit) return Outcome::running();
   return fail(context, axis.who() + ": enabling timed out: the drive has been in " +
                            toString(state) + " for " + seconds(context.now - since_) + "; " +
-                           axis.report());
+                           report(axis));
 }
 
 /// Until the mode is shown the targets are neutral, and the axis takes no command.
@@ -176,7 +179,7 @@ Outcome EnableStep::awaitShown(const Context& context) {
 /// Its power may have gone since it was seen in operation; then its state says so, or it is lost.
 Outcome EnableStep::awaitBrake(const Context& context) {
   const AxisCore& axis = context.axis;
-  const bool enabled = axis.inOperation() && axis.heardLately(context.now);
+  const bool enabled = axis.inOperation() && axis.feedback().heardLately(context.now);
   return enabled && axis.brakeReleased(context.now) ? Outcome::done() : Outcome::running();
 }
 

@@ -1,9 +1,9 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "procedure.h"
-#include "step_mode.h"
-#include "step_mode_shown.h"
+#include "drive/procedure.h"
+#include "drive/step_mode.h"
+#include "drive/step_mode_shown.h"
 
 namespace cia402::drive {
 

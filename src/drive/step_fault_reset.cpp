@@ -1,8 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "step_fault_reset.h"
+#include "drive/step_fault_reset.h"
 
 #include "cia402_driver/drive/fault_text.h"
-#include "sentence.h"
+#include "drive/sentence.h"
 
 namespace cia402::drive {
 
@@ -12,33 +12,34 @@ bool clearable(const AxisCore& axis) {
 
 bool tellsState(const AxisCore& axis, Time now) {
   const AxisState& state = axis.state();
-  return state.feedback_valid && state.state != State::unknown && axis.heardLately(now);
+  return state.feedback_valid && state.state != State::unknown && axis.feedback().heardLately(now);
 }
 
 void FaultResetStep::enter(Phase phase, const Context& context) {
   phase_ = phase;
   since_ = context.now;
-  frames_ = context.axis.controlwordFrames();
+  frames_ = context.axis.control().frames();
 }
 
 Outcome FaultResetStep::fail(const Context& context, const std::string& why) const {
-  context.axis.setFaultReset(false);
+  context.axis.control().setFaultReset(false);
   return Outcome::failed(why);
 }
 
 Outcome FaultResetStep::cameBack(const Context& context) {
   if (tryAgain(context)) return Outcome::running();
   return fail(context, "the fault came back at once after the reset, its cause is still there: " +
-                           context.axis.faultText());
+                           context.axis.faults().text());
 }
 
 Outcome FaultResetStep::awaitNews(const Context& context) {
   const AxisCore& axis = context.axis;
   const Duration waited = context.now - since_;
   if (waited <= axis.profile().timing.state_change) return Outcome::running();
-  return fail(context, axis.who() +
-                           ": nothing tells whether the fault reset has cleared its fault: " +
-                           (axis.state().feedback_valid ? axis.stateText() : axis.feedbackText()));
+  return fail(
+      context,
+      axis.who() + ": nothing tells whether the fault reset has cleared its fault: " +
+          (axis.state().feedback_valid ? axis.feedback().stateText() : axis.feedback().text()));
 }
 
 Outcome FaultResetStep::awaitReset(const Context& context) {
@@ -47,16 +48,16 @@ Outcome FaultResetStep::awaitReset(const Context& context) {
   if (axis.state().state == State::fault_reaction_active) return cameBack(context);
   if (clearable(axis)) {
     const bool last = tries_ >= axis.profile().fault_reset_tries && !mayPause(context);
-    if (waited <= (last ? axis.profile().timing.state_change : kInterval) || tryAgain(context)) {
+    if (waited <= (last ? axis.profile().timing.transition(15) : kInterval) || tryAgain(context)) {
       return Outcome::running();
     }
     const std::string times = tries_ == 1 ? "" : " (" + std::to_string(tries_) + " tries)";
     return fail(context, "the fault reset (6040:00 bit 7)" + times + " did not clear it within " +
-                             seconds(waited) + ": " + axis.faultText() + "; " + axis.report());
+                             seconds(waited) + ": " + axis.faults().text() + "; " + report(axis));
   }
   if (!tellsState(axis, context.now)) return awaitNews(context);
-  axis.setFaultReset(false);
-  axis.forgetFault();
+  axis.control().setFaultReset(false);
+  axis.faults().forgetFault();
   enter(Phase::low_again, context);
   context.show("fault reset", "controlword bit 7 to be sent low again");
   return Outcome::running();
@@ -67,7 +68,7 @@ bool FaultResetStep::tryAgain(const Context& context) {
   AxisCore& axis = context.axis;
   const int most = axis.profile().fault_reset_tries;
   if (tries_ >= most && !mayPause(context)) return false;
-  axis.setFaultReset(false);
+  axis.control().setFaultReset(false);
   if (tries_++ >= most) {
     beginPause(context);
     return true;
@@ -98,14 +99,14 @@ Duration FaultResetStep::pause(const DriveProfile& profile) {
 
 Outcome FaultResetStep::awaitPause(const Context& context) {
   const AxisCore& axis = context.axis;
-  const bool heard = axis.state().feedback_valid && axis.heardLately(context.now);
+  const bool heard = axis.state().feedback_valid && axis.feedback().heardLately(context.now);
   if (!context.axis.device().paused() && heard) {
     enter(Phase::reacting, context);
     return Outcome::running();
   }
   if (context.now - since_ <= pause(axis.profile())) return Outcome::running();
   return fail(context, axis.who() + ": after NMT stop and start no statusword came for " +
-                           seconds(context.now - since_) + ": " + axis.feedbackText());
+                           seconds(context.now - since_) + ": " + axis.feedback().text());
 }
 
 Outcome FaultResetStep::awaitReaction(const Context& context) {
@@ -118,7 +119,7 @@ Outcome FaultResetStep::advance(const Context& context) {
   AxisCore& axis = context.axis;
   const Duration waited = context.now - since_;
   const Duration limit = axis.profile().timing.state_change;
-  const bool sent = axis.controlwordFrames() >= frames_ + kSureFrames;
+  const bool sent = axis.control().frames() >= frames_ + kSureFrames;
   switch (phase_) {
     case Phase::begin:
       code_ = axis.state().error_code;
@@ -132,9 +133,9 @@ Outcome FaultResetStep::advance(const Context& context) {
       return clearing_->done() ? awaitReaction(context) : Outcome::running();
     case Phase::reacting:
       if (axis.state().state == State::fault_reaction_active) {
-        if (waited <= limit) return Outcome::running();
+        if (waited <= axis.profile().timing.transition(14)) return Outcome::running();
         return fail(context, axis.who() + ": the drive's fault reaction did not end within " +
-                                 seconds(waited) + "; " + axis.report());
+                                 seconds(waited) + "; " + report(axis));
       }
       enter(Phase::low, context);
       context.show("resetting the fault", "controlword bit 7 to be sent low, then high");
@@ -145,9 +146,9 @@ Outcome FaultResetStep::advance(const Context& context) {
         return fail(context, axis.who() + ": no RPDO has left for " + seconds(waited) +
                                  "; is the cycle running?");
       }
-      if (!sent || context.now < axis.nextFaultReset()) return Outcome::running();
-      axis.setFaultReset(true);
-      axis.noteFaultReset(context.now + kInterval);
+      if (!sent || context.now < axis.faults().nextReset()) return Outcome::running();
+      axis.control().setFaultReset(true);
+      axis.faults().noteReset(context.now + kInterval);
       enter(Phase::high, context);
       context.show("resetting the fault", "the drive to leave fault");
       return Outcome::running();

@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "procedure.h"
+#include "drive/procedure.h"
 
 namespace cia402::drive {
 

@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "step_mode.h"
+#include "drive/step_mode.h"
 
-#include "sentence.h"
+#include "drive/sentence.h"
 
 namespace cia402::drive {
 namespace {
@@ -20,12 +20,12 @@ Outcome ModeStep::advance(const Context& context) {
     case Phase::writing: {
       const Outcome outcome = writes_.advance(context);
       if (!outcome.isDone()) return outcome;
-      axis.presetTarget(*mode_);
+      axis.generator().preset(*mode_);
       // What brakes at rest would be in the way of the mode; it ends with the mode anyway.
-      if (!axis.profile().mode_change.while_halted) axis.endBraking();
+      if (!axis.profile().mode_change.while_halted) axis.control().endBraking();
       frames_ = mode_->target.mapped() ? axis.device().image().sent(mode_->target.slot)
-                                       : axis.controlwordFrames();
-      controlword_frames_ = axis.controlwordFrames();
+                                       : axis.control().frames();
+      controlword_frames_ = axis.control().frames();
       started_ = context.now;
       phase_ = Phase::presetting;
       context.show("setting the target to the actual value", "its RPDO to be sent");
@@ -34,8 +34,8 @@ Outcome ModeStep::advance(const Context& context) {
     case Phase::presetting: {
       const std::uint64_t sent = mode_->target.mapped()
                                      ? axis.device().image().sent(mode_->target.slot)
-                                     : axis.controlwordFrames();
-      const bool unbraked = axis.controlwordFrames() >= controlword_frames_ + kSureFrames;
+                                     : axis.control().frames();
+      const bool unbraked = axis.control().frames() >= controlword_frames_ + kSureFrames;
       if (sent >= frames_ + kSureFrames && unbraked) {
         select(context);
       } else if (context.now - started_ > axis.profile().timing.mode_change) {
@@ -57,16 +57,17 @@ Outcome ModeStep::advance(const Context& context) {
 
 void ModeStep::enter(AxisCore& axis, const ModeChannel& mode) const {
   axis.selectMode(mode);
-  if (bound_for_ != nullptr) axis.bindFor(*bound_for_);
+  if (bound_for_ != nullptr) axis.mode().bindFor(*bound_for_);
 }
 
 void ModeStep::select(const Context& context) {
   AxisCore& axis = context.axis;
-  before_ = &axis.mode();
+  before_ = &axis.mode().channel();
   enter(axis, *mode_);
-  for (const WriteStep::Mapped& mapped : writes_.mapped()) axis.holdOutput(mapped.slot, mapped.raw);
+  for (const WriteStep::Mapped& mapped : writes_.mapped())
+    axis.mode().hold(mapped.slot, mapped.raw);
   started_ = context.now;
-  controlword_frames_ = axis.targetFrames();
+  controlword_frames_ = axis.generator().targetFrames();
   const OutputObject& object = axis.objects().mode;
   if (object.mapped() || object.spec == nullptr) {
     phase_ = Phase::waiting;
@@ -85,21 +86,23 @@ Outcome ModeStep::await(const Context& context) {
   askForDisplay(context);
   // Some show it in operation enabled only; what is shown counts before the axis takes a command.
   const bool later = axis.profile().mode_change.shown_when_enabled && !axis.inOperation();
-  const bool shown = later || axis.shownMode() == mode_->spec->value;
-  if (shown && axis.targetFrames() >= controlword_frames_ + kSureFrames) return Outcome::done();
+  const bool shown = later || axis.feedback().shownMode() == mode_->spec->value;
+  if (shown && axis.generator().targetFrames() >= controlword_frames_ + kSureFrames)
+    return Outcome::done();
   if (context.now - started_ <= axis.profile().timing.mode_change) return Outcome::running();
-  const std::string shows = axis.shownMode() ? modeText(*axis.shownMode(), axis) : "nothing";
+  const std::string shows =
+      axis.feedback().shownMode() ? modeText(*axis.feedback().shownMode(), axis) : "nothing";
   return fail(context, "6061:00 mode display shows " + shows + " " +
                            seconds(context.now - started_) + " after 6060:00 was set to " +
-                           modeText(mode_->spec->value, axis) + "; " + axis.report());
+                           modeText(mode_->spec->value, axis) + "; " + report(axis));
 }
 
 void ModeStep::askForDisplay(const Context& context) {
-  const InputObject& object = context.axis.objects().mode_display;
+  const Signal& object = context.axis.objects().signals[SignalId::mode_display];
   if (object.spec == nullptr || object.mapped()) return;
   if (display_ && display_->done()) {
     if (display_->ok() && display_->data().size() <= 8) {
-      context.axis.putShownMode(fieldbus::toUnsigned(display_->data()), context.now);
+      context.axis.feedback().putShownMode(fieldbus::toUnsigned(display_->data()), context.now);
     }
     display_.reset();
     next_question_ = context.now + kQuestionInterval;

@@ -1,8 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "procedure.h"
-#include "step_writes.h"
+#include "drive/procedure.h"
+#include "drive/step_writes.h"
 
 namespace cia402::drive {
 

@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "step_mode_shown.h"
+#include "drive/step_mode_shown.h"
 
-#include "sentence.h"
+#include "drive/sentence.h"
 
 namespace cia402::drive {
 
@@ -12,7 +12,7 @@ Outcome ModeShownStep::advance(const Context& context) {
   switch (phase_) {
     case Phase::begin:
       since_ = context.now;
-      if (axis.shownMode() == wanted) return Outcome::done();
+      if (axis.feedback().shownMode() == wanted) return Outcome::done();
       if (rules.again == ModeChange::Again::through_zero) {
         command(context, Phase::zero, 0);
       } else if (rules.again == ModeChange::Again::same && beginDetour(axis)) {
@@ -47,8 +47,8 @@ Outcome ModeShownStep::advance(const Context& context) {
 
 /// What it shows is the mode that it was in before it was disabled: the one that it leaves.
 bool ModeShownStep::beginDetour(const AxisCore& axis) {
-  if (!axis.shownMode()) return false;
-  const ModeChannel* shown = axis.objects().channelOfValue(*axis.shownMode());
+  if (!axis.feedback().shownMode()) return false;
+  const ModeChannel* shown = axis.objects().channelOfValue(*axis.feedback().shownMode());
   if (shown == nullptr) return false;
   const ModeChange::Detour* detour =
       axis.profile().mode_change.detour(shown->spec->name, mode_->spec->name);
@@ -64,11 +64,11 @@ bool ModeShownStep::beginDetour(const AxisCore& axis) {
 void ModeShownStep::command(const Context& context, Phase phase, int value) {
   AxisCore& axis = context.axis;
   phase_ = phase;
-  frames_ = axis.controlwordFrames();
+  frames_ = axis.control().frames();
   const OutputObject& object = axis.objects().mode;
   if (object.mapped()) {
     const bool is_mode = value == mode_->spec->value;
-    axis.overrideMode(is_mode ? std::optional<int>() : std::optional<int>(value));
+    axis.mode().overrideValue(is_mode ? std::optional<int>() : std::optional<int>(value));
   } else if (object.spec != nullptr) {
     ticket_ = axis.device().objects().download(
         object.spec->id, wireBytes(static_cast<std::uint64_t>(value), object.spec->type),
@@ -78,23 +78,24 @@ void ModeShownStep::command(const Context& context, Phase phase, int value) {
 
 bool ModeShownStep::sent(const Context& context) const {
   if (ticket_ != nullptr) return ticket_->done();
-  return context.axis.controlwordFrames() >= frames_ + kSureFrames;
+  return context.axis.control().frames() >= frames_ + kSureFrames;
 }
 
 Outcome ModeShownStep::await(const Context& context) {
   AxisCore& axis = context.axis;
-  const bool shown = phase_ == Phase::waiting && axis.shownMode() == mode_->spec->value;
+  const bool shown = phase_ == Phase::waiting && axis.feedback().shownMode() == mode_->spec->value;
   if (shown) return Outcome::done();
   if (context.now - since_ <= axis.profile().timing.mode_change) return Outcome::running();
-  const std::string shows =
-      axis.shownMode() ? std::to_string(*axis.shownMode()) : std::string("nothing");
+  const std::string shows = axis.feedback().shownMode()
+                                ? std::to_string(*axis.feedback().shownMode())
+                                : std::string("nothing");
   return Outcome::failed(
       axis.who() + ": the drive is in operation, but not in mode " + mode_->spec->name +
       ": 6061:00 shows " + shows + " instead of " + std::to_string(mode_->spec->value) + " " +
       seconds(context.now - since_) +
       " after it was enabled; it is disabled. Look in its manual when it takes a "
       "mode (mode_change of the profile); " +
-      axis.report());
+      report(axis));
 }
 
 }  // namespace cia402::drive

@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "procedure.h"
-#include "step_mode.h"
+#include "drive/procedure.h"
+#include "drive/step_mode.h"
 
 namespace cia402::drive {
 

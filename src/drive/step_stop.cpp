@@ -1,7 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "step_stop.h"
+#include "drive/step_stop.h"
 
-#include "sentence.h"
+#include "drive/procedure_limits.h"
+#include "drive/sentence.h"
 
 namespace cia402::drive {
 
@@ -16,16 +17,16 @@ Outcome QuickStopStep::advance(const Context& context) {
   }
   const bool off = axis.powerOff();
   const bool stopped = off || axis.state().state == State::quick_stop_active;
-  const bool at_rest = off ? !axis.mayMove() : axis.atStandstill();
+  const bool at_rest = off ? !axis.feedback().mayMove() : axis.feedback().atStandstill();
   if (stopped && at_rest) return Outcome::done();
   const Duration waited = context.now - started_;
-  if (waited <= axis.stopTime()) return Outcome::running();
+  if (waited <= stopTime(axis.config(), axis.state().velocity)) return Outcome::running();
   if (off) {
     return Outcome::failed(axis.who() + ": the power stage is off, but after " + seconds(waited) +
-                           " " + axis.coastingText());
+                           " " + axis.feedback().coastingText());
   }
   return Outcome::failed(axis.who() + ": the quick stop did not end at standstill within " +
-                         seconds(waited) + "; " + axis.report());
+                         seconds(waited) + "; " + report(axis));
 }
 
 }  // namespace cia402::drive

@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "step_switch.h"
+#include "drive/step_switch.h"
 
-#include "sentence.h"
+#include "drive/sentence.h"
 
 namespace cia402::drive {
 
@@ -16,7 +16,7 @@ Outcome ReadyToSwitchStep::advance(const Context& context) {
     const Outcome standing = awaitStandstill(context, started_, "switching the mode");
     if (!standing.isDone()) return standing;
     // Without power, or in another mode, nothing would hold it that is let go just now.
-    const auto back = withdrawn_ ? std::nullopt : axis.withdrawTarget();
+    const auto back = withdrawn_ ? std::nullopt : axis.generator().withdraw();
     withdrawn_ = true;
     if (back) {
       started_ = context.now + *back;
@@ -24,10 +24,10 @@ Outcome ReadyToSwitchStep::advance(const Context& context) {
       return Outcome::running();
     }
     standing_ = true;
-    axis.renewLimits();
+    axis.limits().renew();
     context.show("writing position limits", "the drive to take the joint's limits");
   }
-  if (!axis.limitsSettled()) return Outcome::running();
+  if (!axis.limits().settled()) return Outcome::running();
   const std::string problem = axis.limits().problem();
   if (!problem.empty()) {
     return Outcome::failed(axis.who() +
@@ -63,7 +63,7 @@ Outcome SwitchStep::advance(const Context& context) {
 Outcome SwitchStep::begin(const Context& context) {
   AxisCore& axis = context.axis;
   const ModeChange& rules = axis.profile().mode_change;
-  const ModeChange::Detour* detour = rules.detour(axis.mode().spec->name, channel_->spec->name);
+  const ModeChange::Detour* detour = rules.detour(axis.mode().spec().name, channel_->spec->name);
   const ModeChannel* between =
       detour == nullptr ? nullptr : axis.objects().channel(detour->through);
   const bool by_disabling = rules.needs_disabling || (detour != nullptr && between == nullptr);
@@ -71,7 +71,7 @@ Outcome SwitchStep::begin(const Context& context) {
     phase_ = Phase::switching;
     return Outcome::running();
   }
-  if (&axis.mode() == channel_ && axis.shownMode() == channel_->spec->value) {
+  if (&axis.mode().channel() == channel_ && axis.feedback().shownMode() == channel_->spec->value) {
     return Outcome::done();
   }
   if (between != nullptr) {
@@ -94,11 +94,11 @@ Outcome SwitchStep::awaitDisabled(const Context& context) {
     phase_ = Phase::enabling;
     return Outcome::running();
   }
-  if (axis.faulted()) return Outcome::failed(axis.faultText());
-  if (context.now - since_ <= axis.profile().timing.state_change) return Outcome::running();
+  if (axis.faulted()) return Outcome::failed(axis.faults().text());
+  if (context.now - since_ <= axis.profile().timing.disabling()) return Outcome::running();
   return Outcome::failed(axis.who() + ": mode " + channel_->spec->name +
                          " was not taken: the drive must be disabled for it and was not within " +
-                         seconds(context.now - since_) + "; " + axis.report());
+                         seconds(context.now - since_) + "; " + report(axis));
 }
 
 }  // namespace cia402::drive

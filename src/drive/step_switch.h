@@ -3,9 +3,9 @@
 
 #include <optional>
 
-#include "procedure.h"
-#include "step_enable.h"
-#include "step_mode.h"
+#include "drive/procedure.h"
+#include "drive/step_enable.h"
+#include "drive/step_mode.h"
 
 namespace cia402::drive {
 

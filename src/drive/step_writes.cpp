@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "step_writes.h"
+#include "drive/step_writes.h"
 
 #include <algorithm>
 #include <utility>
@@ -79,10 +79,11 @@ bool WriteStep::begin(const Context& context, Outcome& problem) {
 bool WriteStep::mayLeaveOut(const Context& context, const fieldbus::Transfer& answer) {
   if (current_.asked_for || !lacking(answer)) return false;
   left_out_.push_back((*writes_)[next_].from);
-  context.axis.warnOnce(context.axis.who() + ": " + current_.name +
-                        " is left out, for only a default asks for it and the drive does not take "
-                        "it: " +
-                        answer.reason() + advice(context));
+  context.axis.notices().warnOnce(
+      context.axis.who() + ": " + current_.name +
+      " is left out, for only a default asks for it and the drive does not take "
+      "it: " +
+      answer.reason() + advice(context));
   return true;
 }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cia402_driver/drive/named_write.h"
-#include "procedure.h"
+#include "drive/procedure.h"
 
 namespace cia402::drive {
 

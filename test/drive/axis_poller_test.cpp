@@ -26,7 +26,9 @@ class AxisPollerTest : public test::ObjectsFixture {
   int pass(Duration span, FakeDrive::Key object, Duration look_every = Duration::zero()) {
     drive.reads.clear();
     for (Duration past{}; past < span; past += 4ms) {
-      if (look_every > Duration::zero() && past % look_every == Duration::zero()) poller.look();
+      if (look_every > Duration::zero() && past % look_every == Duration::zero()) {
+        poller.look(shown);
+      }
       if (poller.due(now)) poller.advance(objects, now);
       run();
       now += 4ms;
@@ -35,8 +37,9 @@ class AxisPollerTest : public test::ObjectsFixture {
   }
 
   ObjectSpec error_spec, velocity_spec;
-  InputObject error, velocity;
+  Signal error, velocity;
   AxisPoller poller;
+  int shown = 0;  ///< the item that is looked at
 };
 
 TEST_F(AxisPollerTest, WhatTheDriverNeedsIsReadEveryFiftyMilliseconds) {
@@ -62,7 +65,7 @@ TEST_F(AxisPollerTest, EachLookReadsOnce) {
 
 TEST_F(AxisPollerTest, ManyLooksReadNoOftenerThanTheIntervalAndDelayNothingElse) {
   poller.add(velocity);
-  poller.add(error, AxisPoller::Reading::when_looked_at);
+  shown = poller.add(error, AxisPoller::Reading::when_looked_at);
   EXPECT_EQ(pass(5200ms, kVelocity, 4ms), 50) << "in turn";
 }
 

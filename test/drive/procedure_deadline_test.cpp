@@ -194,5 +194,40 @@ TEST(ProcedureDeadline, IsNoShorterThanWhatSlowDrivesMayTake) {
   EXPECT_GT(bench.now - status.started, 40s);
 }
 
+/// The drive stays in `state` for so long each time it comes there.
+void linger(Bench& bench, S state, Duration span) {
+  bench.drive.stuck = {state};
+  bench.each_cycle = [&bench, state, span, last = S::disabled, since = bench.now]() mutable {
+    if (bench.drive.state != last) {
+      since = bench.now;
+      bench.drive.stuck = {state};
+    }
+    last = bench.drive.state;
+    if (last == state && bench.now - since > span) bench.drive.stuck.clear();
+  };
+}
+
+TEST(ProcedureDeadline, ATransitionHasTheTimeThatTheProfileGivesIt) {
+  DriveProfile profile = testProfile();
+  profile.timing.transitions[4] = 6s;  // switched on -> operation enabled; the others 2 s
+  Bench bench(testConfig(profile));
+  ASSERT_TRUE(bench.boot());
+  linger(bench, S::on, 5s);
+  const ProcedureStatus& status = bench.perform(ProcedureKind::enable);
+  EXPECT_TRUE(status.success) << status.message;
+  EXPECT_GT(bench.now - status.started, 5s);
+}
+
+TEST(ProcedureDeadline, AnotherTransitionKeepsTheCommonTime) {
+  DriveProfile profile = testProfile();
+  profile.timing.transitions[4] = 6s;
+  Bench bench(testConfig(profile));
+  ASSERT_TRUE(bench.boot());
+  linger(bench, S::ready, 5s);
+  const ProcedureStatus& status = bench.perform(ProcedureKind::enable);
+  EXPECT_FALSE(status.success);
+  EXPECT_THAT(status.message, HasSubstr("the drive has been in ready to switch on for 2"));
+}
+
 }  // namespace
 }  // namespace cia402::drive

@@ -203,7 +203,7 @@ TEST(HomeProcedure, ShiftsInSoftwareWhatAnUnwrittenHomeOffsetMisses) {
 
 TEST(HomeProcedure, DeclaresZeroWhereTheDriveHasNoHoming) {
   DriveProfile profile = testProfile();
-  profile.homing.kind = HomingSpec::Kind::declare_zero;
+  profile.homing.methods = {{std::nullopt, {"declared", false}}};
   AxisConfig config = homingConfig(profile);
   config.homing->method.reset();
   config.homing->offset = 0.25;
@@ -232,7 +232,7 @@ TEST(HomeProcedure, RefusalsSayWhatIsMissing) {
   EXPECT_THAT(without.refusal(ProcedureKind::home), HasSubstr("no homing method is configured"));
 
   DriveProfile profile = testProfile();
-  profile.homing.kind = HomingSpec::Kind::none;
+  profile.homing.methods.clear();
   Bench unable(homingConfig(profile));
   ASSERT_TRUE(unable.boot());
   EXPECT_THAT(unable.refusal(ProcedureKind::home), HasSubstr("set_position"));

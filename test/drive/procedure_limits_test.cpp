@@ -173,6 +173,17 @@ TEST(ProcedureLimits, AHistoryThatIsClearedBeforeAResetTakesATransfer) {
   EXPECT_EQ(limitOf(ProcedureKind::clear_faults, clears), without + slowDevice().access.timeout);
 }
 
+TEST(ProcedureLimits, GrowWithTheTimesOfSingleTransitions) {
+  DriveProfile slow = slowProfile();
+  for (const int transition : {2, 3, 4})
+    slow.timing.transitions[transition] = slow.timing.state_change + 1s;
+  EXPECT_EQ(limitOf(ProcedureKind::enable, slow),
+            limitOf(ProcedureKind::enable, slowProfile()) + 3s);
+  slow.timing.transitions = {{5, slow.timing.state_change + 4s}};
+  EXPECT_EQ(limitOf(ProcedureKind::disable, slow),
+            limitOf(ProcedureKind::disable, slowProfile()) + 4s);
+}
+
 TEST(ProcedureLimits, AModeForWhichTheAxisIsDisabledTakesAnEnablingMore) {
   DriveProfile other = slowProfile();
   other.mode_change.needs_disabling = true;
@@ -188,7 +199,7 @@ TEST(ProcedureLimits, ADeclaredHomeTakesNoLongerThanADeclaredPosition) {
   const Duration declared = limitOf(ProcedureKind::set_position, config);
   EXPECT_EQ(limitOf(ProcedureKind::home, config), declared);
   DriveProfile declares = slowProfile();
-  declares.homing.kind = HomingSpec::Kind::declare_zero;
+  declares.homing.methods = {{std::nullopt, {"declared", false}}};
   EXPECT_EQ(limitOf(ProcedureKind::home, slowAxis(declares)), declared);
 }
 

@@ -75,6 +75,7 @@ TEST(ProfileBounds, AreThemselvesAllowedAndNothingBeyond) {
       {"sync: {period_step: @}", "sync/period_step", {"0.000001", "1"}, {"0.0000009", "1.01"}},
       {"timing: {boot: @}", "timing/boot", deadline, no_deadline},
       {"timing: {state_change: @}", "timing/state_change", deadline, no_deadline},
+      {"timing: {transitions: {4: @}}", "timing/transitions/4", deadline, no_deadline},
       {"timing: {mode_change: @}", "timing/mode_change", deadline, no_deadline},
       {"timing: {sdo: @}", "timing/sdo", deadline, no_deadline},
       {"timing: {brake_release: @}", "timing/brake_release", {"0", "60"}, {"-0.1", "60.1"}},

@@ -78,7 +78,7 @@ TEST(DriveProfile, TheShippedOnesAreValid) {
   const WholeProfile generic = shipped("generic_cia402");
   for (const char* mode : {"pp", "pv", "hm", "csp", "csv"}) EXPECT_NE(generic.mode(mode), nullptr);
   EXPECT_EQ(generic.mode("pp")->handshake, Handshake::new_set_point);
-  EXPECT_EQ(generic.homing.kind, HomingSpec::Kind::drive);
+  EXPECT_EQ(generic.homing.methods.count(std::nullopt), 0u);
   for (const int method : {17, 30, 33, 34, 35, 37})
     EXPECT_EQ(generic.homing.methods.count(method), 1u);
 }
@@ -98,7 +98,8 @@ TEST(DriveProfile, TheDamiaoOneSaysWhatTheManualSays) {
     EXPECT_EQ(damiao.mode(name)->value, value) << name;
     EXPECT_EQ(damiao.mode(name)->handshake, Handshake::none) << name;
   }
-  EXPECT_EQ(damiao.homing.kind, HomingSpec::Kind::declare_zero);
+  ASSERT_EQ(damiao.homing.methods.size(), 1u);
+  EXPECT_EQ(damiao.homing.methods.count(std::nullopt), 1u) << "the position is declared";
   EXPECT_FALSE(damiao.halt_supported);
   EXPECT_TRUE(damiao.warning_stops);
   EXPECT_THAT(damiao.quick_stop_holds, ElementsAre(4, 3));

@@ -46,12 +46,12 @@ fault_reset_nmt_stop: 0.15
 quick_stop_holds: [5, -6]
 sync: {counter: 12, counter_object: true, period_object: false, period_step: 0.001}
 heartbeat: {producer: false, consumer: false, node_guarding: true}
-timing: {boot: 1.5, state_change: 2.5, mode_change: 3.5, brake_release: 0.25, sdo: 0.75,
+timing: {boot: 1.5, state_change: 2.5, transitions: {4: 4.25, 16: 0.125}, mode_change: 3.5, brake_release: 0.25, sdo: 0.75,
   sdo_retries: 3}
 parameters: {save: [2, 3], restore: [4], timeout: 4.5, power_cycle_after_save: true}
 homing:
   kind: drive
-  methods: {-1: to the stop, 35: here}
+  methods: {-1: to the stop, -2: {text: here as well, moves: false}, 35: here}
   needs_zero_attained_before_start: true
   writes: [{object: plain, raw: 7}]
 startup: [{object: "2001:02", type: uint16, value: 0x1FF}, {object: plain, value: 9}]
@@ -67,6 +67,7 @@ pdos:
   tpdo2: {objects: [mode_display], transmission: 253, request_every: 8, cob_id: drive}
 default_modes: [csp, profile_position]
 feedback: [mode_display, target_position]
+signals: [plain]
 errors:
   0x2310: too much current
   0x8250: {text: late, cause: nobody sent, remedy: send, missing: rpdo}

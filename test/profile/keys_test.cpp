@@ -151,6 +151,10 @@ TEST_F(ProfileKeys, BehaviourIsAsWritten) {
   EXPECT_TRUE(device.node_guarding_supported);
   EXPECT_EQ(device.boot_time, milliseconds(1500));
   EXPECT_EQ(profile.timing.state_change, milliseconds(2500));
+  EXPECT_EQ(profile.timing.transition(3), milliseconds(2500)) << "as it has no time of its own";
+  EXPECT_EQ(profile.timing.transition(4), milliseconds(4250));
+  EXPECT_EQ(profile.timing.transition(16), milliseconds(125));
+  EXPECT_THAT(profile.signals, ElementsAre("plain"));
   EXPECT_EQ(profile.timing.mode_change, milliseconds(3500));
   EXPECT_EQ(profile.timing.brake_release, milliseconds(250));
   EXPECT_EQ(device.sdo.timeout, milliseconds(750));
@@ -164,9 +168,12 @@ TEST_F(ProfileKeys, BehaviourIsAsWritten) {
 }
 
 TEST_F(ProfileKeys, WritesAreAsWritten) {
-  EXPECT_EQ(profile.homing.kind, HomingSpec::Kind::drive);
-  EXPECT_THAT(profile.homing.methods,
-              ElementsAre(std::make_pair(-1, "to the stop"), std::make_pair(35, "here")));
+  ASSERT_EQ(profile.homing.methods.size(), 3U);
+  EXPECT_FALSE(profile.homing.methods.at(-2).moves);
+  EXPECT_EQ(profile.homing.methods.at(-1).text, "to the stop");
+  EXPECT_TRUE(profile.homing.methods.at(-1).moves);
+  EXPECT_EQ(profile.homing.methods.at(35).text, "here");
+  EXPECT_FALSE(profile.homing.methods.at(35).moves) << "CiA 402-2: on the present position";
   EXPECT_TRUE(profile.homing.needs_zero_attained_before_start);
   ASSERT_EQ(profile.homing.writes.size(), 1U);
   EXPECT_EQ(profile.homing.writes[0].raw, 7);
@@ -255,7 +262,7 @@ TEST(ProfileDefaults, AreThoseOfTheStandards) {
   EXPECT_EQ(profile.fault_reset_tries, 1);
   EXPECT_EQ(profile.fault_reset_nmt_stop, Duration::zero());
   EXPECT_FALSE(profile.parameters.power_cycle_after_save);
-  EXPECT_EQ(profile.homing.kind, HomingSpec::Kind::none);
+  EXPECT_TRUE(profile.homing.methods.empty());
   EXPECT_FALSE(profile.mode("csp")->cyclic);
   EXPECT_EQ(profile.mode("csp")->handshake, Handshake::none);
 }

@@ -38,6 +38,18 @@ TEST(ProfileMistakes, AreToldWithWhatToDo) {
       {"  a: {value: 4, control: position, target: target_position, cyclic: true, handshake: "
        "new_set_point, status_bits: {set_point_acknowledge: 12}}\n",
        "a cyclic mode cannot wait for an acknowledgement of each set-point"},
+      {"  a: {value: 4, control: velocity, target: profile_velocity, handshake: new_set_point, "
+       "status_bits: {set_point_acknowledge: 12}}\n",
+       "modes/a/handshake: only positions are handed over one by one"},
+      {"timing: {transitions: {13: 1}}\n",
+       "timing/transitions/13: a transition of CiA 402 that is waited for is a number from 2 to "
+       "16"},
+      {"timing: {transitions: {17: 1}}\n", "not `17`"},
+      {"timing: {transitions: {4: 0}}\n", "timing/transitions/4: "},
+      {"signals: [plan]\n", "signals[0]: the profile has no object `plan`, did you mean `plain`?"},
+      {"signals: [plain, plain]\n", "signals[1]: `plain` is given twice"},
+      {"homing: {kind: drive, methods: {1: {moves: false}}}\n",
+       "homing/methods/1: `text` is missing: say in words how home is found"},
       {"  a: {value: 4, control: position, target: target_position, status_bits: {speed_zer: 1}}\n",
        "did you mean `speed_zero`"},
       {"  a: {value: 4, control: homing, status_bits: {target_reached: 10}}\n",

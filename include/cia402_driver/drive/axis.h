@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cia402_driver/common/result.h"
 #include "cia402_driver/drive/axis_config.h"
@@ -96,6 +97,15 @@ struct AxisState {
   } stamps;
 };
 
+/// A value of the drive that its profile names to be shown (`signals`): inputs, probes, voltages,
+/// temperatures.
+struct ShownSignal {
+  const ObjectSpec* object = nullptr;  ///< nullptr: the drive has no such object
+  bool known = false;                  ///< false: it has not come, or is too old
+  std::uint64_t raw = 0;               ///< as it is on the wire, zero-extended
+  Time stamp{};                        ///< when it was on the wire, or its answer taken
+};
+
 /// One CiA 402 axis on a node: decodes feedback, drives the state machine, runs procedures, encodes
 /// set-points. Sans-IO; after construction the cyclic calls do not allocate (procedures may, when a
 /// step ends).
@@ -115,9 +125,11 @@ class Axis {
 
   /// Decodes the node's process image. Call after the TPDOs of a cycle.
   void readFeedback(Time now);
-  /// Somebody is about to look at values that are only shown (the following error): where no TPDO
-  /// brings them, each look has them read by SDO once more.
+  /// Somebody is about to look at values that are only shown (the following error, the profile's
+  /// `signals`): where no TPDO brings them, each look has them read by SDO once more.
   void look();
+  /// Those of the profile's `signals`, in its order. Allocates.
+  std::vector<ShownSignal> signals(Time now) const;
   /// Advances state machine and procedures. Call after readFeedback() and in each cycle; also when
   /// an SDO answer came, to hurry procedures along.
   void update(Time now);

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -89,8 +90,13 @@ struct ObjectSpec {
   std::vector<std::string> eds_keys;  ///< further names, from the EDS (fieldbus::nameKey())
 };
 
-/// What a mode controls, for everything above the drive that does not care for mode numbers.
+/// What a mode controls, for everything above the drive that does not care for mode numbers. The
+/// table of kinds is in drive/modes/mode_control.cpp.
 enum class ControlKind : std::uint8_t { position, velocity, torque, homing };
+/// Their words in a profile, in the order of ControlKind: "position".
+std::vector<std::string> controlKindWords();
+/// What the target of a mode of this kind measures; none: it has no target.
+Quantity targetQuantity(ControlKind kind);
 
 enum class Handshake : std::uint8_t {
   none,           ///< a written target takes effect at once
@@ -174,15 +180,20 @@ struct ModeChange {
   const Detour* detour(const std::string& from, const std::string& to) const;
 };
 
+/// One way in which a family finds its zero.
+struct HomingMethod {
+  std::string text;   ///< in words: "home switch from the positive side, index pulse on it"
+  bool moves = true;  ///< false: the present position is home, so that it is over at once
+};
+
+/// Does a method of this number move the axis by CiA 402-2 (6098h)? 35 and 37 do not.
+bool movesByStandard(int method);
+
 /// How the family finds its zero.
 struct HomingSpec {
-  enum class Kind : std::uint8_t {
-    none,
-    drive,         ///< the drive's own homing mode (CiA 402)
-    declare_zero,  ///< no homing in the drive: the present position is declared to be the offset
-  };
-  Kind kind = Kind::none;
-  std::map<int, std::string> methods;  ///< method number -> meaning in words
+  /// By number (6098h, CiA 402-2) those of the drive's own homing mode; without one: the present
+  /// position is declared to be the offset, and nothing moves. Empty: the family knows no homing.
+  std::map<std::optional<int>, HomingMethod> methods;
   bool needs_zero_attained_before_start = false;
   std::vector<NamedWrite> writes;  ///< homing parameters, `from` the axis' homing options
 };
@@ -224,8 +235,15 @@ struct DriveProfile {
   std::vector<std::string> default_modes;   ///< an axis can switch to; empty: all
   std::vector<std::string> feedback;        ///< by PDO where there is room, most important first
   std::vector<std::string> feedback_if_room;  ///< only in PDOs that travel for something else
+  std::vector<std::string>
+      signals;  ///< objects that are shown besides; asked for where no TPDO has them
   struct Timing {
-    Duration state_change{std::chrono::seconds(2)};
+    Duration state_change{std::chrono::seconds(2)};  ///< what is not named in `transitions`
+    std::map<int, Duration> transitions;             ///< by their number in CiA 402-2, 2 to 16
+    /// For a transition to be shown by the statusword. @param number -1: of whatever comes next
+    Duration transition(int number) const;
+    /// From operation enabled to switch on disabled (transitions 5 and 10), if that is one step.
+    Duration disabling() const { return std::max(transition(5), transition(10)); }
     Duration mode_change{std::chrono::seconds(1)};
     Duration brake_release{0};  ///< Operation enabled until set-points are followed
   } timing;

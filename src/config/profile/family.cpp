@@ -9,9 +9,27 @@
 namespace cia402::config {
 namespace {
 
+/// Those that the driver waits for; 0, 1 and 13 come by themselves.
+void readTransitions(const yaml::Value& value, yaml::Range range, DriveProfile& profile) {
+  yaml::Section section(value);
+  for (const auto& [key, entry] : section.entries()) {
+    const auto number = yaml::parseInteger(key);
+    if (!number || *number < 2 || *number > 16 || *number == 13) {
+      entry.problem(
+          "a transition of CiA 402 that is waited for is a number from 2 to 16 without 13, "
+          "not `" +
+          key + "`");
+      continue;
+    }
+    readDuration(section, key, range, profile.timing.transitions[static_cast<int>(*number)]);
+  }
+  section.finish();
+}
+
 void readTiming(yaml::Section& section, DriveProfile& profile) {
   const yaml::Range deadline{0.001, 600.0, false};
   readDuration(section, "state_change", deadline, profile.timing.state_change);
+  if (const auto value = section.get("transitions")) readTransitions(*value, deadline, profile);
   readDuration(section, "mode_change", deadline, profile.timing.mode_change);
   readDuration(section, "brake_release", yaml::Range{0.0, 60.0, false},
                profile.timing.brake_release);
@@ -155,6 +173,26 @@ void readBehaviour(yaml::Section& section, DriveProfile& profile) {
   readParameters(section, profile);
 }
 
+/// Numbers that the drive lets be read, each once.
+void readSignals(const yaml::Value& value, DriveProfile& profile) {
+  for (const yaml::Value& entry : value.list()) {
+    const auto name = entry.text();
+    if (!name) continue;
+    const ObjectSpec* object = profile.find(*name);
+    const auto& known = profile.signals;
+    if (object == nullptr) {
+      entry.problem("the profile has no object `" + *name + "`" +
+                    yaml::suggestion(*name, drive::objectNames(profile)));
+    } else if (!object->readable || fieldbus::sizeBits(object->type) == 0) {
+      entry.problem("`" + *name + "` is no number that the drive lets be read");
+    } else if (std::find(known.begin(), known.end(), *name) != known.end()) {
+      entry.problem("`" + *name + "` is given twice");
+    } else {
+      profile.signals.push_back(*name);
+    }
+  }
+}
+
 void readDrive(yaml::Section& section, yaml::Section& timing, DriveProfile& profile) {
   if (section.require("name", "the file's name without .yaml")) section.read("name", profile.name);
   section.read("description", profile.description);
@@ -188,6 +226,7 @@ void readDrive(yaml::Section& section, yaml::Section& timing, DriveProfile& prof
   if (const auto names = section.get("feedback_if_room")) {
     profile.feedback_if_room = readFeedbackNames(*names, profile);
   }
+  if (const auto names = section.get("signals")) readSignals(*names, profile);
   if (const auto errors = section.get("errors")) readErrors(*errors, profile);
 }
 

@@ -27,14 +27,11 @@ void readStatusBits(yaml::Section& mode_section, ModeSpec& mode) {
   section.finish();
 }
 
-Quantity quantityOf(ControlKind kind) {
-  if (kind == ControlKind::velocity) return Quantity::velocity;
-  return kind == ControlKind::torque ? Quantity::torque : Quantity::position;
-}
-
 void readTarget(yaml::Section& section, const DriveProfile& profile, ModeSpec& mode) {
-  if (mode.kind == ControlKind::homing) {
-    if (section.has("target")) section.problem("homing has no target");
+  const Quantity quantity = drive::targetQuantity(mode.kind);
+  if (quantity == Quantity::none) {
+    const std::string word = drive::controlKindWords()[static_cast<std::size_t>(mode.kind)];
+    if (section.has("target")) section.problem(word + " has no target");
     return;
   }
   const auto value = section.require("target", "the object that takes the mode's set-points");
@@ -45,7 +42,7 @@ void readTarget(yaml::Section& section, const DriveProfile& profile, ModeSpec& m
   if (object == nullptr) {
     value->problem("the profile has no object `" + *text + "`" +
                    yaml::suggestion(*text, drive::objectNames(profile)));
-  } else if (object->quantity != quantityOf(mode.kind)) {
+  } else if (object->quantity != quantity) {
     value->problem("`" + *text + "` does not measure what the mode controls; see its `quantity`");
   } else if (!object->rpdo) {
     value->problem("`" + *text + "` cannot be in an RPDO, so no set-point could reach the drive");
@@ -61,6 +58,9 @@ void readHandshake(yaml::Section& section, ModeSpec& mode) {
   }
   if (mode.handshake == Handshake::new_set_point && mode.cyclic) {
     value->problem("a cyclic mode cannot wait for an acknowledgement of each set-point");
+  }
+  if (mode.handshake == Handshake::new_set_point && mode.kind != ControlKind::position) {
+    value->problem("only positions are handed over one by one (CiA 402-2, profile position mode)");
   }
 }
 
@@ -89,8 +89,7 @@ ModeSpec readMode(const std::string& name, const yaml::Value& value, const Drive
   yaml::Section section(value);
   readValue(section, profile, mode);
   const auto control = section.require("control", "position, velocity, torque or homing");
-  const auto kind =
-      control ? control->oneOf({"position", "velocity", "torque", "homing"}) : std::nullopt;
+  const auto kind = control ? control->oneOf(drive::controlKindWords()) : std::nullopt;
   if (kind) mode.kind = static_cast<ControlKind>(*kind);
   section.read("cyclic", mode.cyclic);
   readTarget(section, profile, mode);
@@ -111,14 +110,30 @@ ModeSpec readMode(const std::string& name, const yaml::Value& value, const Drive
   return mode;
 }
 
+/// @param value the meaning, or `{text: meaning, moves: false}`
+drive::HomingMethod readMethod(const yaml::Value& value, int number) {
+  drive::HomingMethod method;
+  method.moves = drive::movesByStandard(number);
+  if (!value.isMap()) {
+    method.text = value.text().value_or("");
+    return method;
+  }
+  yaml::Section section(value);
+  if (section.require("text", "say in words how home is found")) section.read("text", method.text);
+  section.read("moves", method.moves);
+  section.finish();
+  return method;
+}
+
 void readMethods(const yaml::Value& value, HomingSpec& homing) {
   yaml::Section section(value);
   for (const auto& [key, text] : section.entries()) {
     const auto number = yaml::parseInteger(key);
     if (!number || *number < -128 || *number > 127) {
       text.problem("a homing method is a number from -128 to 127, not `" + key + "`");
-    } else if (const auto meaning = text.text()) {
-      homing.methods[static_cast<int>(*number)] = *meaning;
+    } else {
+      const int method = static_cast<int>(*number);
+      homing.methods[method] = readMethod(text, method);
     }
   }
   section.finish();
@@ -145,21 +160,23 @@ void readHoming(const yaml::Value& value, DriveProfile& profile) {
   const auto kind_value = section.require("kind", "none, drive or declare_zero");
   const auto kind =
       kind_value ? kind_value->oneOf({"none", "drive", "declare_zero"}) : std::nullopt;
-  if (kind) homing.kind = static_cast<HomingSpec::Kind>(*kind);
+  enum Way : std::size_t { none, by_drive, declared };
+  const std::size_t way = kind.value_or(none);
   if (const auto methods = section.get("methods")) readMethods(*methods, homing);
   section.read("needs_zero_attained_before_start", homing.needs_zero_attained_before_start);
   if (const auto writes = section.get("writes")) {
     homing.writes = readWrites(*writes, profile, WriteList::running);
   }
-  if (homing.kind == HomingSpec::Kind::drive && homing.methods.empty()) {
+  if (way == by_drive && homing.methods.empty()) {
     section.problem("a drive that homes by itself needs `methods`: number and meaning");
   }
-  if (homing.kind != HomingSpec::Kind::drive && !homing.methods.empty()) {
+  if (way != by_drive && !homing.methods.empty()) {
     section.problem("`methods` are for kind `drive`");
   }
-  if (homing.kind == HomingSpec::Kind::drive && profile.mode("homing") == nullptr) {
+  if (way == by_drive && profile.mode("homing") == nullptr) {
     section.problem("a drive that homes by itself needs a mode `homing`");
   }
+  if (way == declared) homing.methods[std::nullopt] = drive::HomingMethod{"declared", false};
   section.finish();
 }
 

@@ -1,0 +1,70 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "drive/modes/mode_control.h"
+
+#include <array>
+
+#include "drive/modes/cyclic_position.h"
+#include "drive/modes/homing_control.h"
+#include "drive/modes/profile_position.h"
+#include "drive/modes/torque_control.h"
+#include "drive/modes/velocity_control.h"
+
+namespace cia402::drive {
+namespace {
+
+using Made = std::unique_ptr<ModeControl>;
+
+template <class Control>
+Made make(const ModeChannel& channel, const ModeControl::Context& context) {
+  return std::make_unique<Control>(channel, context);
+}
+
+/// In a mode that is not cyclic the drive plans the way to a position by itself.
+Made makePosition(const ModeChannel& channel, const ModeControl::Context& context) {
+  return channel.spec->cyclic ? make<CyclicPosition>(channel, context)
+                              : make<ProfilePosition>(channel, context);
+}
+
+struct Kind {
+  const char* word;
+  Quantity target;
+  Made (*make)(const ModeChannel& channel, const ModeControl::Context& context);
+};
+
+/// In the order of ControlKind.
+constexpr std::array<Kind, 4> kKinds = {{
+    {"position", Quantity::position, makePosition},
+    {"velocity", Quantity::velocity, make<VelocityControl>},
+    {"torque", Quantity::torque, make<TorqueControl>},
+    {"homing", Quantity::none, make<HomingControl>},
+}};
+
+}  // namespace
+
+ModeControl::ModeControl(const ModeChannel& channel, const Context& context)
+    : channel_(&channel),
+      context_(context),
+      kind_(kindOf(*channel.spec)),
+      conversion_(channel.conversion) {}
+
+bool ModeControl::leadsInside(double value) const {
+  if (!state().homed) return true;
+  const double before = sent().value(), position = state().position;
+  return !(limits().lower && position <= *limits().lower && value < 0.0 && !(value > before)) &&
+         !(limits().upper && position >= *limits().upper && value > 0.0 && !(value < before));
+}
+
+std::vector<std::string> controlKindWords() {
+  std::vector<std::string> words;
+  for (const Kind& kind : kKinds) words.emplace_back(kind.word);
+  return words;
+}
+
+Quantity targetQuantity(ControlKind kind) { return kKinds[static_cast<std::size_t>(kind)].target; }
+
+std::unique_ptr<ModeControl> makeModeControl(const ModeChannel& channel,
+                                             const ModeControl::Context& context) {
+  return kKinds[static_cast<std::size_t>(channel.spec->kind)].make(channel, context);
+}
+
+}  // namespace cia402::drive

@@ -1,0 +1,21 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "drive/modes/mode_control.h"
+
+namespace cia402::drive {
+
+/// What modes of positions have in common: limits, zero, and where the axis is as neutral target.
+class PositionControl : public ModeControl {
+ public:
+  using ModeControl::ModeControl;
+  void place() override;
+  bool positions() const override { return true; }
+  /// An axis that stands outside its limits may come back, not go further out.
+  bool accepts(double value) const override;
+  double neutral() const override { return state().position; }
+  bool neutralRaw(std::uint64_t& raw) const override;
+  Duration wayBack(double away) const override;
+};
+
+}  // namespace cia402::drive

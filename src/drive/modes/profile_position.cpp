@@ -1,0 +1,139 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "drive/modes/profile_position.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace cia402::drive {
+namespace {
+
+/// As kReactionCycles, for a drive that plans its motion, whose plan is ahead of the motor.
+constexpr int kPlanningCycles = 4;
+/// Of the way that braking takes, at least, a stop point is to be ahead.
+constexpr double kReachable = 0.98;
+/// Of two places that count as one: so far from its stop point a drive may have gone beyond it.
+constexpr double kOffStopPoint = 0.25;
+
+}  // namespace
+
+ProfilePosition::ProfilePosition(const ModeChannel& channel, const Context& context)
+    : PositionControl(channel, context), by_hand_(spec().handshake == Handshake::new_set_point) {}
+
+void ProfilePosition::reset(std::uint64_t raw) {
+  handshake_.reset(raw);
+  dropped_ = false;
+}
+
+void ProfilePosition::offer(std::uint64_t raw, bool twice) {
+  if (by_hand_) handshake_.offer(raw, twice);
+}
+
+void ProfilePosition::accepted(std::uint64_t raw, bool same) {
+  if (dropped_ && same) handshake_.offer(raw);  // once more
+  dropped_ = false;
+}
+
+unsigned ProfilePosition::bits() const {
+  unsigned bits = spec().controlword_bits;
+  if (!by_hand_) return bits;
+  bits |= controlword::kChangeImmediately;
+  return handshake_.bit() ? bits | controlword::kNewSetPoint : bits;
+}
+
+const char* ProfilePosition::handOver(std::uint64_t& raw, Time now) {
+  if (!by_hand_) return nullptr;
+  const fieldbus::ProcessImage& image = axis().image;
+  const OutputObject& target = channel().target;
+  SetPointHandshake::Input input;
+  input.controlword_frames = image.sent(axis().objects.controlword.slot);
+  input.target_frames = target.mapped() ? image.sent(target.slot) : input.controlword_frames;
+  const std::optional<int>& bit = spec().set_point_acknowledge_bit;
+  input.has_acknowledge = bit.has_value();
+  input.acknowledged = bit && ((static_cast<unsigned>(state().statusword) >> *bit) & 1u) != 0;
+  const char* waiting = handshake_.waitingFor();
+  const bool well = handshake_.advance(input, now, axis().profile().timing.state_change);
+  raw = handshake_.raw();
+  if (well) return nullptr;
+  dropped_ = true;
+  return waiting;
+}
+
+bool ProfilePosition::goalAhead() const {
+  return !state().target_reached &&
+         std::fabs(sent().value() - state().position) > feedback().standstill().tolerance();
+}
+
+bool ProfilePosition::mayTurnBack(Time now, Time seen_moving) const {
+  const double tolerance = feedback().standstill().tolerance();
+  const double away = std::fabs(sent().value() - state().position);
+  const double slow = tolerance / toSeconds(Standstill::kWindow);  // per second
+  const Duration unseen = fromSeconds(slow / stopDeceleration(axis().config)) + Standstill::kWindow;
+  return away > kOffStopPoint * tolerance && now < seen_moving + unseen;
+}
+
+/// What the drive has planned may be on its way still: it turns round and comes back.
+Duration ProfilePosition::wayBack(double away) const {
+  const double speed = limits().velocity.value_or(std::numeric_limits<double>::infinity());
+  const double ramp = stopDeceleration(axis().config);
+  const double fastest = std::min(speed, std::sqrt(2.0 * ramp * away));
+  return PositionControl::wayBack(away) + fromSeconds(3.0 * fastest / ramp + away / fastest);
+}
+
+void ProfilePosition::beginHalt() {
+  halted_goal_ = sent().value();
+  stop_point_after_ = Time::min();
+}
+
+void ProfilePosition::lateInHalt(Time now) {
+  if (stop_point_after_ == kNever) stop_point_after_ = now;
+}
+
+void ProfilePosition::prepare(Time now) {
+  if (stop_point_after_ != kNever) renewStopPoint(now);
+}
+
+/// The nearest point where it can stop, from where it is by the newest feedback. What it does until
+/// it has that is added, for a point that is too near would make it turn back: it may still be
+/// gaining speed, what it has planned is ahead of what is measured, and what is measured may be
+/// old, in a late cycle. It never goes beyond a goal at which it can stop; one that came nearer
+/// than that under way makes the drive turn back.
+void ProfilePosition::giveStopPoint(Time now) {
+  if (!state().feedback_valid) return;
+  const Duration cycle = axis().config.sync_period;
+  const double velocity = std::isfinite(state().velocity) ? state().velocity : 0.0;
+  const double age = toSeconds(std::max(Duration(0), now - state().stamp - cycle));
+  const double from = state().position + velocity * age;
+  const double sign = std::copysign(1.0, std::fabs(velocity) > axis().config.standstill_velocity
+                                             ? velocity
+                                             : halted_goal_ - from);
+  const double reaction = toSeconds(kPlanningCycles * cycle);
+  const double deceleration = stopDeceleration(axis().config), speed = std::fabs(velocity);
+  const double faster =
+      std::max(speed, std::min(speed + deceleration * reaction, limits().velocity.value_or(1e9)));
+  const double way = faster * reaction + faster * faster / (2.0 * deceleration);
+  double point = from + sign * way;
+  const double slowest =
+      std::max(0.0, speed - deceleration * toSeconds(kReactionCycles * cycle));  // by now
+  const double needed = slowest * slowest / (2.0 * deceleration);
+  const bool reachable = sign * (halted_goal_ - state().position) >= needed;
+  if (reachable && sign * (halted_goal_ - from) >= 0.0)
+    point = sign * std::min(sign * point, sign * halted_goal_);
+  if (limits().lower) point = std::max(point, std::min(*limits().lower, from));
+  if (limits().upper) point = std::min(point, std::max(*limits().upper, from));
+  sent().give(point);
+}
+
+/// After a late cycle the drive may have got its stop point so late that it lies behind it.
+void ProfilePosition::renewStopPoint(Time now) {
+  if (state().stamp <= stop_point_after_) return;  // says where it was before
+  const bool first = stop_point_after_ == Time::min();
+  stop_point_after_ = kNever;
+  const double speed = std::isfinite(state().velocity) ? std::fabs(state().velocity) : 0.0;
+  if (!first && speed <= axis().config.standstill_velocity) return;  // it has stopped already
+  const double way = speed * speed / (2.0 * stopDeceleration(axis().config));
+  const double ahead = (sent().value() - state().position) * std::copysign(1.0, state().velocity);
+  if (first || ahead < kReachable * way) giveStopPoint(now);
+}
+
+}  // namespace cia402::drive

@@ -1,0 +1,46 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "cia402_driver/drive/set_point_handshake.h"
+#include "drive/modes/position_control.h"
+
+namespace cia402::drive {
+
+/// A position that the drive goes to by itself (profile position mode, CiA 402-2), handed over with
+/// an edge of controlword bit 4 where the mode has that handshake.
+///
+/// Where it is halted by its set-points, the drive gets the nearest point at which it can stop.
+class ProfilePosition : public PositionControl {
+ public:
+  ProfilePosition(const ModeChannel& channel, const Context& context);
+
+  void reset(std::uint64_t raw) override;
+  void offer(std::uint64_t raw, bool twice) override;
+  void accepted(std::uint64_t raw, bool same) override;
+  void prepare(Time now) override;
+  const char* handOver(std::uint64_t& raw, Time now) override;
+  bool handingOver() const override { return handshake_.busy(); }
+  unsigned bits() const override;
+
+  bool goalAhead() const override;
+  void beginHalt() override;
+  void endHalt() override { stop_point_after_ = kNever; }
+  void lateInHalt(Time now) override;
+  /// Halted by a stop point that it has passed, since that reached it late, a drive goes back to
+  /// it, and where it turns it seems to stand. One that stands for longer than it takes to be seen
+  /// to move again is held there.
+  bool mayTurnBack(Time now, Time seen_moving) const override;
+  Duration wayBack(double away) const override;
+
+ private:
+  void giveStopPoint(Time now);
+  void renewStopPoint(Time now);
+
+  bool by_hand_;  ///< has the handshake
+  SetPointHandshake handshake_;
+  bool dropped_ = false;            ///< the drive does not have the set-point
+  double halted_goal_ = kUnknown;   ///< to which the drive was going
+  Time stop_point_after_ = kNever;  ///< feedback newer than this has the stop point judged anew
+};
+
+}  // namespace cia402::drive

@@ -1,0 +1,24 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "drive/modes/torque_control.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cia402::drive {
+namespace {
+
+constexpr double kFreeSpeed = 0.9;  ///< of the velocity limit, up to which an effort is as given
+
+}  // namespace
+
+bool TorqueControl::accepts(double value) const {
+  return !(limits().effort && std::fabs(value) > *limits().effort) && leadsInside(value);
+}
+
+double TorqueControl::guarded(double value) const {
+  if (!limits().velocity || !(value * state().velocity > 0.0)) return value;
+  const double share = std::fabs(state().velocity) / *limits().velocity;
+  return value * std::clamp((1.0 - share) / (1.0 - kFreeSpeed), 0.0, 1.0);
+}
+
+}  // namespace cia402::drive

@@ -1,0 +1,19 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "drive/modes/mode_control.h"
+
+namespace cia402::drive {
+
+/// Torques or forces, by cyclic synchronous or profile mode (CiA 402-2): the drive pushes on with
+/// the last one.
+class TorqueControl : public ModeControl {
+ public:
+  using ModeControl::ModeControl;
+  bool accepts(double value) const override;
+  /// An effort makes a motor without load ever faster, and not every drive has a limit of speed for
+  /// its torque modes: from nine tenths of the limit on it gets less, at the limit it is 0.
+  double guarded(double value) const override;
+};
+
+}  // namespace cia402::drive

@@ -1,0 +1,37 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace cia402::drive {
+
+/// What an axis did by itself and people are told of, and why a procedure that runs must fail.
+class Notices {
+ public:
+  void notify(std::string text);
+  /// A notice of what stops nothing, told once.
+  void warnOnce(std::string text);
+  /// The axis fell out of what it was doing: a procedure that runs must fail for this reason.
+  /// @param tell people are told as well
+  void fail(std::string text, bool tell = true);
+
+  bool failed() const { return !failure_.empty(); }
+  /// Why a procedure must fail; empty: it need not. It is forgotten by this.
+  std::string takeFailure();
+  /// The last notice, a sentence.
+  const std::string& text() const { return text_; }
+  /// It is a warning, and stops nothing.
+  bool warns() const { return warns_; }
+  /// Grows with each notice.
+  const std::uint32_t& count() const { return count_; }
+
+ private:
+  std::string failure_, text_;
+  std::vector<std::string> warned_;  ///< of warnOnce()
+  std::uint32_t count_ = 0;
+  bool warns_ = false;
+};
+
+}  // namespace cia402::drive
