@@ -10,22 +10,22 @@ import re
 import sys
 
 # What a module may include besides itself.
-MODEL = ["common", "yaml", "can", "fieldbus", "canopen", "drive", "config"]
+MODEL = ["common", "yaml", "can", "fieldbus", "canopen", "motion", "drive", "config"]
 MAY_INCLUDE = {
     "common": [],
     "yaml": ["common"],
     "can": ["common"],
     "fieldbus": ["common"],
     "canopen": ["common", "can", "fieldbus"],
-    "drive": ["common", "fieldbus"],
-    "config": ["common", "yaml", "can", "fieldbus", "canopen", "drive"],
     "motion": ["common"],
+    "drive": ["common", "fieldbus", "motion"],
+    "config": ["common", "yaml", "can", "fieldbus", "canopen", "motion", "drive"],
     "decode": MODEL,
-    "bus": MODEL + ["motion", "decode"],
+    "bus": MODEL + ["decode"],
     "sim": MODEL,
-    "ros": MODEL + ["motion", "decode", "bus", "sim"],
-    "tools": MODEL + ["motion", "decode", "bus", "sim"],
-    "campaign": MODEL + ["motion", "decode", "bus", "sim", "tools"],
+    "ros": MODEL + ["decode", "bus", "sim"],
+    "tools": MODEL + ["decode", "bus", "sim"],
+    "campaign": MODEL + ["decode", "bus", "sim", "tools"],
 }
 # sim/ takes only types and numbers from the master's stack: what encodes, decodes or decides there
 # must not do so here, or a mistake would meet itself on both ends of the wire and stay unseen.
@@ -33,7 +33,7 @@ SIM_MAY_NOT_INCLUDE = re.compile(
     r"canopen/(sdo|pdo|emergency|heartbeat|sync|master|node|boot)|fieldbus/(bytes|emergency|device)"
     r"|drive/(axis\.h|state_machine|conversion)")
 
-SANS_IO = MODEL + ["motion", "decode", "sim"]
+SANS_IO = MODEL + ["decode", "sim"]
 # The edge of can/ towards the kernel.
 EDGE = re.compile(r"/can/(socketcan|raw_socket|link_probe|link_message|link_settings|wall_clock)")
 FORBIDDEN = [

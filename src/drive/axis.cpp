@@ -202,6 +202,17 @@ void Axis::loseZero() { impl_->core.loseZero(); }
 void Axis::measureAnew() { impl_->core.measureAnew(); }
 void Axis::endCalibration() { impl_->calibrating.clear(); }
 
+Result<void> Axis::command(double value, Time now) {
+  std::string refusal = motionRefusal();
+  if (!refusal.empty()) return Error{std::move(refusal)};
+  return impl_->core.generator().command(value, now);
+}
+
+void Axis::follow(const std::string* who) { impl_->core.generator().commands().follow(who); }
+const std::string* Axis::leader() const { return impl_->core.generator().commands().leader(); }
+bool Axis::streamAtRest() const { return impl_->core.generator().commands().stream().at_rest; }
+bool Axis::driedUp() const { return impl_->core.generator().commands().stream().dried_up; }
+bool Axis::late() const { return impl_->core.generator().late(); }
 bool Axis::setTarget(double value) { return impl_->core.generator().take(value); }
 void Axis::stopSetPoint() { impl_->core.generator().stop(); }
 std::string Axis::motionRefusal() const {

@@ -13,6 +13,16 @@ bool hasAlias(const AxisConfig& axis) { return !axis.joint.empty() && axis.joint
 
 }  // namespace
 
+motion::Joint jointOf(const AxisConfig& axis) {
+  motion::Joint joint;
+  joint.name = axis.joint;
+  joint.limits = axis.limits;
+  joint.limits.continuous = axis.geometry.type == AxisGeometry::Type::continuous;
+  joint.unit = axis.geometry.type == AxisGeometry::Type::prismatic ? motion::JointUnit::metre
+                                                                   : motion::JointUnit::radian;
+  return joint;
+}
+
 double stopDeceleration(const AxisConfig& axis) {
   if (axis.limits.acceleration) return *axis.limits.acceleration;
   return axis.geometry.type == AxisGeometry::Type::prismatic ? kDefaultLinearDeceleration

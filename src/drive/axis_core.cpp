@@ -79,6 +79,7 @@ void AxisCore::updateReadiness(bool busy, Time now) {
 }
 
 void AxisCore::writeCommands(Time now) {
+  generator_.stepCommands(now);
   if (inOperation()) {
     generator_.advance(now);
     stops_.watchEffort(now);

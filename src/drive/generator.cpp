@@ -24,7 +24,8 @@ Generator::Generator(AxisBasis& axis, const Coordinates& coordinates, const Feed
       active_(mode),
       control_(control),
       sent_(setPointLimits(axis.config), axis.config.sync_period),
-      following_(axis.config.standstill_velocity, axis.config.sync_period) {
+      following_(axis.config.standstill_velocity, axis.config.sync_period),
+      commands_(axis) {
   for (const ModeChannel& channel : axis.objects.modes) {
     modes_.push_back(makeModeControl(channel, {axis_, coordinates_, feedback_, sent_}));
   }
@@ -37,6 +38,7 @@ ModeControl& Generator::controlOf(const ModeChannel& channel) {
 }
 
 void Generator::enter() {
+  commands_.forget();
   mode_ = &controlOf(active_.channel());
   mode_->place();
   mode_->endHalt();  // of an earlier time
@@ -75,6 +77,7 @@ std::uint64_t Generator::targetFrames() const {
 
 void Generator::shiftZero(double moved) {
   mode_->place();
+  commands_.forget();
   if (!mode_->positions()) return;
   sent_.shift(moved);
   given_ = kUnknown;
@@ -101,12 +104,24 @@ bool Generator::take(double value) {
   return true;
 }
 
+void Generator::stop() {
+  commands_.drop();
+  sent_.stop();
+}
+
+void Generator::stepCommands(Time now) {
+  late_ = false;
+  const std::optional<double> next = commands_.step(*mode_, sent_, now);
+  if (next && !take(*next)) commands_.drop();
+}
+
 void Generator::arrest() {
   sent_.arrest(axis_.state.velocity);
   encode();
 }
 
 void Generator::lateCycle(Time now) {
+  late_ = true;
   sent_.interrupt();
   if (axis_.state.halted && !control_.halt()) mode_->lateInHalt(now);
 }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "drive/commands.h"
 #include "drive/control.h"
 #include "drive/follow_watch.h"
 #include "drive/modes/mode_control.h"
@@ -42,12 +43,22 @@ class Generator {
   bool homedEnough() const;
   /// Takes the set-point of this cycle, see Axis::setTarget(). @return false: nothing changes
   bool take(double value);
-  /// Brings the set-points to rest, by a ramp where they move. Nothing if they do not.
-  void stop() { sent_.stop(); }
+  /// Whose set-points they are.
+  Commands& commands() { return commands_; }
+  const Commands& commands() const { return commands_; }
+  /// Takes a streamed command, see Axis::command().
+  Result<void> command(double value, Time now) { return commands_.take(value, *mode_, sent_, now); }
+  /// Brings the set-points to rest, by a ramp where they move, whoever gave them.
+  void stop();
   /// Takes over a motor that turns: begins at its measured velocity and ramps that to rest.
   void arrest();
   /// Cycles were missed: nothing of them is made good.
   void lateCycle(Time now);
+
+  /// Once a cycle, before all that follows: the stream of commands gives its set-point.
+  void stepCommands(Time now);
+  /// This cycle came late: some were missed before it.
+  bool late() const { return late_; }
 
   // The cycle in operation: makes the set-point, then sends it.
   void advance(Time now);
@@ -107,7 +118,9 @@ class Generator {
   ModeControl* mode_;
   double given_ = kUnknown;  ///< the last set-point that was taken, and its raw number
   std::uint64_t given_raw_ = 0, target_raw_ = 0;
+  Commands commands_;
   bool pushes_ = false;
+  bool late_ = false;
   Time seen_moving_ = Time::min();   ///< by the drive itself: not seen to stand until then
   Time moved_itself_ = Time::min();  ///< the drive may have moved by itself until then
 };

@@ -151,7 +151,7 @@ double SetPoint::stopPosition() const {
 
 SetPoint::Motion SetPoint::expected(Duration ahead) const {
   if (kind_ != SetPointKind::stream || velocity_ == 0.0) return {value_, 0.0};
-  SoftStop ramp;
+  motion::StopRamp ramp;
   ramp.begin(value_, velocity_, limits_.deceleration);
   ramp.advance(ahead);
   return {withinLimits(ramp.position()), ramp.velocity()};

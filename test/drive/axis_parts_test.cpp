@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-// Standstill, soft stop, homing status, fault texts and numbers in sentences.
+// Standstill, homing status, fault texts and numbers in sentences.
 #include "drive/sentence.h"
 
 #include <gmock/gmock.h>
@@ -9,7 +9,6 @@
 
 #include "cia402_driver/drive/fault_text.h"
 #include "cia402_driver/drive/homing_status.h"
-#include "cia402_driver/drive/soft_stop.h"
 #include "cia402_driver/drive/standstill.h"
 
 namespace cia402::drive {
@@ -46,56 +45,6 @@ TEST(Standstill, BelievesAnEncoderThatTogglesByOneUnit) {
   Time now{};
   for (int i = 0; i < 100; ++i) standstill.update(i % 2 == 0 ? 0.0 : 0.01, now += milliseconds(4));
   EXPECT_TRUE(standstill.still());
-}
-
-TEST(SoftStop, StopsWithConstantDeceleration) {
-  SoftStop stop;
-  stop.begin(1.0, -2.0, 4.0);
-  for (int i = 0; i < 250; ++i) stop.advance(milliseconds(1));
-  EXPECT_NEAR(stop.velocity(), -1.0, 1e-9);
-  EXPECT_FALSE(stop.finished());
-  for (int i = 0; i < 250; ++i) stop.advance(milliseconds(1));
-  EXPECT_TRUE(stop.finished());
-  EXPECT_NEAR(stop.position(), 1.0 - 0.5, 1e-9);  // v^2 / 2a
-  stop.advance(milliseconds(100));
-  EXPECT_NEAR(stop.position(), 0.5, 1e-9);
-}
-
-TEST(SoftStop, AtRestItIsFinishedAtOnce) {
-  SoftStop stop;
-  stop.begin(0.3, 0.0, 1.0);
-  EXPECT_TRUE(stop.finished());
-  EXPECT_EQ(stop.position(), 0.3);
-}
-
-TEST(SoftStop, AVelocityThatIsNoNumberIsNone) {
-  for (const double velocity : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
-    SoftStop stop;
-    stop.begin(0.3, velocity, 1.0);
-    EXPECT_TRUE(stop.finished());
-    EXPECT_EQ(stop.velocity(), 0.0);
-  }
-}
-
-TEST(SoftStop, GoesNowhereWhereNoTimeHasPassed) {
-  SoftStop stop;
-  stop.begin(0.3, 1.0, 2.0);
-  for (const Duration none : {Duration(0), -Duration(milliseconds(10))}) {
-    stop.advance(none);
-    EXPECT_EQ(stop.position(), 0.3);
-    EXPECT_EQ(stop.velocity(), 1.0);
-  }
-}
-
-TEST(SoftStop, IsFinishedHoweverTheNumbersRound) {
-  for (int i = 1; i < 50; ++i) {
-    for (int j = 1; j < 50; ++j) {
-      SoftStop stop;
-      stop.begin(0.0, 0.1 * i, 0.3 * j);
-      stop.advance(std::chrono::hours(1));
-      EXPECT_TRUE(stop.finished()) << i << ", " << j << ": " << stop.velocity();
-    }
-  }
 }
 
 TEST(HomingStatus, DecodesTheTableOfTheStandard) {

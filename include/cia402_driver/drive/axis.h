@@ -161,6 +161,11 @@ class Axis {
   void measureAnew();
   void endCalibration();
 
+  /// A streamed command for the active mode, in joint units (rad, m, per s, N m, N): led there
+  /// within the joint's limits. A velocity or effort that is not renewed within command_timeout
+  /// ends.
+  /// @return why it is refused, in words
+  Result<void> command(double value, Time now);
   /// Set-point of the active mode for this cycle, in joint units (rad, m, per s, N m, N). Only
   /// taken while ready_for_motion. What moves must be given anew in every cycle: it is brought to
   /// rest where it is not (SetPoint). @return false (nothing changes) for NaN, out of limits or not
@@ -169,8 +174,21 @@ class Axis {
   double target() const { return setPoint().value(); }
   /// What was sent last, and how it moves.
   const SetPoint& setPoint() const { return *set_point_; }
-  /// Brings the set-points to rest, by a ramp where they move. Nothing if they do not.
+  /// Brings the set-points to rest, by a ramp where they move, and ends a stream of commands.
+  /// Nothing if they do not move.
   void stopSetPoint();
+  /// Somebody gives the set-points of every cycle from now on by setTarget(), and streams are
+  /// refused.
+  /// @param who for messages, the name of a group; must outlive that. nullptr: nobody any more
+  void follow(const std::string* who);
+  /// Who does; nullptr: nobody.
+  const std::string* leader() const;
+  /// The stream of commands has come to rest, or there is none.
+  bool streamAtRest() const;
+  /// A stream of velocities or efforts ended without a zero: it is being brought to rest, or was.
+  bool driedUp() const;
+  /// Cycles were missed before this one. Valid from update() to writeCommands().
+  bool late() const;
   /// Why setTarget would refuse now, in words; empty if it would not.
   std::string motionRefusal() const;
   /// Why the axis takes no command, and the call that helps: "elbow is halted: enable"; empty if it

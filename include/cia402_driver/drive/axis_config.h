@@ -10,13 +10,12 @@
 #include "cia402_driver/drive/conversion.h"
 #include "cia402_driver/drive/profile.h"
 #include "cia402_driver/fieldbus/object_dictionary.h"
+#include "cia402_driver/motion/joint.h"
 
 namespace cia402::drive {
 
-/// Limits of a joint in SI units (rad or m); absent: none.
-struct AxisLimits {
-  std::optional<double> lower, upper, velocity, acceleration, jerk, effort;
-};
+/// Limits of the joint; `continuous` is told by the geometry, see jointOf().
+using AxisLimits = motion::JointLimits;
 
 struct HomingOptions {
   /// Method number of the drive; absent: declare zero (only where the profile says so).
@@ -66,6 +65,9 @@ struct AxisConfig {
     return restore.empty() ? profile->parameters.restore : restore;
   }
 };
+
+/// The joint of an axis with its limits, as the motion module sees it.
+motion::Joint jointOf(const AxisConfig& axis);
 
 /// With which an axis is stopped by its set-points: its acceleration limit, or 5 rad/s² (0.5 m/s²)
 /// where none is configured.

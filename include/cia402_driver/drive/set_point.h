@@ -7,7 +7,7 @@
 
 #include "cia402_driver/common/time.h"
 #include "cia402_driver/drive/profile.h"
-#include "cia402_driver/drive/soft_stop.h"
+#include "cia402_driver/motion/stop_ramp.h"
 
 namespace cia402::drive {
 
@@ -102,7 +102,7 @@ class SetPoint {
   double value_ = kNone, velocity_ = 0.0;
   double given_ = kNone;
   bool has_given_ = false, stopping_ = false, leased_ = false;
-  SoftStop ramp_;
+  motion::StopRamp ramp_;
   Time moved_at_ = Time::min();
   std::uint32_t breaks_ = 0, interruptions_ = 0, given_up_ = 0;
 };

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "cia402_driver/motion/setpoint_limiter.h"
 #include "drive/modes/position_control.h"
 
 namespace cia402::drive {
@@ -9,7 +10,13 @@ namespace cia402::drive {
 /// the drive stands at the last one.
 class CyclicPosition : public PositionControl {
  public:
-  using PositionControl::PositionControl;
+  CyclicPosition(const ModeChannel& channel, const Context& context);
+  void beginStream(const Stream& stream, Time at) override;
+  void takeCommand(Stream& stream) override;
+  std::optional<double> follow(Stream& stream, Time now) override;
+
+ private:
+  motion::PositionLimiter limiter_;
 };
 
 }  // namespace cia402::drive

@@ -10,6 +10,7 @@ class HomingControl : public ModeControl {
  public:
   using ModeControl::ModeControl;
   bool accepts(double) const override { return false; }
+  std::optional<double> follow(Stream&, Time) override { return {}; }
 };
 
 }  // namespace cia402::drive

@@ -8,6 +8,15 @@
 
 namespace cia402::drive {
 
+/// Commands that people stream to an axis (`~<axis>/command`), as its mode follows them.
+struct Stream {
+  std::optional<double> command;  ///< the last one, in joint units; nothing: there is none
+  Time clock{};                   ///< one period a cycle, however late the cycle is
+  Time commanded{};               ///< when the command came, in bus time
+  bool dried_up = false;  ///< a velocity or an effort other than zero was not renewed in time
+  bool at_rest = true;    ///< what is led by the commands does not move
+};
+
 /// What one mode of operation makes of set-points: which it takes, what is neutral in it, and how
 /// they reach the drive. There is one for each kind of mode, made by makeModeControl().
 class ModeControl {
@@ -46,6 +55,15 @@ class ModeControl {
     raw = 0;
     return true;
   }
+
+  // A stream of commands (Axis::command()), which the mode leads within the limits of the joint.
+  /// Begins from what was sent last, with the command that there is. @param at of the stream's
+  /// clock
+  virtual void beginStream(const Stream& /*stream*/, Time /*at*/) {}
+  /// A new command is there, finite.
+  virtual void takeCommand(Stream& /*stream*/) {}
+  /// @return the set-point of this cycle; nothing: none is given. @pre there is a command
+  virtual std::optional<double> follow(Stream& stream, Time now) = 0;
 
   // What follows is empty but where a mode hands its set-points over one by one.
   /// Begins anew with a neutral target, or the mode is left.

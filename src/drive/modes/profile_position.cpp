@@ -20,6 +20,20 @@ constexpr double kOffStopPoint = 0.25;
 ProfilePosition::ProfilePosition(const ModeChannel& channel, const Context& context)
     : PositionControl(channel, context), by_hand_(spec().handshake == Handshake::new_set_point) {}
 
+/// The drive goes there by itself, but not beyond the limits.
+void ProfilePosition::takeCommand(Stream& stream) {
+  motion::JointLimits range;
+  range.lower = limits().lower;
+  range.upper = limits().upper;
+  stream.command = motion::withinReach(range, *stream.command, state().position);
+}
+
+std::optional<double> ProfilePosition::follow(Stream& stream, Time) {
+  stream.at_rest = state().target_reached;
+  if (sent().value() == *stream.command) return {};
+  return stream.command;
+}
+
 void ProfilePosition::reset(std::uint64_t raw) {
   handshake_.reset(raw);
   dropped_ = false;

@@ -14,6 +14,8 @@ class ProfilePosition : public PositionControl {
  public:
   ProfilePosition(const ModeChannel& channel, const Context& context);
 
+  void takeCommand(Stream& stream) override;
+  std::optional<double> follow(Stream& stream, Time now) override;
   void reset(std::uint64_t raw) override;
   void offer(std::uint64_t raw, bool twice) override;
   void accepted(std::uint64_t raw, bool same) override;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace cia402::drive {
 namespace {
@@ -13,6 +14,17 @@ constexpr double kFreeSpeed = 0.9;  ///< of the velocity limit, up to which an e
 
 bool TorqueControl::accepts(double value) const {
   return !(limits().effort && std::fabs(value) > *limits().effort) && leadsInside(value);
+}
+
+std::optional<double> TorqueControl::follow(Stream& stream, Time now) {
+  const double most = limits().effort.value_or(std::numeric_limits<double>::infinity());
+  const double effort = std::clamp(*stream.command, -most, most);
+  stream.at_rest = effort == 0.0;
+  const bool old = now - stream.commanded > axis().config.command_timeout;
+  stream.dried_up = old && *stream.command != 0.0;
+  if (!old) return effort;
+  stream.command.reset();
+  return {};
 }
 
 double TorqueControl::guarded(double value) const {

@@ -14,6 +14,8 @@ class TorqueControl : public ModeControl {
   /// An effort makes a motor without load ever faster, and not every drive has a limit of speed for
   /// its torque modes: from nine tenths of the limit on it gets less, at the limit it is 0.
   double guarded(double value) const override;
+  /// A stream that dries up is given up.
+  std::optional<double> follow(Stream& stream, Time now) override;
 };
 
 }  // namespace cia402::drive

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "cia402_driver/motion/setpoint_limiter.h"
 #include "drive/modes/mode_control.h"
 
 namespace cia402::drive {
@@ -9,8 +10,15 @@ namespace cia402::drive {
 /// the last one.
 class VelocityControl : public ModeControl {
  public:
-  using ModeControl::ModeControl;
+  VelocityControl(const ModeChannel& channel, const Context& context);
   bool accepts(double value) const override;
+  void beginStream(const Stream& stream, Time at) override;
+  void takeCommand(Stream& stream) override;
+  /// A stream that dries up is ramped to rest.
+  std::optional<double> follow(Stream& stream, Time now) override;
+
+ private:
+  motion::VelocityLimiter limiter_;
 };
 
 }  // namespace cia402::drive

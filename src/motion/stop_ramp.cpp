@@ -1,18 +1,18 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/drive/soft_stop.h"
+#include "cia402_driver/motion/stop_ramp.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace cia402::drive {
+namespace cia402::motion {
 
-void SoftStop::begin(double position, double velocity, double deceleration) {
+void StopRamp::begin(double position, double velocity, double deceleration) {
   position_ = position;
   velocity_ = std::isfinite(velocity) ? velocity : 0.0;
   deceleration_ = deceleration;
 }
 
-void SoftStop::advance(Duration dt) {
+void StopRamp::advance(Duration dt) {
   if (finished() || dt <= Duration::zero()) return;
   const double to_rest = std::fabs(velocity_) / deceleration_;
   const double seconds = std::min(toSeconds(dt), to_rest);
@@ -25,4 +25,4 @@ void SoftStop::advance(Duration dt) {
   position_ += 0.5 * (before + velocity_) * seconds;
 }
 
-}  // namespace cia402::drive
+}  // namespace cia402::motion

@@ -3,10 +3,10 @@
 
 #include "cia402_driver/common/time.h"
 
-namespace cia402::drive {
+namespace cia402::motion {
 
 /// Brings a streamed set-point to rest with constant deceleration. All numbers in joint units.
-class SoftStop {
+class StopRamp {
  public:
   /// Starts at `position` with `velocity` (unit/s; not finite: at rest). @param deceleration
   /// unit/s^2, > 0
@@ -21,4 +21,4 @@ class SoftStop {
   double position_ = 0.0, velocity_ = 0.0, deceleration_ = 1.0;
 };
 
-}  // namespace cia402::drive
+}  // namespace cia402::motion
