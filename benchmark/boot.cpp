@@ -23,7 +23,7 @@ struct Boot {
   double ratio() const { return took / wire; }
 };
 
-bool allReady(bus::Robot& robot) {
+bool allReady(bus::Network& robot) {
   for (const canopen::Node& node : robot.master().nodes()) {
     if (node.health() != fieldbus::Health::ready) return false;
   }
@@ -39,10 +39,10 @@ Boot boot(const Row& row) {
   world.run(std::chrono::seconds(1));
   const sim::BusTraffic before = world.world().bus().traffic();
   const Time begin = world.now();
-  world.robot().start(begin);
+  world.network().start(begin);
   const Time end = begin + std::chrono::seconds(60);
-  while (!allReady(world.robot()) && world.now() < end) world.run(std::chrono::microseconds(100));
-  for (const canopen::Node& node : world.robot().master().nodes()) {
+  while (!allReady(world.network()) && world.now() < end) world.run(std::chrono::microseconds(100));
+  for (const canopen::Node& node : world.network().master().nodes()) {
     const std::uint32_t boot_ups = node.bootUps() - 1;  // the first one told that it has power
     const bool well = node.health() == fieldbus::Health::ready && boot_ups == 1 &&
                       node.notes().empty() && node.emergencies() == 0;

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <optional>
 #include <stdexcept>
+#include <utility>
+
+#include "cia402_driver/bus/jobs/procedure_command.h"
 
 namespace cia402::benchmark {
 namespace {
@@ -12,8 +15,8 @@ namespace {
 constexpr Duration kFrameTime = std::chrono::microseconds(120);  // of a TPDO at 1 Mbit/s
 constexpr double kBitrate = 1e6;
 
-bus::RobotSnapshot sized(std::size_t axes) {
-  bus::RobotSnapshot snapshot;
+bus::NetworkSnapshot sized(std::size_t axes) {
+  bus::NetworkSnapshot snapshot;
   snapshot.axes.resize(axes);
   snapshot.groups.resize(1);
   return snapshot;
@@ -21,29 +24,38 @@ bus::RobotSnapshot sized(std::size_t axes) {
 
 }  // namespace
 
+template <typename Request>
+void DrivenRobot::runUntilAnswered(Request request) {
+  std::optional<bus::Answer> answer;
+  const auto take = [&answer](const bus::Answer& given) { answer = given; };
+  network_.execute(bus::Command(std::move(request), take), now_);
+  while (!answer) step();
+  if (!answer->success) throw std::runtime_error(answer->message);
+}
+
 DrivenRobot::DrivenRobot(int axes, double sync_period_s, int cycles)
     : config_(genericRobot(axes, sync_period_s, Layout::lean)),
       period_(config_.robot.bus.sync_period),
       drives_(axes),
       meter_(*this, kBitrate),
       recorder_(config_.robot, meter_),
-      robot_(config_.robot, config_.master, recorder_, *this),
+      network_(config_.robot, config_.master, recorder_, *this),
       snapshots_(sized(static_cast<std::size_t>(axes))) {
-  recorder_.watch(robot_);
+  recorder_.watch(network_);
   incoming_.reserve(256);
   outgoing_.reserve(256);
-  robot_.start(now_);
-  const auto ready = [](const drive::Axis& axis) {
-    return axis.state().health == fieldbus::Health::ready && axis.state().feedback_valid;
+  network_.start(now_);
+  const auto ready = [](const bus::AxisUnit& unit) {
+    const drive::AxisState& state = unit.axis.state();
+    return state.health == fieldbus::Health::ready && state.feedback_valid;
   };
-  while (!std::all_of(robot_.axes().begin(), robot_.axes().end(), ready)) step();
-  bus::Command enable;
-  bus::ProcedureCommand procedure;
-  procedure.request.kind = drive::ProcedureKind::enable;
-  enable.body = procedure;
-  runUntilAnswered(std::move(enable));
-  const std::uint64_t sync = robot_.statistics().cycles();
-  while (robot_.statistics().cycles() == sync) step();
+  const auto& units = network_.cycle().units();
+  while (!std::all_of(units.begin(), units.end(), ready)) step();
+  bus::ProcedureCommand enable;
+  enable.request.kind = drive::ProcedureKind::enable;
+  runUntilAnswered(enable);
+  const std::uint64_t sync = network_.statistics().cycles();
+  while (network_.statistics().cycles() == sync) step();
   sync_ = now_ + period_;
   began_ = sync_ - period_ / 2;  // one period before the first cycle
   runUntilAnswered(swing(config_.robot, sync_period_s * (cycles + 1), 0.1));
@@ -59,23 +71,15 @@ void DrivenRobot::onEvent(const bus::Event& event) {
   events_.push_back(event);
 }
 
-void DrivenRobot::runUntilAnswered(bus::Command command) {
-  std::optional<bus::Answer> answer;
-  command.reply = [&answer](const bus::Answer& given) { answer = given; };
-  robot_.execute(std::move(command), now_);
-  while (!answer) step();
-  if (!answer->success) throw std::runtime_error(answer->message);
-}
-
 /// One event of a bus on which frames take no time.
 void DrivenRobot::step() {
-  now_ = std::max(now_, std::min(robot_.nextDeadline(), drives_.nextHeartbeat()));
+  now_ = std::max(now_, std::min(network_.nextDeadline(), drives_.nextHeartbeat()));
   if (toSeconds(now_.time_since_epoch()) > 60.0) {
     std::string told;
     for (const bus::Event& event : events_) told += "\n" + event.text.str();
     throw std::runtime_error("the scripted drives were not enabled within a minute:" + told);
   }
-  robot_.tick(now_);
+  network_.tick(now_);
   drives_.tick(now_, incoming_);
   while (!outgoing_.empty() || !incoming_.empty()) {
     const std::vector<can::Frame> sent = std::exchange(outgoing_, {});
@@ -83,7 +87,7 @@ void DrivenRobot::step() {
     const std::vector<can::Frame> received = std::exchange(incoming_, {});
     for (const can::Frame& frame : received) {
       recorder_.received(frame, now_);
-      robot_.receive(frame, now_, now_);
+      network_.receive(frame, now_, now_);
     }
   }
 }
@@ -105,11 +109,11 @@ void DrivenRobot::cycle() {
   for (const can::Frame& frame : incoming_) {
     now += kFrameTime;
     const can::Frame received = frame;
-    robot_.produceSync(now);
+    network_.produceSync(now);
     meter_.count(received);
     recorder_.received(received, now);
-    robot_.receive(received, now, now);
-    robot_.tick(now);
+    network_.receive(received, now, now);
+    network_.tick(now);
     meter_.update(now);
     recorder_.observe();
     publish(now);
@@ -119,7 +123,7 @@ void DrivenRobot::cycle() {
 }
 
 void DrivenRobot::wake(Time now) {
-  robot_.tick(now);
+  network_.tick(now);
   meter_.update(now);
   recorder_.observe();
   publish(now);
@@ -127,20 +131,20 @@ void DrivenRobot::wake(Time now) {
 
 /// As in BusRunner.
 void DrivenRobot::publish(Time now) {
-  now_ = std::min(now, robot_.nextDeadline());  // what BusRunner would wait for
-  const std::uint64_t cycle = robot_.statistics().cycles();
+  now_ = std::min(now, network_.nextDeadline());  // what BusRunner would wait for
+  const std::uint64_t cycle = network_.statistics().cycles();
   if (cycle == published_cycle_) return;
   published_cycle_ = cycle;
-  robot_.fill(snapshots_.back());
+  network_.fill(snapshots_.back());
   snapshots_.publish();
 }
 
 void DrivenRobot::check() const {
   // The target was computed in the middle of the last period.
   const double time_s = toSeconds(sync_ - period_ / 2 - began_);
-  const auto& commanded = robot_.groups().front().commanded();
+  const auto& commanded = network_.cycle().groups().front().commanded();
   for (std::size_t i = 0; i < commanded.size(); ++i) {
-    if (robot_.groups().front().executing() &&
+    if (network_.cycle().groups().front().executing() &&
         std::abs(commanded[i].position - swingPosition(i, time_s)) < 1e-3) {
       continue;
     }

@@ -6,7 +6,7 @@
 
 #include "cia402_driver/bus/flight_recorder.h"
 #include "cia402_driver/bus/load_meter.h"
-#include "cia402_driver/bus/robot.h"
+#include "cia402_driver/bus/network.h"
 #include "cia402_driver/bus/triple_buffer.h"
 #include "robots.h"
 #include "scripted_drives.h"
@@ -38,7 +38,8 @@ class DrivenRobot final : private can::Sink, private bus::EventSink {
   void onEvent(const bus::Event& event) override;
   void onEmergency(const bus::EmergencyEvent& event) override { recorder_.onEmergency(event); }
 
-  void runUntilAnswered(bus::Command command);
+  template <typename Request>
+  void runUntilAnswered(Request request);
   void step();
   void wake(Time now);
   void publish(Time now);
@@ -48,8 +49,8 @@ class DrivenRobot final : private can::Sink, private bus::EventSink {
   ScriptedDrives drives_;
   bus::LoadMeter meter_;
   bus::FlightRecorder recorder_;
-  bus::Robot robot_;
-  bus::TripleBuffer<bus::RobotSnapshot> snapshots_;
+  bus::Network network_;
+  bus::TripleBuffer<bus::NetworkSnapshot> snapshots_;
   std::vector<can::Frame> incoming_, outgoing_;
   std::vector<bus::Event> events_;
   Time now_{}, sync_{}, began_{};

@@ -67,7 +67,7 @@ TestRobot genericRobot(int axes, double sync_period_s, Layout layout) {
 
 double swingPosition(std::size_t joint, double time_s) { return sine(joint, time_s, time_s); }
 
-bus::Command swing(const config::RobotConfig& robot, double duration_s, double period_s) {
+bus::TrajectoryCommand swing(const config::RobotConfig& robot, double duration_s, double period_s) {
   constexpr double kStep = 1e-3;  // s, of the difference quotients
   bus::TrajectoryCommand trajectory;
   trajectory.group = "all";
@@ -87,9 +87,7 @@ bus::Command swing(const config::RobotConfig& robot, double duration_s, double p
     }
     trajectory.points.push_back(std::move(point));
   }
-  bus::Command command;
-  command.body = std::move(trajectory);
-  return command;
+  return trajectory;
 }
 
 }  // namespace cia402::benchmark

@@ -30,7 +30,7 @@ TestRobot genericRobot(int axes, double sync_period_s, Layout layout);
 /// A trajectory for "all" in which every joint swings as a sine of its own frequency for
 /// `duration_s`, and then comes to rest.
 /// @param period_s between points, which carry position, velocity and acceleration.
-bus::Command swing(const config::RobotConfig& robot, double duration_s, double period_s);
+bus::TrajectoryCommand swing(const config::RobotConfig& robot, double duration_s, double period_s);
 /// Where that trajectory has joint number `joint` after `time_s`, at most its duration.
 double swingPosition(std::size_t joint, double time_s);
 

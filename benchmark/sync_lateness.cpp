@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "cia402_driver/bus/jobs/procedure_command.h"
 #include "cia402_driver/bus/real_clock.h"
 #include "cia402_driver/bus/realtime.h"
 #include "cia402_driver/bus/runner.h"
@@ -96,7 +97,7 @@ class MeasuringInterface final : public can::Interface {
 
 void waitUntilAll(bus::BusRunner& runner, bool (*condition)(const drive::AxisState&)) {
   for (int i = 0; i < 1000; ++i) {
-    const bus::RobotSnapshot snapshot = runner.snapshot();
+    const bus::NetworkSnapshot snapshot = runner.snapshot();
     const bool all = std::all_of(snapshot.axes.begin(), snapshot.axes.end(),
                                  [&](const bus::AxisSnapshot& a) { return condition(a.state); });
     if (all) return;
@@ -117,11 +118,9 @@ std::vector<double> driverBlock(const TestRobot& config) {
                         options);
   runner.start();
   waitUntilAll(runner, [](const drive::AxisState& state) { return state.feedback_valid; });
-  bus::Command enable;
-  bus::ProcedureCommand procedure;
-  procedure.request.kind = drive::ProcedureKind::enable;
-  enable.body = procedure;
-  runner.post(std::move(enable));
+  bus::ProcedureCommand enable;
+  enable.request.kind = drive::ProcedureKind::enable;
+  runner.post(bus::Command(enable));
   waitUntilAll(runner, [](const drive::AxisState& state) { return state.ready_for_motion; });
   const Time begin = bus::realNow();
   std::this_thread::sleep_for((kSamples + 5) * kPeriod);

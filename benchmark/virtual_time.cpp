@@ -17,8 +17,8 @@ constexpr double kHour = 3600.0;     // s
 constexpr double kTolerance = 0.05;  // rad between the sine and the drives
 
 bool allReady(tools::VirtualRobot& robot) {
-  for (const drive::Axis& axis : robot.robot().axes()) {
-    if (axis.state().health != fieldbus::Health::ready) return false;
+  for (const bus::AxisUnit& unit : robot.network().cycle().units()) {
+    if (unit.axis.state().health != fieldbus::Health::ready) return false;
   }
   return true;
 }
@@ -36,13 +36,13 @@ void enable(tools::VirtualRobot& robot) {
 
 /// Every joint must be on its sine: what stands still costs little and shows nothing.
 void checkMotion(tools::VirtualRobot& robot, double time_s) {
-  const auto& axes = robot.robot().axes();
-  for (std::size_t i = 0; i < axes.size(); ++i) {
-    const double error = axes[i].state().position - swingPosition(i, time_s);
+  const auto& units = robot.network().cycle().units();
+  for (std::size_t i = 0; i < units.size(); ++i) {
+    const double error = units[i].axis.state().position - swingPosition(i, time_s);
     if (std::abs(error) <= kTolerance) continue;
     std::string told;
     for (const bus::Event& event : robot.events()) told += "\n  " + event.text.str();
-    throw std::runtime_error(axes[i].config().name + " is " + std::to_string(error) +
+    throw std::runtime_error(units[i].axis.config().name + " is " + std::to_string(error) +
                              " rad off its path after " + std::to_string(time_s) + " s:" + told);
   }
 }
@@ -72,7 +72,9 @@ std::uint64_t hourWithFaults(std::uint64_t seed) {
   rates.corrupt = 1e-4;
   world.world().bus().faults().setRates(rates);
   moveForAnHour(world, robot.robot);
-  for (const drive::Axis& axis : world.robot().axes()) fingerprint.add(axis.state().position);
+  for (const bus::AxisUnit& unit : world.network().cycle().units()) {
+    fingerprint.add(unit.axis.state().position);
+  }
   return fingerprint.value();
 }
 

@@ -2,9 +2,9 @@
 #include "cia402_driver/bus/axis_reporter.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 
+#include "bus/words.h"
 #include "cia402_driver/drive/fault_text.h"
 
 namespace cia402::bus {
@@ -14,12 +14,6 @@ namespace {
 constexpr std::uint32_t kBootUp = 0x10000;
 constexpr std::uint32_t kMalformed = 0x10001;
 constexpr const char* kSummedUp = "; further ones are summed up every 5 s";
-
-std::string seconds(Duration duration) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%.1f s", toSeconds(duration));
-  return text;
-}
 
 }  // namespace
 
@@ -91,11 +85,7 @@ void AxisReporter::problem(Event::Severity severity, std::uint16_t code, const s
                            Time now) {
   const auto verdict = code == 0 ? RepeatLimiter::Verdict::tell : other_limit_.take(code, now);
   if (verdict == RepeatLimiter::Verdict::hold) return;
-  Event event;
-  event.severity = severity;
-  event.stamp = now;
-  event.text.assign(text);
-  events_->onEvent(event);
+  bus::tell(*events_, severity, text, now);
 }
 
 void AxisReporter::bootUp(Time now) {
@@ -122,11 +112,7 @@ void AxisReporter::tellUnlessHeld(RepeatLimiter::Verdict verdict, Event::Severit
 }
 
 void AxisReporter::tell(Event::Severity severity, const std::string& text, Time now) {
-  Event event;
-  event.severity = severity;
-  event.stamp = now;
-  event.text.assign(who_ + ": " + text);
-  events_->onEvent(event);
+  bus::tell(*events_, severity, who_ + ": " + text, now);
 }
 
 std::string AxisReporter::kindText(std::uint32_t kind) const {
@@ -143,7 +129,7 @@ void AxisReporter::tell(const char* prefix, const RepeatLimiter::Summary& summar
        (has_code ? std::string(prefix) + " " : "") +
            (summary.others ? std::string(prefix) + " of yet other codes" : kindText(summary.kind)) +
            ": came " + groupedDigits(summary.count) + " times in the last " +
-           seconds(summary.over) + ", " + groupedDigits(summary.total) + " times since start",
+           secondsTo(1, summary.over) + ", " + groupedDigits(summary.total) + " times since start",
        now);
 }
 

@@ -8,8 +8,8 @@ namespace cia402::bus {
 namespace {
 
 constexpr int kFramesPerRound = 256;  // then SYNC may be due again
-// A flood that comes faster than it is read must not keep the robot from its cycle: so much is more
-// than the kernel holds for a socket.
+// A flood that comes faster than it is read must not keep the network from its cycle: so much is
+// more than the kernel holds for a socket.
 constexpr int kRoundsBehind = 16;
 
 }  // namespace
@@ -19,20 +19,20 @@ BusLoop::BusLoop(config::RobotConfig robot, canopen::MasterConfig master, can::I
     : interface_(interface),
       meter_(interface, robot.bus.bitrate),
       recorder_(robot, meter_),
-      robot_(std::move(robot), std::move(master), recorder_, events),
+      network_(std::move(robot), std::move(master), recorder_, events),
       watch_(events) {
-  recorder_.watch(robot_);
+  recorder_.watch(network_);
 }
 
 void BusLoop::step(Time now) {
-  if (const auto unseen = watch_.update(interface_, robot_, now)) {
+  if (const auto unseen = watch_.update(interface_, network_, now)) {
     recorder_.onInterface(*unseen, now);
   }
   recorder_.onInterface(interface_.state(), now);
-  robot_.produceSync(now);
+  network_.produceSync(now);
   if (takeIn(now) || ++rounds_behind_ == kRoundsBehind) {
     rounds_behind_ = 0;
-    robot_.tick(now);
+    network_.tick(now);
   }
   interface_.maintain(now);
   meter_.update(now);
@@ -41,7 +41,7 @@ void BusLoop::step(Time now) {
 
 Time BusLoop::nextDeadline() const {
   if (more_waits_) return Time::min();
-  return std::min(robot_.nextDeadline(), interface_.nextDeadline());
+  return std::min(network_.nextDeadline(), interface_.nextDeadline());
 }
 
 /// @return true if nothing is left that came before `now`.
@@ -53,7 +53,7 @@ bool BusLoop::takeIn(Time now) {
     if (!more_waits_) return true;
     meter_.count(received->frame);
     recorder_.received(received->frame, received->stamp);
-    robot_.receive(received->frame, received->stamp, now);
+    network_.receive(received->frame, received->stamp, now);
     caught_up = received->stamp > now;
   }
   return caught_up;

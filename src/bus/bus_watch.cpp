@@ -19,15 +19,15 @@ Event::Severity severityOf(can::BusState state) {
 
 }  // namespace
 
-std::optional<can::BusState> BusWatch::update(const can::Interface& interface, Robot& robot,
+std::optional<can::BusState> BusWatch::update(const can::Interface& interface, Network& network,
                                               Time now) {
   const auto through = unseenLoss(interface);
-  if (through) onUnseenLoss(*through, interface, robot, now);
-  if (!known_ || interface.state() != state_) onChange(interface, robot, now);
+  if (through) onUnseenLoss(*through, interface, network, now);
+  if (!known_ || interface.state() != state_) onChange(interface, network, now);
   if (now >= limit_.deadline()) {
     while (const auto summary = limit_.due(now)) {
       tell(Event::Severity::warning,
-           robot.config().bus.interface + " became " +
+           network.config().bus.interface + " became " +
                can::toString(static_cast<can::BusState>(summary->kind)) + " " +
                std::to_string(summary->count) + " times in the last 5 s, now it is " +
                can::toString(state_),
@@ -58,10 +58,10 @@ std::optional<can::BusState> BusWatch::unseenLoss(const can::Interface& interfac
 }
 
 /// The set-points of the time in between reached nobody: motion must not go on as if they had.
-void BusWatch::onUnseenLoss(can::BusState through, const can::Interface& interface, Robot& robot,
-                            Time now) {
+void BusWatch::onUnseenLoss(can::BusState through, const can::Interface& interface,
+                            Network& network, Time now) {
   const std::string what =
-      robot.config().bus.interface + " was " + can::toString(through) + " for a moment";
+      network.config().bus.interface + " was " + can::toString(through) + " for a moment";
   const auto verdict = limit_.take(static_cast<std::uint32_t>(through), now);
   const bool is_news = verdict != RepeatLimiter::Verdict::hold;
   if (is_news) {
@@ -73,11 +73,11 @@ void BusWatch::onUnseenLoss(can::BusState through, const can::Interface& interfa
              "; now: " + interface.describe(),
          now);
   }
-  robot.busLost(what, now);
-  robot.busBack(is_news, now);
+  network.busLost(what, now);
+  network.busBack(is_news, now);
 }
 
-void BusWatch::onChange(const can::Interface& interface, Robot& robot, Time now) {
+void BusWatch::onChange(const can::Interface& interface, Network& network, Time now) {
   const bool was_lost = !known_ || lost(state_);
   known_ = true;
   state_ = interface.state();
@@ -88,20 +88,16 @@ void BusWatch::onChange(const can::Interface& interface, Robot& robot, Time now)
   if (verdict != RepeatLimiter::Verdict::hold) tell(severityOf(state_), text_.str(), now);
   if (lost(state_)) {
     if (!was_lost)
-      robot.busLost(robot.config().bus.interface + " is " + can::toString(state_), now);
-  } else if (!robot.started()) {
-    robot.start(now);
+      network.busLost(network.config().bus.interface + " is " + can::toString(state_), now);
+  } else if (!network.started()) {
+    network.start(now);
   } else if (was_lost) {
-    robot.busBack(verdict != RepeatLimiter::Verdict::hold, now);
+    network.busBack(verdict != RepeatLimiter::Verdict::hold, now);
   }
 }
 
 void BusWatch::tell(Event::Severity severity, const std::string& text, Time now) {
-  Event event;
-  event.severity = severity;
-  event.stamp = now;
-  event.text.assign(text);
-  events_.onEvent(event);
+  bus::tell(events_, severity, text, now);
 }
 
 }  // namespace cia402::bus

@@ -66,8 +66,8 @@ AxisRecord recordOf(std::size_t index, const drive::Axis& axis, std::uint8_t fla
 
 /// Calls `use(node, pdo)` for every PDO in operation, always in the same order.
 template <typename Use>
-void forEachPdo(const Robot& robot, Use&& use) {
-  for (const canopen::Node& node : robot.master().nodes()) {
+void forEachPdo(const Network& network, Use&& use) {
+  for (const canopen::Node& node : network.master().nodes()) {
     for (const auto& pdo : node.image().tpdos()) use(node, pdo);
     for (const auto& pdo : node.image().rpdos()) use(node, pdo);
   }
@@ -114,9 +114,9 @@ FlightRecorder::FlightRecorder(const config::RobotConfig& robot, can::Sink& sink
   for (const config::GroupConfig& group : robot.groups) group_names_.push_back(group.name);
 }
 
-void FlightRecorder::watch(const Robot& robot) {
-  robot_ = &robot;
-  forEachPdo(robot, [&](const canopen::Node& node, const canopen::PdoImage::Pdo& pdo) {
+void FlightRecorder::watch(const Network& network) {
+  network_ = &network;
+  forEachPdo(network, [&](const canopen::Node& node, const canopen::PdoImage::Pdo& pdo) {
     identifiers_.push_back({node.id(), pdo.direction, pdo.number, pdo.cob_id});
   });
   cob_ids_ = std::vector<std::atomic<std::uint16_t>>(identifiers_.size());
@@ -125,7 +125,7 @@ void FlightRecorder::watch(const Robot& robot) {
 
 void FlightRecorder::observeIdentifiers() {
   auto place = cob_ids_.begin();
-  forEachPdo(*robot_, [&](const canopen::Node&, const canopen::PdoImage::Pdo& pdo) {
+  forEachPdo(*network_, [&](const canopen::Node&, const canopen::PdoImage::Pdo& pdo) {
     (place++)->store(pdo.cob_id, std::memory_order_relaxed);
   });
 }
@@ -135,27 +135,25 @@ std::size_t FlightRecorder::memory() const {
 }
 
 void FlightRecorder::observeCycle() {
-  const Time now = robot_->now();
-  observed_ = robot_->lastCycle();
+  const Time now = network_->now();
+  observed_ = network_->cycle().lastCycle();
   const bool sample = now >= sampled_ + kSampleInterval;
   if (sample) {
     sampled_ = now;
     observeIdentifiers();
   }
-  const std::vector<drive::Axis>& axes = robot_->axes();
-  for (std::size_t i = 0; i < axes.size(); ++i) {
-    observeAxis(i, axes[i], !robot_->motions()[i].atRest(), sample, now);
-  }
+  for (const AxisUnit& unit : network_->cycle().units()) observeAxis(unit, sample, now);
   observeGroups(now);
 }
 
-void FlightRecorder::observeAxis(std::size_t index, const drive::Axis& axis, bool moving,
-                                 bool sample, Time now) {
+void FlightRecorder::observeAxis(const AxisUnit& unit, bool sample, Time now) {
+  const std::size_t index = unit.index;
+  const drive::Axis& axis = unit.axis;
   const drive::AxisState& state = axis.state();
   const drive::ProcedureStatus& procedure = axis.procedure();
   Watched& watched = watched_[index];
   if (procedure.running) observeStep(index, axis, now);
-  const std::uint8_t flags = flagsOf(state, procedure, moving);
+  const std::uint8_t flags = flagsOf(state, procedure, !unit.motion.atRest());
   const std::uint64_t signature = signatureOf(state, procedure, flags);
   if (signature != watched.signature) {
     watched.signature = signature;
@@ -176,7 +174,7 @@ void FlightRecorder::observeStep(std::size_t index, const drive::Axis& axis, Tim
 }
 
 void FlightRecorder::observeGroups(Time now) {
-  const std::vector<Group>& groups = robot_->groups();
+  const std::vector<Group>& groups = network_->cycle().groups();
   for (std::size_t i = 0; i < groups.size(); ++i) {
     const std::uint8_t motion = groups[i].stopping() ? 2 : groups[i].executing() ? 1 : 0;
     if (motion == groups_[i]) continue;
@@ -192,7 +190,7 @@ void FlightRecorder::observeGroups(Time now) {
 void FlightRecorder::lookForFault(std::size_t index, const drive::AxisState& state, Time now) {
   Watched& watched = watched_[index];
   const bool faulted = drive::isFault(state.state) && !drive::isFault(watched.state);
-  const bool fell = state.health != watched.health && !robot_->shutDown();
+  const bool fell = state.health != watched.health && !network_->shutDown();
   watched.state = state.state;
   watched.health = state.health;
   if (faulted) trigger(Kind::fault, index, state.error_code, now);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "bus/words.h"
+
 namespace cia402::bus {
 namespace {
 
@@ -36,63 +38,65 @@ std::string switchAdvice(const drive::AxisConfig& axis) {
 
 }  // namespace
 
-Group::Group(config::GroupConfig config, std::vector<std::size_t> axes,
-             const std::vector<drive::Axis>& all)
+Group::Group(config::GroupConfig config, std::vector<AxisUnit*> axes)
     : config_(std::move(config)),
       axes_(std::move(axes)),
-      clock_(all.empty() ? Duration(1) : all.front().config().sync_period),
+      clock_(axes_.empty() ? Duration(1) : axes_.front()->axis.config().sync_period),
       commanded_(axes_.size()),
       dropped_(axes_.size(), 0),
       next_dropped_(axes_.size(), 0),
       breaks_(axes_.size(), 0),
       notices_(axes_.size(), 0) {
-  for (std::size_t axis : axes_) {
-    joints_.push_back(jointOf(all[axis].config()));
-    names_.push_back(drive::jointName(all[axis].config()));
-    accelerations_.push_back(drive::stopDeceleration(all[axis].config()));
+  for (const AxisUnit* unit : axes_) {
+    const drive::AxisConfig& axis = unit->axis.config();
+    joints_.push_back(jointOf(axis));
+    names_.push_back(drive::jointName(axis));
+    accelerations_.push_back(drive::stopDeceleration(axis));
     const auto tolerance = config_.tolerances.find(joints_.back().name);
     tolerances_.push_back(tolerance == config_.tolerances.end() ? config::JointTolerance()
                                                                 : tolerance->second);
   }
 }
 
-std::string Group::refusal(const std::vector<drive::Axis>& axes,
-                           const std::vector<AxisMotion>& motions) const {
+std::string Group::refusal() const {
   std::string all;
-  for (std::size_t axis : axes_) {
-    std::string reason = axes[axis].motionRefusal();
-    const drive::ModeSpec* mode = axes[axis].state().mode;
-    if (reason.empty() &&
-        (mode == nullptr || !mode->cyclic || mode->kind != drive::ControlKind::position)) {
-      reason = drive::jointName(axes[axis].config()) + " is in mode " +
-               (mode ? mode->name : "unknown") +
-               ", which does not follow trajectories: " + switchAdvice(axes[axis].config());
-    }
-    const std::string* owner = motions[axis].owner();
-    if (reason.empty() && owner != nullptr && owner != &config_.name) {
-      reason = drive::jointName(axes[axis].config()) + " follows a trajectory of group " + *owner;
-    }
-    // In the cycle in which a trajectory has ended, the motion still knows the way to its goal
-    // only.
-    const bool rests = motions[axis].atRest() || axes[axis].setPoint().atRest();
-    if (reason.empty() && owner == nullptr && !rests) {
-      reason = drive::jointName(axes[axis].config()) +
-               " is still moved by streamed set-points: end the stream and let it come to rest";
-    }
-    if (!reason.empty()) all += (all.empty() ? "" : "; ") + reason;
+  for (const AxisUnit* unit : axes_) {
+    const std::string reason = refusalOf(*unit);
+    if (!reason.empty()) append(all, reason);
   }
   return all;
 }
 
-std::vector<motion::MotionState> Group::commandedAt(const std::vector<drive::Axis>& axes,
-                                                    Time time) const {
+std::string Group::refusalOf(const AxisUnit& unit) const {
+  const drive::Axis& axis = unit.axis;
+  std::string reason = axis.motionRefusal();
+  if (!reason.empty()) return reason;
+  const std::string who = drive::jointName(axis.config());
+  const drive::ModeSpec* mode = axis.state().mode;
+  if (mode == nullptr || !mode->cyclic || mode->kind != drive::ControlKind::position) {
+    return who + " is in mode " + (mode ? mode->name : "unknown") +
+           ", which does not follow trajectories: " + switchAdvice(axis.config());
+  }
+  const std::string* owner = unit.motion.owner();
+  if (owner != nullptr && owner != &config_.name) {
+    return who + " follows a trajectory of group " + *owner;
+  }
+  // In the cycle in which a trajectory has ended, the motion still knows the way to its goal only.
+  const bool rests = unit.motion.atRest() || axis.setPoint().atRest();
+  if (owner == nullptr && !rests) {
+    return who + " is still moved by streamed set-points: end the stream and let it come to rest";
+  }
+  return {};
+}
+
+std::vector<motion::MotionState> Group::commandedAt(Time time) const {
   std::vector<motion::MotionState> states(axes_.size());
   // In the time of the clock, also where that lags: what comes next is given out by the same clock.
   const bool planned = phase_ == Phase::following;
   if (planned) trajectory_->sample(time, states);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     if (planned && dropped_[i] == 0) continue;
-    const auto sent = axes[axes_[i]].setPoint().expected(time - clock_.time());
+    const auto sent = axes_[i]->axis.setPoint().expected(time - clock_.time());
     states[i] = {sent.position, sent.velocity, 0.0};
   }
   return states;
@@ -100,16 +104,14 @@ std::vector<motion::MotionState> Group::commandedAt(const std::vector<drive::Axi
 
 TrajectoryOutcome Group::start(const std::vector<std::string>& names,
                                const std::vector<motion::TrajectoryPoint>& points,
-                               std::optional<Time> start_time, std::vector<drive::Axis>& axes,
-                               std::vector<AxisMotion>& motions, Time now) {
+                               std::optional<Time> start_time, Time now) {
   if (points.empty()) {
-    stop({TrajectoryErrorCode::successful, config_.name + ": stopped by an empty trajectory"},
-         axes);
+    stop({TrajectoryErrorCode::successful, config_.name + ": stopped by an empty trajectory"});
     return {TrajectoryErrorCode::successful, config_.name + ": stopping"};
   }
   const auto order = motion::matchJoints(joints_, names);
   if (!order) return {TrajectoryErrorCode::invalid_joints, order.error().message};
-  const std::string why_not = refusal(axes, motions);
+  const std::string why_not = refusal();
   if (!why_not.empty()) {
     return {TrajectoryErrorCode::invalid_goal, config_.name + ": trajectory refused: " + why_not};
   }
@@ -121,20 +123,20 @@ TrajectoryOutcome Group::start(const std::vector<std::string>& names,
   start.now = clock_.time();
   if (start_time) start.start_time = clock_.at(*start_time, now);
   start.shortest_way = true;
-  auto trajectory = motion::Trajectory::create(joints_, commandedAt(axes, start.begin()),
+  auto trajectory = motion::Trajectory::create(joints_, commandedAt(start.begin()),
                                                reorder(points, *order), start);
   if (!trajectory) return {trajectory.error().code, trajectory.error().message};
   next_ = std::move(trajectory).value();
   std::fill(next_dropped_.begin(), next_dropped_.end(), std::uint8_t{0});
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    breaks_[i] = axes[axes_[i]].setPoint().breaks();
-    notices_[i] = axes[axes_[i]].noticeCount();
+    breaks_[i] = axes_[i]->axis.setPoint().breaks();
+    notices_[i] = axes_[i]->axis.noticeCount();
   }
   if (phase_ == Phase::idle) {
-    showSent(axes);
+    showSent();
     beginNext(now);
   }
-  for (std::size_t axis : axes_) motions[axis].setOwner(&config_.name);
+  for (AxisUnit* unit : axes_) unit->motion.setOwner(&config_.name);
   return {TrajectoryErrorCode::successful, config_.name + ": trajectory accepted"};
 }
 
@@ -149,25 +151,25 @@ void Group::beginNext(Time now) {
 
 /// A joint that was not ready for a while, or whose set-points were ended by anything else (another
 /// zero of its positions, a motor that stands), is not where its trajectories were planned from.
-void Group::noteDropped(const std::vector<drive::Axis>& axes) {
+void Group::noteDropped() {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    const drive::Axis& axis = axes[axes_[i]];
+    const drive::Axis& axis = axes_[i]->axis;
     if (!axis.state().ready_for_motion || axis.setPoint().breaks() != breaks_[i]) {
       dropped_[i] = next_dropped_[i] = 1;
     }
   }
 }
 
-void Group::stop(const TrajectoryOutcome& why, std::vector<drive::Axis>& axes) {
+void Group::stop(const TrajectoryOutcome& why) {
   if (!executing()) return;
   outcome_ = why;
-  if (phase_ == Phase::following) beginStop(axes);
+  if (phase_ == Phase::following) beginStop();
   next_.reset();
 }
 
-void Group::beginStop(std::vector<drive::Axis>& axes) {
+void Group::beginStop() {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    drive::Axis& axis = axes[axes_[i]];
+    drive::Axis& axis = axes_[i]->axis;
     if (dropped_[i] == 0) axis.stopSetPoint();
     breaks_[i] = axis.setPoint().breaks();
   }
@@ -205,10 +207,10 @@ void Group::advanceClock(Time now) {
   }
 }
 
-void Group::follow(std::vector<drive::Axis>& axes) {
+void Group::follow() {
   trajectory_->sample(clock_.time(), commanded_);
   if (clock_.rate() < 1.0) scaleCommanded();
-  sendSetpoints(axes);
+  sendSetpoints();
 }
 
 void Group::scaleCommanded() {
@@ -218,84 +220,83 @@ void Group::scaleCommanded() {
   }
 }
 
-void Group::showSent(const std::vector<drive::Axis>& axes) {
+void Group::showSent() {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    const drive::SetPoint& sent = axes[axes_[i]].setPoint();
+    const drive::SetPoint& sent = axes_[i]->axis.setPoint();
     commanded_[i] = {sent.value(), sent.velocity(), 0.0};
   }
 }
 
-bool Group::stands(const std::vector<drive::Axis>& axes) const {
+bool Group::stands() const {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    if (dropped_[i] == 0 && !axes[axes_[i]].setPoint().atRest()) return false;
+    if (dropped_[i] == 0 && !axes_[i]->axis.setPoint().atRest()) return false;
   }
   return true;
 }
 
 /// The goal was sent already: given once more, the set-points are at rest there.
-bool Group::atGoal(const std::vector<drive::Axis>& axes) const {
+bool Group::atGoal() const {
   if (!trajectory_->finished(clock_.time())) return false;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    if (dropped_[i] == 0 && axes[axes_[i]].target() != trajectory_->goal()[i]) return false;
+    if (dropped_[i] == 0 && axes_[i]->axis.target() != trajectory_->goal()[i]) return false;
   }
   return true;
 }
 
-std::optional<TrajectoryOutcome> Group::step(std::vector<drive::Axis>& axes,
-                                             std::vector<AxisMotion>& motions, Time now) {
+std::optional<TrajectoryOutcome> Group::step(Time now) {
   if (phase_ == Phase::idle) return std::nullopt;
-  noteDropped(axes);
+  noteDropped();
   advanceClock(now);
   if (next_ && clock_.time() >= next_->startTime()) beginNext(now);
   if (phase_ == Phase::following) {
     auto ended = checkRefusal();  // which ends the axis' set-points, too
-    if (!ended) ended = checkAxes(axes);
-    if (!ended) ended = checkPath(axes);
+    if (!ended) ended = checkAxes();
+    if (!ended) ended = checkPath();
     if (ended) {
       outcome_ = *ended;
-      beginStop(axes);
+      beginStop();
     }
   }
   if (phase_ == Phase::following) {
-    const bool at_goal = !next_ && atGoal(axes);
-    follow(axes);
+    const bool at_goal = !next_ && atGoal();
+    follow();
     if (!at_goal) return std::nullopt;
-    const auto reached = checkGoal(axes);
+    const auto reached = checkGoal();
     if (!reached) return std::nullopt;
     outcome_ = *reached;
-    release(motions);
+    release();
     return outcome_;
   }
-  showSent(axes);
-  if (next_ || !stands(axes)) return std::nullopt;
-  release(motions);
+  showSent();
+  if (next_ || !stands()) return std::nullopt;
+  release();
   return outcome_;
 }
 
-void Group::sendSetpoints(std::vector<drive::Axis>& axes) {
+void Group::sendSetpoints() {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     // An axis that fell out of operation holds or stops by itself; the others go on as configured.
     // Enabled again, it must not jump to where the trajectory is by now.
-    if (dropped_[i] == 0 && !axes[axes_[i]].setTarget(commanded_[i].position)) {
+    if (dropped_[i] == 0 && !axes_[i]->axis.setTarget(commanded_[i].position)) {
       refused_ = &names_[i];
     }
   }
 }
 
-void Group::release(std::vector<AxisMotion>& motions) {
-  for (std::size_t axis : axes_) motions[axis].setOwner(nullptr);
+void Group::release() {
+  for (AxisUnit* unit : axes_) unit->motion.setOwner(nullptr);
   trajectory_.reset();
   phase_ = Phase::idle;
 }
 
-std::optional<TrajectoryOutcome> Group::checkAxes(const std::vector<drive::Axis>& axes) const {
+std::optional<TrajectoryOutcome> Group::checkAxes() const {
   bool any_ready = false;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     if (dropped_[i] == 0) {
       any_ready = true;
     } else if (config_.stop_group_on_fault) {
       return TrajectoryOutcome{TrajectoryErrorCode::path_tolerance_violated,
-                               config_.name + ": trajectory stopped: " + dropReason(axes, i)};
+                               config_.name + ": trajectory stopped: " + dropReason(i)};
     }
   }
   if (any_ready) return std::nullopt;
@@ -303,8 +304,8 @@ std::optional<TrajectoryOutcome> Group::checkAxes(const std::vector<drive::Axis>
                            config_.name + ": trajectory stopped: no joint is enabled any more"};
 }
 
-std::string Group::dropReason(const std::vector<drive::Axis>& axes, std::size_t joint) const {
-  const drive::Axis& axis = axes[axes_[joint]];
+std::string Group::dropReason(std::size_t joint) const {
+  const drive::Axis& axis = axes_[joint]->axis;
   const std::string reason = axis.motionRefusal();
   if (!reason.empty()) return reason;
   if (axis.noticeCount() != notices_[joint]) return axis.notice();
@@ -319,9 +320,9 @@ std::optional<TrajectoryOutcome> Group::checkRefusal() const {
                                "joint's limits"};
 }
 
-std::optional<TrajectoryOutcome> Group::checkPath(const std::vector<drive::Axis>& axes) const {
+std::optional<TrajectoryOutcome> Group::checkPath() const {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    const drive::AxisState& state = axes[axes_[i]].state();
+    const drive::AxisState& state = axes_[i]->axis.state();
     if (tolerances_[i].trajectory <= 0.0 || dropped_[i] != 0) continue;
     const double error = commanded_[i].position - state.position;
     if (began_ < state.stamp && std::abs(error) > tolerances_[i].trajectory) {
@@ -335,16 +336,16 @@ std::optional<TrajectoryOutcome> Group::checkPath(const std::vector<drive::Axis>
   return std::nullopt;
 }
 
-std::optional<TrajectoryOutcome> Group::checkGoal(const std::vector<drive::Axis>& axes) const {
+std::optional<TrajectoryOutcome> Group::checkGoal() const {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     if (dropped_[i] == 0) continue;
     return TrajectoryOutcome{TrajectoryErrorCode::goal_tolerance_violated,
-                             config_.name + ": goal missed: " + dropReason(axes, i)};
+                             config_.name + ": goal missed: " + dropReason(i)};
   }
   std::string away;  // without a tolerance that is no failure, but it is told
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const bool judged = tolerances_[i].goal > 0.0;
-    const double error = std::abs(trajectory_->goal()[i] - axes[axes_[i]].state().position);
+    const double error = std::abs(trajectory_->goal()[i] - axes_[i]->axis.state().position);
     if (error <= (judged ? tolerances_[i].goal : kArrived)) continue;
     if (clock_.time() < trajectory_->endTime() + fromSeconds(config_.goal_time))
       return std::nullopt;
@@ -357,7 +358,7 @@ std::optional<TrajectoryOutcome> Group::checkGoal(const std::vector<drive::Axis>
                                    " s, the tolerance is " +
                                    motion::formatNumber(tolerances_[i].goal)};
     }
-    away += (away.empty() ? "" : ", ") + where;
+    append(away, where, ", ");
   }
   if (away.empty()) {
     return TrajectoryOutcome{TrajectoryErrorCode::successful, config_.name + ": goal reached"};

@@ -10,7 +10,7 @@
 #include <cerrno>
 #include <system_error>
 
-#include "cia402_driver/bus/memory_pages.h"
+#include "bus/memory_pages.h"
 
 namespace cia402::bus {
 namespace {

@@ -15,14 +15,14 @@ ReplyLog::ReplyLog(std::size_t axes) : entries_(kCapacity) {
   for (std::size_t i = 0; i < axes; ++i) refusals_.emplace_back(kRefusalInterval);
 }
 
-Reply ReplyLog::toSetpoint(std::size_t axis) {
+Reply<> ReplyLog::toSetpoint(std::size_t axis) {
   return [this, axis](const Answer& answer) {
     if (answer.success || !refusals_[axis].permit(realNow())) return;
     add(Level::warning, answer.message);
   };
 }
 
-Reply ReplyLog::toTrajectory() {
+Reply<> ReplyLog::toTrajectory() {
   return [this](const Answer& answer) {
     add(answer.success ? Level::debug : Level::error, answer.message);
   };

@@ -18,8 +18,8 @@ constexpr Duration kIdleInterval = std::chrono::milliseconds(20);  // while ther
 constexpr Duration kFlushTime = std::chrono::milliseconds(20);     // for the last frames
 constexpr int kFramesToFlush = 256;  // per millisecond: a flood does not keep it from its end
 
-RobotSnapshot sized(std::size_t axes, std::size_t groups) {
-  RobotSnapshot snapshot;
+NetworkSnapshot sized(std::size_t axes, std::size_t groups) {
+  NetworkSnapshot snapshot;
   snapshot.axes.resize(axes);
   snapshot.groups.resize(groups);
   return snapshot;
@@ -34,8 +34,9 @@ BusRunner::BusRunner(config::RobotConfig robot, canopen::MasterConfig master,
       interface_(std::move(interface)),
       loop_(std::move(robot), std::move(master), *interface_, *this),
       wake_fd_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)),
-      snapshots_(sized(loop_.robot().axes().size(), loop_.robot().groups().size())),
-      recordings_(loop_.recorder(), loop_.robot().config(), loop_.robot().master().config(),
+      snapshots_(
+          sized(loop_.network().cycle().units().size(), loop_.network().cycle().groups().size())),
+      recordings_(loop_.recorder(), loop_.network().config(), loop_.network().master().config(),
                   time_) {
   if (wake_fd_ < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
 }
@@ -68,15 +69,15 @@ bool BusRunner::post(Command command) {
   }
   if (queued) {
     wake();
-  } else {                 // not moved from: push() leaves what it does not take
-    refuse(command.reply,  // NOLINT(bugprone-use-after-move)
-           running_ ? "refused: too many commands are waiting, try again"
-                    : "refused: the driver is not running");
+  } else {           // not moved from: push() leaves what it does not take
+    command.refuse(  // NOLINT(bugprone-use-after-move)
+        running_ ? "refused: too many commands are waiting, try again"
+                 : "refused: the driver is not running");
   }
   return queued;
 }
 
-RobotSnapshot BusRunner::snapshot() {
+NetworkSnapshot BusRunner::snapshot() {
   const std::lock_guard<std::mutex> lock(readers_);
   snapshots_.refresh();
   return snapshots_.front();
@@ -109,9 +110,9 @@ void BusRunner::run() {
     const std::lock_guard<std::mutex> lock(realtime_mutex_);
     realtime_ = report;
   }
-  while (!loop_.robot().shutDown()) {
+  while (!loop_.network().shutDown()) {
     iterate(time_.advance(due_));
-    if (!loop_.robot().shutDown()) wait();
+    if (!loop_.network().shutDown()) wait();
   }
   const auto advance = [this] { return time_.advance(interface_->nextDeadline()); };
   Time now = advance();
@@ -129,26 +130,26 @@ void BusRunner::run() {
 }
 
 void BusRunner::iterate(Time now) {
-  Robot& robot = loop_.robot();
-  if (shutdown_requested_) robot.beginShutdown(now);
-  if (robot.config().bus.time_interval > Duration::zero()) {
-    robot.setWallTime(time_.toClock(now).time_since_epoch() + wallClockDistance(), now);
+  Network& network = loop_.network();
+  if (shutdown_requested_) network.beginShutdown(now);
+  if (network.config().bus.time_interval > Duration::zero()) {
+    network.setWallTime(time_.toClock(now).time_since_epoch() + wallClockDistance(), now);
   }
-  if (looked_.exchange(false)) robot.look();
+  if (looked_.exchange(false)) network.look();
   loop_.step(now);
   Command command;
-  while (mailbox_.pop(command)) robot.execute(std::move(command), now);
+  while (mailbox_.pop(command)) network.execute(std::move(command), now);
   if (loop_.recorder().triggered()) recordings_.wake();
   publish(now);
 }
 
 void BusRunner::publish(Time now) {
-  const std::uint64_t cycle = loop_.robot().statistics().cycles();
+  const std::uint64_t cycle = loop_.network().statistics().cycles();
   if (cycle == published_cycle_ && now < published_ + kIdleInterval) return;
   published_cycle_ = cycle;
   published_ = now;
-  RobotSnapshot& snapshot = snapshots_.back();
-  loop_.robot().fill(snapshot);
+  NetworkSnapshot& snapshot = snapshots_.back();
+  loop_.network().fill(snapshot);
   snapshot.now = now;
   snapshot.bus_state = interface_->state();
   snapshot.counters = interface_->counters();
@@ -183,7 +184,7 @@ void BusRunner::refuseRest() {
   const std::lock_guard<std::mutex> lock(producers_);
   running_ = false;
   Command command;
-  while (mailbox_.pop(command)) refuse(command.reply, "refused: the driver is shutting down");
+  while (mailbox_.pop(command)) command.refuse("refused: the driver is shutting down");
 }
 
 }  // namespace cia402::bus

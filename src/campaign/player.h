@@ -33,6 +33,8 @@ class Player {
  protected:
   /// Gives a call to the driver; where a test can come between the two.
   virtual void post(bus::Command command) { stage_.host().post(std::move(command)); }
+  /// The reply of a call on its way back.
+  virtual bus::Reply<> replied(bus::Reply<> reply) { return reply; }
 
  private:
   struct Pending {
@@ -73,7 +75,8 @@ class Player {
 
   // player_calls.cpp
   bool actCall(const Words& words);
-  void call(const Words& words, decltype(bus::Command::body) body, Duration bound);
+  template <typename Request>
+  void call(const Words& words, Request request, Duration bound);
   void answered(const Call& call, const bus::Answer& answer);
   void dropCalls();
   void watchDeadlines();

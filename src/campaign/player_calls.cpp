@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <map>
 
+#include "cia402_driver/bus/canopen/history_command.h"
+#include "cia402_driver/bus/canopen/nmt_command.h"
+#include "cia402_driver/bus/jobs/object_commands.h"
+#include "cia402_driver/bus/jobs/procedure_command.h"
 #include "player.h"
 
 namespace cia402::campaign {
@@ -36,6 +40,34 @@ std::string axisWord(const std::string& who) { return who == "all" ? std::string
 
 }  // namespace
 
+template <typename Request>
+void Player::call(const Words& words, Request request, Duration bound) {
+  if (!stage_.host().running()) return;
+  Pending pending;
+  pending.call = {words[0],
+                  words[1],
+                  words[0] == "set_mode" || words[0] == "nmt" ? words.at(2) : "",
+                  stage_.named(words[1]),
+                  stage_.now(),
+                  conditions_.stalled};
+  for (const AxisTruth& truth : truths_) pending.call.modes.push_back(truth.mode);
+  pending.deadline = stage_.now() + bound;
+  pending_.push_back(pending);
+  if (words[0] == "home") {
+    for (std::size_t i : pending.call.axes) {
+      if (stage_.axes()[i].homes_by_moving) permits_.allow(i, Permits::Source::homing, kNever);
+    }
+  }
+  for (auto& oracle : oracles_) oracle->onCall(pending.call, view());
+  bus::Reply<> reply = [this, call = pending.call,
+                        done = pending.answered](const bus::Answer& answer) {
+    if (*done) report("answered_twice", call.who, call.verb + ": " + answer.message);
+    *done = true;
+    answered(call, answer);
+  };
+  post(bus::Command(std::move(request), replied(std::move(reply))));
+}
+
 bool Player::actCall(const Words& words) {
   const std::string& verb = words[0];
   const auto procedure = procedures().find(verb);
@@ -61,34 +93,6 @@ bool Player::actCall(const Words& words) {
     return false;
   }
   return true;
-}
-
-void Player::call(const Words& words, decltype(bus::Command::body) body, Duration bound) {
-  if (!stage_.host().running()) return;
-  Pending pending;
-  pending.call = {words[0],
-                  words[1],
-                  words[0] == "set_mode" || words[0] == "nmt" ? words.at(2) : "",
-                  stage_.named(words[1]),
-                  stage_.now(),
-                  conditions_.stalled};
-  for (const AxisTruth& truth : truths_) pending.call.modes.push_back(truth.mode);
-  pending.deadline = stage_.now() + bound;
-  pending_.push_back(pending);
-  if (words[0] == "home") {
-    for (std::size_t i : pending.call.axes) {
-      if (stage_.axes()[i].homes_by_moving) permits_.allow(i, Permits::Source::homing, kNever);
-    }
-  }
-  for (auto& oracle : oracles_) oracle->onCall(pending.call, view());
-  bus::Command command;
-  command.body = std::move(body);
-  command.reply = [this, call = pending.call, done = pending.answered](const bus::Answer& answer) {
-    if (*done) report("answered_twice", call.who, call.verb + ": " + answer.message);
-    *done = true;
-    answered(call, answer);
-  };
-  post(std::move(command));
 }
 
 void Player::answered(const Call& call, const bus::Answer& answer) {

@@ -82,7 +82,7 @@ bool Player::actMotion(const Words& words) {
 }
 
 double Player::shown(std::size_t axis) {
-  return stage_.host().running() ? stage_.host().robot().axes()[axis].state().position : 0.0;
+  return stage_.host().running() ? stage_.host().network().axis(axis).state().position : 0.0;
 }
 
 const config::GroupConfig* Player::group(const std::string& name) const {
@@ -140,9 +140,7 @@ void Player::trajectory(const config::GroupConfig& to, std::vector<motion::Traje
   body.points = std::move(points);
   if (has_start) body.start_time = stage_.now() + start;
   const Time base = stage_.now() + (has_start ? start : Duration());
-  bus::Command command;
-  command.body = std::move(body);
-  command.reply = [=](const bus::Answer& answer) {
+  bus::Reply<> reply = [=](const bus::Answer& answer) {
     say("< trajectory of " + to.name + (answer.success ? ": " : " refused: ") + answer.message);
     if (!answer.success) return;
     const Time now = stage_.now();
@@ -160,7 +158,7 @@ void Player::trajectory(const config::GroupConfig& to, std::vector<motion::Traje
       if (!stop) permits_.allow(i, Source::trajectory, end);
     }
   };
-  stage_.host().post(std::move(command));
+  stage_.host().post(bus::Command(std::move(body), std::move(reply)));
 }
 
 void Player::goalReached(const config::GroupConfig& to) {
@@ -208,20 +206,17 @@ void Player::stepStreams() {
 
 void Player::point(std::size_t axis, double value) {
   const auto refused = std::make_shared<bool>(false);
-  bus::Command command;
-  command.body = bus::SetpointCommand{axis, value};
-  command.reply = [this, refused, axis](const bus::Answer& answer) {
+  const auto refuse = [this, refused, axis](const bus::Answer& answer) {
     *refused = true;
     say("< set-point of " + stage_.axes()[axis].name + ": " + answer.message);
   };
-  stage_.host().post(std::move(command));
+  stage_.host().post(bus::Command(bus::SetpointCommand{axis, value}, refuse));
   // A set-point that is taken has no answer: look right after it.
-  bus::Command look;
-  look.body = bus::CallCommand{[this, refused, axis, value](Time) {
+  const auto look = [this, refused, axis, value](Time) {
     if (!*refused) accepted(axis, value);
     return bus::Answer();
-  }};
-  stage_.host().post(std::move(look));
+  };
+  stage_.host().post(bus::Command(bus::CallCommand{look}));
 }
 
 void Player::accepted(std::size_t axis, double value) {

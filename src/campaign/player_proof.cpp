@@ -36,14 +36,14 @@ void Player::prove() {
     return;
   }
   for (const AxisFacts& facts : stage_.axes()) {
-    const std::string obstacle = stage_.host().robot().axes()[facts.index].obstacle();
+    const std::string obstacle = stage_.host().network().axis(facts.index).obstacle();
     const bool disable = obstacle.find(kDisableFirst) != std::string::npos;
     if (!disable && obstacle.find(": enable") == std::string::npos) continue;
     if (disable && !proveCall("disable", facts.name, kRecoverTime, answer)) return;
     if (!proveCall("enable", facts.name, kRecoverTime, answer)) return;
   }
   for (const AxisFacts& facts : stage_.axes()) {
-    const drive::Axis& axis = stage_.host().robot().axes()[facts.index];
+    const drive::Axis& axis = stage_.host().network().axis(facts.index);
     if (axis.state().homed) continue;
     const bool homes = facts.config->homing.has_value();
     // An absolute axis has lost its zero where the factory's values were restored.
@@ -66,19 +66,18 @@ void Player::prove() {
 bool Player::proveCall(const std::string& verb, const std::string& who, Duration limit,
                        bus::Answer& answer) {
   const auto done = std::make_shared<std::optional<bus::Answer>>();
-  bus::Command command;
   drive::ProcedureRequest request;
   request.kind = verb == "home"           ? drive::ProcedureKind::home
                  : verb == "set_position" ? drive::ProcedureKind::set_position
                  : verb == "enable"       ? drive::ProcedureKind::enable
                  : verb == "disable"      ? drive::ProcedureKind::disable
                                           : drive::ProcedureKind::recover;
-  command.body = bus::ProcedureCommand{who == "all" ? std::string() : who, request};
+  const bus::ProcedureCommand command{who == "all" ? std::string() : who, request};
   const auto axes = stage_.named(who);
   if (verb == "set_position") request.position = shown(axes.front());
   const Call call{verb, who, "", axes, stage_.now(), conditions_.stalled};
   for (auto& oracle : oracles_) oracle->onCall(call, view());
-  command.reply = [this, done, call](const bus::Answer& given) {
+  const auto reply = [this, done, call](const bus::Answer& given) {
     *done = given;
     answered(call, given);
   };
@@ -88,7 +87,7 @@ bool Player::proveCall(const std::string& verb, const std::string& who, Duration
     }
   }
   say("> " + verb + " " + who);
-  stage_.host().post(std::move(command));
+  stage_.host().post(bus::Command(command, reply));
   for (const Time end = stage_.now() + limit; stage_.now() < end && !*done;) {
     runTo(stage_.now() + 5ms);
     if (failed()) return false;

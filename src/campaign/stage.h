@@ -73,7 +73,7 @@ class Stage {
   sim::World& world() { return world_; }
   tools::VirtualHost& host() { return host_; }
   /// What the driver shows; nullptr while no process runs.
-  const bus::Robot* driver() const { return host_.running() ? &host_.robot() : nullptr; }
+  const bus::Network* driver() const { return host_.running() ? &host_.network() : nullptr; }
   const Loaded& loaded() const { return loaded_; }
   const std::vector<AxisFacts>& axes() const { return facts_; }
   /// All that the driver sends cyclically.

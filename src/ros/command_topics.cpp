@@ -43,18 +43,13 @@ CommandTopics::CommandTopics(ros::NodeHandle& private_node, bus::BusRunner& runn
 }
 
 void CommandTopics::onSetpoint(std::size_t axis, const std_msgs::Float64& message) {
-  bus::Command command;
-  command.body = bus::SetpointCommand{axis, message.data};
-  command.reply = replies_.toSetpoint(axis);
-  runner_.post(std::move(command));
+  runner_.post(bus::Command(bus::SetpointCommand{axis, message.data}, replies_.toSetpoint(axis)));
 }
 
 void CommandTopics::onTrajectory(const std::string& group,
                                  const trajectory_msgs::JointTrajectory& message) {
-  bus::Command command;
-  command.body = trajectoryCommand(group, message, runner_.time());
-  command.reply = replies_.toTrajectory();
-  runner_.post(std::move(command));
+  runner_.post(
+      bus::Command(trajectoryCommand(group, message, runner_.time()), replies_.toTrajectory()));
 }
 
 }  // namespace cia402::ros_node

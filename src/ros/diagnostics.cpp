@@ -68,7 +68,7 @@ void addEmergencies(diagnostic_updater::DiagnosticStatusWrapper& status,
 
 /// What goes wrong on the bus, by kind.
 void addBusHealth(diagnostic_updater::DiagnosticStatusWrapper& status,
-                  const bus::RobotSnapshot& snapshot) {
+                  const bus::NetworkSnapshot& snapshot) {
   const can::BusCounters& counters = snapshot.counters;
   status.add("restarts after bus-off", counters.restarts);
   status.add("restart attempts of the driver", counters.restart_attempts);

@@ -39,7 +39,7 @@ Frames::Frames(bus::BusRunner& runner, const config::RobotConfig& robot)
 
 void Frames::publish() {
   if (robot_.frames.empty()) return;
-  const bus::RobotSnapshot snapshot = runner_.snapshot();
+  const bus::NetworkSnapshot snapshot = runner_.snapshot();
   std::vector<geometry_msgs::TransformStamped> messages;
   for (const config::FrameConfig& frame : robot_.frames) {
     for (std::size_t i = 0; i < robot_.axes.size(); ++i) {

@@ -20,7 +20,7 @@ constexpr Duration kOnTime =
 LinkWatch::LinkWatch(const config::BusConfig& bus, can::SocketCan* socket)
     : bus_(bus), socket_(socket), hears_all_(bus.receive_all), meter_(bus.bitrate) {}
 
-void LinkWatch::update(const bus::RobotSnapshot& snapshot) {
+void LinkWatch::update(const bus::NetworkSnapshot& snapshot) {
   if (socket_ == nullptr) return;
   const bool unforeseen = std::any_of(snapshot.axes.begin(), snapshot.axes.end(),
                                       [](const auto& axis) { return axis.node.own_cob_ids; });
@@ -42,7 +42,7 @@ void LinkWatch::update(const bus::RobotSnapshot& snapshot) {
   }
 }
 
-can::TrafficMeter::Load LinkWatch::load(const bus::RobotSnapshot& snapshot) const {
+can::TrafficMeter::Load LinkWatch::load(const bus::NetworkSnapshot& snapshot) const {
   if (!filtered()) return {snapshot.bus_load, snapshot.most_bus_load};
   return meter_.load().value_or(can::TrafficMeter::Load());
 }

@@ -106,7 +106,7 @@ Publishers::Publishers(ros::NodeHandle& node, ros::NodeHandle& private_node, bus
 }
 
 void Publishers::publishJointStates() {
-  const bus::RobotSnapshot snapshot = runner_.snapshot();
+  const bus::NetworkSnapshot snapshot = runner_.snapshot();
   Time newest{};
   for (std::size_t i = 0; i < snapshot.axes.size(); ++i) {
     const drive::AxisState& state = snapshot.axes[i].state;
@@ -120,7 +120,7 @@ void Publishers::publishJointStates() {
   publishGroups(snapshot);
 }
 
-void Publishers::publishGroups(const bus::RobotSnapshot& snapshot) {
+void Publishers::publishGroups(const bus::NetworkSnapshot& snapshot) {
   for (std::size_t g = 0; g < group_pubs_.size(); ++g) {
     if (group_pubs_[g].getNumSubscribers() == 0) continue;
     control_msgs::JointTrajectoryControllerState message;
@@ -144,7 +144,7 @@ void Publishers::publishGroups(const bus::RobotSnapshot& snapshot) {
 }
 
 void Publishers::publishStates() {
-  const bus::RobotSnapshot snapshot = runner_.snapshot();
+  const bus::NetworkSnapshot snapshot = runner_.snapshot();
   const Time now = bus::realNow() + kEarly;
   const cia402_driver::AxisStates states = axisStates(snapshot);
   if (changed(states) || now - axis_states_sent_ >= kAxisStatesInterval) {
@@ -159,7 +159,7 @@ void Publishers::publishStates() {
   }
 }
 
-cia402_driver::AxisStates Publishers::axisStates(const bus::RobotSnapshot& snapshot) const {
+cia402_driver::AxisStates Publishers::axisStates(const bus::NetworkSnapshot& snapshot) const {
   cia402_driver::AxisStates message;
   message.header.stamp = ros::Time::now();
   for (std::size_t i = 0; i < snapshot.axes.size(); ++i) {
@@ -184,7 +184,7 @@ bool Publishers::changed(const cia402_driver::AxisStates& states) const {
   return false;
 }
 
-cia402_driver::BusState Publishers::busState(const bus::RobotSnapshot& snapshot) const {
+cia402_driver::BusState Publishers::busState(const bus::NetworkSnapshot& snapshot) const {
   cia402_driver::BusState message;
   message.header.stamp = ros::Time::now();
   message.interface = robot_.bus.interface;

@@ -16,8 +16,8 @@ using testing::HasSubstr;
 using namespace std::chrono_literals;
 
 AxisSnapshot snapshotOf(const RobotWorld& world, std::size_t axis = 0) {
-  RobotSnapshot snapshot;
-  world.robot.fill(snapshot);
+  NetworkSnapshot snapshot;
+  world.network.fill(snapshot);
   return snapshot.axes[axis];
 }
 
@@ -124,7 +124,7 @@ TEST(AxisCondition, IsAnErrorWhereTheStatuswordShowsNoState) {
 TEST(AxisCondition, OnlyWarnsBetweenBootAndTheFirstTpdo) {
   RobotWorld world;
   world.drives[0].tpdo_bytes = 0;
-  world.robot.start(world.now);
+  world.network.start(world.now);
   ASSERT_TRUE(
       world.runUntil([&] { return world.axis(0).state().health == fieldbus::Health::ready; }, 5s));
   world.run(300ms);

@@ -32,7 +32,7 @@ struct StreamWorld : RobotWorld {
     return answers->empty() ? std::string() : answers->front().message;
   }
   FakeDrive& drive() { return drives[0]; }
-  const AxisMotion& motion() const { return robot.motions()[0]; }
+  const AxisMotion& motion() const { return network.cycle().units()[0].motion; }
   /// The target positions of the next `count` cycles.
   std::vector<std::int32_t> targets(std::size_t count) {
     drive().targets.clear();

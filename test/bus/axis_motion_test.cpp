@@ -182,9 +182,9 @@ TEST(AxisMotion, SaysThatAStreamDriedUpUnlessItEndedWithAZero) {
       rig.world.run(20ms);
       ASSERT_EQ(rig.command(last), "");
       rig.world.run(190ms);  // command_timeout is 200 ms
-      EXPECT_FALSE(rig.world.robot.motions()[0].driedUp());
+      EXPECT_FALSE(rig.world.unit(0).motion.driedUp());
       rig.world.run(20ms);
-      EXPECT_EQ(rig.world.robot.motions()[0].driedUp(), last != 0.0);
+      EXPECT_EQ(rig.world.unit(0).motion.driedUp(), last != 0.0);
     }
   }
 }
@@ -205,7 +205,7 @@ TEST(AxisMotion, DisablesADriveThatPlansItsMotionAtOnceAtShutdown) {
   rig.world.run(500ms);
   const std::int32_t position = rig.drive().position;
   ASSERT_GT(position, 10000);
-  rig.world.robot.beginShutdown(rig.world.now);
+  rig.world.network.beginShutdown(rig.world.now);
   rig.world.run(100ms);
   EXPECT_FALSE(rig.drive().enabled());
   EXPECT_LT(rig.drive().position, position + 3000);  // 30 ms at 1 rad/s
@@ -219,8 +219,8 @@ TEST(AxisMotion, RampsAPositionStreamDownThoughNoAccelerationIsConfigured) {
   rig.world.run(500ms);
   rig.drive().targets.erase(rig.drive().targets.begin(), rig.drive().targets.end() - 3);
   const std::int32_t from = rig.drive().targets.back();
-  rig.world.robot.beginShutdown(rig.world.now);
-  ASSERT_TRUE(rig.world.runUntil([&] { return rig.world.robot.shutDown(); }, 2s));
+  rig.world.network.beginShutdown(rig.world.now);
+  ASSERT_TRUE(rig.world.runUntil([&] { return rig.world.network.shutDown(); }, 2s));
   EXPECT_LE(largestStep(rig.drive().targets), kLargestStep);
   EXPECT_LE(largestChangeOfStep(rig.drive().targets), 8 + 2);  // 5 rad/s² * (4 ms)²
   // 2 rad/s at 5 rad/s² take 0.4 rad.
@@ -229,21 +229,21 @@ TEST(AxisMotion, RampsAPositionStreamDownThoughNoAccelerationIsConfigured) {
 
 TEST(AxisMotion, GoesOnSmoothlyAfterAStop) {
   Rig rig("cyclic_position");
-  std::vector<drive::Axis>& axes = rig.world.robot.axes();
-  AxisMotion motion(axes[0].config(), test::kPeriod);
+  drive::Axis& axis = rig.world.axis(0);
+  AxisMotion motion(axis.config(), test::kPeriod);
   const auto run = [&](int cycles) {
     for (int i = 0; i < cycles; ++i) {
-      motion.step(axes[0], rig.world.now);
+      motion.step(axis, rig.world.now);
       rig.world.run(test::kPeriod);
     }
   };
   rig.world.run(1ms);  // so that each cycle of the robot lies within a run
-  ASSERT_TRUE(motion.command(axes[0], 2.0, rig.world.now).ok());
+  ASSERT_TRUE(motion.command(axis, 2.0, rig.world.now).ok());
   run(100);
-  motion.stop(axes[0]);
+  motion.stop(axis);
   run(20);
   EXPECT_FALSE(motion.atRest());
-  ASSERT_TRUE(motion.command(axes[0], 2.0, rig.world.now).ok());
+  ASSERT_TRUE(motion.command(axis, 2.0, rig.world.now).ok());
   run(300);
   EXPECT_TRUE(motion.atRest());
   EXPECT_EQ(rig.drive().targets.back(), 200000);

@@ -47,7 +47,7 @@ class BusLoopTest : public testing::Test, protected EventSink {
   void run(Duration duration) {
     for (const Time end = now + duration; now < end; now += 100us) loop.step(now);
   }
-  Time lastCycle() const { return loop.robot().lastCycle(); }
+  Time lastCycle() const { return loop.network().cycle().lastCycle(); }
 
   config::RobotConfig robot = test::testRobot();
   Queue queue;
@@ -57,7 +57,7 @@ class BusLoopTest : public testing::Test, protected EventSink {
 
 TEST_F(BusLoopTest, SleepsUntilTheRobotHasToDoSomething) {
   run(100ms);
-  EXPECT_EQ(loop.nextDeadline(), loop.robot().nextDeadline());
+  EXPECT_EQ(loop.nextDeadline(), loop.network().nextDeadline());
 }
 
 TEST_F(BusLoopTest, IsDueAtOnceWhileFramesWait) {
@@ -65,7 +65,7 @@ TEST_F(BusLoopTest, IsDueAtOnceWhileFramesWait) {
   queue.waiting = 300;
   loop.step(now);
   EXPECT_EQ(queue.waiting, 44);
-  ASSERT_GT(loop.robot().nextDeadline(), now);
+  ASSERT_GT(loop.network().nextDeadline(), now);
   EXPECT_LE(loop.nextDeadline(), now);
   loop.step(now);
   EXPECT_EQ(queue.waiting, 0);
@@ -140,7 +140,7 @@ TEST_F(BusLoopTest, WhatItReceivesIsRecordedAndGoesToTheRobot) {
   queue.stamp = now - 1ms;
   queue.waiting = 1;
   loop.step(now);
-  EXPECT_EQ(loop.robot().master().nodes()[1].bootUps(), 1u);
+  EXPECT_EQ(loop.network().master().nodes()[1].bootUps(), 1u);
   const auto frames = loop.recorder().copy(now).frames;
   const auto heard = std::find_if(frames.begin(), frames.end(), [](const can::FrameRecord& record) {
     return record.direction() == can::Direction::received;

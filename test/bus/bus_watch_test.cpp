@@ -40,7 +40,7 @@ struct BusWatchTest : testing::Test, EventSink {
   }
   void update(Duration later = 0ms) {
     now += later;
-    unseen = watch.update(interface, world.robot, now);
+    unseen = watch.update(interface, world.network, now);
   }
   void become(BusState state, const std::string& words, Duration later = 1ms) {
     interface.now = state;
@@ -58,12 +58,12 @@ struct BusWatchTest : testing::Test, EventSink {
 
 TEST_F(BusWatchTest, StartsTheRobotOnceTheBusIsThere) {
   update();
-  EXPECT_FALSE(world.robot.started());
+  EXPECT_FALSE(world.network.started());
   become(BusState::down, "can0 is down");
   become(BusState::bus_off, "can0 is off");
-  EXPECT_FALSE(world.robot.started());
+  EXPECT_FALSE(world.network.started());
   become(BusState::error_active, "can0 is up");
-  EXPECT_TRUE(world.robot.started());
+  EXPECT_TRUE(world.network.started());
   EXPECT_THAT(texts, ElementsAre("can0 is missing", "can0 is down", "can0 is off", "can0 is up"));
   EXPECT_EQ(severities.front(), Event::Severity::error);
   EXPECT_EQ(severities.back(), Event::Severity::info);

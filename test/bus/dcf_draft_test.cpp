@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/bus/dcf_draft.h"
+#include "cia402_driver/bus/canopen/dcf_draft.h"
 
 #include <gmock/gmock.h>
 
@@ -16,14 +16,17 @@ using testing::Not;
 
 struct DcfDraftTest : test::DcfWorld {
   /// The file, or why there is none.
-  Answer save(const drive::AxisConfig& config, const canopen::DeviceConfig& device) {
+  DcfAnswer save(const drive::AxisConfig& config, const canopen::DeviceConfig& device) {
     DcfDraft draft(config, device, stamp());
-    const Answer answer = world.call(draft.command());
+    DcfAnswer answer;
+    static_cast<Answer&>(answer) = world.call(draft.command());
     return answer.success ? draft.finish() : answer;
   }
-  Answer save(std::size_t axis = 0) { return save(world.axis(axis).config(), world.device(axis)); }
+  DcfAnswer save(std::size_t axis = 0) {
+    return save(world.axis(axis).config(), world.device(axis));
+  }
   /// That of the shoulder, as if its EDS were another.
-  Answer saveWithEds(const std::string& text) {
+  DcfAnswer saveWithEds(const std::string& text) {
     drive::AxisConfig config = world.axis(0).config();
     const config::RobotConfig robot = test::robotWithEds(text);
     config.description = robot.axes[0].description;
@@ -52,7 +55,7 @@ std::string word(const std::string& index) {
 }
 
 TEST_F(DcfDraftTest, ReadsWhatTheEdsCallsReadableAndTellsWhatCouldNotBeRead) {
-  const Answer answer = save();
+  const DcfAnswer answer = save();
   ASSERT_TRUE(answer.success) << answer.message;
   EXPECT_EQ(answer.message,
             "shoulder (node 1): 2 objects read, 2 could not be read: 2003:00 Length differs (2 "
@@ -77,7 +80,7 @@ TEST_F(DcfDraftTest, ReadsWhatTheEdsCallsReadableAndTellsWhatCouldNotBeRead) {
 
 TEST_F(DcfDraftTest, TextThatNoLineCanHoldIsLeftOutAndTold) {
   world.drives[0].objects[ObjectId{0x2005, 0}] = {'M', '\n', '7'};
-  const Answer answer = save();
+  const DcfAnswer answer = save();
   ASSERT_TRUE(answer.success);
   EXPECT_THAT(answer.message, HasSubstr("2 objects read, 1 of them left out because no line"));
   EXPECT_FALSE(canopen::readEds(answer.text).dictionary.find(ObjectId{0x2005, 0})->value);
@@ -93,7 +96,7 @@ TEST_F(DcfDraftTest, WithoutAnEdsTheProfileAndTheCommunicationObjectsAreRead) {
   give({0x1018, 4}, {0x39, 0x30, 0, 0});
   give({0x1017, 0}, {100, 0});
   give({0x6065, 0}, {0x10, 0x27, 0, 0});
-  const Answer answer = save(1);
+  const DcfAnswer answer = save(1);
   ASSERT_TRUE(answer.success) << answer.message;
   const canopen::Eds dcf = canopen::readEds(answer.text);
   EXPECT_EQ(dcf.dictionary.find(ObjectId{0x1000, 0})->value, (Bytes{0x92, 0x01, 0x02, 0x00}));
@@ -128,7 +131,7 @@ TEST_F(DcfDraftTest, WithoutAnEdsTheFileTellsWhatItWasMadeBy) {
 }
 
 TEST_F(DcfDraftTest, WithAnEdsItsHeadIsKept) {
-  const Answer answer = saveWithEds(
+  const DcfAnswer answer = saveWithEds(
       "[FileInfo]\nCreationDate=01-02-2020\nCreationTime=09:10AM\nCreatedBy=somebody\n"
       "Description=a motor\n[DeviceInfo]\nProductName=Motor\nNrOfRXPDO=2\nNrOfTXPDO=3\n" +
       word("2001"));
@@ -147,7 +150,7 @@ TEST_F(DcfDraftTest, WithAnEdsItsHeadIsKept) {
 }
 
 TEST_F(DcfDraftTest, AValueOfTheEdsThatTheDriveDidNotConfirmIsNotWritten) {
-  const Answer answer =
+  const DcfAnswer answer =
       saveWithEds(word("2001") + "ParameterValue=1\n" + word("3001") + "ParameterValue=2\n");
   ASSERT_TRUE(answer.success) << answer.message;
   const canopen::Eds dcf = canopen::readEds(answer.text);
@@ -157,8 +160,8 @@ TEST_F(DcfDraftTest, AValueOfTheEdsThatTheDriveDidNotConfirmIsNotWritten) {
 
 TEST_F(DcfDraftTest, ARecordOfTheEdsIsReadWithoutItsSubIndex0Too) {
   world.drives[0].objects[ObjectId{0x3001, 1}] = {7, 0};
-  const Answer answer = saveWithEds("[3001]\nParameterName=x\nObjectType=9\nSubNumber=2\n" +
-                                    word("3001sub0") + word("3001sub1"));
+  const DcfAnswer answer = saveWithEds("[3001]\nParameterName=x\nObjectType=9\nSubNumber=2\n" +
+                                       word("3001sub0") + word("3001sub1"));
   ASSERT_TRUE(answer.success) << answer.message;
   const canopen::Eds dcf = canopen::readEds(answer.text);
   EXPECT_EQ(dcf.dictionary.find(ObjectId{0x3001, 1})->value, (Bytes{7, 0}));
@@ -216,7 +219,7 @@ TEST_F(DcfDraftTest, WithoutAnEdsTheObjectsAreWhatTheProfileAndTheStandardSay) {
   give({0x1400, 5}, {100, 0});  // and no inhibit time, sub-index 3
   give({0x6040, 0}, {0, 0});
   give({0x6041, 0}, {0, 0});
-  const Answer answer = save(config, device);
+  const DcfAnswer answer = save(config, device);
   ASSERT_TRUE(answer.success) << answer.message;
   EXPECT_THAT(answer.message, Not(HasSubstr("could not be read")));
   const canopen::Eds dcf = canopen::readEds(answer.text);
@@ -290,7 +293,7 @@ TEST_F(DcfDraftTest, WithoutAnEdsThePdosThatTheProfileAllowsAreRead) {
       }
     }
   }
-  const Answer answer = save(1);
+  const DcfAnswer answer = save(1);
   ASSERT_TRUE(answer.success) << answer.message;
   EXPECT_THAT(answer.message, Not(HasSubstr("could not be read"))) << answer.message;
   const canopen::Eds dcf = canopen::readEds(answer.text);
@@ -452,7 +455,7 @@ TEST(DcfDraft, NamesTenObjectsThatCouldNotBeReadAtMost) {
 
 TEST_F(DcfDraftTest, ADriveThatGivesNothingHasNoFile) {
   for (const auto& [id, data] : world.drives[0].objects) world.drives[0].aborts[id] = 0x08000022;
-  const Answer answer = save();
+  const DcfAnswer answer = save();
   EXPECT_FALSE(answer.success);
   EXPECT_EQ(answer.message, "shoulder (node 1): no DCF: the drive gave none of its objects");
 }

@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/bus/dcf_job.h"
+#include "bus/canopen/dcf_job.h"
 
 #include <gmock/gmock.h>
 
@@ -26,7 +26,6 @@ TEST_F(DcfJobTest, HandsBackWhatItReadAndLeavesTheWordsToTheCaller) {
       DcfDraft(world.axis(0).config(), world.device(0), stamp()).command();
   const Answer answer = world.call(command);
   EXPECT_TRUE(answer.success);
-  EXPECT_TRUE(answer.text.empty());
   const auto& items = command.reading->items;
   ASSERT_EQ(items.size(), 4u);
   EXPECT_EQ(items[0].outcome, DcfReading::Outcome::read);
@@ -97,10 +96,8 @@ TEST_F(DcfJobTest, TwoTransfersInARowMayGoUnanswered) {
 TEST_F(DcfJobTest, TheReadingIsTheCallersAloneFromTheReplyOn) {
   const SaveDcfCommand save = DcfDraft(world.axis(0).config(), world.device(0), stamp()).command();
   long owners = 0;
-  Command command;
-  command.body = save;
-  command.reply = [&](const Answer&) { owners = save.reading.use_count(); };
-  world.robot.execute(std::move(command), world.now);
+  world.network.execute(Command(save, [&](const Answer&) { owners = save.reading.use_count(); }),
+                        world.now);
   ASSERT_TRUE(world.runUntil([&] { return owners != 0; }));
   EXPECT_EQ(owners, 1);
 }

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "bus/robot_world.h"
-#include "cia402_driver/bus/dcf_draft.h"
+#include "cia402_driver/bus/canopen/dcf_draft.h"
 
 namespace cia402::bus::test {
 

@@ -19,7 +19,7 @@ class AnySink : public can::Sink {
 class RecorderAllocation : public testing::Test {
  protected:
   RecorderAllocation() {
-    recorder.watch(world.robot);
+    recorder.watch(world.network);
     world.boot();
   }
   /// Everything that the cycle asks of the recorder, without a single allocation.

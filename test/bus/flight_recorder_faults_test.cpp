@@ -28,7 +28,7 @@ class RecordedRobot : public testing::Test {
     robot.recorder.keep = 5;
     return robot;
   }
-  RecordedRobot() { recorder.watch(world.robot); }
+  RecordedRobot() { recorder.watch(world.network); }
 
   void observe(Duration duration) {
     for (const Time end = world.now + duration; world.now < end;) {
@@ -64,7 +64,7 @@ class RecordedRobot : public testing::Test {
 };
 
 TEST_F(RecordedRobot, HasNoTriggerWhileAllIsWell) {
-  world.robot.start(world.now);
+  world.network.start(world.now);
   observe(1s);
   (void)world.begin(ProcedureKind::enable);
   observe(1s);
@@ -135,7 +135,7 @@ TEST_F(RecordedRobot, ANodeThatIsTakenOutOfOperationIsOneTrigger) {
   stop.command = "stop";
   const auto answers = world.begin(stop);
   observe(20ms);
-  world.robot.receive(can::Frame(0x702, {0x04}), world.now, world.now);  // it is stopped
+  world.network.receive(can::Frame(0x702, {0x04}), world.now, world.now);  // it is stopped
   observe(100ms);
   ASSERT_EQ(answers->size(), 1U);
   ASSERT_EQ(world.axis(1).state().health, fieldbus::Health::failed);

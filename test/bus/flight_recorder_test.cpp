@@ -55,7 +55,7 @@ class Recorder : public testing::Test {
   NoEvents events;
   config::RobotConfig config = configuration();
   FlightRecorder recorder{config, sink};
-  Robot robot{config, test::masterOf(config), recorder, events};
+  Network network{config, test::masterOf(config), recorder, events};
 };
 
 TEST_F(Recorder, HasRoomForTheMostFramesOfItsTimeAndOneSecond) {
@@ -65,8 +65,8 @@ TEST_F(Recorder, HasRoomForTheMostFramesOfItsTimeAndOneSecond) {
 }
 
 TEST_F(Recorder, KeepsWhatTheInterfaceTook) {
-  recorder.watch(robot);
-  robot.start(kStart);  // heartbeat and NMT
+  recorder.watch(network);
+  network.start(kStart);  // heartbeat and NMT
   const std::size_t sent = recorder.copy(kStart).frames.size();
   ASSERT_GT(sent, 0U);
   EXPECT_EQ(recorder.copy(kStart).frames.front().direction(), can::Direction::transmitted);
@@ -152,7 +152,7 @@ TEST(FlightRecorder, KnowsTheIdentifiersOfPdosAsTheDrivesKeepThem) {
   const config::RobotConfig config = test::testRobot();
   test::RobotWorld world{config};
   FlightRecorder recorder(config, sink);
-  recorder.watch(world.robot);
+  recorder.watch(world.network);
   const auto identifierOf = [&](canopen::NodeId node, canopen::PdoDirection direction) {
     for (const PdoIdentifier& known : recorder.copy(world.now).identifiers) {
       if (known.node == node && known.direction == direction && known.number == 1) {
@@ -164,7 +164,7 @@ TEST(FlightRecorder, KnowsTheIdentifiersOfPdosAsTheDrivesKeepThem) {
   EXPECT_EQ(identifierOf(2, canopen::PdoDirection::tpdo), 0x182U);
   EXPECT_EQ(identifierOf(2, canopen::PdoDirection::rpdo), 0x202U);
   world.boot();
-  auto& nodes = world.robot.master().nodes();
+  auto& nodes = world.network.master().nodes();
   nodes[1].image().setCobId(canopen::PdoDirection::tpdo, 1, 0x1E5);
   world.run(110ms);
   recorder.observe();
@@ -177,7 +177,7 @@ TEST(FlightRecorder, SamplesOfAnAxisHoldWhatItsDriveShows) {
   const config::RobotConfig config = test::testRobot();
   test::RobotWorld world{config};
   FlightRecorder recorder(config, sink);
-  recorder.watch(world.robot);
+  recorder.watch(world.network);
   world.drives[1].position = 50000;  // counts of 0.00001 rad
   world.enable();
   world.drives[1].disturbance = 2500;  // stands there, but was told to stand at 50000
@@ -205,7 +205,7 @@ TEST(FlightRecorder, NotesWhenAGroupMovesStopsAndRests) {
   const config::RobotConfig config = test::testRobot();
   test::RobotWorld world{config};
   FlightRecorder recorder(config, sink);
-  recorder.watch(world.robot);
+  recorder.watch(world.network);
   world.enable();
   const auto observe = [&](Duration duration) {
     for (const Time end = world.now + duration; world.now < end;) {
@@ -230,7 +230,7 @@ TEST(FlightRecorder, NotesEachStepOfAProcedureOnce) {
   const config::RobotConfig config = test::testRobot();
   test::RobotWorld world{config};
   FlightRecorder recorder(config, sink);
-  recorder.watch(world.robot);
+  recorder.watch(world.network);
   world.boot();
   world.drives[1].deaf_to_controlword = true;
   const auto steps = [&] {

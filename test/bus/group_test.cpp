@@ -261,17 +261,17 @@ TEST_F(GroupTest, StartsOnTimeThoughCyclesWereMissedWhileItWaited) {
   world.run(200ms);
   world.now += 50ms;
   world.run(start + 500ms - world.now);
-  const double t = toSeconds(world.robot.lastCycle() - start);
+  const double t = toSeconds(world.network.cycle().lastCycle() - start);
   EXPECT_NEAR(world.group().commanded()[0].position, 3 * t * t - 2 * t * t * t, 1e-4);
 }
 
 TEST_F(GroupTest, CountsItsTimeFromTheMomentInWhichItWasTaken) {
-  ASSERT_TRUE(world.runUntil([&] { return world.robot.lastCycle() == world.now; }));
+  ASSERT_TRUE(world.runUntil([&] { return world.network.cycle().lastCycle() == world.now; }));
   world.run(3ms);  // a millisecond before the next cycle
   const Time taken = world.now;
   ASSERT_TRUE(world.move({1.0, 0.0}, 1.0).success);
   world.run(500ms);
-  const double t = toSeconds(world.robot.lastCycle() - taken);
+  const double t = toSeconds(world.network.cycle().lastCycle() - taken);
   EXPECT_NEAR(world.group().commanded()[0].position, 3 * t * t - 2 * t * t * t, 1e-4);
 }
 

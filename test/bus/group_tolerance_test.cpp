@@ -23,28 +23,24 @@ struct GroupToleranceTest : testing::Test {
     config.joints = {"shoulder", "elbow"};
     config.goal_time = 0.5;
     config.tolerances["elbow"] = elbow;
-    for (const drive::Axis& axis : world.robot.axes()) {
-      motions.emplace_back(axis.config(), test::kPeriod);
-    }
-    return Group(config, {0, 1}, world.robot.axes());
+    return Group(config, {&world.unit(0), &world.unit(1)});
   }
   TrajectoryOutcome start(Group& group, double shoulder, double elbow) {
     const auto points = world.trajectory("arm", {{{shoulder, elbow}, 1.0}}).points;
-    return group.start({"shoulder", "elbow"}, points, {}, world.robot.axes(), motions, world.now);
+    return group.start({"shoulder", "elbow"}, points, {}, world.now);
   }
   /// The outcome and, in `took`, after how long.
   TrajectoryOutcome follow(Group& group) {
     const Time begun = world.now;
     while (world.now < begun + 5s) {
       world.run(test::kPeriod);
-      const auto outcome = group.step(world.robot.axes(), motions, world.now);
+      const auto outcome = group.step(world.now);
       took = world.now - begun;
       if (outcome) return *outcome;
     }
     return {TrajectoryErrorCode::successful, "never ended"};
   }
   RobotWorld world;
-  std::vector<AxisMotion> motions;
   Duration took{};
 };
 
@@ -55,7 +51,7 @@ TEST_F(GroupToleranceTest, EndsWithSuccessWithinTheTolerances) {
   EXPECT_EQ(outcome.code, TrajectoryErrorCode::successful);
   EXPECT_EQ(outcome.message, "test: goal reached");
   EXPECT_NEAR(toSeconds(took), 1.0, 0.02);
-  EXPECT_EQ(motions[1].owner(), nullptr);
+  EXPECT_EQ(world.unit(1).motion.owner(), nullptr);
 }
 
 TEST_F(GroupToleranceTest, EndsWithMinus4OffThePathAndStopsByARamp) {
@@ -105,7 +101,7 @@ TEST_F(GroupToleranceTest, SucceedsWhenTheGoalIsReachedWithinTheGoalTime) {
   while (!outcome && world.now < begun + 3s) {
     world.run(test::kPeriod);
     if (world.now > begun + 1200ms) world.drives[1].disturbance = 0;
-    outcome = group.step(world.robot.axes(), motions, world.now);
+    outcome = group.step(world.now);
   }
   ASSERT_TRUE(outcome.has_value());
   EXPECT_EQ(outcome->code, TrajectoryErrorCode::successful);
@@ -128,16 +124,13 @@ TEST_F(GroupToleranceTest, DoesNotJudgeTheFirstCycleByAnEarlierTrajectory) {
 
 TEST_F(GroupToleranceTest, GivesTheCodesOfRefusals) {
   Group group = make({});
-  EXPECT_EQ(group.start({"shoulder"}, {}, {}, world.robot.axes(), motions, world.now).code,
+  EXPECT_EQ(group.start({"shoulder"}, {}, {}, world.now).code,
             TrajectoryErrorCode::successful);  // stop needs no joints
   const auto points = world.trajectory("arm", {{{0.5, 0.5}, 1.0}}).points;
-  EXPECT_EQ(group.start({"shoulder"}, points, {}, world.robot.axes(), motions, world.now).code,
+  EXPECT_EQ(group.start({"shoulder"}, points, {}, world.now).code,
             TrajectoryErrorCode::invalid_joints);
   EXPECT_EQ(start(group, 99.0, 0.0).code, TrajectoryErrorCode::invalid_goal);
-  EXPECT_EQ(group
-                .start({"shoulder", "elbow"}, points, world.now - 2s, world.robot.axes(), motions,
-                       world.now)
-                .code,
+  EXPECT_EQ(group.start({"shoulder", "elbow"}, points, world.now - 2s, world.now).code,
             TrajectoryErrorCode::old_header_timestamp);
   EXPECT_FALSE(group.executing());
 }
@@ -148,7 +141,7 @@ TEST_F(GroupToleranceTest, DoesNotJudgeByWhatWasMeasuredBeforeItBegan) {
   world.run(3 * test::kPeriod);
   ASSERT_EQ(start(group, 0.5, -0.5).code, TrajectoryErrorCode::successful);
   world.drives[1].disturbance = 0;
-  EXPECT_FALSE(group.step(world.robot.axes(), motions, world.now).has_value());
+  EXPECT_FALSE(group.step(world.now).has_value());
   EXPECT_TRUE(group.executing());
   const TrajectoryOutcome outcome = follow(group);
   EXPECT_EQ(outcome.message, "test: goal reached");

@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/bus/history_job.h"
+#include "bus/canopen/history_job.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ struct HistoryJobTest : testing::Test {
         static_cast<std::uint8_t>(code & 0xFF), static_cast<std::uint8_t>(code >> 8),
         static_cast<std::uint8_t>(info & 0xFF), static_cast<std::uint8_t>(info >> 8)};
   }
-  Answer read(const std::string& axis = "shoulder") {
+  HistoryAnswer read(const std::string& axis = "shoulder") {
     return world.call(ErrorHistoryCommand{axis});
   }
   RobotWorld world;
@@ -32,7 +32,7 @@ struct HistoryJobTest : testing::Test {
 TEST_F(HistoryJobTest, AnswersWithTheTextsOfTheProfileAndOfTheStandard) {
   remember(1, 0x8611, 0x1234);
   remember(2, 0x3210, 0);
-  const Answer answer = read();
+  const HistoryAnswer answer = read();
   EXPECT_TRUE(answer.success);
   EXPECT_EQ(answer.message,
             "shoulder (node 1): error history (1003h): 0x8611 following error (info 0x1234), "
@@ -61,8 +61,8 @@ TEST_F(HistoryJobTest, IsReadOnceWhenAnAxisFaultsAndShownInTheSnapshot) {
                              "0x0001)"),
             1u)
       << world.allEvents();
-  RobotSnapshot snapshot;
-  world.robot.fill(snapshot);
+  NetworkSnapshot snapshot;
+  world.network.fill(snapshot);
   EXPECT_THAT(snapshot.axes[0].words.history.str(), HasSubstr("(info 0x0004) and 2 older"));
   EXPECT_THAT(snapshot.axes[0].words.history.str(), Not(HasSubstr("0x0005")));
   EXPECT_TRUE(snapshot.axes[1].words.history.empty());
@@ -99,8 +99,8 @@ TEST_F(HistoryJobTest, IsNotToldOfADriveThatKeepsNone) {
   world.drives[0].fault(0x8611);
   world.run(500ms);
   EXPECT_EQ(world.eventsWith("error history"), 0u) << world.allEvents();
-  RobotSnapshot snapshot;
-  world.robot.fill(snapshot);
+  NetworkSnapshot snapshot;
+  world.network.fill(snapshot);
   EXPECT_THAT(snapshot.axes[0].words.history.str(), HasSubstr("the drive keeps no error history"));
 }
 

@@ -54,12 +54,12 @@ struct LssWorld : RobotWorld {
     slaves[axis].node_id = slaves[axis].pending = 0xFF;
     gone[axis] = false;
   }
-  RobotSnapshot shown() const {
-    RobotSnapshot snapshot;
-    robot.fill(snapshot);
+  NetworkSnapshot shown() const {
+    NetworkSnapshot snapshot;
+    network.fill(snapshot);
     return snapshot;
   }
-  fieldbus::Health health(std::size_t axis) const { return robot.axes()[axis].state().health; }
+  fieldbus::Health health(std::size_t axis) const { return network.axis(axis).state().health; }
   /// LSS requests that begin with these bytes.
   std::size_t asked(std::uint8_t command, int second = -1, int third = -1) const {
     std::size_t count = 0;

@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/bus/nmt_job.h"
+#include "bus/canopen/nmt_job.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ TEST_F(NmtJobTest, StopTakesOneNodeOutUntilItIsStartedAgain) {
   EXPECT_EQ(commands(), std::vector<can::Frame>{can::Frame(0x000, {0x02, 1})});
   world.run(20ms);
   EXPECT_TRUE(answers->empty()) << "the drive's heartbeat must say so";
-  world.robot.receive(can::Frame(0x701, {0x04}), world.now, world.now);
+  world.network.receive(can::Frame(0x701, {0x04}), world.now, world.now);
   const Answer stopped = world.wait(answers);
   EXPECT_TRUE(stopped.success) << stopped.message;
   EXPECT_THAT(stopped.message, HasSubstr("shoulder (node 1): nmt stop: the drive is stopped"));
@@ -217,7 +217,7 @@ TEST_F(NmtJobTest, AShutdownAnswersWhatWaits) {
   world.boot();
   world.drives[0].silent = true;
   const auto answers = world.begin(nmt("shoulder", "reset_node"));
-  world.robot.beginShutdown(world.now);
+  world.network.beginShutdown(world.now);
   ASSERT_EQ(answers->size(), 1u);
   EXPECT_THAT(answers->front().message, HasSubstr("shutdown"));
 }
@@ -235,13 +235,13 @@ TEST_F(NmtJobTest, OfADriveThatDoesNotObeyTheLastHeartbeatIsTold) {
   world.boot();
   world.run(200ms);
   ASSERT_EQ(world.node(0).nmtState(), canopen::NmtState::operational);
-  ASSERT_TRUE(world.runUntil([&] { return world.robot.lastCycle() == world.now; }));
+  ASSERT_TRUE(world.runUntil([&] { return world.network.cycle().lastCycle() == world.now; }));
   world.run(1ms);
   world.drives[0].silent = true;
   const auto answers = world.begin(nmt("shoulder", "stop"));
   world.run(1001ms);
   ASSERT_TRUE(answers->empty());
-  world.robot.receive(can::Frame(0x701, {0x7F}), world.now, world.now);
+  world.network.receive(can::Frame(0x701, {0x7F}), world.now, world.now);
   world.run(4ms);
   ASSERT_EQ(answers->size(), 1u);
   EXPECT_THAT(answers->front().message,

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "bus/robot_world.h"
-#include "cia402_driver/bus/jobs.h"
+#include "cia402_driver/bus/jobs/object_commands.h"
 
 namespace cia402::bus {
 namespace {

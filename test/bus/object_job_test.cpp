@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "bus/robot_world.h"
-#include "cia402_driver/bus/jobs.h"
+#include "cia402_driver/bus/jobs/object_commands.h"
 
 namespace cia402::bus {
 namespace {
@@ -17,7 +17,7 @@ using namespace std::chrono_literals;
 
 struct ObjectJobTest : testing::Test {
   ObjectJobTest() { world.boot(); }
-  Answer read(const std::string& object, const std::string& axis = "shoulder") {
+  ObjectAnswer read(const std::string& object, const std::string& axis = "shoulder") {
     return world.call(ReadObjectCommand{axis, object});
   }
   Answer write(const std::string& object, const std::string& value) {
@@ -29,7 +29,7 @@ struct ObjectJobTest : testing::Test {
 
 TEST_F(ObjectJobTest, ReadsByNameWithJointUnits) {
   stored(0x6065) = {0x10, 0x27, 0x00, 0x00};  // 10000 counts
-  const Answer answer = read("following_error_window");
+  const ObjectAnswer answer = read("following_error_window");
   EXPECT_TRUE(answer.success);
   EXPECT_EQ(answer.message,
             "shoulder (node 1): 6065:00 following_error_window is 10000 (0x00002710) = 0.1 rad");
@@ -53,7 +53,7 @@ TEST_F(ObjectJobTest, ReadsByIndexAndNamesTheObjectWhereTheProfileKnowsIt) {
 
 TEST_F(ObjectJobTest, ReadsWhatTheProfileDoesNotList) {
   stored(0x2001) = {0x34, 0x12};
-  const Answer answer = read("2001:00");
+  const ObjectAnswer answer = read("2001:00");
   EXPECT_THAT(answer.message, AllOf(HasSubstr("shoulder (node 1): 2001:00 is 34 12 (2 bytes; its "
                                               "type is not known"),
                                     HasSubstr("u16")));
@@ -111,7 +111,7 @@ TEST_F(ObjectJobTest, TakesWhatYamlMakesOfAnIndex) {
   stored(0x6098) = {17};
   EXPECT_EQ(read("24728").number, 17.0);   // 0x6098 in decimal
   EXPECT_EQ(read("365880").number, 17.0);  // 6098:00 = 6098 * 60
-  const Answer answer = read("4120");
+  const ObjectAnswer answer = read("4120");
   EXPECT_FALSE(answer.success);
   EXPECT_THAT(answer.message, AllOf(HasSubstr("4120h"), HasSubstr("1018h")));
 }
@@ -132,7 +132,7 @@ TEST_F(ObjectJobTest, ReadsAShortNameOrVersionAsText) {
 }
 
 TEST_F(ObjectJobTest, TellsAnAbortInWords) {
-  const Answer answer = read("2002:05");
+  const ObjectAnswer answer = read("2002:05");
   EXPECT_FALSE(answer.success);
   EXPECT_THAT(answer.message, AllOf(HasSubstr("2002:05"), HasSubstr("0x06020000"),
                                     HasSubstr("object does not exist")));
@@ -141,7 +141,7 @@ TEST_F(ObjectJobTest, TellsAnAbortInWords) {
 
 TEST_F(ObjectJobTest, TellsThatTheDriveDoesNotAnswer) {
   world.drives[0].sdo_silent = true;
-  const Answer answer = read("6098:00");
+  const ObjectAnswer answer = read("6098:00");
   EXPECT_FALSE(answer.success);
   EXPECT_THAT(answer.message, HasSubstr("node 1"));
 }
@@ -243,9 +243,10 @@ TEST(ObjectJob, IsRefusedWhileTheBusIsNotThere) {
   RobotWorld world;
   const auto read = world.begin(ReadObjectCommand{"shoulder", "6041:00"});
   const auto write = world.begin(WriteObjectCommand{"shoulder", "6098:00", "1"});
-  for (const auto& answers : {read, write}) {
-    ASSERT_EQ(answers->size(), 1u);
-    EXPECT_EQ(answers->front().message, "refused: the bus interface can0 is not there yet");
+  ASSERT_EQ(read->size(), 1u);
+  ASSERT_EQ(write->size(), 1u);
+  for (const Answer& refused : {Answer(read->front()), write->front()}) {
+    EXPECT_EQ(refused.message, "refused: the bus interface can0 is not there yet");
   }
   EXPECT_TRUE(world.sent.empty());
 }

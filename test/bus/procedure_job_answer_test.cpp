@@ -111,7 +111,7 @@ TEST(ProcedureAnswerOfAnOptionalDrive, SaysThatItWasLeftOut) {
     if (is_there_a_third) test::addAxis(config, "wrist", 3);
     RobotWorld world(config);
     world.drives[1].silent = true;
-    world.robot.start(world.now);
+    world.network.start(world.now);
     world.run(5s);
     const Answer answer = world.call(ProcedureKind::enable);
     EXPECT_TRUE(answer.success) << answer.message;

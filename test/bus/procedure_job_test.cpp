@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/bus/jobs.h"
+#include "bus/jobs/procedure_job.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -111,8 +111,8 @@ TEST_F(ProcedureJobTest, WhatWaitsBeginsNoMoreOnceTheBusWasLost) {
     world.axis(1).update(world.now);
   }
   ASSERT_TRUE(world.axis(1).procedure().success && home->empty());
-  world.robot.busLost("can0 is bus-off", world.now);
-  world.robot.busBack(false, world.now);
+  world.network.busLost("can0 is bus-off", world.now);
+  world.network.busBack(false, world.now);
   world.run(1s);
   EXPECT_FALSE(world.drives[0].homing_began);
   ASSERT_EQ(home->size(), 1u);
@@ -324,7 +324,7 @@ TEST_F(ProcedureJobTest, AStopOfAllDoesNotWaitForNewsOfAnAxisThatHasFallenSilent
 TEST_F(ProcedureJobTest, WhatWaitsIsWithdrawnWhileSyncIsInTrouble) {
   const auto home = world.begin(ProcedureKind::home);
   world.run(50ms);
-  world.robot.receive(can::Frame(0x080, {}), world.now, world.now);  // of another device
+  world.network.receive(can::Frame(0x080, {}), world.now, world.now);  // of another device
   const Answer answer = world.wait(home);
   EXPECT_FALSE(answer.success);
   EXPECT_THAT(answer.message, AllOf(HasSubstr("home done on 1 of 2 axes"),

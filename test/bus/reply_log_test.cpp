@@ -35,7 +35,7 @@ TEST(Throttle, PermitsOnceInAnInterval) {
 
 TEST(ReplyLog, HoldsBackTheRefusedStreamOfOneAxisAndNotThatOfAnother) {
   ReplyLog log(2);
-  const Reply left = log.toSetpoint(0), right = log.toSetpoint(1);
+  const Reply<> left = log.toSetpoint(0), right = log.toSetpoint(1);
   for (int i = 0; i < 5; ++i) left(answerOf(false, "left: refused"));
   for (int i = 0; i < 5; ++i) log.toSetpoint(1)(answerOf(false, "right: refused"));
   EXPECT_THAT(texts(log, ReplyLog::Level::warning), ElementsAre("left: refused", "right: refused"));
@@ -59,7 +59,7 @@ TEST(ReplyLog, TellsEveryRefusedTrajectoryAsAnError) {
 
 TEST(ReplyLog, CountsWhatNobodyTakesInsteadOfWaiting) {
   ReplyLog log(0);
-  const Reply reply = log.toTrajectory();
+  const Reply<> reply = log.toTrajectory();
   for (int i = 0; i < 300; ++i) reply(answerOf(false, std::to_string(i)));
   const auto kept = texts(log, ReplyLog::Level::error);
   EXPECT_EQ(kept.size() + log.lost(), 300u);

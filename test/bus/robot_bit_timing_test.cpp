@@ -158,7 +158,7 @@ TEST_F(RobotBitTiming, IsNeitherSetNorActivatedWhereAnAxisIsEnabledByThen) {
 TEST(RobotBitTimingByIdentity, IsSetInTheDriveThatTheConfigurationNames) {
   LssWorld world(2);
   world.drives[0].objects[{0x1018, 4}] = {99, 0, 0, 0};  // what it tells besides
-  world.robot.start(world.now);
+  world.network.start(world.now);
   ASSERT_TRUE(ready(world)) << world.allEvents();
   world.run(100ms);
   LssBitTimingCommand timing;
@@ -172,7 +172,7 @@ TEST(RobotBitTimingByIdentity, IsSetInTheDriveThatTheConfigurationNames) {
 TEST(RobotBitTimingOfAStranger, IsRefusedWhileItsIdentityIsNotKnown) {
   LssWorld world(0);
   world.takeAway(1);
-  world.robot.start(world.now);
+  world.network.start(world.now);
   ASSERT_TRUE(world.runUntil([&] { return world.health(0) == Health::ready; }));
   LssBitTimingCommand timing;
   timing.kbit_per_s = 500;

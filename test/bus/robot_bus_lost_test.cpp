@@ -23,9 +23,9 @@ TEST_F(RobotBusLost, EndsMotionAndRefusesCommandsWithItsFirstReason) {
   ASSERT_TRUE(world.move({1.0, -1.0}, 4.0).success);
   world.run(500ms);
   ASSERT_TRUE(world.group().executing());
-  world.robot.busLost("can0 is bus-off", world.now);
+  world.network.busLost("can0 is bus-off", world.now);
   EXPECT_TRUE(world.group().stopping() || !world.group().executing());
-  world.robot.busLost("can0 is down", world.now);
+  world.network.busLost("can0 is down", world.now);
   world.run(1s);
   EXPECT_FALSE(world.group().executing());
   EXPECT_GT(world.eventsWith("stopped: can0 is bus-off"), 0u) << world.allEvents();
@@ -34,14 +34,14 @@ TEST_F(RobotBusLost, EndsMotionAndRefusesCommandsWithItsFirstReason) {
 }
 
 TEST_F(RobotBusLost, ItsReturnIsToldWhereItIsNews) {
-  world.robot.busBack(true, world.now);
+  world.network.busBack(true, world.now);
   EXPECT_EQ(world.eventsWith("is back"), 0u) << "it was there";
-  world.robot.busLost("can0 is bus-off", world.now);
-  world.robot.busBack(false, world.now);
+  world.network.busLost("can0 is bus-off", world.now);
+  world.network.busBack(false, world.now);
   EXPECT_EQ(world.eventsWith("is back"), 0u);
   EXPECT_EQ(world.begin(ProcedureKind::disable)->size(), 0u) << "commands are taken again";
-  world.robot.busLost("can0 is bus-off", world.now);
-  world.robot.busBack(true, world.now);
+  world.network.busLost("can0 is bus-off", world.now);
+  world.network.busBack(true, world.now);
   EXPECT_EQ(world.eventsWith("can0 is back: drives that were lost are configured again; the axes "
                              "stay disabled until enable or recover"),
             1u);

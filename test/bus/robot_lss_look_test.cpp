@@ -20,7 +20,7 @@ using namespace std::chrono_literals;
 
 /// The shoulder has been in operation and is gone.
 void lose(LssWorld& world) {
-  world.robot.start(world.now);
+  world.network.start(world.now);
   ASSERT_TRUE(ready(world)) << world.allEvents();
   world.takeAway(0);
   ASSERT_TRUE(world.runUntil([&] { return world.health(0) == Health::lost; }));
@@ -59,7 +59,7 @@ TEST(RobotLssLook, ThatFindsNobodyAsksNobodyBySdo) {
 TEST(RobotLssLook, AProblemOfTheNodeIdIsOverOnceTheDriveHasIt) {
   LssWorld world(1);
   world.takeAway(0);
-  world.robot.start(world.now);
+  world.network.start(world.now);
   ASSERT_TRUE(world.runUntil([&] { return world.health(1) == Health::ready; }));
   ASSERT_TRUE(world.runUntil([&] { return fieldbus::isAway(world.health(0)); }));
   ASSERT_THAT(world.shown().axes[0].words.problem.str(), HasSubstr("LSS: "));
@@ -85,9 +85,12 @@ TEST(RobotLssLook, AScanIsRefusedAtOnceWhereAnAxisMayMoveThoughAnotherIsAtWork) 
   ASSERT_TRUE(world.runUntil([&] { return world.drives[1].enabled(); }));
   world.run(20ms);
   ASSERT_TRUE(first->empty());
-  for (const auto& answers : {world.begin(LssScanCommand{}), world.begin(assign)}) {
-    ASSERT_EQ(answers->size(), 1u);
-    EXPECT_EQ(answers->front().message, "refused: elbow (node 2) may be in motion; stop it first");
+  const auto scan = world.begin(LssScanCommand{});
+  const auto assigned = world.begin(assign);
+  ASSERT_EQ(scan->size(), 1u);
+  ASSERT_EQ(assigned->size(), 1u);
+  for (const Answer& refused : {Answer(scan->front()), assigned->front()}) {
+    EXPECT_EQ(refused.message, "refused: elbow (node 2) may be in motion; stop it first");
   }
   ASSERT_TRUE(first->empty());
   const Answer late = world.wait(queued);
@@ -97,7 +100,7 @@ TEST(RobotLssLook, AScanIsRefusedAtOnceWhereAnAxisMayMoveThoughAnotherIsAtWork) 
 
 TEST(RobotLssLook, ARecoverThatWaitsForTheNodeIdEnablesNothingOnceTheAxisWasToStop) {
   LssWorld world(1);
-  world.robot.start(world.now);
+  world.network.start(world.now);
   ASSERT_TRUE(ready(world)) << world.allEvents();
   world.takeAway(0);
   ASSERT_TRUE(world.runUntil([&] { return world.health(0) == Health::lost; }));
@@ -119,7 +122,7 @@ TEST(RobotLssLook, AShutdownEndsAScanAndItsAnswerSaysSo) {
   const auto scan = world.begin(LssScanCommand{});
   world.run(1ms);
   ASSERT_TRUE(scan->empty());
-  world.robot.beginShutdown(world.now);
+  world.network.beginShutdown(world.now);
   ASSERT_EQ(scan->size(), 1u);
   EXPECT_FALSE(scan->front().success);
   EXPECT_EQ(scan->front().message, "ended by the shutdown of the driver");

@@ -22,7 +22,7 @@ using namespace std::chrono_literals;
 
 TEST(RobotLss, GivesNodeIdsOneAfterTheOtherAndBootsTheDrivesThen) {
   LssWorld world(2);
-  world.robot.start(world.now);
+  world.network.start(world.now);
   world.run(1ms);
   EXPECT_THAT(world.shown().axes[0].words.step.str(), HasSubstr("LSS: switching all devices"));
   EXPECT_EQ(world.shown().axes[1].words.step.str(), "LSS: waiting for its turn");
@@ -43,7 +43,7 @@ TEST(RobotLss, GivesNodeIdsOneAfterTheOtherAndBootsTheDrivesThen) {
 TEST(RobotLss, ADriveThatIsNotThereIsToldOnceAndLookedForEveryFiveSeconds) {
   LssWorld world(1);
   world.takeAway(0);
-  world.robot.start(world.now);
+  world.network.start(world.now);
   ASSERT_TRUE(world.runUntil([&] { return world.health(1) == Health::ready; }));
   const std::string problem =
       std::string("shoulder (node 1): LSS: while selecting the device with ") + kShoulder +
@@ -77,7 +77,7 @@ TEST(RobotLss, ANodeIdIsStoredWhereTheConfigurationSaysSo) {
   config::RobotConfig config = byIdentity(2);
   config.devices[1].lss->store = true;
   LssWorld world(2, config);
-  world.robot.start(world.now);
+  world.network.start(world.now);
   ASSERT_TRUE(ready(world)) << world.allEvents();
   EXPECT_EQ(world.slaves[0].stored, 0xFF);
   EXPECT_EQ(world.slaves[1].stored, 2);
@@ -86,14 +86,14 @@ TEST(RobotLss, ANodeIdIsStoredWhereTheConfigurationSaysSo) {
 TEST(RobotLss, AnAxisThatIsNotLookedForShowsWhatItDoesItself) {
   LssWorld world(1);
   world.takeAway(0);
-  world.robot.start(world.now);
+  world.network.start(world.now);
   ASSERT_TRUE(world.runUntil([&] { return world.health(1) == Health::ready; }));
   ASSERT_TRUE(world.runUntil([&] { return fieldbus::isAway(world.health(0)); }));
   world.drives[1].deaf_to_controlword = true;
   bool enabling = false;
   ASSERT_TRUE(world.runUntil([&] {
     if (!world.axis(1).procedure().running) (void)world.begin(ProcedureKind::enable, "elbow");
-    const RobotSnapshot shot = world.shown();
+    const NetworkSnapshot shot = world.shown();
     const bool looks = shot.axes[0].words.step.str().rfind("LSS: ", 0) == 0;
     enabling |= !shot.axes[1].words.step.empty();
     EXPECT_NE(shot.axes[1].words.step.str().rfind("LSS: ", 0), 0u);
@@ -105,7 +105,7 @@ TEST(RobotLss, AnAxisThatIsNotLookedForShowsWhatItDoesItself) {
 
 TEST(RobotLss, RecoverAloneBeginsWithTheNodeId) {
   LssWorld world(1);
-  world.robot.start(world.now);
+  world.network.start(world.now);
   ASSERT_TRUE(ready(world)) << world.allEvents();
   world.takeAway(0);
   ASSERT_TRUE(world.runUntil([&] { return world.health(0) == Health::lost; }));
@@ -135,7 +135,7 @@ TEST(RobotLss, RecoverAloneBeginsWithTheNodeId) {
 TEST(RobotLss, AScanTellsWhoseDeviceItIsAndWaitsForTheWindow) {
   LssWorld world(1);
   world.takeAway(0);
-  world.robot.start(world.now);
+  world.network.start(world.now);
   ASSERT_TRUE(world.runUntil([&] { return world.health(1) == Health::ready; }));
   ASSERT_TRUE(world.runUntil([&] { return fieldbus::isAway(world.health(0)); }));
   ASSERT_TRUE(world.runUntil([&] { return world.asked(0x43, 11) > 5; }));
@@ -144,7 +144,7 @@ TEST(RobotLss, AScanTellsWhoseDeviceItIsAndWaitsForTheWindow) {
   world.sent.clear();
   LssScanCommand command;
   command.window = 10ms;
-  const Answer scan = world.call(command);
+  const LssScanAnswer scan = world.call(command);
   EXPECT_TRUE(scan.success) << scan.message;
   EXPECT_EQ(scan.devices, std::vector<canopen::lss::Identity>{kIdentities[0]});
   EXPECT_EQ(scan.device_axes, std::vector<std::string>{"shoulder"});
@@ -158,7 +158,7 @@ TEST(RobotLss, AScanTellsWhoseDeviceItIsAndWaitsForTheWindow) {
 
   world.bringBack(0);
   world.slaves[0].identity[3] = 33;
-  const Answer other = world.call(command);
+  const LssScanAnswer other = world.call(command);
   EXPECT_TRUE(other.success) << other.message;
   EXPECT_EQ(other.device_axes, std::vector<std::string>{""});
   EXPECT_THAT(other.message, Not(HasSubstr("is that of")));
@@ -172,7 +172,7 @@ TEST(RobotLss, NothingIsScannedOrAssignedWhileAnAxisMayMove) {
   world.enable();
   LssAssignCommand assign;
   assign.node_id = 9;
-  for (const Answer& refused : {world.call(LssScanCommand{}), world.call(assign)}) {
+  for (const Answer& refused : {Answer(world.call(LssScanCommand{})), world.call(assign)}) {
     EXPECT_FALSE(refused.success);
     EXPECT_EQ(refused.message, "refused: shoulder (node 1) may be in motion; stop it first");
   }
@@ -234,7 +234,7 @@ TEST(RobotLss, AssignsNodeIdsThatNobodyHas) {
 TEST(RobotLss, TheNodeIdOfADriveThatWasNeverHeardIsFree) {
   LssWorld world(0);
   world.takeAway(1);
-  world.robot.start(world.now);
+  world.network.start(world.now);
   ASSERT_TRUE(world.runUntil([&] { return world.health(0) == Health::ready; }));
   ASSERT_EQ(world.health(1), Health::booting);
   world.slaves[1].identity[3] = 33;
@@ -249,7 +249,7 @@ TEST(RobotLss, TheNodeIdOfADriveThatWasNeverHeardIsFree) {
 
 TEST(RobotLss, ARecoveredDriveThatIsThereKeepsItsNodeIdUnasked) {
   LssWorld world(1);
-  world.robot.start(world.now);
+  world.network.start(world.now);
   ASSERT_TRUE(ready(world)) << world.allEvents();
   world.run(100ms);
   world.sent.clear();
@@ -263,7 +263,7 @@ TEST(RobotLss, AScanThatDidNotTakePlaceIsNoSuccess) {
   world.run(100ms);
   const auto first = world.begin(LssScanCommand{});
   const auto second = world.begin(LssScanCommand{});
-  world.robot.beginShutdown(world.now);
+  world.network.beginShutdown(world.now);
   ASSERT_EQ(second->size(), 1u);
   EXPECT_FALSE(second->front().success);
   EXPECT_EQ(second->front().message, "ended by the shutdown of the driver");
@@ -285,7 +285,7 @@ TEST(RobotLss, TheDriveOfAnotherAxisDoesNotLoseItsNodeId) {
 
 TEST(RobotLss, ALostDriveThatComesBackAsAnotherOneIsLeftAlone) {
   LssWorld world(1);
-  world.robot.start(world.now);
+  world.network.start(world.now);
   ASSERT_TRUE(ready(world)) << world.allEvents();
   world.takeAway(0);
   ASSERT_TRUE(world.runUntil([&] { return world.health(0) == Health::lost; }));
@@ -321,7 +321,7 @@ TEST(RobotLss, TheNodeIdOfADriveThatWasStoppedAndFellSilentIsFree) {
 TEST(RobotLss, ADriveThatWasFoundIsAskedHalfASecondLaterAndHasNoProblemAnyMore) {
   LssWorld world(1);
   world.takeAway(0);
-  world.robot.start(world.now);
+  world.network.start(world.now);
   ASSERT_TRUE(world.runUntil([&] { return fieldbus::isAway(world.health(0)); }));
   world.run(60s);
   world.sent.clear();

@@ -17,8 +17,8 @@ using testing::HasSubstr;
 using namespace std::chrono_literals;
 
 AxisWords words(const RobotWorld& world, std::size_t axis) {
-  RobotSnapshot snapshot;
-  world.robot.fill(snapshot);
+  NetworkSnapshot snapshot;
+  world.network.fill(snapshot);
   return snapshot.axes[axis].words;
 }
 
@@ -112,7 +112,7 @@ TEST(RobotNewsOfAnOptionalDrive, AreAWarning) {
 // Half a second after the boot, and as long as a TPDO may fail to come: ten cycles of 4 ms.
 TEST_F(RobotNews, FeedbackThatIsMissingIsAProblemOnceItHadTheTimeToCome) {
   world.drives[1].tpdo_bytes = 0;
-  world.robot.start(world.now);
+  world.network.start(world.now);
   ASSERT_TRUE(
       world.runUntil([&] { return world.axis(1).state().health == fieldbus::Health::ready; }));
   world.run(530ms);
@@ -163,9 +163,11 @@ TEST_F(RobotNews, ABootIsToldWithTheTimeThatItTook) {
 
 TEST_F(RobotNews, AThirdBootUpMessageWithinOneBootIsTold) {
   world.drives[0].sdo_silent = true;
-  world.robot.start(world.now);
+  world.network.start(world.now);
   world.run(20ms);
-  const auto bootUp = [&] { world.robot.receive(can::Frame(0x701, {0x00}), world.now, world.now); };
+  const auto bootUp = [&] {
+    world.network.receive(can::Frame(0x701, {0x00}), world.now, world.now);
+  };
   bootUp();
   EXPECT_EQ(world.eventsWith("boots up again and again"), 0u);
   bootUp();
@@ -180,7 +182,7 @@ TEST_F(RobotNews, ASecondBootUpMessageWithinALaterBootIsNotTold) {
   const auto reset = world.begin(NmtServiceCommand{"shoulder", "reset_node"});
   world.run(20ms);
   ASSERT_EQ(world.node(0).bootUps(), 2u);
-  world.robot.receive(can::Frame(0x701, {0x00}), world.now, world.now);
+  world.network.receive(can::Frame(0x701, {0x00}), world.now, world.now);
   EXPECT_EQ(world.eventsWith("boots up again and again"), 0u) << world.allEvents();
 }
 
@@ -195,11 +197,11 @@ TEST_F(RobotNews, BootUpMessagesOfSeveralBootsAreNotAddedUp) {
 
 TEST_F(RobotNews, AnEmergencyWithoutACodeIsCountedAndToldOfItsDrive) {
   world.boot();
-  world.robot.receive(can::Frame(0x082, {0x11}), world.now, world.now);
+  world.network.receive(can::Frame(0x082, {0x11}), world.now, world.now);
   EXPECT_EQ(world.eventsWith("elbow (node 2): an emergency frame of 1 byte has no error code"), 1u)
       << world.allEvents();
-  RobotSnapshot snapshot;
-  world.robot.fill(snapshot);
+  NetworkSnapshot snapshot;
+  world.network.fill(snapshot);
   EXPECT_EQ(snapshot.axes[0].emergencies.malformed, 0u);
   EXPECT_EQ(snapshot.axes[1].emergencies.malformed, 1u);
 }

@@ -18,13 +18,13 @@ struct RobotPdos : testing::Test {
     world.run(2s);
   }
   AxisSnapshot shown(std::size_t axis) const {
-    RobotSnapshot snapshot;
-    world.robot.fill(snapshot);
+    NetworkSnapshot snapshot;
+    world.network.fill(snapshot);
     return snapshot.axes[axis];
   }
   void intrude(int times) {
     for (int i = 0; i < times; ++i) {
-      world.robot.receive(can::Frame(0x182, {0x50, 0x02}), world.now, world.now);
+      world.network.receive(can::Frame(0x182, {0x50, 0x02}), world.now, world.now);
     }
   }
   RobotWorld world;

@@ -16,8 +16,8 @@ using namespace std::chrono_literals;
 struct RobotShutdown : testing::Test {
   bool shutDownIn(Duration limit) {
     const Time begun = world.now;
-    world.robot.beginShutdown(world.now);
-    const bool done = world.runUntil([&] { return world.robot.shutDown(); }, limit);
+    world.network.beginShutdown(world.now);
+    const bool done = world.runUntil([&] { return world.network.shutDown(); }, limit);
     took = world.now - begun;
     return done;
   }
@@ -30,8 +30,8 @@ struct RobotShutdown : testing::Test {
 };
 
 TEST_F(RobotShutdown, IsDoneAtOnceIfNothingWasStarted) {
-  world.robot.beginShutdown(world.now);
-  EXPECT_TRUE(world.robot.shutDown());
+  world.network.beginShutdown(world.now);
+  EXPECT_TRUE(world.network.shutDown());
   EXPECT_TRUE(world.sent.empty());
 }
 
@@ -52,7 +52,7 @@ TEST_F(RobotShutdown, RampsMotionDownThenDisablesThenSendsPreOperational) {
   EXPECT_EQ(world.drives[0].statusword, 0x0250);
   EXPECT_EQ(world.drives[1].statusword, 0x0250);
   expectPreOperationalLast();
-  EXPECT_EQ(world.robot.nextDeadline(), kNever);
+  EXPECT_EQ(world.network.nextDeadline(), kNever);
   world.sent.clear();
   world.run(1s);
   EXPECT_TRUE(world.sent.empty());
@@ -76,7 +76,7 @@ TEST_F(RobotShutdown, EndsInTimeThoughNobodyIsThere) {
 }
 
 TEST_F(RobotShutdown, EndsWhileTheDrivesBoot) {
-  world.robot.start(world.now);
+  world.network.start(world.now);
   world.run(10ms);
   ASSERT_TRUE(shutDownIn(2s));
   expectPreOperationalLast();
@@ -87,7 +87,7 @@ TEST_F(RobotShutdown, GivesAllPendingRepliesAndTakesNoMoreCommands) {
   world.drives[0].deaf_to_controlword = true;
   const auto disable = world.begin(ProcedureKind::disable, "shoulder");
   world.drives[1].sdo_silent = true;
-  std::vector<std::shared_ptr<std::vector<Answer>>> reads;
+  std::vector<RobotWorld::Answers<ObjectAnswer>> reads;
   for (int i = 0; i < 30; ++i) reads.push_back(world.begin(ReadObjectCommand{"elbow", "6098:00"}));
   ASSERT_TRUE(shutDownIn(2s));
   EXPECT_EQ(disable->size(), 1u);
@@ -111,10 +111,10 @@ TEST_F(RobotShutdown, AnswersWhatRunsOnceOnlyAndWhatIsReadWithTheReason) {
   homing.drives[1].sdo_silent = true;
   const auto home = homing.begin(ProcedureKind::home, "shoulder");
   homing.run(50ms);
-  std::vector<std::shared_ptr<std::vector<Answer>>> histories;
+  std::vector<RobotWorld::Answers<HistoryAnswer>> histories;
   for (int i = 0; i < 30; ++i) histories.push_back(homing.begin(ErrorHistoryCommand{"elbow"}));
-  homing.robot.beginShutdown(homing.now);
-  ASSERT_TRUE(homing.runUntil([&] { return homing.robot.shutDown(); }, 2s));
+  homing.network.beginShutdown(homing.now);
+  ASSERT_TRUE(homing.runUntil([&] { return homing.network.shutDown(); }, 2s));
   ASSERT_EQ(home->size(), 1u);
   EXPECT_EQ(home->front().message, "home: ended by the shutdown of the driver");
   for (const auto& history : histories) {
@@ -141,7 +141,7 @@ TEST_F(RobotShutdown, IsFollowedByNoSync) {
   world.boot();
   ASSERT_TRUE(shutDownIn(2s));
   world.sent.clear();
-  world.robot.produceSync(world.now + 1s);
+  world.network.produceSync(world.now + 1s);
   EXPECT_TRUE(world.sent.empty());
 }
 

@@ -22,18 +22,18 @@ config::RobotConfig listening() {
 class RobotStart : public testing::Test {
  protected:
   RobotStart() : world(listening()) {}
-  void hear(const can::Frame& frame) { world.robot.receive(frame, world.now, world.now); }
+  void hear(const can::Frame& frame) { world.network.receive(frame, world.now, world.now); }
   std::string syncProblem() {
-    RobotSnapshot snapshot;
-    world.robot.fill(snapshot);
+    NetworkSnapshot snapshot;
+    world.network.fill(snapshot);
     return snapshot.sync_problem.str();
   }
   RobotWorld world;
 };
 
 TEST_F(RobotStart, ListensBeforeTheFirstFrameIsSent) {
-  world.robot.start(world.now);
-  EXPECT_EQ(world.robot.nextDeadline(), world.now + 150ms);
+  world.network.start(world.now);
+  EXPECT_EQ(world.network.nextDeadline(), world.now + 150ms);
   world.run(149ms);
   EXPECT_TRUE(world.sent.empty());
   world.run(2ms);
@@ -46,12 +46,12 @@ TEST_F(RobotStart, ListensBeforeTheFirstFrameIsSent) {
 
 TEST_F(RobotStart, ShowsWhatItWaitsFor) {
   const auto step = [&] {
-    RobotSnapshot snapshot;
-    world.robot.fill(snapshot);
+    NetworkSnapshot snapshot;
+    world.network.fill(snapshot);
     EXPECT_EQ(snapshot.axes[0].words.step.str(), snapshot.axes[1].words.step.str());
     return snapshot.axes[0].words.step.str();
   };
-  world.robot.start(world.now);
+  world.network.start(world.now);
   EXPECT_EQ(step(), "listening for another master");
   world.run(50ms);
   hear(can::Frame(0x77F, {0x05}));
@@ -63,7 +63,7 @@ TEST_F(RobotStart, ShowsWhatItWaitsFor) {
 }
 
 TEST_F(RobotStart, SendsNothingWhileThereIsAnotherMasterAndSaysSo) {
-  world.robot.start(world.now);
+  world.network.start(world.now);
   for (int i = 0; i < 50; ++i) {
     world.run(100ms);
     hear(can::Frame(0x201, {0x0F, 0x00, 0x08, 0, 0, 0, 0}));
@@ -81,7 +81,7 @@ TEST_F(RobotStart, SendsNothingWhileThereIsAnotherMasterAndSaysSo) {
 }
 
 TEST_F(RobotStart, GoesOnByItselfOnceTheBusIsFree) {
-  world.robot.start(world.now);
+  world.network.start(world.now);
   hear(can::Frame(0x000, {0x01, 0x00}));
   world.run(100ms);
   hear(can::Frame(0x080, {}));
@@ -96,36 +96,37 @@ TEST_F(RobotStart, GoesOnByItselfOnceTheBusIsFree) {
 }
 
 TEST_F(RobotStart, ASecondStartChangesNothing) {
-  world.robot.start(world.now);
+  world.network.start(world.now);
   world.run(100ms);
-  world.robot.start(world.now);
+  world.network.start(world.now);
   world.run(52ms);
   EXPECT_FALSE(world.sent.empty());
   const std::size_t resets = world.sentWithId(0x000).size();
-  world.robot.start(world.now);
+  world.network.start(world.now);
   world.run(10ms);
   EXPECT_EQ(world.sentWithId(0x000).size(), resets);
 }
 
 TEST_F(RobotStart, ListensForAsLongAgainAfterEachFrameOfAnotherMasterAndSendsNoCycleWithIt) {
-  world.robot.start(world.now);
+  world.network.start(world.now);
   world.run(100ms);
   hear(can::Frame(0x77F, {0x05}));
-  EXPECT_EQ(world.robot.nextDeadline(), world.now + 150ms);
+  EXPECT_EQ(world.network.nextDeadline(), world.now + 150ms);
   world.run(100ms);
   hear(can::Frame(0x77F, {0x05}));
-  EXPECT_EQ(world.robot.nextDeadline(), world.now + 150ms) << "nothing new, but it is still there";
+  EXPECT_EQ(world.network.nextDeadline(), world.now + 150ms)
+      << "nothing new, but it is still there";
   EXPECT_EQ(world.eventsWith("another master is on the bus"), 1u);
-  EXPECT_EQ(world.robot.lastCycle(), Time());
+  EXPECT_EQ(world.network.cycle().lastCycle(), Time());
   const Time free = world.now + 150ms;
   ASSERT_TRUE(world.runUntil([&] { return !world.sent.empty(); }));
   EXPECT_EQ(world.sent.front().time, free);
   world.run(1ms);
-  EXPECT_EQ(world.robot.lastCycle(), Time()) << "the first SYNC comes after a period";
+  EXPECT_EQ(world.network.cycle().lastCycle(), Time()) << "the first SYNC comes after a period";
 }
 
 TEST_F(RobotStart, SixtyFourCallsWaitAtMostAndSetPointsDoNot) {
-  world.robot.start(world.now);
+  world.network.start(world.now);
   EXPECT_THAT(world.begin(SetpointCommand{0, 1.0})->at(0).message,
               HasSubstr("refused: the bus is still listened to for another master; try again"));
   EXPECT_EQ(world.begin(world.trajectory("arm", {{{1.0, 0.0}, 1.0}}))->size(), 1u);
@@ -138,7 +139,7 @@ TEST_F(RobotStart, SixtyFourCallsWaitAtMostAndSetPointsDoNot) {
 }
 
 TEST_F(RobotStart, ACallDuringTheListeningWaitsForItsEnd) {
-  world.robot.start(world.now);
+  world.network.start(world.now);
   const auto answers = world.begin(ProcedureKind::recover);
   world.run(140ms);
   EXPECT_TRUE(answers->empty());
@@ -148,7 +149,7 @@ TEST_F(RobotStart, ACallDuringTheListeningWaitsForItsEnd) {
 }
 
 TEST_F(RobotStart, ACallThatWaitsIsRefusedWhenAnotherMasterIsHeard) {
-  world.robot.start(world.now);
+  world.network.start(world.now);
   const auto answers = world.begin(ProcedureKind::recover);
   world.run(50ms);
   hear(can::Frame(0x77F, {0x05}));
@@ -157,11 +158,11 @@ TEST_F(RobotStart, ACallThatWaitsIsRefusedWhenAnotherMasterIsHeard) {
 }
 
 TEST_F(RobotStart, EndsWithoutAFrameWhenItIsShutDownMeanwhile) {
-  world.robot.start(world.now);
+  world.network.start(world.now);
   const auto answers = world.begin(ProcedureKind::recover);
   world.run(50ms);
-  world.robot.beginShutdown(world.now);
-  EXPECT_TRUE(world.robot.shutDown());
+  world.network.beginShutdown(world.now);
+  EXPECT_TRUE(world.network.shutDown());
   ASSERT_EQ(answers->size(), 1u);
   EXPECT_EQ(answers->front().message, "refused: the driver is shutting down");
   world.run(1s);
@@ -169,12 +170,12 @@ TEST_F(RobotStart, EndsWithoutAFrameWhenItIsShutDownMeanwhile) {
 }
 
 TEST_F(RobotStart, WhatCouldNotBeHeardIsListenedToAnew) {
-  world.robot.start(world.now);
+  world.network.start(world.now);
   world.run(100ms);
-  world.robot.busLost("can0 is bus-off", world.now);
+  world.network.busLost("can0 is bus-off", world.now);
   world.run(1s);
   EXPECT_TRUE(world.sent.empty());
-  world.robot.busBack(true, world.now);
+  world.network.busBack(true, world.now);
   world.run(100ms);
   EXPECT_TRUE(world.sent.empty());
   world.run(100ms);
@@ -182,7 +183,7 @@ TEST_F(RobotStart, WhatCouldNotBeHeardIsListenedToAnew) {
 }
 
 TEST_F(RobotStart, WhatElseIsHeardOfAnotherMasterIsShownAndNotToldAgain) {
-  world.robot.start(world.now);
+  world.network.start(world.now);
   hear(can::Frame(0x77F, {0x05}));
   hear(can::Frame(0x201, {0x0F, 0x00, 0x08, 0, 0, 0, 0}));
   EXPECT_EQ(world.eventsWith("another master is on the bus"), 1u) << world.allEvents();
@@ -191,18 +192,18 @@ TEST_F(RobotStart, WhatElseIsHeardOfAnotherMasterIsShownAndNotToldAgain) {
 }
 
 TEST_F(RobotStart, HearsNoOtherMasterOnceItIsShutDown) {
-  world.robot.start(world.now);
-  world.robot.beginShutdown(world.now);
+  world.network.start(world.now);
+  world.network.beginShutdown(world.now);
   hear(can::Frame(0x77F, {0x05}));
   EXPECT_EQ(world.eventsWith("another master"), 0u) << world.allEvents();
   EXPECT_EQ(syncProblem(), "");
 }
 
 TEST_F(RobotStart, ASyncDuringTheListeningIsNoneBesideItsOwn) {
-  world.robot.start(world.now);
+  world.network.start(world.now);
   hear(can::Frame(0x080, {}));
-  RobotSnapshot snapshot;
-  world.robot.fill(snapshot);
+  NetworkSnapshot snapshot;
+  world.network.fill(snapshot);
   EXPECT_EQ(snapshot.foreign_syncs, 0u);
 }
 

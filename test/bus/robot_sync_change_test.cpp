@@ -20,19 +20,19 @@ struct SyncTroubleThatChanges : testing::Test {
   }
   void lead(Duration duration, Duration period) {
     for (const Time end = world.now + duration; world.now < end; world.run(period)) {
-      world.robot.receive(can::Frame(0x080, {}), world.now, world.now);
+      world.network.receive(can::Frame(0x080, {}), world.now, world.now);
     }
   }
   std::string problem() const {
-    RobotSnapshot snapshot;
-    world.robot.fill(snapshot);
+    NetworkSnapshot snapshot;
+    world.network.fill(snapshot);
     return snapshot.sync_problem.str();
   }
   RobotWorld world{configuration()};
 };
 
 TEST_F(SyncTroubleThatChanges, IsToldWhenTheNewOneHasLastedForASecond) {
-  world.robot.start(world.now);
+  world.network.start(world.now);
   world.run(2s);
   ASSERT_THAT(problem(), HasSubstr("no SYNC (COB-ID 0x080) comes"));
   lead(900ms, 5ms);
@@ -43,9 +43,9 @@ TEST_F(SyncTroubleThatChanges, IsToldWhenTheNewOneHasLastedForASecond) {
 }
 
 TEST_F(SyncTroubleThatChanges, OrNotTheDriverProducesNoneWhereAnotherDeviceLeads) {
-  world.robot.start(world.now);
+  world.network.start(world.now);
   lead(1s, 4ms);
-  world.robot.produceSync(world.now + 1s);
+  world.network.produceSync(world.now + 1s);
   EXPECT_TRUE(world.sentWithId(0x080).empty());
 }
 

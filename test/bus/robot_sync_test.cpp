@@ -15,9 +15,9 @@ using testing::AllOf;
 using testing::HasSubstr;
 using namespace std::chrono_literals;
 
-RobotSnapshot shown(const RobotWorld& world) {
-  RobotSnapshot snapshot;
-  world.robot.fill(snapshot);
+NetworkSnapshot shown(const RobotWorld& world) {
+  NetworkSnapshot snapshot;
+  world.network.fill(snapshot);
   return snapshot;
 }
 
@@ -36,7 +36,7 @@ struct SecondProducer : testing::Test {
     // To the middle between two looks, which come every 100 ms.
     (void)world.runUntil([&] { return world.now - Time() >= 4s; });
   }
-  void hear() { world.robot.receive(can::Frame(0x080, {}), world.now, world.now); }
+  void hear() { world.network.receive(can::Frame(0x080, {}), world.now, world.now); }
   /// So many SYNCs, one in every 100 ms.
   void hear(int times) {
     for (int i = 0; i < times; ++i) {
@@ -130,7 +130,7 @@ TEST_F(SecondProducer, ThatComesAndGoesIsToldOnce) {
 
 TEST(NoSecondProducer, IsHeardBeforeTheStart) {
   RobotWorld world;
-  world.robot.receive(can::Frame(0x080, {}), world.now, world.now);
+  world.network.receive(can::Frame(0x080, {}), world.now, world.now);
   EXPECT_EQ(shown(world).foreign_syncs, 0u);
 }
 
@@ -149,7 +149,7 @@ struct ExternalSyncTest : testing::Test {
     const can::Frame frame = counted ? can::Frame(0x080, {1}) : can::Frame(0x080, {});
     for (test::FakeDrive& drive : world.drives) drive.receive(frame, world.now);
     world.now += late;
-    world.robot.receive(frame, world.now - late, world.now);
+    world.network.receive(frame, world.now - late, world.now);
   }
   /// SYNCs for so long. They come a little after the robot's own deadlines.
   void lead(Duration duration, Duration period = kPeriod) {
@@ -159,7 +159,7 @@ struct ExternalSyncTest : testing::Test {
     }
   }
   void enable() {
-    world.robot.start(world.now);
+    world.network.start(world.now);
     lead(3s);
     const auto answers = world.begin(ProcedureKind::enable);
     lead(1s);
@@ -179,7 +179,7 @@ TEST_F(ExternalSyncTest, TheCycleFollowsHalfAPeriodAfterEachAndTheDriverProduces
     sync(500us);  // read late
     const Time stamp = world.now - 500us;
     world.run(3500us);
-    EXPECT_EQ(world.robot.lastCycle(), stamp + kPeriod / 2);
+    EXPECT_EQ(world.network.cycle().lastCycle(), stamp + kPeriod / 2);
   }
   EXPECT_TRUE(world.sentWithId(0x080).empty());
   EXPECT_EQ(world.sentWithId(0x201).size(), 20u) << "one RPDO for each";
@@ -192,12 +192,12 @@ TEST_F(ExternalSyncTest, ASyncThatOvertakesTheCycleBeforeBringsItAtOnce) {
   enable();
   sync();
   world.run(1ms);
-  const auto overruns = world.robot.statistics().overruns();
+  const auto overruns = world.network.statistics().overruns();
   sync();
-  EXPECT_EQ(world.robot.nextDeadline(), world.now);
+  EXPECT_EQ(world.network.nextDeadline(), world.now);
   world.run(100us);
-  EXPECT_EQ(world.robot.lastCycle(), world.now - 100us);
-  EXPECT_EQ(world.robot.statistics().overruns(), overruns + 1);
+  EXPECT_EQ(world.network.cycle().lastCycle(), world.now - 100us);
+  EXPECT_EQ(world.network.statistics().overruns(), overruns + 1);
 }
 
 TEST_F(ExternalSyncTest, IsRegularWithinHalfAMillisecond) {
@@ -205,24 +205,24 @@ TEST_F(ExternalSyncTest, IsRegularWithinHalfAMillisecond) {
   sync();
   world.run(kPeriod);
   sync();
-  EXPECT_NEAR(world.robot.statistics().lastLateness(), 0.0, 1e-9);
+  EXPECT_NEAR(world.network.statistics().lastLateness(), 0.0, 1e-9);
   world.run(kPeriod + 500us);
   sync();
-  EXPECT_NEAR(world.robot.statistics().lastLateness(), 500e-6, 1e-9);
+  EXPECT_NEAR(world.network.statistics().lastLateness(), 500e-6, 1e-9);
   world.run(kPeriod - 300us);
   sync();
-  EXPECT_NEAR(world.robot.statistics().lastLateness(), 300e-6, 1e-9);
+  EXPECT_NEAR(world.network.statistics().lastLateness(), 300e-6, 1e-9);
 }
 
 TEST_F(ExternalSyncTest, MissingOnesAreCountedAndThreeInARowStopWhatMoves) {
   enable();
   ASSERT_TRUE(world.move({2.0, -2.0}, 4.0).success);
   lead(1s);
-  const auto overruns = world.robot.statistics().overruns();
+  const auto overruns = world.network.statistics().overruns();
   world.run(2 * kPeriod);  // two are missing
   lead(40ms);
   EXPECT_EQ(shown(world).missed_syncs, 2u);
-  EXPECT_EQ(world.robot.statistics().overruns(), overruns + 2);
+  EXPECT_EQ(world.network.statistics().overruns(), overruns + 2);
   EXPECT_TRUE(world.group().executing());
   EXPECT_EQ(world.eventsWith("stopped"), 0u) << world.allEvents();
   // The last came one period ago: 3.5 periods after it three are missing.
@@ -235,8 +235,9 @@ TEST_F(ExternalSyncTest, MissingOnesAreCountedAndThreeInARowStopWhatMoves) {
             1u)
       << world.allEvents();
   EXPECT_FALSE(world.group().executing());
-  EXPECT_EQ((world.robot.lastCycle() - lost) % kPeriod, Duration(0)) << "on its own clock";
-  EXPECT_GT(world.robot.lastCycle(), world.now - 2 * kPeriod);
+  EXPECT_EQ((world.network.cycle().lastCycle() - lost) % kPeriod, Duration(0))
+      << "on its own clock";
+  EXPECT_GT(world.network.cycle().lastCycle(), world.now - 2 * kPeriod);
   world.run(1s);
   EXPECT_THAT(problem(), HasSubstr("no SYNC (COB-ID 0x080) comes; another device must send it "
                                    "every 4 ms"));
@@ -267,12 +268,12 @@ TEST_F(ExternalSyncTest, WhatWaitsToEnableAnAxisIsWithdrawnWhenItIsLost) {
   config.axes[1].homing = test::homingOfOrder(0);
   RobotWorld homing(config);
   takeControlwordsBySdo(homing);
-  homing.robot.start(homing.now);
+  homing.network.start(homing.now);
   const auto lead = [&](Duration duration) {
     for (const Time end = homing.now + duration; homing.now < end;) {
       const can::Frame frame(0x080, {});
       for (test::FakeDrive& drive : homing.drives) drive.receive(frame, homing.now);
-      homing.robot.receive(frame, homing.now, homing.now);
+      homing.network.receive(frame, homing.now, homing.now);
       homing.run(kPeriod);
     }
   };
@@ -306,7 +307,7 @@ TEST_F(ExternalSyncTest, OfAnotherPeriodStopsWhatMovesAndIsToldWithIt) {
 
 TEST_F(ExternalSyncTest, OfAWrongFormIsToldWithWhatToWrite) {
   counted = true;
-  world.robot.start(world.now);
+  world.network.start(world.now);
   lead(4s);
   EXPECT_EQ(problem(),
             "SYNC comes with a counter, write its overflow value as `bus: {sync_counter}`");
@@ -316,9 +317,9 @@ TEST(ExternalSyncWithACounter, OfAWrongFormIsToldWithWhatToWrite) {
   config::RobotConfig config = led();
   config.bus.sync_counter = 10;
   RobotWorld world(config);
-  world.robot.start(world.now);
+  world.network.start(world.now);
   for (int i = 0; i < 1000; ++i) {
-    world.robot.receive(can::Frame(0x080, {}), world.now, world.now);
+    world.network.receive(can::Frame(0x080, {}), world.now, world.now);
     world.run(kPeriod);
   }
   EXPECT_EQ(shown(world).sync_problem.str(),
@@ -326,7 +327,7 @@ TEST(ExternalSyncWithACounter, OfAWrongFormIsToldWithWhatToWrite) {
 }
 
 TEST_F(ExternalSyncTest, ThatDoesNotComeAtTheStartIsToldAfterASecond) {
-  world.robot.start(world.now);
+  world.network.start(world.now);
   world.run(900ms);
   EXPECT_EQ(problem(), "");
   world.run(1s);
@@ -353,9 +354,10 @@ struct LateSync : testing::Test {
     const Time due = world.sentWithId(0x080).back().time + kPeriod;
     world.now = due + late;
     world.run(after);
-    world.robot.receive(can::Frame(0x081, {static_cast<std::uint8_t>(code & 0xFF),
-                                           static_cast<std::uint8_t>(code >> 8), 1, 0, 0, 0, 0, 0}),
-                        world.now, world.now);
+    world.network.receive(
+        can::Frame(0x081, {static_cast<std::uint8_t>(code & 0xFF),
+                           static_cast<std::uint8_t>(code >> 8), 1, 0, 0, 0, 0, 0}),
+        world.now, world.now);
     world.run(20ms);
   }
   RobotWorld world{minding()};
@@ -382,7 +384,7 @@ TEST_F(LateSync, IsNoReasonForWhatWasMissedBeforeItWasDue) {
   const Time due = world.sentWithId(0x080).back().time + kPeriod;
   world.now = due + 5ms;
   world.run(1ms);
-  world.robot.receive(can::Frame(0x081, {0x01, 0x82, 1, 0, 0, 0, 0, 0}), due - 1ms, world.now);
+  world.network.receive(can::Frame(0x081, {0x01, 0x82, 1, 0, 0, 0, 0, 0}), due - 1ms, world.now);
   world.run(20ms);
   EXPECT_EQ(world.eventsWith("emergency: 0x8201"), 1u);
   EXPECT_EQ(world.eventsWith("this program sent SYNC"), 0u) << world.allEvents();

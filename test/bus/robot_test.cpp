@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/bus/robot.h"
+#include "cia402_driver/bus/network.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ TEST(Robot, SendsNothingBeforeItIsStarted) {
   RobotWorld world;
   world.run(1s);
   EXPECT_TRUE(world.sent.empty());
-  EXPECT_EQ(world.robot.nextDeadline(), kNever);
+  EXPECT_EQ(world.network.nextDeadline(), kNever);
 }
 
 TEST(Robot, RefusesCommandsBeforeItIsStarted) {
@@ -42,15 +42,15 @@ TEST(Robot, BootsAndEnablesItsDrivesAndTellsSo) {
 TEST(Robot, SendsSyncAtExactDeadlines) {
   RobotWorld world;
   const Time start = world.now;
-  world.robot.start(start);
+  world.network.start(start);
   world.run(1s);
   const auto syncs = world.sentWithId(0x080);
   ASSERT_EQ(syncs.size(), 249u);  // the first after one period
   for (std::size_t i = 0; i < syncs.size(); ++i) {
     ASSERT_EQ(syncs[i].time, start + static_cast<int>(i + 1) * kPeriod);
   }
-  EXPECT_EQ(world.robot.statistics().maxLateness(), 0.0);
-  EXPECT_EQ(world.robot.statistics().overruns(), 0u);
+  EXPECT_EQ(world.network.statistics().maxLateness(), 0.0);
+  EXPECT_EQ(world.network.statistics().overruns(), 0u);
 }
 
 TEST(Robot, SendsRpdosHalfAPeriodAfterSync) {
@@ -73,7 +73,7 @@ TEST(Robot, NeverSendsABurstOfSyncsAfterALongPause) {
   const Time start = world.now;
   world.boot();
   world.run(start + 3s - world.now);
-  const auto missed = world.robot.statistics().overruns();
+  const auto missed = world.network.statistics().overruns();
   world.sent.clear();
   world.now += 50ms;  // the SYNC of 3.000 is sent at 3.050
   world.run(10ms);
@@ -83,18 +83,18 @@ TEST(Robot, NeverSendsABurstOfSyncsAfterALongPause) {
   EXPECT_EQ(syncs[1].time, start + 3052ms);  // back on the grid
   EXPECT_EQ(syncs[2].time, start + 3056ms);
   // Those of 3.004 to 3.048 are left out; the cycle of 3.050 is overtaken by the SYNC of 3.052.
-  EXPECT_EQ(world.robot.statistics().overruns() - missed, 12u + 1u);
-  EXPECT_DOUBLE_EQ(world.robot.statistics().maxLateness(), 0.050);
+  EXPECT_EQ(world.network.statistics().overruns() - missed, 12u + 1u);
+  EXPECT_DOUBLE_EQ(world.network.statistics().maxLateness(), 0.050);
 }
 
 TEST(Robot, CountsCyclesWithoutFeedbackOfAReadyDrive) {
   RobotWorld world;
   world.boot();
-  RobotSnapshot before, after;
-  world.robot.fill(before);
+  NetworkSnapshot before, after;
+  world.network.fill(before);
   world.drives[0].silent = true;
   world.run(40ms);
-  world.robot.fill(after);
+  world.network.fill(after);
   EXPECT_NEAR(static_cast<double>(after.axes[0].missed_feedback - before.axes[0].missed_feedback),
               10.0, 1.0);
   EXPECT_EQ(after.axes[1].missed_feedback, before.axes[1].missed_feedback);
@@ -114,8 +114,8 @@ TEST(Robot, TellsAnEmergencyWithCodeCauseAndRemedy) {
   EXPECT_EQ(world.emergencies[0].emergency.code, 0x8611);
   EXPECT_THAT(event->text.str(), AllOf(HasSubstr("elbow (node 2): emergency: 0x8611"),
                                        HasSubstr("blocked"), HasSubstr("check the mechanics")));
-  RobotSnapshot snapshot;
-  world.robot.fill(snapshot);
+  NetworkSnapshot snapshot;
+  world.network.fill(snapshot);
   EXPECT_EQ(snapshot.axes[1].emergencies.total, 1u);
   EXPECT_THAT(snapshot.axes[1].words.problem.str(), HasSubstr("following error"));
   EXPECT_TRUE(snapshot.axes[0].words.problem.empty());
@@ -123,25 +123,25 @@ TEST(Robot, TellsAnEmergencyWithCodeCauseAndRemedy) {
 
 TEST(Robot, ASnapshotThatIsFilledAgainShowsWhatHasChanged) {
   RobotWorld world;
-  RobotSnapshot used;
-  world.robot.fill(used);
+  NetworkSnapshot used;
+  world.network.fill(used);
   EXPECT_EQ(used.axes[1].node.identity.vendor_id, 0u);
   world.enable();
-  world.robot.fill(used);
+  world.network.fill(used);
   EXPECT_TRUE(used.axes[1].words.problem.empty());
   world.drives[1].fault(0x8611);
   world.run(100ms);
-  world.robot.fill(used);
+  world.network.fill(used);
   EXPECT_THAT(used.axes[1].words.problem.str(), HasSubstr("following error"));
   world.drives[1].silent = true;
   world.run(2s);
-  world.robot.fill(used);
+  world.network.fill(used);
   EXPECT_THAT(used.axes[1].words.problem.str(), HasSubstr("no heartbeat"));
   world.drives[1].silent = false;
   world.run(2s);
-  world.robot.fill(used);
-  RobotSnapshot fresh;
-  world.robot.fill(fresh);
+  world.network.fill(used);
+  NetworkSnapshot fresh;
+  world.network.fill(fresh);
   EXPECT_EQ(used.axes[1].node.nmt, canopen::NmtState::operational);
   EXPECT_EQ(used.axes[1].node.last_heartbeat, fresh.axes[1].node.last_heartbeat);
   EXPECT_GT(used.axes[1].node.sdo.completed, used.axes[0].node.sdo.completed) << "booted twice";
@@ -198,11 +198,11 @@ config::RobotConfig shoulderAlone() {
 /// Is an object that was asked for between two cycles there before the next one?
 bool answersBeforeTheNextCycle(RobotWorld& world) {
   world.boot();
-  EXPECT_TRUE(world.runUntil([&] { return world.robot.lastCycle() == world.now; }));
+  EXPECT_TRUE(world.runUntil([&] { return world.network.cycle().lastCycle() == world.now; }));
   world.run(1ms);  // the next cycle is 3 ms away
   const auto read = world.begin(ReadObjectCommand{"shoulder", "6098:00"});
   world.run(1ms);
-  world.robot.tick(world.now);
+  world.network.tick(world.now);
   return read->size() == 1;
 }
 
@@ -227,8 +227,8 @@ TEST(Robot, ShowsTheTimeOfTheLastCommand) {
   CallCommand call;
   call.function = [](Time) { return Answer(); };
   (void)world.call(call);
-  RobotSnapshot snapshot;
-  world.robot.fill(snapshot);
+  NetworkSnapshot snapshot;
+  world.network.fill(snapshot);
   EXPECT_EQ(snapshot.now, world.now);
 }
 
@@ -242,8 +242,8 @@ TEST(Robot, ShowsItsAxesNodesAndGroups) {
   world.run(500ms);
   world.drives[0].silent = true;
   world.run(60ms);
-  RobotSnapshot shot;
-  world.robot.fill(shot);
+  NetworkSnapshot shot;
+  world.network.fill(shot);
   drive::Axis& elbow = world.axis(1);
   EXPECT_GT(shot.statistics.cycles(), 100u);
   EXPECT_FALSE(shot.shut_down);
@@ -269,12 +269,12 @@ TEST(Robot, ShowsItsAxesNodesAndGroups) {
   world.drives[1].deaf_to_controlword = true;
   const auto disabling = world.begin(ProcedureKind::disable, "elbow");
   world.run(20ms);
-  world.robot.fill(shot);
+  world.network.fill(shot);
   EXPECT_EQ(shot.axes[1].procedure, ProcedureKind::disable);
   EXPECT_TRUE(shot.axes[1].procedure_running);
-  world.robot.beginShutdown(world.now);
-  ASSERT_TRUE(world.runUntil([&] { return world.robot.shutDown(); }, 2s));
-  world.robot.fill(shot);
+  world.network.beginShutdown(world.now);
+  ASSERT_TRUE(world.runUntil([&] { return world.network.shutDown(); }, 2s));
+  world.network.fill(shot);
   EXPECT_TRUE(shot.shut_down);
 }
 
@@ -283,10 +283,10 @@ TEST(Robot, ShowsThatAnOptionalDriveIsNotThere) {
   config.devices[1].boot.optional = true;
   RobotWorld world(config);
   world.drives[1].silent = true;
-  world.robot.start(world.now);
+  world.network.start(world.now);
   world.run(5s);
-  RobotSnapshot shot;
-  world.robot.fill(shot);
+  NetworkSnapshot shot;
+  world.network.fill(shot);
   EXPECT_FALSE(shot.axes[0].node.may_be_absent);
   EXPECT_TRUE(shot.axes[1].node.may_be_absent);
 }
@@ -296,11 +296,12 @@ TEST(Robot, RefusesToAskAStoppedDriveAndSaysSo) {
   world.boot();
   const auto stopped = world.begin(NmtServiceCommand{"shoulder", "stop"});
   world.run(20ms);
-  world.robot.receive(can::Frame(0x701, {0x04}), world.now, world.now);
+  world.network.receive(can::Frame(0x701, {0x04}), world.now, world.now);
   ASSERT_EQ(world.node(0).nmtState(), canopen::NmtState::stopped);
   SaveDcfCommand save;
   save.axis = "shoulder";
-  const auto history = world.begin(ErrorHistoryCommand{"shoulder"}), dcf = world.begin(save);
+  const auto history = world.begin(ErrorHistoryCommand{"shoulder"});
+  const auto dcf = world.begin(save);
   ASSERT_EQ(history->size(), 1u);
   EXPECT_THAT(history->front().message,
               HasSubstr("shoulder (node 1): its error history (1003h) cannot be asked for"));
@@ -313,13 +314,13 @@ TEST(Robot, ShowsADriveThatInsistsOnACobIdWhichNobodyForesaw) {
   RobotWorld world;
   world.boot();
   const auto insists = [&](std::size_t axis) {
-    RobotSnapshot snapshot;
-    world.robot.fill(snapshot);
+    NetworkSnapshot snapshot;
+    world.network.fill(snapshot);
     return snapshot.axes[axis].node.own_cob_ids;
   };
   EXPECT_FALSE(insists(0));
   EXPECT_FALSE(insists(1));
-  world.robot.master().nodes()[1].image().setCobId(canopen::PdoDirection::tpdo, 1, 0x1E5);
+  world.network.master().nodes()[1].image().setCobId(canopen::PdoDirection::tpdo, 1, 0x1E5);
   EXPECT_FALSE(insists(0));
   EXPECT_TRUE(insists(1));
 }
@@ -327,17 +328,17 @@ TEST(Robot, ShowsADriveThatInsistsOnACobIdWhichNobodyForesaw) {
 TEST(Robot, ShowsTheTimeThatItWasGivenLast) {
   RobotWorld world;
   for (test::FakeDrive& drive : world.drives) drive.silent = true;
-  world.robot.start(world.now);
+  world.network.start(world.now);
   world.run(100ms);
-  world.robot.tick(world.now);
-  EXPECT_EQ(world.robot.now(), world.now) << "though nothing is received";
+  world.network.tick(world.now);
+  EXPECT_EQ(world.network.now(), world.now) << "though nothing is received";
   const Time later = world.now + 50ms;
-  world.robot.produceSync(later);
-  EXPECT_EQ(world.robot.now(), later);
-  world.robot.receive(can::Frame(0x701, {0x05}), later, later + 1ms);
-  EXPECT_EQ(world.robot.now(), later + 1ms);
-  world.robot.busLost("can0 is bus-off", later + 2ms);
-  EXPECT_EQ(world.robot.now(), later + 2ms);
+  world.network.produceSync(later);
+  EXPECT_EQ(world.network.now(), later);
+  world.network.receive(can::Frame(0x701, {0x05}), later, later + 1ms);
+  EXPECT_EQ(world.network.now(), later + 1ms);
+  world.network.busLost("can0 is bus-off", later + 2ms);
+  EXPECT_EQ(world.network.now(), later + 2ms);
 }
 
 TEST(Robot, ASetPointThatIsNotTakenIsAnsweredWithTheReason) {
@@ -359,16 +360,16 @@ TEST(Robot, AProcedureGoesOnWithAnAnswerBySdoBeforeTheNextCycle) {
   config.axes[0].homing = test::homingOfOrder(0);
   RobotWorld world(config);
   world.enable();
-  ASSERT_TRUE(world.runUntil([&] { return world.robot.lastCycle() == world.now; }));
+  ASSERT_TRUE(world.runUntil([&] { return world.network.cycle().lastCycle() == world.now; }));
   drive::ProcedureRequest home;
   home.kind = ProcedureKind::home;
   ASSERT_TRUE(world.axis(0).start(home, world.now));
   world.drives[0].written.clear();
   ASSERT_TRUE(world.runUntil([&] { return !world.drives[0].written.empty(); }));
-  const Time cycle = world.robot.lastCycle();
+  const Time cycle = world.network.cycle().lastCycle();
   world.run(1ms);
-  world.robot.tick(world.now);
-  EXPECT_EQ(world.robot.lastCycle(), cycle);
+  world.network.tick(world.now);
+  EXPECT_EQ(world.network.cycle().lastCycle(), cycle);
   EXPECT_EQ(world.drives[0].written.size(), 2u) << "the second follows the first";
 }
 

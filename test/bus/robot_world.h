@@ -11,7 +11,13 @@
 #include <vector>
 
 #include "bus/fake_drive.h"
-#include "cia402_driver/bus/robot.h"
+#include "cia402_driver/bus/canopen/dcf_command.h"
+#include "cia402_driver/bus/canopen/history_command.h"
+#include "cia402_driver/bus/canopen/lss_commands.h"
+#include "cia402_driver/bus/canopen/nmt_command.h"
+#include "cia402_driver/bus/jobs/object_commands.h"
+#include "cia402_driver/bus/jobs/procedure_command.h"
+#include "cia402_driver/bus/network.h"
 #include "cia402_driver/config/drive_family.h"
 #include "cia402_driver/config/robot.h"
 
@@ -155,7 +161,7 @@ class RobotWorld : private can::Sink, private EventSink {
   };
 
   explicit RobotWorld(const config::RobotConfig& config = testRobot())
-      : robot(config, masterOf(config), *this, *this) {
+      : network(config, masterOf(config), *this, *this) {
     for (const canopen::DeviceConfig& device : config.devices) drives.emplace_back(device.node_id);
   }
 
@@ -166,12 +172,13 @@ class RobotWorld : private can::Sink, private EventSink {
   std::deque<FakeDrive> drives;  ///< in the order of the axes
   /// Other devices: hear what is sent, and may answer.
   std::function<std::optional<can::Frame>(const can::Frame&)> bystanders;
-  Robot robot;
+  Network network;
 
-  drive::Axis& axis(std::size_t index) { return robot.axes()[index]; }
-  canopen::Node& node(std::size_t index) { return robot.node(index); }
+  drive::Axis& axis(std::size_t index) { return network.axis(index); }
+  canopen::Node& node(std::size_t index) { return network.node(index); }
+  AxisUnit& unit(std::size_t index) { return network.cycle().units()[index]; }
   const canopen::DeviceConfig& device(std::size_t index) {
-    return robot.config().deviceOf(axis(index).config());
+    return network.config().deviceOf(axis(index).config());
   }
 
   /// Lets `duration` pass.
@@ -182,7 +189,7 @@ class RobotWorld : private can::Sink, private EventSink {
   bool runUntil(const std::function<bool()>& condition, Duration limit = std::chrono::seconds(10)) {
     const Time end = now + limit;
     while (!condition()) {
-      Time next = std::min(end, robot.nextDeadline());
+      Time next = std::min(end, network.nextDeadline());
       if (!wire_.empty()) next = std::min(next, wire_.front().time);
       for (const FakeDrive& drive : drives) next = std::min(next, drive.nextDeadline());
       now = std::max(now, next);
@@ -193,10 +200,12 @@ class RobotWorld : private can::Sink, private EventSink {
   }
   /// Starts the robot and waits until all drives are ready.
   void boot() {
-    robot.start(now);
+    network.start(now);
     const bool ready = runUntil([&] {
-      return std::all_of(robot.axes().begin(), robot.axes().end(), [](const drive::Axis& a) {
-        return a.state().health == fieldbus::Health::ready && a.state().feedback_valid;
+      const auto& units = network.cycle().units();
+      return std::all_of(units.begin(), units.end(), [](const AxisUnit& u) {
+        const drive::AxisState& state = u.axis.state();
+        return state.health == fieldbus::Health::ready && state.feedback_valid;
       });
     });
     if (!ready) throw std::runtime_error("the drives did not boot: " + allEvents());
@@ -208,18 +217,21 @@ class RobotWorld : private can::Sink, private EventSink {
     if (!answer.success) throw std::runtime_error(answer.message);
   }
 
+  template <typename AnswerType = Answer>
+  using Answers = std::shared_ptr<std::vector<AnswerType>>;
+
   /// Begins a command; its answer is found in the result once there is one.
-  std::shared_ptr<std::vector<Answer>> begin(decltype(Command::body) body) {
-    auto answers = std::make_shared<std::vector<Answer>>();
-    Command command;
-    command.body = std::move(body);
-    command.reply = [answers](const Answer& answer) { answers->push_back(answer); };
-    robot.execute(std::move(command), now);
+  template <typename Request>
+  Answers<typename Request::Answer> begin(Request request) {
+    using AnswerType = typename Request::Answer;
+    auto answers = std::make_shared<std::vector<AnswerType>>();
+    network.execute(Command(std::move(request),
+                            [answers](const AnswerType& answer) { answers->push_back(answer); }),
+                    now);
     return answers;
   }
-  std::shared_ptr<std::vector<Answer>> begin(drive::ProcedureKind kind,
-                                             const std::string& axis = {},
-                                             const std::string& mode = {}) {
+  Answers<> begin(drive::ProcedureKind kind, const std::string& axis = {},
+                  const std::string& mode = {}) {
     ProcedureCommand command;
     command.axis = axis;
     command.request.kind = kind;
@@ -227,7 +239,8 @@ class RobotWorld : private can::Sink, private EventSink {
     return begin(command);
   }
   /// Carries a command out and waits for its answer.
-  Answer wait(const std::shared_ptr<std::vector<Answer>>& answers) {
+  template <typename AnswerType>
+  AnswerType wait(const Answers<AnswerType>& answers) {
     if (!runUntil([&] { return !answers->empty(); }, std::chrono::seconds(30))) {
       throw std::runtime_error("no answer came");
     }
@@ -237,7 +250,10 @@ class RobotWorld : private can::Sink, private EventSink {
               const std::string& mode = {}) {
     return wait(begin(kind, axis, mode));
   }
-  Answer call(decltype(Command::body) body) { return wait(begin(std::move(body))); }
+  template <typename Request>
+  typename Request::Answer call(Request request) {
+    return wait<typename Request::Answer>(begin(std::move(request)));
+  }
   Answer move(const std::vector<double>& positions, double seconds,
               const std::string& group = "arm") {
     return call(trajectory(group, {{positions, seconds}}));
@@ -250,7 +266,7 @@ class RobotWorld : private can::Sink, private EventSink {
   TrajectoryCommand trajectory(const std::string& group, const std::vector<Point>& points) const {
     TrajectoryCommand command;
     command.group = group;
-    for (const Group& candidate : robot.groups()) {
+    for (const Group& candidate : network.cycle().groups()) {
       if (candidate.config().name == group) command.joints = candidate.config().joints;
     }
     for (const Point& point : points) {
@@ -262,7 +278,7 @@ class RobotWorld : private can::Sink, private EventSink {
     }
     return command;
   }
-  const Group& group(std::size_t index = 0) const { return robot.groups()[index]; }
+  const Group& group(std::size_t index = 0) const { return network.cycle().groups()[index]; }
 
   /// Frames sent with this identifier.
   std::vector<Sent> sentWithId(std::uint32_t id) const {
@@ -302,17 +318,17 @@ class RobotWorld : private can::Sink, private EventSink {
     }
   }
   void step() {
-    robot.tick(now);
+    network.tick(now);
     for (FakeDrive& drive : drives) drive.tick(now);
     collect();
     while (!wire_.empty() && wire_.front().time <= now) {
       const Sent answer = wire_.front();
       wire_.pop_front();
-      robot.receive(answer.frame, answer.time, now);
+      network.receive(answer.frame, answer.time, now);
     }
   }
 
-  std::deque<Sent> wire_;  // on their way to the robot
+  std::deque<Sent> wire_;  // on their way to the network
 };
 
 }  // namespace cia402::bus::test

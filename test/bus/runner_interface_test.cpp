@@ -53,10 +53,10 @@ TEST_F(BusRunnerTest, ShowsItsInterfaceInItsSnapshot) {
   const Time before = runner->time().now();
   ahead_ms = 2000;  // the second in which frames are counted is over
   waitFor([&] {
-    const RobotSnapshot now = runner->snapshot();
+    const NetworkSnapshot now = runner->snapshot();
     return now.now > before + std::chrono::milliseconds(1000) && now.bus_load > 0.0;
   });
-  const RobotSnapshot snapshot = runner->snapshot();
+  const NetworkSnapshot snapshot = runner->snapshot();
   EXPECT_EQ(snapshot.bus_text, "can0 is error passive");
   EXPECT_EQ(snapshot.pending, 3u);
   ASSERT_TRUE(snapshot.error_counters);

@@ -47,7 +47,7 @@ TEST_F(BusRunnerTest, CarriesCommandsOutAndShowsTheResultInItsSnapshot) {
   EXPECT_TRUE(enabled.success) << enabled.message;
   waitFor(
       [&] { return runner->snapshot().axes[1].state.state == drive::State::operation_enabled; });
-  const RobotSnapshot snapshot = runner->snapshot();
+  const NetworkSnapshot snapshot = runner->snapshot();
   EXPECT_GT(snapshot.statistics.cycles(), 0u);
   EXPECT_GT(snapshot.counters.frames_received, 0u);
   EXPECT_EQ(snapshot.axes.size(), 2u);
@@ -89,10 +89,11 @@ TEST_F(BusRunnerTest, RefusesCommandsAfterItsEnd) {
 TEST_F(BusRunnerTest, ShutsDownInItsDestructorAndAnswersWhatWaits) {
   runner->start();
   waitFor([&] { return ready(); });
-  std::vector<std::future<Answer>> answers;
-  answers.push_back(post(ProcedureKind::home));
+  std::future<Answer> homed = post(ProcedureKind::home);
+  std::vector<std::future<ObjectAnswer>> answers;
   for (int i = 0; i < 50; ++i) answers.push_back(post(ReadObjectCommand{"elbow", "6098:00"}));
   runner.reset();
+  EXPECT_FALSE(homed.get().message.empty());
   for (auto& answer : answers) EXPECT_FALSE(answer.get().message.empty());
   wire->shut_down.get_future().wait();
 }

@@ -103,13 +103,13 @@ struct BusRunnerTest : testing::Test {
     options.priority = 0;
     return options;
   }
-  std::future<Answer> post(decltype(Command::body) body) {
-    auto promise = std::make_shared<std::promise<Answer>>();
-    Command command;
-    command.body = std::move(body);
-    command.reply = [promise](const Answer& answer) { promise->set_value(answer); };
+  template <typename Request>
+  std::future<typename Request::Answer> post(Request request) {
+    using AnswerType = typename Request::Answer;
+    auto promise = std::make_shared<std::promise<AnswerType>>();
     auto future = promise->get_future();
-    posted = runner->post(std::move(command));
+    posted = runner->post(Command(
+        std::move(request), [promise](const AnswerType& answer) { promise->set_value(answer); }));
     return future;
   }
   std::future<Answer> post(drive::ProcedureKind kind) {
@@ -132,7 +132,7 @@ struct BusRunnerTest : testing::Test {
     return events.find(words) != std::string::npos;
   }
   bool ready() {
-    const RobotSnapshot snapshot = runner->snapshot();
+    const NetworkSnapshot snapshot = runner->snapshot();
     return std::all_of(snapshot.axes.begin(), snapshot.axes.end(), [](const AxisSnapshot& axis) {
       return axis.state.health == fieldbus::Health::ready && axis.state.feedback_valid;
     });

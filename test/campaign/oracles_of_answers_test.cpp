@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "cia402_driver/bus/jobs/procedure_command.h"
 #include "oracle_fixture.h"
 
 namespace cia402::campaign {
@@ -201,11 +202,9 @@ class SnapshotTest : public OracleTest {
     mark();
   }
   void enable() {
-    bus::Command command;
     drive::ProcedureRequest request;
     request.kind = drive::ProcedureKind::enable;
-    command.body = bus::ProcedureCommand{"a1", request};
-    stage_.host().post(std::move(command));
+    stage_.host().post(bus::Command(bus::ProcedureCommand{"a1", request}));
     lookFor(3s);
     ASSERT_TRUE(truths_[0].enabled());
     settle();

@@ -36,13 +36,23 @@ Scene sceneOf(const std::vector<std::string>& actions, const std::string& robot,
 class Tapped : public Player {
  public:
   using Player::Player;
-  std::function<void(bus::Command&)> tap;  ///< may change a command
-  bool loses = false;                      ///< the driver gets none
+  std::function<void()> tap;  ///< called with every command
+  bus::Reply<> reply;         ///< of the last command
+  bool loses = false;         ///< the driver gets none
+  bool doubles = false;       ///< every reply comes twice
 
  protected:
   void post(bus::Command command) override {
-    if (tap) tap(command);
+    if (tap) tap();
     if (!loses) Player::post(std::move(command));
+  }
+  bus::Reply<> replied(bus::Reply<> given) override {
+    reply = std::move(given);
+    if (!doubles) return reply;
+    return [once = reply](const bus::Answer& answer) {
+      once(answer);
+      once(answer);
+    };
   }
 };
 
@@ -120,14 +130,7 @@ TEST_F(PlayerTest, WaitsForNoAnswerOfAProcessThatWasKilled) {
 }
 
 TEST_F(PlayerTest, FindsACallThatIsAnsweredTwice) {
-  const auto twice = [](Tapped& player, Stage&) {
-    player.tap = [](bus::Command& command) {
-      command.reply = [reply = command.reply](const bus::Answer& answer) {
-        reply(answer);
-        reply(answer);
-      };
-    };
-  };
+  const auto twice = [](Tapped& player, Stage&) { player.doubles = true; };
   const std::string findings =
       play({"2 enable a1", "4 end"}, playedRobot("cyclic_position"), twice);
   EXPECT_EQ(findings.substr(0, findings.find(" at")), "answered_twice a1");
@@ -139,9 +142,9 @@ TEST_F(PlayerTest, FindsNothingInCallsThatAreAnsweredOnce) {
 
 TEST_F(PlayerTest, FindsAnAnswerThatIsNotTrueOfTheMotor) {
   const auto lies = [](Tapped& player, Stage&) {
-    player.tap = [&player](bus::Command& command) {
+    player.tap = [&player] {
       player.loses = true;
-      command.reply(bus::answerOf(true, "done"));
+      player.reply(bus::answerOf(true, "done"));
     };
   };
   EXPECT_EQ(play({"2 enable a1", "3 end"}, playedRobot("cyclic_position"), lies),
@@ -159,7 +162,7 @@ TEST_F(PlayerTest, ExcusesPowerThatIsLostInMotionForACause) {
 
 TEST_F(PlayerTest, FindsPowerThatIsLostInMotionWithoutACause) {
   const auto cuts = [](Tapped& player, Stage& stage) {
-    player.tap = [&stage](bus::Command&) {
+    player.tap = [&stage] {
       if (stage.now() >= Time(5s)) stage.world().drive(0).powerOff(stage.now());
     };
   };
@@ -288,9 +291,9 @@ TEST_F(PlayerTest, PermitsAsBeforeAfterTheModeThatItIsIn) {
 
 TEST_F(PlayerTest, PermitsTheTrajectoryThatWentOnAfterAFailure) {
   const auto fails = [](Tapped& player, Stage&) {
-    player.tap = [&player](bus::Command& command) {
+    player.tap = [&player] {
       player.loses = player.permits().until(0) > Time(5s);  // the halt, not the enable
-      if (player.loses) command.reply(bus::answerOf(false, "no"));
+      if (player.loses) player.reply(bus::answerOf(false, "no"));
     };
   };
   const std::string found = play({"2 enable a1", "4 goal g1 3.0 0.9", "5 halt a1", "8 end"},

@@ -22,7 +22,7 @@ using testing::IsEmpty;
 struct CallDeskTest : testing::Test {
   /// A service whose calls begin something that ends when its reply is given.
   ros::CallbackQueueInterface* service(const std::string& name) {
-    return desk.queueFor([this, name](bus::Reply reply) {
+    return desk.queueFor([this, name](bus::Reply<> reply) {
       begun.push_back(name);
       replies.push_back(std::move(reply));
     });
@@ -35,7 +35,7 @@ struct CallDeskTest : testing::Test {
   int wakes = 0;
   CallDesk desk{[this] { ++wakes; }};
   std::vector<std::string> begun, answers;
-  std::vector<bus::Reply> replies;
+  std::vector<bus::Reply<>> replies;
 };
 
 TEST_F(CallDeskTest, BeginsEveryCallWhenItArrivesWhoeverWaits) {
@@ -48,7 +48,7 @@ TEST_F(CallDeskTest, BeginsEveryCallWhenItArrivesWhoeverWaits) {
   desk.answer();
   EXPECT_THAT(answers, IsEmpty());
   EXPECT_EQ(wakes, 0);
-  for (const bus::Reply& reply : replies) reply(bus::answerOf(true, "ended"));
+  for (const bus::Reply<>& reply : replies) reply(bus::answerOf(true, "ended"));
   desk.answer();
   EXPECT_EQ(answers.size(), 5U);
 }
@@ -72,7 +72,7 @@ TEST_F(CallDeskTest, AnswersInTheOrderOfTheReplies) {
 }
 
 TEST_F(CallDeskTest, AnswersACallThatIsRefusedAtOnce) {
-  call(desk.queueFor([](const bus::Reply& reply) { bus::refuse(reply, "refused"); }));
+  call(desk.queueFor([](const bus::Reply<>& reply) { bus::refuse(reply, "refused"); }));
   EXPECT_EQ(wakes, 1);
   desk.answer();
   EXPECT_THAT(answers, ElementsAre("refused"));
@@ -80,10 +80,10 @@ TEST_F(CallDeskTest, AnswersACallThatIsRefusedAtOnce) {
 
 TEST_F(CallDeskTest, ForgetsCallsThatWereAnsweredTooLate) {
   const auto watch = std::make_shared<int>(0);
-  std::vector<bus::Reply> late;
+  std::vector<bus::Reply<>> late;
   {
     CallDesk closing([] {});
-    closing.queueFor([&](bus::Reply reply) { late.push_back(std::move(reply)); })
+    closing.queueFor([&](bus::Reply<> reply) { late.push_back(std::move(reply)); })
         ->addCallback(boost::make_shared<Callback>([watch] {}), 1);
     late[0](bus::answerOf(true, "too late"));
   }
@@ -96,7 +96,7 @@ TEST(CallDesk, TakesRepliesFromOtherThreads) {
   std::atomic<int> wakes{0};
   CallDesk desk([&] { ++wakes; });
   ros::CallbackQueueInterface* const queue =
-      desk.queueFor([](const bus::Reply& reply) { bus::refuse(reply, "done"); });
+      desk.queueFor([](const bus::Reply<>& reply) { bus::refuse(reply, "done"); });
   std::atomic<int> ended{0};
   int answers = 0;
   std::vector<std::thread> threads;

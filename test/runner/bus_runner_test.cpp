@@ -57,20 +57,19 @@ class SimulatedRunner : public testing::Test {
   }
   template <typename Condition>
   bool all(Condition&& condition) {
-    const bus::RobotSnapshot snapshot = runner->snapshot();
+    const bus::NetworkSnapshot snapshot = runner->snapshot();
     return std::all_of(snapshot.axes.begin(), snapshot.axes.end(), condition);
   }
   std::uint64_t cycles() { return runner->snapshot().statistics.cycles(); }
   void waitCycles(std::uint64_t count) {
     for (const std::uint64_t end = cycles() + count; cycles() < end;) std::this_thread::yield();
   }
-  bus::Answer call(decltype(bus::Command::body) body) {
+  template <typename Request>
+  bus::Answer call(Request request) {
     auto promise = std::make_shared<std::promise<bus::Answer>>();
-    bus::Command command;
-    command.body = std::move(body);
-    command.reply = [promise](const bus::Answer& answer) { promise->set_value(answer); };
     auto answer = promise->get_future();
-    runner->post(std::move(command));
+    runner->post(bus::Command(std::move(request),
+                              [promise](const bus::Answer& given) { promise->set_value(given); }));
     return answer.get();
   }
   bus::Answer procedure(ProcedureKind kind, const std::string& axis = {}) {
@@ -188,10 +187,8 @@ TEST_F(SimulatedRunner, AnswersEveryCallOfManyThreadsAtOnce) {
   });
   often([&](int i) {
     constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
-    bus::Command command;
-    command.body = bus::SetpointCommand{static_cast<std::size_t>(i % 2),
-                                        i % 5 == 0 ? kNoNumber : 0.001 * (i % 100)};
-    runner->post(std::move(command));
+    runner->post(bus::Command(bus::SetpointCommand{static_cast<std::size_t>(i % 2),
+                                                   i % 5 == 0 ? kNoNumber : 0.001 * (i % 100)}));
     bus::TrajectoryCommand trajectory;
     trajectory.group = "pair";
     trajectory.joints = {"left", i % 3 == 0 ? "neck" : "right"};
@@ -208,7 +205,7 @@ TEST_F(SimulatedRunner, AnswersEveryCallOfManyThreadsAtOnce) {
     waitCycles(20);
   });
   often([&](int) {
-    const bus::RobotSnapshot snapshot = runner->snapshot();
+    const bus::NetworkSnapshot snapshot = runner->snapshot();
     EXPECT_GE(runner->time().now(), snapshot.now);
     EXPECT_GE(runner->time().toClock(snapshot.now), snapshot.now);
     for (bus::Event event; runner->nextEvent(event);) EXPECT_FALSE(event.text.empty());

@@ -87,8 +87,7 @@ class Play {
     return false;
   }
   bool booted() {
-    return host_.running() &&
-           host_.robot().axes().front().state().health == fieldbus::Health::ready;
+    return host_.running() && host_.network().axis(0).state().health == fieldbus::Health::ready;
   }
 
   /// Brings the axis to its speed, and to one moment of the cycle.
@@ -128,10 +127,8 @@ class Play {
   }
   template <class OnRefusal>
   void setPoint(double value, OnRefusal refused) {
-    bus::Command command;
-    command.body = bus::SetpointCommand{0, value};
-    command.reply = [refused](const bus::Answer& answer) { refused(answer.message); };
-    host_.post(std::move(command));
+    const auto reply = [refused](const bus::Answer& answer) { refused(answer.message); };
+    host_.post(bus::Command(bus::SetpointCommand{0, value}, reply));
   }
 
   void stop() {
@@ -227,21 +224,19 @@ class Play {
   std::shared_ptr<std::optional<bus::Answer>> call(drive::ProcedureKind kind,
                                                    const std::string& mode) {
     auto answer = std::make_shared<std::optional<bus::Answer>>();
-    bus::Command command;
     drive::ProcedureRequest request;
     request.kind = kind;
     request.mode = mode;
     request.position = 0.4;
-    command.body = bus::ProcedureCommand{"joint", request};
     ++asked_;
-    command.reply = [this, answer, kind](const bus::Answer& given) {
+    const auto reply = [this, answer, kind](const bus::Answer& given) {
       *answer = given;
       const std::size_t at = trace_.samples.empty() ? 0 : trace_.samples.size() - 1;
       const bool power = world_.drive(0).truth(host_.now()).power_stage_on;
       trace_.answers.push_back({drive::toString(kind), at, given.success, power, given.message});
       --asked_;
     };
-    host_.post(std::move(command));
+    host_.post(bus::Command(bus::ProcedureCommand{"joint", request}, reply));
     return answer;
   }
   void inject(const char* fault) {

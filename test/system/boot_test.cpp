@@ -15,8 +15,8 @@ using testing::Not;
 
 /// What diagnostics say of the last boot of the first axis.
 std::string bootWords(Scene& scene) {
-  bus::RobotSnapshot snapshot;
-  scene.robot().robot().fill(snapshot);
+  bus::NetworkSnapshot snapshot;
+  scene.robot().network().fill(snapshot);
   return snapshot.axes[0].words.boot.str();
 }
 
@@ -96,7 +96,7 @@ TEST_F(LeftTurning, IsStoppedBeforeAnythingElseIsWrittenAndBooted) {
     if (frame.id == 0x601 && frame.data[0] == 0x40 && writes.empty()) ++reads;
     if (frame.id == 0x601 && frame.data[0] >> 5U == 1) writes.push_back(frame);
   });
-  scene.robot().robot().start(scene.now());
+  scene.robot().network().start(scene.now());
   ASSERT_TRUE(scene.runUntil([&] { return !writes.empty(); }, 2s));
   EXPECT_EQ(writes[0], can::Frame(0x601, {0x2B, 0x40, 0x60, 0x00, 0x02, 0x00, 0, 0}));
   EXPECT_LE(reads, 5u) << "who it is, and nothing else";
@@ -298,12 +298,12 @@ TEST(Reboot, TheOthersMissNoCycleWhileOneIsSwitchedOffAndOn) {
   ASSERT_TRUE(scene.procedure(ProcedureKind::home).success);
   ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
   ASSERT_TRUE(scene.move({2.0}, 6s, 1).success);
-  bus::RobotSnapshot before, after;
+  bus::NetworkSnapshot before, after;
   scene.run(500ms);
-  scene.robot().robot().fill(before);
+  scene.robot().network().fill(before);
   scene.inject("left", "power_cycle");
   scene.run(5s);
-  scene.robot().robot().fill(after);
+  scene.robot().network().fill(after);
   EXPECT_EQ(scene.state("left").health, Health::ready) << scene.told();
   EXPECT_EQ(after.axes[1].missed_feedback, before.axes[1].missed_feedback);
   EXPECT_EQ(after.axes[1].node.boot_ups, before.axes[1].node.boot_ups);
@@ -322,7 +322,7 @@ TEST(Unsupervised, ALostStartIsNoticedByTheMissingTpdos) {
   scene.world().powerOn();
   scene.run(1s);
   scene.world().bus().faults().add(rule);
-  scene.robot().robot().start(scene.now());
+  scene.robot().network().start(scene.now());
   ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 8s)) << scene.told();
   EXPECT_EQ(scene.truth("left").nmt, canopen::NmtState::operational);
 }

@@ -179,7 +179,7 @@ TEST_F(BusOffOfTheDriver, ThatIsThereFromTheStartIsWaitedFor) {
   scene.emplace(loadText(genericPair()), sim::BusInterface::Options());
   scene->port().forceBusOff();
   scene->run(50ms);
-  EXPECT_FALSE(scene->robot().started());
+  EXPECT_FALSE(scene->network().started());
   ASSERT_TRUE(scene->runUntil([&] { return scene->allReady(); }, 8s)) << scene->told();
   expectUsableAgain();
 }

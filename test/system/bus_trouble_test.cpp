@@ -32,7 +32,8 @@ TEST_P(DisturbedBus, BootsOrSaysWhyNotAndMovesWithinTheLimits) {
   scene.world().bus().faults().setRates(GetParam().rates);
   scene.robot().start();
   scene.runUntil([&] { return allReady(scene.robot()); }, 20s);
-  for (drive::Axis& axis : scene.robot().robot().axes()) {
+  for (bus::AxisUnit& unit : scene.robot().network().cycle().units()) {
+    drive::Axis& axis = unit.axis;
     if (axis.state().health == Health::ready) continue;
     if (axis.state().health == Health::booting) continue;
     EXPECT_NE(axis.device().problem(), "") << axis.config().name;

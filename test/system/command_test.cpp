@@ -220,8 +220,8 @@ TEST(Shutdown, InMotionStopsDisablesAndLeavesTheDrivesPreOperational) {
   ASSERT_GT(std::abs(scene.velocity("wrist")), 0.1);
   scene.forget();
   const Time began = scene.now();
-  scene.robot().robot().beginShutdown(began);
-  ASSERT_TRUE(scene.runUntil([&] { return scene.robot().robot().shutDown(); }, 2s));
+  scene.robot().network().beginShutdown(began);
+  ASSERT_TRUE(scene.runUntil([&] { return scene.robot().network().shutDown(); }, 2s));
   EXPECT_LT(scene.now() - began, 2s);
   scene.run(20ms);
   for (const char* axis : {"shoulder", "elbow", "wrist", "gripper"}) {

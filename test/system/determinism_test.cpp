@@ -25,7 +25,7 @@ struct Recording {
 };
 
 /// Joints from -0.4 to 0.4 rad and back every four seconds, for a minute.
-bus::Command swing(const config::RobotConfig& robot) {
+bus::TrajectoryCommand swing(const config::RobotConfig& robot) {
   bus::TrajectoryCommand trajectory;
   trajectory.group = robot.groups.front().name;
   trajectory.joints = robot.groups.front().joints;
@@ -34,9 +34,7 @@ bus::Command swing(const config::RobotConfig& robot) {
     const std::vector<double> goal(joints, i % 2 == 0 ? 0.4 : -0.4), rest(joints, 0.0);
     trajectory.points.push_back({goal, rest, {}, i * 2s});
   }
-  bus::Command command;
-  command.body = std::move(trajectory);
-  return command;
+  return trajectory;
 }
 
 /// A minute of three moving axes on a bus that loses and destroys frames.
@@ -64,7 +62,8 @@ groups: {arm: {joints: [shoulder, elbow, wrist]}}
   const auto accepted = robot.call(swing(loaded.robot));
   EXPECT_TRUE(accepted && accepted->success) << told(robot);
   robot.run(59s);
-  for (const drive::Axis& axis : robot.robot().axes()) {
+  for (const bus::AxisUnit& unit : robot.network().cycle().units()) {
+    const drive::Axis& axis = unit.axis;
     EXPECT_TRUE(axis.state().ready_for_motion) << told(robot);
     run.positions.push_back(axis.state().position);
   }

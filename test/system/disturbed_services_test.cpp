@@ -30,8 +30,8 @@ class DisturbedServices : public testing::TestWithParam<Disturbance> {
   void disturb() { scene->world().bus().faults().setRates(GetParam().rates()); }
   void calm() { scene->world().bus().faults().setRates({}); }
   template <class Body>
-  bus::Answer ask(Body body) {
-    const bus::Answer answer = call(*scene, std::move(body));
+  typename Body::Answer ask(Body body) {
+    const auto answer = call(*scene, std::move(body));
     (answer.success ? done : failed) += 1;
     if (!answer.success) {
       EXPECT_THAT(answer.message, HasSubstr("left (node 1)"));

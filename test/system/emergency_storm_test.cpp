@@ -39,8 +39,8 @@ TEST(EmergencyStorm, OfAThousandASecondCostsALineEveryFiveSeconds) {
   EXPECT_LE(scene.robot().events().size() - told_before, 10u) << scene.told();
   EXPECT_THAT(scene.told(), HasSubstr("left (node 1): emergency 0x8250 "));
   EXPECT_THAT(scene.told(), HasSubstr("20,000 times since start"));
-  bus::RobotSnapshot snapshot;
-  scene.robot().robot().fill(snapshot);
+  bus::NetworkSnapshot snapshot;
+  scene.robot().network().fill(snapshot);
   EXPECT_EQ(snapshot.axes[scene.index("left")].emergencies.total, 20'000u);
   EXPECT_EQ(snapshot.axes[scene.index("right")].emergencies.total, 0u);
 }
@@ -69,14 +69,14 @@ TEST(EmergencyStorm, OfAllNodesAtOnceLeavesOtherNewsAndMotionAlone) {
   EXPECT_NEAR(scene.position("axis1"), 1.0, 1e-3);
   EXPECT_NEAR(scene.position("axis2"), -1.0, 1e-3);
   EXPECT_EQ(lines(scene, "pair: "), 1u) << "the end of the trajectory is told";
-  scene.robot().robot().beginShutdown(scene.now());
-  ASSERT_TRUE(scene.runUntil([&] { return scene.robot().robot().shutDown(); }, 3s));
+  scene.robot().network().beginShutdown(scene.now());
+  ASSERT_TRUE(scene.runUntil([&] { return scene.robot().network().shutDown(); }, 3s));
   EXPECT_EQ(scene.robot().emergencies().size(), 8u * 3000u);
   EXPECT_EQ(lines(scene, "emergency 0x8110 CAN overrun (objects lost): came"), 8u * 2u);
   EXPECT_EQ(lines(scene, "1,500 times since start"), 8u * 2u) << "of both codes of each axis";
   EXPECT_LT(scene.robot().events().size(), 8u * 25u);
-  bus::RobotSnapshot snapshot;
-  scene.robot().robot().fill(snapshot);
+  bus::NetworkSnapshot snapshot;
+  scene.robot().network().fill(snapshot);
   for (const bus::AxisSnapshot& axis : snapshot.axes) {
     EXPECT_EQ(axis.emergencies.total, 3000u);
     ASSERT_EQ(axis.emergencies.codes, 2u);

@@ -83,13 +83,13 @@ TEST(Homing, EndsAtOnceAtAShutdownThatRampsAnotherAxisDown) {
   ASSERT_FALSE(homed->has_value());
   ASSERT_LT(scene.velocity("left"), -0.7);
   ASSERT_GT(scene.velocity("right"), 1.3);
-  scene.robot().robot().beginShutdown(scene.now());
+  scene.robot().network().beginShutdown(scene.now());
   scene.run(300ms);  // 0.8 rad/s at 4 rad/s² take 200 ms
   EXPECT_GT(scene.velocity("right"), 0.9) << "its ramp takes 1.5 s";
   EXPECT_NEAR(scene.velocity("left"), 0.0, 0.01);
   ASSERT_TRUE(homed->has_value());
   EXPECT_FALSE((*homed)->success);
-  ASSERT_TRUE(scene.runUntil([&] { return scene.robot().robot().shutDown(); }, 2s));
+  ASSERT_TRUE(scene.runUntil([&] { return scene.robot().network().shutDown(); }, 2s));
   EXPECT_FALSE(scene.truth("left").power_stage_on);
 }
 

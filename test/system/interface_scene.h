@@ -27,7 +27,7 @@ class InterfaceScene : private bus::EventSink {
     world_.powerOn();
   }
 
-  bus::Robot& robot() { return loop_.robot(); }
+  bus::Network& network() { return loop_.network(); }
   sim::World& world() { return world_; }
   sim::BusInterface& interface() { return interface_; }
   sim::Port& port() { return interface_.port(); }
@@ -39,13 +39,12 @@ class InterfaceScene : private bus::EventSink {
     return text;
   }
   void forgetTold() { events_.clear(); }
-  const drive::AxisState& state(std::size_t i) { return robot().axes()[i].state(); }
+  const drive::AxisState& state(std::size_t i) { return network().axis(i).state(); }
   sim::DriveTruth truth(std::size_t i) { return world_.drive(i).truth(now_); }
   bool allReady() {
-    for (const drive::Axis& axis : robot().axes()) {
-      if (axis.state().health != fieldbus::Health::ready || !axis.state().feedback_valid) {
-        return false;
-      }
+    for (const bus::AxisUnit& unit : network().cycle().units()) {
+      const drive::AxisState& state = unit.axis.state();
+      if (state.health != fieldbus::Health::ready || !state.feedback_valid) return false;
     }
     return true;
   }
@@ -66,12 +65,11 @@ class InterfaceScene : private bus::EventSink {
     now_ += duration;
     world_.advance(now_);
   }
-  bus::Answer call(decltype(bus::Command::body) body) {
+  template <typename Request>
+  bus::Answer call(Request request) {
     std::optional<bus::Answer> answer;
-    bus::Command command;
-    command.body = std::move(body);
-    command.reply = [&answer](const bus::Answer& given) { answer = given; };
-    robot().execute(std::move(command), now_);
+    const auto take = [&answer](const bus::Answer& given) { answer = given; };
+    network().execute(bus::Command(std::move(request), take), now_);
     runUntil([&answer] { return answer.has_value(); }, std::chrono::seconds(60));
     return answer.value_or(bus::Answer());
   }

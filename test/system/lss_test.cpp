@@ -51,14 +51,14 @@ TEST(Lss, StepsAndProblemsAreShown) {
       loadText(genericPair(lssOf(111) + unconfigured(999), lssOf(222) + unconfigured(222))));
   scene.robot().start();
   scene.run(180ms);
-  bus::RobotSnapshot snapshot;
-  scene.robot().robot().fill(snapshot);
+  bus::NetworkSnapshot snapshot;
+  scene.robot().network().fill(snapshot);
   EXPECT_THAT(snapshot.axes[0].words.step.str(),
               HasSubstr("LSS: selecting the device with vendor"));
   EXPECT_EQ(snapshot.axes[1].words.step.str(), "LSS: waiting for its turn");
   EXPECT_THAT(scene.procedure(ProcedureKind::enable).message, HasSubstr("given their node-IDs"));
   scene.run(8s);
-  scene.robot().robot().fill(snapshot);
+  scene.robot().network().fill(snapshot);
   EXPECT_THAT(snapshot.axes[0].words.problem.str(), HasSubstr("left (node 1): LSS: "));
   EXPECT_TRUE(snapshot.axes[1].words.problem.empty());
 }
@@ -286,7 +286,7 @@ class BehindAScan : public testing::Test {
     return ask(scene, command);
   }
   Scene scene;
-  std::shared_ptr<std::optional<bus::Answer>> scan;
+  std::shared_ptr<std::optional<bus::LssScanAnswer>> scan;
 };
 
 TEST_F(BehindAScan, ADriveThatWasEnabledMeanwhileKeepsItsNodeIdAndIsNotReset) {
@@ -332,8 +332,8 @@ TEST(Lss, AShutdownAtTheStartIsOrderly) {
   Scene scene(loadText(genericPair(lssOf(111) + unconfigured(111))));
   scene.robot().start();
   scene.run(60ms);
-  scene.robot().robot().beginShutdown(scene.now());
-  EXPECT_TRUE(scene.robot().robot().shutDown());
+  scene.robot().network().beginShutdown(scene.now());
+  EXPECT_TRUE(scene.robot().network().shutDown());
 }
 
 TEST(Lss, WhoWaitsForLssAtAShutdownIsAnswered) {
@@ -341,14 +341,12 @@ TEST(Lss, WhoWaitsForLssAtAShutdownIsAnswered) {
   scene.robot().start();
   ASSERT_TRUE(scene.runUntil([&] { return scene.state("right").health == Health::ready; }, 10s));
   std::vector<std::string> answers;
-  const auto ask = [&](decltype(bus::Command::body) body) {
-    bus::Command command;
-    command.body = std::move(body);
-    command.reply = [&](const bus::Answer& answer) {
+  const auto ask = [&](auto request) {
+    const auto take = [&](const bus::Answer& answer) {
       EXPECT_FALSE(answer.success);
       answers.push_back(answer.message);
     };
-    scene.robot().robot().execute(std::move(command), scene.now());
+    scene.robot().network().execute(bus::Command(std::move(request), take), scene.now());
   };
   bus::LssAssignCommand assign;
   assign.identity = device(111);
@@ -361,7 +359,7 @@ TEST(Lss, WhoWaitsForLssAtAShutdownIsAnswered) {
   ask(timing);
   scene.run(100ms);
   EXPECT_TRUE(answers.empty());
-  scene.robot().robot().beginShutdown(scene.now());
+  scene.robot().network().beginShutdown(scene.now());
   ASSERT_EQ(answers.size(), 3u);
   for (const std::string& answer : answers) {
     EXPECT_THAT(answer, HasSubstr("ended by the shutdown of the driver"));

@@ -57,11 +57,10 @@ TEST_F(Names, JointAndAxisStandInWhatIsSaidOfOneAmongAll) {
 
 TEST_F(Names, JointAndAxisStandInWhatIsReadAndWritten) {
   ASSERT_TRUE(scene.boot());
-  bus::Command read, write;
-  read.body = bus::ReadObjectCommand{"left", "statusword"};
-  write.body = bus::WriteObjectCommand{"left", "nonsense", "1"};
-  EXPECT_THAT(scene.call(std::move(read)).message, StartsWith(kWho));
-  EXPECT_THAT(scene.call(std::move(write)).message, StartsWith(kWho));
+  const bus::ReadObjectCommand read{"left", "statusword"};
+  const bus::WriteObjectCommand write{"left", "nonsense", "1"};
+  EXPECT_THAT(scene.call(read).message, StartsWith(kWho));
+  EXPECT_THAT(scene.call(write).message, StartsWith(kWho));
 }
 
 /// A group that ends otherwise than at its goal, as its rotor is blocked.

@@ -23,8 +23,8 @@ void lose(Scene& scene, std::uint32_t id, std::string_view receiver = "master") 
 }
 
 bus::AxisSnapshot snapshot(Scene& scene, const std::string& name) {
-  bus::RobotSnapshot shot;
-  scene.robot().robot().fill(shot);
+  bus::NetworkSnapshot shot;
+  scene.robot().network().fill(shot);
   return shot.axes[scene.index(name)];
 }
 

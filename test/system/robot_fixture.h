@@ -47,8 +47,8 @@ inline std::string told(const tools::VirtualRobot& robot) {
 }
 
 inline bool allReady(tools::VirtualRobot& robot) {
-  for (const drive::Axis& axis : robot.robot().axes()) {
-    if (axis.state().health != fieldbus::Health::ready) return false;
+  for (const bus::AxisUnit& unit : robot.network().cycle().units()) {
+    if (unit.axis.state().health != fieldbus::Health::ready) return false;
   }
   return true;
 }

@@ -83,38 +83,32 @@ class Safety : public testing::Test {
     drive::ProcedureRequest request;
     request.kind = ProcedureKind::set_mode;
     request.mode = mode;
-    const auto answer = robot->call(command(bus::ProcedureCommand{{}, request}));
+    const auto answer = robot->call(bus::ProcedureCommand{{}, request});
     ASSERT_TRUE(answer.has_value());
     ASSERT_TRUE(answer->success) << answer->message;
-  }
-  template <typename Body>
-  static bus::Command command(Body body) {
-    bus::Command command;
-    command.body = std::move(body);
-    return command;
   }
   /// Gives a command without waiting for its answer.
   void post(ProcedureKind kind, const std::string& name = {}) {
     drive::ProcedureRequest request;
     request.kind = kind;
-    robot->robot().execute(command(bus::ProcedureCommand{name, request}), robot->now());
+    robot->network().execute(bus::Command(bus::ProcedureCommand{name, request}), robot->now());
   }
   void stream(double value, Duration time) {
     const Time end = robot->now() + time;
     while (robot->now() < end) {
-      robot->robot().execute(command(bus::SetpointCommand{0, value}), robot->now());
+      robot->network().execute(bus::Command(bus::SetpointCommand{0, value}), robot->now());
       robot->run(10ms);
     }
   }
   bus::Answer trajectory(std::vector<double> goal, Duration time, std::optional<Time> start = {}) {
     bus::TrajectoryCommand trajectory;
-    trajectory.group = robot->robot().groups().front().config().name;
-    trajectory.joints = robot->robot().groups().front().config().joints;
+    trajectory.group = robot->network().cycle().groups().front().config().name;
+    trajectory.joints = robot->network().cycle().groups().front().config().joints;
     trajectory.points = {{goal, std::vector<double>(goal.size(), 0.0), {}, time}};
     trajectory.start_time = start;
-    return *robot->call(command(trajectory));
+    return *robot->call(trajectory);
   }
-  drive::Axis& axis(std::size_t index = 0) { return robot->robot().axes()[index]; }
+  drive::Axis& axis(std::size_t index = 0) { return robot->network().axis(index); }
   sim::Drive& drive(std::size_t index = 0) { return robot->world().drive(index); }
   sim::DriveTruth truth(std::size_t index = 0) { return drive(index).truth(robot->now()); }
   void inject(const char* fault) {
@@ -152,7 +146,7 @@ TEST_F(Safety, DeclaringThePositionOfAnAxisUnderAStreamMovesNothing) {
   drive::ProcedureRequest request;
   request.kind = ProcedureKind::set_position;
   request.position = 0.0;
-  const auto answer = robot->call(command(bus::ProcedureCommand{"arm", request}));
+  const auto answer = robot->call(bus::ProcedureCommand{"arm", request});
   ASSERT_TRUE(answer && answer->success) << answer->message;
   EXPECT_LT(fastest(1s), 1e-3);
   EXPECT_NEAR(axis().state().position, 0.0, 1e-3);
@@ -169,7 +163,7 @@ TEST_F(Safety, DeclaringThePositionUnderATrajectoryMovesNothing) {
   drive::ProcedureRequest request;
   request.kind = ProcedureKind::set_position;
   request.position = 0.0;
-  const auto answer = robot->call(command(bus::ProcedureCommand{"left", request}));
+  const auto answer = robot->call(bus::ProcedureCommand{"left", request});
   ASSERT_TRUE(answer && answer->success) << answer->message;
   EXPECT_LT(fastest(3s), 1e-3);
 }
@@ -299,9 +293,8 @@ TEST_F(Safety, ADisabledAxisIsNotHomedByAJobThatWaitsForOthers) {
   std::optional<bus::Answer> homed;
   drive::ProcedureRequest request;
   request.kind = ProcedureKind::home;
-  bus::Command home = command(bus::ProcedureCommand{{}, request});
-  home.reply = [&](const bus::Answer& answer) { homed = answer; };
-  robot->robot().execute(std::move(home), robot->now());
+  const auto take = [&](const bus::Answer& answer) { homed = answer; };
+  robot->network().execute(bus::Command(bus::ProcedureCommand{{}, request}, take), robot->now());
   robot->run(500ms);
   ASSERT_TRUE(robot->procedure(ProcedureKind::disable, "second")->success);
   EXPECT_LT(fastest(10s, 2), 1e-6);
@@ -317,15 +310,14 @@ TEST_F(Safety, NoHomingBeginsDuringTheShutdown) {
   drive::ProcedureRequest request;
   request.kind = ProcedureKind::home;
   std::optional<bus::Answer> homed;
-  bus::Command home = command(bus::ProcedureCommand{{}, request});
-  home.reply = [&](const bus::Answer& answer) { homed = answer; };
-  robot->robot().execute(std::move(home), robot->now());
+  const auto take = [&](const bus::Answer& answer) { homed = answer; };
+  robot->network().execute(bus::Command(bus::ProcedureCommand{{}, request}, take), robot->now());
   // The first axis is homed while the stream of another one still ramps down.
   ASSERT_TRUE(robot->runUntil([&] { return axis(1).state().homed; }, 10s));
   stream(1.9, 20ms);
-  robot->robot().beginShutdown(robot->now());
+  robot->network().beginShutdown(robot->now());
   EXPECT_LT(fastest(3s, 2), 1e-6);
-  EXPECT_TRUE(robot->robot().shutDown());
+  EXPECT_TRUE(robot->network().shutDown());
   EXPECT_FALSE(truth(2).power_stage_on);
   ASSERT_TRUE(homed.has_value());
   EXPECT_FALSE(homed->success);

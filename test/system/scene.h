@@ -12,6 +12,10 @@
 #include <utility>
 #include <vector>
 
+#include "cia402_driver/bus/canopen/history_command.h"
+#include "cia402_driver/bus/canopen/lss_commands.h"
+#include "cia402_driver/bus/canopen/nmt_command.h"
+#include "cia402_driver/bus/jobs/object_commands.h"
 #include "system/robot_fixture.h"
 
 namespace cia402 {
@@ -94,8 +98,8 @@ class Scene {
     EXPECT_TRUE(axis != axes.end()) << name;
     return static_cast<std::size_t>(axis - axes.begin());
   }
-  drive::Axis& axis(const std::string& name) { return robot_.robot().axes()[index(name)]; }
-  canopen::Node& node(const std::string& name) { return robot_.robot().node(index(name)); }
+  drive::Axis& axis(const std::string& name) { return robot_.network().axis(index(name)); }
+  canopen::Node& node(const std::string& name) { return robot_.network().node(index(name)); }
   const drive::AxisState& state(const std::string& name) { return axis(name).state(); }
   sim::Port& port(const std::string& name) { return world().port(index(name)); }
   sim::Drive& drive(const std::string& name) { return world().drive(index(name)); }
@@ -138,43 +142,43 @@ class Scene {
     return runUntil([this] { return allReady(robot_); }, limit);
   }
 
-  bus::Answer call(bus::Command command, Duration limit = std::chrono::seconds(120)) {
-    std::optional<bus::Answer> answer;
-    command.reply = [&answer](const bus::Answer& given) { answer = given; };
-    robot_.robot().execute(std::move(command), now());
-    runUntil([&answer] { return answer.has_value(); }, limit);
-    if (answer) return *answer;
-    bus::Answer none;
+  template <typename Request>
+  typename Request::Answer call(Request request, Duration limit = std::chrono::seconds(120)) {
+    const auto answer = ask(std::move(request));
+    runUntil([&answer] { return answer->has_value(); }, limit);
+    if (*answer) return **answer;
+    typename Request::Answer none;
     none.message = "no answer";
     return none;
+  }
+  /// Asks and does not wait; the answer goes to the returned place.
+  template <typename Request>
+  std::shared_ptr<std::optional<typename Request::Answer>> ask(Request request) {
+    const auto answer = std::make_shared<std::optional<typename Request::Answer>>();
+    const auto take = [answer](const typename Request::Answer& given) { *answer = given; };
+    robot_.network().execute(bus::Command(std::move(request), take), now());
+    return answer;
   }
   bus::Answer procedure(drive::ProcedureKind kind, const std::string& name = {},
                         const std::string& mode = {}) {
     drive::ProcedureRequest request;
     request.kind = kind;
     request.mode = mode;
-    return call(command(bus::ProcedureCommand{name, request}));
+    return call(bus::ProcedureCommand{name, request});
   }
   /// Starts a procedure and does not wait; its answer goes to the returned place.
   std::shared_ptr<std::optional<bus::Answer>> begin(drive::ProcedureKind kind,
                                                     const std::string& name,
                                                     const std::string& mode = {}) {
-    auto answer = std::make_shared<std::optional<bus::Answer>>();
     drive::ProcedureRequest request;
     request.kind = kind;
     request.mode = mode;
-    bus::Command given = command(bus::ProcedureCommand{name, request});
-    given.reply = [answer](const bus::Answer& a) { *answer = a; };
-    robot_.robot().execute(std::move(given), now());
-    return answer;
+    return ask(bus::ProcedureCommand{name, request});
   }
   /// Gives one set-point. @return why it was refused; empty if not.
   std::string setpoint(const std::string& name, double value) {
-    std::string refusal;
-    bus::Command given = command(bus::SetpointCommand{index(name), value});
-    given.reply = [&refusal](const bus::Answer& answer) { refusal = answer.message; };
-    robot_.robot().execute(std::move(given), now());
-    return refusal;
+    const auto answer = ask(bus::SetpointCommand{index(name), value});
+    return *answer ? (*answer)->message : std::string();
   }
   /// Streams a set-point every 20 ms.
   void stream(const std::string& name, double value, Duration duration) {
@@ -193,12 +197,12 @@ class Scene {
     trajectory.joints = config.joints;
     std::vector<double> rest(goal.size(), 0.0);
     trajectory.points = {{std::move(goal), std::move(rest), {}, duration}};
-    return call(command(trajectory));
+    return call(trajectory);
   }
   bus::Answer stopGroup(std::size_t group = 0) {
     bus::TrajectoryCommand trajectory;
     trajectory.group = loaded_.robot.groups[group].name;
-    return call(command(trajectory));
+    return call(trajectory);
   }
   unsigned badFloats() {
     unsigned sum = 0;
@@ -209,12 +213,6 @@ class Scene {
   }
 
  private:
-  template <class Body>
-  static bus::Command command(Body body) {
-    bus::Command given;
-    given.body = std::move(body);
-    return given;
-  }
   double unitsPerTurn(std::size_t i) const {
     constexpr double kTwoPi = 6.283185307179586;
     const drive::AxisConfig& axis = loaded_.robot.axes[i];
@@ -239,22 +237,15 @@ class Scene {
   std::function<void()> look_;
 };
 
-template <class Body>
-bus::Answer call(Scene& scene, Body body) {
-  bus::Command command;
-  command.body = std::move(body);
-  return scene.call(std::move(command));
+template <typename Request>
+typename Request::Answer call(Scene& scene, Request request) {
+  return scene.call(std::move(request));
 }
 
 /// Asks and does not wait; the answer goes to the returned place.
-template <class Body>
-std::shared_ptr<std::optional<bus::Answer>> ask(Scene& scene, Body body) {
-  auto answer = std::make_shared<std::optional<bus::Answer>>();
-  bus::Command command;
-  command.body = std::move(body);
-  command.reply = [answer](const bus::Answer& given) { *answer = given; };
-  scene.robot().robot().execute(std::move(command), scene.now());
-  return answer;
+template <typename Request>
+std::shared_ptr<std::optional<typename Request::Answer>> ask(Scene& scene, Request request) {
+  return scene.ask(std::move(request));
 }
 
 /// A robot that is enabled, in the mode that its YAML says or in another one.

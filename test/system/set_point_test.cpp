@@ -85,7 +85,7 @@ TEST(SetPoints, ALateCycleDuringAHaltMovesNothingAtOnce) {
 TEST(SetPoints, ALateCycleDuringTheShutdownStartsNoVelocityAnew) {
   ReadyScene scene(genericPair(), "cyclic_velocity");
   scene.stream("left", 1.0, 700ms);
-  scene.robot().robot().beginShutdown(scene.now());
+  scene.robot().network().beginShutdown(scene.now());
   scene.run(120ms);  // of 250 ms
   const double speed = std::abs(scene.velocity("left"));
   ASSERT_LT(speed, 0.8);

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // The driver's thread is held up, as on a machine that sleeps or is overloaded, while the bus and
 // the kernel's queue go on: what came in time counts, though it is read late.
+#include "cia402_driver/bus/jobs/object_commands.h"
 #include "sim/drive_definition.h"
 #include "system/interface_scene.h"
 #include "system/synced_scene.h"
@@ -79,16 +80,15 @@ TEST_F(StalledDriver, TakesAnAnswerThatCameInTime) {
   begin(genericPair(kPatientDrive, kPatientDrive));
   for (int i = 0; i < 20; ++i) {
     std::optional<bus::Answer> answer;
-    bus::Command command;
-    command.body = bus::ReadObjectCommand{"left", "1008:00"};
-    command.reply = [&answer](const bus::Answer& given) { answer = given; };
-    scene->robot().execute(std::move(command), scene->now());
+    const auto take = [&answer](const bus::Answer& given) { answer = given; };
+    scene->network().execute(bus::Command(bus::ReadObjectCommand{"left", "1008:00"}, take),
+                             scene->now());
     scene->stall(5s);
     ASSERT_TRUE(scene->runUntil([&] { return answer.has_value(); }, 100ms)) << i;
     ASSERT_TRUE(answer->success) << i << ": " << answer->message;
     scene->run(100ms + i * 500us);
   }
-  EXPECT_EQ(scene->robot().master().nodes()[0].sdo().counters().timeouts, 0u);
+  EXPECT_EQ(scene->network().master().nodes()[0].sdo().counters().timeouts, 0u);
 }
 
 TEST_F(StalledDriver, SaysEnabledOnlyOfADriveThatIs) {
@@ -101,26 +101,24 @@ TEST_F(StalledDriver, SaysEnabledOnlyOfADriveThatIs) {
   bool reading = false;
   const auto read = [&] {  // so that an answer is under way all the time
     if (std::exchange(reading, true)) return;
-    bus::Command command;
-    command.body = bus::ReadObjectCommand{"joint", "6041:00"};
-    command.reply = [&](const bus::Answer&) { reading = false; };
-    scene->robot().execute(std::move(command), scene->now());
+    const auto take = [&](const bus::Answer&) { reading = false; };
+    scene->network().execute(bus::Command(bus::ReadObjectCommand{"joint", "6041:00"}, take),
+                             scene->now());
   };
   int enabled = 0;
   for (Duration offset{}; offset < 120ms; offset += 500us) {
     drive::ProcedureRequest request;
     request.kind = drive::ProcedureKind::enable;
     bool answered = false;
-    bus::Command command;
-    command.body = bus::ProcedureCommand{"joint", request};
-    command.reply = [&](const bus::Answer& answer) {
+    const auto take = [&](const bus::Answer& answer) {
       answered = true;
       if (!answer.success) return;
       ++enabled;
       EXPECT_TRUE(scene->truth(0).power_stage_on)
           << answer.message << ", stalled at " << toSeconds(offset) << " s";
     };
-    scene->robot().execute(std::move(command), scene->now());
+    scene->network().execute(bus::Command(bus::ProcedureCommand{"joint", request}, take),
+                             scene->now());
     for (const Time end = scene->now() + offset; scene->now() < end; scene->run(500us)) read();
     scene->stall(500ms);  // it misses its master after 0.3 s
     ASSERT_TRUE(scene->runUntil([&] { return answered; }, 5s));

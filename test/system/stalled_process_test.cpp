@@ -44,17 +44,17 @@ class StalledProcess : public testing::Test, private bus::EventSink {
     for (const Time end = now + duration; now < end;) round(lateness ? lateness() : 0us);
   }
   bool allReady() {
-    const auto& axes = loop->robot().axes();
-    return std::all_of(axes.begin(), axes.end(), [](const drive::Axis& axis) {
-      return axis.state().health == fieldbus::Health::ready && axis.state().feedback_valid;
+    const auto& units = loop->network().cycle().units();
+    return std::all_of(units.begin(), units.end(), [](const bus::AxisUnit& unit) {
+      const drive::AxisState& state = unit.axis.state();
+      return state.health == fieldbus::Health::ready && state.feedback_valid;
     });
   }
-  bus::Answer call(decltype(bus::Command::body) body) {
+  template <typename Request>
+  bus::Answer call(Request request) {
     std::optional<bus::Answer> answer;
-    bus::Command command;
-    command.body = std::move(body);
-    command.reply = [&answer](const bus::Answer& given) { answer = given; };
-    loop->robot().execute(std::move(command), now);
+    const auto take = [&answer](const bus::Answer& given) { answer = given; };
+    loop->network().execute(bus::Command(std::move(request), take), now);
     EXPECT_TRUE(runUntil([&answer] { return answer.has_value(); }, 60s));
     return answer.value_or(bus::Answer());
   }
@@ -87,15 +87,16 @@ TEST_F(StalledProcess, NoDriveMissesAHeartbeatHoweverLongTheStall) {
     for (int phase = 0; phase < 20; ++phase) {
       round(stall);
       run(20ms + phase * 700us);
-      for (const drive::Axis& axis : loop->robot().axes()) {
+      for (const bus::AxisUnit& unit : loop->network().cycle().units()) {
+        const drive::Axis& axis = unit.axis;
         ASSERT_EQ(axis.state().state, drive::State::operation_enabled) << told;
       }
     }
   }
   EXPECT_EQ(told, "");
   EXPECT_GE(time.lost(), 20 * 24h * 365);
-  EXPECT_EQ(loop->robot().statistics().overruns(), 0U);
-  EXPECT_LE(loop->robot().statistics().maxLateness(), 1e-6);
+  EXPECT_EQ(loop->network().statistics().overruns(), 0U);
+  EXPECT_LE(loop->network().statistics().maxLateness(), 1e-6);
 }
 
 TEST_F(StalledProcess, AMachineThatNeverKeepsUpBreaksNothing) {
@@ -105,7 +106,7 @@ TEST_F(StalledProcess, AMachineThatNeverKeepsUpBreaksNothing) {
   lateness = [&] { return fromSeconds(seconds(random)); };  // as long as a cycle, every time
   enable();
   told.clear();
-  const double start = loop->robot().axes()[0].state().position;
+  const double start = loop->network().axis(0).state().position;
   bus::TrajectoryCommand trajectory;
   trajectory.group = "pair";
   trajectory.joints = {"left", "right"};
@@ -114,9 +115,9 @@ TEST_F(StalledProcess, AMachineThatNeverKeepsUpBreaksNothing) {
   run(3s);
   EXPECT_THAT(told, HasSubstr("goal"));
   EXPECT_EQ(told.find("emergency"), std::string::npos) << told;
-  EXPECT_NEAR(loop->robot().axes()[0].state().position, start + 1.0, 0.005);
-  EXPECT_NEAR(loop->robot().axes()[1].state().position, 0.5, 0.005);
-  EXPECT_EQ(loop->robot().statistics().overruns(), 0U);
+  EXPECT_NEAR(loop->network().axis(0).state().position, start + 1.0, 0.005);
+  EXPECT_NEAR(loop->network().axis(1).state().position, 0.5, 0.005);
+  EXPECT_EQ(loop->network().statistics().overruns(), 0U);
 }
 
 TEST_F(StalledProcess, WithoutStallsTheBusKeepsUpWithTheClock) {

@@ -38,9 +38,9 @@ class ExternalSync : public testing::Test {
     scene->run(1s);
     ASSERT_GT(std::fabs(scene->velocity("left")), 0.2);
   }
-  bus::RobotSnapshot snapshot() {
-    bus::RobotSnapshot shot;
-    scene->robot().robot().fill(shot);
+  bus::NetworkSnapshot snapshot() {
+    bus::NetworkSnapshot shot;
+    scene->robot().network().fill(shot);
     return shot;
   }
 
@@ -236,8 +236,8 @@ TEST_P(ExternalSyncJitter, AndLossDisturbNeitherMotionNorPeople) {
   EXPECT_NEAR(scene.position("left"), 1.0, 1e-3);
   EXPECT_NEAR(scene.position("right"), -1.0, 1e-3);
   EXPECT_GT(lossy.lost, 15u);
-  bus::RobotSnapshot shot;
-  scene.robot().robot().fill(shot);
+  bus::NetworkSnapshot shot;
+  scene.robot().network().fill(shot);
   EXPECT_NEAR(static_cast<double>(shot.missed_syncs), lossy.lost, 1.0);
   EXPECT_TRUE(scene.state("left").ready_for_motion);
   EXPECT_THAT(scene.told(), Not(HasSubstr("SYNC")));
@@ -334,7 +334,7 @@ TEST(TimeMessage, IsSentAtItsIntervalOnceTheWallClockIsKnown) {
   ASSERT_TRUE(scene.boot());
   scene.run(1s);
   EXPECT_TRUE(seen.empty());
-  scene.robot().robot().setWallTime(441763200s + 24h, scene.now());  // 1984-01-02 00:00
+  scene.robot().network().setWallTime(441763200s + 24h, scene.now());  // 1984-01-02 00:00
   scene.run(2s);
   ASSERT_EQ(seen.size(), 4u);
   EXPECT_EQ(seen[0].size, 6);

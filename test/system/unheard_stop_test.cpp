@@ -16,9 +16,7 @@ class StopCalls {
   void call(ProcedureKind kind, const std::string& axis) {
     drive::ProcedureRequest request;
     request.kind = kind;
-    bus::Command command;
-    command.body = bus::ProcedureCommand{axis, request};
-    command.reply = [this, kind, axis](const bus::Answer& answer) {
+    const auto reply = [this, kind, axis](const bus::Answer& answer) {
       --waiting_;
       const double speed = std::abs(scene_.velocity(axis));
       if (!answer.success || speed < 0.02) return;
@@ -26,7 +24,8 @@ class StopCalls {
                 " rad/s: " + answer.message + "\n";
     };
     ++waiting_;
-    scene_.robot().robot().execute(std::move(command), scene_.now());
+    scene_.robot().network().execute(bus::Command(bus::ProcedureCommand{axis, request}, reply),
+                                     scene_.now());
   }
   /// What was told that is not true of the motor, once all calls are answered.
   std::string wrong() {

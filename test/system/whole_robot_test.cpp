@@ -25,19 +25,18 @@ TEST(DemoRobot, BootsEnablesHomesAndFollowsATrajectory) {
   ASSERT_TRUE(enabled.has_value());
   ASSERT_TRUE(enabled->success) << enabled->message;
 
-  bus::Command command;
   bus::TrajectoryCommand trajectory;
   const config::GroupConfig& group = loaded.robot.groups.front();
   trajectory.group = group.name;
   trajectory.joints = group.joints;
   const std::vector<double> goal(group.joints.size(), 0.3);
   trajectory.points = {{goal, std::vector<double>(goal.size(), 0.0), {}, 4s}};
-  command.body = trajectory;
-  const auto accepted = robot.call(std::move(command));
+  const auto accepted = robot.call(trajectory);
   ASSERT_TRUE(accepted.has_value());
   ASSERT_TRUE(accepted->success) << accepted->message;
   robot.run(5s);
-  for (const drive::Axis& axis : robot.robot().axes()) {
+  for (const bus::AxisUnit& unit : robot.network().cycle().units()) {
+    const drive::Axis& axis = unit.axis;
     EXPECT_NEAR(axis.state().position, 0.3, 1e-3) << axis.config().name;
   }
   EXPECT_THAT(told(robot), HasSubstr("goal reached"));

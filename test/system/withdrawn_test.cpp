@@ -33,12 +33,10 @@ TEST_P(Interrupted, ByBusOffNothingIsEnabledWhenTheBusIsBack) {
     InterfaceScene scene(loadText(genericPair(kHoming, kHoming)), options);
     ASSERT_TRUE(scene.runUntil([&] { return scene.allReady(); }, 8s)) << scene.told();
     std::optional<bus::Answer> answer;
-    bus::Command command;
     bus::ProcedureCommand procedure;
     procedure.request.kind = kind;
-    command.body = procedure;
-    command.reply = [&answer](const bus::Answer& given) { answer = given; };
-    scene.robot().execute(std::move(command), scene.now());
+    const auto take = [&answer](const bus::Answer& given) { answer = given; };
+    scene.network().execute(bus::Command(procedure, take), scene.now());
     scene.run(std::chrono::milliseconds(GetParam()));
     if (answer) {  // enabled at rest before the loss
       EXPECT_GE(GetParam(), kSurelyRunning);

@@ -5,12 +5,12 @@
 #include "cia402_driver/bus/event.h"
 #include "cia402_driver/bus/flight_recorder.h"
 #include "cia402_driver/bus/load_meter.h"
-#include "cia402_driver/bus/robot.h"
+#include "cia402_driver/bus/network.h"
 #include "cia402_driver/can/bus.h"
 
 namespace cia402::bus {
 
-/// A robot on a CAN interface, with the load meter, the flight recorder and the watch over the
+/// A network on a CAN interface, with the load meter, the flight recorder and the watch over the
 /// interface: what BusRunner does again and again, and tests do in virtual time. One thread.
 class BusLoop {
  public:
@@ -26,8 +26,8 @@ class BusLoop {
   /// When step() is due at the latest, even if no frame comes.
   Time nextDeadline() const;
 
-  Robot& robot() { return robot_; }
-  const Robot& robot() const { return robot_; }
+  Network& network() { return network_; }
+  const Network& network() const { return network_; }
   FlightRecorder& recorder() { return recorder_; }
   const LoadMeter& meter() const { return meter_; }
   const BusWatch& watch() const { return watch_; }
@@ -38,7 +38,7 @@ class BusLoop {
   can::Interface& interface_;
   LoadMeter meter_;
   FlightRecorder recorder_;
-  Robot robot_;
+  Network network_;
   BusWatch watch_;
   int rounds_behind_ = 0;    ///< since tick(): they left frames of the past
   bool more_waits_ = false;  ///< the last round may have left frames

@@ -8,13 +8,13 @@
 
 #include "cia402_driver/bus/event.h"
 #include "cia402_driver/bus/fixed_text.h"
+#include "cia402_driver/bus/network.h"
 #include "cia402_driver/bus/repeat_limiter.h"
-#include "cia402_driver/bus/robot.h"
 #include "cia402_driver/can/bus.h"
 
 namespace cia402::bus {
 
-/// Watches the CAN interface for a robot: starts the robot once the bus is there, tells it when the
+/// Watches the CAN interface for a network: starts it once the bus is there, tells it when the
 /// bus is lost and when it is back, and puts every change into words. Changes that come too fast to
 /// be read are summed up.
 class BusWatch {
@@ -24,14 +24,15 @@ class BusWatch {
   /// To be called often; allocates only when something has changed, or is not well.
   /// @return the state in which the bus was lost and came back since the last call, unseen but for
   /// the interface's counters; usually none.
-  std::optional<can::BusState> update(const can::Interface& interface, Robot& robot, Time now);
+  std::optional<can::BusState> update(const can::Interface& interface, Network& network, Time now);
   /// The interface in words, as of at most 0.2 s ago.
   std::string_view text() const { return text_.view(); }
 
  private:
   std::optional<can::BusState> unseenLoss(const can::Interface& interface);
-  void onUnseenLoss(can::BusState through, const can::Interface& interface, Robot& robot, Time now);
-  void onChange(const can::Interface& interface, Robot& robot, Time now);
+  void onUnseenLoss(can::BusState through, const can::Interface& interface, Network& network,
+                    Time now);
+  void onChange(const can::Interface& interface, Network& network, Time now);
   void tell(Event::Severity severity, const std::string& text, Time now);
 
   EventSink& events_;

@@ -1,8 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,126 +10,124 @@
 #include <variant>
 #include <vector>
 
-#include "cia402_driver/canopen/error_history.h"
-#include "cia402_driver/canopen/lss_protocol.h"
-#include "cia402_driver/canopen/sdo_client.h"
-#include "cia402_driver/drive/axis.h"
+#include "cia402_driver/bus/reply.h"
+#include "cia402_driver/common/time.h"
 #include "cia402_driver/motion/trajectory.h"
 
 namespace cia402::bus {
 
-/// What a command came to, for a service answer.
-struct Answer {
-  bool success = false;
-  std::string message;                                       ///< a sentence
-  fieldbus::Bytes data;                                      ///< read_object: wire order
-  double number = std::numeric_limits<double>::quiet_NaN();  ///< read_object: in device units
-  std::string text;  ///< read_object: value with unit; DcfDraft: the file
-  std::vector<canopen::lss::Identity> devices;  ///< lss_scan: without a node-ID
-  std::vector<std::string> device_axes;         ///< lss_scan: the axis of each device, or empty
-  canopen::ErrorHistory history;                ///< error_history
-};
-
-inline Answer answerOf(bool success, std::string message) {
-  Answer answer;
-  answer.success = success;
-  answer.message = std::move(message);
-  return answer;
-}
-
-/// Called once, in the bus thread, when a command has ended. Must not block.
-using Reply = std::function<void(const Answer&)>;
-inline void give(const Reply& reply, const Answer& answer) {
-  if (reply) reply(answer);
-}
-inline void refuse(const Reply& reply, std::string message) {
-  give(reply, answerOf(false, std::move(message)));
-}
-inline std::string noSuchAxis(const std::string& name) {
-  return "there is no axis \"" + name + "\"";
-}
-
-/// A procedure on one axis, or on all that are concerned where `axis` is empty.
-struct ProcedureCommand {
-  std::string axis;
-  drive::ProcedureRequest request;
-};
+class Network;
 
 /// A set-point of the axis' active mode, rad or m, per s, N m or N. Answered only if refused.
 struct SetpointCommand {
+  using Answer = bus::Answer;
   std::size_t axis = 0;  ///< index in the configuration
   double value = 0.0;
+
+  void begin(Network& network, const Reply<>& reply, Time now) const;
 };
 
 /// A trajectory for a group; without points: stop. Answered once it was accepted or refused.
 struct TrajectoryCommand {
+  using Answer = bus::Answer;
   std::string group;
   std::vector<std::string> joints;
   std::vector<motion::TrajectoryPoint> points;
   std::optional<Time> start_time;
+
+  void begin(Network& network, const Reply<>& reply, Time now) const;
 };
 
-/// Reads an object by profile name or "6041:00".
-struct ReadObjectCommand {
-  std::string axis, object;
-};
-
-/// Writes an object: a number in device units (decimal, or 0x... as the bit pattern; a float where
-/// the object carries one), or a text for strings.
-struct WriteObjectCommand {
-  std::string axis, object, value;
-};
-
-/// An NMT command by its word ("stop", see NmtJob) to one axis' node, or to all where `axis` is
-/// empty.
-struct NmtServiceCommand {
-  std::string axis, command;
-};
-
-/// Reads the error history (1003h) of an axis' drive.
-struct ErrorHistoryCommand {
-  std::string axis;
-};
-
-/// Finds all devices without a node-ID; refused while something is in motion.
-struct LssScanCommand {
-  Duration window{std::chrono::milliseconds(20)};  ///< for each answer, see LssOptions
-};
-
-/// Gives the device of an identity a node-ID.
-struct LssAssignCommand {
-  canopen::lss::Identity identity;
-  int node_id = 0;
-  bool store = false;
-};
-
-/// Sets the bit timing of one axis' drive, or of all where `axis` is empty; with `activate` all
-/// devices on the bus take it.
-struct LssBitTimingCommand {
-  std::string axis;
-  unsigned kbit_per_s = 0;
-  bool store = false, activate = false;
-  Duration delay{std::chrono::seconds(1)};  ///< of silence before and after the change
-};
-
-struct DcfReading;
-/// Reads the objects of a drive that a DCF is to hold; made by DcfDraft.
-struct SaveDcfCommand {
-  std::string axis;
-  std::shared_ptr<DcfReading> reading;  ///< not nullptr; complete once answered with success
-};
-
-/// Runs a function in the bus thread, e.g. to inject a fault into a simulated drive.
+/// Runs a function in the bus thread, e.g. to inject a fault into a simulated drive; also where
+/// there is no bus.
 struct CallCommand {
-  std::function<Answer(Time)> function;
+  using Answer = bus::Answer;
+  std::function<bus::Answer(Time)> function;
+
+  void begin(Network& network, const Reply<>& reply, Time now) const;
 };
 
-struct Command {
-  std::variant<ProcedureCommand, SetpointCommand, TrajectoryCommand, ReadObjectCommand,
-               WriteObjectCommand, NmtServiceCommand, LssScanCommand, LssAssignCommand,
-               LssBitTimingCommand, ErrorHistoryCommand, SaveDcfCommand, CallCommand>
-      body;
-  Reply reply;  ///< may be empty
+/// What the bus thread is to do, on its way there, with the reply that it owes.
+///
+/// A request is a struct that says what is asked for, with
+///     using Answer = ...;  // bus::Answer, or a type made from it
+///     void begin(Network& network, const Reply<Answer>& reply, Time now) const;
+/// begin() gives the reply exactly once, at once or when the job that it adds to the network has
+/// ended. What streams lies in the command itself; any other request is taken to the heap, so that
+/// nothing here names it.
+class Command {
+ public:
+  /// Nothing is asked for; begin() must not be called.
+  Command() = default;
+  template <typename Request>
+  explicit Command(Request request, Reply<typename Request::Answer> reply = {})
+      : body_(bodyOf(Given<Request>{std::move(request), std::move(reply)})) {}
+
+  /// Carries it out. @pre not empty
+  void begin(Network& network, Time now) {
+    withGiven([&](auto& given) { given.begin(network, now); });
+  }
+  /// Replies that it is not carried out, for the reason `why`.
+  void refuse(const std::string& why) {
+    withGiven([&](auto& given) { given.refuse(why); });
+  }
+  /// It is out of date soon: it is carried out now or never.
+  bool streams() const {
+    return std::holds_alternative<Given<SetpointCommand>>(body_) ||
+           std::holds_alternative<Given<TrajectoryCommand>>(body_);
+  }
+  /// It makes sense only where frames reach the drives.
+  bool needsBus() const { return !std::holds_alternative<Given<CallCommand>>(body_); }
+
+ private:
+  template <typename Request>
+  struct Given {
+    Request request;
+    Reply<typename Request::Answer> reply;
+
+    void begin(Network& network, Time now) { request.begin(network, reply, now); }
+    void refuse(const std::string& why) { bus::refuse(reply, why); }
+  };
+  class Erased {
+   public:
+    virtual ~Erased() = default;
+    virtual void begin(Network& network, Time now) = 0;
+    virtual void refuse(const std::string& why) = 0;
+  };
+  template <typename Request>
+  class Boxed final : public Erased {
+   public:
+    explicit Boxed(Given<Request> given) : given_(std::move(given)) {}
+    void begin(Network& network, Time now) override { given_.begin(network, now); }
+    void refuse(const std::string& why) override { given_.refuse(why); }
+
+   private:
+    Given<Request> given_;
+  };
+  using Body = std::variant<std::unique_ptr<Erased>, Given<SetpointCommand>,
+                            Given<TrajectoryCommand>, Given<CallCommand>>;
+
+  static Body bodyOf(Given<SetpointCommand> given) { return given; }
+  static Body bodyOf(Given<TrajectoryCommand> given) { return given; }
+  static Body bodyOf(Given<CallCommand> given) { return given; }
+  template <typename Request>
+  static Body bodyOf(Given<Request> given) {
+    return std::make_unique<Boxed<Request>>(std::move(given));
+  }
+  template <typename Use>
+  void withGiven(Use use) {
+    std::visit(
+        [&](auto& body) {
+          if constexpr (std::is_same_v<std::decay_t<decltype(body)>, std::unique_ptr<Erased>>) {
+            use(*body);
+          } else {
+            use(body);
+          }
+        },
+        body_);
+  }
+
+  Body body_;
 };
 
 }  // namespace cia402::bus

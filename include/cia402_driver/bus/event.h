@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 
 #include "cia402_driver/bus/fixed_text.h"
 #include "cia402_driver/common/time.h"
@@ -33,5 +34,13 @@ class EventSink {
   virtual void onEvent(const Event& event) = 0;
   virtual void onEmergency(const EmergencyEvent&) {}
 };
+
+inline void tell(EventSink& events, Event::Severity severity, std::string_view text, Time now) {
+  Event event;
+  event.severity = severity;
+  event.stamp = now;
+  event.text.assign(text);
+  events.onEvent(event);
+}
 
 }  // namespace cia402::bus

@@ -10,8 +10,8 @@
 
 #include "cia402_driver/bus/event.h"
 #include "cia402_driver/bus/fixed_text.h"
+#include "cia402_driver/bus/network.h"
 #include "cia402_driver/bus/recording.h"
-#include "cia402_driver/bus/robot.h"
 #include "cia402_driver/bus/spsc_queue.h"
 #include "cia402_driver/can/bus.h"
 #include "cia402_driver/can/record_ring.h"
@@ -41,19 +41,20 @@ class FlightRecorder final : public can::Sink {
   FlightRecorder(const config::RobotConfig& robot, can::Sink& sink);
 
   // The thread of the bus:
-  /// The robot whose axes are recorded and by whose time frames are stamped; before it sends.
-  void watch(const Robot& robot);
+  /// The network whose axes are recorded and by whose time frames are stamped; before it sends.
+  void watch(const Network& network);
   /// Records what the interface takes.
   bool send(const can::Frame& frame) override {
     if (!sink_.send(frame)) return false;
-    frames_.push({frame, robot_->now(), true});
+    frames_.push({frame, network_->now(), true});
     return true;
   }
   /// A frame from the bus. @param stamp when it was on the wire.
   void received(const can::Frame& frame, Time stamp) { frames_.push({frame, stamp, false}); }
-  /// To be called after Robot::tick(): records the axes if there was a cycle, and looks for faults.
+  /// To be called after Network::tick(): records the axes if there was a cycle, and looks for
+  /// faults.
   void observe() {
-    if (robot_->lastCycle() != observed_) observeCycle();
+    if (network_->cycle().lastCycle() != observed_) observeCycle();
   }
   void onEvent(const Event& event);
   void onEmergency(const EmergencyEvent& event);
@@ -85,7 +86,7 @@ class FlightRecorder final : public can::Sink {
   };
 
   void observeCycle();
-  void observeAxis(std::size_t index, const drive::Axis& axis, bool moving, bool sample, Time now);
+  void observeAxis(const AxisUnit& unit, bool sample, Time now);
   void observeStep(std::size_t index, const drive::Axis& axis, Time now);
   void observeGroups(Time now);
   void observeIdentifiers();
@@ -94,7 +95,7 @@ class FlightRecorder final : public can::Sink {
   void trigger(RecordingTrigger::Kind kind, std::size_t axis, std::uint16_t code, Time now);
 
   can::Sink& sink_;
-  const Robot* robot_ = nullptr;
+  const Network* network_ = nullptr;
   Duration duration_, post_trigger_;
   bool on_faults_;
   can::RecordRing<can::FrameRecord> frames_;

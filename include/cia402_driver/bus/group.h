@@ -7,10 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "cia402_driver/bus/axis_motion.h"
+#include "cia402_driver/bus/axis_unit.h"
 #include "cia402_driver/bus/motion_clock.h"
 #include "cia402_driver/config/robot.h"
-#include "cia402_driver/drive/axis.h"
 #include "cia402_driver/motion/trajectory.h"
 
 namespace cia402::bus {
@@ -25,28 +24,23 @@ struct TrajectoryOutcome {
 /// over smoothly from where the present one is.
 class Group {
  public:
-  /// @param axes indices of the axes of config.joints, in that order.
-  /// @param all the axes of the bus; only their configuration is used here.
-  Group(config::GroupConfig config, std::vector<std::size_t> axes,
-        const std::vector<drive::Axis>& all);
+  /// @param axes those of config.joints, in that order; must outlive the group.
+  Group(config::GroupConfig config, std::vector<AxisUnit*> axes);
 
   const config::GroupConfig& config() const { return config_; }
   /// Joint names with limits, in the order of the configuration.
   const std::vector<motion::Joint>& joints() const { return joints_; }
-  const std::vector<std::size_t>& axes() const { return axes_; }
 
   /// Checks a trajectory and takes it over; without points, stops. Points are in the order of
   /// `names`. On an error nothing changes.
   TrajectoryOutcome start(const std::vector<std::string>& names,
                           const std::vector<motion::TrajectoryPoint>& points,
-                          std::optional<Time> start_time, std::vector<drive::Axis>& axes,
-                          std::vector<AxisMotion>& motions, Time now);
+                          std::optional<Time> start_time, Time now);
   /// Brings all joints to rest and ends the trajectory with `why`.
-  void stop(const TrajectoryOutcome& why, std::vector<drive::Axis>& axes);
+  void stop(const TrajectoryOutcome& why);
   /// Gives the axes their set-points of this cycle. @return how the trajectory ended, in the cycle
   /// in which it did.
-  std::optional<TrajectoryOutcome> step(std::vector<drive::Axis>& axes,
-                                        std::vector<AxisMotion>& motions, Time now);
+  std::optional<TrajectoryOutcome> step(Time now);
 
   /// A trajectory is being followed, or its beginning or end is awaited.
   bool executing() const { return phase_ == Phase::following || next_.has_value(); }
@@ -58,32 +52,31 @@ class Group {
  private:
   enum class Phase { idle, following, stopping };
 
-  std::string refusal(const std::vector<drive::Axis>& axes,
-                      const std::vector<AxisMotion>& motions) const;
+  std::string refusal() const;
+  std::string refusalOf(const AxisUnit& unit) const;
   /// Where the joints are when the clock shows `time`, if nothing new begins before.
-  std::vector<motion::MotionState> commandedAt(const std::vector<drive::Axis>& axes,
-                                               Time time) const;
+  std::vector<motion::MotionState> commandedAt(Time time) const;
   void advanceClock(Time now);
-  void follow(std::vector<drive::Axis>& axes);
+  void follow();
   void scaleCommanded();
   /// How fast the clock's rate may rise, 1/s.
   double permittedRise() const;
-  bool stands(const std::vector<drive::Axis>& axes) const;
-  bool atGoal(const std::vector<drive::Axis>& axes) const;
-  std::optional<TrajectoryOutcome> checkAxes(const std::vector<drive::Axis>& axes) const;
+  bool stands() const;
+  bool atGoal() const;
+  std::optional<TrajectoryOutcome> checkAxes() const;
   std::optional<TrajectoryOutcome> checkRefusal() const;
-  std::optional<TrajectoryOutcome> checkPath(const std::vector<drive::Axis>& axes) const;
-  std::optional<TrajectoryOutcome> checkGoal(const std::vector<drive::Axis>& axes) const;
-  std::string dropReason(const std::vector<drive::Axis>& axes, std::size_t joint) const;
-  void noteDropped(const std::vector<drive::Axis>& axes);
+  std::optional<TrajectoryOutcome> checkPath() const;
+  std::optional<TrajectoryOutcome> checkGoal() const;
+  std::string dropReason(std::size_t joint) const;
+  void noteDropped();
   void beginNext(Time now);
-  void beginStop(std::vector<drive::Axis>& axes);
-  void showSent(const std::vector<drive::Axis>& axes);
-  void release(std::vector<AxisMotion>& motions);
-  void sendSetpoints(std::vector<drive::Axis>& axes);
+  void beginStop();
+  void showSent();
+  void release();
+  void sendSetpoints();
 
   config::GroupConfig config_;
-  std::vector<std::size_t> axes_;
+  std::vector<AxisUnit*> axes_;
   std::vector<motion::Joint> joints_;
   std::vector<std::string> names_;  // of them, for messages
   std::vector<config::JointTolerance> tolerances_;

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <deque>
 
-#include "cia402_driver/bus/command.h"
 #include "cia402_driver/bus/fixed_text.h"
 #include "cia402_driver/bus/mpsc_queue.h"
+#include "cia402_driver/bus/reply.h"
 #include "cia402_driver/common/time.h"
 
 namespace cia402::bus {
@@ -44,9 +44,9 @@ class ReplyLog {
 
   /// For a set-point of an axis: refusals are warnings, at most one per second of each axis, so
   /// that a refused stream does not flood the log. The log must outlive the reply.
-  Reply toSetpoint(std::size_t axis);
+  Reply<> toSetpoint(std::size_t axis);
   /// For a trajectory: refusals are errors. The log must outlive the reply.
-  Reply toTrajectory();
+  Reply<> toTrajectory();
 
   /// One thread: the next reply to log. @return false if there is none.
   bool next(Entry& entry) { return entries_.pop(entry); }

@@ -21,7 +21,7 @@
 
 namespace cia402::bus {
 
-/// Runs a Robot on a CAN interface at the pace of the clock: one thread that owns both. Other
+/// Runs a Network on a CAN interface at the pace of the clock: one thread that owns both. Other
 /// threads reach it through post(), snapshot() and nextEvent() only.
 class BusRunner final : private EventSink {
  public:
@@ -49,7 +49,7 @@ class BusRunner final : private EventSink {
   /// once and false returned.
   bool post(Command command);
   /// Any thread: the newest snapshot.
-  RobotSnapshot snapshot();
+  NetworkSnapshot snapshot();
   /// Any thread: what a snapshot shows of the axes is shown to somebody, at the rate of these
   /// calls. What no TPDO brings and only people want is read no oftener: drive::Axis::look().
   void look() { looked_ = true; }
@@ -87,7 +87,7 @@ class BusRunner final : private EventSink {
   std::mutex producers_;  // among the posting threads only
   SpscQueue<Event> events_{512};
   SpscQueue<EmergencyEvent> emergencies_{4096};  // half a second of nothing else at 1 Mbit/s
-  TripleBuffer<RobotSnapshot> snapshots_;
+  TripleBuffer<NetworkSnapshot> snapshots_;
   std::mutex readers_;  // among the reading threads only
   RealtimeReport realtime_;
   std::mutex realtime_mutex_;

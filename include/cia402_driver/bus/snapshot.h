@@ -4,10 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <string_view>
 #include <vector>
 
 #include "cia402_driver/bus/axis_reporter.h"
+#include "cia402_driver/bus/axis_words.h"
 #include "cia402_driver/bus/cycle_statistics.h"
 #include "cia402_driver/bus/fixed_text.h"
 #include "cia402_driver/can/bus.h"
@@ -28,26 +28,6 @@ struct NodeSnapshot {
   bool may_be_absent = false;              ///< `optional`, and absent or lost
   bool own_cob_ids = false;                ///< it insists on COB-IDs that no receive filter passes
   canopen::SdoClient::Counters sdo;        ///< since start
-};
-
-/// What is said of an axis in words; changes seldom.
-struct AxisWords {
-  std::uint32_t version = 0;  ///< grows with every change
-  FixedText<160> stale;       ///< TPDOs overdue at present; empty if none
-  FixedText<96> step;         ///< of the procedure or of the node's boot
-  FixedText<160> waiting_for;
-  FixedText<256> history;  ///< the drive's own error list, read after its last fault
-  FixedText<384> problem;  ///< fault, warning or node problem; empty if well
-  FixedText<192> stream;   ///< a stream of set-points that has dried up, while it lasts
-  FixedText<384> boot;     ///< what the last boot that succeeded found, its warnings first
-
-  template <std::size_t N>
-  void say(FixedText<N> AxisWords::*what, std::string_view text) {
-    const FixedText<N> said(text);
-    if (this->*what == said.view()) return;
-    this->*what = said;
-    ++version;
-  }
 };
 
 /// One axis as the last cycle left it.
@@ -71,7 +51,7 @@ struct GroupSnapshot {
 };
 
 /// Everything the ROS side shows, taken once a cycle.
-struct RobotSnapshot {
+struct NetworkSnapshot {
   Time now{};
   can::BusState bus_state = can::BusState::missing;
   can::BusCounters counters;

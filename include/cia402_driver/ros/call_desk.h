@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "cia402_driver/bus/command.h"
+#include "cia402_driver/bus/reply.h"
 
 namespace cia402::ros_node {
 
@@ -25,7 +25,7 @@ class CallDesk {
  public:
   /// What a call asks for: must not wait, and gives the reply exactly once, from any thread. A
   /// reply that is dropped leaks its call.
-  using Begin = std::function<void(bus::Reply reply)>;
+  using Begin = std::function<void(bus::Reply<> reply)>;
 
   /// @param wake called where answer() has something to do; any thread, must not wait.
   explicit CallDesk(std::function<void()> wake);

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "cia402_driver/bus/dcf_draft.h"
+#include "cia402_driver/bus/canopen/dcf_draft.h"
 #include "cia402_driver/common/result.h"
 
 namespace cia402::ros_node {

@@ -33,7 +33,7 @@ class Diagnostics {
 
   bus::BusRunner& runner_;
   const config::RobotConfig& robot_;
-  bus::RobotSnapshot snapshot_;
+  bus::NetworkSnapshot snapshot_;
   LinkWatch& link_;
   std::set<std::string> findings_told_;
   diagnostic_updater::Updater updater_;

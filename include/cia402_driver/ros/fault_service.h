@@ -7,7 +7,7 @@
 #include <functional>
 #include <string>
 
-#include "cia402_driver/bus/command.h"
+#include "cia402_driver/bus/reply.h"
 #include "cia402_driver/sim/drive.h"
 
 namespace cia402::ros_node {

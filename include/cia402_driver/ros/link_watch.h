@@ -23,13 +23,13 @@ class LinkWatch {
 
   /// Asks the kernel once a second; where a drive turns out to insist on COB-IDs that the receive
   /// filters do not pass, takes them off. To be called ten times as often.
-  void update(const bus::RobotSnapshot& snapshot);
+  void update(const bus::NetworkSnapshot& snapshot);
 
   /// Nothing where there is no interface of the kernel.
   const std::optional<can::LinkSettings>& settings() const { return settings_; }
   /// Of the bus, over the last second: as the kernel counts where the driver does not hear
   /// everything, else as the driver does.
-  can::TrafficMeter::Load load(const bus::RobotSnapshot& snapshot) const;
+  can::TrafficMeter::Load load(const bus::NetworkSnapshot& snapshot) const;
 
  private:
   bool filtered() const { return socket_ != nullptr && !hears_all_; }

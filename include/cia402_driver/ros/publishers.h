@@ -28,9 +28,9 @@ class Publishers {
   void publishStates();
 
  private:
-  void publishGroups(const bus::RobotSnapshot& snapshot);
-  cia402_driver::BusState busState(const bus::RobotSnapshot& snapshot) const;
-  cia402_driver::AxisStates axisStates(const bus::RobotSnapshot& snapshot) const;
+  void publishGroups(const bus::NetworkSnapshot& snapshot);
+  cia402_driver::BusState busState(const bus::NetworkSnapshot& snapshot) const;
+  cia402_driver::AxisStates axisStates(const bus::NetworkSnapshot& snapshot) const;
   bool changed(const cia402_driver::AxisStates& states) const;
 
   bus::BusRunner& runner_;

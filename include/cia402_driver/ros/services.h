@@ -4,7 +4,6 @@
 #include <ros/node_handle.h>
 #include <ros/service_server.h>
 
-#include <string>
 #include <vector>
 
 #include "cia402_driver/bus/runner.h"
@@ -14,7 +13,7 @@
 namespace cia402::ros_node {
 
 /// All services of the node, for the bus (`~name`) and for each axis (`~<axis>/name`). A call
-/// returns when its procedure has ended. Those whose requests say nothing, every one that stops
+/// returns when what it asked for has ended. Those whose requests say nothing, every one that stops
 /// motion among them, wait at the desk and never for each other; the rest keep a thread of the
 /// node handle's callback queue while they wait.
 class Services {
@@ -24,16 +23,6 @@ class Services {
            const config::RobotConfig& robot);
 
  private:
-  void advertise(ros::NodeHandle node, const std::string& axis);
-  void advertiseSaveDcf(ros::NodeHandle& node, const drive::AxisConfig& axis);
-  void advertiseTrigger(ros::NodeHandle& node, const char* name, const std::string& axis,
-                        drive::ProcedureKind kind);
-  void advertiseDump(ros::NodeHandle& node);
-  void advertiseHistory(ros::NodeHandle& node, const std::string& axis);
-
-  CallDesk& desk_;
-  bus::BusRunner& runner_;
-  const config::RobotConfig& robot_;
   std::vector<ros::ServiceServer> servers_;
 };
 

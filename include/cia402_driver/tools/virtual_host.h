@@ -88,8 +88,8 @@ class VirtualHost final : private bus::EventSink {
   Time now() const { return world_.now(); }
   sim::BusInterface& interface() { return interface_; }
   /// @pre running()
-  bus::Robot& robot() { return loop_->robot(); }
-  const bus::Robot& robot() const { return loop_->robot(); }
+  bus::Network& network() { return loop_->network(); }
+  const bus::Network& network() const { return loop_->network(); }
   bus::BusLoop& loop() { return *loop_; }
 
  private:
@@ -108,12 +108,12 @@ class VirtualHost final : private bus::EventSink {
     woken_ = kNever;
     rounded_ = now();
     if (lateness_) late_ = lateness_();
-    if (stopping_) loop_->robot().beginShutdown(now());
+    if (stopping_) loop_->network().beginShutdown(now());
     loop_->step(now());
     std::vector<bus::Command> commands;
     commands.swap(mailbox_);
-    for (bus::Command& command : commands) loop_->robot().execute(std::move(command), now());
-    if (loop_->robot().shutDown()) {
+    for (bus::Command& command : commands) loop_->network().execute(std::move(command), now());
+    if (loop_->network().shutDown()) {
       loop_.reset();
     } else if (interface_.waiting() > 0) {
       wake(now());

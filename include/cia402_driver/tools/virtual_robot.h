@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "cia402_driver/bus/flight_recorder.h"
-#include "cia402_driver/bus/robot.h"
+#include "cia402_driver/bus/jobs/procedure_command.h"
+#include "cia402_driver/bus/network.h"
 #include "cia402_driver/sim/robot_drives.h"
 #include "cia402_driver/sim/world.h"
 
@@ -26,8 +27,8 @@ class VirtualRobot final : private sim::Participant, private bus::EventSink {
       : world_(robot.bus.bitrate, seed),
         port_(world_.addParticipant("master", *this)),
         recorder_(robot, port_),
-        robot_(robot, master, recorder_, *this) {
-    recorder_.watch(robot_);
+        network_(robot, master, recorder_, *this) {
+    recorder_.watch(network_);
     for (const sim::SimulatedAxis& axis : axes) {
       world_.addDrive(axis.name, axis.definition, axis.node, axis.mechanics, axis.identity);
     }
@@ -36,7 +37,7 @@ class VirtualRobot final : private sim::Participant, private bus::EventSink {
   /// Powers the drives on and starts the driver.
   void start() {
     world_.powerOn();
-    robot_.start(world_.now());
+    network_.start(world_.now());
   }
   void run(Duration duration) { world_.advance(world_.now() + duration); }
   /// Runs in steps of a millisecond until `condition` holds. @return false after `limit`.
@@ -49,24 +50,23 @@ class VirtualRobot final : private sim::Participant, private bus::EventSink {
     return true;
   }
   /// Gives a command and runs until it is answered; nothing after `limit`.
-  std::optional<bus::Answer> call(bus::Command command,
-                                  Duration limit = std::chrono::seconds(120)) {
-    std::optional<bus::Answer> answer;
-    command.reply = [&answer](const bus::Answer& given) { answer = given; };
-    robot_.execute(std::move(command), world_.now());
+  template <typename Request>
+  std::optional<typename Request::Answer> call(Request request,
+                                               Duration limit = std::chrono::seconds(120)) {
+    std::optional<typename Request::Answer> answer;
+    const auto take = [&answer](const typename Request::Answer& given) { answer = given; };
+    network_.execute(bus::Command(std::move(request), take), world_.now());
     runUntil([&answer] { return answer.has_value(); }, limit);
     return answer;
   }
   /// A procedure on one axis, or on all (`axis` empty).
   std::optional<bus::Answer> procedure(drive::ProcedureKind kind, const std::string& axis = {}) {
-    bus::Command command;
     drive::ProcedureRequest request;
     request.kind = kind;
-    command.body = bus::ProcedureCommand{axis, request};
-    return call(std::move(command));
+    return call(bus::ProcedureCommand{axis, request});
   }
 
-  bus::Robot& robot() { return robot_; }
+  bus::Network& network() { return network_; }
   sim::World& world() { return world_; }
   bus::FlightRecorder& recorder() { return recorder_; }
   /// The driver does not run for so long, as on a host that sleeps; frames are kept for it.
@@ -87,9 +87,9 @@ class VirtualRobot final : private sim::Participant, private bus::EventSink {
     port_lost_ = lost;
     recorder_.onInterface(port_.state(), now);
     if (lost) {
-      robot_.busLost("the bus is off", now);
+      network_.busLost("the bus is off", now);
     } else {
-      robot_.busBack(true, now);
+      network_.busBack(true, now);
     }
   }
   void receive(const can::Frame& frame, Time now) override {
@@ -101,18 +101,18 @@ class VirtualRobot final : private sim::Participant, private bus::EventSink {
   }
   /// In the order of bus::BusLoop.
   void tick(Time now) override {
-    robot_.produceSync(now);
+    network_.produceSync(now);
     for (const auto& [frame, stamp] : kept_) take(frame, stamp, now);
     kept_.clear();
     watchPort(now);
-    robot_.tick(now);
+    network_.tick(now);
     recorder_.observe();
   }
   void take(const can::Frame& frame, Time stamp, Time now) {
     recorder_.received(frame, stamp);
-    robot_.receive(frame, stamp, now);
+    network_.receive(frame, stamp, now);
   }
-  Time nextDeadline() const override { return std::max(robot_.nextDeadline(), frozen_until_); }
+  Time nextDeadline() const override { return std::max(network_.nextDeadline(), frozen_until_); }
   void onEvent(const bus::Event& event) override {
     recorder_.onEvent(event);
     events_.push_back(event);
@@ -130,7 +130,7 @@ class VirtualRobot final : private sim::Participant, private bus::EventSink {
   Time frozen_until_{};
   bus::FlightRecorder recorder_;
   bool port_lost_ = false;
-  bus::Robot robot_;
+  bus::Network network_;
 };
 
 }  // namespace cia402::tools

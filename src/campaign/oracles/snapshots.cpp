@@ -85,7 +85,7 @@ class Snapshots final : public Oracle {
   void judge(const View& view, std::size_t i) {
     Axis& axis = axes_[i];
     if (axis.count < kMemory) return;
-    const drive::AxisState& shown = view.stage.driver()->axes()[i].state();
+    const drive::AxisState& shown = view.stage.driver()->axis(i).state();
     const bool enabled = shown.state == drive::State::operation_enabled;
     const bool fault = shown.state == drive::State::fault;
     if (enabled && !lately(view, axis.enabled)) report(view, i, "is shown enabled, and is not");

@@ -2,6 +2,8 @@
 #include <ros/ros.h>
 
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "cia402_driver/bus/real_clock.h"
 #include "cia402_driver/bus/realtime.h"
@@ -19,7 +21,6 @@
 #include "cia402_driver/ros/fault_service.h"
 #include "cia402_driver/ros/frames.h"
 #include "cia402_driver/ros/link_watch.h"
-#include "cia402_driver/ros/lss_services.h"
 #include "cia402_driver/ros/process_signals.h"
 #include "cia402_driver/ros/publishers.h"
 #include "cia402_driver/ros/robot_loader.h"
@@ -113,23 +114,10 @@ ros_node::FaultService::Inject injectThrough(bus::BusRunner& runner,
   };
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  if (const auto status = ros_node::readCommandLine(argc, argv, kHelp)) return *status;
-  bus::keepMemory();
-  ros::init(argc, argv, "bus_node", ros::init_options::NoSigintHandler);
-  ros::NodeHandle node;  // waits for the ROS master
-  ros::NodeHandle private_node("~");
-  ros_node::catchSignals();
-
-  const auto loaded = ros_node::loadRobot(private_node);
-  if (!loaded) return 1;
-  OpenInterface open = openInterface(*loaded);
-  if (!open.interface) return 1;
+/// Runs the driver until the node is asked to end.
+void serve(ros::NodeHandle& node, ros::NodeHandle& private_node, const LoadedRobot& loaded,
+           OpenInterface open) {
   sim::SimulatedInterface* const simulation = open.simulation;
-  ROS_INFO_STREAM("PDO plan:\n" << config::pdoTable(loaded->master, loaded->robot.bus.bitrate));
-
   ros_node::EventLoop loop;
   ros_node::CallDesk desk([&loop] { loop.wake(); });
   ros_node::ServicePool pool(kWaitingCalls);
@@ -137,31 +125,27 @@ int main(int argc, char** argv) {
   private_node.setCallbackQueue(loop.queue());
 
   bus::BusRunner::Options options;
-  options.priority = loaded->options.realtime_priority;
+  options.priority = loaded.options.realtime_priority;
   if (simulation != nullptr) options.time = bus::BusTime::Kind::simulated;
-  bus::ReplyLog replies(loaded->robot.axes.size());
-  bus::BusRunner runner(loaded->robot, loaded->master, std::move(open.interface), options);
+  bus::ReplyLog replies(loaded.robot.axes.size());
+  bus::BusRunner runner(loaded.robot, loaded.master, std::move(open.interface), options);
   ROS_INFO_STREAM(runner.recordings().describe());
-  ros_node::EventLog events(private_node, runner, replies, loaded->robot);
-  ros_node::LinkWatch link(loaded->robot.bus, open.socket);
-  ros_node::Publishers publishers(node, private_node, runner, link, loaded->robot);
-  ros_node::Diagnostics diagnostics(node, private_node, runner, link, loaded->robot);
-  ros_node::Frames frames(runner, loaded->robot);
-  ros_node::CommandTopics topics(private_node, runner, replies, loaded->robot);
+  ros_node::EventLog events(private_node, runner, replies, loaded.robot);
+  ros_node::LinkWatch link(loaded.robot.bus, open.socket);
+  ros_node::Publishers publishers(node, private_node, runner, link, loaded.robot);
+  ros_node::Diagnostics diagnostics(node, private_node, runner, link, loaded.robot);
+  ros_node::Frames frames(runner, loaded.robot);
+  ros_node::CommandTopics topics(private_node, runner, replies, loaded.robot);
   runner.start();
 
   ros::NodeHandle service_node("~");
   service_node.setCallbackQueue(pool.queue());
-  ros_node::Services services(service_node, desk, runner, loaded->robot);
-  ros_node::LssServices lss_services(service_node, runner);
-  std::unique_ptr<ros_node::FaultService> faults;
-  if (simulation != nullptr) {
-    faults =
-        std::make_unique<ros_node::FaultService>(service_node, injectThrough(runner, *simulation));
-  }
+  ros_node::Services services(service_node, desk, runner, loaded.robot);
+  std::optional<ros_node::FaultService> faults;
+  if (simulation != nullptr) faults.emplace(service_node, injectThrough(runner, *simulation));
 
   loop.always([&] { desk.answer(); });
-  const Duration joint_states = fromSeconds(1.0 / loaded->robot.joint_state_rate);
+  const Duration joint_states = fromSeconds(1.0 / loaded.robot.joint_state_rate);
   loop.every(tickOf(joint_states), [&] {
     events.drain();
     publishers.publishStates();
@@ -183,5 +167,23 @@ int main(int argc, char** argv) {
   pool.stop();
   ROS_INFO("stopped");
   ros::shutdown();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (const auto status = ros_node::readCommandLine(argc, argv, kHelp)) return *status;
+  bus::keepMemory();
+  ros::init(argc, argv, "bus_node", ros::init_options::NoSigintHandler);
+  ros::NodeHandle node;  // waits for the ROS master
+  ros::NodeHandle private_node("~");
+  ros_node::catchSignals();
+
+  const auto loaded = ros_node::loadRobot(private_node);
+  if (!loaded) return 1;
+  OpenInterface open = openInterface(*loaded);
+  if (!open.interface) return 1;
+  ROS_INFO_STREAM("PDO plan:\n" << config::pdoTable(loaded->master, loaded->robot.bus.bitrate));
+  serve(node, private_node, *loaded, std::move(open));
   return 0;
 }

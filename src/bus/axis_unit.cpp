@@ -1,0 +1,27 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/bus/axis_unit.h"
+
+namespace cia402::bus {
+
+AxisUnit::AxisUnit(std::size_t number, const drive::AxisConfig& config, const Place& place,
+                   Duration cycle, EventSink& events)
+    : index(number),
+      axis(config, *place.device),
+      motion(config, cycle),
+      reporter(number, place.who, config.profile, events),
+      news(number, place.who, place.patience, events) {}
+
+void AxisUnit::fill(AxisSnapshot& snapshot) const {
+  snapshot.state = axis.state();
+  snapshot.target = axis.target();
+  const EmergencyCounts& emergencies = reporter.emergencies();
+  const bool more = snapshot.emergencies.total != emergencies.total ||
+                    snapshot.emergencies.malformed != emergencies.malformed;
+  if (more) snapshot.emergencies = emergencies;  // counts of every code: not for every cycle
+  snapshot.procedure = axis.procedure().kind;
+  snapshot.procedure_running = axis.procedure().running;
+  snapshot.missed_feedback = missed_feedback;
+  if (snapshot.words.version != news.words().version) snapshot.words = news.words();
+}
+
+}  // namespace cia402::bus

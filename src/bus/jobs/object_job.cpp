@@ -1,0 +1,280 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "bus/jobs/object_job.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "bus/jobs/object_address.h"
+#include "bus/jobs/object_text.h"
+#include "cia402_driver/bus/network.h"
+
+namespace cia402::bus {
+namespace {
+
+using drive::CoordinateMark;
+
+/// A drive may confirm a new zero before it counts from it.
+constexpr Duration kSettling{std::chrono::milliseconds(250)};
+
+/// What there is instead of writing the object.
+std::string insteadOf(CoordinateMark mark, const std::string& axis) {
+  switch (mark) {
+    case CoordinateMark::set_position:
+      return "the service ~" + axis + "/set_position says where the joint stands without it";
+    case CoordinateMark::home:
+      return "the service ~" + axis +
+             "/home finds the zero, with homing/offset of the configuration";
+    case CoordinateMark::restore_parameters:
+      return "the service ~" + axis + "/restore_parameters does this";
+    case CoordinateMark::configuration:
+      return "give it in `write` of the axis' configuration, with `counts_per_turn`, `gear_ratio` "
+             "and `direction` to match";
+    case CoordinateMark::calibration:
+    case CoordinateMark::none:
+      break;
+  }
+  return "it is calibration, for which there is no service";
+}
+
+/// Offsets that a drive adds to each set-point (CiA 402-2: 60B0h, 60B1h, 60B2h; of further axes
+/// 800h later): what is in them moves it, now or with the next set-point.
+bool addsToSetPoints(fieldbus::ObjectId id) {
+  constexpr unsigned kFirst = 0x60B0, kLast = 0x60B2, kAxisSize = 0x800, kEnd = 0xA000;
+  if (id.index < kFirst || id.index >= kEnd) return false;
+  return (id.index - kFirst) % kAxisSize <= kLast - kFirst;
+}
+
+std::string offsetRefusal(fieldbus::ObjectId id, const fieldbus::Bytes& data) {
+  const bool nothing = std::all_of(data.begin(), data.end(), [](auto byte) { return byte == 0; });
+  if (nothing || !addsToSetPoints(id)) return {};
+  return "the drive adds it to each of its set-points, so that it would move by it though nobody "
+         "commands that; add it to the set-points, and leave 0 here";
+}
+
+/// Why the description of the device forbids the write; empty if it does not.
+std::string descriptionRefusal(const drive::AxisConfig& axis, fieldbus::ObjectId id,
+                               const fieldbus::Bytes& data) {
+  const auto& description = axis.description;
+  const fieldbus::DictionaryEntry* entry = description ? description->dictionary.find(id) : nullptr;
+  if (entry == nullptr) return {};
+  const auto allowed = fieldbus::checkWrite(*entry, data, description->file);
+  return allowed ? std::string() : allowed.error().message;
+}
+
+/// May the drive have taken it?
+bool mayBeWritten(const fieldbus::Transfer& transfer) {
+  return transfer.failure() != fieldbus::Transfer::Failure::aborted_by_server;
+}
+
+}  // namespace
+
+void ReadObjectCommand::begin(Network& network, const Reply<ObjectAnswer>& reply, Time) const {
+  AxisUnit* const unit = network.cycle().find(axis);
+  if (unit == nullptr) return refuse(reply, noSuchAxis(axis));
+  auto job = ObjectJob::read(unit->axis, object, reply);
+  if (!job) return refuse(reply, job.error().message);
+  network.cycle().jobs().add(std::move(job).value());
+}
+
+void WriteObjectCommand::begin(Network& network, const Reply<>& reply, Time) const {
+  AxisUnit* const unit = network.cycle().find(axis);
+  if (unit == nullptr) return refuse(reply, noSuchAxis(axis));
+  auto job = ObjectJob::write(unit->axis, object, value, reply);
+  if (!job) return refuse(reply, job.error().message);
+  network.cycle().jobs().add(std::move(job).value());
+}
+
+ObjectJob::ObjectJob(drive::Axis& axis, Reply<ObjectAnswer> reply)
+    : Job(Turn::object, Ends::with_motion),
+      axis_(&axis),
+      who_(drive::whoIs(axis.config())),
+      reply_(std::move(reply)) {}
+
+std::string ObjectJob::find(const std::string& object) {
+  const auto found = findObject(axis_->config(), object);
+  if (!found) return who_ + ": " + found.error().message;
+  id_ = found->id;
+  spec_ = found->spec;
+  name_ = found->title;
+  return axis_->device().askingRefusal(name_);
+}
+
+Result<std::unique_ptr<Job>> ObjectJob::read(drive::Axis& axis, const std::string& object,
+                                             Reply<ObjectAnswer> reply) {
+  std::unique_ptr<ObjectJob> job(new ObjectJob(axis, std::move(reply)));
+  const std::string refusal = job->find(object);
+  if (!refusal.empty()) return Error{refusal};
+  job->ticket_ = axis.device().objects().upload(job->id_, job->name_);
+  return std::unique_ptr<Job>(std::move(job));
+}
+
+Result<std::unique_ptr<Job>> ObjectJob::write(drive::Axis& axis, const std::string& object,
+                                              const std::string& value, Reply<ObjectAnswer> reply) {
+  std::unique_ptr<ObjectJob> job(new ObjectJob(axis, std::move(reply)));
+  std::string refusal = job->find(object);
+  if (refusal.empty()) refusal = job->beginWrite(value);
+  if (!refusal.empty()) return Error{refusal};
+  return std::unique_ptr<Job>(std::move(job));
+}
+
+std::string ObjectJob::notWritten(const std::string& why) const {
+  return who_ + ": " + name_ + " not written: " + why;
+}
+
+std::string ObjectJob::beginWrite(const std::string& value) {
+  value_ = value;
+  mark_ = axis_->config().profile->coordinateMark(id_);
+  const std::string refusal = calibrationRefusal();
+  if (!refusal.empty()) return notWritten(refusal);
+  if (!spec_) {
+    stage_ = Stage::asking_size;
+    ticket_ = axis_->device().objects().upload(id_, name_);
+    lock();
+    return {};
+  }
+  const Result<fieldbus::Bytes> data = encodeObject(*spec_, value);
+  if (!data) return notWritten(data.error().message);
+  std::string forbidden = offsetRefusal(id_, *data);
+  if (forbidden.empty()) forbidden = descriptionRefusal(axis_->config(), id_, *data);
+  if (!forbidden.empty()) return notWritten(forbidden);
+  const std::string units = inJointUnits(*spec_, axis_->config(), *data);
+  if (!units.empty()) units_ = " (" + units + ")";
+  lock();
+  download(*data);
+  return {};
+}
+
+void ObjectJob::lock() {
+  if (mark_ == CoordinateMark::none) return;
+  axis_->beginCalibration(name_);
+  locked_ = true;
+}
+
+std::string ObjectJob::calibrationRefusal() const {
+  if (mark_ == CoordinateMark::none) return {};
+  const std::string why = axis_->calibrationRefusal();
+  if (why.empty()) return {};
+  return "it shifts the drive's coordinates or holds its calibration, and " + why +
+         ". Instead: " + insteadOf(mark_, axis_->config().name);
+}
+
+/// What gives a drive another zero is not written twice.
+void ObjectJob::download(const fieldbus::Bytes& data) {
+  stage_ = Stage::writing;
+  std::optional<fieldbus::AccessOptions> once;
+  if (locked_) {
+    once = axis_->device().times().access;
+    once->retries = 0;
+  }
+  ticket_ = axis_->device().objects().download(id_, data, name_, once);
+}
+
+bool ObjectJob::step(Time now) {
+  if (!ticket_->done()) return false;
+  switch (stage_) {
+    case Stage::settling:
+    case Stage::measuring:
+      return measure(now);
+    case Stage::writing:
+      return finishWrite(now);
+    case Stage::reading:
+    case Stage::asking_size:
+      break;
+  }
+  const bool reading = stage_ == Stage::reading;
+  if (ticket_->ok()) return reading ? finishRead() : writeWithAskedSize();
+  return finish(false, reading ? who_ + ": " + name_ + " not read: " + ticket_->reason()
+                               : notWritten(ticket_->reason()));
+}
+
+bool ObjectJob::finishWrite(Time now) {
+  if (locked_ && (ticket_->ok() || mayBeWritten(*ticket_))) {
+    axis_->loseZero();
+    stage_ = Stage::settling;
+    since_ = now;
+    return false;
+  }
+  if (ticket_->ok()) return finish(true, who_ + ": wrote " + value_ + " to " + name_ + units_);
+  return finish(false, notWritten(ticket_->reason()));
+}
+
+/// The axis stays locked until what it measures counts in the new coordinates.
+bool ObjectJob::measure(Time now) {
+  if (stage_ == Stage::settling) {
+    if (now < since_ + kSettling) return false;
+    axis_->measureAnew();
+    stage_ = Stage::measuring;
+    since_ = now;
+    return false;
+  }
+  const bool measured = axis_->state().feedback_valid;
+  if (!measured && now < since_ + axis_->config().profile->timing.state_change) return false;
+  return finish(ticket_->ok(), measuredText(measured));
+}
+
+std::string ObjectJob::measuredText(bool measured) const {
+  const drive::AxisConfig& axis = axis_->config();
+  std::string text = ticket_->ok()
+                         ? who_ + ": wrote " + value_ + " to " + name_ + units_
+                         : who_ + ": it is not known whether " + value_ + " was written to " +
+                               name_ + " (" + ticket_->reason() + "); read it";
+  text +=
+      "; " + drive::jointName(axis) + " is not homed any more, for its zero may be another now: ";
+  if (mark_ == CoordinateMark::configuration) {
+    text += "see that `counts_per_turn`, `gear_ratio` and `direction` fit the drive, then ";
+  }
+  text += "~" + axis.name + "/set_position";
+  if (axis.homing) text += " or ~" + axis.name + "/home";
+  if (!measured) text += "; the drive has not told its position since";
+  return text;
+}
+
+bool ObjectJob::finishRead() {
+  const auto unnamed = unnamedObject();
+  const ObjectText text = describeObject(unnamed ? &*unnamed
+                                         : spec_ ? &*spec_
+                                                 : nullptr,
+                                         axis_->config(), ticket_->data());
+  ObjectAnswer answer;
+  answer.success = true;
+  answer.message = who_ + ": " + name_ + " is " + text.value;
+  answer.data = ticket_->data();
+  answer.number = text.number;
+  answer.text = text.value;
+  give(reply_, answer);
+  return true;
+}
+
+std::optional<drive::ObjectSpec> ObjectJob::unnamedObject() const {
+  if (spec_) return {};
+  if (fieldbus::isStandardText(id_)) {
+    drive::ObjectSpec text;
+    text.id = id_;
+    text.type = drive::DataType::visible_string;
+    return text;
+  }
+  return axis_->config().profile->unnamedFloat(id_, ticket_->data().size());
+}
+
+bool ObjectJob::writeWithAskedSize() {
+  const auto unnamed = unnamedObject();
+  const Result<fieldbus::Bytes> data =
+      unnamed ? encodeObject(*unnamed, value_) : encodeUnlisted(value_, ticket_->data().size());
+  if (!data) return finish(false, notWritten(data.error().message));
+  const std::string moves = offsetRefusal(id_, *data);
+  if (!moves.empty()) return finish(false, notWritten(moves));
+  download(*data);
+  return false;
+}
+
+bool ObjectJob::finish(bool success, std::string message) {
+  if (locked_) axis_->endCalibration();
+  locked_ = false;
+  ObjectAnswer answer;
+  answer.success = success;
+  answer.message = std::move(message);
+  give(reply_, answer);
+  return true;
+}
+
+}  // namespace cia402::bus

@@ -1,0 +1,75 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "cia402_driver/bus/jobs/job.h"
+#include "cia402_driver/bus/jobs/procedure_command.h"
+
+namespace cia402::bus {
+
+/// A procedure on one or several axes, in the order that was asked for: axes of equal order run
+/// together; an order begins when the one before has succeeded on every axis. set_mode on several
+/// axes is done on all or none. The answer says what is true of all axes when it is given.
+class ProcedureJob final : public Job {
+ public:
+  struct Item {
+    drive::Axis* axis = nullptr;  ///< outlives the job
+    int order = 0;
+  };
+
+  /// @param items not empty; any order. @param remark said at the end of the answer.
+  /// @param held nothing is begun before release().
+  ProcedureJob(drive::ProcedureRequest request, std::vector<Item> items, std::string remark,
+               bool held, Reply<> reply);
+
+  bool step(Time now) override;
+  void abandon(const std::string& why) override;
+  void withdraw(const drive::Axis& axis, drive::ProcedureKind by) override;
+  void withdrawEnabling(const std::string& why) override;
+  bool held() const override { return held_; }
+  void release() override { held_ = false; }
+
+ private:
+  enum class Stage : std::uint8_t { waiting, running, succeeded, failed, restoring };
+  struct Entry {
+    drive::Axis* axis = nullptr;
+    int order = 0;
+    Stage stage = Stage::waiting;
+    bool remark = false;   ///< its success has a message that is told
+    std::uint32_t id = 0;  ///< of the procedure; while waiting: of the axis' last one
+    bool seen = false;     ///< id is known while waiting
+    std::string message;
+    std::string mode;  ///< before set_mode
+
+    bool ended() const { return stage == Stage::succeeded || stage == Stage::failed; }
+    void fail(std::string why);
+    /// It is not begun at all, for the reason `why`.
+    void refuse(const std::string& why);
+    void watchWaiting();
+  };
+
+  void startDue(Time now);
+  void watch();
+  void watchRunning(Entry& entry) const;
+  bool ended() const;
+  bool all(Stage stage) const;
+  bool allOrNone() const;
+  void refuseUnlessAll();
+  void restoreModes(Time now);
+  void restoreMode(Entry& entry, Time now) const;
+  bool awaitsNews(Time now) const;
+  void judge();
+  void skipRest();
+  Answer answer() const;
+
+  drive::ProcedureRequest request_;
+  std::vector<Entry> entries_;
+  Reply<> reply_;
+  std::string remark_;
+  bool held_;
+};
+
+}  // namespace cia402::bus

@@ -1,0 +1,282 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/bus/network.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "bus/canopen/lss_supervisor.h"
+#include "bus/canopen/node_unit.h"
+#include "bus/canopen/start_up.h"
+#include "cia402_driver/canopen/received_identifiers.h"
+#include "cia402_driver/drive/fault_text.h"
+
+namespace cia402::bus {
+namespace {
+
+constexpr Duration kFirstFeedback =
+    std::chrono::milliseconds(500);  // may take so long after a boot
+
+}  // namespace
+
+Network::Network(config::RobotConfig robot, canopen::MasterConfig master, can::Sink& sink,
+                 EventSink& events)
+    : config_(std::move(robot)),
+      events_(events),
+      foreseen_(canopen::receivedIdentifiers(master)),
+      master_(std::move(master), sink, this),
+      cycle_(config_, places(), *this, events),
+      sync_(config_.bus, master_, cycle_, events),
+      nodes_(std::make_unique<NodeUnits>()),
+      lss_(std::make_unique<LssSupervisor>(master_, *nodes_, cycle_, sink, events)),
+      start_up_(std::make_unique<StartUp>(master_.config(), config_.bus.listen, cycle_, events)) {
+  addNodes();
+}
+
+Network::~Network() = default;
+
+std::vector<AxisUnit::Place> Network::places() {
+  std::vector<AxisUnit::Place> places;
+  for (const drive::AxisConfig& axis : config_.axes) {
+    const canopen::DeviceConfig& device = config_.deviceOf(axis);
+    canopen::Node& node = *master_.find(device.node_id);
+    places.push_back({&node, node.who(), kFirstFeedback + device.stale_after * axis.sync_period});
+  }
+  return places;
+}
+
+void Network::addNodes() {
+  const std::vector<canopen::DeviceConfig>& devices = config_.devices;
+  for (canopen::Node& node : master_.nodes()) {
+    const auto device = std::find_if(devices.begin(), devices.end(), [&](const auto& candidate) {
+      return candidate.node_id == node.id();
+    });
+    nodes_->add(NodeUnit(node, *device, cycle_, events_));
+  }
+  for (AxisUnit& unit : cycle_.units()) {
+    const canopen::DeviceConfig& device = config_.deviceOf(config_.axes[unit.index]);
+    const canopen::Node* node = master_.find(device.node_id);
+    nodes_->addAxis(static_cast<std::size_t>(node - master_.nodes().data()), unit);
+  }
+}
+
+NodeUnit* Network::unitOf(const canopen::Node& node) {
+  NodeUnit& unit = nodes_->all()[static_cast<std::size_t>(&node - master_.nodes().data())];
+  return unit.empty() ? nullptr : &unit;
+}
+
+canopen::Node& Network::node(std::size_t axis) { return nodes_->ofAxis(axis).node(); }
+
+void Network::start(Time now) {
+  if (started_) return;
+  started_ = true;
+  cycle_.setTime(now);
+  if (!start_up_->begin(now)) beginSending(now);
+}
+
+void Network::beginSending(Time now) {
+  cycle_.sayStep("");
+  if (!lss_->begin()) boot(now);
+}
+
+void Network::boot(Time now) {
+  sync_.begin(now);
+  master_.start(now);
+}
+
+void Network::busLost(const std::string& why, Time now) {
+  cycle_.setTime(now);
+  if (!started_ || !bus_lost_.empty()) return;
+  bus_lost_ = why;
+  cycle_.loseBus(why);
+}
+
+void Network::busBack(bool is_news, Time now) {
+  if (bus_lost_.empty()) return;
+  bus_lost_.clear();
+  if (!is_news) return;
+  tell(Event::Severity::info,
+       config_.bus.interface +
+           " is back: drives that were lost are configured again; the axes stay "
+           "disabled until enable or recover",
+       now);
+}
+
+void Network::receive(const can::Frame& frame, Time stamp, Time now) {
+  cycle_.setTime(now);
+  if (start_up_->listening()) {
+    start_up_->receive(frame, now);
+    if (frame.id == canopen::kSyncCobId) return;  // there is no cycle yet that it could lead
+  }
+  lss_->receive(frame, now);
+  master_.receive(frame, stamp, now);
+}
+
+Time Network::nextDeadline() const {
+  if (!active()) return kNever;
+  const Time cyclic = std::min(sync_.deadline(), master_.nextDeadline());
+  return std::min({cyclic, lss_->deadline(), start_up_->deadline()});
+}
+
+void Network::produceSync(Time now) {
+  if (!sync_.ownSyncDue(now) || !active()) return;
+  cycle_.setTime(now);
+  sync_.onSyncDue(now);
+}
+
+void Network::tick(Time now) {
+  if (!active()) return;
+  cycle_.setTime(now);
+  if (start_up_->listening()) {
+    if (!start_up_->tick(!bus_lost_.empty(), now)) return;
+    beginSending(now);
+    for (Command& command : start_up_->takeDeferred()) execute(std::move(command), now);
+    return;
+  }
+  cycle_.hurry(now);
+  if (sync_.syncDue(now)) sync_.onSyncDue(now);
+  if (sync_.cycleDue(now)) stepCycle(now);
+  if (now >= master_.nextDeadline()) master_.tick(now);
+  if (now >= lss_->deadline() && lss_->tick(now)) boot(now);
+}
+
+void Network::stepCycle(Time now) {
+  sync_.beginCycle();
+  cycle_.move(now);
+  master_.sendRpdos(now);
+  cycle_.stepJobs(now);
+  lss_->lookForLostDrives(now);
+  cycle_.stepShutdown(now);
+  cycle_.watch(now, [&](AxisUnit& unit) { nodes_->ofAxis(unit.index).watch(unit, now); });
+  sync_.watch(now);
+}
+
+std::string Network::refusal() const {
+  if (!started_) return "the bus interface " + config_.bus.interface + " is not there yet";
+  if (lss_->starting()) {
+    return "the drives are being given their node-IDs (" + lss_->step() + ")";
+  }
+  if (bus_lost_.empty()) return {};
+  return bus_lost_ +
+         ", nothing reaches the drives; those that watch the master's heartbeat stop by themselves";
+}
+
+void Network::execute(Command command, Time now) {
+  cycle_.setTime(now);
+  if (cycle_.shutdown().begun()) return command.refuse("refused: the driver is shutting down");
+  if (!command.needsBus()) return command.begin(*this, now);
+  if (start_up_->listening()) return start_up_->take(std::move(command));
+  const std::string why_not = refusal();
+  if (!why_not.empty()) return command.refuse("refused: " + why_not);
+  command.begin(*this, now);
+}
+
+Result<AxisUnit*> Network::unitToAsk(const std::string& axis, const std::string& what) {
+  AxisUnit* const unit = cycle_.find(axis);
+  if (unit == nullptr) return Error{noSuchAxis(axis)};
+  const std::string why_not = unit->axis.device().askingRefusal(what);
+  if (!why_not.empty()) return Error{why_not};
+  return unit;
+}
+
+void Network::beginShutdown(Time now) {
+  if (cycle_.shutdown().begun()) return;
+  // Before the nodes were booted there is nothing to stop.
+  const bool booted = started_ && !lss_->starting() && !start_up_->listening();
+  cycle_.beginShutdown(booted, now);
+  start_up_->abandon("the driver is shutting down");
+  lss_->abandon("ended by the shutdown of the driver", now);
+  cycle_.endMotion(now);
+}
+
+void Network::releaseDevices(Time now) {
+  master_.commandAll(canopen::NmtCommand::enter_pre_operational, now);
+}
+
+std::string Network::enableProblem() const {
+  std::string problem = lss_->bitTiming().enableProblem();
+  return problem.empty() ? sync_.enableProblem() : problem;
+}
+
+std::string Network::preparationOf(std::size_t axis) const { return lss_->preparationOf(axis); }
+
+bool Network::prepareRecovery(const std::vector<AxisUnit*>& units) {
+  return lss_->prepareRecovery(units);
+}
+
+void Network::fill(NetworkSnapshot& snapshot) const {
+  snapshot.now = cycle_.now();
+  snapshot.statistics = sync_.statistics();
+  snapshot.shut_down = shutDown();
+  const bool waits = !start_up_->problem().empty();
+  snapshot.sync_problem = waits ? start_up_->problem() : sync_.problem();
+  snapshot.missed_syncs = sync_.missed();
+  snapshot.foreign_syncs = sync_.foreign();
+  const std::vector<AxisUnit>& units = cycle_.units();
+  snapshot.axes.resize(units.size());
+  for (const AxisUnit& unit : units) {
+    AxisSnapshot& axis = snapshot.axes[unit.index];
+    unit.fill(axis);
+    nodes_->ofAxis(unit.index).fill(axis, foreseen_);
+  }
+  const std::vector<Group>& groups = cycle_.groups();
+  snapshot.groups.resize(groups.size());
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    snapshot.groups[i] = {groups[i].executing(), groups[i].stopping()};
+  }
+}
+
+void Network::onSdoAnswer(canopen::Node& node) {
+  if (NodeUnit* unit = unitOf(node)) {
+    unit->forEachAxis([&](AxisUnit& axis) { cycle_.noteAnswer(axis); });
+  }
+}
+
+void Network::onEmergency(canopen::Node& node, const fieldbus::Emergency& emergency) {
+  NodeUnit* const unit = unitOf(node);
+  if (unit == nullptr) return;
+  const drive::DriveProfile& profile = *unit->axis().axis.config().profile;
+  const bool misses =
+      drive::missingFrames(profile, emergency.code) != drive::ErrorText::Missing::nothing;
+  const std::string excuse = misses ? sync_.ownLateness(emergency.stamp) : std::string();
+  unit->onEmergency(emergency, excuse, cycle_.now());
+}
+
+void Network::onMalformedEmergency(canopen::Node& node, std::size_t size) {
+  if (NodeUnit* unit = unitOf(node)) unit->onMalformedEmergency(size, cycle_.now());
+}
+
+void Network::onBootUp(canopen::Node& node, Time now) {
+  if (NodeUnit* unit = unitOf(node)) unit->onBootUp(now);
+}
+
+void Network::onHealthChange(canopen::Node& node, fieldbus::Health before, Time now) {
+  if (NodeUnit* unit = unitOf(node)) unit->onHealthChange(before, now);
+}
+
+void Network::onForeignSync(const can::Frame& frame, Time stamp, Time now) {
+  if (started_) sync_.onForeignSync(frame, stamp, now);
+}
+
+void SetpointCommand::begin(Network& network, const Reply<>& reply, Time now) const {
+  std::vector<AxisUnit>& units = network.cycle().units();
+  if (axis >= units.size()) return;
+  AxisUnit& unit = units[axis];
+  const Result<void> taken = unit.motion.command(unit.axis, value, now);
+  if (!taken) refuse(reply, taken.error().message);
+}
+
+void TrajectoryCommand::begin(Network& network, const Reply<>& reply, Time now) const {
+  for (Group& candidate : network.cycle().groups()) {
+    if (candidate.config().name != group) continue;
+    const TrajectoryOutcome outcome = candidate.start(joints, points, start_time, now);
+    const bool accepted = outcome.code == motion::TrajectoryErrorCode::successful;
+    return give(reply, answerOf(accepted, outcome.message));
+  }
+  refuse(reply, "there is no group \"" + group + "\"");
+}
+
+void CallCommand::begin(Network&, const Reply<>& reply, Time now) const {
+  give(reply, function(now));
+}
+
+}  // namespace cia402::bus

@@ -1,0 +1,43 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <ros/node_handle.h>
+#include <ros/service_server.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cia402_driver/bus/runner.h"
+#include "cia402_driver/config/robot.h"
+#include "cia402_driver/ros/call_desk.h"
+#include "cia402_driver/ros/command_call.h"
+
+namespace cia402::ros_node {
+
+/// Where the services of the bus, or those of one axis, are offered, and what they work with.
+struct Offer {
+  ros::NodeHandle node;                     ///< of their names
+  const drive::AxisConfig* axis = nullptr;  ///< nullptr: those of the bus
+  CallDesk& desk;
+  bus::BusRunner& runner;
+  const config::RobotConfig& robot;
+  std::vector<ros::ServiceServer>& servers;
+
+  /// For commands: of one axis, or empty for all.
+  std::string name() const { return axis == nullptr ? std::string() : axis->name; }
+  /// A service that keeps a thread until it is answered.
+  /// @param serve (const Request&, Response&)
+  template <typename Service, typename Serve>
+  void serve(const char* service, Serve serve) {
+    using Request = typename Service::Request;
+    using Response = typename Service::Response;
+    servers.push_back(node.advertiseService<Request, Response>(
+        service, [serve = std::move(serve)](Request& request, Response& response) {
+          serve(request, response);
+          return true;
+        }));
+  }
+};
+
+}  // namespace cia402::ros_node

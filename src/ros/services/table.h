@@ -1,0 +1,38 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// All services of the node, a source each beside this table.
+#pragma once
+
+#include "ros/services/offer.h"
+
+namespace cia402::ros_node {
+
+void offerTriggers(Offer& offer);
+void offerSetMode(Offer& offer);
+void offerNmt(Offer& offer);
+void offerDumpRecording(Offer& offer);
+void offerLss(Offer& offer);
+void offerErrorHistory(Offer& offer);
+void offerSetPosition(Offer& offer);
+void offerObjects(Offer& offer);
+void offerSaveDcf(Offer& offer);
+
+/// A row of the table: what offers it, and whether for the bus, for each axis, or for both.
+struct ServiceEntry {
+  void (*offer)(Offer&);
+  bool of_bus, of_axis;
+};
+// clang-format off
+inline constexpr ServiceEntry kServices[] = {
+    {offerTriggers, true, true},
+    {offerSetMode, true, true},
+    {offerNmt, true, true},
+    {offerDumpRecording, true, false},
+    {offerLss, true, false},
+    {offerErrorHistory, false, true},
+    {offerSetPosition, false, true},
+    {offerObjects, false, true},
+    {offerSaveDcf, false, true},
+};
+// clang-format on
+
+}  // namespace cia402::ros_node
