@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "cia402_driver/bus/robot.h"
-#include "cia402_driver/canopen/lss_scan.h"
+#include "cia402_driver/canopen/lss/scan.h"
 
 namespace cia402::bus {
 namespace {

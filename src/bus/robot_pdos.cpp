@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // What people are told of PDOs that do not come as they should.
 #include "cia402_driver/bus/robot.h"
-#include "cia402_driver/canopen/pdo_text.h"
+#include "cia402_driver/canopen/pdo/text.h"
 
 namespace cia402::bus {
 namespace {

@@ -10,9 +10,9 @@
 #include <variant>
 #include <vector>
 
-#include "cia402_driver/canopen/error_history.h"
-#include "cia402_driver/canopen/lss_protocol.h"
-#include "cia402_driver/canopen/sdo_client.h"
+#include "cia402_driver/canopen/emcy/error_history.h"
+#include "cia402_driver/canopen/lss/protocol.h"
+#include "cia402_driver/canopen/sdo/client.h"
 #include "cia402_driver/drive/axis.h"
 #include "cia402_driver/motion/trajectory.h"
 

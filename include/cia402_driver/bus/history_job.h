@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "cia402_driver/canopen/error_history.h"
+#include "cia402_driver/canopen/emcy/error_history.h"
 #include "cia402_driver/drive/axis.h"
 
 namespace cia402::bus {

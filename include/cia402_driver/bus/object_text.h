@@ -4,7 +4,7 @@
 #include <limits>
 #include <string>
 
-#include "cia402_driver/canopen/sdo_client.h"
+#include "cia402_driver/canopen/sdo/client.h"
 #include "cia402_driver/common/result.h"
 #include "cia402_driver/drive/axis_config.h"
 

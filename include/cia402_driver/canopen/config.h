@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "cia402_driver/canopen/object.h"
-#include "cia402_driver/canopen/pdo.h"
-#include "cia402_driver/canopen/sdo_client.h"
+#include "cia402_driver/canopen/pdo/config.h"
+#include "cia402_driver/canopen/sdo/client.h"
 #include "cia402_driver/common/time.h"
 
 namespace cia402::canopen {

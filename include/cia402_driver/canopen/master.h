@@ -10,10 +10,10 @@
 #include "cia402_driver/can/bus.h"
 #include "cia402_driver/can/pacer.h"
 #include "cia402_driver/canopen/config.h"
-#include "cia402_driver/canopen/heartbeat.h"
-#include "cia402_driver/canopen/node.h"
-#include "cia402_driver/canopen/sync.h"
-#include "cia402_driver/canopen/time_producer.h"
+#include "cia402_driver/canopen/nmt/heartbeat.h"
+#include "cia402_driver/canopen/node/node.h"
+#include "cia402_driver/canopen/sync/sync.h"
+#include "cia402_driver/canopen/sync/time_producer.h"
 
 namespace cia402::canopen {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "cia402_driver/canopen/sdo_client.h"
+#include "cia402_driver/canopen/sdo/client.h"
 #include "cia402_driver/drive/axis_config.h"
 #include "cia402_driver/drive/conversion.h"
 
