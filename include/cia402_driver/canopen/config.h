@@ -8,7 +8,7 @@
 
 #include "cia402_driver/canopen/object.h"
 #include "cia402_driver/canopen/pdo/config.h"
-#include "cia402_driver/canopen/sdo/client.h"
+#include "cia402_driver/canopen/sdo/options.h"
 #include "cia402_driver/common/time.h"
 
 namespace cia402::canopen {

@@ -1,181 +1,192 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-// Block upload (CiA 301, 7.2.4.2.13 to 7.2.4.2.16, 7.2.4.3.12 to 7.2.4.3.15): the server sends up
-// to 127 segments in a row, the client acknowledges them together and asks for lost ones again.
+#include "cia402_driver/canopen/sdo/block_upload.h"
+
 #include <algorithm>
 #include <string>
+#include <utility>
 
-#include "canopen/sdo/block.h"
-#include "canopen/sdo/crc.h"
-#include "cia402_driver/canopen/sdo/client.h"
+#include "canopen/sdo/frames.h"
 #include "cia402_driver/fieldbus/abort_code.h"
 
 namespace cia402::canopen {
 
-using namespace sdo_block;
+using namespace sdo;
 
 namespace {
 
-constexpr std::uint8_t kSizeIndicated = 0x02;
-constexpr std::uint8_t kSequence = 0x7F;
+constexpr std::uint8_t kRequestBlockUpload = 0xA4;  // CRC supported
 constexpr std::uint8_t kStart = 0xA3;
 constexpr std::uint8_t kAcknowledge = 0xA2;
 constexpr std::uint8_t kEndAcknowledge = 0xA1;
+constexpr std::uint8_t kSizeIndicated = 0x02;
+constexpr std::uint8_t kSequence = 0x7F;
+/// Up to here the server may answer a block upload by an ordinary one: that is fewer frames.
+constexpr std::uint32_t kSwitchThreshold = 28;  // bytes
 
 }  // namespace
 
-SdoClient::Outcome SdoClient::onBlockUploadInitiated(const can::Frame& frame, Time now) {
-  const std::uint8_t command = frame.data[0];
-  if ((command & 1U) != 0 || !namesCurrentObject(frame)) return Outcome::stray;
-  answered(now);
-  block_.crc = (command & kCrcSupported) != 0;
-  block_.size = kMostSegments;
-  const auto size = static_cast<std::uint32_t>(frame.data[4]) |
-                    static_cast<std::uint32_t>(frame.data[5]) << 8 |
-                    static_cast<std::uint32_t>(frame.data[6]) << 16 |
-                    static_cast<std::uint32_t>(frame.data[7]) << 24;
-  if ((command & kSizeIndicated) != 0 && !acceptAnnounced(size, now)) return Outcome::taken;
-  sink_.send(can::Frame(request_id_, {kStart, 0, 0, 0, 0, 0, 0, 0}));
-  await(Phase::block_upload_segments, now);
-  return Outcome::taken;
+void SdoBlockUpload::initiate(Time now) {
+  exchange_.sendRequest(kRequestBlockUpload, transfer_.object(),
+                        std::uint32_t{kMostSegments} | kSwitchThreshold << 8U);
+  await(Phase::initiate, now);
 }
 
-SdoClient::Outcome SdoClient::onBlockUploadSegment(const can::Frame& frame, Time now) {
-  if (frame == last_answer_) return Outcome::stray;  // it came twice
+void SdoBlockUpload::await(Phase phase, Time now) {
+  phase_ = phase;
+  exchange_.await(transfer_.options().timeout, now);
+}
+
+SdoReaction SdoBlockUpload::receive(const can::Frame& frame, Time now) {
+  if (frame.data[0] == kAbort) return serverAbort(frame, transfer_.object());
+  const unsigned command = commandOf(frame);
+  switch (phase_) {
+    case Phase::initiate:
+      if (command == kUploadInitiated) {
+        return names(frame, transfer_.object()) ? SdoReaction::ordinary() : SdoReaction::stray();
+      }
+      return command == kBlockUpload ? onInitiated(frame, now) : SdoReaction::stray();
+    case Phase::segments:
+      return onSegment(frame, now);
+    case Phase::end:
+      return command == kBlockUpload ? onEnd(frame) : SdoReaction::stray();
+  }
+  return SdoReaction::stray();
+}
+
+SdoReaction SdoBlockUpload::onInitiated(const can::Frame& frame, Time now) {
+  const std::uint8_t command = frame.data[0];
+  if ((command & 1U) != 0 || !names(frame, transfer_.object())) return SdoReaction::stray();
+  exchange_.answered(now);
+  checksum_.used = (command & kCrcSupported) != 0;
+  if ((command & kSizeIndicated) != 0) {
+    announced_ = dataOf(frame);
+    const std::size_t allowed = transfer_.options().longest_upload;
+    if (*announced_ > allowed) return tooMuchAnnounced(*announced_, allowed);
+    received_.reserve(*announced_);  // memory is taken only for what is allowed
+  }
+  start(now);
+  return SdoReaction::taken();
+}
+
+void SdoBlockUpload::start(Time now) {
+  exchange_.send(kStart);
+  await(Phase::segments, now);
+}
+
+SdoReaction SdoBlockUpload::onSegment(const can::Frame& frame, Time now) {
+  if (exchange_.isRepetition(frame)) return SdoReaction::stray();
   const unsigned sequence = frame.data[0] & kSequence;
   const bool last = (frame.data[0] & kLastSegment) != 0;
-  if (sequence == 0 || sequence > block_.size) {
-    abortTransfer(abort_code::kInvalidSequence,
-                  "segment number " + std::to_string(sequence) + " of a sub-block of " +
-                      std::to_string(block_.size),
-                  now);
-    return Outcome::taken;
+  if (sequence == 0) {  // it has seven bits, so it is not above kMostSegments
+    return SdoReaction::broken(abort_code::kInvalidSequence,
+                               "segment number " + std::to_string(sequence) +
+                                   " of a sub-block of " + std::to_string(kMostSegments));
   }
-  if (sequence <= block_.sequence) return Outcome::stray;
-  if (sequence == block_.sequence + 1 && !block_.gap) {
-    if (!appendBlockSegment(frame, now)) return Outcome::taken;
-    block_.sequence = sequence;
-    block_.last = last;
-    block_.vain = 0;
+  if (sequence <= sequence_) return SdoReaction::stray();
+  if (sequence == sequence_ + 1 && !gap_) {
+    if (received_.size() >= std::max<std::size_t>(limit(), 1)) {
+      return SdoReaction::broken(
+          announced_ ? abort_code::kLengthMismatch : abort_code::kOutOfMemory,
+          "more than " + std::to_string(limit()) + " bytes came");
+    }
+    append(frame);
+    sequence_ = sequence;
+    last_ = last;
+    vain_ = 0;
   } else {
-    block_.gap = true;  // what follows is sent again, too
+    gap_ = true;  // what follows is sent again, too
   }
-  if (last || sequence == block_.size) {
-    endSubBlock(now);
-  } else {
-    await(Phase::block_upload_segments, now);
-  }
-  return Outcome::taken;
+  if (last || sequence == kMostSegments) return endSubBlock(now);
+  await(Phase::segments, now);
+  return SdoReaction::taken();
 }
 
-/// @return false: aborted.
-bool SdoClient::appendBlockSegment(const can::Frame& frame, Time now) {
-  const std::size_t limit = announced_.value_or(queue_.front()->options_.longest_upload);
-  if (received_.size() >= std::max<std::size_t>(limit, 1)) {
-    abortTransfer(announced_ ? abort_code::kLengthMismatch : abort_code::kOutOfMemory,
-                  "more than " + std::to_string(limit) + " bytes came", now);
-    return false;
-  }
-  if (block_.crc)
-    checkBlock(received_.size());  // how much of the last segment counts is known at the end only
+std::size_t SdoBlockUpload::limit() const {
+  return announced_.value_or(transfer_.options().longest_upload);
+}
+
+void SdoBlockUpload::append(const can::Frame& frame) {
+  // How much of the last segment counts is known at the end only.
+  if (checksum_.used) checksum_.extend(received_.data(), received_.size());
   received_.insert(received_.end(), frame.data.begin() + 1, frame.data.end());
-  return true;
-}
-
-void SdoClient::checkBlock(std::size_t until) {
-  const Bytes& data = queue_.front()->direction_ == SdoTransfer::Direction::upload
-                          ? received_
-                          : queue_.front()->data_;
-  if (until <= block_.checked) return;
-  block_.checksum = sdoCrc(block_.checksum, data.data() + block_.checked, until - block_.checked);
-  block_.checked = until;
 }
 
 /// Whether a mix-up over what was acknowledged would be seen in the end. The CRC begins with 0: it
 /// takes no notice of zeros more or less before the first other byte.
-bool SdoClient::mayRepeatSegments() const {
-  return announced_.has_value() || (block_.crc && block_.checksum != 0);
+bool SdoBlockUpload::mayRepeatSegments() const {
+  return announced_.has_value() || (checksum_.used && checksum_.value != 0);
 }
 
-void SdoClient::endSubBlock(Time now) {
-  const bool complete = block_.last && !block_.gap;
-  if (block_.gap) {
-    ++counters_.retries;
+SdoReaction SdoBlockUpload::endSubBlock(Time now) {
+  const bool complete = last_ && !gap_;
+  if (gap_) {
+    ++exchange_.counters().retries;
     if (!mayRepeatSegments()) {
-      abortTransfer(abort_code::kInvalidSequence,
-                    "a segment is missing, and without size and CRC nothing would show whether "
-                    "the repetition fits",
-                    now);
-      return;
+      return SdoReaction::broken(abort_code::kInvalidSequence,
+                                 "a segment is missing, and without size and CRC nothing would "
+                                 "show whether the repetition fits");
     }
-    if (block_.sequence == 0 && ++block_.vain > kMostVain) {
-      abortTransfer(
+    if (sequence_ == 0 && ++vain_ > kMostVain) {
+      return SdoReaction::broken(
           abort_code::kInvalidSequence,
-          "the first segment was missing " + std::to_string(block_.vain) + " times in a row", now);
-      return;
+          "the first segment was missing " + std::to_string(vain_) + " times in a row");
     }
   }
-  const unsigned sequence = block_.sequence;
-  block_.sequence = 0;
-  block_.gap = false;
-  sendBlockAcknowledge(sequence, now);
-  if (complete) phase_ = Phase::block_upload_end;
+  acknowledge(sequence_, now);
+  if (complete) phase_ = Phase::end;
+  return SdoReaction::taken();
 }
 
-void SdoClient::sendBlockAcknowledge(unsigned sequence, Time now) {
-  block_.acknowledged = sequence;
-  sink_.send(can::Frame(request_id_, {kAcknowledge, static_cast<std::uint8_t>(sequence),
-                                      static_cast<std::uint8_t>(block_.size), 0, 0, 0, 0, 0}));
-  await(Phase::block_upload_segments, now);
+/// Another sub-block, or what is missing of this one, may come.
+void SdoBlockUpload::acknowledge(unsigned sequence, Time now) {
+  sequence_ = 0;
+  gap_ = false;
+  acknowledged_ = sequence;
+  exchange_.send(kAcknowledge, static_cast<std::uint8_t>(sequence),
+                 static_cast<std::uint8_t>(kMostSegments));
+  await(Phase::segments, now);
 }
 
-SdoClient::Outcome SdoClient::onBlockUploadEnd(const can::Frame& frame, Time now) {
-  if ((frame.data[0] & 0x03U) != 1) return Outcome::stray;
+SdoReaction SdoBlockUpload::onEnd(const can::Frame& frame) {
+  if ((frame.data[0] & 0x03U) != 1) return SdoReaction::stray();
   const std::size_t unused = frame.data[0] >> 2U & 7U;
   const std::size_t size = received_.size() - std::min(unused, received_.size());
   const auto crc = static_cast<std::uint16_t>(frame.data[1] | frame.data[2] << 8);
-  const std::size_t sure = std::min(block_.checked, size);  // all but the last segment
-  const std::uint16_t checksum = sdoCrc(block_.checksum, received_.data() + sure, size - sure);
-  const bool crc_wrong = block_.crc && crc != checksum;
+  const std::size_t sure = std::min(checksum_.covered, size);  // all but the last segment
+  const std::uint16_t checksum = sdoCrc(checksum_.value, received_.data() + sure, size - sure);
+  const bool crc_wrong = checksum_.used && crc != checksum;
   const bool size_wrong = announced_ && size != *announced_;
   // The last segment once more can look like the end; only what proves itself is one.
-  if (frame == last_answer_ && (crc_wrong || size_wrong || !mayRepeatSegments())) {
-    return Outcome::stray;
+  if (exchange_.isRepetition(frame) && (crc_wrong || size_wrong || !mayRepeatSegments())) {
+    return SdoReaction::stray();
   }
   if (crc_wrong) {
-    abortTransfer(abort_code::kCrcError, "the CRC does not fit the data", now);
-  } else if (size_wrong) {
-    abortTransfer(
-        abort_code::kLengthMismatch,
-        std::to_string(size) + " bytes came, " + std::to_string(*announced_) + " were announced",
-        now);
-  } else {
-    sink_.send(can::Frame(request_id_, {kEndAcknowledge, 0, 0, 0, 0, 0, 0, 0}));
-    received_.resize(size);
-    queue_.front()->data_ = std::move(received_);
-    succeed(now);
+    return SdoReaction::broken(abort_code::kCrcError, "the CRC does not fit the data");
   }
-  return Outcome::taken;
+  if (size_wrong) {
+    return SdoReaction::broken(
+        abort_code::kLengthMismatch,
+        std::to_string(size) + " bytes came, " + std::to_string(*announced_) + " were announced");
+  }
+  exchange_.send(kEndAcknowledge);
+  received_.resize(size);
+  transfer_.setData(std::move(received_));
+  return SdoReaction::completed();
 }
 
-/// Nothing came for the time-out: our last word may have been lost, or the end of a sub-block.
-/// @return false where that cannot be mended.
-bool SdoClient::resumeBlockUpload(Time now) {
-  const bool segments = phase_ == Phase::block_upload_segments;
-  if (!segments && phase_ != Phase::block_upload_end) return false;
-  if (!mayRepeatSegments() || block_.vain > 0) return false;
+bool SdoBlockUpload::resume(Time now) {
   const Phase phase = phase_;
-  ++block_.vain;
-  ++counters_.retries;
-  if (segments && block_.sequence > 0) {
-    sendBlockAcknowledge(block_.sequence, now);
-    block_.sequence = 0;
-    block_.gap = false;
-  } else if (block_.acknowledged) {
-    sendBlockAcknowledge(*block_.acknowledged, now);
-    phase_ = phase;
+  if (phase == Phase::initiate || !mayRepeatSegments() || vain_ > 0) return false;
+  ++vain_;
+  ++exchange_.counters().retries;
+  if (phase == Phase::segments && sequence_ > 0) {
+    acknowledge(sequence_, now);
+  } else if (acknowledged_) {
+    exchange_.send(kAcknowledge, static_cast<std::uint8_t>(*acknowledged_),
+                   static_cast<std::uint8_t>(kMostSegments));
+    await(phase, now);
   } else {
-    sink_.send(can::Frame(request_id_, {kStart, 0, 0, 0, 0, 0, 0, 0}));
-    await(Phase::block_upload_segments, now);
+    start(now);
   }
   return true;
 }

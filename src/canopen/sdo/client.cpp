@@ -2,50 +2,17 @@
 #include "cia402_driver/canopen/sdo/client.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
+#include <memory>
 #include <utility>
 
-#include "canopen/sdo/block.h"
+#include "canopen/sdo/frames.h"
 #include "cia402_driver/fieldbus/abort_code.h"
 
 namespace cia402::canopen {
 namespace {
 
-// Client command specifiers and flags of CiA 301, 7.2.4.3: the first byte.
-constexpr std::uint8_t kRequestUpload = 0x40;
-constexpr std::uint8_t kRequestDownloadSegmented = 0x21;  // size indicated
-constexpr std::uint8_t kRequestDownloadExpedited = 0x23;  // size indicated
-constexpr std::uint8_t kRequestBlockUpload = 0xA4;        // CRC supported
-constexpr std::uint8_t kRequestBlockDownload = 0xC6;      // CRC supported, size indicated
-constexpr std::uint8_t kAbort = 0x80;
-constexpr std::size_t kMostExpedited = 4;  // bytes in the request itself
-
-/// Command of an expedited download of 1 to 4 bytes.
-std::uint8_t expedited(std::size_t size) {
-  return static_cast<std::uint8_t>(kRequestDownloadExpedited | (kMostExpedited - size) << 2U);
-}
-
-/// Up to here the server may answer a block upload by an ordinary one: that is fewer frames.
-constexpr std::uint32_t kSwitchThreshold = 28;  // bytes
-
-// Both never change while the device runs, so that even a late answer would be right.
-constexpr ObjectId kDeviceType{0x1000, 0}, kIdentityCount{0x1018, 0};
-
-constexpr Time kAtOnce{};  // the beginning of time, but no number that overflows in a subtraction
-
-std::string hexBytes(const Bytes& bytes) {
-  constexpr std::size_t kShown = 8;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(bytes.size(), kShown); ++i) {
-    std::array<char, 4> byte{};
-    std::snprintf(byte.data(), byte.size(), i == 0 ? "%02X" : " %02X",
-                  static_cast<unsigned>(bytes[i]));
-    text += byte.data();
-  }
-  if (bytes.size() > kShown) text += " ... (" + std::to_string(bytes.size()) + " bytes)";
-  return text;
-}
+using Direction = SdoTransfer::Direction;
+using Failure = SdoTransfer::Failure;
 
 std::string milliseconds(Duration duration) {
   const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(duration);
@@ -57,64 +24,54 @@ std::string milliseconds(Duration duration) {
 SdoClient::SdoClient(NodeId node, can::Sink& sink, SdoOptions defaults, SdoChannel channel,
                      can::Pacer* pacer)
     : node_(node),
-      sink_(sink),
-      pacer_(pacer),
       defaults_(defaults),
-      request_id_(channel.request != 0 ? channel.request : 0x600U + node),
-      answer_id_(channel.answer != 0 ? channel.answer : 0x580U + node) {}
+      answer_id_(channel.answer != 0 ? channel.answer : 0x580U + node),
+      exchange_(sink, pacer, channel.request != 0 ? channel.request : 0x600U + node) {}
 
 SdoTicket SdoClient::upload(ObjectId object, std::string name, std::optional<SdoOptions> options) {
-  auto transfer = std::make_shared<SdoTransfer>();
-  transfer->object_ = object;
-  transfer->name_ = std::move(name);
-  return enqueue(std::move(transfer), options);
+  auto transfer = std::make_shared<SdoTransfer>(Direction::upload, object, std::move(name), Bytes(),
+                                                options.value_or(defaults_), false);
+  queue_.add(transfer);
+  return transfer;
 }
 
 SdoTicket SdoClient::download(ObjectId object, Bytes data, std::string name,
                               std::optional<SdoOptions> options) {
-  auto transfer = std::make_shared<SdoTransfer>();
-  transfer->object_ = object;
-  transfer->name_ = std::move(name);
-  transfer->direction_ = SdoTransfer::Direction::download;
-  transfer->data_ = std::move(data);
-  return enqueue(std::move(transfer), options);
+  auto transfer =
+      std::make_shared<SdoTransfer>(Direction::download, object, std::move(name), std::move(data),
+                                    options.value_or(defaults_), false);
+  queue_.add(transfer);
+  return transfer;
 }
 
 SdoTicket SdoClient::downloadUrgent(ObjectId object, Bytes data, const std::string& name) {
-  auto transfer = std::make_shared<SdoTransfer>();
-  transfer->object_ = object;
-  transfer->name_ = name;
-  transfer->direction_ = SdoTransfer::Direction::download;
-  transfer->data_ = std::move(data);
-  transfer->urgent_ = true;
   makeWay(toString(object) + (name.empty() ? "" : " " + name));
-  return enqueue(std::move(transfer), {});
+  auto transfer = std::make_shared<SdoTransfer>(Direction::download, object, name, std::move(data),
+                                                defaults_, true);
+  queue_.add(transfer);
+  return transfer;
 }
 
 bool SdoClient::post(ObjectId object, const Bytes& data) {
-  if (phase_ != Phase::idle || data.empty() || data.size() > kMostExpedited) return false;
-  sendRequest(expedited(data.size()), object, static_cast<std::uint32_t>(toUnsigned(data)));
-  if (!abandoned_) {  // else the fence that is due holds this answer back as well
-    abandoned_ = object;
-    fences_left_ = 1;
-  }
+  if (!isIdle() || !SdoDownload::isExpedited(data.size())) return false;
+  SdoDownload::sendExpedited(exchange_, object, data);
+  fence_.expectNothingOf(object);
   return true;
 }
 
 /// The transfer on the wire, unless it is urgent itself, is none any more.
 void SdoClient::makeWay(const std::string& urgent) {
-  if (phase_ == Phase::idle || queue_.front()->urgent_) return;
-  if (phase_ == Phase::fence) {  // nothing of the transfer itself was sent: it can wait
+  if (isIdle() || queue_.front().urgent()) return;
+  if (isAtFence()) {  // nothing of the transfer itself was sent: it can wait
     attempt_ = 1;
-    fell_back_ = false;
+    blocks_.begin();
     return;
   }
-  sendAbort(abort_code::kGeneral);
-  abandon();
-  finish(*queue_.front(), SdoTransfer::Failure::cancelled, 0,
-         "cancelled: it made way for an urgent write to " + urgent);
-  queue_.pop_front();
-  phase_ = Phase::idle;
+  abandon(abort_code::kGeneral);
+  wire_ = Idle();
+  queue_.front().fail(node_, Failure::cancelled, 0,
+                      "cancelled: it made way for an urgent write to " + urgent);
+  queue_.pop();
 }
 
 std::optional<SdoOptions> SdoClient::completed(
@@ -135,249 +92,198 @@ SdoTicket SdoClient::queueDownload(ObjectId object, Bytes data, std::string name
   return download(object, std::move(data), std::move(name), completed(options));
 }
 
-SdoTicket SdoClient::enqueue(Transfer transfer, const std::optional<SdoOptions>& options) {
-  transfer->options_ = options.value_or(defaults_);
-  const auto place = transfer->urgent_
-                         ? std::find_if(queue_.begin(), queue_.end(),
-                                        [](const Transfer& queued) { return !queued->urgent_; })
-                         : queue_.end();
-  queue_.insert(place, transfer);
-  if (queued_ != nullptr) *queued_ = true;
-  return transfer;
-}
+bool SdoClient::idle() const { return queue_.empty(); }
 
 void SdoClient::tick(Time now) {
-  if (phase_ == Phase::idle) {
+  auto* blocks = std::get_if<SdoBlockDownload>(&wire_);
+  if (isIdle()) {
     startNext(now);
-  } else if (phase_ == Phase::block_download_segments && now >= feed_at_) {
-    feedBlock(now);
-  } else if (now >= deadline_) {
+  } else if (blocks != nullptr && now >= blocks->feedAt()) {
+    blocks->feed(now);
+  } else if (now >= exchange_.deadline()) {
     onTimeout(now);
   }
 }
 
 Time SdoClient::nextDeadline() const {
-  if (phase_ == Phase::block_download_segments) return std::min(deadline_, feed_at_);
-  if (phase_ != Phase::idle) return deadline_;
-  if (queue_.empty()) return kNever;
-  return queue_.front()->urgent_ ? kAtOnce : std::max(kAtOnce, held_until_);
+  if (isIdle()) return queue_.nextStart();
+  const auto* blocks = std::get_if<SdoBlockDownload>(&wire_);
+  return blocks != nullptr ? std::min(exchange_.deadline(), blocks->feedAt())
+                           : exchange_.deadline();
 }
 
-bool SdoClient::idle() const { return queue_.empty(); }
-
 void SdoClient::startNext(Time now) {
-  if (queue_.empty() || (now < held_until_ && !queue_.front()->urgent_)) return;
+  if (queue_.empty() || now < queue_.nextStart()) return;
   attempt_ = 0;
-  fell_back_ = false;
+  blocks_.begin();
   started_at_ = now;
   attempt(now);
 }
 
 void SdoClient::attempt(Time now) {
   ++attempt_;
-  if (abandoned_) {
+  if (fence_.isUp()) {
     sendFence(now);
   } else {
     initiate(now);
   }
 }
 
+void SdoClient::sendFence(Time now) {
+  ++exchange_.counters().fences;
+  exchange_.sendRequest(sdo::kRequestUpload, fence_.object(), 0);
+  exchange_.await(queue_.front().options().timeout, now);
+  wire_ = AtFence();
+}
+
 void SdoClient::initiate(Time now) {
-  toggle_ = false;
-  offset_ = 0;
-  announced_.reset();
-  received_.clear();
-  block_ = Block();
-  if (queue_.front()->direction_ == SdoTransfer::Direction::upload) {
-    initiateUpload(now);
-  } else {
-    initiateDownload(now);
+  SdoTransfer& transfer = queue_.front();
+  const bool blocks = blocks_.wanted(transfer);
+  if (transfer.isUpload()) {
+    if (blocks) return wire_.emplace<SdoBlockUpload>(exchange_, transfer).initiate(now);
+    return wire_.emplace<SdoUpload>(exchange_, transfer).initiate(now);
   }
+  if (blocks) return wire_.emplace<SdoBlockDownload>(exchange_, transfer).initiate(now);
+  wire_.emplace<SdoDownload>(exchange_, transfer).initiate(now);
 }
 
-bool SdoClient::wantsBlock() const {
-  const SdoTransfer& transfer = *queue_.front();
-  if (fell_back_ || block_refused_) return false;
-  const bool upload = transfer.direction_ == SdoTransfer::Direction::upload;
-  switch (transfer.options_.block) {
-    case SdoOptions::Block::never:
-      return false;
-    case SdoOptions::Block::automatic:
-      return !upload && transfer.data_.size() > transfer.options_.block_threshold;
-    case SdoOptions::Block::always:
-      return upload || !transfer.data_.empty();
-  }
-  return false;
+bool SdoClient::initiatesBlocks() const {
+  if (const auto* upload = std::get_if<SdoBlockUpload>(&wire_)) return upload->initiating();
+  const auto* download = std::get_if<SdoBlockDownload>(&wire_);
+  return download != nullptr && download->initiating();
 }
 
-void SdoClient::initiateUpload(Time now) {
-  if (wantsBlock()) {
-    sendInitiate(kRequestBlockUpload,
-                 std::uint32_t{sdo_block::kMostSegments} | kSwitchThreshold << 8U);
-    await(Phase::block_upload_initiate, now);
-  } else {
-    sendInitiate(kRequestUpload, 0);
-    await(Phase::upload_initiate, now);
-  }
-}
-
-void SdoClient::initiateDownload(Time now) {
-  const Bytes& data = queue_.front()->data_;
-  const auto size = static_cast<std::uint32_t>(data.size());
-  if (wantsBlock()) {
-    sendInitiate(kRequestBlockDownload, size);
-    await(Phase::block_download_initiate, now);
+void SdoClient::receive(const can::Frame& frame, Time now) {
+  const bool ours = frame.id == answer_id_ && !frame.extended && !frame.remote && !frame.error;
+  // CiA 301, 7.2.4.3: an SDO is always eight bytes long.
+  const SdoReaction reaction =
+      ours && frame.size == 8 ? dispatch(frame, now) : SdoReaction::stray();
+  if (reaction.kind == SdoReaction::Kind::stray) {
+    ++exchange_.counters().stray_frames;
     return;
   }
-  if (size >= 1 && size <= kMostExpedited) {
-    sendInitiate(expedited(size), static_cast<std::uint32_t>(toUnsigned(data)));
+  act(reaction, now);
+  exchange_.remember(frame);
+}
+
+SdoReaction SdoClient::dispatch(const can::Frame& frame, Time now) {
+  if (isIdle()) return SdoReaction::stray();
+  if (isAtFence()) return onFenceAnswer(frame, now);
+  if (auto* upload = std::get_if<SdoUpload>(&wire_)) return upload->receive(frame, now);
+  if (auto* download = std::get_if<SdoDownload>(&wire_)) return download->receive(frame, now);
+  if (auto* blocks = std::get_if<SdoBlockDownload>(&wire_)) return blocks->receive(frame, now);
+  const SdoReaction reaction = std::get<SdoBlockUpload>(wire_).receive(frame, now);
+  if (reaction.kind != SdoReaction::Kind::ordinary) return reaction;
+  return wire_.emplace<SdoUpload>(exchange_, queue_.front()).receive(frame, now);
+}
+
+/// Everything that comes before it is the past of an abandoned transfer.
+SdoReaction SdoClient::onFenceAnswer(const can::Frame& frame, Time now) {
+  if (!fence_.isAnswer(frame)) return SdoReaction::stray();
+  exchange_.answered(now);
+  if (fence_.pass()) {
+    initiate(now);
   } else {
-    sendInitiate(kRequestDownloadSegmented, size);
+    sendFence(now);
   }
-  await(Phase::download_initiate, now);
+  return SdoReaction::taken();
 }
 
-void SdoClient::await(Phase phase, Time now) {
-  phase_ = phase;
-  asked_at_ = now;
-  deadline_ = now + queue_.front()->options_.timeout;
+void SdoClient::act(const SdoReaction& reaction, Time now) {
+  switch (reaction.kind) {
+    case SdoReaction::Kind::completed:
+      return succeed(now);
+    case SdoReaction::Kind::refused:
+      exchange_.answered(now);
+      if (initiatesBlocks() && blocks_.refused(reaction.code)) return initiate(now);
+      return fail(Failure::aborted_by_server, reaction.code,
+                  "the drive refused: " + abortText(reaction.code), now);
+    case SdoReaction::Kind::broken:
+      abandon(reaction.code);
+      return fail(Failure::protocol_error, reaction.code,
+                  "the answer breaks the SDO protocol: " + reaction.why + "; aborted with " +
+                      abortText(reaction.code),
+                  now);
+    case SdoReaction::Kind::stray:
+    case SdoReaction::Kind::taken:
+    case SdoReaction::Kind::ordinary:
+      return;
+  }
 }
 
-void SdoClient::answered(Time now) {
-  const Duration latency = std::max(now - asked_at_, Duration::zero());
-  ++counters_.answers;
-  counters_.last_latency = latency;
-  counters_.longest_latency = std::max(counters_.longest_latency, latency);
-  counters_.total_latency += latency;
-  repetition_seen_ = false;
+/// Tells the server that the transfer on the wire is given up; its answer may still be under way.
+void SdoClient::abandon(std::uint32_t abort_code) {
+  const ObjectId object = queue_.front().object();
+  exchange_.sendRequest(sdo::kAbort, object, abort_code);
+  const auto* upload = std::get_if<SdoBlockUpload>(&wire_);
+  fence_.abandon(object, upload != nullptr && upload->looksLikeAnything());
 }
 
-void SdoClient::sendRequest(std::uint8_t command, ObjectId object, std::uint32_t data) {
-  sink_.send(can::Frame(
-      request_id_, {command, static_cast<std::uint8_t>(object.index),
-                    static_cast<std::uint8_t>(object.index >> 8), object.subindex,
-                    static_cast<std::uint8_t>(data), static_cast<std::uint8_t>(data >> 8),
-                    static_cast<std::uint8_t>(data >> 16), static_cast<std::uint8_t>(data >> 24)}));
-}
-
-void SdoClient::sendInitiate(std::uint8_t command, std::uint32_t data) {
-  sendRequest(command, queue_.front()->object_, data);
-}
-
-void SdoClient::sendAbort(std::uint32_t code) { sendInitiate(kAbort, code); }
-
-/// The transfer on the wire is given up, but its answer may still be under way.
-void SdoClient::abandon() {
-  abandoned_ = queue_.front()->object_;
-  // Segments of a block upload carry data behind a first byte that can be any: one of them could
-  // look like the answer to a read, hardly like that to one and later like that to another.
-  const bool anything = phase_ == Phase::block_upload_segments || phase_ == Phase::block_upload_end;
-  fences_left_ = anything ? 2 : 1;
-}
-
-ObjectId SdoClient::fenceObject() const {
-  const bool other = abandoned_->index == kDeviceType.index || fences_left_ > 1;
-  return other && abandoned_->index != kIdentityCount.index ? kIdentityCount : kDeviceType;
-}
-
-void SdoClient::sendFence(Time now) {
-  ++counters_.fences;
-  sendRequest(kRequestUpload, fenceObject(), 0);
-  await(Phase::fence, now);
-}
-
-void SdoClient::serverRestarted() {
-  abandoned_.reset();
-  block_refused_ = false;
+bool SdoClient::resumes(Time now) {
+  auto* upload = std::get_if<SdoBlockUpload>(&wire_);
+  return upload != nullptr && upload->resume(now);
 }
 
 void SdoClient::onTimeout(Time now) {
-  const SdoOptions options = queue_.front()->options_;
-  ++counters_.timeouts;
-  if (resumeBlockUpload(now)) return;
-  const bool at_fence = phase_ == Phase::fence;
-  if (at_fence) {
+  ++exchange_.counters().timeouts;
+  if (resumes(now)) return;
+  if (isAtFence()) {
     // The first abort may have been lost, and a server in the middle of a block takes all for data.
-    sendRequest(kAbort, *abandoned_, abort_code::kTimeout);
+    exchange_.sendRequest(sdo::kAbort, fence_.abandoned(), abort_code::kTimeout);
   } else {
-    sendAbort(abort_code::kTimeout);
-    abandon();
+    abandon(abort_code::kTimeout);
   }
-  // Servers without block transfer should refuse it, but some do not answer at all.
-  if (phase_ == Phase::block_download_initiate || phase_ == Phase::block_upload_initiate) {
-    fell_back_ = true;
-  }
-  if (attempt_ <= options.retries) {
-    ++counters_.retries;
-    attempt(now);
-    return;
-  }
+  if (initiatesBlocks()) blocks_.unanswered();
+  if (attempt_ > queue_.front().options().retries) return giveUp(now);
+  ++exchange_.counters().retries;
+  attempt(now);
+}
+
+void SdoClient::giveUp(Time now) {
+  const SdoOptions& options = queue_.front().options();
+  const bool at_fence = isAtFence();
   const bool answers_others = attempt_ > 1 && !at_fence;  // the fence before the last request
   if (answers_others && options.silence_is_missing) {
-    fail(SdoTransfer::Failure::aborted_by_server, abort_code::kNoSuchObject,
-         "no answer to " + std::to_string(attempt_) +
-             " requests, though the drive answers for other objects: it counts as missing",
-         now);
-    return;
+    return fail(Failure::aborted_by_server, abort_code::kNoSuchObject,
+                "no answer to " + std::to_string(attempt_) +
+                    " requests, though the drive answers for other objects: it counts as missing",
+                now);
   }
   std::string reason = "no answer within " + milliseconds(options.timeout);
   if (attempt_ > 1) reason += ", asked " + std::to_string(attempt_) + " times";
   if (at_fence && attempt_ == 1) reason += ", the device has been silent since an earlier request";
-  fail(SdoTransfer::Failure::timed_out, abort_code::kTimeout, std::move(reason), now);
-}
-
-void SdoClient::abortTransfer(std::uint32_t code, const std::string& why, Time now) {
-  sendAbort(code);
-  abandon();
-  fail(SdoTransfer::Failure::protocol_error, code,
-       "the answer breaks the SDO protocol: " + why + "; aborted with " + abortText(code), now);
+  fail(Failure::timed_out, abort_code::kTimeout, std::move(reason), now);
 }
 
 void SdoClient::succeed(Time now) {
-  ++counters_.completed;
-  counters_.bytes += queue_.front()->data_.size();
-  counters_.busy += std::max(now - started_at_, Duration::zero());
-  block_refused_ = block_refused_ || fell_back_;
-  finish(*queue_.front(), SdoTransfer::Failure::none, 0, {});
-  queue_.pop_front();
-  phase_ = Phase::idle;
+  SdoTransfer& transfer = queue_.front();
+  ++exchange_.counters().completed;
+  exchange_.counters().bytes += transfer.data().size();
+  exchange_.counters().busy += std::max(now - started_at_, Duration::zero());
+  blocks_.succeeded();
+  wire_ = Idle();
+  transfer.succeed();
+  queue_.pop();
   startNext(now);
 }
 
-void SdoClient::fail(SdoTransfer::Failure failure, std::uint32_t code, std::string reason,
-                     Time now) {
-  if (failure != SdoTransfer::Failure::timed_out) ++counters_.aborted;
-  finish(*queue_.front(), failure, code, std::move(reason));
-  queue_.pop_front();
-  phase_ = Phase::idle;
+void SdoClient::fail(Failure failure, std::uint32_t code, std::string reason, Time now) {
+  if (failure != Failure::timed_out) ++exchange_.counters().aborted;
+  wire_ = Idle();
+  queue_.front().fail(node_, failure, code, std::move(reason));
+  queue_.pop();
   startNext(now);
-}
-
-void SdoClient::finish(SdoTransfer& transfer, SdoTransfer::Failure failure, std::uint32_t code,
-                       std::string reason) {
-  transfer.done_ = true;
-  transfer.failure_ = failure;
-  transfer.abort_code_ = code;
-  if (failure == SdoTransfer::Failure::none) return;
-  transfer.reason_ = std::move(reason);
-  std::string what = "node " + std::to_string(node_) + ", object " + toString(transfer.object_);
-  if (!transfer.name_.empty()) what += " " + transfer.name_;
-  what += transfer.direction_ == SdoTransfer::Direction::upload
-              ? std::string(", read")
-              : ", write " + hexBytes(transfer.data_);
-  transfer.message_ = what + ": " + transfer.reason_;
 }
 
 void SdoClient::cancelAll(const std::string& reason) {
-  if (phase_ != Phase::idle && phase_ != Phase::fence) {
-    sendAbort(abort_code::kGeneral);
-    abandon();
-  }
-  phase_ = Phase::idle;
-  for (const Transfer& transfer : queue_) {
-    finish(*transfer, SdoTransfer::Failure::cancelled, 0, "cancelled: " + reason);
-  }
-  queue_.clear();
+  if (!isIdle() && !isAtFence()) abandon(abort_code::kGeneral);
+  wire_ = Idle();
+  queue_.cancelAll(node_, reason);
+}
+
+void SdoClient::serverRestarted() {
+  fence_.clear();
+  blocks_.serverRestarted();
 }
 
 }  // namespace cia402::canopen
