@@ -1,12 +1,13 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "canopen/pdo/found.h"
+#include "canopen/pdo/wanted.h"
 #include "cia402_driver/canopen/pdo/config.h"
 #include "cia402_driver/canopen/sdo/client.h"
 
@@ -48,9 +49,9 @@ class PdoConfigurator {
   /// The abort code by which the drive made it fail; 0 if it was no abort.
   std::uint32_t abortCode() const { return abort_code_; }
   /// The COB-ID of the PDO is the drive's own, not the one configured: which.
-  std::optional<std::uint16_t> adoptedCobId() const { return adopted_; }
+  std::optional<std::uint16_t> adoptedCobId() const { return wanted_.adopted(); }
   /// The entries that are left out.
-  const std::vector<PdoEntry>& leftOut() const { return left_out_; }
+  const std::vector<PdoEntry>& leftOut() const { return wanted_.leftOut(); }
   /// True once something had to be written.
   bool changed() const { return changed_; }
 
@@ -71,76 +72,50 @@ class PdoConfigurator {
     done,
     failed,
   };
-  /// A communication parameter beside the COB-ID.
-  struct Parameter {
-    std::uint8_t subindex;
-    unsigned size;  ///< bytes
-    const char* name;
-    std::uint32_t wanted;
-    bool missing_is_zero;
-    std::optional<std::uint32_t> actual;
-  };
 
+  std::string impossibility() const;
   void ask();
   void read(ObjectId object, const std::string& name);
   void write(ObjectId object, std::uint32_t value, unsigned size, const std::string& name);
-  void answered(const fieldbus::Transfer& transfer);
+
   void answeredRead(const fieldbus::Transfer& transfer);
-  void answeredCount(std::size_t count);
-  void leaveOutFillers();
   void answeredCobId(const fieldbus::Transfer& transfer);
   void answeredParameter(const fieldbus::Transfer& transfer);
+  void answeredCount(std::size_t count);
+  void answeredProbe(const fieldbus::Transfer& transfer);
   void answeredWrite(const fieldbus::Transfer& transfer);
+  void answeredCobIdWrite(const fieldbus::Transfer& transfer);
   void compare();
   void verify();
+
   void enter(Phase phase, std::size_t item = 0);
   void enterWrite();
+  void enterAfterDisable();
   void enterEntries();
   void enterWriteParameter(std::size_t item);
   void enterRead();
-  void fail(const std::string& reason);
-  void failTransfer(const fieldbus::Transfer& transfer);
-  bool adoptCobId();
+  void afterEntries();
+
   bool refusedCobId(const fieldbus::Transfer& transfer);
-  void enterAfterDisable();
   bool refusedReadOnlyCount(const fieldbus::Transfer& transfer) const;
-  bool leaveOutWhole(const fieldbus::Transfer& transfer);
   bool leaveOutEntry(const fieldbus::Transfer& transfer);
   bool probeEntries(const fieldbus::Transfer& transfer);
   bool leaveOutRider(const fieldbus::Transfer& transfer);
-  void answeredProbe(const fieldbus::Transfer& transfer);
-  void leaveOut(std::size_t item);
-  void afterEntries();
-  bool anyOptional() const { return nextOptional(0) < wanted_.entries.size(); }
-  bool allOptional() const;
-  /// The next optional entry from `item` on, or the number of entries.
-  std::size_t nextOptional(std::size_t item) const;
 
-  static std::string hex(std::uint32_t value, int digits);
-  std::string title() const;
-  std::uint32_t enabledCobId() const;
-  std::uint32_t entryValue(std::size_t item) const;
-  std::string entryName(std::size_t item) const;
-  bool mapDiffers() const;
-  std::string firstDifference() const;
+  void fail(const std::string& reason);
+  void failTransfer(const fieldbus::Transfer& transfer);
+  std::string advice(const fieldbus::Transfer& transfer) const;
 
   SdoClient& sdo_;
-  PdoConfig wanted_;
   Options options_;
-  std::uint16_t communication_;  ///< index of the communication parameters
-  std::uint16_t mapping_;        ///< index of the mapping parameters
-  std::vector<Parameter> parameters_;
+  PdoWanted wanted_;
+  PdoFound found_;
 
   Phase phase_ = Phase::read_cob_id;
   std::size_t item_ = 0;
   bool verifying_ = false, changed_ = false, map_refused_ = false, timed_out_ = false;
   std::uint32_t abort_code_ = 0;
-  std::uint32_t cob_id_ = 0;
-  std::optional<std::uint16_t> adopted_;
   bool cob_id_fixed_ = false;  ///< the drive refuses to make the PDO invalid, or valid elsewhere
-  std::size_t count_ = 0;      ///< entries in use
-  std::vector<std::uint32_t> entries_;
-  std::vector<PdoEntry> left_out_;
   std::size_t left_out_before_probe_ = 0;
   SdoTicket ticket_;
   std::string step_, error_;
