@@ -1,5 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "canopen/eds/reader.h"
+#include "canopen/eds/entry.h"
+
+#include "canopen/eds/value.h"
 
 namespace cia402::canopen {
 namespace {
@@ -26,7 +28,7 @@ std::optional<DataType> unsignedOf(std::uint64_t bits) {
 
 }  // namespace
 
-DictionaryEntry EdsReader::readEntry(const EdsSection& section, ObjectId id, ObjectCode code) {
+DictionaryEntry EdsEntryReader::read(const EdsSection& section, ObjectId id, ObjectCode code) {
   DictionaryEntry entry;
   entry.id = id;
   entry.line = section.line;
@@ -37,19 +39,19 @@ DictionaryEntry EdsReader::readEntry(const EdsSection& section, ObjectId id, Obj
   entry.name = name != nullptr ? name->value : toString(id);
   if (const EdsKey* denotation = section.given("denotation")) entry.denotation = denotation->value;
   if (const EdsKey* kind = section.given("objecttype")) {
-    const auto number = code == ObjectCode::variable ? numberOf(*kind, 0xFFFF) : std::nullopt;
+    const auto number = code == ObjectCode::variable ? keys_.numberOf(*kind, 0xFFFF) : std::nullopt;
     if (number && *number == 2) code = ObjectCode::domain;
   }
   entry.type = readType(section, code);
   entry.access = readAccess(section, entry.type);
-  entry.mappable = flag(section, "pdomapping");
-  entry.flags = static_cast<std::uint32_t>(numberOr0(section, "objflags", 0xFFFFFFFF));
+  entry.mappable = keys_.flag(section, "pdomapping");
+  entry.flags = static_cast<std::uint32_t>(keys_.numberOr0(section, "objflags", 0xFFFFFFFF));
   readValues(section, entry);
   readFiles(section, entry);
   return entry;
 }
 
-DataType EdsReader::readType(const EdsSection& section, ObjectCode code) {
+DataType EdsEntryReader::readType(const EdsSection& section, ObjectCode code) {
   const EdsKey* key = section.given("datatype");
   if (key == nullptr) {
     if (code == ObjectCode::domain) return DataType::domain;
@@ -57,7 +59,7 @@ DataType EdsReader::readType(const EdsSection& section, ObjectCode code) {
     problems_.error(section.line, "[" + section.name + "] has no DataType; read as DOMAIN");
     return DataType::domain;
   }
-  const auto number = numberOf(*key, 0xFFFF);
+  const auto number = keys_.numberOf(*key, 0xFFFF);
   if (!number) return DataType::domain;
   const auto type_code = static_cast<std::uint16_t>(*number);
   if (const auto type = dataTypeOfCode(type_code)) return *type;
@@ -66,15 +68,16 @@ DataType EdsReader::readType(const EdsSection& section, ObjectCode code) {
 
 // A type that the file defines itself: a DEFTYPE says its type or its length in bits; some editors
 // write a DEFSTRUCT whose sub-index 1 holds the number of the type it is made of.
-DataType EdsReader::definedType(const EdsKey& key, std::uint16_t code) {
-  const auto definition = objects_.find(code);
-  const auto subs = sub_sections_.find(code);
-  if (code >= kFirstDefinedType && definition != objects_.end()) {
+DataType EdsEntryReader::definedType(const EdsKey& key, std::uint16_t code) {
+  const auto definition = sections_.objects().find(code);
+  const bool is_defined = definition != sections_.objects().end();
+  const EdsSections::SubSections* subs = sections_.subSectionsOf(code);
+  if (code >= kFirstDefinedType && is_defined) {
     const EdsSection* section = definition->second;
     const EdsKey* base = section->given("datatype");
-    if (subs != sub_sections_.end()) {
-      const auto first = subs->second.find(1);
-      base = first != subs->second.end() ? first->second->given("defaultvalue") : base;
+    if (subs != nullptr) {
+      const auto first = subs->find(1);
+      base = first != subs->end() ? first->second->given("defaultvalue") : base;
     }
     const auto base_code = base != nullptr ? parseEdsNumber(base->value) : std::nullopt;
     if (base_code && base_code->magnitude < kFirstDefinedType) {
@@ -83,21 +86,20 @@ DataType EdsReader::definedType(const EdsKey& key, std::uint16_t code) {
       const auto length = bits != nullptr ? parseEdsNumber(bits->value) : std::nullopt;
       const auto by_length = length ? unsignedOf(length->magnitude) : std::nullopt;
       // DataType=7 with DefaultValue=16: the length of the type, itself an UNSIGNED32.
-      if (subs == sub_sections_.end() && type == DataType::uint32 && by_length) return *by_length;
+      if (subs == nullptr && type == DataType::uint32 && by_length) return *by_length;
       if (type) return *type;
     }
   }
-  problems_.error(
-      key.line,
-      "DataType=" + key.value +
-          (definition == objects_.end()
-               ? " is unknown, and there is no section [" + typeText(code).substr(2) + "] for it"
-               : ": [" + definition->second->name + "] does not say its type") +
-          "; read as DOMAIN, bytes of any length");
+  problems_.error(key.line,
+                  "DataType=" + key.value +
+                      (is_defined ? ": [" + definition->second->name + "] does not say its type"
+                                  : " is unknown, and there is no section [" +
+                                        typeText(code).substr(2) + "] for it") +
+                      "; read as DOMAIN, bytes of any length");
   return DataType::domain;
 }
 
-Access EdsReader::readAccess(const EdsSection& section, DataType type) {
+Access EdsEntryReader::readAccess(const EdsSection& section, DataType type) {
   const EdsKey* key = section.given("accesstype");
   if (key == nullptr) {
     if (type != DataType::domain) {
@@ -115,8 +117,8 @@ Access EdsReader::readAccess(const EdsSection& section, DataType type) {
   return Access::rw;
 }
 
-std::optional<ObjectValue> EdsReader::readValue(const EdsKey* key, DataType type,
-                                                bool* adds_node_id) {
+std::optional<ObjectValue> EdsEntryReader::readValue(const EdsKey* key, DataType type,
+                                                     bool* adds_node_id) {
   if (key == nullptr) return {};
   EdsValue value = parseEdsValue(key->value, type, node_id_);
   if (!value.error.empty()) {
@@ -128,7 +130,7 @@ std::optional<ObjectValue> EdsReader::readValue(const EdsKey* key, DataType type
   return std::move(value.bytes);
 }
 
-void EdsReader::readValues(const EdsSection& section, DictionaryEntry& entry) {
+void EdsEntryReader::readValues(const EdsSection& section, DictionaryEntry& entry) {
   if (sizeBits(entry.type) != 0) {
     entry.low = readValue(section.given("lowlimit"), entry.type);
     entry.high = readValue(section.given("highlimit"), entry.type);
@@ -139,7 +141,7 @@ void EdsReader::readValues(const EdsSection& section, DictionaryEntry& entry) {
   checkLimits(section, entry);
 }
 
-void EdsReader::checkLimits(const EdsSection& section, DictionaryEntry& entry) {
+void EdsEntryReader::checkLimits(const EdsSection& section, DictionaryEntry& entry) {
   const auto drop = [&](const char* why) {
     problems_.warning(section.find("lowlimit")->line, why);
     entry.low.reset();
@@ -166,7 +168,7 @@ void EdsReader::checkLimits(const EdsSection& section, DictionaryEntry& entry) {
   check("parametervalue", entry.value);
 }
 
-void EdsReader::readFiles(const EdsSection& section, DictionaryEntry& entry) {
+void EdsEntryReader::readFiles(const EdsSection& section, DictionaryEntry& entry) {
   const EdsKey* upload = section.given("uploadfile");
   const EdsKey* download = section.given("downloadfile");
   if (upload != nullptr) entry.upload_file = upload->value;

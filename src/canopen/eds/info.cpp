@@ -1,5 +1,9 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "canopen/eds/reader.h"
+#include "canopen/eds/info.h"
+
+#include <string>
+
+#include "canopen/eds/value.h"
 
 namespace cia402::canopen {
 namespace {
@@ -11,46 +15,8 @@ std::string textOf(const EdsSection& section, const char* key) {
   return found == nullptr ? std::string() : found->value;
 }
 
-}  // namespace
-
-const EdsSection* EdsReader::require(const char* name) {
-  const EdsSection* section = text_.find(nameKey(name));
-  if (section == nullptr) {
-    problems_.warning(text_.lastLine(), std::string("section [") + name + "] is missing");
-  }
-  return section;
-}
-
-std::optional<std::uint64_t> EdsReader::numberOf(const EdsKey& key, std::uint64_t highest) {
-  const std::optional<EdsNumber> number = parseEdsNumber(key.value);
-  if (!number) {
-    problems_.error(key.line, key.name + "=" + quoteEds(key.value) + " is no whole number");
-    return {};
-  }
-  if ((number->negative && number->magnitude != 0) || number->magnitude > highest) {
-    problems_.error(
-        key.line, key.name + "=" + quoteEds(key.value) + " is not 0 to " + std::to_string(highest));
-    return {};
-  }
-  if (!number->note.empty()) problems_.warning(key.line, key.name + ": " + number->note);
-  return number->magnitude;
-}
-
-std::optional<std::uint64_t> EdsReader::number(const EdsSection& section, const char* key,
-                                               std::uint64_t highest) {
-  const EdsKey* found = section.given(key);
-  return found == nullptr ? std::nullopt : numberOf(*found, highest);
-}
-
-std::uint64_t EdsReader::numberOr0(const EdsSection& section, const char* key,
-                                   std::uint64_t highest) {
-  return number(section, key, highest).value_or(0);
-}
-
-void EdsReader::readFileInfo() {
-  const EdsSection* section = require("FileInfo");
+void readFileInfo(const EdsSection* section, EdsInfo& info) {
   if (section == nullptr) return;
-  EdsInfo& info = eds_.info;
   info.file_name = textOf(*section, "filename");
   info.description = textOf(*section, "description");
   info.created_by = textOf(*section, "createdby");
@@ -63,12 +29,10 @@ void EdsReader::readFileInfo() {
   info.last_eds = textOf(*section, "lasteds");
 }
 
-void EdsReader::readDeviceInfo() {
-  const EdsSection* section = require("DeviceInfo");
+void readDeviceInfo(const EdsSection* section, EdsKeys& keys, EdsInfo& info) {
   if (section == nullptr) return;
-  EdsInfo& info = eds_.info;
   const auto word = [&](const char* key) -> std::optional<std::uint32_t> {
-    const auto value = number(*section, key, 0xFFFFFFFF);
+    const auto value = keys.number(*section, key, 0xFFFFFFFF);
     if (!value) return {};
     return static_cast<std::uint32_t>(*value);
   };
@@ -79,70 +43,79 @@ void EdsReader::readDeviceInfo() {
   info.product_number = word("productnumber");
   info.revision_number = word("revisionnumber");
   for (unsigned rate : kBaudRates) {
-    if (flag(*section, ("baudrate_" + std::to_string(rate)).c_str())) {
+    if (keys.flag(*section, ("baudrate_" + std::to_string(rate)).c_str())) {
       info.baud_rates.push_back(rate);
     }
   }
-  info.rpdo_count = static_cast<std::uint16_t>(numberOr0(*section, "nrofrxpdo", 512));
-  info.tpdo_count = static_cast<std::uint16_t>(numberOr0(*section, "nroftxpdo", 512));
-  info.compact_pdo = static_cast<std::uint8_t>(numberOr0(*section, "compactpdo", 0xFF));
-  info.granularity = static_cast<std::uint8_t>(numberOr0(*section, "granularity", 64));
-  info.lss_supported = flag(*section, "lss_supported");
-  info.boot_up_master = flag(*section, "simplebootupmaster");
-  info.boot_up_slave = flag(*section, "simplebootupslave");
-  info.group_messaging = flag(*section, "groupmessaging");
+  info.rpdo_count = static_cast<std::uint16_t>(keys.numberOr0(*section, "nrofrxpdo", 512));
+  info.tpdo_count = static_cast<std::uint16_t>(keys.numberOr0(*section, "nroftxpdo", 512));
+  info.compact_pdo = static_cast<std::uint8_t>(keys.numberOr0(*section, "compactpdo", 0xFF));
+  info.granularity = static_cast<std::uint8_t>(keys.numberOr0(*section, "granularity", 64));
+  info.lss_supported = keys.flag(*section, "lss_supported");
+  info.boot_up_master = keys.flag(*section, "simplebootupmaster");
+  info.boot_up_slave = keys.flag(*section, "simplebootupslave");
+  info.group_messaging = keys.flag(*section, "groupmessaging");
   info.dynamic_channels =
-      static_cast<std::uint8_t>(numberOr0(*section, "dynamicchannelssupported", 0xFF));
+      static_cast<std::uint8_t>(keys.numberOr0(*section, "dynamicchannelssupported", 0xFF));
 }
 
 // CiA 306 writes DeviceComissioning; who knows better English is read, too.
-void EdsReader::readCommissioning() {
-  const EdsSection* section = text_.find("devicecomissioning");
+void readCommissioning(const EdsText& text, EdsKeys& keys, EdsProblems& problems, EdsInfo& info) {
+  const EdsSection* section = text.find("devicecomissioning");
   if (section == nullptr) {
-    section = text_.find("devicecommissioning");
+    section = text.find("devicecommissioning");
     if (section == nullptr) return;
-    problems_.warning(section->line, "[" + section->name + "] should be [DeviceComissioning]");
+    problems.warning(section->line, "[" + section->name + "] should be [DeviceComissioning]");
   }
-  EdsInfo& info = eds_.info;
-  const auto id = number(*section, "nodeid", 127);
+  const auto id = keys.number(*section, "nodeid", 127);
   if (id && *id != 0) info.node_id = static_cast<NodeId>(*id);
   info.node_name = textOf(*section, "nodename");
-  info.baud_rate = static_cast<unsigned>(numberOr0(*section, "baudrate", 1000));
-  const auto serial = number(*section, "lss_serialnumber", 0xFFFFFFFF);
+  info.baud_rate = static_cast<unsigned>(keys.numberOr0(*section, "baudrate", 1000));
+  const auto serial = keys.number(*section, "lss_serialnumber", 0xFFFFFFFF);
   if (serial) info.lss_serial = static_cast<std::uint32_t>(*serial);
 }
 
-void EdsReader::readDummies() {
-  const EdsSection* section = text_.find("dummyusage");
+void readDummies(const EdsText& text, EdsKeys& keys, EdsProblems& problems, EdsInfo& info) {
+  const EdsSection* section = text.find("dummyusage");
   if (section == nullptr) return;
   for (const auto& [name, key] : section->keys) {
     const auto code =
         name.substr(0, 5) == "dummy" ? parseEdsNumber("0x" + name.substr(5)) : std::nullopt;
     if (!code || code->magnitude == 0 || code->magnitude > 0xFF) {
-      problems_.warning(key.line, quoteEds(key.name) + " is no data type like Dummy0005");
-    } else if (!key.value.empty() && numberOf(key, 1).value_or(0) == 1) {
-      eds_.info.dummies.push_back(static_cast<std::uint16_t>(code->magnitude));
+      problems.warning(key.line, quoteEds(key.name) + " is no data type like Dummy0005");
+    } else if (!key.value.empty() && keys.numberOf(key, 1).value_or(0) == 1) {
+      info.dummies.push_back(static_cast<std::uint16_t>(code->magnitude));
     }
   }
 }
 
-void EdsReader::readComments() {
-  const EdsSection* section = text_.find("comments");
+void readComments(const EdsText& text, EdsKeys& keys, EdsProblems& problems, EdsInfo& info) {
+  const EdsSection* section = text.find("comments");
   if (section == nullptr) return;
   std::size_t found = 0;
   for (std::size_t i = 1; i <= section->keys.size(); ++i) {
     const EdsKey* line = section->find("line" + std::to_string(i));
     if (line == nullptr) break;
-    eds_.info.comments.push_back(line->value);
+    info.comments.push_back(line->value);
     ++found;
   }
   const EdsKey* lines = section->given("lines");
   if (lines == nullptr) {
-    problems_.warning(section->line, "[" + section->name + "] has no Lines");
-  } else if (numberOf(*lines, 0xFFFF).value_or(found) != found) {
-    problems_.warning(lines->line, "[" + section->name + "] has " + std::to_string(found) +
-                                       " lines, not " + lines->value);
+    problems.warning(section->line, "[" + section->name + "] has no Lines");
+  } else if (keys.numberOf(*lines, 0xFFFF).value_or(found) != found) {
+    problems.warning(lines->line, "[" + section->name + "] has " + std::to_string(found) +
+                                      " lines, not " + lines->value);
   }
+}
+
+}  // namespace
+
+void readEdsInfo(const EdsText& text, EdsKeys& keys, EdsProblems& problems, EdsInfo& info) {
+  readFileInfo(keys.require(text, "FileInfo"), info);
+  readDeviceInfo(keys.require(text, "DeviceInfo"), keys, info);
+  readCommissioning(text, keys, problems, info);
+  readDummies(text, keys, problems, info);
+  readComments(text, keys, problems, info);
 }
 
 }  // namespace cia402::canopen

@@ -1,20 +1,36 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "canopen/eds/reader.h"
+#include "canopen/eds/lists.h"
 
-// [MandatoryObjects], [OptionalObjects] and [ManufacturerObjects]: what objects the device is said
-// to have. What is described but not listed is taken over all the same.
+#include <cstdint>
+#include <set>
+#include <string>
+
+#include "canopen/eds/value.h"
+
 namespace cia402::canopen {
+namespace {
 
-void EdsReader::readLists() {
-  std::set<std::uint16_t> listed;
-  readList("MandatoryObjects", listed);
-  readList("OptionalObjects", listed);
-  readList("ManufacturerObjects", listed);
-  checkListed(listed);
-}
+class ListCheck {
+ public:
+  ListCheck(const EdsText& text, EdsKeys& keys, EdsProblems& problems,
+            const ObjectDictionary& dictionary, bool full)
+      : text_(text), keys_(keys), problems_(problems), dictionary_(dictionary), full_(full) {}
+  /// One of the three lists.
+  void read(const char* name);
+  /// All of them with what is there.
+  void compare(const EdsSections& sections) const;
 
-void EdsReader::readList(const char* name, std::set<std::uint16_t>& listed) {
-  const EdsSection* section = require(name);
+ private:
+  const EdsText& text_;
+  EdsKeys& keys_;
+  EdsProblems& problems_;
+  const ObjectDictionary& dictionary_;
+  bool full_;
+  std::set<std::uint16_t> listed_;
+};
+
+void ListCheck::read(const char* name) {
+  const EdsSection* section = keys_.require(text_, name);
   if (section == nullptr) return;
   std::size_t found = 0;
   for (const auto& [position, key] : section->keys) {
@@ -25,16 +41,16 @@ void EdsReader::readList(const char* name, std::set<std::uint16_t>& listed) {
       continue;
     }
     ++found;
-    const auto index = key.value.empty() ? std::nullopt : numberOf(key, 0xFFFF);
+    const auto index = key.value.empty() ? std::nullopt : keys_.numberOf(key, 0xFFFF);
     if (key.value.empty()) {
       problems_.error(key.line, key.name + "= in [" + section->name + "] names no object");
     }
     if (!index) continue;
     const ObjectId id{static_cast<std::uint16_t>(*index), 0};
     const std::string text = toString(id).substr(0, 4) + "h";
-    if (!listed.insert(id.index).second) {
+    if (!listed_.insert(id.index).second) {
       problems_.warning(key.line, "object " + text + " is listed twice");
-    } else if (eds_.dictionary.objects().count(id.index) == 0 && !full_) {
+    } else if (dictionary_.objects().count(id.index) == 0 && !full_) {
       problems_.error(key.line, "object " + text + " is listed, but there is no section [" +
                                     text.substr(0, 4) + "]");
     }
@@ -42,26 +58,37 @@ void EdsReader::readList(const char* name, std::set<std::uint16_t>& listed) {
   const EdsKey* count = section->given("supportedobjects");
   if (count == nullptr) {
     problems_.warning(section->line, "[" + section->name + "] has no SupportedObjects");
-  } else if (numberOf(*count, 0xFFFF).value_or(found) != found) {
+  } else if (keys_.numberOf(*count, 0xFFFF).value_or(found) != found) {
     problems_.warning(count->line, "[" + section->name + "] lists " + std::to_string(found) +
                                        (found == 1 ? " object, not " : " objects, not ") +
                                        count->value);
   }
 }
 
-void EdsReader::checkListed(const std::set<std::uint16_t>& listed) {
-  for (const auto& [index, section] : objects_) {
+void ListCheck::compare(const EdsSections& sections) const {
+  for (const auto& [index, section] : sections.objects()) {
     // Data types (below 1000h) describe others and stand in no list.
-    if (index < 0x1000 || listed.count(index) != 0) continue;
+    if (index < 0x1000 || listed_.count(index) != 0) continue;
     problems_.warning(section->line, "[" + section->name + "] stands in none of the three lists");
   }
   for (const std::uint16_t index :
        {std::uint16_t{0x1000}, std::uint16_t{0x1001}, std::uint16_t{0x1018}}) {
-    if (eds_.dictionary.objects().count(index) != 0 || listed.count(index) != 0 || full_) continue;
+    if (dictionary_.objects().count(index) != 0 || listed_.count(index) != 0 || full_) continue;
     problems_.warning(
         text_.lastLine(),
         "the mandatory object " + toString(ObjectId{index, 0}).substr(0, 4) + "h is missing");
   }
+}
+
+}  // namespace
+
+void checkEdsLists(const EdsText& text, const EdsSections& sections, EdsKeys& keys,
+                   EdsProblems& problems, const ObjectDictionary& dictionary, bool full) {
+  ListCheck check(text, keys, problems, dictionary, full);
+  check.read("MandatoryObjects");
+  check.read("OptionalObjects");
+  check.read("ManufacturerObjects");
+  check.compare(sections);
 }
 
 }  // namespace cia402::canopen
