@@ -156,6 +156,7 @@ void Node::onSync(Time now) {
   if (impl_->health != Health::ready) return;
   PdoImage& image = impl_->image;
   image.age(now);
+  if (image.requested().empty()) return;
   can::Frame frame;
   for (const std::size_t tpdo : image.requested()) {
     if (image.requestDue(tpdo, frame)) impl_->sink.send(frame);
@@ -171,13 +172,7 @@ void Node::refuse(const std::string& why, Time) {
 }
 
 void Node::sendRpdos(Time now) {
-  if (impl_->health != Health::ready) return;
-  PdoImage& image = impl_->image;
-  can::Frame frame;
-  for (std::size_t i = 0; i < image.rpdos().size(); ++i) {
-    if (!image.packDue(i, frame, now)) continue;
-    if (!impl_->sink.send(frame)) image.repeat(i);
-  }
+  if (impl_->health == Health::ready) impl_->image.sendDue(impl_->sink, now);
 }
 
 }  // namespace cia402::canopen

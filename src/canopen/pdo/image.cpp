@@ -118,6 +118,8 @@ bool PdoImage::receive(std::size_t tpdo, const can::Frame& frame, Time stamp) {
 void PdoImage::age(Time now) {
   for (Pdo& pdo : tpdos_) {
     ++pdo.silent;
+    // As it should be, and most often: it comes by the cycle, it came, and is not overdue.
+    if (pdo.silent <= pdo.silent_limit && pdo.last != Time()) continue;
     if (pdo.stale || pdo.fields.empty()) continue;
     if (pdo.silent_limit == 0 && pdo.age_limit == Duration::zero()) continue;
     if (pdo.last == Time()) pdo.last = now;  // it is expected from now on
@@ -161,8 +163,7 @@ void PdoImage::pack(std::size_t rpdo, can::Frame& frame) const {
   fillFrame(rpdos_[rpdo], pack(rpdos_[rpdo]), frame);
 }
 
-bool PdoImage::packDue(std::size_t rpdo, can::Frame& frame, Time now) {
-  Pdo& pdo = rpdos_[rpdo];
+bool PdoImage::packDue(Pdo& pdo, can::Frame& frame, Time now) {
   if (pdo.fields.empty()) return false;
   const std::uint64_t word = pack(pdo);
   if (++pdo.silent < pdo.refresh_every && pdo.sent_once && word == pdo.sent) return false;
@@ -171,8 +172,25 @@ bool PdoImage::packDue(std::size_t rpdo, can::Frame& frame, Time now) {
   pdo.sent_once = true;
   pdo.silent = 0;
   pdo.last = now;
+  return true;
+}
+
+bool PdoImage::packDue(std::size_t rpdo, can::Frame& frame, Time now) {
+  if (!packDue(rpdos_[rpdo], frame, now)) return false;
   countSent(rpdo);
   return true;
+}
+
+void PdoImage::sendDue(can::Sink& sink, Time now) {
+  can::Frame frame;
+  std::size_t rpdo = 0;
+  for (Pdo& pdo : rpdos_) {
+    if (packDue(pdo, frame, now)) {
+      countSent(rpdo);
+      if (!sink.send(frame)) pdo.sent_once = false;
+    }
+    ++rpdo;
+  }
 }
 
 void PdoImage::setCobId(PdoDirection direction, unsigned number, std::uint16_t cob_id) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "cia402_driver/can/bus.h"
 #include "cia402_driver/can/frame.h"
 #include "cia402_driver/canopen/pdo/config.h"
 #include "cia402_driver/common/time.h"
@@ -29,6 +30,8 @@ class PdoImage : public fieldbus::ProcessImage {
   bool packDue(std::size_t rpdo, can::Frame& frame, Time now);
   /// The frame of packDue() did not leave: it is due again in the next cycle.
   void repeat(std::size_t rpdo) { rpdos_[rpdo].sent_once = false; }
+  /// Sends every RPDO for which packDue() gives a frame; what `sink` refuses is due again.
+  void sendDue(can::Sink& sink, Time now);
   /// One cycle more without the TPDOs that did not come: counts, and marks what is stale. Once a
   /// cycle, when SYNC goes out, while the node is in operation.
   void age(Time now);
@@ -51,6 +54,7 @@ class PdoImage : public fieldbus::ProcessImage {
   /// that no set-point or controlword of before is ever sent again.
   void invalidate();
 
+  /// A PDO, and what has become of it since the image exists.
   struct Pdo {
     PdoDirection direction;
     unsigned number;
@@ -72,6 +76,7 @@ class PdoImage : public fieldbus::ProcessImage {
     std::uint16_t since_request = 0;
     std::uint64_t sent = 0;  ///< content of the last transmission
     bool sent_once = false;
+    /// Where the value of a slot lies in the data, as one little-endian number of 64 bits.
     struct Field {
       fieldbus::Slot slot;
       std::uint8_t shift;
@@ -83,6 +88,7 @@ class PdoImage : public fieldbus::ProcessImage {
   };
   /// Enabled TPDOs / RPDOs, in order of their number.
   const std::vector<Pdo>& tpdos() const { return tpdos_; }
+  /// The same of the other direction.
   const std::vector<Pdo>& rpdos() const { return rpdos_; }
   /// Frames of a wrong length, all TPDOs together.
   std::uint64_t wrongLengths() const { return wrong_lengths_; }
@@ -98,6 +104,7 @@ class PdoImage : public fieldbus::ProcessImage {
   std::vector<Pdo>& pdosOf(PdoDirection direction) {
     return direction == PdoDirection::tpdo ? tpdos_ : rpdos_;
   }
+  bool packDue(Pdo& pdo, can::Frame& frame, Time now);
   std::uint64_t pack(const Pdo& pdo) const;
   void fillFrame(const Pdo& pdo, std::uint64_t word, can::Frame& frame) const;
 
