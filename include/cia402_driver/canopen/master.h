@@ -40,7 +40,7 @@ class Master {
   /// or used twice and for TPDO and SDO COB-IDs that are no 11-bit identifiers or used twice.
   Master(MasterConfig config, can::Sink& sink, MasterListener* listener = nullptr);
 
-  Master(const Master&) = delete;  // the nodes know where it is
+  Master(const Master&) = delete;  ///< the nodes know where it is
   Master& operator=(const Master&) = delete;
 
   /// Boots all nodes in parallel. @param reset NMT reset communication to each of them first, or in

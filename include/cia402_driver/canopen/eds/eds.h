@@ -29,6 +29,7 @@ using fieldbus::realOf;
 
 /// One thing wrong in an EDS or DCF file.
 struct EdsProblem {
+  /// How bad it is.
   enum class Severity : std::uint8_t {
     warning,  ///< against CiA 306, but what is meant is clear
     error,    ///< something of the file could not be taken over, or contradicts itself
@@ -69,6 +70,7 @@ struct Eds {
   ObjectDictionary dictionary;
   std::vector<EdsProblem> problems;   ///< in the order of their lines
   std::size_t problems_left_out = 0;  ///< beyond kMostEdsProblems
+  /// Problems of this severity in the list.
   std::size_t count(EdsProblem::Severity severity) const;
 };
 inline constexpr std::size_t kMostEdsProblems = 1000;

@@ -50,6 +50,7 @@ enum class Command : std::uint8_t {
   inquire_node_id = 0x5E,
 };
 
+/// LSS states of a device (CiA 305): only in `configuration` it takes requests that change it.
 enum class State : std::uint8_t { waiting = 0, configuration = 1 };
 
 /// The LSS address of a device, the same numbers as in its identity object 1018h: unique in the
@@ -69,6 +70,7 @@ const char* partName(std::size_t part);
 std::string toString(const Identity& identity);
 
 // --- Requests ----------------------------------------------------------------------------------
+/// All devices change to `state`; none answers.
 can::Frame switchGlobal(State state);
 /// Four frames; the device with this identity answers `switched` to the fourth.
 std::array<can::Frame, 4> switchSelective(const Identity& identity);

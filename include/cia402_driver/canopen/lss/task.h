@@ -17,6 +17,7 @@ namespace cia402::canopen {
 /// and of "switch state global: waiting", which is the state that it is in.
 class LssTask {
  public:
+  /// How far it is; a task that is done or failed is not advanced again.
   enum class Status { running, done, failed };
   virtual ~LssTask() = default;
 
@@ -56,6 +57,7 @@ class LssSelection {
   /// @param attempts to select it, at most; 0: LssOptions::attempts.
   explicit LssSelection(const lss::Identity& identity, int attempts = 0)
       : identity_(identity), attempts_(attempts) {}
+  /// How far it is.
   enum class Status { running, done, absent, failed };
   /// As LssTask::advance(). `absent`: nobody has this identity.
   Status advance(LssMaster& master, Time now);
@@ -79,6 +81,7 @@ class LssSelection {
 /// Gives the device of an identity its node-ID, and has it stored where asked.
 class LssAssignTask final : public LssTask {
  public:
+  /// What to assign to whom.
   struct Options {
     lss::Identity identity;
     NodeId node_id = 0;  ///< 1..127

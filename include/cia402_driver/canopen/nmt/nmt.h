@@ -17,6 +17,7 @@ enum class NmtState : std::uint8_t {
   pre_operational = 0x7F,
   unknown = 0xFF,
 };
+/// "pre-operational", ...: words for messages.
 const char* toString(NmtState state);
 
 /// NMT command specifiers (CiA 301, 7.2.8.3.1).
@@ -27,6 +28,7 @@ enum class NmtCommand : std::uint8_t {
   reset_node = 0x81,
   reset_communication = 0x82,
 };
+/// "reset communication", ...: words for messages.
 const char* toString(NmtCommand command);
 
 /// The frame that commands `node` (0: all nodes).

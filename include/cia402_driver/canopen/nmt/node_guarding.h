@@ -38,6 +38,7 @@ class NodeGuard {
   bool receive(std::uint8_t answer, Time now);
 
   bool expired(Time now) const { return now >= life_end_; }
+  /// When tick() or expired() has something to say: the next request or the end of the life time.
   Time deadline() const;
   Duration lifeTime() const { return guard_time_ * factor_; }
   /// "no answer to node guarding for 0.3 s (asked every 0.1 s)", and what was wrong with the

@@ -33,23 +33,34 @@ class Node final : public fieldbus::Device {
   ~Node() override;
   Node(Node&&) noexcept;
 
+  /// Node-ID, 1..127.
   NodeId id() const;
+  /// As configured: "shoulder"; may be empty.
   const std::string& name() const;
   /// "shoulder (node 3)", for messages.
   std::string who() const;
+  /// As given.
   const NodeConfig& config() const;
-  bool excused() const override;
-
+  /// As its last heartbeat, guarding answer or boot-up message told; `unknown` before the first.
   NmtState nmtState() const;
+
+  /// As fieldbus::Device says.
+  bool excused() const override;
   const std::string& bootStep() const override;
   const std::string& problem() const override;
   fieldbus::DeviceTimes times() const override;
+  const std::optional<Emergency>& lastEmergency() const override;
+  fieldbus::ObjectAccess& objects() override;
+  std::string overdueText() const override;
+  std::string missingText() const override;
+  std::string carrierText(fieldbus::Slot output) const override;
   /// A drive that says it is stopped (NMT) answers no SDO (CiA 301, 7.3.2.2).
   std::string askingRefusal(const std::string& what) const override;
   /// Identity read at boot.
   struct Identity {
     std::uint32_t device_type = 0, vendor_id = 0, product_code = 0, revision = 0, serial = 0;
   };
+  /// As read by the present or last boot; nothing before it was read.
   const std::optional<Identity>& identity() const;
   /// Notes worth telling: optional writes refused, objects missing, heartbeat not supported.
   const std::vector<std::string>& notes() const;
@@ -61,6 +72,7 @@ class Node final : public fieldbus::Device {
     bool watched = false;         ///< the master notices the loss of the node
     bool watches_master = false;  ///< the node notices the loss of the master
   };
+  /// As the present or last boot has set it up.
   Supervision supervision() const;
   /// It was told to start: its PDOs are as configured.
   bool started() const;
@@ -86,17 +98,15 @@ class Node final : public fieldbus::Device {
   void stopAndStart(Duration stopped, Time now) override;
   bool paused() const override;
 
+  /// The SDO client that boot, axes and services share.
   SdoClient& sdo();
   const SdoClient& sdo() const;
-  fieldbus::ObjectAccess& objects() override;
+  /// The values that travel by PDO.
   PdoImage& image() { return static_cast<PdoImage&>(Device::image()); }
   const PdoImage& image() const { return static_cast<const PdoImage&>(Device::image()); }
-  std::string overdueText() const override;
-  std::string missingText() const override;
-  std::string carrierText(fieldbus::Slot output) const override;
 
+  /// Stamp of the last heartbeat or guarding answer, Time() before the first.
   Time lastHeartbeat() const;
-  const std::optional<Emergency>& lastEmergency() const override;
   /// Emergencies received since start, error resets included.
   std::uint32_t emergencies() const;
   /// Emergency frames without an error code, not counted in emergencies().

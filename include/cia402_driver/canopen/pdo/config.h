@@ -27,6 +27,7 @@ struct PdoEntry {
 constexpr bool isCyclic(std::uint8_t type) { return type >= 1 && type <= 240; }
 /// The drive sends the TPDO only when a remote frame asks for it: 252 sampled at SYNC, 253 at once.
 constexpr bool isRequested(std::uint8_t type) { return type == 252 || type == 253; }
+/// Sent when its content changes or the event timer expires, SYNC or not.
 constexpr bool isEventDriven(std::uint8_t type) { return type >= 254; }
 
 /// The wanted configuration of one PDO of a node (CiA 301, objects 1400h/1600h, 1800h/1A00h).

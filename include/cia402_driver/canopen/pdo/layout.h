@@ -11,6 +11,7 @@ namespace cia402::canopen {
 
 /// Where a PDO's COB-ID comes from.
 struct CobIdSpec {
+  /// What `value` means.
   enum class Kind : std::uint8_t {
     predefined,  ///< of the predefined connection set, PDOs 1 to 4
     absolute,    ///< `value`

@@ -20,7 +20,9 @@ class SdoBlockDownload {
   SdoBlockDownload(SdoExchange& exchange, SdoTransfer& transfer)
       : exchange_(exchange), transfer_(transfer) {}
 
+  /// Sends the request that begins the transfer.
   void initiate(Time now);
+  /// Takes an SDO of the server (eight bytes) and sends what follows from it.
   SdoReaction receive(const can::Frame& frame, Time now);
   /// Sends as much of the sub-block as the queue of the interface may take now.
   void feed(Time now);

@@ -19,7 +19,9 @@ class SdoBlockUpload {
   SdoBlockUpload(SdoExchange& exchange, SdoTransfer& transfer)
       : exchange_(exchange), transfer_(transfer) {}
 
+  /// Sends the request that begins the transfer.
   void initiate(Time now);
+  /// Takes an SDO of the server (eight bytes) and sends what follows from it.
   SdoReaction receive(const can::Frame& frame, Time now);
   /// Nothing came for the time-out: our last word may have been lost, or the end of a sub-block.
   /// @return false where that cannot be mended

@@ -11,6 +11,7 @@ namespace cia402::canopen {
 /// know block transfer.
 class SdoBlockUse {
  public:
+  /// Is it to be tried in blocks?
   bool wanted(const SdoTransfer& transfer) const;
   /// Another transfer begins.
   void begin() { fell_back_ = false; }

@@ -39,7 +39,7 @@ class SdoClient final : public fieldbus::ObjectAccess {
   SdoClient(NodeId node, can::Sink& sink, SdoOptions defaults = {}, SdoChannel channel = {},
             can::Pacer* pacer = nullptr);
 
-  SdoClient(const SdoClient&) = delete;  // what is on the wire knows where it is
+  SdoClient(const SdoClient&) = delete;  ///< what is on the wire knows where it is
   SdoClient& operator=(const SdoClient&) = delete;
 
   /// Queues a read. @param name object name for messages, may be empty.
@@ -75,6 +75,7 @@ class SdoClient final : public fieldbus::ObjectAccess {
   /// block transfers is open again. To be called after cancelAll().
   void serverRestarted();
 
+  /// Nothing is queued or on the wire.
   bool idle() const override;
   /// What it has done since it exists.
   const Counters& counters() const { return exchange_.counters(); }

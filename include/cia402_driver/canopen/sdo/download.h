@@ -22,7 +22,9 @@ class SdoDownload {
   /// The request of an expedited download. @pre isExpedited(data.size())
   static void sendExpedited(SdoExchange& exchange, ObjectId object, const Bytes& data);
 
+  /// Sends the request that begins the transfer.
   void initiate(Time now);
+  /// Takes an SDO of the server (eight bytes) and sends what follows from it.
   SdoReaction receive(const can::Frame& frame, Time now);
 
  private:

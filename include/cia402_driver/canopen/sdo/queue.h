@@ -16,6 +16,7 @@ class SdoQueue {
  public:
   using Entry = std::shared_ptr<SdoTransfer>;
 
+  /// Puts it behind those that go before it. Not nullptr.
   void add(Entry transfer);
   bool empty() const { return transfers_.empty(); }
   /// @pre not empty()

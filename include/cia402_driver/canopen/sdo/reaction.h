@@ -9,6 +9,7 @@ namespace cia402::canopen {
 
 /// What a frame of the server means to the transfer on the wire.
 struct SdoReaction {
+  /// What becomes of the transfer.
   enum class Kind : std::uint8_t {
     stray,      ///< no answer to what was asked: it is ignored
     taken,      ///< an answer; the transfer goes on

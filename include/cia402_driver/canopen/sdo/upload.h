@@ -17,7 +17,9 @@ class SdoUpload {
   SdoUpload(SdoExchange& exchange, SdoTransfer& transfer)
       : exchange_(exchange), transfer_(transfer) {}
 
+  /// Sends the request that begins the transfer.
   void initiate(Time now);
+  /// Takes an SDO of the server (eight bytes) and sends what follows from it.
   SdoReaction receive(const can::Frame& frame, Time now);
 
  private:

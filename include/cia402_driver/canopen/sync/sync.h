@@ -31,6 +31,7 @@ class SyncProducer {
 /// Watches the SYNC of another device: whether it comes, how regularly, and in which form.
 class SyncConsumer {
  public:
+  /// Whether SYNC comes.
   enum class State : std::uint8_t {
     waiting,  ///< none came yet
     running,
