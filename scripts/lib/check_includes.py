@@ -30,8 +30,8 @@ MAY_INCLUDE = {
 # sim/ takes only types and numbers from the master's stack: what encodes, decodes or decides there
 # must not do so here, or a mistake would meet itself on both ends of the wire and stay unseen.
 SIM_MAY_NOT_INCLUDE = re.compile(
-    r"canopen/(sdo|pdo|emergency|heartbeat|sync|master|node|boot)|fieldbus/(bytes|emergency|device)"
-    r"|drive/(axis\.h|state_machine|conversion)")
+    r"canopen/(sdo/|pdo/|emcy/|sync/|node/|boot/|nmt/(heartbeat|node_guarding)|master)"
+    r"|fieldbus/(bytes|emergency|device)|drive/(axis\.h|state_machine|conversion)")
 
 SANS_IO = MODEL + ["decode", "sim"]
 # The edge of can/ towards the kernel.

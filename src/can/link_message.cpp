@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "link_message.h"
+#include "can/link_message.h"
 
 #include <linux/can/netlink.h>
 #include <linux/if.h>

@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "link_probe.h"
+#include "can/link_probe.h"
 
 #include <linux/if.h>
 #include <linux/if_arp.h>

@@ -12,7 +12,7 @@
 #include <cerrno>
 #include <cstdio>
 
-#include "link_message.h"
+#include "can/link_message.h"
 
 namespace cia402::can {
 namespace {

@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "raw_socket.h"
+#include "can/raw_socket.h"
 
 #include <linux/can/error.h>
 #include <linux/can/raw.h>

@@ -10,10 +10,10 @@
 #include <optional>
 #include <vector>
 
+#include "can/wall_clock.h"
 #include "cia402_driver/can/bus.h"
 #include "cia402_driver/can/frame.h"
 #include "cia402_driver/can/socketcan.h"
-#include "wall_clock.h"
 
 namespace cia402::can {
 

@@ -5,11 +5,11 @@
 #include <system_error>
 #include <utility>
 
+#include "can/link_probe.h"
+#include "can/raw_socket.h"
+#include "can/wall_clock.h"
 #include "cia402_driver/can/error_frame.h"
 #include "cia402_driver/can/link_settings.h"
-#include "link_probe.h"
-#include "raw_socket.h"
-#include "wall_clock.h"
 
 namespace cia402::can {
 

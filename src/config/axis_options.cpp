@@ -1,8 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
-#include "profile/parts.h"
-#include "robot_parts.h"
+#include "config/profile/parts.h"
+#include "config/robot_parts.h"
 
 namespace cia402::config {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <iterator>
 
-#include "pdo_planner.h"
-#include "profile/parts.h"
-#include "robot_parts.h"
+#include "config/pdo_planner.h"
+#include "config/profile/parts.h"
+#include "config/robot_parts.h"
 
 namespace cia402::config {
 namespace {

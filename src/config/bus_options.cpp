@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "cia402_driver/drive/named_write.h"
-#include "robot_parts.h"
+#include "config/robot_parts.h"
 
 namespace cia402::config {
 namespace {

@@ -3,8 +3,8 @@
 
 #include "cia402_driver/drive/conversion.h"
 #include "cia402_driver/drive/named_write.h"
-#include "pdo_planner.h"
-#include "robot_parts.h"
+#include "config/pdo_planner.h"
+#include "config/robot_parts.h"
 
 namespace cia402::config {
 namespace {

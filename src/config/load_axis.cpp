@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include "cia402_driver/config/drive_family.h"
-#include "profile/parts.h"
-#include "robot_parts.h"
+#include "config/profile/parts.h"
+#include "config/robot_parts.h"
 
 namespace cia402::config {
 namespace {
@@ -108,7 +108,7 @@ SharedFamily ProfileCache::get(const yaml::Value& name) {
   return entry;
 }
 
-void readAxis(const std::string& name, const yaml::Value& value, ProfileCache& profiles,
+void readAxis(const std::string& name, const yaml::Value& value, NamedFiles& files,
               RobotConfig& robot) {
   AxisDraft draft;
   AxisConfig& axis = draft.axis;
@@ -126,11 +126,11 @@ void readAxis(const std::string& name, const yaml::Value& value, ProfileCache& p
   device.title = drive::whoIs(axis);
   const auto drive_name = section.require("drive", "the drive's profile, e.g. generic_cia402");
   if (drive_name) {
-    const SharedFamily family = profiles.get(*drive_name);
+    const SharedFamily family = files.profiles.get(*drive_name);
     axis.profile = family.drive;
     device.profile = family.device;
   }
-  readEds(section, draft, profiles, robot);
+  readEds(section, draft, files.eds, robot);
   readGeometry(section, axis.geometry);
   if (axis.geometry.type == AxisGeometry::Type::prismatic) axis.standstill_velocity = 0.002;
   section.read("mode", axis.mode);

@@ -2,8 +2,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "profile/parts.h"
-#include "robot_parts.h"
+#include "config/profile/parts.h"
+#include "config/robot_parts.h"
 
 namespace cia402::config {
 namespace {
@@ -12,7 +12,7 @@ std::string fileOf(const std::string& path) { return path.substr(path.find_last_
 
 }  // namespace
 
-SharedEds ProfileCache::eds(const yaml::Value& name, canopen::NodeId node_id, RobotConfig& robot) {
+SharedEds EdsFiles::get(const yaml::Value& name, canopen::NodeId node_id, RobotConfig& robot) {
   const auto text = name.text();
   if (!text) return {};
   const std::string path = lookup_(*text);
@@ -24,7 +24,7 @@ SharedEds ProfileCache::eds(const yaml::Value& name, canopen::NodeId node_id, Ro
   }
   const std::string content((std::istreambuf_iterator<char>(file)), {});
   canopen::Eds read = canopen::readEds(content, node_id);
-  if (eds_told_.insert(path).second) {
+  if (told_.insert(path).second) {
     for (const canopen::EdsProblem& problem : read.problems) {
       robot.warnings.push_back(path + ": " + toString(problem));
     }
@@ -42,11 +42,11 @@ SharedEds ProfileCache::eds(const yaml::Value& name, canopen::NodeId node_id, Ro
           std::make_shared<const canopen::EdsInfo>(std::move(read.info))};
 }
 
-void readEds(yaml::Section& section, AxisDraft& draft, ProfileCache& cache, RobotConfig& robot) {
+void readEds(yaml::Section& section, AxisDraft& draft, EdsFiles& files, RobotConfig& robot) {
   const auto value = section.get("eds");
   if (!value) return;
   drive::AxisConfig& axis = draft.axis;
-  const SharedEds eds = cache.eds(*value, draft.device.node_id, robot);
+  const SharedEds eds = files.get(*value, draft.device.node_id, robot);
   axis.description = eds.description;
   draft.device.eds = eds.info;
   if (axis.description == nullptr || axis.profile == nullptr) return;

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <set>
 
-#include "robot_parts.h"
+#include "config/robot_parts.h"
 
 namespace cia402::config {
 namespace {

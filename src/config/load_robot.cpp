@@ -2,17 +2,17 @@
 #include <fstream>
 #include <set>
 
-#include "robot_parts.h"
+#include "config/robot_parts.h"
 
 namespace cia402::config {
 namespace {
 
-void readAxes(const yaml::Value& value, const YAML::Node& defaults, ProfileCache& profiles,
+void readAxes(const yaml::Value& value, const YAML::Node& defaults, NamedFiles& files,
               RobotConfig& robot) {
   yaml::Section section(value);
   for (const auto& [name, entry] : section.entries()) {
     const yaml::Value merged(mergeDefaults(defaults, entry.node()), entry.path(), entry.problems());
-    readAxis(name, merged, profiles, robot);
+    readAxis(name, merged, files, robot);
   }
   section.finish();
   if (robot.axes.empty()) value.problem("must name at least one axis");
@@ -29,7 +29,7 @@ void checkFrames(const yaml::Value& axes, const RobotConfig& robot) {
 
 RobotConfig readRobot(const YAML::Node& tree, const ProfileLookup& lookup, Problems& problems) {
   RobotConfig robot;
-  ProfileCache profiles(lookup, problems);
+  NamedFiles files{ProfileCache(lookup, problems), EdsFiles(lookup)};
   const yaml::Value root(tree, "", problems);
   yaml::Section section(root);
   const yaml::Value missing(YAML::Node(YAML::NodeType::Map), "bus", problems);
@@ -42,7 +42,7 @@ RobotConfig readRobot(const YAML::Node& tree, const ProfileLookup& lookup, Probl
   section.read("joint_state_rate", robot.joint_state_rate, yaml::Range{0.0, 1000.0, true});
   const auto axes = section.get("axes");
   if (axes) {
-    readAxes(*axes, defaults ? defaults->node() : YAML::Node(), profiles, robot);
+    readAxes(*axes, defaults ? defaults->node() : YAML::Node(), files, robot);
     checkFrames(*axes, robot);
   } else {
     problems.add("axes", "is missing: name at least one axis with its node_id and drive");

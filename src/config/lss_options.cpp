@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "robot_parts.h"
+#include "config/robot_parts.h"
 
 namespace cia402::config {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "cia402_driver/drive/named_write.h"
 #include "cia402_driver/drive/state_machine.h"
-#include "robot_parts.h"
+#include "config/robot_parts.h"
 
 namespace cia402::config {
 namespace {

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdio>
 
-#include "robot_parts.h"
+#include "config/robot_parts.h"
 
 namespace cia402::config {
 namespace {

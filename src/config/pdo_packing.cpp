@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "pdo_packing.h"
+#include "config/pdo_packing.h"
 
 #include <algorithm>
 #include <tuple>

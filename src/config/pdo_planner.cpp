@@ -1,10 +1,10 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "pdo_planner.h"
+#include "config/pdo_planner.h"
 
 #include <algorithm>
 
 #include "cia402_driver/fieldbus/object.h"
-#include "pdo_packing.h"
+#include "config/pdo_packing.h"
 
 namespace cia402::config {
 namespace {

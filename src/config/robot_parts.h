@@ -30,22 +30,36 @@ struct SharedEds {
   std::shared_ptr<const canopen::EdsInfo> info;
 };
 
-/// Drive profiles already read, by file.
+/// Reads drive profiles, each file once.
 class ProfileCache {
  public:
   ProfileCache(const ProfileLookup& lookup, Problems& problems)
       : lookup_(lookup), problems_(problems) {}
   /// Empty (and problems) if there is no valid profile of that name.
   SharedFamily get(const yaml::Value& name);
-  /// The EDS or DCF of that name; what is wrong in it becomes warnings, once a file. Empty (and
-  /// problems) if there is none.
-  SharedEds eds(const yaml::Value& name, canopen::NodeId node_id, RobotConfig& robot);
 
  private:
   const ProfileLookup& lookup_;
   Problems& problems_;
   std::map<std::string, SharedFamily> profiles_;
-  std::set<std::string> eds_told_;
+};
+
+/// Reads EDS and DCF files; what is wrong in one becomes warnings, once a file.
+class EdsFiles {
+ public:
+  explicit EdsFiles(const ProfileLookup& lookup) : lookup_(lookup) {}
+  /// Empty (and problems) if there is none of that name.
+  SharedEds get(const yaml::Value& name, canopen::NodeId node_id, RobotConfig& robot);
+
+ private:
+  const ProfileLookup& lookup_;
+  std::set<std::string> told_;
+};
+
+/// The files that a robot's configuration names.
+struct NamedFiles {
+  ProfileCache profiles;
+  EdsFiles eds;
 };
 
 /// `axis` with everything that only `defaults` has added under it, mappings key by key.
@@ -56,11 +70,11 @@ void nameDefaults(const YAML::Node& tree, const Problems& from, Problems& to);
 void readBus(const yaml::Value& value, BusConfig& bus, bool& counter_given);
 void readRecorder(const yaml::Value& value, RecorderConfig& recorder);
 /// Reads one axis with its frame and simulation into `robot`.
-void readAxis(const std::string& name, const yaml::Value& value, ProfileCache& profiles,
+void readAxis(const std::string& name, const yaml::Value& value, NamedFiles& files,
               RobotConfig& robot);
 
 /// Reads `eds` and widens the axis' profile by its objects; checkEds() compares both.
-void readEds(yaml::Section& section, AxisDraft& draft, ProfileCache& cache, RobotConfig& robot);
+void readEds(yaml::Section& section, AxisDraft& draft, EdsFiles& files, RobotConfig& robot);
 void checkEds(yaml::Section& section, const AxisDraft& draft, RobotConfig& robot);
 
 drive::AxisLimits readLimits(const yaml::Value& value, drive::AxisGeometry::Type type);

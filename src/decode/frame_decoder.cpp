@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "cia402_driver/can/error_frame.h"
-#include "cia402_driver/canopen/nmt.h"
+#include "cia402_driver/canopen/nmt/nmt.h"
 #include "cia402_driver/fieldbus/emergency.h"
 
 namespace cia402::decode {

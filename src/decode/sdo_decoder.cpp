@@ -1,8 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "cia402_driver/decode/sdo_decoder.h"
 
-#include <algorithm>
-
 #include "cia402_driver/fieldbus/abort_code.h"
 
 namespace cia402::decode {
@@ -11,8 +9,8 @@ namespace {
 using can::Frame;
 using fieldbus::Bytes;
 using fieldbus::ObjectId;
+using Transfer = SdoTrace::Transfer;
 
-constexpr std::size_t kKept = 64;  // bytes of a transfer that are remembered for its text
 constexpr std::uint8_t kAbort = 0x80;
 
 /// Command specifiers, bits 7..5 of the first byte (CiA 301, 7.2.4.3).
@@ -55,6 +53,16 @@ std::string toggle(const Frame& frame) {
 
 std::string unknown(const Frame& frame) { return "no SDO command: " + hexNumber(frame.data[0], 1); }
 
+std::string announced(const Frame& frame) {
+  return (frame.data[0] & 2) != 0 ? ", " + bytes(longOf(frame)) : ", size unknown";
+}
+
+const char* checksumText(const Frame& frame) {
+  return (frame.data[0] & 4) != 0 ? ", with CRC" : ", without CRC";
+}
+
+std::string perBlock(unsigned count) { return std::to_string(count) + " segments a block"; }
+
 }  // namespace
 
 std::string SdoDecoder::title(ObjectId object) const {
@@ -62,7 +70,7 @@ std::string SdoDecoder::title(ObjectId object) const {
 }
 
 std::string SdoDecoder::current() const {
-  return known_ ? title(object_) : "of a transfer that began before";
+  return trace_.known() ? title(trace_.object()) : "of a transfer that began before";
 }
 
 std::string SdoDecoder::value(ObjectId object, const Bytes& data) const {
@@ -71,92 +79,26 @@ std::string SdoDecoder::value(ObjectId object, const Bytes& data) const {
 
 /// What the transfer brought, once it is complete.
 std::string SdoDecoder::whole() const {
-  if (!known_) return "";
-  const std::string all = ": " + bytes(received_) + " in all: ";
-  if (received_ > data_.size()) return all + bytesText(data_) + " and so on";
-  const bool listed = values_ != nullptr && values_->lists(object_);
-  return all + (listed ? values_->describe(object_, data_) : bytesText(data_));
-}
-
-void SdoDecoder::begin(const Frame& frame, Transfer transfer) {
-  transfer_ = transfer;
-  object_ = objectOf(frame);
-  known_ = true;
-  in_block_ = false;
-  data_.clear();
-  received_ = block_began_ = 0;
-  last_segment_seen_ = false;
-}
-
-void SdoDecoder::collect(const Frame& frame, std::size_t count) {
-  received_ += count;
-  for (std::size_t i = 1; i <= count && data_.size() < kKept; ++i) data_.push_back(frame.data[i]);
-}
-
-std::string SdoDecoder::abort(const Frame& frame) {
-  transfer_ = Transfer::none;
-  in_block_ = known_ = false;
-  return "abort " + title(objectOf(frame)) + ": " + fieldbus::abortText(longOf(frame));
-}
-
-/// The data of a segment (download by the client, upload by the server).
-std::string SdoDecoder::segment(const Frame& frame) {
-  const std::size_t count = 7U - (frame.data[0] >> 1 & 7U);
-  const bool last = (frame.data[0] & 1) != 0;
-  collect(frame, count);
-  std::string text = "segment " + current() + ", " + toggle(frame) + ", " + bytes(count);
-  if (last) {
-    text += ", the last" + whole();
-    if (transfer_ == Transfer::upload) transfer_ = Transfer::none;
-  }
-  return text;
-}
-
-/// A segment of a block: sequence number and seven bytes, of which the end of the transfer tells
-/// how many of the last segment count.
-std::string SdoDecoder::blockSegment(const Frame& frame) {
-  const bool last = (frame.data[0] & 0x80) != 0;
-  collect(frame, 7);
-  last_segment_seen_ = last_segment_seen_ || last;
-  return "block segment " + std::to_string(frame.data[0] & 0x7F) + " " + current() +
-         (last ? ", the last" : "");
-}
-
-/// The receiver has taken the segments of a block up to a number; the others come again.
-void SdoDecoder::forgetUnacknowledged(std::uint8_t acknowledged) {
-  const std::size_t taken =
-      std::min<std::size_t>(received_, block_began_ + std::size_t{7} * acknowledged);
-  const bool complete = taken == received_;
-  in_block_ = in_block_ && !(complete && last_segment_seen_);
-  last_segment_seen_ = last_segment_seen_ && complete;
-  received_ = block_began_ = taken;
-  if (data_.size() > received_) data_.resize(received_);
-}
-
-/// The first frame of an expedited or segmented transfer that carries its object and data or size.
-std::string SdoDecoder::initiate(const Frame& frame, const char* verb, Transfer transfer) {
-  begin(frame, transfer);
-  const std::string text = verb + (" " + title(object_));
-  if ((frame.data[0] & 2) != 0) {
-    transfer_ = transfer == Transfer::download ? transfer : Transfer::none;
-    return text + " = " + value(object_, expedited(frame));
-  }
-  return text + ((frame.data[0] & 1) != 0 ? ", " + bytes(longOf(frame)) + " in segments"
-                                          : ", in segments");
+  if (!trace_.known()) return "";
+  const std::string all = ": " + bytes(trace_.received()) + " in all: ";
+  if (trace_.received() > trace_.data().size())
+    return all + bytesText(trace_.data()) + " and so on";
+  const bool listed = values_ != nullptr && values_->lists(trace_.object());
+  return all + (listed ? value(trace_.object(), trace_.data()) : bytesText(trace_.data()));
 }
 
 std::string SdoDecoder::request(const Frame& frame) {
   if (frame.size < 8) return "too short for an SDO: " + bytes(frame.size);
   if (frame.data[0] == kAbort) return abort(frame);
-  if (in_block_ && transfer_ == Transfer::block_download) return blockSegment(frame);
+  if (trace_.inBlock() && trace_.transfer() == Transfer::block_download) return blockSegment(frame);
   switch (command(frame)) {
     case client::kDownloadSegment:
       return segment(frame);
     case client::kInitiateDownload:
       return initiate(frame, "write", Transfer::download);
     case client::kInitiateUpload:
-      begin(frame, Transfer::upload);
-      return "read " + title(object_);
+      trace_.begin(objectOf(frame), Transfer::upload);
+      return "read " + current();
     case client::kUploadSegment:
       return "next segment " + current() + ", " + toggle(frame);
     case client::kBlockUpload:
@@ -171,7 +113,7 @@ std::string SdoDecoder::request(const Frame& frame) {
 std::string SdoDecoder::answer(const Frame& frame) {
   if (frame.size < 8) return "too short for an SDO: " + bytes(frame.size);
   if (frame.data[0] == kAbort) return abort(frame);
-  if (in_block_ && transfer_ == Transfer::block_upload) return blockSegment(frame);
+  if (trace_.inBlock() && trace_.transfer() == Transfer::block_upload) return blockSegment(frame);
   switch (command(frame)) {
     case server::kUploadSegment:
       return segment(frame);
@@ -188,6 +130,102 @@ std::string SdoDecoder::answer(const Frame& frame) {
     default:
       return unknown(frame);
   }
+}
+
+std::string SdoDecoder::abort(const Frame& frame) {
+  trace_.abort();
+  return "abort " + title(objectOf(frame)) + ": " + fieldbus::abortText(longOf(frame));
+}
+
+/// The first frame of an expedited or segmented transfer that carries its object and data or size.
+std::string SdoDecoder::initiate(const Frame& frame, const char* verb, Transfer transfer) {
+  trace_.begin(objectOf(frame), transfer);
+  const std::string text = verb + (" " + current());
+  if ((frame.data[0] & 2) != 0) {
+    if (transfer != Transfer::download) trace_.end();
+    return text + " = " + value(trace_.object(), expedited(frame));
+  }
+  return text + ((frame.data[0] & 1) != 0 ? ", " + bytes(longOf(frame)) + " in segments"
+                                          : ", in segments");
+}
+
+/// The data of a segment (download by the client, upload by the server).
+std::string SdoDecoder::segment(const Frame& frame) {
+  const std::size_t count = 7U - (frame.data[0] >> 1 & 7U);
+  const bool last = (frame.data[0] & 1) != 0;
+  trace_.collect(frame, count);
+  std::string text = "segment " + current() + ", " + toggle(frame) + ", " + bytes(count);
+  if (last) {
+    text += ", the last" + whole();
+    if (trace_.transfer() == Transfer::upload) trace_.end();
+  }
+  return text;
+}
+
+// --- Block transfer (CiA 301, 7.2.4.3.9 to 7.2.4.3.16) -------------------------------------------
+
+std::string SdoDecoder::blockDownloadRequest(const Frame& frame) {
+  if ((frame.data[0] & 1) != 0) return endOfBlocks(frame);
+  trace_.begin(objectOf(frame), Transfer::block_download);
+  return "block write " + current() + announced(frame) + checksumText(frame);
+}
+
+std::string SdoDecoder::blockDownloadAnswer(const Frame& frame) {
+  switch (frame.data[0] & 3U) {
+    case 0:
+      trace_.startBlocks(Transfer::block_download);
+      return "block write accepted " + current() + ", " + perBlock(frame.data[4]) +
+             checksumText(frame);
+    case 1:
+      trace_.end();
+      return "block write complete " + current();
+    case 2:
+      return acknowledged(frame);
+    default:
+      return "no block write answer: " + hexNumber(frame.data[0], 1);
+  }
+}
+
+std::string SdoDecoder::blockUploadRequest(const Frame& frame) {
+  switch (frame.data[0] & 3U) {
+    case 0:
+      trace_.begin(objectOf(frame), Transfer::block_upload);
+      return "block read " + current() + ", " + perBlock(frame.data[4]) + checksumText(frame);
+    case 1:
+      trace_.end();
+      return "block read complete " + current();
+    case 2:
+      return acknowledged(frame);
+    default:
+      trace_.startBlocks(Transfer::block_upload);
+      return "block read begins " + current();
+  }
+}
+
+std::string SdoDecoder::blockUploadAnswer(const Frame& frame) {
+  if ((frame.data[0] & 1) != 0) return endOfBlocks(frame);
+  return "block read accepted " + current() + announced(frame) + checksumText(frame);
+}
+
+/// A segment of a block: sequence number and seven bytes.
+std::string SdoDecoder::blockSegment(const Frame& frame) {
+  const bool last = (frame.data[0] & 0x80) != 0;
+  trace_.collectBlockSegment(frame, last);
+  return "block segment " + std::to_string(frame.data[0] & 0x7F) + " " + current() +
+         (last ? ", the last" : "");
+}
+
+/// "segments up to 127 taken, 127 segments a block".
+std::string SdoDecoder::acknowledged(const Frame& frame) {
+  trace_.acknowledge(frame.data[1]);
+  return "segments up to " + std::to_string(frame.data[1]) + " taken, " + perBlock(frame.data[2]);
+}
+
+/// The end of a block transfer: how many bytes of the last segment do not count, and the CRC.
+std::string SdoDecoder::endOfBlocks(const Frame& frame) {
+  trace_.endBlocks(frame.data[0] >> 2 & 7U);
+  const unsigned crc = frame.data[1] | static_cast<unsigned>(frame.data[2]) << 8;
+  return "end of blocks " + current() + ", CRC " + hexNumber(crc, 2) + whole();
 }
 
 }  // namespace cia402::decode

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "cia402_driver/canopen/nmt.h"
+#include "cia402_driver/canopen/nmt/nmt.h"
 #include "cia402_state_machine.h"
 #include "drive_definition.h"
 #include "drive_motion.h"

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "canopen/boot_signature.h"
+#include "canopen/boot/signature.h"
 #include "canopen/node_fixture.h"
 
 namespace cia402::canopen {

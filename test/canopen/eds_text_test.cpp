@@ -1,12 +1,12 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "canopen/eds_text.h"
+#include "canopen/eds/text.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "cia402_driver/canopen/eds.h"
+#include "cia402_driver/canopen/eds/eds.h"
 
 namespace cia402::canopen {
 namespace {

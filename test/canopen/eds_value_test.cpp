@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "canopen/eds_value.h"
+#include "canopen/eds/value.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,8 +7,8 @@
 #include <locale>
 #include <string>
 
-#include "canopen/eds_problems.h"
-#include "cia402_driver/canopen/eds.h"
+#include "canopen/eds/problems.h"
+#include "cia402_driver/canopen/eds/eds.h"
 
 namespace cia402::canopen {
 namespace {

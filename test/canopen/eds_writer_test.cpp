@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "canopen/eds_file.h"
-#include "cia402_driver/canopen/eds.h"
+#include "cia402_driver/canopen/eds/eds.h"
 
 namespace cia402::canopen {
 namespace {

@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "canopen/last_stop.h"
+#include "canopen/node/last_stop.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

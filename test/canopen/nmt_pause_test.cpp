@@ -1,6 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // A node that works is taken through NMT stop and start, and keeps its configuration.
-#include "canopen/nmt_pause.h"
+#include "canopen/nmt/pause.h"
 
 #include "canopen/node_fixture.h"
 

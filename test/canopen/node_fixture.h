@@ -11,7 +11,7 @@
 #include "canopen/process_objects.h"
 #include "canopen/scripted_drive.h"
 #include "canopen/scripted_peer.h"
-#include "cia402_driver/canopen/node.h"
+#include "cia402_driver/canopen/node/node.h"
 
 namespace cia402::canopen::test {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "canopen/pdo_configurator.h"
+#include "canopen/pdo/configurator.h"
 #include "canopen/scripted_peer.h"
 
 namespace cia402::canopen::test {

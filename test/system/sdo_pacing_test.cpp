@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "cia402_driver/can/pacer.h"
-#include "cia402_driver/canopen/sdo_client.h"
+#include "cia402_driver/canopen/sdo/client.h"
 #include "cia402_driver/sim/bus.h"
 #include "cia402_driver/sim/device.h"
 

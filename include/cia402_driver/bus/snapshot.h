@@ -11,8 +11,8 @@
 #include "cia402_driver/bus/cycle_statistics.h"
 #include "cia402_driver/bus/fixed_text.h"
 #include "cia402_driver/can/bus.h"
-#include "cia402_driver/canopen/nmt.h"
-#include "cia402_driver/canopen/node.h"
+#include "cia402_driver/canopen/nmt/nmt.h"
+#include "cia402_driver/canopen/node/node.h"
 #include "cia402_driver/drive/axis.h"
 
 namespace cia402::bus {

@@ -46,6 +46,7 @@ struct BusCounters {
   std::uint64_t restarts = 0;          ///< returns from bus-off, whoever restarted
 };
 
+/// What an interface has received.
 struct ReceivedFrame {
   Frame frame;
   Time stamp;  ///< when the frame was on the wire (kernel time stamp mapped to BusClock)

@@ -13,6 +13,7 @@ namespace cia402::can {
 /// others on it. Sans-IO: fed with time and state, it tells when an attempt is due.
 class BusOffRecovery {
  public:
+  /// How patient it is.
   struct Options {
     Duration first = std::chrono::milliseconds(100);  ///< before the first attempt
     Duration longest = std::chrono::seconds(5);       ///< the delay doubles up to this

@@ -18,6 +18,7 @@ struct Frame {
   bool error = false;     ///< error frame as in linux/can/error.h, never on the wire
   std::array<std::uint8_t, 8> data{};
 
+  /// A data frame with identifier 0 and no bytes.
   Frame() = default;
   /// A data frame with an 11-bit identifier. Bytes beyond the eighth are ignored.
   Frame(std::uint32_t identifier, std::initializer_list<std::uint8_t> bytes) : id(identifier) {
@@ -27,6 +28,7 @@ struct Frame {
   }
 };
 
+/// The same on the wire: bytes of `data` beyond `size`, and all of a remote frame, do not count.
 inline bool operator==(const Frame& a, const Frame& b) {
   if (a.id != b.id || a.size != b.size || a.extended != b.extended || a.remote != b.remote ||
       a.error != b.error) {

@@ -15,6 +15,7 @@ namespace cia402::can {
 /// A frame as the flight recorder keeps it.
 class FrameRecord {
  public:
+  /// An empty place of the recorder.
   FrameRecord() = default;
   /// @param stamp when it was on the wire, or handed to the interface. @param sent by this program.
   FrameRecord(const Frame& frame, Time stamp, bool sent)

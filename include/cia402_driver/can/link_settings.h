@@ -62,6 +62,7 @@ bool mayConfigureLinks();
 /// configures interfaces: not for the cycle.
 class LinkReader {
  public:
+  /// Opens a netlink socket; where that fails nothing can be read.
   LinkReader();
   ~LinkReader();
   LinkReader(const LinkReader&) = delete;

@@ -1,6 +1,9 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstdint>
+
 #include "cia402_driver/can/bus.h"
 #include "cia402_driver/common/time.h"
 
@@ -26,7 +29,9 @@ class Pacer final : public Sink {
   /// The same for a frame that roomFor() has let pass: it is measured bit by bit.
   bool sendBulk(const Frame& frame);
   /// Somebody else's frame was on the wire, ending at about `now`: what waits here was held up.
-  void heard(const Frame& frame, Time now);
+  void heard(const Frame& frame, Time now) {
+    if (busy_until_ > now) busy_until_ += longest(frame);
+  }
   /// A SYNC was sent; the next will be after `period`, which zero leaves open.
   void syncSent(Time now, Duration period);
 
@@ -39,10 +44,13 @@ class Pacer final : public Sink {
   Duration bits(unsigned count) const {
     return Duration(static_cast<std::int64_t>(count) * bit_time_ps_ / 1000);
   }
-  void occupy(unsigned bits_on_wire);
+  /// How long a frame can take on the wire at most.
+  Duration longest(const Frame& frame) const;
+  void occupy(Duration time_on_wire);
 
   Sink& sink_;
   std::int64_t bit_time_ps_;
+  std::array<Duration, 9> longest_{};  ///< of data frames with 11-bit identifier, by their size
   Time now_{};
   Time busy_until_{};
   Time next_sync_ = kNever;

@@ -46,6 +46,7 @@ class RawSocket;
 /// but for setFilters().
 class SocketCan final : public Interface {
  public:
+  /// What an interface is to do beside passing frames on.
   struct Options {
     /// 11-bit identifiers of frames of which only the newest is worth sending.
     std::bitset<2048> cyclic;
@@ -64,6 +65,7 @@ class SocketCan final : public Interface {
 
   /// Opens the interface if it is there; if not, maintain() will.
   explicit SocketCan(std::string name) : SocketCan(std::move(name), Options()) {}
+  /// @param name of the interface: "can0"
   SocketCan(std::string name, Options options);
   ~SocketCan() override;
   SocketCan(const SocketCan&) = delete;
@@ -79,11 +81,13 @@ class SocketCan final : public Interface {
   /// or goes can take the kernel a few milliseconds.
   void maintain(Time now) override;
 
+  /// Another one, or -1, after each maintain() that lost or opened the interface.
   int fd() const override;
   /// From the kernel's error frames. Many drivers do not report that a disturbed controller is well
   /// again: error_warning and error_passive then stay until the interface restarts.
   BusState state() const override { return state_; }
   const BusCounters& counters() const override { return counters_; }
+  /// As can::Interface says.
   std::string describe() const override;
   std::string recovery() const override { return recovery_note_; }
   std::optional<ErrorCounters> errorCounters() const override { return error_counters_; }

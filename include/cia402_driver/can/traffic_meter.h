@@ -22,6 +22,7 @@ class TrafficMeter {
   /// Nothing is known of the interface at present.
   void reset() { *this = TrafficMeter(bitrate_); }
 
+  /// How much of its time a bus is busy.
   struct Load {
     double nominal = 0.0, most = 0.0;  ///< shares of the bit rate: without stuff bits, with all
   };

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "cia402_driver/canopen/object.h"
-#include "cia402_driver/canopen/pdo.h"
-#include "cia402_driver/canopen/sdo_client.h"
+#include "cia402_driver/canopen/pdo/config.h"
+#include "cia402_driver/canopen/sdo/options.h"
 #include "cia402_driver/common/time.h"
 
 namespace cia402::canopen {
@@ -19,6 +19,7 @@ enum class ErrorControl : std::uint8_t {
   heartbeat,  ///< both send heartbeats and watch those of the other
   guarding,   ///< the master asks by RTR; the node answers and watches that it is asked
 };
+/// The word of the configuration: "none", "heartbeat", "guarding".
 const char* toString(ErrorControl kind);
 
 /// How the master knows that a node still holds what was configured (CiA 301, 7.5.2.23, 1020h).

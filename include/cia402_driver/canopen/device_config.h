@@ -9,9 +9,9 @@
 
 #include "cia402_driver/canopen/config.h"
 #include "cia402_driver/canopen/device_profile.h"
-#include "cia402_driver/canopen/eds.h"
-#include "cia402_driver/canopen/lss_protocol.h"
-#include "cia402_driver/canopen/pdo_layout.h"
+#include "cia402_driver/canopen/eds/eds.h"
+#include "cia402_driver/canopen/lss/protocol.h"
+#include "cia402_driver/canopen/pdo/layout.h"
 
 namespace cia402::canopen {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "cia402_driver/canopen/pdo_layout.h"
+#include "cia402_driver/canopen/pdo/layout.h"
 #include "cia402_driver/common/time.h"
 #include "cia402_driver/fieldbus/object_access.h"
 

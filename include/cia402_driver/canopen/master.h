@@ -10,10 +10,10 @@
 #include "cia402_driver/can/bus.h"
 #include "cia402_driver/can/pacer.h"
 #include "cia402_driver/canopen/config.h"
-#include "cia402_driver/canopen/heartbeat.h"
-#include "cia402_driver/canopen/node.h"
-#include "cia402_driver/canopen/sync.h"
-#include "cia402_driver/canopen/time_producer.h"
+#include "cia402_driver/canopen/nmt/heartbeat.h"
+#include "cia402_driver/canopen/node/node.h"
+#include "cia402_driver/canopen/sync/sync.h"
+#include "cia402_driver/canopen/sync/time_producer.h"
 
 namespace cia402::canopen {
 
@@ -40,7 +40,7 @@ class Master {
   /// or used twice and for TPDO and SDO COB-IDs that are no 11-bit identifiers or used twice.
   Master(MasterConfig config, can::Sink& sink, MasterListener* listener = nullptr);
 
-  Master(const Master&) = delete;  // the nodes know where it is
+  Master(const Master&) = delete;  ///< the nodes know where it is
   Master& operator=(const Master&) = delete;
 
   /// Boots all nodes in parallel. @param reset NMT reset communication to each of them first, or in

@@ -18,6 +18,7 @@
 
 namespace cia402::config {
 
+/// The bus of a robot and how the master behaves on it (`bus:`).
 struct BusConfig {
   std::string interface;  ///< "can0", or "sim"
   double bitrate = 1e6;   ///< bit/s
@@ -39,6 +40,7 @@ struct JointTolerance {
   double trajectory = 0.0, goal = 0.0;
 };
 
+/// Joints that follow trajectories together (`groups:`).
 struct GroupConfig {
   std::string name;
   std::vector<std::string> joints;
@@ -47,6 +49,7 @@ struct GroupConfig {
   std::map<std::string, JointTolerance> tolerances;
 };
 
+/// Joints that are linear combinations of several axes (`couplings:`).
 struct CouplingConfig {
   std::vector<std::string> joints, axes;
   std::vector<std::vector<double>> matrix;  ///< joint space = matrix * axis space
@@ -81,6 +84,7 @@ struct RecorderConfig {
   unsigned keep = 20;     ///< recordings of this bus; the oldest go. 0: none is written on faults
 };
 
+/// Everything that the file of a robot says, checked, with its drives' profiles read.
 struct RobotConfig {
   BusConfig bus;
   RecorderConfig recorder;

@@ -34,6 +34,7 @@ class FrameDecoder {
   /// @param robot valid, @param master made from it.
   FrameDecoder(const config::RobotConfig& robot, const canopen::MasterConfig& master);
 
+  /// What the next frame of the bus says. To be called with each, in their order.
   DecodedFrame decode(const can::Frame& frame);
 
   /// "shoulder (1)"; "node 9" for one that is not configured.

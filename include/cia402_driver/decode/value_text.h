@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "cia402_driver/canopen/sdo_client.h"
+#include "cia402_driver/canopen/sdo/client.h"
 #include "cia402_driver/drive/axis_config.h"
 #include "cia402_driver/drive/conversion.h"
 
@@ -23,6 +23,7 @@ std::string bytesText(const fieldbus::Bytes& data);
 /// a memory for the mode that the drive shows, by which bits of status- and controlword are named.
 class ValueText {
  public:
+  /// @param axis with its profile; must outlive it
   explicit ValueText(const drive::AxisConfig& axis);
 
   /// Does the profile list it?

@@ -20,6 +20,7 @@ enum class Health : std::uint8_t {
   failed,   ///< boot failed, or commanded out of operation; problem() says why; boot() tries again
   lost,     ///< what shows that it is there is missing
 };
+/// "absent", "booting", ...: the enumerators' own names.
 const char* toString(Health health);
 /// Nobody answers.
 constexpr bool isAway(Health health) { return health == Health::absent || health == Health::lost; }

@@ -14,6 +14,7 @@ struct ObjectId {
   std::uint8_t subindex = 0;
 };
 
+/// Addresses are ordered by index, then by sub-index.
 constexpr bool operator==(ObjectId a, ObjectId b) {
   return a.index == b.index && a.subindex == b.subindex;
 }

@@ -27,7 +27,9 @@ struct AccessOptions {
 /// polls `done()`; a dropped ticket only means that nobody wants the result.
 class Transfer {
  public:
+  /// As the device sees it (CiA 301): an upload reads from it, a download writes to it.
   enum class Direction : std::uint8_t { upload, download };
+  /// Why a transfer came to nothing.
   enum class Failure : std::uint8_t {
     none,
     aborted_by_server,  ///< the device refused it: abortCode()

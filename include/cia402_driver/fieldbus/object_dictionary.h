@@ -25,6 +25,7 @@ enum class ObjectCode : std::uint8_t {
   array = 8,
   record = 9,
 };
+/// "VAR", "ARRAY", ...: the words of CiA 301, table 42.
 const char* toString(ObjectCode code);
 
 /// Access types of CiA 306: rwr and rww are read and written by SDO, and read (rwr) or written
@@ -32,7 +33,9 @@ const char* toString(ObjectCode code);
 enum class Access : std::uint8_t { ro, wo, rw, rwr, rww, constant };
 /// "ro", ... "const".
 const char* toString(Access access);
+/// Can it be read by SDO?
 constexpr bool isReadable(Access access) { return access != Access::wo; }
+/// Can it be written by SDO?
 constexpr bool isWritable(Access access) {
   return access != Access::ro && access != Access::constant;
 }
@@ -60,6 +63,7 @@ struct DictionaryEntry {
   unsigned line = 0;                         ///< of the file it was read from; 0: none
 };
 
+/// One index of an object dictionary with all its sub-indices.
 struct DictionaryObject {
   std::uint16_t index = 0;
   std::string name;
@@ -77,6 +81,7 @@ class ObjectDictionary {
   /// Number of entries of all objects.
   std::size_t size() const;
 
+  /// nullptr if there is no such entry.
   const DictionaryEntry* find(ObjectId id) const;
   /// By name, without regard to case and blanks: "Target position", "Identity object/Vendor-ID"
   /// (object and entry), or the entry's name alone where only one entry has it. An error says that

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "cia402_driver/can/bus.h"
-#include "cia402_driver/canopen/nmt.h"
+#include "cia402_driver/canopen/nmt/nmt.h"
 #include "cia402_driver/sim/object_dictionary.h"
 
 namespace cia402::sim {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cia402_driver/can/pacer.h"
-#include "cia402_driver/canopen/sdo_client.h"
+#include "cia402_driver/canopen/sdo/client.h"
 #include "cia402_driver/sim/bus.h"
 #include "cia402_driver/sim/device.h"
 

@@ -46,9 +46,13 @@ class Value {
   /// @param source file name for messages; empty: paths without a line number.
   Value(const YAML::Node& node, std::string path, Problems& problems, std::string source = {});
 
+  /// A finite number within `range`.
   std::optional<double> number(Range range = {}) const;
+  /// A whole number from `low` to `high`, decimal or 0x hexadecimal.
   std::optional<std::int64_t> integer(std::int64_t low, std::int64_t high) const;
+  /// true or false, in the words of YAML, or 1 or 0.
   std::optional<bool> boolean() const;
+  /// A text that is not empty; a number is one, too.
   std::optional<std::string> text() const;
   /// The index of the text in `words`.
   std::optional<std::size_t> oneOf(const std::vector<std::string>& words) const;
@@ -65,6 +69,7 @@ class Value {
   Problems& problems() const { return *problems_; }
   const std::string& source() const { return source_; }
 
+  /// Adds a problem with the path of this value.
   void problem(const std::string& message) const;
 
  private:
@@ -81,13 +86,15 @@ class Section {
   /// Anything but a mapping adds a problem and reads as an empty one; so does nothing at all.
   explicit Section(const Value& value);
 
+  /// Is it there? It counts as asked for.
   bool has(const std::string& key);
+  /// Its value; nothing if it is missing.
   std::optional<Value> get(const std::string& key);
   /// As get(), and a problem if the key is missing. @param hint what to write.
   std::optional<Value> require(const std::string& key, const std::string& hint);
 
-  // Read a key into `target`, which keeps its value if the key is missing or wrong.
-  // @return true if the key was there and right.
+  /// Reads a key into `target`, which keeps its value if the key is missing or wrong.
+  /// @return true if the key was there and right.
   bool read(const std::string& key, double& target, Range range = {});
   bool read(const std::string& key, bool& target);
   bool read(const std::string& key, std::string& target);

@@ -8,7 +8,7 @@
 #include "bus/canopen/lss_supervisor.h"
 #include "bus/words.h"
 #include "cia402_driver/bus/network.h"
-#include "cia402_driver/canopen/lss_task.h"
+#include "cia402_driver/canopen/lss/task.h"
 
 namespace cia402::bus {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "cia402_driver/bus/jobs/job.h"
-#include "cia402_driver/canopen/error_history.h"
+#include "cia402_driver/canopen/emcy/error_history.h"
 #include "cia402_driver/drive/axis.h"
 
 namespace cia402::bus {

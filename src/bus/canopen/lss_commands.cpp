@@ -9,7 +9,7 @@
 #include "bus/canopen/lss_supervisor.h"
 #include "bus/words.h"
 #include "cia402_driver/bus/network.h"
-#include "cia402_driver/canopen/lss_scan.h"
+#include "cia402_driver/canopen/lss/scan.h"
 
 namespace cia402::bus {
 namespace {

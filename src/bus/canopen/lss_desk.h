@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "cia402_driver/canopen/lss_task.h"
+#include "cia402_driver/canopen/lss/task.h"
 
 namespace cia402::bus {
 

@@ -11,7 +11,7 @@
 #include "cia402_driver/bus/axis_cycle.h"
 #include "cia402_driver/bus/event.h"
 #include "cia402_driver/canopen/device_config.h"
-#include "cia402_driver/canopen/node.h"
+#include "cia402_driver/canopen/node/node.h"
 
 namespace cia402::bus {
 

@@ -2,7 +2,7 @@
 // What a drive family is as a device on the bus.
 #include <algorithm>
 
-#include "parts.h"
+#include "config/profile/parts.h"
 
 namespace cia402::config {
 namespace {

@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "cia402_driver/config/drive_family.h"
-#include "parts.h"
+#include "config/profile/parts.h"
 
 namespace cia402::config {
 namespace {

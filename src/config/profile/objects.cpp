@@ -2,7 +2,7 @@
 #include <limits>
 #include <map>
 
-#include "parts.h"
+#include "config/profile/parts.h"
 
 namespace cia402::config {
 namespace {

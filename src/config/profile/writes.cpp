@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "cia402_driver/drive/object_value.h"
-#include "parts.h"
+#include "config/profile/parts.h"
 
 namespace cia402::config {
 namespace {

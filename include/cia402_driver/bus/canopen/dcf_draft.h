@@ -8,7 +8,7 @@
 
 #include "cia402_driver/bus/canopen/dcf_command.h"
 #include "cia402_driver/canopen/device_config.h"
-#include "cia402_driver/canopen/eds.h"
+#include "cia402_driver/canopen/eds/eds.h"
 #include "cia402_driver/drive/axis_config.h"
 
 namespace cia402::bus {

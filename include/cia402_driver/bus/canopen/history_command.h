@@ -4,7 +4,7 @@
 #include <string>
 
 #include "cia402_driver/bus/reply.h"
-#include "cia402_driver/canopen/error_history.h"
+#include "cia402_driver/canopen/emcy/error_history.h"
 #include "cia402_driver/common/time.h"
 
 namespace cia402::bus {

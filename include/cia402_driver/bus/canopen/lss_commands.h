@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cia402_driver/bus/reply.h"
-#include "cia402_driver/canopen/lss_protocol.h"
+#include "cia402_driver/canopen/lss/protocol.h"
 #include "cia402_driver/common/time.h"
 
 namespace cia402::bus {

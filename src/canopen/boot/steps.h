@@ -1,0 +1,39 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "canopen/boot/context.h"
+
+// The steps of the boot procedure, each in the file that its comment names.
+namespace cia402::canopen {
+
+using BootStepPointer = std::unique_ptr<BootStep>;
+
+// boot_identify.cpp: is somebody there, and who is it?
+BootStepPointer makeBootUpWait();
+BootStepPointer makeProofOfLife();
+BootStepPointer makeIdentification();
+// boot_wake.cpp: out of the NMT state stopped, before anything is asked.
+BootStepPointer makeWake();
+// boot_writes.cpp: what stops a drive that was left enabled, before anything else is written to it.
+BootStepPointer makeStop();
+// boot_restore.cpp: factory settings (1011h), where asked for.
+BootStepPointer makeRestore();
+// boot_supervise.cpp: heartbeat or guarding, both ways.
+BootStepPointer makeErrorControl();
+// boot_unchanged.cpp: may the configuration be left as it is (1020h)?
+BootStepPointer makeUnchangedCheck();
+BootStepPointer makeSignature();
+// boot_cob_ids.cpp: identifiers of SYNC and EMCY (1005h, 1014h).
+BootStepPointer makeCobIds();
+// boot_sync.cpp: SYNC counter and period (1019h, 1006h).
+BootStepPointer makeSyncSetup();
+// boot_pdos.cpp
+BootStepPointer makePdos(const NodeConfig& config);
+// boot_writes.cpp: the start-up writes of profile and user.
+BootStepPointer makeStartupWrites();
+// boot_start.cpp: operational, and does it say so?
+BootStepPointer makeStart();
+
+}  // namespace cia402::canopen

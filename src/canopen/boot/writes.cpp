@@ -1,0 +1,89 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// The start-up writes: those that are always done first of all, those of profile and user last.
+#include "canopen/boot/steps.h"
+#include "canopen/boot/text.h"
+#include "cia402_driver/fieldbus/abort_code.h"
+
+namespace cia402::canopen {
+namespace {
+
+class Writes : public BootStep {
+ public:
+  /// @param always those that are no configuration, else the others.
+  explicit Writes(bool always) : always_(always) {}
+
+  bool begin(BootContext& boot, Time now) override {
+    if (boot.found.unchanged && !always_) return false;
+    const std::vector<StartupWrite>& writes = boot.config.writes;
+    while (item_ < writes.size() && writes[item_].always != always_) ++item_;
+    if (item_ >= writes.size()) return false;
+    reading_ = writes[item_].only_if_different;
+    if (reading_) {
+      boot.read(writes[item_].object, writes[item_].name, now, options(boot));
+    } else {
+      send(boot, now);
+    }
+    return true;
+  }
+
+  Progress check(BootContext& boot, Time now) override {
+    if (const auto resting = patience_.rest(boot, now)) return *resting;
+    if (!boot.answered()) return Progress::waiting;
+    if (reading_) return compare(boot, now);
+    if (boot.ok()) return done();
+    const bool optional = boot.config.writes[item_].optional;
+    if (!optional && patience_.grant(boot, boot.ticket->abortCode(), now)) return Progress::waiting;
+    if (!always_ && leaveOut(boot)) return done();
+    if (!optional || !boot.refused()) return boot.failTransfer();
+    boot.noteTransfer(always_ ? "was not told to stop before it was configured"
+                              : "optional start-up write left out");
+    return done();
+  }
+
+ private:
+  SdoOptions options(const BootContext& boot) const {
+    const StartupWrite& write = boot.config.writes[item_];
+    return write.optional || write.by_default ? boot.ifThere() : boot.config.sdo;
+  }
+
+  /// What nobody asked for by name, and the drive does not have or does not let write.
+  bool leaveOut(BootContext& boot) const {
+    const StartupWrite& write = boot.config.writes[item_];
+    const std::uint32_t abort = boot.refused() ? boot.ticket->abortCode() : 0;
+    if (!abort_code::saysLacking(abort) || !(write.optional || write.by_default)) return false;
+    (write.by_default && !write.optional ? boot.found.lacking : boot.found.lacking_optional)
+        .push_back(objectText(write.object, write.name));
+    return true;
+  }
+
+  Progress done() {
+    ++item_;
+    patience_.renew();
+    return Progress::again;
+  }
+
+  void send(BootContext& boot, Time now) {
+    const StartupWrite& wanted = boot.config.writes[item_];
+    reading_ = false;
+    boot.write(wanted.object, wanted.data, wanted.name, now, options(boot));
+  }
+
+  Progress compare(BootContext& boot, Time now) {
+    if (boot.ok() && boot.ticket->data() == boot.config.writes[item_].data) return done();
+    if (!boot.ok() && !boot.refused()) return boot.failTransfer();
+    send(boot, now);  // also where the object cannot be read
+    return Progress::waiting;
+  }
+
+  const bool always_;
+  std::size_t item_ = 0;
+  bool reading_ = false;
+  StatePatience patience_;
+};
+
+}  // namespace
+
+BootStepPointer makeStop() { return std::make_unique<Writes>(true); }
+BootStepPointer makeStartupWrites() { return std::make_unique<Writes>(false); }
+
+}  // namespace cia402::canopen

@@ -1,0 +1,45 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "cia402_driver/can/bus.h"
+#include "cia402_driver/canopen/config.h"
+#include "cia402_driver/canopen/nmt/nmt.h"
+#include "cia402_driver/canopen/sdo/client.h"
+
+namespace cia402::canopen {
+
+/// Stops a node that was lost. It may hear though it is not heard, and go on with its homing or its
+/// last set-point; and each frame may be lost. So it is told more than once: first to stop the
+/// motor (the writes of StartupWrite::always, by SDO, no answer is waited for), as a stopped node
+/// takes no SDO any more and not every drive stops its motor on NMT stop; then NMT stop, quickly at
+/// first, for three seconds in all.
+class LastStop {
+ public:
+  /// All must outlive it.
+  LastStop(const NodeConfig& config, SdoClient& sdo, can::Sink& sink)
+      : config_(config), sdo_(sdo), sink_(sink) {}
+
+  /// The node was lost just now; its SDO transfers have ended.
+  void begin(Time now);
+  /// It is there again, or somebody else decides.
+  void end() { next_ = kNever; }
+  void tick(Time now);
+  Time deadline() const { return next_; }
+  /// When it is told to stop for the last time at the latest: what wakes it must wait so long.
+  Time over() const { return next_ == kNever ? Time() : end_; }
+  /// A heartbeat tells the node's state. @return true: it has not stopped yet, it is told again at
+  /// once, and shall not be booted before it has or its time is up (0.5 s after the loss).
+  bool insists(NmtState state, Time now);
+
+ private:
+  bool stopMotor();
+  void restart(Time now);
+
+  const NodeConfig& config_;
+  SdoClient& sdo_;
+  can::Sink& sink_;
+  unsigned said_ = 0;  ///< since it began, or began again
+  Time next_ = kNever, last_{}, patience_end_{}, end_{};
+};
+
+}  // namespace cia402::canopen
