@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "cia402_driver/campaign/runner.h"
-#include "conditions.h"
-#include "permits.h"
-#include "stage.h"
+#include "campaign/conditions.h"
+#include "campaign/permits.h"
+#include "campaign/runner.h"
+#include "campaign/stage.h"
 
 namespace cia402::campaign {
 

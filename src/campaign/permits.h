@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "stage.h"
+#include "campaign/stage.h"
 
 namespace cia402::campaign {
 

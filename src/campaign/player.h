@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "cia402_driver/campaign/runner.h"
-#include "oracle.h"
-#include "random.h"
+#include "campaign/oracle.h"
+#include "campaign/random.h"
+#include "campaign/runner.h"
 
 namespace cia402::campaign {
 

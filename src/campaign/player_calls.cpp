@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "player.h"
+#include "campaign/player.h"
 
 namespace cia402::campaign {
 namespace {

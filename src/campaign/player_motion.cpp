@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "player.h"
+#include "campaign/player.h"
 
 namespace cia402::campaign {
 namespace {

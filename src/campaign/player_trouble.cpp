@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "player.h"
+#include "campaign/player.h"
 
 namespace cia402::campaign {
 namespace {

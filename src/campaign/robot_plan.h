@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "random.h"
+#include "campaign/random.h"
 
 namespace cia402::campaign {
 

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "cia402_driver/campaign/scene.h"
-#include "cia402_driver/sim/robot_drives.h"
-#include "cia402_driver/sim/sync_producer.h"
-#include "cia402_driver/tools/virtual_host.h"
+#include "campaign/scene.h"
+#include "cia402_driver/sim/world/robot_drives.h"
+#include "cia402_driver/sim/world/sync_producer.h"
+#include "tools/virtual_host.h"
 
 namespace cia402::campaign {
 

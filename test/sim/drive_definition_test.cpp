@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <fstream>
 
-#include "cia402_driver/sim/drive.h"
+#include "cia402_driver/sim/drive/drive.h"
 #include "folders.h"
 
 namespace cia402::sim {
