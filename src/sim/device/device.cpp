@@ -11,7 +11,7 @@
 #include "sim/device/heartbeat.h"
 #include "sim/device/lss.h"
 #include "sim/device/pdo_server.h"
-#include "sim/device/sdo_server.h"
+#include "sim/device/sdo/server.h"
 #include "sim/device/sync.h"
 #include "sim/device/time.h"
 
@@ -365,10 +365,10 @@ void Device::onBusRecovered(Time now) {
   impl_->emergency.resolve(recovered);
 }
 
-void Device::clearEmergency(Time now) {
+void Device::clearEmergency(Time now, std::uint8_t remaining) {
   if (!powered()) return;
   Call<Impl> call(*impl_, now);
-  impl_->emergency.clear();
+  impl_->emergency.clear(remaining);
 }
 
 void Device::notifyChange(Time now) {

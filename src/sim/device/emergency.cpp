@@ -60,9 +60,9 @@ void SlaveEmergency::send(std::uint16_t code, std::uint8_t error_register,
   queue(code, error_register, vendor);
 }
 
-void SlaveEmergency::clear() {
-  if (Entry* entry = context_.dictionary.find(kErrorRegister)) entry->number = 0;
-  queue(0x0000, 0, {});
+void SlaveEmergency::clear(std::uint8_t remaining) {
+  if (Entry* entry = context_.dictionary.find(kErrorRegister)) entry->number = remaining;
+  queue(0x0000, remaining, {});
 }
 
 void SlaveEmergency::raise(bool& active, std::uint16_t code) {

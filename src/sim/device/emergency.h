@@ -19,7 +19,8 @@ class SlaveEmergency {
   void reset();
   void send(std::uint16_t code, std::uint8_t error_register,
             const std::array<std::uint8_t, 5>& vendor);
-  void clear();
+  /// An error is gone: EMCY 0x0000. @param remaining 1001h from now on, of other errors.
+  void clear(std::uint8_t remaining = 0);
   /// A communication error begins: reports it once, until resolve() with the same flag.
   void raise(bool& active, std::uint16_t code);
   /// A communication error ends; with the last one "no error" is reported.

@@ -194,8 +194,9 @@ class Device {
   void onBusOff(Time now);
   /// It is back: EMCY 0x8140.
   void onBusRecovered(Time now);
-  /// EMCY 0000h: all errors gone; 1001h := 0. The history 1003h stays.
-  void clearEmergency(Time now);
+  /// EMCY 0000h: errors are gone; the history 1003h stays. @param remaining 1001h from now on, bits
+  /// of errors that are left (CiA 301, 7.2.7.1).
+  void clearEmergency(Time now, std::uint8_t remaining = 0);
   /// Mapped values of event-driven TPDOs may have changed: sends those whose content did, subject
   /// to their inhibit time (types 254, 255 by `behaviour`).
   void notifyChange(Time now);
