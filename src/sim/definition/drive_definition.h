@@ -93,8 +93,8 @@ struct DriveDefinition {
   std::array<UnitScale, kQuantityCount> units;
   Encoding encoding = Encoding::integer;
   std::map<fieldbus::ObjectId, Encoding> encodings;
-  std::map<Role, fieldbus::ObjectId> objects;  ///< instead of the standard's
-  MotorParameters motor;
+  std::map<Role, fieldbus::ObjectId> objects;              ///< instead of the standard's
+  std::vector<MotorParameters> motors{MotorParameters()};  ///< one for each axis
   std::vector<ModeDefinition> modes;
 
   bool absolute_encoder = true;
@@ -128,7 +128,11 @@ struct DriveDefinition {
 
   std::vector<FaultDefinition> faults;
 
+  /// 1 to 8. All else here says what every axis is, by the objects of axis 0.
+  unsigned axisCount() const { return static_cast<unsigned>(motors.size()); }
+  /// nullptr if there is none of that name.
   const FaultDefinition* fault(const std::string& fault_name) const;
+  /// nullptr if 6060h cannot be this.
   const ModeDefinition* mode(std::int64_t number) const;
 };
 

@@ -4,7 +4,11 @@
 #include <cmath>
 #include <utility>
 
+#include "cia402_driver/yaml/reader.h"
+
 namespace cia402::sim {
+
+std::optional<std::int64_t> integerIn(const std::string& text) { return yaml::parseInteger(text); }
 
 DefinitionReader::DefinitionReader(const YAML::Node& node, std::string path, ProblemTexts& problems)
     : node_(node), path_(std::move(path)), problems_(problems) {

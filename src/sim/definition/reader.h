@@ -3,14 +3,20 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <cstdint>
 #include <functional>
+#include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cia402_driver/common/time.h"
 
 namespace cia402::sim {
+
+/// A whole number, decimal or 0x hexadecimal, as modes and option codes are written.
+std::optional<std::int64_t> integerIn(const std::string& text);
 
 /// Everything wrong with one file, gathered.
 using ProblemTexts = std::vector<std::string>;

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "sim/dictionary/axis_objects.h"
 #include "sim/dictionary/macros.h"
 #include "sim/dictionary/reader.h"
 #include "sim/dictionary/value.h"
@@ -218,8 +219,15 @@ std::vector<ObjectId> DictionaryTemplate::nodeIdObjects() const {
   return found;
 }
 
-ObjectDictionary DictionaryTemplate::build(canopen::NodeId node) const {
+ObjectDictionary DictionaryTemplate::build(canopen::NodeId node, unsigned axes) const {
   ObjectDictionary dictionary;
+  for (unsigned axis = 1; axis < axes; ++axis) {
+    for (const Row& row : rows_) {
+      Entry entry = row.entry;
+      entry.id = ofAxis(row.entry.id, axis);
+      if (!(entry.id == row.entry.id)) dictionary.add(std::move(entry));
+    }
+  }
   for (const Row& row : rows_) {
     Entry entry = row.entry;
     if (row.add_node_id) entry.number += node;

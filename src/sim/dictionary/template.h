@@ -53,8 +53,9 @@ class DictionaryTemplate {
 
   /// Objects whose default depends on the node-ID.
   std::vector<ObjectId> nodeIdObjects() const;
-  /// The dictionary of the node `node`.
-  ObjectDictionary build(canopen::NodeId node) const;
+  /// The dictionary of the node `node`. With several axes the objects of axis 0 are there once more
+  /// for each further one (axis_objects.h), where the file does not give it its own.
+  ObjectDictionary build(canopen::NodeId node, unsigned axes = 1) const;
 
  private:
   friend class DictionaryReader;

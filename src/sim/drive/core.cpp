@@ -4,84 +4,63 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cia402_driver/fieldbus/abort_code.h"
+#include "sim/drive/statusword.h"
+#include "sim/drive/write_guard.h"
 
 namespace cia402::sim {
 namespace {
 
-constexpr Duration kSyncSilence = std::chrono::milliseconds(100);
-constexpr Duration kQuickStopFlash = std::chrono::milliseconds(2);
 constexpr Duration kWatchPeriod = std::chrono::milliseconds(1);
-constexpr std::uint16_t kFaultResetBit = 0x0080;  // of the controlword; others of the statusword
-constexpr std::uint16_t kWarningBit = 0x0080;
-constexpr std::uint16_t kVoltageBit = 0x0010;
-constexpr std::uint16_t kRemoteBit = 0x0200;
+
+// Controlword.
+constexpr std::uint16_t kFaultReset = 0x0080;
+constexpr std::uint16_t kHalt = 0x0100;
 
 std::int64_t gridStep(Time time) { return time.time_since_epoch() / kDriveStep; }
 
 }  // namespace
 
-DriveCore::DriveCore(const DriveDefinition& definition, const AxisMechanics& mechanics,
-                     ObjectDictionary& dictionary, Reports& reports)
+DriveCore::DriveCore(const DriveDefinition& definition, unsigned axis,
+                     const AxisMechanics& mechanics, ObjectDictionary& dictionary, Reports& reports)
     : definition_(definition),
-      mechanics_(mechanics),
-      values_(definition, dictionary, mechanics.counts_per_turn),
+      values_(definition, axis, dictionary, mechanics.counts_per_turn),
       history_count_(dictionary.find({0x1003, 0})),
-      motion_(definition, mechanics, values_),
-      reports_(reports) {
-  causes_.reserve(16);
-}
+      motion_(definition, definition.motors[axis], mechanics, values_),
+      modes_(definition, values_, motion_),
+      power_(definition, mechanics, values_, motion_, modes_),
+      faults_(definition),
+      reports_(reports) {}
 
 void DriveCore::start(bool cold, Time now) {
   advance(now);
   on_ = true;
   if (cold && !definition_.absolute_encoder) motion_.setCounter(0.0);
-  motion_.powerStage(false);
-  applied_mode_ = values_.raw(Role::mode, 0);
-  motion_.setMode(definition_.mode(applied_mode_));
-  enabled_at_ = kNever;
-  resets_ = 0;
-  mode_commanded_ = was_stopped_ = false;
-  mode_at_ = stopped_since_ = kNever;
-  reset_low_since_ = now;
   if (cold) stored_ = false;
-  last_mode_command_ = applied_mode_;
-  state_ = PdsState::not_ready_to_switch_on;
-  ready_at_ = now + definition_.initialisation;
+  motion_.powerStage(false);
   controlword_ = 0;
   statusword_ = 0;  // the dictionary has its initial values again
-  after_stop_.reset();
-  causes_.clear();
-  warning_ = false;
+  reset_low_since_ = now;
   limit_reported_ = false;
-  last_sync_.reset();
+  faults_.start();
+  sync_.reset();
   values_.setRaw(Role::error_code, 0);
-  showMode();
-  if (now >= ready_at_) {
-    ready_at_ = kNever;
-    enter(PdsState::switch_on_disabled);
-  }
+  modes_.start();
+  power_.start(now);
+  power_.finishInitialisation(now, now_);
   motion_.publish();
   updateStatusword();
 }
 
 void DriveCore::powerOff() {
   on_ = false;
-  motion_.powerStage(false);
-  state_ = PdsState::not_ready_to_switch_on;
-  ready_at_ = kNever;
-  after_stop_.reset();
+  power_.powerOff();
   statusword_ = 0;
 }
 
-bool DriveCore::enabledState() const {
-  return state_ == PdsState::operation_enabled || state_ == PdsState::quick_stop_active ||
-         state_ == PdsState::fault_reaction_active;
-}
-
 bool DriveCore::idle() const {
-  return enabled_at_ == kNever && mode_at_ == kNever && !motion_.powered() && motion_.atRest() &&
-         (ready_at_ == kNever || !on_);
+  const bool initialises = power_.readyAt() != kNever && on_;
+  return !power_.enabling() && modes_.due() == kNever && !motion_.powered() && motion_.atRest() &&
+         !initialises;
 }
 
 void DriveCore::advance(Time now) {
@@ -98,175 +77,119 @@ void DriveCore::advance(Time now) {
     moved = true;
   }
   if (moved) motion_.publish();
-  if (on_ && (moved || !causes_.empty())) updateStatusword();
+  if (on_ && (moved || hasFault())) updateStatusword();
 }
 
 Time DriveCore::nextEvent() const {
   if (idle()) return kNever;
-  if (ready_at_ != kNever && !motion_.powered()) {
-    const Time due{(gridStep(ready_at_ - Duration(1)) + 1) *
+  if (power_.readyAt() != kNever && !motion_.powered()) {
+    const Time due{(gridStep(power_.readyAt() - Duration(1)) + 1) *
                    kDriveStep};  // the first step at or after
     return std::max(due, Time{(step_ + 1) * kDriveStep});
   }
   // While SYNC runs the drive is asked often enough by it.
-  const bool synchronised = last_sync_ && now_ - *last_sync_ < kSyncSilence;
-  return now_ + (synchronised ? kSyncSilence : kWatchPeriod);
+  return now_ + (sync_.runs(now_) ? SyncWatch::kSilence : kWatchPeriod);
 }
 
 void DriveCore::step() {
   const Time time{step_ * kDriveStep};
-  if (on_ && time >= ready_at_) {
-    ready_at_ = kNever;
-    enter(PdsState::switch_on_disabled);
+  if (on_) power_.finishInitialisation(time, now_);
+  if (power_.finishEnabling(time, now_)) onTargetPosition();
+  if (time >= modes_.due()) {
+    modes_.apply(power_.state());
+    updateStatusword();
   }
-  if (time >= enabled_at_) {
-    enabled_at_ = kNever;
-    enter(PdsState::operation_enabled);
-    onTargetPosition();
-  }
-  if (time >= mode_at_) applyMode(values_.raw(Role::mode, 0));
-  if (state_ == PdsState::operation_enabled) motion_.hold(time < follow_at_);
+  power_.waitForBrake(time);
   motion_.step();
-  if (motion_.powered()) {
-    superviseMotion();
-    stepState();
-  }
+  if (!motion_.powered()) return;
+  superviseMotion();
+  power_.finishStops(now_);
 }
 
-void DriveCore::stepState() {
-  if (!motion_.stopping() || !motion_.standing()) return;
-  if (state_ == PdsState::fault_reaction_active) {
-    enter(PdsState::fault);  // transition 14
-  } else if (state_ == PdsState::quick_stop_active) {
-    if (!hold_after_quick_stop_) enter(PdsState::switch_on_disabled);  // transition 12
-  } else if (after_stop_) {
-    enter(after_stop_->to);
+void DriveCore::superviseMotion() {
+  if (motion_.followingErrorExceeded() && definition_.following_error_is_fault &&
+      power_.state() != PdsState::fault_reaction_active) {
+    raise("following_error");
   }
-}
-
-void DriveCore::enter(PdsState state) {
-  const bool was_enabled = enabledState();
-  state_ = state;
-  after_stop_.reset();
-  if (state == PdsState::operation_enabled) {
-    if (!was_enabled) {
-      motion_.powerStage(true);
-      follow_at_ = now_ + fromSeconds(mechanics_.brake_delay);
-      motion_.hold(now_ < follow_at_);
-    } else {
-      motion_.release();
-    }
-  } else if (!enabledState() && was_enabled) {
-    motion_.powerStage(false);
+  if (!motion_.limitSwitchHit()) {
+    limit_reported_ = false;
+  } else if (!limit_reported_) {
+    limit_reported_ = true;
+    if (definition_.limit_switch_is_fault) raise("limit_switch");
   }
-  if (state != PdsState::switched_on) enabled_at_ = kNever;
-  showMode();
-}
-
-StopOption DriveCore::option(const OptionTable& table, Role role) const {
-  const auto found = table.options.find(values_.raw(role, table.fallback));
-  return found == table.options.end() ? StopOption{} : found->second;
 }
 
 void DriveCore::onControlword() {
   const std::uint16_t previous = controlword_;
   controlword_ = static_cast<std::uint16_t>(values_.raw(Role::controlword, 0));
-  const PdsCommand command = decodeCommand(controlword_, previous);
-  if (command == PdsCommand::fault_reset) {
-    if (seesResetEdge(previous)) resetFault();
+  const PdsCommand wanted = decodeCommand(controlword_, previous);
+  if (wanted == PdsCommand::fault_reset) {
+    if (now_ - reset_low_since_ >= definition_.quirks.reset_edge_time) resetFault();
     return;
   }
-  if ((previous & kFaultResetBit) != 0) reset_low_since_ = now_;
-  const bool was_operating = state_ == PdsState::operation_enabled && !after_stop_;
-  if (state_ == PdsState::operation_enabled && after_stop_ &&
-      command == PdsCommand::enable_operation) {
-    after_stop_.reset();
-    motion_.release();
-  }
-  PdsTransition transition = transitionFor(state_, command);
+  if ((previous & kFaultReset) != 0) reset_low_since_ = now_;
+  const bool was_operating = power_.operating();
+  command(wanted);
+  // Edges count only where operation was enabled before.
+  if (power_.operating())
+    motion_.controlBits(controlword_, was_operating ? previous : controlword_);
+  updateStatusword();
+}
+
+void DriveCore::command(PdsCommand command) {
+  if (command == PdsCommand::enable_operation) power_.stay();
+  PdsTransition transition = transitionFor(power_.state(), command);
   if (transition.number == 0 && definition_.direct_enable &&
-      state_ == PdsState::switch_on_disabled && (controlword_ & 0x0087) == 0x0007) {
-    enter(PdsState::ready_to_switch_on);
-    transition = transitionFor(state_, command);
+      power_.state() == PdsState::switch_on_disabled && (controlword_ & 0x0087) == 0x0007) {
+    power_.enter(PdsState::ready_to_switch_on, now_);
+    transition = transitionFor(power_.state(), command);
   }
   if (transition.number != 0) execute(transition);
   if (transition.number == 3 && command == PdsCommand::enable_operation &&
       definition_.enable_in_one_step) {
-    execute(transitionFor(state_, command));
+    execute(transitionFor(power_.state(), command));
   }
-  if (state_ == PdsState::operation_enabled && !after_stop_) {
-    // Edges count only where operation was enabled before.
-    motion_.controlBits(controlword_, was_operating ? previous : controlword_);
-  }
-  updateStatusword();
 }
 
 void DriveCore::execute(const PdsTransition& transition) {
-  switch (transition.number) {
-    case 4:
-      beginEnabling();
-      break;
-    case 5:
-      leaveEnabled(transition, definition_.disable_operation, Role::disable_operation_option);
-      break;
-    case 8:
-      leaveEnabled(transition, definition_.shutdown, Role::shutdown_option);
-      break;
-    case 11:
-      beginQuickStop(option(definition_.quick_stop, Role::quick_stop_option));
-      break;
-    case 16:
-      if (hold_after_quick_stop_ &&
-          (definition_.resume_quick_stop_while_moving || motion_.standing())) {
-        enter(PdsState::operation_enabled);
-      }
-      break;
-    default:
-      enter(transition.to);
-      break;
-  }
+  transition.number == 4 ? beginEnabling() : power_.execute(transition, now_);
 }
 
-void DriveCore::leaveEnabled(const PdsTransition& transition, const OptionTable& table, Role role) {
-  const StopOption chosen = option(table, role);
-  if (chosen.ramp == Ramp::coast) {
-    enter(transition.to);
-    return;
-  }
-  if (!after_stop_) motion_.stop(chosen.ramp);
-  after_stop_ = transition;
+bool DriveCore::mayEnable() {
+  const DriveQuirks& quirks = definition_.quirks;
+  if (quirks.mode_needed && modes_.applied() == 0) return false;
+  if (quirks.needs_power_cycle_to_save && stored_) return false;
+  if (!quirks.sync_needed || sync_.runs(now_)) return true;
+  raise("rpdo_timeout");
+  return false;
 }
 
-void DriveCore::beginQuickStop(StopOption chosen) {
-  if (chosen.ramp == Ramp::coast) {
-    enter(PdsState::switch_on_disabled);
-    return;
-  }
-  hold_after_quick_stop_ = chosen.hold;
-  quick_stop_since_ = now_;
-  enter(PdsState::quick_stop_active);
-  motion_.stop(chosen.ramp);
+/// 0x0F in Switched on.
+void DriveCore::beginEnabling() {
+  // Without SYNC the set-point that stands in the dictionary counts at once.
+  if (mayEnable() && power_.enable(now_)) onTargetPosition();
 }
 
-void DriveCore::beginFaultReaction(Ramp ramp) {
-  if (!motion_.powered() || ramp == Ramp::coast) {
-    enter(PdsState::fault);
-    return;
+void DriveCore::onMode() {
+  const bool halted = (controlword_ & kHalt) != 0;
+  switch (modes_.command(power_.state(), enabled(), halted, now_)) {
+    case ModeSelection::Outcome::nothing:
+      return;
+    case ModeSelection::Outcome::applied:
+      return updateStatusword();
+    case ModeSelection::Outcome::fault:
+      return raise("mode_change");
   }
-  enter(PdsState::fault_reaction_active);
-  motion_.stop(ramp);
 }
 
 void DriveCore::onTargetPosition() {
-  if (state_ != PdsState::operation_enabled) return;
-  const bool synchronised = last_sync_ && now_ - *last_sync_ < kSyncSilence;
-  if (synchronised && now_ != *last_sync_) return;  // waits for the next SYNC
+  if (power_.state() != PdsState::operation_enabled) return;
+  if (sync_.runs(now_) && !sync_.isNow(now_)) return;  // waits for the next SYNC
   startSegment();
 }
 
 void DriveCore::onSync() {
-  if (last_sync_) sync_interval_ = now_ - *last_sync_;
-  last_sync_ = now_;
+  sync_.onSync(now_);
   startSegment();
 }
 
@@ -274,12 +197,12 @@ void DriveCore::startSegment() {
   const double exponent = static_cast<double>(values_.raw(Role::interpolation_exponent, -3));
   double period =
       static_cast<double>(values_.raw(Role::interpolation_time, 0)) * std::pow(10.0, exponent);
-  if (definition_.follows_sync_period || period <= 0.0) period = toSeconds(sync_interval_);
+  if (definition_.follows_sync_period || period <= 0.0) period = toSeconds(sync_.interval());
   motion_.cyclicTarget(period, toSeconds(now_ - Time{step_ * kDriveStep}));
 }
 
 void DriveCore::onHomingStart() {
-  if (state_ == PdsState::operation_enabled) motion_.homeByObject();
+  if (power_.state() == PdsState::operation_enabled) motion_.homeByObject();
 }
 
 void DriveCore::saveZero() {
@@ -288,52 +211,109 @@ void DriveCore::saveZero() {
 }
 
 std::uint32_t DriveCore::refuseWrite(const Entry& entry, std::uint64_t number) const {
-  namespace abort_code = fieldbus::abort_code;
-  Entry candidate = entry;
-  candidate.number = number;
-  const std::int64_t value =
-      fieldbus::isSigned(entry.type) ? asSigned(candidate) : static_cast<std::int64_t>(number);
-  if (values_.entry(Role::mode) == &entry) {
-    if (definition_.mode(value) == nullptr) return abort_code::kInvalidValue;
-    const bool change = value != applied_mode_;
-    if (change && enabledState() && !definition_.mode_change_while_enabled) {
-      return abort_code::kDeviceState;
-    }
-    return 0;
+  const WriteSituation situation{modes_.applied(), enabled(), motion_.powered()};
+  return sim::refuseWrite(definition_, values_, situation, entry, number);
+}
+
+void DriveCore::raise(const FaultDefinition& fault) {
+  if (!on_) return;
+  faults_.add(fault, now_);
+  values_.setRaw(Role::error_code, fault.code);
+  if (!fault.warning || definition_.warning_stops) power_.react(fault, now_);
+  updateStatusword();
+  reports_.emergency(fault);
+}
+
+void DriveCore::raise(const char* fault) {
+  if (const FaultDefinition* known = definition_.fault(fault)) raise(*known);
+}
+
+void DriveCore::resetFault() {
+  if (power_.state() != PdsState::fault && !faults_.warning()) return;
+  if (power_.state() == PdsState::fault_reaction_active) return;
+  if (const FaultDefinition* lasting = faults_.lasting(now_)) {
+    values_.setRaw(Role::error_code, lasting->code);
+    reports_.emergency(*lasting);
+    return;
   }
-  const bool of_homing = entry.id.index == 0x6098 || entry.id.index == 0x6099;
-  if (definition_.quirks.homing_is_fixed && of_homing) return abort_code::kReadOnly;
-  if (values_.entry(Role::homing_method) == &entry) {
-    const auto& methods = definition_.homing_methods;
-    const bool known = std::find(methods.begin(), methods.end(), value) != methods.end();
-    return known ? 0 : abort_code::kInvalidValue;
+  if (!faults_.tryReset(history_count_ != nullptr && history_count_->number != 0)) return;
+  clearErrors();
+  if (power_.state() == PdsState::fault) power_.enter(PdsState::switch_on_disabled, now_);
+  updateStatusword();
+}
+
+void DriveCore::clearErrors() {
+  faults_.clear();
+  values_.setRaw(Role::error_code, 0);
+  reports_.errorsGone();
+}
+
+void DriveCore::removeCauses() {
+  faults_.endCauses(now_);
+  motion_.motor().block(false);
+  if (!definition_.warning_stops && faults_.endWarnings()) clearErrors();
+  updateStatusword();
+}
+
+void DriveCore::onNonFinite() { raise("not_a_number"); }
+
+void DriveCore::onBootedAlone() {
+  if (definition_.quirks.passive_when_alone) raise("can_passive");
+}
+
+void DriveCore::connectionLost(ConnectionLoss reaction) {
+  if (definition_.quirks.master_lost_holds) return holdUnwatched();
+  switch (reaction) {
+    case ConnectionLoss::none:
+      return;
+    case ConnectionLoss::fault:
+      return raise("master_lost");
+    case ConnectionLoss::disable_voltage:
+      if (enabled()) power_.enter(PdsState::switch_on_disabled, now_);
+      break;
+    case ConnectionLoss::quick_stop:
+      if (power_.state() == PdsState::operation_enabled) power_.quickStop(now_);
+      break;
   }
-  if (values_.entry(Role::save_zero) == &entry && motion_.powered()) {
-    return abort_code::kDeviceState;
-  }
-  const auto& locked = definition_.locked_while_enabled;
-  const bool is_locked = std::find(locked.begin(), locked.end(), entry.id) != locked.end();
-  return is_locked && enabledState() ? abort_code::kDeviceState : 0;
+  updateStatusword();
+}
+
+void DriveCore::onMasterLost() {
+  constexpr ConnectionLoss kByOption[] = {ConnectionLoss::none, ConnectionLoss::fault,
+                                          ConnectionLoss::disable_voltage,
+                                          ConnectionLoss::quick_stop};
+  const std::int64_t code = values_.raw(Role::abort_connection_option,
+                                        static_cast<std::int64_t>(definition_.master_lost));
+  connectionLost(code >= 0 && code <= 3 ? kByOption[code] : definition_.master_lost);
+}
+
+void DriveCore::onNmtState(canopen::NmtState state) {
+  const bool left =
+      nmt_ == canopen::NmtState::operational && state != canopen::NmtState::operational;
+  nmt_ = state;
+  faults_.onNmtState(state, now_);
+  if (!left || !definition_.stops_outside_operational) return;
+  const PdsState power = power_.state();
+  if (power != PdsState::operation_enabled && power != PdsState::quick_stop_active) return;
+  if (definition_.quirks.master_lost_holds) return holdUnwatched();
+  power_.quickStop({Ramp::quick_stop, false}, now_);
+  updateStatusword();
+}
+
+/// The next controlword ends it.
+void DriveCore::holdUnwatched() {
+  if (!power_.operating()) return;
+  motion_.controlBits(static_cast<std::uint16_t>(controlword_ | kHalt), controlword_);
 }
 
 void DriveCore::updateStatusword() {
-  const bool flashed = definition_.quirks.quick_stop_flashes &&
-                       state_ == PdsState::quick_stop_active &&
-                       now_ - quick_stop_since_ > kQuickStopFlash;
-  const bool hidden = flashed || definition_.quirks.shows_no_state;
-  std::uint16_t word = statusBits(hidden ? PdsState::switch_on_disabled : state_);
-  if (state_ != PdsState::not_ready_to_switch_on) {
-    word |= kRemoteBit;
-    const bool voltage = std::none_of(causes_.begin(), causes_.end(), [this](const Cause& cause) {
-      return cause.fault->voltage_lost && cause.until > now_;
-    });
-    if (voltage) word |= kVoltageBit;
-  }
-  if (warning_) word |= kWarningBit;
-  if (state_ == PdsState::fault && !hidden) word |= definition_.quirks.fault_bits;
-  if (enabledState()) word = static_cast<std::uint16_t>(word | motion_.statusBits());
-  const std::uint16_t vendor = definition_.quirks.vendor_bits;
-  if (vendor != 0) word = static_cast<std::uint16_t>((word & ~vendor) | vendorBits());
+  StatuswordParts parts;
+  parts.shown = power_.shown(now_);
+  parts.ready = power_.state() != PdsState::not_ready_to_switch_on;
+  parts.voltage = !faults_.voltageLost(now_);
+  parts.warning = faults_.warning();
+  if (enabled()) parts.of_mode = motion_.statusBits();
+  const std::uint16_t word = makeStatusword(parts, definition_.quirks, now_);
   if (word == statusword_) return;
   statusword_ = word;
   values_.setRaw(Role::statusword, word);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "cia402_driver/fieldbus/abort_code.h"
+#include "sim/dictionary/axis_objects.h"
 
 namespace cia402::sim {
 namespace {
@@ -31,8 +32,22 @@ bool inGroup(std::uint16_t index, std::uint8_t subindex) {
   }
 }
 
-bool isParameter(const Entry& entry) {
-  switch (entry.id.index) {
+}  // namespace
+
+ParameterStore::ParameterStore(ObjectDictionary& dictionary, unsigned axes,
+                               std::function<bool()> enabled, std::function<void()> stored)
+    : dictionary_(dictionary),
+      axes_(axes),
+      enabled_(std::move(enabled)),
+      stored_(std::move(stored)) {
+  for (const auto& pair : dictionary_.entries()) factory_[pair.first] = pair.second.initial_number;
+  install(kStore, kSave);
+  install(kRestore, kLoad);
+  dictionary_.onChange([this](const Entry& entry) { changed(entry); });
+}
+
+bool ParameterStore::isParameter(const Entry& entry) const {
+  switch (ofFirstAxis(entry.id, axes_).index) {
     case kStore:
     case kRestore:
     case 0x1003:
@@ -44,17 +59,6 @@ bool isParameter(const Entry& entry) {
     default:
       return entry.access == Access::rw;
   }
-}
-
-}  // namespace
-
-ParameterStore::ParameterStore(ObjectDictionary& dictionary, std::function<bool()> enabled,
-                               std::function<void()> stored)
-    : dictionary_(dictionary), enabled_(std::move(enabled)), stored_(std::move(stored)) {
-  for (const auto& pair : dictionary_.entries()) factory_[pair.first] = pair.second.initial_number;
-  install(kStore, kSave);
-  install(kRestore, kLoad);
-  dictionary_.onChange([this](const Entry& entry) { changed(entry); });
 }
 
 void ParameterStore::install(std::uint16_t index, std::uint64_t signature) {
@@ -82,7 +86,7 @@ void ParameterStore::moveDefault(ObjectId id, std::int64_t by) {
 }
 
 void ParameterStore::changed(const Entry& entry) {
-  const std::uint16_t index = entry.id.index;
+  const std::uint16_t index = ofFirstAxis(entry.id, axes_).index;
   const bool commanded = index == kVerifyConfiguration || index == kMode || index == kOutputs;
   if (commanded || !isParameter(entry)) return;
   for (const std::uint8_t sub : {std::uint8_t{1}, std::uint8_t{2}}) {

@@ -17,8 +17,9 @@ namespace cia402::sim {
 class ParameterStore {
  public:
   /// Installs itself where `dictionary` has 1010h and 1011h; both must outlive it.
+  /// @param axes of the device. @param enabled whether one of them is.
   /// @param stored is called after a "save".
-  ParameterStore(ObjectDictionary& dictionary, std::function<bool()> enabled,
+  ParameterStore(ObjectDictionary& dictionary, unsigned axes, std::function<bool()> enabled,
                  std::function<void()> stored);
   /// What a "load" into the sub-index does.
   void restore(std::uint8_t subindex);
@@ -32,7 +33,10 @@ class ParameterStore {
   void install(std::uint16_t index, std::uint64_t signature);
   void store(std::uint8_t subindex);
 
+  bool isParameter(const Entry& entry) const;
+
   ObjectDictionary& dictionary_;
+  unsigned axes_;
   std::function<bool()> enabled_;
   std::function<void()> stored_;
   std::map<ObjectId, std::uint64_t> factory_;

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "sim/definition/drive_definition.h"
+#include "sim/dictionary/axis_objects.h"
 
 namespace cia402::sim {
 namespace {
@@ -142,14 +143,14 @@ std::uint64_t encodeNumber(double value, const Entry& entry, Encoding encoding) 
   return static_cast<std::uint64_t>(std::llround(wrapped)) & mask(entry);
 }
 
-DriveValues::DriveValues(const DriveDefinition& definition, ObjectDictionary& dictionary,
-                         double counts_per_turn) {
+DriveValues::DriveValues(const DriveDefinition& definition, unsigned axis,
+                         ObjectDictionary& dictionary, double counts_per_turn) {
   for (const RoleInfo& info : kRoles) {
     const auto moved = definition.objects.find(info.role);
     const fieldbus::ObjectId object =
         moved == definition.objects.end() ? info.object : moved->second;
     Slot& slot = slots_[static_cast<std::size_t>(info.role)];
-    slot.entry = dictionary.find(object);
+    slot.entry = dictionary.find(ofAxis(object, axis));
     const UnitScale& unit = definition.units[static_cast<std::size_t>(info.quantity)];
     slot.scale = unit.per_count ? unit.factor * counts_per_turn : unit.factor;
     const auto special = definition.encodings.find(object);

@@ -116,7 +116,8 @@ std::uint64_t encodeNumber(double value, const Entry& entry, Encoding encoding);
 /// that does not exist gives the fallback; writing one does nothing.
 class DriveValues {
  public:
-  DriveValues(const DriveDefinition& definition, ObjectDictionary& dictionary,
+  /// @param axis whose objects these are, 0 to 7.
+  DriveValues(const DriveDefinition& definition, unsigned axis, ObjectDictionary& dictionary,
               double counts_per_turn);
 
   bool has(Role role) const { return slot(role).entry != nullptr; }
