@@ -10,10 +10,11 @@ namespace cia402::sim {
 class World::DriveNode final : public Listener {
  public:
   DriveNode(Bus& bus, std::string name, std::shared_ptr<const DriveDefinition> definition,
-            canopen::NodeId node, const AxisMechanics& mechanics, const DriveIdentity& identity)
+            canopen::NodeId node, const AxisMechanics& mechanics, const DriveIdentity& identity,
+            const std::vector<AxisMechanics>& further)
       : bus_(bus),
         port_(bus.attach(*this, std::move(name))),
-        drive_(std::move(definition), node, port_, mechanics, identity) {
+        drive_(std::move(definition), node, port_, mechanics, identity, further) {
     drive_.device().setBusBitrate(static_cast<std::uint32_t>(bus.bitrate()));
   }
 
@@ -86,9 +87,9 @@ World::~World() = default;
 
 Drive& World::addDrive(const std::string& name, std::shared_ptr<const DriveDefinition> definition,
                        canopen::NodeId node, const AxisMechanics& mechanics,
-                       const DriveIdentity& identity) {
-  drives_.push_back(
-      std::make_unique<DriveNode>(bus_, name, std::move(definition), node, mechanics, identity));
+                       const DriveIdentity& identity, const std::vector<AxisMechanics>& further) {
+  drives_.push_back(std::make_unique<DriveNode>(bus_, name, std::move(definition), node, mechanics,
+                                                identity, further));
   return drives_.back()->drive();
 }
 

@@ -15,7 +15,9 @@ namespace cia402::sim {
 class Participant {
  public:
   virtual ~Participant() = default;
+  /// A frame of another one has ended on the bus.
   virtual void receive(const can::Frame& frame, Time now) = 0;
+  /// Does what is due until `now`.
   virtual void tick(Time now) = 0;
   /// When tick() is due; kNever if it waits for frames only.
   virtual Time nextDeadline() const = 0;
@@ -32,9 +34,11 @@ class World {
   World& operator=(const World&) = delete;
 
   /// Adds a drive; power it on with Drive::powerOn(), or all with powerOn().
+  /// @param mechanics, @param further of its axes, as Drive takes them.
   Drive& addDrive(const std::string& name, std::shared_ptr<const DriveDefinition> definition,
                   canopen::NodeId node, const AxisMechanics& mechanics,
-                  const DriveIdentity& identity = {});
+                  const DriveIdentity& identity = {},
+                  const std::vector<AxisMechanics>& further = {});
   /// Adds a participant that outlives the world. @return its port, to send on.
   Port& addParticipant(const std::string& name, Participant& participant);
 
@@ -49,6 +53,7 @@ class World {
   Bus& bus() { return bus_; }
   /// The drives in the order of addDrive().
   std::size_t driveCount() const { return drives_.size(); }
+  /// In the order in which they were added. @pre index is one of them
   Drive& drive(std::size_t index);
   /// The drive of that name, or nullptr.
   Drive* find(const std::string& name);
