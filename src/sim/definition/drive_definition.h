@@ -35,6 +35,7 @@ enum class Bit12 : std::uint8_t { none, acknowledge, zero_speed, follows, homing
 /// What statusword bit 13 means in a mode.
 enum class Bit13 : std::uint8_t { none, following_error, homing_error };
 
+/// A value of 6060h.
 struct ModeDefinition {
   std::int64_t number = 0;
   ModeBehaviour behaviour = ModeBehaviour::hold;
@@ -54,6 +55,7 @@ enum class Ramp : std::uint8_t {
   limit,       ///< as hard as the torque limit allows
 };
 
+/// What a value of an option code does.
 struct StopOption {
   Ramp ramp = Ramp::coast;
   bool hold = false;  ///< afterwards stay, position held
@@ -68,6 +70,7 @@ struct OptionTable {
 /// What the drive does with the loss of its master (6007h).
 enum class ConnectionLoss : std::uint8_t { none, fault, disable_voltage, quick_stop };
 
+/// An error that the drive can have.
 struct FaultDefinition {
   std::string name;
   std::uint16_t code = 0;           ///< 603Fh and EMCY
@@ -80,6 +83,7 @@ struct FaultDefinition {
   bool voltage_lost = false;     ///< statusword bit 4 goes while the cause lasts
 };
 
+/// How the numbers of a quantity stand in their objects.
 struct UnitScale {
   bool per_count = false;  ///< times AxisMechanics::counts_per_turn
   double factor = 1.0;     ///< device units per internal unit

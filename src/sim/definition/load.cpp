@@ -66,7 +66,7 @@ void readHoming(DefinitionReader& reader, DriveDefinition& out) {
   if (!reader.has("methods")) return;
   out.homing_methods.clear();
   for (const YAML::Node& item : reader.node("methods")) {
-    const auto number = item.IsScalar() ? integerIn(item.Scalar()) : std::nullopt;
+    const auto number = item.IsScalar() ? yaml::parseInteger(item.Scalar()) : std::nullopt;
     if (number && findHomingMethod(*number) != nullptr)
       out.homing_methods.push_back(*number);
     else

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "cia402_driver/yaml/reader.h"
 #include "sim/definition/read_state_machine.h"
 
 namespace cia402::sim {
@@ -27,7 +28,7 @@ void readFault(const std::string& name, const YAML::Node& node, DefinitionReader
   if (reader.has("vendor")) {
     const YAML::Node bytes = reader.node("vendor");
     for (std::size_t i = 0; bytes.IsSequence() && i < std::min<std::size_t>(5, bytes.size()); ++i) {
-      const auto byte = integerIn(bytes[i].IsScalar() ? bytes[i].Scalar() : "");
+      const auto byte = yaml::parseInteger(bytes[i].IsScalar() ? bytes[i].Scalar() : "");
       if (byte && *byte >= 0 && *byte <= 255)
         fault.vendor[i] = static_cast<std::uint8_t>(*byte);
       else

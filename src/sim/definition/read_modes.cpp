@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "cia402_driver/yaml/reader.h"
+
 namespace cia402::sim {
 namespace {
 
@@ -68,7 +70,7 @@ void readMode(const std::string& number, const YAML::Node& node, DefinitionReade
               DriveDefinition& out) {
   DefinitionReader reader(node, parent.pathOf("modes." + number), parent.problems());
   ModeDefinition mode;
-  const auto value = integerIn(number);
+  const auto value = yaml::parseInteger(number);
   if (!value) parent.problem("modes", "'" + number + "' is no mode number");
   mode.number = value.value_or(0);
   if (!reader.has("behaviour")) reader.problem("behaviour", "is missing");

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "cia402_driver/fieldbus/object.h"
+#include "cia402_driver/yaml/reader.h"
 
 namespace cia402::sim {
 namespace {
@@ -69,7 +70,7 @@ void readNodeId(DefinitionReader& reader, DriveDefinition& out) {
 void readDictionary(DefinitionReader& reader, bool extends, DriveDefinition& out) {
   if (reader.has("without")) {
     for (const YAML::Node& item : reader.node("without")) {
-      const auto index = item.IsScalar() ? integerIn(item.Scalar()) : std::nullopt;
+      const auto index = item.IsScalar() ? yaml::parseInteger(item.Scalar()) : std::nullopt;
       if (!index || *index < 0 || *index > 0xFFFF ||
           !out.dictionary.remove(static_cast<std::uint16_t>(*index))) {
         reader.problem("without",

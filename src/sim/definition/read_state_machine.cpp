@@ -2,6 +2,7 @@
 #include "sim/definition/read_state_machine.h"
 
 #include "cia402_driver/fieldbus/object.h"
+#include "cia402_driver/yaml/reader.h"
 
 namespace cia402::sim {
 namespace {
@@ -18,7 +19,7 @@ void readOptionTable(DefinitionReader& parent, const std::string& key, OptionTab
     reader.each("values", [&](const std::string& number, const YAML::Node& node) {
       DefinitionReader row(node, reader.pathOf("values." + number), reader.problems());
       StopOption option;
-      const auto value = integerIn(number);
+      const auto value = yaml::parseInteger(number);
       if (!value) reader.problem("values", "'" + number + "' is no option code");
       row.read("ramp", option.ramp, rampWords());
       row.read("hold", option.hold);

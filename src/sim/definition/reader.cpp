@@ -8,8 +8,6 @@
 
 namespace cia402::sim {
 
-std::optional<std::int64_t> integerIn(const std::string& text) { return yaml::parseInteger(text); }
-
 DefinitionReader::DefinitionReader(const YAML::Node& node, std::string path, ProblemTexts& problems)
     : node_(node), path_(std::move(path)), problems_(problems) {
   if (!node_.IsMap()) {
@@ -59,24 +57,25 @@ void DefinitionReader::read(const std::string& key, std::string& out) {
 
 void DefinitionReader::read(const std::string& key, double& out, double low, double high) {
   if (!has(key)) return;
-  double value = 0.0;
-  if (!YAML::convert<double>::decode(node(key), value) || !std::isfinite(value) || value < low ||
-      value > high) {
+  const YAML::Node at = node(key);
+  const auto value = at.IsScalar() ? yaml::parseNumber(at.Scalar()) : std::nullopt;
+  if (!value || !std::isfinite(*value) || *value < low || *value > high) {
     return problem(key,
                    "must be a number from " + std::to_string(low) + " to " + std::to_string(high));
   }
-  out = value;
+  out = *value;
 }
 
 void DefinitionReader::read(const std::string& key, std::int64_t& out, std::int64_t low,
                             std::int64_t high) {
   if (!has(key)) return;
-  std::int64_t value = 0;
-  if (!YAML::convert<std::int64_t>::decode(node(key), value) || value < low || value > high) {
+  const YAML::Node at = node(key);
+  const auto value = at.IsScalar() ? yaml::parseInteger(at.Scalar()) : std::nullopt;
+  if (!value || *value < low || *value > high) {
     return problem(
         key, "must be an integer from " + std::to_string(low) + " to " + std::to_string(high));
   }
-  out = value;
+  out = *value;
 }
 
 void DefinitionReader::read(const std::string& key, Duration& out) {

@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -15,22 +14,23 @@
 
 namespace cia402::sim {
 
-/// A whole number, decimal or 0x hexadecimal, as modes and option codes are written.
-std::optional<std::int64_t> integerIn(const std::string& text);
-
 /// Everything wrong with one file, gathered.
 using ProblemTexts = std::vector<std::string>;
 
 /// One map of a YAML file. Notes wrong types, values and, at finish(), keys nobody asked for.
 class DefinitionReader {
  public:
+  /// @param path for messages, keys with dots between them; empty: the file itself.
   DefinitionReader(const YAML::Node& node, std::string path, ProblemTexts& problems);
   ~DefinitionReader();
   DefinitionReader(const DefinitionReader&) = delete;
   DefinitionReader& operator=(const DefinitionReader&) = delete;
 
+  /// Whether the key is there; from now on it is a known one.
   bool has(const std::string& key);
+  /// Its value, to be read by the caller.
   YAML::Node node(const std::string& key);
+  /// Each reads a key into `out`, which keeps its value where the key is missing or wrong.
   void read(const std::string& key, bool& out);
   void read(const std::string& key, std::string& out);
   void read(const std::string& key, double& out, double low, double high);
@@ -58,7 +58,9 @@ class DefinitionReader {
   void each(const std::string& key,
             const std::function<void(const std::string&, const YAML::Node&)>& body);
 
+  /// Notes what is wrong with the value of a key, with its line.
   void problem(const std::string& key, const std::string& text);
+  /// Of a key of this map, for messages.
   std::string pathOf(const std::string& key) const;
   ProblemTexts& problems() { return problems_; }
 
