@@ -15,6 +15,7 @@ class Calls {
   /// Gives a command to the driver.
   using Post = std::function<void(bus::Command)>;
 
+  /// `session` must outlive it.
   Calls(Session& session, Post post);
 
   /// @return false if the words are no call.

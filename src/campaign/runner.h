@@ -27,6 +27,7 @@ struct Report {
   Duration simulated{};
 };
 
+/// How a scene is run.
 struct RunOptions {
   std::string config_folder;  ///< with drives/ and simulated_drives/
   bool stop_at_first = true;  ///< finding

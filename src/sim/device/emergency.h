@@ -14,6 +14,7 @@ class SlaveEmergency {
  public:
   explicit SlaveEmergency(SlaveContext& context) : context_(context) {}
 
+  /// Takes writes of its objects, where the dictionary has them.
   void serveObjects();
   /// Forgets waiting frames and active communication errors (power-on, reset).
   void reset();

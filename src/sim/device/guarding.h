@@ -13,6 +13,7 @@ class SlaveGuarding {
   SlaveGuarding(SlaveContext& context, SlaveEmergency& emergency)
       : context_(context), emergency_(emergency) {}
 
+  /// Takes writes of its objects, where the dictionary has them.
   void serveObjects();
   /// Watches nobody; the toggle bit begins at 0 again (power-on, reset).
   void reset();

@@ -14,6 +14,7 @@ class SlaveHeartbeat {
   SlaveHeartbeat(SlaveContext& context, SlaveEmergency& emergency)
       : context_(context), emergency_(emergency) {}
 
+  /// Takes writes of its objects, where the dictionary has them.
   void serveObjects();
   /// Silent and watching nobody (power-on, reset).
   void reset();

@@ -28,6 +28,7 @@ class PdoServer {
 
   /// Whether a frame with this CAN-ID may concern a PDO.
   bool concerns(std::uint32_t id) const { return id < ids_.size() && ids_[id]; }
+  /// A frame of which concerns() is true.
   void receive(const can::Frame& frame);
   /// RPDOs that waited for the SYNC take effect.
   void applySynchronous();

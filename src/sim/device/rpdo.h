@@ -12,6 +12,7 @@ namespace cia402::sim {
 /// supervised.
 class SlaveRpdo {
  public:
+  /// @param number 0 is RPDO 1.
   SlaveRpdo(SlaveContext& context, SlaveEmergency& emergency, unsigned number);
 
   const PdoRecords& records() const { return records_; }
@@ -21,8 +22,11 @@ class SlaveRpdo {
   void stop();
   /// CAN-ID, or a value no frame has while the PDO is invalid.
   std::uint32_t canId() const { return can_id_; }
+  /// A frame with its identifier.
   void receive(const can::Frame& frame);
+  /// What has come counts now, if the transmission type is synchronous.
   void onSync();
+  /// Reports that it fails to come, where its event timer says so.
   void tick();
   Time deadline() const { return deadline_; }
 

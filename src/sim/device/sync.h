@@ -16,7 +16,9 @@ class SlaveSync {
   SlaveSync(SlaveContext& context, SlaveEmergency& emergency)
       : context_(context), emergency_(emergency) {}
 
+  /// Takes writes of its objects, where the dictionary has them.
   void serveObjects();
+  /// Forgets counter and time-outs.
   void reset();
   /// Takes the objects over.
   void start();

@@ -12,12 +12,14 @@ class SlaveTime {
  public:
   explicit SlaveTime(SlaveContext& context) : context_(context) {}
 
+  /// Takes writes of its objects, where the dictionary has them.
   void serveObjects();
   void reset() { last_.reset(); }
   /// Takes the object over.
   void start();
   /// CAN-ID to listen to, or a value no frame has.
   std::uint32_t cobId() const { return cob_id_; }
+  /// A TIME message (CiA 301, 7.2.6).
   void receive(const can::Frame& frame);
   const std::optional<ReceivedTime>& last() const { return last_; }
 

@@ -11,6 +11,7 @@ namespace cia402::sim {
 /// unless started.
 class SlaveTpdo {
  public:
+  /// @param number 0 is TPDO 1.
   SlaveTpdo(SlaveContext& context, unsigned number);
 
   const PdoRecords& records() const { return records_; }

@@ -20,7 +20,7 @@ class DictionaryReader {
   /// One item of the list.
   void readItem(const YAML::Node& item);
 
-  // Each reads one field, notes a problem and returns false where it is wrong.
+  /// Each reads one field, notes a problem and returns false where it is wrong.
   bool readIndex(const YAML::Node& node, std::uint16_t& index);
   bool readType(const YAML::Node& node, DataType& type);
   bool readAccess(const YAML::Node& node, Access& access);

@@ -56,6 +56,7 @@ class DriveCore {
   void onSync();                                 ///< a SYNC was received
   void onParametersStored() { stored_ = true; }  ///< by 1010h
   void onBootedAlone();                          ///< nobody was heard between power-on and boot-up
+  /// The device has entered that state.
   void onNmtState(canopen::NmtState state);
   void onMasterLost();  ///< heartbeat or life guarding
 

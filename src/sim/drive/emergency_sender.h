@@ -21,7 +21,9 @@ class EmergencySender {
   void storm(Time now);
   void stopStorm() { storm_at_ = kNever; }
 
+  /// Sends what is due.
   void tick(Time now);
+  /// When tick() must be called next.
   Time nextEvent() const;
 
  private:

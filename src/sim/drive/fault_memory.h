@@ -13,6 +13,7 @@ namespace cia402::sim {
 /// error register and statusword, and what it takes to reset them.
 class FaultMemory {
  public:
+  /// `definition` must outlive it.
   explicit FaultMemory(const DriveDefinition& definition);
 
   /// Power-on or reset: nothing has happened.

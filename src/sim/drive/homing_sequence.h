@@ -26,6 +26,7 @@ const HomingMethod* findHomingMethod(std::int64_t number);
 /// edge or pulse itself is the home position, not where the rotor was seen a step later.
 class HomingSequence {
  public:
+  /// How far the search is.
   enum class Phase : std::uint8_t { idle, searching, found, failed };
 
   /// Begins at `position` (true turns).

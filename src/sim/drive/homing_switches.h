@@ -25,6 +25,7 @@ class AxisSwitches {
 
   bool negativeLimit(double turns) const { return turns <= mechanics_->negative_limit_switch; }
   bool positiveLimit(double turns) const { return turns >= mechanics_->positive_limit_switch; }
+  /// Whether the home switch is active there.
   bool home(double turns) const;
   /// Is the switch that this edge belongs to active here?
   bool active(HomingSwitch edge, double turns) const;

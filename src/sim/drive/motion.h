@@ -16,6 +16,7 @@ namespace cia402::sim {
 /// tells its master.
 class DriveMotion {
  public:
+  /// All references must outlive it; `mechanics` may change meanwhile.
   DriveMotion(const DriveDefinition& definition, const MotorParameters& motor_parameters,
               const AxisMechanics& mechanics, DriveValues& values);
 

@@ -28,6 +28,7 @@ class MotionLimits {
   /// Of profiles in a mode; nullptr: in none.
   ProfileLimits profile(const ModeDefinition* mode) const;
 
+  /// From the lowest to the highest position, turns.
   struct Span {
     double low, high;
   };

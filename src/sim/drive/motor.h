@@ -28,6 +28,7 @@ struct MotorParameters {
 /// following error = velocity * position_time_constant in steady motion.
 class Motor {
  public:
+  /// @param position turns, where the rotor stands.
   Motor(const MotorParameters& parameters, double position);
 
   /// Torque the controller may use, in rated torques (6072h); capped by max_torque.

@@ -14,6 +14,7 @@ namespace cia402::sim {
 /// the demand that the mode moves.
 class MovingAxis {
  public:
+  /// All references must outlive it.
   MovingAxis(const DriveDefinition& drive_definition, const MotorParameters& motor_parameters,
              const AxisMechanics& mechanics, DriveValues& drive_values);
   MovingAxis(const MovingAxis&) = delete;

@@ -13,6 +13,7 @@ namespace cia402::sim {
 /// ramps on the way out, and the transitions that happen by themselves.
 class PowerStage {
  public:
+  /// All references must outlive it.
   PowerStage(const DriveDefinition& definition, const AxisMechanics& mechanics,
              const DriveValues& values, DriveMotion& motion, ModeSelection& modes);
 

@@ -17,6 +17,7 @@ enum class PdsState : std::uint8_t {
   fault_reaction_active,
   fault,
 };
+/// The standard's name, in small letters.
 const char* toString(PdsState state);
 
 /// Statusword bits 0-3, 5, 6 of a state (CiA 402-2, table of state coding).

@@ -96,13 +96,16 @@ enum class Encoding : std::uint8_t {
   scaled_signed,    ///< the same, signed
 };
 
+/// Name, object and quantity of a role.
 struct RoleInfo {
   Role role;
   const char* name;
   fieldbus::ObjectId object;
   Quantity quantity;
 };
+/// What the standard says of a role.
 const RoleInfo& roleInfo(Role role);
+/// The role of that name.
 std::optional<Role> findRole(std::string_view name);
 /// The role whose standard object this is.
 std::optional<Role> findRole(fieldbus::ObjectId object);
@@ -121,7 +124,9 @@ class DriveValues {
               double counts_per_turn);
 
   bool has(Role role) const { return slot(role).entry != nullptr; }
+  /// A value in internal units.
   double get(Role role, double fallback) const;
+  /// Writes a value in internal units, rounded and wrapped as the register would.
   void set(Role role, double value);
   /// The bare integer, without scale.
   std::int64_t raw(Role role, std::int64_t fallback) const;

@@ -48,6 +48,7 @@ class Bus;
 /// once they can be, stale as they are: that is what real controllers do.
 class Port final : public can::Sink {
  public:
+  /// Bus::attach() makes ports.
   Port(Bus& bus, Listener& listener, std::string name, std::size_t capacity);
 
   /// Queues a frame now, i.e. at Bus::now(). @return false, counted, if the queue is full, the

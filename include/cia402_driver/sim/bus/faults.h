@@ -46,8 +46,10 @@ struct FaultRule {
 /// platform: the generator is standardised, the mapping to real numbers is our own.
 class BusFaults {
  public:
+  /// @param seed of what happens by chance.
   explicit BusFaults(std::uint64_t seed);
 
+  /// How often frames are disturbed from now on.
   void setRates(const FaultRates& rates);
   const FaultRates& rates() const { return rates_; }
   /// Adds a rule. Not for the cyclic path: may allocate.
@@ -63,10 +65,15 @@ class BusFaults {
   double uniform();
 
   // The bus asks these; each use of a rule counts.
+  /// How much later the frame comes; nothing if it is not delayed.
   std::optional<Duration> delayOf(const can::Frame& frame);
+  /// Whether the frame ends in an error frame and is repeated.
   bool corrupts(const can::Frame& frame);
+  /// Whether it comes twice.
   bool duplicates(const can::Frame& frame);
+  /// Whether nobody gets it.
   bool losesForAll(const can::Frame& frame);
+  /// Whether the receiver of that name does not get it.
   bool losesAt(std::string_view receiver, const can::Frame& frame);
 
  private:

@@ -18,6 +18,7 @@ namespace cia402::sim {
 /// it.
 class BusInterface final : public can::Interface, private Listener {
  public:
+  /// What the controller and its driver in the kernel are like.
   struct Options {
     std::size_t receive_capacity = 1024;  ///< frames kept for receive(); more overflow, counted
     Duration restart_after{};  ///< recover from bus-off after this time; 0: never (`restart-ms`)
@@ -29,6 +30,7 @@ class BusInterface final : public can::Interface, private Listener {
 
   explicit BusInterface(Bus& bus, std::string name = "sim")
       : BusInterface(bus, std::move(name), {}) {}
+  /// Attaches a port of that name to the bus, which must outlive it.
   BusInterface(Bus& bus, std::string name, const Options& options);
   BusInterface(const BusInterface&) = delete;
   BusInterface& operator=(const BusInterface&) = delete;
@@ -37,6 +39,7 @@ class BusInterface final : public can::Interface, private Listener {
   /// must bring the bus to the time it is given.
   void setAdvance(std::function<void(Time)> advance) { advance_ = std::move(advance); }
 
+  /// As can::Interface says, on the simulated bus; time is that of the bus.
   bool send(const can::Frame& frame) override;
   std::optional<can::ReceivedFrame> receive(Time now) override;
   void maintain(Time now) override;

@@ -27,6 +27,7 @@ class SimulatedInterface final : public can::Interface {
   Time nextDeadline() const override { return world_.nextEvent(); }
   can::BusState state() const override { return interface_.state(); }
   const can::BusCounters& counters() const override { return interface_.counters(); }
+  /// As can::Interface says, and how far the simulation is behind the clock.
   std::string describe() const override;
   std::string recovery() const override { return interface_.recovery(); }
   std::size_t pending() const override { return interface_.pending(); }

@@ -35,6 +35,7 @@ class SyncProducer final : public Participant {
   std::uint64_t sent() const { return sent_; }
 
   void receive(const can::Frame&, Time) override {}
+  /// Sends the SYNC that is due.
   void tick(Time now) override;
   Time nextDeadline() const override { return due_; }
 

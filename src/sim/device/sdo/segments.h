@@ -11,9 +11,13 @@ class SdoSegments {
   explicit SdoSegments(SdoChannel& channel) : channel_(channel) {}
 
   // Requests of the client, by their command specifier.
+  /// A download begins; an expedited one ends with it.
   void initiateDownload(const can::Frame& request);
+  /// Takes a segment.
   void downloadSegment(const can::Frame& request);
+  /// An upload begins; an expedited one ends with it.
   void initiateUpload(const can::Frame& request);
+  /// Answers with the next segment.
   void uploadSegment(const can::Frame& request);
 
   /// Answers an upload whose value is in the channel: at once, or in segments to be asked for.
