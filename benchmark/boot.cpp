@@ -4,9 +4,9 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "cia402_driver/tools/virtual_robot.h"
 #include "figures.h"
 #include "robots.h"
+#include "tools/virtual_robot.h"
 
 namespace cia402::benchmark {
 namespace {

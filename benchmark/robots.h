@@ -6,7 +6,7 @@
 
 #include "cia402_driver/bus/command.h"
 #include "cia402_driver/config/robot.h"
-#include "cia402_driver/sim/robot_drives.h"
+#include "cia402_driver/sim/world/robot_drives.h"
 
 namespace cia402::benchmark {
 

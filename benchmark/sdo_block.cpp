@@ -3,9 +3,9 @@
 #include <random>
 #include <stdexcept>
 
-#include "cia402_driver/sim/bit_timing.h"
-#include "cia402_driver/tools/sdo_bus.h"
+#include "cia402_driver/sim/bus/bit_timing.h"
 #include "figures.h"
+#include "tools/sdo_bus.h"
 
 namespace cia402::benchmark {
 namespace {

@@ -5,10 +5,10 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "cia402_driver/tools/virtual_robot.h"
 #include "figures.h"
 #include "fingerprint.h"
 #include "robots.h"
+#include "tools/virtual_robot.h"
 
 namespace cia402::benchmark {
 namespace {

@@ -11,6 +11,7 @@ namespace cia402::campaign {
 /// What is wrong with the world, and until when it counts. Each entry excuses one narrow thing;
 /// docs/campaign.md says which and why.
 struct Conditions {
+  /// What is wrong with one axis.
   struct Axis {
     Time may_coast{};  ///< until then its power may go by itself: a fault that coasts, no supply
     Time blocked{};    ///< until then rotor and demand may lie apart: blocked, or just let go

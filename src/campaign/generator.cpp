@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/campaign/generator.h"
+#include "campaign/generator.h"
 
-#include "history.h"
+#include "campaign/history.h"
 
 namespace cia402::campaign {
 

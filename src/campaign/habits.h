@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "random.h"
+#include "campaign/random.h"
 
 namespace cia402::campaign {
 

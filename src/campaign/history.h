@@ -1,8 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "cia402_driver/campaign/scene.h"
-#include "robot_plan.h"
+#include "campaign/robot_plan.h"
+#include "campaign/scene.h"
 
 namespace cia402::campaign {
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "cia402_driver/campaign/runner.h"
-#include "conditions.h"
-#include "permits.h"
-#include "stage.h"
+#include "campaign/conditions.h"
+#include "campaign/permits.h"
+#include "campaign/runner.h"
+#include "campaign/stage.h"
 
 namespace cia402::campaign {
 
@@ -35,6 +35,7 @@ struct View {
 class Oracle {
  public:
   virtual ~Oracle() = default;
+  /// Of the kind of its findings.
   virtual const char* name() const = 0;
   /// Every millisecond.
   virtual void look(const View&) {}
@@ -56,6 +57,7 @@ class Oracle {
 /// "0.28 rad/s" and the like.
 std::string number(double value);
 
+// One of each kind; docs/campaign.md says what it judges.
 std::unique_ptr<Oracle> makeCommandedMotion(const Stage& stage);
 std::unique_ptr<Oracle> makeSlowStops(const Stage& stage);
 std::unique_ptr<Oracle> makePowerOracle(const Stage& stage);

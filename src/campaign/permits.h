@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "stage.h"
+#include "campaign/stage.h"
 
 namespace cia402::campaign {
 
@@ -15,6 +15,7 @@ class Permits {
   /// Who can move an axis; each for itself.
   enum class Source { stream, target, trajectory, homing };
 
+  /// `stage` must outlive it.
   explicit Permits(const Stage& stage);
 
   /// The axis may move until then, or longer if it may already. A `target` is used up as soon as

@@ -1,10 +1,10 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "robot_plan.h"
+#include "campaign/robot_plan.h"
 
 #include <algorithm>
 #include <cstdio>
 
-#include "habits.h"
+#include "campaign/habits.h"
 
 namespace cia402::campaign {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "random.h"
+#include "campaign/random.h"
 
 namespace cia402::campaign {
 
@@ -18,11 +18,13 @@ struct AxisPlan {
   std::string mode;  ///< at start
 };
 
+/// A group of a random robot.
 struct GroupPlan {
   std::string name;
   std::vector<std::size_t> axes;
 };
 
+/// A random robot, and what its history must know of it.
 struct RobotPlan {
   std::string yaml;
   std::vector<AxisPlan> axes;
@@ -40,6 +42,7 @@ struct ModePlan {
   const char* name;
   char kind;  ///< p position, v velocity, t torque
 };
+/// Those that a history may ask for.
 const std::vector<ModePlan>& modesOf(bool damiao);
 
 }  // namespace cia402::campaign

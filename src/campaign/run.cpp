@@ -1,6 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/campaign/runner.h"
-#include "player.h"
+#include "campaign/player.h"
+#include "campaign/runner.h"
 
 namespace cia402::campaign {
 

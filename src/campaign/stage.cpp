@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "stage.h"
+#include "campaign/stage.h"
 
 #include <unistd.h>
 
@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "random.h"
+#include "campaign/random.h"
 
 namespace cia402::campaign {
 namespace {

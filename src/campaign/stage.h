@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "cia402_driver/campaign/scene.h"
-#include "cia402_driver/sim/robot_drives.h"
-#include "cia402_driver/sim/sync_producer.h"
-#include "cia402_driver/tools/virtual_host.h"
+#include "campaign/scene.h"
+#include "cia402_driver/sim/world/robot_drives.h"
+#include "cia402_driver/sim/world/sync_producer.h"
+#include "tools/virtual_host.h"
 
 namespace cia402::campaign {
 
@@ -17,6 +17,7 @@ struct Loaded {
   canopen::MasterConfig master;
   std::vector<sim::SimulatedAxis> axes;
 };
+/// @param config_folder with drives/ and simulated_drives/. @return an error with all problems.
 Result<Loaded> loadRobot(const std::string& yaml, const std::string& config_folder);
 
 /// What is true of one motor and its drive, in the joint's units but with the drive's own zero.
@@ -68,6 +69,7 @@ struct RpdoPlace {
 /// The world of a scene: drives, bus, and the computer with the driver.
 class Stage {
  public:
+  /// @param seed of what happens by chance on the bus.
   Stage(Loaded loaded, std::uint64_t seed);
 
   sim::World& world() { return world_; }

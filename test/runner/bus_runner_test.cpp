@@ -12,7 +12,7 @@
 #include <limits>
 #include <thread>
 
-#include "cia402_driver/sim/simulated_interface.h"
+#include "cia402_driver/sim/world/simulated_interface.h"
 #include "system/scene.h"
 
 namespace cia402 {

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <fstream>
 
-#include "cia402_driver/sim/drive.h"
+#include "cia402_driver/sim/drive/drive.h"
 #include "folders.h"
 
 namespace cia402::sim {
@@ -22,8 +22,8 @@ std::string errorOf(const std::string& text) {
 }
 
 TEST(DriveDefinition, EveryDefinitionOfTheRepositoryLoads) {
-  for (const char* name :
-       {"generic_cia402", "generic_cia402_guarding", "generic_cia402_narrow", "damiao_dm"}) {
+  for (const char* name : {"generic_cia402", "generic_cia402_guarding", "generic_cia402_narrow",
+                           "generic_cia402_dual", "damiao_dm"}) {
     const auto loaded =
         loadDriveDefinition(cia402::test::configFolder() + "/simulated_drives/" + name + ".yaml");
     EXPECT_TRUE(loaded.ok()) << (loaded.ok() ? "" : loaded.error().message);

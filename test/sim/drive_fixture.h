@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "cia402_driver/sim/drive.h"
+#include "cia402_driver/sim/drive/drive.h"
 #include "folders.h"
 
 namespace cia402::sim {

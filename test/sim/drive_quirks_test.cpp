@@ -4,7 +4,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "generic_bench.h"
-#include "sim/drive_definition.h"
+#include "sim/definition/drive_definition.h"
 
 namespace cia402::sim {
 namespace {

@@ -1,13 +1,13 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "sim/trajectory_profile.h"
+#include "sim/drive/trajectory_profile.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "sim/motor.h"
-#include "sim/trajectory_interpolator.h"
+#include "sim/drive/motor.h"
+#include "sim/drive/trajectory_interpolator.h"
 
 namespace cia402::sim {
 namespace {

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "cia402_driver/tools/virtual_host.h"
 #include "stops/stop_matrix.h"
+#include "tools/virtual_host.h"
 
 namespace cia402::stops {
 

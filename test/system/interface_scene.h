@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cia402_driver/bus/bus_loop.h"
-#include "cia402_driver/sim/bus_interface.h"
+#include "cia402_driver/sim/bus/interface.h"
 #include "system/robot_fixture.h"
 
 namespace cia402 {

@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // A drive that homes by itself is lost by its heartbeat alone, on a bus that loses frames: the
 // motor stops all the same, soon, and stays where it is.
-#include "sim/drive_definition.h"
+#include "sim/definition/drive_definition.h"
 #include "system/scene.h"
 
 namespace cia402 {

@@ -14,6 +14,11 @@ inline std::string lssOf(int serial, const std::string& more = {}) {
 inline std::string unconfigured(int serial) {
   return ", simulation: {unconfigured: true, serial: " + std::to_string(serial) + "}";
 }
+/// Starts the driver on drives that may have no node-IDs yet. @return whether all boot in time.
+inline bool boots(Scene& scene, Duration limit = std::chrono::seconds(20)) {
+  scene.robot().start();
+  return scene.runUntil([&] { return allReady(scene.robot()); }, limit);
+}
 inline canopen::lss::Identity device(std::uint32_t serial) { return {1234, 1026, 65536, serial}; }
 
 }  // namespace cia402

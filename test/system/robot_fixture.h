@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "cia402_driver/tools/virtual_robot.h"
 #include "folders.h"
+#include "tools/virtual_robot.h"
 
 namespace cia402 {
 

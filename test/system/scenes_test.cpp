@@ -7,7 +7,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "cia402_driver/campaign/runner.h"
+#include "campaign/runner.h"
 #include "folders.h"
 
 namespace cia402 {

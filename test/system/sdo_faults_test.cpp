@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-#include "cia402_driver/tools/sdo_bus.h"
+#include "tools/sdo_bus.h"
 
 namespace cia402 {
 namespace {

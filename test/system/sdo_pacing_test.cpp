@@ -7,8 +7,8 @@
 
 #include "cia402_driver/can/pacer.h"
 #include "cia402_driver/canopen/sdo/client.h"
-#include "cia402_driver/sim/bus.h"
-#include "cia402_driver/sim/device.h"
+#include "cia402_driver/sim/bus/bus.h"
+#include "cia402_driver/sim/device/device.h"
 
 namespace cia402 {
 namespace {

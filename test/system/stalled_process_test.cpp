@@ -5,7 +5,7 @@
 
 #include "cia402_driver/bus/bus_loop.h"
 #include "cia402_driver/bus/bus_time.h"
-#include "cia402_driver/sim/simulated_interface.h"
+#include "cia402_driver/sim/world/simulated_interface.h"
 #include "system/scene.h"
 
 namespace cia402 {

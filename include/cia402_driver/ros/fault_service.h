@@ -8,7 +8,7 @@
 #include <string>
 
 #include "cia402_driver/bus/reply.h"
-#include "cia402_driver/sim/drive.h"
+#include "cia402_driver/sim/drive/drive.h"
 
 namespace cia402::ros_node {
 

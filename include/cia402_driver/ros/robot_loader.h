@@ -10,7 +10,7 @@
 #include "cia402_driver/canopen/config.h"
 #include "cia402_driver/config/robot.h"
 #include "cia402_driver/ros/parameters.h"
-#include "cia402_driver/sim/robot_drives.h"
+#include "cia402_driver/sim/world/robot_drives.h"
 
 namespace cia402::ros_node {
 

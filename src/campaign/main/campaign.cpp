@@ -16,9 +16,9 @@
 #include <string>
 #include <system_error>
 
-#include "cia402_driver/campaign/generator.h"
-#include "cia402_driver/campaign/runner.h"
-#include "cia402_driver/campaign/shrinker.h"
+#include "campaign/generator.h"
+#include "campaign/runner.h"
+#include "campaign/shrinker.h"
 
 namespace {
 

@@ -26,7 +26,7 @@
 #include "cia402_driver/ros/robot_loader.h"
 #include "cia402_driver/ros/service_pool.h"
 #include "cia402_driver/ros/services.h"
-#include "cia402_driver/sim/simulated_interface.h"
+#include "cia402_driver/sim/world/simulated_interface.h"
 
 namespace {
 

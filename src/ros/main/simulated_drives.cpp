@@ -12,7 +12,7 @@
 #include "cia402_driver/ros/fault_service.h"
 #include "cia402_driver/ros/process_signals.h"
 #include "cia402_driver/ros/robot_loader.h"
-#include "cia402_driver/sim/drive_host.h"
+#include "cia402_driver/sim/world/drive_host.h"
 
 namespace {
 

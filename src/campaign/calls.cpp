@@ -1,0 +1,169 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "campaign/calls.h"
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "cia402_driver/bus/canopen/history_command.h"
+#include "cia402_driver/bus/canopen/nmt_command.h"
+#include "cia402_driver/bus/jobs/object_commands.h"
+#include "cia402_driver/bus/jobs/procedure_command.h"
+
+namespace cia402::campaign {
+namespace {
+
+using namespace std::chrono_literals;
+using drive::ProcedureKind;
+
+struct Procedure {
+  ProcedureKind kind;
+  Duration bound;  ///< until it must be answered
+};
+
+const std::map<std::string, Procedure>& procedures() {
+  static const std::map<std::string, Procedure> kProcedures{
+      {"enable", {ProcedureKind::enable, 16s}},
+      {"disable", {ProcedureKind::disable, 18s}},
+      {"home", {ProcedureKind::home, 20s}},  // and the time-outs of all homings
+      {"clear_faults", {ProcedureKind::clear_faults, 9s}},
+      {"recover", {ProcedureKind::recover, 60s}},
+      {"quick_stop", {ProcedureKind::quick_stop, 8s}},
+      {"halt", {ProcedureKind::halt, 4s}},
+      {"set_mode", {ProcedureKind::set_mode, 24s}},
+      {"set_position", {ProcedureKind::set_position, 3s}},
+      {"save", {ProcedureKind::save_parameters, 25s}},
+      {"restore", {ProcedureKind::restore_parameters, 60s}}};
+  return kProcedures;
+}
+
+std::string axisWord(const std::string& who) { return who == "all" ? std::string() : who; }
+
+/// Whether an axis stands, or is to stand, once such a call has succeeded.
+bool bringsToRest(const std::string& verb) {
+  static const char* const kVerbs[] = {"halt",         "disable", "quick_stop", "set_mode",
+                                       "set_position", "save",    "restore"};
+  return std::find(std::begin(kVerbs), std::end(kVerbs), verb) != std::end(kVerbs);
+}
+
+}  // namespace
+
+Calls::Calls(Session& session, Line& line) : session_(session), line_(line) {}
+
+template <typename Request>
+void Calls::call(const Words& words, Request request, Duration bound) {
+  if (!session_.stage.host().running()) return;
+  const bool argued = words[0] == "set_mode" || words[0] == "nmt";
+  Pending pending;
+  pending.call = {words[0],
+                  words[1],
+                  argued ? words.at(2) : "",
+                  session_.stage.named(words[1]),
+                  session_.now(),
+                  session_.conditions.stalled};
+  for (const AxisTruth& truth : session_.truths) pending.call.modes.push_back(truth.mode);
+  pending.deadline = session_.now() + bound;
+  pending_.push_back(pending);
+  permitHoming(pending.call);
+  session_.onCall(pending.call);
+  bus::Reply<> reply = [this, call = pending.call,
+                        done = pending.answered](const bus::Answer& answer) {
+    if (*done) {
+      session_.report("answered_twice", call.who, call.verb + ": " + answer.message);
+    }
+    *done = true;
+    answered(call, answer);
+  };
+  line_.post(bus::Command(std::move(request), line_.replied(std::move(reply))));
+}
+
+bool Calls::actProcedure(const Words& words) {
+  const std::string& verb = words[0];
+  const auto procedure = procedures().find(verb);
+  if (procedure == procedures().end()) return false;
+  drive::ProcedureRequest request;
+  request.kind = procedure->second.kind;
+  if (verb == "set_mode") request.mode = words.at(2);
+  if (verb == "set_position") request.position = toNumber(words.at(2));
+  Duration bound = procedure->second.bound;
+  for (std::size_t i : session_.stage.named(words.at(1))) {
+    if (verb == "home") bound += session_.stage.axes()[i].homing_timeout;
+  }
+  call(words, bus::ProcedureCommand{axisWord(words.at(1)), request}, bound);
+  return true;
+}
+
+bool Calls::act(const Words& words) {
+  const std::string& verb = words[0];
+  if (actProcedure(words)) return true;
+  if (verb == "nmt") {
+    call(words, bus::NmtServiceCommand{axisWord(words.at(1)), words.at(2)}, 60s);
+  } else if (verb == "read") {
+    call(words, bus::ReadObjectCommand{words.at(1), words.at(2)}, 15s);
+  } else if (verb == "write") {
+    call(words, bus::WriteObjectCommand{words.at(1), words.at(2), words.at(3)}, 15s);
+  } else if (verb == "history") {
+    call(words, bus::ErrorHistoryCommand{words.at(1)}, 30s);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+void Calls::permitHoming(const Call& call) {
+  if (call.verb != "home") return;
+  for (std::size_t i : call.axes) {
+    if (!session_.stage.axes()[i].homes_by_moving) continue;
+    session_.permits.allow(i, Permits::Source::homing, kNever);
+  }
+}
+
+void Calls::answered(const Call& call, const bus::Answer& answer) {
+  session_.say("< " + call.verb + " " + call.who + (answer.success ? ": " : " FAILED: ") +
+               answer.message);
+  session_.look();  // as they are now, not a millisecond ago
+  session_.onAnswer(call, answer);
+  endPermits(call, answer);
+}
+
+bool Calls::homesStill(std::size_t axis) const {
+  return std::any_of(pending_.begin(), pending_.end(), [axis](const Pending& other) {
+    return other.call.verb == "home" && !*other.answered &&
+           std::count(other.call.axes.begin(), other.call.axes.end(), axis) != 0;
+  });
+}
+
+void Calls::endPermits(const Call& call, const bus::Answer& answer) {
+  const Time now = session_.now();
+  for (std::size_t i : call.axes) {
+    const AxisTruth& truth = session_.truths[i];
+    if (call.verb == "home" && !homesStill(i)) {
+      const Duration stop = session_.stage.axes()[i].stopTime(truth.velocity);
+      session_.permits.cut(i, Permits::Source::homing, now + (answer.success ? 0ms : stop));
+    }
+    // The mode that it is in already is no reason to stop anything.
+    const bool same =
+        call.verb == "set_mode" && i < call.modes.size() && call.modes[i] == truth.mode;
+    if (bringsToRest(call.verb) && answer.success && !same) {
+      session_.permits.end(i, call.at, now);
+    }
+  }
+}
+
+void Calls::watchDeadlines() {
+  for (auto pending = pending_.begin(); pending != pending_.end();) {
+    const Call& call = pending->call;
+    const Duration stalled = session_.conditions.stalled - call.stalled;
+    const bool late = !*pending->answered && session_.now() > pending->deadline + stalled;
+    if (late) {
+      session_.report("late_answer", call.who,
+                      call.verb + " was called at " +
+                          number(toSeconds(call.at.time_since_epoch())) +
+                          " s and is not answered yet");
+    }
+    pending = late || *pending->answered ? pending_.erase(pending) : std::next(pending);
+  }
+}
+
+}  // namespace cia402::campaign

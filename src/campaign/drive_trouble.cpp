@@ -1,0 +1,132 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "campaign/drive_trouble.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <stdexcept>
+
+namespace cia402::campaign {
+namespace {
+
+using namespace std::chrono_literals;
+
+// Faults that take the power away, and those that only the power switch ends.
+constexpr const char* kCoast[] = {"overcurrent", "short_circuit", "overvoltage", "undervoltage",
+                                  "hardware",    "encoder",       "power_cycle"};
+constexpr const char* kLast[] = {"short_circuit", "hardware"};
+
+template <std::size_t size>
+bool isIn(const char* const (&list)[size], const std::string& word) {
+  return std::find(std::begin(list), std::end(list), word) != std::end(list);
+}
+
+/// A drive that plans its motion itself goes on planning while its rotor is blocked: what it takes
+/// to stop that demand, and to come back from it to where the axis was told to stop meanwhile.
+Duration catchingUp(const AxisFacts& axis, Duration blocked) {
+  const double stop = axis.velocity / axis.acceleration;
+  const double ahead = axis.velocity * (toSeconds(blocked) + 0.5 * stop);
+  return fromSeconds(stop + 2.0 * std::sqrt(ahead / axis.acceleration));
+}
+
+}  // namespace
+
+DriveTrouble::Action DriveTrouble::find(const std::string& verb) {
+  static const std::map<std::string, Action> kVerbs{
+      {"fault", &DriveTrouble::fault},     {"clear", &DriveTrouble::clear},
+      {"power", &DriveTrouble::cutPower},  {"silent", &DriveTrouble::silence},
+      {"mute", &DriveTrouble::mute},       {"block", &DriveTrouble::block},
+      {"switch", &DriveTrouble::limitHere}};
+  const auto known = kVerbs.find(verb);
+  return known == kVerbs.end() ? nullptr : known->second;
+}
+
+bool DriveTrouble::act(const Words& words) {
+  const Action action = find(words[0]);
+  if (action == nullptr) return false;
+  for (std::size_t i : session_.stage.named(words.at(1))) (this->*action)(i, words);
+  return true;
+}
+
+void DriveTrouble::inject(std::size_t axis, const std::string& what) {
+  const Result<void> done = drive(axis).inject(what, session_.now());
+  if (!done) throw std::invalid_argument(done.error().message);
+}
+
+void DriveTrouble::clearLater(std::size_t axis, Duration delay) {
+  session_.later(delay, [this, axis] { (void)drive(axis).inject("clear", session_.now()); });
+}
+
+void DriveTrouble::mayCoast(std::size_t axis) {
+  Conditions::extend(session_.conditions.axes[axis].may_coast, session_.now() + 20ms);
+}
+
+void DriveTrouble::fault(std::size_t axis, const Words& words) {
+  const std::string& name = words.at(2);
+  if (isIn(kCoast, name)) mayCoast(axis);
+  if (isIn(kLast, name)) dead_[axis] = true;
+  inject(axis, name);
+  if (name == "power_cycle") session_.breakLink(axis, 600ms);
+}
+
+void DriveTrouble::clear(std::size_t axis, const Words&) { inject(axis, "clear"); }
+
+void DriveTrouble::cutPower(std::size_t axis, const Words& words) {
+  mayCoast(axis);
+  const Duration length = toDuration(words.at(2));
+  session_.breakLink(axis, length);
+  drive(axis).powerOff(session_.now());
+  ++cuts_[axis];
+  session_.later(length, [this, axis] {
+    if (--cuts_[axis] == 0) drive(axis).powerOn(session_.now());
+  });
+}
+
+void DriveTrouble::silence(std::size_t axis, const Words& words) {
+  const Duration length = toDuration(words.at(2));
+  session_.breakLink(axis, length);
+  inject(axis, "silent");
+  clearLater(axis, length);
+}
+
+void DriveTrouble::mute(std::size_t axis, const Words& words) {
+  inject(axis, "sdo_silent");
+  clearLater(axis, toDuration(words.at(2)));
+}
+
+void DriveTrouble::block(std::size_t axis, const Words& words) {
+  const Duration length = toDuration(words.at(2));
+  const Time now = session_.now();
+  inject(axis, "blocked_rotor");
+  Conditions::extend(session_.conditions.axes[axis].blocked,
+                     now + length + 400ms + catchingUp(session_.stage.axes()[axis], length));
+  session_.permits.hinder(axis, now + length);
+  clearLater(axis, length);
+}
+
+/// A limit switch right where it stands.
+void DriveTrouble::limitHere(std::size_t axis, const Words& words) {
+  sim::AxisMechanics& mechanics = drive(axis).mechanics();
+  double& place =
+      words.at(2) == "lower" ? mechanics.negative_limit_switch : mechanics.positive_limit_switch;
+  const double before = place;
+  place = drive(axis).truth(session_.now()).position_turns;
+  session_.later(toDuration(words.at(3)), [&place, before] { place = before; });
+}
+
+void DriveTrouble::calm() {
+  sim::World& world = session_.stage.world();
+  for (std::size_t i = 0; i < session_.stage.axes().size(); ++i) {
+    (void)drive(i).inject("clear", session_.now());
+    world.port(i).setAttached(true);
+    world.port(i).requestRecovery();
+    if (dead_[i]) {
+      mayCoast(i);
+      (void)drive(i).inject("power_cycle", session_.now());
+    }
+    dead_[i] = false;
+  }
+  session_.stage.host().interface().port().setAttached(true);
+}
+
+}  // namespace cia402::campaign

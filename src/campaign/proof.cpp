@@ -1,0 +1,186 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "campaign/proof.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include "cia402_driver/bus/jobs/procedure_command.h"
+
+namespace cia402::campaign {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Duration kRecoverTime = 20s;
+constexpr const char* kDisableFirst = ": disable, then enable";  // the words of an axis
+
+bool contains(const std::string& text, const char* words) {
+  return text.find(words) != std::string::npos;
+}
+
+/// Whether a recovery that failed names the calls that help: for halted axes, and for those that
+/// lost their zero.
+bool asksForMore(const std::string& text) {
+  return contains(text, ": enable") || contains(text, kDisableFirst) ||
+         contains(text, " is not homed: home") || contains(text, " is not homed: set_position");
+}
+
+drive::ProcedureKind kindOf(const std::string& verb) {
+  if (verb == "home") return drive::ProcedureKind::home;
+  if (verb == "set_position") return drive::ProcedureKind::set_position;
+  if (verb == "enable") return drive::ProcedureKind::enable;
+  if (verb == "disable") return drive::ProcedureKind::disable;
+  return drive::ProcedureKind::recover;
+}
+
+}  // namespace
+
+void Proof::noRecovery(const std::string& axis, const std::string& text) {
+  session_.report("no_recovery", axis, text);
+}
+
+void Proof::run() {
+  runFor(4s);
+  // A search for home may take its time.
+  while (calls_.waits() && !session_.failed()) runFor(10ms);
+  if (session_.failed()) return;
+  const Time began = session_.now();
+  if (!recover()) return;
+  session_.say("  recovered within " + number(toSeconds(session_.now() - began)) + " s");
+  for (std::size_t i = 0; i < session_.stage.axes().size() && !session_.failed(); ++i) move(i);
+}
+
+bool Proof::recover() {
+  if (!call("recover", "all", kRecoverTime)) return false;
+  const std::string first = answer_.success ? std::string() : answer_.message;
+  if (!first.empty() && !asksForMore(first)) {
+    noRecovery("", "recover fails when all is well again: " + first);
+    return false;
+  }
+  if (!enableAll() || !homeAll()) return false;
+  if (!first.empty() && !call("recover", "all", kRecoverTime)) return false;
+  if (answer_.success) return true;
+  noRecovery("", "recover fails when all is well again: " + answer_.message);
+  return false;
+}
+
+bool Proof::enableAll() {
+  for (const AxisFacts& facts : session_.stage.axes()) {
+    const std::string obstacle = session_.stage.host().network().axis(facts.index).obstacle();
+    const bool disable = contains(obstacle, kDisableFirst);
+    if (!disable && !contains(obstacle, ": enable")) continue;
+    if (disable && !call("disable", facts.name, kRecoverTime)) return false;
+    if (!call("enable", facts.name, kRecoverTime)) return false;
+  }
+  return true;
+}
+
+bool Proof::homeAll() {
+  for (const AxisFacts& facts : session_.stage.axes()) {
+    const drive::Axis& axis = session_.stage.host().network().axis(facts.index);
+    if (axis.state().homed) continue;
+    const bool homes = facts.config->homing.has_value();
+    // An absolute axis has lost its zero where the factory's values were restored.
+    if (!homes && !contains(axis.obstacle(), ": set_position")) continue;
+    const std::string verb = homes ? "home" : "set_position";
+    if (!call(verb, facts.name, facts.homing_timeout + 10s)) return false;
+    if (answer_.success) continue;
+    noRecovery(facts.name, verb + " fails when all is well again: " + answer_.message);
+    return false;
+  }
+  return true;
+}
+
+bool Proof::call(const std::string& verb, const std::string& who, Duration limit) {
+  const auto done = std::make_shared<std::optional<bus::Answer>>();
+  drive::ProcedureRequest request;
+  request.kind = kindOf(verb);
+  const bus::ProcedureCommand command{who == "all" ? std::string() : who, request};
+  const Call call{
+      verb, who, "", session_.stage.named(who), session_.now(), session_.conditions.stalled};
+  session_.onCall(call);
+  const auto reply = [this, done, call](const bus::Answer& given) {
+    *done = given;
+    calls_.answered(call, given);
+  };
+  calls_.permitHoming(call);
+  session_.say("> " + verb + " " + who);
+  session_.stage.host().post(bus::Command(command, reply));
+  for (const Time end = session_.now() + limit; session_.now() < end && !*done;) {
+    runFor(5ms);
+    if (session_.failed()) return false;
+  }
+  if (*done) {
+    answer_ = **done;
+    return true;
+  }
+  noRecovery(who, verb + " is not answered within " + number(toSeconds(limit)) +
+                      " s when all is well again");
+  return false;
+}
+
+const drive::ModeSpec* Proof::modeOf(std::size_t axis) {
+  const AxisFacts& facts = session_.stage.axes()[axis];
+  const int shown = session_.truths[axis].mode;
+  for (const drive::ModeSpec& mode : facts.config->profile->modes) {
+    if (mode.value == shown) return &mode;
+  }
+  noRecovery(facts.name,
+             "its drive shows mode " + std::to_string(shown) + " when all is well again");
+  return nullptr;
+}
+
+Proof::Step Proof::stepOf(const AxisFacts& facts, const drive::ModeSpec& mode, double at,
+                          double sign) const {
+  const drive::AxisLimits& limits = facts.config->limits;
+  // A zero that was declared may leave little between a switch and the limit on the other side.
+  const std::optional<double>& end = sign > 0.0 ? limits.upper : limits.lower;
+  const double room = end ? (*end - at) * sign : 1e300;
+  const bool turns = mode.kind == drive::ControlKind::velocity;
+  const bool torque = mode.kind == drive::ControlKind::torque;
+  const double step = (turns ? 0.06 : 0.05) * facts.velocity;
+  Step made;
+  made.expected = (room > 0.0 ? std::min(step, room) : step) * sign;
+  made.provable = torque || std::fabs(made.expected) >= 0.2 * step;
+  made.value = at + made.expected;
+  if (turns) made.value = 0.2 * facts.velocity * sign;  // for 0.3 s
+  if (torque) made.value = 0.15 * limits.effort.value_or(1.0) * sign;
+  return made;
+}
+
+void Proof::move(std::size_t axis, std::optional<double> tried) {
+  const AxisFacts& facts = session_.stage.axes()[axis];
+  const drive::ModeSpec* const mode = modeOf(axis);
+  if (mode == nullptr) return;
+  const drive::AxisLimits& limits = facts.config->limits;
+  const double from = session_.truths[axis].position, at = session_.shown(axis);
+  const double middle =
+      limits.lower && limits.upper ? (*limits.lower + *limits.upper) / 2.0 : at + 1.0;
+  const double sign = tried ? -*tried : middle >= at ? 1.0 : -1.0;
+  const Step step = stepOf(facts, *mode, at, sign);
+  if (!step.provable) return;
+  streams_.begin(
+      axis, [value = step.value](Duration) { return value; }, 0.3, 100.0);
+  runFor(300ms + facts.config->command_timeout + facts.stopTime(facts.velocity) + 500ms);
+  if (session_.failed()) return;
+  const bool torque = mode->kind == drive::ControlKind::torque;
+  const double expected = step.expected;
+  const double moved = session_.truths[axis].position - from;
+  const bool far_enough = moved * sign > 0.3 * std::fabs(expected);
+  const bool too_far =
+      !torque && std::fabs(moved) > 3.0 * std::fabs(expected) +
+                                        facts.velocity * facts.velocity / facts.acceleration;
+  const bool outside = (limits.lower && at < *limits.lower) || (limits.upper && at > *limits.upper);
+  if ((torque ? moved * sign > 0.0 : far_enough) && (!too_far || outside)) return;
+  // A switch may stand in the way: it lets the axis go back.
+  const bool held = facts.units_per_count != 0.0 && session_.now() - session_.limited_at[axis] < 3s;
+  if (held && outside) return;  // its limits lie beyond the switch, as its zero was declared
+  if (held && !tried) {
+    if (call("enable", facts.name, kRecoverTime)) move(axis, sign);
+    return;
+  }
+  noRecovery(facts.name, "was told to move by " + number(expected) + " in mode " + mode->name +
+                             " when all was well again, and moved by " + number(moved));
+}
+
+}  // namespace cia402::campaign

@@ -1,0 +1,20 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "sim/definition/drive_definition.h"
+
+#include <algorithm>
+
+namespace cia402::sim {
+
+const FaultDefinition* DriveDefinition::fault(const std::string& fault_name) const {
+  const auto found = std::find_if(faults.begin(), faults.end(),
+                                  [&](const FaultDefinition& f) { return f.name == fault_name; });
+  return found == faults.end() ? nullptr : &*found;
+}
+
+const ModeDefinition* DriveDefinition::mode(std::int64_t number) const {
+  const auto found = std::find_if(modes.begin(), modes.end(),
+                                  [number](const ModeDefinition& m) { return m.number == number; });
+  return found == modes.end() ? nullptr : &*found;
+}
+
+}  // namespace cia402::sim

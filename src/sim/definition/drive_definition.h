@@ -1,0 +1,147 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cia402_driver/sim/device/device.h"
+#include "cia402_driver/sim/drive/drive.h"
+#include "sim/definition/quirks.h"
+#include "sim/dictionary/template.h"
+#include "sim/drive/motor.h"
+#include "sim/drive/values.h"
+
+namespace cia402::sim {
+
+/// What a value of 6060h makes the drive do.
+enum class ModeBehaviour : std::uint8_t {
+  hold,  ///< no mode assigned: stands still
+  profile_position,
+  profile_velocity,
+  profile_torque,
+  homing,
+  cyclic_position,
+  cyclic_velocity,
+  cyclic_torque,
+};
+
+/// What statusword bit 12 means in a mode.
+enum class Bit12 : std::uint8_t { none, acknowledge, zero_speed, follows, homing_attained };
+/// What statusword bit 13 means in a mode.
+enum class Bit13 : std::uint8_t { none, following_error, homing_error };
+
+/// A value of 6060h.
+struct ModeDefinition {
+  std::int64_t number = 0;
+  ModeBehaviour behaviour = ModeBehaviour::hold;
+  bool handshake = true;  ///< profile_position: new set-points by controlword bit 4
+  Bit12 bit_12 = Bit12::none;
+  Bit13 bit_13 = Bit13::none;
+  bool target_reached = true;    ///< statusword bit 10 is used
+  std::optional<Role> velocity;  ///< speed (limit) of the mode, none: only the maxima
+  std::optional<Role> torque;    ///< torque limit of the mode
+};
+
+/// How motion ends.
+enum class Ramp : std::uint8_t {
+  coast,       ///< power off at once
+  slow_down,   ///< 6084h
+  quick_stop,  ///< 6085h
+  limit,       ///< as hard as the torque limit allows
+};
+
+/// What a value of an option code does.
+struct StopOption {
+  Ramp ramp = Ramp::coast;
+  bool hold = false;  ///< afterwards stay, position held
+};
+
+/// The values of an option code object (605Ah to 605Eh) and what they do.
+struct OptionTable {
+  std::int64_t fallback = 0;  ///< where the object does not exist
+  std::map<std::int64_t, StopOption> options;
+};
+
+/// What the drive does with the loss of its master (6007h).
+enum class ConnectionLoss : std::uint8_t { none, fault, disable_voltage, quick_stop };
+
+/// An error that the drive can have.
+struct FaultDefinition {
+  std::string name;
+  std::uint16_t code = 0;           ///< 603Fh and EMCY
+  std::uint8_t error_register = 1;  ///< 1001h
+  std::array<std::uint8_t, 5> vendor{};
+  bool resettable = true;        ///< false: only a power cycle helps
+  bool warning = false;          ///< statusword bit 7 instead of a fault
+  Duration persists{0};          ///< the cause stays so long; a reset before is refused
+  std::optional<Ramp> reaction;  ///< instead of 605Eh, e.g. coast where the stage is broken
+  bool voltage_lost = false;     ///< statusword bit 4 goes while the cause lasts
+};
+
+/// How the numbers of a quantity stand in their objects.
+struct UnitScale {
+  bool per_count = false;  ///< times AxisMechanics::counts_per_turn
+  double factor = 1.0;     ///< device units per internal unit
+};
+
+/// See docs/simulated_drives.md for the file format.
+struct DriveDefinition {
+  std::string name;
+  DictionaryTemplate dictionary;
+  DeviceBehaviour communication;
+  std::array<UnitScale, kQuantityCount> units;
+  Encoding encoding = Encoding::integer;
+  std::map<fieldbus::ObjectId, Encoding> encodings;
+  std::map<Role, fieldbus::ObjectId> objects;              ///< instead of the standard's
+  std::vector<MotorParameters> motors{MotorParameters()};  ///< one for each axis
+  std::vector<ModeDefinition> modes;
+
+  bool absolute_encoder = true;
+  bool positions_wrap = true;      ///< else a target beyond the wrap is a whole range away
+  bool enable_in_one_step = true;  ///< 0x0F in Ready to switch on: transitions 3 and 4 at once
+  bool direct_enable = false;      ///< 0x07 and 0x0F work in Switch on disabled, too
+  bool mode_change_while_enabled = true;
+  bool stores_while_enabled = false;  ///< takes 1010h and 1011h then, too (else 0x08000022)
+  bool resume_quick_stop_while_moving = true;
+  bool halt = true;
+  bool internal_limit_bit = true;
+  bool warning_stops = false;        ///< a warning leads to the fault reaction
+  bool follows_sync_period = false;  ///< csp interpolates over the SYNC period, not over 60C2h
+  std::vector<fieldbus::ObjectId> locked_while_enabled;
+  DriveQuirks quirks;
+  Duration initialisation{0};  ///< in Not ready to switch on
+
+  OptionTable quick_stop, shutdown, disable_operation, halt_option, fault_reaction;
+
+  std::vector<std::int64_t> homing_methods;
+  bool home_offset_is_zero_shift = false;  ///< 6064h at home = -607Ch instead of +607Ch
+  bool homing_returns = false;             ///< moves back onto the home position
+
+  bool following_error_is_fault = true;
+  bool limit_switch_is_fault = false;
+  ConnectionLoss master_lost = ConnectionLoss::fault;  ///< where 6007h does not exist
+  bool stops_outside_operational = true;
+  bool traps_non_finite = false;  ///< NaN and infinity in a float object: fault "not_a_number"
+  bool traps_negative_zero = false;
+  std::optional<fieldbus::ObjectId> node_id;  ///< object whose saved value is the node-ID
+
+  std::vector<FaultDefinition> faults;
+
+  /// 1 to 8. All else here says what every axis is, by the objects of axis 0.
+  unsigned axisCount() const { return static_cast<unsigned>(motors.size()); }
+  /// nullptr if there is none of that name.
+  const FaultDefinition* fault(const std::string& fault_name) const;
+  /// nullptr if 6060h cannot be this.
+  const ModeDefinition* mode(std::int64_t number) const;
+};
+
+/// As loadDriveDefinition(path), with a mapping of further keys of such a file on top of it.
+Result<std::shared_ptr<const DriveDefinition>> loadDriveDefinition(const std::string& path,
+                                                                   const YAML::Node& changes);
+
+}  // namespace cia402::sim

@@ -1,0 +1,151 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// Reads the file of a simulated drive (docs/simulated_drives.md).
+#include <yaml-cpp/yaml.h>
+
+#include "cia402_driver/yaml/reader.h"
+#include "sim/definition/drive_definition.h"
+#include "sim/definition/read_communication.h"
+#include "sim/definition/read_faults.h"
+#include "sim/definition/read_modes.h"
+#include "sim/definition/read_objects.h"
+#include "sim/definition/read_quirks.h"
+#include "sim/definition/read_state_machine.h"
+#include "sim/definition/reader.h"
+#include "sim/dictionary/axis_objects.h"
+#include "sim/drive/homing_sequence.h"
+
+namespace cia402::sim {
+namespace {
+
+constexpr int kDeepestExtension = 4;
+
+void readMotor(DefinitionReader& reader, MotorParameters& out) {
+  reader.read("rated_acceleration", out.rated_acceleration, 1e-3, 1e6);
+  reader.read("max_torque", out.max_torque, 0.01, 100.0);
+  reader.read("max_speed", out.max_speed, 1e-3, 1e6);
+  reader.read("friction", out.friction, 0.0, 10.0);
+  reader.read("viscous_friction", out.viscous_friction, 0.0, 1e3);
+}
+
+void readMotors(DefinitionReader& reader, DriveDefinition& out) {
+  for (MotorParameters& motor : out.motors) {
+    reader.section("motor", [&](DefinitionReader& r) { readMotor(r, motor); });
+  }
+}
+
+/// A number of axes that are alike, or a list of what their motors differ in.
+void readAxes(DefinitionReader& reader, DriveDefinition& out) {
+  if (!reader.has("axes")) return;
+  const YAML::Node list = reader.node("axes");
+  auto count = static_cast<std::int64_t>(list.IsSequence() ? list.size() : 0);
+  if (!list.IsSequence()) reader.read("axes", count, 1, kMostAxes);
+  if (count < 1 || count > kMostAxes) {
+    return reader.problem("axes", "must be a number of axes from 1 to 8 or a list of them");
+  }
+  out.motors.resize(static_cast<std::size_t>(count), out.motors.front());
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    DefinitionReader axis(list[i], reader.pathOf("axes." + std::to_string(i)), reader.problems());
+    axis.section("motor", [&](DefinitionReader& r) { readMotor(r, out.motors[i]); });
+  }
+}
+
+/// What means something to one axis must be there for each.
+void checkAxes(DefinitionReader& reader, const DriveDefinition& definition) {
+  if (definition.axisCount() == 1) return;
+  for (const auto& [role, object] : definition.objects) {
+    if (!(ofAxis(object, 1) == object)) continue;
+    reader.problem("objects", std::string(roleInfo(role).name) +
+                                  ": a drive with several axes must have it in 6000h to 67FFh");
+  }
+}
+
+void readHoming(DefinitionReader& reader, DriveDefinition& out) {
+  reader.read<bool>("home_offset", out.home_offset_is_zero_shift,
+                    {{"position_at_home", false}, {"shift_of_zero", true}});
+  reader.read("returns_to_home", out.homing_returns);
+  if (!reader.has("methods")) return;
+  out.homing_methods.clear();
+  for (const YAML::Node& item : reader.node("methods")) {
+    const auto number = item.IsScalar() ? yaml::parseInteger(item.Scalar()) : std::nullopt;
+    if (number && findHomingMethod(*number) != nullptr)
+      out.homing_methods.push_back(*number);
+    else
+      reader.problem("methods", "must be a list of methods 1..14, 17..30, 33, 34, 35, 37");
+  }
+}
+
+void readDefinition(DefinitionReader& reader, bool extends, DriveDefinition& out) {
+  std::string description;
+  reader.read("name", out.name);
+  reader.read("description", description);
+  readDictionary(reader, extends, out);
+  if (!extends) applyStandardOptions(out);
+  reader.section("communication",
+                 [&](DefinitionReader& r) { readCommunication(r, out.communication); });
+  reader.section("units", [&](DefinitionReader& r) { readUnits(r, out); });
+  readEncoding(reader, out);
+  readObjects(reader, out);
+  readMotors(reader, out);
+  readAxes(reader, out);
+  reader.read<bool>("encoder", out.absolute_encoder, {{"absolute", true}, {"incremental", false}});
+  reader.read("positions_wrap", out.positions_wrap);
+  reader.each("modes", [&](const std::string& number, const YAML::Node& node) {
+    readMode(number, node, reader, out);
+  });
+  readNodeId(reader, out);
+  reader.section("state_machine", [&](DefinitionReader& r) { readStateMachine(r, out); });
+  reader.section("quirks", [&](DefinitionReader& r) { readQuirks(r, out.quirks); });
+  reader.section("homing", [&](DefinitionReader& r) { readHoming(r, out); });
+  reader.section("float_traps", [&](DefinitionReader& r) {
+    r.read("non_finite", out.traps_non_finite);
+    r.read("negative_zero", out.traps_negative_zero);
+  });
+  reader.each("faults", [&](const std::string& name, const YAML::Node& node) {
+    readFault(name, node, reader, out);
+  });
+  checkAxes(reader, out);
+}
+
+// The drive that the file extends lies beside it.
+void readFile(const std::string& path, int depth, DriveDefinition& out, ProblemTexts& problems) {
+  try {
+    const YAML::Node file = yaml::parseFile(path);
+    DefinitionReader reader(file, "", problems);
+    std::string base;
+    reader.read("extends", base);
+    if (!base.empty() && depth == kDeepestExtension) {
+      return reader.problem("extends", "is too deep: do the files extend each other?");
+    }
+    if (!base.empty()) {
+      ProblemTexts of_base;
+      readFile(path.substr(0, path.rfind('/') + 1) + base + ".yaml", depth + 1, out, of_base);
+      for (const std::string& problem : of_base) reader.problem("extends", base + ": " + problem);
+    }
+    readDefinition(reader, !base.empty(), out);
+  } catch (const YAML::Exception& error) {
+    problems.push_back(path + ": " + error.what());
+  }
+}
+
+}  // namespace
+
+Result<std::shared_ptr<const DriveDefinition>> loadDriveDefinition(const std::string& path,
+                                                                   const YAML::Node& changes) {
+  ProblemTexts problems;
+  auto definition = std::make_shared<DriveDefinition>();
+  readFile(path, 0, *definition, problems);
+  if (problems.empty() && changes.IsMap()) {
+    DefinitionReader reader(changes, "with", problems);
+    readDefinition(reader, true, *definition);
+  }
+  if (problems.empty()) return std::shared_ptr<const DriveDefinition>(std::move(definition));
+  std::string text = path + ": the simulated drive's definition has problems:";
+  for (const std::string& problem : problems) text += "\n  " + problem;
+  return Error{text};
+}
+
+Result<std::shared_ptr<const DriveDefinition>> loadDriveDefinition(const std::string& path) {
+  return loadDriveDefinition(path, YAML::Node());
+}
+
+}  // namespace cia402::sim

@@ -1,0 +1,12 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "cia402_driver/sim/device/device.h"
+#include "sim/definition/reader.h"
+
+namespace cia402::sim {
+
+/// The `communication:` section: switches of DeviceBehaviour by their names.
+void readCommunication(DefinitionReader& reader, DeviceBehaviour& out);
+
+}  // namespace cia402::sim

@@ -1,0 +1,54 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "sim/definition/read_faults.h"
+
+#include <algorithm>
+
+#include "cia402_driver/yaml/reader.h"
+#include "sim/definition/read_state_machine.h"
+
+namespace cia402::sim {
+namespace {
+
+constexpr double kForeverS = 1e6;
+
+}  // namespace
+
+void readFault(const std::string& name, const YAML::Node& node, DefinitionReader& parent,
+               DriveDefinition& out) {
+  DefinitionReader reader(node, parent.pathOf("faults." + name), parent.problems());
+  FaultDefinition fault;
+  fault.name = name;
+  std::int64_t number = 0;
+  if (!reader.has("code")) reader.problem("code", "is missing");
+  reader.read("code", number, 1, 0xFFFF);
+  fault.code = static_cast<std::uint16_t>(number);
+  number = fault.error_register;
+  reader.read("register", number, 0, 0xFF);
+  fault.error_register = static_cast<std::uint8_t>(number);
+  if (reader.has("vendor")) {
+    const YAML::Node bytes = reader.node("vendor");
+    for (std::size_t i = 0; bytes.IsSequence() && i < std::min<std::size_t>(5, bytes.size()); ++i) {
+      const auto byte = yaml::parseInteger(bytes[i].IsScalar() ? bytes[i].Scalar() : "");
+      if (byte && *byte >= 0 && *byte <= 255)
+        fault.vendor[i] = static_cast<std::uint8_t>(*byte);
+      else
+        reader.problem("vendor", "must be a list of up to five bytes");
+    }
+  }
+  reader.read("resettable", fault.resettable);
+  reader.read("warning", fault.warning);
+  reader.read("voltage_lost", fault.voltage_lost);
+  double seconds = 0.0;
+  reader.read("persists_for", seconds, 0.0, kForeverS);
+  fault.persists = fromSeconds(seconds);
+  Ramp reaction = Ramp::coast;
+  if (reader.has("reaction")) {
+    reader.read("reaction", reaction, rampWords());
+    fault.reaction = reaction;
+  }
+  const auto known = std::find_if(out.faults.begin(), out.faults.end(),
+                                  [&](const auto& other) { return other.name == name; });
+  known == out.faults.end() ? out.faults.push_back(fault) : void(*known = fault);
+}
+
+}  // namespace cia402::sim

@@ -1,0 +1,94 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "sim/definition/read_modes.h"
+
+#include <algorithm>
+
+#include "cia402_driver/yaml/reader.h"
+
+namespace cia402::sim {
+namespace {
+
+const std::vector<std::pair<const char*, ModeBehaviour>> kBehaviours = {
+    {"hold", ModeBehaviour::hold},
+    {"profile_position", ModeBehaviour::profile_position},
+    {"profile_velocity", ModeBehaviour::profile_velocity},
+    {"profile_torque", ModeBehaviour::profile_torque},
+    {"homing", ModeBehaviour::homing},
+    {"cyclic_position", ModeBehaviour::cyclic_position},
+    {"cyclic_velocity", ModeBehaviour::cyclic_velocity},
+    {"cyclic_torque", ModeBehaviour::cyclic_torque}};
+const std::vector<std::pair<const char*, Bit12>> kBit12 = {
+    {"none", Bit12::none},
+    {"acknowledge", Bit12::acknowledge},
+    {"zero_speed", Bit12::zero_speed},
+    {"follows", Bit12::follows},
+    {"homing_attained", Bit12::homing_attained}};
+const std::vector<std::pair<const char*, Bit13>> kBit13 = {
+    {"none", Bit13::none},
+    {"following_error", Bit13::following_error},
+    {"homing_error", Bit13::homing_error}};
+std::optional<Role> readRole(DefinitionReader& reader, const std::string& key) {
+  if (!reader.has(key)) return std::nullopt;
+  std::string text;
+  reader.read(key, text);
+  const auto role = findRole(text);
+  if (!role) reader.problem(key, "'" + text + "' is no role of an object");
+  return role;
+}
+
+// What the standard gives bits 12 and 13 in a mode, unless the file says otherwise.
+void applyStandardBits(ModeDefinition& mode) {
+  switch (mode.behaviour) {
+    case ModeBehaviour::profile_position:
+      mode.bit_12 = Bit12::acknowledge;
+      mode.bit_13 = Bit13::following_error;
+      mode.velocity = Role::profile_velocity;
+      break;
+    case ModeBehaviour::profile_velocity:
+      mode.bit_12 = Bit12::zero_speed;
+      break;
+    case ModeBehaviour::cyclic_position:
+      mode.bit_12 = Bit12::follows;
+      mode.bit_13 = Bit13::following_error;
+      break;
+    case ModeBehaviour::cyclic_velocity:
+    case ModeBehaviour::cyclic_torque:
+      mode.bit_12 = Bit12::follows;
+      break;
+    case ModeBehaviour::homing:
+      mode.bit_12 = Bit12::homing_attained;
+      mode.bit_13 = Bit13::homing_error;
+      break;
+    default:
+      break;
+  }
+}
+
+}  // namespace
+
+void readMode(const std::string& number, const YAML::Node& node, DefinitionReader& parent,
+              DriveDefinition& out) {
+  DefinitionReader reader(node, parent.pathOf("modes." + number), parent.problems());
+  ModeDefinition mode;
+  const auto value = yaml::parseInteger(number);
+  if (!value) parent.problem("modes", "'" + number + "' is no mode number");
+  mode.number = value.value_or(0);
+  if (!reader.has("behaviour")) reader.problem("behaviour", "is missing");
+  reader.read("behaviour", mode.behaviour, kBehaviours);
+  applyStandardBits(mode);
+  reader.read("handshake", mode.handshake);
+  reader.read("bit_12", mode.bit_12, kBit12);
+  reader.read("bit_13", mode.bit_13, kBit13);
+  reader.read("target_reached", mode.target_reached);
+  if (reader.has("velocity") && reader.node("velocity").Scalar() == "none") {
+    mode.velocity.reset();
+  } else if (reader.has("velocity")) {
+    mode.velocity = readRole(reader, "velocity");
+  }
+  mode.torque = readRole(reader, "torque");
+  const auto known = std::find_if(out.modes.begin(), out.modes.end(),
+                                  [&](const auto& other) { return other.number == mode.number; });
+  known == out.modes.end() ? out.modes.push_back(mode) : void(*known = mode);
+}
+
+}  // namespace cia402::sim

@@ -1,0 +1,93 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "sim/definition/read_objects.h"
+
+#include <algorithm>
+
+#include "cia402_driver/fieldbus/object.h"
+#include "cia402_driver/yaml/reader.h"
+
+namespace cia402::sim {
+namespace {
+
+const std::vector<std::pair<const char*, Encoding>> kEncodings = {
+    {"integer", Encoding::integer},
+    {"float32", Encoding::float32},
+    {"bfloat16", Encoding::bfloat16},
+    {"scaled_unsigned", Encoding::scaled_unsigned},
+    {"scaled_signed", Encoding::scaled_signed}};
+constexpr const char* kQuantities[] = {"none",   "position", "velocity", "acceleration",
+                                       "torque", "current",  "time",     "motor_speed"};
+static_assert(sizeof(kQuantities) / sizeof(kQuantities[0]) == kQuantityCount, "a name for each");
+
+}  // namespace
+
+void readEncoding(DefinitionReader& reader, DriveDefinition& out) {
+  reader.read("encoding", out.encoding, kEncodings);
+}
+
+void readUnits(DefinitionReader& reader, DriveDefinition& out) {
+  for (std::size_t i = 1; i < kQuantityCount; ++i) {
+    if (!reader.has(kQuantities[i])) continue;
+    UnitScale& unit = out.units[i];
+    if (reader.node(kQuantities[i]).IsScalar() &&
+        reader.node(kQuantities[i]).Scalar() == "counts") {
+      unit = {true, 1.0};
+    } else {
+      unit.per_count = false;
+      reader.read(kQuantities[i], unit.factor, 1e-9, 1e12);
+    }
+  }
+}
+
+void readObjects(DefinitionReader& reader, DriveDefinition& out) {
+  reader.each("objects", [&](const std::string& key, const YAML::Node& value) {
+    const auto role = findRole(key);
+    const auto object = value.IsScalar() ? fieldbus::parseObjectId(value.Scalar()) : std::nullopt;
+    if (!role) return reader.problem("objects", "'" + key + "' is no role of an object");
+    if (!object) return reader.problem("objects", key + ": must be an object like \"6041:00\"");
+    out.objects[*role] = *object;
+  });
+  reader.each("encodings", [&](const std::string& key, const YAML::Node& value) {
+    const auto object = fieldbus::parseObjectId(key);
+    if (!object) return reader.problem("encodings", "'" + key + "' is no object like \"6071:00\"");
+    const auto word = std::find_if(kEncodings.begin(), kEncodings.end(), [&](const auto& pair) {
+      return value.IsScalar() && value.Scalar() == pair.first;
+    });
+    if (word == kEncodings.end()) return reader.problem("encodings", key + ": unknown encoding");
+    out.encodings[*object] = word->second;
+  });
+}
+
+void readNodeId(DefinitionReader& reader, DriveDefinition& out) {
+  std::string text;
+  reader.read("node_id", text);
+  if (text.empty()) return;
+  out.node_id = fieldbus::parseObjectId(text);
+  if (!out.node_id) reader.problem("node_id", "must be an object like \"2003:01\"");
+}
+
+// Objects of the drive that the file extends, if any, go and come one by one.
+void readDictionary(DefinitionReader& reader, bool extends, DriveDefinition& out) {
+  if (reader.has("without")) {
+    for (const YAML::Node& item : reader.node("without")) {
+      const auto index = item.IsScalar() ? yaml::parseInteger(item.Scalar()) : std::nullopt;
+      if (!index || *index < 0 || *index > 0xFFFF ||
+          !out.dictionary.remove(static_cast<std::uint16_t>(*index))) {
+        reader.problem("without",
+                       "must be a list of objects of the drive that is extended, "
+                       "such as 0x1017");
+      }
+    }
+  }
+  if (!reader.has("dictionary")) {
+    if (!extends) reader.problem("dictionary", "is missing: the list of the drive's objects");
+    return;
+  }
+  auto dictionary = DictionaryTemplate::parse(reader.node("dictionary"));
+  if (dictionary.ok())
+    out.dictionary.add(dictionary.value());
+  else
+    reader.problem("dictionary", dictionary.error().message);
+}
+
+}  // namespace cia402::sim

@@ -1,0 +1,383 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "cia402_driver/sim/drive/drive.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <deque>
+#include <map>
+
+#include "sim/definition/drive_definition.h"
+#include "sim/dictionary/axis_objects.h"
+#include "sim/drive/core.h"
+#include "sim/drive/emergency_sender.h"
+#include "sim/drive/parameter_store.h"
+
+namespace cia402::sim {
+namespace {
+
+constexpr Duration kPowerCycle = std::chrono::milliseconds(500);
+
+// Error register bits of a code's class (CiA 301, 7.2.7.1 and 7.5.2.2).
+std::uint8_t registerFor(std::uint16_t code) {
+  switch (code >> 12) {
+    case 0x2:
+      return 0x03;
+    case 0x3:
+      return 0x05;
+    case 0x4:
+      return 0x09;
+    case 0x8:
+      return (code & 0xFF00) == 0x8600 ? 0x21 : 0x11;
+    default:
+      return 0x01;
+  }
+}
+
+// Lets nothing out while the drive plays dead.
+class Gate : public can::Sink {
+ public:
+  explicit Gate(can::Sink& sink) : sink_(sink) {}
+  bool send(const can::Frame& frame) override { return closed || sink_.send(frame); }
+  bool closed = false;
+
+ private:
+  can::Sink& sink_;
+};
+
+/// One axis of the device.
+struct Axis {
+  Axis(const DriveDefinition& definition, unsigned number, const AxisMechanics& axis_mechanics,
+       ObjectDictionary& dictionary, DriveCore::Reports& reports)
+      : mechanics(axis_mechanics), core(definition, number, mechanics, dictionary, reports) {}
+
+  AxisMechanics mechanics;
+  DriveCore core;
+  unsigned bad_floats = 0;
+};
+
+ObjectDictionary buildDictionary(const DriveDefinition& definition, canopen::NodeId node,
+                                 const DriveIdentity& identity) {
+  ObjectDictionary built = definition.dictionary.build(node, definition.axisCount());
+  const std::optional<std::uint32_t> numbers[] = {identity.vendor, identity.product,
+                                                  identity.revision, identity.serial};
+  for (std::uint8_t i = 0; i < 4; ++i) {
+    Entry* entry = built.find({0x1018, static_cast<std::uint8_t>(i + 1)});
+    if (entry == nullptr || !numbers[i]) continue;
+    entry->number = entry->initial_number = *numbers[i];
+  }
+  return built;
+}
+
+}  // namespace
+
+struct Drive::Impl : Device::Application, DriveCore::Reports {
+  Impl(std::shared_ptr<const DriveDefinition> drive_definition, canopen::NodeId node,
+       can::Sink& sink, const AxisMechanics& mechanics, const DriveIdentity& identity,
+       const std::vector<AxisMechanics>& further)
+      : definition(std::move(drive_definition)),
+        dictionary(buildDictionary(*definition, node, identity)),
+        gate(sink),
+        device(node, gate, dictionary, definition->communication, *this),
+        emergencies(*definition, device),
+        store(
+            dictionary, definition->axisCount(),
+            [this] { return !definition->stores_while_enabled && enabled(); },
+            [this] { forEach(&DriveCore::onParametersStored); }) {
+    for (unsigned i = 0; i < definition->axisCount(); ++i) {
+      const bool own = i > 0 && i <= further.size();
+      axes.emplace_back(*definition, i, own ? further[i - 1] : mechanics, dictionary, *this);
+    }
+    installHooks();
+  }
+
+  void installHooks() {
+    for (const auto& pair : dictionary.entries()) {
+      const Entry& entry = pair.second;
+      if (entry.access != Access::rw && entry.access != Access::wo) continue;
+      if (entry.id.index < 0x2000) continue;
+      dictionary.onWriteCheck(entry.id, [this](const Entry& e, std::uint64_t number) {
+        return refuseWrite(e, number);
+      });
+      const auto role = roleOf(entry);
+      const Encoding encoding = encodingOf(entry);
+      if (role || encoding != Encoding::integer) {
+        dictionary.onWrite(entry.id,
+                           [this, role, encoding](const Entry& e) { written(e, role, encoding); });
+      }
+    }
+  }
+
+  Axis& axisWith(const Entry& entry) { return axes[axisOf(entry.id, definition->axisCount())]; }
+
+  std::optional<Role> roleOf(const Entry& entry) const {
+    const ObjectId id = ofFirstAxis(entry.id, definition->axisCount());
+    for (const auto& moved : definition->objects) {
+      if (moved.second == id) return moved.first;
+    }
+    return findRole(id);
+  }
+
+  Encoding encodingOf(const Entry& entry) const {
+    const ObjectId id = ofFirstAxis(entry.id, definition->axisCount());
+    const auto special = definition->encodings.find(id);
+    if (special != definition->encodings.end()) return special->second;
+    const auto role = roleOf(entry);
+    return role && roleInfo(*role).quantity != Quantity::none ? definition->encoding
+                                                              : Encoding::integer;
+  }
+
+  // An object of the device itself is refused by any of its axes.
+  std::uint32_t refuseWrite(const Entry& entry, std::uint64_t number) {
+    if (entry.id.index >= kFirstAxisObject) return axisWith(entry).core.refuseWrite(entry, number);
+    std::uint32_t refused = 0;
+    for (const Axis& axis : axes) {
+      if (refused == 0) refused = axis.core.refuseWrite(entry, number);
+    }
+    return refused;
+  }
+
+  void written(const Entry& entry, std::optional<Role> role, Encoding encoding) {
+    Axis& axis = axisWith(entry);
+    if (encoding != Encoding::integer && badFloat(decodeNumber(entry, encoding))) {
+      ++axis.bad_floats;
+      axis.core.onNonFinite();
+      return;
+    }
+    if (role == Role::controlword) axis.core.onControlword();
+    if (role == Role::mode) axis.core.onMode();
+    if (role == Role::target_position) axis.core.onTargetPosition();
+    if (role == Role::clear_errors && entry.number != 0) axis.core.resetFault();
+    if (role == Role::save_zero && entry.number != 0) axis.core.saveZero();
+    if (role == Role::homing_start && entry.number == 1) axis.core.onHomingStart();
+  }
+
+  bool badFloat(double value) const {
+    if (!std::isfinite(value)) return definition->traps_non_finite;
+    return value == 0.0 && std::signbit(value) && definition->traps_negative_zero;
+  }
+
+  /// Calls a method of every axis.
+  template <typename Method, typename... Arguments>
+  void forEach(Method method, Arguments... arguments) {
+    for (Axis& axis : axes) (axis.core.*method)(arguments...);
+  }
+
+  bool enabled() const {
+    return std::any_of(axes.begin(), axes.end(),
+                       [](const Axis& axis) { return axis.core.enabled(); });
+  }
+  std::uint8_t errorRegister() const {
+    unsigned bits = 0;
+    for (const Axis& axis : axes) bits |= axis.core.errorRegister();
+    return static_cast<std::uint8_t>(bits);
+  }
+
+  // Device::Application
+  void onPowerOn(Time time) override {
+    now = time;
+    heard = false;
+    forEach(&DriveCore::start, cold, time);
+    cold = false;
+  }
+  std::optional<canopen::NodeId> ownNodeId() const override {
+    const Entry* entry = definition->node_id ? dictionary.find(*definition->node_id) : nullptr;
+    if (entry == nullptr) return {};
+    return static_cast<canopen::NodeId>(entry->initial_number);
+  }
+  void onNodeId(canopen::NodeId before, canopen::NodeId now_is) override {
+    for (const ObjectId id : definition->dictionary.nodeIdObjects()) {
+      store.moveDefault(id, std::int64_t{now_is} - before);
+    }
+  }
+  void onResetCommunication(Time) override {}  // the power drive system goes on
+  void onNmtState(canopen::NmtState state, Time) override {
+    forEach(&DriveCore::onNmtState, state);
+    const bool booted = state == canopen::NmtState::pre_operational;
+    if (booted && !heard) forEach(&DriveCore::onBootedAlone);
+  }
+  void onSync(Time) override { forEach(&DriveCore::onSync); }
+  void onMasterLost(Time) override { forEach(&DriveCore::onMasterLost); }
+  bool hasFault() const override {
+    return std::any_of(axes.begin(), axes.end(),
+                       [](const Axis& axis) { return axis.core.hasFault(); });
+  }
+
+  // DriveCore::Reports: one EMCY channel and one 1001h for all axes.
+  void emergency(const FaultDefinition& fault) override {
+    emergencies.report(fault, errorRegister(), now);
+  }
+  void errorsGone() override { emergencies.errorsGone(errorRegister(), now); }
+
+  void bringTo(Time time) {
+    now = std::max(now, time);
+    if (restart_at && now >= *restart_at) {
+      const Time at = *restart_at;
+      restart_at.reset();
+      forEach(&DriveCore::advance, at);
+      cold = true;
+      device.powerOn(at);
+    }
+    forEach(&DriveCore::advance, now);
+  }
+
+  // Another drive of the same kind takes this one's place: other serial number, as from the
+  // factory.
+  void exchange() {
+    store.restore(1);
+    Entry* serial = dictionary.find({0x1018, 4});
+    if (serial != nullptr) ++serial->initial_number;
+  }
+
+  // What ends with "clear".
+  void removeTroubles() {
+    gate.closed = false;
+    emergencies.stopStorm();
+    device.behaviour().sdo_silent = definition->communication.sdo_silent;
+    device.behaviour().tpdo_size_error = definition->communication.tpdo_size_error;
+    forEach(&DriveCore::removeCauses);
+  }
+
+  // The fault with a code that a text such as "0x7305" names; nullptr if it names none.
+  const FaultDefinition* rawFault(const std::string& text) {
+    char* end = nullptr;
+    const bool raw = text.compare(0, 2, "0x") == 0;
+    const unsigned long code = raw ? std::strtoul(text.c_str(), &end, 16) : 0;
+    if (code == 0 || code > 0xFFFF || *end != '\0') return nullptr;
+    FaultDefinition& made = raw_faults[static_cast<std::uint16_t>(code)];
+    made.name = text;
+    made.code = static_cast<std::uint16_t>(code);
+    made.error_register = registerFor(made.code);
+    return &made;
+  }
+
+  void flushChanges() {
+    if (device.powered()) device.notifyChange(now);
+  }
+
+  std::shared_ptr<const DriveDefinition> definition;
+  ObjectDictionary dictionary;
+  Gate gate;
+  Device device;
+  EmergencySender emergencies;
+  std::deque<Axis> axes;
+  ParameterStore store;
+  Time now{};
+  std::optional<Time> restart_at;
+  std::map<std::uint16_t, FaultDefinition> raw_faults;
+  bool heard = false;  ///< anything, since power-on
+  bool cold = false;
+  bool first_power = true;
+};
+
+Drive::Drive(std::shared_ptr<const DriveDefinition> definition, canopen::NodeId node,
+             can::Sink& sink, AxisMechanics mechanics, const DriveIdentity& identity,
+             const std::vector<AxisMechanics>& further)
+    : impl_(std::make_unique<Impl>(std::move(definition), node, sink, mechanics, identity,
+                                   further)) {}
+
+Drive::~Drive() = default;
+
+void Drive::powerOn(Time now) {
+  impl_->bringTo(now);
+  impl_->restart_at.reset();
+  impl_->cold = !impl_->first_power;  // at first an incremental counter stands where the rotor is
+  impl_->first_power = false;
+  impl_->device.powerOn(now);
+}
+
+void Drive::powerOff(Time now) {
+  impl_->bringTo(now);
+  impl_->restart_at.reset();
+  impl_->device.powerOff();
+  impl_->forEach(&DriveCore::powerOff);
+}
+
+void Drive::receive(const can::Frame& frame, Time now) {
+  impl_->bringTo(now);
+  impl_->heard = impl_->heard || !impl_->gate.closed;
+  if (!impl_->gate.closed) impl_->device.receive(frame, now);
+  impl_->flushChanges();
+}
+
+void Drive::tick(Time now) {
+  impl_->bringTo(now);
+  impl_->device.tick(now);
+  impl_->emergencies.tick(impl_->now);
+  impl_->flushChanges();
+}
+
+Time Drive::nextEvent() const {
+  Time next = std::min(impl_->device.nextEvent(), impl_->emergencies.nextEvent());
+  for (const Axis& axis : impl_->axes) next = std::min(next, axis.core.nextEvent());
+  if (impl_->restart_at) next = std::min(next, *impl_->restart_at);
+  return next;
+}
+
+Result<void> Drive::inject(const std::string& fault, Time now, unsigned axis) {
+  Impl& impl = *impl_;
+  impl.bringTo(now);
+  DriveCore& core = impl.axes.at(axis).core;
+  if (const FaultDefinition* known = impl.definition->fault(fault)) {
+    core.raise(*known);
+  } else if (fault == "power_cycle" || fault == "exchange") {
+    powerOff(now);
+    if (fault == "exchange") impl.exchange();
+    impl.restart_at = now + kPowerCycle;
+  } else if (fault == "silent") {
+    impl.gate.closed = true;
+  } else if (fault == "sdo_silent") {
+    impl.device.behaviour().sdo_silent = true;
+  } else if (fault == "emergency_storm") {
+    impl.emergencies.storm(impl.now);
+  } else if (fault == "short_tpdos" || fault == "long_tpdos") {
+    impl.device.behaviour().tpdo_size_error = fault == "short_tpdos" ? -1 : 1;
+  } else if (fault == "blocked_rotor") {
+    core.blockRotor(true);
+  } else if (fault == "clear") {
+    impl.removeTroubles();
+  } else if (const FaultDefinition* raw = impl.rawFault(fault)) {
+    core.raise(*raw);
+  } else {
+    std::string names;
+    for (const std::string& name : faultNames()) names += (names.empty() ? "" : ", ") + name;
+    return Error{"no fault '" + fault + "' in the simulated drive " + impl.definition->name +
+                 " (node " + std::to_string(impl.device.node()) + "); known: " + names +
+                 ", or an error code like 0x7305"};
+  }
+  impl.flushChanges();
+  return {};
+}
+
+std::vector<std::string> Drive::faultNames() const {
+  std::vector<std::string> names;
+  for (const FaultDefinition& fault : impl_->definition->faults) names.push_back(fault.name);
+  for (const char* name : {"blocked_rotor", "clear", "emergency_storm", "exchange", "long_tpdos",
+                           "power_cycle", "sdo_silent", "short_tpdos", "silent"}) {
+    names.emplace_back(name);
+  }
+  return names;
+}
+
+DriveTruth Drive::truth(Time now, unsigned axis) {
+  impl_->bringTo(now);
+  const Axis& asked = impl_->axes.at(axis);
+  const DriveMotion& motion = asked.core.motion();
+  DriveTruth truth;
+  truth.position_turns = motion.motor().position();
+  truth.velocity_turns = motion.motor().velocity();
+  truth.power_stage_on = motion.powered();
+  truth.moving = std::fabs(truth.velocity_turns) > 1e-3;
+  truth.statusword = asked.core.statusword();
+  truth.mode = static_cast<int>(asked.core.mode());
+  truth.nmt = impl_->device.nmtState();
+  truth.bad_floats_received = asked.bad_floats;
+  return truth;
+}
+
+unsigned Drive::axisCount() const { return static_cast<unsigned>(impl_->axes.size()); }
+Device& Drive::device() { return impl_->device; }
+ObjectDictionary& Drive::dictionary() { return impl_->dictionary; }
+AxisMechanics& Drive::mechanics(unsigned axis) { return impl_->axes.at(axis).mechanics; }
+
+}  // namespace cia402::sim

@@ -1,0 +1,101 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "sim/drive/fault_memory.h"
+
+#include <algorithm>
+
+namespace cia402::sim {
+namespace {
+
+constexpr std::uint8_t kGenericError = 0x01;  // 1001h bit 0 is set with every error
+constexpr std::size_t kMostCauses = 16;
+
+}  // namespace
+
+FaultMemory::FaultMemory(const DriveDefinition& definition) : definition_(definition) {
+  causes_.reserve(kMostCauses);
+}
+
+void FaultMemory::start() {
+  causes_.clear();
+  warning_ = was_stopped_ = false;
+  tries_ = 0;
+  stopped_since_ = kNever;
+}
+
+void FaultMemory::add(const FaultDefinition& fault, Time now) {
+  const auto same = std::find_if(causes_.begin(), causes_.end(),
+                                 [&fault](const Cause& cause) { return cause.fault == &fault; });
+  const Time until = fault.persists == Duration::max() ? kNever : now + fault.persists;
+  if (causes_.empty()) was_stopped_ = false;
+  if (same != causes_.end()) {
+    same->until = until;
+  } else if (causes_.size() < kMostCauses) {
+    causes_.push_back({&fault, until});
+  }
+  if (fault.warning) warning_ = true;
+}
+
+void FaultMemory::clear() {
+  causes_.clear();
+  warning_ = was_stopped_ = false;
+  tries_ = 0;
+}
+
+void FaultMemory::endCauses(Time now) {
+  for (Cause& cause : causes_) cause.until = now;
+}
+
+bool FaultMemory::endWarnings() {
+  if (!warning_) return false;
+  causes_.erase(std::remove_if(causes_.begin(), causes_.end(),
+                               [](const Cause& cause) { return cause.fault->warning; }),
+                causes_.end());
+  warning_ = false;
+  return causes_.empty();
+}
+
+std::uint8_t FaultMemory::errorRegister() const {
+  const bool generic = !causes_.empty() && !definition_.quirks.no_generic_error_bit;
+  std::uint8_t bits = generic ? kGenericError : 0;
+  for (const Cause& cause : causes_) {
+    bits = static_cast<std::uint8_t>(bits | cause.fault->error_register);
+  }
+  return bits;
+}
+
+const FaultDefinition* FaultMemory::lasting(bool warnings, Time now) const {
+  for (const Cause& cause : causes_) {
+    if (cause.fault->warning != warnings) continue;
+    if (!cause.fault->resettable || cause.until > now) return cause.fault;
+  }
+  return nullptr;
+}
+
+const FaultDefinition* FaultMemory::lasting(Time now) const {
+  const FaultDefinition* fault = lasting(false, now);
+  return fault != nullptr ? fault : lasting(true, now);
+}
+
+bool FaultMemory::voltageLost(Time now) const {
+  return std::any_of(causes_.begin(), causes_.end(), [now](const Cause& cause) {
+    return cause.fault->voltage_lost && cause.until > now;
+  });
+}
+
+void FaultMemory::onNmtState(canopen::NmtState state, Time now) {
+  if (state == canopen::NmtState::stopped) {
+    stopped_since_ = now;
+  } else if (stopped_since_ != kNever) {
+    was_stopped_ = now - stopped_since_ >= definition_.quirks.fault_reset_needs_stop;
+    stopped_since_ = kNever;
+  }
+}
+
+bool FaultMemory::tryReset(bool history) {
+  const DriveQuirks& quirks = definition_.quirks;
+  if (quirks.fault_reset_needs_empty_history && history) return false;
+  if (++tries_ < quirks.fault_reset_tries) return false;
+  return quirks.fault_reset_needs_stop == Duration::zero() || was_stopped_;
+}
+
+}  // namespace cia402::sim

@@ -1,0 +1,62 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "cia402_driver/canopen/nmt/nmt.h"
+#include "sim/definition/drive_definition.h"
+
+namespace cia402::sim {
+
+/// The errors of one axis since the last reset: what caused them and for how long, what they do to
+/// error register and statusword, and what it takes to reset them.
+class FaultMemory {
+ public:
+  /// `definition` must outlive it.
+  explicit FaultMemory(const DriveDefinition& definition);
+
+  /// Power-on or reset: nothing has happened.
+  void start();
+  /// Remembers an error whose cause lasts from now on. Does not allocate; a seventeenth different
+  /// one is not remembered.
+  void add(const FaultDefinition& fault, Time now);
+  /// All errors are reset.
+  void clear();
+  /// The causes vanish; the errors still want their reset.
+  void endCauses(Time now);
+  /// Warnings last as long as what they warn of. @return true if no error is left.
+  bool endWarnings();
+
+  bool empty() const { return causes_.empty(); }
+  /// Statusword bit 7.
+  bool warning() const { return warning_; }
+  /// What the errors contribute to 1001h.
+  std::uint8_t errorRegister() const;
+  /// An error whose cause is still there, faults before warnings; nullptr if there is none.
+  const FaultDefinition* lasting(Time now) const;
+  /// Statusword bit 4 is gone.
+  bool voltageLost(Time now) const;
+
+  /// A new NMT state: some drives reset faults only after NMT stop.
+  void onNmtState(canopen::NmtState state, Time now);
+  /// One more try to reset faults whose causes are gone. @param history 1003h:00 is not 0.
+  /// @return true if it works.
+  bool tryReset(bool history);
+
+ private:
+  struct Cause {
+    const FaultDefinition* fault;
+    Time until;
+  };
+  const FaultDefinition* lasting(bool warnings, Time now) const;
+
+  const DriveDefinition& definition_;
+  std::vector<Cause> causes_;
+  bool warning_ = false;
+  std::int64_t tries_ = 0;       ///< to reset the present faults
+  Time stopped_since_ = kNever;  ///< by NMT
+  bool was_stopped_ = false;     ///< long enough, since the present faults
+};
+
+}  // namespace cia402::sim

@@ -1,0 +1,43 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "sim/drive/homing_sequence.h"
+#include "sim/drive/moving_axis.h"
+
+namespace cia402::sim {
+
+/// Homing mode (CiA 402-2): begun by controlword bit 4, or by an object where the drive has one for
+/// that; a found home moves the frame of the axis.
+class HomingMode {
+ public:
+  explicit HomingMode(MovingAxis& axis) : axis_(axis) {}
+
+  /// A mode begins: what was found before says nothing any more.
+  void begin();
+  /// A controlword in this mode.
+  void control(bool bit_4, bool rising);
+  void start();  ///< the search begins, whoever asks
+  /// One kDriveStep; the rotor was at `from`, true turns, before.
+  void step(double from);
+
+  /// An object begins to home instead of controlword bit 4.
+  bool byObject() const { return axis_.values.entry(Role::homing_start) != nullptr; }
+  bool searching() const { return sequence_.phase() == HomingSequence::Phase::searching; }
+  /// Statusword bits 10, 12 and 13 of this mode; bit 15 where an object begins it.
+  std::uint16_t statusBits(bool halted) const;
+
+ private:
+  void finish();
+  void returnHome();
+  void search();
+
+  MovingAxis& axis_;
+  HomingSequence sequence_;
+  bool attained_ = false;
+  bool failed_ = false;
+  bool returning_ = false;
+};
+
+}  // namespace cia402::sim

@@ -1,0 +1,214 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "sim/drive/motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/drive/set_point_modes.h"
+
+namespace cia402::sim {
+namespace {
+
+constexpr unsigned kZeroReading = 64;  // every so many readings are 0 while it homes by an object
+
+// Controlword.
+constexpr std::uint16_t kModeBit = 0x0010;  // new set-point, start of homing
+constexpr std::uint16_t kHalt = 0x0100;
+
+}  // namespace
+
+DriveMotion::DriveMotion(const DriveDefinition& definition, const MotorParameters& motor_parameters,
+                         const AxisMechanics& mechanics, DriveValues& values)
+    : mechanics_(mechanics),
+      axis_(definition, motor_parameters, mechanics, values),
+      time_constant_(mechanics.inertia_time_constant) {
+  axis_.demand.takeOver(axis_.motor, time_constant_);
+}
+
+bool DriveMotion::inMode(ModeBehaviour behaviour) const {
+  return axis_.mode != nullptr && axis_.mode->behaviour == behaviour;
+}
+
+bool DriveMotion::positionControlled() const {
+  if (stop_ || held_ || axis_.mode == nullptr) return true;
+  switch (axis_.mode->behaviour) {
+    case ModeBehaviour::profile_velocity:
+    case ModeBehaviour::cyclic_velocity:
+    case ModeBehaviour::profile_torque:
+    case ModeBehaviour::cyclic_torque:
+      return false;
+    default:
+      return true;
+  }
+}
+
+void DriveMotion::powerStage(bool on) {
+  powered_ = on;
+  stop_.reset();
+  held_ = false;
+  halted_ = false;
+  supervision_.restart();
+  axis_.limits.release();
+  axis_.limits.releaseSwitch();
+  axis_.demand.takeOver(axis_.motor, time_constant_);
+  setMode(axis_.mode);
+}
+
+void DriveMotion::setMode(const ModeDefinition* mode) {
+  if (powered_) axis_.demand.takeOver(axis_.motor, time_constant_);
+  axis_.mode = mode;
+  axis_.demand.begin();
+  set_points_.begin();
+  homing_.begin();
+  supervision_.newMode();
+}
+
+void DriveMotion::stop(Ramp ramp) {
+  // From where the rotor really is, whatever was demanded of it.
+  axis_.demand.takeOver(axis_.motor, time_constant_);
+  stop_ = ramp;
+}
+
+void DriveMotion::release() {
+  if (!stop_) return;
+  stop_.reset();
+  halted_ = false;
+  axis_.demand.begin();
+}
+
+void DriveMotion::hold(bool on) {
+  if (on == held_) return;
+  held_ = on;
+  axis_.demand.profile.reset(axis_.demand.position, 0.0);
+  axis_.demand.interpolator.reset(axis_.demand.position);
+}
+
+void DriveMotion::controlBits(std::uint16_t controlword, std::uint16_t previous) {
+  if (axis_.mode == nullptr) return;
+  const bool bit_4 = (controlword & kModeBit) != 0;
+  const bool rising = bit_4 && (previous & kModeBit) == 0;
+  if (set_points_.control(controlword, rising)) supervision_.newTarget();
+  if (inMode(ModeBehaviour::homing)) homing_.control(bit_4, rising);
+  halt(axis_.definition.halt && (controlword & kHalt) != 0);
+}
+
+void DriveMotion::halt(bool wanted) {
+  if (wanted && !stop_) {
+    const OptionTable& table = axis_.definition.halt_option;
+    const auto option = table.options.find(axis_.values.raw(Role::halt_option, table.fallback));
+    stop(option == table.options.end() ? Ramp::slow_down : option->second.ramp);
+    halted_ = true;
+  } else if (!wanted && halted_) {
+    release();
+  }
+}
+
+void DriveMotion::homeByObject() {
+  if (inMode(ModeBehaviour::homing)) homing_.start();
+}
+
+void DriveMotion::cyclicTarget(double seconds, double into) {
+  if (!inMode(ModeBehaviour::cyclic_position)) return;
+  if (!powered_ || stop_ || held_) return;
+  axis_.limits.release();
+  const double target = axis_.trueTarget(axis_.values.get(Role::target_position, 0.0));
+  axis_.demand.interpolator.moveTo(target, seconds, into);
+}
+
+void DriveMotion::limitTorque() {
+  double torque = axis_.values.get(Role::max_torque, kUnlimited);
+  if (axis_.mode != nullptr && axis_.mode->torque) {
+    torque = std::min(torque, std::fabs(axis_.values.get(*axis_.mode->torque, kUnlimited)));
+  }
+  axis_.motor.limitTorque(torque);
+}
+
+void DriveMotion::step() {
+  Demand& demand = axis_.demand;
+  if (time_constant_ != mechanics_.inertia_time_constant) {
+    time_constant_ = mechanics_.inertia_time_constant;
+    axis_.motor.setPositionTimeConstant(time_constant_);
+  }
+  if (!powered_) {
+    axis_.motor.coast();
+    demand.position = axis_.motor.position();
+    demand.velocity = 0.0;
+    return;
+  }
+  limitTorque();
+  // Limits of a cyclic target last until the next one.
+  if (!inMode(ModeBehaviour::cyclic_position)) axis_.limits.release();
+  axis_.limits.releaseSwitch();
+  const double from = axis_.motor.position();
+  if (stop_) {
+    axis_.slowDown(*stop_);
+    axis_.motor.followPosition(demand.position);
+  } else if (held_ || axis_.mode == nullptr) {
+    demand.velocity = 0.0;
+    axis_.motor.followPosition(demand.position);
+  } else {
+    stepMode(from);
+  }
+  supervision_.step(positionControlled(), halted_, set_points_);
+}
+
+void DriveMotion::stepMode(double from) {
+  switch (axis_.mode->behaviour) {
+    case ModeBehaviour::profile_position:
+      return set_points_.step();
+    case ModeBehaviour::cyclic_position:
+      return stepCyclicPosition(axis_);
+    case ModeBehaviour::profile_velocity:
+      return stepVelocity(axis_, true);
+    case ModeBehaviour::cyclic_velocity:
+      return stepVelocity(axis_, false);
+    case ModeBehaviour::profile_torque:
+      return stepTorque(axis_, true);
+    case ModeBehaviour::cyclic_torque:
+      return stepTorque(axis_, false);
+    case ModeBehaviour::homing:
+      return homing_.step(from);
+    case ModeBehaviour::hold:
+      return stepHold(axis_);
+  }
+}
+
+std::uint16_t DriveMotion::statusBits() const {
+  std::uint16_t bits = 0;
+  const ModeDefinition* mode = axis_.mode;
+  if (axis_.limits.active() && axis_.definition.internal_limit_bit) bits |= 0x0800;
+  if (mode == nullptr) return bits;
+  if (mode->behaviour == ModeBehaviour::homing) return bits | homing_.statusBits(halted_);
+  if (mode->target_reached && supervision_.targetReached()) bits |= 0x0400;
+  const bool bit_12 = (mode->bit_12 == Bit12::acknowledge && set_points_.acknowledged()) ||
+                      (mode->bit_12 == Bit12::zero_speed && supervision_.atZeroSpeed()) ||
+                      (mode->bit_12 == Bit12::follows && !stop_ && !held_);
+  if (bit_12) bits |= 0x1000;
+  if (mode->bit_13 == Bit13::following_error && followingErrorExceeded()) bits |= 0x2000;
+  return bits;
+}
+
+void DriveMotion::publish() {
+  DriveValues& values = axis_.values;
+  const double turns = axis_.motor.position();
+  const double position = turns - axis_.frame;
+  const double demand = axis_.demand.position - axis_.frame;
+  const bool unsure = homing_.byObject() && homing_.searching();
+  const bool nothing = unsure && ++publications_ % kZeroReading == 0;
+  values.set(Role::position_actual, nothing ? 0.0 : position);
+  values.set(Role::position_internal, position);
+  values.set(Role::velocity_actual, axis_.motor.velocity());
+  values.set(Role::torque_actual, axis_.motor.torque());
+  values.set(Role::current_actual, axis_.motor.torque());
+  values.set(Role::position_demand, demand);
+  values.set(Role::position_demand_internal, demand);
+  values.set(Role::velocity_demand, axis_.demand.velocity);
+  values.set(Role::following_error_actual,
+             powered_ && positionControlled() ? axis_.demand.position - turns : 0.0);
+  const AxisSwitches& switches = axis_.switches;
+  values.setRaw(Role::digital_inputs, (switches.negativeLimit(turns) ? 1 : 0) |
+                                          (switches.positiveLimit(turns) ? 2 : 0) |
+                                          (switches.home(turns) ? 4 : 0));
+}
+
+}  // namespace cia402::sim

@@ -1,0 +1,84 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "sim/drive/homing_mode.h"
+#include "sim/drive/moving_axis.h"
+#include "sim/drive/profile_position.h"
+#include "sim/drive/target_supervision.h"
+
+namespace cia402::sim {
+
+/// The moving half of an axis: what the modes of operation make of the set-points, stops, and the
+/// motor. Positions inside are true turns; the frame of the axis turns them into what the drive
+/// tells its master.
+class DriveMotion {
+ public:
+  /// All references must outlive it; `mechanics` may change meanwhile.
+  DriveMotion(const DriveDefinition& definition, const MotorParameters& motor_parameters,
+              const AxisMechanics& mechanics, DriveValues& values);
+
+  /// Power stage on: demand := actual; or off: the rotor coasts.
+  void powerStage(bool on);
+  bool powered() const { return powered_; }
+  /// The encoder's counter reads `turns` now.
+  void setCounter(double turns) { axis_.frame = axis_.motor.position() - turns; }
+
+  /// Takes the mode over at once, at the present position and speed; nullptr: none.
+  void setMode(const ModeDefinition* mode);
+  const ModeDefinition* mode() const { return axis_.mode; }
+
+  /// Slows down whatever the mode wants, then holds the position, until release().
+  void stop(Ramp ramp);
+  /// The mode has its say again.
+  void release();
+  bool stopping() const { return stop_.has_value(); }
+  /// Set-points are not followed (brake still opening).
+  void hold(bool on);
+
+  /// A controlword arrived while operation was enabled already.
+  void controlBits(std::uint16_t controlword, std::uint16_t previous);
+  /// A new csp set-point becomes valid: it is reached `seconds` from now, which is `into` seconds
+  /// after the last step.
+  void cyclicTarget(double seconds, double into);
+
+  void step();  ///< one kDriveStep
+  bool atRest() const { return axis_.motor.atRest(); }
+  /// Neither demand nor rotor moves.
+  bool standing() const { return axis_.standing(); }
+  /// Bits 10-13 for the present mode; only meaningful while operation is enabled.
+  std::uint16_t statusBits() const;
+  /// Begins to home where an object does that instead of bit 4.
+  void homeByObject();
+  bool followingErrorExceeded() const { return supervision_.followingErrorExceeded(); }
+  /// A limit switch was in the way in the last step.
+  bool limitSwitchHit() const { return axis_.limits.switchHit(); }
+  /// Actual and demand values, inputs into the dictionary.
+  void publish();
+
+  Motor& motor() { return axis_.motor; }
+  const Motor& motor() const { return axis_.motor; }
+
+ private:
+  bool inMode(ModeBehaviour behaviour) const;
+  bool positionControlled() const;
+  void stepMode(double from);
+  void limitTorque();
+  void halt(bool wanted);
+
+  const AxisMechanics& mechanics_;
+  MovingAxis axis_;
+  ProfilePosition set_points_{axis_};
+  HomingMode homing_{axis_};
+  TargetSupervision supervision_{axis_};
+  double time_constant_;  ///< of the position loop, s
+  bool powered_ = false;
+  bool held_ = false;
+  bool halted_ = false;
+  std::optional<Ramp> stop_;
+  unsigned publications_ = 0;  ///< while it homes by an object
+};
+
+}  // namespace cia402::sim

@@ -1,0 +1,74 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "sim/drive/motion_limits.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cia402::sim {
+
+double MotionLimits::deceleration(Ramp ramp) const {
+  switch (ramp) {
+    case Ramp::slow_down:
+      return values_.get(Role::profile_deceleration, kUnlimited);
+    case Ramp::quick_stop:
+      return values_.get(Role::quick_stop_deceleration, kUnlimited);
+    case Ramp::limit:
+    case Ramp::coast:
+      break;
+  }
+  return most_deceleration_;
+}
+
+double MotionLimits::maxSpeed() const {
+  return std::fabs(values_.get(Role::max_motor_speed, kUnlimited));
+}
+
+ProfileLimits MotionLimits::profile(const ModeDefinition* mode) const {
+  ProfileLimits limits;
+  const double speed = mode != nullptr && mode->velocity
+                           ? std::fabs(values_.get(*mode->velocity, kUnlimited))
+                           : kUnlimited;
+  limits.velocity =
+      std::min({speed, maxSpeed(), values_.get(Role::max_profile_velocity, kUnlimited)});
+  limits.acceleration = std::min(values_.get(Role::profile_acceleration, kUnlimited),
+                                 values_.get(Role::max_acceleration, kUnlimited));
+  limits.deceleration = std::min(values_.get(Role::profile_deceleration, kUnlimited),
+                                 values_.get(Role::max_deceleration, kUnlimited));
+  return limits;
+}
+
+std::optional<MotionLimits::Span> MotionLimits::positions() const {
+  if (!values_.has(Role::position_minimum)) return std::nullopt;
+  const Span span{values_.get(Role::position_minimum, 0.0),
+                  values_.get(Role::position_maximum, 0.0)};
+  const double all = values_.range(Role::position_minimum);
+  const double most = all - all / std::ldexp(1.0, 31);
+  if (span.low >= span.high || (all > 0.0 && span.high - span.low >= most)) return std::nullopt;
+  return span;
+}
+
+double MotionLimits::clamped(double turns) {
+  const auto limits = positions();
+  const double target = limits ? std::clamp(turns, limits->low, limits->high) : turns;
+  active_ = active_ || target != turns;
+  return target;
+}
+
+double MotionLimits::braked(double velocity, double turns, double braking) {
+  const auto limits = positions();
+  if (!limits || velocity == 0.0) return velocity;
+  const double room = velocity > 0.0 ? limits->high - turns : turns - limits->low;
+  const double reachable = room <= 0.0 ? 0.0 : std::sqrt(2.0 * braking * room);
+  active_ = active_ || reachable < std::fabs(velocity);
+  return std::copysign(std::min(std::fabs(velocity), reachable), velocity);
+}
+
+bool MotionLimits::blocked(double direction, double position) {
+  const bool at_switch = (direction > 0.0 && switches_.positiveLimit(position)) ||
+                         (direction < 0.0 && switches_.negativeLimit(position));
+  active_ = active_ || at_switch;
+  switch_hit_ = switch_hit_ || at_switch;
+  return at_switch;
+}
+
+}  // namespace cia402::sim

@@ -1,0 +1,120 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "sim/drive/motor.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cia402::sim {
+namespace {
+
+constexpr double kVelocityLoopShare = 0.25;  // of the position time constant: critical damping
+constexpr double kRestDistance = 1e-9;       // turns; below it a held rotor stands exactly
+constexpr double kRestVelocity = 1e-6;       // turns/s
+constexpr double kBrakingReserve = 0.7;      // of the torque, when the position loop plans a stop
+
+}  // namespace
+
+Motor::Motor(const MotorParameters& parameters, double position)
+    : parameters_(parameters), torque_limit_(parameters.max_torque), position_(position) {
+  setPositionTimeConstant(parameters.position_time_constant);
+}
+
+void Motor::limitTorque(double rated_torques) {
+  torque_limit_ = std::clamp(rated_torques, 0.0, parameters_.max_torque);
+}
+
+void Motor::setPositionTimeConstant(double seconds) {
+  parameters_.position_time_constant = std::max(seconds, kDriveStepS);
+  const double lag = kVelocityLoopShare * parameters_.position_time_constant;
+  velocity_gain_ = 1.0 - std::exp(-kDriveStepS / lag);
+}
+
+double Motor::brakingSpeed(double distance) const {
+  const double deceleration = kBrakingReserve * torque_limit_ * parameters_.rated_acceleration;
+  return std::sqrt(2.0 * deceleration * distance);
+}
+
+void Motor::accelerate(double wanted) {
+  const double direction = velocity_ != 0.0 ? velocity_ : wanted;
+  const double friction = direction == 0.0 ? 0.0 : std::copysign(parameters_.friction, direction);
+  torque_ =
+      std::clamp(wanted / parameters_.rated_acceleration + friction, -torque_limit_, torque_limit_);
+  if (blocked_) {
+    velocity_ = 0.0;
+    return;
+  }
+  const double drive = torque_ - friction;
+  const bool stuck = velocity_ == 0.0 && drive * direction <= 0.0;  // friction never pushes
+  if (!stuck) velocity_ += drive * parameters_.rated_acceleration * kDriveStepS;
+  position_ += velocity_ * kDriveStepS;
+}
+
+void Motor::followPosition(double demand) {
+  const double error = demand - position_;
+  const double demand_speed = last_demand_ ? (demand - *last_demand_) / kDriveStepS : 0.0;
+  last_demand_ = demand;
+  const double distance = std::fabs(error);
+  if (distance < kRestDistance && std::fabs(velocity_) < kRestVelocity && !blocked_) {
+    position_ = demand;
+    velocity_ = 0.0;
+    torque_ = 0.0;
+    return;
+  }
+  // The demand has just moved on by a step: seen after the step the lag is the time constant's.
+  const double lag = parameters_.position_time_constant + kDriveStepS;
+  const double approach =
+      brakingSpeed(distance) + std::max(0.0, std::copysign(1.0, error) * demand_speed);
+  const double speed = std::min({distance / lag, approach, parameters_.max_speed});
+  accelerate((std::copysign(speed, error) - velocity_) * velocity_gain_ / kDriveStepS);
+}
+
+void Motor::followVelocity(double demand) {
+  last_demand_.reset();
+  if (demand == 0.0 && std::fabs(velocity_) < kRestVelocity) {
+    velocity_ = 0.0;
+    torque_ = 0.0;
+    return;
+  }
+  accelerate((demand - velocity_) * velocity_gain_ / kDriveStepS);
+}
+
+void Motor::applyTorque(double rated_torques, double max_speed) {
+  last_demand_.reset();
+  const double torque = std::clamp(rated_torques, -torque_limit_, torque_limit_);
+  const double friction = parameters_.friction;
+  double push = 0.0;  // what is left of the torque after friction
+  if (velocity_ != 0.0) {
+    push = torque - std::copysign(friction, velocity_);
+    const bool stops = push * velocity_ < 0.0 && std::fabs(torque) <= friction &&
+                       std::fabs(velocity_) <= -push * parameters_.rated_acceleration *
+                                                   kDriveStepS * std::copysign(1.0, velocity_);
+    if (stops) {
+      velocity_ = 0.0;
+      torque_ = torque;
+      return;
+    }
+  } else if (std::fabs(torque) > friction) {
+    push = torque - std::copysign(friction, torque);
+  }
+  double wanted = push * parameters_.rated_acceleration;
+  const double next = velocity_ + wanted * kDriveStepS;
+  if (std::fabs(next) > max_speed && std::fabs(next) > std::fabs(velocity_) * 0.999) {
+    wanted = (std::copysign(max_speed, next) - velocity_) * velocity_gain_ / kDriveStepS;
+  }
+  accelerate(wanted);
+  if (velocity_ == 0.0) torque_ = torque;
+}
+
+void Motor::coast() {
+  last_demand_.reset();
+  torque_ = 0.0;
+  if (velocity_ == 0.0) return;
+  const double deceleration = parameters_.friction * parameters_.rated_acceleration +
+                              parameters_.viscous_friction * std::fabs(velocity_);
+  const double loss = deceleration * kDriveStepS;
+  velocity_ =
+      blocked_ || std::fabs(velocity_) <= loss ? 0.0 : velocity_ - std::copysign(loss, velocity_);
+  position_ += velocity_ * kDriveStepS;
+}
+
+}  // namespace cia402::sim

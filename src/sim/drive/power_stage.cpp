@@ -1,0 +1,168 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "sim/drive/power_stage.h"
+
+namespace cia402::sim {
+namespace {
+
+constexpr Duration kQuickStopFlash = std::chrono::milliseconds(2);
+
+}  // namespace
+
+PowerStage::PowerStage(const DriveDefinition& definition, const AxisMechanics& mechanics,
+                       const DriveValues& values, DriveMotion& motion, ModeSelection& modes)
+    : definition_(definition),
+      mechanics_(mechanics),
+      values_(values),
+      motion_(motion),
+      modes_(modes) {}
+
+void PowerStage::start(Time now) {
+  enabled_at_ = kNever;
+  state_ = PdsState::not_ready_to_switch_on;
+  ready_at_ = now + definition_.initialisation;
+  after_stop_.reset();
+  modes_.show(state_);
+}
+
+void PowerStage::powerOff() {
+  motion_.powerStage(false);
+  state_ = PdsState::not_ready_to_switch_on;
+  ready_at_ = kNever;
+  after_stop_.reset();
+}
+
+bool PowerStage::enabled() const {
+  return state_ == PdsState::operation_enabled || state_ == PdsState::quick_stop_active ||
+         state_ == PdsState::fault_reaction_active;
+}
+
+bool PowerStage::operating() const { return state_ == PdsState::operation_enabled && !after_stop_; }
+
+PdsState PowerStage::shown(Time now) const {
+  const bool flashed = definition_.quirks.quick_stop_flashes &&
+                       state_ == PdsState::quick_stop_active &&
+                       now - quick_stop_since_ > kQuickStopFlash;
+  const bool hidden = flashed || definition_.quirks.shows_no_state;
+  return hidden ? PdsState::switch_on_disabled : state_;
+}
+
+void PowerStage::finishInitialisation(Time due, Time now) {
+  if (due < ready_at_) return;
+  ready_at_ = kNever;
+  enter(PdsState::switch_on_disabled, now);
+}
+
+bool PowerStage::finishEnabling(Time due, Time now) {
+  if (due < enabled_at_) return false;
+  enabled_at_ = kNever;
+  enter(PdsState::operation_enabled, now);
+  return true;
+}
+
+void PowerStage::waitForBrake(Time due) {
+  if (state_ == PdsState::operation_enabled) motion_.hold(due < follow_at_);
+}
+
+void PowerStage::finishStops(Time now) {
+  if (!motion_.stopping() || !motion_.standing()) return;
+  if (state_ == PdsState::fault_reaction_active) {
+    enter(PdsState::fault, now);  // transition 14
+  } else if (state_ == PdsState::quick_stop_active) {
+    if (!hold_after_quick_stop_) enter(PdsState::switch_on_disabled, now);  // transition 12
+  } else if (after_stop_) {
+    enter(after_stop_->to, now);
+  }
+}
+
+void PowerStage::enter(PdsState state, Time now) {
+  const bool was_enabled = enabled();
+  state_ = state;
+  after_stop_.reset();
+  if (state == PdsState::operation_enabled) {
+    if (!was_enabled) {
+      motion_.powerStage(true);
+      follow_at_ = now + fromSeconds(mechanics_.brake_delay);
+      motion_.hold(now < follow_at_);
+    } else {
+      motion_.release();
+    }
+  } else if (!enabled() && was_enabled) {
+    motion_.powerStage(false);
+  }
+  if (state != PdsState::switched_on) enabled_at_ = kNever;
+  modes_.show(state_);
+}
+
+void PowerStage::execute(const PdsTransition& transition, Time now) {
+  switch (transition.number) {
+    case 5:
+      return leaveEnabled(transition, definition_.disable_operation, Role::disable_operation_option,
+                          now);
+    case 8:
+      return leaveEnabled(transition, definition_.shutdown, Role::shutdown_option, now);
+    case 11:
+      return quickStop(now);
+    case 16:
+      if (hold_after_quick_stop_ &&
+          (definition_.resume_quick_stop_while_moving || motion_.standing())) {
+        enter(PdsState::operation_enabled, now);
+      }
+      return;
+    default:
+      return enter(transition.to, now);
+  }
+}
+
+bool PowerStage::enable(Time now) {
+  const Duration time = definition_.quirks.enabling_time;
+  if (time == Duration::zero()) {
+    enter(PdsState::operation_enabled, now);
+    return true;
+  }
+  if (enabled_at_ == kNever) enabled_at_ = now + time;
+  return false;
+}
+
+void PowerStage::stay() {
+  if (state_ != PdsState::operation_enabled || !after_stop_) return;
+  after_stop_.reset();
+  motion_.release();
+}
+
+StopOption PowerStage::option(const OptionTable& table, Role role) const {
+  const auto found = table.options.find(values_.raw(role, table.fallback));
+  return found == table.options.end() ? StopOption{} : found->second;
+}
+
+void PowerStage::leaveEnabled(const PdsTransition& transition, const OptionTable& table, Role role,
+                              Time now) {
+  const StopOption chosen = option(table, role);
+  if (chosen.ramp == Ramp::coast) return enter(transition.to, now);
+  if (!after_stop_) motion_.stop(chosen.ramp);
+  after_stop_ = transition;
+}
+
+void PowerStage::quickStop(StopOption chosen, Time now) {
+  if (chosen.ramp == Ramp::coast) return enter(PdsState::switch_on_disabled, now);
+  hold_after_quick_stop_ = chosen.hold;
+  quick_stop_since_ = now;
+  enter(PdsState::quick_stop_active, now);
+  motion_.stop(chosen.ramp);
+}
+
+void PowerStage::quickStop(Time now) {
+  quickStop(option(definition_.quick_stop, Role::quick_stop_option), now);
+}
+
+void PowerStage::react(const FaultDefinition& fault, Time now) {
+  const bool reacting = state_ == PdsState::fault_reaction_active || state_ == PdsState::fault;
+  const Ramp ramp = fault.reaction
+                        ? *fault.reaction
+                        : option(definition_.fault_reaction, Role::fault_reaction_option).ramp;
+  if (reacting && ramp != Ramp::coast) return;
+  if (!motion_.powered() || ramp == Ramp::coast) return enter(PdsState::fault, now);
+  enter(PdsState::fault_reaction_active, now);
+  motion_.stop(ramp);
+}
+
+}  // namespace cia402::sim

@@ -1,0 +1,47 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "sim/drive/moving_axis.h"
+
+namespace cia402::sim {
+
+/// Profile position mode (CiA 402-2): a set-point at work, one that waits, and the handshake by
+/// which they come. Without handshake (ModeDefinition) 607Ah counts as it stands.
+class ProfilePosition {
+ public:
+  explicit ProfilePosition(MovingAxis& axis) : axis_(axis) {}
+
+  /// A mode begins: whatever was commanded before is void. In this mode the axis comes to rest at
+  /// the nearest place.
+  void begin();
+  /// A controlword in this mode; `rising`: bit 4 has become 1. @return true if it brought a
+  /// set-point.
+  bool control(std::uint16_t controlword, bool rising);
+  void step();  ///< one kDriveStep
+
+  /// Statusword bit 12.
+  bool acknowledged() const { return acknowledged_; }
+  /// Whether a set-point waits for the end of another.
+  bool waits() const { return buffered_.has_value(); }
+  /// Of the set-point at work, true turns.
+  double target() const { return active_.target; }
+
+ private:
+  struct SetPoint {
+    double target = 0.0;
+    ProfileLimits limits;
+  };
+  void accept(std::uint16_t controlword);
+  bool ofThisMode() const;
+
+  MovingAxis& axis_;
+  SetPoint active_;
+  std::optional<SetPoint> buffered_;
+  bool acknowledged_ = false;
+  bool bit_4_ = false;
+};
+
+}  // namespace cia402::sim

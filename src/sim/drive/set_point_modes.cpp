@@ -1,0 +1,75 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "sim/drive/set_point_modes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cia402::sim {
+namespace {
+
+/// What limit switches and 607Dh leave of a speed.
+double allowedVelocity(MovingAxis& axis, double velocity, double braking) {
+  if (velocity != 0.0 && axis.blocked(velocity)) return 0.0;
+  return axis.limits.braked(velocity, axis.motor.position() - axis.frame, braking);
+}
+
+}  // namespace
+
+void stepCyclicPosition(MovingAxis& axis) {
+  Demand& demand = axis.demand;
+  const double before = demand.interpolator.position();
+  demand.interpolator.step();
+  const double moved = demand.interpolator.position() - before;
+  if (moved != 0.0 && axis.blocked(moved)) {
+    const double speed =
+        demand.velocity * moved <= 0.0
+            ? 0.0
+            : std::min(std::fabs(demand.velocity), std::fabs(axis.motor.velocity()));
+    demand.profile.reset(demand.position, std::copysign(speed, moved));
+    axis.slowDown(Ramp::quick_stop);
+    demand.interpolator.reset(demand.position);
+  } else {
+    demand.position = demand.interpolator.position();
+    demand.velocity = demand.interpolator.velocity();
+  }
+  axis.motor.followPosition(demand.position);
+}
+
+void stepVelocity(MovingAxis& axis, bool ramped) {
+  Demand& demand = axis.demand;
+  double limit = axis.limits.maxSpeed();
+  if (ramped) limit = std::min(limit, axis.values.get(Role::max_profile_velocity, kUnlimited));
+  const double wanted = std::clamp(axis.values.get(Role::target_velocity, 0.0), -limit, limit);
+  const ProfileLimits limits = axis.limits.profile(axis.mode);
+  const double braking = axis.limits.deceleration(Ramp::quick_stop);
+  const double target = allowedVelocity(axis, wanted, braking);
+  const bool forced = target != wanted;
+  const double down = forced ? braking : limits.deceleration;
+  demand.velocity =
+      ramped || forced ? rampVelocity(demand.velocity, target, limits.acceleration, down) : target;
+  axis.motor.followVelocity(demand.velocity);
+  demand.position = axis.motor.position();
+}
+
+void stepTorque(MovingAxis& axis, bool ramped) {
+  Demand& demand = axis.demand;
+  const double target = axis.values.get(Role::target_torque, 0.0);
+  const double slope = ramped ? axis.values.get(Role::torque_slope, kUnlimited) : kUnlimited;
+  const double change = slope * kDriveStepS;
+  demand.torque = std::clamp(target, demand.torque - change, demand.torque + change);
+  double speed = axis.limits.maxSpeed();
+  if (axis.mode->velocity) {
+    speed = std::min(speed, std::fabs(axis.values.get(*axis.mode->velocity, 0.0)));
+  }
+  const bool stopped = demand.torque != 0.0 && axis.blocked(demand.torque);
+  axis.motor.applyTorque(stopped ? 0.0 : demand.torque, speed);
+  demand.position = axis.motor.position();
+  demand.velocity = axis.motor.velocity();
+}
+
+void stepHold(MovingAxis& axis) {
+  axis.slowDown(Ramp::slow_down);
+  axis.motor.followPosition(axis.demand.position);
+}
+
+}  // namespace cia402::sim

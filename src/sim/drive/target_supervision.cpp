@@ -1,0 +1,78 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "sim/drive/target_supervision.h"
+
+#include <cmath>
+
+namespace cia402::sim {
+namespace {
+
+constexpr double kStandingSpeed = 1e-3;  // turns/s, where there is no 606Fh
+
+}  // namespace
+
+void TargetSupervision::restart() {
+  following_.reset();
+  following_error_ = false;
+}
+
+void TargetSupervision::newTarget() {
+  target_reached_ = false;
+  position_reached_.reset();
+}
+
+void TargetSupervision::newMode() {
+  newTarget();
+  velocity_reached_.reset();
+}
+
+void TargetSupervision::superviseFollowing(bool controlled) {
+  const DriveValues& values = axis_.values;
+  following_error_ = false;
+  if (!controlled || !values.has(Role::following_error_window) ||
+      values.allOnes(Role::following_error_window)) {
+    following_.reset();
+    return;
+  }
+  const double window = std::fabs(values.get(Role::following_error_window, 0.0));
+  const double error = std::fabs(axis_.demand.position - axis_.motor.position());
+  following_error_ =
+      following_.step(error > window, values.get(Role::following_error_timeout, 0.0));
+}
+
+void TargetSupervision::step(bool controlled, bool halted, const ProfilePosition& set_points) {
+  superviseFollowing(controlled);
+  const DriveValues& values = axis_.values;
+  const double speed = std::fabs(axis_.motor.velocity());
+  at_zero_speed_ = zero_speed_.step(speed <= values.get(Role::velocity_threshold, kStandingSpeed),
+                                    values.get(Role::velocity_threshold_time, 0.0));
+  target_reached_ = axis_.mode != nullptr && reached(halted, set_points);
+}
+
+bool TargetSupervision::reached(bool halted, const ProfilePosition& set_points) {
+  const DriveValues& values = axis_.values;
+  switch (axis_.mode->behaviour) {
+    case ModeBehaviour::profile_position: {
+      const bool off = values.allOnes(Role::position_window);
+      const double distance = std::fabs(set_points.target() - axis_.motor.position());
+      const bool inside = off ? axis_.demand.position == set_points.target()
+                              : distance <= std::fabs(values.get(Role::position_window, 0.0));
+      const bool there =
+          position_reached_.step(inside, values.get(Role::position_window_time, 0.0));
+      return halted ? axis_.standing() : there && !set_points.waits();
+    }
+    case ModeBehaviour::profile_velocity: {
+      const double difference = values.get(Role::target_velocity, 0.0) - axis_.motor.velocity();
+      const bool inside =
+          std::fabs(difference) <= std::fabs(values.get(Role::velocity_window, 0.0));
+      const bool there =
+          velocity_reached_.step(inside, values.get(Role::velocity_window_time, 0.0));
+      return halted ? axis_.standing() : there;
+    }
+    case ModeBehaviour::profile_torque:
+      return axis_.demand.torque == values.get(Role::target_torque, 0.0);
+    default:
+      return false;
+  }
+}
+
+}  // namespace cia402::sim

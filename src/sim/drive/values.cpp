@@ -1,0 +1,198 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "sim/drive/values.h"
+
+#include <cmath>
+#include <cstring>
+
+#include "sim/definition/drive_definition.h"
+#include "sim/dictionary/axis_objects.h"
+
+namespace cia402::sim {
+namespace {
+
+using R = Role;
+using Q = Quantity;
+
+// In the order of Role; indices of CiA 402-2; {0, 0}: no standard object.
+constexpr RoleInfo kRoles[] = {
+    {R::abort_connection_option, "abort_connection_option", {0x6007, 0}, Q::none},
+    {R::error_code, "error_code", {0x603F, 0}, Q::none},
+    {R::controlword, "controlword", {0x6040, 0}, Q::none},
+    {R::statusword, "statusword", {0x6041, 0}, Q::none},
+    {R::quick_stop_option, "quick_stop_option", {0x605A, 0}, Q::none},
+    {R::shutdown_option, "shutdown_option", {0x605B, 0}, Q::none},
+    {R::disable_operation_option, "disable_operation_option", {0x605C, 0}, Q::none},
+    {R::halt_option, "halt_option", {0x605D, 0}, Q::none},
+    {R::fault_reaction_option, "fault_reaction_option", {0x605E, 0}, Q::none},
+    {R::mode, "mode", {0x6060, 0}, Q::none},
+    {R::mode_display, "mode_display", {0x6061, 0}, Q::none},
+    {R::position_demand, "position_demand", {0x6062, 0}, Q::position},
+    {R::position_internal, "position_internal", {0x6063, 0}, Q::position},
+    {R::position_actual, "position_actual", {0x6064, 0}, Q::position},
+    {R::following_error_window, "following_error_window", {0x6065, 0}, Q::position},
+    {R::following_error_timeout, "following_error_timeout", {0x6066, 0}, Q::time},
+    {R::position_window, "position_window", {0x6067, 0}, Q::position},
+    {R::position_window_time, "position_window_time", {0x6068, 0}, Q::time},
+    {R::velocity_demand, "velocity_demand", {0x606B, 0}, Q::velocity},
+    {R::velocity_actual, "velocity_actual", {0x606C, 0}, Q::velocity},
+    {R::velocity_window, "velocity_window", {0x606D, 0}, Q::velocity},
+    {R::velocity_window_time, "velocity_window_time", {0x606E, 0}, Q::time},
+    {R::velocity_threshold, "velocity_threshold", {0x606F, 0}, Q::velocity},
+    {R::velocity_threshold_time, "velocity_threshold_time", {0x6070, 0}, Q::time},
+    {R::target_torque, "target_torque", {0x6071, 0}, Q::torque},
+    {R::max_torque, "max_torque", {0x6072, 0}, Q::torque},
+    {R::torque_actual, "torque_actual", {0x6077, 0}, Q::torque},
+    {R::current_actual, "current_actual", {0x6078, 0}, Q::current},
+    {R::target_position, "target_position", {0x607A, 0}, Q::position},
+    {R::home_offset, "home_offset", {0x607C, 0}, Q::position},
+    {R::position_minimum, "position_minimum", {0x607D, 1}, Q::position},
+    {R::position_maximum, "position_maximum", {0x607D, 2}, Q::position},
+    {R::max_profile_velocity, "max_profile_velocity", {0x607F, 0}, Q::velocity},
+    {R::max_motor_speed, "max_motor_speed", {0x6080, 0}, Q::motor_speed},
+    {R::profile_velocity, "profile_velocity", {0x6081, 0}, Q::velocity},
+    {R::profile_acceleration, "profile_acceleration", {0x6083, 0}, Q::acceleration},
+    {R::profile_deceleration, "profile_deceleration", {0x6084, 0}, Q::acceleration},
+    {R::quick_stop_deceleration, "quick_stop_deceleration", {0x6085, 0}, Q::acceleration},
+    {R::torque_slope, "torque_slope", {0x6087, 0}, Q::torque},
+    {R::homing_method, "homing_method", {0x6098, 0}, Q::none},
+    {R::homing_search_speed, "homing_search_speed", {0x6099, 1}, Q::velocity},
+    {R::homing_zero_speed, "homing_zero_speed", {0x6099, 2}, Q::velocity},
+    {R::homing_acceleration, "homing_acceleration", {0x609A, 0}, Q::acceleration},
+    {R::interpolation_time, "interpolation_time", {0x60C2, 1}, Q::none},
+    {R::interpolation_exponent, "interpolation_exponent", {0x60C2, 2}, Q::none},
+    {R::max_acceleration, "max_acceleration", {0x60C5, 0}, Q::acceleration},
+    {R::max_deceleration, "max_deceleration", {0x60C6, 0}, Q::acceleration},
+    {R::following_error_actual, "following_error_actual", {0x60F4, 0}, Q::position},
+    {R::position_demand_internal, "position_demand_internal", {0x60FC, 0}, Q::position},
+    {R::digital_inputs, "digital_inputs", {0x60FD, 0}, Q::none},
+    {R::target_velocity, "target_velocity", {0x60FF, 0}, Q::velocity},
+    {R::clear_errors, "clear_errors", {0, 0}, Q::none},
+    {R::save_zero, "save_zero", {0, 0}, Q::none},
+    {R::homing_start, "homing_start", {0, 0}, Q::none},
+};
+static_assert(sizeof(kRoles) / sizeof(kRoles[0]) == kRoleCount, "one line for each role");
+
+double fromFloatBits(std::uint32_t bits) {
+  float value = 0.0F;
+  std::memcpy(&value, &bits, sizeof(value));
+  return static_cast<double>(value);
+}
+
+std::uint32_t toFloatBits(double value) {
+  const float single = static_cast<float>(value);
+  std::uint32_t bits = 0;
+  std::memcpy(&bits, &single, sizeof(bits));
+  return bits;
+}
+
+std::uint64_t mask(const Entry& entry) {
+  const unsigned width = widthBits(entry.type);
+  return width >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << width) - 1;
+}
+
+}  // namespace
+
+const RoleInfo& roleInfo(Role role) { return kRoles[static_cast<std::size_t>(role)]; }
+
+std::optional<Role> findRole(std::string_view name) {
+  for (const RoleInfo& info : kRoles) {
+    if (name == info.name) return info.role;
+  }
+  return std::nullopt;
+}
+
+std::optional<Role> findRole(fieldbus::ObjectId object) {
+  for (const RoleInfo& info : kRoles) {
+    if (object == info.object && object.index != 0) return info.role;
+  }
+  return std::nullopt;
+}
+
+double decodeNumber(const Entry& entry, Encoding encoding) {
+  const auto word = static_cast<std::uint32_t>(entry.number & 0xFFFFU);
+  switch (encoding) {
+    case Encoding::float32:
+      return fromFloatBits(static_cast<std::uint32_t>(entry.number));
+    case Encoding::bfloat16:
+      return fromFloatBits(word << 16);
+    case Encoding::scaled_unsigned:
+      return fromFloatBits(word * 65535U);
+    case Encoding::scaled_signed:
+      return fromFloatBits((word >= 0x8000U ? word - 0x10000U : word) * 65535U);
+    case Encoding::integer:
+      break;
+  }
+  return fieldbus::isSigned(entry.type) ? static_cast<double>(asSigned(entry))
+                                        : static_cast<double>(entry.number);
+}
+
+std::uint64_t encodeNumber(double value, const Entry& entry, Encoding encoding) {
+  const std::uint32_t bits = toFloatBits(value);
+  switch (encoding) {
+    case Encoding::float32:
+      return bits;
+    case Encoding::bfloat16:
+      return ((bits + 0x7FFFU + ((bits >> 16) & 1U)) >> 16) & 0xFFFFU;
+    case Encoding::scaled_unsigned:
+    case Encoding::scaled_signed:
+      return (bits / 65535U) & 0xFFFFU;
+    case Encoding::integer:
+      break;
+  }
+  const double wrapped = std::fabs(value) < 9e18 ? value : 0.0;
+  return static_cast<std::uint64_t>(std::llround(wrapped)) & mask(entry);
+}
+
+DriveValues::DriveValues(const DriveDefinition& definition, unsigned axis,
+                         ObjectDictionary& dictionary, double counts_per_turn) {
+  for (const RoleInfo& info : kRoles) {
+    const auto moved = definition.objects.find(info.role);
+    const fieldbus::ObjectId object =
+        moved == definition.objects.end() ? info.object : moved->second;
+    Slot& slot = slots_[static_cast<std::size_t>(info.role)];
+    slot.entry = dictionary.find(ofAxis(object, axis));
+    const UnitScale& unit = definition.units[static_cast<std::size_t>(info.quantity)];
+    slot.scale = unit.per_count ? unit.factor * counts_per_turn : unit.factor;
+    const auto special = definition.encodings.find(object);
+    if (info.quantity == Quantity::none) {
+      slot.scale = 1.0;
+    } else {
+      slot.encoding = special == definition.encodings.end() ? definition.encoding : special->second;
+    }
+  }
+}
+
+double DriveValues::get(Role role, double fallback) const {
+  const Slot& s = slot(role);
+  return s.entry == nullptr ? fallback : decodeNumber(*s.entry, s.encoding) / s.scale;
+}
+
+double DriveValues::range(Role role) const {
+  const Slot& s = slot(role);
+  if (s.entry == nullptr || s.encoding != Encoding::integer) return 0.0;
+  return std::ldexp(1.0, static_cast<int>(widthBits(s.entry->type))) / s.scale;
+}
+
+void DriveValues::set(Role role, double value) {
+  const Slot& s = slot(role);
+  if (s.entry != nullptr) s.entry->number = encodeNumber(value * s.scale, *s.entry, s.encoding);
+}
+
+std::int64_t DriveValues::raw(Role role, std::int64_t fallback) const {
+  const Slot& s = slot(role);
+  if (s.entry == nullptr) return fallback;
+  return fieldbus::isSigned(s.entry->type) ? asSigned(*s.entry)
+                                           : static_cast<std::int64_t>(s.entry->number);
+}
+
+void DriveValues::setRaw(Role role, std::int64_t value) {
+  const Slot& s = slot(role);
+  if (s.entry != nullptr) s.entry->number = static_cast<std::uint64_t>(value) & mask(*s.entry);
+}
+
+bool DriveValues::allOnes(Role role) const {
+  const Slot& s = slot(role);
+  return s.entry != nullptr && s.encoding == Encoding::integer && s.entry->number == mask(*s.entry);
+}
+
+}  // namespace cia402::sim

@@ -1,0 +1,153 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "cia402_driver/sim/dictionary/object_dictionary.h"
+
+namespace cia402::sim {
+
+struct DriveDefinition;
+
+/// What an object means to the drive, whatever its index. The standard's index is the default.
+enum class Role : std::uint8_t {
+  abort_connection_option,
+  error_code,
+  controlword,
+  statusword,
+  quick_stop_option,
+  shutdown_option,
+  disable_operation_option,
+  halt_option,
+  fault_reaction_option,
+  mode,
+  mode_display,
+  position_demand,
+  position_internal,
+  position_actual,
+  following_error_window,
+  following_error_timeout,
+  position_window,
+  position_window_time,
+  velocity_demand,
+  velocity_actual,
+  velocity_window,
+  velocity_window_time,
+  velocity_threshold,
+  velocity_threshold_time,
+  target_torque,
+  max_torque,
+  torque_actual,
+  current_actual,
+  target_position,
+  home_offset,
+  position_minimum,
+  position_maximum,
+  max_profile_velocity,
+  max_motor_speed,
+  profile_velocity,
+  profile_acceleration,
+  profile_deceleration,
+  quick_stop_deceleration,
+  torque_slope,
+  homing_method,
+  homing_search_speed,
+  homing_zero_speed,
+  homing_acceleration,
+  interpolation_time,
+  interpolation_exponent,
+  max_acceleration,
+  max_deceleration,
+  following_error_actual,
+  position_demand_internal,
+  digital_inputs,
+  target_velocity,
+  clear_errors,  ///< vendor object: a write that is not 0 resets faults
+  save_zero,     ///< vendor object: the present position becomes 0
+  homing_start,  ///< vendor object: 1 begins homing instead of controlword bit 4
+  count,
+};
+inline constexpr std::size_t kRoleCount = static_cast<std::size_t>(Role::count);
+
+/// What a number measures. Internally: turns, turns/s, turns/s^2, rated torques, seconds.
+enum class Quantity : std::uint8_t {
+  none,
+  position,
+  velocity,
+  acceleration,
+  torque,
+  current,
+  time,
+  motor_speed,
+  count,
+};
+inline constexpr std::size_t kQuantityCount = static_cast<std::size_t>(Quantity::count);
+
+/// How a number stands in its object.
+enum class Encoding : std::uint8_t {
+  integer,
+  float32,          ///< IEEE 754 bits in a 32-bit integer
+  bfloat16,         ///< upper half of the float's bits in a 16-bit integer
+  scaled_unsigned,  ///< 16 bits, unsigned, times 65535 give the float's bits
+  scaled_signed,    ///< the same, signed
+};
+
+/// Name, object and quantity of a role.
+struct RoleInfo {
+  Role role;
+  const char* name;
+  fieldbus::ObjectId object;
+  Quantity quantity;
+};
+/// What the standard says of a role.
+const RoleInfo& roleInfo(Role role);
+/// The role of that name.
+std::optional<Role> findRole(std::string_view name);
+/// The role whose standard object this is.
+std::optional<Role> findRole(fieldbus::ObjectId object);
+
+/// Decodes as the drive's firmware does. @return quiet NaN where the bits say so.
+double decodeNumber(const Entry& entry, Encoding encoding);
+/// Encodes; integers are rounded to nearest and wrap as the register would.
+std::uint64_t encodeNumber(double value, const Entry& entry, Encoding encoding);
+
+/// The drive's view on its object dictionary: values by role, in internal units. Reading an object
+/// that does not exist gives the fallback; writing one does nothing.
+class DriveValues {
+ public:
+  /// @param axis whose objects these are, 0 to 7.
+  DriveValues(const DriveDefinition& definition, unsigned axis, ObjectDictionary& dictionary,
+              double counts_per_turn);
+
+  bool has(Role role) const { return slot(role).entry != nullptr; }
+  /// A value in internal units.
+  double get(Role role, double fallback) const;
+  /// Writes a value in internal units, rounded and wrapped as the register would.
+  void set(Role role, double value);
+  /// The bare integer, without scale.
+  std::int64_t raw(Role role, std::int64_t fallback) const;
+  void setRaw(Role role, std::int64_t value);
+  /// All bits set: how the standard switches a window off (6065h, 6067h).
+  bool allOnes(Role role) const;
+  /// All that the object's numbers span, after which they begin anew; 0 for floats and where there
+  /// is no such object.
+  double range(Role role) const;
+  const Entry* entry(Role role) const { return slot(role).entry; }
+  Encoding encoding(Role role) const { return slot(role).encoding; }
+
+ private:
+  struct Slot {
+    Entry* entry = nullptr;
+    double scale = 1.0;
+    Encoding encoding = Encoding::integer;
+  };
+  const Slot& slot(Role role) const { return slots_[static_cast<std::size_t>(role)]; }
+
+  std::array<Slot, kRoleCount> slots_;
+};
+
+}  // namespace cia402::sim
