@@ -15,7 +15,7 @@ std::vector<AxisUnit> unitsOf(const config::RobotConfig& robot,
   std::vector<AxisUnit> units;
   units.reserve(robot.axes.size());
   for (std::size_t i = 0; i < robot.axes.size(); ++i) {
-    units.emplace_back(i, robot.axes[i], places[i], robot.bus.sync_period, events);
+    units.emplace_back(i, robot.axes[i], places[i], events);
   }
   return units;
 }
@@ -31,16 +31,11 @@ bool knownToStand(const drive::Axis& axis) {
 
 AxisCycle::AxisCycle(const config::RobotConfig& robot, const std::vector<AxisUnit::Place>& places,
                      BusSide& bus, EventSink& events)
-    : bus_(bus), events_(events), units_(unitsOf(robot, places, events)) {
+    : bus_(bus), events_(events), units_(unitsOf(robot, places, events)), joints_(units_) {
   for (const config::GroupConfig& group : robot.groups) {
-    std::vector<AxisUnit*> members;
-    for (const std::string& joint : group.joints) {
-      const auto unit = std::find_if(units_.begin(), units_.end(), [&](const AxisUnit& u) {
-        return u.axis.config().joint == joint;
-      });
-      members.push_back(&*unit);
-    }
-    groups_.emplace_back(group, std::move(members));
+    std::vector<Joint*> members;
+    for (const std::string& name : group.joints) members.push_back(joints_.find(name));
+    groups_.emplace_back(group, std::move(members), robot.bus.sync_period);
   }
 }
 
@@ -85,7 +80,10 @@ void AxisCycle::stopMotion(const std::string& why) {
   for (Group& group : groups_) {
     group.stop({motion::TrajectoryErrorCode::path_tolerance_violated, why});
   }
-  for (AxisUnit& unit : units_) unit.motion.stop(unit.axis);
+  for (AxisUnit& unit : units_) {
+    if (unit.axis.leader() == nullptr)
+      unit.axis.stopSetPoint();  // else its group brings it to rest
+  }
 }
 
 void AxisCycle::stopBesideCycle(const std::string& why, Time now) {

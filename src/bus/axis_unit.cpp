@@ -4,10 +4,9 @@
 namespace cia402::bus {
 
 AxisUnit::AxisUnit(std::size_t number, const drive::AxisConfig& config, const Place& place,
-                   Duration cycle, EventSink& events)
+                   EventSink& events)
     : index(number),
       axis(config, *place.device),
-      motion(config, cycle),
       reporter(number, place.who, config.profile, events),
       news(number, place.who, place.patience, events) {}
 

@@ -153,7 +153,7 @@ void FlightRecorder::observeAxis(const AxisUnit& unit, bool sample, Time now) {
   const drive::ProcedureStatus& procedure = axis.procedure();
   Watched& watched = watched_[index];
   if (procedure.running) observeStep(index, axis, now);
-  const std::uint8_t flags = flagsOf(state, procedure, !unit.motion.atRest());
+  const std::uint8_t flags = flagsOf(state, procedure, !axis.streamAtRest());
   const std::uint64_t signature = signatureOf(state, procedure, flags);
   if (signature != watched.signature) {
     watched.signature = signature;

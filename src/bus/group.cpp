@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "bus/words.h"
@@ -12,6 +13,7 @@ namespace {
 
 using motion::TrajectoryErrorCode;
 
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr double kArrived = 0.01;  // rad or m; "reached" where no goal tolerance is configured
 
 std::vector<motion::TrajectoryPoint> reorder(const std::vector<motion::TrajectoryPoint>& points,
@@ -30,29 +32,24 @@ std::vector<motion::TrajectoryPoint> reorder(const std::vector<motion::Trajector
   return ordered;
 }
 
-std::string switchAdvice(const drive::AxisConfig& axis) {
-  const drive::ModeSpec* mode = drive::trajectoryMode(axis);
-  return mode == nullptr ? "no mode that it can be in does"
-                         : "~" + axis.name + "/set_mode " + mode->name + " first";
+TrajectoryOutcome refused(TrajectoryErrorCode code, const std::string& why) {
+  return {code, why, TrajectoryEnd::refused, {}};
 }
 
 }  // namespace
 
-Group::Group(config::GroupConfig config, std::vector<AxisUnit*> axes)
+Group::Group(config::GroupConfig config, std::vector<Joint*> joints, Duration cycle)
     : config_(std::move(config)),
-      axes_(std::move(axes)),
-      clock_(axes_.empty() ? Duration(1) : axes_.front()->axis.config().sync_period),
-      commanded_(axes_.size()),
-      dropped_(axes_.size(), 0),
-      next_dropped_(axes_.size(), 0),
-      breaks_(axes_.size(), 0),
-      notices_(axes_.size(), 0) {
-  for (const AxisUnit* unit : axes_) {
-    const drive::AxisConfig& axis = unit->axis.config();
-    joints_.push_back(jointOf(axis));
-    names_.push_back(drive::jointName(axis));
-    accelerations_.push_back(drive::stopDeceleration(axis));
-    const auto tolerance = config_.tolerances.find(joints_.back().name);
+      joints_(std::move(joints)),
+      clock_(cycle),
+      commanded_(joints_.size()),
+      dropped_(joints_.size(), 0),
+      next_dropped_(joints_.size(), 0),
+      breaks_(joints_.size(), 0),
+      notices_(joints_.size(), 0) {
+  for (const Joint* joint : joints_) {
+    descriptions_.push_back(joint->description());
+    const auto tolerance = config_.tolerances.find(joint->name());
     tolerances_.push_back(tolerance == config_.tolerances.end() ? config::JointTolerance()
                                                                 : tolerance->second);
   }
@@ -60,43 +57,21 @@ Group::Group(config::GroupConfig config, std::vector<AxisUnit*> axes)
 
 std::string Group::refusal() const {
   std::string all;
-  for (const AxisUnit* unit : axes_) {
-    const std::string reason = refusalOf(*unit);
+  for (const Joint* joint : joints_) {
+    const std::string reason = joint->refusal(config_.name);
     if (!reason.empty()) append(all, reason);
   }
   return all;
 }
 
-std::string Group::refusalOf(const AxisUnit& unit) const {
-  const drive::Axis& axis = unit.axis;
-  std::string reason = axis.motionRefusal();
-  if (!reason.empty()) return reason;
-  const std::string who = drive::jointName(axis.config());
-  const drive::ModeSpec* mode = axis.state().mode;
-  if (mode == nullptr || !mode->cyclic || mode->kind != drive::ControlKind::position) {
-    return who + " is in mode " + (mode ? mode->name : "unknown") +
-           ", which does not follow trajectories: " + switchAdvice(axis.config());
-  }
-  const std::string* owner = unit.motion.owner();
-  if (owner != nullptr && owner != &config_.name) {
-    return who + " follows a trajectory of group " + *owner;
-  }
-  // In the cycle in which a trajectory has ended, the motion still knows the way to its goal only.
-  const bool rests = unit.motion.atRest() || axis.setPoint().atRest();
-  if (owner == nullptr && !rests) {
-    return who + " is still moved by streamed set-points: end the stream and let it come to rest";
-  }
-  return {};
-}
-
 std::vector<motion::MotionState> Group::commandedAt(Time time) const {
-  std::vector<motion::MotionState> states(axes_.size());
+  std::vector<motion::MotionState> states(joints_.size());
   // In the time of the clock, also where that lags: what comes next is given out by the same clock.
   const bool planned = phase_ == Phase::following;
   if (planned) trajectory_->sample(time, states);
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
     if (planned && dropped_[i] == 0) continue;
-    const auto sent = axes_[i]->axis.setPoint().expected(time - clock_.time());
+    const auto sent = joints_[i]->sent().expected(time - clock_.time());
     states[i] = {sent.position, sent.velocity, 0.0};
   }
   return states;
@@ -104,16 +79,17 @@ std::vector<motion::MotionState> Group::commandedAt(Time time) const {
 
 TrajectoryOutcome Group::start(const std::vector<std::string>& names,
                                const std::vector<motion::TrajectoryPoint>& points,
-                               std::optional<Time> start_time, Time now) {
+                               std::optional<Time> start_time, Time now, TrajectoryEnded ended) {
   if (points.empty()) {
     stop({TrajectoryErrorCode::successful, config_.name + ": stopped by an empty trajectory"});
     return {TrajectoryErrorCode::successful, config_.name + ": stopping"};
   }
-  const auto order = motion::matchJoints(joints_, names);
-  if (!order) return {TrajectoryErrorCode::invalid_joints, order.error().message};
+  const auto order = motion::matchJoints(descriptions_, names);
+  if (!order) return refused(TrajectoryErrorCode::invalid_joints, order.error().message);
   const std::string why_not = refusal();
   if (!why_not.empty()) {
-    return {TrajectoryErrorCode::invalid_goal, config_.name + ": trajectory refused: " + why_not};
+    return refused(TrajectoryErrorCode::invalid_goal,
+                   config_.name + ": trajectory refused: " + why_not);
   }
   if (phase_ == Phase::idle) {
     clock_.set(now);
@@ -123,38 +99,42 @@ TrajectoryOutcome Group::start(const std::vector<std::string>& names,
   start.now = clock_.time();
   if (start_time) start.start_time = clock_.at(*start_time, now);
   start.shortest_way = true;
-  auto trajectory = motion::Trajectory::create(joints_, commandedAt(start.begin()),
+  auto trajectory = motion::Trajectory::create(descriptions_, commandedAt(start.begin()),
                                                reorder(points, *order), start);
-  if (!trajectory) return {trajectory.error().code, trajectory.error().message};
+  if (!trajectory) return refused(trajectory.error().code, trajectory.error().message);
+  tell(next_ended_, replaced());
   next_ = std::move(trajectory).value();
+  next_ended_ = std::move(ended);
   std::fill(next_dropped_.begin(), next_dropped_.end(), std::uint8_t{0});
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
-    breaks_[i] = axes_[i]->axis.setPoint().breaks();
-    notices_[i] = axes_[i]->axis.noticeCount();
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    breaks_[i] = joints_[i]->sent().breaks();
+    notices_[i] = joints_[i]->noticeCount();
   }
   if (phase_ == Phase::idle) {
     showSent();
     beginNext(now);
   }
-  for (AxisUnit* unit : axes_) unit->motion.setOwner(&config_.name);
+  for (Joint* joint : joints_) joint->follow(&config_.name);
   return {TrajectoryErrorCode::successful, config_.name + ": trajectory accepted"};
 }
 
 void Group::beginNext(Time now) {
   began_ = now;
+  tell(ended_, replaced());
   trajectory_ = std::move(next_);
+  ended_ = std::exchange(next_ended_, nullptr);
   next_.reset();
   phase_ = Phase::following;
-  refused_ = nullptr;
+  refused_.reset();
   dropped_ = next_dropped_;
 }
 
 /// A joint that was not ready for a while, or whose set-points were ended by anything else (another
 /// zero of its positions, a motor that stands), is not where its trajectories were planned from.
 void Group::noteDropped() {
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
-    const drive::Axis& axis = axes_[i]->axis;
-    if (!axis.state().ready_for_motion || axis.setPoint().breaks() != breaks_[i]) {
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const Joint& joint = *joints_[i];
+    if (!joint.ready() || joint.sent().breaks() != breaks_[i]) {
       dropped_[i] = next_dropped_[i] = 1;
     }
   }
@@ -163,18 +143,31 @@ void Group::noteDropped() {
 void Group::stop(const TrajectoryOutcome& why) {
   if (!executing()) return;
   outcome_ = why;
+  outcome_.end = TrajectoryEnd::stopped;
   if (phase_ == Phase::following) beginStop();
   next_.reset();
+  tell(next_ended_, outcome_);
+}
+
+void Group::tell(TrajectoryEnded& ended, const TrajectoryOutcome& outcome) {
+  if (const TrajectoryEnded once = std::exchange(ended, nullptr)) once(outcome);
+}
+
+TrajectoryOutcome Group::replaced() const {
+  return {TrajectoryErrorCode::successful,
+          config_.name + ": replaced by a newer trajectory",
+          TrajectoryEnd::replaced,
+          {}};
 }
 
 void Group::beginStop() {
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
-    drive::Axis& axis = axes_[i]->axis;
-    if (dropped_[i] == 0) axis.stopSetPoint();
-    breaks_[i] = axis.setPoint().breaks();
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    if (dropped_[i] == 0) joints_[i]->stop();
+    breaks_[i] = joints_[i]->sent().breaks();
   }
   trajectory_.reset();
   next_.reset();
+  tell(next_ended_, outcome_);
   phase_ = Phase::stopping;
 }
 
@@ -184,9 +177,9 @@ double Group::permittedRise() const {
   constexpr double kLeast = 0.1;  // of the limit, where the trajectory takes all of it
   const double rate = clock_.rate();
   double rise = 1e9;
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
     const motion::MotionState state = trajectory_->sample(i, clock_.time());
-    const double limit = accelerations_[i];
+    const double limit = joints_[i]->stopDeceleration();
     const double left = limit - rate * rate * std::abs(state.acceleration);
     const double speed = std::max(std::abs(state.velocity), 1e-9);
     rise = std::min(rise, std::max(left, kLeast * limit) / speed);
@@ -202,7 +195,7 @@ void Group::advanceClock(Time now) {
   } else if (std::exchange(starts_, false)) {
     clock_.begin(now);
   } else {
-    clock_.cycle(now);
+    clock_.cycle(now, joints_.front()->late());
     clock_.advance(clock_.rate() == 1.0 ? 1.0 : permittedRise());
   }
 }
@@ -221,15 +214,15 @@ void Group::scaleCommanded() {
 }
 
 void Group::showSent() {
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
-    const drive::SetPoint& sent = axes_[i]->axis.setPoint();
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const drive::SetPoint& sent = joints_[i]->sent();
     commanded_[i] = {sent.value(), sent.velocity(), 0.0};
   }
 }
 
 bool Group::stands() const {
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
-    if (dropped_[i] == 0 && !axes_[i]->axis.setPoint().atRest()) return false;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    if (dropped_[i] == 0 && !joints_[i]->sent().atRest()) return false;
   }
   return true;
 }
@@ -237,8 +230,8 @@ bool Group::stands() const {
 /// The goal was sent already: given once more, the set-points are at rest there.
 bool Group::atGoal() const {
   if (!trajectory_->finished(clock_.time())) return false;
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
-    if (dropped_[i] == 0 && axes_[i]->axis.target() != trajectory_->goal()[i]) return false;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    if (dropped_[i] == 0 && joints_[i]->sent().value() != trajectory_->goal()[i]) return false;
   }
   return true;
 }
@@ -274,98 +267,104 @@ std::optional<TrajectoryOutcome> Group::step(Time now) {
 }
 
 void Group::sendSetpoints() {
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
     // An axis that fell out of operation holds or stops by itself; the others go on as configured.
     // Enabled again, it must not jump to where the trajectory is by now.
-    if (dropped_[i] == 0 && !axes_[i]->axis.setTarget(commanded_[i].position)) {
-      refused_ = &names_[i];
-    }
+    if (dropped_[i] == 0 && !joints_[i]->give(commanded_[i].position)) refused_ = i;
   }
 }
 
 void Group::release() {
-  for (AxisUnit* unit : axes_) unit->motion.setOwner(nullptr);
+  for (Joint* joint : joints_) joint->follow(nullptr);
   trajectory_.reset();
   phase_ = Phase::idle;
+  tell(ended_, outcome_);
+}
+
+TrajectoryOutcome Group::blame(TrajectoryErrorCode code, std::size_t joint, double off,
+                               const std::string& text) const {
+  return {code, config_.name + text, TrajectoryEnd::failed, joints_[joint]->name(), off};
 }
 
 std::optional<TrajectoryOutcome> Group::checkAxes() const {
   bool any_ready = false;
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
     if (dropped_[i] == 0) {
       any_ready = true;
     } else if (config_.stop_group_on_fault) {
-      return TrajectoryOutcome{TrajectoryErrorCode::path_tolerance_violated,
-                               config_.name + ": trajectory stopped: " + dropReason(i)};
+      return blame(TrajectoryErrorCode::path_tolerance_violated, i, kNothing,
+                   ": trajectory stopped: " + dropReason(i));
     }
   }
   if (any_ready) return std::nullopt;
   return TrajectoryOutcome{TrajectoryErrorCode::path_tolerance_violated,
-                           config_.name + ": trajectory stopped: no joint is enabled any more"};
+                           config_.name + ": trajectory stopped: no joint is enabled any more",
+                           TrajectoryEnd::failed,
+                           {}};
 }
 
 std::string Group::dropReason(std::size_t joint) const {
-  const drive::Axis& axis = axes_[joint]->axis;
-  const std::string reason = axis.motionRefusal();
-  if (!reason.empty()) return reason;
-  if (axis.noticeCount() != notices_[joint]) return axis.notice();
-  return names_[joint] + " fell out of operation or got another zero on the way";
+  return joints_[joint]->trouble(notices_[joint]);
 }
 
 std::optional<TrajectoryOutcome> Group::checkRefusal() const {
-  if (refused_ == nullptr) return std::nullopt;
-  return TrajectoryOutcome{TrajectoryErrorCode::path_tolerance_violated,
-                           config_.name + ": trajectory stopped: " + *refused_ +
-                               " refused a set-point: it does not fit the drive or is beyond the "
-                               "joint's limits"};
+  if (!refused_) return std::nullopt;
+  return blame(TrajectoryErrorCode::path_tolerance_violated, *refused_, kNothing,
+               ": trajectory stopped: " + joints_[*refused_]->who() +
+                   " refused a set-point: it does not fit the drive or is beyond the "
+                   "joint's limits");
 }
 
 std::optional<TrajectoryOutcome> Group::checkPath() const {
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
-    const drive::AxisState& state = axes_[i]->axis.state();
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
     if (tolerances_[i].trajectory <= 0.0 || dropped_[i] != 0) continue;
-    const double error = commanded_[i].position - state.position;
-    if (began_ < state.stamp && std::abs(error) > tolerances_[i].trajectory) {
-      return TrajectoryOutcome{
-          TrajectoryErrorCode::path_tolerance_violated,
-          config_.name + ": trajectory stopped: " + names_[i] + " is " +
-              motion::formatNumber(std::abs(error)) + " " + motion::toString(joints_[i].unit) +
-              " off its path, the tolerance is " + motion::formatNumber(tolerances_[i].trajectory)};
+    const double error = std::abs(commanded_[i].position - joints_[i]->position());
+    if (began_ < joints_[i]->stamp() && error > tolerances_[i].trajectory) {
+      return blame(TrajectoryErrorCode::path_tolerance_violated, i, error,
+                   ": trajectory stopped: " + joints_[i]->who() + " is " + distance(i, error) +
+                       " off its path, the tolerance is " +
+                       motion::formatNumber(tolerances_[i].trajectory));
     }
   }
   return std::nullopt;
 }
 
+std::string Group::distance(std::size_t joint, double way) const {
+  return motion::formatNumber(way) + " " + motion::toString(descriptions_[joint].unit);
+}
+
 std::optional<TrajectoryOutcome> Group::checkGoal() const {
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
     if (dropped_[i] == 0) continue;
-    return TrajectoryOutcome{TrajectoryErrorCode::goal_tolerance_violated,
-                             config_.name + ": goal missed: " + dropReason(i)};
+    return blame(TrajectoryErrorCode::goal_tolerance_violated, i, kNothing,
+                 ": goal missed: " + dropReason(i));
   }
   std::string away;  // without a tolerance that is no failure, but it is told
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
+  TrajectoryOutcome reached{TrajectoryErrorCode::successful, config_.name + ": goal reached"};
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
     const bool judged = tolerances_[i].goal > 0.0;
-    const double error = std::abs(trajectory_->goal()[i] - axes_[i]->axis.state().position);
+    const double error = std::abs(trajectory_->goal()[i] - joints_[i]->position());
     if (error <= (judged ? tolerances_[i].goal : kArrived)) continue;
-    if (clock_.time() < trajectory_->endTime() + fromSeconds(config_.goal_time))
+    if (clock_.time() < trajectory_->endTime() + fromSeconds(config_.goal_time)) {
       return std::nullopt;
-    const std::string where = names_[i] + " is " + motion::formatNumber(error) + " " +
-                              motion::toString(joints_[i].unit) + " away";
+    }
+    const std::string where = joints_[i]->who() + " is " + distance(i, error) + " away";
     if (judged) {
-      return TrajectoryOutcome{TrajectoryErrorCode::goal_tolerance_violated,
-                               config_.name + ": goal missed: " + where + " after " +
-                                   motion::formatNumber(config_.goal_time) +
-                                   " s, the tolerance is " +
-                                   motion::formatNumber(tolerances_[i].goal)};
+      return blame(TrajectoryErrorCode::goal_tolerance_violated, i, error,
+                   ": goal missed: " + where + " after " + motion::formatNumber(config_.goal_time) +
+                       " s, the tolerance is " + motion::formatNumber(tolerances_[i].goal));
     }
     append(away, where, ", ");
+    if (!(error <= reached.off)) {
+      reached.joint = joints_[i]->name();
+      reached.off = error;
+    }
   }
-  if (away.empty()) {
-    return TrajectoryOutcome{TrajectoryErrorCode::successful, config_.name + ": goal reached"};
+  if (!away.empty()) {
+    reached.message = config_.name + ": the trajectory is over, but " + away +
+                      " from its goal; no goal tolerance is configured for it";
   }
-  return TrajectoryOutcome{TrajectoryErrorCode::successful,
-                           config_.name + ": the trajectory is over, but " + away +
-                               " from its goal; no goal tolerance is configured for it"};
+  return reached;
 }
 
 }  // namespace cia402::bus

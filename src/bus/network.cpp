@@ -260,15 +260,14 @@ void Network::onForeignSync(const can::Frame& frame, Time stamp, Time now) {
 void SetpointCommand::begin(Network& network, const Reply<>& reply, Time now) const {
   std::vector<AxisUnit>& units = network.cycle().units();
   if (axis >= units.size()) return;
-  AxisUnit& unit = units[axis];
-  const Result<void> taken = unit.motion.command(unit.axis, value, now);
+  const Result<void> taken = units[axis].axis.command(value, now);
   if (!taken) refuse(reply, taken.error().message);
 }
 
 void TrajectoryCommand::begin(Network& network, const Reply<>& reply, Time now) const {
   for (Group& candidate : network.cycle().groups()) {
     if (candidate.config().name != group) continue;
-    const TrajectoryOutcome outcome = candidate.start(joints, points, start_time, now);
+    const TrajectoryOutcome outcome = candidate.start(joints, points, start_time, now, ended);
     const bool accepted = outcome.code == motion::TrajectoryErrorCode::successful;
     return give(reply, answerOf(accepted, outcome.message));
   }

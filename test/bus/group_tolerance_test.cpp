@@ -23,7 +23,8 @@ struct GroupToleranceTest : testing::Test {
     config.joints = {"shoulder", "elbow"};
     config.goal_time = 0.5;
     config.tolerances["elbow"] = elbow;
-    return Group(config, {&world.unit(0), &world.unit(1)});
+    std::vector<Joint>& joints = world.network.cycle().joints().all();
+    return Group(config, {&joints[0], &joints[1]}, test::kPeriod);
   }
   TrajectoryOutcome start(Group& group, double shoulder, double elbow) {
     const auto points = world.trajectory("arm", {{{shoulder, elbow}, 1.0}}).points;
@@ -51,7 +52,7 @@ TEST_F(GroupToleranceTest, EndsWithSuccessWithinTheTolerances) {
   EXPECT_EQ(outcome.code, TrajectoryErrorCode::successful);
   EXPECT_EQ(outcome.message, "test: goal reached");
   EXPECT_NEAR(toSeconds(took), 1.0, 0.02);
-  EXPECT_EQ(world.unit(1).motion.owner(), nullptr);
+  EXPECT_EQ(world.unit(1).axis.leader(), nullptr);
 }
 
 TEST_F(GroupToleranceTest, EndsWithMinus4OffThePathAndStopsByARamp) {

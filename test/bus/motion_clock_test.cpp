@@ -14,7 +14,7 @@ TEST(MotionClock, GoesByOnePeriodACycleHoweverLateItIs) {
   clock.set(now);
   for (const Duration after : {4ms, 6ms, 2ms, 7ms, 4ms}) {
     now += after;
-    clock.cycle(now);
+    clock.cycle(now, false);
     clock.advance(1.0);
   }
   EXPECT_EQ(clock.time(), Time(1s) + 20ms);
@@ -34,13 +34,13 @@ TEST(MotionClock, StartsFromStandstillAfterMissedCycles) {
   MotionClock clock(4ms);
   Time now{1s};
   clock.set(now);
-  clock.cycle(now += 100ms);
+  clock.cycle(now += 100ms, true);
   EXPECT_EQ(clock.rate(), 0.0);
   clock.advance(25.0);  // a tenth in a cycle
   EXPECT_NEAR(clock.rate(), 0.1, 1e-12);
   EXPECT_EQ(clock.time(), Time(1s) + 400us);
   for (int i = 0; i < 9; ++i) {
-    clock.cycle(now += 4ms);
+    clock.cycle(now += 4ms, false);
     clock.advance(25.0);
   }
   EXPECT_NEAR(clock.rate(), 1.0, 1e-9);
@@ -52,7 +52,7 @@ TEST(MotionClock, GoesWithTheBusWhileNothingMoves) {
   clock.idle(Time(1s) + 100ms, kNever);
   EXPECT_EQ(clock.time(), Time(1s) + 100ms);
   EXPECT_EQ(clock.at(Time(3s), Time(1s) + 100ms), Time(3s));
-  clock.cycle(Time(1s) + 104ms);
+  clock.cycle(Time(1s) + 104ms, false);
   EXPECT_EQ(clock.rate(), 1.0);
 }
 

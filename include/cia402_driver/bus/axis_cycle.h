@@ -40,7 +40,7 @@ class AxisCycle {
     for (AxisUnit& unit : units_) unit.reporter.tick(now);
     for (AxisUnit& unit : units_) {
       tell_of_device(unit);
-      unit.news.watch(unit.axis, unit.motion, unit.reporter, bus_, now);
+      unit.news.watch(unit.axis, unit.reporter, bus_, now);
     }
   }
 
@@ -72,6 +72,8 @@ class AxisCycle {
   /// In their order in the configuration.
   std::vector<AxisUnit>& units() { return units_; }
   const std::vector<AxisUnit>& units() const { return units_; }
+  Joints& joints() { return joints_; }
+  const Joints& joints() const { return joints_; }
   std::vector<Group>& groups() { return groups_; }
   const std::vector<Group>& groups() const { return groups_; }
   /// By the name of its axis; nullptr if there is none.
@@ -96,6 +98,7 @@ class AxisCycle {
   BusSide& bus_;
   EventSink& events_;
   std::vector<AxisUnit> units_;
+  Joints joints_;  ///< that they turn
   std::vector<Group> groups_;
   JobList jobs_;
   Shutdown shutdown_;

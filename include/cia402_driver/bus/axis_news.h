@@ -6,7 +6,6 @@
 #include <string>
 #include <string_view>
 
-#include "cia402_driver/bus/axis_motion.h"
 #include "cia402_driver/bus/axis_reporter.h"
 #include "cia402_driver/bus/axis_words.h"
 #include "cia402_driver/bus/bus_side.h"
@@ -37,9 +36,8 @@ class AxisNews {
   const std::string& cause() const { return cause_; }
 
   /// Once a cycle, the last of it: tells what has changed.
-  void watch(drive::Axis& axis, const AxisMotion& motion, AxisReporter& reporter,
-             const BusSide& bus, Time now) {
-    if (dried_up_ != motion.driedUp()) tellStream(axis, motion, now);
+  void watch(drive::Axis& axis, AxisReporter& reporter, const BusSide& bus, Time now) {
+    if (dried_up_ != axis.driedUp()) tellStream(axis, now);
     if (differs(axis)) {
       tellNews(axis, reporter, bus, now);
     } else if (now >= checked_ + kInterval) {
@@ -65,7 +63,7 @@ class AxisNews {
   bool isUnwell(const drive::Axis& axis) const;
   void tellNews(drive::Axis& axis, AxisReporter& reporter, const BusSide& bus, Time now);
   void tellProblem(drive::Axis& axis, AxisReporter& reporter, Time now);
-  void tellStream(const drive::Axis& axis, const AxisMotion& motion, Time now);
+  void tellStream(const drive::Axis& axis, Time now);
   std::string unknownProblem(const drive::Axis& axis, Time now);
 
   // Of the axis, as it was told last:

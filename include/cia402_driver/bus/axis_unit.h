@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <string>
 
-#include "cia402_driver/bus/axis_motion.h"
 #include "cia402_driver/bus/axis_news.h"
 #include "cia402_driver/bus/axis_reporter.h"
 #include "cia402_driver/bus/snapshot.h"
@@ -23,9 +22,9 @@ struct AxisUnit {
     Duration patience{};  ///< for its first feedback, once it is ready
   };
 
-  /// @param number of the axis, its index in the configuration. @param cycle period of the bus.
+  /// @param number of the axis, its index in the configuration..
   /// @param events must outlive it.
-  AxisUnit(std::size_t number, const drive::AxisConfig& config, const Place& place, Duration cycle,
+  AxisUnit(std::size_t number, const drive::AxisConfig& config, const Place& place,
            EventSink& events);
 
   /// The beginning of a cycle: takes what the device sent.
@@ -37,15 +36,11 @@ struct AxisUnit {
     last_feedback = state.stamp;
   }
   /// Gives the device its commands of this cycle.
-  void move(Time now) {
-    motion.step(axis, now);
-    axis.writeCommands(now);
-  }
+  void move(Time now) { axis.writeCommands(now); }
   void fill(AxisSnapshot& snapshot) const;
 
   std::size_t index;
   drive::Axis axis;
-  AxisMotion motion;
   Time last_feedback{};
   std::uint64_t missed_feedback = 0;  ///< cycles without new feedback while the device was ready
   bool answered = false;              ///< by its device, beside the cycle, since it was looked at

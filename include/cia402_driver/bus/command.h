@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cia402_driver/bus/reply.h"
+#include "cia402_driver/bus/trajectory_outcome.h"
 #include "cia402_driver/common/time.h"
 #include "cia402_driver/motion/trajectory.h"
 
@@ -34,6 +35,7 @@ struct TrajectoryCommand {
   std::vector<std::string> joints;
   std::vector<motion::TrajectoryPoint> points;
   std::optional<Time> start_time;
+  TrajectoryEnded ended;  ///< told how it ended, if it was accepted
 
   void begin(Network& network, const Reply<>& reply, Time now) const;
 };

@@ -7,35 +7,29 @@
 #include <string>
 #include <vector>
 
-#include "cia402_driver/bus/axis_unit.h"
+#include "cia402_driver/bus/joint.h"
 #include "cia402_driver/bus/motion_clock.h"
+#include "cia402_driver/bus/trajectory_outcome.h"
 #include "cia402_driver/config/robot.h"
 #include "cia402_driver/motion/trajectory.h"
 
 namespace cia402::bus {
 
-/// How a trajectory ended, with the code of control_msgs/FollowJointTrajectoryResult.
-struct TrajectoryOutcome {
-  motion::TrajectoryErrorCode code = motion::TrajectoryErrorCode::successful;
-  std::string message;
-};
-
 /// A set of joints that follow trajectories together. One trajectory at a time; a new one takes
 /// over smoothly from where the present one is.
 class Group {
  public:
-  /// @param axes those of config.joints, in that order; must outlive the group.
-  Group(config::GroupConfig config, std::vector<AxisUnit*> axes);
+  /// @param joints those of config.joints, in that order; must outlive the group.
+  /// @param cycle period of the bus
+  Group(config::GroupConfig config, std::vector<Joint*> joints, Duration cycle);
 
   const config::GroupConfig& config() const { return config_; }
-  /// Joint names with limits, in the order of the configuration.
-  const std::vector<motion::Joint>& joints() const { return joints_; }
 
   /// Checks a trajectory and takes it over; without points, stops. Points are in the order of
-  /// `names`. On an error nothing changes.
+  /// `names`. On an error nothing changes. @param ended told how it ended, if it is accepted
   TrajectoryOutcome start(const std::vector<std::string>& names,
                           const std::vector<motion::TrajectoryPoint>& points,
-                          std::optional<Time> start_time, Time now);
+                          std::optional<Time> start_time, Time now, TrajectoryEnded ended = {});
   /// Brings all joints to rest and ends the trajectory with `why`.
   void stop(const TrajectoryOutcome& why);
   /// Gives the axes their set-points of this cycle. @return how the trajectory ended, in the cycle
@@ -53,7 +47,6 @@ class Group {
   enum class Phase { idle, following, stopping };
 
   std::string refusal() const;
-  std::string refusalOf(const AxisUnit& unit) const;
   /// Where the joints are when the clock shows `time`, if nothing new begins before.
   std::vector<motion::MotionState> commandedAt(Time time) const;
   void advanceClock(Time now);
@@ -67,7 +60,14 @@ class Group {
   std::optional<TrajectoryOutcome> checkRefusal() const;
   std::optional<TrajectoryOutcome> checkPath() const;
   std::optional<TrajectoryOutcome> checkGoal() const;
+  TrajectoryOutcome blame(motion::TrajectoryErrorCode code, std::size_t joint, double off,
+                          const std::string& text) const;
   std::string dropReason(std::size_t joint) const;
+  /// "0.1 rad".
+  std::string distance(std::size_t joint, double way) const;
+  /// Tells who waits for the end of a trajectory.
+  static void tell(TrajectoryEnded& ended, const TrajectoryOutcome& outcome);
+  TrajectoryOutcome replaced() const;
   void noteDropped();
   void beginNext(Time now);
   void beginStop();
@@ -76,23 +76,22 @@ class Group {
   void sendSetpoints();
 
   config::GroupConfig config_;
-  std::vector<AxisUnit*> axes_;
-  std::vector<motion::Joint> joints_;
-  std::vector<std::string> names_;  // of them, for messages
+  std::vector<Joint*> joints_;
+  std::vector<motion::Joint> descriptions_;  // of them
   std::vector<config::JointTolerance> tolerances_;
   MotionClock clock_;
-  bool starts_ = false;                // no cycle has passed since it was set
-  std::vector<double> accelerations_;  // limits, one a joint
+  bool starts_ = false;  // no cycle has passed since it was set
   Phase phase_ = Phase::idle;
   std::optional<motion::Trajectory> trajectory_, next_;
+  TrajectoryEnded ended_, next_ended_;  // of them
   std::vector<motion::MotionState> commanded_;
   std::vector<std::uint8_t> dropped_;       // joints that fell out of operation under way
   std::vector<std::uint8_t> next_dropped_;  // the same since next_ was planned
   std::vector<std::uint32_t> breaks_;       // of their set-points, at its beginning or stop
   std::vector<std::uint32_t> notices_;      // of the axes, when a trajectory was taken
   Time began_{};                            // the trajectory, in the time of the bus
-  const std::string* refused_ = nullptr;  // name of the joint whose axis did not take its set-point
-  TrajectoryOutcome outcome_;             // of a stopping trajectory
+  std::optional<std::size_t> refused_;      // the joint that did not take its set-point
+  TrajectoryOutcome outcome_;               // of a stopping trajectory
 };
 
 }  // namespace cia402::bus

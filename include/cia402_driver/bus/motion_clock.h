@@ -27,9 +27,9 @@ class MotionClock {
     cycled_ = now;
     rate_ = 1.0;
   }
-  /// A cycle at `now`; from standstill if some were missed before it.
-  void cycle(Time now) {
-    if (now - cycled_ > 2 * period_) rate_ = 0.0;
+  /// A cycle at `now`. @param late some were missed before it: begins from standstill
+  void cycle(Time now, bool late) {
+    if (late) rate_ = 0.0;
     cycled_ = now;
   }
   /// The first cycle of a motion that begins between two cycles: by what has passed since, at most

@@ -1,6 +1,4 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/bus/axis_motion.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

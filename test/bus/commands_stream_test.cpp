@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "bus/robot_world.h"
-#include "cia402_driver/bus/axis_motion.h"
 
 namespace cia402::bus {
 namespace {

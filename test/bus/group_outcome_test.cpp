@@ -1,0 +1,152 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// Whoever commands a trajectory is told once how it ended.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bus/robot_world.h"
+
+namespace cia402::bus {
+namespace {
+
+using motion::TrajectoryErrorCode;
+using test::RobotWorld;
+using testing::HasSubstr;
+using namespace std::chrono_literals;
+using Outcomes = std::shared_ptr<std::vector<TrajectoryOutcome>>;
+
+config::RobotConfig robotWithGoal(double tolerance) {
+  config::RobotConfig robot = test::testRobot();
+  robot.groups[0].goal_time = 0.5;
+  robot.groups[0].tolerances["elbow"].goal = tolerance;
+  return robot;
+}
+
+struct GroupOutcomeTest : testing::Test {
+  explicit GroupOutcomeTest(const config::RobotConfig& config = test::testRobot()) : world(config) {
+    world.enable();
+  }
+  /// Sends both joints there in so many seconds. @return how that ended, once it has
+  Outcomes send(double shoulder, double elbow, double seconds,
+                std::optional<Time> start_time = {}) {
+    TrajectoryCommand command = world.trajectory("arm", {{{shoulder, elbow}, seconds}});
+    command.start_time = start_time;
+    return send(std::move(command));
+  }
+  Outcomes send(TrajectoryCommand command) {
+    auto outcomes = std::make_shared<std::vector<TrajectoryOutcome>>();
+    command.ended = [outcomes](const TrajectoryOutcome& outcome) { outcomes->push_back(outcome); };
+    answer = world.call(std::move(command));
+    return outcomes;
+  }
+  RobotWorld world;
+  Answer answer;
+};
+
+TEST_F(GroupOutcomeTest, ATrajectoryThatComesToItsGoalHasReachedIt) {
+  const Outcomes ended = send(1.0, -0.5, 1.0);
+  ASSERT_TRUE(answer.success);
+  world.run(900ms);
+  EXPECT_TRUE(ended->empty()) << "it is under way";
+  world.run(400ms);
+  ASSERT_EQ(ended->size(), 1u);
+  EXPECT_EQ(ended->front().end, TrajectoryEnd::reached);
+  EXPECT_EQ(ended->front().code, TrajectoryErrorCode::successful);
+  EXPECT_EQ(ended->front().message, "arm: goal reached");
+  EXPECT_EQ(ended->front().joint, "");
+  EXPECT_TRUE(std::isnan(ended->front().off));
+  EXPECT_EQ(world.drives[0].position, 100000);
+}
+
+TEST_F(GroupOutcomeTest, OneThatIsTakenOverUnderWayIsReplacedInThatMoment) {
+  const Outcomes first = send(1.0, -0.5, 1.0);
+  world.run(300ms);
+  const Outcomes second = send(0.5, 0.5, 1.0);
+  world.run(20ms);
+  ASSERT_EQ(first->size(), 1u);
+  EXPECT_EQ(first->front().end, TrajectoryEnd::replaced);
+  EXPECT_TRUE(second->empty());
+  world.run(1500ms);
+  ASSERT_EQ(second->size(), 1u);
+  EXPECT_EQ(second->front().end, TrajectoryEnd::reached);
+  EXPECT_EQ(first->size(), 1u) << "it is told once";
+}
+
+TEST_F(GroupOutcomeTest, OneThatWaitsForItsTimeIsReplacedBeforeItBegins) {
+  const Outcomes waits = send(1.0, -0.5, 1.0, world.now + 2s);
+  world.run(100ms);
+  const Outcomes next = send(0.2, 0.2, 1.0);
+  world.run(20ms);
+  ASSERT_EQ(waits->size(), 1u);
+  EXPECT_EQ(waits->front().end, TrajectoryEnd::replaced);
+  world.run(3s);
+  ASSERT_EQ(next->size(), 1u);
+  EXPECT_EQ(world.drives[0].position, 20000) << "the replaced one never began";
+}
+
+TEST_F(GroupOutcomeTest, OneThatIsStoppedEndsWhenItsJointsStand) {
+  const Outcomes ended = send(1.0, -0.5, 1.0);
+  world.run(500ms);
+  TrajectoryCommand stop = world.trajectory("arm", {});
+  ASSERT_TRUE(world.call(stop).success);
+  EXPECT_TRUE(ended->empty()) << "they are being brought to rest";
+  ASSERT_TRUE(world.runUntil([&] { return !ended->empty(); }, 2s));
+  EXPECT_EQ(ended->front().end, TrajectoryEnd::stopped);
+  const int stands = world.drives[0].position;
+  world.run(500ms);
+  EXPECT_EQ(world.drives[0].position, stands);
+}
+
+TEST_F(GroupOutcomeTest, OneThatWaitsIsStoppedAtOnce) {
+  const Outcomes waits = send(1.0, -0.5, 1.0, world.now + 2s);
+  world.run(100ms);
+  ASSERT_TRUE(world.call(world.trajectory("arm", {})).success);
+  ASSERT_TRUE(world.runUntil([&] { return !waits->empty(); }, 100ms));
+  EXPECT_EQ(waits->front().end, TrajectoryEnd::stopped);
+}
+
+TEST_F(GroupOutcomeTest, ARefusedOneIsAnsweredAndHasNoEnd) {
+  const Outcomes ended = send(1.0, 100.0, 1.0);  // beyond the elbow's limit
+  EXPECT_FALSE(answer.success);
+  world.run(2s);
+  EXPECT_TRUE(ended->empty());
+  EXPECT_EQ(world.drives[0].position, 0);
+}
+
+TEST_F(GroupOutcomeTest, AFaultNamesItsJoint) {
+  const Outcomes ended = send(1.0, -0.5, 1.0);
+  world.run(300ms);
+  world.drives[1].fault(0x8611);
+  ASSERT_TRUE(world.runUntil([&] { return !ended->empty(); }, 2s));
+  EXPECT_EQ(ended->front().end, TrajectoryEnd::failed);
+  EXPECT_EQ(ended->front().code, TrajectoryErrorCode::path_tolerance_violated);
+  EXPECT_EQ(ended->front().joint, "elbow");
+  EXPECT_THAT(ended->front().message, HasSubstr("elbow (node 2): fault 0x8611"));
+}
+
+TEST_F(GroupOutcomeTest, TheEndOfTheProgramStopsWhatRuns) {
+  const Outcomes ended = send(1.0, -0.5, 1.0);
+  world.run(300ms);
+  world.network.beginShutdown(world.now);
+  ASSERT_TRUE(world.runUntil([&] { return world.network.shutDown(); }, 3s));
+  ASSERT_EQ(ended->size(), 1u);
+  EXPECT_EQ(ended->front().end, TrajectoryEnd::stopped);
+}
+
+struct GroupGoalTest : GroupOutcomeTest {
+  GroupGoalTest() : GroupOutcomeTest(robotWithGoal(0.01)) {}
+};
+
+TEST_F(GroupGoalTest, AMissedGoalSaysWhichJointAndByHowMuch) {
+  const Outcomes ended = send(0.5, -0.5, 1.0);
+  world.drives[1].disturbance = 2000;  // 0.02 rad off
+  ASSERT_TRUE(world.runUntil([&] { return !ended->empty(); }, 3s));
+  EXPECT_EQ(ended->front().end, TrajectoryEnd::failed);
+  EXPECT_EQ(ended->front().code, TrajectoryErrorCode::goal_tolerance_violated);
+  EXPECT_EQ(ended->front().joint, "elbow");
+  EXPECT_NEAR(ended->front().off, 0.02, 1e-3);
+}
+
+}  // namespace
+}  // namespace cia402::bus
