@@ -124,11 +124,13 @@ void Master::receive(const can::Frame& frame, Time stamp, Time now) {
     return;
   }
   const Route route = routes_[frame.id];
-  if (route.service == Service::tpdo) {
-    pacer_.occupied(1, now);
-    nodes_[route.node].receiveTpdo(route.pdo, frame, stamp);
-    return;
-  }
+  if (route.service != Service::tpdo) return receiveOther(route, frame, stamp, now);
+  pacer_.occupied(1, now);
+  nodes_[route.node].receiveTpdo(route.pdo, frame, stamp);
+}
+
+/// What does not come in every cycle.
+void Master::receiveOther(Route route, const can::Frame& frame, Time stamp, Time now) {
   if (route.service == Service::sync) {
     if (listener_ != nullptr) listener_->onForeignSync(frame, stamp, now);
     return;

@@ -94,6 +94,7 @@ class Master {
   };
   static constexpr std::size_t kIdentifiers = 2048;  ///< of 11 bits
 
+  void receiveOther(Route route, const can::Frame& frame, Time stamp, Time now);
   void addRoutes(std::size_t node);
   void addRoute(std::uint32_t cob_id, Route route);
   std::string addPdoRoutes(std::size_t node);
