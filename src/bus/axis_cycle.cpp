@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "cia402_driver/bus/reply.h"
+
 namespace cia402::bus {
 namespace {
 
@@ -119,6 +121,14 @@ AxisUnit* AxisCycle::find(const std::string& axis) {
   const auto unit = std::find_if(units_.begin(), units_.end(),
                                  [&](const AxisUnit& u) { return u.axis.config().name == axis; });
   return unit == units_.end() ? nullptr : &*unit;
+}
+
+Result<AxisUnit*> AxisCycle::findToAsk(const std::string& axis, const std::string& what) {
+  AxisUnit* const unit = find(axis);
+  if (unit == nullptr) return Error{noSuchAxis(axis)};
+  const std::string why_not = unit->axis.device().askingRefusal(what);
+  if (!why_not.empty()) return Error{why_not};
+  return unit;
 }
 
 void AxisCycle::sayStep(const std::string& step) {

@@ -67,13 +67,21 @@ NodeUnit* Network::unitOf(const canopen::Node& node) {
 canopen::Node& Network::node(std::size_t axis) { return nodes_->ofAxis(axis).node(); }
 
 void Network::start(Time now) {
-  if (started_) return;
-  started_ = true;
+  if (started()) return;
   cycle_.setTime(now);
+  phase_ = Phase::listening;
   if (!start_up_->begin(now)) beginSending(now);
 }
 
+void Network::listen(Time now) {
+  cycle_.setTime(now);
+  if (!start_up_->tick(!bus_lost_.empty(), now)) return;
+  beginSending(now);
+  for (Command& command : start_up_->takeDeferred()) execute(std::move(command), now);
+}
+
 void Network::beginSending(Time now) {
+  phase_ = Phase::running;
   cycle_.sayStep("");
   if (!lss_->begin()) boot(now);
 }
@@ -85,7 +93,7 @@ void Network::boot(Time now) {
 
 void Network::busLost(const std::string& why, Time now) {
   cycle_.setTime(now);
-  if (!started_ || !bus_lost_.empty()) return;
+  if (!started() || !bus_lost_.empty()) return;
   bus_lost_ = why;
   cycle_.loseBus(why);
 }
@@ -103,7 +111,7 @@ void Network::busBack(bool is_news, Time now) {
 
 void Network::receive(const can::Frame& frame, Time stamp, Time now) {
   cycle_.setTime(now);
-  if (start_up_->listening()) {
+  if (phase_ == Phase::listening) {
     start_up_->receive(frame, now);
     if (frame.id == canopen::kSyncCobId) return;  // there is no cycle yet that it could lead
   }
@@ -112,26 +120,21 @@ void Network::receive(const can::Frame& frame, Time stamp, Time now) {
 }
 
 Time Network::nextDeadline() const {
-  if (!active()) return kNever;
-  const Time cyclic = std::min(sync_.deadline(), master_.nextDeadline());
-  return std::min({cyclic, lss_->deadline(), start_up_->deadline()});
+  const Time due = std::min({sync_.deadline(), master_.nextDeadline(), lss_->deadline()});
+  if (phase_ == Phase::running) return due;
+  return phase_ == Phase::listening ? std::min(due, start_up_->deadline()) : kNever;
 }
 
 void Network::produceSync(Time now) {
-  if (!sync_.ownSyncDue(now) || !active()) return;
+  if (phase_ != Phase::running || !sync_.ownSyncDue(now)) return;
   cycle_.setTime(now);
   sync_.onSyncDue(now);
 }
 
 void Network::tick(Time now) {
-  if (!active()) return;
+  if (phase_ == Phase::listening) return listen(now);
+  if (phase_ != Phase::running) return;
   cycle_.setTime(now);
-  if (start_up_->listening()) {
-    if (!start_up_->tick(!bus_lost_.empty(), now)) return;
-    beginSending(now);
-    for (Command& command : start_up_->takeDeferred()) execute(std::move(command), now);
-    return;
-  }
   cycle_.hurry(now);
   if (sync_.syncDue(now)) sync_.onSyncDue(now);
   if (sync_.cycleDue(now)) stepCycle(now);
@@ -151,7 +154,7 @@ void Network::stepCycle(Time now) {
 }
 
 std::string Network::refusal() const {
-  if (!started_) return "the bus interface " + config_.bus.interface + " is not there yet";
+  if (!started()) return "the bus interface " + config_.bus.interface + " is not there yet";
   if (lss_->starting()) {
     return "the drives are being given their node-IDs (" + lss_->step() + ")";
   }
@@ -164,24 +167,17 @@ void Network::execute(Command command, Time now) {
   cycle_.setTime(now);
   if (cycle_.shutdown().begun()) return command.refuse("refused: the driver is shutting down");
   if (!command.needsBus()) return command.begin(*this, now);
-  if (start_up_->listening()) return start_up_->take(std::move(command));
+  if (phase_ == Phase::listening) return start_up_->take(std::move(command));
   const std::string why_not = refusal();
   if (!why_not.empty()) return command.refuse("refused: " + why_not);
   command.begin(*this, now);
 }
 
-Result<AxisUnit*> Network::unitToAsk(const std::string& axis, const std::string& what) {
-  AxisUnit* const unit = cycle_.find(axis);
-  if (unit == nullptr) return Error{noSuchAxis(axis)};
-  const std::string why_not = unit->axis.device().askingRefusal(what);
-  if (!why_not.empty()) return Error{why_not};
-  return unit;
-}
-
 void Network::beginShutdown(Time now) {
   if (cycle_.shutdown().begun()) return;
   // Before the nodes were booted there is nothing to stop.
-  const bool booted = started_ && !lss_->starting() && !start_up_->listening();
+  const bool booted = phase_ == Phase::running && !lss_->starting();
+  if (!booted) phase_ = Phase::ended;
   cycle_.beginShutdown(booted, now);
   start_up_->abandon("the driver is shutting down");
   lss_->abandon("ended by the shutdown of the driver", now);
@@ -190,6 +186,7 @@ void Network::beginShutdown(Time now) {
 
 void Network::releaseDevices(Time now) {
   master_.commandAll(canopen::NmtCommand::enter_pre_operational, now);
+  phase_ = Phase::ended;
 }
 
 std::string Network::enableProblem() const {
@@ -254,7 +251,7 @@ void Network::onHealthChange(canopen::Node& node, fieldbus::Health before, Time 
 }
 
 void Network::onForeignSync(const can::Frame& frame, Time stamp, Time now) {
-  if (started_) sync_.onForeignSync(frame, stamp, now);
+  if (started()) sync_.onForeignSync(frame, stamp, now);
 }
 
 void SetpointCommand::begin(Network& network, const Reply<>& reply, Time now) const {

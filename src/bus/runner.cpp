@@ -135,7 +135,7 @@ void BusRunner::iterate(Time now) {
   if (network.config().bus.time_interval > Duration::zero()) {
     network.setWallTime(time_.toClock(now).time_since_epoch() + wallClockDistance(), now);
   }
-  if (looked_.exchange(false)) network.look();
+  if (looked_.exchange(false)) network.cycle().look();
   loop_.step(now);
   Command command;
   while (mailbox_.pop(command)) network.execute(std::move(command), now);

@@ -11,6 +11,7 @@
 #include "cia402_driver/bus/jobs/job_list.h"
 #include "cia402_driver/bus/shutdown.h"
 #include "cia402_driver/bus/snapshot.h"
+#include "cia402_driver/common/result.h"
 #include "cia402_driver/config/robot.h"
 
 namespace cia402::bus {
@@ -78,6 +79,13 @@ class AxisCycle {
   const std::vector<Group>& groups() const { return groups_; }
   /// By the name of its axis; nullptr if there is none.
   AxisUnit* find(const std::string& axis);
+  /// The same, to ask its device for `what` beside the cycle; or why there is nobody to ask, e.g.
+  /// as the device is stopped (NMT).
+  Result<AxisUnit*> findToAsk(const std::string& axis, const std::string& what);
+  /// Somebody is about to look at the axes: see drive::Axis::look().
+  void look() {
+    for (AxisUnit& unit : units_) unit.axis.look();
+  }
   JobList& jobs() { return jobs_; }
   /// Why no axis may be enabled now; empty if it may.
   std::string enableProblem() const { return bus_.enableProblem(); }

@@ -1,16 +1,21 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
 #include "cia402_driver/can/bus.h"
-#include "cia402_driver/can/frame_bits.h"
 
 namespace cia402::bus {
 
-/// Stands between a robot and its interface and measures how busy the bus is with what passes here.
-/// Where the stuff bits are would have to be searched bit by bit; the true load lies between the
-/// one without any and the one with as many as the frames could need.
+/// Stands between a network and its interface and measures how busy the bus is with what passes
+/// here. Where the stuff bits are would have to be searched bit by bit; the true load lies between
+/// the one without any and the one with as many as the frames could need.
 class LoadMeter final : public can::Sink {
  public:
+  /// @param sink where frames go; must outlive the meter. @param bitrate bit/s
   LoadMeter(can::Sink& sink, double bitrate) : sink_(sink), bitrate_(bitrate) {}
 
   bool send(const can::Frame& frame) override {
@@ -21,17 +26,14 @@ class LoadMeter final : public can::Sink {
   /// Counts a received frame.
   void count(const can::Frame& frame) {
     if (frame.error) return;
-    bits_ += (frame.extended ? 67u : 47u) + (frame.remote ? 0u : 8u * frame.size);
-    most_bits_ += can::mostBits(frame);
+    const std::size_t bytes = frame.remote ? 0 : std::min<std::size_t>(frame.size, kMostBytes);
+    ++(frame.extended ? extended_ : standard_)[bytes];
   }
   /// To be called now and then: begins a new second when one is over.
   void update(Time now) {
     const Duration elapsed = now - began_;
     if (elapsed < std::chrono::seconds(1)) return;
-    const double possible = bitrate_ * toSeconds(elapsed);
-    load_ = static_cast<double>(bits_) / possible;
-    most_load_ = static_cast<double>(most_bits_) / possible;
-    bits_ = most_bits_ = 0;
+    measure(elapsed);
     began_ = now;
   }
   /// Share of the bit rate over the last full second, without stuff bits.
@@ -40,9 +42,14 @@ class LoadMeter final : public can::Sink {
   double mostLoad() const { return most_load_; }
 
  private:
+  static constexpr std::size_t kMostBytes = 8;
+  using Counts = std::array<std::uint64_t, kMostBytes + 1>;  ///< by the number of data bytes
+
+  void measure(Duration elapsed);
+
   can::Sink& sink_;
   double bitrate_;
-  std::uint64_t bits_ = 0, most_bits_ = 0;
+  Counts standard_{}, extended_{};
   Time began_{};
   double load_ = 0.0, most_load_ = 0.0;
 };

@@ -3,6 +3,7 @@
 
 #include <bitset>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -16,7 +17,6 @@
 #include "cia402_driver/bus/event.h"
 #include "cia402_driver/bus/snapshot.h"
 #include "cia402_driver/canopen/master.h"
-#include "cia402_driver/common/result.h"
 #include "cia402_driver/config/robot.h"
 
 namespace cia402::bus {
@@ -45,7 +45,7 @@ class Network final : private canopen::MasterListener, private BusSide {
   /// To be called once the bus is there; nothing is sent before. Begins to boot the drives and to
   /// cycle once no other master has been heard for BusConfig::listen.
   void start(Time now);
-  bool started() const { return started_; }
+  bool started() const { return phase_ != Phase::waiting; }
   /// A frame from the bus. @param stamp when it was on the wire.
   void receive(const can::Frame& frame, Time stamp, Time now);
   /// Tells the wall-clock time, for TIME messages (`bus: {time_interval: ...}`).
@@ -74,19 +74,12 @@ class Network final : private canopen::MasterListener, private BusSide {
   /// Writes the state of everything but the bus interface. Allocates only if `snapshot` has not
   /// got the right sizes yet.
   void fill(NetworkSnapshot& snapshot) const;
-  /// Somebody is about to look at the axes: see drive::Axis::look().
-  void look() {
-    for (AxisUnit& unit : cycle_.units()) unit.axis.look();
-  }
 
   const config::RobotConfig& config() const { return config_; }
   AxisCycle& cycle() { return cycle_; }
   const AxisCycle& cycle() const { return cycle_; }
   drive::Axis& axis(std::size_t index) { return cycle_.units()[index].axis; }
   const drive::Axis& axis(std::size_t index) const { return cycle_.units()[index].axis; }
-  /// The axis of that name, to ask its device for `what` beside the cycle; why it cannot be asked,
-  /// e.g. while it is stopped (NMT), otherwise.
-  Result<AxisUnit*> unitToAsk(const std::string& axis, const std::string& what);
   /// The node that an axis sits in. @param axis index in the configuration
   canopen::Node& node(std::size_t axis);
   NodeUnits& nodes() { return *nodes_; }
@@ -113,12 +106,18 @@ class Network final : private canopen::MasterListener, private BusSide {
   bool prepareRecovery(const std::vector<AxisUnit*>& units) override;
   void releaseDevices(Time now) override;
 
+  enum class Phase : std::uint8_t {
+    waiting,    ///< for the bus
+    listening,  ///< for another master
+    running,    ///< SYNC, cycle and time-outs, unless node-IDs are being given out
+    ended       ///< nothing is sent any more
+  };
+
   std::vector<AxisUnit::Place> places();
   void addNodes();
   /// nullptr if no axis sits in it.
   NodeUnit* unitOf(const canopen::Node& node);
-  /// Frames are heard, and nothing was ended.
-  bool active() const { return started_ && !shutDown(); }
+  void listen(Time now);
   void beginSending(Time now);
   void boot(Time now);
   void stepCycle(Time now);
@@ -135,7 +134,7 @@ class Network final : private canopen::MasterListener, private BusSide {
   std::unique_ptr<LssSupervisor> lss_;
   std::unique_ptr<StartUp> start_up_;
   std::string bus_lost_;  ///< why; empty: it is there
-  bool started_ = false;
+  Phase phase_ = Phase::waiting;
 };
 
 }  // namespace cia402::bus

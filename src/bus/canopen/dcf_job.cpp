@@ -22,7 +22,7 @@ bool isAbsent(std::uint32_t abort_code) {
 }  // namespace
 
 void SaveDcfCommand::begin(Network& network, const Reply<>& reply, Time) const {
-  const auto unit = network.unitToAsk(axis, "its objects for a DCF");
+  const auto unit = network.cycle().findToAsk(axis, "its objects for a DCF");
   if (!unit) return refuse(reply, unit.error().message);
   network.cycle().jobs().add(
       std::make_unique<DcfJob>((*unit)->axis, *this, network.config().bus.bitrate, reply));

@@ -12,7 +12,7 @@
 namespace cia402::bus {
 
 void ErrorHistoryCommand::begin(Network& network, const Reply<HistoryAnswer>& reply, Time) const {
-  const auto unit = network.unitToAsk(axis, "its error history (1003h)");
+  const auto unit = network.cycle().findToAsk(axis, "its error history (1003h)");
   if (!unit) return refuse(reply, unit.error().message);
   const drive::AxisConfig& config = (*unit)->axis.config();
   network.cycle().jobs().add(std::make_unique<HistoryJob>(

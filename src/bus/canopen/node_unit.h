@@ -79,22 +79,22 @@ class NodeUnit {
 /// The nodes of a bus.
 class NodeUnits {
  public:
-  /// In the order of the master's nodes, then add() for each axis in its order.
+  /// In the order of the master's nodes; all of them before addAxis() for each axis in its order.
   void add(NodeUnit node) { all_.push_back(std::move(node)); }
   void addAxis(std::size_t node, AxisUnit& axis) {
     all_[node].add(axis);
-    of_axis_.push_back(node);
+    of_axis_.push_back(&all_[node]);
   }
 
   std::vector<NodeUnit>& all() { return all_; }
   const std::vector<NodeUnit>& all() const { return all_; }
   /// The node that an axis sits in. @param axis index in the configuration
-  NodeUnit& ofAxis(std::size_t axis) { return all_[of_axis_[axis]]; }
-  const NodeUnit& ofAxis(std::size_t axis) const { return all_[of_axis_[axis]]; }
+  NodeUnit& ofAxis(std::size_t axis) { return *of_axis_[axis]; }
+  const NodeUnit& ofAxis(std::size_t axis) const { return *of_axis_[axis]; }
 
  private:
   std::vector<NodeUnit> all_;
-  std::vector<std::size_t> of_axis_;
+  std::vector<NodeUnit*> of_axis_;  // into all_
 };
 
 }  // namespace cia402::bus

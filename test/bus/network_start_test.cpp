@@ -19,9 +19,9 @@ config::RobotConfig listening() {
   return robot;
 }
 
-class RobotStart : public testing::Test {
+class NetworkStart : public testing::Test {
  protected:
-  RobotStart() : world(listening()) {}
+  NetworkStart() : world(listening()) {}
   void hear(const can::Frame& frame) { world.network.receive(frame, world.now, world.now); }
   std::string syncProblem() {
     NetworkSnapshot snapshot;
@@ -31,7 +31,7 @@ class RobotStart : public testing::Test {
   RobotWorld world;
 };
 
-TEST_F(RobotStart, ListensBeforeTheFirstFrameIsSent) {
+TEST_F(NetworkStart, ListensBeforeTheFirstFrameIsSent) {
   world.network.start(world.now);
   EXPECT_EQ(world.network.nextDeadline(), world.now + 150ms);
   world.run(149ms);
@@ -44,7 +44,7 @@ TEST_F(RobotStart, ListensBeforeTheFirstFrameIsSent) {
   EXPECT_EQ(world.sent[3].frame, can::Frame(0x000, {0x82, 0x02}));
 }
 
-TEST_F(RobotStart, ShowsWhatItWaitsFor) {
+TEST_F(NetworkStart, ShowsWhatItWaitsFor) {
   const auto step = [&] {
     NetworkSnapshot snapshot;
     world.network.fill(snapshot);
@@ -62,7 +62,7 @@ TEST_F(RobotStart, ShowsWhatItWaitsFor) {
   EXPECT_THAT(step(), testing::Not(HasSubstr("master on the bus")));
 }
 
-TEST_F(RobotStart, SendsNothingWhileThereIsAnotherMasterAndSaysSo) {
+TEST_F(NetworkStart, SendsNothingWhileThereIsAnotherMasterAndSaysSo) {
   world.network.start(world.now);
   for (int i = 0; i < 50; ++i) {
     world.run(100ms);
@@ -80,7 +80,7 @@ TEST_F(RobotStart, SendsNothingWhileThereIsAnotherMasterAndSaysSo) {
               AllOf(HasSubstr("refused: another master is on the bus"), HasSubstr("0x201")));
 }
 
-TEST_F(RobotStart, GoesOnByItselfOnceTheBusIsFree) {
+TEST_F(NetworkStart, GoesOnByItselfOnceTheBusIsFree) {
   world.network.start(world.now);
   hear(can::Frame(0x000, {0x01, 0x00}));
   world.run(100ms);
@@ -95,7 +95,7 @@ TEST_F(RobotStart, GoesOnByItselfOnceTheBusIsFree) {
       world.runUntil([&] { return world.axis(0).state().health == fieldbus::Health::ready; }));
 }
 
-TEST_F(RobotStart, ASecondStartChangesNothing) {
+TEST_F(NetworkStart, ASecondStartChangesNothing) {
   world.network.start(world.now);
   world.run(100ms);
   world.network.start(world.now);
@@ -107,7 +107,7 @@ TEST_F(RobotStart, ASecondStartChangesNothing) {
   EXPECT_EQ(world.sentWithId(0x000).size(), resets);
 }
 
-TEST_F(RobotStart, ListensForAsLongAgainAfterEachFrameOfAnotherMasterAndSendsNoCycleWithIt) {
+TEST_F(NetworkStart, ListensForAsLongAgainAfterEachFrameOfAnotherMasterAndSendsNoCycleWithIt) {
   world.network.start(world.now);
   world.run(100ms);
   hear(can::Frame(0x77F, {0x05}));
@@ -125,7 +125,7 @@ TEST_F(RobotStart, ListensForAsLongAgainAfterEachFrameOfAnotherMasterAndSendsNoC
   EXPECT_EQ(world.network.cycle().lastCycle(), Time()) << "the first SYNC comes after a period";
 }
 
-TEST_F(RobotStart, SixtyFourCallsWaitAtMostAndSetPointsDoNot) {
+TEST_F(NetworkStart, SixtyFourCallsWaitAtMostAndSetPointsDoNot) {
   world.network.start(world.now);
   EXPECT_THAT(world.begin(SetpointCommand{0, 1.0})->at(0).message,
               HasSubstr("refused: the bus is still listened to for another master; try again"));
@@ -138,7 +138,7 @@ TEST_F(RobotStart, SixtyFourCallsWaitAtMostAndSetPointsDoNot) {
   EXPECT_THAT(refused->front().message, HasSubstr("try again"));
 }
 
-TEST_F(RobotStart, ACallDuringTheListeningWaitsForItsEnd) {
+TEST_F(NetworkStart, ACallDuringTheListeningWaitsForItsEnd) {
   world.network.start(world.now);
   const auto answers = world.begin(ProcedureKind::recover);
   world.run(140ms);
@@ -148,7 +148,7 @@ TEST_F(RobotStart, ACallDuringTheListeningWaitsForItsEnd) {
   EXPECT_TRUE(world.drives[0].enabled());
 }
 
-TEST_F(RobotStart, ACallThatWaitsIsRefusedWhenAnotherMasterIsHeard) {
+TEST_F(NetworkStart, ACallThatWaitsIsRefusedWhenAnotherMasterIsHeard) {
   world.network.start(world.now);
   const auto answers = world.begin(ProcedureKind::recover);
   world.run(50ms);
@@ -157,7 +157,7 @@ TEST_F(RobotStart, ACallThatWaitsIsRefusedWhenAnotherMasterIsHeard) {
   EXPECT_THAT(answers->front().message, HasSubstr("a heartbeat with the master's node-ID"));
 }
 
-TEST_F(RobotStart, EndsWithoutAFrameWhenItIsShutDownMeanwhile) {
+TEST_F(NetworkStart, EndsWithoutAFrameWhenItIsShutDownMeanwhile) {
   world.network.start(world.now);
   const auto answers = world.begin(ProcedureKind::recover);
   world.run(50ms);
@@ -169,7 +169,7 @@ TEST_F(RobotStart, EndsWithoutAFrameWhenItIsShutDownMeanwhile) {
   EXPECT_TRUE(world.sent.empty());
 }
 
-TEST_F(RobotStart, WhatCouldNotBeHeardIsListenedToAnew) {
+TEST_F(NetworkStart, WhatCouldNotBeHeardIsListenedToAnew) {
   world.network.start(world.now);
   world.run(100ms);
   world.network.busLost("can0 is bus-off", world.now);
@@ -182,7 +182,7 @@ TEST_F(RobotStart, WhatCouldNotBeHeardIsListenedToAnew) {
   EXPECT_FALSE(world.sent.empty());
 }
 
-TEST_F(RobotStart, WhatElseIsHeardOfAnotherMasterIsShownAndNotToldAgain) {
+TEST_F(NetworkStart, WhatElseIsHeardOfAnotherMasterIsShownAndNotToldAgain) {
   world.network.start(world.now);
   hear(can::Frame(0x77F, {0x05}));
   hear(can::Frame(0x201, {0x0F, 0x00, 0x08, 0, 0, 0, 0}));
@@ -191,7 +191,7 @@ TEST_F(RobotStart, WhatElseIsHeardOfAnotherMasterIsShownAndNotToldAgain) {
                                    HasSubstr("RPDO 1 of shoulder (COB-ID 0x201)")));
 }
 
-TEST_F(RobotStart, HearsNoOtherMasterOnceItIsShutDown) {
+TEST_F(NetworkStart, HearsNoOtherMasterOnceItIsShutDown) {
   world.network.start(world.now);
   world.network.beginShutdown(world.now);
   hear(can::Frame(0x77F, {0x05}));
@@ -199,7 +199,7 @@ TEST_F(RobotStart, HearsNoOtherMasterOnceItIsShutDown) {
   EXPECT_EQ(syncProblem(), "");
 }
 
-TEST_F(RobotStart, ASyncDuringTheListeningIsNoneBesideItsOwn) {
+TEST_F(NetworkStart, ASyncDuringTheListeningIsNoneBesideItsOwn) {
   world.network.start(world.now);
   hear(can::Frame(0x080, {}));
   NetworkSnapshot snapshot;

@@ -71,13 +71,13 @@ INSTANTIATE_TEST_SUITE_P(
                            "(command_timeout), so it coasts (command_timeout_action: coast)"}),
     [](const auto& tested) { return std::string(tested.param.mode); });
 
-struct RobotNews : testing::Test {
+struct NetworkNews : testing::Test {
   /// Drives that take a controlword by SDO are told to stop before they are configured.
-  RobotNews() { world.drives[0].objects[{0x6040, 0}] = {0, 0}; }
+  NetworkNews() { world.drives[0].objects[{0x6040, 0}] = {0, 0}; }
   RobotWorld world;
 };
 
-TEST_F(RobotNews, ABootIsOneLineAndWhatItFoundIsShown) {
+TEST_F(NetworkNews, ABootIsOneLineAndWhatItFoundIsShown) {
   world.boot();
   const Event well = eventWith(world, "shoulder (node 1): booted in 0.");
   EXPECT_THAT(well.text.str(), HasSubstr(" s: identified, configured and started"));
@@ -90,14 +90,14 @@ TEST_F(RobotNews, ABootIsOneLineAndWhatItFoundIsShown) {
               AllOf(HasSubstr("booted in 0."), HasSubstr(" s; was not told to stop before")));
 }
 
-TEST_F(RobotNews, ALostDriveIsAnError) {
+TEST_F(NetworkNews, ALostDriveIsAnError) {
   world.boot();
   world.drives[0].silent = true;
   world.run(2s);
   EXPECT_EQ(eventWith(world, "shoulder (node 1): no heartbeat").severity, Event::Severity::error);
 }
 
-TEST(RobotNewsOfAnOptionalDrive, AreAWarning) {
+TEST(NetworkNewsOfAnOptionalDrive, AreAWarning) {
   config::RobotConfig config = test::testRobot();
   config.devices[0].boot.optional = true;
   RobotWorld world(config);
@@ -110,7 +110,7 @@ TEST(RobotNewsOfAnOptionalDrive, AreAWarning) {
 }
 
 // Half a second after the boot, and as long as a TPDO may fail to come: ten cycles of 4 ms.
-TEST_F(RobotNews, FeedbackThatIsMissingIsAProblemOnceItHadTheTimeToCome) {
+TEST_F(NetworkNews, FeedbackThatIsMissingIsAProblemOnceItHadTheTimeToCome) {
   world.drives[1].tpdo_bytes = 0;
   world.network.start(world.now);
   ASSERT_TRUE(
@@ -131,7 +131,7 @@ TEST_F(RobotNews, FeedbackThatIsMissingIsAProblemOnceItHadTheTimeToCome) {
   EXPECT_NE(words(world, 1).problem.str(), "");
 }
 
-TEST_F(RobotNews, StepsOfProceduresAreShownWhileTheyRun) {
+TEST_F(NetworkNews, StepsOfProceduresAreShownWhileTheyRun) {
   world.boot();
   world.run(200ms);
   EXPECT_EQ(words(world, 1).step.str(), "");
@@ -150,7 +150,7 @@ TEST_F(RobotNews, StepsOfProceduresAreShownWhileTheyRun) {
   EXPECT_EQ(words(world, 1).waiting_for.str(), "");
 }
 
-TEST_F(RobotNews, ABootIsToldWithTheTimeThatItTook) {
+TEST_F(NetworkNews, ABootIsToldWithTheTimeThatItTook) {
   const Time begun = world.now;
   world.boot();
   const Event event = eventWith(world, "shoulder (node 1): booted in ");
@@ -161,7 +161,7 @@ TEST_F(RobotNews, ABootIsToldWithTheTimeThatItTook) {
   EXPECT_THAT(event.text.str(), HasSubstr("booted in 0." + digits + " s")) << hundredths;
 }
 
-TEST_F(RobotNews, AThirdBootUpMessageWithinOneBootIsTold) {
+TEST_F(NetworkNews, AThirdBootUpMessageWithinOneBootIsTold) {
   world.drives[0].sdo_silent = true;
   world.network.start(world.now);
   world.run(20ms);
@@ -176,7 +176,7 @@ TEST_F(RobotNews, AThirdBootUpMessageWithinOneBootIsTold) {
 }
 
 // Factory settings may be loaded in a boot, and take a reset.
-TEST_F(RobotNews, ASecondBootUpMessageWithinALaterBootIsNotTold) {
+TEST_F(NetworkNews, ASecondBootUpMessageWithinALaterBootIsNotTold) {
   world.boot();
   world.drives[0].sdo_silent = true;
   const auto reset = world.begin(NmtServiceCommand{"shoulder", "reset_node"});
@@ -186,7 +186,7 @@ TEST_F(RobotNews, ASecondBootUpMessageWithinALaterBootIsNotTold) {
   EXPECT_EQ(world.eventsWith("boots up again and again"), 0u) << world.allEvents();
 }
 
-TEST_F(RobotNews, BootUpMessagesOfSeveralBootsAreNotAddedUp) {
+TEST_F(NetworkNews, BootUpMessagesOfSeveralBootsAreNotAddedUp) {
   world.boot();
   for (int i = 0; i < 3; ++i) {
     ASSERT_TRUE(world.call(NmtServiceCommand{"shoulder", "reset_node"}).success);
@@ -195,7 +195,7 @@ TEST_F(RobotNews, BootUpMessagesOfSeveralBootsAreNotAddedUp) {
   EXPECT_EQ(world.eventsWith("boots up again and again"), 0u) << world.allEvents();
 }
 
-TEST_F(RobotNews, AnEmergencyWithoutACodeIsCountedAndToldOfItsDrive) {
+TEST_F(NetworkNews, AnEmergencyWithoutACodeIsCountedAndToldOfItsDrive) {
   world.boot();
   world.network.receive(can::Frame(0x082, {0x11}), world.now, world.now);
   EXPECT_EQ(world.eventsWith("elbow (node 2): an emergency frame of 1 byte has no error code"), 1u)

@@ -17,8 +17,8 @@ using testing::HasSubstr;
 using testing::Not;
 using namespace std::chrono_literals;
 
-struct RobotBitTiming : testing::Test {
-  RobotBitTiming() {
+struct NetworkBitTiming : testing::Test {
+  NetworkBitTiming() {
     world.boot();
     world.run(100ms);
     world.sent.clear();
@@ -28,7 +28,7 @@ struct RobotBitTiming : testing::Test {
   LssBitTimingCommand timing;
 };
 
-TEST_F(RobotBitTiming, IsSetInAllDrivesAndStoredWhereAsked) {
+TEST_F(NetworkBitTiming, IsSetInAllDrivesAndStoredWhereAsked) {
   const Answer set = world.call(timing);
   EXPECT_TRUE(set.success);
   EXPECT_THAT(set.message,
@@ -49,7 +49,7 @@ TEST_F(RobotBitTiming, IsSetInAllDrivesAndStoredWhereAsked) {
   EXPECT_TRUE(world.call(ProcedureKind::enable).success);
 }
 
-TEST_F(RobotBitTiming, IsRefusedWithTheReasonAndNothingIsSent) {
+TEST_F(NetworkBitTiming, IsRefusedWithTheReasonAndNothingIsSent) {
   const auto refused = [&] {
     const Answer answer = world.call(timing);
     EXPECT_FALSE(answer.success);
@@ -80,7 +80,7 @@ TEST_F(RobotBitTiming, IsRefusedWithTheReasonAndNothingIsSent) {
   EXPECT_TRUE(world.call(timing).success) << "that of another axis is none of its business";
 }
 
-TEST_F(RobotBitTiming, ActivatedNoAxisIsEnabledBeforeAllHaveSwitched) {
+TEST_F(NetworkBitTiming, ActivatedNoAxisIsEnabledBeforeAllHaveSwitched) {
   timing.activate = true;
   timing.delay = 100ms;
   const auto setting = world.begin(timing);
@@ -102,7 +102,7 @@ TEST_F(RobotBitTiming, ActivatedNoAxisIsEnabledBeforeAllHaveSwitched) {
   EXPECT_TRUE(world.call(ProcedureKind::enable).success);
 }
 
-TEST_F(RobotBitTiming, ADelayIsOneMillisecondAtLeastAndWhatTheFrameHoldsAtMost) {
+TEST_F(NetworkBitTiming, ADelayIsOneMillisecondAtLeastAndWhatTheFrameHoldsAtMost) {
   timing.activate = true;
   timing.delay = 0ms;
   EXPECT_THAT(world.call(timing).message, HasSubstr("switch in 1 ms"));
@@ -112,7 +112,7 @@ TEST_F(RobotBitTiming, ADelayIsOneMillisecondAtLeastAndWhatTheFrameHoldsAtMost) 
   EXPECT_EQ(world.asked(0x15, 0xFF, 0xFF), 1u);
 }
 
-TEST_F(RobotBitTiming, IsNotActivatedWhereADriveDoesNotTakeIt) {
+TEST_F(NetworkBitTiming, IsNotActivatedWhereADriveDoesNotTakeIt) {
   world.slaves[0].timing_error = 1;
   timing.activate = true;
   const Answer failed = world.call(timing);
@@ -125,7 +125,7 @@ TEST_F(RobotBitTiming, IsNotActivatedWhereADriveDoesNotTakeIt) {
   EXPECT_TRUE(world.call(ProcedureKind::enable).success) << "the job is over";
 }
 
-TEST_F(RobotBitTiming, IsNeitherSetNorActivatedWhereAnAxisIsEnabledByThen) {
+TEST_F(NetworkBitTiming, IsNeitherSetNorActivatedWhereAnAxisIsEnabledByThen) {
   timing.store = true;
   const auto setting = world.begin(timing);
   ASSERT_TRUE(world.call(ProcedureKind::enable, "elbow").success);
@@ -155,7 +155,7 @@ TEST_F(RobotBitTiming, IsNeitherSetNorActivatedWhereAnAxisIsEnabledByThen) {
   EXPECT_EQ(world.asked(0x15), 0u);
 }
 
-TEST(RobotBitTimingByIdentity, IsSetInTheDriveThatTheConfigurationNames) {
+TEST(NetworkBitTimingByIdentity, IsSetInTheDriveThatTheConfigurationNames) {
   LssWorld world(2);
   world.drives[0].objects[{0x1018, 4}] = {99, 0, 0, 0};  // what it tells besides
   world.network.start(world.now);
@@ -169,7 +169,7 @@ TEST(RobotBitTimingByIdentity, IsSetInTheDriveThatTheConfigurationNames) {
   EXPECT_EQ(world.slaves[1].bit_timing, 3);
 }
 
-TEST(RobotBitTimingOfAStranger, IsRefusedWhileItsIdentityIsNotKnown) {
+TEST(NetworkBitTimingOfAStranger, IsRefusedWhileItsIdentityIsNotKnown) {
   LssWorld world(0);
   world.takeAway(1);
   world.network.start(world.now);

@@ -16,21 +16,21 @@ using testing::AllOf;
 using testing::HasSubstr;
 using namespace std::chrono_literals;
 
-TEST(Robot, SendsNothingBeforeItIsStarted) {
+TEST(Network, SendsNothingBeforeItIsStarted) {
   RobotWorld world;
   world.run(1s);
   EXPECT_TRUE(world.sent.empty());
   EXPECT_EQ(world.network.nextDeadline(), kNever);
 }
 
-TEST(Robot, RefusesCommandsBeforeItIsStarted) {
+TEST(Network, RefusesCommandsBeforeItIsStarted) {
   RobotWorld world;
   const auto answers = world.begin(ProcedureKind::enable);
   ASSERT_EQ(answers->size(), 1u);
   EXPECT_EQ(answers->front().message, "refused: the bus interface can0 is not there yet");
 }
 
-TEST(Robot, BootsAndEnablesItsDrivesAndTellsSo) {
+TEST(Network, BootsAndEnablesItsDrivesAndTellsSo) {
   RobotWorld world;
   world.enable();
   EXPECT_TRUE(world.drives[0].enabled());
@@ -39,7 +39,7 @@ TEST(Robot, BootsAndEnablesItsDrivesAndTellsSo) {
   EXPECT_EQ(world.eventsWith("shoulder (node 1): booted in 0."), 1u);
 }
 
-TEST(Robot, SendsSyncAtExactDeadlines) {
+TEST(Network, SendsSyncAtExactDeadlines) {
   RobotWorld world;
   const Time start = world.now;
   world.network.start(start);
@@ -53,7 +53,7 @@ TEST(Robot, SendsSyncAtExactDeadlines) {
   EXPECT_EQ(world.network.statistics().overruns(), 0u);
 }
 
-TEST(Robot, SendsRpdosHalfAPeriodAfterSync) {
+TEST(Network, SendsRpdosHalfAPeriodAfterSync) {
   RobotWorld world;
   world.boot();
   world.sent.clear();
@@ -68,7 +68,7 @@ TEST(Robot, SendsRpdosHalfAPeriodAfterSync) {
   }
 }
 
-TEST(Robot, NeverSendsABurstOfSyncsAfterALongPause) {
+TEST(Network, NeverSendsABurstOfSyncsAfterALongPause) {
   RobotWorld world;
   const Time start = world.now;
   world.boot();
@@ -87,7 +87,7 @@ TEST(Robot, NeverSendsABurstOfSyncsAfterALongPause) {
   EXPECT_DOUBLE_EQ(world.network.statistics().maxLateness(), 0.050);
 }
 
-TEST(Robot, CountsCyclesWithoutFeedbackOfAReadyDrive) {
+TEST(Network, CountsCyclesWithoutFeedbackOfAReadyDrive) {
   RobotWorld world;
   world.boot();
   NetworkSnapshot before, after;
@@ -100,7 +100,7 @@ TEST(Robot, CountsCyclesWithoutFeedbackOfAReadyDrive) {
   EXPECT_EQ(after.axes[1].missed_feedback, before.axes[1].missed_feedback);
 }
 
-TEST(Robot, TellsAnEmergencyWithCodeCauseAndRemedy) {
+TEST(Network, TellsAnEmergencyWithCodeCauseAndRemedy) {
   RobotWorld world;
   world.enable();
   world.drives[1].fault(0x8611);
@@ -121,7 +121,7 @@ TEST(Robot, TellsAnEmergencyWithCodeCauseAndRemedy) {
   EXPECT_TRUE(snapshot.axes[0].words.problem.empty());
 }
 
-TEST(Robot, ASnapshotThatIsFilledAgainShowsWhatHasChanged) {
+TEST(Network, ASnapshotThatIsFilledAgainShowsWhatHasChanged) {
   RobotWorld world;
   NetworkSnapshot used;
   world.network.fill(used);
@@ -149,7 +149,7 @@ TEST(Robot, ASnapshotThatIsFilledAgainShowsWhatHasChanged) {
   EXPECT_EQ(used.axes[1].words.problem.str(), fresh.axes[1].words.problem.str());
 }
 
-TEST(Robot, TellsALongProblemOnlyOnce) {
+TEST(Network, TellsALongProblemOnlyOnce) {
   config::RobotConfig config = test::testRobot();
   auto profile = std::make_shared<drive::DriveProfile>(*config.axes[0].profile);
   profile->errors[0x8611].cause = std::string(500, 'x');
@@ -163,7 +163,7 @@ TEST(Robot, TellsALongProblemOnlyOnce) {
   EXPECT_EQ(world.events.size(), told) << world.allEvents();
 }
 
-TEST(Robot, LosesASilentDriveAndBringsItBackDisabled) {
+TEST(Network, LosesASilentDriveAndBringsItBackDisabled) {
   RobotWorld world;
   world.enable();
   world.drives[0].silent = true;
@@ -176,7 +176,7 @@ TEST(Robot, LosesASilentDriveAndBringsItBackDisabled) {
   EXPECT_FALSE(world.drives[0].enabled());
 }
 
-TEST(Robot, RunsACallInTheBusThread) {
+TEST(Network, RunsACallInTheBusThread) {
   RobotWorld world;
   CallCommand call;
   call.function = [](Time now) {
@@ -206,12 +206,12 @@ bool answersBeforeTheNextCycle(RobotWorld& world) {
   return read->size() == 1;
 }
 
-TEST(Robot, TakesAnAnswerBySdoBeforeTheNextCycle) {
+TEST(Network, TakesAnAnswerBySdoBeforeTheNextCycle) {
   RobotWorld world(shoulderAlone());
   EXPECT_TRUE(answersBeforeTheNextCycle(world));
 }
 
-TEST(Robot, TakesAnAnswerOnAnotherChannelBeforeTheNextCycle) {
+TEST(Network, TakesAnAnswerOnAnotherChannelBeforeTheNextCycle) {
   config::RobotConfig config = shoulderAlone();
   config.devices[0].sdo = {0x641, 0x6C1};
   RobotWorld world(config);
@@ -220,7 +220,7 @@ TEST(Robot, TakesAnAnswerOnAnotherChannelBeforeTheNextCycle) {
   EXPECT_TRUE(answersBeforeTheNextCycle(world));
 }
 
-TEST(Robot, ShowsTheTimeOfTheLastCommand) {
+TEST(Network, ShowsTheTimeOfTheLastCommand) {
   RobotWorld world;
   world.boot();
   world.now += 1ms;
@@ -232,7 +232,7 @@ TEST(Robot, ShowsTheTimeOfTheLastCommand) {
   EXPECT_EQ(snapshot.now, world.now);
 }
 
-TEST(Robot, ShowsItsAxesNodesAndGroups) {
+TEST(Network, ShowsItsAxesNodesAndGroups) {
   RobotWorld world;
   for (std::uint8_t part = 1; part <= 4; ++part) {
     world.drives[1].objects[{0x1018, part}] = {part, 0, 0, 0};
@@ -278,7 +278,7 @@ TEST(Robot, ShowsItsAxesNodesAndGroups) {
   EXPECT_TRUE(shot.shut_down);
 }
 
-TEST(Robot, ShowsThatAnOptionalDriveIsNotThere) {
+TEST(Network, ShowsThatAnOptionalDriveIsNotThere) {
   config::RobotConfig config = test::testRobot();
   config.devices[1].boot.optional = true;
   RobotWorld world(config);
@@ -291,7 +291,7 @@ TEST(Robot, ShowsThatAnOptionalDriveIsNotThere) {
   EXPECT_TRUE(shot.axes[1].node.may_be_absent);
 }
 
-TEST(Robot, RefusesToAskAStoppedDriveAndSaysSo) {
+TEST(Network, RefusesToAskAStoppedDriveAndSaysSo) {
   RobotWorld world;
   world.boot();
   const auto stopped = world.begin(NmtServiceCommand{"shoulder", "stop"});
@@ -310,7 +310,7 @@ TEST(Robot, RefusesToAskAStoppedDriveAndSaysSo) {
               HasSubstr("shoulder (node 1): its objects for a DCF cannot be asked for"));
 }
 
-TEST(Robot, ShowsADriveThatInsistsOnACobIdWhichNobodyForesaw) {
+TEST(Network, ShowsADriveThatInsistsOnACobIdWhichNobodyForesaw) {
   RobotWorld world;
   world.boot();
   const auto insists = [&](std::size_t axis) {
@@ -325,7 +325,7 @@ TEST(Robot, ShowsADriveThatInsistsOnACobIdWhichNobodyForesaw) {
   EXPECT_TRUE(insists(1));
 }
 
-TEST(Robot, ShowsTheTimeThatItWasGivenLast) {
+TEST(Network, ShowsTheTimeThatItWasGivenLast) {
   RobotWorld world;
   for (test::FakeDrive& drive : world.drives) drive.silent = true;
   world.network.start(world.now);
@@ -341,7 +341,7 @@ TEST(Robot, ShowsTheTimeThatItWasGivenLast) {
   EXPECT_EQ(world.network.now(), later + 2ms);
 }
 
-TEST(Robot, ASetPointThatIsNotTakenIsAnsweredWithTheReason) {
+TEST(Network, ASetPointThatIsNotTakenIsAnsweredWithTheReason) {
   RobotWorld world;
   world.boot();
   const auto answers = world.begin(SetpointCommand{0, 0.5});
@@ -351,7 +351,7 @@ TEST(Robot, ASetPointThatIsNotTakenIsAnsweredWithTheReason) {
   EXPECT_EQ(world.call(world.trajectory("leg", {})).message, "there is no group \"leg\"");
 }
 
-TEST(Robot, AProcedureGoesOnWithAnAnswerBySdoBeforeTheNextCycle) {
+TEST(Network, AProcedureGoesOnWithAnAnswerBySdoBeforeTheNextCycle) {
   config::RobotConfig config = test::testRobot();
   auto profile = std::make_shared<drive::DriveProfile>(*config.axes[0].profile);
   ASSERT_EQ(profile->homing.writes.size(), 1u);

@@ -13,7 +13,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using namespace std::chrono_literals;
 
-struct RobotShutdown : testing::Test {
+struct NetworkShutdown : testing::Test {
   bool shutDownIn(Duration limit) {
     const Time begun = world.now;
     world.network.beginShutdown(world.now);
@@ -29,13 +29,13 @@ struct RobotShutdown : testing::Test {
   Duration took{};
 };
 
-TEST_F(RobotShutdown, IsDoneAtOnceIfNothingWasStarted) {
+TEST_F(NetworkShutdown, IsDoneAtOnceIfNothingWasStarted) {
   world.network.beginShutdown(world.now);
   EXPECT_TRUE(world.network.shutDown());
   EXPECT_TRUE(world.sent.empty());
 }
 
-TEST_F(RobotShutdown, RampsMotionDownThenDisablesThenSendsPreOperational) {
+TEST_F(NetworkShutdown, RampsMotionDownThenDisablesThenSendsPreOperational) {
   world.enable();
   ASSERT_TRUE(world.move({1.0, -1.0}, 1.0).success);
   world.run(500ms);  // 1.5 rad/s
@@ -58,7 +58,7 @@ TEST_F(RobotShutdown, RampsMotionDownThenDisablesThenSendsPreOperational) {
   EXPECT_TRUE(world.sent.empty());
 }
 
-TEST_F(RobotShutdown, EndsInTimeThoughTheDrivesDoNotObey) {
+TEST_F(NetworkShutdown, EndsInTimeThoughTheDrivesDoNotObey) {
   world.enable();
   ASSERT_TRUE(world.move({1.0, -1.0}, 1.0).success);
   world.run(500ms);
@@ -68,21 +68,21 @@ TEST_F(RobotShutdown, EndsInTimeThoughTheDrivesDoNotObey) {
   expectPreOperationalLast();
 }
 
-TEST_F(RobotShutdown, EndsInTimeThoughNobodyIsThere) {
+TEST_F(NetworkShutdown, EndsInTimeThoughNobodyIsThere) {
   world.enable();
   for (auto& drive : world.drives) drive.silent = true;
   ASSERT_TRUE(shutDownIn(2s));
   expectPreOperationalLast();
 }
 
-TEST_F(RobotShutdown, EndsWhileTheDrivesBoot) {
+TEST_F(NetworkShutdown, EndsWhileTheDrivesBoot) {
   world.network.start(world.now);
   world.run(10ms);
   ASSERT_TRUE(shutDownIn(2s));
   expectPreOperationalLast();
 }
 
-TEST_F(RobotShutdown, GivesAllPendingRepliesAndTakesNoMoreCommands) {
+TEST_F(NetworkShutdown, GivesAllPendingRepliesAndTakesNoMoreCommands) {
   world.enable();
   world.drives[0].deaf_to_controlword = true;
   const auto disable = world.begin(ProcedureKind::disable, "shoulder");
@@ -101,7 +101,7 @@ TEST_F(RobotShutdown, GivesAllPendingRepliesAndTakesNoMoreCommands) {
             "refused: the driver is shutting down");
 }
 
-TEST_F(RobotShutdown, AnswersWhatRunsOnceOnlyAndWhatIsReadWithTheReason) {
+TEST_F(NetworkShutdown, AnswersWhatRunsOnceOnlyAndWhatIsReadWithTheReason) {
   config::RobotConfig config = test::testRobot();
   config.axes[0].homing = test::homingOfOrder(0);
   RobotWorld homing(config);
@@ -126,7 +126,7 @@ TEST_F(RobotShutdown, AnswersWhatRunsOnceOnlyAndWhatIsReadWithTheReason) {
                     HasSubstr("ended by the shutdown of the driver")));
 }
 
-TEST_F(RobotShutdown, AnswersAnNmtCommandOnceThoughItIsDoneMeanwhile) {
+TEST_F(NetworkShutdown, AnswersAnNmtCommandOnceThoughItIsDoneMeanwhile) {
   world.boot();
   ASSERT_TRUE(world.call(ProcedureKind::enable, "shoulder").success);
   world.drives[0].deaf_to_controlword = true;  // the shutdown waits for it
@@ -137,7 +137,7 @@ TEST_F(RobotShutdown, AnswersAnNmtCommandOnceThoughItIsDoneMeanwhile) {
   EXPECT_THAT(answers->front().message, HasSubstr("ended by the shutdown of the driver"));
 }
 
-TEST_F(RobotShutdown, IsFollowedByNoSync) {
+TEST_F(NetworkShutdown, IsFollowedByNoSync) {
   world.boot();
   ASSERT_TRUE(shutDownIn(2s));
   world.sent.clear();

@@ -20,7 +20,7 @@ using testing::HasSubstr;
 using testing::Not;
 using namespace std::chrono_literals;
 
-TEST(RobotLss, GivesNodeIdsOneAfterTheOtherAndBootsTheDrivesThen) {
+TEST(NetworkLss, GivesNodeIdsOneAfterTheOtherAndBootsTheDrivesThen) {
   LssWorld world(2);
   world.network.start(world.now);
   world.run(1ms);
@@ -40,7 +40,7 @@ TEST(RobotLss, GivesNodeIdsOneAfterTheOtherAndBootsTheDrivesThen) {
   EXPECT_EQ(world.shown().axes[0].words.problem.str(), "");
 }
 
-TEST(RobotLss, ADriveThatIsNotThereIsToldOnceAndLookedForEveryFiveSeconds) {
+TEST(NetworkLss, ADriveThatIsNotThereIsToldOnceAndLookedForEveryFiveSeconds) {
   LssWorld world(1);
   world.takeAway(0);
   world.network.start(world.now);
@@ -73,7 +73,7 @@ TEST(RobotLss, ADriveThatIsNotThereIsToldOnceAndLookedForEveryFiveSeconds) {
   EXPECT_EQ(world.shown().axes[0].words.problem.str(), "");
 }
 
-TEST(RobotLss, ANodeIdIsStoredWhereTheConfigurationSaysSo) {
+TEST(NetworkLss, ANodeIdIsStoredWhereTheConfigurationSaysSo) {
   config::RobotConfig config = byIdentity(2);
   config.devices[1].lss->store = true;
   LssWorld world(2, config);
@@ -83,7 +83,7 @@ TEST(RobotLss, ANodeIdIsStoredWhereTheConfigurationSaysSo) {
   EXPECT_EQ(world.slaves[1].stored, 2);
 }
 
-TEST(RobotLss, AnAxisThatIsNotLookedForShowsWhatItDoesItself) {
+TEST(NetworkLss, AnAxisThatIsNotLookedForShowsWhatItDoesItself) {
   LssWorld world(1);
   world.takeAway(0);
   world.network.start(world.now);
@@ -103,7 +103,7 @@ TEST(RobotLss, AnAxisThatIsNotLookedForShowsWhatItDoesItself) {
   EXPECT_NE(world.shown().axes[1].words.step.str().rfind("LSS: ", 0), 0u);
 }
 
-TEST(RobotLss, RecoverAloneBeginsWithTheNodeId) {
+TEST(NetworkLss, RecoverAloneBeginsWithTheNodeId) {
   LssWorld world(1);
   world.network.start(world.now);
   ASSERT_TRUE(ready(world)) << world.allEvents();
@@ -132,7 +132,7 @@ TEST(RobotLss, RecoverAloneBeginsWithTheNodeId) {
   EXPECT_TRUE(world.drives[0].enabled());
 }
 
-TEST(RobotLss, AScanTellsWhoseDeviceItIsAndWaitsForTheWindow) {
+TEST(NetworkLss, AScanTellsWhoseDeviceItIsAndWaitsForTheWindow) {
   LssWorld world(1);
   world.takeAway(0);
   world.network.start(world.now);
@@ -167,7 +167,7 @@ TEST(RobotLss, AScanTellsWhoseDeviceItIsAndWaitsForTheWindow) {
   EXPECT_FALSE(world.call(command).success) << "there is one that it cannot name";
 }
 
-TEST(RobotLss, NothingIsScannedOrAssignedWhileAnAxisMayMove) {
+TEST(NetworkLss, NothingIsScannedOrAssignedWhileAnAxisMayMove) {
   LssWorld world(0);
   world.enable();
   LssAssignCommand assign;
@@ -193,7 +193,7 @@ TEST(RobotLss, NothingIsScannedOrAssignedWhileAnAxisMayMove) {
   EXPECT_TRUE(world.call(LssScanCommand{}).success) << "it is not there";
 }
 
-TEST(RobotLss, AssignsNodeIdsThatNobodyHas) {
+TEST(NetworkLss, AssignsNodeIdsThatNobodyHas) {
   LssWorld world(0);
   world.boot();
   LssAssignCommand assign;
@@ -231,7 +231,7 @@ TEST(RobotLss, AssignsNodeIdsThatNobodyHas) {
   EXPECT_THAT(absent.message, AllOf(HasSubstr("serial 44"), HasSubstr("nobody answered")));
 }
 
-TEST(RobotLss, TheNodeIdOfADriveThatWasNeverHeardIsFree) {
+TEST(NetworkLss, TheNodeIdOfADriveThatWasNeverHeardIsFree) {
   LssWorld world(0);
   world.takeAway(1);
   world.network.start(world.now);
@@ -247,7 +247,7 @@ TEST(RobotLss, TheNodeIdOfADriveThatWasNeverHeardIsFree) {
   EXPECT_TRUE(ready(world)) << world.allEvents();
 }
 
-TEST(RobotLss, ARecoveredDriveThatIsThereKeepsItsNodeIdUnasked) {
+TEST(NetworkLss, ARecoveredDriveThatIsThereKeepsItsNodeIdUnasked) {
   LssWorld world(1);
   world.network.start(world.now);
   ASSERT_TRUE(ready(world)) << world.allEvents();
@@ -257,7 +257,7 @@ TEST(RobotLss, ARecoveredDriveThatIsThereKeepsItsNodeIdUnasked) {
   EXPECT_TRUE(world.sentWithId(0x7E5).empty());
 }
 
-TEST(RobotLss, AScanThatDidNotTakePlaceIsNoSuccess) {
+TEST(NetworkLss, AScanThatDidNotTakePlaceIsNoSuccess) {
   LssWorld world(0);
   world.boot();
   world.run(100ms);
@@ -269,7 +269,7 @@ TEST(RobotLss, AScanThatDidNotTakePlaceIsNoSuccess) {
   EXPECT_EQ(second->front().message, "ended by the shutdown of the driver");
 }
 
-TEST(RobotLss, TheDriveOfAnotherAxisDoesNotLoseItsNodeId) {
+TEST(NetworkLss, TheDriveOfAnotherAxisDoesNotLoseItsNodeId) {
   LssWorld world(0);
   world.boot();
   world.run(100ms);
@@ -283,7 +283,7 @@ TEST(RobotLss, TheDriveOfAnotherAxisDoesNotLoseItsNodeId) {
   EXPECT_EQ(world.slaves[0].pending, 1);
 }
 
-TEST(RobotLss, ALostDriveThatComesBackAsAnotherOneIsLeftAlone) {
+TEST(NetworkLss, ALostDriveThatComesBackAsAnotherOneIsLeftAlone) {
   LssWorld world(1);
   world.network.start(world.now);
   ASSERT_TRUE(ready(world)) << world.allEvents();
@@ -300,7 +300,7 @@ TEST(RobotLss, ALostDriveThatComesBackAsAnotherOneIsLeftAlone) {
   EXPECT_EQ(world.health(1), Health::ready);
 }
 
-TEST(RobotLss, TheNodeIdOfADriveThatWasStoppedAndFellSilentIsFree) {
+TEST(NetworkLss, TheNodeIdOfADriveThatWasStoppedAndFellSilentIsFree) {
   LssWorld world(0);
   world.boot();
   world.run(100ms);
@@ -318,7 +318,7 @@ TEST(RobotLss, TheNodeIdOfADriveThatWasStoppedAndFellSilentIsFree) {
   EXPECT_TRUE(assigned.success) << assigned.message;
 }
 
-TEST(RobotLss, ADriveThatWasFoundIsAskedHalfASecondLaterAndHasNoProblemAnyMore) {
+TEST(NetworkLss, ADriveThatWasFoundIsAskedHalfASecondLaterAndHasNoProblemAnyMore) {
   LssWorld world(1);
   world.takeAway(0);
   world.network.start(world.now);

@@ -26,7 +26,7 @@ void lose(LssWorld& world) {
   ASSERT_TRUE(world.runUntil([&] { return world.health(0) == Health::lost; }));
 }
 
-TEST(RobotLssLook, ADriveThatGotItsNodeIdIsAskedOnceItHadTheTimeForItsBootUpMessage) {
+TEST(NetworkLssLook, ADriveThatGotItsNodeIdIsAskedOnceItHadTheTimeForItsBootUpMessage) {
   LssWorld world(1);
   lose(world);
   const auto hear = world.bystanders;
@@ -44,7 +44,7 @@ TEST(RobotLssLook, ADriveThatGotItsNodeIdIsAskedOnceItHadTheTimeForItsBootUpMess
   EXPECT_EQ(world.now - assigned, 500ms);
 }
 
-TEST(RobotLssLook, ThatFindsNobodyAsksNobodyBySdo) {
+TEST(NetworkLssLook, ThatFindsNobodyAsksNobodyBySdo) {
   const auto requests = [](const config::RobotConfig& config, std::size_t unconfigured) {
     LssWorld world(unconfigured, config);
     lose(world);
@@ -56,7 +56,7 @@ TEST(RobotLssLook, ThatFindsNobodyAsksNobodyBySdo) {
   EXPECT_EQ(requests(byIdentity(1), 1), requests(test::testRobot(), 0));
 }
 
-TEST(RobotLssLook, AProblemOfTheNodeIdIsOverOnceTheDriveHasIt) {
+TEST(NetworkLssLook, AProblemOfTheNodeIdIsOverOnceTheDriveHasIt) {
   LssWorld world(1);
   world.takeAway(0);
   world.network.start(world.now);
@@ -71,7 +71,7 @@ TEST(RobotLssLook, AProblemOfTheNodeIdIsOverOnceTheDriveHasIt) {
   EXPECT_THAT(world.shown().axes[0].words.problem.str(), Not(HasSubstr("LSS: ")));
 }
 
-TEST(RobotLssLook, AScanIsRefusedAtOnceWhereAnAxisMayMoveThoughAnotherIsAtWork) {
+TEST(NetworkLssLook, AScanIsRefusedAtOnceWhereAnAxisMayMoveThoughAnotherIsAtWork) {
   LssWorld world(0);
   world.boot();
   world.run(100ms);
@@ -98,7 +98,7 @@ TEST(RobotLssLook, AScanIsRefusedAtOnceWhereAnAxisMayMoveThoughAnotherIsAtWork) 
   EXPECT_EQ(late.message, "refused: elbow (node 2) may be in motion; stop it first");
 }
 
-TEST(RobotLssLook, ARecoverThatWaitsForTheNodeIdEnablesNothingOnceTheAxisWasToStop) {
+TEST(NetworkLssLook, ARecoverThatWaitsForTheNodeIdEnablesNothingOnceTheAxisWasToStop) {
   LssWorld world(1);
   world.network.start(world.now);
   ASSERT_TRUE(ready(world)) << world.allEvents();
@@ -115,7 +115,7 @@ TEST(RobotLssLook, ARecoverThatWaitsForTheNodeIdEnablesNothingOnceTheAxisWasToSt
   EXPECT_FALSE(world.drives[0].enabled());
 }
 
-TEST(RobotLssLook, AShutdownEndsAScanAndItsAnswerSaysSo) {
+TEST(NetworkLssLook, AShutdownEndsAScanAndItsAnswerSaysSo) {
   LssWorld world(0);
   world.boot();
   world.run(100ms);

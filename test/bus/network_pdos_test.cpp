@@ -12,8 +12,8 @@ using test::RobotWorld;
 using testing::HasSubstr;
 using namespace std::chrono_literals;
 
-struct RobotPdos : testing::Test {
-  RobotPdos() {
+struct NetworkPdos : testing::Test {
+  NetworkPdos() {
     world.boot();
     world.run(2s);
   }
@@ -30,12 +30,12 @@ struct RobotPdos : testing::Test {
   RobotWorld world;
 };
 
-TEST_F(RobotPdos, NothingIsToldWhereTheyComeAsTheyShould) {
+TEST_F(NetworkPdos, NothingIsToldWhereTheyComeAsTheyShould) {
   EXPECT_EQ(world.eventsWith("TPDO"), 0u) << world.allEvents();
   EXPECT_EQ(shown(0).words.stale.str(), "");
 }
 
-TEST_F(RobotPdos, OfAWrongLengthAreToldOnceASecondWhileMoreCome) {
+TEST_F(NetworkPdos, OfAWrongLengthAreToldOnceASecondWhileMoreCome) {
   intrude(1);
   world.run(20ms);
   EXPECT_EQ(world.eventsWith("elbow (node 2): TPDO 1 (COB-ID 0x182) came with 2 bytes instead of "
@@ -52,7 +52,7 @@ TEST_F(RobotPdos, OfAWrongLengthAreToldOnceASecondWhileMoreCome) {
   EXPECT_EQ(shown(1).wrong_lengths, 4u);
 }
 
-TEST_F(RobotPdos, ThatDoNotComeAreToldOnceAndShownWhileItLasts) {
+TEST_F(NetworkPdos, ThatDoNotComeAreToldOnceAndShownWhileItLasts) {
   world.drives[1].tpdo_bytes = 0;
   world.run(500ms);
   EXPECT_EQ(world.eventsWith("elbow (node 2): TPDO 1 (COB-ID 0x182) did not come for"), 1u)
@@ -69,7 +69,7 @@ TEST_F(RobotPdos, ThatDoNotComeAreToldOnceAndShownWhileItLasts) {
   EXPECT_EQ(shown(1).words.stale.str(), "");
 }
 
-TEST_F(RobotPdos, WhatWasToldOfTheirLengthIsNotToldAgainWithWhatComesLater) {
+TEST_F(NetworkPdos, WhatWasToldOfTheirLengthIsNotToldAgainWithWhatComesLater) {
   intrude(1);
   world.run(2s);
   ASSERT_EQ(world.eventsWith("bytes instead of"), 1u);
@@ -79,7 +79,7 @@ TEST_F(RobotPdos, WhatWasToldOfTheirLengthIsNotToldAgainWithWhatComesLater) {
   EXPECT_EQ(world.eventsWith("came with 2 bytes instead of"), 1u) << world.allEvents();
 }
 
-TEST_F(RobotPdos, OfADriveThatWasTakenOutOfOperationAreNotMissed) {
+TEST_F(NetworkPdos, OfADriveThatWasTakenOutOfOperationAreNotMissed) {
   const auto answer = world.begin(NmtServiceCommand{"elbow", "pre_operational"});
   world.run(3s);
   ASSERT_EQ(answer->size(), 1u);
@@ -87,7 +87,7 @@ TEST_F(RobotPdos, OfADriveThatWasTakenOutOfOperationAreNotMissed) {
   EXPECT_EQ(world.eventsWith("did not come for"), 0u) << world.allEvents();
 }
 
-TEST_F(RobotPdos, OfAWrongLengthAreToldAtOnceAfterASecondWithoutAny) {
+TEST_F(NetworkPdos, OfAWrongLengthAreToldAtOnceAfterASecondWithoutAny) {
   intrude(1);
   world.run(2500ms);
   intrude(1);

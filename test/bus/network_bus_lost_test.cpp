@@ -13,13 +13,13 @@ using test::RobotWorld;
 using testing::HasSubstr;
 using namespace std::chrono_literals;
 
-struct RobotBusLost : testing::Test {
-  RobotBusLost() { world.enable(); }
+struct NetworkBusLost : testing::Test {
+  NetworkBusLost() { world.enable(); }
   std::string refusal() { return world.begin(ProcedureKind::enable)->at(0).message; }
   RobotWorld world;
 };
 
-TEST_F(RobotBusLost, EndsMotionAndRefusesCommandsWithItsFirstReason) {
+TEST_F(NetworkBusLost, EndsMotionAndRefusesCommandsWithItsFirstReason) {
   ASSERT_TRUE(world.move({1.0, -1.0}, 4.0).success);
   world.run(500ms);
   ASSERT_TRUE(world.group().executing());
@@ -33,7 +33,7 @@ TEST_F(RobotBusLost, EndsMotionAndRefusesCommandsWithItsFirstReason) {
   EXPECT_THAT(refusal(), HasSubstr("refused: can0 is bus-off, nothing reaches the drives"));
 }
 
-TEST_F(RobotBusLost, ItsReturnIsToldWhereItIsNews) {
+TEST_F(NetworkBusLost, ItsReturnIsToldWhereItIsNews) {
   world.network.busBack(true, world.now);
   EXPECT_EQ(world.eventsWith("is back"), 0u) << "it was there";
   world.network.busLost("can0 is bus-off", world.now);
