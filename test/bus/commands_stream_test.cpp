@@ -31,7 +31,7 @@ struct StreamWorld : RobotWorld {
     return answers->empty() ? std::string() : answers->front().message;
   }
   FakeDrive& drive() { return drives[0]; }
-  const AxisMotion& motion() const { return network.cycle().units()[0].motion; }
+  const drive::Axis& shoulder() const { return network.axis(0); }
   /// The target positions of the next `count` cycles.
   std::vector<std::int32_t> targets(std::size_t count) {
     drive().targets.clear();
@@ -53,7 +53,7 @@ TEST(AxisStream, IsForgottenWhenATrajectoryMovesTheAxis) {
   world.run(1s);
   ASSERT_TRUE(world.move({1.0}, 1.0).success);
   world.run(500ms);
-  EXPECT_FALSE(world.motion().driedUp());
+  EXPECT_FALSE(world.shoulder().driedUp());
   world.run(2s);
   EXPECT_EQ(world.drive().position, 100000) << "it does not go back to 0.5 rad";
 }
@@ -149,12 +149,11 @@ TEST(AxisStream, OfAVelocityOrAnEffortIsKeptForAsLongAsTheTimeOutAllows) {
     SCOPED_TRACE(mode);
     StreamWorld world(mode);
     drive::Axis& axis = world.axis(0);
-    AxisMotion motion(axis.config(), test::kPeriod);
-    ASSERT_TRUE(motion.command(axis, 0.5, world.now).ok());
-    motion.step(axis, world.now + 200ms);  // command_timeout
-    EXPECT_FALSE(motion.driedUp());
-    motion.step(axis, world.now + 200ms + 1us);
-    EXPECT_TRUE(motion.driedUp());
+    ASSERT_TRUE(axis.command(0.5, world.now).ok());
+    axis.writeCommands(world.now + 200ms);  // command_timeout
+    EXPECT_FALSE(axis.driedUp());
+    axis.writeCommands(world.now + 200ms + 1us);
+    EXPECT_TRUE(axis.driedUp());
   }
 }
 
@@ -163,54 +162,46 @@ TEST(AxisStream, IsNotAtRestFromTheFirstCycleOn) {
     SCOPED_TRACE(mode);
     StreamWorld world(mode);
     drive::Axis& axis = world.axis(0);
-    AxisMotion motion(axis.config(), test::kPeriod);
-    motion.step(axis, world.now);
-    EXPECT_TRUE(motion.atRest());
-    ASSERT_TRUE(motion.command(axis, 0.5, world.now).ok());
-    motion.step(axis, world.now);
-    EXPECT_FALSE(motion.atRest());
+    axis.writeCommands(world.now);
+    EXPECT_TRUE(axis.streamAtRest());
+    ASSERT_TRUE(axis.command(0.5, world.now).ok());
+    axis.writeCommands(world.now);
+    EXPECT_FALSE(axis.streamAtRest());
   }
 }
 
 TEST(AxisStream, IsAtRestOnceItsStopHasEnded) {
   StreamWorld world("cyclic_position");
   drive::Axis& axis = world.axis(0);
-  AxisMotion motion(axis.config(), test::kPeriod);
   world.run(1ms);  // so that each cycle of the robot lies within a run
-  ASSERT_TRUE(motion.command(axis, 2.0, world.now).ok());
-  const auto run = [&](int cycles) {
-    for (int i = 0; i < cycles; ++i) {
-      motion.step(axis, world.now);
-      world.run(test::kPeriod);
-    }
-  };
-  run(100);
-  motion.stop(axis);
-  run(20);
-  EXPECT_FALSE(motion.atRest()) << "2 rad/s at 10 rad/s² take 200 ms";
-  run(40);
-  EXPECT_TRUE(motion.atRest());
+  ASSERT_TRUE(axis.command(2.0, world.now).ok());
+  world.run(100 * test::kPeriod);
+  axis.stopSetPoint();
+  world.run(20 * test::kPeriod);
+  EXPECT_FALSE(axis.streamAtRest()) << "2 rad/s at 10 rad/s² take 200 ms";
+  world.run(40 * test::kPeriod);
+  EXPECT_TRUE(axis.streamAtRest());
 }
 
 TEST(AxisStream, IsAtRestWhenTheAxisFallsOutOfOperation) {
   StreamWorld world("cyclic_velocity");
   ASSERT_EQ(world.command(0.5), "");
   world.run(150ms);
-  EXPECT_FALSE(world.motion().atRest());
+  EXPECT_FALSE(world.shoulder().streamAtRest());
   world.drive().fault(0x8611);
   world.run(20ms);
-  EXPECT_TRUE(world.motion().atRest());
-  EXPECT_FALSE(world.motion().driedUp());
+  EXPECT_TRUE(world.shoulder().streamAtRest());
+  EXPECT_FALSE(world.shoulder().driedUp());
 }
 
 TEST(AxisStream, AGoalIsAtRestWhenTheDriveHasReachedIt) {
   StreamWorld world("profile_position");
   ASSERT_EQ(world.command(0.5), "");
   world.run(300ms);
-  EXPECT_FALSE(world.motion().atRest());
+  EXPECT_FALSE(world.shoulder().streamAtRest());
   world.run(400ms);
   ASSERT_EQ(world.drive().position, 50000);
-  EXPECT_TRUE(world.motion().atRest());
+  EXPECT_TRUE(world.shoulder().streamAtRest());
 }
 
 TEST(AxisStream, AGoalIsHeldBackToTheLowerLimitOfTheJoint) {

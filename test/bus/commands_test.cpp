@@ -53,7 +53,7 @@ int largestChangeOfStep(const std::vector<std::int32_t>& values) {
 // 2 rad/s * 4 ms = 800 counts, 10 rad/s² * (4 ms)² = 16 counts, each rounded.
 constexpr int kLargestStep = 800 + 1, kLargestChange = 16 + 2;
 
-TEST(AxisMotion, LimitsAStreamedPositionInVelocityAndAcceleration) {
+TEST(AxisCommands, LimitsAStreamedPositionInVelocityAndAcceleration) {
   Rig rig("cyclic_position");
   ASSERT_EQ(rig.command(2.0), "");
   rig.world.run(2s);
@@ -63,21 +63,21 @@ TEST(AxisMotion, LimitsAStreamedPositionInVelocityAndAcceleration) {
   EXPECT_EQ(*std::max_element(rig.drive().targets.begin(), rig.drive().targets.end()), 200000);
 }
 
-TEST(AxisMotion, StopsAStreamedPositionAtTheLimitOfTheJoint) {
+TEST(AxisCommands, StopsAStreamedPositionAtTheLimitOfTheJoint) {
   Rig rig("cyclic_position");
   ASSERT_EQ(rig.command(10.0), "");
   rig.world.run(4s);
   EXPECT_EQ(rig.drive().position, 300000);
 }
 
-TEST(AxisMotion, StopsAStreamedPositionAtTheLowerLimitToo) {
+TEST(AxisCommands, StopsAStreamedPositionAtTheLowerLimitToo) {
   Rig rig("cyclic_position");
   ASSERT_EQ(rig.command(-10.0), "");
   rig.world.run(4s);
   EXPECT_EQ(rig.drive().position, -300000);
 }
 
-TEST(AxisMotion, AJointHasTheLimitsAndTheUnitOfItsAxis) {
+TEST(AxisCommands, AJointHasTheLimitsAndTheUnitOfItsAxis) {
   drive::AxisConfig config = test::testAxis("lift", 3);
   config.joint = "lift_joint";
   config.limits.lower = -0.1;
@@ -102,7 +102,7 @@ TEST(AxisMotion, AJointHasTheLimitsAndTheUnitOfItsAxis) {
   EXPECT_EQ(jointOf(config).unit, motion::JointUnit::radian);
 }
 
-TEST(AxisMotion, GoesOnSmoothlyToItsGoalAfterMissedCycles) {
+TEST(AxisCommands, GoesOnSmoothlyToItsGoalAfterMissedCycles) {
   Rig rig("cyclic_position");
   ASSERT_EQ(rig.command(1.0), "");
   rig.world.run(300ms);  // at 2 rad/s
@@ -115,7 +115,7 @@ TEST(AxisMotion, GoesOnSmoothlyToItsGoalAfterMissedCycles) {
   EXPECT_LE(largestChangeOfStep(rig.drive().targets), kLargestChange);
 }
 
-TEST(AxisMotion, DoesNotGoOnBehindAMotorThatStoodInItsWay) {
+TEST(AxisCommands, DoesNotGoOnBehindAMotorThatStoodInItsWay) {
   Rig rig("cyclic_position");
   ASSERT_EQ(rig.command(1.0), "");
   rig.world.run(100ms);
@@ -129,7 +129,7 @@ TEST(AxisMotion, DoesNotGoOnBehindAMotorThatStoodInItsWay) {
   EXPECT_EQ(rig.drive().position, position);
 }
 
-TEST(AxisMotion, RampsAStreamedVelocityUpAndStopsItByARampWhenTheStreamDriesUp) {
+TEST(AxisCommands, RampsAStreamedVelocityUpAndStopsItByARampWhenTheStreamDriesUp) {
   Rig rig("cyclic_velocity");
   for (int i = 0; i < 25; ++i) {
     ASSERT_EQ(rig.command(1.0), "");
@@ -146,7 +146,7 @@ TEST(AxisMotion, RampsAStreamedVelocityUpAndStopsItByARampWhenTheStreamDriesUp) 
   EXPECT_LE(largestStep(rig.drive().velocities), 4000 + 1);  // 10 rad/s² * 4 ms
 }
 
-TEST(AxisMotion, StopsAStreamedVelocityBeforeThePositionLimit) {
+TEST(AxisCommands, StopsAStreamedVelocityBeforeThePositionLimit) {
   Rig rig("cyclic_velocity");
   for (int i = 0; i < 200; ++i) {
     (void)rig.command(2.0);
@@ -157,7 +157,7 @@ TEST(AxisMotion, StopsAStreamedVelocityBeforeThePositionLimit) {
   EXPECT_LT(rig.drive().target_velocity, 1000);  // 0.01 rad/s, creeping up to it
 }
 
-TEST(AxisMotion, ClampsATorqueAndDropsItWhenTheStreamDriesUp) {
+TEST(AxisCommands, ClampsATorqueAndDropsItWhenTheStreamDriesUp) {
   Rig rig("cyclic_torque");
   ASSERT_EQ(rig.command(8.0), "");
   rig.world.run(50ms);
@@ -169,7 +169,7 @@ TEST(AxisMotion, ClampsATorqueAndDropsItWhenTheStreamDriesUp) {
   EXPECT_EQ(rig.drive().target_torque, 0);
 }
 
-TEST(AxisMotion, SaysThatAStreamDriedUpUnlessItEndedWithAZero) {
+TEST(AxisCommands, SaysThatAStreamDriedUpUnlessItEndedWithAZero) {
   for (const char* const mode : {"cyclic_velocity", "cyclic_torque"}) {
     for (const double last : {0.5, 0.0}) {
       SCOPED_TRACE(std::string(mode) + " that ends with " + std::to_string(last));
@@ -180,14 +180,14 @@ TEST(AxisMotion, SaysThatAStreamDriedUpUnlessItEndedWithAZero) {
       rig.world.run(20ms);
       ASSERT_EQ(rig.command(last), "");
       rig.world.run(190ms);  // command_timeout is 200 ms
-      EXPECT_FALSE(rig.world.unit(0).motion.driedUp());
+      EXPECT_FALSE(rig.world.axis(0).driedUp());
       rig.world.run(20ms);
-      EXPECT_EQ(rig.world.unit(0).motion.driedUp(), last != 0.0);
+      EXPECT_EQ(rig.world.axis(0).driedUp(), last != 0.0);
     }
   }
 }
 
-TEST(AxisMotion, HandsAProfilePositionToTheDriveWithinTheLimits) {
+TEST(AxisCommands, HandsAProfilePositionToTheDriveWithinTheLimits) {
   Rig rig("profile_position");
   ASSERT_EQ(rig.command(0.5), "");
   rig.world.run(1s);
@@ -197,7 +197,7 @@ TEST(AxisMotion, HandsAProfilePositionToTheDriveWithinTheLimits) {
   EXPECT_EQ(rig.drive().position, 300000);
 }
 
-TEST(AxisMotion, DisablesADriveThatPlansItsMotionAtOnceAtShutdown) {
+TEST(AxisCommands, DisablesADriveThatPlansItsMotionAtOnceAtShutdown) {
   Rig rig("profile_position");
   ASSERT_EQ(rig.command(2.0), "");
   rig.world.run(500ms);
@@ -209,7 +209,7 @@ TEST(AxisMotion, DisablesADriveThatPlansItsMotionAtOnceAtShutdown) {
   EXPECT_LT(rig.drive().position, position + 3000);  // 30 ms at 1 rad/s
 }
 
-TEST(AxisMotion, RampsAPositionStreamDownThoughNoAccelerationIsConfigured) {
+TEST(AxisCommands, RampsAPositionStreamDownThoughNoAccelerationIsConfigured) {
   config::RobotConfig config = oneAxis("cyclic_position");
   config.axes[0].limits.acceleration.reset();
   Rig rig(config);
@@ -225,31 +225,25 @@ TEST(AxisMotion, RampsAPositionStreamDownThoughNoAccelerationIsConfigured) {
   EXPECT_NEAR(rig.drive().targets.back() - from, 40000, 800);
 }
 
-TEST(AxisMotion, GoesOnSmoothlyAfterAStop) {
+TEST(AxisCommands, GoesOnSmoothlyAfterAStop) {
   Rig rig("cyclic_position");
   drive::Axis& axis = rig.world.axis(0);
-  AxisMotion motion(axis.config(), test::kPeriod);
-  const auto run = [&](int cycles) {
-    for (int i = 0; i < cycles; ++i) {
-      motion.step(axis, rig.world.now);
-      rig.world.run(test::kPeriod);
-    }
-  };
+  const auto run = [&](int cycles) { rig.world.run(cycles * test::kPeriod); };
   rig.world.run(1ms);  // so that each cycle of the robot lies within a run
-  ASSERT_TRUE(motion.command(axis, 2.0, rig.world.now).ok());
+  ASSERT_TRUE(axis.command(2.0, rig.world.now).ok());
   run(100);
-  motion.stop(axis);
+  axis.stopSetPoint();
   run(20);
-  EXPECT_FALSE(motion.atRest());
-  ASSERT_TRUE(motion.command(axis, 2.0, rig.world.now).ok());
+  EXPECT_FALSE(axis.streamAtRest());
+  ASSERT_TRUE(axis.command(2.0, rig.world.now).ok());
   run(300);
-  EXPECT_TRUE(motion.atRest());
+  EXPECT_TRUE(axis.streamAtRest());
   EXPECT_EQ(rig.drive().targets.back(), 200000);
   EXPECT_LE(largestStep(rig.drive().targets), kLargestStep);
   EXPECT_LE(largestChangeOfStep(rig.drive().targets), kLargestChange);
 }
 
-TEST(AxisMotion, RefusesWhatCannotBeDoneInWords) {
+TEST(AxisCommands, RefusesWhatCannotBeDoneInWords) {
   Rig rig("cyclic_position");
   EXPECT_EQ(rig.command(std::numeric_limits<double>::quiet_NaN()),
             "shoulder: set-point refused: it is not a finite number");
@@ -263,7 +257,7 @@ TEST(AxisMotion, RefusesWhatCannotBeDoneInWords) {
   EXPECT_THAT(rig.command(1.0), AllOf(HasSubstr("shoulder (node 1)"), HasSubstr("not enabled")));
 }
 
-TEST(AxisMotion, ForgetsACommandWhenTheAxisIsDisabled) {
+TEST(AxisCommands, ForgetsACommandWhenTheAxisIsDisabled) {
   Rig rig("cyclic_position");
   ASSERT_EQ(rig.command(2.0), "");
   rig.world.run(400ms);
