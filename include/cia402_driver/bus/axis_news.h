@@ -23,7 +23,6 @@ class AxisNews {
   AxisNews(std::size_t axis, std::string who, Duration patience, EventSink& events)
       : index_(axis), who_(std::move(who)), patience_(patience), events_(&events) {}
 
-  const std::string& who() const { return who_; }
   const AxisWords& words() const { return words_; }
   /// Shows something; nothing happens where it is shown already.
   template <std::size_t N>

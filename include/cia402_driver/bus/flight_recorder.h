@@ -33,8 +33,8 @@ class RecordingLimiter {
 };
 
 /// The last seconds of a bus in fixed memory: frames received and sent, axis states, and what was
-/// told. Stands between a robot and its interface as LoadMeter does. The thread of the bus writes;
-/// it neither waits nor allocates. Another thread takes triggers and copies.
+/// told. Stands between a network and its interface as LoadMeter does. The thread of the bus
+/// writes; it neither waits nor allocates. Another thread takes triggers and copies.
 class FlightRecorder final : public can::Sink {
  public:
   /// Takes all the memory. @param sink where frames go; must outlive the recorder.
@@ -104,7 +104,7 @@ class FlightRecorder final : public can::Sink {
   std::vector<Watched> watched_;
   std::vector<std::uint8_t> groups_;
   std::vector<std::string> group_names_;
-  std::vector<PdoIdentifier> identifiers_;  // fixed once the robot is known, but the COB-IDs:
+  std::vector<PdoIdentifier> identifiers_;  // fixed once the network is known, but the COB-IDs:
   std::vector<std::atomic<std::uint16_t>> cob_ids_;
   SpscQueue<RecordingTrigger> triggers_{64};
   RecordingLimiter emergency_limiter_;      // one for all: a storm of them hides no failure
