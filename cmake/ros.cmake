@@ -35,7 +35,7 @@ add_action_files(FILES Home.action)
 generate_messages(DEPENDENCIES actionlib_msgs std_msgs)
 
 # The modules with sources, for packages that use the library; in the linker's order.
-foreach(module ros sim bus decode config motion drive canopen can common)
+foreach(module ros driver sim bus decode config drive motion yaml canopen fieldbus can common)
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${module}/*.cpp)
   if(sources)
     list(APPEND cia402_libraries cia402_${module})

@@ -23,7 +23,7 @@ import time
 import mutations
 import switches
 
-COPIED = ("cmake", "config", "docs", "fuzz", "include", "src", "test")
+COPIED = ("cmake", "config", "docs", "examples", "fuzz", "include", "src", "test")
 FILES = ("CMakeLists.txt", "README.md")
 MODULES = ("drive", "motion", "canopen", "bus", "config")
 MALFORMED, SAME = "does not compile", "the compiler makes the same program of it"
@@ -251,8 +251,8 @@ def switched(options, folders, say):
 def all_mutations(repository, folders):
     found = []
     for folder in folders:
-        for path in sorted((repository / folder).glob("*")):
-            if path.suffix in (".cpp", ".h"):
+        for path in sorted((repository / folder).rglob("*")):
+            if path.suffix in (".cpp", ".h") and path.parent.name != "main":
                 found += mutations.mutations_of(str(path.relative_to(repository)),
                                                 path.read_text(encoding="utf-8"))
     return found

@@ -11,15 +11,9 @@
 #include "cia402_driver/motion/joint.h"
 #include "cia402_driver/motion/spline.h"
 #include "cia402_driver/motion/trajectory_error.h"
+#include "cia402_driver/motion/trajectory_point.h"
 
 namespace cia402::motion {
-
-/// One point as in trajectory_msgs/JointTrajectoryPoint, its joints already in the group's order
-/// (matchJoints). Velocities and accelerations may be absent; accelerations need velocities.
-struct TrajectoryPoint {
-  std::vector<double> positions, velocities, accelerations;
-  Duration time_from_start{};
-};
 
 class TrajectoryResult;
 
