@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "cia402_driver/bus/jobs/procedure_command.h"
+#include "bus/jobs/procedure_command.h"
 
 namespace cia402::benchmark {
 namespace {

@@ -4,10 +4,10 @@
 #include <cstddef>
 #include <vector>
 
-#include "cia402_driver/bus/flight_recorder.h"
-#include "cia402_driver/bus/load_meter.h"
-#include "cia402_driver/bus/network.h"
-#include "cia402_driver/bus/triple_buffer.h"
+#include "bus/flight_recorder.h"
+#include "bus/load_meter.h"
+#include "bus/network.h"
+#include "bus/triple_buffer.h"
 #include "robots.h"
 #include "scripted_drives.h"
 

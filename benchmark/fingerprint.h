@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "cia402_driver/can/frame.h"
+#include "can/frame.h"
 #include "cia402_driver/common/time.h"
 
 namespace cia402::benchmark {

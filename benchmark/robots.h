@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "cia402_driver/bus/command.h"
-#include "cia402_driver/config/robot.h"
-#include "cia402_driver/sim/world/robot_drives.h"
+#include "bus/command.h"
+#include "config/robot.h"
+#include "sim/world/robot_drives.h"
 
 namespace cia402::benchmark {
 

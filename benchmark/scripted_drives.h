@@ -6,9 +6,9 @@
 #include <map>
 #include <vector>
 
-#include "cia402_driver/can/frame.h"
+#include "can/frame.h"
 #include "cia402_driver/common/time.h"
-#include "cia402_driver/fieldbus/object.h"
+#include "fieldbus/object.h"
 
 namespace cia402::benchmark {
 

@@ -3,8 +3,8 @@
 #include <random>
 #include <stdexcept>
 
-#include "cia402_driver/sim/bus/bit_timing.h"
 #include "figures.h"
+#include "sim/bus/bit_timing.h"
 #include "tools/sdo_bus.h"
 
 namespace cia402::benchmark {

@@ -10,10 +10,10 @@
 #include <thread>
 #include <vector>
 
-#include "cia402_driver/bus/jobs/procedure_command.h"
-#include "cia402_driver/bus/real_clock.h"
-#include "cia402_driver/bus/realtime.h"
-#include "cia402_driver/bus/runner.h"
+#include "bus/jobs/procedure_command.h"
+#include "bus/real_clock.h"
+#include "bus/realtime.h"
+#include "bus/runner.h"
 #include "figures.h"
 #include "robots.h"
 #include "scripted_drives.h"

@@ -29,7 +29,7 @@ function(cia402_fuzz_targets)
     set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
     target_compile_definitions(${target} PRIVATE CIA402_CONFIG_DIR="${PROJECT_SOURCE_DIR}/config")
     # Without YAML where it is not read: such a target is built in a minute.
-    file(STRINGS ${source} above REGEX "#include \"cia402_driver/(drive|config)/")
+    file(STRINGS ${source} above REGEX "#include \"(drive|config)/")
     set(module cia402_canopen)
     if(above)
       set(module cia402_config)

@@ -2,7 +2,7 @@
 #include <sstream>
 #include <string>
 
-#include "cia402_driver/can/candump_log.h"
+#include "can/candump_log.h"
 #include "input.h"
 
 // The reader of candump logs on any bytes. What it takes for an entry must read back equal, but for

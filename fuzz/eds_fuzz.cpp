@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <string_view>
 
-#include "cia402_driver/canopen/eds/eds.h"
+#include "canopen/eds/eds.h"
 #include "input.h"
 
 // The EDS reader on any bytes. What was read is written as a DCF and

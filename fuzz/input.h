@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "cia402_driver/can/frame.h"
+#include "can/frame.h"
 
 /// What libFuzzer calls, and test/fuzz for each file of the corpus.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);

@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/canopen/pdo/image.h"
+#include "canopen/pdo/image.h"
 #include "input.h"
 
 // The process image with any mapping and any frames. An output that is packed into a frame and

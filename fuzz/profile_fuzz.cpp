@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <string>
 
-#include "cia402_driver/config/drive_family.h"
+#include "config/drive_family.h"
 #include "input.h"
 
 // Drive profiles of any bytes: problems, never a crash.

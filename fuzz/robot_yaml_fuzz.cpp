@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <string>
 
-#include "cia402_driver/config/robot.h"
+#include "config/robot.h"
 #include "input.h"
 
 // Robot configurations of any YAML: problems, never a crash. What has none makes a master's

@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "cia402_driver/can/pacer.h"
-#include "cia402_driver/canopen/sdo/client.h"
+#include "can/pacer.h"
+#include "canopen/sdo/client.h"
 #include "input.h"
 
 // The SDO client with any frames at any times, in every phase of every kind of transfer. Half of

@@ -32,7 +32,7 @@ MAY_INCLUDE = {
 # must not do so here, or a mistake would meet itself on both ends of the wire and stay unseen.
 SIM_MAY_NOT_INCLUDE = re.compile(
     r"canopen/(sdo/|pdo/|emcy/|sync/|node/|boot/|nmt/(heartbeat|node_guarding)|master)"
-    r"|fieldbus/(bytes|emergency|device)|drive/(axis\.h|state_machine|conversion)")
+    r"|fieldbus/(bytes|emergency|device)|drive/(axis/(axis\.h|state_machine)|profile/conversion)")
 
 SANS_IO = MODEL + ["decode", "sim"]
 # The edge of can/ towards the kernel.

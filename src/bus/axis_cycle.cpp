@@ -1,11 +1,11 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/bus/axis_cycle.h"
+#include "bus/axis_cycle.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "cia402_driver/bus/reply.h"
+#include "bus/reply.h"
 
 namespace cia402::bus {
 namespace {

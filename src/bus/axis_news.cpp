@@ -1,10 +1,10 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/bus/axis_news.h"
+#include "bus/axis_news.h"
 
 #include <algorithm>
 
+#include "bus/axis_condition.h"
 #include "bus/words.h"
-#include "cia402_driver/bus/axis_condition.h"
 
 namespace cia402::bus {
 namespace {

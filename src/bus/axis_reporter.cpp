@@ -1,11 +1,11 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/bus/axis_reporter.h"
+#include "bus/axis_reporter.h"
 
 #include <algorithm>
 #include <utility>
 
 #include "bus/words.h"
-#include "cia402_driver/drive/fault_text.h"
+#include "drive/profile/fault_text.h"
 
 namespace cia402::bus {
 namespace {

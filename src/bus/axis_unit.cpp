@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/bus/axis_unit.h"
+#include "bus/axis_unit.h"
 
 namespace cia402::bus {
 
@@ -20,6 +20,10 @@ void AxisUnit::fill(AxisSnapshot& snapshot) const {
   snapshot.procedure = axis.procedure().kind;
   snapshot.procedure_running = axis.procedure().running;
   snapshot.missed_feedback = missed_feedback;
+  if (snapshot.signals_version != signals.version()) {
+    snapshot.signals = signals.values();
+    snapshot.signals_version = signals.version();
+  }
   if (snapshot.words.version != news.words().version) snapshot.words = news.words();
 }
 

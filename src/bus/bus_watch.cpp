@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/bus/bus_watch.h"
+#include "bus/bus_watch.h"
 
 namespace cia402::bus {
 namespace {

@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/bus/load_meter.h"
+#include "bus/load_meter.h"
 
-#include "cia402_driver/can/frame_bits.h"
+#include "can/frame_bits.h"
 
 namespace cia402::bus {
 

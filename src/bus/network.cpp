@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/bus/network.h"
+#include "bus/network.h"
 
 #include <algorithm>
 #include <utility>
@@ -7,8 +7,8 @@
 #include "bus/canopen/lss_supervisor.h"
 #include "bus/canopen/node_unit.h"
 #include "bus/canopen/start_up.h"
-#include "cia402_driver/canopen/received_identifiers.h"
-#include "cia402_driver/drive/fault_text.h"
+#include "canopen/received_identifiers.h"
+#include "drive/profile/fault_text.h"
 
 namespace cia402::bus {
 namespace {

@@ -1,9 +1,9 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/bus/recording.h"
+#include "bus/recording.h"
 
 #include <algorithm>
 
-#include "cia402_driver/decode/value_text.h"
+#include "decode/value_text.h"
 
 namespace cia402::bus {
 namespace {

@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/bus/recording_files.h"
+#include "bus/recording_files.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -10,7 +10,7 @@
 #include <system_error>
 #include <vector>
 
-#include "cia402_driver/bus/recording_text.h"
+#include "bus/recording_text.h"
 
 namespace cia402::bus {
 namespace {

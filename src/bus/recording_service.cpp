@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/bus/recording_service.h"
+#include "bus/recording_service.h"
 
 #include <pthread.h>
 #include <sys/resource.h>
@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "cia402_driver/bus/real_clock.h"
+#include "bus/real_clock.h"
 
 namespace cia402::bus {
 namespace {

@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/bus/recording_text.h"
+#include "bus/recording_text.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <ctime>
 #include <ostream>
 
-#include "cia402_driver/drive/axis.h"
+#include "drive/axis/axis.h"
 
 namespace cia402::bus {
 namespace {

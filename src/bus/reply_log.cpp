@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/bus/reply_log.h"
+#include "bus/reply_log.h"
 
-#include "cia402_driver/bus/real_clock.h"
+#include "bus/real_clock.h"
 
 namespace cia402::bus {
 namespace {

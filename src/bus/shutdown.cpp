@@ -1,9 +1,9 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/bus/shutdown.h"
+#include "bus/shutdown.h"
 
 #include <algorithm>
 
-#include "cia402_driver/bus/axis_cycle.h"
+#include "bus/axis_cycle.h"
 
 namespace cia402::bus {
 namespace {

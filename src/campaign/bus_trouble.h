@@ -2,7 +2,7 @@
 #pragma once
 
 #include "campaign/session.h"
-#include "cia402_driver/sim/bus/faults.h"
+#include "sim/bus/faults.h"
 
 namespace cia402::campaign {
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <utility>
 
-#include "cia402_driver/bus/canopen/history_command.h"
-#include "cia402_driver/bus/canopen/nmt_command.h"
-#include "cia402_driver/bus/jobs/object_commands.h"
-#include "cia402_driver/bus/jobs/procedure_command.h"
+#include "bus/canopen/history_command.h"
+#include "bus/canopen/nmt_command.h"
+#include "bus/jobs/object_commands.h"
+#include "bus/jobs/procedure_command.h"
 
 namespace cia402::campaign {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "cia402_driver/can/candump_log.h"
+#include "can/candump_log.h"
 
 namespace cia402::campaign {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include "cia402_driver/bus/jobs/procedure_command.h"
+#include "bus/jobs/procedure_command.h"
 
 namespace cia402::campaign {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "campaign/scene.h"
-#include "cia402_driver/sim/world/robot_drives.h"
-#include "cia402_driver/sim/world/sync_producer.h"
+#include "sim/world/robot_drives.h"
+#include "sim/world/sync_producer.h"
 #include "tools/virtual_host.h"
 
 namespace cia402::campaign {

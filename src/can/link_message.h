@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "cia402_driver/can/link_settings.h"
+#include "can/link_settings.h"
 
 namespace cia402::can {
 

@@ -1,10 +1,10 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/can/pacer.h"
+#include "can/pacer.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "cia402_driver/can/frame_bits.h"
+#include "can/frame_bits.h"
 
 namespace cia402::can {
 namespace {

@@ -10,10 +10,10 @@
 #include <optional>
 #include <vector>
 
+#include "can/bus.h"
+#include "can/frame.h"
+#include "can/socketcan.h"
 #include "can/wall_clock.h"
-#include "cia402_driver/can/bus.h"
-#include "cia402_driver/can/frame.h"
-#include "cia402_driver/can/socketcan.h"
 
 namespace cia402::can {
 

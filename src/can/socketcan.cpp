@@ -1,15 +1,15 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/can/socketcan.h"
+#include "can/socketcan.h"
 
 #include <cerrno>
 #include <system_error>
 #include <utility>
 
+#include "can/error_frame.h"
 #include "can/link_probe.h"
+#include "can/link_settings.h"
 #include "can/raw_socket.h"
 #include "can/wall_clock.h"
-#include "cia402_driver/can/error_frame.h"
-#include "cia402_driver/can/link_settings.h"
 
 namespace cia402::can {
 

@@ -1,6 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/config/robot.h"
 #include "config/pdo_packing.h"
+#include "config/robot.h"
 
 namespace cia402::config {
 namespace {

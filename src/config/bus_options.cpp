@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "cia402_driver/drive/named_write.h"
 #include "config/robot_parts.h"
+#include "drive/profile/named_write.h"
 
 namespace cia402::config {
 namespace {

@@ -1,10 +1,10 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "cia402_driver/drive/conversion.h"
-#include "cia402_driver/drive/named_write.h"
 #include "config/pdo_planner.h"
 #include "config/robot_parts.h"
+#include "drive/profile/conversion.h"
+#include "drive/profile/named_write.h"
 
 namespace cia402::config {
 namespace {

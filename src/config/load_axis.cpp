@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "cia402_driver/config/drive_family.h"
+#include "config/drive_family.h"
 #include "config/profile/parts.h"
 #include "config/robot_parts.h"
 

@@ -3,9 +3,9 @@
 #include <cstdio>
 #include <map>
 
-#include "cia402_driver/drive/named_write.h"
-#include "cia402_driver/drive/state_machine.h"
 #include "config/robot_parts.h"
+#include "drive/axis/state_machine.h"
+#include "drive/profile/named_write.h"
 
 namespace cia402::config {
 namespace {

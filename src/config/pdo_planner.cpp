@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "cia402_driver/fieldbus/object.h"
 #include "config/pdo_packing.h"
+#include "fieldbus/object.h"
 
 namespace cia402::config {
 namespace {

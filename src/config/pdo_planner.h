@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "cia402_driver/canopen/device_profile.h"
+#include "canopen/device_profile.h"
 #include "cia402_driver/common/result.h"
 #include "cia402_driver/common/time.h"
-#include "cia402_driver/drive/profile.h"
+#include "drive/profile/profile.h"
 
 namespace cia402::config {
 

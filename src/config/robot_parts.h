@@ -6,8 +6,8 @@
 #include <set>
 #include <string>
 
-#include "cia402_driver/config/robot.h"
-#include "cia402_driver/yaml/reader.h"
+#include "config/robot.h"
+#include "yaml/reader.h"
 
 // The parts of a robot configuration, each read by a function of its own.
 namespace cia402::config {

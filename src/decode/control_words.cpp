@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Statusword and controlword (CiA 402-2) in words.
-#include "cia402_driver/decode/value_text.h"
-#include "cia402_driver/drive/state_machine.h"
+#include "decode/value_text.h"
+#include "drive/axis/state_machine.h"
 
 namespace cia402::decode {
 namespace {

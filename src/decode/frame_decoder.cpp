@@ -1,11 +1,11 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/decode/frame_decoder.h"
+#include "decode/frame_decoder.h"
 
 #include <cstdio>
 
-#include "cia402_driver/can/error_frame.h"
-#include "cia402_driver/canopen/nmt/nmt.h"
-#include "cia402_driver/fieldbus/emergency.h"
+#include "can/error_frame.h"
+#include "canopen/nmt/nmt.h"
+#include "fieldbus/emergency.h"
 
 namespace cia402::decode {
 namespace {

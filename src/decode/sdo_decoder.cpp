@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/decode/sdo_decoder.h"
+#include "decode/sdo_decoder.h"
 
-#include "cia402_driver/fieldbus/abort_code.h"
+#include "fieldbus/abort_code.h"
 
 namespace cia402::decode {
 namespace {

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdio>
 
-#include "cia402_driver/decode/frame_decoder.h"
+#include "decode/frame_decoder.h"
 
 namespace cia402::decode {
 namespace {

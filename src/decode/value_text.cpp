@@ -1,13 +1,13 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/decode/value_text.h"
+#include "decode/value_text.h"
 
 #include <array>
 #include <cctype>
 #include <cstdio>
 
-#include "cia402_driver/decode/object_names.h"
-#include "cia402_driver/drive/object_value.h"
-#include "cia402_driver/fieldbus/emergency.h"
+#include "decode/object_names.h"
+#include "drive/profile/object_value.h"
+#include "fieldbus/emergency.h"
 
 namespace cia402::decode {
 namespace {

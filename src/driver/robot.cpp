@@ -5,19 +5,19 @@
 #include <optional>
 #include <utility>
 
-#include "cia402_driver/bus/axis_condition.h"
-#include "cia402_driver/bus/jobs/object_commands.h"
-#include "cia402_driver/bus/jobs/procedure_command.h"
-#include "cia402_driver/bus/mpsc_queue.h"
-#include "cia402_driver/bus/real_clock.h"
-#include "cia402_driver/bus/runner.h"
-#include "cia402_driver/can/socketcan.h"
-#include "cia402_driver/canopen/cyclic_identifiers.h"
-#include "cia402_driver/canopen/received_identifiers.h"
-#include "cia402_driver/config/ready_robot.h"
-#include "cia402_driver/sim/world/robot_drives.h"
-#include "cia402_driver/sim/world/simulated_interface.h"
-#include "cia402_driver/yaml/reader.h"
+#include "bus/axis_condition.h"
+#include "bus/jobs/object_commands.h"
+#include "bus/jobs/procedure_command.h"
+#include "bus/mpsc_queue.h"
+#include "bus/real_clock.h"
+#include "bus/runner.h"
+#include "can/socketcan.h"
+#include "canopen/cyclic_identifiers.h"
+#include "canopen/received_identifiers.h"
+#include "config/ready_robot.h"
+#include "sim/world/robot_drives.h"
+#include "sim/world/simulated_interface.h"
+#include "yaml/reader.h"
 
 namespace cia402 {
 namespace {

@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/fieldbus/device.h"
+#include "fieldbus/device.h"
 
 namespace cia402::fieldbus {
 

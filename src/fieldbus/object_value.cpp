@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <cstring>
 
-#include "cia402_driver/fieldbus/object_dictionary.h"
+#include "fieldbus/object_dictionary.h"
 
 namespace cia402::fieldbus {
 namespace {

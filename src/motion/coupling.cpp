@@ -1,11 +1,11 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/motion/coupling.h"
+#include "motion/coupling.h"
 
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <algorithm>
 
-#include "cia402_driver/motion/joint.h"
+#include "motion/joint.h"
 
 namespace cia402::motion {
 

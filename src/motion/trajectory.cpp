@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/motion/trajectory.h"
+#include "motion/trajectory.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "cia402_driver/motion/trajectory.h"
+#include "motion/trajectory.h"
 
 namespace cia402::motion {
 

@@ -1,12 +1,12 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/ros/call_desk.h"
+#include "ros/call_desk.h"
 
 #include <ros/advertise_service_options.h>
 #include <std_srvs/Trigger.h>
 
 #include <utility>
 
-#include "cia402_driver/ros/command_call.h"
+#include "ros/command_call.h"
 
 namespace cia402::ros_node {
 

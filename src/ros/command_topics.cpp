@@ -1,9 +1,9 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/ros/command_topics.h"
+#include "ros/command_topics.h"
 
 #include <boost/function.hpp>
 
-#include "cia402_driver/ros/clock_map.h"
+#include "ros/clock_map.h"
 
 namespace cia402::ros_node {
 

@@ -1,16 +1,17 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/ros/diagnostics.h"
+#include "ros/diagnostics.h"
 
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <ros/console.h>
 
 #include <cmath>
 
-#include "cia402_driver/bus/axis_condition.h"
-#include "cia402_driver/bus/real_clock.h"
-#include "cia402_driver/can/error_frame.h"
-#include "cia402_driver/drive/fault_text.h"
-#include "cia402_driver/ros/publishers.h"
+#include "bus/axis_condition.h"
+#include "bus/jobs/object_text.h"
+#include "bus/real_clock.h"
+#include "can/error_frame.h"
+#include "drive/profile/fault_text.h"
+#include "ros/publishers.h"
 
 namespace cia402::ros_node {
 namespace {
@@ -54,6 +55,20 @@ void addValue(diagnostic_updater::DiagnosticStatusWrapper& status, const std::st
               double value, const char* unit, Duration age) {
   status.add(key, withUnit(value, unit));
   status.add(key + " age", withUnit(std::isnan(value) ? value : toSeconds(age), "s"));
+}
+
+/// A value that the profile names to be shown, as read_object shows it, and how old it is.
+void addSignal(diagnostic_updater::DiagnosticStatusWrapper& status, const drive::AxisConfig& axis,
+               const drive::ShownSignal& signal, Duration age) {
+  if (signal.object == nullptr) return;  // the drive lacks it
+  const std::string& name = signal.object->name;
+  const unsigned size = fieldbus::sizeBits(signal.object->type) / 8;
+  status.add(
+      name,
+      !signal.known
+          ? "unknown"
+          : bus::describeObject(signal.object, axis, fieldbus::toBytes(signal.raw, size)).value);
+  status.add(name + " age", signal.known ? withUnit(toSeconds(age), "s") : "unknown");
 }
 
 /// "emergencies: 1234", then a line for each code.
@@ -279,6 +294,9 @@ void Diagnostics::reportAxis(std::size_t index, Status& status) {
   add("velocity", state.velocity, linear ? "m/s" : "rad/s", state.stamps.velocity);
   add("effort", state.effort, linear ? "N" : "N m", state.stamps.effort);
   add("following error", state.following_error, linear ? "m" : "rad", state.stamps.following_error);
+  for (const drive::ShownSignal& signal : axis.signals) {
+    addSignal(status, config, signal, snapshot_.now - signal.stamp);
+  }
 }
 
 }  // namespace cia402::ros_node

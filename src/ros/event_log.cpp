@@ -1,10 +1,10 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/ros/event_log.h"
+#include "ros/event_log.h"
 
 #include <cia402_driver/Emergency.h>
 #include <ros/console.h>
 
-#include "cia402_driver/ros/clock_map.h"
+#include "ros/clock_map.h"
 
 namespace cia402::ros_node {
 

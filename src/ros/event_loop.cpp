@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/ros/event_loop.h"
+#include "ros/event_loop.h"
 
 #include <poll.h>
 #include <sys/eventfd.h>
@@ -9,7 +9,7 @@
 #include <system_error>
 #include <utility>
 
-#include "cia402_driver/bus/real_clock.h"
+#include "bus/real_clock.h"
 
 namespace cia402::ros_node {
 namespace {

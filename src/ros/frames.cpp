@@ -1,12 +1,12 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/ros/frames.h"
+#include "ros/frames.h"
 
 #include <tf2/LinearMath/Quaternion.h>
 #include <tf2/LinearMath/Transform.h>
 
 #include <cmath>
 
-#include "cia402_driver/ros/clock_map.h"
+#include "ros/clock_map.h"
 
 namespace cia402::ros_node {
 

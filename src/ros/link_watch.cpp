@@ -1,12 +1,12 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/ros/link_watch.h"
+#include "ros/link_watch.h"
 
 #include <ros/console.h>
 
 #include <algorithm>
 
-#include "cia402_driver/bus/real_clock.h"
-#include "cia402_driver/can/socketcan.h"
+#include "bus/real_clock.h"
+#include "can/socketcan.h"
 
 namespace cia402::ros_node {
 namespace {

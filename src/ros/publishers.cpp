@@ -1,12 +1,12 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/ros/publishers.h"
+#include "ros/publishers.h"
 
 #include <control_msgs/JointTrajectoryControllerState.h>
 
 #include <cmath>
 #include <limits>
 
-#include "cia402_driver/ros/clock_map.h"
+#include "ros/clock_map.h"
 
 namespace cia402::ros_node {
 namespace {

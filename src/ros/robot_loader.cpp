@@ -1,12 +1,12 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/ros/robot_loader.h"
+#include "ros/robot_loader.h"
 
 #include <ros/console.h>
 #include <ros/package.h>
 
 #include <utility>
 
-#include "cia402_driver/config/ready_robot.h"
+#include "config/ready_robot.h"
 
 namespace cia402::ros_node {
 namespace {

@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "cia402_driver/can/pacer.h"
-#include "cia402_driver/canopen/sdo/client.h"
-#include "cia402_driver/sim/bus/bus.h"
-#include "cia402_driver/sim/device/device.h"
+#include "can/pacer.h"
+#include "canopen/sdo/client.h"
+#include "sim/bus/bus.h"
+#include "sim/device/device.h"
 
 namespace cia402::tools {
 

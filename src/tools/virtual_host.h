@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "cia402_driver/bus/bus_loop.h"
-#include "cia402_driver/sim/bus/interface.h"
-#include "cia402_driver/sim/world/world.h"
+#include "bus/bus_loop.h"
+#include "sim/bus/interface.h"
+#include "sim/world/world.h"
 
 namespace cia402::tools {
 

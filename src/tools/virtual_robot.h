@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "cia402_driver/bus/flight_recorder.h"
-#include "cia402_driver/bus/jobs/procedure_command.h"
-#include "cia402_driver/bus/network.h"
-#include "cia402_driver/sim/world/robot_drives.h"
-#include "cia402_driver/sim/world/world.h"
+#include "bus/flight_recorder.h"
+#include "bus/jobs/procedure_command.h"
+#include "bus/network.h"
+#include "sim/world/robot_drives.h"
+#include "sim/world/world.h"
 
 namespace cia402::tools {
 

@@ -1,6 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // What a DCF is made of where no EDS tells what the drive holds.
-#include "cia402_driver/bus/canopen/dcf_draft.h"
+#include "bus/canopen/dcf_draft.h"
 
 #include <gmock/gmock.h>
 

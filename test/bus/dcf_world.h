@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
+#include "bus/canopen/dcf_draft.h"
 #include "bus/robot_world.h"
-#include "cia402_driver/bus/canopen/dcf_draft.h"
 
 namespace cia402::bus::test {
 

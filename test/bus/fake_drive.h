@@ -8,9 +8,9 @@
 #include <set>
 #include <vector>
 
-#include "cia402_driver/can/frame.h"
+#include "can/frame.h"
 #include "cia402_driver/common/time.h"
-#include "cia402_driver/fieldbus/object.h"
+#include "fieldbus/object.h"
 
 namespace cia402::bus::test {
 

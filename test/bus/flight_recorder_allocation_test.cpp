@@ -1,8 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include "bus/flight_recorder.h"
 #include "bus/robot_world.h"
-#include "cia402_driver/bus/flight_recorder.h"
 #include "count_allocations.h"
 
 namespace cia402::bus {

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
+#include "bus/flight_recorder.h"
 #include "bus/robot_world.h"
-#include "cia402_driver/bus/flight_recorder.h"
 
 namespace cia402::bus {
 namespace {

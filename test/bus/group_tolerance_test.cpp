@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "bus/group.h"
 #include "bus/robot_world.h"
-#include "cia402_driver/bus/group.h"
 
 namespace cia402::bus {
 namespace {

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "bus/jobs/object_commands.h"
 #include "bus/robot_world.h"
-#include "cia402_driver/bus/jobs/object_commands.h"
 
 namespace cia402::bus {
 namespace {

@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/bus/recording_service.h"
+#include "bus/recording_service.h"
 
 #include <gmock/gmock.h>
 #include <sys/resource.h>
@@ -10,9 +10,9 @@
 #include <optional>
 #include <thread>
 
+#include "bus/real_clock.h"
+#include "bus/recording_text.h"
 #include "bus/robot_world.h"
-#include "cia402_driver/bus/real_clock.h"
-#include "cia402_driver/bus/recording_text.h"
 
 namespace cia402::bus {
 namespace {

@@ -10,16 +10,16 @@
 #include <string>
 #include <vector>
 
+#include "bus/canopen/dcf_command.h"
+#include "bus/canopen/history_command.h"
+#include "bus/canopen/lss_commands.h"
+#include "bus/canopen/nmt_command.h"
 #include "bus/fake_drive.h"
-#include "cia402_driver/bus/canopen/dcf_command.h"
-#include "cia402_driver/bus/canopen/history_command.h"
-#include "cia402_driver/bus/canopen/lss_commands.h"
-#include "cia402_driver/bus/canopen/nmt_command.h"
-#include "cia402_driver/bus/jobs/object_commands.h"
-#include "cia402_driver/bus/jobs/procedure_command.h"
-#include "cia402_driver/bus/network.h"
-#include "cia402_driver/config/drive_family.h"
-#include "cia402_driver/config/robot.h"
+#include "bus/jobs/object_commands.h"
+#include "bus/jobs/procedure_command.h"
+#include "bus/network.h"
+#include "config/drive_family.h"
+#include "config/robot.h"
 
 namespace cia402::bus::test {
 

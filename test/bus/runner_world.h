@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "bus/robot_world.h"
-#include "cia402_driver/bus/runner.h"
+#include "bus/runner.h"
 
 namespace cia402::bus::test {
 

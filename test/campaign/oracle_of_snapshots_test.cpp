@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "cia402_driver/bus/jobs/procedure_command.h"
+#include "bus/jobs/procedure_command.h"
 #include "oracle_fixture.h"
 
 namespace cia402::campaign {

@@ -1,6 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // What can be seen without a CAN interface; the rest is in test/can_vcan.
-#include "cia402_driver/can/socketcan.h"
+#include "can/socketcan.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <cerrno>
 
+#include "can/link_settings.h"
 #include "can_vcan/vcan_fixture.h"
-#include "cia402_driver/can/link_settings.h"
 
 namespace cia402::can {
 namespace {

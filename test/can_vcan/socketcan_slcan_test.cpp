@@ -10,8 +10,8 @@
 #include <cerrno>
 #include <thread>
 
+#include "can/link_settings.h"
 #include "can_vcan/vcan_fixture.h"
-#include "cia402_driver/can/link_settings.h"
 
 namespace cia402::can {
 namespace {

@@ -22,7 +22,7 @@
 #include <thread>
 #include <vector>
 
-#include "cia402_driver/can/socketcan.h"
+#include "can/socketcan.h"
 
 namespace cia402::can {
 

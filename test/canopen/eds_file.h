@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "cia402_driver/canopen/eds/eds.h"
+#include "canopen/eds/eds.h"
 #include "folders.h"
 
 namespace cia402::canopen::test {

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cia402_driver/canopen/eds/eds.h"
+#include "canopen/eds/eds.h"
 
 namespace cia402::canopen {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "cia402_driver/canopen/eds/eds.h"
+#include "canopen/eds/eds.h"
 
 namespace cia402::canopen {
 namespace {

@@ -7,8 +7,8 @@
 #include <locale>
 #include <string>
 
+#include "canopen/eds/eds.h"
 #include "canopen/eds/problems.h"
-#include "cia402_driver/canopen/eds/eds.h"
 
 namespace cia402::canopen {
 namespace {

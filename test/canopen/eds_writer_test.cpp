@@ -4,8 +4,8 @@
 
 #include <tuple>
 
+#include "canopen/eds/eds.h"
 #include "canopen/eds_file.h"
-#include "cia402_driver/canopen/eds/eds.h"
 
 namespace cia402::canopen {
 namespace {

@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <string>
 
+#include "canopen/lss/task.h"
 #include "canopen/lss_slave.h"
 #include "canopen/scripted_peer.h"
-#include "cia402_driver/canopen/lss/task.h"
 
 namespace cia402::canopen::test {
 

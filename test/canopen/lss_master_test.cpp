@@ -1,11 +1,11 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/canopen/lss/master.h"
+#include "canopen/lss/master.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "canopen/lss/task.h"
 #include "canopen/scripted_peer.h"
-#include "cia402_driver/canopen/lss/task.h"
 
 namespace cia402::canopen {
 namespace {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "cia402_driver/can/bus.h"
+#include "can/bus.h"
 #include "cia402_driver/common/time.h"
 
 namespace cia402::canopen::test {

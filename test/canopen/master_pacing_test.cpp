@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "canopen/master.h"
 #include "canopen/scripted_drive.h"
-#include "cia402_driver/canopen/master.h"
 
 namespace cia402::canopen {
 namespace {

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "canopen/node/node.h"
 #include "canopen/process_objects.h"
 #include "canopen/scripted_drive.h"
 #include "canopen/scripted_peer.h"
-#include "cia402_driver/canopen/node/node.h"
 
 namespace cia402::canopen::test {
 

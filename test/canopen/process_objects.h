@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "cia402_driver/canopen/object.h"
+#include "canopen/object.h"
 
 namespace cia402::canopen::test {
 

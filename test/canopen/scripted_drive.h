@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "canopen/config.h"
 #include "canopen/scripted_peer.h"
-#include "cia402_driver/canopen/config.h"
 
 namespace cia402::canopen::test {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "cia402_driver/can/bus.h"
+#include "can/bus.h"
 
 namespace cia402::canopen::test {
 

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "can/pacer.h"
 #include "canopen/sdo_client_fixture.h"
-#include "cia402_driver/can/pacer.h"
 
 namespace cia402::canopen {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "canopen/scripted_peer.h"
-#include "cia402_driver/canopen/sdo/client.h"
+#include "canopen/sdo/client.h"
 
 namespace cia402::canopen::test {
 

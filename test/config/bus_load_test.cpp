@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "cia402_driver/config/robot.h"
+#include "config/robot.h"
 
 namespace cia402::config {
 namespace {

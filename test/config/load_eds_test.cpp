@@ -7,7 +7,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "cia402_driver/config/robot.h"
+#include "config/robot.h"
 #include "folders.h"
 
 namespace cia402::config {

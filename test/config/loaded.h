@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "cia402_driver/config/robot.h"
+#include "config/robot.h"
 #include "folders.h"
 
 namespace cia402::config {

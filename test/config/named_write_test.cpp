@@ -1,12 +1,12 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/drive/named_write.h"
+#include "drive/profile/named_write.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "cia402_driver/config/drive_family.h"
+#include "config/drive_family.h"
 #include "folders.h"
 
 namespace cia402::drive {

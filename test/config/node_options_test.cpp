@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cia402_driver/config/robot.h"
+#include "config/robot.h"
 #include "folders.h"
 
 namespace cia402::config {

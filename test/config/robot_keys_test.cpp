@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cia402_driver/config/robot.h"
 #include "config/loaded.h"
+#include "config/robot.h"
 
 namespace cia402::config {
 namespace {

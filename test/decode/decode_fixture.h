@@ -5,8 +5,8 @@
 
 #include <string>
 
-#include "cia402_driver/config/robot.h"
-#include "cia402_driver/decode/frame_decoder.h"
+#include "config/robot.h"
+#include "decode/frame_decoder.h"
 #include "folders.h"
 
 namespace cia402::decode::test {

@@ -246,57 +246,6 @@ TEST(AxisFeedback, AFollowingErrorOfATpdoIsNotReadForALook) {
   EXPECT_NEAR(bench.axis.state().following_error, 0.02, 1e-9);
 }
 
-TEST(AxisFeedback, ASignalOfTheProfileIsReadForALookAndGetsOld) {
-  DriveProfile profile = withObject(test::object("drive_temperature", 0x2200, DataType::int16));
-  profile.signals = {"drive_temperature"};
-  Bench bench(testConfig(profile));
-  bench.drive.dictionary[{0x2200, 0}] = {0xFFF6, 2};  // -10
-  ASSERT_TRUE(bench.boot());
-  bench.run(milliseconds(400));
-  ASSERT_EQ(bench.axis.signals(bench.now).size(), 1u);
-  EXPECT_FALSE(bench.axis.signals(bench.now)[0].known) << "nobody has looked";
-  bench.axis.look();
-  const Time looked = bench.now;
-  bench.run(milliseconds(200));
-  const ShownSignal shown = bench.axis.signals(bench.now)[0];
-  ASSERT_TRUE(shown.known);
-  EXPECT_EQ(shown.object->name, "drive_temperature");
-  EXPECT_EQ(shown.raw, 0xFFF6u);
-  EXPECT_GE(shown.stamp, looked);
-  EXPECT_LE(shown.stamp, looked + milliseconds(100));
-  bench.run(milliseconds(2600));
-  EXPECT_FALSE(bench.axis.signals(bench.now)[0].known) << "older than two looks a second apart";
-}
-
-TEST(AxisFeedback, ASignalThatTheDriveLacksHasNoObject) {
-  DriveProfile profile = withObject(test::object("drive_temperature", 0x2200, DataType::int16));
-  profile.signals = {"drive_temperature"};
-  AxisConfig config = testConfig(profile);
-  config.lacks = {"drive_temperature"};
-  Bench bench(config);
-  ASSERT_TRUE(bench.boot());
-  bench.axis.look();
-  bench.run(milliseconds(200));
-  EXPECT_EQ(bench.axis.signals(bench.now)[0].object, nullptr);
-  EXPECT_FALSE(bench.axis.signals(bench.now)[0].known);
-}
-
-TEST(AxisFeedback, ASignalThatATpdoBringsIsNotReadForALook) {
-  DriveProfile profile = withObject(test::object("drive_temperature", 0x2200, DataType::int16));
-  profile.signals = {"drive_temperature"};
-  test::Layout layout = test::testLayout();
-  layout.inputs.push_back(test::thirdInput({0x2200, 0}, 16));
-  Bench bench(testConfig(profile), layout);
-  bench.drive.dictionary[{0x2200, 0}] = {100, 2};
-  ASSERT_TRUE(bench.boot());
-  bench.axis.look();
-  bench.run(milliseconds(200));
-  EXPECT_FALSE(bench.axis.signals(bench.now)[0].known);
-  bench.bring({0x2200, 0}, 200);
-  bench.cycle();
-  EXPECT_EQ(bench.axis.signals(bench.now)[0].raw, 200u);
-}
-
 TEST(AxisFeedback, APositionThatEndsTakesTheFeedbackAlong) {
   test::Layout layout = test::testLayout();
   layout.inputs[0].objects = {{{0x6041, 0}, 16}};

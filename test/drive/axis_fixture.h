@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-#include "cia402_driver/drive/axis.h"
+#include "drive/axis/axis.h"
 #include "drive/fake_device.h"
 
 namespace cia402::drive::test {

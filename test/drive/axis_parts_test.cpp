@@ -7,9 +7,9 @@
 
 #include <cmath>
 
-#include "cia402_driver/drive/fault_text.h"
-#include "cia402_driver/drive/homing_status.h"
-#include "cia402_driver/drive/standstill.h"
+#include "drive/axis/standstill.h"
+#include "drive/procedures/homing_status.h"
+#include "drive/profile/fault_text.h"
 
 namespace cia402::drive {
 namespace {

@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "drive/axis_poller.h"
+#include "drive/axis/poller.h"
 
 #include "drive/objects_fixture.h"
 

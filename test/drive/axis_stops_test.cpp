@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cia402_driver/drive/standstill.h"
+#include "drive/axis/standstill.h"
 #include "drive/axis_fixture.h"
 
 namespace cia402::drive {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "cia402_driver/drive/conversion.h"
+#include "drive/profile/conversion.h"
 
 namespace cia402::drive {
 namespace {

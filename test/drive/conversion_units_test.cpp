@@ -1,6 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Every unit that a profile may count in, what is refused, and how halves are rounded.
-#include "cia402_driver/drive/conversion.h"
+#include "drive/profile/conversion.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // EMCY, 603Fh and 1001h to the millisecond, and what this program itself has caused.
-#include "drive/error_evidence.h"
+#include "drive/axis/error_evidence.h"
 
 #include "drive/objects_fixture.h"
 

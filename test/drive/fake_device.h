@@ -6,10 +6,10 @@
 #include <string>
 #include <utility>
 
-#include "cia402_driver/fieldbus/device.h"
 #include "drive/fake_drive.h"
 #include "drive/fake_image.h"
 #include "drive/fake_objects.h"
+#include "fieldbus/device.h"
 
 namespace cia402::drive::test {
 

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "cia402_driver/fieldbus/bytes.h"
-#include "cia402_driver/fieldbus/object.h"
+#include "fieldbus/bytes.h"
+#include "fieldbus/object.h"
 
 namespace cia402::drive::test {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "cia402_driver/common/time.h"
-#include "cia402_driver/fieldbus/process_image.h"
 #include "drive/fake_drive.h"
+#include "fieldbus/process_image.h"
 
 namespace cia402::drive::test {
 

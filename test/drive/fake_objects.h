@@ -12,9 +12,9 @@
 #include <utility>
 
 #include "cia402_driver/common/time.h"
-#include "cia402_driver/fieldbus/abort_code.h"
-#include "cia402_driver/fieldbus/object_access.h"
 #include "drive/fake_drive.h"
+#include "fieldbus/abort_code.h"
+#include "fieldbus/object_access.h"
 
 namespace cia402::drive::test {
 

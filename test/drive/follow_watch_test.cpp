@@ -1,6 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // When set-points are called back from a motor that does not follow them.
-#include "drive/follow_watch.h"
+#include "drive/axis/follow_watch.h"
 
 #include <gtest/gtest.h>
 

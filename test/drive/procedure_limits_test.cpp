@@ -1,12 +1,12 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // How long procedures may take: for each thing that a drive may take its time for, the limit grows
 // as often as the procedure may have to wait for it.
-#include "drive/procedure_limits.h"
+#include "drive/procedures/limits.h"
 
 #include <limits>
 #include <type_traits>
 
-#include "cia402_driver/drive/standstill.h"
+#include "drive/axis/standstill.h"
 #include "drive/axis_fixture.h"
 
 namespace cia402::drive::test {

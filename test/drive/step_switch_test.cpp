@@ -2,7 +2,7 @@
 // What an enabled axis waits for, and goes through, on its way into another mode.
 #include <limits>
 
-#include "cia402_driver/drive/standstill.h"
+#include "drive/axis/standstill.h"
 #include "drive/procedure_steps.h"
 
 namespace cia402::drive {

@@ -4,9 +4,9 @@
 #include <cstdlib>
 #include <new>
 
-#include "cia402_driver/motion/coupling.h"
-#include "cia402_driver/motion/setpoint_limiter.h"
-#include "cia402_driver/motion/trajectory.h"
+#include "motion/coupling.h"
+#include "motion/setpoint_limiter.h"
+#include "motion/trajectory.h"
 
 namespace {
 std::size_t allocations = 0;

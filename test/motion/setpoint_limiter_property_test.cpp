@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "cia402_driver/motion/setpoint_limiter.h"
+#include "motion/setpoint_limiter.h"
 
 namespace cia402::motion {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "cia402_driver/motion/trajectory.h"
+#include "motion/trajectory.h"
 
 namespace cia402::motion {
 

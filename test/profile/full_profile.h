@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "cia402_driver/config/drive_family.h"
+#include "config/drive_family.h"
 
 namespace cia402::config {
 

@@ -1,11 +1,11 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/ros/event_loop.h"
+#include "ros/event_loop.h"
 
 #include <gtest/gtest.h>
 
 #include <thread>
 
-#include "cia402_driver/bus/real_clock.h"
+#include "bus/real_clock.h"
 #include "ros/callback.h"
 
 namespace cia402::ros_node {

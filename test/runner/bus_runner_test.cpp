@@ -1,6 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // The thread of the driver with simulated drives inside the process, and other threads around it.
-#include "cia402_driver/bus/runner.h"
+#include "bus/runner.h"
 
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -12,7 +12,7 @@
 #include <limits>
 #include <thread>
 
-#include "cia402_driver/sim/world/simulated_interface.h"
+#include "sim/world/simulated_interface.h"
 #include "system/scene.h"
 
 namespace cia402 {

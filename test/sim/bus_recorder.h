@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "cia402_driver/sim/bus/bus.h"
+#include "sim/bus/bus.h"
 
 namespace cia402::sim {
 

@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <fstream>
 
-#include "cia402_driver/sim/drive/drive.h"
 #include "folders.h"
+#include "sim/drive/drive.h"
 
 namespace cia402::sim {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "cia402_driver/sim/drive/drive.h"
 #include "folders.h"
+#include "sim/drive/drive.h"
 
 namespace cia402::sim {
 

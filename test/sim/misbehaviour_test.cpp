@@ -1,8 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Drives that do what they should not: switches of DeviceBehaviour and injected faults.
-#include "cia402_driver/sim/world/world.h"
 #include "drive_fixture.h"
 #include "folders.h"
+#include "sim/world/world.h"
 #include "slave_fixture.h"
 
 namespace cia402::sim {

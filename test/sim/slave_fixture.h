@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "cia402_driver/sim/device/device.h"
+#include "sim/device/device.h"
 
 namespace cia402::sim::testing_support {
 

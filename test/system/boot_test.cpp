@@ -1,6 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Whole robots whose drives boot as real ones do: late, twice, not at all, exchanged.
-#include "cia402_driver/fieldbus/object.h"
+#include "fieldbus/object.h"
 #include "sim/definition/drive_definition.h"
 #include "system/scene.h"
 

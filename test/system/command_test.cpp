@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Commands as a robot sees them: streams, limits, trajectories, shutdown. What left on the wire is
 // read from the bus.
-#include "cia402_driver/config/ready_robot.h"
+#include "config/ready_robot.h"
 #include "folders.h"
 #include "system/scene.h"
 

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <ostream>
 
-#include "cia402_driver/sim/bus/faults.h"
+#include "sim/bus/faults.h"
 
 namespace cia402 {
 

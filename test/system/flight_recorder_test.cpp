@@ -7,9 +7,9 @@
 #include <map>
 #include <sstream>
 
-#include "cia402_driver/bus/recording_files.h"
-#include "cia402_driver/bus/recording_text.h"
-#include "cia402_driver/can/candump_log.h"
+#include "bus/recording_files.h"
+#include "bus/recording_text.h"
+#include "can/candump_log.h"
 #include "system/scene.h"
 
 namespace cia402 {

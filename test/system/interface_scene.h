@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "cia402_driver/bus/bus_loop.h"
-#include "cia402_driver/sim/bus/interface.h"
+#include "bus/bus_loop.h"
+#include "sim/bus/interface.h"
 #include "system/robot_fixture.h"
 
 namespace cia402 {

@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include "cia402_driver/bus/canopen/history_command.h"
-#include "cia402_driver/bus/canopen/lss_commands.h"
-#include "cia402_driver/bus/canopen/nmt_command.h"
-#include "cia402_driver/bus/jobs/object_commands.h"
+#include "bus/canopen/history_command.h"
+#include "bus/canopen/lss_commands.h"
+#include "bus/canopen/nmt_command.h"
+#include "bus/jobs/object_commands.h"
 #include "system/robot_fixture.h"
 
 namespace cia402 {

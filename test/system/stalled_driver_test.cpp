@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // The driver's thread is held up, as on a machine that sleeps or is overloaded, while the bus and
 // the kernel's queue go on: what came in time counts, though it is read late.
-#include "cia402_driver/bus/jobs/object_commands.h"
+#include "bus/jobs/object_commands.h"
 #include "sim/definition/drive_definition.h"
 #include "system/interface_scene.h"
 #include "system/synced_scene.h"

@@ -3,9 +3,9 @@
 // still, and neither notices.
 #include <random>
 
-#include "cia402_driver/bus/bus_loop.h"
-#include "cia402_driver/bus/bus_time.h"
-#include "cia402_driver/sim/world/simulated_interface.h"
+#include "bus/bus_loop.h"
+#include "bus/bus_time.h"
+#include "sim/world/simulated_interface.h"
 #include "system/scene.h"
 
 namespace cia402 {

@@ -1,6 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // A drive in the NMT state stopped answers no SDO: it is brought out of it, or told as it is.
-#include "cia402_driver/bus/canopen/dcf_command.h"
+#include "bus/canopen/dcf_command.h"
 #include "system/scene.h"
 
 namespace cia402 {

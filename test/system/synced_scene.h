@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "cia402_driver/sim/world/sync_producer.h"
+#include "sim/world/sync_producer.h"
 #include "system/scene.h"
 
 namespace cia402 {

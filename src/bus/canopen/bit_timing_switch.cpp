@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "bus/canopen/lss_supervisor.h"
+#include "bus/network.h"
 #include "bus/words.h"
-#include "cia402_driver/bus/network.h"
-#include "cia402_driver/canopen/lss/task.h"
+#include "canopen/lss/task.h"
 
 namespace cia402::bus {
 namespace {

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "bus/axis_cycle.h"
+#include "bus/canopen/lss_commands.h"
 #include "bus/canopen/lss_desk.h"
 #include "bus/canopen/node_unit.h"
-#include "cia402_driver/bus/axis_cycle.h"
-#include "cia402_driver/bus/canopen/lss_commands.h"
 
 namespace cia402::bus {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "cia402_driver/can/frame.h"
-#include "cia402_driver/canopen/config.h"
+#include "can/frame.h"
+#include "canopen/config.h"
 
 namespace cia402::bus {
 

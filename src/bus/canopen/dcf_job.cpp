@@ -4,8 +4,8 @@
 #include <memory>
 #include <utility>
 
-#include "cia402_driver/bus/network.h"
-#include "cia402_driver/fieldbus/abort_code.h"
+#include "bus/network.h"
+#include "fieldbus/abort_code.h"
 
 namespace cia402::bus {
 namespace {

@@ -5,9 +5,9 @@
 #include <memory>
 #include <string>
 
-#include "cia402_driver/bus/canopen/dcf_command.h"
-#include "cia402_driver/bus/jobs/job.h"
-#include "cia402_driver/drive/axis.h"
+#include "bus/canopen/dcf_command.h"
+#include "bus/jobs/job.h"
+#include "drive/axis/axis.h"
 
 namespace cia402::bus {
 

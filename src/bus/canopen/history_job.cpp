@@ -4,10 +4,10 @@
 #include <memory>
 #include <utility>
 
+#include "bus/canopen/history_command.h"
+#include "bus/network.h"
 #include "bus/words.h"
-#include "cia402_driver/bus/canopen/history_command.h"
-#include "cia402_driver/bus/network.h"
-#include "cia402_driver/drive/fault_text.h"
+#include "drive/profile/fault_text.h"
 
 namespace cia402::bus {
 

@@ -4,9 +4,9 @@
 #include <functional>
 #include <string>
 
-#include "cia402_driver/bus/jobs/job.h"
-#include "cia402_driver/canopen/emcy/error_history.h"
-#include "cia402_driver/drive/axis.h"
+#include "bus/jobs/job.h"
+#include "canopen/emcy/error_history.h"
+#include "drive/axis/axis.h"
 
 namespace cia402::bus {
 

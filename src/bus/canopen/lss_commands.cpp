@@ -1,15 +1,15 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // People look for devices without a node-ID, and give them one.
-#include "cia402_driver/bus/canopen/lss_commands.h"
+#include "bus/canopen/lss_commands.h"
 
 #include <algorithm>
 #include <memory>
 #include <utility>
 
 #include "bus/canopen/lss_supervisor.h"
+#include "bus/network.h"
 #include "bus/words.h"
-#include "cia402_driver/bus/network.h"
-#include "cia402_driver/canopen/lss/scan.h"
+#include "canopen/lss/scan.h"
 
 namespace cia402::bus {
 namespace {

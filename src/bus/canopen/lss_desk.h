@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "cia402_driver/canopen/lss/task.h"
+#include "canopen/lss/task.h"
 
 namespace cia402::bus {
 

@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "bus/axis_cycle.h"
 #include "bus/canopen/bit_timing_switch.h"
 #include "bus/canopen/lss_desk.h"
 #include "bus/canopen/node_unit.h"
-#include "cia402_driver/bus/axis_cycle.h"
-#include "cia402_driver/bus/event.h"
-#include "cia402_driver/canopen/master.h"
+#include "bus/event.h"
+#include "canopen/master.h"
 
 namespace cia402::bus {
 

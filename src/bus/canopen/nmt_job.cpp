@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "bus/canopen/node_unit.h"
+#include "bus/network.h"
 #include "bus/words.h"
-#include "cia402_driver/bus/network.h"
 
 namespace cia402::bus {
 namespace {

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "cia402_driver/bus/canopen/nmt_command.h"
-#include "cia402_driver/bus/jobs/job.h"
-#include "cia402_driver/canopen/master.h"
+#include "bus/canopen/nmt_command.h"
+#include "bus/jobs/job.h"
+#include "canopen/master.h"
 #include "cia402_driver/common/result.h"
-#include "cia402_driver/drive/axis.h"
+#include "drive/axis/axis.h"
 
 namespace cia402::bus {
 

@@ -6,7 +6,7 @@
 
 #include "bus/canopen/history_job.h"
 #include "bus/words.h"
-#include "cia402_driver/canopen/pdo/text.h"
+#include "canopen/pdo/text.h"
 
 namespace cia402::bus {
 namespace {

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "cia402_driver/bus/axis_cycle.h"
-#include "cia402_driver/bus/event.h"
-#include "cia402_driver/canopen/device_config.h"
-#include "cia402_driver/canopen/node/node.h"
+#include "bus/axis_cycle.h"
+#include "bus/event.h"
+#include "canopen/device_config.h"
+#include "canopen/node/node.h"
 
 namespace cia402::bus {
 

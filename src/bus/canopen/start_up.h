@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "bus/axis_cycle.h"
 #include "bus/canopen/bus_listener.h"
-#include "cia402_driver/bus/axis_cycle.h"
-#include "cia402_driver/bus/command.h"
-#include "cia402_driver/bus/event.h"
-#include "cia402_driver/bus/fixed_text.h"
+#include "bus/command.h"
+#include "bus/event.h"
+#include "bus/fixed_text.h"
 
 namespace cia402::bus {
 

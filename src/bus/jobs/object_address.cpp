@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "bus/jobs/object_address.h"
 
-#include "cia402_driver/drive/object_value.h"
+#include "drive/profile/object_value.h"
 
 namespace cia402::bus {
 namespace {

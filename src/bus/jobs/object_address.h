@@ -5,7 +5,7 @@
 #include <string>
 
 #include "cia402_driver/common/result.h"
-#include "cia402_driver/drive/axis_config.h"
+#include "drive/axis/config.h"
 
 namespace cia402::bus {
 

@@ -6,7 +6,7 @@
 
 #include "bus/jobs/object_address.h"
 #include "bus/jobs/object_text.h"
-#include "cia402_driver/bus/network.h"
+#include "bus/network.h"
 
 namespace cia402::bus {
 namespace {

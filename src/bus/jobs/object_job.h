@@ -6,10 +6,10 @@
 #include <optional>
 #include <string>
 
-#include "cia402_driver/bus/jobs/job.h"
-#include "cia402_driver/bus/jobs/object_commands.h"
+#include "bus/jobs/job.h"
+#include "bus/jobs/object_commands.h"
 #include "cia402_driver/common/result.h"
-#include "cia402_driver/drive/axis.h"
+#include "drive/axis/axis.h"
 
 namespace cia402::bus {
 

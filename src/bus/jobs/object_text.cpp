@@ -7,10 +7,10 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "cia402_driver/decode/value_text.h"
-#include "cia402_driver/drive/conversion.h"
-#include "cia402_driver/drive/object_value.h"
-#include "cia402_driver/motion/joint.h"
+#include "decode/value_text.h"
+#include "drive/profile/conversion.h"
+#include "drive/profile/object_value.h"
+#include "motion/joint.h"
 
 namespace cia402::bus {
 namespace {

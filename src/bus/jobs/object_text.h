@@ -5,8 +5,8 @@
 #include <string>
 
 #include "cia402_driver/common/result.h"
-#include "cia402_driver/drive/axis_config.h"
-#include "cia402_driver/fieldbus/bytes.h"
+#include "drive/axis/config.h"
+#include "fieldbus/bytes.h"
 
 namespace cia402::bus {
 

@@ -6,9 +6,9 @@
 #include <memory>
 #include <utility>
 
+#include "bus/network.h"
 #include "bus/words.h"
-#include "cia402_driver/bus/network.h"
-#include "cia402_driver/motion/joint.h"
+#include "motion/joint.h"
 
 namespace cia402::bus {
 namespace {

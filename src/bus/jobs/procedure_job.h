@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "cia402_driver/bus/jobs/job.h"
-#include "cia402_driver/bus/jobs/procedure_command.h"
+#include "bus/jobs/job.h"
+#include "bus/jobs/procedure_command.h"
 
 namespace cia402::bus {
 

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "canopen/boot/text.h"
-#include "cia402_driver/fieldbus/abort_code.h"
+#include "fieldbus/abort_code.h"
 
 namespace cia402::canopen {
 namespace {

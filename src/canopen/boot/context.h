@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "cia402_driver/can/bus.h"
-#include "cia402_driver/canopen/config.h"
-#include "cia402_driver/canopen/nmt/nmt.h"
-#include "cia402_driver/canopen/node/node.h"
-#include "cia402_driver/canopen/sdo/pacer.h"
+#include "can/bus.h"
+#include "canopen/config.h"
+#include "canopen/nmt/nmt.h"
+#include "canopen/node/node.h"
+#include "canopen/sdo/pacer.h"
 
 namespace cia402::canopen {
 

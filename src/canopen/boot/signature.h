@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "cia402_driver/canopen/config.h"
-#include "cia402_driver/canopen/node/node.h"
+#include "canopen/config.h"
+#include "canopen/node/node.h"
 
 namespace cia402::canopen {
 

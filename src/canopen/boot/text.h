@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "cia402_driver/canopen/sdo/client.h"
+#include "canopen/sdo/client.h"
 
 namespace cia402::canopen {
 

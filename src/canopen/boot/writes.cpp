@@ -2,7 +2,7 @@
 // The start-up writes: those that are always done first of all, those of profile and user last.
 #include "canopen/boot/steps.h"
 #include "canopen/boot/text.h"
-#include "cia402_driver/fieldbus/abort_code.h"
+#include "fieldbus/abort_code.h"
 
 namespace cia402::canopen {
 namespace {

@@ -3,11 +3,11 @@
 
 #include <cstdint>
 
+#include "canopen/eds/eds.h"
 #include "canopen/eds/entry.h"
 #include "canopen/eds/keys.h"
 #include "canopen/eds/problems.h"
 #include "canopen/eds/sections.h"
-#include "cia402_driver/canopen/eds/eds.h"
 
 // What CiA 306 lets a file leave out.
 namespace cia402::canopen {

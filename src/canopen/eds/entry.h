@@ -3,11 +3,11 @@
 
 #include <optional>
 
+#include "canopen/eds/eds.h"
 #include "canopen/eds/keys.h"
 #include "canopen/eds/problems.h"
 #include "canopen/eds/sections.h"
 #include "canopen/eds/text.h"
-#include "cia402_driver/canopen/eds/eds.h"
 
 namespace cia402::canopen {
 

@@ -1,11 +1,11 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "canopen/eds/eds.h"
 #include "canopen/eds/keys.h"
 #include "canopen/eds/problems.h"
 #include "canopen/eds/sections.h"
 #include "canopen/eds/text.h"
-#include "cia402_driver/canopen/eds/eds.h"
 
 namespace cia402::canopen {
 

@@ -4,11 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "canopen/eds/eds.h"
 #include "canopen/eds/entry.h"
 #include "canopen/eds/keys.h"
 #include "canopen/eds/problems.h"
 #include "canopen/eds/sections.h"
-#include "cia402_driver/canopen/eds/eds.h"
 
 namespace cia402::canopen {
 

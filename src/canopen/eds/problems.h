@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "cia402_driver/canopen/eds/eds.h"
+#include "canopen/eds/eds.h"
 
 namespace cia402::canopen {
 

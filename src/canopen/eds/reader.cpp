@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "canopen/eds/compact.h"
+#include "canopen/eds/eds.h"
 #include "canopen/eds/entry.h"
 #include "canopen/eds/info.h"
 #include "canopen/eds/keys.h"
@@ -11,7 +12,6 @@
 #include "canopen/eds/problems.h"
 #include "canopen/eds/sections.h"
 #include "canopen/eds/text.h"
-#include "cia402_driver/canopen/eds/eds.h"
 
 namespace cia402::canopen {
 namespace {

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "canopen/eds/eds.h"
 #include "canopen/eds/strings.h"
 #include "canopen/eds/value.h"
-#include "cia402_driver/canopen/eds/eds.h"
 
 namespace cia402::canopen {
 namespace {

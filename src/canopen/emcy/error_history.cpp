@@ -1,12 +1,12 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/canopen/emcy/error_history.h"
+#include "canopen/emcy/error_history.h"
 
-#include "cia402_driver/canopen/object.h"
+#include "canopen/object.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "cia402_driver/fieldbus/abort_code.h"
+#include "fieldbus/abort_code.h"
 
 namespace cia402::canopen {
 namespace {

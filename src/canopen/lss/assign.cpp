@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "cia402_driver/canopen/lss/task.h"
-#include "cia402_driver/canopen/nmt/nmt.h"
+#include "canopen/lss/task.h"
+#include "canopen/nmt/nmt.h"
 
 namespace cia402::canopen {
 

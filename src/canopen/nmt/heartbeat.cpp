@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/canopen/nmt/heartbeat.h"
+#include "canopen/nmt/heartbeat.h"
 
 namespace cia402::canopen {
 

@@ -1,8 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "cia402_driver/can/bus.h"
-#include "cia402_driver/canopen/nmt/nmt.h"
+#include "can/bus.h"
+#include "canopen/nmt/nmt.h"
 
 namespace cia402::canopen {
 

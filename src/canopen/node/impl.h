@@ -7,11 +7,11 @@
 
 #include "canopen/boot/procedure.h"
 #include "canopen/boot/retry.h"
+#include "canopen/nmt/heartbeat.h"
+#include "canopen/nmt/node_guarding.h"
 #include "canopen/nmt/pause.h"
 #include "canopen/node/last_stop.h"
-#include "cia402_driver/canopen/nmt/heartbeat.h"
-#include "cia402_driver/canopen/nmt/node_guarding.h"
-#include "cia402_driver/canopen/node/node.h"
+#include "canopen/node/node.h"
 
 namespace cia402::canopen {
 

@@ -1,10 +1,10 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "cia402_driver/can/bus.h"
-#include "cia402_driver/canopen/config.h"
-#include "cia402_driver/canopen/nmt/nmt.h"
-#include "cia402_driver/canopen/sdo/client.h"
+#include "can/bus.h"
+#include "canopen/config.h"
+#include "canopen/nmt/nmt.h"
+#include "canopen/sdo/client.h"
 
 namespace cia402::canopen {
 

@@ -1,11 +1,11 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/canopen/node/node.h"
+#include "canopen/node/node.h"
 
 #include <algorithm>
 #include <utility>
 
 #include "canopen/node/impl.h"
-#include "cia402_driver/canopen/pdo/text.h"
+#include "canopen/pdo/text.h"
 
 namespace cia402::canopen {
 

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "cia402_driver/fieldbus/abort_code.h"
+#include "fieldbus/abort_code.h"
 
 namespace cia402::canopen {
 namespace {

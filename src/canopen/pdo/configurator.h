@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "canopen/pdo/config.h"
 #include "canopen/pdo/found.h"
 #include "canopen/pdo/wanted.h"
-#include "cia402_driver/canopen/pdo/config.h"
-#include "cia402_driver/canopen/sdo/client.h"
+#include "canopen/sdo/client.h"
 
 namespace cia402::canopen {
 

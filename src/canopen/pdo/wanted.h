@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "cia402_driver/canopen/pdo/config.h"
+#include "canopen/pdo/config.h"
 
 namespace cia402::canopen {
 

@@ -1,11 +1,11 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/canopen/sdo/block_download.h"
+#include "canopen/sdo/block_download.h"
 
 #include <algorithm>
 #include <string>
 
 #include "canopen/sdo/frames.h"
-#include "cia402_driver/fieldbus/abort_code.h"
+#include "fieldbus/abort_code.h"
 
 namespace cia402::canopen {
 

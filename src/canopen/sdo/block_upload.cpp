@@ -1,12 +1,12 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/canopen/sdo/block_upload.h"
+#include "canopen/sdo/block_upload.h"
 
 #include <algorithm>
 #include <string>
 #include <utility>
 
 #include "canopen/sdo/frames.h"
-#include "cia402_driver/fieldbus/abort_code.h"
+#include "fieldbus/abort_code.h"
 
 namespace cia402::canopen {
 

@@ -1,12 +1,12 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/canopen/sdo/client.h"
+#include "canopen/sdo/client.h"
 
 #include <algorithm>
 #include <memory>
 #include <utility>
 
 #include "canopen/sdo/frames.h"
-#include "cia402_driver/fieldbus/abort_code.h"
+#include "fieldbus/abort_code.h"
 
 namespace cia402::canopen {
 namespace {

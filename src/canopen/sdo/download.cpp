@@ -1,10 +1,10 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/canopen/sdo/download.h"
+#include "canopen/sdo/download.h"
 
 #include <algorithm>
 
 #include "canopen/sdo/frames.h"
-#include "cia402_driver/fieldbus/bytes.h"
+#include "fieldbus/bytes.h"
 
 namespace cia402::canopen {
 

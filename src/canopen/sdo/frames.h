@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "cia402_driver/can/frame.h"
-#include "cia402_driver/canopen/object.h"
-#include "cia402_driver/canopen/sdo/reaction.h"
+#include "can/frame.h"
+#include "canopen/object.h"
+#include "canopen/sdo/reaction.h"
 
 /// What the kinds of transfer have in common on the wire (CiA 301, 7.2.4.3).
 namespace cia402::canopen::sdo {

@@ -3,7 +3,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "cia402_driver/config/drive_family.h"
+#include "config/drive_family.h"
 #include "config/profile/parts.h"
 
 namespace cia402::config {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "cia402_driver/canopen/device_config.h"
-#include "cia402_driver/drive/profile.h"
-#include "cia402_driver/yaml/reader.h"
+#include "canopen/device_config.h"
+#include "drive/profile/profile.h"
+#include "yaml/reader.h"
 
 // The parts of a profile file, each read by a function of its own into the profile.
 namespace cia402::config {

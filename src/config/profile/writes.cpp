@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cia402_driver/drive/object_value.h"
 #include "config/profile/parts.h"
+#include "drive/profile/object_value.h"
 
 namespace cia402::config {
 namespace {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "drive/feedback.h"
+#include "drive/axis/feedback.h"
 
 namespace cia402::drive {
 

@@ -1,8 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "cia402_driver/drive/set_point_handshake.h"
 #include "drive/modes/position_control.h"
+#include "drive/modes/set_point_handshake.h"
 
 namespace cia402::drive {
 

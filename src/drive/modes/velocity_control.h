@@ -1,8 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "cia402_driver/motion/setpoint_limiter.h"
 #include "drive/modes/mode_control.h"
+#include "motion/setpoint_limiter.h"
 
 namespace cia402::drive {
 

@@ -5,14 +5,14 @@
 #include <algorithm>
 #include <mutex>
 
-#include "cia402_driver/bus/real_clock.h"
-#include "cia402_driver/bus/realtime.h"
-#include "cia402_driver/can/socketcan.h"
-#include "cia402_driver/ros/command_line.h"
-#include "cia402_driver/ros/fault_service.h"
-#include "cia402_driver/ros/process_signals.h"
-#include "cia402_driver/ros/robot_loader.h"
-#include "cia402_driver/sim/world/drive_host.h"
+#include "bus/real_clock.h"
+#include "bus/realtime.h"
+#include "can/socketcan.h"
+#include "ros/command_line.h"
+#include "ros/fault_service.h"
+#include "ros/process_signals.h"
+#include "ros/robot_loader.h"
+#include "sim/world/drive_host.h"
 
 namespace {
 

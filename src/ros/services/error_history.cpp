@@ -1,8 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <cia402_driver/ErrorHistory.h>
 
-#include "cia402_driver/bus/canopen/history_command.h"
-#include "cia402_driver/drive/fault_text.h"
+#include "bus/canopen/history_command.h"
+#include "drive/profile/fault_text.h"
 #include "ros/services/table.h"
 
 namespace cia402::ros_node {

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cia402_driver/bus/canopen/lss_commands.h"
+#include "bus/canopen/lss_commands.h"
 #include "ros/services/table.h"
 
 namespace cia402::ros_node {

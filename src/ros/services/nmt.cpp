@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <cia402_driver/Nmt.h>
 
-#include "cia402_driver/bus/canopen/nmt_command.h"
+#include "bus/canopen/nmt_command.h"
 #include "ros/services/table.h"
 
 namespace cia402::ros_node {

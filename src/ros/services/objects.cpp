@@ -2,7 +2,7 @@
 #include <cia402_driver/ReadObject.h>
 #include <cia402_driver/WriteObject.h>
 
-#include "cia402_driver/bus/jobs/object_commands.h"
+#include "bus/jobs/object_commands.h"
 #include "ros/services/table.h"
 
 namespace cia402::ros_node {

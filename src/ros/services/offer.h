@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "cia402_driver/bus/runner.h"
-#include "cia402_driver/config/robot.h"
-#include "cia402_driver/ros/call_desk.h"
-#include "cia402_driver/ros/command_call.h"
+#include "bus/runner.h"
+#include "config/robot.h"
+#include "ros/call_desk.h"
+#include "ros/command_call.h"
 
 namespace cia402::ros_node {
 

@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <cia402_driver/SaveDcf.h>
 
-#include "cia402_driver/ros/dcf_file.h"
+#include "ros/dcf_file.h"
 #include "ros/services/table.h"
 
 namespace cia402::ros_node {

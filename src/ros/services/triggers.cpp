@@ -1,6 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // The procedures whose requests say nothing: std_srvs/Trigger.
-#include "cia402_driver/bus/jobs/procedure_command.h"
+#include "bus/jobs/procedure_command.h"
 #include "ros/services/table.h"
 
 namespace cia402::ros_node {

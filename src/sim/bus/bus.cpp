@@ -1,12 +1,12 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/sim/bus/bus.h"
+#include "sim/bus/bus.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
-#include "cia402_driver/sim/bus/bit_timing.h"
+#include "sim/bus/bit_timing.h"
 
 namespace cia402::sim {
 namespace {

@@ -1,11 +1,11 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/sim/bus/interface.h"
+#include "sim/bus/interface.h"
 
 #include <algorithm>
 #include <string>
 #include <utility>
 
-#include "cia402_driver/can/error_frame.h"
+#include "can/error_frame.h"
 
 namespace cia402::sim {
 namespace {

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "cia402_driver/sim/bus/bit_timing.h"
-#include "cia402_driver/sim/bus/bus.h"
+#include "sim/bus/bit_timing.h"
+#include "sim/bus/bus.h"
 
 namespace cia402::sim {
 namespace {

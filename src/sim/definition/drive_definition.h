@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "cia402_driver/sim/device/device.h"
-#include "cia402_driver/sim/drive/drive.h"
 #include "sim/definition/quirks.h"
+#include "sim/device/device.h"
 #include "sim/dictionary/template.h"
+#include "sim/drive/drive.h"
 #include "sim/drive/motor.h"
 #include "sim/drive/values.h"
 

@@ -2,7 +2,6 @@
 // Reads the file of a simulated drive (docs/simulated_drives.md).
 #include <yaml-cpp/yaml.h>
 
-#include "cia402_driver/yaml/reader.h"
 #include "sim/definition/drive_definition.h"
 #include "sim/definition/read_communication.h"
 #include "sim/definition/read_faults.h"
@@ -13,6 +12,7 @@
 #include "sim/definition/reader.h"
 #include "sim/dictionary/axis_objects.h"
 #include "sim/drive/homing_sequence.h"
+#include "yaml/reader.h"
 
 namespace cia402::sim {
 namespace {

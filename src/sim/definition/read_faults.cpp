@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "cia402_driver/yaml/reader.h"
 #include "sim/definition/read_state_machine.h"
+#include "yaml/reader.h"
 
 namespace cia402::sim {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "cia402_driver/yaml/reader.h"
+#include "yaml/reader.h"
 
 namespace cia402::sim {
 namespace {

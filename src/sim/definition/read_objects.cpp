@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "cia402_driver/fieldbus/object.h"
-#include "cia402_driver/yaml/reader.h"
+#include "fieldbus/object.h"
+#include "yaml/reader.h"
 
 namespace cia402::sim {
 namespace {

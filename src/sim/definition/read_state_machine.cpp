@@ -1,8 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "sim/definition/read_state_machine.h"
 
-#include "cia402_driver/fieldbus/object.h"
-#include "cia402_driver/yaml/reader.h"
+#include "fieldbus/object.h"
+#include "yaml/reader.h"
 
 namespace cia402::sim {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "cia402_driver/yaml/reader.h"
+#include "yaml/reader.h"
 
 namespace cia402::sim {
 

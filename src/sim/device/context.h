@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "cia402_driver/sim/device/device.h"
+#include "sim/device/device.h"
 
 namespace cia402::sim {
 

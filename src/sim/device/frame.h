@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "cia402_driver/can/frame.h"
+#include "can/frame.h"
 
 namespace cia402::sim {
 

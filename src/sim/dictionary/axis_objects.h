@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "cia402_driver/sim/dictionary/object_dictionary.h"
+#include "sim/dictionary/object_dictionary.h"
 
 namespace cia402::sim {
 

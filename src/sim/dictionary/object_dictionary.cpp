@@ -1,9 +1,9 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "cia402_driver/sim/dictionary/object_dictionary.h"
+#include "sim/dictionary/object_dictionary.h"
 
 #include <utility>
 
-#include "cia402_driver/fieldbus/abort_code.h"
+#include "fieldbus/abort_code.h"
 
 namespace cia402::sim {
 

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "cia402_driver/canopen/object.h"
+#include "canopen/object.h"
 #include "cia402_driver/common/result.h"
-#include "cia402_driver/sim/dictionary/object_dictionary.h"
+#include "sim/dictionary/object_dictionary.h"
 
 namespace YAML {
 class Node;

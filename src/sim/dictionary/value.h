@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cia402_driver/common/result.h"
-#include "cia402_driver/sim/dictionary/object_dictionary.h"
+#include "sim/dictionary/object_dictionary.h"
 
 namespace YAML {
 class Node;

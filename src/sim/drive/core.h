@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "cia402_driver/canopen/nmt/nmt.h"
+#include "canopen/nmt/nmt.h"
 #include "sim/definition/drive_definition.h"
 #include "sim/drive/fault_memory.h"
 #include "sim/drive/mode_selection.h"

@@ -1,8 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "cia402_driver/sim/device/device.h"
 #include "sim/definition/drive_definition.h"
+#include "sim/device/device.h"
 
 namespace cia402::sim {
 

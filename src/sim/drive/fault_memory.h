@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "cia402_driver/canopen/nmt/nmt.h"
+#include "canopen/nmt/nmt.h"
 #include "sim/definition/drive_definition.h"
 
 namespace cia402::sim {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "cia402_driver/sim/drive/drive.h"
+#include "sim/drive/drive.h"
 
 namespace cia402::sim {
 

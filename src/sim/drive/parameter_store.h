@@ -4,7 +4,7 @@
 #include <functional>
 #include <map>
 
-#include "cia402_driver/sim/dictionary/object_dictionary.h"
+#include "sim/dictionary/object_dictionary.h"
 
 namespace cia402::sim {
 

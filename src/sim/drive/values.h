@@ -7,7 +7,7 @@
 #include <optional>
 #include <string_view>
 
-#include "cia402_driver/sim/dictionary/object_dictionary.h"
+#include "sim/dictionary/object_dictionary.h"
 
 namespace cia402::sim {
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "cia402_driver/fieldbus/abort_code.h"
+#include "fieldbus/abort_code.h"
 #include "sim/dictionary/axis_objects.h"
 
 namespace cia402::sim {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "cia402_driver/fieldbus/abort_code.h"
+#include "fieldbus/abort_code.h"
 #include "sim/device/frame.h"
 #include "sim/device/sdo/block_crc.h"
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "cia402_driver/fieldbus/abort_code.h"
+#include "fieldbus/abort_code.h"
 #include "sim/device/frame.h"
 
 namespace cia402::sim {

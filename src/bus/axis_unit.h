@@ -1,0 +1,56 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "bus/axis_news.h"
+#include "bus/axis_reporter.h"
+#include "bus/signal_watch.h"
+#include "bus/snapshot.h"
+#include "drive/axis/axis.h"
+
+namespace cia402::bus {
+
+/// One axis and all that is kept of it, so that what it needs in a cycle lies together. It knows
+/// the device that it sits in, and not which bus this is.
+struct AxisUnit {
+  /// What the bus says of the device.
+  struct Place {
+    fieldbus::Device* device = nullptr;
+    std::string who;      ///< "shoulder (node 3)", for messages
+    Duration patience{};  ///< for its first feedback, once it is ready
+  };
+
+  /// @param number of the axis, its index in the configuration.
+  /// @param events must outlive it.
+  AxisUnit(std::size_t number, const drive::AxisConfig& config, const Place& place,
+           EventSink& events);
+
+  /// The beginning of a cycle: takes what the device sent.
+  void readFeedback(Time now) {
+    axis.readFeedback(now);
+    axis.update(now);
+    const drive::AxisState& state = axis.state();
+    if (state.health == fieldbus::Health::ready && state.stamp == last_feedback) ++missed_feedback;
+    last_feedback = state.stamp;
+  }
+  /// Gives the device its commands of this cycle.
+  void move(Time now) {
+    axis.writeCommands(now);
+    signals.watch(axis, now);
+  }
+  void fill(AxisSnapshot& snapshot) const;
+
+  std::size_t index;
+  drive::Axis axis;
+  Time last_feedback{};
+  std::uint64_t missed_feedback = 0;  ///< cycles without new feedback while the device was ready
+  bool answered = false;              ///< by its device, beside the cycle, since it was looked at
+  SignalWatch signals;
+  AxisReporter reporter;
+  AxisNews news;
+};
+
+}  // namespace cia402::bus

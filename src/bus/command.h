@@ -1,0 +1,135 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "bus/reply.h"
+#include "cia402_driver/bus/trajectory_outcome.h"
+#include "cia402_driver/common/time.h"
+#include "motion/trajectory.h"
+
+namespace cia402::bus {
+
+class Network;
+
+/// A set-point of the axis' active mode, rad or m, per s, N m or N. Answered only if refused.
+struct SetpointCommand {
+  using Answer = bus::Answer;
+  std::size_t axis = 0;  ///< index in the configuration
+  double value = 0.0;
+
+  void begin(Network& network, const Reply<>& reply, Time now) const;
+};
+
+/// A trajectory for a group; without points: stop. Answered once it was accepted or refused.
+struct TrajectoryCommand {
+  using Answer = bus::Answer;
+  std::string group;
+  std::vector<std::string> joints;
+  std::vector<motion::TrajectoryPoint> points;
+  std::optional<Time> start_time;
+  TrajectoryEnded ended;  ///< told how it ended, if it was accepted
+
+  void begin(Network& network, const Reply<>& reply, Time now) const;
+};
+
+/// Runs a function in the bus thread, e.g. to inject a fault into a simulated drive; also where
+/// there is no bus.
+struct CallCommand {
+  using Answer = bus::Answer;
+  std::function<bus::Answer(Time)> function;
+
+  void begin(Network& network, const Reply<>& reply, Time now) const;
+};
+
+/// What the bus thread is to do, on its way there, with the reply that it owes.
+///
+/// A request is a struct that says what is asked for, with
+///     using Answer = ...;  // bus::Answer, or a type made from it
+///     void begin(Network& network, const Reply<Answer>& reply, Time now) const;
+/// begin() gives the reply exactly once, at once or when the job that it adds to the network has
+/// ended. What streams lies in the command itself; any other request is taken to the heap, so that
+/// nothing here names it.
+class Command {
+ public:
+  /// Nothing is asked for; begin() must not be called.
+  Command() = default;
+  template <typename Request>
+  explicit Command(Request request, Reply<typename Request::Answer> reply = {})
+      : body_(bodyOf(Given<Request>{std::move(request), std::move(reply)})) {}
+
+  /// Carries it out. @pre not empty
+  void begin(Network& network, Time now) {
+    withGiven([&](auto& given) { given.begin(network, now); });
+  }
+  /// Replies that it is not carried out, for the reason `why`.
+  void refuse(const std::string& why) {
+    withGiven([&](auto& given) { given.refuse(why); });
+  }
+  /// It is out of date soon: it is carried out now or never.
+  bool streams() const {
+    return std::holds_alternative<Given<SetpointCommand>>(body_) ||
+           std::holds_alternative<Given<TrajectoryCommand>>(body_);
+  }
+  /// It makes sense only where frames reach the drives.
+  bool needsBus() const { return !std::holds_alternative<Given<CallCommand>>(body_); }
+
+ private:
+  template <typename Request>
+  struct Given {
+    Request request;
+    Reply<typename Request::Answer> reply;
+
+    void begin(Network& network, Time now) { request.begin(network, reply, now); }
+    void refuse(const std::string& why) { bus::refuse(reply, why); }
+  };
+  class Erased {
+   public:
+    virtual ~Erased() = default;
+    virtual void begin(Network& network, Time now) = 0;
+    virtual void refuse(const std::string& why) = 0;
+  };
+  template <typename Request>
+  class Boxed final : public Erased {
+   public:
+    explicit Boxed(Given<Request> given) : given_(std::move(given)) {}
+    void begin(Network& network, Time now) override { given_.begin(network, now); }
+    void refuse(const std::string& why) override { given_.refuse(why); }
+
+   private:
+    Given<Request> given_;
+  };
+  using Body = std::variant<std::unique_ptr<Erased>, Given<SetpointCommand>,
+                            Given<TrajectoryCommand>, Given<CallCommand>>;
+
+  static Body bodyOf(Given<SetpointCommand> given) { return given; }
+  static Body bodyOf(Given<TrajectoryCommand> given) { return given; }
+  static Body bodyOf(Given<CallCommand> given) { return given; }
+  template <typename Request>
+  static Body bodyOf(Given<Request> given) {
+    return std::make_unique<Boxed<Request>>(std::move(given));
+  }
+  template <typename Use>
+  void withGiven(Use use) {
+    std::visit(
+        [&](auto& body) {
+          if constexpr (std::is_same_v<std::decay_t<decltype(body)>, std::unique_ptr<Erased>>) {
+            use(*body);
+          } else {
+            use(body);
+          }
+        },
+        body_);
+  }
+
+  Body body_;
+};
+
+}  // namespace cia402::bus

@@ -1,0 +1,40 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "canopen/pdo/layout.h"
+#include "cia402_driver/common/time.h"
+#include "fieldbus/object_access.h"
+
+namespace cia402::canopen {
+
+/// A drive family as data: what it is as a device on a CANopen bus (docs/drive_profiles.md).
+struct DeviceProfile {
+  std::optional<std::uint32_t> device_type, vendor_id, product_code;  ///< 1000h, 1018h:01, :02
+  /// A layout for all devices of the family; empty: each gets one that suits its modes.
+  std::vector<PdoLayout> pdos;
+  unsigned max_rpdos = 4, max_tpdos = 4;
+  unsigned max_pdo_entries = 8;
+  unsigned fixed_pdo_entries = 0;  ///< every mapping has so many, unused ones are 0; 0: as needed
+  std::vector<PdoLayout> fixed_pdos;  ///< with a mapping that the drive does not let change
+  bool cob_ids_of_drive = false;      ///< COB-IDs of PDOs are fixed: read and used
+  bool rpdo_deadline = false;         ///< the drive reacts when RPDOs stay away (1400h:05)
+  bool type_255_by_timer = false;     ///< TPDOs of that type come by event timer only
+  bool pdo_map_count_may_be_read_only = false;
+  std::optional<std::uint8_t> sync_counter;  ///< overflow value wanted in 1019h; none: no counter
+  bool has_sync_counter_object = true;       ///< 1019h exists
+  bool has_sync_period_object = true;        ///< 1006h exists
+  Duration sync_period_step{std::chrono::microseconds(1)};  ///< 1006h takes multiples of this
+  bool heartbeat_supported = true, heartbeat_consumer_supported = true;
+  bool node_guarding_supported = false;  ///< 100Ch and 100Dh; used where there is no heartbeat
+  /// NMT reset node must not be sent: the drive disturbs the bus while it starts, or does not come
+  /// back. Its communication is reset instead.
+  bool nmt_reset_node = true;
+  Duration boot_time{std::chrono::seconds(5)};  ///< from a reset until the drive answers
+  fieldbus::AccessOptions sdo;                  ///< `timeout` and `retries` of transfers
+};
+
+}  // namespace cia402::canopen

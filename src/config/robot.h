@@ -1,0 +1,137 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <yaml-cpp/yaml.h>
+
+#include "canopen/config.h"
+#include "canopen/device_config.h"
+#include "common/problems.h"
+#include "drive/axis/config.h"
+
+namespace cia402::config {
+
+/// The bus of a robot and how the master behaves on it (`bus:`).
+struct BusConfig {
+  std::string interface;  ///< "can0", or "sim"
+  double bitrate = 1e6;   ///< bit/s
+  Duration sync_period{std::chrono::milliseconds(4)};
+  canopen::NodeId node_id = 127;
+  Duration heartbeat{std::chrono::milliseconds(100)};
+  std::uint8_t sync_counter = 0;  ///< chosen from the profiles unless given
+  bool external_sync = false;     ///< another device produces SYNC, the node follows it
+  Duration listen{std::chrono::milliseconds(150)};  ///< for another master at start; zero: not
+  bool reset_all = false;  ///< starts with one NMT reset to all nodes, also those of others
+  std::optional<Duration> sync_window;  ///< 1007h of the drives; none: not written
+  Duration time_interval{0};            ///< of TIME messages; zero: none
+  /// Frames that nothing in the configuration needs are received, too, and recorded.
+  bool receive_all = false;
+};
+
+/// Goal and path tolerances of one joint in a group; 0: none.
+struct JointTolerance {
+  double trajectory = 0.0, goal = 0.0;
+};
+
+/// Joints that follow trajectories together (`groups:`).
+struct GroupConfig {
+  std::string name;
+  std::vector<std::string> joints;
+  bool stop_group_on_fault = true;
+  double goal_time = 1.0;  ///< s
+  std::map<std::string, JointTolerance> tolerances;
+};
+
+/// Joints that are linear combinations of several axes (`couplings:`).
+struct CouplingConfig {
+  std::vector<std::string> joints, axes;
+  std::vector<std::vector<double>> matrix;  ///< joint space = matrix * axis space
+};
+
+/// Fixed and moving frames around a joint, for tf.
+struct FrameConfig {
+  std::string joint, parent, child;
+  double xyz[3] = {0, 0, 0}, rpy[3] = {0, 0, 0}, axis[3] = {0, 0, 1};
+};
+
+/// The `simulation:` section of an axis: what stands around the simulated drive, in the joint's own
+/// true coordinates (rad or m).
+struct SimulationConfig {
+  std::string drive;  ///< definition of the simulated drive; default: the profile's name
+  YAML::Node with;    ///< keys of such a definition that count for this axis instead
+  double initial_position = 0.0;  ///< where the joint stands at power-on
+  std::optional<double> lower_limit_switch, upper_limit_switch;  ///< active beyond
+  std::optional<std::pair<double, double>> home_switch;          ///< active from .. to
+  std::optional<double> index_offset;   ///< turns; the index pulse is at k + index_offset
+  std::optional<double> time_constant;  ///< s, lag of the position loop
+  double brake_delay = 0.0;             ///< s
+  bool unconfigured = false;            ///< has no node-ID until LSS gives it one
+  std::optional<std::uint32_t> vendor, product, revision, serial;  ///< instead of the drive's 1018h
+};
+
+/// The `recorder:` section: what the flight recorder keeps, and where recordings go.
+struct RecorderConfig {
+  Duration duration{std::chrono::seconds(10)};            ///< kept before the end of a recording
+  Duration post_trigger{std::chrono::milliseconds(500)};  ///< recorded after a fault
+  std::string directory;  ///< empty: `recordings` in $ROS_HOME or ~/.ros
+  unsigned keep = 20;     ///< recordings of this bus; the oldest go. 0: none is written on faults
+};
+
+/// Everything that the file of a robot says, checked, with its drives' profiles read.
+struct RobotConfig {
+  BusConfig bus;
+  RecorderConfig recorder;
+  std::vector<drive::AxisConfig> axes;
+  std::vector<canopen::DeviceConfig> devices;  ///< that the axes sit in: AxisConfig::device
+  const canopen::DeviceConfig& deviceOf(const drive::AxisConfig& axis) const {
+    return devices[axis.device];
+  }
+  canopen::DeviceConfig& deviceOf(const drive::AxisConfig& axis) { return devices[axis.device]; }
+  std::vector<CouplingConfig> couplings;
+  std::vector<GroupConfig> groups;
+  std::vector<FrameConfig> frames;
+  double joint_state_rate = 50.0;                     ///< Hz
+  std::map<std::string, SimulationConfig> simulated;  ///< axis name -> its `simulation:` section
+  std::vector<std::string> warnings;                  ///< worth a look, but no reason to refuse
+};
+
+/// Finds the file of a drive profile, an EDS or a DCF: a name ("generic_cia402", "motor.eds") in
+/// the search folders, or a path.
+/// @return empty if there is none.
+using ProfileLookup = std::function<std::string(const std::string& drive)>;
+ProfileLookup profilesIn(std::vector<std::string> folders);
+
+/// Turns a parameter tree (interface.md, "Configuration") into a typed configuration. Every problem
+/// is reported at once with its path; the result is only valid if none was added.
+RobotConfig loadRobot(const YAML::Node& tree, const ProfileLookup& profiles, Problems& problems);
+
+/// What the CANopen master needs: PDO COB-IDs, mappings, start-up writes as bytes. A pure function
+/// of a valid configuration; problems that only show here (a value that does not fit) are added.
+canopen::MasterConfig makeMasterConfig(const RobotConfig& robot, Problems& problems);
+
+/// Bus load that the configuration causes, as shares of the bit rate (1.0: full).
+struct BusLoad {
+  double nominal = 0.0, worst = 0.0;  ///< without stuff bits; with the most there can be
+  double feasible_rate = 0.0;         ///< Hz of SYNC at which the worst case is 80 %
+};
+/// Of the bus; what is left is for SDO and emergencies.
+inline constexpr double kComfortableLoad = 0.8;
+BusLoad busLoad(const canopen::MasterConfig& master, double bitrate);
+/// The part of one PDO in it, the remote frames that ask for it included; zero if it is disabled.
+/// Nominal: an RPDO that is sent on change is sent at its refresh rate only.
+BusLoad pdoLoad(const canopen::PdoConfig& pdo, Duration sync_period, double bitrate);
+
+/// The PDO plan as a table for people, with the bus load that each PDO causes.
+std::string pdoTable(const canopen::MasterConfig& master, double bitrate);
+
+/// Reads a robot's YAML file into a tree for loadRobot(); adds a problem if it is no YAML.
+YAML::Node readRobotFile(const std::string& path, Problems& problems);
+
+}  // namespace cia402::config

@@ -1,0 +1,57 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "drive/axis/commands.h"
+
+#include <cmath>
+
+namespace cia402::drive {
+
+Result<void> Commands::take(double value, ModeControl& mode, const SetPoint& sent, Time now) {
+  const std::string refused = jointName(axis_.config) + ": set-point refused: ";
+  if (leader_ != nullptr) {
+    return Error{refused + "the axis follows a trajectory of group " + *leader_ +
+                 "; stop that first with an empty trajectory"};
+  }
+  if (!std::isfinite(value)) return Error{refused + "it is not a finite number"};
+  if (mode.kind() == SetPointKind::none) {
+    return Error{refused + "mode " + mode.spec().name + " takes none; set_mode another first"};
+  }
+  if (!stream_.command) resume(mode, sent, stream_.clock);
+  stream_.command = value;
+  stream_.commanded = now;
+  stream_.dried_up = false;
+  mode.takeCommand(stream_);
+  return {};
+}
+
+void Commands::forget() {
+  drop();
+  stream_.dried_up = false;
+}
+
+void Commands::resume(ModeControl& mode, const SetPoint& sent, Time at) {
+  breaks_ = sent.breaks();
+  given_up_ = sent.givenUp();
+  interruptions_ = sent.interruptions();
+  mode.beginStream(stream_, at);
+}
+
+std::optional<double> Commands::step(ModeControl& mode, const SetPoint& sent, Time now) {
+  const Duration cycle = axis_.config.sync_period;
+  stream_.clock += cycle;
+  const bool ready = axis_.state.ready_for_motion && axis_.state.mode != nullptr;
+  if (leader_ != nullptr || !ready) forget();
+  if (leader_ != nullptr) return {};
+  stream_.at_rest = sent.atRest();
+  if (!stream_.command) return {};
+  // What was sent ended otherwise: by a stop, or by cycles that were missed.
+  if (sent.breaks() != breaks_ || sent.interruptions() != interruptions_) {
+    if (sent.givenUp() != given_up_) {
+      drop();
+      return {};
+    }
+    resume(mode, sent, stream_.clock - cycle);
+  }
+  return mode.follow(stream_, now);
+}
+
+}  // namespace cia402::drive

@@ -1,0 +1,62 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "drive/axis/config.h"
+
+#include <algorithm>
+
+namespace cia402::drive {
+namespace {
+
+constexpr double kDefaultDeceleration = 5.0;        // rad/s²
+constexpr double kDefaultLinearDeceleration = 0.5;  // m/s²
+
+bool hasAlias(const AxisConfig& axis) { return !axis.joint.empty() && axis.joint != axis.name; }
+
+}  // namespace
+
+motion::Joint jointOf(const AxisConfig& axis) {
+  motion::Joint joint;
+  joint.name = axis.joint;
+  joint.limits = axis.limits;
+  joint.limits.continuous = axis.geometry.type == AxisGeometry::Type::continuous;
+  joint.unit = axis.geometry.type == AxisGeometry::Type::prismatic ? motion::JointUnit::metre
+                                                                   : motion::JointUnit::radian;
+  return joint;
+}
+
+double stopDeceleration(const AxisConfig& axis) {
+  if (axis.limits.acceleration) return *axis.limits.acceleration;
+  return axis.geometry.type == AxisGeometry::Type::prismatic ? kDefaultLinearDeceleration
+                                                             : kDefaultDeceleration;
+}
+
+std::string jointName(const AxisConfig& axis) {
+  return hasAlias(axis) ? axis.joint + " (axis " + axis.name + ")" : axis.name;
+}
+
+std::string whoIs(const AxisConfig& axis) { return whoIs(axis, axis.place); }
+
+std::string whoIs(const AxisConfig& axis, const std::string& place) {
+  return hasAlias(axis) ? axis.joint + " (axis " + axis.name + ", " + place + ")"
+                        : axis.name + " (" + place + ")";
+}
+
+bool saidToLack(const AxisConfig& axis, const std::string& object) {
+  if (axis.lacks.empty()) return false;
+  const ObjectSpec* known = findObject(*axis.profile, object);
+  const std::string& name = known != nullptr ? known->name : object;
+  return std::find(axis.lacks.begin(), axis.lacks.end(), name) != axis.lacks.end();
+}
+
+const ModeSpec* trajectoryMode(const AxisConfig& axis) {
+  const DriveProfile& profile = *axis.profile;
+  const auto sent = [&](const std::string& target) {
+    return std::find(axis.outputs.begin(), axis.outputs.end(), target) != axis.outputs.end();
+  };
+  const auto found =
+      std::find_if(profile.modes.begin(), profile.modes.end(), [&](const ModeSpec& mode) {
+        return mode.cyclic && mode.kind == ControlKind::position && sent(mode.target);
+      });
+  return found == profile.modes.end() ? nullptr : &*found;
+}
+
+}  // namespace cia402::drive

@@ -1,0 +1,80 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "drive/axis/control.h"
+
+namespace cia402::drive {
+
+Control::Control(AxisBasis& axis, const Feedback& feedback) : axis_(axis), feedback_(feedback) {}
+
+void Control::aim(Goal goal) {
+  silent_ = voltage_off_ = false;
+  goal_ = goal;
+}
+
+void Control::switchOff() {
+  aim(Goal::disabled);
+  voltage_off_ = true;
+}
+
+void Control::silence() {
+  silent_ = true;
+  fault_reset_ = false;
+  base_ = word_ = 0;
+}
+
+void Control::enterOperation(Time now) {
+  in_operation_ = true;
+  brake_released_ = now + axis_.profile().timing.brake_release;
+}
+
+void Control::leaveOperation() {
+  in_operation_ = homing_start_ = false;
+  brake_released_ = kNever;
+  endHalt();
+}
+
+/// Nothing that moves anything; but a drive that was found moving is not left to coast either:
+/// "disable voltage" would cut its quick stop ramp short.
+std::uint16_t Control::silentWord() const {
+  const State state = axis_.state.state;
+  const bool stopped = state == State::quick_stop_active && feedback_.atStandstill() &&
+                       !axis_.config.quick_stop_holds;
+  const bool reacting = state == State::fault_reaction_active;
+  if (axis_.powerOff() || stopped || state == State::switched_on || reacting) return 0;
+  return controlword::kQuickStopCommand;
+}
+
+/// An undecodable word is no reason to switch anything off: the last command stands.
+void Control::command() {
+  const State state = axis_.state.state;
+  if (state == State::unknown && goal_ == Goal::enabled) return;
+  if (state != commanded_in_ || goal_ != commanded_for_) {
+    // A fault in which there may be power is none in which an axis is let go.
+    const bool maybe_powered = state == State::fault && !axis_.powerOff();
+    command_ =
+        maybe_powered ? nextCommand(State::unknown, Goal::quick_stop) : nextCommand(state, goal_);
+    commanded_in_ = state;
+    commanded_for_ = goal_;
+  }
+  base_ = command_.controlword;
+}
+
+void Control::write(unsigned mode_bits) {
+  if (silent_ && !fault_reset_) {
+    word_ = silentWord();
+  } else if (voltage_off_) {
+    word_ = 0;
+  } else {
+    command();
+    unsigned word = base_;
+    if (fault_reset_) word |= controlword::kFaultReset;
+    if (in_operation_) {
+      word |= mode_bits;
+      if (homing_start_) word |= controlword::kHomingStart;
+      if (halt_) word |= controlword::kHalt;
+    }
+    word_ = static_cast<std::uint16_t>(word);
+  }
+  axis_.image.setOutput(axis_.objects.controlword.slot, word_);
+}
+
+}  // namespace cia402::drive

@@ -1,0 +1,84 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "drive/axis/feedback.h"
+
+namespace cia402::drive {
+
+/// The controlword: where the drive is to go in its state machine, and the bits that are sent while
+/// it is in operation.
+class Control {
+ public:
+  /// Both must outlive this.
+  Control(AxisBasis& axis, const Feedback& feedback);
+
+  Goal goal() const { return goal_; }
+  /// Wants the drive to go there, from the next controlword on.
+  void aim(Goal goal);
+  /// Disable voltage, also where the drive's state is not known; until the next goal.
+  void switchOff();
+  /// The node is another one, or gone: nobody has asked for anything since.
+  void silence();
+  /// Nobody has asked for anything since the node came: the controlword is that of silence.
+  bool silent() const { return silent_; }
+  /// Somebody wants it to move, or to be ready for that.
+  bool commanded() const { return goal_ != Goal::disabled && goal_ != Goal::quick_stop; }
+
+  /// Parameters were saved, and the drive wants to be switched off and on before it is enabled.
+  void wantPowerCycle() { power_cycle_after_ = axis_.device.bootUps(); }
+  bool wantsPowerCycle() const { return power_cycle_after_ == axis_.device.bootUps(); }
+
+  /// The drive was seen in operation enabled, as it was to be; until it leaves that.
+  bool inOperation() const { return in_operation_; }
+  /// @param now the time that the brake needs counts from then
+  void enterOperation(Time now);
+  void leaveOperation();
+  /// The brake has had its time since the drive came into operation.
+  bool brakeReleased(Time now) const { return in_operation_ && now >= brake_released_; }
+
+  void setFaultReset(bool on) { fault_reset_ = on; }
+  void setHomingStart(bool on) { homing_start_ = on; }
+  bool homingStart() const { return homing_start_; }
+  void setHalt(bool on) { halt_ = on; }
+  bool halt() const { return halt_; }
+  /// The halt bit brakes an axis whose efforts are nobody's any more.
+  void brake() { braking_ = halt_ = true; }
+  bool braking() const { return braking_; }
+  /// Takes back the halt bit that brakes an axis at rest whose efforts have ended.
+  void endBraking() {
+    if (braking_) braking_ = halt_ = false;
+  }
+  void endHalt() { halt_ = braking_ = false; }
+
+  /// Puts the controlword into the process image. @param mode_bits of the active mode, which count
+  /// in operation
+  void write(unsigned mode_bits);
+  /// RPDOs with the controlword sent so far.
+  std::uint64_t frames() const { return axis_.image.sent(axis_.objects.controlword.slot); }
+  /// What was sent last, and in words: "shutdown (transition 2)".
+  std::uint16_t word() const { return word_; }
+  const char* text() const { return command_.text; }
+
+ private:
+  std::uint16_t silentWord() const;
+  void command();
+
+  AxisBasis& axis_;
+  const Feedback& feedback_;
+  Goal goal_ = Goal::disabled;
+  bool silent_ = true;
+  bool voltage_off_ = false;  ///< the power stage is to be off, whatever the drive shows
+  bool in_operation_ = false;
+  bool fault_reset_ = false, homing_start_ = false, halt_ = false, braking_ = false;
+  Time brake_released_ = kNever;
+  Command command_ = nextCommand(State::unknown, Goal::disabled);  ///< of these two:
+  State commanded_in_ = State::unknown;
+  Goal commanded_for_ = Goal::disabled;
+  std::uint16_t word_ = 0, base_ = 0;
+  std::optional<std::uint32_t> power_cycle_after_;  ///< boot-ups seen when it was asked for
+};
+
+}  // namespace cia402::drive

@@ -1,0 +1,81 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "drive/axis/coordinates.h"
+
+#include <cmath>
+
+namespace cia402::drive {
+
+Coordinates::Coordinates(const AxisConfig& config, const Signal& position, AxisState& state)
+    : config_(config), drive_(position.conversion), state_(state), position_(drive_) {
+  const bool continuous = config.geometry.type == AxisGeometry::Type::continuous;
+  if (continuous && position.spec->encoding == Encoding::integer) {
+    unwrap_ = {fieldbus::sizeBits(position.spec->type), fieldbus::isSigned(position.spec->type)};
+  }
+  state_.homed = absolute();
+}
+
+bool Coordinates::absolute() const {
+  return !lost_ && (!config_.homing || !config_.homing->required);
+}
+
+Conversion Coordinates::ofTarget(const Conversion& target) const {
+  const Conversion shifted = target.shifted(shift_);
+  return unwrap_.counting() ? shifted.wrapping() : shifted;
+}
+
+bool Coordinates::reaches(double position) const {
+  if (!unwrap_.counting()) return true;
+  return std::fabs(position - state_.position) < 0.5 * std::fabs(drive_.span());
+}
+
+std::optional<double> Coordinates::declare(double value) {
+  if (!state_.feedback_valid) return {};
+  lost_ = false;
+  return set(shift_ + (value - state_.position));
+}
+
+double Coordinates::adopt(double shift, bool homing) {
+  lost_ = false;
+  unwrap_.restart(homing);
+  return set(shift);
+}
+
+double Coordinates::returnToDrive(bool homing) {
+  unwrap_.restart(homing);
+  return set(0.0);
+}
+
+double Coordinates::lose() {
+  const double moved = returnToDrive(true);
+  lost_ = true;
+  state_.homed = false;
+  return moved;
+}
+
+std::optional<double> Coordinates::forget(bool homing) {
+  std::optional<double> moved;
+  if (!absolute()) moved = returnToDrive(homing);
+  state_.homed = absolute();
+  return moved;
+}
+
+void Coordinates::countAnew(bool homing) {
+  unwrap_.restart(homing);
+  place();
+}
+
+double Coordinates::set(double shift) {
+  const double moved = shift - shift_;
+  shift_ = shift;
+  place();
+  state_.position += moved;
+  state_.homed = true;
+  ++state_.zero_changes;
+  return moved;
+}
+
+void Coordinates::place() {
+  position_ = drive_.shifted(shift_ + static_cast<double>(unwrap_.wraps()) * drive_.span());
+}
+
+}  // namespace cia402::drive

@@ -1,0 +1,71 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "drive/axis/axis.h"
+#include "drive/axis/position_unwrap.h"
+#include "drive/axis/signals.h"
+
+namespace cia402::drive {
+
+/// Where the joint's zero lies in what the drive counts: by the drive's own zero, or shifted in
+/// software by what was declared or found; and how often a joint that turns without end has gone
+/// around. Writes `homed`, `zero_changes` and, when the zero moves, `position` of the state.
+class Coordinates {
+ public:
+  /// @param position the drive's actual position. All must outlive this.
+  Coordinates(const AxisConfig& config, const Signal& position, AxisState& state);
+
+  /// Takes the drive's number for the actual position.
+  void follow(std::uint64_t raw) {
+    if (unwrap_.update(raw)) place();
+  }
+  /// The joint's position in rad or m.
+  double toJoint(std::uint64_t raw) const { return position_.toJoint(raw); }
+  /// The conversion of a position target, which counts from the joint's zero. Targets need no whole
+  /// wraps: they wrap around themselves.
+  Conversion ofTarget(const Conversion& target) const;
+  /// Beyond half of what the drive can count, what is sent means a place on the other side.
+  bool reaches(double position) const;
+  /// Joint value, rad or m, that is added to what the drive's own zero says.
+  double shift() const { return shift_; }
+  /// Positions mean something without homing: none is required, and the zero was not lost.
+  bool absolute() const;
+
+  // Each returns by how much the joint's zero has moved, rad or m.
+  /// The present position shall read `value` from now on. Nothing where it is not known.
+  std::optional<double> declare(double value);
+  /// The drive has found its home by itself: what was declared before is void.
+  /// @param homing the drive is in homing mode: what its number does meanwhile is no motion
+  double adopt(double shift, bool homing);
+  /// Positions count from the drive's own zero.
+  double returnToDrive(bool homing);
+  /// The drive's zero may be another than before, and nobody has said where it lies: not homed,
+  /// also where no homing is required, until a position is declared or found.
+  double lose();
+
+  /// Another drive may be there: what was declared or found is void where it has to be. Nothing
+  /// where the zero stays.
+  std::optional<double> forget(bool homing);
+
+  /// What was counted before was in other coordinates.
+  void countAnew(bool homing);
+  /// The drive has left homing mode.
+  void resumeCounting() { unwrap_.resume(); }
+
+ private:
+  double set(double shift);
+  void place();
+
+  const AxisConfig& config_;
+  const Conversion& drive_;  ///< by the drive's own zero
+  AxisState& state_;
+  Conversion position_;  ///< with shift and wraps
+  double shift_ = 0.0;
+  bool lost_ = false;  ///< and not declared or found since
+  PositionUnwrap unwrap_;
+};
+
+}  // namespace cia402::drive

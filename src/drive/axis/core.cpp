@@ -1,0 +1,173 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "drive/axis/core.h"
+
+#include <utility>
+
+#include "drive/axis/words.h"
+#include "drive/sentence.h"
+
+namespace cia402::drive {
+
+AxisCore::AxisCore(AxisConfig config, fieldbus::Device& device)
+    : axis_(std::move(config), device),
+      coordinates_(axis_.config, axis_.objects.signals[SignalId::position], axis_.state),
+      mode_(axis_),
+      feedback_(axis_, coordinates_, mode_),
+      control_(axis_, feedback_),
+      generator_(axis_, coordinates_, feedback_, mode_, control_),
+      faults_(axis_),
+      limits_(axis_, coordinates_),
+      stops_(*this) {}
+
+void AxisCore::readFeedback(Time now) {
+  feedback_.read(now, {generator_.commandedPosition(), generator_.handingOver()});
+  if (nodeReady()) faults_.read(now);
+}
+
+void AxisCore::supervise(Time now) {
+  stops_.watchUrgent();
+  const bool late = now > written_ + 2 * config().sync_period && written_ != Time{};
+  if (late) generator_.lateCycle(now);
+  if (!nodeReady()) return;
+  limits_.keep(inOperation() ? generator_.target() : state().position);
+  if (control_.commanded() && !state().feedback_valid) return stopUnheard();
+  if (inOperation()) {
+    superviseOperation(now);
+  } else if (goal() == Goal::enabled && state().state == State::operation_enabled) {
+    control_.enterOperation(now);
+    generator_.beginFollowing(now);
+    generator_.neutralize();
+  }
+}
+
+void AxisCore::superviseOperation(Time now) {
+  const bool enabled = state().state == State::operation_enabled;
+  if (!enabled && !feedback_.maybeDecodable(now)) return giveUpOperation();
+  if (state().warning && profile().warning_stops) return stopForWarning();
+  if (mode_.brakes()) stops_.watchBrakeMode(now);
+  generator_.watchFollowing(now);
+}
+
+void AxisCore::stopUnheard() {
+  setGoal(Goal::quick_stop);
+  notices().fail(who() +
+                 ": no usable statusword (6041:00) and position (6064:00): " + feedback_.text() +
+                 "; quick stop is commanded. Check bus load, cable and the drive's TPDOs");
+}
+
+void AxisCore::giveUpOperation() {
+  notices().fail(who() + ": the drive left operation enabled by itself: " + feedback_.stateText() +
+                 "; " +
+                 (faulted() || state().error_code != 0 ? faults_.text() : faults_.emergencyText()) +
+                 (faulted() ? "" : "; enable brings it back once the reason is gone"));
+  // Switching off would cut a quick stop ramp of the drive short.
+  setGoal(state().state == State::quick_stop_active ? Goal::quick_stop : Goal::disabled);
+}
+
+void AxisCore::stopForWarning() {
+  notices().fail(
+      who() +
+      ": the drive warns (statusword bit 7), which makes it stop like a fault: " + faults_.text());
+  setGoal(Goal::quick_stop);  // what the drive does itself; switching off would let it coast
+}
+
+void AxisCore::updateReadiness(bool busy, Time now) {
+  AxisState& state = axis_.state;
+  state.ready_for_motion = inOperation() && !busy && !state.halted && state.feedback_valid &&
+                           brakeReleased(now) && feedback_.shows(mode_.spec()) &&
+                           state.state == State::operation_enabled;
+}
+
+void AxisCore::writeCommands(Time now) {
+  generator_.stepCommands(now);
+  if (inOperation()) {
+    generator_.advance(now);
+    stops_.watchEffort(now);
+    const double target = generator_.target();
+    if (const char* missing = generator_.send(now)) {
+      notices().notify(who() + ": the drive did not take the set-point " + number(target) +
+                       ": waited " + seconds(profile().timing.state_change) + " for " + missing +
+                       "; " + report(*this));
+    }
+  } else {
+    generator_.sendNeutral();
+  }
+  written_ = now;
+  generator_.watchDrive(now);
+  control_.write(generator_.mode().bits());
+  mode_.write();
+}
+
+void AxisCore::setGoal(Goal goal) {
+  control_.aim(goal);
+  if (goal != Goal::enabled) leaveOperation();
+}
+
+void AxisCore::switchOff() {
+  setGoal(Goal::disabled);
+  control_.switchOff();
+}
+
+void AxisCore::leaveOperation() {
+  axis_.state.halted = axis_.state.ready_for_motion = false;
+  mode_.overrideValue({});
+  control_.leaveOperation();
+  generator_.leave();
+}
+
+void AxisCore::selectMode(const ModeChannel& mode) {
+  mode_.select(mode);
+  stops_.forgetBrakeMode();
+  if (!mode_.homing()) coordinates_.resumeCounting();
+  control_.setHomingStart(false);
+  control_.endBraking();  // it belongs to the mode that is left, at rest
+  generator_.enter();
+}
+
+void AxisCore::onNodeLost() {
+  const bool was_commanded = !control_.silent();
+  setGoal(Goal::disabled);
+  control_.silence();
+  feedback_.forget();
+  axis_.objects.signals.forget();
+  faults_.forget();
+  if (const auto moved = coordinates_.forget(mode_.homing())) zeroMoved(*moved);
+  limits_.forget();
+  axis_.state.health = device().health();
+  selectMode(mode_.configured());
+  std::string text = who() + ": the node is " + fieldbus::toString(device().health());
+  if (!device().problem().empty()) text += " (" + device().problem() + ")";
+  notices().fail(text + "; the axis stays disabled until recover or enable", was_commanded);
+}
+
+void AxisCore::onBusLost(const std::string& why) {
+  if (!control_.commanded()) return;
+  setGoal(Goal::quick_stop);
+  notices().fail(who() + ": " + why +
+                 ": nothing reaches the drive; it gets a quick stop once the bus is back and stays "
+                 "disabled until enable or recover");
+}
+
+void AxisCore::zeroMoved(double moved) {
+  generator_.shiftZero(moved);
+  limits_.renew();
+  feedback_.watchAnew();
+}
+
+void AxisCore::declarePosition(double value) {
+  if (const auto moved = coordinates_.declare(value)) zeroMoved(*moved);
+}
+
+void AxisCore::adoptDriveZero(double shift) {
+  zeroMoved(coordinates_.adopt(shift, mode_.homing()));
+}
+
+void AxisCore::loseZero() { zeroMoved(coordinates_.lose()); }
+
+void AxisCore::measureAnew() {
+  coordinates_.countAnew(mode_.homing());
+  feedback_.watchAnew();
+  feedback_.forgetPosition();
+}
+
+}  // namespace cia402::drive

@@ -1,0 +1,66 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "drive/axis/fault_watch.h"
+
+#include "drive/profile/fault_text.h"
+
+namespace cia402::drive {
+
+void FaultWatch::readError(Time now) {
+  const Signals& signals = axis_.objects.signals;
+  const Signal& row = signals[SignalId::error_code];
+  ErrorEvidence::Look look;
+  look.faulted = axis_.faulted();
+  look.warning = axis_.state.warning;
+  if (!row.mapped()) {
+    look.by_sdo = row.spec;
+  } else if (signals.fresh(SignalId::error_code)) {
+    look.told = static_cast<std::uint16_t>(signals.image(SignalId::error_code).raw);
+  }
+  errors_.update(look, axis_.device.objects(), now);
+  axis_.state.error_code = errors_.code();
+}
+
+void FaultWatch::forgetFault() {
+  errors_.forget();
+  axis_.state.error_code = 0;
+}
+
+void FaultWatch::forget() {
+  errors_ = ErrorEvidence();
+  axis_.state.error_code = 0;
+}
+
+std::string FaultWatch::codeText(std::uint16_t code) const {
+  const std::string* excuse = errors_.excuse(code);
+  return errorCodeText(axis_.profile(), code) +
+         (excuse != nullptr ? "; the cause is that " + *excuse : std::string());
+}
+
+std::string FaultWatch::emergencyText() const {
+  if (errors_.pending() == 0) return "no EMCY is pending";
+  return "last EMCY " + codeText(errors_.pending());
+}
+
+std::string FaultWatch::text() const {
+  const AxisState& state = axis_.state;
+  if (axis_.faulted()) {
+    const char* reacting =
+        state.state == State::fault_reaction_active ? " (the drive is still stopping)" : "";
+    if (state.error_code == 0) {
+      return axis_.who() + ": fault" + reacting +
+             ", no error code yet (603F:00 is 0 and no EMCY came); clear_faults, then look at the "
+             "drive's own display or log";
+    }
+    return axis_.who() + ": fault " + codeText(state.error_code) + reacting + "; then clear_faults";
+  }
+  if (state.error_code != 0 && errors_.excuse(state.error_code) == nullptr) {
+    return axis_.who() + ": " + (state.warning ? "warning " : "error reported ") +
+           errorCodeText(axis_.profile(), state.error_code);
+  }
+  if (state.warning && axis_.profile().warning_stops) {
+    return axis_.who() + ": warning without a code (statusword bit 7); clear_faults";
+  }
+  return {};
+}
+
+}  // namespace cia402::drive

@@ -1,0 +1,221 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "drive/axis/feedback.h"
+
+#include <cmath>
+
+#include "drive/profile/fault_text.h"
+#include "drive/sentence.h"
+
+namespace cia402::drive {
+namespace {
+
+bool bitSet(std::uint16_t word, const std::optional<int>& bit) {
+  return bit && ((static_cast<unsigned>(word) >> *bit) & 1u) != 0;
+}
+
+std::int16_t signedMode(std::uint64_t raw, DataType type) {
+  if (fieldbus::sizeBits(type) == 8 && fieldbus::isSigned(type))
+    return static_cast<std::int8_t>(raw);
+  return static_cast<std::int16_t>(raw);
+}
+
+}  // namespace
+
+Feedback::Feedback(AxisBasis& axis, Coordinates& coordinates, const ActiveMode& mode)
+    : axis_(axis),
+      signals_(axis.objects.signals),
+      coordinates_(coordinates),
+      mode_(mode),
+      standstill_(axis.config.standstill_velocity,
+                  signals_[SignalId::position].conversion.resolution()) {}
+
+void Feedback::read(Time now, const Commanded& commanded) {
+  axis_.state.health = axis_.device.health();
+  if (!axis_.nodeReady()) return forget();
+  signals_.poll(now);
+  readMotion(now, commanded.position);
+  readState(now, commanded.handing_over);
+}
+
+void Feedback::readState(Time now, bool handing_over) {
+  AxisState& state = axis_.state;
+  if (!signals_.fresh(SignalId::statusword)) {
+    state.state = State::unknown;
+    return forgetMotion();
+  }
+  const auto statusword = static_cast<std::uint16_t>(signals_.image(SignalId::statusword).raw);
+  if (statusword != state.statusword || state.state == State::unknown) {
+    state.statusword = statusword;
+    state.state = decodeState(statusword);
+    state.warning = (statusword & statusword::kWarning) != 0;
+    state.internal_limit = (statusword & statusword::kInternalLimit) != 0;
+  }
+  if (state.state != State::unknown) known_state_ = now;
+  readMode(now);
+  state.target_reached =
+      state.mode != nullptr && !handing_over && bitSet(statusword, state.mode->target_reached_bit);
+}
+
+void Feedback::readMotion(Time now, double commanded) {
+  AxisState& state = axis_.state;
+  const fieldbus::ProcessValue& position = signals_.image(SignalId::position);
+  double joint = kUnknown;
+  if (signals_.fresh(SignalId::position)) {
+    coordinates_.follow(position.raw);
+    joint = coordinates_.toJoint(position.raw);
+  }
+  if (!std::isfinite(joint)) return forgetMotion();
+  const Signal& row = signals_[SignalId::position];
+  state.feedback_valid = true;
+  state.position = joint;
+  if (position.stamp != state.stamp || !raw_known_) {
+    standstill_.update(joint, position.stamp);
+    raw_position_ = row.conversion.sendable(position.raw);
+    raw_known_ = true;
+  } else if (!axis_.image.regular(row.slot)) {
+    // Its silence says that nothing changes; what may be withheld still is not known yet.
+    standstill_.update(joint, now - axis_.image.interval(row.slot, axis_.config.sync_period));
+  }
+  state.stamp = position.stamp;
+  state.velocity = signals_.read(SignalId::velocity, now, state.stamps.velocity);
+  state.effort = signals_.read(SignalId::effort, now, state.stamps.effort);
+  readFollowingError(now, commanded);
+  readDigitalInputs(now);
+}
+
+/// By the drive where it tells it, else by what is commanded.
+void Feedback::readFollowingError(Time now, double commanded) {
+  AxisState& state = axis_.state;
+  const Signal& row = signals_[SignalId::following_error];
+  Time& stamp = state.stamps.following_error;
+  if (row.mapped() && signals_.image(SignalId::following_error).valid) {
+    state.following_error = signals_.read(SignalId::following_error, now, stamp);
+  } else if (const auto* polled = signals_.polled(SignalId::following_error, now)) {
+    state.following_error = row.conversion.toJoint(polled->raw);
+    stamp = polled->stamp;
+  } else {
+    state.following_error = commanded - state.position;
+    if (!std::isnan(commanded)) stamp = state.stamp;
+  }
+}
+
+void Feedback::readDigitalInputs(Time now) {
+  const fieldbus::ProcessValue* told = signals_.told(SignalId::digital_inputs, now);
+  AxisState& state = axis_.state;
+  state.digital_inputs_valid = told != nullptr;
+  state.digital_inputs = told != nullptr ? static_cast<std::uint32_t>(told->raw) : 0;
+  if (told != nullptr) state.stamps.digital_inputs = told->stamp;
+}
+
+void Feedback::readMode(Time now) {
+  AxisState& state = axis_.state;
+  const Signal& row = signals_[SignalId::mode_display];
+  if (const auto* shown = signals_.told(row, now)) {
+    state.stamps.mode = shown->stamp;
+    const bool same = shown_mode_ && shown->raw == shown_raw_ && state.mode == &mode_.spec();
+    if (!same) showMode(shown->raw);
+    return;
+  }
+  if (!row.mapped() && row.polled < 0) {
+    state.stamps.mode = state.stamp;
+    return showMode(static_cast<std::uint64_t>(mode_.spec().value));  // no 6061h: believe
+  }
+  shown_mode_.reset();
+  state.mode = nullptr;
+}
+
+void Feedback::showMode(std::uint64_t raw) {
+  AxisState& state = axis_.state;
+  const ModeSpec& selected = mode_.spec();
+  // Modes of one value differ in the driver only: the commanded one is active then.
+  const bool commanded = state.mode == &selected || state.mode_value != selected.value;
+  if (shown_mode_ && raw == shown_raw_ && state.mode != nullptr && commanded) return;
+  const ObjectSpec* object = signals_[SignalId::mode_display].spec;
+  const std::int16_t value = signedMode(raw, object != nullptr ? object->type : DataType::int16);
+  shown_raw_ = raw;
+  shown_mode_ = value;
+  state.mode_value = value;
+  const ModeChannel* channel =
+      value == selected.value ? &mode_.channel() : axis_.objects.channelOfValue(value);
+  state.mode = channel != nullptr ? channel->spec : nullptr;
+}
+
+void Feedback::putShownMode(std::uint64_t raw, Time now) {
+  signals_.put(SignalId::mode_display, raw, now);
+  if (!signals_[SignalId::mode_display].mapped()) readMode(now);
+}
+
+bool Feedback::heardLately(Time now) const {
+  const fieldbus::Slot slot = signals_[SignalId::position].slot;
+  if (!axis_.image.regular(slot)) return true;
+  const Duration cycle = axis_.config.sync_period;
+  return now - axis_.state.stamp <= axis_.image.interval(slot, cycle) + 2 * cycle;
+}
+
+void Feedback::forgetMotion() {
+  AxisState& state = axis_.state;
+  if (state.feedback_valid) stood_without_power_ = axis_.powerOff() && atStandstill();
+  state.feedback_valid = false;
+  state.position = state.velocity = state.effort = state.following_error = kUnknown;
+  raw_known_ = false;
+  standstill_.reset();
+}
+
+/// A drive that sends its position on changes only has sent another one already.
+void Feedback::forgetPosition() {
+  const fieldbus::Slot slot = signals_[SignalId::position].slot;
+  if (!axis_.nodeReady() || !axis_.image.regular(slot)) return;
+  axis_.image.forget(slot);
+  forgetMotion();
+}
+
+void Feedback::forget() {
+  forgetMotion();
+  AxisState& state = axis_.state;
+  state.state = State::unknown;
+  state.statusword = 0;
+  state.mode = nullptr;
+  state.mode_value = 0;
+  shown_mode_.reset();
+  state.target_reached = state.warning = state.internal_limit = false;
+  state.digital_inputs = 0;
+  state.digital_inputs_valid = false;
+}
+
+std::string Feedback::stateText() const {
+  const AxisState& state = axis_.state;
+  if (state.state == State::unknown && state.statusword == 0) return "no statusword";
+  return "statusword " + hexWord(state.statusword) + " (" + toString(state.state) + ": " +
+         statuswordText(state.statusword) + ")";
+}
+
+std::string Feedback::text() const {
+  std::string text = axis_.device.overdueText();
+  if (!text.empty()) return text;
+  const bool come = signals_.fresh(SignalId::statusword) && signals_.fresh(SignalId::position);
+  return come ? "the position that the drive sends is no finite number" : "none has come yet";
+}
+
+std::string Feedback::coastingText() const {
+  if (!axis_.state.feedback_valid) return "nothing tells whether it stands: " + text();
+  return "the axis still moves (velocity " + number(axis_.state.velocity) +
+         "): nothing of the drive brakes it";
+}
+
+std::string Feedback::unknownText() const {
+  const AxisState& state = axis_.state;
+  const bool known = state.feedback_valid && state.state != State::unknown;
+  if (!axis_.nodeReady() || known) return {};
+  if (state.feedback_valid) {
+    return axis_.who() + ": its state is unknown: statusword (6041:00) " +
+           hexWord(state.statusword) + " is none of the states of CiA 402 (" +
+           statuswordText(state.statusword) + "); is it the right drive profile?";
+  }
+  std::string why = axis_.device.missingText();
+  if (why.empty()) why = text();
+  return axis_.who() +
+         ": its state is unknown: no usable statusword (6041:00) and position (6064:00): " + why +
+         "; check cable, bus load and the drive's TPDOs";
+}
+
+}  // namespace cia402::drive

@@ -1,0 +1,239 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "drive/axis/generator.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "drive/sentence.h"
+
+namespace cia402::drive {
+namespace {
+
+SetPointLimits setPointLimits(const AxisConfig& config) {
+  return {config.limits.lower, config.limits.upper, config.limits.velocity,
+          stopDeceleration(config)};
+}
+
+}  // namespace
+
+Generator::Generator(AxisBasis& axis, const Coordinates& coordinates, const Feedback& feedback,
+                     const ActiveMode& mode, Control& control)
+    : axis_(axis),
+      coordinates_(coordinates),
+      feedback_(feedback),
+      active_(mode),
+      control_(control),
+      sent_(setPointLimits(axis.config), axis.config.sync_period),
+      following_(axis.config.standstill_velocity, axis.config.sync_period),
+      commands_(axis) {
+  for (const ModeChannel& channel : axis.objects.modes) {
+    modes_.push_back(makeModeControl(channel, {axis_, coordinates_, feedback_, sent_}));
+  }
+  mode_ = &controlOf(active_.channel());
+  enter();
+}
+
+ModeControl& Generator::controlOf(const ModeChannel& channel) {
+  return *modes_[static_cast<std::size_t>(&channel - axis_.objects.modes.data())];
+}
+
+void Generator::enter() {
+  commands_.forget();
+  mode_ = &controlOf(active_.channel());
+  mode_->place();
+  mode_->endHalt();  // of an earlier time
+  given_ = kUnknown;
+  neutralize();
+}
+
+void Generator::leave() {
+  pushes_ = false;
+  following_.end();
+  mode_->endHalt();
+  mode_->reset(target_raw_);
+  sent_.rest(mode_->kind(), SetPoint::kNone);
+}
+
+void Generator::neutralize() {
+  sent_.rest(mode_->kind(), mode_->neutral());
+  const OutputObject& target = mode_->channel().target;
+  if (!mode_->neutralRaw(target_raw_) && target.mapped()) {
+    target_raw_ = axis_.image.output(target.slot);
+  }
+  mode_->reset(target_raw_);
+}
+
+void Generator::preset(const ModeChannel& channel) {
+  if (!channel.target.mapped()) return;
+  if (channel.target.slot == mode_->channel().target.slot) return neutralize();
+  std::uint64_t raw = 0;
+  if (controlOf(channel).neutralRaw(raw)) axis_.image.setOutput(channel.target.slot, raw);
+}
+
+std::uint64_t Generator::targetFrames() const {
+  const OutputObject& target = mode_->channel().target;
+  return target.mapped() ? axis_.image.sent(target.slot) : control_.frames();
+}
+
+void Generator::shiftZero(double moved) {
+  mode_->place();
+  commands_.forget();
+  if (!mode_->positions()) return;
+  sent_.shift(moved);
+  given_ = kUnknown;
+}
+
+bool Generator::homedEnough() const {
+  return axis_.state.homed || !mode_->positions() || coordinates_.absolute();
+}
+
+bool Generator::take(double value) {
+  const bool ready = axis_.state.ready_for_motion && homedEnough();
+  if (!ready || !std::isfinite(value) || !mode_->accepts(value)) return false;
+  value = mode_->guarded(value);
+  std::uint64_t raw = 0;
+  if (!mode_->channel().target.mapped() || !mode_->encode(value, raw)) return false;
+  if (mode_->kind() == SetPointKind::torque) {
+    pushes_ = axis_.config.brake_after_effort;
+    control_.endBraking();
+  }
+  mode_->accepted(raw, raw == target_raw_);
+  sent_.give(value);
+  given_ = value;
+  given_raw_ = raw;
+  return true;
+}
+
+void Generator::stop() {
+  commands_.drop();
+  sent_.stop();
+}
+
+void Generator::stepCommands(Time now) {
+  late_ = false;
+  const std::optional<double> next = commands_.step(*mode_, sent_, now);
+  if (next && !take(*next)) commands_.drop();
+}
+
+void Generator::arrest() {
+  sent_.arrest(axis_.state.velocity);
+  encode();
+}
+
+void Generator::lateCycle(Time now) {
+  late_ = true;
+  sent_.interrupt();
+  if (axis_.state.halted && !control_.halt()) mode_->lateInHalt(now);
+}
+
+void Generator::advance(Time now) {
+  mode_->prepare(now);
+  if (sent_.advance(now)) encode();
+  axis_.moved_at = std::max(sent_.movedAt(), moved_itself_);
+}
+
+void Generator::encode() {
+  std::uint64_t raw = given_raw_;
+  const bool as_given = sent_.value() == given_;
+  if (!as_given && !mode_->encode(sent_.value(), raw)) return;
+  if (raw != target_raw_)
+    mode_->offer(raw, axis_.state.halted);  // where the drive is stopped by it
+  target_raw_ = raw;
+}
+
+const char* Generator::send(Time now) {
+  std::uint64_t raw = target_raw_;
+  const char* const missing = mode_->handOver(raw, now);
+  const OutputObject& target = mode_->channel().target;
+  if (target.mapped()) axis_.image.setOutput(target.slot, raw);
+  return missing;
+}
+
+void Generator::sendNeutral() {
+  for (const auto& mode : modes_) {
+    const OutputObject& target = mode->channel().target;
+    std::uint64_t raw = 0;
+    if (target.mapped() && mode->neutralRaw(raw)) axis_.image.setOutput(target.slot, raw);
+  }
+}
+
+/// The drive moves the axis as it sees fit, and what looks like standstill may be where it turns
+/// back.
+bool Generator::movesItself() const {
+  if (!control_.inOperation() || control_.halt() || axis_.state.halted) return false;
+  return control_.homingStart() || (mode_->spec().target_reached_bit && goalAhead());
+}
+
+void Generator::watchDrive(Time now) {
+  if (!control_.homingStart() && mode_->kind() != SetPointKind::goal) return;
+  if (!feedback_.measuredStill()) seen_moving_ = now;
+  const bool halting = axis_.state.halted && !control_.halt();
+  if (movesItself() || (halting && mode_->mayTurnBack(now, seen_moving_))) moved_itself_ = now;
+  axis_.moved_at = std::max(sent_.movedAt(), moved_itself_);
+}
+
+bool Generator::moving() const {
+  return feedback_.standstill().moving() || (control_.inOperation() && !sent_.atRest());
+}
+
+double Generator::commandedPosition() const {
+  return control_.inOperation() && mode_->positions() ? target() : kUnknown;
+}
+
+std::optional<Duration> Generator::withdraw() {
+  if (!control_.inOperation() || !mode_->positions() || !axis_.state.feedback_valid) return {};
+  const double away = std::fabs(target() - axis_.state.position);
+  if (away <= feedback_.standstill().tolerance()) return {};
+  takeBack();
+  return mode_->wayBack(away);
+}
+
+void Generator::takeBack() {
+  neutralize();
+  mode_->offer(target_raw_, true);
+}
+
+bool Generator::giveUpGoal() {
+  const bool held = control_.inOperation() && !control_.halt() && goalAhead() &&
+                    feedback_.seenStill(sent_.movedAt());
+  if (!held) return false;
+  sent_.give(axis_.state.position);
+  sent_.giveUp();
+  return true;
+}
+
+void Generator::watchFollowing(Time now) {
+  const Standstill& standstill = feedback_.standstill();
+  const AxisState& state = axis_.state;
+  const auto& bit = mode_->spec().follows_command_bit;
+  if (following_.leaves(standstill.moving(), bit.has_value(), now)) return;
+  const bool active = state.mode == &mode_->spec();
+  const bool shown = bit && active && ((state.statusword >> *bit) & 1u) != 0;
+  const bool held = !active || control_.halt() || state.internal_limit;
+  const FollowWatch::Look look{sent_, standstill, state, bit.has_value(), shown, held};
+  if (following_.watch(look, now)) callBack();
+}
+
+void Generator::callBack() {
+  const AxisState& state = axis_.state;
+  const bool turns = sent_.kind() == SetPointKind::velocity;
+  const double ahead = turns ? target() : target() - state.position;
+  takeBack();
+  sent_.giveUp();
+  following_.end();
+  if (!following_.isNews()) return;
+  const bool prismatic = axis_.config.geometry.type == AxisGeometry::Type::prismatic;
+  const std::string what =
+      turns ? "it is to turn at " + number(ahead) + (prismatic ? " m/s: " : " rad/s: ")
+            : "its set-points run, " + length(ahead, prismatic) + " ahead: ";
+  axis_.notices.notify(
+      axis_.who() + ": the motor stands while " + what +
+      (state.internal_limit ? "internal limit active (statusword bit 11), a limit switch or a "
+                              "position limit of the drive holds it"
+                            : "the brake, a limit or the load holds it") +
+      (turns ? ". The velocity is set to 0" : ". They are called back to where it stands") +
+      ", and what was commanded is given up: free the axis or lead it back, then command it "
+      "again");
+}
+
+}  // namespace cia402::drive

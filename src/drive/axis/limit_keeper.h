@@ -1,0 +1,45 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "drive/axis/basis.h"
+#include "drive/axis/coordinates.h"
+#include "drive/axis/position_limits.h"
+
+namespace cia402::drive {
+
+/// Keeps the position limits in the drive (607Dh) with the joint's zero.
+class LimitKeeper {
+ public:
+  /// Both must outlive this.
+  LimitKeeper(AxisBasis& axis, const Coordinates& coordinates);
+
+  /// Keeps them open, for the drive is about to get another zero; or no more.
+  void open(bool open);
+  /// Has them worked out anew: the zero has moved, or the axis is about to be enabled.
+  void renew() { due_ = true; }
+  /// Another drive may be there, or the same with other parameters.
+  void forget();
+  /// The drive has them, or has refused them.
+  bool settled() const { return !due_ && limits_.settled(); }
+  /// What the drive refused, PositionLimits::problem() and remark().
+  std::string problem() const { return limits_.problem(); }
+  std::string remark() const { return limits_.remark(); }
+
+  /// Once a cycle, while the node is ready. @param target that the axis goes to, rad or m; where it
+  /// goes to none, its position
+  void keep(double target) {
+    if (!limits_.idle() || due_ || belong() != known_) work(target);
+  }
+
+ private:
+  /// Limits belong into the drive: its coordinates are known, and stay.
+  bool belong() const { return axis_.state.homed && !open_; }
+  void work(double target);
+
+  AxisBasis& axis_;
+  const Coordinates& coordinates_;
+  PositionLimits limits_;
+  bool due_ = true, open_ = false, known_ = false;
+};
+
+}  // namespace cia402::drive

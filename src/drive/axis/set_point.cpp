@@ -1,0 +1,160 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "drive/axis/set_point.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cia402::drive {
+namespace {
+
+/// What trajectories may exceed a limit by (motion::Trajectory), and rounding.
+constexpr double kTolerance = 1.0 + 1e-6;
+
+}  // namespace
+
+SetPointKind kindOf(const ModeSpec& mode) {
+  switch (mode.kind) {
+    case ControlKind::position:
+      return mode.cyclic ? SetPointKind::stream : SetPointKind::goal;
+    case ControlKind::velocity:
+      return SetPointKind::velocity;
+    case ControlKind::torque:
+      return SetPointKind::torque;
+    case ControlKind::homing:
+      break;
+  }
+  return SetPointKind::none;
+}
+
+SetPoint::SetPoint(const SetPointLimits& limits, Duration cycle)
+    : limits_(limits),
+      cycle_s_(toSeconds(cycle)),
+      furthest_(limits.velocity ? *limits.velocity * cycle_s_ * kTolerance : 1e300),
+      cycle_(cycle) {}
+
+void SetPoint::rest(SetPointKind kind, double value) {
+  kind_ = kind;
+  value_ = value;
+  velocity_ = 0.0;
+  has_given_ = false;
+  stopping_ = false;
+  ++breaks_;
+}
+
+void SetPoint::arrest(double velocity) {
+  rest(SetPointKind::velocity, velocity);
+  beginStop();
+}
+
+void SetPoint::give(double value) {
+  given_ = value;
+  has_given_ = true;
+}
+
+void SetPoint::stop() {
+  has_given_ = false;
+  if (stopping_ || atRest()) return;
+  ++breaks_;
+  beginStop();
+}
+
+void SetPoint::beginStop() {
+  stopping_ = true;
+  if (kind_ == SetPointKind::stream) ramp_.begin(value_, velocity_, limits_.deceleration);
+  if (kind_ == SetPointKind::velocity) ramp_.begin(0.0, value_, limits_.deceleration);
+}
+
+void SetPoint::interrupt() {
+  if (kind_ != SetPointKind::stream || (velocity_ == 0.0 && !stopping_)) return;
+  velocity_ = 0.0;
+  stopping_ = false;
+  ++interruptions_;
+}
+
+void SetPoint::shift(double by) {
+  if (kind_ != SetPointKind::stream && kind_ != SetPointKind::goal) return;
+  value_ += by;
+  has_given_ = false;
+  if (stopping_) ramp_.begin(value_, velocity_, limits_.deceleration);
+  ++breaks_;
+}
+
+bool SetPoint::advance(Time now) {
+  const double before = value_;
+  leased_ = has_given_;
+  if (leased_) {
+    stopping_ = false;
+    follow();
+    has_given_ = false;
+  } else {
+    if (!stopping_ && !atRest()) {
+      ++breaks_;
+      beginStop();
+    }
+    if (stopping_) advanceStop();
+  }
+  const bool changed = value_ != before && !std::isnan(value_);
+  if (changed || !atRest()) moved_at_ = now;
+  return changed;
+}
+
+void SetPoint::follow() {
+  double next = given_;
+  if (kind_ == SetPointKind::stream) {
+    next = std::clamp(next, value_ - furthest_, value_ + furthest_);
+    velocity_ = (next - value_) / cycle_s_;
+  }
+  value_ = next;
+}
+
+void SetPoint::advanceStop() {
+  if (kind_ == SetPointKind::torque) {
+    value_ = 0.0;
+    stopping_ = false;
+    return;
+  }
+  ramp_.advance(cycle_);
+  if (kind_ == SetPointKind::velocity) {
+    value_ = ramp_.velocity();
+  } else {
+    value_ = withinLimits(ramp_.position());
+    velocity_ = ramp_.velocity();
+  }
+  stopping_ = !ramp_.finished();
+}
+
+/// An axis that stands beyond a limit is just stopped.
+double SetPoint::withinLimits(double position) const {
+  if (limits_.lower) position = std::max(position, std::min(*limits_.lower, value_));
+  if (limits_.upper) position = std::min(position, std::max(*limits_.upper, value_));
+  return position;
+}
+
+bool SetPoint::atRest() const {
+  switch (kind_) {
+    case SetPointKind::none:
+    case SetPointKind::goal:
+      return true;
+    case SetPointKind::stream:
+      return velocity_ == 0.0;
+    case SetPointKind::velocity:
+    case SetPointKind::torque:
+      return value_ == 0.0 || std::isnan(value_);
+  }
+  return true;
+}
+
+double SetPoint::stopPosition() const {
+  const double way = velocity_ * std::fabs(velocity_) / (2.0 * limits_.deceleration);
+  return kind_ == SetPointKind::stream ? withinLimits(value_ + way) : value_;
+}
+
+SetPoint::Motion SetPoint::expected(Duration ahead) const {
+  if (kind_ != SetPointKind::stream || velocity_ == 0.0) return {value_, 0.0};
+  motion::StopRamp ramp;
+  ramp.begin(value_, velocity_, limits_.deceleration);
+  ramp.advance(ahead);
+  return {withinLimits(ramp.position()), ramp.velocity()};
+}
+
+}  // namespace cia402::drive

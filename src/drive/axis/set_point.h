@@ -1,0 +1,110 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include "cia402_driver/common/time.h"
+#include "drive/profile/profile.h"
+#include "motion/stop_ramp.h"
+
+namespace cia402::drive {
+
+/// What a set-point is and what the drive makes of it.
+enum class SetPointKind : std::uint8_t {
+  none,      ///< the mode takes no set-points (homing)
+  stream,    ///< positions, a new one each cycle; the drive stands at the last one
+  goal,      ///< a position that the drive goes to by itself
+  velocity,  ///< the drive turns on with the last one
+  torque,    ///< the drive pushes on with the last one
+};
+
+SetPointKind kindOf(const ModeSpec& mode);
+
+/// What bounds the set-points of an axis, in joint units (rad or m, per s).
+struct SetPointLimits {
+  std::optional<double> lower, upper;  ///< positions that a stop does not go beyond
+  std::optional<double> velocity;      ///< > 0; a stream never steps further than this allows
+  double deceleration = 5.0;           ///< > 0, with which everything is brought to rest
+};
+
+/// The one owner of an axis' set-point: knows what was sent last, how fast that moves, and stops
+/// it.
+///
+/// A set-point is a lease of one cycle. Who moves an axis gives one in every cycle; what moves and
+/// is not renewed is brought to rest. Everything advances by one period a cycle, however late the
+/// cycle is: what a late cycle missed is never made good. Every stop starts from what was sent
+/// last, whoever asks for it and however often. Joint units; nothing allocates.
+class SetPoint {
+ public:
+  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+  SetPoint(const SetPointLimits& limits, Duration cycle);
+
+  /// Begins anew, at rest: at the position `value`, or with no velocity or torque.
+  void rest(SetPointKind kind, double value);
+  /// Takes over a motor that turns: begins at its velocity, per s, and ramps that to rest.
+  void arrest(double velocity);
+  /// The set-point of this cycle; in a stream it is approached no faster than the velocity limit.
+  /// Ends a stop. @pre value is finite
+  void give(double value);
+  /// Brings to rest: a stream or a velocity by a ramp, a torque at once; a goal is left to the
+  /// drive. While stopping, or at rest, nothing changes.
+  void stop();
+  /// At least one cycle was missed: who follows a stream of positions has come to rest meanwhile.
+  void interrupt();
+  /// Grows with each interrupt() of a moving stream.
+  std::uint32_t interruptions() const { return interruptions_; }
+  /// Positions have got another zero. @param by what is added to all of them
+  void shift(double by);
+
+  /// Makes the set-point of this cycle. @return true if it differs from the last one
+  bool advance(Time now);
+
+  SetPointKind kind() const { return kind_; }
+  /// What was sent last: rad or m, per s, N m or N; NaN where nothing was.
+  double value() const { return value_; }
+  /// Position: how fast it moves. Velocity: the value.
+  double velocity() const { return kind_ == SetPointKind::velocity ? value_ : velocity_; }
+  bool stopping() const { return stopping_; }
+  /// A set-point was given for the last cycle.
+  bool leased() const { return leased_; }
+  /// Nothing that was sent moves the axis; a goal counts as rest, see movedAt().
+  bool atRest() const;
+  /// Where a stop begun now would end; a position, for kinds of position only.
+  double stopPosition() const;
+  /// Position and velocity `ahead` of now if nothing is given any more.
+  struct Motion {
+    double position, velocity;
+  };
+  Motion expected(Duration ahead) const;
+  /// When the last set-point left that moved the axis, or could have.
+  Time movedAt() const { return moved_at_; }
+  /// Grows with all that ends a motion, other than who gives its set-points: a stop, another zero,
+  /// a new beginning.
+  std::uint32_t breaks() const { return breaks_; }
+  /// What was commanded cannot be reached: whoever gave it gives it no more.
+  void giveUp() { ++given_up_; }
+  /// How often that was so.
+  std::uint32_t givenUp() const { return given_up_; }
+
+ private:
+  void beginStop();
+  void advanceStop();
+  void follow();
+  double withinLimits(double position) const;
+
+  SetPointLimits limits_;
+  double cycle_s_, furthest_;  ///< step of a stream
+  Duration cycle_;
+  SetPointKind kind_ = SetPointKind::none;
+  double value_ = kNone, velocity_ = 0.0;
+  double given_ = kNone;
+  bool has_given_ = false, stopping_ = false, leased_ = false;
+  motion::StopRamp ramp_;
+  Time moved_at_ = Time::min();
+  std::uint32_t breaks_ = 0, interruptions_ = 0, given_up_ = 0;
+};
+
+}  // namespace cia402::drive

@@ -1,0 +1,70 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "drive/axis/axis.h"
+#include "drive/axis/poller.h"
+#include "drive/axis/signal.h"
+
+namespace cia402::drive {
+
+/// What the drive tells of itself, a row each: those of SignalId, then those that the profile names
+/// in `signals`, which are only shown. A row that no TPDO brings is asked for beside the cycle.
+class Signals {
+ public:
+  /// @throws std::invalid_argument if statusword or actual position are not mapped.
+  Signals(const AxisConfig& config, fieldbus::Device& device);
+
+  const Signal& operator[](SignalId id) const { return rows_[static_cast<std::size_t>(id)]; }
+  /// The rows of the profile's `signals`, in its order; of those that the drive lacks spec is
+  /// nullptr.
+  std::vector<ShownSignal> shown(Time now) const;
+
+  /// Has come, and in time. @pre it is mapped
+  bool fresh(SignalId id) const { return image_.fresh((*this)[id].slot); }
+  /// What the process image holds of it. @pre it is mapped
+  const fieldbus::ProcessValue& image(SignalId id) const { return image_.input((*this)[id].slot); }
+  /// The raw value of a row that is mapped or asked for; none where it is unknown or too old.
+  const fieldbus::ProcessValue* told(const Signal& row, Time now) const {
+    if (!row.mapped()) return poller_.value(row.polled, now);
+    return image_.fresh(row.slot) ? &image_.input(row.slot) : nullptr;
+  }
+  const fieldbus::ProcessValue* told(SignalId id, Time now) const { return told((*this)[id], now); }
+  /// The same in joint units; NaN where it is unknown. @param stamp of the value, if it is known
+  double read(SignalId id, Time now, Time& stamp) const {
+    const Signal& row = (*this)[id];
+    const fieldbus::ProcessValue* value = told(row, now);
+    if (value == nullptr) return kUnknown;
+    stamp = value->stamp;
+    return row.conversion.toJoint(value->raw);
+  }
+  /// What was asked for beside the cycle, whether it is mapped or not.
+  const fieldbus::ProcessValue* polled(SignalId id, Time now) const {
+    return poller_.value((*this)[id].polled, now);
+  }
+
+  /// Somebody is about to look at what is only shown: it is asked for once more where it does not
+  /// travel.
+  void look();
+  /// Asks for what is due.
+  void poll(Time now) {
+    if (poller_.due(now)) poller_.advance(device_.objects(), now);
+  }
+  /// The drive lost its state: nothing that was asked for is known any more.
+  void forget() { poller_.reset(); }
+  /// Takes a value that somebody else has asked for.
+  void put(SignalId id, std::uint64_t raw, Time now) { poller_.put((*this)[id].polled, raw, now); }
+
+ private:
+  void add(const AxisConfig& config, const ObjectSpec* spec, AxisPoller::Reading reading);
+  bool travels(const Signal& row) const;
+
+  fieldbus::Device& device_;
+  const fieldbus::ProcessImage& image_;
+  std::vector<Signal> rows_;
+  AxisPoller poller_;
+};
+
+}  // namespace cia402::drive

@@ -1,0 +1,164 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "drive/axis/stops.h"
+
+#include <cmath>
+#include <utility>
+
+#include "drive/axis/core.h"
+#include "drive/axis/words.h"
+#include "drive/profile/object_value.h"
+#include "drive/sentence.h"
+
+namespace cia402::drive {
+
+StopBy Stops::how() const { return stopBy(axis_.mode().spec(), axis_.profile()); }
+
+void Stops::halt(Time now) {
+  AxisState& state = axis_.basis().state;
+  Generator& generator = axis_.generator();
+  if (!axis_.control().inOperation() || state.halted) return;
+  generator.stop();
+  switch (how()) {
+    case StopBy::halt:
+      axis_.control().setHalt(true);
+      break;
+    case StopBy::quick_stop:
+      axis_.setGoal(Goal::quick_stop);
+      return;
+    case StopBy::mode:
+      if (!brakeByMode(now)) axis_.setGoal(Goal::quick_stop);
+      return;
+    case StopBy::set_points:
+      generator.beginHalt();
+      break;
+  }
+  state.halted = true;
+  state.ready_for_motion = false;
+}
+
+void Stops::replaceHaltedTarget() {
+  if (axis_.control().halt()) axis_.generator().takeBack();  // else set-points have come to rest
+}
+
+void Stops::endHalt() {
+  axis_.control().endHalt();
+  axis_.generator().endHalt();
+  axis_.basis().state.halted = false;
+}
+
+void Stops::stopUrgently(const std::string& why) {
+  if (!axis_.nodeReady() || axis_.powerOff()) return;
+  const bool was_commanded = !axis_.control().silent() && axis_.goal() != Goal::disabled;
+  axis_.setGoal(Goal::quick_stop);
+  const ObjectSpec* object = axis_.objects().controlword.spec;
+  urgent_ticket_ = axis_.device().objects().downloadUrgent(
+      object->id, fieldbus::toBytes(controlword::kQuickStopCommand, 2), object->name);
+  if (was_commanded) axis_.notices().fail(axis_.who() + ": " + why);
+}
+
+void Stops::judgeUrgent() {
+  const fieldbus::Ticket ended = std::exchange(urgent_ticket_, nullptr);
+  if (ended->ok()) return;
+  axis_.notices().notify(
+      axis_.who() + ": the quick stop by SDO failed: " + ended->message() +
+      "; the drive may go on: switch its power off if it does not stop by itself");
+}
+
+/// The mode that brakes this one, where its target travels in every cycle.
+const ModeChannel* Stops::brakeMode() const {
+  const ModeChannel* brake = axis_.objects().channel(axis_.mode().spec().stop_mode);
+  const bool usable =
+      brake != nullptr && brake->target.mapped() && axis_.mode().refusal(*brake).empty();
+  return usable ? brake : nullptr;
+}
+
+/// So that the mode that brakes finds the motor's own velocity as its target when it comes.
+void Stops::followByBrakeMode() {
+  const ModeChannel* brake = brakeMode();
+  const double velocity = axis_.state().velocity;
+  std::uint64_t raw = 0;
+  if (brake == nullptr || !std::isfinite(velocity)) return;
+  if (brake->conversion.toDevice(velocity, raw)) {
+    axis_.device().image().setOutput(brake->target.slot, raw);
+  }
+}
+
+/// @return false if it cannot, and a quick stop has to do it
+bool Stops::brakeByMode(Time now) {
+  const ModeChannel* brake = brakeMode();
+  AxisState& state = axis_.basis().state;
+  if (brake == nullptr || !state.feedback_valid || !std::isfinite(state.velocity)) return false;
+  const ModeChannel& pushes = axis_.mode().channel();
+  if (pushes.target.mapped()) axis_.device().image().setOutput(pushes.target.slot, 0);
+  axis_.selectMode(*brake);
+  axis_.mode().brakeFor(pushes);
+  braked_at_ = now;
+  const OutputObject& object = axis_.objects().mode;
+  if (!object.mapped() && object.spec != nullptr) {
+    const auto value = static_cast<std::uint64_t>(brake->spec->value);
+    brake_ticket_ = axis_.device().objects().downloadUrgent(
+        object.spec->id, wireBytes(value, object.spec->type), object.spec->name);
+  }
+  axis_.generator().arrest();
+  axis_.generator().endPushing();
+  state.halted = true;
+  state.ready_for_motion = false;
+  return true;
+}
+
+/// The ramp begins when the drive has taken the mode: until then it coasts.
+void Stops::watchBrakeMode(Time now) {
+  if (brake_mode_shown_) return;
+  const ModeSpec& mode = axis_.mode().spec();
+  const bool refused = brake_ticket_ && brake_ticket_->done() && !brake_ticket_->ok();
+  if (axis_.feedback().shows(mode) && !refused) {
+    brake_mode_shown_ = true;
+    return;
+  }
+  const Duration patience = axis_.profile().timing.mode_change;
+  if (!refused && now <= braked_at_ + patience) {
+    if (std::isfinite(axis_.state().velocity)) axis_.generator().arrest();
+    return;
+  }
+  axis_.notices().notify(
+      axis_.who() + ": mode " + mode.name + " (6060:00 = " + std::to_string(mode.value) +
+      "), which is to brake, was not taken" +
+      (refused ? ": " + brake_ticket_->message() : " within " + seconds(patience)) +
+      "; quick stop is commanded. " + report(axis_));
+  axis_.setGoal(Goal::quick_stop);
+}
+
+void Stops::forgetBrakeMode() {
+  brake_mode_shown_ = false;
+  brake_ticket_.reset();
+}
+
+void Stops::watchEffort(Time now) {
+  if (!axis_.generator().pushes()) return;
+  axis_.generator().sent().leased() ? followByBrakeMode() : brakeEffort(now);
+}
+
+void Stops::brakeEffort(Time now) {
+  Generator& generator = axis_.generator();
+  if (generator.sent().atRest() && axis_.feedback().atStandstill()) return generator.endPushing();
+  if (axis_.control().braking() || axis_.state().halted) return;
+  generator.stop();
+  if (how() == StopBy::halt) return axis_.control().brake();
+  const std::string pushing = axis_.mode().spec().name;
+  if (how() == StopBy::mode && brakeByMode(now)) {
+    axis_.notices().notify(axis_.who() +
+                           ": the stream of efforts ended; the axis is braked and held by mode " +
+                           axis_.mode().spec().name + ". enable brings it back into " + pushing +
+                           ", or let it coast by command_timeout_action: coast");
+    return;
+  }
+  axis_.setGoal(Goal::quick_stop);
+  axis_.notices().notify(axis_.who() +
+                         ": the stream of efforts ended; the axis is braked by a quick stop, as "
+                         "mode " +
+                         pushing +
+                         " has no other brake. enable to go on, or let it coast by "
+                         "command_timeout_action: coast");
+}
+
+}  // namespace cia402::drive

@@ -1,0 +1,55 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "drive/axis/basis.h"
+
+namespace cia402::drive {
+
+class AxisCore;
+
+/// Brings an axis to rest that stays in operation, by what its mode has for it (stopBy()).
+class Stops {
+ public:
+  explicit Stops(AxisCore& axis) : axis_(axis) {}  ///< @param axis must outlive this
+
+  /// Stops and stays stopped until endHalt(). Where nothing but a quick stop brakes, the axis
+  /// leaves operation.
+  void halt(Time now);
+  /// Replaces the set-point that a halted drive would go on to by "stay here". The halt itself is
+  /// released once that is on the wire and nothing is handed over any more.
+  void replaceHaltedTarget();
+  void endHalt();
+
+  /// Quick stop by a write that waits for nothing: what travels in cycles does not reach the drive.
+  /// @param why in words
+  void stopUrgently(const std::string& why);
+  /// Once a cycle: where that failed as well, nothing but the drive itself can stop the motor.
+  void watchUrgent() {
+    if (urgent_ticket_ && urgent_ticket_->done()) judgeUrgent();
+  }
+
+  /// Once a cycle while efforts are streamed, or were: a torque that is nobody's any more is braked
+  /// (command_timeout_action), and what is to brake it is kept ready.
+  void watchEffort(Time now);
+  /// Once a cycle while another mode brakes: a drive that does not take that gets a quick stop.
+  void watchBrakeMode(Time now);
+  /// Another mode was selected by somebody else.
+  void forgetBrakeMode();
+
+ private:
+  StopBy how() const;
+  const ModeChannel* brakeMode() const;
+  void followByBrakeMode();
+  bool brakeByMode(Time now);
+  void brakeEffort(Time now);
+  void judgeUrgent();
+
+  AxisCore& axis_;
+  Time braked_at_{};
+  bool brake_mode_shown_ = false;
+  fieldbus::Ticket brake_ticket_, urgent_ticket_;
+};
+
+}  // namespace cia402::drive

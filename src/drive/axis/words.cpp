@@ -1,0 +1,109 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "drive/axis/words.h"
+
+#include "drive/profile/fault_text.h"
+
+namespace cia402::drive {
+
+std::string report(const AxisCore& axis) {
+  const fieldbus::Slot slot = axis.objects().controlword.slot;
+  const std::uint64_t sent = axis.control().frames();
+  const std::uint16_t statusword = axis.state().statusword;
+  std::string text = "controlword 6040:00 = " + hexWord(axis.control().word()) + ", " +
+                     axis.control().text() + ", sent in " + axis.device().carrierText(slot) + ", " +
+                     std::to_string(sent) + " frames so far";
+  text += "; the drive shows " + axis.feedback().stateText() + "; " + axis.faults().emergencyText();
+  if (sent == 0) text += "; no RPDO has left: is the cycle running?";
+  if ((statusword & statusword::kVoltageEnabled) == 0) {
+    text += "; voltage enabled is 0: check the main supply and the safety (STO) inputs";
+  } else if ((statusword & statusword::kRemote) == 0) {
+    text += "; remote is 0: the drive does not listen to the controlword, check its control source";
+  }
+  return text;
+}
+
+std::string obstacle(const AxisCore& axis) {
+  const std::string name = jointName(axis.config());
+  const AxisState& state = axis.state();
+  const ModeSpec& mode = axis.mode().spec();
+  const bool homed = axis.generator().homedEnough();
+  const std::string zero = axis.config().homing ? "home" : "set_position";  // gives it one
+  if (!axis.nodeReady()) {
+    return name + ", its node is " + fieldbus::toString(axis.device().health()) + ": recover";
+  }
+  if (!state.feedback_valid) return name + " gives no fresh statusword and position: recover";
+  if (axis.faulted()) return name + " is in fault: recover";
+  if (!axis.inOperation()) return name + " is not enabled (" + toString(state.state) + "): enable";
+  if (axis.mode().homing()) {
+    return name + " is left in its homing mode: enable" + (homed ? "" : ", then " + zero);
+  }
+  const bool shown = axis.feedback().shows(mode);
+  if (state.halted && !shown && !axis.profile().mode_change.while_halted) {
+    return name + " is halted, is not in mode " + mode.name +
+           ", and takes no mode while halted: disable, then enable";
+  }
+  if (state.halted) return name + " is halted: enable" + (homed ? "" : ", then " + zero);
+  if (!shown) return name + " does not show that it is in mode " + mode.name + ": enable";
+  return homed ? std::string() : name + " is not homed: " + zero;
+}
+
+std::string motionRefusal(const AxisCore& axis, bool busy) {
+  const AxisState& state = axis.state();
+  const std::string who = axis.who();
+  if (state.ready_for_motion) {
+    if (axis.generator().homedEnough()) return {};
+    return who + ": not homed; " +
+           (axis.config().homing ? "home it" : "say where it stands by set_position") +
+           " before position motion";
+  }
+  if (!axis.nodeReady()) {
+    return who + ": the node is " + fieldbus::toString(axis.device().health()) +
+           "; recover brings it back";
+  }
+  if (!state.feedback_valid) {
+    return who + ": no fresh position (6064:00) and statusword (6041:00)";
+  }
+  if (axis.faulted()) return axis.faults().text();
+  if (busy) return who + ": a procedure is running";
+  if (!axis.inOperation()) {
+    return who + ": not enabled, " + axis.feedback().stateText() + "; call enable";
+  }
+  if (state.halted) return who + ": halted; enable releases the halt";
+  const ModeSpec& mode = axis.mode().spec();
+  const std::optional<int> shown = axis.feedback().shownMode();
+  if (shown != mode.value) {
+    return who + ": 6061:00 shows mode " +
+           (shown ? std::to_string(*shown) : std::string("unknown")) + " instead of " +
+           std::to_string(mode.value) + " (" + mode.name + "); call enable";
+  }
+  return who + ": the brake is being released, or the drive does not follow its set-points yet (" +
+         axis.feedback().stateText() + ")";
+}
+
+std::string enablingRefusal(const AxisCore& axis) {
+  if (!axis.control().wantsPowerCycle()) return {};
+  return axis.who() +
+         ": is not enabled: its parameters were saved, after which the drive takes no enabling "
+         "(power_cycle_after_save of its profile); switch it off and on";
+}
+
+std::string calibrationRefusal(const AxisCore& axis) {
+  if (!axis.nodeReady()) {
+    return std::string("the node is ") + fieldbus::toString(axis.device().health()) +
+           ", so that nobody knows whether the axis is disabled; recover it first";
+  }
+  if (!axis.state().feedback_valid) {
+    return "no fresh statusword and position say that the axis is disabled and stands (" +
+           axis.feedback().text() + "); recover it first";
+  }
+  if (!axis.powerOff() || axis.inOperation() || axis.goal() == Goal::enabled) {
+    return std::string("the axis is not disabled (") + toString(axis.state().state) +
+           "); disable it first";
+  }
+  if (!axis.feedback().measuredStill()) {
+    return "the axis is not known to stand; wait until it is at rest";
+  }
+  return {};
+}
+
+}  // namespace cia402::drive

@@ -1,0 +1,23 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "drive/axis/core.h"
+
+namespace cia402::drive {
+
+// The axis in sentences that take several of its parts; made on demand only.
+
+/// What was commanded, what the drive shows and its last EMCY.
+std::string report(const AxisCore& axis);
+/// Axis::obstacle()
+std::string obstacle(const AxisCore& axis);
+/// Axis::motionRefusal(). @param busy a procedure runs
+std::string motionRefusal(const AxisCore& axis, bool busy);
+/// Why the drive takes no enabling now; empty: it may.
+std::string enablingRefusal(const AxisCore& axis);
+/// Why an object that shifts coordinates must not be written now; empty: it may.
+std::string calibrationRefusal(const AxisCore& axis);
+
+}  // namespace cia402::drive

@@ -1,0 +1,128 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "drive/procedures/limits.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "drive/axis/standstill.h"
+#include "drive/procedures/procedure.h"
+#include "drive/procedures/steps/enable.h"
+#include "drive/procedures/steps/fault_reset.h"
+
+namespace cia402::drive {
+namespace {
+
+constexpr Duration kStopMargin{std::chrono::milliseconds(500)};
+/// Of the cycles between the steps; and a step's own limit, which knows more to tell, comes first.
+constexpr Duration kMargin{std::chrono::milliseconds(500)};
+constexpr Duration kStanding = 4 * Standstill::kWindow;  // awaitStandstill()
+constexpr int kLimitTransfers = 6;                       // PositionLimits: three for each side
+
+/// The sum of what steps may take. They are called by the names of the steps.
+struct Steps {
+  const AxisConfig& axis;
+  const fieldbus::DeviceTimes& device;
+  const DriveProfile& profile = *axis.profile;
+  const DriveProfile::Timing& timing = profile.timing;
+
+  Duration transfer() const { return device.transfer(); }
+  Duration writes(const std::vector<NamedWrite>& list) const {
+    const auto copies = std::count_if(list.begin(), list.end(), [&](const NamedWrite& write) {
+      return profile.find(write.from) != nullptr;
+    });
+    return (static_cast<int>(list.size()) + static_cast<int>(copies)) * transfer();
+  }
+  Duration limits() const { return kLimitTransfers * transfer(); }
+  Duration mode() const {
+    Duration longest{0};
+    for (const ModeSpec& spec : profile.modes) {
+      longest = std::max(longest, writes(spec.entry_writes));
+    }
+    return longest + 2 * timing.mode_change + 2 * transfer();
+  }
+  Duration shown() const {  // ModeShownStep
+    const ModeChange& rules = profile.mode_change;
+    const bool detour = rules.again == ModeChange::Again::same && !rules.detours.empty();
+    return detour ? 2 * mode() : timing.mode_change;
+  }
+  /// From switch on disabled three transitions, and one more out of quick stop active.
+  Duration climb() const {
+    return (timing.transition(16) + timing.transition(12)) / 2 + timing.transition(2) +
+           timing.transition(3) + timing.transition(4);
+  }
+  Duration enable() const {
+    return timing.state_change + kComeToRest + writes(profile.before_enable) + limits() + mode() +
+           climb() + shown() + std::max(timing.brake_release, kFollowPatience);
+  }
+  Duration change() const {  // SwitchStep
+    const ModeChange& rules = profile.mode_change;
+    const bool may_disable = rules.needs_disabling || !rules.detours.empty();
+    return may_disable ? timing.disabling() + enable() + mode() : mode();
+  }
+  Duration reset() const {
+    const Duration once = timing.transition(14) + timing.transition(15) + 3 * timing.state_change +
+                          FaultResetStep::kInterval + FaultResetStep::kWatch;
+    const Duration clearing = profile.fault_reset_clears_history ? transfer() : Duration(0);
+    if (profile.fault_reset_nmt_stop == Duration::zero()) {
+      return clearing + profile.fault_reset_tries * once;
+    }
+    return clearing + (profile.fault_reset_tries + 1) * once + FaultResetStep::pause(profile);
+  }
+  Duration boot() const { return kBootTimes * device.boot; }
+  Duration declare() const { return 2 * kStanding + 2 * limits(); }
+  Duration home() const {
+    const bool by_drive = axis.homing && profile.homing.methods.count(axis.homing->method) != 0 &&
+                          axis.homing->method;
+    if (!by_drive) return declare();
+    return writes(profile.homing.writes) + limits() + enable() + timing.state_change +
+           axis.homing->timeout + transfer() + timing.state_change + limits() + change();
+  }
+  Duration store(const std::vector<std::uint8_t>& subindices) const {
+    return static_cast<int>(subindices.size()) * (profile.parameters.timeout + transfer());
+  }
+};
+
+}  // namespace
+
+Duration stopTime(const AxisConfig& config, double velocity) {
+  const double fastest = config.limits.velocity.value_or(0.0);
+  const double measured = std::isfinite(velocity) ? std::fabs(velocity) : 0.0;
+  const double ramp = std::max(fastest, measured) / stopDeceleration(config);
+  return std::max(config.profile->timing.state_change, fromSeconds(2.0 * ramp) + kStopMargin);
+}
+
+Duration timeLimit(ProcedureKind kind, const AxisConfig& config,
+                   const fieldbus::DeviceTimes& device, double velocity) {
+  const Steps steps{config, device};
+  const Duration stop = stopTime(config, velocity), change = steps.timing.state_change;
+  switch (kind) {
+    case ProcedureKind::none:
+      break;
+    case ProcedureKind::enable:
+      return kMargin + std::max(steps.change(), steps.enable());
+    case ProcedureKind::disable:
+      return kMargin + stop + steps.timing.transition(5) + steps.timing.transition(10) +
+             kComeToRest;
+    case ProcedureKind::home:
+      return kMargin + steps.home();
+    case ProcedureKind::clear_faults:
+      return kMargin + steps.reset();
+    case ProcedureKind::recover:
+      return kMargin + 2 * change + steps.boot() + steps.reset() + steps.enable();
+    case ProcedureKind::quick_stop:
+      return kMargin + stop + std::max(steps.timing.transition(12), steps.transfer());
+    case ProcedureKind::halt:
+      return kMargin + stop;
+    case ProcedureKind::set_mode:
+      return kMargin + kStanding + steps.change();
+    case ProcedureKind::set_position:
+      return kMargin + steps.declare();
+    case ProcedureKind::save_parameters:
+      return kMargin + steps.store(config.saved());
+    case ProcedureKind::restore_parameters:
+      return kMargin + steps.store(config.restored()) + steps.boot();
+  }
+  return kMargin;
+}
+
+}  // namespace cia402::drive

@@ -1,0 +1,43 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "drive/procedures/procedure.h"
+#include "drive/profile/named_write.h"
+
+namespace cia402::drive {
+
+/// Writes objects by SDO one after the other, copying what has to be copied. An abort by the drive
+/// fails, unless the write is optional. What `lacks` of the axis names is not written; what only a
+/// default asks for is left out with a warning where the drive does not have it.
+class WriteStep {
+ public:
+  explicit WriteStep(const std::vector<NamedWrite>& writes) : writes_(&writes) {}
+  Outcome advance(const Context& context);
+  /// What was written to objects that an RPDO carries, too.
+  struct Mapped {
+    fieldbus::Slot slot;
+    std::uint64_t raw;
+  };
+  const std::vector<Mapped>& mapped() const { return mapped_; }
+  /// Was the write of what NamedWrite::from calls `from` left out?
+  bool leftOut(const std::string& from) const;
+
+ private:
+  bool mayLeaveOut(const Context& context, const fieldbus::Transfer& answer);
+  std::string advice(const Context& context) const;
+  bool begin(const Context& context, Outcome& problem);
+  bool copy(const Context& context, fieldbus::Bytes bytes);
+  void write(const Context& context, fieldbus::Bytes bytes);
+
+  const std::vector<NamedWrite>* writes_;  ///< in the profile, which outlives every procedure
+  std::size_t next_ = 0;
+  ResolvedWrite current_;
+  fieldbus::Ticket ticket_;
+  std::vector<Mapped> mapped_;
+  std::vector<std::string> left_out_;  ///< NamedWrite::from
+};
+
+}  // namespace cia402::drive

@@ -1,0 +1,300 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cia402_driver/common/time.h"
+#include "drive/profile/object_range.h"
+#include "fieldbus/object.h"
+
+namespace cia402::drive {
+
+using fieldbus::DataType;
+using fieldbus::ObjectId;
+
+/// How a number sits in an object.
+enum class Encoding : std::uint8_t {
+  integer,   ///< a plain integer, scaled by the profile's units
+  float32,   ///< the bit pattern of an IEEE-754 float in a 32-bit integer object
+  bfloat16,  ///< the upper 16 bits of such a pattern in a 16-bit object (value << 16)
+  float32_by_65535_unsigned,  ///< 16-bit word n; pattern = n * 65535, n unsigned
+  float32_by_65535_signed,    ///< 16-bit word n; pattern = n * 65535, n signed
+};
+
+/// Why an object must not be written while the axis may move: it shifts the drive's coordinates, or
+/// holds its calibration. Each word says what there is for people to do instead.
+enum class CoordinateMark : std::uint8_t {
+  none,                ///< an object like others
+  set_position,        ///< the service of that name declares where the joint stands
+  home,                ///< homing finds the zero; home offsets
+  restore_parameters,  ///< the service of that name; what it restores may hold all of it
+  configuration,       ///< factors, gears, polarity: `write` of the axis and its geometry
+  calibration,         ///< of motor and encoder; nothing but the maker's own way
+};
+
+/// What a value means physically; decides which entry of the profile's unit system scales it.
+enum class Quantity : std::uint8_t {
+  none,
+  position,
+  distance,  ///< a difference of positions: following error, windows; no offset
+  velocity,
+  acceleration,
+  jerk,
+  torque,
+  current,
+  voltage,
+  temperature,
+  time,
+};
+
+/// Device units of one quantity: a device value 1 is `scale` of `base` per `per`.
+struct UnitSpec {
+  enum class Base : std::uint8_t {
+    count,  ///< axis option counts_per_turn to the motor turn
+    turn,
+    radian,
+    degree,
+    per_mille_of_rated,  ///< torque: 1/1000 of the rated torque
+    newton_metre,
+    ampere,
+    volt,
+    celsius,
+    second,
+    one,
+  };
+  Base base = Base::one;
+  int per_seconds = 0;      ///< power of 1/s: velocity 1, acceleration 2, jerk 3
+  bool per_minute = false;  ///< one of these is per minute instead: "turn/min", "turn/min/s"
+  double scale = 1.0;
+};
+
+/// A named object of the drive family.
+struct ObjectSpec {
+  std::string name;  ///< "target_position"; the fixed names are listed in docs/drive_profiles.md
+  ObjectId id;
+  DataType type = DataType::uint32;
+  Encoding encoding = Encoding::integer;
+  Quantity quantity = Quantity::none;
+  double factor = 1.0;  ///< further factor: device value = factor * value in the profile's unit
+  std::optional<UnitSpec> unit;  ///< of this object alone; absent: the profile's for the quantity
+  bool readable = true;
+  bool writable = true;
+  bool rpdo = false;                  ///< may be mapped into an RPDO
+  bool tpdo = false;                  ///< may be mapped into a TPDO
+  bool from_eds = false;              ///< the axis' EDS names it, the profile does not
+  std::vector<std::string> eds_keys;  ///< further names, from the EDS (fieldbus::nameKey())
+};
+
+/// What a mode controls, for everything above the drive that does not care for mode numbers. The
+/// table of kinds is in drive/modes/mode_control.cpp.
+enum class ControlKind : std::uint8_t { position, velocity, torque, homing };
+/// Their words in a profile, in the order of ControlKind: "position".
+std::vector<std::string> controlKindWords();
+/// What the target of a mode of this kind measures; none: it has no target.
+Quantity targetQuantity(ControlKind kind);
+
+enum class Handshake : std::uint8_t {
+  none,           ///< a written target takes effect at once
+  new_set_point,  ///< controlword bit 4 edge, acknowledged by statusword bit 12 (pp)
+};
+
+/// What brings an axis to rest while its drive stays in operation.
+enum class StopBy : std::uint8_t {
+  set_points,  ///< they are ramped to rest; where the drive plans, it gets the nearest place to
+               ///< stand
+  halt,        ///< controlword bit 8
+  quick_stop,  ///< nothing else brakes in this mode: the drive's own ramp, after which it switches
+               ///< off or holds as 605Ah says
+  mode,        ///< another mode brakes, ModeSpec::stop_mode: it begins at the measured velocity,
+               ///< which is ramped to 0, and holds that until the axis is enabled anew
+};
+
+/// A write by profile name: value in the object's unit system (SI after conversion) or raw.
+/// drive/named_write.h turns it into a number for one axis.
+struct NamedWrite {
+  std::string object;               ///< name in the profile, or "6065:00"
+  std::optional<double> value;      ///< in SI units of the joint if the object has a quantity
+  std::optional<std::int64_t> raw;  ///< as it is
+  /// A value of the configuration instead: "limits.lower", "limits.upper" (the one that is the
+  /// smaller or larger number in the drive), "limits.velocity", "limits.acceleration",
+  /// "limits.jerk", "limits.effort", "sync_period.value", "sync_period.exponent", "homing.method",
+  /// "homing.search_velocity", "homing.zero_velocity", "homing.acceleration", "homing.offset",
+  /// "quick_stop.hold" (the first of quick_stop_holds, where the axis is to hold); or the name of a
+  /// readable object, which is read and copied as it is. Where the configuration
+  /// does not name it, `value` or `raw` is taken; without these the write is skipped.
+  std::string from;
+  double times = 1.0;            ///< the configuration's value is multiplied by this
+  std::optional<DataType> type;  ///< of an object by index that the profile does not name
+  /// A limit of the position that counts in the drive's coordinates: written while these are known
+  /// to be the joint's, and open (the widest number) while they are not. See drive/position_limits.
+  bool when_homed = false;
+  bool optional = false;  ///< an abort is noted, not an error
+};
+
+/// One mode of operation of the family.
+struct ModeSpec {
+  std::string name;  ///< canonical logical name ("cyclic_position") or vendor name
+  int value = 0;     ///< for 6060h
+  ControlKind kind = ControlKind::position;
+  bool cyclic = false;  ///< follows a stream of set-points (trajectory groups may use it)
+  std::string target;   ///< name of the target object; empty for homing
+  Handshake handshake = Handshake::none;
+  std::optional<StopBy> stop;          ///< absent: by the kind of mode, see stopBy()
+  std::string stop_mode;               ///< with StopBy::mode: a cyclic velocity mode's name
+  std::uint16_t controlword_bits = 0;  ///< held while the mode is active in Operation enabled
+  std::optional<int> target_reached_bit, following_error_bit, set_point_acknowledge_bit,
+      speed_zero_bit, homing_attained_bit, homing_error_bit, follows_command_bit;
+  /// Before the mode is entered, by SDO. What is mapped into an RPDO must be held in the process
+  /// image, too, while the mode is active, or the next RPDO would undo it (a velocity limit in the
+  /// velocity target of a vendor's position mode).
+  std::vector<NamedWrite> entry_writes;
+};
+
+/// How a family takes another mode of operation (6060h), and shows it (6061h).
+struct ModeChange {
+  /// 6060h, or what goes with a mode, is refused while the power stage is on: to switch the mode
+  /// the axis is disabled and enabled again.
+  bool needs_disabling = false;
+  /// 6061h shows the mode in operation enabled only: before, it shows another one or 0.
+  bool shown_when_enabled = false;
+  /// What is commanded while disabled is forgotten, and is commanded once more when enabled.
+  enum class Again : std::uint8_t {
+    never,
+    same,          ///< the mode once more
+    through_zero,  ///< first mode 0: what does not change is not looked at
+  };
+  Again again = Again::never;
+  bool while_halted = true;  ///< else the halt bit (controlword bit 8) is in its way
+  /// A change that the drive does not stand while enabled.
+  struct Detour {
+    std::string from, to;  ///< canonical names
+    std::string through;   ///< the mode that goes between them; empty: the axis is disabled for it
+  };
+  std::vector<Detour> detours;
+  /// @return nullptr: there is none
+  const Detour* detour(const std::string& from, const std::string& to) const;
+};
+
+/// One way in which a family finds its zero.
+struct HomingMethod {
+  std::string text;   ///< in words: "home switch from the positive side, index pulse on it"
+  bool moves = true;  ///< false: the present position is home, so that it is over at once
+};
+
+/// Does a method of this number move the axis by CiA 402-2 (6098h)? 35 and 37 do not.
+bool movesByStandard(int method);
+
+/// How the family finds its zero.
+struct HomingSpec {
+  /// By number (6098h, CiA 402-2) those of the drive's own homing mode; without one: the present
+  /// position is declared to be the offset, and nothing moves. Empty: the family knows no homing.
+  std::map<std::optional<int>, HomingMethod> methods;
+  bool needs_zero_attained_before_start = false;
+  std::vector<NamedWrite> writes;  ///< homing parameters, `from` the axis' homing options
+};
+
+/// A known 603Fh / EMCY code of the family.
+struct ErrorText {
+  /// Frames that the drive reports as missing: those that this program sends.
+  enum class Missing : std::uint8_t { nothing, sync, rpdo };
+  std::string text, cause, remedy;
+  Missing missing = Missing::nothing;
+};
+
+/// A drive family as data: what it is as a drive, whatever bus it hangs on. With what it is as a
+/// device on the bus it makes a config::DriveFamily, which is loaded from
+/// config/drives/<name>.yaml; documented in docs/drive_profiles.md. No code anywhere asks for
+/// `name`.
+struct DriveProfile {
+  std::string name, description;
+  std::map<Quantity, UnitSpec> units;
+  bool output_shaft = false;  ///< units count at the joint's side of the gear
+  std::vector<ObjectSpec> objects;
+  /// How numbers sit in objects that have no name, or a name without an encoding of its own.
+  ObjectRanges<Encoding> encodings;
+  /// Objects that shift coordinates or hold calibration, besides those of the standard.
+  ObjectRanges<CoordinateMark> coordinates;
+  std::vector<ModeSpec> modes;
+  HomingSpec homing;
+  bool halt_supported = true;
+  ModeChange mode_change;
+  int fault_reset_tries = 1;  ///< edges of controlword bit 7 that it may take, 1 to 20
+  /// Where these did not help the node is told NMT stop, so much later start, and resets once more;
+  /// 0: it is not.
+  Duration fault_reset_nmt_stop{0};
+  bool fault_reset_clears_history = false;  ///< 1003h:00 = 0 is written before a fault reset
+  bool warning_stops = false;               ///< a warning makes the drive stop like a fault
+  std::vector<int> quick_stop_holds;        ///< values of 605Ah after which quick stop stays active
+  std::vector<NamedWrite> startup;          ///< at every boot
+  std::vector<NamedWrite> before_enable;    ///< by SDO, each time before enabling
+  std::vector<std::string> default_modes;   ///< an axis can switch to; empty: all
+  std::vector<std::string> feedback;        ///< by PDO where there is room, most important first
+  std::vector<std::string> feedback_if_room;  ///< only in PDOs that travel for something else
+  std::vector<std::string>
+      signals;  ///< objects that are shown besides; asked for where no TPDO has them
+  struct Timing {
+    Duration state_change{std::chrono::seconds(2)};  ///< what is not named in `transitions`
+    std::map<int, Duration> transitions;             ///< by their number in CiA 402-2, 2 to 16
+    /// For a transition to be shown by the statusword. @param number -1: of whatever comes next
+    Duration transition(int number) const;
+    /// From operation enabled to switch on disabled (transitions 5 and 10), if that is one step.
+    Duration disabling() const { return std::max(transition(5), transition(10)); }
+    Duration mode_change{std::chrono::seconds(1)};
+    Duration brake_release{0};  ///< Operation enabled until set-points are followed
+  } timing;
+  /// Which sub-indices of 1010h and 1011h save and restore parameters: 1 all, 2 communication, 3
+  /// application, 4.. the maker's.
+  struct Parameters {
+    std::vector<std::uint8_t> save{1}, restore{1};
+    Duration timeout{std::chrono::seconds(10)};  ///< for the drive to confirm one
+    bool power_cycle_after_save = false;         ///< it takes no enabling before
+  } parameters;
+  std::map<std::uint16_t, ErrorText> errors;
+  std::string eds;  ///< file whose objects were added, for messages; empty: none
+
+  /// By the profile's name, or by a name of the EDS without regard to case and blanks.
+  const ObjectSpec* find(const std::string& object_name) const;
+  const ObjectSpec* find(ObjectId id) const;
+  /// How a number of this type sits in the object: as its name says, else as its place says where
+  /// the type is as wide as that encoding.
+  Encoding encodingOf(ObjectId id, DataType type) const;
+  /// An object that nothing names but whose place says that it holds a float; nothing where it does
+  /// not, or not in so many bytes.
+  std::optional<ObjectSpec> unnamedFloat(ObjectId id, std::size_t bytes) const;
+  /// What the profile says of an object, else the standard (standardMark()).
+  CoordinateMark coordinateMark(ObjectId id) const;
+  /// By logical name; nullptr if the family has no such mode.
+  const ModeSpec* mode(const std::string& mode_name) const;
+};
+
+/// The object that a name or an index ("6041:00") means; nullptr if the profile has none.
+const ObjectSpec* findObject(const DriveProfile& profile, const std::string& name);
+/// The encoding of ObjectRanges at this place, where the type is as wide; real32 is a float
+/// anywhere.
+Encoding encodingAt(const DriveProfile& profile, ObjectId id, DataType type);
+/// "profile generic_cia402", and the EDS that it was widened by.
+std::string sourceOf(const DriveProfile& profile);
+/// Names of all objects, for suggestions.
+std::vector<std::string> objectNames(const DriveProfile& profile);
+
+/// Which frames a 603Fh or EMCY code reports as missing: by the profile, else by CiA 301, table 26.
+ErrorText::Missing missingFrames(const DriveProfile& profile, std::uint16_t code);
+
+/// Of the objects of CiA 301 and CiA 402-2, those that shift coordinates. A profile may say
+/// otherwise.
+CoordinateMark standardMark(ObjectId id);
+
+/// What stops the axis in `mode`: what the profile says; else the set-points in cyclic modes, and
+/// the halt bit where the drive plans the motion and has one. Torques cannot be ramped to rest, so
+/// without halt bit the quick stop must do it.
+StopBy stopBy(const ModeSpec& mode, const DriveProfile& profile);
+
+/// "csp" -> "cyclic_position"; names that are no short form come back as they are.
+std::string canonicalModeName(const std::string& name);
+
+}  // namespace cia402::drive

@@ -1,0 +1,113 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "cia402_driver/common/result.h"
+#include "cia402_driver/common/time.h"
+#include "motion/joint.h"
+
+namespace cia402::motion {
+
+/// What a limiter of one joint's streamed set-points keeps to.
+struct LimiterConfig {
+  Joint joint;  ///< position, velocity and acceleration limits; jerk and effort are not used
+  /// A command older than this is stale, and the joint is stopped. Absent: commands do not age.
+  std::optional<Duration> command_timeout;
+  /// For that stop, rad/s² or m/s². Absent: the acceleration limit. It may exceed that limit.
+  std::optional<double> stop_deceleration;
+};
+
+/// Why `config` cannot be used (limits not above 0, reversed, not finite), naming the joint.
+Result<void> check(const LimiterConfig& config);
+
+/// What both kinds of limiter share: the age of the command and the permissible next velocity.
+///
+/// Velocity and acceleration are meant as differences of successive outputs over the time between
+/// the steps, so that what the drive is given keeps the limits exactly, whatever the jitter of the
+/// cycle. The joint can always be stopped before a position limit with the acceleration limit,
+/// unless it was not so when reset() was called; then it brakes with the acceleration limit. From
+/// outside the position limits it can only move back, as far as it is told. No function allocates
+/// but command() when it refuses.
+class SetpointLimiter {
+ public:
+  /// True from the first step() after the command became stale until a new command is taken.
+  bool timedOut() const { return timed_out_; }
+  /// Did the last step() give something else than the command asked for?
+  bool isLimiting() const { return limiting_; }
+  /// What the last step() gave.
+  const MotionState& output() const { return output_; }
+
+ protected:
+  explicit SetpointLimiter(LimiterConfig config) : config_(std::move(config)) {}
+  ~SetpointLimiter() = default;
+
+  void resetTo(const MotionState& state, Time now);
+  Result<void> take(double command, const char* power, Time now);
+  /// Drops a stale command. @return whether there is a command to follow.
+  bool hasCommand(Time now);
+  /// The velocity nearest to `desired` that all limits permit at `position` for a step of `dt` s.
+  /// `reaction_s` is how long the joint carries on before it follows.
+  double permitted(double desired, double position, double dt, double reaction_s) const;
+  /// The next velocity on the way to rest.
+  double slower(double dt) const;
+
+  LimiterConfig config_;
+  MotionState output_;
+  std::optional<double> command_;
+  Time stepped_{}, commanded_{};
+  bool timed_out_ = false, limiting_ = false;
+};
+
+/// Follows streamed positions. A stream that keeps the limits and gives a position each cycle comes
+/// out unchanged; anything else (steps, slower or irregular streams) is approached as fast as the
+/// limits permit, each position as one to stop at without overshoot. A stream that was followed and
+/// ends at speed is brought to rest ahead of its last position; nothing turns back to that.
+class PositionLimiter : public SetpointLimiter {
+ public:
+  /// @pre check(config) is ok.
+  explicit PositionLimiter(LimiterConfig config) : SetpointLimiter(std::move(config)) {}
+
+  /// Starts from the present commanded state, without a command. A velocity that is not finite
+  /// counts as 0. @pre the position is finite; where it is not, no output is.
+  void reset(const MotionState& commanded, Time now);
+  /// A new set-point, in rad or m. Beyond the position limits it counts as the limit. Refused, and
+  /// the previous one kept to age on, if it is not finite.
+  Result<void> command(double position, Time now);
+  /// The state to command now, to be called once a cycle with rising times.
+  MotionState step(Time now);
+  /// Where the joint goes: the last command, or where it came to rest after a stream that ended at
+  /// speed; nothing before the first command.
+  const std::optional<double>& goal() const { return command_; }
+
+ private:
+  double approach(double dt) const;
+
+  std::optional<double> previous_command_;  // the cycle before: its command, or where it held
+  bool fresh_ = false;
+  bool met_ = false;  // the last step came out at the command
+};
+
+/// Follows streamed velocities.
+class VelocityLimiter : public SetpointLimiter {
+ public:
+  /// `reaction`: how long the drive carries on with the previous velocity after step(), e.g. two
+  /// cycles; the braking distance before a position limit is longer by as much.
+  /// @pre check(config) is ok.
+  explicit VelocityLimiter(LimiterConfig config, Duration reaction = {})
+      : SetpointLimiter(std::move(config)), reaction_s_(toSeconds(reaction)) {}
+
+  /// Starts from the present commanded state, without a command.
+  void reset(const MotionState& commanded, Time now);
+  /// A new set-point, in rad/s or m/s; refused as by PositionLimiter.
+  Result<void> command(double velocity, Time now);
+  /// The state to command now; its position is `position`, the measured one. NaN: unknown; a joint
+  /// with position limits is then stopped.
+  MotionState step(Time now, double position);
+
+ private:
+  double reaction_s_;
+};
+
+}  // namespace cia402::motion

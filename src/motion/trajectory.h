@@ -1,0 +1,134 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "cia402_driver/common/time.h"
+#include "cia402_driver/motion/trajectory_error.h"
+#include "cia402_driver/motion/trajectory_point.h"
+#include "motion/joint.h"
+#include "motion/spline.h"
+
+namespace cia402::motion {
+
+class TrajectoryResult;
+
+/// When and how a trajectory begins.
+struct TrajectoryStart {
+  Time now{};
+  /// What time_from_start counts from; absent: now. (A zero stamp in the ROS message means absent.)
+  std::optional<Time> start_time;
+  /// Shift all positions of each continuous joint by whole turns, so that the first point that is
+  /// still ahead lies at most half a turn from the present position.
+  bool shortest_way = false;
+
+  /// When the new trajectory takes over: the later of start time and now. The states given to
+  /// Trajectory::create are those commanded at this time.
+  Time begin() const { return std::max(now, start_time.value_or(now)); }
+};
+
+/// A checked trajectory of several joints: what ros_controllers' joint_trajectory_controller makes
+/// of the same message. The joints leave from the present commanded state, so that a new trajectory
+/// pre-empts another smoothly, and follow one spline segment from point to point: quintic where
+/// both ends have accelerations, cubic where both have velocities, else linear. The present state
+/// has both.
+///
+/// Linear segments change their velocity at the points without transition; that is what a message
+/// with positions only asks for. Pass the samples through a PositionLimiter to round the corners.
+///
+/// create() allocates, sampling does not.
+class Trajectory {
+ public:
+  /// Checks everything before anything moves. `joints` and `commanded` have one entry a joint.
+  ///
+  /// Points at or before begin() are dropped. Refused with a sentence that names joint, point (the
+  /// first is 0), value and limit are:
+  /// - INVALID_JOINTS: no joints, or not one commanded state a joint;
+  /// - INVALID_GOAL: sizes that differ from the number of joints, values that are not finite, times
+  ///   that are negative or do not rise; a last point with a velocity above kRestVelocity (the
+  ///   joint would have to stop there at once);
+  /// - INVALID_GOAL: position, velocity or acceleration beyond the joint's limits anywhere on the
+  ///   way still ahead, not only at the points, by more than 1e-6 of the limit (for positions: of
+  ///   the range). A joint that is outside its position limits already may move back, not further.
+  ///   Jerk is not checked: between cubic segments it has no bound;
+  /// - OLD_HEADER_TIMESTAMP: all points have passed.
+  /// No points at all are a valid trajectory that asks for a stop: see isStop().
+  static TrajectoryResult create(const std::vector<Joint>& joints,
+                                 const std::vector<MotionState>& commanded,
+                                 const std::vector<TrajectoryPoint>& points,
+                                 const TrajectoryStart& start);
+
+  /// A last velocity up to this counts as rest, in rad/s or m/s.
+  static constexpr double kRestVelocity = 1e-3;
+
+  /// Made from no points: the caller brings the joints to rest. Sampling holds the
+  /// commanded positions.
+  bool isStop() const { return ends_.empty(); }
+
+  /// Writes the states of the joints at `time`, as many as `states` has room for; never resizes
+  /// it. Before startTime() (the caller still plays the previous trajectory) the positions it
+  /// begins from, at rest; from endTime() on the last positions, at rest.
+  void sample(Time time, std::vector<MotionState>& states) const;
+  /// The same for one joint, < jointCount().
+  MotionState sample(std::size_t joint, Time time) const;
+
+  bool finished(Time time) const { return time >= endTime(); }
+  Time startTime() const { return begin_; }
+  Time endTime() const { return ends_.empty() ? begin_ : ends_.back(); }
+  std::size_t jointCount() const { return joint_count_; }
+  std::size_t segmentCount() const { return ends_.size(); }
+  /// How many leading points had passed before the trajectory began.
+  std::size_t droppedPoints() const { return dropped_points_; }
+  /// Where the joints come to rest, one entry a joint, whole turns of shortest_way included.
+  const std::vector<double>& goal() const { return goal_; }
+
+ private:
+  Trajectory() = default;
+  /// Fills ends_ with the points after begin_; `base` is where their times count from.
+  std::optional<TrajectoryError> takePointsAhead(const std::vector<TrajectoryPoint>& points,
+                                                 Time base);
+  /// The segment that `time` lies in; only between startTime() and endTime().
+  std::size_t segmentAt(Time time) const;
+  MotionState sampleSegment(std::size_t segment, std::size_t joint, Time time) const;
+  MotionState rest(std::size_t joint, Time time) const;
+
+  std::size_t joint_count_ = 0, dropped_points_ = 0;
+  Time begin_{};
+  std::vector<Time> ends_;               // one a segment
+  std::vector<SplineSegment> segments_;  // joint_count_ of them a segment
+  std::vector<double> origin_, goal_;
+};
+
+/// A trajectory, or why it was refused.
+class [[nodiscard]] TrajectoryResult {
+ public:
+  TrajectoryResult(Trajectory value) : state_(std::move(value)) {}       // NOLINT: implicit
+  TrajectoryResult(TrajectoryError error) : state_(std::move(error)) {}  // NOLINT: implicit
+
+  bool ok() const { return state_.index() == 0; }
+  explicit operator bool() const { return ok(); }
+
+  /// @throws std::bad_variant_access if this holds an error.
+  const Trajectory& value() const& { return std::get<0>(state_); }
+  Trajectory&& value() && { return std::get<0>(std::move(state_)); }
+  const Trajectory& operator*() const& { return value(); }
+  const Trajectory* operator->() const { return &value(); }
+
+  /// @throws std::bad_variant_access if this holds a trajectory.
+  const TrajectoryError& error() const { return std::get<1>(state_); }
+
+ private:
+  std::variant<Trajectory, TrajectoryError> state_;
+};
+
+/// For each joint its place in the message's `names`, to bring points into the group's order.
+/// Every joint must be named exactly once and no other; the error (code INVALID_JOINTS) lists all
+/// that are unknown, missing or named twice.
+Result<std::vector<std::size_t>> matchJoints(const std::vector<Joint>& joints,
+                                             const std::vector<std::string>& names);
+
+}  // namespace cia402::motion
