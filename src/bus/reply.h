@@ -30,9 +30,9 @@ void give(const Reply<AnswerType>& reply, const AnswerType& answer) {
   if (reply) reply(answer);
 }
 template <typename AnswerType>
-void refuse(const Reply<AnswerType>& reply, std::string message) {
+void refuse(const Reply<AnswerType>& reply, const std::string& message) {
   AnswerType answer;
-  answer.message = std::move(message);
+  answer.message = message;
   give(reply, answer);
 }
 
