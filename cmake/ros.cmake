@@ -49,7 +49,7 @@ catkin_package(
 
 # The one module that knows ROS: src/ros/*.cpp.
 function(cia402_ros_module)
-  cia402_module(ros cia402_bus cia402_sim ${catkin_LIBRARIES})
+  cia402_module(ros cia402_driver cia402_bus cia402_sim ${catkin_LIBRARIES})
   get_target_property(type cia402_ros TYPE)
   if(type STREQUAL STATIC_LIBRARY)
     target_include_directories(cia402_ros SYSTEM PUBLIC ${CATKIN_DEVEL_PREFIX}/include

@@ -51,7 +51,7 @@ struct JointStatus {
 /// file, boots the drives, runs the cycle in a thread, and takes commands from any other thread.
 ///
 /// The thread has the process' ordinary scheduling unless a priority is asked for. Commands are
-/// refused with a reason, never delayed; what is asked for is answered once. Where this object ends
+/// refused with a reason; what is asked for is answered once. Where this object ends
 /// the axes are brought to rest and disabled, within two seconds.
 class Robot {
  public:

@@ -11,10 +11,8 @@
 #include "bus/mpsc_queue.h"
 #include "bus/real_clock.h"
 #include "bus/runner.h"
-#include "can/socketcan.h"
-#include "canopen/cyclic_identifiers.h"
-#include "canopen/received_identifiers.h"
 #include "config/ready_robot.h"
+#include "driver/open_socket.h"
 #include "sim/world/robot_drives.h"
 #include "sim/world/simulated_interface.h"
 #include "yaml/reader.h"
@@ -39,22 +37,12 @@ Result<YAML::Node> read(const std::string& file) {
   }
 }
 
-std::unique_ptr<can::Interface> openSocket(const config::ReadyRobot& ready) {
-  const config::BusConfig& bus = ready.robot.bus;
-  can::SocketCan::Options options;
-  options.bitrate = static_cast<unsigned>(bus.bitrate);
-  options.cyclic_lifetime = 2 * bus.sync_period;
-  for (const std::uint32_t id : canopen::cyclicIdentifiers(ready.master)) options.cyclic.set(id);
-  if (!bus.receive_all) {
-    options.filters = can::receiveFilters(canopen::receivedIdentifiers(ready.master));
-  }
-  return std::make_unique<can::SocketCan>(bus.interface, options);
-}
-
 /// The simulated drives, or the interface of the kernel. @return nullptr: `problems` says why
 std::unique_ptr<can::Interface> open(const config::ReadyRobot& ready, const std::string& folder,
                                      Problems& problems) {
-  if (ready.robot.bus.interface != "sim") return openSocket(ready);
+  if (ready.robot.bus.interface != "sim") {
+    return openSocket(ready.robot.bus, ready.master);
+  }
   const auto axes = sim::simulatedAxes(ready.robot, folder + "/simulated_drives", problems);
   if (!problems.empty()) return nullptr;
   return std::make_unique<sim::SimulatedInterface>(axes, ready.robot.bus.bitrate, bus::realNow());

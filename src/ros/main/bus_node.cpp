@@ -8,9 +8,7 @@
 #include "bus/real_clock.h"
 #include "bus/realtime.h"
 #include "bus/runner.h"
-#include "can/socketcan.h"
-#include "canopen/cyclic_identifiers.h"
-#include "canopen/received_identifiers.h"
+#include "driver/open_socket.h"
 #include "ros/call_desk.h"
 #include "ros/command_call.h"
 #include "ros/command_line.h"
@@ -71,26 +69,15 @@ struct OpenInterface {
   sim::SimulatedInterface* simulation = nullptr;
 };
 
-OpenInterface openSocket(const LoadedRobot& loaded) {
-  const config::BusConfig& bus = loaded.robot.bus;
-  can::SocketCan::Options options;
-  options.bitrate = static_cast<unsigned>(bus.bitrate);
-  options.cyclic_lifetime = 2 * bus.sync_period;
-  for (const std::uint32_t id : canopen::cyclicIdentifiers(loaded.master)) options.cyclic.set(id);
-  if (!bus.receive_all) {
-    options.filters = can::receiveFilters(canopen::receivedIdentifiers(loaded.master));
-  }
-  auto socket = std::make_unique<can::SocketCan>(bus.interface, options);
-  OpenInterface open;
-  open.socket = socket.get();
-  open.interface = std::move(socket);
-  return open;
-}
-
 OpenInterface openInterface(const LoadedRobot& loaded) {
   const config::BusConfig& bus = loaded.robot.bus;
-  if (bus.interface != "sim") return openSocket(loaded);
   OpenInterface open;
+  if (bus.interface != "sim") {
+    auto socket = openSocket(bus, loaded.master);
+    open.socket = socket.get();
+    open.interface = std::move(socket);
+    return open;
+  }
   const auto axes = ros_node::loadSimulation(loaded.robot);
   if (!axes) return open;
   auto interface = std::make_unique<sim::SimulatedInterface>(*axes, bus.bitrate, bus::realNow());
