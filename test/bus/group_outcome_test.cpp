@@ -85,6 +85,24 @@ TEST_F(GroupOutcomeTest, OneThatWaitsForItsTimeIsReplacedBeforeItBegins) {
   EXPECT_EQ(world.drives[0].position, 20000) << "the replaced one never began";
 }
 
+TEST_F(GroupOutcomeTest, OneThatWaitsBehindAnotherIsReplacedToo) {
+  const Outcomes runs = send(1.0, -0.5, 1.0);
+  world.run(100ms);
+  const Outcomes waits = send(0.5, 0.5, 1.0, world.now + 500ms);
+  world.run(100ms);
+  const Outcomes next = send(0.2, 0.2, 1.0, world.now + 500ms);
+  ASSERT_TRUE(answer.success) << answer.message;
+  ASSERT_EQ(waits->size(), 1u);
+  EXPECT_EQ(waits->front().end, TrajectoryEnd::replaced);
+  EXPECT_TRUE(runs->empty()) << "it goes on until the next one begins";
+  world.run(600ms);
+  ASSERT_EQ(runs->size(), 1u);
+  EXPECT_EQ(runs->front().end, TrajectoryEnd::replaced);
+  world.run(2s);
+  ASSERT_EQ(next->size(), 1u);
+  EXPECT_EQ(next->front().end, TrajectoryEnd::reached);
+}
+
 TEST_F(GroupOutcomeTest, OneThatIsStoppedEndsWhenItsJointsStand) {
   const Outcomes ended = send(1.0, -0.5, 1.0);
   world.run(500ms);
