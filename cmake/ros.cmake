@@ -36,7 +36,7 @@ generate_messages(DEPENDENCIES actionlib_msgs std_msgs)
 
 # The modules with sources, for packages that use the library; in the linker's order.
 foreach(module ros driver sim bus decode config drive motion yaml canopen fieldbus can common)
-  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${module}/*.cpp)
+  cia402_sources(${module} sources)
   if(sources)
     list(APPEND cia402_libraries cia402_${module})
   endif()
