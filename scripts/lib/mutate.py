@@ -251,10 +251,9 @@ def switched(options, folders, say):
 def all_mutations(repository, folders):
     found = []
     for folder in folders:
-        for path in sorted((repository / folder).rglob("*")):
-            if path.suffix in (".cpp", ".h") and path.parent.name != "main":
-                found += mutations.mutations_of(str(path.relative_to(repository)),
-                                                path.read_text(encoding="utf-8"))
+        for path in mutations.sources(repository / folder):
+            found += mutations.mutations_of(str(path.relative_to(repository)),
+                                            path.read_text(encoding="utf-8"))
     return found
 
 

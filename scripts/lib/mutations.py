@@ -21,6 +21,12 @@ class Mutation:
         return f"{self.file}:{self.line} {self.kind}: {changed}"
 
 
+def sources(folder):
+    """The files of a module in which mistakes are made: in its folder and all below it but main/."""
+    return [path for path in sorted(folder.rglob("*"))
+            if path.suffix in (".cpp", ".h") and path.parent.name != "main"]
+
+
 def masked(text):
     """The text with blanks for what is in comments and literals; as long, with the same lines."""
     token = re.compile(r'//[^\n]*|/\*.*?\*/|R"([^ ()\\\n]*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"'

@@ -123,9 +123,7 @@ class Switches:
         (self._build.tree / "mistake.h").write_text(HEADER, encoding="utf-8")
         generator, first = random.Random(seed), 1
         for folder in folders:
-            for path in sorted((self._repository / folder).glob("*")):
-                if path.suffix not in (".cpp", ".h"):
-                    continue
+            for path in mutations.sources(self._repository / folder):
                 file = str(path.relative_to(self._repository))
                 text, made = with_switches(file, path.read_text(encoding="utf-8"), first, generator)
                 (self._build.tree / file).write_text(text, encoding="utf-8")

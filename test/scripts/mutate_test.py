@@ -95,6 +95,15 @@ class Mutations(unittest.TestCase):
         self.assertEqual([found.after for found in mutations.mutations_of("a.cpp", text)],
                          ["       int b) { return;"])
 
+    def test_mistakes_are_made_in_all_folders_of_a_module_but_that_of_programs(self):
+        with tempfile.TemporaryDirectory() as directory:
+            module = pathlib.Path(directory)
+            for file in ("a.cpp", "axis/b.h", "axis/steps/c.cpp", "main/d.cpp", "axis/e.yaml"):
+                (module / file).parent.mkdir(parents=True, exist_ok=True)
+                (module / file).write_text("", encoding="utf-8")
+            found = [str(path.relative_to(module)) for path in mutations.sources(module)]
+            self.assertEqual(found, ["a.cpp", "axis/b.h", "axis/steps/c.cpp"])
+
     def test_a_seed_draws_the_same_lines_again_and_each_once(self):
         found = [one for file in ("a.cpp", "b.cpp") for one in mutations.mutations_of(file, FUNCTION)]
         draw = [str(one) for one in mutations.drawn(found, 7)]
