@@ -143,8 +143,9 @@ class Teller {
     }
   }
   std::string nameOf(std::size_t axis) const {
-    return axis < robot_.axes.size() ? decoder_.nodeName(robot_.deviceOf(robot_.axes[axis]).node_id)
-                                     : "";
+    if (axis >= robot_.axes.size()) return "";
+    const drive::AxisConfig& config = robot_.axes[axis];
+    return drive::whoIs(config, std::to_string(robot_.deviceOf(config).node_id));
   }
   void tellAxis(const AxisRecord& record) {
     if (record.axis >= robot_.axes.size()) return;

@@ -117,17 +117,17 @@ void warnOfUnnoticedLoss(RobotConfig& robot) {
         "lost drive be noticed but by its missing TPDOs");
     return;
   }
-  for (const drive::AxisConfig& axis : robot.axes) {
-    if (!axis.profile) continue;
-    const ErrorControlPlan plan = planErrorControl(robot.bus, robot.deviceOf(axis));
+  for (const canopen::DeviceConfig& device : robot.devices) {
+    if (!device.profile) continue;
+    const ErrorControlPlan plan = planErrorControl(robot.bus, device);
     if (plan.kind == canopen::ErrorControl::guarding) continue;
     if (plan.kind == canopen::ErrorControl::none) {
-      robot.warnings.push_back("axes/" + axis.name +
+      robot.warnings.push_back("axes/" + device.name +
                                ": this drive is not supervised: its loss shows in missing TPDOs "
                                "only");
     }
     if (plan.master_timeout > Duration(0)) continue;
-    robot.warnings.push_back("axes/" + axis.name +
+    robot.warnings.push_back("axes/" + device.name +
                              ": this drive watches no heartbeat: should this program die, it would "
                              "not notice and stop");
   }

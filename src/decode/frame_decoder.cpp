@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "decode/frame_decoder.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "can/error_frame.h"
@@ -73,8 +74,11 @@ FrameDecoder::FrameDecoder(const config::RobotConfig& robot, const canopen::Mast
   for (const drive::AxisConfig& axis : robot.axes) {
     const canopen::NodeId id = robot.deviceOf(axis).node_id;
     Node& node = nodes_[id];
-    node.name = drive::whoIs(axis, std::to_string(id));
-    node.values = std::make_unique<ValueText>(axis);
+    const std::string place = std::to_string(id);
+    node.joints += (node.joints.empty() ? "" : ", ") + axis.joint;
+    node.name = node.values ? node.joints + " (" + place + ")" : drive::whoIs(axis, place);
+    if (!node.values) node.values = std::make_unique<NodeValues>();
+    node.values->add(axis);
     node.sdo = SdoDecoder(node.values.get());
   }
   for (const canopen::NodeConfig& node : master.nodes) {
@@ -99,8 +103,22 @@ void FrameDecoder::addPdos(const canopen::NodeConfig& config) {
       shift += entry.bits;
     }
     pdo.size = (shift + 7) / 8;
+    pdo.name = ownerOf(pdo);
     pdos_[from.cob_id] = std::move(pdo);
   }
+}
+
+std::string FrameDecoder::ownerOf(const Pdo& pdo) const {
+  const auto known = nodes_.find(pdo.node);
+  if (known == nodes_.end() || !known->second.values || pdo.fields.empty()) {
+    return nodeName(pdo.node);
+  }
+  const Node& node = known->second;
+  const drive::AxisConfig& axis = node.values->of(pdo.fields.front().object).axis();
+  const bool one = std::all_of(pdo.fields.begin(), pdo.fields.end(), [&](const Field& field) {
+    return &node.values->of(field.object).axis() == &axis;
+  });
+  return one ? drive::whoIs(axis, std::to_string(pdo.node)) : node.name;
 }
 
 FrameDecoder::Node& FrameDecoder::nodeOf(NodeId id) {
@@ -119,7 +137,7 @@ std::string FrameDecoder::nodeName(NodeId node) const {
 
 std::string FrameDecoder::pdoText(const Pdo& pdo, const Frame& frame) {
   if (frame.remote) return "asked for";
-  ValueText* const values = nodeOf(pdo.node).values.get();
+  const NodeValues* const values = nodeOf(pdo.node).values.get();
   const std::uint64_t word = wordOf(frame);
   const auto raw = [&](const Field& field) {
     const std::uint64_t mask =
@@ -136,13 +154,13 @@ std::string FrameDecoder::pdoText(const Pdo& pdo, const Frame& frame) {
   }
   if (values == nullptr) return text + (text.empty() ? "" : "; ") + hexBytes(frame, 0);
   for (const Field& field : pdo.fields) {  // the mode first: it names bits of the other values
-    if (present(field)) values->note(field.object, raw(field));
+    if (present(field)) values->of(field.object).note(field.object, raw(field));
   }
   for (const Field& field : pdo.fields) {
     if (!present(field)) break;
     text += (text.empty() ? "" : " | ") +
             (field.name.empty() ? fieldbus::toString(field.object) : field.name) + " " +
-            values->describe(field.object, raw(field), field.bits);
+            values->of(field.object).describe(field.object, raw(field), field.bits);
   }
   return text;
 }
@@ -150,7 +168,7 @@ std::string FrameDecoder::pdoText(const Pdo& pdo, const Frame& frame) {
 std::string FrameDecoder::emergencyText(const Frame& frame, NodeId id) {
   if (frame.size < 3) return "too short for an emergency: " + dataText(frame);
   const auto code = static_cast<std::uint16_t>(frame.data[0] | frame.data[1] << 8);
-  const ValueText* const values = nodeOf(id).values.get();
+  const NodeValues* const values = nodeOf(id).values.get();
   std::string text = code == 0           ? "0x0000 error reset or no error"
                      : values != nullptr ? errorText(code, *values->axis().profile)
                                          : hexNumber(code, 2) + " " + fieldbus::emergencyText(code);
@@ -199,7 +217,7 @@ DecodedFrame FrameDecoder::decode(const Frame& frame) {
   if (frame.extended) return {"?", "", hexNumber(frame.id, 4) + ": " + dataText(frame)};
   const auto pdo = pdos_.find(frame.id);
   if (pdo != pdos_.end()) {
-    return {pdo->second.service, nodeOf(pdo->second.node).name, pdoText(pdo->second, frame)};
+    return {pdo->second.service, pdo->second.name, pdoText(pdo->second, frame)};
   }
   const auto channel = channels_.find(frame.id);
   if (channel != channels_.end()) {

@@ -43,9 +43,9 @@ std::unique_ptr<can::Interface> open(const config::ReadyRobot& ready, const std:
   if (ready.robot.bus.interface != "sim") {
     return openSocket(ready.robot.bus, ready.master);
   }
-  const auto axes = sim::simulatedAxes(ready.robot, folder + "/simulated_drives", problems);
+  const auto drives = sim::simulatedDrives(ready.robot, folder + "/simulated_drives", problems);
   if (!problems.empty()) return nullptr;
-  return std::make_unique<sim::SimulatedInterface>(axes, ready.robot.bus.bitrate, bus::realNow());
+  return std::make_unique<sim::SimulatedInterface>(drives, ready.robot.bus.bitrate, bus::realNow());
 }
 
 }  // namespace

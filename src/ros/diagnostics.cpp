@@ -145,9 +145,14 @@ Diagnostics::Diagnostics(ros::NodeHandle& node, ros::NodeHandle& private_node,
       topic_(node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1)) {
   updater_.setHardwareID(robot.bus.interface);
   updater_.add("bus", this, &Diagnostics::reportBus);
+  std::size_t nodes = 0;
   for (std::size_t i = 0; i < robot.axes.size(); ++i) {
     const drive::AxisConfig& axis = robot.axes[i];
-    updater_.add(axis.place, [this, i](Status& status) { reportNode(i, status); });
+    if (axis.device == nodes) {  // devices are in the order of their first axes
+      ++nodes;
+      updater_.add("node " + std::to_string(robot.deviceOf(axis).node_id),
+                   [this, i](Status& status) { reportNode(i, status); });
+    }
     updater_.add(axis.name, [this, i](Status& status) { reportAxis(i, status); });
   }
 }

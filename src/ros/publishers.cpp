@@ -63,11 +63,11 @@ cia402_driver::AxisState axisState(const bus::AxisSnapshot& axis, const drive::A
   return message;
 }
 
-cia402_driver::NodeState nodeState(const bus::AxisSnapshot& axis, const drive::AxisConfig& config,
-                                   canopen::NodeId node_id, Time now) {
+/// @param axis the first one in it
+cia402_driver::NodeState nodeState(const bus::AxisSnapshot& axis, canopen::NodeId node_id,
+                                   Time now) {
   cia402_driver::NodeState message;
   message.node_id = node_id;
-  message.axes = {config.name};
   message.nmt_state = canopen::toString(axis.node.nmt);
   message.ready = axis.state.health == fieldbus::Health::ready;
   message.step = message.ready ? "" : axis.words.step.str();
@@ -223,7 +223,11 @@ cia402_driver::BusState Publishers::busState(const bus::NetworkSnapshot& snapsho
   for (std::size_t i = 0; i < snapshot.axes.size(); ++i) {
     message.missed_feedback += snapshot.axes[i].missed_feedback;
     const drive::AxisConfig& axis = robot_.axes[i];
-    message.nodes.push_back(nodeState(snapshot.axes[i], axis, robot_.deviceOf(axis).node_id, now));
+    if (message.nodes.size() == axis.device) {  // devices are in the order of their first axes
+      const canopen::NodeId id = robot_.deviceOf(axis).node_id;
+      message.nodes.push_back(nodeState(snapshot.axes[i], id, now));
+    }
+    message.nodes[axis.device].axes.push_back(axis.name);
   }
   return message;
 }

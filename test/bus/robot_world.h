@@ -109,7 +109,7 @@ inline canopen::DeviceConfig testDevice(const drive::AxisConfig& axis, canopen::
   device.title = drive::whoIs(axis);
   device.node_id = node;
   device.profile = std::make_shared<const canopen::DeviceProfile>(testFamily().device);
-  device.pdos = device.profile->pdos;
+  device.axes[0].pdos = device.profile->pdos;
   return device;
 }
 

@@ -201,8 +201,8 @@ TEST(SeveralAxes, SyncMovesBothAlongTheirTargets) {
   DualBench b;
   b.write(0x6060, 0, 8, 1);
   b.write(0x6860, 0, 8, 1);
-  b.write(0x1404, 1, 0x00000281, 4);  // RPDO 5: 6840h
-  b.write(0x1406, 1, 0x00000481, 4);  // RPDO 7: 6840h, 687Ah
+  b.write(0x1440, 1, 0x00000281, 4);  // RPDO 65: 6840h
+  b.write(0x1442, 1, 0x00000481, 4);  // RPDO 67: 6840h, 687Ah
   b.nmt(0x01);
   b.enable();
   b.frame(0x281, {0x06, 0x00});

@@ -84,7 +84,11 @@ void NodeUnit::onEmergency(const fieldbus::Emergency& emergency, const std::stri
                            Time now) {
   for (const Entry& entry : axes_) {
     entry.unit->axis.onEmergency(emergency, now, excuse);
-    entry.unit->reporter.emergency(emergency, now, excuse);
+    if (entry.unit == &axis()) {
+      entry.unit->reporter.emergency(emergency, now, excuse);
+    } else {
+      entry.unit->reporter.count(emergency);
+    }
   }
 }
 

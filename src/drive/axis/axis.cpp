@@ -198,8 +198,17 @@ std::string Axis::calibrationRefusal() const {
   return drive::calibrationRefusal(impl_->core);
 }
 void Axis::beginCalibration(std::string what) { impl_->calibrating = std::move(what); }
-void Axis::loseZero() { impl_->core.loseZero(); }
-void Axis::measureAnew() { impl_->core.measureAnew(); }
+void Axis::loseZero(bool device) {
+  impl_->core.loseZero();
+  if (device) impl_->core.basis().neighbours.loseZero();
+}
+void Axis::measureAnew(bool device) {
+  impl_->core.measureAnew();
+  if (device) impl_->core.basis().neighbours.measureAnew();
+}
+void Axis::addNeighbour(Axis& other) { impl_->core.basis().neighbours.add(other.impl_->core); }
+std::string Axis::deviceRefusal() const { return impl_->core.basis().neighbours.refusal(); }
+std::string Axis::neighbourText() const { return impl_->core.basis().neighbours.text(); }
 void Axis::endCalibration() { impl_->calibrating.clear(); }
 
 Result<void> Axis::command(double value, Time now) {

@@ -156,9 +156,10 @@ class Axis {
   void beginCalibration(std::string what);
   /// The drive has taken the write, or may have: the axis is not homed any more, positions count
   /// from the drive's own zero.
-  void loseZero();
+  /// @param device it concerns the whole device, and with it all axes in it
+  void loseZero(bool device = false);
   /// What was measured before counts in other coordinates: waits for the drive to tell anew.
-  void measureAnew();
+  void measureAnew(bool device = false);
   void endCalibration();
 
   /// A streamed command for the active mode, in joint units (rad, m, per s, N m, N): led there
@@ -201,6 +202,14 @@ class Axis {
   /// quick-stopped by SDO and stays disabled; a procedure that would enable it is ended.
   /// @param why in words
   void stopBySdo(const std::string& why, Time now);
+
+  /// Another axis in the same device; must outlive this.
+  void addNeighbour(Axis& other);
+  /// Why nothing may be done to the device that its other axes would feel; empty if it may.
+  std::string deviceRefusal() const;
+  /// "; in the same drive: right (operation enabled)", to be put behind what was done to the
+  /// device; empty if no other axis is in it.
+  std::string neighbourText() const;
 
   /// Node and axis events from the master.
   /// @param excuse where this program itself is the cause of what the drive reports, as it was

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "drive/axis/axis.h"
+#include "drive/axis/neighbours.h"
 #include "drive/axis/notices.h"
 #include "drive/axis/objects.h"
 
@@ -34,6 +35,7 @@ struct AxisBasis {
   /// by itself. What is measured tells of standstill only after that.
   Time moved_at = Time::min();
   Notices notices;
+  Neighbours neighbours;
 };
 
 }  // namespace cia402::drive

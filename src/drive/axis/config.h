@@ -36,7 +36,9 @@ struct AxisConfig {
   std::string name;        ///< key in the YAML
   std::string joint;       ///< joint name
   std::size_t device = 0;  ///< that it sits in, index in config::RobotConfig::devices
-  std::string place;       ///< of that device on its bus, for messages: "node 3"
+  unsigned device_axis =
+      0;              ///< which of the device's axes it is, 0 to 7; the profile is that axis'
+  std::string place;  ///< on its bus, for messages: "node 3", "node 3, axis 1"
   std::shared_ptr<const DriveProfile> profile;  ///< with the objects of the EDS added
   /// What the device's maker says of its objects (EDS or DCF); nullptr: nothing.
   std::shared_ptr<const fieldbus::DeviceDescription> description;

@@ -50,8 +50,7 @@ void AxisCore::superviseOperation(Time now) {
 
 void AxisCore::stopUnheard() {
   setGoal(Goal::quick_stop);
-  notices().fail(who() +
-                 ": no usable statusword (6041:00) and position (6064:00): " + feedback_.text() +
+  notices().fail(who() + ": no usable " + profile().feedbackObjects() + ": " + feedback_.text() +
                  "; quick stop is commanded. Check bus load, cable and the drive's TPDOs");
 }
 

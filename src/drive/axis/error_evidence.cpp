@@ -13,8 +13,9 @@ constexpr Duration kMute =
 }  // namespace
 
 void ErrorEvidence::onEmergency(const fieldbus::Emergency& emergency, const std::string& excuse,
-                                Time now) {
-  pending_ = emergency.code;
+                                bool shared, Time now) {
+  shared_ = shared;
+  pending_ = shared ? 0 : emergency.code;
   next_look_ = now + kLook;
   register_ticket_.reset();
   if (emergency.code != 0 && !(faulted_ && now > fault_since_ + kNaming)) {
@@ -65,6 +66,8 @@ bool ErrorEvidence::withFault(const Told& told) const {
 
 std::uint16_t ErrorEvidence::nameOfFault() const {
   const bool by_emergency = withFault(emergency_), by_object = withFault(object_);
+  if (shared_ && by_object) return object_.code;
+  if (shared_ && read_ && *read_ != 0) return *read_;
   if (by_object && (!by_emergency || object_.at >= emergency_.at)) return object_.code;
   if (by_emergency) return emergency_.code;
   if (read_ && *read_ != 0) return *read_;

@@ -28,7 +28,11 @@ class ErrorEvidence {
   static constexpr Duration kLook{std::chrono::seconds(1)};
 
   /// @param excuse why this program itself has caused it, in words; empty: it has not
-  void onEmergency(const fieldbus::Emergency& emergency, const std::string& excuse, Time now);
+  /// @param shared the device has other axes, and nothing in an EMCY tells which of them it is
+  /// about: it names a fault that this axis shows where nothing else does, and counts for nothing
+  /// else
+  void onEmergency(const fieldbus::Emergency& emergency, const std::string& excuse, bool shared,
+                   Time now);
 
   /// What the drive shows in this cycle.
   struct Look {
@@ -62,6 +66,7 @@ class ErrorEvidence {
   void readErrorCode(const Look& look, fieldbus::ObjectAccess& objects);
   void readErrorRegister(const Look& look, fieldbus::ObjectAccess& objects, Time now);
 
+  bool shared_ = false;
   std::uint16_t code_ = 0, pending_ = 0;
   Told emergency_;  ///< the last that may name a fault
   Told object_;     ///< 603Fh, and since when it is that

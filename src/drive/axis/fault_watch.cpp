@@ -47,8 +47,9 @@ std::string FaultWatch::text() const {
     const char* reacting =
         state.state == State::fault_reaction_active ? " (the drive is still stopping)" : "";
     if (state.error_code == 0) {
-      return axis_.who() + ": fault" + reacting +
-             ", no error code yet (603F:00 is 0 and no EMCY came); clear_faults, then look at the "
+      return axis_.who() + ": fault" + reacting + ", no error code yet (" +
+             axis_.profile().address(0x603F) +
+             " is 0 and no EMCY came); clear_faults, then look at the "
              "drive's own display or log";
     }
     return axis_.who() + ": fault " + codeText(state.error_code) + reacting + "; then clear_faults";

@@ -20,7 +20,7 @@ class FaultWatch {
   }
   /// @param excuse why this program itself has caused it; empty: it has not
   void onEmergency(const fieldbus::Emergency& emergency, const std::string& excuse, Time now) {
-    errors_.onEmergency(emergency, excuse, now);
+    errors_.onEmergency(emergency, excuse, axis_.neighbours.any(), now);
   }
   /// An EMCY whose end the drive has not told; 0: none.
   std::uint16_t pendingEmergency() const { return errors_.pending(); }

@@ -207,15 +207,14 @@ std::string Feedback::unknownText() const {
   const bool known = state.feedback_valid && state.state != State::unknown;
   if (!axis_.nodeReady() || known) return {};
   if (state.feedback_valid) {
-    return axis_.who() + ": its state is unknown: statusword (6041:00) " +
-           hexWord(state.statusword) + " is none of the states of CiA 402 (" +
+    return axis_.who() + ": its state is unknown: statusword (" + axis_.profile().address(0x6041) +
+           ") " + hexWord(state.statusword) + " is none of the states of CiA 402 (" +
            statuswordText(state.statusword) + "); is it the right drive profile?";
   }
   std::string why = axis_.device.missingText();
   if (why.empty()) why = text();
-  return axis_.who() +
-         ": its state is unknown: no usable statusword (6041:00) and position (6064:00): " + why +
-         "; check cable, bus load and the drive's TPDOs";
+  return axis_.who() + ": its state is unknown: no usable " + axis_.profile().feedbackObjects() +
+         ": " + why + "; check cable, bus load and the drive's TPDOs";
 }
 
 }  // namespace cia402::drive

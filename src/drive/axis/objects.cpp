@@ -11,7 +11,7 @@ using fieldbus::ObjectId;
 /// The fixed name of the profile format, or else the standard's own index.
 const ObjectSpec* findObject(const DriveProfile& profile, const char* name, ObjectId id) {
   const ObjectSpec* spec = profile.find(name);
-  return spec != nullptr ? spec : profile.find(id);
+  return spec != nullptr ? spec : profile.find(profile.own(id));
 }
 
 OutputObject output(const fieldbus::Device& device, const ObjectSpec* spec) {
@@ -60,8 +60,7 @@ AxisObjects::AxisObjects(const AxisConfig& config, fieldbus::Device& device)
   controlword = output(device, findObject(*config.profile, "controlword", {0x6040, 0}));
   mode = output(device, findObject(*config.profile, "mode_of_operation", {0x6060, 0}));
   if (!controlword.mapped()) {
-    throw std::invalid_argument(whoIs(config) +
-                                ": the controlword (6040:00) must be mapped into a PDO");
+    throw std::invalid_argument(whoIs(config) + ": the controlword must be in the process image");
   }
 
   modes.reserve(config.profile->modes.size());

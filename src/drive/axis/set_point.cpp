@@ -12,20 +12,6 @@ constexpr double kTolerance = 1.0 + 1e-6;
 
 }  // namespace
 
-SetPointKind kindOf(const ModeSpec& mode) {
-  switch (mode.kind) {
-    case ControlKind::position:
-      return mode.cyclic ? SetPointKind::stream : SetPointKind::goal;
-    case ControlKind::velocity:
-      return SetPointKind::velocity;
-    case ControlKind::torque:
-      return SetPointKind::torque;
-    case ControlKind::homing:
-      break;
-  }
-  return SetPointKind::none;
-}
-
 SetPoint::SetPoint(const SetPointLimits& limits, Duration cycle)
     : limits_(limits),
       cycle_s_(toSeconds(cycle)),

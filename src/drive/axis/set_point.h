@@ -20,8 +20,6 @@ enum class SetPointKind : std::uint8_t {
   torque,    ///< the drive pushes on with the last one
 };
 
-SetPointKind kindOf(const ModeSpec& mode);
-
 /// What bounds the set-points of an axis, in joint units (rad or m, per s).
 struct SetPointLimits {
   std::optional<double> lower, upper;  ///< positions that a stop does not go beyond

@@ -32,12 +32,12 @@ constexpr std::array<Row, 8> kRows = {{
 /// The fixed name of the profile format, or else the standard's own index.
 const ObjectSpec* findObject(const DriveProfile& profile, const Row& row) {
   const ObjectSpec* spec = profile.find(row.name);
-  return spec != nullptr ? spec : profile.find(row.object);
+  return spec != nullptr ? spec : profile.find(profile.own(row.object));
 }
 
 void require(bool mapped, const AxisConfig& config, const char* what) {
   if (mapped) return;
-  throw std::invalid_argument(whoIs(config) + ": " + what + " must be mapped into a PDO");
+  throw std::invalid_argument(whoIs(config) + ": " + what + " must be in the process image");
 }
 
 }  // namespace
@@ -50,8 +50,8 @@ Signals::Signals(const AxisConfig& config, fieldbus::Device& device)
   for (const std::string& name : profile.signals) {
     add(config, profile.find(name), Reading::when_looked_at);
   }
-  require((*this)[SignalId::statusword].mapped(), config, "the statusword (6041:00)");
-  require((*this)[SignalId::position].mapped(), config, "the actual position (6064:00)");
+  require((*this)[SignalId::statusword].mapped(), config, "the statusword");
+  require((*this)[SignalId::position].mapped(), config, "the actual position");
 }
 
 void Signals::add(const AxisConfig& config, const ObjectSpec* spec, Reading reading) {

@@ -121,8 +121,8 @@ void Stops::watchBrakeMode(Time now) {
     return;
   }
   axis_.notices().notify(
-      axis_.who() + ": mode " + mode.name + " (6060:00 = " + std::to_string(mode.value) +
-      "), which is to brake, was not taken" +
+      axis_.who() + ": mode " + mode.name + " (" + axis_.profile().address(0x6060) + " = " +
+      std::to_string(mode.value) + "), which is to brake, was not taken" +
       (refused ? ": " + brake_ticket_->message() : " within " + seconds(patience)) +
       "; quick stop is commanded. " + report(axis_));
   axis_.setGoal(Goal::quick_stop);

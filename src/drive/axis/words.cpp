@@ -9,9 +9,10 @@ std::string report(const AxisCore& axis) {
   const fieldbus::Slot slot = axis.objects().controlword.slot;
   const std::uint64_t sent = axis.control().frames();
   const std::uint16_t statusword = axis.state().statusword;
-  std::string text = "controlword 6040:00 = " + hexWord(axis.control().word()) + ", " +
-                     axis.control().text() + ", sent in " + axis.device().carrierText(slot) + ", " +
-                     std::to_string(sent) + " frames so far";
+  std::string text = "controlword " + axis.profile().address(0x6040) + " = " +
+                     hexWord(axis.control().word()) + ", " + axis.control().text() + ", sent in " +
+                     axis.device().carrierText(slot) + ", " + std::to_string(sent) +
+                     " frames so far";
   text += "; the drive shows " + axis.feedback().stateText() + "; " + axis.faults().emergencyText();
   if (sent == 0) text += "; no RPDO has left: is the cycle running?";
   if ((statusword & statusword::kVoltageEnabled) == 0) {
@@ -61,7 +62,7 @@ std::string motionRefusal(const AxisCore& axis, bool busy) {
            "; recover brings it back";
   }
   if (!state.feedback_valid) {
-    return who + ": no fresh position (6064:00) and statusword (6041:00)";
+    return who + ": no fresh " + axis.profile().feedbackObjects();
   }
   if (axis.faulted()) return axis.faults().text();
   if (busy) return who + ": a procedure is running";
@@ -72,7 +73,7 @@ std::string motionRefusal(const AxisCore& axis, bool busy) {
   const ModeSpec& mode = axis.mode().spec();
   const std::optional<int> shown = axis.feedback().shownMode();
   if (shown != mode.value) {
-    return who + ": 6061:00 shows mode " +
+    return who + ": " + axis.profile().address(0x6061) + " shows mode " +
            (shown ? std::to_string(*shown) : std::string("unknown")) + " instead of " +
            std::to_string(mode.value) + " (" + mode.name + "); call enable";
   }

@@ -28,15 +28,17 @@ Made makePosition(const ModeChannel& channel, const ModeControl::Context& contex
 struct Kind {
   const char* word;
   Quantity target;
+  SetPointKind cyclic, planned;  ///< set-points of modes that are cyclic, and that are not
   Made (*make)(const ModeChannel& channel, const ModeControl::Context& context);
 };
 
 /// In the order of ControlKind.
 constexpr std::array<Kind, 4> kKinds = {{
-    {"position", Quantity::position, makePosition},
-    {"velocity", Quantity::velocity, make<VelocityControl>},
-    {"torque", Quantity::torque, make<TorqueControl>},
-    {"homing", Quantity::none, make<HomingControl>},
+    {"position", Quantity::position, SetPointKind::stream, SetPointKind::goal, makePosition},
+    {"velocity", Quantity::velocity, SetPointKind::velocity, SetPointKind::velocity,
+     make<VelocityControl>},
+    {"torque", Quantity::torque, SetPointKind::torque, SetPointKind::torque, make<TorqueControl>},
+    {"homing", Quantity::none, SetPointKind::none, SetPointKind::none, make<HomingControl>},
 }};
 
 }  // namespace
@@ -52,6 +54,11 @@ bool ModeControl::leadsInside(double value) const {
   const double before = sent().value(), position = state().position;
   return !(limits().lower && position <= *limits().lower && value < 0.0 && !(value > before)) &&
          !(limits().upper && position >= *limits().upper && value > 0.0 && !(value < before));
+}
+
+SetPointKind kindOf(const ModeSpec& mode) {
+  const Kind& kind = kKinds[static_cast<std::size_t>(mode.kind)];
+  return mode.cyclic ? kind.cyclic : kind.planned;
 }
 
 std::vector<std::string> controlKindWords() {

@@ -115,6 +115,8 @@ class ModeControl {
   Conversion conversion_;
 };
 
+/// What the drive makes of the set-points of a mode.
+SetPointKind kindOf(const ModeSpec& mode);
 /// The control of a mode, by its kind. @param channel must outlive it
 std::unique_ptr<ModeControl> makeModeControl(const ModeChannel& channel,
                                              const ModeControl::Context& context);

@@ -45,15 +45,24 @@ std::string hex(std::uint64_t value) {
 }
 
 /// Why the parameters cannot be touched now; empty if they can.
-std::string powerRefusal(const AxisCore& axis, const Storage& storage) {
+std::string powerRefusal(AxisCore& axis, const Storage& storage) {
   const std::string what = axis.who() + ": cannot " + storage.verb + " parameters: ";
   if (!axis.state().feedback_valid) return what + "no fresh statusword says that it is disabled";
   if (!axis.powerOff()) {
     return what + "the axis is not disabled (" + toString(axis.state().state) +
            "); disable it first";
   }
-  return axis.generator().moving() ? what + "the axis moves; wait until it is at rest"
-                                   : std::string();
+  if (axis.generator().moving()) return what + "the axis moves; wait until it is at rest";
+  const std::string others = axis.basis().neighbours.refusal();
+  return others.empty() ? others : what + others;
+}
+
+/// What the device's memory holds is that of all its axes.
+void loseZeros(AxisCore& axis) {
+  axis.loseZero();
+  axis.measureAnew();
+  axis.basis().neighbours.loseZero();
+  axis.basis().neighbours.measureAnew();
 }
 
 /// Writes the signature to each chosen sub-index of 1010h or 1011h that can be commanded so.
@@ -73,8 +82,7 @@ class StorageStep {
       if (!ticket_) askCapability(context);
       if (!ticket_->done()) return Outcome::running();
       if (writing_ && mayHaveMovedZero()) {
-        context.axis.loseZero();
-        context.axis.measureAnew();
+        loseZeros(context.axis);
       }
       const std::string problem = judge();
       if (!problem.empty()) return Outcome::failed(context.axis.who() + ": " + problem + done());
@@ -160,6 +168,7 @@ class SaveParameters : public Procedure {
                               seconds(context.now - context.status.started);
     if (!axis.profile().parameters.power_cycle_after_save) return Outcome::done(saved);
     axis.control().wantPowerCycle();
+    axis.basis().neighbours.wantPowerCycle();
     return Outcome::remarked(saved + "; switch the drive off and on before it is enabled again");
   }
 
@@ -178,6 +187,12 @@ class RestoreParameters : public Procedure {
     if (resetting_) return awaitBoot(context);
     const Outcome outcome = restoring_.advance(context);
     if (!outcome.isDone()) return outcome;
+    const std::string others = context.axis.basis().neighbours.refusal();
+    if (!others.empty()) {
+      return Outcome::failed(context.axis.who() + ": restored the factory's values of " +
+                             restoring_.what() + ", but did not reset the drive, as " + others +
+                             ", then call it again: they count after a reset only");
+    }
     resetting_ = true;
     reset_at_ = context.now;
     context.show("booting the node", "the node to be identified, configured and started");
@@ -201,7 +216,8 @@ class RestoreParameters : public Procedure {
       return Outcome::done(restored +
                            "; the drive was reset, configured again by the driver and is disabled" +
                            (axis.state().homed ? "" : ", not homed") +
-                           (gap.empty() ? "" : "; " + gap + " for the values to count"));
+                           (gap.empty() ? "" : "; " + gap + " for the values to count") +
+                           axis.basis().neighbours.text());
     }
     const fieldbus::Health health = axis.device().health();
     const bool failed = health == fieldbus::Health::failed || health == fieldbus::Health::absent;

@@ -106,8 +106,8 @@ Outcome awaitStandstill(const Context& context, Time since, const std::string& w
   const bool patient = context.now - since <= 4 * Standstill::kWindow;
   if (!axis.state().feedback_valid) {
     if (patient) return Outcome::running();  // the node is ready, its first TPDO still to come
-    return Outcome::failed(axis.who() + ": " + what +
-                           ": no fresh statusword (6041:00) and position (6064:00)");
+    return Outcome::failed(axis.who() + ": " + what + ": no fresh " +
+                           axis.profile().feedbackObjects());
   }
   if (axis.feedback().atStandstill()) return Outcome::done();
   if (!axis.generator().moving() && patient) return Outcome::running();

@@ -109,31 +109,41 @@ class Recover : public Procedure {
       return Outcome::running();
     }
     if (context.now - since_ <= axis.profile().timing.state_change) return Outcome::running();
-    if (!booted_) {
+    const std::string others = axis.basis().neighbours.refusal();
+    if (!booted_ && others.empty()) {
       bootNode(context);
       return Outcome::running();
     }
-    return Outcome::failed(axis.who() + ": no usable statusword (6041:00) and position (6064:00) " +
-                           "within " + seconds(context.now - since_) +
-                           " after the node was ready: " + axis.feedback().text() +
+    const std::string missing = axis.who() + ": no usable " + axis.profile().feedbackObjects() +
+                                " within " + seconds(context.now - since_);
+    if (!booted_) {
+      return Outcome::failed(missing + ": " + axis.feedback().text() +
+                             "; the drive is not booted for it: " + others + ", then recover");
+    }
+    return Outcome::failed(missing + " after the node was ready: " + axis.feedback().text() +
                            "; check bus load, cable and the drive's TPDOs");
   }
 
   static Outcome leave(const Context& context) {
-    const AxisCore& axis = context.axis;
+    AxisCore& axis = context.axis;
     const std::string obstacle = drive::obstacle(axis);
     if (!obstacle.empty()) return Outcome::failed(obstacle);
     return Outcome::done(jointName(axis.config()) + ": is enabled and well, mode " +
-                         axis.mode().spec().name + "; it was left alone");
+                         axis.mode().spec().name + "; it was left alone" +
+                         axis.basis().neighbours.text());
   }
 
   Outcome finish(const Context& context) {
-    const AxisCore& axis = context.axis;
+    AxisCore& axis = context.axis;
     const std::string obstacle = drive::obstacle(axis);
     const std::string done = "recovered, enabled in mode " + axis.mode().spec().name + " after " +
                              seconds(context.now - started_);
     if (!obstacle.empty()) return Outcome::failed(obstacle + " (" + done + ")");
-    return Outcome::done(jointName(axis.config()) + ": " + done);
+    const Neighbours& others = axis.basis().neighbours;
+    const bool booted_all = booted_ && others.any();
+    return Outcome::done(jointName(axis.config()) + ": " + done +
+                         (booted_all ? "; the drive was booted for it, with all its axes" : "") +
+                         others.text());
   }
 
   Phase phase_ = Phase::begin;

@@ -35,6 +35,10 @@ const ObjectSpec* DriveProfile::find(ObjectId id) const {
   return found == objects.end() ? nullptr : &*found;
 }
 
+std::string DriveProfile::feedbackObjects() const {
+  return "statusword (" + address(0x6041) + ") and position (" + address(0x6064) + ")";
+}
+
 Encoding DriveProfile::encodingOf(ObjectId id, DataType type) const {
   if (const ObjectSpec* object = find(id)) return object->encoding;
   return encodingAt(*this, id, type);

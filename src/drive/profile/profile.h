@@ -212,6 +212,8 @@ struct ErrorText {
 /// `name`.
 struct DriveProfile {
   std::string name, description;
+  std::uint16_t offset =
+      0;  ///< of the objects of its axis from those of axis 0, see ofDeviceAxis()
   std::map<Quantity, UnitSpec> units;
   bool output_shaft = false;  ///< units count at the joint's side of the gear
   std::vector<ObjectSpec> objects;
@@ -260,6 +262,14 @@ struct DriveProfile {
   /// By the profile's name, or by a name of the EDS without regard to case and blanks.
   const ObjectSpec* find(const std::string& object_name) const;
   const ObjectSpec* find(ObjectId id) const;
+  /// Where the axis has the object that CiA 402-2 gives axis 0. @param id 6000h to 67FFh
+  ObjectId own(ObjectId id) const {
+    return {static_cast<std::uint16_t>(id.index + offset), id.subindex};
+  }
+  /// "6841:00": where the axis has what CiA 402-2 has at `index`, for messages.
+  std::string address(std::uint16_t index) const { return fieldbus::toString(own({index, 0})); }
+  /// "statusword (6041:00) and position (6064:00)", without which an axis is not commanded.
+  std::string feedbackObjects() const;
   /// How a number of this type sits in the object: as its name says, else as its place says where
   /// the type is as wide as that encoding.
   Encoding encodingOf(ObjectId id, DataType type) const;
@@ -271,6 +281,17 @@ struct DriveProfile {
   /// By logical name; nullptr if the family has no such mode.
   const ModeSpec* mode(const std::string& mode_name) const;
 };
+
+/// Axes that can sit in one device (CiA 402-2): axis 0 has its objects at 6000h to 67FFh, each
+/// further one 800h behind the one before.
+inline constexpr unsigned kDeviceAxes = 8;
+inline constexpr std::uint16_t kFirstAxis = 0x6000, kAxisSize = 0x800;
+/// The axis of a device that CiA 402-2 gives the object to; nothing for all others.
+std::optional<unsigned> axisOf(ObjectId id);
+/// The family as one axis of a device with several has it: what lies at 6000h to 67FFh is moved to
+/// where that axis has it, in objects, writes, encodings and marks of coordinates. The maker's
+/// objects stay where they are. @param axis 0 to 7
+DriveProfile ofDeviceAxis(DriveProfile profile, unsigned axis);
 
 /// The object that a name or an index ("6041:00") means; nullptr if the profile has none.
 const ObjectSpec* findObject(const DriveProfile& profile, const std::string& name);

@@ -5,6 +5,16 @@
 #include "drive/sentence.h"
 
 namespace cia402::drive {
+namespace {
+
+/// What could not be tried as the device has other axes, too.
+std::string pauseLeftOut(AxisCore& axis) {
+  const std::string others = axis.basis().neighbours.refusal();
+  if (others.empty() || axis.profile().fault_reset_nmt_stop == Duration::zero()) return {};
+  return "; NMT stop and start, after which it may be cleared, was left out: " + others;
+}
+
+}  // namespace
 
 bool clearable(const AxisCore& axis) {
   return axis.faulted() || (axis.state().warning && axis.profile().warning_stops);
@@ -52,8 +62,9 @@ Outcome FaultResetStep::awaitReset(const Context& context) {
       return Outcome::running();
     }
     const std::string times = tries_ == 1 ? "" : " (" + std::to_string(tries_) + " tries)";
-    return fail(context, "the fault reset (6040:00 bit 7)" + times + " did not clear it within " +
-                             seconds(waited) + ": " + axis.faults().text() + "; " + report(axis));
+    return fail(context, "the fault reset (" + axis.profile().address(0x6040) + " bit 7)" + times +
+                             " did not clear it within " + seconds(waited) + ": " +
+                             axis.faults().text() + pauseLeftOut(axis) + "; " + report(axis));
   }
   if (!tellsState(axis, context.now)) return awaitNews(context);
   axis.control().setFaultReset(false);
@@ -80,7 +91,8 @@ bool FaultResetStep::tryAgain(const Context& context) {
 }
 
 bool FaultResetStep::mayPause(const Context& context) const {
-  return !paused_ && context.axis.profile().fault_reset_nmt_stop > Duration::zero();
+  return !paused_ && context.axis.profile().fault_reset_nmt_stop > Duration::zero() &&
+         context.axis.basis().neighbours.refusal().empty();
 }
 
 void FaultResetStep::beginPause(const Context& context) {

@@ -78,7 +78,8 @@ void ModeStep::select(const Context& context) {
         object.spec->name);
     phase_ = Phase::sending;
   }
-  context.show("switching the mode", "6061:00 to show " + modeText(mode_->spec->value, axis));
+  context.show("switching the mode", context.axis.profile().address(0x6061) + " to show " +
+                                         modeText(mode_->spec->value, axis));
 }
 
 Outcome ModeStep::await(const Context& context) {
@@ -92,8 +93,9 @@ Outcome ModeStep::await(const Context& context) {
   if (context.now - started_ <= axis.profile().timing.mode_change) return Outcome::running();
   const std::string shows =
       axis.feedback().shownMode() ? modeText(*axis.feedback().shownMode(), axis) : "nothing";
-  return fail(context, "6061:00 mode display shows " + shows + " " +
-                           seconds(context.now - started_) + " after 6060:00 was set to " +
+  return fail(context, axis.profile().address(0x6061) + " mode display shows " + shows + " " +
+                           seconds(context.now - started_) + " after " +
+                           axis.profile().address(0x6060) + " was set to " +
                            modeText(mode_->spec->value, axis) + "; " + report(axis));
 }
 
