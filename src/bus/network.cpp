@@ -39,7 +39,7 @@ std::vector<AxisUnit::Place> Network::places() {
   for (const drive::AxisConfig& axis : config_.axes) {
     const canopen::DeviceConfig& device = config_.deviceOf(axis);
     canopen::Node& node = *master_.find(device.node_id);
-    places.push_back({&node, node.who(), kFirstFeedback + device.stale_after * axis.sync_period});
+    places.push_back({&node, node.who(), kFirstFeedback + device.stale_after * axis.cycle});
   }
   return places;
 }
@@ -233,7 +233,7 @@ void Network::onEmergency(canopen::Node& node, const fieldbus::Emergency& emerge
   if (unit == nullptr) return;
   const drive::DriveProfile& profile = *unit->axis().axis.config().profile;
   const bool misses =
-      drive::missingFrames(profile, emergency.code) != drive::ErrorText::Missing::nothing;
+      drive::missingByCode(profile, emergency.code) != drive::ErrorText::Missing::nothing;
   const std::string excuse = misses ? sync_.ownLateness(emergency.stamp) : std::string();
   unit->onEmergency(emergency, excuse, cycle_.now());
 }
@@ -246,8 +246,8 @@ void Network::onBootUp(canopen::Node& node, Time now) {
   if (NodeUnit* unit = unitOf(node)) unit->onBootUp(now);
 }
 
-void Network::onHealthChange(canopen::Node& node, fieldbus::Health before, Time now) {
-  if (NodeUnit* unit = unitOf(node)) unit->onHealthChange(before, now);
+void Network::onHealthChange(canopen::Node& node, fieldbus::Health, Time now) {
+  if (NodeUnit* unit = unitOf(node)) unit->onHealthChange(now);
 }
 
 void Network::onForeignSync(const can::Frame& frame, Time stamp, Time now) {

@@ -99,7 +99,7 @@ bool plan(yaml::Section& section, AxisDraft& draft, RobotConfig& robot, PdoNeeds
   const DriveProfile& profile = *axis.profile;
   const auto modes = section.get("modes");
   needs.mode = axis.mode;
-  needs.cycle = axis.sync_period;
+  needs.cycle = axis.cycle;
   needs.fresh = freshness(robot);
   const Result<PdoPlan> planned = planPdos(profile, *draft.device.profile, needs);
   if (!planned) {
@@ -189,7 +189,7 @@ bool choosePdos(yaml::Section& section, AxisDraft& draft, RobotConfig& robot) {
   }
   const DriveProfile& profile = *axis.profile;
   readLacks(section, axis);
-  readRpdoTimeout(section, device, axis.sync_period);
+  readRpdoTimeout(section, device, axis.cycle);
   PdoNeeds needs;
   needs.modes_required = modes.has_value();
   needs.modes = modes ? readModeNames(*modes, profile) : profile.default_modes;
@@ -243,7 +243,7 @@ PdoNeeds needsOf(const AxisConfig& axis, const RobotConfig& robot) {
     std::copy_if(pdo.objects.begin(), pdo.objects.end(), std::back_inserter(needs.feedback),
                  [&](const std::string& name) { return !contains(device.riders, name); });
   }
-  needs.cycle = axis.sync_period;
+  needs.cycle = axis.cycle;
   needs.fresh = freshness(robot);
   return needs;
 }
@@ -263,7 +263,7 @@ void plan(AxisConfig& axis, RobotConfig& robot) {
 void planAgain(RobotConfig& robot, Duration cycle) {
   robot.bus.sync_period = cycle;
   for (AxisConfig& axis : robot.axes) {
-    axis.sync_period = cycle;
+    axis.cycle = cycle;
     if (robot.deviceOf(axis).pdos_planned) plan(axis, robot);
   }
 }

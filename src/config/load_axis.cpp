@@ -115,7 +115,7 @@ void readAxis(const std::string& name, const yaml::Value& value, NamedFiles& fil
   canopen::DeviceConfig& device = draft.device;
   axis.name = device.name = name;
   axis.device = robot.devices.size();
-  axis.sync_period = robot.bus.sync_period;
+  axis.cycle = robot.bus.sync_period;
   yaml::Section section(value);
   if (!isGraphName(name)) {
     section.problem("an axis is named by a letter, then letters, digits and _");

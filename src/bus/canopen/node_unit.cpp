@@ -46,8 +46,8 @@ void NodeUnit::onBootUp(Time now) {
   if (++boot_ups_ > 2) axis().reporter.bootUp(now);
 }
 
-void NodeUnit::onHealthChange(Health before, Time now) {
-  for (const Entry& entry : axes_) entry.unit->axis.onHealthChange(before, now);
+void NodeUnit::onHealthChange(Time now) {
+  for (const Entry& entry : axes_) entry.unit->axis.onHealthChange();
   const Health health = node_->health();
   if (health == Health::booting) {
     boot_began_ = now;

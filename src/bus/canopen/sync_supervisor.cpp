@@ -86,10 +86,9 @@ void SyncSupervisor::lack(Time now) {
     const int periods = canopen::SyncConsumer::kLostAfter;
     cycle_.stopBesideCycle(
         "stopped: no SYNC (COB-ID 0x080) came from the other device for " +
-            std::to_string(periods) + " periods (" + milliseconds(periods * bus_.sync_period) +
-            "); set-points do not reach the drives without it. Check the device that " +
-            "produces SYNC, then enable again",
-        now);
+        std::to_string(periods) + " periods (" + milliseconds(periods * bus_.sync_period) +
+        "); set-points do not reach the drives without it. Check the device that " +
+        "produces SYNC, then enable again");
   }
   master_.syncPassed(now);
   next_cycle_ = now;
@@ -143,12 +142,12 @@ std::string SyncSupervisor::enableProblem() const {
 }
 
 /// Drives that get SYNC at two paces do not move as they are told to.
-void SyncSupervisor::watchSecondProducer(Time now) {
+void SyncSupervisor::watchSecondProducer() {
   const bool heard = foreign_ != foreign_seen_;
   foreign_seen_ = foreign_;
   foreign_looks_ = heard ? foreign_looks_ + 1 : 0;
   if (foreign_looks_ != kForeignLooks) return;
-  cycle_.stopBesideCycle("stopped: " + textOf(Trouble::second_producer), now);
+  cycle_.stopBesideCycle("stopped: " + textOf(Trouble::second_producer));
 }
 
 void SyncSupervisor::look(Time now) {
@@ -157,7 +156,7 @@ void SyncSupervisor::look(Time now) {
   if (first) return;
   if (!bus_.external_sync) {
     if (foreign_ == 0) return;
-    watchSecondProducer(now);
+    watchSecondProducer();
   }
   const Trouble found = trouble();
   if (found != seen_) seen_since_ = now;
@@ -178,7 +177,7 @@ void SyncSupervisor::tellTrouble(Trouble trouble, Time now) {
   tell(events_, Event::Severity::error, problem_.view(), now);
   // Where it is lost, that has happened already.
   const bool comes = external_.state() == State::running;
-  if (comes && bus_.external_sync) cycle_.stopBesideCycle("stopped: " + problem_.str(), now);
+  if (comes && bus_.external_sync) cycle_.stopBesideCycle("stopped: " + problem_.str());
 }
 
 }  // namespace cia402::bus

@@ -51,6 +51,7 @@ class Node final : public fieldbus::Device {
   fieldbus::DeviceTimes times() const override;
   const std::optional<Emergency>& lastEmergency() const override;
   fieldbus::ObjectAccess& objects() override;
+  const fieldbus::Terms& terms() const override;
   std::string overdueText() const override;
   std::string missingText() const override;
   std::string carrierText(fieldbus::Slot output) const override;

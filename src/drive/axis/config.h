@@ -44,7 +44,7 @@ struct AxisConfig {
   AxisLimits limits;
   std::string mode;  ///< canonical name; mode at start
   std::optional<HomingOptions> homing;
-  Duration sync_period{std::chrono::milliseconds(4)};  ///< of the bus
+  Duration cycle{std::chrono::milliseconds(4)};  ///< from one to the next
   Duration command_timeout{std::chrono::milliseconds(200)};
   bool brake_after_effort = true;  ///< when a stream of efforts ends; else the axis coasts
   bool quick_stop_holds = false;   ///< ends in quick stop active, under power; else disabled

@@ -35,9 +35,11 @@ const ObjectSpec* findObject(const DriveProfile& profile, const Row& row) {
   return spec != nullptr ? spec : profile.find(row.object);
 }
 
-void require(bool mapped, const AxisConfig& config, const char* what) {
-  if (mapped) return;
-  throw std::invalid_argument(whoIs(config) + ": " + what + " must be mapped into a PDO");
+void require(const Signal& signal, const AxisConfig& config, const fieldbus::Device& device,
+             const char* what) {
+  if (signal.mapped()) return;
+  throw std::invalid_argument(whoIs(config) + ": " + what + " must be mapped into a " +
+                              device.terms().cyclic);
 }
 
 }  // namespace
@@ -50,8 +52,8 @@ Signals::Signals(const AxisConfig& config, fieldbus::Device& device)
   for (const std::string& name : profile.signals) {
     add(config, profile.find(name), Reading::when_looked_at);
   }
-  require((*this)[SignalId::statusword].mapped(), config, "the statusword (6041:00)");
-  require((*this)[SignalId::position].mapped(), config, "the actual position (6064:00)");
+  require((*this)[SignalId::statusword], config, device, "the statusword (6041:00)");
+  require((*this)[SignalId::position], config, device, "the actual position (6064:00)");
 }
 
 void Signals::add(const AxisConfig& config, const ObjectSpec* spec, Reading reading) {

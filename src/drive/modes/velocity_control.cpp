@@ -19,7 +19,7 @@ motion::Joint withRamp(const AxisConfig& config) {
 VelocityControl::VelocityControl(const ModeChannel& channel, const Context& context)
     : ModeControl(channel, context),
       limiter_({withRamp(context.axis.config), {}, {}},
-               kReactionCycles * context.axis.config.sync_period) {}
+               kReactionCycles * context.axis.config.cycle) {}
 
 void VelocityControl::beginStream(const Stream& stream, Time at) {
   limiter_.reset({state().position, sent().velocity(), 0.0}, at);

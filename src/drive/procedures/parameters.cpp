@@ -167,8 +167,8 @@ class SaveParameters : public Procedure {
   StorageStep storing_;
 };
 
-/// Restored values count from the next reset (CiA 301, 7.5.2.14), so the node is reset; the driver
-/// configures it again and leaves it disabled.
+/// Restored values count from the next reset (CiA 301, 7.5.2.14), so the device is reset; the
+/// driver configures it again and leaves it disabled.
 class RestoreParameters : public Procedure {
  public:
   explicit RestoreParameters(std::vector<std::uint8_t> subindices)
@@ -180,12 +180,12 @@ class RestoreParameters : public Procedure {
     if (!outcome.isDone()) return outcome;
     resetting_ = true;
     reset_at_ = context.now;
-    context.show("booting the node", "the node to be identified, configured and started");
+    showBoot(context);
     context.axis.device().restart(context.now);
     return Outcome::running();
   }
 
-  bool survivesNodeLoss() const override { return resetting_; }
+  bool survivesDeviceLoss() const override { return resetting_; }
 
  private:
   static Duration bootTime(const Context& context) {
@@ -196,7 +196,7 @@ class RestoreParameters : public Procedure {
     AxisCore& axis = context.axis;
     const std::string restored =
         axis.who() + ": restored the factory's values of " + restoring_.what();
-    if (axis.nodeReady()) {
+    if (axis.deviceReady()) {
       const std::string gap = axis.device().restartGap();
       return Outcome::done(restored +
                            "; the drive was reset, configured again by the driver and is disabled" +
@@ -208,8 +208,8 @@ class RestoreParameters : public Procedure {
     if (failed && context.now > reset_at_) {
       return Outcome::failed(restored +
                              " and reset it, but it did not boot (has it got the "
-                             "factory's node-ID or bit rate?): " +
-                             axis.device().problem());
+                             "factory's " +
+                             axis.device().terms().address + "?): " + axis.device().problem());
     }
     if (context.now < reset_at_ + bootTime(context)) return Outcome::running();
     return Outcome::failed(restored + " and reset it, but it was not ready within " +
@@ -223,8 +223,8 @@ class RestoreParameters : public Procedure {
 };
 
 std::string refusal(AxisCore& axis, const Storage& storage, const char* what) {
-  const std::string node = nodeRefusal(axis, what);
-  return node.empty() ? powerRefusal(axis, storage) : node;
+  const std::string away = deviceRefusal(axis, what);
+  return away.empty() ? powerRefusal(axis, storage) : away;
 }
 
 }  // namespace

@@ -67,7 +67,7 @@ Result<std::unique_ptr<Procedure>> makeSetMode(AxisCore& axis, const std::string
                  " is refused, for the axis is halted and the drive takes no mode then; enable "
                  "releases the halt"};
   }
-  const std::string refusal = nodeRefusal(axis, "set the mode");
+  const std::string refusal = deviceRefusal(axis, "set the mode");
   if (!refusal.empty()) return Error{refusal};
   if (!axis.state().feedback_valid) {
     return Error{axis.who() + ": cannot set the mode: no fresh statusword and position"};

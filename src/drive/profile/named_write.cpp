@@ -53,7 +53,7 @@ Source configured(const NamedWrite& write, const AxisConfig& axis, bool reversed
   if (const auto value = limit(from, axis.limits, reversed)) {
     source.value = *value * write.times;
   } else if (from == "sync_period.value" || from == "sync_period.exponent") {
-    const auto period = interpolationPeriod(axis.sync_period);
+    const auto period = interpolationPeriod(axis.cycle);
     if (period) source.raw = from == "sync_period.value" ? int{period->value} : period->exponent;
   } else if (from == kHold) {
     if (axis.quick_stop_holds) source.raw = axis.profile->quick_stop_holds.front();

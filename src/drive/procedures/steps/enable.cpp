@@ -61,8 +61,8 @@ Outcome EnableStep::awaitFeedback(const Context& context) {
   return fail(context, context.axis.who() +
                            ": no usable statusword (6041:00) and position "
                            "(6064:00) within " +
-                           seconds(waited) +
-                           "; check the TPDOs, or recover the axis, which boots the drive");
+                           seconds(waited) + "; check the " + context.axis.device().terms().input +
+                           "s, or recover the axis, which boots the drive");
 }
 
 /// A drive that holds in quick stop active and takes no parameters there goes on with those that it
