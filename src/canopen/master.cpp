@@ -75,7 +75,7 @@ std::string Master::addPdoRoutes(std::size_t node) {
 }
 
 /// A drive has told other COB-IDs of its PDOs than those that were configured.
-void Master::followCobIds(std::size_t node, Time now) {
+void Master::followCobIds(std::size_t node) {
   for (Route& route : routes_) {
     const bool pdo = route.service == Service::tpdo || route.service == Service::rpdo;
     if (pdo && route.node == node) route = Route();
@@ -83,8 +83,7 @@ void Master::followCobIds(std::size_t node, Time now) {
   const std::string conflict = addPdoRoutes(node);
   if (conflict.empty()) return;
   nodes_[node].refuse("cannot be used: " + conflict +
-                          "; give the drive another COB-ID there, or leave that PDO out",
-                      now);
+                      "; give the drive another COB-ID there, or leave that PDO out");
 }
 
 void Master::addRoute(std::uint32_t cob_id, Route route) {
@@ -145,7 +144,7 @@ void Master::receiveOther(Route route, const can::Frame& frame, Time stamp, Time
   const std::uint32_t emergencies = node.emergencies();
   const std::uint32_t malformed = node.malformedEmergencies();
   node.receive(frame, stamp, now);
-  if (node.takeCobIdChange()) followCobIds(route.node, now);
+  if (node.takeCobIdChange()) followCobIds(route.node);
   if (listener_ != nullptr) {
     if (route.service == Service::sdo) listener_->onSdoAnswer(node);
     if (node.emergencies() != emergencies) listener_->onEmergency(node, *node.lastEmergency());
@@ -164,7 +163,7 @@ void Master::tick(Time now) {
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     if (nodes_[i].nextDeadline() > now) continue;
     nodes_[i].tick(now);
-    if (nodes_[i].takeCobIdChange()) followCobIds(i, now);
+    if (nodes_[i].takeCobIdChange()) followCobIds(i);
     tell(i, now);
   }
 }

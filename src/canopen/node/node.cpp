@@ -167,7 +167,7 @@ void Node::onSync(Time now) {
 
 bool Node::takeCobIdChange() { return std::exchange(impl_->cob_ids_changed, false); }
 
-void Node::refuse(const std::string& why, Time) {
+void Node::refuse(const std::string& why) {
   impl_->sink.send(nmtFrame(NmtCommand::enter_pre_operational, id()));
   impl_->takeOut(Health::failed, why);
   impl_->refresh();

@@ -124,7 +124,7 @@ class Node final : public fieldbus::Device {
   bool takeCobIdChange();
   /// The node cannot be used as it is: takes it out of operation, for `why` in words. Called by
   /// Master.
-  void refuse(const std::string& why, Time now);
+  void refuse(const std::string& why);
   void tick(Time now);        ///< called by Master
   Time nextDeadline() const;  ///< called by Master
   /// Sends the RPDOs that are due in this cycle (PdoConfig::refresh_every).
