@@ -8,6 +8,7 @@
 #include <ctime>
 #include <ostream>
 
+#include "common/text.h"
 #include "drive/axis/axis.h"
 
 namespace cia402::bus {
@@ -20,8 +21,6 @@ nanoseconds onWall(Time time, nanoseconds wall) { return time.time_since_epoch()
 const char* directionText(can::Direction direction) {
   return direction == can::Direction::transmitted ? "tx" : "rx";
 }
-
-void add(std::string& text, const std::string& part) { text += (text.empty() ? "" : "; ") + part; }
 
 std::string numbers(const AxisRecord& record, const drive::AxisConfig& axis) {
   const bool linear = axis.geometry.type == drive::AxisGeometry::Type::prismatic;
@@ -36,10 +35,8 @@ std::string numbers(const AxisRecord& record, const drive::AxisConfig& axis) {
   std::string text;
   for (const auto& [name, value, unit] : values) {
     if (std::isnan(value)) continue;
-    std::array<char, 64> part{};
-    std::snprintf(part.data(), part.size(), "%s%s %.5g %s", text.empty() ? "" : ", ", name,
-                  static_cast<double>(value), unit);
-    text += part.data();
+    append(text, std::string(name) + " " + numberText(static_cast<double>(value), 5) + " " + unit,
+           ", ");
   }
   return text.empty() ? "no feedback" : text;
 }
@@ -68,9 +65,9 @@ void addChange(std::string& text, const char* what, bool first, Value before, Va
                std::string (*words)(Value, const drive::AxisConfig&),
                const drive::AxisConfig& axis) {
   if (first) {
-    add(text, what + words(now, axis));
+    append(text, what + words(now, axis));
   } else if (before != now) {
-    add(text, what + words(before, axis) + " -> " + words(now, axis));
+    append(text, what + words(before, axis) + " -> " + words(now, axis));
   }
 }
 
@@ -185,13 +182,13 @@ std::string axisText(const AxisRecord* before, const AxisRecord& record,
   addChange(text, "error ", first, old.error_code, record.error_code, errorWords, axis);
   const std::uint8_t changed = first ? record.flags : old.flags ^ record.flags;
   for (const auto& [flag, on, off] : kFlags) {
-    if ((changed & flag) != 0) add(text, (record.flags & flag) != 0 ? on : off);
+    if ((changed & flag) != 0) append(text, (record.flags & flag) != 0 ? on : off);
   }
   const bool another = record.procedure != old.procedure;
   if ((changed & AxisRecord::running) != 0 || (another && !first)) {
-    add(text, procedureText(record));
+    append(text, procedureText(record));
   }
-  add(text, numbers(record, axis));
+  append(text, numbers(record, axis));
   return text;
 }
 

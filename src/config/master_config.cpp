@@ -1,8 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cstdio>
 #include <map>
 
+#include "common/text.h"
 #include "config/robot_parts.h"
 #include "drive/axis/state_machine.h"
 #include "drive/profile/named_write.h"
@@ -21,12 +21,6 @@ constexpr unsigned kPredefinedPdos = 4;  // of each direction have a COB-ID of t
 /// May a PDO have this identifier (CiA 301, 7.3.5, restricted CAN-IDs)?
 bool isPdoCobId(unsigned cob_id) {
   return (cob_id >= 0x181 && cob_id <= 0x57F) || (cob_id >= 0x680 && cob_id <= 0x6DF);
-}
-
-std::string hexId(unsigned cob_id) {
-  char text[12];
-  std::snprintf(text, sizeof text, "0x%03X", cob_id);
-  return text;
 }
 
 /// 0: the drive's own.
@@ -102,7 +96,7 @@ std::vector<PdoConfig> makePdos(const AxisConfig& axis, const DeviceConfig& devi
       pdos.push_back(makePdo(layout, axis, device));
       const unsigned cob_id = pdos.back().cob_id;
       if (pdos.back().enabled && cob_id != 0 && !isPdoCobId(cob_id)) {
-        problems.add(path, name + " would have the COB-ID " + hexId(cob_id) +
+        problems.add(path, name + " would have the COB-ID " + hexText(cob_id, 3) +
                                ", which CiA 301 keeps for something else");
       }
     }
@@ -120,9 +114,9 @@ void checkCobIds(const canopen::MasterConfig& master, Problems& problems) {
                                std::to_string(pdo.number) + " of `" + node.name + "`";
       const auto [first, fresh] = users.emplace(pdo.cob_id, name);
       if (fresh) continue;
-      problems.add("axes/" + node.name + "/pdos", name + " has the COB-ID " + hexId(pdo.cob_id) +
-                                                      ", which is that of " + first->second +
-                                                      " already; give one of them another");
+      problems.add("axes/" + node.name + "/pdos",
+                   name + " has the COB-ID " + hexText(pdo.cob_id, 3) + ", which is that of " +
+                       first->second + " already; give one of them another");
     }
   }
 }

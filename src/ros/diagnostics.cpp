@@ -10,6 +10,7 @@
 #include "bus/jobs/object_text.h"
 #include "bus/real_clock.h"
 #include "can/error_frame.h"
+#include "common/text.h"
 #include "drive/profile/fault_text.h"
 #include "ros/publishers.h"
 
@@ -44,10 +45,7 @@ void addHex(diagnostic_updater::DiagnosticStatusWrapper& status, const char* key
 
 /// "0.153 rad", or "unknown".
 std::string withUnit(double value, const char* unit) {
-  if (std::isnan(value)) return "unknown";
-  char text[48];
-  std::snprintf(text, sizeof text, "%.6g %s", value, unit);
-  return text;
+  return std::isnan(value) ? "unknown" : numberText(value) + " " + unit;
 }
 
 /// A measured value and how old it is.
@@ -76,7 +74,7 @@ void addEmergencies(diagnostic_updater::DiagnosticStatusWrapper& status,
                     const bus::EmergencyCounts& counts) {
   status.add("emergencies", counts.total);
   for (std::size_t i = 0; i < counts.codes; ++i) {
-    status.add("emergencies " + drive::hexWord(counts.of[i].code), counts.of[i].count);
+    status.add("emergencies " + hexText(counts.of[i].code, 4), counts.of[i].count);
   }
   if (counts.malformed != 0) status.add("emergencies malformed", counts.malformed);
 }

@@ -6,7 +6,7 @@
 
 #include "bus/canopen/history_command.h"
 #include "bus/network.h"
-#include "bus/words.h"
+#include "common/text.h"
 #include "drive/profile/fault_text.h"
 
 namespace cia402::bus {
@@ -45,8 +45,8 @@ void HistoryJob::abandon(const std::string& why) {
 std::string historyText(const drive::DriveProfile& profile, const canopen::ErrorHistory& history) {
   std::string text;
   for (const canopen::ErrorHistoryEntry& entry : history.entries) {
-    append(text, drive::hexWord(entry.code) + " " + drive::errorName(profile, entry.code), ", ");
-    if (entry.info != 0) text += " (info " + drive::hexWord(entry.info) + ")";
+    append(text, hexText(entry.code, 4) + " " + drive::errorName(profile, entry.code), ", ");
+    if (entry.info != 0) text += " (info " + hexText(entry.info, 4) + ")";
   }
   if (history.readable && history.recorded == 0) text = "empty";
   const std::size_t more = history.recorded - history.entries.size();

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "bus/words.h"
+#include "common/text.h"
 
 namespace cia402::bus {
 namespace {
@@ -86,7 +86,7 @@ void SyncSupervisor::lack(Time now) {
     const int periods = canopen::SyncConsumer::kLostAfter;
     cycle_.stopBesideCycle(
         "stopped: no SYNC (COB-ID 0x080) came from the other device for " +
-        std::to_string(periods) + " periods (" + milliseconds(periods * bus_.sync_period) +
+        std::to_string(periods) + " periods (" + millisecondsText(periods * bus_.sync_period) +
         "); set-points do not reach the drives without it. Check the device that " +
         "produces SYNC, then enable again");
   }
@@ -97,7 +97,7 @@ void SyncSupervisor::lack(Time now) {
 
 std::string SyncSupervisor::ownLateness(Time stamp) const {
   if (stamp < late_since_ || stamp > late_until_ || lateness_ == Duration::zero()) return {};
-  return "this program sent SYNC " + milliseconds(lateness_, kMeasuredDigits) +
+  return "this program sent SYNC " + millisecondsText(lateness_, kMeasuredDigits) +
          " late: the computer did not let it run in time (see `real time` in the diagnostics)";
 }
 
@@ -112,7 +112,7 @@ SyncSupervisor::Trouble SyncSupervisor::trouble() const {
 }
 
 std::string SyncSupervisor::textOf(Trouble trouble) const {
-  const std::string expected = milliseconds(bus_.sync_period);
+  const std::string expected = millisecondsText(bus_.sync_period);
   switch (trouble) {
     case Trouble::none:
       break;
@@ -128,7 +128,7 @@ std::string SyncSupervisor::textOf(Trouble trouble) const {
                                      : "without the counter of") +
              " `bus: {sync_counter}`";
     case Trouble::wrong_period:
-      return "SYNC comes every " + milliseconds(external_.period(), kMeasuredDigits) +
+      return "SYNC comes every " + millisecondsText(external_.period(), kMeasuredDigits) +
              ", not every " + expected + " as `bus: {sync_period}` says: correct one of them";
   }
   return {};

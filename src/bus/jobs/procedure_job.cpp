@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "bus/network.h"
-#include "bus/words.h"
+#include "common/text.h"
 #include "motion/joint.h"
 
 namespace cia402::bus {

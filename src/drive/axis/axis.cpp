@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "common/text.h"
 #include "drive/axis/words.h"
 #include "drive/procedures/limits.h"
 #include "drive/procedures/procedure.h"
@@ -235,7 +236,7 @@ void Axis::onEmergency(const fieldbus::Emergency& emergency, Time now, const std
   if (!without_outputs || !excuse.empty() || !impl_->core.deviceReady()) return;
   const fieldbus::Terms& terms = impl_->core.device().terms();
   stopBesideCycle(std::string("the drive reports ") + terms.emergency + " " +
-                  hexWord(emergency.code) + ": " + terms.outputs_late +
+                  hexText(emergency.code, 4) + ": " + terms.outputs_late +
                   "; quick stop is commanded by " + terms.access + ". Check " +
                   terms.outputs_check + ", then enable again");
 }

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "common/text.h"
 #include "drive/profile/fault_text.h"
 #include "drive/sentence.h"
 
@@ -185,7 +186,7 @@ void Feedback::forget() {
 std::string Feedback::stateText() const {
   const AxisState& state = axis_.state;
   if (state.state == State::unknown && state.statusword == 0) return "no statusword";
-  return "statusword " + hexWord(state.statusword) + " (" + toString(state.state) + ": " +
+  return "statusword " + hexText(state.statusword, 4) + " (" + toString(state.state) + ": " +
          statuswordText(state.statusword) + ")";
 }
 
@@ -208,7 +209,7 @@ std::string Feedback::unknownText() const {
   if (!axis_.deviceReady() || known) return {};
   if (state.feedback_valid) {
     return axis_.who() + ": its state is unknown: statusword (6041:00) " +
-           hexWord(state.statusword) + " is none of the states of CiA 402 (" +
+           hexText(state.statusword, 4) + " is none of the states of CiA 402 (" +
            statuswordText(state.statusword) + "); is it the right drive profile?";
   }
   std::string why = axis_.device.missingText();

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "drive/axis/words.h"
 
+#include "common/text.h"
 #include "drive/profile/fault_text.h"
 
 namespace cia402::drive {
@@ -9,7 +10,7 @@ std::string report(const AxisCore& axis) {
   const fieldbus::Slot slot = axis.objects().controlword.slot;
   const std::uint64_t sent = axis.control().frames();
   const std::uint16_t statusword = axis.state().statusword;
-  std::string text = "controlword 6040:00 = " + hexWord(axis.control().word()) + ", " +
+  std::string text = "controlword 6040:00 = " + hexText(axis.control().word(), 4) + ", " +
                      axis.control().text() + ", sent in " + axis.device().carrierText(slot) + ", " +
                      std::to_string(sent) + " frames so far";
   text += "; the drive shows " + axis.feedback().stateText() + "; " + axis.faults().emergencyText();

@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Store and restore parameters, CiA 301, 7.5.2.13 (1010h) and 7.5.2.14 (1011h).
-#include <cstdio>
 
+#include "common/text.h"
 #include "drive/procedures/limits.h"
 #include "drive/procedures/procedure.h"
 #include "drive/sentence.h"
@@ -36,12 +36,6 @@ std::string groupText(const Storage& storage, std::uint8_t subindex) {
                                     "application parameters"};
   return fieldbus::toString(ObjectId{storage.index, subindex}) + " (" +
          (subindex <= 3 ? kNames[subindex] : "parameters of the maker") + ")";
-}
-
-std::string hex(std::uint64_t value) {
-  char text[20];
-  std::snprintf(text, sizeof text, "0x%08llX", static_cast<unsigned long long>(value));
-  return text;
 }
 
 /// Why the parameters cannot be touched now; empty if they can.
@@ -82,7 +76,7 @@ class StorageStep {
         command(context);
         continue;
       }
-      done_ += (done_.empty() ? "" : ", ") + groupText(storage_, subindices_[next_]);
+      append(done_, groupText(storage_, subindices_[next_]), ", ");
       ++next_;
       ticket_.reset();
       writing_ = false;
@@ -134,7 +128,7 @@ class StorageStep {
     if ((capability & kOnCommand) != 0) return {};
     const bool by_itself = storage_.index == saving().index && (capability & kByItself) != 0;
     return std::string("the drive does not ") + storage_.verb + " " + group + " on command (" +
-           fieldbus::toString(object()) + " is " + hex(capability) + ")" +
+           fieldbus::toString(object()) + " is " + hexText(capability, 8) + ")" +
            (by_itself ? "; it saves by itself" : "; choose others with `parameters`");
   }
 

@@ -1,4 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "common/text.h"
 #include "drive/procedures/procedure.h"
 #include "drive/procedures/steps/switch.h"
 #include "drive/sentence.h"
@@ -41,7 +42,7 @@ std::string knownModes(const AxisCore& axis) {
     if (channel.spec->kind == ControlKind::homing || !axis.mode().refusal(channel).empty()) {
       continue;
     }
-    names += (names.empty() ? "" : ", ") + channel.spec->name;
+    append(names, channel.spec->name, ", ");
   }
   return names;
 }

@@ -15,7 +15,4 @@ std::string errorCodeText(const DriveProfile& profile, std::uint16_t code);
 /// The short text of a code alone: "following error".
 std::string errorName(const DriveProfile& profile, std::uint16_t code);
 
-/// "0x0231": four upper-case hexadecimal digits.
-std::string hexWord(std::uint16_t word);
-
 }  // namespace cia402::drive
