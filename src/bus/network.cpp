@@ -164,13 +164,14 @@ std::string Network::refusal() const {
 }
 
 void Network::execute(Command command, Time now) {
+  const BusParts parts{cycle_, *this};
   cycle_.setTime(now);
   if (cycle_.shutdown().begun()) return command.refuse("refused: the driver is shutting down");
-  if (!command.needsBus()) return command.begin(*this, now);
+  if (!command.needsBus()) return command.begin(parts, now);
   if (phase_ == Phase::listening) return start_up_->take(std::move(command));
   const std::string why_not = refusal();
   if (!why_not.empty()) return command.refuse("refused: " + why_not);
-  command.begin(*this, now);
+  command.begin(parts, now);
 }
 
 void Network::beginShutdown(Time now) {
@@ -252,27 +253,6 @@ void Network::onHealthChange(canopen::Node& node, fieldbus::Health, Time now) {
 
 void Network::onForeignSync(const can::Frame& frame, Time stamp, Time now) {
   if (started()) sync_.onForeignSync(frame, stamp, now);
-}
-
-void SetpointCommand::begin(Network& network, const Reply<>& reply, Time now) const {
-  std::vector<AxisUnit>& units = network.cycle().units();
-  if (axis >= units.size()) return;
-  const Result<void> taken = units[axis].axis.command(value, now);
-  if (!taken) refuse(reply, taken.error().message);
-}
-
-void TrajectoryCommand::begin(Network& network, const Reply<>& reply, Time now) const {
-  for (Group& candidate : network.cycle().groups()) {
-    if (candidate.config().name != group) continue;
-    const TrajectoryOutcome outcome = candidate.start(joints, points, start_time, now, ended);
-    const bool accepted = outcome.code == motion::TrajectoryErrorCode::successful;
-    return give(reply, answerOf(accepted, outcome.message));
-  }
-  refuse(reply, "there is no group \"" + group + "\"");
-}
-
-void CallCommand::begin(Network&, const Reply<>& reply, Time now) const {
-  give(reply, function(now));
 }
 
 }  // namespace cia402::bus

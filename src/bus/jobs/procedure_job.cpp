@@ -6,7 +6,7 @@
 #include <memory>
 #include <utility>
 
-#include "bus/network.h"
+#include "bus/axis_cycle.h"
 #include "common/text.h"
 #include "motion/joint.h"
 
@@ -58,9 +58,8 @@ std::string lapse(const drive::ProcedureRequest& request, const drive::Axis& axi
 
 }  // namespace
 
-void ProcedureCommand::begin(Network& network, const Reply<>& reply, Time now) const {
+void ProcedureCommand::begin(AxisCycle& cycle, const Reply<>& reply, Time now) const {
   const bool homing = request.kind == drive::ProcedureKind::home;
-  AxisCycle& cycle = network.cycle();
   const std::string problem = enables(request.kind) ? cycle.enableProblem() : std::string();
   if (!problem.empty()) {
     return refuse(reply, std::string(drive::toString(request.kind)) + " is refused: " + problem);
