@@ -77,7 +77,7 @@ void ProcedureCommand::begin(AxisCycle& cycle, const Reply<>& reply, Time now) c
     }
     if (!named && !concerned) continue;
     units.push_back(&unit);
-    items.push_back({&unit.axis, homing && config.homing ? config.homing->order : 0});
+    items.push_back({&unit.axis, homing ? cycle.joints().ofAxis(unit.index).homingOrder() : 0});
     if (stops(request.kind)) cycle.jobs().withdraw(unit.axis, request.kind);
   }
   if (items.empty()) {
