@@ -9,6 +9,7 @@
 #include <ostream>
 
 #include "common/text.h"
+#include "decode/value_text.h"
 #include "drive/axis/axis.h"
 
 namespace cia402::bus {
@@ -23,19 +24,20 @@ const char* directionText(can::Direction direction) {
 }
 
 std::string numbers(const AxisRecord& record, const drive::AxisConfig& axis) {
-  const bool linear = axis.geometry.type == drive::AxisGeometry::Type::prismatic;
   const struct {
     const char* name;
     float value;
-    const char* unit;
-  } values[] = {{"at", record.position, linear ? "m" : "rad"},
-                {"velocity", record.velocity, linear ? "m/s" : "rad/s"},
-                {"effort", record.effort, linear ? "N" : "N m"},
-                {"following error", record.following_error, linear ? "m" : "rad"}};
+    drive::Quantity quantity;
+  } values[] = {{"at", record.position, drive::Quantity::position},
+                {"velocity", record.velocity, drive::Quantity::velocity},
+                {"effort", record.effort, drive::Quantity::torque},
+                {"following error", record.following_error, drive::Quantity::distance}};
   std::string text;
-  for (const auto& [name, value, unit] : values) {
+  for (const auto& [name, value, quantity] : values) {
     if (std::isnan(value)) continue;
-    append(text, std::string(name) + " " + numberText(static_cast<double>(value), 5) + " " + unit,
+    append(text,
+           std::string(name) + " " + numberText(static_cast<double>(value), 5) + " " +
+               decode::unitOf(quantity, axis),
            ", ");
   }
   return text.empty() ? "no feedback" : text;

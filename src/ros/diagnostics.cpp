@@ -11,6 +11,7 @@
 #include "bus/real_clock.h"
 #include "can/error_frame.h"
 #include "common/text.h"
+#include "decode/value_text.h"
 #include "drive/profile/fault_text.h"
 #include "ros/publishers.h"
 
@@ -40,7 +41,7 @@ std::string hardwareId(const bus::AxisSnapshot& axis, const drive::AxisConfig& c
 
 void addHex(diagnostic_updater::DiagnosticStatusWrapper& status, const char* key,
             std::uint32_t value) {
-  status.addf(key, "0x%08X", value);
+  status.add(key, hexText(value, 8));
 }
 
 /// "0.153 rad", or "unknown".
@@ -274,24 +275,24 @@ void Diagnostics::reportAxis(std::size_t index, Status& status) {
   status.hardware_id = hardwareId(axis, config);
   const bus::AxisSummary summary = bus::summaryOf(axis, config.profile->warning_stops);
   status.summary(levelOf(summary.condition), summary.text);
-  const bool linear = config.geometry.type == drive::AxisGeometry::Type::prismatic;
   status.add("state", drive::toString(state.state));
   status.add("statusword", drive::statuswordText(state.statusword));
   status.add("mode", state.mode ? state.mode->name : "unknown");
   status.add("halted", state.halted ? "yes" : "no");
   status.add("homed", state.homed ? "yes" : "no");
-  status.addf("error code", "0x%04X", state.error_code);
+  status.add("error code", hexText(state.error_code, 4));
   status.add("procedure", axis.procedure_running ? drive::toString(axis.procedure) : "none");
   status.add("step", stepText(axis));
   if (!axis.words.history.empty())
     status.add("error history after the last fault", axis.words.history.str());
-  const auto add = [&](const char* key, double value, const char* unit, Time stamp) {
-    addValue(status, key, value, unit, snapshot_.now - stamp);
+  using drive::Quantity;
+  const auto add = [&](const char* key, double value, Quantity quantity, Time stamp) {
+    addValue(status, key, value, decode::unitOf(quantity, config), snapshot_.now - stamp);
   };
-  add("position", state.position, linear ? "m" : "rad", state.stamp);
-  add("velocity", state.velocity, linear ? "m/s" : "rad/s", state.stamps.velocity);
-  add("effort", state.effort, linear ? "N" : "N m", state.stamps.effort);
-  add("following error", state.following_error, linear ? "m" : "rad", state.stamps.following_error);
+  add("position", state.position, Quantity::position, state.stamp);
+  add("velocity", state.velocity, Quantity::velocity, state.stamps.velocity);
+  add("effort", state.effort, Quantity::torque, state.stamps.effort);
+  add("following error", state.following_error, Quantity::distance, state.stamps.following_error);
   for (const drive::ShownSignal& signal : axis.signals) {
     addSignal(status, config, signal, snapshot_.now - signal.stamp);
   }
