@@ -94,9 +94,9 @@ void AxisCycle::stopMotion(const std::string& why) {
   }
 }
 
-void AxisCycle::stopBesideCycle(const std::string& why, Time now) {
+void AxisCycle::stopBesideCycle(const std::string& why) {
   stopMotion(why);
-  for (AxisUnit& unit : units_) unit.axis.stopBySdo(why, now);
+  for (AxisUnit& unit : units_) unit.axis.stopBesideCycle(why);
 }
 
 void AxisCycle::loseBus(const std::string& why) {

@@ -58,7 +58,7 @@ class AxisCycle {
   /// Brings all axes to rest, for the reason `why`.
   void stopMotion(const std::string& why);
   /// Set-points do not reach the drives as they should: all that moves is stopped by what does.
-  void stopBesideCycle(const std::string& why, Time now);
+  void stopBesideCycle(const std::string& why);
   /// Nothing reaches the drives any more: motion ends, nothing enables an axis.
   void loseBus(const std::string& why);
   /// The orderly end of the program is asked for. @param started false: there is nothing to stop

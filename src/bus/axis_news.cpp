@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "bus/axis_condition.h"
-#include "bus/words.h"
+#include "common/text.h"
 
 namespace cia402::bus {
 namespace {
@@ -20,7 +20,7 @@ std::string dryText(const drive::AxisConfig& config, const drive::ModeSpec& mode
                      : config.brake_after_effort ? "it is braked (command_timeout_action: brake)"
                                                  : "it coasts (command_timeout_action: coast)";
   return std::string("its stream of ") + (effort ? "efforts" : "velocities") +
-         " ended without a zero: nothing came for " + seconds(config.command_timeout) +
+         " ended without a zero: nothing came for " + secondsText(config.command_timeout) +
          " (command_timeout), so " + then;
 }
 

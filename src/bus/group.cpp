@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "bus/words.h"
+#include "common/text.h"
 
 namespace cia402::bus {
 namespace {

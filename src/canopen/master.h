@@ -98,7 +98,7 @@ class Master {
   void addRoutes(std::size_t node);
   void addRoute(std::uint32_t cob_id, Route route);
   std::string addPdoRoutes(std::size_t node);
-  void followCobIds(std::size_t node, Time now);
+  void followCobIds(std::size_t node);
   void tell(std::size_t node, Time now);
 
   MasterConfig config_;

@@ -126,7 +126,7 @@ bool plan(yaml::Section& section, AxisDraft& draft, RobotConfig& robot, PdoNeeds
   const DriveProfile& profile = *axis.profile;
   const auto modes = section.get("modes");
   needs.mode = axis.mode;
-  needs.cycle = axis.sync_period;
+  needs.cycle = axis.cycle;
   needs.fresh = freshness(robot);
   const Result<PdoPlan> planned = planPdos(profile, *draft.device.profile, needs);
   if (!planned) {
@@ -226,7 +226,7 @@ bool choosePdos(yaml::Section& section, AxisDraft& draft, RobotConfig& robot, un
   }
   const DriveProfile& profile = *axis.profile;
   readLacks(section, axis);
-  if (draft.first) readRpdoTimeout(section, device, axis.sync_period);
+  if (draft.first) readRpdoTimeout(section, device, axis.cycle);
   PdoNeeds needs;
   setShares(needs, device, axis.device_axis, axes);
   needs.modes_required = modes.has_value();
@@ -284,7 +284,7 @@ PdoNeeds needsOf(const AxisConfig& axis, const RobotConfig& robot) {
     std::copy_if(pdo.objects.begin(), pdo.objects.end(), std::back_inserter(needs.feedback),
                  [&](const std::string& name) { return !contains(set.riders, name); });
   }
-  needs.cycle = axis.sync_period;
+  needs.cycle = axis.cycle;
   needs.fresh = freshness(robot);
   return needs;
 }
@@ -311,7 +311,7 @@ void plan(AxisConfig& axis, RobotConfig& robot) {
 void planAgain(RobotConfig& robot, Duration cycle) {
   robot.bus.sync_period = cycle;
   for (AxisConfig& axis : robot.axes) {
-    axis.sync_period = cycle;
+    axis.cycle = cycle;
     if (robot.pdosOf(axis).planned) plan(axis, robot);
   }
 }

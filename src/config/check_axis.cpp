@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include "common/text.h"
 #include "config/pdo_planner.h"
 #include "config/robot_parts.h"
 #include "drive/profile/conversion.h"
@@ -136,7 +137,7 @@ void checkHoming(yaml::Section& section, const AxisConfig& axis, RobotConfig& ro
   } else if (axis.homing->method && method && spec.methods.count(*axis.homing->method) == 0) {
     std::string known;
     for (const auto& entry : spec.methods) {
-      if (entry.first) known += (known.empty() ? "" : ", ") + std::to_string(*entry.first);
+      if (entry.first) append(known, std::to_string(*entry.first), ", ");
     }
     method->problem("profile " + axis.profile->name + " has no method " +
                     std::to_string(*axis.homing->method) + "; it has " + known);

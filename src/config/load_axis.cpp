@@ -129,7 +129,7 @@ void readAxis(const std::string& name, const yaml::Value& value, AxisReading& re
   AxisDraft draft;
   AxisConfig& axis = draft.axis;
   axis.name = draft.device.name = name;
-  axis.sync_period = robot.bus.sync_period;
+  axis.cycle = robot.bus.sync_period;
   yaml::Section section(value);
   if (!isGraphName(name)) {
     section.problem("an axis is named by a letter, then letters, digits and _");

@@ -2,9 +2,10 @@
 #include "config/node_pdos.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <map>
 #include <set>
+
+#include "common/text.h"
 
 namespace cia402::config {
 namespace {
@@ -28,12 +29,6 @@ unsigned predefinedCobId(PdoDirection direction, unsigned number, canopen::NodeI
 bool isPdoCobId(unsigned cob_id) {
   return (cob_id >= 0x181 && cob_id <= 0x57F) ||
          (cob_id >= kFirstFreeCobId && cob_id <= kLastFreeCobId);
-}
-
-std::string hexId(unsigned cob_id) {
-  char text[12];
-  std::snprintf(text, sizeof text, "0x%03X", cob_id);
-  return text;
 }
 
 /// 0: the drive's own.
@@ -138,7 +133,7 @@ class PdoMaker {
     PdoConfig& pdo = node_.pdos.back();
     if (beyond) pdo.cob_id = pdo.enabled ? kUnassigned : 0;
     if (pdo.enabled && pdo.cob_id != 0 && pdo.cob_id != kUnassigned && !isPdoCobId(pdo.cob_id)) {
-      problems_.add(path, name + " would have the COB-ID " + hexId(pdo.cob_id) +
+      problems_.add(path, name + " would have the COB-ID " + hexText(pdo.cob_id, 3) +
                               ", which CiA 301 keeps for something else");
     }
   }
@@ -194,9 +189,9 @@ void checkCobIds(const canopen::MasterConfig& master, Problems& problems) {
                                std::to_string(pdo.number) + " of `" + node.name + "`";
       const auto [first, fresh] = users.emplace(pdo.cob_id, name);
       if (fresh) continue;
-      problems.add("axes/" + node.name + "/pdos", name + " has the COB-ID " + hexId(pdo.cob_id) +
-                                                      ", which is that of " + first->second +
-                                                      " already; give one of them another");
+      problems.add("axes/" + node.name + "/pdos",
+                   name + " has the COB-ID " + hexText(pdo.cob_id, 3) + ", which is that of " +
+                       first->second + " already; give one of them another");
     }
   }
 }

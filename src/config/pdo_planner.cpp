@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "common/text.h"
 #include "config/pdo_packing.h"
 #include "fieldbus/object.h"
 
@@ -37,7 +38,7 @@ bool contains(const std::vector<PackItem>& items, const std::string& name) {
 std::string withBits(const std::vector<PackItem>& items) {
   std::string text;
   for (const PackItem& item : items) {
-    text += (text.empty() ? "" : ", ") + item.name + " (" + std::to_string(item.bits) + ")";
+    append(text, item.name + " (" + std::to_string(item.bits) + ")", ", ");
   }
   return text;
 }

@@ -92,7 +92,7 @@ void checkDeviceKeys(yaml::Section& section, const AxisDraft& draft, AxisReading
 void readEds(yaml::Section& section, AxisDraft& draft, EdsFiles& files, RobotConfig& robot);
 void checkEds(yaml::Section& section, const AxisDraft& draft, RobotConfig& robot);
 
-drive::AxisLimits readLimits(const yaml::Value& value, drive::AxisGeometry::Type type);
+motion::JointLimits readLimits(const yaml::Value& value, drive::AxisGeometry::Type type);
 drive::HomingOptions readHoming(const yaml::Value& value);
 /// `error_control`, `sdo`, `optional`, `boot` and the like.
 void readNodeOptions(yaml::Section& section, canopen::DeviceConfig& device);

@@ -8,6 +8,7 @@
 #include "bus/axis_condition.h"
 #include "bus/jobs/object_commands.h"
 #include "bus/jobs/procedure_command.h"
+#include "bus/joint.h"
 #include "bus/mpsc_queue.h"
 #include "bus/real_clock.h"
 #include "bus/runner.h"
@@ -133,7 +134,7 @@ bool Robot::ready() const {
 
 std::vector<std::string> Robot::joints() const {
   std::vector<std::string> names;
-  for (const drive::AxisConfig& axis : impl_->config.axes) names.push_back(axis.joint);
+  for (const motion::Joint& joint : bus::jointsOf(impl_->config)) names.push_back(joint.name);
   return names;
 }
 
@@ -218,9 +219,9 @@ std::vector<JointStatus> Robot::state() const {
     const bus::AxisSummary summary = bus::summaryOf(shown.axes[i], axis.profile->warning_stops);
     JointStatus joint;
     joint.name = axis.joint;
-    joint.position = state.position;
-    joint.velocity = state.velocity;
-    joint.effort = state.effort;
+    joint.position = shown.joints[i].position;
+    joint.velocity = shown.joints[i].velocity;
+    joint.effort = shown.joints[i].effort;
     joint.enabled = state.ready_for_motion;
     joint.homed = state.homed;
     joint.faulted = summary.condition == bus::Condition::error;

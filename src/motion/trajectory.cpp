@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/text.h"
 #include "trajectory_checks.h"
 
 namespace cia402::motion {
@@ -161,7 +162,7 @@ Result<std::vector<std::size_t>> matchJoints(const std::vector<Joint>& joints,
   std::string sentence;
   const auto mention = [&sentence](const char* what, const std::vector<std::string>& which) {
     if (which.empty()) return;
-    sentence += (sentence.empty() ? "" : "; ") + (what + quotedList(which));
+    append(sentence, what + quotedList(which));
   };
   mention("the group has no joint ", unknown);
   mention("the trajectory lacks joint ", missing);

@@ -18,6 +18,10 @@ namespace cia402::tools {
 
 /// A whole robot in virtual time and one thread: driver, bus and simulated drives. Hours of robot
 /// life in seconds, and with one seed always the same.
+///
+/// The network itself, not bus::BusLoop on an interface, as in a VirtualHost: a frame is taken in
+/// at its end, and the network is ticked when it says so. BusLoop ticks after each frame, too, so
+/// that an axis asks its next question with the answer, and its frames lie elsewhere.
 class VirtualRobot final : private sim::Participant, private bus::EventSink {
  public:
   /// @param drives on the bus, not necessarily those that `robot` expects.

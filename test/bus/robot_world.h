@@ -96,7 +96,7 @@ inline drive::AxisConfig testAxis(const std::string& name, canopen::NodeId node)
   axis.limits.acceleration = 10.0;
   axis.limits.effort = 5.0;
   axis.mode = "cyclic_position";
-  axis.sync_period = kPeriod;
+  axis.cycle = kPeriod;
   axis.outputs = {"controlword", "mode_of_operation", "target_position", "target_velocity",
                   "target_torque"};
   return axis;

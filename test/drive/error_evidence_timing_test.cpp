@@ -37,7 +37,7 @@ class ErrorEvidenceTiming : public test::ObjectsFixture {
   void showUntold(bool faulted) {
     ErrorEvidence::Look look;
     look.faulted = faulted;
-    look.by_sdo = &code_spec;
+    look.asked = &code_spec;
     run();
     evidence.update(look, objects, now);
   }

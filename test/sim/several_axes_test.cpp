@@ -275,9 +275,10 @@ std::string problemOf(const std::string& text) {
 
 TEST(SeveralAxes, AreOneToEight) {
   EXPECT_EQ(problemOf("axes: 8\n"), "");
-  EXPECT_THAT(problemOf("axes: 9\n"), HasSubstr("axes (line 2)"));
-  EXPECT_THAT(problemOf("axes: []\n"), HasSubstr("axes (line 2)"));
-  EXPECT_THAT(problemOf("axes: [{}, {colour: red}]\n"), HasSubstr("axes.1.colour (line 2)"));
+  EXPECT_THAT(problemOf("axes: 9\n"), HasSubstr("several_axes_test.yaml:2: axes: "));
+  EXPECT_THAT(problemOf("axes: []\n"), HasSubstr("several_axes_test.yaml:2: axes: "));
+  EXPECT_THAT(problemOf("axes: [{}, {colour: red}]\n"),
+              HasSubstr("several_axes_test.yaml:2: axes[1]/colour: unknown key"));
   EXPECT_THAT(problemOf("axes: 2\nobjects: {save_zero: \"2003:01\"}\n"),
               HasSubstr("save_zero: a drive with several axes must have it in 6000h to 67FFh"));
 }

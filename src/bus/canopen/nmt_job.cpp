@@ -7,7 +7,7 @@
 
 #include "bus/canopen/node_unit.h"
 #include "bus/network.h"
-#include "bus/words.h"
+#include "common/text.h"
 
 namespace cia402::bus {
 namespace {

@@ -45,7 +45,7 @@ class NodeUnit {
     if (axis.news.faultUnexplained()) readHistory(axis, now);
   }
   void onBootUp(Time now);
-  void onHealthChange(fieldbus::Health before, Time now);
+  void onHealthChange(Time now);
   /// @param excuse how this program itself has caused it, in words; empty: it has not
   void onEmergency(const fieldbus::Emergency& emergency, const std::string& excuse, Time now);
   void onMalformedEmergency(std::size_t size, Time now);

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "bus/axis_cycle.h"
 #include "bus/jobs/object_address.h"
 #include "bus/jobs/object_text.h"
-#include "bus/network.h"
 
 namespace cia402::bus {
 namespace {
@@ -69,20 +69,20 @@ bool mayBeWritten(const fieldbus::Transfer& transfer) {
 
 }  // namespace
 
-void ReadObjectCommand::begin(Network& network, const Reply<ObjectAnswer>& reply, Time) const {
-  AxisUnit* const unit = network.cycle().find(axis);
+void ReadObjectCommand::begin(AxisCycle& cycle, const Reply<ObjectAnswer>& reply, Time) const {
+  AxisUnit* const unit = cycle.find(axis);
   if (unit == nullptr) return refuse(reply, noSuchAxis(axis));
   auto job = ObjectJob::read(unit->axis, object, reply);
   if (!job) return refuse(reply, job.error().message);
-  network.cycle().jobs().add(std::move(job).value());
+  cycle.jobs().add(std::move(job).value());
 }
 
-void WriteObjectCommand::begin(Network& network, const Reply<>& reply, Time) const {
-  AxisUnit* const unit = network.cycle().find(axis);
+void WriteObjectCommand::begin(AxisCycle& cycle, const Reply<>& reply, Time) const {
+  AxisUnit* const unit = cycle.find(axis);
   if (unit == nullptr) return refuse(reply, noSuchAxis(axis));
   auto job = ObjectJob::write(unit->axis, object, value, reply);
   if (!job) return refuse(reply, job.error().message);
-  network.cycle().jobs().add(std::move(job).value());
+  cycle.jobs().add(std::move(job).value());
 }
 
 ObjectJob::ObjectJob(drive::Axis& axis, Reply<ObjectAnswer> reply)

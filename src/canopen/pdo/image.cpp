@@ -51,8 +51,6 @@ void PdoImage::describeSlots() {
     const Pdo& pdo = tpdos_[i];
     const bool by_cycles = pdo.silent_limit != 0;
     for (const Pdo::Field& field : pdo.fields) {
-      input_tpdos_.resize(std::max<std::size_t>(input_tpdos_.size(), field.slot + 1U));
-      input_tpdos_[field.slot] = i;
       setDelivery(field.slot, {by_cycles || pdo.age_limit != Duration::zero(),
                                by_cycles ? pdo.every : std::uint16_t{0}, pdo.event_interval});
     }

@@ -19,7 +19,7 @@ struct AxisBasis {
   AxisBasis& operator=(const AxisBasis&) = delete;
 
   const DriveProfile& profile() const { return *config.profile; }
-  bool nodeReady() const { return device.health() == fieldbus::Health::ready; }
+  bool deviceReady() const { return device.health() == fieldbus::Health::ready; }
   /// No motion is possible by this drive: the power stage is off, as far as the statusword says.
   bool powerOff() const { return powerStageOff(state.state, state.statusword); }
   bool faulted() const { return isFault(state.state); }

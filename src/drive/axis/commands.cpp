@@ -36,7 +36,7 @@ void Commands::resume(ModeControl& mode, const SetPoint& sent, Time at) {
 }
 
 std::optional<double> Commands::step(ModeControl& mode, const SetPoint& sent, Time now) {
-  const Duration cycle = axis_.config.sync_period;
+  const Duration cycle = axis_.config.cycle;
   stream_.clock += cycle;
   const bool ready = axis_.state.ready_for_motion && axis_.state.mode != nullptr;
   if (leader_ != nullptr || !ready) forget();

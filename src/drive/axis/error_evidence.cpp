@@ -75,14 +75,14 @@ std::uint16_t ErrorEvidence::nameOfFault() const {
 }
 
 void ErrorEvidence::readErrorCode(const Look& look, fieldbus::ObjectAccess& objects) {
-  if (!faulted_ || look.by_sdo == nullptr) {
+  if (!faulted_ || look.asked == nullptr) {
     read_.reset();
     code_ticket_.reset();
     return;
   }
   if (read_) return;
   if (!code_ticket_) {
-    code_ticket_ = objects.upload(look.by_sdo->id, look.by_sdo->name);
+    code_ticket_ = objects.upload(look.asked->id, look.asked->name);
   } else if (code_ticket_->done()) {
     const bool fits = code_ticket_->ok() && code_ticket_->data().size() <= 8;
     read_ = fits ? static_cast<std::uint16_t>(fieldbus::toUnsigned(code_ticket_->data())) : 0;

@@ -7,14 +7,6 @@
 #include "drive/sentence.h"
 
 namespace cia402::drive {
-namespace {
-
-SetPointLimits setPointLimits(const AxisConfig& config) {
-  return {config.limits.lower, config.limits.upper, config.limits.velocity,
-          stopDeceleration(config)};
-}
-
-}  // namespace
 
 Generator::Generator(AxisBasis& axis, const Coordinates& coordinates, const Feedback& feedback,
                      const ActiveMode& mode, Control& control)
@@ -23,8 +15,8 @@ Generator::Generator(AxisBasis& axis, const Coordinates& coordinates, const Feed
       feedback_(feedback),
       active_(mode),
       control_(control),
-      sent_(setPointLimits(axis.config), axis.config.sync_period),
-      following_(axis.config.standstill_velocity, axis.config.sync_period),
+      sent_(axis.config.limits, stopDeceleration(axis.config), axis.config.cycle),
+      following_(axis.config.standstill_velocity, axis.config.cycle),
       commands_(axis) {
   for (const ModeChannel& channel : axis.objects.modes) {
     modes_.push_back(makeModeControl(channel, {axis_, coordinates_, feedback_, sent_}));

@@ -32,9 +32,9 @@ class Generator {
   void leave();
   /// Target := actual in position modes, 0 in the others.
   void neutralize();
-  /// Puts a neutral target of another mode into its RPDO, before that mode becomes active.
+  /// Puts a neutral target of another mode into its output, before that mode becomes active.
   void preset(const ModeChannel& channel);
-  /// RPDOs with the active mode's target (or the controlword where it has none) sent so far.
+  /// How often the active mode's target (or the controlword where it has none) was sent so far.
   std::uint64_t targetFrames() const;
   /// The joint's zero has moved by so much, rad or m.
   void shiftZero(double moved);

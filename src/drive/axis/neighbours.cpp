@@ -9,7 +9,7 @@ namespace {
 /// Is it known that the device can be taken from it? A device that is not ready has no power stage
 /// that anybody commands.
 bool mayLoseDevice(const AxisCore& axis) {
-  return !axis.nodeReady() ||
+  return !axis.deviceReady() ||
          (axis.objects().signals.fresh(SignalId::statusword) && axis.powerOff());
 }
 

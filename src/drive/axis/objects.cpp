@@ -40,7 +40,8 @@ ModeChannel modeChannel(const AxisConfig& config, const fieldbus::Device& device
   }
   if (!channel.target.mapped()) {
     channel.refusal = "its target " + fieldbus::toString(object->id) + " " + object->name +
-                      " is not mapped into an RPDO; name the mode in `modes:` of the axis";
+                      " is not mapped into an " + device.terms().output +
+                      "; name the mode in `modes:` of the axis";
     return channel;
   }
   const auto conversion = Conversion::create(*object, *config.profile, config.geometry);
@@ -60,7 +61,9 @@ AxisObjects::AxisObjects(const AxisConfig& config, fieldbus::Device& device)
   controlword = output(device, findObject(*config.profile, "controlword", {0x6040, 0}));
   mode = output(device, findObject(*config.profile, "mode_of_operation", {0x6060, 0}));
   if (!controlword.mapped()) {
-    throw std::invalid_argument(whoIs(config) + ": the controlword must be in the process image");
+    throw std::invalid_argument(whoIs(config) + ": the controlword (" +
+                                config.profile->address(0x6040) + ") must be mapped into a " +
+                                device.terms().cyclic);
   }
 
   modes.reserve(config.profile->modes.size());

@@ -35,9 +35,11 @@ const ObjectSpec* findObject(const DriveProfile& profile, const Row& row) {
   return spec != nullptr ? spec : profile.find(profile.own(row.object));
 }
 
-void require(bool mapped, const AxisConfig& config, const char* what) {
-  if (mapped) return;
-  throw std::invalid_argument(whoIs(config) + ": " + what + " must be in the process image");
+void require(const Signal& signal, const AxisConfig& config, const fieldbus::Device& device,
+             const std::string& what) {
+  if (signal.mapped()) return;
+  throw std::invalid_argument(whoIs(config) + ": " + what + " must be mapped into a " +
+                              device.terms().cyclic);
 }
 
 }  // namespace
@@ -50,8 +52,10 @@ Signals::Signals(const AxisConfig& config, fieldbus::Device& device)
   for (const std::string& name : profile.signals) {
     add(config, profile.find(name), Reading::when_looked_at);
   }
-  require((*this)[SignalId::statusword].mapped(), config, "the statusword");
-  require((*this)[SignalId::position].mapped(), config, "the actual position");
+  require((*this)[SignalId::statusword], config, device,
+          "the statusword (" + profile.address(0x6041) + ")");
+  require((*this)[SignalId::position], config, device,
+          "the actual position (" + profile.address(0x6064) + ")");
 }
 
 void Signals::add(const AxisConfig& config, const ObjectSpec* spec, Reading reading) {

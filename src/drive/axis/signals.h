@@ -11,7 +11,8 @@
 namespace cia402::drive {
 
 /// What the drive tells of itself, a row each: those of SignalId, then those that the profile names
-/// in `signals`, which are only shown. A row that no TPDO brings is asked for beside the cycle.
+/// in `signals`, which are only shown. A row that does not come in the cycle is asked for beside
+/// the cycle.
 class Signals {
  public:
   /// @throws std::invalid_argument if statusword or actual position are not mapped.

@@ -100,7 +100,7 @@ class ModeControl {
  protected:
   AxisBasis& axis() const { return context_.axis; }
   const AxisState& state() const { return context_.axis.state; }
-  const AxisLimits& limits() const { return context_.axis.config.limits; }
+  const motion::JointLimits& limits() const { return context_.axis.config.limits; }
   const Coordinates& coordinates() const { return context_.coordinates; }
   const Feedback& feedback() const { return context_.feedback; }
   SetPoint& sent() const { return context_.sent; }

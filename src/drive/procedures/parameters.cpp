@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Store and restore parameters, CiA 301, 7.5.2.13 (1010h) and 7.5.2.14 (1011h).
-#include <cstdio>
 
+#include "common/text.h"
 #include "drive/procedures/limits.h"
 #include "drive/procedures/procedure.h"
 #include "drive/sentence.h"
@@ -36,12 +36,6 @@ std::string groupText(const Storage& storage, std::uint8_t subindex) {
                                     "application parameters"};
   return fieldbus::toString(ObjectId{storage.index, subindex}) + " (" +
          (subindex <= 3 ? kNames[subindex] : "parameters of the maker") + ")";
-}
-
-std::string hex(std::uint64_t value) {
-  char text[20];
-  std::snprintf(text, sizeof text, "0x%08llX", static_cast<unsigned long long>(value));
-  return text;
 }
 
 /// Why the parameters cannot be touched now; empty if they can.
@@ -90,7 +84,7 @@ class StorageStep {
         command(context);
         continue;
       }
-      done_ += (done_.empty() ? "" : ", ") + groupText(storage_, subindices_[next_]);
+      append(done_, groupText(storage_, subindices_[next_]), ", ");
       ++next_;
       ticket_.reset();
       writing_ = false;
@@ -142,7 +136,7 @@ class StorageStep {
     if ((capability & kOnCommand) != 0) return {};
     const bool by_itself = storage_.index == saving().index && (capability & kByItself) != 0;
     return std::string("the drive does not ") + storage_.verb + " " + group + " on command (" +
-           fieldbus::toString(object()) + " is " + hex(capability) + ")" +
+           fieldbus::toString(object()) + " is " + hexText(capability, 8) + ")" +
            (by_itself ? "; it saves by itself" : "; choose others with `parameters`");
   }
 
@@ -176,8 +170,8 @@ class SaveParameters : public Procedure {
   StorageStep storing_;
 };
 
-/// Restored values count from the next reset (CiA 301, 7.5.2.14), so the node is reset; the driver
-/// configures it again and leaves it disabled.
+/// Restored values count from the next reset (CiA 301, 7.5.2.14), so the device is reset; the
+/// driver configures it again and leaves it disabled.
 class RestoreParameters : public Procedure {
  public:
   explicit RestoreParameters(std::vector<std::uint8_t> subindices)
@@ -195,12 +189,12 @@ class RestoreParameters : public Procedure {
     }
     resetting_ = true;
     reset_at_ = context.now;
-    context.show("booting the node", "the node to be identified, configured and started");
+    showBoot(context);
     context.axis.device().restart(context.now);
     return Outcome::running();
   }
 
-  bool survivesNodeLoss() const override { return resetting_; }
+  bool survivesDeviceLoss() const override { return resetting_; }
 
  private:
   static Duration bootTime(const Context& context) {
@@ -211,7 +205,7 @@ class RestoreParameters : public Procedure {
     AxisCore& axis = context.axis;
     const std::string restored =
         axis.who() + ": restored the factory's values of " + restoring_.what();
-    if (axis.nodeReady()) {
+    if (axis.deviceReady()) {
       const std::string gap = axis.device().restartGap();
       return Outcome::done(restored +
                            "; the drive was reset, configured again by the driver and is disabled" +
@@ -224,8 +218,8 @@ class RestoreParameters : public Procedure {
     if (failed && context.now > reset_at_) {
       return Outcome::failed(restored +
                              " and reset it, but it did not boot (has it got the "
-                             "factory's node-ID or bit rate?): " +
-                             axis.device().problem());
+                             "factory's " +
+                             axis.device().terms().address + "?): " + axis.device().problem());
     }
     if (context.now < reset_at_ + bootTime(context)) return Outcome::running();
     return Outcome::failed(restored + " and reset it, but it was not ready within " +
@@ -239,8 +233,8 @@ class RestoreParameters : public Procedure {
 };
 
 std::string refusal(AxisCore& axis, const Storage& storage, const char* what) {
-  const std::string node = nodeRefusal(axis, what);
-  return node.empty() ? powerRefusal(axis, storage) : node;
+  const std::string away = deviceRefusal(axis, what);
+  return away.empty() ? powerRefusal(axis, storage) : away;
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ class QuickStop : public Procedure {
 }  // namespace
 
 Result<std::unique_ptr<Procedure>> makeQuickStop(AxisCore& axis) {
-  const std::string refusal = nodeRefusal(axis, "quick-stop");
+  const std::string refusal = deviceRefusal(axis, "quick-stop");
   if (!refusal.empty()) return Error{refusal};
   return std::unique_ptr<Procedure>(std::make_unique<QuickStop>());
 }

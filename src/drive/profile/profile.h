@@ -149,9 +149,9 @@ struct ModeSpec {
   std::uint16_t controlword_bits = 0;  ///< held while the mode is active in Operation enabled
   std::optional<int> target_reached_bit, following_error_bit, set_point_acknowledge_bit,
       speed_zero_bit, homing_attained_bit, homing_error_bit, follows_command_bit;
-  /// Before the mode is entered, by SDO. What is mapped into an RPDO must be held in the process
-  /// image, too, while the mode is active, or the next RPDO would undo it (a velocity limit in the
-  /// velocity target of a vendor's position mode).
+  /// Before the mode is entered, beside the cycle. What is an output, too, must be held in the
+  /// process image while the mode is active, or the next cycle would undo it (a velocity limit in
+  /// the velocity target of a vendor's position mode).
   std::vector<NamedWrite> entry_writes;
 };
 
@@ -198,10 +198,14 @@ struct HomingSpec {
   std::vector<NamedWrite> writes;  ///< homing parameters, `from` the axis' homing options
 };
 
-/// A known 603Fh / EMCY code of the family.
+/// A known error code of the family.
 struct ErrorText {
-  /// Frames that the drive reports as missing: those that this program sends.
-  enum class Missing : std::uint8_t { nothing, sync, rpdo };
+  /// What the drive reports as missing of that which this program sends.
+  enum class Missing : std::uint8_t {
+    nothing,
+    cycle,    ///< the signal that begins a cycle
+    outputs,  ///< what travels to the drive in it
+  };
   std::string text, cause, remedy;
   Missing missing = Missing::nothing;
 };
@@ -226,19 +230,19 @@ struct DriveProfile {
   bool halt_supported = true;
   ModeChange mode_change;
   int fault_reset_tries = 1;  ///< edges of controlword bit 7 that it may take, 1 to 20
-  /// Where these did not help the node is told NMT stop, so much later start, and resets once more;
-  /// 0: it is not.
-  Duration fault_reset_nmt_stop{0};
+  /// Where these did not help the device is taken out of operation for so long, and resets once
+  /// more; 0: it is not.
+  Duration fault_reset_pause{0};
   bool fault_reset_clears_history = false;  ///< 1003h:00 = 0 is written before a fault reset
   bool warning_stops = false;               ///< a warning makes the drive stop like a fault
   std::vector<int> quick_stop_holds;        ///< values of 605Ah after which quick stop stays active
   std::vector<NamedWrite> startup;          ///< at every boot
-  std::vector<NamedWrite> before_enable;    ///< by SDO, each time before enabling
+  std::vector<NamedWrite> before_enable;    ///< each time before enabling
   std::vector<std::string> default_modes;   ///< an axis can switch to; empty: all
-  std::vector<std::string> feedback;        ///< by PDO where there is room, most important first
-  std::vector<std::string> feedback_if_room;  ///< only in PDOs that travel for something else
+  std::vector<std::string> feedback;  ///< in the cycle where there is room, most important first
+  std::vector<std::string> feedback_if_room;  ///< only with what travels for something else
   std::vector<std::string>
-      signals;  ///< objects that are shown besides; asked for where no TPDO has them
+      signals;  ///< objects that are shown besides; asked for where they do not come in the cycle
   struct Timing {
     Duration state_change{std::chrono::seconds(2)};  ///< what is not named in `transitions`
     std::map<int, Duration> transitions;             ///< by their number in CiA 402-2, 2 to 16
@@ -303,8 +307,8 @@ std::string sourceOf(const DriveProfile& profile);
 /// Names of all objects, for suggestions.
 std::vector<std::string> objectNames(const DriveProfile& profile);
 
-/// Which frames a 603Fh or EMCY code reports as missing: by the profile, else by CiA 301, table 26.
-ErrorText::Missing missingFrames(const DriveProfile& profile, std::uint16_t code);
+/// What an error code reports as missing: by the profile, else fieldbus::kOutputsLate.
+ErrorText::Missing missingByCode(const DriveProfile& profile, std::uint16_t code);
 
 /// Of the objects of CiA 301 and CiA 402-2, those that shift coordinates. A profile may say
 /// otherwise.

@@ -60,7 +60,8 @@ Outcome EnableStep::awaitFeedback(const Context& context) {
   if (waited <= context.axis.profile().timing.state_change) return Outcome::running();
   return fail(context, context.axis.who() + ": no usable " +
                            context.axis.profile().feedbackObjects() + " within " + seconds(waited) +
-                           "; check the TPDOs, or recover the axis, which boots the drive");
+                           "; check the " + context.axis.device().terms().input +
+                           "s, or recover the axis, which boots the drive");
 }
 
 /// A drive that holds in quick stop active and takes no parameters there goes on with those that it

@@ -10,8 +10,9 @@ namespace {
 /// What could not be tried as the device has other axes, too.
 std::string pauseLeftOut(AxisCore& axis) {
   const std::string others = axis.basis().neighbours.refusal();
-  if (others.empty() || axis.profile().fault_reset_nmt_stop == Duration::zero()) return {};
-  return "; NMT stop and start, after which it may be cleared, was left out: " + others;
+  if (others.empty() || axis.profile().fault_reset_pause == Duration::zero()) return {};
+  return std::string("; ") + axis.device().terms().stop_and_start +
+         ", after which it may be cleared, was left out: " + others;
 }
 
 }  // namespace
@@ -91,22 +92,23 @@ bool FaultResetStep::tryAgain(const Context& context) {
 }
 
 bool FaultResetStep::mayPause(const Context& context) const {
-  return !paused_ && context.axis.profile().fault_reset_nmt_stop > Duration::zero() &&
+  return !paused_ && context.axis.profile().fault_reset_pause > Duration::zero() &&
          context.axis.basis().neighbours.refusal().empty();
 }
 
 void FaultResetStep::beginPause(const Context& context) {
   AxisCore& axis = context.axis;
   paused_ = true;
-  axis.device().stopAndStart(axis.profile().fault_reset_nmt_stop, context.now);
+  axis.device().stopAndStart(axis.profile().fault_reset_pause, context.now);
   enter(Phase::paused, context);
-  context.show("taking the node through NMT stop and start for the fault reset",
+  const fieldbus::Terms& terms = axis.device().terms();
+  context.show(std::string("taking the ") + terms.device + " through " + terms.stop_and_start +
+                   " for the fault reset",
                "the drive to be operational and to send its feedback again");
 }
 
 Duration FaultResetStep::pause(const DriveProfile& profile) {
-  return profile.fault_reset_nmt_stop + fieldbus::Device::kStartPatience +
-         profile.timing.state_change;
+  return profile.fault_reset_pause + fieldbus::Device::kStartPatience + profile.timing.state_change;
 }
 
 Outcome FaultResetStep::awaitPause(const Context& context) {
@@ -117,8 +119,9 @@ Outcome FaultResetStep::awaitPause(const Context& context) {
     return Outcome::running();
   }
   if (context.now - since_ <= pause(axis.profile())) return Outcome::running();
-  return fail(context, axis.who() + ": after NMT stop and start no statusword came for " +
-                           seconds(context.now - since_) + ": " + axis.feedback().text());
+  return fail(context, axis.who() + ": after " + axis.device().terms().stop_and_start +
+                           " no statusword came for " + seconds(context.now - since_) + ": " +
+                           axis.feedback().text());
 }
 
 Outcome FaultResetStep::awaitReaction(const Context& context) {
@@ -155,8 +158,8 @@ Outcome FaultResetStep::advance(const Context& context) {
     case Phase::low:
       if (axis.state().error_code != 0) code_ = axis.state().error_code;
       if (!sent && waited > limit) {
-        return fail(context, axis.who() + ": no RPDO has left for " + seconds(waited) +
-                                 "; is the cycle running?");
+        return fail(context, axis.who() + ": no " + axis.device().terms().output +
+                                 " has left for " + seconds(waited) + "; is the cycle running?");
       }
       if (!sent || context.now < axis.faults().nextReset()) return Outcome::running();
       axis.control().setFaultReset(true);

@@ -28,7 +28,8 @@ Outcome ModeStep::advance(const Context& context) {
       controlword_frames_ = axis.control().frames();
       started_ = context.now;
       phase_ = Phase::presetting;
-      context.show("setting the target to the actual value", "its RPDO to be sent");
+      context.show("setting the target to the actual value",
+                   std::string("its ") + axis.device().terms().output + " to be sent");
       return Outcome::running();
     }
     case Phase::presetting: {
@@ -39,8 +40,9 @@ Outcome ModeStep::advance(const Context& context) {
       if (sent >= frames_ + kSureFrames && unbraked) {
         select(context);
       } else if (context.now - started_ > axis.profile().timing.mode_change) {
-        return Outcome::failed(axis.who() + ": no RPDO has left for " +
-                               seconds(context.now - started_) + "; is the cycle running?");
+        return Outcome::failed(axis.who() + ": no " + axis.device().terms().output +
+                               " has left for " + seconds(context.now - started_) +
+                               "; is the cycle running?");
       }
       return Outcome::running();
     }
