@@ -7,6 +7,7 @@
 #include <optional>
 #include <random>
 #include <tuple>
+#include <utility>
 
 #include "bus/flight_recorder.h"
 #include "bus/robot_world.h"
@@ -22,6 +23,17 @@ class AcceptingSink : public can::Sink {
   bool send(const can::Frame&) override { return true; }
 };
 
+/// Everything of an axis whose change is recorded at once.
+auto recordedOf(const drive::Axis& axis) {
+  const drive::AxisState& state = axis.state();
+  const drive::ProcedureStatus& procedure = axis.procedure();
+  return std::make_tuple(state.state, state.health, state.homed, state.warning,
+                         state.internal_limit, state.ready_for_motion, procedure.running,
+                         procedure.success, !axis.streamAtRest(), procedure.id, state.error_code,
+                         state.mode_value);
+}
+using Recorded = decltype(recordedOf(std::declval<const drive::Axis&>()));
+
 class RandomHistory : public testing::TestWithParam<unsigned> {
  protected:
   static config::RobotConfig configuration() {
@@ -29,16 +41,6 @@ class RandomHistory : public testing::TestWithParam<unsigned> {
     robot.recorder.keep = 5;
     return robot;
   }
-  /// Everything of an axis whose change is recorded at once.
-  static auto recordedOf(const drive::Axis& axis) {
-    const drive::AxisState& state = axis.state();
-    const drive::ProcedureStatus& procedure = axis.procedure();
-    return std::make_tuple(state.state, state.health, state.homed, state.warning,
-                           state.internal_limit, state.ready_for_motion, procedure.running,
-                           procedure.success, !axis.streamAtRest(), procedure.id, state.error_code,
-                           state.mode_value);
-  }
-
   bool chance(double share) { return std::uniform_real_distribution<>()(random_) < share; }
   template <typename Value, std::size_t N>
   Value anyOf(const std::array<Value, N>& values) {
@@ -101,14 +103,13 @@ class RandomHistory : public testing::TestWithParam<unsigned> {
 
  private:
   std::mt19937 random_{GetParam()};
-  using Recorded = decltype(recordedOf(std::declval<const drive::Axis&>()));
   std::array<std::optional<Recorded>, 2> recorded_;
 };
 
 TEST_P(RandomHistory, EveryChangeIsRecordedAndToldInItsCycle) {
   recorder.watch(world.network);
   world.enable();
-  for (int i = 0; i < 1500; ++i) {
+  for (int i = 0; i < 4000; ++i) {
     if (i % 10 == 0) happen();
     const Time cycle = world.network.cycle().lastCycle();
     ASSERT_TRUE(world.runUntil([&] { return world.network.cycle().lastCycle() != cycle; }));
