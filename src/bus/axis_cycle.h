@@ -48,6 +48,8 @@ class AxisCycle {
   // Between two cycles:
   /// The device of an axis has answered beside the cycle.
   void noteAnswer(AxisUnit& unit) { unit.answered = any_answered_ = true; }
+  /// One has, since hurry() was called.
+  bool answered() const { return any_answered_; }
   /// Whose device has answered need not wait for the next cycle, nor who called for the answer: the
   /// next cycle may be late, and the answer no longer true. To be called once all frames that came
   /// before are taken in, for behind the answer there may be frames that tell what has become of

@@ -113,14 +113,15 @@ void Master::receive(const can::Frame& frame, Time stamp, Time now) {
     ++stray_frames_;
     return;
   }
-  const Route route = routes_[frame.id];
+  const Route& route = routes_[frame.id];
   if (route.service != Service::tpdo) return receiveOther(route, frame, stamp, now);
   pacer_.occupied(1, now);
   nodes_[route.node].receiveTpdo(route.pdo, frame, stamp);
 }
 
-/// What does not come in every cycle.
-void Master::receiveOther(Route route, const can::Frame& frame, Time stamp, Time now) {
+/// What does not come in every cycle, and is not inlined where TPDOs are received.
+[[gnu::noinline]] void Master::receiveOther(Route route, const can::Frame& frame, Time stamp,
+                                            Time now) {
   if (route.service == Service::sync) {
     if (listener_ != nullptr) listener_->onForeignSync(frame, stamp, now);
     return;
@@ -166,7 +167,8 @@ void Master::tell(std::size_t node, Time now) {
   listener_->onHealthChange(nodes_[node], before, now);
 }
 
-void Master::askNodes() const {
+/// Not inlined: nextDeadline() is asked for with every frame, and seldom comes here.
+[[gnu::noinline]] void Master::askNodes() const {
   deadlines_changed_ = false;
   nodes_deadline_ = kNever;
   for (const Node& node : nodes_) nodes_deadline_ = std::min(nodes_deadline_, node.nextDeadline());

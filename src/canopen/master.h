@@ -51,7 +51,7 @@ class Master {
   void tick(Time now);
   Time nextDeadline() const {
     if (deadlines_changed_) askNodes();
-    return std::min({heartbeat_.deadline(), time_.deadline(), nodes_deadline_});
+    return std::min(std::min(heartbeat_.deadline(), time_.deadline()), nodes_deadline_);
   }
 
   /// Produces SYNC now (with counter if configured).

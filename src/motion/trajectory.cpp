@@ -121,8 +121,7 @@ std::size_t Trajectory::segmentAt(Time time) const {
 }
 
 MotionState Trajectory::sampleSegment(std::size_t segment, std::size_t joint, Time time) const {
-  const Time begin = segment == 0 ? begin_ : ends_[segment - 1];
-  return segments_[segment * joint_count_ + joint].sample(toSeconds(time - begin));
+  return segments_[segment * joint_count_ + joint].sample(toSeconds(time - beginOf(segment)));
 }
 
 MotionState Trajectory::rest(std::size_t joint, Time time) const {
@@ -141,6 +140,19 @@ void Trajectory::sample(Time time, std::vector<MotionState>& states) const {
   for (std::size_t j = 0; j < count; ++j) {
     states[j] = moving ? sampleSegment(segment, j, time) : rest(j, time);
   }
+}
+
+void Trajectory::samplePositions(Time time, std::vector<double>& positions) const {
+  const std::size_t count = std::min(positions.size(), joint_count_);
+  if (time < begin_ || finished(time)) {
+    const std::vector<double>& rest = time < begin_ ? origin_ : goal_;
+    std::copy_n(rest.begin(), count, positions.begin());
+    return;
+  }
+  const std::size_t segment = segmentAt(time);
+  const double since_s = toSeconds(time - beginOf(segment));
+  const SplineSegment* const joints = &segments_[segment * joint_count_];
+  for (std::size_t j = 0; j < count; ++j) positions[j] = joints[j].position(since_s);
 }
 
 Result<std::vector<std::size_t>> matchJoints(const std::vector<Joint>& joints,

@@ -72,6 +72,8 @@ class Trajectory {
   void sample(Time time, std::vector<MotionState>& states) const;
   /// The same for one joint, as numbered in `joints` of create().
   MotionState sample(std::size_t joint, Time time) const;
+  /// The positions of that alone, many times cheaper: what a cycle needs.
+  void samplePositions(Time time, std::vector<double>& positions) const;
 
   bool finished(Time time) const { return time >= endTime(); }
   Time startTime() const { return begin_; }
@@ -86,6 +88,7 @@ class Trajectory {
                                                  Time base);
   /// The segment that `time` lies in; only between startTime() and endTime().
   std::size_t segmentAt(Time time) const;
+  Time beginOf(std::size_t segment) const { return segment == 0 ? begin_ : ends_[segment - 1]; }
   MotionState sampleSegment(std::size_t segment, std::size_t joint, Time time) const;
   MotionState rest(std::size_t joint, Time time) const;
 

@@ -122,6 +122,21 @@ TEST_F(TrajectorySampling, AllJointsAtOnceGiveWhatOneAtATimeGives) {
   }
 }
 
+TEST_F(TrajectorySampling, PositionsAloneAreThoseOfTheStatesToTheLastBit) {
+  commanded[0] = {0.2, 1, -3};
+  const auto trajectory =
+      create({point(1, {1, 0.3}, {0.1, 0}, {0, 0}), point(2.5, {2, 0.7}, {0, 0}),
+              point(3, {3, 0.1}), point(4.7, {4, -1}, {0, 0})});
+  ASSERT_TRUE(trajectory.ok());
+  std::vector<MotionState> states(2);
+  std::vector<double> positions(2);
+  for (double time = -0.1; time < 5.0; time += 0.013) {
+    trajectory->sample(at(time), states);
+    trajectory->samplePositions(at(time), positions);
+    EXPECT_EQ(positions, (std::vector<double>{states[0].position, states[1].position})) << time;
+  }
+}
+
 TEST_F(TrajectorySampling, NeverWritesBeyondTheRoomItIsGiven) {
   const auto trajectory = create({point(1, {1, 2})});
   std::vector<MotionState> one(1), three(3, {9, 9, 9});

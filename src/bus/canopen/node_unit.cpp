@@ -144,10 +144,8 @@ void NodeUnit::readHistory(AxisUnit& axis, Time now) {
       }));
 }
 
-void NodeUnit::fill(AxisSnapshot& snapshot, const Foreseen& foreseen) const {
-  if (snapshot.node.changes != node_->changes()) snapshot.node = snapshotOf(*node_, foreseen);
-  snapshot.stale_feedback = node_->image().staleCount();
-  snapshot.wrong_lengths = node_->image().wrongLengths();
+void NodeUnit::fillNode(NodeSnapshot& snapshot, const Foreseen& foreseen) const {
+  snapshot = snapshotOf(*node_, foreseen);
 }
 
 }  // namespace cia402::bus

@@ -51,9 +51,16 @@ class NodeUnit {
   void onMalformedEmergency(std::size_t size, Time now);
 
   /// What is shown of the node in the snapshot of each of its axes.
-  void fill(AxisSnapshot& snapshot, const Foreseen& foreseen) const;
+  void fill(AxisSnapshot& snapshot, const Foreseen& foreseen) const {
+    const canopen::PdoImage& image = node_->image();
+    snapshot.stale_feedback = image.staleCount();
+    snapshot.wrong_lengths = image.wrongLengths();
+    if (snapshot.node.changes != node_->changes()) fillNode(snapshot.node, foreseen);
+  }
 
  private:
+  void fillNode(NodeSnapshot& snapshot, const Foreseen& foreseen) const;
+
   struct Entry {
     AxisUnit* unit = nullptr;
     Time history_asked{};  ///< Time() if it was not

@@ -98,17 +98,19 @@ bool PdoImage::receive(std::size_t tpdo, const can::Frame& frame, Time stamp) {
   if (!exact) {
     ++wrong_lengths_;
     pdo.wrong_size = frame.size;
-    ++(frame.size < pdo.size ? pdo.too_short : pdo.too_long);
+    pdo.last_too_short = frame.size < pdo.size;
+    ++(pdo.last_too_short ? pdo.too_short : pdo.too_long);
+    if (pdo.last_too_short) return false;
   }
-  pdo.last_too_short = frame.size < pdo.size;
-  if (pdo.last_too_short) return false;
+  pdo.last_too_short = false;
   ++pdo.received;
   pdo.last = stamp;
   pdo.silent = 0;
   pdo.stale = false;
   const std::uint64_t word = loadLittleEndian(frame.data);
+  fieldbus::ProcessValue* const values = inputs();
   for (const Pdo::Field& field : pdo.fields) {
-    take(field.slot, (word >> field.shift) & field.mask, stamp);
+    values[field.slot] = {(word >> field.shift) & field.mask, stamp, true, true};
   }
   return exact;
 }

@@ -108,7 +108,8 @@ Axis::Axis(AxisConfig config, fieldbus::Device& device)
       state_(&impl_->core.state()),
       procedure_(&impl_->status),
       notices_(&impl_->core.notices().count()),
-      set_point_(&impl_->core.generator().sent()) {}
+      set_point_(&impl_->core.generator().sent()),
+      stream_(&impl_->core.generator().commands().stream()) {}
 Axis::~Axis() = default;
 Axis::Axis(Axis&&) noexcept = default;
 
@@ -220,8 +221,6 @@ Result<void> Axis::command(double value, Time now) {
 
 void Axis::follow(const std::string* who) { impl_->core.generator().commands().follow(who); }
 const std::string* Axis::leader() const { return impl_->core.generator().commands().leader(); }
-bool Axis::streamAtRest() const { return impl_->core.generator().commands().stream().at_rest; }
-bool Axis::driedUp() const { return impl_->core.generator().commands().stream().dried_up; }
 bool Axis::late() const { return impl_->core.generator().late(); }
 bool Axis::setTarget(double value) { return impl_->core.generator().take(value); }
 void Axis::stopSetPoint() { impl_->core.generator().stop(); }

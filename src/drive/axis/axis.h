@@ -2,16 +2,19 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "cia402_driver/common/result.h"
 #include "drive/axis/config.h"
 #include "drive/axis/set_point.h"
 #include "drive/axis/state_machine.h"
+#include "drive/modes/stream.h"
 #include "fieldbus/device.h"
 
 namespace cia402::drive {
@@ -65,30 +68,42 @@ struct ProcedureRequest {
 
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-/// Feedback and condition of an axis after the last update. Plain values, cheap to copy; texts are
-/// made on demand by Axis.
-struct AxisState {
-  Time stamp{};  ///< when the feedback was on the wire
-  bool feedback_valid = false;
-  double position = kUnknown;         ///< rad or m
-  double velocity = kUnknown;         ///< rad/s or m/s
-  double effort = kUnknown;           ///< N m or N
-  double following_error = kUnknown;  ///< commanded minus measured position, rad or m
+/// What of an axis' state is one of few or yes and no, and changes seldom. Whoever tells of changes
+/// compares all of it in every cycle, so it is two words without a gap.
+struct AxisCondition {
   State state = State::unknown;
+  fieldbus::Health health = fieldbus::Health::absent;
   std::uint16_t statusword = 0;
-  std::uint16_t error_code = 0;    ///< of the fault, the warning, an emergency not ended; 0: none
-  std::int16_t mode_value = 0;     ///< 6061h
-  const ModeSpec* mode = nullptr;  ///< active mode, nullptr while unknown
+  std::uint16_t error_code = 0;  ///< of the fault, the warning, an emergency not ended; 0: none
+  std::int16_t mode_value = 0;   ///< 6061h
+  bool feedback_valid = false;
   bool homed = false;
-  std::uint32_t zero_changes = 0;  ///< grows when positions get another zero: older ones are void
   bool target_reached = false;
   bool warning = false;
   bool internal_limit = false;
   bool halted = false;            ///< enabled, and takes no command until `enable` releases it
   bool ready_for_motion = false;  ///< operation enabled, mode active, brake released, no procedure
-  std::uint32_t digital_inputs = 0;   ///< 60FDh
   bool digital_inputs_valid = false;  ///< false: not received, or not in time
-  fieldbus::Health health = fieldbus::Health::absent;
+};
+static_assert(sizeof(AxisCondition) == 16 &&
+                  std::has_unique_object_representations_v<AxisCondition>,
+              "whatever it holds is compared");
+inline bool operator==(const AxisCondition& a, const AxisCondition& b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+inline bool operator!=(const AxisCondition& a, const AxisCondition& b) { return !(a == b); }
+
+/// Feedback and condition of an axis after the last update. Plain values, cheap to copy; texts are
+/// made on demand by Axis.
+struct AxisState : AxisCondition {
+  Time stamp{};                       ///< when the feedback was on the wire
+  double position = kUnknown;         ///< rad or m
+  double velocity = kUnknown;         ///< rad/s or m/s
+  double effort = kUnknown;           ///< N m or N
+  double following_error = kUnknown;  ///< commanded minus measured position, rad or m
+  const ModeSpec* mode = nullptr;     ///< active mode, nullptr while unknown
+  std::uint32_t zero_changes = 0;    ///< grows when positions get another zero: older ones are void
+  std::uint32_t digital_inputs = 0;  ///< 60FDh
 
   /// When each value was on the wire, or its answer taken; of a value that is unknown it says
   /// nothing.
@@ -186,9 +201,9 @@ class Axis {
   /// Who does; nullptr: nobody.
   const std::string* leader() const;
   /// The stream of commands has come to rest, or there is none.
-  bool streamAtRest() const;
+  bool streamAtRest() const { return stream_->at_rest; }
   /// A stream of velocities or efforts ended without a zero: it is being brought to rest, or was.
-  bool driedUp() const;
+  bool driedUp() const { return stream_->dried_up; }
   /// Cycles were missed before this one. Valid from update() to writeCommands().
   bool late() const;
   /// Why setTarget would refuse now, in words; empty if it would not.
@@ -246,6 +261,7 @@ class Axis {
   const ProcedureStatus* procedure_;
   const std::uint32_t* notices_;
   const SetPoint* set_point_;
+  const Stream* stream_;
 };
 
 }  // namespace cia402::drive

@@ -33,11 +33,6 @@ void SetPoint::arrest(double velocity) {
   beginStop();
 }
 
-void SetPoint::give(double value) {
-  given_ = value;
-  has_given_ = true;
-}
-
 void SetPoint::stop() {
   has_given_ = false;
   if (stopping_ || atRest()) return;

@@ -43,7 +43,10 @@ class SetPoint {
   void arrest(double velocity);
   /// The set-point of this cycle; in a stream it is approached no faster than the velocity limit.
   /// Ends a stop. @pre value is finite
-  void give(double value);
+  void give(double value) {
+    given_ = value;
+    has_given_ = true;
+  }
   /// Brings to rest: a stream or a velocity by a ramp, a torque at once; a goal is left to the
   /// drive. While stopping, or at rest, nothing changes.
   void stop();

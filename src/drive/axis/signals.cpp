@@ -18,7 +18,7 @@ struct Row {
 };
 
 /// In the order of SignalId, which is that in which they are asked for.
-constexpr std::array<Row, 8> kRows = {{
+constexpr std::array<Row, kSignalIds> kRows = {{
     {SignalId::statusword, "statusword", {0x6041, 0}, Reading::never},
     {SignalId::position, "position_actual", {0x6064, 0}, Reading::never},
     {SignalId::velocity, "velocity_actual", {0x606C, 0}, Reading::always},
@@ -47,10 +47,12 @@ void require(const Signal& signal, const AxisConfig& config, const fieldbus::Dev
 Signals::Signals(const AxisConfig& config, fieldbus::Device& device)
     : device_(device), image_(device.image()) {
   const DriveProfile& profile = *config.profile;
-  rows_.reserve(kRows.size() + profile.signals.size());
-  for (const Row& row : kRows) add(config, findObject(profile, row), row.reading);
+  for (std::size_t i = 0; i < kRows.size(); ++i) {
+    rows_[i] = make(config, findObject(profile, kRows[i]), kRows[i].reading);
+  }
+  named_.reserve(profile.signals.size());
   for (const std::string& name : profile.signals) {
-    add(config, profile.find(name), Reading::when_looked_at);
+    named_.push_back(make(config, profile.find(name), Reading::when_looked_at));
   }
   require((*this)[SignalId::statusword], config, device,
           "the statusword (" + profile.address(0x6041) + ")");
@@ -58,7 +60,7 @@ Signals::Signals(const AxisConfig& config, fieldbus::Device& device)
           "the actual position (" + profile.address(0x6064) + ")");
 }
 
-void Signals::add(const AxisConfig& config, const ObjectSpec* spec, Reading reading) {
+Signal Signals::make(const AxisConfig& config, const ObjectSpec* spec, Reading reading) {
   Signal row;
   const auto& lacks = config.lacks;
   const bool lacking =
@@ -74,7 +76,7 @@ void Signals::add(const AxisConfig& config, const ObjectSpec* spec, Reading read
     }
   }
   row.polled = poller_.add(row, reading);
-  rows_.push_back(row);
+  return row;
 }
 
 bool Signals::travels(const Signal& row) const {
@@ -82,15 +84,16 @@ bool Signals::travels(const Signal& row) const {
 }
 
 void Signals::look() {
-  for (const Signal& row : rows_) {
+  const auto ask = [this](const Signal& row) {
     if (row.polled >= 0 && !travels(row)) poller_.look(row.polled);
-  }
+  };
+  for (const Signal& row : rows_) ask(row);
+  for (const Signal& row : named_) ask(row);
 }
 
 std::vector<ShownSignal> Signals::shown(Time now) const {
   std::vector<ShownSignal> all;
-  for (std::size_t i = kRows.size(); i < rows_.size(); ++i) {
-    const Signal& row = rows_[i];
+  for (const Signal& row : named_) {
     const fieldbus::ProcessValue* value = travels(row) ? told(row, now) : nullptr;
     if (value == nullptr) value = poller_.value(row.polled, now);
     ShownSignal shown;
