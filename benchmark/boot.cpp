@@ -34,7 +34,7 @@ bool allReady(bus::Network& robot) {
 Boot boot(const Row& row) {
   TestRobot robot = genericRobot(row.nodes, row.sync_period, Layout::profile);
   robot.robot.bus.listen = Duration::zero();  // the boot is measured, not the time before
-  tools::VirtualRobot world(robot.robot, robot.master, robot.axes);
+  tools::VirtualRobot world(robot.robot, robot.master, robot.drives);
   world.world().powerOn();
   world.run(std::chrono::seconds(1));
   const sim::BusTraffic before = world.world().bus().traffic();

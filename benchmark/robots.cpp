@@ -59,7 +59,7 @@ TestRobot genericRobot(int axes, double sync_period_s, Layout layout) {
   result.robot = config::loadRobot(tree, config::profilesIn({folder + "/drives"}), problems);
   if (problems.empty()) result.master = config::makeMasterConfig(result.robot, problems);
   if (problems.empty()) {
-    result.axes = sim::simulatedAxes(result.robot, folder + "/simulated_drives", problems);
+    result.drives = sim::simulatedDrives(result.robot, folder + "/simulated_drives", problems);
   }
   if (!problems.empty()) throw std::runtime_error(problems.text());
   return result;

@@ -14,7 +14,7 @@ namespace cia402::benchmark {
 struct TestRobot {
   config::RobotConfig robot;
   canopen::MasterConfig master;
-  std::vector<sim::SimulatedAxis> axes;
+  std::vector<sim::SimulatedDrive> drives;
 };
 
 /// Which PDOs a drive has.

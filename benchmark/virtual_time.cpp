@@ -62,7 +62,7 @@ void moveForAnHour(tools::VirtualRobot& robot, const config::RobotConfig& config
 /// Everything that was on the bus in an hour with faults, as one number.
 std::uint64_t hourWithFaults(std::uint64_t seed) {
   const TestRobot robot = genericRobot(3, 0.004, Layout::profile);
-  tools::VirtualRobot world(robot.robot, robot.master, robot.axes, seed);
+  tools::VirtualRobot world(robot.robot, robot.master, robot.drives, seed);
   Fingerprint fingerprint;
   world.world().bus().setMonitor(
       [&](const can::Frame& frame, Time time) { fingerprint.add(frame, time); });
@@ -83,7 +83,7 @@ std::uint64_t hourWithFaults(std::uint64_t seed) {
 int virtualTimeSpeed() {
   using Clock = std::chrono::steady_clock;
   const TestRobot robot = genericRobot(3, 0.004, Layout::profile);
-  tools::VirtualRobot world(robot.robot, robot.master, robot.axes);
+  tools::VirtualRobot world(robot.robot, robot.master, robot.drives);
   enable(world);
   const Clock::time_point begin = Clock::now();
   moveForAnHour(world, robot.robot);

@@ -34,6 +34,12 @@ bool knownToStand(const drive::Axis& axis) {
 AxisCycle::AxisCycle(const config::RobotConfig& robot, const std::vector<AxisUnit::Place>& places,
                      BusSide& bus, EventSink& events)
     : bus_(bus), events_(events), units_(unitsOf(robot, places, events)), joints_(units_) {
+  for (AxisUnit& unit : units_) {
+    for (AxisUnit& other : units_) {
+      const bool together = places[unit.index].device == places[other.index].device;
+      if (&unit != &other && together) unit.axis.addNeighbour(other.axis);
+    }
+  }
   for (const config::GroupConfig& group : robot.groups) {
     std::vector<Joint*> members;
     for (const std::string& name : group.joints) members.push_back(joints_.find(name));
@@ -88,9 +94,9 @@ void AxisCycle::stopMotion(const std::string& why) {
   }
 }
 
-void AxisCycle::stopBesideCycle(const std::string& why, Time now) {
+void AxisCycle::stopBesideCycle(const std::string& why) {
   stopMotion(why);
-  for (AxisUnit& unit : units_) unit.axis.stopBySdo(why, now);
+  for (AxisUnit& unit : units_) unit.axis.stopBesideCycle(why);
 }
 
 void AxisCycle::loseBus(const std::string& why) {

@@ -48,6 +48,8 @@ class AxisCycle {
   // Between two cycles:
   /// The device of an axis has answered beside the cycle.
   void noteAnswer(AxisUnit& unit) { unit.answered = any_answered_ = true; }
+  /// One has, since hurry() was called.
+  bool answered() const { return any_answered_; }
   /// Whose device has answered need not wait for the next cycle, nor who called for the answer: the
   /// next cycle may be late, and the answer no longer true. To be called once all frames that came
   /// before are taken in, for behind the answer there may be frames that tell what has become of
@@ -58,7 +60,7 @@ class AxisCycle {
   /// Brings all axes to rest, for the reason `why`.
   void stopMotion(const std::string& why);
   /// Set-points do not reach the drives as they should: all that moves is stopped by what does.
-  void stopBesideCycle(const std::string& why, Time now);
+  void stopBesideCycle(const std::string& why);
   /// Nothing reaches the drives any more: motion ends, nothing enables an axis.
   void loseBus(const std::string& why);
   /// The orderly end of the program is asked for. @param started false: there is nothing to stop

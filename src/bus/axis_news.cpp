@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "bus/axis_condition.h"
-#include "bus/words.h"
+#include "common/text.h"
 
 namespace cia402::bus {
 namespace {
@@ -20,7 +20,7 @@ std::string dryText(const drive::AxisConfig& config, const drive::ModeSpec& mode
                      : config.brake_after_effort ? "it is braked (command_timeout_action: brake)"
                                                  : "it coasts (command_timeout_action: coast)";
   return std::string("its stream of ") + (effort ? "efforts" : "velocities") +
-         " ended without a zero: nothing came for " + seconds(config.command_timeout) +
+         " ended without a zero: nothing came for " + secondsText(config.command_timeout) +
          " (command_timeout), so " + then;
 }
 
@@ -49,14 +49,19 @@ bool AxisNews::isUnwell(const drive::Axis& axis) const {
   return !well || axis.procedure().running || !words_.problem.empty();
 }
 
+/// What is no news by itself is taken over: it need not be looked at again.
+bool AxisNews::differs(const drive::AxisCondition& shown) {
+  const bool news = told_.state != shown.state || told_.health != shown.health ||
+                    told_.error_code != shown.error_code ||
+                    told_.feedback_valid != shown.feedback_valid || told_.warning != shown.warning;
+  if (!news) told_ = shown;
+  return news;
+}
+
 void AxisNews::note(const drive::Axis& axis, Time now) {
   const drive::AxisState& state = axis.state();
-  if (drive::isFault(state.state) && !drive::isFault(state_)) fault_unexplained_ = true;
-  state_ = state.state;
-  health_ = state.health;
-  error_code_ = state.error_code;
-  feedback_valid_ = state.feedback_valid;
-  warning_ = state.warning;
+  if (drive::isFault(state.state) && !drive::isFault(told_.state)) fault_unexplained_ = true;
+  told_ = state;
   procedure_ = axis.procedure().id;
   running_ = axis.procedure().running;
   checked_ = now;

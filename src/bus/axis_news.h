@@ -50,13 +50,13 @@ class AxisNews {
  private:
   static constexpr Duration kInterval = std::chrono::milliseconds(100);
 
-  bool differs(const drive::Axis& axis) const {
-    const drive::AxisState& shown = axis.state();
-    return state_ != shown.state || health_ != shown.health || error_code_ != shown.error_code ||
-           feedback_valid_ != shown.feedback_valid || warning_ != shown.warning ||
-           procedure_ != axis.procedure().id || running_ != axis.procedure().running ||
+  bool differs(const drive::Axis& axis) {
+    const drive::AxisCondition& shown = axis.state();
+    if (told_ != shown && differs(shown)) return true;
+    return procedure_ != axis.procedure().id || running_ != axis.procedure().running ||
            notices_ != axis.noticeCount();
   }
+  bool differs(const drive::AxisCondition& shown);
   void note(const drive::Axis& axis, Time now);
   void checkAgain(drive::Axis& axis, AxisReporter& reporter, const BusSide& bus, Time now);
   bool isUnwell(const drive::Axis& axis) const;
@@ -66,10 +66,8 @@ class AxisNews {
   std::string unknownProblem(const drive::Axis& axis, Time now);
 
   // Of the axis, as it was told last:
-  drive::State state_ = drive::State::unknown;
-  fieldbus::Health health_ = fieldbus::Health::absent;
-  bool running_ = false, feedback_valid_ = false, warning_ = false;
-  std::uint16_t error_code_ = 0;
+  drive::AxisCondition told_;
+  bool running_ = false;
   std::uint32_t procedure_ = 0, notices_ = 0;
   bool dried_up_ = false;  // its stream of set-points
   bool fault_unexplained_ = false;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "bus/words.h"
+#include "common/text.h"
 #include "drive/profile/fault_text.h"
 
 namespace cia402::bus {
@@ -56,7 +56,7 @@ void AxisReporter::count(const fieldbus::Emergency& emergency) {
 std::string AxisReporter::textOf(const fieldbus::Emergency& emergency,
                                  const std::string& excuse) const {
   if (!excuse.empty()) {
-    return "emergency: " + drive::hexWord(emergency.code) + " " +
+    return "emergency: " + hexText(emergency.code, 4) + " " +
            drive::errorName(*profile_, emergency.code) + ": the cause is that " + excuse +
            "; nothing is wrong with the drive, the axis goes on unless it says otherwise";
   }
@@ -119,7 +119,7 @@ std::string AxisReporter::kindText(std::uint32_t kind) const {
   if (kind == kBootUp) return "boot-up message";
   if (kind == kMalformed) return "emergency frame without an error code";
   const auto code = static_cast<std::uint16_t>(kind);
-  return drive::hexWord(code) + " " +
+  return hexText(code, 4) + " " +
          (code == 0 ? fieldbus::emergencyText(0) : drive::errorName(*profile_, code));
 }
 
@@ -129,7 +129,8 @@ void AxisReporter::tell(const char* prefix, const RepeatLimiter::Summary& summar
        (has_code ? std::string(prefix) + " " : "") +
            (summary.others ? std::string(prefix) + " of yet other codes" : kindText(summary.kind)) +
            ": came " + groupedDigits(summary.count) + " times in the last " +
-           secondsTo(1, summary.over) + ", " + groupedDigits(summary.total) + " times since start",
+           secondsText(summary.over, 1) + ", " + groupedDigits(summary.total) +
+           " times since start",
        now);
 }
 

@@ -38,6 +38,8 @@ class AxisReporter {
   AxisReporter(std::size_t axis, std::string who,
                std::shared_ptr<const drive::DriveProfile> profile, EventSink& events);
 
+  /// An emergency of the device came, which another of its axes tells of.
+  void count(const fieldbus::Emergency& emergency);
   /// An emergency came: it is handed to EventSink::onEmergency() and told.
   /// @param excuse how this program itself has caused it, in words; empty: it has not
   void emergency(const fieldbus::Emergency& emergency, Time now, const std::string& excuse = {});
@@ -64,7 +66,6 @@ class AxisReporter {
                       const std::string& text, Time now);
   void tell(const char* prefix, const RepeatLimiter::Summary& summary, Time now);
   std::string kindText(std::uint32_t kind) const;
-  void count(const fieldbus::Emergency& emergency);
   std::string textOf(const fieldbus::Emergency& emergency, const std::string& excuse) const;
 
   std::size_t axis_;

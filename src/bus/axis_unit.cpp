@@ -10,16 +10,8 @@ AxisUnit::AxisUnit(std::size_t number, const drive::AxisConfig& config, const Pl
       reporter(number, place.who, config.profile, events),
       news(number, place.who, place.patience, events) {}
 
-void AxisUnit::fill(AxisSnapshot& snapshot) const {
-  snapshot.state = axis.state();
-  snapshot.target = axis.target();
-  const EmergencyCounts& emergencies = reporter.emergencies();
-  const bool more = snapshot.emergencies.total != emergencies.total ||
-                    snapshot.emergencies.malformed != emergencies.malformed;
-  if (more) snapshot.emergencies = emergencies;  // counts of every code: not for every cycle
-  snapshot.procedure = axis.procedure().kind;
-  snapshot.procedure_running = axis.procedure().running;
-  snapshot.missed_feedback = missed_feedback;
+void AxisUnit::fillSeldom(AxisSnapshot& snapshot) const {
+  snapshot.emergencies = reporter.emergencies();
   if (snapshot.signals_version != signals.version()) {
     snapshot.signals = signals.values();
     snapshot.signals_version = signals.version();

@@ -41,7 +41,23 @@ struct AxisUnit {
     axis.writeCommands(now);
     signals.watch(axis, now);
   }
-  void fill(AxisSnapshot& snapshot) const;
+  void fill(AxisSnapshot& snapshot) const {
+    snapshot.state = axis.state();
+    snapshot.target = axis.target();
+    snapshot.procedure = axis.procedure().kind;
+    snapshot.procedure_running = axis.procedure().running;
+    snapshot.missed_feedback = missed_feedback;
+    const EmergencyCounts& emergencies = reporter.emergencies();
+    const bool more = snapshot.emergencies.total != emergencies.total ||
+                      snapshot.emergencies.malformed != emergencies.malformed;
+    if (more || snapshot.signals_version != signals.version() ||
+        snapshot.words.version != news.words().version) {
+      fillSeldom(snapshot);
+    }
+  }
+
+  /// What is long and changes seldom.
+  void fillSeldom(AxisSnapshot& snapshot) const;
 
   std::size_t index;
   drive::Axis axis;

@@ -17,7 +17,23 @@
 
 namespace cia402::bus {
 
+class AxisCycle;
 class Network;
+
+/// A bus as commands see it.
+struct BusParts {
+  AxisCycle& axes;   ///< what any bus has
+  Network& network;  ///< with what CANopen alone has
+  // That which a request's begin() takes:
+  template <typename Request, typename... Others>
+  AxisCycle& takenBy(void (Request::*)(AxisCycle&, Others...) const) const {
+    return axes;
+  }
+  template <typename Request, typename... Others>
+  Network& takenBy(void (Request::*)(Network&, Others...) const) const {
+    return network;
+  }
+};
 
 /// A set-point of the axis' active mode, rad or m, per s, N m or N. Answered only if refused.
 struct SetpointCommand {
@@ -25,7 +41,7 @@ struct SetpointCommand {
   std::size_t axis = 0;  ///< index in the configuration
   double value = 0.0;
 
-  void begin(Network& network, const Reply<>& reply, Time now) const;
+  void begin(AxisCycle& cycle, const Reply<>& reply, Time now) const;
 };
 
 /// A trajectory for a group; without points: stop. Answered once it was accepted or refused.
@@ -37,7 +53,7 @@ struct TrajectoryCommand {
   std::optional<Time> start_time;
   TrajectoryEnded ended;  ///< told how it ended, if it was accepted
 
-  void begin(Network& network, const Reply<>& reply, Time now) const;
+  void begin(AxisCycle& cycle, const Reply<>& reply, Time now) const;
 };
 
 /// Runs a function in the bus thread, e.g. to inject a fault into a simulated drive; also where
@@ -46,17 +62,18 @@ struct CallCommand {
   using Answer = bus::Answer;
   std::function<bus::Answer(Time)> function;
 
-  void begin(Network& network, const Reply<>& reply, Time now) const;
+  void begin(AxisCycle& cycle, const Reply<>& reply, Time now) const;
 };
 
 /// What the bus thread is to do, on its way there, with the reply that it owes.
 ///
 /// A request is a struct that says what is asked for, with
 ///     using Answer = ...;  // bus::Answer, or a type made from it
-///     void begin(Network& network, const Reply<Answer>& reply, Time now) const;
-/// begin() gives the reply exactly once, at once or when the job that it adds to the network has
-/// ended. What streams lies in the command itself; any other request is taken to the heap, so that
-/// nothing here names it.
+///     void begin(AxisCycle& cycle, const Reply<Answer>& reply, Time now) const;
+/// or with Network& where it is of CANopen alone.
+/// begin() gives the reply exactly once, at once or when the job that it adds has ended. What
+/// streams lies in the command itself; any other request is taken to the heap, so that nothing here
+/// names it.
 class Command {
  public:
   /// Nothing is asked for; begin() must not be called.
@@ -66,8 +83,8 @@ class Command {
       : body_(bodyOf(Given<Request>{std::move(request), std::move(reply)})) {}
 
   /// Carries it out. @pre not empty
-  void begin(Network& network, Time now) {
-    withGiven([&](auto& given) { given.begin(network, now); });
+  void begin(const BusParts& bus, Time now) {
+    withGiven([&](auto& given) { given.begin(bus, now); });
   }
   /// Replies that it is not carried out, for the reason `why`.
   void refuse(const std::string& why) {
@@ -87,20 +104,22 @@ class Command {
     Request request;
     Reply<typename Request::Answer> reply;
 
-    void begin(Network& network, Time now) { request.begin(network, reply, now); }
+    void begin(const BusParts& bus, Time now) {
+      request.begin(bus.takenBy(&Request::begin), reply, now);
+    }
     void refuse(const std::string& why) { bus::refuse(reply, why); }
   };
   class Erased {
    public:
     virtual ~Erased() = default;
-    virtual void begin(Network& network, Time now) = 0;
+    virtual void begin(const BusParts& bus, Time now) = 0;
     virtual void refuse(const std::string& why) = 0;
   };
   template <typename Request>
   class Boxed final : public Erased {
    public:
     explicit Boxed(Given<Request> given) : given_(std::move(given)) {}
-    void begin(Network& network, Time now) override { given_.begin(network, now); }
+    void begin(const BusParts& bus, Time now) override { given_.begin(bus, now); }
     void refuse(const std::string& why) override { given_.refuse(why); }
 
    private:

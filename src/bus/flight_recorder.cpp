@@ -153,7 +153,18 @@ void FlightRecorder::observeAxis(const AxisUnit& unit, bool sample, Time now) {
   const drive::ProcedureStatus& procedure = axis.procedure();
   Watched& watched = watched_[index];
   if (procedure.running) observeStep(index, axis, now);
-  const std::uint8_t flags = flagsOf(state, procedure, !axis.streamAtRest());
+  const bool moving = !axis.streamAtRest();
+  const bool known = watched.signature != 0 && watched.condition == state &&
+                     watched.last_procedure == procedure.id &&
+                     watched.running == procedure.running &&
+                     watched.succeeded == procedure.success && watched.moving == moving;
+  if (known && !sample) return;
+  watched.condition = state;
+  watched.last_procedure = procedure.id;
+  watched.running = procedure.running;
+  watched.succeeded = procedure.success;
+  watched.moving = moving;
+  const std::uint8_t flags = flagsOf(state, procedure, moving);
   const std::uint64_t signature = signatureOf(state, procedure, flags);
   if (signature != watched.signature) {
     watched.signature = signature;

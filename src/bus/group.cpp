@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "bus/words.h"
+#include "common/text.h"
 
 namespace cia402::bus {
 namespace {
@@ -42,7 +42,7 @@ Group::Group(config::GroupConfig config, std::vector<Joint*> joints, Duration cy
     : config_(std::move(config)),
       joints_(std::move(joints)),
       clock_(cycle),
-      commanded_(joints_.size()),
+      positions_(joints_.size()),
       dropped_(joints_.size(), 0),
       next_dropped_(joints_.size(), 0),
       breaks_(joints_.size(), 0),
@@ -201,22 +201,26 @@ void Group::advanceClock(Time now) {
 }
 
 void Group::follow() {
-  trajectory_->sample(clock_.time(), commanded_);
-  if (clock_.rate() < 1.0) scaleCommanded();
+  trajectory_->samplePositions(clock_.time(), positions_);
   sendSetpoints();
 }
 
-void Group::scaleCommanded() {
-  for (motion::MotionState& state : commanded_) {
-    state.velocity *= clock_.rate();
-    state.acceleration *= clock_.rate() * clock_.rate();
+std::vector<motion::MotionState> Group::commanded() const {
+  std::vector<motion::MotionState> states(joints_.size());
+  const bool planned = phase_ == Phase::following;
+  if (planned) trajectory_->sample(clock_.time(), states);
+  const double rate = clock_.rate();
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    states[i].position = positions_[i];
+    states[i].velocity = planned ? states[i].velocity * rate : joints_[i]->sent().velocity();
+    states[i].acceleration *= rate * rate;
   }
+  return states;
 }
 
 void Group::showSent() {
   for (std::size_t i = 0; i < joints_.size(); ++i) {
-    const drive::SetPoint& sent = joints_[i]->sent();
-    commanded_[i] = {sent.value(), sent.velocity(), 0.0};
+    positions_[i] = joints_[i]->sent().value();
   }
 }
 
@@ -270,7 +274,7 @@ void Group::sendSetpoints() {
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     // An axis that fell out of operation holds or stops by itself; the others go on as configured.
     // Enabled again, it must not jump to where the trajectory is by now.
-    if (dropped_[i] == 0 && !joints_[i]->give(commanded_[i].position)) refused_ = i;
+    if (dropped_[i] == 0 && !joints_[i]->give(positions_[i])) refused_ = i;
   }
 }
 
@@ -318,7 +322,7 @@ std::optional<TrajectoryOutcome> Group::checkRefusal() const {
 std::optional<TrajectoryOutcome> Group::checkPath() const {
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     if (tolerances_[i].trajectory <= 0.0 || dropped_[i] != 0) continue;
-    const double error = std::abs(commanded_[i].position - joints_[i]->position());
+    const double error = std::abs(positions_[i] - joints_[i]->position());
     if (began_ < joints_[i]->stamp() && error > tolerances_[i].trajectory) {
       return blame(TrajectoryErrorCode::path_tolerance_violated, i, error,
                    ": trajectory stopped: " + joints_[i]->who() + " is " + distance(i, error) +

@@ -40,8 +40,8 @@ class Group {
   bool executing() const { return phase_ == Phase::following || next_.has_value(); }
   /// The joints are being brought to rest.
   bool stopping() const { return phase_ == Phase::stopping; }
-  /// Commanded states, one a joint; valid while executing or stopping.
-  const std::vector<motion::MotionState>& commanded() const { return commanded_; }
+  /// Commanded states, one a joint; valid while executing or stopping. Made on demand: allocates.
+  std::vector<motion::MotionState> commanded() const;
 
  private:
   enum class Phase { idle, following, stopping };
@@ -51,7 +51,6 @@ class Group {
   std::vector<motion::MotionState> commandedAt(Time time) const;
   void advanceClock(Time now);
   void follow();
-  void scaleCommanded();
   /// How fast the clock's rate may rise, 1/s.
   double permittedRise() const;
   bool stands() const;
@@ -83,8 +82,8 @@ class Group {
   bool starts_ = false;  // no cycle has passed since it was set
   Phase phase_ = Phase::idle;
   std::optional<motion::Trajectory> trajectory_, next_;
-  TrajectoryEnded ended_, next_ended_;  // of them
-  std::vector<motion::MotionState> commanded_;
+  TrajectoryEnded ended_, next_ended_;      // of them
+  std::vector<double> positions_;           // that were commanded last
   std::vector<std::uint8_t> dropped_;       // joints that fell out of operation under way
   std::vector<std::uint8_t> next_dropped_;  // the same since next_ was planned
   std::vector<std::uint32_t> breaks_;       // of their set-points, at its beginning or stop

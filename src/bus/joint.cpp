@@ -21,8 +21,22 @@ Joint::Joint(AxisUnit& unit)
       stop_deceleration_(drive::stopDeceleration(unit.axis.config())) {}
 
 JointState Joint::state() const {
-  const drive::AxisState& state = axis().state();
-  return {state.position, state.velocity, state.effort, state.stamp};
+  const drive::AxisState& from = axis().state();
+  JointState state;
+  state.known = from.feedback_valid;
+  state.stamp = from.stamp;
+  state.position = from.position;
+  state.velocity = from.velocity;
+  state.effort = from.effort;
+  const bool takes_positions =
+      from.mode != nullptr && from.mode->kind == drive::ControlKind::position;
+  if (takes_positions) state.desired = axis().target();
+  return state;
+}
+
+int Joint::homingOrder() const {
+  const auto& homing = axis().config().homing;
+  return homing ? homing->order : 0;
 }
 
 std::string Joint::refusal(const std::string& group) const {
@@ -49,6 +63,12 @@ std::string Joint::trouble(std::uint32_t told_before) const {
   if (!reason.empty()) return reason;
   if (axis().noticeCount() != told_before) return axis().notice();
   return who_ + " fell out of operation or got another zero on the way";
+}
+
+std::vector<motion::Joint> jointsOf(const config::RobotConfig& robot) {
+  std::vector<motion::Joint> joints;
+  for (const drive::AxisConfig& axis : robot.axes) joints.push_back(drive::jointOf(axis));
+  return joints;
 }
 
 Joints::Joints(std::vector<AxisUnit>& units) {

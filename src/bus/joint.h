@@ -1,21 +1,15 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "bus/axis_unit.h"
+#include "config/robot.h"
 #include "motion/joint.h"
 
 namespace cia402::bus {
-
-/// What people are shown of a joint.
-struct JointState {
-  double position = drive::kUnknown;  ///< rad or m
-  double velocity = drive::kUnknown;  ///< rad/s or m/s
-  double effort = drive::kUnknown;    ///< N m or N
-  Time stamp{};                       ///< when its position was on the wire
-};
 
 /// A joint: what people name, command and see. An axis turns it; nothing that speaks of joints
 /// (trajectories, joint states, the order of homing) asks which.
@@ -33,6 +27,8 @@ class Joint {
   double stopDeceleration() const { return stop_deceleration_; }
 
   JointState state() const;
+  /// Joints of a lower order home first.
+  int homingOrder() const;
   double position() const { return axis().state().position; }
   Time stamp() const { return axis().state().stamp; }
   /// Takes set-points: enabled, and no procedure runs.
@@ -64,6 +60,9 @@ class Joint {
   double stop_deceleration_;
 };
 
+/// Those of a robot, in the order of NetworkSnapshot::joints.
+std::vector<motion::Joint> jointsOf(const config::RobotConfig& robot);
+
 /// The joints of a bus, in the order of the configuration, and which axis turns which: each one,
 /// so far.
 class Joints {
@@ -76,6 +75,8 @@ class Joints {
   const std::vector<Joint>& all() const { return joints_; }
   /// @return nullptr: there is none of that name
   Joint* find(const std::string& name);
+  /// That which an axis turns. @param axis index in the configuration
+  const Joint& ofAxis(std::size_t axis) const { return joints_[axis]; }
 
  private:
   std::vector<Joint> joints_;

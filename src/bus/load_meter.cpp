@@ -10,15 +10,15 @@ void LoadMeter::measure(Duration elapsed) {
   for (std::size_t bytes = 0; bytes <= kMostBytes; ++bytes) {
     can::Frame frame;
     frame.size = static_cast<std::uint8_t>(bytes);
-    bits += standard_[bytes] * (47 + 8 * bytes) + extended_[bytes] * (67 + 8 * bytes);
-    most_bits += standard_[bytes] * can::mostBits(frame);
+    bits += counts_[0][bytes] * (47 + 8 * bytes) + counts_[1][bytes] * (67 + 8 * bytes);
+    most_bits += counts_[0][bytes] * can::mostBits(frame);
     frame.extended = true;
-    most_bits += extended_[bytes] * can::mostBits(frame);
+    most_bits += counts_[1][bytes] * can::mostBits(frame);
   }
   const double possible = bitrate_ * toSeconds(elapsed);
   load_ = static_cast<double>(bits) / possible;
   most_load_ = static_cast<double>(most_bits) / possible;
-  standard_ = extended_ = {};
+  counts_ = {};
 }
 
 }  // namespace cia402::bus

@@ -16,6 +16,9 @@ namespace {
 constexpr Duration kFirstFeedback =
     std::chrono::milliseconds(500);  // may take so long after a boot
 
+/// By value: std::min() has its arguments put into memory.
+Time earlier(Time a, Time b) { return a < b ? a : b; }
+
 }  // namespace
 
 Network::Network(config::RobotConfig robot, canopen::MasterConfig master, can::Sink& sink,
@@ -39,7 +42,7 @@ std::vector<AxisUnit::Place> Network::places() {
   for (const drive::AxisConfig& axis : config_.axes) {
     const canopen::DeviceConfig& device = config_.deviceOf(axis);
     canopen::Node& node = *master_.find(device.node_id);
-    places.push_back({&node, node.who(), kFirstFeedback + device.stale_after * axis.sync_period});
+    places.push_back({&node, node.who(), kFirstFeedback + device.stale_after * axis.cycle});
   }
   return places;
 }
@@ -120,9 +123,9 @@ void Network::receive(const can::Frame& frame, Time stamp, Time now) {
 }
 
 Time Network::nextDeadline() const {
-  const Time due = std::min({sync_.deadline(), master_.nextDeadline(), lss_->deadline()});
+  const Time due = earlier(earlier(sync_.deadline(), master_.nextDeadline()), lss_->deadline());
   if (phase_ == Phase::running) return due;
-  return phase_ == Phase::listening ? std::min(due, start_up_->deadline()) : kNever;
+  return phase_ == Phase::listening ? earlier(due, start_up_->deadline()) : kNever;
 }
 
 void Network::produceSync(Time now) {
@@ -131,7 +134,16 @@ void Network::produceSync(Time now) {
   sync_.onSyncDue(now);
 }
 
+/// With most frames nothing is due but to note the time.
 void Network::tick(Time now) {
+  const bool waits = phase_ == Phase::running && !cycle_.answered() && now < sync_.deadline() &&
+                     now < master_.nextDeadline() && now < lss_->deadline();
+  if (!waits) return act(now);
+  cycle_.setTime(now);
+}
+
+/// Not inlined: tick() would save the registers for all of it with every frame.
+[[gnu::noinline]] void Network::act(Time now) {
   if (phase_ == Phase::listening) return listen(now);
   if (phase_ != Phase::running) return;
   cycle_.setTime(now);
@@ -164,13 +176,14 @@ std::string Network::refusal() const {
 }
 
 void Network::execute(Command command, Time now) {
+  const BusParts parts{cycle_, *this};
   cycle_.setTime(now);
   if (cycle_.shutdown().begun()) return command.refuse("refused: the driver is shutting down");
-  if (!command.needsBus()) return command.begin(*this, now);
+  if (!command.needsBus()) return command.begin(parts, now);
   if (phase_ == Phase::listening) return start_up_->take(std::move(command));
   const std::string why_not = refusal();
   if (!why_not.empty()) return command.refuse("refused: " + why_not);
-  command.begin(*this, now);
+  command.begin(parts, now);
 }
 
 void Network::beginShutdown(Time now) {
@@ -215,6 +228,9 @@ void Network::fill(NetworkSnapshot& snapshot) const {
     unit.fill(axis);
     nodes_->ofAxis(unit.index).fill(axis, foreseen_);
   }
+  const std::vector<Joint>& joints = cycle_.joints().all();
+  snapshot.joints.resize(joints.size());
+  for (std::size_t i = 0; i < joints.size(); ++i) snapshot.joints[i] = joints[i].state();
   const std::vector<Group>& groups = cycle_.groups();
   snapshot.groups.resize(groups.size());
   for (std::size_t i = 0; i < groups.size(); ++i) {
@@ -233,7 +249,7 @@ void Network::onEmergency(canopen::Node& node, const fieldbus::Emergency& emerge
   if (unit == nullptr) return;
   const drive::DriveProfile& profile = *unit->axis().axis.config().profile;
   const bool misses =
-      drive::missingFrames(profile, emergency.code) != drive::ErrorText::Missing::nothing;
+      drive::missingByCode(profile, emergency.code) != drive::ErrorText::Missing::nothing;
   const std::string excuse = misses ? sync_.ownLateness(emergency.stamp) : std::string();
   unit->onEmergency(emergency, excuse, cycle_.now());
 }
@@ -246,33 +262,12 @@ void Network::onBootUp(canopen::Node& node, Time now) {
   if (NodeUnit* unit = unitOf(node)) unit->onBootUp(now);
 }
 
-void Network::onHealthChange(canopen::Node& node, fieldbus::Health before, Time now) {
-  if (NodeUnit* unit = unitOf(node)) unit->onHealthChange(before, now);
+void Network::onHealthChange(canopen::Node& node, fieldbus::Health, Time now) {
+  if (NodeUnit* unit = unitOf(node)) unit->onHealthChange(now);
 }
 
 void Network::onForeignSync(const can::Frame& frame, Time stamp, Time now) {
   if (started()) sync_.onForeignSync(frame, stamp, now);
-}
-
-void SetpointCommand::begin(Network& network, const Reply<>& reply, Time now) const {
-  std::vector<AxisUnit>& units = network.cycle().units();
-  if (axis >= units.size()) return;
-  const Result<void> taken = units[axis].axis.command(value, now);
-  if (!taken) refuse(reply, taken.error().message);
-}
-
-void TrajectoryCommand::begin(Network& network, const Reply<>& reply, Time now) const {
-  for (Group& candidate : network.cycle().groups()) {
-    if (candidate.config().name != group) continue;
-    const TrajectoryOutcome outcome = candidate.start(joints, points, start_time, now, ended);
-    const bool accepted = outcome.code == motion::TrajectoryErrorCode::successful;
-    return give(reply, answerOf(accepted, outcome.message));
-  }
-  refuse(reply, "there is no group \"" + group + "\"");
-}
-
-void CallCommand::begin(Network&, const Reply<>& reply, Time now) const {
-  give(reply, function(now));
 }
 
 }  // namespace cia402::bus

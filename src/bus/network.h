@@ -120,6 +120,7 @@ class Network final : private canopen::MasterListener, private BusSide {
   void listen(Time now);
   void beginSending(Time now);
   void boot(Time now);
+  void act(Time now);
   void stepCycle(Time now);
   /// Why a command that needs the bus is not carried out; empty if it is.
   std::string refusal() const;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "common/text.h"
 #include "decode/value_text.h"
 
 namespace cia402::bus {
@@ -82,7 +83,7 @@ std::string triggerName(const RecordingTrigger& trigger, const config::RobotConf
   std::string name = shortName(trigger.kind);
   if (!namesAxis(trigger.kind) || trigger.axis >= robot.axes.size()) return name;
   name = robot.axes[trigger.axis].name + "_" + name;
-  return trigger.code == 0 ? name : name + "_" + decode::hexNumber(trigger.code, 2).substr(2);
+  return trigger.code == 0 ? name : name + "_" + hexText(trigger.code, 4).substr(2);
 }
 
 }  // namespace cia402::bus

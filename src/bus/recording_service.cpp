@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "bus/real_clock.h"
+#include "common/text.h"
 
 namespace cia402::bus {
 namespace {
@@ -90,7 +91,7 @@ RecordingService::News RecordingService::write(std::vector<RecordingTrigger> tri
   news.written = files.ok();
   std::string why;
   for (const RecordingTrigger& trigger : recording.triggers) {
-    why += (why.empty() ? "" : "; ") + triggerText(trigger, robot_);
+    append(why, triggerText(trigger, robot_));
     const bool known = std::count(news.axes.begin(), news.axes.end(), trigger.axis) != 0;
     if (namesAxis(trigger.kind) && !known) news.axes.push_back(trigger.axis);
   }

@@ -8,6 +8,8 @@
 #include <ctime>
 #include <ostream>
 
+#include "common/text.h"
+#include "decode/value_text.h"
 #include "drive/axis/axis.h"
 
 namespace cia402::bus {
@@ -21,25 +23,22 @@ const char* directionText(can::Direction direction) {
   return direction == can::Direction::transmitted ? "tx" : "rx";
 }
 
-void add(std::string& text, const std::string& part) { text += (text.empty() ? "" : "; ") + part; }
-
 std::string numbers(const AxisRecord& record, const drive::AxisConfig& axis) {
-  const bool linear = axis.geometry.type == drive::AxisGeometry::Type::prismatic;
   const struct {
     const char* name;
     float value;
-    const char* unit;
-  } values[] = {{"at", record.position, linear ? "m" : "rad"},
-                {"velocity", record.velocity, linear ? "m/s" : "rad/s"},
-                {"effort", record.effort, linear ? "N" : "N m"},
-                {"following error", record.following_error, linear ? "m" : "rad"}};
+    drive::Quantity quantity;
+  } values[] = {{"at", record.position, drive::Quantity::position},
+                {"velocity", record.velocity, drive::Quantity::velocity},
+                {"effort", record.effort, drive::Quantity::torque},
+                {"following error", record.following_error, drive::Quantity::distance}};
   std::string text;
-  for (const auto& [name, value, unit] : values) {
+  for (const auto& [name, value, quantity] : values) {
     if (std::isnan(value)) continue;
-    std::array<char, 64> part{};
-    std::snprintf(part.data(), part.size(), "%s%s %.5g %s", text.empty() ? "" : ", ", name,
-                  static_cast<double>(value), unit);
-    text += part.data();
+    append(text,
+           std::string(name) + " " + numberText(static_cast<double>(value), 5) + " " +
+               decode::unitOf(quantity, axis),
+           ", ");
   }
   return text.empty() ? "no feedback" : text;
 }
@@ -68,9 +67,9 @@ void addChange(std::string& text, const char* what, bool first, Value before, Va
                std::string (*words)(Value, const drive::AxisConfig&),
                const drive::AxisConfig& axis) {
   if (first) {
-    add(text, what + words(now, axis));
+    append(text, what + words(now, axis));
   } else if (before != now) {
-    add(text, what + words(before, axis) + " -> " + words(now, axis));
+    append(text, what + words(before, axis) + " -> " + words(now, axis));
   }
 }
 
@@ -143,8 +142,9 @@ class Teller {
     }
   }
   std::string nameOf(std::size_t axis) const {
-    return axis < robot_.axes.size() ? decoder_.nodeName(robot_.deviceOf(robot_.axes[axis]).node_id)
-                                     : "";
+    if (axis >= robot_.axes.size()) return "";
+    const drive::AxisConfig& config = robot_.axes[axis];
+    return drive::whoIs(config, std::to_string(robot_.deviceOf(config).node_id));
   }
   void tellAxis(const AxisRecord& record) {
     if (record.axis >= robot_.axes.size()) return;
@@ -185,13 +185,13 @@ std::string axisText(const AxisRecord* before, const AxisRecord& record,
   addChange(text, "error ", first, old.error_code, record.error_code, errorWords, axis);
   const std::uint8_t changed = first ? record.flags : old.flags ^ record.flags;
   for (const auto& [flag, on, off] : kFlags) {
-    if ((changed & flag) != 0) add(text, (record.flags & flag) != 0 ? on : off);
+    if ((changed & flag) != 0) append(text, (record.flags & flag) != 0 ? on : off);
   }
   const bool another = record.procedure != old.procedure;
   if ((changed & AxisRecord::running) != 0 || (another && !first)) {
-    add(text, procedureText(record));
+    append(text, procedureText(record));
   }
-  add(text, numbers(record, axis));
+  append(text, numbers(record, axis));
   return text;
 }
 

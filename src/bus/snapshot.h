@@ -46,6 +46,16 @@ struct AxisSnapshot {
   AxisWords words;
 };
 
+/// One joint as the last cycle left it, as people are shown it.
+struct JointState {
+  bool known = false;                 ///< its position is
+  Time stamp{};                       ///< when that was on the wire
+  double position = drive::kUnknown;  ///< rad or m
+  double velocity = drive::kUnknown;  ///< rad/s or m/s
+  double effort = drive::kUnknown;    ///< N m or N
+  double desired = drive::kUnknown;   ///< position set-point, rad or m; in other modes unknown
+};
+
 /// The trajectory of one group.
 struct GroupSnapshot {
   bool executing = false;
@@ -68,6 +78,7 @@ struct NetworkSnapshot {
   std::uint64_t foreign_syncs = 0;  ///< of others, while the driver produces SYNC
   bool shut_down = false;
   std::vector<AxisSnapshot> axes;     ///< in configuration order
+  std::vector<JointState> joints;     ///< in configuration order, see jointsOf()
   std::vector<GroupSnapshot> groups;  ///< in configuration order
 };
 

@@ -34,9 +34,9 @@ void Permits::cut(std::size_t axis, Time until) {
 void Permits::end(std::size_t axis, Time called, Time now) {
   for (const Source source : {Source::stream, Source::target, Source::trajectory}) {
     // What came in the cycle in which the call ended is commanded after it.
-    const bool after = axes_[axis].given[static_cast<std::size_t>(source)] +
-                           stage_.axes()[axis].config->sync_period >=
-                       now;
+    const bool after =
+        axes_[axis].given[static_cast<std::size_t>(source)] + stage_.axes()[axis].config->cycle >=
+        now;
     if (!after) cut(axis, source, now);
   }
   if (axes_[axis].homing_called <= called) cut(axis, Source::homing, now);

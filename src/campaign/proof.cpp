@@ -132,7 +132,7 @@ const drive::ModeSpec* Proof::modeOf(std::size_t axis) {
 
 Proof::Step Proof::stepOf(const AxisFacts& facts, const drive::ModeSpec& mode, double at,
                           double sign) const {
-  const drive::AxisLimits& limits = facts.config->limits;
+  const motion::JointLimits& limits = facts.config->limits;
   // A zero that was declared may leave little between a switch and the limit on the other side.
   const std::optional<double>& end = sign > 0.0 ? limits.upper : limits.lower;
   const double room = end ? (*end - at) * sign : 1e300;
@@ -152,7 +152,7 @@ void Proof::move(std::size_t axis, std::optional<double> tried) {
   const AxisFacts& facts = session_.stage.axes()[axis];
   const drive::ModeSpec* const mode = modeOf(axis);
   if (mode == nullptr) return;
-  const drive::AxisLimits& limits = facts.config->limits;
+  const motion::JointLimits& limits = facts.config->limits;
   const double from = session_.truths[axis].position, at = session_.shown(axis);
   const double middle =
       limits.lower && limits.upper ? (*limits.lower + *limits.upper) / 2.0 : at + 1.0;

@@ -121,7 +121,8 @@ Result<Loaded> loadRobot(const std::string& yaml, const std::string& config_fold
   loaded.robot = config::loadRobot(tree, config::profilesIn({config_folder + "/drives"}), problems);
   if (problems.empty()) loaded.master = config::makeMasterConfig(loaded.robot, problems);
   if (problems.empty()) {
-    loaded.axes = sim::simulatedAxes(loaded.robot, config_folder + "/simulated_drives", problems);
+    loaded.drives =
+        sim::simulatedDrives(loaded.robot, config_folder + "/simulated_drives", problems);
   }
   if (!problems.empty()) return Error{problems.text()};
   return loaded;
@@ -145,10 +146,11 @@ Stage::Stage(Loaded loaded, std::uint64_t seed)
       world_(loaded_.robot.bus.bitrate, seed),
       host_(world_, loaded_.robot, loaded_.master),
       rpdos_(rpdosOf(loaded_)) {
-  for (const sim::SimulatedAxis& axis : loaded_.axes) {
-    sim::Drive& drive =
-        world_.addDrive(axis.name, axis.definition, axis.node, axis.mechanics, axis.identity);
-    const auto entry = [&](std::uint16_t object) { return drive.dictionary().find({object, 0}); };
+  sim::addTo(world_, loaded_.drives);
+  for (std::size_t i = 0; i < world_.driveCount(); ++i) {
+    const auto entry = [&](std::uint16_t object) {
+      return world_.drive(i).dictionary().find({object, 0});
+    };
     objects_.push_back({entry(0x6064), entry(0x6077)});
   }
   for (std::size_t i = 0; i < loaded_.robot.axes.size(); ++i) {

@@ -15,7 +15,7 @@ namespace cia402::campaign {
 struct Loaded {
   config::RobotConfig robot;
   canopen::MasterConfig master;
-  std::vector<sim::SimulatedAxis> axes;
+  std::vector<sim::SimulatedDrive> drives;
 };
 /// @param config_folder with drives/ and simulated_drives/. @return an error with all problems.
 Result<Loaded> loadRobot(const std::string& yaml, const std::string& config_folder);

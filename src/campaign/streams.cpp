@@ -22,7 +22,7 @@ const Verbs<Streams> kStreamVerbs{{"stream", &Streams::stream},
 
 /// How long a position may take the axis from `shown`.
 Duration timeOfWay(const AxisFacts& facts, double value, double shown) {
-  const drive::AxisLimits& limits = facts.config->limits;
+  const motion::JointLimits& limits = facts.config->limits;
   const double way = std::min(std::fabs(value - shown), 3600.0 * facts.velocity);
   const double range =
       limits.lower && limits.upper ? std::max(*limits.upper - *limits.lower, way) : way;
@@ -131,8 +131,8 @@ void Streams::accepted(std::size_t axis, double value) {
   speed = std::min(speed, facts.velocity);
   if (mode->kind == drive::ControlKind::torque) speed = facts.velocity;
   session_.permits.allow(axis, Source::stream,
-                         session_.now() + facts.config->command_timeout +
-                             4 * facts.config->sync_period + facts.stopTime(speed));
+                         session_.now() + facts.config->command_timeout + 4 * facts.config->cycle +
+                             facts.stopTime(speed));
 }
 
 }  // namespace cia402::campaign

@@ -98,7 +98,7 @@ std::vector<double> Trajectories::reachable(const config::GroupConfig& group,
   std::vector<double> goal;
   for (std::size_t i = 0; i < group.joints.size(); ++i) {
     const AxisFacts& facts = session_.stage.axes()[axisOf(group.joints[i])];
-    const drive::AxisLimits& limits = facts.config->limits;
+    const motion::JointLimits& limits = facts.config->limits;
     const double share = first + i < words.size() ? toNumber(words[first + i]) : 0.5;
     const double wish = limits.lower && limits.upper
                             ? *limits.lower + share * (*limits.upper - *limits.lower)

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace cia402::can {
@@ -31,8 +32,8 @@ class RecordRing {
     std::memcpy(words.data(), &record, sizeof record);
     // A reader that sees any word of this record must see that the one before was counted.
     AtomicSlot& slot = slots_[next_];
-    for (std::size_t i = 0; i < kWords; ++i) slot[i].store(words[i], std::memory_order_release);
-    if (++next_ == slots_.size()) next_ = 0;
+    store(words, slot, std::make_index_sequence<kWords>());
+    if (++next_ > capacity_) next_ = 0;
     written_.store(written_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
   }
 
@@ -63,6 +64,11 @@ class RecordRing {
   using Slot = std::array<std::uint64_t, kWords>;
   using AtomicSlot = std::array<std::atomic<std::uint64_t>, kWords>;
 
+  /// Word by word without a loop: compilers do not unroll one over atomics.
+  template <std::size_t... I>
+  static void store(const Slot& words, AtomicSlot& slot, std::index_sequence<I...> /*all*/) {
+    (slot[I].store(words[I], std::memory_order_release), ...);
+  }
   /// Removes what may have been overwritten while it was copied; a record may be in the making.
   void dropOverwritten(std::vector<T>& records, std::uint64_t begin) const {
     const std::uint64_t now = written_.load(std::memory_order_relaxed);

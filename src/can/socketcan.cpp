@@ -180,12 +180,12 @@ void SocketCan::maintain(Time now) {
     checkLink();
   }
   recovery_.update(state_, now);
-  if (recovery_.attempt(now)) tryToReturn(now);
+  if (recovery_.attempt(now)) tryToReturn();
   flushPending();
 }
 
 /// The time for a restart has come: asks the kernel how things are, and for what is needed.
-void SocketCan::tryToReturn(Time) {
+void SocketCan::tryToReturn() {
   const auto link = reader_->read(name_);
   if (!link || !link->up) return;  // checkLink() will find out
   if (link->controller == BusState::bus_off) {

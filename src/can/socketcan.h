@@ -120,7 +120,7 @@ class SocketCan final : public Interface {
   void handleErrorFrame(const Frame& frame, Time stamp);
   void countStale() { counters_.frames_stale = pending_.stale(); }
   void comeBack(BusState state);
-  void tryToReturn(Time now);
+  void tryToReturn();
   void restart(const LinkSettings& link);
 
   std::string name_;

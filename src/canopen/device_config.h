@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -30,20 +31,25 @@ struct ErrorControlOptions {
   std::optional<Duration> master_timeout;  ///< until the drive takes the master for lost
 };
 
-/// Typed configuration of one device on the bus. What the master needs of it is made from that:
-/// config::makeMasterConfig().
-struct DeviceConfig {
-  std::string name;   ///< of the axis in it
-  std::string title;  ///< for messages: "shoulder (node 3)"
-  NodeId node_id = 0;
-  std::shared_ptr<const DeviceProfile> profile;
-  std::shared_ptr<const EdsInfo> eds;  ///< of its EDS or DCF; nullptr: none was given
-  std::vector<PdoLayout> pdos;         ///< resolved layout (planned, the profile's or the user's)
-  bool pdos_planned = false;           ///< for this cycle; another one may get another plan
+/// The PDOs of one axis of a device.
+struct PdoSet {
+  std::vector<PdoLayout> pdos;  ///< resolved layout (planned, the profile's or the user's)
+  bool planned = false;         ///< for this cycle; another one may get another plan
   /// Of what is in `pdos`, the objects that only defaults ask for.
   std::vector<std::string> default_objects;
   /// Of these, the feedback that is there only because its PDOs had room for it.
   std::vector<std::string> riders;
+};
+
+/// Typed configuration of one device on the bus. What the master needs of it is made from that:
+/// config::makeMasterConfig().
+struct DeviceConfig {
+  std::string name;   ///< of the axis in it, of several the first one
+  std::string title;  ///< for messages: "shoulder (node 3)", "left, right (node 3)"
+  NodeId node_id = 0;
+  std::shared_ptr<const DeviceProfile> profile;
+  std::shared_ptr<const EdsInfo> eds;  ///< of its EDS or DCF; nullptr: none was given
+  std::array<PdoSet, 8> axes;          ///< by the number of the axis in the device; most have one
   /// A TPDO that fails to come so many times in a row is stale; where it brings statusword or
   /// position, an enabled axis is quick-stopped then.
   std::uint16_t stale_after = 10;

@@ -16,7 +16,10 @@ struct DeviceProfile {
   std::optional<std::uint32_t> device_type, vendor_id, product_code;  ///< 1000h, 1018h:01, :02
   /// A layout for all devices of the family; empty: each gets one that suits its modes.
   std::vector<PdoLayout> pdos;
-  unsigned max_rpdos = 4, max_tpdos = 4;
+  unsigned max_rpdos = 4, max_tpdos = 4;  ///< of each axis, where each has its own
+  /// Numbers of the PDOs from one axis of the device to the next; 0: all axes share those of the
+  /// device.
+  unsigned pdos_per_axis = 64;
   unsigned max_pdo_entries = 8;
   unsigned fixed_pdo_entries = 0;  ///< every mapping has so many, unused ones are 0; 0: as needed
   std::vector<PdoLayout> fixed_pdos;  ///< with a mapping that the drive does not let change

@@ -2,21 +2,12 @@
 #include "canopen/master.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <stdexcept>
 #include <utility>
 
+#include "common/text.h"
+
 namespace cia402::canopen {
-namespace {
-
-std::string hexId(std::uint32_t cob_id) {
-  std::array<char, 12> text{};
-  std::snprintf(text.data(), text.size(), "0x%03X", static_cast<unsigned>(cob_id));
-  return text.data();
-}
-
-}  // namespace
 
 Master::Master(MasterConfig config, can::Sink& sink, MasterListener* listener)
     : config_(std::move(config)),
@@ -61,7 +52,7 @@ std::string Master::addPdoRoutes(std::size_t node) {
       if (pdos[i].cob_id == 0) continue;
       const std::string pdo = std::string(service == Service::tpdo ? "TPDO " : "RPDO ") +
                               std::to_string(pdos[i].number) + " with COB-ID " +
-                              hexId(pdos[i].cob_id);
+                              hexText(pdos[i].cob_id, 3);
       if (pdos[i].cob_id >= kIdentifiers) return pdo + ": that has more than 11 bits";
       Route& route = routes_[pdos[i].cob_id];
       if (route.service == Service::sync) return pdo + ": that is used twice, it is SYNC";
@@ -75,7 +66,7 @@ std::string Master::addPdoRoutes(std::size_t node) {
 }
 
 /// A drive has told other COB-IDs of its PDOs than those that were configured.
-void Master::followCobIds(std::size_t node, Time now) {
+void Master::followCobIds(std::size_t node) {
   for (Route& route : routes_) {
     const bool pdo = route.service == Service::tpdo || route.service == Service::rpdo;
     if (pdo && route.node == node) route = Route();
@@ -83,17 +74,16 @@ void Master::followCobIds(std::size_t node, Time now) {
   const std::string conflict = addPdoRoutes(node);
   if (conflict.empty()) return;
   nodes_[node].refuse("cannot be used: " + conflict +
-                          "; give the drive another COB-ID there, or leave that PDO out",
-                      now);
+                      "; give the drive another COB-ID there, or leave that PDO out");
 }
 
 void Master::addRoute(std::uint32_t cob_id, Route route) {
   if (cob_id >= kIdentifiers) {
-    throw std::invalid_argument(nodes_[route.node].name() + ": COB-ID " + hexId(cob_id) +
+    throw std::invalid_argument(nodes_[route.node].name() + ": COB-ID " + hexText(cob_id, 3) +
                                 " has more than 11 bits");
   }
   if (routes_[cob_id].service != Service::none) {
-    throw std::invalid_argument("COB-ID " + hexId(cob_id) + " is used twice, by " +
+    throw std::invalid_argument("COB-ID " + hexText(cob_id, 3) + " is used twice, by " +
                                 nodes_[routes_[cob_id].node].name() + " and " +
                                 nodes_[route.node].name());
   }
@@ -123,14 +113,15 @@ void Master::receive(const can::Frame& frame, Time stamp, Time now) {
     ++stray_frames_;
     return;
   }
-  const Route route = routes_[frame.id];
+  const Route& route = routes_[frame.id];
   if (route.service != Service::tpdo) return receiveOther(route, frame, stamp, now);
   pacer_.occupied(1, now);
   nodes_[route.node].receiveTpdo(route.pdo, frame, stamp);
 }
 
-/// What does not come in every cycle.
-void Master::receiveOther(Route route, const can::Frame& frame, Time stamp, Time now) {
+/// What does not come in every cycle, and is not inlined where TPDOs are received.
+[[gnu::noinline]] void Master::receiveOther(Route route, const can::Frame& frame, Time stamp,
+                                            Time now) {
   if (route.service == Service::sync) {
     if (listener_ != nullptr) listener_->onForeignSync(frame, stamp, now);
     return;
@@ -145,7 +136,7 @@ void Master::receiveOther(Route route, const can::Frame& frame, Time stamp, Time
   const std::uint32_t emergencies = node.emergencies();
   const std::uint32_t malformed = node.malformedEmergencies();
   node.receive(frame, stamp, now);
-  if (node.takeCobIdChange()) followCobIds(route.node, now);
+  if (node.takeCobIdChange()) followCobIds(route.node);
   if (listener_ != nullptr) {
     if (route.service == Service::sdo) listener_->onSdoAnswer(node);
     if (node.emergencies() != emergencies) listener_->onEmergency(node, *node.lastEmergency());
@@ -164,7 +155,7 @@ void Master::tick(Time now) {
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     if (nodes_[i].nextDeadline() > now) continue;
     nodes_[i].tick(now);
-    if (nodes_[i].takeCobIdChange()) followCobIds(i, now);
+    if (nodes_[i].takeCobIdChange()) followCobIds(i);
     tell(i, now);
   }
 }
@@ -176,7 +167,8 @@ void Master::tell(std::size_t node, Time now) {
   listener_->onHealthChange(nodes_[node], before, now);
 }
 
-void Master::askNodes() const {
+/// Not inlined: nextDeadline() is asked for with every frame, and seldom comes here.
+[[gnu::noinline]] void Master::askNodes() const {
   deadlines_changed_ = false;
   nodes_deadline_ = kNever;
   for (const Node& node : nodes_) nodes_deadline_ = std::min(nodes_deadline_, node.nextDeadline());

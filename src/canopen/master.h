@@ -51,7 +51,7 @@ class Master {
   void tick(Time now);
   Time nextDeadline() const {
     if (deadlines_changed_) askNodes();
-    return std::min({heartbeat_.deadline(), time_.deadline(), nodes_deadline_});
+    return std::min(std::min(heartbeat_.deadline(), time_.deadline()), nodes_deadline_);
   }
 
   /// Produces SYNC now (with counter if configured).
@@ -98,7 +98,7 @@ class Master {
   void addRoutes(std::size_t node);
   void addRoute(std::uint32_t cob_id, Route route);
   std::string addPdoRoutes(std::size_t node);
-  void followCobIds(std::size_t node, Time now);
+  void followCobIds(std::size_t node);
   void tell(std::size_t node, Time now);
 
   MasterConfig config_;

@@ -6,8 +6,8 @@
 
 namespace cia402::config {
 
-drive::AxisLimits readLimits(const yaml::Value& value, drive::AxisGeometry::Type type) {
-  drive::AxisLimits limits;
+motion::JointLimits readLimits(const yaml::Value& value, drive::AxisGeometry::Type type) {
+  motion::JointLimits limits;
   yaml::Section section(value);
   section.read("lower", limits.lower);
   section.read("upper", limits.upper);

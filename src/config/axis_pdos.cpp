@@ -59,7 +59,8 @@ std::vector<std::string> defaultObjects(const AxisDraft& draft, const PdoNeeds& 
   const AxisConfig& axis = draft.axis;
   std::vector<std::string> names;
   if (!needs.feedback_required) names = needs.feedback;
-  names.insert(names.end(), draft.device.riders.begin(), draft.device.riders.end());
+  const std::vector<std::string>& riders = draft.pdos().riders;
+  names.insert(names.end(), riders.begin(), riders.end());
   if (needs.modes_required) return names;
   const ModeSpec* start = axis.profile->mode(needs.mode);
   for (const std::string& name : axis.modes) {
@@ -83,9 +84,9 @@ void addStopModes(const AxisConfig& axis, std::vector<std::string>& names) {
 }
 
 /// What the PDOs bring to the drive in every cycle.
-void setOutputs(AxisConfig& axis, const DeviceConfig& device) {
+void setOutputs(AxisConfig& axis, const canopen::PdoSet& set) {
   axis.outputs.clear();
-  for (const canopen::PdoLayout& pdo : device.pdos) {
+  for (const canopen::PdoLayout& pdo : set.pdos) {
     if (pdo.direction != canopen::PdoDirection::rpdo) continue;
     for (const std::string& name : pdo.objects) {
       const ObjectSpec* object = drive::findObject(*axis.profile, name);
@@ -94,12 +95,38 @@ void setOutputs(AxisConfig& axis, const DeviceConfig& device) {
   }
 }
 
+/// Where all axes of a device have the same PDOs, each gets its part of them.
+PdoNeeds::Share shareOf(const DeviceConfig& device, unsigned device_axis, unsigned axes,
+                        canopen::PdoDirection direction) {
+  PdoNeeds::Share share;
+  const canopen::DeviceProfile& family = *device.profile;
+  if (family.pdos_per_axis != 0 || axes < 2) return share;
+  unsigned planned = 0;
+  for (unsigned other = 0; other < device.axes.size(); ++other) {
+    if (other == device_axis || device.axes[other].pdos.empty()) continue;
+    ++planned;
+    for (const canopen::PdoLayout& pdo : device.axes[other].pdos) {
+      if (pdo.direction == direction) share.taken.push_back(pdo.number);
+    }
+  }
+  const std::size_t all =
+      direction == canopen::PdoDirection::rpdo ? family.max_rpdos : family.max_tpdos;
+  const std::size_t left = all - std::min(all, share.taken.size());
+  share.most = left / (axes - std::min(planned, axes - 1));
+  return share;
+}
+
+void setShares(PdoNeeds& needs, const DeviceConfig& device, unsigned device_axis, unsigned axes) {
+  needs.rpdos = shareOf(device, device_axis, axes, canopen::PdoDirection::rpdo);
+  needs.tpdos = shareOf(device, device_axis, axes, canopen::PdoDirection::tpdo);
+}
+
 bool plan(yaml::Section& section, AxisDraft& draft, RobotConfig& robot, PdoNeeds needs) {
   AxisConfig& axis = draft.axis;
   const DriveProfile& profile = *axis.profile;
   const auto modes = section.get("modes");
   needs.mode = axis.mode;
-  needs.cycle = axis.sync_period;
+  needs.cycle = axis.cycle;
   needs.fresh = freshness(robot);
   const Result<PdoPlan> planned = planPdos(profile, *draft.device.profile, needs);
   if (!planned) {
@@ -113,11 +140,11 @@ bool plan(yaml::Section& section, AxisDraft& draft, RobotConfig& robot, PdoNeeds
                                "` finds no room in the TPDOs and is read by SDO, which is slow");
     }
   }
-  draft.device.pdos = planned->pdos;
-  draft.device.pdos_planned = true;
+  draft.pdos().pdos = planned->pdos;
+  draft.pdos().planned = true;
   axis.modes = planned->modes;
-  draft.device.riders = planned->riders;
-  draft.device.default_objects = defaultObjects(draft, needs);
+  draft.pdos().riders = planned->riders;
+  draft.pdos().default_objects = defaultObjects(draft, needs);
   return true;
 }
 
@@ -162,10 +189,9 @@ void readRpdoTimeout(yaml::Section& section, DeviceConfig& device, Duration cycl
 }
 
 /// The drive's own deadline stands on the RPDO that carries the controlword in every cycle.
-void setRpdoTimeout(DeviceConfig& device) {
-  const auto ms =
-      std::chrono::duration_cast<std::chrono::milliseconds>(device.rpdo_timeout).count();
-  for (canopen::PdoLayout& pdo : device.pdos) {
+void setRpdoTimeout(canopen::PdoSet& set, Duration timeout) {
+  const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(timeout).count();
+  for (canopen::PdoLayout& pdo : set.pdos) {
     const auto& objects = pdo.objects;
     const bool commands = std::find(objects.begin(), objects.end(), "controlword") != objects.end();
     if (pdo.direction != canopen::PdoDirection::rpdo || !commands || pdo.event_timer != 0) continue;
@@ -174,23 +200,35 @@ void setRpdoTimeout(DeviceConfig& device) {
   }
 }
 
+/// @param needs with the numbers that other axes of the device have
+void checkShared(const yaml::Value& at, const AxisDraft& draft, const PdoNeeds& needs) {
+  for (const canopen::PdoLayout& pdo : draft.pdos().pdos) {
+    const bool rpdo = pdo.direction == canopen::PdoDirection::rpdo;
+    const std::vector<unsigned>& taken = rpdo ? needs.rpdos.taken : needs.tpdos.taken;
+    if (std::find(taken.begin(), taken.end(), pdo.number) == taken.end()) continue;
+    at.problem(std::string(rpdo ? "rpdo" : "tpdo") + std::to_string(pdo.number) +
+               " carries objects of another axis of this drive already: its axes share their PDOs");
+  }
+}
+
 }  // namespace
 
-bool choosePdos(yaml::Section& section, AxisDraft& draft, RobotConfig& robot) {
+bool choosePdos(yaml::Section& section, AxisDraft& draft, RobotConfig& robot, unsigned axes) {
   AxisConfig& axis = draft.axis;
   DeviceConfig& device = draft.device;
   const auto pdos = section.get("pdos");
   const auto modes = section.get("modes");
   const auto feedback = section.get("feedback");
-  section.readInteger("stale_after", device.stale_after, 1, 1000);
-  if (!axis.profile) {
+  if (draft.first) section.readInteger("stale_after", device.stale_after, 1, 1000);
+  if (!axis.profile || !device.profile) {
     for (const char* key : {"lacks", "rpdo_timeout"}) section.get(key);
     return false;
   }
   const DriveProfile& profile = *axis.profile;
   readLacks(section, axis);
-  readRpdoTimeout(section, device, axis.sync_period);
+  if (draft.first) readRpdoTimeout(section, device, axis.cycle);
   PdoNeeds needs;
+  setShares(needs, device, axis.device_axis, axes);
   needs.modes_required = modes.has_value();
   needs.modes = modes ? readModeNames(*modes, profile) : profile.default_modes;
   if (!modes && needs.modes.empty()) needs.modes = allModes(profile);
@@ -207,13 +245,16 @@ bool choosePdos(yaml::Section& section, AxisDraft& draft, RobotConfig& robot) {
   leaveOut(needs.if_room, ruled_out);
   if (!modes) leaveOut(needs.modes, unreachable);
   if (pdos && feedback) feedback->problem("says nothing beside `pdos`: keep one of them");
-  if (!pdos && feedback && !device.profile->pdos.empty()) {
+  const bool shared = device.profile->pdos_per_axis == 0;  // the profile's PDOs are axis 0's then
+  const bool given = !device.profile->pdos.empty() && (axis.device_axis == 0 || !shared);
+  if (!pdos && feedback && given) {
     feedback->problem("says nothing here: profile " + profile.name +
                       " has PDOs of its own; give the axis `pdos` instead");
   }
-  if (pdos || !device.profile->pdos.empty()) {
-    device.pdos = pdos ? readPdos(*pdos, profile, *device.profile) : device.profile->pdos;
+  if (pdos || given) {
+    draft.pdos().pdos = pdos ? readPdos(*pdos, profile, *device.profile) : device.profile->pdos;
     axis.modes = needs.modes;
+    if (shared && pdos) checkShared(*pdos, draft, needs);
   } else {
     const ModeSpec* start = profile.mode(axis.mode);
     const bool known =
@@ -224,8 +265,8 @@ bool choosePdos(yaml::Section& section, AxisDraft& draft, RobotConfig& robot) {
     }
     if (!known || !plan(section, draft, robot, needs)) return false;
   }
-  setRpdoTimeout(device);
-  setOutputs(axis, device);
+  setRpdoTimeout(draft.pdos(), device.rpdo_timeout);
+  setOutputs(axis, draft.pdos());
   return true;
 }
 
@@ -234,28 +275,35 @@ namespace {
 /// What `axis` was planned for, but for what travels only because there was room; its objects are
 /// those that found room.
 PdoNeeds needsOf(const AxisConfig& axis, const RobotConfig& robot) {
-  const DeviceConfig& device = robot.deviceOf(axis);
+  const canopen::PdoSet& set = robot.pdosOf(axis);
   PdoNeeds needs;
   needs.mode = axis.mode;
   needs.modes = axis.modes;
-  for (const canopen::PdoLayout& pdo : device.pdos) {
+  for (const canopen::PdoLayout& pdo : set.pdos) {
     if (pdo.direction != canopen::PdoDirection::tpdo) continue;
     std::copy_if(pdo.objects.begin(), pdo.objects.end(), std::back_inserter(needs.feedback),
-                 [&](const std::string& name) { return !contains(device.riders, name); });
+                 [&](const std::string& name) { return !contains(set.riders, name); });
   }
-  needs.cycle = axis.sync_period;
+  needs.cycle = axis.cycle;
   needs.fresh = freshness(robot);
   return needs;
 }
 
+/// Another plan finds room where this one did: of the device's PDOs it gets no more.
 void plan(AxisConfig& axis, RobotConfig& robot) {
-  DeviceConfig& device = robot.deviceOf(axis);
-  const Result<PdoPlan> planned = planPdos(*axis.profile, *device.profile, needsOf(axis, robot));
+  const DeviceConfig& device = robot.deviceOf(axis);
+  canopen::PdoSet& set = robot.pdosOf(axis);
+  PdoNeeds needs = needsOf(axis, robot);
+  const auto axes = static_cast<unsigned>(
+      std::count_if(robot.axes.begin(), robot.axes.end(),
+                    [&](const AxisConfig& other) { return other.device == axis.device; }));
+  setShares(needs, device, axis.device_axis, axes);
+  const Result<PdoPlan> planned = planPdos(*axis.profile, *device.profile, needs);
   if (!planned) return;
-  device.pdos = planned->pdos;
-  device.riders = planned->riders;
-  setRpdoTimeout(device);
-  setOutputs(axis, device);
+  set.pdos = planned->pdos;
+  set.riders = planned->riders;
+  setRpdoTimeout(set, device.rpdo_timeout);
+  setOutputs(axis, set);
 }
 
 }  // namespace
@@ -263,14 +311,14 @@ void plan(AxisConfig& axis, RobotConfig& robot) {
 void planAgain(RobotConfig& robot, Duration cycle) {
   robot.bus.sync_period = cycle;
   for (AxisConfig& axis : robot.axes) {
-    axis.sync_period = cycle;
-    if (robot.deviceOf(axis).pdos_planned) plan(axis, robot);
+    axis.cycle = cycle;
+    if (robot.pdosOf(axis).planned) plan(axis, robot);
   }
 }
 
 void leaveRiders(RobotConfig& robot) {
   for (AxisConfig& axis : robot.axes) {
-    if (!robot.deviceOf(axis).riders.empty()) plan(axis, robot);
+    if (!robot.pdosOf(axis).riders.empty()) plan(axis, robot);
   }
 }
 

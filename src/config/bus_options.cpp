@@ -1,8 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "common/text.h"
 #include "config/robot_parts.h"
 #include "drive/profile/named_write.h"
 
@@ -73,12 +73,6 @@ void readHeartbeat(yaml::Section& section, BusConfig& bus) {
   }
 }
 
-std::string seconds(Duration duration) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g s", toSeconds(duration));
-  return text;
-}
-
 std::string percent(double share) { return std::to_string(std::lround(share * 100.0)) + " %"; }
 
 void checkPeriod(const yaml::Value& at, const RobotConfig& robot) {
@@ -88,7 +82,7 @@ void checkPeriod(const yaml::Value& at, const RobotConfig& robot) {
     const Duration step = device.sync_period_step;
     if (device.has_sync_period_object && robot.bus.sync_period % step != Duration(0)) {
       at.problem("`" + axis.name + "` (profile " + axis.profile->name + ") takes multiples of " +
-                 seconds(step) + " in 1006h");
+                 secondsText(step) + " in 1006h");
     }
     const auto& writes = axis.profile->startup;
     const bool interpolates =
@@ -99,7 +93,7 @@ void checkPeriod(const yaml::Value& at, const RobotConfig& robot) {
       at.problem("`" + axis.name +
                  "` needs the period in 60C2h as a number 1 to 255 times a power "
                  "of ten; take for example 0.004 instead of " +
-                 seconds(robot.bus.sync_period));
+                 secondsText(robot.bus.sync_period));
       return;
     }
   }
@@ -117,17 +111,17 @@ void warnOfUnnoticedLoss(RobotConfig& robot) {
         "lost drive be noticed but by its missing TPDOs");
     return;
   }
-  for (const drive::AxisConfig& axis : robot.axes) {
-    if (!axis.profile) continue;
-    const ErrorControlPlan plan = planErrorControl(robot.bus, robot.deviceOf(axis));
+  for (const canopen::DeviceConfig& device : robot.devices) {
+    if (!device.profile) continue;
+    const ErrorControlPlan plan = planErrorControl(robot.bus, device);
     if (plan.kind == canopen::ErrorControl::guarding) continue;
     if (plan.kind == canopen::ErrorControl::none) {
-      robot.warnings.push_back("axes/" + axis.name +
+      robot.warnings.push_back("axes/" + device.name +
                                ": this drive is not supervised: its loss shows in missing TPDOs "
                                "only");
     }
     if (plan.master_timeout > Duration(0)) continue;
-    robot.warnings.push_back("axes/" + axis.name +
+    robot.warnings.push_back("axes/" + device.name +
                              ": this drive watches no heartbeat: should this program die, it would "
                              "not notice and stop");
   }
@@ -242,7 +236,7 @@ void checkBusLoad(const yaml::Value& bus_section, RobotConfig& robot, Problems& 
       return;
     }
     at.problem(share + "; at most " + feasible + " Hz keep it below 80 %: write `sync_period` of " +
-               seconds(cycle->period) +
+               secondsText(cycle->period) +
                " or more, leave modes (`modes`) or feedback (`feedback`) out, or use a second bus");
   } else {
     robot.warnings.push_back("bus/sync_period: " + share +

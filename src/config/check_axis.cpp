@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include "common/text.h"
 #include "config/pdo_planner.h"
 #include "config/robot_parts.h"
 #include "drive/profile/conversion.h"
@@ -9,7 +10,6 @@
 namespace cia402::config {
 namespace {
 
-using canopen::DeviceConfig;
 using canopen::PdoDirection;
 using drive::AxisConfig;
 using drive::AxisGeometry;
@@ -40,8 +40,8 @@ void checkGeometry(yaml::Section& section, const AxisConfig& axis) {
   }
 }
 
-bool maps(const DeviceConfig& device, PdoDirection direction, const std::string& object) {
-  return std::any_of(device.pdos.begin(), device.pdos.end(), [&](const canopen::PdoLayout& pdo) {
+bool maps(const canopen::PdoSet& set, PdoDirection direction, const std::string& object) {
+  return std::any_of(set.pdos.begin(), set.pdos.end(), [&](const canopen::PdoLayout& pdo) {
     return pdo.direction == direction &&
            std::find(pdo.objects.begin(), pdo.objects.end(), object) != pdo.objects.end();
   });
@@ -57,7 +57,6 @@ std::vector<std::string> startModes(const DriveProfile& profile) {
 
 void checkMode(yaml::Section& section, const AxisDraft& draft) {
   const AxisConfig& axis = draft.axis;
-  const DeviceConfig& device = draft.device;
   const auto at = section.get("mode").value_or(section.value());
   const ModeSpec* mode = axis.profile->mode(axis.mode);
   if (mode == nullptr || mode->kind == drive::ControlKind::homing) {
@@ -65,14 +64,14 @@ void checkMode(yaml::Section& section, const AxisDraft& draft) {
                yaml::suggestion(axis.mode, startModes(*axis.profile)));
     return;
   }
-  if (!maps(device, PdoDirection::rpdo, mode->target)) {
+  if (!maps(draft.pdos(), PdoDirection::rpdo, mode->target)) {
     at.problem("mode `" + axis.mode + "` needs `" + mode->target +
                "` in an RPDO; add it to `pdos`, or choose a mode whose target is mapped");
   }
   for (const std::string& name : section.has("modes") ? axis.modes : std::vector<std::string>()) {
     const ModeSpec* other = axis.profile->mode(name);
     if (other == nullptr || other->target.empty()) continue;
-    if (maps(device, PdoDirection::rpdo, other->target)) continue;
+    if (maps(draft.pdos(), PdoDirection::rpdo, other->target)) continue;
     section.get("modes")->problem("mode `" + name + "` needs `" + other->target +
                                   "` in an RPDO; add it to `pdos`, or leave the mode out");
   }
@@ -82,10 +81,10 @@ void checkMode(yaml::Section& section, const AxisDraft& draft) {
   }
 }
 
-void checkCyclicObjects(yaml::Section& section, const DeviceConfig& device) {
+void checkCyclicObjects(yaml::Section& section, const canopen::PdoSet& pdos) {
   const auto at = section.get("pdos").value_or(section.value());
   const auto need = [&](PdoDirection direction, const char* object, const char* kind) {
-    if (!maps(device, direction, object)) {
+    if (!maps(pdos, direction, object)) {
       at.problem("`" + std::string(object) + "` must be in " + kind + ": the axis needs it in " +
                  "every cycle");
     }
@@ -99,7 +98,7 @@ void checkCyclicObjects(yaml::Section& section, const DeviceConfig& device) {
 // nobody sets would be 0 and drop the load.
 void checkRpdoObjects(yaml::Section& section, const AxisDraft& draft) {
   const auto at = section.get("pdos").value_or(section.value());
-  for (const canopen::PdoLayout& pdo : draft.device.pdos) {
+  for (const canopen::PdoLayout& pdo : draft.pdos().pdos) {
     if (pdo.direction != PdoDirection::rpdo) continue;
     for (const std::string& object : pdo.objects) {
       if (isSetByDriver(*draft.axis.profile, object)) continue;
@@ -138,7 +137,7 @@ void checkHoming(yaml::Section& section, const AxisConfig& axis, RobotConfig& ro
   } else if (axis.homing->method && method && spec.methods.count(*axis.homing->method) == 0) {
     std::string known;
     for (const auto& entry : spec.methods) {
-      if (entry.first) known += (known.empty() ? "" : ", ") + std::to_string(*entry.first);
+      if (entry.first) append(known, std::to_string(*entry.first), ", ");
     }
     method->problem("profile " + axis.profile->name + " has no method " +
                     std::to_string(*axis.homing->method) + "; it has " + known);
@@ -196,11 +195,11 @@ void checkQuickStop(yaml::Section& section, const AxisConfig& axis) {
                "write `from: quick_stop.hold`); write `disable` or leave it out");
     return;
   }
-  const drive::ObjectSpec* option = profile.find(fieldbus::ObjectId{0x605A, 0});
+  const drive::ObjectSpec* option = profile.find(profile.own({0x605A, 0}));
   if (axis.description == nullptr || option == nullptr) return;
   if (axis.description->dictionary.find(option->id) != nullptr) return;
-  at.problem("the drive cannot hold after a quick stop: " + axis.description->file +
-             " has no 605A:00; write `disable` or leave it out");
+  at.problem("the drive cannot hold after a quick stop: " + axis.description->file + " has no " +
+             fieldbus::toString(option->id) + "; write `disable` or leave it out");
 }
 
 void checkWrites(yaml::Section& section, const AxisConfig& axis) {
@@ -225,8 +224,8 @@ void checkAxis(yaml::Section& section, const AxisDraft& draft, RobotConfig& robo
   checkGeometry(section, axis);
   checkMode(section, draft);
   const bool planned =
-      !draft.device.pdos.empty() || section.has("pdos");  // else checkMode() has told why
-  if (planned) checkCyclicObjects(section, draft.device);
+      !draft.pdos().pdos.empty() || section.has("pdos");  // else checkMode() has told why
+  if (planned) checkCyclicObjects(section, draft.pdos());
   checkRpdoObjects(section, draft);
   warnOfMissingLimits(section, axis, robot);
   checkHoming(section, axis, robot);

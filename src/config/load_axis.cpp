@@ -11,21 +11,6 @@ namespace {
 using drive::AxisConfig;
 using drive::AxisGeometry;
 
-void readNodeId(yaml::Section& section, canopen::DeviceConfig& device, const RobotConfig& robot) {
-  const auto value = section.require("node_id", "the drive's CANopen node-ID, 1 to 127");
-  const auto id = value ? value->integer(1, 127) : std::nullopt;
-  if (!id) return;
-  device.node_id = static_cast<canopen::NodeId>(*id);
-  if (device.node_id == robot.bus.node_id) {
-    value->problem(std::to_string(*id) + " is the master's own node-ID (bus/node_id)");
-  }
-  for (const canopen::DeviceConfig& other : robot.devices) {
-    if (other.node_id != device.node_id) continue;
-    value->problem(std::to_string(*id) + " is the node-ID of `" + other.name + "` already");
-    break;
-  }
-}
-
 void readJoint(yaml::Section& section, AxisConfig& axis, const RobotConfig& robot) {
   axis.joint = axis.name;
   section.read("joint", axis.joint);
@@ -52,16 +37,47 @@ void readGeometry(yaml::Section& section, AxisGeometry& geometry) {
   if (sign && *sign != 0) geometry.direction = static_cast<int>(*sign);
 }
 
+void readDevice(yaml::Section& section, canopen::DeviceConfig& device, const RobotConfig& robot) {
+  if (const auto identity = section.get("identity")) readIdentity(*identity, device);
+  if (const auto lss = section.get("lss")) readLss(*lss, device, robot);
+  readNodeOptions(section, device);
+}
+
+void readDrive(yaml::Section& section, AxisDraft& draft, ProfileCache& profiles) {
+  const auto name = section.require("drive", "the drive's profile, e.g. generic_cia402");
+  if (!name) return;
+  const SharedFamily family = profiles.get(*name);
+  draft.axis.profile = family.drive;
+  if (draft.first) draft.device.profile = family.device;
+  if (draft.axis.device_axis == 0 || !family.drive) return;
+  draft.axis.profile = std::make_shared<const drive::DriveProfile>(
+      drive::ofDeviceAxis(*family.drive, draft.axis.device_axis));
+}
+
+/// Puts what was read into the robot.
+void keep(const AxisDraft& draft, RobotConfig& robot) {
+  robot.axes.push_back(draft.axis);
+  if (draft.first) {
+    robot.devices.push_back(draft.device);
+    return;
+  }
+  canopen::DeviceConfig& device = robot.devices[draft.axis.device];
+  device = draft.device;
+  std::string joints;
+  for (const AxisConfig& axis : robot.axes) {
+    if (axis.device == draft.axis.device) joints += (joints.empty() ? "" : ", ") + axis.joint;
+  }
+  device.title = joints + " (node " + std::to_string(device.node_id) + ")";
+}
+
 void readSections(yaml::Section& section, AxisDraft& draft, RobotConfig& robot) {
   AxisConfig& axis = draft.axis;
   if (const auto limits = section.get("limits")) {
     axis.limits = readLimits(*limits, axis.geometry.type);
   }
   if (const auto homing = section.get("homing")) axis.homing = readHoming(*homing);
-  if (const auto identity = section.get("identity")) readIdentity(*identity, draft.device);
-  if (const auto lss = section.get("lss")) readLss(*lss, draft.device, robot);
+  if (draft.first) readDevice(section, draft.device, robot);
   if (const auto parameters = section.get("parameters")) readParameters(*parameters, axis);
-  readNodeOptions(section, draft.device);
   if (const auto frame = section.get("frame")) {
     robot.frames.push_back(readFrame(*frame, axis.joint));
   }
@@ -108,29 +124,22 @@ SharedFamily ProfileCache::get(const yaml::Value& name) {
   return entry;
 }
 
-void readAxis(const std::string& name, const yaml::Value& value, NamedFiles& files,
+void readAxis(const std::string& name, const yaml::Value& value, AxisReading& reading,
               RobotConfig& robot) {
   AxisDraft draft;
   AxisConfig& axis = draft.axis;
-  canopen::DeviceConfig& device = draft.device;
-  axis.name = device.name = name;
-  axis.device = robot.devices.size();
-  axis.sync_period = robot.bus.sync_period;
+  axis.name = draft.device.name = name;
+  axis.cycle = robot.bus.sync_period;
   yaml::Section section(value);
   if (!isGraphName(name)) {
     section.problem("an axis is named by a letter, then letters, digits and _");
   }
-  readNodeId(section, device, robot);
+  readPlace(section, draft, robot);
+  checkDeviceKeys(section, draft, reading);
   readJoint(section, axis, robot);
-  axis.place = "node " + std::to_string(device.node_id);
-  device.title = drive::whoIs(axis);
-  const auto drive_name = section.require("drive", "the drive's profile, e.g. generic_cia402");
-  if (drive_name) {
-    const SharedFamily family = files.profiles.get(*drive_name);
-    axis.profile = family.drive;
-    device.profile = family.device;
-  }
-  readEds(section, draft, files.eds, robot);
+  if (draft.first) draft.device.title = drive::whoIs(axis);
+  readDrive(section, draft, reading.profiles);
+  readEds(section, draft, reading.eds, robot);
   readGeometry(section, axis.geometry);
   if (axis.geometry.type == AxisGeometry::Type::prismatic) axis.standstill_velocity = 0.002;
   section.read("mode", axis.mode);
@@ -150,12 +159,12 @@ void readAxis(const std::string& name, const yaml::Value& value, NamedFiles& fil
     const bool streams = axis.profile->mode("cyclic_position") != nullptr;
     axis.mode = streams ? "cyclic_position" : axis.profile->modes.front().name;
   }
-  if (choosePdos(section, draft, robot)) checkAxis(section, draft, robot);
+  const unsigned axes = reading.axes_of[draft.device.node_id];
+  if (choosePdos(section, draft, robot, axes)) checkAxis(section, draft, robot);
   checkEds(section, draft, robot);
-  checkErrorControl(section, draft, robot);
+  if (draft.first) checkErrorControl(section, draft, robot);
   section.finish();
-  robot.axes.push_back(axis);
-  robot.devices.push_back(device);
+  keep(draft, robot);
 }
 
 }  // namespace cia402::config

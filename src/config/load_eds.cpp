@@ -43,12 +43,16 @@ SharedEds EdsFiles::get(const yaml::Value& name, canopen::NodeId node_id, RobotC
 }
 
 void readEds(yaml::Section& section, AxisDraft& draft, EdsFiles& files, RobotConfig& robot) {
-  const auto value = section.get("eds");
-  if (!value) return;
   drive::AxisConfig& axis = draft.axis;
-  const SharedEds eds = files.get(*value, draft.device.node_id, robot);
-  axis.description = eds.description;
-  draft.device.eds = eds.info;
+  const auto value = section.get("eds");
+  if (draft.first && value) {
+    const SharedEds eds = files.get(*value, draft.device.node_id, robot);
+    axis.description = eds.description;
+    draft.device.eds = eds.info;
+  }
+  for (const drive::AxisConfig& other : robot.axes) {
+    if (other.device == axis.device) axis.description = other.description;
+  }
   if (axis.description == nullptr || axis.profile == nullptr) return;
   axis.profile =
       std::make_shared<const drive::DriveProfile>(withEds(*axis.profile, *axis.description));
@@ -57,8 +61,9 @@ void readEds(yaml::Section& section, AxisDraft& draft, EdsFiles& files, RobotCon
 void checkEds(yaml::Section& section, const AxisDraft& draft, RobotConfig& robot) {
   const drive::AxisConfig& axis = draft.axis;
   if (axis.description == nullptr || axis.profile == nullptr) return;
-  const auto found = compareWithEds(*axis.profile, draft.device, *axis.description);
-  for (const std::string& problem : found.problems) section.get("eds")->problem(problem);
+  const auto found = compareWithEds(*axis.profile, draft.device, draft.pdos(), *axis.description);
+  const yaml::Value at = section.get("eds").value_or(section.value());
+  for (const std::string& problem : found.problems) at.problem(problem);
   for (const std::string& warning : found.warnings) {
     robot.warnings.push_back(section.value().path() + "/eds: " + warning);
   }

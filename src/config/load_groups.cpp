@@ -85,7 +85,7 @@ std::string incapacity(const RobotConfig& robot, const std::string& name) {
     return cannot + "its profile has no cyclic position mode; leave its joint out of the group";
   }
   const std::string where = "axes/" + name + "/";
-  const std::string add = robot.deviceOf(*axis).pdos_planned
+  const std::string add = robot.pdosOf(*axis).planned
                               ? "add " + mode->name + " to `" + where + "modes`"
                               : "map " + mode->target + " into an RPDO in `" + where + "pdos`";
   return cannot + "no RPDO holds the target of its mode " + mode->name + "; " + add +

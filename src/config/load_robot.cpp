@@ -7,12 +7,20 @@
 namespace cia402::config {
 namespace {
 
-void readAxes(const yaml::Value& value, const YAML::Node& defaults, NamedFiles& files,
+/// Before anything is read: what is wrong with it is told then.
+void countAxes(const YAML::Node& axis, AxisReading& reading) {
+  const YAML::Node node = axis.IsMap() ? axis["node_id"] : YAML::Node();
+  const auto id = node && node.IsScalar() ? yaml::parseInteger(node.Scalar()) : std::nullopt;
+  if (id && *id >= 1 && *id <= 127) ++reading.axes_of[static_cast<canopen::NodeId>(*id)];
+}
+
+void readAxes(const yaml::Value& value, const YAML::Node& defaults, AxisReading& reading,
               RobotConfig& robot) {
   yaml::Section section(value);
+  for (const auto& [name, entry] : section.entries()) countAxes(entry.node(), reading);
   for (const auto& [name, entry] : section.entries()) {
     const yaml::Value merged(mergeDefaults(defaults, entry.node()), entry.path(), entry.problems());
-    readAxis(name, merged, files, robot);
+    readAxis(name, merged, reading, robot);
   }
   section.finish();
   if (robot.axes.empty()) value.problem("must name at least one axis");
@@ -29,7 +37,7 @@ void checkFrames(const yaml::Value& axes, const RobotConfig& robot) {
 
 RobotConfig readRobot(const YAML::Node& tree, const ProfileLookup& lookup, Problems& problems) {
   RobotConfig robot;
-  NamedFiles files{ProfileCache(lookup, problems), EdsFiles(lookup)};
+  AxisReading reading{ProfileCache(lookup, problems), EdsFiles(lookup), {}, {}};
   const yaml::Value root(tree, "", problems);
   yaml::Section section(root);
   const yaml::Value missing(YAML::Node(YAML::NodeType::Map), "bus", problems);
@@ -42,7 +50,7 @@ RobotConfig readRobot(const YAML::Node& tree, const ProfileLookup& lookup, Probl
   section.read("joint_state_rate", robot.joint_state_rate, yaml::Range{0.0, 1000.0, true});
   const auto axes = section.get("axes");
   if (axes) {
-    readAxes(*axes, defaults ? defaults->node() : YAML::Node(), files, robot);
+    readAxes(*axes, defaults ? defaults->node() : YAML::Node(), reading, robot);
     checkFrames(*axes, robot);
   } else {
     problems.add("axes", "is missing: name at least one axis with its node_id and drive");

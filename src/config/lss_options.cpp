@@ -1,4 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "common/text.h"
 #include "config/robot_parts.h"
 
 namespace cia402::config {
@@ -47,7 +48,7 @@ void readLss(const yaml::Value& value, DeviceConfig& device, const RobotConfig& 
     if (expected) {
       lss.identity.setPart(part, *expected);
     } else if (!section.has(kRows[part].key)) {
-      missing += (missing.empty() ? "" : ", ") + std::string(kRows[part].key);
+      append(missing, kRows[part].key, ", ");
     }
   }
   section.read("store", lss.store);

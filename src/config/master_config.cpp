@@ -1,8 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cstdio>
-#include <map>
 
+#include "config/node_pdos.h"
 #include "config/robot_parts.h"
 #include "drive/axis/state_machine.h"
 #include "drive/profile/named_write.h"
@@ -12,120 +11,7 @@ namespace {
 
 using canopen::DeviceConfig;
 using canopen::NodeConfig;
-using canopen::PdoConfig;
-using canopen::PdoDirection;
 using drive::AxisConfig;
-
-constexpr unsigned kPredefinedPdos = 4;  // of each direction have a COB-ID of their own
-
-/// May a PDO have this identifier (CiA 301, 7.3.5, restricted CAN-IDs)?
-bool isPdoCobId(unsigned cob_id) {
-  return (cob_id >= 0x181 && cob_id <= 0x57F) || (cob_id >= 0x680 && cob_id <= 0x6DF);
-}
-
-std::string hexId(unsigned cob_id) {
-  char text[12];
-  std::snprintf(text, sizeof text, "0x%03X", cob_id);
-  return text;
-}
-
-/// 0: the drive's own.
-unsigned cobId(const canopen::PdoLayout& layout, const DeviceConfig& device) {
-  using Kind = canopen::CobIdSpec::Kind;
-  const unsigned base = layout.direction == PdoDirection::rpdo ? 0x200 : 0x180;
-  switch (layout.cob_id.kind) {
-    case Kind::absolute:
-      return layout.cob_id.value;
-    case Kind::node_id:
-      return unsigned{layout.cob_id.value} + device.node_id;
-    case Kind::drive:
-      return 0;
-    case Kind::predefined:
-      break;
-  }
-  if (device.profile->cob_ids_of_drive) return 0;
-  return base + 0x100 * (layout.number - 1) + device.node_id;  // only asked for up to the fourth
-}
-
-PdoConfig makePdo(const canopen::PdoLayout& layout, const AxisConfig& axis,
-                  const DeviceConfig& device) {
-  PdoConfig pdo;
-  pdo.direction = layout.direction;
-  pdo.number = layout.number;
-  pdo.cob_id = static_cast<std::uint16_t>(cobId(layout, device));
-  pdo.transmission = layout.transmission;
-  pdo.inhibit = layout.inhibit;
-  pdo.event_timer = layout.event_timer;
-  pdo.stale_after = device.stale_after;
-  pdo.request_every = layout.request_every;
-  pdo.refresh_every = layout.refresh_every;
-  pdo.enabled = !layout.objects.empty();
-  for (const std::string& name : layout.objects) {
-    const drive::ObjectSpec* object = drive::findObject(*axis.profile, name);
-    if (object == nullptr) continue;  // refused by readPdos() already
-    const auto& defaults = device.default_objects;
-    const auto& riders = device.riders;
-    const bool optional = std::find(defaults.begin(), defaults.end(), name) != defaults.end();
-    const bool if_room = std::find(riders.begin(), riders.end(), name) != riders.end();
-    pdo.entries.push_back({object->id, static_cast<std::uint8_t>(fieldbus::sizeBits(object->type)),
-                           object->name, optional, if_room});
-  }
-  return pdo;
-}
-
-bool hasCobId(const canopen::PdoLayout& layout, const DeviceConfig& device) {
-  return layout.number <= kPredefinedPdos || device.profile->cob_ids_of_drive ||
-         layout.cob_id.kind != canopen::CobIdSpec::Kind::predefined;
-}
-
-// The layout's PDOs; all others that the drive has are made invalid.
-std::vector<PdoConfig> makePdos(const AxisConfig& axis, const DeviceConfig& device,
-                                Problems& problems) {
-  std::vector<PdoConfig> pdos;
-  const std::string path = "axes/" + axis.name + "/pdos";
-  for (const PdoDirection direction : {PdoDirection::rpdo, PdoDirection::tpdo}) {
-    const bool rpdo = direction == PdoDirection::rpdo;
-    const unsigned count = rpdo ? device.profile->max_rpdos : device.profile->max_tpdos;
-    for (unsigned number = 1; number <= count; ++number) {
-      canopen::PdoLayout layout;
-      layout.direction = direction;
-      layout.number = number;
-      for (const canopen::PdoLayout& entry : device.pdos) {
-        if (entry.direction == direction && entry.number == number) layout = entry;
-      }
-      const std::string name = (rpdo ? "rpdo" : "tpdo") + std::to_string(number);
-      if (!layout.objects.empty() && !hasCobId(layout, device)) {
-        problems.add(path, name + " has no COB-ID: the predefined connection set ends with the " +
-                               "fourth; give it a `cob_id`");
-        continue;
-      }
-      pdos.push_back(makePdo(layout, axis, device));
-      const unsigned cob_id = pdos.back().cob_id;
-      if (pdos.back().enabled && cob_id != 0 && !isPdoCobId(cob_id)) {
-        problems.add(path, name + " would have the COB-ID " + hexId(cob_id) +
-                               ", which CiA 301 keeps for something else");
-      }
-    }
-  }
-  return pdos;
-}
-
-/// No two PDOs on the bus share an identifier: a drive would take what is meant for another.
-void checkCobIds(const canopen::MasterConfig& master, Problems& problems) {
-  std::map<unsigned, std::string> users;
-  for (const NodeConfig& node : master.nodes) {
-    for (const PdoConfig& pdo : node.pdos) {
-      if (!pdo.enabled || pdo.cob_id == 0) continue;
-      const std::string name = (pdo.direction == PdoDirection::rpdo ? "rpdo" : "tpdo") +
-                               std::to_string(pdo.number) + " of `" + node.name + "`";
-      const auto [first, fresh] = users.emplace(pdo.cob_id, name);
-      if (fresh) continue;
-      problems.add("axes/" + node.name + "/pdos", name + " has the COB-ID " + hexId(pdo.cob_id) +
-                                                      ", which is that of " + first->second +
-                                                      " already; give one of them another");
-    }
-  }
-}
 
 enum class AskedBy { profile, user };
 
@@ -200,9 +86,15 @@ void setSync(const BusConfig& bus, const canopen::DeviceProfile& profile, NodeCo
   }
 }
 
-NodeConfig makeNode(const RobotConfig& robot, const AxisConfig& axis, Problems& problems) {
-  const drive::DriveProfile& profile = *axis.profile;
-  const DeviceConfig& device = robot.deviceOf(axis);
+void addAxis(const AxisConfig& axis, NodeConfig& node, Problems& problems) {
+  const std::string path = "axes/" + axis.name;
+  addWrites(axis.profile->startup, AskedBy::profile, axis, path, node, problems);
+  addWrites(axis.writes, AskedBy::user, axis, path + "/write", node, problems);
+}
+
+/// @param axes that sit in the device, at least one
+NodeConfig makeNode(const BusConfig& bus, const DeviceConfig& device,
+                    const std::vector<const AxisConfig*>& axes, Problems& problems) {
   const canopen::DeviceProfile& family = *device.profile;
   NodeConfig node;
   node.node_id = device.node_id;
@@ -214,22 +106,29 @@ NodeConfig makeNode(const RobotConfig& robot, const AxisConfig& axis, Problems& 
   node.revision = device.revision;
   node.serial = device.serial;
   node.boot = device.boot;
-  setSupervision(robot.bus, device, node);
-  setSync(robot.bus, family, node);
+  setSupervision(bus, device, node);
+  setSync(bus, family, node);
   node.map_count_may_be_read_only = family.pdo_map_count_may_be_read_only;
   node.fixed_map_entries = family.fixed_pdo_entries;
-  node.pdos = makePdos(axis, device, problems);
+  for (const AxisConfig* axis : axes) addPdos(*axis, device, node, problems);
   static_cast<fieldbus::AccessOptions&>(node.sdo) = family.sdo;
   node.sdo_channel = device.sdo;
   node.boot_timeout = family.boot_time;
   node.reset_node_allowed = family.nmt_reset_node;
-  addStop(profile, node);
-  addSyncWindow(robot.bus, node);
-  const std::string path = "axes/" + axis.name;
-  addWrites(profile.startup, AskedBy::profile, axis, path, node, problems);
-  addWrites(axis.writes, AskedBy::user, axis, path + "/write", node, problems);
-  node.lacking_remedy = "`lacks` of " + path + " says that this is right";
+  for (const AxisConfig* axis : axes) addStop(*axis->profile, node);
+  addSyncWindow(bus, node);
+  for (const AxisConfig* axis : axes) addAxis(*axis, node, problems);
+  node.lacking_remedy = "`lacks` of axes/" + device.name + " says that this is right";
   return node;
+}
+
+/// Those in one device, in their order; empty where one has no profile.
+std::vector<const AxisConfig*> axesIn(const RobotConfig& robot, std::size_t device) {
+  std::vector<const AxisConfig*> axes;
+  for (const AxisConfig& axis : robot.axes) {
+    if (axis.device == device && axis.profile) axes.push_back(&axis);
+  }
+  return axes;
 }
 
 }  // namespace
@@ -247,9 +146,12 @@ canopen::MasterConfig makeMasterConfig(const RobotConfig& robot, Problems& probl
                                [](const DeviceConfig& device) { return device.lss.has_value(); });
   master.reset_all = robot.bus.reset_all || lss;
   master.time_interval = robot.bus.time_interval;
-  for (const AxisConfig& axis : robot.axes) {
-    if (axis.profile) master.nodes.push_back(makeNode(robot, axis, problems));
+  for (std::size_t i = 0; i < robot.devices.size(); ++i) {
+    const std::vector<const AxisConfig*> axes = axesIn(robot, i);
+    if (axes.empty() || !robot.devices[i].profile) continue;
+    master.nodes.push_back(makeNode(robot.bus, robot.devices[i], axes, problems));
   }
+  assignCobIds(master, problems);
   checkSdoChannels(master, problems);
   checkCobIds(master, problems);
   return master;

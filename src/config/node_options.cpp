@@ -1,8 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // The keys of an axis that say how its node is supervised and booted.
 #include <array>
-#include <cstdio>
 
+#include "common/text.h"
 #include "config/robot_parts.h"
 
 namespace cia402::config {
@@ -111,12 +111,6 @@ void readChannel(const yaml::Value& value, canopen::SdoChannel& channel) {
   if (section.require("request", hint)) section.readInteger("request", channel.request, 1, 0x7FF);
   if (section.require("answer", hint)) section.readInteger("answer", channel.answer, 1, 0x7FF);
   section.finish();
-}
-
-std::string secondsText(Duration time) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g s", toSeconds(time));
-  return text;
 }
 
 void checkMasterTimeout(const yaml::Value& at, const canopen::ErrorControlOptions& options,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "common/text.h"
 #include "config/pdo_packing.h"
 #include "fieldbus/object.h"
 
@@ -37,7 +38,7 @@ bool contains(const std::vector<PackItem>& items, const std::string& name) {
 std::string withBits(const std::vector<PackItem>& items) {
   std::string text;
   for (const PackItem& item : items) {
-    text += (text.empty() ? "" : ", ") + item.name + " (" + std::to_string(item.bits) + ")";
+    append(text, item.name + " (" + std::to_string(item.bits) + ")", ", ");
   }
   return text;
 }
@@ -62,11 +63,15 @@ class Planner {
     rules.pdos = rpdo ? device_.max_rpdos : device_.max_tpdos;
     rules.entries = device_.max_pdo_entries;
     rules.may_change_every_cycle = rpdo;
+    const PdoNeeds::Share& share = rpdo ? needs_.rpdos : needs_.tpdos;
+    rules.most = share.most;
+    for (const unsigned number : share.taken) rules.fixed.push_back({number, {}});
     for (const canopen::PdoLayout& layout : device_.fixed_pdos) {
       if (layout.direction != direction) continue;
       FixedPdo fixed;
       fixed.number = layout.number;
-      bool usable = true;
+      // Of shared PDOs those that are fixed are axis 0's.
+      bool usable = profile_.offset == 0 || device_.pdos_per_axis != 0;
       for (const std::string& name : layout.objects) {
         const ObjectSpec* object = profile_.find(name);
         usable = usable && object != nullptr && (!rpdo || isSetByDriver(profile_, name));
@@ -85,8 +90,13 @@ class Planner {
                        (direction == PdoDirection::rpdo ? " RPDO" : " TPDO") +
                        (limits.pdos == 1 ? "" : "s") + " of 64 bits with at most " +
                        std::to_string(limits.entries) + " objects";
-    if (!limits.fixed.empty()) {
-      text += ", " + std::to_string(limits.fixed.size()) + " of them with a mapping that is fixed";
+    const auto fixed = static_cast<std::size_t>(
+        std::count_if(device_.fixed_pdos.begin(), device_.fixed_pdos.end(),
+                      [&](const canopen::PdoLayout& pdo) { return pdo.direction == direction; }));
+    if (fixed != 0) text += ", " + std::to_string(fixed) + " of them with a mapping that is fixed";
+    if (limits.most < limits.pdos) {
+      text +=
+          ", of which this axis gets " + std::to_string(limits.most) + " as the device has several";
     }
     return text;
   }
@@ -221,7 +231,7 @@ class Planner {
 
   /// What travels only where it costs no PDO.
   void addRiders(PackRules limits, std::vector<PackItem> items, std::vector<PackedPdo>& packed) {
-    limits.most = packed.size();
+    limits.most = std::min(limits.most, packed.size());
     for (const std::string& name : needs_.if_room) {
       const ObjectSpec* object = profile_.find(name);
       if (object == nullptr || !object->tpdo || contains(items, name)) continue;

@@ -22,6 +22,12 @@ struct PdoNeeds {
   bool feedback_required = false;  ///< somebody asked for it by name
   /// Further feedback, where the PDOs that travel for the rest have room for it: no PDO more.
   std::vector<std::string> if_room;
+  /// The PDOs of a direction that it may take, of a device whose axes share them.
+  struct Share {
+    std::vector<unsigned> taken;  ///< numbers that other axes have
+    std::size_t most = 512;       ///< that it may take, the others shall have some, too
+  };
+  Share rpdos, tpdos;
   Duration cycle{std::chrono::milliseconds(4)};
   /// Velocity and torque shall not be older than this, where the cycle allows.
   Duration fresh{std::chrono::milliseconds(10)};

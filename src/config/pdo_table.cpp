@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 
+#include "common/text.h"
 #include "config/robot.h"
 
 namespace cia402::config {
@@ -22,9 +23,7 @@ std::string when(const canopen::PdoConfig& pdo) {
 }
 
 std::string cobId(const canopen::PdoConfig& pdo) {
-  char text[12];
-  std::snprintf(text, sizeof text, "0x%03X", unsigned{pdo.cob_id});
-  return pdo.cob_id == 0 ? "drive" : text;
+  return pdo.cob_id == 0 ? "drive" : hexText(pdo.cob_id, 3);
 }
 
 std::string percent(const BusLoad& load) {
@@ -45,7 +44,7 @@ std::string pdoTable(const canopen::MasterConfig& master, double bitrate) {
       std::string objects;
       for (const canopen::PdoEntry& entry : pdo.entries) {
         bits += entry.bits;
-        objects += (objects.empty() ? "" : ", ") + entry.name + " " + toString(entry.object);
+        append(objects, entry.name + " " + toString(entry.object), ", ");
       }
       const bool rpdo = pdo.direction == canopen::PdoDirection::rpdo;
       const std::string name = (rpdo ? "rpdo" : "tpdo") + std::to_string(pdo.number);

@@ -94,6 +94,12 @@ struct RobotConfig {
     return devices[axis.device];
   }
   canopen::DeviceConfig& deviceOf(const drive::AxisConfig& axis) { return devices[axis.device]; }
+  const canopen::PdoSet& pdosOf(const drive::AxisConfig& axis) const {
+    return devices[axis.device].axes[axis.device_axis];
+  }
+  canopen::PdoSet& pdosOf(const drive::AxisConfig& axis) {
+    return devices[axis.device].axes[axis.device_axis];
+  }
   std::vector<CouplingConfig> couplings;
   std::vector<GroupConfig> groups;
   std::vector<FrameConfig> frames;

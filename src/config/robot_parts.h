@@ -22,6 +22,10 @@ struct SharedFamily {
 struct AxisDraft {
   drive::AxisConfig axis;
   canopen::DeviceConfig device;
+  bool first = true;  ///< of those in the device, which reads what is the device's
+
+  canopen::PdoSet& pdos() { return device.axes[axis.device_axis]; }
+  const canopen::PdoSet& pdos() const { return device.axes[axis.device_axis]; }
 };
 
 /// An EDS or DCF that was read.
@@ -56,10 +60,13 @@ class EdsFiles {
   std::set<std::string> told_;
 };
 
-/// The files that a robot's configuration names.
-struct NamedFiles {
+/// What the axes of a robot share while they are read.
+struct AxisReading {
   ProfileCache profiles;
   EdsFiles eds;
+  std::map<canopen::NodeId, unsigned> axes_of;  ///< how many the file has of a node
+  /// Of each device (index) what its first axis says of it: key to YAML.
+  std::map<std::size_t, std::map<std::string, std::string>> device_keys;
 };
 
 /// `axis` with everything that only `defaults` has added under it, mappings key by key.
@@ -70,14 +77,22 @@ void nameDefaults(const YAML::Node& tree, const Problems& from, Problems& to);
 void readBus(const yaml::Value& value, BusConfig& bus, bool& counter_given);
 void readRecorder(const yaml::Value& value, RecorderConfig& recorder);
 /// Reads one axis with its frame and simulation into `robot`.
-void readAxis(const std::string& name, const yaml::Value& value, NamedFiles& files,
+void readAxis(const std::string& name, const yaml::Value& value, AxisReading& reading,
               RobotConfig& robot);
 
-/// Reads `eds` and widens the axis' profile by its objects; checkEds() compares both.
+/// Reads `node_id` and `device_axis`, and finds the device that the axis sits in: a new one, or
+/// that of an axis before.
+void readPlace(yaml::Section& section, AxisDraft& draft, const RobotConfig& robot);
+/// The keys that say something of the device, which its first axis has; where a further one has
+/// such a key, too, it must say the same. All of them count as read then.
+void checkDeviceKeys(yaml::Section& section, const AxisDraft& draft, AxisReading& reading);
+
+/// Reads `eds`, or takes that of the device's first axis, and widens the axis' profile by its
+/// objects; checkEds() compares both.
 void readEds(yaml::Section& section, AxisDraft& draft, EdsFiles& files, RobotConfig& robot);
 void checkEds(yaml::Section& section, const AxisDraft& draft, RobotConfig& robot);
 
-drive::AxisLimits readLimits(const yaml::Value& value, drive::AxisGeometry::Type type);
+motion::JointLimits readLimits(const yaml::Value& value, drive::AxisGeometry::Type type);
 drive::HomingOptions readHoming(const yaml::Value& value);
 /// `error_control`, `sdo`, `optional`, `boot` and the like.
 void readNodeOptions(yaml::Section& section, canopen::DeviceConfig& device);
@@ -101,7 +116,8 @@ SimulationConfig readSimulation(const yaml::Value& value);
 
 /// Chooses the PDO mapping: the axis' `pdos`, the profile's, or one made for its modes.
 /// @return false if there is none; the problem is told.
-bool choosePdos(yaml::Section& section, AxisDraft& draft, RobotConfig& robot);
+/// @param axes how many axes the device has that it sits in
+bool choosePdos(yaml::Section& section, AxisDraft& draft, RobotConfig& robot, unsigned axes);
 
 /// Plans what was planned once more, for another cycle; the same objects find room then, but for
 /// what travels only because there was room.

@@ -1,8 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Whether SDO channels of other COB-IDs than the predefined ones are free for that.
-#include <cstdio>
 #include <map>
 
+#include "common/text.h"
 #include "config/robot_parts.h"
 
 namespace cia402::config {
@@ -14,12 +14,6 @@ constexpr std::uint32_t kSdoAnswer = 0x580, kSdoRequest = 0x600;
 
 /// Who has an identifier.
 using Owners = std::map<std::uint32_t, std::string>;
-
-std::string hexId(std::uint32_t id) {
-  char text[16];
-  std::snprintf(text, sizeof text, "0x%03X", static_cast<unsigned>(id));
-  return text;
-}
 
 Owners everybody(const canopen::MasterConfig& master) {
   Owners owners{
@@ -51,7 +45,7 @@ void checkSdoChannels(const canopen::MasterConfig& master, Problems& problems) {
       const auto [owner, free] = owners.emplace(id, "the SDO channel of " + node.name);
       if (free) return;
       problems.add("axes/" + node.name + "/sdo/" + key,
-                   "COB-ID " + hexId(id) + " belongs to " + owner->second +
+                   "COB-ID " + hexText(id, 3) + " belongs to " + owner->second +
                        " already; an identifier has one meaning on a bus");
     };
     claim("request", node.sdo_channel.request);

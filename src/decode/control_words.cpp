@@ -1,5 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Statusword and controlword (CiA 402-2) in words.
+#include "common/text.h"
 #include "decode/value_text.h"
 #include "drive/axis/state_machine.h"
 
@@ -55,8 +56,7 @@ std::string controlBit(unsigned bit, const ModeSpec* mode) {
 }  // namespace
 
 std::string statuswordText(std::uint16_t statusword, const ModeSpec* mode) {
-  std::string text =
-      hexNumber(statusword, 2) + " " + drive::toString(drive::decodeState(statusword));
+  std::string text = hexText(statusword, 4) + " " + drive::toString(drive::decodeState(statusword));
   const char* separator = "; ";
   for (int bit = 0; bit < 16; ++bit) {
     const char* const name = statusBit(bit, mode);
@@ -68,7 +68,7 @@ std::string statuswordText(std::uint16_t statusword, const ModeSpec* mode) {
 }
 
 std::string controlwordText(std::uint16_t controlword, const ModeSpec* mode) {
-  std::string text = hexNumber(controlword, 2);
+  std::string text = hexText(controlword, 4);
   for (const Command& command : kCommands) {
     if ((controlword & command.mask) != command.value) continue;
     text += std::string(" ") + command.name;

@@ -1,10 +1,12 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "decode/frame_decoder.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "can/error_frame.h"
 #include "canopen/nmt/nmt.h"
+#include "common/text.h"
 #include "fieldbus/emergency.h"
 
 namespace cia402::decode {
@@ -24,14 +26,6 @@ std::uint64_t wordOf(const Frame& frame) {
 std::string dataText(const Frame& frame) {
   if (frame.remote) return "remote request, " + std::to_string(frame.size) + " bytes";
   return bytesText(fieldbus::Bytes(frame.data.begin(), frame.data.begin() + frame.size));
-}
-
-std::string hexBytes(const Frame& frame, std::size_t begin) {
-  std::string text;
-  for (std::size_t i = begin; i < frame.size; ++i) {
-    text += (text.empty() ? "" : " ") + hexNumber(frame.data[i], 1).substr(2);
-  }
-  return text;
 }
 
 const char* nmtStateText(std::uint8_t state) {
@@ -62,7 +56,7 @@ std::string nmtCommandText(std::uint8_t command) {
     case 0x82:
       return "reset communication";
     default:
-      return "unknown command " + hexNumber(command, 1);
+      return "unknown command " + hexText(command, 2);
   }
 }
 
@@ -73,8 +67,11 @@ FrameDecoder::FrameDecoder(const config::RobotConfig& robot, const canopen::Mast
   for (const drive::AxisConfig& axis : robot.axes) {
     const canopen::NodeId id = robot.deviceOf(axis).node_id;
     Node& node = nodes_[id];
-    node.name = drive::whoIs(axis, std::to_string(id));
-    node.values = std::make_unique<ValueText>(axis);
+    const std::string place = std::to_string(id);
+    node.joints += (node.joints.empty() ? "" : ", ") + axis.joint;
+    node.name = node.values ? node.joints + " (" + place + ")" : drive::whoIs(axis, place);
+    if (!node.values) node.values = std::make_unique<NodeValues>();
+    node.values->add(axis);
     node.sdo = SdoDecoder(node.values.get());
   }
   for (const canopen::NodeConfig& node : master.nodes) {
@@ -99,8 +96,22 @@ void FrameDecoder::addPdos(const canopen::NodeConfig& config) {
       shift += entry.bits;
     }
     pdo.size = (shift + 7) / 8;
+    pdo.name = ownerOf(pdo);
     pdos_[from.cob_id] = std::move(pdo);
   }
+}
+
+std::string FrameDecoder::ownerOf(const Pdo& pdo) const {
+  const auto known = nodes_.find(pdo.node);
+  if (known == nodes_.end() || !known->second.values || pdo.fields.empty()) {
+    return nodeName(pdo.node);
+  }
+  const Node& node = known->second;
+  const drive::AxisConfig& axis = node.values->of(pdo.fields.front().object).axis();
+  const bool one = std::all_of(pdo.fields.begin(), pdo.fields.end(), [&](const Field& field) {
+    return &node.values->of(field.object).axis() == &axis;
+  });
+  return one ? drive::whoIs(axis, std::to_string(pdo.node)) : node.name;
 }
 
 FrameDecoder::Node& FrameDecoder::nodeOf(NodeId id) {
@@ -119,7 +130,7 @@ std::string FrameDecoder::nodeName(NodeId node) const {
 
 std::string FrameDecoder::pdoText(const Pdo& pdo, const Frame& frame) {
   if (frame.remote) return "asked for";
-  ValueText* const values = nodeOf(pdo.node).values.get();
+  const NodeValues* const values = nodeOf(pdo.node).values.get();
   const std::uint64_t word = wordOf(frame);
   const auto raw = [&](const Field& field) {
     const std::uint64_t mask =
@@ -134,15 +145,19 @@ std::string FrameDecoder::pdoText(const Pdo& pdo, const Frame& frame) {
     text =
         "too short, " + std::to_string(frame.size) + " of " + std::to_string(pdo.size) + " bytes";
   }
-  if (values == nullptr) return text + (text.empty() ? "" : "; ") + hexBytes(frame, 0);
+  if (values == nullptr) {
+    append(text, hexBytes(frame.data.data(), frame.size));
+    return text;
+  }
   for (const Field& field : pdo.fields) {  // the mode first: it names bits of the other values
-    if (present(field)) values->note(field.object, raw(field));
+    if (present(field)) values->of(field.object).note(field.object, raw(field));
   }
   for (const Field& field : pdo.fields) {
     if (!present(field)) break;
-    text += (text.empty() ? "" : " | ") +
-            (field.name.empty() ? fieldbus::toString(field.object) : field.name) + " " +
-            values->describe(field.object, raw(field), field.bits);
+    append(text,
+           (field.name.empty() ? fieldbus::toString(field.object) : field.name) + " " +
+               values->of(field.object).describe(field.object, raw(field), field.bits),
+           " | ");
   }
   return text;
 }
@@ -150,13 +165,13 @@ std::string FrameDecoder::pdoText(const Pdo& pdo, const Frame& frame) {
 std::string FrameDecoder::emergencyText(const Frame& frame, NodeId id) {
   if (frame.size < 3) return "too short for an emergency: " + dataText(frame);
   const auto code = static_cast<std::uint16_t>(frame.data[0] | frame.data[1] << 8);
-  const ValueText* const values = nodeOf(id).values.get();
+  const NodeValues* const values = nodeOf(id).values.get();
   std::string text = code == 0           ? "0x0000 error reset or no error"
                      : values != nullptr ? errorText(code, *values->axis().profile)
-                                         : hexNumber(code, 2) + " " + fieldbus::emergencyText(code);
-  text += "; error register " + hexNumber(frame.data[2], 1) + " " +
+                                         : hexText(code, 4) + " " + fieldbus::emergencyText(code);
+  text += "; error register " + hexText(frame.data[2], 2) + " " +
           fieldbus::errorRegisterText(frame.data[2]);
-  const std::string vendor = hexBytes(frame, 3);
+  const std::string vendor = hexBytes(frame.data.data() + 3, frame.size - 3U);
   if (vendor.find_first_not_of("0 ") != std::string::npos) text += "; manufacturer " + vendor;
   return text;
 }
@@ -172,7 +187,7 @@ DecodedFrame FrameDecoder::errorControl(const Frame& frame, NodeId id) {
   const std::uint8_t state = frame.data[0];
   if (state == 0) node.guarded = false;
   const char* const words = nmtStateText(state);
-  const std::string text = words != nullptr ? words : "unknown state " + hexNumber(state, 1);
+  const std::string text = words != nullptr ? words : "unknown state " + hexText(state, 2);
   if (!node.guarded && (state & 0x80) == 0) return {"heartbeat", node.name, text};
   return {"guarding", node.name, text + ((state & 0x80) != 0 ? ", toggle 1" : ", toggle 0")};
 }
@@ -191,15 +206,15 @@ DecodedFrame FrameDecoder::broadcast(const Frame& frame) {
   if (frame.id == 0x7E5 || frame.id == 0x7E4) {
     return {"LSS", frame.id == 0x7E5 ? "master" : "slave", lssText(frame, frame.id == 0x7E5)};
   }
-  return {"?", "", hexNumber(frame.id, 2) + ": " + dataText(frame)};
+  return {"?", "", hexText(frame.id, 4) + ": " + dataText(frame)};
 }
 
 DecodedFrame FrameDecoder::decode(const Frame& frame) {
   if (frame.error) return {"error", "", can::describeErrorFrame(frame)};
-  if (frame.extended) return {"?", "", hexNumber(frame.id, 4) + ": " + dataText(frame)};
+  if (frame.extended) return {"?", "", hexText(frame.id, 8) + ": " + dataText(frame)};
   const auto pdo = pdos_.find(frame.id);
   if (pdo != pdos_.end()) {
-    return {pdo->second.service, nodeOf(pdo->second.node).name, pdoText(pdo->second, frame)};
+    return {pdo->second.service, pdo->second.name, pdoText(pdo->second, frame)};
   }
   const auto channel = channels_.find(frame.id);
   if (channel != channels_.end()) {

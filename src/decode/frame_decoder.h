@@ -13,8 +13,8 @@
 #include "can/frame.h"
 #include "canopen/config.h"
 #include "config/robot.h"
+#include "decode/node_values.h"
 #include "decode/sdo_decoder.h"
-#include "decode/value_text.h"
 
 namespace cia402::decode {
 
@@ -37,7 +37,7 @@ class FrameDecoder {
   /// What the next frame of the bus says. To be called with each, in their order.
   DecodedFrame decode(const can::Frame& frame);
 
-  /// "shoulder (1)"; "node 9" for one that is not configured.
+  /// "shoulder (1)", "left, right (1)"; "node 9" for one that is not configured.
   std::string nodeName(canopen::NodeId node) const;
 
  private:
@@ -49,12 +49,14 @@ class FrameDecoder {
   struct Pdo {
     std::string service;  ///< "TPDO1"
     canopen::NodeId node = 0;
+    std::string name;  ///< of the axis whose objects it carries, or of the node
     std::vector<Field> fields;
     unsigned size = 0;  ///< bytes
   };
   struct Node {
     std::string name;
-    std::unique_ptr<ValueText> values;  ///< none for a node without an axis
+    std::string joints;                  ///< of its axes
+    std::unique_ptr<NodeValues> values;  ///< none for a node without an axis
     SdoDecoder sdo{nullptr};
     bool guarded = false;  ///< a guarding request was seen
   };
@@ -66,6 +68,8 @@ class FrameDecoder {
   };
 
   void addPdos(const canopen::NodeConfig& config);
+  /// Name of the axis whose objects the PDO carries, or of the node where it has several.
+  std::string ownerOf(const Pdo& pdo) const;
   Node& nodeOf(canopen::NodeId id);
   std::string pdoText(const Pdo& pdo, const can::Frame& frame);
   DecodedFrame broadcast(const can::Frame& frame);

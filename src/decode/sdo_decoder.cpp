@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "decode/sdo_decoder.h"
 
+#include "common/text.h"
 #include "fieldbus/abort_code.h"
 
 namespace cia402::decode {
@@ -51,7 +52,7 @@ std::string toggle(const Frame& frame) {
   return std::string("toggle ") + ((frame.data[0] & 0x10) != 0 ? "1" : "0");
 }
 
-std::string unknown(const Frame& frame) { return "no SDO command: " + hexNumber(frame.data[0], 1); }
+std::string unknown(const Frame& frame) { return "no SDO command: " + hexText(frame.data[0], 2); }
 
 std::string announced(const Frame& frame) {
   return (frame.data[0] & 2) != 0 ? ", " + bytes(longOf(frame)) : ", size unknown";
@@ -182,7 +183,7 @@ std::string SdoDecoder::blockDownloadAnswer(const Frame& frame) {
     case 2:
       return acknowledged(frame);
     default:
-      return "no block write answer: " + hexNumber(frame.data[0], 1);
+      return "no block write answer: " + hexText(frame.data[0], 2);
   }
 }
 
@@ -225,7 +226,7 @@ std::string SdoDecoder::acknowledged(const Frame& frame) {
 std::string SdoDecoder::endOfBlocks(const Frame& frame) {
   trace_.endBlocks(frame.data[0] >> 2 & 7U);
   const unsigned crc = frame.data[1] | static_cast<unsigned>(frame.data[2]) << 8;
-  return "end of blocks " + current() + ", CRC " + hexNumber(crc, 2) + whole();
+  return "end of blocks " + current() + ", CRC " + hexText(crc, 4) + whole();
 }
 
 }  // namespace cia402::decode

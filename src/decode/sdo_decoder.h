@@ -4,8 +4,8 @@
 #include <string>
 
 #include "can/frame.h"
+#include "decode/node_values.h"
 #include "decode/sdo_trace.h"
-#include "decode/value_text.h"
 
 namespace cia402::decode {
 
@@ -14,7 +14,7 @@ namespace cia402::decode {
 class SdoDecoder {
  public:
   /// @param values of the server, nullptr if it is not known; must outlive the decoder.
-  explicit SdoDecoder(const ValueText* values) : values_(values) {}
+  explicit SdoDecoder(const NodeValues* values) : values_(values) {}
 
   std::string request(const can::Frame& frame);  ///< a frame of the client
   std::string answer(const can::Frame& frame);   ///< a frame of the server
@@ -35,7 +35,7 @@ class SdoDecoder {
   std::string whole() const;
   std::string value(fieldbus::ObjectId object, const fieldbus::Bytes& data) const;
 
-  const ValueText* values_;
+  const NodeValues* values_;
   SdoTrace trace_;
 };
 

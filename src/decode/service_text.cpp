@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdio>
 
+#include "common/text.h"
 #include "decode/frame_decoder.h"
 
 namespace cia402::decode {
@@ -77,7 +78,7 @@ std::string scanText(const Frame& frame) {
   if (frame.data[5] == 0x80) return ": is there a non-configured device?";
   static constexpr const char* kParts[] = {"vendor id", "product code", "revision",
                                            "serial number"};
-  return std::string(": ") + kParts[frame.data[6] & 3U] + " " + hexNumber(longAt(frame, 1), 4) +
+  return std::string(": ") + kParts[frame.data[6] & 3U] + " " + hexText(longAt(frame, 1), 8) +
          " from bit " + std::to_string(frame.data[5]) + " up, next " + kParts[frame.data[7] & 3U];
 }
 
@@ -88,7 +89,7 @@ std::string argumentText(Argument argument, const Frame& frame) {
     case Argument::mode:
       return frame.data[1] == 0 ? " to waiting" : " to configuration";
     case Argument::number:
-      return " " + hexNumber(longAt(frame, 1), 4);
+      return " " + hexText(longAt(frame, 1), 8);
     case Argument::node:
       return nodeText(frame.data[1]);
     case Argument::timing:
@@ -113,7 +114,7 @@ std::string lssText(const Frame& frame, bool from_master) {
     if (row.command != frame.data[0]) continue;
     return row.name + argumentText(from_master ? row.request : row.answer, frame);
   }
-  return "unknown command " + hexNumber(frame.data[0], 1);
+  return "unknown command " + hexText(frame.data[0], 2);
 }
 
 std::string timeText(const Frame& frame) {

@@ -1,13 +1,13 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "decode/value_text.h"
 
-#include <array>
+#include <algorithm>
 #include <cctype>
-#include <cstdio>
 
+#include "common/text.h"
 #include "decode/object_names.h"
+#include "drive/profile/fault_text.h"
 #include "drive/profile/object_value.h"
-#include "fieldbus/emergency.h"
 
 namespace cia402::decode {
 namespace {
@@ -19,29 +19,13 @@ using fieldbus::ObjectId;
 
 constexpr std::size_t kLongestBytes = 32;
 
-std::int64_t signExtended(std::uint64_t raw, unsigned bits) {
-  if (bits == 0 || bits >= 64) return static_cast<std::int64_t>(raw);
-  const std::uint64_t sign = std::uint64_t{1} << (bits - 1);
-  return static_cast<std::int64_t>(raw ^ sign) - static_cast<std::int64_t>(sign);
-}
-
-std::string number(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.6g", value);
-  return text.data();
-}
-
 /// Without knowledge of what it means: decimal and hexadecimal.
 std::string plain(std::uint64_t raw, unsigned bits, bool is_signed) {
   const std::string decimal =
-      is_signed ? std::to_string(signExtended(raw, bits)) : std::to_string(raw);
-  return raw < 10 && !is_signed ? decimal : decimal + " (" + hexNumber(raw, (bits + 7) / 8) + ")";
-}
-
-/// Drives written in C pad their texts with zeros.
-Bytes unpadded(Bytes data) {
-  while (data.size() > 1 && data.back() == 0) data.pop_back();
-  return data;
+      is_signed ? std::to_string(fieldbus::toSigned(raw, bits)) : std::to_string(raw);
+  return raw < 10 && !is_signed
+             ? decimal
+             : decimal + " (" + hexText(raw, static_cast<int>((bits + 7) / 8 * 2)) + ")";
 }
 
 bool isWhole(const ObjectSpec& spec) { return !drive::holdsFloat(spec.type, spec.encoding); }
@@ -76,25 +60,20 @@ const char* unitOf(Quantity quantity, const drive::AxisConfig& axis) {
   return nullptr;
 }
 
-std::string hexNumber(std::uint64_t raw, unsigned bytes) {
-  static const char* const kDigits = "0123456789ABCDEF";
-  std::string text = "0x";
-  for (unsigned i = 2 * bytes; i-- > 0;) text += i < 16 ? kDigits[(raw >> (4 * i)) & 0xF] : '0';
-  return text;
+Bytes unpadded(Bytes data) {
+  while (data.size() > 1 && data.back() == 0) data.pop_back();
+  return data;
 }
 
 std::string bytesText(const Bytes& data) {
   if (data.empty()) return "nothing";
   const bool cut = data.size() > kLongestBytes;
   const auto end = data.begin() + static_cast<std::ptrdiff_t>(cut ? kLongestBytes : data.size());
-  bool printable = true;
-  for (auto byte = data.begin(); byte != end; ++byte) {
-    printable = printable && std::isprint(*byte) != 0;
-  }
-  std::string text = printable ? "\"" + std::string(data.begin(), end) + "\"" : "";
-  for (auto byte = data.begin(); byte != end && !printable; ++byte) {
-    text += (text.empty() ? "" : " ") + hexNumber(*byte, 1).substr(2);
-  }
+  const bool printable =
+      std::all_of(data.begin(), end, [](std::uint8_t byte) { return std::isprint(byte) != 0; });
+  const std::string text =
+      printable ? "\"" + std::string(data.begin(), end) + "\""
+                : hexBytes(data.data(), static_cast<std::size_t>(end - data.begin()));
   return text + (cut ? "..." : "");
 }
 
@@ -128,7 +107,7 @@ std::string ValueText::title(ObjectId object) const {
 void ValueText::note(ObjectId object, std::uint64_t raw) {
   const Known* known = find(object);
   if (known == nullptr || known->spec->name != "mode_display") return;
-  const auto value = signExtended(raw, fieldbus::sizeBits(known->spec->type));
+  const auto value = fieldbus::toSigned(raw, fieldbus::sizeBits(known->spec->type));
   mode_ = nullptr;
   for (const drive::ModeSpec& mode : axis_.profile->modes) {
     if (mode.value == value) mode_ = &mode;
@@ -142,18 +121,18 @@ std::string ValueText::words(const Known& known, std::uint64_t raw, unsigned bit
   if (name == "controlword") return controlwordText(word, mode_);
   if (name == "error_code") return errorText(word, *axis_.profile);
   if (name == "mode_display" || name == "mode_of_operation") {
-    return modeText(static_cast<int>(signExtended(raw, bits)), *axis_.profile);
+    return modeText(static_cast<int>(fieldbus::toSigned(raw, bits)), *axis_.profile);
   }
   const bool whole = isWhole(*known.spec);
   if (known.conversion && (known.unit != nullptr || !whole)) {
-    const std::string value = number(known.conversion->toJoint(raw));
-    const std::string device =
-        !whole || known.conversion->resolution() == 1.0
-            ? ""
-            : " (" +
-                  (fieldbus::isSigned(known.spec->type) ? std::to_string(signExtended(raw, bits))
-                                                        : std::to_string(raw)) +
-                  ")";
+    const std::string value = numberText(known.conversion->toJoint(raw));
+    const std::string device = !whole || known.conversion->resolution() == 1.0
+                                   ? ""
+                                   : " (" +
+                                         (fieldbus::isSigned(known.spec->type)
+                                              ? std::to_string(fieldbus::toSigned(raw, bits))
+                                              : std::to_string(raw)) +
+                                         ")";
     return value + (known.unit != nullptr ? std::string(" ") + known.unit : "") + device;
   }
   return plain(raw, bits, fieldbus::isSigned(known.spec->type));
@@ -163,7 +142,8 @@ std::string ValueText::words(const Known& known, std::uint64_t raw, unsigned bit
 std::string ValueText::unnamed(ObjectId object, std::uint64_t raw, unsigned bits) const {
   const auto spec =
       axis_.profile && bits % 8 == 0 ? axis_.profile->unnamedFloat(object, bits / 8) : std::nullopt;
-  return spec ? number(drive::floatOf(spec->type, spec->encoding, raw)) : plain(raw, bits, false);
+  return spec ? numberText(drive::floatOf(spec->type, spec->encoding, raw))
+              : plain(raw, bits, false);
 }
 
 std::string ValueText::describe(ObjectId object, std::uint64_t raw, unsigned bits) const {
@@ -201,9 +181,7 @@ std::string modeText(int value, const drive::DriveProfile& profile) {
 
 std::string errorText(std::uint16_t code, const drive::DriveProfile& profile) {
   if (code == 0) return "0x0000 none";
-  const auto known = profile.errors.find(code);
-  return hexNumber(code, 2) + " " +
-         (known != profile.errors.end() ? known->second.text : fieldbus::emergencyText(code));
+  return hexText(code, 4) + " " + drive::errorName(profile, code);
 }
 
 }  // namespace cia402::decode

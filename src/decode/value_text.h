@@ -14,8 +14,8 @@ namespace cia402::decode {
 
 /// "rad/s", "N m", "V": the unit of a joint for what is measured; nullptr where it has none.
 const char* unitOf(drive::Quantity quantity, const drive::AxisConfig& axis);
-/// "0x6041": so many bytes of a number in hexadecimal.
-std::string hexNumber(std::uint64_t raw, unsigned bytes);
+/// A text without the zeros at its end: drives written in C pad theirs.
+fieldbus::Bytes unpadded(fieldbus::Bytes data);
 /// Bytes as a quoted text if they are printable, else in hexadecimal; long ones are cut.
 std::string bytesText(const fieldbus::Bytes& data);
 

@@ -8,6 +8,7 @@
 #include "bus/axis_condition.h"
 #include "bus/jobs/object_commands.h"
 #include "bus/jobs/procedure_command.h"
+#include "bus/joint.h"
 #include "bus/mpsc_queue.h"
 #include "bus/real_clock.h"
 #include "bus/runner.h"
@@ -43,9 +44,9 @@ std::unique_ptr<can::Interface> open(const config::ReadyRobot& ready, const std:
   if (ready.robot.bus.interface != "sim") {
     return openSocket(ready.robot.bus, ready.master);
   }
-  const auto axes = sim::simulatedAxes(ready.robot, folder + "/simulated_drives", problems);
+  const auto drives = sim::simulatedDrives(ready.robot, folder + "/simulated_drives", problems);
   if (!problems.empty()) return nullptr;
-  return std::make_unique<sim::SimulatedInterface>(axes, ready.robot.bus.bitrate, bus::realNow());
+  return std::make_unique<sim::SimulatedInterface>(drives, ready.robot.bus.bitrate, bus::realNow());
 }
 
 }  // namespace
@@ -133,7 +134,7 @@ bool Robot::ready() const {
 
 std::vector<std::string> Robot::joints() const {
   std::vector<std::string> names;
-  for (const drive::AxisConfig& axis : impl_->config.axes) names.push_back(axis.joint);
+  for (const motion::Joint& joint : bus::jointsOf(impl_->config)) names.push_back(joint.name);
   return names;
 }
 
@@ -218,9 +219,9 @@ std::vector<JointStatus> Robot::state() const {
     const bus::AxisSummary summary = bus::summaryOf(shown.axes[i], axis.profile->warning_stops);
     JointStatus joint;
     joint.name = axis.joint;
-    joint.position = state.position;
-    joint.velocity = state.velocity;
-    joint.effort = state.effort;
+    joint.position = shown.joints[i].position;
+    joint.velocity = shown.joints[i].velocity;
+    joint.effort = shown.joints[i].effort;
     joint.enabled = state.ready_for_motion;
     joint.homed = state.homed;
     joint.faulted = summary.condition == bus::Condition::error;

@@ -2,7 +2,8 @@
 #include "fieldbus/abort_code.h"
 
 #include <array>
-#include <cstdio>
+
+#include "common/text.h"
 
 namespace cia402::fieldbus {
 namespace {
@@ -56,10 +57,6 @@ const char* meaning(std::uint32_t code) {
 
 }  // namespace
 
-std::string abortText(std::uint32_t code) {
-  std::array<char, 11> number{};
-  std::snprintf(number.data(), number.size(), "0x%08X", static_cast<unsigned>(code));
-  return std::string(number.data()) + " (" + meaning(code) + ")";
-}
+std::string abortText(std::uint32_t code) { return hexText(code, 8) + " (" + meaning(code) + ")"; }
 
 }  // namespace cia402::fieldbus

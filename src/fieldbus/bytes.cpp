@@ -14,6 +14,12 @@ std::uint64_t toUnsigned(const Bytes& bytes) {
   return value;
 }
 
+std::int64_t toSigned(std::uint64_t raw, unsigned bits) {
+  if (bits == 0 || bits >= 64) return static_cast<std::int64_t>(raw);
+  const std::uint64_t sign = std::uint64_t{1} << (bits - 1);
+  return static_cast<std::int64_t>(raw ^ sign) - static_cast<std::int64_t>(sign);
+}
+
 Bytes toBytes(std::uint64_t value, unsigned size) {
   Bytes bytes(std::min(size, 8U));
   for (std::size_t i = 0; i < bytes.size(); ++i) {

@@ -9,6 +9,7 @@
 #include "fieldbus/emergency.h"
 #include "fieldbus/object_access.h"
 #include "fieldbus/process_image.h"
+#include "fieldbus/terms.h"
 
 namespace cia402::fieldbus {
 
@@ -79,6 +80,7 @@ class Device {
   static constexpr Duration kStartPatience{std::chrono::seconds(1)};
 
   // In words, made on demand:
+  virtual const Terms& terms() const = 0;
   /// Why the device cannot be asked for `what`, e.g. "6041:00 statusword", as it is now, and what
   /// to do; empty if it can.
   virtual std::string askingRefusal(const std::string& what) const = 0;

@@ -2,7 +2,8 @@
 #include "fieldbus/emergency.h"
 
 #include <algorithm>
-#include <cstdio>
+
+#include "common/text.h"
 
 namespace cia402::fieldbus {
 namespace {
@@ -211,8 +212,7 @@ std::string errorRegisterText(std::uint8_t bits) {
   std::string text;
   for (unsigned bit = 0; bit < 8; ++bit) {
     if ((bits >> bit & 1U) == 0) continue;
-    if (!text.empty()) text += ", ";
-    text += kRegisterBits[bit];
+    append(text, kRegisterBits[bit], ", ");
   }
   return text;
 }
@@ -222,10 +222,7 @@ std::string vendorBytesText(const Emergency& emergency) {
   if (std::all_of(bytes.begin(), bytes.end(), [](std::uint8_t byte) { return byte == 0; })) {
     return {};
   }
-  std::array<char, 16> text{};
-  std::snprintf(text.data(), text.size(), "%02X %02X %02X %02X %02X", bytes[0], bytes[1], bytes[2],
-                bytes[3], bytes[4]);
-  return text.data();
+  return hexBytes(bytes.data(), bytes.size());
 }
 
 }  // namespace cia402::fieldbus

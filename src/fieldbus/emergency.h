@@ -20,6 +20,9 @@ struct Emergency {
   static constexpr std::uint8_t kSize = 8;  ///< as the standard has it
 };
 
+/// The code by which a device tells that its outputs fail to come (CiA 301, table 26).
+inline constexpr std::uint16_t kOutputsLate = 0x8250;
+
 /// The error class of an emergency code in words, after CiA 301 table 26 and CiA 402 (most specific
 /// first), e.g. "following error" for 0x8611, "current, device output side" for 0x23xx.
 std::string emergencyText(std::uint16_t code);

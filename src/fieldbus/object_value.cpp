@@ -1,9 +1,9 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 
+#include "common/text.h"
 #include "fieldbus/object_dictionary.h"
 
 namespace cia402::fieldbus {
@@ -60,23 +60,14 @@ int compareValues(DataType type, const ObjectValue& a, const ObjectValue& b) {
 std::string describeValue(DataType type, const ObjectValue& value) {
   if (sizeBits(type) != 0 && value.size() == (sizeBits(type) + 7) / 8) {
     if (isReal(type)) {
-      char text[40];
-      std::snprintf(text, sizeof text, "%.9g", realOf(value));
-      return text;
+      return numberText(realOf(value), 9);
     }
     return isSigned(type) ? std::to_string(signedNumberOf(value)) : std::to_string(numberOf(value));
   }
   const bool printable = std::all_of(value.begin(), value.end(),
                                      [](std::uint8_t byte) { return byte >= ' ' && byte <= '~'; });
   if (printable) return "\"" + std::string(value.begin(), value.end()) + "\"";
-  std::string text;
-  for (std::uint8_t byte : value) {
-    char pair[4];
-    std::snprintf(pair, sizeof pair, "%02X ", static_cast<unsigned>(byte));
-    text += pair;
-  }
-  text.pop_back();
-  return text;
+  return hexBytes(value.data(), value.size());
 }
 
 Result<void> checkWrite(const DictionaryEntry& entry, const ObjectValue& value,

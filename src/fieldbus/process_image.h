@@ -79,6 +79,8 @@ class ProcessImage {
   void leaveOutOutput(Slot slot, bool left_out) { outputs_left_out_[slot] = left_out; }
 
   void take(Slot slot, std::uint64_t raw, Time stamp) { inputs_[slot] = {raw, stamp, true, true}; }
+  /// All inputs by their slots, for a bus that takes several at once.
+  ProcessValue* inputs() { return inputs_.data(); }
   void outdate(Slot slot) { inputs_[slot].fresh = false; }
   void countSent(std::size_t carrier) { ++sent_[carrier]; }
   /// Every input is unknown and every output 0, so that no set-point or controlword of before is

@@ -5,6 +5,7 @@
 #include <Eigen/SVD>
 #include <algorithm>
 
+#include "common/text.h"
 #include "motion/joint.h"
 
 namespace cia402::motion {
@@ -12,12 +13,6 @@ namespace cia402::motion {
 namespace {
 
 constexpr double kSmallestRcond = 1e-9;
-
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
 
 std::string printed(const Eigen::MatrixXd& matrix) {
   std::string text = "[";
@@ -59,7 +54,8 @@ Coupling::Coupling(std::vector<std::string> joints, std::vector<std::string> axe
 
 Result<Coupling> Coupling::create(std::vector<std::string> joints, std::vector<std::string> axes,
                                   const Eigen::MatrixXd& matrix) {
-  const std::string who = "coupling of joints " + listed(joints) + " with axes " + listed(axes);
+  const std::string who =
+      "coupling of joints " + joined(joints, ", ") + " with axes " + joined(axes, ", ");
   const auto rows = static_cast<Eigen::Index>(joints.size());
   const auto columns = static_cast<Eigen::Index>(axes.size());
   if (rows == 0 || rows != columns) {

@@ -2,8 +2,8 @@
 #include "motion/joint.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
+
+#include "common/text.h"
 
 namespace cia402::motion {
 
@@ -15,10 +15,6 @@ double withinReach(const JointLimits& limits, double wanted, double from) {
   return wanted;
 }
 
-std::string formatNumber(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.8g", value);
-  return text.data();
-}
+std::string formatNumber(double value) { return numberText(value, 8); }
 
 }  // namespace cia402::motion

@@ -54,12 +54,6 @@ Roots roots(const Polynomial& f, std::size_t degree) {
 
 }  // namespace
 
-double Polynomial::operator()(double x) const {
-  double sum = c[kDegree];
-  for (std::size_t k = kDegree; k-- > 0;) sum = sum * x + c[k];
-  return sum;
-}
-
 Polynomial Polynomial::derivative() const {
   Polynomial result;
   for (std::size_t k = 0; k < kDegree; ++k) result.c[k] = static_cast<double>(k + 1) * c[k + 1];

@@ -11,7 +11,12 @@ struct Polynomial {
   static constexpr std::size_t kDegree = 5;
   std::array<double, kDegree + 1> c{};
 
-  double operator()(double x) const;
+  /// By Horner's rule; here, as trajectories ask for each joint in each cycle.
+  double operator()(double x) const {
+    double sum = c[kDegree];
+    for (std::size_t k = kDegree; k-- > 0;) sum = sum * x + c[k];
+    return sum;
+  }
   Polynomial derivative() const;
 };
 

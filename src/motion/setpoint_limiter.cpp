@@ -38,80 +38,27 @@ double withoutRounding(double to, double from, const JointLimits& limits) {
   return to;
 }
 
-std::string problem(const Joint& joint, const char* what, double value, const char* power) {
-  return joint.name + ": " + what + " is " + formatNumber(value) + " " + toString(joint.unit) +
-         power;
-}
-
 }  // namespace
-
-Result<void> check(const LimiterConfig& config) {
-  const Joint& joint = config.joint;
-  const JointLimits& limits = joint.limits;
-  const auto wrong = [](const std::optional<double>& limit) {
-    return limit && !(std::isfinite(*limit) && *limit > 0);
-  };
-  const char* const above_zero = "; it must be a finite number above 0";
-  if (wrong(limits.velocity)) {
-    return Error{problem(joint, "the velocity limit", *limits.velocity, "/s") + above_zero};
-  }
-  if (wrong(limits.acceleration)) {
-    return Error{problem(joint, "the acceleration limit", *limits.acceleration, "/s^2") +
-                 above_zero};
-  }
-  if (wrong(config.stop_deceleration)) {
-    return Error{problem(joint, "the stop deceleration", *config.stop_deceleration, "/s^2") +
-                 above_zero};
-  }
-  for (const auto& [name, limit] :
-       {std::pair("the lower limit", limits.lower), std::pair("the upper limit", limits.upper)}) {
-    if (limit && !std::isfinite(*limit)) {
-      return Error{problem(joint, name, *limit, "") + "; it must be a finite number"};
-    }
-  }
-  if (limits.lower && limits.upper && *limits.lower >= *limits.upper) {
-    return Error{problem(joint, "the lower limit", *limits.lower, "") +
-                 ", not below the upper limit " + formatNumber(*limits.upper) + " " +
-                 toString(joint.unit)};
-  }
-  if (config.command_timeout && *config.command_timeout <= Duration::zero()) {
-    return Error{joint.name + ": the command timeout is " +
-                 formatNumber(toSeconds(*config.command_timeout)) + " s; it must be above 0"};
-  }
-  return {};
-}
 
 void SetpointLimiter::resetTo(const MotionState& state, Time now) {
   output_ = state;
   if (!std::isfinite(state.velocity)) output_.velocity = 0;
   command_.reset();
   stepped_ = now;
-  timed_out_ = false;
-  limiting_ = false;
 }
 
-Result<void> SetpointLimiter::take(double command, const char* power, Time now) {
+Result<void> SetpointLimiter::take(double command, const char* power) {
   if (!std::isfinite(command)) {
-    return Error{problem(config_.joint, "the commanded value", command, power) +
-                 ", not a finite number; it is ignored"};
+    return Error{joint_.name + ": the commanded value is " + formatNumber(command) + " " +
+                 toString(joint_.unit) + power + ", not a finite number; it is ignored"};
   }
   command_ = command;
-  commanded_ = now;
-  timed_out_ = false;
   return {};
-}
-
-bool SetpointLimiter::hasCommand(Time now) {
-  if (command_ && config_.command_timeout && now - commanded_ > *config_.command_timeout) {
-    command_.reset();
-    timed_out_ = true;
-  }
-  return command_.has_value();
 }
 
 double SetpointLimiter::permitted(double desired, double position, double dt,
                                   double reaction_s) const {
-  const JointLimits& limits = config_.joint.limits;
+  const JointLimits& limits = joint_.limits;
   const double acceleration = limits.acceleration.value_or(kInfinity);
   const double fastest = limits.velocity.value_or(kInfinity);
   const double delay_s = dt + kSettling * reaction_s;
@@ -124,15 +71,13 @@ double SetpointLimiter::permitted(double desired, double position, double dt,
     const double room = position - *limits.lower;
     lowest = std::max(lowest, -brakingVelocity(room, delay_s, acceleration));
   }
-  const double harder = command_ ? 0 : config_.stop_deceleration.value_or(0);
-  const double change = std::max(acceleration, harder) * dt;
+  const double change = acceleration * dt;
   return std::clamp(std::clamp(desired, lowest, highest), output_.velocity - change,
                     output_.velocity + change);
 }
 
 double SetpointLimiter::slower(double dt) const {
-  const double deceleration =
-      config_.stop_deceleration.value_or(config_.joint.limits.acceleration.value_or(kInfinity));
+  const double deceleration = joint_.limits.acceleration.value_or(kInfinity);
   const double speed = std::max(0.0, std::abs(output_.velocity) - deceleration * dt);
   return std::copysign(speed, output_.velocity);
 }
@@ -143,9 +88,9 @@ void PositionLimiter::reset(const MotionState& commanded, Time now) {
   fresh_ = met_ = false;
 }
 
-Result<void> PositionLimiter::command(double position, Time now) {
-  if (Result<void> taken = take(position, "", now); !taken) return taken;
-  command_ = withinReach(config_.joint.limits, *command_, output_.position);
+Result<void> PositionLimiter::command(double position) {
+  if (Result<void> taken = take(position, ""); !taken) return taken;
+  command_ = withinReach(joint_.limits, *command_, output_.position);
   fresh_ = true;
   return {};
 }
@@ -153,8 +98,8 @@ Result<void> PositionLimiter::command(double position, Time now) {
 /// Towards the command, in one step at most onto it, and never faster than from where its own
 /// velocity can still be met by braking.
 double PositionLimiter::approach(double dt) const {
-  const double acceleration = config_.joint.limits.acceleration.value_or(kInfinity);
-  const double fastest = config_.joint.limits.velocity.value_or(kInfinity);
+  const double acceleration = joint_.limits.acceleration.value_or(kInfinity);
+  const double fastest = joint_.limits.velocity.value_or(kInfinity);
   const double way = *command_ - output_.position;
   double moving = 0;
   if (fresh_ && previous_command_) moving = (*command_ - *previous_command_) / dt;
@@ -166,8 +111,8 @@ double PositionLimiter::approach(double dt) const {
 MotionState PositionLimiter::step(Time now) {
   const double dt = toSeconds(now - stepped_);
   if (!(dt > 0)) return output_;
-  const bool follow = hasCommand(now);
-  const JointLimits& limits = config_.joint.limits;
+  const bool follow = command_.has_value();
+  const JointLimits& limits = joint_.limits;
   const double from = output_.position;
   // Without a limit of acceleration the next step is at rest, at the command.
   const bool ended =
@@ -177,8 +122,7 @@ MotionState PositionLimiter::step(Time now) {
   const double to = withoutRounding(from + velocity * dt, from, limits);
   if (ended) command_ = to;
   output_ = {to, velocity, (velocity - output_.velocity) / dt};
-  limiting_ = follow && std::abs(to - *command_) > 1e-12 * (1 + std::abs(to));
-  met_ = follow && !limiting_;
+  met_ = follow && std::abs(to - *command_) <= 1e-12 * (1 + std::abs(to));
   previous_command_ = to;
   if (command_) previous_command_ = fresh_ ? command_ : std::nullopt;
   fresh_ = false;
@@ -188,19 +132,16 @@ MotionState PositionLimiter::step(Time now) {
 
 void VelocityLimiter::reset(const MotionState& commanded, Time now) { resetTo(commanded, now); }
 
-Result<void> VelocityLimiter::command(double velocity, Time now) {
-  return take(velocity, "/s", now);
-}
+Result<void> VelocityLimiter::command(double velocity) { return take(velocity, "/s"); }
 
 MotionState VelocityLimiter::step(Time now, double position) {
   const double dt = toSeconds(now - stepped_);
   if (!(dt > 0)) return output_;
-  const JointLimits& limits = config_.joint.limits;
+  const JointLimits& limits = joint_.limits;
   const bool lost = std::isnan(position) && (limits.lower || limits.upper);
-  const bool follow = hasCommand(now) && !lost;
+  const bool follow = command_.has_value() && !lost;
   const double desired = follow ? *command_ : slower(dt);
   const double velocity = permitted(desired, position, dt, reaction_s_);
-  limiting_ = follow && velocity != *command_;
   output_ = {position, velocity, (velocity - output_.velocity) / dt};
   stepped_ = now;
   return output_;

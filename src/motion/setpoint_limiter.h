@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "cia402_driver/common/result.h"
 #include "cia402_driver/common/time.h"
@@ -10,19 +11,9 @@
 
 namespace cia402::motion {
 
-/// What a limiter of one joint's streamed set-points keeps to.
-struct LimiterConfig {
-  Joint joint;  ///< position, velocity and acceleration limits; jerk and effort are not used
-  /// A command older than this is stale, and the joint is stopped. Absent: commands do not age.
-  std::optional<Duration> command_timeout;
-  /// For that stop, rad/s² or m/s². Absent: the acceleration limit. It may exceed that limit.
-  std::optional<double> stop_deceleration;
-};
-
-/// Why `config` cannot be used (limits not above 0, reversed, not finite), naming the joint.
-Result<void> check(const LimiterConfig& config);
-
-/// What both kinds of limiter share: the age of the command and the permissible next velocity.
+/// What both kinds of limiter of one joint's streamed set-points share: the command and the
+/// permissible next velocity. They keep the limits of position, velocity and acceleration; a
+/// command counts until the next one.
 ///
 /// Velocity and acceleration are meant as differences of successive outputs over the time between
 /// the steps, so that what the drive is given keeps the limits exactly, whatever the jitter of the
@@ -31,33 +22,23 @@ Result<void> check(const LimiterConfig& config);
 /// outside the position limits it can only move back, as far as it is told. No function allocates
 /// but command() when it refuses.
 class SetpointLimiter {
- public:
-  /// True from the first step() after the command became stale until a new command is taken.
-  bool timedOut() const { return timed_out_; }
-  /// Did the last step() give something else than the command asked for?
-  bool isLimiting() const { return limiting_; }
-  /// What the last step() gave.
-  const MotionState& output() const { return output_; }
-
  protected:
-  explicit SetpointLimiter(LimiterConfig config) : config_(std::move(config)) {}
+  /// @param joint its limits are valid: finite, those of magnitude above 0, lower below upper
+  explicit SetpointLimiter(Joint joint) : joint_(std::move(joint)) {}
   ~SetpointLimiter() = default;
 
   void resetTo(const MotionState& state, Time now);
-  Result<void> take(double command, const char* power, Time now);
-  /// Drops a stale command. @return whether there is a command to follow.
-  bool hasCommand(Time now);
+  Result<void> take(double command, const char* power);
   /// The velocity nearest to `desired` that all limits permit at `position` for a step of `dt` s.
   /// `reaction_s` is how long the joint carries on before it follows.
   double permitted(double desired, double position, double dt, double reaction_s) const;
   /// The next velocity on the way to rest.
   double slower(double dt) const;
 
-  LimiterConfig config_;
-  MotionState output_;
+  Joint joint_;
+  MotionState output_;  ///< what the last step() gave
   std::optional<double> command_;
-  Time stepped_{}, commanded_{};
-  bool timed_out_ = false, limiting_ = false;
+  Time stepped_{};
 };
 
 /// Follows streamed positions. A stream that keeps the limits and gives a position each cycle comes
@@ -66,15 +47,14 @@ class SetpointLimiter {
 /// ends at speed is brought to rest ahead of its last position; nothing turns back to that.
 class PositionLimiter : public SetpointLimiter {
  public:
-  /// @pre check(config) is ok.
-  explicit PositionLimiter(LimiterConfig config) : SetpointLimiter(std::move(config)) {}
+  explicit PositionLimiter(Joint joint) : SetpointLimiter(std::move(joint)) {}
 
   /// Starts from the present commanded state, without a command. A velocity that is not finite
   /// counts as 0. @pre the position is finite; where it is not, no output is.
   void reset(const MotionState& commanded, Time now);
   /// A new set-point, in rad or m. Beyond the position limits it counts as the limit. Refused, and
-  /// the previous one kept to age on, if it is not finite.
-  Result<void> command(double position, Time now);
+  /// the previous one kept, if it is not finite.
+  Result<void> command(double position);
   /// The state to command now, to be called once a cycle with rising times.
   MotionState step(Time now);
   /// Where the joint goes: the last command, or where it came to rest after a stream that ended at
@@ -94,14 +74,13 @@ class VelocityLimiter : public SetpointLimiter {
  public:
   /// `reaction`: how long the drive carries on with the previous velocity after step(), e.g. two
   /// cycles; the braking distance before a position limit is longer by as much.
-  /// @pre check(config) is ok.
-  explicit VelocityLimiter(LimiterConfig config, Duration reaction = {})
-      : SetpointLimiter(std::move(config)), reaction_s_(toSeconds(reaction)) {}
+  explicit VelocityLimiter(Joint joint, Duration reaction = {})
+      : SetpointLimiter(std::move(joint)), reaction_s_(toSeconds(reaction)) {}
 
   /// Starts from the present commanded state, without a command.
   void reset(const MotionState& commanded, Time now);
   /// A new set-point, in rad/s or m/s; refused as by PositionLimiter.
-  Result<void> command(double velocity, Time now);
+  Result<void> command(double velocity);
   /// The state to command now; its position is `position`, the measured one. NaN: unknown; a joint
   /// with position limits is then stopped.
   MotionState step(Time now, double position);

@@ -36,7 +36,7 @@ SplineSegment SplineSegment::quintic(const MotionState& from, const MotionState&
 }
 
 MotionState SplineSegment::sample(double t_s) const {
-  const double x = std::clamp(t_s / duration_s_, 0.0, 1.0);
+  const double x = share(t_s);
   return {position_(x), velocity_(x) / duration_s_, acceleration_(x) / (duration_s_ * duration_s_)};
 }
 

@@ -1,6 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+
 #include "motion/joint.h"
 #include "motion/polynomial.h"
 
@@ -33,6 +35,8 @@ class SplineSegment {
 
   /// The state at `t_s` seconds from the beginning; outside [0, duration] that of the nearer end.
   MotionState sample(double t_s) const;
+  /// The position of that alone.
+  double position(double t_s) const { return position_(share(t_s)); }
 
   double duration() const { return duration_s_; }
 
@@ -51,6 +55,8 @@ class SplineSegment {
  private:
   SplineSegment(const Polynomial& position, double duration_s);
   Range range(const Polynomial& polynomial, double scale) const;
+  /// How much of the segment is over, 0 to 1.
+  double share(double t_s) const { return std::clamp(t_s / duration_s_, 0.0, 1.0); }
 
   Polynomial position_, velocity_, acceleration_;  // over t / duration, and derivatives thereby
   double duration_s_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/text.h"
 #include "trajectory_checks.h"
 
 namespace cia402::motion {
@@ -120,8 +121,7 @@ std::size_t Trajectory::segmentAt(Time time) const {
 }
 
 MotionState Trajectory::sampleSegment(std::size_t segment, std::size_t joint, Time time) const {
-  const Time begin = segment == 0 ? begin_ : ends_[segment - 1];
-  return segments_[segment * joint_count_ + joint].sample(toSeconds(time - begin));
+  return segments_[segment * joint_count_ + joint].sample(toSeconds(time - beginOf(segment)));
 }
 
 MotionState Trajectory::rest(std::size_t joint, Time time) const {
@@ -140,6 +140,19 @@ void Trajectory::sample(Time time, std::vector<MotionState>& states) const {
   for (std::size_t j = 0; j < count; ++j) {
     states[j] = moving ? sampleSegment(segment, j, time) : rest(j, time);
   }
+}
+
+void Trajectory::samplePositions(Time time, std::vector<double>& positions) const {
+  const std::size_t count = std::min(positions.size(), joint_count_);
+  if (time < begin_ || finished(time)) {
+    const std::vector<double>& rest = time < begin_ ? origin_ : goal_;
+    std::copy_n(rest.begin(), count, positions.begin());
+    return;
+  }
+  const std::size_t segment = segmentAt(time);
+  const double since_s = toSeconds(time - beginOf(segment));
+  const SplineSegment* const joints = &segments_[segment * joint_count_];
+  for (std::size_t j = 0; j < count; ++j) positions[j] = joints[j].position(since_s);
 }
 
 Result<std::vector<std::size_t>> matchJoints(const std::vector<Joint>& joints,
@@ -161,7 +174,7 @@ Result<std::vector<std::size_t>> matchJoints(const std::vector<Joint>& joints,
   std::string sentence;
   const auto mention = [&sentence](const char* what, const std::vector<std::string>& which) {
     if (which.empty()) return;
-    sentence += (sentence.empty() ? "" : "; ") + (what + quotedList(which));
+    append(sentence, what + quotedList(which));
   };
   mention("the group has no joint ", unknown);
   mention("the trajectory lacks joint ", missing);

@@ -56,7 +56,8 @@ class Trajectory {
   ///   the range). A joint that is outside its position limits already may move back, not further.
   ///   Jerk is not checked: between cubic segments it has no bound;
   /// - OLD_HEADER_TIMESTAMP: all points have passed.
-  /// No points at all are a valid trajectory that asks for a stop: see isStop().
+  /// No points at all are a valid trajectory that asks for a stop: the caller brings the joints
+  /// to rest. Sampling holds the commanded positions.
   static TrajectoryResult create(const std::vector<Joint>& joints,
                                  const std::vector<MotionState>& commanded,
                                  const std::vector<TrajectoryPoint>& points,
@@ -65,24 +66,18 @@ class Trajectory {
   /// A last velocity up to this counts as rest, in rad/s or m/s.
   static constexpr double kRestVelocity = 1e-3;
 
-  /// Made from no points: the caller brings the joints to rest. Sampling holds the
-  /// commanded positions.
-  bool isStop() const { return ends_.empty(); }
-
   /// Writes the states of the joints at `time`, as many as `states` has room for; never resizes
   /// it. Before startTime() (the caller still plays the previous trajectory) the positions it
   /// begins from, at rest; from endTime() on the last positions, at rest.
   void sample(Time time, std::vector<MotionState>& states) const;
-  /// The same for one joint, < jointCount().
+  /// The same for one joint, as numbered in `joints` of create().
   MotionState sample(std::size_t joint, Time time) const;
+  /// The positions of that alone, many times cheaper: what a cycle needs.
+  void samplePositions(Time time, std::vector<double>& positions) const;
 
   bool finished(Time time) const { return time >= endTime(); }
   Time startTime() const { return begin_; }
   Time endTime() const { return ends_.empty() ? begin_ : ends_.back(); }
-  std::size_t jointCount() const { return joint_count_; }
-  std::size_t segmentCount() const { return ends_.size(); }
-  /// How many leading points had passed before the trajectory began.
-  std::size_t droppedPoints() const { return dropped_points_; }
   /// Where the joints come to rest, one entry a joint, whole turns of shortest_way included.
   const std::vector<double>& goal() const { return goal_; }
 
@@ -93,10 +88,12 @@ class Trajectory {
                                                  Time base);
   /// The segment that `time` lies in; only between startTime() and endTime().
   std::size_t segmentAt(Time time) const;
+  Time beginOf(std::size_t segment) const { return segment == 0 ? begin_ : ends_[segment - 1]; }
   MotionState sampleSegment(std::size_t segment, std::size_t joint, Time time) const;
   MotionState rest(std::size_t joint, Time time) const;
 
-  std::size_t joint_count_ = 0, dropped_points_ = 0;
+  std::size_t joint_count_ = 0;
+  std::size_t dropped_points_ = 0;  ///< of the first: they had passed before it began
   Time begin_{};
   std::vector<Time> ends_;               // one a segment
   std::vector<SplineSegment> segments_;  // joint_count_ of them a segment

@@ -10,6 +10,8 @@
 #include "bus/jobs/object_text.h"
 #include "bus/real_clock.h"
 #include "can/error_frame.h"
+#include "common/text.h"
+#include "decode/value_text.h"
 #include "drive/profile/fault_text.h"
 #include "ros/publishers.h"
 
@@ -39,15 +41,12 @@ std::string hardwareId(const bus::AxisSnapshot& axis, const drive::AxisConfig& c
 
 void addHex(diagnostic_updater::DiagnosticStatusWrapper& status, const char* key,
             std::uint32_t value) {
-  status.addf(key, "0x%08X", value);
+  status.add(key, hexText(value, 8));
 }
 
 /// "0.153 rad", or "unknown".
 std::string withUnit(double value, const char* unit) {
-  if (std::isnan(value)) return "unknown";
-  char text[48];
-  std::snprintf(text, sizeof text, "%.6g %s", value, unit);
-  return text;
+  return std::isnan(value) ? "unknown" : numberText(value) + " " + unit;
 }
 
 /// A measured value and how old it is.
@@ -76,7 +75,7 @@ void addEmergencies(diagnostic_updater::DiagnosticStatusWrapper& status,
                     const bus::EmergencyCounts& counts) {
   status.add("emergencies", counts.total);
   for (std::size_t i = 0; i < counts.codes; ++i) {
-    status.add("emergencies " + drive::hexWord(counts.of[i].code), counts.of[i].count);
+    status.add("emergencies " + hexText(counts.of[i].code, 4), counts.of[i].count);
   }
   if (counts.malformed != 0) status.add("emergencies malformed", counts.malformed);
 }
@@ -145,9 +144,14 @@ Diagnostics::Diagnostics(ros::NodeHandle& node, ros::NodeHandle& private_node,
       topic_(node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1)) {
   updater_.setHardwareID(robot.bus.interface);
   updater_.add("bus", this, &Diagnostics::reportBus);
+  std::size_t nodes = 0;
   for (std::size_t i = 0; i < robot.axes.size(); ++i) {
     const drive::AxisConfig& axis = robot.axes[i];
-    updater_.add(axis.place, [this, i](Status& status) { reportNode(i, status); });
+    if (axis.device == nodes) {  // devices are in the order of their first axes
+      ++nodes;
+      updater_.add("node " + std::to_string(robot.deviceOf(axis).node_id),
+                   [this, i](Status& status) { reportNode(i, status); });
+    }
     updater_.add(axis.name, [this, i](Status& status) { reportAxis(i, status); });
   }
 }
@@ -276,24 +280,24 @@ void Diagnostics::reportAxis(std::size_t index, Status& status) {
   status.hardware_id = hardwareId(axis, config);
   const bus::AxisSummary summary = bus::summaryOf(axis, config.profile->warning_stops);
   status.summary(levelOf(summary.condition), summary.text);
-  const bool linear = config.geometry.type == drive::AxisGeometry::Type::prismatic;
   status.add("state", drive::toString(state.state));
   status.add("statusword", drive::statuswordText(state.statusword));
   status.add("mode", state.mode ? state.mode->name : "unknown");
   status.add("halted", state.halted ? "yes" : "no");
   status.add("homed", state.homed ? "yes" : "no");
-  status.addf("error code", "0x%04X", state.error_code);
+  status.add("error code", hexText(state.error_code, 4));
   status.add("procedure", axis.procedure_running ? drive::toString(axis.procedure) : "none");
   status.add("step", stepText(axis));
   if (!axis.words.history.empty())
     status.add("error history after the last fault", axis.words.history.str());
-  const auto add = [&](const char* key, double value, const char* unit, Time stamp) {
-    addValue(status, key, value, unit, snapshot_.now - stamp);
+  using drive::Quantity;
+  const auto add = [&](const char* key, double value, Quantity quantity, Time stamp) {
+    addValue(status, key, value, decode::unitOf(quantity, config), snapshot_.now - stamp);
   };
-  add("position", state.position, linear ? "m" : "rad", state.stamp);
-  add("velocity", state.velocity, linear ? "m/s" : "rad/s", state.stamps.velocity);
-  add("effort", state.effort, linear ? "N" : "N m", state.stamps.effort);
-  add("following error", state.following_error, linear ? "m" : "rad", state.stamps.following_error);
+  add("position", state.position, Quantity::position, state.stamp);
+  add("velocity", state.velocity, Quantity::velocity, state.stamps.velocity);
+  add("effort", state.effort, Quantity::torque, state.stamps.effort);
+  add("following error", state.following_error, Quantity::distance, state.stamps.following_error);
   for (const drive::ShownSignal& signal : axis.signals) {
     addSignal(status, config, signal, snapshot_.now - signal.stamp);
   }

@@ -79,7 +79,9 @@ void EventLog::publish(const bus::EmergencyEvent& event) {
   cia402_driver::Emergency message;
   message.header.stamp = toRos(runner_.time(), event.emergency.stamp);
   message.node_id = robot_.deviceOf(axis).node_id;
-  message.axes = {axis.name};
+  for (const drive::AxisConfig& other : robot_.axes) {
+    if (other.device == axis.device) message.axes.push_back(other.name);
+  }
   message.error_code = event.emergency.code;
   message.error_register = event.emergency.error_register;
   std::copy(event.emergency.vendor.begin(), event.emergency.vendor.end(),

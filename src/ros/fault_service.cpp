@@ -18,14 +18,14 @@ FaultService::FaultService(ros::NodeHandle& private_node, Inject inject)
       });
 }
 
-bus::Answer injectFault(sim::Drive* drive, const std::string& axis, const std::string& fault,
+bus::Answer injectFault(sim::AxisOfDrive found, const std::string& axis, const std::string& fault,
                         Time now) {
   bus::Answer answer;
-  if (drive == nullptr) {
+  if (found.drive == nullptr) {
     answer.message = "there is no simulated drive \"" + axis + "\"";
     return answer;
   }
-  const Result<void> injected = drive->inject(fault, now);
+  const Result<void> injected = found.drive->inject(fault, now, found.axis);
   answer.success = injected.ok();
   answer.message = injected ? axis + ": injected " + fault : axis + ": " + injected.error().message;
   return answer;

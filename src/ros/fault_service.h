@@ -8,7 +8,7 @@
 #include <string>
 
 #include "bus/reply.h"
-#include "sim/drive/drive.h"
+#include "sim/world/robot_drives.h"
 
 namespace cia402::ros_node {
 
@@ -23,8 +23,8 @@ class FaultService {
   ros::ServiceServer server_;
 };
 
-/// Injects into a drive (nullptr: there is none of that name) and words the answer.
-bus::Answer injectFault(sim::Drive* drive, const std::string& axis, const std::string& fault,
+/// Injects into an axis of a drive (nullptr: there is none of that name) and words the answer.
+bus::Answer injectFault(sim::AxisOfDrive found, const std::string& axis, const std::string& fault,
                         Time now);
 
 }  // namespace cia402::ros_node

@@ -35,19 +35,19 @@ geometry_msgs::TransformStamped jointTransform(const config::FrameConfig& frame,
 }
 
 Frames::Frames(bus::BusRunner& runner, const config::RobotConfig& robot)
-    : runner_(runner), robot_(robot) {}
+    : runner_(runner), frames_(robot.frames), joints_(bus::jointsOf(robot)) {}
 
 void Frames::publish() {
-  if (robot_.frames.empty()) return;
+  if (frames_.empty()) return;
   const bus::NetworkSnapshot snapshot = runner_.snapshot();
   std::vector<geometry_msgs::TransformStamped> messages;
-  for (const config::FrameConfig& frame : robot_.frames) {
-    for (std::size_t i = 0; i < robot_.axes.size(); ++i) {
-      const drive::AxisState& state = snapshot.axes[i].state;
-      if (robot_.axes[i].joint != frame.joint || std::isnan(state.position)) continue;
-      const bool prismatic = robot_.axes[i].geometry.type == drive::AxisGeometry::Type::prismatic;
-      const ros::Time stamp = toRos(runner_.time(), state.stamp);
-      messages.push_back(jointTransform(frame, prismatic, state.position, stamp));
+  for (const config::FrameConfig& frame : frames_) {
+    for (std::size_t i = 0; i < joints_.size(); ++i) {
+      const bus::JointState& joint = snapshot.joints[i];
+      if (joints_[i].name != frame.joint || std::isnan(joint.position)) continue;
+      const bool prismatic = joints_[i].unit == motion::JointUnit::metre;
+      const ros::Time stamp = toRos(runner_.time(), joint.stamp);
+      messages.push_back(jointTransform(frame, prismatic, joint.position, stamp));
     }
   }
   if (!messages.empty()) broadcaster_.sendTransform(messages);

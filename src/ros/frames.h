@@ -3,6 +3,9 @@
 
 #include <tf2_ros/transform_broadcaster.h>
 
+#include <vector>
+
+#include "bus/joint.h"
 #include "bus/runner.h"
 #include "config/robot.h"
 
@@ -23,7 +26,8 @@ class Frames {
 
  private:
   bus::BusRunner& runner_;
-  const config::RobotConfig& robot_;
+  const std::vector<config::FrameConfig>& frames_;
+  std::vector<motion::Joint> joints_;
   tf2_ros::TransformBroadcaster broadcaster_;
 };
 

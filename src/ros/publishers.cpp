@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "bus/joint.h"
 #include "ros/clock_map.h"
 
 namespace cia402::ros_node {
@@ -63,11 +64,11 @@ cia402_driver::AxisState axisState(const bus::AxisSnapshot& axis, const drive::A
   return message;
 }
 
-cia402_driver::NodeState nodeState(const bus::AxisSnapshot& axis, const drive::AxisConfig& config,
-                                   canopen::NodeId node_id, Time now) {
+/// @param axis the first one in it
+cia402_driver::NodeState nodeState(const bus::AxisSnapshot& axis, canopen::NodeId node_id,
+                                   Time now) {
   cia402_driver::NodeState message;
   message.node_id = node_id;
-  message.axes = {config.name};
   message.nmt_state = canopen::toString(axis.node.nmt);
   message.ready = axis.state.health == fieldbus::Health::ready;
   message.step = message.ready ? "" : axis.words.step.str();
@@ -92,10 +93,10 @@ std::string stepText(const bus::AxisSnapshot& axis) {
 Publishers::Publishers(ros::NodeHandle& node, ros::NodeHandle& private_node, bus::BusRunner& runner,
                        const LinkWatch& link, const config::RobotConfig& robot)
     : runner_(runner), link_(link), robot_(robot) {
-  for (const drive::AxisConfig& axis : robot.axes) joint_states_.name.push_back(axis.joint);
-  joint_states_.position.resize(robot.axes.size());
-  joint_states_.velocity.resize(robot.axes.size());
-  joint_states_.effort.resize(robot.axes.size());
+  for (const motion::Joint& joint : bus::jointsOf(robot)) joint_states_.name.push_back(joint.name);
+  joint_states_.position.resize(joint_states_.name.size());
+  joint_states_.velocity.resize(joint_states_.name.size());
+  joint_states_.effort.resize(joint_states_.name.size());
   joint_states_pub_ = node.advertise<sensor_msgs::JointState>("joint_states", 10);
   axis_states_pub_ = private_node.advertise<cia402_driver::AxisStates>("axis_states", 10, true);
   bus_state_pub_ = private_node.advertise<cia402_driver::BusState>("bus_state", 10, true);
@@ -108,12 +109,12 @@ Publishers::Publishers(ros::NodeHandle& node, ros::NodeHandle& private_node, bus
 void Publishers::publishJointStates() {
   const bus::NetworkSnapshot snapshot = runner_.snapshot();
   Time newest{};
-  for (std::size_t i = 0; i < snapshot.axes.size(); ++i) {
-    const drive::AxisState& state = snapshot.axes[i].state;
-    joint_states_.position[i] = state.position;
-    joint_states_.velocity[i] = state.velocity;
-    joint_states_.effort[i] = state.effort;
-    if (state.feedback_valid && state.stamp > newest) newest = state.stamp;
+  for (std::size_t i = 0; i < snapshot.joints.size(); ++i) {
+    const bus::JointState& joint = snapshot.joints[i];
+    joint_states_.position[i] = joint.position;
+    joint_states_.velocity[i] = joint.velocity;
+    joint_states_.effort[i] = joint.effort;
+    if (joint.known && joint.stamp > newest) newest = joint.stamp;
   }
   joint_states_.header.stamp = newest == Time() ? ros::Time::now() : toRos(runner_.time(), newest);
   joint_states_pub_.publish(joint_states_);
@@ -125,18 +126,15 @@ void Publishers::publishGroups(const bus::NetworkSnapshot& snapshot) {
     if (group_pubs_[g].getNumSubscribers() == 0) continue;
     control_msgs::JointTrajectoryControllerState message;
     message.header.stamp = joint_states_.header.stamp;
-    for (const std::string& joint : robot_.groups[g].joints) {
-      for (std::size_t i = 0; i < robot_.axes.size(); ++i) {
-        if (robot_.axes[i].joint != joint) continue;
-        const bus::AxisSnapshot& axis = snapshot.axes[i];
-        const bool position =
-            axis.state.mode != nullptr && axis.state.mode->kind == drive::ControlKind::position;
-        const double desired = position ? axis.target : drive::kUnknown;
-        message.joint_names.push_back(joint);
-        message.desired.positions.push_back(desired);
-        message.actual.positions.push_back(axis.state.position);
-        message.actual.velocities.push_back(axis.state.velocity);
-        message.error.positions.push_back(desired - axis.state.position);
+    for (const std::string& name : robot_.groups[g].joints) {
+      for (std::size_t i = 0; i < snapshot.joints.size(); ++i) {
+        if (joint_states_.name[i] != name) continue;
+        const bus::JointState& joint = snapshot.joints[i];
+        message.joint_names.push_back(name);
+        message.desired.positions.push_back(joint.desired);
+        message.actual.positions.push_back(joint.position);
+        message.actual.velocities.push_back(joint.velocity);
+        message.error.positions.push_back(joint.desired - joint.position);
       }
     }
     group_pubs_[g].publish(message);
@@ -223,7 +221,11 @@ cia402_driver::BusState Publishers::busState(const bus::NetworkSnapshot& snapsho
   for (std::size_t i = 0; i < snapshot.axes.size(); ++i) {
     message.missed_feedback += snapshot.axes[i].missed_feedback;
     const drive::AxisConfig& axis = robot_.axes[i];
-    message.nodes.push_back(nodeState(snapshot.axes[i], axis, robot_.deviceOf(axis).node_id, now));
+    if (message.nodes.size() == axis.device) {  // devices are in the order of their first axes
+      const canopen::NodeId id = robot_.deviceOf(axis).node_id;
+      message.nodes.push_back(nodeState(snapshot.axes[i], id, now));
+    }
+    message.nodes[axis.device].axes.push_back(axis.name);
   }
   return message;
 }

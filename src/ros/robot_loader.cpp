@@ -53,11 +53,11 @@ std::optional<LoadedRobot> loadRobot(const ros::NodeHandle& private_node) {
   return LoadedRobot{parameters.options, std::move(ready->robot), std::move(ready->master)};
 }
 
-std::optional<std::vector<sim::SimulatedAxis>> loadSimulation(const config::RobotConfig& robot) {
+std::optional<std::vector<sim::SimulatedDrive>> loadSimulation(const config::RobotConfig& robot) {
   Problems problems;
-  auto axes = sim::simulatedAxes(robot, packageFolder("simulated_drives"), problems);
+  auto drives = sim::simulatedDrives(robot, packageFolder("simulated_drives"), problems);
   if (report(problems, "simulation")) return std::nullopt;
-  return axes;
+  return drives;
 }
 
 }  // namespace cia402::ros_node

@@ -27,6 +27,6 @@ std::optional<LoadedRobot> loadRobot(const ros::NodeHandle& private_node);
 
 /// The simulated drives of that robot; problems are logged, and nothing is returned if there is
 /// one.
-std::optional<std::vector<sim::SimulatedAxis>> loadSimulation(const config::RobotConfig& robot);
+std::optional<std::vector<sim::SimulatedDrive>> loadSimulation(const config::RobotConfig& robot);
 
 }  // namespace cia402::ros_node

@@ -18,20 +18,22 @@ namespace cia402::tools {
 
 /// A whole robot in virtual time and one thread: driver, bus and simulated drives. Hours of robot
 /// life in seconds, and with one seed always the same.
+///
+/// The network itself, not bus::BusLoop on an interface, as in a VirtualHost: a frame is taken in
+/// at its end, and the network is ticked when it says so. BusLoop ticks after each frame, too, so
+/// that an axis asks its next question with the answer, and its frames lie elsewhere.
 class VirtualRobot final : private sim::Participant, private bus::EventSink {
  public:
-  /// @param axes the drives on the bus, not necessarily those that `robot` expects.
+  /// @param drives on the bus, not necessarily those that `robot` expects.
   /// @param seed of faults injected into the bus.
   VirtualRobot(const config::RobotConfig& robot, const canopen::MasterConfig& master,
-               const std::vector<sim::SimulatedAxis>& axes, std::uint64_t seed = 1)
+               const std::vector<sim::SimulatedDrive>& drives, std::uint64_t seed = 1)
       : world_(robot.bus.bitrate, seed),
         port_(world_.addParticipant("master", *this)),
         recorder_(robot, port_),
         network_(robot, master, recorder_, *this) {
     recorder_.watch(network_);
-    for (const sim::SimulatedAxis& axis : axes) {
-      world_.addDrive(axis.name, axis.definition, axis.node, axis.mechanics, axis.identity);
-    }
+    sim::addTo(world_, drives);
   }
 
   /// Powers the drives on and starts the driver.

@@ -10,6 +10,8 @@
 #include <set>
 #include <sstream>
 
+#include "common/text.h"
+
 namespace cia402::yaml {
 namespace {
 
@@ -69,9 +71,7 @@ std::string suggestion(std::string_view name, const std::vector<std::string>& ca
   const std::string nearest = nearestName(name, candidates);
   if (!nearest.empty()) return ", did you mean `" + nearest + "`?";
   if (candidates.empty() || candidates.size() > kMostListed) return "";
-  std::string all;
-  for (const std::string& candidate : candidates) all += (all.empty() ? "" : ", ") + candidate;
-  return "; known are " + all;
+  return "; known are " + joined(candidates, ", ");
 }
 
 YAML::Node parse(const std::string& text) { return YAML::Load(text + '\n'); }

@@ -342,7 +342,7 @@ config::RobotConfig minding() {
   config::RobotConfig robot = test::testRobot();
   auto profile = std::make_shared<drive::DriveProfile>(*robot.axes[0].profile);
   profile->errors[0x8201].text = "SYNC time-out";
-  profile->errors[0x8201].missing = drive::ErrorText::Missing::sync;
+  profile->errors[0x8201].missing = drive::ErrorText::Missing::cycle;
   for (drive::AxisConfig& axis : robot.axes) axis.profile = profile;
   return robot;
 }

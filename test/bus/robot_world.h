@@ -96,7 +96,7 @@ inline drive::AxisConfig testAxis(const std::string& name, canopen::NodeId node)
   axis.limits.acceleration = 10.0;
   axis.limits.effort = 5.0;
   axis.mode = "cyclic_position";
-  axis.sync_period = kPeriod;
+  axis.cycle = kPeriod;
   axis.outputs = {"controlword", "mode_of_operation", "target_position", "target_velocity",
                   "target_torque"};
   return axis;
@@ -109,7 +109,7 @@ inline canopen::DeviceConfig testDevice(const drive::AxisConfig& axis, canopen::
   device.title = drive::whoIs(axis);
   device.node_id = node;
   device.profile = std::make_shared<const canopen::DeviceProfile>(testFamily().device);
-  device.pdos = device.profile->pdos;
+  device.axes[0].pdos = device.profile->pdos;
   return device;
 }
 

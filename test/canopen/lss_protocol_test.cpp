@@ -45,20 +45,6 @@ TEST(LssProtocol, ConfiguresNodeIdBitTimingAndStores) {
   EXPECT_EQ(text(lss::store()), "7E5 17 00 00 00 00 00 00 00");
 }
 
-TEST(LssProtocol, IdentifiesRemoteSlavesInRanges) {
-  lss::Identity high = kServo;
-  high.revision = 0x0001FFFF;
-  high.serial = 20000;
-  const auto frames = lss::identifyRemote(kServo, high);
-  EXPECT_EQ(text(frames[0]), "7E5 46 CD AB 00 00 00 00 00");
-  EXPECT_EQ(text(frames[1]), "7E5 47 17 01 0D 00 00 00 00");
-  EXPECT_EQ(text(frames[2]), "7E5 48 02 00 01 00 00 00 00");
-  EXPECT_EQ(text(frames[3]), "7E5 49 FF FF 01 00 00 00 00");
-  EXPECT_EQ(text(frames[4]), "7E5 4A 39 30 00 00 00 00 00");
-  EXPECT_EQ(text(frames[5]), "7E5 4B 20 4E 00 00 00 00 00");
-  EXPECT_EQ(text(lss::identifyUnconfigured()), "7E5 4C 00 00 00 00 00 00 00");
-}
-
 TEST(LssProtocol, AsksFastscanQuestions) {
   EXPECT_EQ(text(lss::fastscan(0, lss::kFastscanStart, 0, 0)), "7E5 51 00 00 00 00 80 00 00");
   EXPECT_EQ(text(lss::fastscan(0x000D0100, 8, 1, 1)), "7E5 51 00 01 0D 00 08 01 01");

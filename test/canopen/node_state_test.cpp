@@ -49,7 +49,7 @@ TEST_F(NodeStateTest, tells_why_a_stopped_drive_cannot_be_asked) {
 TEST_F(NodeStateTest, one_that_is_refused_is_made_pre_operational_and_tells_why) {
   bootReady();
   const std::uint32_t before = node->changes();
-  node->refuse("cannot be used: two have one COB-ID", now);
+  node->refuse("cannot be used: two have one COB-ID");
   EXPECT_EQ(peer.take(), Lines{"000 80 03"});
   EXPECT_EQ(node->health(), Health::failed);
   EXPECT_EQ(node->problem(), "shoulder (node 3): cannot be used: two have one COB-ID");

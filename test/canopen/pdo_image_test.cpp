@@ -52,8 +52,6 @@ TEST(PdoImage, orders_pdos_by_number_and_shares_the_slot_of_an_object_mapped_twi
   image.receive(1, frame("283 08 50 02"), kStamp);
   EXPECT_EQ(image.input(image.inputSlot(kStatusword)).raw, 0x0250U);
   EXPECT_EQ(image.input(image.inputSlot(kMode)).raw, 0x08U);
-  EXPECT_EQ(image.tpdoOf(image.inputSlot(kStatusword)), 0U) << "the first that brings it";
-  EXPECT_EQ(image.tpdoOf(image.inputSlot(kMode)), 1U);
 }
 
 TEST(PdoImage, orders_rpdos_by_number) {
@@ -261,11 +259,9 @@ TEST(PdoImage, an_rpdo_leaves_when_its_content_changes_and_at_its_refresh_rate) 
   EXPECT_EQ(test::text(frame), "203 06 00");
   for (int i = 0; i < 3; ++i) EXPECT_FALSE(due()) << i;
   EXPECT_TRUE(due()) << "the fourth cycle since";
-  image.repeat(0);
-  EXPECT_TRUE(due()) << "it did not leave";
   image.invalidate();
   EXPECT_TRUE(due()) << "the drive has rebooted";
-  EXPECT_EQ(image.sent(0), 5U);
+  EXPECT_EQ(image.sent(0), 4U);
 }
 
 TEST(PdoImage, after_a_reboot_a_tpdo_has_as_long_to_come_as_at_first) {

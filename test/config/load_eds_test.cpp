@@ -104,7 +104,7 @@ TEST(LoadEds, WhatIsNotFiniteIsNotWrittenIntoAFloatByAnyName) {
 }
 
 bool maps(const Loaded& loaded, const std::string& object) {
-  for (const canopen::PdoLayout& pdo : loaded.robot.devices[0].pdos) {
+  for (const canopen::PdoLayout& pdo : loaded.robot.devices[0].axes[0].pdos) {
     if (std::find(pdo.objects.begin(), pdo.objects.end(), object) != pdo.objects.end()) return true;
   }
   return false;

@@ -352,11 +352,11 @@ RobotConfig genericAxes(int count) {
 }
 
 TEST(BusLoad, WhatTravelsForTheRoomOnlyStaysAwayFromAFullBus) {
-  EXPECT_THAT(genericAxes(1).devices[0].riders, testing::ElementsAre("following_error"));
+  EXPECT_THAT(genericAxes(1).devices[0].axes[0].riders, testing::ElementsAre("following_error"));
   const RobotConfig full = genericAxes(8);
   for (const canopen::DeviceConfig& device : full.devices) {
-    EXPECT_TRUE(device.riders.empty());
-    for (const canopen::PdoLayout& pdo : device.pdos) {
+    EXPECT_TRUE(device.axes[0].riders.empty());
+    for (const canopen::PdoLayout& pdo : device.axes[0].pdos) {
       EXPECT_THAT(pdo.objects, testing::Not(testing::Contains("following_error")));
     }
   }
@@ -364,7 +364,7 @@ TEST(BusLoad, WhatTravelsForTheRoomOnlyStaysAwayFromAFullBus) {
     const RobotConfig robot = genericAxes(count);
     Problems problems;
     const double worst = busLoad(makeMasterConfig(robot, problems), robot.bus.bitrate).worst;
-    EXPECT_TRUE(worst <= 0.8 || robot.devices[0].riders.empty()) << count << ": " << worst;
+    EXPECT_TRUE(worst <= 0.8 || robot.devices[0].axes[0].riders.empty()) << count << ": " << worst;
   }
 }
 

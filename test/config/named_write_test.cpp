@@ -110,7 +110,7 @@ TEST(NamedWrite, TakesTheHomingOptions) {
 
 TEST(NamedWrite, WritesTheSyncPeriodAsValueAndExponent) {
   AxisConfig axis = axisOf("generic_cia402");
-  axis.sync_period = std::chrono::microseconds(2500);
+  axis.cycle = std::chrono::microseconds(2500);
   EXPECT_EQ(rawOf(write("interpolation_period_value", "sync_period.value"), axis), 25u);
   EXPECT_EQ(rawOf(write("interpolation_period_exponent", "sync_period.exponent"), axis), 0xFCu);
 }

@@ -1,5 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "config/pdo_planner.h"
+#include "config/drive_family.h"
 #include "folders.h"
 
 #include <gmock/gmock.h>

@@ -118,7 +118,7 @@ TEST(ProfileRules, WhatBrakesInAModeIsPlannedWithIt) {
     const OwnDrive loaded = loadOwn(profile, ", rated_torque: 1.0" + axis);
     EXPECT_EQ(loaded.problems.text(), "");
     std::vector<std::string> targets;
-    for (const canopen::PdoLayout& pdo : loaded.robot.devices[0].pdos) {
+    for (const canopen::PdoLayout& pdo : loaded.robot.devices[0].axes[0].pdos) {
       targets.insert(targets.end(), pdo.objects.begin(), pdo.objects.end());
     }
     EXPECT_THAT(targets, Contains("target_velocity"));

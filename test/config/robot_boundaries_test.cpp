@@ -137,7 +137,7 @@ TEST(RobotBoundaries, TheDrivesOwnDeadlineHas16BitsOfMilliseconds) {
   const auto timer = [](const char* timeout) {
     const LoadedRobot loaded = shoulderWith(std::string("rpdo_timeout: ") + timeout);
     EXPECT_EQ(loaded.problems, "");
-    return loaded.robot.devices[0].pdos.at(0).event_timer;
+    return loaded.robot.devices[0].axes[0].pdos.at(0).event_timer;
   };
   EXPECT_EQ(timer("65.535"), 65535);
   EXPECT_EQ(timer("0.008"), 8) << "two cycles";
@@ -331,8 +331,8 @@ TEST(RobotMistakes, NoAxisCanDoWithoutItsWordsAndPosition) {
 TEST(RobotConfig, WhatADriveLacksDoesNotTravelThoughThereIsRoom) {
   const LoadedRobot loaded = shoulderWith("lacks: [following_error]");
   EXPECT_EQ(loaded.problems, "");
-  EXPECT_THAT(loaded.robot.devices[0].riders, testing::IsEmpty());
-  EXPECT_THAT(loaded.robot.devices[1].riders, testing::ElementsAre("following_error"));
+  EXPECT_THAT(loaded.robot.devices[0].axes[0].riders, testing::IsEmpty());
+  EXPECT_THAT(loaded.robot.devices[1].axes[0].riders, testing::ElementsAre("following_error"));
 }
 
 TEST(RobotConfig, OnAFullBusVelocitiesComeForEveryJointStateAndDeadlinesStay) {
@@ -348,10 +348,10 @@ TEST(RobotConfig, OnAFullBusVelocitiesComeForEveryJointStateAndDeadlinesStay) {
   const LoadedRobot loaded = loadText(text);
   EXPECT_EQ(loaded.problems, "");
   for (const canopen::DeviceConfig& axis : loaded.robot.devices) {
-    EXPECT_TRUE(axis.riders.empty()) << axis.name;
-    EXPECT_EQ(axis.pdos.at(0).objects.front(), "controlword");
-    EXPECT_EQ(axis.pdos.at(0).event_timer, 100) << axis.name;
-    for (const canopen::PdoLayout& pdo : axis.pdos) {
+    EXPECT_TRUE(axis.axes[0].riders.empty()) << axis.name;
+    EXPECT_EQ(axis.axes[0].pdos.at(0).objects.front(), "controlword");
+    EXPECT_EQ(axis.axes[0].pdos.at(0).event_timer, 100) << axis.name;
+    for (const canopen::PdoLayout& pdo : axis.axes[0].pdos) {
       const auto& objects = pdo.objects;
       if (std::find(objects.begin(), objects.end(), "velocity_actual") == objects.end()) continue;
       EXPECT_EQ(pdo.transmission, 1) << axis.name;

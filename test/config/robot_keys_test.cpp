@@ -95,7 +95,7 @@ TEST_F(RobotKeys, OfAnAxis) {
   const canopen::DeviceConfig& device = robot.deviceOf(slide);
   EXPECT_EQ(device.name, "slide");
   EXPECT_EQ(device.node_id, 3);
-  EXPECT_EQ(slide.sync_period, milliseconds(10));
+  EXPECT_EQ(slide.cycle, milliseconds(10));
   EXPECT_EQ(slide.geometry.type, drive::AxisGeometry::Type::prismatic);
   EXPECT_EQ(slide.geometry.counts_per_turn, 4096.0);
   EXPECT_EQ(slide.geometry.gear_ratio, 2.5);

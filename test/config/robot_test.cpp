@@ -134,7 +134,8 @@ TEST(RobotConfig, TellsTenMistakesAtOnce) {
            "  bus/sync_period: must be greater than 0 and at most 1, not `-0.004`\n",
            "  axes/base/colour: unknown key",
            "  axes/base/gear_ratio: must be a number, not `fast`\n",
-           "  axes/shoulder/node_id: 1 is the node-ID of `base` already\n",
+           "  axes/shoulder/node_id: 1 is the node-ID of `base` already; `device_axis`, 0 to 7, "
+           "tells the axes of one drive apart\n",
            "  axes/shoulder/drive: there is no drive profile `generic_402`",
            "  axes/elbow/pdos/tpdo1: is 80 bits long (16 + 32 + 32)",
            "  axes/elbow/limits/upper: must be greater than lower (2.0), not `-2.0`\n",

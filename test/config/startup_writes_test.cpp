@@ -128,7 +128,7 @@ TEST(PlannedObjects, VelocitiesComeAsOftenAsJointStates) {
     const LoadedRobot loaded =
         changed("0.004}", cycle + "}" + (rate.empty() ? "" : "\njoint_state_rate: " + rate));
     EXPECT_EQ(loaded.problems, "");
-    for (const canopen::PdoLayout& pdo : loaded.robot.devices[0].pdos) {
+    for (const canopen::PdoLayout& pdo : loaded.robot.devices[0].axes[0].pdos) {
       for (const std::string& object : pdo.objects) {
         if (object == "velocity_actual") return unsigned{pdo.transmission};
       }

@@ -210,5 +210,49 @@ TEST(DecodedLine, HasFixedColumnsThatAreNeverEmpty) {
             "1700000000.123456   +0.000000  tx  SYNC       -                 -");
 }
 
+/// Axis 1 of node 1 beside the shoulder, with a TPDO of its own and one that carries both.
+struct TwoAxesDecoder : Decoder {
+  TwoAxesDecoder() {
+    drive::AxisConfig second = robot.axes[shoulder()];
+    second.name = second.joint = "twin";
+    second.device_axis = 1;
+    second.profile =
+        std::make_shared<const drive::DriveProfile>(drive::ofDeviceAxis(*second.profile, 1));
+    robot.axes.push_back(second);
+    master = test::master(robot);
+    canopen::NodeConfig* node = nullptr;
+    for (canopen::NodeConfig& each : master.nodes) {
+      if (each.node_id == 1) node = &each;
+    }
+    canopen::PdoConfig own, both;
+    own.direction = both.direction = canopen::PdoDirection::tpdo;
+    own.number = 65;
+    own.cob_id = 0x6A1;
+    own.entries = {{{0x6841, 0}, 16, "statusword"}, {{0x6864, 0}, 32, "position_actual"}};
+    both.number = 66;
+    both.cob_id = 0x6A2;
+    both.entries = {{{0x6041, 0}, 16, "statusword"}, {{0x6841, 0}, 16, "statusword"}};
+    node->pdos.push_back(own);
+    node->pdos.push_back(both);
+  }
+  std::size_t shoulder() const { return robot.axes[0].name == "shoulder" ? 0 : 1; }
+  canopen::MasterConfig master;
+};
+
+TEST_F(TwoAxesDecoder, FramesAreThoseOfTheAxisWhoseObjectsTheyCarry) {
+  FrameDecoder both(robot, master);
+  const DecodedFrame own = both.decode(Frame(0x6A1, {0x37, 0x12, 0xE0, 0x2E, 0x03, 0x00}));
+  EXPECT_EQ(own.node, "twin (1)");
+  EXPECT_EQ(own.text,
+            "statusword 0x1237 operation enabled; voltage enabled, remote, bit 12 | "
+            "position_actual 0.1 rad (208608)");
+  EXPECT_EQ(both.decode(Frame(0x181, {0x37, 0x12, 0xE0, 0x2E, 0x03, 0x00, 0x08})).node,
+            "shoulder (1)");
+  EXPECT_EQ(both.decode(Frame(0x6A2, {0x37, 0x12, 0x50, 0x02})).node, "shoulder, twin (1)");
+  const DecodedFrame read = both.decode(Frame(0x601, {0x40, 0x64, 0x68, 0x00, 0, 0, 0, 0}));
+  EXPECT_EQ(read.node, "shoulder, twin (1)");
+  EXPECT_EQ(read.text, "read 6864:00 position_actual");
+}
+
 }  // namespace
 }  // namespace cia402::decode

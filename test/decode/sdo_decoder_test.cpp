@@ -14,12 +14,18 @@ class Sdo : public testing::Test {
   std::string request(std::initializer_list<std::uint8_t> bytes) {
     return sdo.request({0x601, bytes});
   }
+  static NodeValues valuesOf(const drive::AxisConfig& axis) {
+    NodeValues values;
+    values.add(axis);
+    return values;
+  }
   std::string answer(std::initializer_list<std::uint8_t> bytes) {
     return sdo.answer({0x581, bytes});
   }
 
   config::RobotConfig robot = test::robot();
-  ValueText values{robot.axes.front().name == "shoulder" ? robot.axes[0] : robot.axes[1]};
+  NodeValues values =
+      valuesOf(robot.axes.front().name == "shoulder" ? robot.axes[0] : robot.axes[1]);
   SdoDecoder sdo{&values};
 };
 

@@ -241,7 +241,7 @@ class Bench {
   void tell(const std::function<void()>& news) {
     const auto before = device_.health();
     news();
-    if (before != device_.health()) axis.onHealthChange(before, now);
+    if (before != device_.health()) axis.onHealthChange();
   }
 
   FakeDevice device_;

@@ -1,5 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-// Standstill, homing status, fault texts and numbers in sentences.
+// Standstill, condition, homing status, fault texts and numbers in sentences.
 #include "drive/sentence.h"
 
 #include <gmock/gmock.h>
@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "drive/axis/axis.h"
 #include "drive/axis/standstill.h"
 #include "drive/procedures/homing_status.h"
 #include "drive/profile/fault_text.h"
@@ -45,6 +46,31 @@ TEST(Standstill, BelievesAnEncoderThatTogglesByOneUnit) {
   Time now{};
   for (int i = 0; i < 100; ++i) standstill.update(i % 2 == 0 ? 0.0 : 0.01, now += milliseconds(4));
   EXPECT_TRUE(standstill.still());
+}
+
+TEST(AxisCondition, DiffersByEachThingThatItHolds) {
+  using Change = void (*)(AxisCondition&);
+  static constexpr Change kChanges[] = {
+      [](AxisCondition& c) { c.state = State::fault; },
+      [](AxisCondition& c) { c.health = fieldbus::Health::lost; },
+      [](AxisCondition& c) { c.statusword = 0x8000; },
+      [](AxisCondition& c) { c.error_code = 0x8000; },
+      [](AxisCondition& c) { c.mode_value = -1; },
+      [](AxisCondition& c) { c.feedback_valid = true; },
+      [](AxisCondition& c) { c.homed = true; },
+      [](AxisCondition& c) { c.target_reached = true; },
+      [](AxisCondition& c) { c.warning = true; },
+      [](AxisCondition& c) { c.internal_limit = true; },
+      [](AxisCondition& c) { c.halted = true; },
+      [](AxisCondition& c) { c.ready_for_motion = true; },
+      [](AxisCondition& c) { c.digital_inputs_valid = true; },
+  };
+  for (const Change change : kChanges) {
+    AxisCondition condition;
+    EXPECT_TRUE(condition == AxisCondition());
+    change(condition);
+    EXPECT_TRUE(condition != AxisCondition()) << &change - &kChanges[0];
+  }
 }
 
 TEST(HomingStatus, DecodesTheTableOfTheStandard) {

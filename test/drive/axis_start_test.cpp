@@ -249,7 +249,7 @@ TEST(AxisStart, AStopBySdoEndsEnablingAndReachesTheDriveWithoutRpdos) {
   ASSERT_TRUE(bench.axis.start({ProcedureKind::enable, {}, 0.0}, bench.now).ok());
   bench.run(100ms);
   bench.drive.writes.clear();
-  bench.axis.stopBySdo("no RPDO reaches it", bench.now);
+  bench.axis.stopBesideCycle("no RPDO reaches it");
   EXPECT_FALSE(bench.axis.procedure().running);
   EXPECT_FALSE(bench.axis.procedure().success);
   EXPECT_THAT(bench.axis.procedure().message, HasSubstr("enable was ended: no RPDO reaches it"));

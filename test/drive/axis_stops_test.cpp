@@ -36,7 +36,7 @@ std::size_t quickStopsBySdo(const FakeDrive& drive) {
 TEST(StopBySdo, QuickStopsAnEnabledAxisAndSaysWhy) {
   Bench bench;
   ASSERT_TRUE(bench.boot() && bench.enable());
-  bench.axis.stopBySdo("SYNC is gone", bench.now);
+  bench.axis.stopBesideCycle("SYNC is gone");
   EXPECT_EQ(bench.axis.noticeCount(), 1u);
   EXPECT_EQ(bench.axis.notice(), "shoulder (node 3): SYNC is gone");
   EXPECT_FALSE(bench.axis.noticeWarns());
@@ -51,9 +51,9 @@ TEST(StopBySdo, QuickStopsAnEnabledAxisAndSaysWhy) {
 
 TEST(StopBySdo, LeavesAnAxisWithoutPowerAlone) {
   Bench bench;
-  bench.axis.stopBySdo("SYNC is gone", bench.now);
+  bench.axis.stopBesideCycle("SYNC is gone");
   ASSERT_TRUE(bench.boot());
-  bench.axis.stopBySdo("SYNC is gone", bench.now);
+  bench.axis.stopBesideCycle("SYNC is gone");
   bench.run(milliseconds(40));
   EXPECT_EQ(quickStopsBySdo(bench.drive), 0u);
   EXPECT_EQ(bench.axis.noticeCount(), 0u);
@@ -66,7 +66,7 @@ TEST(StopBySdo, StopsADriveThatSomebodyElseEnabledWithoutAWord) {
   bench.drive.state = FakeDrive::S::enabled;
   bench.drive.stuck.insert(FakeDrive::S::enabled);
   bench.run(milliseconds(40));
-  bench.axis.stopBySdo("SYNC is gone", bench.now);
+  bench.axis.stopBesideCycle("SYNC is gone");
   bench.run(milliseconds(12));
   EXPECT_EQ(quickStopsBySdo(bench.drive), 1u);
   EXPECT_EQ(bench.axis.noticeCount(), 0u) << "it was not commanded";
@@ -79,7 +79,7 @@ TEST(StopBySdo, IsNotToldOfAnAxisThatWasSwitchedOff) {
   bench.drive.state = FakeDrive::S::enabled;  // by somebody else
   bench.drive.stuck.insert(FakeDrive::S::enabled);
   bench.run(milliseconds(40));
-  bench.axis.stopBySdo("SYNC is gone", bench.now);
+  bench.axis.stopBesideCycle("SYNC is gone");
   bench.run(milliseconds(12));
   EXPECT_EQ(quickStopsBySdo(bench.drive), 1u);
   EXPECT_EQ(bench.axis.noticeCount(), 0u);
@@ -89,7 +89,7 @@ TEST(StopBySdo, ThatTheDriveRefusesIsTold) {
   Bench bench;
   ASSERT_TRUE(bench.boot() && bench.enable());
   bench.drive.aborts[{0x6040, 0}] = 0x08000022;
-  bench.axis.stopBySdo("SYNC is gone", bench.now);
+  bench.axis.stopBesideCycle("SYNC is gone");
   bench.run(milliseconds(12));
   EXPECT_EQ(bench.axis.noticeCount(), 2u);
   EXPECT_THAT(bench.axis.notice(), HasSubstr("the quick stop by SDO failed"));

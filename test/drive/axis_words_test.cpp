@@ -62,7 +62,7 @@ TEST(AxisWords, WithoutFeedbackThatIsSaid) {
   bench.run(milliseconds(200));
   EXPECT_EQ(bench.axis.obstacle(), "shoulder gives no fresh statusword and position: recover");
   EXPECT_EQ(bench.axis.motionRefusal(),
-            "shoulder (node 3): no fresh position (6064:00) and statusword (6041:00)");
+            "shoulder (node 3): no fresh statusword (6041:00) and position (6064:00)");
 }
 
 TEST(AxisWords, AFaultIsNamedWithCauseAndRemedy) {

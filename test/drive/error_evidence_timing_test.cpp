@@ -24,7 +24,7 @@ class ErrorEvidenceTiming : public test::ObjectsFixture {
   void emergency(std::uint16_t code, const std::string& excuse = {}) {
     fieldbus::Emergency message;
     message.code = code;
-    evidence.onEmergency(message, excuse, now);
+    evidence.onEmergency(message, excuse, false, now);
   }
   /// A cycle in which the drive shows fault or not, and tells 603Fh if that is given.
   void show(bool faulted, std::optional<std::uint16_t> told = {}) {
@@ -37,7 +37,7 @@ class ErrorEvidenceTiming : public test::ObjectsFixture {
   void showUntold(bool faulted) {
     ErrorEvidence::Look look;
     look.faulted = faulted;
-    look.by_sdo = &code_spec;
+    look.asked = &code_spec;
     run();
     evidence.update(look, objects, now);
   }

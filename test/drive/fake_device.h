@@ -36,6 +36,7 @@ class FakeDevice final : public fieldbus::Device {
     if (ready()) state_->start_at = now + stopped;
   }
   bool paused() const override { return state_->start_at.has_value(); }
+  const fieldbus::Terms& terms() const override { return kTerms; }
   std::string askingRefusal(const std::string&) const override { return {}; }
   std::string overdueText() const override { return state_->image.overdueText(); }
   std::string missingText() const override { return state_->image.missingText(); }
@@ -73,6 +74,16 @@ class FakeDevice final : public fieldbus::Device {
   void confirm(fieldbus::ObjectId object) { state_->objects.confirm(object); }
   void leaveOut(fieldbus::ObjectId output) { state_->image.leaveOut(output); }
 
+  static constexpr fieldbus::Terms kTerms = {"node",
+                                             "node-ID or bit rate",
+                                             "PDO",
+                                             "TPDO",
+                                             "RPDO",
+                                             "SDO",
+                                             "EMCY",
+                                             "NMT stop and start",
+                                             "no RPDO reached it in time (1400:05)",
+                                             "the bus and the COB-IDs of its RPDOs"};
   static constexpr Duration kBootTime = std::chrono::seconds(5);
   static constexpr Duration kSilence = std::chrono::milliseconds(300);  ///< then it is lost
 

@@ -18,7 +18,7 @@ constexpr Duration kSeen = 2 * kCycle + 2 * Standstill::kWindow + 2 * kCycle;
 
 /// An axis of which the motor does what `motor` says, cycle by cycle.
 struct WatchBench {
-  SetPoint sent{SetPointLimits{}, kCycle};
+  SetPoint sent{motion::JointLimits{}, 5.0, kCycle};
   Standstill standstill{kStandstill, 1e-6};
   AxisState state;
   FollowWatch watch{kStandstill, kCycle};

@@ -156,12 +156,12 @@ TEST(ProcedureLimits, AModeThatIsCommandedAgainByADetourTakesItTwice) {
 TEST(ProcedureLimits, AResetBehindNmtStopIsOneTryMore) {
   DriveProfile stopped = slowProfile();
   const Duration without = limitOf(ProcedureKind::clear_faults, stopped);
-  stopped.fault_reset_nmt_stop = 100ms;
+  stopped.fault_reset_pause = 100ms;
   const Duration once = limitOf(ProcedureKind::clear_faults, stopped);
   EXPECT_GT(once, without);
   stopped.fault_reset_tries = 3;
   const Duration tried = limitOf(ProcedureKind::clear_faults, stopped) - once;
-  stopped.fault_reset_nmt_stop = Duration::zero();
+  stopped.fault_reset_pause = Duration::zero();
   EXPECT_EQ(limitOf(ProcedureKind::clear_faults, stopped) - without, tried) << "of one try";
   EXPECT_GE(once, without + tried + 100ms);
 }

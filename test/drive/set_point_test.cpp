@@ -14,10 +14,10 @@ using std::chrono::milliseconds;
 constexpr Duration kStepTime = milliseconds(10);
 constexpr double kVelocity = 2.0, kDeceleration = 4.0;
 
-SetPointLimits limits() { return {-1.0, 1.0, kVelocity, kDeceleration}; }
+motion::JointLimits limits() { return {-1.0, 1.0, kVelocity, {}, {}, {}, false}; }
 
 struct Rig {
-  explicit Rig(SetPointKind kind, double value = 0.0) : point(limits(), kStepTime) {
+  explicit Rig(SetPointKind kind, double value = 0.0) : point(limits(), kDeceleration, kStepTime) {
     point.rest(kind, value);
   }
   void cycle() { point.advance(now += kStepTime); }
@@ -162,7 +162,6 @@ TEST(SetPoint, ANewZeroShiftsARampUnderWay) {
 TEST(SetPoint, AStopEndsAtTheLimitOfTheJoint) {
   Rig rig(SetPointKind::stream, 0.9);
   rig.move(2.0, 4);  // 0.98, and half a metre of braking distance
-  EXPECT_NEAR(rig.point.stopPosition(), 1.0, 1e-12);
   rig.point.stop();
   rig.cycles(60);
   EXPECT_NEAR(rig.point.value(), 1.0, 1e-12);
@@ -176,7 +175,7 @@ TEST(SetPoint, TellsWhereAStopWillBringIt) {
   EXPECT_NEAR(half.position, 0.1 + 0.125 * 0.75, 1e-9);
   const SetPoint::Motion end = rig.point.expected(std::chrono::seconds(5));
   EXPECT_EQ(end.velocity, 0.0);
-  EXPECT_NEAR(end.position, rig.point.stopPosition(), 1e-9);
+  EXPECT_NEAR(end.position, 0.1 + 1.0 / (2 * kDeceleration), 1e-9);
 }
 
 TEST(SetPoint, AStopDropsWhatWasGivenForTheNextCycle) {

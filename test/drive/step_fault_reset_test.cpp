@@ -18,7 +18,7 @@ using namespace std::chrono_literals;
 AxisConfig withTries(int tries, Duration nmt_stop = Duration::zero()) {
   DriveProfile profile = testProfile();
   profile.fault_reset_tries = tries;
-  profile.fault_reset_nmt_stop = nmt_stop;
+  profile.fault_reset_pause = nmt_stop;
   return testConfig(profile);
 }
 

@@ -30,10 +30,10 @@ TEST(Allocation, NothingInTheCyclicPathAllocates) {
   std::vector<MotionState> states(2);
   const auto trajectory = Trajectory::create(
       joints, states, {{{1, 1}, {0, 0}, {0, 0}, std::chrono::seconds(1)}}, TrajectoryStart{});
-  LimiterConfig config;
-  config.joint.limits = {-1, 1, 1, 5, {}, {}, false};
-  PositionLimiter positions(config);
-  VelocityLimiter velocities(config);
+  Joint joint;
+  joint.limits = {-1, 1, 1, 5, {}, {}, false};
+  PositionLimiter positions(joint);
+  VelocityLimiter velocities(joint);
   const auto coupling = Coupling::create({"a", "b"}, {"1", "2"}, Eigen::Matrix2d::Identity());
   Eigen::VectorXd from = Eigen::VectorXd::Ones(2), to(2);
 
@@ -41,8 +41,8 @@ TEST(Allocation, NothingInTheCyclicPathAllocates) {
   ASSERT_GT(before, 0U);
   for (Time now{}; now < Time{std::chrono::seconds(2)}; now += std::chrono::milliseconds(4)) {
     trajectory->sample(now, states);
-    static_cast<void>(positions.command(0.3, now));
-    static_cast<void>(velocities.command(0.3, now));
+    static_cast<void>(positions.command(0.3));
+    static_cast<void>(velocities.command(0.3));
     positions.step(now);
     velocities.step(now, 0);
     coupling->toAxes(from, to);

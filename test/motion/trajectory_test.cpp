@@ -122,6 +122,21 @@ TEST_F(TrajectorySampling, AllJointsAtOnceGiveWhatOneAtATimeGives) {
   }
 }
 
+TEST_F(TrajectorySampling, PositionsAloneAreThoseOfTheStatesToTheLastBit) {
+  commanded[0] = {0.2, 1, -3};
+  const auto trajectory =
+      create({point(1, {1, 0.3}, {0.1, 0}, {0, 0}), point(2.5, {2, 0.7}, {0, 0}),
+              point(3, {3, 0.1}), point(4.7, {4, -1}, {0, 0})});
+  ASSERT_TRUE(trajectory.ok());
+  std::vector<MotionState> states(2);
+  std::vector<double> positions(2);
+  for (double time = -0.1; time < 5.0; time += 0.013) {
+    trajectory->sample(at(time), states);
+    trajectory->samplePositions(at(time), positions);
+    EXPECT_EQ(positions, (std::vector<double>{states[0].position, states[1].position})) << time;
+  }
+}
+
 TEST_F(TrajectorySampling, NeverWritesBeyondTheRoomItIsGiven) {
   const auto trajectory = create({point(1, {1, 2})});
   std::vector<MotionState> one(1), three(3, {9, 9, 9});
@@ -150,8 +165,6 @@ TEST_F(TrajectorySampling, DropsPointsThatHavePassedAndJoinsTheRest) {
   const auto trajectory =
       create({point(0.5, {7, 7}), point(1.5, {8, 8}), point(2.5, {1, 0}), point(3.5, {2, 0})});
   ASSERT_TRUE(trajectory.ok());
-  EXPECT_EQ(trajectory->droppedPoints(), 2U);
-  EXPECT_EQ(trajectory->segmentCount(), 2U);
   EXPECT_EQ(trajectory->startTime(), kNow);
   EXPECT_NEAR(trajectory->sample(0, at(0.5)).position, 0.5, 1e-12);
   EXPECT_EQ(trajectory->endTime(), at(2));
@@ -160,7 +173,6 @@ TEST_F(TrajectorySampling, DropsPointsThatHavePassedAndJoinsTheRest) {
 TEST_F(TrajectorySampling, AFirstPointAtTimeZeroIsThePresentState) {
   const auto trajectory = create({point(0, {0, 0}, {0, 0}), point(1, {1, 0}, {0, 0})});
   ASSERT_TRUE(trajectory.ok());
-  EXPECT_EQ(trajectory->droppedPoints(), 1U);
   EXPECT_NEAR(trajectory->sample(0, at(0.5)).velocity, 1.5, 1e-12);
 }
 
@@ -168,10 +180,8 @@ TEST_F(TrajectorySampling, NoPointsAskForAStop) {
   commanded[0] = {0.5, 1, 0};
   const auto trajectory = create({});
   ASSERT_TRUE(trajectory.ok());
-  EXPECT_TRUE(trajectory->isStop());
   EXPECT_TRUE(trajectory->finished(kNow));
   EXPECT_EQ(trajectory->sample(0, at(1)).position, 0.5);
-  EXPECT_FALSE(create({point(1, {1, 1})})->isStop());
 }
 
 TEST_F(TrajectorySampling, ContinuousJointTakesTheShortestWayWhereAsked) {

@@ -168,14 +168,14 @@ TEST(ProfileBehaviour, AModeStopsAsItSaysElseAsItsKindCan) {
 
 TEST(ProfileBehaviour, AnRpdoTimeoutIsThatOfTheStandardUnlessTheProfileSaysOtherwise) {
   DriveProfile profile;
-  EXPECT_EQ(drive::missingFrames(profile, 0x8250), ErrorText::Missing::rpdo);
-  EXPECT_EQ(drive::missingFrames(profile, 0x8251), ErrorText::Missing::nothing);
-  profile.errors[0x8250].missing = ErrorText::Missing::sync;
-  profile.errors[0x8251].missing = ErrorText::Missing::rpdo;
-  EXPECT_EQ(drive::missingFrames(profile, 0x8250), ErrorText::Missing::sync);
-  EXPECT_EQ(drive::missingFrames(profile, 0x8251), ErrorText::Missing::rpdo);
+  EXPECT_EQ(drive::missingByCode(profile, 0x8250), ErrorText::Missing::outputs);
+  EXPECT_EQ(drive::missingByCode(profile, 0x8251), ErrorText::Missing::nothing);
+  profile.errors[0x8250].missing = ErrorText::Missing::cycle;
+  profile.errors[0x8251].missing = ErrorText::Missing::outputs;
+  EXPECT_EQ(drive::missingByCode(profile, 0x8250), ErrorText::Missing::cycle);
+  EXPECT_EQ(drive::missingByCode(profile, 0x8251), ErrorText::Missing::outputs);
   profile.errors[0x8250].missing = ErrorText::Missing::nothing;
-  EXPECT_EQ(drive::missingFrames(profile, 0x8250), ErrorText::Missing::rpdo);
+  EXPECT_EQ(drive::missingByCode(profile, 0x8250), ErrorText::Missing::outputs);
 }
 
 TEST(ProfileBehaviour, AFloatThatNothingNamesHasItsPlaceAndAsManyBitsAsItsBytes) {

@@ -111,9 +111,9 @@ TEST(DriveProfile, TheDamiaoOneSaysWhatTheManualSays) {
   EXPECT_EQ(damiao.before_enable[1].object, "target_position");
   EXPECT_EQ(damiao.before_enable[1].from, "position_actual");
   EXPECT_EQ(damiao.errors.count(0x8201) + damiao.errors.count(0x8250), 2u);
-  EXPECT_EQ(drive::missingFrames(damiao, 0x8201), ErrorText::Missing::sync);
-  EXPECT_EQ(drive::missingFrames(damiao, 0x8250), ErrorText::Missing::rpdo);
-  EXPECT_EQ(drive::missingFrames(damiao, 0x2310), ErrorText::Missing::nothing);
+  EXPECT_EQ(drive::missingByCode(damiao, 0x8201), ErrorText::Missing::cycle);
+  EXPECT_EQ(drive::missingByCode(damiao, 0x8250), ErrorText::Missing::outputs);
+  EXPECT_EQ(drive::missingByCode(damiao, 0x2310), ErrorText::Missing::nothing);
 }
 
 struct Mistake {

@@ -164,7 +164,7 @@ TEST_F(ProfileKeys, BehaviourIsAsWritten) {
   EXPECT_EQ(profile.parameters.timeout, milliseconds(4500));
   EXPECT_TRUE(profile.parameters.power_cycle_after_save);
   EXPECT_EQ(profile.fault_reset_tries, 4);
-  EXPECT_EQ(profile.fault_reset_nmt_stop, milliseconds(150));
+  EXPECT_EQ(profile.fault_reset_pause, milliseconds(150));
 }
 
 TEST_F(ProfileKeys, WritesAreAsWritten) {
@@ -233,7 +233,7 @@ TEST_F(ProfileKeys, ErrorsHaveWords) {
   EXPECT_EQ(profile.errors[0x8250].text, "late");
   EXPECT_EQ(profile.errors[0x8250].cause, "nobody sent");
   EXPECT_EQ(profile.errors[0x8250].remedy, "send");
-  EXPECT_EQ(profile.errors[0x8250].missing, ErrorText::Missing::rpdo);
+  EXPECT_EQ(profile.errors[0x8250].missing, ErrorText::Missing::outputs);
 }
 
 TEST(ProfileDefaults, AreThoseOfTheStandards) {
@@ -260,7 +260,7 @@ TEST(ProfileDefaults, AreThoseOfTheStandards) {
   EXPECT_FALSE(device.pdo_map_count_may_be_read_only || device.cob_ids_of_drive ||
                device.rpdo_deadline);
   EXPECT_EQ(profile.fault_reset_tries, 1);
-  EXPECT_EQ(profile.fault_reset_nmt_stop, Duration::zero());
+  EXPECT_EQ(profile.fault_reset_pause, Duration::zero());
   EXPECT_FALSE(profile.parameters.power_cycle_after_save);
   EXPECT_TRUE(profile.homing.methods.empty());
   EXPECT_FALSE(profile.mode("csp")->cyclic);

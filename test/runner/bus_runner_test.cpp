@@ -38,7 +38,7 @@ class SimulatedRunner : public testing::Test {
     options.time = bus::BusTime::Kind::simulated;
     options.clock = clock;
     auto interface = std::make_unique<sim::SimulatedInterface>(
-        loaded.axes, loaded.robot.bus.bitrate, options.clock());
+        loaded.drives, loaded.robot.bus.bitrate, options.clock());
     simulation = interface.get();
     runner = std::make_unique<bus::BusRunner>(loaded.robot, loaded.master, std::move(interface),
                                               options);

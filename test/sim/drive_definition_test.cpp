@@ -46,12 +46,15 @@ TEST(DriveDefinition, ReportsEveryProblemAtOnceWithItsPath) {
       "faults:\n"
       "  odd: {register: 300}\n");
   for (const char* expected :
-       {"colour (line 3): unknown key", "encoding (line 4)", "units.position (line 5)",
-        "units.torque (line 5)", "'nonsense' is no role", "controlword: must be an object",
-        "modes.1.behaviour (line 8): 'flying' is none of", "modes.2.behaviour: is missing",
-        "modes.2.behavior (line 9): unknown key", "state_machine.halt (line 10)",
-        "state_machine.quick_stop.values.1.ramp (line 10)", "homing.methods (line 11)",
-        "faults.odd.code: is missing", "faults.odd.register (line 13)"}) {
+       {".yaml:3: colour: unknown key", ".yaml:4: encoding: unknown word `roman`",
+        ".yaml:5: units/position: must be", ".yaml:5: units/torque: must be a number",
+        "'nonsense' is no role", "controlword: must be an object",
+        ".yaml:8: modes/1/behaviour: unknown word `flying`",
+        ".yaml:9: modes/2: `behaviour` is missing",
+        ".yaml:9: modes/2/behavior: unknown key, did you mean `behaviour`?",
+        ".yaml:10: state_machine/halt: must be true or false",
+        ".yaml:10: state_machine/quick_stop/values/1/ramp: ", ".yaml:11: homing/methods: ",
+        ".yaml:13: faults/odd: `code` is missing", ".yaml:13: faults/odd/register: must be"}) {
     EXPECT_THAT(error, HasSubstr(expected));
   }
 }
@@ -59,8 +62,8 @@ TEST(DriveDefinition, ReportsEveryProblemAtOnceWithItsPath) {
 TEST(DriveDefinition, SaysSoWhenThereIsNoFileOrNoYaml) {
   EXPECT_THAT(loadDriveDefinition("/nowhere/x.yaml").error().message, HasSubstr("/nowhere/x.yaml"));
   EXPECT_THAT(errorOf("a: [1"), HasSubstr("problems"));
-  EXPECT_THAT(errorOf("just text"), HasSubstr("must be a map"));
-  EXPECT_THAT(errorOf("name: x"), HasSubstr("dictionary: is missing"));
+  EXPECT_THAT(errorOf("just text"), HasSubstr("must be a mapping"));
+  EXPECT_THAT(errorOf("name: x"), HasSubstr("`dictionary` is missing"));
   EXPECT_THAT(errorOf("extends: nothing"), HasSubstr("nothing.yaml"));
 }
 
@@ -91,8 +94,11 @@ TEST(DriveDefinition, AFileCanExtendAnotherBesideIt) {
               HasSubstr("do the files extend each other"));
   std::ofstream(base) << "colour: red\n";
   const std::string error = loadDriveDefinition(path).error().message;
-  EXPECT_THAT(error, HasSubstr("extends (line 1): drive_definition_base: colour (line 1)"));
-  EXPECT_THAT(error, HasSubstr("without (line 2)"));
+  EXPECT_THAT(
+      error,
+      HasSubstr(
+          "drive_definition_extended.yaml:1: extends: drive_definition_base.yaml:1: colour: "));
+  EXPECT_THAT(error, HasSubstr("drive_definition_extended.yaml:2: without: "));
   std::remove(base.c_str());
   std::remove(path.c_str());
 }

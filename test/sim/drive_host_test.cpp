@@ -48,7 +48,7 @@ class DriveHostTest : public testing::Test {
     const auto definition =
         loadDriveDefinition(cia402::test::configFolder() + "/simulated_drives/generic_cia402.yaml");
     EXPECT_TRUE(definition.ok());
-    axes_.push_back({"x", 5, definition.value(), {}, {}});
+    axes_.push_back({"x", 5, definition.value(), {{}}, {}, {{"x", 0}}});
     host.emplace(axes_, wire, Time{1s});
     host->step(Time{2s});
     // 1016h:01 = 0x007F0064
@@ -79,7 +79,7 @@ class DriveHostTest : public testing::Test {
   std::optional<DriveHost> host;
 
  private:
-  std::vector<SimulatedAxis> axes_;
+  std::vector<SimulatedDrive> axes_;
 };
 
 TEST_F(DriveHostTest, SteppedLateTheDrivesMissNoHeartbeatThatWasInTime) {

@@ -8,7 +8,7 @@
 namespace cia402::sim {
 namespace {
 
-std::vector<SimulatedAxis> axesOf(const std::string& simulation, Problems& problems) {
+std::vector<SimulatedDrive> axesOf(const std::string& simulation, Problems& problems) {
   const std::string folder = cia402::test::configFolder();
   const YAML::Node tree = YAML::Load(
       "bus: {interface: sim, bitrate: 1000000, sync_period: 0.004}\n"
@@ -18,7 +18,7 @@ std::vector<SimulatedAxis> axesOf(const std::string& simulation, Problems& probl
       "      simulation: " +
       simulation + "}\n");
   const auto robot = config::loadRobot(tree, config::profilesIn({folder + "/drives"}), problems);
-  return simulatedAxes(robot, folder + "/simulated_drives", problems);
+  return simulatedDrives(robot, folder + "/simulated_drives", problems);
 }
 
 TEST(RobotDrives, AnUnconfiguredDriveHasNoNodeIdAndTheIdentityItIsGiven) {
@@ -45,6 +45,73 @@ TEST(RobotDrives, ANumberTooLargeForTheIdentityIsRefused) {
   Problems problems;
   axesOf("{serial: 0x100000000}", problems);
   EXPECT_NE(problems.text().find("simulation/serial"), std::string::npos) << problems.text();
+}
+
+std::vector<SimulatedDrive> pairOf(const std::string& first, const std::string& second,
+                                   Problems& problems) {
+  const std::string folder = cia402::test::configFolder();
+  const YAML::Node tree = YAML::Load(
+      "bus: {interface: sim, bitrate: 1000000, sync_period: 0.004}\n"
+      "defaults: {drive: generic_cia402, counts_per_turn: 1000,\n"
+      "           limits: {velocity: 1, acceleration: 1}}\n"
+      "axes:\n"
+      "  y: {node_id: 5, device_axis: 1, simulation: " +
+      first +
+      "}\n"
+      "  z: {node_id: 6}\n"
+      "  x: {node_id: 5, device_axis: 0, gear_ratio: 2, simulation: " +
+      second + "}\n");
+  const auto robot = config::loadRobot(tree, config::profilesIn({folder + "/drives"}), problems);
+  EXPECT_TRUE(problems.empty()) << problems.text();
+  return simulatedDrives(robot, folder + "/simulated_drives", problems);
+}
+
+TEST(RobotDrives, AxesOfOneDeviceAreOneDriveEachWithItsOwnMechanics) {
+  Problems problems;
+  const auto drives =
+      pairOf("{drive: generic_cia402_dual, initial_position: 6.283185307179586, serial: 7}",
+             "{initial_position: 3.141592653589793}", problems);
+  ASSERT_TRUE(problems.empty()) << problems.text();
+  ASSERT_EQ(drives.size(), 2U);
+  EXPECT_EQ(drives[0].name, "y");
+  EXPECT_EQ(drives[0].node, 5);
+  EXPECT_EQ(drives[0].identity.serial, 7U);
+  ASSERT_EQ(drives[0].mechanics.size(), 2U);
+  EXPECT_DOUBLE_EQ(drives[0].mechanics[0].initial_position, 1.0) << "half a turn by its gear";
+  EXPECT_DOUBLE_EQ(drives[0].mechanics[1].initial_position, 1.0);
+  const auto x = findAxis(drives, "x"), y = findAxis(drives, "y"), z = findAxis(drives, "z");
+  ASSERT_TRUE(x && y && z);
+  EXPECT_EQ(x->drive, 0U);
+  EXPECT_EQ(x->axis, 0U);
+  EXPECT_EQ(y->drive, 0U);
+  EXPECT_EQ(y->axis, 1U);
+  EXPECT_EQ(z->drive, 1U);
+  EXPECT_FALSE(findAxis(drives, "w"));
+}
+
+TEST(RobotDrives, ADriveWithTooFewAxesIsRefused) {
+  Problems problems;
+  pairOf("{drive: generic_cia402}", "{}", problems);
+  EXPECT_NE(
+      problems.text().find("axes/y/simulation/drive: the simulated drive has 1 axis, and this "
+                           "is its axis 1"),
+      std::string::npos)
+      << problems.text();
+}
+
+TEST(RobotDrives, WhatIsOfTheDriveIsSaidByItsFirstAxis) {
+  const std::string dual = "{drive: generic_cia402_dual}";
+  for (const char* second : {"{drive: generic_cia402_guarding}", "{serial: 3}",
+                             "{unconfigured: true}", "{with: {description: other}}"}) {
+    Problems problems;
+    pairOf(dual, second, problems);
+    EXPECT_NE(problems.text().find("axes/x/simulation/drive: is of the drive that `y` sits in"),
+              std::string::npos)
+        << second << ": " << problems.text();
+  }
+  Problems problems;
+  pairOf(dual, dual, problems);
+  EXPECT_TRUE(problems.empty()) << problems.text();
 }
 
 }  // namespace

@@ -201,8 +201,8 @@ TEST(SeveralAxes, SyncMovesBothAlongTheirTargets) {
   DualBench b;
   b.write(0x6060, 0, 8, 1);
   b.write(0x6860, 0, 8, 1);
-  b.write(0x1404, 1, 0x00000281, 4);  // RPDO 5: 6840h
-  b.write(0x1406, 1, 0x00000481, 4);  // RPDO 7: 6840h, 687Ah
+  b.write(0x1440, 1, 0x00000281, 4);  // RPDO 65: 6840h
+  b.write(0x1442, 1, 0x00000481, 4);  // RPDO 67: 6840h, 687Ah
   b.nmt(0x01);
   b.enable();
   b.frame(0x281, {0x06, 0x00});
@@ -275,9 +275,10 @@ std::string problemOf(const std::string& text) {
 
 TEST(SeveralAxes, AreOneToEight) {
   EXPECT_EQ(problemOf("axes: 8\n"), "");
-  EXPECT_THAT(problemOf("axes: 9\n"), HasSubstr("axes (line 2)"));
-  EXPECT_THAT(problemOf("axes: []\n"), HasSubstr("axes (line 2)"));
-  EXPECT_THAT(problemOf("axes: [{}, {colour: red}]\n"), HasSubstr("axes.1.colour (line 2)"));
+  EXPECT_THAT(problemOf("axes: 9\n"), HasSubstr("several_axes_test.yaml:2: axes: "));
+  EXPECT_THAT(problemOf("axes: []\n"), HasSubstr("several_axes_test.yaml:2: axes: "));
+  EXPECT_THAT(problemOf("axes: [{}, {colour: red}]\n"),
+              HasSubstr("several_axes_test.yaml:2: axes[1]/colour: unknown key"));
   EXPECT_THAT(problemOf("axes: 2\nobjects: {save_zero: \"2003:01\"}\n"),
               HasSubstr("save_zero: a drive with several axes must have it in 6000h to 67FFh"));
 }

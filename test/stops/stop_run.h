@@ -42,8 +42,8 @@ class Play {
         case_(tested),
         world_(loaded.robot.bus.bitrate, 1),
         host_(world_, loaded.robot, loaded.master) {
-    const sim::SimulatedAxis& axis = loaded.axes.front();
-    world_.addDrive(axis.name, axis.definition, axis.node, axis.mechanics, axis.identity);
+    const sim::SimulatedDrive& axis = loaded.drives.front();
+    world_.addDrive(axis.name, axis.definition, axis.node, axis.mechanics[0], axis.identity);
     const drive::AxisConfig& config = loaded.robot.axes.front();
     const double ratio = config.profile->output_shaft ? 1.0 : config.geometry.gear_ratio;
     units_per_turn_ = 6.283185307179586 / ratio;

@@ -41,9 +41,9 @@ class LeftTurning : public testing::Test {
  protected:
   static LoadedRobot load() {
     LoadedRobot loaded = loadText(genericPair());
-    sim::DriveDefinition turns_on = *loaded.axes[0].definition;
+    sim::DriveDefinition turns_on = *loaded.drives[0].definition;
     turns_on.stops_outside_operational = false;
-    loaded.axes[0].definition = std::make_shared<const sim::DriveDefinition>(std::move(turns_on));
+    loaded.drives[0].definition = std::make_shared<const sim::DriveDefinition>(std::move(turns_on));
     return loaded;
   }
   LeftTurning() : scene(load()) {}

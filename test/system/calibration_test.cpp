@@ -209,7 +209,7 @@ TEST(StandardCalibration, TheFactorysCommunicationHoldsNoZero) {
 TEST(StandardCalibration, WhatADriveAddsToItsSetPointsIsNotWritten) {
   Scene scene(loadText(genericPair()));
   ASSERT_TRUE(scene.boot()) << scene.told();
-  for (const char* const object : {"60B0:00", "60B1:00", "60B2:00", "68B0:00"}) {
+  for (const char* const object : {"60B0:00", "60B1:00", "60B2:00"}) {
     const auto refused = write(scene, "left", std::string(object) + " i32", "1000");
     EXPECT_FALSE(refused.success);
     EXPECT_THAT(refused.message, AllOf(HasSubstr("left (node 1)"), HasSubstr(object),

@@ -267,7 +267,7 @@ TEST_F(Declared, PositionOutlivesALostNodeWithItsLimits) {
 
 TEST(Coordinates, MinusZeroIsNeverSentBackToTheDrive) {
   LoadedRobot loaded = loadText(damiaoJoint());
-  loaded.axes[0].mechanics.initial_position = -0.0;
+  loaded.drives[0].mechanics[0].initial_position = -0.0;
   Scene scene(std::move(loaded));
   ASSERT_TRUE(scene.boot()) << scene.told();
   ASSERT_EQ(scene.drive("joint").dictionary().find({0x6064, 0})->number, 0x80000000u);

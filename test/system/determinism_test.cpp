@@ -47,7 +47,7 @@ defaults: {drive: generic_cia402, type: revolute, mode: cyclic_position, counts_
 axes: {shoulder: {node_id: 1}, elbow: {node_id: 2}, wrist: {node_id: 3}}
 groups: {arm: {joints: [shoulder, elbow, wrist]}}
 )"));
-  tools::VirtualRobot robot(loaded.robot, loaded.master, loaded.axes, seed);
+  tools::VirtualRobot robot(loaded.robot, loaded.master, loaded.drives, seed);
   Recording run;
   robot.world().bus().setMonitor([&run](const can::Frame& frame, Time time) {
     run.frames.push_back({time, frame});

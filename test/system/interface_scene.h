@@ -20,9 +20,7 @@ class InterfaceScene : private bus::EventSink {
         world_(loaded_.robot.bus.bitrate),
         interface_(world_.bus(), "can0", options),
         loop_(loaded_.robot, loaded_.master, interface_, *this) {
-    for (const sim::SimulatedAxis& axis : loaded_.axes) {
-      world_.addDrive(axis.name, axis.definition, axis.node, axis.mechanics);
-    }
+    sim::addTo(world_, loaded_.drives);
     interface_.setAdvance([this](Time time) { world_.advance(time); });
     world_.powerOn();
   }

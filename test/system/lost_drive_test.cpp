@@ -28,9 +28,10 @@ class LostDrive : public testing::TestWithParam<Lost> {
     LoadedRobot loaded = loadText(genericPair(
         ", simulation: {lower_limit_switch: -2.4}, homing: {method: 17, offset: 0.0, "
         "search_velocity: 0.3, zero_velocity: 0.05, acceleration: 2.0, timeout: 30.0}"));
-    sim::DriveDefinition definition = *loaded.axes[0].definition;
+    sim::DriveDefinition definition = *loaded.drives[0].definition;
     definition.stops_outside_operational = GetParam().stops_by_nmt;
-    loaded.axes[0].definition = std::make_shared<const sim::DriveDefinition>(std::move(definition));
+    loaded.drives[0].definition =
+        std::make_shared<const sim::DriveDefinition>(std::move(definition));
     return loaded;
   }
   /// Homes, and hears no more of the drive: its heartbeats get lost, and then other frames, too.

@@ -35,7 +35,7 @@ TEST_P(EnablingAt, MovesNoDamiaoInAnyMode) {
        {"profile_position", "position_velocity", "position_velocity_torque", "cyclic_position",
         "profile_velocity", "cyclic_velocity", "velocity_torque", "profile_torque"}) {
     LoadedRobot loaded = loadText(damiaoJoint());
-    loaded.axes[0].mechanics.initial_position = GetParam() / 6.283185307179586;
+    loaded.drives[0].mechanics[0].initial_position = GetParam() / 6.283185307179586;
     loaded.robot.axes[0].mode = mode;
     Scene scene(std::move(loaded));
     ASSERT_TRUE(scene.boot()) << scene.told();

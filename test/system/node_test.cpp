@@ -148,7 +148,7 @@ TEST(Boot, SwappedDrivesAreRefusedWhileTheRestWorks) {
 TEST(Boot, AWrongDeviceTypeIsRefusedInWords) {
   LoadedRobot loaded = loadText(genericPair());
   const auto damiao = loadText(damiaoJoint());
-  loaded.axes[0].definition = damiao.axes[0].definition;
+  loaded.drives[0].definition = damiao.drives[0].definition;
   loaded.master.nodes[0].device_type = 0x00020192;
   Scene scene(std::move(loaded));
   scene.robot().start();

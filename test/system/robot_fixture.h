@@ -15,7 +15,7 @@ namespace cia402 {
 struct LoadedRobot {
   config::RobotConfig robot;
   canopen::MasterConfig master;
-  std::vector<sim::SimulatedAxis> axes;
+  std::vector<sim::SimulatedDrive> drives;
 };
 
 inline LoadedRobot loadTree(const YAML::Node& tree) {
@@ -25,7 +25,7 @@ inline LoadedRobot loadTree(const YAML::Node& tree) {
   loaded.robot = config::loadRobot(tree, config::profilesIn({folder + "/drives"}), problems);
   if (problems.empty()) loaded.master = config::makeMasterConfig(loaded.robot, problems);
   if (problems.empty()) {
-    loaded.axes = sim::simulatedAxes(loaded.robot, folder + "/simulated_drives", problems);
+    loaded.drives = sim::simulatedDrives(loaded.robot, folder + "/simulated_drives", problems);
   }
   EXPECT_TRUE(problems.empty()) << problems.text();
   return loaded;

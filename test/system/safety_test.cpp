@@ -69,7 +69,7 @@ class Safety : public testing::Test {
  protected:
   void boot(const std::string& yaml) {
     const LoadedRobot loaded = loadTree(YAML::Load(yaml));
-    robot = std::make_unique<tools::VirtualRobot>(loaded.robot, loaded.master, loaded.axes);
+    robot = std::make_unique<tools::VirtualRobot>(loaded.robot, loaded.master, loaded.drives);
     robot->start();
     ASSERT_TRUE(robot->runUntil([&] { return allReady(*robot); }, 5s)) << told(*robot);
     robot->run(100ms);

@@ -77,8 +77,12 @@ class Scene {
  public:
   explicit Scene(LoadedRobot loaded, std::uint64_t seed = 1)
       : loaded_(std::move(loaded)),
-        robot_(loaded_.robot, loaded_.master, loaded_.axes, seed),
-        seen_(loaded_.robot.axes.size()) {}
+        robot_(loaded_.robot, loaded_.master, loaded_.drives, seed),
+        seen_(loaded_.robot.axes.size()) {
+    for (const drive::AxisConfig& axis : loaded_.robot.axes) {
+      places_.push_back(sim::findAxis(loaded_.drives, axis.name).value());
+    }
+  }
 
   struct Seen {  // of the truth, since forget()
     double lowest = 1e9, highest = -1e9, fastest = 0.0;
@@ -101,23 +105,24 @@ class Scene {
   drive::Axis& axis(const std::string& name) { return robot_.network().axis(index(name)); }
   canopen::Node& node(const std::string& name) { return robot_.network().node(index(name)); }
   const drive::AxisState& state(const std::string& name) { return axis(name).state(); }
-  sim::Port& port(const std::string& name) { return world().port(index(name)); }
-  sim::Drive& drive(const std::string& name) { return world().drive(index(name)); }
-  sim::DriveTruth truth(const std::string& name) { return drive(name).truth(now()); }
+  sim::Port& port(const std::string& name) { return world().port(places_[index(name)].drive); }
+  sim::Drive& drive(const std::string& name) { return world().drive(places_[index(name)].drive); }
+  sim::DriveTruth truth(std::size_t i) {
+    return world().drive(places_[i].drive).truth(now(), places_[i].axis);
+  }
+  sim::DriveTruth truth(const std::string& name) { return truth(index(name)); }
   void inject(const std::string& name, const std::string& fault) {
-    const auto done = drive(name).inject(fault, now());
+    const auto done = drive(name).inject(fault, now(), places_[index(name)].axis);
     EXPECT_TRUE(done) << (done ? "" : done.error().message);
   }
 
   /// Where the joint truly stands, rad or m, in the coordinates of its `simulation:` section.
   double position(std::size_t i) {
-    return world().drive(i).truth(now()).position_turns * unitsPerTurn(i) +
+    return truth(i).position_turns * unitsPerTurn(i) +
            loaded_.robot.axes[i].geometry.position_offset;
   }
   double position(const std::string& name) { return position(index(name)); }
-  double velocity(std::size_t i) {
-    return world().drive(i).truth(now()).velocity_turns * unitsPerTurn(i);
-  }
+  double velocity(std::size_t i) { return truth(i).velocity_turns * unitsPerTurn(i); }
   double velocity(const std::string& name) { return velocity(index(name)); }
   const Seen& seen(const std::string& name) const { return seen_[index(name)]; }
   void forget() { std::fill(seen_.begin(), seen_.end(), Seen()); }
@@ -234,6 +239,7 @@ class Scene {
   LoadedRobot loaded_;
   tools::VirtualRobot robot_;
   std::vector<Seen> seen_;
+  std::vector<sim::AxisPlace> places_;  ///< of the axes among the drives
   std::function<void()> look_;
 };
 

@@ -94,9 +94,9 @@ TEST_F(StalledDriver, TakesAnAnswerThatCameInTime) {
 TEST_F(StalledDriver, SaysEnabledOnlyOfADriveThatIs) {
   // A drive whose SDO answers come between its TPDO and the cycle that would look at it.
   LoadedRobot loaded = loadText(damiaoJoint());
-  sim::DriveDefinition definition = *loaded.axes[0].definition;
+  sim::DriveDefinition definition = *loaded.drives[0].definition;
   definition.communication.sdo_latency = 2600us;
-  loaded.axes[0].definition = std::make_shared<const sim::DriveDefinition>(std::move(definition));
+  loaded.drives[0].definition = std::make_shared<const sim::DriveDefinition>(std::move(definition));
   begin(std::move(loaded));
   bool reading = false;
   const auto read = [&] {  // so that an answer is under way all the time

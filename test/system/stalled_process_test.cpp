@@ -20,7 +20,7 @@ class StalledProcess : public testing::Test, private bus::EventSink {
  protected:
   void begin(const std::string& yaml) {
     loaded = loadText(yaml);
-    simulation.emplace(loaded.axes, loaded.robot.bus.bitrate, clock);
+    simulation.emplace(loaded.drives, loaded.robot.bus.bitrate, clock);
     loop.emplace(loaded.robot, loaded.master, *simulation, static_cast<bus::EventSink&>(*this));
     ASSERT_TRUE(runUntil([&] { return allReady(); }, 8s)) << told;
   }

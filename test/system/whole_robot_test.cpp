@@ -14,7 +14,7 @@ using testing::HasSubstr;
 
 TEST(DemoRobot, BootsEnablesHomesAndFollowsATrajectory) {
   const LoadedRobot loaded = loadFile("demo.yaml");
-  tools::VirtualRobot robot(loaded.robot, loaded.master, loaded.axes);
+  tools::VirtualRobot robot(loaded.robot, loaded.master, loaded.drives);
   robot.start();
   ASSERT_TRUE(robot.runUntil([&] { return allReady(robot); }, 5s)) << told(robot);
 

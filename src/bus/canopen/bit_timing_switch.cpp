@@ -7,8 +7,8 @@
 
 #include "bus/canopen/lss_supervisor.h"
 #include "bus/network.h"
-#include "bus/words.h"
 #include "canopen/lss/task.h"
+#include "common/text.h"
 
 namespace cia402::bus {
 namespace {

@@ -2,9 +2,8 @@
 #include "bus/canopen/bus_listener.h"
 
 #include <algorithm>
-#include <cstdio>
 
-#include "bus/words.h"
+#include "common/text.h"
 
 namespace cia402::bus {
 namespace {
@@ -16,9 +15,7 @@ constexpr std::uint32_t kFunctionCode = 0x780;
 constexpr std::size_t kMostKinds = 3;  // in a sentence
 
 std::string withId(const std::string& what, std::uint32_t id) {
-  char text[24];
-  std::snprintf(text, sizeof text, " (COB-ID 0x%03X)", static_cast<unsigned>(id));
-  return what + text;
+  return what + " (COB-ID " + hexText(id, 3) + ")";
 }
 
 }  // namespace
@@ -73,7 +70,7 @@ std::string BusListener::kindOf(const can::Frame& frame) const {
 std::string BusListener::text() const {
   if (!heard()) return {};
   return "another master is on the bus, heard: " + joined(heard_, ", ") +
-         "; nothing is sent until none for " + seconds(duration_) + "; stop the other one";
+         "; nothing is sent until none for " + secondsText(duration_) + "; stop the other one";
 }
 
 }  // namespace cia402::bus

@@ -40,7 +40,7 @@ std::string nameOf(const DcfReading::Item& item, const std::string& problem) {
 }  // namespace
 
 DcfDraft::DcfDraft(const drive::AxisConfig& axis, const canopen::DeviceConfig& device,
-                   const DcfStamp& stamp)
+                   const DcfStamp& stamp, const std::vector<const drive::AxisConfig*>& others)
     : axis_(axis.name), who_(drive::whoIs(axis)), has_eds_(device.eds != nullptr) {
   if (has_eds_) {
     info_ = *device.eds;
@@ -49,8 +49,13 @@ DcfDraft::DcfDraft(const drive::AxisConfig& axis, const canopen::DeviceConfig& d
   } else {
     info_.description = "Written without an EDS, by profile " + axis.profile->name;
     info_.granularity = 8;
-    addProfileObjects(*axis.profile);
-    addCommunicationObjects(*device.profile);
+    std::vector<const drive::AxisConfig*> axes = others;
+    axes.insert(axes.begin(), &axis);
+    for (const drive::AxisConfig* each : axes) addProfileObjects(*each->profile);
+    addCommunicationObjects();
+    for (const drive::AxisConfig* each : axes) {
+      addPdoObjects(*device.profile, device.profile->pdos_per_axis * each->device_axis);
+    }
   }
   info_.file_name = stamp.file_name;
   info_.node_id = device.node_id;
@@ -115,7 +120,7 @@ void DcfDraft::addRecord(std::uint16_t index, const char* name, const std::vecto
   }
 }
 
-void DcfDraft::addCommunicationObjects(const canopen::DeviceProfile& profile) {
+void DcfDraft::addCommunicationObjects() {
   static constexpr struct {
     std::uint16_t index;
     const char* name;
@@ -143,12 +148,16 @@ void DcfDraft::addCommunicationObjects(const canopen::DeviceProfile& profile) {
     place->second = {row.index, row.name, ObjectCode::variable, {}};
     place->second.entries[0] = entryOf({row.index, 0}, row.name, row.type, row.access);
   }
-  const DataType u8 = DataType::uint8, u16 = DataType::uint16, u32 = DataType::uint32;
+  const DataType u8 = DataType::uint8, u32 = DataType::uint32;
   addRecord(0x1016, "Consumer heartbeat time", {u8, u32}, {kHighest, "Consumer heartbeat time 1"},
             Access::ro, Access::rw);
   addRecord(0x1018, "Identity object", {u8, u32, u32, u32, u32},
             {kHighest, "Vendor-ID", "Product code", "Revision number", "Serial number"}, Access::ro,
             Access::ro);
+}
+
+void DcfDraft::addPdoObjects(const canopen::DeviceProfile& profile, unsigned first) {
+  const DataType u8 = DataType::uint8, u16 = DataType::uint16, u32 = DataType::uint32;
   std::vector<DataType> mapped(9, u32);
   mapped[0] = u8;
   const std::vector<const char*> mapped_names = {
@@ -159,13 +168,13 @@ void DcfDraft::addCommunicationObjects(const canopen::DeviceProfile& profile) {
     const bool receive = base == 0x1400;
     const unsigned count = receive ? profile.max_rpdos : profile.max_tpdos;
     for (unsigned i = 0; i < count; ++i) {
-      addRecord(static_cast<std::uint16_t>(base + i),
+      addRecord(static_cast<std::uint16_t>(base + first + i),
                 receive ? "RPDO communication parameter" : "TPDO communication parameter",
                 {u8, u32, u8, u16, u8, u16, u8},
                 {kHighest, "COB-ID", "Transmission type", "Inhibit time", "Reserved", "Event timer",
                  "SYNC start value"},
                 Access::ro, Access::rw);
-      addRecord(static_cast<std::uint16_t>(base + 0x200 + i),
+      addRecord(static_cast<std::uint16_t>(base + 0x200 + first + i),
                 receive ? "RPDO mapping parameter" : "TPDO mapping parameter", mapped, mapped_names,
                 Access::rw, Access::rw);
     }

@@ -33,8 +33,9 @@ struct DcfStamp {
 ///     if (read.success) write(draft.finish().text);
 class DcfDraft {
  public:
+  /// @param others that sit in the device, too
   DcfDraft(const drive::AxisConfig& axis, const canopen::DeviceConfig& device,
-           const DcfStamp& stamp);
+           const DcfStamp& stamp, const std::vector<const drive::AxisConfig*>& others = {});
 
   /// Has the objects read; to be given once.
   SaveDcfCommand command() const { return {axis_, reading_}; }
@@ -45,7 +46,9 @@ class DcfDraft {
  private:
   void plan();
   void addProfileObjects(const drive::DriveProfile& profile);
-  void addCommunicationObjects(const canopen::DeviceProfile& profile);
+  void addCommunicationObjects();
+  /// @param first how many there are before its first one
+  void addPdoObjects(const canopen::DeviceProfile& profile, unsigned first);
   void addRecord(std::uint16_t index, const char* name,
                  const std::vector<fieldbus::DataType>& types,
                  const std::vector<const char*>& names, fieldbus::Access count,

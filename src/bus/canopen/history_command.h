@@ -9,7 +9,7 @@
 
 namespace cia402::bus {
 
-class Network;
+class AxisCycle;
 
 /// What a drive keeps of its past errors.
 struct HistoryAnswer : Answer {
@@ -21,7 +21,7 @@ struct ErrorHistoryCommand {
   using Answer = HistoryAnswer;
   std::string axis;
 
-  void begin(Network& network, const Reply<HistoryAnswer>& reply, Time now) const;
+  void begin(AxisCycle& cycle, const Reply<HistoryAnswer>& reply, Time now) const;
 };
 
 }  // namespace cia402::bus

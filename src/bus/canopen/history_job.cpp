@@ -4,18 +4,18 @@
 #include <memory>
 #include <utility>
 
+#include "bus/axis_cycle.h"
 #include "bus/canopen/history_command.h"
-#include "bus/network.h"
-#include "bus/words.h"
+#include "common/text.h"
 #include "drive/profile/fault_text.h"
 
 namespace cia402::bus {
 
-void ErrorHistoryCommand::begin(Network& network, const Reply<HistoryAnswer>& reply, Time) const {
-  const auto unit = network.cycle().findToAsk(axis, "its error history (1003h)");
+void ErrorHistoryCommand::begin(AxisCycle& cycle, const Reply<HistoryAnswer>& reply, Time) const {
+  const auto unit = cycle.findToAsk(axis, "its error history (1003h)");
   if (!unit) return refuse(reply, unit.error().message);
   const drive::AxisConfig& config = (*unit)->axis.config();
-  network.cycle().jobs().add(std::make_unique<HistoryJob>(
+  cycle.jobs().add(std::make_unique<HistoryJob>(
       (*unit)->axis, canopen::ErrorHistoryReader::kAll,
       [&config, reply](const canopen::ErrorHistory& history) {
         HistoryAnswer answer;
@@ -45,8 +45,8 @@ void HistoryJob::abandon(const std::string& why) {
 std::string historyText(const drive::DriveProfile& profile, const canopen::ErrorHistory& history) {
   std::string text;
   for (const canopen::ErrorHistoryEntry& entry : history.entries) {
-    append(text, drive::hexWord(entry.code) + " " + drive::errorName(profile, entry.code), ", ");
-    if (entry.info != 0) text += " (info " + drive::hexWord(entry.info) + ")";
+    append(text, hexText(entry.code, 4) + " " + drive::errorName(profile, entry.code), ", ");
+    if (entry.info != 0) text += " (info " + hexText(entry.info, 4) + ")";
   }
   if (history.readable && history.recorded == 0) text = "empty";
   const std::size_t more = history.recorded - history.entries.size();

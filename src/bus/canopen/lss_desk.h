@@ -12,6 +12,10 @@
 namespace cia402::bus {
 
 /// Carries out LSS tasks one after the other, for there is one LSS master on a bus. Sans-IO.
+///
+/// Why no JobList does this: jobs take their steps in the cycle, all of them in each. LSS tasks
+/// take turns, go on with each answer or after some milliseconds, and run before there is a cycle,
+/// for no drive can be booted without its node-ID.
 class LssDesk {
  public:
   /// @param error why it failed; empty for success.

@@ -7,7 +7,7 @@
 
 #include "bus/canopen/node_unit.h"
 #include "bus/network.h"
-#include "bus/words.h"
+#include "common/text.h"
 
 namespace cia402::bus {
 namespace {
@@ -36,8 +36,9 @@ std::optional<NmtCommand> commandOf(const std::string& word) {
   return {};
 }
 
+/// @param alone the other axes of the device are not asked themselves
 std::string refusal(drive::Axis& axis, const canopen::Node& node, const std::string& word,
-                    NmtCommand command) {
+                    NmtCommand command, bool alone) {
   if (command == NmtCommand::start) return {};  // at most, it boots
   const std::string refused = drive::whoIs(axis.config()) + ": nmt " + word + " is refused: ";
   if (command == NmtCommand::reset_node && !node.config().reset_node_allowed) {
@@ -50,6 +51,8 @@ std::string refusal(drive::Axis& axis, const canopen::Node& node, const std::str
            "); wait for its end, or stop it by halt, quick_stop or disable";
   }
   if (axis.device().health() != Health::ready) return {};
+  const std::string others = alone ? axis.deviceRefusal() : std::string();
+  if (!others.empty()) return refused + others;
   const drive::AxisState& state = axis.state();
   if (state.feedback_valid && drive::powerStageOff(state.state, state.statusword)) return {};
   return refused + "the axis is not disabled (" +
@@ -92,7 +95,7 @@ Result<std::unique_ptr<Job>> NmtJob::start(const std::string& word, const std::v
     return Error{"nmt: unknown command \"" + word + "\"; there are " + known};
   }
   for (const Item& item : items) {
-    const std::string why = refusal(*item.axis, *item.node, word, *command);
+    const std::string why = refusal(*item.axis, *item.node, word, *command, !all);
     if (!why.empty()) return Error{why};
   }
   std::unique_ptr<NmtJob> job(new NmtJob(word, *command, std::move(reply), now));
@@ -107,7 +110,7 @@ void NmtJob::command(const Item& item, bool all, Time now) {
                                  [&](const Entry& entry) { return entry.node == &node; });
   const bool mute = node.health() == Health::ready && !node.supervision().watched;
   const bool tells = node.config().heartbeat > Duration::zero() && !mute;
-  entries_.push_back({&node, drive::whoIs(item.axis->config()), tells, false, false, {}});
+  entries_.push_back({&node, item.axis, tells, false, false, {}});
   if (again) return;  // another axis of the same node
   if (command_ == NmtCommand::start) {
     const bool needed = node.health() != Health::ready && node.health() != Health::booting;
@@ -140,7 +143,9 @@ void NmtJob::lookAgain(Entry& entry) const {
   entry.message = about(entry) + "the drive did so, but by now it is configured and started again";
 }
 
-std::string NmtJob::about(const Entry& entry) const { return entry.who + ": nmt " + word_ + ": "; }
+std::string NmtJob::about(const Entry& entry) const {
+  return drive::whoIs(entry.axis->config()) + ": nmt " + word_ + ": ";
+}
 
 bool NmtJob::staysDown() const {
   return command_ == NmtCommand::stop || command_ == NmtCommand::enter_pre_operational;
@@ -154,7 +159,7 @@ void NmtJob::watch(Entry& entry, Time now) const {
     watchBoot(entry, now);
   }
   if (!entry.ended) return;
-  entry.message = about(entry) + entry.message;
+  entry.message = about(entry) + entry.message + entry.axis->neighbourText();
 }
 
 /// Start and the resets end with the node configured and operational, by what it told since.

@@ -40,7 +40,7 @@ class NmtJob final : public Job {
  private:
   struct Entry {
     canopen::Node* node = nullptr;
-    std::string who;
+    const drive::Axis* axis;
     bool tells = true;  ///< its heartbeat, or answers to guarding, will tell the state
     bool ended = false, success = false;
     std::string message;

@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "bus/canopen/history_job.h"
-#include "bus/words.h"
 #include "canopen/pdo/text.h"
+#include "common/text.h"
 
 namespace cia402::bus {
 namespace {
@@ -46,8 +46,8 @@ void NodeUnit::onBootUp(Time now) {
   if (++boot_ups_ > 2) axis().reporter.bootUp(now);
 }
 
-void NodeUnit::onHealthChange(Health before, Time now) {
-  for (const Entry& entry : axes_) entry.unit->axis.onHealthChange(before, now);
+void NodeUnit::onHealthChange(Time now) {
+  for (const Entry& entry : axes_) entry.unit->axis.onHealthChange();
   const Health health = node_->health();
   if (health == Health::booting) {
     boot_began_ = now;
@@ -66,7 +66,7 @@ void NodeUnit::onHealthChange(Health before, Time now) {
 
 /// One line in the log; what else there is to say of the boot stands in the words of the axes.
 void NodeUnit::tellBooted(Time now) {
-  const std::string booted = "booted in " + secondsTo(2, now - boot_began_);
+  const std::string booted = "booted in " + secondsText(now - boot_began_, 2);
   const std::string warnings = joined(node_->notes());
   std::string words = booted;
   if (!warnings.empty()) append(words, warnings);
@@ -84,7 +84,11 @@ void NodeUnit::onEmergency(const fieldbus::Emergency& emergency, const std::stri
                            Time now) {
   for (const Entry& entry : axes_) {
     entry.unit->axis.onEmergency(emergency, now, excuse);
-    entry.unit->reporter.emergency(emergency, now, excuse);
+    if (entry.unit == &axis()) {
+      entry.unit->reporter.emergency(emergency, now, excuse);
+    } else {
+      entry.unit->reporter.count(emergency);
+    }
   }
 }
 
@@ -140,10 +144,8 @@ void NodeUnit::readHistory(AxisUnit& axis, Time now) {
       }));
 }
 
-void NodeUnit::fill(AxisSnapshot& snapshot, const Foreseen& foreseen) const {
-  if (snapshot.node.changes != node_->changes()) snapshot.node = snapshotOf(*node_, foreseen);
-  snapshot.stale_feedback = node_->image().staleCount();
-  snapshot.wrong_lengths = node_->image().wrongLengths();
+void NodeUnit::fillNode(NodeSnapshot& snapshot, const Foreseen& foreseen) const {
+  snapshot = snapshotOf(*node_, foreseen);
 }
 
 }  // namespace cia402::bus

@@ -45,15 +45,22 @@ class NodeUnit {
     if (axis.news.faultUnexplained()) readHistory(axis, now);
   }
   void onBootUp(Time now);
-  void onHealthChange(fieldbus::Health before, Time now);
+  void onHealthChange(Time now);
   /// @param excuse how this program itself has caused it, in words; empty: it has not
   void onEmergency(const fieldbus::Emergency& emergency, const std::string& excuse, Time now);
   void onMalformedEmergency(std::size_t size, Time now);
 
   /// What is shown of the node in the snapshot of each of its axes.
-  void fill(AxisSnapshot& snapshot, const Foreseen& foreseen) const;
+  void fill(AxisSnapshot& snapshot, const Foreseen& foreseen) const {
+    const canopen::PdoImage& image = node_->image();
+    snapshot.stale_feedback = image.staleCount();
+    snapshot.wrong_lengths = image.wrongLengths();
+    if (snapshot.node.changes != node_->changes()) fillNode(snapshot.node, foreseen);
+  }
 
  private:
+  void fillNode(NodeSnapshot& snapshot, const Foreseen& foreseen) const;
+
   struct Entry {
     AxisUnit* unit = nullptr;
     Time history_asked{};  ///< Time() if it was not

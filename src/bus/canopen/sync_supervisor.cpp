@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "bus/words.h"
+#include "common/text.h"
 
 namespace cia402::bus {
 namespace {
@@ -86,10 +86,9 @@ void SyncSupervisor::lack(Time now) {
     const int periods = canopen::SyncConsumer::kLostAfter;
     cycle_.stopBesideCycle(
         "stopped: no SYNC (COB-ID 0x080) came from the other device for " +
-            std::to_string(periods) + " periods (" + milliseconds(periods * bus_.sync_period) +
-            "); set-points do not reach the drives without it. Check the device that " +
-            "produces SYNC, then enable again",
-        now);
+        std::to_string(periods) + " periods (" + millisecondsText(periods * bus_.sync_period) +
+        "); set-points do not reach the drives without it. Check the device that " +
+        "produces SYNC, then enable again");
   }
   master_.syncPassed(now);
   next_cycle_ = now;
@@ -98,7 +97,7 @@ void SyncSupervisor::lack(Time now) {
 
 std::string SyncSupervisor::ownLateness(Time stamp) const {
   if (stamp < late_since_ || stamp > late_until_ || lateness_ == Duration::zero()) return {};
-  return "this program sent SYNC " + milliseconds(lateness_, kMeasuredDigits) +
+  return "this program sent SYNC " + millisecondsText(lateness_, kMeasuredDigits) +
          " late: the computer did not let it run in time (see `real time` in the diagnostics)";
 }
 
@@ -113,7 +112,7 @@ SyncSupervisor::Trouble SyncSupervisor::trouble() const {
 }
 
 std::string SyncSupervisor::textOf(Trouble trouble) const {
-  const std::string expected = milliseconds(bus_.sync_period);
+  const std::string expected = millisecondsText(bus_.sync_period);
   switch (trouble) {
     case Trouble::none:
       break;
@@ -129,7 +128,7 @@ std::string SyncSupervisor::textOf(Trouble trouble) const {
                                      : "without the counter of") +
              " `bus: {sync_counter}`";
     case Trouble::wrong_period:
-      return "SYNC comes every " + milliseconds(external_.period(), kMeasuredDigits) +
+      return "SYNC comes every " + millisecondsText(external_.period(), kMeasuredDigits) +
              ", not every " + expected + " as `bus: {sync_period}` says: correct one of them";
   }
   return {};
@@ -143,12 +142,12 @@ std::string SyncSupervisor::enableProblem() const {
 }
 
 /// Drives that get SYNC at two paces do not move as they are told to.
-void SyncSupervisor::watchSecondProducer(Time now) {
+void SyncSupervisor::watchSecondProducer() {
   const bool heard = foreign_ != foreign_seen_;
   foreign_seen_ = foreign_;
   foreign_looks_ = heard ? foreign_looks_ + 1 : 0;
   if (foreign_looks_ != kForeignLooks) return;
-  cycle_.stopBesideCycle("stopped: " + textOf(Trouble::second_producer), now);
+  cycle_.stopBesideCycle("stopped: " + textOf(Trouble::second_producer));
 }
 
 void SyncSupervisor::look(Time now) {
@@ -157,7 +156,7 @@ void SyncSupervisor::look(Time now) {
   if (first) return;
   if (!bus_.external_sync) {
     if (foreign_ == 0) return;
-    watchSecondProducer(now);
+    watchSecondProducer();
   }
   const Trouble found = trouble();
   if (found != seen_) seen_since_ = now;
@@ -178,7 +177,7 @@ void SyncSupervisor::tellTrouble(Trouble trouble, Time now) {
   tell(events_, Event::Severity::error, problem_.view(), now);
   // Where it is lost, that has happened already.
   const bool comes = external_.state() == State::running;
-  if (comes && bus_.external_sync) cycle_.stopBesideCycle("stopped: " + problem_.str(), now);
+  if (comes && bus_.external_sync) cycle_.stopBesideCycle("stopped: " + problem_.str());
 }
 
 }  // namespace cia402::bus

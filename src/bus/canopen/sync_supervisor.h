@@ -67,7 +67,7 @@ class SyncSupervisor {
   void lack(Time now);
   void follow(const can::Frame& frame, Time stamp, Time now);
   void look(Time now);
-  void watchSecondProducer(Time now);
+  void watchSecondProducer();
   void tellTrouble(Trouble trouble, Time now);
   Trouble trouble() const;
   std::string textOf(Trouble trouble) const;

@@ -10,7 +10,7 @@
 
 namespace cia402::bus {
 
-class Network;
+class AxisCycle;
 
 /// The value of an object.
 struct ObjectAnswer : Answer {
@@ -24,7 +24,7 @@ struct ReadObjectCommand {
   using Answer = ObjectAnswer;
   std::string axis, object;
 
-  void begin(Network& network, const Reply<ObjectAnswer>& reply, Time now) const;
+  void begin(AxisCycle& cycle, const Reply<ObjectAnswer>& reply, Time now) const;
 };
 
 /// Writes an object: a number in device units (decimal, or 0x... as the bit pattern; a float where
@@ -33,7 +33,7 @@ struct WriteObjectCommand {
   using Answer = bus::Answer;
   std::string axis, object, value;
 
-  void begin(Network& network, const Reply<>& reply, Time now) const;
+  void begin(AxisCycle& cycle, const Reply<>& reply, Time now) const;
 };
 
 }  // namespace cia402::bus

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "bus/axis_cycle.h"
 #include "bus/jobs/object_address.h"
 #include "bus/jobs/object_text.h"
-#include "bus/network.h"
 
 namespace cia402::bus {
 namespace {
@@ -39,9 +39,10 @@ std::string insteadOf(CoordinateMark mark, const std::string& axis) {
 /// Offsets that a drive adds to each set-point (CiA 402-2: 60B0h, 60B1h, 60B2h; of further axes
 /// 800h later): what is in them moves it, now or with the next set-point.
 bool addsToSetPoints(fieldbus::ObjectId id) {
-  constexpr unsigned kFirst = 0x60B0, kLast = 0x60B2, kAxisSize = 0x800, kEnd = 0xA000;
-  if (id.index < kFirst || id.index >= kEnd) return false;
-  return (id.index - kFirst) % kAxisSize <= kLast - kFirst;
+  const std::optional<unsigned> axis = drive::axisOf(id);
+  if (!axis) return false;
+  const unsigned index = id.index - *axis * drive::kAxisSize;
+  return index >= 0x60B0 && index <= 0x60B2;
 }
 
 std::string offsetRefusal(fieldbus::ObjectId id, const fieldbus::Bytes& data) {
@@ -68,20 +69,20 @@ bool mayBeWritten(const fieldbus::Transfer& transfer) {
 
 }  // namespace
 
-void ReadObjectCommand::begin(Network& network, const Reply<ObjectAnswer>& reply, Time) const {
-  AxisUnit* const unit = network.cycle().find(axis);
+void ReadObjectCommand::begin(AxisCycle& cycle, const Reply<ObjectAnswer>& reply, Time) const {
+  AxisUnit* const unit = cycle.find(axis);
   if (unit == nullptr) return refuse(reply, noSuchAxis(axis));
   auto job = ObjectJob::read(unit->axis, object, reply);
   if (!job) return refuse(reply, job.error().message);
-  network.cycle().jobs().add(std::move(job).value());
+  cycle.jobs().add(std::move(job).value());
 }
 
-void WriteObjectCommand::begin(Network& network, const Reply<>& reply, Time) const {
-  AxisUnit* const unit = network.cycle().find(axis);
+void WriteObjectCommand::begin(AxisCycle& cycle, const Reply<>& reply, Time) const {
+  AxisUnit* const unit = cycle.find(axis);
   if (unit == nullptr) return refuse(reply, noSuchAxis(axis));
   auto job = ObjectJob::write(unit->axis, object, value, reply);
   if (!job) return refuse(reply, job.error().message);
-  network.cycle().jobs().add(std::move(job).value());
+  cycle.jobs().add(std::move(job).value());
 }
 
 ObjectJob::ObjectJob(drive::Axis& axis, Reply<ObjectAnswer> reply)
@@ -124,7 +125,8 @@ std::string ObjectJob::notWritten(const std::string& why) const {
 std::string ObjectJob::beginWrite(const std::string& value) {
   value_ = value;
   mark_ = axis_->config().profile->coordinateMark(id_);
-  const std::string refusal = calibrationRefusal();
+  std::string refusal = strangerRefusal();
+  if (refusal.empty()) refusal = calibrationRefusal();
   if (!refusal.empty()) return notWritten(refusal);
   if (!spec_) {
     stage_ = Stage::asking_size;
@@ -150,9 +152,21 @@ void ObjectJob::lock() {
   locked_ = true;
 }
 
+/// Nobody moves an axis through the name of another one.
+std::string ObjectJob::strangerRefusal() const {
+  const std::optional<unsigned> owner = drive::axisOf(id_);
+  if (!owner || *owner == axis_->config().device_axis) return {};
+  return "it is of axis " + std::to_string(*owner) +
+         " of the drive (CiA 402-2), and this is axis " +
+         std::to_string(axis_->config().device_axis) +
+         "; write it by the name of that axis, which has `device_axis: " + std::to_string(*owner) +
+         "` in the configuration";
+}
+
 std::string ObjectJob::calibrationRefusal() const {
   if (mark_ == CoordinateMark::none) return {};
-  const std::string why = axis_->calibrationRefusal();
+  std::string why = axis_->calibrationRefusal();
+  if (why.empty() && ofDevice()) why = axis_->deviceRefusal();
   if (why.empty()) return {};
   return "it shifts the drive's coordinates or holds its calibration, and " + why +
          ". Instead: " + insteadOf(mark_, axis_->config().name);
@@ -189,7 +203,7 @@ bool ObjectJob::step(Time now) {
 
 bool ObjectJob::finishWrite(Time now) {
   if (locked_ && (ticket_->ok() || mayBeWritten(*ticket_))) {
-    axis_->loseZero();
+    axis_->loseZero(ofDevice());
     stage_ = Stage::settling;
     since_ = now;
     return false;
@@ -202,7 +216,7 @@ bool ObjectJob::finishWrite(Time now) {
 bool ObjectJob::measure(Time now) {
   if (stage_ == Stage::settling) {
     if (now < since_ + kSettling) return false;
-    axis_->measureAnew();
+    axis_->measureAnew(ofDevice());
     stage_ = Stage::measuring;
     since_ = now;
     return false;

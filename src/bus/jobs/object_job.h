@@ -47,7 +47,10 @@ class ObjectJob final : public Job {
   void download(const fieldbus::Bytes& data);
   void lock();
   /// Why an object with a mark cannot be written now; empty: it can.
+  std::string strangerRefusal() const;
   std::string calibrationRefusal() const;
+  /// It is of the device, and so of all axes in it.
+  bool ofDevice() const { return !drive::axisOf(id_); }
   bool finishWrite(Time now);
   bool measure(Time now);
   std::string measuredText(bool measured) const;

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <sstream>
 
+#include "common/text.h"
 #include "decode/value_text.h"
 #include "drive/profile/conversion.h"
 #include "drive/profile/object_value.h"
@@ -20,18 +21,6 @@ using fieldbus::Bytes;
 
 bool isText(drive::DataType type) { return fieldbus::sizeBits(type) == 0; }
 
-/// Drives written in C pad their texts with zeros.
-Bytes unpadded(Bytes data) {
-  while (data.size() > 1 && data.back() == 0) data.pop_back();
-  return data;
-}
-
-std::int64_t signExtended(std::uint64_t raw, unsigned bits) {
-  if (bits >= 64) return static_cast<std::int64_t>(raw);
-  const std::uint64_t sign = std::uint64_t{1} << (bits - 1);
-  return static_cast<std::int64_t>((raw ^ sign)) - static_cast<std::int64_t>(sign);
-}
-
 bool isPrintable(const Bytes& data) {
   return !data.empty() && std::all_of(data.begin(), data.end(),
                                       [](std::uint8_t byte) { return std::isprint(byte) != 0; });
@@ -39,11 +28,7 @@ bool isPrintable(const Bytes& data) {
 
 /// "37 06"; "nothing" where there is none.
 std::string bytesOf(const Bytes& data) {
-  std::string text;
-  for (const std::uint8_t byte : data) {
-    text += (text.empty() ? "" : " ") + decode::hexNumber(byte, 1).substr(2);
-  }
-  return text.empty() ? "nothing" : text;
+  return data.empty() ? "nothing" : hexBytes(data.data(), data.size());
 }
 
 /// What it means is not guessed: two bytes may be a number with or without a sign, or a text.
@@ -175,7 +160,7 @@ ObjectText describeObject(const ObjectSpec* spec, const drive::AxisConfig& axis,
   if (isText(spec->type)) {
     const bool visible = spec->type == drive::DataType::visible_string;
     const bool octets = spec->type == drive::DataType::octet_string;
-    text.value = octets ? bytesOf(data) : textOf(visible ? unpadded(data) : data);
+    text.value = octets ? bytesOf(data) : textOf(visible ? decode::unpadded(data) : data);
     return text;
   }
   if (data.size() * 8 != (bits == 1 ? 8 : bits)) {
@@ -189,10 +174,10 @@ ObjectText describeObject(const ObjectSpec* spec, const drive::AxisConfig& axis,
     text.value = motion::formatNumber(text.number);
   } else {
     const bool with_sign = fieldbus::isSigned(spec->type);
-    const std::int64_t number = signExtended(raw, bits);
+    const std::int64_t number = fieldbus::toSigned(raw, bits);
     text.number = with_sign ? static_cast<double>(number) : static_cast<double>(raw);
     text.value = (with_sign ? std::to_string(number) : std::to_string(raw)) + " (" +
-                 decode::hexNumber(raw, static_cast<unsigned>(data.size())) + ")";
+                 hexText(raw, static_cast<int>(2 * data.size())) + ")";
   }
   const std::string joint = inJointUnits(*spec, axis, data);
   if (!joint.empty()) text.value += " = " + joint;

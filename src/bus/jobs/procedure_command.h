@@ -9,7 +9,7 @@
 
 namespace cia402::bus {
 
-class Network;
+class AxisCycle;
 
 /// A procedure on one axis, or on all that are concerned where `axis` is empty.
 struct ProcedureCommand {
@@ -17,7 +17,7 @@ struct ProcedureCommand {
   std::string axis;
   drive::ProcedureRequest request;
 
-  void begin(Network& network, const Reply<>& reply, Time now) const;
+  void begin(AxisCycle& cycle, const Reply<>& reply, Time now) const;
 };
 
 }  // namespace cia402::bus

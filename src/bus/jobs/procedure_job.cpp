@@ -6,8 +6,8 @@
 #include <memory>
 #include <utility>
 
-#include "bus/network.h"
-#include "bus/words.h"
+#include "bus/axis_cycle.h"
+#include "common/text.h"
 #include "motion/joint.h"
 
 namespace cia402::bus {
@@ -58,9 +58,8 @@ std::string lapse(const drive::ProcedureRequest& request, const drive::Axis& axi
 
 }  // namespace
 
-void ProcedureCommand::begin(Network& network, const Reply<>& reply, Time now) const {
+void ProcedureCommand::begin(AxisCycle& cycle, const Reply<>& reply, Time now) const {
   const bool homing = request.kind == drive::ProcedureKind::home;
-  AxisCycle& cycle = network.cycle();
   const std::string problem = enables(request.kind) ? cycle.enableProblem() : std::string();
   if (!problem.empty()) {
     return refuse(reply, std::string(drive::toString(request.kind)) + " is refused: " + problem);
@@ -78,7 +77,7 @@ void ProcedureCommand::begin(Network& network, const Reply<>& reply, Time now) c
     }
     if (!named && !concerned) continue;
     units.push_back(&unit);
-    items.push_back({&unit.axis, homing && config.homing ? config.homing->order : 0});
+    items.push_back({&unit.axis, homing ? cycle.joints().ofAxis(unit.index).homingOrder() : 0});
     if (stops(request.kind)) cycle.jobs().withdraw(unit.axis, request.kind);
   }
   if (items.empty()) {

@@ -91,7 +91,7 @@ class MotorLimits final : public Oracle {
     const AxisFacts& facts = view.stage.axes()[i];
     const AxisTruth& truth = view.truths[i];
     Axis& axis = axes_[i];
-    const drive::AxisLimits& limits = facts.config->limits;
+    const motion::JointLimits& limits = facts.config->limits;
     const bool judged = limits.velocity && limits.acceleration && truth.power &&
                         view.now >= view.conditions.axes[i].blocked &&
                         view.now >= view.conditions.lossy && view.now >= view.conditions.foreign &&

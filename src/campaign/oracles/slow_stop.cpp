@@ -67,7 +67,7 @@ class SlowStops final : public Oracle {
     Stop& stop = *axis.stop;
     if (std::fabs(truth.velocity) > facts.creep()) axis.turned = view.now;
     const bool over = view.now - axis.turned >= kStands || !truth.power || truth.faulted() ||
-                      view.permits.given(i) > stop.called + 2 * facts.config->sync_period ||
+                      view.permits.given(i) > stop.called + 2 * facts.config->cycle ||
                       !facts.config->limits.acceleration;
     if (over) {
       axis.stop.reset();

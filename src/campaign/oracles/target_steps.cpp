@@ -97,9 +97,9 @@ class TargetSteps final : public Oracle {
     }
     const AxisFacts& facts = view.stage.axes()[i];
     const double step = last_[i] ? std::fabs(value - *last_[i]) : 0.0;
-    const double allowed = 1.02 * facts.velocity * toSeconds(facts.config->sync_period) +
+    const double allowed = 1.02 * facts.velocity * toSeconds(facts.config->cycle) +
                            2 * std::fabs(facts.units_per_count) + 1e-6 * std::fabs(value);
-    const bool stands_as_told = view.now - stood_[i].at <= facts.config->sync_period;
+    const bool stands_as_told = view.now - stood_[i].at <= facts.config->cycle;
     const bool called_back = stands_as_told && std::fabs(value - stood_[i].told) <= allowed;
     if (last_[i] && !(step <= allowed) && !called_back) {
       report(view, i,

@@ -6,6 +6,7 @@
 
 #include "canopen/boot/steps.h"
 #include "canopen/boot/text.h"
+#include "common/text.h"
 
 namespace cia402::canopen {
 namespace {
@@ -84,7 +85,7 @@ class CobIds : public BootStep {
 
   /// The drive refuses to change it.
   Progress kept(BootContext& boot) {
-    const std::string is = objectText(row().object, row().name) + " is " + hex32(value_);
+    const std::string is = objectText(row().object, row().name) + " is " + hexText(value_, 8);
     const auto& pdos = boot.config.pdos;
     const bool needs_sync = std::any_of(pdos.begin(), pdos.end(), [](const PdoConfig& pdo) {
       return pdo.enabled && pdo.transmission <= 240;

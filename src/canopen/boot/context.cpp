@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "canopen/boot/text.h"
+#include "common/text.h"
 #include "fieldbus/abort_code.h"
 
 namespace cia402::canopen {

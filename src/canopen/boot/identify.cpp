@@ -4,6 +4,7 @@
 
 #include "canopen/boot/steps.h"
 #include "canopen/boot/text.h"
+#include "common/text.h"
 
 namespace cia402::canopen {
 namespace {
@@ -26,8 +27,8 @@ constexpr std::array<IdentityRow, 4> kIdentity{{
 }};
 
 std::string mismatch(ObjectId object, const char* name, std::uint32_t is, std::uint32_t wanted) {
-  return "is another drive than configured: " + objectText(object, name) + " is " + hex32(is) +
-         ", configured is " + hex32(wanted) +
+  return "is another drive than configured: " + objectText(object, name) + " is " + hexText(is, 8) +
+         ", configured is " + hexText(wanted, 8) +
          "; check node-ID and wiring, or correct `identity` in the configuration";
 }
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "canopen/boot/steps.h"
+#include "common/text.h"
 
 namespace cia402::canopen {
 namespace {
@@ -79,11 +80,6 @@ void BootProcedure::enter(std::size_t step, Time now) {
 }
 
 void BootProcedure::tellWhatIsLacking() {
-  const auto list = [](const std::vector<std::string>& objects) {
-    std::string text;
-    for (const std::string& object : objects) text += (text.empty() ? "" : ", ") + object;
-    return text;
-  };
   const BootFindings& found = boot_.found;
   if (!found.lacking.empty()) {
     const std::string& remedy = boot_.config.lacking_remedy;
@@ -91,13 +87,13 @@ void BootProcedure::tellWhatIsLacking() {
                        "left out, for only defaults ask for it and the drive does not have it, or "
                        "does not let it be written or mapped" +
                            (remedy.empty() ? "" : " (" + remedy + ")") + ": " +
-                           list(found.lacking));
+                           joined(found.lacking, ", "));
   }
   if (!found.lacking_optional.empty()) {
     boot_.remarks.push_back(
         "optional start-up writes left out, for it does not have them or does "
         "not let them be written: " +
-        list(found.lacking_optional));
+        joined(found.lacking_optional, ", "));
   }
 }
 

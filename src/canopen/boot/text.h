@@ -11,14 +11,10 @@ namespace cia402::canopen {
 std::string objectText(ObjectId object, const std::string& name);
 /// Up to eight bytes as one number: "0x0064" for 64 00; longer data as "12 bytes".
 std::string valueText(const Bytes& data);
-/// "0x000D0117".
-std::string hex32(std::uint32_t value);
 /// What to look at where a drive is heard and its SDO server is not.
 inline constexpr const char* kMuteAdvice =
     "its SDO server is mute; look at the COB-IDs of that server (1200h in the drive, `sdo` in the "
     "configuration), for another SDO client (a maker's tool) or a second device with this node-ID, "
     "and whether the drive is still starting up";
-/// "5 s", "0.3 s".
-std::string secondsText(Duration duration);
 
 }  // namespace cia402::canopen

@@ -2,26 +2,17 @@
 #include "canopen/lss/master.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 
 #include "canopen/boot/text.h"
+#include "common/text.h"
 
 namespace cia402::canopen {
 namespace {
 
-constexpr std::size_t kMostAnswers = 256;  // a babbling device must not fill the memory
+std::string bytesText(const can::Frame& frame) { return hexBytes(frame.data.data(), frame.size); }
 
-std::string bytesText(const can::Frame& frame) {
-  std::string text;
-  for (std::size_t i = 0; i < frame.size; ++i) {
-    char byte[4];
-    std::snprintf(byte, sizeof(byte), i == 0 ? "%02X" : " %02X",
-                  static_cast<unsigned>(frame.data[i]));
-    text += byte;
-  }
-  return text;
-}
+constexpr std::size_t kMostAnswers = 256;  // a babbling device must not fill the memory
 
 }  // namespace
 

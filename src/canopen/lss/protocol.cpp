@@ -99,17 +99,6 @@ can::Frame activateBitTiming(std::uint16_t delay_ms) {
 
 can::Frame store() { return request(Command::store); }
 
-std::array<can::Frame, 6> identifyRemote(const Identity& low, const Identity& high) {
-  return {request(Command::identify_vendor, low.vendor_id),
-          request(Command::identify_product, low.product_code),
-          request(Command::identify_revision_low, low.revision),
-          request(Command::identify_revision_high, high.revision),
-          request(Command::identify_serial_low, low.serial),
-          request(Command::identify_serial_high, high.serial)};
-}
-
-can::Frame identifyUnconfigured() { return request(Command::identify_unconfigured); }
-
 can::Frame fastscan(std::uint32_t number, std::uint8_t bit, std::uint8_t sub, std::uint8_t next) {
   return request(Command::fastscan, number, bit, sub, next);
 }

@@ -84,9 +84,6 @@ can::Frame configureBitTiming(std::uint8_t index);
 /// @param delay_ms for which the devices are silent, twice: before and after the change.
 can::Frame activateBitTiming(std::uint16_t delay_ms);
 can::Frame store();
-/// Six frames; every device in these ranges answers `identified` to the sixth.
-std::array<can::Frame, 6> identifyRemote(const Identity& low, const Identity& high);
-can::Frame identifyUnconfigured();
 
 /// BitChecked of the frame that starts a fastscan.
 inline constexpr std::uint8_t kFastscanStart = 0x80;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/text.h"
+
 namespace cia402::canopen {
 namespace {
 
@@ -217,9 +219,8 @@ LssTask::Status LssScanTask::confirm(LssMaster& master, Time now) {
         found_.push_back(candidate);
       }
     } else {
-      trouble_ += (trouble_.empty() ? "" : "; ") +
-                  std::string("what looked like a device was not confirmed, ") +
-                  selection_->error() + "; scan again, with a longer window";
+      append(trouble_, "what looked like a device was not confirmed, " + selection_->error() +
+                           "; scan again, with a longer window");
     }
     ++confirming_;
     selection_.reset();

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "canopen/boot/text.h"
+#include "common/text.h"
 
 namespace cia402::canopen {
 namespace {

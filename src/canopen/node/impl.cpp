@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "canopen/boot/text.h"
+#include "common/text.h"
 
 namespace cia402::canopen {
 namespace {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "canopen/node/impl.h"
+#include "canopen/node/terms.h"
 #include "canopen/pdo/text.h"
 
 namespace cia402::canopen {
@@ -51,6 +52,7 @@ SdoClient& Node::sdo() { return impl_->sdo; }
 const SdoClient& Node::sdo() const { return impl_->sdo; }
 fieldbus::ObjectAccess& Node::objects() { return impl_->sdo; }
 fieldbus::DeviceTimes Node::times() const { return {config().boot_timeout, config().sdo}; }
+const fieldbus::Terms& Node::terms() const { return kTerms; }
 std::string Node::overdueText() const { return staleText(image()); }
 std::string Node::missingText() const { return canopen::missingText(image()); }
 std::string Node::carrierText(fieldbus::Slot output) const {
@@ -165,7 +167,7 @@ void Node::onSync(Time now) {
 
 bool Node::takeCobIdChange() { return std::exchange(impl_->cob_ids_changed, false); }
 
-void Node::refuse(const std::string& why, Time) {
+void Node::refuse(const std::string& why) {
   impl_->sink.send(nmtFrame(NmtCommand::enter_pre_operational, id()));
   impl_->takeOut(Health::failed, why);
   impl_->refresh();

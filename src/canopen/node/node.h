@@ -51,6 +51,7 @@ class Node final : public fieldbus::Device {
   fieldbus::DeviceTimes times() const override;
   const std::optional<Emergency>& lastEmergency() const override;
   fieldbus::ObjectAccess& objects() override;
+  const fieldbus::Terms& terms() const override;
   std::string overdueText() const override;
   std::string missingText() const override;
   std::string carrierText(fieldbus::Slot output) const override;
@@ -123,7 +124,7 @@ class Node final : public fieldbus::Device {
   bool takeCobIdChange();
   /// The node cannot be used as it is: takes it out of operation, for `why` in words. Called by
   /// Master.
-  void refuse(const std::string& why, Time now);
+  void refuse(const std::string& why);
   void tick(Time now);        ///< called by Master
   Time nextDeadline() const;  ///< called by Master
   /// Sends the RPDOs that are due in this cycle (PdoConfig::refresh_every).

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "common/text.h"
 #include "fieldbus/abort_code.h"
 
 namespace cia402::canopen {

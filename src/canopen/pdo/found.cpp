@@ -1,6 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "canopen/pdo/found.h"
 
+#include "common/text.h"
+
 namespace cia402::canopen {
 namespace {
 

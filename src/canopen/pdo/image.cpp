@@ -51,8 +51,6 @@ void PdoImage::describeSlots() {
     const Pdo& pdo = tpdos_[i];
     const bool by_cycles = pdo.silent_limit != 0;
     for (const Pdo::Field& field : pdo.fields) {
-      input_tpdos_.resize(std::max<std::size_t>(input_tpdos_.size(), field.slot + 1U));
-      input_tpdos_[field.slot] = i;
       setDelivery(field.slot, {by_cycles || pdo.age_limit != Duration::zero(),
                                by_cycles ? pdo.every : std::uint16_t{0}, pdo.event_interval});
     }
@@ -100,17 +98,19 @@ bool PdoImage::receive(std::size_t tpdo, const can::Frame& frame, Time stamp) {
   if (!exact) {
     ++wrong_lengths_;
     pdo.wrong_size = frame.size;
-    ++(frame.size < pdo.size ? pdo.too_short : pdo.too_long);
+    pdo.last_too_short = frame.size < pdo.size;
+    ++(pdo.last_too_short ? pdo.too_short : pdo.too_long);
+    if (pdo.last_too_short) return false;
   }
-  pdo.last_too_short = frame.size < pdo.size;
-  if (pdo.last_too_short) return false;
+  pdo.last_too_short = false;
   ++pdo.received;
   pdo.last = stamp;
   pdo.silent = 0;
   pdo.stale = false;
   const std::uint64_t word = loadLittleEndian(frame.data);
+  fieldbus::ProcessValue* const values = inputs();
   for (const Pdo::Field& field : pdo.fields) {
-    take(field.slot, (word >> field.shift) & field.mask, stamp);
+    values[field.slot] = {(word >> field.shift) & field.mask, stamp, true, true};
   }
   return exact;
 }

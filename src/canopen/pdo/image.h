@@ -28,8 +28,6 @@ class PdoImage : public fieldbus::ProcessImage {
   /// Packs an RPDO if it is due in this cycle: its content changed, or it was not sent for
   /// PdoConfig::refresh_every cycles. Counts it as sent then.
   bool packDue(std::size_t rpdo, can::Frame& frame, Time now);
-  /// The frame of packDue() did not leave: it is due again in the next cycle.
-  void repeat(std::size_t rpdo) { rpdos_[rpdo].sent_once = false; }
   /// Sends every RPDO for which packDue() gives a frame; what `sink` refuses is due again.
   void sendDue(can::Sink& sink, Time now);
   /// One cycle more without the TPDOs that did not come: counts, and marks what is stale. Once a
@@ -40,8 +38,6 @@ class PdoImage : public fieldbus::ProcessImage {
   bool requestDue(std::size_t tpdo, can::Frame& frame);
   /// Indices of the TPDOs that remote frames ask for.
   const std::vector<std::size_t>& requested() const { return requested_; }
-  /// The TPDO (index in tpdos()) that brings an input. @pre slot is that of an input
-  std::size_t tpdoOf(fieldbus::Slot slot) const { return input_tpdos_[slot]; }
   /// The drive has another COB-ID than configured. No effect for a PDO that is not enabled.
   void setCobId(PdoDirection direction, unsigned number, std::uint16_t cob_id);
   /// The drive has been configured without this entry of a PDO: what stands behind it moves up. A
@@ -109,7 +105,7 @@ class PdoImage : public fieldbus::ProcessImage {
   void fillFrame(const Pdo& pdo, std::uint64_t word, can::Frame& frame) const;
 
   std::vector<Pdo> tpdos_, rpdos_;
-  std::vector<std::size_t> requested_, input_tpdos_;
+  std::vector<std::size_t> requested_;
   std::uint64_t wrong_lengths_ = 0, stale_count_ = 0;
 };
 

@@ -2,8 +2,6 @@
 #include "canopen/pdo/wanted.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 
 namespace cia402::canopen {
 namespace {
@@ -12,12 +10,6 @@ constexpr std::uint32_t kExtendedBit = 0x20000000;  // bit 29: an identifier of 
 constexpr std::uint32_t kMaxCanId = 0x7FF;
 
 }  // namespace
-
-std::string hexText(std::uint32_t value, int digits) {
-  std::array<char, 16> text{};
-  std::snprintf(text.data(), text.size(), "0x%0*X", digits, static_cast<unsigned>(value));
-  return text.data();
-}
 
 std::string PdoWanted::title() const {
   return (config_.direction == PdoDirection::tpdo ? "TPDO " : "RPDO ") +

@@ -73,7 +73,4 @@ inline constexpr std::uint32_t kCanIdMask = 0x1FFFFFFF;
 /// Bit 31 of a COB-ID: the PDO does not exist.
 inline constexpr std::uint32_t kInvalidBit = 0x80000000;
 
-/// "0x1F": so many digits.
-std::string hexText(std::uint32_t value, int digits);
-
 }  // namespace cia402::canopen

@@ -2,22 +2,17 @@
 #include "canopen/sdo/transfer.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <utility>
+
+#include "common/text.h"
 
 namespace cia402::canopen {
 namespace {
 
-std::string hexBytes(const Bytes& bytes) {
+/// The first of them, and how many there are.
+std::string shownBytes(const Bytes& bytes) {
   constexpr std::size_t kShown = 8;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(bytes.size(), kShown); ++i) {
-    std::array<char, 4> byte{};
-    std::snprintf(byte.data(), byte.size(), i == 0 ? "%02X" : " %02X",
-                  static_cast<unsigned>(bytes[i]));
-    text += byte.data();
-  }
+  std::string text = hexBytes(bytes.data(), std::min(bytes.size(), kShown));
   if (bytes.size() > kShown) text += " ... (" + std::to_string(bytes.size()) + " bytes)";
   return text;
 }
@@ -40,7 +35,7 @@ void SdoTransfer::fail(NodeId node, Failure failure, std::uint32_t code, std::st
   reason_ = std::move(reason);
   std::string what = "node " + std::to_string(node) + ", object " + toString(object_);
   if (!name_.empty()) what += " " + name_;
-  what += isUpload() ? std::string(", read") : ", write " + hexBytes(data_);
+  what += isUpload() ? std::string(", read") : ", write " + shownBytes(data_);
   message_ = what + ": " + reason_;
 }
 

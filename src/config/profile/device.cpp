@@ -27,6 +27,7 @@ void readPdoRules(yaml::Section& profile_section, const DriveProfile& profile,
   }
   section.readInteger("max_rpdos", device.max_rpdos, 1, 16);
   section.readInteger("max_tpdos", device.max_tpdos, 1, 16);
+  section.readInteger("pdos_per_axis", device.pdos_per_axis, 0, 64);
   section.readInteger("max_entries", device.max_pdo_entries, 1, 64);
   if (section.readInteger("fixed_entries", device.fixed_pdo_entries, 1, 64)) {
     device.max_pdo_entries = std::min(device.max_pdo_entries, device.fixed_pdo_entries);

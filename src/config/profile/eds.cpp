@@ -140,10 +140,11 @@ DriveProfile withEds(DriveProfile profile, const fieldbus::DeviceDescription& ed
 }
 
 EdsContradictions compareWithEds(const DriveProfile& profile, const canopen::DeviceConfig& device,
+                                 const canopen::PdoSet& pdos,
                                  const fieldbus::DeviceDescription& eds) {
   EdsContradictions found;
   compareTypes(profile, eds, found);
-  compareMapping(profile, device.pdos, eds, found);
+  compareMapping(profile, pdos.pdos, eds, found);
   const auto vendor = device.eds->vendor_number.value_or(0);
   const auto expected = device.profile->vendor_id;
   if (expected && vendor != 0 && vendor != *expected) {

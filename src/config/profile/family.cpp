@@ -167,7 +167,7 @@ void readBehaviour(yaml::Section& section, DriveProfile& profile) {
   readModeChange(section, profile);
   section.readInteger("fault_reset_tries", profile.fault_reset_tries, 1, 20);
   readDuration(section, "fault_reset_nmt_stop", yaml::Range{0.0, 10.0, false},
-               profile.fault_reset_nmt_stop);
+               profile.fault_reset_pause);
   section.read("fault_reset_clears_history", profile.fault_reset_clears_history);
   readQuickStop(section, profile);
   readParameters(section, profile);

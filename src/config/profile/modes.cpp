@@ -198,7 +198,7 @@ void readErrors(const yaml::Value& value, DriveProfile& profile) {
       using Missing = ErrorText::Missing;
       if (const auto missing = details.get("missing")) {
         const bool rpdo = missing->oneOf({"sync", "rpdo"}).value_or(0) == 1;
-        error.missing = rpdo ? Missing::rpdo : Missing::sync;
+        error.missing = rpdo ? Missing::outputs : Missing::cycle;
       }
       details.finish();
     } else {

@@ -97,6 +97,7 @@ struct EdsContradictions {
 };
 /// @param pdos layout that is to be mapped.
 EdsContradictions compareWithEds(const DriveProfile& profile, const canopen::DeviceConfig& device,
+                                 const canopen::PdoSet& pdos,
                                  const fieldbus::DeviceDescription& eds);
 
 }  // namespace cia402::config

@@ -3,6 +3,7 @@
 #include <map>
 #include <set>
 
+#include "common/text.h"
 #include "config/profile/parts.h"
 
 namespace cia402::config {
@@ -100,7 +101,7 @@ void readEntries(const yaml::Value& list, const DriveProfile& profile,
     if (!fresh) value.problem("`" + object->name + "` is mapped already, in " + first->second);
     const unsigned width = fieldbus::sizeBits(object->type);
     bits += width;
-    widths += (widths.empty() ? "" : " + ") + std::to_string(width);
+    append(widths, std::to_string(width), " + ");
     pdo.objects.push_back(object->name);
   }
   if (bits > 64) {

@@ -10,8 +10,8 @@
 
 namespace cia402::drive {
 
-/// Which mode of operation the axis is commanded to be in: the one whose value and target the RPDOs
-/// carry.
+/// Which mode of operation the axis is commanded to be in: the one whose value and target the
+/// outputs carry.
 class ActiveMode {
  public:
   /// @param axis must outlive this.
@@ -32,10 +32,10 @@ class ActiveMode {
   /// The selected mode only brakes what moved in another one. Until a mode is selected.
   void brakeFor(const ModeChannel& mode) { braked_in_ = &mode; }
   bool brakes() const { return braked_in_ != nullptr; }
-  /// Another value of 6060h is sent instead of the mode's, where it travels by RPDO; until it is
-  /// taken back, another mode is selected, or the axis leaves operation.
+  /// Another value of 6060h is sent instead of the mode's, where it travels in the cycle; until it
+  /// is taken back, another mode is selected, or the axis leaves operation.
   void overrideValue(std::optional<int> value) { override_ = value; }
-  /// Keeps `raw` in an RPDO object while the mode is active (ModeSpec::entry_writes).
+  /// Keeps `raw` in an output object while the mode is active (ModeSpec::entry_writes).
   void hold(fieldbus::Slot slot, std::uint64_t raw);
 
   /// Puts the mode, and what it holds, into the process image.

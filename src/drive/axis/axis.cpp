@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "common/text.h"
 #include "drive/axis/words.h"
 #include "drive/procedures/limits.h"
 #include "drive/procedures/procedure.h"
@@ -14,7 +15,7 @@ struct Axis::Impl {
   Impl(AxisConfig config, fieldbus::Device& device)
       : core(std::move(config), device), boot_ups(device.bootUps()) {}
 
-  void watchNode();
+  void watchDevice();
   void advance(Time now);
   void finish(bool success, std::string message);
   void preempt(ProcedureKind by);
@@ -30,10 +31,10 @@ struct Axis::Impl {
   std::unique_ptr<Procedure> procedure;
   bool begun = false;  ///< the procedure has been advanced
   bool was_ready = false;
-  bool lost = false;  ///< since the last update(), though the node may be ready again
+  bool lost = false;  ///< since the last update(), though the device may be ready again
   std::uint32_t boot_ups = 0;
   std::string calibrating;  ///< what is being written; empty: nothing
-  Time watched{};           ///< when watchNode() was called by readFeedback()
+  Time watched{};           ///< when watchDevice() was called by readFeedback()
 };
 
 std::string Axis::Impl::busyRefusal(ProcedureKind kind) const {
@@ -48,12 +49,12 @@ std::string Axis::Impl::busyRefusal(ProcedureKind kind) const {
          " is being written, which may give the drive another zero; call it again";
 }
 
-/// Notices a node that is not what it was, even if nobody called onHealthChange().
-void Axis::Impl::watchNode() {
-  const bool ready = core.nodeReady();
+/// Notices a device that is not what it was, even if nobody called onHealthChange().
+void Axis::Impl::watchDevice() {
+  const bool ready = core.deviceReady();
   const std::uint32_t count = core.device().bootUps();
   if (was_ready && (!ready || count != boot_ups)) {
-    core.onNodeLost();
+    core.onDeviceLost();
     lost = true;
   }
   was_ready = ready;
@@ -64,7 +65,7 @@ void Axis::Impl::watchNode() {
 void Axis::Impl::stepProcedure(Time now) {
   const std::string failure = core.notices().takeFailure();
   if (!procedure) return;
-  const bool waits = (lost || !core.nodeReady()) && procedure->survivesNodeLoss();
+  const bool waits = (lost || !core.deviceReady()) && procedure->survivesDeviceLoss();
   if (!failure.empty() && !waits) {
     finish(false, std::string(toString(status.kind)) + " failed: " + failure);
   } else {
@@ -107,7 +108,8 @@ Axis::Axis(AxisConfig config, fieldbus::Device& device)
       state_(&impl_->core.state()),
       procedure_(&impl_->status),
       notices_(&impl_->core.notices().count()),
-      set_point_(&impl_->core.generator().sent()) {}
+      set_point_(&impl_->core.generator().sent()),
+      stream_(&impl_->core.generator().commands().stream()) {}
 Axis::~Axis() = default;
 Axis::Axis(Axis&&) noexcept = default;
 
@@ -116,7 +118,7 @@ fieldbus::Device& Axis::device() { return impl_->core.device(); }
 const ProcedureStatus& Axis::previousProcedure() const { return impl_->previous; }
 
 void Axis::readFeedback(Time now) {
-  impl_->watchNode();
+  impl_->watchDevice();
   impl_->watched = now;
   impl_->core.readFeedback(now);
 }
@@ -129,7 +131,7 @@ void Axis::look() { impl_->core.basis().objects.signals.look(); }
 
 void Axis::update(Time now) {
   Impl& impl = *impl_;
-  if (impl.watched != now) impl.watchNode();  // else readFeedback() just did
+  if (impl.watched != now) impl.watchDevice();  // else readFeedback() just did
   impl.core.supervise(now);
   if (impl.procedure || impl.core.notices().failed()) impl.stepProcedure(now);
   impl.lost = false;
@@ -140,9 +142,9 @@ void Axis::writeCommands(Time now) { impl_->core.writeCommands(now); }
 
 Result<std::uint32_t> Axis::start(const ProcedureRequest& request, Time now) {
   Impl& impl = *impl_;
-  impl.watchNode();
+  impl.watchDevice();
   const std::string failure = impl.core.notices().takeFailure();
-  if (impl.procedure && !failure.empty() && !impl.procedure->survivesNodeLoss()) {
+  if (impl.procedure && !failure.empty() && !impl.procedure->survivesDeviceLoss()) {
     impl.finish(false, std::string(toString(impl.status.kind)) + " failed: " + failure);
   }
   std::string busy = impl.busyRefusal(request.kind);
@@ -198,8 +200,17 @@ std::string Axis::calibrationRefusal() const {
   return drive::calibrationRefusal(impl_->core);
 }
 void Axis::beginCalibration(std::string what) { impl_->calibrating = std::move(what); }
-void Axis::loseZero() { impl_->core.loseZero(); }
-void Axis::measureAnew() { impl_->core.measureAnew(); }
+void Axis::loseZero(bool device) {
+  impl_->core.loseZero();
+  if (device) impl_->core.basis().neighbours.loseZero();
+}
+void Axis::measureAnew(bool device) {
+  impl_->core.measureAnew();
+  if (device) impl_->core.basis().neighbours.measureAnew();
+}
+void Axis::addNeighbour(Axis& other) { impl_->core.basis().neighbours.add(other.impl_->core); }
+std::string Axis::deviceRefusal() const { return impl_->core.basis().neighbours.refusal(); }
+std::string Axis::neighbourText() const { return impl_->core.basis().neighbours.text(); }
 void Axis::endCalibration() { impl_->calibrating.clear(); }
 
 Result<void> Axis::command(double value, Time now) {
@@ -210,8 +221,6 @@ Result<void> Axis::command(double value, Time now) {
 
 void Axis::follow(const std::string* who) { impl_->core.generator().commands().follow(who); }
 const std::string* Axis::leader() const { return impl_->core.generator().commands().leader(); }
-bool Axis::streamAtRest() const { return impl_->core.generator().commands().stream().at_rest; }
-bool Axis::driedUp() const { return impl_->core.generator().commands().stream().dried_up; }
 bool Axis::late() const { return impl_->core.generator().late(); }
 bool Axis::setTarget(double value) { return impl_->core.generator().take(value); }
 void Axis::stopSetPoint() { impl_->core.generator().stop(); }
@@ -223,22 +232,24 @@ bool Axis::mayMove() const { return impl_->core.feedback().mayMove(); }
 std::string Axis::obstacle() const { return drive::obstacle(impl_->core); }
 const std::string& Axis::modeName() const { return impl_->core.mode().spec().name; }
 
-void Axis::stopBySdo(const std::string& why, Time) {
+void Axis::stopBesideCycle(const std::string& why) {
   impl_->core.stops().stopUrgently(why);
   impl_->endEnabling(why);
 }
 
 void Axis::onEmergency(const fieldbus::Emergency& emergency, Time now, const std::string& excuse) {
   impl_->core.faults().onEmergency(emergency, excuse, now);
-  const bool no_rpdo = missingFrames(*config().profile, emergency.code) == ErrorText::Missing::rpdo;
-  if (!no_rpdo || !excuse.empty() || !impl_->core.nodeReady()) return;
-  stopBySdo("the drive reports EMCY " + hexWord(emergency.code) +
-                ": no RPDO reached it in time (1400:05); quick stop is commanded by SDO. Check the "
-                "bus and the COB-IDs of its RPDOs, then enable again",
-            now);
+  const auto missing = missingByCode(*config().profile, emergency.code);
+  const bool without_outputs = missing == ErrorText::Missing::outputs;
+  if (!without_outputs || !excuse.empty() || !impl_->core.deviceReady()) return;
+  const fieldbus::Terms& terms = impl_->core.device().terms();
+  stopBesideCycle(std::string("the drive reports ") + terms.emergency + " " +
+                  hexText(emergency.code, 4) + ": " + terms.outputs_late +
+                  "; quick stop is commanded by " + terms.access + ". Check " +
+                  terms.outputs_check + ", then enable again");
 }
 
-void Axis::onHealthChange(fieldbus::Health, Time) { impl_->watchNode(); }
+void Axis::onHealthChange() { impl_->watchDevice(); }
 
 void Axis::onBusLost(const std::string& why) {
   impl_->core.onBusLost(why);

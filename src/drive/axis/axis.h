@@ -2,16 +2,19 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "cia402_driver/common/result.h"
 #include "drive/axis/config.h"
 #include "drive/axis/set_point.h"
 #include "drive/axis/state_machine.h"
+#include "drive/modes/stream.h"
 #include "fieldbus/device.h"
 
 namespace cia402::drive {
@@ -19,17 +22,17 @@ namespace cia402::drive {
 /// Long operations of an axis; each an explicit state machine with a deadline.
 enum class ProcedureKind : std::uint8_t {
   none,
-  enable,              ///< into operation with target := actual; releases a halt if enabled already
-  disable,             ///< power stage off; a moving axis is quick-stopped first
-  home,                ///< by the drive or by declaring; ends enabled in the mode from before
-  clear_faults,        ///< one edge of the fault reset bit; the axis stays disabled
-  recover,             ///< boot the node if needed, clear faults, enable; leaves enabled axes alone
-  quick_stop,          ///< ends disabled, or holding where the drive does (605Ah, quick_stop_holds)
-  halt,                ///< stop and stay enabled until `enable` releases it
-  set_mode,            ///< disabled, or enabled at standstill
-  set_position,        ///< declare the present position; an offset in software, at standstill
-  save_parameters,     ///< 1010h, while disabled
-  restore_parameters,  ///< 1011h, while disabled; resets the node, which is configured again
+  enable,           ///< into operation with target := actual; releases a halt if enabled already
+  disable,          ///< power stage off; a moving axis is quick-stopped first
+  home,             ///< by the drive or by declaring; ends enabled in the mode from before
+  clear_faults,     ///< one edge of the fault reset bit; the axis stays disabled
+  recover,          ///< boot the device if needed, clear faults, enable; leaves enabled axes alone
+  quick_stop,       ///< ends disabled, or holding where the drive does (605Ah, quick_stop_holds)
+  halt,             ///< stop and stay enabled until `enable` releases it
+  set_mode,         ///< disabled, or enabled at standstill
+  set_position,     ///< declare the present position; an offset in software, at standstill
+  save_parameters,  ///< 1010h, while disabled
+  restore_parameters,  ///< 1011h, while disabled; resets the device, which is configured again
 };
 const char* toString(ProcedureKind kind);
 /// Does it bring the axis to rest, so that it may interrupt another one?
@@ -65,32 +68,44 @@ struct ProcedureRequest {
 
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-/// Feedback and condition of an axis after the last update. Plain values, cheap to copy; texts are
-/// made on demand by Axis.
-struct AxisState {
-  Time stamp{};  ///< when the feedback was on the wire
-  bool feedback_valid = false;
-  double position = kUnknown;         ///< rad or m
-  double velocity = kUnknown;         ///< rad/s or m/s
-  double effort = kUnknown;           ///< N m or N
-  double following_error = kUnknown;  ///< commanded minus measured position, rad or m
+/// What of an axis' state is one of few or yes and no, and changes seldom. Whoever tells of changes
+/// compares all of it in every cycle, so it is two words without a gap.
+struct AxisCondition {
   State state = State::unknown;
+  fieldbus::Health health = fieldbus::Health::absent;
   std::uint16_t statusword = 0;
-  std::uint16_t error_code = 0;    ///< of the fault, the warning, an EMCY not ended; 0: none
-  std::int16_t mode_value = 0;     ///< 6061h
-  const ModeSpec* mode = nullptr;  ///< active mode, nullptr while unknown
+  std::uint16_t error_code = 0;  ///< of the fault, the warning, an emergency not ended; 0: none
+  std::int16_t mode_value = 0;   ///< 6061h
+  bool feedback_valid = false;
   bool homed = false;
-  std::uint32_t zero_changes = 0;  ///< grows when positions get another zero: older ones are void
   bool target_reached = false;
   bool warning = false;
   bool internal_limit = false;
   bool halted = false;            ///< enabled, and takes no command until `enable` releases it
   bool ready_for_motion = false;  ///< operation enabled, mode active, brake released, no procedure
-  std::uint32_t digital_inputs = 0;   ///< 60FDh
   bool digital_inputs_valid = false;  ///< false: not received, or not in time
-  fieldbus::Health health = fieldbus::Health::absent;
+};
+static_assert(sizeof(AxisCondition) == 16 &&
+                  std::has_unique_object_representations_v<AxisCondition>,
+              "whatever it holds is compared");
+inline bool operator==(const AxisCondition& a, const AxisCondition& b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+inline bool operator!=(const AxisCondition& a, const AxisCondition& b) { return !(a == b); }
 
-  /// When each value was on the wire, or its SDO answer taken; of a value that is unknown it says
+/// Feedback and condition of an axis after the last update. Plain values, cheap to copy; texts are
+/// made on demand by Axis.
+struct AxisState : AxisCondition {
+  Time stamp{};                       ///< when the feedback was on the wire
+  double position = kUnknown;         ///< rad or m
+  double velocity = kUnknown;         ///< rad/s or m/s
+  double effort = kUnknown;           ///< N m or N
+  double following_error = kUnknown;  ///< commanded minus measured position, rad or m
+  const ModeSpec* mode = nullptr;     ///< active mode, nullptr while unknown
+  std::uint32_t zero_changes = 0;    ///< grows when positions get another zero: older ones are void
+  std::uint32_t digital_inputs = 0;  ///< 60FDh
+
+  /// When each value was on the wire, or its answer taken; of a value that is unknown it says
   /// nothing.
   struct Stamps {
     Time velocity{}, effort{}, following_error{}, mode{}, digital_inputs{};
@@ -106,9 +121,9 @@ struct ShownSignal {
   Time stamp{};                        ///< when it was on the wire, or its answer taken
 };
 
-/// One CiA 402 axis on a node: decodes feedback, drives the state machine, runs procedures, encodes
-/// set-points. Sans-IO; after construction the cyclic calls do not allocate (procedures may, when a
-/// step ends).
+/// One CiA 402 axis in a device: decodes feedback, drives the state machine, runs procedures,
+/// encodes set-points. Sans-IO; after construction the cyclic calls do not allocate (procedures
+/// may, when a step ends).
 class Axis {
  public:
   /// @throws std::invalid_argument if the configuration lacks what it was validated for.
@@ -123,17 +138,18 @@ class Axis {
   /// The one before; ended, e.g. because disable, quick_stop or halt pre-empted it.
   const ProcedureStatus& previousProcedure() const;
 
-  /// Decodes the node's process image. Call after the TPDOs of a cycle.
+  /// Decodes the device's process image. Call after the inputs of a cycle have come.
   void readFeedback(Time now);
   /// Somebody is about to look at values that are only shown (the following error, the profile's
-  /// `signals`): where no TPDO brings them, each look has them read by SDO once more.
+  /// `signals`): where they do not come in the cycle, each look has them read once more.
   void look();
   /// Those of the profile's `signals`, in its order. Allocates.
   std::vector<ShownSignal> signals(Time now) const;
   /// Advances state machine and procedures. Call after readFeedback() and in each cycle; also when
-  /// an SDO answer came, to hurry procedures along.
+  /// an answer came beside the cycle, to hurry procedures along.
   void update(Time now);
-  /// Encodes controlword and targets into the process image. Call before the RPDOs of a cycle.
+  /// Encodes controlword and targets into the process image. Call before the outputs of a cycle
+  /// leave.
   void writeCommands(Time now);
 
   /// The newest feedback is as new as it can be; false: some that was due has failed to come.
@@ -156,9 +172,10 @@ class Axis {
   void beginCalibration(std::string what);
   /// The drive has taken the write, or may have: the axis is not homed any more, positions count
   /// from the drive's own zero.
-  void loseZero();
+  /// @param device it concerns the whole device, and with it all axes in it
+  void loseZero(bool device = false);
   /// What was measured before counts in other coordinates: waits for the drive to tell anew.
-  void measureAnew();
+  void measureAnew(bool device = false);
   void endCalibration();
 
   /// A streamed command for the active mode, in joint units (rad, m, per s, N m, N): led there
@@ -184,9 +201,9 @@ class Axis {
   /// Who does; nullptr: nobody.
   const std::string* leader() const;
   /// The stream of commands has come to rest, or there is none.
-  bool streamAtRest() const;
+  bool streamAtRest() const { return stream_->at_rest; }
   /// A stream of velocities or efforts ended without a zero: it is being brought to rest, or was.
-  bool driedUp() const;
+  bool driedUp() const { return stream_->dried_up; }
   /// Cycles were missed before this one. Valid from update() to writeCommands().
   bool late() const;
   /// Why setTarget would refuse now, in words; empty if it would not.
@@ -197,16 +214,25 @@ class Axis {
   /// The mode that it is commanded to be in, by its canonical name.
   const std::string& modeName() const;
 
-  /// RPDOs do not reach the drive, or are not taken as SYNC is gone: a drive that may be enabled is
-  /// quick-stopped by SDO and stays disabled; a procedure that would enable it is ended.
+  /// What is sent in the cycle does not reach the drive, or is not taken: a drive that may be
+  /// enabled is quick-stopped beside the cycle and stays disabled; a procedure that would enable it
+  /// is ended.
   /// @param why in words
-  void stopBySdo(const std::string& why, Time now);
+  void stopBesideCycle(const std::string& why);
 
-  /// Node and axis events from the master.
+  /// Another axis in the same device; must outlive this.
+  void addNeighbour(Axis& other);
+  /// Why nothing may be done to the device that its other axes would feel; empty if it may.
+  std::string deviceRefusal() const;
+  /// "; in the same drive: right (operation enabled)", to be put behind what was done to the
+  /// device; empty if no other axis is in it.
+  std::string neighbourText() const;
+
+  /// Events of the device, from its master.
   /// @param excuse where this program itself is the cause of what the drive reports, as it was
   /// late: in words. The axis goes on then, unless the drive stops by itself.
   void onEmergency(const fieldbus::Emergency& emergency, Time now, const std::string& excuse = {});
-  void onHealthChange(fieldbus::Health before, Time now);
+  void onHealthChange();
   /// Nothing reaches the drive any more, for the reason `why` ("can0 is bus-off"): an axis in
   /// motion or enabled gets a quick stop as the first thing once the bus is back, and stays
   /// disabled; a procedure that would enable it is ended.
@@ -215,13 +241,13 @@ class Axis {
   /// The present fault in words with cause and remedy; empty if none.
   std::string faultText() const;
 
-  /// Why the drive's state or position is unknown though its node is ready, in words that stay the
-  /// same as long as the reason does; empty if both are known. Between a boot and the first TPDOs
-  /// it is not empty either.
+  /// Why the drive's state or position is unknown though its device is ready, in words that stay
+  /// the same as long as the reason does; empty if both are known. Between a boot and the first
+  /// inputs it is not empty either.
   std::string unknownText() const;
 
   /// The last thing the axis did by itself (left operation, quick-stopped without feedback, dropped
-  /// a set-point, lost its node), as a sentence; noticeCount() grows with each.
+  /// a set-point, lost its device), as a sentence; noticeCount() grows with each.
   const std::string& notice() const;
   /// It is a warning of a procedure, and stops nothing.
   bool noticeWarns() const;
@@ -235,6 +261,7 @@ class Axis {
   const ProcedureStatus* procedure_;
   const std::uint32_t* notices_;
   const SetPoint* set_point_;
+  const Stream* stream_;
 };
 
 }  // namespace cia402::drive

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "drive/axis/axis.h"
+#include "drive/axis/neighbours.h"
 #include "drive/axis/notices.h"
 #include "drive/axis/objects.h"
 
@@ -18,7 +19,7 @@ struct AxisBasis {
   AxisBasis& operator=(const AxisBasis&) = delete;
 
   const DriveProfile& profile() const { return *config.profile; }
-  bool nodeReady() const { return device.health() == fieldbus::Health::ready; }
+  bool deviceReady() const { return device.health() == fieldbus::Health::ready; }
   /// No motion is possible by this drive: the power stage is off, as far as the statusword says.
   bool powerOff() const { return powerStageOff(state.state, state.statusword); }
   bool faulted() const { return isFault(state.state); }
@@ -34,6 +35,7 @@ struct AxisBasis {
   /// by itself. What is measured tells of standstill only after that.
   Time moved_at = Time::min();
   Notices notices;
+  Neighbours neighbours;
 };
 
 }  // namespace cia402::drive

@@ -23,11 +23,6 @@ Result<void> Commands::take(double value, ModeControl& mode, const SetPoint& sen
   return {};
 }
 
-void Commands::forget() {
-  drop();
-  stream_.dried_up = false;
-}
-
 void Commands::resume(ModeControl& mode, const SetPoint& sent, Time at) {
   breaks_ = sent.breaks();
   given_up_ = sent.givenUp();
@@ -35,21 +30,15 @@ void Commands::resume(ModeControl& mode, const SetPoint& sent, Time at) {
   mode.beginStream(stream_, at);
 }
 
-std::optional<double> Commands::step(ModeControl& mode, const SetPoint& sent, Time now) {
-  const Duration cycle = axis_.config.sync_period;
-  stream_.clock += cycle;
-  const bool ready = axis_.state.ready_for_motion && axis_.state.mode != nullptr;
-  if (leader_ != nullptr || !ready) forget();
-  if (leader_ != nullptr) return {};
-  stream_.at_rest = sent.atRest();
-  if (!stream_.command) return {};
+/// As the mode leads it.
+std::optional<double> Commands::lead(ModeControl& mode, const SetPoint& sent, Time now) {
   // What was sent ended otherwise: by a stop, or by cycles that were missed.
   if (sent.breaks() != breaks_ || sent.interruptions() != interruptions_) {
     if (sent.givenUp() != given_up_) {
       drop();
       return {};
     }
-    resume(mode, sent, stream_.clock - cycle);
+    resume(mode, sent, stream_.clock - axis_.config.cycle);
   }
   return mode.follow(stream_, now);
 }

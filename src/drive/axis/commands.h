@@ -18,11 +18,22 @@ class Commands {
   /// @return why not, in words
   Result<void> take(double value, ModeControl& mode, const SetPoint& sent, Time now);
   /// One cycle of the stream. @return its set-point; nothing: none is given
-  std::optional<double> step(ModeControl& mode, const SetPoint& sent, Time now);
+  std::optional<double> step(ModeControl& mode, const SetPoint& sent, Time now) {
+    stream_.clock += axis_.config.cycle;
+    const bool ready = axis_.state.ready_for_motion && axis_.state.mode != nullptr;
+    if (leader_ != nullptr || !ready) forget();
+    if (leader_ != nullptr) return {};
+    stream_.at_rest = sent.atRest();
+    if (!stream_.command) return {};
+    return lead(mode, sent, now);
+  }
   /// The stream ends: it was stopped, or its set-point was refused.
   void drop() { stream_.command.reset(); }
   /// The same where the mode or the zero is another: what ran dry is of no interest any more.
-  void forget();
+  void forget() {
+    drop();
+    stream_.dried_up = false;
+  }
 
   /// Somebody gives the set-points of every cycle from now on, and streams are refused.
   /// @param who for messages, e.g. the name of a group; it must outlive that. nullptr: nobody
@@ -31,6 +42,7 @@ class Commands {
   const Stream& stream() const { return stream_; }
 
  private:
+  std::optional<double> lead(ModeControl& mode, const SetPoint& sent, Time now);
   void resume(ModeControl& mode, const SetPoint& sent, Time at);
 
   AxisBasis& axis_;

@@ -14,9 +14,6 @@
 
 namespace cia402::drive {
 
-/// Limits of the joint; `continuous` is told by the geometry, see jointOf().
-using AxisLimits = motion::JointLimits;
-
 struct HomingOptions {
   /// Method number of the drive; absent: declare zero (only where the profile says so).
   std::optional<int> method;
@@ -36,15 +33,18 @@ struct AxisConfig {
   std::string name;        ///< key in the YAML
   std::string joint;       ///< joint name
   std::size_t device = 0;  ///< that it sits in, index in config::RobotConfig::devices
-  std::string place;       ///< of that device on its bus, for messages: "node 3"
+  unsigned device_axis =
+      0;              ///< which of the device's axes it is, 0 to 7; the profile is that axis'
+  std::string place;  ///< on its bus, for messages: "node 3", "node 3, axis 1"
   std::shared_ptr<const DriveProfile> profile;  ///< with the objects of the EDS added
   /// What the device's maker says of its objects (EDS or DCF); nullptr: nothing.
   std::shared_ptr<const fieldbus::DeviceDescription> description;
   AxisGeometry geometry;
-  AxisLimits limits;
+  /// Of the joint; jointOf() adds what the geometry says.
+  motion::JointLimits limits;
   std::string mode;  ///< canonical name; mode at start
   std::optional<HomingOptions> homing;
-  Duration sync_period{std::chrono::milliseconds(4)};  ///< of the bus
+  Duration cycle{std::chrono::milliseconds(4)};  ///< from one to the next
   Duration command_timeout{std::chrono::milliseconds(200)};
   bool brake_after_effort = true;  ///< when a stream of efforts ends; else the axis coasts
   bool quick_stop_holds = false;   ///< ends in quick stop active, under power; else disabled

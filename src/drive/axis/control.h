@@ -20,9 +20,9 @@ class Control {
   void aim(Goal goal);
   /// Disable voltage, also where the drive's state is not known; until the next goal.
   void switchOff();
-  /// The node is another one, or gone: nobody has asked for anything since.
+  /// The device is another one, or gone: nobody has asked for anything since.
   void silence();
-  /// Nobody has asked for anything since the node came: the controlword is that of silence.
+  /// Nobody has asked for anything since the device came: the controlword is that of silence.
   bool silent() const { return silent_; }
   /// Somebody wants it to move, or to be ready for that.
   bool commanded() const { return goal_ != Goal::disabled && goal_ != Goal::quick_stop; }
@@ -56,7 +56,7 @@ class Control {
   /// Puts the controlword into the process image. @param mode_bits of the active mode, which count
   /// in operation
   void write(unsigned mode_bits);
-  /// RPDOs with the controlword sent so far.
+  /// How often the controlword was sent so far.
   std::uint64_t frames() const { return axis_.image.sent(axis_.objects.controlword.slot); }
   /// What was sent last, and in words: "shutdown (transition 2)".
   std::uint16_t word() const { return word_; }

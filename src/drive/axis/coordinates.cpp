@@ -1,8 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "drive/axis/coordinates.h"
 
-#include <cmath>
-
 namespace cia402::drive {
 
 Coordinates::Coordinates(const AxisConfig& config, const Signal& position, AxisState& state)
@@ -21,11 +19,6 @@ bool Coordinates::absolute() const {
 Conversion Coordinates::ofTarget(const Conversion& target) const {
   const Conversion shifted = target.shifted(shift_);
   return unwrap_.counting() ? shifted.wrapping() : shifted;
-}
-
-bool Coordinates::reaches(double position) const {
-  if (!unwrap_.counting()) return true;
-  return std::fabs(position - state_.position) < 0.5 * std::fabs(drive_.span());
 }
 
 std::optional<double> Coordinates::declare(double value) {

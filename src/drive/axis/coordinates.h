@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
@@ -28,7 +29,10 @@ class Coordinates {
   /// wraps: they wrap around themselves.
   Conversion ofTarget(const Conversion& target) const;
   /// Beyond half of what the drive can count, what is sent means a place on the other side.
-  bool reaches(double position) const;
+  bool reaches(double position) const {
+    if (!unwrap_.counting()) return true;
+    return std::fabs(position - state_.position) < 0.5 * std::fabs(drive_.span());
+  }
   /// Joint value, rad or m, that is added to what the drive's own zero says.
   double shift() const { return shift_; }
   /// Positions mean something without homing: none is required, and the zero was not lost.

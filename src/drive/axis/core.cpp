@@ -21,14 +21,14 @@ AxisCore::AxisCore(AxisConfig config, fieldbus::Device& device)
 
 void AxisCore::readFeedback(Time now) {
   feedback_.read(now, {generator_.commandedPosition(), generator_.handingOver()});
-  if (nodeReady()) faults_.read(now);
+  if (deviceReady()) faults_.read(now);
 }
 
 void AxisCore::supervise(Time now) {
   stops_.watchUrgent();
-  const bool late = now > written_ + 2 * config().sync_period && written_ != Time{};
+  const bool late = now > written_ + 2 * config().cycle && written_ != Time{};
   if (late) generator_.lateCycle(now);
-  if (!nodeReady()) return;
+  if (!deviceReady()) return;
   limits_.keep(inOperation() ? generator_.target() : state().position);
   if (control_.commanded() && !state().feedback_valid) return stopUnheard();
   if (inOperation()) {
@@ -50,9 +50,9 @@ void AxisCore::superviseOperation(Time now) {
 
 void AxisCore::stopUnheard() {
   setGoal(Goal::quick_stop);
-  notices().fail(who() +
-                 ": no usable statusword (6041:00) and position (6064:00): " + feedback_.text() +
-                 "; quick stop is commanded. Check bus load, cable and the drive's TPDOs");
+  notices().fail(who() + ": no usable " + profile().feedbackObjects() + ": " + feedback_.text() +
+                 "; quick stop is commanded. Check bus load, cable and the drive's " +
+                 device().terms().input + "s");
 }
 
 void AxisCore::giveUpOperation() {
@@ -124,7 +124,7 @@ void AxisCore::selectMode(const ModeChannel& mode) {
   generator_.enter();
 }
 
-void AxisCore::onNodeLost() {
+void AxisCore::onDeviceLost() {
   const bool was_commanded = !control_.silent();
   setGoal(Goal::disabled);
   control_.silence();
@@ -135,7 +135,8 @@ void AxisCore::onNodeLost() {
   limits_.forget();
   axis_.state.health = device().health();
   selectMode(mode_.configured());
-  std::string text = who() + ": the node is " + fieldbus::toString(device().health());
+  std::string text =
+      who() + ": the " + device().terms().device + " is " + fieldbus::toString(device().health());
   if (!device().problem().empty()) text += " (" + device().problem() + ")";
   notices().fail(text + "; the axis stays disabled until recover or enable", was_commanded);
 }

@@ -10,7 +10,7 @@
 
 namespace cia402::drive {
 
-/// After so many RPDOs with a value, or a level of a bit, the drive has it.
+/// Sent so often with a value, or a level of a bit, the drive has it.
 inline constexpr std::uint64_t kSureFrames = 2;
 
 /// The axis without its procedures: its parts, the cycle that ties them together, and the reactions
@@ -27,7 +27,7 @@ class AxisCore {
   const AxisObjects& objects() const { return axis_.objects; }
   fieldbus::Device& device() const { return axis_.device; }
   const AxisState& state() const { return axis_.state; }
-  bool nodeReady() const { return axis_.nodeReady(); }
+  bool deviceReady() const { return axis_.deviceReady(); }
   bool powerOff() const { return axis_.powerOff(); }
   bool faulted() const { return axis_.faulted(); }
   std::string who() const { return axis_.who(); }
@@ -57,8 +57,8 @@ class AxisCore {
   void updateReadiness(bool busy, Time now);
   void writeCommands(Time now);
   void onBusLost(const std::string& why);
-  /// The node is not ready any more: forgets everything, commands nothing.
-  void onNodeLost();
+  /// The device is not ready any more: forgets everything, commands nothing.
+  void onDeviceLost();
 
   // --- What concerns several parts -------------------------------------------------------------
   Goal goal() const { return control_.goal(); }
@@ -66,7 +66,7 @@ class AxisCore {
   void setGoal(Goal goal);
   /// Disable voltage, also where the drive's state is not known; until the next goal.
   void switchOff();
-  /// Makes `mode` the one whose value and target the RPDOs carry; its target becomes neutral.
+  /// Makes `mode` the one whose value and target are sent; its target becomes neutral.
   void selectMode(const ModeChannel& mode);
   /// In operation, and the drive follows its set-points: the time that the brake needs is over, and
   /// the mode's bit for it is set. A drive that never sets that bit is waited for once.

@@ -13,8 +13,9 @@ constexpr Duration kMute =
 }  // namespace
 
 void ErrorEvidence::onEmergency(const fieldbus::Emergency& emergency, const std::string& excuse,
-                                Time now) {
-  pending_ = emergency.code;
+                                bool shared, Time now) {
+  shared_ = shared;
+  pending_ = shared ? 0 : emergency.code;
   next_look_ = now + kLook;
   register_ticket_.reset();
   if (emergency.code != 0 && !(faulted_ && now > fault_since_ + kNaming)) {
@@ -65,6 +66,8 @@ bool ErrorEvidence::withFault(const Told& told) const {
 
 std::uint16_t ErrorEvidence::nameOfFault() const {
   const bool by_emergency = withFault(emergency_), by_object = withFault(object_);
+  if (shared_ && by_object) return object_.code;
+  if (shared_ && read_ && *read_ != 0) return *read_;
   if (by_object && (!by_emergency || object_.at >= emergency_.at)) return object_.code;
   if (by_emergency) return emergency_.code;
   if (read_ && *read_ != 0) return *read_;
@@ -72,14 +75,14 @@ std::uint16_t ErrorEvidence::nameOfFault() const {
 }
 
 void ErrorEvidence::readErrorCode(const Look& look, fieldbus::ObjectAccess& objects) {
-  if (!faulted_ || look.by_sdo == nullptr) {
+  if (!faulted_ || look.asked == nullptr) {
     read_.reset();
     code_ticket_.reset();
     return;
   }
   if (read_) return;
   if (!code_ticket_) {
-    code_ticket_ = objects.upload(look.by_sdo->id, look.by_sdo->name);
+    code_ticket_ = objects.upload(look.asked->id, look.asked->name);
   } else if (code_ticket_->done()) {
     const bool fits = code_ticket_->ok() && code_ticket_->data().size() <= 8;
     read_ = fits ? static_cast<std::uint16_t>(fieldbus::toUnsigned(code_ticket_->data())) : 0;

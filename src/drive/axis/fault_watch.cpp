@@ -12,7 +12,7 @@ void FaultWatch::readError(Time now) {
   look.faulted = axis_.faulted();
   look.warning = axis_.state.warning;
   if (!row.mapped()) {
-    look.by_sdo = row.spec;
+    look.asked = row.spec;
   } else if (signals.fresh(SignalId::error_code)) {
     look.told = static_cast<std::uint16_t>(signals.image(SignalId::error_code).raw);
   }
@@ -37,8 +37,9 @@ std::string FaultWatch::codeText(std::uint16_t code) const {
 }
 
 std::string FaultWatch::emergencyText() const {
-  if (errors_.pending() == 0) return "no EMCY is pending";
-  return "last EMCY " + codeText(errors_.pending());
+  const std::string emergency = axis_.device.terms().emergency;
+  if (errors_.pending() == 0) return "no " + emergency + " is pending";
+  return "last " + emergency + " " + codeText(errors_.pending());
 }
 
 std::string FaultWatch::text() const {
@@ -47,9 +48,9 @@ std::string FaultWatch::text() const {
     const char* reacting =
         state.state == State::fault_reaction_active ? " (the drive is still stopping)" : "";
     if (state.error_code == 0) {
-      return axis_.who() + ": fault" + reacting +
-             ", no error code yet (603F:00 is 0 and no EMCY came); clear_faults, then look at the "
-             "drive's own display or log";
+      return axis_.who() + ": fault" + reacting + ", no error code yet (" +
+             axis_.profile().address(0x603F) + " is 0 and no " + axis_.device.terms().emergency +
+             " came); clear_faults, then look at the drive's own display or log";
     }
     return axis_.who() + ": fault " + codeText(state.error_code) + reacting + "; then clear_faults";
   }

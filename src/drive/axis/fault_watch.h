@@ -8,7 +8,7 @@
 
 namespace cia402::drive {
 
-/// Faults, warnings and EMCYs of the drive: which counts, in words, and when it may be reset.
+/// Faults, warnings and emergencies of the drive: which counts, in words, and when it may be reset.
 /// Writes `error_code` of the state.
 class FaultWatch {
  public:
@@ -20,9 +20,9 @@ class FaultWatch {
   }
   /// @param excuse why this program itself has caused it; empty: it has not
   void onEmergency(const fieldbus::Emergency& emergency, const std::string& excuse, Time now) {
-    errors_.onEmergency(emergency, excuse, now);
+    errors_.onEmergency(emergency, excuse, axis_.neighbours.any(), now);
   }
-  /// An EMCY whose end the drive has not told; 0: none.
+  /// An emergency whose end the drive has not told; 0: none.
   std::uint16_t pendingEmergency() const { return errors_.pending(); }
   /// The fault was reset: what was told before is over.
   void forgetFault();

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "common/text.h"
 #include "drive/profile/fault_text.h"
 #include "drive/sentence.h"
 
@@ -31,7 +32,7 @@ Feedback::Feedback(AxisBasis& axis, Coordinates& coordinates, const ActiveMode& 
 
 void Feedback::read(Time now, const Commanded& commanded) {
   axis_.state.health = axis_.device.health();
-  if (!axis_.nodeReady()) return forget();
+  if (!axis_.deviceReady()) return forget();
   signals_.poll(now);
   readMotion(now, commanded.position);
   readState(now, commanded.handing_over);
@@ -74,7 +75,7 @@ void Feedback::readMotion(Time now, double commanded) {
     raw_known_ = true;
   } else if (!axis_.image.regular(row.slot)) {
     // Its silence says that nothing changes; what may be withheld still is not known yet.
-    standstill_.update(joint, now - axis_.image.interval(row.slot, axis_.config.sync_period));
+    standstill_.update(joint, now - axis_.image.interval(row.slot, axis_.config.cycle));
   }
   state.stamp = position.stamp;
   state.velocity = signals_.read(SignalId::velocity, now, state.stamps.velocity);
@@ -148,7 +149,7 @@ void Feedback::putShownMode(std::uint64_t raw, Time now) {
 bool Feedback::heardLately(Time now) const {
   const fieldbus::Slot slot = signals_[SignalId::position].slot;
   if (!axis_.image.regular(slot)) return true;
-  const Duration cycle = axis_.config.sync_period;
+  const Duration cycle = axis_.config.cycle;
   return now - axis_.state.stamp <= axis_.image.interval(slot, cycle) + 2 * cycle;
 }
 
@@ -164,7 +165,7 @@ void Feedback::forgetMotion() {
 /// A drive that sends its position on changes only has sent another one already.
 void Feedback::forgetPosition() {
   const fieldbus::Slot slot = signals_[SignalId::position].slot;
-  if (!axis_.nodeReady() || !axis_.image.regular(slot)) return;
+  if (!axis_.deviceReady() || !axis_.image.regular(slot)) return;
   axis_.image.forget(slot);
   forgetMotion();
 }
@@ -185,7 +186,7 @@ void Feedback::forget() {
 std::string Feedback::stateText() const {
   const AxisState& state = axis_.state;
   if (state.state == State::unknown && state.statusword == 0) return "no statusword";
-  return "statusword " + hexWord(state.statusword) + " (" + toString(state.state) + ": " +
+  return "statusword " + hexText(state.statusword, 4) + " (" + toString(state.state) + ": " +
          statuswordText(state.statusword) + ")";
 }
 
@@ -205,17 +206,16 @@ std::string Feedback::coastingText() const {
 std::string Feedback::unknownText() const {
   const AxisState& state = axis_.state;
   const bool known = state.feedback_valid && state.state != State::unknown;
-  if (!axis_.nodeReady() || known) return {};
+  if (!axis_.deviceReady() || known) return {};
   if (state.feedback_valid) {
-    return axis_.who() + ": its state is unknown: statusword (6041:00) " +
-           hexWord(state.statusword) + " is none of the states of CiA 402 (" +
+    return axis_.who() + ": its state is unknown: statusword (" + axis_.profile().address(0x6041) +
+           ") " + hexText(state.statusword, 4) + " is none of the states of CiA 402 (" +
            statuswordText(state.statusword) + "); is it the right drive profile?";
   }
   std::string why = axis_.device.missingText();
   if (why.empty()) why = text();
-  return axis_.who() +
-         ": its state is unknown: no usable statusword (6041:00) and position (6064:00): " + why +
-         "; check cable, bus load and the drive's TPDOs";
+  return axis_.who() + ": its state is unknown: no usable " + axis_.profile().feedbackObjects() +
+         ": " + why + "; check cable, bus load and the drive's " + axis_.device.terms().input + "s";
 }
 
 }  // namespace cia402::drive

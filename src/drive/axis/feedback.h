@@ -25,9 +25,9 @@ class Feedback {
     double position = kUnknown;  ///< rad or m; NaN: none
     bool handing_over = false;   ///< target reached still speaks of the set-point before
   };
-  /// Decodes what has come. Everything is unknown while the node is not ready.
+  /// Decodes what has come. Everything is unknown while the device is not ready.
   void read(Time now, const Commanded& commanded);
-  /// Nothing is known any more: the node is not ready, or another one.
+  /// Nothing is known any more: the device is not ready, or another one.
   void forget();
   /// The same of position and what is measured with it.
   void forgetMotion();
@@ -61,7 +61,7 @@ class Feedback {
   /// Measured over a window that lies wholly after `from` and the drive's reaction to it.
   bool seenStill(Time from) const {
     return standstill_.still() &&
-           standstill_.stillFrom() >= from + kReactionCycles * axis_.config.sync_period;
+           standstill_.stillFrom() >= from + kReactionCycles * axis_.config.cycle;
   }
   /// The same after the last that could have moved it.
   bool atStandstill() const { return seenStill(axis_.moved_at); }

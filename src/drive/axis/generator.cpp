@@ -7,14 +7,6 @@
 #include "drive/sentence.h"
 
 namespace cia402::drive {
-namespace {
-
-SetPointLimits setPointLimits(const AxisConfig& config) {
-  return {config.limits.lower, config.limits.upper, config.limits.velocity,
-          stopDeceleration(config)};
-}
-
-}  // namespace
 
 Generator::Generator(AxisBasis& axis, const Coordinates& coordinates, const Feedback& feedback,
                      const ActiveMode& mode, Control& control)
@@ -23,8 +15,8 @@ Generator::Generator(AxisBasis& axis, const Coordinates& coordinates, const Feed
       feedback_(feedback),
       active_(mode),
       control_(control),
-      sent_(setPointLimits(axis.config), axis.config.sync_period),
-      following_(axis.config.standstill_velocity, axis.config.sync_period),
+      sent_(axis.config.limits, stopDeceleration(axis.config), axis.config.cycle),
+      following_(axis.config.standstill_velocity, axis.config.cycle),
       commands_(axis) {
   for (const ModeChannel& channel : axis.objects.modes) {
     modes_.push_back(makeModeControl(channel, {axis_, coordinates_, feedback_, sent_}));
@@ -83,21 +75,18 @@ void Generator::shiftZero(double moved) {
   given_ = kUnknown;
 }
 
-bool Generator::homedEnough() const {
-  return axis_.state.homed || !mode_->positions() || coordinates_.absolute();
-}
-
 bool Generator::take(double value) {
   const bool ready = axis_.state.ready_for_motion && homedEnough();
   if (!ready || !std::isfinite(value) || !mode_->accepts(value)) return false;
-  value = mode_->guarded(value);
+  const bool pushes = mode_->kind() == SetPointKind::torque;
+  if (pushes) value = mode_->guarded(value);
   std::uint64_t raw = 0;
   if (!mode_->channel().target.mapped() || !mode_->encode(value, raw)) return false;
-  if (mode_->kind() == SetPointKind::torque) {
+  if (pushes) {
     pushes_ = axis_.config.brake_after_effort;
     control_.endBraking();
   }
-  mode_->accepted(raw, raw == target_raw_);
+  if (mode_->goals()) mode_->accepted(raw, raw == target_raw_);
   sent_.give(value);
   given_ = value;
   given_raw_ = raw;
@@ -127,7 +116,7 @@ void Generator::lateCycle(Time now) {
 }
 
 void Generator::advance(Time now) {
-  mode_->prepare(now);
+  if (mode_->goals()) mode_->prepare(now);
   if (sent_.advance(now)) encode();
   axis_.moved_at = std::max(sent_.movedAt(), moved_itself_);
 }
@@ -143,7 +132,7 @@ void Generator::encode() {
 
 const char* Generator::send(Time now) {
   std::uint64_t raw = target_raw_;
-  const char* const missing = mode_->handOver(raw, now);
+  const char* const missing = mode_->goals() ? mode_->handOver(raw, now) : nullptr;
   const OutputObject& target = mode_->channel().target;
   if (target.mapped()) axis_.image.setOutput(target.slot, raw);
   return missing;
@@ -165,7 +154,7 @@ bool Generator::movesItself() const {
 }
 
 void Generator::watchDrive(Time now) {
-  if (!control_.homingStart() && mode_->kind() != SetPointKind::goal) return;
+  if (!control_.homingStart() && !mode_->goals()) return;
   if (!feedback_.measuredStill()) seen_moving_ = now;
   const bool halting = axis_.state.halted && !control_.halt();
   if (movesItself() || (halting && mode_->mayTurnBack(now, seen_moving_))) moved_itself_ = now;
@@ -174,10 +163,6 @@ void Generator::watchDrive(Time now) {
 
 bool Generator::moving() const {
   return feedback_.standstill().moving() || (control_.inOperation() && !sent_.atRest());
-}
-
-double Generator::commandedPosition() const {
-  return control_.inOperation() && mode_->positions() ? target() : kUnknown;
 }
 
 std::optional<Duration> Generator::withdraw() {

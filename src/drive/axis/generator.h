@@ -32,15 +32,17 @@ class Generator {
   void leave();
   /// Target := actual in position modes, 0 in the others.
   void neutralize();
-  /// Puts a neutral target of another mode into its RPDO, before that mode becomes active.
+  /// Puts a neutral target of another mode into its output, before that mode becomes active.
   void preset(const ModeChannel& channel);
-  /// RPDOs with the active mode's target (or the controlword where it has none) sent so far.
+  /// How often the active mode's target (or the controlword where it has none) was sent so far.
   std::uint64_t targetFrames() const;
   /// The joint's zero has moved by so much, rad or m.
   void shiftZero(double moved);
 
   /// Positions mean what they say: the zero is known, or the mode needs none.
-  bool homedEnough() const;
+  bool homedEnough() const {
+    return axis_.state.homed || !mode_->positions() || coordinates_.absolute();
+  }
   /// Takes the set-point of this cycle, see Axis::setTarget(). @return false: nothing changes
   bool take(double value);
   /// Whose set-points they are.
@@ -80,9 +82,11 @@ class Generator {
   /// The drive goes to a position by itself and has not come to it.
   bool goalAhead() const { return mode_->goalAhead(); }
   /// A set-point is being handed over to the drive.
-  bool handingOver() const { return mode_->handingOver(); }
+  bool handingOver() const { return mode_->goals() && mode_->handingOver(); }
   /// What is commanded as a position in operation, rad or m; NaN: nothing.
-  double commandedPosition() const;
+  double commandedPosition() const {
+    return control_.inOperation() && mode_->positions() ? target() : kUnknown;
+  }
 
   /// An effort is being streamed, or was and is not braked yet.
   bool pushes() const { return pushes_; }

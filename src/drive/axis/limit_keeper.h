@@ -25,8 +25,8 @@ class LimitKeeper {
   std::string problem() const { return limits_.problem(); }
   std::string remark() const { return limits_.remark(); }
 
-  /// Once a cycle, while the node is ready. @param target that the axis goes to, rad or m; where it
-  /// goes to none, its position
+  /// Once a cycle, while the device is ready. @param target that the axis goes to, rad or m; where
+  /// it goes to none, its position
   void keep(double target) {
     if (!limits_.idle() || due_ || belong() != known_) work(target);
   }

@@ -11,7 +11,7 @@ using fieldbus::ObjectId;
 /// The fixed name of the profile format, or else the standard's own index.
 const ObjectSpec* findObject(const DriveProfile& profile, const char* name, ObjectId id) {
   const ObjectSpec* spec = profile.find(name);
-  return spec != nullptr ? spec : profile.find(id);
+  return spec != nullptr ? spec : profile.find(profile.own(id));
 }
 
 OutputObject output(const fieldbus::Device& device, const ObjectSpec* spec) {
@@ -40,7 +40,8 @@ ModeChannel modeChannel(const AxisConfig& config, const fieldbus::Device& device
   }
   if (!channel.target.mapped()) {
     channel.refusal = "its target " + fieldbus::toString(object->id) + " " + object->name +
-                      " is not mapped into an RPDO; name the mode in `modes:` of the axis";
+                      " is not mapped into an " + device.terms().output +
+                      "; name the mode in `modes:` of the axis";
     return channel;
   }
   const auto conversion = Conversion::create(*object, *config.profile, config.geometry);
@@ -60,8 +61,9 @@ AxisObjects::AxisObjects(const AxisConfig& config, fieldbus::Device& device)
   controlword = output(device, findObject(*config.profile, "controlword", {0x6040, 0}));
   mode = output(device, findObject(*config.profile, "mode_of_operation", {0x6060, 0}));
   if (!controlword.mapped()) {
-    throw std::invalid_argument(whoIs(config) +
-                                ": the controlword (6040:00) must be mapped into a PDO");
+    throw std::invalid_argument(whoIs(config) + ": the controlword (" +
+                                config.profile->address(0x6040) + ") must be mapped into a " +
+                                device.terms().cyclic);
   }
 
   modes.reserve(config.profile->modes.size());

@@ -11,7 +11,7 @@
 
 namespace cia402::drive {
 
-/// A value that the master sends by RPDO.
+/// A value that is sent in the cycle.
 struct OutputObject {
   const ObjectSpec* spec = nullptr;
   fieldbus::Slot slot = fieldbus::kNoSlot;

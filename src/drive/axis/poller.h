@@ -10,7 +10,7 @@
 
 namespace cia402::drive {
 
-/// Reads objects that no TPDO brings by SDO, one after the other, whenever nobody else uses the
+/// Reads objects that do not come in the cycle, one after the other, whenever nobody else uses the
 /// channel. Never blocks; each value carries the time of its answer. A request allocates.
 ///
 /// What the driver itself needs is read in turn without end; what is only shown is read once for
@@ -35,7 +35,7 @@ class AxisPoller {
   bool due(Time now) const { return ticket_ ? ticket_->done() : now >= next_ && !items_.empty(); }
   /// Takes an answer that has come and asks for the next value.
   void advance(fieldbus::ObjectAccess& objects, Time now);
-  /// The node lost its state: nothing is known any more.
+  /// The device lost its state: nothing is known any more.
   void reset();
   /// Takes a value that somebody else has read.
   void put(int item, std::uint64_t raw, Time now);

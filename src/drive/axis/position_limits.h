@@ -15,7 +15,7 @@ namespace cia402::drive {
 /// only while the zero is known, and anew whenever it changes; until then they stand open. A side
 /// beyond which the axis stands is open, too, until it has come back: enabling would move it.
 ///
-/// The writes go by SDO beside the cycle; who is about to move the axis waits until settled().
+/// The writes go beside the cycle; who is about to move the axis waits until settled().
 class PositionLimits {
  public:
   explicit PositionLimits(const AxisConfig& config);
@@ -28,7 +28,7 @@ class PositionLimits {
   void aim(bool known, double shift, double position);
   /// Closes a side that was left open, once `position` and `target` are inside. NaN is nowhere.
   void closeIfInside(double position, double target);
-  /// Reads and writes; to be called in every cycle of a node that is ready.
+  /// Reads and writes; to be called in every cycle of a device that is ready.
   void advance(fieldbus::ObjectAccess& objects);
 
   bool settled() const;

@@ -12,8 +12,9 @@ constexpr double kTolerance = 1.0 + 1e-6;
 
 }  // namespace
 
-SetPoint::SetPoint(const SetPointLimits& limits, Duration cycle)
+SetPoint::SetPoint(const motion::JointLimits& limits, double deceleration, Duration cycle)
     : limits_(limits),
+      deceleration_(deceleration),
       cycle_s_(toSeconds(cycle)),
       furthest_(limits.velocity ? *limits.velocity * cycle_s_ * kTolerance : 1e300),
       cycle_(cycle) {}
@@ -32,11 +33,6 @@ void SetPoint::arrest(double velocity) {
   beginStop();
 }
 
-void SetPoint::give(double value) {
-  given_ = value;
-  has_given_ = true;
-}
-
 void SetPoint::stop() {
   has_given_ = false;
   if (stopping_ || atRest()) return;
@@ -46,8 +42,8 @@ void SetPoint::stop() {
 
 void SetPoint::beginStop() {
   stopping_ = true;
-  if (kind_ == SetPointKind::stream) ramp_.begin(value_, velocity_, limits_.deceleration);
-  if (kind_ == SetPointKind::velocity) ramp_.begin(0.0, value_, limits_.deceleration);
+  if (kind_ == SetPointKind::stream) ramp_.begin(value_, velocity_, deceleration_);
+  if (kind_ == SetPointKind::velocity) ramp_.begin(0.0, value_, deceleration_);
 }
 
 void SetPoint::interrupt() {
@@ -61,7 +57,7 @@ void SetPoint::shift(double by) {
   if (kind_ != SetPointKind::stream && kind_ != SetPointKind::goal) return;
   value_ += by;
   has_given_ = false;
-  if (stopping_) ramp_.begin(value_, velocity_, limits_.deceleration);
+  if (stopping_) ramp_.begin(value_, velocity_, deceleration_);
   ++breaks_;
 }
 
@@ -109,13 +105,6 @@ void SetPoint::advanceStop() {
   stopping_ = !ramp_.finished();
 }
 
-/// An axis that stands beyond a limit is just stopped.
-double SetPoint::withinLimits(double position) const {
-  if (limits_.lower) position = std::max(position, std::min(*limits_.lower, value_));
-  if (limits_.upper) position = std::min(position, std::max(*limits_.upper, value_));
-  return position;
-}
-
 bool SetPoint::atRest() const {
   switch (kind_) {
     case SetPointKind::none:
@@ -130,15 +119,15 @@ bool SetPoint::atRest() const {
   return true;
 }
 
-double SetPoint::stopPosition() const {
-  const double way = velocity_ * std::fabs(velocity_) / (2.0 * limits_.deceleration);
-  return kind_ == SetPointKind::stream ? withinLimits(value_ + way) : value_;
+/// An axis that stands beyond a limit is just stopped.
+double SetPoint::withinLimits(double position) const {
+  return motion::withinReach(limits_, position, value_);
 }
 
 SetPoint::Motion SetPoint::expected(Duration ahead) const {
   if (kind_ != SetPointKind::stream || velocity_ == 0.0) return {value_, 0.0};
   motion::StopRamp ramp;
-  ramp.begin(value_, velocity_, limits_.deceleration);
+  ramp.begin(value_, velocity_, deceleration_);
   ramp.advance(ahead);
   return {withinLimits(ramp.position()), ramp.velocity()};
 }

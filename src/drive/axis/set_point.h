@@ -7,6 +7,7 @@
 
 #include "cia402_driver/common/time.h"
 #include "drive/profile/profile.h"
+#include "motion/joint.h"
 #include "motion/stop_ramp.h"
 
 namespace cia402::drive {
@@ -20,13 +21,6 @@ enum class SetPointKind : std::uint8_t {
   torque,    ///< the drive pushes on with the last one
 };
 
-/// What bounds the set-points of an axis, in joint units (rad or m, per s).
-struct SetPointLimits {
-  std::optional<double> lower, upper;  ///< positions that a stop does not go beyond
-  std::optional<double> velocity;      ///< > 0; a stream never steps further than this allows
-  double deceleration = 5.0;           ///< > 0, with which everything is brought to rest
-};
-
 /// The one owner of an axis' set-point: knows what was sent last, how fast that moves, and stops
 /// it.
 ///
@@ -38,7 +32,10 @@ class SetPoint {
  public:
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-  SetPoint(const SetPointLimits& limits, Duration cycle);
+  /// @param limits of position, which a stop does not go beyond, and of velocity, which a stream
+  /// never exceeds. @param deceleration > 0, rad/s^2 or m/s^2, with which everything is brought to
+  /// rest
+  SetPoint(const motion::JointLimits& limits, double deceleration, Duration cycle);
 
   /// Begins anew, at rest: at the position `value`, or with no velocity or torque.
   void rest(SetPointKind kind, double value);
@@ -46,7 +43,10 @@ class SetPoint {
   void arrest(double velocity);
   /// The set-point of this cycle; in a stream it is approached no faster than the velocity limit.
   /// Ends a stop. @pre value is finite
-  void give(double value);
+  void give(double value) {
+    given_ = value;
+    has_given_ = true;
+  }
   /// Brings to rest: a stream or a velocity by a ramp, a torque at once; a goal is left to the
   /// drive. While stopping, or at rest, nothing changes.
   void stop();
@@ -70,8 +70,6 @@ class SetPoint {
   bool leased() const { return leased_; }
   /// Nothing that was sent moves the axis; a goal counts as rest, see movedAt().
   bool atRest() const;
-  /// Where a stop begun now would end; a position, for kinds of position only.
-  double stopPosition() const;
   /// Position and velocity `ahead` of now if nothing is given any more.
   struct Motion {
     double position, velocity;
@@ -93,7 +91,8 @@ class SetPoint {
   void follow();
   double withinLimits(double position) const;
 
-  SetPointLimits limits_;
+  motion::JointLimits limits_;
+  double deceleration_;
   double cycle_s_, furthest_;  ///< step of a stream
   Duration cycle_;
   SetPointKind kind_ = SetPointKind::none;

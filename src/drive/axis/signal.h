@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "drive/profile/conversion.h"
@@ -20,6 +21,7 @@ enum class SignalId : std::uint8_t {
   error_code,       ///< 603Fh
   digital_inputs,   ///< 60FDh
 };
+inline constexpr std::size_t kSignalIds = 8;
 
 /// A value that the drive tells: by its process image where it is mapped, else it is asked for.
 struct Signal {

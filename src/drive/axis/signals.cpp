@@ -18,7 +18,7 @@ struct Row {
 };
 
 /// In the order of SignalId, which is that in which they are asked for.
-constexpr std::array<Row, 8> kRows = {{
+constexpr std::array<Row, kSignalIds> kRows = {{
     {SignalId::statusword, "statusword", {0x6041, 0}, Reading::never},
     {SignalId::position, "position_actual", {0x6064, 0}, Reading::never},
     {SignalId::velocity, "velocity_actual", {0x606C, 0}, Reading::always},
@@ -32,12 +32,14 @@ constexpr std::array<Row, 8> kRows = {{
 /// The fixed name of the profile format, or else the standard's own index.
 const ObjectSpec* findObject(const DriveProfile& profile, const Row& row) {
   const ObjectSpec* spec = profile.find(row.name);
-  return spec != nullptr ? spec : profile.find(row.object);
+  return spec != nullptr ? spec : profile.find(profile.own(row.object));
 }
 
-void require(bool mapped, const AxisConfig& config, const char* what) {
-  if (mapped) return;
-  throw std::invalid_argument(whoIs(config) + ": " + what + " must be mapped into a PDO");
+void require(const Signal& signal, const AxisConfig& config, const fieldbus::Device& device,
+             const std::string& what) {
+  if (signal.mapped()) return;
+  throw std::invalid_argument(whoIs(config) + ": " + what + " must be mapped into a " +
+                              device.terms().cyclic);
 }
 
 }  // namespace
@@ -45,16 +47,20 @@ void require(bool mapped, const AxisConfig& config, const char* what) {
 Signals::Signals(const AxisConfig& config, fieldbus::Device& device)
     : device_(device), image_(device.image()) {
   const DriveProfile& profile = *config.profile;
-  rows_.reserve(kRows.size() + profile.signals.size());
-  for (const Row& row : kRows) add(config, findObject(profile, row), row.reading);
-  for (const std::string& name : profile.signals) {
-    add(config, profile.find(name), Reading::when_looked_at);
+  for (std::size_t i = 0; i < kRows.size(); ++i) {
+    rows_[i] = make(config, findObject(profile, kRows[i]), kRows[i].reading);
   }
-  require((*this)[SignalId::statusword].mapped(), config, "the statusword (6041:00)");
-  require((*this)[SignalId::position].mapped(), config, "the actual position (6064:00)");
+  named_.reserve(profile.signals.size());
+  for (const std::string& name : profile.signals) {
+    named_.push_back(make(config, profile.find(name), Reading::when_looked_at));
+  }
+  require((*this)[SignalId::statusword], config, device,
+          "the statusword (" + profile.address(0x6041) + ")");
+  require((*this)[SignalId::position], config, device,
+          "the actual position (" + profile.address(0x6064) + ")");
 }
 
-void Signals::add(const AxisConfig& config, const ObjectSpec* spec, Reading reading) {
+Signal Signals::make(const AxisConfig& config, const ObjectSpec* spec, Reading reading) {
   Signal row;
   const auto& lacks = config.lacks;
   const bool lacking =
@@ -70,7 +76,7 @@ void Signals::add(const AxisConfig& config, const ObjectSpec* spec, Reading read
     }
   }
   row.polled = poller_.add(row, reading);
-  rows_.push_back(row);
+  return row;
 }
 
 bool Signals::travels(const Signal& row) const {
@@ -78,15 +84,16 @@ bool Signals::travels(const Signal& row) const {
 }
 
 void Signals::look() {
-  for (const Signal& row : rows_) {
+  const auto ask = [this](const Signal& row) {
     if (row.polled >= 0 && !travels(row)) poller_.look(row.polled);
-  }
+  };
+  for (const Signal& row : rows_) ask(row);
+  for (const Signal& row : named_) ask(row);
 }
 
 std::vector<ShownSignal> Signals::shown(Time now) const {
   std::vector<ShownSignal> all;
-  for (std::size_t i = kRows.size(); i < rows_.size(); ++i) {
-    const Signal& row = rows_[i];
+  for (const Signal& row : named_) {
     const fieldbus::ProcessValue* value = travels(row) ? told(row, now) : nullptr;
     if (value == nullptr) value = poller_.value(row.polled, now);
     ShownSignal shown;

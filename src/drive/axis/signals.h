@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,8 @@
 namespace cia402::drive {
 
 /// What the drive tells of itself, a row each: those of SignalId, then those that the profile names
-/// in `signals`, which are only shown. A row that no TPDO brings is asked for beside the cycle.
+/// in `signals`, which are only shown. A row that does not come in the cycle is asked for beside
+/// the cycle.
 class Signals {
  public:
   /// @throws std::invalid_argument if statusword or actual position are not mapped.
@@ -58,12 +60,13 @@ class Signals {
   void put(SignalId id, std::uint64_t raw, Time now) { poller_.put((*this)[id].polled, raw, now); }
 
  private:
-  void add(const AxisConfig& config, const ObjectSpec* spec, AxisPoller::Reading reading);
+  Signal make(const AxisConfig& config, const ObjectSpec* spec, AxisPoller::Reading reading);
   bool travels(const Signal& row) const;
 
   fieldbus::Device& device_;
   const fieldbus::ProcessImage& image_;
-  std::vector<Signal> rows_;
+  std::array<Signal, kSignalIds> rows_;  ///< of SignalId
+  std::vector<Signal> named_;            ///< by the profile
   AxisPoller poller_;
 };
 

@@ -1,13 +1,10 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "drive/axis/standstill.h"
 
-#include <cmath>
-
 namespace cia402::drive {
 
-void Standstill::update(double position, Time stamp) {
-  const bool moved = !(std::fabs(position - anchor_) <= tolerance_);
-  if (started_ && !moved && stamp - anchored_ < kWindow) return;
+/// A window is over, or the axis has left it: the next one begins here.
+void Standstill::anchor(double position, Time stamp, bool moved) {
   if (started_) {
     still_ = !moved;
     moving_ = moved;

@@ -1,6 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
+
 #include "cia402_driver/common/time.h"
 
 namespace cia402::drive {
@@ -18,7 +20,10 @@ class Standstill {
       : tolerance_(threshold * toSeconds(kWindow) + 1.5 * resolution) {}
 
   /// Takes a measured position (rad or m) with the time it was on the wire.
-  void update(double position, Time stamp);
+  void update(double position, Time stamp) {
+    const bool moved = !(std::fabs(position - anchor_) <= tolerance_);
+    if (moved || !started_ || stamp - anchored_ >= kWindow) anchor(position, stamp, moved);
+  }
   /// Nothing is known any more: counts as moving until a window is full again.
   void reset();
   bool still() const { return still_; }
@@ -30,6 +35,8 @@ class Standstill {
   double tolerance() const { return tolerance_; }
 
  private:
+  void anchor(double position, Time stamp, bool moved);
+
   double tolerance_;  ///< rad or m within a window
   double anchor_ = 0.0;
   Time anchored_{}, still_from_{};

@@ -4,6 +4,8 @@
 #include <array>
 #include <cstddef>
 
+#include "common/text.h"
+
 namespace cia402::drive {
 namespace {
 
@@ -126,8 +128,7 @@ std::string statuswordText(std::uint16_t statusword) {
   std::string text;
   for (unsigned bit = 0; bit < 16; ++bit) {
     if ((statusword & (1u << bit)) == 0) continue;
-    if (!text.empty()) text += ", ";
-    text += kStatuswordBits[bit];
+    append(text, kStatuswordBits[bit], ", ");
   }
   return text.empty() ? "no bit set" : text;
 }

@@ -47,7 +47,7 @@ void Stops::endHalt() {
 }
 
 void Stops::stopUrgently(const std::string& why) {
-  if (!axis_.nodeReady() || axis_.powerOff()) return;
+  if (!axis_.deviceReady() || axis_.powerOff()) return;
   const bool was_commanded = !axis_.control().silent() && axis_.goal() != Goal::disabled;
   axis_.setGoal(Goal::quick_stop);
   const ObjectSpec* object = axis_.objects().controlword.spec;
@@ -60,7 +60,8 @@ void Stops::judgeUrgent() {
   const fieldbus::Ticket ended = std::exchange(urgent_ticket_, nullptr);
   if (ended->ok()) return;
   axis_.notices().notify(
-      axis_.who() + ": the quick stop by SDO failed: " + ended->message() +
+      axis_.who() + ": the quick stop by " + axis_.device().terms().access +
+      " failed: " + ended->message() +
       "; the drive may go on: switch its power off if it does not stop by itself");
 }
 
@@ -121,8 +122,8 @@ void Stops::watchBrakeMode(Time now) {
     return;
   }
   axis_.notices().notify(
-      axis_.who() + ": mode " + mode.name + " (6060:00 = " + std::to_string(mode.value) +
-      "), which is to brake, was not taken" +
+      axis_.who() + ": mode " + mode.name + " (" + axis_.profile().address(0x6060) + " = " +
+      std::to_string(mode.value) + "), which is to brake, was not taken" +
       (refused ? ": " + brake_ticket_->message() : " within " + seconds(patience)) +
       "; quick stop is commanded. " + report(axis_));
   axis_.setGoal(Goal::quick_stop);

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "drive/axis/words.h"
 
+#include "common/text.h"
 #include "drive/profile/fault_text.h"
 
 namespace cia402::drive {
@@ -9,11 +10,15 @@ std::string report(const AxisCore& axis) {
   const fieldbus::Slot slot = axis.objects().controlword.slot;
   const std::uint64_t sent = axis.control().frames();
   const std::uint16_t statusword = axis.state().statusword;
-  std::string text = "controlword 6040:00 = " + hexWord(axis.control().word()) + ", " +
-                     axis.control().text() + ", sent in " + axis.device().carrierText(slot) + ", " +
-                     std::to_string(sent) + " frames so far";
+  std::string text = "controlword " + axis.profile().address(0x6040) + " = " +
+                     hexText(axis.control().word(), 4) + ", " + axis.control().text() +
+                     ", sent in " + axis.device().carrierText(slot) + ", " + std::to_string(sent) +
+                     " frames so far";
   text += "; the drive shows " + axis.feedback().stateText() + "; " + axis.faults().emergencyText();
-  if (sent == 0) text += "; no RPDO has left: is the cycle running?";
+  if (sent == 0) {
+    text +=
+        std::string("; no ") + axis.device().terms().output + " has left: is the cycle running?";
+  }
   if ((statusword & statusword::kVoltageEnabled) == 0) {
     text += "; voltage enabled is 0: check the main supply and the safety (STO) inputs";
   } else if ((statusword & statusword::kRemote) == 0) {
@@ -28,8 +33,9 @@ std::string obstacle(const AxisCore& axis) {
   const ModeSpec& mode = axis.mode().spec();
   const bool homed = axis.generator().homedEnough();
   const std::string zero = axis.config().homing ? "home" : "set_position";  // gives it one
-  if (!axis.nodeReady()) {
-    return name + ", its node is " + fieldbus::toString(axis.device().health()) + ": recover";
+  if (!axis.deviceReady()) {
+    return name + ", its " + axis.device().terms().device + " is " +
+           fieldbus::toString(axis.device().health()) + ": recover";
   }
   if (!state.feedback_valid) return name + " gives no fresh statusword and position: recover";
   if (axis.faulted()) return name + " is in fault: recover";
@@ -56,12 +62,12 @@ std::string motionRefusal(const AxisCore& axis, bool busy) {
            (axis.config().homing ? "home it" : "say where it stands by set_position") +
            " before position motion";
   }
-  if (!axis.nodeReady()) {
-    return who + ": the node is " + fieldbus::toString(axis.device().health()) +
-           "; recover brings it back";
+  if (!axis.deviceReady()) {
+    return who + ": the " + axis.device().terms().device + " is " +
+           fieldbus::toString(axis.device().health()) + "; recover brings it back";
   }
   if (!state.feedback_valid) {
-    return who + ": no fresh position (6064:00) and statusword (6041:00)";
+    return who + ": no fresh " + axis.profile().feedbackObjects();
   }
   if (axis.faulted()) return axis.faults().text();
   if (busy) return who + ": a procedure is running";
@@ -72,7 +78,7 @@ std::string motionRefusal(const AxisCore& axis, bool busy) {
   const ModeSpec& mode = axis.mode().spec();
   const std::optional<int> shown = axis.feedback().shownMode();
   if (shown != mode.value) {
-    return who + ": 6061:00 shows mode " +
+    return who + ": " + axis.profile().address(0x6061) + " shows mode " +
            (shown ? std::to_string(*shown) : std::string("unknown")) + " instead of " +
            std::to_string(mode.value) + " (" + mode.name + "); call enable";
   }
@@ -88,8 +94,9 @@ std::string enablingRefusal(const AxisCore& axis) {
 }
 
 std::string calibrationRefusal(const AxisCore& axis) {
-  if (!axis.nodeReady()) {
-    return std::string("the node is ") + fieldbus::toString(axis.device().health()) +
+  if (!axis.deviceReady()) {
+    return std::string("the ") + axis.device().terms().device + " is " +
+           fieldbus::toString(axis.device().health()) +
            ", so that nobody knows whether the axis is disabled; recover it first";
   }
   if (!axis.state().feedback_valid) {

@@ -9,7 +9,7 @@ namespace cia402::drive {
 
 // The axis in sentences that take several of its parts; made on demand only.
 
-/// What was commanded, what the drive shows and its last EMCY.
+/// What was commanded, what the drive shows and its last emergency.
 std::string report(const AxisCore& axis);
 /// Axis::obstacle()
 std::string obstacle(const AxisCore& axis);

@@ -4,16 +4,14 @@
 namespace cia402::drive {
 
 CyclicPosition::CyclicPosition(const ModeChannel& channel, const Context& context)
-    : PositionControl(channel, context), limiter_({jointOf(context.axis.config), {}, {}}) {}
+    : PositionControl(channel, context), limiter_(jointOf(context.axis.config)) {}
 
 void CyclicPosition::beginStream(const Stream& stream, Time at) {
   limiter_.reset({sent().value(), sent().velocity(), 0.0}, at);
-  if (stream.command) (void)limiter_.command(*stream.command, at);  // finite, so it is taken
+  if (stream.command) (void)limiter_.command(*stream.command);  // finite, so it is taken
 }
 
-void CyclicPosition::takeCommand(Stream& stream) {
-  (void)limiter_.command(*stream.command, stream.clock);
-}
+void CyclicPosition::takeCommand(Stream& stream) { (void)limiter_.command(*stream.command); }
 
 std::optional<double> CyclicPosition::follow(Stream& stream, Time) {
   const motion::MotionState state = limiter_.step(stream.clock);

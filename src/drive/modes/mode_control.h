@@ -5,17 +5,9 @@
 #include <optional>
 
 #include "drive/axis/feedback.h"
+#include "drive/modes/stream.h"
 
 namespace cia402::drive {
-
-/// Commands that people stream to an axis (`~<axis>/command`), as its mode follows them.
-struct Stream {
-  std::optional<double> command;  ///< the last one, in joint units; nothing: there is none
-  Time clock{};                   ///< one period a cycle, however late the cycle is
-  Time commanded{};               ///< when the command came, in bus time
-  bool dried_up = false;  ///< a velocity or an effort other than zero was not renewed in time
-  bool at_rest = true;    ///< what is led by the commands does not move
-};
 
 /// What one mode of operation makes of set-points: which it takes, what is neutral in it, and how
 /// they reach the drive. There is one for each kind of mode, made by makeModeControl().
@@ -43,10 +35,12 @@ class ModeControl {
   /// The raw number of a set-point in joint units. @return false if the object cannot hold it
   bool encode(double value, std::uint64_t& raw) const { return conversion_.toDevice(value, raw); }
   /// Set-points are positions: they count from the joint's zero, which must be known.
-  virtual bool positions() const { return false; }
+  bool positions() const { return kind_ == SetPointKind::stream || goals(); }
+  /// They are goals: the drive goes to each by itself, and may take them one by one.
+  bool goals() const { return kind_ == SetPointKind::goal; }
   /// Is within the limits of the joint? @param value in joint units, finite
   virtual bool accepts(double value) const = 0;
-  /// What is sent of a set-point that was accepted.
+  /// What is sent of an effort that was accepted.
   virtual double guarded(double value) const { return value; }
   /// With which the mode begins without moving anything, in joint units.
   virtual double neutral() const { return 0.0; }
@@ -65,7 +59,7 @@ class ModeControl {
   /// @return the set-point of this cycle; nothing: none is given. @pre there is a command
   virtual std::optional<double> follow(Stream& stream, Time now) = 0;
 
-  // What follows is empty but where a mode hands its set-points over one by one.
+  // What follows is empty but where set-points are goals; cycles ask for it there only.
   /// Begins anew with a neutral target, or the mode is left.
   virtual void reset(std::uint64_t /*raw*/) {}
   /// The set-point is another now. @param twice see SetPointHandshake::offer()
@@ -100,7 +94,7 @@ class ModeControl {
  protected:
   AxisBasis& axis() const { return context_.axis; }
   const AxisState& state() const { return context_.axis.state; }
-  const AxisLimits& limits() const { return context_.axis.config.limits; }
+  const motion::JointLimits& limits() const { return context_.axis.config.limits; }
   const Coordinates& coordinates() const { return context_.coordinates; }
   const Feedback& feedback() const { return context_.feedback; }
   SetPoint& sent() const { return context_.sent; }

@@ -25,8 +25,6 @@ bool PositionControl::neutralRaw(std::uint64_t& raw) const {
   return channel().conversion.toDevice(position.toJoint(raw), raw);
 }
 
-Duration PositionControl::wayBack(double) const {
-  return kReactionCycles * axis().config.sync_period;
-}
+Duration PositionControl::wayBack(double) const { return kReactionCycles * axis().config.cycle; }
 
 }  // namespace cia402::drive

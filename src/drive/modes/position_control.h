@@ -10,7 +10,6 @@ class PositionControl : public ModeControl {
  public:
   using ModeControl::ModeControl;
   void place() override;
-  bool positions() const override { return true; }
   /// An axis that stands outside its limits may come back, not go further out.
   bool accepts(double value) const override;
   double neutral() const override { return state().position; }

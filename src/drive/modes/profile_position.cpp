@@ -114,7 +114,7 @@ void ProfilePosition::prepare(Time now) {
 /// than that under way makes the drive turn back.
 void ProfilePosition::giveStopPoint(Time now) {
   if (!state().feedback_valid) return;
-  const Duration cycle = axis().config.sync_period;
+  const Duration cycle = axis().config.cycle;
   const double velocity = std::isfinite(state().velocity) ? state().velocity : 0.0;
   const double age = toSeconds(std::max(Duration(0), now - state().stamp - cycle));
   const double from = state().position + velocity * age;

@@ -76,7 +76,7 @@ const char* SetPointHandshake::waitingFor() const {
     case Phase::idle:
       return "statusword bit 12 (set-point acknowledge) to be 0";
     case Phase::announced:
-      return "the RPDO with the target to be sent";
+      return "the target to be sent";
     case Phase::raised:
       return "statusword bit 12 (set-point acknowledge) to rise after the edge of controlword bit "
              "4";

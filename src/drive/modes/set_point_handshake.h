@@ -8,22 +8,23 @@
 namespace cia402::drive {
 
 /// Hands set-points to a drive one by one with controlword bit 4 and statusword bit 12 (CiA 402-2,
-/// profile position mode). The target has left in a PDO before the edge of bit 4 is made: a drive
-/// that looks at the controlword before the target takes the previous one only where that PDO was
-/// lost. A newer target waits until the drive has acknowledged, and the latest wins.
+/// profile position mode). The target has left before the edge of bit 4 is made: a drive
+/// that looks at the controlword before the target takes the previous one only where the
+/// frame with the target was lost. A newer target waits until the drive has acknowledged, and the
+/// latest wins.
 class SetPointHandshake {
  public:
   /// What the axis sees in this cycle.
   struct Input {
-    std::uint64_t target_frames = 0;       ///< sent so far of the RPDO with the target
-    std::uint64_t controlword_frames = 0;  ///< sent so far of the RPDO with the controlword
+    std::uint64_t target_frames = 0;       ///< how often the target was sent so far
+    std::uint64_t controlword_frames = 0;  ///< how often the controlword was
     bool acknowledged = false;             ///< statusword bit 12
     bool has_acknowledge = true;           ///< the mode has such a bit; else bit 4 is pulsed
   };
 
   /// Wants `raw` to be the set-point. Replaces one that has not been handed over yet.
   /// @param twice once more after the first acknowledge, which proves that the drive has the target
-  ///   where one RPDO holds both: then the second edge cannot take the previous one, whatever is
+  ///   where one frame holds both: then the second edge cannot take the previous one, whatever is
   ///   lost
   void offer(std::uint64_t raw, bool twice = false);
   /// Forgets everything, bit 4 falls. `raw` is what the target object shall hold meanwhile.

@@ -18,22 +18,19 @@ motion::Joint withRamp(const AxisConfig& config) {
 // The drive acts on a set-point up to two cycles after it was computed from a measured position.
 VelocityControl::VelocityControl(const ModeChannel& channel, const Context& context)
     : ModeControl(channel, context),
-      limiter_({withRamp(context.axis.config), {}, {}},
-               kReactionCycles * context.axis.config.sync_period) {}
+      limiter_(withRamp(context.axis.config), kReactionCycles * context.axis.config.cycle) {}
 
 void VelocityControl::beginStream(const Stream& stream, Time at) {
   limiter_.reset({state().position, sent().velocity(), 0.0}, at);
-  if (stream.command) (void)limiter_.command(*stream.command, at);  // finite, so it is taken
+  if (stream.command) (void)limiter_.command(*stream.command);  // finite, so it is taken
 }
 
-void VelocityControl::takeCommand(Stream& stream) {
-  (void)limiter_.command(*stream.command, stream.clock);
-}
+void VelocityControl::takeCommand(Stream& stream) { (void)limiter_.command(*stream.command); }
 
 std::optional<double> VelocityControl::follow(Stream& stream, Time now) {
   if (now - stream.commanded > axis().config.command_timeout) {
     stream.dried_up = *stream.command != 0.0;
-    (void)limiter_.command(0.0, stream.clock);
+    (void)limiter_.command(0.0);
   }
   const motion::MotionState state = limiter_.step(stream.clock, this->state().position);
   stream.at_rest = state.velocity == 0.0;

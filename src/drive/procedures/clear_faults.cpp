@@ -52,7 +52,7 @@ class ClearFaults : public Procedure {
 }  // namespace
 
 Result<std::unique_ptr<Procedure>> makeClearFaults(AxisCore& axis) {
-  const std::string refusal = nodeRefusal(axis, "clear faults");
+  const std::string refusal = deviceRefusal(axis, "clear faults");
   if (!refusal.empty()) return Error{refusal};
   return std::unique_ptr<Procedure>(std::make_unique<ClearFaults>());
 }

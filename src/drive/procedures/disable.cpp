@@ -86,7 +86,7 @@ class Disable : public Procedure {
 }  // namespace
 
 Result<std::unique_ptr<Procedure>> makeDisable(AxisCore& axis) {
-  const std::string refusal = nodeRefusal(axis, "disable");
+  const std::string refusal = deviceRefusal(axis, "disable");
   if (!refusal.empty()) return Error{refusal + "; whether its power stage is off is unknown"};
   return std::unique_ptr<Procedure>(std::make_unique<Disable>());
 }

@@ -108,7 +108,7 @@ class Enable : public Procedure {
 }  // namespace
 
 Result<std::unique_ptr<Procedure>> makeEnable(AxisCore& axis) {
-  const std::string refusal = nodeRefusal(axis, "enable");
+  const std::string refusal = deviceRefusal(axis, "enable");
   if (!refusal.empty()) return Error{refusal};
   if (axis.faulted()) return Error{"cannot enable: " + axis.faults().text()};
   const ModeChannel& mode = axis.mode().working();

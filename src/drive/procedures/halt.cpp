@@ -87,7 +87,7 @@ class Halt : public Procedure {
 }  // namespace
 
 Result<std::unique_ptr<Procedure>> makeHalt(AxisCore& axis) {
-  const std::string refusal = nodeRefusal(axis, "halt");
+  const std::string refusal = deviceRefusal(axis, "halt");
   if (!refusal.empty()) return Error{refusal};
   return std::unique_ptr<Procedure>(std::make_unique<Halt>());
 }

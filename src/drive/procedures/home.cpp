@@ -55,7 +55,7 @@ Result<std::unique_ptr<Procedure>> makeHome(AxisCore& axis) {
   if (!axis.config().homing) {
     return Error{axis.who() + ": cannot home: no homing is configured; add homing: {...}"};
   }
-  const std::string refusal = nodeRefusal(axis, "home");
+  const std::string refusal = deviceRefusal(axis, "home");
   if (!refusal.empty()) return Error{refusal};
   if (axis.faulted()) return Error{"cannot home: " + axis.faults().text()};
   const auto& methods = axis.profile().homing.methods;

@@ -170,14 +170,14 @@ Outcome DriveHoming::timeOut(const Context& context) {
 void DriveHoming::succeed(const Context& context) {
   AxisCore& axis = context.axis;
   end_ = context.now;
-  const ObjectSpec* object = axis.profile().find(fieldbus::ObjectId{0x607C, 0});
+  const ObjectSpec* object = axis.profile().find(axis.profile().own({0x607C, 0}));
   const bool lacks = object == nullptr || saidToLack(axis.config(), object->name);
   if (offsetIsWritten(axis) && !writes_.leftOut("homing.offset")) {
     adopt(context, axis.config().homing->atHome());
   } else if (!lacks && object->readable) {
     offset_ = axis.device().objects().upload(object->id, object->name);
     enter(Phase::reading_offset, context);
-    context.show("reading the home offset", "607C:00 home offset");
+    context.show("reading the home offset", axis.profile().address(0x607C) + " home offset");
   } else {
     adopt(context, axis.objects().signals[SignalId::position].conversion.toJoint(0));
   }

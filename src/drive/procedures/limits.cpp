@@ -63,7 +63,7 @@ struct Steps {
     const Duration once = timing.transition(14) + timing.transition(15) + 3 * timing.state_change +
                           FaultResetStep::kInterval + FaultResetStep::kWatch;
     const Duration clearing = profile.fault_reset_clears_history ? transfer() : Duration(0);
-    if (profile.fault_reset_nmt_stop == Duration::zero()) {
+    if (profile.fault_reset_pause == Duration::zero()) {
       return clearing + profile.fault_reset_tries * once;
     }
     return clearing + (profile.fault_reset_tries + 1) * once + FaultResetStep::pause(profile);

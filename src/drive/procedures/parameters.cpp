@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Store and restore parameters, CiA 301, 7.5.2.13 (1010h) and 7.5.2.14 (1011h).
-#include <cstdio>
 
+#include "common/text.h"
 #include "drive/procedures/limits.h"
 #include "drive/procedures/procedure.h"
 #include "drive/sentence.h"
@@ -38,22 +38,25 @@ std::string groupText(const Storage& storage, std::uint8_t subindex) {
          (subindex <= 3 ? kNames[subindex] : "parameters of the maker") + ")";
 }
 
-std::string hex(std::uint64_t value) {
-  char text[20];
-  std::snprintf(text, sizeof text, "0x%08llX", static_cast<unsigned long long>(value));
-  return text;
-}
-
 /// Why the parameters cannot be touched now; empty if they can.
-std::string powerRefusal(const AxisCore& axis, const Storage& storage) {
+std::string powerRefusal(AxisCore& axis, const Storage& storage) {
   const std::string what = axis.who() + ": cannot " + storage.verb + " parameters: ";
   if (!axis.state().feedback_valid) return what + "no fresh statusword says that it is disabled";
   if (!axis.powerOff()) {
     return what + "the axis is not disabled (" + toString(axis.state().state) +
            "); disable it first";
   }
-  return axis.generator().moving() ? what + "the axis moves; wait until it is at rest"
-                                   : std::string();
+  if (axis.generator().moving()) return what + "the axis moves; wait until it is at rest";
+  const std::string others = axis.basis().neighbours.refusal();
+  return others.empty() ? others : what + others;
+}
+
+/// What the device's memory holds is that of all its axes.
+void loseZeros(AxisCore& axis) {
+  axis.loseZero();
+  axis.measureAnew();
+  axis.basis().neighbours.loseZero();
+  axis.basis().neighbours.measureAnew();
 }
 
 /// Writes the signature to each chosen sub-index of 1010h or 1011h that can be commanded so.
@@ -73,8 +76,7 @@ class StorageStep {
       if (!ticket_) askCapability(context);
       if (!ticket_->done()) return Outcome::running();
       if (writing_ && mayHaveMovedZero()) {
-        context.axis.loseZero();
-        context.axis.measureAnew();
+        loseZeros(context.axis);
       }
       const std::string problem = judge();
       if (!problem.empty()) return Outcome::failed(context.axis.who() + ": " + problem + done());
@@ -82,7 +84,7 @@ class StorageStep {
         command(context);
         continue;
       }
-      done_ += (done_.empty() ? "" : ", ") + groupText(storage_, subindices_[next_]);
+      append(done_, groupText(storage_, subindices_[next_]), ", ");
       ++next_;
       ticket_.reset();
       writing_ = false;
@@ -134,7 +136,7 @@ class StorageStep {
     if ((capability & kOnCommand) != 0) return {};
     const bool by_itself = storage_.index == saving().index && (capability & kByItself) != 0;
     return std::string("the drive does not ") + storage_.verb + " " + group + " on command (" +
-           fieldbus::toString(object()) + " is " + hex(capability) + ")" +
+           fieldbus::toString(object()) + " is " + hexText(capability, 8) + ")" +
            (by_itself ? "; it saves by itself" : "; choose others with `parameters`");
   }
 
@@ -160,6 +162,7 @@ class SaveParameters : public Procedure {
                               seconds(context.now - context.status.started);
     if (!axis.profile().parameters.power_cycle_after_save) return Outcome::done(saved);
     axis.control().wantPowerCycle();
+    axis.basis().neighbours.wantPowerCycle();
     return Outcome::remarked(saved + "; switch the drive off and on before it is enabled again");
   }
 
@@ -167,8 +170,8 @@ class SaveParameters : public Procedure {
   StorageStep storing_;
 };
 
-/// Restored values count from the next reset (CiA 301, 7.5.2.14), so the node is reset; the driver
-/// configures it again and leaves it disabled.
+/// Restored values count from the next reset (CiA 301, 7.5.2.14), so the device is reset; the
+/// driver configures it again and leaves it disabled.
 class RestoreParameters : public Procedure {
  public:
   explicit RestoreParameters(std::vector<std::uint8_t> subindices)
@@ -178,14 +181,20 @@ class RestoreParameters : public Procedure {
     if (resetting_) return awaitBoot(context);
     const Outcome outcome = restoring_.advance(context);
     if (!outcome.isDone()) return outcome;
+    const std::string others = context.axis.basis().neighbours.refusal();
+    if (!others.empty()) {
+      return Outcome::failed(context.axis.who() + ": restored the factory's values of " +
+                             restoring_.what() + ", but did not reset the drive, as " + others +
+                             ", then call it again: they count after a reset only");
+    }
     resetting_ = true;
     reset_at_ = context.now;
-    context.show("booting the node", "the node to be identified, configured and started");
+    showBoot(context);
     context.axis.device().restart(context.now);
     return Outcome::running();
   }
 
-  bool survivesNodeLoss() const override { return resetting_; }
+  bool survivesDeviceLoss() const override { return resetting_; }
 
  private:
   static Duration bootTime(const Context& context) {
@@ -196,20 +205,21 @@ class RestoreParameters : public Procedure {
     AxisCore& axis = context.axis;
     const std::string restored =
         axis.who() + ": restored the factory's values of " + restoring_.what();
-    if (axis.nodeReady()) {
+    if (axis.deviceReady()) {
       const std::string gap = axis.device().restartGap();
       return Outcome::done(restored +
                            "; the drive was reset, configured again by the driver and is disabled" +
                            (axis.state().homed ? "" : ", not homed") +
-                           (gap.empty() ? "" : "; " + gap + " for the values to count"));
+                           (gap.empty() ? "" : "; " + gap + " for the values to count") +
+                           axis.basis().neighbours.text());
     }
     const fieldbus::Health health = axis.device().health();
     const bool failed = health == fieldbus::Health::failed || health == fieldbus::Health::absent;
     if (failed && context.now > reset_at_) {
       return Outcome::failed(restored +
                              " and reset it, but it did not boot (has it got the "
-                             "factory's node-ID or bit rate?): " +
-                             axis.device().problem());
+                             "factory's " +
+                             axis.device().terms().address + "?): " + axis.device().problem());
     }
     if (context.now < reset_at_ + bootTime(context)) return Outcome::running();
     return Outcome::failed(restored + " and reset it, but it was not ready within " +
@@ -223,8 +233,8 @@ class RestoreParameters : public Procedure {
 };
 
 std::string refusal(AxisCore& axis, const Storage& storage, const char* what) {
-  const std::string node = nodeRefusal(axis, what);
-  return node.empty() ? powerRefusal(axis, storage) : node;
+  const std::string away = deviceRefusal(axis, what);
+  return away.empty() ? powerRefusal(axis, storage) : away;
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ namespace {
 
 /// The axis is not to move by what was given up. @return what was done, in words
 std::string makeSafe(AxisCore& axis, ProcedureKind kind) {
-  if (!axis.nodeReady()) return "nothing reaches the drive";
+  if (!axis.deviceReady()) return "nothing reaches the drive";
   const bool off = kind == ProcedureKind::disable && axis.feedback().atStandstill();
   if (!enables(kind) && !stops(kind)) return "nothing moves by it";
   if (axis.mode().spec().kind == ControlKind::homing) axis.selectMode(axis.mode().working());
@@ -105,9 +105,9 @@ Outcome awaitStandstill(const Context& context, Time since, const std::string& w
   AxisCore& axis = context.axis;
   const bool patient = context.now - since <= 4 * Standstill::kWindow;
   if (!axis.state().feedback_valid) {
-    if (patient) return Outcome::running();  // the node is ready, its first TPDO still to come
-    return Outcome::failed(axis.who() + ": " + what +
-                           ": no fresh statusword (6041:00) and position (6064:00)");
+    if (patient) return Outcome::running();  // ready, and its first feedback still to come
+    return Outcome::failed(axis.who() + ": " + what + ": no fresh " +
+                           axis.profile().feedbackObjects());
   }
   if (axis.feedback().atStandstill()) return Outcome::done();
   if (!axis.generator().moving() && patient) return Outcome::running();
@@ -115,10 +115,16 @@ Outcome awaitStandstill(const Context& context, Time since, const std::string& w
                          number(axis.state().velocity) + "); stop the axis first");
 }
 
-std::string nodeRefusal(AxisCore& axis, const char* what) {
-  if (axis.nodeReady()) return {};
-  std::string text = axis.who() + ": cannot " + what + ": the node is " +
-                     fieldbus::toString(axis.device().health());
+void showBoot(const Context& context) {
+  const std::string device = context.axis.device().terms().device;
+  context.show("booting the " + device,
+               "the " + device + " to be identified, configured and started");
+}
+
+std::string deviceRefusal(AxisCore& axis, const char* what) {
+  if (axis.deviceReady()) return {};
+  std::string text = axis.who() + ": cannot " + what + ": the " + axis.device().terms().device +
+                     " is " + fieldbus::toString(axis.device().health());
   if (!axis.device().problem().empty()) text += " (" + axis.device().problem() + ")";
   return text + "; recover boots it again";
 }

@@ -32,8 +32,8 @@ struct Context {
   Time now;
 
   /// Tells where the procedure is; to be called when a step begins, not in every cycle.
-  void show(const char* step, std::string waiting_for) const {
-    status.step = step;
+  void show(std::string step, std::string waiting_for) const {
+    status.step = std::move(step);
     status.waiting_for = std::move(waiting_for);
   }
 };
@@ -51,8 +51,8 @@ class Procedure {
   /// Nothing has to be done: it ends as soon as it is asked for, and whoever moves the axis goes
   /// on.
   virtual bool leavesAlone(const Context&) const { return false; }
-  /// It waits for the node to come back by itself.
-  virtual bool survivesNodeLoss() const { return false; }
+  /// It waits for the device to come back by itself.
+  virtual bool survivesDeviceLoss() const { return false; }
 
  protected:
   virtual Outcome advance(const Context& context) = 0;
@@ -68,7 +68,7 @@ class Procedure {
 /// Makes the procedure that was asked for, or says why the axis cannot do it now.
 Result<std::unique_ptr<Procedure>> makeProcedure(const ProcedureRequest& request, AxisCore& axis);
 
-// One factory for each, in procedure_<kind>.cpp.
+// One factory for each, in <kind>.cpp.
 Result<std::unique_ptr<Procedure>> makeEnable(AxisCore& axis);
 Result<std::unique_ptr<Procedure>> makeDisable(AxisCore& axis);
 Result<std::unique_ptr<Procedure>> makeHome(AxisCore& axis);
@@ -78,14 +78,17 @@ Result<std::unique_ptr<Procedure>> makeQuickStop(AxisCore& axis);
 Result<std::unique_ptr<Procedure>> makeHalt(AxisCore& axis);
 Result<std::unique_ptr<Procedure>> makeSetMode(AxisCore& axis, const std::string& mode);
 Result<std::unique_ptr<Procedure>> makeSetPosition(AxisCore& axis, double position);
-Result<std::unique_ptr<Procedure>> makeSaveParameters(AxisCore& axis);  // procedure_parameters.cpp
+Result<std::unique_ptr<Procedure>> makeSaveParameters(AxisCore& axis);     // parameters.cpp
 Result<std::unique_ptr<Procedure>> makeRestoreParameters(AxisCore& axis);  // the same
 
 /// A check before something that needs standstill: running while it is not known yet (a window of
 /// Standstill is not full), failed in motion. @param since when the waiting began
 Outcome awaitStandstill(const Context& context, Time since, const std::string& what);
 
-/// Error for a procedure that needs the node; empty if it is ready.
-std::string nodeRefusal(AxisCore& axis, const char* what);
+/// Shows that the device is being booted, and is waited for.
+void showBoot(const Context& context);
+
+/// Error for a procedure that needs the device; empty if it is ready.
+std::string deviceRefusal(AxisCore& axis, const char* what);
 
 }  // namespace cia402::drive

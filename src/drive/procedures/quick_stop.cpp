@@ -26,9 +26,10 @@ class QuickStop : public Procedure {
  private:
   void askForOption(const Context& context) {
     AxisCore& axis = context.axis;
-    context.show("stopped", "the drive to switch off or to hold (605A:00 quick stop option)");
+    context.show("stopped", "the drive to switch off or to hold (" +
+                                axis.profile().address(0x605A) + " quick stop option)");
     if (axis.profile().quick_stop_holds.empty()) return;
-    const ObjectSpec* object = axis.profile().find(fieldbus::ObjectId{0x605A, 0});
+    const ObjectSpec* object = axis.profile().find(axis.profile().own({0x605A, 0}));
     if (object != nullptr) option_ = axis.device().objects().upload(object->id, object->name);
   }
 
@@ -72,7 +73,7 @@ class QuickStop : public Procedure {
 }  // namespace
 
 Result<std::unique_ptr<Procedure>> makeQuickStop(AxisCore& axis) {
-  const std::string refusal = nodeRefusal(axis, "quick-stop");
+  const std::string refusal = deviceRefusal(axis, "quick-stop");
   if (!refusal.empty()) return Error{refusal};
   return std::unique_ptr<Procedure>(std::make_unique<QuickStop>());
 }

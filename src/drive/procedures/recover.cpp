@@ -10,9 +10,10 @@
 namespace cia402::drive {
 namespace {
 
-/// Brings an axis back from wherever it is: boots the node if it is not ready, or ready but without
-/// feedback (nobody notices where an unsupervised node went), clears faults, enables. An axis that
-/// is enabled and well is left alone, also in motion. Succeeds if the axis takes commands then.
+/// Brings an axis back from wherever it is: boots the device if it is not ready, or ready but
+/// without feedback (nobody notices where an unsupervised device went), clears faults, enables. An
+/// axis that is enabled and well is left alone, also in motion. Succeeds if the axis takes commands
+/// then.
 class Recover : public Procedure {
  public:
   explicit Recover(AxisCore& axis) : enabling_(axis.mode().working(), axis.profile()) {}
@@ -48,31 +49,31 @@ class Recover : public Procedure {
     return axis.feedback().heardLately(context.now) && isWell(axis) &&
            axis.brakeReleased(context.now);
   }
-  bool survivesNodeLoss() const override { return phase_ == Phase::booting; }
+  bool survivesDeviceLoss() const override { return phase_ == Phase::booting; }
 
  private:
   enum class Phase { begin, booting, feedback, clearing, enabling };
 
   static bool isWell(const AxisCore& axis) {
-    return axis.nodeReady() && axis.state().feedback_valid && axis.inOperation() &&
+    return axis.deviceReady() && axis.state().feedback_valid && axis.inOperation() &&
            !clearable(axis);
   }
 
   void begin(const Context& context) {
     AxisCore& axis = context.axis;
     started_ = context.now;
-    if (axis.nodeReady()) {
+    if (axis.deviceReady()) {
       beginFeedback(context);
     } else {
-      bootNode(context);
+      bootDevice(context);
     }
   }
 
-  void bootNode(const Context& context) {
+  void bootDevice(const Context& context) {
     AxisCore& axis = context.axis;
     phase_ = Phase::booting;
     booted_ = context.now;
-    context.show("booting the node", "the node to be identified, configured and started");
+    showBoot(context);
     if (axis.device().health() != fieldbus::Health::booting) axis.device().boot(context.now, true);
   }
 
@@ -84,19 +85,21 @@ class Recover : public Procedure {
 
   Outcome boot(const Context& context) {
     AxisCore& axis = context.axis;
-    if (axis.nodeReady()) {
+    if (axis.deviceReady()) {
       beginFeedback(context);
       return Outcome::running();
     }
     const bool failed = axis.device().health() == fieldbus::Health::failed ||
                         axis.device().health() == fieldbus::Health::absent;
     if (failed && context.now > *booted_) {
-      return Outcome::failed(axis.who() + ": the node did not boot: " + axis.device().problem());
+      return Outcome::failed(axis.who() + ": the " + axis.device().terms().device +
+                             " did not boot: " + axis.device().problem());
     }
     if (context.now < *booted_ + kBootTimes * axis.device().times().boot) return Outcome::running();
-    return Outcome::failed(
-        axis.who() + ": the node did not become ready within " + seconds(context.now - *booted_) +
-        ", it is " + fieldbus::toString(axis.device().health()) + ", " + axis.device().bootStep());
+    return Outcome::failed(axis.who() + ": the " + axis.device().terms().device +
+                           " did not become ready within " + seconds(context.now - *booted_) +
+                           ", it is " + fieldbus::toString(axis.device().health()) + ", " +
+                           axis.device().bootStep());
   }
 
   Outcome awaitFeedback(const Context& context) {
@@ -109,31 +112,43 @@ class Recover : public Procedure {
       return Outcome::running();
     }
     if (context.now - since_ <= axis.profile().timing.state_change) return Outcome::running();
-    if (!booted_) {
-      bootNode(context);
+    const std::string others = axis.basis().neighbours.refusal();
+    if (!booted_ && others.empty()) {
+      bootDevice(context);
       return Outcome::running();
     }
-    return Outcome::failed(axis.who() + ": no usable statusword (6041:00) and position (6064:00) " +
-                           "within " + seconds(context.now - since_) +
-                           " after the node was ready: " + axis.feedback().text() +
-                           "; check bus load, cable and the drive's TPDOs");
+    const std::string missing = axis.who() + ": no usable " + axis.profile().feedbackObjects() +
+                                " within " + seconds(context.now - since_);
+    if (!booted_) {
+      return Outcome::failed(missing + ": " + axis.feedback().text() +
+                             "; the drive is not booted for it: " + others + ", then recover");
+    }
+    const fieldbus::Terms& terms = axis.device().terms();
+    return Outcome::failed(missing + " after the " + terms.device +
+                           " was ready: " + axis.feedback().text() +
+                           "; check bus load, cable and the drive's " + terms.input + "s");
   }
 
   static Outcome leave(const Context& context) {
-    const AxisCore& axis = context.axis;
+    AxisCore& axis = context.axis;
     const std::string obstacle = drive::obstacle(axis);
     if (!obstacle.empty()) return Outcome::failed(obstacle);
     return Outcome::done(jointName(axis.config()) + ": is enabled and well, mode " +
-                         axis.mode().spec().name + "; it was left alone");
+                         axis.mode().spec().name + "; it was left alone" +
+                         axis.basis().neighbours.text());
   }
 
   Outcome finish(const Context& context) {
-    const AxisCore& axis = context.axis;
+    AxisCore& axis = context.axis;
     const std::string obstacle = drive::obstacle(axis);
     const std::string done = "recovered, enabled in mode " + axis.mode().spec().name + " after " +
                              seconds(context.now - started_);
     if (!obstacle.empty()) return Outcome::failed(obstacle + " (" + done + ")");
-    return Outcome::done(jointName(axis.config()) + ": " + done);
+    const Neighbours& others = axis.basis().neighbours;
+    const bool booted_all = booted_ && others.any();
+    return Outcome::done(jointName(axis.config()) + ": " + done +
+                         (booted_all ? "; the drive was booted for it, with all its axes" : "") +
+                         others.text());
   }
 
   Phase phase_ = Phase::begin;

@@ -1,4 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "common/text.h"
 #include "drive/procedures/procedure.h"
 #include "drive/procedures/steps/switch.h"
 #include "drive/sentence.h"
@@ -41,7 +42,7 @@ std::string knownModes(const AxisCore& axis) {
     if (channel.spec->kind == ControlKind::homing || !axis.mode().refusal(channel).empty()) {
       continue;
     }
-    names += (names.empty() ? "" : ", ") + channel.spec->name;
+    append(names, channel.spec->name, ", ");
   }
   return names;
 }
@@ -67,7 +68,7 @@ Result<std::unique_ptr<Procedure>> makeSetMode(AxisCore& axis, const std::string
                  " is refused, for the axis is halted and the drive takes no mode then; enable "
                  "releases the halt"};
   }
-  const std::string refusal = nodeRefusal(axis, "set the mode");
+  const std::string refusal = deviceRefusal(axis, "set the mode");
   if (!refusal.empty()) return Error{refusal};
   if (!axis.state().feedback_valid) {
     return Error{axis.who() + ": cannot set the mode: no fresh statusword and position"};

@@ -37,7 +37,7 @@ Result<std::unique_ptr<Procedure>> makeSetPosition(AxisCore& axis, double positi
   if (!std::isfinite(position)) {
     return Error{axis.who() + ": set_position needs a finite number"};
   }
-  const std::string refusal = nodeRefusal(axis, "declare the position");
+  const std::string refusal = deviceRefusal(axis, "declare the position");
   if (!refusal.empty()) return Error{refusal};
   return std::unique_ptr<Procedure>(std::make_unique<SetPosition>(position));
 }

@@ -133,12 +133,8 @@ Result<Conversion> Conversion::create(const ObjectSpec& object, const DriveProfi
   return result;
 }
 
-double Conversion::toJoint(std::uint64_t raw) const {
-  if (encoding_ != Encoding::integer) return decodeFloat(encoding_, raw) * factor_ + offset_;
-  const std::uint64_t top = raw << shift_;  // the object's own sign bit becomes the top one
-  const double device = signed_ ? static_cast<double>(static_cast<std::int64_t>(top) >> shift_)
-                                : static_cast<double>(top >> shift_);
-  return device * factor_ + offset_;
+double Conversion::floatToJoint(std::uint64_t raw) const {
+  return decodeFloat(encoding_, raw) * factor_ + offset_;
 }
 
 bool Conversion::toDevice(double value, std::uint64_t& raw) const {
@@ -159,7 +155,7 @@ bool Conversion::toDevice(double value, std::uint64_t& raw) const {
   return true;
 }
 
-std::uint64_t Conversion::sendable(std::uint64_t raw) const {
+std::uint64_t Conversion::sendableFloat(std::uint64_t raw) const {
   return withoutNegativeZero(encoding_, raw);
 }
 

@@ -37,12 +37,20 @@ class Conversion {
 
   /// Joint value (rad, m, per s, N m, N) of a raw number as wide as the object. NaN if the device
   /// sent NaN or infinity.
-  double toJoint(std::uint64_t raw) const;
+  double toJoint(std::uint64_t raw) const {
+    if (encoding_ != Encoding::integer) return floatToJoint(raw);
+    const std::uint64_t top = raw << shift_;  // the object's own sign bit becomes the top one
+    const double device = signed_ ? static_cast<double>(static_cast<std::int64_t>(top) >> shift_)
+                                  : static_cast<double>(top >> shift_);
+    return device * factor_ + offset_;
+  }
   /// Raw number of a joint value, rounded to the nearest device unit. NaN, infinity and what does
   /// not fit the object give `false` and leave `raw` untouched.
   [[nodiscard]] bool toDevice(double value, std::uint64_t& raw) const;
   /// What may be sent of what was received: `raw`, but +0.0 for -0.0.
-  std::uint64_t sendable(std::uint64_t raw) const;
+  std::uint64_t sendable(std::uint64_t raw) const {
+    return encoding_ == Encoding::integer ? raw : sendableFloat(raw);
+  }
   /// Largest and smallest joint value that fits the object.
   double lowest() const;
   double highest() const;
@@ -63,6 +71,9 @@ class Conversion {
   Conversion shifted(double amount) const;
 
  private:
+  double floatToJoint(std::uint64_t raw) const;
+  std::uint64_t sendableFloat(std::uint64_t raw) const;
+
   double factor_ = 1.0;   ///< joint value = factor * device value + offset
   double inverse_ = 1.0;  ///< 1 / factor
   double offset_ = 0.0;

@@ -23,13 +23,11 @@ constexpr StandardMark kStandard[] = {
     {{0x60E8, 0}, {0x60EE, 0xFF}, CoordinateMark::configuration},
 };
 
-constexpr std::uint16_t kFirstAxis = 0x6000, kAxisSize = 0x800, kEndOfAxes = 0xA000;
-
 }  // namespace
 
 CoordinateMark standardMark(ObjectId id) {
-  if (id.index >= kFirstAxis && id.index < kEndOfAxes) {  // further axes repeat those of the first
-    id.index = static_cast<std::uint16_t>(kFirstAxis + (id.index - kFirstAxis) % kAxisSize);
+  if (const auto axis = axisOf(id)) {  // further axes repeat those of the first
+    id.index = static_cast<std::uint16_t>(id.index - *axis * kAxisSize);
   }
   for (const StandardMark& row : kStandard) {
     if (!(id < row.first) && !(row.last < id)) return row.mark;

@@ -8,14 +8,11 @@
 
 namespace cia402::drive {
 
-/// A 603Fh or EMCY code in words: "0x8611 following error: <cause>; <remedy>", from the profile
-/// where it knows the code, else by the classes of CiA 301 and 402.
+/// The code of an error (603Fh, or of an emergency) in words: "0x8611 following error: <cause>;
+/// <remedy>", from the profile where it knows the code, else by the classes of CiA 301 and 402.
 std::string errorCodeText(const DriveProfile& profile, std::uint16_t code);
 
 /// The short text of a code alone: "following error".
 std::string errorName(const DriveProfile& profile, std::uint16_t code);
-
-/// "0x0231": four upper-case hexadecimal digits.
-std::string hexWord(std::uint16_t word);
 
 }  // namespace cia402::drive

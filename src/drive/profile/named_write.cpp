@@ -2,9 +2,9 @@
 #include "drive/profile/named_write.h"
 
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
+#include "common/text.h"
 #include "drive/profile/object_value.h"
 #include "fieldbus/bytes.h"
 
@@ -20,7 +20,8 @@ struct Source {
   std::optional<ObjectId> copied_from;
 };
 
-std::optional<double> limit(const std::string& name, const AxisLimits& limits, bool reversed) {
+std::optional<double> limit(const std::string& name, const motion::JointLimits& limits,
+                            bool reversed) {
   if (name == "limits.lower") return reversed ? limits.upper : limits.lower;
   if (name == "limits.upper") return reversed ? limits.lower : limits.upper;
   if (name == "limits.velocity") return limits.velocity;
@@ -53,7 +54,7 @@ Source configured(const NamedWrite& write, const AxisConfig& axis, bool reversed
   if (const auto value = limit(from, axis.limits, reversed)) {
     source.value = *value * write.times;
   } else if (from == "sync_period.value" || from == "sync_period.exponent") {
-    const auto period = interpolationPeriod(axis.sync_period);
+    const auto period = interpolationPeriod(axis.cycle);
     if (period) source.raw = from == "sync_period.value" ? int{period->value} : period->exponent;
   } else if (from == kHold) {
     if (axis.quick_stop_holds) source.raw = axis.profile->quick_stop_holds.front();
@@ -69,12 +70,6 @@ Source configured(const NamedWrite& write, const AxisConfig& axis, bool reversed
 
 bool reverses(const ObjectSpec& object, const AxisConfig& axis) {
   return (axis.geometry.direction < 0) != (object.factor < 0.0);
-}
-
-std::string withUnit(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
 }
 
 Error refuse(const AxisConfig& axis, const std::string& name, const std::string& why) {
@@ -94,8 +89,8 @@ Result<std::uint64_t> encode(const NamedWrite& write, double value, const Conver
   std::uint64_t raw = 0;
   if (conversion.toDevice(wanted, raw)) return raw;
   return refuse(axis, name,
-                withUnit(value) + " does not fit; the object holds " +
-                    withUnit(conversion.lowest()) + " to " + withUnit(conversion.highest()));
+                numberText(value) + " does not fit; the object holds " +
+                    numberText(conversion.lowest()) + " to " + numberText(conversion.highest()));
 }
 
 std::uint64_t masked(std::int64_t value, DataType type) {

@@ -38,7 +38,7 @@ struct ResolvedLimit {
 /// @return nothing where the axis has no such limit; an error as resolveWrite() gives it.
 Result<std::optional<ResolvedLimit>> resolveLimit(const NamedWrite& write, const AxisConfig& axis);
 
-/// `raw` as the bytes of an SDO transfer: little-endian, as long as the type.
+/// `raw` as the bytes that are written: little-endian, as long as the type.
 std::vector<std::uint8_t> wireBytes(std::uint64_t raw, DataType type);
 
 /// A period as 60C2h holds it: period = value * 10^exponent s.

@@ -34,6 +34,14 @@ class ObjectRanges {
  public:
   void add(ObjectRange range, Value value) { entries_.emplace_back(range, value); }
   bool empty() const { return entries_.empty(); }
+  /// Moves those that lie in `among` as a whole by `indices`.
+  void shift(const ObjectRange& among, std::uint16_t indices) {
+    for (auto& [range, value] : entries_) {
+      if (!among.holds(range.first) || !among.holds(range.last)) continue;
+      range.first.index = static_cast<std::uint16_t>(range.first.index + indices);
+      range.last.index = static_cast<std::uint16_t>(range.last.index + indices);
+    }
+  }
   /// @return nullptr where nothing is said
   const Value* find(fieldbus::ObjectId id) const {
     const std::pair<ObjectRange, Value>* best = nullptr;

@@ -2,10 +2,10 @@
 #include "drive/profile/object_value.h"
 
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <limits>
 
+#include "common/text.h"
 #include "drive/profile/float_codec.h"
 
 namespace cia402::drive {
@@ -49,10 +49,7 @@ std::optional<std::uint64_t> sendable(DataType type, Encoding encoding, std::uin
 }
 
 std::string notFinite(DataType type, std::uint64_t raw) {
-  char text[24];
-  const auto digits = static_cast<int>(fieldbus::sizeBits(type) / 4);
-  std::snprintf(text, sizeof text, "0x%0*llX", digits, static_cast<unsigned long long>(raw));
-  return std::string(text) +
+  return hexText(raw, static_cast<int>(fieldbus::sizeBits(type) / 4)) +
          " is no finite number in an object that holds a float, and is never sent; give the number "
          "itself, such as 1.5";
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <utility>
 
+#include "fieldbus/emergency.h"
 #include "fieldbus/object_dictionary.h"
 
 namespace cia402::drive {
@@ -33,6 +34,10 @@ const ObjectSpec* DriveProfile::find(ObjectId id) const {
   const auto found = std::find_if(objects.begin(), objects.end(),
                                   [&](const ObjectSpec& object) { return object.id == id; });
   return found == objects.end() ? nullptr : &*found;
+}
+
+std::string DriveProfile::feedbackObjects() const {
+  return "statusword (" + address(0x6041) + ") and position (" + address(0x6064) + ")";
 }
 
 Encoding DriveProfile::encodingOf(ObjectId id, DataType type) const {
@@ -96,13 +101,12 @@ std::vector<std::string> objectNames(const DriveProfile& profile) {
   return names;
 }
 
-ErrorText::Missing missingFrames(const DriveProfile& profile, std::uint16_t code) {
-  constexpr std::uint16_t kRpdoTimeout = 0x8250;  // CiA 301, table 26
+ErrorText::Missing missingByCode(const DriveProfile& profile, std::uint16_t code) {
   const auto known = profile.errors.find(code);
   const bool told =
       known != profile.errors.end() && known->second.missing != ErrorText::Missing::nothing;
   if (told) return known->second.missing;
-  return code == kRpdoTimeout ? ErrorText::Missing::rpdo : ErrorText::Missing::nothing;
+  return code == fieldbus::kOutputsLate ? ErrorText::Missing::outputs : ErrorText::Missing::nothing;
 }
 
 StopBy stopBy(const ModeSpec& mode, const DriveProfile& profile) {

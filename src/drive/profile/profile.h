@@ -149,9 +149,9 @@ struct ModeSpec {
   std::uint16_t controlword_bits = 0;  ///< held while the mode is active in Operation enabled
   std::optional<int> target_reached_bit, following_error_bit, set_point_acknowledge_bit,
       speed_zero_bit, homing_attained_bit, homing_error_bit, follows_command_bit;
-  /// Before the mode is entered, by SDO. What is mapped into an RPDO must be held in the process
-  /// image, too, while the mode is active, or the next RPDO would undo it (a velocity limit in the
-  /// velocity target of a vendor's position mode).
+  /// Before the mode is entered, beside the cycle. What is an output, too, must be held in the
+  /// process image while the mode is active, or the next cycle would undo it (a velocity limit in
+  /// the velocity target of a vendor's position mode).
   std::vector<NamedWrite> entry_writes;
 };
 
@@ -198,10 +198,14 @@ struct HomingSpec {
   std::vector<NamedWrite> writes;  ///< homing parameters, `from` the axis' homing options
 };
 
-/// A known 603Fh / EMCY code of the family.
+/// A known error code of the family.
 struct ErrorText {
-  /// Frames that the drive reports as missing: those that this program sends.
-  enum class Missing : std::uint8_t { nothing, sync, rpdo };
+  /// What the drive reports as missing of that which this program sends.
+  enum class Missing : std::uint8_t {
+    nothing,
+    cycle,    ///< the signal that begins a cycle
+    outputs,  ///< what travels to the drive in it
+  };
   std::string text, cause, remedy;
   Missing missing = Missing::nothing;
 };
@@ -212,6 +216,8 @@ struct ErrorText {
 /// `name`.
 struct DriveProfile {
   std::string name, description;
+  std::uint16_t offset =
+      0;  ///< of the objects of its axis from those of axis 0, see ofDeviceAxis()
   std::map<Quantity, UnitSpec> units;
   bool output_shaft = false;  ///< units count at the joint's side of the gear
   std::vector<ObjectSpec> objects;
@@ -224,19 +230,19 @@ struct DriveProfile {
   bool halt_supported = true;
   ModeChange mode_change;
   int fault_reset_tries = 1;  ///< edges of controlword bit 7 that it may take, 1 to 20
-  /// Where these did not help the node is told NMT stop, so much later start, and resets once more;
-  /// 0: it is not.
-  Duration fault_reset_nmt_stop{0};
+  /// Where these did not help the device is taken out of operation for so long, and resets once
+  /// more; 0: it is not.
+  Duration fault_reset_pause{0};
   bool fault_reset_clears_history = false;  ///< 1003h:00 = 0 is written before a fault reset
   bool warning_stops = false;               ///< a warning makes the drive stop like a fault
   std::vector<int> quick_stop_holds;        ///< values of 605Ah after which quick stop stays active
   std::vector<NamedWrite> startup;          ///< at every boot
-  std::vector<NamedWrite> before_enable;    ///< by SDO, each time before enabling
+  std::vector<NamedWrite> before_enable;    ///< each time before enabling
   std::vector<std::string> default_modes;   ///< an axis can switch to; empty: all
-  std::vector<std::string> feedback;        ///< by PDO where there is room, most important first
-  std::vector<std::string> feedback_if_room;  ///< only in PDOs that travel for something else
+  std::vector<std::string> feedback;  ///< in the cycle where there is room, most important first
+  std::vector<std::string> feedback_if_room;  ///< only with what travels for something else
   std::vector<std::string>
-      signals;  ///< objects that are shown besides; asked for where no TPDO has them
+      signals;  ///< objects that are shown besides; asked for where they do not come in the cycle
   struct Timing {
     Duration state_change{std::chrono::seconds(2)};  ///< what is not named in `transitions`
     std::map<int, Duration> transitions;             ///< by their number in CiA 402-2, 2 to 16
@@ -260,6 +266,14 @@ struct DriveProfile {
   /// By the profile's name, or by a name of the EDS without regard to case and blanks.
   const ObjectSpec* find(const std::string& object_name) const;
   const ObjectSpec* find(ObjectId id) const;
+  /// Where the axis has the object that CiA 402-2 gives axis 0. @param id 6000h to 67FFh
+  ObjectId own(ObjectId id) const {
+    return {static_cast<std::uint16_t>(id.index + offset), id.subindex};
+  }
+  /// "6841:00": where the axis has what CiA 402-2 has at `index`, for messages.
+  std::string address(std::uint16_t index) const { return fieldbus::toString(own({index, 0})); }
+  /// "statusword (6041:00) and position (6064:00)", without which an axis is not commanded.
+  std::string feedbackObjects() const;
   /// How a number of this type sits in the object: as its name says, else as its place says where
   /// the type is as wide as that encoding.
   Encoding encodingOf(ObjectId id, DataType type) const;
@@ -272,6 +286,17 @@ struct DriveProfile {
   const ModeSpec* mode(const std::string& mode_name) const;
 };
 
+/// Axes that can sit in one device (CiA 402-2): axis 0 has its objects at 6000h to 67FFh, each
+/// further one 800h behind the one before.
+inline constexpr unsigned kDeviceAxes = 8;
+inline constexpr std::uint16_t kFirstAxis = 0x6000, kAxisSize = 0x800;
+/// The axis of a device that CiA 402-2 gives the object to; nothing for all others.
+std::optional<unsigned> axisOf(ObjectId id);
+/// The family as one axis of a device with several has it: what lies at 6000h to 67FFh is moved to
+/// where that axis has it, in objects, writes, encodings and marks of coordinates. The maker's
+/// objects stay where they are. @param axis 0 to 7
+DriveProfile ofDeviceAxis(DriveProfile profile, unsigned axis);
+
 /// The object that a name or an index ("6041:00") means; nullptr if the profile has none.
 const ObjectSpec* findObject(const DriveProfile& profile, const std::string& name);
 /// The encoding of ObjectRanges at this place, where the type is as wide; real32 is a float
@@ -282,8 +307,8 @@ std::string sourceOf(const DriveProfile& profile);
 /// Names of all objects, for suggestions.
 std::vector<std::string> objectNames(const DriveProfile& profile);
 
-/// Which frames a 603Fh or EMCY code reports as missing: by the profile, else by CiA 301, table 26.
-ErrorText::Missing missingFrames(const DriveProfile& profile, std::uint16_t code);
+/// What an error code reports as missing: by the profile, else fieldbus::kOutputsLate.
+ErrorText::Missing missingByCode(const DriveProfile& profile, std::uint16_t code);
 
 /// Of the objects of CiA 301 and CiA 402-2, those that shift coordinates. A profile may say
 /// otherwise.

@@ -78,9 +78,9 @@ OpenInterface openInterface(const LoadedRobot& loaded) {
     open.interface = std::move(socket);
     return open;
   }
-  const auto axes = ros_node::loadSimulation(loaded.robot);
-  if (!axes) return open;
-  auto interface = std::make_unique<sim::SimulatedInterface>(*axes, bus.bitrate, bus::realNow());
+  const auto drives = ros_node::loadSimulation(loaded.robot);
+  if (!drives) return open;
+  auto interface = std::make_unique<sim::SimulatedInterface>(*drives, bus.bitrate, bus::realNow());
   open.simulation = interface.get();
   open.interface = std::move(interface);
   return open;
@@ -95,7 +95,7 @@ ros_node::FaultService::Inject injectThrough(bus::BusRunner& runner,
         simulation.port().forceBusOff();
         return bus::answerOf(true, "the driver's controller is bus-off");
       }
-      return ros_node::injectFault(simulation.world().find(axis), axis, fault, now);
+      return ros_node::injectFault(simulation.find(axis), axis, fault, now);
     };
     return ros_node::call(runner, bus::CallCommand{inject});
   };

@@ -56,13 +56,13 @@ int main(int argc, char** argv) {
   ros_node::catchSignals();
   const auto loaded = ros_node::loadRobot(private_node);
   if (!loaded) return 1;
-  const auto axes = ros_node::loadSimulation(loaded->robot);
-  if (!axes) return 1;
+  const auto drives = ros_node::loadSimulation(loaded->robot);
+  if (!drives) return 1;
 
   can::SocketCan::Options options;
   options.error_frames = false;
   can::SocketCan interface(loaded->robot.bus.interface, options);
-  sim::DriveHost host(*axes, interface, bus::realNow());
+  sim::DriveHost host(*drives, interface, bus::realNow());
   std::mutex host_mutex;
   ros_node::FaultService faults(
       private_node, [&](const std::string& axis, const std::string& fault) {
@@ -71,7 +71,7 @@ int main(int argc, char** argv) {
       });
   ros::AsyncSpinner spinner(1);
   spinner.start();
-  ROS_INFO_STREAM(axes->size() << " simulated drives on " << interface.describe());
+  ROS_INFO_STREAM(drives->size() << " simulated drives on " << interface.describe());
   const int priority = loaded->options.realtime_priority;
   if (priority > 0 && !bus::makeRealtime(priority).complete()) {
     ROS_INFO("the simulated drives do not run in real time and may answer late under load");

@@ -3,6 +3,7 @@
 #include <cia402_driver/WriteObject.h>
 
 #include "bus/jobs/object_commands.h"
+#include "common/text.h"
 #include "ros/services/table.h"
 
 namespace cia402::ros_node {
@@ -10,17 +11,6 @@ namespace {
 
 using cia402_driver::ReadObject;
 using cia402_driver::WriteObject;
-
-std::string hexBytes(const fieldbus::Bytes& data) {
-  static const char* const kDigits = "0123456789ABCDEF";
-  std::string text;
-  for (std::uint8_t byte : data) {
-    if (!text.empty()) text += ' ';
-    text += kDigits[byte >> 4];
-    text += kDigits[byte & 0xF];
-  }
-  return text;
-}
 
 }  // namespace
 
@@ -31,7 +21,7 @@ void offerObjects(Offer& offer) {
         const bus::ObjectAnswer answer = call(runner, bus::ReadObjectCommand{axis, request.object});
         respond(answer, response);
         response.value = answer.text;
-        response.raw = hexBytes(answer.data);
+        response.raw = hexBytes(answer.data.data(), answer.data.size());
         response.number = answer.number;
         response.bytes = answer.data;
       });

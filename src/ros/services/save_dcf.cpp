@@ -11,15 +11,18 @@ using cia402_driver::SaveDcf;
 // The drive is read in the bus thread; the file is planned, worded and written here.
 void offerSaveDcf(Offer& offer) {
   offer.serve<SaveDcf>(
-      "save_dcf",
-      [&runner = offer.runner, &axis = *offer.axis, &device = offer.robot.deviceOf(*offer.axis)](
-          const SaveDcf::Request& request, SaveDcf::Response& response) {
+      "save_dcf", [&runner = offer.runner, &axis = *offer.axis, &robot = offer.robot](
+                      const SaveDcf::Request& request, SaveDcf::Response& response) {
         const auto stamp = dcfStamp(axis.name, request.path);
         if (!stamp) {
           response.message = stamp.error().message;
           return;
         }
-        bus::DcfDraft draft(axis, device, *stamp);
+        std::vector<const drive::AxisConfig*> others;
+        for (const drive::AxisConfig& other : robot.axes) {
+          if (other.device == axis.device && other.name != axis.name) others.push_back(&other);
+        }
+        bus::DcfDraft draft(axis, robot.deviceOf(axis), *stamp, others);
         const bus::Answer read = call(runner, draft.command());
         respond(read, response);
         if (!read.success) return;

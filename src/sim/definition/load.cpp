@@ -43,10 +43,13 @@ void readAxes(DefinitionReader& reader, DriveDefinition& out) {
     return reader.problem("axes", "must be a number of axes from 1 to 8 or a list of them");
   }
   out.motors.resize(static_cast<std::size_t>(count), out.motors.front());
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    DefinitionReader axis(list[i], reader.pathOf("axes." + std::to_string(i)), reader.problems());
-    axis.section("motor", [&](DefinitionReader& r) { readMotor(r, out.motors[i]); });
-  }
+  if (!list.IsSequence()) return;
+  auto motor = out.motors.begin();
+  reader.list("axes", [&](const yaml::Value& element) {
+    DefinitionReader axis(element);
+    axis.section("motor", [&](DefinitionReader& r) { readMotor(r, *motor); });
+    ++motor;
+  });
 }
 
 /// What means something to one axis must be there for each.
@@ -89,8 +92,8 @@ void readDefinition(DefinitionReader& reader, bool extends, DriveDefinition& out
   readAxes(reader, out);
   reader.read<bool>("encoder", out.absolute_encoder, {{"absolute", true}, {"incremental", false}});
   reader.read("positions_wrap", out.positions_wrap);
-  reader.each("modes", [&](const std::string& number, const YAML::Node& node) {
-    readMode(number, node, reader, out);
+  reader.each("modes", [&](const std::string& number, const yaml::Value& value) {
+    readMode(number, value, reader, out);
   });
   readNodeId(reader, out);
   reader.section("state_machine", [&](DefinitionReader& r) { readStateMachine(r, out); });
@@ -100,30 +103,34 @@ void readDefinition(DefinitionReader& reader, bool extends, DriveDefinition& out
     r.read("non_finite", out.traps_non_finite);
     r.read("negative_zero", out.traps_negative_zero);
   });
-  reader.each("faults", [&](const std::string& name, const YAML::Node& node) {
-    readFault(name, node, reader, out);
+  reader.each("faults", [&](const std::string& name, const yaml::Value& value) {
+    readFault(name, value, out);
   });
   checkAxes(reader, out);
 }
 
+std::string nameOf(const std::string& path) { return path.substr(path.rfind('/') + 1); }
+
 // The drive that the file extends lies beside it.
-void readFile(const std::string& path, int depth, DriveDefinition& out, ProblemTexts& problems) {
+void readFile(const std::string& path, int depth, DriveDefinition& out, Problems& problems) {
   try {
     const YAML::Node file = yaml::parseFile(path);
-    DefinitionReader reader(file, "", problems);
+    DefinitionReader reader(yaml::Value(file, "", problems, nameOf(path)));
     std::string base;
     reader.read("extends", base);
     if (!base.empty() && depth == kDeepestExtension) {
       return reader.problem("extends", "is too deep: do the files extend each other?");
     }
     if (!base.empty()) {
-      ProblemTexts of_base;
+      Problems of_base;
       readFile(path.substr(0, path.rfind('/') + 1) + base + ".yaml", depth + 1, out, of_base);
-      for (const std::string& problem : of_base) reader.problem("extends", base + ": " + problem);
+      for (const Problem& problem : of_base.list()) {
+        reader.problem("extends", problem.path + ": " + problem.message);
+      }
     }
     readDefinition(reader, !base.empty(), out);
   } catch (const YAML::Exception& error) {
-    problems.push_back(path + ": " + error.what());
+    problems.add(path, error.what());
   }
 }
 
@@ -131,16 +138,16 @@ void readFile(const std::string& path, int depth, DriveDefinition& out, ProblemT
 
 Result<std::shared_ptr<const DriveDefinition>> loadDriveDefinition(const std::string& path,
                                                                    const YAML::Node& changes) {
-  ProblemTexts problems;
+  Problems problems;
   auto definition = std::make_shared<DriveDefinition>();
   readFile(path, 0, *definition, problems);
   if (problems.empty() && changes.IsMap()) {
-    DefinitionReader reader(changes, "with", problems);
+    DefinitionReader reader(yaml::Value(changes, "with", problems));
     readDefinition(reader, true, *definition);
   }
   if (problems.empty()) return std::shared_ptr<const DriveDefinition>(std::move(definition));
-  std::string text = path + ": the simulated drive's definition has problems:";
-  for (const std::string& problem : problems) text += "\n  " + problem;
+  std::string text = path + ": the simulated drive's definition has problems:\n" + problems.text();
+  text.pop_back();  // the end of the last line
   return Error{text};
 }
 

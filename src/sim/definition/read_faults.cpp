@@ -13,9 +13,8 @@ constexpr double kForeverS = 1e6;
 
 }  // namespace
 
-void readFault(const std::string& name, const YAML::Node& node, DefinitionReader& parent,
-               DriveDefinition& out) {
-  DefinitionReader reader(node, parent.pathOf("faults." + name), parent.problems());
+void readFault(const std::string& name, const yaml::Value& from, DriveDefinition& out) {
+  DefinitionReader reader(from);
   FaultDefinition fault;
   fault.name = name;
   std::int64_t number = 0;

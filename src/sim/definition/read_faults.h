@@ -7,8 +7,6 @@
 namespace cia402::sim {
 
 /// One of the `faults:`. Replaces a fault of that name.
-/// @param parent the section that they lie in, for the path.
-void readFault(const std::string& name, const YAML::Node& node, DefinitionReader& parent,
-               DriveDefinition& out);
+void readFault(const std::string& name, const yaml::Value& from, DriveDefinition& out);
 
 }  // namespace cia402::sim

@@ -66,9 +66,9 @@ void applyStandardBits(ModeDefinition& mode) {
 
 }  // namespace
 
-void readMode(const std::string& number, const YAML::Node& node, DefinitionReader& parent,
+void readMode(const std::string& number, const yaml::Value& from, DefinitionReader& parent,
               DriveDefinition& out) {
-  DefinitionReader reader(node, parent.pathOf("modes." + number), parent.problems());
+  DefinitionReader reader(from);
   ModeDefinition mode;
   const auto value = yaml::parseInteger(number);
   if (!value) parent.problem("modes", "'" + number + "' is no mode number");

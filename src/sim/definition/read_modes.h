@@ -7,8 +7,8 @@
 namespace cia402::sim {
 
 /// One of the `modes:`: what a value of 6060h makes the drive do. Replaces a mode of that number.
-/// @param parent the section that they lie in, for the path.
-void readMode(const std::string& number, const YAML::Node& node, DefinitionReader& parent,
+/// @param parent the section that they lie in, for what is wrong with the number.
+void readMode(const std::string& number, const yaml::Value& from, DefinitionReader& parent,
               DriveDefinition& out);
 
 }  // namespace cia402::sim

@@ -40,14 +40,16 @@ void readUnits(DefinitionReader& reader, DriveDefinition& out) {
 }
 
 void readObjects(DefinitionReader& reader, DriveDefinition& out) {
-  reader.each("objects", [&](const std::string& key, const YAML::Node& value) {
+  reader.each("objects", [&](const std::string& key, const yaml::Value& entry) {
+    const YAML::Node& value = entry.node();
     const auto role = findRole(key);
     const auto object = value.IsScalar() ? fieldbus::parseObjectId(value.Scalar()) : std::nullopt;
     if (!role) return reader.problem("objects", "'" + key + "' is no role of an object");
     if (!object) return reader.problem("objects", key + ": must be an object like \"6041:00\"");
     out.objects[*role] = *object;
   });
-  reader.each("encodings", [&](const std::string& key, const YAML::Node& value) {
+  reader.each("encodings", [&](const std::string& key, const yaml::Value& entry) {
+    const YAML::Node& value = entry.node();
     const auto object = fieldbus::parseObjectId(key);
     if (!object) return reader.problem("encodings", "'" + key + "' is no object like \"6071:00\"");
     const auto word = std::find_if(kEncodings.begin(), kEncodings.end(), [&](const auto& pair) {

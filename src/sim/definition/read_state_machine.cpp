@@ -16,8 +16,8 @@ void readOptionTable(DefinitionReader& parent, const std::string& key, OptionTab
   parent.section(key, [&](DefinitionReader& reader) {
     out.options.clear();
     reader.read("default", out.fallback, -32768, 32767);
-    reader.each("values", [&](const std::string& number, const YAML::Node& node) {
-      DefinitionReader row(node, reader.pathOf("values." + number), reader.problems());
+    reader.each("values", [&](const std::string& number, const yaml::Value& entry) {
+      DefinitionReader row(entry);
       StopOption option;
       const auto value = yaml::parseInteger(number);
       if (!value) reader.problem("values", "'" + number + "' is no option code");

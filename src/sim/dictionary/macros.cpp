@@ -82,6 +82,7 @@ struct PdoMacro {
   const YAML::Node& macro;
   bool receive;
   std::int64_t entries = 8;
+  std::uint16_t first = 0;  ///< number of the first one, counted from 0
 
   void addCobId(std::uint16_t index, std::uint16_t place) const;
   void addParameter(std::uint16_t index, std::uint16_t place, std::uint8_t sub, const char* name,
@@ -102,9 +103,10 @@ bool flag(DictionaryReader& reader, const YAML::Node& node, bool missing) {
 // The predefined connection set knows the COB-IDs of the first four PDOs (CiA 301, 7.3.5).
 void PdoMacro::addCobId(std::uint16_t index, std::uint16_t place) const {
   Entry entry = plainEntry(index, pdo_sub::kCobId, "cob_id", DataType::uint32, Access::rw, 0);
-  bool add_node_id = place < 4;
-  bool valid = place < 4;
-  if (add_node_id) entry.number = (receive ? 0x200U : 0x180U) + 0x100U * place;
+  const unsigned number = first + place;
+  bool add_node_id = number < 4;
+  bool valid = number < 4;
+  if (add_node_id) entry.number = (receive ? 0x200U : 0x180U) + 0x100U * number;
   if (const YAML::Node node = pick(macro, "cob_ids", place)) {
     if (!reader.readDefault(node, entry, add_node_id)) return;
     valid = true;
@@ -127,7 +129,7 @@ void PdoMacro::addParameter(std::uint16_t index, std::uint16_t place, std::uint8
 }
 
 void PdoMacro::addCommunication(std::uint16_t place) const {
-  const auto index = static_cast<std::uint16_t>((receive ? 0x1400U : 0x1800U) + place);
+  const auto index = static_cast<std::uint16_t>((receive ? 0x1400U : 0x1800U) + first + place);
   std::uint64_t highest = 2;
   if (macro["inhibit_times"]) highest = 3;
   if (macro["event_timers"]) highest = 5;
@@ -145,7 +147,7 @@ void PdoMacro::addCommunication(std::uint16_t place) const {
 }
 
 void PdoMacro::addMapping(std::uint16_t place) const {
-  const auto index = static_cast<std::uint16_t>((receive ? 0x1600U : 0x1A00U) + place);
+  const auto index = static_cast<std::uint16_t>((receive ? 0x1600U : 0x1A00U) + first + place);
   const YAML::Node maps = macro["maps"];
   const YAML::Node map = maps && place < maps.size() ? maps[place] : YAML::Node();
   if (map.IsDefined() && !map.IsNull() && !map.IsSequence()) {
@@ -210,15 +212,24 @@ void readArrayMacro(DictionaryReader& reader, const YAML::Node& macro) {
 }
 
 void readPdoMacro(DictionaryReader& reader, const YAML::Node& macro, bool receive) {
-  bool sound =
-      receive ? checkKeys(reader, macro,
-                          {"count", "cob_ids", "valid", "types", "event_timers", "entries", "maps"})
-              : checkKeys(reader, macro,
-                          {"count", "cob_ids", "valid", "types", "inhibit_times", "event_timers",
-                           "sync_starts", "rtr", "entries", "maps"});
+  bool sound = receive ? checkKeys(reader, macro,
+                                   {"first", "count", "cob_ids", "valid", "types", "event_timers",
+                                    "entries", "maps"})
+                       : checkKeys(reader, macro,
+                                   {"first", "count", "cob_ids", "valid", "types", "inhibit_times",
+                                    "event_timers", "sync_starts", "rtr", "entries", "maps"});
   PdoMacro pdo{reader, macro, receive};
   std::int64_t count = 0;
-  sound = readCount(reader, macro, "count", -1, kMaxPdos, count) && sound;
+  std::int64_t first = 1;
+  sound = readCount(reader, macro, "first", 1, kMaxPdos, first) && sound;
+  if (first == 0) {
+    reader.problem(macro["first"], "'first' is the number of a PDO, from 1 on");
+    sound = false;
+  }
+  sound = readCount(reader, macro, "count", -1, kMaxPdos - std::max<std::int64_t>(first - 1, 0),
+                    count) &&
+          sound;
+  pdo.first = static_cast<std::uint16_t>(std::max<std::int64_t>(first - 1, 0));
   sound = readCount(reader, macro, "entries", 8, kMaxMapped, pdo.entries) && sound;
   if (const YAML::Node maps = macro["maps"]) {
     if (!maps.IsSequence() || maps.size() > static_cast<std::size_t>(count)) {

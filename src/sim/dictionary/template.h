@@ -35,12 +35,12 @@ namespace cia402::sim {
 /// (rw), pdo (-), default (0, or a list), low, high, count_access (const), count_default (count).
 ///
 /// `rpdos`, `tpdos`: communication records 1400h/1800h and mapping records 1600h/1A00h. Keys, each
-/// but the first and the last two a value for all or a list of one for each: count; cob_ids
-/// (without bit 31; default: the predefined connection set, `$NODEID+0x200` and so on, for the
-/// first four, 0 and invalid beyond); valid (true); types (255); inhibit_times, event_timers,
-/// sync_starts (sub 3, 5, 6: exist only where given; 3 and 6 only for tpdos); rtr (true; false sets
-/// bit 30 of a TPDO's COB-ID); entries (8; objects a mapping can hold); maps (a list of lists of
-/// mapping values such as 0x60410010; default empty).
+/// but the first two and the last two a value for all or a list of one for each: first (number of
+/// the first one, 1); count; cob_ids (without bit 31; default: the predefined connection set,
+/// `$NODEID+0x200` and so on, for the first four, 0 and invalid beyond); valid (true); types (255);
+/// inhibit_times, event_timers, sync_starts (sub 3, 5, 6: exist only where given; 3 and 6 only for
+/// tpdos); rtr (true; false sets bit 30 of a TPDO's COB-ID); entries (8; objects a mapping can
+/// hold); maps (a list of lists of mapping values such as 0x60410010; default empty).
 class DictionaryTemplate {
  public:
   /// Reads the list. @return an error that names every problem with its line.

@@ -29,13 +29,14 @@ class DriveHost::Tap final : public can::Sink {
   std::vector<can::Frame> sent_;
 };
 
-DriveHost::DriveHost(const std::vector<SimulatedAxis>& axes, can::Interface& interface, Time now)
-    : interface_(interface), at_(now) {
-  for (const SimulatedAxis& axis : axes) {
+DriveHost::DriveHost(const std::vector<SimulatedDrive>& drives, can::Interface& interface, Time now)
+    : interface_(interface), at_(now), described_(drives) {
+  for (const SimulatedDrive& described : drives) {
     auto tap = std::make_unique<Tap>(interface);
     auto drive =
-        std::make_unique<Drive>(axis.definition, axis.node, *tap, axis.mechanics, axis.identity);
-    drives_.push_back({axis.name, std::move(tap), std::move(drive)});
+        std::make_unique<Drive>(described.definition, described.node, *tap, described.mechanics[0],
+                                described.identity, described.further());
+    drives_.push_back({std::move(tap), std::move(drive)});
   }
   for (Member& member : drives_) member.drive->powerOn(now);
 }
@@ -78,11 +79,9 @@ Time DriveHost::nextDeadline() const {
   return next;
 }
 
-Drive* DriveHost::find(const std::string& name) {
-  for (Member& member : drives_) {
-    if (member.name == name) return member.drive.get();
-  }
-  return nullptr;
+AxisOfDrive DriveHost::find(const std::string& axis) {
+  const std::optional<AxisPlace> place = findAxis(described_, axis);
+  return place ? AxisOfDrive{drives_[place->drive].drive.get(), place->axis} : AxisOfDrive();
 }
 
 }  // namespace cia402::sim

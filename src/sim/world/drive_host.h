@@ -16,7 +16,7 @@ namespace cia402::sim {
 class DriveHost {
  public:
   /// @param interface must outlive the host. The drives are powered on at `now`.
-  DriveHost(const std::vector<SimulatedAxis>& axes, can::Interface& interface, Time now);
+  DriveHost(const std::vector<SimulatedDrive>& drives, can::Interface& interface, Time now);
   ~DriveHost();
   DriveHost(const DriveHost&) = delete;
   DriveHost& operator=(const DriveHost&) = delete;
@@ -26,13 +26,12 @@ class DriveHost {
   void step(Time now);
   /// When step() is due if nothing is received.
   Time nextDeadline() const;
-  /// The drive of that name, or nullptr.
-  Drive* find(const std::string& name);
+  /// The axis of that name in one of the drives.
+  AxisOfDrive find(const std::string& axis);
 
  private:
   class Tap;
   struct Member {
-    std::string name;
     std::unique_ptr<Tap> tap;
     std::unique_ptr<Drive> drive;
   };
@@ -41,7 +40,8 @@ class DriveHost {
 
   can::Interface& interface_;
   Time at_;  ///< how far the drives have come
-  std::vector<Member> drives_;
+  std::vector<SimulatedDrive> described_;
+  std::vector<Member> drives_;  ///< in the same order
 };
 
 }  // namespace cia402::sim

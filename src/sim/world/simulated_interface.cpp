@@ -3,15 +3,18 @@
 
 namespace cia402::sim {
 
-SimulatedInterface::SimulatedInterface(const std::vector<SimulatedAxis>& axes, double bitrate,
+SimulatedInterface::SimulatedInterface(const std::vector<SimulatedDrive>& drives, double bitrate,
                                        Time now)
-    : world_(bitrate), interface_(world_.bus(), "master") {
+    : drives_(drives), world_(bitrate), interface_(world_.bus(), "master") {
   world_.advance(now);
-  for (const SimulatedAxis& axis : axes) {
-    world_.addDrive(axis.name, axis.definition, axis.node, axis.mechanics, axis.identity);
-  }
+  addTo(world_, drives);
   interface_.setAdvance([this](Time time) { world_.advance(time); });
   world_.powerOn();
+}
+
+AxisOfDrive SimulatedInterface::find(const std::string& axis) {
+  const std::optional<AxisPlace> place = findAxis(drives_, axis);
+  return place ? AxisOfDrive{&world_.drive(place->drive), place->axis} : AxisOfDrive();
 }
 
 std::string SimulatedInterface::describe() const {

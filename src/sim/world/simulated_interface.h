@@ -18,7 +18,7 @@ namespace cia402::sim {
 class SimulatedInterface final : public can::Interface {
  public:
   /// Powers the drives on at `now`.
-  SimulatedInterface(const std::vector<SimulatedAxis>& axes, double bitrate, Time now);
+  SimulatedInterface(const std::vector<SimulatedDrive>& drives, double bitrate, Time now);
 
   bool send(const can::Frame& frame) override { return interface_.send(frame); }
   std::optional<can::ReceivedFrame> receive(Time now) override { return interface_.receive(now); }
@@ -35,10 +35,13 @@ class SimulatedInterface final : public can::Interface {
 
   /// The drives, e.g. to inject faults; only from the thread that calls receive().
   World& world() { return world_; }
+  /// The axis of that name in one of them; only from that thread, too.
+  AxisOfDrive find(const std::string& axis);
   /// The driver's own controller, e.g. to send it to bus-off; only from that thread, too.
   Port& port() { return interface_.port(); }
 
  private:
+  std::vector<SimulatedDrive> drives_;
   World world_;
   BusInterface interface_;
 };

@@ -58,11 +58,10 @@ Outcome EnableStep::awaitFeedback(const Context& context) {
   }
   const Duration waited = context.now - since_;
   if (waited <= context.axis.profile().timing.state_change) return Outcome::running();
-  return fail(context, context.axis.who() +
-                           ": no usable statusword (6041:00) and position "
-                           "(6064:00) within " +
-                           seconds(waited) +
-                           "; check the TPDOs, or recover the axis, which boots the drive");
+  return fail(context, context.axis.who() + ": no usable " +
+                           context.axis.profile().feedbackObjects() + " within " + seconds(waited) +
+                           "; check the " + context.axis.device().terms().input +
+                           "s, or recover the axis, which boots the drive");
 }
 
 /// A drive that holds in quick stop active and takes no parameters there goes on with those that it

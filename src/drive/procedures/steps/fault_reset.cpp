@@ -5,6 +5,17 @@
 #include "drive/sentence.h"
 
 namespace cia402::drive {
+namespace {
+
+/// What could not be tried as the device has other axes, too.
+std::string pauseLeftOut(AxisCore& axis) {
+  const std::string others = axis.basis().neighbours.refusal();
+  if (others.empty() || axis.profile().fault_reset_pause == Duration::zero()) return {};
+  return std::string("; ") + axis.device().terms().stop_and_start +
+         ", after which it may be cleared, was left out: " + others;
+}
+
+}  // namespace
 
 bool clearable(const AxisCore& axis) {
   return axis.faulted() || (axis.state().warning && axis.profile().warning_stops);
@@ -52,8 +63,9 @@ Outcome FaultResetStep::awaitReset(const Context& context) {
       return Outcome::running();
     }
     const std::string times = tries_ == 1 ? "" : " (" + std::to_string(tries_) + " tries)";
-    return fail(context, "the fault reset (6040:00 bit 7)" + times + " did not clear it within " +
-                             seconds(waited) + ": " + axis.faults().text() + "; " + report(axis));
+    return fail(context, "the fault reset (" + axis.profile().address(0x6040) + " bit 7)" + times +
+                             " did not clear it within " + seconds(waited) + ": " +
+                             axis.faults().text() + pauseLeftOut(axis) + "; " + report(axis));
   }
   if (!tellsState(axis, context.now)) return awaitNews(context);
   axis.control().setFaultReset(false);
@@ -80,21 +92,23 @@ bool FaultResetStep::tryAgain(const Context& context) {
 }
 
 bool FaultResetStep::mayPause(const Context& context) const {
-  return !paused_ && context.axis.profile().fault_reset_nmt_stop > Duration::zero();
+  return !paused_ && context.axis.profile().fault_reset_pause > Duration::zero() &&
+         context.axis.basis().neighbours.refusal().empty();
 }
 
 void FaultResetStep::beginPause(const Context& context) {
   AxisCore& axis = context.axis;
   paused_ = true;
-  axis.device().stopAndStart(axis.profile().fault_reset_nmt_stop, context.now);
+  axis.device().stopAndStart(axis.profile().fault_reset_pause, context.now);
   enter(Phase::paused, context);
-  context.show("taking the node through NMT stop and start for the fault reset",
+  const fieldbus::Terms& terms = axis.device().terms();
+  context.show(std::string("taking the ") + terms.device + " through " + terms.stop_and_start +
+                   " for the fault reset",
                "the drive to be operational and to send its feedback again");
 }
 
 Duration FaultResetStep::pause(const DriveProfile& profile) {
-  return profile.fault_reset_nmt_stop + fieldbus::Device::kStartPatience +
-         profile.timing.state_change;
+  return profile.fault_reset_pause + fieldbus::Device::kStartPatience + profile.timing.state_change;
 }
 
 Outcome FaultResetStep::awaitPause(const Context& context) {
@@ -105,8 +119,9 @@ Outcome FaultResetStep::awaitPause(const Context& context) {
     return Outcome::running();
   }
   if (context.now - since_ <= pause(axis.profile())) return Outcome::running();
-  return fail(context, axis.who() + ": after NMT stop and start no statusword came for " +
-                           seconds(context.now - since_) + ": " + axis.feedback().text());
+  return fail(context, axis.who() + ": after " + axis.device().terms().stop_and_start +
+                           " no statusword came for " + seconds(context.now - since_) + ": " +
+                           axis.feedback().text());
 }
 
 Outcome FaultResetStep::awaitReaction(const Context& context) {
@@ -143,8 +158,8 @@ Outcome FaultResetStep::advance(const Context& context) {
     case Phase::low:
       if (axis.state().error_code != 0) code_ = axis.state().error_code;
       if (!sent && waited > limit) {
-        return fail(context, axis.who() + ": no RPDO has left for " + seconds(waited) +
-                                 "; is the cycle running?");
+        return fail(context, axis.who() + ": no " + axis.device().terms().output +
+                                 " has left for " + seconds(waited) + "; is the cycle running?");
       }
       if (!sent || context.now < axis.faults().nextReset()) return Outcome::running();
       axis.control().setFaultReset(true);

@@ -9,15 +9,15 @@ namespace cia402::drive {
 /// until the drive has left the fault or the time is over, then low again, then a moment in which
 /// the fault may come back. Edges are at least kInterval apart, whoever asks for them. Where the
 /// profile says so the error history is cleared before (`fault_reset_clears_history`), it is tried
-/// several times (`fault_reset_tries`), and once more after the node was taken through NMT stop and
-/// start (`fault_reset_nmt_stop`).
+/// several times (`fault_reset_tries`), and once more after the device was taken out of operation
+/// and into it again (DriveProfile::fault_reset_pause).
 class FaultResetStep {
  public:
   static constexpr Duration kInterval{std::chrono::seconds(1)};
   static constexpr Duration kWatch{std::chrono::milliseconds(300)};
 
   Outcome advance(const Context& context);
-  /// The longest that NMT stop and start and the first feedback after them may take.
+  /// The longest that this and the first feedback after it may take.
   static Duration pause(const DriveProfile& profile);
 
  private:
@@ -35,7 +35,7 @@ class FaultResetStep {
 
   Phase phase_ = Phase::begin;
   int tries_ = 1;        ///< begun
-  bool paused_ = false;  ///< NMT stop and start are behind it, or under way
+  bool paused_ = false;  ///< that is behind it, or under way
   std::uint16_t code_ = 0;
   std::uint64_t frames_ = 0;
   Time since_{};

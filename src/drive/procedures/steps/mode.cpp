@@ -28,7 +28,8 @@ Outcome ModeStep::advance(const Context& context) {
       controlword_frames_ = axis.control().frames();
       started_ = context.now;
       phase_ = Phase::presetting;
-      context.show("setting the target to the actual value", "its RPDO to be sent");
+      context.show("setting the target to the actual value",
+                   std::string("its ") + axis.device().terms().output + " to be sent");
       return Outcome::running();
     }
     case Phase::presetting: {
@@ -39,8 +40,9 @@ Outcome ModeStep::advance(const Context& context) {
       if (sent >= frames_ + kSureFrames && unbraked) {
         select(context);
       } else if (context.now - started_ > axis.profile().timing.mode_change) {
-        return Outcome::failed(axis.who() + ": no RPDO has left for " +
-                               seconds(context.now - started_) + "; is the cycle running?");
+        return Outcome::failed(axis.who() + ": no " + axis.device().terms().output +
+                               " has left for " + seconds(context.now - started_) +
+                               "; is the cycle running?");
       }
       return Outcome::running();
     }
@@ -78,7 +80,8 @@ void ModeStep::select(const Context& context) {
         object.spec->name);
     phase_ = Phase::sending;
   }
-  context.show("switching the mode", "6061:00 to show " + modeText(mode_->spec->value, axis));
+  context.show("switching the mode", context.axis.profile().address(0x6061) + " to show " +
+                                         modeText(mode_->spec->value, axis));
 }
 
 Outcome ModeStep::await(const Context& context) {
@@ -92,8 +95,9 @@ Outcome ModeStep::await(const Context& context) {
   if (context.now - started_ <= axis.profile().timing.mode_change) return Outcome::running();
   const std::string shows =
       axis.feedback().shownMode() ? modeText(*axis.feedback().shownMode(), axis) : "nothing";
-  return fail(context, "6061:00 mode display shows " + shows + " " +
-                           seconds(context.now - started_) + " after 6060:00 was set to " +
+  return fail(context, axis.profile().address(0x6061) + " mode display shows " + shows + " " +
+                           seconds(context.now - started_) + " after " +
+                           axis.profile().address(0x6060) + " was set to " +
                            modeText(mode_->spec->value, axis) + "; " + report(axis));
 }
 

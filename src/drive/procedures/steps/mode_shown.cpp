@@ -22,8 +22,9 @@ Outcome ModeShownStep::advance(const Context& context) {
       } else {
         phase_ = Phase::waiting;
       }
-      context.show("waiting for the mode",
-                   "6061:00 to show " + std::to_string(wanted) + " (" + mode_->spec->name + ")");
+      context.show("waiting for the mode", axis.profile().address(0x6061) + " to show " +
+                                               std::to_string(wanted) + " (" + mode_->spec->name +
+                                               ")");
       return Outcome::running();
     case Phase::zero:
       if (sent(context)) command(context, Phase::again, wanted);
@@ -90,9 +91,9 @@ Outcome ModeShownStep::await(const Context& context) {
                                 ? std::to_string(*axis.feedback().shownMode())
                                 : std::string("nothing");
   return Outcome::failed(
-      axis.who() + ": the drive is in operation, but not in mode " + mode_->spec->name +
-      ": 6061:00 shows " + shows + " instead of " + std::to_string(mode_->spec->value) + " " +
-      seconds(context.now - since_) +
+      axis.who() + ": the drive is in operation, but not in mode " + mode_->spec->name + ": " +
+      axis.profile().address(0x6061) + " shows " + shows + " instead of " +
+      std::to_string(mode_->spec->value) + " " + seconds(context.now - since_) +
       " after it was enabled; it is disabled. Look in its manual when it takes a "
       "mode (mode_change of the profile); " +
       report(axis));

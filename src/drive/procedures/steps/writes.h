@@ -9,14 +9,14 @@
 
 namespace cia402::drive {
 
-/// Writes objects by SDO one after the other, copying what has to be copied. An abort by the drive
-/// fails, unless the write is optional. What `lacks` of the axis names is not written; what only a
-/// default asks for is left out with a warning where the drive does not have it.
+/// Writes objects beside the cycle one after the other, copying what has to be copied. An abort by
+/// the drive fails, unless the write is optional. What `lacks` of the axis names is not written;
+/// what only a default asks for is left out with a warning where the drive does not have it.
 class WriteStep {
  public:
   explicit WriteStep(const std::vector<NamedWrite>& writes) : writes_(&writes) {}
   Outcome advance(const Context& context);
-  /// What was written to objects that an RPDO carries, too.
+  /// What was written to objects that are outputs, too.
   struct Mapped {
     fieldbus::Slot slot;
     std::uint64_t raw;

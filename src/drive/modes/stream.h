@@ -1,0 +1,19 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "cia402_driver/common/time.h"
+
+namespace cia402::drive {
+
+/// Commands that people stream to an axis (`~<axis>/command`), as its mode follows them.
+struct Stream {
+  std::optional<double> command;  ///< the last one, in joint units; nothing: there is none
+  Time clock{};                   ///< one period a cycle, however late the cycle is
+  Time commanded{};               ///< when the command came, in bus time
+  bool dried_up = false;  ///< a velocity or an effort other than zero was not renewed in time
+  bool at_rest = true;    ///< what is led by the commands does not move
+};
+
+}  // namespace cia402::drive
