@@ -23,6 +23,7 @@ class TwoAxes(RobotTest):
     """One life of a robot, in the order of the names: starting costs seconds here."""
 
     AXES = sorted(AXES)
+    identifiers = {"left": 0x181, "other": 0x182}
 
     @classmethod
     def setUpClass(cls):
@@ -38,12 +39,12 @@ class TwoAxes(RobotTest):
         cls.wire.close()
 
     def identifier(self, axis):
-        """Of the TPDO that brings statusword and position of the axis, as the drive was told."""
-        if axis != "right":
-            return 0x180 + {"left": 1, "other": 2}[axis]
-        written = [data for _, identifier, data in self.wire.since(0.0) if identifier == 0x601
-                   and data[:4] == struct.pack("<BHB", 0x23, SECOND_TPDO, 1)]
-        return struct.unpack_from("<I", written[-1], 4)[0] & 0x7FF
+        """Of the TPDO that brings statusword and position of the axis, as the drive has it."""
+        if axis not in self.identifiers:
+            held = self.succeed("right/read_object", object=f"{SECOND_TPDO:X}h:1 u32").number
+            self.assertEqual(int(held) & 0x80000000, 0, "it is valid")
+            self.identifiers[axis] = int(held) & 0x7FF
+        return self.identifiers[axis]
 
     def told(self, axis, since=None):
         """Statusword and place in rad that the drive sends."""
@@ -60,8 +61,8 @@ class TwoAxes(RobotTest):
     def enabled(self, axis):
         return self.told(axis)[0] & 0x6F == 0x27
 
-    def wait_place(self, axis, goal):
-        wait_until(lambda: abs(self.place(axis) - goal) < 0.005,
+    def wait_place(self, axis, goal, tolerance=0.005):
+        wait_until(lambda: abs(self.place(axis) - goal) < tolerance,
                    lambda: f"the motor of {axis} at {goal}, but at {self.place(axis)}")
 
     def test_01_one_node_boots_with_both_axes(self):
@@ -99,6 +100,7 @@ class TwoAxes(RobotTest):
         self.assertEqual(self.robot.axis("left").error_text, "")
 
     def test_04_recover_says_what_became_of_the_neighbour(self):
+        self.wait_place("left", -0.8, 1e-4)  # the end of its way
         before = self.place("left")
         self.succeed("right/recover", "in the same drive: left (operation enabled)")
         wait_until(lambda: self.enabled("right"), "right is enabled")
