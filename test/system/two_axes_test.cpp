@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Two axes in one drive (CiA 402-2): what each does for itself, and what is done to both. Judged by
 // the motors.
-#include "system/scene.h"
+#include "system/field_profile.h"
 
 namespace cia402 {
 namespace {
@@ -187,6 +187,90 @@ TEST_F(TwoHomedAxes, EachHasItsOwnZeroAndRestoreTakesBoth) {
   ASSERT_TRUE(restored.success) << restored.message;
   EXPECT_FALSE(scene.state("left").homed);
   EXPECT_FALSE(scene.state("right").homed) << "its home offset went with the drive's memory";
+}
+
+TEST_F(TwoAxes, ADriveIsNotBootedForOneWhileTheOtherIsUnderPower) {
+  enableAll();
+  sim::FaultRule unheard;  // what brings statusword and position of the right axis
+  for (const canopen::PdoConfig& pdo : scene.loaded().master.nodes[0].pdos) {
+    const bool first = pdo.direction == canopen::PdoDirection::tpdo && pdo.number == 65;
+    if (first) unheard.id = pdo.cob_id;
+  }
+  ASSERT_NE(unheard.id, 0U);
+  unheard.count = 1000000;
+  unheard.receiver = "master";
+  scene.world().bus().faults().add(unheard);
+  ASSERT_TRUE(
+      scene.runUntil([&] { return !scene.truth("right").power_stage_on; }, std::chrono::seconds(3)))
+      << "unheard, it is stopped";
+  bool powered = true, operational = true;
+  scene.watch([&] {
+    powered = powered && scene.truth("left").power_stage_on;
+    operational = operational && scene.truth("left").nmt == canopen::NmtState::operational;
+  });
+  const bus::Answer refused = scene.procedure(ProcedureKind::recover, "right");
+  EXPECT_FALSE(refused.success);
+  EXPECT_THAT(refused.message,
+              HasSubstr("the drive is not booted for it: left, in the same drive, may be under "
+                        "power: disable it first, then recover"));
+  EXPECT_TRUE(powered && operational);
+  scene.world().bus().faults().clear();
+  scene.run(std::chrono::milliseconds(100));
+  recover("right");
+  EXPECT_TRUE(powered && operational);
+}
+
+/// Both axes of a drive with keys of its profile and habits.
+std::string dualWith(const std::string& keys, const std::string& habits) {
+  std::string yaml = dual();
+  const std::string drive = "drive: generic_cia402,", simulated = "drive: generic_cia402_dual";
+  yaml.replace(yaml.find(simulated), simulated.size(), simulated + ", with: {" + habits + "}");
+  yaml.replace(yaml.find(drive), drive.size(),
+               "drive: " + writeProfile(genericProfileText() + "\n" + keys + "\n") + ",");
+  const std::string other = "other: {node_id: 2";
+  return yaml.replace(yaml.find(other), other.size(),
+                      other + ", simulation: {drive: generic_cia402}");
+}
+
+struct FaultThatWantsNmtStop : TwoAxes {
+  FaultThatWantsNmtStop()
+      : TwoAxes(dualWith("fault_reset_nmt_stop: 0.1", "quirks: {fault_reset_needs_stop: 0.1}")) {}
+};
+
+TEST_F(FaultThatWantsNmtStop, IsNotClearedSoWhileTheOtherIsUnderPower) {
+  enableAll();
+  scene.inject("right", "overcurrent");
+  scene.inject("right", "clear");
+  scene.run(std::chrono::milliseconds(300));
+  ASSERT_EQ(scene.state("right").state, drive::State::fault);
+  bool powered = true, operational = true;
+  scene.watch([&] {
+    powered = powered && scene.truth("left").power_stage_on;
+    operational = operational && scene.truth("left").nmt == canopen::NmtState::operational;
+  });
+  const bus::Answer left_out = scene.procedure(ProcedureKind::clear_faults, "right");
+  EXPECT_FALSE(left_out.success);
+  EXPECT_THAT(left_out.message,
+              HasSubstr("NMT stop and start, after which it may be cleared, was left out: left, in "
+                        "the same drive, may be under power: disable it first"));
+  EXPECT_TRUE(powered && operational);
+  scene.watch({});
+  ASSERT_TRUE(scene.procedure(ProcedureKind::disable, "left").success);
+  const bus::Answer cleared = scene.procedure(ProcedureKind::clear_faults, "right");
+  EXPECT_TRUE(cleared.success) << cleared.message;
+}
+
+struct SavedForBoth : TwoAxes {
+  SavedForBoth() : TwoAxes(dualWith("parameters: {power_cycle_after_save: true}", "")) {}
+};
+
+TEST_F(SavedForBoth, ThePowerCycleIsAskedOfBoth) {
+  const bus::Answer saved = scene.procedure(ProcedureKind::save_parameters, "left");
+  ASSERT_TRUE(saved.success) << saved.message;
+  const bus::Answer enabled = scene.procedure(ProcedureKind::enable, "right");
+  EXPECT_FALSE(enabled.success);
+  EXPECT_THAT(enabled.message, HasSubstr("switch it off and on"));
+  EXPECT_FALSE(scene.truth("right").power_stage_on);
 }
 
 TEST_F(TwoAxes, TheShutdownStopsAndDisablesBoth) {
