@@ -198,6 +198,18 @@ TEST(DeviceAxes, WherePdosAreTheDevicesTheAxesShareThem) {
   EXPECT_TRUE(first && second);
 }
 
+TEST(DeviceAxes, OfSharedPdosTheFirstAxisLeavesTheOthersTheirPart) {
+  const Configured made = configuredWithRules("{pdos_per_axis: 0, max_pdos: 2}", twoAxesText());
+  ASSERT_EQ(made.problems.text(), "");
+  const canopen::NodeConfig& node = made.master.nodes.at(0);
+  for (const auto direction : {PdoDirection::rpdo, PdoDirection::tpdo}) {
+    const auto pdos = mappedBy(node, direction);
+    ASSERT_EQ(pdos.size(), 2U);
+    EXPECT_EQ(drive::axisOf(pdos.at(1).front()), 0U);
+    EXPECT_EQ(drive::axisOf(pdos.at(2).front()), 1U);
+  }
+}
+
 TEST(DeviceAxes, SharedPdosThatAreTooFewAreToldWithWhatEachGets) {
   const Configured made = configuredWithRules("{pdos_per_axis: 0, max_rpdos: 1}", twoAxesText());
   EXPECT_THAT(made.problems.text(),

@@ -125,6 +125,8 @@ TEST_F(TwoAxes, NothingIsDoneToTheDriveWhileTheOtherIsUnderPower) {
   const bus::Answer restored = scene.procedure(ProcedureKind::restore_parameters, "left");
   EXPECT_TRUE(restored.success) << restored.message;
   EXPECT_THAT(restored.message, HasSubstr("; in the same drive: right (no statusword yet)"));
+  EXPECT_FALSE(scene.state("left").homed);
+  EXPECT_FALSE(scene.state("right").homed) << "its parameters are others, too";
   const bus::Answer reset = scene.call(bus::NmtServiceCommand{"left", "reset_node"});
   EXPECT_TRUE(reset.success) << reset.message;
   EXPECT_THAT(reset.message, HasSubstr("in the same drive: right"));
