@@ -2,6 +2,7 @@
 #include "campaign/bus_trouble.h"
 
 #include <limits>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -12,6 +13,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
+constexpr std::uint32_t kNodeBits = 0x7F;  // of an identifier of the predefined connection set
 constexpr std::uint8_t kNmtStart = 1;
 constexpr std::uint8_t kNmtResetNode = 129;
 constexpr std::pair<const char*, std::uint8_t> kNmtCommands[] = {{"start", kNmtStart},
@@ -106,9 +108,7 @@ void BusTrouble::foreignNmt(const Words& words) {
   foreign_->send(can::Frame(0x000, {code, node}), now);
   for (std::size_t i : session_.stage.named(words.at(1))) {
     Conditions::extend(session_.conditions.foreign, now + 500ms);
-    if (code == kNmtResetNode) {
-      Conditions::extend(session_.conditions.axes[i].may_coast, now + 20ms);
-    }
+    if (code == kNmtResetNode) session_.mayCoastInDriveOf(i);
     const bool started = code == kNmtStart && !session_.truths.empty() &&
                          session_.truths[i].nmt == canopen::NmtState::operational;
     if (!started) session_.loseCommands(i, 1s);
@@ -117,27 +117,34 @@ void BusTrouble::foreignNmt(const Words& words) {
 
 void BusTrouble::unheard(const Words& words) {
   const Duration length = toDuration(words.at(3));
-  for (std::size_t i : session_.stage.named(words.at(1))) {
-    session_.breakLink(i, length);
-    sim::FaultRule rule;
-    rule.count = std::numeric_limits<unsigned>::max();
-    rule.receiver = session_.stage.host().interface().port().name();
-    const std::uint32_t node = session_.stage.axes()[i].node_id;
-    std::vector<std::uint32_t> ids{0x580 + node, 0x700 + node};  // SDO, heartbeat
+  for (std::size_t i : session_.stage.drivesNamed(words.at(1))) {
+    const DriveFacts& drive = session_.stage.drives()[i];
+    session_.breakLink(drive.axes.front(), length);
+    std::set<std::uint32_t> ids{0x580U + drive.node_id, 0x700U + drive.node_id};  // SDO, heartbeat
     if (words.at(2) == "all") {
-      ids = {node};
-      rule.mask = 0x7F;
+      ids = {drive.node_id};
+      for (const PdoPlace& place : session_.stage.tpdos()) {
+        const bool own = session_.stage.axes()[place.axis].place.drive == i;
+        if (own && (place.cob_id & kNodeBits) != drive.node_id) ids.insert(place.cob_id);
+      }
     }
-    for (const std::uint32_t id : ids) {
-      rule.id = id;
-      session_.stage.world().bus().faults().add(rule);
-      session_.later(length, [this, rule] { session_.stage.world().bus().faults().remove(rule); });
-    }
+    for (const std::uint32_t id : ids) loseAtHost(id, length);
   }
 }
 
+/// @param id a COB-ID, or a node-ID: all frames with the COB-IDs that it has by default.
+void BusTrouble::loseAtHost(std::uint32_t id, Duration length) {
+  sim::FaultRule rule;
+  rule.id = id;
+  if (id <= kNodeBits) rule.mask = kNodeBits;
+  rule.count = std::numeric_limits<unsigned>::max();
+  rule.receiver = session_.stage.host().interface().port().name();
+  session_.stage.world().bus().faults().add(rule);
+  session_.later(length, [this, rule] { session_.stage.world().bus().faults().remove(rule); });
+}
+
 void BusTrouble::loseNmt(const Words& words) {
-  for (std::size_t i : session_.stage.named(words.at(1))) {
+  for (std::size_t i : session_.stage.drivesNamed(words.at(1))) {
     sim::FaultRule rule;
     rule.count = static_cast<unsigned>(toNumber(words.at(2)));
     rule.receiver = session_.stage.world().port(i).name();
@@ -153,7 +160,7 @@ std::vector<sim::Port*> BusTrouble::breakLinks(const Words& words) {
   for (std::size_t i : stage.named(host ? "all" : words.at(1))) session_.breakLink(i, length);
   std::vector<sim::Port*> ports;
   if (host) ports.push_back(&stage.host().interface().port());
-  for (std::size_t i : stage.named(words.at(1))) ports.push_back(&stage.world().port(i));
+  for (std::size_t i : stage.drivesNamed(words.at(1))) ports.push_back(&stage.world().port(i));
   return ports;
 }
 

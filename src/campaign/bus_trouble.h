@@ -37,6 +37,7 @@ class BusTrouble {
   };
   void disturb(double sim::FaultRates::*rate, const Words& words);
   void produceSync(Time end, Duration period, int counter);
+  void loseAtHost(std::uint32_t id, Duration length);
   std::vector<sim::Port*> breakLinks(const Words& words);
 
   Session& session_;

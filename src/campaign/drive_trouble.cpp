@@ -12,9 +12,10 @@ namespace {
 using namespace std::chrono_literals;
 
 // Faults that take the power away, and those that only the power switch ends.
-constexpr const char* kCoast[] = {"overcurrent", "short_circuit", "overvoltage", "undervoltage",
-                                  "hardware",    "encoder",       "power_cycle"};
+constexpr const char* kCoast[] = {"overcurrent",  "short_circuit", "overvoltage",
+                                  "undervoltage", "hardware",      "encoder"};
 constexpr const char* kLast[] = {"short_circuit", "hardware"};
+constexpr const char* kPowerCycle = "power_cycle";  // of the drive
 
 template <std::size_t size>
 bool isIn(const char* const (&list)[size], const std::string& word) {
@@ -49,36 +50,34 @@ bool DriveTrouble::act(const Words& words) {
 }
 
 void DriveTrouble::inject(std::size_t axis, const std::string& what) {
-  const Result<void> done = drive(axis).inject(what, session_.now());
+  const Result<void> done =
+      session_.stage.driveOf(axis).inject(what, session_.now(), place(axis).axis);
   if (!done) throw std::invalid_argument(done.error().message);
 }
 
 void DriveTrouble::clearLater(std::size_t axis, Duration delay) {
-  session_.later(delay, [this, axis] { (void)drive(axis).inject("clear", session_.now()); });
-}
-
-void DriveTrouble::mayCoast(std::size_t axis) {
-  Conditions::extend(session_.conditions.axes[axis].may_coast, session_.now() + 20ms);
+  session_.later(delay, [this, axis] { inject(axis, "clear"); });
 }
 
 void DriveTrouble::fault(std::size_t axis, const Words& words) {
   const std::string& name = words.at(2);
-  if (isIn(kCoast, name)) mayCoast(axis);
-  if (isIn(kLast, name)) dead_[axis] = true;
+  if (isIn(kCoast, name)) session_.mayCoast(axis);
+  if (isIn(kLast, name)) dead_[place(axis).drive] = true;
+  if (name == kPowerCycle) session_.mayCoastInDriveOf(axis);
   inject(axis, name);
-  if (name == "power_cycle") session_.breakLink(axis, 600ms);
+  if (name == kPowerCycle) session_.breakLink(axis, 600ms);
 }
 
 void DriveTrouble::clear(std::size_t axis, const Words&) { inject(axis, "clear"); }
 
 void DriveTrouble::cutPower(std::size_t axis, const Words& words) {
-  mayCoast(axis);
+  session_.mayCoastInDriveOf(axis);
   const Duration length = toDuration(words.at(2));
   session_.breakLink(axis, length);
-  drive(axis).powerOff(session_.now());
-  ++cuts_[axis];
+  session_.stage.driveOf(axis).powerOff(session_.now());
+  ++cuts_[place(axis).drive];
   session_.later(length, [this, axis] {
-    if (--cuts_[axis] == 0) drive(axis).powerOn(session_.now());
+    if (--cuts_[place(axis).drive] == 0) session_.stage.driveOf(axis).powerOn(session_.now());
   });
 }
 
@@ -106,23 +105,26 @@ void DriveTrouble::block(std::size_t axis, const Words& words) {
 
 /// A limit switch right where it stands.
 void DriveTrouble::limitHere(std::size_t axis, const Words& words) {
-  sim::AxisMechanics& mechanics = drive(axis).mechanics();
-  double& place =
+  sim::Drive& drive = session_.stage.driveOf(axis);
+  const unsigned number = place(axis).axis;
+  sim::AxisMechanics& mechanics = drive.mechanics(number);
+  double& limit =
       words.at(2) == "lower" ? mechanics.negative_limit_switch : mechanics.positive_limit_switch;
-  const double before = place;
-  place = drive(axis).truth(session_.now()).position_turns;
-  session_.later(toDuration(words.at(3)), [&place, before] { place = before; });
+  const double before = limit;
+  limit = drive.truth(session_.now(), number).position_turns;
+  session_.later(toDuration(words.at(3)), [&limit, before] { limit = before; });
 }
 
 void DriveTrouble::calm() {
   sim::World& world = session_.stage.world();
-  for (std::size_t i = 0; i < session_.stage.axes().size(); ++i) {
-    (void)drive(i).inject("clear", session_.now());
+  for (std::size_t i = 0; i < session_.stage.drives().size(); ++i) {
+    const std::size_t axis = session_.stage.drives()[i].axes.front();
+    inject(axis, "clear");
     world.port(i).setAttached(true);
     world.port(i).requestRecovery();
     if (dead_[i]) {
-      mayCoast(i);
-      (void)drive(i).inject("power_cycle", session_.now());
+      session_.mayCoastInDriveOf(axis);
+      inject(axis, kPowerCycle);
     }
     dead_[i] = false;
   }

@@ -9,7 +9,9 @@ namespace cia402::campaign {
 class DriveTrouble {
  public:
   explicit DriveTrouble(Session& session)
-      : session_(session), cuts_(session.stage.axes().size()), dead_(session.stage.axes().size()) {}
+      : session_(session),
+        cuts_(session.stage.drives().size()),
+        dead_(session.stage.drives().size()) {}
 
   /// @return false if the words are no trouble of drives.
   bool act(const Words& words);
@@ -20,7 +22,8 @@ class DriveTrouble {
   using Action = void (DriveTrouble::*)(std::size_t axis, const Words& words);
   static Action find(const std::string& verb);
 
-  // Actions, on each axis that they name.
+  // Actions, on each axis that they name: what it has for itself happens to it alone, what is its
+  // drive's to all axes in there.
   void fault(std::size_t axis, const Words& words);      ///< fault A NAME
   void clear(std::size_t axis, const Words& words);      ///< clear A
   void cutPower(std::size_t axis, const Words& words);   ///< power A SECONDS: none for so long
@@ -29,13 +32,12 @@ class DriveTrouble {
   void block(std::size_t axis, const Words& words);      ///< block A SECONDS: the rotor
   void limitHere(std::size_t axis, const Words& words);  ///< switch A lower|upper SECONDS
 
-  sim::Drive& drive(std::size_t axis) { return session_.stage.world().drive(axis); }
+  const sim::AxisPlace& place(std::size_t axis) const { return session_.stage.axes()[axis].place; }
   void inject(std::size_t axis, const std::string& what);
   void clearLater(std::size_t axis, Duration delay);
-  void mayCoast(std::size_t axis);
 
   Session& session_;
-  std::vector<unsigned> cuts_;  ///< of a drive's power that have not ended
+  std::vector<unsigned> cuts_;  ///< of each drive's power that have not ended
   std::vector<bool> dead_;      ///< drives with a fault that only the power switch ends
 };
 

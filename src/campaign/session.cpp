@@ -112,11 +112,25 @@ void Session::report(const char* oracle, const std::string& axis, const std::str
 }
 
 void Session::breakLink(std::size_t axis, Duration duration) {
-  Conditions::extend(conditions.axes[axis].unheard, now() + duration + 500ms);
+  for (std::size_t i : stage.inDriveOf(axis)) {
+    Conditions::extend(conditions.axes[i].unheard, now() + duration + 500ms);
+  }
   loseCommands(axis, duration);
 }
 
+void Session::mayCoast(std::size_t axis) {
+  Conditions::extend(conditions.axes[axis].may_coast, now() + 20ms);
+}
+
+void Session::mayCoastInDriveOf(std::size_t axis) {
+  for (std::size_t i : stage.inDriveOf(axis)) mayCoast(i);
+}
+
 void Session::loseCommands(std::size_t axis, Duration duration) {
+  for (std::size_t i : stage.inDriveOf(axis)) loseCommandsOfOne(i, duration);
+}
+
+void Session::loseCommandsOfOne(std::size_t axis, Duration duration) {
   const AxisFacts& facts = stage.axes()[axis];
   Conditions::extend(conditions.axes[axis].cut_off, now() + duration + 500ms);
   if (truths.empty()) return;

@@ -54,10 +54,14 @@ class Session {
   /// Whether the run is to end because of a finding.
   bool failed() const { return options_.stop_at_first && !findings_.empty(); }
 
-  /// Neither hears the driver the axis nor the axis the driver for so long.
+  /// Neither hears the driver the drive of an axis nor that drive the driver for so long.
   void breakLink(std::size_t axis, Duration duration);
-  /// An axis that nothing reaches goes on with what it has until it misses the master.
+  /// A drive that nothing reaches goes on with what it has until it misses the master, all its
+  /// axes.
   void loseCommands(std::size_t axis, Duration duration);
+  /// The power of one axis may go by itself now; that of all axes in its drive.
+  void mayCoast(std::size_t axis);
+  void mayCoastInDriveOf(std::size_t axis);
   /// How long the host is going to be late, now and then.
   Duration lateFor() const { return std::max(late_until - now(), Duration()); }
   /// Where the driver shows an axis, rad or m; 0 where no driver runs.
@@ -72,6 +76,7 @@ class Session {
   Time late_until{};              ///< the host, now and then
 
  private:
+  void loseCommandsOfOne(std::size_t axis, Duration duration);
   struct Later {
     Time at{};
     std::function<void()> what;

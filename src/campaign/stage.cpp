@@ -3,17 +3,21 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "campaign/random.h"
+#include "sim/dictionary/axis_objects.h"
 
 namespace cia402::campaign {
 namespace {
 
-AxisFacts factsOf(const config::RobotConfig& robot, std::size_t index) {
+AxisFacts factsOf(const Loaded& loaded, std::size_t index) {
+  const config::RobotConfig& robot = loaded.robot;
   const drive::AxisConfig& axis = robot.axes[index];
   const canopen::DeviceConfig& device = robot.deviceOf(axis);
   AxisFacts facts;
@@ -21,6 +25,7 @@ AxisFacts factsOf(const config::RobotConfig& robot, std::size_t index) {
   facts.index = index;
   facts.config = &axis;
   facts.node_id = device.node_id;
+  facts.place = sim::findAxis(loaded.drives, axis.name).value();
   const drive::AxisGeometry& geometry = axis.geometry;
   const bool linear = geometry.type == drive::AxisGeometry::Type::prismatic;
   const double ratio = axis.profile->output_shaft ? 1.0 : geometry.gear_ratio;
@@ -41,22 +46,43 @@ AxisFacts factsOf(const config::RobotConfig& robot, std::size_t index) {
   return facts;
 }
 
-std::vector<RpdoPlace> rpdosOf(const Loaded& loaded) {
-  std::vector<RpdoPlace> places;
-  for (std::size_t i = 0; i < loaded.robot.axes.size(); ++i) {
+std::vector<DriveFacts> drivesOf(const Loaded& loaded, const std::vector<AxisFacts>& axes) {
+  std::vector<DriveFacts> drives(loaded.drives.size());
+  for (const AxisFacts& axis : axes) {
+    drives[axis.place.drive].node_id = axis.node_id;
+    drives[axis.place.drive].axes.push_back(axis.index);
+  }
+  return drives;
+}
+
+/// The objects of a drive itself count as those of its axis 0.
+std::vector<PdoPlace> pdosOf(const Loaded& loaded, const std::vector<AxisFacts>& axes,
+                             canopen::PdoDirection direction) {
+  std::vector<PdoPlace> places;
+  for (const AxisFacts& axis : axes) {
     for (const canopen::NodeConfig& node : loaded.master.nodes) {
-      if (node.node_id != loaded.robot.deviceOf(loaded.robot.axes[i]).node_id) continue;
+      if (node.node_id != axis.node_id) continue;
       for (const canopen::PdoConfig& pdo : node.pdos) {
-        if (pdo.direction != canopen::PdoDirection::rpdo || !pdo.enabled) continue;
+        if (pdo.direction != direction || !pdo.enabled) continue;
         unsigned bit = 0;
         for (const canopen::PdoEntry& entry : pdo.entries) {
-          places.push_back({pdo.cob_id, entry.object, i, bit / 8});
+          const bool own = sim::axisOf(entry.object, sim::kMostAxes) == axis.place.axis;
+          if (own && bit % 8 == 0)
+            places.push_back({pdo.cob_id, entry.object, axis.index, bit / 8});
           bit += entry.bits;
         }
       }
     }
   }
   return places;
+}
+
+const PdoPlace* statuswordOf(const AxisFacts& axis, const std::vector<PdoPlace>& tpdos) {
+  const fieldbus::ObjectId object = sim::ofAxis({0x6041, 0}, axis.place.axis);
+  const auto found = std::find_if(tpdos.begin(), tpdos.end(), [&](const PdoPlace& place) {
+    return place.axis == axis.index && place.object == object;
+  });
+  return found == tpdos.end() ? nullptr : &*found;
 }
 
 /// `~` takes a key away.
@@ -74,7 +100,8 @@ void merge(YAML::Node onto, const YAML::Node& more) {
 }
 
 /// Axes with `profile_keys` get a profile of their own: that of their drive with these keys on top,
-/// in a file for as long as this lives.
+/// in a file for as long as this lives. Axes that say the same share it, as those of one drive
+/// must.
 class OwnProfiles {
  public:
   OwnProfiles(YAML::Node robot, const std::string& folder) {
@@ -82,26 +109,29 @@ class OwnProfiles {
       YAML::Node axis = pair.second;
       if (!axis.IsMap() || !axis["profile_keys"]) continue;
       const auto drive = axis["drive"].as<std::string>();
-      YAML::Node profile = YAML::LoadFile(folder + drive + ".yaml");
-      merge(profile, axis["profile_keys"]);
+      std::filesystem::path& file = files_[drive + '\n' + YAML::Dump(axis["profile_keys"])];
+      if (file.empty()) {
+        YAML::Node profile = YAML::LoadFile(folder + drive + ".yaml");
+        merge(profile, axis["profile_keys"]);
+        file = std::filesystem::temp_directory_path() /
+               ("cia402_campaign_" + std::to_string(getpid()) + "_" + pair.first.as<std::string>() +
+                ".yaml");
+        std::ofstream(file) << profile;
+      }
       axis.remove("profile_keys");
       if (!axis["simulation"]["drive"]) axis["simulation"]["drive"] = drive;
-      files_.push_back(std::filesystem::temp_directory_path() /
-                       ("cia402_campaign_" + std::to_string(getpid()) + "_" +
-                        pair.first.as<std::string>() + ".yaml"));
-      std::ofstream(files_.back()) << profile;
-      axis["drive"] = files_.back().string();
+      axis["drive"] = file.string();
     }
   }
   ~OwnProfiles() {
     std::error_code ignored;
-    for (const auto& file : files_) std::filesystem::remove(file, ignored);
+    for (const auto& own : files_) std::filesystem::remove(own.second, ignored);
   }
   OwnProfiles(const OwnProfiles&) = delete;
   OwnProfiles& operator=(const OwnProfiles&) = delete;
 
  private:
-  std::vector<std::filesystem::path> files_;
+  std::map<std::string, std::filesystem::path> files_;  // by profile and keys
 };
 
 double asFloat(std::uint64_t number) {
@@ -144,18 +174,19 @@ drive::ControlKind AxisFacts::kind(int mode) const {
 Stage::Stage(Loaded loaded, std::uint64_t seed)
     : loaded_(std::move(loaded)),
       world_(loaded_.robot.bus.bitrate, seed),
-      host_(world_, loaded_.robot, loaded_.master),
-      rpdos_(rpdosOf(loaded_)) {
+      host_(world_, loaded_.robot, loaded_.master) {
   sim::addTo(world_, loaded_.drives);
-  for (std::size_t i = 0; i < world_.driveCount(); ++i) {
+  for (std::size_t i = 0; i < loaded_.robot.axes.size(); ++i) {
+    facts_.push_back(factsOf(loaded_, i));
     const auto entry = [&](std::uint16_t object) {
-      return world_.drive(i).dictionary().find({object, 0});
+      return driveOf(i).dictionary().find(sim::ofAxis({object, 0}, facts_[i].place.axis));
     };
     objects_.push_back({entry(0x6064), entry(0x6077)});
   }
-  for (std::size_t i = 0; i < loaded_.robot.axes.size(); ++i) {
-    facts_.push_back(factsOf(loaded_.robot, i));
-  }
+  drives_ = drivesOf(loaded_, facts_);
+  rpdos_ = pdosOf(loaded_, facts_, canopen::PdoDirection::rpdo);
+  tpdos_ = pdosOf(loaded_, facts_, canopen::PdoDirection::tpdo);
+  for (const AxisFacts& axis : facts_) statuswords_.push_back(statuswordOf(axis, tpdos_));
   const config::BusConfig& bus = loaded_.robot.bus;
   if (bus.external_sync) {
     sync_.connect(world_.addParticipant("sync", sync_));
@@ -178,10 +209,22 @@ std::vector<std::size_t> Stage::named(const std::string& name) const {
   return indices;
 }
 
+std::vector<std::size_t> Stage::drivesNamed(const std::string& name) const {
+  std::vector<std::size_t> indices;
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    const auto& axes = drives_[i].axes;
+    const bool named = std::any_of(axes.begin(), axes.end(), [&](std::size_t axis) {
+      return name == "all" || facts_[axis].name == name;
+    });
+    if (named) indices.push_back(i);
+  }
+  return indices;
+}
+
 void Stage::look(std::vector<AxisTruth>& truths) {
   truths.resize(facts_.size());
   for (std::size_t i = 0; i < facts_.size(); ++i) {
-    const sim::DriveTruth truth = world_.drive(i).truth(now());
+    const sim::DriveTruth truth = driveOf(i).truth(now(), facts_[i].place.axis);
     AxisTruth& seen = truths[i];
     seen.position = truth.position_turns * facts_[i].units_per_turn;
     seen.velocity = truth.velocity_turns * facts_[i].units_per_turn;

@@ -42,6 +42,7 @@ struct AxisFacts {
   std::size_t index = 0;
   const drive::AxisConfig* config = nullptr;
   std::uint8_t node_id = 0;
+  sim::AxisPlace place;           ///< the simulated drive in the world, and its axis
   double units_per_turn = 1.0;    ///< of the shaft that the simulated drive turns; signed
   double units_per_count = 0.0;   ///< of 607Ah and 6064h; 0: they are floats
   double effort_per_count = 0.0;  ///< of 6077h; 0: it is a float
@@ -58,12 +59,23 @@ struct AxisFacts {
   double creep() const { return std::max(0.02 * velocity + 0.002, config->standstill_velocity); }
 };
 
-/// Where an RPDO, as the driver lays it out, holds an object of an axis.
-struct RpdoPlace {
+/// What oracles and troubles must know of a simulated drive.
+struct DriveFacts {
+  std::uint8_t node_id = 0;
+  std::vector<std::size_t> axes;  ///< of the robot that sit in it, at least one
+};
+
+/// Where a PDO, as the driver lays it out, holds an object of an axis.
+struct PdoPlace {
   std::uint32_t cob_id = 0;
-  fieldbus::ObjectId object;
+  fieldbus::ObjectId object;  ///< as the drive has it: 687Ah where axis 0 has 607Ah
   std::size_t axis = 0;
   unsigned byte = 0;
+
+  /// Whether a frame is of that PDO, with so many bytes of the object.
+  bool isIn(const can::Frame& frame, unsigned bytes) const {
+    return frame.id == cob_id && !frame.error && !frame.remote && frame.size >= byte + bytes;
+  }
 };
 
 /// The world of a scene: drives, bus, and the computer with the driver.
@@ -78,12 +90,26 @@ class Stage {
   const bus::Network* driver() const { return host_.running() ? &host_.network() : nullptr; }
   const Loaded& loaded() const { return loaded_; }
   const std::vector<AxisFacts>& axes() const { return facts_; }
+  /// In the order of the world.
+  const std::vector<DriveFacts>& drives() const { return drives_; }
+  /// All axes in the drive of this one, itself among them: what is done to the drive happens to
+  /// all of them.
+  const std::vector<std::size_t>& inDriveOf(std::size_t axis) const {
+    return drives_[facts_[axis].place.drive].axes;
+  }
+  sim::Drive& driveOf(std::size_t axis) { return world_.drive(facts_[axis].place.drive); }
   /// All that the driver sends cyclically.
-  const std::vector<RpdoPlace>& rpdos() const { return rpdos_; }
+  const std::vector<PdoPlace>& rpdos() const { return rpdos_; }
+  /// All that the drives send cyclically.
+  const std::vector<PdoPlace>& tpdos() const { return tpdos_; }
+  /// Where its drive tells the statusword of an axis; nullptr: in no TPDO.
+  const PdoPlace* statusword(std::size_t axis) const { return statuswords_[axis]; }
   /// nullptr if there is none.
   const AxisFacts* find(const std::string& name) const;
   /// The axes that a call concerns: one by its name, or "all".
   std::vector<std::size_t> named(const std::string& name) const;
+  /// The drives that these axes sit in, each once.
+  std::vector<std::size_t> drivesNamed(const std::string& name) const;
   Time now() const { return world_.now(); }
   /// Looks at all drives.
   void look(std::vector<AxisTruth>& truths);
@@ -94,7 +120,9 @@ class Stage {
   sim::World world_;
   tools::VirtualHost host_;
   std::vector<AxisFacts> facts_;
-  std::vector<RpdoPlace> rpdos_;
+  std::vector<DriveFacts> drives_;
+  std::vector<PdoPlace> rpdos_, tpdos_;
+  std::vector<const PdoPlace*> statuswords_;  // of tpdos_
   struct Objects {
     const sim::Entry *position, *effort;
   };

@@ -79,7 +79,7 @@ class OracleTest : public testing::Test {
   /// All RPDOs of an axis in which one of these objects is; what is not named is zero.
   void rpdos(std::size_t axis, const std::map<std::uint16_t, std::uint32_t>& values) {
     std::map<std::uint32_t, can::Frame> frames;
-    for (const RpdoPlace& place : stage_.rpdos()) {
+    for (const PdoPlace& place : stage_.rpdos()) {
       const auto value = values.find(place.object.index);
       if (place.axis != axis || value == values.end()) continue;
       can::Frame& frame = frames[place.cob_id];

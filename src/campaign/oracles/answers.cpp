@@ -15,34 +15,9 @@ using namespace std::chrono_literals;
 // An answer speaks of feedback that is up to three cycles and their frames old.
 constexpr Duration kFeedbackAge = 25ms;
 
-/// The TPDO in which a drive tells its statusword, and where.
-struct StatuswordPlace {
-  std::uint32_t cob_id = 0;
-  unsigned byte = 0;
-};
-
-StatuswordPlace statuswordOf(const Stage& stage, const AxisFacts& axis) {
-  for (const canopen::NodeConfig& node : stage.loaded().master.nodes) {
-    if (node.node_id != axis.node_id) continue;
-    for (const canopen::PdoConfig& pdo : node.pdos) {
-      unsigned bit = 0;
-      for (const canopen::PdoEntry& entry : pdo.entries) {
-        const bool statusword = entry.object == fieldbus::ObjectId{0x6041, 0} && bit % 8 == 0;
-        if (pdo.direction == canopen::PdoDirection::tpdo && pdo.enabled && statusword) {
-          return {pdo.cob_id, bit / 8};
-        }
-        bit += entry.bits;
-      }
-    }
-  }
-  return {};
-}
-
 class Answers final : public Oracle {
  public:
-  explicit Answers(const Stage& stage) : seen_(stage.axes().size()) {
-    for (const AxisFacts& axis : stage.axes()) told_.push_back(statuswordOf(stage, axis));
-  }
+  explicit Answers(const Stage& stage) : seen_(stage.axes().size()) {}
   const char* name() const override { return "untrue_answer"; }
 
   void look(const View& view) override {
@@ -60,11 +35,9 @@ class Answers final : public Oracle {
   /// A power stage may be on between two looks only; the drive's own frame tells it.
   void onFrame(const can::Frame& frame, const View& view) override {
     for (std::size_t i = 0; i < seen_.size(); ++i) {
-      const StatuswordPlace& place = told_[i];
-      const bool tells = place.cob_id != 0 && frame.id == place.cob_id && !frame.remote &&
-                         frame.size >= place.byte + 2;
-      if (!tells) continue;
-      if ((frame.data[place.byte] & 0x6F) == 0x27) seen_[i].on = view.now;
+      const PdoPlace* const place = view.stage.statusword(i);
+      if (place == nullptr || !place->isIn(frame, 2)) continue;
+      if ((frame.data[place->byte] & 0x6F) == 0x27) seen_[i].on = view.now;
     }
   }
   void onAnswer(const Call& call, const bus::Answer& answer, const View& view) override {
@@ -142,7 +115,6 @@ class Answers final : public Oracle {
     return canopen::NmtState::operational;
   }
   std::vector<Seen> seen_;
-  std::vector<StatuswordPlace> told_;
 };
 
 }  // namespace

@@ -13,7 +13,7 @@ bool sound(std::uint32_t bits) { return (bits & 0x7F800000) != 0x7F800000 && bit
 class Floats final : public Oracle {
  public:
   explicit Floats(const Stage& stage) : received_(stage.axes().size()) {
-    for (const RpdoPlace& place : stage.rpdos()) {
+    for (const PdoPlace& place : stage.rpdos()) {
       const AxisFacts& facts = stage.axes()[place.axis];
       const drive::ObjectSpec* spec = facts.config->profile->find(place.object);
       if (spec != nullptr && spec->encoding == drive::Encoding::float32) {
@@ -26,7 +26,7 @@ class Floats final : public Oracle {
   void onFrame(const can::Frame& frame, const View& view) override {
     const auto found = places_.find(frame.id);
     if (found == places_.end() || frame.error || frame.remote) return;
-    for (const RpdoPlace& place : found->second) {
+    for (const PdoPlace& place : found->second) {
       if (frame.size < place.byte + 4) continue;
       std::uint32_t bits = 0;
       for (unsigned i = 0; i < 4; ++i) {
@@ -51,7 +51,7 @@ class Floats final : public Oracle {
     return text;
   }
 
-  std::map<std::uint32_t, std::vector<RpdoPlace>> places_;
+  std::map<std::uint32_t, std::vector<PdoPlace>> places_;
   std::vector<unsigned> received_;
 };
 

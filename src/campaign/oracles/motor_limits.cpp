@@ -23,7 +23,7 @@ constexpr std::uint32_t kSync = 0x80;
 class MotorLimits final : public Oracle {
  public:
   explicit MotorLimits(const Stage& stage) : axes_(stage.axes().size()) {
-    for (const RpdoPlace& place : stage.rpdos()) rpdos_.emplace(place.cob_id, place);
+    for (const PdoPlace& place : stage.rpdos()) rpdos_.emplace(place.cob_id, place);
   }
   const char* name() const override { return "motor_limits"; }
 
@@ -77,7 +77,7 @@ class MotorLimits final : public Oracle {
   }
 
   /// The object is the target of the mode that its axis is in.
-  static bool isTarget(const RpdoPlace& place, const View& view) {
+  static bool isTarget(const PdoPlace& place, const View& view) {
     const drive::DriveProfile& profile = *view.stage.axes()[place.axis].config->profile;
     const int mode = view.truths[place.axis].mode;
     for (const drive::ModeSpec& spec : profile.modes) {
@@ -156,7 +156,7 @@ class MotorLimits final : public Oracle {
   }
 
   std::vector<Axis> axes_;
-  std::multimap<std::uint32_t, RpdoPlace> rpdos_;  // by COB-ID
+  std::multimap<std::uint32_t, PdoPlace> rpdos_;  // by COB-ID
   Time last_sync_{}, squeezed_{}, starved_{};
   double squeeze_ = 0.0;
 };

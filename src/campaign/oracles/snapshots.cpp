@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <set>
+#include <string>
 
 #include "campaign/oracle.h"
 
@@ -20,17 +22,18 @@ class Snapshots final : public Oracle {
   explicit Snapshots(const Stage& stage) : axes_(stage.axes().size()) {}
   const char* name() const override { return "untrue_snapshot"; }
 
-  void onCall(const Call& call, const View& view) override { count(call, 1, view.now); }
+  void onCall(const Call& call, const View& view) override { count(call, 1, view); }
   void onAnswer(const Call& call, const bus::Answer&, const View& view) override {
-    count(call, -1, view.now);
+    count(call, -1, view);
   }
   /// A drive may be enabled, or in a fault, for less than the time from look to look, and tell it.
   void onFrame(const can::Frame& frame, const View& view) override {
-    if (frame.error || frame.remote || frame.size < 2) return;
     for (std::size_t i = 0; i < axes_.size(); ++i) {
-      if (frame.id != 0x180U + view.stage.axes()[i].node_id) continue;
-      AxisTruth told;  // TPDO 1 begins with the statusword
-      told.statusword = static_cast<std::uint16_t>(frame.data[0] | frame.data[1] << 8);
+      const PdoPlace* const place = view.stage.statusword(i);
+      if (place == nullptr || !place->isIn(frame, 2)) continue;
+      AxisTruth told;
+      told.statusword =
+          static_cast<std::uint16_t>(frame.data[place->byte] | frame.data[place->byte + 1] << 8);
       rememberState(axes_[i], told, view.now);
     }
   }
@@ -50,16 +53,26 @@ class Snapshots final : public Oracle {
     std::optional<double> zero;  // what is shown minus what the drive tells
   };
 
-  void count(const Call& call, int step, Time now) {
+  void count(const Call& call, int step, const View& view) {
     static const char* const kHarmless[] = {"halt",       "enable",       "disable",
                                             "quick_stop", "clear_faults", "read"};
     const auto* const end = std::end(kHarmless);
     if (std::find(std::begin(kHarmless), end, call.verb) != end) return;
-    for (std::size_t i : call.axes) {
+    for (std::size_t i : concerned(view.stage, call)) {
       axes_[i].calls += step;
-      axes_[i].called = now;
+      axes_[i].called = view.now;
       axes_[i].zero.reset();
     }
+  }
+  /// What is done to a drive may set a zero of all its axes.
+  static std::set<std::size_t> concerned(const Stage& stage, const Call& call) {
+    static const std::set<std::string> kOfDrive{"recover", "save", "restore", "nmt"};
+    std::set<std::size_t> concerned(call.axes.begin(), call.axes.end());
+    if (kOfDrive.count(call.verb) == 0) return concerned;
+    for (std::size_t i : call.axes) {
+      concerned.insert(stage.inDriveOf(i).begin(), stage.inDriveOf(i).end());
+    }
+    return concerned;
   }
   static void rememberState(Axis& axis, const AxisTruth& truth, Time now) {
     (truth.enabled() ? axis.enabled : axis.not_enabled) = now;

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "campaign/oracle.h"
+#include "sim/dictionary/axis_objects.h"
 
 namespace cia402::campaign {
 namespace {
@@ -20,9 +21,10 @@ constexpr fieldbus::ObjectId kTargetPosition{0x607A, 0}, kControlword{0x6040, 0}
 class TargetSteps final : public Oracle {
  public:
   explicit TargetSteps(const Stage& stage) {
-    for (const RpdoPlace& place : stage.rpdos()) {
-      if (place.object == kTargetPosition) targets_[place.cob_id] = place;
-      if (place.object == kControlword) controls_[place.cob_id] = place;
+    for (const PdoPlace& place : stage.rpdos()) {
+      const unsigned axis = stage.axes()[place.axis].place.axis;
+      if (place.object == sim::ofAxis(kTargetPosition, axis)) targets_[place.cob_id] = place;
+      if (place.object == sim::ofAxis(kControlword, axis)) controls_[place.cob_id] = place;
     }
     last_.resize(stage.axes().size());
     controlwords_.resize(stage.axes().size());
@@ -40,7 +42,7 @@ class TargetSteps final : public Oracle {
     }
     const auto found = targets_.find(frame.id);
     if (found == targets_.end()) return;
-    const RpdoPlace& place = found->second;
+    const PdoPlace& place = found->second;
     if (frame.size < place.byte + 4) return;
     judge(view, place.axis, valueIn(frame, place, view.stage.axes()[place.axis]));
   }
@@ -64,7 +66,7 @@ class TargetSteps final : public Oracle {
     double told = 0.0;
   };
   /// In joint units.
-  static double valueIn(const can::Frame& frame, const RpdoPlace& place, const AxisFacts& facts) {
+  static double valueIn(const can::Frame& frame, const PdoPlace& place, const AxisFacts& facts) {
     std::uint32_t raw = 0;
     for (unsigned i = 0; i < 4; ++i) {
       raw |= static_cast<std::uint32_t>(frame.data[place.byte + i]) << 8 * i;
@@ -109,7 +111,7 @@ class TargetSteps final : public Oracle {
     last_[i] = value;
   }
 
-  std::map<std::uint32_t, RpdoPlace> targets_, controls_;  // by COB-ID
+  std::map<std::uint32_t, PdoPlace> targets_, controls_;  // by COB-ID
   std::vector<int> controlwords_;
   std::vector<Stood> stood_;
   std::vector<bool> unsure_;  // another mode than kMode was asked for at some time

@@ -17,34 +17,35 @@ bool boots(const can::Frame& request) {
 
 class VainRequests final : public Oracle {
  public:
-  explicit VainRequests(const Stage& stage) : axes_(stage.axes().size()) {}
+  explicit VainRequests(const Stage& stage) : drives_(stage.drives().size()) {}
   const char* name() const override { return "vain_request"; }
 
   void onFrame(const can::Frame& frame, const View& view) override {
     if (frame.error || frame.remote || frame.size == 0) return;
-    for (std::size_t i = 0; i < axes_.size(); ++i) {
-      Axis& axis = axes_[i];
-      const std::uint32_t node = view.stage.axes()[i].node_id;
+    for (std::size_t i = 0; i < drives_.size(); ++i) {
+      Drive& drive = drives_[i];
+      const std::uint32_t node = view.stage.drives()[i].node_id;
+      const std::size_t first = view.stage.drives()[i].axes.front();
       // An emergency or an answer proves that it left the state since.
-      if (frame.id == 0x080 + node || frame.id == 0x580 + node) axis.told = axis.asked = 0;
+      if (frame.id == 0x080 + node || frame.id == 0x580 + node) drive.told = drive.asked = 0;
       if (frame.id == 0x700 + node) {  // a heartbeat, or an answer to guarding
         const bool heard =
-            view.now >= view.conditions.lossy && view.now >= view.conditions.axes[i].unheard;
+            view.now >= view.conditions.lossy && view.now >= view.conditions.axes[first].unheard;
         const bool stopped = heard && (frame.data[0] & 0x7F) == 0x04;
-        axis.told = stopped ? axis.told + 1 : 0;
-        if (!stopped) axis.asked = 0;
+        drive.told = stopped ? drive.told + 1 : 0;
+        if (!stopped) drive.asked = 0;
       }
-      if (frame.id != 0x600 + node || !boots(frame) || axis.told < kTold) continue;
-      if (++axis.asked != kAsked) continue;
-      report(view, i, "says that it is stopped, and is asked by SDO again and again");
+      if (frame.id != 0x600 + node || !boots(frame) || drive.told < kTold) continue;
+      if (++drive.asked != kAsked) continue;
+      report(view, first, "says that it is stopped, and is asked by SDO again and again");
     }
   }
 
  private:
-  struct Axis {
+  struct Drive {
     unsigned told = 0, asked = 0;  // since it said something else
   };
-  std::vector<Axis> axes_;
+  std::vector<Drive> drives_;
 };
 
 }  // namespace
