@@ -36,6 +36,13 @@ class Author {
     actions_.push_back(parseAction(line + words).value());
   }
   const AxisPlan& anyAxis() { return robot_.axes[random_.below(robot_.axes.size())]; }
+  const AxisPlan& oneInDriveOf(const AxisPlan& axis) {
+    return axis.neighbour && random_.chance(0.5) ? robot_.axes[*axis.neighbour] : axis;
+  }
+  /// Often the one in the same drive.
+  const AxisPlan& another(const AxisPlan& axis) {
+    return axis.neighbour && random_.chance(0.5) ? robot_.axes[*axis.neighbour] : anyAxis();
+  }
   std::string whom(const AxisPlan& axis, double all = 0.2) {
     return random_.chance(all) ? "all" : axis.name;
   }
@@ -78,16 +85,20 @@ class Author {
     }
     if (random_.chance(0.08)) changeMode(axis);
     move(axis);
-    if (random_.chance(0.3)) move(anyAxis());
+    if (random_.chance(0.3)) move(another(axis));
     // Often before the feedback shows that the axis has begun to move.
     const bool young = random_.chance(0.25);
     double at = now_ + (young ? random_.between(0.001, 0.03) : random_.between(0.005, 1.5));
     if (late_host_ && random_.chance(0.4)) late(at + random_.between(-0.02, 0.08));
-    if (troubled_ && random_.chance(0.3)) trouble(at + random_.between(-0.05, 0.15), axis);
+    if (troubled_ && random_.chance(0.3))
+      trouble(at + random_.between(-0.05, 0.15), oneInDriveOf(axis));
     const int calls = random_.pick({0, 1, 1, 2, 2, 3, 4});
     for (int i = 0; i < calls; ++i) {
-      call(at, random_.chance(0.8) ? axis : anyAxis());
+      call(at, random_.chance(0.8) ? axis : another(axis));
       at += random_.chance(0.7) ? random_.between(0.0, 0.01) : random_.between(0.01, 0.4);
+    }
+    if (axis.neighbour && random_.chance(0.3)) {
+      touchDrive(at + random_.between(-0.1, 0.3), robot_.axes[*axis.neighbour]);
     }
     now_ = at + random_.between(0.05, 2.0);
   }
@@ -172,12 +183,18 @@ class Author {
     if (choice < 0.92) return add(at, "stop " + random_.pick(robot_.groups).name);
     if (choice < 0.94) return add(at, "read " + axis.name + " " + object());
     if (choice < 0.96) return write(at, axis);
-    if (choice < 0.98) {
-      return add(at, "nmt " + who + " " +
-                         random_.pick<std::string>({"start", "stop", "pre_operational",
-                                                    "reset_node", "reset_communication"}));
-    }
+    if (choice < 0.98) return add(at, "nmt " + who + " " + nmtCommand());
     add(at, random_.pick<std::string>({"save ", "restore ", "history "}) + axis.name);
+  }
+  /// What may be done to a drive for one of its axes.
+  void touchDrive(double at, const AxisPlan& axis) {
+    const auto verb =
+        random_.pick<std::string>({"recover", "clear_faults", "save", "restore", "nmt"});
+    add(at, verb + " " + axis.name + (verb == "nmt" ? " " + nmtCommand() : ""));
+  }
+  std::string nmtCommand() {
+    return random_.pick<std::string>(
+        {"start", "stop", "pre_operational", "reset_node", "reset_communication"});
   }
   std::string object() {
     return random_.pick<std::string>(

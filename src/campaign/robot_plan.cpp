@@ -9,13 +9,23 @@
 namespace cia402::campaign {
 namespace {
 
+/// Where an axis sits.
+struct Seat {
+  int node = 0;
+  std::optional<std::size_t> neighbour{};  ///< the other axis in its drive
+  int device_axis = 0;
+  std::optional<Habits> habits{};  ///< of a drive with two axes
+};
+
 /// One axis; its YAML is a flow mapping on one line.
 class AxisWriter {
  public:
-  AxisWriter(Random& random, std::size_t number, int node) : random_(random) {
+  AxisWriter(Random& random, std::size_t number, const Seat& seat) : random_(random) {
     axis_.name = "a" + std::to_string(number + 1);
-    axis_.damiao = random.chance(0.4);
-    add("node_id", std::to_string(node));
+    axis_.neighbour = seat.neighbour;
+    axis_.damiao = !seat.neighbour && random.chance(0.4);
+    add("node_id", std::to_string(seat.node));
+    if (seat.neighbour) add("device_axis", std::to_string(seat.device_axis));
     add("drive", axis_.damiao ? "damiao_dm" : "generic_cia402");
     const double kind = random.uniform();
     linear_ = !axis_.damiao && kind < 0.15;
@@ -30,6 +40,11 @@ class AxisWriter {
     place();
     homing();
     options();
+    if (seat.neighbour) {
+      sitIn(seat);
+    } else if (!axis_.damiao) {
+      sitAlone();
+    }
     add("simulation", "{" + simulation_ + "}");
     axis_.yaml += "}";
   }
@@ -118,11 +133,18 @@ class AxisWriter {
     if (!axis_.damiao && random_.chance(0.3)) {
       simulate("brake_delay", text(random_.between(0.02, 0.25)));
     }
-    if (!axis_.damiao && random_.chance(0.1)) {
+  }
+  void sitAlone() {
+    if (random_.chance(0.1)) {
       add("error_control", "guarding");
       simulate("drive", "generic_cia402_guarding");
     }
-    if (!axis_.damiao && random_.chance(0.35)) live(drawHabits(random_));
+    if (random_.chance(0.35)) live(drawHabits(random_));
+  }
+  /// What is of the drive is said alike by all its axes.
+  void sitIn(const Seat& seat) {
+    simulate("drive", "generic_cia402_dual");
+    if (seat.habits) live(*seat.habits);
   }
   void live(const Habits& habits) {
     simulate("with", "{" + habits.simulation + "}");
@@ -135,6 +157,31 @@ class AxisWriter {
   bool linear_ = false;
   double at_ = 0.0, time_constant_ = 0.004;
 };
+
+std::vector<Seat> planSeats(Random& random, std::size_t count) {
+  const int first = 1 + static_cast<int>(random.below(30));
+  std::vector<Seat> seats(count);
+  std::vector<std::size_t> alone;
+  for (std::size_t i = 0; i < count; ++i) {
+    seats[i].node = first + 3 * static_cast<int>(i);
+    alone.push_back(i);
+  }
+  if (!random.chance(1.0 / 6.0)) return seats;
+  const auto draw = [&] {
+    const auto drawn = alone.begin() + static_cast<std::ptrdiff_t>(random.below(alone.size()));
+    const std::size_t index = *drawn;
+    alone.erase(drawn);
+    return index;
+  };
+  for (int pairs = count >= 4 && random.chance(0.5) ? 2 : 1; pairs > 0; --pairs) {
+    const std::size_t one = draw(), other = draw();
+    std::optional<Habits> habits;
+    if (random.chance(0.35)) habits = drawHabits(random);
+    seats[one] = {seats[one].node, other, 0, habits};
+    seats[other] = {seats[one].node, one, 1, habits};
+  }
+  return seats;
+}
 
 bool cyclic(const AxisPlan& axis) { return axis.mode == "cyclic_position"; }
 
@@ -182,9 +229,9 @@ const std::vector<ModePlan>& modesOf(bool damiao) {
 RobotPlan planRobot(Random& random) {
   RobotPlan robot;
   const std::size_t count = 2 + random.below(5);
-  const int first = 1 + static_cast<int>(random.below(30));
+  const std::vector<Seat> seats = planSeats(random, count);
   for (std::size_t i = 0; i < count; ++i) {
-    robot.axes.push_back(AxisWriter(random, i, first + 3 * static_cast<int>(i)).take());
+    robot.axes.push_back(AxisWriter(random, i, seats[i]).take());
   }
   const double period =
       count <= 2 && random.chance(0.3) ? 0.002 : random.pick({0.004, 0.004, 0.005, 0.01});

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,8 @@ struct AxisPlan {
   double velocity = 1.0, acceleration = 4.0, effort = 1.0;
   double lower = -1.0, upper = 1.0;
   double command_timeout = 0.2;
-  std::string mode;  ///< at start
+  std::string mode;                      ///< at start
+  std::optional<std::size_t> neighbour;  ///< the other axis in its drive
 };
 
 /// A group of a random robot.
@@ -34,7 +36,7 @@ struct RobotPlan {
 /// A number with as many digits as a scene needs.
 std::string text(double value);
 
-/// A random robot of 2 to 6 axes.
+/// A random robot of 2 to 6 axes, now and then with one or two drives of two axes.
 RobotPlan planRobot(Random& random);
 
 /// Modes that an axis of the family can be in, and what their set-points are.
