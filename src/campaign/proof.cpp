@@ -13,19 +13,22 @@ using namespace std::chrono_literals;
 
 constexpr Duration kRecoverTime = 20s;
 constexpr const char* kDisableFirst = ": disable, then enable";  // the words of an axis
+constexpr const char* kFreeDrive = ", in the same drive, may be under power: disable it first";
 
 bool contains(const std::string& text, const char* words) {
   return text.find(words) != std::string::npos;
 }
 
-/// Whether a recovery that failed names the calls that help: for halted axes, and for those that
-/// lost their zero.
+/// Whether a recovery that failed names the calls that help: for halted axes, for those that lost
+/// their zero, and for those that share their drive.
 bool asksForMore(const std::string& text) {
-  return contains(text, ": enable") || contains(text, kDisableFirst) ||
-         contains(text, " is not homed: home") || contains(text, " is not homed: set_position");
+  return contains(text, kFreeDrive) || contains(text, ": enable") ||
+         contains(text, kDisableFirst) || contains(text, " is not homed: home") ||
+         contains(text, " is not homed: set_position");
 }
 
 drive::ProcedureKind kindOf(const std::string& verb) {
+  if (verb == "clear_faults") return drive::ProcedureKind::clear_faults;
   if (verb == "home") return drive::ProcedureKind::home;
   if (verb == "set_position") return drive::ProcedureKind::set_position;
   if (verb == "enable") return drive::ProcedureKind::enable;
@@ -57,11 +60,31 @@ bool Proof::recover() {
     noRecovery("", "recover fails when all is well again: " + first);
     return false;
   }
+  if (contains(first, kFreeDrive) && !freeDrives()) return false;
   if (!enableAll() || !homeAll()) return false;
   if (!first.empty() && !call("recover", "all", kRecoverTime)) return false;
   if (answer_.success) return true;
   noRecovery("", "recover fails when all is well again: " + answer_.message);
   return false;
+}
+
+/// Clears faults while all other axes of these drives are disabled: where it takes NMT to clear
+/// one, the driver asks for that.
+bool Proof::freeDrives() {
+  for (const DriveFacts& drive : session_.stage.drives()) {
+    std::vector<std::string> faulted, well;
+    for (std::size_t i : drive.axes) {
+      (session_.truths[i].faulted() ? faulted : well).push_back(session_.stage.axes()[i].name);
+    }
+    if (faulted.empty()) continue;
+    for (const std::string& name : well) {
+      if (!call("disable", name, kRecoverTime)) return false;
+    }
+    for (const std::string& name : faulted) {
+      if (!call("clear_faults", name, kRecoverTime)) return false;
+    }
+  }
+  return true;
 }
 
 bool Proof::enableAll() {

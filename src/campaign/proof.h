@@ -26,6 +26,7 @@ class Proof {
 
  private:
   bool recover();
+  bool freeDrives();
   bool enableAll();
   bool homeAll();
   /// @return false if it is not answered in time, or a finding ends the run; else answer_ is its.
