@@ -68,6 +68,7 @@ std::unique_ptr<Oracle> makeSnapshots(const Stage& stage);
 std::unique_ptr<Oracle> makeFloats(const Stage& stage);
 std::unique_ptr<Oracle> makeAnswers(const Stage& stage);
 std::unique_ptr<Oracle> makeVainRequests(const Stage& stage);
+std::unique_ptr<Oracle> makeTakenDrives(const Stage& stage);
 /// All of them.
 std::vector<std::unique_ptr<Oracle>> allOracles(const Stage& stage);
 

@@ -433,5 +433,68 @@ TEST_F(DualSnapshots, MayNotShiftWhereTheOtherAxisIs) {
   }
 }
 
+class TakenDriveTest : public OracleTest {
+ protected:
+  TakenDriveTest() : OracleTest(makeTakenDrives, dualRobot()) { settle(); }
+  /// All are operational and under power, and nothing was found.
+  void settle() {
+    for (AxisTruth& truth : truths_) {
+      truth.power = true;
+      truth.nmt = canopen::NmtState::operational;
+    }
+    look();
+    findings_.clear();
+    mark();
+  }
+  /// The drive of a1 and a2 is in another state.
+  void leaves(canopen::NmtState state) {
+    truths_[0].nmt = truths_[1].nmt = state;
+    look();
+  }
+};
+
+TEST_F(TakenDriveTest, IsFoundWhileOneOfItsMotorsHasPower) {
+  truths_[0].power = false;
+  look();
+  mark();
+  leaves(canopen::NmtState::stopped);
+  EXPECT_EQ(allFound(), "drive_taken a2 +1 ms");
+}
+
+TEST_F(TakenDriveTest, IsFoundWhateverThePowerDoesThen) {
+  truths_[0].power = truths_[1].power = false;
+  leaves(canopen::NmtState::boot_up);
+  EXPECT_EQ(allFound(), "drive_taken a2 +1 ms");
+}
+
+TEST_F(TakenDriveTest, WithoutPowerIsNone) {
+  truths_[0].power = truths_[1].power = false;
+  look();
+  leaves(canopen::NmtState::pre_operational);
+  EXPECT_EQ(found(), "");
+}
+
+TEST_F(TakenDriveTest, IsFoundOnce) {
+  leaves(canopen::NmtState::stopped);
+  lookFor(50ms);
+  EXPECT_EQ(allFound(), "drive_taken a2 +1 ms");
+}
+
+TEST_F(TakenDriveTest, IsNoneWhileTheWorldIsDisturbed) {
+  Time Conditions::Axis::*const kinds[] = {&Conditions::Axis::may_coast, &Conditions::Axis::unheard,
+                                           &Conditions::Axis::cut_off, &Conditions::Axis::blocked};
+  for (const auto kind : kinds) {
+    settle();
+    conditions_.axes[1].*kind = now() + 10ms;
+    leaves(canopen::NmtState::stopped);
+    EXPECT_EQ(found(), "");
+    conditions_.axes[1].*kind = Time();
+  }
+  settle();
+  conditions_.ended = now() + 10ms;
+  leaves(canopen::NmtState::stopped);
+  EXPECT_EQ(found(), "") << "the driver ends";
+}
+
 }  // namespace
 }  // namespace cia402::campaign

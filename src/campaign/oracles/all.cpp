@@ -23,6 +23,7 @@ std::vector<std::unique_ptr<Oracle>> allOracles(const Stage& stage) {
   oracles.push_back(makeFloats(stage));
   oracles.push_back(makeAnswers(stage));
   oracles.push_back(makeVainRequests(stage));
+  oracles.push_back(makeTakenDrives(stage));
   return oracles;
 }
 
