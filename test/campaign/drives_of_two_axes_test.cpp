@@ -208,6 +208,8 @@ TEST_F(DualTrouble, SilenceIsThatOfTheDrive) {
 TEST_F(DualTrouble, ACableIsThatOfTheDrive) {
   bus({"cable", "a2", "0.5"});
   EXPECT_THAT(unheard(), ElementsAre(0, 1));
+  EXPECT_FALSE(stage_.world().port(0).attached());
+  EXPECT_TRUE(stage_.world().port(1).attached());
 }
 
 TEST_F(DualTrouble, ACommandOfAStrangerIsToTheDrive) {
@@ -397,16 +399,36 @@ class DualSnapshots : public OracleTest {
     lookFor(200ms);
     mark();
   }
-  /// a1 is told 9.2e-5 rad, three of its counts, away from where it is shown.
+  /// a1 is told away from where it is shown, or is in a fault.
   void look() override {
     wait(1ms);
     stage_.look(truths_);
     truths_[0].told += shift_;
+    if (faulted_) truths_[0].statusword = 0x0008;
     oracle_->look(view());
   }
+  /// The drive tells that an axis is well, and disabled.
+  void tellsSound(std::size_t axis) {
+    const PdoPlace& place = *stage_.statusword(axis);
+    can::Frame frame(place.cob_id, {0, 0, 0, 0, 0, 0, 0, 0});
+    frame.data[place.byte] = 0x40;
+    oracle_->onFrame(frame, view());
+  }
 
-  double shift_ = 0.0;
+  double shift_ = 0.0;  ///< 9.2e-5 rad are three counts, two may be
+  bool faulted_ = false;
 };
+
+TEST_F(DualSnapshots, MayBeTrueAsTheStatuswordOfTheirAxisTells) {
+  faulted_ = true;
+  lookFor(50ms);
+  tellsSound(0);
+  lookFor(60ms);
+  EXPECT_EQ(found(), "") << "60 ms after the frame";
+  tellsSound(1);
+  lookFor(10ms);
+  EXPECT_EQ(found(), "untrue_snapshot a1 +120 ms") << "the frame was about a2";
+}
 
 TEST_F(DualSnapshots, MayShiftWhereTheDriveIsGivenAnotherZero) {
   for (const char* verb : {"recover", "save", "restore", "nmt"}) {
