@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 
 namespace cia402::drive {
 
@@ -31,8 +30,6 @@ inline bool isFault(State state) {
 /// The state that a statusword shows, by mask and value as CiA 402-2 lists them; with bit 3 (fault)
 /// set and other bits of no state it is a fault.
 State decodeState(std::uint16_t statusword);
-/// Set bits by name: "ready to switch on, voltage enabled, warning".
-std::string statuswordText(std::uint16_t statusword);
 
 /// Where somebody wants the drive to be.
 enum class Goal : std::uint8_t { disabled, ready, switched_on, enabled, quick_stop };
