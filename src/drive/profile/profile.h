@@ -128,7 +128,8 @@ struct NamedWrite {
   /// readable object, which is read and copied as it is. Where the configuration
   /// does not name it, `value` or `raw` is taken; without these the write is skipped.
   std::string from;
-  double times = 1.0;            ///< the configuration's value is multiplied by this
+  double times = 1.0;    ///< the configuration's value is multiplied by this
+  std::string if_given;  ///< a value of the configuration, as `from`: without it nothing is written
   std::optional<DataType> type;  ///< of an object by index that the profile does not name
   /// A limit of the position that counts in the drive's coordinates: written while these are known
   /// to be the joint's, and open (the widest number) while they are not. See drive/position_limits.
