@@ -24,7 +24,7 @@ constexpr Command kCommands[] = {
 
 std::string controlBit(unsigned bit, const ModeSpec* mode) {
   if (bit == 8) return "halt";
-  if (mode != nullptr && mode->handshake == drive::Handshake::new_set_point) {
+  if (mode != nullptr && !mode->handover.words.empty()) {
     if (bit == 4) return "new set-point";
     if (bit == 5) return "change at once";
     if (bit == 6) return "relative";
