@@ -52,8 +52,7 @@ bool AxisNews::isUnwell(const drive::Axis& axis) const {
 /// What is no news by itself is taken over: it need not be looked at again.
 bool AxisNews::differs(const drive::AxisCondition& shown) {
   const bool news = told_.state != shown.state || told_.health != shown.health ||
-                    told_.error_code != shown.error_code ||
-                    told_.feedback_valid != shown.feedback_valid || told_.warning != shown.warning;
+                    told_.error_code != shown.error_code || told_.warning != shown.warning;
   if (!news) told_ = shown;
   return news;
 }

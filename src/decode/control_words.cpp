@@ -3,33 +3,13 @@
 #include "common/text.h"
 #include "decode/value_text.h"
 #include "drive/axis/state_machine.h"
+#include "drive/profile/status_bits.h"
 
 namespace cia402::decode {
 namespace {
 
 using drive::ControlKind;
 using drive::ModeSpec;
-
-/// Bits 0..3, 5 and 6 are the state.
-constexpr const char* kStatusBits[16] = {
-    nullptr, nullptr,  nullptr,  nullptr,          "voltage enabled", nullptr,  nullptr,  "warning",
-    "bit 8", "remote", "bit 10", "internal limit", "bit 12",          "bit 13", "bit 14", "bit 15"};
-
-const char* statusBit(int bit, const ModeSpec* mode) {
-  if (mode == nullptr) return kStatusBits[bit];
-  const std::pair<const std::optional<int>&, const char*> named[] = {
-      {mode->target_reached_bit, "target reached"},
-      {mode->following_error_bit, "following error"},
-      {mode->set_point_acknowledge_bit, "set-point acknowledged"},
-      {mode->speed_zero_bit, "speed is zero"},
-      {mode->homing_attained_bit, "homing attained"},
-      {mode->homing_error_bit, "homing error"},
-      {mode->follows_command_bit, "follows the command"}};
-  for (const auto& [position, words] : named) {
-    if (position && *position == bit) return words;
-  }
-  return kStatusBits[bit];
-}
 
 /// CiA 402-2, table "command coding": bits that count, their value, and the command.
 struct Command {
@@ -44,7 +24,7 @@ constexpr Command kCommands[] = {
 
 std::string controlBit(unsigned bit, const ModeSpec* mode) {
   if (bit == 8) return "halt";
-  if (mode != nullptr && mode->handshake == drive::Handshake::new_set_point) {
+  if (mode != nullptr && !mode->handover.words.empty()) {
     if (bit == 4) return "new set-point";
     if (bit == 5) return "change at once";
     if (bit == 6) return "relative";
@@ -57,13 +37,8 @@ std::string controlBit(unsigned bit, const ModeSpec* mode) {
 
 std::string statuswordText(std::uint16_t statusword, const ModeSpec* mode) {
   std::string text = hexText(statusword, 4) + " " + drive::toString(drive::decodeState(statusword));
-  const char* separator = "; ";
-  for (int bit = 0; bit < 16; ++bit) {
-    const char* const name = statusBit(bit, mode);
-    if ((statusword >> bit & 1) == 0 || name == nullptr) continue;
-    text += std::string(separator) + name;
-    separator = ", ";
-  }
+  const auto others = static_cast<std::uint16_t>(statusword & ~drive::kStateBits);
+  if (others != 0) text += "; " + drive::statusBitsText(others, mode);
   return text;
 }
 

@@ -13,6 +13,7 @@
 #include "common/text.h"
 #include "decode/value_text.h"
 #include "drive/profile/fault_text.h"
+#include "drive/profile/status_bits.h"
 #include "ros/publishers.h"
 
 namespace cia402::ros_node {
@@ -281,7 +282,7 @@ void Diagnostics::reportAxis(std::size_t index, Status& status) {
   const bus::AxisSummary summary = bus::summaryOf(axis, config.profile->warning_stops);
   status.summary(levelOf(summary.condition), summary.text);
   status.add("state", drive::toString(state.state));
-  status.add("statusword", drive::statuswordText(state.statusword));
+  status.add("statusword", drive::statusBitsText(state.statusword, state.mode));
   status.add("mode", state.mode ? state.mode->name : "unknown");
   status.add("halted", state.halted ? "yes" : "no");
   status.add("homed", state.homed ? "yes" : "no");

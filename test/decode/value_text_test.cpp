@@ -93,7 +93,7 @@ TEST(ValueText, TheStatuswordIsItsStateAndTheBitsBeyond) {
   EXPECT_EQ(statuswordText(0x0250, nullptr), "0x0250 switch on disabled; voltage enabled, remote");
   EXPECT_EQ(statuswordText(0x0218, nullptr), "0x0218 fault; voltage enabled, remote");
   EXPECT_EQ(statuswordText(0x1C27, nullptr),
-            "0x1C27 operation enabled; bit 10, internal limit, bit 12");
+            "0x1C27 operation enabled; target reached, internal limit active, bit 12");
   EXPECT_EQ(statuswordText(0x0000, nullptr), "0x0000 not ready to switch on");
 }
 

@@ -204,16 +204,6 @@ TEST(StateMachine, NamesStates) {
   EXPECT_STREQ(toString(State::unknown), "unknown");
 }
 
-TEST(StateMachine, NamesStatuswordBits) {
-  EXPECT_EQ(statuswordText(0x0091), "ready to switch on, voltage enabled, warning");
-  EXPECT_EQ(statuswordText(0x0250), "voltage enabled, switch on disabled, remote");
-  EXPECT_EQ(statuswordText(0x0C2E),
-            "switched on, operation enabled, fault, quick stop inactive, target reached, internal "
-            "limit active");
-  EXPECT_EQ(statuswordText(0xF100), "bit 8, bit 12, bit 13, bit 14, bit 15");
-  EXPECT_EQ(statuswordText(0x0000), "no bit set");
-}
-
 TEST(StateMachine, WhatIsNoStateIsUnknown) {
   for (const int value : {9, 10, 255}) EXPECT_STREQ(toString(static_cast<State>(value)), "unknown");
 }

@@ -13,7 +13,7 @@ using drive::ControlKind;
 using drive::DriveProfile;
 using drive::Encoding;
 using drive::ErrorText;
-using drive::Handshake;
+using drive::Handover;
 using drive::HomingSpec;
 using drive::ModeSpec;
 using drive::ObjectSpec;
@@ -102,7 +102,9 @@ TEST_F(ProfileKeys, ModesHaveTheirBits) {
   EXPECT_EQ(pp->kind, ControlKind::position);
   EXPECT_FALSE(pp->cyclic);
   EXPECT_EQ(pp->target, "target_position");
-  EXPECT_EQ(pp->handshake, Handshake::new_set_point);
+  EXPECT_THAT(pp->handover.words, ElementsAre(0x0020, 0x0030));
+  EXPECT_EQ(pp->handover.acknowledge, Handover::Acknowledge::level);
+  EXPECT_EQ(pp->handover.each_for, 2);
   EXPECT_EQ(pp->controlword_bits, 0x0020);
   EXPECT_EQ(pp->target_reached_bit, 10);
   EXPECT_EQ(pp->set_point_acknowledge_bit, 12);
@@ -264,7 +266,7 @@ TEST(ProfileDefaults, AreThoseOfTheStandards) {
   EXPECT_FALSE(profile.parameters.power_cycle_after_save);
   EXPECT_TRUE(profile.homing.methods.empty());
   EXPECT_FALSE(profile.mode("csp")->cyclic);
-  EXPECT_EQ(profile.mode("csp")->handshake, Handshake::none);
+  EXPECT_TRUE(profile.mode("csp")->handover.words.empty());
 }
 
 struct WrongKey {

@@ -177,6 +177,50 @@ TEST(DriveCyclicPosition, StopsAtALimitSwitch) {
   EXPECT_GT(b.position(), 0);
 }
 
+TEST(DriveInterpolatedPosition, FollowsWhileBitFourIsSetAndSaysSo) {
+  Bench b;
+  b.nmt(0x01);
+  b.mode(7);
+  b.enable();
+  EXPECT_EQ(b.bits(0x1000), 0);
+  const auto cycle = [&](std::uint16_t controlword, std::uint32_t counts) {
+    b.write(0x60C1, 1, counts, 4);
+    b.control(controlword);
+    b.sync();
+    b.run(ms(2));  // each of the two SDOs takes 1 of the 4 ms
+  };
+  std::uint32_t counts = 0;
+  for (int i = 0; i < 50; ++i) cycle(0x000F, counts += 500);
+  EXPECT_EQ(b.position(), 0);
+  counts = 0;
+  for (int i = 0; i < 100; ++i) cycle(0x001F, counts += 500);
+  EXPECT_EQ(b.bits(0x1000), 0x1000);
+  EXPECT_NEAR(b.velocity(), 125000, 1300);
+  cycle(0x000F, counts + 500);  // interrupted: it ramps to rest by 6084h
+  EXPECT_EQ(b.bits(0x1000), 0);
+  for (int i = 0; i < 50; ++i) cycle(0x000F, counts += 500);
+  EXPECT_EQ(b.velocity(), 0);
+  EXPECT_LT(b.position(), static_cast<std::int32_t>(counts) - 10000);
+}
+
+TEST(DriveInterpolatedPosition, ReachesItsTargetWhereTheStreamRests) {
+  Bench b;
+  b.nmt(0x01);
+  b.mode(7);
+  b.enable();
+  b.control(0x001F);
+  b.write(0x60C1, 1, 1000, 4);
+  for (int i = 0; i < 50; ++i) {
+    b.sync();
+    b.run(ms(4));
+    if (i == 0) {
+      EXPECT_EQ(b.bits(0x0400), 0);
+    }
+  }
+  EXPECT_EQ(b.position(), 1000);
+  EXPECT_EQ(b.bits(0x0400), 0x0400);
+}
+
 TEST(DriveCyclicVelocity, FollowsWithoutARamp) {
   Bench b;
   b.mode(9);

@@ -353,15 +353,15 @@ TEST(DriveStateMachine, ResultDoesNotDependOnHowOftenItIsTicked) {
 TEST(DriveStateMachine, RefusesUnsupportedModesBySdoAndIgnoresThemByPdo) {
   MachineBench b;
   b.write(0x6060, 0, 3, 1);
-  EXPECT_EQ(b.abortOf({0x2F, 0x60, 0x60, 0x00, 0x02, 0, 0, 0}), 0x06090030U);
+  EXPECT_EQ(b.abortOf({0x2F, 0x60, 0x60, 0x00, 0x05, 0, 0, 0}), 0x06090030U);
   EXPECT_EQ(b.read(0x6061) & 0xFFU, 3U);
   b.nmt(0x01);
-  b.frame(0x301, {0x06, 0x00, 0x02});  // RPDO2: controlword, mode
+  b.frame(0x301, {0x06, 0x00, 0x05});  // RPDO2: controlword, mode
   EXPECT_EQ(b.read(0x6061) & 0xFFU, 3U);
   EXPECT_EQ(b.state(), 0x21);
   b.frame(0x301, {0x06, 0x00, 0x08});
   EXPECT_EQ(b.read(0x6061) & 0xFFU, 8U);
-  EXPECT_EQ(b.read(0x6502), 0x000003ADU);
+  EXPECT_EQ(b.read(0x6502), 0x000003EFU);
 }
 
 TEST(DriveStateMachine, SendsItsStatusByTpdoWhenItChanges) {

@@ -123,7 +123,9 @@ inline std::vector<Mover> movers() {
   return {
       {g, csp, Motion::stream, false, 1.2, 1.2, pv},
       {g, csv, Motion::velocity, false, 1.2, 1.2, pv},
+      {g, "interpolated_position", Motion::stream, false, 1.2, 1.2, pv},
       {g, "profile_position", Motion::goal, false, 1.8, 1.5, pv},
+      {g, "velocity", Motion::velocity, false, 1.2, 1.2, csp},
       {g, pv, Motion::velocity, false, 1.2, 1.2, csp},
       {g, "profile_torque", Motion::effort, false, 6.0, 0.5, csp},
       {g, "cyclic_torque", Motion::effort, false, 6.0, 0.5, csp},

@@ -11,10 +11,12 @@ using testing::HasSubstr;
 
 constexpr double kNoJump = 2e-4;  // rad; 131072 counts * 100: 4e-7 rad a count
 
+constexpr char kAllModes[] = ", modes: [pp, vl, pv, ip, csp, csv]";
+
 class EnablingAt : public testing::TestWithParam<double> {};
 
 TEST_P(EnablingAt, MovesNoGenericDriveInAnyMode) {
-  for (const char* mode : {"pp", "pv", "csp", "csv"}) {
+  for (const char* mode : {"pp", "vl", "pv", "ip", "csp", "csv"}) {
     Scene scene(loadText(
         genericPair(", mode: " + std::string(mode) +
                     ", simulation: {initial_position: " + std::to_string(GetParam()) + "}")));
@@ -53,8 +55,9 @@ TEST_P(EnablingAt, MovesNoDamiaoInAnyMode) {
 INSTANTIATE_TEST_SUITE_P(StartPositions, EnablingAt, testing::Values(-2.3, 1.9, 0.0));
 
 TEST(GenericModes, EachModeTakesItsSetPoints) {
-  Scene scene(loadText(genericPair(", simulation: {initial_position: -1.7}")));
-  ASSERT_TRUE(scene.boot());
+  Scene scene(
+      loadText(genericPair(kAllModes + std::string(", simulation: {initial_position: -1.7}"))));
+  ASSERT_TRUE(scene.boot()) << scene.told();
   ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "left").success);
 
   const auto position_mode = [&](const char* mode, double goal) {
@@ -79,6 +82,10 @@ TEST(GenericModes, EachModeTakesItsSetPoints) {
   velocity_mode("pv", 0.5);
   position_mode("csp", 0.8);
   velocity_mode("csv", -0.7);
+  position_mode("ip", 0.3);
+  velocity_mode("vl", 0.6);
+  position_mode("ip", -0.2);
+  velocity_mode("vl", -0.6);
   position_mode("pp", 1.1);
   position_mode("csp", -0.9);
   EXPECT_LE(scene.seen("left").fastest, 1.5 * 1.1);
@@ -99,11 +106,13 @@ void wander(Scene& scene, const std::string& axis, double goal) {
 }
 
 TEST(GenericModes, NoSwitchJumpsWhateverTargetsAreStale) {
-  Scene scene(loadText(genericPair(", simulation: {initial_position: 2.0}")));
-  ASSERT_TRUE(scene.boot());
+  Scene scene(
+      loadText(genericPair(kAllModes + std::string(", simulation: {initial_position: 2.0}"))));
+  ASSERT_TRUE(scene.boot()) << scene.told();
   ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "left").success);
   double goal = -0.8;
-  for (const char* mode : {"pv", "csp", "pp", "csv", "csp", "pv", "pp", "csv", "pv", "csp", "pp"}) {
+  for (const char* mode : {"pv", "csp", "pp", "csv", "csp", "pv", "pp", "csv", "pv", "csp", "pp",
+                           "ip", "vl",  "ip", "csv", "ip",  "pp", "vl", "csp", "vl", "pv"}) {
     wander(scene, "left", goal);
     goal = -goal;
     scene.forget();

@@ -5,6 +5,7 @@
 
 #include "common/text.h"
 #include "drive/profile/fault_text.h"
+#include "drive/profile/status_bits.h"
 #include "drive/sentence.h"
 
 namespace cia402::drive {
@@ -187,7 +188,7 @@ std::string Feedback::stateText() const {
   const AxisState& state = axis_.state;
   if (state.state == State::unknown && state.statusword == 0) return "no statusword";
   return "statusword " + hexText(state.statusword, 4) + " (" + toString(state.state) + ": " +
-         statuswordText(state.statusword) + ")";
+         statusBitsText(state.statusword, state.mode) + ")";
 }
 
 std::string Feedback::text() const {
@@ -210,7 +211,7 @@ std::string Feedback::unknownText() const {
   if (state.feedback_valid) {
     return axis_.who() + ": its state is unknown: statusword (" + axis_.profile().address(0x6041) +
            ") " + hexText(state.statusword, 4) + " is none of the states of CiA 402 (" +
-           statuswordText(state.statusword) + "); is it the right drive profile?";
+           statusBitsText(state.statusword, state.mode) + "); is it the right drive profile?";
   }
   std::string why = axis_.device.missingText();
   if (why.empty()) why = text();

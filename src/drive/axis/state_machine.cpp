@@ -4,8 +4,6 @@
 #include <array>
 #include <cstddef>
 
-#include "common/text.h"
-
 namespace cia402::drive {
 namespace {
 
@@ -41,23 +39,6 @@ constexpr const char* kStateNames[kStates] = {"not ready to switch on",
                                               "fault reaction active",
                                               "fault",
                                               "unknown"};
-
-constexpr const char* kStatuswordBits[16] = {"ready to switch on",
-                                             "switched on",
-                                             "operation enabled",
-                                             "fault",
-                                             "voltage enabled",
-                                             "quick stop inactive",
-                                             "switch on disabled",
-                                             "warning",
-                                             "bit 8",
-                                             "remote",
-                                             "target reached",
-                                             "internal limit active",
-                                             "bit 12",
-                                             "bit 13",
-                                             "bit 14",
-                                             "bit 15"};
 
 // The commands of CiA 402-2, table "command coding", with the transition each causes.
 constexpr Command kNothing{0x0000, -1, "no command"};
@@ -122,15 +103,6 @@ State decodeState(std::uint16_t statusword) {
     if ((statusword & code.mask) == code.value) return code.state;
   }
   return State::unknown;
-}
-
-std::string statuswordText(std::uint16_t statusword) {
-  std::string text;
-  for (unsigned bit = 0; bit < 16; ++bit) {
-    if ((statusword & (1u << bit)) == 0) continue;
-    append(text, kStatuswordBits[bit], ", ");
-  }
-  return text.empty() ? "no bit set" : text;
 }
 
 Command nextCommand(State state, Goal goal) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 
 namespace cia402::drive {
 
@@ -31,8 +30,6 @@ inline bool isFault(State state) {
 /// The state that a statusword shows, by mask and value as CiA 402-2 lists them; with bit 3 (fault)
 /// set and other bits of no state it is a fault.
 State decodeState(std::uint16_t statusword);
-/// Set bits by name: "ready to switch on, voltage enabled, warning".
-std::string statuswordText(std::uint16_t statusword);
 
 /// Where somebody wants the drive to be.
 enum class Goal : std::uint8_t { disabled, ready, switched_on, enabled, quick_stop };
@@ -49,9 +46,8 @@ Command nextCommand(State state, Goal goal);
 
 namespace controlword {
 inline constexpr std::uint16_t kSwitchOn = 1u << 0, kEnableVoltage = 1u << 1, kQuickStop = 1u << 2,
-                               kEnableOperation = 1u << 3, kNewSetPoint = 1u << 4,
-                               kHomingStart = 1u << 4, kChangeImmediately = 1u << 5,
-                               kRelative = 1u << 6, kFaultReset = 1u << 7, kHalt = 1u << 8;
+                               kEnableOperation = 1u << 3, kHomingStart = 1u << 4,
+                               kFaultReset = 1u << 7, kHalt = 1u << 8;
 /// The command "quick stop": the voltage stays, the bit that is named after it is 0.
 inline constexpr std::uint16_t kQuickStopCommand = kEnableVoltage;
 }  // namespace controlword

@@ -48,6 +48,13 @@ bool asksForHoming(const std::string& from, const AxisConfig& axis) {
   return from == "homing.method" || homing(from, *axis.homing).has_value();
 }
 
+bool isGiven(const std::string& name, const AxisConfig& axis) {
+  if (name.empty() || limit(name, axis.limits, false)) return true;
+  if (name == kHold) return axis.quick_stop_holds;
+  return name == "homing.method" ? axis.homing && axis.homing->method
+                                 : axis.homing && homing(name, *axis.homing).has_value();
+}
+
 Source configured(const NamedWrite& write, const AxisConfig& axis, bool reversed) {
   Source source;
   const std::string& from = write.from;
@@ -154,6 +161,7 @@ Result<std::optional<ResolvedWrite>> resolveWrite(const NamedWrite& write, const
   resolved.name =
       (object != nullptr ? object->name + " " : "") + "(" + fieldbus::toString(*id) + ")";
 
+  if (!isGiven(write.if_given, axis)) return Resolved{};
   Source source;
   if (!write.from.empty()) {
     source = configured(write, axis, object != nullptr && reverses(*object, axis));
@@ -169,6 +177,11 @@ Result<std::optional<ResolvedWrite>> resolveWrite(const NamedWrite& write, const
     const auto finite = sendable(*type, axis.profile->encodingOf(*id, *type), resolved.raw);
     if (!finite) return refuse(axis, resolved.name, notFinite(*type, resolved.raw));
     resolved.raw = *finite;
+    if (object != nullptr && !object->takes(resolved.raw)) {
+      return refuse(axis, resolved.name,
+                    std::to_string(*source.raw) + " does not fit; the object takes " +
+                        object->rangeText() + " in the drive's own numbers");
+    }
   } else if (source.value && object != nullptr) {
     const auto conversion = Conversion::create(*object, *axis.profile, axis.geometry);
     if (!conversion && write.optional) return Resolved{};

@@ -82,12 +82,23 @@ struct ObjectSpec {
   Quantity quantity = Quantity::none;
   double factor = 1.0;  ///< further factor: device value = factor * value in the profile's unit
   std::optional<UnitSpec> unit;  ///< of this object alone; absent: the profile's for the quantity
+  /// What the object takes of all numbers of its type, in the drive's own numbers.
+  struct Range {
+    double low = 0.0, high = 0.0;
+    bool holds(double number) const { return number >= low && number <= high; }
+  };
+  std::optional<Range> range;
   bool readable = true;
   bool writable = true;
   bool rpdo = false;                  ///< may be mapped into an RPDO
   bool tpdo = false;                  ///< may be mapped into a TPDO
   bool from_eds = false;              ///< the axis' EDS names it, the profile does not
   std::vector<std::string> eds_keys;  ///< further names, from the EDS (fieldbus::nameKey())
+
+  /// Whether a number with these bits is within `range`; so is every one where there is none.
+  bool takes(std::uint64_t raw) const;
+  /// "0 to 120", of `range`.
+  std::string rangeText() const;
 };
 
 /// What a mode controls, for everything above the drive that does not care for mode numbers. The
@@ -98,10 +109,23 @@ std::vector<std::string> controlKindWords();
 /// What the target of a mode of this kind measures; none: it has no target.
 Quantity targetQuantity(ControlKind kind);
 
-enum class Handshake : std::uint8_t {
-  none,           ///< a written target takes effect at once
-  new_set_point,  ///< controlword bit 4 edge, acknowledged by statusword bit 12 (pp)
+/// How set-points are handed to a drive one by one, by bits of the controlword (CiA 402-2, profile
+/// position mode).
+struct Handover {
+  /// What becomes of ModeSpec::set_point_acknowledge_bit.
+  enum class Acknowledge : std::uint8_t {
+    none,   ///< there is no such bit
+    level,  ///< it rises with the last word, and falls once the words are back at rest
+    rise,   ///< it rises, but may stay set from then on
+  };
+  /// Bits beside those of the state machine and the mode: at rest, then those that hand a set-point
+  /// over, one after the other. Empty: a written target counts at once.
+  std::vector<std::uint16_t> words;
+  Acknowledge acknowledge = Acknowledge::none;
+  int each_for = 2;  ///< controlwords that each is sent in, at least; 1 to 10
 };
+/// That of CiA 402-2: bit 5 is held (change at once), bit 4 hands over.
+Handover standardHandover(bool acknowledged);
 
 /// What brings an axis to rest while its drive stays in operation.
 enum class StopBy : std::uint8_t {
@@ -128,7 +152,8 @@ struct NamedWrite {
   /// readable object, which is read and copied as it is. Where the configuration
   /// does not name it, `value` or `raw` is taken; without these the write is skipped.
   std::string from;
-  double times = 1.0;            ///< the configuration's value is multiplied by this
+  double times = 1.0;    ///< the configuration's value is multiplied by this
+  std::string if_given;  ///< a value of the configuration, as `from`: without it nothing is written
   std::optional<DataType> type;  ///< of an object by index that the profile does not name
   /// A limit of the position that counts in the drive's coordinates: written while these are known
   /// to be the joint's, and open (the widest number) while they are not. See drive/position_limits.
@@ -141,11 +166,11 @@ struct ModeSpec {
   std::string name;  ///< canonical logical name ("cyclic_position") or vendor name
   int value = 0;     ///< for 6060h
   ControlKind kind = ControlKind::position;
-  bool cyclic = false;  ///< follows a stream of set-points (trajectory groups may use it)
-  std::string target;   ///< name of the target object; empty for homing
-  Handshake handshake = Handshake::none;
-  std::optional<StopBy> stop;          ///< absent: by the kind of mode, see stopBy()
-  std::string stop_mode;               ///< with StopBy::mode: a cyclic velocity mode's name
+  bool cyclic = false;         ///< follows a stream of set-points (trajectory groups may use it)
+  std::string target;          ///< name of the target object; empty for homing
+  Handover handover;           ///< of positions, where the drive plans its way
+  std::optional<StopBy> stop;  ///< absent: by the kind of mode, see stopBy()
+  std::string stop_mode;       ///< with StopBy::mode: a cyclic velocity mode's name
   std::uint16_t controlword_bits = 0;  ///< held while the mode is active in Operation enabled
   std::optional<int> target_reached_bit, following_error_bit, set_point_acknowledge_bit,
       speed_zero_bit, homing_attained_bit, homing_error_bit, follows_command_bit;

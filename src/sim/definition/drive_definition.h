@@ -22,9 +22,11 @@ namespace cia402::sim {
 enum class ModeBehaviour : std::uint8_t {
   hold,  ///< no mode assigned: stands still
   profile_position,
+  velocity,  ///< with 6042h ("vl")
   profile_velocity,
   profile_torque,
   homing,
+  interpolated_position,
   cyclic_position,
   cyclic_velocity,
   cyclic_torque,

@@ -11,9 +11,11 @@ namespace {
 const std::vector<std::pair<const char*, ModeBehaviour>> kBehaviours = {
     {"hold", ModeBehaviour::hold},
     {"profile_position", ModeBehaviour::profile_position},
+    {"velocity", ModeBehaviour::velocity},
     {"profile_velocity", ModeBehaviour::profile_velocity},
     {"profile_torque", ModeBehaviour::profile_torque},
     {"homing", ModeBehaviour::homing},
+    {"interpolated_position", ModeBehaviour::interpolated_position},
     {"cyclic_position", ModeBehaviour::cyclic_position},
     {"cyclic_velocity", ModeBehaviour::cyclic_velocity},
     {"cyclic_torque", ModeBehaviour::cyclic_torque}};
@@ -48,9 +50,11 @@ void applyStandardBits(ModeDefinition& mode) {
       mode.bit_12 = Bit12::zero_speed;
       break;
     case ModeBehaviour::cyclic_position:
+      mode.target_reached = false;
       mode.bit_12 = Bit12::follows;
       mode.bit_13 = Bit13::following_error;
       break;
+    case ModeBehaviour::interpolated_position:
     case ModeBehaviour::cyclic_velocity:
     case ModeBehaviour::cyclic_torque:
       mode.bit_12 = Bit12::follows;

@@ -44,7 +44,7 @@ class DriveCore {
   // Writes from the bus, after the dictionary took them.
   void onControlword();     ///< 6040h
   void onMode();            ///< 6060h
-  void onTargetPosition();  ///< 607Ah
+  void onTargetPosition();  ///< 607Ah, or 60C1h:01
   void onHomingStart();     ///< the object that begins homing
   void onNonFinite();       ///< an object of floats got what is no number
   void saveZero();          ///< the present position is 0 from now on

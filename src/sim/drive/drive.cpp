@@ -146,7 +146,9 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
     }
     if (role == Role::controlword) axis.core.onControlword();
     if (role == Role::mode) axis.core.onMode();
-    if (role == Role::target_position) axis.core.onTargetPosition();
+    if (role == Role::target_position || role == Role::interpolation_target) {
+      axis.core.onTargetPosition();
+    }
     if (role == Role::clear_errors && entry.number != 0) axis.core.resetFault();
     if (role == Role::save_zero && entry.number != 0) axis.core.saveZero();
     if (role == Role::homing_start && entry.number == 1) axis.core.onHomingStart();

@@ -12,7 +12,9 @@ namespace {
 constexpr unsigned kZeroReading = 64;  // every so many readings are 0 while it homes by an object
 
 // Controlword.
-constexpr std::uint16_t kModeBit = 0x0010;  // new set-point, start of homing
+constexpr std::uint16_t kModeBit = 0x0010;  // new set-point, start of homing, ramp, interpolation
+constexpr std::uint16_t kUnlockRamp = 0x0020;
+constexpr std::uint16_t kReferenceRamp = 0x0040;
 constexpr std::uint16_t kHalt = 0x0100;
 
 }  // namespace
@@ -32,6 +34,7 @@ bool DriveMotion::inMode(ModeBehaviour behaviour) const {
 bool DriveMotion::positionControlled() const {
   if (stop_ || held_ || axis_.mode == nullptr) return true;
   switch (axis_.mode->behaviour) {
+    case ModeBehaviour::velocity:
     case ModeBehaviour::profile_velocity:
     case ModeBehaviour::cyclic_velocity:
     case ModeBehaviour::profile_torque:
@@ -42,8 +45,11 @@ bool DriveMotion::positionControlled() const {
   }
 }
 
+bool DriveMotion::modeBit() const { return (controlword_ & kModeBit) != 0; }
+
 void DriveMotion::powerStage(bool on) {
   powered_ = on;
+  controlword_ = 0;
   stop_.reset();
   held_ = false;
   halted_ = false;
@@ -84,8 +90,9 @@ void DriveMotion::hold(bool on) {
 }
 
 void DriveMotion::controlBits(std::uint16_t controlword, std::uint16_t previous) {
+  controlword_ = controlword;
   if (axis_.mode == nullptr) return;
-  const bool bit_4 = (controlword & kModeBit) != 0;
+  const bool bit_4 = modeBit();
   const bool rising = bit_4 && (previous & kModeBit) == 0;
   if (set_points_.control(controlword, rising)) supervision_.newTarget();
   if (inMode(ModeBehaviour::homing)) homing_.control(bit_4, rising);
@@ -108,11 +115,9 @@ void DriveMotion::homeByObject() {
 }
 
 void DriveMotion::cyclicTarget(double seconds, double into) {
-  if (!inMode(ModeBehaviour::cyclic_position)) return;
+  if (!cyclic_.ofThisMode() || !cyclic_.follows(modeBit())) return;
   if (!powered_ || stop_ || held_) return;
-  axis_.limits.release();
-  const double target = axis_.trueTarget(axis_.values.get(Role::target_position, 0.0));
-  axis_.demand.interpolator.moveTo(target, seconds, into);
+  cyclic_.target(seconds, into);
 }
 
 void DriveMotion::limitTorque() {
@@ -137,7 +142,7 @@ void DriveMotion::step() {
   }
   limitTorque();
   // Limits of a cyclic target last until the next one.
-  if (!inMode(ModeBehaviour::cyclic_position)) axis_.limits.release();
+  if (!cyclic_.ofThisMode()) axis_.limits.release();
   axis_.limits.releaseSwitch();
   const double from = axis_.motor.position();
   if (stop_) {
@@ -157,7 +162,11 @@ void DriveMotion::stepMode(double from) {
     case ModeBehaviour::profile_position:
       return set_points_.step();
     case ModeBehaviour::cyclic_position:
-      return stepCyclicPosition(axis_);
+    case ModeBehaviour::interpolated_position:
+      return cyclic_.step(modeBit());
+    case ModeBehaviour::velocity:
+      return stepVelocityMode(axis_, {modeBit(), (controlword_ & kUnlockRamp) != 0,
+                                      (controlword_ & kReferenceRamp) != 0});
     case ModeBehaviour::profile_velocity:
       return stepVelocity(axis_, true);
     case ModeBehaviour::cyclic_velocity:
@@ -179,10 +188,12 @@ std::uint16_t DriveMotion::statusBits() const {
   if (axis_.limits.active() && axis_.definition.internal_limit_bit) bits |= 0x0800;
   if (mode == nullptr) return bits;
   if (mode->behaviour == ModeBehaviour::homing) return bits | homing_.statusBits(halted_);
-  if (mode->target_reached && supervision_.targetReached()) bits |= 0x0400;
+  const bool reached = cyclic_.ofThisMode() ? cyclic_.reached() : supervision_.targetReached();
+  if (mode->target_reached && reached) bits |= 0x0400;
   const bool bit_12 = (mode->bit_12 == Bit12::acknowledge && set_points_.acknowledged()) ||
                       (mode->bit_12 == Bit12::zero_speed && supervision_.atZeroSpeed()) ||
-                      (mode->bit_12 == Bit12::follows && !stop_ && !held_);
+                      (mode->bit_12 == Bit12::follows && !stop_ && !held_ &&
+                       (!cyclic_.ofThisMode() || cyclic_.follows(modeBit())));
   if (bit_12) bits |= 0x1000;
   if (mode->bit_13 == Bit13::following_error && followingErrorExceeded()) bits |= 0x2000;
   return bits;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "sim/drive/cyclic_positions.h"
 #include "sim/drive/homing_mode.h"
 #include "sim/drive/moving_axis.h"
 #include "sim/drive/profile_position.h"
@@ -40,8 +41,8 @@ class DriveMotion {
 
   /// A controlword arrived while operation was enabled already.
   void controlBits(std::uint16_t controlword, std::uint16_t previous);
-  /// A new csp set-point becomes valid: it is reached `seconds` from now, which is `into` seconds
-  /// after the last step.
+  /// A new set-point of csp or ip becomes valid: it is reached `seconds` from now, which is `into`
+  /// seconds after the last step.
   void cyclicTarget(double seconds, double into);
 
   void step();  ///< one kDriveStep
@@ -64,6 +65,7 @@ class DriveMotion {
  private:
   bool inMode(ModeBehaviour behaviour) const;
   bool positionControlled() const;
+  bool modeBit() const;
   void stepMode(double from);
   void limitTorque();
   void halt(bool wanted);
@@ -71,6 +73,7 @@ class DriveMotion {
   const AxisMechanics& mechanics_;
   MovingAxis axis_;
   ProfilePosition set_points_{axis_};
+  CyclicPositions cyclic_{axis_};
   HomingMode homing_{axis_};
   TargetSupervision supervision_{axis_};
   double time_constant_;  ///< of the position loop, s
@@ -78,7 +81,8 @@ class DriveMotion {
   bool held_ = false;
   bool halted_ = false;
   std::optional<Ramp> stop_;
-  unsigned publications_ = 0;  ///< while it homes by an object
+  std::uint16_t controlword_ = 0;  ///< the last one in operation
+  unsigned publications_ = 0;      ///< while it homes by an object
 };
 
 }  // namespace cia402::sim

@@ -6,11 +6,20 @@
 
 namespace cia402::sim {
 
-double MotionLimits::deceleration(Ramp ramp) const {
+/// A change of speed and the whole seconds that it takes (6048h, 6049h, 604Ah).
+double MotionLimits::velocityModeRamp(Role speed, Role time) const {
+  const auto seconds = static_cast<double>(values_.raw(time, 1));
+  return seconds > 0.0 ? values_.get(speed, kUnlimited) / seconds : kUnlimited;
+}
+
+double MotionLimits::deceleration(Ramp ramp, const ModeDefinition* mode) const {
+  const bool vl = mode != nullptr && mode->behaviour == ModeBehaviour::velocity;
   switch (ramp) {
     case Ramp::slow_down:
+      if (vl) return velocityModeRamp(Role::vl_deceleration_speed, Role::vl_deceleration_time);
       return values_.get(Role::profile_deceleration, kUnlimited);
     case Ramp::quick_stop:
+      if (vl) return velocityModeRamp(Role::vl_quick_stop_speed, Role::vl_quick_stop_time);
       return values_.get(Role::quick_stop_deceleration, kUnlimited);
     case Ramp::limit:
     case Ramp::coast:
@@ -25,6 +34,12 @@ double MotionLimits::maxSpeed() const {
 
 ProfileLimits MotionLimits::profile(const ModeDefinition* mode) const {
   ProfileLimits limits;
+  if (mode != nullptr && mode->behaviour == ModeBehaviour::velocity) {
+    limits.velocity = maxSpeed();
+    limits.acceleration = velocityModeRamp(Role::vl_acceleration_speed, Role::vl_acceleration_time);
+    limits.deceleration = deceleration(Ramp::slow_down, mode);
+    return limits;
+  }
   const double speed = mode != nullptr && mode->velocity
                            ? std::fabs(values_.get(*mode->velocity, kUnlimited))
                            : kUnlimited;

@@ -21,8 +21,8 @@ class MotionLimits {
   MotionLimits(const DriveValues& values, const AxisSwitches& switches, double most_deceleration)
       : values_(values), switches_(switches), most_deceleration_(most_deceleration) {}
 
-  /// Of a ramp.
-  double deceleration(Ramp ramp) const;
+  /// Of a ramp in a mode; nullptr: in none.
+  double deceleration(Ramp ramp, const ModeDefinition* mode) const;
   /// Of the motor (6080h).
   double maxSpeed() const;
   /// Of profiles in a mode; nullptr: in none.
@@ -52,6 +52,8 @@ class MotionLimits {
   void releaseSwitch() { switch_hit_ = false; }
 
  private:
+  double velocityModeRamp(Role speed, Role time) const;
+
   const DriveValues& values_;
   const AxisSwitches& switches_;
   double most_deceleration_;

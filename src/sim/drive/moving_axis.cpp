@@ -33,7 +33,7 @@ double MovingAxis::trueTarget(double turns) {
 }
 
 void MovingAxis::slowDown(Ramp ramp) {
-  demand.profile.stop(limits.deceleration(ramp));
+  demand.profile.stop(limits.deceleration(ramp, mode));
   demand.followProfile();
 }
 

@@ -66,7 +66,7 @@ void ProfilePosition::step() {
                axis_.limits.profile(axis_.mode)};
   }
   if (axis_.blocked(active_.target - profile.position())) {
-    profile.stop(axis_.limits.deceleration(Ramp::quick_stop));
+    profile.stop(axis_.limits.deceleration(Ramp::quick_stop, axis_.mode));
   } else {
     profile.step(active_.target, active_.limits);
   }

@@ -15,38 +15,37 @@ double allowedVelocity(MovingAxis& axis, double velocity, double braking) {
 
 }  // namespace
 
-void stepCyclicPosition(MovingAxis& axis) {
-  Demand& demand = axis.demand;
-  const double before = demand.interpolator.position();
-  demand.interpolator.step();
-  const double moved = demand.interpolator.position() - before;
-  if (moved != 0.0 && axis.blocked(moved)) {
-    const double speed =
-        demand.velocity * moved <= 0.0
-            ? 0.0
-            : std::min(std::fabs(demand.velocity), std::fabs(axis.motor.velocity()));
-    demand.profile.reset(demand.position, std::copysign(speed, moved));
-    axis.slowDown(Ramp::quick_stop);
-    demand.interpolator.reset(demand.position);
-  } else {
-    demand.position = demand.interpolator.position();
-    demand.velocity = demand.interpolator.velocity();
-  }
-  axis.motor.followPosition(demand.position);
-}
-
 void stepVelocity(MovingAxis& axis, bool ramped) {
   Demand& demand = axis.demand;
   double limit = axis.limits.maxSpeed();
   if (ramped) limit = std::min(limit, axis.values.get(Role::max_profile_velocity, kUnlimited));
   const double wanted = std::clamp(axis.values.get(Role::target_velocity, 0.0), -limit, limit);
   const ProfileLimits limits = axis.limits.profile(axis.mode);
-  const double braking = axis.limits.deceleration(Ramp::quick_stop);
+  const double braking = axis.limits.deceleration(Ramp::quick_stop, axis.mode);
   const double target = allowedVelocity(axis, wanted, braking);
   const bool forced = target != wanted;
   const double down = forced ? braking : limits.deceleration;
   demand.velocity =
       ramped || forced ? rampVelocity(demand.velocity, target, limits.acceleration, down) : target;
+  axis.motor.followVelocity(demand.velocity);
+  demand.position = axis.motor.position();
+}
+
+void stepVelocityMode(MovingAxis& axis, const VelocityModeBits& bits) {
+  Demand& demand = axis.demand;
+  const double target = axis.values.get(Role::vl_target_velocity, 0.0);
+  const double most =
+      std::min(axis.limits.maxSpeed(), axis.values.get(Role::vl_maximum, kUnlimited));
+  const double least = std::min(axis.values.get(Role::vl_minimum, 0.0), most);
+  const double amount = std::clamp(std::fabs(target), least, most);
+  const double wanted = bits.reference ? std::copysign(amount, target) : 0.0;
+  const double braking = axis.limits.deceleration(Ramp::quick_stop, axis.mode);
+  const double allowed = allowedVelocity(axis, bits.unlocked ? wanted : demand.velocity, braking);
+  const ProfileLimits limits = axis.limits.profile(axis.mode);
+  demand.velocity =
+      bits.ramped ? rampVelocity(demand.velocity, allowed, limits.acceleration, limits.deceleration)
+                  : allowed;
+  axis.values.set(Role::vl_velocity_demand, demand.velocity);
   axis.motor.followVelocity(demand.velocity);
   demand.position = axis.motor.position();
 }

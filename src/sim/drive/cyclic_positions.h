@@ -1,0 +1,32 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "sim/drive/moving_axis.h"
+
+namespace cia402::sim {
+
+/// The modes that go along a line from one set-point to the next (CiA 402-2): cyclic synchronous
+/// position, and interpolated position, which does so while controlword bit 4 is set.
+class CyclicPositions {
+ public:
+  explicit CyclicPositions(MovingAxis& axis) : axis_(axis) {}
+
+  bool ofThisMode() const;
+  /// A set-point becomes valid: it is reached `seconds` from now, which is `into` seconds after the
+  /// last step.
+  void target(double seconds, double into);
+  /// One kDriveStep along the line. @param bit_4 of the controlword
+  void step(bool bit_4);
+  /// The set-points are followed (statusword bit 12). @param bit_4 of the controlword
+  bool follows(bool bit_4) const;
+  /// It stands where the last set-point was, within the window of 6067h (bit 10 of ip).
+  bool reached() const;
+
+ private:
+  Role targetRole() const;
+  void stopAtSwitch(double moved);
+
+  MovingAxis& axis_;
+};
+
+}  // namespace cia402::sim
