@@ -9,12 +9,14 @@
 namespace cia402::campaign {
 namespace {
 
+constexpr const char* kSharedPdos = "pdo_rules: {pdos_per_axis: 0}";
+
 /// Where an axis sits.
 struct Seat {
   int node = 0;
   std::optional<std::size_t> neighbour{};  ///< the other axis in its drive
   int device_axis = 0;
-  std::optional<Habits> habits{};  ///< of a drive with two axes
+  Habits habits{};  ///< of a drive with two axes; may be empty
 };
 
 /// One axis; its YAML is a flow mapping on one line.
@@ -144,10 +146,10 @@ class AxisWriter {
   /// What is of the drive is said alike by all its axes.
   void sitIn(const Seat& seat) {
     simulate("drive", "generic_cia402_dual");
-    if (seat.habits) live(*seat.habits);
+    live(seat.habits);
   }
   void live(const Habits& habits) {
-    simulate("with", "{" + habits.simulation + "}");
+    if (!habits.simulation.empty()) simulate("with", "{" + habits.simulation + "}");
     if (!habits.profile.empty()) add("profile_keys", "{" + habits.profile + "}");
   }
 
@@ -157,6 +159,16 @@ class AxisWriter {
   bool linear_ = false;
   double at_ = 0.0, time_constant_ = 0.004;
 };
+
+/// Those of a drive with two axes, whose axes may share its PDOs.
+Habits drawDualHabits(Random& random) {
+  Habits habits;
+  if (random.chance(0.35)) habits = drawHabits(random);
+  const bool has_rules = habits.profile.find("pdo_rules") != std::string::npos;
+  if (has_rules || !random.chance(0.25)) return habits;
+  habits.profile += (habits.profile.empty() ? "" : ", ") + std::string(kSharedPdos);
+  return habits;
+}
 
 std::vector<Seat> planSeats(Random& random, std::size_t count) {
   const int first = 1 + static_cast<int>(random.below(30));
@@ -175,8 +187,7 @@ std::vector<Seat> planSeats(Random& random, std::size_t count) {
   };
   for (int pairs = count >= 4 && random.chance(0.5) ? 2 : 1; pairs > 0; --pairs) {
     const std::size_t one = draw(), other = draw();
-    std::optional<Habits> habits;
-    if (random.chance(0.35)) habits = drawHabits(random);
+    const Habits habits = drawDualHabits(random);
     seats[one] = {seats[one].node, other, 0, habits};
     seats[other] = {seats[one].node, one, 1, habits};
   }

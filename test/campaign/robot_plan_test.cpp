@@ -30,7 +30,7 @@ TEST(RobotPlan, HasDrivesOfTwoAxesNowAndThen) {
 }
 
 TEST(RobotPlan, PutsNeighboursIntoOneDrive) {
-  int found = 0, two_pairs = 0;
+  int found = 0, two_pairs = 0, shared_pdos = 0;
   bool first_last = false;
   for (unsigned seed = 1; found < 25; ++seed) {
     const RobotPlan plan = planOf(seed);
@@ -46,6 +46,7 @@ TEST(RobotPlan, PutsNeighboursIntoOneDrive) {
       const drive::AxisConfig& axis = loaded->robot.axes[i];
       const drive::AxisConfig& other = loaded->robot.axes[*plan.axes[i].neighbour];
       EXPECT_FALSE(plan.axes[i].damiao);
+      if (loaded->robot.deviceOf(axis).profile->pdos_per_axis == 0) ++shared_pdos;
       EXPECT_EQ(plan.axes[*plan.axes[i].neighbour].neighbour, i);
       EXPECT_EQ(axis.device, other.device);
       EXPECT_EQ(axis.device_axis + other.device_axis, 1U);
@@ -55,6 +56,7 @@ TEST(RobotPlan, PutsNeighboursIntoOneDrive) {
     if (together == 4) ++two_pairs;
   }
   EXPECT_GT(two_pairs, 0);
+  EXPECT_GT(shared_pdos, 0);
   EXPECT_TRUE(first_last) << "whichever axis is written first";
 }
 
