@@ -35,10 +35,11 @@ std::string controlBit(unsigned bit, const ModeSpec* mode) {
 
 }  // namespace
 
-std::string statuswordText(std::uint16_t statusword, const ModeSpec* mode) {
+std::string statuswordText(std::uint16_t statusword, const ModeSpec* mode,
+                           const drive::StatusWords& words) {
   std::string text = hexText(statusword, 4) + " " + drive::toString(drive::decodeState(statusword));
   const auto others = static_cast<std::uint16_t>(statusword & ~drive::kStateBits);
-  if (others != 0) text += "; " + drive::statusBitsText(others, mode);
+  if (others != 0) text += "; " + drive::statusBitsText(others, mode, words);
   return text;
 }
 

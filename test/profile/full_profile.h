@@ -40,6 +40,7 @@ inline const char* const kRest = R"(
 output_shaft: true
 halt_supported: false
 warning_stops: true
+statusword: {7: none, 8: abnormal stop, 15: homed}
 mode_change: disabled
 fault_reset_tries: 4
 fault_reset_nmt_stop: 0.15

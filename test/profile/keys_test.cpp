@@ -142,6 +142,11 @@ TEST_F(ProfileKeys, BehaviourIsAsWritten) {
   EXPECT_TRUE(profile.output_shaft);
   EXPECT_FALSE(profile.halt_supported);
   EXPECT_TRUE(profile.warning_stops);
+  EXPECT_FALSE(profile.has_warning_bit);
+  EXPECT_EQ(profile.status_words[7], "bit 7");
+  EXPECT_EQ(profile.status_words[8], "abnormal stop");
+  EXPECT_EQ(profile.status_words[14], "");
+  EXPECT_EQ(profile.status_words[15], "homed");
   EXPECT_TRUE(profile.mode_change.needs_disabling);
   EXPECT_THAT(profile.quick_stop_holds, ElementsAre(5, -6));
   EXPECT_EQ(device.sync_counter, 12);
@@ -247,6 +252,8 @@ TEST(ProfileDefaults, AreThoseOfTheStandards) {
   const canopen::DeviceProfile& device = family.device;
   EXPECT_EQ(problems.text(), "");
   EXPECT_TRUE(profile.halt_supported);
+  EXPECT_TRUE(profile.has_warning_bit);
+  EXPECT_EQ(profile.status_words, drive::StatusWords());
   EXPECT_FALSE(profile.output_shaft || profile.warning_stops ||
                profile.mode_change.needs_disabling);
   EXPECT_THAT(profile.quick_stop_holds, IsEmpty());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -223,6 +224,10 @@ struct HomingSpec {
   std::vector<NamedWrite> writes;  ///< homing parameters, `from` the axis' homing options
 };
 
+/// What a family calls the bits of its statusword that CiA 402-2 leaves open, or uses otherwise, by
+/// their numbers; empty: as the standard has it.
+using StatusWords = std::array<std::string, 16>;
+
 /// A known error code of the family.
 struct ErrorText {
   /// What the drive reports as missing of that which this program sends.
@@ -259,11 +264,13 @@ struct DriveProfile {
   /// more; 0: it is not.
   Duration fault_reset_pause{0};
   bool fault_reset_clears_history = false;  ///< 1003h:00 = 0 is written before a fault reset
-  bool warning_stops = false;               ///< a warning makes the drive stop like a fault
-  std::vector<int> quick_stop_holds;        ///< values of 605Ah after which quick stop stays active
-  std::vector<NamedWrite> startup;          ///< at every boot
-  std::vector<NamedWrite> before_enable;    ///< each time before enabling
-  std::vector<std::string> default_modes;   ///< an axis can switch to; empty: all
+  StatusWords status_words;
+  bool has_warning_bit = true;             ///< statusword bit 7 is a warning
+  bool warning_stops = false;              ///< a warning makes the drive stop like a fault
+  std::vector<int> quick_stop_holds;       ///< values of 605Ah after which quick stop stays active
+  std::vector<NamedWrite> startup;         ///< at every boot
+  std::vector<NamedWrite> before_enable;   ///< each time before enabling
+  std::vector<std::string> default_modes;  ///< an axis can switch to; empty: all
   std::vector<std::string> feedback;  ///< in the cycle where there is room, most important first
   std::vector<std::string> feedback_if_room;  ///< only with what travels for something else
   std::vector<std::string>
