@@ -188,6 +188,14 @@ class Author {
   }
   /// What may be done to a drive for one of its axes.
   void touchDrive(double at, const AxisPlan& axis) {
+    if (random_.chance(0.4)) {  // it may be done then, unless the other one is quicker
+      const AxisPlan& other = robot_.axes[*axis.neighbour];
+      add(at, "disable " + axis.name);
+      add(at, "disable " + other.name);
+      at += random_.between(0.3, 1.0);
+      add(at + random_.between(-0.05, 0.15),
+          random_.pick<std::string>({"enable ", "recover "}) + other.name);
+    }
     const auto verb =
         random_.pick<std::string>({"recover", "clear_faults", "save", "restore", "nmt"});
     add(at, verb + " " + axis.name + (verb == "nmt" ? " " + nmtCommand() : ""));
