@@ -3,6 +3,8 @@
 // is asked for, nor for another one in the same drive.
 #include <algorithm>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "campaign/oracle.h"
 
