@@ -1,7 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // No drive is taken out of operation while one of its motors has power: neither for the axis that
 // is asked for, nor for another one in the same drive.
-#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
