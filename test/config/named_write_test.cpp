@@ -1,43 +1,16 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "drive/profile/named_write.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <limits>
 
-#include "config/drive_family.h"
-#include "folders.h"
+#include "named_write_fixture.h"
 
 namespace cia402::drive {
 namespace {
 
-AxisConfig axisOf(const char* drive) {
-  Problems problems;
-  AxisConfig axis;
-  axis.name = "shoulder";
-  axis.place = "node 3";
-  axis.profile = std::make_shared<const DriveProfile>(
-      config::loadDriveFamily(cia402::test::configFolder() + "/drives/" + drive + ".yaml", problems)
-          .drive);
-  EXPECT_EQ(problems.text(), "");
-  axis.geometry.counts_per_turn = 6283.185307179586;  // 1000 counts per rad
-  return axis;
-}
-
-NamedWrite write(const char* object, const char* from) {
-  NamedWrite named;
-  named.object = object;
-  named.from = from;
-  return named;
-}
-
-std::uint64_t rawOf(const NamedWrite& named, const AxisConfig& axis) {
-  const auto resolved = resolveWrite(named, axis);
-  EXPECT_TRUE(resolved) << (resolved ? "" : resolved.error().message);
-  if (!resolved || !*resolved) return 0xBAD;
-  return (*resolved)->raw;
-}
+using test::axisOf;
+using test::rawOf;
+using test::write;
 
 TEST(NamedWrite, TakesLimitsInTheDrivesUnits) {
   AxisConfig axis = axisOf("generic_cia402");
@@ -142,69 +115,6 @@ TEST(NamedWrite, RefusesInWordsWhatDoesNotFit) {
   EXPECT_THAT(resolved.error().message,
               testing::HasSubstr("shoulder (node 3): software_limit_max (607D:02): 3e+06 does not "
                                  "fit; the object holds -2.14748e+06 to 2.14748e+06"));
-}
-
-/// The family, with a range for one of its objects.
-AxisConfig axisWithRange(const char* object, double low, double high) {
-  AxisConfig axis = axisOf("generic_cia402");
-  auto profile = std::make_shared<drive::DriveProfile>(*axis.profile);
-  for (drive::ObjectSpec& spec : profile->objects) {
-    if (spec.name == object) spec.range = drive::ObjectSpec::Range{low, high};
-  }
-  axis.profile = profile;
-  return axis;
-}
-
-TEST(NamedWrite, KeepsToWhatTheDriveTakes) {
-  AxisConfig axis = axisWithRange("max_motor_speed", 1, 500);
-  axis.limits.velocity = 1e-5;
-  const auto slow = resolveWrite(write("max_motor_speed", "limits.velocity"), axis);
-  ASSERT_FALSE(slow) << "0 turns a minute";
-  EXPECT_THAT(
-      slow.error().message,
-      testing::HasSubstr("max_motor_speed (6080:00): 1e-05 does not fit; the object holds "));
-  axis = axisWithRange("homing_method", 17, 30);
-  axis.homing.emplace();
-  axis.homing->method = 35;
-  const auto method = resolveWrite(write("homing_method", "homing.method"), axis);
-  ASSERT_FALSE(method);
-  EXPECT_THAT(method.error().message,
-              testing::HasSubstr("homing_method (6098:00): 35 does not fit; the object takes 17 to "
-                                 "30 in the drive's own numbers"));
-}
-
-TEST(NamedWrite, OpensALimitAsFarAsTheDriveTakesIt) {
-  AxisConfig axis = axisWithRange("software_limit_max", -2000000000, 2000000000);
-  axis.limits.upper = 1.0;
-  NamedWrite named = write("software_limit_max", "limits.upper");
-  named.when_homed = true;
-  const auto limit = resolveLimit(named, axis);
-  ASSERT_TRUE(limit && *limit);
-  EXPECT_EQ((*limit)->open, 0x77359400U);
-}
-
-TEST(NamedWrite, IsLeftOutWithoutTheValueThatItGoesWith) {
-  AxisConfig axis = axisOf("generic_cia402");
-  NamedWrite named = write("vl_acceleration_time", "");
-  named.raw = 1;
-  named.if_given = "limits.acceleration";
-  axis.limits.acceleration.reset();
-  auto resolved = resolveWrite(named, axis);
-  ASSERT_TRUE(resolved);
-  EXPECT_FALSE(*resolved);
-  axis.limits.acceleration = 4.0;
-  resolved = resolveWrite(named, axis);
-  ASSERT_TRUE(resolved && *resolved);
-  EXPECT_EQ((*resolved)->raw, 1U);
-  named.if_given = "homing.search_velocity";
-  EXPECT_FALSE(*resolveWrite(named, axis));
-  axis.homing.emplace();
-  axis.homing->search_velocity = 0.1;
-  EXPECT_TRUE(*resolveWrite(named, axis));
-  named.if_given = "quick_stop.hold";
-  EXPECT_FALSE(*resolveWrite(named, axis));
-  axis.quick_stop_holds = true;
-  EXPECT_TRUE(*resolveWrite(named, axis));
 }
 
 TEST(NamedWrite, NothingThatIsNotFiniteGetsIntoAFloatHoweverItIsNamed) {

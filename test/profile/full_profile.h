@@ -72,6 +72,7 @@ signals: [plain]
 errors:
   0x2310: too much current
   0x8250: {text: late, cause: nobody sent, remedy: send, missing: rpdo}
+  0xFF0B: {text: overload, reset: power_cycle, wait: 60}
 )";
 
 inline std::string problemsOfFull(const std::string& text) {

@@ -234,7 +234,11 @@ TEST_F(ProfileKeys, PdosAreAsWritten) {
 }
 
 TEST_F(ProfileKeys, ErrorsHaveWords) {
-  ASSERT_EQ(profile.errors.size(), 2U);
+  ASSERT_EQ(profile.errors.size(), 3U);
+  EXPECT_EQ(profile.errors[0x2310].reset, ErrorText::Reset::by_bit);
+  EXPECT_EQ(profile.errors[0x2310].wait, Duration::zero());
+  EXPECT_EQ(profile.errors[0xFF0B].reset, ErrorText::Reset::power_cycle);
+  EXPECT_EQ(profile.errors[0xFF0B].wait, std::chrono::seconds(60));
   EXPECT_EQ(profile.errors[0x2310].text, "too much current");
   EXPECT_EQ(profile.errors[0x2310].missing, ErrorText::Missing::nothing);
   EXPECT_EQ(profile.errors[0x8250].text, "late");

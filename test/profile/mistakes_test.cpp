@@ -75,6 +75,8 @@ TEST(ProfileMistakes, AreToldWithWhatToDo) {
       {"homing: {kind: drive, methods: {-129: x}}\n", "from -128 to 127, not `-129`"},
       {"homing: {kind: drive, methods: {128: x}}\n", "from -128 to 127, not `128`"},
       {"errors: {0x8250: {cause: x}}\n", "`text` is missing: say in words what the code means"},
+      {"errors: {0x8250: {text: x, reset: sometimes}}\n", "errors/0x8250/reset: unknown word"},
+      {"errors: {0x8250: {text: x, wait: -1}}\n", "errors/0x8250/wait: "},
       {"errors: {0: x}\n", "an error code is a number from 0x0001 to 0xFFFF, not `0`"},
       {"errors: {0x8250: x, 33360: y}\n", "errors/33360: the code is given twice"},
       {"sync: {counter: 4, counter_object: false}\n",

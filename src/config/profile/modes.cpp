@@ -241,6 +241,11 @@ void readErrors(const yaml::Value& value, DriveProfile& profile) {
         const bool rpdo = missing->oneOf({"sync", "rpdo"}).value_or(0) == 1;
         error.missing = rpdo ? Missing::outputs : Missing::cycle;
       }
+      if (const auto reset = details.get("reset")) {
+        const auto index = reset->oneOf({"by_bit", "by_itself", "power_cycle"});
+        if (index) error.reset = static_cast<ErrorText::Reset>(*index);
+      }
+      readDuration(details, "wait", yaml::Range{0.0, 3600.0, false}, error.wait);
       details.finish();
     } else {
       error.text = entry.text().value_or("");

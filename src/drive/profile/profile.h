@@ -236,8 +236,16 @@ struct ErrorText {
     cycle,    ///< the signal that begins a cycle
     outputs,  ///< what travels to the drive in it
   };
+  /// What ends the fault.
+  enum class Reset : std::uint8_t {
+    by_bit,       ///< controlword bit 7, once its cause is gone
+    by_itself,    ///< the drive, once its cause is gone
+    power_cycle,  ///< nothing but switching the drive's power off and on
+  };
   std::string text, cause, remedy;
   Missing missing = Missing::nothing;
+  Reset reset = Reset::by_bit;
+  Duration wait{0};  ///< since the fault, before which the drive takes no reset
 };
 
 /// A drive family as data: what it is as a drive, whatever bus it hangs on. With what it is as a
