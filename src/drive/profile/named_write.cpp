@@ -63,6 +63,8 @@ Source configured(const NamedWrite& write, const AxisConfig& axis, bool reversed
   } else if (from == "sync_period.value" || from == "sync_period.exponent") {
     const auto period = interpolationPeriod(axis.cycle);
     if (period) source.raw = from == "sync_period.value" ? int{period->value} : period->exponent;
+  } else if (from == "sync_period.ms") {
+    source.raw = axis.cycle / std::chrono::milliseconds(1);
   } else if (from == kHold) {
     if (axis.quick_stop_holds) source.raw = axis.profile->quick_stop_holds.front();
   } else if (axis.homing && from == "homing.method") {
@@ -103,6 +105,14 @@ Result<std::uint64_t> encode(const NamedWrite& write, double value, const Conver
 std::uint64_t masked(std::int64_t value, DataType type) {
   const unsigned bits = fieldbus::sizeBits(type);
   return static_cast<std::uint64_t>(value) & (~std::uint64_t{0} >> (64 - bits));
+}
+
+bool fits(std::int64_t value, DataType type) {
+  const unsigned bits = fieldbus::sizeBits(type);
+  if (bits >= 64) return true;
+  const std::int64_t span = std::int64_t{1} << bits;
+  const std::int64_t low = fieldbus::isSigned(type) ? -(span / 2) : 0;
+  return value >= low && value < low + span;
 }
 
 // Access, length and limits as the EDS tells them.
@@ -173,6 +183,10 @@ Result<std::optional<ResolvedWrite>> resolveWrite(const NamedWrite& write, const
   if (source.copied_from) {
     resolved.copied_from = source.copied_from;
   } else if (source.raw) {
+    if (!write.from.empty() && !fits(*source.raw, *type)) {
+      return refuse(axis, resolved.name,
+                    std::to_string(*source.raw) + " (" + write.from + ") does not fit");
+    }
     resolved.raw = masked(*source.raw, *type);
     const auto finite = sendable(*type, axis.profile->encodingOf(*id, *type), resolved.raw);
     if (!finite) return refuse(axis, resolved.name, notFinite(*type, resolved.raw));
