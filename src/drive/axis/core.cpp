@@ -35,7 +35,7 @@ void AxisCore::supervise(Time now) {
     superviseOperation(now);
   } else if (goal() == Goal::enabled && state().state == State::operation_enabled) {
     control_.enterOperation(now);
-    generator_.beginFollowing(now);
+    generator_.beginFollowing(control_.brakeReleasedAt());
     generator_.neutralize();
   }
 }
@@ -94,7 +94,7 @@ void AxisCore::writeCommands(Time now) {
   }
   written_ = now;
   generator_.watchDrive(now);
-  control_.write(generator_.mode().bits());
+  control_.write(control_.brakeReleased(now) ? generator_.mode().bits() : 0);
   mode_.write();
 }
 
