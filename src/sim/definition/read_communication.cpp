@@ -35,7 +35,9 @@ void readCommunication(DefinitionReader& reader, DeviceBehaviour& out) {
   reader.read("map_entry_checked_on_write", out.map_entry_checked_on_write);
   reader.read("disable_may_change_id", out.disable_may_change_id);
   reader.read("timers_require_invalid", out.timers_require_invalid);
+  reader.read("type_requires_invalid", out.type_requires_invalid);
   reader.read("rtr_types", out.rtr_types);
+  reader.read("fixed_service_ids", out.fixed_service_ids);
   reader.read("type255_event_timer_only", out.type255_event_timer_only);
   reader.read("sends_event_tpdos_on_start", out.sends_event_tpdos_on_start);
   reader.read("store_time", out.store_time);
@@ -46,6 +48,7 @@ void readCommunication(DefinitionReader& reader, DeviceBehaviour& out) {
   reader.read<PdoIdentifiers>("pdo_identifiers", out.pdo_identifiers,
                               {{"writable", PdoIdentifiers::writable},
                                {"fixed", PdoIdentifiers::fixed},
+                               {"fixed_but_rtr", PdoIdentifiers::fixed_but_rtr},
                                {"read_only", PdoIdentifiers::read_only}});
   std::int64_t bytes = out.tpdo_size_error;
   reader.read("tpdo_size_error", bytes, -8, 8);
