@@ -12,12 +12,15 @@ namespace cia402 {
 /// @param more options of the axis, as ", key: value"; they may not repeat those here.
 /// @param with further keys of the simulated drive
 inline std::string sv660cJoint(const std::string& more = {}, const std::string& simulation = {},
-                               const std::string& period = "0.004") {
+                               const std::string& period = "0.004",
+                               const std::string& modes = "[ip, pp, pv, csv, pt]") {
   return "bus: {interface: sim, bitrate: 1000000, sync_period: " + period +
          ", heartbeat: 0.1}\n"
          "axes:\n"
          "  joint: {node_id: 1, drive: sv660c, counts_per_turn: 100000, gear_ratio: 50.0,\n"
-         "    rated_torque: 2.39, modes: [ip, pp, pv, csv, pt],\n"
+         "    rated_torque: 2.39, modes: " +
+         modes +
+         ",\n"
          "    write: [{object: gear_numerator, raw: 262144},\n"
          "            {object: gear_denominator, raw: 3125}],\n"
          "    limits: {lower: -2.5, upper: 2.5, velocity: 1.5, acceleration: 4.0, jerk: 40.0,\n"
@@ -26,12 +29,6 @@ inline std::string sv660cJoint(const std::string& more = {}, const std::string& 
          "}}\n"
          "groups:\n"
          "  arm: {joints: [joint]}\n";
-}
-
-/// The position that 6064h of the simulated drive tells, in turns of the motor.
-inline double toldTurns(Scene& scene) {
-  const auto* entry = scene.drive("joint").dictionary().find({0x6064, 0});
-  return static_cast<double>(sim::asSigned(*entry)) / 100000.0;
 }
 
 }  // namespace cia402
