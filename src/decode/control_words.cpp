@@ -24,7 +24,7 @@ constexpr Command kCommands[] = {
 
 std::string controlBit(unsigned bit, const ModeSpec* mode) {
   if (bit == 8) return "halt";
-  if (mode != nullptr && mode->handshake == drive::Handshake::new_set_point) {
+  if (mode != nullptr && !mode->handover.words.empty()) {
     if (bit == 4) return "new set-point";
     if (bit == 5) return "change at once";
     if (bit == 6) return "relative";
@@ -35,10 +35,11 @@ std::string controlBit(unsigned bit, const ModeSpec* mode) {
 
 }  // namespace
 
-std::string statuswordText(std::uint16_t statusword, const ModeSpec* mode) {
+std::string statuswordText(std::uint16_t statusword, const ModeSpec* mode,
+                           const drive::StatusWords& words) {
   std::string text = hexText(statusword, 4) + " " + drive::toString(drive::decodeState(statusword));
   const auto others = static_cast<std::uint16_t>(statusword & ~drive::kStateBits);
-  if (others != 0) text += "; " + drive::statusBitsText(others, mode);
+  if (others != 0) text += "; " + drive::statusBitsText(others, mode, words);
   return text;
 }
 

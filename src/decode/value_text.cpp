@@ -117,7 +117,7 @@ void ValueText::note(ObjectId object, std::uint64_t raw) {
 std::string ValueText::words(const Known& known, std::uint64_t raw, unsigned bits) const {
   const std::string& name = known.spec->name;
   const auto word = static_cast<std::uint16_t>(raw);
-  if (name == "statusword") return statuswordText(word, mode_);
+  if (name == "statusword") return statuswordText(word, mode_, axis_.profile->status_words);
   if (name == "controlword") return controlwordText(word, mode_);
   if (name == "error_code") return errorText(word, *axis_.profile);
   if (name == "mode_display" || name == "mode_of_operation") {

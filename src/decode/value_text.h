@@ -61,7 +61,9 @@ class ValueText {
 
 /// The statusword in words: the state, then the bits that do not belong to it.
 /// @param mode names the bits that depend on it; nullptr: unknown.
-std::string statuswordText(std::uint16_t statusword, const drive::ModeSpec* mode);
+/// @param words of the family
+std::string statuswordText(std::uint16_t statusword, const drive::ModeSpec* mode,
+                           const drive::StatusWords& words);
 /// The controlword in words: the command (CiA 402-2, table "command coding"), then the other bits.
 std::string controlwordText(std::uint16_t controlword, const drive::ModeSpec* mode);
 /// "8 cyclic_position".

@@ -282,7 +282,8 @@ void Diagnostics::reportAxis(std::size_t index, Status& status) {
   const bus::AxisSummary summary = bus::summaryOf(axis, config.profile->warning_stops);
   status.summary(levelOf(summary.condition), summary.text);
   status.add("state", drive::toString(state.state));
-  status.add("statusword", drive::statusBitsText(state.statusword, state.mode));
+  status.add("statusword",
+             drive::statusBitsText(state.statusword, state.mode, config.profile->status_words));
   status.add("mode", state.mode ? state.mode->name : "unknown");
   status.add("halted", state.halted ? "yes" : "no");
   status.add("homed", state.homed ? "yes" : "no");

@@ -172,6 +172,19 @@ TEST_F(ObjectTextTest, TakesTheBitsOfAFloatInHexadecimal) {
   EXPECT_THAT(refusal(DataType::real32, "0x100000000"), HasSubstr("does not fit 4 bytes"));
 }
 
+TEST_F(ObjectTextTest, RefusesWhatTheDriveDoesNotTake) {
+  drive::ObjectSpec percent = object(DataType::int16);
+  percent.range = drive::ObjectSpec::Range{0, 120};
+  EXPECT_EQ(encoded(percent, "120"), (Bytes{0x78, 0x00}));
+  for (const char* value : {"121", "-1", "0xFFFF"}) {
+    const auto bytes = encodeObject(percent, value);
+    ASSERT_FALSE(bytes) << value;
+    EXPECT_EQ(
+        bytes.error().message,
+        "thing (2000:01) takes 0 to 120 in the drive's own numbers, not " + std::string(value));
+  }
+}
+
 TEST_F(ObjectTextTest, NeverSendsNegativeZero) {
   EXPECT_EQ(encoded(DataType::real32, "-0.0"), (Bytes{0, 0, 0, 0}));
   EXPECT_EQ(encoded(DataType::real32, "0x80000000"), (Bytes{0, 0, 0, 0}));

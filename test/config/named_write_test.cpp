@@ -1,43 +1,16 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "drive/profile/named_write.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <limits>
 
-#include "config/drive_family.h"
-#include "folders.h"
+#include "named_write_fixture.h"
 
 namespace cia402::drive {
 namespace {
 
-AxisConfig axisOf(const char* drive) {
-  Problems problems;
-  AxisConfig axis;
-  axis.name = "shoulder";
-  axis.place = "node 3";
-  axis.profile = std::make_shared<const DriveProfile>(
-      config::loadDriveFamily(cia402::test::configFolder() + "/drives/" + drive + ".yaml", problems)
-          .drive);
-  EXPECT_EQ(problems.text(), "");
-  axis.geometry.counts_per_turn = 6283.185307179586;  // 1000 counts per rad
-  return axis;
-}
-
-NamedWrite write(const char* object, const char* from) {
-  NamedWrite named;
-  named.object = object;
-  named.from = from;
-  return named;
-}
-
-std::uint64_t rawOf(const NamedWrite& named, const AxisConfig& axis) {
-  const auto resolved = resolveWrite(named, axis);
-  EXPECT_TRUE(resolved) << (resolved ? "" : resolved.error().message);
-  if (!resolved || !*resolved) return 0xBAD;
-  return (*resolved)->raw;
-}
+using test::axisOf;
+using test::rawOf;
+using test::write;
 
 TEST(NamedWrite, TakesLimitsInTheDrivesUnits) {
   AxisConfig axis = axisOf("generic_cia402");

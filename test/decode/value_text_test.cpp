@@ -90,11 +90,12 @@ TEST(ValueText, CommandsOfTheControlwordAreThoseOfTheTable) {
 }
 
 TEST(ValueText, TheStatuswordIsItsStateAndTheBitsBeyond) {
-  EXPECT_EQ(statuswordText(0x0250, nullptr), "0x0250 switch on disabled; voltage enabled, remote");
-  EXPECT_EQ(statuswordText(0x0218, nullptr), "0x0218 fault; voltage enabled, remote");
-  EXPECT_EQ(statuswordText(0x1C27, nullptr),
+  EXPECT_EQ(statuswordText(0x0250, nullptr, {}),
+            "0x0250 switch on disabled; voltage enabled, remote");
+  EXPECT_EQ(statuswordText(0x0218, nullptr, {}), "0x0218 fault; voltage enabled, remote");
+  EXPECT_EQ(statuswordText(0x1C27, nullptr, {}),
             "0x1C27 operation enabled; target reached, internal limit active, bit 12");
-  EXPECT_EQ(statuswordText(0x0000, nullptr), "0x0000 not ready to switch on");
+  EXPECT_EQ(statuswordText(0x0000, nullptr, {}), "0x0000 not ready to switch on");
 }
 
 TEST(ValueText, ModesAndErrorsHaveNames) {

@@ -48,6 +48,26 @@ struct PushedAxis : Bench {
   void letGo() { each_cycle = nullptr; }
 };
 
+// In a PDO the drive would ignore it, and push on with the one from before.
+TEST(AxisEffort, ThatTheDriveDoesNotTakeIsRefusedInWords) {
+  AxisConfig config = pushing(std::nullopt);
+  auto profile = std::make_shared<DriveProfile>(*config.profile);
+  for (ObjectSpec& spec : profile->objects) {
+    if (spec.name == "target_torque") spec.range = ObjectSpec::Range{0, 1000};
+  }
+  config.profile = profile;
+  Bench bench(config);
+  ASSERT_TRUE(bench.boot() && bench.enable());
+  EXPECT_TRUE(bench.axis.command(2.0, bench.now));
+  const auto refused = bench.axis.command(-0.5, bench.now);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message,
+              HasSubstr("set-point refused: -0.500 does not fit target_torque (6071:00), which "
+                        "takes 0.000 to 2.000"));
+  bench.run(milliseconds(20));
+  EXPECT_EQ(bench.drive.target_torque, 1000);
+}
+
 TEST(AxisEffort, IsTakenUpToItsLimit) {
   Bench bench(pushing(std::nullopt));
   ASSERT_TRUE(bench.boot() && bench.enable());

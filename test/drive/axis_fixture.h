@@ -81,7 +81,7 @@ inline DriveProfile testProfile() {
       object("interpolation_target", 0x60C1, DataType::int32, Quantity::position, 1),
   };
   ModeSpec pp = modeSpec("profile_position", 1, ControlKind::position, false, "target_position");
-  pp.handshake = Handshake::new_set_point;
+  pp.handover = standardHandover(true);
   pp.set_point_acknowledge_bit = 12;
   pp.target_reached_bit = 10;
   ModeSpec pv = modeSpec("profile_velocity", 3, ControlKind::velocity, false, "target_velocity");

@@ -78,6 +78,7 @@ TEST(GoalAhead, ASetPointThatIsNotTakenIsToldAndHandedOverAgainOnce) {
 TEST(GoalAhead, IsHandedOverWithoutWaitingWhereNothingAcknowledgesIt) {
   DriveProfile profile = testProfile();
   profile.modes[0].set_point_acknowledge_bit.reset();
+  profile.modes[0].handover = standardHandover(false);
   Bench bench(withMode("profile_position", std::move(profile)));
   ASSERT_TRUE(bench.boot() && bench.enable());
   ASSERT_TRUE(bench.give(1.3));

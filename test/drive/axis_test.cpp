@@ -228,6 +228,20 @@ TEST(Axis, AWarningStopsOnlyWhereTheProfileSaysSo) {
   EXPECT_THAT(strict.axis.notice(), HasSubstr("statusword bit 7"));
 }
 
+TEST(Axis, BitSevenIsNoWarningWhereTheFamilyHasNone) {
+  DriveProfile profile = testProfile();
+  profile.warning_stops = true;
+  profile.has_warning_bit = false;
+  Bench bench(testConfig(profile));
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  bench.drive.warning = true;
+  bench.run(milliseconds(40));
+  EXPECT_EQ(bench.axis.state().statusword & 0x0080, 0x0080);
+  EXPECT_FALSE(bench.axis.state().warning);
+  EXPECT_TRUE(bench.axis.state().ready_for_motion);
+}
+
 TEST(Axis, SilentFeedbackQuickStopsAnEnabledAxis) {
   Bench bench;
   ASSERT_TRUE(bench.boot());

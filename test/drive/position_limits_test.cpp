@@ -63,6 +63,29 @@ TEST(PositionLimits, AreWrittenOnceTheNodeIsReady) {
   EXPECT_EQ(world.upper(), 31000);
 }
 
+// NiMotion steppers keep them at 607Bh and at 607Dh.
+TEST(PositionLimits, AreWrittenToAsManyObjectsAsTheFamilyHas) {
+  AxisConfig config = limited();
+  auto profile = std::make_shared<DriveProfile>(*config.profile);
+  profile->objects.push_back(
+      test::object("range_low", 0x607B, DataType::int32, Quantity::position, 1));
+  profile->objects.push_back(
+      test::object("range_high", 0x607B, DataType::int32, Quantity::position, 2));
+  profile->startup.push_back(limit("range_low", "limits.lower"));
+  profile->startup.push_back(limit("range_high", "limits.upper"));
+  config.profile = profile;
+  World world(config);
+  const std::pair<unsigned, unsigned> low{0x607B, 1}, high{0x607B, 2};
+  world.drive.dictionary[low] = world.drive.dictionary[high] = {0, 4};
+  ASSERT_TRUE(world.boot());
+  world.run(milliseconds(60));
+  EXPECT_EQ(world.lower(), -31000);
+  EXPECT_EQ(world.upper(), 31000);
+  EXPECT_EQ(static_cast<std::int32_t>(world.drive.dictionary[low].first), -31000);
+  EXPECT_EQ(world.drive.dictionary[high].first, 31000U);
+  EXPECT_TRUE(world.enable());
+}
+
 TEST(PositionLimits, ThatTheDriveHasAreNotWrittenAgain) {
   World world;
   world.hold(-31000, 31000);

@@ -46,6 +46,59 @@ TEST(ClearFaultsProcedure, WaitsForTheFaultReactionToEnd) {
   EXPECT_EQ(bench.drive.resets, 1);
 }
 
+/// A family that says how the fault 0x8611 ends.
+AxisConfig withReset(ErrorText::Reset reset, Duration wait) {
+  DriveProfile profile = testProfile();
+  ErrorText& error = profile.errors[0x8611] = ErrorText();
+  error.text = "position error";
+  error.reset = reset;
+  error.wait = wait;
+  return testConfig(std::move(profile));
+}
+
+TEST(ClearFaultsProcedure, TriesNoResetOfWhatOnlyPowerClears) {
+  Bench bench(withReset(ErrorText::Reset::power_cycle, Duration(0)));
+  ASSERT_TRUE(bench.boot());
+  fault(bench);
+  bench.drive.controlwords.clear();
+  for (const ProcedureKind kind : {ProcedureKind::clear_faults, ProcedureKind::recover}) {
+    const ProcedureStatus& status = bench.perform(kind);
+    EXPECT_FALSE(status.success);
+    EXPECT_THAT(status.message,
+                HasSubstr("fault 0x8611 position error; then switch the drive's power off and on: "
+                          "nothing else clears it"));
+  }
+  for (const std::uint16_t word : bench.drive.controlwords) EXPECT_EQ(word & 0x0080, 0);
+  EXPECT_EQ(bench.drive.state, FakeDrive::S::fault);
+  EXPECT_THAT(bench.axis.faultText(), HasSubstr("nothing else clears it"));
+}
+
+TEST(ClearFaultsProcedure, TellsHowLongTheDriveTakesNoReset) {
+  Bench bench(withReset(ErrorText::Reset::by_bit, std::chrono::seconds(5)));
+  ASSERT_TRUE(bench.boot());
+  for (const int faults : {1, 2}) {  // each waits anew
+    fault(bench);
+    bench.run(milliseconds(1000));
+    const ProcedureStatus& early = bench.perform(ProcedureKind::clear_faults);
+    EXPECT_FALSE(early.success);
+    EXPECT_THAT(early.message,
+                HasSubstr("the drive takes no reset of it for 5 s: call again in 4 s"));
+    EXPECT_EQ(bench.drive.resets, faults - 1);
+    bench.run(milliseconds(4000));
+    EXPECT_TRUE(bench.perform(ProcedureKind::clear_faults).success);
+    EXPECT_EQ(bench.drive.resets, faults);
+  }
+}
+
+TEST(ClearFaultsProcedure, SaysOfAFaultThatItEndsByItself) {
+  Bench bench(withReset(ErrorText::Reset::by_itself, Duration(0)));
+  ASSERT_TRUE(bench.boot());
+  fault(bench);
+  EXPECT_THAT(bench.axis.faultText(),
+              HasSubstr("position error; it ends by itself once its cause is gone, then enable"));
+  EXPECT_TRUE(bench.perform(ProcedureKind::clear_faults).success) << "trying does no harm";
+}
+
 TEST(ClearFaultsProcedure, WithoutAFaultHasNothingToClear) {
   Bench bench;
   ASSERT_TRUE(bench.boot());

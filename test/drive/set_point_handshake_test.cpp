@@ -1,7 +1,11 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "drive/modes/set_point_handshake.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
+
+#include <functional>
+#include <utility>
+#include <vector>
 
 namespace cia402::drive {
 namespace {
@@ -9,9 +13,15 @@ namespace {
 constexpr Duration kTimeout = std::chrono::seconds(1);
 
 struct Wire {
-  SetPointHandshake handshake;
+  explicit Wire(Handover by = standardHandover(true)) : handover(std::move(by)) {}
+  Wire(const Wire&) = delete;
+  Wire& operator=(const Wire&) = delete;
+
+  Handover handover;
+  SetPointHandshake handshake{handover};
   SetPointHandshake::Input input;
   Time now{};
+  bool bit() const { return (handshake.word() & 0x0010) != 0; }
   bool step(bool acknowledged) {
     now += std::chrono::milliseconds(1);
     input.acknowledged = acknowledged;
@@ -27,9 +37,9 @@ TEST(SetPointHandshake, SendsTheTargetBeforeTheEdge) {
   wire.handshake.offer(100);
   EXPECT_TRUE(wire.step(false));
   EXPECT_EQ(wire.handshake.raw(), 100u);
-  EXPECT_FALSE(wire.handshake.bit());
+  EXPECT_FALSE(wire.bit());
   EXPECT_TRUE(wire.step(false));
-  EXPECT_TRUE(wire.handshake.bit());
+  EXPECT_TRUE(wire.bit());
 }
 
 TEST(SetPointHandshake, MakesNoEdgeWhileTheTargetHasNotLeft) {
@@ -38,7 +48,7 @@ TEST(SetPointHandshake, MakesNoEdgeWhileTheTargetHasNotLeft) {
   for (int i = 0; i < 10; ++i) {
     EXPECT_TRUE(wire.step(false));
     wire.input.target_frames = 0;
-    EXPECT_FALSE(wire.handshake.bit());
+    EXPECT_FALSE(wire.bit());
   }
 }
 
@@ -46,9 +56,9 @@ TEST(SetPointHandshake, HoldsTheBitUntilAcknowledgedThenWaitsForTheFall) {
   Wire wire;
   wire.handshake.offer(100);
   for (int i = 0; i < 5; ++i) EXPECT_TRUE(wire.step(false));
-  EXPECT_TRUE(wire.handshake.bit());
+  EXPECT_TRUE(wire.bit());
   EXPECT_TRUE(wire.step(true));
-  EXPECT_FALSE(wire.handshake.bit());
+  EXPECT_FALSE(wire.bit());
   EXPECT_TRUE(wire.handshake.busy());
   for (int i = 0; i < 5; ++i) EXPECT_TRUE(wire.step(true));
   EXPECT_TRUE(wire.handshake.busy());
@@ -62,8 +72,9 @@ struct HastyDrive {
   std::uint64_t target = 0, taken = 0;
   bool bit = false, acknowledges = false;
   void hear(const SetPointHandshake& handshake) {
-    if (handshake.bit() && !bit) taken = target;
-    acknowledges = bit = handshake.bit();
+    const bool raised = (handshake.word() & 0x0010) != 0;
+    if (raised && !bit) taken = target;
+    acknowledges = bit = raised;
     target = handshake.raw();
   }
 };
@@ -103,7 +114,7 @@ TEST(SetPointHandshake, ANewerTargetNeedNotWaitForTheSecondTime) {
   wire.step(false);
   EXPECT_EQ(wire.handshake.raw(), 200u);
   wire.step(false);
-  EXPECT_TRUE(wire.handshake.bit());
+  EXPECT_TRUE(wire.bit());
   wire.step(true);
   wire.step(false);
   EXPECT_FALSE(wire.handshake.busy()) << "once";
@@ -114,7 +125,7 @@ TEST(SetPointHandshake, KeepsTheTargetUnchangedWhileTheBitIsHigh) {
   wire.handshake.offer(100);
   wire.step(false);
   wire.step(false);
-  ASSERT_TRUE(wire.handshake.bit());
+  ASSERT_TRUE(wire.bit());
   wire.handshake.offer(200);
   wire.handshake.offer(300);
   wire.step(false);
@@ -130,7 +141,7 @@ TEST(SetPointHandshake, DoesNotBeginWhileAnOldAcknowledgeStands) {
   Wire wire;
   wire.handshake.offer(100);
   for (int i = 0; i < 5; ++i) EXPECT_TRUE(wire.step(true));
-  EXPECT_FALSE(wire.handshake.bit());
+  EXPECT_FALSE(wire.bit());
   EXPECT_EQ(wire.handshake.raw(), 0u);
 }
 
@@ -141,18 +152,17 @@ TEST(SetPointHandshake, GivesUpWithTheBitLow) {
   while (wire.step(false) && steps < 5000) ++steps;
   EXPECT_GT(steps, 990);
   EXPECT_LT(steps, 1010);
-  EXPECT_FALSE(wire.handshake.bit());
+  EXPECT_FALSE(wire.bit());
   EXPECT_FALSE(wire.handshake.busy());
 }
 
 TEST(SetPointHandshake, PulsesWithoutAnAcknowledgeBit) {
-  Wire wire;
-  wire.input.has_acknowledge = false;
+  Wire wire(standardHandover(false));
   wire.handshake.offer(100);
   int high = 0;
   for (int i = 0; i < 20; ++i) {
     EXPECT_TRUE(wire.step(false));
-    if (wire.handshake.bit()) ++high;
+    if (wire.bit()) ++high;
   }
   EXPECT_EQ(high, 2);
   EXPECT_FALSE(wire.handshake.busy());
@@ -167,6 +177,62 @@ TEST(SetPointHandshake, AnAcknowledgeThatFallsAtTheLastMomentCounts) {
   for (int i = 0; i < 999; ++i) ASSERT_TRUE(wire.step(true)) << i;
   EXPECT_TRUE(wire.step(false)) << "1 s after it was to fall";
   EXPECT_FALSE(wire.handshake.busy());
+}
+
+/// The words of iD286-CNFA: 0F, 2F, 3F, each in a SYNC period of its own.
+Handover threeWords() {
+  Handover handover;
+  handover.words = {0x0000, 0x0020, 0x0030};
+  handover.acknowledge = Handover::Acknowledge::rise;
+  handover.each_for = 1;
+  return handover;
+}
+
+/// What is sent, word by word, as long as the handshake is busy.
+std::vector<int> wordsOf(Wire& wire, const std::function<bool(int)>& acknowledges) {
+  std::vector<int> words;
+  while (wire.handshake.busy() && words.size() < 100) {
+    EXPECT_TRUE(wire.step(acknowledges(words.empty() ? 0 : words.back())));
+    words.push_back(wire.handshake.word());
+  }
+  return words;
+}
+
+TEST(SetPointHandshake, SendsAWordAfterTheOtherAndWaitsForTheRiseAlone) {
+  Wire wire(threeWords());
+  EXPECT_EQ(wire.handshake.word(), 0);
+  wire.handshake.offer(100);
+  bool stays = false;
+  const auto words = wordsOf(wire, [&](int word) { return stays = stays || word == 0x0030; });
+  EXPECT_THAT(words, testing::ElementsAre(0, 0x20, 0x30, 0, 0));
+}
+
+TEST(SetPointHandshake, HandsOverTwiceWhereTheAcknowledgeStandsAlready) {
+  Wire wire(threeWords());
+  wire.handshake.offer(100);
+  const auto words = wordsOf(wire, [](int) { return true; });
+  EXPECT_THAT(words, testing::ElementsAre(0, 0x20, 0x30, 0, 0, 0x20, 0x30, 0, 0));
+}
+
+TEST(SetPointHandshake, WithoutRiseGivesUpAtRest) {
+  Wire wire(threeWords());
+  wire.handshake.offer(100);
+  int steps = 0;
+  while (wire.step(false) && steps < 5000) ++steps;
+  EXPECT_GT(steps, 990);
+  EXPECT_LT(steps, 1010);
+  EXPECT_EQ(wire.handshake.word(), 0);
+  EXPECT_FALSE(wire.handshake.busy());
+}
+
+TEST(SetPointHandshake, SendsEachWordAsOftenAsItIsTold) {
+  Handover handover = threeWords();
+  handover.acknowledge = Handover::Acknowledge::none;
+  handover.each_for = 3;
+  Wire wire(handover);
+  wire.handshake.offer(100);
+  const auto words = wordsOf(wire, [](int) { return false; });
+  EXPECT_THAT(words, testing::ElementsAre(0, 0x20, 0x20, 0x20, 0x30, 0x30, 0x30, 0, 0, 0, 0));
 }
 
 }  // namespace

@@ -12,7 +12,6 @@ using drive::CoordinateMark;
 using drive::DriveProfile;
 using drive::Encoding;
 using drive::ErrorText;
-using drive::Handshake;
 using drive::HomingSpec;
 using fieldbus::DataType;
 using fieldbus::ObjectId;
@@ -77,7 +76,7 @@ TEST(DriveProfile, ReadsASmallOne) {
 TEST(DriveProfile, TheShippedOnesAreValid) {
   const WholeProfile generic = shipped("generic_cia402");
   for (const char* mode : {"pp", "pv", "hm", "csp", "csv"}) EXPECT_NE(generic.mode(mode), nullptr);
-  EXPECT_EQ(generic.mode("pp")->handshake, Handshake::new_set_point);
+  EXPECT_THAT(generic.mode("pp")->handover.words, ElementsAre(0x0020, 0x0030));
   EXPECT_EQ(generic.homing.methods.count(std::nullopt), 0u);
   for (const int method : {17, 30, 33, 34, 35, 37})
     EXPECT_EQ(generic.homing.methods.count(method), 1u);
@@ -96,7 +95,7 @@ TEST(DriveProfile, TheDamiaoOneSaysWhatTheManualSays) {
   for (const auto& [name, value] : modes) {
     ASSERT_NE(damiao.mode(name), nullptr) << name;
     EXPECT_EQ(damiao.mode(name)->value, value) << name;
-    EXPECT_EQ(damiao.mode(name)->handshake, Handshake::none) << name;
+    EXPECT_TRUE(damiao.mode(name)->handover.words.empty()) << name;
   }
   ASSERT_EQ(damiao.homing.methods.size(), 1u);
   EXPECT_EQ(damiao.homing.methods.count(std::nullopt), 1u) << "the position is declared";

@@ -40,6 +40,7 @@ inline const char* const kRest = R"(
 output_shaft: true
 halt_supported: false
 warning_stops: true
+statusword: {7: none, 8: abnormal stop, 15: homed}
 mode_change: disabled
 fault_reset_tries: 4
 fault_reset_nmt_stop: 0.15
@@ -71,6 +72,7 @@ signals: [plain]
 errors:
   0x2310: too much current
   0x8250: {text: late, cause: nobody sent, remedy: send, missing: rpdo}
+  0xFF0B: {text: overload, reset: power_cycle, wait: 60}
 )";
 
 inline std::string problemsOfFull(const std::string& text) {

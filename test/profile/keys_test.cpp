@@ -13,7 +13,7 @@ using drive::ControlKind;
 using drive::DriveProfile;
 using drive::Encoding;
 using drive::ErrorText;
-using drive::Handshake;
+using drive::Handover;
 using drive::HomingSpec;
 using drive::ModeSpec;
 using drive::ObjectSpec;
@@ -102,7 +102,9 @@ TEST_F(ProfileKeys, ModesHaveTheirBits) {
   EXPECT_EQ(pp->kind, ControlKind::position);
   EXPECT_FALSE(pp->cyclic);
   EXPECT_EQ(pp->target, "target_position");
-  EXPECT_EQ(pp->handshake, Handshake::new_set_point);
+  EXPECT_THAT(pp->handover.words, ElementsAre(0x0020, 0x0030));
+  EXPECT_EQ(pp->handover.acknowledge, Handover::Acknowledge::level);
+  EXPECT_EQ(pp->handover.each_for, 2);
   EXPECT_EQ(pp->controlword_bits, 0x0020);
   EXPECT_EQ(pp->target_reached_bit, 10);
   EXPECT_EQ(pp->set_point_acknowledge_bit, 12);
@@ -140,6 +142,11 @@ TEST_F(ProfileKeys, BehaviourIsAsWritten) {
   EXPECT_TRUE(profile.output_shaft);
   EXPECT_FALSE(profile.halt_supported);
   EXPECT_TRUE(profile.warning_stops);
+  EXPECT_FALSE(profile.has_warning_bit);
+  EXPECT_EQ(profile.status_words[7], "bit 7");
+  EXPECT_EQ(profile.status_words[8], "abnormal stop");
+  EXPECT_EQ(profile.status_words[14], "");
+  EXPECT_EQ(profile.status_words[15], "homed");
   EXPECT_TRUE(profile.mode_change.needs_disabling);
   EXPECT_THAT(profile.quick_stop_holds, ElementsAre(5, -6));
   EXPECT_EQ(device.sync_counter, 12);
@@ -227,7 +234,11 @@ TEST_F(ProfileKeys, PdosAreAsWritten) {
 }
 
 TEST_F(ProfileKeys, ErrorsHaveWords) {
-  ASSERT_EQ(profile.errors.size(), 2U);
+  ASSERT_EQ(profile.errors.size(), 3U);
+  EXPECT_EQ(profile.errors[0x2310].reset, ErrorText::Reset::by_bit);
+  EXPECT_EQ(profile.errors[0x2310].wait, Duration::zero());
+  EXPECT_EQ(profile.errors[0xFF0B].reset, ErrorText::Reset::power_cycle);
+  EXPECT_EQ(profile.errors[0xFF0B].wait, std::chrono::seconds(60));
   EXPECT_EQ(profile.errors[0x2310].text, "too much current");
   EXPECT_EQ(profile.errors[0x2310].missing, ErrorText::Missing::nothing);
   EXPECT_EQ(profile.errors[0x8250].text, "late");
@@ -245,6 +256,8 @@ TEST(ProfileDefaults, AreThoseOfTheStandards) {
   const canopen::DeviceProfile& device = family.device;
   EXPECT_EQ(problems.text(), "");
   EXPECT_TRUE(profile.halt_supported);
+  EXPECT_TRUE(profile.has_warning_bit);
+  EXPECT_EQ(profile.status_words, drive::StatusWords());
   EXPECT_FALSE(profile.output_shaft || profile.warning_stops ||
                profile.mode_change.needs_disabling);
   EXPECT_THAT(profile.quick_stop_holds, IsEmpty());
@@ -264,7 +277,7 @@ TEST(ProfileDefaults, AreThoseOfTheStandards) {
   EXPECT_FALSE(profile.parameters.power_cycle_after_save);
   EXPECT_TRUE(profile.homing.methods.empty());
   EXPECT_FALSE(profile.mode("csp")->cyclic);
-  EXPECT_EQ(profile.mode("csp")->handshake, Handshake::none);
+  EXPECT_TRUE(profile.mode("csp")->handover.words.empty());
 }
 
 struct WrongKey {

@@ -41,11 +41,27 @@ TEST(ProfileMistakes, AreToldWithWhatToDo) {
       {"  a: {value: 4, control: velocity, target: profile_velocity, handshake: new_set_point, "
        "status_bits: {set_point_acknowledge: 12}}\n",
        "modes/a/handshake: only positions are handed over one by one"},
+      {"  a: {value: 4, control: position, target: target_position, handshake: {words: [0]}}\n",
+       "modes/a/handshake/words: needs the word at rest and 1 to 7 that hand a set-point over"},
+      {"  a: {value: 4, control: position, target: target_position, handshake: {words: [0, "
+       "0x8F]}}\n",
+       "modes/a/handshake/words[1]: must leave bits 0 to 3 and 7 to the state machine"},
+      {"  a: {value: 4, control: position, target: target_position, handshake: {words: [0, 16], "
+       "acknowledge: rise}}\n",
+       "modes/a/handshake/acknowledge: needs status_bits/set_point_acknowledge"},
+      {"  a: {value: 4, control: position, target: target_position, handshake: {words: [0, 16], "
+       "each_for: 11}}\n",
+       "modes/a/handshake/each_for: "},
+      {"  a: {value: 4, control: position, target: target_position, handshake: new_set_point}\n",
+       "modes/a/handshake: new_set_point needs status_bits/set_point_acknowledge"},
       {"timing: {transitions: {13: 1}}\n",
        "timing/transitions/13: a transition of CiA 402 that is waited for is a number from 2 to "
        "16"},
       {"timing: {transitions: {17: 1}}\n", "not `17`"},
       {"timing: {transitions: {4: 0}}\n", "timing/transitions/4: "},
+      {"statusword: {9: mine}\n",
+       "statusword/9: names bits 7, 8 and 10 to 15, not `9`: the others are the state"},
+      {"statusword: {fault: mine}\n", "not `fault`"},
       {"signals: [plan]\n", "signals[0]: the profile has no object `plan`, did you mean `plain`?"},
       {"signals: [plain, plain]\n", "signals[1]: `plain` is given twice"},
       {"homing: {kind: drive, methods: {1: {moves: false}}}\n",
@@ -59,6 +75,8 @@ TEST(ProfileMistakes, AreToldWithWhatToDo) {
       {"homing: {kind: drive, methods: {-129: x}}\n", "from -128 to 127, not `-129`"},
       {"homing: {kind: drive, methods: {128: x}}\n", "from -128 to 127, not `128`"},
       {"errors: {0x8250: {cause: x}}\n", "`text` is missing: say in words what the code means"},
+      {"errors: {0x8250: {text: x, reset: sometimes}}\n", "errors/0x8250/reset: unknown word"},
+      {"errors: {0x8250: {text: x, wait: -1}}\n", "errors/0x8250/wait: "},
       {"errors: {0: x}\n", "an error code is a number from 0x0001 to 0xFFFF, not `0`"},
       {"errors: {0x8250: x, 33360: y}\n", "errors/33360: the code is given twice"},
       {"sync: {counter: 4, counter_object: false}\n",
@@ -141,6 +159,13 @@ TEST(ProfileMistakes, OfObjectsAreToldWithWhatToDo) {
       {"{object: \"2100:00\"}", "`type` is missing: write for example `type: uint16`"},
       {"{object: \"2100:00\", type: uint8, access: wo, pdo: tpdo}",
        "a write-only object cannot be in a TPDO"},
+      {"{object: \"2100:00\", type: uint8, range: [0]}",
+       "objects/more/range: is [lowest, highest], in the drive's own numbers"},
+      {"{object: \"2100:00\", type: uint8, range: [0, 256]}", "more/range: does not fit uint8"},
+      {"{object: \"2100:00\", type: int16, range: [-32769, 0]}", "more/range: does not fit int16"},
+      {"{object: \"2100:00\", type: uint8, range: [3, 2]}",
+       "more/range: its lowest number is above its highest"},
+      {"{object: \"2100:00\", type: visible_string, range: [3, 4]}", "only numbers have a range"},
       {"{object: \"2100:00\", type: uint8, acces: wo}", "did you mean `access`"},
   };
   const std::string head(kHead);

@@ -187,8 +187,14 @@ ObjectText describeObject(const ObjectSpec* spec, const drive::AxisConfig& axis,
 Result<Bytes> encodeObject(const ObjectSpec& spec, const std::string& value) {
   if (spec.type == drive::DataType::octet_string) return bytesFrom(value);
   if (isText(spec.type)) return Bytes(value.begin(), value.end());
-  if (drive::holdsFloat(spec.type, spec.encoding)) return floatBytes(value, spec);
-  return integerBytes(value, rangeOf(spec.type));
+  const Result<Bytes> bytes = drive::holdsFloat(spec.type, spec.encoding)
+                                  ? floatBytes(value, spec)
+                                  : integerBytes(value, rangeOf(spec.type));
+  if (bytes && !spec.takes(fieldbus::toUnsigned(*bytes))) {
+    return Error{spec.name + " (" + fieldbus::toString(spec.id) + ") takes " + spec.rangeText() +
+                 " in the drive's own numbers, not " + value};
+  }
+  return bytes;
 }
 
 Result<Bytes> encodeUnlisted(const std::string& value, std::size_t size) {

@@ -54,6 +54,29 @@ void readQuickStop(yaml::Section& section, DriveProfile& profile) {
   }
 }
 
+/// Bits that CiA 402-2 leaves to the maker, or that makers use otherwise; the others are the state,
+/// or belong to modes.
+void readStatusWords(yaml::Section& profile_section, DriveProfile& profile) {
+  const auto value = profile_section.get("statusword");
+  if (!value) return;
+  yaml::Section section(*value);
+  for (const auto& [key, entry] : section.entries()) {
+    const auto bit = yaml::parseInteger(key);
+    const bool open = bit && (*bit == 7 || *bit == 8 || (*bit >= 10 && *bit <= 15));
+    if (!open) {
+      entry.problem("names bits 7, 8 and 10 to 15, not `" + key + "`: the others are the state");
+      continue;
+    }
+    const auto word = entry.text();
+    if (!word) continue;
+    const auto index = static_cast<std::size_t>(*bit);
+    const bool none = *bit == 7 && *word == "none";
+    if (none) profile.has_warning_bit = false;
+    profile.status_words[index] = none ? "bit 7" : *word;
+  }
+  section.finish();
+}
+
 // Objects that the axis uses by their fixed names whatever the mode.
 void checkFixedObjects(const yaml::Section& section, const DriveProfile& profile) {
   struct Fixed {
@@ -163,6 +186,7 @@ void readBehaviour(yaml::Section& section, DriveProfile& profile) {
   section.read("output_shaft", profile.output_shaft);
   section.read("halt_supported", profile.halt_supported);
   section.read("warning_stops", profile.warning_stops);
+  readStatusWords(section, profile);
   readModeChange(section, profile);
   section.readInteger("fault_reset_tries", profile.fault_reset_tries, 1, 20);
   readDuration(section, "fault_reset_nmt_stop", yaml::Range{0.0, 10.0, false},

@@ -49,17 +49,58 @@ void readTarget(yaml::Section& section, const DriveProfile& profile, ModeSpec& m
   }
 }
 
+constexpr std::int64_t kStateMachineBits = 0x008F;
+
+void readHandoverWords(yaml::Section& section, Handover& handover) {
+  const auto value =
+      section.require("words", "controlword bits at rest, then those of a set-point");
+  if (!value) return;
+  for (const yaml::Value& entry : value->list()) {
+    const auto word = entry.integer(0, 0xFFFF);
+    if (!word) continue;
+    if ((*word & kStateMachineBits) != 0) {
+      entry.problem("must leave bits 0 to 3 and 7 to the state machine");
+    }
+    handover.words.push_back(static_cast<std::uint16_t>(*word));
+  }
+  if (handover.words.size() < 2 || handover.words.size() > 8) {
+    value->problem("needs the word at rest and 1 to 7 that hand a set-point over");
+    handover.words.clear();
+  }
+}
+
+Handover readHandover(const yaml::Value& value, bool acknowledged) {
+  if (!value.isMap()) {
+    const auto index = value.oneOf({"none", "new_set_point"});
+    if (index != std::size_t{1}) return {};
+    if (!acknowledged) value.problem("new_set_point needs status_bits/set_point_acknowledge");
+    return drive::standardHandover(acknowledged);
+  }
+  Handover handover;
+  yaml::Section section(value);
+  readHandoverWords(section, handover);
+  if (acknowledged) handover.acknowledge = Handover::Acknowledge::level;
+  if (const auto how = section.get("acknowledge")) {
+    const auto index = how->oneOf({"none", "level", "rise"});
+    if (index) handover.acknowledge = static_cast<Handover::Acknowledge>(*index);
+    if (!acknowledged && handover.acknowledge != Handover::Acknowledge::none) {
+      how->problem("needs status_bits/set_point_acknowledge");
+    }
+  }
+  section.readInteger("each_for", handover.each_for, 1, 10);
+  section.finish();
+  return handover;
+}
+
 void readHandshake(yaml::Section& section, ModeSpec& mode) {
   const auto value = section.get("handshake");
-  const auto index = value ? value->oneOf({"none", "new_set_point"}) : std::nullopt;
-  if (index) mode.handshake = static_cast<Handshake>(*index);
-  if (mode.handshake == Handshake::new_set_point && !mode.set_point_acknowledge_bit) {
-    value->problem("new_set_point needs status_bits/set_point_acknowledge");
-  }
-  if (mode.handshake == Handshake::new_set_point && mode.cyclic) {
+  if (!value) return;
+  mode.handover = readHandover(*value, mode.set_point_acknowledge_bit.has_value());
+  if (mode.handover.words.empty()) return;
+  if (mode.cyclic) {
     value->problem("a cyclic mode cannot wait for an acknowledgement of each set-point");
   }
-  if (mode.handshake == Handshake::new_set_point && mode.kind != ControlKind::position) {
+  if (mode.kind != ControlKind::position) {
     value->problem("only positions are handed over one by one (CiA 402-2, profile position mode)");
   }
 }
@@ -97,7 +138,7 @@ ModeSpec readMode(const std::string& name, const yaml::Value& value, const Drive
   readHandshake(section, mode);
   readStop(section, mode);
   section.readInteger("controlword_bits", mode.controlword_bits, 0, 0xFFFF);
-  if ((mode.controlword_bits & 0x008F) != 0) {
+  if ((mode.controlword_bits & kStateMachineBits) != 0) {
     section.problem("controlword_bits must leave bits 0 to 3 and 7 to the state machine");
   }
   if (mode.kind == ControlKind::homing && !mode.homing_attained_bit) {
@@ -200,6 +241,11 @@ void readErrors(const yaml::Value& value, DriveProfile& profile) {
         const bool rpdo = missing->oneOf({"sync", "rpdo"}).value_or(0) == 1;
         error.missing = rpdo ? Missing::outputs : Missing::cycle;
       }
+      if (const auto reset = details.get("reset")) {
+        const auto index = reset->oneOf({"by_bit", "by_itself", "power_cycle"});
+        if (index) error.reset = static_cast<ErrorText::Reset>(*index);
+      }
+      readDuration(details, "wait", yaml::Range{0.0, 3600.0, false}, error.wait);
       details.finish();
     } else {
       error.text = entry.text().value_or("");

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "config/profile/parts.h"
+#include "drive/profile/object_value.h"
 
 namespace cia402::config {
 namespace {
@@ -83,6 +84,28 @@ void readMeaning(yaml::Section& section, ObjectSpec& object, const DriveProfile&
   }
 }
 
+void readRange(yaml::Section& section, ObjectSpec& object) {
+  const auto value = section.get("range");
+  if (!value) return;
+  const std::vector<yaml::Value> ends = value->list();
+  if (ends.size() != 2) {
+    value->problem("is [lowest, highest], in the drive's own numbers");
+    return;
+  }
+  if (fieldbus::sizeBits(object.type) == 0) {
+    value->problem("only numbers have a range");
+    return;
+  }
+  const auto low = ends[0].number(), high = ends[1].number();
+  if (!low || !high) return;
+  const bool integer = !drive::holdsFloat(object.type, object.encoding);
+  const bool fits = !integer || (*low >= static_cast<double>(lowestOf(object.type)) &&
+                                 *high <= static_cast<double>(highestOf(object.type)));
+  if (!fits) value->problem(std::string("does not fit ") + fieldbus::toString(object.type));
+  if (*low > *high) value->problem("its lowest number is above its highest");
+  if (fits && *low <= *high) object.range = ObjectSpec::Range{*low, *high};
+}
+
 ObjectSpec readObject(const std::string& name, const yaml::Value& value,
                       const DriveProfile& profile) {
   ObjectSpec object;
@@ -99,6 +122,7 @@ ObjectSpec readObject(const std::string& name, const yaml::Value& value,
   readEncoding(section, profile, object);
   readAccess(section, object);
   readMeaning(section, object, profile);
+  readRange(section, object);
   section.finish();
   return object;
 }

@@ -17,7 +17,7 @@ using drive::CoordinateMark;
 using drive::DriveProfile;
 using drive::Encoding;
 using drive::ErrorText;
-using drive::Handshake;
+using drive::Handover;
 using drive::HomingSpec;
 using drive::ModeChange;
 using drive::ModeSpec;

@@ -145,6 +145,15 @@ void readFrom(yaml::Section& section, const DriveProfile& profile, const ObjectS
   }
 }
 
+void checkRange(yaml::Section& section, const ObjectSpec* object, const NamedWrite& write) {
+  if (object == nullptr || !write.raw || object->takes(static_cast<std::uint64_t>(*write.raw))) {
+    return;
+  }
+  section.problem(object->name + " (" + fieldbus::toString(object->id) + ") takes " +
+                  object->rangeText() + " in the drive's own numbers, not " +
+                  std::to_string(*write.raw));
+}
+
 void readIfGiven(yaml::Section& section, NamedWrite& write) {
   const auto value = section.get("if_given");
   if (!value) return;
@@ -186,6 +195,7 @@ std::vector<NamedWrite> readWrites(const yaml::Value& list, const DriveProfile& 
     const ObjectSpec* object = readTarget(section, profile, write);
     readFrom(section, profile, object, kind, write);
     readValue(section, profile, object, write);
+    checkRange(section, object, write);
     readIfGiven(section, write);
     readWhen(section, object, kind, write);
     section.read("optional", write.optional);

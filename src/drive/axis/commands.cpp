@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "drive/sentence.h"
+
 namespace cia402::drive {
 
 Result<void> Commands::take(double value, ModeControl& mode, const SetPoint& sent, Time now) {
@@ -14,6 +16,10 @@ Result<void> Commands::take(double value, ModeControl& mode, const SetPoint& sen
   if (!std::isfinite(value)) return Error{refused + "it is not a finite number"};
   if (mode.kind() == SetPointKind::none) {
     return Error{refused + "mode " + mode.spec().name + " takes none; set_mode another first"};
+  }
+  std::uint64_t raw = 0;
+  if (mode.kind() == SetPointKind::torque && !mode.encode(value, raw)) {
+    return Error{refused + number(value) + " does not fit " + mode.targetText()};
   }
   if (!stream_.command) resume(mode, sent, stream_.clock);
   stream_.command = value;

@@ -2,6 +2,7 @@
 #include "drive/axis/fault_watch.h"
 
 #include "drive/profile/fault_text.h"
+#include "drive/sentence.h"
 
 namespace cia402::drive {
 
@@ -18,6 +19,24 @@ void FaultWatch::readError(Time now) {
   }
   errors_.update(look, axis_.device.objects(), now);
   axis_.state.error_code = errors_.code();
+  const std::uint16_t code = look.faulted ? axis_.state.error_code : 0;
+  if (code != faulted_by_) faulted_since_ = now;
+  faulted_by_ = code;
+}
+
+std::string FaultWatch::resetRefusal(Time now) const {
+  const std::uint16_t code = axis_.state.error_code;
+  const auto known = axis_.profile().errors.find(code);
+  if (!axis_.faulted() || known == axis_.profile().errors.end()) return {};
+  const ErrorText& error = known->second;
+  if (error.reset == ErrorText::Reset::power_cycle) {
+    return axis_.who() + ": fault " + errorCodeText(axis_.profile(), code) + "; " +
+           afterwardsText(axis_.profile(), code);
+  }
+  if (code != faulted_by_ || now >= faulted_since_ + error.wait) return {};
+  return axis_.who() + ": fault " + errorCodeText(axis_.profile(), code) +
+         "; the drive takes no reset of it for " + seconds(error.wait) + ": call again in " +
+         seconds(std::chrono::ceil<std::chrono::seconds>(faulted_since_ + error.wait - now));
 }
 
 void FaultWatch::forgetFault() {
@@ -52,7 +71,8 @@ std::string FaultWatch::text() const {
              axis_.profile().address(0x603F) + " is 0 and no " + axis_.device.terms().emergency +
              " came); clear_faults, then look at the drive's own display or log";
     }
-    return axis_.who() + ": fault " + codeText(state.error_code) + reacting + "; then clear_faults";
+    return axis_.who() + ": fault " + codeText(state.error_code) + reacting + "; " +
+           afterwardsText(axis_.profile(), state.error_code);
   }
   if (state.error_code != 0 && errors_.excuse(state.error_code) == nullptr) {
     return axis_.who() + ": " + (state.warning ? "warning " : "error reported ") +

@@ -33,6 +33,9 @@ class FaultWatch {
   Time nextReset() const { return next_reset_; }
   void noteReset(Time next_allowed) { next_reset_ = next_allowed; }
 
+  /// Why a reset of the present fault would be in vain now, with what helps; empty: it may help.
+  std::string resetRefusal(Time now) const;
+
   /// The present fault in words with cause and remedy; empty if none.
   std::string text() const;
   /// "last EMCY 0x8130 ...", or that none is pending.
@@ -47,11 +50,14 @@ class FaultWatch {
   AxisBasis& axis_;
   ErrorEvidence errors_;
   Time next_reset_ = Time::min();
+  Time faulted_since_ = kNever;  ///< with that code:
+  std::uint16_t faulted_by_ = 0;
 };
 
 /// As in nearly every cycle: readError() would change nothing.
 inline bool FaultWatch::nothingNew() const {
-  if (!errors_.quiet() || axis_.state.warning || axis_.faulted()) return false;
+  const bool calm = errors_.quiet() && !axis_.state.warning && !axis_.faulted();
+  if (!calm || faulted_by_ != 0) return false;
   const Signals& signals = axis_.objects.signals;
   return !signals[SignalId::error_code].mapped() || !signals.fresh(SignalId::error_code) ||
          errors_.knows(static_cast<std::uint16_t>(signals.image(SignalId::error_code).raw));

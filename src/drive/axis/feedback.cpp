@@ -49,7 +49,7 @@ void Feedback::readState(Time now, bool handing_over) {
   if (statusword != state.statusword || state.state == State::unknown) {
     state.statusword = statusword;
     state.state = decodeState(statusword);
-    state.warning = (statusword & statusword::kWarning) != 0;
+    state.warning = axis_.profile().has_warning_bit && (statusword & statusword::kWarning) != 0;
     state.internal_limit = (statusword & statusword::kInternalLimit) != 0;
   }
   if (state.state != State::unknown) known_state_ = now;
@@ -188,7 +188,7 @@ std::string Feedback::stateText() const {
   const AxisState& state = axis_.state;
   if (state.state == State::unknown && state.statusword == 0) return "no statusword";
   return "statusword " + hexText(state.statusword, 4) + " (" + toString(state.state) + ": " +
-         statusBitsText(state.statusword, state.mode) + ")";
+         statusBitsText(state.statusword, state.mode, axis_.profile().status_words) + ")";
 }
 
 std::string Feedback::text() const {
@@ -211,7 +211,8 @@ std::string Feedback::unknownText() const {
   if (state.feedback_valid) {
     return axis_.who() + ": its state is unknown: statusword (" + axis_.profile().address(0x6041) +
            ") " + hexText(state.statusword, 4) + " is none of the states of CiA 402 (" +
-           statusBitsText(state.statusword, state.mode) + "); is it the right drive profile?";
+           statusBitsText(state.statusword, state.mode, axis_.profile().status_words) +
+           "); is it the right drive profile?";
   }
   std::string why = axis_.device.missingText();
   if (why.empty()) why = text();

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "drive/axis/position_limits.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace cia402::drive {
@@ -19,11 +20,12 @@ PositionLimits::PositionLimits(const AxisConfig& config) {
       if (!write.when_homed) continue;
       const auto limit = resolveLimit(write, config);
       if (!limit || !*limit) continue;
-      std::size_t at = 0;  // the user's own write replaces the profile's
-      while (at < count_ && !(sides_[at].limit.write.object == (*limit)->write.object)) ++at;
-      if (at == sides_.size()) continue;
-      sides_[at].limit = **limit;
-      if (at == count_) ++count_;
+      const ObjectId object = (*limit)->write.object;  // the user's write replaces the profile's
+      auto side = std::find_if(sides_.begin(), sides_.end(), [&](const Side& known) {
+        return known.limit.write.object == object;
+      });
+      if (side == sides_.end()) side = sides_.insert(side, Side());
+      side->limit = **limit;
     }
   }
 }
@@ -31,17 +33,16 @@ PositionLimits::PositionLimits(const AxisConfig& config) {
 void PositionLimits::forget() {
   idle_ = false;
   ticket_.reset();
-  for (std::size_t i = 0; i < count_; ++i) {
-    const ResolvedLimit limit = sides_[i].limit;
-    sides_[i] = Side();
-    sides_[i].limit = limit;
+  for (Side& side : sides_) {
+    const ResolvedLimit limit = side.limit;
+    side = Side();
+    side.limit = limit;
   }
 }
 
 void PositionLimits::aim(bool known, double shift, double position) {
   idle_ = false;
-  for (std::size_t i = 0; i < count_; ++i) {
-    Side& side = sides_[i];
+  for (Side& side : sides_) {
     const ResolvedLimit& limit = side.limit;
     side.closed = limit.open;
     // What does not fit lies beyond all that the drive can count.
@@ -57,8 +58,7 @@ void PositionLimits::aim(bool known, double shift, double position) {
 }
 
 void PositionLimits::closeIfInside(double position, double target) {
-  for (std::size_t i = 0; i < count_; ++i) {
-    Side& side = sides_[i];
+  for (Side& side : sides_) {
     if (!side.left_open) continue;
     const double beyond = side.limit.lower ? 1.0 : -1.0;
     const double room = (position - side.limit.value) * beyond;
@@ -78,7 +78,7 @@ void PositionLimits::advance(fieldbus::ObjectAccess& objects) {
     const fieldbus::Ticket answer = std::exchange(ticket_, nullptr);
     take(sides_[busy_], *answer);
   }
-  for (busy_ = 0; busy_ < count_; ++busy_) {
+  for (busy_ = 0; busy_ < sides_.size(); ++busy_) {
     Side& side = sides_[busy_];
     if (reached(side) || !side.refusal.empty()) continue;
     const ResolvedWrite& write = side.limit.write;
@@ -88,7 +88,7 @@ void PositionLimits::advance(fieldbus::ObjectAccess& objects) {
     return;
   }
   idle_ = true;
-  for (std::size_t i = 0; i < count_; ++i) idle_ = idle_ && sides_[i].aimed && !sides_[i].left_open;
+  for (const Side& side : sides_) idle_ = idle_ && side.aimed && !side.left_open;
 }
 
 void PositionLimits::take(Side& side, const fieldbus::Transfer& answer) {
@@ -113,8 +113,8 @@ void PositionLimits::take(Side& side, const fieldbus::Transfer& answer) {
 
 bool PositionLimits::settled() const {
   if (ticket_) return false;
-  for (std::size_t i = 0; i < count_; ++i) {
-    if (!reached(sides_[i]) && sides_[i].refusal.empty()) return false;
+  for (const Side& side : sides_) {
+    if (!reached(side) && side.refusal.empty()) return false;
   }
   return true;
 }
@@ -123,9 +123,10 @@ bool PositionLimits::settled() const {
 bool PositionLimits::narrower(const Side& side) const {
   if (!side.held) return false;
   const auto joint = [](const Side& of) { return of.limit.conversion.toJoint(*of.held); };
-  for (std::size_t i = 0; i < count_; ++i) {
-    const Side& other = sides_[i];
-    if (other.limit.lower == side.limit.lower || !other.held) continue;
+  for (const Side& other : sides_) {
+    const bool pair = other.limit.write.object.index == side.limit.write.object.index &&
+                      other.limit.lower != side.limit.lower;
+    if (!pair || !other.held) continue;
     if (side.limit.lower ? joint(side) >= joint(other) : joint(other) >= joint(side)) return false;
   }
   const double wanted = side.limit.conversion.toJoint(side.wanted);
@@ -133,8 +134,7 @@ bool PositionLimits::narrower(const Side& side) const {
 }
 
 std::string PositionLimits::problem() const {
-  for (std::size_t i = 0; i < count_; ++i) {
-    const Side& side = sides_[i];
+  for (const Side& side : sides_) {
     if (side.refusal.empty() || reached(side)) continue;
     if (!side.limit.write.optional || narrower(side)) return side.refusal;
   }
@@ -142,8 +142,7 @@ std::string PositionLimits::problem() const {
 }
 
 std::string PositionLimits::remark() const {
-  for (std::size_t i = 0; i < count_; ++i) {
-    const Side& side = sides_[i];
+  for (const Side& side : sides_) {
     if (side.refusal.empty() || reached(side)) continue;
     return "; the drive's own position limits stay as they are until it is enabled again: " +
            side.refusal;

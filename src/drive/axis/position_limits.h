@@ -1,19 +1,20 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "drive/profile/named_write.h"
 #include "fieldbus/object_access.h"
 
 namespace cia402::drive {
 
-/// The joint's limits in the drive (607Dh), which count in the drive's own coordinates: a drive
-/// that holds those of another zero clamps targets to where nobody wants to go. So they are written
-/// only while the zero is known, and anew whenever it changes; until then they stand open. A side
-/// beyond which the axis stands is open, too, until it has come back: enabling would move it.
+/// The joint's limits in the drive (607Dh, and what else the profile names), which count in the
+/// drive's own coordinates: a drive that holds those of another zero clamps targets to where nobody
+/// wants to go. So they are written only while the zero is known, and anew whenever it changes;
+/// until then they stand open. A side beyond which the axis stands is open, too, until it has come
+/// back: enabling would move it.
 ///
 /// The writes go beside the cycle; who is about to move the axis waits until settled().
 class PositionLimits {
@@ -56,8 +57,7 @@ class PositionLimits {
   bool narrower(const Side& side) const;
   void take(Side& side, const fieldbus::Transfer& answer);
 
-  std::array<Side, 2> sides_;
-  std::size_t count_ = 0;
+  std::vector<Side> sides_;  ///< one for each object that holds a limit
   bool idle_ = false;
   std::size_t busy_ = 0;  ///< whose transfer `ticket_` is
   std::uint64_t sent_ = 0;

@@ -46,9 +46,8 @@ Command nextCommand(State state, Goal goal);
 
 namespace controlword {
 inline constexpr std::uint16_t kSwitchOn = 1u << 0, kEnableVoltage = 1u << 1, kQuickStop = 1u << 2,
-                               kEnableOperation = 1u << 3, kNewSetPoint = 1u << 4,
-                               kHomingStart = 1u << 4, kChangeImmediately = 1u << 5,
-                               kRelative = 1u << 6, kFaultReset = 1u << 7, kHalt = 1u << 8;
+                               kEnableOperation = 1u << 3, kHomingStart = 1u << 4,
+                               kFaultReset = 1u << 7, kHalt = 1u << 8;
 /// The command "quick stop": the voltage stays, the bit that is named after it is 0.
 inline constexpr std::uint16_t kQuickStopCommand = kEnableVoltage;
 }  // namespace controlword

@@ -8,6 +8,7 @@
 #include "drive/modes/profile_position.h"
 #include "drive/modes/torque_control.h"
 #include "drive/modes/velocity_control.h"
+#include "drive/sentence.h"
 
 namespace cia402::drive {
 namespace {
@@ -48,6 +49,13 @@ ModeControl::ModeControl(const ModeChannel& channel, const Context& context)
       context_(context),
       kind_(kindOf(*channel.spec)),
       conversion_(channel.conversion) {}
+
+std::string ModeControl::targetText() const {
+  const ObjectSpec* target = channel_->target.spec;
+  if (target == nullptr) return "the mode, which has no target";
+  return target->name + " (" + fieldbus::toString(target->id) + "), which takes " +
+         number(conversion_.lowest()) + " to " + number(conversion_.highest());
+}
 
 bool ModeControl::leadsInside(double value) const {
   if (!state().homed) return true;

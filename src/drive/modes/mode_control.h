@@ -34,6 +34,8 @@ class ModeControl {
   virtual void place() {}
   /// The raw number of a set-point in joint units. @return false if the object cannot hold it
   bool encode(double value, std::uint64_t& raw) const { return conversion_.toDevice(value, raw); }
+  /// "target_torque (6071:00), which takes 0.000 to 3.840", in joint units.
+  std::string targetText() const;
   /// Set-points are positions: they count from the joint's zero, which must be known.
   bool positions() const { return kind_ == SetPointKind::stream || goals(); }
   /// They are goals: the drive goes to each by itself, and may take them one by one.

@@ -18,7 +18,9 @@ constexpr double kOffStopPoint = 0.25;
 }  // namespace
 
 ProfilePosition::ProfilePosition(const ModeChannel& channel, const Context& context)
-    : PositionControl(channel, context), by_hand_(spec().handshake == Handshake::new_set_point) {}
+    : PositionControl(channel, context),
+      by_hand_(!spec().handover.words.empty()),
+      handshake_(spec().handover) {}
 
 /// The drive goes there by itself, but not beyond the limits.
 void ProfilePosition::takeCommand(Stream& stream) {
@@ -49,10 +51,8 @@ void ProfilePosition::accepted(std::uint64_t raw, bool same) {
 }
 
 unsigned ProfilePosition::bits() const {
-  unsigned bits = spec().controlword_bits;
-  if (!by_hand_) return bits;
-  bits |= controlword::kChangeImmediately;
-  return handshake_.bit() ? bits | controlword::kNewSetPoint : bits;
+  const unsigned bits = spec().controlword_bits;
+  return by_hand_ ? bits | handshake_.word() : bits;
 }
 
 const char* ProfilePosition::handOver(std::uint64_t& raw, Time now) {
@@ -63,7 +63,6 @@ const char* ProfilePosition::handOver(std::uint64_t& raw, Time now) {
   input.controlword_frames = image.sent(axis().objects.controlword.slot);
   input.target_frames = target.mapped() ? image.sent(target.slot) : input.controlword_frames;
   const std::optional<int>& bit = spec().set_point_acknowledge_bit;
-  input.has_acknowledge = bit.has_value();
   input.acknowledged = bit && ((static_cast<unsigned>(state().statusword) >> *bit) & 1u) != 0;
   const char* waiting = handshake_.waitingFor();
   const bool well = handshake_.advance(input, now, axis().profile().timing.state_change);

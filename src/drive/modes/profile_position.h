@@ -6,8 +6,8 @@
 
 namespace cia402::drive {
 
-/// A position that the drive goes to by itself (profile position mode, CiA 402-2), handed over with
-/// an edge of controlword bit 4 where the mode has that handshake.
+/// A position that the drive goes to by itself (profile position mode, CiA 402-2), handed over by
+/// bits of the controlword where the mode has a handover.
 ///
 /// Where it is halted by its set-points, the drive gets the nearest point at which it can stop.
 class ProfilePosition : public PositionControl {
@@ -38,7 +38,7 @@ class ProfilePosition : public PositionControl {
   void giveStopPoint(Time now);
   void renewStopPoint(Time now);
 
-  bool by_hand_;  ///< has the handshake
+  bool by_hand_;  ///< has a handover
   SetPointHandshake handshake_;
   bool dropped_ = false;            ///< the drive does not have the set-point
   double halted_goal_ = kUnknown;   ///< to which the drive was going

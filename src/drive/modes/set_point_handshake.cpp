@@ -1,11 +1,11 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "drive/modes/set_point_handshake.h"
 
-#include <utility>
-
 namespace cia402::drive {
 namespace {
-constexpr std::uint64_t kPulseFrames = 2;  // a pulse without acknowledge is at least this long
+
+using Acknowledge = Handover::Acknowledge;
+
 }  // namespace
 
 void SetPointHandshake::offer(std::uint64_t raw, bool twice) {
@@ -15,7 +15,7 @@ void SetPointHandshake::offer(std::uint64_t raw, bool twice) {
 }
 
 void SetPointHandshake::reset(std::uint64_t raw) {
-  *this = SetPointHandshake();
+  *this = SetPointHandshake(*handover_);
   raw_ = raw;
 }
 
@@ -26,15 +26,50 @@ void SetPointHandshake::enter(Phase phase, std::uint64_t frames, Time now) {
   timing_ = true;
 }
 
-/// The target leaves, the edge follows.
+/// The target leaves, the words follow.
 void SetPointHandshake::announce(const Input& input, Time now) {
   raw_ = next_;
-  again_ = next_twice_;
+  twice_ = next_twice_;
+  handed_over_ = 0;
   pending_ = false;
   enter(Phase::announced, input.target_frames, now);
 }
 
+bool SetPointHandshake::sentLongEnough(const Input& input) const {
+  return input.controlword_frames >= frames_ + static_cast<std::uint64_t>(handover_->each_for);
+}
+
+bool SetPointHandshake::waitsForAcknowledge() const {
+  return handover_->acknowledge == Acknowledge::level ||
+         (handover_->acknowledge == Acknowledge::rise && !was_acknowledged_);
+}
+
+/// The next word, or the end of the last one.
+void SetPointHandshake::raise(const Input& input, Time now) {
+  if (word_ + 1 < handover_->words.size()) {
+    if (word_ > 0 && !sentLongEnough(input)) return;
+    if (word_ == 0) was_acknowledged_ = input.acknowledged;
+    ++word_;
+    enter(Phase::raised, input.controlword_frames, now);
+  } else if (waitsForAcknowledge() ? input.acknowledged : sentLongEnough(input)) {
+    word_ = 0;
+    enter(Phase::lowered, input.controlword_frames, now);
+  }
+}
+
+void SetPointHandshake::lower(const Input& input, Time now) {
+  const bool level = handover_->acknowledge == Acknowledge::level;
+  if (level ? input.acknowledged || input.controlword_frames == frames_ : !sentLongEnough(input)) {
+    return;
+  }
+  phase_ = Phase::idle;
+  timing_ = false;
+  const bool unproved = handover_->acknowledge == Acknowledge::rise && was_acknowledged_;
+  if (++handed_over_ == 1 && (twice_ || unproved)) enter(Phase::announced, 0, now);
+}
+
 bool SetPointHandshake::advance(const Input& input, Time now, Duration timeout) {
+  const bool level = handover_->acknowledge == Acknowledge::level;
   switch (phase_) {
     case Phase::idle:
       if (!pending_) {
@@ -42,28 +77,20 @@ bool SetPointHandshake::advance(const Input& input, Time now, Duration timeout) 
         return true;
       }
       if (!timing_) enter(Phase::idle, 0, now);
-      if (!input.has_acknowledge || !input.acknowledged) announce(input, now);
+      if (!level || !input.acknowledged) announce(input, now);
       break;
     case Phase::announced:
       if (pending_) {  // nothing has been handed over yet: the latest target wins
         announce(input, now);
       } else if (input.target_frames > frames_) {
-        enter(Phase::raised, input.controlword_frames, now);
+        raise(input, now);
       }
       break;
     case Phase::raised:
-      if (input.has_acknowledge ? input.acknowledged
-                                : input.controlword_frames >= frames_ + kPulseFrames) {
-        enter(Phase::lowered, input.controlword_frames, now);
-      }
+      raise(input, now);
       break;
     case Phase::lowered:
-      if (input.has_acknowledge ? !input.acknowledged && input.controlword_frames > frames_
-                                : input.controlword_frames >= frames_ + kPulseFrames) {
-        phase_ = Phase::idle;
-        timing_ = false;
-        if (std::exchange(again_, false)) enter(Phase::announced, 0, now);
-      }
+      lower(input, now);
       break;
   }
   if (!timing_ || now - since_ < timeout) return true;
@@ -78,10 +105,10 @@ const char* SetPointHandshake::waitingFor() const {
     case Phase::announced:
       return "the target to be sent";
     case Phase::raised:
-      return "statusword bit 12 (set-point acknowledge) to rise after the edge of controlword bit "
-             "4";
+      return "statusword bit 12 (set-point acknowledge) to rise after the controlword that hands a "
+             "set-point over";
     case Phase::lowered:
-      return "statusword bit 12 (set-point acknowledge) to fall after controlword bit 4";
+      return "statusword bit 12 (set-point acknowledge) to fall after that controlword";
   }
   return "";
 }

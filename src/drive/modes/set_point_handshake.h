@@ -1,17 +1,19 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "cia402_driver/common/time.h"
+#include "drive/profile/profile.h"
 
 namespace cia402::drive {
 
-/// Hands set-points to a drive one by one with controlword bit 4 and statusword bit 12 (CiA 402-2,
-/// profile position mode). The target has left before the edge of bit 4 is made: a drive
-/// that looks at the controlword before the target takes the previous one only where the
-/// frame with the target was lost. A newer target waits until the drive has acknowledged, and the
-/// latest wins.
+/// Hands set-points to a drive one by one, as its Handover says. The target has left before the
+/// first word is sent: a drive that looks at the controlword before the target takes the previous
+/// one only where the frame with the target was lost. A newer target waits until the drive has
+/// acknowledged, and the latest wins. Where nothing proves that the drive took one it is handed
+/// over twice.
 class SetPointHandshake {
  public:
   /// What the axis sees in this cycle.
@@ -19,36 +21,48 @@ class SetPointHandshake {
     std::uint64_t target_frames = 0;       ///< how often the target was sent so far
     std::uint64_t controlword_frames = 0;  ///< how often the controlword was
     bool acknowledged = false;             ///< statusword bit 12
-    bool has_acknowledge = true;           ///< the mode has such a bit; else bit 4 is pulsed
   };
+
+  /// @param handover of the mode, with at least two words; must outlive this.
+  explicit SetPointHandshake(const Handover& handover) : handover_(&handover) {}
 
   /// Wants `raw` to be the set-point. Replaces one that has not been handed over yet.
   /// @param twice once more after the first acknowledge, which proves that the drive has the target
   ///   where one frame holds both: then the second edge cannot take the previous one, whatever is
   ///   lost
   void offer(std::uint64_t raw, bool twice = false);
-  /// Forgets everything, bit 4 falls. `raw` is what the target object shall hold meanwhile.
+  /// Forgets everything, the controlword rests. `raw` is what the target object shall hold
+  /// meanwhile.
   void reset(std::uint64_t raw);
-  /// One cycle. @return false if the drive has not answered for `timeout`: bit 4 falls and the
-  /// set-point is dropped.
+  /// One cycle. @return false if the drive has not answered for `timeout`: the controlword rests
+  /// and the set-point is dropped.
   [[nodiscard]] bool advance(const Input& input, Time now, Duration timeout);
 
   std::uint64_t raw() const { return raw_; }  ///< for the target object
-  bool bit() const { return phase_ == Phase::raised; }
+  /// For the controlword: one of Handover::words.
+  std::uint16_t word() const { return handover_->words[word_]; }
   /// A set-point is on its way: the drive's target-reached bit still speaks of the one before.
   bool busy() const { return pending_ || phase_ != Phase::idle; }
-  /// Statusword bit 12 does not do what is waited for, in words.
+  /// What the drive does not do that is waited for, in words.
   const char* waitingFor() const;
 
  private:
   enum class Phase : std::uint8_t { idle, announced, raised, lowered };
   void enter(Phase phase, std::uint64_t frames, Time now);
   void announce(const Input& input, Time now);
+  void raise(const Input& input, Time now);
+  void lower(const Input& input, Time now);
+  bool sentLongEnough(const Input& input) const;
+  bool waitsForAcknowledge() const;
 
+  const Handover* handover_;
   Phase phase_ = Phase::idle;
+  std::size_t word_ = 0;
   bool pending_ = false;
-  bool next_twice_ = false, again_ = false;
-  bool timing_ = false;  ///< `since_` is valid while waiting in idle
+  bool next_twice_ = false, twice_ = false;
+  int handed_over_ = 0;            ///< how often the present set-point was
+  bool was_acknowledged_ = false;  ///< before the first word
+  bool timing_ = false;            ///< `since_` is valid while waiting in idle
   std::uint64_t raw_ = 0, next_ = 0, frames_ = 0;
   Time since_{};
 };

@@ -16,7 +16,7 @@ constexpr Duration kStopMargin{std::chrono::milliseconds(500)};
 /// Of the cycles between the steps; and a step's own limit, which knows more to tell, comes first.
 constexpr Duration kMargin{std::chrono::milliseconds(500)};
 constexpr Duration kStanding = 4 * Standstill::kWindow;  // awaitStandstill()
-constexpr int kLimitTransfers = 6;                       // PositionLimits: three for each side
+constexpr std::ptrdiff_t kLimitTransfers = 3;            // PositionLimits: for each object
 
 /// The sum of what steps may take. They are called by the names of the steps.
 struct Steps {
@@ -32,7 +32,11 @@ struct Steps {
     });
     return (static_cast<int>(list.size()) + static_cast<int>(copies)) * transfer();
   }
-  Duration limits() const { return kLimitTransfers * transfer(); }
+  Duration limits() const {
+    const auto of_profile = std::count_if(profile.startup.begin(), profile.startup.end(),
+                                          [](const NamedWrite& write) { return write.when_homed; });
+    return kLimitTransfers * std::max<std::ptrdiff_t>(2, of_profile) * transfer();
+  }
   Duration mode() const {
     Duration longest{0};
     for (const ModeSpec& spec : profile.modes) {

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "drive/profile/conversion.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -130,6 +131,12 @@ Result<Conversion> Conversion::create(const ObjectSpec& object, const DriveProfi
     result.high_ = largestFloat(object.encoding);
     result.low_ = result.signed_ ? lowestFloat(object.encoding) : 0.0;
   }
+  result.first_ = result.low_;
+  result.last_ = result.high_;
+  if (object.range) {
+    result.low_ = std::max(result.low_, object.range->low);
+    result.high_ = std::min(result.high_, object.range->high);
+  }
   return result;
 }
 
@@ -140,19 +147,23 @@ double Conversion::floatToJoint(std::uint64_t raw) const {
 bool Conversion::toDevice(double value, std::uint64_t& raw) const {
   const double device = (value - offset_) * inverse_;
   if (encoding_ != Encoding::integer) {
-    if (!(signed_ || device >= 0.0)) return false;
+    if (!(device >= low_ && device <= high_)) return false;
     return encodeFloat(encoding_, device, raw);
   }
   double rounded = std::nearbyint(device);
   if (wraps_ && std::fabs(rounded) < kExact) {
-    const double numbers = high_ - low_ + 1.0;
-    rounded -= numbers * std::floor((rounded - low_) / numbers);
+    const double numbers = last_ - first_ + 1.0;
+    rounded -= numbers * std::floor((rounded - first_) / numbers);
   }
   if (!(rounded >= low_ && rounded <= high_)) return false;  // NaN, too
-  raw = (signed_ ? static_cast<std::uint64_t>(static_cast<std::int64_t>(rounded))
-                 : static_cast<std::uint64_t>(rounded)) &
-        mask_;
+  raw = wire(rounded);
   return true;
+}
+
+std::uint64_t Conversion::wire(double device) const {
+  return (signed_ ? static_cast<std::uint64_t>(static_cast<std::int64_t>(device))
+                  : static_cast<std::uint64_t>(device)) &
+         mask_;
 }
 
 std::uint64_t Conversion::sendableFloat(std::uint64_t raw) const {
@@ -166,12 +177,14 @@ double Conversion::highest() const { return (factor_ < 0.0 ? low_ : high_) * fac
 std::uint64_t Conversion::lowestRaw() const {
   std::uint64_t raw = 0;
   if (encoding_ != Encoding::integer) return encodeFloat(encoding_, low_, raw) ? raw : 0;
+  if (low_ > first_) return wire(low_);
   return signed_ ? mask_ ^ (mask_ >> 1) : 0;
 }
 
 std::uint64_t Conversion::highestRaw() const {
   std::uint64_t raw = 0;
   if (encoding_ != Encoding::integer) return encodeFloat(encoding_, high_, raw) ? raw : 0;
+  if (high_ < last_) return wire(high_);
   return signed_ ? mask_ >> 1 : mask_;
 }
 
@@ -180,7 +193,7 @@ double Conversion::resolution() const {
 }
 
 double Conversion::span() const {
-  return encoding_ == Encoding::integer ? (high_ - low_ + 1.0) * factor_ : 0.0;
+  return encoding_ == Encoding::integer ? (last_ - first_ + 1.0) * factor_ : 0.0;
 }
 
 Conversion Conversion::wrapping() const {

@@ -45,16 +45,16 @@ class Conversion {
     return device * factor_ + offset_;
   }
   /// Raw number of a joint value, rounded to the nearest device unit. NaN, infinity and what does
-  /// not fit the object give `false` and leave `raw` untouched.
+  /// not fit the object, or lies outside its range, give `false` and leave `raw` untouched.
   [[nodiscard]] bool toDevice(double value, std::uint64_t& raw) const;
   /// What may be sent of what was received: `raw`, but +0.0 for -0.0.
   std::uint64_t sendable(std::uint64_t raw) const {
     return encoding_ == Encoding::integer ? raw : sendableFloat(raw);
   }
-  /// Largest and smallest joint value that fits the object.
+  /// Smallest and largest joint value that the object takes.
   double lowest() const;
   double highest() const;
-  /// Smallest and largest number of the object, as it is on the wire.
+  /// Smallest and largest number that it takes, as it is on the wire.
   std::uint64_t lowestRaw() const;
   std::uint64_t highestRaw() const;
   /// Joint units per device unit (resolution); 0 for floats.
@@ -71,13 +71,15 @@ class Conversion {
   Conversion shifted(double amount) const;
 
  private:
+  std::uint64_t wire(double device) const;
   double floatToJoint(std::uint64_t raw) const;
   std::uint64_t sendableFloat(std::uint64_t raw) const;
 
   double factor_ = 1.0;   ///< joint value = factor * device value + offset
   double inverse_ = 1.0;  ///< 1 / factor
   double offset_ = 0.0;
-  double low_ = -2147483648.0, high_ = 2147483647.0;  ///< device values that fit
+  double low_ = -2147483648.0, high_ = 2147483647.0;  ///< device values that it takes
+  double first_ = low_, last_ = high_;                ///< all that its type has
   std::uint64_t mask_ = 0xFFFFFFFF;                   ///< bits of the object
   std::uint8_t shift_ = 32;                           ///< 64 - bits
   bool signed_ = true, wraps_ = false;

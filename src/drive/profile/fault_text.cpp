@@ -11,6 +11,20 @@ std::string errorName(const DriveProfile& profile, std::uint16_t code) {
   return known == profile.errors.end() ? fieldbus::emergencyText(code) : known->second.text;
 }
 
+std::string afterwardsText(const DriveProfile& profile, std::uint16_t code) {
+  const auto known = profile.errors.find(code);
+  const auto reset = known == profile.errors.end() ? ErrorText::Reset::by_bit : known->second.reset;
+  switch (reset) {
+    case ErrorText::Reset::by_itself:
+      return "it ends by itself once its cause is gone, then enable";
+    case ErrorText::Reset::power_cycle:
+      return "then switch the drive's power off and on: nothing else clears it";
+    case ErrorText::Reset::by_bit:
+      break;
+  }
+  return "then clear_faults";
+}
+
 std::string errorCodeText(const DriveProfile& profile, std::uint16_t code) {
   const auto known = profile.errors.find(code);
   if (known == profile.errors.end()) {

@@ -12,6 +12,9 @@ namespace cia402::drive {
 /// <remedy>", from the profile where it knows the code, else by the classes of CiA 301 and 402.
 std::string errorCodeText(const DriveProfile& profile, std::uint16_t code);
 
+/// What a person does next once the cause of a fault is gone: "then clear_faults".
+std::string afterwardsText(const DriveProfile& profile, std::uint16_t code);
+
 /// The short text of a code alone: "following error".
 std::string errorName(const DriveProfile& profile, std::uint16_t code);
 

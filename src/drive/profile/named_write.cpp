@@ -191,6 +191,11 @@ Result<std::optional<ResolvedWrite>> resolveWrite(const NamedWrite& write, const
     const auto finite = sendable(*type, axis.profile->encodingOf(*id, *type), resolved.raw);
     if (!finite) return refuse(axis, resolved.name, notFinite(*type, resolved.raw));
     resolved.raw = *finite;
+    if (object != nullptr && !object->takes(resolved.raw)) {
+      return refuse(axis, resolved.name,
+                    std::to_string(*source.raw) + " does not fit; the object takes " +
+                        object->rangeText() + " in the drive's own numbers");
+    }
   } else if (source.value && object != nullptr) {
     const auto conversion = Conversion::create(*object, *axis.profile, axis.geometry);
     if (!conversion && write.optional) return Resolved{};

@@ -48,6 +48,18 @@ std::optional<std::uint64_t> sendable(DataType type, Encoding encoding, std::uin
   return value == 0.0 ? 0 : raw;
 }
 
+bool ObjectSpec::takes(std::uint64_t raw) const {
+  if (!range) return true;
+  if (holdsFloat(type, encoding)) return range->holds(floatOf(type, encoding, raw));
+  const unsigned bits = fieldbus::sizeBits(type);
+  return range->holds(fieldbus::isSigned(type) ? static_cast<double>(fieldbus::toSigned(raw, bits))
+                                               : static_cast<double>(raw));
+}
+
+std::string ObjectSpec::rangeText() const {
+  return range ? numberText(range->low) + " to " + numberText(range->high) : std::string();
+}
+
 std::string notFinite(DataType type, std::uint64_t raw) {
   return hexText(raw, static_cast<int>(fieldbus::sizeBits(type) / 4)) +
          " is no finite number in an object that holds a float, and is never sent; give the number "

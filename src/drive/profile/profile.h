@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -82,12 +83,23 @@ struct ObjectSpec {
   Quantity quantity = Quantity::none;
   double factor = 1.0;  ///< further factor: device value = factor * value in the profile's unit
   std::optional<UnitSpec> unit;  ///< of this object alone; absent: the profile's for the quantity
+  /// What the object takes of all numbers of its type, in the drive's own numbers.
+  struct Range {
+    double low = 0.0, high = 0.0;
+    bool holds(double number) const { return number >= low && number <= high; }
+  };
+  std::optional<Range> range;
   bool readable = true;
   bool writable = true;
   bool rpdo = false;                  ///< may be mapped into an RPDO
   bool tpdo = false;                  ///< may be mapped into a TPDO
   bool from_eds = false;              ///< the axis' EDS names it, the profile does not
   std::vector<std::string> eds_keys;  ///< further names, from the EDS (fieldbus::nameKey())
+
+  /// Whether a number with these bits is within `range`; so is every one where there is none.
+  bool takes(std::uint64_t raw) const;
+  /// "0 to 120", of `range`.
+  std::string rangeText() const;
 };
 
 /// What a mode controls, for everything above the drive that does not care for mode numbers. The
@@ -98,10 +110,23 @@ std::vector<std::string> controlKindWords();
 /// What the target of a mode of this kind measures; none: it has no target.
 Quantity targetQuantity(ControlKind kind);
 
-enum class Handshake : std::uint8_t {
-  none,           ///< a written target takes effect at once
-  new_set_point,  ///< controlword bit 4 edge, acknowledged by statusword bit 12 (pp)
+/// How set-points are handed to a drive one by one, by bits of the controlword (CiA 402-2, profile
+/// position mode).
+struct Handover {
+  /// What becomes of ModeSpec::set_point_acknowledge_bit.
+  enum class Acknowledge : std::uint8_t {
+    none,   ///< there is no such bit
+    level,  ///< it rises with the last word, and falls once the words are back at rest
+    rise,   ///< it rises, but may stay set from then on
+  };
+  /// Bits beside those of the state machine and the mode: at rest, then those that hand a set-point
+  /// over, one after the other. Empty: a written target counts at once.
+  std::vector<std::uint16_t> words;
+  Acknowledge acknowledge = Acknowledge::none;
+  int each_for = 2;  ///< controlwords that each is sent in, at least; 1 to 10
 };
+/// That of CiA 402-2: bit 5 is held (change at once), bit 4 hands over.
+Handover standardHandover(bool acknowledged);
 
 /// What brings an axis to rest while its drive stays in operation.
 enum class StopBy : std::uint8_t {
@@ -143,11 +168,11 @@ struct ModeSpec {
   std::string name;  ///< canonical logical name ("cyclic_position") or vendor name
   int value = 0;     ///< for 6060h
   ControlKind kind = ControlKind::position;
-  bool cyclic = false;  ///< follows a stream of set-points (trajectory groups may use it)
-  std::string target;   ///< name of the target object; empty for homing
-  Handshake handshake = Handshake::none;
-  std::optional<StopBy> stop;          ///< absent: by the kind of mode, see stopBy()
-  std::string stop_mode;               ///< with StopBy::mode: a cyclic velocity mode's name
+  bool cyclic = false;         ///< follows a stream of set-points (trajectory groups may use it)
+  std::string target;          ///< name of the target object; empty for homing
+  Handover handover;           ///< of positions, where the drive plans its way
+  std::optional<StopBy> stop;  ///< absent: by the kind of mode, see stopBy()
+  std::string stop_mode;       ///< with StopBy::mode: a cyclic velocity mode's name
   std::uint16_t controlword_bits = 0;  ///< held while the mode is active in Operation enabled
   std::optional<int> target_reached_bit, following_error_bit, set_point_acknowledge_bit,
       speed_zero_bit, homing_attained_bit, homing_error_bit, follows_command_bit;
@@ -200,6 +225,10 @@ struct HomingSpec {
   std::vector<NamedWrite> writes;  ///< homing parameters, `from` the axis' homing options
 };
 
+/// What a family calls the bits of its statusword that CiA 402-2 leaves open, or uses otherwise, by
+/// their numbers; empty: as the standard has it.
+using StatusWords = std::array<std::string, 16>;
+
 /// A known error code of the family.
 struct ErrorText {
   /// What the drive reports as missing of that which this program sends.
@@ -208,8 +237,16 @@ struct ErrorText {
     cycle,    ///< the signal that begins a cycle
     outputs,  ///< what travels to the drive in it
   };
+  /// What ends the fault.
+  enum class Reset : std::uint8_t {
+    by_bit,       ///< controlword bit 7, once its cause is gone
+    by_itself,    ///< the drive, once its cause is gone
+    power_cycle,  ///< nothing but switching the drive's power off and on
+  };
   std::string text, cause, remedy;
   Missing missing = Missing::nothing;
+  Reset reset = Reset::by_bit;
+  Duration wait{0};  ///< since the fault, before which the drive takes no reset
 };
 
 /// What a setting of the drive must be before it is enabled; it is read and compared, not written.
@@ -250,13 +287,15 @@ struct DriveProfile {
   /// more; 0: it is not.
   Duration fault_reset_pause{0};
   bool fault_reset_clears_history = false;  ///< 1003h:00 = 0 is written before a fault reset
-  bool warning_stops = false;               ///< a warning makes the drive stop like a fault
-  std::vector<int> quick_stop_holds;        ///< values of 605Ah after which quick stop stays active
-  std::vector<NamedWrite> startup;          ///< at every boot
-  std::vector<NamedWrite> before_enable;    ///< each time before enabling
-  std::vector<Expectation> expected;        ///< compared each time before enabling
-  CountsRule counts_rule;                   ///< the same, with counts_per_turn of the axis
-  std::vector<std::string> default_modes;   ///< an axis can switch to; empty: all
+  StatusWords status_words;
+  bool has_warning_bit = true;             ///< statusword bit 7 is a warning
+  bool warning_stops = false;              ///< a warning makes the drive stop like a fault
+  std::vector<int> quick_stop_holds;       ///< values of 605Ah after which quick stop stays active
+  std::vector<NamedWrite> startup;         ///< at every boot
+  std::vector<NamedWrite> before_enable;   ///< each time before enabling
+  std::vector<Expectation> expected;       ///< compared each time before enabling
+  CountsRule counts_rule;                  ///< the same, with counts_per_turn of the axis
+  std::vector<std::string> default_modes;  ///< an axis can switch to; empty: all
   std::vector<std::string> feedback;  ///< in the cycle where there is room, most important first
   std::vector<std::string> feedback_if_room;  ///< only with what travels for something else
   std::vector<std::string>

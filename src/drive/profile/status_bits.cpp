@@ -28,8 +28,9 @@ constexpr const char* kBits[16] = {"ready to switch on",
                                    "bit 14",
                                    "bit 15"};
 
-const char* nameOf(unsigned bit, const ModeSpec* mode) {
-  if (mode == nullptr) return bit == kTargetReachedBit ? "target reached" : kBits[bit];
+const char* nameOf(unsigned bit, const ModeSpec* mode, const StatusWords& words) {
+  const char* const known = words[bit].empty() ? kBits[bit] : words[bit].c_str();
+  if (mode == nullptr) return bit == kTargetReachedBit ? "target reached" : known;
   const std::pair<const std::optional<int>&, const char*> named[] = {
       {mode->target_reached_bit, "target reached"},
       {mode->following_error_bit, "following error"},
@@ -38,18 +39,19 @@ const char* nameOf(unsigned bit, const ModeSpec* mode) {
       {mode->homing_attained_bit, "homing attained"},
       {mode->homing_error_bit, "homing error"},
       {mode->follows_command_bit, "follows the command"}};
-  for (const auto& [position, words] : named) {
-    if (position && *position == static_cast<int>(bit)) return words;
+  for (const auto& [position, text] : named) {
+    if (position && *position == static_cast<int>(bit)) return text;
   }
-  return kBits[bit];
+  return known;
 }
 
 }  // namespace
 
-std::string statusBitsText(std::uint16_t statusword, const ModeSpec* mode) {
+std::string statusBitsText(std::uint16_t statusword, const ModeSpec* mode,
+                           const StatusWords& words) {
   std::string text;
   for (unsigned bit = 0; bit < 16; ++bit) {
-    if ((statusword & (1u << bit)) != 0) append(text, nameOf(bit, mode), ", ");
+    if ((statusword & (1u << bit)) != 0) append(text, nameOf(bit, mode, words), ", ");
   }
   return text.empty() ? "no bit set" : text;
 }

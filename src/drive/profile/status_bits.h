@@ -13,6 +13,8 @@ inline constexpr std::uint16_t kStateBits = 0x006F;
 
 /// The set bits by name: "voltage enabled, warning", or "no bit set".
 /// @param mode names the bits that depend on the mode of operation; nullptr: it is not known.
-std::string statusBitsText(std::uint16_t statusword, const ModeSpec* mode);
+/// @param words of the family, which count before those of the standard
+std::string statusBitsText(std::uint16_t statusword, const ModeSpec* mode,
+                           const StatusWords& words);
 
 }  // namespace cia402::drive

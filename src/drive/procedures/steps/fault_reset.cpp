@@ -137,6 +137,9 @@ Outcome FaultResetStep::advance(const Context& context) {
   const bool sent = axis.control().frames() >= frames_ + kSureFrames;
   switch (phase_) {
     case Phase::begin:
+      if (const std::string refusal = axis.faults().resetRefusal(context.now); !refusal.empty()) {
+        return fail(context, refusal);
+      }
       code_ = axis.state().error_code;
       axis.setGoal(Goal::disabled);
       if (!axis.profile().fault_reset_clears_history) return awaitReaction(context);
