@@ -11,19 +11,19 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 /// As the drive comes with that setting: a row of its dictionary.
-std::string setting(const std::string& row) { return "with: {dictionary: [" + row + "]}"; }
+std::string asDelivered(const std::string& row) { return "with: {dictionary: [" + row + "]}"; }
 
-struct Wrong {
+struct Sv660cWrong {
   const char* name;
   const char* row;
   const char* object;
   const char* remedy;
 };
 
-class Sv660cSetting : public testing::TestWithParam<Wrong> {};
+class Sv660cSetting : public testing::TestWithParam<Sv660cWrong> {};
 
 TEST_P(Sv660cSetting, IsNamedWithItsRemedyAndNothingIsEnabled) {
-  Scene scene(loadText(sv660cJoint({}, setting(GetParam().row))));
+  Scene scene(loadText(sv660cJoint({}, asDelivered(GetParam().row))));
   ASSERT_TRUE(scene.boot()) << scene.told();
   scene.forget();
   const auto enabled = scene.procedure(ProcedureKind::enable);
@@ -37,24 +37,26 @@ TEST_P(Sv660cSetting, IsNamedWithItsRemedyAndNothingIsEnabled) {
 
 INSTANTIATE_TEST_SUITE_P(
     ThatIsWrong, Sv660cSetting,
-    testing::Values(Wrong{"ControlMode", "[0x2002, 1, control_mode, uint16, rw, -, 1]",
-                          "control_mode (2002:01) is 1 instead of 8", "set H02.00 to 8"},
-                    Wrong{"Units", "[0x200E, 8, object_unit_system, uint16, rw, -, 1]",
-                          "unit_system (200E:08) is 1 instead of 0", "set H0E.07 to 0"},
-                    Wrong{"Polarity", "[0x607E, 0, polarity, uint8, rw, -, 128]",
-                          "polarity (607E:00) is 128 instead of 0", "give the axis a `direction`"},
-                    Wrong{"Direction", "[0x2002, 3, forward_direction, uint16, rw, -, 1]",
-                          "forward_direction (2002:03) is 1 instead of 0", "set H02.02 to 0"},
-                    Wrong{"CommandRate", "[0x2001, 0x3E, command_rate, uint16, rw, -, 3]",
-                          "command_rate (2001:3E) is 3 instead of 2", "leave ip out of `modes`"},
-                    Wrong{"Encoder", "[0x2000, 0x20, encoder_resolution, uint32, rw, -, 1048576]",
-                          "the drive counts 12500 a turn of its motor",
-                          "counts_per_turn of axes/joint is 1"}),
+    testing::Values(
+        Sv660cWrong{"ControlMode", "[0x2002, 1, control_mode, uint16, rw, -, 1]",
+                    "control_mode (2002:01) is 1 instead of 8", "set H02.00 to 8"},
+        Sv660cWrong{"Units", "[0x200E, 8, object_unit_system, uint16, rw, -, 1]",
+                    "unit_system (200E:08) is 1 instead of 0", "set H0E.07 to 0"},
+        Sv660cWrong{"Polarity", "[0x607E, 0, polarity, uint8, rw, -, 128]",
+                    "polarity (607E:00) is 128 instead of 0", "give the axis a `direction`"},
+        Sv660cWrong{"Direction", "[0x2002, 3, forward_direction, uint16, rw, -, 1]",
+                    "forward_direction (2002:03) is 1 instead of 0", "set H02.02 to 0"},
+        Sv660cWrong{"CommandRate", "[0x2001, 0x3E, command_rate, uint16, rw, -, 3]",
+                    "command_rate (2001:3E) is 3 instead of 2", "leave ip out of `modes`"},
+        Sv660cWrong{"Encoder", "[0x2000, 0x20, encoder_resolution, uint32, rw, -, 1048576]",
+                    "the drive counts 12500 a turn of its motor",
+                    "counts_per_turn of axes/joint is 1"}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
 TEST(Sv660cSettings, AnAxisWithoutIpDoesNotMindTheCommandRate) {
-  std::string yaml = sv660cJoint(
-      ", mode: pp", setting("[0x2001, 0x3E, command_rate, uint16, rw, -, 3]"), "0.004", "[pp, pv]");
+  std::string yaml =
+      sv660cJoint(", mode: pp", asDelivered("[0x2001, 0x3E, command_rate, uint16, rw, -, 3]"),
+                  "0.004", "[pp, pv]");
   yaml.erase(yaml.find("groups:"));  // which follow trajectories
   Scene scene(loadText(yaml));
   ASSERT_TRUE(scene.boot()) << scene.told();
@@ -63,7 +65,7 @@ TEST(Sv660cSettings, AnAxisWithoutIpDoesNotMindTheCommandRate) {
 }
 
 /// Enables the axis. @return from operation enabled to the answer, s
-double enablingTakes(Scene& scene) {
+double sv660cEnablingTakes(Scene& scene) {
   const auto answer = scene.begin(ProcedureKind::enable, "joint");
   EXPECT_TRUE(scene.runUntil([&] { return scene.truth("joint").power_stage_on; }, 5s));
   const Time enabled = scene.now();
@@ -72,8 +74,8 @@ double enablingTakes(Scene& scene) {
   return toSeconds(scene.now() - enabled);
 }
 
-std::string brakeTime(const std::string& ms) {
-  return setting("[0x2002, 0x0A, brake_delay, uint16, rw, -, " + ms + "]");
+std::string sv660cBrakeTime(const std::string& ms) {
+  return asDelivered("[0x2002, 0x0A, brake_delay, uint16, rw, -, " + ms + "]");
 }
 
 // H02.09; while it runs the simulated drive loses every edge of the controlword.
@@ -81,9 +83,9 @@ TEST(Sv660cBrake, IsWaitedForAsLongAsTheDriveSays) {
   for (const auto& [text, time] :
        {std::pair("0", 0.0), std::pair("250", 0.25), std::pair("500", 0.5)}) {
     for (const char* mode : {"ip", "pp"}) {
-      Scene scene(loadText(sv660cJoint(", mode: " + std::string(mode), brakeTime(text))));
+      Scene scene(loadText(sv660cJoint(", mode: " + std::string(mode), sv660cBrakeTime(text))));
       ASSERT_TRUE(scene.boot()) << scene.told();
-      const double took = enablingTakes(scene);
+      const double took = sv660cEnablingTakes(scene);
       EXPECT_GE(took, time) << mode;
       EXPECT_LE(took, time + 0.1) << mode;
       ASSERT_EQ(scene.setpoint("joint", 0.3), "") << mode;
@@ -95,7 +97,7 @@ TEST(Sv660cBrake, IsWaitedForAsLongAsTheDriveSays) {
 
 // Interpolation shall not begin before: controlword bit 4 follows the brake.
 TEST(Sv660cBrake, KeepsTheBitsOfTheModeBack) {
-  Scene scene(loadText(sv660cJoint(", mode: ip", brakeTime("400"))));
+  Scene scene(loadText(sv660cJoint(", mode: ip", sv660cBrakeTime("400"))));
   ASSERT_TRUE(scene.boot()) << scene.told();
   Time operating = kNever, interpolating = kNever;
   scene.watch([&] {
@@ -109,8 +111,23 @@ TEST(Sv660cBrake, KeepsTheBitsOfTheModeBack) {
   EXPECT_GE(interpolating - operating, 400ms);
 }
 
+// The drive tells another position than when it was enabled: here as its gear is another one.
+TEST(Sv660cBrake, IsFollowedByATargetWhereTheMotorIsByThen) {
+  Scene scene(loadText(sv660cJoint(", mode: ip", "initial_position: 0.02")));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  const auto enabled = scene.begin(ProcedureKind::enable, "joint");
+  ASSERT_TRUE(scene.runUntil([&] { return scene.truth("joint").power_stage_on; }, 5s));
+  scene.forget();
+  scene.run(100ms);
+  scene.drive("joint").dictionary().find({0x6091, 2})->number = 6250;
+  ASSERT_TRUE(scene.runUntil([&] { return enabled->has_value(); }, 5s));
+  scene.run(500ms);
+  EXPECT_EQ(scene.state("joint").state, drive::State::operation_enabled) << scene.told();
+  EXPECT_LT(scene.seen("joint").travel(), 1e-5);
+}
+
 TEST(Sv660cBrake, ThatTakesLongerThanTheProfileAllowsForIsRefused) {
-  Scene scene(loadText(sv660cJoint({}, brakeTime("700"))));
+  Scene scene(loadText(sv660cJoint({}, sv660cBrakeTime("700"))));
   ASSERT_TRUE(scene.boot()) << scene.told();
   const auto enabled = scene.procedure(ProcedureKind::enable, "joint");
   EXPECT_FALSE(enabled.success);

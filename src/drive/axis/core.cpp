@@ -45,6 +45,11 @@ void AxisCore::superviseOperation(Time now) {
   if (!enabled && !feedback_.maybeDecodable(now)) return giveUpOperation();
   if (state().warning && profile().warning_stops) return stopForWarning();
   if (mode_.brakes()) stops_.watchBrakeMode(now);
+  // With its bits the mode begins to follow: from where the motor is by then.
+  const Duration released = now - control_.brakeReleasedAt();
+  const bool begins = released >= Duration(0) && released < config().cycle &&
+                      control_.brakeRelease() > Duration(0) && mode_.spec().controlword_bits != 0;
+  if (begins) generator_.neutralize();
   generator_.watchFollowing(now);
 }
 
