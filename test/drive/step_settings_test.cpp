@@ -76,7 +76,7 @@ TEST(SettingsStep, ComparesWhatConcernsAModeWhereTheAxisUsesIt) {
   Bench bench(config);
   bench.drive.dictionary[{0x2002, 0}] = {1, 2};
   ASSERT_TRUE(bench.boot());
-  EXPECT_FALSE(bench.enable());
+  EXPECT_FALSE(bench.perform(ProcedureKind::enable).success);
 }
 
 TEST(SettingsStep, ComparesTheCountsOfATurn) {
@@ -141,9 +141,9 @@ TEST(SettingsStep, RefusesABrakeThatTakesLonger) {
   Bench bench(testConfig(braked()));
   bench.drive.dictionary[{0x2006, 0}] = {501, 2};
   ASSERT_TRUE(bench.boot());
-  EXPECT_FALSE(bench.enable());
-  EXPECT_THAT(bench.axis.procedure().message,
-              HasSubstr("brake_time (2006:00) is 0.501 s, longer than the 0.5 s"));
+  const ProcedureStatus& status = bench.perform(ProcedureKind::enable);
+  EXPECT_FALSE(status.success);
+  EXPECT_THAT(status.message, HasSubstr("brake_time (2006:00) is 0.501 s, longer than the 0.5 s"));
 }
 
 }  // namespace

@@ -137,6 +137,24 @@ std::uint64_t widest(const ResolvedWrite& write, const Conversion& conversion,
   return low ? conversion.lowestRaw() : conversion.highestRaw();
 }
 
+// A number of the drive's own, as wide as the object.
+Result<void> takeRaw(const NamedWrite& write, std::int64_t number, const ObjectSpec* object,
+                     const AxisConfig& axis, ResolvedWrite& resolved) {
+  const DataType type = resolved.type;
+  if (!write.from.empty() && !fits(number, type)) {
+    return refuse(axis, resolved.name,
+                  std::to_string(number) + " (" + write.from + ") does not fit");
+  }
+  const std::uint64_t raw = masked(number, type);
+  const auto finite = sendable(type, axis.profile->encodingOf(resolved.object, type), raw);
+  if (!finite) return refuse(axis, resolved.name, notFinite(type, raw));
+  resolved.raw = *finite;
+  if (object == nullptr || object->takes(resolved.raw)) return {};
+  return refuse(axis, resolved.name,
+                std::to_string(number) + " does not fit; the object takes " + object->rangeText() +
+                    " in the drive's own numbers");
+}
+
 }  // namespace
 
 std::optional<InterpolationPeriod> interpolationPeriod(Duration period) {
@@ -183,18 +201,8 @@ Result<std::optional<ResolvedWrite>> resolveWrite(const NamedWrite& write, const
   if (source.copied_from) {
     resolved.copied_from = source.copied_from;
   } else if (source.raw) {
-    if (!write.from.empty() && !fits(*source.raw, *type)) {
-      return refuse(axis, resolved.name,
-                    std::to_string(*source.raw) + " (" + write.from + ") does not fit");
-    }
-    resolved.raw = masked(*source.raw, *type);
-    const auto finite = sendable(*type, axis.profile->encodingOf(*id, *type), resolved.raw);
-    if (!finite) return refuse(axis, resolved.name, notFinite(*type, resolved.raw));
-    resolved.raw = *finite;
-    if (object != nullptr && !object->takes(resolved.raw)) {
-      return refuse(axis, resolved.name,
-                    std::to_string(*source.raw) + " does not fit; the object takes " +
-                        object->rangeText() + " in the drive's own numbers");
+    if (const auto done = takeRaw(write, *source.raw, object, axis, resolved); !done) {
+      return done.error();
     }
   } else if (source.value && object != nullptr) {
     const auto conversion = Conversion::create(*object, *axis.profile, axis.geometry);

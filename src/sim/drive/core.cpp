@@ -18,6 +18,12 @@ constexpr std::uint16_t kHalt = 0x0100;
 
 std::int64_t gridStep(Time time) { return time.time_since_epoch() / kDriveStep; }
 
+/// By 60C2h, s.
+double configuredPeriod(const DriveValues& values) {
+  const double exponent = static_cast<double>(values.raw(Role::interpolation_exponent, -3));
+  return static_cast<double>(values.raw(Role::interpolation_time, 0)) * std::pow(10.0, exponent);
+}
+
 }  // namespace
 
 DriveCore::DriveCore(const DriveDefinition& definition, unsigned axis,
@@ -115,7 +121,8 @@ void DriveCore::superviseMotion() {
     raise("following_error");
   }
   const Time time{step_ * kDriveStep};
-  if (toSeconds(sync_.since(time)) > configuredPeriod() + syncTolerance()) raise("sync_error");
+  if (toSeconds(sync_.since(time)) > configuredPeriod(values_) + syncTolerance())
+    raise("sync_error");
   if (!motion_.limitSwitchHit()) {
     limit_reported_ = false;
   } else if (!limit_reported_) {
@@ -196,14 +203,9 @@ void DriveCore::onTargetPosition() {
 
 void DriveCore::onSync() {
   sync_.onSync(now_);
-  if (toSeconds(sync_.interval()) < configuredPeriod() - syncTolerance()) raise("sync_error");
+  if (toSeconds(sync_.interval()) < configuredPeriod(values_) - syncTolerance())
+    raise("sync_error");
   startSegment();
-}
-
-/// By 60C2h, s.
-double DriveCore::configuredPeriod() const {
-  const double exponent = static_cast<double>(values_.raw(Role::interpolation_exponent, -3));
-  return static_cast<double>(values_.raw(Role::interpolation_time, 0)) * std::pow(10.0, exponent);
 }
 
 /// By how much SYNC may be off now, s.
@@ -217,11 +219,11 @@ double DriveCore::syncTolerance() const {
     return kUnlimited;
   }
   const double share = shares[static_cast<std::size_t>(number)];
-  return share > 0.0 ? share * configuredPeriod() : kUnlimited;
+  return share > 0.0 ? share * configuredPeriod(values_) : kUnlimited;
 }
 
 void DriveCore::startSegment() {
-  double period = configuredPeriod();
+  double period = configuredPeriod(values_);
   if (definition_.follows_sync_period || period <= 0.0) period = toSeconds(sync_.interval());
   motion_.cyclicTarget(period, toSeconds(now_ - Time{step_ * kDriveStep}));
 }

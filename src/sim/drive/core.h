@@ -88,7 +88,6 @@ class DriveCore {
   void connectionLost(ConnectionLoss reaction);
   void holdUnwatched();
   void clearErrors();
-  double configuredPeriod() const;
   double syncTolerance() const;
   void startSegment();
   void updateStatusword();
