@@ -11,8 +11,8 @@ using drive::State;
 using testing::AllOf;
 using testing::HasSubstr;
 
-struct Moving : Scene {
-  Moving() : Scene(loadText(sv660cJoint())) {
+struct MovingSv660c : Scene {
+  MovingSv660c() : Scene(loadText(sv660cJoint())) {
     EXPECT_TRUE(boot()) << told();
     const auto enabled = procedure(ProcedureKind::enable);
     EXPECT_TRUE(enabled.success) << enabled.message;
@@ -22,18 +22,18 @@ struct Moving : Scene {
   }
 };
 
-struct Fault {
+struct Sv660cFaultText {
   const char* name;  // of the simulated drive
   const char* code;  // 603Fh
   const char* text;  // what people read
   bool resettable;
 };
 
-class Sv660cFault : public testing::TestWithParam<Fault> {};
+class Sv660cFault : public testing::TestWithParam<Sv660cFaultText> {};
 
 TEST_P(Sv660cFault, IsToldInWordsAndResetWhereItCanBe) {
-  const Fault& fault = GetParam();
-  Moving scene;
+  const Sv660cFaultText& fault = GetParam();
+  MovingSv660c scene;
   scene.inject("joint", fault.name);
   scene.run(2s);
   EXPECT_EQ(scene.state("joint").state, State::fault);
@@ -53,26 +53,27 @@ TEST_P(Sv660cFault, IsToldInWordsAndResetWhereItCanBe) {
 
 INSTANTIATE_TEST_SUITE_P(
     Any, Sv660cFault,
-    testing::Values(Fault{"overcurrent", "0x2310", "check load, motor cable and winding", true},
-                    Fault{"overvoltage", "0x3210", "check brake resistor", true},
-                    Fault{"undervoltage", "0x3220", "check supply and fuses", true},
-                    Fault{"phase_loss", "0x3130", "E420", true},
-                    Fault{"overspeed", "0x7310", "E500", true},
-                    Fault{"motor_overload", "0x3230", "E620", true},
-                    Fault{"locked_rotor", "0x7121", "E630", true},
-                    Fault{"overtemperature", "0x4310", "check the fan", true},
-                    Fault{"brake_chopper", "0x7112", "larger resistor", true},
-                    Fault{"encoder", "0x7305", "check the encoder cable", true},
-                    Fault{"following_error", "0x8611", "EB00", true},
-                    Fault{"sync_error", "0x8700", "SYNC", true},
-                    Fault{"runaway", "0xFF00", "234 runaway", true},
-                    Fault{"position_command", "0xFF00", "B01 position commands", true},
-                    Fault{"product_mismatch", "0xFF00", "120 drive and motor do not fit", false},
-                    Fault{"parameter", "0x5530", "restore the factory settings", false}),
+    testing::Values(
+        Sv660cFaultText{"overcurrent", "0x2310", "check load, motor cable and winding", true},
+        Sv660cFaultText{"overvoltage", "0x3210", "check brake resistor", true},
+        Sv660cFaultText{"undervoltage", "0x3220", "check supply and fuses", true},
+        Sv660cFaultText{"phase_loss", "0x3130", "E420", true},
+        Sv660cFaultText{"overspeed", "0x7310", "E500", true},
+        Sv660cFaultText{"motor_overload", "0x3230", "E620", true},
+        Sv660cFaultText{"locked_rotor", "0x7121", "E630", true},
+        Sv660cFaultText{"overtemperature", "0x4310", "check the fan", true},
+        Sv660cFaultText{"brake_chopper", "0x7112", "larger resistor", true},
+        Sv660cFaultText{"encoder", "0x7305", "check the encoder cable", true},
+        Sv660cFaultText{"following_error", "0x8611", "EB00", true},
+        Sv660cFaultText{"sync_error", "0x8700", "SYNC", true},
+        Sv660cFaultText{"runaway", "0xFF00", "234 runaway", true},
+        Sv660cFaultText{"position_command", "0xFF00", "B01 position commands", true},
+        Sv660cFaultText{"product_mismatch", "0xFF00", "120 drive and motor do not fit", false},
+        Sv660cFaultText{"parameter", "0x5530", "restore the factory settings", false}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
 TEST(Sv660cFaults, ABlockedRotorIsAFollowingError) {
-  Moving scene;
+  MovingSv660c scene;
   scene.inject("joint", "blocked_rotor");
   ASSERT_TRUE(scene.runUntil([&] { return scene.state("joint").state == State::fault; }, 2s))
       << scene.told();
@@ -83,7 +84,7 @@ TEST(Sv660cFaults, ABlockedRotorIsAFollowingError) {
 
 // E909: class 3, the drive runs on [L3556-3574]; bit 7 of the controlword takes it back [L560].
 TEST(Sv660cWarnings, AreToldAndStopNothing) {
-  Moving scene;
+  MovingSv660c scene;
   scene.inject("joint", "overload_warning");
   scene.run(3s);
   EXPECT_EQ(scene.state("joint").state, State::operation_enabled);

@@ -12,8 +12,7 @@ using drive::ProcedureKind;
 using drive::State;
 using testing::HasSubstr;
 
-constexpr double kTwoPi = 6.283185307179586;
-constexpr double kCount = kTwoPi / (50.0 * 100000.0);  // rad of the joint
+constexpr double kUserUnit = 6.283185307179586 / (50.0 * 100000.0);  // rad of the joint
 
 class Sv660cMode : public testing::TestWithParam<const char*> {};
 
@@ -29,8 +28,8 @@ TEST_P(Sv660cMode, MovesNothingWhenItIsEnabled) {
     scene.run(1s);
     EXPECT_TRUE(scene.truth("joint").power_stage_on) << scene.told();
     EXPECT_EQ(scene.state("joint").state, State::operation_enabled);
-    EXPECT_LT(scene.seen("joint").travel(), 2.0 * kCount);
-    EXPECT_NEAR(scene.state("joint").position, start, 2.0 * kCount);
+    EXPECT_LT(scene.seen("joint").travel(), 2.0 * kUserUnit);
+    EXPECT_NEAR(scene.state("joint").position, start, 2.0 * kUserUnit);
   }
 }
 
@@ -65,8 +64,8 @@ TEST_F(Sv660cModes, PositionsAreReachedWithinTheirLimits) {
     scene.forget();
     ASSERT_EQ(scene.setpoint("joint", goal), "") << mode;
     scene.run(4s);
-    EXPECT_NEAR(scene.position("joint"), goal, 4.0 * kCount) << mode << scene.told();
-    EXPECT_NEAR(scene.state("joint").position, goal, 4.0 * kCount) << mode;
+    EXPECT_NEAR(scene.position("joint"), goal, 4.0 * kUserUnit) << mode << scene.told();
+    EXPECT_NEAR(scene.state("joint").position, goal, 4.0 * kUserUnit) << mode;
     EXPECT_LE(scene.seen("joint").fastest, 1.5 * 1.02) << mode;
     goal = -goal;
   }
@@ -114,11 +113,11 @@ TEST_F(Sv660cModes, ATrajectoryIsFollowedInInterpolatedPositionMode) {
   });
   scene.run(4s);
   scene.watch({});
-  EXPECT_NEAR(scene.position("joint"), -0.8, 4.0 * kCount) << scene.told();
+  EXPECT_NEAR(scene.position("joint"), -0.8, 4.0 * kUserUnit) << scene.told();
   EXPECT_THAT(scene.told(), testing::Not(HasSubstr("missed")));
-  // At most 0.75 rad/s in between, for the lag of the loop (4 ms) and the cycles until it counts.
-  EXPECT_LT(worst, 0.75 * 0.020);
-  EXPECT_GT(worst, 0.0);
+  // 0.6 rad/s in the middle: 4 ms of the loop, 4 ms of delay, and what passes until it counts.
+  EXPECT_GT(worst, 0.6 * 0.008);
+  EXPECT_LT(worst, 0.6 * 0.012);
 }
 
 TEST_F(Sv660cModes, AHaltHoldsInEachMode) {
@@ -150,12 +149,12 @@ TEST_F(Sv660cModes, AHaltHoldsInEachMode) {
 
 // 6085h is 2 * limits.acceleration: 1.5 rad/s end after 0.14 rad. 6084h is limits.acceleration.
 TEST_F(Sv660cModes, QuickStopAndDisableBrakeByTheirRamps) {
-  struct Case {
+  struct StopWay {
     ProcedureKind kind;
     double way;  // rad
   };
-  for (const Case& c :
-       {Case{ProcedureKind::quick_stop, 0.1406}, Case{ProcedureKind::disable, 0.2813}}) {
+  for (const StopWay& c :
+       {StopWay{ProcedureKind::quick_stop, 0.1406}, StopWay{ProcedureKind::disable, 0.2813}}) {
     ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "joint").success) << scene.told();
     ASSERT_EQ(scene.setpoint("joint", scene.position("joint") > 0.0 ? -2.4 : 2.4), "");
     ASSERT_TRUE(scene.runUntil([this] { return std::fabs(scene.velocity("joint")) > 1.49; }, 3s));

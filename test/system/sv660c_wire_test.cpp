@@ -14,8 +14,8 @@ using drive::State;
 using Bytes = std::vector<std::uint8_t>;
 
 /// Everything on the bus from the first moment on.
-struct Trace : Scene {
-  explicit Trace(const std::string& yaml) : Scene(loadText(yaml)) {
+struct Sv660cTrace : Scene {
+  explicit Sv660cTrace(const std::string& yaml) : Scene(loadText(yaml)) {
     world().bus().setMonitor([this](const can::Frame& frame, Time) { frames.push_back(frame); });
   }
   /// The writes by SDO, eight bytes each, in their order.
@@ -40,7 +40,7 @@ struct Trace : Scene {
   std::vector<can::Frame> frames;
 };
 
-bool isCobId(const Bytes& write) {
+bool isPdoCobId(const Bytes& write) {
   const int index = write[1] | write[2] << 8;
   const bool pdo = (index & 0xFFFC) == 0x1400 || (index & 0xFFFC) == 0x1800;
   return pdo && write[3] == 1;
@@ -48,11 +48,11 @@ bool isCobId(const Bytes& write) {
 
 // CAN-IDs are fixed: 0x200, 0x300 .. 0x500 and 0x180 .. 0x480 + node-ID; bit 30 of a TPDO stays 1.
 TEST(Sv660cWire, NoWriteChangesTheIdentifierOfAPdo) {
-  Trace scene(sv660cJoint());
+  Sv660cTrace scene(sv660cJoint());
   ASSERT_TRUE(scene.boot()) << scene.told();
   unsigned seen = 0;
   for (const Bytes& write : scene.writes()) {
-    if (!isCobId(write)) continue;
+    if (!isPdoCobId(write)) continue;
     ++seen;
     EXPECT_EQ(write[0], 0x23);
     EXPECT_EQ(write[4], write[2] == 0x14 ? 0x01 : 0x81);
@@ -65,7 +65,7 @@ TEST(Sv660cWire, NoWriteChangesTheIdentifierOfAPdo) {
 
 // L9392: what is written before that wears the memory of the drive.
 TEST(Sv660cWire, SwitchesTheMemoryOffAmongItsFirstParameters) {
-  Trace scene(sv660cJoint());
+  Sv660cTrace scene(sv660cJoint());
   ASSERT_TRUE(scene.boot()) << scene.told();
   const auto writes = scene.writes();
   const Bytes off{0x2B, 0x0C, 0x20, 0x0E, 0x00, 0x00, 0x00, 0x00};
@@ -80,7 +80,7 @@ TEST(Sv660cWire, SwitchesTheMemoryOffAmongItsFirstParameters) {
 }
 
 TEST(Sv660cWire, SetsUpTheRpdoOfItsInterpolatedPositions) {
-  Trace scene(sv660cJoint(", mode: ip", {}, "0.004", "[ip]"));
+  Sv660cTrace scene(sv660cJoint(", mode: ip", {}, "0.004", "[ip]"));
   ASSERT_TRUE(scene.boot()) << scene.told();
   const auto writes = scene.writes();
   const Bytes steps[] = {{0x23, 0x00, 0x14, 0x01, 0x01, 0x02, 0x00, 0x80},
@@ -106,7 +106,7 @@ TEST(Sv660cWire, SetsUpTheRpdoOfItsInterpolatedPositions) {
 
 // Transitions 2, 3, 4 and 1, as printed [L511-536]; then bit 4 of ip.
 TEST(Sv660cWire, EnablesOneStateACommandAndSeesEachInTheStatusword) {
-  Trace scene(sv660cJoint(", mode: ip"));
+  Sv660cTrace scene(sv660cJoint(", mode: ip"));
   ASSERT_TRUE(scene.boot()) << scene.told();
   scene.run(100ms);
   scene.frames.clear();
@@ -118,7 +118,7 @@ TEST(Sv660cWire, EnablesOneStateACommandAndSeesEachInTheStatusword) {
 }
 
 TEST(Sv660cWire, ResetsAFaultByOneEdgeOfBit7AndTakesItBack) {
-  Trace scene(sv660cJoint(", mode: ip"));
+  Sv660cTrace scene(sv660cJoint(", mode: ip"));
   ASSERT_TRUE(scene.boot()) << scene.told();
   ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "joint").success) << scene.told();
   scene.frames.clear();
@@ -135,7 +135,7 @@ TEST(Sv660cWire, ResetsAFaultByOneEdgeOfBit7AndTakesItBack) {
 
 // Quick stop with 605Ah = 2: 0x0002, then the drive goes to switch on disabled by itself.
 TEST(Sv660cWire, StopsQuicklyByClearingBit2) {
-  Trace scene(sv660cJoint(", mode: ip"));
+  Sv660cTrace scene(sv660cJoint(", mode: ip"));
   ASSERT_TRUE(scene.boot()) << scene.told();
   ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "joint").success) << scene.told();
   ASSERT_EQ(scene.setpoint("joint", 1.0), "");
