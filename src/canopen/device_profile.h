@@ -31,6 +31,8 @@ struct DeviceProfile {
   bool has_sync_counter_object = true;       ///< 1019h exists
   bool has_sync_period_object = true;        ///< 1006h exists
   Duration sync_period_step{std::chrono::microseconds(1)};  ///< 1006h takes multiples of this
+  /// Shortest and longest SYNC period that the drive follows.
+  Duration sync_period_min{0}, sync_period_max{Duration::max()};
   bool heartbeat_supported = true, heartbeat_consumer_supported = true;
   bool node_guarding_supported = false;  ///< 100Ch and 100Dh; used where there is no heartbeat
   /// NMT reset node must not be sent: the drive disturbs the bus while it starts, or does not come

@@ -75,21 +75,41 @@ void readHeartbeat(yaml::Section& section, BusConfig& bus) {
 
 std::string percent(double share) { return std::to_string(std::lround(share * 100.0)) + " %"; }
 
+/// Does the family write the period in this form when a drive starts?
+bool writesPeriod(const drive::DriveProfile& profile, const char* source) {
+  return std::any_of(profile.startup.begin(), profile.startup.end(),
+                     [&](const drive::NamedWrite& write) { return write.from == source; });
+}
+
+/// What the device says of periods; `whose` begins the sentence.
+void checkDevicePeriod(const yaml::Value& at, const std::string& whose, Duration period,
+                       const canopen::DeviceProfile& device) {
+  const Duration step = device.sync_period_step;
+  if (device.has_sync_period_object && period % step != Duration(0)) {
+    at.problem(whose + " takes multiples of " + secondsText(step) + " in 1006h");
+  }
+  if (period < device.sync_period_min) {
+    at.problem(whose + " follows no period below " + secondsText(device.sync_period_min) +
+               "; make it longer");
+  }
+  if (period > device.sync_period_max) {
+    at.problem(whose + " follows no period above " + secondsText(device.sync_period_max) +
+               "; make it shorter");
+  }
+}
+
 void checkPeriod(const yaml::Value& at, const RobotConfig& robot) {
   for (const drive::AxisConfig& axis : robot.axes) {
     if (!axis.profile) continue;
-    const canopen::DeviceProfile& device = *robot.deviceOf(axis).profile;
-    const Duration step = device.sync_period_step;
-    if (device.has_sync_period_object && robot.bus.sync_period % step != Duration(0)) {
-      at.problem("`" + axis.name + "` (profile " + axis.profile->name + ") takes multiples of " +
-                 secondsText(step) + " in 1006h");
+    const std::string whose = "`" + axis.name + "` (profile " + axis.profile->name + ")";
+    const Duration period = robot.bus.sync_period;
+    checkDevicePeriod(at, whose, period, *robot.deviceOf(axis).profile);
+    if (writesPeriod(*axis.profile, "sync_period.ms") && period.count() % 1000000 != 0) {
+      at.problem(whose + " takes the period in whole milliseconds");
     }
-    const auto& writes = axis.profile->startup;
-    const bool interpolates =
-        std::any_of(writes.begin(), writes.end(), [](const drive::NamedWrite& write) {
-          return write.from.compare(0, 12, "sync_period.") == 0;
-        });
-    if (interpolates && !drive::interpolationPeriod(robot.bus.sync_period)) {
+    const bool interpolates = writesPeriod(*axis.profile, "sync_period.value") ||
+                              writesPeriod(*axis.profile, "sync_period.exponent");
+    if (interpolates && !drive::interpolationPeriod(period)) {
       at.problem("`" + axis.name +
                  "` needs the period in 60C2h as a number 1 to 255 times a power "
                  "of ten; take for example 0.004 instead of " +

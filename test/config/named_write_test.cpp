@@ -88,6 +88,17 @@ TEST(NamedWrite, WritesTheSyncPeriodAsValueAndExponent) {
   EXPECT_EQ(rawOf(write("interpolation_period_exponent", "sync_period.exponent"), axis), 0xFCu);
 }
 
+TEST(NamedWrite, WritesTheSyncPeriodInMilliseconds) {
+  AxisConfig axis = axisOf("generic_cia402");
+  axis.cycle = std::chrono::milliseconds(10);
+  EXPECT_EQ(rawOf(write("interpolation_period_value", "sync_period.ms"), axis), 10u);
+  axis.cycle = std::chrono::milliseconds(256);
+  const auto wide =
+      drive::resolveWrite(write("interpolation_period_value", "sync_period.ms"), axis);
+  ASSERT_FALSE(wide.ok());
+  EXPECT_THAT(wide.error().message, testing::HasSubstr("256 (sync_period.ms) does not fit"));
+}
+
 TEST(NamedWrite, PeriodsAreExactOrNothing) {
   const auto four = interpolationPeriod(std::chrono::milliseconds(4));
   ASSERT_TRUE(four);

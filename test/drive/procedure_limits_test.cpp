@@ -127,13 +127,13 @@ TEST(ProcedureLimits, ATransferThatIsRepeatedCountsAsOften) {
   EXPECT_EQ(limitOf(ProcedureKind::set_position, slowProfile(), patient) - once, 12 * 2 * 100ms);
 }
 
-TEST(ProcedureLimits, ABrakeIsWaitedForWhereItTakesLongerThanFollowing) {
+TEST(ProcedureLimits, ABrakeIsWaitedForBeforeFollowing) {
   DriveProfile braked = slowProfile();
   const Duration without = limitOf(ProcedureKind::enable, braked);
   braked.timing.brake_release = 900ms;
-  EXPECT_EQ(limitOf(ProcedureKind::enable, braked), without);
+  EXPECT_EQ(limitOf(ProcedureKind::enable, braked), without + 900ms);
   braked.timing.brake_release = 3s;
-  EXPECT_EQ(limitOf(ProcedureKind::enable, braked), without + 2s);
+  EXPECT_EQ(limitOf(ProcedureKind::enable, braked), without + 3s);
 }
 
 // A drive that forgets its mode while disabled is brought into it once more, and by way of another

@@ -73,6 +73,8 @@ TEST(ProfileBounds, AreThemselvesAllowedAndNothingBeyond) {
       {"pdo_rules: {fixed_entries: @}", "pdo_rules/fixed_entries", {"1", "64"}, {"0", "65"}},
       {"sync: {counter: @}", "sync/counter", {"0", "2", "240"}, {"-1", "1", "241"}},
       {"sync: {period_step: @}", "sync/period_step", {"0.000001", "1"}, {"0.0000009", "1.01"}},
+      {"sync: {period_min: @}", "sync/period_min", {"0.000001", "10"}, {"0.0000009", "10.1"}},
+      {"sync: {period_max: @}", "sync/period_max", {"0.000001", "10"}, {"0.0000009", "10.1"}},
       {"timing: {boot: @}", "timing/boot", deadline, no_deadline},
       {"timing: {state_change: @}", "timing/state_change", deadline, no_deadline},
       {"timing: {transitions: {4: @}}", "timing/transitions/4", deadline, no_deadline},

@@ -60,6 +60,12 @@ void readSync(yaml::Section& profile_section, canopen::DeviceProfile& device) {
   double step = toSeconds(device.sync_period_step);
   section.read("period_step", step, yaml::Range{1e-6, 1.0, false});
   device.sync_period_step = fromSeconds(step);
+  const yaml::Range periods{1e-6, 10.0, false};
+  readDuration(section, "period_min", periods, device.sync_period_min);
+  readDuration(section, "period_max", periods, device.sync_period_max);
+  if (device.sync_period_max < device.sync_period_min) {
+    section.problem("period_max is below period_min");
+  }
   section.finish();
 }
 

@@ -31,8 +31,7 @@ void readTiming(yaml::Section& section, DriveProfile& profile) {
   readDuration(section, "state_change", deadline, profile.timing.state_change);
   if (const auto value = section.get("transitions")) readTransitions(*value, deadline, profile);
   readDuration(section, "mode_change", deadline, profile.timing.mode_change);
-  readDuration(section, "brake_release", yaml::Range{0.0, 60.0, false},
-               profile.timing.brake_release);
+  readBrakeRelease(section, profile);
 }
 
 void readParameters(yaml::Section& profile_section, DriveProfile& profile) {
@@ -241,6 +240,8 @@ void readDrive(yaml::Section& section, yaml::Section& timing, DriveProfile& prof
   if (const auto writes = section.get("before_enable")) {
     profile.before_enable = readWrites(*writes, profile, WriteList::running);
   }
+  if (const auto list = section.get("expected")) readExpected(*list, profile);
+  if (const auto rule = section.get("counts_rule")) readCountsRule(*rule, profile);
   if (const auto names = section.get("default_modes")) {
     profile.default_modes = readModeNames(*names, profile);
   }

@@ -38,6 +38,12 @@ void readCoordinates(const yaml::Value& value, DriveProfile& profile);
 void readModes(const yaml::Value& value, DriveProfile& profile);
 void readHoming(const yaml::Value& value, DriveProfile& profile);
 void readErrors(const yaml::Value& value, DriveProfile& profile);
+/// `expected`: what the drive must be set to. @pre objects and modes were read
+void readExpected(const yaml::Value& list, DriveProfile& profile);
+/// `counts_rule`. @pre objects were read
+void readCountsRule(const yaml::Value& value, DriveProfile& profile);
+/// `brake_release` of `timing`: a number, or an object that holds it. @pre objects were read
+void readBrakeRelease(yaml::Section& timing, DriveProfile& profile);
 
 /// The words of `encoding`.
 std::optional<Encoding> readEncodingWord(const yaml::Value& value);

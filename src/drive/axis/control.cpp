@@ -3,7 +3,8 @@
 
 namespace cia402::drive {
 
-Control::Control(AxisBasis& axis, const Feedback& feedback) : axis_(axis), feedback_(feedback) {}
+Control::Control(AxisBasis& axis, const Feedback& feedback)
+    : axis_(axis), feedback_(feedback), brake_release_(axis.profile().timing.brake_release) {}
 
 void Control::aim(Goal goal) {
   silent_ = voltage_off_ = false;
@@ -23,7 +24,7 @@ void Control::silence() {
 
 void Control::enterOperation(Time now) {
   in_operation_ = true;
-  brake_released_ = now + axis_.profile().timing.brake_release;
+  brake_released_ = now + brake_release_;
 }
 
 void Control::leaveOperation() {

@@ -36,6 +36,11 @@ class Control {
   /// @param now the time that the brake needs counts from then
   void enterOperation(Time now);
   void leaveOperation();
+  /// The time that the brake needs, from the next enabling on, s >= 0.
+  void setBrakeRelease(Duration time) { brake_release_ = time; }
+  Duration brakeRelease() const { return brake_release_; }
+  /// When the brake will have had its time; kNever out of operation.
+  Time brakeReleasedAt() const { return brake_released_; }
   /// The brake has had its time since the drive came into operation.
   bool brakeReleased(Time now) const { return in_operation_ && now >= brake_released_; }
 
@@ -53,8 +58,8 @@ class Control {
   }
   void endHalt() { halt_ = braking_ = false; }
 
-  /// Puts the controlword into the process image. @param mode_bits of the active mode, which count
-  /// in operation
+  /// Puts the controlword into the process image. @param mode_bits of the active mode, once the
+  /// brake is released; they count in operation
   void write(unsigned mode_bits);
   /// How often the controlword was sent so far.
   std::uint64_t frames() const { return axis_.image.sent(axis_.objects.controlword.slot); }
@@ -73,6 +78,7 @@ class Control {
   bool voltage_off_ = false;  ///< the power stage is to be off, whatever the drive shows
   bool in_operation_ = false;
   bool fault_reset_ = false, homing_start_ = false, halt_ = false, braking_ = false;
+  Duration brake_release_;
   Time brake_released_ = kNever;
   Command command_ = nextCommand(State::unknown, Goal::disabled);  ///< of these two:
   State commanded_in_ = State::unknown;

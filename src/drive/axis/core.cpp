@@ -35,7 +35,7 @@ void AxisCore::supervise(Time now) {
     superviseOperation(now);
   } else if (goal() == Goal::enabled && state().state == State::operation_enabled) {
     control_.enterOperation(now);
-    generator_.beginFollowing(now);
+    generator_.beginFollowing(control_.brakeReleasedAt());
     generator_.neutralize();
   }
 }
@@ -45,6 +45,11 @@ void AxisCore::superviseOperation(Time now) {
   if (!enabled && !feedback_.maybeDecodable(now)) return giveUpOperation();
   if (state().warning && profile().warning_stops) return stopForWarning();
   if (mode_.brakes()) stops_.watchBrakeMode(now);
+  // With its bits the mode begins to follow: from where the motor is by then.
+  const Duration released = now - control_.brakeReleasedAt();
+  const bool begins = released >= Duration(0) && released < config().cycle &&
+                      control_.brakeRelease() > Duration(0) && mode_.spec().controlword_bits != 0;
+  if (begins) generator_.neutralize();
   generator_.watchFollowing(now);
 }
 
@@ -94,7 +99,7 @@ void AxisCore::writeCommands(Time now) {
   }
   written_ = now;
   generator_.watchDrive(now);
-  control_.write(generator_.mode().bits());
+  control_.write(control_.brakeReleased(now) ? generator_.mode().bits() : 0);
   mode_.write();
 }
 

@@ -15,8 +15,8 @@ constexpr Duration kStuck{std::chrono::milliseconds(300)};
 
 }  // namespace
 
-void FollowWatch::begin(Time now) {
-  began_ = now;
+void FollowWatch::begin(Time when) {
+  began_ = when;
   end();
   follows_ = shown_ = told_ = excused_ = false;
 }

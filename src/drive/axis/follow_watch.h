@@ -38,8 +38,8 @@ class FollowWatch {
     noteMotion();
     return true;
   }
-  /// The axis came into operation.
-  void begin(Time now);
+  /// The axis came into operation. @param when the drive can begin to follow
+  void begin(Time when);
   /// It left operation, or what was sent has been called back.
   void end() { running_since_ = apart_since_ = kNever; }
   /// The drive follows its set-points, as far as the mode that was looked at last shows that.

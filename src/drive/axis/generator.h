@@ -73,7 +73,8 @@ class Generator {
   void watchDrive(Time now);
   /// The motor does not follow what is sent, and that is called back to where it stands.
   void watchFollowing(Time now);
-  void beginFollowing(Time now) { following_.begin(now); }
+  /// @param when the drive can begin to follow: its brake has had its time then
+  void beginFollowing(Time when) { following_.begin(when); }
   /// The drive shows that it follows, as far as its mode has a bit for that.
   bool followed() const { return following_.follows(); }
 

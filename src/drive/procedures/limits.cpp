@@ -55,8 +55,14 @@ struct Steps {
            timing.transition(3) + timing.transition(4);
   }
   Duration enable() const {
-    return timing.state_change + kComeToRest + writes(profile.before_enable) + limits() + mode() +
-           climb() + shown() + std::max(timing.brake_release, kFollowPatience);
+    return timing.state_change + settings() + kComeToRest + writes(profile.before_enable) +
+           limits() + mode() + climb() + shown() + timing.brake_release + kFollowPatience;
+  }
+  Duration settings() const {  // SettingsStep
+    const CountsRule& counts = profile.counts_rule;
+    const std::size_t objects = profile.expected.size() + counts.times.size() + counts.over.size() +
+                                (timing.brake_object.empty() ? 0 : 1);
+    return static_cast<int>(objects) * transfer();
   }
   Duration change() const {  // SwitchStep
     const ModeChange& rules = profile.mode_change;

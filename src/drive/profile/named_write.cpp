@@ -63,6 +63,8 @@ Source configured(const NamedWrite& write, const AxisConfig& axis, bool reversed
   } else if (from == "sync_period.value" || from == "sync_period.exponent") {
     const auto period = interpolationPeriod(axis.cycle);
     if (period) source.raw = from == "sync_period.value" ? int{period->value} : period->exponent;
+  } else if (from == "sync_period.ms") {
+    source.raw = axis.cycle / std::chrono::milliseconds(1);
   } else if (from == kHold) {
     if (axis.quick_stop_holds) source.raw = axis.profile->quick_stop_holds.front();
   } else if (axis.homing && from == "homing.method") {
@@ -105,6 +107,14 @@ std::uint64_t masked(std::int64_t value, DataType type) {
   return static_cast<std::uint64_t>(value) & (~std::uint64_t{0} >> (64 - bits));
 }
 
+bool fits(std::int64_t value, DataType type) {
+  const unsigned bits = fieldbus::sizeBits(type);
+  if (bits >= 64) return true;
+  const std::int64_t span = std::int64_t{1} << bits;
+  const std::int64_t low = fieldbus::isSigned(type) ? -(span / 2) : 0;
+  return value >= low && value < low + span;
+}
+
 // Access, length and limits as the EDS tells them.
 Result<void> checkAgainstEds(const ResolvedWrite& write, const AxisConfig& axis) {
   const fieldbus::DictionaryEntry* entry =
@@ -125,6 +135,24 @@ std::uint64_t widest(const ResolvedWrite& write, const Conversion& conversion,
                           : std::nullopt;
   if (number) return *number;
   return low ? conversion.lowestRaw() : conversion.highestRaw();
+}
+
+// A number of the drive's own, as wide as the object.
+Result<void> takeRaw(const NamedWrite& write, std::int64_t number, const ObjectSpec* object,
+                     const AxisConfig& axis, ResolvedWrite& resolved) {
+  const DataType type = resolved.type;
+  if (!write.from.empty() && !fits(number, type)) {
+    return refuse(axis, resolved.name,
+                  std::to_string(number) + " (" + write.from + ") does not fit");
+  }
+  const std::uint64_t raw = masked(number, type);
+  const auto finite = sendable(type, axis.profile->encodingOf(resolved.object, type), raw);
+  if (!finite) return refuse(axis, resolved.name, notFinite(type, raw));
+  resolved.raw = *finite;
+  if (object == nullptr || object->takes(resolved.raw)) return {};
+  return refuse(axis, resolved.name,
+                std::to_string(number) + " does not fit; the object takes " + object->rangeText() +
+                    " in the drive's own numbers");
 }
 
 }  // namespace
@@ -173,14 +201,8 @@ Result<std::optional<ResolvedWrite>> resolveWrite(const NamedWrite& write, const
   if (source.copied_from) {
     resolved.copied_from = source.copied_from;
   } else if (source.raw) {
-    resolved.raw = masked(*source.raw, *type);
-    const auto finite = sendable(*type, axis.profile->encodingOf(*id, *type), resolved.raw);
-    if (!finite) return refuse(axis, resolved.name, notFinite(*type, resolved.raw));
-    resolved.raw = *finite;
-    if (object != nullptr && !object->takes(resolved.raw)) {
-      return refuse(axis, resolved.name,
-                    std::to_string(*source.raw) + " does not fit; the object takes " +
-                        object->rangeText() + " in the drive's own numbers");
+    if (const auto done = takeRaw(write, *source.raw, object, axis, resolved); !done) {
+      return done.error();
     }
   } else if (source.value && object != nullptr) {
     const auto conversion = Conversion::create(*object, *axis.profile, axis.geometry);

@@ -147,7 +147,8 @@ struct NamedWrite {
   std::optional<std::int64_t> raw;  ///< as it is
   /// A value of the configuration instead: "limits.lower", "limits.upper" (the one that is the
   /// smaller or larger number in the drive), "limits.velocity", "limits.acceleration",
-  /// "limits.jerk", "limits.effort", "sync_period.value", "sync_period.exponent", "homing.method",
+  /// "limits.jerk", "limits.effort", "sync_period.value", "sync_period.exponent", "sync_period.ms",
+  /// "homing.method",
   /// "homing.search_velocity", "homing.zero_velocity", "homing.acceleration", "homing.offset",
   /// "quick_stop.hold" (the first of quick_stop_holds, where the axis is to hold); or the name of a
   /// readable object, which is read and copied as it is. Where the configuration
@@ -248,6 +249,20 @@ struct ErrorText {
   Duration wait{0};  ///< since the fault, before which the drive takes no reset
 };
 
+/// What a setting of the drive must be before it is enabled; it is read and compared, not written.
+struct Expectation {
+  std::string object;              ///< by its name in the profile, a whole number
+  std::int64_t raw = 0;            ///< as the object holds it
+  std::vector<std::string> modes;  ///< it counts where the axis uses one of these; empty: always
+  std::string text, remedy;        ///< what another number means, and what to do about it
+};
+
+/// Position counts of a motor turn by the drive's own settings: the product of some objects over
+/// that of others, by their names. Empty: the drive has no such objects.
+struct CountsRule {
+  std::vector<std::string> times, over;
+};
+
 /// A drive family as data: what it is as a drive, whatever bus it hangs on. With what it is as a
 /// device on the bus it makes a config::DriveFamily, which is loaded from
 /// config/drives/<name>.yaml; documented in docs/drive_profiles.md. No code anywhere asks for
@@ -278,6 +293,8 @@ struct DriveProfile {
   std::vector<int> quick_stop_holds;       ///< values of 605Ah after which quick stop stays active
   std::vector<NamedWrite> startup;         ///< at every boot
   std::vector<NamedWrite> before_enable;   ///< each time before enabling
+  std::vector<Expectation> expected;       ///< compared each time before enabling
+  CountsRule counts_rule;                  ///< the same, with counts_per_turn of the axis
   std::vector<std::string> default_modes;  ///< an axis can switch to; empty: all
   std::vector<std::string> feedback;  ///< in the cycle where there is room, most important first
   std::vector<std::string> feedback_if_room;  ///< only with what travels for something else
@@ -291,7 +308,10 @@ struct DriveProfile {
     /// From operation enabled to switch on disabled (transitions 5 and 10), if that is one step.
     Duration disabling() const { return std::max(transition(5), transition(10)); }
     Duration mode_change{std::chrono::seconds(1)};
-    Duration brake_release{0};  ///< Operation enabled until set-points are followed
+    /// Operation enabled until set-points are followed: 0 to 60 s. With `brake_object` the longest
+    /// that this object may say, and what counts where it cannot be read.
+    Duration brake_release{0};
+    std::string brake_object;  ///< holds that time; by its name in the profile, quantity time
   } timing;
   /// Which sub-indices of 1010h and 1011h save and restore parameters: 1 all, 2 communication, 3
   /// application, 4.. the maker's.

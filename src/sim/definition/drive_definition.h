@@ -47,7 +47,11 @@ struct ModeDefinition {
   bool target_reached = true;    ///< statusword bit 10 is used
   std::optional<Role> velocity;  ///< speed (limit) of the mode, none: only the maxima
   std::optional<Role> torque;    ///< torque limit of the mode
+  bool delayed = false;          ///< interpolated_position: a set-point begins one SYNC later
 };
+
+/// When position limits (607Dh) count, by the value of an object of the maker's own.
+enum class LimitUse : std::uint8_t { off, on, homed };
 
 /// How motion ends.
 enum class Ramp : std::uint8_t {
@@ -87,8 +91,15 @@ struct FaultDefinition {
 
 /// How the numbers of a quantity stand in their objects.
 struct UnitScale {
-  bool per_count = false;  ///< times AxisMechanics::counts_per_turn
-  double factor = 1.0;     ///< device units per internal unit
+  /// What of a turn the factor is multiplied with.
+  enum class Per : std::uint8_t {
+    unit,     ///< nothing
+    count,    ///< AxisMechanics::counts_per_turn
+    encoder,  ///< the object of the role encoder_resolution
+    gear,     ///< the same, times gear_denominator over gear_numerator
+  };
+  Per per = Per::unit;
+  double factor = 1.0;  ///< device units per internal unit
 };
 
 /// See docs/simulated_drives.md for the file format.
@@ -97,6 +108,7 @@ struct DriveDefinition {
   DictionaryTemplate dictionary;
   DeviceBehaviour communication;
   std::array<UnitScale, kQuantityCount> units;
+  std::map<Role, UnitScale> units_of;  ///< of single objects, instead of their quantity's
   Encoding encoding = Encoding::integer;
   std::map<fieldbus::ObjectId, Encoding> encodings;
   std::map<Role, fieldbus::ObjectId> objects;              ///< instead of the standard's
@@ -112,8 +124,15 @@ struct DriveDefinition {
   bool resume_quick_stop_while_moving = true;
   bool halt = true;
   bool internal_limit_bit = true;
-  bool warning_stops = false;        ///< a warning leads to the fault reaction
-  bool follows_sync_period = false;  ///< csp interpolates over the SYNC period, not over 60C2h
+  bool warning_stops = false;         ///< a warning leads to the fault reaction
+  bool follows_sync_period = false;   ///< csp interpolates over the SYNC period, not over 60C2h
+  bool brake_loses_commands = false;  ///< edges of the controlword while the brake opens are lost
+  bool ramps_of_mode = false;         ///< in homing "slow down" goes by 609Ah
+  std::optional<std::uint16_t> homed_bit;  ///< mask in the statusword: home was found
+  /// By the value of the object of the role sync_tolerance: the share of its period by which SYNC
+  /// may be off in interpolated position before the fault `sync_error`; 0: anything.
+  std::vector<double> sync_tolerances;
+  std::vector<LimitUse> limit_uses;  ///< by the value of the role position_limits_use; empty: on
   std::vector<fieldbus::ObjectId> locked_while_enabled;
   DriveQuirks quirks;
   Duration initialisation{0};  ///< in Not ready to switch on
@@ -121,8 +140,9 @@ struct DriveDefinition {
   OptionTable quick_stop, shutdown, disable_operation, halt_option, fault_reaction;
 
   std::vector<std::int64_t> homing_methods;
-  bool home_offset_is_zero_shift = false;  ///< 6064h at home = -607Ch instead of +607Ch
-  bool homing_returns = false;             ///< moves back onto the home position
+  std::vector<std::int64_t> inert_methods;  ///< taken, but their start does nothing
+  bool home_offset_is_zero_shift = false;   ///< 6064h at home = -607Ch instead of +607Ch
+  bool homing_returns = false;              ///< moves back onto the home position
 
   bool following_error_is_fault = true;
   bool limit_switch_is_fault = false;

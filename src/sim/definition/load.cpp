@@ -66,6 +66,12 @@ void readHoming(DefinitionReader& reader, DriveDefinition& out) {
   reader.read<bool>("home_offset", out.home_offset_is_zero_shift,
                     {{"position_at_home", false}, {"shift_of_zero", true}});
   reader.read("returns_to_home", out.homing_returns);
+  if (reader.has("inert")) {
+    out.inert_methods.clear();
+    reader.list("inert", [&](const yaml::Value& item) {
+      if (const auto number = item.integer(-128, 127)) out.inert_methods.push_back(*number);
+    });
+  }
   if (!reader.has("methods")) return;
   out.homing_methods.clear();
   for (const YAML::Node& item : reader.node("methods")) {
@@ -86,6 +92,7 @@ void readDefinition(DefinitionReader& reader, bool extends, DriveDefinition& out
   reader.section("communication",
                  [&](DefinitionReader& r) { readCommunication(r, out.communication); });
   reader.section("units", [&](DefinitionReader& r) { readUnits(r, out); });
+  reader.section("units_of", [&](DefinitionReader& r) { readUnitsOf(r, out); });
   readEncoding(reader, out);
   readObjects(reader, out);
   readMotors(reader, out);

@@ -2,6 +2,27 @@
 #include "sim/definition/read_communication.h"
 
 namespace cia402::sim {
+namespace {
+
+/// How PDOs and identifiers may be configured, and when PDOs are sent.
+void readPdoRules(DefinitionReader& reader, DeviceBehaviour& out) {
+  reader.read("mapping_requires_invalid", out.mapping_requires_invalid);
+  reader.read("map_entry_checked_on_write", out.map_entry_checked_on_write);
+  reader.read("disable_may_change_id", out.disable_may_change_id);
+  reader.read("timers_require_invalid", out.timers_require_invalid);
+  reader.read("type_requires_invalid", out.type_requires_invalid);
+  reader.read("rtr_types", out.rtr_types);
+  reader.read("fixed_service_ids", out.fixed_service_ids);
+  reader.read("type255_event_timer_only", out.type255_event_timer_only);
+  reader.read("sends_event_tpdos_on_start", out.sends_event_tpdos_on_start);
+  reader.read<PdoIdentifiers>("pdo_identifiers", out.pdo_identifiers,
+                              {{"writable", PdoIdentifiers::writable},
+                               {"fixed", PdoIdentifiers::fixed},
+                               {"fixed_but_rtr", PdoIdentifiers::fixed_but_rtr},
+                               {"read_only", PdoIdentifiers::read_only}});
+}
+
+}  // namespace
 
 void readCommunication(DefinitionReader& reader, DeviceBehaviour& out) {
   reader.read("boot_time", out.boot_time);
@@ -31,22 +52,12 @@ void readCommunication(DefinitionReader& reader, DeviceBehaviour& out) {
   reader.read("sdo_block_crc_error", out.sdo_block_crc_error);
   reader.read("sdo_block_size", out.sdo_block_size, 1, 127);
   reader.read("sdo_block_size_varies", out.sdo_block_size_varies);
-  reader.read("mapping_requires_invalid", out.mapping_requires_invalid);
-  reader.read("map_entry_checked_on_write", out.map_entry_checked_on_write);
-  reader.read("disable_may_change_id", out.disable_may_change_id);
-  reader.read("timers_require_invalid", out.timers_require_invalid);
-  reader.read("rtr_types", out.rtr_types);
-  reader.read("type255_event_timer_only", out.type255_event_timer_only);
-  reader.read("sends_event_tpdos_on_start", out.sends_event_tpdos_on_start);
   reader.read("store_time", out.store_time);
   reader.read("starts_operational", out.starts_operational);
   reader.read("stays_pre_operational", out.stays_pre_operational);
   reader.read("boots_again_after", out.boots_again_after);
   reader.read("restart_after_bus_off", out.restart_after_bus_off);
-  reader.read<PdoIdentifiers>("pdo_identifiers", out.pdo_identifiers,
-                              {{"writable", PdoIdentifiers::writable},
-                               {"fixed", PdoIdentifiers::fixed},
-                               {"read_only", PdoIdentifiers::read_only}});
+  readPdoRules(reader, out);
   std::int64_t bytes = out.tpdo_size_error;
   reader.read("tpdo_size_error", bytes, -8, 8);
   out.tpdo_size_error = static_cast<int>(bytes);

@@ -90,6 +90,7 @@ void readMode(const std::string& number, const yaml::Value& from, DefinitionRead
     mode.velocity = readRole(reader, "velocity");
   }
   mode.torque = readRole(reader, "torque");
+  reader.read("delayed", mode.delayed);
   const auto known = std::find_if(out.modes.begin(), out.modes.end(),
                                   [&](const auto& other) { return other.number == mode.number; });
   known == out.modes.end() ? out.modes.push_back(mode) : void(*known = mode);

@@ -19,6 +19,22 @@ constexpr const char* kQuantities[] = {"none",   "position", "velocity", "accele
                                        "torque", "current",  "time",     "motor_speed"};
 static_assert(sizeof(kQuantities) / sizeof(kQuantities[0]) == kQuantityCount, "a name for each");
 
+const std::vector<std::pair<const char*, UnitScale::Per>> kPer = {
+    {"counts", UnitScale::Per::count},
+    {"encoder", UnitScale::Per::encoder},
+    {"gear", UnitScale::Per::gear}};
+
+/// A number, or the word for what of a turn it is.
+void readUnit(DefinitionReader& reader, const std::string& key, UnitScale& out) {
+  if (!reader.has(key)) return;
+  const YAML::Node value = reader.node(key);
+  const auto word = std::find_if(kPer.begin(), kPer.end(), [&](const auto& pair) {
+    return value.IsScalar() && value.Scalar() == pair.first;
+  });
+  out = {word == kPer.end() ? UnitScale::Per::unit : word->second, 1.0};
+  if (word == kPer.end()) reader.read(key, out.factor, 1e-9, 1e12);
+}
+
 }  // namespace
 
 void readEncoding(DefinitionReader& reader, DriveDefinition& out) {
@@ -26,16 +42,14 @@ void readEncoding(DefinitionReader& reader, DriveDefinition& out) {
 }
 
 void readUnits(DefinitionReader& reader, DriveDefinition& out) {
-  for (std::size_t i = 1; i < kQuantityCount; ++i) {
-    if (!reader.has(kQuantities[i])) continue;
-    UnitScale& unit = out.units[i];
-    if (reader.node(kQuantities[i]).IsScalar() &&
-        reader.node(kQuantities[i]).Scalar() == "counts") {
-      unit = {true, 1.0};
-    } else {
-      unit.per_count = false;
-      reader.read(kQuantities[i], unit.factor, 1e-9, 1e12);
-    }
+  for (std::size_t i = 1; i < kQuantityCount; ++i) readUnit(reader, kQuantities[i], out.units[i]);
+}
+
+void readUnitsOf(DefinitionReader& reader, DriveDefinition& out) {
+  for (std::size_t i = 0; i < kRoleCount; ++i) {
+    const RoleInfo& info = roleInfo(static_cast<Role>(i));
+    if (info.quantity == Quantity::none || !reader.has(info.name)) continue;
+    readUnit(reader, info.name, out.units_of[info.role]);
   }
 }
 

@@ -11,6 +11,8 @@ namespace cia402::sim {
 void readDictionary(DefinitionReader& reader, bool extends, DriveDefinition& out);
 /// The `units:` section.
 void readUnits(DefinitionReader& reader, DriveDefinition& out);
+/// The `units_of:` section, of single objects.
+void readUnitsOf(DefinitionReader& reader, DriveDefinition& out);
 /// `encoding:`, of all objects with a unit.
 void readEncoding(DefinitionReader& reader, DriveDefinition& out);
 /// `objects:` and `encodings:`, of single objects.

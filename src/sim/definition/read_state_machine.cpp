@@ -28,6 +28,23 @@ void readOptionTable(DefinitionReader& parent, const std::string& key, OptionTab
   });
 }
 
+void readSupervision(DefinitionReader& reader, DriveDefinition& out) {
+  if (reader.has("homed_bit")) {
+    std::int64_t bit = 15;
+    reader.read("homed_bit", bit, 0, 15);
+    out.homed_bit = static_cast<std::uint16_t>(1U << bit);
+  }
+  if (reader.has("sync_tolerances")) out.sync_tolerances.clear();
+  reader.list("sync_tolerances", [&](const yaml::Value& item) {
+    out.sync_tolerances.push_back(item.number({0.0, 10.0, false}).value_or(0.0));
+  });
+  if (reader.has("position_limits")) out.limit_uses.clear();
+  reader.list("position_limits", [&](const yaml::Value& item) {
+    const auto index = item.oneOf({"off", "on", "homed"});
+    out.limit_uses.push_back(static_cast<LimitUse>(index.value_or(1)));
+  });
+}
+
 }  // namespace
 
 const std::vector<std::pair<const char*, Ramp>>& rampWords() {
@@ -75,6 +92,9 @@ void readStateMachine(DefinitionReader& reader, DriveDefinition& out) {
   reader.read("master_lost", out.master_lost, kConnectionLoss);
   reader.read("stops_outside_operational", out.stops_outside_operational);
   reader.read("interpolates_over_sync_period", out.follows_sync_period);
+  reader.read("brake_loses_commands", out.brake_loses_commands);
+  reader.read("ramps_of_mode", out.ramps_of_mode);
+  readSupervision(reader, out);
   readOptionTable(reader, "quick_stop", out.quick_stop);
   readOptionTable(reader, "shutdown", out.shutdown);
   readOptionTable(reader, "disable_operation", out.disable_operation);

@@ -15,9 +15,10 @@ namespace cia402::sim {
 
 /// How far a device lets the COB-IDs of its PDOs be configured (1400h, 1800h sub 1).
 enum class PdoIdentifiers : std::uint8_t {
-  writable,   ///< as CiA 301 says
-  fixed,      ///< bit 31 only; another identifier is refused with 0x06010002
-  read_only,  ///< every write is refused with 0x06010002
+  writable,       ///< as CiA 301 says
+  fixed,          ///< bit 31 only; another identifier is refused with 0x06010002
+  fixed_but_rtr,  ///< of TPDOs bit 30, too
+  read_only,      ///< every write is refused with 0x06010002
 };
 
 /// The time of a TIME message (CiA 301, 7.2.6).
@@ -79,9 +80,12 @@ struct DeviceBehaviour {
                                        ///< sets bit 31
   bool timers_require_invalid = false;  ///< inhibit time and SYNC start value can be written only
                                         ///< while bit 31 of the COB-ID is set (else 0x08000022)
+  bool type_requires_invalid = false;   ///< transmission type and event timer likewise
   PdoIdentifiers pdo_identifiers = PdoIdentifiers::writable;
-  bool keeps_rtr_bit = false;            ///< TPDOs have bit 30 of the COB-ID set and refuse it as 0
-                                         ///< (0x06090030; Roboteq)
+  bool fixed_service_ids = false;  ///< 1005h and 1014h: bits 30 and 31 only (else 0x06090030), and
+                                   ///< SYNC is not produced while 1006h is 0
+  bool keeps_rtr_bit = false;      ///< TPDOs have bit 30 of the COB-ID set and refuse it as 0
+                                   ///< (0x06090030; Roboteq)
   bool misleading_cob_id_abort = false;  ///< takes any COB-ID, and refuses the entries of a PDO
                                          ///< with a bad one (0x06040041; EPOS4)
   bool rtr_types = true;                 ///< TPDO types 252 and 253 exist (else 0x06090030)

@@ -24,7 +24,11 @@ constexpr std::uint64_t kCommunicationError = 0x10;
 void SlaveEmergency::serveObjects() {
   context_.serveWrites(
       kCobId,
-      [](const Entry& entry, std::uint64_t number) {
+      [this](const Entry& entry, std::uint64_t number) {
+        const std::uint64_t changed = (entry.number ^ number) & ~std::uint64_t{kCobIdInvalid};
+        if (context_.behaviour.fixed_service_ids && changed != 0) {
+          return fieldbus::abort_code::kInvalidValue;
+        }
         return checkCobId(static_cast<std::uint32_t>(entry.number),
                           static_cast<std::uint32_t>(number), false);
       },

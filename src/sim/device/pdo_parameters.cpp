@@ -20,10 +20,13 @@ std::uint32_t checkType(const SlaveContext& context, const PdoRecords& pdo, std:
   return rtr && context.behaviour.rtr_types ? 0 : abort_code::kInvalidValue;
 }
 
-bool idIsFixed(const SlaveContext& context, const Entry& entry, std::uint64_t number) {
+bool idIsFixed(const SlaveContext& context, const PdoRecords& pdo, const Entry& entry,
+               std::uint64_t number) {
   const PdoIdentifiers rule = context.behaviour.pdo_identifiers;
-  if (rule == PdoIdentifiers::fixed) return ((entry.number ^ number) & ~kCobIdInvalid) != 0;
-  return rule == PdoIdentifiers::read_only;
+  if (rule == PdoIdentifiers::writable) return false;
+  const bool rtr = rule == PdoIdentifiers::fixed_but_rtr && pdo.direction == PdoDirection::transmit;
+  const std::uint64_t free = kCobIdInvalid | (rtr ? kCobIdNoRtr : 0U);
+  return rule == PdoIdentifiers::read_only || ((entry.number ^ number) & ~free) != 0;
 }
 
 bool dropsRtrBit(const SlaveContext& context, const PdoRecords& pdo, std::uint64_t number) {
@@ -84,16 +87,20 @@ void setRtrBit(SlaveContext& context, const PdoRecords& pdo) {
 std::uint32_t checkCommunication(const SlaveContext& context, const PdoRecords& pdo,
                                  const Entry& entry, std::uint64_t number) {
   const bool locked = context.behaviour.timers_require_invalid && isValid(context, pdo);
+  const bool bound = context.behaviour.type_requires_invalid && isValid(context, pdo);
   switch (entry.id.subindex) {
     case pdo_sub::kCobId:
-      if (idIsFixed(context, entry, number)) return abort_code::kReadOnly;
+      if (idIsFixed(context, pdo, entry, number)) return abort_code::kReadOnly;
       if (dropsRtrBit(context, pdo, number)) return abort_code::kInvalidValue;
       if (context.behaviour.misleading_cob_id_abort) return 0;
       return checkCobId(static_cast<std::uint32_t>(entry.number),
                         static_cast<std::uint32_t>(number),
                         context.behaviour.disable_may_change_id);
     case pdo_sub::kType:
+      if (bound) return abort_code::kDeviceState;
       return checkType(context, pdo, number);
+    case pdo_sub::kEventTimer:
+      return bound ? abort_code::kDeviceState : 0;
     case pdo_sub::kInhibitTime:
       return locked ? abort_code::kDeviceState : 0;
     case pdo_sub::kSyncStart:

@@ -58,6 +58,12 @@ std::uint32_t SlaveSync::check(const Entry& entry, std::uint64_t number) const {
   const auto cob_id = static_cast<std::uint32_t>(number);
   const bool produces = (cob_id & kCobIdGenerateSync) != 0;
   if (produces && !context_.behaviour.sync_producer) return abort_code::kInvalidValue;
+  if (context_.behaviour.fixed_service_ids) {
+    if (((entry.number ^ number) & ~std::uint64_t{kCobIdGenerateSync}) != 0) {
+      return abort_code::kInvalidValue;
+    }
+    if (produces && period() <= Duration::zero()) return abort_code::kDeviceState;
+  }
   const bool was_producing = (entry.number & kCobIdGenerateSync) != 0;
   if (was_producing && produces && entry.number != number) return abort_code::kInvalidValue;
   return checkCobId(kCobIdInvalid, cob_id & ~(kCobIdInvalid | kCobIdGenerateSync), true);

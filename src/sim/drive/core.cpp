@@ -18,6 +18,12 @@ constexpr std::uint16_t kHalt = 0x0100;
 
 std::int64_t gridStep(Time time) { return time.time_since_epoch() / kDriveStep; }
 
+/// By 60C2h, s.
+double configuredPeriod(const DriveValues& values) {
+  const double exponent = static_cast<double>(values.raw(Role::interpolation_exponent, -3));
+  return static_cast<double>(values.raw(Role::interpolation_time, 0)) * std::pow(10.0, exponent);
+}
+
 }  // namespace
 
 DriveCore::DriveCore(const DriveDefinition& definition, unsigned axis,
@@ -35,7 +41,10 @@ void DriveCore::start(bool cold, Time now) {
   advance(now);
   on_ = true;
   if (cold && !definition_.absolute_encoder) motion_.setCounter(0.0);
-  if (cold) stored_ = false;
+  if (cold) {
+    stored_ = false;
+    motion_.loseHome();
+  }
   motion_.powerStage(false);
   controlword_ = 0;
   statusword_ = 0;  // the dictionary has its initial values again
@@ -111,6 +120,9 @@ void DriveCore::superviseMotion() {
       power_.state() != PdsState::fault_reaction_active) {
     raise("following_error");
   }
+  const Time time{step_ * kDriveStep};
+  if (toSeconds(sync_.since(time)) > configuredPeriod(values_) + syncTolerance())
+    raise("sync_error");
   if (!motion_.limitSwitchHit()) {
     limit_reported_ = false;
   } else if (!limit_reported_) {
@@ -131,8 +143,9 @@ void DriveCore::onControlword() {
   const bool was_operating = power_.operating();
   command(wanted);
   // Edges count only where operation was enabled before.
-  if (power_.operating())
-    motion_.controlBits(controlword_, was_operating ? previous : controlword_);
+  const bool lost = definition_.brake_loses_commands && power_.braking(now_);
+  const bool edges = was_operating && !lost;
+  if (power_.operating()) motion_.controlBits(controlword_, edges ? previous : controlword_);
   updateStatusword();
 }
 
@@ -190,13 +203,27 @@ void DriveCore::onTargetPosition() {
 
 void DriveCore::onSync() {
   sync_.onSync(now_);
+  if (toSeconds(sync_.interval()) < configuredPeriod(values_) - syncTolerance())
+    raise("sync_error");
   startSegment();
 }
 
+/// By how much SYNC may be off now, s.
+double DriveCore::syncTolerance() const {
+  const auto& shares = definition_.sync_tolerances;
+  const std::int64_t number = values_.raw(Role::sync_tolerance, 0);
+  const ModeDefinition* mode = motion_.mode();
+  const bool watched = power_.state() == PdsState::operation_enabled && mode != nullptr &&
+                       mode->behaviour == ModeBehaviour::interpolated_position;
+  if (!watched || number < 0 || number >= static_cast<std::int64_t>(shares.size())) {
+    return kUnlimited;
+  }
+  const double share = shares[static_cast<std::size_t>(number)];
+  return share > 0.0 ? share * configuredPeriod(values_) : kUnlimited;
+}
+
 void DriveCore::startSegment() {
-  const double exponent = static_cast<double>(values_.raw(Role::interpolation_exponent, -3));
-  double period =
-      static_cast<double>(values_.raw(Role::interpolation_time, 0)) * std::pow(10.0, exponent);
+  double period = configuredPeriod(values_);
   if (definition_.follows_sync_period || period <= 0.0) period = toSeconds(sync_.interval());
   motion_.cyclicTarget(period, toSeconds(now_ - Time{step_ * kDriveStep}));
 }
@@ -313,6 +340,7 @@ void DriveCore::updateStatusword() {
   parts.voltage = !faults_.voltageLost(now_);
   parts.warning = faults_.warning();
   if (enabled()) parts.of_mode = motion_.statusBits();
+  if (motion_.homed()) parts.of_mode |= definition_.homed_bit.value_or(0);
   const std::uint16_t word = makeStatusword(parts, definition_.quirks, now_);
   if (word == statusword_) return;
   statusword_ = word;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace cia402::sim {
 
@@ -22,7 +23,10 @@ bool CyclicPositions::follows(bool bit_4) const {
 
 void CyclicPositions::target(double seconds, double into) {
   axis_.limits.release();
-  const double target = axis_.trueTarget(axis_.values.get(targetRole(), 0.0));
+  double target = axis_.trueTarget(axis_.values.get(targetRole(), 0.0));
+  if (axis_.mode->delayed) {
+    target = std::exchange(pending_, target).value_or(axis_.demand.interpolator.position());
+  }
   axis_.demand.interpolator.moveTo(target, seconds, into);
 }
 

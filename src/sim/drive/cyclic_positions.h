@@ -1,6 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "sim/drive/moving_axis.h"
 
 namespace cia402::sim {
@@ -15,6 +17,8 @@ class CyclicPositions {
   /// A set-point becomes valid: it is reached `seconds` from now, which is `into` seconds after the
   /// last step.
   void target(double seconds, double into);
+  /// What came and has not begun yet is forgotten.
+  void forget() { pending_.reset(); }
   /// One kDriveStep along the line. @param bit_4 of the controlword
   void step(bool bit_4);
   /// The set-points are followed (statusword bit 12). @param bit_4 of the controlword
@@ -27,6 +31,7 @@ class CyclicPositions {
   void stopAtSwitch(double moved);
 
   MovingAxis& axis_;
+  std::optional<double> pending_;  ///< true turns; ModeDefinition::delayed
 };
 
 }  // namespace cia402::sim

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <deque>
 #include <map>
+#include <utility>
 
 #include "sim/definition/drive_definition.h"
 #include "sim/dictionary/axis_objects.h"
@@ -17,6 +18,7 @@ namespace cia402::sim {
 namespace {
 
 constexpr Duration kPowerCycle = std::chrono::milliseconds(500);
+constexpr Duration kSoftwareReset = std::chrono::milliseconds(10);  // the write is answered before
 
 // Error register bits of a code's class (CiA 301, 7.2.7.1 and 7.5.2.2).
 std::uint8_t registerFor(std::uint16_t code) {
@@ -149,8 +151,10 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
     if (role == Role::target_position || role == Role::interpolation_target) {
       axis.core.onTargetPosition();
     }
+    if (role == Role::gear_numerator || role == Role::gear_denominator) axis.core.onGear();
     if (role == Role::clear_errors && entry.number != 0) axis.core.resetFault();
     if (role == Role::save_zero && entry.number != 0) axis.core.saveZero();
+    if (role == Role::software_reset && entry.number == 1) reset_at = now + kSoftwareReset;
     if (role == Role::homing_start && entry.number == 1) axis.core.onHomingStart();
   }
 
@@ -213,6 +217,11 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
 
   void bringTo(Time time) {
     now = std::max(now, time);
+    if (reset_at && now >= *reset_at) {
+      device.powerOff();
+      forEach(&DriveCore::powerOff);
+      restart_at = std::exchange(reset_at, std::nullopt);
+    }
     if (restart_at && now >= *restart_at) {
       const Time at = *restart_at;
       restart_at.reset();
@@ -266,6 +275,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
   ParameterStore store;
   Time now{};
   std::optional<Time> restart_at;
+  std::optional<Time> reset_at;  ///< by its own object
   std::map<std::uint16_t, FaultDefinition> raw_faults;
   bool heard = false;  ///< anything, since power-on
   bool cold = false;
@@ -312,7 +322,9 @@ void Drive::tick(Time now) {
 Time Drive::nextEvent() const {
   Time next = std::min(impl_->device.nextEvent(), impl_->emergencies.nextEvent());
   for (const Axis& axis : impl_->axes) next = std::min(next, axis.core.nextEvent());
-  if (impl_->restart_at) next = std::min(next, *impl_->restart_at);
+  for (const auto& due : {impl_->restart_at, impl_->reset_at}) {
+    if (due) next = std::min(next, *due);
+  }
   return next;
 }
 

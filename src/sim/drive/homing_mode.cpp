@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "sim/drive/homing_mode.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace cia402::sim {
@@ -24,7 +25,10 @@ void HomingMode::control(bool bit_4, bool rising) {
 }
 
 void HomingMode::start() {
-  const HomingMethod* method = findHomingMethod(axis_.values.raw(Role::homing_method, 0));
+  const std::int64_t number = axis_.values.raw(Role::homing_method, 0);
+  const auto& inert = axis_.definition.inert_methods;
+  if (std::find(inert.begin(), inert.end(), number) != inert.end()) return;
+  const HomingMethod* method = findHomingMethod(number);
   attained_ = false;
   failed_ = method == nullptr;
   returning_ = false;
@@ -38,6 +42,7 @@ void HomingMode::finish() {
   const double offset = axis_.values.get(Role::home_offset, 0.0);
   axis_.frame = sequence_.home() - (axis_.definition.home_offset_is_zero_shift ? -offset : offset);
   attained_ = true;
+  axis_.limits.setHomed(true);
   returning_ = axis_.definition.homing_returns;
 }
 

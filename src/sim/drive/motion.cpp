@@ -64,6 +64,7 @@ void DriveMotion::setMode(const ModeDefinition* mode) {
   if (powered_) axis_.demand.takeOver(axis_.motor, time_constant_);
   axis_.mode = mode;
   axis_.demand.begin();
+  cyclic_.forget();
   set_points_.begin();
   homing_.begin();
   supervision_.newMode();
@@ -115,9 +116,9 @@ void DriveMotion::homeByObject() {
 }
 
 void DriveMotion::cyclicTarget(double seconds, double into) {
-  if (!cyclic_.ofThisMode() || !cyclic_.follows(modeBit())) return;
-  if (!powered_ || stop_ || held_) return;
-  cyclic_.target(seconds, into);
+  if (!cyclic_.ofThisMode()) return;
+  const bool follows = cyclic_.follows(modeBit()) && powered_ && !stop_ && !held_;
+  follows ? cyclic_.target(seconds, into) : cyclic_.forget();
 }
 
 void DriveMotion::limitTorque() {

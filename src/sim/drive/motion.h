@@ -54,6 +54,9 @@ class DriveMotion {
   /// Begins to home where an object does that instead of bit 4.
   void homeByObject();
   bool followingErrorExceeded() const { return supervision_.followingErrorExceeded(); }
+  /// The drive has found its home by itself, since its position was lost.
+  bool homed() const { return axis_.limits.homed(); }
+  void loseHome() { axis_.limits.setHomed(false); }
   /// A limit switch was in the way in the last step.
   bool limitSwitchHit() const { return axis_.limits.switchHit(); }
   /// Actual and demand values, inputs into the dictionary.

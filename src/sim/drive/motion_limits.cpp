@@ -16,6 +16,8 @@ double MotionLimits::deceleration(Ramp ramp, const ModeDefinition* mode) const {
   const bool vl = mode != nullptr && mode->behaviour == ModeBehaviour::velocity;
   switch (ramp) {
     case Ramp::slow_down:
+      if (definition_.ramps_of_mode && mode != nullptr && mode->behaviour == ModeBehaviour::homing)
+        return values_.get(Role::homing_acceleration, kUnlimited);
       if (vl) return velocityModeRamp(Role::vl_deceleration_speed, Role::vl_deceleration_time);
       return values_.get(Role::profile_deceleration, kUnlimited);
     case Ramp::quick_stop:
@@ -52,8 +54,16 @@ ProfileLimits MotionLimits::profile(const ModeDefinition* mode) const {
   return limits;
 }
 
+bool MotionLimits::positionsCount() const {
+  const std::int64_t number = values_.raw(Role::position_limits_use, 0);
+  const auto& uses = definition_.limit_uses;
+  if (number < 0 || number >= static_cast<std::int64_t>(uses.size())) return true;
+  const LimitUse use = uses[static_cast<std::size_t>(number)];
+  return use == LimitUse::on || (use == LimitUse::homed && homed_);
+}
+
 std::optional<MotionLimits::Span> MotionLimits::positions() const {
-  if (!values_.has(Role::position_minimum)) return std::nullopt;
+  if (!values_.has(Role::position_minimum) || !positionsCount()) return std::nullopt;
   const Span span{values_.get(Role::position_minimum, 0.0),
                   values_.get(Role::position_maximum, 0.0)};
   const double all = values_.range(Role::position_minimum);

@@ -18,8 +18,12 @@ inline constexpr double kUnlimited = 1e9;
 class MotionLimits {
  public:
   /// @param most_deceleration that the motor can give.
-  MotionLimits(const DriveValues& values, const AxisSwitches& switches, double most_deceleration)
-      : values_(values), switches_(switches), most_deceleration_(most_deceleration) {}
+  MotionLimits(const DriveDefinition& definition, const DriveValues& values,
+               const AxisSwitches& switches, double most_deceleration)
+      : definition_(definition),
+        values_(values),
+        switches_(switches),
+        most_deceleration_(most_deceleration) {}
 
   /// Of a ramp in a mode; nullptr: in none.
   double deceleration(Ramp ramp, const ModeDefinition* mode) const;
@@ -42,6 +46,9 @@ class MotionLimits {
   /// Whether a limit switch forbids to go on in this direction; `position` in true turns.
   bool blocked(double direction, double position);
 
+  /// The drive has found its home by itself, or has lost it.
+  void setHomed(bool homed) { homed_ = homed; }
+  bool homed() const { return homed_; }
   /// A limit was in the way (statusword bit 11).
   bool active() const { return active_; }
   /// A switch was in the way in this step.
@@ -53,10 +60,13 @@ class MotionLimits {
 
  private:
   double velocityModeRamp(Role speed, Role time) const;
+  bool positionsCount() const;
 
+  const DriveDefinition& definition_;
   const DriveValues& values_;
   const AxisSwitches& switches_;
   double most_deceleration_;
+  bool homed_ = false;
   bool active_ = false;
   bool switch_hit_ = false;
 };

@@ -22,7 +22,8 @@ MovingAxis::MovingAxis(const DriveDefinition& drive_definition,
       values(drive_values),
       switches(mechanics),
       motor(withMechanics(motor_parameters, mechanics), mechanics.initial_position),
-      limits(values, switches, motor_parameters.max_torque * motor_parameters.rated_acceleration) {}
+      limits(definition, values, switches,
+             motor_parameters.max_torque * motor_parameters.rated_acceleration) {}
 
 double MovingAxis::trueTarget(double turns) {
   const double target = limits.clamped(turns) + frame;

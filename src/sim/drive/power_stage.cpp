@@ -1,6 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "sim/drive/power_stage.h"
 
+#include <algorithm>
+
 namespace cia402::sim {
 namespace {
 
@@ -81,7 +83,8 @@ void PowerStage::enter(PdsState state, Time now) {
   if (state == PdsState::operation_enabled) {
     if (!was_enabled) {
       motion_.powerStage(true);
-      follow_at_ = now + fromSeconds(mechanics_.brake_delay);
+      follow_at_ =
+          now + fromSeconds(std::max(mechanics_.brake_delay, values_.get(Role::brake_delay, 0.0)));
       motion_.hold(now < follow_at_);
     } else {
       motion_.release();

@@ -38,6 +38,8 @@ class PowerStage {
   void finishInitialisation(Time due, Time now);
   /// Transition 4, if it is under way and due. @return true if operation is enabled from now on.
   bool finishEnabling(Time due, Time now);
+  /// The brake is still opening.
+  bool braking(Time now) const { return state_ == PdsState::operation_enabled && now < follow_at_; }
   /// Set-points are not followed before the brake is open.
   void waitForBrake(Time due);
   /// Transitions 12 and 14 and those that wait for a ramp, where standstill is reached.

@@ -14,7 +14,7 @@ struct StatuswordParts {
   bool ready = false;                                 ///< the initialisation is over
   bool voltage = true;                                ///< bit 4
   bool warning = false;                               ///< bit 7
-  std::uint16_t of_mode = 0;                          ///< bits 10 to 13 and 15, while enabled
+  std::uint16_t of_mode = 0;  ///< bits 10 to 13 and 15, while enabled; and that home was found
 };
 
 /// The statusword of these parts, with what the drive does to it otherwise. Bits that mean nothing

@@ -21,6 +21,8 @@ class SyncWatch {
   }
   /// Whether SYNC runs.
   bool runs(Time now) const { return last_ && now - *last_ < kSilence; }
+  /// How long ago the last one came; an hour where none did.
+  Duration since(Time now) const { return last_ ? now - *last_ : std::chrono::hours(1); }
   /// Whether one came in this moment.
   bool isNow(Time now) const { return last_ == now; }
   /// Between the last two; 0 before there were two.

@@ -80,6 +80,13 @@ constexpr RoleInfo kRoles[] = {
     {R::clear_errors, "clear_errors", {0, 0}, Q::none},
     {R::save_zero, "save_zero", {0, 0}, Q::none},
     {R::homing_start, "homing_start", {0, 0}, Q::none},
+    {R::software_reset, "software_reset", {0, 0}, Q::none},
+    {R::brake_delay, "brake_delay", {0, 0}, Q::time},
+    {R::encoder_resolution, "encoder_resolution", {0, 0}, Q::none},
+    {R::gear_numerator, "gear_numerator", {0, 0}, Q::none},
+    {R::gear_denominator, "gear_denominator", {0, 0}, Q::none},
+    {R::sync_tolerance, "sync_tolerance", {0, 0}, Q::none},
+    {R::position_limits_use, "position_limits_use", {0, 0}, Q::none},
 };
 static_assert(sizeof(kRoles) / sizeof(kRoles[0]) == kRoleCount, "one line for each role");
 
@@ -162,31 +169,45 @@ DriveValues::DriveValues(const DriveDefinition& definition, unsigned axis,
         moved == definition.objects.end() ? info.object : moved->second;
     Slot& slot = slots_[static_cast<std::size_t>(info.role)];
     slot.entry = dictionary.find(ofAxis(object, axis));
-    const UnitScale& unit = definition.units[static_cast<std::size_t>(info.quantity)];
-    slot.scale = unit.per_count ? unit.factor * counts_per_turn : unit.factor;
+    const auto own = definition.units_of.find(info.role);
+    const UnitScale& unit = own != definition.units_of.end()
+                                ? own->second
+                                : definition.units[static_cast<std::size_t>(info.quantity)];
+    slot.scale = unit.per == UnitScale::Per::count ? unit.factor * counts_per_turn : unit.factor;
+    slot.geared = unit.per == UnitScale::Per::gear;
+    slot.per_encoder = slot.geared || unit.per == UnitScale::Per::encoder;
     const auto special = definition.encodings.find(object);
     if (info.quantity == Quantity::none) {
       slot.scale = 1.0;
+      slot.per_encoder = slot.geared = false;
     } else {
       slot.encoding = special == definition.encodings.end() ? definition.encoding : special->second;
     }
   }
 }
 
+double DriveValues::scale(const Slot& slot) const {
+  double scale = slot.scale;
+  if (slot.per_encoder) scale *= static_cast<double>(raw(Role::encoder_resolution, 1));
+  if (!slot.geared) return scale;
+  return scale * static_cast<double>(raw(Role::gear_denominator, 1)) /
+         static_cast<double>(raw(Role::gear_numerator, 1));
+}
+
 double DriveValues::get(Role role, double fallback) const {
   const Slot& s = slot(role);
-  return s.entry == nullptr ? fallback : decodeNumber(*s.entry, s.encoding) / s.scale;
+  return s.entry == nullptr ? fallback : decodeNumber(*s.entry, s.encoding) / scale(s);
 }
 
 double DriveValues::range(Role role) const {
   const Slot& s = slot(role);
   if (s.entry == nullptr || s.encoding != Encoding::integer) return 0.0;
-  return std::ldexp(1.0, static_cast<int>(widthBits(s.entry->type))) / s.scale;
+  return std::ldexp(1.0, static_cast<int>(widthBits(s.entry->type))) / scale(s);
 }
 
 void DriveValues::set(Role role, double value) {
   const Slot& s = slot(role);
-  if (s.entry != nullptr) s.entry->number = encodeNumber(value * s.scale, *s.entry, s.encoding);
+  if (s.entry != nullptr) s.entry->number = encodeNumber(value * scale(s), *s.entry, s.encoding);
 }
 
 std::int64_t DriveValues::raw(Role role, std::int64_t fallback) const {

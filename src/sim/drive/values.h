@@ -77,9 +77,16 @@ enum class Role : std::uint8_t {
   position_demand_internal,
   digital_inputs,
   target_velocity,
-  clear_errors,  ///< vendor object: a write that is not 0 resets faults
-  save_zero,     ///< vendor object: the present position becomes 0
-  homing_start,  ///< vendor object: 1 begins homing instead of controlword bit 4
+  clear_errors,         ///< vendor object: a write that is not 0 resets faults
+  save_zero,            ///< vendor object: the present position becomes 0
+  homing_start,         ///< vendor object: 1 begins homing instead of controlword bit 4
+  software_reset,       ///< vendor object: 1 starts the drive anew
+  brake_delay,          ///< vendor object: from operation enabled until commands count
+  encoder_resolution,   ///< vendor object: encoder counts of a turn
+  gear_numerator,       ///< vendor object: so many encoder counts are ...
+  gear_denominator,     ///< vendor object: ... so many position units
+  sync_tolerance,       ///< vendor object: index into DriveDefinition::sync_tolerances
+  position_limits_use,  ///< vendor object: index into DriveDefinition::limit_uses
   count,
 };
 inline constexpr std::size_t kRoleCount = static_cast<std::size_t>(Role::count);
@@ -153,9 +160,11 @@ class DriveValues {
  private:
   struct Slot {
     Entry* entry = nullptr;
-    double scale = 1.0;
+    double scale = 1.0;  ///< where objects of the drive scale it: times theirs
     Encoding encoding = Encoding::integer;
+    bool per_encoder = false, geared = false;
   };
+  double scale(const Slot& slot) const;
   const Slot& slot(Role role) const { return slots_[static_cast<std::size_t>(role)]; }
 
   std::array<Slot, kRoleCount> slots_;

@@ -36,9 +36,12 @@ std::uint32_t refuseWrite(const DriveDefinition& definition, const DriveValues& 
   const bool of_homing = id.index == 0x6098 || id.index == 0x6099;
   if (definition.quirks.homing_is_fixed && of_homing) return abort_code::kReadOnly;
   if (values.entry(Role::homing_method) == &entry) {
-    const auto& methods = definition.homing_methods;
-    const bool known = std::find(methods.begin(), methods.end(), value) != methods.end();
-    return known ? 0 : abort_code::kInvalidValue;
+    const auto among = [value](const std::vector<std::int64_t>& methods) {
+      return std::find(methods.begin(), methods.end(), value) != methods.end();
+    };
+    return among(definition.homing_methods) || among(definition.inert_methods)
+               ? 0
+               : abort_code::kInvalidValue;
   }
   if (values.entry(Role::save_zero) == &entry && situation.powered) {
     return abort_code::kDeviceState;

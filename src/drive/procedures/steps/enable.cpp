@@ -17,13 +17,20 @@ Outcome EnableStep::advance(const Context& context) {
     begun_ = true;
     const std::string refusal = enablingRefusal(context.axis);
     if (!refusal.empty()) return fail(context, refusal);
-    enter(Phase::feedback, context);
-    context.show("reading feedback", "statusword and position from the drive");
   }
-  if (phase_ != Phase::feedback && context.axis.faulted()) {
+  const bool early = phase_ == Phase::settings || phase_ == Phase::feedback;
+  if (!early && context.axis.faulted()) {
     return fail(context, context.axis.faults().text());
   }
   switch (phase_) {
+    case Phase::settings: {
+      const Outcome outcome = settings_.advance(context);
+      if (outcome.isFailed()) return fail(context, outcome.message);
+      if (!outcome.isDone()) return outcome;
+      enter(Phase::feedback, context);
+      context.show("reading feedback", "statusword and position from the drive");
+      return awaitFeedback(context);
+    }
     case Phase::feedback:
       return awaitFeedback(context);
     case Phase::standing:
@@ -171,7 +178,7 @@ Outcome EnableStep::awaitShown(const Context& context) {
   if (!outcome.isDone()) return outcome;
   enter(Phase::brake, context);
   context.show("releasing the brake",
-               seconds(axis.profile().timing.brake_release) + " to pass (profile, brake_release)");
+               seconds(axis.control().brakeRelease()) + " to pass (profile, brake_release)");
   return Outcome::running();
 }
 

@@ -1,0 +1,199 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// The words, defaults and rules of PDOs that the manual of the SV660C prints, in its simulation.
+// Lnnn: lines of the manual's text.
+#include "sv660c_bench.h"
+
+namespace cia402::sim {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+using Sv660c = Sv660cBench;
+
+// --- 6040h and 6041h [L511-536] --------------------------------------------------------------
+
+TEST_F(Sv660c, GoesUpAndDownAsTheTableOfTransitionsSays) {
+  EXPECT_EQ(word(), 0x0250);  // 1
+  control(0x06);
+  EXPECT_EQ(word(), 0x0231);  // 2
+  control(0x07);
+  EXPECT_EQ(word(), 0x0233);  // 3
+  control(0x0F);
+  EXPECT_EQ(word(), 0x0237);  // 4
+  control(0x07);
+  EXPECT_EQ(word(), 0x0233);  // 5, as 605Ch is 0
+  control(0x06);
+  EXPECT_EQ(word(), 0x0231);  // 6
+  control(0x00);
+  EXPECT_EQ(word(), 0x0250);  // 7
+  enable();
+  control(0x06);
+  EXPECT_EQ(word(), 0x0231);  // 8
+  control(0x07);
+  control(0x0F);
+  control(0x00);
+  EXPECT_EQ(word(), 0x0250);  // 9
+  control(0x06);
+  control(0x07);
+  control(0x00);
+  EXPECT_EQ(word(), 0x0250);  // 10
+}
+
+TEST_F(Sv660c, TakesOneStateACommand) {
+  control(0x0F);
+  EXPECT_EQ(word(), 0x0250);
+  control(0x06);
+  control(0x0F);
+  EXPECT_EQ(word(), 0x0233);
+}
+
+// 12 after 605Ah = 0 to 3, 16 after 5 to 7.
+TEST_F(Sv660c, QuickStopEndsAsItsOptionSays) {
+  for (const unsigned option : {0U, 1U, 2U, 3U, 5U, 6U, 7U}) {
+    bench.write(0x605A, 0, option, 2);
+    mode(3);
+    enable();
+    bench.write(0x60FF, 0, 8388608, 4);  // a turn a second at 1:1
+    bench.run(ms(200));
+    ASSERT_GT(bench.drive->truth(bench.now).velocity_turns, 0.5) << option;
+    control(0x02);
+    EXPECT_EQ(word(), option == 0 ? 0x0250 : 0x0217) << option;  // 11
+    bench.run(ms(3000));
+    EXPECT_NEAR(bench.drive->truth(bench.now).velocity_turns, 0.0, 1e-3) << option;
+    EXPECT_EQ(word(), option < 4 ? 0x0250 : 0x0217) << option;  // 12
+    bench.write(0x60FF, 0, 0, 4);
+    control(0x0F);
+    EXPECT_EQ(word(), option < 4 ? 0x0250 : 0x0237) << option;  // 16
+    control(0x00);
+  }
+  EXPECT_EQ(bench.refusal(0x605A, 0, 8, 2), 0x06090031U) << "0 to 7 [L15012]";
+}
+
+TEST_F(Sv660c, AFaultIsResetByTheEdgeOfBit7WhichBlocksAllElse) {
+  mode(3);
+  enable();
+  bench.write(0x60FF, 0, 8388608, 4);
+  bench.run(ms(200));
+  ASSERT_TRUE(bench.drive->inject("position_command", bench.now));
+  EXPECT_EQ(word(), 0x021F);  // 13
+  bench.run(ms(3000));
+  EXPECT_EQ(word(), 0x0218);  // 14
+  control(0x80);
+  EXPECT_EQ(word(), 0x0250);  // 15
+  control(0x86);
+  EXPECT_EQ(word(), 0x0250) << "all other commands are ignored while bit 7 is 1";
+  control(0x06);
+  EXPECT_EQ(word(), 0x0231);
+}
+
+// --- objects as from the factory -------------------------------------------------------------
+
+TEST_F(Sv660c, TellsThePrintedIdentity) {
+  EXPECT_EQ(bench.sdo({0x40, 0x00, 0x10, 0x00, 0, 0, 0, 0}),
+            (Bytes{0x43, 0x00, 0x10, 0x00, 0x92, 0x01, 0x02, 0x00}));
+  EXPECT_EQ(bench.sdo({0x40, 0x18, 0x10, 0x01, 0, 0, 0, 0}),
+            (Bytes{0x43, 0x18, 0x10, 0x01, 0xB9, 0x03, 0x00, 0x00}));
+  EXPECT_EQ(bench.sdo({0x40, 0x18, 0x10, 0x02, 0, 0, 0, 0}),
+            (Bytes{0x43, 0x18, 0x10, 0x02, 0x17, 0x01, 0x0D, 0x00}));
+  EXPECT_EQ(bench.sdo({0x40, 0x18, 0x10, 0x03, 0, 0, 0, 0}),
+            (Bytes{0x43, 0x18, 0x10, 0x03, 0x01, 0x00, 0x02, 0x00}));
+}
+
+// 1614807056 and its like in decimal [L13651 to L14874], 512 to 1408 [L13535], 500 [L14202].
+TEST_F(Sv660c, HasThePrintedPdosFromTheFactory) {
+  const std::uint32_t rpdo[] = {0x201, 0x80000301, 0x80000401, 0x80000501};
+  const std::uint32_t tpdo[] = {0x40000181, 0xC0000281, 0xC0000381, 0xC0000481};
+  const std::uint32_t second_r[] = {0, 1616904200, 1618608160, 1627324448};
+  const std::uint32_t second_t[] = {0, 1616969736, 1617166368, 1617690656};
+  for (std::uint16_t i = 0; i < 4; ++i) {
+    const auto at = [i](int index) { return static_cast<std::uint16_t>(index + i); };
+    EXPECT_EQ(bench.read(at(0x1400), 1), rpdo[i]) << i;
+    EXPECT_EQ(bench.read(at(0x1800), 1), tpdo[i]) << i;
+    EXPECT_EQ(bench.read(at(0x1400), 2), 255U);
+    EXPECT_EQ(bench.read(at(0x1800), 2), 255U);
+    EXPECT_EQ(bench.read(at(0x1800), 3), 500U);
+    EXPECT_EQ(bench.read(at(0x1600), 0), i == 0 ? 1U : 2U);
+    EXPECT_EQ(bench.read(at(0x1A00), 0), i == 0 ? 1U : 2U);
+    EXPECT_EQ(bench.read(at(0x1600), 1), 1614807056U);
+    EXPECT_EQ(bench.read(at(0x1A00), 1), 1614872592U);
+    if (i == 0) continue;
+    EXPECT_EQ(bench.read(at(0x1600), 2), second_r[i]) << i;
+    EXPECT_EQ(bench.read(at(0x1A00), 2), second_t[i]) << i;
+  }
+  EXPECT_EQ(bench.sdo({0x40, 0x00, 0x16, 0x01, 0, 0, 0, 0}),
+            (Bytes{0x43, 0x00, 0x16, 0x01, 0x10, 0x00, 0x40, 0x60}));
+  EXPECT_EQ(bench.sdo({0x40, 0x02, 0x1A, 0x02, 0, 0, 0, 0}),
+            (Bytes{0x43, 0x02, 0x1A, 0x02, 0x20, 0x00, 0x64, 0x60}));
+}
+
+// The statusword comes with a change, but not twice within 50 ms.
+TEST_F(Sv660c, InhibitsItsStatuswordFor50MsFromTheFactory) {
+  bench.nmt(0x01);
+  bench.run(ms(100));
+  bench.sent.clear();
+  bench.frame(0x201, {0x06, 0x00});
+  bench.run(ms(1));
+  bench.frame(0x201, {0x07, 0x00});
+  bench.run(ms(45));
+  const auto words = [this] {
+    std::vector<int> found;
+    for (const can::Frame& f : bench.sent) {
+      if (f.id == 0x181) found.push_back(f.data[0] | f.data[1] << 8);
+    }
+    return found;
+  };
+  EXPECT_EQ(words(), (std::vector<int>{0x0231}));
+  bench.run(ms(10));
+  EXPECT_EQ(words(), (std::vector<int>{0x0231, 0x0233}));
+}
+
+// --- rules of PDOs and COB-IDs [L13531-14450] ------------------------------------------------
+
+TEST_F(Sv660c, TakesAPdoApartAndTogetherInOneOrderOnly) {
+  EXPECT_EQ(bench.refusal(0x1802, 2, 1, 1), 0U) << "it is invalid from the factory";
+  EXPECT_EQ(bench.refusal(0x1800, 2, 1, 1), kDeviceState);
+  EXPECT_EQ(bench.refusal(0x1800, 3, 0, 2), kDeviceState);
+  EXPECT_EQ(bench.refusal(0x1800, 5, 0, 2), kDeviceState);
+  EXPECT_EQ(bench.refusal(0x1A00, 0, 0, 1), kDeviceState);
+  EXPECT_EQ(bench.refusal(0x1400, 2, 1, 1), kDeviceState);
+  const Bytes taken_18{0x60, 0x00, 0x18, 0x01, 0, 0, 0, 0};
+  EXPECT_EQ(bench.sdo({0x23, 0x00, 0x18, 0x01, 0x81, 0x01, 0x00, 0xC0}), taken_18);
+  bench.write(0x1A00, 0, 0, 1);
+  EXPECT_EQ(bench.sdo({0x23, 0x00, 0x1A, 0x01, 0x10, 0x00, 0x41, 0x60})[0], 0x60);
+  EXPECT_EQ(bench.sdo({0x23, 0x00, 0x1A, 0x02, 0x20, 0x00, 0x64, 0x60})[0], 0x60);
+  EXPECT_EQ(bench.sdo({0x23, 0x00, 0x1A, 0x03, 0x08, 0x00, 0x61, 0x60})[0], 0x60);
+  bench.write(0x1A00, 0, 3, 1);
+  bench.write(0x1800, 2, 1, 1);
+  bench.write(0x1800, 3, 0, 2);
+  EXPECT_EQ(bench.sdo({0x23, 0x00, 0x18, 0x01, 0x81, 0x01, 0x00, 0x40}), taken_18);
+}
+
+TEST_F(Sv660c, LetsOnlyBit31OfAnRpdoAndBit30OfATpdoChange) {
+  EXPECT_EQ(bench.refusal(0x1402, 1, 0x80000402, 4), kReadOnly);
+  EXPECT_EQ(bench.refusal(0x1402, 1, 0xC0000401, 4), kReadOnly);
+  EXPECT_EQ(bench.refusal(0x1402, 1, 0x00000401, 4), 0U);
+  EXPECT_EQ(bench.refusal(0x1802, 1, 0xC0000382, 4), kReadOnly);
+  EXPECT_EQ(bench.refusal(0x1802, 1, 0x80000381, 4), 0U);
+  EXPECT_EQ(bench.sdo({0x23, 0x02, 0x18, 0x01, 0x81, 0x03, 0x00, 0xC0})[0], 0x60);
+  EXPECT_EQ(bench.sdo({0x23, 0x02, 0x18, 0x01, 0x81, 0x03, 0x00, 0x40})[0], 0x60);
+}
+
+// 1006h first, then 1005h [L13265-13279]; 1014h by bit 31 alone [L13347-13353].
+TEST_F(Sv660c, ProducesSyncOnceItsPeriodIsSetAndKeepsItsIdentifiers) {
+  EXPECT_EQ(bench.refusal(0x1005, 0, 0x40000080, 4), kDeviceState);
+  EXPECT_EQ(bench.refusal(0x1005, 0, 0x00000081, 4), kInvalidValue);
+  EXPECT_EQ(bench.sdo({0x23, 0x06, 0x10, 0x00, 0xA0, 0x0F, 0x00, 0x00})[0], 0x60);
+  EXPECT_EQ(bench.sdo({0x23, 0x05, 0x10, 0x00, 0x80, 0x00, 0x00, 0x40})[0], 0x60);
+  bench.sent.clear();
+  bench.run(ms(41));
+  std::size_t syncs = 0;
+  for (const can::Frame& frame : bench.sent) syncs += frame.id == 0x080 ? 1 : 0;
+  EXPECT_EQ(syncs, 10U);
+  EXPECT_EQ(bench.sdo({0x23, 0x05, 0x10, 0x00, 0x80, 0x00, 0x00, 0x00})[0], 0x60);
+  EXPECT_EQ(bench.sdo({0x23, 0x14, 0x10, 0x00, 0x81, 0x00, 0x00, 0x80})[0], 0x60);
+  EXPECT_EQ(bench.sdo({0x23, 0x14, 0x10, 0x00, 0x81, 0x00, 0x00, 0x00})[0], 0x60);
+  EXPECT_EQ(bench.refusal(0x1014, 0, 0x00000082, 4), kInvalidValue);
+}
+
+}  // namespace
+}  // namespace cia402::sim

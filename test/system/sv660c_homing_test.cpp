@@ -1,0 +1,111 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// The homing methods of the SV660C: the joint reads its offset at the true home.
+#include "system/sv660c_scene.h"
+
+namespace cia402 {
+namespace {
+
+using namespace std::chrono_literals;
+using drive::ProcedureKind;
+using testing::HasSubstr;
+
+constexpr double kMotorTurn = 6.283185307179586 / 50.0;  // of the motor, in rad of the joint
+constexpr double kAtHome = 0.25;
+
+// Limit switches at -2.0 and 2.0 (15.92 turns), home switch from 0.5 (3.98 turns) to 0.7 (5.57
+// turns), index pulses at 0.3 turns after each whole one.
+std::string sv660cSwitches(double start) {
+  return "initial_position: " + std::to_string(start) +
+         ", lower_limit_switch: -2.0, upper_limit_switch: 2.0, home_switch: [0.5, 0.7], "
+         "index_offset: 0.3";
+}
+
+std::string sv660cHoming(int method, const std::string& more = {}) {
+  return ", homing: {method: " + std::to_string(method) + ", offset: " + std::to_string(kAtHome) +
+         ", search_velocity: 0.8, zero_velocity: 0.05, acceleration: 4.0" + more + "}";
+}
+
+struct Sv660cHome {
+  int method;
+  double home, start;  // rad
+};
+
+class Sv660cHoming : public testing::TestWithParam<Sv660cHome> {};
+
+TEST_P(Sv660cHoming, FindsTheHomeThatTheManualDraws) {
+  const Sv660cHome& c = GetParam();
+  Scene scene(loadText(sv660cJoint(sv660cHoming(c.method), sv660cSwitches(c.start))));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  const auto homed = scene.procedure(ProcedureKind::home, "joint");
+  ASSERT_TRUE(homed.success) << homed.message << scene.told();
+  EXPECT_TRUE(scene.state("joint").homed);
+  EXPECT_NEAR(scene.state("joint").position - kAtHome, scene.position("joint") - c.home, 1e-5);
+  EXPECT_EQ(scene.truth("joint").statusword & 0x8000, 0x8000);
+  ASSERT_EQ(scene.setpoint("joint", kAtHome), "");
+  scene.run(4s);
+  EXPECT_NEAR(scene.position("joint"), c.home, 1e-5);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Methods, Sv660cHoming,
+    testing::Values(Sv660cHome{1, -15.7 * kMotorTurn, 0.2}, Sv660cHome{2, 15.3 * kMotorTurn, 0.2},
+                    Sv660cHome{3, 3.3 * kMotorTurn, 0.2}, Sv660cHome{4, 4.3 * kMotorTurn, 0.2},
+                    Sv660cHome{5, 6.3 * kMotorTurn, 1.0}, Sv660cHome{6, 5.3 * kMotorTurn, 1.0},
+                    Sv660cHome{7, 3.3 * kMotorTurn, 0.2}, Sv660cHome{7, 3.3 * kMotorTurn, 1.0},
+                    Sv660cHome{8, 4.3 * kMotorTurn, 0.2}, Sv660cHome{9, 5.3 * kMotorTurn, 0.2},
+                    Sv660cHome{10, 6.3 * kMotorTurn, 0.2}, Sv660cHome{11, 6.3 * kMotorTurn, 1.0},
+                    Sv660cHome{11, 6.3 * kMotorTurn, 0.2}, Sv660cHome{12, 5.3 * kMotorTurn, 1.0},
+                    Sv660cHome{13, 4.3 * kMotorTurn, 1.0}, Sv660cHome{14, 3.3 * kMotorTurn, 1.0},
+                    Sv660cHome{17, -2.0, 0.2}, Sv660cHome{17, -2.0, -2.2}, Sv660cHome{18, 2.0, 0.2},
+                    Sv660cHome{18, 2.0, 2.2}, Sv660cHome{19, 0.5, 0.2}, Sv660cHome{20, 0.5, 0.2},
+                    Sv660cHome{21, 0.7, 1.0}, Sv660cHome{22, 0.7, 1.0}, Sv660cHome{23, 0.5, 0.2},
+                    Sv660cHome{23, 0.5, 0.6}, Sv660cHome{23, 0.5, 1.0}, Sv660cHome{24, 0.5, 0.2},
+                    Sv660cHome{25, 0.7, 0.2}, Sv660cHome{26, 0.7, 0.2}, Sv660cHome{27, 0.7, 1.0},
+                    Sv660cHome{27, 0.7, 0.2}, Sv660cHome{28, 0.7, 1.0}, Sv660cHome{29, 0.5, 1.0},
+                    Sv660cHome{30, 0.5, 1.0}, Sv660cHome{33, 2.3 * kMotorTurn, 2.6 * kMotorTurn},
+                    Sv660cHome{34, 3.3 * kMotorTurn, 2.6 * kMotorTurn}, Sv660cHome{35, 0.9, 0.9}),
+    [](const auto& tested) {
+      const Sv660cHome& c = tested.param;
+      return "Method" + std::to_string(c.method) + "Case" + std::to_string(tested.index);
+    });
+
+TEST(Sv660cHomingMethods, ThatDoNothingOrAreNoneAreRefused) {
+  for (const int method : {0, 15, 16, 31, 32, 36, 37}) {
+    Problems problems;
+    config::loadRobot(YAML::Load(sv660cJoint(sv660cHoming(method))),
+                      config::profilesIn({test::configFolder() + "/drives"}), problems);
+    EXPECT_THAT(problems.text(), HasSubstr("axes/joint/homing/method")) << method;
+  }
+}
+
+// [L1376]: bit 10 is set by an interruption, too.
+TEST(Sv660cHomingResult, IsNotTakenForHomeWhenItIsInterrupted) {
+  Scene scene(loadText(sv660cJoint(sv660cHoming(17), sv660cSwitches(1.0))));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  const auto homed = scene.begin(ProcedureKind::home, "joint");
+  ASSERT_TRUE(scene.runUntil([&] { return scene.velocity("joint") < -0.7; }, 5s));
+  ASSERT_TRUE(scene.procedure(ProcedureKind::halt, "joint").success) << scene.told();
+  scene.run(2s);
+  ASSERT_TRUE(homed->has_value());
+  EXPECT_FALSE((*homed)->success);
+  EXPECT_FALSE(scene.state("joint").homed);
+  EXPECT_NEAR(scene.velocity("joint"), 0.0, 1e-6);
+}
+
+// The home switch is not there: the limit switch ends a search of method 19 [L1440-1785].
+TEST(Sv660cHomingResult, IsAnErrorInWordsAtALimitSwitch) {
+  Scene scene(loadText(
+      sv660cJoint(sv660cHoming(19),
+                  "initial_position: 0.0, lower_limit_switch: -2.0, upper_limit_switch: 0.4")));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  const auto homed = scene.procedure(ProcedureKind::home, "joint");
+  EXPECT_FALSE(homed.success);
+  EXPECT_THAT(homed.message, HasSubstr("joint (node 1)"));
+  EXPECT_THAT(homed.message, HasSubstr("homing"));
+  scene.run(1s);
+  EXPECT_FALSE(scene.state("joint").homed);
+  EXPECT_LT(scene.position("joint"), 0.49) << "0.8 rad/s end by 4 rad/s^2 after 0.08 rad";
+}
+
+}  // namespace
+}  // namespace cia402

@@ -1,0 +1,34 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "system/scene.h"
+
+namespace cia402 {
+
+/// A joint behind a gear of 50 with 100000 user units a turn of the motor, whose encoder has 2^23:
+/// 8388608 / 100000 = 262144 / 3125, reduced. The rated 2.39 N m are 119.5 N m of the joint.
+/// @param more options of the axis, as ", key: value"; they may not repeat those here.
+/// @param with further keys of the simulated drive
+inline std::string sv660cJoint(const std::string& more = {}, const std::string& simulation = {},
+                               const std::string& period = "0.004",
+                               const std::string& modes = "[ip, pp, pv, csv, pt]") {
+  return "bus: {interface: sim, bitrate: 1000000, sync_period: " + period +
+         ", heartbeat: 0.1}\n"
+         "axes:\n"
+         "  joint: {node_id: 1, drive: sv660c, counts_per_turn: 100000, gear_ratio: 50.0,\n"
+         "    rated_torque: 2.39, modes: " +
+         modes +
+         ",\n"
+         "    write: [{object: gear_numerator, raw: 262144},\n"
+         "            {object: gear_denominator, raw: 3125}],\n"
+         "    limits: {lower: -2.5, upper: 2.5, velocity: 1.5, acceleration: 4.0, jerk: 40.0,\n"
+         "             effort: 100.0}" +
+         more + ",\n    simulation: {" + simulation +
+         "}}\n"
+         "groups:\n"
+         "  arm: {joints: [joint]}\n";
+}
+
+}  // namespace cia402
