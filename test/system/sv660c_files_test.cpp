@@ -49,6 +49,19 @@ TEST_F(Sv660cFiles, AgreeOnTypeAndAccess) {
   }
 }
 
+TEST_F(Sv660cFiles, AgreeOnRanges) {
+  unsigned compared = 0;
+  for (const drive::ObjectSpec& object : profile_.objects) {
+    const sim::Entry* entry = dictionary_.find(object.id);
+    if (!object.range || entry == nullptr) continue;
+    ++compared;
+    ASSERT_TRUE(entry->low && entry->high) << text(object);
+    EXPECT_EQ(object.range->low, *entry->low) << text(object);
+    EXPECT_EQ(object.range->high, *entry->high) << text(object);
+  }
+  EXPECT_EQ(compared, 23U);
+}
+
 // The manual does not say of 603Fh, 60F4h and 60FDh whether they can be mapped: the driver tries,
 // the simulated drive refuses. Of 6099h and 609Ah the driver makes no use in an RPDO, as the former
 // is taken while stopped only.
