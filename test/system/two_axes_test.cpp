@@ -254,7 +254,8 @@ TEST_F(FaultThatWantsNmtStop, IsNotClearedSoWhileTheOtherIsUnderPower) {
   EXPECT_FALSE(left_out.success);
   EXPECT_THAT(left_out.message,
               HasSubstr("NMT stop and start, after which it may be cleared, was left out: left, in "
-                        "the same drive, may be under power: disable it first"));
+                        "the same drive, may be under power: disable it first, then recover right "
+                        "alone"));
   EXPECT_TRUE(powered && operational);
   scene.watch({});
   ASSERT_TRUE(scene.procedure(ProcedureKind::disable, "left").success);

@@ -12,7 +12,8 @@ std::string pauseLeftOut(AxisCore& axis) {
   const std::string others = axis.basis().neighbours.refusal();
   if (others.empty() || axis.profile().fault_reset_pause == Duration::zero()) return {};
   return std::string("; ") + axis.device().terms().stop_and_start +
-         ", after which it may be cleared, was left out: " + others;
+         ", after which it may be cleared, was left out: " + others + ", then recover " +
+         jointName(axis.config()) + " alone";
 }
 
 }  // namespace
