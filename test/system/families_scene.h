@@ -1,0 +1,37 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <ostream>
+#include <string>
+
+#include "system/scene.h"
+
+namespace cia402 {
+
+/// A drive family in one of its modes.
+struct FamilyMode {
+  const char* family;
+  const char* counts_per_turn;
+  const char* mode;
+};
+
+inline void PrintTo(const FamilyMode& tested, std::ostream* out) {
+  *out << tested.family << " in " << tested.mode;
+}
+
+/// A joint behind a gear of 50 with a motor of 1.27 N m. @param more options of the axis, as
+/// ", key: value"
+inline std::string familyJoint(const FamilyMode& tested, const std::string& more = {}) {
+  const std::string mode = tested.mode;
+  return "bus: {interface: sim, bitrate: 1000000, sync_period: 0.004, heartbeat: 0.1}\n"
+         "axes:\n"
+         "  joint: {node_id: 1, drive: " +
+         std::string(tested.family) + ", counts_per_turn: " + tested.counts_per_turn +
+         ", gear_ratio: 50.0, rated_torque: 1.27,\n    mode: " + mode + ", modes: [" + mode +
+         "],\n"
+         "    limits: {lower: -2.5, upper: 2.5, velocity: 0.8, acceleration: 4.0, jerk: 40.0,\n"
+         "             effort: 60.0}" +
+         more + "}\n";
+}
+
+}  // namespace cia402
