@@ -7,6 +7,7 @@
 
 #include "common/text.h"
 #include "drive/profile/float_codec.h"
+#include "fieldbus/bytes.h"
 
 namespace cia402::drive {
 namespace {
