@@ -338,6 +338,32 @@ TEST(ModeBits, ADriveThatNeverShowsThatItFollowsIsWaitedForOnce) {
   EXPECT_LE(drive.untilReady(), milliseconds(100));
 }
 
+// The axis may have sagged while the brake opened; and the cycle in which that is over may be late.
+TEST(ModeBits, BeginWhereTheMotorIsOnceTheBrakeIsReleased) {
+  for (const Duration late : {milliseconds(0), milliseconds(24)}) {
+    SCOPED_TRACE(late.count());
+    DriveProfile profile = testProfile();
+    profile.timing.brake_release = milliseconds(200);
+    profile.modes[4].controlword_bits = 0x0010;
+    Bench bench(testConfig(profile));
+    ASSERT_TRUE(bench.boot());
+    ASSERT_TRUE(bench.axis.start({ProcedureKind::enable, {}, 0}, bench.now).ok());
+    ASSERT_TRUE(bench.runUntil([&] { return bench.drive.state == FakeDrive::S::enabled; }));
+    bench.run(milliseconds(188));
+    ASSERT_EQ(bench.drive.controlword, 0x000F);
+    ASSERT_EQ(bench.drive.target_position, 12345);
+    bench.drive.silent = true;  // the test sends for it
+    bench.each_cycle = [&bench] {
+      bench.bring(
+          {{{0x6041, 0}, bench.drive.statusword()}, {{0x6064, 0}, 11845}, {{0x6061, 0}, 8}});
+    };
+    bench.cycle();
+    bench.now += late;
+    ASSERT_TRUE(bench.runUntil([&] { return bench.drive.controlword == 0x001F; }));
+    EXPECT_EQ(bench.drive.target_position, 11845);
+  }
+}
+
 TEST(ModeBits, ADriveThatWasLateInItsModeMayHaveTheBit) {
   FollowingDrive drive;
   drive.mode_after = milliseconds(200);

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // What a drive must be set to, and how long its brake takes.
 #include "config/profile/parts.h"
+#include "drive/profile/object_value.h"
 
 namespace cia402::config {
 namespace {
@@ -15,9 +16,8 @@ const ObjectSpec* readSetting(const yaml::Value& value, const DriveProfile& prof
                   yaml::suggestion(*text, drive::objectNames(profile)));
     return nullptr;
   }
-  const bool whole = fieldbus::sizeBits(object->type) != 0 &&
-                     object->encoding == Encoding::integer && object->type != DataType::real32 &&
-                     object->type != DataType::real64;
+  const bool whole =
+      fieldbus::sizeBits(object->type) != 0 && !drive::holdsFloat(object->type, object->encoding);
   if (object->readable && whole) return object;
   value.problem("`" + *text + "` is no whole number that the drive lets be read");
   return nullptr;

@@ -135,7 +135,7 @@ void Axis::update(Time now) {
   impl.core.supervise(now);
   if (impl.procedure || impl.core.notices().failed()) impl.stepProcedure(now);
   impl.lost = false;
-  impl.core.updateReadiness(impl.status.running, now);
+  impl.core.updateReadiness(impl.status.running);
 }
 
 void Axis::writeCommands(Time now) { impl_->core.writeCommands(now); }
@@ -172,7 +172,7 @@ Result<std::uint32_t> Axis::start(const ProcedureRequest& request, Time now) {
   impl.procedure = std::move(procedure.value());
   impl.begun = false;
   if (impl.procedure->leavesAlone(impl.context(now))) impl.advance(now);
-  impl.core.updateReadiness(impl.status.running, now);
+  impl.core.updateReadiness(impl.status.running);
   return id;
 }
 

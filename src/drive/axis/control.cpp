@@ -24,11 +24,12 @@ void Control::silence() {
 
 void Control::enterOperation(Time now) {
   in_operation_ = true;
+  brake_waits_ = brake_release_ > Duration(0);
   brake_released_ = now + brake_release_;
 }
 
 void Control::leaveOperation() {
-  in_operation_ = homing_start_ = false;
+  in_operation_ = brake_waits_ = homing_start_ = false;
   brake_released_ = kNever;
   endHalt();
 }

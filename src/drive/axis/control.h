@@ -41,8 +41,14 @@ class Control {
   Duration brakeRelease() const { return brake_release_; }
   /// When the brake will have had its time; kNever out of operation.
   Time brakeReleasedAt() const { return brake_released_; }
-  /// The brake has had its time since the drive came into operation.
-  bool brakeReleased(Time now) const { return in_operation_ && now >= brake_released_; }
+  /// Once, when the brake has had its time: commands count from then on. @return true then
+  bool releaseBrake(Time now) {
+    if (!brake_waits_ || now < brake_released_) return false;
+    brake_waits_ = false;
+    return true;
+  }
+  /// In operation, and releaseBrake() has been.
+  bool brakeReleased() const { return in_operation_ && !brake_waits_; }
 
   void setFaultReset(bool on) { fault_reset_ = on; }
   void setHomingStart(bool on) { homing_start_ = on; }
@@ -77,6 +83,7 @@ class Control {
   bool silent_ = true;
   bool voltage_off_ = false;  ///< the power stage is to be off, whatever the drive shows
   bool in_operation_ = false;
+  bool brake_waits_ = false;  ///< in operation, until releaseBrake()
   bool fault_reset_ = false, homing_start_ = false, halt_ = false, braking_ = false;
   Duration brake_release_;
   Time brake_released_ = kNever;

@@ -46,10 +46,7 @@ void AxisCore::superviseOperation(Time now) {
   if (state().warning && profile().warning_stops) return stopForWarning();
   if (mode_.brakes()) stops_.watchBrakeMode(now);
   // With its bits the mode begins to follow: from where the motor is by then.
-  const Duration released = now - control_.brakeReleasedAt();
-  const bool begins = released >= Duration(0) && released < config().cycle &&
-                      control_.brakeRelease() > Duration(0) && mode_.spec().controlword_bits != 0;
-  if (begins) generator_.neutralize();
+  if (control_.releaseBrake(now) && mode_.spec().controlword_bits != 0) generator_.neutralize();
   generator_.watchFollowing(now);
 }
 
@@ -76,10 +73,10 @@ void AxisCore::stopForWarning() {
   setGoal(Goal::quick_stop);  // what the drive does itself; switching off would let it coast
 }
 
-void AxisCore::updateReadiness(bool busy, Time now) {
+void AxisCore::updateReadiness(bool busy) {
   AxisState& state = axis_.state;
   state.ready_for_motion = inOperation() && !busy && !state.halted && state.feedback_valid &&
-                           brakeReleased(now) && feedback_.shows(mode_.spec()) &&
+                           brakeReleased() && feedback_.shows(mode_.spec()) &&
                            state.state == State::operation_enabled;
 }
 
@@ -99,7 +96,7 @@ void AxisCore::writeCommands(Time now) {
   }
   written_ = now;
   generator_.watchDrive(now);
-  control_.write(control_.brakeReleased(now) ? generator_.mode().bits() : 0);
+  control_.write(control_.brakeReleased() ? generator_.mode().bits() : 0);
   mode_.write();
 }
 

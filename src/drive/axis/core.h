@@ -54,7 +54,7 @@ class AxisCore {
   /// Reacts to what the feedback says.
   void supervise(Time now);
   /// @param busy a procedure runs
-  void updateReadiness(bool busy, Time now);
+  void updateReadiness(bool busy);
   void writeCommands(Time now);
   void onBusLost(const std::string& why);
   /// The device is not ready any more: forgets everything, commands nothing.
@@ -70,9 +70,7 @@ class AxisCore {
   void selectMode(const ModeChannel& mode);
   /// In operation, and the drive follows its set-points: the time that the brake needs is over, and
   /// the mode's bit for it is set. A drive that never sets that bit is waited for once.
-  bool brakeReleased(Time now) const {
-    return control_.brakeReleased(now) && generator_.followed();
-  }
+  bool brakeReleased() const { return control_.brakeReleased() && generator_.followed(); }
 
   /// The present position shall read `value` from now on.
   void declarePosition(double value);

@@ -35,7 +35,7 @@ class Recover : public Procedure {
       }
       case Phase::enabling: {
         if (context.axis.inOperation() && !enabling_.begun()) {  // it was enabled all the time
-          return context.axis.brakeReleased(context.now) ? finish(context) : Outcome::running();
+          return context.axis.brakeReleased() ? finish(context) : Outcome::running();
         }
         const Outcome outcome = enabling_.advance(context);
         return outcome.isDone() ? finish(context) : outcome;
@@ -46,8 +46,7 @@ class Recover : public Procedure {
 
   bool leavesAlone(const Context& context) const override {
     const AxisCore& axis = context.axis;
-    return axis.feedback().heardLately(context.now) && isWell(axis) &&
-           axis.brakeReleased(context.now);
+    return axis.feedback().heardLately(context.now) && isWell(axis) && axis.brakeReleased();
   }
   bool survivesDeviceLoss() const override { return phase_ == Phase::booting; }
 

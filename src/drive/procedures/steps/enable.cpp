@@ -186,7 +186,7 @@ Outcome EnableStep::awaitShown(const Context& context) {
 Outcome EnableStep::awaitBrake(const Context& context) {
   const AxisCore& axis = context.axis;
   const bool enabled = axis.inOperation() && axis.feedback().heardLately(context.now);
-  return enabled && axis.brakeReleased(context.now) ? Outcome::done() : Outcome::running();
+  return enabled && axis.brakeReleased() ? Outcome::done() : Outcome::running();
 }
 
 Outcome EnableStep::fail(const Context& context, std::string why) {

@@ -24,14 +24,15 @@ std::int64_t numberOf(const ObjectSpec& object, const fieldbus::Bytes& bytes) {
                                          : static_cast<std::int64_t>(raw);
 }
 
-}  // namespace
-
+/// Does the expectation count for the modes that the axis uses?
 bool concerns(const Expectation& expectation, const AxisConfig& axis) {
   const auto& modes = expectation.modes;
   return modes.empty() || std::any_of(modes.begin(), modes.end(), [&](const std::string& mode) {
            return std::find(axis.modes.begin(), axis.modes.end(), mode) != axis.modes.end();
          });
 }
+
+}  // namespace
 
 void SettingsStep::add(const AxisConfig& axis, const std::string& object) {
   const ObjectSpec* spec = profile_->find(object);

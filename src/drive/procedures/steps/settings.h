@@ -38,7 +38,4 @@ class SettingsStep {
   fieldbus::Ticket ticket_;
 };
 
-/// Does the expectation count for the modes that the axis uses?
-bool concerns(const Expectation& expectation, const AxisConfig& axis);
-
 }  // namespace cia402::drive
