@@ -58,11 +58,13 @@ class AxisNews {
   }
   bool differs(const drive::AxisCondition& shown);
   void note(const drive::Axis& axis, Time now);
-  void checkAgain(drive::Axis& axis, AxisReporter& reporter, const BusSide& bus, Time now);
+  [[gnu::cold]] void checkAgain(drive::Axis& axis, AxisReporter& reporter, const BusSide& bus,
+                                Time now);
   bool isUnwell(const drive::Axis& axis) const;
-  void tellNews(drive::Axis& axis, AxisReporter& reporter, const BusSide& bus, Time now);
+  [[gnu::cold]] void tellNews(drive::Axis& axis, AxisReporter& reporter, const BusSide& bus,
+                              Time now);
   void tellProblem(drive::Axis& axis, AxisReporter& reporter, Time now);
-  void tellStream(const drive::Axis& axis, Time now);
+  [[gnu::cold]] void tellStream(const drive::Axis& axis, Time now);
   std::string unknownProblem(const drive::Axis& axis, Time now);
 
   // Of the axis, as it was told last:

@@ -57,7 +57,7 @@ struct AxisUnit {
   }
 
   /// What is long and changes seldom.
-  void fillSeldom(AxisSnapshot& snapshot) const;
+  [[gnu::cold]] void fillSeldom(AxisSnapshot& snapshot) const;
 
   std::size_t index;
   drive::Axis axis;

@@ -28,7 +28,7 @@ class SignalWatch {
  private:
   static constexpr Duration kWatch{std::chrono::seconds(3)};  ///< diagnostics look once a second
   static constexpr Duration kInterval{std::chrono::milliseconds(100)};
-  void take(const drive::Axis& axis, Time now) {
+  [[gnu::cold]] void take(const drive::Axis& axis, Time now) {
     next_ = now + kInterval;
     if (axis.config().profile->signals.empty()) return;
     values_ = axis.signals(now);

@@ -59,7 +59,7 @@ class NodeUnit {
   }
 
  private:
-  void fillNode(NodeSnapshot& snapshot, const Foreseen& foreseen) const;
+  [[gnu::cold]] void fillNode(NodeSnapshot& snapshot, const Foreseen& foreseen) const;
 
   struct Entry {
     AxisUnit* unit = nullptr;
@@ -67,8 +67,8 @@ class NodeUnit {
   };
 
   void tellBooted(Time now);
-  void watchPdos(Time now);
-  void readHistory(AxisUnit& axis, Time now);
+  [[gnu::cold]] void watchPdos(Time now);
+  [[gnu::cold]] void readHistory(AxisUnit& axis, Time now);
 
   canopen::Node* node_;
   const canopen::DeviceConfig* config_;

@@ -19,7 +19,7 @@ struct Axis::Impl {
   void advance(Time now);
   void finish(bool success, std::string message);
   void preempt(ProcedureKind by);
-  void stepProcedure(Time now);
+  [[gnu::cold]] void stepProcedure(Time now);
   /// Why nothing but a stop can begin now; empty: it can.
   std::string busyRefusal(ProcedureKind kind) const;
   /// Ends a procedure that would enable the axis.

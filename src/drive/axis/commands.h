@@ -17,16 +17,17 @@ class Commands {
   /// Takes a streamed command in joint units for `mode`. @pre the axis takes set-points
   /// @return why not, in words
   Result<void> take(double value, ModeControl& mode, const SetPoint& sent, Time now);
-  /// One cycle of the stream. @return its set-point; nothing: none is given
-  std::optional<double> step(ModeControl& mode, const SetPoint& sent, Time now) {
+  /// One cycle of the stream. @return whether it leads the axis, by what lead() gives
+  bool leads(const SetPoint& sent) {
     stream_.clock += axis_.config.cycle;
     const bool ready = axis_.state.ready_for_motion && axis_.state.mode != nullptr;
     if (leader_ != nullptr || !ready) forget();
-    if (leader_ != nullptr) return {};
+    if (leader_ != nullptr) return false;
     stream_.at_rest = sent.atRest();
-    if (!stream_.command) return {};
-    return lead(mode, sent, now);
+    return stream_.command.has_value();
   }
+  /// Its set-point of this cycle; nothing: none is given.
+  std::optional<double> lead(ModeControl& mode, const SetPoint& sent, Time now);
   /// The stream ends: it was stopped, or its set-point was refused.
   void drop() { stream_.command.reset(); }
   /// The same where the mode or the zero is another: what ran dry is of no interest any more.
@@ -42,7 +43,6 @@ class Commands {
   const Stream& stream() const { return stream_; }
 
  private:
-  std::optional<double> lead(ModeControl& mode, const SetPoint& sent, Time now);
   void resume(ModeControl& mode, const SetPoint& sent, Time at);
 
   AxisBasis& axis_;

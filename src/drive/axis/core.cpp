@@ -20,8 +20,8 @@ AxisCore::AxisCore(AxisConfig config, fieldbus::Device& device)
       stops_(*this) {}
 
 void AxisCore::readFeedback(Time now) {
-  feedback_.read(now, {generator_.commandedPosition(), generator_.handingOver()});
-  if (deviceReady()) faults_.read(now);
+  const Feedback::Commanded commanded{generator_.commandedPosition(), generator_.handingOver()};
+  if (feedback_.read(now, commanded)) faults_.read(now);
 }
 
 void AxisCore::supervise(Time now) {
@@ -75,9 +75,8 @@ void AxisCore::stopForWarning() {
 
 void AxisCore::updateReadiness(bool busy) {
   AxisState& state = axis_.state;
-  state.ready_for_motion = inOperation() && !busy && !state.halted && state.feedback_valid &&
-                           brakeReleased() && feedback_.shows(mode_.spec()) &&
-                           state.state == State::operation_enabled;
+  state.ready_for_motion = brakeReleased() && !busy && !state.halted && state.feedback_valid &&
+                           feedback_.shows(mode_.spec()) && state.state == State::operation_enabled;
 }
 
 void AxisCore::writeCommands(Time now) {
@@ -86,11 +85,7 @@ void AxisCore::writeCommands(Time now) {
     generator_.advance(now);
     stops_.watchEffort(now);
     const double target = generator_.target();
-    if (const char* missing = generator_.send(now)) {
-      notices().notify(who() + ": the drive did not take the set-point " + number(target) +
-                       ": waited " + seconds(profile().timing.state_change) + " for " + missing +
-                       "; " + report(*this));
-    }
+    if (const char* missing = generator_.send(now)) tellNotTaken(missing, target);
   } else {
     generator_.sendNeutral();
   }
@@ -98,6 +93,12 @@ void AxisCore::writeCommands(Time now) {
   generator_.watchDrive(now);
   control_.write(control_.brakeReleased() ? generator_.mode().bits() : 0);
   mode_.write();
+}
+
+void AxisCore::tellNotTaken(const char* missing, double target) {
+  notices().notify(who() + ": the drive did not take the set-point " + number(target) +
+                   ": waited " + seconds(profile().timing.state_change) + " for " + missing + "; " +
+                   report(*this));
 }
 
 void AxisCore::setGoal(Goal goal) {

@@ -56,9 +56,9 @@ class AxisCore {
   /// @param busy a procedure runs
   void updateReadiness(bool busy);
   void writeCommands(Time now);
-  void onBusLost(const std::string& why);
+  [[gnu::cold]] void onBusLost(const std::string& why);
   /// The device is not ready any more: forgets everything, commands nothing.
-  void onDeviceLost();
+  [[gnu::cold]] void onDeviceLost();
 
   // --- What concerns several parts -------------------------------------------------------------
   Goal goal() const { return control_.goal(); }
@@ -85,10 +85,11 @@ class AxisCore {
   void leaveOperation();
   void zeroMoved(double moved);
   void superviseOperation(Time now);
-  // Reactions of supervise().
-  void stopUnheard();
-  void giveUpOperation();
-  void stopForWarning();
+  // Reactions of supervise(). Cold: what tells much is kept out of the code of every cycle.
+  [[gnu::cold]] void stopUnheard();
+  [[gnu::cold]] void giveUpOperation();
+  [[gnu::cold]] void stopForWarning();
+  [[gnu::cold]] void tellNotTaken(const char* missing, double target);
 
   AxisBasis axis_;
   Coordinates coordinates_;

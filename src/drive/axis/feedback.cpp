@@ -31,12 +31,16 @@ Feedback::Feedback(AxisBasis& axis, Coordinates& coordinates, const ActiveMode& 
       standstill_(axis.config.standstill_velocity,
                   signals_[SignalId::position].conversion.resolution()) {}
 
-void Feedback::read(Time now, const Commanded& commanded) {
+bool Feedback::read(Time now, const Commanded& commanded) {
   axis_.state.health = axis_.device.health();
-  if (!axis_.deviceReady()) return forget();
+  if (axis_.state.health != fieldbus::Health::ready) {
+    forget();
+    return false;
+  }
   signals_.poll(now);
   readMotion(now, commanded.position);
   readState(now, commanded.handing_over);
+  return true;
 }
 
 void Feedback::readState(Time now, bool handing_over) {

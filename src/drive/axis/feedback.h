@@ -26,7 +26,8 @@ class Feedback {
     bool handing_over = false;   ///< target reached still speaks of the set-point before
   };
   /// Decodes what has come. Everything is unknown while the device is not ready.
-  void read(Time now, const Commanded& commanded);
+  /// @return whether it is
+  bool read(Time now, const Commanded& commanded);
   /// Nothing is known any more: the device is not ready, or another one.
   void forget();
   /// The same of position and what is measured with it.

@@ -100,7 +100,8 @@ void Generator::stop() {
 
 void Generator::stepCommands(Time now) {
   late_ = false;
-  const std::optional<double> next = commands_.step(*mode_, sent_, now);
+  if (!commands_.leads(sent_)) return;
+  const std::optional<double> next = commands_.lead(*mode_, sent_, now);
   if (next && !take(*next)) commands_.drop();
 }
 

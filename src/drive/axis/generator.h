@@ -108,7 +108,7 @@ class Generator {
 
  private:
   void encode();
-  void callBack();
+  [[gnu::cold]] void callBack();
   bool movesItself() const;
   ModeControl& controlOf(const ModeChannel& channel);
 

@@ -43,8 +43,9 @@ class AxisPoller {
   const fieldbus::ProcessValue* value(int item, Time now) const {
     if (item < 0) return nullptr;
     const Item& asked = items_[static_cast<std::size_t>(item)];
-    const Duration stale = asked.for_looks ? kStaleLook : kStale;
-    return asked.value.valid && now - asked.value.stamp <= stale ? &asked.value : nullptr;
+    if (!asked.value.valid) return nullptr;
+    return now - asked.value.stamp <= (asked.for_looks ? kStaleLook : kStale) ? &asked.value
+                                                                              : nullptr;
   }
 
  private:

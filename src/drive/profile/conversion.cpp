@@ -146,10 +146,7 @@ double Conversion::floatToJoint(std::uint64_t raw) const {
 
 bool Conversion::toDevice(double value, std::uint64_t& raw) const {
   const double device = (value - offset_) * inverse_;
-  if (encoding_ != Encoding::integer) {
-    if (!(device >= low_ && device <= high_)) return false;
-    return encodeFloat(encoding_, device, raw);
-  }
+  if (encoding_ != Encoding::integer) return toFloat(device, raw);
   double rounded = std::nearbyint(device);
   if (wraps_ && std::fabs(rounded) < kExact) {
     const double numbers = last_ - first_ + 1.0;
@@ -158,6 +155,12 @@ bool Conversion::toDevice(double value, std::uint64_t& raw) const {
   if (!(rounded >= low_ && rounded <= high_)) return false;  // NaN, too
   raw = wire(rounded);
   return true;
+}
+
+/// Not inlined: toDevice() would save its registers for the integers, too.
+[[gnu::noinline]] bool Conversion::toFloat(double device, std::uint64_t& raw) const {
+  if (!(device >= low_ && device <= high_)) return false;
+  return encodeFloat(encoding_, device, raw);
 }
 
 std::uint64_t Conversion::wire(double device) const {

@@ -72,6 +72,7 @@ class Conversion {
 
  private:
   std::uint64_t wire(double device) const;
+  bool toFloat(double device, std::uint64_t& raw) const;
   double floatToJoint(std::uint64_t raw) const;
   std::uint64_t sendableFloat(std::uint64_t raw) const;
 
