@@ -228,6 +228,66 @@ TEST(Axis, AWarningStopsOnlyWhereTheProfileSaysSo) {
   EXPECT_THAT(strict.axis.notice(), HasSubstr("statusword bit 7"));
 }
 
+/// 0x5001 holds the motor, 0x5002 only tells; others stop the drive like a fault.
+DriveProfile warned() {
+  DriveProfile profile = testProfile();
+  profile.warning_stops = true;
+  profile.warnings[0x5001] = {"stalled", "load", "less of it", WarningText::Reaction::holds};
+  profile.warnings[0x5002] = {"warm", "", "", WarningText::Reaction::goes_on};
+  return profile;
+}
+
+TEST(Axis, AWarningThatOnlyTellsStopsNothing) {
+  Bench bench(testConfig(warned()));
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  bench.drive.error = 0x5002;
+  bench.drive.warning = true;
+  bench.run(milliseconds(100));
+  EXPECT_TRUE(bench.axis.state().ready_for_motion);
+  EXPECT_THAT(bench.axis.faultText(), HasSubstr("warning 0x5002 warm"));
+  bench.drive.error = 0x5003;
+  bench.run(milliseconds(100));
+  EXPECT_FALSE(bench.axis.state().ready_for_motion) << "this one is not known";
+}
+
+TEST(Axis, AWarningThatHoldsTheMotorHaltsTheAxisOnce) {
+  Bench bench(testConfig(warned()));
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  bench.drive.error = 0x5001;
+  bench.drive.warning = true;
+  bench.run(milliseconds(100));
+  EXPECT_TRUE(bench.axis.state().halted);
+  EXPECT_EQ(bench.drive.state, FakeDrive::S::enabled) << "it holds the motor by itself";
+  EXPECT_EQ(bench.axis.notice(),
+            "shoulder (node 3): warning 0x5001 stalled: load; less of it; the drive holds the "
+            "motor, and the axis is halted, so that it does not move on when the warning ends: "
+            "enable releases it");
+  const std::uint32_t notices = bench.axis.noticeCount();
+  EXPECT_TRUE(bench.perform(ProcedureKind::enable).success) << "to drive off what holds it";
+  bench.run(milliseconds(100));
+  EXPECT_TRUE(bench.axis.state().ready_for_motion);
+  EXPECT_EQ(bench.axis.noticeCount(), notices);
+  bench.drive.warning = false;
+  bench.run(milliseconds(100));
+  EXPECT_TRUE(bench.axis.state().ready_for_motion);
+  bench.drive.warning = true;
+  bench.run(milliseconds(100));
+  EXPECT_TRUE(bench.axis.state().halted) << "it came anew";
+}
+
+TEST(Axis, AWarningThatStoodBeforeEnablingDoesNotHaltTheAxis) {
+  Bench bench(testConfig(warned()));
+  ASSERT_TRUE(bench.boot());
+  bench.drive.error = 0x5001;
+  bench.drive.warning = true;
+  bench.run(milliseconds(100));
+  ASSERT_TRUE(bench.enable());
+  bench.run(milliseconds(100));
+  EXPECT_TRUE(bench.axis.state().ready_for_motion);
+}
+
 TEST(Axis, BitSevenIsNoWarningWhereTheFamilyHasNone) {
   DriveProfile profile = testProfile();
   profile.warning_stops = true;

@@ -247,6 +247,28 @@ TEST_F(ProfileKeys, ErrorsHaveWords) {
   EXPECT_EQ(profile.errors[0x8250].missing, ErrorText::Missing::outputs);
 }
 
+TEST(ProfileWarnings, HaveWordsAndAReaction) {
+  using Reaction = drive::WarningText::Reaction;
+  Problems problems;
+  DriveFamily family = parseDriveFamily(
+      std::string(kHead) +
+          "  csp: {value: 8, control: position, target: target_position}\n"
+          "warnings:\n"
+          "  0x2310: nearly too much current\n"
+          "  0xFF0C: {text: stalled, cause: load, remedy: less of it, reaction: holds}\n"
+          "  0xFF0D: {text: warm, reaction: goes_on}\n",
+      "full.yaml", problems);
+  ASSERT_EQ(problems.text(), "");
+  DriveProfile& profile = family.drive;
+  ASSERT_EQ(profile.warnings.size(), 3U);
+  EXPECT_EQ(profile.warnings[0x2310].text, "nearly too much current");
+  EXPECT_FALSE(profile.warnings[0x2310].reaction.has_value());
+  EXPECT_EQ(profile.warnings[0xFF0C].cause, "load");
+  EXPECT_EQ(profile.warnings[0xFF0C].remedy, "less of it");
+  EXPECT_EQ(profile.warnings[0xFF0C].reaction, Reaction::holds);
+  EXPECT_EQ(profile.warnings[0xFF0D].reaction, Reaction::goes_on);
+}
+
 TEST(ProfileDefaults, AreThoseOfTheStandards) {
   Problems problems;
   const DriveFamily family = parseDriveFamily(
@@ -279,11 +301,6 @@ TEST(ProfileDefaults, AreThoseOfTheStandards) {
   EXPECT_FALSE(profile.mode("csp")->cyclic);
   EXPECT_TRUE(profile.mode("csp")->handover.words.empty());
 }
-
-struct WrongKey {
-  const char* text;  ///< after modes
-  const char* problem;
-};
 
 }  // namespace
 }  // namespace cia402::config

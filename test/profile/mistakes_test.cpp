@@ -10,6 +10,11 @@ namespace {
 
 using testing::HasSubstr;
 
+struct WrongKey {
+  const char* text;  ///< after modes
+  const char* problem;
+};
+
 TEST(ProfileMistakes, AreToldWithWhatToDo) {
   const WrongKey mistakes[] = {
       {"  pt: {value: 4, control: torque, target: target_torque, stop: set_points}\n",

@@ -253,6 +253,7 @@ void readDrive(yaml::Section& section, yaml::Section& timing, DriveProfile& prof
   }
   if (const auto names = section.get("signals")) readSignals(*names, profile);
   if (const auto errors = section.get("errors")) readErrors(*errors, profile);
+  if (const auto warnings = section.get("warnings")) readWarnings(*warnings, profile);
 }
 
 DriveFamily readFamily(const yaml::Value& root) {

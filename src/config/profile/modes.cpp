@@ -221,40 +221,4 @@ void readHoming(const yaml::Value& value, DriveProfile& profile) {
   section.finish();
 }
 
-void readErrors(const yaml::Value& value, DriveProfile& profile) {
-  yaml::Section section(value);
-  for (const auto& [key, entry] : section.entries()) {
-    const auto code = yaml::parseInteger(key);
-    if (!code || *code < 1 || *code > 0xFFFF) {
-      entry.problem("an error code is a number from 0x0001 to 0xFFFF, not `" + key + "`");
-      continue;
-    }
-    ErrorText error;
-    if (entry.isMap()) {
-      yaml::Section details(entry);
-      details.require("text", "say in words what the code means");
-      details.read("text", error.text);
-      details.read("cause", error.cause);
-      details.read("remedy", error.remedy);
-      using Missing = ErrorText::Missing;
-      if (const auto missing = details.get("missing")) {
-        const bool rpdo = missing->oneOf({"sync", "rpdo"}).value_or(0) == 1;
-        error.missing = rpdo ? Missing::outputs : Missing::cycle;
-      }
-      if (const auto reset = details.get("reset")) {
-        const auto index = reset->oneOf({"by_bit", "by_itself", "power_cycle"});
-        if (index) error.reset = static_cast<ErrorText::Reset>(*index);
-      }
-      readDuration(details, "wait", yaml::Range{0.0, 3600.0, false}, error.wait);
-      details.finish();
-    } else {
-      error.text = entry.text().value_or("");
-    }
-    if (!profile.errors.emplace(static_cast<std::uint16_t>(*code), error).second) {
-      entry.problem("the code is given twice");
-    }
-  }
-  section.finish();
-}
-
 }  // namespace cia402::config

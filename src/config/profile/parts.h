@@ -38,6 +38,8 @@ void readCoordinates(const yaml::Value& value, DriveProfile& profile);
 void readModes(const yaml::Value& value, DriveProfile& profile);
 void readHoming(const yaml::Value& value, DriveProfile& profile);
 void readErrors(const yaml::Value& value, DriveProfile& profile);
+/// @pre `statusword` was read
+void readWarnings(const yaml::Value& value, DriveProfile& profile);
 /// `checks`: what the drive must be set to, or say. @pre objects, modes and homing were read
 void readChecks(const yaml::Value& list, DriveProfile& profile);
 /// The name of an object of the profile that holds a whole number and can be read; else a problem

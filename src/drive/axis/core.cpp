@@ -25,7 +25,7 @@ void AxisCore::readFeedback(Time now) {
 }
 
 void AxisCore::supervise(Time now) {
-  stops_.watchUrgent();
+  stops_.watch();
   const bool late = now > written_ + 2 * config().cycle && written_ != Time{};
   if (late) generator_.lateCycle(now);
   if (!deviceReady()) return;
@@ -35,6 +35,7 @@ void AxisCore::supervise(Time now) {
     superviseOperation(now);
   } else if (goal() == Goal::enabled && state().state == State::operation_enabled) {
     control_.enterOperation(now);
+    faults_.acknowledgeWarning();
     generator_.beginFollowing(control_.brakeReleasedAt());
     generator_.neutralize();
   }
@@ -43,7 +44,7 @@ void AxisCore::supervise(Time now) {
 void AxisCore::superviseOperation(Time now) {
   const bool enabled = state().state == State::operation_enabled;
   if (!enabled && !feedback_.maybeDecodable(now)) return giveUpOperation();
-  if (state().warning && profile().warning_stops) return stopForWarning();
+  if (state().warning && !goesOnWarned(now)) return;
   if (mode_.brakes()) stops_.watchBrakeMode(now);
   // With its bits the mode begins to follow: from where the motor is by then.
   if (control_.releaseBrake(now) && mode_.spec().controlword_bits != 0) generator_.neutralize();
@@ -66,11 +67,25 @@ void AxisCore::giveUpOperation() {
   setGoal(state().state == State::quick_stop_active ? Goal::quick_stop : Goal::disabled);
 }
 
-void AxisCore::stopForWarning() {
-  notices().fail(
-      who() +
-      ": the drive warns (statusword bit 7), which makes it stop like a fault: " + faults_.text());
-  setGoal(Goal::quick_stop);  // what the drive does itself; switching off would let it coast
+bool AxisCore::goesOnWarned(Time now) {
+  switch (faults_.warning()) {
+    case FaultWatch::Warning::goes_on:
+      return true;
+    case FaultWatch::Warning::stops:
+      notices().fail(who() +
+                     ": the drive warns (statusword bit 7), which makes it stop like a fault: " +
+                     faults_.text());
+      setGoal(Goal::quick_stop);  // what the drive does itself; switching off would let it coast
+      return false;
+    case FaultWatch::Warning::holds:
+      notices().fail(faults_.text() +
+                     "; the drive holds the motor, and the axis is halted, so that it does not "
+                     "move on when the warning ends: enable releases it");
+      faults_.acknowledgeWarning();
+      stops_.hold(now);
+      return inOperation();
+  }
+  return true;
 }
 
 void AxisCore::updateReadiness(bool busy) {

@@ -88,7 +88,8 @@ class AxisCore {
   // Reactions of supervise(). Cold: what tells much is kept out of the code of every cycle.
   [[gnu::cold]] void stopUnheard();
   [[gnu::cold]] void giveUpOperation();
-  [[gnu::cold]] void stopForWarning();
+  /// @return false: it leaves operation
+  [[gnu::cold]] bool goesOnWarned(Time now);
   [[gnu::cold]] void tellNotTaken(const char* missing, double target);
 
   AxisBasis axis_;

@@ -22,6 +22,19 @@ void FaultWatch::readError(Time now) {
   const std::uint16_t code = look.faulted ? axis_.state.error_code : 0;
   if (code != faulted_by_) faulted_since_ = now;
   faulted_by_ = code;
+  if (!look.warning) acknowledged_ = 0;
+}
+
+FaultWatch::Warning FaultWatch::warning() const {
+  const DriveProfile& profile = axis_.profile();
+  const std::uint16_t code = axis_.state.error_code;
+  const auto known = profile.warnings.find(code);
+  if (known == profile.warnings.end() || !known->second.reaction) {
+    return profile.warning_stops ? Warning::stops : Warning::goes_on;
+  }
+  const bool news = code != acknowledged_;
+  return *known->second.reaction == WarningText::Reaction::holds && news ? Warning::holds
+                                                                         : Warning::goes_on;
 }
 
 std::string FaultWatch::resetRefusal(Time now) const {
@@ -46,7 +59,7 @@ void FaultWatch::forgetFault() {
 
 void FaultWatch::forget() {
   errors_ = ErrorEvidence();
-  axis_.state.error_code = 0;
+  axis_.state.error_code = acknowledged_ = 0;
 }
 
 std::string FaultWatch::codeText(std::uint16_t code) const {
@@ -75,8 +88,9 @@ std::string FaultWatch::text() const {
            afterwardsText(axis_.profile(), state.error_code);
   }
   if (state.error_code != 0 && errors_.excuse(state.error_code) == nullptr) {
-    return axis_.who() + ": " + (state.warning ? "warning " : "error reported ") +
-           errorCodeText(axis_.profile(), state.error_code);
+    return axis_.who() + ": " +
+           (state.warning ? "warning " + warningCodeText(axis_.profile(), state.error_code)
+                          : "error reported " + errorCodeText(axis_.profile(), state.error_code));
   }
   if (state.warning && axis_.profile().warning_stops) {
     return axis_.who() + ": warning without a code (statusword bit 7); clear_faults";

@@ -24,6 +24,15 @@ class FaultWatch {
   }
   /// An emergency whose end the drive has not told; 0: none.
   std::uint16_t pendingEmergency() const { return errors_.pending(); }
+  /// What the drive does at the warning that stands.
+  enum class Warning : std::uint8_t {
+    goes_on,
+    stops,  ///< as at a fault
+    holds,  ///< it brings the motor to rest and holds it; told once for each warning
+  };
+  Warning warning() const;
+  /// Nothing more is to be done about the warning that stands.
+  void acknowledgeWarning() { acknowledged_ = axis_.state.warning ? axis_.state.error_code : 0; }
   /// The fault was reset: what was told before is over.
   void forgetFault();
   /// Another drive may be there: nothing is known.
@@ -52,6 +61,7 @@ class FaultWatch {
   Time next_reset_ = Time::min();
   Time faulted_since_ = kNever;  ///< with that code:
   std::uint16_t faulted_by_ = 0;
+  std::uint16_t acknowledged_ = 0;  ///< a warning; 0: none
 };
 
 /// As in nearly every cycle: readError() would change nothing.

@@ -36,6 +36,17 @@ void Stops::halt(Time now) {
   state.ready_for_motion = false;
 }
 
+void Stops::hold(Time now) {
+  halt(now);
+  holding_ = axis_.state().halted;
+}
+
+void Stops::finishHold() {
+  if (axis_.state().halted && !axis_.feedback().atStandstill()) return;
+  holding_ = false;
+  if (axis_.state().halted) axis_.generator().takeBack();
+}
+
 void Stops::replaceHaltedTarget() {
   if (axis_.control().halt()) axis_.generator().takeBack();  // else set-points have come to rest
 }

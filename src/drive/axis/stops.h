@@ -17,6 +17,9 @@ class Stops {
   /// Stops and stays stopped until endHalt(). Where nothing but a quick stop brakes, the axis
   /// leaves operation.
   void halt(Time now);
+  /// The same where the drive stops and holds the motor by itself: what was commanded is given up,
+  /// so that nothing is gone on to when the drive lets the motor go.
+  void hold(Time now);
   /// Replaces the set-point that a halted drive would go on to by "stay here". The halt itself is
   /// released once that is on the wire and nothing is handed over any more.
   void replaceHaltedTarget();
@@ -25,9 +28,11 @@ class Stops {
   /// Quick stop by a write that waits for nothing: what travels in cycles does not reach the drive.
   /// @param why in words
   void stopUrgently(const std::string& why);
-  /// Once a cycle: where that failed as well, nothing but the drive itself can stop the motor.
-  void watchUrgent() {
+  /// Once a cycle: where that failed as well, nothing but the drive itself can stop the motor; and
+  /// an axis that hold() has halted gets where it stands as its set-point.
+  void watch() {
     if (urgent_ticket_ && urgent_ticket_->done()) judgeUrgent();
+    if (holding_) finishHold();
   }
 
   /// Once a cycle while efforts are streamed, or were: a torque that is nobody's any more is braked
@@ -44,11 +49,13 @@ class Stops {
   void followByBrakeMode();
   bool brakeByMode(Time now);
   void brakeEffort(Time now);
-  void judgeUrgent();
+  [[gnu::cold]] void judgeUrgent();
+  void finishHold();
 
   AxisCore& axis_;
   Time braked_at_{};
   bool brake_mode_shown_ = false;
+  bool holding_ = false;  ///< by hold(), and the motor has not been seen to stand since
   fieldbus::Ticket brake_ticket_, urgent_ticket_;
 };
 

@@ -6,9 +6,28 @@
 
 namespace cia402::drive {
 
+namespace {
+
+/// @param known ErrorText or WarningText
+template <typename Known>
+std::string codeText(const Known& known, std::uint16_t code) {
+  std::string text = hexText(code, 4) + " " + known.text;
+  const char* separator = ": ";
+  for (const std::string* part : {&known.cause, &known.remedy}) {
+    if (part->empty()) continue;
+    text += separator + *part;
+    separator = "; ";
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string errorName(const DriveProfile& profile, std::uint16_t code) {
-  const auto known = profile.errors.find(code);
-  return known == profile.errors.end() ? fieldbus::emergencyText(code) : known->second.text;
+  const auto error = profile.errors.find(code);
+  if (error != profile.errors.end()) return error->second.text;
+  const auto warning = profile.warnings.find(code);
+  return warning == profile.warnings.end() ? fieldbus::emergencyText(code) : warning->second.text;
 }
 
 std::string afterwardsText(const DriveProfile& profile, std::uint16_t code) {
@@ -26,19 +45,18 @@ std::string afterwardsText(const DriveProfile& profile, std::uint16_t code) {
 }
 
 std::string errorCodeText(const DriveProfile& profile, std::uint16_t code) {
-  const auto known = profile.errors.find(code);
-  if (known == profile.errors.end()) {
-    return hexText(code, 4) + " " + fieldbus::emergencyText(code) +
-           ": the drive's manual says more about this code";
-  }
-  std::string text = hexText(code, 4) + " " + known->second.text;
-  const char* separator = ": ";
-  for (const std::string* part : {&known->second.cause, &known->second.remedy}) {
-    if (part->empty()) continue;
-    text += separator + *part;
-    separator = "; ";
-  }
-  return text;
+  const auto error = profile.errors.find(code);
+  if (error != profile.errors.end()) return codeText(error->second, code);
+  const auto warning = profile.warnings.find(code);
+  if (warning != profile.warnings.end()) return codeText(warning->second, code);
+  return hexText(code, 4) + " " + fieldbus::emergencyText(code) +
+         ": the drive's manual says more about this code";
+}
+
+std::string warningCodeText(const DriveProfile& profile, std::uint16_t code) {
+  const auto warning = profile.warnings.find(code);
+  return warning == profile.warnings.end() ? errorCodeText(profile, code)
+                                           : codeText(warning->second, code);
 }
 
 }  // namespace cia402::drive

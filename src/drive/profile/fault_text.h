@@ -11,6 +11,8 @@ namespace cia402::drive {
 /// The code of an error (603Fh, or of an emergency) in words: "0x8611 following error: <cause>;
 /// <remedy>", from the profile where it knows the code, else by the classes of CiA 301 and 402.
 std::string errorCodeText(const DriveProfile& profile, std::uint16_t code);
+/// The same for a code that comes without a fault.
+std::string warningCodeText(const DriveProfile& profile, std::uint16_t code);
 
 /// What a person does next once the cause of a fault is gone: "then clear_faults".
 std::string afterwardsText(const DriveProfile& profile, std::uint16_t code);

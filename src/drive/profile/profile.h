@@ -250,6 +250,16 @@ struct ErrorText {
   Duration wait{0};  ///< since the fault, before which the drive takes no reset
 };
 
+/// A known code that comes without a fault (statusword bit 7).
+struct WarningText {
+  enum class Reaction : std::uint8_t {
+    goes_on,  ///< it only tells
+    holds,    ///< the drive brings the motor to rest and holds it, and may let it go by itself
+  };
+  std::string text, cause, remedy;
+  std::optional<Reaction> reaction;  ///< nothing: as DriveProfile::warning_stops says
+};
+
 /// Position counts of a motor turn by the drive's own settings: the product of some objects over
 /// that of others, by their names. Empty: the drive has no such objects.
 struct CountsRule {
@@ -314,6 +324,7 @@ struct DriveProfile {
     bool power_cycle_after_save = false;         ///< it takes no enabling before
   } parameters;
   std::map<std::uint16_t, ErrorText> errors;
+  std::map<std::uint16_t, WarningText> warnings;  ///< where they are no errors, or other ones
   std::string eds;  ///< file whose objects were added, for messages; empty: none
 
   /// By the profile's name, or by a name of the EDS without regard to case and blanks.

@@ -84,6 +84,7 @@ struct FaultDefinition {
   std::array<std::uint8_t, 5> vendor{};
   bool resettable = true;        ///< false: only a power cycle helps
   bool warning = false;          ///< statusword bit 7 instead of a fault
+  bool holds = false;            ///< a warning: the motor is halted until it is over
   Duration persists{0};          ///< the cause stays so long; a reset before is refused
   std::optional<Ramp> reaction;  ///< instead of 605Eh, e.g. coast where the stage is broken
   bool voltage_lost = false;     ///< statusword bit 4 goes while the cause lasts

@@ -36,6 +36,8 @@ void readFault(const std::string& name, const yaml::Value& from, DriveDefinition
   }
   reader.read("resettable", fault.resettable);
   reader.read("warning", fault.warning);
+  reader.read("holds", fault.holds);
+  if (fault.holds && !fault.warning) reader.problem("holds", "is for warnings");
   reader.read("voltage_lost", fault.voltage_lost);
   double seconds = 0.0;
   reader.read("persists_for", seconds, 0.0, kForeverS);

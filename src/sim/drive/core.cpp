@@ -247,6 +247,7 @@ void DriveCore::raise(const FaultDefinition& fault) {
   faults_.add(fault, now_);
   values_.setRaw(Role::error_code, fault.code);
   if (!fault.warning || definition_.warning_stops) power_.react(fault, now_);
+  if (fault.holds) motion_.pause(true);
   updateStatusword();
   reports_.emergency(fault);
 }
@@ -271,6 +272,7 @@ void DriveCore::resetFault() {
 
 void DriveCore::clearErrors() {
   faults_.clear();
+  motion_.pause(false);
   values_.setRaw(Role::error_code, 0);
   reports_.errorsGone();
 }

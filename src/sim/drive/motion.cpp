@@ -52,7 +52,7 @@ void DriveMotion::powerStage(bool on) {
   controlword_ = 0;
   stop_.reset();
   held_ = false;
-  halted_ = false;
+  halted_ = paused_ = false;
   supervision_.restart();
   axis_.limits.release();
   axis_.limits.releaseSwitch();
@@ -97,10 +97,17 @@ void DriveMotion::controlBits(std::uint16_t controlword, std::uint16_t previous)
   const bool rising = bit_4 && (previous & kModeBit) == 0;
   if (set_points_.control(controlword, rising)) supervision_.newTarget();
   if (inMode(ModeBehaviour::homing)) homing_.control(bit_4, rising);
-  halt(axis_.definition.halt && (controlword & kHalt) != 0);
+  halt();
 }
 
-void DriveMotion::halt(bool wanted) {
+void DriveMotion::pause(bool on) {
+  if (on == paused_) return;
+  paused_ = on && powered_;
+  halt();
+}
+
+void DriveMotion::halt() {
+  const bool wanted = paused_ || (axis_.definition.halt && (controlword_ & kHalt) != 0);
   if (wanted && !stop_) {
     const OptionTable& table = axis_.definition.halt_option;
     const auto option = table.options.find(axis_.values.raw(Role::halt_option, table.fallback));

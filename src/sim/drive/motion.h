@@ -57,6 +57,8 @@ class DriveMotion {
   /// The drive has found its home by itself, since its position was lost.
   bool homed() const { return axis_.limits.homed(); }
   void loseHome() { axis_.limits.setHomed(false); }
+  /// The drive halts the motor by itself, as by controlword bit 8, until it lets it go on.
+  void pause(bool on);
   /// A limit switch was in the way in the last step.
   bool limitSwitchHit() const { return axis_.limits.switchHit(); }
   /// Actual and demand values, inputs into the dictionary.
@@ -71,7 +73,7 @@ class DriveMotion {
   bool modeBit() const;
   void stepMode(double from);
   void limitTorque();
-  void halt(bool wanted);
+  void halt();
 
   const AxisMechanics& mechanics_;
   MovingAxis axis_;
@@ -82,7 +84,7 @@ class DriveMotion {
   double time_constant_;  ///< of the position loop, s
   bool powered_ = false;
   bool held_ = false;
-  bool halted_ = false;
+  bool halted_ = false, paused_ = false;
   std::optional<Ramp> stop_;
   std::uint16_t controlword_ = 0;  ///< the last one in operation
   unsigned publications_ = 0;      ///< while it homes by an object
