@@ -87,10 +87,23 @@ void readSections(yaml::Section& section, AxisDraft& draft, RobotConfig& robot) 
   robot.simulated[axis.name] = simulation;
 }
 
+/// Settings of the drive that may be written where they are not as the profile's checks want them.
+void readAdjust(const yaml::Value& list, AxisConfig& axis) {
+  std::vector<std::string> known;
+  for (const drive::SettingCheck& check : axis.profile->checks) {
+    if (check.write == drive::SettingCheck::Write::asked) known.push_back(check.objects.front());
+  }
+  for (const yaml::Value& entry : list.list()) {
+    if (const auto index = entry.oneOf(known)) axis.adjust.push_back(known[*index]);
+  }
+}
+
 // The keys whose meaning depends on the profile.
 void readWithProfile(yaml::Section& section, AxisConfig& axis) {
   const auto writes = section.get("write");
+  const auto adjust = section.get("adjust");
   if (!axis.profile) return;
+  if (adjust) readAdjust(*adjust, axis);
   if (writes) axis.writes = readWrites(*writes, *axis.profile, WriteList::boot);
 }
 

@@ -66,6 +66,7 @@ class FakeDrive {
   std::set<Key> unanswered;                  ///< writes taken in silence
   std::set<Key> unanswered_reads;
   std::map<Key, std::pair<std::uint64_t, unsigned>> dictionary;  ///< value, bytes
+  std::set<Key> deaf_to;  ///< writes of these are taken and change nothing
   std::map<Key, std::deque<std::uint64_t>> next_reads;  ///< what the next reads find there instead
 
   // What the test may look at.
@@ -140,6 +141,7 @@ class FakeDrive {
     const Key key{object.index, object.subindex};
     if (aborts.count(key) != 0) return Answer{aborts[key], {}};
     const std::uint64_t value = fieldbus::toUnsigned(data);
+    if (deaf_to.count(key) != 0) return Answer{};
     dictionary[key] = {value, static_cast<unsigned>(data.size())};
     writes.emplace_back(object.index, value);
     if (object.index == 0x6060) {

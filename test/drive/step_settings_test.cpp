@@ -15,12 +15,12 @@ using namespace std::chrono_literals;
 DriveProfile expecting(std::int64_t raw, DataType type = DataType::uint16) {
   DriveProfile profile = testProfile();
   profile.objects.push_back(test::object("source", 0x2002, type));
-  Expectation expectation;
-  expectation.object = "source";
-  expectation.raw = raw;
-  expectation.text = "the drive listens to its panel";
-  expectation.remedy = "set P00 at the panel";
-  profile.expected = {expectation};
+  SettingCheck check;
+  check.objects = {"source"};
+  check.condition.numbers = {raw};
+  check.text = "the drive listens to its panel";
+  check.remedy = "set P00 at the panel";
+  profile.checks = {check};
   return profile;
 }
 
@@ -63,7 +63,7 @@ TEST(SettingsStep, RefusesWhatCannotBeReadUnlessTheAxisSaysThatTheDriveLacksIt) 
 
 TEST(SettingsStep, ComparesWhatConcernsAModeWhereTheAxisUsesIt) {
   DriveProfile profile = expecting(8);
-  profile.expected[0].modes = {"profile_position"};
+  profile.checks[0].modes = {"profile_position"};
   AxisConfig config = testConfig(profile);
   config.modes = {"cyclic_position"};
   {
@@ -77,6 +77,192 @@ TEST(SettingsStep, ComparesWhatConcernsAModeWhereTheAxisUsesIt) {
   bench.drive.dictionary[{0x2002, 0}] = {1, 2};
   ASSERT_TRUE(bench.boot());
   EXPECT_FALSE(bench.perform(ProcedureKind::enable).success);
+}
+
+TEST(SettingsStep, SaysInWordsHowANumberIsWrong) {
+  using Kind = Condition::Kind;
+  const std::pair<Condition, const char*> complaints[] = {
+      {{Kind::is, {2, 3}}, "source (2002:00) is 1 instead of 2 or 3, "},
+      {{Kind::is, {2, 3, 5}}, "source (2002:00) is 1 instead of 2, 3 or 5, "},
+      {{Kind::is_not, {0, 1}}, "source (2002:00) is 1, which it must not be, "},
+      {{Kind::above, {1}}, "source (2002:00) is 1, not above 1, "},
+      {{Kind::below, {1}}, "source (2002:00) is 1, not below 1, "},
+  };
+  for (const auto& [condition, told] : complaints) {
+    DriveProfile profile = expecting(8);
+    profile.checks[0].condition = condition;
+    Bench bench(testConfig(profile));
+    bench.drive.dictionary[{0x2002, 0}] = {1, 2};
+    ASSERT_TRUE(bench.boot());
+    EXPECT_THAT(bench.perform(ProcedureKind::enable).message, HasSubstr(told));
+    EXPECT_NE(bench.drive.state, FakeDrive::S::enabled);
+  }
+}
+
+TEST(SettingsStep, TakesWhatFitsAConditionOtherThanOneNumber) {
+  using Kind = Condition::Kind;
+  for (const Condition& condition : {Condition{Kind::is, {2, 1}}, Condition{Kind::is_not, {0}},
+                                     Condition{Kind::above, {0}}, Condition{Kind::below, {2}}}) {
+    DriveProfile profile = expecting(8);
+    profile.checks[0].condition = condition;
+    Bench bench(testConfig(profile));
+    bench.drive.dictionary[{0x2002, 0}] = {1, 2};
+    ASSERT_TRUE(bench.boot());
+    EXPECT_TRUE(bench.enable());
+  }
+}
+
+TEST(SettingsStep, TellsTheMeaningOfSingleNumbers) {
+  DriveProfile profile = expecting(0);
+  profile.checks[0].texts = {{3, "main power is missing"}};
+  Bench bench(testConfig(profile));
+  bench.drive.dictionary[{0x2002, 0}] = {3, 2};
+  ASSERT_TRUE(bench.boot());
+  EXPECT_THAT(bench.perform(ProcedureKind::enable).message,
+              HasSubstr("is 3 instead of 0, main power is missing; set P00 at the panel"));
+}
+
+TEST(SettingsStep, NeedsOneOfSeveralObjects) {
+  DriveProfile profile = expecting(8);
+  profile.objects.push_back(test::object("second", 0x2003, DataType::uint16));
+  profile.checks[0].objects = {"source", "second"};
+  Bench bench(testConfig(profile));
+  bench.drive.dictionary[{0x2002, 0}] = {1, 2};
+  bench.drive.dictionary[{0x2003, 0}] = {2, 2};
+  ASSERT_TRUE(bench.boot());
+  EXPECT_THAT(bench.perform(ProcedureKind::enable).message,
+              HasSubstr("source (2002:00) is 1 instead of 8 and second (2003:00) is 2 instead"));
+  bench.drive.dictionary[{0x2003, 0}] = {8, 2};
+  EXPECT_TRUE(bench.enable());
+}
+
+TEST(SettingsStep, MindsOnlyWhatIsGivenAndNotExcused) {
+  DriveProfile profile = expecting(8);
+  profile.objects.push_back(test::object("second", 0x2003, DataType::uint16));
+  profile.checks[0].if_given = "limits.jerk";
+  profile.checks[0].unless = "second";
+  profile.checks[0].unless_is = {Condition::Kind::is, {7}};
+  AxisConfig config = testConfig(profile);
+  {
+    Bench bench(config);
+    bench.drive.dictionary[{0x2002, 0}] = {1, 2};
+    ASSERT_TRUE(bench.boot());
+    EXPECT_TRUE(bench.enable()) << "the axis has no jerk limit";
+  }
+  config.limits.jerk = 100.0;
+  Bench bench(config);
+  bench.drive.dictionary[{0x2002, 0}] = {1, 2};
+  bench.drive.dictionary[{0x2003, 0}] = {6, 2};
+  ASSERT_TRUE(bench.boot());
+  EXPECT_FALSE(bench.perform(ProcedureKind::enable).success);
+  bench.drive.dictionary[{0x2003, 0}] = {7, 2};
+  EXPECT_TRUE(bench.enable());
+}
+
+TEST(SettingsStep, WarnsOnceOfWhatIsNoReasonToRefuse) {
+  DriveProfile profile = expecting(8);
+  profile.checks[0].only_warns = true;
+  Bench bench(testConfig(profile));
+  bench.drive.dictionary[{0x2002, 0}] = {1, 2};
+  ASSERT_TRUE(bench.boot());
+  EXPECT_TRUE(bench.enable());
+  EXPECT_THAT(bench.axis.notice(), HasSubstr("source (2002:00) is 1 instead of 8"));
+}
+
+// Write source := 8, read it again; nothing else differs.
+TEST(SettingsStep, WritesWhereTheProfileOrTheAxisAsksForIt) {
+  DriveProfile profile = expecting(8);
+  profile.checks[0].write = SettingCheck::Write::asked;
+  {
+    Bench bench(testConfig(profile));
+    bench.drive.dictionary[{0x2002, 0}] = {1, 2};
+    ASSERT_TRUE(bench.boot());
+    EXPECT_FALSE(bench.perform(ProcedureKind::enable).success) << "nobody asked";
+    EXPECT_EQ(bench.drive.dictionary.at({0x2002, 0}).first, 1U);
+  }
+  AxisConfig asks = testConfig(profile);
+  asks.adjust = {"source"};
+  profile.checks[0].write = SettingCheck::Write::always;
+  for (const AxisConfig& config : {asks, testConfig(profile)}) {
+    Bench bench(config);
+    bench.drive.dictionary[{0x2002, 0}] = {1, 2};
+    ASSERT_TRUE(bench.boot());
+    EXPECT_TRUE(bench.enable());
+    EXPECT_EQ(bench.drive.dictionary.at({0x2002, 0}).first, 8U);
+  }
+}
+
+// Polarity (607Eh) gives the drive other coordinates: what the axis knew of its zero is over.
+TEST(SettingsStep, LosesTheZeroWithWhatItWritesOfCoordinates) {
+  DriveProfile profile = expecting(0, DataType::uint8);
+  profile.objects.push_back(test::object("polarity", 0x607E, DataType::uint8));
+  profile.checks[0].objects = {"polarity"};
+  profile.checks[0].write = SettingCheck::Write::always;
+  AxisConfig config = testConfig(profile);
+  config.homing = HomingOptions();
+  config.homing->method = 17;
+  Bench bench(config);
+  ASSERT_TRUE(bench.boot());
+  bench.drive.dictionary[{0x607E, 0}] = {0, 1};
+  ASSERT_TRUE(bench.enable());
+  ASSERT_TRUE(bench.perform(ProcedureKind::home).success);
+  ASSERT_TRUE(bench.axis.state().homed);
+  ASSERT_TRUE(bench.perform(ProcedureKind::disable).success);
+  ASSERT_TRUE(bench.enable());
+  EXPECT_TRUE(bench.axis.state().homed) << "nothing differed";
+  ASSERT_TRUE(bench.perform(ProcedureKind::disable).success);
+  bench.drive.dictionary[{0x607E, 0}] = {128, 1};
+  const Time begun = bench.now;
+  ASSERT_TRUE(bench.enable());
+  EXPECT_GE(bench.now - begun, 250ms) << "a drive may confirm before it counts anew";
+  EXPECT_EQ(bench.drive.dictionary.at({0x607E, 0}).first, 0U);
+  EXPECT_FALSE(bench.axis.state().homed);
+}
+
+TEST(SettingsStep, RefusesWhereTheDriveKeepsItsOwn) {
+  DriveProfile profile = expecting(8);
+  profile.checks[0].write = SettingCheck::Write::always;
+  Bench bench(testConfig(profile));
+  bench.drive.dictionary[{0x2002, 0}] = {1, 2};
+  bench.drive.deaf_to.insert({0x2002, 0});
+  ASSERT_TRUE(bench.boot());
+  EXPECT_THAT(bench.perform(ProcedureKind::enable).message,
+              HasSubstr("(the drive was told so just now, and keeps its own)"));
+  EXPECT_NE(bench.drive.state, FakeDrive::S::enabled);
+}
+
+TEST(SettingsStep, WantsThePowerToBeOffWhereWhatItWroteCountsThenOnly) {
+  DriveProfile profile = expecting(8);
+  profile.checks[0].write = SettingCheck::Write::always;
+  profile.checks[0].power_cycle = true;
+  Bench bench(testConfig(profile));
+  bench.drive.dictionary[{0x2002, 0}] = {1, 2};
+  ASSERT_TRUE(bench.boot());
+  const std::string told =
+      "shoulder (node 3): is not enabled: source (2002:00) was set to 8, which counts once its "
+      "power was off; switch it off and on";
+  EXPECT_EQ(bench.perform(ProcedureKind::enable).message, told);
+  EXPECT_EQ(bench.perform(ProcedureKind::enable).message, told) << "though it reads 8 by now";
+  EXPECT_NE(bench.drive.state, FakeDrive::S::enabled);
+}
+
+TEST(SettingsStep, ComparesBeforeASearchWhatConcernsItsMethod) {
+  DriveProfile profile = expecting(36);
+  profile.checks[0].before = SettingCheck::Before::homing;
+  profile.checks[0].methods = {17};
+  AxisConfig config = testConfig(profile);
+  config.homing = HomingOptions();
+  config.homing->method = 17;
+  Bench bench(config);
+  bench.drive.dictionary[{0x2002, 0}] = {1, 2};
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable()) << "it concerns homing alone";
+  EXPECT_THAT(bench.perform(ProcedureKind::home).message,
+              HasSubstr("does not search its home: source (2002:00) is 1 instead of 36"));
+  EXPECT_EQ(bench.drive.homings, 0);
+  bench.drive.dictionary[{0x2002, 0}] = {36, 2};
+  EXPECT_TRUE(bench.perform(ProcedureKind::home).success);
+  EXPECT_EQ(bench.drive.homings, 1);
 }
 
 TEST(SettingsStep, ComparesTheCountsOfATurn) {

@@ -26,8 +26,12 @@ objects:
   brake: {object: "2000:04", type: uint16, quantity: time}
   label: {object: "2000:05", type: visible_string}
   blind: {object: "2000:06", type: uint16, access: wo}
+  told: {object: "2000:07", type: uint16, access: ro}
+  polarity: {object: "607E:00", type: uint8}
 modes:
   csp: {value: 8, control: position, cyclic: true, target: target_position}
+  homing: {value: 6, control: homing, status_bits: {homing_attained: 12}}
+homing: {kind: drive, methods: {17: lower limit switch}}
 )";
 
 WholeProfile settingsWith(const std::string& text, Problems& problems) {
@@ -37,18 +41,42 @@ WholeProfile settingsWith(const std::string& text, Problems& problems) {
 TEST(ProfileSettings, AreAsWritten) {
   Problems problems;
   const WholeProfile profile = settingsWith(
-      "expected: [{object: source, raw: 8, modes: [csp], text: it is off, remedy: turn it on}]\n"
+      "checks: [{object: source, is: 8, modes: [csp], text: it is off, remedy: turn it on,\n"
+      "  write: asked, power_cycle: true, if_given: limits.lower, texts: {1: lost, 0x02: found},\n"
+      "  unless: {object: gear, not: [5, 6]}},\n"
+      " {any_of: [source, gear], above: 3, before: homing, methods: [17], else: warn,\n"
+      "  text: a, remedy: b}]\n"
       "counts_rule: {times: [resolution], over: [gear]}\n"
       "timing: {brake_release: {object: brake, at_most: 0.5}}\n"
       "sync: {period_min: 0.001, period_max: 0.02}",
       problems);
   ASSERT_TRUE(problems.empty()) << problems.text();
-  ASSERT_EQ(profile.expected.size(), 1U);
-  EXPECT_EQ(profile.expected[0].object, "source");
-  EXPECT_EQ(profile.expected[0].raw, 8);
-  EXPECT_THAT(profile.expected[0].modes, ElementsAre("cyclic_position"));
-  EXPECT_EQ(profile.expected[0].text, "it is off");
-  EXPECT_EQ(profile.expected[0].remedy, "turn it on");
+  ASSERT_EQ(profile.checks.size(), 2U);
+  const drive::SettingCheck& check = profile.checks[0];
+  EXPECT_THAT(check.objects, ElementsAre("source"));
+  EXPECT_EQ(check.condition.kind, drive::Condition::Kind::is);
+  EXPECT_THAT(check.condition.numbers, ElementsAre(8));
+  EXPECT_THAT(check.modes, ElementsAre("cyclic_position"));
+  EXPECT_EQ(check.text, "it is off");
+  EXPECT_EQ(check.remedy, "turn it on");
+  EXPECT_EQ(check.write, drive::SettingCheck::Write::asked);
+  EXPECT_TRUE(check.power_cycle);
+  EXPECT_FALSE(check.only_warns);
+  EXPECT_EQ(check.before, drive::SettingCheck::Before::enabling);
+  EXPECT_EQ(check.if_given, "limits.lower");
+  EXPECT_EQ(check.meaning(1), "lost");
+  EXPECT_EQ(check.meaning(2), "found");
+  EXPECT_EQ(check.meaning(3), "it is off");
+  EXPECT_EQ(check.unless, "gear");
+  EXPECT_EQ(check.unless_is.kind, drive::Condition::Kind::is_not);
+  EXPECT_THAT(check.unless_is.numbers, ElementsAre(5, 6));
+  const drive::SettingCheck& second = profile.checks[1];
+  EXPECT_THAT(second.objects, ElementsAre("source", "gear"));
+  EXPECT_EQ(second.condition.kind, drive::Condition::Kind::above);
+  EXPECT_EQ(second.before, drive::SettingCheck::Before::homing);
+  EXPECT_THAT(second.methods, ElementsAre(17));
+  EXPECT_TRUE(second.only_warns);
+  EXPECT_EQ(second.write, drive::SettingCheck::Write::never);
   EXPECT_THAT(profile.counts_rule.times, ElementsAre("resolution"));
   EXPECT_THAT(profile.counts_rule.over, ElementsAre("gear"));
   EXPECT_EQ(profile.sync_period_min, std::chrono::milliseconds(1));
@@ -59,18 +87,40 @@ TEST(ProfileSettings, AreAsWritten) {
 
 TEST(ProfileSettings, AreRefusedWhereTheyCanMeanNothing) {
   const std::pair<const char*, const char*> mistakes[] = {
-      {"expected: [{object: sorce, raw: 8, text: a, remedy: b}]",
-       "expected[0]/object: the profile has no object `sorce`, did you mean `source`?"},
-      {"expected: [{object: label, raw: 8, text: a, remedy: b}]",
-       "expected[0]/object: `label` is no whole number that the drive lets be read"},
-      {"expected: [{object: blind, raw: 8, text: a, remedy: b}]",
-       "expected[0]/object: `blind` is no whole number that the drive lets be read"},
-      {"expected: [{object: source, raw: 256, text: a, remedy: b}]", "expected[0]/raw"},
-      {"expected: [{object: source, raw: 8, remedy: b}]", "expected[0]: `text` is missing"},
-      {"expected: [{object: source, raw: 8, text: a}]", "expected[0]: `remedy` is missing"},
-      {"expected: [{object: source, text: a, remedy: b}]", "expected[0]: `raw` is missing"},
-      {"expected: [{object: source, raw: 8, modes: [pp], text: a, remedy: b}]",
-       "expected[0]/modes[0]"},
+      {"checks: [{object: sorce, is: 8, text: a, remedy: b}]",
+       "checks[0]/object: the profile has no object `sorce`, did you mean `source`?"},
+      {"checks: [{object: label, is: 8, text: a, remedy: b}]",
+       "checks[0]/object: `label` is no whole number that the drive lets be read"},
+      {"checks: [{object: blind, is: 8, text: a, remedy: b}]",
+       "checks[0]/object: `blind` is no whole number that the drive lets be read"},
+      {"checks: [{object: source, is: 256, text: a, remedy: b}]", "checks[0]/is"},
+      {"checks: [{object: source, is: [1, 256], text: a, remedy: b}]", "checks[0]/is[1]"},
+      {"checks: [{object: source, is: [], text: a, remedy: b}]",
+       "checks[0]/is: expected at least one number"},
+      {"checks: [{object: source, above: [1], text: a, remedy: b}]",
+       "checks[0]/above: expected one number"},
+      {"checks: [{object: source, is: 8, remedy: b}]", "checks[0]: `text` is missing"},
+      {"checks: [{object: source, is: 8, text: a}]", "checks[0]: `remedy` is missing"},
+      {"checks: [{object: source, text: a, remedy: b}]",
+       "checks[0]: needs one of `is`, `not`, `above`, `below`"},
+      {"checks: [{object: source, is: 1, not: 2, text: a, remedy: b}]",
+       "checks[0]: needs one of `is`, `not`, `above`, `below`"},
+      {"checks: [{is: 1, text: a, remedy: b}]", "checks[0]: needs `object`"},
+      {"checks: [{object: source, any_of: [gear], is: 1, text: a, remedy: b}]",
+       "checks[0]: needs `object`"},
+      {"checks: [{object: source, is: 8, modes: [pp], text: a, remedy: b}]", "checks[0]/modes[0]"},
+      {"checks: [{object: source, is: 8, methods: [18], text: a, remedy: b}]",
+       "checks[0]/methods[0]: the profile has no homing method 18"},
+      {"checks: [{object: source, above: 8, write: asked, text: a, remedy: b}]",
+       "checks[0]/write: what is written must be given by `is`, of one `object`"},
+      {"checks: [{object: told, is: 8, write: always, text: a, remedy: b}]",
+       "checks[0]/write: `told` cannot be written"},
+      {"checks: [{object: source, is: 8, write: asked, before: homing, text: a, remedy: b}]",
+       "checks[0]/write: what is compared before homing is not written"},
+      {"checks: [{object: source, is: 8, texts: {one: x}, text: a, remedy: b}]",
+       "checks[0]/texts/one: `one` is no whole number"},
+      {"checks: [{object: source, is: 8, unless: {object: gear}, text: a, remedy: b}]",
+       "checks[0]/unless: needs one of"},
       {"counts_rule: {over: [gear]}", "counts_rule: `times` is missing"},
       {"counts_rule: {times: [label]}", "counts_rule/times[0]: `label` is no whole number"},
       {"timing: {brake_release: {object: gear, at_most: 1}}",

@@ -19,6 +19,11 @@ inline void PrintTo(const FamilyMode& tested, std::ostream* out) {
   *out << tested.family << " in " << tested.mode;
 }
 
+/// What a family wants to be told before it is enabled the first time, as options of the axis.
+inline std::string panelSteps(const FamilyMode& tested) {
+  return std::string(tested.family) == "megmeet_dm5" ? ", adjust: [control_mode]" : "";
+}
+
 /// A joint behind a gear of 50 with a motor of 1.27 N m. @param more options of the axis, as
 /// ", key: value"
 inline std::string familyJoint(const FamilyMode& tested, const std::string& more = {}) {
@@ -31,7 +36,7 @@ inline std::string familyJoint(const FamilyMode& tested, const std::string& more
          "],\n"
          "    limits: {lower: -2.5, upper: 2.5, velocity: 0.8, acceleration: 4.0, jerk: 40.0,\n"
          "             effort: 60.0}" +
-         more + "}\n";
+         panelSteps(tested) + more + "}\n";
 }
 
 }  // namespace cia402

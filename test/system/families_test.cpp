@@ -99,6 +99,8 @@ INSTANTIATE_TEST_SUITE_P(
                     FamilyMode{kDm5, "8388608", "pt"}, FamilyMode{kDm5, "8388608", "cst"}),
     [](const auto& tested) { return std::string(tested.param.family) + "_" + tested.param.mode; });
 
+constexpr char kReverseLimitAtDi1[] = ", write: [{object: di1_function, raw: 36}]";  // P03.00
+
 /// A family with what one of its faults is called, in the simulation and in words.
 struct FamilyFault {
   FamilyMode tested;
@@ -123,10 +125,13 @@ TEST_P(FamilyWith, AFaultSaysSoInWordsAndIsCleared) {
 }
 
 TEST_P(FamilyWith, ANegativeLimitSwitchIsFoundAsHome) {
+  const FamilyMode& tested = GetParam().tested;
+  const bool by_function = tested.family == std::string(kDm5);
   Scene scene(
-      loadText(familyJoint(GetParam().tested,
+      loadText(familyJoint(tested,
                            ", homing: {method: 17, search_velocity: 0.3, zero_velocity: 0.05,"
-                           " acceleration: 2.0}, simulation: {lower_limit_switch: -0.4}")));
+                           " acceleration: 2.0}, simulation: {lower_limit_switch: -0.4}" +
+                               std::string(by_function ? kReverseLimitAtDi1 : ""))));
   ASSERT_TRUE(scene.boot(20s)) << scene.told();
   const bus::Answer homed = scene.procedure(ProcedureKind::home);
   ASSERT_TRUE(homed.success) << homed.message;

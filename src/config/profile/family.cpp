@@ -240,7 +240,7 @@ void readDrive(yaml::Section& section, yaml::Section& timing, DriveProfile& prof
   if (const auto writes = section.get("before_enable")) {
     profile.before_enable = readWrites(*writes, profile, WriteList::running);
   }
-  if (const auto list = section.get("expected")) readExpected(*list, profile);
+  if (const auto list = section.get("checks")) readChecks(*list, profile);
   if (const auto rule = section.get("counts_rule")) readCountsRule(*rule, profile);
   if (const auto names = section.get("default_modes")) {
     profile.default_modes = readModeNames(*names, profile);

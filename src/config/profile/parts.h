@@ -38,8 +38,11 @@ void readCoordinates(const yaml::Value& value, DriveProfile& profile);
 void readModes(const yaml::Value& value, DriveProfile& profile);
 void readHoming(const yaml::Value& value, DriveProfile& profile);
 void readErrors(const yaml::Value& value, DriveProfile& profile);
-/// `expected`: what the drive must be set to. @pre objects and modes were read
-void readExpected(const yaml::Value& list, DriveProfile& profile);
+/// `checks`: what the drive must be set to, or say. @pre objects, modes and homing were read
+void readChecks(const yaml::Value& list, DriveProfile& profile);
+/// The name of an object of the profile that holds a whole number and can be read; else a problem
+/// and nullptr. @pre objects were read
+const ObjectSpec* readSetting(const yaml::Value& value, const DriveProfile& profile);
 /// `counts_rule`. @pre objects were read
 void readCountsRule(const yaml::Value& value, DriveProfile& profile);
 /// `brake_release` of `timing`: a number, or an object that holds it. @pre objects were read
@@ -72,6 +75,9 @@ enum class Sharing : std::uint8_t { refused, allowed };
 std::vector<canopen::PdoLayout> readPdos(const yaml::Value& value, const DriveProfile& profile,
                                          const canopen::DeviceProfile& device,
                                          Sharing sharing = Sharing::refused);
+
+/// The words of `from` and `if_given` that name values of the axis' configuration.
+const std::vector<std::string>& configurationSources();
 
 /// Reads a list of sub-indices of 1010h or 1011h into `subindices`, which keeps what it has if the
 /// key is missing or wrong.

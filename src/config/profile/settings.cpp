@@ -4,9 +4,6 @@
 #include "drive/profile/object_value.h"
 
 namespace cia402::config {
-namespace {
-
-/// The name of an object of the profile that holds a whole number and can be read; else a problem.
 const ObjectSpec* readSetting(const yaml::Value& value, const DriveProfile& profile) {
   const auto text = value.text();
   if (!text) return nullptr;
@@ -23,6 +20,8 @@ const ObjectSpec* readSetting(const yaml::Value& value, const DriveProfile& prof
   return nullptr;
 }
 
+namespace {
+
 std::vector<std::string> readSettings(const yaml::Value& list, const DriveProfile& profile) {
   std::vector<std::string> names;
   for (const yaml::Value& entry : list.list()) {
@@ -32,24 +31,6 @@ std::vector<std::string> readSettings(const yaml::Value& list, const DriveProfil
 }
 
 }  // namespace
-
-void readExpected(const yaml::Value& list, DriveProfile& profile) {
-  for (const yaml::Value& entry : list.list()) {
-    yaml::Section section(entry);
-    drive::Expectation expected;
-    const auto value = section.require("object", "a setting of the drive, by name");
-    const ObjectSpec* object = value ? readSetting(*value, profile) : nullptr;
-    if (object != nullptr) expected.object = object->name;
-    if (section.require("raw", "the number that it must hold") && object != nullptr) {
-      section.readInteger("raw", expected.raw, lowestOf(object->type), highestOf(object->type));
-    }
-    if (section.require("text", "what another number means")) section.read("text", expected.text);
-    if (section.require("remedy", "what to do then")) section.read("remedy", expected.remedy);
-    if (const auto modes = section.get("modes")) expected.modes = readModeNames(*modes, profile);
-    section.finish();
-    if (object != nullptr) profile.expected.push_back(expected);
-  }
-}
 
 void readCountsRule(const yaml::Value& value, DriveProfile& profile) {
   yaml::Section section(value);

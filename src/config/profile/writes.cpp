@@ -6,8 +6,6 @@
 #include "drive/profile/object_value.h"
 
 namespace cia402::config {
-namespace {
-
 const std::vector<std::string>& configurationSources() {
   static const std::vector<std::string> kSources = {
       "limits.lower",  "limits.upper",           "limits.velocity",      "limits.acceleration",
@@ -17,6 +15,8 @@ const std::vector<std::string>& configurationSources() {
   };
   return kSources;
 }
+
+namespace {
 
 // The object by name or index; its type from `type:` where the profile does not name it.
 const ObjectSpec* readTarget(yaml::Section& section, const DriveProfile& profile,

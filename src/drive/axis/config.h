@@ -56,6 +56,7 @@ struct AxisConfig {
   std::vector<std::string> modes;  ///< that can be served: the one at start and those to switch to
   std::vector<std::string> outputs;  ///< objects that travel to the drive in every cycle, by name
   std::vector<std::string> lacks;    ///< objects of the profile that this drive does not have
+  std::vector<std::string> adjust;   ///< settings that may be written where they differ, by name
   std::vector<NamedWrite> writes;    ///< the user's extra start-up writes
   std::vector<std::uint8_t> save, restore;  ///< sub-indices of 1010h, 1011h; empty: the profile's
   const std::vector<std::uint8_t>& saved() const {

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "drive/axis/feedback.h"
 
@@ -27,9 +29,13 @@ class Control {
   /// Somebody wants it to move, or to be ready for that.
   bool commanded() const { return goal_ != Goal::disabled && goal_ != Goal::quick_stop; }
 
-  /// Parameters were saved, and the drive wants to be switched off and on before it is enabled.
-  void wantPowerCycle() { power_cycle_after_ = axis_.device.bootUps(); }
+  /// The drive is to be switched off and on before it is enabled. @param why in words
+  void wantPowerCycle(std::string why) {
+    power_cycle_after_ = axis_.device.bootUps();
+    power_cycle_why_ = std::move(why);
+  }
   bool wantsPowerCycle() const { return power_cycle_after_ == axis_.device.bootUps(); }
+  const std::string& powerCycleReason() const { return power_cycle_why_; }
 
   /// The drive was seen in operation enabled, as it was to be; until it leaves that.
   bool inOperation() const { return in_operation_; }
@@ -91,7 +97,8 @@ class Control {
   State commanded_in_ = State::unknown;
   Goal commanded_for_ = Goal::disabled;
   std::uint16_t word_ = 0, base_ = 0;
-  std::optional<std::uint32_t> power_cycle_after_;  ///< boot-ups seen when it was asked for
+  std::optional<std::uint32_t> power_cycle_after_;  ///< boot-ups seen when it was asked for:
+  std::string power_cycle_why_;
 };
 
 }  // namespace cia402::drive

@@ -44,8 +44,8 @@ void Neighbours::measureAnew() {
   for (AxisCore* axis : all_) axis->measureAnew();
 }
 
-void Neighbours::wantPowerCycle() {
-  for (AxisCore* axis : all_) axis->control().wantPowerCycle();
+void Neighbours::wantPowerCycle(const std::string& why) {
+  for (AxisCore* axis : all_) axis->control().wantPowerCycle(why);
 }
 
 }  // namespace cia402::drive

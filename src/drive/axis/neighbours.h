@@ -26,7 +26,7 @@ class Neighbours {
   void loseZero();
   void measureAnew();
   /// Control::wantPowerCycle() for all.
-  void wantPowerCycle();
+  void wantPowerCycle(const std::string& why);
 
  private:
   std::vector<AxisCore*> all_;

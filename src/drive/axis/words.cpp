@@ -88,9 +88,8 @@ std::string motionRefusal(const AxisCore& axis, bool busy) {
 
 std::string enablingRefusal(const AxisCore& axis) {
   if (!axis.control().wantsPowerCycle()) return {};
-  return axis.who() +
-         ": is not enabled: its parameters were saved, after which the drive takes no enabling "
-         "(power_cycle_after_save of its profile); switch it off and on";
+  return axis.who() + ": is not enabled: " + axis.control().powerCycleReason() +
+         "; switch it off and on";
 }
 
 std::string calibrationRefusal(const AxisCore& axis) {

@@ -24,6 +24,7 @@ DriveHoming::DriveHoming(AxisCore& axis, const ModeChannel& homing, const Homing
       before_(axis.mode().spec().kind == ControlKind::homing
                   ? axis.objects().channel(axis.config().mode)
                   : &axis.mode().working()),
+      settings_(axis.profile(), SettingCheck::Before::homing),
       writes_(axis.profile().homing.writes),
       mode_(homing, axis.profile()),
       enabling_(homing, axis.profile()),
@@ -37,9 +38,11 @@ void DriveHoming::enter(Phase phase, const Context& context) {
 
 Outcome DriveHoming::advance(const Context& context) {
   switch (phase_) {
-    case Phase::begin:
-      begin(context);
-      return Outcome::running();
+    case Phase::begin: {
+      const Outcome outcome = settings_.advance(context);
+      if (outcome.isDone()) begin(context);
+      return outcome.isFailed() ? outcome : Outcome::running();
+    }
     case Phase::writing: {
       const Outcome outcome = writes_.advance(context);
       if (!outcome.isDone()) return outcome;

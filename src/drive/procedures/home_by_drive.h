@@ -5,6 +5,7 @@
 
 #include "drive/procedures/homing_status.h"
 #include "drive/procedures/procedure.h"
+#include "drive/procedures/steps/settings.h"
 #include "drive/procedures/steps/switch.h"
 
 namespace cia402::drive {
@@ -26,7 +27,7 @@ class DriveHoming : public Procedure {
 
  private:
   enum class Phase {
-    begin,
+    begin,  ///< what must hold before (SettingsStep)
     writing,
     entering,   ///< homing mode, enabled
     clearing,   ///< bits of an earlier homing
@@ -63,6 +64,7 @@ class DriveHoming : public Procedure {
 
   const ModeChannel* homing_;
   const ModeChannel* before_;
+  SettingsStep settings_;
   WriteStep writes_;
   SwitchStep mode_;
   EnableStep enabling_;

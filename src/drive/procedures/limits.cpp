@@ -60,9 +60,13 @@ struct Steps {
   }
   Duration settings() const {  // SettingsStep
     const CountsRule& counts = profile.counts_rule;
-    const std::size_t objects = profile.expected.size() + counts.times.size() + counts.over.size() +
-                                (timing.brake_object.empty() ? 0 : 1);
-    return static_cast<int>(objects) * transfer();
+    std::size_t transfers =
+        counts.times.size() + counts.over.size() + (timing.brake_object.empty() ? 0 : 1);
+    for (const SettingCheck& check : profile.checks) {
+      transfers += check.objects.size() + (check.unless.empty() ? 0 : 1);
+      if (check.write != SettingCheck::Write::never) transfers += 2;  // it is read again
+    }
+    return static_cast<int>(transfers) * transfer();
   }
   Duration change() const {  // SwitchStep
     const ModeChange& rules = profile.mode_change;
@@ -84,7 +88,7 @@ struct Steps {
     const bool by_drive = axis.homing && profile.homing.methods.count(axis.homing->method) != 0 &&
                           axis.homing->method;
     if (!by_drive) return declare();
-    return writes(profile.homing.writes) + limits() + enable() + timing.state_change +
+    return settings() + writes(profile.homing.writes) + limits() + enable() + timing.state_change +
            axis.homing->timeout + transfer() + timing.state_change + limits() + change();
   }
   Duration store(const std::vector<std::uint8_t>& subindices) const {

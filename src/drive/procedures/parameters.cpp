@@ -161,8 +161,11 @@ class SaveParameters : public Procedure {
                               " in the drive's memory after " +
                               seconds(context.now - context.status.started);
     if (!axis.profile().parameters.power_cycle_after_save) return Outcome::done(saved);
-    axis.control().wantPowerCycle();
-    axis.basis().neighbours.wantPowerCycle();
+    const std::string why =
+        "its parameters were saved, after which the drive takes no enabling "
+        "(power_cycle_after_save of its profile)";
+    axis.control().wantPowerCycle(why);
+    axis.basis().neighbours.wantPowerCycle(why);
     return Outcome::remarked(saved + "; switch the drive off and on before it is enabled again");
   }
 

@@ -48,13 +48,6 @@ bool asksForHoming(const std::string& from, const AxisConfig& axis) {
   return from == "homing.method" || homing(from, *axis.homing).has_value();
 }
 
-bool isGiven(const std::string& name, const AxisConfig& axis) {
-  if (name.empty() || limit(name, axis.limits, false)) return true;
-  if (name == kHold) return axis.quick_stop_holds;
-  return name == "homing.method" ? axis.homing && axis.homing->method
-                                 : axis.homing && homing(name, *axis.homing).has_value();
-}
-
 Source configured(const NamedWrite& write, const AxisConfig& axis, bool reversed) {
   Source source;
   const std::string& from = write.from;
@@ -156,6 +149,13 @@ Result<void> takeRaw(const NamedWrite& write, std::int64_t number, const ObjectS
 }
 
 }  // namespace
+
+bool isGiven(const std::string& name, const AxisConfig& axis) {
+  if (name.empty() || limit(name, axis.limits, false)) return true;
+  if (name == kHold) return axis.quick_stop_holds;
+  return name == "homing.method" ? axis.homing && axis.homing->method
+                                 : axis.homing && homing(name, *axis.homing).has_value();
+}
 
 std::optional<InterpolationPeriod> interpolationPeriod(Duration period) {
   std::int64_t unit_ns = 1000000000;

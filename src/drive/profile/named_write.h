@@ -27,6 +27,9 @@ struct ResolvedWrite {
 /// unknown or the value does not fit it.
 Result<std::optional<ResolvedWrite>> resolveWrite(const NamedWrite& write, const AxisConfig& axis);
 
+/// Does the configuration of the axis have the value that NamedWrite::from calls so? Empty: yes.
+bool isGiven(const std::string& name, const AxisConfig& axis);
+
 /// A write with NamedWrite::when_homed, worked out for one axis.
 struct ResolvedLimit {
   ResolvedWrite write;

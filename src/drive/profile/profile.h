@@ -11,6 +11,7 @@
 
 #include "cia402_driver/common/time.h"
 #include "drive/profile/object_range.h"
+#include "drive/profile/setting_check.h"
 #include "fieldbus/object.h"
 
 namespace cia402::drive {
@@ -249,14 +250,6 @@ struct ErrorText {
   Duration wait{0};  ///< since the fault, before which the drive takes no reset
 };
 
-/// What a setting of the drive must be before it is enabled; it is read and compared, not written.
-struct Expectation {
-  std::string object;              ///< by its name in the profile, a whole number
-  std::int64_t raw = 0;            ///< as the object holds it
-  std::vector<std::string> modes;  ///< it counts where the axis uses one of these; empty: always
-  std::string text, remedy;        ///< what another number means, and what to do about it
-};
-
 /// Position counts of a motor turn by the drive's own settings: the product of some objects over
 /// that of others, by their names. Empty: the drive has no such objects.
 struct CountsRule {
@@ -293,8 +286,8 @@ struct DriveProfile {
   std::vector<int> quick_stop_holds;       ///< values of 605Ah after which quick stop stays active
   std::vector<NamedWrite> startup;         ///< at every boot
   std::vector<NamedWrite> before_enable;   ///< each time before enabling
-  std::vector<Expectation> expected;       ///< compared each time before enabling
-  CountsRule counts_rule;                  ///< the same, with counts_per_turn of the axis
+  std::vector<SettingCheck> checks;        ///< what the drive must be set to, or say
+  CountsRule counts_rule;                  ///< compared with counts_per_turn before enabling
   std::vector<std::string> default_modes;  ///< an axis can switch to; empty: all
   std::vector<std::string> feedback;  ///< in the cycle where there is room, most important first
   std::vector<std::string> feedback_if_room;  ///< only with what travels for something else

@@ -16,7 +16,7 @@ class EnableStep {
  public:
   EnableStep(const ModeChannel& mode, const DriveProfile& profile)
       : channel_(&mode),
-        settings_(profile),
+        settings_(profile, SettingCheck::Before::enabling),
         writes_(profile.before_enable),
         mode_(mode),
         shown_(mode) {}

@@ -6,109 +6,231 @@
 #include <utility>
 
 #include "common/text.h"
+#include "drive/profile/named_write.h"
 #include "drive/sentence.h"
 
 namespace cia402::drive {
 namespace {
 
+constexpr Duration kSettling{std::chrono::milliseconds(250)};  // of new coordinates in the drive
 constexpr double kSameCounts = 1e-6;  // relative: what a reduced fraction of 32 bits may be off
 
 std::string named(const ObjectSpec& object) {
   return object.name + " (" + fieldbus::toString(object.id) + ")";
 }
 
-std::int64_t numberOf(const ObjectSpec& object, const fieldbus::Bytes& bytes) {
+std::int64_t signedNumber(const ObjectSpec& object, const fieldbus::Bytes& bytes) {
   const std::uint64_t raw = fieldbus::toUnsigned(bytes);
   const auto bits = static_cast<unsigned>(8 * std::min<std::size_t>(bytes.size(), 8));
   return fieldbus::isSigned(object.type) ? fieldbus::toSigned(raw, bits)
                                          : static_cast<std::int64_t>(raw);
 }
 
-/// Does the expectation count for the modes that the axis uses?
-bool concerns(const Expectation& expectation, const AxisConfig& axis) {
-  const auto& modes = expectation.modes;
-  return modes.empty() || std::any_of(modes.begin(), modes.end(), [&](const std::string& mode) {
-           return std::find(axis.modes.begin(), axis.modes.end(), mode) != axis.modes.end();
-         });
+template <typename Value>
+bool contains(const std::vector<Value>& values, const Value& value) {
+  return std::find(values.begin(), values.end(), value) != values.end();
+}
+
+/// Does the check count for what the axis uses?
+bool concerns(const SettingCheck& check, const AxisConfig& axis) {
+  const bool modes = check.modes.empty() ||
+                     std::any_of(check.modes.begin(), check.modes.end(),
+                                 [&](const auto& mode) { return contains(axis.modes, mode); });
+  const bool methods = check.methods.empty() || (axis.homing && axis.homing->method &&
+                                                 contains(check.methods, *axis.homing->method));
+  return modes && methods && isGiven(check.if_given, axis);
 }
 
 }  // namespace
 
+/// Where it stands in settings_; their number if it does not.
+std::size_t SettingsStep::indexOf(const std::string& object) const {
+  const auto found = std::find_if(settings_.begin(), settings_.end(), [&](const Setting& setting) {
+    return setting.object->name == object;
+  });
+  return static_cast<std::size_t>(found - settings_.begin());
+}
+
+std::optional<std::int64_t> SettingsStep::numberOf(const std::string& object) const {
+  const std::size_t index = indexOf(object);
+  return index < settings_.size() ? settings_[index].number : std::nullopt;
+}
+
 void SettingsStep::add(const AxisConfig& axis, const std::string& object) {
   const ObjectSpec* spec = profile_->find(object);
   if (spec == nullptr || saidToLack(axis, object)) return;
-  const auto known = std::find_if(settings_.begin(), settings_.end(),
-                                  [&](const Setting& s) { return s.object == spec; });
-  if (known == settings_.end()) settings_.push_back({spec, {}});
+  if (indexOf(spec->name) == settings_.size()) settings_.push_back({spec, {}});
 }
 
 void SettingsStep::plan(const AxisConfig& axis) {
   planned_ = true;
-  for (const Expectation& expectation : profile_->expected) {
-    if (concerns(expectation, axis)) add(axis, expectation.object);
+  for (const SettingCheck& check : profile_->checks) {
+    if (check.before != before_ || !concerns(check, axis)) continue;
+    checks_.push_back(&check);
+    for (const std::string& object : check.objects) add(axis, object);
+    if (!check.unless.empty()) add(axis, check.unless);
   }
-  for (const std::string& object : profile_->counts_rule.times) add(axis, object);
-  for (const std::string& object : profile_->counts_rule.over) add(axis, object);
-  if (!profile_->timing.brake_object.empty()) add(axis, profile_->timing.brake_object);
+  if (enabling()) {
+    for (const std::string& object : profile_->counts_rule.times) add(axis, object);
+    for (const std::string& object : profile_->counts_rule.over) add(axis, object);
+    if (!profile_->timing.brake_object.empty()) add(axis, profile_->timing.brake_object);
+  }
+  for (std::size_t i = 0; i < settings_.size(); ++i) reads_.push_back(i);
 }
 
 Outcome SettingsStep::advance(const Context& context) {
-  AxisCore& axis = context.axis;
   if (!planned_) {
-    plan(axis.config());
+    plan(context.axis.config());
     if (!settings_.empty()) context.show("comparing settings", "the drive to tell them");
   }
-  std::string problem;
-  while (next_ < settings_.size()) {
-    if (!ticket_) {
-      const ObjectSpec& object = *settings_[next_].object;
-      ticket_ = axis.device().objects().upload(object.id, object.name);
-    }
-    if (!ticket_->done()) return Outcome::running();
-    if (!take(context, problem)) return Outcome::failed(problem);
+  const Outcome transferred = transfer(context);
+  if (!transferred.isDone()) return transferred;
+  if (writes_.empty() && planWrites(context.axis)) {
+    context.show("adjusting settings", "the drive to take them");
+    return transfer(context);
   }
-  for (const std::string& difference :
-       {compare(axis.config()), compareCounts(axis.config()), learnBrake(axis)}) {
-    if (!difference.empty()) append(problem, difference);
-  }
-  if (problem.empty()) return Outcome::done();
-  return Outcome::failed(axis.who() + ": is not enabled: " + problem);
+  return judge(context);
 }
 
-/// The brake's time alone has a number to fall back on.
-bool SettingsStep::take(const Context& context, std::string& problem) {
-  Setting& setting = settings_[next_++];
-  const fieldbus::Ticket answer = std::exchange(ticket_, nullptr);
-  if (answer->ok()) {
-    setting.number = numberOf(*setting.object, answer->data());
-  } else if (setting.object->name != profile_->timing.brake_object) {
-    problem = context.axis.who() +
-              ": is not enabled, as it is not known how it is set: " + answer->message() +
-              "; `lacks: [" + setting.object->name + "]` of axes/" + context.axis.config().name +
-              " says that the drive does not have the object";
-    return false;
+/// Writes, then reads, what is planned.
+Outcome SettingsStep::transfer(const Context& context) {
+  while (settled(context) && (ticket_ || ask(context))) {
+    if (!ticket_->done()) return Outcome::running();
+    const fieldbus::Ticket answer = std::exchange(ticket_, nullptr);
+    const std::string problem = take(context, *answer);
+    if (!problem.empty()) return Outcome::failed(problem);
   }
+  return settles_ ? Outcome::running() : Outcome::done();
+}
+
+/// @return false: nothing is left
+bool SettingsStep::ask(const Context& context) {
+  fieldbus::ObjectAccess& objects = context.axis.device().objects();
+  if (written_ < writes_.size()) {
+    const SettingCheck& check = *writes_[written_];
+    const ObjectSpec& object = *profile_->find(check.objects.front());
+    const auto number = static_cast<std::uint64_t>(check.condition.numbers.front());
+    ticket_ = objects.download(object.id, wireBytes(number, object.type), object.name);
+  } else if (read_ < reads_.size()) {
+    const ObjectSpec& object = *settings_[reads_[read_]].object;
+    ticket_ = objects.upload(object.id, object.name);
+  }
+  return ticket_ != nullptr;
+}
+
+/// @return what went wrong; the brake's time alone has a number to fall back on
+std::string SettingsStep::take(const Context& context, const fieldbus::Transfer& answer) {
+  if (answer.direction() == fieldbus::Transfer::Direction::download) {
+    ++written_;
+    if (!answer.ok()) return refusal(context) + answer.message();
+    if (profile_->coordinateMark(answer.object()) != CoordinateMark::none) losePosition(context);
+    return {};
+  }
+  Setting& setting = settings_[reads_[read_++]];
+  if (answer.ok() && !answer.data().empty()) {
+    setting.number = signedNumber(*setting.object, answer.data());
+    return {};
+  }
+  if (setting.object->name == profile_->timing.brake_object) return {};
+  const std::string why =
+      answer.ok() ? named(*setting.object) + ": the drive answers nothing" : answer.message();
+  return refusal(context) + "it is not known how the drive is set: " + why + "; `lacks: [" +
+         setting.object->name + "]` of axes/" + context.axis.config().name +
+         " says that the drive does not have the object";
+}
+
+/// What was written may have given the drive another zero, or another idea of its motor.
+void SettingsStep::losePosition(const Context& context) {
+  context.axis.loseZero();
+  context.axis.basis().neighbours.loseZero();
+  settles_ = context.now + kSettling;
+}
+
+/// What is measured counts in the new coordinates then.
+bool SettingsStep::settled(const Context& context) {
+  if (!settles_) return true;
+  if (context.now < *settles_) return false;
+  settles_.reset();
+  context.axis.measureAnew();
+  context.axis.basis().neighbours.measureAnew();
   return true;
 }
 
-std::optional<std::int64_t> SettingsStep::find(const std::string& object) const {
-  const auto found = std::find_if(settings_.begin(), settings_.end(), [&](const Setting& setting) {
-    return setting.object->name == object;
-  });
-  return found == settings_.end() ? std::nullopt : found->number;
+std::optional<SettingsStep::Difference> SettingsStep::compare(const SettingCheck& check) const {
+  const auto excuse = check.unless.empty() ? std::nullopt : numberOf(check.unless);
+  if (excuse && check.unless_is.holds(*excuse)) return {};
+  std::string told;
+  const std::string* meaning = &check.text;
+  for (const std::string& name : check.objects) {
+    const auto number = numberOf(name);
+    if (!number || check.condition.holds(*number)) return {};  // or `lacks` names it
+    append(told, named(*profile_->find(name)) + " is " + check.condition.complaint(*number),
+           " and ");
+    meaning = &check.meaning(*number);
+  }
+  return Difference{&check, told + ", " + *meaning + "; " + check.remedy};
 }
 
-std::string SettingsStep::compare(const AxisConfig& axis) const {
-  std::string problems;
-  for (const Expectation& expected : profile_->expected) {
-    if (!concerns(expected, axis)) continue;
-    const auto number = find(expected.object);
-    if (!number || *number == expected.raw) continue;
-    append(problems, named(*profile_->find(expected.object)) + " is " + std::to_string(*number) +
-                         " instead of " + std::to_string(expected.raw) + ", " + expected.text +
-                         "; " + expected.remedy);
+std::vector<SettingsStep::Difference> SettingsStep::differences() const {
+  std::vector<Difference> all;
+  for (const SettingCheck* check : checks_) {
+    if (auto difference = compare(*check)) all.push_back(std::move(*difference));
   }
-  return problems;
+  return all;
+}
+
+bool SettingsStep::mayWrite(AxisCore& axis, const SettingCheck& check) const {
+  const std::string& object = check.objects.front();
+  const bool asked =
+      check.write == SettingCheck::Write::asked && contains(axis.config().adjust, object);
+  if (!asked && check.write != SettingCheck::Write::always) return false;
+  const bool shifts = profile_->coordinateMark(profile_->find(object)->id) != CoordinateMark::none;
+  return !shifts || axis.basis().neighbours.refusal().empty();  // which might be enabled
+}
+
+/// What differs and may be written; it is read again afterwards. @return whether there is any
+bool SettingsStep::planWrites(AxisCore& axis) {
+  reads_.clear();
+  read_ = written_ = 0;
+  for (const Difference& difference : differences()) {
+    if (!mayWrite(axis, *difference.check)) continue;
+    writes_.push_back(difference.check);
+    reads_.push_back(indexOf(difference.check->objects.front()));
+  }
+  return !writes_.empty();
+}
+
+Outcome SettingsStep::judge(const Context& context) {
+  AxisCore& axis = context.axis;
+  std::string problem;
+  for (const Difference& difference : differences()) {
+    if (difference.check->only_warns) {
+      axis.notices().warnOnce(axis.who() + ": " + difference.text);
+    } else if (contains(writes_, difference.check)) {
+      append(problem, difference.text + " (the drive was told so just now, and keeps its own)");
+    } else {
+      append(problem, difference.text);
+    }
+  }
+  for (const SettingCheck* check : writes_) {
+    if (!check->power_cycle || compare(*check)) continue;
+    const std::string why = named(*profile_->find(check->objects.front())) + " was set to " +
+                            std::to_string(check->condition.numbers.front()) +
+                            ", which counts once its power was off";
+    axis.control().wantPowerCycle(why);
+    axis.basis().neighbours.wantPowerCycle(why);
+    append(problem, why + "; switch it off and on");
+  }
+  if (enabling()) {
+    for (const std::string& text : {compareCounts(axis.config()), learnBrake(axis)}) {
+      if (!text.empty()) append(problem, text);
+    }
+  }
+  return problem.empty() ? Outcome::done() : Outcome::failed(refusal(context) + problem);
+}
+
+std::string SettingsStep::refusal(const Context& context) const {
+  return context.axis.who() + (enabling() ? ": is not enabled: " : ": does not search its home: ");
 }
 
 std::string SettingsStep::compareCounts(const AxisConfig& axis) const {
@@ -117,7 +239,7 @@ std::string SettingsStep::compareCounts(const AxisConfig& axis) const {
   std::string told;
   const auto multiply = [&](const std::vector<std::string>& objects, bool divides) {
     for (const std::string& object : objects) {
-      const auto number = find(object);
+      const auto number = numberOf(object);
       if (!number) return false;
       counts *= divides ? 1.0 / static_cast<double>(*number) : static_cast<double>(*number);
       append(told, named(*profile_->find(object)) + " = " + std::to_string(*number), ", ");
@@ -134,7 +256,7 @@ std::string SettingsStep::compareCounts(const AxisConfig& axis) const {
 
 std::string SettingsStep::learnBrake(AxisCore& axis) const {
   const DriveProfile::Timing& timing = profile_->timing;
-  const auto number = find(timing.brake_object);
+  const auto number = numberOf(timing.brake_object);
   axis.control().setBrakeRelease(timing.brake_release);
   if (!number) return {};
   const ObjectSpec& object = *profile_->find(timing.brake_object);
@@ -145,7 +267,7 @@ std::string SettingsStep::learnBrake(AxisCore& axis) const {
     return named(object) + " is " + seconds(told) + ", longer than the " +
            seconds(timing.brake_release) + " that the profile allows for (brake_release)";
   }
-  axis.control().setBrakeRelease(told);
+  axis.control().setBrakeRelease(told < Duration(0) ? timing.brake_release : told);
   return {};
 }
 

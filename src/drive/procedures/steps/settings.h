@@ -10,12 +10,14 @@
 
 namespace cia402::drive {
 
-/// Reads what the drive is set to and compares it with what the profile expects and the axis
-/// counts on; a difference fails, and names object, number and remedy. Learns how long the brake
-/// takes. What `lacks` of the axis names is neither read nor compared.
+/// Reads what the drive is set to and says, and compares it with the profile's checks and with what
+/// the axis counts on; a difference fails, and names object, number and remedy, unless it is one
+/// that is only warned of, or one that is written. Before enabling it learns how long the brake
+/// takes, too. What `lacks` of the axis names is neither read nor compared.
 class SettingsStep {
  public:
-  explicit SettingsStep(const DriveProfile& profile) : profile_(&profile) {}
+  SettingsStep(const DriveProfile& profile, SettingCheck::Before before)
+      : profile_(&profile), before_(before) {}
   Outcome advance(const Context& context);
 
  private:
@@ -23,19 +25,40 @@ class SettingsStep {
     const ObjectSpec* object = nullptr;
     std::optional<std::int64_t> number;  ///< nothing: it could not be read
   };
+  struct Difference {
+    const SettingCheck* check = nullptr;
+    std::string text;  ///< with remedy
+  };
+  bool enabling() const { return before_ == SettingCheck::Before::enabling; }
   void plan(const AxisConfig& axis);
   void add(const AxisConfig& axis, const std::string& object);
-  bool take(const Context& context, std::string& problem);
-  std::optional<std::int64_t> find(const std::string& object) const;
-  std::string compare(const AxisConfig& axis) const;
+  std::size_t indexOf(const std::string& object) const;
+  std::optional<std::int64_t> numberOf(const std::string& object) const;
+
+  Outcome transfer(const Context& context);
+  bool ask(const Context& context);
+  std::string take(const Context& context, const fieldbus::Transfer& answer);
+  std::vector<Difference> differences() const;
+  std::optional<Difference> compare(const SettingCheck& check) const;
+  void losePosition(const Context& context);
+  bool settled(const Context& context);
+  bool mayWrite(AxisCore& axis, const SettingCheck& check) const;
+  bool planWrites(AxisCore& axis);
+  Outcome judge(const Context& context);
+  std::string refusal(const Context& context) const;
   std::string compareCounts(const AxisConfig& axis) const;
   std::string learnBrake(AxisCore& axis) const;
 
   const DriveProfile* profile_;
+  SettingCheck::Before before_;
   bool planned_ = false;
+  std::vector<const SettingCheck*> checks_;  ///< that count for the axis
   std::vector<Setting> settings_;
-  std::size_t next_ = 0;
+  std::vector<const SettingCheck*> writes_;  ///< whose number is written
+  std::vector<std::size_t> reads_;           ///< of settings_, what is read
+  std::size_t written_ = 0, read_ = 0;       ///< of these
   fieldbus::Ticket ticket_;
+  std::optional<Time> settles_;  ///< new coordinates, until then
 };
 
 }  // namespace cia402::drive
