@@ -43,8 +43,11 @@ class Results:
         names = self.matching(pattern)
         if not names:
             return "no test of that name has run"
-        failed = [f"{name} failed: {self._reasons[name]}" for name in names if self._reasons[name]]
-        return "; ".join(failed) or None
+        failed = [name for name in names if self._reasons[name]]
+        if not failed:
+            return None
+        more = f", as {len(failed) - 1} more" if len(failed) > 1 else ""
+        return f"{failed[0]} failed: {self._reasons[failed[0]]}{more}"
 
 
 class Checklist:

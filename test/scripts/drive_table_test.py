@@ -46,6 +46,7 @@ passed\ttest_system: Washer.Spins\tlog\t
 passed\ttest_system: Some/Washer.Homes/Method17Case3\tlog\t
 passed\troad.Test.test_road\tlog\t
 """
+FAILED = "failed\ttest_system: All/Family.Moves/washer_csp\tlog\tstuck\n"
 README = "# Families\n\nBy hand.\n\n<!-- Below this line: written by scripts/drive_table. -->\nold\n"
 FAMILY = ("| [The washer](washer.md) | [washer](../../config/drives/washer.yaml) "
           "| 2 of 3 | 1 of 2 | 1 | 1 | 1 |\n")
@@ -127,6 +128,10 @@ class DriveTable(unittest.TestCase):
         said = self.said_of("results.tsv", RESULTS, "passed\ttest_system: Washer.Spins\tlog\t",
                             "failed\ttest_system: Washer.Spins\tlog\ttoo slow")
         self.assertEqual(said, "washer.md, item 2: `Washer.Spins`: Washer.Spins failed: too slow\n")
+        said = self.said_of("results.tsv", RESULTS + FAILED, "passed\ttest_system: All",
+                            "failed\ttest_system: All")
+        self.assertEqual(said, "washer.md, item 1: `Family.Moves/washer_*`: Family.Moves/washer_csp "
+                         "failed: stuck, as 1 more\n")
 
     def test_each_run_under_a_sanitizer_must_pass_too(self):
         both = RESULTS + RESULTS.replace("\ttest", "\tunder address sanitizer: test")
