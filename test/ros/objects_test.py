@@ -66,6 +66,14 @@ class Objects(RobotTest):
         answer = self.succeed("gripper/read_object", "gripper", object="position_actual")
         self.assertAlmostEqual(answer.number, self.robot.position("gripper"), delta=1e-3)
 
+    def test_outputs_are_set_by_name_and_the_others_kept(self):
+        self.succeed("shoulder/set_digital_outputs", "shoulder|do1 on, do3 on",
+                     names=["do1", "do3"], values=[True, True])
+        self.succeed("shoulder/set_digital_outputs", names=["do1"], values=[False])
+        answer = self.succeed("shoulder/read_object", object="digital_outputs")
+        self.assertEqual(int(answer.number), 0x00040000)
+        self.refuse("shoulder/set_digital_outputs", "do99|do1, ", names=["do99"], values=[True])
+
 
 if __name__ == "__main__":
     main("objects")

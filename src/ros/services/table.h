@@ -15,6 +15,7 @@ void offerErrorHistory(Offer& offer);
 void offerSetPosition(Offer& offer);
 void offerObjects(Offer& offer);
 void offerSaveDcf(Offer& offer);
+void offerDigitalOutputs(Offer& offer);
 
 /// A row of the table: what offers it, and whether for the bus, for each axis, or for both.
 struct ServiceEntry {
@@ -32,6 +33,7 @@ inline constexpr ServiceEntry kServices[] = {
     {offerSetPosition, false, true},
     {offerObjects, false, true},
     {offerSaveDcf, false, true},
+    {offerDigitalOutputs, false, true},
 };
 // clang-format on
 
