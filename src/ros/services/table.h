@@ -16,6 +16,7 @@ void offerSetPosition(Offer& offer);
 void offerObjects(Offer& offer);
 void offerSaveDcf(Offer& offer);
 void offerDigitalOutputs(Offer& offer);
+void offerTouchProbe(Offer& offer);
 
 /// A row of the table: what offers it, and whether for the bus, for each axis, or for both.
 struct ServiceEntry {
@@ -34,6 +35,7 @@ inline constexpr ServiceEntry kServices[] = {
     {offerObjects, false, true},
     {offerSaveDcf, false, true},
     {offerDigitalOutputs, false, true},
+    {offerTouchProbe, false, true},
 };
 // clang-format on
 
