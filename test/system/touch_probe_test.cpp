@@ -140,6 +140,23 @@ TEST(TouchProbe, TakesNoEdgeOfBefore) {
   }
 }
 
+// Somebody has armed it and has had his edge: armed still, it would store no other one.
+TEST(TouchProbe, IsDisarmedBeforeItIsArmed) {
+  ReadyScene scene(genericPair());
+  ASSERT_TRUE(
+      scene.call(bus::WriteObjectCommand{"left", "touch_probe_function", "0x0011"}).success);
+  touch(scene, "left", true);
+  touch(scene, "left", false);
+  ASSERT_EQ(scene.setpoint("left", 0.5), "");
+  scene.run(2s);
+  Waiting waiting(scene, probeOf("left"));
+  EXPECT_FALSE(waiting.answered());
+  const double at = touch(scene, "left", true);
+  const TouchProbeAnswer answer = waiting.await();
+  ASSERT_TRUE(answer.success) << answer.message;
+  EXPECT_NEAR(answer.rising, at, 2 * kCount);
+}
+
 // Probe 1 is left storing, by a call that did not wait for it here.
 TEST(TouchProbe, LeavesTheOtherProbeAlone) {
   ReadyScene scene(genericPair());
@@ -206,13 +223,25 @@ TEST(TouchProbe, TellsTheEdgeThatCameWhereTheOtherDidNot) {
 }
 
 TEST(TouchProbe, TellsOfADriveThatStartsAnewMeanwhile) {
-  ReadyScene scene(genericPair());
+  Scene scene(loadText(genericPair()));
+  ASSERT_TRUE(scene.boot()) << scene.told();
   Waiting waiting(scene, probeOf("left", "rising", 20.0));
-  scene.inject("left", "power_cycle");
+  ASSERT_TRUE(scene.call(bus::NmtServiceCommand{"left", "reset_node"}).success);
   const TouchProbeAnswer answer = waiting.await();
   EXPECT_FALSE(answer.success);
-  EXPECT_THAT(answer.message, HasSubstr("left (node 1): touch probe 1: "));
+  EXPECT_EQ(answer.message,
+            "left (node 1): touch probe 1: the drive has started anew, and has forgotten it");
   EXPECT_TRUE(std::isnan(answer.rising));
+}
+
+TEST(TouchProbe, TellsOfADriveThatIsLostMeanwhile) {
+  ReadyScene scene(genericPair());
+  Waiting waiting(scene, probeOf("left", "rising", 20.0));
+  scene.inject("left", "silent");
+  const TouchProbeAnswer answer = waiting.await();
+  EXPECT_FALSE(answer.success);
+  EXPECT_THAT(answer.message, AllOf(HasSubstr("60B9:00 touch_probe_status not read"),
+                                    HasSubstr("it may still be armed")));
 }
 
 TEST(TouchProbe, TellsNoPositionOfAnotherZero) {
