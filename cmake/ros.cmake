@@ -29,8 +29,9 @@ find_package(catkin REQUIRED COMPONENTS message_generation ${cia402_ros_packages
 add_message_files(FILES
   AxisState.msg AxisStates.msg BusState.msg Emergency.msg LssIdentity.msg NodeState.msg)
 add_service_files(FILES
-  ErrorHistory.srv InjectFault.srv LssAssign.srv LssScan.srv LssSetBitTiming.srv Nmt.srv
-  ReadObject.srv SaveDcf.srv SetMode.srv SetPosition.srv WriteObject.srv)
+  ArmTouchProbe.srv ErrorHistory.srv InjectFault.srv LssAssign.srv LssScan.srv LssSetBitTiming.srv
+  Nmt.srv ReadObject.srv SaveDcf.srv SetDigitalOutputs.srv SetMode.srv SetPosition.srv
+  WriteObject.srv)
 add_action_files(FILES Home.action)
 generate_messages(DEPENDENCIES actionlib_msgs std_msgs)
 

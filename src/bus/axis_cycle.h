@@ -9,6 +9,7 @@
 #include "bus/event.h"
 #include "bus/group.h"
 #include "bus/jobs/job_list.h"
+#include "bus/jobs/object_claims.h"
 #include "bus/shutdown.h"
 #include "bus/snapshot.h"
 #include "cia402_driver/common/result.h"
@@ -89,6 +90,7 @@ class AxisCycle {
     for (AxisUnit& unit : units_) unit.signals.look(unit.axis, now_);
   }
   JobList& jobs() { return jobs_; }
+  ObjectClaims& claims() { return claims_; }
   /// Why no axis may be enabled now; empty if it may.
   std::string enableProblem() const { return bus_.enableProblem(); }
   /// See BusSide.
@@ -110,6 +112,7 @@ class AxisCycle {
   std::vector<AxisUnit> units_;
   Joints joints_;  ///< that they turn
   std::vector<Group> groups_;
+  ObjectClaims claims_;
   JobList jobs_;
   Shutdown shutdown_;
   Time now_{}, last_cycle_{};

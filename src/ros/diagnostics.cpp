@@ -71,6 +71,14 @@ void addSignal(diagnostic_updater::DiagnosticStatusWrapper& status, const drive:
   status.add(name + " age", signal.known ? withUnit(toSeconds(age), "s") : "unknown");
 }
 
+/// Digital inputs with the names of those that are active.
+std::string inputsText(const drive::AxisConfig& axis, const drive::AxisState& state) {
+  const drive::ObjectSpec* object = axis.profile->find("digital_inputs");
+  if (!state.digital_inputs_valid || object == nullptr) return "unknown";
+  const unsigned size = fieldbus::sizeBits(object->type) / 8;
+  return bus::describeObject(object, axis, fieldbus::toBytes(state.digital_inputs, size)).value;
+}
+
 /// "emergencies: 1234", then a line for each code.
 void addEmergencies(diagnostic_updater::DiagnosticStatusWrapper& status,
                     const bus::EmergencyCounts& counts) {
@@ -300,6 +308,7 @@ void Diagnostics::reportAxis(std::size_t index, Status& status) {
   add("velocity", state.velocity, Quantity::velocity, state.stamps.velocity);
   add("effort", state.effort, Quantity::torque, state.stamps.effort);
   add("following error", state.following_error, Quantity::distance, state.stamps.following_error);
+  status.add("digital inputs", inputsText(config, state));
   for (const drive::ShownSignal& signal : axis.signals) {
     addSignal(status, config, signal, snapshot_.now - signal.stamp);
   }

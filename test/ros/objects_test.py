@@ -66,6 +66,21 @@ class Objects(RobotTest):
         answer = self.succeed("gripper/read_object", "gripper", object="position_actual")
         self.assertAlmostEqual(answer.number, self.robot.position("gripper"), delta=1e-3)
 
+    def test_outputs_are_set_by_name_and_the_others_kept(self):
+        self.succeed("shoulder/set_digital_outputs", "shoulder|do1 on, do3 on",
+                     names=["do1", "do3"], values=[True, True])
+        self.succeed("shoulder/set_digital_outputs", names=["do1"], values=[False])
+        answer = self.succeed("shoulder/read_object", object="digital_outputs")
+        self.assertEqual(int(answer.number), 0x00040000)
+        self.refuse("shoulder/set_digital_outputs", "do99|do1, ", names=["do99"], values=[True])
+
+    def test_touch_probe_without_an_edge_ends_at_its_deadline(self):
+        answer = self.refuse("shoulder/arm_touch_probe", "shoulder|touch probe 2|rising",
+                             probe=2, edge="rising", timeout=0.2)
+        self.assertTrue(math.isnan(answer.rising) and math.isnan(answer.falling))
+        function = self.succeed("shoulder/read_object", object="touch_probe_function")
+        self.assertEqual(function.number, 0)
+
 
 if __name__ == "__main__":
     main("objects")

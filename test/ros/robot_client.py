@@ -13,8 +13,9 @@ import rosparam
 import rospkg
 import rospy
 from cia402_driver.msg import AxisStates, BusState, Emergency
-from cia402_driver.srv import (ErrorHistory, InjectFault, LssAssign, LssScan, LssSetBitTiming,
-                               Nmt, ReadObject, SaveDcf, SetMode, SetPosition, WriteObject)
+from cia402_driver.srv import (ArmTouchProbe, ErrorHistory, InjectFault, LssAssign, LssScan,
+                               LssSetBitTiming, Nmt, ReadObject, SaveDcf, SetDigitalOutputs,
+                               SetMode, SetPosition, WriteObject)
 from control_msgs.msg import JointTrajectoryControllerState
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from sensor_msgs.msg import JointState
@@ -32,6 +33,7 @@ SERVICES = {
     "read_object": ReadObject, "write_object": WriteObject, "set_mode": SetMode,
     "set_position": SetPosition, "lss_scan": LssScan, "lss_assign": LssAssign,
     "lss_set_bit_timing": LssSetBitTiming, "save_dcf": SaveDcf,
+    "set_digital_outputs": SetDigitalOutputs, "arm_touch_probe": ArmTouchProbe,
 }
 
 

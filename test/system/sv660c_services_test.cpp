@@ -172,7 +172,8 @@ TEST(Sv660cObjects, TellTheSwitches) {
   ASSERT_TRUE(scene.boot()) << scene.told();
   const auto read = scene.call(bus::ReadObjectCommand{"joint", "digital_inputs"});
   EXPECT_TRUE(read.success);
-  EXPECT_THAT(read.message, HasSubstr(" 6")) << "bit 2 home, bit 1 forward limit [L16153]";
+  EXPECT_THAT(read.message, HasSubstr(" 6 (0x00000006): forward limit, home switch"))
+      << "bits 1 and 2 [L16153]";
 }
 
 }  // namespace

@@ -181,6 +181,8 @@ ObjectText describeObject(const ObjectSpec* spec, const drive::AxisConfig& axis,
   }
   const std::string joint = inJointUnits(*spec, axis, data);
   if (!joint.empty()) text.value += " = " + joint;
+  const std::string inputs = drive::activeInputs(*axis.profile, *spec, raw);
+  if (!inputs.empty()) text.value += ": " + inputs;
   return text;
 }
 

@@ -252,6 +252,9 @@ void readDrive(yaml::Section& section, yaml::Section& timing, DriveProfile& prof
     profile.feedback_if_room = readFeedbackNames(*names, profile);
   }
   if (const auto names = section.get("signals")) readSignals(*names, profile);
+  if (const auto outputs = section.get("outputs")) readDigitalOutputs(*outputs, profile);
+  if (const auto inputs = section.get("inputs")) readDigitalInputs(*inputs, profile);
+  if (const auto probes = section.get("touch_probe")) readTouchProbes(*probes, profile);
   if (const auto errors = section.get("errors")) readErrors(*errors, profile);
   if (const auto warnings = section.get("warnings")) readWarnings(*warnings, profile);
 }

@@ -50,6 +50,11 @@ void readCountsRule(const yaml::Value& value, DriveProfile& profile);
 /// `brake_release` of `timing`: a number, or an object that holds it. @pre objects were read
 void readBrakeRelease(yaml::Section& timing, DriveProfile& profile);
 
+/// `outputs`, `inputs` and `touch_probe`. @pre objects were read
+void readDigitalOutputs(const yaml::Value& value, DriveProfile& profile);
+void readDigitalInputs(const yaml::Value& value, DriveProfile& profile);
+void readTouchProbes(const yaml::Value& value, DriveProfile& profile);
+
 /// The words of `encoding`.
 std::optional<Encoding> readEncodingWord(const yaml::Value& value);
 /// "position"; the words of profiles.

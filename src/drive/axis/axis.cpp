@@ -227,6 +227,9 @@ void Axis::stopSetPoint() { impl_->core.generator().stop(); }
 std::string Axis::motionRefusal() const {
   return drive::motionRefusal(impl_->core, impl_->status.running);
 }
+double Axis::positionBy(const ObjectSpec& object, std::uint64_t raw) const {
+  return impl_->core.feedback().positionBy(object, raw);
+}
 bool Axis::heardLately(Time now) const { return impl_->core.feedback().heardLately(now); }
 bool Axis::mayMove() const { return impl_->core.feedback().mayMove(); }
 std::string Axis::obstacle() const { return drive::obstacle(impl_->core); }

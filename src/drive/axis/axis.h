@@ -152,6 +152,11 @@ class Axis {
   /// leave.
   void writeCommands(Time now);
 
+  /// The joint's position in rad or m by an object other than the actual position that counts as it
+  /// does, e.g. one that a touch probe has stored; of a joint that turns without end the place
+  /// nearest to where it is. NaN where it cannot be converted.
+  double positionBy(const ObjectSpec& object, std::uint64_t raw) const;
+
   /// The newest feedback is as new as it can be; false: some that was due has failed to come.
   bool heardLately(Time now) const;
   /// Is not known to stand. Without feedback one that stood without power still does.

@@ -16,6 +16,13 @@ bool Coordinates::absolute() const {
   return !lost_ && (!config_.homing || !config_.homing->required);
 }
 
+double Coordinates::placeOf(double by_drive) const {
+  const double place = by_drive + shift_;
+  if (!unwrap_.counting()) return place;
+  const double range = std::fabs(drive_.span());
+  return place + std::round((state_.position - place) / range) * range;
+}
+
 Conversion Coordinates::ofTarget(const Conversion& target) const {
   const Conversion shifted = target.shifted(shift_);
   return unwrap_.counting() ? shifted.wrapping() : shifted;

@@ -25,6 +25,11 @@ class Coordinates {
   }
   /// The joint's position in rad or m.
   double toJoint(std::uint64_t raw) const { return position_.toJoint(raw); }
+  /// The same of another object that counts as the actual position does and was taken at another
+  /// time. Of a joint that turns without end it is the place nearest to where that is, of all that
+  /// read so; NaN where this is not known.
+  /// @param by_drive by the drive's own zero, as the object's Conversion has it
+  double placeOf(double by_drive) const;
   /// The conversion of a position target, which counts from the joint's zero. Targets need no whole
   /// wraps: they wrap around themselves.
   Conversion ofTarget(const Conversion& target) const;

@@ -151,6 +151,11 @@ void Feedback::putShownMode(std::uint64_t raw, Time now) {
   if (!signals_[SignalId::mode_display].mapped()) readMode(now);
 }
 
+double Feedback::positionBy(const ObjectSpec& object, std::uint64_t raw) const {
+  const auto conversion = Conversion::create(object, axis_.profile(), axis_.config.geometry);
+  return conversion ? coordinates_.placeOf(conversion->toJoint(raw)) : kUnknown;
+}
+
 bool Feedback::heardLately(Time now) const {
   const fieldbus::Slot slot = signals_[SignalId::position].slot;
   if (!axis_.image.regular(slot)) return true;

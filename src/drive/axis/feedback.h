@@ -38,6 +38,8 @@ class Feedback {
   /// The newest feedback is as new as it can be: none that was due has failed to come. Of a drive
   /// that sends only what changes nothing is due.
   bool heardLately(Time now) const;
+  /// Axis::positionBy().
+  double positionBy(const ObjectSpec& object, std::uint64_t raw) const;
   /// A statusword that no state fits has come for no longer than is put up with.
   bool maybeDecodable(Time now) const {
     return axis_.state.state == State::unknown &&

@@ -5,6 +5,7 @@
 #include <array>
 #include <utility>
 
+#include "common/text.h"
 #include "fieldbus/emergency.h"
 #include "fieldbus/object_dictionary.h"
 
@@ -83,6 +84,15 @@ const ModeSpec* DriveProfile::mode(const std::string& mode_name) const {
   const auto found = std::find_if(modes.begin(), modes.end(),
                                   [&](const ModeSpec& m) { return m.name == canonical; });
   return found == modes.end() ? nullptr : &*found;
+}
+
+std::string activeInputs(const DriveProfile& profile, const ObjectSpec& object, std::uint64_t raw) {
+  std::string text;
+  for (const auto& [name, input] : profile.inputs) {
+    const bool active = ((raw & input.value.mask()) != 0) != input.active_low;
+    if (input.value.object == object.name && active) append(text, name, ", ");
+  }
+  return text;
 }
 
 const ObjectSpec* findObject(const DriveProfile& profile, const std::string& name) {

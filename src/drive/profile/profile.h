@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cia402_driver/common/time.h"
+#include "drive/profile/io.h"
 #include "drive/profile/object_range.h"
 #include "drive/profile/setting_check.h"
 #include "fieldbus/object.h"
@@ -303,6 +304,9 @@ struct DriveProfile {
   std::vector<std::string> feedback_if_room;  ///< only with what travels for something else
   std::vector<std::string>
       signals;  ///< objects that are shown besides; asked for where they do not come in the cycle
+  std::map<std::string, DigitalOutput> outputs;  ///< by what people call them
+  std::map<std::string, DigitalInput> inputs;
+  std::optional<TouchProbes> touch_probes;  ///< nothing: the family has none
   struct Timing {
     Duration state_change{std::chrono::seconds(2)};  ///< what is not named in `transitions`
     std::map<int, Duration> transitions;             ///< by their number in CiA 402-2, 2 to 16
@@ -360,6 +364,10 @@ std::optional<unsigned> axisOf(ObjectId id);
 /// where that axis has it, in objects, writes, encodings and marks of coordinates. The maker's
 /// objects stay where they are. @param axis 0 to 7
 DriveProfile ofDeviceAxis(DriveProfile profile, unsigned axis);
+
+/// Those of the profile's inputs in this object that are active: "home switch, probe 1"; empty:
+/// none is. @param raw the object's value
+std::string activeInputs(const DriveProfile& profile, const ObjectSpec& object, std::uint64_t raw);
 
 /// The object that a name or an index ("6041:00") means; nullptr if the profile has none.
 const ObjectSpec* findObject(const DriveProfile& profile, const std::string& name);

@@ -15,6 +15,8 @@ void offerErrorHistory(Offer& offer);
 void offerSetPosition(Offer& offer);
 void offerObjects(Offer& offer);
 void offerSaveDcf(Offer& offer);
+void offerDigitalOutputs(Offer& offer);
+void offerTouchProbe(Offer& offer);
 
 /// A row of the table: what offers it, and whether for the bus, for each axis, or for both.
 struct ServiceEntry {
@@ -32,6 +34,8 @@ inline constexpr ServiceEntry kServices[] = {
     {offerSetPosition, false, true},
     {offerObjects, false, true},
     {offerSaveDcf, false, true},
+    {offerDigitalOutputs, false, true},
+    {offerTouchProbe, false, true},
 };
 // clang-format on
 

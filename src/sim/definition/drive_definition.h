@@ -73,6 +73,13 @@ struct OptionTable {
   std::map<std::int64_t, StopOption> options;
 };
 
+/// When what a touch probe has stored is no longer shown as such.
+enum class ProbeForgets : std::uint8_t {
+  disarmed,  ///< at once (CiA 402-2)
+  armed,     ///< when it is armed anew
+  never,     ///< only power or a reset takes it away
+};
+
 /// What the drive does with the loss of its master (6007h).
 enum class ConnectionLoss : std::uint8_t { none, fault, disable_voltage, quick_stop };
 
@@ -144,6 +151,7 @@ struct DriveDefinition {
   std::vector<std::int64_t> inert_methods;  ///< taken, but their start does nothing
   bool home_offset_is_zero_shift = false;   ///< 6064h at home = -607Ch instead of +607Ch
   bool homing_returns = false;              ///< moves back onto the home position
+  ProbeForgets probe_forgets = ProbeForgets::disarmed;
 
   bool following_error_is_fault = true;
   bool limit_switch_is_fault = false;

@@ -106,6 +106,12 @@ void readDefinition(DefinitionReader& reader, bool extends, DriveDefinition& out
   reader.section("state_machine", [&](DefinitionReader& r) { readStateMachine(r, out); });
   reader.section("quirks", [&](DefinitionReader& r) { readQuirks(r, out.quirks); });
   reader.section("homing", [&](DefinitionReader& r) { readHoming(r, out); });
+  reader.section("touch_probe", [&](DefinitionReader& r) {
+    r.read<ProbeForgets>("forgets", out.probe_forgets,
+                         {{"disarmed", ProbeForgets::disarmed},
+                          {"armed", ProbeForgets::armed},
+                          {"never", ProbeForgets::never}});
+  });
   reader.section("float_traps", [&](DefinitionReader& r) {
     r.read("non_finite", out.traps_non_finite);
     r.read("negative_zero", out.traps_negative_zero);

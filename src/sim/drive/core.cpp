@@ -56,12 +56,14 @@ void DriveCore::start(bool cold, Time now) {
   modes_.start();
   power_.start(now);
   power_.finishInitialisation(now, now_);
+  motion_.probes().start();
   motion_.publish();
   updateStatusword();
 }
 
 void DriveCore::powerOff() {
   on_ = false;
+  motion_.probes().start();
   power_.powerOff();
   statusword_ = 0;
 }
@@ -230,6 +232,12 @@ void DriveCore::startSegment() {
 
 void DriveCore::onHomingStart() {
   if (power_.state() == PdsState::operation_enabled) motion_.homeByObject();
+}
+
+std::uint32_t DriveCore::outputs() const {
+  if (!on_) return 0;
+  const std::int64_t mask = values_.raw(Role::digital_outputs_mask, -1);
+  return static_cast<std::uint32_t>(values_.raw(Role::digital_outputs, 0) & mask);
 }
 
 void DriveCore::saveZero() {

@@ -42,14 +42,13 @@ class DriveCore {
   Time nextEvent() const;
 
   // Writes from the bus, after the dictionary took them.
-  void onControlword();                 ///< 6040h
-  void onMode();                        ///< 6060h
-  void onTargetPosition();              ///< 607Ah, or 60C1h:01
-  void onHomingStart();                 ///< the object that begins homing
-  void onGear() { motion_.publish(); }  ///< what positions are counted in has changed
-  void onNonFinite();                   ///< an object of floats got what is no number
-  void saveZero();                      ///< the present position is 0 from now on
-  void resetFault();                    ///< what the rising edge of controlword bit 7 does
+  void onControlword();     ///< 6040h
+  void onMode();            ///< 6060h
+  void onTargetPosition();  ///< 607Ah, or 60C1h:01
+  void onHomingStart();     ///< the object that begins homing
+  void onNonFinite();       ///< an object of floats got what is no number
+  void saveZero();          ///< the present position is 0 from now on
+  void resetFault();        ///< what the rising edge of controlword bit 7 does
   /// SDO abort code against writing an object now, 0 if allowed.
   std::uint32_t refuseWrite(const Entry& entry, std::uint64_t number) const;
 
@@ -74,7 +73,9 @@ class DriveCore {
   std::uint16_t statusword() const { return statusword_; }
   /// In which the axis is, whatever 6061h shows.
   std::int64_t mode() const { return modes_.applied(); }
-  const DriveMotion& motion() const { return motion_; }
+  /// Digital outputs that are on.
+  std::uint32_t outputs() const;
+  DriveMotion& motion() { return motion_; }
 
  private:
   bool idle() const;

@@ -20,22 +20,6 @@ namespace {
 constexpr Duration kPowerCycle = std::chrono::milliseconds(500);
 constexpr Duration kSoftwareReset = std::chrono::milliseconds(10);  // the write is answered before
 
-// Error register bits of a code's class (CiA 301, 7.2.7.1 and 7.5.2.2).
-std::uint8_t registerFor(std::uint16_t code) {
-  switch (code >> 12) {
-    case 0x2:
-      return 0x03;
-    case 0x3:
-      return 0x05;
-    case 0x4:
-      return 0x09;
-    case 0x8:
-      return (code & 0xFF00) == 0x8600 ? 0x21 : 0x11;
-    default:
-      return 0x01;
-  }
-}
-
 // Lets nothing out while the drive plays dead.
 class Gate : public can::Sink {
  public:
@@ -151,7 +135,9 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
     if (role == Role::target_position || role == Role::interpolation_target) {
       axis.core.onTargetPosition();
     }
-    if (role == Role::gear_numerator || role == Role::gear_denominator) axis.core.onGear();
+    if (role == Role::gear_numerator || role == Role::gear_denominator)
+      axis.core.motion().publish();
+    if (role == Role::touch_probe_function) axis.core.motion().probes().command();
     if (role == Role::clear_errors && entry.number != 0) axis.core.resetFault();
     if (role == Role::save_zero && entry.number != 0) axis.core.saveZero();
     if (role == Role::software_reset && entry.number == 1) reset_at = now + kSoftwareReset;
@@ -373,9 +359,15 @@ std::vector<std::string> Drive::faultNames() const {
   return names;
 }
 
+void Drive::setProbe(unsigned probe, bool active, Time now, unsigned axis) {
+  impl_->bringTo(now);
+  impl_->axes.at(axis).core.motion().probes().setInput(probe, active);
+  impl_->flushChanges();
+}
+
 DriveTruth Drive::truth(Time now, unsigned axis) {
   impl_->bringTo(now);
-  const Axis& asked = impl_->axes.at(axis);
+  Axis& asked = impl_->axes.at(axis);
   const DriveMotion& motion = asked.core.motion();
   DriveTruth truth;
   truth.position_turns = motion.motor().position();
@@ -385,6 +377,7 @@ DriveTruth Drive::truth(Time now, unsigned axis) {
   truth.statusword = asked.core.statusword();
   truth.mode = static_cast<int>(asked.core.mode());
   truth.nmt = impl_->device.nmtState();
+  truth.outputs = asked.core.outputs();
   truth.bad_floats_received = asked.bad_floats;
   return truth;
 }

@@ -47,6 +47,8 @@ struct DriveTruth {
   std::uint16_t statusword = 0;  ///< 6041h of the axis
   int mode = 0;                  ///< in which it is, whatever 6061h shows
   canopen::NmtState nmt = canopen::NmtState::unknown;
+  /// Outputs that are on: 60FEh:01, as far as 60FEh:02 lets them through; 0 without power.
+  std::uint32_t outputs = 0;
   unsigned bad_floats_received = 0;  ///< NaN, infinity, -0.0 in float objects, where trapped
 };
 
@@ -82,6 +84,11 @@ class Drive {
   Result<void> inject(const std::string& fault, Time now, unsigned axis = 0);
   /// What inject() knows by name.
   std::vector<std::string> faultNames() const;
+
+  /// The input of a touch probe becomes active or not, at `now`. Where it has an edge and the probe
+  /// is armed for it, the drive stores where the rotor is.
+  /// @param probe 1 or 2  @pre axis < axisCount()
+  void setProbe(unsigned probe, bool active, Time now, unsigned axis = 0);
 
   /// @pre axis < axisCount()
   DriveTruth truth(Time now, unsigned axis = 0);

@@ -57,4 +57,19 @@ void EmergencySender::tick(Time now) {
 
 Time EmergencySender::nextEvent() const { return std::min(storm_at_, chatter_.at); }
 
+std::uint8_t registerFor(std::uint16_t code) {
+  switch (code >> 12) {
+    case 0x2:
+      return 0x03;
+    case 0x3:
+      return 0x05;
+    case 0x4:
+      return 0x09;
+    case 0x8:
+      return (code & 0xFF00) == 0x8600 ? 0x21 : 0x11;
+    default:
+      return 0x01;
+  }
+}
+
 }  // namespace cia402::sim

@@ -6,6 +6,9 @@
 
 namespace cia402::sim {
 
+/// Error register bits of a code's class (CiA 301, 7.2.7.1 and 7.5.2.2).
+std::uint8_t registerFor(std::uint16_t code);
+
 /// How a drive tells of its errors by EMCY: once each, or with the chatter that some drives make,
 /// and a storm where a test injects one.
 class EmergencySender {

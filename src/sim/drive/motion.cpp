@@ -137,11 +137,17 @@ void DriveMotion::limitTorque() {
 }
 
 void DriveMotion::step() {
-  Demand& demand = axis_.demand;
   if (time_constant_ != mechanics_.inertia_time_constant) {
     time_constant_ = mechanics_.inertia_time_constant;
     axis_.motor.setPositionTimeConstant(time_constant_);
   }
+  const double from = axis_.motor.position();
+  stepRotor(from);
+  probes_.turned(from);
+}
+
+void DriveMotion::stepRotor(double from) {
+  Demand& demand = axis_.demand;
   if (!powered_) {
     axis_.motor.coast();
     demand.position = axis_.motor.position();
@@ -152,7 +158,6 @@ void DriveMotion::step() {
   // Limits of a cyclic target last until the next one.
   if (!cyclic_.ofThisMode()) axis_.limits.release();
   axis_.limits.releaseSwitch();
-  const double from = axis_.motor.position();
   if (stop_) {
     axis_.slowDown(*stop_);
     axis_.motor.followPosition(demand.position);

@@ -9,6 +9,7 @@
 #include "sim/drive/moving_axis.h"
 #include "sim/drive/profile_position.h"
 #include "sim/drive/target_supervision.h"
+#include "sim/drive/touch_probe.h"
 
 namespace cia402::sim {
 
@@ -61,6 +62,7 @@ class DriveMotion {
   void pause(bool on);
   /// A limit switch was in the way in the last step.
   bool limitSwitchHit() const { return axis_.limits.switchHit(); }
+  TouchProbes& probes() { return probes_; }
   /// Actual and demand values, inputs into the dictionary.
   void publish();
 
@@ -71,6 +73,7 @@ class DriveMotion {
   bool inMode(ModeBehaviour behaviour) const;
   bool positionControlled() const;
   bool modeBit() const;
+  void stepRotor(double from);
   void stepMode(double from);
   void limitTorque();
   void halt();
@@ -81,6 +84,7 @@ class DriveMotion {
   CyclicPositions cyclic_{axis_};
   HomingMode homing_{axis_};
   TargetSupervision supervision_{axis_};
+  TouchProbes probes_{axis_};
   double time_constant_;  ///< of the position loop, s
   bool powered_ = false;
   bool held_ = false;
