@@ -25,7 +25,6 @@ using fieldbus::ObjectId;
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using testing::ElementsAre;
-using testing::HasSubstr;
 using testing::IsEmpty;
 
 class ProfileKeys : public testing::Test {

@@ -79,11 +79,13 @@ class Readme(unittest.TestCase):
         self.assertIn("success: True", self.shell("rosservice call /bus/shoulder/read_object 6064h:0"))
         lines = [line.strip() for line in open(package_file("docs/interface.md"), encoding="utf-8")
                  if line.startswith("    rosservice call /bus/shoulder/")]
-        self.assertEqual(len(lines), 4)
+        self.assertEqual(len(lines), 6)
         for line in lines:
             answer = self.shell(line)
             if "2003h" in line:  # an object of another drive
                 self.assertRegex(answer, "success: False(.|\n)*2003:02(.|\n)*0x06020000")
+            elif "arm_touch_probe" in line:  # nothing comes to the probe of a simulated drive
+                self.assertRegex(answer, r"success: False(.|\n)*edge(.|\n)*rising: \.?nan")
             else:
                 self.assertIn("success: True", answer)
 
