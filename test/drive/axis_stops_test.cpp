@@ -13,7 +13,6 @@ using test::Bench;
 using test::FakeDrive;
 using test::HasSubstr;
 using test::milliseconds;
-using test::Not;
 using test::testConfig;
 using test::testProfile;
 
@@ -376,26 +375,6 @@ TEST(ModeBits, ADriveThatWasLateInItsModeMayHaveTheBit) {
 }
 
 // --- Warnings ------------------------------------------------------------------------------------
-
-TEST(AxisWarnings, AreToldOnceAndAreToldFromWhatStopsTheAxis) {
-  DriveProfile profile = testProfile();
-  profile.before_enable = {test::from("profile_velocity", "limits.velocity")};
-  Bench bench(testConfig(profile));
-  bench.drive.aborts[{0x6081, 0}] = 0x06020000;
-  ASSERT_TRUE(bench.boot());
-  EXPECT_FALSE(bench.axis.noticeWarns());
-  ASSERT_TRUE(bench.enable());
-  EXPECT_EQ(bench.axis.noticeCount(), 1u);
-  EXPECT_TRUE(bench.axis.noticeWarns());
-  EXPECT_THAT(bench.axis.notice(), HasSubstr("profile_velocity"));
-  ASSERT_TRUE(bench.perform(ProcedureKind::disable).success);
-  ASSERT_TRUE(bench.enable());
-  EXPECT_EQ(bench.axis.noticeCount(), 1u);
-  bench.fail(0x8611);
-  bench.run(milliseconds(20));
-  EXPECT_EQ(bench.axis.noticeCount(), 2u);
-  EXPECT_FALSE(bench.axis.noticeWarns());
-}
 
 }  // namespace
 }  // namespace cia402::drive

@@ -11,15 +11,7 @@ namespace {
 
 using testing::HasSubstr;
 
-const char* const kDriveWithIo = R"(name: tested
-units: {position: count, velocity: count/s}
-objects:
-  controlword: {object: "6040:00", type: uint16, pdo: rpdo}
-  statusword: {object: "6041:00", type: uint16, access: ro, pdo: tpdo}
-  mode_of_operation: {object: "6060:00", type: int8}
-  mode_display: {object: "6061:00", type: int8, access: ro}
-  target_position: {object: "607A:00", type: int32, quantity: position, pdo: rpdo}
-  position_actual: {object: "6064:00", type: int32, quantity: position, access: ro, pdo: tpdo}
+const std::string kDriveWithIo = std::string(kLeastDrive) + R"(
   lamps: {object: "2000:01", type: uint8}
   valves: {object: "2000:02", type: uint8}
   pins: {object: "2000:03", type: uint16, access: ro}
@@ -92,14 +84,12 @@ TEST(ProfileIo, IsRefusedWhereItCanMeanNothing) {
       {"outputs: {red: {object: lamps, bit: -1}}", "outputs/red/bit"},
       {"outputs: {red: {object: lamps}}", "outputs/red: `bit` is missing: 0 is its lowest"},
       {"outputs: {red: {bit: 1}}", "outputs/red: `object` is missing"},
-      {"outputs: {red: {object: pins, bit: 0}}",
-       "outputs/red/object: `pins` is no whole number that "
-       "the drive lets be read and written"},
-      {"outputs: {red: {object: blind, bit: 0}}", "its other bits could not be kept"},
+      {"outputs: {red: {object: pins, bit: 0}}", "outputs/red/object: `pins` cannot be written"},
+      {"outputs: {red: {object: blind, bit: 0}}",
+       "outputs/red/object: `blind` is no whole number that the drive lets be read"},
       {"outputs: {red: {object: label, bit: 0}}", "outputs/red/object: `label` is no whole number"},
       {"outputs: {red: {object: lamps, bit: 0, mask: {object: pins, bit: 0}}}",
-       "outputs/red/mask/object: `pins` is no whole number that the drive lets be read and "
-       "written"},
+       "outputs/red/mask/object: `pins` cannot be written"},
       {"outputs: {red: {object: lamps, bit: 0, mask: {object: valves, bit: 8}}}",
        "outputs/red/mask/bit"},
       {"outputs: {red: {object: lamps, bit: 0, on: 1}}", "outputs/red/on"},
@@ -113,7 +103,7 @@ TEST(ProfileIo, IsRefusedWhereItCanMeanNothing) {
        "touch_probe: `status` is missing"},
       {"touch_probe: {function: arm, status: seen}", "touch_probe: `positions` is missing"},
       {"touch_probe: {function: seen, status: seen, positions: {}}",
-       "touch_probe/function: `seen` is no whole number that the drive lets be read and written"},
+       "touch_probe/function: `seen` cannot be written"},
       {"touch_probe: {function: lamps, status: seen, positions: {}}",
        "touch_probe/function: `lamps` has less than the 16 bits of CiA 402-2"},
       {"touch_probe: {function: arm, status: seen, positions: {3: {rising: place}}}",

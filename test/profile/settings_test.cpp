@@ -11,15 +11,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-const char* const kDriveWithSettings = R"(name: tested
-units: {position: count, velocity: count/s, time: {unit: s, scale: 0.001}}
-objects:
-  controlword: {object: "6040:00", type: uint16, pdo: rpdo}
-  statusword: {object: "6041:00", type: uint16, access: ro, pdo: tpdo}
-  mode_of_operation: {object: "6060:00", type: int8}
-  mode_display: {object: "6061:00", type: int8, access: ro}
-  target_position: {object: "607A:00", type: int32, quantity: position, pdo: rpdo}
-  position_actual: {object: "6064:00", type: int32, quantity: position, access: ro, pdo: tpdo}
+const std::string kDriveWithSettings = std::string(kLeastDrive) + R"(
   source: {object: "2000:01", type: uint8}
   resolution: {object: "2000:02", type: uint32}
   gear: {object: "2000:03", type: uint32}

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // What drives of the families must be set to before they are enabled or search their home.
 #include "system/families_scene.h"
+#include "system/refused_enabling.h"
 
 namespace cia402 {
 namespace {
@@ -25,16 +26,8 @@ std::string delivered(const std::string& row) {
 class FamilySetting : public testing::TestWithParam<WrongSetting> {};
 
 TEST_P(FamilySetting, IsNamedWithItsRemedyAndNothingIsEnabled) {
-  Scene scene(loadText(familyJoint(GetParam().tested, delivered(GetParam().row))));
-  ASSERT_TRUE(scene.boot(20s)) << scene.told();
-  scene.forget();
-  const bus::Answer enabled = scene.procedure(ProcedureKind::enable);
-  EXPECT_FALSE(enabled.success);
-  EXPECT_THAT(enabled.message, AllOf(HasSubstr("joint (node 1): is not enabled: "),
-                                     HasSubstr(GetParam().told), HasSubstr(GetParam().remedy)));
-  scene.run(500ms);
-  EXPECT_FALSE(scene.truth("joint").power_stage_on);
-  EXPECT_EQ(scene.seen("joint").travel(), 0.0);
+  expectRefusedEnabling(familyJoint(GetParam().tested, delivered(GetParam().row)), GetParam().told,
+                        GetParam().remedy);
 }
 
 constexpr FamilyMode kDm5{"megmeet_dm5", "8388608", "csp"},

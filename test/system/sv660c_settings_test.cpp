@@ -1,5 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // What an SV660C must be set to at its panel, and what the driver learns of its settings.
+#include "system/refused_enabling.h"
 #include "system/sv660c_scene.h"
 
 namespace cia402 {
@@ -23,16 +24,8 @@ struct Sv660cWrong {
 class Sv660cSetting : public testing::TestWithParam<Sv660cWrong> {};
 
 TEST_P(Sv660cSetting, IsNamedWithItsRemedyAndNothingIsEnabled) {
-  Scene scene(loadText(sv660cJoint({}, asDelivered(GetParam().row))));
-  ASSERT_TRUE(scene.boot()) << scene.told();
-  scene.forget();
-  const auto enabled = scene.procedure(ProcedureKind::enable);
-  EXPECT_FALSE(enabled.success);
-  EXPECT_THAT(enabled.message, AllOf(HasSubstr("joint (node 1): is not enabled: "),
-                                     HasSubstr(GetParam().object), HasSubstr(GetParam().remedy)));
-  scene.run(500ms);
-  EXPECT_FALSE(scene.truth("joint").power_stage_on);
-  EXPECT_EQ(scene.seen("joint").travel(), 0.0);
+  expectRefusedEnabling(sv660cJoint({}, asDelivered(GetParam().row)), GetParam().object,
+                        GetParam().remedy);
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -6,39 +6,22 @@
 namespace cia402::config {
 namespace {
 
-/// What the driver does with an object of these.
-enum class IoUse : std::uint8_t { read, changed };
+using ObjectReader = const ObjectSpec* (*)(const yaml::Value&, const DriveProfile&);
 
-/// The object of the profile that `value` names, if it is a whole number for that use; else a
-/// problem.
-const ObjectSpec* readIoObject(const yaml::Value& value, const DriveProfile& profile, IoUse use) {
-  const auto text = value.text();
-  if (!text) return nullptr;
-  const ObjectSpec* object = profile.find(*text);
-  if (object == nullptr) {
-    value.problem("the profile has no object `" + *text + "`" +
-                  yaml::suggestion(*text, drive::objectNames(profile)));
-    return nullptr;
-  }
-  const bool whole =
-      fieldbus::sizeBits(object->type) != 0 && !drive::holdsFloat(object->type, object->encoding);
-  if (use == IoUse::changed && !(whole && object->readable && object->writable)) {
-    value.problem("`" + *text +
-                  "` is no whole number that the drive lets be read and written: its other bits "
-                  "could not be kept");
-    return nullptr;
-  }
-  if (whole && object->readable) return object;
-  value.problem("`" + *text + "` is no whole number that the drive lets be read");
+/// As readSetting(), of an object whose bits can be changed one by one.
+const ObjectSpec* readChangeable(const yaml::Value& value, const DriveProfile& profile) {
+  const ObjectSpec* object = readSetting(value, profile);
+  if (object == nullptr || object->writable) return object;
+  value.problem("`" + object->name + "` cannot be written");
   return nullptr;
 }
 
 /// `object` and `bit`.
 std::optional<drive::ObjectBit> readObjectBit(yaml::Section& section, const DriveProfile& profile,
-                                              IoUse use) {
+                                              ObjectReader read) {
   const auto name = section.require("object", "an object of the profile, by name");
   const auto bit = section.require("bit", "0 is its lowest");
-  const ObjectSpec* object = name ? readIoObject(*name, profile, use) : nullptr;
+  const ObjectSpec* object = name ? read(*name, profile) : nullptr;
   if (object == nullptr || !bit) return {};
   const auto number = bit->integer(0, fieldbus::sizeBits(object->type) - 1);
   if (!number) return {};
@@ -48,12 +31,12 @@ std::optional<drive::ObjectBit> readObjectBit(yaml::Section& section, const Driv
 void readDigitalOutput(const std::string& name, const yaml::Value& value, DriveProfile& profile) {
   yaml::Section section(value);
   drive::DigitalOutput output;
-  const auto bit = readObjectBit(section, profile, IoUse::changed);
+  const auto bit = readObjectBit(section, profile, readChangeable);
   bool usable = bit.has_value();
   if (bit) output.value = *bit;
   if (const auto mask = section.get("mask")) {
     yaml::Section mask_section(*mask);
-    output.mask = readObjectBit(mask_section, profile, IoUse::changed);
+    output.mask = readObjectBit(mask_section, profile, readChangeable);
     mask_section.finish();
     usable = usable && output.mask;
   }
@@ -78,7 +61,7 @@ std::string readProbePosition(const yaml::Value& value, const DriveProfile& prof
 }
 
 std::string readProbeCounter(const yaml::Value& value, const DriveProfile& profile) {
-  const ObjectSpec* object = readIoObject(value, profile, IoUse::read);
+  const ObjectSpec* object = readSetting(value, profile);
   return object != nullptr ? object->name : std::string();
 }
 
@@ -103,8 +86,8 @@ void readProbeObjects(const yaml::Value& value, const DriveProfile& profile,
 
 /// The bits of both probes are in one word.
 std::string readProbeWord(const std::optional<yaml::Value>& value, const DriveProfile& profile,
-                          IoUse use) {
-  const ObjectSpec* object = value ? readIoObject(*value, profile, use) : nullptr;
+                          ObjectReader read) {
+  const ObjectSpec* object = value ? read(*value, profile) : nullptr;
   if (object == nullptr) return {};
   if (fieldbus::sizeBits(object->type) >= 16) return object->name;
   value->problem("`" + object->name + "` has less than the 16 bits of CiA 402-2");
@@ -123,7 +106,7 @@ void readDigitalInputs(const yaml::Value& value, DriveProfile& profile) {
   yaml::Section section(value);
   for (const auto& [name, entry] : section.entries()) {
     yaml::Section input(entry);
-    const auto bit = readObjectBit(input, profile, IoUse::read);
+    const auto bit = readObjectBit(input, profile, readSetting);
     bool active_low = false;
     input.read("active_low", active_low);
     input.finish();
@@ -136,9 +119,9 @@ void readTouchProbes(const yaml::Value& value, DriveProfile& profile) {
   yaml::Section section(value);
   drive::TouchProbes probes;
   probes.function = readProbeWord(section.require("function", "the object that arms (60B8h)"),
-                                  profile, IoUse::changed);
+                                  profile, readChangeable);
   probes.status =
-      readProbeWord(section.require("status", "what tells of edges (60B9h)"), profile, IoUse::read);
+      readProbeWord(section.require("status", "what tells of edges (60B9h)"), profile, readSetting);
   using Edge = drive::TouchProbes::Edge;
   if (const auto positions = section.require("positions", "{1: {rising: NAME, falling: NAME}}")) {
     readProbeObjects(*positions, profile, probes, &Edge::position, readProbePosition);

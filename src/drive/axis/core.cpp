@@ -7,6 +7,15 @@
 #include "drive/sentence.h"
 
 namespace cia402::drive {
+namespace {
+
+[[gnu::cold]] void tellNotTaken(AxisCore& axis, const char* missing, double target) {
+  axis.notices().notify(axis.who() + ": the drive did not take the set-point " + number(target) +
+                        ": waited " + seconds(axis.profile().timing.state_change) + " for " +
+                        missing + "; " + report(axis));
+}
+
+}  // namespace
 
 AxisCore::AxisCore(AxisConfig config, fieldbus::Device& device)
     : axis_(std::move(config), device),
@@ -100,7 +109,7 @@ void AxisCore::writeCommands(Time now) {
     generator_.advance(now);
     stops_.watchEffort(now);
     const double target = generator_.target();
-    if (const char* missing = generator_.send(now)) tellNotTaken(missing, target);
+    if (const char* missing = generator_.send(now)) tellNotTaken(*this, missing, target);
   } else {
     generator_.sendNeutral();
   }
@@ -108,12 +117,6 @@ void AxisCore::writeCommands(Time now) {
   generator_.watchDrive(now);
   control_.write(control_.brakeReleased() ? generator_.mode().bits() : 0);
   mode_.write();
-}
-
-void AxisCore::tellNotTaken(const char* missing, double target) {
-  notices().notify(who() + ": the drive did not take the set-point " + number(target) +
-                   ": waited " + seconds(profile().timing.state_change) + " for " + missing + "; " +
-                   report(*this));
 }
 
 void AxisCore::setGoal(Goal goal) {

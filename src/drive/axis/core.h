@@ -90,7 +90,6 @@ class AxisCore {
   [[gnu::cold]] void giveUpOperation();
   /// @return false: it leaves operation
   [[gnu::cold]] bool goesOnWarned(Time now);
-  [[gnu::cold]] void tellNotTaken(const char* missing, double target);
 
   AxisBasis axis_;
   Coordinates coordinates_;
