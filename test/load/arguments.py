@@ -17,6 +17,9 @@ OBJECTS = ["position_actual", "6041:00", "0x6064", "following_error_window", "10
 WRITABLE = ["606D:00", "0x606E", "statusword", "5FFF:00", "606D:", "", "ä", "x" * 1000]
 VALUES = ["0", "1", "123456", "-1", "0xFFFFFFFF", "1e400", "nan", "inf", "fast", "", "x" * 1000]
 MODES = ["csp", "csv", "pp", "pv", "cyclic_position", "sideways", "", "x" * 1000]
+OUTPUTS = [{"names": names, "values": values} for names, values in (
+    (["do1"], [True]), (["do1", "do2"], [False, True]), (["do1", "do1"], [True, False]),
+    (["do1"], []), ([], []), (["ä", "x" * 1000], [True, True]))]
 NMT = ["start", "stop", "pre_operational", "reset_node", "reset_communication", "jump", ""]
 FAULTS = ["encoder", "overcurrent", "power_cycle", "silent", "sdo_silent", "emergency_storm",
           "short_tpdos", "blocked_rotor", "clear", "clear", "clear", "headache", ""]
@@ -40,6 +43,12 @@ SERVICES.update({
     "read_object": lambda chance, _: {"object": chance.choice(OBJECTS)},
     "write_object": lambda chance, _: {"object": chance.choice(WRITABLE),
                                        "value": chance.choice(VALUES)},
+    "set_digital_outputs": lambda chance, _: chance.choice(OUTPUTS),
+    "arm_touch_probe": lambda chance, _: {"probe": chance.choice([0, 1, 2, 255]),
+                                          "edge": chance.choice(["rising", "both", "up", ""]),
+                                          "index_pulse": chance.choice([True, False]),
+                                          "continuous": chance.choice([True, False]),
+                                          "timeout": chance.choice([0.01, 0.2] + NUMBERS)},
     "nmt": lambda chance, _: {"command": chance.choice(NMT)},
     "save_dcf": lambda chance, folder: {"path": chance.choice(
         [os.path.join(folder, "a.dcf"), "/nowhere/a.dcf", "a", ""])},
