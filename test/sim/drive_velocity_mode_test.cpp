@@ -7,7 +7,7 @@ namespace cia402::sim {
 namespace {
 
 struct VelocityBench : GenericBench {
-  VelocityBench() { mode(2); }
+  explicit VelocityBench(const YAML::Node& with = {}) : GenericBench({}, with) { mode(2); }
   void speed(int per_minute) { write(0x6042, 0, static_cast<std::uint16_t>(per_minute), 2); }
   /// 6048h or 6049h or 604Ah.
   void ramp(std::uint16_t index, std::uint32_t per_minute, std::uint32_t seconds) {
@@ -91,6 +91,23 @@ TEST(DriveVelocityMode, StopsByTheRampsOfItsOwn) {
     EXPECT_NEAR(b.turnsPerSecond(), quick ? 5.0 : 9.5, 0.7);
     b.run(ms(100));
     EXPECT_EQ(b.drive->truth(b.now).power_stage_on, !quick);
+  }
+}
+
+TEST(DriveVelocityMode, ALockedRampHoldsStopsWhereItIsToldTo) {
+  const YAML::Node holds = YAML::Load("{state_machine: {locked_ramp_holds_stops: true}}");
+  for (const unsigned word : {0x0002U, 0x0012U, 0x0022U, 0x0072U}) {
+    VelocityBench b(holds);
+    b.ramp(0x604A, 6000, 1);
+    b.speed(600);
+    b.enable();
+    b.control(0x007F);
+    b.run(ms(1500));
+    b.control(static_cast<std::uint16_t>(word));
+    b.run(ms(500));
+    const bool locked = (word & 0x20U) == 0;
+    EXPECT_NEAR(b.turnsPerSecond(), locked ? 10.0 : 0.0, 0.01) << word;
+    EXPECT_EQ(b.drive->truth(b.now).power_stage_on, locked) << word;
   }
 }
 

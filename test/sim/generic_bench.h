@@ -1,7 +1,10 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <yaml-cpp/yaml.h>
+
 #include "drive_fixture.h"
+#include "sim/definition/drive_definition.h"
 
 namespace cia402::sim {
 
@@ -10,8 +13,12 @@ inline constexpr int kTurn = 131072;
 
 /// The generic simulated drive; ramps 10 turns/s^2 by default.
 struct GenericBench : DriveBench {
-  explicit GenericBench(const AxisMechanics& mechanics = {})
-      : DriveBench("generic_cia402", mechanics) {}
+  /// @param with further keys of the simulated drive
+  explicit GenericBench(const AxisMechanics& mechanics = {}, const YAML::Node& with = {})
+      : DriveBench(
+            loadDriveDefinition(
+                cia402::test::configFolder() + "/simulated_drives/generic_cia402.yaml", with),
+            mechanics) {}
   int bits(int mask) { return static_cast<int>(read(0x6041)) & mask; }
   void mode(int number) { write(0x6060, 0, static_cast<std::uint32_t>(number), 1); }
   void target(std::int32_t counts) { write(0x607A, 0, static_cast<std::uint32_t>(counts), 4); }

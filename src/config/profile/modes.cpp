@@ -141,6 +141,7 @@ ModeSpec readMode(const std::string& name, const yaml::Value& value, const Drive
   if ((mode.controlword_bits & kStateMachineBits) != 0) {
     section.problem("controlword_bits must leave bits 0 to 3 and 7 to the state machine");
   }
+  section.read("bits_while_stopping", mode.bits_while_stopping);
   if (mode.kind == ControlKind::homing && !mode.homing_attained_bit) {
     section.problem("homing needs status_bits/homing_attained");
   }

@@ -60,9 +60,16 @@ void Control::command() {
   base_ = command_.controlword;
 }
 
-void Control::write(unsigned mode_bits) {
+/// The drive may turn the motor on its way out of operation.
+bool Control::stopping() const {
+  const State state = axis_.state.state;
+  return goal_ != Goal::enabled && (state == State::operation_enabled || state == State::unknown ||
+                                    state == State::quick_stop_active);
+}
+
+void Control::write(ModeBits bits) {
   if (silent_ && !fault_reset_) {
-    word_ = silentWord();
+    word_ = static_cast<std::uint16_t>(silentWord() | (stopping() ? bits.stopping : 0u));
   } else if (voltage_off_) {
     word_ = 0;
   } else {
@@ -70,9 +77,11 @@ void Control::write(unsigned mode_bits) {
     unsigned word = base_;
     if (fault_reset_) word |= controlword::kFaultReset;
     if (in_operation_) {
-      word |= mode_bits;
+      word |= bits.running;
       if (homing_start_) word |= controlword::kHomingStart;
       if (halt_) word |= controlword::kHalt;
+    } else if (stopping()) {
+      word |= bits.stopping;
     }
     word_ = static_cast<std::uint16_t>(word);
   }

@@ -115,7 +115,8 @@ void AxisCore::writeCommands(Time now) {
   }
   written_ = now;
   generator_.watchDrive(now);
-  control_.write(control_.brakeReleased() ? generator_.mode().bits() : 0);
+  control_.write(
+      {control_.brakeReleased() ? generator_.mode().bits() : 0, mode_.spec().stoppingBits()});
   mode_.write();
 }
 

@@ -62,8 +62,9 @@ void Stops::stopUrgently(const std::string& why) {
   const bool was_commanded = !axis_.control().silent() && axis_.goal() != Goal::disabled;
   axis_.setGoal(Goal::quick_stop);
   const ObjectSpec* object = axis_.objects().controlword.spec;
-  urgent_ticket_ = axis_.device().objects().downloadUrgent(
-      object->id, fieldbus::toBytes(controlword::kQuickStopCommand, 2), object->name);
+  const unsigned word = controlword::kQuickStopCommand | axis_.mode().spec().stoppingBits();
+  urgent_ticket_ =
+      axis_.device().objects().downloadUrgent(object->id, fieldbus::toBytes(word, 2), object->name);
   if (was_commanded) axis_.notices().fail(axis_.who() + ": " + why);
 }
 

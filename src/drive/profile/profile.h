@@ -176,6 +176,10 @@ struct ModeSpec {
   std::optional<StopBy> stop;  ///< absent: by the kind of mode, see stopBy()
   std::string stop_mode;       ///< with StopBy::mode: a cyclic velocity mode's name
   std::uint16_t controlword_bits = 0;  ///< held while the mode is active in Operation enabled
+  /// They are held until the drive has left Operation enabled and Quick stop active, too: without
+  /// them it may not slow down.
+  bool bits_while_stopping = false;
+  unsigned stoppingBits() const { return bits_while_stopping ? controlword_bits : 0u; }
   std::optional<int> target_reached_bit, following_error_bit, set_point_acknowledge_bit,
       speed_zero_bit, homing_attained_bit, homing_error_bit, follows_command_bit;
   /// Before the mode is entered, beside the cycle. What is an output, too, must be held in the

@@ -136,6 +136,8 @@ struct DriveDefinition {
   bool follows_sync_period = false;   ///< csp interpolates over the SYNC period, not over 60C2h
   bool brake_loses_commands = false;  ///< edges of the controlword while the brake opens are lost
   bool ramps_of_mode = false;         ///< in homing "slow down" goes by 609Ah
+  /// In velocity mode controlword bit 5 = 0 locks the ramps of quick stop and disabling, too.
+  bool locked_ramp_holds_stops = false;
   std::optional<std::uint16_t> homed_bit;  ///< mask in the statusword: home was found
   /// By the value of the object of the role sync_tolerance: the share of its period by which SYNC
   /// may be off in interpolated position before the fault `sync_error`; 0: anything.

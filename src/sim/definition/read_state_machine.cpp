@@ -94,6 +94,7 @@ void readStateMachine(DefinitionReader& reader, DriveDefinition& out) {
   reader.read("interpolates_over_sync_period", out.follows_sync_period);
   reader.read("brake_loses_commands", out.brake_loses_commands);
   reader.read("ramps_of_mode", out.ramps_of_mode);
+  reader.read("locked_ramp_holds_stops", out.locked_ramp_holds_stops);
   readSupervision(reader, out);
   readOptionTable(reader, "quick_stop", out.quick_stop);
   readOptionTable(reader, "shutdown", out.shutdown);

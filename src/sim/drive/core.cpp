@@ -14,7 +14,7 @@ constexpr Duration kWatchPeriod = std::chrono::milliseconds(1);
 
 // Controlword.
 constexpr std::uint16_t kFaultReset = 0x0080;
-constexpr std::uint16_t kHalt = 0x0100;
+constexpr std::uint16_t kUnlockRamp = 0x0020, kHalt = 0x0100;
 
 std::int64_t gridStep(Time time) { return time.time_since_epoch() / kDriveStep; }
 
@@ -142,6 +142,8 @@ void DriveCore::onControlword() {
     return;
   }
   if ((previous & kFaultReset) != 0) reset_low_since_ = now_;
+  const bool locked = (controlword_ & kUnlockRamp) == 0;
+  motion_.lockRamps(definition_.locked_ramp_holds_stops && locked);
   const bool was_operating = power_.operating();
   command(wanted);
   // Edges count only where operation was enabled before.

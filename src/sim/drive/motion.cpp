@@ -159,7 +159,8 @@ void DriveMotion::stepRotor(double from) {
   if (!cyclic_.ofThisMode()) axis_.limits.release();
   axis_.limits.releaseSwitch();
   if (stop_) {
-    axis_.slowDown(*stop_);
+    const bool locked = ramps_locked_ && !halted_ && inMode(ModeBehaviour::velocity);
+    locked ? axis_.keepSpeed() : axis_.slowDown(*stop_);
     axis_.motor.followPosition(demand.position);
   } else if (held_ || axis_.mode == nullptr) {
     demand.velocity = 0.0;

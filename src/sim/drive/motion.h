@@ -60,6 +60,8 @@ class DriveMotion {
   void loseHome() { axis_.limits.setHomed(false); }
   /// The drive halts the motor by itself, as by controlword bit 8, until it lets it go on.
   void pause(bool on);
+  /// Ramps on the way out of operation hold their speed in velocity mode.
+  void lockRamps(bool on) { ramps_locked_ = on; }
   /// A limit switch was in the way in the last step.
   bool limitSwitchHit() const { return axis_.limits.switchHit(); }
   TouchProbes& probes() { return probes_; }
@@ -88,7 +90,7 @@ class DriveMotion {
   double time_constant_;  ///< of the position loop, s
   bool powered_ = false;
   bool held_ = false;
-  bool halted_ = false, paused_ = false;
+  bool halted_ = false, paused_ = false, ramps_locked_ = false;
   std::optional<Ramp> stop_;
   std::uint16_t controlword_ = 0;  ///< the last one in operation
   unsigned publications_ = 0;      ///< while it homes by an object

@@ -38,6 +38,11 @@ void MovingAxis::slowDown(Ramp ramp) {
   demand.followProfile();
 }
 
+void MovingAxis::keepSpeed() {
+  demand.position += demand.velocity * kDriveStepS;
+  demand.profile.reset(demand.position, demand.velocity);
+}
+
 bool MovingAxis::standing() const {
   return std::fabs(motor.velocity()) < kStandingSpeed && demand.velocity == 0.0;
 }

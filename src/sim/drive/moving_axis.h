@@ -27,6 +27,8 @@ class MovingAxis {
   bool blocked(double direction) { return limits.blocked(direction, motor.position()); }
   /// One step of slowing down along a ramp.
   void slowDown(Ramp ramp);
+  /// One step at the speed of the demand.
+  void keepSpeed();
   /// Neither demand nor rotor moves.
   bool standing() const;
 
