@@ -24,6 +24,8 @@ class Stops {
   /// released once that is on the wire and nothing is handed over any more.
   void replaceHaltedTarget();
   void endHalt();
+  /// Another mode brakes the active one.
+  bool byMode() const { return how() == StopBy::mode; }
 
   /// Quick stop by a write that waits for nothing: what travels in cycles does not reach the drive.
   /// @param why in words

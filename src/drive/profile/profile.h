@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cia402_driver/common/time.h"
+#include "drive/profile/error_texts.h"
 #include "drive/profile/io.h"
 #include "drive/profile/object_range.h"
 #include "drive/profile/setting_check.h"
@@ -234,36 +235,6 @@ struct HomingSpec {
 /// What a family calls the bits of its statusword that CiA 402-2 leaves open, or uses otherwise, by
 /// their numbers; empty: as the standard has it.
 using StatusWords = std::array<std::string, 16>;
-
-/// A known error code of the family.
-struct ErrorText {
-  /// What the drive reports as missing of that which this program sends.
-  enum class Missing : std::uint8_t {
-    nothing,
-    cycle,    ///< the signal that begins a cycle
-    outputs,  ///< what travels to the drive in it
-  };
-  /// What ends the fault.
-  enum class Reset : std::uint8_t {
-    by_bit,       ///< controlword bit 7, once its cause is gone
-    by_itself,    ///< the drive, once its cause is gone
-    power_cycle,  ///< nothing but switching the drive's power off and on
-  };
-  std::string text, cause, remedy;
-  Missing missing = Missing::nothing;
-  Reset reset = Reset::by_bit;
-  Duration wait{0};  ///< since the fault, before which the drive takes no reset
-};
-
-/// A known code that comes without a fault (statusword bit 7).
-struct WarningText {
-  enum class Reaction : std::uint8_t {
-    goes_on,  ///< it only tells
-    holds,    ///< the drive brings the motor to rest and holds it, and may let it go by itself
-  };
-  std::string text, cause, remedy;
-  std::optional<Reaction> reaction;  ///< nothing: as DriveProfile::warning_stops says
-};
 
 /// Position counts of a motor turn by the drive's own settings: the product of some objects over
 /// that of others, by their names. Empty: the drive has no such objects.

@@ -47,6 +47,7 @@ struct ModeDefinition {
   bool target_reached = true;    ///< statusword bit 10 is used
   std::optional<Role> velocity;  ///< speed (limit) of the mode, none: only the maxima
   std::optional<Role> torque;    ///< torque limit of the mode
+  bool stops_fade = false;       ///< torque modes: 6087h lets the torque go, and nothing brakes
   bool delayed = false;          ///< interpolated_position: a set-point begins one SYNC later
 };
 

@@ -91,6 +91,7 @@ void readMode(const std::string& number, const yaml::Value& from, DefinitionRead
   }
   mode.torque = readRole(reader, "torque");
   reader.read("delayed", mode.delayed);
+  reader.read("stops_fade", mode.stops_fade);
   const auto known = std::find_if(out.modes.begin(), out.modes.end(),
                                   [&](const auto& other) { return other.number == mode.number; });
   known == out.modes.end() ? out.modes.push_back(mode) : void(*known = mode);

@@ -45,6 +45,12 @@ bool DriveMotion::positionControlled() const {
   }
 }
 
+bool DriveMotion::fadesInStops() const { return axis_.mode != nullptr && axis_.mode->stops_fade; }
+
+bool DriveMotion::standing() const {
+  return stop_ && fadesInStops() ? axis_.demand.torque == 0.0 : axis_.standing();
+}
+
 bool DriveMotion::modeBit() const { return (controlword_ & kModeBit) != 0; }
 
 void DriveMotion::powerStage(bool on) {
@@ -72,7 +78,9 @@ void DriveMotion::setMode(const ModeDefinition* mode) {
 
 void DriveMotion::stop(Ramp ramp) {
   // From where the rotor really is, whatever was demanded of it.
+  const double torque = axis_.demand.torque;
   axis_.demand.takeOver(axis_.motor, time_constant_);
+  if (fadesInStops()) axis_.demand.torque = torque;
   stop_ = ramp;
 }
 
@@ -158,7 +166,9 @@ void DriveMotion::stepRotor(double from) {
   // Limits of a cyclic target last until the next one.
   if (!cyclic_.ofThisMode()) axis_.limits.release();
   axis_.limits.releaseSwitch();
-  if (stop_) {
+  if (stop_ && fadesInStops()) {
+    stepFading(axis_);
+  } else if (stop_) {
     const bool locked = ramps_locked_ && !halted_ && inMode(ModeBehaviour::velocity);
     locked ? axis_.keepSpeed() : axis_.slowDown(*stop_);
     axis_.motor.followPosition(demand.position);

@@ -49,7 +49,7 @@ class DriveMotion {
   void step();  ///< one kDriveStep
   bool atRest() const { return axis_.motor.atRest(); }
   /// Neither demand nor rotor moves.
-  bool standing() const { return axis_.standing(); }
+  bool standing() const;
   /// Bits 10-13 for the present mode; only meaningful while operation is enabled.
   std::uint16_t statusBits() const;
   /// Begins to home where an object does that instead of bit 4.
@@ -75,6 +75,7 @@ class DriveMotion {
   bool inMode(ModeBehaviour behaviour) const;
   bool positionControlled() const;
   bool modeBit() const;
+  bool fadesInStops() const;
   void stepRotor(double from);
   void stepMode(double from);
   void limitTorque();

@@ -66,6 +66,15 @@ void stepTorque(MovingAxis& axis, bool ramped) {
   demand.velocity = axis.motor.velocity();
 }
 
+void stepFading(MovingAxis& axis) {
+  Demand& demand = axis.demand;
+  const double change = axis.values.get(Role::torque_slope, kUnlimited) * kDriveStepS;
+  demand.torque = std::clamp(0.0, demand.torque - change, demand.torque + change);
+  axis.motor.applyTorque(demand.torque, axis.limits.maxSpeed());
+  demand.position = axis.motor.position();
+  demand.velocity = axis.motor.velocity();
+}
+
 void stepHold(MovingAxis& axis) {
   axis.slowDown(Ramp::slow_down);
   axis.motor.followPosition(axis.demand.position);

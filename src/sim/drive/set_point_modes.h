@@ -19,6 +19,8 @@ struct VelocityModeBits {
 void stepVelocityMode(MovingAxis& axis, const VelocityModeBits& bits);
 /// 6071h; `ramped`: by 6087h (profile torque), else at once (cyclic synchronous).
 void stepTorque(MovingAxis& axis, bool ramped);
+/// Torque is let go by 6087h.
+void stepFading(MovingAxis& axis);
 /// No mode assigned: slows down by 6084h and stands.
 void stepHold(MovingAxis& axis);
 

@@ -6,13 +6,38 @@
 
 namespace cia402::drive {
 
+void QuickStopStep::begin(const Context& context) {
+  AxisCore& axis = context.axis;
+  begun_ = true;
+  started_ = context.now;
+  const bool turns = axis.inOperation() && !axis.feedback().seenToStand(context.now);
+  if (turns && axis.stops().byMode()) axis.stops().halt(context.now);
+  brakes_ = turns && axis.mode().brakes() && axis.inOperation();
+  if (brakes_) return context.show("braking", "mode " + axis.mode().spec().name + " to brake");
+  axis.setGoal(Goal::quick_stop);
+  context.show("stopping", "the quick stop ramp to end at standstill");
+}
+
+/// The other mode has yet to bring the axis to rest, and has the time for it.
+bool QuickStopStep::brakes(const Context& context) const {
+  AxisCore& axis = context.axis;
+  const bool rests = axis.generator().sent().atRest() && axis.feedback().seenToStand(context.now);
+  const Duration longest = stopTime(axis.config(), axis.state().velocity);
+  return axis.inOperation() && !rests && context.now - started_ <= longest;
+}
+
 Outcome QuickStopStep::advance(const Context& context) {
   AxisCore& axis = context.axis;
   if (!begun_) {
-    begun_ = true;
+    begin(context);
+    return Outcome::running();
+  }
+  if (brakes_) {
+    if (brakes(context)) return Outcome::running();
+    brakes_ = false;
     started_ = context.now;
     axis.setGoal(Goal::quick_stop);
-    context.show("stopping", "the quick stop ramp to end at standstill");
+    context.show("stopping", "the quick stop to end at standstill");
     return Outcome::running();
   }
   const bool off = axis.powerOff();

@@ -1,0 +1,87 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// Stops of torque modes whose quick stop only lets the torque go: another mode brakes the motor
+// before the drive gets it. The motor is the judge.
+#include "system/families_scene.h"
+
+namespace cia402 {
+namespace {
+
+using namespace std::chrono_literals;
+using drive::ProcedureKind;
+
+/// Hardly any friction: nothing but the driver brakes it.
+const char kFreeMotor[] =
+    ", simulation: {with: {motor: {friction: 0.001, viscous_friction: 0.02}}}";
+
+class FadingTorque : public testing::TestWithParam<FamilyMode> {
+ protected:
+  FadingTorque() : scene(loadText(familyJoint(GetParam(), kFreeMotor))) {}
+  void turn() {
+    ASSERT_TRUE(scene.boot(20s)) << scene.told();
+    const bus::Answer enabled = scene.procedure(ProcedureKind::enable);
+    ASSERT_TRUE(enabled.success) << enabled.message;
+    scene.stream("joint", 5.0, 800ms);
+    speed = scene.velocity("joint");
+    from = scene.position("joint");
+    ASSERT_GT(speed, 0.4);
+    scene.forget();
+  }
+  /// By the ramp of the acceleration limit, once the call has reached the drive. @param reaction s
+  void expectRest(double reaction = 0.05) {
+    EXPECT_NEAR(scene.velocity("joint"), 0.0, 1e-3);
+    EXPECT_LT(scene.position("joint") - from, reaction * speed + 1.1 * speed * speed / (2.0 * 4.0));
+    EXPECT_LT(scene.seen("joint").fastest, 1.02 * speed) << "the torque is not let go in motion";
+  }
+
+  Scene scene;
+  double speed = 0.0, from = 0.0;
+};
+
+// The simulation, without a brake of its own: what the tests below would see else.
+TEST_P(FadingTorque, CoastsByTheQuickStopOfTheDriveAlone) {
+  turn();
+  scene.axis("joint").stopBesideCycle("nothing else is heard");
+  scene.run(200ms);
+  EXPECT_GT(scene.velocity("joint"), 0.9 * speed);
+}
+
+TEST_P(FadingTorque, IsBrakedBeforeItsQuickStop) {
+  turn();
+  const bus::Answer stopped = scene.procedure(ProcedureKind::quick_stop);
+  EXPECT_TRUE(stopped.success) << stopped.message;
+  expectRest();
+  // Later it is enabled in the mode that pushed, and stands there.
+  scene.run(1s);
+  const double stood = scene.position("joint");
+  const bus::Answer enabled = scene.procedure(ProcedureKind::enable);
+  EXPECT_TRUE(enabled.success) << enabled.message;
+  EXPECT_EQ(scene.axis("joint").modeName(), drive::canonicalModeName(GetParam().mode));
+  EXPECT_NEAR(scene.position("joint"), stood, 1e-4);
+}
+
+TEST_P(FadingTorque, IsBrakedBeforeItIsDisabled) {
+  turn();
+  const bus::Answer disabled = scene.procedure(ProcedureKind::disable);
+  EXPECT_TRUE(disabled.success) << disabled.message;
+  expectRest();
+  EXPECT_FALSE(scene.truth("joint").power_stage_on);
+}
+
+TEST_P(FadingTorque, IsBrakedAtAShutdown) {
+  turn();
+  scene.robot().network().beginShutdown(scene.now());
+  ASSERT_TRUE(scene.runUntil([&] { return scene.robot().network().shutDown(); }, 2s));
+  expectRest();
+  EXPECT_FALSE(scene.truth("joint").power_stage_on);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, FadingTorque,
+                         testing::Values(FamilyMode{"id286_cnfa", "10000", "pt"},
+                                         FamilyMode{"megmeet_dm5", "8388608", "pt"},
+                                         FamilyMode{"megmeet_dm5", "8388608", "cst"}),
+                         [](const auto& tested) {
+                           return std::string(tested.param.family) + "_" + tested.param.mode;
+                         });
+
+}  // namespace
+}  // namespace cia402
