@@ -60,8 +60,9 @@ class DriveMotion {
   void loseHome() { axis_.limits.setHomed(false); }
   /// The drive halts the motor by itself, as by controlword bit 8, until it lets it go on.
   void pause(bool on);
-  /// A limit switch was in the way in the last step.
-  bool limitSwitchHit() const { return axis_.limits.switchHit(); }
+  /// The axis stands on a limit switch or beyond it.
+  bool onLimitSwitch() const;
+  const MotionLimits& limits() const { return axis_.limits; }
   TouchProbes& probes() { return probes_; }
   /// Actual and demand values, inputs into the dictionary.
   void publish();
