@@ -63,7 +63,7 @@ TEST_P(FamilyHomingResult, IsTheTimeOutOfTheDriverWhichStopsIt) {
   EXPECT_GT(scene.position("joint"), -1.0);
 }
 
-// Bit 12 of the first search stands when the second one begins.
+// The switch is somewhere else when it searches again.
 TEST_P(FamilyHomingResult, IsNotThatOfAnEarlierSearch) {
   Scene scene(loadText(familySearch(GetParam(), "17", "lower_limit_switch: -0.4")));
   ASSERT_TRUE(scene.boot(20s)) << scene.told();

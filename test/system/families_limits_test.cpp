@@ -189,6 +189,7 @@ TEST_P(FamilyLimitsInTheDrive, EndTheMotionInWordsAndAreLeftTheOtherWay) {
       static_cast<std::uint64_t>(2.0 * limit);
   scene.run(1s);
   EXPECT_LT(scene.seen("joint").travel(), 2e-3) << "it does not go on by itself";
+  EXPECT_TRUE(scene.truth("joint").power_stage_on) << scene.told();
   scene.mustSucceed(ProcedureKind::enable);
   if (scene.kind() == ControlKind::position) {
     EXPECT_EQ(scene.setpoint("joint", 0.5), "");

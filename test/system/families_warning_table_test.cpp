@@ -149,6 +149,7 @@ TEST_P(FamilyLimitSwitch, StopsTheJointIsToldAndIsLeftTheOtherWay) {
     }
     EXPECT_FALSE(scene.state("joint").warning);
     EXPECT_EQ(scene.axis("joint").faultText(), "");
+    EXPECT_TRUE(scene.truth("joint").power_stage_on) << scene.told();
   }
 }
 
@@ -180,6 +181,21 @@ INSTANTIATE_TEST_SUITE_P(
                  false,
                  kOvertravelWarns}),
     [](const auto& tested) { return std::string(tested.param.name); });
+
+// Its emergency comes and goes before a TPDO has brought the code, or in between.
+TEST(NimotionAlarms, ThatPauseForAMomentHaltTheAxisWhichStaysEnabled) {
+  for (int ms = 5; ms < 60; ms += 2) {
+    FamilyScene scene(familyJoint({kNimotionStepper, "4000", "csp"}));
+    scene.sendOff();
+    scene.inject("joint", "stall");
+    scene.run(std::chrono::milliseconds(ms));
+    scene.inject("joint", "clear");
+    scene.run(1s);
+    EXPECT_TRUE(scene.truth("joint").power_stage_on) << ms << " ms\n" << scene.told();
+    EXPECT_TRUE(scene.state("joint").halted) << ms << " ms\n" << scene.told();
+    EXPECT_NEAR(scene.velocity("joint"), 0.0, 1e-3) << ms << " ms";
+  }
+}
 
 /// Alarms of the NiMotion that end by themselves once their cause is gone [2112-2141]: nothing goes
 /// on.
