@@ -2,6 +2,7 @@
 // What each family tells beside its motion: voltages, temperatures, currents, states and inputs,
 // with the units of its manual.
 #include "system/families_motion.h"
+#include "system/sv660c_scene.h"
 
 namespace cia402 {
 namespace {
@@ -23,10 +24,17 @@ struct FamilyNumbersTold {
 };
 void PrintTo(const FamilyNumbersTold& told, std::ostream* out) { *out << told.tested.family; }
 
+std::string yamlOfAny(const FamilyMode& tested) {
+  const std::string family = tested.family;
+  return family == "sv660c"      ? sv660cJoint()
+         : family == "damiao_dm" ? damiaoJoint()
+                                 : familyJoint(tested);
+}
+
 class FamilySignals : public testing::TestWithParam<FamilyNumbersTold> {};
 
 TEST_P(FamilySignals, AreToldWithTheUnitsOfTheManual) {
-  FamilyScene scene(familyJoint(GetParam().tested));
+  FamilyScene scene(yamlOfAny(GetParam().tested));
   for (const ToldNumber& told : GetParam().numbers) {
     scene.drive("joint").dictionary().find(told.id)->number = told.raw;
     const auto read = scene.call(bus::ReadObjectCommand{"joint", told.name});
@@ -36,7 +44,7 @@ TEST_P(FamilySignals, AreToldWithTheUnitsOfTheManual) {
 }
 
 TEST_P(FamilySignals, OfTheProfileAreAskedForByWhoeverLooks) {
-  FamilyScene scene(familyJoint(GetParam().tested));
+  FamilyScene scene(yamlOfAny(GetParam().tested));
   for (const ToldNumber& told : GetParam().numbers) {
     scene.drive("joint").dictionary().find(told.id)->number = told.raw;
   }
@@ -58,26 +66,41 @@ TEST_P(FamilySignals, OfTheProfileAreAskedForByWhoeverLooks) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, FamilySignals,
-    testing::Values(FamilyNumbersTold{{kNimotionStepper, "4000", "csp"},
-                                      {{"bus_voltage", {0x200B, 8}, 27, "27 V", true},
-                                       {"drive_state", {0x200B, 1}, 12, " 12", true},
-                                       {"powered_time", {0x200B, 6}, 10, "9000 s", false},
-                                       {"rated_voltage", {0x2000, 1}, 24, "24 V", false},
-                                       {"pwm_duty", {0x200B, 7}, 40, " 40", false}}},
-                    FamilyNumbersTold{{kId286Cnfa, "10000", "pp"},
-                                      {{"bus_voltage", {0x2065, 0}, 4710, "47.1 V", true},
-                                       {"motor_current_actual", {0x2064, 0}, 2800, "2.8 A", true},
-                                       {"alarm_code", {0x206C, 0}, 25, " 25", true},
-                                       {"run_state", {0x206D, 0}, 3, " 3", true},
-                                       {"hardware_version", {0x206E, 0}, 101, " 101", false},
-                                       {"software_version", {0x206F, 0}, 102, " 102", false}}},
-                    FamilyNumbersTold{{kMegmeetDm5, "8388608", "csp"},
-                                      {{"bus_voltage", {0x200B, 10}, 47, "47 V", true},
-                                       {"module_temperature", {0x200B, 32}, 412, "41.2 degC", true},
-                                       {"motor_load", {0x200B, 9}, 335, " 335", true},
-                                       {"encoder_turns", {0x200B, 34}, 77, " 77", true},
-                                       {"drive_status", {0x200B, 12}, 5, " 5", true},
-                                       {"control_voltage", {0x200B, 11}, 46, "46 V", false}}}),
+    testing::Values(
+        FamilyNumbersTold{{kNimotionStepper, "4000", "csp"},
+                          {{"bus_voltage", {0x200B, 8}, 27, "27 V", true},
+                           {"drive_state", {0x200B, 1}, 12, " 12", true},
+                           {"powered_time", {0x200B, 6}, 10, "9000 s", false},
+                           {"rated_voltage", {0x2000, 1}, 24, "24 V", false},
+                           {"pwm_duty", {0x200B, 7}, 40, " 40", false}}},
+        FamilyNumbersTold{{kId286Cnfa, "10000", "pp"},
+                          {{"bus_voltage", {0x2065, 0}, 4710, "47.1 V", true},
+                           {"motor_current_actual", {0x2064, 0}, 2800, "2.8 A", true},
+                           {"alarm_code", {0x206C, 0}, 25, " 25", true},
+                           {"run_state", {0x206D, 0}, 3, " 3", true},
+                           {"hardware_version", {0x206E, 0}, 101, " 101", false},
+                           {"software_version", {0x206F, 0}, 102, " 102", false}}},
+        FamilyNumbersTold{{kMegmeetDm5, "8388608", "csp"},
+                          {{"bus_voltage", {0x200B, 10}, 47, "47 V", true},
+                           {"module_temperature", {0x200B, 32}, 412, "41.2 degC", true},
+                           {"motor_load", {0x200B, 9}, 335, " 335", true},
+                           {"encoder_turns", {0x200B, 34}, 77, " 77", true},
+                           {"drive_status", {0x200B, 12}, 5, " 5", true},
+                           {"control_voltage", {0x200B, 11}, 46, "46 V", false}}},
+        // H0b.12, .24, .26, .27, .63, .66, .67; 203Fh [L8413-8997, L14982]
+        FamilyNumbersTold{{"sv660c", "100000", "ip"},
+                          {{"dc_link_voltage", {0x200B, 0x1B}, 3105, "310.5 V", true},
+                           {"phase_current", {0x200B, 0x19}, 27, "2.7 A", true},
+                           {"module_temperature", {0x200B, 0x1C}, 48, "48 degC", true},
+                           {"encoder_temperature", {0x200B, 0x43}, 0xFFF6, "-10 degC", true},
+                           {"average_load", {0x200B, 0x0D}, 455, " 455", true},
+                           {"brake_resistor_load", {0x200B, 0x44}, 120, " 120", true},
+                           {"not_ready_reason", {0x200B, 0x40}, 3, " 3", true},
+                           {"fault_codes", {0x203F, 0}, 0x06200620, "0x06200620", true}}},
+        // The bits of 41.5, 36.25 and 2.5 as floats.
+        FamilyNumbersTold{{"damiao_dm", "", "csp"},
+                          {{"mosfet_temperature", {0x200A, 1}, 0x42260000, "41.5 degC", true},
+                           {"motor_temperature", {0x200A, 2}, 0x42110000, "36.25 degC", true}}}),
     [](const auto& tested) { return std::string(tested.param.tested.family); });
 
 /// Inputs as the drive has them, and how they are called.
