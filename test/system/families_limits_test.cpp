@@ -80,7 +80,12 @@ TEST_P(FamilyLimitNumbers, StandInTheDrive) {
 
 INSTANTIATE_TEST_SUITE_P(All, FamilyLimitNumbers,
                          testing::Values(FamilyNumbers{{kNimotionStepper, "4000", "pp"},
-                                                       {{{0x607B, 1}, -79577.5},
+                                                       {{{0x605A, 0}, 2.0},
+                                                        {{0x605B, 0}, 1.0},
+                                                        {{0x605C, 0}, 1.0},
+                                                        {{0x605D, 0}, 1.0},
+                                                        {{0x605E, 0}, 0.0},
+                                                        {{0x607B, 1}, -79577.5},
                                                         {{0x607B, 2}, 79577.5},
                                                         {{0x607D, 1}, -79577.5},
                                                         {{0x607D, 2}, 79577.5},

@@ -182,6 +182,31 @@ INSTANTIATE_TEST_SUITE_P(
                  kOvertravelWarns}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
+// Bytes 4 to 7 are the word of 200Eh: code, whether it ends by itself, reaction [294-304,
+// 2137-2175].
+TEST(NimotionAlarms, TellTheRegisterAndTheWordOfTheirEmergency) {
+  FamilyScene scene(familyJoint({kNimotionStepper, "4000", "csp"}));
+  for (const FamilyAlarm& alarm : nimotionFaults()) {
+    const auto code = static_cast<std::uint16_t>(std::stoul(alarm.code, nullptr, 16));
+    const std::uint8_t ends = alarm.ends == Ends::by_itself ? 1 : 0;
+    const std::uint8_t reaction = alarm.ends == Ends::by_power_cycle ? 1 : 0;
+    scene.inject("joint", alarm.name);
+    scene.run(20ms);
+    const fieldbus::Emergency& emergency = scene.robot().emergencies().back().emergency;
+    EXPECT_EQ(emergency.code, code) << alarm.name;
+    EXPECT_THAT(emergency.vendor, testing::ElementsAre(0, code & 0xFF, code >> 8, ends, reaction))
+        << alarm.name;
+    EXPECT_EQ(emergency.error_register & 1, 1) << alarm.name;
+    if (alarm.ends == Ends::by_power_cycle) break;
+    scene.run(1500ms);
+    scene.mustSucceed(ProcedureKind::clear_faults);
+    EXPECT_EQ(scene.robot().emergencies().back().emergency.code, 0) << alarm.name;
+  }
+  EXPECT_THAT(scene.told(), HasSubstr("emergency: 0x3110 over voltage: the bus is above"));
+  EXPECT_THAT(scene.told(),
+              HasSubstr("error register: generic, voltage; manufacturer bytes: 00 10 31 01 00"));
+}
+
 // Its emergency comes and goes before a TPDO has brought the code, or in between.
 TEST(NimotionAlarms, ThatPauseForAMomentHaltTheAxisWhichStaysEnabled) {
   for (int ms = 5; ms < 60; ms += 2) {
