@@ -217,5 +217,29 @@ INSTANTIATE_TEST_SUITE_P(All, FamilyLimitsInTheDrive,
 INSTANTIATE_TEST_SUITE_P(All, FamilyPositionLimits, testing::ValuesIn(familyModes()),
                          familyModeName);
 
+class FamilyEfforts : public testing::TestWithParam<FamilyMode> {};
+
+// limits/effort of 60 N m are 944.9 / 1000 of 50 * 1.27 N m.
+TEST_P(FamilyEfforts, AgainstABlockedRotorAreTheLimitAndTold) {
+  FamilyScene scene(familyJoint(GetParam()));
+  Motion motion(scene, "joint");
+  scene.inject("joint", "blocked_rotor");
+  const bool torque = scene.kind() == ControlKind::torque;
+  for (int i = 0; i < 60; ++i) {
+    (void)scene.setpoint("joint", torque ? 90.0 : 0.7);  // more than the limit is cut to it
+    scene.run(20ms);
+  }
+  EXPECT_GT(motion.strongest, 944.0 * 0.99) << scene.told();
+  EXPECT_LE(motion.strongest, 945.0);
+  EXPECT_NEAR(scene.state("joint").effort, 60.0, 0.1);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, FamilyEfforts,
+                         testing::Values(FamilyMode{kMegmeetDm5, "8388608", "pv"},
+                                         FamilyMode{kMegmeetDm5, "8388608", "csv"},
+                                         FamilyMode{kMegmeetDm5, "8388608", "pt"},
+                                         FamilyMode{kMegmeetDm5, "8388608", "cst"}),
+                         familyModeName);
+
 }  // namespace
 }  // namespace cia402

@@ -83,6 +83,8 @@ INSTANTIATE_TEST_SUITE_P(
                            {"alarm_code", {0x206C, 0}, 25, " 25", true},
                            {"run_state", {0x206D, 0}, 3, " 3", true},
                            {"hardware_version", {0x206E, 0}, 101, " 101", false},
+                           {"1018:01", {0x1018, 1}, 0x286, " 86 02 00 00", false},
+                           {"1018:02", {0x1018, 2}, 0xCFA0, " A0 CF 00 00", false},
                            {"software_version", {0x206F, 0}, 102, " 102", false}}},
         FamilyNumbersTold{{kMegmeetDm5, "8388608", "csp"},
                           {{"bus_voltage", {0x200B, 10}, 47, "47 V", true},
