@@ -91,6 +91,27 @@ TEST_P(FamilyEnabling, MovesNothingWhereverItStandsAndWhateverTheDriveHolds) {
 
 INSTANTIATE_TEST_SUITE_P(All, FamilyEnabling, testing::ValuesIn(familyModes()), familyModeName);
 
+class FamilyTimeOut : public testing::TestWithParam<FamilyMode> {};
+
+// Transition 4 takes longer than timing/state_change of the profiles, 2 s: it is taken back.
+TEST_P(FamilyTimeOut, OfEnablingIsToldAndLeavesItSwitchedOff) {
+  Scene scene(
+      loadText(familyJoint(GetParam(), ", simulation: {with: {quirks: {enabling_time: 4.0}}}")));
+  ASSERT_TRUE(scene.boot(20s)) << scene.told();
+  scene.forget();
+  const Time asked = scene.now();
+  const bus::Answer enabled = scene.procedure(ProcedureKind::enable);
+  EXPECT_FALSE(enabled.success);
+  EXPECT_LT(scene.now() - asked, 4s);
+  EXPECT_THAT(enabled.message, AllOf(HasSubstr("joint (node 1)"), HasSubstr("statusword"),
+                                     HasSubstr("switched on")));
+  scene.run(5s);
+  EXPECT_FALSE(scene.truth("joint").power_stage_on) << "it comes too late";
+  EXPECT_LT(scene.seen("joint").travel(), 1e-6);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, FamilyTimeOut, testing::ValuesIn(families()), familyName);
+
 /// A family with all its modes: what they are called, and their numbers.
 struct Switching {
   FamilyMode tested;

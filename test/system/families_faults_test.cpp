@@ -218,6 +218,32 @@ TEST_P(FamilyFollowing, ErrorsAreToldAndLeadToNoLeap) {
   EXPECT_LT(scene.seen("joint").fastest, 0.3) << "no leap";
 }
 
+class FamilyLag : public testing::TestWithParam<FamilyMode> {};
+
+// A motor that lags 20 ms behind is 16 mrad behind 0.8 rad/s.
+TEST_P(FamilyLag, IsToldAsTheFollowingErrorByWhichItIsBehind) {
+  FamilyScene scene(familyJoint(GetParam(), ", simulation: {time_constant: 0.02}"));
+  ASSERT_EQ(scene.setpoint("joint", 2.2), "");
+  scene.run(1s);
+  for (int i = 0; i < 5; ++i) {
+    scene.axis("joint").look();
+    scene.run(100ms);
+  }
+  ASSERT_NEAR(scene.velocity("joint"), 0.8, 0.01);
+  EXPECT_NEAR(scene.state("joint").following_error, 0.016, 1e-3);
+  scene.run(3s);
+  scene.axis("joint").look();
+  scene.run(300ms);
+  EXPECT_NEAR(scene.state("joint").following_error, 0.0, 1.1 * oneCount(GetParam()));
+}
+
+INSTANTIATE_TEST_SUITE_P(All, FamilyLag,
+                         testing::Values(FamilyMode{kNimotionStepper, "4000", "csp"},
+                                         FamilyMode{kNimotionStepper, "4000", "pp"},
+                                         FamilyMode{kMegmeetDm5, "8388608", "csp"},
+                                         FamilyMode{kMegmeetDm5, "8388608", "pp"}),
+                         familyModeName);
+
 INSTANTIATE_TEST_SUITE_P(All, FamilyFollowing,
                          testing::Values(FamilyMode{kNimotionStepper, "4000", "pp"},
                                          FamilyMode{kNimotionStepper, "4000", "ip"},
