@@ -225,6 +225,24 @@ TEST(FollowWatch, GivesADriveThatPlansUntilItHasStoodForAWhileAtALimit) {
   EXPECT_LE(bench.now - begun, 300ms + 2 * kCycle);
 }
 
+// A stepper whose following error is no fault: only the bit of its mode tells of it.
+TEST(FollowWatch, GivesAGoalUpWhereTheDriveSaysThatItsMotorStaysBehind) {
+  for (const bool tells : {false, true}) {
+    ModeSpec mode;
+    mode.kind = ControlKind::position;
+    mode.following_error_bit = 13;
+    WatchBench bench(SetPointKind::goal);
+    bench.state.mode = &mode;
+    bench.state.statusword = tells ? 0x2000 : 0x1000;
+    EXPECT_FALSE(bench.cycle(0.0, 0.5));
+    bool called_back = false;
+    for (const Time end = bench.now + 1s; bench.now < end && !called_back;) {
+      called_back = bench.cycle(0.0);
+    }
+    EXPECT_EQ(called_back, tells);
+  }
+}
+
 TEST(FollowWatch, AGoalThatIsReachedIsNotCalledBack) {
   WatchBench bench(SetPointKind::goal);
   bench.state.internal_limit = bench.state.target_reached = true;

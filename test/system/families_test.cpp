@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // The families that are served in part so far, each in each of its modes with its simulated drive:
 // what the joint does is read from the motor.
-#include "system/families_scene.h"
+#include "system/families_motion.h"
 
 namespace cia402 {
 namespace {
@@ -87,19 +87,7 @@ TEST_P(Family, BrakesByAQuickStop) {
   EXPECT_LT(scene.position("joint") - from, 0.03 * speed + 1.1 * speed * speed / (2.0 * ramp));
 }
 
-constexpr char kNimotion[] = "nimotion_stepper", kId286[] = "id286_cnfa", kDm5[] = "megmeet_dm5";
-
-INSTANTIATE_TEST_SUITE_P(
-    All, Family,
-    testing::Values(FamilyMode{kNimotion, "4000", "pp"}, FamilyMode{kNimotion, "4000", "vl"},
-                    FamilyMode{kNimotion, "4000", "pv"}, FamilyMode{kNimotion, "4000", "ip"},
-                    FamilyMode{kNimotion, "4000", "csp"}, FamilyMode{kNimotion, "4000", "csv"},
-                    FamilyMode{kId286, "10000", "pp"}, FamilyMode{kId286, "10000", "pv"},
-                    FamilyMode{kId286, "10000", "csv"}, FamilyMode{kId286, "10000", "pt"},
-                    FamilyMode{kDm5, "8388608", "pp"}, FamilyMode{kDm5, "8388608", "pv"},
-                    FamilyMode{kDm5, "8388608", "csp"}, FamilyMode{kDm5, "8388608", "csv"},
-                    FamilyMode{kDm5, "8388608", "pt"}, FamilyMode{kDm5, "8388608", "cst"}),
-    [](const auto& tested) { return std::string(tested.param.family) + "_" + tested.param.mode; });
+INSTANTIATE_TEST_SUITE_P(All, Family, testing::ValuesIn(familyModes()), familyModeName);
 
 constexpr char kReverseLimitAtDi1[] = ", write: [{object: di1_function, raw: 36}]";  // P03.00
 
@@ -128,7 +116,7 @@ TEST_P(FamilyWith, AFaultSaysSoInWordsAndIsCleared) {
 
 TEST_P(FamilyWith, ANegativeLimitSwitchIsFoundAsHome) {
   const FamilyMode& tested = GetParam().tested;
-  const bool by_function = tested.family == std::string(kDm5);
+  const bool by_function = tested.family == std::string(kMegmeetDm5);
   Scene scene(
       loadText(familyJoint(tested,
                            ", homing: {method: 17, search_velocity: 0.3, zero_velocity: 0.05,"
@@ -143,15 +131,15 @@ TEST_P(FamilyWith, ANegativeLimitSwitchIsFoundAsHome) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, FamilyWith,
-                         testing::Values(FamilyFault{{kNimotion, "4000", "csp"},
+                         testing::Values(FamilyFault{{kNimotionStepper, "4000", "csp"},
                                                      "over_voltage",
                                                      "0x3110",
                                                      "over voltage: the bus is above 2001h:01"},
-                                         FamilyFault{{kId286, "10000", "pp"},
+                                         FamilyFault{{kId286Cnfa, "10000", "pp"},
                                                      "over_voltage",
                                                      "0x000E",
                                                      "supply over-voltage: braking returns more"},
-                                         FamilyFault{{kDm5, "8388608", "csp"},
+                                         FamilyFault{{kMegmeetDm5, "8388608", "csp"},
                                                      "overvoltage",
                                                      "0xFF02",
                                                      "supply over-voltage (Er.002)"}),

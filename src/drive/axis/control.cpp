@@ -67,9 +67,9 @@ bool Control::stopping() const {
                                     state == State::quick_stop_active);
 }
 
-void Control::write(ModeBits bits) {
+void Control::write(unsigned mode_bits, const ModeSpec& mode) {
   if (silent_ && !fault_reset_) {
-    word_ = static_cast<std::uint16_t>(silentWord() | (stopping() ? bits.stopping : 0u));
+    word_ = static_cast<std::uint16_t>(silentWord() | (stopping() ? mode.stoppingBits() : 0u));
   } else if (voltage_off_) {
     word_ = 0;
   } else {
@@ -77,11 +77,11 @@ void Control::write(ModeBits bits) {
     unsigned word = base_;
     if (fault_reset_) word |= controlword::kFaultReset;
     if (in_operation_) {
-      word |= bits.running;
+      word |= mode_bits;
       if (homing_start_) word |= controlword::kHomingStart;
       if (halt_) word |= controlword::kHalt;
     } else if (stopping()) {
-      word |= bits.stopping;
+      word |= mode.stoppingBits();
     }
     word_ = static_cast<std::uint16_t>(word);
   }

@@ -70,13 +70,10 @@ class Control {
   }
   void endHalt() { halt_ = braking_ = false; }
 
-  /// Bits of the controlword of the active mode.
-  struct ModeBits {
-    unsigned running = 0;   ///< in operation, once the brake is released
-    unsigned stopping = 0;  ///< on the way out of it, as long as the drive may turn the motor
-  };
-  /// Puts the controlword into the process image.
-  void write(ModeBits bits);
+  /// Puts the controlword into the process image. @param mode_bits of the active mode, once the
+  /// brake is released; they count in operation. @param mode the active one, whose bits may count
+  /// on the way out of it, too
+  void write(unsigned mode_bits, const ModeSpec& mode);
   /// How often the controlword was sent so far.
   std::uint64_t frames() const { return axis_.image.sent(axis_.objects.controlword.slot); }
   /// What was sent last, and in words: "shutdown (transition 2)".

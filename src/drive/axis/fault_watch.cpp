@@ -28,6 +28,8 @@ void FaultWatch::readError(Time now) {
 FaultWatch::Warning FaultWatch::warning() const {
   const DriveProfile& profile = axis_.profile();
   const std::uint16_t code = axis_.state.error_code;
+  // Its code goes before its bit in the statusword does: it is about to end.
+  if (code == 0 && acknowledged_ != 0) return Warning::goes_on;
   const auto known = profile.warnings.find(code);
   if (known == profile.warnings.end() || !known->second.reaction) {
     return profile.warning_stops ? Warning::stops : Warning::goes_on;

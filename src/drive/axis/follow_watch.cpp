@@ -13,6 +13,13 @@ constexpr Duration kLeftBehind{std::chrono::milliseconds(150)},
 /// A drive that goes to a goal by itself, and stands at a limit on the way, gets so long.
 constexpr Duration kStuck{std::chrono::milliseconds(300)};
 
+/// The drive says by the bit of its mode that the motor stays behind. It may do no more than that.
+bool tellsFollowingError(const AxisState& state) {
+  if (state.mode == nullptr || state.mode->kind != ControlKind::position) return false;
+  const std::optional<int>& bit = state.mode->following_error_bit;
+  return bit && ((static_cast<unsigned>(state.statusword) >> *bit) & 1u) != 0;
+}
+
 }  // namespace
 
 void FollowWatch::begin(Time when) {
@@ -46,7 +53,8 @@ bool FollowWatch::watchStanding(const Look& look, Time now) {
   const bool runs = streams && std::fabs(look.sent.velocity()) > clearly_;
   if (!runs) {
     running_since_ = kNever;
-    return look.state.internal_limit && restsAhead(look, ahead, now);
+    const bool held = look.state.internal_limit || tellsFollowingError(look.state);
+    return held && restsAhead(look, ahead, now);
   }
   if (running_since_ == kNever) running_since_ = now;
   return runsAway(look, ahead, now);

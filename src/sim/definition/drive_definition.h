@@ -94,6 +94,7 @@ struct FaultDefinition {
   bool warning = false;          ///< statusword bit 7 instead of a fault
   bool holds = false;            ///< a warning: the motor is halted until it is over
   Duration persists{0};          ///< the cause stays so long; a reset before is refused
+  bool ends_by_itself = false;   ///< the drive resets it as soon as its cause is gone
   std::optional<Ramp> reaction;  ///< instead of 605Eh, e.g. coast where the stage is broken
   bool voltage_lost = false;     ///< statusword bit 4 goes while the cause lasts
 };

@@ -39,6 +39,7 @@ void readFault(const std::string& name, const yaml::Value& from, DriveDefinition
   reader.read("holds", fault.holds);
   if (fault.holds && !fault.warning) reader.problem("holds", "is for warnings");
   reader.read("voltage_lost", fault.voltage_lost);
+  reader.read("ends_by_itself", fault.ends_by_itself);
   double seconds = 0.0;
   reader.read("persists_for", seconds, 0.0, kForeverS);
   fault.persists = fromSeconds(seconds);

@@ -49,7 +49,7 @@ void DriveCore::start(bool cold, Time now) {
   controlword_ = 0;
   statusword_ = 0;  // the dictionary has its initial values again
   reset_low_since_ = now;
-  limit_reported_ = false;
+  limits_told_ = LimitReports();
   faults_.start();
   sync_.reset();
   values_.setRaw(Role::error_code, 0);
@@ -70,8 +70,8 @@ void DriveCore::powerOff() {
 
 bool DriveCore::idle() const {
   const bool initialises = power_.readyAt() != kNever && on_;
-  return !power_.enabling() && modes_.due() == kNever && !motion_.powered() && motion_.atRest() &&
-         !initialises;
+  return !power_.enabling() && !faults_.endByThemselves() && modes_.due() == kNever &&
+         !motion_.powered() && motion_.atRest() && !initialises;
 }
 
 void DriveCore::advance(Time now) {
@@ -106,6 +106,8 @@ void DriveCore::step() {
   const Time time{step_ * kDriveStep};
   if (on_) power_.finishInitialisation(time, now_);
   if (power_.finishEnabling(time, now_)) onTargetPosition();
+  const bool fault = power_.state() == PdsState::fault;
+  if (fault && faults_.endByThemselves() && faults_.lasting(time) == nullptr) resetFault();
   if (time >= modes_.due()) {
     modes_.apply(power_.state());
     updateStatusword();
@@ -125,12 +127,19 @@ void DriveCore::superviseMotion() {
   const Time time{step_ * kDriveStep};
   if (toSeconds(sync_.since(time)) > configuredPeriod(values_) + syncTolerance())
     raise("sync_error");
-  if (!motion_.limitSwitchHit()) {
-    limit_reported_ = false;
-  } else if (!limit_reported_) {
-    limit_reported_ = true;
-    if (definition_.limit_switch_is_fault) raise("limit_switch");
-  }
+  const MotionLimits& limits = motion_.limits();
+  const auto act = [this](const LimitReports::Due& due) {
+    if (due.end != nullptr && faults_.endWarning(*due.end)) clearErrors();
+    if (due.end != nullptr) updateStatusword();
+    if (due.raise != nullptr) raise(*due.raise);
+  };
+  const bool beyond = limits.positionHit();
+  act(limits_told_.positions.look(
+      {"position_limit", beyond && motion_.standing(), beyond, limits.upwards()}, definition_));
+  if (!definition_.limit_switch_is_fault) return;
+  act(limits_told_.switches.look(
+      {"limit_switch", limits.switchHit(), motion_.onLimitSwitch(), limits.upwards()},
+      definition_));
 }
 
 void DriveCore::onControlword() {

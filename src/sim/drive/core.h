@@ -6,6 +6,7 @@
 #include "canopen/nmt/nmt.h"
 #include "sim/definition/drive_definition.h"
 #include "sim/drive/fault_memory.h"
+#include "sim/drive/limit_reports.h"
 #include "sim/drive/mode_selection.h"
 #include "sim/drive/motion.h"
 #include "sim/drive/power_stage.h"
@@ -106,9 +107,9 @@ class DriveCore {
   Time now_{};
   std::int64_t step_ = 0;  ///< number of the grid step reached
   bool on_ = false;
-  bool stored_ = false;          ///< parameters, since its power was off
-  bool limit_reported_ = false;  ///< of a limit switch that is still in the way
-  Time reset_low_since_{};       ///< controlword bit 7
+  bool stored_ = false;  ///< parameters, since its power was off
+  LimitReports limits_told_;
+  Time reset_low_since_{};  ///< controlword bit 7
   std::uint16_t controlword_ = 0;
   std::uint16_t statusword_ = 0;
   canopen::NmtState nmt_ = canopen::NmtState::unknown;

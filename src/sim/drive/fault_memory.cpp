@@ -45,6 +45,22 @@ void FaultMemory::endCauses(Time now) {
   for (Cause& cause : causes_) cause.until = now;
 }
 
+bool FaultMemory::endByThemselves() const {
+  return !causes_.empty() && std::all_of(causes_.begin(), causes_.end(), [](const Cause& cause) {
+    return cause.fault->ends_by_itself;
+  });
+}
+
+bool FaultMemory::endWarning(const FaultDefinition& warning) {
+  const auto over = [&warning](const Cause& cause) { return cause.fault == &warning; };
+  const auto kept = std::remove_if(causes_.begin(), causes_.end(), over);
+  if (kept == causes_.end()) return false;
+  causes_.erase(kept, causes_.end());
+  warning_ = std::any_of(causes_.begin(), causes_.end(),
+                         [](const Cause& cause) { return cause.fault->warning; });
+  return causes_.empty();
+}
+
 bool FaultMemory::endWarnings() {
   if (!warning_) return false;
   causes_.erase(std::remove_if(causes_.begin(), causes_.end(),

@@ -25,6 +25,10 @@ class FaultMemory {
   void clear();
   /// The causes vanish; the errors still want their reset.
   void endCauses(Time now);
+  /// There are errors, and the drive resets each of them by itself.
+  bool endByThemselves() const;
+  /// One warning is over. @return true if no error is left
+  bool endWarning(const FaultDefinition& warning);
   /// Warnings last as long as what they warn of. @return true if no error is left.
   bool endWarnings();
 

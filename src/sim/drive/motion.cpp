@@ -223,6 +223,11 @@ std::uint16_t DriveMotion::statusBits() const {
   return bits;
 }
 
+bool DriveMotion::onLimitSwitch() const {
+  const double turns = axis_.motor.position();
+  return axis_.switches.negativeLimit(turns) || axis_.switches.positiveLimit(turns);
+}
+
 void DriveMotion::publish() {
   DriveValues& values = axis_.values;
   const double turns = axis_.motor.position();

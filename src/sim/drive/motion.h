@@ -62,8 +62,9 @@ class DriveMotion {
   void pause(bool on);
   /// Ramps on the way out of operation hold their speed in velocity mode.
   void lockRamps(bool on) { ramps_locked_ = on; }
-  /// A limit switch was in the way in the last step.
-  bool limitSwitchHit() const { return axis_.limits.switchHit(); }
+  /// The axis stands on a limit switch or beyond it.
+  bool onLimitSwitch() const;
+  const MotionLimits& limits() const { return axis_.limits; }
   TouchProbes& probes() { return probes_; }
   /// Actual and demand values, inputs into the dictionary.
   void publish();

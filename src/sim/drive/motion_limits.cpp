@@ -75,7 +75,10 @@ std::optional<MotionLimits::Span> MotionLimits::positions() const {
 double MotionLimits::clamped(double turns) {
   const auto limits = positions();
   const double target = limits ? std::clamp(turns, limits->low, limits->high) : turns;
-  active_ = active_ || target != turns;
+  if (target != turns) {
+    active_ = position_hit_ = true;
+    upwards_ = target < turns;
+  }
   return target;
 }
 
@@ -93,6 +96,7 @@ bool MotionLimits::blocked(double direction, double position) {
                          (direction < 0.0 && switches_.negativeLimit(position));
   active_ = active_ || at_switch;
   switch_hit_ = switch_hit_ || at_switch;
+  if (at_switch) upwards_ = direction > 0.0;
   return at_switch;
 }
 

@@ -53,8 +53,12 @@ class MotionLimits {
   bool active() const { return active_; }
   /// A switch was in the way in this step.
   bool switchHit() const { return switch_hit_; }
+  /// 607Dh is in the way of a target.
+  bool positionHit() const { return position_hit_; }
+  /// What was in the way last lies upwards.
+  bool upwards() const { return upwards_; }
   /// What was in the way, is so no more.
-  void release() { active_ = false; }
+  void release() { active_ = position_hit_ = false; }
   /// The next step finds out anew whether a switch is in the way.
   void releaseSwitch() { switch_hit_ = false; }
 
@@ -69,6 +73,8 @@ class MotionLimits {
   bool homed_ = false;
   bool active_ = false;
   bool switch_hit_ = false;
+  bool position_hit_ = false;
+  bool upwards_ = false;
 };
 
 }  // namespace cia402::sim

@@ -20,7 +20,7 @@ bool ProfilePosition::ofThisMode() const {
 
 void ProfilePosition::begin() {
   const Demand& demand = axis_.demand;
-  active_ = {demand.position, {}};
+  active_ = {demand.position, {}, {}};
   buffered_.reset();
   acknowledged_ = false;
   bit_4_ = false;
@@ -46,8 +46,8 @@ void ProfilePosition::accept(std::uint16_t controlword) {
   const bool relative = (controlword & kRelative) != 0;
   const SetPoint& last = buffered_ ? *buffered_ : active_;
   const double turns = axis_.values.get(Role::target_position, 0.0);
-  const SetPoint next{axis_.trueTarget(relative ? last.target - axis_.frame + turns : turns),
-                      axis_.limits.profile(axis_.mode)};
+  const double commanded = relative ? last.target - axis_.frame + turns : turns;
+  const SetPoint next{axis_.trueTarget(commanded), axis_.limits.profile(axis_.mode), commanded};
   acknowledged_ = true;
   const TrapezoidProfile& profile = axis_.demand.profile;
   const bool busy = profile.position() != active_.target || profile.velocity() != 0.0;
@@ -63,8 +63,11 @@ void ProfilePosition::step() {
   TrapezoidProfile& profile = axis_.demand.profile;
   if (!axis_.mode->handshake) {
     active_ = {axis_.trueTarget(axis_.values.get(Role::target_position, 0.0)),
-               axis_.limits.profile(axis_.mode)};
+               axis_.limits.profile(axis_.mode),
+               {}};
   }
+  if (active_.commanded)
+    axis_.limits.clamped(*active_.commanded);  // a limit goes on to be in the way
   if (axis_.blocked(active_.target - profile.position())) {
     profile.stop(axis_.limits.deceleration(Ramp::quick_stop, axis_.mode));
   } else {

@@ -33,6 +33,7 @@ class ProfilePosition {
   struct SetPoint {
     double target = 0.0;
     ProfileLimits limits;
+    std::optional<double> commanded;  ///< as it came, in the drive's own turns
   };
   void accept(std::uint16_t controlword);
   bool ofThisMode() const;

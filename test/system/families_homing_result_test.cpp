@@ -1,0 +1,115 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// How a search for home ends that does not find it, and what an earlier one has left behind.
+#include "system/families_motion.h"
+
+namespace cia402 {
+namespace {
+
+using namespace std::chrono_literals;
+using drive::ProcedureKind;
+using testing::AllOf;
+using testing::HasSubstr;
+
+std::string familySearch(const FamilyMode& tested, const char* method, const std::string& switches,
+                         const std::string& timeout = "30.0") {
+  const bool by_function = tested.family == std::string(kMegmeetDm5);
+  return familyJoint(tested, ", homing: {method: " + std::string(method) +
+                                 ", search_velocity: 0.4, zero_velocity: 0.05, acceleration: 2.0,"
+                                 " timeout: " +
+                                 timeout + "}, simulation: {" + switches + "}" +
+                                 (by_function ? ", write: [{object: di1_function, raw: 36},"
+                                                " {object: di2_function, raw: 32},"
+                                                " {object: di3_function, raw: 35}]"
+                                              : ""));
+}
+
+class FamilyHomingResult : public testing::TestWithParam<FamilyMode> {
+ protected:
+  static void expectNotHomed(Scene& scene) {
+    scene.run(500ms);
+    EXPECT_FALSE(scene.state("joint").homed);
+    EXPECT_NEAR(scene.velocity("joint"), 0.0, 1e-3);
+    scene.forget();
+    scene.run(1s);
+    EXPECT_LT(scene.seen("joint").travel(), 1e-4) << scene.told();
+  }
+};
+
+TEST_P(FamilyHomingResult, IsAnInterruptionWhereItIsHaltedAndTheAxisHolds) {
+  Scene scene(loadText(familySearch(GetParam(), "17", "lower_limit_switch: -2.0")));
+  ASSERT_TRUE(scene.boot(20s)) << scene.told();
+  const auto homed = scene.begin(ProcedureKind::home, "joint");
+  ASSERT_TRUE(scene.runUntil([&] { return scene.velocity("joint") < -0.35; }, 8s)) << scene.told();
+  const double from = scene.position("joint");
+  EXPECT_TRUE(scene.procedure(ProcedureKind::halt, "joint").success);
+  EXPECT_GT(scene.position("joint") - from, -0.4 * 0.06 - 1.1 * 0.4 * 0.4 / (2.0 * 2.0));
+  ASSERT_TRUE(scene.runUntil([&] { return homed->has_value(); }, 3s));
+  EXPECT_FALSE((*homed)->success);
+  EXPECT_THAT((*homed)->message, AllOf(HasSubstr("joint (node 1)"), HasSubstr("halt")));
+  expectNotHomed(scene);
+  EXPECT_TRUE(scene.truth("joint").power_stage_on) << "it is halted, not switched off";
+}
+
+TEST_P(FamilyHomingResult, IsTheTimeOutOfTheDriverWhichStopsIt) {
+  Scene scene(loadText(familySearch(GetParam(), "17", "lower_limit_switch: -2.0", "1.5")));
+  ASSERT_TRUE(scene.boot(20s)) << scene.told();
+  const bus::Answer homed = scene.procedure(ProcedureKind::home, "joint");
+  EXPECT_FALSE(homed.success);
+  EXPECT_THAT(homed.message,
+              AllOf(HasSubstr("joint (node 1): homing timed out after 1.5 s"),
+                    HasSubstr("method 17"), HasSubstr("The drive was still searching")));
+  expectNotHomed(scene);
+  EXPECT_FALSE(scene.truth("joint").power_stage_on);
+  EXPECT_GT(scene.position("joint"), -1.0);
+}
+
+// The switch is somewhere else when it searches again.
+TEST_P(FamilyHomingResult, IsNotThatOfAnEarlierSearch) {
+  Scene scene(loadText(familySearch(GetParam(), "17", "lower_limit_switch: -0.4")));
+  ASSERT_TRUE(scene.boot(20s)) << scene.told();
+  bus::Answer homed = scene.procedure(ProcedureKind::home, "joint");
+  ASSERT_TRUE(homed.success) << homed.message;
+  ASSERT_NEAR(scene.position("joint"), -0.4, 0.02);
+  EXPECT_NEAR(scene.state("joint").position, scene.position("joint") + 0.4, 2e-3);
+  scene.drive("joint").mechanics().negative_limit_switch = -0.9 * 50.0 / 6.283185307179586;
+  homed = scene.procedure(ProcedureKind::home, "joint");
+  ASSERT_TRUE(homed.success) << homed.message;
+  EXPECT_NEAR(scene.position("joint"), -0.9, 0.02);
+  EXPECT_NEAR(scene.state("joint").position, scene.position("joint") + 0.9, 2e-3);
+}
+
+// The limit switch is there before the home switch: method 21 knows no turning.
+TEST_P(FamilyHomingResult, IsAnErrorInWordsWhereTheDriveMeetsAWrongSwitch) {
+  Scene scene(loadText(familySearch(GetParam(), "21",
+                                    "initial_position: 0.0, home_switch: [-1.6, "
+                                    "-1.4], lower_limit_switch: -0.5, upper_limit_switch: 2.0")));
+  ASSERT_TRUE(scene.boot(20s)) << scene.told();
+  const bus::Answer homed = scene.procedure(ProcedureKind::home, "joint");
+  EXPECT_FALSE(homed.success);
+  EXPECT_THAT(homed.message, AllOf(HasSubstr("joint (node 1)"), HasSubstr("homing")));
+  EXPECT_GT(scene.position("joint"), -0.5 - 0.1);
+  expectNotHomed(scene);
+}
+
+TEST_P(FamilyHomingResult, IsAFaultInWordsWhereOneComesMeanwhile) {
+  Scene scene(loadText(familySearch(GetParam(), "17", "lower_limit_switch: -2.0")));
+  ASSERT_TRUE(scene.boot(20s)) << scene.told();
+  const auto homed = scene.begin(ProcedureKind::home, "joint");
+  ASSERT_TRUE(scene.runUntil([&] { return scene.velocity("joint") < -0.35; }, 8s)) << scene.told();
+  const bool dm5 = GetParam().family == std::string(kMegmeetDm5);
+  scene.inject("joint", dm5 ? "homing_time" : "over_voltage");
+  ASSERT_TRUE(scene.runUntil([&] { return homed->has_value(); }, 3s));
+  EXPECT_FALSE((*homed)->success);
+  EXPECT_THAT((*homed)->message, HasSubstr("joint (node 1): fault"));
+  scene.run(100ms);
+  EXPECT_THAT(scene.axis("joint").faultText(),
+              HasSubstr(dm5 ? "0xFF25 homing took too long (Er.037)" : "voltage"));
+  scene.run(2s);
+  EXPECT_FALSE(scene.truth("joint").power_stage_on);
+  EXPECT_FALSE(scene.state("joint").homed);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, FamilyHomingResult, testing::ValuesIn(families()), familyName);
+
+}  // namespace
+}  // namespace cia402
