@@ -86,19 +86,6 @@ TEST(FamilyNmtReset, ThatDoesNothingHangsNobody) {
   expectGoes(scene, 0.3);
 }
 
-/// Another device on the bus.
-class Stranger final : public sim::Participant {
- public:
-  explicit Stranger(sim::World& world) : port_(world.addParticipant("stranger", *this)) {}
-  void receive(const can::Frame&, Time) override {}
-  void tick(Time) override {}
-  Time nextDeadline() const override { return kNever; }
-  void send(const can::Frame& frame) { port_.send(frame); }
-
- private:
-  sim::Port& port_;
-};
-
 TEST_P(FamilyNmt, IsBroughtBackWhenSomebodyElseStopsIt) {
   TracedScene scene(busJoint(GetParam()));
   Stranger stranger(scene.world());

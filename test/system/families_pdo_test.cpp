@@ -32,8 +32,9 @@ std::string fullLayout(const FamilyMode& tested) {
 }
 
 // Made invalid, emptied, filled, counted, made valid; RPDO2 and TPDO2 of node 1 by hand. An SV660C
-// keeps bit 30 of its TPDOs [L14166-14174]; the others have none.
+// has bit 30 in its TPDOs [L14166-14174], a Damiao got it from somebody: it stays.
 TEST_P(FamilyPdo, IsTakenApartAndMappedInPreOperationalAndReadBack) {
+  const bool kept = is(GetParam(), kBusSv660c) || is(GetParam(), kBusDamiao);
   TracedScene scene(busJoint(GetParam(), fullLayout(GetParam())));
   for (int i = 0; i < 4; ++i) {  // as somebody may have left it
     const auto leave = [&](fieldbus::ObjectId id, std::uint64_t number) {
@@ -43,7 +44,7 @@ TEST_P(FamilyPdo, IsTakenApartAndMappedInPreOperationalAndReadBack) {
     };
     for (const int record : {0x1400, 0x1800}) {
       const auto index = static_cast<std::uint16_t>(record + i);
-      const bool rtr = record == 0x1800 && is(GetParam(), kBusSv660c);
+      const bool rtr = record == 0x1800 && kept;
       const unsigned base = record == 0x1400 ? 0x201 : 0x181;
       leave({index, 1}, base + 0x100U * static_cast<unsigned>(i) + (rtr ? 0x40000000U : 0U));
       leave({index, 2}, 255);
@@ -51,8 +52,7 @@ TEST_P(FamilyPdo, IsTakenApartAndMappedInPreOperationalAndReadBack) {
     }
   }
   ASSERT_TRUE(scene.boot(kFamilyBoot)) << scene.told();
-  const std::string bit30 = is(GetParam(), kBusSv660c) ? "C0" : "80",
-                    valid = is(GetParam(), kBusSv660c) ? "40" : "00";
+  const std::string bit30 = kept ? "C0" : "80", valid = kept ? "40" : "00";
   const std::vector<std::string> steps{
       "601 23 01 14 01 01 03 00 80", "601 2F 01 16 00 00 00 00 00", "601 23 01 16 01 20 00 7A 60",
       "601 2F 01 16 00 01 00 00 00", "601 2F 01 14 02 01 00 00 00", "601 23 01 14 01 01 03 00 00",
@@ -216,7 +216,8 @@ struct LackingDrive {
 // What the profile may do without, the drive may lack; on what a check counts, by `lacks` alone.
 TEST(FamilyObjects, ThatAreAbsentStopNothing) {
   for (const LackingDrive& lacking :
-       {LackingDrive{kBusId286, "[0x60B0, 0x6082, 0x60FE, 0x6087, 0x1009, 0x100A]", ""},
+       {LackingDrive{kBusId286, "[0x60B0, 0x6082, 0x60FE, 0x6087, 0x1009, 0x100A]",
+                     ", modes: [pp, pt]"},
         LackingDrive{kBusDm5, "[0x607D, 0x1009, 0x100A]", ""},
         LackingDrive{kBusDm5, "[0x6072, 0x60E0, 0x60E1]",
                      ", lacks: [max_torque, positive_torque_limit, negative_torque_limit]"},
