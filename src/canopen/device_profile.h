@@ -24,6 +24,8 @@ struct DeviceProfile {
   unsigned fixed_pdo_entries = 0;  ///< every mapping has so many, unused ones are 0; 0: as needed
   std::vector<PdoLayout> fixed_pdos;  ///< with a mapping that the drive does not let change
   bool cob_ids_of_drive = false;      ///< COB-IDs of PDOs are fixed: read and used
+  bool cob_ids_of_node = false;       ///< bits 0 to 6 of a PDO's COB-ID must be the node-ID
+  bool remote_requests = true;        ///< TPDOs of types 252 and 253 exist
   bool rpdo_deadline = false;         ///< the drive reacts when RPDOs stay away (1400h:05)
   bool type_255_by_timer = false;     ///< TPDOs of that type come by event timer only
   bool pdo_map_count_may_be_read_only = false;
@@ -34,6 +36,7 @@ struct DeviceProfile {
   /// Shortest and longest SYNC period that the drive follows.
   Duration sync_period_min{0}, sync_period_max{Duration::max()};
   bool heartbeat_supported = true, heartbeat_consumer_supported = true;
+  Duration error_control_min{0};  ///< shortest heartbeat and guard time that the drive stands
   bool node_guarding_supported = false;  ///< 100Ch and 100Dh; used where there is no heartbeat
   /// NMT reset node must not be sent: the drive disturbs the bus while it starts, or does not come
   /// back. Its communication is reset instead.

@@ -132,6 +132,18 @@ void checkMasterTimeout(const yaml::Value& at, const canopen::ErrorControlOption
   }
 }
 
+void checkErrorControlPeriod(yaml::Section& section, const AxisDraft& draft, const BusConfig& bus) {
+  const Duration shortest = draft.device.profile->error_control_min;
+  const ErrorControlPlan plan = planErrorControl(bus, draft.device);
+  if (plan.kind == ErrorControl::none || plan.period >= shortest) return;
+  const std::string problem = "profile " + draft.axis.profile->name + " stands no " +
+                              (plan.kind == ErrorControl::guarding ? "guard time" : "heartbeat") +
+                              " below " + secondsText(shortest) + ", not " +
+                              secondsText(plan.period);
+  if (const auto at = section.get("error_control")) return at->problem(problem);
+  section.problem(problem + " (bus/heartbeat); make that longer, or give it `error_control`");
+}
+
 }  // namespace
 
 ErrorControlPlan planErrorControl(const BusConfig& bus, const DeviceConfig& device) {
@@ -165,7 +177,9 @@ void readNodeOptions(yaml::Section& section, DeviceConfig& device) {
 void checkErrorControl(yaml::Section& section, const AxisDraft& draft, const RobotConfig& robot) {
   const DeviceConfig& device = draft.device;
   const auto at = section.get("error_control");
-  if (!at || !draft.axis.profile) return;
+  if (!draft.axis.profile) return;
+  checkErrorControlPeriod(section, draft, robot.bus);
+  if (!at) return;
   const std::string& profile_name = draft.axis.profile->name;
   const canopen::ErrorControlOptions& options = device.error_control;
   const ErrorControlPlan plan = planErrorControl(robot.bus, device);

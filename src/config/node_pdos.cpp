@@ -132,9 +132,13 @@ class PdoMaker {
     node_.pdos.push_back(makePdo(layout, first, axis, device_));
     PdoConfig& pdo = node_.pdos.back();
     if (beyond) pdo.cob_id = pdo.enabled ? kUnassigned : 0;
-    if (pdo.enabled && pdo.cob_id != 0 && pdo.cob_id != kUnassigned && !isPdoCobId(pdo.cob_id)) {
-      problems_.add(path, name + " would have the COB-ID " + hexText(pdo.cob_id, 3) +
-                              ", which CiA 301 keeps for something else");
+    if (!pdo.enabled || pdo.cob_id == 0 || pdo.cob_id == kUnassigned) return;
+    const std::string would = name + " would have the COB-ID " + hexText(pdo.cob_id, 3);
+    if (!isPdoCobId(pdo.cob_id)) {
+      problems_.add(path, would + ", which CiA 301 keeps for something else");
+    } else if (device_.profile->cob_ids_of_node && pdo.cob_id % 0x80 != device_.node_id) {
+      problems_.add(path, would + ", but this drive takes those of its own node-ID only, as " +
+                              hexText(pdo.cob_id / 0x80 * 0x80 + device_.node_id, 3));
     }
   }
 

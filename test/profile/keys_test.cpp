@@ -292,7 +292,9 @@ TEST(ProfileDefaults, AreThoseOfTheStandards) {
   EXPECT_EQ(device.max_pdo_entries, 8U);
   EXPECT_EQ(device.fixed_pdo_entries, 0U);
   EXPECT_FALSE(device.pdo_map_count_may_be_read_only || device.cob_ids_of_drive ||
-               device.rpdo_deadline);
+               device.cob_ids_of_node || device.rpdo_deadline);
+  EXPECT_TRUE(device.remote_requests);
+  EXPECT_EQ(device.error_control_min, Duration::zero());
   EXPECT_EQ(profile.fault_reset_tries, 1);
   EXPECT_EQ(profile.fault_reset_pause, Duration::zero());
   EXPECT_FALSE(profile.parameters.power_cycle_after_save);

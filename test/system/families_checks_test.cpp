@@ -30,35 +30,39 @@ TEST_P(FamilySetting, IsNamedWithItsRemedyAndNothingIsEnabled) {
                         GetParam().remedy);
 }
 
-constexpr FamilyMode kDm5{"megmeet_dm5", "8388608", "csp"},
-    kNimotion{"nimotion_stepper", "4000", "csp"}, kId286{"id286_cnfa", "10000", "pp"};
+constexpr FamilyMode kCheckedDm5{"megmeet_dm5", "8388608", "csp"},
+    kCheckedNimotion{"nimotion_stepper", "4000", "csp"}, kCheckedId286{"id286_cnfa", "10000", "pp"};
 
 INSTANTIATE_TEST_SUITE_P(
     ThatIsWrong, FamilySetting,
     testing::Values(
-        WrongSetting{"Dm5VelocityUnit", kDm5, "[0x2014, 16, velocity_unit, uint16, rw, -, 1]",
+        WrongSetting{"Dm5VelocityUnit", kCheckedDm5,
+                     "[0x2014, 16, velocity_unit, uint16, rw, -, 1]",
                      "velocity_unit (2014:10) is 1 instead of 0", "set P20.15 to 0"},
-        WrongSetting{"Dm5TorqueUnit", kDm5, "[0x2014, 15, torque_unit, uint16, rw, -, 1]",
+        WrongSetting{"Dm5TorqueUnit", kCheckedDm5, "[0x2014, 15, torque_unit, uint16, rw, -, 1]",
                      "torque_unit (2014:0F) is 1 instead of 0", "set P20.14 to 0"},
-        WrongSetting{"Dm5Polarity", kDm5, "[0x607E, 0, polarity, uint8, rw, r, 128]",
+        WrongSetting{"Dm5Polarity", kCheckedDm5, "[0x607E, 0, polarity, uint8, rw, r, 128]",
                      "polarity (607E:00) is 128 instead of 0", "give the axis a `direction`"},
-        WrongSetting{"Dm5Interpolation", kDm5, "[0x2014, 17, interpolation_off, uint16, rw, -, 1]",
+        WrongSetting{"Dm5Interpolation", kCheckedDm5,
+                     "[0x2014, 17, interpolation_off, uint16, rw, -, 1]",
                      "interpolation_off (2014:11) is 1 instead of 0", "set P20.16 to 0"},
-        WrongSetting{"Dm5Locked", kDm5, "[0x2002, 0x16, parameter_protection, uint16, rw, -, 2]",
+        WrongSetting{"Dm5Locked", kCheckedDm5,
+                     "[0x2002, 0x16, parameter_protection, uint16, rw, -, 2]",
                      "parameter_protection (2002:16) is 2 instead of 0", "set P02.21 to 0"},
-        WrongSetting{"NimotionPolarity", kNimotion, "[0x607E, 0, polarity, uint8, rw, -, 128]",
+        WrongSetting{"NimotionPolarity", kCheckedNimotion,
+                     "[0x607E, 0, polarity, uint8, rw, -, 128]",
                      "polarity (607E:00) is 128 instead of 0", "give the axis a `direction`"},
-        WrongSetting{"NimotionSilent", kNimotion,
+        WrongSetting{"NimotionSilent", kCheckedNimotion,
                      "[0x200C, 1, CommunicationSelect, uint16, rw, -, 1, 1, 3]",
                      "communication_select (200C:01) is 1 instead of 2", "set 200Ch:01 to 2"},
-        WrongSetting{"Id286Counts", kId286, "[0x20F2, 0, resolution, uint32, rw, -, 4000]",
+        WrongSetting{"Id286Counts", kCheckedId286, "[0x20F2, 0, resolution, uint32, rw, -, 4000]",
                      "the drive counts 4000 a turn of its motor (resolution (20F2:00) = 4000)",
                      "counts_per_turn of axes/joint is 10000"}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
 // The factory's P02.00 is 0, position by pulses.
 TEST(Dm5ControlMode, IsWrittenOnlyWhereTheAxisAsksForIt) {
-  std::string yaml = familyJoint(kDm5);
+  std::string yaml = familyJoint(kCheckedDm5);
   yaml.erase(yaml.find(", adjust: [control_mode]"), 24);
   {
     Scene scene(loadText(yaml));
@@ -69,7 +73,7 @@ TEST(Dm5ControlMode, IsWrittenOnlyWhereTheAxisAsksForIt) {
     EXPECT_FALSE(scene.truth("joint").power_stage_on);
     EXPECT_EQ(scene.drive("joint").dictionary().find({0x2002, 1})->number, 0);
   }
-  Scene scene(loadText(familyJoint(kDm5)));
+  Scene scene(loadText(familyJoint(kCheckedDm5)));
   ASSERT_TRUE(scene.boot(20s)) << scene.told();
   EXPECT_EQ(scene.drive("joint").dictionary().find({0x2002, 1})->number, 0) << "not by the boot";
   const bus::Answer enabled = scene.procedure(ProcedureKind::enable);
@@ -86,7 +90,7 @@ TEST(Dm5Limits, ThatForbidMotionAreNamed) {
                   "positive_torque_limit (60E0:00) is 0, not above 0"),
         std::pair("[0x60E1, 0, negative_torque_limit, uint16, rw, r, 0]",
                   "negative_torque_limit (60E1:00) is 0, not above 0")}) {
-    std::string yaml = familyJoint(kDm5, delivered(row));
+    std::string yaml = familyJoint(kCheckedDm5, delivered(row));
     const std::string effort = ",\n             effort: 60.0";
     yaml.erase(yaml.find(effort), effort.size());
     Scene scene(loadText(yaml));
@@ -103,7 +107,7 @@ constexpr char kSearch[] =
 
 TEST(Dm5Homing, BeginsOnlyWhereATerminalHasTheSwitchOfTheMethod) {
   Scene scene(loadText(
-      familyJoint(kDm5, std::string(kSearch) + ", simulation: {lower_limit_switch: -0.4}")));
+      familyJoint(kCheckedDm5, std::string(kSearch) + ", simulation: {lower_limit_switch: -0.4}")));
   ASSERT_TRUE(scene.boot(20s)) << scene.told();
   scene.forget();
   const bus::Answer homed = scene.procedure(ProcedureKind::home);
@@ -120,7 +124,7 @@ TEST(Dm5Homing, BeginsOnlyWhereATerminalHasTheSwitchOfTheMethod) {
 // P12.11 = 2 would move on by 607Ch and read 0 there.
 TEST(Dm5Homing, IsRefusedWhereTheOffsetMeansSomethingElse) {
   Scene scene(loadText(familyJoint(
-      kDm5,
+      kCheckedDm5,
       ", homing: {method: 35}" + delivered("[0x200C, 12, home_offset_mode, uint16, rw, -, 2]"))));
   ASSERT_TRUE(scene.boot(20s)) << scene.told();
   const bus::Answer homed = scene.procedure(ProcedureKind::home);
@@ -131,7 +135,7 @@ TEST(Dm5Homing, IsRefusedWhereTheOffsetMeansSomethingElse) {
 
 // 2002h:01 = 1 is the maker's own mode; it is taken back while the motor is off.
 TEST(NimotionControlMode, IsSetBackBeforeEnabling) {
-  Scene scene(loadText(familyJoint(kNimotion)));
+  Scene scene(loadText(familyJoint(kCheckedNimotion)));
   ASSERT_TRUE(scene.boot(20s)) << scene.told();
   const auto entry = [&] { return scene.drive("joint").dictionary().find({0x2002, 1})->number; };
   scene.drive("joint").dictionary().find({0x2002, 1})->number = 1;
@@ -147,8 +151,9 @@ TEST(Id286ClosedLoop, IsRefusedWhereMotorAndEncoderCountAgainstEachOther) {
        {std::tuple("1", "1", false), std::tuple("1", "2", false), std::tuple("1", "3", true),
         std::tuple("0", "1", true)}) {
     Scene scene(loadText(familyJoint(
-        kId286, delivered(std::string("[0x20D9, 0, motor_mode, uint16, rw, -, ") + mode +
-                          "], [0x20C9, 0, running_direction, uint16, rw, -, " + direction + "]"))));
+        kCheckedId286,
+        delivered(std::string("[0x20D9, 0, motor_mode, uint16, rw, -, ") + mode +
+                  "], [0x20C9, 0, running_direction, uint16, rw, -, " + direction + "]"))));
     ASSERT_TRUE(scene.boot(20s)) << scene.told();
     const bus::Answer enabled = scene.procedure(ProcedureKind::enable);
     EXPECT_EQ(enabled.success, taken) << mode << " " << direction << ": " << enabled.message;
@@ -157,7 +162,7 @@ TEST(Id286ClosedLoop, IsRefusedWhereMotorAndEncoderCountAgainstEachOther) {
 }
 
 TEST(Id286OpenLoop, IsToldOnce) {
-  Scene scene(loadText(familyJoint(kId286)));
+  Scene scene(loadText(familyJoint(kCheckedId286)));
   ASSERT_TRUE(scene.boot(20s)) << scene.told();
   ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
   EXPECT_THAT(scene.told(), HasSubstr("motor_mode (20D9:00) is 0 instead of 1, it runs open loop"));

@@ -34,10 +34,13 @@ void readPdoRules(yaml::Section& profile_section, const DriveProfile& profile,
   }
   section.read("map_count_may_be_read_only", device.pdo_map_count_may_be_read_only);
   if (const auto cob_ids = section.get("cob_ids")) {
-    device.cob_ids_of_drive = cob_ids->oneOf({"predefined", "drive"}).value_or(0) == 1;
+    const std::size_t word = cob_ids->oneOf({"predefined", "drive", "of_node"}).value_or(0);
+    device.cob_ids_of_drive = word == 1;
+    device.cob_ids_of_node = word == 2;
   }
   section.read("rpdo_deadline", device.rpdo_deadline);
   section.read("type_255_by_timer", device.type_255_by_timer);
+  section.read("remote_requests", device.remote_requests);
   if (const auto fixed = section.get("fixed")) {  // every default of CiA 402 has the controlword
     device.fixed_pdos = readPdos(*fixed, profile, device, Sharing::allowed);
   }
@@ -76,6 +79,7 @@ void readHeartbeat(yaml::Section& profile_section, canopen::DeviceProfile& devic
   section.read("producer", device.heartbeat_supported);
   section.read("consumer", device.heartbeat_consumer_supported);
   section.read("node_guarding", device.node_guarding_supported);
+  readDuration(section, "period_min", yaml::Range{0.001, 65.535, false}, device.error_control_min);
   section.finish();
 }
 

@@ -17,13 +17,17 @@ const char* word(PdoDirection direction) {
   return direction == PdoDirection::rpdo ? "an RPDO" : "a TPDO";
 }
 
-void readTransmission(yaml::Section& section, PdoLayout& pdo) {
+void readTransmission(yaml::Section& section, const DriveProfile& profile,
+                      const canopen::DeviceProfile& device, PdoLayout& pdo) {
   const auto value = section.get("transmission");
   const auto type = value ? value->integer(0, 255) : std::nullopt;
   if (!type) return;
   const bool requested = canopen::isRequested(static_cast<std::uint8_t>(*type));
   if (requested && pdo.direction == PdoDirection::rpdo) {
     value->problem("types 252 and 253 are asked for by remote frames: only TPDOs can be");
+  } else if (requested && !device.remote_requests) {
+    value->problem("this drive answers no remote frames (" + drive::sourceOf(profile) +
+                   ", `remote_requests`): use 0 to 240 (with SYNC), 254 or 255 (on events)");
   } else if (*type > 240 && *type < 254 && !requested) {
     value->problem(
         "transmission types 241 to 251 are reserved; use 0 to 240 (with SYNC), 252 or 253 (TPDO, "
@@ -173,7 +177,7 @@ std::vector<PdoLayout> readPdos(const yaml::Value& value, const DriveProfile& pr
       if (const auto list = details.require("objects", "list the objects by profile name")) {
         readEntries(*list, profile, device, *pdo, seen);
       }
-      readTransmission(details, *pdo);
+      readTransmission(details, profile, device, *pdo);
       pdo->inhibit = readTime(details, "inhibit", 1e-4);
       pdo->event_timer = readTime(details, "event_timer", 1e-3);
       checkTimer(details, profile, device, *pdo);

@@ -67,6 +67,10 @@ class StorageStep {
 
   Outcome advance(const Context& context) {
     while (next_ < subindices_.size()) {
+      if (next_ > 0 && !ticket_ && !context.axis.state().feedback_valid) {  // see loseZeros()
+        context.show("waiting for feedback", "the axis to tell its state anew");
+        return Outcome::running();
+      }
       const std::string refusal = powerRefusal(context.axis, storage_);
       if (!refusal.empty()) return Outcome::failed(refusal + done());
       if (next_ == 0 && !ticket_ && !context.axis.feedback().atStandstill()) {

@@ -19,6 +19,7 @@ void readPdoRules(DefinitionReader& reader, DeviceBehaviour& out) {
                               {{"writable", PdoIdentifiers::writable},
                                {"fixed", PdoIdentifiers::fixed},
                                {"fixed_but_rtr", PdoIdentifiers::fixed_but_rtr},
+                               {"of_node", PdoIdentifiers::of_node},
                                {"read_only", PdoIdentifiers::read_only}});
 }
 

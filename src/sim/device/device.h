@@ -18,6 +18,7 @@ enum class PdoIdentifiers : std::uint8_t {
   writable,       ///< as CiA 301 says
   fixed,          ///< bit 31 only; another identifier is refused with 0x06010002
   fixed_but_rtr,  ///< of TPDOs bit 30, too
+  of_node,        ///< bits 0 to 6 are kept; others are refused with 0x06090030
   read_only,      ///< every write is refused with 0x06010002
 };
 

@@ -23,10 +23,15 @@ std::uint32_t checkType(const SlaveContext& context, const PdoRecords& pdo, std:
 bool idIsFixed(const SlaveContext& context, const PdoRecords& pdo, const Entry& entry,
                std::uint64_t number) {
   const PdoIdentifiers rule = context.behaviour.pdo_identifiers;
-  if (rule == PdoIdentifiers::writable) return false;
+  if (rule == PdoIdentifiers::writable || rule == PdoIdentifiers::of_node) return false;
   const bool rtr = rule == PdoIdentifiers::fixed_but_rtr && pdo.direction == PdoDirection::transmit;
   const std::uint64_t free = kCobIdInvalid | (rtr ? kCobIdNoRtr : 0U);
   return rule == PdoIdentifiers::read_only || ((entry.number ^ number) & ~free) != 0;
+}
+
+bool leavesNode(const SlaveContext& context, const Entry& entry, std::uint64_t number) {
+  const bool bound = context.behaviour.pdo_identifiers == PdoIdentifiers::of_node;
+  return bound && ((entry.number ^ number) & 0x7FU) != 0;
 }
 
 bool dropsRtrBit(const SlaveContext& context, const PdoRecords& pdo, std::uint64_t number) {
@@ -91,6 +96,7 @@ std::uint32_t checkCommunication(const SlaveContext& context, const PdoRecords& 
   switch (entry.id.subindex) {
     case pdo_sub::kCobId:
       if (idIsFixed(context, pdo, entry, number)) return abort_code::kReadOnly;
+      if (leavesNode(context, entry, number)) return abort_code::kInvalidValue;
       if (dropsRtrBit(context, pdo, number)) return abort_code::kInvalidValue;
       if (context.behaviour.misleading_cob_id_abort) return 0;
       return checkCobId(static_cast<std::uint32_t>(entry.number),
