@@ -115,8 +115,7 @@ void AxisCore::writeCommands(Time now) {
   }
   written_ = now;
   generator_.watchDrive(now);
-  control_.write(
-      {control_.brakeReleased() ? generator_.mode().bits() : 0, mode_.spec().stoppingBits()});
+  control_.write(control_.brakeReleased() ? generator_.mode().bits() : 0, mode_.spec());
   mode_.write();
 }
 
