@@ -125,6 +125,7 @@ void DriveCore::superviseMotion() {
   const Time time{step_ * kDriveStep};
   if (toSeconds(sync_.since(time)) > configuredPeriod(values_) + syncTolerance())
     raise("sync_error");
+  if (const char* fault = motion_.takeHomingFault()) raise(fault);
   if (!motion_.limitSwitchHit()) {
     limit_reported_ = false;
   } else if (!limit_reported_) {

@@ -60,6 +60,8 @@ class DriveMotion {
   void loseHome() { axis_.limits.setHomed(false); }
   /// The drive halts the motor by itself, as by controlword bit 8, until it lets it go on.
   void pause(bool on);
+  /// Name of a fault that homing has come to since it was asked last, or nullptr.
+  const char* takeHomingFault() { return homing_.takeFault(); }
   /// A limit switch was in the way in the last step.
   bool limitSwitchHit() const { return axis_.limits.switchHit(); }
   TouchProbes& probes() { return probes_; }
