@@ -9,7 +9,7 @@
 
 namespace cia402 {
 
-constexpr double kMotorTurn = 6.283185307179586 / 50.0;  ///< of the motor, in rad of the joint
+constexpr double kTurnOfMotor = 6.283185307179586 / 50.0;  ///< of the motor, in rad of the joint
 constexpr double kReadAtHome = 0.25;                     ///< what the joint is to read at home, rad
 constexpr double kSearchSpeed = 0.8, kZeroSpeed = 0.16;  ///< rad/s
 
@@ -53,6 +53,15 @@ inline std::vector<FamilyHome> homesOffTheSwitch() {
           {11, kOn, 3.3},   {11, kAbove, 3.3}, {14, kOn, 0.3}, {14, kAbove, 0.3}};
 }
 
+/// The same as the DM5 prints them, where the index pulse may be one on the switch. By the search
+/// speed it comes to rest 0.64 turns behind the edge that it met.
+inline std::vector<FamilyHome> homesOnTheSwitch() {
+  constexpr double kBelow = 0.0, kOn = 1.8, kAbove = 3.6;
+  return {{7, kAbove, 2.3},  {10, kBelow, 1.3}, {10, kOn, 2.3},    {10, kAbove, 2.3},
+          {11, kBelow, 1.3}, {11, kOn, 2.3},    {11, kAbove, 2.3}, {14, kBelow, 1.3},
+          {14, kOn, 1.3},    {14, kAbove, 2.3}};
+}
+
 struct FamilyHoming {
   FamilyMode tested;
   const char* switches;  ///< what the family wants to be told of them, as options of the axis
@@ -71,7 +80,7 @@ inline std::vector<FamilyHoming> withFamily(const FamilyMode& tested, const char
 }
 
 inline std::string homingJoint(const FamilyHoming& homing, const std::string& more = {}) {
-  const auto place = [](double turns) { return std::to_string(turns * kMotorTurn); };
+  const auto place = [](double turns) { return std::to_string(turns * kTurnOfMotor); };
   return familyJoint(
       homing.tested,
       ", homing: {method: " + std::to_string(homing.home.method) + ", offset: " +

@@ -20,37 +20,47 @@ TEST_P(FamilyHomingMethod, MakesTheJointReadItsOffsetAtTheTrueHome) {
   const bus::Answer homed = scene.procedure(ProcedureKind::home, "joint");
   ASSERT_TRUE(homed.success) << homed.message << scene.told();
   EXPECT_TRUE(scene.state("joint").homed);
-  const double count = kMotorTurn / std::stod(c.tested.counts_per_turn);
+  const double count = kTurnOfMotor / std::stod(c.tested.counts_per_turn);
   EXPECT_NEAR(scene.state("joint").position - kReadAtHome,
-              scene.position("joint") - c.home.home * kMotorTurn, count + 2e-6);
+              scene.position("joint") - c.home.home * kTurnOfMotor, count + 2e-6);
   EXPECT_LT(scene.seen("joint").fastest, kSearchSpeed * 1.02);
 }
 
-constexpr FamilyMode kNimotion{"nimotion_stepper", "4000", "pp"},
-    kId286{"id286_cnfa", "10000", "pp"}, kDm5{"megmeet_dm5", "8388608", "pp"};
-constexpr char kNone[] = "";
+constexpr FamilyMode kStepperPp{"nimotion_stepper", "4000", "pp"},
+    kId286Pp{"id286_cnfa", "10000", "pp"}, kDm5Pp{"megmeet_dm5", "8388608", "pp"};
+constexpr char kAsDelivered[] = "";
 constexpr char kDm5Switches[] =  // P03.00 to P03.02: reverse limit, forward limit, home
     ", write: [{object: di1_function, raw: 36}, {object: di2_function, raw: 35}, "
     "{object: di3_function, raw: 32}, {object: di4_function, raw: 0}]";
 
-std::string name(const testing::TestParamInfo<FamilyHoming>& tested) {
+std::string familyMethodName(const testing::TestParamInfo<FamilyHoming>& tested) {
   const FamilyHoming& c = tested.param;
   return std::string(c.tested.family) + "_Method" + std::to_string(c.home.method) + "Case" +
          std::to_string(tested.index);
 }
 
 INSTANTIATE_TEST_SUITE_P(Nimotion, FamilyHomingMethod,
-                         testing::ValuesIn(withFamily(kNimotion, kNone, homesByEdges())), name);
+                         testing::ValuesIn(withFamily(kStepperPp, kAsDelivered, homesByEdges())),
+                         familyMethodName);
 INSTANTIATE_TEST_SUITE_P(Id286Edges, FamilyHomingMethod,
-                         testing::ValuesIn(withFamily(kId286, kNone, homesByEdges())), name);
+                         testing::ValuesIn(withFamily(kId286Pp, kAsDelivered, homesByEdges())),
+                         familyMethodName);
 INSTANTIATE_TEST_SUITE_P(Id286Index, FamilyHomingMethod,
-                         testing::ValuesIn(withFamily(kId286, kNone, homesByIndex())), name);
+                         testing::ValuesIn(withFamily(kId286Pp, kAsDelivered, homesByIndex())),
+                         familyMethodName);
 INSTANTIATE_TEST_SUITE_P(Id286OffTheSwitch, FamilyHomingMethod,
-                         testing::ValuesIn(withFamily(kId286, kNone, homesOffTheSwitch())), name);
+                         testing::ValuesIn(withFamily(kId286Pp, kAsDelivered, homesOffTheSwitch())),
+                         familyMethodName);
 INSTANTIATE_TEST_SUITE_P(Dm5Edges, FamilyHomingMethod,
-                         testing::ValuesIn(withFamily(kDm5, kDm5Switches, homesByEdges())), name);
+                         testing::ValuesIn(withFamily(kDm5Pp, kDm5Switches, homesByEdges())),
+                         familyMethodName);
 INSTANTIATE_TEST_SUITE_P(Dm5Index, FamilyHomingMethod,
-                         testing::ValuesIn(withFamily(kDm5, kDm5Switches, homesByIndex())), name);
+                         testing::ValuesIn(withFamily(kDm5Pp, kDm5Switches, homesByIndex())),
+                         familyMethodName);
+
+INSTANTIATE_TEST_SUITE_P(Dm5OnTheSwitch, FamilyHomingMethod,
+                         testing::ValuesIn(withFamily(kDm5Pp, kDm5Switches, homesOnTheSwitch())),
+                         familyMethodName);
 
 class FamilyHomingResult : public testing::TestWithParam<FamilyHoming> {};
 
@@ -79,9 +89,9 @@ TEST_P(FamilyHomingResult, IsATimeOutInWordsAndAStopWhereItTakesTooLong) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, FamilyHomingResult,
-                         testing::Values(FamilyHoming{kNimotion, kNone, {17, 3.6, -2.0}},
-                                         FamilyHoming{kId286, kNone, {17, 3.6, -2.0}},
-                                         FamilyHoming{kDm5, kDm5Switches, {17, 3.6, -2.0}}),
+                         testing::Values(FamilyHoming{kStepperPp, kAsDelivered, {17, 3.6, -2.0}},
+                                         FamilyHoming{kId286Pp, kAsDelivered, {17, 3.6, -2.0}},
+                                         FamilyHoming{kDm5Pp, kDm5Switches, {17, 3.6, -2.0}}),
                          [](const auto& tested) {
                            return std::string(tested.param.tested.family);
                          });
