@@ -5,6 +5,11 @@
 
 namespace cia402::sim {
 
+const HomingRoute* DriveHomingDefinition::route(std::int64_t method) const {
+  const auto found = routes.find(method);
+  return found == routes.end() ? standardRoute(method) : &found->second;
+}
+
 const FaultDefinition* DriveDefinition::fault(const std::string& fault_name) const {
   const auto found = std::find_if(faults.begin(), faults.end(),
                                   [&](const FaultDefinition& f) { return f.name == fault_name; });

@@ -13,6 +13,7 @@
 #include "sim/device/device.h"
 #include "sim/dictionary/template.h"
 #include "sim/drive/drive.h"
+#include "sim/drive/homing_route.h"
 #include "sim/drive/motor.h"
 #include "sim/drive/values.h"
 
@@ -99,6 +100,22 @@ struct FaultDefinition {
   bool voltage_lost = false;     ///< statusword bit 4 goes while the cause lasts
 };
 
+/// What homing mode does.
+struct DriveHomingDefinition {
+  std::vector<std::int64_t> methods;
+  std::vector<std::int64_t> inert;             ///< taken, but their start does nothing
+  std::map<std::int64_t, HomingRoute> routes;  ///< instead of those of the standard
+  bool home_offset_is_zero_shift = false;      ///< 6064h at home = -607Ch instead of +607Ch
+  bool returns = false;                        ///< moves back onto the home position
+  bool stops_quickly_at_limits = false;        ///< by 6085h instead of by 609Ah
+  /// What the object of a terminal says where a switch is connected to it; a method whose switches
+  /// are not at one terminal each is the fault `terminal_setup`. Empty: nobody looks.
+  std::map<HomingInput, std::int64_t> terminal_functions;
+
+  /// Of a method, by the maker or by the standard; nullptr where neither has it.
+  const HomingRoute* route(std::int64_t method) const;
+};
+
 /// How the numbers of a quantity stand in their objects.
 struct UnitScale {
   /// What of a turn the factor is multiplied with.
@@ -151,10 +168,7 @@ struct DriveDefinition {
 
   OptionTable quick_stop, shutdown, disable_operation, halt_option, fault_reaction;
 
-  std::vector<std::int64_t> homing_methods;
-  std::vector<std::int64_t> inert_methods;  ///< taken, but their start does nothing
-  bool home_offset_is_zero_shift = false;   ///< 6064h at home = -607Ch instead of +607Ch
-  bool homing_returns = false;              ///< moves back onto the home position
+  DriveHomingDefinition homing;
   ProbeForgets probe_forgets = ProbeForgets::disarmed;
 
   bool following_error_is_fault = true;

@@ -5,13 +5,13 @@
 #include "sim/definition/drive_definition.h"
 #include "sim/definition/read_communication.h"
 #include "sim/definition/read_faults.h"
+#include "sim/definition/read_homing.h"
 #include "sim/definition/read_modes.h"
 #include "sim/definition/read_objects.h"
 #include "sim/definition/read_quirks.h"
 #include "sim/definition/read_state_machine.h"
 #include "sim/definition/reader.h"
 #include "sim/dictionary/axis_objects.h"
-#include "sim/drive/homing_sequence.h"
 #include "yaml/reader.h"
 
 namespace cia402::sim {
@@ -62,27 +62,6 @@ void checkAxes(DefinitionReader& reader, const DriveDefinition& definition) {
   }
 }
 
-void readHoming(DefinitionReader& reader, DriveDefinition& out) {
-  reader.read<bool>("home_offset", out.home_offset_is_zero_shift,
-                    {{"position_at_home", false}, {"shift_of_zero", true}});
-  reader.read("returns_to_home", out.homing_returns);
-  if (reader.has("inert")) {
-    out.inert_methods.clear();
-    reader.list("inert", [&](const yaml::Value& item) {
-      if (const auto number = item.integer(-128, 127)) out.inert_methods.push_back(*number);
-    });
-  }
-  if (!reader.has("methods")) return;
-  out.homing_methods.clear();
-  for (const YAML::Node& item : reader.node("methods")) {
-    const auto number = item.IsScalar() ? yaml::parseInteger(item.Scalar()) : std::nullopt;
-    if (number && findHomingMethod(*number) != nullptr)
-      out.homing_methods.push_back(*number);
-    else
-      reader.problem("methods", "must be a list of methods 1..14, 17..30, 33, 34, 35, 37");
-  }
-}
-
 void readDefinition(DefinitionReader& reader, bool extends, DriveDefinition& out) {
   std::string description;
   reader.read("name", out.name);
@@ -105,7 +84,7 @@ void readDefinition(DefinitionReader& reader, bool extends, DriveDefinition& out
   readNodeId(reader, out);
   reader.section("state_machine", [&](DefinitionReader& r) { readStateMachine(r, out); });
   reader.section("quirks", [&](DefinitionReader& r) { readQuirks(r, out.quirks); });
-  reader.section("homing", [&](DefinitionReader& r) { readHoming(r, out); });
+  reader.section("homing", [&](DefinitionReader& r) { readHoming(r, out.homing); });
   reader.section("touch_probe", [&](DefinitionReader& r) {
     r.read<ProbeForgets>("forgets", out.probe_forgets,
                          {{"disarmed", ProbeForgets::disarmed},

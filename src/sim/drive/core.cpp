@@ -127,6 +127,7 @@ void DriveCore::superviseMotion() {
   const Time time{step_ * kDriveStep};
   if (toSeconds(sync_.since(time)) > configuredPeriod(values_) + syncTolerance())
     raise("sync_error");
+  if (const char* fault = motion_.takeHomingFault()) raise(fault);
   const MotionLimits& limits = motion_.limits();
   const auto act = [this](const LimitReports::Due& due) {
     if (due.end != nullptr && faults_.endWarning(*due.end)) clearErrors();

@@ -19,6 +19,8 @@ struct AxisMechanics {
   double inertia_time_constant = 0.004;  ///< s, lag of the position loop (following error)
   double negative_limit_switch = -1e9;   ///< turns; active at or below
   double positive_limit_switch = 1e9;    ///< turns; active at or above
+  double negative_stop = -1e9;           ///< turns; the rotor cannot turn further back, ...
+  double positive_stop = 1e9;            ///< ... nor further on
   double home_switch_low = 0.0;          ///< turns; the home switch is active from low ...
   double home_switch_high = 0.0;         ///< ... to high (low == high: no switch)
   double index_offset = 0.3;             ///< turns; the index pulse is at k + index_offset

@@ -9,6 +9,11 @@ namespace {
 
 constexpr double kHard = 300.0;  // turns/s^2 where there is no 609Ah
 
+constexpr double kStopSpeed = 0.05;  // turns/s, below it a motor that pushes has come to a stop
+constexpr Role kTerminals[] = {Role::input_1_function, Role::input_2_function,
+                               Role::input_3_function, Role::input_4_function,
+                               Role::input_5_function};
+
 using Phase = HomingSequence::Phase;
 
 }  // namespace
@@ -26,24 +31,40 @@ void HomingMode::control(bool bit_4, bool rising) {
 
 void HomingMode::start() {
   const std::int64_t number = axis_.values.raw(Role::homing_method, 0);
-  const auto& inert = axis_.definition.inert_methods;
+  const auto& inert = axis_.definition.homing.inert;
   if (std::find(inert.begin(), inert.end(), number) != inert.end()) return;
-  const HomingMethod* method = findHomingMethod(number);
+  const HomingRoute* route = axis_.definition.homing.route(number);
   attained_ = false;
-  failed_ = method == nullptr;
+  failed_ = route == nullptr;
   returning_ = false;
   sequence_.stop();
-  if (method == nullptr) return;
-  sequence_.start(*method, axis_.switches, axis_.motor.position());
+  if (route == nullptr) return;
+  terminals_wrong_ = !terminalsAreRight(*route);
+  if (terminals_wrong_) return;
+  searched_s_ = pushed_s_ = 0.0;
+  sequence_.start(*route, axis_.switches, axis_.motor.position());
   if (sequence_.phase() == Phase::found) finish();
 }
 
+/// Each switch of the method is the function of one terminal.
+bool HomingMode::terminalsAreRight(const HomingRoute& route) const {
+  for (const auto& [input, function] : axis_.definition.homing.terminal_functions) {
+    int terminals = 0;
+    for (const Role role : kTerminals) {
+      if (axis_.values.raw(role, -1) == function) ++terminals;
+    }
+    if (terminals > 1 || (terminals == 0 && route.uses(input))) return false;
+  }
+  return true;
+}
+
 void HomingMode::finish() {
+  const DriveHomingDefinition& homing = axis_.definition.homing;
   const double offset = axis_.values.get(Role::home_offset, 0.0);
-  axis_.frame = sequence_.home() - (axis_.definition.home_offset_is_zero_shift ? -offset : offset);
+  axis_.frame = sequence_.home() - (homing.home_offset_is_zero_shift ? -offset : offset);
   attained_ = true;
   axis_.limits.setHomed(true);
-  returning_ = axis_.definition.homing_returns;
+  returning_ = homing.returns;
 }
 
 void HomingMode::returnHome() {
@@ -62,7 +83,10 @@ void HomingMode::search() {
   const Role speed_of = sequence_.slow() ? Role::homing_zero_speed : Role::homing_search_speed;
   const double speed = axis_.values.get(speed_of, 0.0);
   const double target = searching() ? sequence_.direction() * std::fabs(speed) : 0.0;
-  demand.velocity = rampVelocity(demand.velocity, target, acceleration, acceleration);
+  const bool hard = axis_.definition.homing.stops_quickly_at_limits && sequence_.atLimit();
+  const double deceleration =
+      hard ? axis_.limits.deceleration(Ramp::quick_stop, axis_.mode) : acceleration;
+  demand.velocity = rampVelocity(demand.velocity, target, acceleration, deceleration);
   demand.position += demand.velocity * kDriveStepS;
 }
 
@@ -71,9 +95,40 @@ void HomingMode::step(double from) {
   returning_ ? returnHome() : search();
   axis_.motor.followPosition(axis_.demand.position);
   if (!was_searching) return;
-  sequence_.step(axis_.switches, from, axis_.motor.position());
+  const bool pushes = atHardStop();
+  sequence_.step(axis_.switches, from, axis_.motor.position(), pushes);
+  if (pushes) standWhereItIs();
   if (sequence_.phase() == Phase::found) finish();
   if (sequence_.phase() == Phase::failed) failed_ = true;
+  watchTime();
+}
+
+/// The motor has pushed hard enough for long enough, and has not moved.
+bool HomingMode::atHardStop() {
+  if (!sequence_.seeksStop()) return false;
+  const double torque = axis_.motor.torque() * sequence_.direction();
+  const bool pushes = torque >= axis_.values.get(Role::homing_stop_torque, kUnlimited) &&
+                      std::fabs(axis_.motor.velocity()) < kStopSpeed;
+  pushed_s_ = pushes ? pushed_s_ + kDriveStepS : 0.0;
+  return pushes && pushed_s_ >= axis_.values.get(Role::homing_stop_time, 0.0);
+}
+
+void HomingMode::standWhereItIs() {
+  axis_.demand.position = axis_.motor.position();
+  axis_.demand.velocity = 0.0;
+}
+
+void HomingMode::watchTime() {
+  searched_s_ += kDriveStepS;
+  const double limit = axis_.values.get(Role::homing_time_limit, 0.0);
+  late_ = searching() && limit > 0.0 && searched_s_ > limit;
+  if (late_) sequence_.stop();
+}
+
+const char* HomingMode::takeFault() {
+  const char* fault = terminals_wrong_ ? "terminal_setup" : late_ ? "homing_time" : nullptr;
+  terminals_wrong_ = late_ = false;
+  return fault;
 }
 
 // CiA 402-2, table of bits 10, 12 and 13 in homing mode.
@@ -84,7 +139,7 @@ std::uint16_t HomingMode::statusBits(bool halted) const {
   const bool tells = !axis_.definition.quirks.homing_reaches_no_target;
   if (!(searching() && !halted) && at_rest && tells) bits |= 0x0400;
   if (attained_) bits |= 0x1000;
-  if (failed_) bits |= 0x2000;
+  if (failed_ && axis_.mode->bit_13 == Bit13::homing_error) bits |= 0x2000;
   return bits;
 }
 

@@ -25,10 +25,16 @@ class HomingMode {
   /// An object begins to home instead of controlword bit 4.
   bool byObject() const { return axis_.values.entry(Role::homing_start) != nullptr; }
   bool searching() const { return sequence_.phase() == HomingSequence::Phase::searching; }
+  /// Name of a fault that this mode has come to since it was asked last, or nullptr.
+  const char* takeFault();
   /// Statusword bits 10, 12 and 13 of this mode; bit 15 where an object begins it.
   std::uint16_t statusBits(bool halted) const;
 
  private:
+  bool terminalsAreRight(const HomingRoute& route) const;
+  bool atHardStop();
+  void standWhereItIs();
+  void watchTime();
   void finish();
   void returnHome();
   void search();
@@ -38,6 +44,9 @@ class HomingMode {
   bool attained_ = false;
   bool failed_ = false;
   bool returning_ = false;
+  bool terminals_wrong_ = false, late_ = false;
+  double searched_s_ = 0.0;
+  double pushed_s_ = 0.0;  ///< against a hard stop
 };
 
 }  // namespace cia402::sim

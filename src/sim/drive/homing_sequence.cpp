@@ -1,142 +1,92 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "sim/drive/homing_sequence.h"
 
-#include <algorithm>
-#include <array>
-
 namespace cia402::sim {
 namespace {
 
-using H = HomingSwitch;
+constexpr HomingInput kInputs[] = {HomingInput::negative_limit, HomingInput::positive_limit,
+                                   HomingInput::home_switch};
 
-// number, edge, crossing, start, turns at limit, index, current position. 1-14 are 17-30 with a
-// search for the index pulse behind them (CiA 402-2, figures of the homing methods).
-constexpr HomingMethod kMethods[] = {
-    {1, H::negative_limit, +1, -1, false, true, false},
-    {2, H::positive_limit, -1, +1, false, true, false},
-    {3, H::home_low, -1, +1, false, true, false},
-    {4, H::home_low, +1, +1, false, true, false},
-    {5, H::home_high, +1, -1, false, true, false},
-    {6, H::home_high, -1, -1, false, true, false},
-    {7, H::home_low, -1, +1, true, true, false},
-    {8, H::home_low, +1, +1, true, true, false},
-    {9, H::home_high, -1, +1, true, true, false},
-    {10, H::home_high, +1, +1, true, true, false},
-    {11, H::home_high, +1, -1, true, true, false},
-    {12, H::home_high, -1, -1, true, true, false},
-    {13, H::home_low, +1, -1, true, true, false},
-    {14, H::home_low, -1, -1, true, true, false},
-    {17, H::negative_limit, +1, -1, false, false, false},
-    {18, H::positive_limit, -1, +1, false, false, false},
-    {19, H::home_low, -1, +1, false, false, false},
-    {20, H::home_low, +1, +1, false, false, false},
-    {21, H::home_high, +1, -1, false, false, false},
-    {22, H::home_high, -1, -1, false, false, false},
-    {23, H::home_low, -1, +1, true, false, false},
-    {24, H::home_low, +1, +1, true, false, false},
-    {25, H::home_high, -1, +1, true, false, false},
-    {26, H::home_high, +1, +1, true, false, false},
-    {27, H::home_high, +1, -1, true, false, false},
-    {28, H::home_high, -1, -1, true, false, false},
-    {29, H::home_low, +1, -1, true, false, false},
-    {30, H::home_low, -1, -1, true, false, false},
-    {33, H::none, -1, -1, false, true, false},
-    {34, H::none, +1, +1, false, true, false},
-    {35, H::none, 0, 0, false, false, true},
-    {37, H::none, 0, 0, false, false, true},
-};
+constexpr HomingLeg kNoLeg{0, false, HomingEvent::index};
 
-bool isHomeSwitch(HomingSwitch edge) { return edge == H::home_low || edge == H::home_high; }
+std::size_t place(HomingInput input) { return static_cast<std::size_t>(input); }
 
-// The direction that leads from anywhere on the active side of the switch to its edge.
-int outOf(HomingSwitch edge) { return edge == H::home_low || edge == H::positive_limit ? -1 : +1; }
+bool beginsOn(const HomingRoute& route, const AxisSwitches& switches, double position) {
+  if (!route.begun_on || route.legs.empty()) return false;
+  const HomingInput input = inputOf(route.legs.front().until);
+  return input == HomingInput::none ? switches.atIndex(position) : switches.active(input, position);
+}
 
 }  // namespace
 
-const HomingMethod* findHomingMethod(std::int64_t number) {
-  const auto* found = std::find_if(std::begin(kMethods), std::end(kMethods),
-                                   [number](const HomingMethod& m) { return m.number == number; });
-  return found == std::end(kMethods) ? nullptr : found;
+const HomingLeg& HomingSequence::leg() const {
+  return phase_ == Phase::searching ? (*legs_)[next_] : kNoLeg;
 }
 
-void HomingSequence::start(const HomingMethod& method, const AxisSwitches& switches,
+HomingSequence::Inputs HomingSequence::look(const AxisSwitches& switches, double position) {
+  Inputs inputs{};
+  for (const HomingInput input : kInputs) inputs[place(input)] = switches.active(input, position);
+  return inputs;
+}
+
+void HomingSequence::start(const HomingRoute& route, const AxisSwitches& switches,
                            double position) {
-  method_ = method;
-  phase_ = Phase::searching;
-  turned_at_limit_ = false;
-  edge_found_ = false;
-  slow_ = false;
-  if (method.current_position) {
-    home_ = position;
-    phase_ = Phase::found;
-  } else if (method.edge == H::none) {
-    direction_ = method.start;
-    edge_found_ = true;
-    edge_position_ = position;
-    slow_ = true;
-  } else {
-    active_ = switches.active(method.edge, position);
-    direction_ = active_ ? outOf(method.edge) : method.start;
-    slow_ = active_;
-  }
+  route_ = &route;
+  legs_ = beginsOn(route, switches, position) ? &*route.begun_on : &route.legs;
+  next_ = 0;
+  seen_ = look(switches, position);
+  at_limit_ = false;
+  home_ = position;
+  phase_ = legs_->empty() ? Phase::found : Phase::searching;
 }
 
-void HomingSequence::atEdge(HomingSwitch edge, int moving) {
-  slow_ = true;
-  if (edge != method_.edge) {
-    direction_ = outOf(method_.edge);  // through the switch, or back to it, to its other edge
-  } else if (moving == method_.crossing) {
-    edge_found_ = true;
-    direction_ = method_.crossing;
-  } else {
-    direction_ = method_.crossing;
-  }
+std::optional<double> HomingSequence::endOfLeg(const AxisSwitches& switches, double from, double to,
+                                               bool pushes) const {
+  const HomingLeg& leg = this->leg();
+  const bool ahead = (to - from) * leg.direction > 0.0;
+  const HomingInput input = inputOf(leg.until);
+  if (leg.until == HomingEvent::hard_stop) return pushes ? std::optional<double>(to) : std::nullopt;
+  if (input == HomingInput::none) return ahead ? switches.indexBetween(from, to) : std::nullopt;
+  const bool on = isOn(leg.until);
+  if (seen_[place(input)] == on || switches.active(input, to) != on) return std::nullopt;
+  const bool passed = switches.active(input, from) != on;  // else somebody has touched it
+  if (!passed) return to;
+  return ahead ? std::optional<double>(switches.edge(input, on == (leg.direction > 0)))
+               : std::nullopt;
 }
 
-void HomingSequence::atLimit(const AxisSwitches& switches, double position) {
-  const bool own_switch = !isHomeSwitch(method_.edge) && method_.edge != H::none;
-  const bool negative = direction_ < 0 && switches.negativeLimit(position) &&
-                        !(own_switch && method_.edge == H::negative_limit);
-  const bool positive = direction_ > 0 && switches.positiveLimit(position) &&
-                        !(own_switch && method_.edge == H::positive_limit);
-  if (!negative && !positive) return;
-  if (!method_.turns_at_limit || turned_at_limit_ || slow_) {
+void HomingSequence::watchLimits(const Inputs& inputs) {
+  const bool negative = inputs[place(HomingInput::negative_limit)];
+  const bool positive = inputs[place(HomingInput::positive_limit)];
+  const HomingLeg& leg = this->leg();
+  const HomingEvent ahead = leg.direction > 0 ? HomingEvent::positive_on : HomingEvent::negative_on;
+  const bool in_the_way = (leg.direction > 0 ? positive : negative) && leg.until != ahead;
+  const bool fails = (negative && route_->negative_fails) || (positive && route_->positive_fails);
+  const bool turns = in_the_way && route_->from_limit && legs_ == &route_->legs && next_ == 0;
+  if (fails || (in_the_way && !turns && !route_->passes_limits)) {
+    at_limit_ = true;
     phase_ = Phase::failed;
-    return;
+  } else if (turns) {
+    at_limit_ = true;
+    legs_ = &*route_->from_limit;
   }
-  turned_at_limit_ = true;
-  direction_ = -direction_;
 }
 
-void HomingSequence::findIndex(const AxisSwitches& switches, double from, double to) {
-  const double moved = to - from;
-  if (moved * method_.crossing <= 0.0) return;
-  const auto index = switches.indexBetween(from, to);
-  if (!index || (*index - edge_position_) * method_.crossing <= 0.0) return;
-  home_ = *index;
-  phase_ = Phase::found;
-}
-
-void HomingSequence::step(const AxisSwitches& switches, double from, double to) {
+void HomingSequence::step(const AxisSwitches& switches, double from, double to, bool pushes) {
   if (phase_ != Phase::searching) return;
-  const bool active = method_.edge != H::none && switches.active(method_.edge, to);
-  if (!edge_found_ && active != active_) {
-    HomingSwitch edge = method_.edge;
-    const bool passed = switches.active(edge, from) != active;  // else somebody has touched it
-    int moving = to > from ? 1 : -1;
-    if (!passed) moving = isHomeSwitch(edge) ? direction_ : active ? -outOf(edge) : outOf(edge);
-    if (isHomeSwitch(edge)) edge = active == (moving > 0) ? H::home_low : H::home_high;
-    atEdge(edge, moving);
-    if (edge_found_) {
-      edge_position_ = passed ? switches.edgePosition(edge) : to;
-      home_ = edge_position_;
-      if (!method_.index) phase_ = Phase::found;
-      from = edge_position_;
-    }
+  const Inputs now = look(switches, to);
+  while (phase_ == Phase::searching) {
+    const auto end = endOfLeg(switches, from, to, pushes);
+    if (!end) break;
+    const HomingInput input = inputOf(leg().until);
+    at_limit_ = input == HomingInput::negative_limit || input == HomingInput::positive_limit;
+    if (input != HomingInput::none) seen_[place(input)] = now[place(input)];
+    home_ = from = *end;
+    pushes = false;
+    if (++next_ == legs_->size()) phase_ = Phase::found;
   }
-  active_ = active;
-  if (phase_ == Phase::searching && edge_found_) findIndex(switches, from, to);
-  if (phase_ == Phase::searching) atLimit(switches, to);
+  seen_ = now;
+  if (phase_ == Phase::searching) watchLimits(now);
 }
 
 }  // namespace cia402::sim

@@ -10,35 +10,38 @@ bool AxisSwitches::home(double turns) const {
          turns >= mechanics_->home_switch_low && turns <= mechanics_->home_switch_high;
 }
 
-bool AxisSwitches::active(HomingSwitch edge, double turns) const {
-  switch (edge) {
-    case HomingSwitch::negative_limit:
+bool AxisSwitches::active(HomingInput input, double turns) const {
+  switch (input) {
+    case HomingInput::negative_limit:
       return negativeLimit(turns);
-    case HomingSwitch::positive_limit:
+    case HomingInput::positive_limit:
       return positiveLimit(turns);
-    case HomingSwitch::home_low:
-    case HomingSwitch::home_high:
+    case HomingInput::home_switch:
       return home(turns);
-    case HomingSwitch::none:
+    case HomingInput::none:
       break;
   }
   return false;
 }
 
-double AxisSwitches::edgePosition(HomingSwitch edge) const {
-  switch (edge) {
-    case HomingSwitch::negative_limit:
+double AxisSwitches::edge(HomingInput input, bool low) const {
+  switch (input) {
+    case HomingInput::negative_limit:
       return mechanics_->negative_limit_switch;
-    case HomingSwitch::positive_limit:
+    case HomingInput::positive_limit:
       return mechanics_->positive_limit_switch;
-    case HomingSwitch::home_low:
-      return mechanics_->home_switch_low;
-    case HomingSwitch::home_high:
-      return mechanics_->home_switch_high;
-    case HomingSwitch::none:
+    case HomingInput::home_switch:
+      return low ? mechanics_->home_switch_low : mechanics_->home_switch_high;
+    case HomingInput::none:
       break;
   }
   return 0.0;
+}
+
+bool AxisSwitches::atIndex(double turns) const {
+  constexpr double kWidth = 1e-6;  // turns
+  const double places = turns - mechanics_->index_offset;
+  return std::fabs(places - std::round(places)) < kWidth;
 }
 
 std::optional<double> AxisSwitches::indexBetween(double from, double to) const {

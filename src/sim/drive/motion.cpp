@@ -149,6 +149,7 @@ void DriveMotion::step() {
     time_constant_ = mechanics_.inertia_time_constant;
     axis_.motor.setPositionTimeConstant(time_constant_);
   }
+  axis_.motor.setStops(mechanics_.negative_stop, mechanics_.positive_stop);
   const double from = axis_.motor.position();
   stepRotor(from);
   probes_.turned(from);

@@ -65,6 +65,8 @@ class DriveMotion {
   /// The axis stands on a limit switch or beyond it.
   bool onLimitSwitch() const;
   const MotionLimits& limits() const { return axis_.limits; }
+  /// Name of a fault that homing has come to since it was asked last, or nullptr.
+  const char* takeHomingFault() { return homing_.takeFault(); }
   TouchProbes& probes() { return probes_; }
   /// Actual and demand values, inputs into the dictionary.
   void publish();

@@ -29,6 +29,18 @@ void Motor::setPositionTimeConstant(double seconds) {
   velocity_gain_ = 1.0 - std::exp(-kDriveStepS / lag);
 }
 
+void Motor::setStops(double low, double high) {
+  lowest_ = low;
+  highest_ = high;
+}
+
+/// One step at the present speed, as far as the stops let it.
+void Motor::turn() {
+  const double wanted = position_ + velocity_ * kDriveStepS;
+  position_ = std::clamp(wanted, std::min(lowest_, position_), std::max(highest_, position_));
+  if (position_ != wanted) velocity_ = 0.0;
+}
+
 double Motor::brakingSpeed(double distance) const {
   const double deceleration = kBrakingReserve * torque_limit_ * parameters_.rated_acceleration;
   return std::sqrt(2.0 * deceleration * distance);
@@ -46,7 +58,7 @@ void Motor::accelerate(double wanted) {
   const double drive = torque_ - friction;
   const bool stuck = velocity_ == 0.0 && drive * direction <= 0.0;  // friction never pushes
   if (!stuck) velocity_ += drive * parameters_.rated_acceleration * kDriveStepS;
-  position_ += velocity_ * kDriveStepS;
+  turn();
 }
 
 void Motor::followPosition(double demand) {
@@ -114,7 +126,7 @@ void Motor::coast() {
   const double loss = deceleration * kDriveStepS;
   velocity_ =
       blocked_ || std::fabs(velocity_) <= loss ? 0.0 : velocity_ - std::copysign(loss, velocity_);
-  position_ += velocity_ * kDriveStepS;
+  turn();
 }
 
 }  // namespace cia402::sim

@@ -35,6 +35,8 @@ class Motor {
   void limitTorque(double rated_torques);
   /// A blocked rotor does not move; the loops push as hard as they may.
   void block(bool blocked) { blocked_ = blocked; }
+  /// Hard stops: it turns neither further back than `low` nor further on than `high`, turns.
+  void setStops(double low, double high);
   /// The position loop's lag, where the world changes it while running; s, > 0.
   void setPositionTimeConstant(double seconds);
 
@@ -51,11 +53,13 @@ class Motor {
  private:
   void accelerate(double wanted);
   double brakingSpeed(double distance) const;
+  void turn();
 
   MotorParameters parameters_;
   double velocity_gain_ = 0.0;  ///< share of a speed difference made up in one step
   double torque_limit_;
   double position_;
+  double lowest_ = -1e9, highest_ = 1e9;
   double velocity_ = 0.0;
   double torque_ = 0.0;
   std::optional<double> last_demand_;  ///< of the position loop, to know how fast it moves

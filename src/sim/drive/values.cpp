@@ -99,6 +99,14 @@ constexpr RoleInfo kRoles[] = {
     {R::gear_denominator, "gear_denominator", {0, 0}, Q::none},
     {R::sync_tolerance, "sync_tolerance", {0, 0}, Q::none},
     {R::position_limits_use, "position_limits_use", {0, 0}, Q::none},
+    {R::homing_stop_torque, "homing_stop_torque", {0, 0}, Q::torque},
+    {R::homing_stop_time, "homing_stop_time", {0, 0}, Q::time},
+    {R::homing_time_limit, "homing_time_limit", {0, 0}, Q::time},
+    {R::input_1_function, "input_1_function", {0, 0}, Q::none},
+    {R::input_2_function, "input_2_function", {0, 0}, Q::none},
+    {R::input_3_function, "input_3_function", {0, 0}, Q::none},
+    {R::input_4_function, "input_4_function", {0, 0}, Q::none},
+    {R::input_5_function, "input_5_function", {0, 0}, Q::none},
 };
 static_assert(sizeof(kRoles) / sizeof(kRoles[0]) == kRoleCount, "one line for each role");
 

@@ -99,6 +99,14 @@ enum class Role : std::uint8_t {
   gear_denominator,     ///< vendor object: ... so many position units
   sync_tolerance,       ///< vendor object: index into DriveDefinition::sync_tolerances
   position_limits_use,  ///< vendor object: index into DriveDefinition::limit_uses
+  homing_stop_torque,   ///< vendor object: so hard the motor pushes at a hard stop ...
+  homing_stop_time,     ///< vendor object: ... and for so long
+  homing_time_limit,    ///< vendor object: a longer search is the fault `homing_time`
+  input_1_function,     ///< vendor object: what the terminal is for; see `terminals` of homing
+  input_2_function,
+  input_3_function,
+  input_4_function,
+  input_5_function,
   count,
 };
 inline constexpr std::size_t kRoleCount = static_cast<std::size_t>(Role::count);

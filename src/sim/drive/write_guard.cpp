@@ -39,7 +39,7 @@ std::uint32_t refuseWrite(const DriveDefinition& definition, const DriveValues& 
     const auto among = [value](const std::vector<std::int64_t>& methods) {
       return std::find(methods.begin(), methods.end(), value) != methods.end();
     };
-    return among(definition.homing_methods) || among(definition.inert_methods)
+    return among(definition.homing.methods) || among(definition.homing.inert)
                ? 0
                : abort_code::kInvalidValue;
   }

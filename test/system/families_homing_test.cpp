@@ -1,0 +1,100 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// The homing methods of the families that are served in part: where home is says the motor, not
+// what the driver believes.
+#include "system/families_homing.h"
+
+namespace cia402 {
+namespace {
+
+using namespace std::chrono_literals;
+using drive::ProcedureKind;
+using testing::HasSubstr;
+
+class FamilyHomingMethod : public testing::TestWithParam<FamilyHoming> {};
+
+TEST_P(FamilyHomingMethod, MakesTheJointReadItsOffsetAtTheTrueHome) {
+  const FamilyHoming& c = GetParam();
+  Scene scene(loadText(homingJoint(c)));
+  ASSERT_TRUE(scene.boot(20s)) << scene.told();
+  scene.forget();
+  const bus::Answer homed = scene.procedure(ProcedureKind::home, "joint");
+  ASSERT_TRUE(homed.success) << homed.message << scene.told();
+  EXPECT_TRUE(scene.state("joint").homed);
+  const double count = kTurnOfMotor / std::stod(c.tested.counts_per_turn);
+  EXPECT_NEAR(scene.state("joint").position - kReadAtHome,
+              scene.position("joint") - c.home.home * kTurnOfMotor, count + 2e-6);
+  EXPECT_LT(scene.seen("joint").fastest, kSearchSpeed * 1.02);
+}
+
+constexpr FamilyMode kStepperPp{"nimotion_stepper", "4000", "pp"},
+    kId286Pp{"id286_cnfa", "10000", "pp"}, kDm5Pp{"megmeet_dm5", "8388608", "pp"};
+constexpr char kAsDelivered[] = "";
+constexpr char kDm5Switches[] =  // P03.00 to P03.02: reverse limit, forward limit, home
+    ", write: [{object: di1_function, raw: 36}, {object: di2_function, raw: 35}, "
+    "{object: di3_function, raw: 32}, {object: di4_function, raw: 0}]";
+
+std::string familyMethodName(const testing::TestParamInfo<FamilyHoming>& tested) {
+  const FamilyHoming& c = tested.param;
+  return std::string(c.tested.family) + "_Method" + std::to_string(c.home.method) + "Case" +
+         std::to_string(tested.index);
+}
+
+INSTANTIATE_TEST_SUITE_P(Nimotion, FamilyHomingMethod,
+                         testing::ValuesIn(withFamily(kStepperPp, kAsDelivered, homesByEdges())),
+                         familyMethodName);
+INSTANTIATE_TEST_SUITE_P(Id286Edges, FamilyHomingMethod,
+                         testing::ValuesIn(withFamily(kId286Pp, kAsDelivered, homesByEdges())),
+                         familyMethodName);
+INSTANTIATE_TEST_SUITE_P(Id286Index, FamilyHomingMethod,
+                         testing::ValuesIn(withFamily(kId286Pp, kAsDelivered, homesByIndex())),
+                         familyMethodName);
+INSTANTIATE_TEST_SUITE_P(Id286OffTheSwitch, FamilyHomingMethod,
+                         testing::ValuesIn(withFamily(kId286Pp, kAsDelivered, homesOffTheSwitch())),
+                         familyMethodName);
+INSTANTIATE_TEST_SUITE_P(Dm5Edges, FamilyHomingMethod,
+                         testing::ValuesIn(withFamily(kDm5Pp, kDm5Switches, homesByEdges())),
+                         familyMethodName);
+INSTANTIATE_TEST_SUITE_P(Dm5Index, FamilyHomingMethod,
+                         testing::ValuesIn(withFamily(kDm5Pp, kDm5Switches, homesByIndex())),
+                         familyMethodName);
+
+INSTANTIATE_TEST_SUITE_P(Dm5OnTheSwitch, FamilyHomingMethod,
+                         testing::ValuesIn(withFamily(kDm5Pp, kDm5Switches, homesOnTheSwitch())),
+                         familyMethodName);
+
+class FamilyHomingResult : public testing::TestWithParam<FamilyHoming> {};
+
+TEST_P(FamilyHomingResult, IsNotTakenForHomeWhenItIsInterrupted) {
+  Scene scene(loadText(homingJoint(GetParam())));
+  ASSERT_TRUE(scene.boot(20s)) << scene.told();
+  const auto homed = scene.begin(ProcedureKind::home, "joint");
+  ASSERT_TRUE(scene.runUntil([&] { return scene.velocity("joint") < -0.6; }, 5s));
+  ASSERT_TRUE(scene.procedure(ProcedureKind::halt, "joint").success) << scene.told();
+  scene.run(1s);
+  ASSERT_TRUE(homed->has_value());
+  EXPECT_FALSE((*homed)->success);
+  EXPECT_FALSE(scene.state("joint").homed);
+  EXPECT_NEAR(scene.velocity("joint"), 0.0, 1e-6);
+}
+
+TEST_P(FamilyHomingResult, IsATimeOutInWordsAndAStopWhereItTakesTooLong) {
+  Scene scene(loadText(homingJoint(GetParam(), ", timeout: 0.4")));
+  ASSERT_TRUE(scene.boot(20s)) << scene.told();
+  const bus::Answer homed = scene.procedure(ProcedureKind::home, "joint");
+  EXPECT_FALSE(homed.success);
+  EXPECT_THAT(homed.message, HasSubstr("homing timed out after 0.4 s"));
+  scene.run(1s);
+  EXPECT_FALSE(scene.state("joint").homed);
+  EXPECT_NEAR(scene.velocity("joint"), 0.0, 1e-6);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, FamilyHomingResult,
+                         testing::Values(FamilyHoming{kStepperPp, kAsDelivered, {17, 3.6, -2.0}},
+                                         FamilyHoming{kId286Pp, kAsDelivered, {17, 3.6, -2.0}},
+                                         FamilyHoming{kDm5Pp, kDm5Switches, {17, 3.6, -2.0}}),
+                         [](const auto& tested) {
+                           return std::string(tested.param.tested.family);
+                         });
+
+}  // namespace
+}  // namespace cia402
