@@ -236,9 +236,7 @@ TEST(FollowWatch, GivesAGoalUpWhereTheDriveSaysThatItsMotorStaysBehind) {
     bench.state.statusword = tells ? 0x2000 : 0x1000;
     EXPECT_FALSE(bench.cycle(0.0, 0.5));
     bool called_back = false;
-    for (const Time end = bench.now + 1s; bench.now < end && !called_back;) {
-      called_back = bench.cycle(0.0);
-    }
+    for (int i = 0; i < 250 && !called_back; ++i) called_back = bench.cycle(0.0);
     EXPECT_EQ(called_back, tells);
   }
 }

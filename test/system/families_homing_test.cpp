@@ -62,9 +62,9 @@ INSTANTIATE_TEST_SUITE_P(Dm5OnTheSwitch, FamilyHomingMethod,
                          testing::ValuesIn(withFamily(kDm5Pp, kDm5Switches, homesOnTheSwitch())),
                          familyMethodName);
 
-class FamilyHomingResult : public testing::TestWithParam<FamilyHoming> {};
+class FamilyHomingEnd : public testing::TestWithParam<FamilyHoming> {};
 
-TEST_P(FamilyHomingResult, IsNotTakenForHomeWhenItIsInterrupted) {
+TEST_P(FamilyHomingEnd, IsNotTakenForHomeWhenItIsInterrupted) {
   Scene scene(loadText(homingJoint(GetParam())));
   ASSERT_TRUE(scene.boot(20s)) << scene.told();
   const auto homed = scene.begin(ProcedureKind::home, "joint");
@@ -77,7 +77,7 @@ TEST_P(FamilyHomingResult, IsNotTakenForHomeWhenItIsInterrupted) {
   EXPECT_NEAR(scene.velocity("joint"), 0.0, 1e-6);
 }
 
-TEST_P(FamilyHomingResult, IsATimeOutInWordsAndAStopWhereItTakesTooLong) {
+TEST_P(FamilyHomingEnd, IsATimeOutInWordsAndAStopWhereItTakesTooLong) {
   Scene scene(loadText(homingJoint(GetParam(), ", timeout: 0.4")));
   ASSERT_TRUE(scene.boot(20s)) << scene.told();
   const bus::Answer homed = scene.procedure(ProcedureKind::home, "joint");
@@ -88,7 +88,7 @@ TEST_P(FamilyHomingResult, IsATimeOutInWordsAndAStopWhereItTakesTooLong) {
   EXPECT_NEAR(scene.velocity("joint"), 0.0, 1e-6);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, FamilyHomingResult,
+INSTANTIATE_TEST_SUITE_P(All, FamilyHomingEnd,
                          testing::Values(FamilyHoming{kStepperPp, kAsDelivered, {17, 3.6, -2.0}},
                                          FamilyHoming{kId286Pp, kAsDelivered, {17, 3.6, -2.0}},
                                          FamilyHoming{kDm5Pp, kDm5Switches, {17, 3.6, -2.0}}),
