@@ -27,7 +27,7 @@ std::optional<HomingLeg> readLeg(const std::string& text) {
   std::istringstream words(text);
   std::string motion, event, more;
   words >> motion >> event;
-  if (words >> more) event += " " + more;
+  while (words >> more) event += " " + more;
   HomingLeg leg;
   if (motion != "+fast" && motion != "-fast" && motion != "+slow" && motion != "-slow") {
     return std::nullopt;

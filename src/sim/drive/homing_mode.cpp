@@ -10,6 +10,7 @@ namespace {
 constexpr double kHard = 300.0;  // turns/s^2 where there is no 609Ah
 
 constexpr double kStopSpeed = 0.05;  // turns/s, below it a motor that pushes has come to a stop
+constexpr double kPushing = 0.02;    // turns
 constexpr Role kTerminals[] = {Role::input_1_function, Role::input_2_function,
                                Role::input_3_function, Role::input_4_function,
                                Role::input_5_function};
@@ -98,6 +99,7 @@ void HomingMode::step(double from) {
   const bool pushes = atHardStop();
   sequence_.step(axis_.switches, from, axis_.motor.position(), pushes);
   if (pushes) standWhereItIs();
+  if (sequence_.seeksStop()) keepNear();
   if (sequence_.phase() == Phase::found) finish();
   if (sequence_.phase() == Phase::failed) failed_ = true;
   watchTime();
@@ -116,6 +118,14 @@ bool HomingMode::atHardStop() {
 void HomingMode::standWhereItIs() {
   axis_.demand.position = axis_.motor.position();
   axis_.demand.velocity = 0.0;
+}
+
+/// A motor that pushes stays behind by no more than it takes to push.
+void HomingMode::keepNear() {
+  if (std::fabs(axis_.motor.velocity()) >= kStopSpeed) return;
+  double& demand = axis_.demand.position;
+  const double position = axis_.motor.position();
+  demand = std::clamp(demand, position - kPushing, position + kPushing);
 }
 
 void HomingMode::watchTime() {

@@ -34,6 +34,7 @@ class HomingMode {
   bool terminalsAreRight(const HomingRoute& route) const;
   bool atHardStop();
   void standWhereItIs();
+  void keepNear();
   void watchTime();
   void finish();
   void returnHome();
