@@ -67,23 +67,29 @@ bool Control::stopping() const {
                                     state == State::quick_stop_active);
 }
 
-void Control::write(unsigned mode_bits, const ModeSpec& mode) {
+std::uint16_t Control::wordOutOfOperation(const ModeSpec& mode) {
+  unsigned word = 0;
   if (silent_ && !fault_reset_) {
-    word_ = static_cast<std::uint16_t>(silentWord() | (stopping() ? mode.stoppingBits() : 0u));
+    word = silentWord();
   } else if (voltage_off_) {
-    word_ = 0;
+    return 0;
   } else {
     command();
-    unsigned word = base_;
+    word = base_ | (fault_reset_ ? controlword::kFaultReset : 0u);
+  }
+  return static_cast<std::uint16_t>(word | (stopping() ? mode.stoppingBits() : 0u));
+}
+
+void Control::write(unsigned mode_bits, const ModeSpec& mode) {
+  if (in_operation_) {
+    command();
+    unsigned word = base_ | mode_bits;
     if (fault_reset_) word |= controlword::kFaultReset;
-    if (in_operation_) {
-      word |= mode_bits;
-      if (homing_start_) word |= controlword::kHomingStart;
-      if (halt_) word |= controlword::kHalt;
-    } else if (stopping()) {
-      word |= mode.stoppingBits();
-    }
+    if (homing_start_) word |= controlword::kHomingStart;
+    if (halt_) word |= controlword::kHalt;
     word_ = static_cast<std::uint16_t>(word);
+  } else {
+    word_ = wordOutOfOperation(mode);
   }
   axis_.image.setOutput(axis_.objects.controlword.slot, word_);
 }

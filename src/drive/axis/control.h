@@ -84,6 +84,7 @@ class Control {
   std::uint16_t silentWord() const;
   void command();
   bool stopping() const;
+  [[gnu::cold]] std::uint16_t wordOutOfOperation(const ModeSpec& mode);
 
   AxisBasis& axis_;
   const Feedback& feedback_;

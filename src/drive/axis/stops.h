@@ -52,7 +52,7 @@ class Stops {
   bool brakeByMode(Time now);
   void brakeEffort(Time now);
   [[gnu::cold]] void judgeUrgent();
-  void finishHold();
+  [[gnu::cold]] void finishHold();
 
   AxisCore& axis_;
   Time braked_at_{};
