@@ -50,8 +50,12 @@ TEST_F(FamilyMemory, OfFaultsIsReadNewestFirstAndCleared) {
     EXPECT_EQ(two.history.entries[1].code, row.codes[0]);
     const auto cleared = scene.call(bus::WriteObjectCommand{"joint", "1003:00 u8", "0"});
     EXPECT_EQ(cleared.success, row.cleared) << cleared.message;
-    if (row.cleared) EXPECT_THAT(history(scene).message, HasSubstr("empty"));
-    if (!row.cleared) EXPECT_THAT(cleared.message, HasSubstr("read-only"));
+    if (row.cleared) {
+      EXPECT_THAT(history(scene).message, HasSubstr("empty"));
+    }
+    if (!row.cleared) {
+      EXPECT_THAT(cleared.message, HasSubstr("read-only"));
+    }
   }
 }
 
@@ -95,7 +99,9 @@ TEST_F(FamilyMemory, OfParametersIsWrittenOnRequestOnlyAndWithPatience) {
     EXPECT_TRUE(restored.success) << restored.message;
     EXPECT_TRUE(inOrder(scene.writes(), {"23 11 10 01 6C 6F 61 64", "23 11 10 04 6C 6F 61 64"}));
     EXPECT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, kFamilyBoot));
-    if (is(tested, kBusDamiao)) EXPECT_EQ(scene.node("joint").bootUps(), boots + 1) << "a reset";
+    if (is(tested, kBusDamiao)) {
+      EXPECT_EQ(scene.node("joint").bootUps(), boots + 1) << "a reset";
+    }
     enableJoint(scene);
   }
 }

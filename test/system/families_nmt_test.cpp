@@ -43,7 +43,9 @@ TEST_P(FamilyNmt, TakesEachCommandAloneAndWithAllOthers) {
       const bus::Answer answer = nmt(scene, all ? "" : "a", row.word);
       EXPECT_TRUE(answer.success) << row.word << ": " << answer.message;
       EXPECT_EQ(scene.truth("a").nmt, row.state) << row.word;
-      if (all) EXPECT_EQ(scene.truth("b").nmt, row.state) << row.word;
+      if (all) {
+        EXPECT_EQ(scene.truth("b").nmt, row.state) << row.word;
+      }
       const bool each = all && row.byte == std::string("01");  // who is not there is not started
       if (!each) {
         EXPECT_THAT(scene.lines, Contains("000 " + std::string(row.byte) + (all ? " 00" : " 01")));

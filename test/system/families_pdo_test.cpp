@@ -85,7 +85,9 @@ TEST_P(FamilyPdo, WithoutUseIsMadeInvalid) {
       const auto index = static_cast<std::uint16_t>(record + i);
       const bool used = (numberIn(scene, index, 1) & 0x80000000U) == 0;
       valid += used ? 1U : 0U;
-      if (used) EXPECT_LE(numberIn(scene, index, 2), 240U) << std::hex << index;
+      if (used) {
+        EXPECT_LE(numberIn(scene, index, 2), 240U) << std::hex << index;
+      }
     }
   }
   EXPECT_GE(valid, 2U);
@@ -147,7 +149,9 @@ TEST_P(FamilyPdo, ComesAsItsTransmissionTypeSays) {
     EXPECT_NEAR(timed.standing, 10.0, 11.0) << type;
     EXPECT_GE(timed.standing, 9.0) << "by the event timer";
     EXPECT_LE(timed.moving, 21.0) << "never more often than each 50 ms";
-    if (!by_timer) EXPECT_GT(ratesOf(GetParam(), event + ", inhibit: 0.01").moving, 5.0) << type;
+    if (!by_timer) {
+      EXPECT_GT(ratesOf(GetParam(), event + ", inhibit: 0.01").moving, 5.0) << type;
+    }
   }
 }
 

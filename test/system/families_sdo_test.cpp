@@ -78,9 +78,12 @@ TEST_P(FamilySdo, TellsWhoItIs) {
     EXPECT_THAT(answer.message, HasSubstr(printed.text));
     const bool text = std::string(printed.object).find("text") != std::string::npos;
     const std::size_t length = std::string(printed.text).size();
-    if (text && length > 4) EXPECT_EQ(scene.count("601 60 00 00 00"), (length + 13) / 14);
-    if (text && length > 7)
+    if (text && length > 4) {
+      EXPECT_EQ(scene.count("601 60 00 00 00"), (length + 13) / 14);
+    }
+    if (text && length > 7) {
       EXPECT_EQ(scene.count("601 70 00 00 00"), length / 14 + (length % 14 > 7 ? 1U : 0U));
+    }
   }
 }
 
@@ -289,7 +292,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Sv660cCounters, OfTheBusAreRead) {
   Scene scene(loadText(busJoint(kBusSv660c)));
   ASSERT_TRUE(scene.boot(kFamilyBoot)) << scene.told();
-  for (const std::uint8_t sub : {0x12, 0x13, 0x14, 0x0F}) {
+  for (const int sub : {0x12, 0x13, 0x14, 0x0F}) {
     scene.drive("joint").dictionary().find({0x200E, sub})->number = sub;
     char object[8];
     std::snprintf(object, sizeof(object), "200E:%02X", static_cast<unsigned>(sub));
