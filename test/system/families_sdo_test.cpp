@@ -292,7 +292,8 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Sv660cCounters, OfTheBusAreRead) {
   Scene scene(loadText(busJoint(kBusSv660c)));
   ASSERT_TRUE(scene.boot(kFamilyBoot)) << scene.told();
-  for (const int sub : {0x12, 0x13, 0x14, 0x0F}) {
+  constexpr std::uint8_t kCounters[] = {0x12, 0x13, 0x14, 0x0F};
+  for (const std::uint8_t sub : kCounters) {
     scene.drive("joint").dictionary().find({0x200E, sub})->number = sub;
     char object[8];
     std::snprintf(object, sizeof(object), "200E:%02X", static_cast<unsigned>(sub));
