@@ -136,11 +136,12 @@ void checkErrorControlPeriod(yaml::Section& section, const AxisDraft& draft, con
   const Duration shortest = draft.device.profile->error_control_min;
   const ErrorControlPlan plan = planErrorControl(bus, draft.device);
   if (plan.kind == ErrorControl::none || plan.period >= shortest) return;
-  const std::string problem = "profile " + draft.axis.profile->name + " stands no " +
+  const std::string problem = "drives of profile " + draft.axis.profile->name + " stand no " +
                               (plan.kind == ErrorControl::guarding ? "guard time" : "heartbeat") +
-                              " below " + secondsText(shortest) + ", not " +
+                              " below " + secondsText(shortest) + ", and this is " +
                               secondsText(plan.period);
-  if (const auto at = section.get("error_control")) return at->problem(problem);
+  if (const auto at = section.get("error_control"))
+    return at->problem(problem + "; make it longer");
   section.problem(problem + " (bus/heartbeat); make that longer, or give it `error_control`");
 }
 

@@ -5,7 +5,7 @@
 // slow, 10 turns/s^2.
 #include <yaml-cpp/yaml.h>
 
-#include "drive_fixture.h"
+#include "homing_machine.h"
 #include "sim/definition/drive_definition.h"
 
 namespace cia402::sim {
@@ -33,13 +33,7 @@ YAML::Node with(const std::string& homing) {
 std::string route(const std::string& keys) { return "routes: {-1: {" + keys + "}}"; }
 
 AxisMechanics machine(double start) {
-  AxisMechanics mechanics;
-  mechanics.initial_position = start;
-  mechanics.negative_limit_switch = -2.0;
-  mechanics.positive_limit_switch = 3.0;
-  mechanics.home_switch_low = 0.5;
-  mechanics.home_switch_high = 0.8;
-  mechanics.index_offset = 0.25;
+  AxisMechanics mechanics = homingMachine(start);
   mechanics.negative_stop = -4.0;
   mechanics.positive_stop = 5.0;
   return mechanics;

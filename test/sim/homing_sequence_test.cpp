@@ -2,24 +2,13 @@
 // Homing of the generic simulated drive. The axis, in motor turns:
 //   negative limit at -2, home switch from 0.5 to 0.8, positive limit at 3, index at k + 0.25.
 // Home positions below are read off the figures of CiA 402-2 by hand.
-#include "drive_fixture.h"
+#include "homing_machine.h"
 
 namespace cia402::sim {
 namespace {
 
 constexpr double kTurn = 131072.0;
 constexpr int kOffset = 1000;  // 607Ch
-
-AxisMechanics axis(double start) {
-  AxisMechanics mechanics;
-  mechanics.initial_position = start;
-  mechanics.negative_limit_switch = -2.0;
-  mechanics.positive_limit_switch = 3.0;
-  mechanics.home_switch_low = 0.5;
-  mechanics.home_switch_high = 0.8;
-  mechanics.index_offset = 0.25;
-  return mechanics;
-}
 
 struct Homing : DriveBench {
   explicit Homing(const AxisMechanics& mechanics) : DriveBench("generic_cia402", mechanics) {
@@ -56,7 +45,7 @@ class HomingMethods : public testing::TestWithParam<Case> {};
 
 TEST_P(HomingMethods, FindsTheHomePositionOfTheFigure) {
   const Case c = GetParam();
-  Homing b(axis(c.start));
+  Homing b(homingMachine(c.start));
   EXPECT_EQ(b.home(c.method), 0x1400);
   const double end = b.drive->truth(b.now).position_turns;
   EXPECT_NEAR(b.position(), kOffset + (end - c.home) * kTurn, 0.6);
@@ -91,13 +80,13 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Homing, SearchesInTheDirectionOfTheFigureAndTurnsAtTheLimitSwitch) {
   for (const int method : {23, 24, 25, 26}) {
-    Homing b(axis(2.0));
+    Homing b(homingMachine(2.0));
     b.home(method);
     EXPECT_GE(b.highest, 3.0) << method;
     EXPECT_GT(b.lowest, -2.0) << method;
   }
   for (const int method : {27, 28, 29, 30}) {
-    Homing b(axis(-1.0));
+    Homing b(homingMachine(-1.0));
     b.home(method);
     EXPECT_LE(b.lowest, -2.0) << method;
     EXPECT_LT(b.highest, 3.0) << method;
@@ -105,7 +94,7 @@ TEST(Homing, SearchesInTheDirectionOfTheFigureAndTurnsAtTheLimitSwitch) {
 }
 
 TEST(Homing, FailsWhenBothLimitSwitchesAreReached) {
-  AxisMechanics mechanics = axis(0.0);
+  AxisMechanics mechanics = homingMachine(0.0);
   mechanics.home_switch_high = mechanics.home_switch_low;  // no home switch
   Homing b(mechanics);
   EXPECT_EQ(b.home(23), 0x2400);
@@ -115,14 +104,14 @@ TEST(Homing, FailsWhenBothLimitSwitchesAreReached) {
 }
 
 TEST(Homing, FailsAtTheFirstLimitWhereTheMethodKnowsNone) {
-  Homing b(axis(2.0));
+  Homing b(homingMachine(2.0));
   EXPECT_EQ(b.home(19), 0x2400);
   EXPECT_LT(b.highest, 3.2);
 }
 
 TEST(Homing, SeesASwitchThatIsTouchedOnTheWay) {
   for (const int touched : {50, 2000}) {  // ms: it is let go before the motor has turned, or after
-    Homing b(axis(0.6));
+    Homing b(homingMachine(0.6));
     b.write(0x6098, 0, 18, 1);
     b.control(0x001F);
     b.run(ms(500));
@@ -142,7 +131,7 @@ TEST(Homing, SeesASwitchThatIsTouchedOnTheWay) {
 }
 
 TEST(Homing, ShowsNotStartedThenRunningThenAttainedInItsBits) {
-  Homing b(axis(-1.0));
+  Homing b(homingMachine(-1.0));
   EXPECT_EQ(b.bits(), 0x0400);
   b.write(0x6098, 0, 24, 1);
   b.control(0x001F);
@@ -158,7 +147,7 @@ TEST(Homing, ShowsNotStartedThenRunningThenAttainedInItsBits) {
 }
 
 TEST(Homing, DoesNotStartByABitThatCameWithTheEnabling) {
-  Homing b(axis(-1.0));
+  Homing b(homingMachine(-1.0));
   b.control(0x0006);
   b.control(0x0007);
   b.control(0x001F);
@@ -168,7 +157,7 @@ TEST(Homing, DoesNotStartByABitThatCameWithTheEnabling) {
 }
 
 TEST(Homing, SearchesFastAndThenSlowly) {
-  Homing b(axis(-1.0));
+  Homing b(homingMachine(-1.0));
   b.write(0x6098, 0, 23, 1);
   b.control(0x001F);
   b.run(ms(1000));
@@ -178,7 +167,7 @@ TEST(Homing, SearchesFastAndThenSlowly) {
 }
 
 TEST(Homing, RefusesMethodsItDoesNotHave) {
-  Homing b(axis(0.0));
+  Homing b(homingMachine(0.0));
   EXPECT_EQ(b.refusal(0x6098, 0, 15, 1), 0x06090030U);
   EXPECT_EQ(b.refusal(0x6098, 0, 36, 1), 0x06090030U);
   EXPECT_EQ(b.read(0x6098) & 0xFFU, 35U);

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "system/families_scene.h"
+#include "system/stranger.h"
 #include "system/traced_scene.h"
 
 namespace cia402 {
@@ -93,19 +94,6 @@ inline std::uint64_t numberIn(Scene& scene, std::uint16_t index, std::uint8_t su
   EXPECT_NE(entry, nullptr) << std::hex << index;
   return entry == nullptr ? 0 : entry->number;
 }
-
-/// Another device on the bus.
-class Stranger final : public sim::Participant {
- public:
-  explicit Stranger(sim::World& world) : port_(world.addParticipant("stranger", *this)) {}
-  void receive(const can::Frame&, Time) override {}
-  void tick(Time) override {}
-  Time nextDeadline() const override { return kNever; }
-  void send(const can::Frame& frame) { port_.send(frame); }
-
- private:
-  sim::Port& port_;
-};
 
 /// Every frame of an identifier is lost, at one receiver or at all.
 inline void loseFrames(Scene& scene, std::uint32_t id, unsigned count = 1000000,

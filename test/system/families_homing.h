@@ -79,13 +79,13 @@ inline std::vector<FamilyHoming> withFamily(const FamilyMode& tested, const char
   return all;
 }
 
-inline std::string homingJoint(const FamilyHoming& homing, const std::string& more = {}) {
+inline std::string homingJoint(const FamilyHoming& homing) {
   const auto place = [](double turns) { return std::to_string(turns * kTurnOfMotor); };
   return familyJoint(
       homing.tested,
       ", homing: {method: " + std::to_string(homing.home.method) + ", offset: " +
           std::to_string(kReadAtHome) + ", search_velocity: " + std::to_string(kSearchSpeed) +
-          ", zero_velocity: " + std::to_string(kZeroSpeed) + ", acceleration: 4.0" + more + "}" +
+          ", zero_velocity: " + std::to_string(kZeroSpeed) + ", acceleration: 4.0}" +
           homing.switches + ", simulation: {initial_position: " + place(homing.home.start) +
           ", lower_limit_switch: " + place(-2.0) + ", upper_limit_switch: " + place(5.0) +
           ", home_switch: [" + place(1.0) + ", " + place(2.6) + "], index_offset: 0.3}");

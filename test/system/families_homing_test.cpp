@@ -62,39 +62,5 @@ INSTANTIATE_TEST_SUITE_P(Dm5OnTheSwitch, FamilyHomingMethod,
                          testing::ValuesIn(withFamily(kDm5Pp, kDm5Switches, homesOnTheSwitch())),
                          familyMethodName);
 
-class FamilyHomingEnd : public testing::TestWithParam<FamilyHoming> {};
-
-TEST_P(FamilyHomingEnd, IsNotTakenForHomeWhenItIsInterrupted) {
-  Scene scene(loadText(homingJoint(GetParam())));
-  ASSERT_TRUE(scene.boot(20s)) << scene.told();
-  const auto homed = scene.begin(ProcedureKind::home, "joint");
-  ASSERT_TRUE(scene.runUntil([&] { return scene.velocity("joint") < -0.6; }, 5s));
-  ASSERT_TRUE(scene.procedure(ProcedureKind::halt, "joint").success) << scene.told();
-  scene.run(1s);
-  ASSERT_TRUE(homed->has_value());
-  EXPECT_FALSE((*homed)->success);
-  EXPECT_FALSE(scene.state("joint").homed);
-  EXPECT_NEAR(scene.velocity("joint"), 0.0, 1e-6);
-}
-
-TEST_P(FamilyHomingEnd, IsATimeOutInWordsAndAStopWhereItTakesTooLong) {
-  Scene scene(loadText(homingJoint(GetParam(), ", timeout: 0.4")));
-  ASSERT_TRUE(scene.boot(20s)) << scene.told();
-  const bus::Answer homed = scene.procedure(ProcedureKind::home, "joint");
-  EXPECT_FALSE(homed.success);
-  EXPECT_THAT(homed.message, HasSubstr("homing timed out after 0.4 s"));
-  scene.run(1s);
-  EXPECT_FALSE(scene.state("joint").homed);
-  EXPECT_NEAR(scene.velocity("joint"), 0.0, 1e-6);
-}
-
-INSTANTIATE_TEST_SUITE_P(All, FamilyHomingEnd,
-                         testing::Values(FamilyHoming{kStepperPp, kAsDelivered, {17, 3.6, -2.0}},
-                                         FamilyHoming{kId286Pp, kAsDelivered, {17, 3.6, -2.0}},
-                                         FamilyHoming{kDm5Pp, kDm5Switches, {17, 3.6, -2.0}}),
-                         [](const auto& tested) {
-                           return std::string(tested.param.tested.family);
-                         });
-
 }  // namespace
 }  // namespace cia402

@@ -5,6 +5,7 @@
 
 #include "folders.h"
 #include "system/scene.h"
+#include "system/stranger.h"
 
 namespace cia402 {
 namespace {
@@ -82,26 +83,13 @@ TEST(StaleFeedback, OfDigitalInputsIsNotShownAsLow) {
   EXPECT_TRUE(scene.state("right").digital_inputs_valid);
 }
 
-/// Sends what it is told to: a device that should not be there.
-class Intruder final : public sim::Participant {
- public:
-  explicit Intruder(sim::World& world) : port_(world.addParticipant("intruder", *this)) {}
-  void receive(const can::Frame&, Time) override {}
-  void tick(Time) override {}
-  Time nextDeadline() const override { return kNever; }
-  void send(const can::Frame& frame) { port_.send(frame); }
-
- private:
-  sim::Port& port_;
-};
-
 TEST(WrongLengths, AreCountedAndNamedButNotInAFlood) {
   Scene scene(loadText(genericPair()));
-  Intruder intruder(scene.world());
+  Stranger stranger(scene.world());
   ASSERT_TRUE(scene.boot());
   for (int i = 0; i < 50; ++i) {
-    intruder.send(can::Frame(0x181, {0x37, 0x02}));
-    intruder.send(can::Frame(0x282, {1, 2, 3}));
+    stranger.send(can::Frame(0x181, {0x37, 0x02}));
+    stranger.send(can::Frame(0x282, {1, 2, 3}));
     scene.run(10ms);
   }
   EXPECT_EQ(snapshot(scene, "left").wrong_lengths, 50u);
