@@ -76,6 +76,24 @@ INSTANTIATE_TEST_SUITE_P(
       return std::string(tested.param.tested.family) + "_" + tested.param.tested.mode;
     });
 
+// As long as a SYNC period and more. Its code may go before its bit in the statusword does: with a
+// code of 0 a NiMotion would have stopped as at a fault.
+TEST_P(FamilyWarning, ThatIsShortHaltsItAndNoMore) {
+  for (Duration stands = 3ms; stands < 48ms; stands += 4ms) {
+    Scene scene(loadText(familyJoint(GetParam().tested)));
+    ASSERT_TRUE(scene.boot(20s)) << scene.told();
+    ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
+    sendOff(scene);
+    scene.inject("joint", GetParam().warning);
+    scene.run(stands);
+    scene.inject("joint", "clear");
+    scene.run(1s);
+    EXPECT_TRUE(scene.truth("joint").power_stage_on) << toSeconds(stands) << " s\n" << scene.told();
+    EXPECT_NEAR(scene.velocity("joint"), 0.0, 1e-3) << toSeconds(stands) << " s";
+    EXPECT_TRUE(scene.state("joint").halted) << toSeconds(stands) << " s";
+  }
+}
+
 TEST(FamilyWarnings, ThatOnlyTellLetATrajectoryEnd) {
   Scene scene(loadText(familyJoint({"megmeet_dm5", "8388608", "csp"})));
   ASSERT_TRUE(scene.boot(20s)) << scene.told();
