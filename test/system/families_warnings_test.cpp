@@ -79,7 +79,7 @@ INSTANTIATE_TEST_SUITE_P(
 // As long as a SYNC period and more. Its code may go before its bit in the statusword does: with a
 // code of 0 a NiMotion would have stopped as at a fault.
 TEST_P(FamilyWarning, ThatIsShortHaltsItAndNoMore) {
-  for (Duration stands = 3ms; stands < 48ms; stands += 4ms) {
+  for (Duration stands = 5ms; stands < 48ms; stands += 2ms) {
     Scene scene(loadText(familyJoint(GetParam().tested)));
     ASSERT_TRUE(scene.boot(20s)) << scene.told();
     ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
