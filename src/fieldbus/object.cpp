@@ -15,6 +15,7 @@ struct TypeRow {
   bool is_signed;
 };
 
+// In the order of DataType.
 constexpr std::array<TypeRow, 25> kTypes{{
     {DataType::boolean, "boolean", 1, false},
     {DataType::int8, "int8", 8, true},
@@ -29,6 +30,7 @@ constexpr std::array<TypeRow, 25> kTypes{{
     {DataType::real64, "real64", 64, true},
     {DataType::visible_string, "visible_string", 0, false},
     {DataType::octet_string, "octet_string", 0, false},
+    {DataType::domain, "domain", 0, false},
     {DataType::int24, "int24", 24, true},
     {DataType::int40, "int40", 40, true},
     {DataType::int48, "int48", 48, true},
@@ -40,15 +42,17 @@ constexpr std::array<TypeRow, 25> kTypes{{
     {DataType::unicode_string, "unicode_string", 0, false},
     {DataType::time_of_day, "time_of_day", 48, false},
     {DataType::time_difference, "time_difference", 48, false},
-    {DataType::domain, "domain", 0, false},
 }};
 
-const TypeRow& row(DataType type) {
-  for (const TypeRow& candidate : kTypes) {
-    if (candidate.type == type) return candidate;
+constexpr bool isInOrder() {
+  for (std::size_t i = 0; i < kTypes.size(); ++i) {
+    if (static_cast<std::size_t>(kTypes[i].type) != i) return false;
   }
-  return kTypes.back();
+  return static_cast<std::size_t>(DataType::time_difference) + 1 == kTypes.size();
 }
+static_assert(isInOrder(), "one row for each type, found by its number");
+
+const TypeRow& row(DataType type) { return kTypes[static_cast<std::size_t>(type)]; }
 
 std::optional<unsigned> parseNumber(std::string_view text, int base, unsigned max) {
   unsigned value = 0;

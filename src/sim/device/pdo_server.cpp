@@ -37,7 +37,7 @@ void PdoServer::serveRecords(const PdoRecords& pdo, const std::function<void()>&
   const auto taken = [this, pdo, configure](const Entry& entry) {
     if (entry.id.index == pdo.mapping && entry.id.subindex != 0) countEntries(context_, pdo);
     configure();
-    collectIds();
+    configured();
   };
   for (unsigned sub = 1; sub <= pdo_sub::kSyncStart; ++sub) {
     context_.serveWrites(
@@ -67,10 +67,10 @@ void PdoServer::configure() {
     countEntries(context_, pdo.records());
     pdo.configure();
   }
-  collectIds();
+  configured();
 }
 
-void PdoServer::collectIds() {
+void PdoServer::configured() {
   ids_.reset();
   for (const SlaveRpdo& pdo : rpdos_) {
     if (pdo.canId() < ids_.size()) ids_.set(pdo.canId());
@@ -78,6 +78,8 @@ void PdoServer::collectIds() {
   for (const SlaveTpdo& pdo : tpdos_) {
     if (pdo.requestId() < ids_.size()) ids_.set(pdo.requestId());
   }
+  event_driven_ = std::any_of(tpdos_.begin(), tpdos_.end(),
+                              [](const SlaveTpdo& pdo) { return pdo.eventDriven(); });
 }
 
 void PdoServer::start() {
@@ -123,7 +125,7 @@ void PdoServer::sendSynchronous(std::uint8_t counter) {
   for (SlaveTpdo* pdo : due_) pdo->onSync();
 }
 
-bool PdoServer::sendsOnChange() const {
+bool PdoServer::anySendsOnChange() const {
   return std::any_of(tpdos_.begin(), tpdos_.end(),
                      [](const SlaveTpdo& pdo) { return pdo.sendsOnChange(); });
 }

@@ -35,14 +35,15 @@ class PdoServer {
   /// TPDOs that the SYNC with this counter (0: none) asks for.
   void sendSynchronous(std::uint8_t counter);
   /// Is any TPDO sent when its content changes?
-  bool sendsOnChange() const;
+  bool sendsOnChange() const { return event_driven_ && anySendsOnChange(); }
   void notifyChange();
   void tick();
   Time deadline() const;
 
  private:
   void serveRecords(const PdoRecords& pdo, const std::function<void()>& configure);
-  void collectIds();
+  void configured();
+  bool anySendsOnChange() const;
 
   SlaveContext& context_;
   SlaveEmergency& emergency_;
@@ -50,6 +51,7 @@ class PdoServer {
   std::vector<SlaveTpdo> tpdos_;
   std::vector<SlaveTpdo*> due_;
   std::bitset<0x800> ids_;
+  bool event_driven_ = false;  ///< any TPDO, as configured
 };
 
 }  // namespace cia402::sim

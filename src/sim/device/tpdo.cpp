@@ -65,11 +65,11 @@ void SlaveTpdo::stop() {
   event_deadline_ = kNever;
 }
 
-bool SlaveTpdo::eventDriven() const { return type_ >= kEventVendor; }
+bool SlaveTpdo::eventDriven() const { return type_ >= kEventVendor && valid(); }
 
 bool SlaveTpdo::sendsOnChange() const {
   const bool timer_only = type_ == kEventProfile && context_.behaviour.type255_event_timer_only;
-  return active() && eventDriven() && !timer_only;
+  return running_ && eventDriven() && !timer_only;
 }
 
 bool SlaveTpdo::wantsSample(std::uint8_t counter) {

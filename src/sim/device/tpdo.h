@@ -33,6 +33,8 @@ class SlaveTpdo {
   void onStart();
   void onRequest();
   bool sendsOnChange() const;
+  /// As configured, running or not.
+  bool eventDriven() const;
   /// Sends what the event timer or the end of the inhibit time made due.
   void tick();
   Time deadline() const;
@@ -40,8 +42,8 @@ class SlaveTpdo {
  private:
   static constexpr std::uint32_t kNoCanId = 0xFFFFFFFF;
 
-  bool active() const { return running_ && can_id_ != kNoCanId && !mapping_.empty(); }
-  bool eventDriven() const;
+  bool valid() const { return can_id_ != kNoCanId && !mapping_.empty(); }
+  bool active() const { return running_ && valid(); }
   bool isNew(std::uint64_t data) const { return !sent_ || data != last_; }
   std::uint64_t sample();
   void trigger(std::uint64_t data);

@@ -69,9 +69,9 @@ void DriveCore::powerOff() {
 }
 
 bool DriveCore::idle() const {
+  if (motion_.powered() || !motion_.atRest()) return false;
   const bool initialises = power_.readyAt() != kNever && on_;
-  return !power_.enabling() && !faults_.endByThemselves() && modes_.due() == kNever &&
-         !motion_.powered() && motion_.atRest() && !initialises;
+  return !power_.enabling() && !faults_.endByThemselves() && modes_.due() == kNever && !initialises;
 }
 
 void DriveCore::advance(Time now) {
@@ -124,9 +124,12 @@ void DriveCore::superviseMotion() {
       power_.state() != PdsState::fault_reaction_active) {
     raise("following_error");
   }
+  const double tolerance = syncTolerance();
   const Time time{step_ * kDriveStep};
-  if (toSeconds(sync_.since(time)) > configuredPeriod(values_) + syncTolerance())
+  if (tolerance < kUnlimited &&
+      toSeconds(sync_.since(time)) > configuredPeriod(values_) + tolerance) {
     raise("sync_error");
+  }
   if (const char* fault = motion_.takeHomingFault()) raise(fault);
   const MotionLimits& limits = motion_.limits();
   const auto act = [this](const LimitReports::Due& due) {
@@ -217,8 +220,11 @@ void DriveCore::onTargetPosition() {
 
 void DriveCore::onSync() {
   sync_.onSync(now_);
-  if (toSeconds(sync_.interval()) < configuredPeriod(values_) - syncTolerance())
+  const double tolerance = syncTolerance();
+  if (tolerance < kUnlimited &&
+      toSeconds(sync_.interval()) < configuredPeriod(values_) - tolerance) {
     raise("sync_error");
+  }
   startSegment();
 }
 
@@ -237,8 +243,8 @@ double DriveCore::syncTolerance() const {
 }
 
 void DriveCore::startSegment() {
-  double period = configuredPeriod(values_);
-  if (definition_.follows_sync_period || period <= 0.0) period = toSeconds(sync_.interval());
+  double period = definition_.follows_sync_period ? 0.0 : configuredPeriod(values_);
+  if (period <= 0.0) period = toSeconds(sync_.interval());
   motion_.cyclicTarget(period, toSeconds(now_ - Time{step_ * kDriveStep}));
 }
 

@@ -165,20 +165,16 @@ double decodeNumber(const Entry& entry, Encoding encoding) {
 }
 
 std::uint64_t encodeNumber(double value, const Entry& entry, Encoding encoding) {
-  const std::uint32_t bits = toFloatBits(value);
-  switch (encoding) {
-    case Encoding::float32:
-      return bits;
-    case Encoding::bfloat16:
-      return ((bits + 0x7FFFU + ((bits >> 16) & 1U)) >> 16) & 0xFFFFU;
-    case Encoding::scaled_unsigned:
-    case Encoding::scaled_signed:
-      return (bits / 65535U) & 0xFFFFU;
-    case Encoding::integer:
-      break;
+  if (encoding == Encoding::integer) {
+    const double wrapped = std::fabs(value) < 9e18 ? value : 0.0;
+    return static_cast<std::uint64_t>(std::llround(wrapped)) & mask(entry);
   }
-  const double wrapped = std::fabs(value) < 9e18 ? value : 0.0;
-  return static_cast<std::uint64_t>(std::llround(wrapped)) & mask(entry);
+  const std::uint32_t bits = toFloatBits(value);
+  if (encoding == Encoding::float32) return bits;
+  if (encoding == Encoding::bfloat16) {
+    return ((bits + 0x7FFFU + ((bits >> 16) & 1U)) >> 16) & 0xFFFFU;
+  }
+  return (bits / 65535U) & 0xFFFFU;
 }
 
 DriveValues::DriveValues(const DriveDefinition& definition, unsigned axis,
@@ -189,6 +185,10 @@ DriveValues::DriveValues(const DriveDefinition& definition, unsigned axis,
         moved == definition.objects.end() ? info.object : moved->second;
     Slot& slot = slots_[static_cast<std::size_t>(info.role)];
     slot.entry = dictionary.find(ofAxis(object, axis));
+    if (slot.entry != nullptr) slot.bits = mask(*slot.entry);
+    if (slot.entry != nullptr && fieldbus::isSigned(slot.entry->type)) {
+      slot.sign = std::uint64_t{1} << (widthBits(slot.entry->type) - 1);
+    }
     const auto own = definition.units_of.find(info.role);
     const UnitScale& unit = own != definition.units_of.end()
                                 ? own->second
@@ -206,17 +206,20 @@ DriveValues::DriveValues(const DriveDefinition& definition, unsigned axis,
   }
 }
 
-double DriveValues::scale(const Slot& slot) const {
-  double scale = slot.scale;
-  if (slot.per_encoder) scale *= static_cast<double>(raw(Role::encoder_resolution, 1));
-  if (!slot.geared) return scale;
-  return scale * static_cast<double>(raw(Role::gear_denominator, 1)) /
+double DriveValues::countsPerUnit(const Slot& slot) const {
+  const auto counts = static_cast<double>(raw(Role::encoder_resolution, 1));
+  if (!slot.geared) return counts;
+  return counts * static_cast<double>(raw(Role::gear_denominator, 1)) /
          static_cast<double>(raw(Role::gear_numerator, 1));
 }
 
 double DriveValues::get(Role role, double fallback) const {
   const Slot& s = slot(role);
-  return s.entry == nullptr ? fallback : decodeNumber(*s.entry, s.encoding) / scale(s);
+  if (s.entry == nullptr) return fallback;
+  if (s.encoding != Encoding::integer) return decodeNumber(*s.entry, s.encoding) / scale(s);
+  const double number =
+      s.sign != 0 ? static_cast<double>(integer(s)) : static_cast<double>(s.entry->number);
+  return number / scale(s);
 }
 
 double DriveValues::range(Role role) const {
@@ -233,8 +236,7 @@ void DriveValues::set(Role role, double value) {
 std::int64_t DriveValues::raw(Role role, std::int64_t fallback) const {
   const Slot& s = slot(role);
   if (s.entry == nullptr) return fallback;
-  return fieldbus::isSigned(s.entry->type) ? asSigned(*s.entry)
-                                           : static_cast<std::int64_t>(s.entry->number);
+  return integer(s);
 }
 
 void DriveValues::setRaw(Role role, std::int64_t value) {

@@ -182,9 +182,16 @@ class DriveValues {
     Entry* entry = nullptr;
     double scale = 1.0;  ///< where objects of the drive scale it: times theirs
     Encoding encoding = Encoding::integer;
+    std::uint64_t bits = 0, sign = 0;  ///< all bits of the number, and its sign's; 0: unsigned
     bool per_encoder = false, geared = false;
   };
-  double scale(const Slot& slot) const;
+  double scale(const Slot& slot) const {
+    return slot.per_encoder ? slot.scale * countsPerUnit(slot) : slot.scale;
+  }
+  double countsPerUnit(const Slot& slot) const;
+  static std::int64_t integer(const Slot& slot) {
+    return static_cast<std::int64_t>(((slot.entry->number & slot.bits) ^ slot.sign) - slot.sign);
+  }
   const Slot& slot(Role role) const { return slots_[static_cast<std::size_t>(role)]; }
 
   std::array<Slot, kRoleCount> slots_;
