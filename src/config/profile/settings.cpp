@@ -39,6 +39,33 @@ void readCountsRule(const yaml::Value& value, DriveProfile& profile) {
     rule.times = readSettings(*times, profile);
   }
   if (const auto over = section.get("over")) rule.over = readSettings(*over, profile);
+  section.read("adjustable", rule.adjustable);
+  const auto writable = [&](const std::string& name) { return profile.find(name)->writable; };
+  const bool can_be = rule.times.size() == 2 && rule.over.size() == 1 && writable(rule.times[1]) &&
+                      writable(rule.over[0]);
+  if (rule.adjustable && !can_be) {
+    section.problem(
+        "`adjustable` needs two objects in `times`, the encoder's and one that can be "
+        "written, and one in `over` that can be written");
+  }
+  section.finish();
+}
+
+void readParameterNames(const yaml::Value& value, DriveProfile& profile) {
+  drive::ParameterNames& names = profile.parameter_names;
+  yaml::Section section(value);
+  if (section.require("prefix", "what the names begin with, such as H")) {
+    section.read("prefix", names.prefix);
+  }
+  if (const auto groups = section.get("groups")) {
+    names.hexadecimal = groups->oneOf({"decimal", "hexadecimal"}).value_or(0) == 1;
+  }
+  section.require("index", "of group 0, such as 0x2000");
+  section.readInteger("index", names.index, 0x1000, 0xFFFF);
+  section.readInteger("subindex", names.subindex, 0, 0xFF);
+  section.require("last_group", "the highest group, a number");
+  section.readInteger("last_group", names.last_group, 0, 0xFF);
+  if (names.index + names.last_group > 0xFFFF) section.problem("the last group lies beyond FFFFh");
   section.finish();
 }
 
