@@ -83,6 +83,9 @@ TEST(ProfileSettings, OfBitsWordsAndTheMakersNamesAreAsWritten) {
       "checks: [{object: statusword, bits: 0x0210, is: 0x0200, text: a, remedy: b}]\n"
       "counts_rule: {times: [resolution, gear], over: [source], adjustable: true}\n"
       "rated_torque: told\n"
+      "bus_settings: {node_id: {object: source, counts: after_power_cycle},\n"
+      "  bit_rate: {object: gear, numbers: {500000: 3}}, saved_apart: true,\n"
+      "  memory: {object: polarity, on: 2, off: 9}}\n"
       "not_ready_reason: told\n"
       "homed_bit: 14\n"
       "if_silent: set it at the panel\n"
@@ -100,6 +103,14 @@ TEST(ProfileSettings, OfBitsWordsAndTheMakersNamesAreAsWritten) {
   EXPECT_EQ(drive::textOf(profile.find("told")->words, 7), "too hot");
   EXPECT_EQ(drive::textOf(profile.find("told")->words, 8), "");
   EXPECT_TRUE(profile.counts_rule.adjustable);
+  const drive::BusSettings& bus = profile.bus_settings;
+  EXPECT_EQ(bus.node_id.object, "source");
+  EXPECT_EQ(bus.node_id.counts, drive::BusSetting::Counts::after_power_cycle);
+  EXPECT_EQ(bus.bit_rate.numbers.at(500000), 3);
+  EXPECT_EQ(bus.memory, "polarity");
+  EXPECT_EQ(bus.memory_on, 2);
+  EXPECT_EQ(bus.memory_off, 9);
+  EXPECT_TRUE(bus.saved_apart);
   EXPECT_EQ(profile.rated_torque, "told");
   EXPECT_EQ(profile.not_ready_reason, "told");
   EXPECT_EQ(profile.homed_bit, 14);
@@ -170,6 +181,11 @@ TEST(ProfileSettings, AreRefusedWhereTheyCanMeanNothing) {
        "counts_rule: `adjustable` needs two objects in `times`"},
       {"counts_rule: {times: [resolution, told], over: [gear], adjustable: true}",
        "counts_rule: `adjustable` needs two objects in `times`"},
+      {"bus_settings: {node_id: {object: told}}",
+       "bus_settings/node_id/object: `told` cannot be written"},
+      {"bus_settings: {bit_rate: {object: gear}}", "bus_settings/bit_rate: needs `numbers`"},
+      {"bus_settings: {bit_rate: {object: gear, numbers: {fast: 1}}}",
+       "bus_settings/bit_rate/numbers/fast: `fast` is no bit rate of CAN"},
       {"not_ready_reason: label", "not_ready_reason: `label` is no whole number"},
       {"rated_torque: torque", "rated_torque: the profile has no object `torque`"},
       {"homed_bit: 6", "homed_bit: must be between 7 and 15"},

@@ -257,6 +257,7 @@ void readDrive(yaml::Section& section, yaml::Section& timing, DriveProfile& prof
   };
   setting("rated_torque", profile.rated_torque);
   setting("not_ready_reason", profile.not_ready_reason);
+  if (const auto settings = section.get("bus_settings")) readBusSettings(*settings, profile);
   if (const auto names = section.get("parameter_names")) readParameterNames(*names, profile);
   if (const auto names = section.get("default_modes")) {
     profile.default_modes = readModeNames(*names, profile);

@@ -44,6 +44,8 @@ void readWarnings(const yaml::Value& value, DriveProfile& profile);
 void readErrorDetails(const yaml::Value& value, DriveProfile& profile);
 /// `alarm_memory`. @pre objects were read
 void readAlarmMemory(const yaml::Value& value, DriveProfile& profile);
+/// `bus_settings`. @pre objects were read
+void readBusSettings(const yaml::Value& value, DriveProfile& profile);
 /// `parameter_names`
 void readParameterNames(const yaml::Value& value, DriveProfile& profile);
 /// `checks`: what the drive must be set to, or say. @pre objects, modes and homing were read

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cia402_driver/common/time.h"
+#include "drive/profile/bus_settings.h"
 #include "drive/profile/error_texts.h"
 #include "drive/profile/io.h"
 #include "drive/profile/number_texts.h"
@@ -315,6 +316,7 @@ struct DriveProfile {
   ErrorDetails error_details;
   AlarmMemory alarm_memory;
   ParameterNames parameter_names;
+  BusSettings bus_settings;
   std::string eds;  ///< file whose objects were added, for messages; empty: none
 
   /// By the profile's name, or by a name of the EDS without regard to case and blanks.

@@ -229,10 +229,10 @@ void SettingsStep::planCounts(AxisCore& axis) {
 
 Outcome SettingsStep::judge(const Context& context) {
   AxisCore& axis = context.axis;
-  std::string problem;
+  std::string problem, warning = compareTorque(axis.config());
   for (const Difference& difference : differences()) {
     if (difference.check->only_warns) {
-      axis.notices().warnOnce(axis.who() + ": " + difference.text);
+      append(warning, difference.text);
     } else if (contains(writes_, difference.check)) {
       append(problem, difference.text + " (the drive was told so just now, and keeps its own)");
     } else {
@@ -253,8 +253,8 @@ Outcome SettingsStep::judge(const Context& context) {
       if (!text.empty()) append(problem, text);
     }
   }
-  const std::string torque = compareTorque(axis.config());
-  if (!torque.empty()) axis.notices().warnOnce(axis.who() + ": " + torque);
+  // All at once: of two notices in a cycle only the last is told.
+  if (!warning.empty()) axis.notices().warnOnce(axis.who() + ": " + warning);
   return problem.empty() ? Outcome::done() : Outcome::failed(refusal(context) + problem);
 }
 
