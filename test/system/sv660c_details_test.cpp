@@ -53,11 +53,11 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& tested) { return std::string(tested.param.fault); });
 
 TEST(Sv660cDetail, ThatNobodyKnowsIsShownAsItIs) {
-  Sv660cReady scene(sv660cJoint({}, "with: {faults: {odd: {code: 0xFF00, details: 0x27400740}}}"));
+  Sv660cReady scene(sv660cJoint({}, "with: {faults: {odd: {code: 0xFF00, details: 0x27401740}}}"));
   scene.inject("joint", "odd");
   scene.run(500ms);
   EXPECT_THAT(scene.axis("joint").faultText(),
-              HasSubstr("; E740 (fault_codes (203F:00) 0x27400740); then clear_faults"));
+              HasSubstr("; E1740 (fault_codes (203F:00) 0x27401740); then clear_faults"));
 }
 
 // One code in 603Fh, two warnings.

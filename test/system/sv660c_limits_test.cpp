@@ -44,6 +44,8 @@ TEST(Sv660cSpeed, BeyondTheDrivesNumbersIsRefused) {
   EXPECT_EQ(sv660cProblems(sv660cOneToOne("lower: -2.5, upper: 2.5, velocity: 7.3")), "");
   EXPECT_THAT(sv660cProblems(sv660cOneToOne("lower: -2.5, upper: 2.5, velocity: 8.1")),
               HasSubstr("profile_velocity (6081:00): 8.1 does not fit"));
+  EXPECT_THAT(sv660cProblems(sv660cOneToOne("lower: -2.5, upper: 2.5, velocity: 7.5")),
+              HasSubstr("max_profile_velocity (607F:00): 8.25 does not fit"));
 }
 
 // 6064h wraps at 32.17 rad of the joint.

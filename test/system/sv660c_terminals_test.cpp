@@ -140,6 +140,7 @@ TEST(Sv660cAlarms, AreTwentyAndStayWithoutPower) {
   ASSERT_EQ(history.history.entries.size(), 20U) << history.message;
   EXPECT_EQ(history.history.entries[0].code, 0x990);
   EXPECT_EQ(history.history.entries[19].code, 0x909);
+  EXPECT_EQ(sv660cNumber(scene, 0x200B, 0x22), 0U) << "the newest is selected again";
 }
 
 TEST(Sv660cAlarms, ThatCannotBeReadAreToldAsSuch) {
