@@ -109,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(By, Sv660cHardStop,
                                          Sv660cStopHome{-3, 2.6 * kMotorTurn, 2.3 * kMotorTurn},
                                          Sv660cStopHome{-3, 2.9 * kMotorTurn, 3.3 * kMotorTurn}),
                          [](const auto& tested) {
-                           return "Method" + std::to_string(-tested.param.method) + "Case" +
+                           return "Minus" + std::to_string(-tested.param.method) + "Case" +
                                   std::to_string(tested.index);
                          });
 
