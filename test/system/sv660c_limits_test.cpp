@@ -87,16 +87,35 @@ TEST(Sv660cProfile, TakesANewSpeedWithTheNextSetPoint) {
   EXPECT_NEAR(scene.velocity("joint"), 0.3, 0.003) << "that of the next one";
 }
 
-TEST(Sv660cProfile, TakesANewAccelerationWithTheNextSetPoint) {
+// 795775 and 1591549 units/s^2 are 1 and 2 rad/s^2.
+TEST(Sv660cProfile, TakesNewRampsWithTheNextSetPoint) {
   Sv660cReady scene(sv660cJoint({}, "initial_position: -2.0"), "pp");
-  ASSERT_EQ(scene.setpoint("joint", -1.0), "");
-  scene.run(3s);
-  ASSERT_NEAR(scene.position("joint"), -1.0, 1e-5);
   ASSERT_EQ(scene.setpoint("joint", 2.0), "");
-  scene.run(20ms);
-  const double before = scene.velocity("joint");
   scene.run(100ms);
-  EXPECT_NEAR((scene.velocity("joint") - before) / 0.1, 4.0, 0.1) << "limits.acceleration";
+  for (const auto& [object, value] : {std::pair("profile_acceleration", "795775"),
+                                      std::pair("profile_deceleration", "1591549")}) {
+    const bus::Answer written = sv660cWrite(scene, object, value);
+    EXPECT_TRUE(written.success) << written.message;
+  }
+  const auto ramp = [&] {
+    const double before = scene.velocity("joint");
+    scene.run(100ms);
+    return (scene.velocity("joint") - before) / 0.1;
+  };
+  EXPECT_NEAR(ramp(), 4.0, 0.1) << "that of the move";
+  scene.run(6s);
+  ASSERT_NEAR(scene.position("joint"), 2.0, 1e-4);
+  ASSERT_EQ(scene.setpoint("joint", -1.0), "");
+  scene.run(100ms);
+  EXPECT_NEAR(ramp(), -1.0, 0.05) << "those of the next one";
+  double fastest = 0.0;
+  ASSERT_TRUE(scene.runUntil(
+      [&] {
+        fastest = std::min(fastest, scene.velocity("joint"));
+        return scene.velocity("joint") > fastest + 0.05;
+      },
+      10s));
+  EXPECT_NEAR(ramp(), 2.0, 0.1);
 }
 
 // 60E0h and 60E1h at run time: a tenth of the rated torque, less 0.03 of friction, gives 70

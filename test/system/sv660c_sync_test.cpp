@@ -99,7 +99,10 @@ struct Sv660cInterpolating : Sv660cReady {
 // Bit 12 goes: interpolation is interrupted, here by a terminal that inhibits position commands.
 TEST(Sv660cInterpolation, ThatEndsEndsTheTrajectory) {
   Sv660cInterpolating scene("faults: {inhibit: {code: 0xFF00, warning: true, holds: true}}");
+  ASSERT_NE(scene.truth("joint").statusword & 0x1000, 0);
   scene.inject("joint", "inhibit");
+  scene.run(20ms);
+  EXPECT_EQ(scene.truth("joint").statusword & 0x1000, 0);
   scene.run(1s);
   EXPECT_NEAR(scene.velocity("joint"), 0.0, 1e-3);
   const double stood = scene.position("joint");
