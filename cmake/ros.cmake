@@ -30,8 +30,8 @@ add_message_files(FILES
   AxisState.msg AxisStates.msg BusState.msg Emergency.msg LssIdentity.msg NodeState.msg)
 add_service_files(FILES
   ArmTouchProbe.srv ErrorHistory.srv InjectFault.srv LssAssign.srv LssScan.srv LssSetBitTiming.srv
-  Nmt.srv ReadObject.srv SaveDcf.srv SetDigitalOutputs.srv SetMode.srv SetPosition.srv
-  WriteObject.srv)
+  Nmt.srv ReadObject.srv SaveDcf.srv SetBusParameters.srv SetDigitalOutputs.srv SetMode.srv
+  SetPosition.srv WriteObject.srv)
 add_action_files(FILES Home.action)
 generate_messages(DEPENDENCIES actionlib_msgs std_msgs)
 

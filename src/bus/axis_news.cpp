@@ -95,6 +95,7 @@ void AxisNews::tellProblem(drive::Axis& axis, AxisReporter& reporter, Time now) 
          axis.notice(), now);
   }
   const std::uint32_t version = words_.version;
+  if (axis.faultTextAwaited() && told_.health == fieldbus::Health::ready) return;
   say(&AxisWords::problem, problem);
   if (words_.version == version) return;
   const bool told = told_by_health || (noticed && axis.notice().find(problem) != std::string::npos);

@@ -65,6 +65,8 @@ struct NodeConfig {
   std::string title;  ///< for messages: "shoulder (node 3)"; empty: made of name and node-ID
   /// Identity the node must have where given: 1000h, 1018h:01..04.
   std::optional<std::uint32_t> device_type, vendor_id, product_code, revision, serial;
+  std::vector<std::uint32_t> known_products;  ///< 1018h:02; another one is noted, empty: none is
+  std::string if_silent;  ///< behind the message that it does not answer; or empty
   ErrorControl error_control = ErrorControl::heartbeat;
   /// Heartbeat asked of the node (1017h); zero: none, the node cannot be supervised.
   Duration heartbeat{std::chrono::milliseconds(100)};

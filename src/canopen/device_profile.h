@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "canopen/pdo/layout.h"
@@ -14,6 +15,8 @@ namespace cia402::canopen {
 /// A drive family as data: what it is as a device on a CANopen bus (docs/drive_profiles.md).
 struct DeviceProfile {
   std::optional<std::uint32_t> device_type, vendor_id, product_code;  ///< 1000h, 1018h:01, :02
+  std::vector<std::uint32_t> known_products;  ///< 1018h:02; another one is told of, empty: none is
+  std::string if_silent;  ///< why a drive of the family may not answer at all, and what to do then
   /// A layout for all devices of the family; empty: each gets one that suits its modes.
   std::vector<PdoLayout> pdos;
   unsigned max_rpdos = 4, max_tpdos = 4;  ///< of each axis, where each has its own

@@ -39,6 +39,7 @@ drive::HomingOptions readHoming(const yaml::Value& value) {
   section.read("timeout", timeout, yaml::Range{0.0, 3600.0, true});
   homing.timeout = fromSeconds(timeout);
   section.read("required", homing.required);
+  section.read("kept_by_drive", homing.kept_by_drive);
   section.readInteger("order", homing.order, -1000, 1000);
   section.finish();
   return homing;
@@ -100,6 +101,8 @@ SimulationConfig readSimulation(const yaml::Value& value) {
   section.read("initial_position", simulation.initial_position);
   section.read("lower_limit_switch", simulation.lower_limit_switch);
   section.read("upper_limit_switch", simulation.upper_limit_switch);
+  section.read("lower_stop", simulation.lower_stop);
+  section.read("upper_stop", simulation.upper_stop);
   if (const auto home = section.get("home_switch")) {
     const auto range = home->numbers(2);
     if (range && !((*range)[0] < (*range)[1])) {
@@ -121,6 +124,10 @@ SimulationConfig readSimulation(const yaml::Value& value) {
   if (simulation.lower_limit_switch && simulation.upper_limit_switch &&
       !(*simulation.lower_limit_switch < *simulation.upper_limit_switch)) {
     section.problem("lower_limit_switch must be less than upper_limit_switch");
+  }
+  if (simulation.lower_stop && simulation.upper_stop &&
+      !(*simulation.lower_stop < *simulation.upper_stop)) {
+    section.problem("lower_stop must be less than upper_stop");
   }
   return simulation;
 }

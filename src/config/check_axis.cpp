@@ -150,6 +150,11 @@ void checkHoming(yaml::Section& section, const AxisConfig& axis, RobotConfig& ro
     homing_section.get(key)->problem("`lacks` says that the drive has no `" + write.object +
                                      "` to take it; remove one of the two");
   }
+  if (axis.homing->kept_by_drive && !axis.profile->homed_bit) {
+    homing_section.get("kept_by_drive")
+        ->problem("profile " + axis.profile->name +
+                  " has no bit by which its drives say that they know their home (`homed_bit`)");
+  }
   const double offset = axis.homing->atHome();
   if ((axis.limits.lower && offset < *axis.limits.lower) ||
       (axis.limits.upper && offset > *axis.limits.upper)) {

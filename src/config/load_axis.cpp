@@ -93,6 +93,7 @@ void readAdjust(const yaml::Value& list, AxisConfig& axis) {
   for (const drive::SettingCheck& check : axis.profile->checks) {
     if (check.write == drive::SettingCheck::Write::asked) known.push_back(check.objects.front());
   }
+  if (axis.profile->counts_rule.adjustable) known.emplace_back("counts_rule");
   for (const yaml::Value& entry : list.list()) {
     if (const auto index = entry.oneOf(known)) axis.adjust.push_back(known[*index]);
   }

@@ -103,6 +103,8 @@ NodeConfig makeNode(const BusConfig& bus, const DeviceConfig& device,
   node.device_type = family.device_type;
   node.vendor_id = device.vendor_id ? device.vendor_id : family.vendor_id;
   node.product_code = device.product_code ? device.product_code : family.product_code;
+  node.known_products = family.known_products;
+  node.if_silent = family.if_silent;
   node.revision = device.revision;
   node.serial = device.serial;
   node.boot = device.boot;

@@ -68,6 +68,7 @@ struct SimulationConfig {
   YAML::Node with;    ///< keys of such a definition that count for this axis instead
   double initial_position = 0.0;  ///< where the joint stands at power-on
   std::optional<double> lower_limit_switch, upper_limit_switch;  ///< active beyond
+  std::optional<double> lower_stop, upper_stop;                  ///< it cannot move beyond
   std::optional<std::pair<double, double>> home_switch;          ///< active from .. to
   std::optional<double> index_offset;   ///< turns; the index pulse is at k + index_offset
   std::optional<double> time_constant;  ///< s, lag of the position loop

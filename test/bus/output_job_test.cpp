@@ -33,10 +33,10 @@ config::RobotConfig robotWithOutputs() {
   profile->objects.push_back(objectOf("outputs", kValue, fieldbus::DataType::uint32));
   profile->objects.push_back(objectOf("outputs_mask", kMask, fieldbus::DataType::uint32));
   profile->objects.push_back(objectOf("lamps", kPlain, fieldbus::DataType::uint16));
-  profile->outputs["do1"] = {{"outputs", 16}, drive::ObjectBit{"outputs_mask", 16}};
-  profile->outputs["do2"] = {{"outputs", 17}, drive::ObjectBit{"outputs_mask", 17}};
-  profile->outputs["lamp"] = {{"lamps", 3}, {}};
-  profile->outputs["valve"] = {{"target_torque", 0}, {}};
+  profile->outputs["do1"] = {{"outputs", 16}, {}, 0, drive::ObjectBit{"outputs_mask", 16}};
+  profile->outputs["do2"] = {{"outputs", 17}, {}, 0, drive::ObjectBit{"outputs_mask", 17}};
+  profile->outputs["lamp"] = {{"lamps", 3}, {}, 0, {}};
+  profile->outputs["valve"] = {{"target_torque", 0}, {}, 0, {}};
   for (drive::AxisConfig& axis : robot.axes) axis.profile = profile;
   return robot;
 }

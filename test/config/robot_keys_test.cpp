@@ -248,6 +248,8 @@ TEST(RobotMistakes, AreToldWithWhatToDo) {
        "axes/shoulder/frame/axis: must not be the zero vector"},
       {"node_id: 1,", "node_id: 1, simulation: {lower_limit_switch: 1, upper_limit_switch: 1},",
        "lower_limit_switch must be less than upper_limit_switch"},
+      {"node_id: 1,", "node_id: 1, simulation: {lower_stop: 1, upper_stop: 0.5},",
+       "lower_stop must be less than upper_stop"},
       {"node_id: 1,", "node_id: 1, simulation: {index_offset: 1.5},",
        "axes/shoulder/simulation/index_offset: must be at least 0 and at most 1"},
       {"node_id: 1,", "node_id: 1, simulation: {brake_delay: -1},",

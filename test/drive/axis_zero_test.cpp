@@ -73,6 +73,58 @@ TEST(LostZero, LeavesTheDrivesOwnUntilAPositionIsDeclared) {
   EXPECT_TRUE(bench.axis.setTarget(0.51));
 }
 
+AxisConfig keptByDrive() {
+  DriveProfile profile = test::testProfile();
+  profile.homed_bit = 15;
+  AxisConfig config = homedFirst(testConfig(profile));
+  config.homing->kept_by_drive = true;
+  return config;
+}
+
+TEST(KeptHome, ComesAndGoesWithTheBitOfTheDrive) {
+  Bench bench(keptByDrive());
+  ASSERT_TRUE(bench.boot());
+  EXPECT_FALSE(bench.axis.state().homed);
+  bench.drive.knows_home = true;
+  bench.run(milliseconds(20));
+  EXPECT_TRUE(bench.axis.state().homed);
+  EXPECT_NEAR(bench.axis.state().position, 1.2345, 1e-9) << "as the drive counts";
+  bench.drive.knows_home = false;
+  bench.run(milliseconds(20));
+  EXPECT_FALSE(bench.axis.state().homed);
+  bench.drive.knows_home = true;
+  bench.run(milliseconds(20));
+  EXPECT_FALSE(bench.axis.state().homed) << "nobody knows whether it is the same one";
+}
+
+TEST(KeptHome, IsNotThatWhichSomebodyDeclares) {
+  Bench bench(keptByDrive());
+  bench.drive.knows_home = true;
+  ASSERT_TRUE(bench.boot());
+  bench.run(milliseconds(200));
+  ASSERT_TRUE(bench.axis.state().homed);
+  ASSERT_TRUE(bench.perform(ProcedureKind::set_position, {}, 0.5).success);
+  bench.drive.knows_home = false;
+  bench.run(milliseconds(20));
+  EXPECT_TRUE(bench.axis.state().homed);
+  EXPECT_NEAR(bench.axis.state().position, 0.5, 1e-9);
+}
+
+TEST(KeptHome, CountsOnlyWhereTheAxisAndTheProfileSaySo) {
+  for (const bool of_axis : {false, true}) {
+    AxisConfig config = keptByDrive();
+    DriveProfile profile = *config.profile;
+    if (of_axis) profile.homed_bit.reset();
+    config.profile = std::make_shared<const DriveProfile>(profile);
+    config.homing->kept_by_drive = of_axis;
+    Bench bench(config);
+    bench.drive.knows_home = true;
+    ASSERT_TRUE(bench.boot());
+    bench.run(milliseconds(50));
+    EXPECT_FALSE(bench.axis.state().homed);
+  }
+}
+
 TEST(LostZero, IsStillLostAfterARebootAndOnceDeclaredIsNot) {
   for (const bool declared : {false, true}) {
     Bench bench;

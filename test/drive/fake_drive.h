@@ -52,6 +52,7 @@ class FakeDrive {
   int acknowledge_delay = 0;  ///< cycles
   bool acknowledges = true;
   bool warning = false, voltage = true, remote = true;
+  bool knows_home = false;      ///< statusword bit 15
   bool at_limit = false;        ///< stands in profile position, and says so by statusword bit 11
   bool keeps_attained = false;  ///< statusword bit 12 survives leaving the homing mode
   bool never_homes = false, homing_fails = false, homing_moves = true;
@@ -176,6 +177,7 @@ class FakeDrive {
     if (warning) word |= 0x0080;
     if (remote) word |= 0x0200;
     if (at_limit) word |= 0x0800;
+    if (knows_home) word |= 0x8000;
     if (mode == 6) {
       if (attained_) word |= 0x1000;
       if (homing_error_) word |= 0x2000;

@@ -49,6 +49,9 @@ SERVICES.update({
                                           "index_pulse": chance.choice([True, False]),
                                           "continuous": chance.choice([True, False]),
                                           "timeout": chance.choice([0.01, 0.2] + NUMBERS)},
+    "set_bus_parameters": lambda chance, _: {"node_id": chance.choice([0, 1, 127, 128, 255]),
+                                             "bit_rate": chance.choice([0, 500000, 1000000, 7]),
+                                             "confirm": chance.choice([True, False])},
     "nmt": lambda chance, _: {"command": chance.choice(NMT)},
     "save_dcf": lambda chance, folder: {"path": chance.choice(
         [os.path.join(folder, "a.dcf"), "/nowhere/a.dcf", "a", ""])},

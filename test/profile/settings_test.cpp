@@ -18,7 +18,7 @@ const std::string kDriveWithSettings = std::string(kLeastDrive) + R"(
   brake: {object: "2000:04", type: uint16, quantity: time}
   label: {object: "2000:05", type: visible_string}
   blind: {object: "2000:06", type: uint16, access: wo}
-  told: {object: "2000:07", type: uint16, access: ro}
+  told: {object: "2000:07", type: uint16, access: ro, words: {0: nothing, 7: too hot}}
   polarity: {object: "607E:00", type: uint8}
 modes:
   csp: {value: 8, control: position, cyclic: true, target: target_position}
@@ -77,6 +77,63 @@ TEST(ProfileSettings, AreAsWritten) {
   EXPECT_EQ(profile.timing.brake_release, std::chrono::milliseconds(500));
 }
 
+TEST(ProfileSettings, OfBitsWordsAndTheMakersNamesAreAsWritten) {
+  Problems problems;
+  const WholeProfile profile = settingsWith(
+      "checks: [{object: statusword, bits: 0x0210, is: 0x0200, text: a, remedy: b}]\n"
+      "counts_rule: {times: [resolution, gear], over: [source], adjustable: true}\n"
+      "rated_torque: told\n"
+      "bus_settings: {node_id: {object: source, counts: after_power_cycle},\n"
+      "  bit_rate: {object: gear, numbers: {500000: 3}}, saved_apart: true,\n"
+      "  memory: {object: polarity, on: 2, off: 9}}\n"
+      "not_ready_reason: told\n"
+      "homed_bit: 14\n"
+      "if_silent: set it at the panel\n"
+      "identity: {known_products: [7, 0x0D]}\n"
+      "parameter_names: {prefix: P, index: 0x2000, subindex: 1, last_group: 20}\n"
+      "error_details: {object: gear, bits: 0xFFF, prefix: Er., digits: 3,\n"
+      "  codes: {0x12: {text: a, cause: b, remedy: c}}}",
+      problems);
+  ASSERT_TRUE(problems.empty()) << problems.text();
+  const drive::Condition& condition = profile.checks[0].condition;
+  EXPECT_TRUE(condition.holds(0x0237 & ~0x0010));
+  EXPECT_FALSE(condition.holds(0x0237));
+  EXPECT_FALSE(condition.holds(0x0000));
+  EXPECT_EQ(condition.complaint(0x0237), "0x0237, of which 0x0210 is 0x0210");
+  EXPECT_EQ(drive::textOf(profile.find("told")->words, 7), "too hot");
+  EXPECT_EQ(drive::textOf(profile.find("told")->words, 8), "");
+  EXPECT_TRUE(profile.counts_rule.adjustable);
+  const drive::BusSettings& bus = profile.bus_settings;
+  EXPECT_EQ(bus.node_id.object, "source");
+  EXPECT_EQ(bus.node_id.counts, drive::BusSetting::Counts::after_power_cycle);
+  EXPECT_EQ(bus.bit_rate.numbers.at(500000), 3);
+  EXPECT_EQ(bus.memory, "polarity");
+  EXPECT_EQ(bus.memory_on, 2);
+  EXPECT_EQ(bus.memory_off, 9);
+  EXPECT_TRUE(bus.saved_apart);
+  EXPECT_EQ(profile.rated_torque, "told");
+  EXPECT_EQ(profile.not_ready_reason, "told");
+  EXPECT_EQ(profile.homed_bit, 14);
+  EXPECT_EQ(profile.if_silent, "set it at the panel");
+  EXPECT_THAT(profile.known_products, ElementsAre(7U, 13U));
+  const drive::ParameterNames& names = profile.parameter_names;
+  EXPECT_EQ(names.find("P20.15"), (fieldbus::ObjectId{0x2014, 0x10})) << "both decimal";
+  EXPECT_EQ(names.find("p02.00"), (fieldbus::ObjectId{0x2002, 1}));
+  EXPECT_EQ(names.nameOf({0x2014, 0x10}), "P20.15");
+  EXPECT_EQ(names.nameOf({0x2002, 101}), "P02.100");
+  for (const char* none : {"P21.00", "P0A.00", "P2.0", "P02", "Q02.00", "P02.", "P02.255", ""}) {
+    EXPECT_FALSE(names.find(none)) << none;
+  }
+  EXPECT_EQ(names.nameOf({0x2015, 1}), "") << "beyond the last group";
+  EXPECT_EQ(names.nameOf({0x2002, 0}), "") << "before number 0";
+  const drive::ErrorDetails& details = profile.error_details;
+  EXPECT_EQ(details.object, "gear");
+  EXPECT_EQ(details.bits, 0xFFFU);
+  EXPECT_EQ(details.prefix, "Er.");
+  EXPECT_EQ(details.digits, 3);
+  EXPECT_EQ(details.codes.at(0x12).cause, "b");
+}
+
 TEST(ProfileSettings, AreRefusedWhereTheyCanMeanNothing) {
   const std::pair<const char*, const char*> mistakes[] = {
       {"checks: [{object: sorce, is: 8, text: a, remedy: b}]",
@@ -113,6 +170,33 @@ TEST(ProfileSettings, AreRefusedWhereTheyCanMeanNothing) {
        "checks[0]/texts/one: `one` is no whole number"},
       {"checks: [{object: source, is: 8, unless: {object: gear}, text: a, remedy: b}]",
        "checks[0]/unless: needs one of"},
+      {"checks: [{object: source, bits: 2, is: 3, text: a, remedy: b}]",
+       "checks[0]/bits: 3 has other bits, so that it never is"},
+      {"checks: [{object: source, bits: 2, above: 2, text: a, remedy: b}]",
+       "checks[0]/bits: go with `is` and `not`"},
+      {"checks: [{object: source, bits: 2, is: 2, write: asked, text: a, remedy: b}]",
+       "checks[0]/write: single bits (`bits`) are not written"},
+      {"checks: [{object: source, bits: 256, is: 0, text: a, remedy: b}]", "checks[0]/bits"},
+      {"counts_rule: {times: [resolution], over: [gear], adjustable: true}",
+       "counts_rule: `adjustable` needs two objects in `times`"},
+      {"counts_rule: {times: [resolution, told], over: [gear], adjustable: true}",
+       "counts_rule: `adjustable` needs two objects in `times`"},
+      {"bus_settings: {node_id: {object: told}}",
+       "bus_settings/node_id/object: `told` cannot be written"},
+      {"bus_settings: {bit_rate: {object: gear}}", "bus_settings/bit_rate: needs `numbers`"},
+      {"bus_settings: {bit_rate: {object: gear, numbers: {fast: 1}}}",
+       "bus_settings/bit_rate/numbers/fast: `fast` is no bit rate of CAN"},
+      {"not_ready_reason: label", "not_ready_reason: `label` is no whole number"},
+      {"rated_torque: torque", "rated_torque: the profile has no object `torque`"},
+      {"homed_bit: 6", "homed_bit: must be between 7 and 15"},
+      {"parameter_names: {index: 0x2000, last_group: 1}", "parameter_names: `prefix` is missing"},
+      {"parameter_names: {prefix: P, last_group: 1}", "parameter_names: `index` is missing"},
+      {"parameter_names: {prefix: P, index: 0xFFFF, last_group: 1}",
+       "parameter_names: the last group lies beyond FFFFh"},
+      {"error_details: {bits: 1}", "error_details: `object` is missing"},
+      {"error_details: {object: label}", "error_details/object: `label` is no whole number"},
+      {"error_details: {object: gear, codes: {0: a}}",
+       "error_details/codes/0: an error code is a number from 0x0001 to 0xFFFFFFFF"},
       {"counts_rule: {over: [gear]}", "counts_rule: `times` is missing"},
       {"counts_rule: {times: [label]}", "counts_rule/times[0]: `label` is no whole number"},
       {"timing: {brake_release: {object: gear, at_most: 1}}",

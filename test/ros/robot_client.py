@@ -14,8 +14,8 @@ import rospkg
 import rospy
 from cia402_driver.msg import AxisStates, BusState, Emergency
 from cia402_driver.srv import (ArmTouchProbe, ErrorHistory, InjectFault, LssAssign, LssScan,
-                               LssSetBitTiming, Nmt, ReadObject, SaveDcf, SetDigitalOutputs,
-                               SetMode, SetPosition, WriteObject)
+                               LssSetBitTiming, Nmt, ReadObject, SaveDcf, SetBusParameters,
+                               SetDigitalOutputs, SetMode, SetPosition, WriteObject)
 from control_msgs.msg import JointTrajectoryControllerState
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from sensor_msgs.msg import JointState
@@ -34,6 +34,7 @@ SERVICES = {
     "set_position": SetPosition, "lss_scan": LssScan, "lss_assign": LssAssign,
     "lss_set_bit_timing": LssSetBitTiming, "save_dcf": SaveDcf,
     "set_digital_outputs": SetDigitalOutputs, "arm_touch_probe": ArmTouchProbe,
+    "set_bus_parameters": SetBusParameters,
 }
 
 

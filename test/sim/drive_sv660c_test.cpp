@@ -69,6 +69,42 @@ TEST_F(Sv660c, QuickStopEndsAsItsOptionSays) {
   EXPECT_EQ(bench.refusal(0x605A, 0, 8, 2), 0x06090031U) << "0 to 7 [L15012]";
 }
 
+// 6084h 2, 6085h 8 turns/s^2; from 2 turns/s: 1 and 1/4 turn. As hard as it can, 3 times the rated
+// torque, 3000 turns/s^2; coasting, 30 turns/s^2 of friction and 0.5/s of the speed. What begins
+// with the dynamic brake coasts here.
+TEST_F(Sv660c, DisablingEndsAsItsOptionSays) {
+  struct Option {
+    unsigned code;  // 605Ch as sent
+    double way;     // turns
+    bool at_once;   // it lets the motor go
+  };
+  for (const Option& option :
+       {Option{0xFFFC, 0.25, false}, Option{0xFFFD, 0.0007, false}, Option{0xFFFE, 1.0, false},
+        Option{0xFFFF, 0.0656, true}, Option{0, 0.0656, true}, Option{1, 1.0, false},
+        Option{2, 0.0656, true}}) {
+    bench.write(0x605C, 0, option.code, 2);
+    bench.write(0x6084, 0, 16777216, 4);
+    bench.write(0x6085, 0, 67108864, 4);
+    mode(3);
+    enable();
+    bench.write(0x60FF, 0, 16777216, 4);
+    bench.run(ms(1500));
+    const auto truth = [this] { return bench.drive->truth(bench.now); };
+    ASSERT_NEAR(truth().velocity_turns, 2.0, 1e-3) << option.code;
+    const double from = truth().position_turns;
+    control(0x07);
+    EXPECT_EQ(word(), option.at_once ? 0x0233 : 0x0237) << option.code;
+    bench.run(ms(1500));
+    EXPECT_EQ(word(), 0x0233) << option.code;
+    EXPECT_NEAR(truth().velocity_turns, 0.0, 1e-6);
+    EXPECT_NEAR(truth().position_turns - from, option.way, 0.05 * option.way + 2.0 * 0.006)
+        << option.code;
+    bench.write(0x60FF, 0, 0, 4);
+    control(0x00);
+  }
+  EXPECT_EQ(bench.refusal(0x605C, 0, 3, 2), 0x06090031U) << "-4 to 2 [L15043]";
+}
+
 TEST_F(Sv660c, AFaultIsResetByTheEdgeOfBit7WhichBlocksAllElse) {
   mode(3);
   enable();

@@ -62,7 +62,10 @@ TEST(DigitalOutputs, WorkByEachProfileThatHasThem) {
   for (const Row& row : {Row{"sv660c", "100000", "do2", 0x00020000},
                          Row{"megmeet_dm5", "8388608", "do2", 0x00020000},
                          Row{"nimotion_stepper", "10000", "do1", 0x00000002}}) {
-    Scene scene(loadText(familyJoint({row.drive, row.counts, "profile_position"})));
+    const bool inovance = row.drive == std::string("sv660c");
+    Scene scene(
+        loadText(familyJoint({row.drive, row.counts, "profile_position"},
+                             inovance ? ", write: [{object: do2_function, raw: 31}]" : "")));
     ASSERT_TRUE(scene.boot()) << row.drive << scene.told();
     const auto set = setOutputs(scene, "joint", {row.output}, {true});
     EXPECT_TRUE(set.success) << row.drive << ": " << set.message;

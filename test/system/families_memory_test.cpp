@@ -70,7 +70,7 @@ TEST_F(FamilyMemory, OfFaultsHoldsSixteenInANimotion) {
 }
 
 TEST_F(FamilyMemory, OfFaultsIsMissedInWords) {
-  for (const FamilyMode& tested : {kBusDm5, kBusSv660c}) {
+  for (const FamilyMode& tested : {kBusDm5}) {
     Scene scene(loadText(busJoint(tested)));
     ASSERT_TRUE(scene.boot(kFamilyBoot)) << scene.told();
     EXPECT_THAT(history(scene).message, HasSubstr("the drive keeps no error history"));

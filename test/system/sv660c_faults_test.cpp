@@ -96,5 +96,36 @@ TEST(Sv660cWarnings, AreToldAndStopNothing) {
   EXPECT_FALSE(scene.state("joint").warning);
 }
 
+// Bit 7 takes warnings back, too [L560]; nothing stops by that.
+TEST(Sv660cWarnings, AreTakenBackWhileItRuns) {
+  MovingSv660c scene;
+  scene.inject("joint", "overload_warning");
+  scene.run(100ms);
+  ASSERT_TRUE(scene.state("joint").warning);
+  const auto cleared = scene.procedure(ProcedureKind::clear_faults, "joint");
+  EXPECT_TRUE(cleared.success) << cleared.message;
+  EXPECT_THAT(cleared.message, AllOf(HasSubstr("the warning is taken back"), HasSubstr("E909")));
+  EXPECT_GT(scene.velocity("joint"), 0.3) << "it has not stopped";
+  EXPECT_FALSE(scene.truth("joint").statusword & 0x0080);
+  scene.run(3s);
+  EXPECT_FALSE(scene.state("joint").warning);
+  EXPECT_EQ(scene.state("joint").state, State::operation_enabled);
+  EXPECT_NEAR(scene.position("joint"), 2.0, 1e-4);
+}
+
+// Its cause stays: the drive warns again.
+TEST(Sv660cWarnings, WhoseCauseStaysAreToldToStay) {
+  Scene scene(loadText(
+      sv660cJoint({}, "with: {faults: {hot: {code: 0x4310, warning: true, persists_for: 60}}}")));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
+  scene.inject("joint", "hot");
+  scene.run(100ms);
+  const auto cleared = scene.procedure(ProcedureKind::clear_faults, "joint");
+  EXPECT_FALSE(cleared.success);
+  EXPECT_THAT(cleared.message, AllOf(HasSubstr("the warning stays"), HasSubstr("0x4310")));
+  EXPECT_EQ(scene.state("joint").state, State::operation_enabled);
+}
+
 }  // namespace
 }  // namespace cia402

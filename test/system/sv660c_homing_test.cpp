@@ -69,6 +69,79 @@ INSTANTIATE_TEST_SUITE_P(
       return "Method" + std::to_string(c.method) + "Case" + std::to_string(tested.index);
     });
 
+struct Sv660cStopHome {
+  int method;
+  double start, home;  // rad
+};
+
+class Sv660cHardStop : public testing::TestWithParam<Sv660cStopHome> {};
+
+// Stops at -1.0 (7.96 turns back) and 1.2 (9.55 turns on), index pulses at 0.3 turns after each
+// whole one; it pushes with half of the rated torque [L1759-1787].
+TEST_P(Sv660cHardStop, IsFoundAndThenTheIndexPulse) {
+  const Sv660cStopHome& c = GetParam();
+  Scene scene(loadText(sv660cWrites(
+      "{object: hard_stop_torque, value: 59.75}, {object: hard_stop_speed, raw: 3}",
+      sv660cJoint(sv660cHoming(c.method), "initial_position: " + std::to_string(c.start) +
+                                              ", lower_stop: -1.0, upper_stop: 1.2, "
+                                              "index_offset: 0.3"))));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  EXPECT_EQ(sv660cNumber(scene, 0x2005, 0x3B), 500U);
+  EXPECT_EQ(sv660cNumber(scene, 0x2005, 0x39), 3U);
+  scene.forget();
+  const auto homed = scene.procedure(ProcedureKind::home, "joint");
+  ASSERT_TRUE(homed.success) << homed.message << scene.told();
+  EXPECT_NEAR(scene.state("joint").position - kAtHome, scene.position("joint") - c.home, 1e-5);
+  if (c.method == -1) {
+    EXPECT_NEAR(scene.seen("joint").lowest, -1.0, 1e-6);
+  } else if (c.method == -2) {
+    EXPECT_NEAR(scene.seen("joint").highest, 1.2, 1e-6);
+  } else {
+    EXPECT_LT(scene.seen("joint").travel(), 0.7 * kMotorTurn) << "the nearest one";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(By, Sv660cHardStop,
+                         testing::Values(Sv660cStopHome{-1, 0.2, -7.7 * kMotorTurn},
+                                         Sv660cStopHome{-1, -0.9, -7.7 * kMotorTurn},
+                                         Sv660cStopHome{-2, 0.2, 9.3 * kMotorTurn},
+                                         Sv660cStopHome{-2, 1.1, 9.3 * kMotorTurn},
+                                         Sv660cStopHome{-3, 2.6 * kMotorTurn, 2.3 * kMotorTurn},
+                                         Sv660cStopHome{-3, 2.9 * kMotorTurn, 3.3 * kMotorTurn}),
+                         [](const auto& tested) {
+                           return "Minus" + std::to_string(-tested.param.method) + "Case" +
+                                  std::to_string(tested.index);
+                         });
+
+// No stop is in the way: the drive gives up by itself, H05.35 in units of 100 ms by H05.66 = 2.
+TEST(Sv660cHomingTime, IsWatchedByTheDriveALittleLongerThanByTheHost) {
+  Scene scene(loadText(sv660cJoint(sv660cHoming(-1, ", timeout: 6.0"), "initial_position: 1.0")));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  EXPECT_EQ(sv660cNumber(scene, 0x2005, 0x43), 2U);
+  EXPECT_EQ(sv660cNumber(scene, 0x2005, 0x24), 66U) << "6.6 s";
+  const auto homed = scene.procedure(ProcedureKind::home, "joint");
+  EXPECT_FALSE(homed.success);
+  EXPECT_THAT(homed.message, HasSubstr("homing timed out after 6 s"));
+  scene.run(1s);
+  EXPECT_NEAR(scene.velocity("joint"), 0.0, 1e-6);
+  EXPECT_FALSE(scene.state("joint").homed);
+}
+
+TEST(Sv660cHomingTime, OfTheDriveThatIsOverIsToldAsE601) {
+  Scene scene(loadText(sv660cWrites("{object: H05.35, raw: 15}",
+                                    sv660cJoint(sv660cHoming(17), sv660cSwitches(1.9)))));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  const Time begun = scene.now();
+  const auto homed = scene.procedure(ProcedureKind::home, "joint");
+  EXPECT_FALSE(homed.success);
+  EXPECT_LT(scene.now() - begun, 5s) << "not the host's 30 s";
+  EXPECT_THAT(homed.message, HasSubstr("homing stopped: the drive interrupted it"));
+  EXPECT_THAT(scene.told(), HasSubstr("E601 homing took too long"));
+  scene.run(500ms);
+  EXPECT_NEAR(scene.velocity("joint"), 0.0, 1e-6);
+  EXPECT_FALSE(scene.state("joint").homed);
+}
+
 TEST(Sv660cHomingMethods, ThatDoNothingOrAreNoneAreRefused) {
   for (const int method : {0, 15, 16, 31, 32, 36, 37}) {
     Problems problems;

@@ -31,4 +31,45 @@ inline std::string sv660cJoint(const std::string& more = {}, const std::string& 
          "  arm: {joints: [joint]}\n";
 }
 
+/// As the drive comes with these rows of its dictionary, for `simulation` of sv660cJoint().
+inline std::string sv660cDelivered(const std::string& rows) {
+  return "with: {dictionary: [" + rows + "]}";
+}
+
+/// The text with `what`, which it must have, replaced.
+inline std::string sv660cWith(std::string text, const std::string& what, const std::string& by) {
+  const std::size_t at = text.find(what);
+  EXPECT_NE(at, std::string::npos) << what;
+  return text.replace(at, what.size(), by);
+}
+
+/// The joint with further entries of `write`.
+inline std::string sv660cWrites(const std::string& writes, std::string yaml = sv660cJoint()) {
+  return sv660cWith(std::move(yaml), "raw: 3125}]", "raw: 3125}, " + writes + "]");
+}
+
+inline std::uint64_t sv660cNumber(Scene& scene, std::uint16_t index, std::uint8_t sub = 0) {
+  return scene.drive("joint").dictionary().find({index, sub})->number;
+}
+
+/// Booted and enabled.
+struct Sv660cReady : Scene {
+  explicit Sv660cReady(const std::string& yaml = sv660cJoint(), const std::string& mode = {})
+      : Scene(loadText(yaml)) {
+    EXPECT_TRUE(boot()) << told();
+    if (!mode.empty()) {
+      EXPECT_TRUE(procedure(drive::ProcedureKind::set_mode, {}, mode).success) << told();
+    }
+    const bus::Answer enabled = procedure(drive::ProcedureKind::enable);
+    EXPECT_TRUE(enabled.success) << enabled.message;
+  }
+};
+
+inline bus::ObjectAnswer sv660cRead(Scene& scene, const std::string& object) {
+  return scene.call(bus::ReadObjectCommand{"joint", object});
+}
+inline bus::Answer sv660cWrite(Scene& scene, const std::string& object, const std::string& value) {
+  return scene.call(bus::WriteObjectCommand{"joint", object, value});
+}
+
 }  // namespace cia402

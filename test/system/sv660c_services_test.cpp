@@ -9,14 +9,6 @@ using namespace std::chrono_literals;
 using drive::ProcedureKind;
 using testing::HasSubstr;
 
-std::string sv660cWith(std::string text, const std::string& what, const std::string& by) {
-  return text.replace(text.find(what), what.size(), by);
-}
-
-std::uint64_t sv660cNumber(Scene& scene, std::uint16_t index, std::uint8_t sub = 0) {
-  return scene.drive("joint").dictionary().find({index, sub})->number;
-}
-
 void expectSv660cMoves(Scene& scene, double goal) {
   ASSERT_EQ(scene.setpoint("joint", goal), "");
   scene.run(4s);

@@ -11,9 +11,6 @@ using drive::ProcedureKind;
 using testing::AllOf;
 using testing::HasSubstr;
 
-/// As the drive comes with that setting: a row of its dictionary.
-std::string asDelivered(const std::string& row) { return "with: {dictionary: [" + row + "]}"; }
-
 struct Sv660cWrong {
   const char* name;
   const char* row;
@@ -24,7 +21,7 @@ struct Sv660cWrong {
 class Sv660cSetting : public testing::TestWithParam<Sv660cWrong> {};
 
 TEST_P(Sv660cSetting, IsNamedWithItsRemedyAndNothingIsEnabled) {
-  expectRefusedEnabling(sv660cJoint({}, asDelivered(GetParam().row)), GetParam().object,
+  expectRefusedEnabling(sv660cJoint({}, sv660cDelivered(GetParam().row)), GetParam().object,
                         GetParam().remedy);
 }
 
@@ -48,7 +45,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Sv660cSettings, AnAxisWithoutIpDoesNotMindTheCommandRate) {
   std::string yaml =
-      sv660cJoint(", mode: pp", asDelivered("[0x2001, 0x3E, command_rate, uint16, rw, -, 3]"),
+      sv660cJoint(", mode: pp", sv660cDelivered("[0x2001, 0x3E, command_rate, uint16, rw, -, 3]"),
                   "0.004", "[pp, pv]");
   yaml.erase(yaml.find("groups:"));  // which follow trajectories
   Scene scene(loadText(yaml));
@@ -68,7 +65,7 @@ double sv660cEnablingTakes(Scene& scene) {
 }
 
 std::string sv660cBrakeTime(const std::string& ms) {
-  return asDelivered("[0x2002, 0x0A, brake_delay, uint16, rw, -, " + ms + "]");
+  return sv660cDelivered("[0x2002, 0x0A, brake_delay, uint16, rw, -, " + ms + "]");
 }
 
 // H02.09; while it runs the simulated drive loses every edge of the controlword.

@@ -7,6 +7,7 @@
 #include "bus/axis_cycle.h"
 #include "bus/canopen/history_command.h"
 #include "common/text.h"
+#include "drive/axis/fault_details.h"
 #include "drive/profile/fault_text.h"
 
 namespace cia402::bus {
@@ -20,33 +21,62 @@ void ErrorHistoryCommand::begin(AxisCycle& cycle, const Reply<HistoryAnswer>& re
       [&config, reply](const canopen::ErrorHistory& history) {
         HistoryAnswer answer;
         answer.success = history.readable;
-        answer.message = drive::whoIs(config) +
-                         ": error history (1003h): " + historyText(*config.profile, history);
+        answer.message = drive::whoIs(config) + ": " + historyTitle(*config.profile) + ": " +
+                         historyText(*config.profile, history);
         answer.history = history;
         give(reply, answer);
       }));
 }
 
 HistoryJob::HistoryJob(drive::Axis& axis, unsigned most, Done done)
-    : Job(Turn::history, Ends::with_motion), axis_(&axis), reader_(most), done_(std::move(done)) {}
+    : Job(Turn::history, Ends::with_motion), axis_(&axis), reader_(most), done_(std::move(done)) {
+  if (axis.config().profile->alarm_memory.entries > 0) alarms_.emplace(axis, most);
+}
 
 bool HistoryJob::step(Time) {
+  if (alarms_) {
+    if (!alarms_->step()) return false;
+    done_(alarms_->history());
+    return true;
+  }
   if (!reader_.step(axis_->device().objects())) return false;
   done_(reader_.history());
   return true;
 }
 
 void HistoryJob::abandon(const std::string& why) {
-  canopen::ErrorHistory history = reader_.history();
+  canopen::ErrorHistory history = alarms_ ? alarms_->history() : reader_.history();
   history.remark = why;
   done_(history);
+}
+
+namespace {
+
+std::string historyName(const drive::DriveProfile& profile, std::uint16_t code) {
+  return profile.alarm_memory.entries > 0
+             ? drive::detailName(profile.error_details, code)
+             : hexText(code, 4) + " " + drive::errorName(profile, code);
+}
+
+}  // namespace
+
+std::string historyTitle(const drive::DriveProfile& profile) {
+  const drive::AlarmMemory& memory = profile.alarm_memory;
+  if (memory.entries == 0) return "error history (1003h)";
+  return "alarms (" + memory.code + " (" + fieldbus::toString(profile.find(memory.code)->id) + "))";
+}
+
+std::string historyCodeText(const drive::DriveProfile& profile, std::uint16_t code) {
+  return profile.alarm_memory.entries > 0 ? drive::detailName(profile.error_details, code)
+                                          : drive::errorCodeText(profile, code);
 }
 
 std::string historyText(const drive::DriveProfile& profile, const canopen::ErrorHistory& history) {
   std::string text;
   for (const canopen::ErrorHistoryEntry& entry : history.entries) {
-    append(text, hexText(entry.code, 4) + " " + drive::errorName(profile, entry.code), ", ");
+    append(text, historyName(profile, entry.code), ", ");
     if (entry.info != 0) text += " (info " + hexText(entry.info, 4) + ")";
+    if (entry.time) text += " at " + numberText(*entry.time) + " s";
   }
   if (history.readable && history.recorded == 0) text = "empty";
   const std::size_t more = history.recorded - history.entries.size();

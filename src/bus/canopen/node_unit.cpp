@@ -139,7 +139,8 @@ void NodeUnit::readHistory(AxisUnit& axis, Time now) {
         axis.news.say(&AxisWords::history, text);
         if (!read.readable) return;  // many drives keep none
         tell(*events, Event::Severity::info,
-             node->who() + ": the drive's error history (1003h), newest first: " + text,
+             node->who() + ": the drive's " + historyTitle(*axis.axis.config().profile) +
+                 ", newest first: " + text,
              cycle->now());
       }));
 }

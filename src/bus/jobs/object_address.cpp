@@ -30,7 +30,11 @@ std::string unknownObject(const drive::AxisConfig& axis, const std::string& text
     if (!found) why = " (" + axis.description->file + ": " + found.error().message + ")";
   }
   return "\"" + text + "\" is neither an object of profile " + axis.profile->name +
-         " nor an index such as 6041h:0" + why;
+         " nor an index such as 6041h:0" +
+         (axis.profile->parameter_names.prefix.empty()
+              ? ""
+              : " nor a parameter such as " + axis.profile->parameter_names.prefix + "02.00") +
+         why;
 }
 
 bool sameType(const ObjectSpec& spec, fieldbus::DataType type) {
@@ -53,7 +57,7 @@ Result<AddressedObject> findObject(const drive::AxisConfig& axis, const std::str
   }
   if (spec != nullptr) {
     found.id = spec->id;
-  } else if (const auto id = fieldbus::parseObjectAddress(words.object)) {
+  } else if (const auto id = drive::objectId(profile, words.object)) {
     found.id = *id;
     spec = profile.find(*id);
   } else {
@@ -65,7 +69,9 @@ Result<AddressedObject> findObject(const drive::AxisConfig& axis, const std::str
                  "of 0x...: write " +
                  fieldbus::unambiguousIndex(words.object)};
   }
-  found.title = fieldbus::toString(found.id) + (spec != nullptr ? " " + spec->name : "");
+  const std::string of_maker = profile.parameter_names.nameOf(found.id);
+  found.title = fieldbus::toString(found.id) + (of_maker.empty() ? "" : " " + of_maker) +
+                (spec != nullptr ? " " + spec->name : "");
   if (spec != nullptr) found.spec = *spec;
   if (!words.type) return found;
   if (spec != nullptr && !sameType(*spec, *words.type)) {

@@ -183,6 +183,10 @@ ObjectText describeObject(const ObjectSpec* spec, const drive::AxisConfig& axis,
   if (!joint.empty()) text.value += " = " + joint;
   const std::string inputs = drive::activeInputs(*axis.profile, *spec, raw);
   if (!inputs.empty()) text.value += ": " + inputs;
+  const std::string word =
+      drive::textOf(spec->words, fieldbus::isSigned(spec->type) ? fieldbus::toSigned(raw, bits)
+                                                                : static_cast<std::int64_t>(raw));
+  if (!word.empty()) text.value += ": " + word;
   return text;
 }
 

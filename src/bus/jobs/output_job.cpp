@@ -34,6 +34,17 @@ void addTo(std::vector<OutputGroup>& groups, const DriveProfile& profile,
   if (output.mask) group->opened |= output.mask->mask();
 }
 
+std::vector<OutputTerminal> terminalsOf(const DriveProfile& profile,
+                                        const std::vector<std::string>& names) {
+  std::vector<OutputTerminal> terminals;
+  for (const std::string& name : names) {
+    const DigitalOutput& output = profile.outputs.at(name);
+    if (output.terminal.empty()) continue;
+    terminals.push_back({name, profile.find(output.terminal), output.function});
+  }
+  return terminals;
+}
+
 std::string outputsText(const SetOutputsCommand& command) {
   std::string text;
   for (std::size_t i = 0; i < command.names.size(); ++i) {
@@ -82,8 +93,10 @@ void SetOutputsCommand::begin(AxisCycle& cycle, const Reply<>& reply, Time) cons
   drive::Axis& asked = (*unit)->axis;
   auto groups = outputGroups(asked, *this);
   if (!groups) return refuse(reply, outputsNotSet(asked, groups.error().message));
-  cycle.jobs().add(std::make_unique<OutputJob>(asked, cycle.claims(), std::move(groups).value(),
-                                               outputsText(*this), reply));
+  auto job = std::make_unique<OutputJob>(asked, cycle.claims(), std::move(groups).value(),
+                                         outputsText(*this), reply);
+  job->lookAt(terminalsOf(*asked.config().profile, names));
+  cycle.jobs().add(std::move(job));
 }
 
 OutputJob::OutputJob(drive::Axis& axis, ObjectClaims& claims, std::vector<OutputGroup> groups,
@@ -98,8 +111,10 @@ OutputJob::OutputJob(drive::Axis& axis, ObjectClaims& claims, std::vector<Output
 bool OutputJob::step(Time) {
   if (claim_ == nullptr) {
     claim_ = claims_->take({&axis_->device(), {}, 0});
-    return claim_ != nullptr && beginGroup();
+    if (claim_ == nullptr) return false;
+    if (terminals_.empty()) return beginGroup();
   }
+  if (terminal_ < terminals_.size()) return lookAtTerminal();
   if (!change_->step()) return false;
   if (!change_->problem().empty()) return fail(change_->problem());
   const OutputGroup& group = groups_[group_];
@@ -120,6 +135,29 @@ bool OutputJob::step(Time) {
   }
   ++group_;
   return beginGroup();
+}
+
+bool OutputJob::lookAtTerminal() {
+  const OutputTerminal& terminal = terminals_[terminal_];
+  if (!ticket_) {
+    ticket_ = axis_->device().objects().upload(terminal.object->id, terminal.object->name);
+    return false;
+  }
+  if (!ticket_->done()) return false;
+  const std::string why = terminalRefusal(terminal);
+  ticket_.reset();
+  if (!why.empty()) return fail(why);
+  return ++terminal_ == terminals_.size() && beginGroup();
+}
+
+std::string OutputJob::terminalRefusal(const OutputTerminal& terminal) const {
+  if (!ticket_->ok()) return ticket_->message();
+  const auto shown = static_cast<std::int64_t>(fieldbus::toUnsigned(ticket_->data()));
+  if (shown == terminal.function) return {};
+  const std::string word = drive::textOf(terminal.object->words, shown);
+  return "the terminal of " + terminal.output + " shows something else: " + terminal.object->name +
+         " (" + fieldbus::toString(terminal.object->id) + ") is " + std::to_string(shown) +
+         (word.empty() ? "" : " (" + word + ")") + ", not " + std::to_string(terminal.function);
 }
 
 bool OutputJob::beginGroup() {

@@ -33,6 +33,13 @@ struct OutputGroup {
   std::uint64_t changed = 0, bits = 0;      ///< of `value`, and what they become
   std::uint64_t opened = 0;                 ///< of `mask`
 };
+/// What a terminal must show for an output to be seen there.
+struct OutputTerminal {
+  std::string output;  ///< its name
+  const drive::ObjectSpec* object = nullptr;
+  std::int64_t function = 0;
+};
+
 /// What is to be written; or why nothing is: a name that the profile does not have or that is given
 /// twice, an object that travels in every cycle.
 Result<std::vector<OutputGroup>> outputGroups(drive::Axis& axis, const SetOutputsCommand& command);
@@ -45,6 +52,8 @@ class OutputJob final : public Job {
   /// @param axis, @param claims must outlive it. @param text what is done, "do1 on, do2 off"
   OutputJob(drive::Axis& axis, ObjectClaims& claims, std::vector<OutputGroup> groups,
             std::string text, Reply<> reply);
+  /// Looked at before anything is written; one that shows something else fails it.
+  void lookAt(std::vector<OutputTerminal> terminals) { terminals_ = std::move(terminals); }
 
   bool step(Time now) override;
   void abandon(const std::string& why) override { fail(why); }
@@ -52,12 +61,17 @@ class OutputJob final : public Job {
  private:
   enum class Stage : std::uint8_t { looking, preparing, opening, setting };
 
+  bool lookAtTerminal();
+  std::string terminalRefusal(const OutputTerminal& terminal) const;
   bool beginGroup();
   void begin(Stage stage);
   bool fail(const std::string& why);
 
   drive::Axis* axis_;
   ObjectClaims* claims_;
+  std::vector<OutputTerminal> terminals_;
+  std::size_t terminal_ = 0;
+  fieldbus::Ticket ticket_;
   std::vector<OutputGroup> groups_;
   std::size_t group_ = 0;
   Stage stage_ = Stage::looking;

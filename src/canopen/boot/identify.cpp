@@ -1,5 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // The first steps of the boot procedure: is somebody there, and who is it.
+#include <algorithm>
 #include <array>
 
 #include "canopen/boot/steps.h"
@@ -105,7 +106,8 @@ class ProofOfLife : public BootStep {
     return boot.fail(BootFailure::absent,
                      "does not answer: neither a boot-up message nor an answer to " + boot.step +
                          " came within " + secondsText(boot.config.boot_timeout) +
-                         "; check power, cable and termination, bit rate and node-ID");
+                         "; check power, cable and termination, bit rate and node-ID" +
+                         (boot.config.if_silent.empty() ? "" : "; " + boot.config.if_silent));
   }
 };
 
@@ -133,10 +135,18 @@ class Identification : public BootStep {
       return boot.fail(BootFailure::refused,
                        mismatch({0x1018, row.subindex}, row.name, value, *configured));
     }
+    if (row.subindex == 2 && !configured) noteProduct(boot, value);
     return Progress::again;
   }
 
  private:
+  static void noteProduct(BootContext& boot, std::uint32_t product) {
+    const std::vector<std::uint32_t>& known = boot.config.known_products;
+    if (known.empty() || std::find(known.begin(), known.end(), product) != known.end()) return;
+    boot.notes.push_back("its product code (1018:02) " + hexText(product, 8) +
+                         " is none that the profile knows: compare its objects with the manual");
+  }
+
   std::size_t item_ = 0;
 };
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,8 +13,9 @@ namespace cia402::canopen {
 
 /// One entry of the pre-defined error field 1003h (CiA 301, 7.5.2.4).
 struct ErrorHistoryEntry {
-  std::uint16_t code = 0;  ///< low word: emergency error code
-  std::uint16_t info = 0;  ///< high word: additional information of the manufacturer
+  std::uint16_t code = 0;      ///< low word: emergency error code
+  std::uint16_t info = 0;      ///< high word: additional information of the manufacturer
+  std::optional<double> time;  ///< s since power-on, where the drive tells it
 };
 
 /// What a drive remembers of its errors.

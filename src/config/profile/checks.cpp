@@ -48,6 +48,22 @@ constexpr Key kConditions[] = {{"is", Condition::Kind::is},
                                {"above", Condition::Kind::above},
                                {"below", Condition::Kind::below}};
 
+/// `bits`: which of the number are looked at.
+void readBits(yaml::Section& section, const std::vector<const ObjectSpec*>& objects,
+              Condition& condition) {
+  const auto value = section.get("bits");
+  const auto bits = value ? value->integer(1, highestOfAll(objects)) : std::nullopt;
+  if (!bits) return;
+  condition.bits = *bits;
+  const bool above_or_below =
+      condition.kind == Condition::Kind::above || condition.kind == Condition::Kind::below;
+  if (above_or_below) value->problem("go with `is` and `not`");
+  for (const std::int64_t number : condition.numbers) {
+    if ((number & ~*bits) == 0) continue;
+    value->problem(std::to_string(number) + " has other bits, so that it never is");
+  }
+}
+
 /// Exactly one of `is`, `not`, `above`, `below`.
 Condition readCondition(yaml::Section& section, const yaml::Value& place,
                         const std::vector<const ObjectSpec*>& objects) {
@@ -66,6 +82,7 @@ Condition readCondition(yaml::Section& section, const yaml::Value& place,
   if (given != 1)
     place.problem("needs one of `is`, `not`, `above`, `below`, which says what it must be");
   if (condition.numbers.empty()) condition.numbers.push_back(0);  // a problem has been told
+  readBits(section, objects, condition);
   return condition;
 }
 
@@ -113,6 +130,8 @@ void readWriting(yaml::Section& section, const std::vector<const ObjectSpec*>& o
     value->problem("what is compared before homing is not written; use homing/writes");
   } else if (check.condition.kind != Condition::Kind::is || objects.size() != 1) {
     value->problem("what is written must be given by `is`, of one `object`");
+  } else if (check.condition.bits != -1) {
+    value->problem("single bits (`bits`) are not written");
   } else if (!object.writable) {
     value->problem("`" + object.name + "` cannot be written");
   }
@@ -123,13 +142,7 @@ void readTexts(yaml::Section& section, SettingCheck& check) {
   if (section.require("text", "what another number means")) section.read("text", check.text);
   if (section.require("remedy", "what to do then")) section.read("remedy", check.remedy);
   if (!texts) return;
-  yaml::Section section_of_texts(*texts);
-  for (const auto& [key, value] : section_of_texts.entries()) {
-    const auto number = yaml::parseInteger(key);
-    const auto text = value.text();
-    if (!number) value.problem("`" + key + "` is no whole number");
-    if (number && text) check.texts[*number] = *text;
-  }
+  check.texts = readNumberTexts(*texts);
 }
 
 void readMoment(yaml::Section& section, const DriveProfile& profile, SettingCheck& check) {

@@ -14,6 +14,12 @@ void readIdentity(yaml::Section& profile_section, canopen::DeviceProfile& device
   section.readInteger("device_type", device.device_type, 0, 0xFFFFFFFF);
   section.readInteger("vendor_id", device.vendor_id, 0, 0xFFFFFFFF);
   section.readInteger("product_code", device.product_code, 0, 0xFFFFFFFF);
+  if (const auto known = section.get("known_products")) {
+    for (const yaml::Value& entry : known->list()) {
+      const auto product = entry.integer(0, 0xFFFFFFFF);
+      if (product) device.known_products.push_back(static_cast<std::uint32_t>(*product));
+    }
+  }
   section.finish();
 }
 
@@ -88,6 +94,7 @@ void readHeartbeat(yaml::Section& profile_section, canopen::DeviceProfile& devic
 void readDevice(yaml::Section& section, yaml::Section& timing, const DriveProfile& profile,
                 canopen::DeviceProfile& device) {
   readIdentity(section, device);
+  section.read("if_silent", device.if_silent);
   section.read("nmt_reset_node", device.nmt_reset_node);
   readSync(section, device);
   readHeartbeat(section, device);

@@ -1,5 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // `errors` and `warnings`: what the codes of a family mean, and what follows from them.
+#include "common/text.h"
 #include "config/profile/parts.h"
 
 namespace cia402::config {
@@ -8,13 +9,15 @@ namespace {
 using drive::WarningText;
 
 /// A table of codes. @param read (Section& of the entry, Text&) what else an entry has
-template <typename Text, typename Read>
-void readCodes(const yaml::Value& value, std::map<std::uint16_t, Text>& codes, Read&& read) {
+template <typename Code, typename Text, typename Read>
+void readCodes(const yaml::Value& value, std::map<Code, Text>& codes, Read&& read) {
+  constexpr std::int64_t kHighest = sizeof(Code) == 2 ? 0xFFFF : 0xFFFFFFFF;
   yaml::Section section(value);
   for (const auto& [key, entry] : section.entries()) {
     const auto code = yaml::parseInteger(key);
-    if (!code || *code < 1 || *code > 0xFFFF) {
-      entry.problem("an error code is a number from 0x0001 to 0xFFFF, not `" + key + "`");
+    if (!code || *code < 1 || *code > kHighest) {
+      entry.problem("an error code is a number from 0x0001 to " +
+                    hexText(static_cast<std::uint64_t>(kHighest), 4) + ", not `" + key + "`");
       continue;
     }
     Text text;
@@ -29,7 +32,7 @@ void readCodes(const yaml::Value& value, std::map<std::uint16_t, Text>& codes, R
     } else {
       text.text = entry.text().value_or("");
     }
-    if (!codes.emplace(static_cast<std::uint16_t>(*code), text).second) {
+    if (!codes.emplace(static_cast<Code>(*code), text).second) {
       entry.problem("the code is given twice");
     }
   }
@@ -51,6 +54,49 @@ void readErrors(const yaml::Value& value, DriveProfile& profile) {
     }
     readDuration(details, "wait", yaml::Range{0.0, 3600.0, false}, error.wait);
   });
+}
+
+void readErrorDetails(const yaml::Value& value, DriveProfile& profile) {
+  drive::ErrorDetails& details = profile.error_details;
+  yaml::Section section(value);
+  const auto name = section.require("object", "what the drive tells besides its error code");
+  const ObjectSpec* object = name ? readSetting(*name, profile) : nullptr;
+  if (object != nullptr) details.object = object->name;
+  if (const auto bits = section.get("bits")) {
+    const auto mask = bits->integer(1, 0xFFFFFFFF);
+    if (mask) details.bits = static_cast<std::uint64_t>(*mask);
+  }
+  section.read("prefix", details.prefix);
+  section.readInteger("digits", details.digits, 1, 8);
+  if (const auto codes = section.get("codes")) {
+    readCodes(*codes, details.codes, [](yaml::Section&, ErrorText&) {});
+  }
+  section.finish();
+}
+
+void readAlarmMemory(const yaml::Value& value, DriveProfile& profile) {
+  drive::AlarmMemory& memory = profile.alarm_memory;
+  yaml::Section section(value);
+  const auto object = [&](const char* key, const char* what) {
+    const auto name = section.require(key, what);
+    return name ? readSetting(*name, profile) : nullptr;
+  };
+  const ObjectSpec* select = object("select", "the object that selects one, 0 the newest");
+  const ObjectSpec* code = object("code", "the object that shows its code");
+  if (select != nullptr && !select->writable) section.problem("`select` cannot be written");
+  if (select != nullptr) memory.select = select->name;
+  if (code != nullptr) memory.code = code->name;
+  if (const auto name = section.get("time")) {
+    const ObjectSpec* time = readSetting(*name, profile);
+    if (time != nullptr && time->quantity != Quantity::time) {
+      name->problem("`" + time->name + "` does not measure a time; see its `quantity`");
+    } else if (time != nullptr) {
+      memory.time = time->name;
+    }
+  }
+  section.require("entries", "how many there are");
+  section.readInteger("entries", memory.entries, 1, 100);
+  section.finish();
 }
 
 void readWarnings(const yaml::Value& value, DriveProfile& profile) {

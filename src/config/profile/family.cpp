@@ -182,7 +182,15 @@ void checkStopModes(yaml::Section& section, const DriveProfile& profile) {
   }
 }
 
+/// The maker's bits of the statusword.
+void readHomedBit(yaml::Section& section, DriveProfile& profile) {
+  const auto value = section.get("homed_bit");
+  const auto bit = value ? value->integer(7, 15) : std::nullopt;
+  if (bit) profile.homed_bit = static_cast<int>(*bit);
+}
+
 void readBehaviour(yaml::Section& section, DriveProfile& profile) {
+  readHomedBit(section, profile);
   section.read("output_shaft", profile.output_shaft);
   section.read("halt_supported", profile.halt_supported);
   section.read("warning_stops", profile.warning_stops);
@@ -242,6 +250,15 @@ void readDrive(yaml::Section& section, yaml::Section& timing, DriveProfile& prof
   }
   if (const auto list = section.get("checks")) readChecks(*list, profile);
   if (const auto rule = section.get("counts_rule")) readCountsRule(*rule, profile);
+  const auto setting = [&](const char* key, std::string& name) {
+    const auto value = section.get(key);
+    const ObjectSpec* object = value ? readSetting(*value, profile) : nullptr;
+    if (object != nullptr) name = object->name;
+  };
+  setting("rated_torque", profile.rated_torque);
+  setting("not_ready_reason", profile.not_ready_reason);
+  if (const auto settings = section.get("bus_settings")) readBusSettings(*settings, profile);
+  if (const auto names = section.get("parameter_names")) readParameterNames(*names, profile);
   if (const auto names = section.get("default_modes")) {
     profile.default_modes = readModeNames(*names, profile);
   }
@@ -257,6 +274,8 @@ void readDrive(yaml::Section& section, yaml::Section& timing, DriveProfile& prof
   if (const auto probes = section.get("touch_probe")) readTouchProbes(*probes, profile);
   if (const auto errors = section.get("errors")) readErrors(*errors, profile);
   if (const auto warnings = section.get("warnings")) readWarnings(*warnings, profile);
+  if (const auto details = section.get("error_details")) readErrorDetails(*details, profile);
+  if (const auto memory = section.get("alarm_memory")) readAlarmMemory(*memory, profile);
 }
 
 DriveFamily readFamily(const yaml::Value& root) {

@@ -40,6 +40,16 @@ void readDigitalOutput(const std::string& name, const yaml::Value& value, DriveP
     mask_section.finish();
     usable = usable && output.mask;
   }
+  if (const auto terminal = section.get("terminal")) {
+    yaml::Section of_terminal(*terminal);
+    const auto object = of_terminal.require("object", "what says what the terminal shows");
+    const ObjectSpec* spec = object ? readSetting(*object, profile) : nullptr;
+    of_terminal.require("is", "the number that it must be");
+    of_terminal.readInteger("is", output.function, 0, 0xFFFFFFFF);
+    of_terminal.finish();
+    usable = usable && spec != nullptr;
+    if (spec != nullptr) output.terminal = spec->name;
+  }
   section.finish();
   if (usable) profile.outputs[name] = output;
 }

@@ -106,6 +106,19 @@ void readRange(yaml::Section& section, ObjectSpec& object) {
   if (fits && *low <= *high) object.range = ObjectSpec::Range{*low, *high};
 }
 
+void readWords(yaml::Section& section, ObjectSpec& object) {
+  const auto value = section.get("words");
+  if (!value) return;
+  const bool whole =
+      fieldbus::sizeBits(object.type) != 0 && !drive::holdsFloat(object.type, object.encoding);
+  if (!whole) return value->problem("are for objects that hold a whole number");
+  object.words = readNumberTexts(*value);
+  for (const auto& [number, text] : object.words) {
+    if (number >= lowestOf(object.type) && number <= highestOf(object.type)) continue;
+    value->problem(std::to_string(number) + " does not fit " + fieldbus::toString(object.type));
+  }
+}
+
 ObjectSpec readObject(const std::string& name, const yaml::Value& value,
                       const DriveProfile& profile) {
   ObjectSpec object;
@@ -123,6 +136,7 @@ ObjectSpec readObject(const std::string& name, const yaml::Value& value,
   readAccess(section, object);
   readMeaning(section, object, profile);
   readRange(section, object);
+  readWords(section, object);
   section.finish();
   return object;
 }
@@ -138,6 +152,19 @@ std::int64_t highestOf(DataType type) {
   const unsigned bits = fieldbus::sizeBits(type) - (fieldbus::isSigned(type) ? 1 : 0);
   if (bits >= 63) return std::numeric_limits<std::int64_t>::max();
   return (std::int64_t{1} << bits) - 1;
+}
+
+drive::NumberTexts readNumberTexts(const yaml::Value& value) {
+  drive::NumberTexts texts;
+  yaml::Section section(value);
+  for (const auto& [key, entry] : section.entries()) {
+    const auto number = yaml::parseInteger(key);
+    const auto text = entry.text();
+    if (!number) entry.problem("`" + key + "` is no whole number");
+    if (number && text) texts[*number] = *text;
+  }
+  section.finish();
+  return texts;
 }
 
 std::optional<Encoding> readEncodingWord(const yaml::Value& value) {

@@ -40,6 +40,14 @@ void readHoming(const yaml::Value& value, DriveProfile& profile);
 void readErrors(const yaml::Value& value, DriveProfile& profile);
 /// @pre `statusword` was read
 void readWarnings(const yaml::Value& value, DriveProfile& profile);
+/// `error_details`. @pre objects were read
+void readErrorDetails(const yaml::Value& value, DriveProfile& profile);
+/// `alarm_memory`. @pre objects were read
+void readAlarmMemory(const yaml::Value& value, DriveProfile& profile);
+/// `bus_settings`. @pre objects were read
+void readBusSettings(const yaml::Value& value, DriveProfile& profile);
+/// `parameter_names`
+void readParameterNames(const yaml::Value& value, DriveProfile& profile);
 /// `checks`: what the drive must be set to, or say. @pre objects, modes and homing were read
 void readChecks(const yaml::Value& list, DriveProfile& profile);
 /// The name of an object of the profile that holds a whole number and can be read; else a problem
@@ -55,6 +63,8 @@ void readDigitalOutputs(const yaml::Value& value, DriveProfile& profile);
 void readDigitalInputs(const yaml::Value& value, DriveProfile& profile);
 void readTouchProbes(const yaml::Value& value, DriveProfile& profile);
 
+/// A mapping of whole numbers to what they mean.
+drive::NumberTexts readNumberTexts(const yaml::Value& value);
 /// The words of `encoding`.
 std::optional<Encoding> readEncodingWord(const yaml::Value& value);
 /// "position"; the words of profiles.

@@ -39,6 +39,93 @@ void readCountsRule(const yaml::Value& value, DriveProfile& profile) {
     rule.times = readSettings(*times, profile);
   }
   if (const auto over = section.get("over")) rule.over = readSettings(*over, profile);
+  section.read("adjustable", rule.adjustable);
+  const auto writable = [&](const std::string& name) { return profile.find(name)->writable; };
+  const bool can_be = rule.times.size() == 2 && rule.over.size() == 1 && writable(rule.times[1]) &&
+                      writable(rule.over[0]);
+  if (rule.adjustable && !can_be) {
+    section.problem(
+        "`adjustable` needs two objects in `times`, the encoder's and one that can be "
+        "written, and one in `over` that can be written");
+  }
+  section.finish();
+}
+
+void readParameterNames(const yaml::Value& value, DriveProfile& profile) {
+  drive::ParameterNames& names = profile.parameter_names;
+  yaml::Section section(value);
+  if (section.require("prefix", "what the names begin with, such as H")) {
+    section.read("prefix", names.prefix);
+  }
+  if (const auto groups = section.get("groups")) {
+    names.hexadecimal = groups->oneOf({"decimal", "hexadecimal"}).value_or(0) == 1;
+  }
+  section.require("index", "of group 0, such as 0x2000");
+  section.readInteger("index", names.index, 0x1000, 0xFFFF);
+  section.readInteger("subindex", names.subindex, 0, 0xFF);
+  section.require("last_group", "the highest group, a number");
+  section.readInteger("last_group", names.last_group, 0, 0xFF);
+  if (names.index + names.last_group > 0xFFFF) section.problem("the last group lies beyond FFFFh");
+  section.finish();
+}
+
+namespace {
+
+const ObjectSpec* readWritable(const yaml::Value& value, const DriveProfile& profile) {
+  const ObjectSpec* object = readSetting(value, profile);
+  if (object == nullptr || object->writable) return object;
+  value.problem("`" + object->name + "` cannot be written");
+  return nullptr;
+}
+
+void readBusSetting(const yaml::Value& value, const DriveProfile& profile,
+                    drive::BusSetting& setting) {
+  yaml::Section section(value);
+  const auto name = section.require("object", "what holds it, by name");
+  const ObjectSpec* object = name ? readWritable(*name, profile) : nullptr;
+  if (object != nullptr) setting.object = object->name;
+  if (const auto counts = section.get("counts")) {
+    const auto word = counts->oneOf({"at_once", "after_reset", "after_power_cycle"});
+    if (word) setting.counts = static_cast<drive::BusSetting::Counts>(*word);
+  }
+  if (const auto numbers = section.get("numbers")) {
+    yaml::Section rates(*numbers);
+    for (const auto& [key, entry] : rates.entries()) {
+      const auto rate = yaml::parseInteger(key);
+      const auto number = entry.integer(0, 0xFFFF);
+      if (!rate || *rate < 1000 || *rate > 1000000) {
+        entry.problem("`" + key + "` is no bit rate of CAN, in bit/s");
+      } else if (number) {
+        setting.numbers[static_cast<std::uint32_t>(*rate)] = *number;
+      }
+    }
+    rates.finish();
+  }
+  section.finish();
+}
+
+}  // namespace
+
+void readBusSettings(const yaml::Value& value, DriveProfile& profile) {
+  drive::BusSettings& settings = profile.bus_settings;
+  yaml::Section section(value);
+  if (const auto node = section.get("node_id")) readBusSetting(*node, profile, settings.node_id);
+  if (const auto rate = section.get("bit_rate")) {
+    readBusSetting(*rate, profile, settings.bit_rate);
+    if (settings.bit_rate.numbers.empty()) {
+      rate->problem("needs `numbers`, bit/s to what the object says then");
+    }
+  }
+  if (const auto memory = section.get("memory")) {
+    yaml::Section of_memory(*memory);
+    const auto name = of_memory.require("object", "what lets writes stay without power");
+    const ObjectSpec* object = name ? readWritable(*name, profile) : nullptr;
+    if (object != nullptr) settings.memory = object->name;
+    of_memory.readInteger("on", settings.memory_on, 0, 0xFFFF);
+    of_memory.readInteger("off", settings.memory_off, 0, 0xFFFF);
+    of_memory.finish();
+  }
+  section.read("saved_apart", settings.saved_apart);
   section.finish();
 }
 

@@ -11,7 +11,7 @@ const std::vector<std::string>& configurationSources() {
       "limits.lower",  "limits.upper",           "limits.velocity",      "limits.acceleration",
       "limits.jerk",   "limits.effort",          "sync_period.value",    "sync_period.exponent",
       "homing.method", "homing.search_velocity", "homing.zero_velocity", "homing.acceleration",
-      "homing.offset", "quick_stop.hold",        "sync_period.ms",
+      "homing.offset", "quick_stop.hold",        "sync_period.ms",       "homing.timeout",
   };
   return kSources;
 }
@@ -36,7 +36,7 @@ const ObjectSpec* readTarget(yaml::Section& section, const DriveProfile& profile
     if (!object->writable) value->problem("`" + *text + "` is read-only");
     return object;
   }
-  if (!fieldbus::parseObjectAddress(*text)) {
+  if (!drive::objectId(profile, *text)) {
     value->problem(drive::sourceOf(profile) + " has no object `" + *text + "`" +
                    yaml::suggestion(*text, drive::objectNames(profile)));
   } else if (fieldbus::isAmbiguousIndex(*text)) {
@@ -100,7 +100,7 @@ void readValue(yaml::Section& section, const DriveProfile& profile, const Object
   Coding coding{*type, Encoding::integer};
   if (object != nullptr) {
     coding.encoding = object->encoding;
-  } else if (const auto id = fieldbus::parseObjectAddress(write.object)) {
+  } else if (const auto id = drive::objectId(profile, write.object)) {
     coding.encoding = drive::encodingAt(profile, *id, *type);
   }
   const bool by_index = object == nullptr || write.object != object->name;

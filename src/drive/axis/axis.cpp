@@ -24,6 +24,8 @@ struct Axis::Impl {
   std::string busyRefusal(ProcedureKind kind) const;
   /// Ends a procedure that would enable the axis.
   void endEnabling(const std::string& why);
+  /// What runs takes the motion over.
+  bool busy() const { return status.running && !(procedure && procedure->letsMotionGoOn()); }
   Context context(Time now) { return {core, status, now}; }
 
   AxisCore core;
@@ -135,7 +137,7 @@ void Axis::update(Time now) {
   impl.core.supervise(now);
   if (impl.procedure || impl.core.notices().failed()) impl.stepProcedure(now);
   impl.lost = false;
-  impl.core.updateReadiness(impl.status.running);
+  impl.core.updateReadiness(impl.busy());
 }
 
 void Axis::writeCommands(Time now) { impl_->core.writeCommands(now); }
@@ -172,7 +174,7 @@ Result<std::uint32_t> Axis::start(const ProcedureRequest& request, Time now) {
   impl.procedure = std::move(procedure.value());
   impl.begun = false;
   if (impl.procedure->leavesAlone(impl.context(now))) impl.advance(now);
-  impl.core.updateReadiness(impl.status.running);
+  impl.core.updateReadiness(impl.busy());
   return id;
 }
 
@@ -224,9 +226,7 @@ const std::string* Axis::leader() const { return impl_->core.generator().command
 bool Axis::late() const { return impl_->core.generator().late(); }
 bool Axis::setTarget(double value) { return impl_->core.generator().take(value); }
 void Axis::stopSetPoint() { impl_->core.generator().stop(); }
-std::string Axis::motionRefusal() const {
-  return drive::motionRefusal(impl_->core, impl_->status.running);
-}
+std::string Axis::motionRefusal() const { return drive::motionRefusal(impl_->core, impl_->busy()); }
 double Axis::positionBy(const ObjectSpec& object, std::uint64_t raw) const {
   return impl_->core.feedback().positionBy(object, raw);
 }
@@ -260,6 +260,7 @@ void Axis::onBusLost(const std::string& why) {
 }
 
 std::string Axis::faultText() const { return impl_->core.faults().text(); }
+bool Axis::faultTextAwaited() const { return impl_->core.faults().textAwaited(); }
 std::string Axis::unknownText() const { return impl_->core.feedback().unknownText(); }
 const std::string& Axis::notice() const { return impl_->core.notices().text(); }
 bool Axis::noticeWarns() const { return impl_->core.notices().warns(); }

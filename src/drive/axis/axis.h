@@ -245,6 +245,8 @@ class Axis {
 
   /// The present fault in words with cause and remedy; empty if none.
   std::string faultText() const;
+  /// The drive has been asked for more about it: faultText() is about to change.
+  bool faultTextAwaited() const;
 
   /// Why the drive's state or position is unknown though its device is ready, in words that stay
   /// the same as long as the reason does; empty if both are known. Between a boot and the first

@@ -23,7 +23,9 @@ struct HomingOptions {
   std::optional<double> offset;  ///< rad or m, see atHome()
   Duration timeout{std::chrono::seconds(30)};
   bool required = true;  ///< no position motion before homing
-  int order = 0;         ///< axes of a lower order home first
+  /// Where the drive says that it knows its home (DriveProfile::homed_bit) the axis is homed.
+  bool kept_by_drive = false;
+  int order = 0;  ///< axes of a lower order home first
   /// Joint position at the home point.
   double atHome() const { return offset.value_or(0.0); }
 };

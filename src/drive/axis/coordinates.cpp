@@ -9,7 +9,21 @@ Coordinates::Coordinates(const AxisConfig& config, const Signal& position, AxisS
   if (continuous && position.spec->encoding == Encoding::integer) {
     unwrap_ = {fieldbus::sizeBits(position.spec->type), fieldbus::isSigned(position.spec->type)};
   }
+  if (config.homing && config.homing->kept_by_drive && config.profile->homed_bit) {
+    home_mask_ = 1U << static_cast<unsigned>(*config.profile->homed_bit);
+  }
   state_.homed = absolute();
+}
+
+std::optional<double> Coordinates::takeHome(bool known) {
+  home_known_ = known;
+  if (!known) {
+    if (!by_drive_) return {};
+    return lose();
+  }
+  if (state_.homed || lost_) return {};
+  by_drive_ = true;
+  return set(0.0);
 }
 
 bool Coordinates::absolute() const {
@@ -30,12 +44,14 @@ Conversion Coordinates::ofTarget(const Conversion& target) const {
 
 std::optional<double> Coordinates::declare(double value) {
   if (!state_.feedback_valid) return {};
-  lost_ = false;
+  lost_ = by_drive_ = false;
   return set(shift_ + (value - state_.position));
 }
 
 double Coordinates::adopt(double shift, bool homing) {
   lost_ = false;
+  by_drive_ = home_mask_ != 0;
+  home_known_ = true;
   unwrap_.restart(homing);
   return set(shift);
 }
@@ -48,12 +64,14 @@ double Coordinates::returnToDrive(bool homing) {
 double Coordinates::lose() {
   const double moved = returnToDrive(true);
   lost_ = true;
+  by_drive_ = false;
   state_.homed = false;
   return moved;
 }
 
 std::optional<double> Coordinates::forget(bool homing) {
   std::optional<double> moved;
+  home_known_ = by_drive_ = false;
   if (!absolute()) moved = returnToDrive(homing);
   state_.homed = absolute();
   return moved;

@@ -59,6 +59,15 @@ class Coordinates {
   /// where the zero stays.
   std::optional<double> forget(bool homing);
 
+  /// Follows what the drive says of its home, where the axis wants that
+  /// (HomingOptions::kept_by_drive): homed while it knows it. @param homing the drive is in homing
+  /// mode. Nothing where nothing changes.
+  std::optional<double> followHome(std::uint16_t statusword, bool homing) {
+    if (home_mask_ == 0 || homing) return {};
+    const bool known = (statusword & home_mask_) != 0;
+    return known == home_known_ ? std::nullopt : takeHome(known);
+  }
+
   /// What was counted before was in other coordinates.
   void countAnew(bool homing);
   /// The drive has left homing mode.
@@ -66,6 +75,7 @@ class Coordinates {
 
  private:
   double set(double shift);
+  std::optional<double> takeHome(bool known);
   void place();
 
   const AxisConfig& config_;
@@ -73,7 +83,10 @@ class Coordinates {
   AxisState& state_;
   Conversion position_;  ///< with shift and wraps
   double shift_ = 0.0;
-  bool lost_ = false;  ///< and not declared or found since
+  bool lost_ = false;        ///< and not declared or found since
+  unsigned home_mask_ = 0;   ///< of the statusword; 0: what the drive says of its home is nothing
+  bool home_known_ = false;  ///< by the drive
+  bool by_drive_ = false;    ///< homed as the drive knows its home
   PositionUnwrap unwrap_;
 };
 

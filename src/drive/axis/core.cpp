@@ -30,7 +30,12 @@ AxisCore::AxisCore(AxisConfig config, fieldbus::Device& device)
 
 void AxisCore::readFeedback(Time now) {
   const Feedback::Commanded commanded{generator_.commandedPosition(), generator_.handingOver()};
-  if (feedback_.read(now, commanded)) faults_.read(now);
+  if (!feedback_.read(now, commanded)) return;
+  faults_.read(now);
+  if (!state().feedback_valid) return;
+  if (const auto moved = coordinates_.followHome(state().statusword, mode_.homing())) {
+    zeroMoved(*moved);
+  }
 }
 
 void AxisCore::supervise(Time now) {

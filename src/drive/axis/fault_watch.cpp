@@ -23,6 +23,9 @@ void FaultWatch::readError(Time now) {
   if (code != faulted_by_) faulted_since_ = now;
   faulted_by_ = code;
   if (!look.warning) acknowledged_ = 0;
+  const bool stands = look.faulted || look.warning;
+  details_.update(axis_.profile(), stands ? axis_.state.error_code : std::uint16_t{0},
+                  axis_.device.objects());
 }
 
 FaultWatch::Warning FaultWatch::warning() const {
@@ -61,6 +64,7 @@ void FaultWatch::forgetFault() {
 
 void FaultWatch::forget() {
   errors_ = ErrorEvidence();
+  details_ = FaultDetails();
   axis_.state.error_code = acknowledged_ = 0;
 }
 
@@ -68,6 +72,11 @@ std::string FaultWatch::codeText(std::uint16_t code) const {
   const std::string* excuse = errors_.excuse(code);
   return errorCodeText(axis_.profile(), code) +
          (excuse != nullptr ? "; the cause is that " + *excuse : std::string());
+}
+
+std::string FaultWatch::detailText() const {
+  const std::string text = details_.text(axis_.profile(), axis_.state.error_code);
+  return text.empty() ? text : "; " + text;
 }
 
 std::string FaultWatch::emergencyText() const {
@@ -86,13 +95,14 @@ std::string FaultWatch::text() const {
              axis_.profile().address(0x603F) + " is 0 and no " + axis_.device.terms().emergency +
              " came); clear_faults, then look at the drive's own display or log";
     }
-    return axis_.who() + ": fault " + codeText(state.error_code) + reacting + "; " +
+    return axis_.who() + ": fault " + codeText(state.error_code) + detailText() + reacting + "; " +
            afterwardsText(axis_.profile(), state.error_code);
   }
   if (state.error_code != 0 && errors_.excuse(state.error_code) == nullptr) {
     return axis_.who() + ": " +
-           (state.warning ? "warning " + warningCodeText(axis_.profile(), state.error_code)
-                          : "error reported " + errorCodeText(axis_.profile(), state.error_code));
+           (state.warning
+                ? "warning " + warningCodeText(axis_.profile(), state.error_code) + detailText()
+                : "error reported " + errorCodeText(axis_.profile(), state.error_code));
   }
   if (state.warning && axis_.profile().warning_stops) {
     return axis_.who() + ": warning without a code (statusword bit 7); clear_faults";

@@ -5,6 +5,7 @@
 
 #include "drive/axis/basis.h"
 #include "drive/axis/error_evidence.h"
+#include "drive/axis/fault_details.h"
 
 namespace cia402::drive {
 
@@ -21,6 +22,7 @@ class FaultWatch {
   /// @param excuse why this program itself has caused it; empty: it has not
   void onEmergency(const fieldbus::Emergency& emergency, const std::string& excuse, Time now) {
     errors_.onEmergency(emergency, excuse, axis_.neighbours.any(), now);
+    details_.renew();
   }
   /// An emergency whose end the drive has not told; 0: none.
   std::uint16_t pendingEmergency() const { return errors_.pending(); }
@@ -45,6 +47,8 @@ class FaultWatch {
   /// Why a reset of the present fault would be in vain now, with what helps; empty: it may help.
   std::string resetRefusal(Time now) const;
 
+  /// What the drive says more of the present error is on its way: text() will be another one.
+  bool textAwaited() const { return details_.awaited(axis_.state.error_code); }
   /// The present fault in words with cause and remedy; empty if none.
   std::string text() const;
   /// "last EMCY 0x8130 ...", or that none is pending.
@@ -54,10 +58,12 @@ class FaultWatch {
 
  private:
   bool nothingNew() const;
+  std::string detailText() const;
   void readError(Time now);
 
   AxisBasis& axis_;
   ErrorEvidence errors_;
+  FaultDetails details_;
   Time next_reset_ = Time::min();
   Time faulted_since_ = kNever;  ///< with that code:
   std::uint16_t faulted_by_ = 0;
@@ -67,7 +73,7 @@ class FaultWatch {
 /// As in nearly every cycle: readError() would change nothing.
 inline bool FaultWatch::nothingNew() const {
   const bool calm = errors_.quiet() && !axis_.state.warning && !axis_.faulted();
-  if (!calm || faulted_by_ != 0) return false;
+  if (!calm || faulted_by_ != 0 || !details_.idle()) return false;
   const Signals& signals = axis_.objects.signals;
   return !signals[SignalId::error_code].mapped() || !signals.fresh(SignalId::error_code) ||
          errors_.knows(static_cast<std::uint16_t>(signals.image(SignalId::error_code).raw));

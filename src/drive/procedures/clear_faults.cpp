@@ -5,12 +5,64 @@
 namespace cia402::drive {
 namespace {
 
-/// Clears a fault and leaves the axis disabled.
+/// One edge of controlword bit 7 takes a warning back that stops nothing: the axis goes on.
+class WarningResetStep {
+ public:
+  Outcome advance(const Context& context) {
+    AxisCore& axis = context.axis;
+    const bool sent = axis.control().frames() >= frames_ + kSureFrames;
+    switch (phase_) {
+      case Phase::begin:
+        text_ = axis.faults().text();
+        axis.control().setFaultReset(false);
+        enter(Phase::low, context);
+        context.show("taking the warning back", "controlword bit 7 to be sent low, high, low");
+        return Outcome::running();
+      case Phase::low:
+        if (!sent) break;
+        axis.control().setFaultReset(true);
+        enter(Phase::high, context);
+        return Outcome::running();
+      case Phase::high:
+        if (!sent) break;
+        axis.control().setFaultReset(false);
+        enter(Phase::looking, context);
+        return Outcome::running();
+      case Phase::looking:
+        if (sent && !axis.state().warning) {
+          return Outcome::done(jointName(axis.config()) + ": the warning is taken back: " + text_);
+        }
+        break;
+    }
+    if (context.now - since_ <= axis.profile().timing.state_change) return Outcome::running();
+    axis.control().setFaultReset(false);
+    return Outcome::failed(
+        axis.who() + ": the warning stays, its cause is still there: " + axis.faults().text());
+  }
+
+ private:
+  enum class Phase { begin, low, high, looking };
+  void enter(Phase phase, const Context& context) {
+    phase_ = phase;
+    since_ = context.now;
+    frames_ = context.axis.control().frames();
+  }
+
+  Phase phase_ = Phase::begin;
+  Time since_{};
+  std::uint64_t frames_ = 0;
+  std::string text_;
+};
+
+/// Clears a fault and leaves the axis disabled, or takes a warning back.
 class ClearFaults : public Procedure {
  public:
+  explicit ClearFaults(bool of_warning) : of_warning_(of_warning) {}
+  bool letsMotionGoOn() const override { return of_warning_; }
   Outcome advance(const Context& context) override {
     AxisCore& axis = context.axis;
     if (!begun_) {
+      if (of_warning_ && !axis.faulted()) return warning_.advance(context);
       if (!clearable(axis)) return findNothing(context);
       begun_ = true;
     }
@@ -45,8 +97,10 @@ class ClearFaults : public Procedure {
                          text);
   }
 
+  bool of_warning_;  ///< it began without a fault
   bool begun_ = false;
   FaultResetStep reset_;
+  WarningResetStep warning_;
 };
 
 }  // namespace
@@ -54,7 +108,9 @@ class ClearFaults : public Procedure {
 Result<std::unique_ptr<Procedure>> makeClearFaults(AxisCore& axis) {
   const std::string refusal = deviceRefusal(axis, "clear faults");
   if (!refusal.empty()) return Error{refusal};
-  return std::unique_ptr<Procedure>(std::make_unique<ClearFaults>());
+  const bool warned = !axis.faulted() && axis.state().feedback_valid && axis.state().warning &&
+                      !axis.profile().warning_stops;
+  return std::unique_ptr<Procedure>(std::make_unique<ClearFaults>(warned));
 }
 
 }  // namespace cia402::drive

@@ -62,6 +62,9 @@ struct Steps {
     const CountsRule& counts = profile.counts_rule;
     std::size_t transfers =
         counts.times.size() + counts.over.size() + (timing.brake_object.empty() ? 0 : 1);
+    if (counts.adjustable) transfers += 4;  // two are written, and read again
+    transfers += profile.rated_torque.empty() ? 0 : 1;
+    transfers += profile.not_ready_reason.empty() ? 0 : 1;
     for (const SettingCheck& check : profile.checks) {
       transfers += check.objects.size() + (check.unless.empty() ? 0 : 1);
       if (check.write != SettingCheck::Write::never) transfers += 2;  // it is read again

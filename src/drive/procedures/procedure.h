@@ -53,6 +53,8 @@ class Procedure {
   virtual bool leavesAlone(const Context&) const { return false; }
   /// It waits for the device to come back by itself.
   virtual bool survivesDeviceLoss() const { return false; }
+  /// Set-points are taken and followed while it runs.
+  virtual bool letsMotionGoOn() const { return false; }
 
  protected:
   virtual Outcome advance(const Context& context) = 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -27,6 +28,23 @@ struct ErrorText {
   Missing missing = Missing::nothing;
   Reset reset = Reset::by_bit;
   Duration wait{0};  ///< since the fault, before which the drive takes no reset
+};
+
+/// A further number that the drive tells of an error, which says more than its code (603Fh).
+struct ErrorDetails {
+  std::string object;                        ///< a whole number; empty: there is none
+  std::uint64_t bits = ~std::uint64_t{0};    ///< of it, that are a code as the drive shows it
+  std::string prefix;                        ///< of such a code for people: "E" of "E234"
+  int digits = 1;                            ///< hexadecimal ones, at least
+  std::map<std::uint64_t, ErrorText> codes;  ///< text, cause and remedy of those that are known
+};
+
+/// Where the maker keeps the past errors, instead of 1003h: one is selected by its number, 0 the
+/// newest, and shown. Their codes are those of ErrorDetails.
+struct AlarmMemory {
+  std::string select, code;  ///< objects by their names
+  std::string time;          ///< when it came, since power-on; empty: nothing tells
+  unsigned entries = 0;      ///< 0: there is no such memory
 };
 
 /// A known code that comes without a fault (statusword bit 7).

@@ -18,6 +18,8 @@ struct ObjectBit {
 /// A digital output that can be set (CiA 402-2, 60FEh).
 struct DigitalOutput {
   ObjectBit value;
+  std::string terminal;           ///< object that says what the terminal shows; empty: always this
+  std::int64_t function = 0;      ///< ... and what it says then
   std::optional<ObjectBit> mask;  ///< lets the output through to the terminal; absent: nothing does
 };
 

@@ -37,6 +37,7 @@ std::optional<double> homing(const std::string& name, const HomingOptions& optio
   if (name == "homing.search_velocity") return positive(options.search_velocity);
   if (name == "homing.zero_velocity") return positive(options.zero_velocity);
   if (name == "homing.acceleration") return positive(options.acceleration);
+  if (name == "homing.timeout") return toSeconds(options.timeout);
   if (name == "homing.offset") return options.atHome();
   return {};
 }
@@ -172,7 +173,7 @@ Result<std::optional<ResolvedWrite>> resolveWrite(const NamedWrite& write, const
   using Resolved = std::optional<ResolvedWrite>;
   const ObjectSpec* object = findObject(*axis.profile, write.object);
   const auto id = object != nullptr ? std::optional<ObjectId>(object->id)
-                                    : fieldbus::parseObjectAddress(write.object);
+                                    : objectId(*axis.profile, write.object);
   const auto type = object != nullptr ? std::optional<DataType>(object->type) : write.type;
   if (!id || !type || fieldbus::sizeBits(*type) == 0) {
     return refuse(axis, write.object, sourceOf(*axis.profile) + " has no such number");

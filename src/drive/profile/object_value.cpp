@@ -53,8 +53,10 @@ bool ObjectSpec::takes(std::uint64_t raw) const {
   if (!range) return true;
   if (holdsFloat(type, encoding)) return range->holds(floatOf(type, encoding, raw));
   const unsigned bits = fieldbus::sizeBits(type);
-  return range->holds(fieldbus::isSigned(type) ? static_cast<double>(fieldbus::toSigned(raw, bits))
-                                               : static_cast<double>(raw));
+  const std::uint64_t number = raw & (~std::uint64_t{0} >> (64 - bits));
+  return range->holds(fieldbus::isSigned(type)
+                          ? static_cast<double>(fieldbus::toSigned(number, bits))
+                          : static_cast<double>(number));
 }
 
 std::string ObjectSpec::rangeText() const {

@@ -97,8 +97,13 @@ std::string activeInputs(const DriveProfile& profile, const ObjectSpec& object, 
 
 const ObjectSpec* findObject(const DriveProfile& profile, const std::string& name) {
   if (const ObjectSpec* object = profile.find(name)) return object;
-  const auto id = fieldbus::parseObjectAddress(name);
+  const auto id = objectId(profile, name);
   return id ? profile.find(*id) : nullptr;
+}
+
+std::optional<ObjectId> objectId(const DriveProfile& profile, const std::string& text) {
+  const auto id = fieldbus::parseObjectAddress(text);
+  return id ? id : profile.parameter_names.find(text);
 }
 
 std::string sourceOf(const DriveProfile& profile) {

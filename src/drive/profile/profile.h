@@ -10,9 +10,12 @@
 #include <vector>
 
 #include "cia402_driver/common/time.h"
+#include "drive/profile/bus_settings.h"
 #include "drive/profile/error_texts.h"
 #include "drive/profile/io.h"
+#include "drive/profile/number_texts.h"
 #include "drive/profile/object_range.h"
+#include "drive/profile/parameter_names.h"
 #include "drive/profile/setting_check.h"
 #include "fieldbus/object.h"
 
@@ -92,6 +95,7 @@ struct ObjectSpec {
     bool holds(double number) const { return number >= low && number <= high; }
   };
   std::optional<Range> range;
+  NumberTexts words;  ///< what single numbers of it mean
   bool readable = true;
   bool writable = true;
   bool rpdo = false;                  ///< may be mapped into an RPDO
@@ -240,6 +244,8 @@ using StatusWords = std::array<std::string, 16>;
 /// that of others, by their names. Empty: the drive has no such objects.
 struct CountsRule {
   std::vector<std::string> times, over;
+  /// times[0] is the encoder's; times[1] and over[0] can be set to fit it (`adjust`).
+  bool adjustable = false;
 };
 
 /// A drive family as data: what it is as a drive, whatever bus it hangs on. With what it is as a
@@ -267,13 +273,16 @@ struct DriveProfile {
   Duration fault_reset_pause{0};
   bool fault_reset_clears_history = false;  ///< 1003h:00 = 0 is written before a fault reset
   StatusWords status_words;
-  bool has_warning_bit = true;             ///< statusword bit 7 is a warning
-  bool warning_stops = false;              ///< a warning makes the drive stop like a fault
-  std::vector<int> quick_stop_holds;       ///< values of 605Ah after which quick stop stays active
-  std::vector<NamedWrite> startup;         ///< at every boot
-  std::vector<NamedWrite> before_enable;   ///< each time before enabling
-  std::vector<SettingCheck> checks;        ///< what the drive must be set to, or say
-  CountsRule counts_rule;                  ///< compared with counts_per_turn before enabling
+  bool has_warning_bit = true;            ///< statusword bit 7 is a warning
+  bool warning_stops = false;             ///< a warning makes the drive stop like a fault
+  std::vector<int> quick_stop_holds;      ///< values of 605Ah after which quick stop stays active
+  std::vector<NamedWrite> startup;        ///< at every boot
+  std::vector<NamedWrite> before_enable;  ///< each time before enabling
+  std::vector<SettingCheck> checks;       ///< what the drive must be set to, or say
+  CountsRule counts_rule;                 ///< compared with counts_per_turn before enabling
+  std::string rated_torque;               ///< object that holds that of the motor, in N m; or empty
+  std::string not_ready_reason;  ///< object whose words say why it cannot be enabled; or empty
+  std::optional<int> homed_bit;  ///< of the statusword: the drive knows its home
   std::vector<std::string> default_modes;  ///< an axis can switch to; empty: all
   std::vector<std::string> feedback;  ///< in the cycle where there is room, most important first
   std::vector<std::string> feedback_if_room;  ///< only with what travels for something else
@@ -304,6 +313,10 @@ struct DriveProfile {
   } parameters;
   std::map<std::uint16_t, ErrorText> errors;
   std::map<std::uint16_t, WarningText> warnings;  ///< where they are no errors, or other ones
+  ErrorDetails error_details;
+  AlarmMemory alarm_memory;
+  ParameterNames parameter_names;
+  BusSettings bus_settings;
   std::string eds;  ///< file whose objects were added, for messages; empty: none
 
   /// By the profile's name, or by a name of the EDS without regard to case and blanks.
@@ -344,8 +357,10 @@ DriveProfile ofDeviceAxis(DriveProfile profile, unsigned axis);
 /// none is. @param raw the object's value
 std::string activeInputs(const DriveProfile& profile, const ObjectSpec& object, std::uint64_t raw);
 
-/// The object that a name or an index ("6041:00") means; nullptr if the profile has none.
+/// The object that a name, or what objectId() takes, means; nullptr if the profile has none.
 const ObjectSpec* findObject(const DriveProfile& profile, const std::string& name);
+/// The object of an index ("6041:00"), or of a name that the maker gives a parameter ("H0A.40").
+std::optional<ObjectId> objectId(const DriveProfile& profile, const std::string& text);
 /// The encoding of ObjectRanges at this place, where the type is as wide; real32 is a float
 /// anywhere.
 Encoding encodingAt(const DriveProfile& profile, ObjectId id, DataType type);

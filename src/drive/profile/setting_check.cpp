@@ -3,9 +3,12 @@
 
 #include <algorithm>
 
+#include "common/text.h"
+
 namespace cia402::drive {
 
-bool Condition::holds(std::int64_t number) const {
+bool Condition::holds(std::int64_t whole) const {
+  const std::int64_t number = whole & bits;
   switch (kind) {
     case Kind::is:
       return std::find(numbers.begin(), numbers.end(), number) != numbers.end();
@@ -19,7 +22,16 @@ bool Condition::holds(std::int64_t number) const {
   return false;
 }
 
+/// "0x0240, of which 0x0010 is 0x0000".
+std::string Condition::bitsComplaint(std::int64_t number) const {
+  const auto text = [](std::int64_t value) {
+    return hexText(static_cast<std::uint64_t>(value), 4);
+  };
+  return text(number) + ", of which " + text(bits) + " is " + text(number & bits);
+}
+
 std::string Condition::complaint(std::int64_t number) const {
+  if (bits != -1) return bitsComplaint(number);
   const std::string told = std::to_string(number);
   switch (kind) {
     case Kind::is: {

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
-#include <optional>
 #include <string>
 #include <vector>
+
+#include "drive/profile/number_texts.h"
 
 namespace cia402::drive {
 
@@ -14,10 +14,12 @@ struct Condition {
   enum class Kind : std::uint8_t { is, is_not, above, below };
   Kind kind = Kind::is;
   std::vector<std::int64_t> numbers;  ///< one of these, none of these; above and below: one number
+  std::int64_t bits = -1;             ///< those that are looked at; the others count as 0
 
   bool holds(std::int64_t number) const;
   /// What is wrong with `number`, after "x is ": "1 instead of 8", "0, not above 0".
   std::string complaint(std::int64_t number) const;
+  std::string bitsComplaint(std::int64_t number) const;
 };
 
 /// Something that the drive must be set to, or must say, before a motion procedure begins: read
@@ -42,10 +44,10 @@ struct SettingCheck {
   Condition unless_is;
   // What follows where it does not hold.
   bool only_warns = false;
-  Write write = Write::never;                 ///< condition.numbers.front(), then it is read again
-  bool power_cycle = false;                   ///< what was written counts once power was off
-  std::string text, remedy;                   ///< what that means, and what to do about it
-  std::map<std::int64_t, std::string> texts;  ///< the same for single numbers, instead of `text`
+  Write write = Write::never;  ///< condition.numbers.front(), then it is read again
+  bool power_cycle = false;    ///< what was written counts once power was off
+  std::string text, remedy;    ///< what that means, and what to do about it
+  NumberTexts texts;           ///< the same for single numbers, instead of `text`
 
   /// The meaning of a number that it shall not be.
   const std::string& meaning(std::int64_t number) const;

@@ -2,7 +2,7 @@
 #include <cia402_driver/ErrorHistory.h>
 
 #include "bus/canopen/history_command.h"
-#include "drive/profile/fault_text.h"
+#include "bus/canopen/history_job.h"
 #include "ros/services/table.h"
 
 namespace cia402::ros_node {
@@ -18,7 +18,7 @@ void offerErrorHistory(Offer& offer) {
         for (const canopen::ErrorHistoryEntry& entry : answer.history.entries) {
           response.codes.push_back(entry.code);
           response.infos.push_back(entry.info);
-          response.texts.push_back(drive::errorCodeText(*axis.profile, entry.code));
+          response.texts.push_back(bus::historyCodeText(*axis.profile, entry.code));
         }
       });
 }

@@ -17,6 +17,7 @@ void offerObjects(Offer& offer);
 void offerSaveDcf(Offer& offer);
 void offerDigitalOutputs(Offer& offer);
 void offerTouchProbe(Offer& offer);
+void offerBusParameters(Offer& offer);
 
 /// A row of the table: what offers it, and whether for the bus, for each axis, or for both.
 struct ServiceEntry {
@@ -36,6 +37,7 @@ inline constexpr ServiceEntry kServices[] = {
     {offerSaveDcf, false, true},
     {offerDigitalOutputs, false, true},
     {offerTouchProbe, false, true},
+    {offerBusParameters, false, true},
 };
 // clang-format on
 

@@ -16,6 +16,13 @@ const FaultDefinition* DriveDefinition::fault(const std::string& fault_name) con
   return found == faults.end() ? nullptr : &*found;
 }
 
+const ObstacleDefinition* DriveDefinition::obstacle(const std::string& obstacle_name) const {
+  const auto found =
+      std::find_if(obstacles.begin(), obstacles.end(),
+                   [&](const ObstacleDefinition& o) { return o.name == obstacle_name; });
+  return found == obstacles.end() ? nullptr : &*found;
+}
+
 const ModeDefinition* DriveDefinition::mode(std::int64_t number) const {
   const auto found = std::find_if(modes.begin(), modes.end(),
                                   [number](const ModeDefinition& m) { return m.number == number; });

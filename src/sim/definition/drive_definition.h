@@ -98,6 +98,17 @@ struct FaultDefinition {
   bool ends_by_itself = false;   ///< the drive resets it as soon as its cause is gone
   std::optional<Ramp> reaction;  ///< instead of 605Eh, e.g. coast where the stage is broken
   bool voltage_lost = false;     ///< statusword bit 4 goes while the cause lasts
+  std::int64_t details = 0;      ///< in the object of the role error_details
+};
+
+/// What keeps the drive from being switched on, or lets the power go where it is, without a fault:
+/// the main power is missing, a safety input is open. Injected by name.
+struct ObstacleDefinition {
+  std::string name;
+  bool voltage = true;       ///< statusword bit 4 stays
+  bool remote = true;        ///< statusword bit 9 stays
+  std::int64_t reason = 0;   ///< in the object of the role not_ready_reason
+  std::uint32_t inputs = 0;  ///< bits of the role digital_inputs that are 1 meanwhile
 };
 
 /// What homing mode does.
@@ -179,11 +190,16 @@ struct DriveDefinition {
   bool traps_negative_zero = false;
   std::optional<fieldbus::ObjectId> node_id;  ///< object whose saved value is the node-ID
 
+  /// What the objects of the roles output_n_function say where 60FEh is shown.
+  std::int64_t commanded_output = 0;
+
   std::vector<FaultDefinition> faults;
+  std::vector<ObstacleDefinition> obstacles;
 
   /// 1 to 8. All else here says what every axis is, by the objects of axis 0.
   unsigned axisCount() const { return static_cast<unsigned>(motors.size()); }
-  /// nullptr if there is none of that name.
+  /// Both nullptr if there is none of that name.
+  const ObstacleDefinition* obstacle(const std::string& obstacle_name) const;
   const FaultDefinition* fault(const std::string& fault_name) const;
   /// nullptr if 6060h cannot be this.
   const ModeDefinition* mode(std::int64_t number) const;

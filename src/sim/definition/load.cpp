@@ -98,6 +98,10 @@ void readDefinition(DefinitionReader& reader, bool extends, DriveDefinition& out
   reader.each("faults", [&](const std::string& name, const yaml::Value& value) {
     readFault(name, value, out);
   });
+  reader.read("commanded_output", out.commanded_output, 0, 65535);
+  reader.each("obstacles", [&](const std::string& name, const yaml::Value& value) {
+    readObstacle(name, value, out);
+  });
   checkAxes(reader, out);
 }
 

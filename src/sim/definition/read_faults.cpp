@@ -34,6 +34,7 @@ void readFault(const std::string& name, const yaml::Value& from, DriveDefinition
         reader.problem("vendor", "must be a list of up to five bytes");
     }
   }
+  reader.read("details", fault.details, 0, 0xFFFFFFFF);
   reader.read("resettable", fault.resettable);
   reader.read("warning", fault.warning);
   reader.read("holds", fault.holds);
@@ -51,6 +52,19 @@ void readFault(const std::string& name, const yaml::Value& from, DriveDefinition
   const auto known = std::find_if(out.faults.begin(), out.faults.end(),
                                   [&](const auto& other) { return other.name == name; });
   known == out.faults.end() ? out.faults.push_back(fault) : void(*known = fault);
+}
+
+void readObstacle(const std::string& name, const yaml::Value& from, DriveDefinition& out) {
+  DefinitionReader reader(from);
+  ObstacleDefinition obstacle;
+  obstacle.name = name;
+  reader.read("voltage", obstacle.voltage);
+  reader.read("remote", obstacle.remote);
+  reader.read("reason", obstacle.reason, 0, 0xFFFFFFFF);
+  std::int64_t inputs = 0;
+  reader.read("inputs", inputs, 0, 0xFFFFFFFF);
+  obstacle.inputs = static_cast<std::uint32_t>(inputs);
+  out.obstacles.push_back(obstacle);
 }
 
 }  // namespace cia402::sim

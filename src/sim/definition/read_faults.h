@@ -9,4 +9,7 @@ namespace cia402::sim {
 /// One of the `faults:`. Replaces a fault of that name.
 void readFault(const std::string& name, const yaml::Value& from, DriveDefinition& out);
 
+/// One of the `obstacles:`.
+void readObstacle(const std::string& name, const yaml::Value& from, DriveDefinition& out);
+
 }  // namespace cia402::sim

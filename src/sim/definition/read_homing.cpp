@@ -67,6 +67,10 @@ HomingRoute readRoute(const yaml::Value& value) {
   }
   route.begun_on = readLegs(reader, "begun_on");
   route.from_limit = readLegs(reader, "from_limit");
+  route.nearer = readLegs(reader, "nearer");
+  if (route.nearer && (route.nearer->empty() || route.legs.empty())) {
+    reader.problem("nearer", "needs legs, as `legs` does");
+  }
   reader.list("fails_at", [&](const yaml::Value& item) {
     const auto limit = item.oneOf({"negative", "positive"});
     if (limit) (*limit == 0 ? route.negative_fails : route.positive_fails) = true;

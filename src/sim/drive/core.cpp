@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/drive/digital_outputs.h"
 #include "sim/drive/statusword.h"
 #include "sim/drive/write_guard.h"
 
@@ -34,7 +35,7 @@ DriveCore::DriveCore(const DriveDefinition& definition, unsigned axis,
       motion_(definition, definition.motors[axis], mechanics, values_),
       modes_(definition, values_, motion_),
       power_(definition, mechanics, values_, motion_, modes_),
-      faults_(definition),
+      faults_(definition, values_),
       reports_(reports) {}
 
 void DriveCore::start(bool cold, Time now) {
@@ -50,15 +51,14 @@ void DriveCore::start(bool cold, Time now) {
   statusword_ = 0;  // the dictionary has its initial values again
   reset_low_since_ = now;
   limits_told_ = LimitReports();
-  faults_.start();
+  faults_.start(now);
   sync_.reset();
   values_.setRaw(Role::error_code, 0);
   modes_.start();
   power_.start(now);
   power_.finishInitialisation(now, now_);
   motion_.probes().start();
-  motion_.publish();
-  updateStatusword();
+  onObstacle();
 }
 
 void DriveCore::powerOff() {
@@ -88,7 +88,7 @@ void DriveCore::advance(Time now) {
     moved = true;
   }
   if (moved) motion_.publish();
-  if (on_ && (moved || hasFault())) updateStatusword();
+  if (on_ && (moved || !faults_.empty())) updateStatusword();
 }
 
 Time DriveCore::nextEvent() const {
@@ -174,6 +174,7 @@ void DriveCore::command(PdsCommand command) {
     power_.enter(PdsState::ready_to_switch_on, now_);
     transition = transitionFor(power_.state(), command);
   }
+  if (obstacle_.forbids(transition)) return;
   if (transition.number != 0) execute(transition);
   if (transition.number == 3 && command == PdsCommand::enable_operation &&
       definition_.enable_in_one_step) {
@@ -248,19 +249,16 @@ void DriveCore::startSegment() {
   motion_.cyclicTarget(period, toSeconds(now_ - Time{step_ * kDriveStep}));
 }
 
-void DriveCore::onHomingStart() {
-  if (power_.state() == PdsState::operation_enabled) motion_.homeByObject();
+void DriveCore::onWrite(Role role) {
+  const bool enabled = power_.state() == PdsState::operation_enabled;
+  if (role == Role::homing_start && enabled) motion_.homeByObject();
+  if (role == Role::emergency_stop && enabled) power_.quickStop(now_);
+  if (role == Role::alarm_select) faults_.alarms().show();
+  updateStatusword();
 }
 
 std::uint32_t DriveCore::outputs() const {
-  if (!on_) return 0;
-  const std::int64_t mask = values_.raw(Role::digital_outputs_mask, -1);
-  return static_cast<std::uint32_t>(values_.raw(Role::digital_outputs, 0) & mask);
-}
-
-void DriveCore::saveZero() {
-  motion_.setCounter(0.0);
-  motion_.publish();
+  return on_ ? outputsAtTerminals(definition_, values_, nmt_) : 0;
 }
 
 std::uint32_t DriveCore::refuseWrite(const Entry& entry, std::uint64_t number) const {
@@ -272,6 +270,7 @@ void DriveCore::raise(const FaultDefinition& fault) {
   if (!on_) return;
   faults_.add(fault, now_);
   values_.setRaw(Role::error_code, fault.code);
+  values_.setRaw(Role::error_details, fault.details);
   if (!fault.warning || definition_.warning_stops) power_.react(fault, now_);
   if (fault.holds) motion_.pause(true);
   updateStatusword();
@@ -300,11 +299,25 @@ void DriveCore::clearErrors() {
   faults_.clear();
   motion_.pause(false);
   values_.setRaw(Role::error_code, 0);
+  values_.setRaw(Role::error_details, 0);
   reports_.errorsGone();
+}
+
+void DriveCore::onObstacle() {
+  const PdsState state = power_.state();
+  const bool on =
+      enabled() || state == PdsState::switched_on || state == PdsState::ready_to_switch_on;
+  if (obstacle_.stands() && on) power_.enter(PdsState::switch_on_disabled, now_);
+  values_.setRaw(Role::not_ready_reason, obstacle_.reason());
+  motion_.setInputs(obstacle_.inputs());
+  motion_.publish();
+  updateStatusword();
 }
 
 void DriveCore::removeCauses() {
   faults_.endCauses(now_);
+  obstacle_.put(nullptr);
+  onObstacle();
   motion_.motor().block(false);
   if (!definition_.warning_stops && faults_.endWarnings()) clearErrors();
   updateStatusword();
@@ -365,7 +378,8 @@ void DriveCore::updateStatusword() {
   StatuswordParts parts;
   parts.shown = power_.shown(now_);
   parts.ready = power_.state() != PdsState::not_ready_to_switch_on;
-  parts.voltage = !faults_.voltageLost(now_);
+  parts.voltage = !faults_.voltageLost(now_) && obstacle_.voltage();
+  parts.remote = obstacle_.remote();
   parts.warning = faults_.warning();
   if (enabled()) parts.of_mode = motion_.statusBits();
   if (motion_.homed()) parts.of_mode |= definition_.homed_bit.value_or(0);

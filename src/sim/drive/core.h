@@ -9,6 +9,7 @@
 #include "sim/drive/limit_reports.h"
 #include "sim/drive/mode_selection.h"
 #include "sim/drive/motion.h"
+#include "sim/drive/obstacle.h"
 #include "sim/drive/power_stage.h"
 #include "sim/drive/sync_watch.h"
 #include "sim/drive/values.h"
@@ -46,9 +47,8 @@ class DriveCore {
   void onControlword();     ///< 6040h
   void onMode();            ///< 6060h
   void onTargetPosition();  ///< 607Ah, or 60C1h:01
-  void onHomingStart();     ///< the object that begins homing
+  void onWrite(Role role);  ///< an object of the maker's own that makes the axis do something
   void onNonFinite();       ///< an object of floats got what is no number
-  void saveZero();          ///< the present position is 0 from now on
   void resetFault();        ///< what the rising edge of controlword bit 7 does
   /// SDO abort code against writing an object now, 0 if allowed.
   std::uint32_t refuseWrite(const Entry& entry, std::uint64_t number) const;
@@ -63,14 +63,14 @@ class DriveCore {
 
   /// An error occurs; nothing without power.
   void raise(const FaultDefinition& fault);
-  void blockRotor(bool blocked) { motion_.motor().block(blocked); }
+  /// What keeps the axis from being switched on, and its inputs; onObstacle() follows a change.
+  Obstacle& obstacle() { return obstacle_; }
+  void onObstacle();
   /// Causes of injected faults vanish; a fault itself still wants its reset.
   void removeCauses();
 
   bool enabled() const { return power_.enabled(); }
-  bool hasFault() const { return !faults_.empty(); }
-  /// What this axis contributes to 1001h.
-  std::uint8_t errorRegister() const { return faults_.errorRegister(); }
+  const FaultMemory& faults() const { return faults_; }
   std::uint16_t statusword() const { return statusword_; }
   /// In which the axis is, whatever 6061h shows.
   std::int64_t mode() const { return modes_.applied(); }
@@ -101,6 +101,7 @@ class DriveCore {
   ModeSelection modes_;
   PowerStage power_;
   FaultMemory faults_;
+  Obstacle obstacle_;
   SyncWatch sync_;
   Reports& reports_;
 

@@ -12,6 +12,7 @@
 #include "sim/dictionary/axis_objects.h"
 #include "sim/drive/core.h"
 #include "sim/drive/emergency_sender.h"
+#include "sim/drive/gate.h"
 #include "sim/drive/parameter_store.h"
 
 namespace cia402::sim {
@@ -19,17 +20,6 @@ namespace {
 
 constexpr Duration kPowerCycle = std::chrono::milliseconds(500);
 constexpr Duration kSoftwareReset = std::chrono::milliseconds(10);  // the write is answered before
-
-// Lets nothing out while the drive plays dead.
-class Gate : public can::Sink {
- public:
-  explicit Gate(can::Sink& sink) : sink_(sink) {}
-  bool send(const can::Frame& frame) override { return closed || sink_.send(frame); }
-  bool closed = false;
-
- private:
-  can::Sink& sink_;
-};
 
 /// One axis of the device.
 struct Axis {
@@ -139,9 +129,13 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
       axis.core.motion().publish();
     if (role == Role::touch_probe_function) axis.core.motion().probes().command();
     if (role == Role::clear_errors && entry.number != 0) axis.core.resetFault();
-    if (role == Role::save_zero && entry.number != 0) axis.core.saveZero();
+    if (role == Role::save_zero && entry.number != 0) {
+      axis.core.motion().setCounter(0.0);
+      axis.core.motion().publish();
+    }
     if (role == Role::software_reset && entry.number == 1) reset_at = now + kSoftwareReset;
-    if (role == Role::homing_start && entry.number == 1) axis.core.onHomingStart();
+    const bool command = role == Role::emergency_stop || role == Role::homing_start;
+    if (role == Role::alarm_select || (command && entry.number == 1)) axis.core.onWrite(*role);
   }
 
   bool badFloat(double value) const {
@@ -161,7 +155,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
   }
   std::uint8_t errorRegister() const {
     unsigned bits = 0;
-    for (const Axis& axis : axes) bits |= axis.core.errorRegister();
+    for (const Axis& axis : axes) bits |= axis.core.faults().errorRegister();
     return static_cast<std::uint8_t>(bits);
   }
 
@@ -192,7 +186,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
   void onMasterLost(Time) override { forEach(&DriveCore::onMasterLost); }
   bool hasFault() const override {
     return std::any_of(axes.begin(), axes.end(),
-                       [](const Axis& axis) { return axis.core.hasFault(); });
+                       [](const Axis& axis) { return !axis.core.faults().empty(); });
   }
 
   // DriveCore::Reports: one EMCY channel and one 1001h for all axes.
@@ -320,6 +314,9 @@ Result<void> Drive::inject(const std::string& fault, Time now, unsigned axis) {
   DriveCore& core = impl.axes.at(axis).core;
   if (const FaultDefinition* known = impl.definition->fault(fault)) {
     core.raise(*known);
+  } else if (const ObstacleDefinition* obstacle = impl.definition->obstacle(fault)) {
+    core.obstacle().put(obstacle);
+    core.onObstacle();
   } else if (fault == "power_cycle" || fault == "exchange") {
     powerOff(now);
     if (fault == "exchange") impl.exchange();
@@ -333,7 +330,7 @@ Result<void> Drive::inject(const std::string& fault, Time now, unsigned axis) {
   } else if (fault == "short_tpdos" || fault == "long_tpdos") {
     impl.device.behaviour().tpdo_size_error = fault == "short_tpdos" ? -1 : 1;
   } else if (fault == "blocked_rotor") {
-    core.blockRotor(true);
+    core.motion().motor().block(true);
   } else if (fault == "clear") {
     impl.removeTroubles();
   } else if (const FaultDefinition* raw = impl.rawFault(fault)) {
@@ -352,6 +349,9 @@ Result<void> Drive::inject(const std::string& fault, Time now, unsigned axis) {
 std::vector<std::string> Drive::faultNames() const {
   std::vector<std::string> names;
   for (const FaultDefinition& fault : impl_->definition->faults) names.push_back(fault.name);
+  for (const ObstacleDefinition& obstacle : impl_->definition->obstacles) {
+    names.push_back(obstacle.name);
+  }
   for (const char* name : {"blocked_rotor", "clear", "emergency_storm", "exchange", "long_tpdos",
                            "power_cycle", "sdo_silent", "short_tpdos", "silent"}) {
     names.emplace_back(name);
@@ -362,6 +362,14 @@ std::vector<std::string> Drive::faultNames() const {
 void Drive::setProbe(unsigned probe, bool active, Time now, unsigned axis) {
   impl_->bringTo(now);
   impl_->axes.at(axis).core.motion().probes().setInput(probe, active);
+  impl_->flushChanges();
+}
+
+void Drive::setInput(unsigned bit, bool active, Time now, unsigned axis) {
+  impl_->bringTo(now);
+  DriveCore& core = impl_->axes.at(axis).core;
+  core.obstacle().setInput(bit, active);
+  core.onObstacle();
   impl_->flushChanges();
 }
 

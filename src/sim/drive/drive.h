@@ -92,6 +92,10 @@ class Drive {
   /// @param probe 1 or 2  @pre axis < axisCount()
   void setProbe(unsigned probe, bool active, Time now, unsigned axis = 0);
 
+  /// A digital input, by its bit of 60FDh, becomes active or not, at `now`; beside the switches of
+  /// AxisMechanics.  @pre bit < 32, axis < axisCount()
+  void setInput(unsigned bit, bool active, Time now, unsigned axis = 0);
+
   /// @pre axis < axisCount()
   DriveTruth truth(Time now, unsigned axis = 0);
   /// 1 to 8.

@@ -11,11 +11,13 @@ constexpr std::size_t kMostCauses = 16;
 
 }  // namespace
 
-FaultMemory::FaultMemory(const DriveDefinition& definition) : definition_(definition) {
+FaultMemory::FaultMemory(const DriveDefinition& definition, DriveValues& values)
+    : definition_(definition), alarms_(values) {
   causes_.reserve(kMostCauses);
 }
 
-void FaultMemory::start() {
+void FaultMemory::start(Time now) {
+  alarms_.start(now);
   causes_.clear();
   warning_ = was_stopped_ = false;
   tries_ = 0;
@@ -33,6 +35,7 @@ void FaultMemory::add(const FaultDefinition& fault, Time now) {
     causes_.push_back({&fault, until});
   }
   if (fault.warning) warning_ = true;
+  alarms_.add(fault.details, now);
 }
 
 void FaultMemory::clear() {

@@ -6,6 +6,7 @@
 
 #include "canopen/nmt/nmt.h"
 #include "sim/definition/drive_definition.h"
+#include "sim/drive/alarm_memory.h"
 
 namespace cia402::sim {
 
@@ -13,11 +14,11 @@ namespace cia402::sim {
 /// error register and statusword, and what it takes to reset them.
 class FaultMemory {
  public:
-  /// `definition` must outlive it.
-  explicit FaultMemory(const DriveDefinition& definition);
+  /// Both must outlive it.
+  FaultMemory(const DriveDefinition& definition, DriveValues& values);
 
   /// Power-on or reset: nothing has happened.
-  void start();
+  void start(Time now);
   /// Remembers an error whose cause lasts from now on. Does not allocate; a seventeenth different
   /// one is not remembered.
   void add(const FaultDefinition& fault, Time now);
@@ -32,6 +33,8 @@ class FaultMemory {
   /// Warnings last as long as what they warn of. @return true if no error is left.
   bool endWarnings();
 
+  /// What the maker keeps of the past.
+  AlarmMemory& alarms() { return alarms_; }
   bool empty() const { return causes_.empty(); }
   /// Statusword bit 7.
   bool warning() const { return warning_; }
@@ -56,6 +59,7 @@ class FaultMemory {
   const FaultDefinition* lasting(bool warnings, Time now) const;
 
   const DriveDefinition& definition_;
+  AlarmMemory alarms_;
   std::vector<Cause> causes_;
   bool warning_ = false;
   std::int64_t tries_ = 0;       ///< to reset the present faults

@@ -130,7 +130,8 @@ void HomingMode::keepNear() {
 
 void HomingMode::watchTime() {
   searched_s_ += kDriveStepS;
-  const double limit = axis_.values.get(Role::homing_time_limit, 0.0);
+  const auto unit = static_cast<double>(axis_.values.raw(Role::homing_time_unit, 0));
+  const double limit = axis_.values.get(Role::homing_time_limit, 0.0) * std::pow(10.0, unit);
   late_ = searching() && limit > 0.0 && searched_s_ > limit;
   if (late_) sequence_.stop();
 }

@@ -43,6 +43,8 @@ struct HomingRoute {
   std::optional<HomingLegs> begun_on;
   /// Instead, from where the first leg meets a limit switch that it does not look for.
   std::optional<HomingLegs> from_limit;
+  /// Instead, where the next index pulse of its first leg is nearer than that of `legs`.
+  std::optional<HomingLegs> nearer;
   bool negative_fails = false;  ///< the negative limit switch is an error whenever it is active
   bool positive_fails = false;
   bool passes_limits = false;  ///< limit switches that no leg looks for are not minded

@@ -1,6 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "sim/drive/homing_sequence.h"
 
+#include <cmath>
+
 namespace cia402::sim {
 namespace {
 
@@ -10,6 +12,15 @@ constexpr HomingInput kInputs[] = {HomingInput::negative_limit, HomingInput::pos
 constexpr HomingLeg kNoLeg{0, false, HomingEvent::index};
 
 std::size_t place(HomingInput input) { return static_cast<std::size_t>(input); }
+
+bool isNearer(const HomingLegs& legs, const HomingLegs& than, const AxisSwitches& switches,
+              double position) {
+  const auto distance = [&](const HomingLegs& ways) {
+    const double end = position + ways.front().direction;
+    return std::fabs(switches.indexBetween(position, end).value_or(end) - position);
+  };
+  return distance(legs) < distance(than);
+}
 
 bool beginsOn(const HomingRoute& route, const AxisSwitches& switches, double position) {
   if (!route.begun_on || route.legs.empty()) return false;
@@ -33,6 +44,9 @@ void HomingSequence::start(const HomingRoute& route, const AxisSwitches& switche
                            double position) {
   route_ = &route;
   legs_ = beginsOn(route, switches, position) ? &*route.begun_on : &route.legs;
+  if (route.nearer && isNearer(*route.nearer, route.legs, switches, position)) {
+    legs_ = &*route.nearer;
+  }
   next_ = 0;
   seen_ = look(switches, position);
   at_limit_ = false;

@@ -141,7 +141,10 @@ void DriveMotion::limitTorque() {
   if (axis_.mode != nullptr && axis_.mode->torque) {
     torque = std::min(torque, std::fabs(axis_.values.get(*axis_.mode->torque, kUnlimited)));
   }
-  axis_.motor.limitTorque(torque);
+  const auto limit = [&](Role role) {
+    return std::min(torque, std::fabs(axis_.values.get(role, kUnlimited)));
+  };
+  axis_.motor.limitTorque(limit(Role::forward_torque_limit), limit(Role::reverse_torque_limit));
 }
 
 void DriveMotion::step() {
@@ -247,9 +250,9 @@ void DriveMotion::publish() {
   values.set(Role::following_error_actual,
              powered_ && positionControlled() ? axis_.demand.position - turns : 0.0);
   const AxisSwitches& switches = axis_.switches;
-  values.setRaw(Role::digital_inputs, (switches.negativeLimit(turns) ? 1 : 0) |
-                                          (switches.positiveLimit(turns) ? 2 : 0) |
-                                          (switches.home(turns) ? 4 : 0));
+  values.setRaw(Role::digital_inputs,
+                static_cast<std::int64_t>(inputs_) | (switches.negativeLimit(turns) ? 1 : 0) |
+                    (switches.positiveLimit(turns) ? 2 : 0) | (switches.home(turns) ? 4 : 0));
 }
 
 }  // namespace cia402::sim

@@ -68,6 +68,8 @@ class DriveMotion {
   /// Name of a fault that homing has come to since it was asked last, or nullptr.
   const char* takeHomingFault() { return homing_.takeFault(); }
   TouchProbes& probes() { return probes_; }
+  /// Further bits of the inputs (60FDh) that are 1.
+  void setInputs(std::uint32_t bits) { inputs_ = bits; }
   /// Actual and demand values, inputs into the dictionary.
   void publish();
 
@@ -96,6 +98,7 @@ class DriveMotion {
   bool held_ = false;
   bool halted_ = false, paused_ = false, ramps_locked_ = false;
   std::optional<Ramp> stop_;
+  std::uint32_t inputs_ = 0;
   std::uint16_t controlword_ = 0;  ///< the last one in operation
   unsigned publications_ = 0;      ///< while it homes by an object
 };

@@ -15,12 +15,20 @@ constexpr double kBrakingReserve = 0.7;      // of the torque, when the position
 }  // namespace
 
 Motor::Motor(const MotorParameters& parameters, double position)
-    : parameters_(parameters), torque_limit_(parameters.max_torque), position_(position) {
+    : parameters_(parameters),
+      forward_limit_(parameters.max_torque),
+      reverse_limit_(parameters.max_torque),
+      position_(position) {
   setPositionTimeConstant(parameters.position_time_constant);
 }
 
-void Motor::limitTorque(double rated_torques) {
-  torque_limit_ = std::clamp(rated_torques, 0.0, parameters_.max_torque);
+void Motor::limitTorque(double forward, double reverse) {
+  forward_limit_ = std::clamp(forward, 0.0, parameters_.max_torque);
+  reverse_limit_ = std::clamp(reverse, 0.0, parameters_.max_torque);
+}
+
+double Motor::allowed(double torque) const {
+  return std::clamp(torque, -reverse_limit_, forward_limit_);
 }
 
 void Motor::setPositionTimeConstant(double seconds) {
@@ -42,15 +50,15 @@ void Motor::turn() {
 }
 
 double Motor::brakingSpeed(double distance) const {
-  const double deceleration = kBrakingReserve * torque_limit_ * parameters_.rated_acceleration;
+  const double torque = std::min(forward_limit_, reverse_limit_);
+  const double deceleration = kBrakingReserve * torque * parameters_.rated_acceleration;
   return std::sqrt(2.0 * deceleration * distance);
 }
 
 void Motor::accelerate(double wanted) {
   const double direction = velocity_ != 0.0 ? velocity_ : wanted;
   const double friction = direction == 0.0 ? 0.0 : std::copysign(parameters_.friction, direction);
-  torque_ =
-      std::clamp(wanted / parameters_.rated_acceleration + friction, -torque_limit_, torque_limit_);
+  torque_ = allowed(wanted / parameters_.rated_acceleration + friction);
   if (blocked_) {
     velocity_ = 0.0;
     return;
@@ -92,7 +100,7 @@ void Motor::followVelocity(double demand) {
 
 void Motor::applyTorque(double rated_torques, double max_speed) {
   last_demand_.reset();
-  const double torque = std::clamp(rated_torques, -torque_limit_, torque_limit_);
+  const double torque = allowed(rated_torques);
   const double friction = parameters_.friction;
   double push = 0.0;  // what is left of the torque after friction
   if (velocity_ != 0.0) {

@@ -31,8 +31,9 @@ class Motor {
   /// @param position turns, where the rotor stands.
   Motor(const MotorParameters& parameters, double position);
 
-  /// Torque the controller may use, in rated torques (6072h); capped by max_torque.
-  void limitTorque(double rated_torques);
+  /// Torque the controller may use, in rated torques (6072h; 60E0h, 60E1h); capped by max_torque.
+  void limitTorque(double forward, double reverse);
+  void limitTorque(double both) { limitTorque(both, both); }
   /// A blocked rotor does not move; the loops push as hard as they may.
   void block(bool blocked) { blocked_ = blocked; }
   /// Hard stops: it turns neither further back than `low` nor further on than `high`, turns.
@@ -51,13 +52,14 @@ class Motor {
   bool atRest() const { return velocity_ == 0.0; }
 
  private:
+  double allowed(double torque) const;
   void accelerate(double wanted);
   double brakingSpeed(double distance) const;
   void turn();
 
   MotorParameters parameters_;
-  double velocity_gain_ = 0.0;  ///< share of a speed difference made up in one step
-  double torque_limit_;
+  double velocity_gain_ = 0.0;            ///< share of a speed difference made up in one step
+  double forward_limit_, reverse_limit_;  ///< of the torque
   double position_;
   double lowest_ = -1e9, highest_ = 1e9;
   double velocity_ = 0.0;

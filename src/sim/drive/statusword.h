@@ -14,6 +14,7 @@ struct StatuswordParts {
   bool ready = false;                                 ///< the initialisation is over
   bool voltage = true;                                ///< bit 4
   bool warning = false;                               ///< bit 7
+  bool remote = true;                                 ///< bit 9
   std::uint16_t of_mode = 0;  ///< bits 10 to 13 and 15, while enabled; and that home was found
 };
 

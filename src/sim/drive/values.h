@@ -89,20 +89,37 @@ enum class Role : std::uint8_t {
   digital_outputs,
   digital_outputs_mask,
   target_velocity,
-  clear_errors,         ///< vendor object: a write that is not 0 resets faults
-  save_zero,            ///< vendor object: the present position becomes 0
-  homing_start,         ///< vendor object: 1 begins homing instead of controlword bit 4
-  software_reset,       ///< vendor object: 1 starts the drive anew
-  brake_delay,          ///< vendor object: from operation enabled until commands count
-  encoder_resolution,   ///< vendor object: encoder counts of a turn
-  gear_numerator,       ///< vendor object: so many encoder counts are ...
-  gear_denominator,     ///< vendor object: ... so many position units
-  sync_tolerance,       ///< vendor object: index into DriveDefinition::sync_tolerances
-  position_limits_use,  ///< vendor object: index into DriveDefinition::limit_uses
-  homing_stop_torque,   ///< vendor object: so hard the motor pushes at a hard stop ...
-  homing_stop_time,     ///< vendor object: ... and for so long
-  homing_time_limit,    ///< vendor object: a longer search is the fault `homing_time`
-  input_1_function,     ///< vendor object: what the terminal is for; see `terminals` of homing
+  clear_errors,          ///< vendor object: a write that is not 0 resets faults
+  save_zero,             ///< vendor object: the present position becomes 0
+  homing_start,          ///< vendor object: 1 begins homing instead of controlword bit 4
+  software_reset,        ///< vendor object: 1 starts the drive anew
+  brake_delay,           ///< vendor object: from operation enabled until commands count
+  encoder_resolution,    ///< vendor object: encoder counts of a turn
+  gear_numerator,        ///< vendor object: so many encoder counts are ...
+  gear_denominator,      ///< vendor object: ... so many position units
+  sync_tolerance,        ///< vendor object: index into DriveDefinition::sync_tolerances
+  position_limits_use,   ///< vendor object: index into DriveDefinition::limit_uses
+  homing_stop_torque,    ///< vendor object: so hard the motor pushes at a hard stop ...
+  homing_stop_time,      ///< vendor object: ... and for so long
+  homing_time_limit,     ///< vendor object: a longer search is the fault `homing_time`
+  forward_torque_limit,  ///< vendor object, or 60E0h where the drive minds it
+  reverse_torque_limit,  ///< the same in the other direction, 60E1h
+  output_1_function,     ///< vendor object: what the terminal of bit 16 of 60FEh shows ...
+  output_2_function,
+  output_3_function,
+  output_4_function,
+  output_5_function,
+  outputs_by_parameter,  ///< vendor object: bit n: output n + 1 shows bit n of the next
+  output_levels,
+  outputs_offline,   ///< vendor object: bit n: output n + 1 is off while not operational
+  homing_time_unit,  ///< vendor object: that limit counts in 1, 10, 100 units
+  error_details,     ///< vendor object: more about the last error; 0: there is none
+  not_ready_reason,  ///< vendor object: why it cannot be switched on; 0: it can
+  alarm_select,      ///< vendor object: which of the past errors is shown, 0 the newest
+  alarm_code,        ///< vendor object: the low half of its error_details ...
+  alarm_time,        ///< vendor object: ... and when it came, since power-on
+  emergency_stop,    ///< vendor object: 1 stops as a quick stop does
+  input_1_function,  ///< vendor object: what the terminal is for; see `terminals` of homing
   input_2_function,
   input_3_function,
   input_4_function,

@@ -35,6 +35,10 @@ AxisMechanics mechanicsOf(const drive::AxisConfig& axis, const config::Simulatio
   const auto& upper = reversed ? section.lower_limit_switch : section.upper_limit_switch;
   if (lower) mechanics.negative_limit_switch = shaftTurns(axis, *lower);
   if (upper) mechanics.positive_limit_switch = shaftTurns(axis, *upper);
+  const auto& lower_stop = reversed ? section.upper_stop : section.lower_stop;
+  const auto& upper_stop = reversed ? section.lower_stop : section.upper_stop;
+  if (lower_stop) mechanics.negative_stop = shaftTurns(axis, *lower_stop);
+  if (upper_stop) mechanics.positive_stop = shaftTurns(axis, *upper_stop);
   if (section.home_switch) {
     const double a = shaftTurns(axis, section.home_switch->first);
     const double b = shaftTurns(axis, section.home_switch->second);

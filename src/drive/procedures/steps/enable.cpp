@@ -3,6 +3,7 @@
 
 #include "drive/procedures/limits.h"
 #include "drive/sentence.h"
+#include "fieldbus/bytes.h"
 
 namespace cia402::drive {
 
@@ -13,6 +14,7 @@ void EnableStep::enter(Phase phase, const Context& context) {
 }
 
 Outcome EnableStep::advance(const Context& context) {
+  if (reason_) return explain(context);
   if (!begun_) {
     begun_ = true;
     const std::string refusal = enablingRefusal(context.axis);
@@ -189,9 +191,27 @@ Outcome EnableStep::awaitBrake(const Context& context) {
   return enabled && axis.brakeReleased() ? Outcome::done() : Outcome::running();
 }
 
+/// The drive may say itself why it is not ready.
 Outcome EnableStep::fail(const Context& context, std::string why) {
-  context.axis.setGoal(Goal::disabled);
-  return Outcome::failed(std::move(why));
+  AxisCore& axis = context.axis;
+  axis.setGoal(Goal::disabled);
+  const ObjectSpec* reason = axis.profile().find(axis.profile().not_ready_reason);
+  if (reason == nullptr || !axis.deviceReady()) return Outcome::failed(std::move(why));
+  why_ = std::move(why);
+  reason_ = axis.device().objects().upload(reason->id, reason->name);
+  return Outcome::running();
+}
+
+Outcome EnableStep::explain(const Context& context) {
+  if (!reason_->done()) return Outcome::running();
+  const ObjectSpec& object = *context.axis.profile().find(context.axis.profile().not_ready_reason);
+  const bool told = reason_->ok() && !reason_->data().empty() && reason_->data().size() <= 8;
+  const auto number =
+      static_cast<std::int64_t>(told ? fieldbus::toUnsigned(reason_->data()) : std::uint64_t{0});
+  if (number == 0) return Outcome::failed(why_);
+  const std::string word = textOf(object.words, number);
+  return Outcome::failed(why_ + "; " + object.name + " (" + fieldbus::toString(object.id) +
+                         ") is " + std::to_string(number) + (word.empty() ? "" : ": " + word));
 }
 
 }  // namespace cia402::drive

@@ -45,6 +45,7 @@ class EnableStep {
   Outcome awaitShown(const Context& context);
   Outcome awaitBrake(const Context& context);
   Outcome fail(const Context& context, std::string why);
+  Outcome explain(const Context& context);
 
   const ModeChannel* channel_;
   SettingsStep settings_;
@@ -54,6 +55,8 @@ class EnableStep {
   Phase phase_ = Phase::settings;
   bool begun_ = false;
   State last_ = State::unknown;
+  std::string why_;  ///< it fails, and what the drive says to that:
+  fieldbus::Ticket reason_;
   Time since_{};
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "common/text.h"
@@ -13,6 +14,7 @@ namespace cia402::drive {
 namespace {
 
 constexpr Duration kSettling{std::chrono::milliseconds(250)};  // of new coordinates in the drive
+constexpr double kSameTorque = 0.01;  // relative: what rounding of a name plate may be off
 constexpr double kSameCounts = 1e-6;  // relative: what a reduced fraction of 32 bits may be off
 
 std::string named(const ObjectSpec& object) {
@@ -74,6 +76,7 @@ void SettingsStep::plan(const AxisConfig& axis) {
     for (const std::string& object : profile_->counts_rule.times) add(axis, object);
     for (const std::string& object : profile_->counts_rule.over) add(axis, object);
     if (!profile_->timing.brake_object.empty()) add(axis, profile_->timing.brake_object);
+    if (axis.geometry.rated_torque > 0.0) add(axis, profile_->rated_torque);
   }
   for (std::size_t i = 0; i < settings_.size(); ++i) reads_.push_back(i);
 }
@@ -197,15 +200,39 @@ bool SettingsStep::planWrites(AxisCore& axis) {
     writes_.push_back(difference.check);
     reads_.push_back(indexOf(difference.check->objects.front()));
   }
+  planCounts(axis);
   return !writes_.empty();
+}
+
+/// The counts of a turn that the axis has, as a reduced fraction of those of the encoder.
+void SettingsStep::planCounts(AxisCore& axis) {
+  const CountsRule& rule = profile_->counts_rule;
+  const bool asked =
+      enabling() && rule.adjustable && contains(axis.config().adjust, std::string("counts_rule"));
+  if (!asked || compareCounts(axis.config()).empty() || !axis.basis().neighbours.refusal().empty())
+    return;
+  const double counts = axis.config().geometry.counts_per_turn;
+  const auto encoder = numberOf(rule.times[0]);
+  const auto wanted = static_cast<std::int64_t>(std::llround(counts));
+  if (!encoder || *encoder <= 0 || std::fabs(counts - static_cast<double>(wanted)) > kSameCounts)
+    return;
+  const std::int64_t divisor = std::gcd(*encoder, wanted);
+  const auto set = [&](SettingCheck& check, const std::string& object, std::int64_t number) {
+    check.objects = {object};
+    check.condition.numbers = {number / divisor};
+    writes_.push_back(&check);
+    reads_.push_back(indexOf(object));
+  };
+  set(counts_[0], rule.over[0], *encoder);
+  set(counts_[1], rule.times[1], wanted);
 }
 
 Outcome SettingsStep::judge(const Context& context) {
   AxisCore& axis = context.axis;
-  std::string problem;
+  std::string problem, warning = compareTorque(axis.config());
   for (const Difference& difference : differences()) {
     if (difference.check->only_warns) {
-      axis.notices().warnOnce(axis.who() + ": " + difference.text);
+      append(warning, difference.text);
     } else if (contains(writes_, difference.check)) {
       append(problem, difference.text + " (the drive was told so just now, and keeps its own)");
     } else {
@@ -226,6 +253,8 @@ Outcome SettingsStep::judge(const Context& context) {
       if (!text.empty()) append(problem, text);
     }
   }
+  // All at once: of two notices in a cycle only the last is told.
+  if (!warning.empty()) axis.notices().warnOnce(axis.who() + ": " + warning);
   return problem.empty() ? Outcome::done() : Outcome::failed(refusal(context) + problem);
 }
 
@@ -251,7 +280,21 @@ std::string SettingsStep::compareCounts(const AxisConfig& axis) const {
   if (std::fabs(counts - configured) <= kSameCounts * configured) return {};
   return "the drive counts " + numberText(counts, 9) + " a turn of its motor (" + told +
          "), but counts_per_turn of axes/" + axis.name + " is " + numberText(configured, 9) +
-         "; correct it, or set the drive by `write` of the axis";
+         "; correct it, or set the drive by " +
+         (rule.adjustable ? "`adjust: [counts_rule]`" : "`write`") + " of the axis";
+}
+
+std::string SettingsStep::compareTorque(const AxisConfig& axis) const {
+  const auto number = numberOf(profile_->rated_torque);
+  if (!number) return {};
+  const ObjectSpec& object = *profile_->find(profile_->rated_torque);
+  const double told = static_cast<double>(*number) / object.factor;
+  const double configured = axis.geometry.rated_torque;
+  if (std::fabs(told - configured) <= kSameTorque * configured) return {};
+  return "the motor's rated torque is " + numberText(told, 4) + " N m by the drive (" +
+         named(object) + " = " + std::to_string(*number) + "), but rated_torque of axes/" +
+         axis.name + " is " + numberText(configured, 4) +
+         ": efforts are told and limited wrong by that much; correct it";
 }
 
 std::string SettingsStep::learnBrake(AxisCore& axis) const {

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -44,9 +45,11 @@ class SettingsStep {
   bool settled(const Context& context);
   bool mayWrite(AxisCore& axis, const SettingCheck& check) const;
   bool planWrites(AxisCore& axis);
+  void planCounts(AxisCore& axis);
   Outcome judge(const Context& context);
   std::string refusal(const Context& context) const;
   std::string compareCounts(const AxisConfig& axis) const;
+  std::string compareTorque(const AxisConfig& axis) const;
   std::string learnBrake(AxisCore& axis) const;
 
   const DriveProfile* profile_;
@@ -55,6 +58,7 @@ class SettingsStep {
   std::vector<const SettingCheck*> checks_;  ///< that count for the axis
   std::vector<Setting> settings_;
   std::vector<const SettingCheck*> writes_;  ///< whose number is written
+  std::array<SettingCheck, 2> counts_;       ///< two of these, by the rule of counts
   std::vector<std::size_t> reads_;           ///< of settings_, what is read
   std::size_t written_ = 0, read_ = 0;       ///< of these
   fieldbus::Ticket ticket_;

@@ -1,0 +1,19 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "can/bus.h"
+
+namespace cia402::sim {
+
+/// Lets nothing out while the drive plays dead.
+class Gate : public can::Sink {
+ public:
+  explicit Gate(can::Sink& sink) : sink_(sink) {}
+  bool send(const can::Frame& frame) override { return closed || sink_.send(frame); }
+  bool closed = false;
+
+ private:
+  can::Sink& sink_;
+};
+
+}  // namespace cia402::sim

@@ -1,0 +1,93 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// set_bus_parameters: node-ID and bit rate of drives without LSS, by objects of their makers.
+#include "bus/jobs/bus_setting_job.h"
+#include "system/sv660c_scene.h"
+
+namespace cia402 {
+namespace {
+
+using namespace std::chrono_literals;
+using drive::ProcedureKind;
+using testing::AllOf;
+using testing::HasSubstr;
+
+bus::Answer setBus(Scene& scene, unsigned node_id, unsigned bit_rate, bool confirm) {
+  return scene.call(bus::SetBusParametersCommand{"joint", node_id, bit_rate, confirm});
+}
+
+TEST(BusParameters, AreNotWrittenUnlessThatIsConfirmed) {
+  Scene scene(loadText(sv660cJoint()));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  scene.run(500ms);
+  const bus::Answer asked = setBus(scene, 5, 0, false);
+  EXPECT_FALSE(asked.success);
+  EXPECT_THAT(asked.message,
+              AllOf(HasSubstr("joint (node 1): bus parameters not set: nothing was written: "
+                              "node_id (200C:01) is 1 and would be 5 (node-ID 5)"),
+                    HasSubstr("counts at once"), HasSubstr("change `node_id` of axes/joint"),
+                    HasSubstr("confirm: true")));
+  EXPECT_EQ(sv660cNumber(scene, 0x200C, 1), 1U);
+  EXPECT_EQ(sv660cNumber(scene, 0x200C, 0x0E), 0U);
+}
+
+// H0C.13 is 1 while it is written, so that it stays [L9392].
+TEST(BusParameters, AreWrittenIntoTheMemoryAndToldWithWhatMustFollow) {
+  Scene scene(loadText(sv660cJoint()));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  scene.run(500ms);
+  std::vector<std::string> writes;
+  scene.world().bus().setMonitor([&](const can::Frame& frame, Time) {
+    if (frame.id != 0x601 || (frame.data[0] & 0xE0) != 0x20) return;
+    writes.push_back(std::to_string(frame.data[3]) + "=" + std::to_string(frame.data[4]));
+  });
+  const bus::Answer node = setBus(scene, 5, 0, true);
+  EXPECT_TRUE(node.success) << node.message;
+  EXPECT_THAT(node.message,
+              AllOf(HasSubstr("node-ID: node_id (200C:01) was 1 and is 5, which counts at once"),
+                    HasSubstr("start the driver anew")));
+  EXPECT_EQ(sv660cNumber(scene, 0x200C, 1), 5U);
+  EXPECT_THAT(writes, testing::ElementsAre("14=1", "1=5", "14=0"));
+  const bus::Answer rate = setBus(scene, 0, 1000000, true);
+  EXPECT_TRUE(rate.success) << rate.message;
+  EXPECT_THAT(rate.message,
+              HasSubstr("bit rate: bit_rate (200C:09) was 5 (500 kbit/s) and is 6 (1 Mbit/s, "
+                        "sample point 80 %)"));
+}
+
+TEST(BusParameters, AreRefusedInWords) {
+  Sv660cReady scene;
+  EXPECT_THAT(setBus(scene, 5, 0, true).message, HasSubstr("the axis is not disabled"));
+  ASSERT_TRUE(scene.procedure(ProcedureKind::disable).success);
+  scene.run(500ms);
+  EXPECT_THAT(setBus(scene, 128, 0, true).message, HasSubstr("a node-ID is 1 to 127"));
+  EXPECT_THAT(setBus(scene, 0, 800000, true).message,
+              HasSubstr("the drive has no bit rate 800000; it has 20000, 50000, 100000, 125000, "
+                        "250000, 500000, 1000000 bit/s"));
+  EXPECT_THAT(setBus(scene, 5, 500000, true).message, HasSubstr("one of them"));
+  EXPECT_THAT(setBus(scene, 0, 0, true).message, HasSubstr("one of them"));
+  EXPECT_EQ(sv660cNumber(scene, 0x200C, 1), 1U);
+  EXPECT_EQ(sv660cNumber(scene, 0x200C, 9), 5U);
+}
+
+TEST(BusParameters, OfADriveWithoutSuchObjectsPointToLss) {
+  Scene scene(loadText(genericPair()));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  scene.run(500ms);
+  const bus::Answer refused = scene.call(bus::SetBusParametersCommand{"left", 5, 0, true});
+  EXPECT_FALSE(refused.success);
+  EXPECT_THAT(refused.message,
+              AllOf(HasSubstr("names no object that holds the node-ID"), HasSubstr("lss_assign")));
+}
+
+TEST(BusParameters, ThatTheDriveDoesNotTakeAreToldAsSuch) {
+  Scene scene(
+      loadText(sv660cJoint({}, sv660cDelivered("[0x200C, 9, bit_rate, uint16, ro, -, 5]"))));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  scene.run(500ms);
+  const bus::Answer refused = setBus(scene, 0, 250000, true);
+  EXPECT_FALSE(refused.success);
+  EXPECT_THAT(refused.message, HasSubstr("0x06010002"));
+}
+
+}  // namespace
+}  // namespace cia402
