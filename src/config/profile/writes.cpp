@@ -11,7 +11,7 @@ const std::vector<std::string>& configurationSources() {
       "limits.lower",  "limits.upper",           "limits.velocity",      "limits.acceleration",
       "limits.jerk",   "limits.effort",          "sync_period.value",    "sync_period.exponent",
       "homing.method", "homing.search_velocity", "homing.zero_velocity", "homing.acceleration",
-      "homing.offset", "quick_stop.hold",        "sync_period.ms",
+      "homing.offset", "quick_stop.hold",        "sync_period.ms",       "homing.timeout",
   };
   return kSources;
 }

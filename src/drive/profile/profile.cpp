@@ -101,6 +101,11 @@ const ObjectSpec* findObject(const DriveProfile& profile, const std::string& nam
   return id ? profile.find(*id) : nullptr;
 }
 
+std::optional<ObjectId> addressOf(const DriveProfile& profile, const std::string& name) {
+  if (const ObjectSpec* object = profile.find(name)) return object->id;
+  return fieldbus::parseObjectAddress(name);
+}
+
 std::string sourceOf(const DriveProfile& profile) {
   return "profile " + profile.name + (profile.eds.empty() ? "" : " with " + profile.eds);
 }

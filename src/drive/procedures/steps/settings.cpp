@@ -203,14 +203,22 @@ bool SettingsStep::planWrites(AxisCore& axis) {
 Outcome SettingsStep::judge(const Context& context) {
   AxisCore& axis = context.axis;
   std::string problem;
+  std::vector<std::string> warnings;
   for (const Difference& difference : differences()) {
     if (difference.check->only_warns) {
-      axis.notices().warnOnce(axis.who() + ": " + difference.text);
+      warnings.push_back(difference.text);
     } else if (contains(writes_, difference.check)) {
       append(problem, difference.text + " (the drive was told so just now, and keeps its own)");
     } else {
       append(problem, difference.text);
     }
+  }
+  // One a cycle: of several the last alone would be told.
+  if (warned_at_ == context.now) return Outcome::running();
+  if (warned_ < warnings.size()) {
+    axis.notices().warnOnce(axis.who() + ": " + warnings[warned_++]);
+    warned_at_ = context.now;
+    return Outcome::running();
   }
   for (const SettingCheck* check : writes_) {
     if (!check->power_cycle || compare(*check)) continue;
