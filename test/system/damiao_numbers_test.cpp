@@ -67,7 +67,7 @@ TEST_F(DamiaoNumbers, OfTorqueCurrentAndTimesAreSi) {
   EXPECT_THAT(read("velocity_window_time").message, HasSubstr("0.1 s"));
   EXPECT_THAT(read("position_window").message, HasSubstr("0.1 rad"));
   EXPECT_THAT(read("200A:03").message, HasSubstr(" 100"));
-  EXPECT_THAT(read("undervoltage_threshold").message, HasSubstr("15 V"));
+  EXPECT_THAT(read("2009:02").message, HasSubstr(" 15"));
 }
 
 TEST_F(DamiaoNumbers, OfAnAxisThatIsTurnedRoundAndShiftedAreThoseOfTheJoint) {
@@ -102,6 +102,30 @@ TEST_F(DamiaoNumbers, OfDemandAreThoseOfItsOwnRamp) {
   EXPECT_NEAR(scene().position("joint"), -0.9, 1e-3);
 }
 
+// What is published beside feedback: asked for by whoever looks.
+TEST_F(DamiaoNumbers, OfDemandAndCurrentAreAmongItsSignals) {
+  begin(damiaoIn("position_velocity"));
+  enable();
+  ASSERT_EQ(scene().setpoint("joint", -0.9), "");
+  scene().run(3s);
+  for (int i = 0; i < 4; ++i) {
+    scene().axis("joint").look();
+    scene().run(600ms);
+  }
+  const std::vector<drive::ShownSignal> shown = scene().axis("joint").signals(scene().now());
+  for (const auto& [name, index] :
+       {std::pair("current_actual", 0x6078), std::pair("position_demand", 0x6062),
+        std::pair("velocity_demand", 0x606B)}) {
+    const std::string wanted = name;
+    const auto signal = std::find_if(shown.begin(), shown.end(), [&](const auto& one) {
+      return one.object != nullptr && one.object->name == wanted;
+    });
+    ASSERT_NE(signal, shown.end()) << name;
+    EXPECT_TRUE(signal->known) << name;
+    EXPECT_EQ(signal->raw, numberIn(scene(), static_cast<std::uint16_t>(index))) << name;
+  }
+}
+
 // Gains and thresholds [L54-56, L1086-1130].
 TEST_F(DamiaoNumbers, OfItsLoopsAreWrittenWhileDisabledAndTheOldOneIsShown) {
   begin(damiaoJoint());
@@ -134,17 +158,17 @@ TEST_F(DamiaoNumbers, OfItsLoopsAreWrittenWhileDisabledAndTheOldOneIsShown) {
     EXPECT_EQ(numberIn(scene(), gain.id.index, gain.id.subindex), gain.bits) << gain.object;
   }
   struct Threshold {
-    const char *object, *value;
+    const char *object, *old_value, *value;
     fieldbus::ObjectId id;
     std::uint32_t bits;
   };
-  for (const Threshold& threshold :
-       {Threshold{"overvoltage_threshold", "28", {0x2009, 1}, 0x41E00000},
-        Threshold{"undervoltage_threshold", "18", {0x2009, 2}, 0x41900000},
-        Threshold{"200A:03", "85", {0x200A, 3}, 0x42AA0000},
-        Threshold{"200A:04", "90", {0x200A, 4}, 0x42B40000}}) {
+  for (const Threshold& threshold : {Threshold{"2009:01", "32", "28", {0x2009, 1}, 0x41E00000},
+                                     Threshold{"2009:02", "15", "18", {0x2009, 2}, 0x41900000},
+                                     Threshold{"200A:03", "100", "85", {0x200A, 3}, 0x42AA0000},
+                                     Threshold{"200A:04", "100", "90", {0x200A, 4}, 0x42B40000}}) {
     const bus::Answer written = write(threshold.object, threshold.value);
     EXPECT_TRUE(written.success) << written.message;
+    EXPECT_THAT(written.message, HasSubstr(std::string("(it was ") + threshold.old_value + ")"));
     EXPECT_EQ(numberIn(scene(), threshold.id.index, threshold.id.subindex), threshold.bits)
         << threshold.object;
   }
