@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "canopen/half_floats.h"
 #include "canopen/object.h"
 #include "canopen/pdo/config.h"
 #include "canopen/sdo/options.h"
@@ -54,6 +55,7 @@ struct StartupWrite {
   /// Nobody has asked for it by name: left out where the drive does not have the object or does not
   /// let it be written.
   bool by_default = false;
+  bool after_power = false;       ///< it counts once the device was switched off and on
   bool only_if_different = true;  ///< read first, write only what differs
   bool always = false;  ///< no configuration but what stops the drive: done at each boot, first
 };
@@ -83,7 +85,11 @@ struct NodeConfig {
   bool map_count_may_be_read_only = false;      ///< quirk: sub0 of 16xxh/1Axxh aborts 0x06010002
   std::size_t fixed_map_entries = 0;  ///< quirk: sub0 is always this, unused entries are 0; 0: no
   std::vector<PdoConfig> pdos;
-  std::vector<StartupWrite> writes;  ///< in this order, after the PDOs but for `always`
+  /// What travels without PDOs: read and written by SDO as fast as answers come, one object each.
+  std::vector<PdoConfig> by_sdo;
+  std::vector<HalfFloat> half_floats;  ///< how wide the drive has these is learnt at each boot
+  bool reads_back = false;             ///< what `writes` writes is read again and compared
+  std::vector<StartupWrite> writes;    ///< in this order, after the PDOs but for `always`
   /// Behind the warning of what was left out (StartupWrite::by_default, PdoEntry::optional): what
   /// to do about it.
   std::string lacking_remedy;

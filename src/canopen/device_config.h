@@ -35,6 +35,7 @@ struct ErrorControlOptions {
 struct PdoSet {
   std::vector<PdoLayout> pdos;  ///< resolved layout (planned, the profile's or the user's)
   bool planned = false;         ///< for this cycle; another one may get another plan
+  bool by_sdo = false;          ///< what is in `pdos` is read and written by SDO instead
   /// Of what is in `pdos`, the objects that only defaults ask for.
   std::vector<std::string> default_objects;
   /// Of these, the feedback that is there only because its PDOs had room for it.
@@ -55,7 +56,8 @@ struct DeviceConfig {
   std::uint16_t stale_after = 10;
   Duration rpdo_timeout{0};  ///< the drive reacts when none came for so long; zero: never
   ErrorControlOptions error_control;
-  SdoChannel sdo;  ///< COB-IDs other than the predefined ones
+  SdoChannel sdo;                                 ///< COB-IDs other than the predefined ones
+  std::optional<fieldbus::Encoding> half_floats;  ///< of 16 bits; absent: as the profile says
   BootPolicy boot;
   std::optional<std::uint32_t> vendor_id, product_code, revision, serial;  ///< expected identity
   std::optional<DeviceLss> lss;

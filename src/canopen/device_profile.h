@@ -8,6 +8,7 @@
 
 #include "canopen/pdo/layout.h"
 #include "cia402_driver/common/time.h"
+#include "fieldbus/float_codec.h"
 #include "fieldbus/object_access.h"
 
 namespace cia402::canopen {
@@ -31,6 +32,10 @@ struct DeviceProfile {
   bool remote_requests = true;        ///< TPDOs of types 252 and 253 exist
   bool rpdo_deadline = false;         ///< the drive reacts when RPDOs stay away (1400h:05)
   bool type_255_by_timer = false;     ///< TPDOs of that type come by event timer only
+  bool sync_starts = false;           ///< TPDOs have a SYNC start value (1800h:06)
+  /// Objects, by name, that may be of 16 bits instead of 32, and how these are encoded then.
+  std::vector<std::string> half_floats;
+  fieldbus::Encoding half_float_encoding = fieldbus::Encoding::bfloat16;
   bool pdo_map_count_may_be_read_only = false;
   std::optional<std::uint8_t> sync_counter;  ///< overflow value wanted in 1019h; none: no counter
   bool has_sync_counter_object = true;       ///< 1019h exists

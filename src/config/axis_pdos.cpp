@@ -200,6 +200,13 @@ void setRpdoTimeout(canopen::PdoSet& set, Duration timeout) {
   }
 }
 
+/// `pdos: none`: what is planned for PDOs goes by SDO.
+void readNoPdos(const yaml::Value& value, AxisDraft& draft, unsigned axes) {
+  if (!value.oneOf({"none"})) return;
+  draft.pdos().by_sdo = true;
+  if (axes > 1) value.problem("a drive of several axes is not served without PDOs");
+}
+
 /// @param needs with the numbers that other axes of the device have
 void checkShared(const yaml::Value& at, const AxisDraft& draft, const PdoNeeds& needs) {
   for (const canopen::PdoLayout& pdo : draft.pdos().pdos) {
@@ -216,7 +223,11 @@ void checkShared(const yaml::Value& at, const AxisDraft& draft, const PdoNeeds& 
 bool choosePdos(yaml::Section& section, AxisDraft& draft, RobotConfig& robot, unsigned axes) {
   AxisConfig& axis = draft.axis;
   DeviceConfig& device = draft.device;
-  const auto pdos = section.get("pdos");
+  auto pdos = section.get("pdos");
+  if (pdos && pdos->isScalar()) {
+    readNoPdos(*pdos, draft, axes);
+    pdos.reset();
+  }
   const auto modes = section.get("modes");
   const auto feedback = section.get("feedback");
   if (draft.first) section.readInteger("stale_after", device.stale_after, 1, 1000);

@@ -17,7 +17,8 @@ constexpr const char* kDeviceKeys[] = {"drive",
                                        "configuration_check",
                                        "boot",
                                        "stale_after",
-                                       "rpdo_timeout"};
+                                       "rpdo_timeout",
+                                       "half_floats"};
 
 /// Another axis in the same device, nullptr if there is none. @param same_number that has the very
 /// `device_axis`

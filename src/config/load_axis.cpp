@@ -103,8 +103,10 @@ void readAdjust(const yaml::Value& list, AxisConfig& axis) {
 void readWithProfile(yaml::Section& section, AxisConfig& axis) {
   const auto writes = section.get("write");
   const auto adjust = section.get("adjust");
+  const auto trusted = section.get("trusted");
   if (!axis.profile) return;
   if (adjust) readAdjust(*adjust, axis);
+  if (trusted) readTrusted(*trusted, axis);
   if (writes) axis.writes = readWrites(*writes, *axis.profile, WriteList::boot);
 }
 
@@ -153,6 +155,7 @@ void readAxis(const std::string& name, const yaml::Value& value, AxisReading& re
   readJoint(section, axis, robot);
   if (draft.first) draft.device.title = drive::whoIs(axis);
   readDrive(section, draft, reading.profiles);
+  if (draft.first) readHalfFloatKey(section, draft);
   readEds(section, draft, reading.eds, robot);
   readGeometry(section, axis.geometry);
   if (axis.geometry.type == AxisGeometry::Type::prismatic) axis.standstill_velocity = 0.002;
@@ -174,7 +177,10 @@ void readAxis(const std::string& name, const yaml::Value& value, AxisReading& re
     axis.mode = streams ? "cyclic_position" : axis.profile->modes.front().name;
   }
   const unsigned axes = reading.axes_of[draft.device.node_id];
-  if (choosePdos(section, draft, robot, axes)) checkAxis(section, draft, robot);
+  if (choosePdos(section, draft, robot, axes)) {
+    checkAxis(section, draft, robot);
+    checkDoubts(section, draft, robot);
+  }
   checkEds(section, draft, robot);
   if (draft.first) checkErrorControl(section, draft, robot);
   section.finish();

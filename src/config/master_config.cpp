@@ -33,6 +33,7 @@ void addWrites(const std::vector<drive::NamedWrite>& writes, AskedBy who, const 
     if (object != nullptr) start.name = object->name;
     start.data = drive::wireBytes((*resolved)->raw, (*resolved)->type);
     start.optional = (*resolved)->optional;
+    start.after_power = axis.profile->after_power.find(start.object) != nullptr;
     start.by_default = who == AskedBy::profile && !(*resolved)->asked_for;
     node.writes.push_back(start);
   }
@@ -112,11 +113,16 @@ NodeConfig makeNode(const BusConfig& bus, const DeviceConfig& device,
   setSync(bus, family, node);
   node.map_count_may_be_read_only = family.pdo_map_count_may_be_read_only;
   node.fixed_map_entries = family.fixed_pdo_entries;
-  for (const AxisConfig* axis : axes) addPdos(*axis, device, node, problems);
+  for (const AxisConfig* axis : axes) {
+    addPdos(*axis, device, node, problems);
+    addHalfFloats(*axis, device, node);
+  }
+  if (device.axes[axes.front()->device_axis].by_sdo) carryBySdo(bus.bitrate, node);
   static_cast<fieldbus::AccessOptions&>(node.sdo) = family.sdo;
   node.sdo_channel = device.sdo;
   node.boot_timeout = family.boot_time;
   node.reset_node_allowed = family.nmt_reset_node;
+  node.reads_back = axes.front()->profile->reads_back;
   for (const AxisConfig* axis : axes) addStop(*axis->profile, node);
   addSyncWindow(bus, node);
   for (const AxisConfig* axis : axes) addAxis(*axis, node, problems);
@@ -153,6 +159,7 @@ canopen::MasterConfig makeMasterConfig(const RobotConfig& robot, Problems& probl
     if (axes.empty() || !robot.devices[i].profile) continue;
     master.nodes.push_back(makeNode(robot.bus, robot.devices[i], axes, problems));
   }
+  assignSyncStarts(master);
   assignCobIds(master, problems);
   checkSdoChannels(master, problems);
   checkCobIds(master, problems);

@@ -61,6 +61,9 @@ PdoConfig makePdo(const canopen::PdoLayout& layout, unsigned first, const AxisCo
   pdo.stale_after = device.stale_after;
   pdo.request_every = layout.request_every;
   pdo.refresh_every = layout.refresh_every;
+  if (device.profile->sync_starts && layout.direction == PdoDirection::tpdo) {
+    pdo.sync_start = layout.sync_start.value_or(0);
+  }
   pdo.enabled = !layout.objects.empty();
   for (const std::string& name : layout.objects) {
     const drive::ObjectSpec* object = drive::findObject(*axis.profile, name);

@@ -22,4 +22,11 @@ void assignCobIds(canopen::MasterConfig& master, Problems& problems);
 /// No two PDOs on the bus share an identifier: a drive would take what is meant for another.
 void checkCobIds(const canopen::MasterConfig& master, Problems& problems);
 
+/// Nothing of the node travels by PDO: what its PDOs would carry becomes NodeConfig::by_sdo.
+/// @param bitrate bit/s
+void carryBySdo(double bitrate, canopen::NodeConfig& node);
+
+/// Gives TPDOs of every n-th SYNC that may begin with any SYNC their turns, with a SYNC counter.
+void assignSyncStarts(canopen::MasterConfig& master);
+
 }  // namespace cia402::config

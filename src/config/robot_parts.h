@@ -96,6 +96,15 @@ motion::JointLimits readLimits(const yaml::Value& value, drive::AxisGeometry::Ty
 drive::HomingOptions readHoming(const yaml::Value& value);
 /// `error_control`, `sdo`, `optional`, `boot` and the like.
 void readNodeOptions(yaml::Section& section, canopen::DeviceConfig& device);
+/// `trusted`: objects that may be written though the profile calls them doubtful.
+void readTrusted(const yaml::Value& list, drive::AxisConfig& axis);
+/// Refuses doubtful objects in `write`, and warns of those in PDOs that the user gave.
+void checkDoubts(yaml::Section& section, const AxisDraft& draft, RobotConfig& robot);
+/// `half_floats`: how floats of 16 bits are encoded. @pre the drive's profile was read
+void readHalfFloatKey(yaml::Section& section, AxisDraft& draft);
+/// The floats of the axis that its node may have in 16 bits.
+void addHalfFloats(const drive::AxisConfig& axis, const canopen::DeviceConfig& device,
+                   canopen::NodeConfig& node);
 /// What `error_control` means together with profile and bus; `section` is the axis.
 void checkErrorControl(yaml::Section& section, const AxisDraft& draft, const RobotConfig& robot);
 /// How master and drive notice each other's loss; zero: not at all.

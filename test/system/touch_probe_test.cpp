@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // arm_touch_probe of whole robots: what it tells is where the motor truly was.
-#include "bus/jobs/touch_probe_job.h"
 #include "system/families_scene.h"
+#include "system/touch_probe_scene.h"
 
 namespace cia402 {
 namespace {
@@ -14,42 +14,6 @@ using namespace std::chrono_literals;
 
 constexpr double kTwoPi = 6.283185307179586;
 constexpr double kCount = kTwoPi / 131072 / 100;  // of genericPair(), rad
-
-ArmTouchProbeCommand probeOf(const std::string& axis, const std::string& edge = "rising",
-                             double timeout = 5.0, unsigned number = 1) {
-  ArmTouchProbeCommand command;
-  command.axis = axis;
-  command.probe = number;
-  command.edge = edge;
-  command.timeout = timeout;
-  return command;
-}
-
-std::uint64_t objectOf(Scene& scene, const std::string& axis, std::uint16_t index) {
-  return scene.drive(axis).dictionary().find({index, 0})->number;
-}
-
-/// A call that waits for its edge.
-struct Waiting {
-  Waiting(Scene& scene_of, const ArmTouchProbeCommand& command)
-      : scene(scene_of), answer(scene.ask(command)) {
-    scene.run(50ms);
-  }
-  bool answered() const { return answer->has_value(); }
-  TouchProbeAnswer await() {
-    scene.runUntil([this] { return answered(); }, 20s);
-    return answer->value_or(TouchProbeAnswer());
-  }
-  Scene& scene;
-  std::shared_ptr<std::optional<TouchProbeAnswer>> answer;
-};
-
-/// The input has an edge now. @return where the joint truly is
-double touch(Scene& scene, const std::string& axis, bool active, unsigned number = 1) {
-  const double at = scene.position(axis);
-  scene.drive(axis).setProbe(number, active, scene.now());
-  return at;
-}
 
 TEST(TouchProbe, TellsWhereTheJointWasAtTheEdge) {
   ReadyScene scene(genericPair(", direction: -1, position_offset: 0.25"));

@@ -126,6 +126,7 @@ std::string ObjectJob::beginWrite(const std::string& value) {
   value_ = value;
   mark_ = axis_->config().profile->coordinateMark(id_);
   std::string refusal = strangerRefusal();
+  if (refusal.empty()) refusal = drive::doubtOf(axis_->config(), id_);
   if (refusal.empty()) refusal = calibrationRefusal();
   if (!refusal.empty()) return notWritten(refusal);
   if (!spec_) {
@@ -208,8 +209,14 @@ bool ObjectJob::finishWrite(Time now) {
     since_ = now;
     return false;
   }
-  if (ticket_->ok()) return finish(true, who_ + ": wrote " + value_ + " to " + name_ + units_);
+  if (ticket_->ok()) return finish(true, writtenText());
   return finish(false, notWritten(ticket_->reason()));
+}
+
+std::string ObjectJob::writtenText() const {
+  const bool later = axis_->config().profile->after_power.find(id_) != nullptr;
+  return who_ + ": wrote " + value_ + " to " + name_ + units_ +
+         (later ? "; it counts once the drive was switched off and on" : "");
 }
 
 /// The axis stays locked until what it measures counts in the new coordinates.
@@ -229,7 +236,7 @@ bool ObjectJob::measure(Time now) {
 std::string ObjectJob::measuredText(bool measured) const {
   const drive::AxisConfig& axis = axis_->config();
   std::string text = ticket_->ok()
-                         ? who_ + ": wrote " + value_ + " to " + name_ + units_
+                         ? writtenText()
                          : who_ + ": it is not known whether " + value_ + " was written to " +
                                name_ + " (" + ticket_->reason() + "); read it";
   text +=
@@ -272,6 +279,9 @@ std::optional<drive::ObjectSpec> ObjectJob::unnamedObject() const {
 
 bool ObjectJob::writeWithAskedSize() {
   const auto unnamed = unnamedObject();
+  units_ = " (it was " +
+           describeObject(unnamed ? &*unnamed : nullptr, axis_->config(), ticket_->data()).value +
+           ")";
   const Result<fieldbus::Bytes> data =
       unnamed ? encodeObject(*unnamed, value_) : encodeUnlisted(value_, ticket_->data().size());
   if (!data) return finish(false, notWritten(data.error().message));

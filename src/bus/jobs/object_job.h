@@ -53,6 +53,7 @@ class ObjectJob final : public Job {
   bool ofDevice() const { return !drive::axisOf(id_); }
   bool finishWrite(Time now);
   bool measure(Time now);
+  std::string writtenText() const;
   std::string measuredText(bool measured) const;
   /// By what was read of it, if nothing names it.
   std::optional<drive::ObjectSpec> unnamedObject() const;

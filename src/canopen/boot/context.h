@@ -59,6 +59,7 @@ struct BootFindings {
   bool error_control_differed = false;  ///< 1016h and the like were not as the last boot left them
   bool has_signature = false;           ///< it has 1020h
   bool unchanged = false;               ///< 1020h says so: the configuration is not written again
+  bool half_floats_known = false;       ///< SdoClient::halfFloats() are those of this drive
   std::vector<AdoptedCobId> cob_ids;
   std::vector<LeftOutEntry> left_out;
   std::vector<std::string> lacking;  ///< what only defaults ask for, "606C:00 velocity_actual"

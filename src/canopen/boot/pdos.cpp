@@ -11,6 +11,7 @@
 namespace cia402::canopen {
 namespace {
 
+constexpr std::uint8_t kHalfBits = 16;
 constexpr unsigned kProbedPdos = 4;  // of each direction, looked at though not configured
 
 std::vector<PdoConfig> withUnlistedDisabled(const std::vector<PdoConfig>& wanted) {
@@ -32,13 +33,21 @@ std::vector<PdoConfig> withUnlistedDisabled(const std::vector<PdoConfig>& wanted
   return all;
 }
 
+/// With the widths that the drive at hand has its floats in.
+PdoConfig halved(PdoConfig pdo, const HalfFloats& halves) {
+  for (PdoEntry& entry : pdo.entries) {
+    if (halves.has(entry.object)) entry.bits = kHalfBits;
+  }
+  return pdo;
+}
+
 class Pdos : public BootStep {
  public:
   explicit Pdos(const NodeConfig& config) : pdos_(withUnlistedDisabled(config.pdos)) {}
 
   bool begin(BootContext& boot, Time) override {
     if (boot.found.unchanged || item_ >= pdos_.size()) return false;
-    const PdoConfig& wanted = pdos_[item_];
+    const PdoConfig wanted = halved(pdos_[item_], boot.sdo.halfFloats());
     PdoConfigurator::Options options;
     options.count_may_be_read_only = boot.config.map_count_may_be_read_only;
     options.fixed_entries = boot.config.fixed_map_entries;

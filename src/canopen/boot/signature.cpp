@@ -33,6 +33,7 @@ void addPdo(Checksum& sum, const PdoConfig& pdo) {
   sum.add(pdo.transmission);
   sum.add(pdo.inhibit);
   sum.add(pdo.event_timer);
+  if (pdo.sync_start.value_or(0) != 0) sum.add(*pdo.sync_start);
   sum.add(pdo.entries.size());
   for (const PdoEntry& entry : pdo.entries) {
     sum.add(entry.object);

@@ -22,6 +22,8 @@ BootStepPointer makeStop();
 BootStepPointer makeRestore();
 // boot_supervise.cpp: heartbeat or guarding, both ways.
 BootStepPointer makeErrorControl();
+// boot/half_floats.cpp: floats of 16 bits that the family has in 32.
+BootStepPointer makeHalfFloatSearch();
 // boot_unchanged.cpp: may the configuration be left as it is (1020h)?
 BootStepPointer makeUnchangedCheck();
 BootStepPointer makeSignature();

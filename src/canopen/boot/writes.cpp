@@ -29,8 +29,10 @@ class Writes : public BootStep {
   Progress check(BootContext& boot, Time now) override {
     if (const auto resting = patience_.rest(boot, now)) return *resting;
     if (!boot.answered()) return Progress::waiting;
+    if (reading_back_) return readBack(boot);
     if (reading_) return compare(boot, now);
-    if (boot.ok()) return done();
+    if (boot.ok()) tellLater(boot);
+    if (boot.ok()) return boot.config.reads_back && !always_ ? askBack(boot, now) : done();
     const bool optional = boot.config.writes[item_].optional;
     if (!optional && patience_.grant(boot, boot.ticket->abortCode(), now)) return Progress::waiting;
     if (!always_ && leaveOut(boot)) return done();
@@ -68,6 +70,34 @@ class Writes : public BootStep {
     boot.write(wanted.object, wanted.data, wanted.name, now, options(boot));
   }
 
+  void tellLater(BootContext& boot) const {
+    const StartupWrite& write = boot.config.writes[item_];
+    if (!write.after_power) return;
+    boot.notes.push_back(objectText(write.object, write.name) +
+                         " was written, and counts once the drive was switched off and on");
+  }
+
+  Progress askBack(BootContext& boot, Time now) {
+    const StartupWrite& write = boot.config.writes[item_];
+    written_ = boot.ticket->data();
+    reading_back_ = true;
+    boot.read(write.object, write.name, now, options(boot));
+    return Progress::waiting;
+  }
+
+  /// What cannot be read is believed.
+  Progress readBack(BootContext& boot) {
+    reading_back_ = false;
+    if (!boot.ok() && !boot.refused()) return boot.failTransfer();
+    if (!boot.ok() || boot.ticket->data() == written_) return done();
+    const StartupWrite& write = boot.config.writes[item_];
+    return boot.fail(BootFailure::refused,
+                     "boot failed: the drive took " + valueText(written_) + " for " +
+                         objectText(write.object, write.name) + ", but holds " +
+                         valueText(boot.ticket->data()) +
+                         "; look for a limit of its own, or write what it can hold");
+  }
+
   Progress compare(BootContext& boot, Time now) {
     if (boot.ok() && boot.ticket->data() == boot.config.writes[item_].data) return done();
     if (!boot.ok() && !boot.refused()) return boot.failTransfer();
@@ -77,7 +107,8 @@ class Writes : public BootStep {
 
   const bool always_;
   std::size_t item_ = 0;
-  bool reading_ = false;
+  bool reading_ = false, reading_back_ = false;
+  Bytes written_;
   StatePatience patience_;
 };
 

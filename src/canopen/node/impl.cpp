@@ -30,7 +30,7 @@ NmtState stateOf(std::uint8_t byte) {
 
 Node::Impl::Impl(const NodeConfig& node_config, const MasterConfig& master, can::Sink& frame_sink,
                  SdoPacer* shared_turns, bool* changed, can::Pacer* wire)
-    : image(node_config.pdos),
+    : image(node_config.by_sdo.empty() ? node_config.pdos : node_config.by_sdo),
       config(node_config),
       sink(frame_sink),
       deadlines_changed(changed),
@@ -40,7 +40,8 @@ Node::Impl::Impl(const NodeConfig& node_config, const MasterConfig& master, can:
       boot(config, master, sdo, sink, shared_turns != nullptr ? *shared_turns : own_turns),
       retry(config.boot),
       last_stop(config, sdo, sink),
-      pause(config.node_id, sink) {
+      pause(config.node_id, sink),
+      sdo_cycle(config, image, sdo) {
   process = &image;
   sdo.tellWhenQueued(changed);
 }
@@ -80,6 +81,7 @@ void Node::Impl::beginBoot(BootProcedure::From from, const std::string& why, Tim
   takeOut(Health::booting, why);
   if (from == BootProcedure::From::boot_up) sdo.serverRestarted();
   notes.clear();
+  half_floats_adopted = false;
   boot.start(from, now, reset);
 }
 
@@ -87,6 +89,7 @@ void Node::Impl::takeOut(Health as, const std::string& why) {
   boot.stop();
   last_stop.end();
   pause.end();
+  sdo_cycle.stop();
   consumer.disarm();
   guard.stop();
   sdo.cancelAll(why.empty() ? "the node is booted again" : "the node " + why);
@@ -126,6 +129,7 @@ void Node::Impl::runBoot(Time now) {
   const std::size_t adopted = boot.found().cob_ids.size();
   const BootProcedure::Status status = boot.advance(now);
   if (boot.found().cob_ids.size() != adopted) adoptCobIds();
+  if (boot.found().half_floats_known && !half_floats_adopted) adoptHalfFloats();
   if (boot.found().left_out.size() != left_out) adoptLeftOut();
   switch (status) {
     case BootProcedure::Status::running:
@@ -160,6 +164,12 @@ void Node::Impl::adoptLeftOut() {
   }
 }
 
+/// What travels by SDO is as wide for everybody; see SdoClient::halfFloats().
+void Node::Impl::adoptHalfFloats() {
+  half_floats_adopted = true;
+  if (config.by_sdo.empty()) image.setHalfFloats(config.half_floats, sdo.halfFloats());
+}
+
 void Node::Impl::superviseWhileBooting(Time now) {
   const BootFindings& found = boot.found();
   const bool ask = boot.takeStateRequest();
@@ -180,6 +190,7 @@ void Node::Impl::succeed(Time now) {
   health = Health::ready;
   problem.clear();
   retry.reset();
+  sdo_cycle.start();
   if (boot.found().supervised && !boot.found().guarded) consumer.arm(now);
   notes = boot.notes();
   compareWithLastIdentity();

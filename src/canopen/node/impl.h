@@ -12,6 +12,7 @@
 #include "canopen/nmt/pause.h"
 #include "canopen/node/last_stop.h"
 #include "canopen/node/node.h"
+#include "canopen/node/sdo_cycle.h"
 
 namespace cia402::canopen {
 
@@ -50,6 +51,7 @@ struct Node::Impl : Node::Front {
 
   void adoptCobIds();
   void adoptLeftOut();
+  void adoptHalfFloats();
   void superviseWhileBooting(Time now);
   void checkSupervision(Time now);
   void continuePause(Time now);
@@ -75,6 +77,7 @@ struct Node::Impl : Node::Front {
   BootRetry retry;
   LastStop last_stop;
   NmtPause pause;
+  SdoCycle sdo_cycle;
   SdoTicket probe;  ///< of the search for a node that does not answer
   NmtState nmt_state = NmtState::unknown;
   std::string problem;
@@ -86,7 +89,8 @@ struct Node::Impl : Node::Front {
   bool pdos_live = false;        ///< TPDOs are those that were configured
   bool cob_ids_changed = false;  ///< since takeCobIdChange()
   std::size_t left_out = 0;      ///< entries of PDOs, as the image has them
-  Time next = kNever;            ///< of all deadlines but that of a transfer queued since
+  bool half_floats_adopted = false;  ///< the image has them as wide as the present boot found them
+  Time next = kNever;                ///< of all deadlines but that of a transfer queued since
   std::uint32_t emergencies = 0, malformed_emergencies = 0;
   Time last_heartbeat{};
   std::optional<Emergency> last_emergency;

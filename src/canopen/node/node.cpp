@@ -118,6 +118,7 @@ void Node::receive(const can::Frame& frame, Time stamp, Time now) {
     if (impl_->boot.running() && impl_->consumer.armed()) impl_->consumer.heard(now);
     impl_->runBoot(now);
     impl_->runProbe(now);
+    impl_->sdo_cycle.advance(now);
     impl_->refresh();
     return;
   }
@@ -145,6 +146,7 @@ void Node::receiveTpdo(std::size_t tpdo, const can::Frame& frame, Time stamp) {
 
 void Node::tick(Time now) {
   impl_->sdo.tick(now);
+  impl_->sdo_cycle.advance(now);
   impl_->runBoot(now);
   impl_->runProbe(now);
   impl_->checkSupervision(now);
@@ -174,7 +176,14 @@ void Node::refuse(const std::string& why) {
 }
 
 void Node::sendRpdos(Time now) {
-  if (impl_->health == Health::ready) impl_->image.sendDue(impl_->sink, now);
+  if (impl_->health != Health::ready) return;
+  if (config().by_sdo.empty()) {
+    impl_->image.sendDue(impl_->sink, now);
+  } else {
+    impl_->sdo_cycle.outputsSet(now);
+    if (impl_->sdo_cycle.mute()) impl_->lose("answers no SDO, and nothing travels by PDO", now);
+    impl_->refresh();
+  }
 }
 
 }  // namespace cia402::canopen

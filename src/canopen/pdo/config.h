@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,12 +43,16 @@ struct PdoConfig {
   /// ms; of an RPDO: the drive reacts when none came for so long (the drive's own deadline).
   std::uint16_t event_timer = 0;
   bool enabled = true;            ///< false: only made invalid (bit 31)
+  std::string carrier;            ///< what carries its entry instead of it (NodeConfig::by_sdo)
   std::vector<PdoEntry> entries;  ///< at most 64 bits in all
 
   /// A TPDO that is due and fails to come so many times in a row is stale; 0: never.
   std::uint16_t stale_after = 10;
   /// TPDO of type 252 or 253: a remote frame asks for it after every so many SYNCs.
   std::uint16_t request_every = 1;
+  /// TPDO: SYNC start value (sub-index 6); absent: not looked at, as the drive may not have it.
+  std::optional<std::uint8_t> sync_start;
+  std::uint8_t sync_start_wait = 0;  ///< SYNCs until that comes at the latest
   /// RPDO: sent in a cycle in which its content changed, and at least every so many cycles.
   std::uint16_t refresh_every = 1;
 };

@@ -20,6 +20,9 @@ PdoFound::PdoFound(const PdoWanted& wanted) {
   parameters_.push_back({2, 1, "transmission type", config.transmission, false, {}});
   if (tpdo) parameters_.push_back({3, 2, "inhibit time", config.inhibit, true, {}});
   parameters_.push_back({5, 2, "event timer", config.event_timer, true, {}});
+  if (tpdo && config.sync_start) {
+    parameters_.push_back({6, 1, "SYNC start value", *config.sync_start, true, {}});
+  }
 }
 
 std::uint32_t PdoFound::enabledCobId(const PdoWanted& wanted) const {

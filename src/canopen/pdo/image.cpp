@@ -67,11 +67,14 @@ void PdoImage::add(const PdoConfig& config) {
   pdo.number = config.number;
   pdo.cob_id = config.cob_id;
   pdo.transmission = config.transmission;
+  pdo.carrier = config.carrier;
+  pdo.start_wait = config.sync_start_wait;
   unsigned shift = 0;
   for (const PdoEntry& entry : config.entries) {
     if (entry.bits == 0 || shift + entry.bits > kMaxBits) break;  // refused when the node boots
     const fieldbus::Slot slot = input ? addInput(entry.object) : addOutput(entry.object);
-    pdo.fields.push_back({slot, static_cast<std::uint8_t>(shift), entry.bits, maskOf(entry.bits)});
+    pdo.fields.push_back({slot, static_cast<std::uint8_t>(shift), entry.bits,
+                          fieldbus::Encoding::integer, maskOf(entry.bits)});
     shift += entry.bits;
   }
   pdo.size = static_cast<std::uint8_t>((shift + 7) / 8);
@@ -103,6 +106,7 @@ bool PdoImage::receive(std::size_t tpdo, const can::Frame& frame, Time stamp) {
     if (pdo.last_too_short) return false;
   }
   pdo.last_too_short = false;
+  pdo.begun = true;
   ++pdo.received;
   pdo.last = stamp;
   pdo.silent = 0;
@@ -110,7 +114,10 @@ bool PdoImage::receive(std::size_t tpdo, const can::Frame& frame, Time stamp) {
   const std::uint64_t word = loadLittleEndian(frame.data);
   fieldbus::ProcessValue* const values = inputs();
   for (const Pdo::Field& field : pdo.fields) {
-    values[field.slot] = {(word >> field.shift) & field.mask, stamp, true, true};
+    const std::uint64_t raw = (word >> field.shift) & field.mask;
+    const bool whole = field.half == fieldbus::Encoding::integer;
+    values[field.slot] = {whole ? raw : wholeOf(field.half, static_cast<std::uint16_t>(raw)), stamp,
+                          true, true};
   }
   return exact;
 }
@@ -123,8 +130,9 @@ void PdoImage::age(Time now) {
     if (pdo.stale || pdo.fields.empty()) continue;
     if (pdo.silent_limit == 0 && pdo.age_limit == Duration::zero()) continue;
     if (pdo.last == Time()) pdo.last = now;  // it is expected from now on
+    const std::uint32_t limit = pdo.silent_limit + (pdo.begun ? 0U : pdo.start_wait);
     const bool overdue =
-        pdo.silent_limit != 0 ? pdo.silent > pdo.silent_limit : now - pdo.last > pdo.age_limit;
+        pdo.silent_limit != 0 ? pdo.silent > limit : now - pdo.last > pdo.age_limit;
     if (!overdue) continue;
     pdo.stale = true;
     for (const Pdo::Field& field : pdo.fields) outdate(field.slot);
@@ -147,7 +155,10 @@ bool PdoImage::requestDue(std::size_t tpdo, can::Frame& frame) {
 std::uint64_t PdoImage::pack(const Pdo& pdo) const {
   std::uint64_t word = 0;
   for (const Pdo::Field& field : pdo.fields) {
-    word |= (output(field.slot) & field.mask) << field.shift;
+    const std::uint64_t raw = output(field.slot);
+    const bool whole = field.half == fieldbus::Encoding::integer;
+    const std::uint64_t wire = whole ? raw : halfOf(field.half, static_cast<std::uint32_t>(raw));
+    word |= (wire & field.mask) << field.shift;
   }
   return word;
 }
@@ -208,14 +219,49 @@ void PdoImage::leaveOut(PdoDirection direction, unsigned number, ObjectId object
                                    [slot](const Pdo::Field& field) { return field.slot == slot; });
     if (gone == pdo.fields.end()) continue;
     pdo.fields.erase(gone);
-    unsigned shift = 0;
-    for (Pdo::Field& field : pdo.fields) {
-      field.shift = static_cast<std::uint8_t>(shift);
-      shift += field.bits;
-    }
-    pdo.size = static_cast<std::uint8_t>((shift + 7) / 8);
+    layOut(pdo);
     noteLeftOut(direction, slot);
   }
+}
+
+/// One field behind the other.
+void PdoImage::layOut(Pdo& pdo) {
+  unsigned shift = 0;
+  for (Pdo::Field& field : pdo.fields) {
+    field.shift = static_cast<std::uint8_t>(shift);
+    shift += field.bits;
+  }
+  pdo.size = static_cast<std::uint8_t>((shift + 7) / 8);
+}
+
+void PdoImage::setHalfFloats(const std::vector<HalfFloat>& known, const HalfFloats& halves) {
+  for (std::vector<Pdo>* pdos : {&tpdos_, &rpdos_}) {
+    for (Pdo& pdo : *pdos) {
+      const bool input = pdo.direction == PdoDirection::tpdo;
+      pdo.fields = pdo.all_fields;
+      for (const HalfFloat& half : known) {
+        const fieldbus::Slot slot = input ? inputSlot(half.object) : outputSlot(half.object);
+        for (Pdo::Field& field : pdo.fields) {
+          if (field.slot != slot) continue;
+          const bool narrow = halves.has(half.object);
+          field.half = narrow ? half.encoding : fieldbus::Encoding::integer;
+          field.bits = narrow ? 16 : 32;
+          field.mask = maskOf(field.bits);
+        }
+      }
+      layOut(pdo);
+      pdo.all_fields = pdo.fields;
+    }
+  }
+}
+
+void PdoImage::takeAlone(std::size_t tpdo, std::uint64_t raw, Time now) {
+  Pdo& pdo = tpdos_[tpdo];
+  pdo.last = now;
+  pdo.silent = 0;
+  pdo.stale = false;
+  ++pdo.received;
+  take(pdo.fields.front().slot, raw, now);
 }
 
 /// Left out is what no PDO of that direction carries any more.
@@ -236,12 +282,8 @@ void PdoImage::includeAll() {
   for (std::vector<Pdo>* pdos : {&tpdos_, &rpdos_}) {
     for (Pdo& pdo : *pdos) {
       pdo.fields = pdo.all_fields;
-      unsigned bits = 0;
-      for (const Pdo::Field& field : pdo.fields) {
-        bits += field.bits;
-        noteLeftOut(pdo.direction, field.slot);
-      }
-      pdo.size = static_cast<std::uint8_t>((bits + 7) / 8);
+      layOut(pdo);
+      for (const Pdo::Field& field : pdo.fields) noteLeftOut(pdo.direction, field.slot);
     }
   }
 }
@@ -249,7 +291,7 @@ void PdoImage::includeAll() {
 void PdoImage::invalidate() {
   clear();
   for (Pdo& pdo : tpdos_) {
-    pdo.stale = pdo.last_too_short = false;
+    pdo.stale = pdo.last_too_short = pdo.begun = false;
     pdo.silent = pdo.since_request = 0;
     pdo.last = Time();
   }

@@ -3,10 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "can/bus.h"
 #include "can/frame.h"
+#include "canopen/half_floats.h"
 #include "canopen/pdo/config.h"
 #include "cia402_driver/common/time.h"
 #include "fieldbus/process_image.h"
@@ -44,6 +46,12 @@ class PdoImage : public fieldbus::ProcessImage {
   /// PDO without entries is neither sent nor expected. Its value is not fresh, what is set is not
   /// sent. No effect for what is not mapped.
   void leaveOut(PdoDirection direction, unsigned number, ObjectId object);
+  /// The drive has the floats of `halves` in 16 bits, and the others of `known` in 32.
+  void setHalfFloats(const std::vector<HalfFloat>& known, const HalfFloats& halves);
+  /// A value that came without a PDO stands for the whole TPDO, whose only one it is.
+  void takeAlone(std::size_t tpdo, std::uint64_t raw, Time now);
+  /// The only value of an RPDO has left without it.
+  void leftAlone(std::size_t rpdo) { countSent(rpdo); }
   /// All entries are there again, as constructed.
   void includeAll();
   /// Marks every input as unknown and sets every output to 0 (the node rebooted or was lost), so
@@ -66,10 +74,13 @@ class PdoImage : public fieldbus::ProcessImage {
     std::uint32_t silent = 0;        ///< SYNCs since the last reception or transmission
     std::uint32_t silent_limit = 0;  ///< stale beyond; 0: its silence means nothing
     Duration age_limit{0};           ///< the same for an event timer; 0: none
+    std::uint8_t start_wait = 0;     ///< SYNCs more that the first one may take
+    bool begun = false;              ///< it came since invalidate()
     std::uint16_t every = 1;         ///< SYNCs from one TPDO to the next, where these are limited
     Duration event_interval{0};      ///< of event-driven ones: event timer and inhibit time
     std::uint16_t request_every = 1, refresh_every = 1;
     std::uint16_t since_request = 0;
+    std::string carrier;     ///< in words, where it is no PDO that carries its value; else empty
     std::uint64_t sent = 0;  ///< content of the last transmission
     bool sent_once = false;
     /// Where the value of a slot lies in the data, as one little-endian number of 64 bits.
@@ -77,7 +88,8 @@ class PdoImage : public fieldbus::ProcessImage {
       fieldbus::Slot slot;
       std::uint8_t shift;
       std::uint8_t bits;
-      std::uint64_t mask;  ///< as wide, not shifted
+      fieldbus::Encoding half;  ///< of a float in 16 bits, of which the slot has 32; else integer
+      std::uint64_t mask;       ///< as wide, not shifted
     };
     std::vector<Field> fields;      ///< without those that are left out
     std::vector<Field> all_fields;  ///< as constructed
@@ -95,6 +107,7 @@ class PdoImage : public fieldbus::ProcessImage {
 
  private:
   void add(const PdoConfig& config);
+  static void layOut(Pdo& pdo);
   void describeSlots();
   void noteLeftOut(PdoDirection direction, fieldbus::Slot slot);
   std::vector<Pdo>& pdosOf(PdoDirection direction) {

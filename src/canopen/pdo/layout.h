@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,8 @@ struct PdoLayout {
   std::uint16_t event_timer = 0;    ///< ms
   std::uint16_t request_every = 1;  ///< cycles; TPDO of type 252, 253
   std::uint16_t refresh_every = 1;  ///< cycles; RPDO whose content does not change
+  /// TPDO of types 1 to 240: counter of the SYNC at which it begins to count; absent: any.
+  std::optional<std::uint8_t> sync_start;
   CobIdSpec cob_id;
   std::vector<std::string> objects;  ///< profile names or "6041:00"
 };

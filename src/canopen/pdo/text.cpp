@@ -6,6 +6,7 @@
 namespace cia402::canopen {
 
 std::string pdoName(const PdoImage::Pdo& pdo) {
+  if (!pdo.carrier.empty()) return pdo.carrier;
   return (pdo.direction == PdoDirection::tpdo ? "TPDO " : "RPDO ") + std::to_string(pdo.number) +
          " (COB-ID " + hexText(pdo.cob_id, 3) + ")";
 }

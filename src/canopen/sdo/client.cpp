@@ -37,16 +37,17 @@ SdoTicket SdoClient::upload(ObjectId object, std::string name, std::optional<Sdo
 
 SdoTicket SdoClient::download(ObjectId object, Bytes data, std::string name,
                               std::optional<SdoOptions> options) {
-  auto transfer =
-      std::make_shared<SdoTransfer>(Direction::download, object, std::move(name), std::move(data),
-                                    options.value_or(defaults_), false);
+  auto transfer = std::make_shared<SdoTransfer>(Direction::download, object, std::move(name),
+                                                half_floats_.narrowed(object, std::move(data)),
+                                                options.value_or(defaults_), false);
   queue_.add(transfer);
   return transfer;
 }
 
 SdoTicket SdoClient::downloadUrgent(ObjectId object, Bytes data, const std::string& name) {
   makeWay(toString(object) + (name.empty() ? "" : " " + name));
-  auto transfer = std::make_shared<SdoTransfer>(Direction::download, object, name, std::move(data),
+  auto transfer = std::make_shared<SdoTransfer>(Direction::download, object, name,
+                                                half_floats_.narrowed(object, std::move(data)),
                                                 defaults_, true);
   queue_.add(transfer);
   return transfer;
@@ -262,6 +263,9 @@ void SdoClient::succeed(Time now) {
   exchange_.counters().busy += std::max(now - started_at_, Duration::zero());
   blocks_.succeeded();
   wire_ = Idle();
+  if (half_floats_.has(transfer.object())) {
+    transfer.setData(half_floats_.widened(transfer.object(), transfer.data()));
+  }
   transfer.succeed();
   queue_.pop();
   startNext(now);

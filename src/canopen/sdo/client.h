@@ -8,6 +8,7 @@
 
 #include "can/bus.h"
 #include "can/pacer.h"
+#include "canopen/half_floats.h"
 #include "canopen/object.h"
 #include "canopen/sdo/block_download.h"
 #include "canopen/sdo/block_upload.h"
@@ -75,6 +76,9 @@ class SdoClient final : public fieldbus::ObjectAccess {
   /// block transfers is open again. To be called after cancelAll().
   void serverRestarted();
 
+  /// Floats that the device has in 16 bits: whoever asks reads and writes them in 32.
+  HalfFloats& halfFloats() { return half_floats_; }
+  const HalfFloats& halfFloats() const { return half_floats_; }
   /// Nothing is queued or on the wire.
   bool idle() const override;
   /// What it has done since it exists.
@@ -123,6 +127,7 @@ class SdoClient final : public fieldbus::ObjectAccess {
   SdoQueue queue_;
   SdoExchange exchange_;
   SdoFence fence_;
+  HalfFloats half_floats_;
   SdoBlockUse blocks_;
   /// What is on the wire, for the front one of the queue.
   std::variant<Idle, AtFence, SdoUpload, SdoDownload, SdoBlockUpload, SdoBlockDownload> wire_;

@@ -21,4 +21,28 @@ void readCoordinates(const yaml::Value& value, DriveProfile& profile) {
   section.finish();
 }
 
+void readAfterPower(const yaml::Value& value, DriveProfile& profile) {
+  for (const yaml::Value& entry : value.list()) {
+    const auto text = entry.text();
+    const auto range = text ? drive::parseObjectRange(*text) : std::nullopt;
+    if (text && !range) {
+      entry.problem("`" + *text + "` is no range of objects such as \"2001\" or \"2001:02-11\"");
+    }
+    if (range) profile.after_power.add(*range, true);
+  }
+}
+
+void readDoubtful(const yaml::Value& value, DriveProfile& profile) {
+  yaml::Section section(value);
+  for (const auto& [key, entry] : section.entries()) {
+    const auto range = drive::parseObjectRange(key);
+    if (!range) {
+      entry.problem("`" + key + "` is no range of objects such as \"2004:03\" or \"2002:01-0C\"");
+    }
+    const auto text = entry.text();
+    if (range && text) profile.doubtful.add(*range, *text);
+  }
+  section.finish();
+}
+
 }  // namespace cia402::config

@@ -47,6 +47,7 @@ void readPdoRules(yaml::Section& profile_section, const DriveProfile& profile,
   section.read("rpdo_deadline", device.rpdo_deadline);
   section.read("type_255_by_timer", device.type_255_by_timer);
   section.read("remote_requests", device.remote_requests);
+  section.read("sync_starts", device.sync_starts);
   if (const auto fixed = section.get("fixed")) {  // every default of CiA 402 has the controlword
     device.fixed_pdos = readPdos(*fixed, profile, device, Sharing::allowed);
   }
@@ -103,6 +104,7 @@ void readDevice(yaml::Section& section, yaml::Section& timing, const DriveProfil
   readDuration(timing, "sdo", deadline, device.sdo.timeout);
   timing.readInteger("sdo_retries", device.sdo.retries, 0, 10);
   readPdoRules(section, profile, device);
+  if (const auto halves = section.get("half_floats")) readHalfFloats(*halves, profile, device);
   if (const auto pdos = section.get("pdos")) device.pdos = readPdos(*pdos, profile, device);
 }
 

@@ -189,6 +189,18 @@ void readHomedBit(yaml::Section& section, DriveProfile& profile) {
   if (bit) profile.homed_bit = static_cast<int>(*bit);
 }
 
+/// The name of an object that can be written; else a problem and an empty name.
+std::string readWritable(const yaml::Value& value, const DriveProfile& profile) {
+  const auto name = value.text();
+  const ObjectSpec* object = name ? profile.find(*name) : nullptr;
+  if (object != nullptr && object->writable && fieldbus::sizeBits(object->type) != 0) return *name;
+  if (name) {
+    value.problem("the profile has no object `" + *name + "` that is a number and can be written" +
+                  yaml::suggestion(*name, drive::objectNames(profile)));
+  }
+  return {};
+}
+
 void readBehaviour(yaml::Section& section, DriveProfile& profile) {
   readHomedBit(section, profile);
   section.read("output_shaft", profile.output_shaft);
@@ -200,6 +212,10 @@ void readBehaviour(yaml::Section& section, DriveProfile& profile) {
   readDuration(section, "fault_reset_nmt_stop", yaml::Range{0.0, 10.0, false},
                profile.fault_reset_pause);
   section.read("fault_reset_clears_history", profile.fault_reset_clears_history);
+  if (const auto object = section.get("fault_reset_object")) {
+    profile.fault_reset_object = readWritable(*object, profile);
+  }
+  section.read("reads_back", profile.reads_back);
   readQuickStop(section, profile);
   readParameters(section, profile);
 }
@@ -236,6 +252,8 @@ void readDrive(yaml::Section& section, yaml::Section& timing, DriveProfile& prof
     checkFixedObjects(section, profile);
   }
   if (const auto marks = section.get("coordinates")) readCoordinates(*marks, profile);
+  if (const auto doubtful = section.get("doubtful")) readDoubtful(*doubtful, profile);
+  if (const auto list = section.get("counts_after_power")) readAfterPower(*list, profile);
   readBehaviour(section, profile);
   readTiming(timing, profile);
   if (const auto modes = section.require("modes", "at least one mode")) readModes(*modes, profile);

@@ -45,6 +45,7 @@ void readAccess(yaml::Section& section, ObjectSpec& object) {
     object.readable = index != 2;
     object.writable = index == 0 || index == 2;
   }
+  if (const auto doubt = section.get("doubt")) object.doubt = doubt->text().value_or("");
   const auto value = section.get("pdo");
   const auto index = value ? value->oneOf({"none", "rpdo", "tpdo", "both"}) : std::nullopt;
   if (!index) return;

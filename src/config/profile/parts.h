@@ -35,6 +35,9 @@ void readUnits(const yaml::Value& value, DriveProfile& profile);
 void readObjects(const yaml::Value& value, DriveProfile& profile);
 void readEncodings(const yaml::Value& value, DriveProfile& profile);
 void readCoordinates(const yaml::Value& value, DriveProfile& profile);
+void readDoubtful(const yaml::Value& value, DriveProfile& profile);
+/// `counts_after_power`: a list of ranges.
+void readAfterPower(const yaml::Value& value, DriveProfile& profile);
 void readModes(const yaml::Value& value, DriveProfile& profile);
 void readHoming(const yaml::Value& value, DriveProfile& profile);
 void readErrors(const yaml::Value& value, DriveProfile& profile);
@@ -107,10 +110,15 @@ std::vector<std::string> readModeNames(const yaml::Value& list, const DriveProfi
 std::vector<std::string> readFeedbackNames(const yaml::Value& list, const DriveProfile& profile);
 
 /// Reads how a device of the family behaves on the bus: `identity`, `pdo_rules`, `sync`,
-/// `heartbeat`, `nmt_reset_node`, `pdos`. @param timing the section of that name, of which it reads
-/// `boot`, `sdo` and `sdo_retries`. @param profile whose objects its PDOs map
+/// `heartbeat`, `nmt_reset_node`, `half_floats`, `pdos`. @param timing the section of that name, of
+/// which it reads `boot`, `sdo` and `sdo_retries`. @param profile whose objects its PDOs map
 void readDevice(yaml::Section& section, yaml::Section& timing, const DriveProfile& profile,
                 canopen::DeviceProfile& device);
+/// `half_floats`. @pre objects were read
+void readHalfFloats(const yaml::Value& value, const DriveProfile& profile,
+                    canopen::DeviceProfile& device);
+/// One of the encodings of floats in 16 bits.
+std::optional<Encoding> readHalfEncoding(const yaml::Value& value);
 /// A time in seconds.
 void readDuration(yaml::Section& section, const std::string& key, yaml::Range range,
                   Duration& target);

@@ -78,6 +78,21 @@ void readCobId(yaml::Section& section, PdoLayout& pdo) {
   pdo.cob_id.value = static_cast<std::uint16_t>(*number);
 }
 
+void readSyncStart(yaml::Section& section, const DriveProfile& profile,
+                   const canopen::DeviceProfile& device, PdoLayout& pdo) {
+  const auto value = section.get("sync_start");
+  if (!value) return;
+  const bool cyclic = pdo.direction == PdoDirection::tpdo && canopen::isCyclic(pdo.transmission);
+  if (!device.sync_starts) {
+    value->problem("this drive has no SYNC start values (" + drive::sourceOf(profile) +
+                   ", `sync_starts`)");
+  } else if (!cyclic) {
+    value->problem("is for TPDOs of transmission types 1 to 240");
+  }
+  const auto start = value->integer(0, 240);
+  if (start) pdo.sync_start = static_cast<std::uint8_t>(*start);
+}
+
 const ObjectSpec* readEntry(const yaml::Value& value, const DriveProfile& profile,
                             PdoDirection direction) {
   const auto text = value.text();
@@ -191,6 +206,7 @@ std::vector<PdoLayout> readPdos(const yaml::Value& value, const DriveProfile& pr
         details.get("refresh_every")->problem("is for RPDOs");
       }
       details.readInteger("refresh_every", pdo->refresh_every, 1, 1000);
+      readSyncStart(details, profile, device, *pdo);
       details.finish();
     }
     pdos.push_back(*pdo);

@@ -47,6 +47,14 @@ bool saidToLack(const AxisConfig& axis, const std::string& object) {
   return std::find(axis.lacks.begin(), axis.lacks.end(), name) != axis.lacks.end();
 }
 
+std::string doubtOf(const AxisConfig& axis, ObjectId id) {
+  const std::string* doubt = axis.profile->doubtful.find(id);
+  if (doubt == nullptr) return {};
+  if (std::find(axis.trusted.begin(), axis.trusted.end(), id) != axis.trusted.end()) return {};
+  return "it is not known what a number in it means (" + *doubt + "); whoever does gives axes/" +
+         axis.name + " `trusted: [\"" + fieldbus::toString(id) + "\"]`";
+}
+
 const ModeSpec* trajectoryMode(const AxisConfig& axis) {
   const DriveProfile& profile = *axis.profile;
   const auto sent = [&](const std::string& target) {

@@ -58,6 +58,7 @@ struct AxisConfig {
   std::vector<std::string> modes;  ///< that can be served: the one at start and those to switch to
   std::vector<std::string> outputs;  ///< objects that travel to the drive in every cycle, by name
   std::vector<std::string> lacks;    ///< objects of the profile that this drive does not have
+  std::vector<ObjectId> trusted;     ///< of DriveProfile::doubtful, what may be written
   std::vector<std::string> adjust;   ///< settings that may be written where they differ, by name
   std::vector<NamedWrite> writes;    ///< the user's extra start-up writes
   std::vector<std::uint8_t> save, restore;  ///< sub-indices of 1010h, 1011h; empty: the profile's
@@ -84,6 +85,9 @@ std::string whoIs(const AxisConfig& axis);
 std::string whoIs(const AxisConfig& axis, const std::string& place);
 /// Does `lacks` of the axis name the object, which is given by profile name or index?
 bool saidToLack(const AxisConfig& axis, const std::string& object);
+/// Why an object is not written though it could be: what the manual leaves open of it; empty: no
+/// reason, or the axis trusts it.
+std::string doubtOf(const AxisConfig& axis, ObjectId id);
 /// Of those that the axis can be in, the one in which it follows trajectories; nullptr: none.
 const ModeSpec* trajectoryMode(const AxisConfig& axis);
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "drive/profile/float_codec.h"
+#include "fieldbus/float_codec.h"
 
 namespace cia402::drive {
 namespace {

@@ -31,6 +31,7 @@ DriveProfile ofDeviceAxis(DriveProfile profile, unsigned axis) {
     if (kOfFirstAxis.holds(object.id)) object.id = profile.own(object.id);
   }
   profile.encodings.shift(kOfFirstAxis, offset);
+  profile.doubtful.shift(kOfFirstAxis, offset);
   profile.coordinates.shift(kOfFirstAxis, offset);
   shift(profile.startup, offset);
   shift(profile.before_enable, offset);

@@ -39,6 +39,7 @@ std::optional<double> homing(const std::string& name, const HomingOptions& optio
   if (name == "homing.acceleration") return positive(options.acceleration);
   if (name == "homing.timeout") return toSeconds(options.timeout);
   if (name == "homing.offset") return options.atHome();
+  if (name == "homing.timeout") return toSeconds(options.timeout);
   return {};
 }
 

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "common/text.h"
-#include "drive/profile/float_codec.h"
 #include "fieldbus/bytes.h"
+#include "fieldbus/float_codec.h"
 
 namespace cia402::drive {
 namespace {

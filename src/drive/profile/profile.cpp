@@ -106,6 +106,11 @@ std::optional<ObjectId> objectId(const DriveProfile& profile, const std::string&
   return id ? id : profile.parameter_names.find(text);
 }
 
+std::optional<ObjectId> addressOf(const DriveProfile& profile, const std::string& name) {
+  if (const ObjectSpec* object = profile.find(name)) return object->id;
+  return objectId(profile, name);
+}
+
 std::string sourceOf(const DriveProfile& profile) {
   return "profile " + profile.name + (profile.eds.empty() ? "" : " with " + profile.eds);
 }

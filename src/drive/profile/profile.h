@@ -17,21 +17,14 @@
 #include "drive/profile/object_range.h"
 #include "drive/profile/parameter_names.h"
 #include "drive/profile/setting_check.h"
+#include "fieldbus/float_codec.h"
 #include "fieldbus/object.h"
 
 namespace cia402::drive {
 
 using fieldbus::DataType;
+using fieldbus::Encoding;
 using fieldbus::ObjectId;
-
-/// How a number sits in an object.
-enum class Encoding : std::uint8_t {
-  integer,   ///< a plain integer, scaled by the profile's units
-  float32,   ///< the bit pattern of an IEEE-754 float in a 32-bit integer object
-  bfloat16,  ///< the upper 16 bits of such a pattern in a 16-bit object (value << 16)
-  float32_by_65535_unsigned,  ///< 16-bit word n; pattern = n * 65535, n unsigned
-  float32_by_65535_signed,    ///< 16-bit word n; pattern = n * 65535, n signed
-};
 
 /// Why an object must not be written while the axis may move: it shifts the drive's coordinates, or
 /// holds its calibration. Each word says what there is for people to do instead.
@@ -100,6 +93,7 @@ struct ObjectSpec {
   bool writable = true;
   bool rpdo = false;                  ///< may be mapped into an RPDO
   bool tpdo = false;                  ///< may be mapped into a TPDO
+  std::string doubt;                  ///< why it may not be mappable so, told to whoever maps it
   bool from_eds = false;              ///< the axis' EDS names it, the profile does not
   std::vector<std::string> eds_keys;  ///< further names, from the EDS (fieldbus::nameKey())
 
@@ -263,6 +257,10 @@ struct DriveProfile {
   ObjectRanges<Encoding> encodings;
   /// Objects that shift coordinates or hold calibration, besides those of the standard.
   ObjectRanges<CoordinateMark> coordinates;
+  /// What the maker's manual leaves open of an object: it is written for those alone who trust it
+  /// (AxisConfig::trusted).
+  ObjectRanges<std::string> doubtful;
+  ObjectRanges<bool> after_power;  ///< what is written there counts once the power was off and on
   std::vector<ModeSpec> modes;
   HomingSpec homing;
   bool halt_supported = true;
@@ -271,6 +269,9 @@ struct DriveProfile {
   /// Where these did not help the device is taken out of operation for so long, and resets once
   /// more; 0: it is not.
   Duration fault_reset_pause{0};
+  /// An object that takes faults away where these did not, by a 1; empty: there is none.
+  std::string fault_reset_object;
+  bool reads_back = false;                  ///< what is written is read again and compared
   bool fault_reset_clears_history = false;  ///< 1003h:00 = 0 is written before a fault reset
   StatusWords status_words;
   bool has_warning_bit = true;            ///< statusword bit 7 is a warning
@@ -361,6 +362,8 @@ std::string activeInputs(const DriveProfile& profile, const ObjectSpec& object, 
 const ObjectSpec* findObject(const DriveProfile& profile, const std::string& name);
 /// The object of an index ("6041:00"), or of a name that the maker gives a parameter ("H0A.40").
 std::optional<ObjectId> objectId(const DriveProfile& profile, const std::string& text);
+/// The same, and of a name of the profile; nothing where it is none of them.
+std::optional<ObjectId> addressOf(const DriveProfile& profile, const std::string& name);
 /// The encoding of ObjectRanges at this place, where the type is as wide; real32 is a float
 /// anywhere.
 Encoding encodingAt(const DriveProfile& profile, ObjectId id, DataType type);

@@ -182,6 +182,7 @@ struct DriveDefinition {
   DriveHomingDefinition homing;
   ProbeForgets probe_forgets = ProbeForgets::disarmed;
 
+  double enables_below = 0.0;  ///< turns/s; faster it raises `turning_at_enable`. 0: always
   bool following_error_is_fault = true;
   bool limit_switch_is_fault = false;
   ConnectionLoss master_lost = ConnectionLoss::fault;  ///< where 6007h does not exist

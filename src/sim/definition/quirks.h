@@ -32,6 +32,7 @@ struct DriveQuirks {
   bool homing_is_fixed = false;           ///< 6098h and 6099h refuse all writes
   std::int64_t fault_reset_tries = 1;     ///< edges of bit 7 that it takes
   bool fault_reset_needs_empty_history = false;  ///< no edge helps while 1003h:00 is not 0
+  bool fault_reset_by_object = false;  ///< no edge helps, a write to the role clear_errors does
   /// A fault is reset only after NMT stop of this length; 0: always.
   Duration fault_reset_needs_stop{0};
   Duration reset_edge_time{0};        ///< edges of bit 7 after a shorter low are not seen

@@ -22,6 +22,7 @@ void readQuirks(DefinitionReader& reader, DriveQuirks& out) {
   reader.read("homing_is_fixed", out.homing_is_fixed);
   reader.read("fault_reset_tries", out.fault_reset_tries, 1, 20);
   reader.read("fault_reset_needs_empty_history", out.fault_reset_needs_empty_history);
+  reader.read("fault_reset_by_object", out.fault_reset_by_object);
   reader.read("fault_reset_needs_stop", out.fault_reset_needs_stop);
   reader.read("reset_edge_time", out.reset_edge_time);
   reader.read("no_generic_error_bit", out.no_generic_error_bit);

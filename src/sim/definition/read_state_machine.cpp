@@ -87,6 +87,7 @@ void readStateMachine(DefinitionReader& reader, DriveDefinition& out) {
   reader.read("halt", out.halt);
   reader.read("internal_limit_bit", out.internal_limit_bit);
   reader.read("warning_stops", out.warning_stops);
+  reader.read("enables_below", out.enables_below, 0.0, 1e3);
   reader.read("following_error_is_fault", out.following_error_is_fault);
   reader.read("limit_switch_is_fault", out.limit_switch_is_fault);
   reader.read("master_lost", out.master_lost, kConnectionLoss);

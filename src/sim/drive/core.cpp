@@ -151,7 +151,9 @@ void DriveCore::onControlword() {
   controlword_ = static_cast<std::uint16_t>(values_.raw(Role::controlword, 0));
   const PdsCommand wanted = decodeCommand(controlword_, previous);
   if (wanted == PdsCommand::fault_reset) {
-    if (now_ - reset_low_since_ >= definition_.quirks.reset_edge_time) resetFault();
+    const DriveQuirks& quirks = definition_.quirks;
+    const bool seen = now_ - reset_low_since_ >= quirks.reset_edge_time;
+    if (seen && !quirks.fault_reset_by_object) resetFault();
     return;
   }
   if ((previous & kFaultReset) != 0) reset_low_since_ = now_;
@@ -188,6 +190,11 @@ void DriveCore::execute(const PdsTransition& transition) {
 
 bool DriveCore::mayEnable() {
   const DriveQuirks& quirks = definition_.quirks;
+  const double fastest = definition_.enables_below;
+  if (fastest > 0.0 && std::fabs(motion_.motor().velocity()) > fastest) {
+    raise("turning_at_enable");
+    return false;
+  }
   if (quirks.mode_needed && modes_.applied() == 0) return false;
   if (quirks.needs_power_cycle_to_save && stored_) return false;
   if (!quirks.sync_needed || sync_.runs(now_)) return true;

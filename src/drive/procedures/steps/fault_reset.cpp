@@ -2,6 +2,7 @@
 #include "drive/procedures/steps/fault_reset.h"
 
 #include "drive/profile/fault_text.h"
+#include "drive/profile/named_write.h"
 #include "drive/sentence.h"
 
 namespace cia402::drive {
@@ -59,7 +60,8 @@ Outcome FaultResetStep::awaitReset(const Context& context) {
   const Duration waited = context.now - since_;
   if (axis.state().state == State::fault_reaction_active) return cameBack(context);
   if (clearable(axis)) {
-    const bool last = tries_ >= axis.profile().fault_reset_tries && !mayPause(context);
+    const bool last =
+        tries_ >= axis.profile().fault_reset_tries && !mayWrite(context) && !mayPause(context);
     if (waited <= (last ? axis.profile().timing.transition(15) : kInterval) || tryAgain(context)) {
       return Outcome::running();
     }
@@ -80,6 +82,11 @@ Outcome FaultResetStep::awaitReset(const Context& context) {
 bool FaultResetStep::tryAgain(const Context& context) {
   AxisCore& axis = context.axis;
   const int most = axis.profile().fault_reset_tries;
+  if (tries_ >= most && mayWrite(context)) {
+    axis.control().setFaultReset(false);
+    beginWrite(context);
+    return true;
+  }
   if (tries_ >= most && !mayPause(context)) return false;
   axis.control().setFaultReset(false);
   if (tries_++ >= most) {
@@ -90,6 +97,22 @@ bool FaultResetStep::tryAgain(const Context& context) {
   enter(Phase::reacting, context);
   context.show("resetting the fault again", number);
   return true;
+}
+
+bool FaultResetStep::mayWrite(const Context& context) const {
+  return !written_ && !context.axis.profile().fault_reset_object.empty();
+}
+
+/// A drive that refuses it keeps its fault, as the edge after it shows.
+void FaultResetStep::beginWrite(const Context& context) {
+  AxisCore& axis = context.axis;
+  written_ = true;
+  const ObjectSpec* object = axis.profile().find(axis.profile().fault_reset_object);
+  clearing_ =
+      axis.device().objects().download(object->id, wireBytes(1, object->type), object->name);
+  enter(Phase::clearing, context);
+  context.show("clearing the fault by " + object->name,
+               "the drive to take " + fieldbus::toString(object->id) + " = 1");
 }
 
 bool FaultResetStep::mayPause(const Context& context) const {

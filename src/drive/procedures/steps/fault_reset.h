@@ -9,8 +9,9 @@ namespace cia402::drive {
 /// until the drive has left the fault or the time is over, then low again, then a moment in which
 /// the fault may come back. Edges are at least kInterval apart, whoever asks for them. Where the
 /// profile says so the error history is cleared before (`fault_reset_clears_history`), it is tried
-/// several times (`fault_reset_tries`), and once more after the device was taken out of operation
-/// and into it again (DriveProfile::fault_reset_pause).
+/// several times (`fault_reset_tries`), once more after a write (`fault_reset_object`), and once
+/// more after the device was taken out of operation and into it again
+/// (DriveProfile::fault_reset_pause).
 class FaultResetStep {
  public:
   static constexpr Duration kInterval{std::chrono::seconds(1)};
@@ -29,13 +30,16 @@ class FaultResetStep {
   Outcome awaitReset(const Context& context);
   Outcome awaitNews(const Context& context);
   bool tryAgain(const Context& context);
+  bool mayWrite(const Context& context) const;
+  void beginWrite(const Context& context);
   bool mayPause(const Context& context) const;
   void beginPause(const Context& context);
   Outcome awaitPause(const Context& context);
 
   Phase phase_ = Phase::begin;
-  int tries_ = 1;        ///< begun
-  bool paused_ = false;  ///< that is behind it, or under way
+  int tries_ = 1;         ///< begun
+  bool written_ = false;  ///< DriveProfile::fault_reset_object is
+  bool paused_ = false;   ///< that is behind it, or under way
   std::uint16_t code_ = 0;
   std::uint64_t frames_ = 0;
   Time since_{};

@@ -229,15 +229,26 @@ void SettingsStep::planCounts(AxisCore& axis) {
 
 Outcome SettingsStep::judge(const Context& context) {
   AxisCore& axis = context.axis;
-  std::string problem, warning = compareTorque(axis.config());
+  std::string problem;
+  std::vector<std::string> warnings;
+  if (const std::string torque = compareTorque(axis.config()); !torque.empty()) {
+    warnings.push_back(torque);
+  }
   for (const Difference& difference : differences()) {
     if (difference.check->only_warns) {
-      append(warning, difference.text);
+      warnings.push_back(difference.text);
     } else if (contains(writes_, difference.check)) {
       append(problem, difference.text + " (the drive was told so just now, and keeps its own)");
     } else {
       append(problem, difference.text);
     }
+  }
+  // One a cycle: of several the last alone would be told.
+  if (warned_at_ == context.now) return Outcome::running();
+  if (warned_ < warnings.size()) {
+    axis.notices().warnOnce(axis.who() + ": " + warnings[warned_++]);
+    warned_at_ = context.now;
+    return Outcome::running();
   }
   for (const SettingCheck* check : writes_) {
     if (!check->power_cycle || compare(*check)) continue;
@@ -253,8 +264,6 @@ Outcome SettingsStep::judge(const Context& context) {
       if (!text.empty()) append(problem, text);
     }
   }
-  // All at once: of two notices in a cycle only the last is told.
-  if (!warning.empty()) axis.notices().warnOnce(axis.who() + ": " + warning);
   return problem.empty() ? Outcome::done() : Outcome::failed(refusal(context) + problem);
 }
 

@@ -61,6 +61,8 @@ class SettingsStep {
   std::array<SettingCheck, 2> counts_;       ///< two of these, by the rule of counts
   std::vector<std::size_t> reads_;           ///< of settings_, what is read
   std::size_t written_ = 0, read_ = 0;       ///< of these
+  std::size_t warned_ = 0;                   ///< differences that only warn, told so far
+  std::optional<Time> warned_at_;
   fieldbus::Ticket ticket_;
   std::optional<Time> settles_;  ///< new coordinates, until then
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/text.h"
 #include "drive/profile/object_value.h"
 #include "fieldbus/abort_code.h"
 
@@ -39,6 +40,18 @@ Outcome WriteStep::advance(const Context& context) {
       return Outcome::failed(context.axis.who() + ": " + answer->message() +
                              (lacking(*answer) ? advice(context) : ""));
     }
+    if (!written_.empty()) {
+      const std::string held = difference(context, *answer);
+      written_.clear();
+      if (!held.empty() && !current_.optional) return Outcome::failed(held);
+      ++next_;
+      continue;
+    }
+    if (mayBeReadBack(context, *answer)) {
+      written_ = answer->data();
+      ticket_ = context.axis.device().objects().upload(current_.object, current_.name);
+      continue;
+    }
     if (answer->ok() && answer->direction() == fieldbus::Transfer::Direction::upload) {
       if (copy(context, answer->data())) continue;
       if (!current_.optional) {
@@ -50,12 +63,42 @@ Outcome WriteStep::advance(const Context& context) {
   }
 }
 
+/// What travels to the drive in every cycle may be another number by then.
+bool WriteStep::mayBeReadBack(const Context& context, const fieldbus::Transfer& answer) const {
+  return context.axis.profile().reads_back && answer.ok() &&
+         answer.direction() == fieldbus::Transfer::Direction::download &&
+         context.axis.device().image().outputSlot(current_.object) == fieldbus::kNoSlot;
+}
+
+/// What cannot be read is believed.
+std::string WriteStep::difference(const Context& context, const fieldbus::Transfer& answer) const {
+  if (!answer.ok() || answer.data() == written_) return {};
+  return context.axis.who() + ": the drive took " + hexText(fieldbus::toUnsigned(written_), 2) +
+         " for " + fieldbus::toString(current_.object) + " " + current_.name + ", but holds " +
+         hexText(fieldbus::toUnsigned(answer.data()), 2) + "; look for a limit of its own";
+}
+
+/// Of what is written before each enabling, the axis' own number for the object counts, if its
+/// `write` has one.
+const NamedWrite& WriteStep::chosen(const Context& context) const {
+  const NamedWrite& write = (*writes_)[next_];
+  const DriveProfile& profile = context.axis.profile();
+  const bool copies = profile.find(write.from) != nullptr;
+  if (writes_ != &profile.before_enable || copies) return write;
+  const std::vector<NamedWrite>& own = context.axis.config().writes;
+  const auto object = addressOf(profile, write.object);
+  const auto found = std::find_if(own.rbegin(), own.rend(), [&](const NamedWrite& candidate) {
+    return addressOf(profile, candidate.object) == object;
+  });
+  return found == own.rend() ? write : *found;
+}
+
 bool WriteStep::begin(const Context& context, Outcome& problem) {
   if (next_ >= writes_->size()) {
     problem = Outcome::done();
     return false;
   }
-  const auto resolved = resolveWrite((*writes_)[next_], context.axis.config());
+  const auto resolved = resolveWrite(chosen(context), context.axis.config());
   if (!resolved) {
     problem = Outcome::failed(context.axis.who() + ": " + resolved.error().message);
     return false;

@@ -28,7 +28,10 @@ class WriteStep {
  private:
   bool mayLeaveOut(const Context& context, const fieldbus::Transfer& answer);
   std::string advice(const Context& context) const;
+  const NamedWrite& chosen(const Context& context) const;
   bool begin(const Context& context, Outcome& problem);
+  bool mayBeReadBack(const Context& context, const fieldbus::Transfer& answer) const;
+  std::string difference(const Context& context, const fieldbus::Transfer& answer) const;
   bool copy(const Context& context, fieldbus::Bytes bytes);
   void write(const Context& context, fieldbus::Bytes bytes);
 
@@ -36,6 +39,7 @@ class WriteStep {
   std::size_t next_ = 0;
   ResolvedWrite current_;
   fieldbus::Ticket ticket_;
+  fieldbus::Bytes written_;  ///< what is read back at the moment; else empty
   std::vector<Mapped> mapped_;
   std::vector<std::string> left_out_;  ///< NamedWrite::from
 };

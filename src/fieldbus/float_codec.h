@@ -6,9 +6,16 @@
 #include <cstring>
 #include <limits>
 
-#include "drive/profile/profile.h"
+namespace cia402::fieldbus {
 
-namespace cia402::drive {
+/// How a number sits in an object.
+enum class Encoding : std::uint8_t {
+  integer,   ///< a plain integer, scaled by the profile's units
+  float32,   ///< the bit pattern of an IEEE-754 float in a 32-bit integer object
+  bfloat16,  ///< the upper 16 bits of such a pattern in a 16-bit object (value << 16)
+  float32_by_65535_unsigned,  ///< 16-bit word n; pattern = n * 65535, n unsigned
+  float32_by_65535_signed,    ///< 16-bit word n; pattern = n * 65535, n signed
+};
 
 inline float floatFromBits(std::uint32_t bits) {
   float value = 0.0F;
@@ -88,4 +95,4 @@ inline double lowestFloat(Encoding encoding) {
   return decodeFloat(encoding, encoding == Encoding::float32_by_65535_unsigned ? 0xFF80 : 0xFF7F);
 }
 
-}  // namespace cia402::drive
+}  // namespace cia402::fieldbus
