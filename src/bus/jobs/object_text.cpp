@@ -183,6 +183,10 @@ ObjectText describeObject(const ObjectSpec* spec, const drive::AxisConfig& axis,
   if (!joint.empty()) text.value += " = " + joint;
   const std::string inputs = drive::activeInputs(*axis.profile, *spec, raw);
   if (!inputs.empty()) text.value += ": " + inputs;
+  const auto fields = axis.profile->bit_fields.find(spec->fields);
+  if (fields != axis.profile->bit_fields.end()) {
+    text.value += ": " + drive::fieldsText(fields->second, raw);
+  }
   return text;
 }
 

@@ -34,6 +34,12 @@ void readFault(const std::string& name, const yaml::Value& from, DriveDefinition
         reader.problem("vendor", "must be a list of up to five bytes");
     }
   }
+  if (reader.has("word")) {
+    std::string text;
+    reader.read("word", text);
+    fault.word = fieldbus::parseObjectId(text);
+    if (!fault.word) reader.problem("word", "must be an object like \"200E:01\"");
+  }
   reader.read("resettable", fault.resettable);
   reader.read("warning", fault.warning);
   reader.read("holds", fault.holds);

@@ -11,7 +11,8 @@ constexpr std::size_t kMostCauses = 16;
 
 }  // namespace
 
-FaultMemory::FaultMemory(const DriveDefinition& definition) : definition_(definition) {
+FaultMemory::FaultMemory(const DriveDefinition& definition, ObjectDictionary& dictionary)
+    : definition_(definition), words_(definition, dictionary) {
   causes_.reserve(kMostCauses);
 }
 
@@ -52,7 +53,9 @@ bool FaultMemory::endByThemselves() const {
 }
 
 bool FaultMemory::endWarning(const FaultDefinition& warning) {
-  const auto over = [&warning](const Cause& cause) { return cause.fault == &warning; };
+  const auto over = [&warning](const Cause& cause) {
+    return cause.fault->warning && cause.fault->name == warning.name;
+  };
   const auto kept = std::remove_if(causes_.begin(), causes_.end(), over);
   if (kept == causes_.end()) return false;
   causes_.erase(kept, causes_.end());

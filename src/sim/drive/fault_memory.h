@@ -6,6 +6,7 @@
 
 #include "canopen/nmt/nmt.h"
 #include "sim/definition/drive_definition.h"
+#include "sim/drive/alarm_words.h"
 
 namespace cia402::sim {
 
@@ -13,8 +14,11 @@ namespace cia402::sim {
 /// error register and statusword, and what it takes to reset them.
 class FaultMemory {
  public:
-  /// `definition` must outlive it.
-  explicit FaultMemory(const DriveDefinition& definition);
+  /// Both must outlive it.
+  FaultMemory(const DriveDefinition& definition, ObjectDictionary& dictionary);
+
+  /// The error as the drive is set.
+  const FaultDefinition& asSet(const FaultDefinition& fault) { return words_.asSet(fault); }
 
   /// Power-on or reset: nothing has happened.
   void start();
@@ -56,6 +60,7 @@ class FaultMemory {
   const FaultDefinition* lasting(bool warnings, Time now) const;
 
   const DriveDefinition& definition_;
+  AlarmWords words_;
   std::vector<Cause> causes_;
   bool warning_ = false;
   std::int64_t tries_ = 0;       ///< to reset the present faults

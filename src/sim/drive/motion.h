@@ -68,6 +68,7 @@ class DriveMotion {
   /// Name of a fault that homing has come to since it was asked last, or nullptr.
   const char* takeHomingFault() { return homing_.takeFault(); }
   TouchProbes& probes() { return probes_; }
+  AxisSwitches& switches() { return axis_.switches; }
   /// Actual and demand values, inputs into the dictionary.
   void publish();
 
