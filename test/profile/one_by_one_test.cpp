@@ -113,18 +113,18 @@ TEST(BitFields, ThatCannotBeAreRefused) {
 TEST(ProfileSettings, EachOnceAndReadBackAreAsWritten) {
   Problems problems;
   const WholeProfile profile =
-      parsed(driveWith("  a: {object: \"2003:01\", type: uint16}\n"
-                       "  b: {object: \"2003:03\", type: uint16}\n",
+      parsed(driveWith("  one: {object: \"2003:01\", type: uint16}\n"
+                       "  two: {object: \"2003:03\", type: uint16}\n",
                        kQueued,
-                       "checks: [{each_once: [a, b], but: [0, 9], text: t, remedy: r}]\n"
-                       "read_back: [b, a]\n"),
+                       "checks: [{each_once: [one, two], but: [0, 9], text: t, remedy: r}]\n"
+                       "read_back: [two, one]\n"),
              problems);
   ASSERT_TRUE(problems.empty()) << problems.text();
   ASSERT_EQ(profile.checks.size(), 1U);
   EXPECT_TRUE(profile.checks[0].each_once);
-  EXPECT_THAT(profile.checks[0].objects, ElementsAre("a", "b"));
+  EXPECT_THAT(profile.checks[0].objects, ElementsAre("one", "two"));
   EXPECT_THAT(profile.checks[0].condition.numbers, ElementsAre(0, 9));
-  EXPECT_THAT(profile.read_back, ElementsAre("b", "a"));
+  EXPECT_THAT(profile.read_back, ElementsAre("two", "one"));
 }
 
 TEST(HomingEdge, IsABitOfAnObjectAndMovesNothing) {

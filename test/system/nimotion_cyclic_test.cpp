@@ -70,6 +70,25 @@ TEST_P(NimotionDropped, TargetsAreToldAndCalledBackToWhereTheMotorStands) {
   }
 }
 
+// From rest: set-points that run away from a motor that stands would be seen after 0.15 s without
+// bit 12, and a velocity never.
+TEST_P(NimotionDropped, TargetsAreSeenByTheBitBeforeTheMotorIsMissed) {
+  FamilyScene scene(droppingJoint(GetParam()));
+  scene.run(300ms);
+  ASSERT_TRUE(bit12(scene));
+  drop(scene, true);
+  scene.run(300ms);
+  ASSERT_FALSE(bit12(scene));
+  const Time from = scene.now();
+  const auto given_up = [&] {
+    (void)scene.setpoint("joint", scene.kind() == ControlKind::position ? 0.8 : 0.5);
+    return scene.told().find("what was commanded is given up") != std::string::npos;
+  };
+  EXPECT_TRUE(scene.runUntil(given_up, 1s)) << scene.told();
+  EXPECT_LT(toSeconds(scene.now() - from), 0.14);
+  EXPECT_NEAR(scene.position("joint"), 0.0, 1e-3);
+}
+
 INSTANTIATE_TEST_SUITE_P(Nimotion, NimotionDropped,
                          testing::Values(nimotionIn("ip"), nimotionIn("csp"), nimotionIn("csv")),
                          familyModeName);

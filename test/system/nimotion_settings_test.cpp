@@ -273,22 +273,23 @@ TEST(NimotionLimits, AreReadBackAndToldWhereTheDriveHoldsOthers) {
   EXPECT_THAT(well.told(), Not(HasSubstr("that was written at the boot")));
 }
 
-// "The larger" of 607Bh and 607Dh counts [2230]: by its magnitude, or as a number. As both follow
-// the joint, it stops there either way.
-TEST(NimotionLimits, OfPositionsHoldWhicheverOfTheTwoCounts) {
-  for (const char* use : {"farther", "greater", "none"}) {
-    FamilyScene scene(familyJoint(nimotionIn("pv"),
-                                  ", simulation: {initial_position: 1.9, with: {state_machine: "
-                                  "{position_range: " +
-                                      std::string(use) + "}}}"));
-    for (const double side : {1.0, -1.0}) {
-      const Time end = scene.now() + 7s;
+// "The larger" of 607Bh and 607Dh counts [2230]: by its magnitude, or as a number. One of them
+// alone limits nothing, so both are written (FamilyLimitNumbers).
+TEST(NimotionLimits, OfPositionsHoldWhereBothObjectsHaveThem) {
+  for (const char* use : {"farther", "greater"}) {
+    for (const bool both : {false, true}) {
+      FamilyScene scene(familyJoint(
+          nimotionIn("pv"),
+          ", simulation: {with: {state_machine: {position_range: " + std::string(use) + "}}}"));
+      const auto limit = static_cast<std::uint64_t>(1.0 / oneCount(nimotionIn("pv")));
+      scene.drive("joint").dictionary().find({0x607D, 2})->number = limit;
+      if (both) scene.drive("joint").dictionary().find({0x607B, 2})->number = limit;
+      const Time end = scene.now() + 5s;
       while (scene.now() < end) {
-        (void)scene.setpoint("joint", 0.8 * side);
+        (void)scene.setpoint("joint", 0.8);
         scene.run(20ms);
       }
-      EXPECT_NEAR(side * scene.position("joint"), 2.5, 0.02) << use << scene.told();
-      scene.mustSucceed(ProcedureKind::enable);
+      EXPECT_NEAR(scene.position("joint"), both ? 1.0 : 2.5, 0.02) << use << scene.told();
     }
   }
 }
