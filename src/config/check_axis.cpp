@@ -6,6 +6,7 @@
 #include "config/robot_parts.h"
 #include "drive/profile/conversion.h"
 #include "drive/profile/named_write.h"
+#include "drive/profile/outputs.h"
 
 namespace cia402::config {
 namespace {
@@ -101,7 +102,8 @@ void checkRpdoObjects(yaml::Section& section, const AxisDraft& draft) {
   for (const canopen::PdoLayout& pdo : draft.pdos().pdos) {
     if (pdo.direction != PdoDirection::rpdo) continue;
     for (const std::string& object : pdo.objects) {
-      if (isSetByDriver(*draft.axis.profile, object)) continue;
+      const DriveProfile& profile = *draft.axis.profile;
+      if (drive::isSetByAxis(profile, object) || drive::isSetByPeople(profile, object)) continue;
       at.problem("`" + object +
                  "` would be sent as 0 in every cycle, as nothing sets it: take it " +
                  "out of the RPDO; `write` sets it by SDO when the drive boots");

@@ -5,6 +5,7 @@
 
 #include "common/text.h"
 #include "config/pdo_packing.h"
+#include "drive/profile/outputs.h"
 #include "fieldbus/object.h"
 
 namespace cia402::config {
@@ -74,7 +75,7 @@ class Planner {
       bool usable = profile_.offset == 0 || device_.pdos_per_axis != 0;
       for (const std::string& name : layout.objects) {
         const ObjectSpec* object = profile_.find(name);
-        usable = usable && object != nullptr && (!rpdo || isSetByDriver(profile_, name));
+        usable = usable && object != nullptr && (!rpdo || drive::isSetByAxis(profile_, name));
         if (object != nullptr) fixed.items.push_back(item(*object, 1));
       }
       // One with an object that nobody sets would send it as 0: its number is taken all the same.
@@ -270,16 +271,6 @@ class Planner {
 };
 
 }  // namespace
-
-bool isSetByDriver(const DriveProfile& profile, const std::string& object) {
-  if (object == "controlword" || object == "mode_of_operation") return true;
-  return std::any_of(profile.modes.begin(), profile.modes.end(), [&](const ModeSpec& mode) {
-    const auto& writes = mode.entry_writes;
-    return mode.target == object ||
-           std::any_of(writes.begin(), writes.end(),
-                       [&](const drive::NamedWrite& write) { return write.object == object; });
-  });
-}
 
 Result<PdoPlan> planPdos(const DriveProfile& profile, const canopen::DeviceProfile& device,
                          const PdoNeeds& needs) {

@@ -47,8 +47,4 @@ struct PdoPlan {
 Result<PdoPlan> planPdos(const drive::DriveProfile& profile, const canopen::DeviceProfile& device,
                          const PdoNeeds& needs);
 
-/// True if the driver sets `object` of an RPDO in every cycle: controlword, mode_of_operation, and
-/// what modes write. Any other would be sent as 0.
-bool isSetByDriver(const drive::DriveProfile& profile, const std::string& object);
-
 }  // namespace cia402::config

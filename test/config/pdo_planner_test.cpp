@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "config/pdo_planner.h"
 #include "config/drive_family.h"
+#include "drive/profile/outputs.h"
 #include "folders.h"
 
 #include <gmock/gmock.h>
@@ -313,7 +314,7 @@ void check(const DriveFamily& profile, const PdoNeeds& what, const PdoPlan& plan
       const drive::ObjectSpec* object = profile.drive.find(name);
       ASSERT_NE(object, nullptr) << name;
       EXPECT_TRUE(rpdo ? object->rpdo : object->tpdo) << name;
-      EXPECT_TRUE(!rpdo || isSetByDriver(profile.drive, name)) << name;
+      EXPECT_TRUE(!rpdo || drive::isSetByAxis(profile.drive, name)) << name;
       bits += fieldbus::sizeBits(object->type);
       if (!isFixed(profile, pdo)) {
         EXPECT_EQ(++free_objects[std::make_pair(pdo.direction, name)], 1) << name;

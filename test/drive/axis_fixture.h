@@ -94,8 +94,8 @@ inline DriveProfile testProfile() {
   ModeSpec csp = modeSpec("cyclic_position", 8, ControlKind::position, true, "target_position");
   ModeSpec csv = modeSpec("cyclic_velocity", 9, ControlKind::velocity, true, "target_velocity");
   profile.modes = {pp, pv, hm, ip, csp, csv};
-  profile.homing.methods[17] = {"negative limit switch", true};
-  profile.homing.methods[37] = {"present position", false};
+  profile.homing.methods[17] = {"negative limit switch", true, {}};
+  profile.homing.methods[37] = {"present position", false, {}};
   profile.homing.writes = {from("homing_method", "homing.method"),
                            from("homing_search_velocity", "homing.search_velocity"),
                            from("home_offset", "homing.offset")};

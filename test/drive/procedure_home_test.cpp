@@ -203,7 +203,7 @@ TEST(HomeProcedure, ShiftsInSoftwareWhatAnUnwrittenHomeOffsetMisses) {
 
 TEST(HomeProcedure, DeclaresZeroWhereTheDriveHasNoHoming) {
   DriveProfile profile = testProfile();
-  profile.homing.methods = {{std::nullopt, {"declared", false}}};
+  profile.homing.methods = {{std::nullopt, {"declared", false, {}}}};
   AxisConfig config = homingConfig(profile);
   config.homing->method.reset();
   config.homing->offset = 0.25;

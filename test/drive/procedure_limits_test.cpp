@@ -199,7 +199,7 @@ TEST(ProcedureLimits, ADeclaredHomeTakesNoLongerThanADeclaredPosition) {
   const Duration declared = limitOf(ProcedureKind::set_position, config);
   EXPECT_EQ(limitOf(ProcedureKind::home, config), declared);
   DriveProfile declares = slowProfile();
-  declares.homing.methods = {{std::nullopt, {"declared", false}}};
+  declares.homing.methods = {{std::nullopt, {"declared", false, {}}}};
   EXPECT_EQ(limitOf(ProcedureKind::home, slowAxis(declares)), declared);
 }
 

@@ -13,6 +13,7 @@ using testing::HasSubstr;
 std::string familySearch(const FamilyMode& tested, const char* method, const std::string& switches,
                          const std::string& timeout = "30.0") {
   const bool by_function = tested.family == std::string(kMegmeetDm5);
+  const char* told = tested.family == std::string(kNimotionStepper) ? kNimotionSwitches : "";
   return familyJoint(tested, ", homing: {method: " + std::string(method) +
                                  ", search_velocity: 0.4, zero_velocity: 0.05, acceleration: 2.0,"
                                  " timeout: " +
@@ -20,7 +21,7 @@ std::string familySearch(const FamilyMode& tested, const char* method, const std
                                  (by_function ? ", write: [{object: di1_function, raw: 36},"
                                                 " {object: di2_function, raw: 32},"
                                                 " {object: di3_function, raw: 35}]"
-                                              : ""));
+                                              : told));
 }
 
 class FamilyHomingResult : public testing::TestWithParam<FamilyMode> {

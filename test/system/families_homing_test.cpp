@@ -40,7 +40,8 @@ std::string familyMethodName(const testing::TestParamInfo<FamilyHoming>& tested)
 }
 
 INSTANTIATE_TEST_SUITE_P(Nimotion, FamilyHomingMethod,
-                         testing::ValuesIn(withFamily(kStepperPp, kAsDelivered, homesByEdges())),
+                         testing::ValuesIn(withFamily(kStepperPp, kNimotionSwitches,
+                                                      homesByEdges())),
                          familyMethodName);
 INSTANTIATE_TEST_SUITE_P(Id286Edges, FamilyHomingMethod,
                          testing::ValuesIn(withFamily(kId286Pp, kAsDelivered, homesByEdges())),

@@ -164,15 +164,24 @@ TEST_P(FamilyPositionLimits, OfTheJointAreNotPassed) {
 
 class FamilyLimitsInTheDrive : public testing::TestWithParam<FamilyMode> {};
 
+/// 607Dh, and 607Bh where the drive has that: both sides, in counts.
+void limitDrive(Scene& scene, double counts) {
+  const auto upper = static_cast<std::uint32_t>(counts);
+  for (const std::uint16_t index : {std::uint16_t{0x607B}, std::uint16_t{0x607D}}) {
+    sim::Entry* entry = scene.drive("joint").dictionary().find({index, 2});
+    if (entry == nullptr) continue;
+    entry->number = upper;
+    scene.drive("joint").dictionary().find({index, 1})->number = ~upper + 1U;
+  }
+}
+
 // 607Dh at 1 rad, narrower than the joint's: the drive stops there, which is told.
 TEST_P(FamilyLimitsInTheDrive, EndTheMotionInWordsAndAreLeftTheOtherWay) {
   const bool dm5 = GetParam().family == std::string(kMegmeetDm5);
   FamilyScene scene(familyJoint(
       GetParam(), dm5 ? ", write: [{object: software_limit_mode, raw: 1}]" : std::string()));
   const double limit = 1.0 / oneCount(GetParam());
-  scene.drive("joint").dictionary().find({0x607D, 2})->number = static_cast<std::uint64_t>(limit);
-  scene.drive("joint").dictionary().find({0x607D, 1})->number =
-      static_cast<std::uint64_t>(-static_cast<std::int64_t>(limit));
+  limitDrive(scene, limit);
   if (scene.kind() == ControlKind::position) {
     EXPECT_EQ(scene.setpoint("joint", 2.0), "");
     scene.run(4s);
@@ -191,8 +200,7 @@ TEST_P(FamilyLimitsInTheDrive, EndTheMotionInWordsAndAreLeftTheOtherWay) {
               scene.told().find("internal limit active") != std::string::npos)
       << scene.told();
   scene.forget();
-  scene.drive("joint").dictionary().find({0x607D, 2})->number =
-      static_cast<std::uint64_t>(2.0 * limit);
+  limitDrive(scene, 2.0 * limit);
   scene.run(1s);
   EXPECT_LT(scene.seen("joint").travel(), 2e-3) << "it does not go on by itself";
   EXPECT_TRUE(scene.truth("joint").power_stage_on) << scene.told();

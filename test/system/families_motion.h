@@ -12,6 +12,8 @@ namespace cia402 {
 constexpr char kNimotionStepper[] = "nimotion_stepper", kId286Cnfa[] = "id286_cnfa",
                kMegmeetDm5[] = "megmeet_dm5";
 
+inline FamilyMode nimotionIn(const char* mode) { return {kNimotionStepper, "4000", mode}; }
+
 /// Every mode of the families that are served in part so far.
 inline std::vector<FamilyMode> familyModes() {
   std::vector<FamilyMode> modes;

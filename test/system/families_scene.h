@@ -24,6 +24,13 @@ inline std::string panelSteps(const FamilyMode& tested) {
   return std::string(tested.family) == "megmeet_dm5" ? ", adjust: [control_mode]" : "";
 }
 
+/// Terminals of a NiMotion with the negative limit switch, the positive one and the home switch,
+/// active high.
+constexpr char kNimotionSwitches[] =
+    ", write: [{object: di0_function, raw: 15}, {object: di0_logic, raw: 1}, "
+    "{object: di1_function, raw: 14}, {object: di1_logic, raw: 1}, "
+    "{object: di2_function, raw: 31}, {object: di2_logic, raw: 1}]";
+
 /// A joint behind a gear of 50 with a motor of 1.27 N m. @param more options of the axis, as
 /// ", key: value"
 inline std::string familyJoint(const FamilyMode& tested, const std::string& more = {}) {

@@ -117,11 +117,12 @@ TEST_P(FamilyWith, AFaultSaysSoInWordsAndIsCleared) {
 TEST_P(FamilyWith, ANegativeLimitSwitchIsFoundAsHome) {
   const FamilyMode& tested = GetParam().tested;
   const bool by_function = tested.family == std::string(kMegmeetDm5);
+  const char* told = tested.family == std::string(kNimotionStepper) ? kNimotionSwitches : "";
   Scene scene(
       loadText(familyJoint(tested,
                            ", homing: {method: 17, search_velocity: 0.3, zero_velocity: 0.05,"
                            " acceleration: 2.0}, simulation: {lower_limit_switch: -0.4}" +
-                               std::string(by_function ? kReverseLimitAtDi1 : ""))));
+                               std::string(by_function ? kReverseLimitAtDi1 : told))));
   ASSERT_TRUE(scene.boot(20s)) << scene.told();
   const bus::Answer homed = scene.procedure(ProcedureKind::home);
   ASSERT_TRUE(homed.success) << homed.message;

@@ -121,12 +121,13 @@ class FamilyLimitSwitch : public testing::TestWithParam<OnSwitch> {
 
 TEST_P(FamilyLimitSwitch, StopsTheJointIsToldAndIsLeftTheOtherWay) {
   for (const double side : {1.0, -1.0}) {
-    FamilyScene scene(
-        familyJoint(GetParam().tested,
-                    ", simulation: {upper_limit_switch: 0.5, lower_limit_switch: -0.5" +
-                        (GetParam().with != nullptr ? ", with: " + std::string(GetParam().with)
-                                                    : std::string()) +
-                        "}"));
+    FamilyScene scene(familyJoint(
+        GetParam().tested,
+        ", simulation: {upper_limit_switch: 0.5, lower_limit_switch: -0.5" +
+            (GetParam().with != nullptr ? ", with: " + std::string(GetParam().with)
+                                        : std::string()) +
+            "}" +
+            (GetParam().tested.family == std::string(kNimotionStepper) ? kNimotionSwitches : "")));
     goOn(scene, side);
     EXPECT_THAT(scene.told() + scene.axis("joint").faultText(),
                 HasSubstr(side > 0.0 ? GetParam().upper : GetParam().lower));

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "bus/jobs/bit_change.h"
 
+#include "drive/profile/outputs.h"
 #include "fieldbus/bytes.h"
 
 namespace cia402::bus {
@@ -10,18 +11,28 @@ std::string titleOf(const drive::ObjectSpec& object) {
   return fieldbus::toString(object.id) + " " + object.name;
 }
 
+fieldbus::Slot travellingIn(drive::Axis& axis, const drive::ObjectSpec& object) {
+  const fieldbus::ProcessImage& image = axis.device().image();
+  const fieldbus::Slot slot = image.outputSlot(object.id);
+  return slot == fieldbus::kNoSlot || image.outputLeftOut(slot) ? fieldbus::kNoSlot : slot;
+}
+
 }  // namespace
 
 BitChange::BitChange(drive::Axis& axis, const drive::ObjectSpec& object, std::uint64_t mask,
                      std::uint64_t bits)
-    : axis_(&axis),
-      object_(&object),
-      mask_(mask),
-      bits_(bits),
-      ticket_(axis.device().objects().upload(object.id, object.name)) {}
+    : axis_(&axis), object_(&object), slot_(travellingIn(axis, object)), mask_(mask), bits_(bits) {
+  if (!travels()) ticket_ = axis.device().objects().upload(object.id, object.name);
+}
 
 /// As many bytes are written as were read, whatever the profile says.
 bool BitChange::step() {
+  if (travels()) {
+    fieldbus::ProcessImage& image = axis_->device().image();
+    found_ = image.output(slot_);
+    image.setOutput(slot_, (found_ & ~mask_) | (bits_ & mask_));
+    return true;
+  }
   if (!ticket_->done()) return false;
   if (!ticket_->ok()) {
     problem_ =
@@ -42,10 +53,10 @@ std::string bitsRefusal(drive::Axis& axis, const drive::ObjectSpec& object) {
   if (drive::saidToLack(axis.config(), object.name)) {
     return "the configuration says that the drive lacks " + titleOf(object) + " (`lacks`)";
   }
-  const fieldbus::Device& device = axis.device();
-  const fieldbus::Slot slot = device.image().outputSlot(object.id);
-  if (slot == fieldbus::kNoSlot || device.image().outputLeftOut(slot)) return {};
-  return titleOf(object) + " travels in " + device.carrierText(slot) +
+  const fieldbus::Slot slot = travellingIn(axis, object);
+  if (slot == fieldbus::kNoSlot) return {};
+  if (drive::isSetByPeople(*axis.config().profile, object.name)) return {};
+  return titleOf(object) + " travels in " + axis.device().carrierText(slot) +
          ", which would undo it in the next cycle; take it out of `pdos`";
 }
 

@@ -9,6 +9,8 @@
 namespace cia402::bus {
 
 /// Changes some bits of an object and leaves the others as they are: reads it, then writes it.
+/// Where it travels in the cycle its value there is changed, which the drive gets with the next
+/// one.
 /// @pre whoever does it has claimed the bits of the device (ObjectClaims)
 class BitChange {
  public:
@@ -25,11 +27,14 @@ class BitChange {
   /// What the object held before. Valid once it was read.
   std::uint64_t found() const { return found_; }
   /// The drive may have got it.
-  bool sent() const { return writing_; }
+  bool sent() const { return writing_ || travels(); }
 
  private:
+  bool travels() const { return slot_ != fieldbus::kNoSlot; }
+
   drive::Axis* axis_;
   const drive::ObjectSpec* object_;
+  fieldbus::Slot slot_;  ///< in the process image
   std::uint64_t mask_, bits_, found_ = 0;
   bool writing_ = false;
   fieldbus::Ticket ticket_;

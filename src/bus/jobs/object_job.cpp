@@ -128,6 +128,7 @@ std::string ObjectJob::beginWrite(const std::string& value) {
   std::string refusal = strangerRefusal();
   if (refusal.empty()) refusal = drive::doubtOf(axis_->config(), id_);
   if (refusal.empty()) refusal = calibrationRefusal();
+  if (refusal.empty()) refusal = powerRefusal();
   if (!refusal.empty()) return notWritten(refusal);
   if (!spec_) {
     stage_ = Stage::asking_size;
@@ -171,6 +172,12 @@ std::string ObjectJob::calibrationRefusal() const {
   if (why.empty()) return {};
   return "it shifts the drive's coordinates or holds its calibration, and " + why +
          ". Instead: " + insteadOf(mark_, axis_->config().name);
+}
+
+std::string ObjectJob::powerRefusal() const {
+  if (!spec_ || !spec_->when_disabled || mark_ != CoordinateMark::none) return {};
+  const std::string why = axis_->calibrationRefusal();
+  return why.empty() ? why : "the drive takes it while it is switched off only, and " + why;
 }
 
 /// What gives a drive another zero is not written twice.

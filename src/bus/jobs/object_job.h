@@ -49,6 +49,7 @@ class ObjectJob final : public Job {
   /// Why an object with a mark cannot be written now; empty: it can.
   std::string strangerRefusal() const;
   std::string calibrationRefusal() const;
+  std::string powerRefusal() const;
   /// It is of the device, and so of all axes in it.
   bool ofDevice() const { return !drive::axisOf(id_); }
   bool finishWrite(Time now);

@@ -187,6 +187,10 @@ ObjectText describeObject(const ObjectSpec* spec, const drive::AxisConfig& axis,
       drive::textOf(spec->words, fieldbus::isSigned(spec->type) ? fieldbus::toSigned(raw, bits)
                                                                 : static_cast<std::int64_t>(raw));
   if (!word.empty()) text.value += ": " + word;
+  const auto fields = axis.profile->bit_fields.find(spec->fields);
+  if (fields != axis.profile->bit_fields.end()) {
+    text.value += ": " + drive::fieldsText(fields->second, raw);
+  }
   return text;
 }
 

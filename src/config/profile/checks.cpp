@@ -86,13 +86,23 @@ Condition readCondition(yaml::Section& section, const yaml::Value& place,
   return condition;
 }
 
+/// Of `each_once`: the numbers that may stand in several objects.
+Condition readExceptions(yaml::Section& section, const std::vector<const ObjectSpec*>& objects) {
+  Condition condition;
+  if (const auto value = section.get("but")) condition.numbers = readNumbers(*value, objects);
+  return condition;
+}
+
 std::vector<const ObjectSpec*> readCheckedObjects(yaml::Section& section, const yaml::Value& place,
                                                   const DriveProfile& profile) {
   std::vector<const ObjectSpec*> objects;
   const auto one = section.get("object");
-  const auto several = section.get("any_of");
+  const auto once = section.get("each_once");
+  const auto several = once ? once : section.get("any_of");
   if (one.has_value() == several.has_value()) {
-    place.problem("needs `object`, a setting of the drive by name, or `any_of`, a list of these");
+    place.problem(
+        "needs `object`, a setting of the drive by name, or a list of these, `any_of` or "
+        "`each_once`");
   }
   if (one) objects.push_back(readSetting(*one, profile));
   if (several) {
@@ -128,7 +138,8 @@ void readWriting(yaml::Section& section, const std::vector<const ObjectSpec*>& o
   const ObjectSpec& object = *objects.front();
   if (check.before == SettingCheck::Before::homing) {
     value->problem("what is compared before homing is not written; use homing/writes");
-  } else if (check.condition.kind != Condition::Kind::is || objects.size() != 1) {
+  } else if (check.condition.kind != Condition::Kind::is || objects.size() != 1 ||
+             check.each_once) {
     value->problem("what is written must be given by `is`, of one `object`");
   } else if (check.condition.bits != -1) {
     value->problem("single bits (`bits`) are not written");
@@ -174,7 +185,9 @@ void readChecks(const yaml::Value& list, DriveProfile& profile) {
     SettingCheck check;
     const auto objects = readCheckedObjects(section, entry, profile);
     for (const ObjectSpec* object : objects) check.objects.push_back(object->name);
-    check.condition = readCondition(section, entry, objects);
+    check.each_once = section.has("each_once");
+    check.condition =
+        check.each_once ? readExceptions(section, objects) : readCondition(section, entry, objects);
     readMoment(section, profile, check);
     if (const auto unless = section.get("unless")) readUnless(*unless, profile, check);
     if (const auto otherwise = section.get("else")) {

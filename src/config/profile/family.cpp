@@ -247,6 +247,7 @@ void readDrive(yaml::Section& section, yaml::Section& timing, DriveProfile& prof
     readUnits(*units, profile);
   }
   if (const auto encodings = section.get("encodings")) readEncodings(*encodings, profile);
+  if (const auto fields = section.get("bit_fields")) readBitFields(*fields, profile);
   if (const auto objects = section.require("objects", "the drive's objects by name")) {
     readObjects(*objects, profile);
     checkFixedObjects(section, profile);
@@ -267,6 +268,7 @@ void readDrive(yaml::Section& section, yaml::Section& timing, DriveProfile& prof
     profile.before_enable = readWrites(*writes, profile, WriteList::running);
   }
   if (const auto list = section.get("checks")) readChecks(*list, profile);
+  if (const auto list = section.get("read_back")) profile.read_back = readSettings(*list, profile);
   if (const auto rule = section.get("counts_rule")) readCountsRule(*rule, profile);
   const auto setting = [&](const char* key, std::string& name) {
     const auto value = section.get(key);

@@ -106,6 +106,14 @@ std::string readProbeWord(const std::optional<yaml::Value>& value, const DrivePr
 
 }  // namespace
 
+std::optional<drive::ObjectBit> readOutputBit(const yaml::Value& value,
+                                              const DriveProfile& profile) {
+  yaml::Section section(value);
+  const auto bit = readObjectBit(section, profile, readChangeable);
+  section.finish();
+  return bit;
+}
+
 void readDigitalOutputs(const yaml::Value& value, DriveProfile& profile) {
   yaml::Section section(value);
   for (const auto& [name, entry] : section.entries()) readDigitalOutput(name, entry, profile);

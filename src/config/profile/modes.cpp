@@ -105,6 +105,26 @@ void readHandshake(yaml::Section& section, ModeSpec& mode) {
   }
 }
 
+/// What becomes of commands that the drive takes one after the other.
+void readOneByOne(yaml::Section& section, const DriveProfile& profile, ModeSpec& mode) {
+  Handover& handover = mode.handover;
+  section.read("queued", handover.queued);
+  const auto from = section.get("relative_to");
+  const auto index = from ? from->oneOf({"target", "demand", "position"}) : std::nullopt;
+  if (index) handover.from = static_cast<Handover::From>(*index + 1);
+  if (!handover.oneByOne()) return;
+  if (handover.acknowledge != Handover::Acknowledge::level || handover.words.size() != 2) {
+    section.problem("`queued` and `relative_to` need `handshake: new_set_point`");
+  }
+  if (((handover.words.empty() ? 0u : mode.controlword_bits) & 0x0070u) != 0) {
+    section.problem("`queued` and `relative_to` leave controlword bits 4 to 6 to the handshake");
+  }
+  if (handover.queued && !(mode.stop == StopBy::halt || (!mode.stop && profile.halt_supported))) {
+    section.problem(
+        "`queued` needs a drive that is stopped by the halt bit, which empties its queue");
+  }
+}
+
 void readStop(yaml::Section& section, ModeSpec& mode) {
   const auto value = section.get("stop");
   const auto index =
@@ -138,6 +158,7 @@ ModeSpec readMode(const std::string& name, const yaml::Value& value, const Drive
   readHandshake(section, mode);
   readStop(section, mode);
   section.readInteger("controlword_bits", mode.controlword_bits, 0, 0xFFFF);
+  readOneByOne(section, profile, mode);
   if ((mode.controlword_bits & kStateMachineBits) != 0) {
     section.problem("controlword_bits must leave bits 0 to 3 and 7 to the state machine");
   }
@@ -153,7 +174,7 @@ ModeSpec readMode(const std::string& name, const yaml::Value& value, const Drive
 }
 
 /// @param value the meaning, or `{text: meaning, moves: false}`
-drive::HomingMethod readMethod(const yaml::Value& value, int number) {
+drive::HomingMethod readMethod(const yaml::Value& value, int number, const DriveProfile& profile) {
   drive::HomingMethod method;
   method.moves = drive::movesByStandard(number);
   if (!value.isMap()) {
@@ -163,11 +184,15 @@ drive::HomingMethod readMethod(const yaml::Value& value, int number) {
   yaml::Section section(value);
   if (section.require("text", "say in words how home is found")) section.read("text", method.text);
   section.read("moves", method.moves);
+  if (const auto edge = section.get("edge")) {
+    method.edge = readOutputBit(*edge, profile);
+    if (method.moves) value.problem("an `edge` takes the present position: write `moves: false`");
+  }
   section.finish();
   return method;
 }
 
-void readMethods(const yaml::Value& value, HomingSpec& homing) {
+void readMethods(const yaml::Value& value, DriveProfile& profile) {
   yaml::Section section(value);
   for (const auto& [key, text] : section.entries()) {
     const auto number = yaml::parseInteger(key);
@@ -175,7 +200,7 @@ void readMethods(const yaml::Value& value, HomingSpec& homing) {
       text.problem("a homing method is a number from -128 to 127, not `" + key + "`");
     } else {
       const int method = static_cast<int>(*number);
-      homing.methods[method] = readMethod(text, method);
+      profile.homing.methods[method] = readMethod(text, method, profile);
     }
   }
   section.finish();
@@ -204,7 +229,7 @@ void readHoming(const yaml::Value& value, DriveProfile& profile) {
       kind_value ? kind_value->oneOf({"none", "drive", "declare_zero"}) : std::nullopt;
   enum Way : std::size_t { none, by_drive, declared };
   const std::size_t way = kind.value_or(none);
-  if (const auto methods = section.get("methods")) readMethods(*methods, homing);
+  if (const auto methods = section.get("methods")) readMethods(*methods, profile);
   section.read("needs_zero_attained_before_start", homing.needs_zero_attained_before_start);
   if (const auto writes = section.get("writes")) {
     homing.writes = readWrites(*writes, profile, WriteList::running);
@@ -218,7 +243,7 @@ void readHoming(const yaml::Value& value, DriveProfile& profile) {
   if (way == by_drive && profile.mode("homing") == nullptr) {
     section.problem("a drive that homes by itself needs a mode `homing`");
   }
-  if (way == declared) homing.methods[std::nullopt] = drive::HomingMethod{"declared", false};
+  if (way == declared) homing.methods[std::nullopt] = drive::HomingMethod{"declared", false, {}};
   section.finish();
 }
 

@@ -120,6 +120,26 @@ void readWords(yaml::Section& section, ObjectSpec& object) {
   }
 }
 
+void readFieldsName(yaml::Section& section, const DriveProfile& profile, ObjectSpec& object) {
+  const auto value = section.get("fields");
+  const auto name = value ? value->text() : std::nullopt;
+  if (!name) return;
+  const auto known = profile.bit_fields.find(*name);
+  if (known == profile.bit_fields.end()) {
+    value->problem("`bit_fields` has no `" + *name + "`");
+    return;
+  }
+  const unsigned bits = fieldbus::sizeBits(object.type);
+  for (const drive::BitField& field : known->second) {
+    if (field.high >= bits) {
+      value->problem("`" + field.name + "` of `" + *name + "` has bit " +
+                     std::to_string(field.high) + ", which " + fieldbus::toString(object.type) +
+                     " has not");
+    }
+  }
+  object.fields = *name;
+}
+
 ObjectSpec readObject(const std::string& name, const yaml::Value& value,
                       const DriveProfile& profile) {
   ObjectSpec object;
@@ -138,6 +158,8 @@ ObjectSpec readObject(const std::string& name, const yaml::Value& value,
   readMeaning(section, object, profile);
   readRange(section, object);
   readWords(section, object);
+  readFieldsName(section, profile, object);
+  section.read("when_disabled", object.when_disabled);
   section.finish();
   return object;
 }

@@ -32,6 +32,9 @@ using fieldbus::ObjectId;
 /// A unit such as "count/s" or "turn/min"; adds a problem if it does not suit the quantity.
 std::optional<UnitSpec> readUnit(const yaml::Value& value, Quantity quantity);
 void readUnits(const yaml::Value& value, DriveProfile& profile);
+/// `bit_fields`: what the bits of objects say.
+void readBitFields(const yaml::Value& value, DriveProfile& profile);
+/// @pre `bit_fields` were read
 void readObjects(const yaml::Value& value, DriveProfile& profile);
 void readEncodings(const yaml::Value& value, DriveProfile& profile);
 void readCoordinates(const yaml::Value& value, DriveProfile& profile);
@@ -56,11 +59,16 @@ void readChecks(const yaml::Value& list, DriveProfile& profile);
 /// The name of an object of the profile that holds a whole number and can be read; else a problem
 /// and nullptr. @pre objects were read
 const ObjectSpec* readSetting(const yaml::Value& value, const DriveProfile& profile);
+/// A list of such names. @pre objects were read
+std::vector<std::string> readSettings(const yaml::Value& list, const DriveProfile& profile);
 /// `counts_rule`. @pre objects were read
 void readCountsRule(const yaml::Value& value, DriveProfile& profile);
 /// `brake_release` of `timing`: a number, or an object that holds it. @pre objects were read
 void readBrakeRelease(yaml::Section& timing, DriveProfile& profile);
 
+/// `{object: NAME, bit: N}` of a whole number that can be read and written. @pre objects were read
+std::optional<drive::ObjectBit> readOutputBit(const yaml::Value& value,
+                                              const DriveProfile& profile);
 /// `outputs`, `inputs` and `touch_probe`. @pre objects were read
 void readDigitalOutputs(const yaml::Value& value, DriveProfile& profile);
 void readDigitalInputs(const yaml::Value& value, DriveProfile& profile);

@@ -20,8 +20,6 @@ const ObjectSpec* readSetting(const yaml::Value& value, const DriveProfile& prof
   return nullptr;
 }
 
-namespace {
-
 std::vector<std::string> readSettings(const yaml::Value& list, const DriveProfile& profile) {
   std::vector<std::string> names;
   for (const yaml::Value& entry : list.list()) {
@@ -29,8 +27,6 @@ std::vector<std::string> readSettings(const yaml::Value& list, const DriveProfil
   }
   return names;
 }
-
-}  // namespace
 
 void readCountsRule(const yaml::Value& value, DriveProfile& profile) {
   yaml::Section section(value);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "drive/modes/waiting_set_points.h"
 #include "drive/sentence.h"
 
 namespace cia402::drive {
@@ -22,6 +23,10 @@ Result<void> Commands::take(double value, ModeControl& mode, const SetPoint& sen
     return Error{refused + number(value) + " does not fit " + mode.targetText()};
   }
   if (!stream_.command) resume(mode, sent, stream_.clock);
+  if (!mode.takesMore()) {
+    return Error{refused + std::to_string(WaitingSetPoints::kMost) +
+                 " wait for those before already; give it again once some are reached"};
+  }
   stream_.command = value;
   stream_.commanded = now;
   stream_.dried_up = false;

@@ -56,6 +56,8 @@ class ModeControl {
   /// Begins from what was sent last, with the command that there is. @param at of the stream's
   /// clock
   virtual void beginStream(const Stream& /*stream*/, Time /*at*/) {}
+  /// There is room for a further command; not where each has to wait for the one before.
+  virtual bool takesMore() const { return true; }
   /// A new command is there, finite.
   virtual void takeCommand(Stream& /*stream*/) {}
   /// @return the set-point of this cycle; nothing: none is given. @pre there is a command

@@ -22,37 +22,101 @@ ProfilePosition::ProfilePosition(const ModeChannel& channel, const Context& cont
       by_hand_(!spec().handover.words.empty()),
       handshake_(spec().handover) {}
 
-/// The drive goes there by itself, but not beyond the limits.
-void ProfilePosition::takeCommand(Stream& stream) {
+double ProfilePosition::withinReach(double goal) const {
   motion::JointLimits range;
   range.lower = limits().lower;
   range.upper = limits().upper;
-  stream.command = motion::withinReach(range, *stream.command, state().position);
+  return motion::withinReach(range, goal, state().position);
+}
+
+void ProfilePosition::beginStream(const Stream&, Time) { waiting_.clear(); }
+
+/// The drive goes there by itself, but not beyond the limits.
+void ProfilePosition::takeCommand(Stream& stream) {
+  if (spec().handover.oneByOne()) {
+    waiting_.add(*stream.command);
+  } else {
+    stream.command = withinReach(*stream.command);
+  }
 }
 
 std::optional<double> ProfilePosition::follow(Stream& stream, Time) {
-  stream.at_rest = state().target_reached;
+  stream.at_rest = state().target_reached && waiting_.empty();
+  if (spec().handover.oneByOne()) return nextWaiting();
   if (sent().value() == *stream.command) return {};
   return stream.command;
 }
 
+/// The next command that waits, once the drive has taken the one before.
+std::optional<double> ProfilePosition::nextWaiting() {
+  if (waiting_.empty() || handshake_.busy()) return {};
+  if (spec().handover.relative() && !countsFromKnown()) return {};
+  const bool measured = spec().handover.from == Handover::From::position;
+  double goal = waiting_.first();
+  if (spec().handover.relative()) goal += measured ? state().position : sent().value();
+  waiting_.removeFirst();
+  goal = withinReach(goal);
+  if (!measured) return goal;
+  // The drive counts from where it is by then, which may be a count off.
+  const double margin = 2.0 * channel().conversion.resolution();
+  if (limits().upper && goal == *limits().upper) goal -= margin;
+  if (limits().lower && goal == *limits().lower) goal += margin;
+  return goal;
+}
+
+/// The drive counts the next distance from a place that is known here, too: the set-point before,
+/// or where the axis stands.
+bool ProfilePosition::countsFromKnown() {
+  if (!base_) {
+    std::uint64_t raw = 0;
+    if (encode(sent().value(), raw)) offer(raw, false);  // "stay here"
+    return false;
+  }
+  const Handover::From from = spec().handover.from;
+  if (from == Handover::From::target) return true;
+  if (goalAhead() || !feedback().standstill().still()) return false;
+  if (from == Handover::From::demand) return true;
+  std::uint64_t raw = 0;
+  if (!neutralRaw(raw)) return false;
+  base_ = raw;
+  return true;
+}
+
 void ProfilePosition::reset(std::uint64_t raw) {
   handshake_.reset(raw);
-  dropped_ = false;
+  waiting_.clear();
+  command_.reset();
+  base_.reset();
+  dropped_ = flushes_ = false;
+}
+
+/// `raw` as a distance from base_, as wide as the target.
+std::uint64_t ProfilePosition::distance(std::uint64_t raw) const {
+  const ObjectSpec* target = channel().target.spec;
+  const unsigned bits = target != nullptr ? fieldbus::sizeBits(target->type) : 64;
+  const std::uint64_t mask = bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
+  return (raw - *base_) & mask;
 }
 
 void ProfilePosition::offer(std::uint64_t raw, bool twice) {
-  if (by_hand_) handshake_.offer(raw, twice);
+  if (!by_hand_) return;
+  const bool command = spec().handover.oneByOne() && command_ == raw && !twice;
+  const bool counted = command && spec().handover.relative() && base_;
+  handshake_.offer({counted ? distance(raw) : raw, twice, command});
+  base_ = raw;
+  command_.reset();
 }
 
 void ProfilePosition::accepted(std::uint64_t raw, bool same) {
-  if (dropped_ && same) handshake_.offer(raw);  // once more
+  if (dropped_ && same) offer(raw, false);  // once more
   dropped_ = false;
+  command_ = raw;
 }
 
 unsigned ProfilePosition::bits() const {
   const unsigned bits = spec().controlword_bits;
-  return by_hand_ ? bits | handshake_.word() : bits;
+  if (!by_hand_) return bits;
+  return bits | handshake_.word() | (flushes_ ? controlword::kHalt : 0u);
 }
 
 const char* ProfilePosition::handOver(std::uint64_t& raw, Time now) {
@@ -67,14 +131,19 @@ const char* ProfilePosition::handOver(std::uint64_t& raw, Time now) {
   const char* waiting = handshake_.waitingFor();
   const bool well = handshake_.advance(input, now, axis().profile().timing.state_change);
   raw = handshake_.raw();
+  flushes_ = handshake_.blocked() || (flushes_ && handshake_.busy());
   if (well) return nullptr;
   dropped_ = true;
+  waiting_.clear();
+  base_.reset();
   return waiting;
 }
 
+/// On the way through its queue a drive comes by places at which it has reached a target.
 bool ProfilePosition::goalAhead() const {
-  return !state().target_reached &&
-         std::fabs(sent().value() - state().position) > feedback().standstill().tolerance();
+  const double away = std::fabs(sent().value() - state().position);
+  const bool reached = state().target_reached && !spec().handover.queued;
+  return !reached && away > feedback().standstill().tolerance();
 }
 
 bool ProfilePosition::mayTurnBack(Time now, Time seen_moving) const {

@@ -8,15 +8,9 @@ using Acknowledge = Handover::Acknowledge;
 
 }  // namespace
 
-void SetPointHandshake::offer(std::uint64_t raw, bool twice) {
-  next_ = raw;
-  next_twice_ = twice;
-  pending_ = true;
-}
-
 void SetPointHandshake::reset(std::uint64_t raw) {
   *this = SetPointHandshake(*handover_);
-  raw_ = raw;
+  present_.raw = raw;
 }
 
 void SetPointHandshake::enter(Phase phase, std::uint64_t frames, Time now) {
@@ -28,8 +22,7 @@ void SetPointHandshake::enter(Phase phase, std::uint64_t frames, Time now) {
 
 /// The target leaves, the words follow.
 void SetPointHandshake::announce(const Input& input, Time now) {
-  raw_ = next_;
-  twice_ = next_twice_;
+  present_ = next_;
   handed_over_ = 0;
   pending_ = false;
   enter(Phase::announced, input.target_frames, now);
@@ -65,10 +58,16 @@ void SetPointHandshake::lower(const Input& input, Time now) {
   phase_ = Phase::idle;
   timing_ = false;
   const bool unproved = handover_->acknowledge == Acknowledge::rise && was_acknowledged_;
-  if (++handed_over_ == 1 && (twice_ || unproved)) enter(Phase::announced, 0, now);
+  if (++handed_over_ == 1 && (present_.twice || unproved)) enter(Phase::announced, 0, now);
+}
+
+/// The drive has taken a command, and takes the next one once there is room for it.
+bool SetPointHandshake::waitsForRoom() const {
+  return handover_->queued && present_.command && phase_ == Phase::lowered && !pending_;
 }
 
 bool SetPointHandshake::advance(const Input& input, Time now, Duration timeout) {
+  acknowledged_ = input.acknowledged;
   const bool level = handover_->acknowledge == Acknowledge::level;
   switch (phase_) {
     case Phase::idle:
@@ -93,8 +92,9 @@ bool SetPointHandshake::advance(const Input& input, Time now, Duration timeout) 
       lower(input, now);
       break;
   }
+  if (waitsForRoom()) since_ = now;
   if (!timing_ || now - since_ < timeout) return true;
-  reset(raw_);
+  reset(present_.raw);
   return false;
 }
 

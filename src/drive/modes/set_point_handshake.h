@@ -26,11 +26,22 @@ class SetPointHandshake {
   /// @param handover of the mode, with at least two words; must outlive this.
   explicit SetPointHandshake(const Handover& handover) : handover_(&handover) {}
 
+  /// A set-point that is to be handed over.
+  struct Offer {
+    std::uint64_t raw = 0;  ///< for the target object
+    bool twice = false;     ///< see offer()
+    bool command = false;   ///< its words are Handover::ofCommand()
+  };
+
   /// Wants `raw` to be the set-point. Replaces one that has not been handed over yet.
   /// @param twice once more after the first acknowledge, which proves that the drive has the target
   ///   where one frame holds both: then the second edge cannot take the previous one, whatever is
   ///   lost
-  void offer(std::uint64_t raw, bool twice = false);
+  void offer(std::uint64_t raw, bool twice = false) { offer(Offer{raw, twice, false}); }
+  void offer(const Offer& offer) {
+    next_ = offer;
+    pending_ = true;
+  }
   /// Forgets everything, the controlword rests. `raw` is what the target object shall hold
   /// meanwhile.
   void reset(std::uint64_t raw);
@@ -38,11 +49,19 @@ class SetPointHandshake {
   /// and the set-point is dropped.
   [[nodiscard]] bool advance(const Input& input, Time now, Duration timeout);
 
-  std::uint64_t raw() const { return raw_; }  ///< for the target object
+  std::uint64_t raw() const { return present_.raw; }  ///< for the target object
   /// For the controlword: one of Handover::words.
-  std::uint16_t word() const { return handover_->words[word_]; }
+  std::uint16_t word() const {
+    const bool command = present_.command && word_ > 0;
+    return command ? handover_->ofCommand(word_) : handover_->words[word_];
+  }
   /// A set-point is on its way: the drive's target-reached bit still speaks of the one before.
   bool busy() const { return pending_ || phase_ != Phase::idle; }
+  /// A set-point that is to count at once waits for a drive whose queue is full of commands.
+  bool blocked() const {
+    return handover_->queued && pending_ && !next_.command && acknowledged_ &&
+           (phase_ == Phase::idle || phase_ == Phase::lowered);
+  }
   /// What the drive does not do that is waited for, in words.
   const char* waitingFor() const;
 
@@ -52,6 +71,7 @@ class SetPointHandshake {
   void announce(const Input& input, Time now);
   void raise(const Input& input, Time now);
   void lower(const Input& input, Time now);
+  bool waitsForRoom() const;
   bool sentLongEnough(const Input& input) const;
   bool waitsForAcknowledge() const;
 
@@ -59,11 +79,12 @@ class SetPointHandshake {
   Phase phase_ = Phase::idle;
   std::size_t word_ = 0;
   bool pending_ = false;
-  bool next_twice_ = false, twice_ = false;
   int handed_over_ = 0;            ///< how often the present set-point was
   bool was_acknowledged_ = false;  ///< before the first word
+  bool acknowledged_ = false;      ///< in this cycle
   bool timing_ = false;            ///< `since_` is valid while waiting in idle
-  std::uint64_t raw_ = 0, next_ = 0, frames_ = 0;
+  Offer present_, next_;
+  std::uint64_t frames_ = 0;
   Time since_{};
 };
 

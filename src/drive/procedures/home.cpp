@@ -1,5 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "drive/procedures/home_by_drive.h"
+#include "drive/procedures/home_by_edge.h"
 #include "drive/procedures/procedure.h"
 #include "drive/procedures/steps/declare.h"
 #include "drive/sentence.h"
@@ -62,6 +63,11 @@ Result<std::unique_ptr<Procedure>> makeHome(AxisCore& axis) {
   if (methods.empty()) {
     return Error{axis.who() + ": cannot home: the drive family " + axis.profile().name +
                  " knows no homing; set_position declares the present position"};
+  }
+  const auto method = methods.find(axis.config().homing->method);
+  if (method != methods.end() && method->second.edge) {
+    if (mayHavePower(axis)) return Error{axis.who() + ": cannot home: " + calibrationRefusal(axis)};
+    return std::unique_ptr<Procedure>(std::make_unique<HomeByEdge>(axis, method->second));
   }
   const bool declared = !axis.config().homing->method && methods.count(std::nullopt) != 0;
   if (!declared) return makeDriveHoming(axis);

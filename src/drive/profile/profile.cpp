@@ -135,14 +135,6 @@ StopBy stopBy(const ModeSpec& mode, const DriveProfile& profile) {
   return mode.kind == ControlKind::torque ? StopBy::quick_stop : StopBy::set_points;
 }
 
-Handover standardHandover(bool acknowledged) {
-  constexpr std::uint16_t kNewSetPoint = 1u << 4, kChangeAtOnce = 1u << 5;
-  Handover handover;
-  handover.words = {kChangeAtOnce, kChangeAtOnce | kNewSetPoint};
-  handover.acknowledge = acknowledged ? Handover::Acknowledge::level : Handover::Acknowledge::none;
-  return handover;
-}
-
 std::string canonicalModeName(const std::string& name) {
   static constexpr std::pair<const char*, const char*> kShortForms[] = {
       {"pp", "profile_position"}, {"vl", "velocity"},         {"pv", "profile_velocity"},

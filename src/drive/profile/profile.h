@@ -10,8 +10,10 @@
 #include <vector>
 
 #include "cia402_driver/common/time.h"
+#include "drive/profile/bit_fields.h"
 #include "drive/profile/bus_settings.h"
 #include "drive/profile/error_texts.h"
+#include "drive/profile/handover.h"
 #include "drive/profile/io.h"
 #include "drive/profile/number_texts.h"
 #include "drive/profile/object_range.h"
@@ -89,6 +91,8 @@ struct ObjectSpec {
   };
   std::optional<Range> range;
   NumberTexts words;  ///< what single numbers of it mean
+  std::string fields;          ///< of DriveProfile::bit_fields, what its bits say; empty: nothing
+  bool when_disabled = false;  ///< services write it only while the axis is disabled and stands
   bool readable = true;
   bool writable = true;
   bool rpdo = false;                  ///< may be mapped into an RPDO
@@ -110,24 +114,6 @@ enum class ControlKind : std::uint8_t { position, velocity, torque, homing };
 std::vector<std::string> controlKindWords();
 /// What the target of a mode of this kind measures; none: it has no target.
 Quantity targetQuantity(ControlKind kind);
-
-/// How set-points are handed to a drive one by one, by bits of the controlword (CiA 402-2, profile
-/// position mode).
-struct Handover {
-  /// What becomes of ModeSpec::set_point_acknowledge_bit.
-  enum class Acknowledge : std::uint8_t {
-    none,   ///< there is no such bit
-    level,  ///< it rises with the last word, and falls once the words are back at rest
-    rise,   ///< it rises, but may stay set from then on
-  };
-  /// Bits beside those of the state machine and the mode: at rest, then those that hand a set-point
-  /// over, one after the other. Empty: a written target counts at once.
-  std::vector<std::uint16_t> words;
-  Acknowledge acknowledge = Acknowledge::none;
-  int each_for = 2;  ///< controlwords that each is sent in, at least; 1 to 10
-};
-/// That of CiA 402-2: bit 5 is held (change at once), bit 4 hands over.
-Handover standardHandover(bool acknowledged);
 
 /// What brings an axis to rest while its drive stays in operation.
 enum class StopBy : std::uint8_t {
@@ -216,6 +202,9 @@ struct ModeChange {
 struct HomingMethod {
   std::string text;   ///< in words: "home switch from the positive side, index pulse on it"
   bool moves = true;  ///< false: the present position is home, so that it is over at once
+  /// A rising edge of this bit makes the present position the drive's zero; nothing else is told to
+  /// it, and it is done while the axis is disabled.
+  std::optional<ObjectBit> edge;
 };
 
 /// Does a method of this number move the axis by CiA 402-2 (6098h)? 35 and 37 do not.
@@ -253,6 +242,7 @@ struct DriveProfile {
   std::map<Quantity, UnitSpec> units;
   bool output_shaft = false;  ///< units count at the joint's side of the gear
   std::vector<ObjectSpec> objects;
+  std::map<std::string, BitFields> bit_fields;  ///< by the names that objects call them by
   /// How numbers sit in objects that have no name, or a name without an encoding of its own.
   ObjectRanges<Encoding> encodings;
   /// Objects that shift coordinates or hold calibration, besides those of the standard.
@@ -280,6 +270,7 @@ struct DriveProfile {
   std::vector<NamedWrite> startup;        ///< at every boot
   std::vector<NamedWrite> before_enable;  ///< each time before enabling
   std::vector<SettingCheck> checks;       ///< what the drive must be set to, or say
+  std::vector<std::string> read_back;     ///< objects that are compared with what was written
   CountsRule counts_rule;                 ///< compared with counts_per_turn before enabling
   std::string rated_torque;               ///< object that holds that of the motor, in N m; or empty
   std::string not_ready_reason;  ///< object whose words say why it cannot be enabled; or empty

@@ -34,6 +34,8 @@ struct SettingCheck {
   };
   /// One of these must hold the condition; by their names in the profile, whole numbers.
   std::vector<std::string> objects;
+  /// Instead: a number stands in one of them at most, but for those of the condition.
+  bool each_once = false;
   Condition condition;
   Before before = Before::enabling;
   // When it counts; empty: always.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sim/definition/quirks.h"
+#include "sim/definition/terminals.h"
 #include "sim/device/device.h"
 #include "sim/dictionary/template.h"
 #include "sim/drive/drive.h"
@@ -45,15 +46,24 @@ struct ModeDefinition {
   bool handshake = true;  ///< profile_position: new set-points by controlword bit 4
   Bit12 bit_12 = Bit12::none;
   Bit13 bit_13 = Bit13::none;
-  bool target_reached = true;    ///< statusword bit 10 is used
-  std::optional<Role> velocity;  ///< speed (limit) of the mode, none: only the maxima
-  std::optional<Role> torque;    ///< torque limit of the mode
-  bool stops_fade = false;       ///< torque modes: 6087h lets the torque go, and nothing brakes
-  bool delayed = false;          ///< interpolated_position: a set-point begins one SYNC later
+  bool target_reached = true;       ///< statusword bit 10 is used
+  std::optional<Role> velocity;     ///< speed (limit) of the mode, none: only the maxima
+  std::optional<Role> torque;       ///< torque limit of the mode
+  bool stops_fade = false;          ///< torque modes: 6087h lets the torque go, and nothing brakes
+  bool delayed = false;             ///< interpolated_position: a set-point begins one SYNC later
+  std::int64_t queue = 1;           ///< profile_position: set-points that may wait for those before
+  bool stop_empties_queue = false;  ///< whatever stops the motor takes those away
 };
 
 /// When position limits (607Dh) count, by the value of an object of the maker's own.
 enum class LimitUse : std::uint8_t { off, on, homed };
+
+/// Which of 607Bh and 607Dh limits positions.
+enum class RangeUse : std::uint8_t {
+  none,     ///< 607Dh alone
+  farther,  ///< on each side the one that is farther from 0
+  greater,  ///< on each side the greater number
+};
 
 /// How motion ends.
 enum class Ramp : std::uint8_t {
@@ -99,6 +109,11 @@ struct FaultDefinition {
   std::optional<Ramp> reaction;  ///< instead of 605Eh, e.g. coast where the stage is broken
   bool voltage_lost = false;     ///< statusword bit 4 goes while the cause lasts
   std::int64_t details = 0;      ///< in the object of the role error_details
+  /// Object whose number says what becomes of it: reaction (bits 24 to 31), resets itself (16 to
+  /// 23), code. See AlarmWords.
+  std::optional<fieldbus::ObjectId> word;
+  bool tells = true;    ///< false: nothing happens but that the drive may remember it
+  bool records = true;  ///< in 1003h
 };
 
 /// What keeps the drive from being switched on, or lets the power go where it is, without a fault:
@@ -172,6 +187,7 @@ struct DriveDefinition {
   /// By the value of the object of the role sync_tolerance: the share of its period by which SYNC
   /// may be off in interpolated position before the fault `sync_error`; 0: anything.
   std::vector<double> sync_tolerances;
+  RangeUse range_use = RangeUse::none;
   std::vector<LimitUse> limit_uses;  ///< by the value of the role position_limits_use; empty: on
   std::vector<fieldbus::ObjectId> locked_while_enabled;
   DriveQuirks quirks;
@@ -180,6 +196,7 @@ struct DriveDefinition {
   OptionTable quick_stop, shutdown, disable_operation, halt_option, fault_reaction;
 
   DriveHomingDefinition homing;
+  TerminalsDefinition terminals;
   ProbeForgets probe_forgets = ProbeForgets::disarmed;
 
   double enables_below = 0.0;  ///< turns/s; faster it raises `turning_at_enable`. 0: always

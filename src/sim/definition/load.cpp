@@ -10,6 +10,7 @@
 #include "sim/definition/read_objects.h"
 #include "sim/definition/read_quirks.h"
 #include "sim/definition/read_state_machine.h"
+#include "sim/definition/read_terminals.h"
 #include "sim/definition/reader.h"
 #include "sim/dictionary/axis_objects.h"
 #include "yaml/reader.h"
@@ -85,6 +86,7 @@ void readDefinition(DefinitionReader& reader, bool extends, DriveDefinition& out
   reader.section("state_machine", [&](DefinitionReader& r) { readStateMachine(r, out); });
   reader.section("quirks", [&](DefinitionReader& r) { readQuirks(r, out.quirks); });
   reader.section("homing", [&](DefinitionReader& r) { readHoming(r, out.homing); });
+  reader.section("terminals", [&](DefinitionReader& r) { readTerminals(r, out.terminals); });
   reader.section("touch_probe", [&](DefinitionReader& r) {
     r.read<ProbeForgets>("forgets", out.probe_forgets,
                          {{"disarmed", ProbeForgets::disarmed},

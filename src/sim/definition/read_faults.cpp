@@ -35,6 +35,12 @@ void readFault(const std::string& name, const yaml::Value& from, DriveDefinition
     }
   }
   reader.read("details", fault.details, 0, 0xFFFFFFFF);
+  if (reader.has("word")) {
+    std::string text;
+    reader.read("word", text);
+    fault.word = fieldbus::parseObjectId(text);
+    if (!fault.word) reader.problem("word", "must be an object like \"200E:01\"");
+  }
   reader.read("resettable", fault.resettable);
   reader.read("warning", fault.warning);
   reader.read("holds", fault.holds);

@@ -92,6 +92,8 @@ void readMode(const std::string& number, const yaml::Value& from, DefinitionRead
   mode.torque = readRole(reader, "torque");
   reader.read("delayed", mode.delayed);
   reader.read("stops_fade", mode.stops_fade);
+  reader.read("queue", mode.queue, 1, 64);
+  reader.read("stop_empties_queue", mode.stop_empties_queue);
   const auto known = std::find_if(out.modes.begin(), out.modes.end(),
                                   [&](const auto& other) { return other.number == mode.number; });
   known == out.modes.end() ? out.modes.push_back(mode) : void(*known = mode);

@@ -7,6 +7,8 @@
 namespace cia402::sim {
 namespace {
 
+const std::vector<std::pair<const char*, RangeUse>> kRangeUses = {
+    {"none", RangeUse::none}, {"farther", RangeUse::farther}, {"greater", RangeUse::greater}};
 const std::vector<std::pair<const char*, ConnectionLoss>> kConnectionLoss = {
     {"none", ConnectionLoss::none},
     {"fault", ConnectionLoss::fault},
@@ -38,6 +40,7 @@ void readSupervision(DefinitionReader& reader, DriveDefinition& out) {
   reader.list("sync_tolerances", [&](const yaml::Value& item) {
     out.sync_tolerances.push_back(item.number({0.0, 10.0, false}).value_or(0.0));
   });
+  reader.read("position_range", out.range_use, kRangeUses);
   if (reader.has("position_limits")) out.limit_uses.clear();
   reader.list("position_limits", [&](const yaml::Value& item) {
     const auto index = item.oneOf({"off", "on", "homed"});

@@ -347,6 +347,10 @@ void Device::sendEmergency(std::uint16_t code, std::uint8_t error_register,
   impl_->emergency.send(code, error_register, vendor);
 }
 
+void Device::rememberError(std::uint16_t code, const std::array<std::uint8_t, 5>& vendor) {
+  if (powered()) impl_->emergency.remember(code, vendor);
+}
+
 Time Device::jamsUntil() const { return impl_->jams_until; }
 
 std::optional<ReceivedTime> Device::lastTime() const { return impl_->clock.last(); }

@@ -193,6 +193,8 @@ class Device {
   /// disabled or missing. CiA 301, 7.2.7.
   void sendEmergency(std::uint16_t code, std::uint8_t error_register,
                      const std::array<std::uint8_t, 5>& vendor, Time now);
+  /// Enters an error into 1003h and tells nobody.
+  void rememberError(std::uint16_t code, const std::array<std::uint8_t, 5>& vendor);
   /// The last TIME message heard since power-on or reset.
   std::optional<ReceivedTime> lastTime() const;
   /// The controller went bus-off: reacts like to the loss of the master.

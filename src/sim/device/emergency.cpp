@@ -59,9 +59,13 @@ void SlaveEmergency::reset() {
 void SlaveEmergency::send(std::uint16_t code, std::uint8_t error_register,
                           const std::array<std::uint8_t, 5>& vendor) {
   if (Entry* entry = context_.dictionary.find(kErrorRegister)) entry->number = error_register;
+  remember(code, vendor);
+  queue(code, error_register, vendor);
+}
+
+void SlaveEmergency::remember(std::uint16_t code, const std::array<std::uint8_t, 5>& vendor) {
   const std::uint32_t additional = vendor[0] | static_cast<std::uint32_t>(vendor[1]) << 8U;
   enterHistory(code | additional << 16U);
-  queue(code, error_register, vendor);
 }
 
 void SlaveEmergency::clear(std::uint8_t remaining) {

@@ -20,6 +20,8 @@ class SlaveEmergency {
   void reset();
   void send(std::uint16_t code, std::uint8_t error_register,
             const std::array<std::uint8_t, 5>& vendor);
+  /// Enters an error into 1003h and tells nobody.
+  void remember(std::uint16_t code, const std::array<std::uint8_t, 5>& vendor);
   /// An error is gone: EMCY 0x0000. @param remaining 1001h from now on, of other errors.
   void clear(std::uint8_t remaining = 0);
   /// A communication error begins: reports it once, until resolve() with the same flag.

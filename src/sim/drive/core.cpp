@@ -35,7 +35,7 @@ DriveCore::DriveCore(const DriveDefinition& definition, unsigned axis,
       motion_(definition, definition.motors[axis], mechanics, values_),
       modes_(definition, values_, motion_),
       power_(definition, mechanics, values_, motion_, modes_),
-      faults_(definition, values_),
+      faults_(definition, values_, dictionary),
       reports_(reports) {}
 
 void DriveCore::start(bool cold, Time now) {
@@ -273,8 +273,10 @@ std::uint32_t DriveCore::refuseWrite(const Entry& entry, std::uint64_t number) c
   return sim::refuseWrite(definition_, values_, situation, entry, number);
 }
 
-void DriveCore::raise(const FaultDefinition& fault) {
+void DriveCore::raise(const FaultDefinition& known) {
   if (!on_) return;
+  const FaultDefinition& fault = faults_.asSet(known);
+  if (!fault.tells) return reports_.emergency(fault);
   faults_.add(fault, now_);
   values_.setRaw(Role::error_code, fault.code);
   values_.setRaw(Role::error_details, fault.details);

@@ -14,6 +14,7 @@
 #include "sim/drive/emergency_sender.h"
 #include "sim/drive/gate.h"
 #include "sim/drive/parameter_store.h"
+#include "sim/drive/terminals.h"
 
 namespace cia402::sim {
 namespace {
@@ -25,10 +26,13 @@ constexpr Duration kSoftwareReset = std::chrono::milliseconds(10);  // the write
 struct Axis {
   Axis(const DriveDefinition& definition, unsigned number, const AxisMechanics& axis_mechanics,
        ObjectDictionary& dictionary, DriveCore::Reports& reports)
-      : mechanics(axis_mechanics), core(definition, number, mechanics, dictionary, reports) {}
+      : mechanics(axis_mechanics),
+        core(definition, number, mechanics, dictionary, reports),
+        terminals(definition.terminals, dictionary) {}
 
   AxisMechanics mechanics;
   DriveCore core;
+  Terminals terminals;
   unsigned bad_floats = 0;
 };
 
@@ -77,7 +81,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
       });
       const auto role = roleOf(entry);
       const Encoding encoding = encodingOf(entry);
-      if (role || encoding != Encoding::integer) {
+      if (role || encoding != Encoding::integer || axes.front().terminals.holds(entry.id)) {
         dictionary.onWrite(entry.id,
                            [this, role, encoding](const Entry& e) { written(e, role, encoding); });
       }
@@ -136,6 +140,10 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
     if (role == Role::software_reset && entry.number == 1) reset_at = now + kSoftwareReset;
     const bool command = role == Role::emergency_stop || role == Role::homing_start;
     if (role == Role::alarm_select || (command && entry.number == 1)) axis.core.onWrite(*role);
+    if (axis.terminals.holds(entry.id)) {
+      obey(axis.terminals.look(axis.core.motion().switches()), axis.core, dictionary,
+           definition->fault("terminal_setup"));
+    }
   }
 
   bool badFloat(double value) const {
@@ -163,6 +171,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
   void onPowerOn(Time time) override {
     now = time;
     heard = false;
+    for (Axis& axis : axes) axis.terminals.start(axis.core.motion().switches());
     forEach(&DriveCore::start, cold, time);
     cold = false;
   }

@@ -15,6 +15,8 @@ constexpr Duration kChatterInterval = std::chrono::milliseconds(80);
 }  // namespace
 
 void EmergencySender::report(const FaultDefinition& fault, std::uint8_t error_register, Time now) {
+  if (!fault.tells && fault.records) device_.rememberError(fault.code, fault.vendor);
+  if (!fault.tells) return;
   device_.sendEmergency(fault.code, error_register, fault.vendor, now);
   if (!definition_.quirks.emergency_chatter) return;
   chatter_ = {&fault, error_register, kChatters, now + kChatterInterval};

@@ -11,8 +11,9 @@ constexpr std::size_t kMostCauses = 16;
 
 }  // namespace
 
-FaultMemory::FaultMemory(const DriveDefinition& definition, DriveValues& values)
-    : definition_(definition), alarms_(values) {
+FaultMemory::FaultMemory(const DriveDefinition& definition, DriveValues& values,
+                         ObjectDictionary& dictionary)
+    : definition_(definition), alarms_(values), words_(definition, dictionary) {
   causes_.reserve(kMostCauses);
 }
 
@@ -55,7 +56,9 @@ bool FaultMemory::endByThemselves() const {
 }
 
 bool FaultMemory::endWarning(const FaultDefinition& warning) {
-  const auto over = [&warning](const Cause& cause) { return cause.fault == &warning; };
+  const auto over = [&warning](const Cause& cause) {
+    return cause.fault->warning && cause.fault->name == warning.name;
+  };
   const auto kept = std::remove_if(causes_.begin(), causes_.end(), over);
   if (kept == causes_.end()) return false;
   causes_.erase(kept, causes_.end());

@@ -7,6 +7,7 @@
 #include "canopen/nmt/nmt.h"
 #include "sim/definition/drive_definition.h"
 #include "sim/drive/alarm_memory.h"
+#include "sim/drive/alarm_words.h"
 
 namespace cia402::sim {
 
@@ -15,7 +16,10 @@ namespace cia402::sim {
 class FaultMemory {
  public:
   /// Both must outlive it.
-  FaultMemory(const DriveDefinition& definition, DriveValues& values);
+  FaultMemory(const DriveDefinition& definition, DriveValues& values, ObjectDictionary& dictionary);
+
+  /// The error as the drive is set.
+  const FaultDefinition& asSet(const FaultDefinition& fault) { return words_.asSet(fault); }
 
   /// Power-on or reset: nothing has happened.
   void start(Time now);
@@ -60,6 +64,7 @@ class FaultMemory {
 
   const DriveDefinition& definition_;
   AlarmMemory alarms_;
+  AlarmWords words_;
   std::vector<Cause> causes_;
   bool warning_ = false;
   std::int64_t tries_ = 0;       ///< to reset the present faults

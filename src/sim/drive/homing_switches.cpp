@@ -1,12 +1,34 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "sim/drive/homing_switches.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 namespace cia402::sim {
 
+bool AxisSwitches::connected(HomingInput input) const {
+  return all_ || std::any_of(terminals_.begin(), terminals_.end(),
+                             [input](const Terminal& at) { return at.input == input; });
+}
+
+unsigned AxisSwitches::levels(double turns) const {
+  if (all_) {
+    return (negativeLimit(turns) ? 1U : 0U) | (positiveLimit(turns) ? 2U : 0U) |
+           (home(turns) ? 4U : 0U);
+  }
+  unsigned bits = 0;
+  for (std::size_t i = 0; i < terminals_.size(); ++i) {
+    const Terminal& terminal = terminals_[i];
+    const bool low = terminal.active_low && terminal.input != HomingInput::none;
+    if (active(terminal.input, turns) != low) bits |= 1U << i;
+  }
+  return bits;
+}
+
 bool AxisSwitches::home(double turns) const {
-  return mechanics_->home_switch_low < mechanics_->home_switch_high &&
+  return connected(HomingInput::home_switch) &&
+         mechanics_->home_switch_low < mechanics_->home_switch_high &&
          turns >= mechanics_->home_switch_low && turns <= mechanics_->home_switch_high;
 }
 

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "sim/drive/drive.h"
 #include "sim/drive/homing_route.h"
@@ -14,8 +16,26 @@ class AxisSwitches {
  public:
   explicit AxisSwitches(const AxisMechanics& mechanics) : mechanics_(&mechanics) {}
 
-  bool negativeLimit(double turns) const { return turns <= mechanics_->negative_limit_switch; }
-  bool positiveLimit(double turns) const { return turns >= mechanics_->positive_limit_switch; }
+  /// A terminal of the drive, and which switch is there.
+  struct Terminal {
+    HomingInput input = HomingInput::none;
+    bool active_low = false;
+  };
+  /// From now on a switch that is at none of these terminals does not exist.
+  void connect(std::vector<Terminal> terminals) {
+    terminals_ = std::move(terminals);
+    all_ = false;
+  }
+  /// The electrical levels of the terminals, a bit each; without connect() the bits are those of
+  /// negative limit, positive limit and home switch.
+  unsigned levels(double turns) const;
+
+  bool negativeLimit(double turns) const {
+    return turns <= mechanics_->negative_limit_switch && connected(HomingInput::negative_limit);
+  }
+  bool positiveLimit(double turns) const {
+    return turns >= mechanics_->positive_limit_switch && connected(HomingInput::positive_limit);
+  }
   /// Whether the home switch is active there.
   bool home(double turns) const;
   /// Is this switch active here? `none` never is.
@@ -28,7 +48,11 @@ class AxisSwitches {
   std::optional<double> indexBetween(double from, double to) const;
 
  private:
+  bool connected(HomingInput input) const;
+
   const AxisMechanics* mechanics_;
+  std::vector<Terminal> terminals_;
+  bool all_ = true;  ///< every switch is connected
 };
 
 }  // namespace cia402::sim

@@ -32,7 +32,7 @@ bool DriveMotion::inMode(ModeBehaviour behaviour) const {
 }
 
 bool DriveMotion::positionControlled() const {
-  if (stop_ || held_ || axis_.mode == nullptr) return true;
+  if (stop_ || held_ || axis_.mode == nullptr || axis_.dropsTargets()) return true;
   switch (axis_.mode->behaviour) {
     case ModeBehaviour::velocity:
     case ModeBehaviour::profile_velocity:
@@ -82,6 +82,7 @@ void DriveMotion::stop(Ramp ramp) {
   axis_.demand.takeOver(axis_.motor, time_constant_);
   if (fadesInStops()) axis_.demand.torque = torque;
   stop_ = ramp;
+  set_points_.stopped();
 }
 
 void DriveMotion::release() {
@@ -132,7 +133,8 @@ void DriveMotion::homeByObject() {
 
 void DriveMotion::cyclicTarget(double seconds, double into) {
   if (!cyclic_.ofThisMode()) return;
-  const bool follows = cyclic_.follows(modeBit()) && powered_ && !stop_ && !held_;
+  const bool follows =
+      cyclic_.follows(modeBit()) && powered_ && !stop_ && !held_ && !axis_.dropsTargets();
   follows ? cyclic_.target(seconds, into) : cyclic_.forget();
 }
 
@@ -176,7 +178,7 @@ void DriveMotion::stepRotor(double from) {
     const bool locked = ramps_locked_ && !halted_ && inMode(ModeBehaviour::velocity);
     locked ? axis_.keepSpeed() : axis_.slowDown(*stop_);
     axis_.motor.followPosition(demand.position);
-  } else if (held_ || axis_.mode == nullptr) {
+  } else if (held_ || axis_.mode == nullptr || axis_.dropsTargets()) {
     demand.velocity = 0.0;
     axis_.motor.followPosition(demand.position);
   } else {
@@ -218,10 +220,11 @@ std::uint16_t DriveMotion::statusBits() const {
   if (mode->behaviour == ModeBehaviour::homing) return bits | homing_.statusBits(halted_);
   const bool reached = cyclic_.ofThisMode() ? cyclic_.reached() : supervision_.targetReached();
   if (mode->target_reached && reached) bits |= 0x0400;
-  const bool bit_12 = (mode->bit_12 == Bit12::acknowledge && set_points_.acknowledged()) ||
-                      (mode->bit_12 == Bit12::zero_speed && supervision_.atZeroSpeed()) ||
-                      (mode->bit_12 == Bit12::follows && !stop_ && !held_ &&
-                       (!cyclic_.ofThisMode() || cyclic_.follows(modeBit())));
+  const bool bit_12 =
+      (mode->bit_12 == Bit12::acknowledge && set_points_.acknowledged()) ||
+      (mode->bit_12 == Bit12::zero_speed && supervision_.atZeroSpeed()) ||
+      (mode->bit_12 == Bit12::follows && !stop_ && !held_ && !axis_.dropsTargets() &&
+       (!cyclic_.ofThisMode() || cyclic_.follows(modeBit())));
   if (bit_12) bits |= 0x1000;
   if (mode->bit_13 == Bit13::following_error && followingErrorExceeded()) bits |= 0x2000;
   return bits;
@@ -249,10 +252,7 @@ void DriveMotion::publish() {
   values.set(Role::velocity_demand, axis_.demand.velocity);
   values.set(Role::following_error_actual,
              powered_ && positionControlled() ? axis_.demand.position - turns : 0.0);
-  const AxisSwitches& switches = axis_.switches;
-  values.setRaw(Role::digital_inputs,
-                static_cast<std::int64_t>(inputs_) | (switches.negativeLimit(turns) ? 1 : 0) |
-                    (switches.positiveLimit(turns) ? 2 : 0) | (switches.home(turns) ? 4 : 0));
+  values.setRaw(Role::digital_inputs, static_cast<std::int64_t>(inputs_ | axis_.switches.levels(turns)));
 }
 
 }  // namespace cia402::sim

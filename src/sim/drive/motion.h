@@ -70,6 +70,7 @@ class DriveMotion {
   TouchProbes& probes() { return probes_; }
   /// Further bits of the inputs (60FDh) that are 1.
   void setInputs(std::uint32_t bits) { inputs_ = bits; }
+  AxisSwitches& switches() { return axis_.switches; }
   /// Actual and demand values, inputs into the dictionary.
   void publish();
 

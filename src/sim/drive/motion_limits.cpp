@@ -62,10 +62,22 @@ bool MotionLimits::positionsCount() const {
   return use == LimitUse::on || (use == LimitUse::homed && homed_);
 }
 
+/// Of 607Bh and 607Dh the one that counts, by the numbers of the drive.
+MotionLimits::Span MotionLimits::software() const {
+  const auto one = [this](Role limit, Role range) {
+    const double first = values_.get(limit, 0.0);
+    if (definition_.range_use == RangeUse::none) return first;
+    const double other = values_.get(range, first);
+    if (definition_.range_use == RangeUse::greater) return std::max(first, other);
+    return std::fabs(other) > std::fabs(first) ? other : first;
+  };
+  return {one(Role::position_minimum, Role::position_range_minimum),
+          one(Role::position_maximum, Role::position_range_maximum)};
+}
+
 std::optional<MotionLimits::Span> MotionLimits::positions() const {
   if (!values_.has(Role::position_minimum) || !positionsCount()) return std::nullopt;
-  const Span span{values_.get(Role::position_minimum, 0.0),
-                  values_.get(Role::position_maximum, 0.0)};
+  const Span span = software();
   const double all = values_.range(Role::position_minimum);
   const double most = all - all / std::ldexp(1.0, 31);
   if (span.low >= span.high || (all > 0.0 && span.high - span.low >= most)) return std::nullopt;

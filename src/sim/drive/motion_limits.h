@@ -65,6 +65,7 @@ class MotionLimits {
  private:
   double velocityModeRamp(Role speed, Role time) const;
   bool positionsCount() const;
+  Span software() const;
 
   const DriveDefinition& definition_;
   const DriveValues& values_;

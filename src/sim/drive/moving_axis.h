@@ -29,6 +29,11 @@ class MovingAxis {
   void slowDown(Ramp ramp);
   /// One step at the speed of the demand.
   void keepSpeed();
+  /// The drive does not follow the targets of cyclic modes, and holds the motor.
+  bool dropsTargets() const {
+    return mode != nullptr && mode->bit_12 == Bit12::follows &&
+           values.raw(Role::targets_dropped, 0) != 0;
+  }
   /// Neither demand nor rotor moves.
   bool standing() const;
 

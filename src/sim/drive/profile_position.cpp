@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "sim/drive/profile_position.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace cia402::sim {
@@ -10,6 +11,8 @@ namespace {
 constexpr std::uint16_t kNewSetPoint = 0x0010;
 constexpr std::uint16_t kImmediately = 0x0020;
 constexpr std::uint16_t kRelative = 0x0040;
+
+constexpr std::int64_t kLimitedJerk = 3;  // 6086h
 
 }  // namespace
 
@@ -21,7 +24,8 @@ bool ProfilePosition::ofThisMode() const {
 void ProfilePosition::begin() {
   const Demand& demand = axis_.demand;
   active_ = {demand.position, {}, {}};
-  buffered_.reset();
+  waiting_.clear();
+  smooth_.reset(demand.position);
   acknowledged_ = false;
   bit_4_ = false;
   if (!ofThisMode()) return;
@@ -32,31 +36,78 @@ void ProfilePosition::begin() {
   }
 }
 
+void ProfilePosition::stopped() {
+  if (!ofThisMode() || !axis_.mode->stop_empties_queue) return;
+  waiting_.clear();
+  if (!bit_4_) acknowledged_ = false;
+}
+
+bool ProfilePosition::full() const {
+  return waiting_.size() >= static_cast<std::size_t>(axis_.mode->queue);
+}
+
 bool ProfilePosition::control(std::uint16_t controlword, bool rising) {
   if (!ofThisMode()) return false;
   bit_4_ = (controlword & kNewSetPoint) != 0;
   const bool accepts = rising && !acknowledged_;
   if (accepts) accept(controlword);
-  if (!bit_4_) acknowledged_ = buffered_.has_value();
+  if (!bit_4_) acknowledged_ = full();
   return accepts;
+}
+
+/// What a relative set-point counts from, true turns (60F2h).
+double ProfilePosition::base() const {
+  switch (axis_.values.raw(Role::positioning_option, 0)) {
+    case 1:
+      return axis_.demand.position;
+    case 2:
+      return axis_.motor.position();
+    default:
+      return waiting_.empty() ? active_.target : waiting_.back().target;
+  }
 }
 
 void ProfilePosition::accept(std::uint16_t controlword) {
   const bool immediately = (controlword & kImmediately) != 0;
   const bool relative = (controlword & kRelative) != 0;
-  const SetPoint& last = buffered_ ? *buffered_ : active_;
   const double turns = axis_.values.get(Role::target_position, 0.0);
-  const double commanded = relative ? last.target - axis_.frame + turns : turns;
+  const double commanded = relative ? base() - axis_.frame + turns : turns;
   const SetPoint next{axis_.trueTarget(commanded), axis_.limits.profile(axis_.mode), commanded};
   acknowledged_ = true;
   const TrapezoidProfile& profile = axis_.demand.profile;
   const bool busy = profile.position() != active_.target || profile.velocity() != 0.0;
   if (immediately || !busy) {
     active_ = next;
-    buffered_.reset();
+    waiting_.clear();
   } else {
-    buffered_ = next;
+    waiting_.push_back(next);
   }
+}
+
+bool ProfilePosition::limitsJerk() const {
+  return axis_.values.raw(Role::motion_profile_type, 0) == kLimitedJerk;
+}
+
+/// The demand is where the profile is, or comes there with limited jerk.
+void ProfilePosition::follow() {
+  Demand& demand = axis_.demand;
+  const double before = demand.position;
+  demand.followProfile();
+  if (!limitsJerk()) return smooth_.reset(demand.position);
+  const ProfileLimits& limits = active_.limits;
+  smooth_.limit(std::max(limits.acceleration / axis_.values.get(Role::profile_jerk_1, kUnlimited),
+                         limits.deceleration / axis_.values.get(Role::profile_jerk_2, kUnlimited)));
+  demand.position = smooth_.step(demand.profile.position());
+  demand.velocity = (demand.position - before) / kDriveStepS;
+}
+
+void ProfilePosition::beginNext() {
+  const TrapezoidProfile& profile = axis_.demand.profile;
+  const bool there = profile.position() == active_.target && profile.velocity() == 0.0;
+  if (waiting_.empty() || !there || axis_.demand.velocity != 0.0) return;
+  active_ = waiting_.front();
+  waiting_.pop_front();
+  if (!bit_4_) acknowledged_ = false;
 }
 
 void ProfilePosition::step() {
@@ -73,12 +124,8 @@ void ProfilePosition::step() {
   } else {
     profile.step(active_.target, active_.limits);
   }
-  if (buffered_ && profile.position() == active_.target && profile.velocity() == 0.0) {
-    active_ = *buffered_;
-    buffered_.reset();
-    if (!bit_4_) acknowledged_ = false;
-  }
-  axis_.demand.followProfile();
+  follow();
+  beginNext();
   axis_.motor.followPosition(axis_.demand.position);
 }
 

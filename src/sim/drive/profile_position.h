@@ -2,13 +2,15 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <optional>
 
+#include "sim/drive/jerk_filter.h"
 #include "sim/drive/moving_axis.h"
 
 namespace cia402::sim {
 
-/// Profile position mode (CiA 402-2): a set-point at work, one that waits, and the handshake by
+/// Profile position mode (CiA 402-2): a set-point at work, those that wait, and the handshake by
 /// which they come. Without handshake (ModeDefinition) 607Ah counts as it stands.
 class ProfilePosition {
  public:
@@ -21,11 +23,13 @@ class ProfilePosition {
   /// set-point.
   bool control(std::uint16_t controlword, bool rising);
   void step();  ///< one kDriveStep
+  /// Something stops the motor: the set-points that wait may be lost by that.
+  void stopped();
 
   /// Statusword bit 12.
   bool acknowledged() const { return acknowledged_; }
   /// Whether a set-point waits for the end of another.
-  bool waits() const { return buffered_.has_value(); }
+  bool waits() const { return !waiting_.empty(); }
   /// Of the set-point at work, true turns.
   double target() const { return active_.target; }
 
@@ -36,11 +40,17 @@ class ProfilePosition {
     std::optional<double> commanded;  ///< as it came, in the drive's own turns
   };
   void accept(std::uint16_t controlword);
+  double base() const;
+  bool full() const;
+  bool limitsJerk() const;
+  void follow();
+  void beginNext();
   bool ofThisMode() const;
 
   MovingAxis& axis_;
   SetPoint active_;
-  std::optional<SetPoint> buffered_;
+  std::deque<SetPoint> waiting_;
+  JerkFilter smooth_;
   bool acknowledged_ = false;
   bool bit_4_ = false;
 };

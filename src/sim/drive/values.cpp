@@ -55,6 +55,8 @@ constexpr RoleInfo kRoles[] = {
     {R::current_actual, "current_actual", {0x6078, 0}, Q::current},
     {R::target_position, "target_position", {0x607A, 0}, Q::position},
     {R::home_offset, "home_offset", {0x607C, 0}, Q::position},
+    {R::position_range_minimum, "position_range_minimum", {0x607B, 1}, Q::position},
+    {R::position_range_maximum, "position_range_maximum", {0x607B, 2}, Q::position},
     {R::position_minimum, "position_minimum", {0x607D, 1}, Q::position},
     {R::position_maximum, "position_maximum", {0x607D, 2}, Q::position},
     {R::max_profile_velocity, "max_profile_velocity", {0x607F, 0}, Q::velocity},
@@ -63,11 +65,14 @@ constexpr RoleInfo kRoles[] = {
     {R::profile_acceleration, "profile_acceleration", {0x6083, 0}, Q::acceleration},
     {R::profile_deceleration, "profile_deceleration", {0x6084, 0}, Q::acceleration},
     {R::quick_stop_deceleration, "quick_stop_deceleration", {0x6085, 0}, Q::acceleration},
+    {R::motion_profile_type, "motion_profile_type", {0x6086, 0}, Q::none},
     {R::torque_slope, "torque_slope", {0x6087, 0}, Q::torque},
     {R::homing_method, "homing_method", {0x6098, 0}, Q::none},
     {R::homing_search_speed, "homing_search_speed", {0x6099, 1}, Q::velocity},
     {R::homing_zero_speed, "homing_zero_speed", {0x6099, 2}, Q::velocity},
     {R::homing_acceleration, "homing_acceleration", {0x609A, 0}, Q::acceleration},
+    {R::profile_jerk_1, "profile_jerk_1", {0x60A4, 1}, Q::acceleration},
+    {R::profile_jerk_2, "profile_jerk_2", {0x60A4, 2}, Q::acceleration},
     {R::interpolation_target, "interpolation_target", {0x60C1, 1}, Q::position},
     {R::interpolation_time, "interpolation_time", {0x60C2, 1}, Q::none},
     {R::interpolation_exponent, "interpolation_exponent", {0x60C2, 2}, Q::none},
@@ -83,6 +88,7 @@ constexpr RoleInfo kRoles[] = {
     {R::touch_probe_1_falling_count, "touch_probe_1_falling_count", {0x60D6, 0}, Q::none},
     {R::touch_probe_2_rising_count, "touch_probe_2_rising_count", {0x60D7, 0}, Q::none},
     {R::touch_probe_2_falling_count, "touch_probe_2_falling_count", {0x60D8, 0}, Q::none},
+    {R::positioning_option, "positioning_option", {0x60F2, 0}, Q::none},
     {R::following_error_actual, "following_error_actual", {0x60F4, 0}, Q::position},
     {R::position_demand_internal, "position_demand_internal", {0x60FC, 0}, Q::position},
     {R::digital_inputs, "digital_inputs", {0x60FD, 0}, Q::none},
@@ -96,11 +102,13 @@ constexpr RoleInfo kRoles[] = {
     {R::brake_delay, "brake_delay", {0, 0}, Q::time},
     {R::encoder_resolution, "encoder_resolution", {0, 0}, Q::none},
     {R::gear_numerator, "gear_numerator", {0, 0}, Q::none},
+    {R::encoder_revolutions, "encoder_revolutions", {0, 0}, Q::none},
     {R::gear_denominator, "gear_denominator", {0, 0}, Q::none},
     {R::sync_tolerance, "sync_tolerance", {0, 0}, Q::none},
     {R::position_limits_use, "position_limits_use", {0, 0}, Q::none},
     {R::homing_stop_torque, "homing_stop_torque", {0, 0}, Q::torque},
     {R::homing_stop_time, "homing_stop_time", {0, 0}, Q::time},
+    {R::targets_dropped, "targets_dropped", {0, 0}, Q::none},
     {R::homing_time_limit, "homing_time_limit", {0, 0}, Q::time},
     {R::forward_torque_limit, "forward_torque_limit", {0, 0}, Q::torque},
     {R::reverse_torque_limit, "reverse_torque_limit", {0, 0}, Q::torque},
@@ -224,7 +232,8 @@ DriveValues::DriveValues(const DriveDefinition& definition, unsigned axis,
 }
 
 double DriveValues::countsPerUnit(const Slot& slot) const {
-  const auto counts = static_cast<double>(raw(Role::encoder_resolution, 1));
+  const double counts = static_cast<double>(raw(Role::encoder_resolution, 1)) /
+                        static_cast<double>(raw(Role::encoder_revolutions, 1));
   if (!slot.geared) return counts;
   return counts * static_cast<double>(raw(Role::gear_denominator, 1)) /
          static_cast<double>(raw(Role::gear_numerator, 1));

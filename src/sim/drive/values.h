@@ -55,6 +55,8 @@ enum class Role : std::uint8_t {
   current_actual,
   target_position,
   home_offset,
+  position_range_minimum,
+  position_range_maximum,
   position_minimum,
   position_maximum,
   max_profile_velocity,
@@ -63,11 +65,14 @@ enum class Role : std::uint8_t {
   profile_acceleration,
   profile_deceleration,
   quick_stop_deceleration,
+  motion_profile_type,
   torque_slope,
   homing_method,
   homing_search_speed,
   homing_zero_speed,
   homing_acceleration,
+  profile_jerk_1,
+  profile_jerk_2,
   interpolation_target,
   interpolation_time,
   interpolation_exponent,
@@ -83,6 +88,7 @@ enum class Role : std::uint8_t {
   touch_probe_1_falling_count,
   touch_probe_2_rising_count,
   touch_probe_2_falling_count,
+  positioning_option,
   following_error_actual,
   position_demand_internal,
   digital_inputs,
@@ -96,11 +102,13 @@ enum class Role : std::uint8_t {
   brake_delay,           ///< vendor object: from operation enabled until commands count
   encoder_resolution,    ///< vendor object: encoder counts of a turn
   gear_numerator,        ///< vendor object: so many encoder counts are ...
+  encoder_revolutions,   ///< vendor object: ... in so many turns, 1 where there is none
   gear_denominator,      ///< vendor object: ... so many position units
   sync_tolerance,        ///< vendor object: index into DriveDefinition::sync_tolerances
   position_limits_use,   ///< vendor object: index into DriveDefinition::limit_uses
   homing_stop_torque,    ///< vendor object: so hard the motor pushes at a hard stop ...
   homing_stop_time,      ///< vendor object: ... and for so long
+  targets_dropped,       ///< object of a test: while it is not 0 cyclic targets are not followed
   homing_time_limit,     ///< vendor object: a longer search is the fault `homing_time`
   forward_torque_limit,  ///< vendor object, or 60E0h where the drive minds it
   reverse_torque_limit,  ///< the same in the other direction, 60E1h

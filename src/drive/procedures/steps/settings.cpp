@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -33,6 +34,23 @@ bool contains(const std::vector<Value>& values, const Value& value) {
   return std::find(values.begin(), values.end(), value) != values.end();
 }
 
+/// The last thing that the boot writes to an object, by its name in the profile; nothing where that
+/// is not a number, or follows the joint's zero.
+std::optional<ResolvedWrite> lastWrite(const AxisConfig& axis, const std::string& object) {
+  const ObjectSpec* spec = axis.profile->find(object);
+  std::optional<ResolvedWrite> last;
+  for (const auto* list : {&axis.profile->startup, &axis.writes}) {
+    for (const NamedWrite& write : *list) {
+      if (spec == nullptr || findObject(*axis.profile, write.object) != spec || write.when_homed) {
+        continue;
+      }
+      const auto resolved = resolveWrite(write, axis);
+      if (resolved && *resolved && !(*resolved)->copied_from) last = **resolved;
+    }
+  }
+  return last;
+}
+
 /// Does the check count for what the axis uses?
 bool concerns(const SettingCheck& check, const AxisConfig& axis) {
   const bool modes = check.modes.empty() ||
@@ -58,10 +76,10 @@ std::optional<std::int64_t> SettingsStep::numberOf(const std::string& object) co
   return index < settings_.size() ? settings_[index].number : std::nullopt;
 }
 
-void SettingsStep::add(const AxisConfig& axis, const std::string& object) {
+void SettingsStep::add(const AxisConfig& axis, const std::string& object, bool needed) {
   const ObjectSpec* spec = profile_->find(object);
   if (spec == nullptr || saidToLack(axis, object)) return;
-  if (indexOf(spec->name) == settings_.size()) settings_.push_back({spec, {}});
+  if (indexOf(spec->name) == settings_.size()) settings_.push_back({spec, {}, needed});
 }
 
 void SettingsStep::plan(const AxisConfig& axis) {
@@ -77,6 +95,9 @@ void SettingsStep::plan(const AxisConfig& axis) {
     for (const std::string& object : profile_->counts_rule.over) add(axis, object);
     if (!profile_->timing.brake_object.empty()) add(axis, profile_->timing.brake_object);
     if (axis.geometry.rated_torque > 0.0) add(axis, profile_->rated_torque);
+    for (const std::string& object : profile_->read_back) {
+      if (lastWrite(axis, object)) add(axis, object, false);
+    }
   }
   for (std::size_t i = 0; i < settings_.size(); ++i) reads_.push_back(i);
 }
@@ -134,7 +155,7 @@ std::string SettingsStep::take(const Context& context, const fieldbus::Transfer&
     setting.number = signedNumber(*setting.object, answer.data());
     return {};
   }
-  if (setting.object->name == profile_->timing.brake_object) return {};
+  if (!setting.needed || setting.object->name == profile_->timing.brake_object) return {};
   const std::string why =
       answer.ok() ? named(*setting.object) + ": the drive answers nothing" : answer.message();
   return refusal(context) + "it is not known how the drive is set: " + why + "; `lacks: [" +
@@ -162,6 +183,7 @@ bool SettingsStep::settled(const Context& context) {
 std::optional<SettingsStep::Difference> SettingsStep::compare(const SettingCheck& check) const {
   const auto excuse = check.unless.empty() ? std::nullopt : numberOf(check.unless);
   if (excuse && check.unless_is.holds(*excuse)) return {};
+  if (check.each_once) return compareAmongThem(check);
   std::string told;
   const std::string* meaning = &check.text;
   for (const std::string& name : check.objects) {
@@ -172,6 +194,23 @@ std::optional<SettingsStep::Difference> SettingsStep::compare(const SettingCheck
     meaning = &check.meaning(*number);
   }
   return Difference{&check, told + ", " + *meaning + "; " + check.remedy};
+}
+
+/// Two objects with one number, where each shall have its own.
+std::optional<SettingsStep::Difference> SettingsStep::compareAmongThem(
+    const SettingCheck& check) const {
+  std::map<std::int64_t, const std::string*> seen;
+  for (const std::string& name : check.objects) {
+    const auto number = numberOf(name);
+    if (!number || check.condition.holds(*number)) continue;
+    const auto [first, fresh] = seen.emplace(*number, &name);
+    if (fresh) continue;
+    return Difference{&check, named(*profile_->find(*first->second)) + " and " +
+                                  named(*profile_->find(name)) + " are both " +
+                                  std::to_string(*number) + ", " + check.meaning(*number) + "; " +
+                                  check.remedy};
+  }
+  return {};
 }
 
 std::vector<SettingsStep::Difference> SettingsStep::differences() const {
@@ -260,11 +299,29 @@ Outcome SettingsStep::judge(const Context& context) {
     append(problem, why + "; switch it off and on");
   }
   if (enabling()) {
+    compareReadBack(axis);
     for (const std::string& text : {compareCounts(axis.config()), learnBrake(axis)}) {
       if (!text.empty()) append(problem, text);
     }
   }
   return problem.empty() ? Outcome::done() : Outcome::failed(refusal(context) + problem);
+}
+
+/// What the boot has written and the drive does not hold as it was written: it may have cut it to
+/// what it can do.
+void SettingsStep::compareReadBack(AxisCore& axis) const {
+  for (const std::string& name : profile_->read_back) {
+    const ObjectSpec& object = *profile_->find(name);
+    const auto number = numberOf(name);
+    const auto written = number ? lastWrite(axis.config(), name) : std::nullopt;
+    if (!written) continue;
+    const std::int64_t wanted = signedNumber(object, wireBytes(written->raw, written->type));
+    if (*number == wanted) continue;
+    axis.notices().warnOnce(axis.who() + ": " + named(object) + " is " + std::to_string(*number) +
+                            " instead of the " + std::to_string(wanted) +
+                            " that was written at the boot, and counts as it is: the drive has cut "
+                            "it to what it can do, or something else has written it since");
+  }
 }
 
 std::string SettingsStep::refusal(const Context& context) const {

@@ -25,6 +25,7 @@ class SettingsStep {
   struct Setting {
     const ObjectSpec* object = nullptr;
     std::optional<std::int64_t> number;  ///< nothing: it could not be read
+    bool needed = true;                  ///< what it is decides, and is not only told
   };
   struct Difference {
     const SettingCheck* check = nullptr;
@@ -32,7 +33,8 @@ class SettingsStep {
   };
   bool enabling() const { return before_ == SettingCheck::Before::enabling; }
   void plan(const AxisConfig& axis);
-  void add(const AxisConfig& axis, const std::string& object);
+  void add(const AxisConfig& axis, const std::string& object, bool needed = true);
+  void compareReadBack(AxisCore& axis) const;
   std::size_t indexOf(const std::string& object) const;
   std::optional<std::int64_t> numberOf(const std::string& object) const;
 
@@ -41,6 +43,7 @@ class SettingsStep {
   std::string take(const Context& context, const fieldbus::Transfer& answer);
   std::vector<Difference> differences() const;
   std::optional<Difference> compare(const SettingCheck& check) const;
+  std::optional<Difference> compareAmongThem(const SettingCheck& check) const;
   void losePosition(const Context& context);
   bool settled(const Context& context);
   bool mayWrite(AxisCore& axis, const SettingCheck& check) const;

@@ -1,0 +1,69 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "sim/definition/read_terminals.h"
+
+#include <iterator>
+#include <string>
+#include <utility>
+
+#include "yaml/reader.h"
+
+namespace cia402::sim {
+namespace {
+
+constexpr std::pair<const char*, InputFunction> kInputFunctions[] = {
+    {"negative_limit", InputFunction::negative_limit},
+    {"positive_limit", InputFunction::positive_limit},
+    {"home_switch", InputFunction::home_switch},
+    {"fault_reset", InputFunction::fault_reset},
+    {"set_home", InputFunction::set_home},
+    {"clear_history", InputFunction::clear_history}};
+
+std::optional<fieldbus::ObjectId> terminalObjectOf(const yaml::Value& value) {
+  const auto text = value.text();
+  const auto object = text ? fieldbus::parseObjectId(*text) : std::nullopt;
+  if (!object) value.problem("must be an object like \"2003:01\"");
+  return object;
+}
+
+void readInputPairs(DefinitionReader& reader, const char* key,
+                    std::vector<TerminalsDefinition::Input>& out) {
+  if (reader.has(key)) out.clear();
+  reader.list(key, [&](const yaml::Value& item) {
+    const std::vector<yaml::Value> pair = item.list();
+    if (pair.size() != 2) return item.problem("must be the objects of function and logic");
+    const auto function = terminalObjectOf(pair[0]), logic = terminalObjectOf(pair[1]);
+    if (function && logic) out.push_back({*function, *logic});
+  });
+}
+
+void readTerminalObject(DefinitionReader& reader, const char* key,
+                        std::optional<fieldbus::ObjectId>& out) {
+  std::string text;
+  if (!reader.has(key)) return;
+  reader.read(key, text);
+  out = fieldbus::parseObjectId(text);
+  if (!out) reader.problem(key, "must be an object like \"2017:02\"");
+}
+
+}  // namespace
+
+void readTerminals(DefinitionReader& reader, TerminalsDefinition& out) {
+  readInputPairs(reader, "inputs", out.with_terminal);
+  readInputPairs(reader, "virtual", out.without);
+  readTerminalObject(reader, "virtual_levels", out.levels);
+  readTerminalObject(reader, "virtual_enabled", out.enabled);
+  readTerminalObject(reader, "virtual_seen", out.seen);
+  reader.section("functions", [&](DefinitionReader& functions) {
+    for (const auto& [word, function] : kInputFunctions) {
+      std::int64_t number = 0;
+      if (!functions.has(word)) continue;
+      functions.read(word, number, 1, 65535);
+      for (auto known = out.functions.begin(); known != out.functions.end();) {
+        known = known->second == function ? out.functions.erase(known) : std::next(known);
+      }
+      out.functions[number] = function;
+    }
+  });
+}
+
+}  // namespace cia402::sim

@@ -1,0 +1,40 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "fieldbus/object.h"
+
+namespace cia402::sim {
+
+/// What a digital input of a drive can be for.
+enum class InputFunction : std::uint8_t {
+  none,
+  negative_limit,
+  positive_limit,
+  home_switch,
+  fault_reset,    ///< an edge resets faults
+  set_home,       ///< an edge makes the present position 0
+  clear_history,  ///< an edge empties 1003h
+};
+
+/// Digital inputs whose functions the drive is told by objects. Logic of an input with a terminal:
+/// 0 active low, 1 high, 2 to 4 by edges; of a virtual one, whose level comes over the bus: 0
+/// active high, 1 by rising edges.
+struct TerminalsDefinition {
+  struct Input {
+    fieldbus::ObjectId function, logic;
+  };
+  std::vector<Input> with_terminal, without;  ///< the second ones are virtual
+  std::optional<fieldbus::ObjectId> levels;   ///< of the virtual ones, a bit each
+  std::optional<fieldbus::ObjectId> enabled;  ///< the virtual ones act
+  std::optional<fieldbus::ObjectId> seen;     ///< those of them that are active
+  std::map<std::int64_t, InputFunction> functions;
+
+  bool empty() const { return with_terminal.empty() && without.empty(); }
+};
+
+}  // namespace cia402::sim

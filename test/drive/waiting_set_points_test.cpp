@@ -1,0 +1,91 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// Commands that wait for each other, and how they are handed to a drive that queues them.
+#include "drive/modes/waiting_set_points.h"
+
+#include <gtest/gtest.h>
+
+#include "drive/modes/set_point_handshake.h"
+
+namespace cia402::drive {
+namespace {
+
+TEST(WaitingSetPoints, ComeOutInTheirOrderAndAreNoMoreThanThereIsRoomFor) {
+  WaitingSetPoints waiting;
+  for (int round = 0; round < 3; ++round) {  // all round the ring
+    EXPECT_TRUE(waiting.empty());
+    for (std::size_t i = 0; i < WaitingSetPoints::kMost; ++i) {
+      EXPECT_FALSE(waiting.full());
+      waiting.add(static_cast<double>(i));
+    }
+    EXPECT_TRUE(waiting.full());
+    for (std::size_t i = 0; i < WaitingSetPoints::kMost - 3; ++i) {
+      EXPECT_EQ(waiting.first(), static_cast<double>(i));
+      waiting.removeFirst();
+    }
+    EXPECT_FALSE(waiting.empty());
+    waiting.clear();
+  }
+}
+
+/// A drive that queues so many, seen from a handshake.
+struct QueueingWire {
+  QueueingWire() {
+    handover = standardHandover(true);
+    handover.queued = true;
+  }
+  bool step(bool acknowledged) {
+    now += std::chrono::milliseconds(1);
+    input.acknowledged = acknowledged;
+    const bool ok = handshake.advance(input, now, std::chrono::seconds(1));
+    ++input.target_frames;
+    ++input.controlword_frames;
+    return ok;
+  }
+  void handOver(std::uint64_t raw) {
+    handshake.offer({raw, false, true});
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE(step(false));
+    EXPECT_EQ(handshake.word(), 0x0010) << "not at once";
+    EXPECT_TRUE(step(true));
+  }
+  Handover handover;
+  SetPointHandshake handshake{handover};
+  SetPointHandshake::Input input;
+  Time now{};
+};
+
+TEST(QueueingHandshake, WaitsAsLongAsItTakesForRoom) {
+  QueueingWire wire;
+  wire.handOver(100);
+  for (int i = 0; i < 3000; ++i) ASSERT_TRUE(wire.step(true)) << i;
+  EXPECT_TRUE(wire.handshake.busy());
+  EXPECT_FALSE(wire.handshake.blocked());
+  EXPECT_TRUE(wire.step(false));
+  EXPECT_FALSE(wire.handshake.busy());
+}
+
+TEST(QueueingHandshake, IsBlockedForWhatIsToCountAtOnceWhileTheQueueIsFull) {
+  QueueingWire wire;
+  wire.handOver(100);
+  for (int i = 0; i < 5; ++i) EXPECT_TRUE(wire.step(true));
+  wire.handshake.offer(7, true);
+  EXPECT_TRUE(wire.step(true));
+  EXPECT_TRUE(wire.handshake.blocked());
+  EXPECT_TRUE(wire.step(false));
+  EXPECT_FALSE(wire.handshake.blocked());
+  for (int i = 0; i < 4; ++i) EXPECT_TRUE(wire.step(false));
+  EXPECT_EQ(wire.handshake.word(), 0x0030) << "at once";
+  EXPECT_EQ(wire.handshake.raw(), 7U);
+}
+
+TEST(QueueingHandshake, GivesUpWhatIsToCountAtOnceAfterItsTime) {
+  QueueingWire wire;
+  wire.handOver(100);
+  wire.handshake.offer(7);
+  int cycles = 0;
+  while (cycles < 3000 && wire.step(true)) ++cycles;
+  EXPECT_GE(cycles, 998);
+  EXPECT_LE(cycles, 1002);
+}
+
+}  // namespace
+}  // namespace cia402::drive

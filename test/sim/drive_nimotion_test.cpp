@@ -1,0 +1,139 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// What the simulated NiMotion does on the wire: relative set-points, its queue, limits, alarms.
+#include <yaml-cpp/yaml.h>
+
+#include <cmath>
+
+#include "drive_fixture.h"
+#include "sim/definition/drive_definition.h"
+
+namespace cia402::sim {
+namespace {
+
+constexpr std::int32_t kCounts = 4000;  // of a turn
+
+struct NimotionBench : DriveBench {
+  explicit NimotionBench(const std::string& with = "{}", const AxisMechanics& mechanics = {})
+      : DriveBench(loadDriveDefinition(
+                       cia402::test::configFolder() + "/simulated_drives/nimotion_stepper.yaml",
+                       YAML::Load(with)),
+                   mechanics) {
+    run(ms(600));  // its boot
+    write(0x605B, 0, 1, 2);
+  }
+  void positions() {
+    write(0x6060, 0, 1, 1);
+    enable();
+  }
+  void target(std::int32_t counts, std::uint16_t word) {
+    write(0x607A, 0, static_cast<std::uint32_t>(counts), 4);
+    control(static_cast<std::uint16_t>(word & ~0x0010U));
+    control(word);
+    EXPECT_NE(status() & 0x1000, 0) << "taken";
+    control(static_cast<std::uint16_t>(word & ~0x0010U));
+  }
+  bool full() { return (status() & 0x1000) != 0; }
+};
+
+// 60F2h: the target before, where the set-points are, where the motor is [857, 2758-2763].
+TEST(SimulatedNimotion, CountsRelativeTargetsFromWhat60F2hSays) {
+  std::int32_t ends[3] = {};
+  for (std::uint32_t base = 0; base < 3; ++base) {
+    NimotionBench bench;
+    bench.write(0x60F2, 0, base, 2);
+    bench.positions();
+    bench.target(2 * kCounts, 0x003F);
+    bench.run(ms(500));  // on its way
+    const std::int32_t demand = static_cast<std::int32_t>(bench.read(0x6062));
+    const std::int32_t actual = bench.position();
+    ASSERT_GT(demand, actual) << "the motor is behind";
+    bench.target(kCounts, 0x007F);
+    bench.run(ms(4000));
+    ends[base] = bench.position();
+    const std::int32_t from[] = {2 * kCounts, demand, actual};
+    EXPECT_NEAR(ends[base], from[base] + kCounts, base == 0 ? 1 : 60) << base;
+  }
+  EXPECT_GT(ends[0], ends[1]);
+  EXPECT_GT(ends[1], ends[2]);
+}
+
+TEST(SimulatedNimotion, QueuesFiveAndTakesNoSixth) {
+  NimotionBench bench;
+  bench.positions();
+  bench.target(4 * kCounts, 0x001F);
+  for (int i = 1; i <= 5; ++i) {
+    EXPECT_FALSE(bench.full()) << i;
+    bench.target(i * 100, 0x001F);
+  }
+  EXPECT_TRUE(bench.full());
+  bench.write(0x607A, 0, 7777, 4);
+  bench.control(0x001F);
+  bench.control(0x000F);
+  bench.run(ms(12000));
+  EXPECT_NEAR(bench.position(), 500, 1);
+}
+
+TEST(SimulatedNimotion, LosesItsQueueByAStopAndGoesOnToWhereItWas) {
+  NimotionBench bench;
+  bench.positions();
+  bench.target(3 * kCounts, 0x001F);
+  for (int i = 1; i <= 5; ++i) bench.target(i * 100, 0x001F);
+  bench.run(ms(300));
+  bench.control(0x010F);
+  EXPECT_FALSE(bench.full());
+  bench.run(ms(1000));
+  bench.control(0x000F);
+  bench.run(ms(8000));
+  EXPECT_NEAR(bench.position(), 3 * kCounts, 1);
+}
+
+// As from the factory: 607Bh +-60000000, 607Dh +-60000 [2711-2718, 2230].
+TEST(SimulatedNimotion, TakesTheLargerLimitByMagnitudeOrAsANumber) {
+  struct Row {
+    const char* use;
+    std::int32_t to, stands;
+  };
+  for (const Row& row : {Row{"farther", -61000, -61000}, Row{"greater", -61000, -60000},
+                         Row{"greater", 61000, 61000}, Row{"none", 61000, 60000}}) {
+    NimotionBench bench("{state_machine: {position_range: " + std::string(row.use) + "}}");
+    bench.write(0x6081, 0, 120000, 4);
+    bench.write(0x607F, 0, 120000, 4);
+    bench.write(0x6083, 0, 400000, 4);
+    bench.positions();
+    bench.target(row.to, 0x003F);
+    bench.run(ms(4000));
+    EXPECT_NEAR(bench.position(), row.stands, 1) << row.use;
+  }
+}
+
+// 605Eh = -1: reactions 0 to 2 say themselves how it stops [2121-2127].
+TEST(SimulatedNimotion, StopsAsTheAlarmSaysWhere605EhIsNegative) {
+  double slower = 0.0;
+  for (const std::uint32_t reaction : {0U, 1U, 2U}) {
+    NimotionBench bench(
+        "{dictionary: [[0x605E, 0, fault_reaction_option_code, int16, rw, -, -1, -1, 4]]}");
+    bench.write(0x200E, 2, reaction << 24 | 0x00013110U, 4);
+    bench.write(0x6084, 0, 20000, 4);
+    bench.write(0x6085, 0, 200000, 4);
+    bench.write(0x6060, 0, 3, 1);
+    bench.write(0x60FF, 0, 20000, 4);
+    bench.enable();
+    bench.run(ms(1500));
+    EXPECT_TRUE(bench.drive->inject("over_voltage", bench.now));
+    bench.run(ms(200));
+    const DriveTruth truth = bench.drive->truth(bench.now);
+    EXPECT_EQ(truth.power_stage_on, reaction == 1) << reaction;
+    const double speed = std::fabs(truth.velocity_turns);
+    if (reaction == 1) {
+      EXPECT_NEAR(speed, 5.0 - 5.0 * 0.2, 0.3) << "20000 counts/s^2 are 5 turns/s^2";
+    }
+    if (reaction == 2) {
+      EXPECT_LT(speed, 0.01);
+    }
+    if (reaction == 0) slower = speed;
+  }
+  EXPECT_GT(slower, 0.01) << "it coasts";
+}
+
+}  // namespace
+}  // namespace cia402::sim

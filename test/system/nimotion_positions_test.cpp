@@ -1,0 +1,234 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// Positions that a NiMotion goes to one after the other, distances, and rounded corners: by its
+// motor.
+#include <array>
+
+#include "system/families_motion.h"
+#include "system/motion_watch.h"
+
+namespace cia402 {
+namespace {
+
+using namespace std::chrono_literals;
+using drive::ProcedureKind;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr double kNearlyStill = 0.05;  // rad/s
+constexpr double kOneStep = 1e-4;      // rad, more than a count: 6.3 / (50 * 4000)
+
+/// Gives commands without a pause, and writes down where the motor comes to rest.
+struct Stations : FamilyScene {
+  explicit Stations(const char* mode, const std::string& more = {})
+      : FamilyScene(familyJoint(nimotionIn(mode), more)) {}
+  void give(std::initializer_list<double> values) {
+    for (const double value : values) EXPECT_EQ(setpoint("joint", value), "");
+  }
+  /// Places where it came to rest, in hundredths of a rad: where it was slowest.
+  std::vector<int> visit(Duration time) {
+    std::vector<int> rests;
+    double slowest = 1.0;
+    watch([&] {
+      const double speed = std::fabs(velocity("joint"));
+      if (speed < kNearlyStill && slowest >= kNearlyStill) rests.push_back(0);
+      if (speed < kNearlyStill && speed < slowest) {
+        rests.back() = static_cast<int>(std::lround(position("joint") * 100.0));
+      }
+      slowest = speed < kNearlyStill ? std::min(speed, slowest) : 1.0;
+    });
+    run(time);
+    watch({});
+    return rests;
+  }
+  bool bit(unsigned number) { return ((truth("joint").statusword >> number) & 1u) != 0; }
+};
+
+TEST(NimotionQueue, ComesToRestAtEachPositionInTheirOrder) {
+  Stations scene("queued_position");
+  const auto told = scene.axis("joint").noticeCount();
+  scene.give({0.3, 0.1, 0.4, -0.2, 0.0, 0.2, 0.1, 0.3});  // more than the drive's five
+  EXPECT_THAT(scene.visit(12s), ElementsAre(0, 30, 10, 40, -20, 0, 20, 10, 30)) << scene.told();
+  EXPECT_NEAR(scene.position("joint"), 0.3, kOneStep);
+  EXPECT_TRUE(scene.state("joint").target_reached);
+  EXPECT_EQ(scene.axis("joint").noticeCount(), told) << scene.told();
+}
+
+TEST(NimotionQueue, IsFullWithFiveAndTellsSoByBit12) {
+  Stations scene("queued_position");
+  scene.give({1.0, 0.1, 0.2, 0.3, 0.4});  // one at work, four wait
+  scene.run(300ms);
+  EXPECT_FALSE(scene.bit(12));
+  scene.give({0.5});
+  scene.run(300ms);
+  EXPECT_TRUE(scene.bit(12));
+  scene.give({0.6});  // which waits for room
+  scene.run(900ms);
+  EXPECT_TRUE(scene.bit(12));
+  ASSERT_TRUE(scene.runUntil([&] { return scene.position("joint") < 0.9; }, 3s));
+  scene.run(8s);
+  EXPECT_NEAR(scene.position("joint"), 0.6, kOneStep) << scene.told();
+}
+
+TEST(NimotionQueue, RefusesInWordsWhatNobodyHasRoomFor) {
+  Stations scene("queued_position");
+  for (int i = 0; i < 16; ++i) ASSERT_EQ(scene.setpoint("joint", 0.1 * (i % 2 + 1)), "") << i;
+  EXPECT_THAT(scene.setpoint("joint", 0.5),
+              AllOf(HasSubstr("joint"), HasSubstr("16 wait for those before already")));
+}
+
+TEST(NimotionQueue, IsEmptiedByAHaltThatHolds) {
+  for (const int waiting : {2, 7}) {
+    Stations scene("queued_position");
+    scene.give({1.0, 0.0});
+    for (int i = 2; i < waiting; ++i) scene.give({0.1 * i});
+    scene.run(700ms);
+    EXPECT_GT(scene.velocity("joint"), 0.3);
+    scene.mustSucceed(ProcedureKind::halt);
+    const double held = scene.position("joint");
+    EXPECT_LT(held, 0.9);
+    scene.expectStands(1s);
+    scene.mustSucceed(ProcedureKind::enable);
+    scene.expectStands(2s);
+    scene.give({held + 0.2});
+    scene.run(2s);
+    EXPECT_NEAR(scene.position("joint"), held + 0.2, kOneStep) << scene.told();
+  }
+}
+
+// A motor that is held, then let go: its goals are given up, those that wait in the drive, too.
+TEST(NimotionQueue, IsEmptiedWhereTheMotorIsHeldAndDoesNotGoOnLater) {
+  Stations scene("queued_position");
+  scene.give({1.0, 0.0, 0.2, 0.4, 0.6, 0.8, 1.0});
+  scene.run(300ms);
+  scene.inject("joint", "blocked_rotor");
+  scene.run(800ms);  // in which the drive's own set-points are still on their way to the first
+  EXPECT_THAT(scene.told(), HasSubstr("what was commanded is given up")) << scene.told();
+  const double held = scene.position("joint");
+  EXPECT_LT(std::fabs(held - 0.1), 0.1) << "near where it was held";
+  scene.inject("joint", "clear");
+  scene.expectStands(3s, 2e-3);
+  EXPECT_FALSE(scene.bit(12));
+  scene.give({0.5});
+  scene.run(3s);
+  EXPECT_NEAR(scene.position("joint"), 0.5, kOneStep) << scene.told();
+}
+
+TEST(NimotionQueue, IsForgottenByAnAxisThatIsSwitchedOff) {
+  for (const auto kind : {ProcedureKind::quick_stop, ProcedureKind::disable}) {
+    Stations scene("queued_position");
+    scene.give({0.6, 0.0, 0.3, 0.5, 0.2, 0.1, 0.4});
+    scene.run(500ms);
+    scene.mustSucceed(kind);
+    scene.mustSucceed(ProcedureKind::enable);
+    scene.expectStands(2s);
+    scene.give({0.2});
+    scene.run(3s);
+    EXPECT_NEAR(scene.position("joint"), 0.2, kOneStep) << scene.told();
+  }
+}
+
+class NimotionDistance : public testing::TestWithParam<const char*> {};
+
+TEST_P(NimotionDistance, IsGoneFromTheTargetBeforeOrFromWhereTheAxisStands) {
+  Stations scene(GetParam());
+  for (const double distance : {0.3, -0.5, 0.1}) {
+    const double from = scene.position("joint");
+    scene.give({distance});
+    scene.run(3s);
+    EXPECT_NEAR(scene.position("joint"), from + distance, 2 * kOneStep) << scene.told();
+  }
+  EXPECT_NEAR(scene.state("joint").position, scene.position("joint"), kOneStep);
+}
+
+TEST_P(NimotionDistance, AddsUpWhereTheyAreGivenWithoutAPause) {
+  Stations scene(GetParam());
+  scene.give({0.2, 0.2, -0.1, 0.3});
+  scene.run(8s);
+  EXPECT_NEAR(scene.position("joint"), 0.6, 4 * kOneStep) << scene.told();
+}
+
+TEST_P(NimotionDistance, CountsFromWhereItStandsAfterAStop) {
+  Stations scene(GetParam());
+  scene.give({1.2});
+  scene.run(900ms);
+  scene.mustSucceed(ProcedureKind::halt);
+  scene.mustSucceed(ProcedureKind::enable);
+  const double held = scene.position("joint");
+  scene.expectStands(500ms);
+  scene.give({-0.25});
+  scene.run(3s);
+  EXPECT_NEAR(scene.position("joint"), held - 0.25, 2 * kOneStep) << scene.told();
+  scene.mustSucceed(ProcedureKind::disable);
+  scene.mustSucceed(ProcedureKind::enable);
+  scene.give({0.1});
+  scene.run(2s);
+  EXPECT_NEAR(scene.position("joint"), held - 0.15, 3 * kOneStep) << scene.told();
+}
+
+TEST_P(NimotionDistance, LeadsNoFurtherThanTheLimitsOfTheJoint) {
+  Stations scene(GetParam(), ", simulation: {initial_position: 2.2}");
+  scene.give({0.9});
+  scene.run(3s);
+  EXPECT_NEAR(scene.position("joint"), 2.5, 2 * kOneStep) << scene.told();
+  scene.give({-0.4});
+  scene.run(3s);
+  EXPECT_NEAR(scene.position("joint"), 2.1, 3 * kOneStep) << "from the limit";
+}
+
+INSTANTIATE_TEST_SUITE_P(Nimotion, NimotionDistance,
+                         testing::Values("relative_position", "queued_relative_position",
+                                         "relative_to_demand", "relative_to_position"),
+                         [](const auto& tested) { return std::string(tested.param); });
+
+// Bits 5 and 6 of the controlword [924-936], and 60F2h [2758-2763].
+TEST(NimotionPositions, AreHandedOverByTheWordsOfTheManual) {
+  struct Row {
+    const char* mode;
+    unsigned word, option;
+  };
+  for (const Row& row :
+       {Row{"pp", 0x3F, 0}, Row{"queued_position", 0x1F, 0}, Row{"relative_position", 0x7F, 0},
+        Row{"queued_relative_position", 0x5F, 0}, Row{"relative_to_demand", 0x7F, 1},
+        Row{"relative_to_position", 0x7F, 2}}) {
+    Stations scene(row.mode);
+    std::vector<unsigned> words;
+    scene.watch([&] {
+      const auto word = static_cast<unsigned>(scene.number(0x6040));
+      if ((word & 0x10u) != 0 && (words.empty() || words.back() != word)) words.push_back(word);
+    });
+    scene.give({0.2});
+    scene.run(2s);
+    ASSERT_FALSE(words.empty()) << row.mode;
+    EXPECT_EQ(words.back(), row.word) << row.mode;
+    EXPECT_EQ(scene.number(0x60F2), row.option) << row.mode;
+    EXPECT_NEAR(scene.position("joint"), 0.2, kOneStep) << row.mode;
+  }
+}
+
+/// The greatest change of acceleration of the joint over 20 ms, rad/s^3.
+double jerkOn(const std::string& more, double goal) {
+  Stations scene("pp", more);
+  std::vector<double> speeds;
+  scene.watch([&] { speeds.push_back(scene.velocity("joint")); });
+  scene.give({goal});
+  scene.run(4s);
+  EXPECT_NEAR(scene.position("joint"), goal, kOneStep) << scene.told();
+  EXPECT_LT(scene.seen("joint").fastest, 0.8 * 1.02);
+  double most = 0.0;
+  constexpr std::size_t kStep = 20;
+  for (std::size_t i = 2 * kStep; i < speeds.size(); ++i) {
+    const double change = speeds[i] - 2.0 * speeds[i - kStep] + speeds[i - 2 * kStep];
+    most = std::max(most, std::fabs(change) / (0.02 * 0.02));
+  }
+  return most;
+}
+
+// 40 rad/s^3 of familyJoint(); a trapezoid has all of its 4 rad/s^2 within one control loop.
+TEST(NimotionJerk, IsThatOfTheJointWhereTheProfileIsToHaveOne) {
+  EXPECT_LT(jerkOn(", write: [{object: motion_profile_type, raw: 3}]", 1.2), 40.0 * 1.1);
+  EXPECT_GT(jerkOn("", 1.2), 100.0);
+}
+
+}  // namespace
+}  // namespace cia402
