@@ -261,6 +261,10 @@ void DriveCore::onWrite(Role role) {
   if (role == Role::homing_start && enabled) motion_.homeByObject();
   if (role == Role::emergency_stop && enabled) power_.quickStop(now_);
   if (role == Role::alarm_select) faults_.alarms().show();
+  if (role == Role::save_zero) {
+    motion_.setCounter(0.0);
+    motion_.publish();
+  }
   updateStatusword();
 }
 

@@ -133,13 +133,11 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
       axis.core.motion().publish();
     if (role == Role::touch_probe_function) axis.core.motion().probes().command();
     if (role == Role::clear_errors && entry.number != 0) axis.core.resetFault();
-    if (role == Role::save_zero && entry.number != 0) {
-      axis.core.motion().setCounter(0.0);
-      axis.core.motion().publish();
-    }
     if (role == Role::software_reset && entry.number == 1) reset_at = now + kSoftwareReset;
     const bool command = role == Role::emergency_stop || role == Role::homing_start;
-    if (role == Role::alarm_select || (command && entry.number == 1)) axis.core.onWrite(*role);
+    const bool saves = role == Role::save_zero && entry.number != 0;
+    if (role == Role::alarm_select || saves || (command && entry.number == 1))
+      axis.core.onWrite(*role);
     if (axis.terminals.holds(entry.id)) {
       obey(axis.terminals.look(axis.core.motion().switches()), axis.core, dictionary,
            definition->fault("terminal_setup"));

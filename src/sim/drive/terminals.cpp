@@ -101,7 +101,7 @@ Terminals::Change Terminals::look(AxisSwitches& switches) {
 void obey(const Terminals::Change& change, DriveCore& core, ObjectDictionary& dictionary,
           const FaultDefinition* doubled) {
   for (const InputFunction function : change.edges) {
-    if (function == InputFunction::set_home) core.saveZero();
+    if (function == InputFunction::set_home) core.onWrite(Role::save_zero);
     if (function == InputFunction::fault_reset) core.resetFault();
     Entry* history = dictionary.find(kErrorsKept);
     if (function == InputFunction::clear_history && history != nullptr) history->number = 0;
