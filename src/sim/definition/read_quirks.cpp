@@ -15,14 +15,18 @@ void readQuirks(DefinitionReader& reader, DriveQuirks& out) {
   std::int64_t bits = out.fault_bits;
   reader.read("fault_bits", bits, 0, 0xFFFF);
   out.fault_bits = static_cast<std::uint16_t>(bits);
+  reader.read("fault_keeps_mode_bits", out.fault_keeps_mode_bits);
   bits = out.vendor_bits;
   reader.read("vendor_bits", bits, 0, 0xFFFF);
   out.vendor_bits = static_cast<std::uint16_t>(bits);
   reader.read("homing_reaches_no_target", out.homing_reaches_no_target);
+  reader.read("homing_result_stays", out.homing_result_stays);
   reader.read("homing_is_fixed", out.homing_is_fixed);
   reader.read("fault_reset_tries", out.fault_reset_tries, 1, 20);
   reader.read("fault_reset_needs_empty_history", out.fault_reset_needs_empty_history);
   reader.read("fault_reset_needs_stop", out.fault_reset_needs_stop);
+  reader.read("local_from", out.local_from);
+  reader.read("local_until", out.local_until);
   reader.read("reset_edge_time", out.reset_edge_time);
   reader.read("no_generic_error_bit", out.no_generic_error_bit);
   reader.read("emergency_chatter", out.emergency_chatter);

@@ -7,7 +7,6 @@ namespace cia402::sim {
 namespace {
 
 // Controlword bits of this mode.
-constexpr std::uint16_t kNewSetPoint = 0x0010;
 constexpr std::uint16_t kImmediately = 0x0020;
 constexpr std::uint16_t kRelative = 0x0040;
 
@@ -23,7 +22,7 @@ void ProfilePosition::begin() {
   active_ = {demand.position, {}, {}};
   buffered_.reset();
   acknowledged_ = false;
-  bit_4_ = false;
+  bit_ = false;
   if (!ofThisMode()) return;
   active_.limits = axis_.limits.profile(axis_.mode);
   if (active_.limits.deceleration > 0.0) {
@@ -32,12 +31,13 @@ void ProfilePosition::begin() {
   }
 }
 
-bool ProfilePosition::control(std::uint16_t controlword, bool rising) {
+bool ProfilePosition::control(std::uint16_t controlword, std::uint16_t previous) {
   if (!ofThisMode()) return false;
-  bit_4_ = (controlword & kNewSetPoint) != 0;
-  const bool accepts = rising && !acknowledged_;
+  const unsigned mask = 1U << axis_.mode->set_point_bit;
+  bit_ = (controlword & mask) != 0;
+  const bool accepts = bit_ && (previous & mask) == 0 && !acknowledged_;
   if (accepts) accept(controlword);
-  if (!bit_4_) acknowledged_ = buffered_.has_value();
+  if (!bit_) acknowledged_ = buffered_.has_value();
   return accepts;
 }
 
@@ -76,7 +76,7 @@ void ProfilePosition::step() {
   if (buffered_ && profile.position() == active_.target && profile.velocity() == 0.0) {
     active_ = *buffered_;
     buffered_.reset();
-    if (!bit_4_) acknowledged_ = false;
+    if (!bit_) acknowledged_ = false;
   }
   axis_.demand.followProfile();
   axis_.motor.followPosition(axis_.demand.position);

@@ -17,7 +17,7 @@ std::uint16_t vendorBits(const DriveQuirks& quirks, Time now) {
 
 std::uint16_t makeStatusword(const StatuswordParts& parts, const DriveQuirks& quirks, Time now) {
   std::uint16_t word = statusBits(parts.shown);
-  if (parts.ready) word |= kRemoteBit;
+  if (parts.ready && parts.remote) word |= kRemoteBit;
   if (parts.ready && parts.voltage) word |= kVoltageBit;
   if (parts.warning) word |= kWarningBit;
   if (parts.shown == PdsState::fault) word |= quirks.fault_bits;

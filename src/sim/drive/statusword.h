@@ -13,6 +13,7 @@ struct StatuswordParts {
   PdsState shown = PdsState::not_ready_to_switch_on;  ///< the state that it shows
   bool ready = false;                                 ///< the initialisation is over
   bool voltage = true;                                ///< bit 4
+  bool remote = true;                                 ///< bit 9
   bool warning = false;                               ///< bit 7
   std::uint16_t of_mode = 0;  ///< bits 10 to 13 and 15, while enabled; and that home was found
 };
