@@ -55,7 +55,16 @@ struct StartupWrite {
   /// let it be written.
   bool by_default = false;
   bool only_if_different = true;  ///< read first, write only what differs
+  bool read_back = false;         ///< read again what was written; another number fails the boot
   bool always = false;  ///< no configuration but what stops the drive: done at each boot, first
+};
+
+/// A whole number whose length the drive says itself.
+struct OpenWidth {
+  ObjectId object;
+  std::string name;                 ///< for messages
+  std::size_t bytes = 1, most = 2;  ///< that are assumed, and that it may have
+  bool is_signed = false;
 };
 
 /// Everything the master must know of one node.
@@ -81,6 +90,7 @@ struct NodeConfig {
   bool map_count_may_be_read_only = false;      ///< quirk: sub0 of 16xxh/1Axxh aborts 0x06010002
   std::size_t fixed_map_entries = 0;  ///< quirk: sub0 is always this, unused entries are 0; 0: no
   std::vector<PdoConfig> pdos;
+  std::vector<OpenWidth> widths;     ///< read at each boot
   std::vector<StartupWrite> writes;  ///< in this order, after the PDOs but for `always`
   /// Behind the warning of what was left out (StartupWrite::by_default, PdoEntry::optional): what
   /// to do about it.

@@ -11,6 +11,7 @@
 #include "canopen/nmt/nmt.h"
 #include "canopen/node/node.h"
 #include "canopen/sdo/pacer.h"
+#include "canopen/sdo/widths.h"
 
 namespace cia402::canopen {
 
@@ -61,6 +62,7 @@ struct BootFindings {
   bool unchanged = false;               ///< 1020h says so: the configuration is not written again
   std::vector<AdoptedCobId> cob_ids;
   std::vector<LeftOutEntry> left_out;
+  std::vector<LearnedWidth> widths;  ///< longer than assumed
   std::vector<std::string> lacking;  ///< what only defaults ask for, "606C:00 velocity_actual"
   std::vector<std::string> lacking_optional;  ///< what is optional anyhow
   bool started = false;                       ///< the NMT command was sent

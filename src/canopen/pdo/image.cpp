@@ -71,7 +71,8 @@ void PdoImage::add(const PdoConfig& config) {
   for (const PdoEntry& entry : config.entries) {
     if (entry.bits == 0 || shift + entry.bits > kMaxBits) break;  // refused when the node boots
     const fieldbus::Slot slot = input ? addInput(entry.object) : addOutput(entry.object);
-    pdo.fields.push_back({slot, static_cast<std::uint8_t>(shift), entry.bits, maskOf(entry.bits)});
+    pdo.fields.push_back(
+        {slot, static_cast<std::uint8_t>(shift), entry.bits, maskOf(entry.bits), 0, 0});
     shift += entry.bits;
   }
   pdo.size = static_cast<std::uint8_t>((shift + 7) / 8);
@@ -147,7 +148,9 @@ bool PdoImage::requestDue(std::size_t tpdo, can::Frame& frame) {
 std::uint64_t PdoImage::pack(const Pdo& pdo) const {
   std::uint64_t word = 0;
   for (const Pdo::Field& field : pdo.fields) {
-    word |= (output(field.slot) & field.mask) << field.shift;
+    std::uint64_t value = output(field.slot) & field.mask;
+    if ((value & field.sign) != 0) value |= field.extension;
+    word |= value << field.shift;
   }
   return word;
 }
@@ -208,13 +211,37 @@ void PdoImage::leaveOut(PdoDirection direction, unsigned number, ObjectId object
                                    [slot](const Pdo::Field& field) { return field.slot == slot; });
     if (gone == pdo.fields.end()) continue;
     pdo.fields.erase(gone);
-    unsigned shift = 0;
-    for (Pdo::Field& field : pdo.fields) {
-      field.shift = static_cast<std::uint8_t>(shift);
-      shift += field.bits;
-    }
-    pdo.size = static_cast<std::uint8_t>((shift + 7) / 8);
+    arrange(pdo);
     noteLeftOut(direction, slot);
+  }
+}
+
+/// One behind the other.
+void PdoImage::arrange(Pdo& pdo) {
+  unsigned shift = 0;
+  for (Pdo::Field& field : pdo.fields) {
+    field.shift = static_cast<std::uint8_t>(shift);
+    shift += field.bits;
+  }
+  pdo.size = static_cast<std::uint8_t>((shift + 7) / 8);
+}
+
+void PdoImage::widen(ObjectId object, unsigned bits, bool is_signed) {
+  for (std::vector<Pdo>* pdos : {&tpdos_, &rpdos_}) {
+    const bool input = pdos == &tpdos_;
+    const fieldbus::Slot slot = input ? inputSlot(object) : outputSlot(object);
+    for (Pdo& pdo : *pdos) {
+      for (Pdo::Field& field : pdo.fields) {
+        if (field.slot != slot) continue;
+        const unsigned value_bits = field.bits;
+        field.bits = static_cast<std::uint8_t>(bits);
+        if (!input && is_signed) {
+          field.sign = std::uint64_t{1} << (value_bits - 1);
+          field.extension = maskOf(bits) & ~field.mask;
+        }
+      }
+      arrange(pdo);
+    }
   }
 }
 

@@ -44,6 +44,9 @@ class PdoImage : public fieldbus::ProcessImage {
   /// PDO without entries is neither sent nor expected. Its value is not fresh, what is set is not
   /// sent. No effect for what is not mapped.
   void leaveOut(PdoDirection direction, unsigned number, ObjectId object);
+  /// The drive holds the object in so many bits: what stands behind it moves. Its value stays as
+  /// wide as constructed, negative numbers remain what they are.
+  void widen(ObjectId object, unsigned bits, bool is_signed);
   /// All entries are there again, as constructed.
   void includeAll();
   /// Marks every input as unknown and sets every output to 0 (the node rebooted or was lost), so
@@ -77,7 +80,9 @@ class PdoImage : public fieldbus::ProcessImage {
       fieldbus::Slot slot;
       std::uint8_t shift;
       std::uint8_t bits;
-      std::uint64_t mask;  ///< as wide, not shifted
+      std::uint64_t mask;  ///< of the value, not shifted
+      /// Of an RPDO's value that travels in more bits than it has: its sign, and what that becomes.
+      std::uint64_t sign = 0, extension = 0;
     };
     std::vector<Field> fields;      ///< without those that are left out
     std::vector<Field> all_fields;  ///< as constructed
@@ -96,6 +101,7 @@ class PdoImage : public fieldbus::ProcessImage {
  private:
   void add(const PdoConfig& config);
   void describeSlots();
+  static void arrange(Pdo& pdo);
   void noteLeftOut(PdoDirection direction, fieldbus::Slot slot);
   std::vector<Pdo>& pdosOf(PdoDirection direction) {
     return direction == PdoDirection::tpdo ? tpdos_ : rpdos_;

@@ -37,9 +37,9 @@ SdoTicket SdoClient::upload(ObjectId object, std::string name, std::optional<Sdo
 
 SdoTicket SdoClient::download(ObjectId object, Bytes data, std::string name,
                               std::optional<SdoOptions> options) {
-  auto transfer =
-      std::make_shared<SdoTransfer>(Direction::download, object, std::move(name), std::move(data),
-                                    options.value_or(defaults_), false);
+  auto transfer = std::make_shared<SdoTransfer>(Direction::download, object, std::move(name),
+                                                widths_.toDrive(object, std::move(data)),
+                                                options.value_or(defaults_), false);
   queue_.add(transfer);
   return transfer;
 }
@@ -262,6 +262,9 @@ void SdoClient::succeed(Time now) {
   exchange_.counters().busy += std::max(now - started_at_, Duration::zero());
   blocks_.succeeded();
   wire_ = Idle();
+  if (transfer.isUpload()) {
+    transfer.setData(widths_.fromDrive(transfer.object(), transfer.data()));
+  }
   transfer.succeed();
   queue_.pop();
   startNext(now);
