@@ -31,6 +31,7 @@ void addWrites(const std::vector<drive::NamedWrite>& writes, AskedBy who, const 
     start.object = (*resolved)->object;
     const drive::ObjectSpec* object = drive::findObject(*axis.profile, write.object);
     if (object != nullptr) start.name = object->name;
+    start.read_back = axis.profile->read_back && (object == nullptr || object->readable);
     start.data = drive::wireBytes((*resolved)->raw, (*resolved)->type);
     start.optional = (*resolved)->optional;
     start.by_default = who == AskedBy::profile && !(*resolved)->asked_for;
@@ -92,6 +93,15 @@ void addAxis(const AxisConfig& axis, NodeConfig& node, Problems& problems) {
   addWrites(axis.writes, AskedBy::user, axis, path + "/write", node, problems);
 }
 
+/// What the profile leaves open of lengths.
+void addWidths(const AxisConfig& axis, NodeConfig& node) {
+  for (const drive::ObjectSpec& object : axis.profile->objects) {
+    if (object.widest == 0 || drive::saidToLack(axis, object.name)) continue;
+    node.widths.push_back({object.id, object.name, fieldbus::sizeBits(object.type) / 8,
+                           object.widest / 8, fieldbus::isSigned(object.type)});
+  }
+}
+
 /// @param axes that sit in the device, at least one
 NodeConfig makeNode(const BusConfig& bus, const DeviceConfig& device,
                     const std::vector<const AxisConfig*>& axes, Problems& problems) {
@@ -115,6 +125,7 @@ NodeConfig makeNode(const BusConfig& bus, const DeviceConfig& device,
   node.sdo_channel = device.sdo;
   node.boot_timeout = family.boot_time;
   node.reset_node_allowed = family.nmt_reset_node;
+  for (const AxisConfig* axis : axes) addWidths(*axis, node);
   for (const AxisConfig* axis : axes) addStop(*axis->profile, node);
   addSyncWindow(bus, node);
   for (const AxisConfig* axis : axes) addAxis(*axis, node, problems);

@@ -29,7 +29,9 @@ class Writes : public BootStep {
   Progress check(BootContext& boot, Time now) override {
     if (const auto resting = patience_.rest(boot, now)) return *resting;
     if (!boot.answered()) return Progress::waiting;
+    if (verifying_) return verify(boot);
     if (reading_) return compare(boot, now);
+    if (boot.ok() && boot.config.writes[item_].read_back) return readBack(boot, now);
     if (boot.ok()) return done();
     const bool optional = boot.config.writes[item_].optional;
     if (!optional && patience_.grant(boot, boot.ticket->abortCode(), now)) return Progress::waiting;
@@ -75,9 +77,32 @@ class Writes : public BootStep {
     return Progress::waiting;
   }
 
+  Progress readBack(BootContext& boot, Time now) {
+    const StartupWrite& written = boot.config.writes[item_];
+    boot.read(written.object, written.name, now, options(boot));
+    verifying_ = true;
+    return Progress::waiting;
+  }
+
+  /// What cannot be read again is believed.
+  Progress verify(BootContext& boot) {
+    const StartupWrite& written = boot.config.writes[item_];
+    verifying_ = false;
+    if (!boot.ok()) return boot.refused() ? done() : boot.failTransfer();
+    const std::uint64_t wanted = toUnsigned(written.data);
+    const Bytes& holds = boot.ticket->data();  // of which some drives send four, whatever the type
+    const bool long_enough = holds.size() >= written.data.size() && holds.size() <= 8;
+    if (holds == written.data || (long_enough && toUnsigned(holds) == wanted)) return done();
+    return boot.fail(BootFailure::refused,
+                     "it took " + objectText(written.object, written.name) + " = " +
+                         std::to_string(wanted) + ", but holds " +
+                         std::to_string(toUnsigned(holds)) +
+                         " when it is read back: look at its range in the drive's manual");
+  }
+
   const bool always_;
   std::size_t item_ = 0;
-  bool reading_ = false;
+  bool reading_ = false, verifying_ = false;
   StatePatience patience_;
 };
 

@@ -241,6 +241,8 @@ void readDrive(yaml::Section& section, yaml::Section& timing, DriveProfile& prof
     profile.before_enable = readWrites(*writes, profile, WriteList::running);
   }
   if (const auto list = section.get("checks")) readChecks(*list, profile);
+  section.read("read_back", profile.read_back);
+  readSupervision(section, profile);
   if (const auto rule = section.get("counts_rule")) readCountsRule(*rule, profile);
   if (const auto names = section.get("default_modes")) {
     profile.default_modes = readModeNames(*names, profile);
@@ -256,6 +258,7 @@ void readDrive(yaml::Section& section, yaml::Section& timing, DriveProfile& prof
   if (const auto inputs = section.get("inputs")) readDigitalInputs(*inputs, profile);
   if (const auto probes = section.get("touch_probe")) readTouchProbes(*probes, profile);
   if (const auto errors = section.get("errors")) readErrors(*errors, profile);
+  section.readInteger("error_bits", profile.error_bits, 0, 0xFFFF);
   if (const auto warnings = section.get("warnings")) readWarnings(*warnings, profile);
 }
 

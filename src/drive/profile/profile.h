@@ -14,6 +14,7 @@
 #include "drive/profile/io.h"
 #include "drive/profile/object_range.h"
 #include "drive/profile/setting_check.h"
+#include "drive/profile/supervision.h"
 #include "fieldbus/object.h"
 
 namespace cia402::drive {
@@ -92,6 +93,8 @@ struct ObjectSpec {
     bool holds(double number) const { return number >= low && number <= high; }
   };
   std::optional<Range> range;
+  /// The drive may hold it in up to so many bits, which it says itself; 0: in those of its type.
+  unsigned widest = 0;
   bool readable = true;
   bool writable = true;
   bool rpdo = false;                  ///< may be mapped into an RPDO
@@ -187,6 +190,7 @@ struct ModeSpec {
   /// process image while the mode is active, or the next cycle would undo it (a velocity limit in
   /// the velocity target of a vendor's position mode).
   std::vector<NamedWrite> entry_writes;
+  std::vector<std::string> mapped;  ///< objects of these that shall travel in an RPDO
 };
 
 /// How a family takes another mode of operation (6060h), and shows it (6061h).
@@ -267,12 +271,14 @@ struct DriveProfile {
   Duration fault_reset_pause{0};
   bool fault_reset_clears_history = false;  ///< 1003h:00 = 0 is written before a fault reset
   StatusWords status_words;
-  bool has_warning_bit = true;             ///< statusword bit 7 is a warning
-  bool warning_stops = false;              ///< a warning makes the drive stop like a fault
-  std::vector<int> quick_stop_holds;       ///< values of 605Ah after which quick stop stays active
-  std::vector<NamedWrite> startup;         ///< at every boot
-  std::vector<NamedWrite> before_enable;   ///< each time before enabling
-  std::vector<SettingCheck> checks;        ///< what the drive must be set to, or say
+  bool has_warning_bit = true;            ///< statusword bit 7 is a warning
+  bool warning_stops = false;             ///< a warning makes the drive stop like a fault
+  std::vector<int> quick_stop_holds;      ///< values of 605Ah after which quick stop stays active
+  std::vector<NamedWrite> startup;        ///< at every boot
+  std::vector<NamedWrite> before_enable;  ///< each time before enabling
+  std::vector<SettingCheck> checks;       ///< what the drive must be set to, or say
+  Supervision supervision;
+  bool read_back = false;                  ///< what is written by SDO is read again and compared
   CountsRule counts_rule;                  ///< compared with counts_per_turn before enabling
   std::vector<std::string> default_modes;  ///< an axis can switch to; empty: all
   std::vector<std::string> feedback;  ///< in the cycle where there is room, most important first
@@ -303,6 +309,7 @@ struct DriveProfile {
     bool power_cycle_after_save = false;         ///< it takes no enabling before
   } parameters;
   std::map<std::uint16_t, ErrorText> errors;
+  std::uint16_t error_bits = 0;  ///< each of these is a code, which may stand beside another one
   std::map<std::uint16_t, WarningText> warnings;  ///< where they are no errors, or other ones
   std::string eds;  ///< file whose objects were added, for messages; empty: none
 

@@ -39,6 +39,13 @@ Outcome WriteStep::advance(const Context& context) {
       return Outcome::failed(context.axis.who() + ": " + answer->message() +
                              (lacking(*answer) ? advice(context) : ""));
     }
+    if (std::exchange(reading_back_, false)) {
+      const std::string problem = compare(*answer);
+      if (!problem.empty()) return Outcome::failed(context.axis.who() + ": " + problem);
+      ++next_;
+      continue;
+    }
+    if (answer->ok() && readsBack(context, *answer)) continue;
     if (answer->ok() && answer->direction() == fieldbus::Transfer::Direction::upload) {
       if (copy(context, answer->data())) continue;
       if (!current_.optional) {
@@ -74,6 +81,30 @@ bool WriteStep::begin(const Context& context, Outcome& problem) {
     write(context, wireBytes(current_.raw, current_.type));
   }
   return true;
+}
+
+/// What travels in the cycle as well is what that says by now.
+bool WriteStep::readsBack(const Context& context, const fieldbus::Transfer& answer) {
+  const ObjectSpec* object = context.axis.profile().find(current_.object);
+  const bool mapped =
+      context.axis.device().image().outputSlot(current_.object) != fieldbus::kNoSlot;
+  const bool wanted = context.axis.profile().read_back && !mapped &&
+                      (object == nullptr || object->readable) &&
+                      answer.direction() == fieldbus::Transfer::Direction::download;
+  if (!wanted) return false;
+  reading_back_ = true;
+  ticket_ = context.axis.device().objects().upload(current_.object, current_.name);
+  return true;
+}
+
+/// What cannot be read again is believed.
+std::string WriteStep::compare(const fieldbus::Transfer& answer) const {
+  if (!answer.ok() || answer.data().empty() || answer.data().size() > 8) return {};
+  const std::uint64_t wanted = fieldbus::toUnsigned(written_);
+  const std::uint64_t holds = fieldbus::toUnsigned(answer.data());
+  if (holds == wanted) return {};
+  return "the drive took " + current_.name + " = " + std::to_string(wanted) + ", but holds " +
+         std::to_string(holds) + " when it is read back: look at its range in the drive's manual";
 }
 
 bool WriteStep::mayLeaveOut(const Context& context, const fieldbus::Transfer& answer) {
@@ -119,6 +150,7 @@ void WriteStep::write(const Context& context, fieldbus::Bytes bytes) {
     mapped_.push_back({slot, fieldbus::toUnsigned(bytes)});
   }
   const bool by_default = !current_.asked_for && !current_.optional;
+  written_ = bytes;
   ticket_ = context.axis.device().objects().download(
       current_.object, std::move(bytes), current_.name,
       by_default ? std::optional(ifThere(context.axis.device())) : std::nullopt);

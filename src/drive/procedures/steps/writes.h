@@ -31,11 +31,15 @@ class WriteStep {
   bool begin(const Context& context, Outcome& problem);
   bool copy(const Context& context, fieldbus::Bytes bytes);
   void write(const Context& context, fieldbus::Bytes bytes);
+  bool readsBack(const Context& context, const fieldbus::Transfer& answer);
+  std::string compare(const fieldbus::Transfer& answer) const;
 
   const std::vector<NamedWrite>* writes_;  ///< in the profile, which outlives every procedure
   std::size_t next_ = 0;
   ResolvedWrite current_;
   fieldbus::Ticket ticket_;
+  bool reading_back_ = false;
+  fieldbus::Bytes written_;
   std::vector<Mapped> mapped_;
   std::vector<std::string> left_out_;  ///< NamedWrite::from
 };
