@@ -94,6 +94,18 @@ void AxisCycle::stopMotion(const std::string& why) {
   }
 }
 
+void AxisCycle::quickStop(const std::string& why, Time now) {
+  tell(events_, Event::Severity::error, why, now);
+  stopMotion(why);
+  for (AxisUnit& unit : units_) {
+    drive::ProcedureRequest request;
+    request.kind = drive::ProcedureKind::quick_stop;
+    const bool may_move =
+        unit.axis.state().state == drive::State::operation_enabled || unit.axis.procedure().running;
+    if (may_move) (void)unit.axis.start(request, now);
+  }
+}
+
 void AxisCycle::stopBesideCycle(const std::string& why) {
   stopMotion(why);
   for (AxisUnit& unit : units_) unit.axis.stopBesideCycle(why);

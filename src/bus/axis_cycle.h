@@ -60,6 +60,8 @@ class AxisCycle {
   }
   /// Brings all axes to rest, for the reason `why`.
   void stopMotion(const std::string& why);
+  /// All axes that may move get a quick stop, for the reason `why`.
+  void quickStop(const std::string& why, Time now);
   /// Set-points do not reach the drives as they should: all that moves is stopped by what does.
   void stopBesideCycle(const std::string& why);
   /// Nothing reaches the drives any more: motion ends, nothing enables an axis.

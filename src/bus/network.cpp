@@ -264,6 +264,9 @@ void Network::onBootUp(canopen::Node& node, Time now) {
 
 void Network::onHealthChange(canopen::Node& node, fieldbus::Health, Time now) {
   if (NodeUnit* unit = unitOf(node)) unit->onHealthChange(now);
+  const bool lost = node.health() == fieldbus::Health::lost && !node.excused();
+  if (!config_.bus.stop_all_on_loss || !lost || cycle_.shutdown().begun()) return;
+  cycle_.quickStop(node.who() + " is lost: all axes get a quick stop (bus/stop_all_on_loss)", now);
 }
 
 void Network::onForeignSync(const can::Frame& frame, Time stamp, Time now) {

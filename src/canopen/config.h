@@ -60,6 +60,14 @@ struct StartupWrite {
   bool always = false;  ///< no configuration but what stops the drive: done at each boot, first
 };
 
+/// A whole number whose length the drive says itself.
+struct OpenWidth {
+  ObjectId object;
+  std::string name;                 ///< for messages
+  std::size_t bytes = 1, most = 2;  ///< that are assumed, and that it may have
+  bool is_signed = false;
+};
+
 /// Everything the master must know of one node.
 struct NodeConfig {
   NodeId node_id = 0;
@@ -88,6 +96,7 @@ struct NodeConfig {
   /// What travels without PDOs: read and written by SDO as fast as answers come, one object each.
   std::vector<PdoConfig> by_sdo;
   std::vector<HalfFloat> half_floats;  ///< how wide the drive has these is learnt at each boot
+  std::vector<OpenWidth> widths;       ///< whole numbers of which the same is learnt
   bool reads_back = false;             ///< what `writes` writes is read again and compared
   std::vector<StartupWrite> writes;    ///< in this order, after the PDOs but for `always`
   /// Behind the warning of what was left out (StartupWrite::by_default, PdoEntry::optional): what

@@ -43,6 +43,13 @@ struct DeviceProfile {
   Duration sync_period_step{std::chrono::microseconds(1)};  ///< 1006h takes multiples of this
   /// Shortest and longest SYNC period that the drive follows.
   Duration sync_period_min{0}, sync_period_max{Duration::max()};
+  /// The maker's rule for the shortest sensible SYNC period, where it gives one: so many PDOs fill
+  /// a millisecond at 1 Mbit/s, they may take that share, and the rest needs some time.
+  struct SyncAdvice {
+    double pdos_per_ms = 0.0, share = 1.0;
+    Duration margin{0};
+  };
+  std::optional<SyncAdvice> sync_advice;
   bool heartbeat_supported = true, heartbeat_consumer_supported = true;
   Duration error_control_min{0};  ///< shortest heartbeat and guard time that the drive stands
   bool node_guarding_supported = false;  ///< 100Ch and 100Dh; used where there is no heartbeat

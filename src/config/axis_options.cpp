@@ -35,6 +35,9 @@ drive::HomingOptions readHoming(const yaml::Value& value) {
   section.read("zero_velocity", homing.zero_velocity, yaml::kPositive);
   section.read("acceleration", homing.acceleration, yaml::kPositive);
   section.read("offset", homing.offset);
+  if (const auto means = section.get("offset_means")) {
+    homing.offset_shifts_zero = means->oneOf({"position_at_home", "shift_of_zero"}) == 1U;
+  }
   double timeout = toSeconds(homing.timeout);
   section.read("timeout", timeout, yaml::Range{0.0, 3600.0, true});
   homing.timeout = fromSeconds(timeout);

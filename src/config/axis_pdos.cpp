@@ -145,6 +145,11 @@ bool plan(yaml::Section& section, AxisDraft& draft, RobotConfig& robot, PdoNeeds
   axis.modes = planned->modes;
   draft.pdos().riders = planned->riders;
   draft.pdos().default_objects = defaultObjects(draft, needs);
+  for (const std::string& name : planned->modes) {
+    const std::vector<std::string>& mapped = profile.mode(name)->mapped;
+    auto& defaults = draft.pdos().default_objects;
+    defaults.insert(defaults.end(), mapped.begin(), mapped.end());
+  }
   return true;
 }
 

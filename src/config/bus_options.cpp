@@ -202,6 +202,7 @@ void readBus(const yaml::Value& value, BusConfig& bus, bool& counter_given) {
   if (const auto receive = section.get("receive")) {
     bus.receive_all = receive->oneOf({"configured", "all"}).value_or(0) == 1;
   }
+  section.read("stop_all_on_loss", bus.stop_all_on_loss);
   readSyncWindow(section, bus);
   readTimeInterval(section, bus);
   counter_given = section.readInteger("sync_counter", bus.sync_counter, 0, 240);
@@ -236,9 +237,40 @@ void checkSync(const yaml::Value& bus_section, bool counter_given, RobotConfig& 
   }
 }
 
+namespace {
+
+/// The makers' rules for the shortest sensible period, each told once.
+void warnOfShortPeriod(const canopen::MasterConfig& master, RobotConfig& robot) {
+  std::size_t pdos = 0;
+  for (const canopen::NodeConfig& node : master.nodes) {
+    pdos += static_cast<std::size_t>(
+        std::count_if(node.pdos.begin(), node.pdos.end(),
+                      [](const canopen::PdoConfig& pdo) { return pdo.enabled; }));
+  }
+  std::vector<std::string> told;
+  for (const drive::AxisConfig& axis : robot.axes) {
+    if (!axis.profile) continue;
+    const auto& advice = robot.deviceOf(axis).profile->sync_advice;
+    const bool again = std::find(told.begin(), told.end(), axis.profile->name) != told.end();
+    if (!advice || again) continue;
+    const double per_second = advice->pdos_per_ms * 1000.0 * robot.bus.bitrate / 1e6;
+    const double least =
+        static_cast<double>(pdos) / per_second / advice->share + toSeconds(advice->margin);
+    if (toSeconds(robot.bus.sync_period) >= least) continue;
+    told.push_back(axis.profile->name);
+    const double tenth = std::ceil(least * 1e4 - 1e-9) * 1e-4;  // of a millisecond
+    robot.warnings.push_back("bus/sync_period: the maker of " + axis.profile->name + " advises " +
+                             numberText(tenth) + " s or more for " + std::to_string(pdos) +
+                             " PDOs, not " + secondsText(robot.bus.sync_period));
+  }
+}
+
+}  // namespace
+
 void checkBusLoad(const yaml::Value& bus_section, RobotConfig& robot, Problems& problems) {
   if (planLoad(robot).worst > kComfortableLoad) leaveRiders(robot);
   const canopen::MasterConfig master = makeMasterConfig(robot, problems);
+  warnOfShortPeriod(master, robot);
   const BusLoad load = busLoad(master, robot.bus.bitrate);
   const std::string rate = std::to_string(std::lround(1.0 / toSeconds(robot.bus.sync_period)));
   const std::string share = "the PDOs need " + percent(load.worst) + " of the bus at " + rate +

@@ -99,12 +99,37 @@ void readAdjust(const yaml::Value& list, AxisConfig& axis) {
   }
 }
 
+/// Settings that a check of the profile wants to be given, and that the drive has already.
+void readKeeps(const yaml::Value& list, AxisConfig& axis) {
+  std::vector<std::string> known;
+  for (const drive::SettingCheck& check : axis.profile->checks) {
+    if (check.condition.kind != drive::Condition::Kind::given) continue;
+    known.insert(known.end(), check.objects.begin(), check.objects.end());
+  }
+  for (const yaml::Value& entry : list.list()) {
+    if (const auto index = entry.oneOf(known)) axis.keeps.push_back(known[*index]);
+  }
+}
+
+/// Inputs and outputs that are wired here, besides those of the profile.
+void readWiring(yaml::Section& section, AxisConfig& axis) {
+  const auto inputs = section.get("inputs"), outputs = section.get("outputs");
+  if (!axis.profile || (!inputs && !outputs)) return;
+  const auto own = std::make_shared<drive::DriveProfile>(*axis.profile);
+  if (inputs) readDigitalInputs(*inputs, *own);
+  if (outputs) readDigitalOutputs(*outputs, *own);
+  axis.profile = own;
+}
+
 // The keys whose meaning depends on the profile.
 void readWithProfile(yaml::Section& section, AxisConfig& axis) {
   const auto writes = section.get("write");
   const auto adjust = section.get("adjust");
   const auto trusted = section.get("trusted");
+  const auto keeps = section.get("keeps");
+  readWiring(section, axis);
   if (!axis.profile) return;
+  if (keeps) readKeeps(*keeps, axis);
   if (adjust) readAdjust(*adjust, axis);
   if (trusted) readTrusted(*trusted, axis);
   if (writes) axis.writes = readWrites(*writes, *axis.profile, WriteList::boot);

@@ -93,6 +93,15 @@ void addAxis(const AxisConfig& axis, NodeConfig& node, Problems& problems) {
   addWrites(axis.writes, AskedBy::user, axis, path + "/write", node, problems);
 }
 
+/// What the profile leaves open of lengths.
+void addWidths(const AxisConfig& axis, NodeConfig& node) {
+  for (const drive::ObjectSpec& object : axis.profile->objects) {
+    if (object.widest == 0 || drive::saidToLack(axis, object.name)) continue;
+    node.widths.push_back({object.id, object.name, fieldbus::sizeBits(object.type) / 8,
+                           object.widest / 8, fieldbus::isSigned(object.type)});
+  }
+}
+
 /// @param axes that sit in the device, at least one
 NodeConfig makeNode(const BusConfig& bus, const DeviceConfig& device,
                     const std::vector<const AxisConfig*>& axes, Problems& problems) {
@@ -123,6 +132,7 @@ NodeConfig makeNode(const BusConfig& bus, const DeviceConfig& device,
   node.boot_timeout = family.boot_time;
   node.reset_node_allowed = family.nmt_reset_node;
   node.reads_back = axes.front()->profile->reads_back;
+  for (const AxisConfig* axis : axes) addWidths(*axis, node);
   for (const AxisConfig* axis : axes) addStop(*axis->profile, node);
   addSyncWindow(bus, node);
   for (const AxisConfig* axis : axes) addAxis(*axis, node, problems);

@@ -109,6 +109,13 @@ class Planner {
     return item(*object, every);
   }
 
+  /// What a mode writes and wants to travel.
+  void addMapped(const ModeSpec& mode, unsigned every, std::vector<PackItem>& items) const {
+    for (const std::string& name : mode.mapped) {
+      if (!contains(items, name)) items.push_back(item(*profile_.find(name), every));
+    }
+  }
+
   Result<void> planOutputs() {
     const ModeSpec* start = profile_.mode(needs_.mode);
     const ObjectSpec* controlword = profile_.find("controlword");
@@ -121,6 +128,7 @@ class Planner {
     const PackRules limits = rules(PdoDirection::rpdo);
     std::vector<PackItem> items = {item(*controlword, 1)};
     if (const auto of_start = target(*start, 1)) items.push_back(*of_start);
+    addMapped(*start, 1, items);
     if (!reachable(*start)) return Error{unreachable(*start)};
     auto packed = packPdos(items, limits);
     if (!packed) {
@@ -149,6 +157,7 @@ class Planner {
     std::vector<PackItem> wider = items;
     const auto more = target(*mode, kRefreshEvery);
     if (more && !contains(items, more->name)) wider.push_back(*more);
+    addMapped(*mode, kRefreshEvery, wider);
     if (auto better = packPdos(wider, limits)) {
       packed = *better;
       items = wider;

@@ -33,6 +33,7 @@ struct BusConfig {
   Duration time_interval{0};            ///< of TIME messages; zero: none
   /// Frames that nothing in the configuration needs are received, too, and recorded.
   bool receive_all = false;
+  bool stop_all_on_loss = false;  ///< where a drive is lost all axes get a quick stop
 };
 
 /// Goal and path tolerances of one joint in a group; 0: none.

@@ -360,5 +360,35 @@ TEST(PdoImage, an_object_that_another_pdo_still_has_is_not_left_out) {
   EXPECT_TRUE(image.inputLeftOut(image.inputSlot(kStatusword)));
 }
 
+TEST(PdoImage, moves_what_stands_behind_an_object_that_the_drive_holds_in_more_bits) {
+  PdoImage image({pdo(PdoDirection::tpdo, 1, 0x183, {{kMode, 8, ""}, {kStatusword, 16, ""}}),
+                  pdo(PdoDirection::rpdo, 1, 0x203, {{kMode, 8, ""}, {kTarget, 32, ""}})});
+  image.widen(kMode, 16, true);
+  EXPECT_TRUE(image.receive(0, frame("183 FF FF 37 02"), kStamp));
+  EXPECT_EQ(image.input(image.inputSlot(kMode)).raw, 0xFFU) << "as wide as it was";
+  EXPECT_EQ(image.input(image.inputSlot(kStatusword)).raw, 0x0237U);
+  EXPECT_FALSE(image.receive(0, frame("183 FF 37 02"), kStamp)) << "too short now";
+  can::Frame sent;
+  image.setOutput(image.outputSlot(kTarget), 0x12345678);
+  image.setOutput(image.outputSlot(kMode), 0x03);
+  image.pack(0, sent);
+  EXPECT_EQ(sent, frame("203 03 00 78 56 34 12"));
+  image.setOutput(image.outputSlot(kMode), 0xFF);  // -1
+  image.pack(0, sent);
+  EXPECT_EQ(sent, frame("203 FF FF 78 56 34 12"));
+  image.includeAll();  // another drive: as constructed
+  image.pack(0, sent);
+  EXPECT_EQ(sent, frame("203 FF 78 56 34 12"));
+}
+
+TEST(PdoImage, widens_numbers_without_a_sign_by_zeros) {
+  PdoImage image({pdo(PdoDirection::rpdo, 1, 0x203, {{kMode, 8, ""}})});
+  image.widen(kMode, 16, false);
+  image.setOutput(image.outputSlot(kMode), 0xFF);
+  can::Frame sent;
+  image.pack(0, sent);
+  EXPECT_EQ(sent, frame("203 FF 00"));
+}
+
 }  // namespace
 }  // namespace cia402::canopen

@@ -101,8 +101,9 @@ TEST(DamiaoReadBack, OfWhatIsWrittenBeforeEnablingRefusesIt) {
   holdsAlways(scene, {0x605A, 0}, 0);
   const bus::Answer enabled = scene.procedure(ProcedureKind::enable);
   EXPECT_FALSE(enabled.success);
-  EXPECT_THAT(enabled.message, AllOf(HasSubstr("the drive took 0x02 for 605A:00 quick_stop_option"),
-                                     HasSubstr("but holds 0x00")));
+  EXPECT_THAT(enabled.message,
+              AllOf(HasSubstr("the drive took 0x02 for quick_stop_option (605A:00)"),
+                    HasSubstr("but holds 0x00")));
   EXPECT_FALSE(scene.truth("joint").power_stage_on);
 }
 
@@ -112,8 +113,8 @@ TEST(DamiaoReadBack, OfTheRampsOfAModeRefusesIt) {
   holdsAlways(scene, {0x6084, 0}, 0x44FA0000);
   const bus::Answer enabled = scene.procedure(ProcedureKind::enable);
   EXPECT_FALSE(enabled.success);
-  EXPECT_THAT(enabled.message,
-              AllOf(HasSubstr("6084:00 profile_deceleration"), HasSubstr("but holds 0x44FA0000")));
+  EXPECT_THAT(enabled.message, AllOf(HasSubstr("profile_deceleration (6084:00)"),
+                                     HasSubstr("but holds 0x44FA0000")));
   EXPECT_FALSE(scene.truth("joint").power_stage_on);
 }
 

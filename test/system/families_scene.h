@@ -21,7 +21,9 @@ inline void PrintTo(const FamilyMode& tested, std::ostream* out) {
 
 /// What a family wants to be told before it is enabled the first time, as options of the axis.
 inline std::string panelSteps(const FamilyMode& tested) {
-  return std::string(tested.family) == "megmeet_dm5" ? ", adjust: [control_mode]" : "";
+  const std::string family = tested.family;
+  if (family == "id286_cnfa") return ", keeps: [motor_current]";
+  return family == "megmeet_dm5" ? ", adjust: [control_mode]" : "";
 }
 
 /// Terminals of a NiMotion with the negative limit switch, the positive one and the home switch,

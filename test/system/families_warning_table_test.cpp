@@ -82,7 +82,7 @@ INSTANTIATE_TEST_SUITE_P(
                         {"negative_limit_switch", "0x1000", "negative limit", false},
                         {"positive_position_limit", "0x0800", "positive limit", false},
                         {"negative_position_limit", "0x1000", "negative limit", false},
-                        {"homing_failed_warning", "0x2000", "homing failed", false}}},
+                        {"homing_failed", "0x2000", "homing failed", false}}},
         // L3797-3815
         FamilyCautions{
             {kMegmeetDm5, "8388608", "csp"},

@@ -183,6 +183,7 @@ std::string ObjectJob::powerRefusal() const {
 /// What gives a drive another zero is not written twice.
 void ObjectJob::download(const fieldbus::Bytes& data) {
   stage_ = Stage::writing;
+  written_ = data;
   std::optional<fieldbus::AccessOptions> once;
   if (locked_) {
     once = axis_->device().times().access;
@@ -199,6 +200,8 @@ bool ObjectJob::step(Time now) {
       return measure(now);
     case Stage::writing:
       return finishWrite(now);
+    case Stage::reading_back:
+      return compare();
     case Stage::reading:
     case Stage::asking_size:
       break;
@@ -216,6 +219,12 @@ bool ObjectJob::finishWrite(Time now) {
     since_ = now;
     return false;
   }
+  if (ticket_->ok() && readsBack()) {
+    stage_ = Stage::reading_back;
+    written_ = ticket_->data();  // as the drive has it, if it has fewer bits for it
+    ticket_ = axis_->device().objects().upload(id_, name_);
+    return false;
+  }
   if (ticket_->ok()) return finish(true, writtenText());
   return finish(false, notWritten(ticket_->reason()));
 }
@@ -224,6 +233,24 @@ std::string ObjectJob::writtenText() const {
   const bool later = axis_->config().profile->after_power.find(id_) != nullptr;
   return who_ + ": wrote " + value_ + " to " + name_ + units_ +
          (later ? "; it counts once the drive was switched off and on" : "");
+}
+
+/// What travels in the cycle as well is what that says by now.
+bool ObjectJob::readsBack() const {
+  const bool mapped = axis_->device().image().outputSlot(id_) != fieldbus::kNoSlot;
+  const bool number = spec_ && spec_->readable && fieldbus::sizeBits(spec_->type) != 0;
+  return axis_->config().profile->reads_back && number && !mapped;
+}
+
+/// What cannot be read again is believed.
+bool ObjectJob::compare() {
+  const fieldbus::Bytes& holds = ticket_->data();
+  const bool same = !ticket_->ok() || holds.empty() || holds.size() > 8 ||
+                    fieldbus::toUnsigned(holds) == fieldbus::toUnsigned(written_);
+  if (same) return finish(true, writtenText());
+  const ObjectText text = describeObject(&*spec_, axis_->config(), holds);
+  return finish(false, who_ + ": wrote " + value_ + " to " + name_ + units_ + ", but it is " +
+                           text.value + " when it is read back");
 }
 
 /// The axis stays locked until what it measures counts in the new coordinates.

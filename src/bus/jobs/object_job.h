@@ -33,7 +33,14 @@ class ObjectJob final : public Job {
   void abandon(const std::string& why) override { finish(false, who_ + ": " + why); }
 
  private:
-  enum class Stage : std::uint8_t { reading, asking_size, writing, settling, measuring };
+  enum class Stage : std::uint8_t {
+    reading,
+    asking_size,
+    writing,
+    reading_back,
+    settling,
+    measuring
+  };
 
   ObjectJob(drive::Axis& axis, Reply<ObjectAnswer> reply);
   /// @return why it cannot be accessed; empty if it can.
@@ -53,6 +60,8 @@ class ObjectJob final : public Job {
   /// It is of the device, and so of all axes in it.
   bool ofDevice() const { return !drive::axisOf(id_); }
   bool finishWrite(Time now);
+  bool readsBack() const;
+  bool compare();
   bool measure(Time now);
   std::string writtenText() const;
   std::string measuredText(bool measured) const;
@@ -67,7 +76,8 @@ class ObjectJob final : public Job {
   Stage stage_ = Stage::reading;
   drive::CoordinateMark mark_ = drive::CoordinateMark::none;  ///< of what is written
   bool locked_ = false;                                       ///< Axis::beginCalibration()
-  Time since_{};                                              ///< of the stage
+  fieldbus::Bytes written_;
+  Time since_{};  ///< of the stage
   fieldbus::Ticket ticket_;
   Reply<ObjectAnswer> reply_;
 };

@@ -11,6 +11,7 @@
 #include "canopen/nmt/nmt.h"
 #include "canopen/node/node.h"
 #include "canopen/sdo/pacer.h"
+#include "canopen/sdo/widths.h"
 
 namespace cia402::canopen {
 
@@ -62,6 +63,7 @@ struct BootFindings {
   bool half_floats_known = false;       ///< SdoClient::halfFloats() are those of this drive
   std::vector<AdoptedCobId> cob_ids;
   std::vector<LeftOutEntry> left_out;
+  std::vector<LearnedWidth> widths;  ///< longer than assumed
   std::vector<std::string> lacking;  ///< what only defaults ask for, "606C:00 velocity_actual"
   std::vector<std::string> lacking_optional;  ///< what is optional anyhow
   bool started = false;                       ///< the NMT command was sent

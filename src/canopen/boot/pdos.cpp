@@ -41,12 +41,22 @@ PdoConfig halved(PdoConfig pdo, const HalfFloats& halves) {
   return pdo;
 }
 
+/// What the drive holds in more bits travels in so many.
+void widen(PdoConfig& pdo, const std::vector<LearnedWidth>& widths) {
+  for (PdoEntry& entry : pdo.entries) {
+    for (const LearnedWidth& width : widths) {
+      if (entry.object == width.object) entry.bits = static_cast<std::uint8_t>(8 * width.actual);
+    }
+  }
+}
+
 class Pdos : public BootStep {
  public:
   explicit Pdos(const NodeConfig& config) : pdos_(withUnlistedDisabled(config.pdos)) {}
 
   bool begin(BootContext& boot, Time) override {
     if (boot.found.unchanged || item_ >= pdos_.size()) return false;
+    widen(pdos_[item_], boot.found.widths);
     const PdoConfig wanted = halved(pdos_[item_], boot.sdo.halfFloats());
     PdoConfigurator::Options options;
     options.count_may_be_read_only = boot.config.map_count_may_be_read_only;

@@ -25,6 +25,7 @@ std::vector<BootStepPointer> makeSteps(const NodeConfig& config) {
   steps.push_back(makeRestore());
   steps.push_back(makeErrorControl());
   steps.push_back(makeHalfFloatSearch());
+  steps.push_back(makeWidths());
   steps.push_back(makeUnchangedCheck());
   steps.push_back(makeCobIds());
   steps.push_back(makeSyncSetup());

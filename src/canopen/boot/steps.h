@@ -27,6 +27,8 @@ BootStepPointer makeHalfFloatSearch();
 // boot_unchanged.cpp: may the configuration be left as it is (1020h)?
 BootStepPointer makeUnchangedCheck();
 BootStepPointer makeSignature();
+// boot_widths.cpp: how long it holds what its profile leaves open.
+BootStepPointer makeWidths();
 // boot_cob_ids.cpp: identifiers of SYNC and EMCY (1005h, 1014h).
 BootStepPointer makeCobIds();
 // boot_sync.cpp: SYNC counter and period (1019h, 1006h).

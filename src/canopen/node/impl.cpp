@@ -130,7 +130,9 @@ void Node::Impl::runBoot(Time now) {
   const BootProcedure::Status status = boot.advance(now);
   if (boot.found().cob_ids.size() != adopted) adoptCobIds();
   if (boot.found().half_floats_known && !half_floats_adopted) adoptHalfFloats();
-  if (boot.found().left_out.size() != left_out) adoptLeftOut();
+  const bool wide = !boot.found().widths.empty();
+  if (boot.found().left_out.size() != left_out || wide || widened) adoptLeftOut();
+  widened = wide;
   switch (status) {
     case BootProcedure::Status::running:
       superviseWhileBooting(now);
@@ -159,6 +161,9 @@ void Node::Impl::adoptCobIds() {
 void Node::Impl::adoptLeftOut() {
   left_out = boot.found().left_out.size();
   image.includeAll();
+  for (const LearnedWidth& width : boot.found().widths) {
+    image.widen(width.object, static_cast<unsigned>(8 * width.actual), width.is_signed);
+  }
   for (const LeftOutEntry& entry : boot.found().left_out) {
     image.leaveOut(entry.direction, entry.number, entry.object);
   }

@@ -88,6 +88,7 @@ struct Node::Impl : Node::Front {
   bool begun = false;            ///< boot() was called once; before that nothing starts by itself
   bool pdos_live = false;        ///< TPDOs are those that were configured
   bool cob_ids_changed = false;  ///< since takeCobIdChange()
+  bool widened = false;          ///< the image has objects in more bits than it was made with
   std::size_t left_out = 0;      ///< entries of PDOs, as the image has them
   bool half_floats_adopted = false;  ///< the image has them as wide as the present boot found them
   Time next = kNever;                ///< of all deadlines but that of a transfer queued since

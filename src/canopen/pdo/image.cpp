@@ -74,7 +74,7 @@ void PdoImage::add(const PdoConfig& config) {
     if (entry.bits == 0 || shift + entry.bits > kMaxBits) break;  // refused when the node boots
     const fieldbus::Slot slot = input ? addInput(entry.object) : addOutput(entry.object);
     pdo.fields.push_back({slot, static_cast<std::uint8_t>(shift), entry.bits,
-                          fieldbus::Encoding::integer, maskOf(entry.bits)});
+                          fieldbus::Encoding::integer, maskOf(entry.bits), 0, 0});
     shift += entry.bits;
   }
   pdo.size = static_cast<std::uint8_t>((shift + 7) / 8);
@@ -158,7 +158,9 @@ std::uint64_t PdoImage::pack(const Pdo& pdo) const {
     const std::uint64_t raw = output(field.slot);
     const bool whole = field.half == fieldbus::Encoding::integer;
     const std::uint64_t wire = whole ? raw : halfOf(field.half, static_cast<std::uint32_t>(raw));
-    word |= (wire & field.mask) << field.shift;
+    std::uint64_t value = wire & field.mask;
+    if ((value & field.sign) != 0) value |= field.extension;
+    word |= value << field.shift;
   }
   return word;
 }
@@ -251,6 +253,25 @@ void PdoImage::setHalfFloats(const std::vector<HalfFloat>& known, const HalfFloa
       }
       layOut(pdo);
       pdo.all_fields = pdo.fields;
+    }
+  }
+}
+
+void PdoImage::widen(ObjectId object, unsigned bits, bool is_signed) {
+  for (std::vector<Pdo>* pdos : {&tpdos_, &rpdos_}) {
+    const bool input = pdos == &tpdos_;
+    const fieldbus::Slot slot = input ? inputSlot(object) : outputSlot(object);
+    for (Pdo& pdo : *pdos) {
+      for (Pdo::Field& field : pdo.fields) {
+        if (field.slot != slot) continue;
+        const unsigned value_bits = field.bits;
+        field.bits = static_cast<std::uint8_t>(bits);
+        if (!input && is_signed) {
+          field.sign = std::uint64_t{1} << (value_bits - 1);
+          field.extension = maskOf(bits) & ~field.mask;
+        }
+      }
+      layOut(pdo);
     }
   }
 }

@@ -52,6 +52,9 @@ class PdoImage : public fieldbus::ProcessImage {
   void takeAlone(std::size_t tpdo, std::uint64_t raw, Time now);
   /// The only value of an RPDO has left without it.
   void leftAlone(std::size_t rpdo) { countSent(rpdo); }
+  /// The drive holds the object in so many bits: what stands behind it moves. Its value stays as
+  /// wide as constructed, negative numbers remain what they are.
+  void widen(ObjectId object, unsigned bits, bool is_signed);
   /// All entries are there again, as constructed.
   void includeAll();
   /// Marks every input as unknown and sets every output to 0 (the node rebooted or was lost), so
@@ -89,7 +92,9 @@ class PdoImage : public fieldbus::ProcessImage {
       std::uint8_t shift;
       std::uint8_t bits;
       fieldbus::Encoding half;  ///< of a float in 16 bits, of which the slot has 32; else integer
-      std::uint64_t mask;       ///< as wide, not shifted
+      std::uint64_t mask;       ///< of the value, not shifted
+      /// Of an RPDO's value that travels in more bits than it has: its sign, and what that becomes.
+      std::uint64_t sign, extension;
     };
     std::vector<Field> fields;      ///< without those that are left out
     std::vector<Field> all_fields;  ///< as constructed

@@ -37,9 +37,10 @@ SdoTicket SdoClient::upload(ObjectId object, std::string name, std::optional<Sdo
 
 SdoTicket SdoClient::download(ObjectId object, Bytes data, std::string name,
                               std::optional<SdoOptions> options) {
-  auto transfer = std::make_shared<SdoTransfer>(Direction::download, object, std::move(name),
-                                                half_floats_.narrowed(object, std::move(data)),
-                                                options.value_or(defaults_), false);
+  auto transfer = std::make_shared<SdoTransfer>(
+      Direction::download, object, std::move(name),
+      widths_.toDrive(object, half_floats_.narrowed(object, std::move(data))),
+      options.value_or(defaults_), false);
   queue_.add(transfer);
   return transfer;
 }
@@ -265,6 +266,8 @@ void SdoClient::succeed(Time now) {
   wire_ = Idle();
   if (half_floats_.has(transfer.object())) {
     transfer.setData(half_floats_.widened(transfer.object(), transfer.data()));
+  } else {
+    transfer.setData(widths_.fromDrive(transfer.object(), transfer.data()));
   }
   transfer.succeed();
   queue_.pop();

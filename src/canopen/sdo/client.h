@@ -21,6 +21,7 @@
 #include "canopen/sdo/queue.h"
 #include "canopen/sdo/transfer.h"
 #include "canopen/sdo/upload.h"
+#include "canopen/sdo/widths.h"
 #include "cia402_driver/common/time.h"
 #include "fieldbus/object_access.h"
 
@@ -84,6 +85,8 @@ class SdoClient final : public fieldbus::ObjectAccess {
   /// What it has done since it exists.
   const Counters& counters() const { return exchange_.counters(); }
   NodeId node() const { return node_; }
+  /// What this drive holds in more bytes than others of its family; unknown at first.
+  ObjectWidths& widths() { return widths_; }
   /// Default options of transfers that are queued without their own.
   const SdoOptions& defaults() const { return defaults_; }
   /// COB-ID of the frames that it sends.
@@ -129,6 +132,7 @@ class SdoClient final : public fieldbus::ObjectAccess {
   SdoFence fence_;
   HalfFloats half_floats_;
   SdoBlockUse blocks_;
+  ObjectWidths widths_;
   /// What is on the wire, for the front one of the queue.
   std::variant<Idle, AtFence, SdoUpload, SdoDownload, SdoBlockUpload, SdoBlockDownload> wire_;
   Time started_at_{};  ///< of the front transfer, all attempts and fences included

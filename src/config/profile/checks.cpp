@@ -79,8 +79,15 @@ Condition readCondition(yaml::Section& section, const yaml::Value& place,
     condition.numbers = readNumbers(*value, objects);
     if (value->isList() && value->list().empty()) value->problem("expected at least one number");
   }
+  bool by_axis = false;
+  section.read("given", by_axis);
+  if (by_axis) {
+    condition.kind = Condition::Kind::given;
+    ++given;
+  }
   if (given != 1)
-    place.problem("needs one of `is`, `not`, `above`, `below`, which says what it must be");
+    place.problem(
+        "needs one of `is`, `not`, `above`, `below`, which says what it must be, or `given`");
   if (condition.numbers.empty()) condition.numbers.push_back(0);  // a problem has been told
   readBits(section, objects, condition);
   return condition;

@@ -54,6 +54,18 @@ void readPdoRules(yaml::Section& profile_section, const DriveProfile& profile,
   section.finish();
 }
 
+void readSyncAdvice(const yaml::Value& value, canopen::DeviceProfile& device) {
+  yaml::Section section(value);
+  canopen::DeviceProfile::SyncAdvice advice;
+  if (section.require("pdos_per_ms", "how many PDOs fill a millisecond at 1 Mbit/s")) {
+    section.read("pdos_per_ms", advice.pdos_per_ms, yaml::Range{0.1, 100.0, false});
+  }
+  section.read("share", advice.share, yaml::Range{0.01, 1.0, false});
+  readDuration(section, "margin", yaml::Range{0.0, 1.0, false}, advice.margin);
+  section.finish();
+  if (advice.pdos_per_ms > 0.0) device.sync_advice = advice;
+}
+
 void readSync(yaml::Section& profile_section, canopen::DeviceProfile& device) {
   const auto value = profile_section.get("sync");
   if (!value) return;
@@ -73,6 +85,7 @@ void readSync(yaml::Section& profile_section, canopen::DeviceProfile& device) {
   const yaml::Range periods{1e-6, 10.0, false};
   readDuration(section, "period_min", periods, device.sync_period_min);
   readDuration(section, "period_max", periods, device.sync_period_max);
+  if (const auto advice = section.get("advice")) readSyncAdvice(*advice, device);
   if (device.sync_period_max < device.sync_period_min) {
     section.problem("period_max is below period_min");
   }

@@ -269,6 +269,7 @@ void readDrive(yaml::Section& section, yaml::Section& timing, DriveProfile& prof
   }
   if (const auto list = section.get("checks")) readChecks(*list, profile);
   if (const auto list = section.get("read_back")) profile.read_back = readSettings(*list, profile);
+  readSupervision(section, profile);
   if (const auto rule = section.get("counts_rule")) readCountsRule(*rule, profile);
   const auto setting = [&](const char* key, std::string& name) {
     const auto value = section.get(key);
@@ -293,6 +294,7 @@ void readDrive(yaml::Section& section, yaml::Section& timing, DriveProfile& prof
   if (const auto inputs = section.get("inputs")) readDigitalInputs(*inputs, profile);
   if (const auto probes = section.get("touch_probe")) readTouchProbes(*probes, profile);
   if (const auto errors = section.get("errors")) readErrors(*errors, profile);
+  section.readInteger("error_bits", profile.error_bits, 0, 0xFFFF);
   if (const auto warnings = section.get("warnings")) readWarnings(*warnings, profile);
   if (const auto details = section.get("error_details")) readErrorDetails(*details, profile);
   if (const auto memory = section.get("alarm_memory")) readAlarmMemory(*memory, profile);

@@ -1,4 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include "config/profile/parts.h"
 
 namespace cia402::config {
@@ -144,6 +146,23 @@ void readStop(yaml::Section& section, ModeSpec& mode) {
   }
 }
 
+/// Objects of `entry_writes` that travel while the mode is active.
+void readMapped(const yaml::Value& list, const DriveProfile& profile, ModeSpec& mode) {
+  for (const yaml::Value& entry : list.list()) {
+    const auto name = entry.text();
+    if (!name) continue;
+    const ObjectSpec* object = profile.find(*name);
+    const bool written =
+        std::any_of(mode.entry_writes.begin(), mode.entry_writes.end(),
+                    [&](const NamedWrite& write) { return write.object == *name; });
+    if (object == nullptr || !object->rpdo || !written) {
+      entry.problem("`" + *name + "` is no object of `entry_writes` that an RPDO can carry");
+    } else {
+      mode.mapped.push_back(*name);
+    }
+  }
+}
+
 ModeSpec readMode(const std::string& name, const yaml::Value& value, const DriveProfile& profile) {
   ModeSpec mode;
   mode.name = drive::canonicalModeName(name);
@@ -169,6 +188,7 @@ ModeSpec readMode(const std::string& name, const yaml::Value& value, const Drive
   if (const auto writes = section.get("entry_writes")) {
     mode.entry_writes = readWrites(*writes, profile, WriteList::running);
   }
+  if (const auto mapped = section.get("mapped")) readMapped(*mapped, profile, mode);
   section.finish();
   return mode;
 }

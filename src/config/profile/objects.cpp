@@ -140,6 +140,18 @@ void readFieldsName(yaml::Section& section, const DriveProfile& profile, ObjectS
   object.fields = *name;
 }
 
+void readWidest(yaml::Section& section, ObjectSpec& object) {
+  const auto value = section.get("widest");
+  const auto bits = value ? value->oneOf({"16", "32"}) : std::nullopt;
+  if (!bits) return;
+  object.widest = *bits == 0 ? 16 : 32;
+  const unsigned own = fieldbus::sizeBits(object.type);
+  const bool integer = object.encoding == Encoding::integer && object.type != DataType::boolean;
+  if (!integer || !object.readable || own == 0 || own >= object.widest) {
+    value->problem("is for whole numbers that can be read and have a narrower type");
+  }
+}
+
 ObjectSpec readObject(const std::string& name, const yaml::Value& value,
                       const DriveProfile& profile) {
   ObjectSpec object;
@@ -160,6 +172,7 @@ ObjectSpec readObject(const std::string& name, const yaml::Value& value,
   readWords(section, object);
   readFieldsName(section, profile, object);
   section.read("when_disabled", object.when_disabled);
+  readWidest(section, object);
   section.finish();
   return object;
 }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/text.h"
+#include "drive/axis/inquiry.h"
 #include "drive/axis/words.h"
 #include "drive/procedures/limits.h"
 #include "drive/procedures/procedure.h"
@@ -29,6 +30,7 @@ struct Axis::Impl {
   Context context(Time now) { return {core, status, now}; }
 
   AxisCore core;
+  Inquiry inquiry{core};
   ProcedureStatus status, previous;
   std::unique_ptr<Procedure> procedure;
   bool begun = false;  ///< the procedure has been advanced
@@ -135,6 +137,7 @@ void Axis::update(Time now) {
   Impl& impl = *impl_;
   if (impl.watched != now) impl.watchDevice();  // else readFeedback() just did
   impl.core.supervise(now);
+  impl.inquiry.advance(now);
   if (impl.procedure || impl.core.notices().failed()) impl.stepProcedure(now);
   impl.lost = false;
   impl.core.updateReadiness(impl.busy());

@@ -21,6 +21,8 @@ struct HomingOptions {
   double zero_velocity = 0.0;
   double acceleration = 0.0;     ///< rad/s^2 or m/s^2
   std::optional<double> offset;  ///< rad or m, see atHome()
+  /// The drive reads minus its home offset (607Ch) at home, not the offset itself.
+  bool offset_shifts_zero = false;
   Duration timeout{std::chrono::seconds(30)};
   bool required = true;  ///< no position motion before homing
   /// Where the drive says that it knows its home (DriveProfile::homed_bit) the axis is homed.
@@ -60,6 +62,7 @@ struct AxisConfig {
   std::vector<std::string> lacks;    ///< objects of the profile that this drive does not have
   std::vector<ObjectId> trusted;     ///< of DriveProfile::doubtful, what may be written
   std::vector<std::string> adjust;   ///< settings that may be written where they differ, by name
+  std::vector<std::string> keeps;    ///< settings that are right in the drive, by name
   std::vector<NamedWrite> writes;    ///< the user's extra start-up writes
   std::vector<std::uint8_t> save, restore;  ///< sub-indices of 1010h, 1011h; empty: the profile's
   const std::vector<std::uint8_t>& saved() const {

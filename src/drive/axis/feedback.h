@@ -46,6 +46,14 @@ class Feedback {
            now - known_state_ <= axis_.config.undecodable_timeout;
   }
 
+  /// What the statusword says that forbids motion; nullptr: nothing, or it is not known.
+  const StatusNeed* unmet() const {
+    const AxisState& state = axis_.state;
+    const bool operating = state.state == State::operation_enabled;
+    return state.feedback_valid ? axis_.profile().supervision.unmet(state.statusword, operating)
+                                : nullptr;
+  }
+
   /// The value that 6061h shows, if known.
   std::optional<int> shownMode() const { return shown_mode_; }
   bool shows(const ModeSpec& mode) const { return shown_mode_ == mode.value; }

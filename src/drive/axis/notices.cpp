@@ -15,6 +15,10 @@ void Notices::notify(std::string text) {
 void Notices::warnOnce(std::string text) {
   if (std::find(warned_.begin(), warned_.end(), text) != warned_.end()) return;
   warned_.push_back(text);
+  warn(std::move(text));
+}
+
+void Notices::warn(std::string text) {
   notify(std::move(text));
   warns_ = true;
 }

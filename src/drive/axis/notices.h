@@ -11,7 +11,9 @@ namespace cia402::drive {
 class Notices {
  public:
   void notify(std::string text);
-  /// A notice of what stops nothing, told once.
+  /// A notice of what stops nothing.
+  void warn(std::string text);
+  /// The same, told once.
   void warnOnce(std::string text);
   /// The axis fell out of what it was doing: a procedure that runs must fail for this reason.
   /// @param tell people are told as well

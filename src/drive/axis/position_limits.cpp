@@ -14,7 +14,7 @@ using Failure = fieldbus::Transfer::Failure;
 
 }  // namespace
 
-PositionLimits::PositionLimits(const AxisConfig& config) {
+PositionLimits::PositionLimits(const AxisConfig& config) : read_back_(config.profile->reads_back) {
   for (const auto* writes : {&config.profile->startup, &config.writes}) {
     for (const NamedWrite& write : *writes) {
       if (!write.when_homed) continue;
@@ -101,14 +101,27 @@ void PositionLimits::take(Side& side, const fieldbus::Transfer& answer) {
     if (answer.ok() && answer.data().size() == size) {
       side.held = fieldbus::toUnsigned(answer.data());
     }
+    if (std::exchange(side.checking, false)) compare(side);
     return;
   }
   if (answer.ok()) {
-    side.held = sent_;
+    side.wrote = sent_;
+    side.checking = read_back_;
+    side.asked = !read_back_;
+    side.held = read_back_ ? std::nullopt : std::optional<std::uint64_t>(sent_);
     return;
   }
   if (answer.failure() != Failure::aborted_by_server) side.held.reset();  // it may have taken it
   side.refusal = answer.message();
+}
+
+/// What cannot be read again is believed.
+void PositionLimits::compare(Side& side) {
+  if (!side.held) side.held = side.wrote;
+  if (*side.held == side.wrote) return;
+  side.refusal = "the drive took " + side.limit.write.name + " = " + std::to_string(side.wrote) +
+                 ", but holds " + std::to_string(*side.held) +
+                 " when it is read back: look at its range in the drive's manual";
 }
 
 bool PositionLimits::settled() const {

@@ -45,10 +45,12 @@ class PositionLimits {
   struct Side {
     ResolvedLimit limit;
     std::uint64_t wanted = 0;
-    std::uint64_t closed = 0;           ///< what it is when the axis stands inside
-    bool left_open = false;             ///< the axis stands outside
-    bool asked = false;                 ///< the drive was asked what it holds
-    bool absent = false;                ///< it has no such object
+    std::uint64_t closed = 0;  ///< what it is when the axis stands inside
+    bool left_open = false;    ///< the axis stands outside
+    bool asked = false;        ///< the drive was asked what it holds
+    bool absent = false;       ///< it has no such object
+    bool checking = false;     ///< what was written is read back
+    std::uint64_t wrote = 0;
     bool aimed = false;                 ///< `wanted` was worked out
     std::optional<std::uint64_t> held;  ///< by the drive, as far as known
     std::string refusal;
@@ -56,7 +58,9 @@ class PositionLimits {
   bool reached(const Side& side) const;
   bool narrower(const Side& side) const;
   void take(Side& side, const fieldbus::Transfer& answer);
+  static void compare(Side& side);
 
+  const bool read_back_;
   std::vector<Side> sides_;  ///< one for each object that holds a limit
   bool idle_ = false;
   std::size_t busy_ = 0;  ///< whose transfer `ticket_` is

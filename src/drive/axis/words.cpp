@@ -27,6 +27,11 @@ std::string report(const AxisCore& axis) {
   return text;
 }
 
+std::string needText(const StatusNeed& need) {
+  return "statusword bit " + std::to_string(need.bit) + " is " + (need.set ? "0" : "1") + ", " +
+         need.text + ": " + need.remedy;
+}
+
 std::string obstacle(const AxisCore& axis) {
   const std::string name = jointName(axis.config());
   const AxisState& state = axis.state();
@@ -40,6 +45,7 @@ std::string obstacle(const AxisCore& axis) {
   if (!state.feedback_valid) return name + " gives no fresh statusword and position: recover";
   if (axis.faulted()) return name + " is in fault: recover";
   if (!axis.inOperation()) return name + " is not enabled (" + toString(state.state) + "): enable";
+  if (const StatusNeed* need = axis.feedback().unmet()) return name + ": " + needText(*need);
   if (axis.mode().homing()) {
     return name + " is left in its homing mode: enable" + (homed ? "" : ", then " + zero);
   }
@@ -74,6 +80,7 @@ std::string motionRefusal(const AxisCore& axis, bool busy) {
   if (!axis.inOperation()) {
     return who + ": not enabled, " + axis.feedback().stateText() + "; call enable";
   }
+  if (const StatusNeed* need = axis.feedback().unmet()) return who + ": " + needText(*need);
   if (state.halted) return who + ": halted; enable releases the halt";
   const ModeSpec& mode = axis.mode().spec();
   const std::optional<int> shown = axis.feedback().shownMode();
@@ -87,6 +94,8 @@ std::string motionRefusal(const AxisCore& axis, bool busy) {
 }
 
 std::string enablingRefusal(const AxisCore& axis) {
+  const StatusNeed* need = axis.feedback().unmet();
+  if (need != nullptr) return axis.who() + ": is not enabled: " + needText(*need);
   if (!axis.control().wantsPowerCycle()) return {};
   return axis.who() + ": is not enabled: " + axis.control().powerCycleReason() +
          "; switch it off and on";

@@ -13,6 +13,8 @@ namespace cia402::drive {
 std::string report(const AxisCore& axis);
 /// Axis::obstacle()
 std::string obstacle(const AxisCore& axis);
+/// "statusword bit 9 is 0, the drive does not listen: ...", of what is not met.
+std::string needText(const StatusNeed& need);
 /// Axis::motionRefusal(). @param busy a procedure runs
 std::string motionRefusal(const AxisCore& axis, bool busy);
 /// Why the drive takes no enabling now; empty: it may.

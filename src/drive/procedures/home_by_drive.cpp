@@ -2,8 +2,10 @@
 #include "drive/procedures/home_by_drive.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "drive/profile/named_write.h"
 #include "drive/sentence.h"
 #include "fieldbus/abort_code.h"
 
@@ -11,6 +13,8 @@ namespace cia402::drive {
 namespace {
 /// How long a drive may show the result of an earlier homing before bit 4 rises.
 constexpr Duration kClearTime{std::chrono::milliseconds(500)};
+/// What a home that is found may be behind, in this time: until the drive brakes.
+constexpr double kBrakesAfter = 0.1;  // s
 /// After the edge the drive gets this long to drop an old result, or to stay "interrupted".
 constexpr Duration kReaction{std::chrono::milliseconds(500)};
 
@@ -91,6 +95,10 @@ Outcome DriveHoming::enterHoming(const Context& context) {
 Outcome DriveHoming::clearOldResult(const Context& context) {
   AxisCore& axis = context.axis;
   if (axis.control().frames() < frames_ + kSureFrames) return Outcome::running();  // bit 4 is low
+  if (const StatusNeed* need = axis.feedback().unmet()) {
+    giveUp(context, needText(*need));
+    return Outcome::running();
+  }
   const HomingStatus now = status(context);
   const bool clear = now == HomingStatus::in_progress || now == HomingStatus::interrupted;
   if (clear) {
@@ -199,8 +207,12 @@ Outcome DriveHoming::readOffset(const Context& context) {
     giveUp(context, "home was found, but the home offset could not be read: " + offset_->message());
     return Outcome::running();
   }
-  adopt(context, context.axis.objects().signals[SignalId::position].conversion.toJoint(
-                     fieldbus::toUnsigned(offset_->data())));
+  const AxisCore& axis = context.axis;
+  const Signal& position = axis.objects().signals[SignalId::position];
+  const std::uint64_t offset = fieldbus::toUnsigned(offset_->data());
+  const bool minus = axis.config().homing->offset_shifts_zero;
+  adopt(context,
+        position.conversion.toJoint(minus ? negated(offset, position.spec->type) : offset));
   return Outcome::running();
 }
 
@@ -217,11 +229,51 @@ Outcome DriveHoming::settle(const Context& context) {
   const bool sent = axis.control().frames() >= frames_ + kSureFrames;
   if (sent && (axis.feedback().atStandstill() ||
                context.now - since_ > axis.profile().timing.state_change)) {
+    const std::string wrong = offsetProblem(axis);
+    if (!wrong.empty()) {
+      axis.loseZero();
+      return failHomed(context, ": is not homed: " + wrong + "; quick stop is commanded");
+    }
     axis.limits().open(false);
     enter(Phase::limiting, context);
     context.show("writing position limits", "the drive to take those of the new zero");
   }
   return Outcome::running();
+}
+
+/// Where the axis stands after it found home, read from the drive, tells the sign of its home
+/// offset, if that is larger than the way on which it came to rest.
+std::string DriveHoming::offsetProblem(const AxisCore& axis) const {
+  const HomingOptions& options = *axis.config().homing;
+  const ObjectSpec* object = axis.profile().find(axis.profile().own({0x607C, 0}));
+  const bool written = offsetIsWritten(axis) && !writes_.leftOut("homing.offset");
+  const bool known = options.acceleration > 0.0 && options.search_velocity > 0.0;
+  if (!written || object == nullptr || (method_.moves && !known)) return {};
+  const Conversion& position = axis.objects().signals[SignalId::position].conversion;
+  std::uint64_t raw = 0;
+  if (!position.toDevice(options.atHome(), raw)) return {};
+  const double mirrored =
+      position.toJoint(negated(raw, axis.objects().signals[SignalId::position].spec->type));
+  const double speed = std::max(options.search_velocity, options.zero_velocity);
+  const double way =
+      method_.moves ? speed * speed / (2.0 * options.acceleration) + speed * kBrakesAfter : 0.0;
+  const double at = axis.state().position;
+  const double off = std::fabs(at - options.atHome());
+  if (!std::isfinite(at) || off <= way || std::fabs(at - mirrored) >= off) return {};
+  return "home was found, but " + axis.profile().address(0x6064) + " reads " +
+         length(at, prismatic(axis)) + " there instead of " +
+         length(options.atHome(), prismatic(axis)) + ": the drive takes " +
+         fieldbus::toString(object->id) + " home offset with the other sign; set " +
+         "homing/offset_means of axes/" + axis.config().name + " to " +
+         (options.offset_shifts_zero ? "position_at_home" : "shift_of_zero");
+}
+
+/// Home was found, and yet it is not to be relied on.
+Outcome DriveHoming::failHomed(const Context& context, const std::string& why) {
+  AxisCore& axis = context.axis;
+  axis.setGoal(Goal::quick_stop);
+  axis.selectMode(*before_);
+  return Outcome::failed(axis.who() + why);
 }
 
 /// Before a mode comes back in which the drive would clamp its target to those of another zero.
@@ -233,12 +285,10 @@ Outcome DriveHoming::limit(const Context& context) {
     restore(context);
     return Outcome::running();
   }
-  axis.setGoal(Goal::quick_stop);
-  axis.selectMode(*before_);
-  return Outcome::failed(axis.who() + ": homed by " + method(axis) + ", position " +
-                         length(axis.state().position, prismatic(axis)) +
-                         ", but the drive holds position limits of another zero: " + problem +
-                         "; quick stop is commanded, enable writes them again");
+  return failHomed(context, ": homed by " + method(axis) + ", position " +
+                                length(axis.state().position, prismatic(axis)) +
+                                ", but the drive holds position limits of another zero: " +
+                                problem + "; quick stop is commanded, enable writes them again");
 }
 
 bool DriveHoming::cancel(const std::string& reason, const Context& context) {

@@ -51,6 +51,8 @@ class DriveHoming : public Procedure {
   void adopt(const Context& context, double home_in_drive);
   Outcome settle(const Context& context);
   Outcome limit(const Context& context);
+  Outcome failHomed(const Context& context, const std::string& why);
+  std::string offsetProblem(const AxisCore& axis) const;
   void giveUp(const Context& context, std::string why);
   Outcome stop(const Context& context);
   void restore(const Context& context);

@@ -30,7 +30,8 @@ struct Steps {
     const auto copies = std::count_if(list.begin(), list.end(), [&](const NamedWrite& write) {
       return profile.find(write.from) != nullptr;
     });
-    return (static_cast<int>(list.size()) + static_cast<int>(copies)) * transfer();
+    const int each = profile.reads_back ? 2 : 1;
+    return (each * static_cast<int>(list.size()) + static_cast<int>(copies)) * transfer();
   }
   Duration limits() const {
     const auto of_profile = std::count_if(profile.startup.begin(), profile.startup.end(),

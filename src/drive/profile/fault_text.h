@@ -17,6 +17,8 @@ std::string warningCodeText(const DriveProfile& profile, std::uint16_t code);
 /// What a person does next once the cause of a fault is gone: "then clear_faults".
 std::string afterwardsText(const DriveProfile& profile, std::uint16_t code);
 
+/// Whether the family says what the code means, alone or as several that stand together in it.
+bool knowsCode(const DriveProfile& profile, std::uint16_t code);
 /// The short text of a code alone: "following error".
 std::string errorName(const DriveProfile& profile, std::uint16_t code);
 

@@ -212,7 +212,8 @@ Result<std::optional<ResolvedWrite>> resolveWrite(const NamedWrite& write, const
     if (!conversion) return refuse(axis, resolved.name, conversion.error().message);
     const auto raw = encode(write, *source.value, *conversion, axis, resolved.name);
     if (!raw) return raw.error();
-    resolved.raw = *raw;
+    const bool negative = write.from == "homing.offset" && axis.homing->offset_shifts_zero;
+    resolved.raw = negative ? negated(*raw, resolved.type) : *raw;
   } else {
     return Resolved{};
   }
@@ -239,6 +240,10 @@ Result<std::optional<ResolvedLimit>> resolveLimit(const NamedWrite& write, const
   result.lower = smaller_number != conversion->reversed();
   result.open = widest(result.write, *conversion, axis, smaller_number);
   return Limit{result};
+}
+
+std::uint64_t negated(std::uint64_t raw, DataType type) {
+  return masked(-fieldbus::toSigned(raw, fieldbus::sizeBits(type)), type);
 }
 
 std::vector<std::uint8_t> wireBytes(std::uint64_t raw, DataType type) {

@@ -41,6 +41,9 @@ struct ResolvedLimit {
 /// @return nothing where the axis has no such limit; an error as resolveWrite() gives it.
 Result<std::optional<ResolvedLimit>> resolveLimit(const NamedWrite& write, const AxisConfig& axis);
 
+/// The number of an integer object with the other sign.
+std::uint64_t negated(std::uint64_t raw, DataType type);
+
 /// `raw` as the bytes that are written: little-endian, as long as the type.
 std::vector<std::uint8_t> wireBytes(std::uint64_t raw, DataType type);
 

@@ -19,6 +19,7 @@
 #include "drive/profile/object_range.h"
 #include "drive/profile/parameter_names.h"
 #include "drive/profile/setting_check.h"
+#include "drive/profile/supervision.h"
 #include "fieldbus/float_codec.h"
 #include "fieldbus/object.h"
 
@@ -90,9 +91,11 @@ struct ObjectSpec {
     bool holds(double number) const { return number >= low && number <= high; }
   };
   std::optional<Range> range;
-  NumberTexts words;  ///< what single numbers of it mean
+  NumberTexts words;           ///< what single numbers of it mean
   std::string fields;          ///< of DriveProfile::bit_fields, what its bits say; empty: nothing
   bool when_disabled = false;  ///< services write it only while the axis is disabled and stands
+  /// The drive may hold it in up to so many bits, which it says itself; 0: in those of its type.
+  unsigned widest = 0;
   bool readable = true;
   bool writable = true;
   bool rpdo = false;                  ///< may be mapped into an RPDO
@@ -171,6 +174,7 @@ struct ModeSpec {
   /// process image while the mode is active, or the next cycle would undo it (a velocity limit in
   /// the velocity target of a vendor's position mode).
   std::vector<NamedWrite> entry_writes;
+  std::vector<std::string> mapped;  ///< objects of these that shall travel in an RPDO
 };
 
 /// How a family takes another mode of operation (6060h), and shows it (6061h).
@@ -270,9 +274,10 @@ struct DriveProfile {
   std::vector<NamedWrite> startup;        ///< at every boot
   std::vector<NamedWrite> before_enable;  ///< each time before enabling
   std::vector<SettingCheck> checks;       ///< what the drive must be set to, or say
-  std::vector<std::string> read_back;     ///< objects that are compared with what was written
-  CountsRule counts_rule;                 ///< compared with counts_per_turn before enabling
-  std::string rated_torque;               ///< object that holds that of the motor, in N m; or empty
+  Supervision supervision;
+  std::vector<std::string> read_back;  ///< objects that are compared with what was written
+  CountsRule counts_rule;              ///< compared with counts_per_turn before enabling
+  std::string rated_torque;            ///< object that holds that of the motor, in N m; or empty
   std::string not_ready_reason;  ///< object whose words say why it cannot be enabled; or empty
   std::optional<int> homed_bit;  ///< of the statusword: the drive knows its home
   std::vector<std::string> default_modes;  ///< an axis can switch to; empty: all
@@ -304,6 +309,7 @@ struct DriveProfile {
     bool power_cycle_after_save = false;         ///< it takes no enabling before
   } parameters;
   std::map<std::uint16_t, ErrorText> errors;
+  std::uint16_t error_bits = 0;  ///< each of these is a code, which may stand beside another one
   std::map<std::uint16_t, WarningText> warnings;  ///< where they are no errors, or other ones
   ErrorDetails error_details;
   AlarmMemory alarm_memory;

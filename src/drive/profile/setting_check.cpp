@@ -18,6 +18,8 @@ bool Condition::holds(std::int64_t whole) const {
       return number > numbers.front();
     case Kind::below:
       return number < numbers.front();
+    case Kind::given:
+      return false;
   }
   return false;
 }
@@ -48,6 +50,8 @@ std::string Condition::complaint(std::int64_t number) const {
       return told + ", not above " + std::to_string(numbers.front());
     case Kind::below:
       return told + ", not below " + std::to_string(numbers.front());
+    case Kind::given:
+      return told + ", which nobody has given";
   }
   return told;
 }

@@ -11,7 +11,8 @@ namespace cia402::drive {
 
 /// What a whole number of the drive shall be.
 struct Condition {
-  enum class Kind : std::uint8_t { is, is_not, above, below };
+  /// `given`: whatever it is, but the axis must have given it, or say that it keeps it.
+  enum class Kind : std::uint8_t { is, is_not, above, below, given };
   Kind kind = Kind::is;
   std::vector<std::int64_t> numbers;  ///< one of these, none of these; above and below: one number
   std::int64_t bits = -1;             ///< those that are looked at; the others count as 0

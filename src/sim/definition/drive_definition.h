@@ -35,15 +35,32 @@ enum class ModeBehaviour : std::uint8_t {
 };
 
 /// What statusword bit 12 means in a mode.
-enum class Bit12 : std::uint8_t { none, acknowledge, zero_speed, follows, homing_attained };
+enum class Bit12 : std::uint8_t {
+  none,
+  acknowledge,
+  started,  ///< as acknowledge, but it stays from the first set-point on
+  zero_speed,
+  follows,
+  homing_attained,
+  always,  ///< set whatever the axis does
+};
 /// What statusword bit 13 means in a mode.
 enum class Bit13 : std::uint8_t { none, following_error, homing_error };
+
+/// What a maker's statusword shows in a mode otherwise than CiA 402-2.
+struct MakerBits {
+  bool stopped = false;          ///< bit 8: halted, in a quick stop, or at a limit switch
+  std::vector<Role> not_0;       ///< bit 14: one of these objects is 0
+  bool waits_for_start = false;  ///< until a set-point or a search has begun bits 8, 10 to 15 are:
+  std::uint16_t before_start = 0;
+};
 
 /// A value of 6060h.
 struct ModeDefinition {
   std::int64_t number = 0;
   ModeBehaviour behaviour = ModeBehaviour::hold;
-  bool handshake = true;  ///< profile_position: new set-points by controlword bit 4
+  bool handshake = true;  ///< profile_position: new set-points by a rising controlword bit:
+  unsigned set_point_bit = 4;
   Bit12 bit_12 = Bit12::none;
   Bit13 bit_13 = Bit13::none;
   bool target_reached = true;       ///< statusword bit 10 is used
@@ -53,6 +70,7 @@ struct ModeDefinition {
   bool delayed = false;             ///< interpolated_position: a set-point begins one SYNC later
   std::int64_t queue = 1;           ///< profile_position: set-points that may wait for those before
   bool stop_empties_queue = false;  ///< whatever stops the motor takes those away
+  MakerBits maker;
 };
 
 /// When position limits (607Dh) count, by the value of an object of the maker's own.

@@ -27,14 +27,19 @@ struct DriveQuirks {
   /// Changes of 6060h that it answers by a fault (`mode_change`) while enabled: from, to.
   std::vector<std::pair<std::int64_t, std::int64_t>> mode_faults;
   std::uint16_t fault_bits = 0;           ///< statusword bits beside those of the state fault
+  bool fault_keeps_mode_bits = false;     ///< statusword bits 10 to 15 stay in a fault
   std::uint16_t vendor_bits = 0;          ///< statusword bits that change with everything else
   bool homing_reaches_no_target = false;  ///< statusword bit 10 stays 0 in homing
+  bool homing_result_stays = false;       ///< bits 10, 12, 13 of a search, until the next one
   bool homing_is_fixed = false;           ///< 6098h and 6099h refuse all writes
   std::int64_t fault_reset_tries = 1;     ///< edges of bit 7 that it takes
   bool fault_reset_needs_empty_history = false;  ///< no edge helps while 1003h:00 is not 0
   bool fault_reset_by_object = false;  ///< no edge helps, a write to the role clear_errors does
   /// A fault is reset only after NMT stop of this length; 0: always.
   Duration fault_reset_needs_stop{0};
+  /// From and until when, of the simulated time, the panel has the drive: bit 9 is 0, and the
+  /// controlword is not heard.
+  Duration local_from{0}, local_until{0};
   Duration reset_edge_time{0};        ///< edges of bit 7 after a shorter low are not seen
   bool no_generic_error_bit = false;  ///< 1001h without bit 0
   /// EMCYs of a fault come and end again and again, and its reset ends them six times over.

@@ -20,11 +20,10 @@ const std::vector<std::pair<const char*, ModeBehaviour>> kBehaviours = {
     {"cyclic_velocity", ModeBehaviour::cyclic_velocity},
     {"cyclic_torque", ModeBehaviour::cyclic_torque}};
 const std::vector<std::pair<const char*, Bit12>> kBit12 = {
-    {"none", Bit12::none},
-    {"acknowledge", Bit12::acknowledge},
-    {"zero_speed", Bit12::zero_speed},
-    {"follows", Bit12::follows},
-    {"homing_attained", Bit12::homing_attained}};
+    {"none", Bit12::none},       {"acknowledge", Bit12::acknowledge},
+    {"started", Bit12::started}, {"zero_speed", Bit12::zero_speed},
+    {"follows", Bit12::follows}, {"homing_attained", Bit12::homing_attained},
+    {"always", Bit12::always}};
 const std::vector<std::pair<const char*, Bit13>> kBit13 = {
     {"none", Bit13::none},
     {"following_error", Bit13::following_error},
@@ -68,6 +67,22 @@ void applyStandardBits(ModeDefinition& mode) {
   }
 }
 
+/// Bits 8 and 14, and those that wait for a start.
+void readMakerBits(DefinitionReader& reader, MakerBits& out) {
+  reader.read<bool>("bit_8", out.stopped, {{"none", false}, {"stopped", true}});
+  reader.list("bit_14", [&](const yaml::Value& item) {
+    const auto text = item.text();
+    const auto role = text ? findRole(*text) : std::nullopt;
+    if (role) out.not_0.push_back(*role);
+    if (text && !role) item.problem("'" + *text + "' is no role of an object");
+  });
+  out.waits_for_start = reader.has("before_start");
+  reader.list("before_start", [&](const yaml::Value& item) {
+    const auto bit = item.integer(8, 15);
+    if (bit) out.before_start = static_cast<std::uint16_t>(out.before_start | 1U << *bit);
+  });
+}
+
 }  // namespace
 
 void readMode(const std::string& number, const yaml::Value& from, DefinitionReader& parent,
@@ -94,6 +109,10 @@ void readMode(const std::string& number, const yaml::Value& from, DefinitionRead
   reader.read("stops_fade", mode.stops_fade);
   reader.read("queue", mode.queue, 1, 64);
   reader.read("stop_empties_queue", mode.stop_empties_queue);
+  std::int64_t bit = mode.set_point_bit;
+  reader.read("set_point_bit", bit, 4, 5);
+  mode.set_point_bit = static_cast<unsigned>(bit);
+  readMakerBits(reader, mode.maker);
   const auto known = std::find_if(out.modes.begin(), out.modes.end(),
                                   [&](const auto& other) { return other.number == mode.number; });
   known == out.modes.end() ? out.modes.push_back(mode) : void(*known = mode);

@@ -16,8 +16,20 @@ constexpr Duration kWatchPeriod = std::chrono::milliseconds(1);
 // Controlword.
 constexpr std::uint16_t kFaultReset = 0x0080;
 constexpr std::uint16_t kUnlockRamp = 0x0020, kHalt = 0x0100;
+// Statusword.
+constexpr std::uint16_t kModeBits = 0xFC00;
 
 std::int64_t gridStep(Time time) { return time.time_since_epoch() / kDriveStep; }
+
+void showCode(DriveValues& values, std::int64_t code) {
+  values.setRaw(Role::error_code, code);
+  values.setRaw(Role::error_code_copy, code);
+}
+
+/// Somebody at its panel has the drive: it does not listen to the controlword.
+bool isLocal(const DriveQuirks& quirks, Time now) {
+  return now >= Time{quirks.local_from} && now < Time{quirks.local_until};
+}
 
 /// By 60C2h, s.
 double configuredPeriod(const DriveValues& values) {
@@ -53,7 +65,7 @@ void DriveCore::start(bool cold, Time now) {
   limits_told_ = LimitReports();
   faults_.start(now);
   sync_.reset();
-  values_.setRaw(Role::error_code, 0);
+  showCode(values_, 0);
   modes_.start();
   power_.start(now);
   power_.finishInitialisation(now, now_);
@@ -88,7 +100,8 @@ void DriveCore::advance(Time now) {
     moved = true;
   }
   if (moved) motion_.publish();
-  if (on_ && (moved || !faults_.empty())) updateStatusword();
+  const bool may_be_local = definition_.quirks.local_until != Duration::zero();
+  if (on_ && (moved || !faults_.empty() || may_be_local)) updateStatusword();
 }
 
 Time DriveCore::nextEvent() const {
@@ -147,6 +160,7 @@ void DriveCore::superviseMotion() {
 }
 
 void DriveCore::onControlword() {
+  if (isLocal(definition_.quirks, now_)) return;
   const std::uint16_t previous = controlword_;
   controlword_ = static_cast<std::uint16_t>(values_.raw(Role::controlword, 0));
   const PdsCommand wanted = decodeCommand(controlword_, previous);
@@ -282,7 +296,7 @@ void DriveCore::raise(const FaultDefinition& known) {
   const FaultDefinition& fault = faults_.asSet(known);
   if (!fault.tells) return reports_.emergency(fault);
   faults_.add(fault, now_);
-  values_.setRaw(Role::error_code, fault.code);
+  showCode(values_, fault.code);
   values_.setRaw(Role::error_details, fault.details);
   if (!fault.warning || definition_.warning_stops) power_.react(fault, now_);
   if (fault.holds) motion_.pause(true);
@@ -298,7 +312,7 @@ void DriveCore::resetFault() {
   if (power_.state() != PdsState::fault && !faults_.warning()) return;
   if (power_.state() == PdsState::fault_reaction_active) return;
   if (const FaultDefinition* lasting = faults_.lasting(now_)) {
-    values_.setRaw(Role::error_code, lasting->code);
+    showCode(values_, lasting->code);
     reports_.emergency(*lasting);
     return;
   }
@@ -311,7 +325,7 @@ void DriveCore::resetFault() {
 void DriveCore::clearErrors() {
   faults_.clear();
   motion_.pause(false);
-  values_.setRaw(Role::error_code, 0);
+  showCode(values_, 0);
   values_.setRaw(Role::error_details, 0);
   reports_.errorsGone();
 }
@@ -392,10 +406,13 @@ void DriveCore::updateStatusword() {
   parts.shown = power_.shown(now_);
   parts.ready = power_.state() != PdsState::not_ready_to_switch_on;
   parts.voltage = !faults_.voltageLost(now_) && obstacle_.voltage();
-  parts.remote = obstacle_.remote();
+  parts.remote = obstacle_.remote() && !isLocal(definition_.quirks, now_);
   parts.warning = faults_.warning();
   if (enabled()) parts.of_mode = motion_.statusBits();
   if (motion_.homed()) parts.of_mode |= definition_.homed_bit.value_or(0);
+  if (parts.shown == PdsState::fault && definition_.quirks.fault_keeps_mode_bits) {
+    parts.of_mode |= statusword_ & kModeBits;
+  }
   const std::uint16_t word = makeStatusword(parts, definition_.quirks, now_);
   if (word == statusword_) return;
   statusword_ = word;

@@ -21,7 +21,9 @@ using Phase = HomingSequence::Phase;
 
 void HomingMode::begin() {
   sequence_.stop();
-  attained_ = failed_ = returning_ = false;
+  returning_ = false;
+  if (axis_.definition.quirks.homing_result_stays) return;
+  attained_ = failed_ = false;
 }
 
 void HomingMode::control(bool bit_4, bool rising) {
@@ -101,7 +103,8 @@ void HomingMode::step(double from) {
   if (pushes) standWhereItIs();
   if (sequence_.seeksStop()) keepNear();
   if (sequence_.phase() == Phase::found) finish();
-  if (sequence_.phase() == Phase::failed) failed_ = true;
+  failed_ = failed_ || sequence_.phase() == Phase::failed;
+  tells_failure_ = sequence_.phase() == Phase::failed;
   watchTime();
 }
 
@@ -137,8 +140,11 @@ void HomingMode::watchTime() {
 }
 
 const char* HomingMode::takeFault() {
-  const char* fault = terminals_wrong_ ? "terminal_setup" : late_ ? "homing_time" : nullptr;
-  terminals_wrong_ = late_ = false;
+  const char* fault = terminals_wrong_ ? "terminal_setup"
+                      : late_          ? "homing_time"
+                      : tells_failure_ ? "homing_failed"
+                                       : nullptr;
+  terminals_wrong_ = late_ = tells_failure_ = false;
   return fault;
 }
 

@@ -14,7 +14,7 @@ class HomingMode {
  public:
   explicit HomingMode(MovingAxis& axis) : axis_(axis) {}
 
-  /// A mode begins: what was found before says nothing any more.
+  /// A mode begins: what was found before says nothing any more, but by a quirk.
   void begin();
   /// A controlword in this mode.
   void control(bool bit_4, bool rising);
@@ -45,7 +45,7 @@ class HomingMode {
   bool attained_ = false;
   bool failed_ = false;
   bool returning_ = false;
-  bool terminals_wrong_ = false, late_ = false;
+  bool terminals_wrong_ = false, late_ = false, tells_failure_ = false;
   double searched_s_ = 0.0;
   double pushed_s_ = 0.0;  ///< against a hard stop
 };

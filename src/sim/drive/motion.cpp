@@ -69,6 +69,7 @@ void DriveMotion::powerStage(bool on) {
 void DriveMotion::setMode(const ModeDefinition* mode) {
   if (powered_) axis_.demand.takeOver(axis_.motor, time_constant_);
   axis_.mode = mode;
+  started_ = false;
   axis_.demand.begin();
   cyclic_.forget();
   set_points_.begin();
@@ -104,9 +105,16 @@ void DriveMotion::controlBits(std::uint16_t controlword, std::uint16_t previous)
   if (axis_.mode == nullptr) return;
   const bool bit_4 = modeBit();
   const bool rising = bit_4 && (previous & kModeBit) == 0;
-  if (set_points_.control(controlword, rising)) supervision_.newTarget();
+  if (set_points_.control(controlword, previous)) begun();
   if (inMode(ModeBehaviour::homing)) homing_.control(bit_4, rising);
+  started_ = started_ || (inMode(ModeBehaviour::homing) && rising);
   halt();
+}
+
+/// A set-point has come.
+void DriveMotion::begun() {
+  supervision_.newTarget();
+  started_ = true;
 }
 
 void DriveMotion::pause(bool on) {
@@ -214,14 +222,27 @@ void DriveMotion::stepMode(double from) {
 
 std::uint16_t DriveMotion::statusBits() const {
   std::uint16_t bits = 0;
-  const ModeDefinition* mode = axis_.mode;
   if (axis_.limits.active() && axis_.definition.internal_limit_bit) bits |= 0x0800;
-  if (mode == nullptr) return bits;
+  if (axis_.mode == nullptr) return bits;
+  const MakerBits& maker = axis_.mode->maker;
+  const auto is_0 = [this](Role role) { return axis_.values.raw(role, 1) == 0; };
+  if (std::any_of(maker.not_0.begin(), maker.not_0.end(), is_0)) bits |= 0x4000;
+  if (maker.waits_for_start && !started_) {
+    return static_cast<std::uint16_t>(bits | maker.before_start);
+  }
+  if (maker.stopped && (stop_ || axis_.limits.switchHit())) bits |= 0x0100;
+  return bits | modeBits();
+}
+
+std::uint16_t DriveMotion::modeBits() const {
+  std::uint16_t bits = 0;
+  const ModeDefinition* mode = axis_.mode;
   if (mode->behaviour == ModeBehaviour::homing) return bits | homing_.statusBits(halted_);
   const bool reached = cyclic_.ofThisMode() ? cyclic_.reached() : supervision_.targetReached();
   if (mode->target_reached && reached) bits |= 0x0400;
   const bool bit_12 =
       (mode->bit_12 == Bit12::acknowledge && set_points_.acknowledged()) ||
+      (mode->bit_12 == Bit12::started && started_) || mode->bit_12 == Bit12::always ||
       (mode->bit_12 == Bit12::zero_speed && supervision_.atZeroSpeed()) ||
       (mode->bit_12 == Bit12::follows && !stop_ && !held_ && !axis_.dropsTargets() &&
        (!cyclic_.ofThisMode() || cyclic_.follows(modeBit())));
@@ -252,7 +273,8 @@ void DriveMotion::publish() {
   values.set(Role::velocity_demand, axis_.demand.velocity);
   values.set(Role::following_error_actual,
              powered_ && positionControlled() ? axis_.demand.position - turns : 0.0);
-  values.setRaw(Role::digital_inputs, static_cast<std::int64_t>(inputs_ | axis_.switches.levels(turns)));
+  values.setRaw(Role::digital_inputs,
+                static_cast<std::int64_t>(inputs_ | axis_.switches.levels(turns)));
 }
 
 }  // namespace cia402::sim

@@ -50,7 +50,7 @@ class DriveMotion {
   bool atRest() const { return axis_.motor.atRest(); }
   /// Neither demand nor rotor moves.
   bool standing() const;
-  /// Bits 10-13 for the present mode; only meaningful while operation is enabled.
+  /// Bits 8 and 10 to 15 for the present mode; only meaningful while operation is enabled.
   std::uint16_t statusBits() const;
   /// Begins to home where an object does that instead of bit 4.
   void homeByObject();
@@ -82,6 +82,8 @@ class DriveMotion {
   bool positionControlled() const;
   bool modeBit() const;
   bool fadesInStops() const;
+  std::uint16_t modeBits() const;
+  void begun();
   void stepRotor(double from);
   void stepMode(double from);
   void limitTorque();
@@ -98,6 +100,7 @@ class DriveMotion {
   bool powered_ = false;
   bool held_ = false;
   bool halted_ = false, paused_ = false, ramps_locked_ = false;
+  bool started_ = false;  ///< a set-point or a search has begun in this mode, since it began
   std::optional<Ramp> stop_;
   std::uint32_t inputs_ = 0;
   std::uint16_t controlword_ = 0;  ///< the last one in operation

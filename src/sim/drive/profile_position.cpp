@@ -8,7 +8,6 @@ namespace cia402::sim {
 namespace {
 
 // Controlword bits of this mode.
-constexpr std::uint16_t kNewSetPoint = 0x0010;
 constexpr std::uint16_t kImmediately = 0x0020;
 constexpr std::uint16_t kRelative = 0x0040;
 
@@ -27,7 +26,7 @@ void ProfilePosition::begin() {
   waiting_.clear();
   smooth_.reset(demand.position);
   acknowledged_ = false;
-  bit_4_ = false;
+  bit_ = false;
   if (!ofThisMode()) return;
   active_.limits = axis_.limits.profile(axis_.mode);
   if (active_.limits.deceleration > 0.0) {
@@ -39,19 +38,20 @@ void ProfilePosition::begin() {
 void ProfilePosition::stopped() {
   if (!ofThisMode() || !axis_.mode->stop_empties_queue) return;
   waiting_.clear();
-  if (!bit_4_) acknowledged_ = false;
+  if (!bit_) acknowledged_ = false;
 }
 
 bool ProfilePosition::full() const {
   return waiting_.size() >= static_cast<std::size_t>(axis_.mode->queue);
 }
 
-bool ProfilePosition::control(std::uint16_t controlword, bool rising) {
+bool ProfilePosition::control(std::uint16_t controlword, std::uint16_t previous) {
   if (!ofThisMode()) return false;
-  bit_4_ = (controlword & kNewSetPoint) != 0;
-  const bool accepts = rising && !acknowledged_;
+  const unsigned mask = 1U << axis_.mode->set_point_bit;
+  bit_ = (controlword & mask) != 0;
+  const bool accepts = bit_ && (previous & mask) == 0 && !acknowledged_;
   if (accepts) accept(controlword);
-  if (!bit_4_) acknowledged_ = full();
+  if (!bit_) acknowledged_ = full();
   return accepts;
 }
 
@@ -107,7 +107,7 @@ void ProfilePosition::beginNext() {
   if (waiting_.empty() || !there || axis_.demand.velocity != 0.0) return;
   active_ = waiting_.front();
   waiting_.pop_front();
-  if (!bit_4_) acknowledged_ = false;
+  if (!bit_) acknowledged_ = false;
 }
 
 void ProfilePosition::step() {

@@ -19,9 +19,8 @@ class ProfilePosition {
   /// A mode begins: whatever was commanded before is void. In this mode the axis comes to rest at
   /// the nearest place.
   void begin();
-  /// A controlword in this mode; `rising`: bit 4 has become 1. @return true if it brought a
-  /// set-point.
-  bool control(std::uint16_t controlword, bool rising);
+  /// A controlword in this mode. @return true if it brought a set-point.
+  bool control(std::uint16_t controlword, std::uint16_t previous);
   void step();  ///< one kDriveStep
   /// Something stops the motor: the set-points that wait may be lost by that.
   void stopped();
@@ -52,7 +51,7 @@ class ProfilePosition {
   std::deque<SetPoint> waiting_;
   JerkFilter smooth_;
   bool acknowledged_ = false;
-  bool bit_4_ = false;
+  bool bit_ = false;  ///< the one that brings set-points
 };
 
 }  // namespace cia402::sim

@@ -7,6 +7,7 @@ namespace cia402::sim {
 namespace {
 
 constexpr double kStandingSpeed = 1e-3;  // turns/s, where there is no 606Fh
+constexpr double kSameSpeed = 1e-3;      // turns/s, where there is no 606Dh
 
 }  // namespace
 
@@ -63,7 +64,7 @@ bool TargetSupervision::reached(bool halted, const ProfilePosition& set_points) 
     case ModeBehaviour::profile_velocity: {
       const double difference = values.get(Role::target_velocity, 0.0) - axis_.motor.velocity();
       const bool inside =
-          std::fabs(difference) <= std::fabs(values.get(Role::velocity_window, 0.0));
+          std::fabs(difference) <= std::fabs(values.get(Role::velocity_window, kSameSpeed));
       const bool there =
           velocity_reached_.step(inside, values.get(Role::velocity_window_time, 0.0));
       return halted ? axis_.standing() : there;

@@ -17,6 +17,7 @@ using Q = Quantity;
 constexpr RoleInfo kRoles[] = {
     {R::abort_connection_option, "abort_connection_option", {0x6007, 0}, Q::none},
     {R::error_code, "error_code", {0x603F, 0}, Q::none},
+    {R::error_code_copy, "error_code_copy", {0, 0}, Q::none},
     {R::controlword, "controlword", {0x6040, 0}, Q::none},
     {R::statusword, "statusword", {0x6041, 0}, Q::none},
     {R::vl_target_velocity, "vl_target_velocity", {0x6042, 0}, Q::motor_speed},

@@ -17,6 +17,7 @@ struct DriveDefinition;
 enum class Role : std::uint8_t {
   abort_connection_option,
   error_code,
+  error_code_copy,  ///< vendor object: the same code
   controlword,
   statusword,
   vl_target_velocity,

@@ -24,6 +24,10 @@ Outcome EnableStep::advance(const Context& context) {
   if (!early && context.axis.faulted()) {
     return fail(context, context.axis.faults().text());
   }
+  if (!early) {
+    const std::string refusal = enablingRefusal(context.axis);
+    if (!refusal.empty()) return fail(context, refusal);
+  }
   switch (phase_) {
     case Phase::settings: {
       const Outcome outcome = settings_.advance(context);

@@ -51,8 +51,22 @@ std::optional<ResolvedWrite> lastWrite(const AxisConfig& axis, const std::string
   return last;
 }
 
+/// Has the axis given one of the objects, or said that it keeps what the drive has?
+bool isGiven(const SettingCheck& check, const AxisConfig& axis) {
+  const auto writes = [&](const std::string& name) {
+    return std::any_of(axis.writes.begin(), axis.writes.end(), [&](const NamedWrite& write) {
+      const ObjectSpec* object = findObject(*axis.profile, write.object);
+      return object != nullptr && object->name == name;
+    });
+  };
+  return std::any_of(check.objects.begin(), check.objects.end(), [&](const std::string& name) {
+    return writes(name) || contains(axis.keeps, name);
+  });
+}
+
 /// Does the check count for what the axis uses?
 bool concerns(const SettingCheck& check, const AxisConfig& axis) {
+  if (check.condition.kind == Condition::Kind::given && isGiven(check, axis)) return false;
   const bool modes = check.modes.empty() ||
                      std::any_of(check.modes.begin(), check.modes.end(),
                                  [&](const auto& mode) { return contains(axis.modes, mode); });

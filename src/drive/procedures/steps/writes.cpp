@@ -65,17 +65,22 @@ Outcome WriteStep::advance(const Context& context) {
 
 /// What travels to the drive in every cycle may be another number by then.
 bool WriteStep::mayBeReadBack(const Context& context, const fieldbus::Transfer& answer) const {
-  return context.axis.profile().reads_back && answer.ok() &&
+  const ObjectSpec* object = context.axis.profile().find(current_.object);
+  const bool readable = object == nullptr || object->readable;
+  return context.axis.profile().reads_back && readable && answer.ok() &&
          answer.direction() == fieldbus::Transfer::Direction::download &&
          context.axis.device().image().outputSlot(current_.object) == fieldbus::kNoSlot;
 }
 
 /// What cannot be read is believed.
 std::string WriteStep::difference(const Context& context, const fieldbus::Transfer& answer) const {
-  if (!answer.ok() || answer.data() == written_) return {};
+  const fieldbus::Bytes& held = answer.data();
+  const bool same = held == written_ || held.empty() || held.size() > 8 ||
+                    fieldbus::toUnsigned(held) == fieldbus::toUnsigned(written_);
+  if (!answer.ok() || same) return {};
   return context.axis.who() + ": the drive took " + hexText(fieldbus::toUnsigned(written_), 2) +
-         " for " + fieldbus::toString(current_.object) + " " + current_.name + ", but holds " +
-         hexText(fieldbus::toUnsigned(answer.data()), 2) + "; look for a limit of its own";
+         " for " + current_.name + ", but holds " + hexText(fieldbus::toUnsigned(held), 2) +
+         "; look for a limit of its own";
 }
 
 /// Of what is written before each enabling, the axis' own number for the object counts, if its
