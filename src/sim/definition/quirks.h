@@ -40,6 +40,8 @@ struct DriveQuirks {
   /// From and until when, of the simulated time, the panel has the drive: bit 9 is 0, and the
   /// controlword is not heard.
   Duration local_from{0}, local_until{0};
+  /// Somebody at its panel has the drive: it does not listen to the controlword.
+  bool isLocal(Time now) const { return now >= Time{local_from} && now < Time{local_until}; }
   Duration reset_edge_time{0};        ///< edges of bit 7 after a shorter low are not seen
   bool no_generic_error_bit = false;  ///< 1001h without bit 0
   /// EMCYs of a fault come and end again and again, and its reset ends them six times over.

@@ -6,6 +6,7 @@
 
 #include "sim/drive/digital_outputs.h"
 #include "sim/drive/statusword.h"
+#include "sim/drive/sync_timing.h"
 #include "sim/drive/write_guard.h"
 
 namespace cia402::sim {
@@ -24,17 +25,6 @@ std::int64_t gridStep(Time time) { return time.time_since_epoch() / kDriveStep; 
 void showCode(DriveValues& values, std::int64_t code) {
   values.setRaw(Role::error_code, code);
   values.setRaw(Role::error_code_copy, code);
-}
-
-/// Somebody at its panel has the drive: it does not listen to the controlword.
-bool isLocal(const DriveQuirks& quirks, Time now) {
-  return now >= Time{quirks.local_from} && now < Time{quirks.local_until};
-}
-
-/// By 60C2h, s.
-double configuredPeriod(const DriveValues& values) {
-  const double exponent = static_cast<double>(values.raw(Role::interpolation_exponent, -3));
-  return static_cast<double>(values.raw(Role::interpolation_time, 0)) * std::pow(10.0, exponent);
 }
 
 }  // namespace
@@ -137,10 +127,10 @@ void DriveCore::superviseMotion() {
       power_.state() != PdsState::fault_reaction_active) {
     raise("following_error");
   }
-  const double tolerance = syncTolerance();
+  const double tolerance = syncTolerance(definition_, values_, enabledMode());
   const Time time{step_ * kDriveStep};
   if (tolerance < kUnlimited &&
-      toSeconds(sync_.since(time)) > configuredPeriod(values_) + tolerance) {
+      toSeconds(sync_.since(time)) > interpolationPeriod(values_) + tolerance) {
     raise("sync_error");
   }
   if (const char* fault = motion_.takeHomingFault()) raise(fault);
@@ -160,7 +150,7 @@ void DriveCore::superviseMotion() {
 }
 
 void DriveCore::onControlword() {
-  if (isLocal(definition_.quirks, now_)) return;
+  if (definition_.quirks.isLocal(now_)) return;
   const std::uint16_t previous = controlword_;
   controlword_ = static_cast<std::uint16_t>(values_.raw(Role::controlword, 0));
   const PdsCommand wanted = decodeCommand(controlword_, previous);
@@ -242,30 +232,16 @@ void DriveCore::onTargetPosition() {
 
 void DriveCore::onSync() {
   sync_.onSync(now_);
-  const double tolerance = syncTolerance();
+  const double tolerance = syncTolerance(definition_, values_, enabledMode());
   if (tolerance < kUnlimited &&
-      toSeconds(sync_.interval()) < configuredPeriod(values_) - tolerance) {
+      toSeconds(sync_.interval()) < interpolationPeriod(values_) - tolerance) {
     raise("sync_error");
   }
   startSegment();
 }
 
-/// By how much SYNC may be off now, s.
-double DriveCore::syncTolerance() const {
-  const auto& shares = definition_.sync_tolerances;
-  const std::int64_t number = values_.raw(Role::sync_tolerance, 0);
-  const ModeDefinition* mode = motion_.mode();
-  const bool watched = power_.state() == PdsState::operation_enabled && mode != nullptr &&
-                       mode->behaviour == ModeBehaviour::interpolated_position;
-  if (!watched || number < 0 || number >= static_cast<std::int64_t>(shares.size())) {
-    return kUnlimited;
-  }
-  const double share = shares[static_cast<std::size_t>(number)];
-  return share > 0.0 ? share * configuredPeriod(values_) : kUnlimited;
-}
-
 void DriveCore::startSegment() {
-  double period = definition_.follows_sync_period ? 0.0 : configuredPeriod(values_);
+  double period = definition_.follows_sync_period ? 0.0 : interpolationPeriod(values_);
   if (period <= 0.0) period = toSeconds(sync_.interval());
   motion_.cyclicTarget(period, toSeconds(now_ - Time{step_ * kDriveStep}));
 }
@@ -406,7 +382,7 @@ void DriveCore::updateStatusword() {
   parts.shown = power_.shown(now_);
   parts.ready = power_.state() != PdsState::not_ready_to_switch_on;
   parts.voltage = !faults_.voltageLost(now_) && obstacle_.voltage();
-  parts.remote = obstacle_.remote() && !isLocal(definition_.quirks, now_);
+  parts.remote = obstacle_.remote() && !definition_.quirks.isLocal(now_);
   parts.warning = faults_.warning();
   if (enabled()) parts.of_mode = motion_.statusBits();
   if (motion_.homed()) parts.of_mode |= definition_.homed_bit.value_or(0);

@@ -90,7 +90,9 @@ class DriveCore {
   void connectionLost(ConnectionLoss reaction);
   void holdUnwatched();
   void clearErrors();
-  double syncTolerance() const;
+  const ModeDefinition* enabledMode() const {
+    return power_.state() == PdsState::operation_enabled ? motion_.mode() : nullptr;
+  }
   void startSegment();
   void updateStatusword();
 

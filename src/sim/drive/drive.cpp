@@ -10,6 +10,7 @@
 
 #include "sim/definition/drive_definition.h"
 #include "sim/dictionary/axis_objects.h"
+#include "sim/drive/build_dictionary.h"
 #include "sim/drive/core.h"
 #include "sim/drive/emergency_sender.h"
 #include "sim/drive/gate.h"
@@ -35,19 +36,6 @@ struct Axis {
   Terminals terminals;
   unsigned bad_floats = 0;
 };
-
-ObjectDictionary buildDictionary(const DriveDefinition& definition, canopen::NodeId node,
-                                 const DriveIdentity& identity) {
-  ObjectDictionary built = definition.dictionary.build(node, definition.axisCount());
-  const std::optional<std::uint32_t> numbers[] = {identity.vendor, identity.product,
-                                                  identity.revision, identity.serial};
-  for (std::uint8_t i = 0; i < 4; ++i) {
-    Entry* entry = built.find({0x1018, static_cast<std::uint8_t>(i + 1)});
-    if (entry == nullptr || !numbers[i]) continue;
-    entry->number = entry->initial_number = *numbers[i];
-  }
-  return built;
-}
 
 }  // namespace
 
