@@ -8,7 +8,6 @@ namespace cia402::config {
 namespace {
 
 using canopen::PdoConfig;
-using canopen::PdoDirection;
 
 constexpr double kTransferBits = 2 * 135.0;  // request and answer, with stuff bits
 constexpr double kServerTime = 2e-3;         // s, of the drive for each

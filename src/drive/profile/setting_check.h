@@ -17,7 +17,7 @@ struct Condition {
   std::vector<std::int64_t> numbers;  ///< one of these, none of these; above and below: one number
   std::int64_t bits = -1;             ///< those that are looked at; the others count as 0
 
-  bool holds(std::int64_t number) const;
+  bool holds(std::int64_t whole) const;
   /// What is wrong with `number`, after "x is ": "1 instead of 8", "0, not above 0".
   std::string complaint(std::int64_t number) const;
   std::string bitsComplaint(std::int64_t number) const;

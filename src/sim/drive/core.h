@@ -62,7 +62,7 @@ class DriveCore {
   void onMasterLost();  ///< heartbeat or life guarding
 
   /// An error occurs; nothing without power.
-  void raise(const FaultDefinition& fault);
+  void raise(const FaultDefinition& known);
   /// What keeps the axis from being switched on, and its inputs; onObstacle() follows a change.
   Obstacle& obstacle() { return obstacle_; }
   void onObstacle();
