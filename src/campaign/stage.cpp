@@ -27,7 +27,7 @@ AxisFacts factsOf(const Loaded& loaded, std::size_t index) {
   facts.node_id = device.node_id;
   facts.place = sim::findAxis(loaded.drives, axis.name).value();
   const drive::AxisGeometry& geometry = axis.geometry;
-  const bool linear = geometry.type == drive::AxisGeometry::Type::prismatic;
+  const bool linear = geometry.prismatic();
   const double ratio = axis.profile->output_shaft ? 1.0 : geometry.gear_ratio;
   facts.units_per_turn = (linear ? geometry.lead : kTwoPi) / ratio * geometry.direction;
   if (!axis.profile->output_shaft) {

@@ -32,7 +32,7 @@ void checkGeometry(yaml::Section& section, const AxisConfig& axis) {
   if (needs_counts && !section.has("counts_per_turn")) {
     section.problem("`counts_per_turn` is missing: the drive's position counts per motor turn");
   }
-  const bool prismatic = axis.geometry.type == AxisGeometry::Type::prismatic;
+  const bool prismatic = axis.geometry.prismatic();
   if (prismatic && !section.has("lead")) {
     section.problem("`lead` is missing: metres per screw turn of a prismatic axis");
   }

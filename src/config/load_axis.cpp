@@ -183,7 +183,7 @@ void readAxis(const std::string& name, const yaml::Value& value, AxisReading& re
   if (draft.first) readHalfFloatKey(section, draft);
   readEds(section, draft, reading.eds, robot);
   readGeometry(section, axis.geometry);
-  if (axis.geometry.type == AxisGeometry::Type::prismatic) axis.standstill_velocity = 0.002;
+  if (axis.geometry.prismatic()) axis.standstill_velocity = 0.002;
   section.read("mode", axis.mode);
   axis.mode = drive::canonicalModeName(axis.mode);
   double timeout = toSeconds(axis.command_timeout);

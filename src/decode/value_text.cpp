@@ -33,7 +33,7 @@ bool isWhole(const ObjectSpec& spec) { return !drive::holdsFloat(spec.type, spec
 }  // namespace
 
 const char* unitOf(Quantity quantity, const drive::AxisConfig& axis) {
-  const bool linear = axis.geometry.type == drive::AxisGeometry::Type::prismatic;
+  const bool linear = axis.geometry.prismatic();
   switch (quantity) {
     case Quantity::position:
     case Quantity::distance:

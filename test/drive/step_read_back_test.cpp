@@ -52,7 +52,7 @@ DriveProfile readingBack() {
   DriveProfile profile = testProfile();
   profile.objects.push_back(test::object("most", 0x2006, DataType::int16));
   profile.objects.push_back(test::object("unwritten", 0x2007, DataType::uint16));
-  profile.read_back = {"most", "unwritten"};
+  profile.may_be_cut = {"most", "unwritten"};
   NamedWrite write;
   write.object = "most";
   write.raw = -300;

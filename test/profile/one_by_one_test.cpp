@@ -117,14 +117,14 @@ TEST(ProfileSettings, EachOnceAndReadBackAreAsWritten) {
                        "  two: {object: \"2003:03\", type: uint16}\n",
                        kQueued,
                        "checks: [{each_once: [one, two], but: [0, 9], text: t, remedy: r}]\n"
-                       "read_back: [two, one]\n"),
+                       "may_be_cut: [two, one]\n"),
              problems);
   ASSERT_TRUE(problems.empty()) << problems.text();
   ASSERT_EQ(profile.checks.size(), 1U);
   EXPECT_TRUE(profile.checks[0].each_once);
   EXPECT_THAT(profile.checks[0].objects, ElementsAre("one", "two"));
   EXPECT_THAT(profile.checks[0].condition.numbers, ElementsAre(0, 9));
-  EXPECT_THAT(profile.read_back, ElementsAre("two", "one"));
+  EXPECT_THAT(profile.may_be_cut, ElementsAre("two", "one"));
 }
 
 TEST(HomingEdge, IsABitOfAnObjectAndMovesNothing) {

@@ -87,6 +87,7 @@ TEST(BusParameters, ThatTheDriveDoesNotTakeAreToldAsSuch) {
   const bus::Answer refused = setBus(scene, 0, 250000, true);
   EXPECT_FALSE(refused.success);
   EXPECT_THAT(refused.message, HasSubstr("0x06010002"));
+  EXPECT_EQ(sv660cNumber(scene, 0x200C, 0x0E), 0U) << "what was opened for it is closed again";
 }
 
 }  // namespace

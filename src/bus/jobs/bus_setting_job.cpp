@@ -8,6 +8,7 @@
 #include "bus/axis_cycle.h"
 #include "common/text.h"
 #include "drive/profile/named_write.h"
+#include "drive/profile/object_value.h"
 #include "fieldbus/bytes.h"
 
 namespace cia402::bus {
@@ -23,13 +24,6 @@ std::string knownRates(const BusSetting& setting) {
   std::string text;
   for (const auto& [rate, number] : setting.numbers) append(text, std::to_string(rate), ", ");
   return text;
-}
-
-std::int64_t numberOf(const drive::ObjectSpec& object, const fieldbus::Bytes& data) {
-  const auto bits = static_cast<unsigned>(8 * std::min<std::size_t>(data.size(), 8));
-  const std::uint64_t raw = fieldbus::toUnsigned(data);
-  return fieldbus::isSigned(object.type) ? fieldbus::toSigned(raw, bits)
-                                         : static_cast<std::int64_t>(raw);
 }
 
 }  // namespace
@@ -118,12 +112,13 @@ bool BusSettingJob::step(Time) {
     case Stage::writing:
       return takeWritten();
     case Stage::closing:
+      if (!problem_.empty()) return fail(problem_);
       if (change_.setting->counts == BusSetting::Counts::at_once) return finish();
       read(Stage::comparing);
       return false;
     case Stage::comparing: {
-      const bool same =
-          ticket_->ok() && numberOf(*change_.object, ticket_->data()) == change_.number;
+      const bool same = ticket_->ok() &&
+                        drive::wholeNumber(change_.object->type, ticket_->data()) == change_.number;
       return same ? finish()
                   : fail("the drive has taken the write, but does not show it: read " +
                          profile.find(change_.setting->object)->name);
@@ -134,7 +129,7 @@ bool BusSettingJob::step(Time) {
 
 bool BusSettingJob::takeOld() {
   if (!ticket_->ok()) return fail(ticket_->message());
-  old_ = numberOf(*change_.object, ticket_->data());
+  old_ = drive::wholeNumber(change_.object->type, ticket_->data());
   const drive::DriveProfile& profile = *axis_->config().profile;
   const std::string object =
       change_.object->name + " (" + fieldbus::toString(change_.object->id) + ")";
@@ -158,15 +153,18 @@ bool BusSettingJob::takeWritten() {
   const drive::DriveProfile& profile = *axis_->config().profile;
   const bool at_once = change_.setting->counts == BusSetting::Counts::at_once;
   const bool lost = ticket_->failure() == fieldbus::Transfer::Failure::timed_out;
-  if (!ticket_->ok() && !(at_once && lost)) return fail(ticket_->message());
-  doubtful_ = !ticket_->ok();
-  if (doubtful_) return finish();
-  if (profile.bus_settings.memory.empty()) {
-    if (at_once) return finish();
-    read(Stage::comparing);
-  } else {
+  const bool opened = !profile.bus_settings.memory.empty();
+  if (!ticket_->ok() && !(at_once && lost)) {
+    problem_ = ticket_->message();
+    if (!opened) return fail(problem_);
+  }
+  doubtful_ = problem_.empty() && !ticket_->ok();
+  if (doubtful_ || (at_once && !opened)) return finish();
+  if (opened) {
     write(*profile.find(profile.bus_settings.memory), profile.bus_settings.memory_off,
           Stage::closing);
+  } else {
+    read(Stage::comparing);
   }
   return false;
 }

@@ -64,6 +64,7 @@ class BusSettingJob final : public Job {
   Stage stage_ = Stage::reading;
   std::int64_t old_ = 0;
   bool doubtful_ = false;  ///< it was written, and no answer came
+  std::string problem_;    ///< the write was refused; what was opened for it is closed first
   fieldbus::Ticket ticket_;
   Reply<> reply_;
 };

@@ -7,14 +7,12 @@
 #include "bus/axis_cycle.h"
 #include "bus/jobs/object_address.h"
 #include "bus/jobs/object_text.h"
+#include "drive/axis/coordinates.h"
 
 namespace cia402::bus {
 namespace {
 
 using drive::CoordinateMark;
-
-/// A drive may confirm a new zero before it counts from it.
-constexpr Duration kSettling{std::chrono::milliseconds(250)};
 
 /// What there is instead of writing the object.
 std::string insteadOf(CoordinateMark mark, const std::string& axis) {
@@ -256,7 +254,7 @@ bool ObjectJob::compare() {
 /// The axis stays locked until what it measures counts in the new coordinates.
 bool ObjectJob::measure(Time now) {
   if (stage_ == Stage::settling) {
-    if (now < since_ + kSettling) return false;
+    if (now < since_ + drive::kZeroSettles) return false;
     axis_->measureAnew(ofDevice());
     stage_ = Stage::measuring;
     since_ = now;

@@ -114,12 +114,19 @@ bool PdoImage::receive(std::size_t tpdo, const can::Frame& frame, Time stamp) {
   const std::uint64_t word = loadLittleEndian(frame.data);
   fieldbus::ProcessValue* const values = inputs();
   for (const Pdo::Field& field : pdo.fields) {
-    const std::uint64_t raw = (word >> field.shift) & field.mask;
-    const bool whole = field.half == fieldbus::Encoding::integer;
-    values[field.slot] = {whole ? raw : wholeOf(field.half, static_cast<std::uint16_t>(raw)), stamp,
-                          true, true};
+    values[field.slot] = {(word >> field.shift) & field.mask, stamp, true, true};
   }
+  if (pdo.recoded) recode(pdo);
   return exact;
+}
+
+/// Of what has come as it is on the wire.
+void PdoImage::recode(const Pdo& pdo) {
+  for (const Pdo::Field& field : pdo.fields) {
+    if (field.half == fieldbus::Encoding::integer) continue;
+    std::uint64_t& raw = inputs()[field.slot].raw;
+    raw = wholeOf(field.half, static_cast<std::uint16_t>(raw));
+  }
 }
 
 void PdoImage::age(Time now) {
@@ -153,6 +160,15 @@ bool PdoImage::requestDue(std::size_t tpdo, can::Frame& frame) {
 }
 
 std::uint64_t PdoImage::pack(const Pdo& pdo) const {
+  if (pdo.recoded) return packRecoded(pdo);
+  std::uint64_t word = 0;
+  for (const Pdo::Field& field : pdo.fields) {
+    word |= (output(field.slot) & field.mask) << field.shift;
+  }
+  return word;
+}
+
+std::uint64_t PdoImage::packRecoded(const Pdo& pdo) const {
   std::uint64_t word = 0;
   for (const Pdo::Field& field : pdo.fields) {
     const std::uint64_t raw = output(field.slot);
@@ -234,6 +250,9 @@ void PdoImage::layOut(Pdo& pdo) {
     shift += field.bits;
   }
   pdo.size = static_cast<std::uint8_t>((shift + 7) / 8);
+  pdo.recoded = std::any_of(pdo.fields.begin(), pdo.fields.end(), [](const Pdo::Field& field) {
+    return field.half != fieldbus::Encoding::integer || field.sign != 0;
+  });
 }
 
 void PdoImage::setHalfFloats(const std::vector<HalfFloat>& known, const HalfFloats& halves) {

@@ -86,6 +86,7 @@ class PdoImage : public fieldbus::ProcessImage {
     std::string carrier;     ///< in words, where it is no PDO that carries its value; else empty
     std::uint64_t sent = 0;  ///< content of the last transmission
     bool sent_once = false;
+    bool recoded = false;  ///< a value is another on the wire than in its slot
     /// Where the value of a slot lies in the data, as one little-endian number of 64 bits.
     struct Field {
       fieldbus::Slot slot;
@@ -113,6 +114,8 @@ class PdoImage : public fieldbus::ProcessImage {
  private:
   void add(const PdoConfig& config);
   static void layOut(Pdo& pdo);
+  [[gnu::cold]] void recode(const Pdo& pdo);
+  [[gnu::cold]] std::uint64_t packRecoded(const Pdo& pdo) const;
   void describeSlots();
   void noteLeftOut(PdoDirection direction, fieldbus::Slot slot);
   std::vector<Pdo>& pdosOf(PdoDirection direction) {

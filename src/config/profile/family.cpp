@@ -268,7 +268,8 @@ void readDrive(yaml::Section& section, yaml::Section& timing, DriveProfile& prof
     profile.before_enable = readWrites(*writes, profile, WriteList::running);
   }
   if (const auto list = section.get("checks")) readChecks(*list, profile);
-  if (const auto list = section.get("read_back")) profile.read_back = readSettings(*list, profile);
+  if (const auto list = section.get("may_be_cut"))
+    profile.may_be_cut = readSettings(*list, profile);
   readSupervision(section, profile);
   if (const auto rule = section.get("counts_rule")) readCountsRule(*rule, profile);
   const auto setting = [&](const char* key, std::string& name) {

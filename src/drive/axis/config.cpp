@@ -18,15 +18,13 @@ motion::Joint jointOf(const AxisConfig& axis) {
   joint.name = axis.joint;
   joint.limits = axis.limits;
   joint.limits.continuous = axis.geometry.type == AxisGeometry::Type::continuous;
-  joint.unit = axis.geometry.type == AxisGeometry::Type::prismatic ? motion::JointUnit::metre
-                                                                   : motion::JointUnit::radian;
+  joint.unit = axis.geometry.prismatic() ? motion::JointUnit::metre : motion::JointUnit::radian;
   return joint;
 }
 
 double stopDeceleration(const AxisConfig& axis) {
   if (axis.limits.acceleration) return *axis.limits.acceleration;
-  return axis.geometry.type == AxisGeometry::Type::prismatic ? kDefaultLinearDeceleration
-                                                             : kDefaultDeceleration;
+  return axis.geometry.prismatic() ? kDefaultLinearDeceleration : kDefaultDeceleration;
 }
 
 std::string jointName(const AxisConfig& axis) {

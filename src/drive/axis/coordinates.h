@@ -11,6 +11,9 @@
 
 namespace cia402::drive {
 
+/// So long a drive may take until it tells positions in coordinates that it was just given.
+inline constexpr Duration kZeroSettles{std::chrono::milliseconds(250)};
+
 /// Where the joint's zero lies in what the drive counts: by the drive's own zero, or shifted in
 /// software by what was declared or found; and how often a joint that turns without end has gone
 /// around. Writes `homed`, `zero_changes` and, when the zero moves, `position` of the state.
@@ -59,11 +62,10 @@ class Coordinates {
   /// where the zero stays.
   std::optional<double> forget(bool homing);
 
-  /// Follows what the drive says of its home, where the axis wants that
-  /// (HomingOptions::kept_by_drive): homed while it knows it. @param homing the drive is in homing
-  /// mode. Nothing where nothing changes.
-  std::optional<double> followHome(std::uint16_t statusword, bool homing) {
-    if (home_mask_ == 0 || homing) return {};
+  /// What the drive says of its home counts (HomingOptions::kept_by_drive).
+  bool followsHome() const { return home_mask_ != 0; }
+  /// Homed while the drive says so. To be asked outside homing mode. Nothing where nothing changes.
+  std::optional<double> followHome(std::uint16_t statusword) {
     const bool known = (statusword & home_mask_) != 0;
     return known == home_known_ ? std::nullopt : takeHome(known);
   }
@@ -75,7 +77,7 @@ class Coordinates {
 
  private:
   double set(double shift);
-  std::optional<double> takeHome(bool known);
+  [[gnu::cold]] std::optional<double> takeHome(bool known);
   void place();
 
   const AxisConfig& config_;

@@ -32,10 +32,8 @@ void AxisCore::readFeedback(Time now) {
   const Feedback::Commanded commanded{generator_.commandedPosition(), generator_.handingOver()};
   if (!feedback_.read(now, commanded)) return;
   faults_.read(now);
-  if (!state().feedback_valid) return;
-  if (const auto moved = coordinates_.followHome(state().statusword, mode_.homing())) {
-    zeroMoved(*moved);
-  }
+  if (!coordinates_.followsHome() || !state().feedback_valid || mode_.homing()) return;
+  if (const auto moved = coordinates_.followHome(state().statusword)) zeroMoved(*moved);
 }
 
 void AxisCore::supervise(Time now) {

@@ -83,7 +83,7 @@ class AxisCore {
 
  private:
   void leaveOperation();
-  void zeroMoved(double moved);
+  [[gnu::cold]] void zeroMoved(double moved);
   void superviseOperation(Time now);
   // Reactions of supervise(). Cold: what tells much is kept out of the code of every cycle.
   [[gnu::cold]] void stopUnheard();

@@ -55,6 +55,7 @@ void Feedback::readState(Time now, bool handing_over) {
     state.state = decodeState(statusword);
     state.warning = axis_.profile().has_warning_bit && (statusword & statusword::kWarning) != 0;
     state.internal_limit = (statusword & statusword::kInternalLimit) != 0;
+    unmet_ = axis_.profile().supervision.unmet(statusword, state.state == State::operation_enabled);
   }
   if (state.state != State::unknown) known_state_ = now;
   readMode(now);

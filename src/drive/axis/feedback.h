@@ -47,12 +47,7 @@ class Feedback {
   }
 
   /// What the statusword says that forbids motion; nullptr: nothing, or it is not known.
-  const StatusNeed* unmet() const {
-    const AxisState& state = axis_.state;
-    const bool operating = state.state == State::operation_enabled;
-    return state.feedback_valid ? axis_.profile().supervision.unmet(state.statusword, operating)
-                                : nullptr;
-  }
+  const StatusNeed* unmet() const { return axis_.state.feedback_valid ? unmet_ : nullptr; }
 
   /// The value that 6061h shows, if known.
   std::optional<int> shownMode() const { return shown_mode_; }
@@ -108,7 +103,8 @@ class Feedback {
   Coordinates& coordinates_;
   const ActiveMode& mode_;
   Standstill standstill_;
-  bool stood_without_power_ = false;  ///< when its feedback ended
+  bool stood_without_power_ = false;   ///< when its feedback ended
+  const StatusNeed* unmet_ = nullptr;  ///< by the last statusword
   Time known_state_{};
   std::optional<int> shown_mode_;
   std::uint64_t shown_raw_ = 0;  ///< of 6061h, for which shown_mode_ was decoded

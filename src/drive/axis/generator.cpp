@@ -208,7 +208,7 @@ void Generator::callBack() {
   sent_.giveUp();
   following_.end();
   if (!following_.isNews()) return;
-  const bool prismatic = axis_.config.geometry.type == AxisGeometry::Type::prismatic;
+  const bool prismatic = axis_.config.geometry.prismatic();
   const std::string what =
       turns ? "it is to turn at " + number(ahead) + (prismatic ? " m/s: " : " rad/s: ")
             : "its set-points run, " + length(ahead, prismatic) + " ahead: ";

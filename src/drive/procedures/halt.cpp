@@ -74,8 +74,7 @@ class Halt : public Procedure {
 
   static std::string place(const AxisCore& axis) {
     if (!axis.state().feedback_valid) return "an unknown position";
-    return length(axis.state().position,
-                  axis.config().geometry.type == AxisGeometry::Type::prismatic);
+    return length(axis.state().position, axis.config().geometry.prismatic());
   }
 
   bool begun_ = false, was_enabled_ = false, was_off_ = false;

@@ -19,7 +19,7 @@ class DeclareZero : public Procedure {
     const Outcome declared = declaring_.advance(context);
     if (!declared.isDone()) return declared;
     const double offset = axis.config().homing->atHome();
-    const bool prismatic = axis.config().geometry.type == AxisGeometry::Type::prismatic;
+    const bool prismatic = axis.config().geometry.prismatic();
     return Outcome::done(jointName(axis.config()) +
                          ": homed by declaring the present position to be " +
                          length(offset, prismatic) + "; nothing moved" + declaring_.remark());

@@ -18,9 +18,6 @@ constexpr double kBrakesAfter = 0.1;  // s
 /// After the edge the drive gets this long to drop an old result, or to stay "interrupted".
 constexpr Duration kReaction{std::chrono::milliseconds(500)};
 
-bool prismatic(const AxisCore& axis) {
-  return axis.config().geometry.type == AxisGeometry::Type::prismatic;
-}
 }  // namespace
 
 DriveHoming::DriveHoming(AxisCore& axis, const ModeChannel& homing, const HomingMethod& method)
@@ -167,7 +164,8 @@ Outcome DriveHoming::timeOut(const Context& context) {
   const std::string waited = seconds(axis.config().homing->timeout);
   std::string why = axis.who() + ": homing timed out after " + waited + " waiting for " +
                     context.status.waiting_for + ", at " +
-                    length(axis.state().position, prismatic(axis)) + "; quick stop is commanded. ";
+                    length(axis.state().position, axis.config().geometry.prismatic()) +
+                    "; quick stop is commanded. ";
   why += old_result_    ? "The drive never dropped the result of an earlier homing. "
          : was_running_ ? "The drive was still searching: check switches, direction of the method "
                           "and homing: {timeout}. "
@@ -261,8 +259,8 @@ std::string DriveHoming::offsetProblem(const AxisCore& axis) const {
   const double off = std::fabs(at - options.atHome());
   if (!std::isfinite(at) || off <= way || std::fabs(at - mirrored) >= off) return {};
   return "home was found, but " + axis.profile().address(0x6064) + " reads " +
-         length(at, prismatic(axis)) + " there instead of " +
-         length(options.atHome(), prismatic(axis)) + ": the drive takes " +
+         length(at, axis.config().geometry.prismatic()) + " there instead of " +
+         length(options.atHome(), axis.config().geometry.prismatic()) + ": the drive takes " +
          fieldbus::toString(object->id) + " home offset with the other sign; set " +
          "homing/offset_means of axes/" + axis.config().name + " to " +
          (options.offset_shifts_zero ? "position_at_home" : "shift_of_zero");
@@ -286,7 +284,7 @@ Outcome DriveHoming::limit(const Context& context) {
     return Outcome::running();
   }
   return failHomed(context, ": homed by " + method(axis) + ", position " +
-                                length(axis.state().position, prismatic(axis)) +
+                                length(axis.state().position, axis.config().geometry.prismatic()) +
                                 ", but the drive holds position limits of another zero: " +
                                 problem + "; quick stop is commanded, enable writes them again");
 }
@@ -334,7 +332,7 @@ Outcome DriveHoming::finishRestoring(const Context& context) {
   AxisCore& axis = context.axis;
   const Outcome outcome = restoring_->advance(context);
   if (outcome.isRunning()) return outcome;
-  const std::string where = length(axis.state().position, prismatic(axis));
+  const std::string where = length(axis.state().position, axis.config().geometry.prismatic());
   if (!failure_.empty()) {
     return Outcome::failed(axis.who() + ": homing stopped: " + failure_ + "; the axis stands at " +
                            where + (axis.state().homed ? "" : " and is not homed") +

@@ -7,16 +7,6 @@
 #include "drive/sentence.h"
 
 namespace cia402::drive {
-namespace {
-
-constexpr Duration kZeroSettles{std::chrono::milliseconds(250)};  // of new coordinates in the drive
-
-bool alongALead(const AxisCore& axis) {
-  return axis.config().geometry.type == AxisGeometry::Type::prismatic;
-}
-
-}  // namespace
-
 bool mayHavePower(const AxisCore& axis) {
   return !axis.powerOff() || axis.inOperation() || axis.goal() == Goal::enabled;
 }
@@ -134,7 +124,7 @@ Outcome HomeByEdge::measure(const Context& context) {
   const double away = axis.state().position - zero;
   if (std::fabs(away) > axis.feedback().standstill().tolerance()) {
     return failed(context, "the drive does not call the present position its zero, it is " +
-                               length(away, alongALead(axis)) + " off");
+                               length(away, axis.config().geometry.prismatic()) + " off");
   }
   axis.adoptDriveZero(axis.config().homing->atHome() - zero);
   axis.limits().open(false);
@@ -147,8 +137,8 @@ Outcome HomeByEdge::close(const Context& context) {
   AxisCore& axis = context.axis;
   if (!axis.limits().settled()) return Outcome::running();
   return Outcome::done(jointName(axis.config()) + ": homed by " + text_ + ", position " +
-                       length(axis.state().position, alongALead(axis)) + "; nothing moved" +
-                       axis.limits().remark());
+                       length(axis.state().position, axis.config().geometry.prismatic()) +
+                       "; nothing moved" + axis.limits().remark());
 }
 
 }  // namespace cia402::drive

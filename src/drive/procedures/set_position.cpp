@@ -17,7 +17,7 @@ class SetPosition : public Procedure {
 
   Outcome advance(const Context& context) override {
     AxisCore& axis = context.axis;
-    const bool prismatic = axis.config().geometry.type == AxisGeometry::Type::prismatic;
+    const bool prismatic = axis.config().geometry.prismatic();
     const Outcome declared = declaring_.advance(context);
     if (!declared.isDone()) return declared;
     return Outcome::done(jointName(axis.config()) + ": the present position is declared to be " +

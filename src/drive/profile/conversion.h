@@ -13,6 +13,7 @@ namespace cia402::drive {
 struct AxisGeometry {
   enum class Type : std::uint8_t { revolute, prismatic, continuous };
   Type type = Type::revolute;
+  bool prismatic() const { return type == Type::prismatic; }
   double counts_per_turn = 0.0;  ///< device position counts per motor turn (unit `count` only)
   double gear_ratio = 1.0;       ///< motor turns per joint turn (or per screw turn, prismatic)
   double lead = 0.0;             ///< m per turn, prismatic only
@@ -36,8 +37,8 @@ class Conversion {
                                    const AxisGeometry& geometry);
 
   /// Joint value (rad, m, per s, N m, N) of a raw number as wide as the object. NaN if the device
-  /// sent NaN or infinity.
-  double toJoint(std::uint64_t raw) const {
+  /// sent NaN or infinity. Always inlined, as it is called for each value of each cycle.
+  [[gnu::always_inline]] double toJoint(std::uint64_t raw) const {
     if (encoding_ != Encoding::integer) return floatToJoint(raw);
     const std::uint64_t top = raw << shift_;  // the object's own sign bit becomes the top one
     const double device = signed_ ? static_cast<double>(static_cast<std::int64_t>(top) >> shift_)

@@ -42,6 +42,12 @@ std::optional<std::uint64_t> floatBits(DataType type, Encoding encoding, double 
   return raw;
 }
 
+std::int64_t wholeNumber(DataType type, const fieldbus::Bytes& bytes) {
+  const std::uint64_t raw = fieldbus::toUnsigned(bytes);
+  const auto bits = static_cast<unsigned>(8 * std::min<std::size_t>(bytes.size(), 8));
+  return fieldbus::isSigned(type) ? fieldbus::toSigned(raw, bits) : static_cast<std::int64_t>(raw);
+}
+
 std::optional<std::uint64_t> sendable(DataType type, Encoding encoding, std::uint64_t raw) {
   if (!holdsFloat(type, encoding)) return raw;
   const double value = floatOf(type, encoding, raw);

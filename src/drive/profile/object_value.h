@@ -6,9 +6,13 @@
 #include <string>
 
 #include "drive/profile/profile.h"
+#include "fieldbus/bytes.h"
 
 namespace cia402::drive {
 
+/// The whole number in an object of that type, as it came over the wire; more than eight bytes give
+/// nothing that means anything.
+std::int64_t wholeNumber(DataType type, const fieldbus::Bytes& bytes);
 /// Does an object hold a float, whatever the drive calls its type?
 bool holdsFloat(DataType type, Encoding encoding);
 /// The float in an object that holds one, in device units; NaN for NaN and infinity.

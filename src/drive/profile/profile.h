@@ -275,9 +275,9 @@ struct DriveProfile {
   std::vector<NamedWrite> before_enable;  ///< each time before enabling
   std::vector<SettingCheck> checks;       ///< what the drive must be set to, or say
   Supervision supervision;
-  std::vector<std::string> read_back;  ///< objects that are compared with what was written
-  CountsRule counts_rule;              ///< compared with counts_per_turn before enabling
-  std::string rated_torque;            ///< object that holds that of the motor, in N m; or empty
+  std::vector<std::string> may_be_cut;  ///< objects that are compared with what was written
+  CountsRule counts_rule;               ///< compared with counts_per_turn before enabling
+  std::string rated_torque;             ///< object that holds that of the motor, in N m; or empty
   std::string not_ready_reason;  ///< object whose words say why it cannot be enabled; or empty
   std::optional<int> homed_bit;  ///< of the statusword: the drive knows its home
   std::vector<std::string> default_modes;  ///< an axis can switch to; empty: all

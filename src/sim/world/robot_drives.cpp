@@ -18,8 +18,7 @@ constexpr double kTwoPi = 6.283185307179586476925;
 double shaftTurns(const drive::AxisConfig& axis, double joint) {
   const drive::AxisGeometry& geometry = axis.geometry;
   const double per_joint_turn = axis.profile->output_shaft ? 1.0 : geometry.gear_ratio;
-  const double turn =
-      geometry.type == drive::AxisGeometry::Type::prismatic ? geometry.lead : kTwoPi;
+  const double turn = geometry.prismatic() ? geometry.lead : kTwoPi;
   return (joint - geometry.position_offset) / turn * per_joint_turn * geometry.direction;
 }
 

@@ -9,24 +9,17 @@
 
 #include "common/text.h"
 #include "drive/profile/named_write.h"
+#include "drive/profile/object_value.h"
 #include "drive/sentence.h"
 
 namespace cia402::drive {
 namespace {
 
-constexpr Duration kSettling{std::chrono::milliseconds(250)};  // of new coordinates in the drive
 constexpr double kSameTorque = 0.01;  // relative: what rounding of a name plate may be off
 constexpr double kSameCounts = 1e-6;  // relative: what a reduced fraction of 32 bits may be off
 
 std::string named(const ObjectSpec& object) {
   return object.name + " (" + fieldbus::toString(object.id) + ")";
-}
-
-std::int64_t signedNumber(const ObjectSpec& object, const fieldbus::Bytes& bytes) {
-  const std::uint64_t raw = fieldbus::toUnsigned(bytes);
-  const auto bits = static_cast<unsigned>(8 * std::min<std::size_t>(bytes.size(), 8));
-  return fieldbus::isSigned(object.type) ? fieldbus::toSigned(raw, bits)
-                                         : static_cast<std::int64_t>(raw);
 }
 
 template <typename Value>
@@ -109,7 +102,7 @@ void SettingsStep::plan(const AxisConfig& axis) {
     for (const std::string& object : profile_->counts_rule.over) add(axis, object);
     if (!profile_->timing.brake_object.empty()) add(axis, profile_->timing.brake_object);
     if (axis.geometry.rated_torque > 0.0) add(axis, profile_->rated_torque);
-    for (const std::string& object : profile_->read_back) {
+    for (const std::string& object : profile_->may_be_cut) {
       if (lastWrite(axis, object)) add(axis, object, false);
     }
   }
@@ -166,7 +159,7 @@ std::string SettingsStep::take(const Context& context, const fieldbus::Transfer&
   }
   Setting& setting = settings_[reads_[read_++]];
   if (answer.ok() && !answer.data().empty()) {
-    setting.number = signedNumber(*setting.object, answer.data());
+    setting.number = wholeNumber(setting.object->type, answer.data());
     return {};
   }
   if (!setting.needed || setting.object->name == profile_->timing.brake_object) return {};
@@ -181,7 +174,7 @@ std::string SettingsStep::take(const Context& context, const fieldbus::Transfer&
 void SettingsStep::losePosition(const Context& context) {
   context.axis.loseZero();
   context.axis.basis().neighbours.loseZero();
-  settles_ = context.now + kSettling;
+  settles_ = context.now + kZeroSettles;
 }
 
 /// What is measured counts in the new coordinates then.
@@ -324,12 +317,12 @@ Outcome SettingsStep::judge(const Context& context) {
 /// What the boot has written and the drive does not hold as it was written: it may have cut it to
 /// what it can do.
 void SettingsStep::compareReadBack(AxisCore& axis) const {
-  for (const std::string& name : profile_->read_back) {
+  for (const std::string& name : profile_->may_be_cut) {
     const ObjectSpec& object = *profile_->find(name);
     const auto number = numberOf(name);
     const auto written = number ? lastWrite(axis.config(), name) : std::nullopt;
     if (!written) continue;
-    const std::int64_t wanted = signedNumber(object, wireBytes(written->raw, written->type));
+    const std::int64_t wanted = wholeNumber(object.type, wireBytes(written->raw, written->type));
     if (*number == wanted) continue;
     axis.notices().warnOnce(axis.who() + ": " + named(object) + " is " + std::to_string(*number) +
                             " instead of the " + std::to_string(wanted) +
