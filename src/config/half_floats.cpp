@@ -10,7 +10,8 @@ void readHalfFloatKey(yaml::Section& section, AxisDraft& draft) {
   if (!value || !draft.device.profile) return;
   draft.device.half_floats = readHalfEncoding(*value);
   if (!draft.device.profile->half_floats.empty()) return;
-  value->problem("profile " + draft.axis.profile->name + " has no floats that may be of 16 bits");
+  value->problem("profile " + draft.axis.profile->name +
+                 " has no floats that may be of 16 bits; remove the key");
 }
 
 void addHalfFloats(const drive::AxisConfig& axis, const canopen::DeviceConfig& device,
