@@ -149,6 +149,11 @@ std::uint32_t toFloatBits(double value) {
   return bits;
 }
 
+std::uint64_t rounded(double value) {
+  const double wrapped = std::fabs(value) < 9e18 ? value : 0.0;
+  return static_cast<std::uint64_t>(std::llround(wrapped));
+}
+
 std::uint64_t mask(const Entry& entry) {
   const unsigned width = widthBits(entry.type);
   return width >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << width) - 1;
@@ -192,8 +197,7 @@ double decodeNumber(const Entry& entry, Encoding encoding) {
 
 std::uint64_t encodeNumber(double value, const Entry& entry, Encoding encoding) {
   if (encoding == Encoding::integer) {
-    const double wrapped = std::fabs(value) < 9e18 ? value : 0.0;
-    return static_cast<std::uint64_t>(std::llround(wrapped)) & mask(entry);
+    return rounded(value) & mask(entry);
   }
   const std::uint32_t bits = toFloatBits(value);
   if (encoding == Encoding::float32) return bits;
@@ -240,13 +244,13 @@ double DriveValues::countsPerUnit(const Slot& slot) const {
          static_cast<double>(raw(Role::gear_numerator, 1));
 }
 
-double DriveValues::get(Role role, double fallback) const {
-  const Slot& s = slot(role);
-  if (s.entry == nullptr) return fallback;
-  if (s.encoding != Encoding::integer) return decodeNumber(*s.entry, s.encoding) / scale(s);
+double DriveValues::number(const Slot& slot) const {
+  if (slot.encoding != Encoding::integer) {
+    return decodeNumber(*slot.entry, slot.encoding) / scale(slot);
+  }
   const double number =
-      s.sign != 0 ? static_cast<double>(integer(s)) : static_cast<double>(s.entry->number);
-  return number / scale(s);
+      slot.sign != 0 ? static_cast<double>(integer(slot)) : static_cast<double>(slot.entry->number);
+  return number / scale(slot);
 }
 
 double DriveValues::range(Role role) const {
@@ -255,25 +259,11 @@ double DriveValues::range(Role role) const {
   return std::ldexp(1.0, static_cast<int>(widthBits(s.entry->type))) / scale(s);
 }
 
-void DriveValues::set(Role role, double value) {
-  const Slot& s = slot(role);
-  if (s.entry != nullptr) s.entry->number = encodeNumber(value * scale(s), *s.entry, s.encoding);
-}
-
-std::int64_t DriveValues::raw(Role role, std::int64_t fallback) const {
-  const Slot& s = slot(role);
-  if (s.entry == nullptr) return fallback;
-  return integer(s);
-}
-
-void DriveValues::setRaw(Role role, std::int64_t value) {
-  const Slot& s = slot(role);
-  if (s.entry != nullptr) s.entry->number = static_cast<std::uint64_t>(value) & mask(*s.entry);
-}
-
-bool DriveValues::allOnes(Role role) const {
-  const Slot& s = slot(role);
-  return s.entry != nullptr && s.encoding == Encoding::integer && s.entry->number == mask(*s.entry);
+void DriveValues::setNumber(const Slot& slot, double value) {
+  const double scaled = value * scale(slot);
+  slot.entry->number = slot.encoding == Encoding::integer
+                           ? rounded(scaled) & slot.bits
+                           : encodeNumber(scaled, *slot.entry, slot.encoding);
 }
 
 }  // namespace cia402::sim

@@ -189,14 +189,28 @@ class DriveValues {
 
   bool has(Role role) const { return slot(role).entry != nullptr; }
   /// A value in internal units.
-  double get(Role role, double fallback) const;
+  double get(Role role, double fallback) const {
+    const Slot& s = slot(role);
+    return s.entry == nullptr ? fallback : number(s);
+  }
   /// Writes a value in internal units, rounded and wrapped as the register would.
-  void set(Role role, double value);
+  void set(Role role, double value) {
+    if (const Slot& s = slot(role); s.entry != nullptr) setNumber(s, value);
+  }
   /// The bare integer, without scale.
-  std::int64_t raw(Role role, std::int64_t fallback) const;
-  void setRaw(Role role, std::int64_t value);
+  std::int64_t raw(Role role, std::int64_t fallback) const {
+    const Slot& s = slot(role);
+    return s.entry == nullptr ? fallback : integer(s);
+  }
+  void setRaw(Role role, std::int64_t value) {
+    const Slot& s = slot(role);
+    if (s.entry != nullptr) s.entry->number = static_cast<std::uint64_t>(value) & s.bits;
+  }
   /// All bits set: how the standard switches a window off (6065h, 6067h).
-  bool allOnes(Role role) const;
+  bool allOnes(Role role) const {
+    const Slot& s = slot(role);
+    return s.entry != nullptr && s.encoding == Encoding::integer && s.entry->number == s.bits;
+  }
   /// All that the object's numbers span, after which they begin anew; 0 for floats and where there
   /// is no such object.
   double range(Role role) const;
@@ -215,6 +229,8 @@ class DriveValues {
     return slot.per_encoder ? slot.scale * countsPerUnit(slot) : slot.scale;
   }
   double countsPerUnit(const Slot& slot) const;
+  double number(const Slot& slot) const;
+  void setNumber(const Slot& slot, double value);
   static std::int64_t integer(const Slot& slot) {
     return static_cast<std::int64_t>(((slot.entry->number & slot.bits) ^ slot.sign) - slot.sign);
   }
