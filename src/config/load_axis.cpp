@@ -206,6 +206,7 @@ void readAxis(const std::string& name, const yaml::Value& value, AxisReading& re
     checkAxis(section, draft, robot);
     checkDoubts(section, draft, robot);
   }
+  tunePositionLoop(section, axis);
   checkEds(section, draft, robot);
   if (draft.first) checkErrorControl(section, draft, robot);
   section.finish();

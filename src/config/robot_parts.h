@@ -120,6 +120,8 @@ void readIdentity(const yaml::Value& value, canopen::DeviceConfig& device);
 /// that it lacks: what LSS selects is also what the boot expects.
 void readLss(const yaml::Value& value, canopen::DeviceConfig& device, const RobotConfig& robot);
 void readParameters(const yaml::Value& value, drive::AxisConfig& axis);
+/// The axis' `position_loop`, or the profile's, for the modes that it can be in.
+void tunePositionLoop(yaml::Section& section, drive::AxisConfig& axis);
 FrameConfig readFrame(const yaml::Value& value, const std::string& joint);
 SimulationConfig readSimulation(const yaml::Value& value);
 

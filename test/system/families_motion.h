@@ -20,7 +20,9 @@ inline std::vector<FamilyMode> familyModes() {
   for (const char* mode : {"pp", "vl", "pv", "ip", "csp", "csv"}) {
     modes.push_back({kNimotionStepper, "4000", mode});
   }
-  for (const char* mode : {"pp", "pv", "csv", "pt"}) modes.push_back({kId286Cnfa, "10000", mode});
+  for (const char* mode : {"pp", "pv", "csv", "pt", "position_by_velocity"}) {
+    modes.push_back({kId286Cnfa, "10000", mode});
+  }
   for (const char* mode : {"pp", "pv", "csp", "csv", "pt", "cst"}) {
     modes.push_back({kMegmeetDm5, "8388608", mode});
   }

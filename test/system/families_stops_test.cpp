@@ -22,9 +22,11 @@ TEST_P(FamilyStops, AHaltHoldsUntilItIsEnabledAndGoesOnByANewCommandAlone) {
   for (const double direction : {1.0, downwards(GetParam())}) {
     scene.sendOff(direction);
     scene.mustSucceed(ProcedureKind::halt);
-    EXPECT_NEAR(scene.velocity("joint"), 0.0, 1e-3);
+    // A position loop of the driver's takes some tenths of a second for the last tenths of a mrad.
+    const bool looped = scene.state("joint").mode->position_loop.has_value();
+    EXPECT_NEAR(scene.velocity("joint"), 0.0, looped ? 5e-3 : 1e-3);
     EXPECT_THAT(scene.setpoint("joint", 0.1), HasSubstr("halted; enable releases the halt"));
-    scene.expectStands(400ms);
+    scene.expectStands(400ms, looped ? 5e-4 : 1e-4);
     scene.mustSucceed(ProcedureKind::halt);
     scene.expectStands(200ms);
     EXPECT_TRUE(scene.truth("joint").power_stage_on);

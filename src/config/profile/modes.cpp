@@ -29,8 +29,24 @@ void readStatusBits(yaml::Section& mode_section, ModeSpec& mode) {
   section.finish();
 }
 
+void readLoop(yaml::Section& section, ModeSpec& mode) {
+  const auto value = section.get("position_loop");
+  if (!value) return;
+  mode.position_loop = readPositionLoop(*value, {});
+  if (mode.position_loop->gain <= 0.0) {
+    yaml::Section(*value).require("gain", "1/s: of the distance to the set-point, as a velocity");
+  }
+  if (mode.kind != ControlKind::position || !mode.cyclic) {
+    value->problem(
+        "closes the loop of a stream of positions: it goes with `control: position` "
+        "and `cyclic: true`");
+    mode.position_loop.reset();
+  }
+}
+
 void readTarget(yaml::Section& section, const DriveProfile& profile, ModeSpec& mode) {
-  const Quantity quantity = drive::targetQuantity(mode.kind);
+  const Quantity quantity =
+      mode.position_loop ? Quantity::velocity : drive::targetQuantity(mode.kind);
   if (quantity == Quantity::none) {
     const std::string word = drive::controlKindWords()[static_cast<std::size_t>(mode.kind)];
     if (section.has("target")) section.problem(word + " has no target");
@@ -45,7 +61,9 @@ void readTarget(yaml::Section& section, const DriveProfile& profile, ModeSpec& m
     value->problem("the profile has no object `" + *text + "`" +
                    yaml::suggestion(*text, drive::objectNames(profile)));
   } else if (object->quantity != quantity) {
-    value->problem("`" + *text + "` does not measure what the mode controls; see its `quantity`");
+    value->problem("`" + *text + "` does not measure what the mode " +
+                   (mode.position_loop ? "commands, a velocity" : "controls") +
+                   "; see its `quantity`");
   } else if (!object->rpdo) {
     value->problem("`" + *text + "` cannot be in an RPDO, so no set-point could reach the drive");
   }
@@ -172,6 +190,7 @@ ModeSpec readMode(const std::string& name, const yaml::Value& value, const Drive
   const auto kind = control ? control->oneOf(drive::controlKindWords()) : std::nullopt;
   if (kind) mode.kind = static_cast<ControlKind>(*kind);
   section.read("cyclic", mode.cyclic);
+  readLoop(section, mode);
   readTarget(section, profile, mode);
   readStatusBits(section, mode);
   readHandshake(section, mode);

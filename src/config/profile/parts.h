@@ -93,6 +93,9 @@ enum class WriteList : std::uint8_t {
   running,  ///< done by the axis: may copy another object
 };
 
+/// `position_loop` of a mode or an axis. @param loop what holds where it does not say
+drive::PositionLoop readPositionLoop(const yaml::Value& value, drive::PositionLoop loop);
+
 /// Reads a list of writes (docs/drive_profiles.md, "Writes"); what is wrong adds problems. By index
 /// (`object: "6065:00"`) a value is the drive's own whole number; by name it is in SI units.
 std::vector<NamedWrite> readWrites(const yaml::Value& list, const DriveProfile& profile,

@@ -46,7 +46,8 @@ struct AxisConfig {
   AxisGeometry geometry;
   /// Of the joint; jointOf() adds what the geometry says.
   motion::JointLimits limits;
-  std::string mode;  ///< canonical name; mode at start
+  std::string mode;                           ///< canonical name; mode at start
+  std::optional<PositionLoop> position_loop;  ///< instead of the profile's, in modes that have one
   std::optional<HomingOptions> homing;
   Duration cycle{std::chrono::milliseconds(4)};  ///< from one to the next
   Duration command_timeout{std::chrono::milliseconds(200)};

@@ -112,8 +112,18 @@ void Generator::arrest() {
 
 void Generator::lateCycle(Time now) {
   late_ = true;
-  sent_.interrupt();
+  if (mode_->late(now)) giveUpLate();
   if (axis_.state.halted && !control_.halt()) mode_->lateInHalt(now);
+}
+
+void Generator::giveUpLate() {
+  sent_.giveUp();
+  axis_.notices.notify(axis_.who() +
+                       ": cycles were missed while it moved, and its drive turned on with the last "
+                       "velocity meanwhile (mode " +
+                       mode_->spec().name +
+                       "): it is brought to rest from where it is, and what was commanded is given "
+                       "up. Command it again; see that nothing keeps the driver from its cycle");
 }
 
 void Generator::advance(Time now) {
@@ -133,7 +143,7 @@ void Generator::encode() {
 
 const char* Generator::send(Time now) {
   std::uint64_t raw = target_raw_;
-  const char* const missing = mode_->goals() ? mode_->handOver(raw, now) : nullptr;
+  const char* const missing = mode_->handsOver() ? mode_->handOver(raw, now) : nullptr;
   const OutputObject& target = mode_->channel().target;
   if (target.mapped()) axis_.image.setOutput(target.slot, raw);
   return missing;

@@ -109,6 +109,7 @@ class Generator {
  private:
   void encode();
   [[gnu::cold]] void callBack();
+  [[gnu::cold]] void giveUpLate();
   bool movesItself() const;
   ModeControl& controlOf(const ModeChannel& channel);
 

@@ -53,6 +53,12 @@ void SetPoint::interrupt() {
   ++interruptions_;
 }
 
+void SetPoint::overtake(double position, double velocity) {
+  rest(SetPointKind::stream, position);
+  velocity_ = velocity;
+  beginStop();
+}
+
 void SetPoint::shift(double by) {
   if (kind_ != SetPointKind::stream && kind_ != SetPointKind::goal) return;
   value_ += by;

@@ -52,6 +52,9 @@ class SetPoint {
   void stop();
   /// At least one cycle was missed: who follows a stream of positions has come to rest meanwhile.
   void interrupt();
+  /// A stream that the axis has run ahead of: goes on from where that is, rad or m, and ramps its
+  /// velocity, per s, to rest.
+  void overtake(double position, double velocity);
   /// Grows with each interrupt() of a moving stream.
   std::uint32_t interruptions() const { return interruptions_; }
   /// Positions have got another zero. @param by what is added to all of them

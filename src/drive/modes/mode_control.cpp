@@ -5,6 +5,7 @@
 
 #include "drive/modes/cyclic_position.h"
 #include "drive/modes/homing_control.h"
+#include "drive/modes/position_by_velocity.h"
 #include "drive/modes/profile_position.h"
 #include "drive/modes/torque_control.h"
 #include "drive/modes/velocity_control.h"
@@ -22,6 +23,7 @@ Made make(const ModeChannel& channel, const ModeControl::Context& context) {
 
 /// In a mode that is not cyclic the drive plans the way to a position by itself.
 Made makePosition(const ModeChannel& channel, const ModeControl::Context& context) {
+  if (channel.spec->position_loop) return make<PositionByVelocity>(channel, context);
   return channel.spec->cyclic ? make<CyclicPosition>(channel, context)
                               : make<ProfilePosition>(channel, context);
 }
@@ -48,6 +50,7 @@ ModeControl::ModeControl(const ModeChannel& channel, const Context& context)
     : channel_(&channel),
       context_(context),
       kind_(kindOf(*channel.spec)),
+      hands_over_(kind_ == SetPointKind::goal),
       conversion_(channel.conversion) {}
 
 std::string ModeControl::targetText() const {
@@ -55,6 +58,11 @@ std::string ModeControl::targetText() const {
   if (target == nullptr) return "the mode, which has no target";
   return target->name + " (" + fieldbus::toString(target->id) + "), which takes " +
          number(conversion_.lowest()) + " to " + number(conversion_.highest());
+}
+
+bool ModeControl::late(Time /*now*/) {
+  sent().interrupt();
+  return false;
 }
 
 bool ModeControl::leadsInside(double value) const {

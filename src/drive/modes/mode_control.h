@@ -63,7 +63,13 @@ class ModeControl {
   /// @return the set-point of this cycle; nothing: none is given. @pre there is a command
   virtual std::optional<double> follow(Stream& stream, Time now) = 0;
 
-  // What follows is empty but where set-points are goals; cycles ask for it there only.
+  /// At least one cycle was missed. @return whether what is commanded cannot be gone on with: it
+  /// ends, and the axis is brought to rest from where it is
+  virtual bool late(Time now);
+  /// handOver() is to be asked in each cycle.
+  bool handsOver() const { return hands_over_; }
+
+  // What follows is empty but where handsOver(); cycles ask for it there only.
   /// Begins anew with a neutral target, or the mode is left.
   virtual void reset(std::uint64_t /*raw*/) {}
   /// The set-point is another now. @param twice see SetPointHandshake::offer()
@@ -103,6 +109,7 @@ class ModeControl {
   const Feedback& feedback() const { return context_.feedback; }
   SetPoint& sent() const { return context_.sent; }
   void convertBy(const Conversion& conversion) { conversion_ = conversion; }
+  void handOverEachCycle() { hands_over_ = true; }
   /// Beyond a limit of position a velocity or effort may only get less or lead back.
   bool leadsInside(double value) const;
 
@@ -110,6 +117,7 @@ class ModeControl {
   const ModeChannel* channel_;
   Context context_;
   SetPointKind kind_;
+  bool hands_over_;
   Conversion conversion_;
 };
 

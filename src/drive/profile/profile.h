@@ -18,6 +18,7 @@
 #include "drive/profile/number_texts.h"
 #include "drive/profile/object_range.h"
 #include "drive/profile/parameter_names.h"
+#include "drive/profile/position_loop.h"
 #include "drive/profile/setting_check.h"
 #include "drive/profile/supervision.h"
 #include "fieldbus/float_codec.h"
@@ -167,6 +168,8 @@ struct ModeSpec {
   /// They are held until the drive has left Operation enabled and Quick stop active, too: without
   /// them it may not slow down.
   bool bits_while_stopping = false;
+  std::optional<PositionLoop>
+      position_loop;  ///< positions by velocities: `target` is one; cyclic positions only
   unsigned stoppingBits() const { return bits_while_stopping ? controlword_bits : 0u; }
   std::optional<int> target_reached_bit, following_error_bit, set_point_acknowledge_bit,
       speed_zero_bit, homing_attained_bit, homing_error_bit, follows_command_bit;
