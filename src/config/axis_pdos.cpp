@@ -127,6 +127,7 @@ bool plan(yaml::Section& section, AxisDraft& draft, RobotConfig& robot, PdoNeeds
   const auto modes = section.get("modes");
   needs.mode = axis.mode;
   needs.cycle = axis.cycle;
+  needs.feed_forward = axis.feed_forward;
   needs.fresh = freshness(robot);
   const Result<PdoPlan> planned = planPdos(profile, *draft.device.profile, needs);
   if (!planned) {

@@ -192,6 +192,8 @@ void readAxis(const std::string& name, const yaml::Value& value, AxisReading& re
   if (const auto action = section.get("command_timeout_action")) {
     axis.brake_after_effort = action->oneOf({"brake", "coast"}).value_or(0) == 0;
   }
+  section.read("unwatched_streams", axis.unwatched_streams);
+  readFeedForward(section, axis);
   if (const auto end = section.get("quick_stop")) {
     axis.quick_stop_holds = end->oneOf({"disable", "hold"}).value_or(0) == 1;
   }
@@ -207,6 +209,7 @@ void readAxis(const std::string& name, const yaml::Value& value, AxisReading& re
     checkDoubts(section, draft, robot);
   }
   tunePositionLoop(section, axis);
+  checkFeedForward(section, axis);
   checkEds(section, draft, robot);
   if (draft.first) checkErrorControl(section, draft, robot);
   section.finish();

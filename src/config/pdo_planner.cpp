@@ -111,7 +111,11 @@ class Planner {
 
   /// What a mode writes and wants to travel.
   void addMapped(const ModeSpec& mode, unsigned every, std::vector<PackItem>& items) const {
-    for (const std::string& name : mode.mapped) {
+    std::vector<std::string> names = mode.mapped;
+    for (const std::string& name : drive::offsetsSent(mode.offsets, needs_.feed_forward)) {
+      names.push_back(name);
+    }
+    for (const std::string& name : names) {
       if (!contains(items, name)) items.push_back(item(*profile_.find(name), every));
     }
   }

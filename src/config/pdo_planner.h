@@ -13,9 +13,10 @@ namespace cia402::config {
 
 /// What an axis wants to travel by PDO.
 struct PdoNeeds {
-  std::string mode;                ///< canonical name, a mode of the profile: the one to start in
-  std::vector<std::string> modes;  ///< others that it may be switched to
-  bool modes_required = false;     ///< one of `modes` that finds no room is an error; else left out
+  std::string mode;                 ///< canonical name, a mode of the profile: the one to start in
+  std::vector<std::string> modes;   ///< others that it may be switched to
+  drive::FeedForward feed_forward;  ///< whose offsets travel with the modes that have them
+  bool modes_required = false;  ///< one of `modes` that finds no room is an error; else left out
   /// Feedback beside statusword, position_actual and mode_display, most important first; what
   /// finds no room is left to SDO.
   std::vector<std::string> feedback;

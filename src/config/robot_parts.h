@@ -120,6 +120,9 @@ void readIdentity(const yaml::Value& value, canopen::DeviceConfig& device);
 /// that it lacks: what LSS selects is also what the boot expects.
 void readLss(const yaml::Value& value, canopen::DeviceConfig& device, const RobotConfig& robot);
 void readParameters(const yaml::Value& value, drive::AxisConfig& axis);
+/// `feed_forward` of an axis, before its PDOs are planned; and its check once they are.
+void readFeedForward(yaml::Section& axis_section, drive::AxisConfig& axis);
+void checkFeedForward(yaml::Section& axis_section, const drive::AxisConfig& axis);
 /// The axis' `position_loop`, or the profile's, for the modes that it can be in.
 void tunePositionLoop(yaml::Section& section, drive::AxisConfig& axis);
 FrameConfig readFrame(const yaml::Value& value, const std::string& joint);

@@ -56,6 +56,8 @@ class Device {
   virtual const std::string& problem() const = 0;
   virtual DeviceTimes times() const = 0;
   virtual const std::optional<Emergency>& lastEmergency() const = 0;
+  /// Without signs of life of this driver it stops by itself, as found at the present or last boot.
+  virtual bool noticesLostMaster() const = 0;
   /// It is away, and the configuration says that it may be.
   virtual bool excused() const = 0;
 

@@ -198,6 +198,8 @@ class Bench {
   /// An input comes, or more of them at once, as if the drive had sent it.
   void bring(fieldbus::ObjectId object, std::uint64_t raw) { bring({{object, raw}}); }
   void bring(const Values& values) { device_.bring(values, true, now); }
+  /// Whether the drive notices that the driver is gone.
+  void noticeLostMaster(bool notices) { device_.noticeLostMaster(notices); }
   /// The drive starts anew, which nobody has asked for.
   void reboot() {
     drive.reboot();

@@ -135,6 +135,35 @@ TEST(AxisWords, ADriveThatShowsAnotherModeIsToldApart) {
               HasSubstr(" instead of 8 (cyclic_position); call enable"));
 }
 
+TEST(AxisWords, AStreamThatNobodyWouldEndIsRefusedUntilItIsAllowed) {
+  AxisConfig config = testConfig();
+  config.mode = "cyclic_velocity";
+  for (const bool allowed : {false, true}) {
+    config.unwatched_streams = allowed;
+    Bench bench(config);
+    bench.noticeLostMaster(false);
+    ASSERT_TRUE(bench.boot() && bench.enable());
+    const auto taken = bench.axis.command(0.5, bench.now);
+    EXPECT_EQ(taken.ok(), allowed);
+    if (!allowed) {
+      EXPECT_EQ(taken.error().message,
+                "shoulder (node 3): the node does not notice when this driver dies, and would go "
+                "on in mode cyclic_velocity with what it was told last; use a mode of positions, "
+                "or say `unwatched_streams: true` of the axis where nobody can come to harm by "
+                "that");
+    }
+    bench.run(milliseconds(100));
+    EXPECT_EQ(bench.drive.target_velocity != 0, allowed);
+  }
+}
+
+TEST(AxisWords, PositionsNeedNobodyWhoWatches) {
+  Bench bench;
+  bench.noticeLostMaster(false);
+  ASSERT_TRUE(bench.boot() && bench.enable());
+  EXPECT_TRUE(bench.axis.command(bench.axis.state().position, bench.now).ok());
+}
+
 TEST(AxisWords, AStateThatIsKnownNeedsNoWords) {
   Bench bench;
   EXPECT_EQ(bench.axis.unknownText(), "") << "its node is not there: that is told elsewhere";

@@ -27,6 +27,7 @@ class FakeDevice final : public fieldbus::Device {
   const std::optional<fieldbus::Emergency>& lastEmergency() const override {
     return state_->emergency;
   }
+  bool noticesLostMaster() const override { return state_->notices_lost_master; }
   bool excused() const override { return false; }
   fieldbus::ObjectAccess& objects() override { return state_->objects; }
   void boot(Time now, bool reset) override { state_->boot(now, reset, {}); }
@@ -71,6 +72,7 @@ class FakeDevice final : public fieldbus::Device {
     state_->emergency = {code, 0x21, {}, fieldbus::Emergency::kSize, now};
     ++state_->changes;
   }
+  void noticeLostMaster(bool notices) { state_->notices_lost_master = notices; }
   void confirm(fieldbus::ObjectId object) { state_->objects.confirm(object); }
   void leaveOut(fieldbus::ObjectId output) { state_->image.leaveOut(output); }
 
@@ -89,6 +91,7 @@ class FakeDevice final : public fieldbus::Device {
 
  private:
   struct State : Front {
+    bool notices_lost_master = true;
     State(const Layout& layout, FakeDrive& its_drive)
         : drive(its_drive), image(layout), objects(its_drive) {
       process = &image;

@@ -33,6 +33,21 @@ TEST(Motor, LagsBehindASteadyDemandByVelocityTimesTimeConstant) {
   EXPECT_NEAR(motor.torque(), 0.1, 1e-6);  // friction only
 }
 
+TEST(Motor, DoesNotLagWhereItsVelocityLoopIsToldTheSpeed) {
+  Motor motor(parameters(), 0.0);
+  double demand = 0.0;
+  steps(1000, [&] { motor.followPosition(demand += 10.0 * kDriveStepS, {10.0, 0.0}); });
+  EXPECT_NEAR(demand - motor.position(), 0.0, 1e-6);
+  EXPECT_NEAR(motor.velocity(), 10.0, 1e-6);
+}
+
+// A proportional loop: the error that balances the offset.
+TEST(Motor, IsHeldAwayFromItsDemandByAnOffsetThatStays) {
+  Motor motor(parameters(), 0.0);
+  steps(2000, [&] { motor.followPosition(0.0, {2.0, 0.0}); });
+  EXPECT_NEAR(motor.position(), 2.0 * 0.004, 1e-6);
+}
+
 TEST(Motor, ReachesAStepWithoutOvershootAndStandsExactly) {
   Motor motor(parameters(), 0.0);
   double highest = 0.0;

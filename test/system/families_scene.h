@@ -22,7 +22,8 @@ inline void PrintTo(const FamilyMode& tested, std::ostream* out) {
 /// What a family wants to be told before it is enabled the first time, as options of the axis.
 inline std::string panelSteps(const FamilyMode& tested) {
   const std::string family = tested.family;
-  if (family == "id286_cnfa") return ", keeps: [motor_current]";
+  if (family == "id286_cnfa") return ", keeps: [motor_current], unwatched_streams: true";
+  if (family == "nimotion_stepper") return ", unwatched_streams: true";
   return family == "megmeet_dm5" ? ", adjust: [control_mode]" : "";
 }
 

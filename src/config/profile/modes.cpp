@@ -181,6 +181,36 @@ void readMapped(const yaml::Value& list, const DriveProfile& profile, ModeSpec& 
   }
 }
 
+/// The name of an object that is added to a demand in every cycle; empty: there is none.
+void readOffset(yaml::Section& section, const char* key, Quantity quantity,
+                const DriveProfile& profile, std::string& offset) {
+  const auto value = section.get(key);
+  const auto name = value ? value->text() : std::nullopt;
+  if (!name) return;
+  const ObjectSpec* object = profile.find(*name);
+  if (object == nullptr || !object->rpdo || object->quantity != quantity) {
+    value->problem("`" + *name + "` is no object of the profile with `quantity: " + key +
+                   "` that an RPDO can carry");
+  } else {
+    offset = *name;
+  }
+}
+
+void readOffsets(yaml::Section& mode_section, const DriveProfile& profile, ModeSpec& mode) {
+  const auto value = mode_section.get("offsets");
+  if (!value) return;
+  yaml::Section section(*value);
+  if (mode.kind == ControlKind::position) {
+    readOffset(section, "velocity", Quantity::velocity, profile, mode.offsets.velocity);
+  }
+  readOffset(section, "torque", Quantity::torque, profile, mode.offsets.torque);
+  section.finish();
+  const bool led = mode.kind == ControlKind::position || mode.kind == ControlKind::velocity;
+  if (!mode.cyclic || !led || mode.position_loop) {
+    value->problem("goes with `cyclic: true` and `control: position` or `velocity` of the drive");
+  }
+}
+
 ModeSpec readMode(const std::string& name, const yaml::Value& value, const DriveProfile& profile) {
   ModeSpec mode;
   mode.name = drive::canonicalModeName(name);
@@ -192,6 +222,7 @@ ModeSpec readMode(const std::string& name, const yaml::Value& value, const Drive
   section.read("cyclic", mode.cyclic);
   readLoop(section, mode);
   readTarget(section, profile, mode);
+  readOffsets(section, profile, mode);
   readStatusBits(section, mode);
   readHandshake(section, mode);
   readStop(section, mode);

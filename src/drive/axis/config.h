@@ -48,11 +48,14 @@ struct AxisConfig {
   motion::JointLimits limits;
   std::string mode;                           ///< canonical name; mode at start
   std::optional<PositionLoop> position_loop;  ///< instead of the profile's, in modes that have one
+  FeedForward feed_forward;                   ///< in modes that have offsets
   std::optional<HomingOptions> homing;
   Duration cycle{std::chrono::milliseconds(4)};  ///< from one to the next
   Duration command_timeout{std::chrono::milliseconds(200)};
   bool brake_after_effort = true;  ///< when a stream of efforts ends; else the axis coasts
-  bool quick_stop_holds = false;   ///< ends in quick stop active, under power; else disabled
+  /// Velocities and efforts are streamed to a drive that does not notice the driver's death, too.
+  bool unwatched_streams = false;
+  bool quick_stop_holds = false;  ///< ends in quick stop active, under power; else disabled
   /// A statusword that no state of CiA 402 shows is put up with for so long.
   Duration undecodable_timeout{std::chrono::milliseconds(100)};
   /// Below this the axis stands still (mode changes, homing, set_position), rad/s or m/s; a

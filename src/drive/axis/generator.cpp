@@ -154,6 +154,7 @@ void Generator::sendNeutral() {
     const OutputObject& target = mode->channel().target;
     std::uint64_t raw = 0;
     if (target.mapped() && mode->neutralRaw(raw)) axis_.image.setOutput(target.slot, raw);
+    if (mode->handsOver()) mode->clearOffsets();
   }
 }
 

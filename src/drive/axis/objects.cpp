@@ -27,6 +27,16 @@ bool sameCoding(const ObjectSpec& a, const ObjectSpec& b) {
          a.factor == b.factor && !a.unit && !b.unit;
 }
 
+/// @param used the axis sends something in it
+ModeChannel::Offset offset(const AxisConfig& config, const fieldbus::Device& device,
+                           const std::string& name, bool used) {
+  const ObjectSpec* object = used && !name.empty() ? config.profile->find(name) : nullptr;
+  if (object == nullptr) return {};
+  const auto conversion = Conversion::create(*object, *config.profile, config.geometry);
+  if (!conversion) return {};  // told when the configuration was checked
+  return {output(device, object), *conversion};
+}
+
 ModeChannel modeChannel(const AxisConfig& config, const fieldbus::Device& device,
                         const ModeSpec& spec, const ObjectSpec* position) {
   ModeChannel channel;
@@ -50,6 +60,9 @@ ModeChannel modeChannel(const AxisConfig& config, const fieldbus::Device& device
   } else {
     channel.refusal = conversion.error().message;
   }
+  const FeedForward& feed = config.feed_forward;
+  channel.velocity_offset = offset(config, device, spec.offsets.velocity, feed.velocity != 0.0);
+  channel.torque_offset = offset(config, device, spec.offsets.torque, feed.inertia != 0.0);
   channel.copies_position = position != nullptr && sameCoding(*object, *position);
   return channel;
 }

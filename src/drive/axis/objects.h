@@ -23,8 +23,14 @@ struct ModeChannel {
   const ModeSpec* spec = nullptr;
   OutputObject target;
   Conversion conversion;
-  bool copies_position = false;  ///< target has the very coding of the actual position
-  std::string refusal;           ///< why the mode cannot be used; empty: it can
+  /// An object that is added to a demand of the drive.
+  struct Offset {
+    OutputObject output;
+    Conversion conversion;
+  };
+  Offset velocity_offset, torque_offset;  ///< where the axis feeds forward by them
+  bool copies_position = false;           ///< target has the very coding of the actual position
+  std::string refusal;                    ///< why the mode cannot be used; empty: it can
 };
 
 /// Where everything that an axis needs is in the process image, worked out once.

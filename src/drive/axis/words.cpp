@@ -6,6 +6,22 @@
 
 namespace cia402::drive {
 
+namespace {
+
+/// Why a drive that would go on for ever gets no set-points; empty: it gets them.
+std::string unwatchedRefusal(const AxisCore& axis) {
+  const ModeSpec& mode = axis.mode().spec();
+  if (!mode.runsOn() || axis.config().unwatched_streams || axis.device().noticesLostMaster()) {
+    return {};
+  }
+  return axis.who() + ": the " + axis.device().terms().device +
+         " does not notice when this driver dies, and would go on in mode " + mode.name +
+         " with what it was told last; use a mode of positions, or say `unwatched_streams: true` "
+         "of the axis where nobody can come to harm by that";
+}
+
+}  // namespace
+
 std::string report(const AxisCore& axis) {
   const fieldbus::Slot slot = axis.objects().controlword.slot;
   const std::uint64_t sent = axis.control().frames();
@@ -63,7 +79,7 @@ std::string motionRefusal(const AxisCore& axis, bool busy) {
   const AxisState& state = axis.state();
   const std::string who = axis.who();
   if (state.ready_for_motion) {
-    if (axis.generator().homedEnough()) return {};
+    if (axis.generator().homedEnough()) return unwatchedRefusal(axis);
     return who + ": not homed; " +
            (axis.config().homing ? "home it" : "say where it stands by set_position") +
            " before position motion";

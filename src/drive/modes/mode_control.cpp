@@ -51,7 +51,10 @@ ModeControl::ModeControl(const ModeChannel& channel, const Context& context)
       context_(context),
       kind_(kindOf(*channel.spec)),
       hands_over_(kind_ == SetPointKind::goal),
-      conversion_(channel.conversion) {}
+      conversion_(channel.conversion),
+      offsets_(channel, context.axis) {
+  if (offsets_.any()) handOverEachCycle();
+}
 
 std::string ModeControl::targetText() const {
   const ObjectSpec* target = channel_->target.spec;

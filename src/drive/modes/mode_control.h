@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "drive/axis/feedback.h"
+#include "drive/modes/set_point_offsets.h"
 #include "drive/modes/stream.h"
 
 namespace cia402::drive {
@@ -69,9 +70,12 @@ class ModeControl {
   /// handOver() is to be asked in each cycle.
   bool handsOver() const { return hands_over_; }
 
+  /// The axis is not in operation: offsets are 0.
+  void clearOffsets() { offsets_.clear(); }
+
   // What follows is empty but where handsOver(); cycles ask for it there only.
   /// Begins anew with a neutral target, or the mode is left.
-  virtual void reset(std::uint64_t /*raw*/) {}
+  virtual void reset(std::uint64_t /*raw*/) { offsets_.clear(); }
   /// The set-point is another now. @param twice see SetPointHandshake::offer()
   virtual void offer(std::uint64_t /*raw*/, bool /*twice*/) {}
   /// A set-point was accepted that has the number `raw`, which is the one before, `same`.
@@ -81,7 +85,10 @@ class ModeControl {
   /// One cycle. @param raw the set-point, replaced by what the target object is to hold
   /// @return what the drive did not answer to in time, so that the set-point is dropped; else
   /// nullptr
-  virtual const char* handOver(std::uint64_t& /*raw*/, Time /*now*/) { return nullptr; }
+  virtual const char* handOver(std::uint64_t& /*raw*/, Time /*now*/) {
+    offsets_.set(sent().velocity());
+    return nullptr;
+  }
   /// Target reached still speaks of the set-point before.
   virtual bool handingOver() const { return false; }
   /// Bits of the controlword in operation.
@@ -119,6 +126,7 @@ class ModeControl {
   SetPointKind kind_;
   bool hands_over_;
   Conversion conversion_;
+  SetPointOffsets offsets_;
 };
 
 /// What the drive makes of the set-points of a mode.

@@ -9,7 +9,8 @@ bool isSetByAxis(const DriveProfile& profile, const std::string& object) {
   if (object == "controlword" || object == "mode_of_operation") return true;
   return std::any_of(profile.modes.begin(), profile.modes.end(), [&](const ModeSpec& mode) {
     const auto& writes = mode.entry_writes;
-    return mode.target == object ||
+    return mode.target == object || mode.offsets.velocity == object ||
+           mode.offsets.torque == object ||
            std::any_of(writes.begin(), writes.end(),
                        [&](const NamedWrite& write) { return write.object == object; });
   });

@@ -17,6 +17,7 @@
 #include "drive/profile/io.h"
 #include "drive/profile/number_texts.h"
 #include "drive/profile/object_range.h"
+#include "drive/profile/offsets.h"
 #include "drive/profile/parameter_names.h"
 #include "drive/profile/position_loop.h"
 #include "drive/profile/setting_check.h"
@@ -170,6 +171,9 @@ struct ModeSpec {
   bool bits_while_stopping = false;
   std::optional<PositionLoop>
       position_loop;  ///< positions by velocities: `target` is one; cyclic positions only
+  OffsetObjects offsets;
+  /// A drive that hears nothing more keeps moving, or pushing, as it was told last.
+  bool runsOn() const { return kind != ControlKind::position || position_loop.has_value(); }
   unsigned stoppingBits() const { return bits_while_stopping ? controlword_bits : 0u; }
   std::optional<int> target_reached_bit, following_error_bit, set_point_acknowledge_bit,
       speed_zero_bit, homing_attained_bit, homing_error_bit, follows_command_bit;

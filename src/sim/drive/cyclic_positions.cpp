@@ -23,7 +23,9 @@ bool CyclicPositions::follows(bool bit_4) const {
 
 void CyclicPositions::target(double seconds, double into) {
   axis_.limits.release();
-  double target = axis_.trueTarget(axis_.values.get(targetRole(), 0.0));
+  const bool csp = axis_.mode->behaviour == ModeBehaviour::cyclic_position;
+  const double offset = csp ? axis_.offset(Role::position_offset) : 0.0;
+  double target = axis_.trueTarget(axis_.values.get(targetRole(), 0.0) + offset);
   if (axis_.mode->delayed) {
     target = std::exchange(pending_, target).value_or(axis_.demand.interpolator.position());
   }
@@ -48,7 +50,12 @@ void CyclicPositions::step(bool bit_4) {
     demand.velocity = demand.interpolator.velocity();
     demand.profile.reset(demand.position, demand.velocity);
   }
-  axis_.motor.followPosition(demand.position);
+  if (axis_.mode->behaviour == ModeBehaviour::cyclic_position) {
+    axis_.motor.followPosition(
+        demand.position, {axis_.offset(Role::velocity_offset), axis_.offset(Role::torque_offset)});
+  } else {
+    axis_.motor.followPosition(demand.position);
+  }
 }
 
 void CyclicPositions::stopAtSwitch(double moved) {

@@ -69,12 +69,13 @@ void Motor::accelerate(double wanted) {
   turn();
 }
 
-void Motor::followPosition(double demand) {
+void Motor::followPosition(double demand, const Offsets& offsets) {
   const double error = demand - position_;
   const double demand_speed = last_demand_ ? (demand - *last_demand_) / kDriveStepS : 0.0;
   last_demand_ = demand;
   const double distance = std::fabs(error);
-  if (distance < kRestDistance && std::fabs(velocity_) < kRestVelocity && !blocked_) {
+  const bool led = offsets.velocity != 0.0 || offsets.torque != 0.0;
+  if (distance < kRestDistance && std::fabs(velocity_) < kRestVelocity && !blocked_ && !led) {
     position_ = demand;
     velocity_ = 0.0;
     torque_ = 0.0;
@@ -84,18 +85,24 @@ void Motor::followPosition(double demand) {
   const double lag = parameters_.position_time_constant + kDriveStepS;
   const double approach =
       brakingSpeed(distance) + std::max(0.0, std::copysign(1.0, error) * demand_speed);
-  const double speed = std::min({distance / lag, approach, parameters_.max_speed});
-  accelerate((std::copysign(speed, error) - velocity_) * velocity_gain_ / kDriveStepS);
+  double speed = std::copysign(std::min({distance / lag, approach, parameters_.max_speed}), error);
+  if (led) {
+    speed = std::clamp((error - offsets.velocity * kDriveStepS) / lag + offsets.velocity,
+                       -parameters_.max_speed, parameters_.max_speed);
+  }
+  accelerate((speed - velocity_) * velocity_gain_ / kDriveStepS +
+             offsets.torque * parameters_.rated_acceleration);
 }
 
-void Motor::followVelocity(double demand) {
+void Motor::followVelocity(double demand, double torque_offset) {
   last_demand_.reset();
-  if (demand == 0.0 && std::fabs(velocity_) < kRestVelocity) {
+  if (demand == 0.0 && torque_offset == 0.0 && std::fabs(velocity_) < kRestVelocity) {
     velocity_ = 0.0;
     torque_ = 0.0;
     return;
   }
-  accelerate((demand - velocity_) * velocity_gain_ / kDriveStepS);
+  accelerate((demand - velocity_) * velocity_gain_ / kDriveStepS +
+             torque_offset * parameters_.rated_acceleration);
 }
 
 void Motor::applyTorque(double rated_torques, double max_speed) {

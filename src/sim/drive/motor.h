@@ -41,8 +41,14 @@ class Motor {
   /// The position loop's lag, where the world changes it while running; s, > 0.
   void setPositionTimeConstant(double seconds);
 
-  void followPosition(double demand);                        ///< one step; turns
-  void followVelocity(double demand);                        ///< one step; turns/s
+  /// What the loops are told beside their demand: 60B1h, turns/s, and 60B2h, in rated torques.
+  struct Offsets {
+    double velocity = 0.0, torque = 0.0;
+  };
+  /// One step; turns. Its velocity offset is of the velocity loop, which the position loop leads.
+  void followPosition(double demand, const Offsets& offsets);
+  void followPosition(double demand) { followPosition(demand, {}); }
+  void followVelocity(double demand, double torque_offset = 0.0);  ///< one step; turns/s
   void applyTorque(double rated_torques, double max_speed);  ///< one step; speed limit in turns/s
   void coast();                                              ///< one step without power
 

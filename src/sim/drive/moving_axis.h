@@ -34,6 +34,9 @@ class MovingAxis {
     return mode != nullptr && mode->bit_12 == Bit12::follows &&
            values.raw(Role::targets_dropped, 0) != 0;
   }
+  /// What is added to the demand of the velocity loop and of the torque in cyclic modes (60B1h,
+  /// turns/s; 60B2h, in rated torques).
+  double offset(Role role) const { return values.raw(role, 0) == 0 ? 0.0 : values.get(role, 0.0); }
   /// Neither demand nor rotor moves.
   bool standing() const;
 

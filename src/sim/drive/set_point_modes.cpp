@@ -19,7 +19,9 @@ void stepVelocity(MovingAxis& axis, bool ramped) {
   Demand& demand = axis.demand;
   double limit = axis.limits.maxSpeed();
   if (ramped) limit = std::min(limit, axis.values.get(Role::max_profile_velocity, kUnlimited));
-  const double wanted = std::clamp(axis.values.get(Role::target_velocity, 0.0), -limit, limit);
+  const double offset = ramped ? 0.0 : axis.offset(Role::velocity_offset);
+  const double wanted =
+      std::clamp(axis.values.get(Role::target_velocity, 0.0) + offset, -limit, limit);
   const ProfileLimits limits = axis.limits.profile(axis.mode);
   const double braking = axis.limits.deceleration(Ramp::quick_stop, axis.mode);
   const double target = allowedVelocity(axis, wanted, braking);
@@ -27,7 +29,7 @@ void stepVelocity(MovingAxis& axis, bool ramped) {
   const double down = forced ? braking : limits.deceleration;
   demand.velocity =
       ramped || forced ? rampVelocity(demand.velocity, target, limits.acceleration, down) : target;
-  axis.motor.followVelocity(demand.velocity);
+  axis.motor.followVelocity(demand.velocity, ramped ? 0.0 : axis.offset(Role::torque_offset));
   demand.position = axis.motor.position();
 }
 
@@ -52,7 +54,8 @@ void stepVelocityMode(MovingAxis& axis, const VelocityModeBits& bits) {
 
 void stepTorque(MovingAxis& axis, bool ramped) {
   Demand& demand = axis.demand;
-  const double target = axis.values.get(Role::target_torque, 0.0);
+  const double target =
+      axis.values.get(Role::target_torque, 0.0) + (ramped ? 0.0 : axis.offset(Role::torque_offset));
   const double slope = ramped ? axis.values.get(Role::torque_slope, kUnlimited) : kUnlimited;
   const double change = slope * kDriveStepS;
   demand.torque = std::clamp(target, demand.torque - change, demand.torque + change);
