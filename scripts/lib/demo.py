@@ -31,14 +31,14 @@ START_DEADLINE = 120.0
 PROCEDURE_DEADLINE = 120.0
 STILL_TIME = 0.5  # commanded positions that rest for so long have arrived
 
-JOINTS = ["shoulder", "elbow", "wrist", "gripper"]
+JOINTS = ["shoulder", "elbow", "wrist", "tool", "gripper"]
 # Time in s, positions in rad. The robot comes from where homing left it.
 POINTS = [
-    (1.8, [-1.6, -0.50, 0.9, 0.7]),
-    (3.4, [-0.7, -1.10, -0.6, -0.5]),
-    (5.0, [0.2, 0.20, -1.4, 0.8]),
-    (6.6, [0.6, 1.00, 0.5, -0.7]),
-    (8.2, [0.0, 0.50, 0.0, 0.0]),
+    (1.8, [-1.6, -0.40, 0.8, 0.4, 0.7]),
+    (3.4, [-0.7, -1.10, -0.2, -0.5, -0.5]),
+    (5.0, [0.2, 0.20, -1.0, 0.5, 0.8]),
+    (6.6, [0.6, 1.00, 0.3, -0.4, -0.7]),
+    (8.2, [0.0, 0.50, 0.0, 0.0, 0.0]),
 ]
 
 
@@ -98,6 +98,17 @@ def wait_until(condition, deadline, complaint):
         time.sleep(0.05)
 
 
+def in_order(axes):
+    """Axes in the order of JOINTS; ROS tells them by name."""
+    return sorted(axes, key=lambda axis: JOINTS.index(axis.name))
+
+
+def drive_of(configured, joint):
+    """The drive family of a joint, and how it is led along trajectories."""
+    axis = configured[joint]
+    return f"{axis['drive']} by {axis.get('mode', 'cyclic_position')}"
+
+
 class Latest:
     """The newest message of a topic."""
 
@@ -123,12 +134,11 @@ def wait_for_drives():
         return "Not all drives are there: " + "; ".join(waiting)
 
     wait_until(ready, START_DEADLINE, complaint)
-    say(f"Bus \"{bus.message.interface}\" is {bus.message.state}; these drives answered, were "
-        "identified and configured:")
-    profiles = rospy.get_param(f"{ROBOT}/axes")
-    for node, axis in zip(bus.message.nodes, axes.message.axes):
-        say(f"  {axis.name:9} node {node.node_id}, {profiles[axis.name]['drive']}, "
-            f"{axis.state}, mode {axis.mode or 'not set'}")
+    say(f"The drives on the bus \"{bus.message.interface}\" are identified and configured, none has power:")
+    configured = rospy.get_param(f"{ROBOT}/axes")
+    nodes = {name: node.node_id for node in bus.message.nodes for name in node.axes}
+    for axis in in_order(axes.message.axes):
+        say(f"  {axis.name:9} node {nodes[axis.name]}, {drive_of(configured, axis.name)}, {axis.state}")
 
 
 def ask(name):
@@ -216,7 +226,8 @@ def tell(output):
     samples = follow(recorder)
     worst, complaints = judge(samples)
     picture = os.path.join(output, "tracking.png")
-    draw(picture, JOINTS, samples, worst)
+    configured = rospy.get_param(f"{ROBOT}/axes")
+    draw(picture, [(joint, drive_of(configured, joint)) for joint in JOINTS], samples, worst)
     say(f"Drew {picture}")
     say("Disabling:")
     ask("disable")
