@@ -16,6 +16,7 @@ import time
 import rosgraph
 import rospy
 from control_msgs.msg import JointTrajectoryControllerState
+from rosgraph_msgs.msg import Log
 from std_srvs.srv import Trigger
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
@@ -28,17 +29,16 @@ ROBOT = "/bus"
 GROUP = "arm"
 # Deadlines in s; generous, for slow machines. Nothing waits longer than it must.
 START_DEADLINE = 120.0
-PROCEDURE_DEADLINE = 120.0
 STILL_TIME = 0.5  # commanded positions that rest for so long have arrived
 
-JOINTS = ["shoulder", "elbow", "wrist", "gripper"]
+JOINTS = ["shoulder", "elbow", "wrist", "tool", "gripper"]
 # Time in s, positions in rad. The robot comes from where homing left it.
 POINTS = [
-    (1.8, [-1.6, -0.50, 0.9, 0.7]),
-    (3.4, [-0.7, -1.10, -0.6, -0.5]),
-    (5.0, [0.2, 0.20, -1.4, 0.8]),
-    (6.6, [0.6, 1.00, 0.5, -0.7]),
-    (8.2, [0.0, 0.50, 0.0, 0.0]),
+    (1.8, [-1.6, -0.40, 0.8, 0.4, 0.7]),
+    (3.4, [-0.7, -1.10, -0.1, -0.5, -0.5]),
+    (5.0, [0.2, 0.20, -0.8, 0.5, 0.8]),
+    (6.6, [0.6, 1.00, 0.3, -0.4, -0.7]),
+    (8.2, [0.0, 0.50, 0.0, 0.0, 0.0]),
 ]
 
 
@@ -98,6 +98,37 @@ def wait_until(condition, deadline, complaint):
         time.sleep(0.05)
 
 
+def in_order(axes):
+    """Axes in the order of JOINTS; ROS tells them by name."""
+    return sorted(axes, key=lambda axis: JOINTS.index(axis.name))
+
+
+def drive_of(configured, joint):
+    """The drive family of a joint, and how it is led along trajectories."""
+    axis = configured[joint]
+    return f"{axis['drive']} by {axis.get('mode', 'cyclic_position')}"
+
+
+class Errors:
+    """What the node calls an error in its log."""
+
+    def __init__(self):
+        self._texts = []
+        rospy.Subscriber("/rosout", Log, self._take)
+
+    def _take(self, message):
+        if message.name == ROBOT and message.level >= Log.ERROR:
+            self._texts.append(message.msg)
+
+    def forget(self):
+        self._texts = []
+
+    def check(self):
+        """Fails with the first one since forget()."""
+        if self._texts:
+            raise Failure(f"{ROBOT} says: {self._texts[0]}")
+
+
 class Latest:
     """The newest message of a topic."""
 
@@ -123,12 +154,12 @@ def wait_for_drives():
         return "Not all drives are there: " + "; ".join(waiting)
 
     wait_until(ready, START_DEADLINE, complaint)
-    say(f"Bus \"{bus.message.interface}\" is {bus.message.state}; these drives answered, were "
-        "identified and configured:")
-    profiles = rospy.get_param(f"{ROBOT}/axes")
-    for node, axis in zip(bus.message.nodes, axes.message.axes):
-        say(f"  {axis.name:9} node {node.node_id}, {profiles[axis.name]['drive']}, "
-            f"{axis.state}, mode {axis.mode or 'not set'}")
+    say("All drives are identified and configured, and left without power:")
+    configured = rospy.get_param(f"{ROBOT}/axes")
+    nodes = {name: node.node_id for node in bus.message.nodes for name in node.axes}
+    for axis in in_order(axes.message.axes):
+        say(f"  {axis.name:9} node {nodes[axis.name]}, {drive_of(configured, axis.name)}, "
+            f"{axis.state}")
 
 
 def ask(name):
@@ -140,10 +171,13 @@ def ask(name):
         raise Failure(f"There is no service {service}.") from error
     began = time.monotonic()
     answer = rospy.ServiceProxy(service, Trigger)()
-    say("  " + re.sub("; (?=[a-z]+: )", "\n  ", answer.message))  # a line for each axis
+    took = time.monotonic() - began
     if not answer.success:
         raise Failure(f"{service} failed: {answer.message}")
-    say(f"  ({time.monotonic() - began:.1f} s)")
+    whole, *axes = re.split("; (?=[a-z]+: )", answer.message)  # a line for each axis
+    say(f"  {whole}, in {took:.1f} s")
+    for axis in axes:
+        say(f"    {axis}")
 
 
 def trajectory(start):
@@ -163,7 +197,7 @@ def trajectory(start):
     return message
 
 
-def follow(recorder):
+def follow(recorder, errors):
     """Sends the trajectory and waits for its end. @return the samples."""
     publisher = rospy.Publisher(f"{ROBOT}/{GROUP}/command", JointTrajectory, queue_size=1)
     wait_until(lambda: publisher.get_num_connections() > 0 and recorder.samples(),
@@ -171,8 +205,13 @@ def follow(recorder):
     goal = POINTS[-1][1]
     recorder.forget()
     wait_until(recorder.samples, START_DEADLINE, "The group publishes no state.")
+    errors.forget()
     publisher.publish(trajectory(recorder.samples()[-1][2]))
-    wait_until(lambda: recorder.arrived(goal), POINTS[-1][0] + 60.0,
+
+    def arrived():
+        errors.check()
+        return recorder.arrived(goal)
+    wait_until(arrived, POINTS[-1][0] + 60.0,
                "The trajectory did not come to its end; the log of the node says why.")
     return recorder.samples()
 
@@ -189,9 +228,9 @@ def judge(samples):
         high = max(actual[i] for _, _, actual in samples)
         allowed = constraints[joint]
         worst.append(path)
-        say(f"  {joint:9} moved between {low:+.3f} and {high:+.3f} rad; off the path by at most "
-            f"{path:.4f} rad ({allowed['trajectory']} allowed), off the goal by {goal:.4f} rad "
-            f"({allowed['goal']} allowed)")
+        say(f"  {joint:9} moved between {low:+.3f} and {high:+.3f} rad, off its path by at most "
+            f"{1e3 * path:.1f} mrad ({1e3 * allowed['trajectory']:.0f} allowed), off its goal by "
+            f"{1e3 * goal:.1f} mrad ({1e3 * allowed['goal']:.0f} allowed)")
         # Written so that a NaN is a complaint.
         if not path <= allowed["trajectory"]:
             complaints.append(f"{joint} left its path by {path:.4f} rad")
@@ -206,17 +245,18 @@ def tell(output):
     say("Waiting for the robot to start ...")
     wait_until(rosgraph.is_master_online, START_DEADLINE, "There is no ROS master.")
     rospy.init_node("demo", disable_signals=True)
-    recorder = Recorder()
+    recorder, errors = Recorder(), Errors()
     wait_for_drives()
     say("Homing, in the order of the configuration:")
     ask("home")
     say("Enabling:")
     ask("enable")
     say(f"Following a trajectory of {POINTS[-1][0]} s through {len(POINTS)} points:")
-    samples = follow(recorder)
+    samples = follow(recorder, errors)
     worst, complaints = judge(samples)
     picture = os.path.join(output, "tracking.png")
-    draw(picture, JOINTS, samples, worst)
+    configured = rospy.get_param(f"{ROBOT}/axes")
+    draw(picture, [(joint, drive_of(configured, joint)) for joint in JOINTS], samples, worst)
     say(f"Drew {picture}")
     say("Disabling:")
     ask("disable")

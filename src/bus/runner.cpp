@@ -136,6 +136,9 @@ void BusRunner::iterate(Time now) {
     network.setWallTime(time_.toClock(now).time_since_epoch() + wallClockDistance(), now);
   }
   if (looked_.exchange(false)) network.cycle().look();
+  // A bus in this process stands where it was looked at last: what is sent now shall not be on it
+  // before.
+  if (options_.time == BusTime::Kind::simulated) interface_->maintain(now);
   loop_.step(now);
   Command command;
   while (mailbox_.pop(command)) network.execute(std::move(command), now);

@@ -152,12 +152,13 @@ TEST(BusLoad, CountsBitsAsTheStandardDoes) {
   EXPECT_DOUBLE_EQ(load.worst, ((65 + 115) * 250 + 650 + 115 * 20) / 5e5);
 }
 
-TEST(BusLoad, FourDemoAxesLeaveRoomAt250Hertz) {
+TEST(BusLoad, FiveDemoAxesLeaveRoomAt100Hertz) {
   Problems problems;
   const YAML::Node tree =
       readRobotFile(cia402::test::configFolder() + "/robots/demo.yaml", problems);
   const RobotConfig robot =
       loadRobot(tree, profilesIn({cia402::test::configFolder() + "/drives"}), problems);
+  EXPECT_EQ(robot.bus.sync_period, Duration(std::chrono::milliseconds(10)));
   EXPECT_LT(busLoad(makeMasterConfig(robot, problems), robot.bus.bitrate).worst, 0.8);
 }
 

@@ -31,9 +31,9 @@ Result<Robot> demo(const Robot::Options& with = options()) {
 TEST(EmbeddedRobot, KnowsItsJointsAndGroupsBeforeItStarts) {
   auto robot = demo();
   ASSERT_TRUE(robot.ok()) << robot.error().message;
-  EXPECT_THAT(robot->joints(), ElementsAre("shoulder", "elbow", "wrist", "gripper"));
+  EXPECT_THAT(robot->joints(), ElementsAre("shoulder", "elbow", "wrist", "tool", "gripper"));
   EXPECT_THAT(robot->groups(), ElementsAre("arm"));
-  EXPECT_THAT(robot->jointsOf("arm"), ElementsAre("shoulder", "elbow", "wrist", "gripper"));
+  EXPECT_THAT(robot->jointsOf("arm"), ElementsAre("shoulder", "elbow", "wrist", "tool", "gripper"));
   EXPECT_THAT(robot->jointsOf("leg"), IsEmpty());
   EXPECT_FALSE(robot->ready());
 }
@@ -61,7 +61,7 @@ TEST(EmbeddedRobot, WhatIsAskedBeforeTheStartIsRefused) {
   EXPECT_FALSE(answer.success);
   EXPECT_EQ(answer.message, "refused: the driver is not running");
   const bus::TrajectoryOutcome outcome =
-      robot.value().follow("arm", robot->jointsOf("arm"), {{{0, 0, 0, 0}, {}, {}, 1s}}).get();
+      robot.value().follow("arm", robot->jointsOf("arm"), {{{0, 0, 0, 0, 0}, {}, {}, 1s}}).get();
   EXPECT_EQ(outcome.end, bus::TrajectoryEnd::refused);
 }
 
@@ -78,7 +78,7 @@ TEST(EmbeddedRobot, EnablesSimulatedDrivesAndShowsThem) {
   const std::vector<JointStatus> joints = robot.state();
   EXPECT_EQ(joints[2].name, "wrist");
   EXPECT_EQ(joints[2].condition, "operation enabled");
-  EXPECT_NEAR(joints[0].position, -1.9, 1e-3) << "simulation: initial_position";
+  EXPECT_NEAR(joints[0].position, -2.2, 1e-3) << "simulation: initial_position";
   EXPECT_FALSE(joints[0].enabled);
   const Answer read = robot.readObject("wrist", "6041:00").get();
   EXPECT_TRUE(read.success) << read.message;

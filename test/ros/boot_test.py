@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-"""The demo robot as launch/demo.launch starts it: boot, and what is published at rest."""
+"""A robot as launch/bus.launch starts it: boot, and what is published at rest."""
 import math
 import time
 
@@ -11,11 +11,11 @@ from std_msgs.msg import Float64
 from tf2_msgs.msg import TFMessage
 
 
-# Where the joints stand at first: `simulation:` of config/robots/demo.yaml, in the order of AXES.
+# Where the joints stand at first: `simulation:` of config/robots/arm.yaml, in the order of AXES.
 PLACES = [0.25, 0.0, -1.9, 0.0]
 
 # What a steady speed takes at the joint, N m: Coulomb friction of the simulated motor in rated
-# torques (config/simulated_drives), rated torque and gear (config/robots/demo.yaml).
+# torques (config/simulated_drives), rated torque and gear (config/robots/arm.yaml).
 FRICTION = {"elbow": 0.05 * 0.64 * 80.0, "gripper": 0.02 * 3.0, "shoulder": 0.05 * 0.64 * 100.0,
             "wrist": 0.05 * 0.32 * 50.0}
 
@@ -75,7 +75,7 @@ class Boot(RobotTest):
             self.assertRegex(told["velocity age"], r"^[0-9.e-]+ s$", told)
 
     def test_joint_states_say_what_the_drives_count(self):
-        """Counts per turn, gear and direction as config/robots/demo.yaml has them."""
+        """Counts per turn, gear and direction as config/robots/arm.yaml has them."""
         for name, counts in (("shoulder", 131072 * 100), ("elbow", -131072 * 80),
                              ("wrist", 65536 * 50)):
             raw = self.robot.call(f"{name}/read_object", object="6064:00").number

@@ -327,7 +327,7 @@ class Robot:
 class RobotTest(unittest.TestCase):
     """Tests with a bus_node on simulated drives of its own, started once for all of them."""
 
-    CONFIG = "config/robots/demo.yaml"
+    CONFIG = "config/robots/arm.yaml"
     AXES = ["elbow", "gripper", "shoulder", "wrist"]  # the parameter server sorts by name
 
     @classmethod

@@ -43,7 +43,7 @@ class WrongConfiguration(unittest.TestCase):
 
     def test_private_parameters_that_nobody_reads_are_refused(self):
         for name in ("diagnostic_period", "realtime_prioritty"):
-            process = Process("bus_node", f"with_{name}", "config/robots/demo.yaml",
+            process = Process("bus_node", f"with_{name}", "config/robots/arm.yaml",
                               interface="sim", **{name: 1})
             self.assertEqual(process.wait(), 1)
             self.assertTrue(any(name in line and "unknown" in line
@@ -53,7 +53,7 @@ class WrongConfiguration(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             with open(os.path.join(folder, "generic_cia402.yaml"), "w", encoding="ascii") as file:
                 file.write("name: generic_cia402\ncolour: red\n")
-            process = Process("bus_node", "own_profile", "config/robots/demo.yaml",
+            process = Process("bus_node", "own_profile", "config/robots/arm.yaml",
                               interface="sim", profile_path=folder)
             self.assertEqual(process.wait(), 1)
             self.assertIn("colour", process.output())
@@ -112,7 +112,7 @@ class MissingInterface(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.robot = Robot("waiting")
-        cls.process = Process("bus_node", "waiting", "config/robots/demo.yaml",
+        cls.process = Process("bus_node", "waiting", "config/robots/arm.yaml",
                               interface="vcan9")
 
     @classmethod

@@ -40,6 +40,7 @@ class SimulatedRunner : public testing::Test {
     auto interface = std::make_unique<sim::SimulatedInterface>(
         loaded.drives, loaded.robot.bus.bitrate, options.clock());
     simulation = interface.get();
+    if (monitor) simulation->world().bus().setMonitor(monitor);
     runner = std::make_unique<bus::BusRunner>(loaded.robot, loaded.master, std::move(interface),
                                               options);
     runner->start();
@@ -92,6 +93,7 @@ class SimulatedRunner : public testing::Test {
 
   int priority = 0;
   std::string folder, faults_at_start;
+  std::function<void(const can::Frame&, Time)> monitor;  ///< of the bus, in its thread
   sim::SimulatedInterface* simulation = nullptr;
   std::unique_ptr<bus::BusRunner> runner;
 };
@@ -116,6 +118,23 @@ TEST_F(SimulatedRunner, EndsOnAClockThatJumps) {
   EXPECT_TRUE(all([](const bus::AxisSnapshot& axis) {
     return axis.state.state != drive::State::operation_enabled;
   }));
+}
+
+/// Drives that watch SYNC see it on the wire when it is sent, not when something was there last.
+TEST_F(SimulatedRunner, SendsSyncAtItsTimeOfTheSimulatedBus) {
+  Time sync = Time::min();
+  std::vector<double>
+      later;  // s, from the end of SYNC to that of the RPDO half a period (2 ms) later
+  monitor = [&](const can::Frame& frame, Time end) {
+    if (frame.id == 0x80) sync = end;
+    if (frame.id == 0x201 && sync > Time::min()) later.push_back(toSeconds(end - sync));
+  };
+  begin();
+  waitCycles(300);
+  runner.reset();
+  EXPECT_GT(later.size(), 200U);
+  // Either waits for the frame that is on its way, the RPDO also for those of the drives.
+  EXPECT_THAT(later, testing::Each(testing::DoubleNear(0.0022, 0.0004)));
 }
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they have heaps of their own

@@ -210,7 +210,7 @@ TEST_F(Commands, QuickStopIsHardAndEndsWithoutPower) {
 }
 
 TEST(Shutdown, InMotionStopsDisablesAndLeavesTheDrivesPreOperational) {
-  Scene scene(loadFile("demo.yaml"));
+  Scene scene(loadFile("arm.yaml"));
   ASSERT_TRUE(scene.boot());
   ASSERT_TRUE(scene.procedure(ProcedureKind::home).success);
   ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
@@ -254,7 +254,7 @@ unsigned framesOf(const std::string& file, Problems& problems) {
 // The node itself is heard on the wire in test/vcan/vcan_test.py.
 TEST(Configuration, WithMistakesIsRefusedWithAllOfThemAtOnceAndSendsNothing) {
   Problems problems;
-  EXPECT_GT(framesOf(cia402::test::configFolder() + "/robots/demo.yaml", problems), 500U);
+  EXPECT_GT(framesOf(cia402::test::configFolder() + "/robots/arm.yaml", problems), 500U);
   EXPECT_EQ(framesOf(cia402::test::testFolder() + "/config/ten_mistakes.yaml", problems), 0U);
   EXPECT_EQ(problems.list().size(), 10u) << problems.text();
 }
@@ -328,7 +328,7 @@ TEST(Configuration, WithOneMistakeSendsNothing) {
         Mistake{{"axes", "elbow", "homing", "method"}, "99"}}) {
     Problems problems;
     YAML::Node tree =
-        config::readRobotFile(cia402::test::configFolder() + "/robots/demo.yaml", problems);
+        config::readRobotFile(cia402::test::configFolder() + "/robots/arm.yaml", problems);
     YAML::Node at = tree;
     for (const std::string& key : mistake.path) at.reset(at[key]);
     at = mistake.value;

@@ -200,7 +200,7 @@ TEST(DamiaoModes, NegativeAndZeroSetPointsNeverBecomeMinusZero) {
 }
 
 TEST(Modes, SetPointsThatAreNoNumbersAreRefusedAndReachNobody) {
-  Scene scene(loadFile("demo.yaml"));
+  Scene scene(loadFile("arm.yaml"));
   ASSERT_TRUE(scene.boot());
   ASSERT_TRUE(scene.procedure(ProcedureKind::home).success);
   ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);

@@ -220,7 +220,7 @@ TEST(Master, WhenItDiesTheDrivesStopByThemselves) {
 }
 
 TEST(Sync, WithACounterUpsetsNoDriveAndCountsPast240) {
-  Scene scene(loadFile("demo.yaml"));
+  Scene scene(loadFile("arm.yaml"));
   unsigned highest = 0, lowest = 999, last = 0;
   bool orderly = true;
   std::vector<std::uint16_t> emergencies;

@@ -1,0 +1,130 @@
+#!/usr/bin/python3
+# Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+"""The demo robot on vcan0: five drive families in a process of their own, bus_node in another. Where a
+motor stands is read from its drive's own TPDO."""
+import math
+import os
+import struct
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "ros"))
+from robot_client import (ERROR, OK, Process, Robot, RobotTest, main, rospy,  # noqa: E402
+                          rosparam, package_file, wait_until)
+from wire import Wire  # noqa: E402
+
+CONFIG = "config/robots/demo.yaml"
+JOINTS = ["shoulder", "elbow", "wrist", "tool", "gripper"]
+NODES = {joint: node for node, joint in enumerate(JOINTS, 1)}
+TURN = 2.0 * math.pi
+# rad of the joint by what its drive counts: counts of a turn, gear and direction of the file.
+RAD = {"shoulder": TURN / (100000 * 100), "elbow": -TURN / (8388608 * 80),
+       "wrist": TURN / (4000 * 50), "tool": TURN / (10000 * 50)}
+PLACES = [{"shoulder": -1.6, "elbow": -0.4, "wrist": 0.8, "tool": 0.5, "gripper": 0.6},
+          {"shoulder": -0.9, "elbow": 0.5, "wrist": -0.4, "tool": -0.3, "gripper": -0.5}]
+
+
+def slowly():
+    """The robot's file with what a machine wants whose timers are late by several ms: periods and
+    time-outs that are long, a drive that minds SYNC by two periods, and a slower position loop."""
+    tree = rosparam.load_file(package_file(CONFIG))[0][0]["axes"]
+    return {"bus/sync_period": 0.02, "bus/heartbeat": 0.5, "axes/gripper/rpdo_timeout": 1.0,
+            "axes/tool/position_loop": {"gain": 5.0},
+            "axes/shoulder/write": tree["shoulder"]["write"] + [{"object": "sync_tolerance", "raw": 4}],
+            "groups/arm/constraints": {"goal_time": 3.0}}
+
+
+class DemoRobot(RobotTest):
+    """One life of a robot, in the order of the names: starting costs seconds here."""
+
+    AXES = sorted(JOINTS)
+
+    @classmethod
+    def setUpClass(cls):
+        cls.wire = Wire()
+        cls.robot = Robot()
+        cls.drives = Process("simulated_drives", "simulated_drives", CONFIG, interface="vcan0",
+                             **slowly())
+        cls.process = Process("bus_node", "robot", CONFIG, interface="vcan0", **slowly())
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.process.stop()
+        cls.drives.stop()
+        cls.wire.close()
+
+    def inject(self, axis, fault):
+        from cia402_driver.srv import InjectFault
+        rospy.wait_for_service("/simulated_drives/inject_fault", 40.0)
+        answer = rospy.ServiceProxy("/simulated_drives/inject_fault", InjectFault)(axis, fault)
+        self.assertTrue(answer.success, answer.message)
+
+    def told(self, joint):
+        """Statusword and position, rad from where its drive counts, of the newest TPDO 1."""
+        data = [data for _, identifier, data in self.wire.since(0.0)
+                if identifier == 0x180 + NODES[joint]][-1]
+        if joint in RAD:
+            statusword, counts = struct.unpack_from("<Hi", data)
+            return statusword, counts * RAD[joint]
+        return struct.unpack_from("<Hf", data)
+
+    def powered(self, joint):
+        return self.told(joint)[0] & 0x6F == 0x27
+
+    def travel_to(self, places):
+        """A trajectory of all joints, until the motors have turned by what they had to. It is sent
+        anew where a late cycle of this machine has ended it."""
+        expected = {joint: self.told(joint)[1] + places[joint] - self.robot.position(joint)
+                    for joint in JOINTS}
+
+        def there():
+            return all(abs(self.robot.position(joint) - places[joint]) < 0.01 for joint in JOINTS)
+
+        def moves():
+            return any(abs(self.robot.axis(joint).velocity) > 0.05 for joint in JOINTS)
+        for _ in range(5):
+            self.succeed("enable")
+            self.robot.follow(JOINTS, [(4.0, [places[joint] for joint in JOINTS])])
+            wait_until(lambda: moves() or there(), "it moves")
+            for joint in JOINTS:
+                self.robot.wait_rest(joint)
+            if there():
+                break
+        for joint in JOINTS:
+            self.assertAlmostEqual(self.told(joint)[1], expected[joint], delta=0.01, msg=joint)
+            self.assertAlmostEqual(self.robot.position(joint), places[joint], delta=0.01, msg=joint)
+
+    def test_1_all_families_boot_and_are_left_without_power(self):
+        self.robot.wait_ready(120.0)
+        self.assertEqual(self.robot.bus_state.interface, "vcan0")
+        for joint in JOINTS:
+            self.assertEqual(self.robot.axis(joint).state, "switch on disabled")
+            self.assertFalse(self.powered(joint), joint)
+
+    def test_2_each_finds_its_home(self):
+        self.robot.wait_ready()
+        self.succeed("home", "home done on 5 of 5 axes")
+        for joint in JOINTS:
+            self.robot.wait_axis(joint, lambda axis: axis.homed, "homed")
+
+    def test_3_all_motors_go_where_one_trajectory_leads_them(self):
+        self.travel_to(PLACES[0])
+        for joint in JOINTS:
+            self.assertTrue(self.powered(joint), joint)
+
+    def test_4_a_fault_is_told_in_words_and_ends_by_clear_faults(self):
+        self.succeed("enable")
+        self.inject("elbow", "overvoltage")
+        self.robot.wait_diagnostic("elbow", ERROR, "elbow (node 2)|0xFF02|over-voltage|clear_faults")
+        for joint in JOINTS:
+            self.robot.wait_rest(joint)
+            self.assertEqual(self.powered(joint), joint != "elbow", joint)
+        self.inject("elbow", "clear")
+        wait_until(lambda: self.robot.call("elbow/clear_faults").success, "cleared")
+        self.assertFalse(self.powered("elbow"))
+        self.succeed("elbow/enable")
+        self.robot.wait_diagnostic("elbow", OK)
+        self.travel_to(PLACES[1])
+
+
+if __name__ == "__main__":
+    main("demo")
