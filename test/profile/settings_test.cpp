@@ -39,7 +39,9 @@ TEST(ProfileSettings, AreAsWritten) {
       " {any_of: [source, gear], above: 3, before: homing, methods: [17], else: warn,\n"
       "  text: a, remedy: b}]\n"
       "counts_rule: {times: [resolution], over: [gear]}\n"
-      "timing: {brake_release: {object: brake, at_most: 0.5}}\n"
+      "timing: {brake_release: {object: brake, at_most: 0.5}, transitions: {5: 3.0},\n"
+      "  power_off: {object: brake, at_most: 30}}\n"
+      "fault_memory: {base: 0xFF00, faults: [{code: told, with: [gear, source]}, {code: gear}]}\n"
       "sync: {period_min: 0.001, period_max: 0.02}",
       problems);
   ASSERT_TRUE(problems.empty()) << problems.text();
@@ -75,6 +77,18 @@ TEST(ProfileSettings, AreAsWritten) {
   EXPECT_EQ(profile.sync_period_max, std::chrono::milliseconds(20));
   EXPECT_EQ(profile.timing.brake_object, "brake");
   EXPECT_EQ(profile.timing.brake_release, std::chrono::milliseconds(500));
+  EXPECT_EQ(profile.timing.power_object, "brake");
+  EXPECT_EQ(profile.timing.power_off, std::chrono::seconds(30));
+  EXPECT_EQ(profile.timing.longest(5), std::chrono::seconds(33));
+  EXPECT_EQ(profile.timing.longest(7), std::chrono::seconds(2)) << "not out of operation";
+  EXPECT_EQ(profile.timing.longest(8), std::chrono::seconds(32));
+  EXPECT_EQ(profile.timing.longest(12), std::chrono::seconds(32));
+  EXPECT_EQ(profile.timing.longest(14), std::chrono::seconds(2));
+  EXPECT_EQ(profile.fault_memory.base, 0xFF00);
+  ASSERT_EQ(profile.fault_memory.faults.size(), 2U);
+  EXPECT_EQ(profile.fault_memory.faults[0].code, "told");
+  EXPECT_THAT(profile.fault_memory.faults[0].with, ElementsAre("gear", "source"));
+  EXPECT_TRUE(profile.fault_memory.faults[1].with.empty());
 }
 
 TEST(ProfileSettings, OfBitsWordsAndTheMakersNamesAreAsWritten) {
@@ -204,6 +218,14 @@ TEST(ProfileSettings, AreRefusedWhereTheyCanMeanNothing) {
       {"timing: {brake_release: {object: brake}}",
        "timing/brake_release: `at_most` is missing: the longest that it may say, s"},
       {"timing: {brake_release: {object: brake, at_most: 60.1}}", "timing/brake_release/at_most"},
+      {"timing: {power_off: {object: gear, at_most: 1}}",
+       "timing/power_off/object: `gear` does not measure a time"},
+      {"fault_memory: {base: 1}", "fault_memory: `faults` is missing"},
+      {"fault_memory: {faults: [{with: [gear]}]}", "fault_memory/faults[0]: `code` is missing"},
+      {"fault_memory: {faults: [{code: label}]}",
+       "fault_memory/faults[0]/code: `label` is no whole number"},
+      {"fault_memory: {faults: [{code: gear, with: [gaer]}]}",
+       "fault_memory/faults[0]/with[0]: the profile has no object `gaer`"},
       {"sync: {period_min: 0.02, period_max: 0.01}", "sync: period_max is below period_min"},
   };
   for (const auto& [text, told] : mistakes) {

@@ -44,5 +44,102 @@ TEST(DriveDm5, IsNotEnabledWhileItsMotorTurnsFasterThan100Rpm) {
   EXPECT_TRUE(b.drive->truth(b.now).power_stage_on);
 }
 
+/// Bits 0 to 6 of the statusword but 4.
+unsigned stateOf(Dm5Bench& b) { return b.status() & 0x6FU; }
+
+// The table of commands [L1709-1718], each word by itself.
+TEST(DriveDm5, GoesUpAndDownAsTheTableOfTransitionsSays) {
+  Dm5Bench b;
+  EXPECT_EQ(stateOf(b), 0x40U);  // 1
+  b.control(0x0006);
+  EXPECT_EQ(stateOf(b), 0x21U);  // 2
+  b.control(0x0007);
+  EXPECT_EQ(stateOf(b), 0x23U);  // 3
+  b.control(0x000F);
+  EXPECT_EQ(stateOf(b), 0x27U);  // 4
+  b.control(0x0007);
+  b.run(ms(2));
+  EXPECT_EQ(stateOf(b), 0x23U);  // 5
+  b.control(0x0006);
+  EXPECT_EQ(stateOf(b), 0x21U);  // 6
+  for (const std::uint16_t word : {std::uint16_t{0x0000}, std::uint16_t{0x0002}}) {
+    b.control(0x0006);
+    b.control(word);
+    EXPECT_EQ(stateOf(b), 0x40U) << word;  // 7
+  }
+  b.enable();
+  b.control(0x0006);
+  b.run(ms(2));
+  EXPECT_EQ(stateOf(b), 0x21U);  // 8
+  b.control(0x000F);
+  EXPECT_EQ(stateOf(b), 0x27U) << "3 and 4 in one word";
+  b.control(0x0000);
+  EXPECT_EQ(stateOf(b), 0x40U);  // 9
+  for (const std::uint16_t word : {std::uint16_t{0x0000}, std::uint16_t{0x0002}}) {
+    b.control(0x0006);
+    b.control(0x0007);
+    b.control(word);
+    EXPECT_EQ(stateOf(b), 0x40U) << word;  // 10
+  }
+  b.write(0x605A, 0, 6, 2);
+  b.enable();
+  b.control(0x0002);
+  EXPECT_EQ(stateOf(b), 0x07U);  // 11
+  b.control(0x000F);
+  EXPECT_EQ(stateOf(b), 0x27U);  // 16
+  b.control(0x0002);
+  b.control(0x0000);
+  EXPECT_EQ(stateOf(b), 0x40U);  // 12
+  ASSERT_TRUE(b.drive->inject("overvoltage", b.now).ok());
+  EXPECT_EQ(stateOf(b) & 0x4FU, 0x08U);  // 13, 14
+  b.run(ms(200));
+  b.control(0x0080);
+  EXPECT_EQ(stateOf(b), 0x40U);  // 15
+}
+
+// Er.066: homing while something else still moves the motor [L3780].
+TEST(DriveDm5, BeginsNoSearchForHomeInMotion) {
+  for (const bool moves : {true, false}) {
+    Dm5Bench b;
+    b.write(0x2003, 1, 36, 2);
+    b.write(0x6098, 0, 17, 1);
+    b.enable();
+    b.run(ms(600));
+    if (moves) b.write(0x60FF, 0, 131072, 4);  // a turn a second
+    b.run(ms(300));
+    b.write(0x6060, 0, 6, 1);
+    b.control(0x001F);
+    b.run(ms(50));
+    EXPECT_EQ(stateOf(b) & 0x4FU, moves ? 0x08U : 0x07U);
+    EXPECT_EQ(b.read(0x603F) & 0xFFFFU, moves ? 0xFF42U : 0U);
+    EXPECT_EQ(b.drive->truth(b.now).power_stage_on, !moves);
+  }
+}
+
+// Er.053: 1.2 times what the motor can turn in a SYNC period, 0.4 turns in 5 ms.
+TEST(DriveDm5, FollowsNoStepThatItsMotorCannot) {
+  Dm5Bench b;
+  b.write(0x6060, 0, 8, 1);
+  b.nmt(0x01);
+  b.enable();
+  double turns = 0.0;
+  const auto goOn = [&](double step) {
+    turns += step;
+    b.write(0x607A, 0, static_cast<std::uint32_t>(turns * 131072.0), 4);
+    b.sync();
+    b.run(ms(4));
+  };
+  for (int i = 0; i < 100; ++i) goOn(0.0);
+  for (int i = 0; i < 20; ++i) goOn(0.01);
+  goOn(0.38);
+  for (int i = 0; i < 50; ++i) goOn(0.0);
+  ASSERT_EQ(stateOf(b), 0x27U) << std::hex << b.read(0x603F);
+  EXPECT_NEAR(b.drive->truth(b.now).position_turns, 0.58, 1e-3);
+  goOn(0.42);
+  EXPECT_EQ(b.read(0x603F) & 0xFFFFU, 0xFF35U);
+  EXPECT_FALSE(b.drive->truth(b.now).power_stage_on);
+  EXPECT_NEAR(b.drive->truth(b.now).position_turns, 0.58, 1e-3);
+}
+
 }  // namespace
 }  // namespace cia402::sim

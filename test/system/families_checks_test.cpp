@@ -129,7 +129,7 @@ TEST(Dm5Homing, IsRefusedWhereTheOffsetMeansSomethingElse) {
   ASSERT_TRUE(scene.boot(20s)) << scene.told();
   const bus::Answer homed = scene.procedure(ProcedureKind::home);
   EXPECT_FALSE(homed.success);
-  EXPECT_THAT(homed.message, HasSubstr("home_offset_mode (200C:0C) is 2 instead of 0"));
+  EXPECT_THAT(homed.message, HasSubstr("home_offset_mode (200C:0C) is 2, which nobody has given"));
   EXPECT_FALSE(scene.state("joint").homed);
 }
 

@@ -70,7 +70,7 @@ TEST_F(FamilyMemory, OfFaultsHoldsSixteenInANimotion) {
 }
 
 TEST_F(FamilyMemory, OfFaultsIsMissedInWords) {
-  Scene scene(loadText(busJoint(kBusDm5)));
+  Scene scene(loadText(busJoint(kBusId286, ", simulation: {with: {without: [0x1003]}}")));
   ASSERT_TRUE(scene.boot(kFamilyBoot)) << scene.told();
   EXPECT_THAT(history(scene).message, HasSubstr("the drive keeps no error history"));
 }

@@ -90,8 +90,8 @@ INSTANTIATE_TEST_SUITE_P(
              {"serial_link_warning", "0xFF0E", "serial link failed (AL.014)", false},
              {"temperature_sensor_warning", "0xFF19", "temperature sensing broken (AL.025)", false},
              {"emergency_stop_warning", "0xFF26", "emergency stop input (AL.038)", true},
-             {"forward_limit_warning", "0xFF27", "forward limit switch (AL.039)", true},
-             {"reverse_limit_warning", "0xFF28", "reverse limit switch (AL.040)", true},
+             {"positive_limit_warning", "0xFF27", "forward limit switch (AL.039)", true},
+             {"negative_limit_warning", "0xFF28", "reverse limit switch (AL.040)", true},
              {"interrupt_feed_warning", "0xFF3E", "interrupt feed (AL.062)", false},
              {"battery_warning", "0xFF4B", "encoder battery low (AL.075)", false}}}),
     [](const auto& tested) { return std::string(tested.param.tested.family); });
@@ -100,9 +100,9 @@ INSTANTIATE_TEST_SUITE_P(
 struct OnSwitch {
   FamilyMode tested;
   const char* name;
-  const char *upper, *lower;   ///< what is told
-  bool faults;                 ///< its power goes
-  const char* with = nullptr;  ///< the simulated drive otherwise
+  const char *upper, *lower;  ///< what is told
+  bool faults;                ///< its power goes
+  const char* more = "";      ///< options of the axis
 };
 void PrintTo(const OnSwitch& tested, std::ostream* out) { *out << tested.name; }
 
@@ -122,12 +122,8 @@ class FamilyLimitSwitch : public testing::TestWithParam<OnSwitch> {
 TEST_P(FamilyLimitSwitch, StopsTheJointIsToldAndIsLeftTheOtherWay) {
   for (const double side : {1.0, -1.0}) {
     FamilyScene scene(familyJoint(
-        GetParam().tested,
-        ", simulation: {upper_limit_switch: 0.5, lower_limit_switch: -0.5" +
-            (GetParam().with != nullptr ? ", with: " + std::string(GetParam().with)
-                                        : std::string()) +
-            "}" +
-            (GetParam().tested.family == std::string(kNimotionStepper) ? kNimotionSwitches : "")));
+        GetParam().tested, ", simulation: {upper_limit_switch: 0.5, lower_limit_switch: -0.5}" +
+                               std::string(GetParam().more)));
     goOn(scene, side);
     EXPECT_THAT(scene.told() + scene.axis("joint").faultText(),
                 HasSubstr(side > 0.0 ? GetParam().upper : GetParam().lower));
@@ -154,29 +150,69 @@ TEST_P(FamilyLimitSwitch, StopsTheJointIsToldAndIsLeftTheOtherWay) {
   }
 }
 
-constexpr char kOvertravelWarns[] =  // P10.04 = 1
-    "{faults: {positive_limit_switch: {code: 0xFF27, warning: true},"
-    " negative_limit_switch: {code: 0xFF28, warning: true}}}";
+// P03.00 and P03.03, and P10.04.
+constexpr char kOvertravelFaults[] =
+    ", write: [{object: di1_function, raw: 36}, {object: overtravel_action, raw: 0}]";
+constexpr char kOvertravelWarns[] =
+    ", write: [{object: di1_function, raw: 36}, {object: overtravel_action, raw: 1}]";
 
 INSTANTIATE_TEST_SUITE_P(
     All, FamilyLimitSwitch,
     testing::Values(
-        OnSwitch{{kNimotionStepper, "4000", "csp"}, "NimotionCsp", "0xFF0F", "0xFF0E", false},
-        OnSwitch{{kNimotionStepper, "4000", "pp"}, "NimotionPp", "0xFF0F", "0xFF0E", false},
-        OnSwitch{{kNimotionStepper, "4000", "pv"}, "NimotionPv", "0xFF0F", "0xFF0E", false},
-        OnSwitch{{kNimotionStepper, "4000", "ip"}, "NimotionIp", "0xFF0F", "0xFF0E", false},
+        OnSwitch{{kNimotionStepper, "4000", "csp"},
+                 "NimotionCsp",
+                 "0xFF0F",
+                 "0xFF0E",
+                 false,
+                 kNimotionSwitches},
+        OnSwitch{{kNimotionStepper, "4000", "pp"},
+                 "NimotionPp",
+                 "0xFF0F",
+                 "0xFF0E",
+                 false,
+                 kNimotionSwitches},
+        OnSwitch{{kNimotionStepper, "4000", "pv"},
+                 "NimotionPv",
+                 "0xFF0F",
+                 "0xFF0E",
+                 false,
+                 kNimotionSwitches},
+        OnSwitch{{kNimotionStepper, "4000", "ip"},
+                 "NimotionIp",
+                 "0xFF0F",
+                 "0xFF0E",
+                 false,
+                 kNimotionSwitches},
         OnSwitch{{kId286Cnfa, "10000", "pp"}, "Id286Pp", "0x0800", "0x1000", false},
         OnSwitch{{kId286Cnfa, "10000", "pv"}, "Id286Pv", "0x0800", "0x1000", false},
-        OnSwitch{{kMegmeetDm5, "8388608", "pv"}, "Dm5Pv", "0xFF27", "0xFF28", true},
-        OnSwitch{{kMegmeetDm5, "8388608", "pp"}, "Dm5Pp", "0xFF27", "0xFF28", true},
-        OnSwitch{{kMegmeetDm5, "8388608", "csp"},
-                 "Dm5CspWarns",
+        OnSwitch{
+            {kMegmeetDm5, "8388608", "pp"}, "Dm5Pp", "0xFF27", "0xFF28", true, kOvertravelFaults},
+        OnSwitch{
+            {kMegmeetDm5, "8388608", "pv"}, "Dm5Pv", "0xFF27", "0xFF28", true, kOvertravelFaults},
+        OnSwitch{
+            {kMegmeetDm5, "8388608", "csp"}, "Dm5Csp", "0xFF27", "0xFF28", true, kOvertravelFaults},
+        OnSwitch{
+            {kMegmeetDm5, "8388608", "csv"}, "Dm5Csv", "0xFF27", "0xFF28", true, kOvertravelFaults},
+        OnSwitch{{kMegmeetDm5, "8388608", "pp"},
+                 "Dm5PpWarns",
                  "0xFF27",
                  "0xFF28",
                  false,
                  kOvertravelWarns},
         OnSwitch{{kMegmeetDm5, "8388608", "pv"},
                  "Dm5PvWarns",
+                 "0xFF27",
+                 "0xFF28",
+                 false,
+                 kOvertravelWarns},
+        OnSwitch{{kMegmeetDm5, "8388608", "csp"},
+                 "Dm5CspWarns",
+                 "0xFF27",
+                 "0xFF28",
+                 false,
+                 kOvertravelWarns},
+        OnSwitch{{kMegmeetDm5, "8388608", "csv"},
+                 "Dm5CsvWarns",
                  "0xFF27",
                  "0xFF28",
                  false,

@@ -52,7 +52,7 @@ bool AlarmReader::take() {
         select(0, Stage::closing);
         return false;
       }
-      history_.entries.push_back({static_cast<std::uint16_t>(raw), 0, {}});
+      history_.entries.push_back({static_cast<std::uint16_t>(raw), 0, {}, {}});
       history_.recorded = number_ + 1;
       if (memory.time.empty()) return next();
       read(memory.time, Stage::time);

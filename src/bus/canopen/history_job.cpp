@@ -31,6 +31,7 @@ void ErrorHistoryCommand::begin(AxisCycle& cycle, const Reply<HistoryAnswer>& re
 HistoryJob::HistoryJob(drive::Axis& axis, unsigned most, Done done)
     : Job(Turn::history, Ends::with_motion), axis_(&axis), reader_(most), done_(std::move(done)) {
   if (axis.config().profile->alarm_memory.entries > 0) alarms_.emplace(axis, most);
+  if (!axis.config().profile->fault_memory.faults.empty()) faults_.emplace(axis, most);
 }
 
 bool HistoryJob::step(Time) {
@@ -39,13 +40,20 @@ bool HistoryJob::step(Time) {
     done_(alarms_->history());
     return true;
   }
+  if (faults_) {
+    if (!faults_->step()) return false;
+    done_(faults_->history());
+    return true;
+  }
   if (!reader_.step(axis_->device().objects())) return false;
   done_(reader_.history());
   return true;
 }
 
 void HistoryJob::abandon(const std::string& why) {
-  canopen::ErrorHistory history = alarms_ ? alarms_->history() : reader_.history();
+  canopen::ErrorHistory history = alarms_   ? alarms_->history()
+                                  : faults_ ? faults_->history()
+                                            : reader_.history();
   history.remark = why;
   done_(history);
 }
@@ -62,6 +70,10 @@ std::string historyName(const drive::DriveProfile& profile, std::uint16_t code) 
 
 std::string historyTitle(const drive::DriveProfile& profile) {
   const drive::AlarmMemory& memory = profile.alarm_memory;
+  if (!profile.fault_memory.faults.empty()) {
+    const std::string& newest = profile.fault_memory.faults.front().code;
+    return "past faults (" + newest + " (" + fieldbus::toString(profile.find(newest)->id) + "))";
+  }
   if (memory.entries == 0) return "error history (1003h)";
   return "alarms (" + memory.code + " (" + fieldbus::toString(profile.find(memory.code)->id) + "))";
 }
@@ -77,6 +89,7 @@ std::string historyText(const drive::DriveProfile& profile, const canopen::Error
     append(text, historyName(profile, entry.code), ", ");
     if (entry.info != 0) text += " (info " + hexText(entry.info, 4) + ")";
     if (entry.time) text += " at " + numberText(*entry.time) + " s";
+    if (!entry.with.empty()) text += " (" + entry.with + ")";
   }
   if (history.readable && history.recorded == 0) text = "empty";
   const std::size_t more = history.recorded - history.entries.size();

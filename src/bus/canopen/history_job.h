@@ -6,6 +6,7 @@
 #include <string>
 
 #include "bus/canopen/alarm_reader.h"
+#include "bus/canopen/fault_objects_reader.h"
 #include "bus/jobs/job.h"
 #include "canopen/emcy/error_history.h"
 #include "drive/axis/axis.h"
@@ -27,7 +28,8 @@ class HistoryJob final : public Job {
  private:
   drive::Axis* axis_;
   canopen::ErrorHistoryReader reader_;
-  std::optional<AlarmReader> alarms_;  ///< instead
+  std::optional<AlarmReader> alarms_;         ///< instead
+  std::optional<FaultObjectsReader> faults_;  ///< likewise
   Done done_;
 };
 

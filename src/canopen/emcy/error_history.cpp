@@ -86,7 +86,7 @@ bool ErrorHistoryReader::takeEntry(fieldbus::ObjectAccess& objects) {
   }
   const auto raw = static_cast<std::uint32_t>(toUnsigned(data));
   history_.entries.push_back(
-      {static_cast<std::uint16_t>(raw & 0xFFFF), static_cast<std::uint16_t>(raw >> 16), {}});
+      {static_cast<std::uint16_t>(raw & 0xFFFF), static_cast<std::uint16_t>(raw >> 16), {}, {}});
   if (sub_index_ == std::min(history_.recorded, most_)) return true;
   ask(objects, sub_index_ + 1);
   return false;

@@ -16,6 +16,7 @@ struct ErrorHistoryEntry {
   std::uint16_t code = 0;      ///< low word: emergency error code
   std::uint16_t info = 0;      ///< high word: additional information of the manufacturer
   std::optional<double> time;  ///< s since power-on, where the drive tells it
+  std::string with;            ///< what the drive has kept with it, in words
 };
 
 /// What a drive remembers of its errors.

@@ -99,6 +99,26 @@ void readAlarmMemory(const yaml::Value& value, DriveProfile& profile) {
   section.finish();
 }
 
+void readFaultMemory(const yaml::Value& value, DriveProfile& profile) {
+  drive::FaultObjects& memory = profile.fault_memory;
+  yaml::Section section(value);
+  int base = 0;
+  section.readInteger("base", base, 0, 0xFFFF);
+  memory.base = static_cast<std::uint16_t>(base);
+  const auto faults = section.require("faults", "the objects of each, the newest first");
+  for (const yaml::Value& item : faults ? faults->list() : std::vector<yaml::Value>()) {
+    yaml::Section of_fault(item);
+    drive::FaultObject fault;
+    const auto code = of_fault.require("code", "the object that holds its code");
+    const ObjectSpec* object = code ? readSetting(*code, profile) : nullptr;
+    if (object != nullptr) fault.code = object->name;
+    if (const auto with = of_fault.get("with")) fault.with = readSettings(*with, profile);
+    of_fault.finish();
+    if (object != nullptr) memory.faults.push_back(fault);
+  }
+  section.finish();
+}
+
 void readWarnings(const yaml::Value& value, DriveProfile& profile) {
   if (!profile.has_warning_bit) {
     value.problem("the drive has no warning bit (`statusword: {7: none}`)");

@@ -26,12 +26,20 @@ void readTransitions(const yaml::Value& value, yaml::Range range, DriveProfile& 
   section.finish();
 }
 
+/// Where the maker keeps past errors.
+void readMemories(yaml::Section& section, DriveProfile& profile) {
+  if (const auto memory = section.get("alarm_memory")) readAlarmMemory(*memory, profile);
+  if (const auto memory = section.get("fault_memory")) readFaultMemory(*memory, profile);
+}
+
 void readTiming(yaml::Section& section, DriveProfile& profile) {
   const yaml::Range deadline{0.001, 600.0, false};
   readDuration(section, "state_change", deadline, profile.timing.state_change);
   if (const auto value = section.get("transitions")) readTransitions(*value, deadline, profile);
   readDuration(section, "mode_change", deadline, profile.timing.mode_change);
-  readBrakeRelease(section, profile);
+  drive::DriveProfile::Timing& timing = profile.timing;
+  readToldTime(section, profile, {"brake_release", timing.brake_release, timing.brake_object});
+  readToldTime(section, profile, {"power_off", timing.power_off, timing.power_object});
 }
 
 void readParameters(yaml::Section& profile_section, DriveProfile& profile) {
@@ -298,7 +306,7 @@ void readDrive(yaml::Section& section, yaml::Section& timing, DriveProfile& prof
   section.readInteger("error_bits", profile.error_bits, 0, 0xFFFF);
   if (const auto warnings = section.get("warnings")) readWarnings(*warnings, profile);
   if (const auto details = section.get("error_details")) readErrorDetails(*details, profile);
-  if (const auto memory = section.get("alarm_memory")) readAlarmMemory(*memory, profile);
+  readMemories(section, profile);
 }
 
 DriveFamily readFamily(const yaml::Value& root) {

@@ -52,6 +52,8 @@ void readErrorDetails(const yaml::Value& value, DriveProfile& profile);
 void readAlarmMemory(const yaml::Value& value, DriveProfile& profile);
 /// `bus_settings`. @pre objects were read
 void readBusSettings(const yaml::Value& value, DriveProfile& profile);
+/// `fault_memory`. @pre objects were read
+void readFaultMemory(const yaml::Value& value, DriveProfile& profile);
 /// `parameter_names`
 void readParameterNames(const yaml::Value& value, DriveProfile& profile);
 /// `checks`: what the drive must be set to, or say. @pre objects, modes and homing were read
@@ -65,8 +67,14 @@ const ObjectSpec* readSetting(const yaml::Value& value, const DriveProfile& prof
 std::vector<std::string> readSettings(const yaml::Value& list, const DriveProfile& profile);
 /// `counts_rule`. @pre objects were read
 void readCountsRule(const yaml::Value& value, DriveProfile& profile);
-/// `brake_release` of `timing`: a number, or an object that holds it. @pre objects were read
-void readBrakeRelease(yaml::Section& timing, DriveProfile& profile);
+/// A key of `timing`: a number, or an object that holds it, and the most that it may say.
+struct ToldTime {
+  const char* key;
+  Duration& time;
+  std::string& object;
+};
+/// @pre objects were read
+void readToldTime(yaml::Section& timing, const DriveProfile& profile, const ToldTime& told);
 
 /// `{object: NAME, bit: N}` of a whole number that can be read and written. @pre objects were read
 std::optional<drive::ObjectBit> readOutputBit(const yaml::Value& value,

@@ -125,22 +125,20 @@ void readBusSettings(const yaml::Value& value, DriveProfile& profile) {
   section.finish();
 }
 
-void readBrakeRelease(yaml::Section& timing, DriveProfile& profile) {
+void readToldTime(yaml::Section& timing, const DriveProfile& profile, const ToldTime& told) {
   const yaml::Range range{0.0, 60.0, false};
-  const auto value = timing.get("brake_release");
-  if (!value || !value->isMap()) {
-    return readDuration(timing, "brake_release", range, profile.timing.brake_release);
-  }
+  const auto value = timing.get(told.key);
+  if (!value || !value->isMap()) return readDuration(timing, told.key, range, told.time);
   yaml::Section section(*value);
   const auto name = section.require("object", "what holds the time that the brake needs");
   const ObjectSpec* object = name ? readSetting(*name, profile) : nullptr;
   if (object != nullptr && object->quantity != Quantity::time) {
     name->problem("`" + object->name + "` does not measure a time; see its `quantity`");
   } else if (object != nullptr) {
-    profile.timing.brake_object = object->name;
+    told.object = object->name;
   }
   section.require("at_most", "the longest that it may say, s");
-  readDuration(section, "at_most", range, profile.timing.brake_release);
+  readDuration(section, "at_most", range, told.time);
   section.finish();
 }
 

@@ -4,7 +4,10 @@
 namespace cia402::drive {
 
 Control::Control(AxisBasis& axis, const Feedback& feedback)
-    : axis_(axis), feedback_(feedback), brake_release_(axis.profile().timing.brake_release) {}
+    : axis_(axis),
+      feedback_(feedback),
+      brake_release_(axis.profile().timing.brake_release),
+      power_off_(axis.profile().timing.power_off) {}
 
 void Control::aim(Goal goal) {
   silent_ = voltage_off_ = false;

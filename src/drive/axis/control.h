@@ -45,6 +45,9 @@ class Control {
   /// The time that the brake needs, from the next enabling on, s >= 0.
   void setBrakeRelease(Duration time) { brake_release_ = time; }
   Duration brakeRelease() const { return brake_release_; }
+  /// How long the power may stay when operation ends, s >= 0: a brake closes first.
+  void setPowerOffTime(Duration time) { power_off_ = time; }
+  Duration powerOffTime() const { return power_off_; }
   /// When the brake will have had its time; kNever out of operation.
   Time brakeReleasedAt() const { return brake_released_; }
   /// Once, when the brake has had its time: commands count from then on. @return true then
@@ -94,7 +97,7 @@ class Control {
   bool in_operation_ = false;
   bool brake_waits_ = false;  ///< in operation, until releaseBrake()
   bool fault_reset_ = false, homing_start_ = false, halt_ = false, braking_ = false;
-  Duration brake_release_;
+  Duration brake_release_, power_off_;
   Time brake_released_ = kNever;
   Command command_ = nextCommand(State::unknown, Goal::disabled);  ///< of these two:
   State commanded_in_ = State::unknown;

@@ -27,9 +27,9 @@ class Disable : public Procedure {
       if (axis.feedback().mayMove()) return awaitRest(context);
       return finish(axis, faulted);
     }
-    const DriveProfile::Timing& timing = axis.profile().timing;
-    if (context.now - since_ <= timing.transition(5) + timing.transition(10))
+    if (context.now - since_ <= transitionTime(axis, 5) + transitionTime(axis, 10)) {
       return Outcome::running();
+    }
     return Outcome::failed(axis.who() + ": disabling timed out after " +
                            seconds(context.now - since_) + "; " + report(axis));
   }

@@ -18,6 +18,17 @@ constexpr double kBrakesAfter = 0.1;  // s
 /// After the edge the drive gets this long to drop an old result, or to stay "interrupted".
 constexpr Duration kReaction{std::chrono::milliseconds(500)};
 
+/// The axis has written itself what the drive is to make of home and of its offset.
+bool meansItsOwn(const AxisCore& axis) {
+  const DriveProfile& profile = axis.profile();
+  const auto& writes = axis.config().writes;
+  return std::any_of(writes.begin(), writes.end(), [&](const NamedWrite& write) {
+    const ObjectSpec* object = findObject(profile, write.object);
+    return object != nullptr && !(object->id == profile.own({0x607C, 0})) &&
+           profile.coordinateMark(object->id) == CoordinateMark::home;
+  });
+}
+
 }  // namespace
 
 DriveHoming::DriveHoming(AxisCore& axis, const ModeChannel& homing, const HomingMethod& method)
@@ -246,7 +257,7 @@ std::string DriveHoming::offsetProblem(const AxisCore& axis) const {
   const ObjectSpec* object = axis.profile().find(axis.profile().own({0x607C, 0}));
   const bool written = offsetIsWritten(axis) && !writes_.leftOut("homing.offset");
   const bool known = options.acceleration > 0.0 && options.search_velocity > 0.0;
-  if (!written || object == nullptr || (method_.moves && !known)) return {};
+  if (!written || object == nullptr || (method_.moves && !known) || meansItsOwn(axis)) return {};
   const Conversion& position = axis.objects().signals[SignalId::position].conversion;
   std::uint64_t raw = 0;
   if (!position.toDevice(options.atHome(), raw)) return {};

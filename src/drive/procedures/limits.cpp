@@ -52,8 +52,8 @@ struct Steps {
   }
   /// From switch on disabled three transitions, and one more out of quick stop active.
   Duration climb() const {
-    return (timing.transition(16) + timing.transition(12)) / 2 + timing.transition(2) +
-           timing.transition(3) + timing.transition(4);
+    return (timing.transition(16) + timing.transition(12)) / 2 + timing.power_off +
+           timing.transition(2) + timing.transition(3) + timing.transition(4);
   }
   Duration enable() const {
     return timing.state_change + settings() + kComeToRest + writes(profile.before_enable) +
@@ -61,8 +61,9 @@ struct Steps {
   }
   Duration settings() const {  // SettingsStep
     const CountsRule& counts = profile.counts_rule;
-    std::size_t transfers =
-        counts.times.size() + counts.over.size() + (timing.brake_object.empty() ? 0 : 1);
+    std::size_t transfers = counts.times.size() + counts.over.size() +
+                            (timing.brake_object.empty() ? 0 : 1) +
+                            (timing.power_object.empty() ? 0 : 1);
     if (counts.adjustable) transfers += 4;  // two are written, and read again
     transfers += profile.rated_torque.empty() ? 0 : 1;
     transfers += profile.not_ready_reason.empty() ? 0 : 1;
@@ -109,6 +110,11 @@ Duration stopTime(const AxisConfig& config, double velocity) {
   return std::max(config.profile->timing.state_change, fromSeconds(2.0 * ramp) + kStopMargin);
 }
 
+Duration transitionTime(const AxisCore& axis, int number) {
+  const Duration more = endsOperation(number) ? axis.control().powerOffTime() : Duration(0);
+  return axis.profile().timing.transition(number) + more;
+}
+
 Duration timeLimit(ProcedureKind kind, const AxisConfig& config,
                    const fieldbus::DeviceTimes& device, double velocity) {
   const Steps steps{config, device};
@@ -119,8 +125,7 @@ Duration timeLimit(ProcedureKind kind, const AxisConfig& config,
     case ProcedureKind::enable:
       return kMargin + std::max(steps.change(), steps.enable());
     case ProcedureKind::disable:
-      return kMargin + stop + steps.timing.transition(5) + steps.timing.transition(10) +
-             kComeToRest;
+      return kMargin + stop + steps.timing.longest(5) + steps.timing.longest(10) + kComeToRest;
     case ProcedureKind::home:
       return kMargin + steps.home();
     case ProcedureKind::clear_faults:
@@ -128,7 +133,7 @@ Duration timeLimit(ProcedureKind kind, const AxisConfig& config,
     case ProcedureKind::recover:
       return kMargin + 2 * change + steps.boot() + steps.reset() + steps.enable();
     case ProcedureKind::quick_stop:
-      return kMargin + stop + std::max(steps.timing.transition(12), steps.transfer());
+      return kMargin + stop + std::max(steps.timing.longest(12), steps.transfer());
     case ProcedureKind::halt:
       return kMargin + stop;
     case ProcedureKind::set_mode:

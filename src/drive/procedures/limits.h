@@ -5,6 +5,8 @@
 
 namespace cia402::drive {
 
+class AxisCore;
+
 /// A device that boots gets so many times its boot time: it tries again.
 inline constexpr int kBootTimes = 3;
 
@@ -15,6 +17,9 @@ inline constexpr Duration kComeToRest{std::chrono::seconds(10)};
 /// The longest that a stop may take, from the limit or from `velocity`, whichever is faster.
 /// @param velocity measured, rad/s or m/s; not finite: unknown
 Duration stopTime(const AxisConfig& config, double velocity);
+
+/// How long a transition of CiA 402-2 may take of this axis, by what its drive has told of it.
+Duration transitionTime(const AxisCore& axis, int number);
 
 /// The longest that a procedure may take: what its steps may take, each once. A drive that goes to
 /// and fro between states begins the wait of a step again and again, so the whole has a limit.

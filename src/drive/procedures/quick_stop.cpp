@@ -58,7 +58,8 @@ class QuickStop : public Procedure {
                            ": stopped, holds its position in quick stop active; enable to " +
                            "go on or disable");
     }
-    if (context.now - since_ <= axis.profile().timing.transition(12) / 2) return Outcome::running();
+    const Duration patience = axis.profile().timing.transition(12) / 2;
+    if (context.now - since_ <= patience + axis.control().powerOffTime()) return Outcome::running();
     axis.setGoal(Goal::disabled);  // transition 12 by hand: the drive did not take it by itself
     return Outcome::remarked(joint + ": stopped; the drive stayed in quick stop active, so " +
                              "disable voltage is commanded");

@@ -47,6 +47,18 @@ struct AlarmMemory {
   unsigned entries = 0;      ///< 0: there is no such memory
 };
 
+/// A past fault in objects of its own, by their names.
+struct FaultObject {
+  std::string code;               ///< a whole number; 0: none was
+  std::vector<std::string> with;  ///< what was so when it came
+};
+
+/// Where the maker keeps the past faults each in objects of its own, instead of 1003h.
+struct FaultObjects {
+  std::uint16_t base = 0;           ///< bits that make a code of `errors` of such a number
+  std::vector<FaultObject> faults;  ///< the newest first; empty: there is no such memory
+};
+
 /// A known code that comes without a fault (statusword bit 7).
 struct WarningText {
   enum class Reaction : std::uint8_t {

@@ -69,11 +69,6 @@ bool movesByStandard(int method) {
          kOnPresentPosition.end();
 }
 
-Duration DriveProfile::Timing::transition(int number) const {
-  const auto own = transitions.find(number);
-  return own != transitions.end() ? own->second : state_change;
-}
-
 CoordinateMark DriveProfile::coordinateMark(ObjectId id) const {
   const CoordinateMark* mark = coordinates.find(id);
   return mark != nullptr ? *mark : standardMark(id);

@@ -22,6 +22,7 @@
 #include "drive/profile/position_loop.h"
 #include "drive/profile/setting_check.h"
 #include "drive/profile/supervision.h"
+#include "drive/profile/timing.h"
 #include "fieldbus/float_codec.h"
 #include "fieldbus/object.h"
 
@@ -295,19 +296,8 @@ struct DriveProfile {
   std::map<std::string, DigitalOutput> outputs;  ///< by what people call them
   std::map<std::string, DigitalInput> inputs;
   std::optional<TouchProbes> touch_probes;  ///< nothing: the family has none
-  struct Timing {
-    Duration state_change{std::chrono::seconds(2)};  ///< what is not named in `transitions`
-    std::map<int, Duration> transitions;             ///< by their number in CiA 402-2, 2 to 16
-    /// For a transition to be shown by the statusword. @param number -1: of whatever comes next
-    Duration transition(int number) const;
-    /// From operation enabled to switch on disabled (transitions 5 and 10), if that is one step.
-    Duration disabling() const { return std::max(transition(5), transition(10)); }
-    Duration mode_change{std::chrono::seconds(1)};
-    /// Operation enabled until set-points are followed: 0 to 60 s. With `brake_object` the longest
-    /// that this object may say, and what counts where it cannot be read.
-    Duration brake_release{0};
-    std::string brake_object;  ///< holds that time; by its name in the profile, quantity time
-  } timing;
+  using Timing = DriveTiming;
+  Timing timing;
   /// Which sub-indices of 1010h and 1011h save and restore parameters: 1 all, 2 communication, 3
   /// application, 4.. the maker's.
   struct Parameters {
@@ -320,6 +310,7 @@ struct DriveProfile {
   std::map<std::uint16_t, WarningText> warnings;  ///< where they are no errors, or other ones
   ErrorDetails error_details;
   AlarmMemory alarm_memory;
+  FaultObjects fault_memory;
   ParameterNames parameter_names;
   BusSettings bus_settings;
   std::string eds;  ///< file whose objects were added, for messages; empty: none

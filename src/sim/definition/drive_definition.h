@@ -119,9 +119,10 @@ struct FaultDefinition {
   std::uint16_t code = 0;           ///< 603Fh and EMCY
   std::uint8_t error_register = 1;  ///< 1001h
   std::array<std::uint8_t, 5> vendor{};
-  bool resettable = true;        ///< false: only a power cycle helps
-  bool warning = false;          ///< statusword bit 7 instead of a fault
-  bool holds = false;            ///< a warning: the motor is halted until it is over
+  bool resettable = true;                      ///< false: only a power cycle helps, ...
+  std::optional<fieldbus::ObjectId> reset_by;  ///< ... or a reset while this object is not 0
+  bool warning = false;                        ///< statusword bit 7 instead of a fault
+  bool holds = false;                          ///< a warning: the motor is halted until it is over
   Duration persists{0};          ///< the cause stays so long; a reset before is refused
   bool ends_by_itself = false;   ///< the drive resets it as soon as its cause is gone
   std::optional<Ramp> reaction;  ///< instead of 605Eh, e.g. coast where the stage is broken
@@ -132,6 +133,12 @@ struct FaultDefinition {
   std::optional<fieldbus::ObjectId> word;
   bool tells = true;    ///< false: nothing happens but that the drive may remember it
   bool records = true;  ///< in 1003h
+};
+
+/// Where one of the past faults stands: the low byte of its code, and what was so when it came.
+struct FaultRecordObjects {
+  fieldbus::ObjectId code;
+  std::map<fieldbus::ObjectId, fieldbus::ObjectId> copies;  ///< from the first into the second
 };
 
 /// What keeps the drive from being switched on, or lets the power go where it is, without a fault:
@@ -220,6 +227,9 @@ struct DriveDefinition {
   double enables_below = 0.0;  ///< turns/s; faster it raises `turning_at_enable`. 0: always
   bool following_error_is_fault = true;
   bool limit_switch_is_fault = false;
+  /// A cyclic position further from the one before than so many times what the motor can turn
+  /// meanwhile is the fault `position_step`; 0: none is.
+  double position_step = 0.0;
   ConnectionLoss master_lost = ConnectionLoss::fault;  ///< where 6007h does not exist
   bool stops_outside_operational = true;
   bool traps_non_finite = false;  ///< NaN and infinity in a float object: fault "not_a_number"
@@ -230,6 +240,8 @@ struct DriveDefinition {
   std::int64_t commanded_output = 0;
 
   std::vector<FaultDefinition> faults;
+  std::vector<FaultRecordObjects>
+      fault_records;  ///< what the maker keeps of them, the newest first
   std::vector<ObstacleDefinition> obstacles;
 
   /// 1 to 8. All else here says what every axis is, by the objects of axis 0.

@@ -11,6 +11,14 @@ namespace {
 
 constexpr double kForeverS = 1e6;
 
+std::optional<fieldbus::ObjectId> readObject(DefinitionReader& reader, const std::string& key) {
+  std::string text;
+  reader.read(key, text);
+  const auto object = fieldbus::parseObjectId(text);
+  if (!object) reader.problem(key, "must be an object like \"200E:01\"");
+  return object;
+}
+
 }  // namespace
 
 void readFault(const std::string& name, const yaml::Value& from, DriveDefinition& out) {
@@ -35,13 +43,12 @@ void readFault(const std::string& name, const yaml::Value& from, DriveDefinition
     }
   }
   reader.read("details", fault.details, 0, 0xFFFFFFFF);
-  if (reader.has("word")) {
-    std::string text;
-    reader.read("word", text);
-    fault.word = fieldbus::parseObjectId(text);
-    if (!fault.word) reader.problem("word", "must be an object like \"200E:01\"");
-  }
+  if (reader.has("word")) fault.word = readObject(reader, "word");
   reader.read("resettable", fault.resettable);
+  if (reader.has("reset_by")) {
+    fault.reset_by = readObject(reader, "reset_by");
+    fault.resettable = false;
+  }
   reader.read("warning", fault.warning);
   reader.read("holds", fault.holds);
   if (fault.holds && !fault.warning) reader.problem("holds", "is for warnings");
@@ -58,6 +65,20 @@ void readFault(const std::string& name, const yaml::Value& from, DriveDefinition
   const auto known = std::find_if(out.faults.begin(), out.faults.end(),
                                   [&](const auto& other) { return other.name == name; });
   known == out.faults.end() ? out.faults.push_back(fault) : void(*known = fault);
+}
+
+void readFaultRecord(const yaml::Value& from, DriveDefinition& out) {
+  DefinitionReader reader(from);
+  FaultRecordObjects record;
+  record.code = readObject(reader, "code").value_or(record.code);
+  reader.each("copies", [&](const std::string& text, const yaml::Value& value) {
+    const auto source = fieldbus::parseObjectId(text);
+    const auto place = value.text();
+    const auto target = place ? fieldbus::parseObjectId(*place) : std::nullopt;
+    if (!source || !target) return value.problem("must be objects like \"6064:00\": \"200A:1E\"");
+    record.copies[*source] = *target;
+  });
+  out.fault_records.push_back(record);
 }
 
 void readObstacle(const std::string& name, const yaml::Value& from, DriveDefinition& out) {

@@ -9,6 +9,9 @@ namespace cia402::sim {
 /// One of the `faults:`. Replaces a fault of that name.
 void readFault(const std::string& name, const yaml::Value& from, DriveDefinition& out);
 
+/// One of the `fault_records:`.
+void readFaultRecord(const yaml::Value& from, DriveDefinition& out);
+
 /// One of the `obstacles:`.
 void readObstacle(const std::string& name, const yaml::Value& from, DriveDefinition& out);
 

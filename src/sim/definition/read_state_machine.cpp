@@ -93,6 +93,7 @@ void readStateMachine(DefinitionReader& reader, DriveDefinition& out) {
   reader.read("enables_below", out.enables_below, 0.0, 1e3);
   reader.read("following_error_is_fault", out.following_error_is_fault);
   reader.read("limit_switch_is_fault", out.limit_switch_is_fault);
+  reader.read("position_step", out.position_step, 0.0, 1e6);
   reader.read("master_lost", out.master_lost, kConnectionLoss);
   reader.read("stops_outside_operational", out.stops_outside_operational);
   reader.read("interpolates_over_sync_period", out.follows_sync_period);

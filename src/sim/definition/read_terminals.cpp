@@ -25,13 +25,17 @@ std::optional<fieldbus::ObjectId> terminalObjectOf(const yaml::Value& value) {
   return object;
 }
 
-void readInputPairs(DefinitionReader& reader, const char* key,
+void readInputPairs(DefinitionReader& reader, const char* key, bool with_logic,
                     std::vector<TerminalsDefinition::Input>& out) {
   if (reader.has(key)) out.clear();
   reader.list(key, [&](const yaml::Value& item) {
     const std::vector<yaml::Value> pair = item.list();
-    if (pair.size() != 2) return item.problem("must be the objects of function and logic");
-    const auto function = terminalObjectOf(pair[0]), logic = terminalObjectOf(pair[1]);
+    if (pair.size() != (with_logic ? 2 : 1)) {
+      return item.problem(with_logic
+                              ? "must be the objects of function and logic"
+                              : "must be the object of the function, as there is `inversion`");
+    }
+    const auto function = terminalObjectOf(pair[0]), logic = terminalObjectOf(pair.back());
     if (function && logic) out.push_back({*function, *logic});
   });
 }
@@ -48,11 +52,19 @@ void readTerminalObject(DefinitionReader& reader, const char* key,
 }  // namespace
 
 void readTerminals(DefinitionReader& reader, TerminalsDefinition& out) {
-  readInputPairs(reader, "inputs", out.with_terminal);
-  readInputPairs(reader, "virtual", out.without);
+  readTerminalObject(reader, "inversion", out.inversion);
+  readInputPairs(reader, "inputs", !out.inversion, out.with_terminal);
+  readInputPairs(reader, "virtual", true, out.without);
   readTerminalObject(reader, "virtual_levels", out.levels);
   readTerminalObject(reader, "virtual_enabled", out.enabled);
   readTerminalObject(reader, "virtual_seen", out.seen);
+  std::int64_t first = out.first_bit;
+  reader.read("first_bit", first, 0, 31);
+  out.first_bit = static_cast<unsigned>(first);
+  if (reader.has("normally_closed")) out.normally_closed = 0;
+  reader.list("normally_closed", [&](const yaml::Value& item) {
+    out.normally_closed |= 1U << item.integer(0, 31).value_or(0);
+  });
   reader.section("functions", [&](DefinitionReader& functions) {
     for (const auto& [word, function] : kInputFunctions) {
       std::int64_t number = 0;

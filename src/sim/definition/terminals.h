@@ -29,6 +29,11 @@ struct TerminalsDefinition {
     fieldbus::ObjectId function, logic;
   };
   std::vector<Input> with_terminal, without;  ///< the second ones are virtual
+  /// Instead of their logic: an object whose bit n turns input n, active where nothing conducts.
+  std::optional<fieldbus::ObjectId> inversion;
+  /// With it: a bit for each input whose contact conducts while its switch is not active.
+  std::uint32_t normally_closed = 0;
+  unsigned first_bit = 0;                     ///< with it: of the inputs in the role digital_inputs
   std::optional<fieldbus::ObjectId> levels;   ///< of the virtual ones, a bit each
   std::optional<fieldbus::ObjectId> enabled;  ///< the virtual ones act
   std::optional<fieldbus::ObjectId> seen;     ///< those of them that are active

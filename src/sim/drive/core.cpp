@@ -119,7 +119,7 @@ void DriveCore::step() {
   motion_.step();
   if (!motion_.powered()) return;
   superviseMotion();
-  power_.finishStops(now_);
+  power_.finishStops(time, now_);
 }
 
 void DriveCore::superviseMotion() {
@@ -133,7 +133,7 @@ void DriveCore::superviseMotion() {
       toSeconds(sync_.since(time)) > interpolationPeriod(values_) + tolerance) {
     raise("sync_error");
   }
-  if (const char* fault = motion_.takeHomingFault()) raise(fault);
+  if (const char* fault = motion_.takeFault()) raise(fault);
   const MotionLimits& limits = motion_.limits();
   const auto act = [this](const LimitReports::Due& due) {
     if (due.end != nullptr && faults_.endWarning(*due.end)) clearErrors();
@@ -145,7 +145,7 @@ void DriveCore::superviseMotion() {
       {"position_limit", beyond && motion_.standing(), beyond, limits.upwards()}, definition_));
   if (!definition_.limit_switch_is_fault) return;
   act(limits_told_.switches.look(
-      {"limit_switch", limits.switchHit(), motion_.onLimitSwitch(), limits.upwards()},
+      {limits.switchFault(), limits.switchHit(), motion_.onLimitSwitch(), limits.upwards()},
       definition_));
 }
 

@@ -26,10 +26,24 @@ void CyclicPositions::target(double seconds, double into) {
   const bool csp = axis_.mode->behaviour == ModeBehaviour::cyclic_position;
   const double offset = csp ? axis_.offset(Role::position_offset) : 0.0;
   double target = axis_.trueTarget(axis_.values.get(targetRole(), 0.0) + offset);
+  // From the one before, or from where the drive is, which may have stopped at a switch.
+  const double at = axis_.demand.interpolator.position();
+  const double step = std::min(std::fabs(target - last_.value_or(at)), std::fabs(target - at));
+  const double farthest = axis_.definition.position_step * axis_.motor.maxSpeed() * seconds;
+  last_ = target;
+  far_ = far_ || (farthest > 0.0 && step > farthest);
+  if (far_) return;
   if (axis_.mode->delayed) {
     target = std::exchange(pending_, target).value_or(axis_.demand.interpolator.position());
   }
   axis_.demand.interpolator.moveTo(target, seconds, into);
+}
+
+/// A set-point that reads like the present place is none to go to.
+bool CyclicPositions::goesOn() const {
+  constexpr double kNumbers = 4294967296.0;  // of 32 bits
+  const double one = axis_.values.range(targetRole()) / kNumbers;
+  return !last_ || std::fabs(*last_ - axis_.demand.position) > one;
 }
 
 void CyclicPositions::step(bool bit_4) {
@@ -43,7 +57,7 @@ void CyclicPositions::step(bool bit_4) {
   const double before = demand.interpolator.position();
   demand.interpolator.step();
   const double moved = demand.interpolator.position() - before;
-  if (moved != 0.0 && axis_.blocked(moved)) {
+  if (moved != 0.0 && goesOn() && axis_.blocked(moved)) {
     stopAtSwitch(moved);
   } else {
     demand.position = demand.interpolator.position();

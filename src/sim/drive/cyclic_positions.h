@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 
 #include "sim/drive/moving_axis.h"
 
@@ -18,7 +19,12 @@ class CyclicPositions {
   /// last step.
   void target(double seconds, double into);
   /// What came and has not begun yet is forgotten.
-  void forget() { pending_.reset(); }
+  void forget() {
+    pending_.reset();
+    last_.reset();
+  }
+  /// Whether one was too far away since it was asked last (DriveDefinition::position_step).
+  bool takeStep() { return std::exchange(far_, false); }
   /// One kDriveStep along the line. @param bit_4 of the controlword
   void step(bool bit_4);
   /// The set-points are followed (statusword bit 12). @param bit_4 of the controlword
@@ -29,9 +35,12 @@ class CyclicPositions {
  private:
   Role targetRole() const;
   void stopAtSwitch(double moved);
+  bool goesOn() const;
 
   MovingAxis& axis_;
   std::optional<double> pending_;  ///< true turns; ModeDefinition::delayed
+  std::optional<double> last_;     ///< true turns, the set-point that came last
+  bool far_ = false;
 };
 
 }  // namespace cia402::sim

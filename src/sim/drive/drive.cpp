@@ -129,6 +129,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
     if (axis.terminals.holds(entry.id)) {
       obey(axis.terminals.look(axis.core.motion().switches()), axis.core, dictionary,
            definition->fault("terminal_setup"));
+      axis.core.motion().publish();
     }
   }
 

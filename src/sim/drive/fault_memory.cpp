@@ -13,12 +13,17 @@ constexpr std::size_t kMostCauses = 16;
 
 FaultMemory::FaultMemory(const DriveDefinition& definition, DriveValues& values,
                          ObjectDictionary& dictionary)
-    : definition_(definition), alarms_(values), words_(definition, dictionary) {
+    : definition_(definition),
+      dictionary_(dictionary),
+      alarms_(values),
+      records_(definition, dictionary),
+      words_(definition, dictionary) {
   causes_.reserve(kMostCauses);
 }
 
 void FaultMemory::start(Time now) {
   alarms_.start(now);
+  records_.start();
   causes_.clear();
   warning_ = was_stopped_ = false;
   tries_ = 0;
@@ -37,6 +42,7 @@ void FaultMemory::add(const FaultDefinition& fault, Time now) {
   }
   if (fault.warning) warning_ = true;
   alarms_.add(fault.details, now);
+  records_.add(fault);
 }
 
 void FaultMemory::clear() {
@@ -85,10 +91,15 @@ std::uint8_t FaultMemory::errorRegister() const {
   return bits;
 }
 
+bool FaultMemory::resettable(const FaultDefinition& fault) const {
+  const Entry* by = fault.reset_by ? dictionary_.find(*fault.reset_by) : nullptr;
+  return fault.resettable || (by != nullptr && by->number != 0);
+}
+
 const FaultDefinition* FaultMemory::lasting(bool warnings, Time now) const {
   for (const Cause& cause : causes_) {
     if (cause.fault->warning != warnings) continue;
-    if (!cause.fault->resettable || cause.until > now) return cause.fault;
+    if (!resettable(*cause.fault) || cause.until > now) return cause.fault;
   }
   return nullptr;
 }

@@ -8,6 +8,7 @@
 #include "sim/definition/drive_definition.h"
 #include "sim/drive/alarm_memory.h"
 #include "sim/drive/alarm_words.h"
+#include "sim/drive/fault_records.h"
 
 namespace cia402::sim {
 
@@ -61,9 +62,12 @@ class FaultMemory {
     Time until;
   };
   const FaultDefinition* lasting(bool warnings, Time now) const;
+  bool resettable(const FaultDefinition& fault) const;
 
   const DriveDefinition& definition_;
+  const ObjectDictionary& dictionary_;
   AlarmMemory alarms_;
+  FaultRecords records_;
   AlarmWords words_;
   std::vector<Cause> causes_;
   bool warning_ = false;

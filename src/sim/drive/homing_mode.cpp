@@ -17,6 +17,16 @@ constexpr Role kTerminals[] = {Role::input_1_function, Role::input_2_function,
 
 using Phase = HomingSequence::Phase;
 
+/// By the number of the role home_offset_mode.
+enum OffsetMode : std::int64_t {
+  kReadAtHome,     // home reads 607Ch
+  kAdded,          // what was read at home, and 607Ch more
+  kMoved,          // it moves on by 607Ch, where it reads 0 ...
+  kMovedAndAdded,  // ... or 607Ch
+};
+
+constexpr char kIllogical[] = "homing_logic";
+
 }  // namespace
 
 void HomingMode::begin() {
@@ -29,7 +39,23 @@ void HomingMode::begin() {
 void HomingMode::control(bool bit_4, bool rising) {
   if (byObject()) return;
   if (rising) start();
-  if (!bit_4 && searching()) sequence_.stop();
+  if (!bit_4) giveUp();
+}
+
+void HomingMode::giveUp() {
+  if (searching()) sequence_.stop();
+  if (returning_ && movesOn()) returning_ = false;
+}
+
+/// Drives that have a fault for that take no search which cannot be, nor one in motion.
+bool HomingMode::illogical(const HomingRoute* route) const {
+  if (axis_.definition.fault(kIllogical) == nullptr) return false;
+  const DriveValues& values = axis_.values;
+  const bool moves = route != nullptr && !route->legs.empty();
+  const bool set = values.get(Role::homing_search_speed, 1.0) > 0.0 &&
+                   values.get(Role::homing_zero_speed, 1.0) > 0.0 &&
+                   values.get(Role::homing_acceleration, 1.0) > 0.0;
+  return route == nullptr || !axis_.standing() || (moves && !set);
 }
 
 void HomingMode::start() {
@@ -41,7 +67,8 @@ void HomingMode::start() {
   failed_ = route == nullptr;
   returning_ = false;
   sequence_.stop();
-  if (route == nullptr) return;
+  illogical_ = illogical(route);
+  if (route == nullptr || illogical_) return;
   terminals_wrong_ = !terminalsAreRight(*route);
   if (terminals_wrong_) return;
   searched_s_ = pushed_s_ = 0.0;
@@ -61,23 +88,52 @@ bool HomingMode::terminalsAreRight(const HomingRoute& route) const {
   return true;
 }
 
-void HomingMode::finish() {
-  const DriveHomingDefinition& homing = axis_.definition.homing;
-  const double offset = axis_.values.get(Role::home_offset, 0.0);
-  axis_.frame = sequence_.home() - (homing.home_offset_is_zero_shift ? -offset : offset);
-  attained_ = true;
-  axis_.limits.setHomed(true);
-  returning_ = homing.returns;
+bool HomingMode::movesOn() const {
+  return axis_.values.raw(Role::home_offset_mode, kReadAtHome) >= kMoved;
 }
 
-void HomingMode::returnHome() {
+/// The home position was found.
+void HomingMode::finish() {
+  goal_ = sequence_.home();
+  returning_ = axis_.definition.homing.returns || movesOn();
+  if (movesOn()) {
+    goal_ += axis_.values.get(Role::home_offset, 0.0);
+  } else {
+    arrive();
+  }
+}
+
+/// The search is over: positions count from the home that was found.
+void HomingMode::arrive() {
+  const double offset = axis_.values.get(Role::home_offset, 0.0);
+  switch (axis_.values.raw(Role::home_offset_mode, kReadAtHome)) {
+    case kAdded:
+      axis_.frame -= offset;
+      break;
+    case kMoved:
+      axis_.frame = goal_;
+      break;
+    case kMovedAndAdded:
+      axis_.frame = goal_ - offset;
+      break;
+    default:
+      axis_.frame =
+          sequence_.home() - (axis_.definition.homing.home_offset_is_zero_shift ? -offset : offset);
+  }
+  attained_ = true;
+  axis_.limits.setHomed(true);
+}
+
+void HomingMode::goToGoal() {
   Demand& demand = axis_.demand;
   const double acceleration = axis_.values.get(Role::homing_acceleration, kHard);
   demand.profile.reset(demand.position, demand.velocity);
   const double speed = axis_.values.get(Role::homing_zero_speed, 0.0);
-  demand.profile.step(sequence_.home(), {speed, acceleration, acceleration});
+  demand.profile.step(goal_, {speed, acceleration, acceleration});
   demand.followProfile();
-  if (demand.position == sequence_.home() && demand.velocity == 0.0) returning_ = false;
+  if (demand.position != goal_ || demand.velocity != 0.0) return;
+  returning_ = false;
+  if (movesOn()) arrive();
 }
 
 void HomingMode::search() {
@@ -95,7 +151,7 @@ void HomingMode::search() {
 
 void HomingMode::step(double from) {
   const bool was_searching = searching();
-  returning_ ? returnHome() : search();
+  returning_ ? goToGoal() : search();
   axis_.motor.followPosition(axis_.demand.position);
   if (!was_searching) return;
   const bool pushes = atHardStop();
@@ -140,11 +196,12 @@ void HomingMode::watchTime() {
 }
 
 const char* HomingMode::takeFault() {
-  const char* fault = terminals_wrong_ ? "terminal_setup"
-                      : late_          ? "homing_time"
-                      : tells_failure_ ? "homing_failed"
-                                       : nullptr;
-  terminals_wrong_ = late_ = tells_failure_ = false;
+  const char* fault = illogical_         ? kIllogical
+                      : terminals_wrong_ ? "terminal_setup"
+                      : late_            ? "homing_time"
+                      : tells_failure_   ? "homing_failed"
+                                         : nullptr;
+  illogical_ = terminals_wrong_ = late_ = tells_failure_ = false;
   return fault;
 }
 

@@ -37,15 +37,20 @@ class HomingMode {
   void keepNear();
   void watchTime();
   void finish();
-  void returnHome();
+  bool movesOn() const;
+  void arrive();
+  void giveUp();
+  bool illogical(const HomingRoute* route) const;
+  void goToGoal();
   void search();
 
   MovingAxis& axis_;
   HomingSequence sequence_;
   bool attained_ = false;
   bool failed_ = false;
-  bool returning_ = false;
-  bool terminals_wrong_ = false, late_ = false, tells_failure_ = false;
+  bool returning_ = false;  ///< to goal_, which is home or lies the offset beyond it
+  double goal_ = 0.0;       ///< true turns
+  bool terminals_wrong_ = false, late_ = false, tells_failure_ = false, illogical_ = false;
   double searched_s_ = 0.0;
   double pushed_s_ = 0.0;  ///< against a hard stop
 };

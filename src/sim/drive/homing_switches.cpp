@@ -7,29 +7,35 @@
 
 namespace cia402::sim {
 
-bool AxisSwitches::connected(HomingInput input) const {
-  return all_ || std::any_of(terminals_.begin(), terminals_.end(),
-                             [input](const Terminal& at) { return at.input == input; });
+/// A switch as the drive takes it. @param active it is pressed
+bool AxisSwitches::seen(HomingInput input, bool active) const {
+  if (all_) return active;
+  const auto at = std::find_if(terminals_.begin(), terminals_.end(),
+                               [input](const Terminal& one) { return one.input == input; });
+  return at != terminals_.end() && active != at->reversed;
+}
+
+unsigned AxisSwitches::functions(double turns) const {
+  return (negativeLimit(turns) ? 1U : 0U) | (positiveLimit(turns) ? 2U : 0U) |
+         (home(turns) ? 4U : 0U);
 }
 
 unsigned AxisSwitches::levels(double turns) const {
-  if (all_) {
-    return (negativeLimit(turns) ? 1U : 0U) | (positiveLimit(turns) ? 2U : 0U) |
-           (home(turns) ? 4U : 0U);
-  }
+  if (all_) return functions(turns);
   unsigned bits = 0;
   for (std::size_t i = 0; i < terminals_.size(); ++i) {
     const Terminal& terminal = terminals_[i];
     const bool low = terminal.active_low && terminal.input != HomingInput::none;
     if (active(terminal.input, turns) != low) bits |= 1U << i;
   }
-  return bits;
+  return first_bit_ ? functions(turns) | bits << *first_bit_ : bits;
 }
 
 bool AxisSwitches::home(double turns) const {
-  return connected(HomingInput::home_switch) &&
-         mechanics_->home_switch_low < mechanics_->home_switch_high &&
-         turns >= mechanics_->home_switch_low && turns <= mechanics_->home_switch_high;
+  const bool pressed = mechanics_->home_switch_low < mechanics_->home_switch_high &&
+                       turns >= mechanics_->home_switch_low &&
+                       turns <= mechanics_->home_switch_high;
+  return seen(HomingInput::home_switch, pressed);
 }
 
 bool AxisSwitches::active(HomingInput input, double turns) const {

@@ -20,21 +20,25 @@ class AxisSwitches {
   struct Terminal {
     HomingInput input = HomingInput::none;
     bool active_low = false;
+    bool reversed = false;  ///< the drive takes it for active where it is not
   };
   /// From now on a switch that is at none of these terminals does not exist.
   void connect(std::vector<Terminal> terminals) {
     terminals_ = std::move(terminals);
     all_ = false;
   }
+  /// levels() are those of negative limit, positive limit and home switch as the drive takes them,
+  /// and of the terminals from this bit on.
+  void showFunctions(unsigned first_bit) { first_bit_ = first_bit; }
   /// The electrical levels of the terminals, a bit each; without connect() the bits are those of
   /// negative limit, positive limit and home switch.
   unsigned levels(double turns) const;
 
   bool negativeLimit(double turns) const {
-    return turns <= mechanics_->negative_limit_switch && connected(HomingInput::negative_limit);
+    return seen(HomingInput::negative_limit, turns <= mechanics_->negative_limit_switch);
   }
   bool positiveLimit(double turns) const {
-    return turns >= mechanics_->positive_limit_switch && connected(HomingInput::positive_limit);
+    return seen(HomingInput::positive_limit, turns >= mechanics_->positive_limit_switch);
   }
   /// Whether the home switch is active there.
   bool home(double turns) const;
@@ -48,11 +52,13 @@ class AxisSwitches {
   std::optional<double> indexBetween(double from, double to) const;
 
  private:
-  bool connected(HomingInput input) const;
+  bool seen(HomingInput input, bool active) const;
+  unsigned functions(double turns) const;
 
   const AxisMechanics* mechanics_;
   std::vector<Terminal> terminals_;
   bool all_ = true;  ///< every switch is connected
+  std::optional<unsigned> first_bit_;
 };
 
 }  // namespace cia402::sim

@@ -65,8 +65,8 @@ class DriveMotion {
   /// The axis stands on a limit switch or beyond it.
   bool onLimitSwitch() const;
   const MotionLimits& limits() const { return axis_.limits; }
-  /// Name of a fault that homing has come to since it was asked last, or nullptr.
-  const char* takeHomingFault() { return homing_.takeFault(); }
+  /// Name of a fault that the mode has come to since it was asked last, or nullptr.
+  const char* takeFault() { return cyclic_.takeStep() ? "position_step" : homing_.takeFault(); }
   TouchProbes& probes() { return probes_; }
   /// Further bits of the inputs (60FDh) that are 1.
   void setInputs(std::uint32_t bits) { inputs_ = bits; }

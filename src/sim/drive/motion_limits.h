@@ -53,6 +53,10 @@ class MotionLimits {
   bool active() const { return active_; }
   /// A switch was in the way in this step.
   bool switchHit() const { return switch_hit_; }
+  /// The name of the fault or warning that a switch is, as the drive is set.
+  const char* switchFault() const {
+    return values_.raw(Role::limit_switch_action, 0) == 1 ? "limit_warning" : "limit_switch";
+  }
   /// 607Dh is in the way of a target.
   bool positionHit() const { return position_hit_; }
   /// What was in the way last lies upwards.

@@ -31,6 +31,8 @@ class Motor {
   /// @param position turns, where the rotor stands.
   Motor(const MotorParameters& parameters, double position);
 
+  double maxSpeed() const { return parameters_.max_speed; }  ///< turns/s
+
   /// Torque the controller may use, in rated torques (6072h; 60E0h, 60E1h); capped by max_torque.
   void limitTorque(double forward, double reverse);
   void limitTorque(double both) { limitTorque(both, both); }

@@ -2,11 +2,14 @@
 #include "sim/drive/power_stage.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace cia402::sim {
 namespace {
 
 constexpr Duration kQuickStopFlash = std::chrono::milliseconds(2);
+/// From when a brake closes on a motor that turned until the power goes.
+constexpr Duration kPowerWhileBraking = std::chrono::milliseconds(50);
 
 }  // namespace
 
@@ -65,8 +68,36 @@ void PowerStage::waitForBrake(Time due) {
   if (state_ == PdsState::operation_enabled) motion_.hold(due < follow_at_);
 }
 
-void PowerStage::finishStops(Time now) {
-  if (!motion_.stopping() || !motion_.standing()) return;
+/// Where there is a brake it closes on the way out of operation.
+bool PowerStage::closesBrake() const {
+  const bool holds = state_ == PdsState::quick_stop_active && hold_after_quick_stop_;
+  return values_.raw(Role::brake_fitted, 0) == 1 && !holds;
+}
+
+bool PowerStage::atCloseSpeed() const {
+  return std::fabs(motion_.motor().velocity()) < values_.get(Role::brake_close_speed, 0.0);
+}
+
+void PowerStage::beginStop(Ramp ramp, Time now) {
+  stop_since_ = now;
+  power_ends_at_ = kNever;
+  if (atCloseSpeed()) power_ends_at_ = now + fromSeconds(values_.get(Role::brake_power_time, 0.0));
+  motion_.stop(ramp);
+}
+
+/// The brake has closed, and the power may go, whether the motor stands or not.
+bool PowerStage::brakeHolds(Time due) {
+  const bool late = due - stop_since_ >= fromSeconds(values_.get(Role::brake_close_time, 0.0));
+  if (power_ends_at_ == kNever && (late || atCloseSpeed())) {
+    power_ends_at_ = due + kPowerWhileBraking;
+  }
+  return due >= power_ends_at_;
+}
+
+void PowerStage::finishStops(Time due, Time now) {
+  if (!motion_.stopping()) return;
+  const bool ended = closesBrake() ? brakeHolds(due) : motion_.standing();
+  if (!ended) return;
   if (state_ == PdsState::fault_reaction_active) {
     enter(PdsState::fault, now);  // transition 14
   } else if (state_ == PdsState::quick_stop_active) {
@@ -141,7 +172,7 @@ void PowerStage::leaveEnabled(const PdsTransition& transition, const OptionTable
                               Time now) {
   const StopOption chosen = option(table, role);
   if (chosen.ramp == Ramp::coast) return enter(transition.to, now);
-  if (!after_stop_) motion_.stop(chosen.ramp);
+  if (!after_stop_) beginStop(chosen.ramp, now);
   after_stop_ = transition;
 }
 
@@ -150,7 +181,7 @@ void PowerStage::quickStop(StopOption chosen, Time now) {
   hold_after_quick_stop_ = chosen.hold;
   quick_stop_since_ = now;
   enter(PdsState::quick_stop_active, now);
-  motion_.stop(chosen.ramp);
+  beginStop(chosen.ramp, now);
 }
 
 void PowerStage::quickStop(Time now) {

@@ -43,7 +43,8 @@ class PowerStage {
   /// Set-points are not followed before the brake is open.
   void waitForBrake(Time due);
   /// Transitions 12 and 14 and those that wait for a ramp, where standstill is reached.
-  void finishStops(Time now);
+  /// @param due of the step that was done
+  void finishStops(Time due, Time now);
 
   /// Does a transition of a command, but not 4 (enable operation). Some wait for a ramp first.
   void execute(const PdsTransition& transition, Time now);
@@ -63,6 +64,10 @@ class PowerStage {
  private:
   StopOption option(const OptionTable& table, Role role) const;
   void leaveEnabled(const PdsTransition& transition, const OptionTable& table, Role role, Time now);
+  bool closesBrake() const;
+  bool atCloseSpeed() const;
+  void beginStop(Ramp ramp, Time now);
+  bool brakeHolds(Time due);
 
   const DriveDefinition& definition_;
   const AxisMechanics& mechanics_;
@@ -74,6 +79,8 @@ class PowerStage {
   Time follow_at_{};          ///< end of the brake delay
   Time enabled_at_ = kNever;  ///< end of DriveQuirks::enabling_time
   Time quick_stop_since_{};
+  Time stop_since_{};                        ///< on the way out of operation, ...
+  Time power_ends_at_ = kNever;              ///< ... where a brake closes
   std::optional<PdsTransition> after_stop_;  ///< transition waiting for the slow-down ramp
   bool hold_after_quick_stop_ = false;
 };

@@ -13,6 +13,14 @@ double allowedVelocity(MovingAxis& axis, double velocity, double braking) {
   return axis.limits.braked(velocity, axis.motor.position() - axis.frame, braking);
 }
 
+/// Of torques that stream, where the maker has ramps for them.
+double streamedSlope(const MovingAxis& axis, double target) {
+  const double to_zero = axis.values.get(Role::torque_ramp_to_zero, 0.0);
+  const double slope = axis.values.get(Role::torque_ramp, 0.0);
+  if (target == 0.0 && to_zero > 0.0) return to_zero;
+  return slope > 0.0 ? slope : kUnlimited;
+}
+
 }  // namespace
 
 void stepVelocity(MovingAxis& axis, bool ramped) {
@@ -56,7 +64,8 @@ void stepTorque(MovingAxis& axis, bool ramped) {
   Demand& demand = axis.demand;
   const double target =
       axis.values.get(Role::target_torque, 0.0) + (ramped ? 0.0 : axis.offset(Role::torque_offset));
-  const double slope = ramped ? axis.values.get(Role::torque_slope, kUnlimited) : kUnlimited;
+  const double slope =
+      ramped ? axis.values.get(Role::torque_slope, kUnlimited) : streamedSlope(axis, target);
   const double change = slope * kDriveStepS;
   demand.torque = std::clamp(target, demand.torque - change, demand.torque + change);
   double speed = axis.limits.maxSpeed();

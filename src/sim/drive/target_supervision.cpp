@@ -29,15 +29,19 @@ void TargetSupervision::newMode() {
 void TargetSupervision::superviseFollowing(bool controlled) {
   const DriveValues& values = axis_.values;
   following_error_ = false;
+  const double error = std::fabs(axis_.demand.position - axis_.motor.position());
+  const double range = values.get(Role::position_error_range, 0.0);
+  const bool ranged = range > 0.0 && values.raw(Role::position_error_off, 0) == 0;
   if (!controlled || !values.has(Role::following_error_window) ||
       values.allOnes(Role::following_error_window)) {
     following_.reset();
+    following_error_ = controlled && ranged && error > range;
     return;
   }
   const double window = std::fabs(values.get(Role::following_error_window, 0.0));
-  const double error = std::fabs(axis_.demand.position - axis_.motor.position());
   following_error_ =
-      following_.step(error > window, values.get(Role::following_error_timeout, 0.0));
+      following_.step(error > window, values.get(Role::following_error_timeout, 0.0)) ||
+      (ranged && error > range);
 }
 
 void TargetSupervision::step(bool controlled, bool halted, const ProfilePosition& set_points) {
@@ -47,6 +51,19 @@ void TargetSupervision::step(bool controlled, bool halted, const ProfilePosition
   at_zero_speed_ = zero_speed_.step(speed <= values.get(Role::velocity_threshold, kStandingSpeed),
                                     values.get(Role::velocity_threshold_time, 0.0));
   target_reached_ = axis_.mode != nullptr && reached(halted, set_points);
+}
+
+/// By the maker's own rule, which does not look at the target, or by the target of pt.
+bool TargetSupervision::torqueReached() {
+  const DriveValues& values = axis_.values;
+  if (!values.has(Role::torque_reached_on)) {
+    const bool profiled = axis_.mode->behaviour == ModeBehaviour::profile_torque;
+    return profiled && axis_.demand.torque == values.get(Role::target_torque, 0.0);
+  }
+  const double above = std::fabs(axis_.motor.torque()) - values.get(Role::torque_reached_base, 0.0);
+  const Role limit = torque_above_ ? Role::torque_reached_off : Role::torque_reached_on;
+  torque_above_ = above > values.get(limit, 0.0);
+  return torque_above_;
 }
 
 bool TargetSupervision::reached(bool halted, const ProfilePosition& set_points) {
@@ -70,7 +87,8 @@ bool TargetSupervision::reached(bool halted, const ProfilePosition& set_points) 
       return halted ? axis_.standing() : there;
     }
     case ModeBehaviour::profile_torque:
-      return axis_.demand.torque == values.get(Role::target_torque, 0.0);
+    case ModeBehaviour::cyclic_torque:
+      return torqueReached();
     default:
       return false;
   }

@@ -43,12 +43,14 @@ class TargetSupervision {
  private:
   void superviseFollowing(bool controlled);
   bool reached(bool halted, const ProfilePosition& set_points);
+  bool torqueReached();
 
   MovingAxis& axis_;
   HeldCondition following_, position_reached_, velocity_reached_, zero_speed_;
   bool following_error_ = false;
   bool target_reached_ = false;
   bool at_zero_speed_ = true;
+  bool torque_above_ = false;
 };
 
 }  // namespace cia402::sim

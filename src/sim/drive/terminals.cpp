@@ -40,7 +40,7 @@ bool Terminals::holds(fieldbus::ObjectId id) const {
   };
   const auto any = [&](const auto& list) { return std::any_of(list.begin(), list.end(), is); };
   return any(definition_.with_terminal) || any(definition_.without) || definition_.levels == id ||
-         definition_.enabled == id;
+         definition_.enabled == id || definition_.inversion == id;
 }
 
 InputFunction Terminals::functionOf(const TerminalsDefinition::Input& input) const {
@@ -61,10 +61,17 @@ bool Terminals::twice() const {
 
 void Terminals::connect(AxisSwitches& switches) const {
   std::vector<AxisSwitches::Terminal> terminals;
+  const bool by_bits = definition_.inversion.has_value();
+  const std::uint64_t turned =
+      by_bits ? number(*definition_.inversion) ^ definition_.normally_closed : 0;
   for (const auto& input : definition_.with_terminal) {
-    terminals.push_back({switchOf(functionOf(input)), number(input.logic) == kLogicLow});
+    const bool low = !by_bits && number(input.logic) == kLogicLow;
+    const bool reversed = ((turned >> terminals.size()) & 1U) != 0;
+    terminals.push_back({switchOf(functionOf(input)), low, reversed});
   }
-  if (!definition_.empty()) switches.connect(std::move(terminals));
+  if (definition_.empty()) return;
+  switches.connect(std::move(terminals));
+  if (by_bits) switches.showFunctions(definition_.first_bit);
 }
 
 std::uint64_t Terminals::levels() const {

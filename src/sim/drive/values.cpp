@@ -136,6 +136,19 @@ constexpr RoleInfo kRoles[] = {
     {R::input_3_function, "input_3_function", {0, 0}, Q::none},
     {R::input_4_function, "input_4_function", {0, 0}, Q::none},
     {R::input_5_function, "input_5_function", {0, 0}, Q::none},
+    {R::limit_switch_action, "limit_switch_action", {0, 0}, Q::none},
+    {R::home_offset_mode, "home_offset_mode", {0, 0}, Q::none},
+    {R::torque_reached_base, "torque_reached_base", {0, 0}, Q::torque},
+    {R::torque_reached_on, "torque_reached_on", {0, 0}, Q::torque},
+    {R::torque_reached_off, "torque_reached_off", {0, 0}, Q::torque},
+    {R::torque_ramp, "torque_ramp", {0, 0}, Q::torque},
+    {R::torque_ramp_to_zero, "torque_ramp_to_zero", {0, 0}, Q::torque},
+    {R::position_error_range, "position_error_range", {0, 0}, Q::position},
+    {R::position_error_off, "position_error_off", {0, 0}, Q::none},
+    {R::brake_fitted, "brake_fitted", {0, 0}, Q::none},
+    {R::brake_close_speed, "brake_close_speed", {0, 0}, Q::motor_speed},
+    {R::brake_close_time, "brake_close_time", {0, 0}, Q::time},
+    {R::brake_power_time, "brake_power_time", {0, 0}, Q::time},
 };
 static_assert(sizeof(kRoles) / sizeof(kRoles[0]) == kRoleCount, "one line for each role");
 

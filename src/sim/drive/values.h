@@ -136,6 +136,19 @@ enum class Role : std::uint8_t {
   input_3_function,
   input_4_function,
   input_5_function,
+  limit_switch_action,   ///< vendor object: 0: as `limit_switch` says, 1: `limit_warning`
+  home_offset_mode,      ///< vendor object: what 607Ch is for; see HomingMode
+  torque_reached_base,   ///< vendor object: in torque modes bit 10 is set where the torque ...
+  torque_reached_on,     ///< ... is above that by so much, ...
+  torque_reached_off,    ///< ... until it is so near
+  torque_ramp,           ///< vendor object: of torques that stream; 0: none ...
+  torque_ramp_to_zero,   ///< ... and of those that end
+  position_error_range,  ///< vendor object: a following error that is a fault at once ...
+  position_error_off,    ///< ... unless this is 1
+  brake_fitted,          ///< vendor object: 1: there is one, which closes when it is disabled
+  brake_close_speed,     ///< vendor object: below that speed ...
+  brake_close_time,      ///< ... or so long after the stop began
+  brake_power_time,      ///< vendor object: where it stood then the power stays for so long
   count,
 };
 inline constexpr std::size_t kRoleCount = static_cast<std::size_t>(Role::count);

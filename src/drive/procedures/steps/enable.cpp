@@ -164,8 +164,9 @@ Outcome EnableStep::climb(const Context& context) {
   // A quick stop under way is neither cut short nor left in motion.
   if (stopped && axis.generator().moving()) goal = Goal::quick_stop;
   if (axis.goal() != goal) axis.setGoal(goal);
-  const Duration limit = stopped ? (timing.transition(16) + timing.transition(12)) / 2
-                                 : timing.transition(nextCommand(state, goal).transition);
+  const Duration limit =
+      stopped ? (timing.transition(16) + timing.transition(12)) / 2 + axis.control().powerOffTime()
+              : timing.transition(nextCommand(state, goal).transition);
   if (context.now - since_ <= limit) return Outcome::running();
   return fail(context, axis.who() + ": enabling timed out: the drive has been in " +
                            toString(state) + " for " + seconds(context.now - since_) + "; " +

@@ -100,7 +100,7 @@ void SettingsStep::plan(const AxisConfig& axis) {
   if (enabling()) {
     for (const std::string& object : profile_->counts_rule.times) add(axis, object);
     for (const std::string& object : profile_->counts_rule.over) add(axis, object);
-    if (!profile_->timing.brake_object.empty()) add(axis, profile_->timing.brake_object);
+    for (const auto* name : profile_->timing.told()) add(axis, *name);
     if (axis.geometry.rated_torque > 0.0) add(axis, profile_->rated_torque);
     for (const std::string& object : profile_->may_be_cut) {
       if (lastWrite(axis, object)) add(axis, object, false);
@@ -289,8 +289,8 @@ Outcome SettingsStep::judge(const Context& context) {
       append(problem, difference.text);
     }
   }
-  // One a cycle: of several the last alone would be told.
-  if (warned_at_ == context.now) return Outcome::running();
+  // One a cycle: of several the last alone would be told. Answers of the drive come in between.
+  if (warned_at_ && context.now <= *warned_at_ + axis.config().cycle) return Outcome::running();
   if (warned_ < warnings.size()) {
     axis.notices().warnOnce(axis.who() + ": " + warnings[warned_++]);
     warned_at_ = context.now;
@@ -307,7 +307,7 @@ Outcome SettingsStep::judge(const Context& context) {
   }
   if (enabling()) {
     compareReadBack(axis);
-    for (const std::string& text : {compareCounts(axis.config()), learnBrake(axis)}) {
+    for (const std::string& text : {compareCounts(axis.config()), learnTimes(axis)}) {
       if (!text.empty()) append(problem, text);
     }
   }
@@ -370,21 +370,30 @@ std::string SettingsStep::compareTorque(const AxisConfig& axis) const {
          ": efforts are told and limited wrong by that much; correct it";
 }
 
-std::string SettingsStep::learnBrake(AxisCore& axis) const {
-  const DriveProfile::Timing& timing = profile_->timing;
-  const auto number = numberOf(timing.brake_object);
-  axis.control().setBrakeRelease(timing.brake_release);
+std::string SettingsStep::learnTime(const AxisConfig& axis, const std::string& name,
+                                    Duration& time) const {
+  const auto number = numberOf(name);
   if (!number) return {};
-  const ObjectSpec& object = *profile_->find(timing.brake_object);
-  const auto conversion = Conversion::create(object, *profile_, axis.config().geometry);
+  const ObjectSpec& object = *profile_->find(name);
+  const auto conversion = Conversion::create(object, *profile_, axis.geometry);
   if (!conversion) return conversion.error().message;
   const Duration told = fromSeconds(conversion->toJoint(static_cast<std::uint64_t>(*number)));
-  if (told > timing.brake_release) {
-    return named(object) + " is " + seconds(told) + ", longer than the " +
-           seconds(timing.brake_release) + " that the profile allows for (brake_release)";
+  if (told > time) {
+    return named(object) + " is " + seconds(told) + ", longer than the " + seconds(time) +
+           " that the profile allows for (timing)";
   }
-  axis.control().setBrakeRelease(told < Duration(0) ? timing.brake_release : told);
+  if (told >= Duration(0)) time = told;
   return {};
+}
+
+std::string SettingsStep::learnTimes(AxisCore& axis) const {
+  const DriveProfile::Timing& timing = profile_->timing;
+  Duration brake = timing.brake_release, power = timing.power_off;
+  std::string problem = learnTime(axis.config(), timing.brake_object, brake);
+  if (problem.empty()) problem = learnTime(axis.config(), timing.power_object, power);
+  axis.control().setBrakeRelease(brake);
+  axis.control().setPowerOffTime(power);
+  return problem;
 }
 
 }  // namespace cia402::drive

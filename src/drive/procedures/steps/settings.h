@@ -53,7 +53,9 @@ class SettingsStep {
   std::string refusal(const Context& context) const;
   std::string compareCounts(const AxisConfig& axis) const;
   std::string compareTorque(const AxisConfig& axis) const;
-  std::string learnBrake(AxisCore& axis) const;
+  /// @param time the longest that the profile allows for, then what the drive says
+  std::string learnTime(const AxisConfig& axis, const std::string& object, Duration& time) const;
+  std::string learnTimes(AxisCore& axis) const;
 
   const DriveProfile* profile_;
   SettingCheck::Before before_;
