@@ -155,6 +155,9 @@ TEST(Sv660cDcf, IsWrittenWithTheChoiceOfCanopenLast) {
   EXPECT_EQ(scene.number(0x2012, 0x16), 70U);
   EXPECT_EQ(scene.number(0x200E, 0x0B), 2U);
   EXPECT_THAT(loaded.message, HasSubstr("once the power was off count: 2003:01 H03.00"));
+  const bus::Answer saved = scene.procedure(ProcedureKind::save_parameters, "joint");
+  EXPECT_THAT(saved.message, HasSubstr("saved 2003:01 H03.00, 200E:0B H0E.10 can_application, "
+                                       "2012:16 H12.21 in"));
 }
 
 TEST(Sv660cDcf, LeavesOutWhatCommandsAndWhatCannotBeWritten) {
