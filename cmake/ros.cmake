@@ -29,7 +29,8 @@ find_package(catkin REQUIRED COMPONENTS message_generation ${cia402_ros_packages
 add_message_files(FILES
   AxisState.msg AxisStates.msg BusState.msg Emergency.msg LssIdentity.msg NodeState.msg)
 add_service_files(FILES
-  ArmTouchProbe.srv ErrorHistory.srv InjectFault.srv LssAssign.srv LssScan.srv LssSetBitTiming.srv
+  ArmTouchProbe.srv ErrorHistory.srv FactoryReset.srv InjectFault.srv LoadDcf.srv LssAssign.srv LssScan.srv
+  LssSetBitTiming.srv
   Nmt.srv ReadObject.srv SaveDcf.srv SetBusParameters.srv SetDigitalOutputs.srv SetMode.srv
   SetPosition.srv WriteObject.srv)
 add_action_files(FILES Home.action)

@@ -5,6 +5,7 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 namespace cia402::ros_node {
 namespace {
@@ -49,6 +50,25 @@ Result<std::string> writeDcfFile(const std::string& path, const std::string& tex
   if (!error) return absolute.string();
   fs::remove(part, error);
   return Error{"cannot write " + absolute.string()};
+}
+
+Result<DcfText> readDcfFile(const std::string& axis, const std::string& path) {
+  const fs::path file(path);
+  if (file.extension() != ".dcf") {
+    return Error{axis + ": \"" + path + "\" does not end in .dcf"};
+  }
+  std::error_code error;
+  const auto size = fs::file_size(file, error);
+  if (error || size > canopen::kLongestEds) {
+    return Error{axis + ": \"" + path + "\" " +
+                 (error ? "cannot be read: " + error.message() : "is too long for a DCF")};
+  }
+  std::ifstream stream(file, std::ios::binary);
+  DcfText read;
+  read.name = file.filename().string();
+  read.text.assign(std::istreambuf_iterator<char>(stream), {});
+  if (!stream) return Error{axis + ": \"" + path + "\" cannot be read"};
+  return read;
 }
 
 }  // namespace cia402::ros_node

@@ -16,4 +16,12 @@ Result<bus::DcfStamp> dcfStamp(const std::string& axis, const std::string& path)
 /// @return its absolute path.
 Result<std::string> writeDcfFile(const std::string& path, const std::string& text);
 
+/// A file that was read.
+struct DcfText {
+  std::string name;  ///< without its folders
+  std::string text;
+};
+/// An error if `path` does not end in .dcf, cannot be read, or is longer than any DCF.
+Result<DcfText> readDcfFile(const std::string& axis, const std::string& path);
+
 }  // namespace cia402::ros_node

@@ -55,6 +55,10 @@ SERVICES.update({
     "nmt": lambda chance, _: {"command": chance.choice(NMT)},
     "save_dcf": lambda chance, folder: {"path": chance.choice(
         [os.path.join(folder, "a.dcf"), "/nowhere/a.dcf", "a", ""])},
+    "load_dcf": lambda chance, folder: {"path": chance.choice(
+        [os.path.join(folder, "a.dcf"), "/nowhere/a.dcf", "a", ""]),
+                                        "confirm": chance.choice([True, False])},
+    "factory_reset": lambda chance, _: {"confirm": chance.choice([True, False])},
     "inject_fault": lambda chance, _: {"axis": chance.choice(NAMES), "fault": chance.choice(
         FAULTS + ["bus_off"])},
     "lss_scan": lambda chance, _: {"window": chance.choice([0.0, 0.02, -1.0, NAN, 1e9])},

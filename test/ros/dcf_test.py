@@ -75,6 +75,25 @@ class Dcf(RobotTest):
             robot.close()
             again.stop()
 
+    def test_what_was_dumped_comes_back_once_that_is_confirmed(self):
+        path = self.save("wrist", "")
+        held = self.succeed("wrist/read_object", object="6066:00").number
+        self.succeed("wrist/write_object", object="6066:00", value=str(int(held) + 7))
+        self.refuse("wrist/load_dcf", "wrist|1 differ|6066:00|nothing was written|confirm: true",
+                    path=path)
+        self.assertEqual(self.succeed("wrist/read_object", object="6066:00").number, held + 7)
+        self.succeed("wrist/load_dcf", "wrist|1 were written and read back|6066:00", path=path,
+                     confirm=True)
+        self.assertEqual(self.succeed("wrist/read_object", object="6066:00").number, held)
+
+    def test_what_is_no_dcf_is_not_loaded(self):
+        path = os.path.join(self.folder, "none.dcf")
+        with open(path, "w", encoding="ascii") as file:
+            file.write("nothing")
+        self.refuse("wrist/load_dcf", "wrist|none.dcf not loaded|line 1", path=path, confirm=True)
+        self.refuse("wrist/load_dcf", "wrist|does not end in .dcf", path="/tmp/wrist")
+        self.refuse("wrist/load_dcf", "wrist|/nowhere/a.dcf|cannot be read", path="/nowhere/a.dcf")
+
     def test_paths_that_cannot_be_written_are_refused_before_reading(self):
         self.refuse("wrist/save_dcf", "wrist|does not end in .dcf|/tmp/wrist.dcf", path="/tmp/wrist")
         self.refuse("wrist/save_dcf", "wrist|there is no folder /nowhere", path="/nowhere/a.dcf")

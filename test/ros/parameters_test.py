@@ -26,6 +26,14 @@ class Parameters(RobotTest):
         self.assertEqual(self.read(), factory)
         self.robot.wait_state("shoulder", "switch on disabled")
 
+    def test_a_factory_reset_wants_to_be_confirmed(self):
+        factory = self.read()
+        self.succeed("shoulder/write_object", object=OBJECT, value=str(int(factory) + 7))
+        self.refuse("shoulder/factory_reset", "shoulder|nothing was restored|by 1011h|confirm: true")
+        self.assertEqual(self.read(), factory + 7)
+        self.succeed("shoulder/factory_reset", "shoulder|1011:01|reset|disabled", confirm=True)
+        self.assertEqual(self.read(), factory)
+
     def test_all_axes_at_once(self):
         self.succeed("save_parameters", "save_parameters done on 4 of 4 axes")
 

@@ -13,9 +13,10 @@ import rosparam
 import rospkg
 import rospy
 from cia402_driver.msg import AxisStates, BusState, Emergency
-from cia402_driver.srv import (ArmTouchProbe, ErrorHistory, InjectFault, LssAssign, LssScan,
-                               LssSetBitTiming, Nmt, ReadObject, SaveDcf, SetBusParameters,
-                               SetDigitalOutputs, SetMode, SetPosition, WriteObject)
+from cia402_driver.srv import (ArmTouchProbe, ErrorHistory, FactoryReset, InjectFault, LoadDcf,
+                               LssAssign, LssScan, LssSetBitTiming, Nmt, ReadObject, SaveDcf,
+                               SetBusParameters, SetDigitalOutputs, SetMode, SetPosition,
+                               WriteObject)
 from control_msgs.msg import JointTrajectoryControllerState
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from sensor_msgs.msg import JointState
@@ -34,7 +35,7 @@ SERVICES = {
     "set_position": SetPosition, "lss_scan": LssScan, "lss_assign": LssAssign,
     "lss_set_bit_timing": LssSetBitTiming, "save_dcf": SaveDcf,
     "set_digital_outputs": SetDigitalOutputs, "arm_touch_probe": ArmTouchProbe,
-    "set_bus_parameters": SetBusParameters,
+    "set_bus_parameters": SetBusParameters, "load_dcf": LoadDcf, "factory_reset": FactoryReset,
 }
 
 

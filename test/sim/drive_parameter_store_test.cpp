@@ -57,6 +57,52 @@ TEST_F(ParameterStoreTest, StoresTheMarkWithTheParameters) {
   EXPECT_EQ(bench.read(0x6065), 65536U);
 }
 
+// H0C.13, H02.31 and H0E.10 of an SV660C.
+class ParameterMemoryTest : public ParameterStoreTest {
+ protected:
+  ParameterMemoryTest() : sv660c("sv660c") { sv660c.run(ms(700)); }
+  void powerCycleSv660c() {
+    sv660c.drive->powerOff(sv660c.now);
+    sv660c.drive->powerOn(sv660c.now);
+    sv660c.run(ms(800));
+  }
+  std::uint64_t number(std::uint16_t index, std::uint8_t sub) {
+    return sv660c.drive->dictionary().find({index, sub})->number;
+  }
+  DriveBench sv660c;
+};
+
+TEST_F(ParameterMemoryTest, KeepsWhatIsWrittenWhileItsSwitchSaysSo) {
+  sv660c.write(0x2008, 1, 250, 2);  // H0C.13 is 1 from the factory
+  sv660c.write(0x200C, 0x0E, 0, 2);
+  sv660c.write(0x2008, 3, 300, 2);
+  sv660c.write(0x2008, 1, 251, 2);
+  powerCycleSv660c();
+  EXPECT_EQ(number(0x2008, 1), 250U);
+  EXPECT_EQ(number(0x2008, 3), 640U);
+  EXPECT_EQ(number(0x200C, 0x0E), 1U) << "0 was not to be kept";
+  sv660c.write(0x6065, 0, 4711, 4);
+  powerCycleSv660c();
+  EXPECT_EQ(number(0x6065, 0), 27486951U) << "no parameter of the maker";
+}
+
+TEST_F(ParameterMemoryTest, IsThatOfTheFactoryAfterItsResetAndSilentWithoutCanopen) {
+  sv660c.write(0x2008, 1, 250, 2);
+  sv660c.write(0x2002, 0x20, 2, 2);  // clears the fault record
+  EXPECT_EQ(number(0x2008, 1), 250U);
+  sv660c.write(0x2002, 0x20, 1, 2);
+  EXPECT_EQ(number(0x2008, 1), 400U);
+  EXPECT_EQ(number(0x2002, 1), 1U);
+  EXPECT_EQ(number(0x200E, 0x0B), 0U);
+  EXPECT_EQ(number(0x2002, 0x20), 0U);
+  EXPECT_EQ(sv660c.read(0x2008, 1), 400U) << "it is there until the power was off";
+  powerCycleSv660c();
+  const std::size_t before = sv660c.sent.size();
+  sv660c.frame(0x601, {0x40, 0x08, 0x20, 0x01, 0, 0, 0, 0});
+  sv660c.run(ms(500));
+  EXPECT_EQ(sv660c.sent.size(), before) << "neither boot-up nor answer";
+}
+
 TEST_F(ParameterStoreTest, ASubIndexStoresItsOwnGroup) {
   bench.write(0x6065, 0, 4711, 4);
   bench.write(0x1017, 0, 250, 2);

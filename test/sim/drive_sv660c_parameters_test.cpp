@@ -235,5 +235,34 @@ TEST_F(Sv660cIp, MindsNothingWithTheToleranceOff) {
   EXPECT_EQ(word(), 0x0237);
 }
 
+// H0E.07 = 1: speeds in 0.01 rpm, accelerations as the ms from 0 to 1000 rpm [L9609-9627].
+TEST_F(Sv660cParameter, CountsInRpmAndMillisecondsWhereItsUnitsAreTheUsers) {
+  bench.write(0x200E, 8, 1, 2);
+  mode(3);
+  bench.write(0x6083, 0, 10000, 4);  // 600 rpm in 6 s
+  bench.write(0x607F, 0, 300000, 4);
+  for (const std::uint16_t index : {std::uint16_t{0x60C5}, std::uint16_t{0x60C6}})
+    bench.write(index, 0, 1, 4);
+  enable();
+  bench.write(0x60FF, 0, 60000, 4);  // 600 rpm are 10 turns/s
+  bench.run(ms(3000));
+  EXPECT_NEAR(bench.drive->truth(bench.now).velocity_turns, 5.0, 0.3) << "half of it";
+  bench.run(ms(4000));
+  EXPECT_NEAR(bench.drive->truth(bench.now).velocity_turns, 10.0, 0.05);
+  EXPECT_NEAR(bench.velocity(), 60000, 300);
+  EXPECT_NE(bench.refusal(0x200E, 8, 0, 2), 0U) << "at rest only";
+  control(0x06);
+  bench.run(ms(20000));
+  bench.write(0x200E, 8, 0, 2);
+  for (const std::uint16_t index : {std::uint16_t{0x60C5}, std::uint16_t{0x60C6}})
+    bench.write(index, 0, 0xFFFFFFFF, 4);
+  bench.write(0x607F, 0, 838860800, 4);
+  bench.write(0x6083, 0, 10000, 4);  // counts/s^2 now: 1.2e-3 turns/s^2
+  enable();
+  bench.write(0x60FF, 0, 60000, 4);
+  bench.run(ms(4000));
+  EXPECT_LT(bench.drive->truth(bench.now).velocity_turns, 0.006);
+}
+
 }  // namespace
 }  // namespace cia402::sim

@@ -105,10 +105,12 @@ TEST_F(FamilyMemory, OfParametersIsWrittenOnRequestOnlyAndWithPatience) {
 }
 
 TEST_F(FamilyMemory, OfParametersIsMissedInWords) {
-  for (const FamilyMode& tested : {kBusId286, kBusDm5, kBusSv660c}) {
+  for (const FamilyMode& tested : {kBusId286, kBusDm5}) {
     Scene scene(loadText(busJoint(tested)));
     ASSERT_TRUE(scene.boot(kFamilyBoot)) << scene.told();
     for (const auto kind : {ProcedureKind::save_parameters, ProcedureKind::restore_parameters}) {
+      const bool by_object = is(tested, kBusDm5) && kind == ProcedureKind::restore_parameters;
+      if (by_object) continue;  // P02.22
       const auto answer = scene.procedure(kind, "joint");
       EXPECT_FALSE(answer.success);
       EXPECT_THAT(answer.message, AllOf(HasSubstr("joint"), HasSubstr("0x06020000")));

@@ -36,7 +36,8 @@ TEST(Sv660cAdjusting, SetsTheCommandRateAndWaitsForThePower) {
   EXPECT_FALSE(enabled.success);
   EXPECT_THAT(enabled.message,
               HasSubstr("command_rate (2001:3E) was set to 2, which counts once its power was off; "
-                        "switch it off and on"));
+                        "call save_parameters, for it is not kept otherwise, then switch it off "
+                        "and on"));
   EXPECT_EQ(sv660cNumber(scene, 0x2001, 0x3E), 2U);
   EXPECT_FALSE(scene.truth("joint").power_stage_on);
   const bus::Answer again = scene.procedure(ProcedureKind::enable);

@@ -125,6 +125,74 @@ TEST(Sv660cParameterName, IsWrittenToAlsoFromTheRobotsFile) {
   EXPECT_FALSE(refused.success) << "while stopped only";
 }
 
+// As chapter 3 prints them: H00.10 0.01 kW [L1995], H01.25 0.01 [L2845], H03.51 0.01 ms [L4300],
+// H06.03 with a sign [L5725], H12.21 0.1 s [L11056], H08.00 0.1 Hz [L6442].
+TEST(Sv660cParameterName, IsReadAndWrittenAsTheManualPrintsIts) {
+  Scene scene(loadText(sv660cJoint()));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  scene.run(500ms);
+  struct Row {
+    const char *name, *read, *value;
+    std::uint16_t index;
+    std::uint8_t sub;
+    std::uint64_t number;
+  };
+  for (const Row& row :
+       {Row{"H00.10", "is 75 (0x004B), in the manual 0.75", "1.5", 0x2000, 0x0B, 150},
+        Row{"H01.25", "is 100 (0x0064), in the manual 1.00", "0.05", 0x2001, 0x1A, 5},
+        Row{"H03.51", "is 200 (0x00C8), in the manual 2.00", "2.57", 0x2003, 0x34, 257},
+        Row{"H12.21", "is 50 (0x0032), in the manual 5.0", "70", 0x2012, 0x16, 70},
+        Row{"H08.00", "is 400 (0x0190)", "25.0", 0x2008, 1, 250},
+        Row{"H06.03", "is 200 (0x00C8)", "-5", 0x2006, 4, 0xFFFB},
+        Row{"H12.20", "is 0 (0x0000)", "-1200", 0x2012, 0x15, 0xFB50}}) {
+    EXPECT_THAT(sv660cRead(scene, row.name).message, HasSubstr(row.read)) << row.name;
+    const bus::Answer written = sv660cWrite(scene, row.name, row.value);
+    EXPECT_TRUE(written.success) << written.message;
+    EXPECT_EQ(sv660cNumber(scene, row.index, row.sub), row.number) << row.name;
+  }
+  EXPECT_THAT(sv660cRead(scene, "H06.03").message, HasSubstr("is -5 ("));
+  EXPECT_EQ(sv660cRead(scene, "H12.20").number, -1200.0);
+  const bus::Answer fine = sv660cWrite(scene, "H12.21", "1.25");
+  EXPECT_FALSE(fine.success);
+  EXPECT_THAT(fine.message, HasSubstr("more than the 1 digits behind the point"));
+  EXPECT_EQ(sv660cNumber(scene, 0x2012, 0x16), 70U);
+}
+
+// What is beyond the range [L6679], read-only [L2558] or for a motor at rest only [L9829, L1995].
+TEST(Sv660cParameterName, ThatTheDriveDoesNotTakeIsRefusedInWords) {
+  Sv660cReady scene;
+  for (const auto& [name, value, told] :
+       {std::tuple("H08.15", "120.01", "0x06090031"), std::tuple("H01.00", "1", "read-only"),
+        std::tuple("H11.00", "2", "0x08000022"),
+        std::tuple("H00.10", "0.80", "the axis is not disabled")}) {
+    const bus::Answer refused = sv660cWrite(scene, name, value);
+    EXPECT_FALSE(refused.success) << name;
+    EXPECT_THAT(refused.message, HasSubstr(told)) << name;
+  }
+  EXPECT_EQ(sv660cNumber(scene, 0x2000, 0x0B), 75U);
+}
+
+// "Re-power" of chapter 3, also of those that have no name here.
+TEST(Sv660cParameterName, ThatCountsOnceThePowerWasOffSaysSo) {
+  Scene scene(loadText(sv660cJoint()));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  scene.run(500ms);
+  const std::string later = "it counts once the drive was switched off and on";
+  for (const char* name : {"H00.00", "H00.37", "H01.67", "H03.00", "H05.23", "H0C.10"}) {
+    const bus::ObjectAnswer read = sv660cRead(scene, name);
+    const auto number = std::to_string(static_cast<long>(read.number));
+    EXPECT_THAT(sv660cWrite(scene, name, number).message, HasSubstr(later)) << name;
+    scene.run(500ms);
+  }
+  for (const char* name : {"H08.00", "H12.21", "H06.03"}) {
+    const bus::ObjectAnswer read = sv660cRead(scene, name);
+    const auto number = std::to_string(static_cast<long>(read.number));
+    const bus::Answer written = sv660cWrite(scene, name, number);
+    EXPECT_TRUE(written.success) << written.message;
+    EXPECT_THAT(written.message, testing::Not(HasSubstr(later))) << name;
+  }
+}
+
 TEST(Sv660cParameterName, ThatIsNoneIsRefusedInWords) {
   Scene scene(loadText(sv660cJoint()));
   ASSERT_TRUE(scene.boot()) << scene.told();

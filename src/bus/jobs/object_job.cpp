@@ -2,12 +2,14 @@
 #include "bus/jobs/object_job.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "bus/axis_cycle.h"
 #include "bus/jobs/object_address.h"
 #include "bus/jobs/object_text.h"
 #include "drive/axis/coordinates.h"
+#include "drive/profile/object_value.h"
 
 namespace cia402::bus {
 namespace {
@@ -134,7 +136,9 @@ std::string ObjectJob::beginWrite(const std::string& value) {
     lock();
     return {};
   }
-  const Result<fieldbus::Bytes> data = encodeObject(*spec_, value);
+  const Result<std::string> counted = countedValue();
+  if (!counted) return notWritten(counted.error().message);
+  const Result<fieldbus::Bytes> data = encodeObject(*spec_, *counted);
   if (!data) return notWritten(data.error().message);
   std::string forbidden = offsetRefusal(id_, *data);
   if (forbidden.empty()) forbidden = descriptionRefusal(axis_->config(), id_, *data);
@@ -144,6 +148,13 @@ std::string ObjectJob::beginWrite(const std::string& value) {
   lock();
   download(*data);
   return {};
+}
+
+/// A number with a point is one as the manual prints it.
+Result<std::string> ObjectJob::countedValue() const {
+  const bool is_float = spec_ && drive::holdsFloat(spec_->type, spec_->encoding);
+  if (is_float) return value_;
+  return axis_->config().profile->parameter_names.counted(id_, value_);
 }
 
 void ObjectJob::lock() {
@@ -211,6 +222,7 @@ bool ObjectJob::step(Time now) {
 }
 
 bool ObjectJob::finishWrite(Time now) {
+  if (ticket_->ok()) axis_->noteWritten(id_);
   if (locked_ && (ticket_->ok() || mayBeWritten(*ticket_))) {
     axis_->loseZero(ofDevice());
     stage_ = Stage::settling;
@@ -290,12 +302,21 @@ bool ObjectJob::finishRead() {
                                          axis_->config(), ticket_->data());
   ObjectAnswer answer;
   answer.success = true;
-  answer.message = who_ + ": " + name_ + " is " + text.value;
   answer.data = ticket_->data();
   answer.number = text.number;
-  answer.text = text.value;
+  answer.text = text.value + printedText(text.number);
+  answer.message = who_ + ": " + name_ + " is " + answer.text;
   give(reply_, answer);
   return true;
+}
+
+/// ", printed as 48.0", where neither a unit nor a word says more of it.
+std::string ObjectJob::printedText(double number) const {
+  const bool measures = spec_ && spec_->quantity != drive::Quantity::none;
+  if (measures || !std::isfinite(number)) return {};
+  const std::string printed =
+      axis_->config().profile->parameter_names.printed(id_, static_cast<std::int64_t>(number));
+  return printed.empty() ? printed : ", in the manual " + printed;
 }
 
 std::optional<drive::ObjectSpec> ObjectJob::unnamedObject() const {
@@ -306,7 +327,14 @@ std::optional<drive::ObjectSpec> ObjectJob::unnamedObject() const {
     text.type = drive::DataType::visible_string;
     return text;
   }
-  return axis_->config().profile->unnamedFloat(id_, ticket_->data().size());
+  const drive::DriveProfile& profile = *axis_->config().profile;
+  if (const auto number = profile.unnamedFloat(id_, ticket_->data().size())) return number;
+  const auto type = profile.parameter_names.typeOf(id_, ticket_->data().size());
+  if (!type) return {};
+  drive::ObjectSpec number;
+  number.id = id_;
+  number.type = *type;
+  return number;
 }
 
 bool ObjectJob::writeWithAskedSize() {
@@ -314,8 +342,10 @@ bool ObjectJob::writeWithAskedSize() {
   units_ = " (it was " +
            describeObject(unnamed ? &*unnamed : nullptr, axis_->config(), ticket_->data()).value +
            ")";
+  const Result<std::string> counted = countedValue();
+  if (!counted) return finish(false, notWritten(counted.error().message));
   const Result<fieldbus::Bytes> data =
-      unnamed ? encodeObject(*unnamed, value_) : encodeUnlisted(value_, ticket_->data().size());
+      unnamed ? encodeObject(*unnamed, *counted) : encodeUnlisted(*counted, ticket_->data().size());
   if (!data) return finish(false, notWritten(data.error().message));
   const std::string moves = offsetRefusal(id_, *data);
   if (!moves.empty()) return finish(false, notWritten(moves));

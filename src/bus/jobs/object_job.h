@@ -52,6 +52,8 @@ class ObjectJob final : public Job {
   bool finishRead();
   bool writeWithAskedSize();
   void download(const fieldbus::Bytes& data);
+  Result<std::string> countedValue() const;
+  std::string printedText(double number) const;
   void lock();
   /// Why an object with a mark cannot be written now; empty: it can.
   std::string strangerRefusal() const;

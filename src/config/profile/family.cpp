@@ -42,17 +42,6 @@ void readTiming(yaml::Section& section, DriveProfile& profile) {
   readToldTime(section, profile, {"power_off", timing.power_off, timing.power_object});
 }
 
-void readParameters(yaml::Section& profile_section, DriveProfile& profile) {
-  const auto value = profile_section.get("parameters");
-  if (!value) return;
-  yaml::Section section(*value);
-  readSubindices(section, "save", profile.parameters.save);
-  readSubindices(section, "restore", profile.parameters.restore);
-  readDuration(section, "timeout", yaml::Range{0.001, 600.0, false}, profile.parameters.timeout);
-  section.read("power_cycle_after_save", profile.parameters.power_cycle_after_save);
-  section.finish();
-}
-
 void readQuickStop(yaml::Section& section, DriveProfile& profile) {
   const auto value = section.get("quick_stop_holds");
   if (!value) return;
@@ -225,7 +214,7 @@ void readBehaviour(yaml::Section& section, DriveProfile& profile) {
   }
   section.read("reads_back", profile.reads_back);
   readQuickStop(section, profile);
-  readParameters(section, profile);
+  if (const auto value = section.get("parameters")) readParameters(*value, profile);
 }
 
 /// Numbers that the drive lets be read, each once.

@@ -50,12 +50,16 @@ void readWarnings(const yaml::Value& value, DriveProfile& profile);
 void readErrorDetails(const yaml::Value& value, DriveProfile& profile);
 /// `alarm_memory`. @pre objects were read
 void readAlarmMemory(const yaml::Value& value, DriveProfile& profile);
+/// `parameters`: what saves and restores them. @pre objects were read
+void readParameters(const yaml::Value& value, DriveProfile& profile);
 /// `bus_settings`. @pre objects were read
 void readBusSettings(const yaml::Value& value, DriveProfile& profile);
 /// `fault_memory`. @pre objects were read
 void readFaultMemory(const yaml::Value& value, DriveProfile& profile);
 /// `parameter_names`
 void readParameterNames(const yaml::Value& value, DriveProfile& profile);
+/// What numbers the parameters hold that `parameter_names` names: `whole`, `signed`, `steps`.
+void readParameterNumbers(yaml::Section& section, DriveProfile& profile);
 /// `checks`: what the drive must be set to, or say. @pre objects, modes and homing were read
 void readChecks(const yaml::Value& list, DriveProfile& profile);
 /// `statusword_needs`, `watches`, `fault_reads`. @pre objects were read

@@ -62,6 +62,7 @@ void readParameterNames(const yaml::Value& value, DriveProfile& profile) {
   section.require("last_group", "the highest group, a number");
   section.readInteger("last_group", names.last_group, 0, 0xFF);
   if (names.index + names.last_group > 0xFFFF) section.problem("the last group lies beyond FFFFh");
+  readParameterNumbers(section, profile);
   section.finish();
 }
 

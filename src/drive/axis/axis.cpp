@@ -217,6 +217,7 @@ void Axis::addNeighbour(Axis& other) { impl_->core.basis().neighbours.add(other.
 std::string Axis::deviceRefusal() const { return impl_->core.basis().neighbours.refusal(); }
 std::string Axis::neighbourText() const { return impl_->core.basis().neighbours.text(); }
 void Axis::endCalibration() { impl_->calibrating.clear(); }
+void Axis::noteWritten(fieldbus::ObjectId object) { impl_->core.basis().written.insert(object); }
 
 Result<void> Axis::command(double value, Time now) {
   std::string refusal = motionRefusal();

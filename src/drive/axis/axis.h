@@ -62,8 +62,9 @@ struct ProcedureStatus {
 /// What is asked of an axis.
 struct ProcedureRequest {
   ProcedureKind kind = ProcedureKind::none;
-  std::string mode;       ///< set_mode: canonical name
-  double position = 0.0;  ///< set_position: joint value the present position shall have
+  std::string mode;        ///< set_mode: canonical name
+  double position = 0.0;   ///< set_position: joint value the present position shall have
+  bool confirmed = false;  ///< restore_parameters: what is lost by it is known
 };
 
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -182,6 +183,8 @@ class Axis {
   /// What was measured before counts in other coordinates: waits for the drive to tell anew.
   void measureAnew(bool device = false);
   void endCalibration();
+  /// Somebody had an object written, which save_parameters may have to write again.
+  void noteWritten(fieldbus::ObjectId object);
 
   /// A streamed command for the active mode, in joint units (rad, m, per s, N m, N): led there
   /// within the joint's limits. A velocity or effort that is not renewed within command_timeout

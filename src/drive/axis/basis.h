@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <set>
 #include <string>
 
 #include "drive/axis/axis.h"
@@ -36,6 +37,7 @@ struct AxisBasis {
   Time moved_at = Time::min();
   Notices notices;
   Neighbours neighbours;
+  std::set<ObjectId> written;  ///< by services, since the driver started or they were saved
 };
 
 }  // namespace cia402::drive

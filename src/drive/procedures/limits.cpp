@@ -96,6 +96,11 @@ struct Steps {
     return settings() + writes(profile.homing.writes) + limits() + enable() + timing.state_change +
            axis.homing->timeout + transfer() + timing.state_change + limits() + change();
   }
+  Duration rewrite() const {  // SaveBySwitch
+    constexpr int kMostWritten = 100;
+    return profile.parameters.recipes.memory.object.empty() ? Duration(0)
+                                                            : 2 * kMostWritten * transfer();
+  }
   Duration store(const std::vector<std::uint8_t>& subindices) const {
     return static_cast<int>(subindices.size()) * (profile.parameters.timeout + transfer());
   }
@@ -141,7 +146,7 @@ Duration timeLimit(ProcedureKind kind, const AxisConfig& config,
     case ProcedureKind::set_position:
       return kMargin + steps.declare();
     case ProcedureKind::save_parameters:
-      return kMargin + steps.store(config.saved());
+      return kMargin + steps.store(config.saved()) + steps.rewrite();
     case ProcedureKind::restore_parameters:
       return kMargin + steps.store(config.restored()) + steps.boot();
   }

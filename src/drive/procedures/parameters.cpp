@@ -3,7 +3,7 @@
 
 #include "common/text.h"
 #include "drive/procedures/limits.h"
-#include "drive/procedures/procedure.h"
+#include "drive/procedures/parameter_step.h"
 #include "drive/sentence.h"
 #include "fieldbus/abort_code.h"
 
@@ -38,40 +38,19 @@ std::string groupText(const Storage& storage, std::uint8_t subindex) {
          (subindex <= 3 ? kNames[subindex] : "parameters of the maker") + ")";
 }
 
-/// Why the parameters cannot be touched now; empty if they can.
-std::string powerRefusal(AxisCore& axis, const Storage& storage) {
-  const std::string what = axis.who() + ": cannot " + storage.verb + " parameters: ";
-  if (!axis.state().feedback_valid) return what + "no fresh statusword says that it is disabled";
-  if (!axis.powerOff()) {
-    return what + "the axis is not disabled (" + toString(axis.state().state) +
-           "); disable it first";
-  }
-  if (axis.generator().moving()) return what + "the axis moves; wait until it is at rest";
-  const std::string others = axis.basis().neighbours.refusal();
-  return others.empty() ? others : what + others;
-}
-
-/// What the device's memory holds is that of all its axes.
-void loseZeros(AxisCore& axis) {
-  axis.loseZero();
-  axis.measureAnew();
-  axis.basis().neighbours.loseZero();
-  axis.basis().neighbours.measureAnew();
-}
-
 /// Writes the signature to each chosen sub-index of 1010h or 1011h that can be commanded so.
-class StorageStep {
+class StorageStep final : public ParameterStep {
  public:
   StorageStep(const Storage& storage, std::vector<std::uint8_t> subindices)
       : storage_(storage), subindices_(std::move(subindices)) {}
 
-  Outcome advance(const Context& context) {
+  Outcome advance(const Context& context) override {
     while (next_ < subindices_.size()) {
       if (next_ > 0 && !ticket_ && !context.axis.state().feedback_valid) {  // see loseZeros()
         context.show("waiting for feedback", "the axis to tell its state anew");
         return Outcome::running();
       }
-      const std::string refusal = powerRefusal(context.axis, storage_);
+      const std::string refusal = parameterRefusal(context.axis, storage_.verb);
       if (!refusal.empty()) return Outcome::failed(refusal + done());
       if (next_ == 0 && !ticket_ && !context.axis.feedback().atStandstill()) {
         context.show("waiting for rest", "the axis to be seen standing");
@@ -95,8 +74,7 @@ class StorageStep {
     }
     return Outcome::done();
   }
-  /// "1010:01 (all parameters)".
-  const std::string& what() const { return done_; }
+  std::string what() const override { return done_; }
 
  private:
   ObjectId object() const { return {storage_.index, subindices_[next_]}; }
@@ -154,14 +132,13 @@ class StorageStep {
 
 class SaveParameters : public Procedure {
  public:
-  explicit SaveParameters(std::vector<std::uint8_t> subindices)
-      : storing_(saving(), std::move(subindices)) {}
+  explicit SaveParameters(std::unique_ptr<ParameterStep> storing) : storing_(std::move(storing)) {}
 
   Outcome advance(const Context& context) override {
     AxisCore& axis = context.axis;
-    const Outcome outcome = storing_.advance(context);
+    const Outcome outcome = storing_->advance(context);
     if (!outcome.isDone()) return outcome;
-    const std::string saved = axis.who() + ": saved " + storing_.what() +
+    const std::string saved = axis.who() + ": saved " + storing_->what() +
                               " in the drive's memory after " +
                               seconds(context.now - context.status.started);
     if (!axis.profile().parameters.power_cycle_after_save) return Outcome::done(saved);
@@ -174,24 +151,24 @@ class SaveParameters : public Procedure {
   }
 
  private:
-  StorageStep storing_;
+  std::unique_ptr<ParameterStep> storing_;
 };
 
 /// Restored values count from the next reset (CiA 301, 7.5.2.14), so the device is reset; the
 /// driver configures it again and leaves it disabled.
 class RestoreParameters : public Procedure {
  public:
-  explicit RestoreParameters(std::vector<std::uint8_t> subindices)
-      : restoring_(restoring(), std::move(subindices)) {}
+  explicit RestoreParameters(std::unique_ptr<ParameterStep> restoring)
+      : restoring_(std::move(restoring)) {}
 
   Outcome advance(const Context& context) override {
     if (resetting_) return awaitBoot(context);
-    const Outcome outcome = restoring_.advance(context);
+    const Outcome outcome = restoring_->advance(context);
     if (!outcome.isDone()) return outcome;
     const std::string others = context.axis.basis().neighbours.refusal();
     if (!others.empty()) {
       return Outcome::failed(context.axis.who() + ": restored the factory's values of " +
-                             restoring_.what() + ", but did not reset the drive, as " + others +
+                             restoring_->what() + ", but did not reset the drive, as " + others +
                              ", then call it again: they count after a reset only");
     }
     resetting_ = true;
@@ -210,8 +187,9 @@ class RestoreParameters : public Procedure {
 
   Outcome awaitBoot(const Context& context) {
     AxisCore& axis = context.axis;
-    const std::string restored =
-        axis.who() + ": restored the factory's values of " + restoring_.what();
+    const std::string then = axis.profile().parameters.recipes.restore.then;
+    const std::string restored = axis.who() + ": restored the factory's values of " +
+                                 restoring_->what() + (then.empty() ? "" : " (" + then + ")");
     if (axis.deviceReady()) {
       const std::string gap = axis.device().restartGap();
       return Outcome::done(restored +
@@ -235,27 +213,64 @@ class RestoreParameters : public Procedure {
   }
 
   bool resetting_ = false;
-  StorageStep restoring_;
+  std::unique_ptr<ParameterStep> restoring_;
   Time reset_at_{};
 };
 
 std::string refusal(AxisCore& axis, const Storage& storage, const char* what) {
   const std::string away = deviceRefusal(axis, what);
-  return away.empty() ? powerRefusal(axis, storage) : away;
+  return away.empty() ? parameterRefusal(axis, storage.verb) : away;
 }
 
 }  // namespace
 
+std::string parameterRefusal(AxisCore& axis, const std::string& verb) {
+  const std::string what = axis.who() + ": cannot " + verb + " parameters: ";
+  if (!axis.state().feedback_valid) return what + "no fresh statusword says that it is disabled";
+  if (!axis.powerOff()) {
+    return what + "the axis is not disabled (" + toString(axis.state().state) +
+           "); disable it first";
+  }
+  if (axis.generator().moving()) return what + "the axis moves; wait until it is at rest";
+  const std::string others = axis.basis().neighbours.refusal();
+  return others.empty() ? others : what + others;
+}
+
+void loseZeros(AxisCore& axis) {
+  axis.loseZero();
+  axis.measureAnew();
+  axis.basis().neighbours.loseZero();
+  axis.basis().neighbours.measureAnew();
+}
+
 Result<std::unique_ptr<Procedure>> makeSaveParameters(AxisCore& axis) {
   const std::string why_not = refusal(axis, saving(), "save parameters");
   if (!why_not.empty()) return Error{why_not};
-  return std::unique_ptr<Procedure>(std::make_unique<SaveParameters>(axis.config().saved()));
+  std::unique_ptr<ParameterStep> step;
+  if (axis.profile().parameters.recipes.memory.object.empty()) {
+    step = std::make_unique<StorageStep>(saving(), axis.config().saved());
+  } else {
+    step = makeSaveBySwitch();
+  }
+  return std::unique_ptr<Procedure>(std::make_unique<SaveParameters>(std::move(step)));
 }
 
-Result<std::unique_ptr<Procedure>> makeRestoreParameters(AxisCore& axis) {
+Result<std::unique_ptr<Procedure>> makeRestoreParameters(AxisCore& axis, bool confirmed) {
   const std::string why_not = refusal(axis, restoring(), "restore parameters");
   if (!why_not.empty()) return Error{why_not};
-  return std::unique_ptr<Procedure>(std::make_unique<RestoreParameters>(axis.config().restored()));
+  const bool by_object = !axis.profile().parameters.recipes.restore.object.empty();
+  if (by_object && !confirmed) {
+    return Error{axis.who() + ": nothing was restored: it would be by " +
+                 restoreText(axis.profile()) + "; the service ~" + axis.config().name +
+                 "/factory_reset with confirm: true does it"};
+  }
+  std::unique_ptr<ParameterStep> step;
+  if (by_object) {
+    step = makeRestoreByObject();
+  } else {
+    step = std::make_unique<StorageStep>(restoring(), axis.config().restored());
+  }
+  return std::unique_ptr<Procedure>(std::make_unique<RestoreParameters>(std::move(step)));
 }
 
 }  // namespace cia402::drive

@@ -58,7 +58,7 @@ Result<std::unique_ptr<Procedure>> makeProcedure(const ProcedureRequest& request
     case ProcedureKind::save_parameters:
       return makeSaveParameters(axis);
     case ProcedureKind::restore_parameters:
-      return makeRestoreParameters(axis);
+      return makeRestoreParameters(axis, request.confirmed);
     case ProcedureKind::none:
       break;
   }

@@ -80,8 +80,9 @@ Result<std::unique_ptr<Procedure>> makeQuickStop(AxisCore& axis);
 Result<std::unique_ptr<Procedure>> makeHalt(AxisCore& axis);
 Result<std::unique_ptr<Procedure>> makeSetMode(AxisCore& axis, const std::string& mode);
 Result<std::unique_ptr<Procedure>> makeSetPosition(AxisCore& axis, double position);
-Result<std::unique_ptr<Procedure>> makeSaveParameters(AxisCore& axis);     // parameters.cpp
-Result<std::unique_ptr<Procedure>> makeRestoreParameters(AxisCore& axis);  // the same
+Result<std::unique_ptr<Procedure>> makeSaveParameters(AxisCore& axis);  // parameters.cpp
+Result<std::unique_ptr<Procedure>> makeRestoreParameters(AxisCore& axis,
+                                                         bool confirmed);  // the same
 
 /// A check before something that needs standstill: running while it is not known yet (a window of
 /// Standstill is not full), failed in motion. @param since when the waiting began

@@ -52,4 +52,41 @@ std::string ParameterNames::nameOf(fieldbus::ObjectId id) const {
          twoDigits(static_cast<unsigned>(id.subindex - subindex), 10);
 }
 
+std::optional<fieldbus::DataType> ParameterNames::typeOf(fieldbus::ObjectId id,
+                                                         std::size_t bytes) const {
+  using fieldbus::DataType;
+  if (!whole || nameOf(id).empty() || (bytes != 2 && bytes != 4)) return {};
+  if (with_sign.find(id) != nullptr) return bytes == 2 ? DataType::int16 : DataType::int32;
+  return bytes == 2 ? DataType::uint16 : DataType::uint32;
+}
+
+std::string ParameterNames::printed(fieldbus::ObjectId id, std::int64_t number) const {
+  const unsigned* const behind = decimals.find(id);
+  if (behind == nullptr) return {};
+  std::string digits = std::to_string(number < 0 ? -number : number);
+  if (digits.size() <= *behind) digits.insert(0, *behind + 1 - digits.size(), '0');
+  digits.insert(digits.size() - *behind, 1, '.');
+  return (number < 0 ? "-" : "") + digits;
+}
+
+Result<std::string> ParameterNames::counted(fieldbus::ObjectId id, const std::string& text) const {
+  const unsigned* const behind = decimals.find(id);
+  const std::size_t point = text.find('.');
+  const bool plain = text.find_first_not_of("0123456789.-") == std::string::npos;
+  if (behind == nullptr || point == std::string::npos || !plain) return text;
+  std::string after = text.substr(point + 1);
+  const std::size_t last = after.find_last_not_of('0');
+  after.resize(last == std::string::npos ? 0 : last + 1);
+  if (after.size() > *behind) {
+    return Error{text + " has more than the " + std::to_string(*behind) +
+                 " digits behind the point that the drive counts by"};
+  }
+  after.append(*behind - after.size(), '0');
+  const bool negative = text[0] == '-';
+  std::string digits = text.substr(negative ? 1 : 0, point - (negative ? 1 : 0)) + after;
+  const std::size_t first = digits.find_first_not_of('0');
+  digits.erase(0, first == std::string::npos ? digits.size() - 1 : first);
+  return (negative ? "-" : "") + digits;
+}
+
 }  // namespace cia402::drive

@@ -19,6 +19,7 @@
 #include "drive/profile/object_range.h"
 #include "drive/profile/offsets.h"
 #include "drive/profile/parameter_names.h"
+#include "drive/profile/parameter_recipes.h"
 #include "drive/profile/position_loop.h"
 #include "drive/profile/setting_check.h"
 #include "drive/profile/supervision.h"
@@ -304,6 +305,7 @@ struct DriveProfile {
     std::vector<std::uint8_t> save{1}, restore{1};
     Duration timeout{std::chrono::seconds(10)};  ///< for the drive to confirm one
     bool power_cycle_after_save = false;         ///< it takes no enabling before
+    ParameterRecipes recipes;
   } parameters;
   std::map<std::uint16_t, ErrorText> errors;
   std::uint16_t error_bits = 0;  ///< each of these is a code, which may stand beside another one

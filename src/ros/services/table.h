@@ -18,6 +18,8 @@ void offerSaveDcf(Offer& offer);
 void offerDigitalOutputs(Offer& offer);
 void offerTouchProbe(Offer& offer);
 void offerBusParameters(Offer& offer);
+void offerLoadDcf(Offer& offer);
+void offerFactoryReset(Offer& offer);
 
 /// A row of the table: what offers it, and whether for the bus, for each axis, or for both.
 struct ServiceEntry {
@@ -38,6 +40,8 @@ inline constexpr ServiceEntry kServices[] = {
     {offerDigitalOutputs, false, true},
     {offerTouchProbe, false, true},
     {offerBusParameters, false, true},
+    {offerLoadDcf, false, true},
+    {offerFactoryReset, false, true},
 };
 // clang-format on
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/definition/memory.h"
 #include "sim/definition/quirks.h"
 #include "sim/definition/terminals.h"
 #include "sim/device/device.h"
@@ -235,6 +236,7 @@ struct DriveDefinition {
   bool traps_non_finite = false;  ///< NaN and infinity in a float object: fault "not_a_number"
   bool traps_negative_zero = false;
   std::optional<fieldbus::ObjectId> node_id;  ///< object whose saved value is the node-ID
+  MemoryDefinition memory;
 
   /// What the objects of the roles output_n_function say where 60FEh is shown.
   std::int64_t commanded_output = 0;

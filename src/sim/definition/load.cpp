@@ -83,6 +83,7 @@ void readDefinition(DefinitionReader& reader, bool extends, DriveDefinition& out
     readMode(number, value, reader, out);
   });
   readNodeId(reader, out);
+  reader.section("memory", [&](DefinitionReader& r) { readMemory(r, out.memory); });
   reader.section("state_machine", [&](DefinitionReader& r) { readStateMachine(r, out); });
   reader.section("quirks", [&](DefinitionReader& r) { readQuirks(r, out.quirks); });
   reader.section("homing", [&](DefinitionReader& r) { readHoming(r, out.homing); });

@@ -82,6 +82,29 @@ void readNodeId(DefinitionReader& reader, DriveDefinition& out) {
   if (!out.node_id) reader.problem("node_id", "must be an object like \"2003:01\"");
 }
 
+void readMemory(DefinitionReader& reader, MemoryDefinition& out) {
+  const auto one = [&](const char* key, std::optional<fieldbus::ObjectId>& object) {
+    std::string text;
+    reader.read(key, text);
+    if (text.empty()) return;
+    object = fieldbus::parseObjectId(text);
+    if (!object) reader.problem(key, "must be an object like \"2003:01\"");
+  };
+  const auto numbers = [&](const char* key, std::map<fieldbus::ObjectId, std::int64_t>& objects) {
+    reader.each(key, [&](const std::string& name, const yaml::Value& value) {
+      const auto object = fieldbus::parseObjectId(name);
+      const auto number = value.integer(0, 0xFFFFFFFF);
+      if (!object) reader.problem(key, "'" + name + "' is no object like \"2003:01\"");
+      if (object && number) objects[*object] = *number;
+    });
+  };
+  one("keeps", out.keeps);
+  one("bit_rate", out.bit_rate);
+  numbers("reset", out.reset);
+  numbers("factory", out.factory);
+  numbers("silent_unless", out.silent_unless);
+}
+
 // Objects of the drive that the file extends, if any, go and come one by one.
 void readDictionary(DefinitionReader& reader, bool extends, DriveDefinition& out) {
   if (reader.has("without")) {

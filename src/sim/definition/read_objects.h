@@ -19,5 +19,7 @@ void readEncoding(DefinitionReader& reader, DriveDefinition& out);
 void readObjects(DefinitionReader& reader, DriveDefinition& out);
 /// `node_id:`.
 void readNodeId(DefinitionReader& reader, DriveDefinition& out);
+/// The `memory:` section. @pre the dictionary was read
+void readMemory(DefinitionReader& reader, MemoryDefinition& out);
 
 }  // namespace cia402::sim

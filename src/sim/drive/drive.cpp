@@ -49,7 +49,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
         device(node, gate, dictionary, definition->communication, *this),
         emergencies(*definition, device),
         store(
-            dictionary, definition->axisCount(),
+            dictionary, definition->memory, definition->axisCount(),
             [this] { return !definition->stores_while_enabled && enabled(); },
             [this] { forEach(&DriveCore::onParametersStored); }) {
     for (unsigned i = 0; i < definition->axisCount(); ++i) {
@@ -102,6 +102,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
     for (const Axis& axis : axes) {
       if (refused == 0) refused = axis.core.refuseWrite(entry, number);
     }
+    if (refused == 0) store.keep(entry, number);
     return refused;
   }
 
@@ -160,6 +161,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
     heard = false;
     for (Axis& axis : axes) axis.terminals.start(axis.core.motion().switches());
     forEach(&DriveCore::start, cold, time);
+    if (cold) gate.foreign = store.silent();
     cold = false;
   }
   std::optional<canopen::NodeId> ownNodeId() const override {
@@ -283,8 +285,8 @@ void Drive::powerOff(Time now) {
 
 void Drive::receive(const can::Frame& frame, Time now) {
   impl_->bringTo(now);
-  impl_->heard = impl_->heard || !impl_->gate.closed;
-  if (!impl_->gate.closed) impl_->device.receive(frame, now);
+  impl_->heard = impl_->heard || !impl_->gate.shut();
+  if (!impl_->gate.shut()) impl_->device.receive(frame, now);
   impl_->flushChanges();
 }
 

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 
+#include "sim/definition/memory.h"
 #include "sim/dictionary/object_dictionary.h"
 
 namespace cia402::sim {
@@ -17,14 +18,19 @@ namespace cia402::sim {
 class ParameterStore {
  public:
   /// Installs itself where `dictionary` has 1010h and 1011h; both must outlive it.
-  /// @param axes of the device. @param enabled whether one of them is.
+  /// @param memory of its own; must outlive it. @param axes of the device. @param enabled whether
+  /// one of them is.
   /// @param stored is called after a "save".
-  ParameterStore(ObjectDictionary& dictionary, unsigned axes, std::function<bool()> enabled,
-                 std::function<void()> stored);
+  ParameterStore(ObjectDictionary& dictionary, const MemoryDefinition& memory, unsigned axes,
+                 std::function<bool()> enabled, std::function<void()> stored);
   /// What a "load" into the sub-index does.
   void restore(std::uint8_t subindex);
   /// The default of an object moves with the node-ID; what was saved in its place stays.
   void moveDefault(ObjectId id, std::int64_t by);
+  /// A write is about to be taken, which stays where MemoryDefinition::keeps says so.
+  void keep(const Entry& entry, std::uint64_t number);
+  /// By what it was switched on with it neither hears the bus nor is heard.
+  bool silent() const;
   ParameterStore(const ParameterStore&) = delete;
   ParameterStore& operator=(const ParameterStore&) = delete;
 
@@ -34,12 +40,15 @@ class ParameterStore {
   void store(std::uint8_t subindex);
 
   bool isParameter(const Entry& entry) const;
+  void resetByObject();
 
   ObjectDictionary& dictionary_;
+  const MemoryDefinition& memory_;
   unsigned axes_;
   std::function<bool()> enabled_;
   std::function<void()> stored_;
   std::map<ObjectId, std::uint64_t> factory_;
+  std::uint64_t came_with_ = 0;  ///< number of its bit rate
 };
 
 }  // namespace cia402::sim

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "sim/drive/values.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -149,6 +150,7 @@ constexpr RoleInfo kRoles[] = {
     {R::brake_close_speed, "brake_close_speed", {0, 0}, Q::motor_speed},
     {R::brake_close_time, "brake_close_time", {0, 0}, Q::time},
     {R::brake_power_time, "brake_power_time", {0, 0}, Q::time},
+    {R::rpm_units, "rpm_units", {0, 0}, Q::none},
 };
 static_assert(sizeof(kRoles) / sizeof(kRoles[0]) == kRoleCount, "one line for each role");
 
@@ -223,6 +225,10 @@ std::uint64_t encodeNumber(double value, const Entry& entry, Encoding encoding) 
   return (bits / 65535U) & 0xFFFFU;
 }
 
+namespace {
+constexpr double kHardest = 1000.0 / 60.0 / 0.001;  // turns/s^2: 1000 rpm in a millisecond
+}  // namespace
+
 DriveValues::DriveValues(const DriveDefinition& definition, unsigned axis,
                          ObjectDictionary& dictionary, double counts_per_turn) {
   for (const RoleInfo& info : kRoles) {
@@ -240,6 +246,9 @@ DriveValues::DriveValues(const DriveDefinition& definition, unsigned axis,
                                 ? own->second
                                 : definition.units[static_cast<std::size_t>(info.quantity)];
     slot.scale = unit.per == UnitScale::Per::count ? unit.factor * counts_per_turn : unit.factor;
+    const bool by_own = own != definition.units_of.end();
+    slot.speed = !by_own && info.quantity == Quantity::velocity;
+    slot.ramp = !by_own && info.quantity == Quantity::acceleration;
     slot.geared = unit.per == UnitScale::Per::gear;
     slot.per_encoder = slot.geared || unit.per == UnitScale::Per::encoder;
     const auto special = definition.encodings.find(object);
@@ -266,6 +275,7 @@ double DriveValues::number(const Slot& slot) const {
   }
   const double number =
       slot.sign != 0 ? static_cast<double>(integer(slot)) : static_cast<double>(slot.entry->number);
+  if (slot.ramp && inRpm()) return kHardest / std::max(number, 1.0);
   return number / scale(slot);
 }
 

@@ -149,6 +149,7 @@ enum class Role : std::uint8_t {
   brake_close_speed,     ///< vendor object: below that speed ...
   brake_close_time,      ///< ... or so long after the stop began
   brake_power_time,      ///< vendor object: where it stood then the power stays for so long
+  rpm_units,  ///< vendor object: 1: speeds count in 0.01 rpm, ramps are the ms from 0 to 1000 rpm
   count,
 };
 inline constexpr std::size_t kRoleCount = static_cast<std::size_t>(Role::count);
@@ -240,9 +241,16 @@ class DriveValues {
     Encoding encoding = Encoding::integer;
     std::uint64_t bits = 0, sign = 0;  ///< all bits of the number, and its sign's; 0: unsigned
     bool per_encoder = false, geared = false;
+    bool speed = false, ramp = false;  ///< Role::rpm_units changes it
   };
   double scale(const Slot& slot) const {
+    if (slot.speed && inRpm()) return kRpmSpeeds;
     return slot.per_encoder ? slot.scale * countsPerUnit(slot) : slot.scale;
+  }
+  static constexpr double kRpmSpeeds = 6000.0;  ///< 0.01 rpm in a turn a second
+  bool inRpm() const {
+    const Slot& units = slot(Role::rpm_units);
+    return units.entry != nullptr && units.entry->number == 1;
   }
   double countsPerUnit(const Slot& slot) const;
   double number(const Slot& slot) const;

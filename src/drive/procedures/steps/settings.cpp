@@ -273,6 +273,13 @@ void SettingsStep::planCounts(AxisCore& axis) {
   set(counts_[1], rule.times[1], wanted);
 }
 
+/// Until its power is off, what was written must be in its memory.
+std::string SettingsStep::keptBy(AxisCore& axis, const SettingCheck& check) const {
+  if (profile_->parameters.recipes.memory.object.empty()) return "; switch it off and on";
+  axis.basis().written.insert(profile_->find(check.objects.front())->id);
+  return "; call save_parameters, for it is not kept otherwise, then switch it off and on";
+}
+
 Outcome SettingsStep::judge(const Context& context) {
   AxisCore& axis = context.axis;
   std::string problem;
@@ -303,7 +310,7 @@ Outcome SettingsStep::judge(const Context& context) {
                             ", which counts once its power was off";
     axis.control().wantPowerCycle(why);
     axis.basis().neighbours.wantPowerCycle(why);
-    append(problem, why + "; switch it off and on");
+    append(problem, why + keptBy(axis, *check));
   }
   if (enabling()) {
     compareReadBack(axis);

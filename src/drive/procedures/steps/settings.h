@@ -44,6 +44,7 @@ class SettingsStep {
   std::vector<Difference> differences() const;
   std::optional<Difference> compare(const SettingCheck& check) const;
   std::optional<Difference> compareAmongThem(const SettingCheck& check) const;
+  std::string keptBy(AxisCore& axis, const SettingCheck& check) const;
   void losePosition(const Context& context);
   bool settled(const Context& context);
   bool mayWrite(AxisCore& axis, const SettingCheck& check) const;

@@ -1,0 +1,187 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// What an SV660C keeps without power: H0C.13 [L9392-9414], H02.31 [L3726-3740].
+#include "bus/jobs/factory_reset.h"
+#include "system/sv660c_scene.h"
+
+namespace cia402 {
+namespace {
+
+using namespace std::chrono_literals;
+using drive::ProcedureKind;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr unsigned kFactoryGain = 400;  // H08.00 of the factory [L6442]
+
+/// Booted and at rest; not enabled.
+struct Sv660cMemory : Scene {
+  explicit Sv660cMemory(const std::string& yaml = sv660cJoint()) : Scene(loadText(yaml)) {
+    EXPECT_TRUE(boot()) << told();
+    run(500ms);
+  }
+  void powerCycle() {
+    inject("joint", "power_cycle");
+    run(5s);
+  }
+  std::uint64_t gain() { return sv660cNumber(*this, 0x2008, 1); }
+  std::uint64_t keeps() { return sv660cNumber(*this, 0x200C, 0x0E); }
+  bus::Answer save() { return procedure(ProcedureKind::save_parameters, "joint"); }
+  bus::Answer reset(bool confirm) { return call(bus::FactoryResetCommand{"joint", confirm}); }
+  /// "200C:0E=1" of every write by SDO from now on.
+  std::vector<std::string>& watchWrites() {
+    world().bus().setMonitor([this](const can::Frame& frame, Time) {
+      if (frame.id != 0x601 || (frame.data[0] & 0xE0) != 0x20) return;
+      const fieldbus::ObjectId id{static_cast<std::uint16_t>(frame.data[1] + 256U * frame.data[2]),
+                                  frame.data[3]};
+      const unsigned number = frame.data[4] + 256U * frame.data[5];
+      writes_.push_back(fieldbus::toString(id) + "=" + std::to_string(number));
+    });
+    return writes_;
+  }
+
+ private:
+  std::vector<std::string> writes_;
+};
+
+TEST(Sv660cSaving, IsWhatKeepsParametersAndNothingElse) {
+  Sv660cMemory scene;
+  ASSERT_TRUE(sv660cWrite(scene, "speed_gain", "250").success);
+  EXPECT_EQ(scene.keeps(), 0U) << "H0C.13";
+  scene.powerCycle();
+  EXPECT_EQ(scene.gain(), kFactoryGain) << "nobody has saved it";
+  ASSERT_TRUE(sv660cWrite(scene, "speed_gain", "250").success);
+  ASSERT_TRUE(sv660cWrite(scene, "H08.09", "0").success) << "which the profile does not name";
+  const auto& writes = scene.watchWrites();
+  const bus::Answer saved = scene.save();
+  EXPECT_TRUE(saved.success) << saved.message;
+  EXPECT_THAT(saved.message, HasSubstr("joint (node 1): saved 2008:01 H08.00 speed_gain, "
+                                       "2008:0A H08.09 in the drive's memory"));
+  EXPECT_THAT(writes, ElementsAre("200C:0E=1", "2008:01=250", "2008:0A=0", "200C:0E=0"));
+  scene.powerCycle();
+  EXPECT_EQ(scene.gain(), 250U);
+  EXPECT_EQ(sv660cNumber(scene, 0x2008, 0x0A), 0U);
+  EXPECT_TRUE(allReady(scene.robot())) << scene.told();
+}
+
+TEST(Sv660cSaving, SavesNothingThatWasNotWrittenOrCommandsSomething) {
+  Sv660cMemory scene;
+  const auto& writes = scene.watchWrites();
+  EXPECT_THAT(scene.save().message, HasSubstr("saved nothing, as no service has written"));
+  EXPECT_THAT(writes, ElementsAre());
+  ASSERT_TRUE(sv660cWrite(scene, "following_error_window", "1000").success);
+  ASSERT_TRUE(sv660cWrite(scene, "emergency_stop", "0").success);
+  ASSERT_TRUE(sv660cWrite(scene, "speed_gain", "250").success);
+  scene.watchWrites().clear();
+  const bus::Answer saved = scene.save();
+  EXPECT_TRUE(saved.success) << saved.message;
+  EXPECT_THAT(saved.message, HasSubstr("but not 6065:00 following_error_window"));
+  EXPECT_THAT(writes, ElementsAre("200C:0E=1", "2008:01=250", "200C:0E=0"));
+  scene.watchWrites().clear();
+  EXPECT_THAT(scene.save().message, HasSubstr("saved nothing")) << "it was saved already";
+}
+
+TEST(Sv660cSaving, EndsWithTheMemoryClosedWhateverComesOfIt) {
+  Sv660cMemory scene;
+  ASSERT_TRUE(sv660cWrite(scene, "speed_gain", "250").success);
+  scene.drive("joint").dictionary().find({0x2008, 1})->access = sim::Access::ro;
+  const bus::Answer refused = scene.save();
+  EXPECT_FALSE(refused.success);
+  EXPECT_THAT(refused.message, AllOf(HasSubstr("cannot save parameters"), HasSubstr("2008:01"),
+                                     HasSubstr("0x06010002")));
+  EXPECT_EQ(scene.keeps(), 0U);
+}
+
+TEST(Sv660cSaving, IsRefusedWhileTheAxisIsEnabled) {
+  Sv660cReady scene;
+  ASSERT_TRUE(sv660cWrite(scene, "speed_gain", "250").success);
+  const bus::Answer refused = scene.procedure(ProcedureKind::save_parameters, "joint");
+  EXPECT_FALSE(refused.success);
+  EXPECT_THAT(refused.message, HasSubstr("disable it first"));
+  EXPECT_EQ(sv660cNumber(scene, 0x200C, 0x0E), 0U);
+}
+
+// H01.61 counts from the next power-on [L3149], and only what is in the memory is there then.
+TEST(Sv660cSaving, KeepsTheCommandRateThatTheDriverWasToAdjust) {
+  Sv660cMemory scene(sv660cJoint(
+      ", adjust: [command_rate]",
+      sv660cDelivered("[0x2001, 0x3E, command_scheduling_2_for_ip_mode, uint16, rw, -, 3]")));
+  const bus::Answer enabled = scene.procedure(ProcedureKind::enable);
+  EXPECT_FALSE(enabled.success);
+  EXPECT_THAT(enabled.message, HasSubstr("call save_parameters, for it is not kept otherwise, "
+                                         "then switch it off and on"));
+  const bus::Answer saved = scene.save();
+  EXPECT_THAT(saved.message, HasSubstr("saved 2001:3E H01.61 command_rate"));
+  scene.powerCycle();
+  EXPECT_EQ(sv660cNumber(scene, 0x2001, 0x3E), 2U);
+  const bus::Answer again = scene.procedure(ProcedureKind::enable);
+  EXPECT_TRUE(again.success) << again.message;
+}
+
+TEST(Sv660cFactoryReset, IsNotDoneUnlessThatIsConfirmed) {
+  Sv660cMemory scene;
+  ASSERT_TRUE(sv660cWrite(scene, "speed_gain", "250").success);
+  const auto& writes = scene.watchWrites();
+  const bus::Answer asked = scene.reset(false);
+  EXPECT_FALSE(asked.success);
+  EXPECT_THAT(asked.message,
+              AllOf(HasSubstr("joint (node 1): nothing was restored"),
+                    HasSubstr("initialise_parameters (2002:20) = 1: node-ID, bit rate and the "
+                              "choice of CANopen become those of the factory"),
+                    HasSubstr("confirm: true")));
+  const bus::Answer trigger = scene.procedure(ProcedureKind::restore_parameters, "joint");
+  EXPECT_FALSE(trigger.success);
+  EXPECT_THAT(trigger.message, HasSubstr("~joint/factory_reset with confirm: true"));
+  EXPECT_THAT(writes, ElementsAre());
+  EXPECT_EQ(scene.gain(), 250U);
+}
+
+// H02.00 is 1 from the factory, H0E.10 is 0: no CANopen from the next power-on [L9629-9647].
+TEST(Sv660cFactoryReset, BringsBackWhatTheFactoryHasSetAndSaysWhatMustFollow) {
+  Sv660cMemory scene;
+  ASSERT_TRUE(sv660cWrite(scene, "speed_gain", "250").success);
+  ASSERT_TRUE(scene.save().success);
+  const bus::Answer reset = scene.reset(true);
+  EXPECT_TRUE(reset.success) << reset.message;
+  EXPECT_THAT(reset.message, AllOf(HasSubstr("restored the factory's values of all parameters by "
+                                             "initialise_parameters (2002:20)"),
+                                   HasSubstr("at its panel set H0E.10 to 2, H02.00 to 8"),
+                                   HasSubstr("not homed")));
+  EXPECT_EQ(scene.gain(), kFactoryGain);
+  EXPECT_EQ(sv660cNumber(scene, 0x2002, 1), 1U);
+  EXPECT_EQ(sv660cNumber(scene, 0x2002, 0x20), 0U) << "the command itself does not stay";
+  const bus::Answer enabled = scene.procedure(ProcedureKind::enable);
+  EXPECT_FALSE(enabled.success);
+  EXPECT_THAT(enabled.message, HasSubstr("set H02.00 to 8"));
+  EXPECT_FALSE(scene.truth("joint").power_stage_on);
+  scene.powerCycle();
+  EXPECT_FALSE(allReady(scene.robot())) << "it has no CANopen any more";
+}
+
+TEST(Sv660cFactoryReset, IsRefusedWhileTheAxisIsEnabledAndMovesNothing) {
+  Sv660cReady scene;
+  scene.forget();
+  for (const bool confirm : {false, true}) {
+    const bus::Answer refused = scene.call(bus::FactoryResetCommand{"joint", confirm});
+    EXPECT_FALSE(refused.success);
+    EXPECT_THAT(refused.message, HasSubstr("the axis is not disabled"));
+  }
+  scene.run(200ms);
+  EXPECT_TRUE(scene.truth("joint").power_stage_on);
+  EXPECT_EQ(sv660cNumber(scene, 0x2002, 1), 8U);
+  expectNothingMoved(scene, "joint");
+}
+
+TEST(Sv660cFactoryReset, ThatTheDriveRefusesIsToldAndChangesNothing) {
+  Sv660cMemory scene;
+  scene.drive("joint").dictionary().find({0x2002, 0x20})->access = sim::Access::ro;
+  const bus::Answer refused = scene.reset(true);
+  EXPECT_FALSE(refused.success);
+  EXPECT_THAT(refused.message,
+              AllOf(HasSubstr("cannot restore parameters"), HasSubstr("0x06010002")));
+  EXPECT_EQ(sv660cNumber(scene, 0x2002, 1), 8U);
+  EXPECT_EQ(scene.node("joint").bootUps(), 1U) << "not reset";
+}
+
+}  // namespace
+}  // namespace cia402
