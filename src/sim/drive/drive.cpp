@@ -127,8 +127,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
     if (role == Role::alarm_select || saves || (command && entry.number == 1))
       axis.core.onWrite(*role);
     if (axis.terminals.holds(entry.id)) {
-      obey(axis.terminals.look(axis.core.motion().switches()), axis.core, dictionary,
-           definition->fault("terminal_setup"));
+      obey(axis.terminals, axis.core, dictionary, definition->fault("terminal_setup"));
     }
   }
 
@@ -157,7 +156,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
   void onPowerOn(Time time) override {
     now = time;
     heard = false;
-    for (Axis& axis : axes) axis.terminals.start(axis.core.motion().switches());
+    for (Axis& axis : axes) axis.terminals.start(axis.core);
     forEach(&DriveCore::start, cold, time);
     cold = false;
   }
@@ -362,9 +361,17 @@ void Drive::setProbe(unsigned probe, bool active, Time now, unsigned axis) {
 
 void Drive::setInput(unsigned bit, bool active, Time now, unsigned axis) {
   impl_->bringTo(now);
-  DriveCore& core = impl_->axes.at(axis).core;
-  core.obstacle().setInput(bit, active);
-  core.onObstacle();
+  Axis& changed = impl_->axes.at(axis);
+  changed.core.obstacle().setInput(bit, active);
+  changed.core.onObstacle();
+  obey(changed.terminals, changed.core, impl_->dictionary,
+       impl_->definition->fault("terminal_setup"));
+  impl_->flushChanges();
+}
+
+void Drive::setPulseWidth(double duty, Time now, unsigned axis) {
+  impl_->bringTo(now);
+  impl_->axes.at(axis).core.motion().maker().setDuty(duty);
   impl_->flushChanges();
 }
 

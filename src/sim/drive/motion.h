@@ -3,11 +3,14 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "sim/drive/cyclic_positions.h"
 #include "sim/drive/homing_mode.h"
+#include "sim/drive/maker_modes.h"
 #include "sim/drive/moving_axis.h"
 #include "sim/drive/profile_position.h"
+#include "sim/drive/stall_watch.h"
 #include "sim/drive/target_supervision.h"
 #include "sim/drive/touch_probe.h"
 
@@ -47,7 +50,8 @@ class DriveMotion {
   void cyclicTarget(double seconds, double into);
 
   void step();  ///< one kDriveStep
-  bool atRest() const { return axis_.motor.atRest(); }
+  /// The rotor stands, and is shown to.
+  bool atRest() const { return axis_.motor.atRest() && shown_velocity_ == axis_.motor.velocity(); }
   /// Neither demand nor rotor moves.
   bool standing() const;
   /// Bits 8 and 10 to 15 for the present mode; only meaningful while operation is enabled.
@@ -67,6 +71,10 @@ class DriveMotion {
   const MotionLimits& limits() const { return axis_.limits; }
   /// Name of a fault that homing has come to since it was asked last, or nullptr.
   const char* takeHomingFault() { return homing_.takeFault(); }
+  /// The motor has stalled since it was asked last.
+  bool takeStall() { return std::exchange(stalled_, false); }
+  MakerModes& maker() { return maker_; }
+  const MakerModes& maker() const { return maker_; }
   TouchProbes& probes() { return probes_; }
   /// Further bits of the inputs (60FDh) that are 1.
   void setInputs(std::uint32_t bits) { inputs_ = bits; }
@@ -87,6 +95,7 @@ class DriveMotion {
   void stepRotor(double from);
   void stepMode(double from);
   void limitTorque();
+  void filterVelocity();
   void halt();
 
   const AxisMechanics& mechanics_;
@@ -96,11 +105,15 @@ class DriveMotion {
   HomingMode homing_{axis_};
   TargetSupervision supervision_{axis_};
   TouchProbes probes_{axis_};
+  MakerModes maker_{axis_};
+  StallWatch stall_;
   double time_constant_;  ///< of the position loop, s
   bool powered_ = false;
   bool held_ = false;
   bool halted_ = false, paused_ = false, ramps_locked_ = false;
   bool started_ = false;  ///< a set-point or a search has begun in this mode, since it began
+  bool stalled_ = false;
+  double shown_velocity_ = 0.0;  ///< of the motor, as it is shown
   std::optional<Ramp> stop_;
   std::uint32_t inputs_ = 0;
   std::uint16_t controlword_ = 0;  ///< the last one in operation

@@ -133,6 +133,19 @@ enum class Role : std::uint8_t {
   input_3_function,
   input_4_function,
   input_5_function,
+  acceleration_clamp,  ///< vendor object: no profile or ramp accelerates more
+  velocity_filter,     ///< vendor object: so much later the actual velocity is shown
+  stall_error,         ///< vendor objects; see StallWatch
+  stall_speed,
+  stall_time,
+  maker_mode,  ///< vendor objects of MakerModes: 0: the modes of CiA 402
+  step_amount,
+  step_speed,
+  maker_speed_source,
+  maker_speed,
+  maker_acceleration_time,  ///< ms from 0 to 1000/min
+  maker_deceleration_time,
+  pulse_width,  ///< %, as it is seen
   count,
 };
 inline constexpr std::size_t kRoleCount = static_cast<std::size_t>(Role::count);
