@@ -16,14 +16,15 @@ struct Reading {
   const char* name;
   const char* mode;
   const char* drive;
-  const char* bus = "";  ///< further keys of it
+  const char* bus = "";   ///< further keys of it
+  const char* axis = "";  ///< and of the axis, as ", key: value"
 };
 void PrintTo(const Reading& reading, std::ostream* out) { *out << reading.name; }
 
 class DamiaoReading : public testing::TestWithParam<Reading> {
  protected:
   static std::string yaml() {
-    const std::string text = damiaoIn(GetParam().mode, "", GetParam().drive);
+    const std::string text = damiaoIn(GetParam().mode, GetParam().axis, GetParam().drive);
     return *GetParam().bus == '\0' ? text : withBus(GetParam().bus, text);
   }
   static void expectMoves(FamilyScene& scene) {
@@ -124,6 +125,13 @@ INSTANTIATE_TEST_SUITE_P(
         Reading{"NoFloatsAreTraps", kStream,
                 "float_traps: {non_finite: false, negative_zero: false}"},
         Reading{"WarningsGoOn", kSpeed, "state_machine: {warning_stops: false}"},
+        // rad of the rotor, ten to one [L1064]: the axis says so, and has the gear.
+        Reading{"RadiansOfTheRotor", kThree, "encoder: absolute", "",
+                ", output_shaft: false, gear_ratio: 10.0"},
+        Reading{"RadiansOfTheRotorInAStream", kStream, "encoder: absolute", "",
+                ", output_shaft: false, gear_ratio: 10.0"},
+        Reading{"RadiansOfTheRotorAsASpeed", kSpeed, "encoder: absolute", "",
+                ", output_shaft: false, gear_ratio: 10.0"},
         Reading{"ResumesWhileItMoves", kSpeed,
                 "state_machine: {resume_quick_stop_while_moving: true}"},
         Reading{

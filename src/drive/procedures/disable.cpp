@@ -27,9 +27,8 @@ class Disable : public Procedure {
       if (axis.feedback().mayMove()) return awaitRest(context);
       return finish(axis, faulted);
     }
-    const DriveProfile::Timing& timing = axis.profile().timing;
-    if (context.now - since_ <= timing.transition(5) + timing.transition(10))
-      return Outcome::running();
+    const Duration patience = axis.profile().timing.disablingInTurn(axis.config().disabling);
+    if (context.now - since_ <= patience) return Outcome::running();
     return Outcome::failed(axis.who() + ": disabling timed out after " +
                            seconds(context.now - since_) + "; " + report(axis));
   }

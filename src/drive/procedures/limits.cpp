@@ -75,7 +75,7 @@ struct Steps {
   Duration change() const {  // SwitchStep
     const ModeChange& rules = profile.mode_change;
     const bool may_disable = rules.needs_disabling || !rules.detours.empty();
-    return may_disable ? timing.disabling() + enable() + mode() : mode();
+    return may_disable ? timing.disabling(axis.disabling) + enable() + mode() : mode();
   }
   Duration reset() const {
     const Duration once = timing.transition(14) + timing.transition(15) + 3 * timing.state_change +
@@ -119,8 +119,7 @@ Duration timeLimit(ProcedureKind kind, const AxisConfig& config,
     case ProcedureKind::enable:
       return kMargin + std::max(steps.change(), steps.enable());
     case ProcedureKind::disable:
-      return kMargin + stop + steps.timing.transition(5) + steps.timing.transition(10) +
-             kComeToRest;
+      return kMargin + stop + steps.timing.disablingInTurn(config.disabling) + kComeToRest;
     case ProcedureKind::home:
       return kMargin + steps.home();
     case ProcedureKind::clear_faults:

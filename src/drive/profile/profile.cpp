@@ -74,6 +74,18 @@ Duration DriveProfile::Timing::transition(int number) const {
   return own != transitions.end() ? own->second : state_change;
 }
 
+Duration DriveProfile::Timing::disabling(const Disabling& by) const {
+  Duration longest{0};
+  for (const int number : by.transitions()) longest = std::max(longest, transition(number));
+  return longest;
+}
+
+Duration DriveProfile::Timing::disablingInTurn(const Disabling& by) const {
+  Duration time{0};
+  for (const int number : by.transitions()) time += transition(number);
+  return time;
+}
+
 CoordinateMark DriveProfile::coordinateMark(ObjectId id) const {
   const CoordinateMark* mark = coordinates.find(id);
   return mark != nullptr ? *mark : standardMark(id);

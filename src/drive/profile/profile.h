@@ -12,6 +12,7 @@
 #include "cia402_driver/common/time.h"
 #include "drive/profile/bit_fields.h"
 #include "drive/profile/bus_settings.h"
+#include "drive/profile/disabling.h"
 #include "drive/profile/error_texts.h"
 #include "drive/profile/handover.h"
 #include "drive/profile/io.h"
@@ -261,6 +262,7 @@ struct DriveProfile {
   std::vector<ModeSpec> modes;
   HomingSpec homing;
   bool halt_supported = true;
+  Disabling disabling;
   ModeChange mode_change;
   int fault_reset_tries = 1;  ///< edges of controlword bit 7 that it may take, 1 to 20
   /// Where these did not help the device is taken out of operation for so long, and resets once
@@ -296,8 +298,9 @@ struct DriveProfile {
     std::map<int, Duration> transitions;             ///< by their number in CiA 402-2, 2 to 16
     /// For a transition to be shown by the statusword. @param number -1: of whatever comes next
     Duration transition(int number) const;
-    /// From operation enabled to switch on disabled (transitions 5 and 10), if that is one step.
-    Duration disabling() const { return std::max(transition(5), transition(10)); }
+    /// From operation enabled to switch on disabled, if that is one step; or one after the other.
+    Duration disabling(const Disabling& by) const;
+    Duration disablingInTurn(const Disabling& by) const;
     Duration mode_change{std::chrono::seconds(1)};
     /// Operation enabled until set-points are followed: 0 to 60 s. With `brake_object` the longest
     /// that this object may say, and what counts where it cannot be read.

@@ -95,7 +95,8 @@ Outcome SwitchStep::awaitDisabled(const Context& context) {
     return Outcome::running();
   }
   if (axis.faulted()) return Outcome::failed(axis.faults().text());
-  if (context.now - since_ <= axis.profile().timing.disabling()) return Outcome::running();
+  if (context.now - since_ <= axis.profile().timing.disabling(axis.config().disabling))
+    return Outcome::running();
   return Outcome::failed(axis.who() + ": mode " + channel_->spec->name +
                          " was not taken: the drive must be disabled for it and was not within " +
                          seconds(context.now - since_) + "; " + report(axis));
