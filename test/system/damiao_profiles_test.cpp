@@ -1,10 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Trapezoids and S-curves of a Damiao (6086h), by the motor; and statusword bit 9.
-#include <algorithm>
-#include <cmath>
-
 #include "system/damiao_scene.h"
 #include "system/families_motion.h"
+#include "system/motion_watch.h"
 
 namespace cia402 {
 namespace {
@@ -32,13 +30,7 @@ double damiaoJerk(FamilyScene& scene) {
     EXPECT_NEAR(scene.velocity("joint"), -1.6, 0.01) << scene.told();
   }
   scene.watch({});
-  double most = 0.0;
-  constexpr std::size_t kStep = 20;
-  for (std::size_t i = 2 * kStep; i < speeds.size(); ++i) {
-    const double change = speeds[i] - 2.0 * speeds[i - kStep] + speeds[i - 2 * kStep];
-    most = std::max(most, std::fabs(change) / (0.02 * 0.02));
-  }
-  return most;
+  return greatestJerk(speeds);
 }
 
 /// The mode alone, with S-curves.
@@ -84,10 +76,12 @@ TEST(DamiaoCurves, AreRefusedWhereTorqueModeIsOneOfTheAxis) {
 }
 
 TEST(DamiaoCurves, OfOtherNumbersAreRefusedBeforeAnythingIsSent) {
-  Scene scene(loadText(damiaoIn("profile_position")));
+  TracedScene scene(damiaoIn("profile_position"));
   ASSERT_TRUE(scene.boot()) << scene.told();
+  scene.clear();
   const auto written = call(scene, bus::WriteObjectCommand{"joint", "motion_profile_type", "3"});
   EXPECT_FALSE(written.success);
+  EXPECT_EQ(scene.count("604 23 86 60"), 0U) << written.message;
   EXPECT_EQ(numberIn(scene, 0x6086), 0U);
 }
 
