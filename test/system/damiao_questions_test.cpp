@@ -140,6 +140,20 @@ INSTANTIATE_TEST_SUITE_P(
             "-, 2], [0x200A, 0, count, uint8, ro, -, 4], [0x2003, 0, count, uint8, ro, -, 3]]"}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
+// The drive's own numbers: ten radians of the rotor to one of the joint.
+TEST(DamiaoRotor, CountsTenToOneWhereTheAxisSaysSo) {
+  for (const bool rotor : {false, true}) {
+    FamilyScene scene(
+        damiaoIn(kOne, rotor ? ", output_shaft: false, gear_ratio: 10.0" : std::string()));
+    EXPECT_NEAR(floatIn(scene, 0x6064), rotor ? 11.0 : 1.1, 1e-4);
+    ASSERT_EQ(scene.setpoint("joint", 0.5), "");
+    scene.run(2s);
+    EXPECT_NEAR(floatIn(scene, 0x607A), rotor ? 5.0 : 0.5, 1e-4);
+    EXPECT_NEAR(floatIn(scene, 0x6083), rotor ? 150.0 : 15.0, 1e-3);
+    EXPECT_NEAR(scene.position("joint"), 0.5, 1e-3);
+  }
+}
+
 /// What a drive does whose master has fallen silent, where it does not follow 1029h:01 alone.
 class DamiaoMasterLost : public testing::TestWithParam<const char*> {};
 

@@ -1,6 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-// Limits of a NiMotion that it holds otherwise than they are written, and the one of its
-// accelerations (2008h:0C).
+// Limits of a NiMotion that it holds otherwise than they are written, the one of its
+// accelerations (2008h:0C), and those of the product without an encoder.
 #include "system/families_motion.h"
 #include "system/motion_watch.h"
 #include "system/stubborn_object.h"
@@ -13,6 +13,7 @@ using drive::ControlKind;
 using drive::ProcedureKind;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 /// An object in which the drive has another number, and the mode in which it is written.
 struct KeptLimit {
@@ -79,6 +80,33 @@ TEST(NimotionLimits, OfAccelerationsIsThatOf2008hToo) {
     EXPECT_LT(clamped, 2.0944 * 1.1) << mode;
     EXPECT_GT(clamped, 2.0944 * 0.9) << mode;
     EXPECT_GT(hardestOf(mode, ""), 3.4) << mode;
+  }
+}
+
+// As the product without an encoder is delivered: 1600 counts a turn, its own ramps, no stall.
+TEST(NimotionLoop, OfTheOpenProductIsServedWithItsDefaults) {
+  for (const char* mode : {"pp", "pv", "csp"}) {
+    std::string yaml =
+        familyJoint(nimotionIn(mode), ", simulation: {drive: nimotion_stepper_open}");
+    yaml = replaced(yaml, "counts_per_turn: 4000", "counts_per_turn: 1600");
+    FamilyScene scene(yaml);
+    EXPECT_EQ(scene.number(0x609A), 80000U) << "nothing has written that";
+    scene.sendOff();
+    scene.inject("joint", "blocked_rotor");
+    scene.run(2500ms);
+    EXPECT_THAT(scene.told(), Not(HasSubstr("0x7121"))) << mode;
+    scene.inject("joint", "clear");
+    scene.mustSucceed(ProcedureKind::disable);
+    scene.mustSucceed(ProcedureKind::enable);
+    const double from = scene.position("joint");
+    if (scene.kind() == ControlKind::position) {
+      ASSERT_EQ(scene.setpoint("joint", scene.state("joint").position - 0.3), "");
+      scene.run(3s);
+      EXPECT_NEAR(scene.position("joint") - from, -0.3, 2e-3) << mode << scene.told();
+    } else {
+      scene.stream("joint", -0.4, 600ms);
+      EXPECT_NEAR(scene.velocity("joint"), -0.4, 2e-3) << mode << scene.told();
+    }
   }
 }
 
