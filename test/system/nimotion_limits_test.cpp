@@ -86,8 +86,9 @@ TEST(NimotionLimits, OfAccelerationsIsThatOf2008hToo) {
 // As the product without an encoder is delivered: 1600 counts a turn, its own ramps, no stall.
 TEST(NimotionLoop, OfTheOpenProductIsServedWithItsDefaults) {
   for (const char* mode : {"pp", "pv", "csp"}) {
-    std::string yaml =
-        familyJoint(nimotionIn(mode), ", simulation: {drive: nimotion_stepper_open}");
+    std::string yaml = familyJoint(
+        nimotionIn(mode),
+        ", write: [{object: stall_time, value: 0.1}], simulation: {drive: nimotion_stepper_open}");
     yaml = replaced(yaml, "counts_per_turn: 4000", "counts_per_turn: 1600");
     FamilyScene scene(yaml);
     EXPECT_EQ(scene.number(0x609A), 80000U) << "nothing has written that";

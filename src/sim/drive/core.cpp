@@ -57,20 +57,20 @@ void DriveCore::start(bool cold, Time now) {
   modes_.start();
   power_.start(now);
   power_.finishInitialisation(now, now_);
-  motion_.probes().start();
+  motion_.parts().probes.start();
   onObstacle();
 }
 
 void DriveCore::powerOff() {
   on_ = false;
-  motion_.probes().start();
-  motion_.maker().setInputs(false, false);
+  motion_.parts().probes.start();
+  motion_.parts().maker.setInputs(false, false);
   power_.powerOff();
   statusword_ = 0;
 }
 
 bool DriveCore::idle() const {
-  if (motion_.powered() || !motion_.atRest() || motion_.maker().wantsPower()) return false;
+  if (motion_.powered() || !motion_.atRest() || motion_.parts().maker.wantsPower()) return false;
   const bool initialises = power_.readyAt() != kNever && on_;
   return !power_.enabling() && !faults_.endByThemselves() && modes_.due() == kNever && !initialises;
 }
@@ -133,7 +133,7 @@ void DriveCore::superviseMotion() {
     raise("sync_error");
   }
   if (const char* fault = motion_.takeHomingFault()) raise(fault);
-  if (motion_.takeStall()) raise("stall");
+  if (motion_.parts().watch.takeStall()) raise("stall");
   const MotionLimits& limits = motion_.limits();
   const auto act = [this](const LimitReports::Due& due) {
     if (due.end != nullptr && faults_.endWarning(*due.end)) clearErrors();
@@ -173,7 +173,7 @@ void DriveCore::onControlword() {
 }
 
 void DriveCore::command(PdsCommand command) {
-  if (motion_.maker().chosen()) return;
+  if (motion_.parts().maker.chosen()) return;
   if (command == PdsCommand::enable_operation) power_.stay();
   PdsTransition transition = transitionFor(power_.state(), command);
   if (transition.number == 0 && definition_.direct_enable &&

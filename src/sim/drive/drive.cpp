@@ -119,7 +119,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
     }
     if (role == Role::gear_numerator || role == Role::gear_denominator)
       axis.core.motion().publish();
-    if (role == Role::touch_probe_function) axis.core.motion().probes().command();
+    if (role == Role::touch_probe_function) axis.core.motion().parts().probes.command();
     if (role == Role::clear_errors && entry.number != 0) axis.core.resetFault();
     if (role == Role::software_reset && entry.number == 1) reset_at = now + kSoftwareReset;
     const bool command = role == Role::emergency_stop || role == Role::homing_start;
@@ -355,7 +355,7 @@ std::vector<std::string> Drive::faultNames() const {
 
 void Drive::setProbe(unsigned probe, bool active, Time now, unsigned axis) {
   impl_->bringTo(now);
-  impl_->axes.at(axis).core.motion().probes().setInput(probe, active);
+  impl_->axes.at(axis).core.motion().parts().probes.setInput(probe, active);
   impl_->flushChanges();
 }
 
@@ -371,7 +371,7 @@ void Drive::setInput(unsigned bit, bool active, Time now, unsigned axis) {
 
 void Drive::setPulseWidth(double duty, Time now, unsigned axis) {
   impl_->bringTo(now);
-  impl_->axes.at(axis).core.motion().maker().setDuty(duty);
+  impl_->axes.at(axis).core.motion().parts().maker.setDuty(duty);
   impl_->flushChanges();
 }
 

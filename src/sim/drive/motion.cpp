@@ -55,7 +55,7 @@ bool DriveMotion::modeBit() const { return (controlword_ & kModeBit) != 0; }
 
 void DriveMotion::powerStage(bool on) {
   powered_ = on;
-  if (!on) maker_.begin(false);
+  if (!on) parts_.maker.begin(false);
   controlword_ = 0;
   stop_.reset();
   held_ = false;
@@ -164,26 +164,17 @@ void DriveMotion::step() {
     axis_.motor.setPositionTimeConstant(time_constant_);
   }
   axis_.motor.setStops(mechanics_.negative_stop, mechanics_.positive_stop);
-  if (maker_.wantsPower() != maker_.running() && (maker_.running() || !powered_)) {
-    powerStage(maker_.wantsPower());
-    maker_.begin(powered_);
+  if (parts_.maker.wantsPower() != parts_.maker.running() &&
+      (parts_.maker.running() || !powered_)) {
+    powerStage(parts_.maker.wantsPower());
+    parts_.maker.begin(powered_);
   }
   const double from = axis_.motor.position();
   stepRotor(from);
-  probes_.turned(from);
-  filterVelocity();
-  const double wanted = powered_ ? axis_.demand.velocity : 0.0;
-  if (stall_.step(axis_.values, wanted, axis_.motor.velocity())) stalled_ = true;
-}
-
-/// Displays may be slower than the motor.
-void DriveMotion::filterVelocity() {
-  const double time = axis_.values.get(Role::velocity_filter, 0.0);
-  const double is = axis_.motor.velocity();
+  parts_.probes.turned(from);
   const bool rests = !powered_ && axis_.motor.atRest();
-  shown_velocity_ = time <= kDriveStepS || rests
-                        ? is
-                        : shown_velocity_ + (is - shown_velocity_) * kDriveStepS / time;
+  parts_.watch.step(axis_.values, powered_ ? axis_.demand.velocity : 0.0, axis_.motor.velocity(),
+                    rests);
 }
 
 void DriveMotion::stepRotor(double from) {
@@ -195,7 +186,7 @@ void DriveMotion::stepRotor(double from) {
     return;
   }
   limitTorque();
-  if (maker_.running()) return maker_.step();
+  if (parts_.maker.running()) return parts_.maker.step();
   // Limits of a cyclic target last until the next one.
   if (!cyclic_.ofThisMode()) axis_.limits.release();
   axis_.limits.releaseSwitch();
@@ -284,7 +275,7 @@ void DriveMotion::publish() {
   const bool nothing = unsure && ++publications_ % kZeroReading == 0;
   values.set(Role::position_actual, nothing ? 0.0 : position);
   values.set(Role::position_internal, position);
-  values.set(Role::velocity_actual, shown_velocity_);
+  values.set(Role::velocity_actual, parts_.watch.shown());
   values.set(Role::torque_actual, axis_.motor.torque());
   values.set(Role::current_actual, axis_.motor.torque());
   values.set(Role::position_demand, demand);

@@ -3,14 +3,13 @@
 
 #include <cstdint>
 #include <optional>
-#include <utility>
 
 #include "sim/drive/cyclic_positions.h"
 #include "sim/drive/homing_mode.h"
 #include "sim/drive/maker_modes.h"
+#include "sim/drive/motor_watch.h"
 #include "sim/drive/moving_axis.h"
 #include "sim/drive/profile_position.h"
-#include "sim/drive/stall_watch.h"
 #include "sim/drive/target_supervision.h"
 #include "sim/drive/touch_probe.h"
 
@@ -21,6 +20,14 @@ namespace cia402::sim {
 /// tells its master.
 class DriveMotion {
  public:
+  /// What works beside the modes of CiA 402.
+  struct Parts {
+    explicit Parts(MovingAxis& axis) : probes(axis), maker(axis) {}
+    TouchProbes probes;
+    MakerModes maker;
+    MotorWatch watch;
+  };
+
   /// All references must outlive it; `mechanics` may change meanwhile.
   DriveMotion(const DriveDefinition& definition, const MotorParameters& motor_parameters,
               const AxisMechanics& mechanics, DriveValues& values);
@@ -51,7 +58,9 @@ class DriveMotion {
 
   void step();  ///< one kDriveStep
   /// The rotor stands, and is shown to.
-  bool atRest() const { return axis_.motor.atRest() && shown_velocity_ == axis_.motor.velocity(); }
+  bool atRest() const {
+    return axis_.motor.atRest() && parts_.watch.shown() == axis_.motor.velocity();
+  }
   /// Neither demand nor rotor moves.
   bool standing() const;
   /// Bits 8 and 10 to 15 for the present mode; only meaningful while operation is enabled.
@@ -71,11 +80,8 @@ class DriveMotion {
   const MotionLimits& limits() const { return axis_.limits; }
   /// Name of a fault that homing has come to since it was asked last, or nullptr.
   const char* takeHomingFault() { return homing_.takeFault(); }
-  /// The motor has stalled since it was asked last.
-  bool takeStall() { return std::exchange(stalled_, false); }
-  MakerModes& maker() { return maker_; }
-  const MakerModes& maker() const { return maker_; }
-  TouchProbes& probes() { return probes_; }
+  Parts& parts() { return parts_; }
+  const Parts& parts() const { return parts_; }
   /// Further bits of the inputs (60FDh) that are 1.
   void setInputs(std::uint32_t bits) { inputs_ = bits; }
   AxisSwitches& switches() { return axis_.switches; }
@@ -95,7 +101,6 @@ class DriveMotion {
   void stepRotor(double from);
   void stepMode(double from);
   void limitTorque();
-  void filterVelocity();
   void halt();
 
   const AxisMechanics& mechanics_;
@@ -104,16 +109,12 @@ class DriveMotion {
   CyclicPositions cyclic_{axis_};
   HomingMode homing_{axis_};
   TargetSupervision supervision_{axis_};
-  TouchProbes probes_{axis_};
-  MakerModes maker_{axis_};
-  StallWatch stall_;
+  Parts parts_{axis_};
   double time_constant_;  ///< of the position loop, s
   bool powered_ = false;
   bool held_ = false;
   bool halted_ = false, paused_ = false, ramps_locked_ = false;
   bool started_ = false;  ///< a set-point or a search has begun in this mode, since it began
-  bool stalled_ = false;
-  double shown_velocity_ = 0.0;  ///< of the motor, as it is shown
   std::optional<Ramp> stop_;
   std::uint32_t inputs_ = 0;
   std::uint16_t controlword_ = 0;  ///< the last one in operation

@@ -84,8 +84,8 @@ void Terminals::start(DriveCore& core) {
   inputs_ = core.obstacle().inputs();
   doubled_ = false;
   connect(core.motion().switches());
-  core.motion().maker().setInputs(active(InputFunction::motor_enable),
-                                  active(InputFunction::pause));
+  core.motion().parts().maker.setInputs(active(InputFunction::motor_enable),
+                                        active(InputFunction::pause));
 }
 
 bool Terminals::active(InputFunction function) const {
@@ -145,7 +145,7 @@ void obey(Terminals& terminals, DriveCore& core, ObjectDictionary& dictionary,
           const FaultDefinition* doubled) {
   const Terminals::Change change =
       terminals.look(core.motion().switches(), core.obstacle().inputs());
-  MakerModes& maker = core.motion().maker();
+  MakerModes& maker = core.motion().parts().maker;
   maker.setInputs(change.enabled, change.paused);
   for (const InputFunction function : change.edges) {
     if (function == InputFunction::set_home) core.onWrite(Role::save_zero);

@@ -135,7 +135,7 @@ enum class Role : std::uint8_t {
   input_5_function,
   acceleration_clamp,  ///< vendor object: no profile or ramp accelerates more
   velocity_filter,     ///< vendor object: so much later the actual velocity is shown
-  stall_error,         ///< vendor objects; see StallWatch
+  stall_error,         ///< vendor objects; see MotorWatch
   stall_speed,
   stall_time,
   maker_mode,  ///< vendor objects of MakerModes: 0: the modes of CiA 402
