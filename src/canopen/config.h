@@ -106,6 +106,7 @@ struct NodeConfig {
   SdoChannel sdo_channel;  ///< COB-IDs other than 600h and 580h + node-ID
   /// It must not get NMT reset node: its communication is reset where it has to start anew.
   bool reset_node_allowed = true;
+  bool reset_does_nothing = false;                 ///< it takes the command, and goes on as it is
   Duration boot_timeout{std::chrono::seconds(5)};  ///< from reset to boot-up or an SDO answer
   BootPolicy boot;
 };

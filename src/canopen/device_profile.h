@@ -56,6 +56,7 @@ struct DeviceProfile {
   /// NMT reset node must not be sent: the drive disturbs the bus while it starts, or does not come
   /// back. Its communication is reset instead.
   bool nmt_reset_node = true;
+  bool nmt_reset_does_nothing = false;          ///< then it may be sent, where somebody asks for it
   Duration boot_time{std::chrono::seconds(5)};  ///< from a reset until the drive answers
   fieldbus::AccessOptions sdo;                  ///< `timeout` and `retries` of transfers
 };

@@ -120,6 +120,13 @@ void warnOfMissingLimits(yaml::Section& section, const AxisConfig& axis, RobotCo
                            " limit: the axis follows set-points however fast they are");
 }
 
+/// By an edge of a bit instead of homing mode.
+bool homedByEdge(const AxisConfig& axis) {
+  const auto& methods = axis.profile->homing.methods;
+  const auto method = methods.find(axis.homing->method);
+  return method != methods.end() && method->second.edge.has_value();
+}
+
 void checkHoming(yaml::Section& section, const AxisConfig& axis, RobotConfig& robot) {
   if (!axis.homing) return;
   const drive::HomingSpec& spec = axis.profile->homing;
@@ -156,6 +163,10 @@ void checkHoming(yaml::Section& section, const AxisConfig& axis, RobotConfig& ro
     homing_section.get("kept_by_drive")
         ->problem("profile " + axis.profile->name +
                   " has no bit by which its drives say that they know their home (`homed_bit`)");
+  } else if (axis.homing->kept_by_drive && homedByEdge(axis)) {
+    homing_section.get("kept_by_drive")
+        ->problem("method " + std::to_string(*axis.homing->method) +
+                  " is no homing of the drive, which does not know its home by it");
   }
   const double offset = axis.homing->atHome();
   if ((axis.limits.lower && offset < *axis.limits.lower) ||

@@ -111,11 +111,14 @@ void readKeeps(const yaml::Value& list, AxisConfig& axis) {
   }
 }
 
-/// Inputs and outputs that are wired here, besides those of the profile.
+/// What is otherwise here than the profile says: inputs and outputs that are wired besides its own,
+/// the side of the gear that the drive counts at.
 void readWiring(yaml::Section& section, AxisConfig& axis) {
   const auto inputs = section.get("inputs"), outputs = section.get("outputs");
-  if (!axis.profile || (!inputs && !outputs)) return;
+  const auto shaft = section.get("output_shaft");
+  if (!axis.profile || (!inputs && !outputs && !shaft)) return;
   const auto own = std::make_shared<drive::DriveProfile>(*axis.profile);
+  section.read("output_shaft", own->output_shaft);
   if (inputs) readDigitalInputs(*inputs, *own);
   if (outputs) readDigitalOutputs(*outputs, *own);
   axis.profile = own;
@@ -128,7 +131,9 @@ void readWithProfile(yaml::Section& section, AxisConfig& axis) {
   const auto trusted = section.get("trusted");
   const auto keeps = section.get("keeps");
   readWiring(section, axis);
+  const auto way = section.get("disable_by");
   if (!axis.profile) return;
+  axis.disabling = way ? readDisabling(*way) : axis.profile->disabling;
   if (keeps) readKeeps(*keeps, axis);
   if (adjust) readAdjust(*adjust, axis);
   if (trusted) readTrusted(*trusted, axis);

@@ -131,6 +131,7 @@ NodeConfig makeNode(const BusConfig& bus, const DeviceConfig& device,
   node.sdo_channel = device.sdo;
   node.boot_timeout = family.boot_time;
   node.reset_node_allowed = family.nmt_reset_node;
+  node.reset_does_nothing = family.nmt_reset_does_nothing;
   node.reads_back = axes.front()->profile->reads_back;
   for (const AxisConfig* axis : axes) addWidths(*axis, node);
   for (const AxisConfig* axis : axes) addStop(*axis->profile, node);

@@ -38,6 +38,17 @@ TEST(RobotConfig, ChoosesWhatFollowsAQuickStop) {
               HasSubstr("axes/shoulder/quick_stop"));
 }
 
+TEST(RobotConfig, ChoosesTheWayOutOfOperationAndTheSideOfTheGear) {
+  const LoadedRobot loaded = changed("gear_ratio: 50.0", "disable_by: [8, 7], output_shaft: true");
+  EXPECT_EQ(loaded.problems, "");
+  EXPECT_THAT(loaded.robot.axes[0].disabling.transitions(), ElementsAre(8, 7));
+  EXPECT_THAT(loaded.robot.axes[1].disabling.transitions(), ElementsAre(5, 10)) << "the profile's";
+  EXPECT_TRUE(loaded.robot.axes[0].profile->output_shaft);
+  EXPECT_FALSE(loaded.robot.axes[1].profile->output_shaft);
+  EXPECT_THAT(changed("gear_ratio: 50.0", "disable_by: [7, 8]").problems,
+              HasSubstr("axes/shoulder/disable_by: from operation enabled"));
+}
+
 TEST(RobotConfig, RefusesToHoldWhereTheProfileDoesNotSayHow) {
   Problems problems;
   const auto file = [](const std::string& drive) {

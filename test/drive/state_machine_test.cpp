@@ -192,6 +192,29 @@ TEST(StateMachine, NoGoalEverSetsFaultResetOrHalt) {
   }
 }
 
+TEST(StateMachine, IsLeftByTheTransitionsThatAreAskedFor) {
+  struct Row {
+    Disabling by;
+    std::vector<int> transitions;
+    int operation, switched_on;
+    std::uint16_t word, next;
+  };
+  for (const Row& row :
+       {Row{{5, 10}, {5, 10}, 5, 10, 0x0007, 0x0000}, Row{{5, 6}, {5, 6, 7}, 5, 6, 0x0007, 0x0006},
+        Row{{8, 10}, {8, 7}, 8, 10, 0x0006, 0x0000}, Row{{9, 10}, {9}, 9, 10, 0x0000, 0x0000}}) {
+    EXPECT_EQ(row.by.transitions(), row.transitions);
+    const Command out = nextCommand(State::operation_enabled, Goal::disabled, row.by);
+    EXPECT_EQ(out.transition, row.operation);
+    EXPECT_EQ(out.controlword, row.word);
+    const Command on = nextCommand(State::switched_on, Goal::disabled, row.by);
+    EXPECT_EQ(on.transition, row.switched_on);
+    EXPECT_EQ(on.controlword, row.next);
+    EXPECT_EQ(nextCommand(State::ready_to_switch_on, Goal::disabled, row.by).transition, 7);
+    EXPECT_EQ(nextCommand(State::operation_enabled, Goal::quick_stop, row.by).transition, 11);
+    EXPECT_EQ(nextCommand(State::switched_on, Goal::enabled, row.by).transition, 4);
+  }
+}
+
 TEST(StateMachine, NamesStates) {
   EXPECT_STREQ(toString(State::not_ready_to_switch_on), "not ready to switch on");
   EXPECT_STREQ(toString(State::switch_on_disabled), "switch on disabled");

@@ -133,6 +133,28 @@ TEST(ProfileBehaviour, AFaultResetMayNeedAnEmptyHistoryAndAResetMayBeForbidden) 
   EXPECT_TRUE(plain.nmt_reset_node);
   EXPECT_TRUE(profileWith("fault_reset_clears_history: true").fault_reset_clears_history);
   EXPECT_FALSE(profileWith("nmt_reset_node: false").nmt_reset_node);
+  EXPECT_FALSE(profileWith("nmt_reset_node: false").nmt_reset_does_nothing);
+  const WholeProfile in_vain = profileWith("nmt_reset_node: does_nothing");
+  EXPECT_FALSE(in_vain.nmt_reset_node);
+  EXPECT_TRUE(in_vain.nmt_reset_does_nothing);
+}
+
+TEST(ProfileBehaviour, SaysByWhichTransitionsItIsDisabled) {
+  const auto ways = [](const std::string& text) {
+    return profileWith(text).disabling.transitions();
+  };
+  EXPECT_EQ(ways(""), (std::vector<int>{5, 10}));
+  for (const std::vector<int>& way :
+       {std::vector<int>{5, 10}, {5, 6, 7}, {8, 7}, std::vector<int>{9}}) {
+    std::string list;
+    for (const int number : way) list += (list.empty() ? "" : ", ") + std::to_string(number);
+    EXPECT_EQ(ways("disable_by: [" + list + "]"), way);
+  }
+  for (const char* wrong : {"[5, 9]", "[7]", "[10, 5]", "[]"}) {
+    profileWith("disable_by: " + std::string(wrong),
+                "disable_by: from operation enabled to switch on disabled there are the "
+                "transitions [5, 10], [5, 6, 7], [8, 7] and [9]");
+  }
 }
 
 TEST(ProfileBehaviour, AModeStopsAsItSaysElseAsItsKindCan) {

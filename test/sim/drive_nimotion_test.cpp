@@ -135,5 +135,95 @@ TEST(SimulatedNimotion, StopsAsTheAlarmSaysWhere605EhIsNegative) {
   EXPECT_GT(slower, 0.01) << "it coasts";
 }
 
+// Logic of terminals: 2 rising, 3 falling, 4 both edges [1834-1839]; function 33 makes the position
+// 0.
+TEST(SimulatedNimotion, TakesTheEdgesOfTerminals) {
+  for (const std::uint32_t logic : {0U, 1U, 2U, 3U, 4U}) {
+    AxisMechanics mechanics;
+    mechanics.initial_position = 2.0;
+    NimotionBench bench("{}", mechanics);
+    bench.write(0x2017, 3, 0, 2);  // VDI1 has it from the factory
+    bench.write(0x2003, 3, 33, 2);
+    bench.write(0x2003, 4, logic, 2);
+    EXPECT_EQ(bench.position(), 2 * kCounts);
+    bench.drive->setInput(1, true, bench.now);
+    bench.run(ms(5));
+    EXPECT_EQ(bench.position(), logic == 2 || logic == 4 ? 0 : 2 * kCounts) << logic;
+    bench.drive->setInput(1, false, bench.now);
+    bench.run(ms(5));
+    EXPECT_EQ(bench.position(), logic >= 2 ? 0 : 2 * kCounts) << logic;
+  }
+}
+
+// DX0 and DX1 are outputs from the factory [2653-2656].
+TEST(SimulatedNimotion, HasDi3AndDi4OnlyWhere2021hSaysSo) {
+  for (const std::uint8_t input : {std::uint8_t{3}, std::uint8_t{4}}) {
+    for (const bool is_input : {false, true}) {
+      AxisMechanics mechanics;
+      mechanics.initial_position = 2.0;
+      NimotionBench bench("{}", mechanics);
+      bench.write(0x2017, 3, 0, 2);
+      bench.write(0x2021, static_cast<std::uint8_t>(input - 2), is_input ? 0 : 1, 2);
+      bench.write(0x2003, static_cast<std::uint8_t>(2 * input + 1), 33, 2);
+      bench.write(0x2003, static_cast<std::uint8_t>(2 * input + 2), 2, 2);
+      bench.drive->setInput(input, true, bench.now);
+      bench.run(ms(5));
+      EXPECT_EQ(bench.position(), is_input ? 0 : 2 * kCounts) << int{input};
+    }
+  }
+}
+
+// "Setting it in the running state has no effect" [720].
+TEST(SimulatedNimotion, TakesAModeWhileEnabledAndMindsItNot) {
+  NimotionBench bench;
+  bench.positions();
+  EXPECT_EQ(bench.refusal(0x6060, 0, 3, 1), 0U);
+  bench.run(ms(50));
+  EXPECT_EQ(bench.read(0x6061) & 0xFF, 1U);
+  bench.target(kCounts, 0x001F);
+  bench.run(ms(3000));
+  EXPECT_NEAR(bench.position(), kCounts, 1);
+}
+
+// 2008h:05 to 07: 40 %, 6/min, 2000 ms from the factory [2054-2056, 2076].
+TEST(SimulatedNimotion, StallsAfterTheTimeOf2008h) {
+  for (const std::uint32_t time : {2000U, 500U}) {
+    NimotionBench bench;
+    bench.write(0x2008, 7, time, 2);
+    bench.write(0x6060, 0, 3, 1);
+    bench.write(0x60FF, 0, kCounts, 4);
+    bench.enable();
+    bench.run(ms(500));
+    EXPECT_TRUE(bench.emergencies().empty());
+    EXPECT_TRUE(bench.drive->inject("blocked_rotor", bench.now));
+    bench.run(ms(static_cast<double>(time) - 60.0));
+    EXPECT_TRUE(bench.emergencies().empty()) << time;
+    bench.run(ms(120));
+    ASSERT_EQ(bench.emergencies().size(), 1U) << time;
+    EXPECT_EQ(bench.emergencies()[0].first, 0x7121);
+    EXPECT_NE(bench.status() & 0x0080, 0) << "a warning";
+  }
+}
+
+// 2008h:04, 25 ms from the factory [2030]: after that time 63 % of a step are shown.
+TEST(SimulatedNimotion, ShowsItsSpeedLater) {
+  for (const std::uint32_t time : {25U, 100U}) {
+    NimotionBench bench;
+    bench.write(0x2008, 4, time, 2);
+    bench.write(0x6083, 0, 400000, 4);
+    bench.write(0x60C5, 0, 4000000, 4);
+    bench.write(0x607F, 0, 100000, 4);
+    bench.write(0x6060, 0, 3, 1);
+    bench.write(0x60FF, 0, 5 * kCounts, 4);
+    bench.enable();
+    bench.run(ms(50.0 + time));  // 5 turns/s after 50 ms
+    const double speed = bench.drive->truth(bench.now).velocity_turns;
+    EXPECT_NEAR(speed, 5.0, 0.1);
+    EXPECT_LT(bench.velocity(), 0.9 * 60.0 * speed) << time;
+    bench.run(ms(6.0 * time));
+    EXPECT_NEAR(bench.velocity(), 300, 3) << time;
+  }
+}
+
 }  // namespace
 }  // namespace cia402::sim

@@ -16,14 +16,15 @@ struct Reading {
   const char* name;
   const char* mode;
   const char* drive;
-  const char* bus = "";  ///< further keys of it
+  const char* bus = "";   ///< further keys of it
+  const char* axis = "";  ///< and of the axis, as ", key: value"
 };
 void PrintTo(const Reading& reading, std::ostream* out) { *out << reading.name; }
 
 class DamiaoReading : public testing::TestWithParam<Reading> {
  protected:
   static std::string yaml() {
-    const std::string text = damiaoIn(GetParam().mode, "", GetParam().drive);
+    const std::string text = damiaoIn(GetParam().mode, GetParam().axis, GetParam().drive);
     return *GetParam().bus == '\0' ? text : withBus(GetParam().bus, text);
   }
   static void expectMoves(FamilyScene& scene) {
@@ -124,6 +125,13 @@ INSTANTIATE_TEST_SUITE_P(
         Reading{"NoFloatsAreTraps", kStream,
                 "float_traps: {non_finite: false, negative_zero: false}"},
         Reading{"WarningsGoOn", kSpeed, "state_machine: {warning_stops: false}"},
+        // rad of the rotor, ten to one [L1064]: the axis says so, and has the gear.
+        Reading{"RadiansOfTheRotor", kThree, "encoder: absolute", "",
+                ", output_shaft: false, gear_ratio: 10.0"},
+        Reading{"RadiansOfTheRotorInAStream", kStream, "encoder: absolute", "",
+                ", output_shaft: false, gear_ratio: 10.0"},
+        Reading{"RadiansOfTheRotorAsASpeed", kSpeed, "encoder: absolute", "",
+                ", output_shaft: false, gear_ratio: 10.0"},
         Reading{"ResumesWhileItMoves", kSpeed,
                 "state_machine: {resume_quick_stop_while_moving: true}"},
         Reading{
@@ -131,6 +139,20 @@ INSTANTIATE_TEST_SUITE_P(
             "dictionary: [[0x2002, 0, count, uint8, ro, -, 14], [0x1029, 0, count, uint8, ro, "
             "-, 2], [0x200A, 0, count, uint8, ro, -, 4], [0x2003, 0, count, uint8, ro, -, 3]]"}),
     [](const auto& tested) { return std::string(tested.param.name); });
+
+// The drive's own numbers: ten radians of the rotor to one of the joint.
+TEST(DamiaoRotor, CountsTenToOneWhereTheAxisSaysSo) {
+  for (const bool rotor : {false, true}) {
+    FamilyScene scene(
+        damiaoIn(kOne, rotor ? ", output_shaft: false, gear_ratio: 10.0" : std::string()));
+    EXPECT_NEAR(floatIn(scene, 0x6064), rotor ? 11.0 : 1.1, 1e-4);
+    ASSERT_EQ(scene.setpoint("joint", 0.5), "");
+    scene.run(2s);
+    EXPECT_NEAR(floatIn(scene, 0x607A), rotor ? 5.0 : 0.5, 1e-4);
+    EXPECT_NEAR(floatIn(scene, 0x6083), rotor ? 150.0 : 15.0, 1e-3);
+    EXPECT_NEAR(scene.position("joint"), 0.5, 1e-3);
+  }
+}
 
 /// What a drive does whose master has fallen silent, where it does not follow 1029h:01 alone.
 class DamiaoMasterLost : public testing::TestWithParam<const char*> {};

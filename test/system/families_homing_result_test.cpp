@@ -101,7 +101,8 @@ TEST_P(FamilyHomingResult, IsAFaultInWordsWhereOneComesMeanwhile) {
   const auto homed = scene.begin(ProcedureKind::home, "joint");
   ASSERT_TRUE(scene.runUntil([&] { return scene.velocity("joint") < -0.35; }, 8s)) << scene.told();
   const bool dm5 = GetParam().family == std::string(kMegmeetDm5);
-  scene.inject("joint", dm5 ? "homing_time" : "over_voltage");
+  const bool generic = GetParam().family == std::string("generic_cia402");
+  scene.inject("joint", dm5 ? "homing_time" : generic ? "overvoltage" : "over_voltage");
   ASSERT_TRUE(scene.runUntil([&] { return homed->has_value(); }, 3s));
   EXPECT_FALSE((*homed)->success);
   EXPECT_THAT((*homed)->message, HasSubstr("joint (node 1): fault"));
@@ -114,6 +115,9 @@ TEST_P(FamilyHomingResult, IsAFaultInWordsWhereOneComesMeanwhile) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, FamilyHomingResult, testing::ValuesIn(families()), familyName);
+INSTANTIATE_TEST_SUITE_P(Generic, FamilyHomingResult,
+                         testing::Values(FamilyMode{"generic_cia402", "131072", "csp"}),
+                         familyName);
 
 }  // namespace
 }  // namespace cia402

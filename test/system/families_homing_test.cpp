@@ -27,7 +27,8 @@ TEST_P(FamilyHomingMethod, MakesTheJointReadItsOffsetAtTheTrueHome) {
 }
 
 constexpr FamilyMode kStepperPp{"nimotion_stepper", "4000", "pp"},
-    kId286Pp{"id286_cnfa", "10000", "pp"}, kDm5Pp{"megmeet_dm5", "8388608", "pp"};
+    kId286Pp{"id286_cnfa", "10000", "pp"}, kDm5Pp{"megmeet_dm5", "8388608", "pp"},
+    kByTheBookPp{"generic_cia402", "131072", "pp"};
 constexpr char kAsDelivered[] = "";
 constexpr char kDm5Switches[] =  // P03.00 to P03.02: reverse limit, forward limit, home
     ", write: [{object: di1_function, raw: 36}, {object: di2_function, raw: 35}, "
@@ -57,6 +58,22 @@ INSTANTIATE_TEST_SUITE_P(Dm5Edges, FamilyHomingMethod,
                          familyMethodName);
 INSTANTIATE_TEST_SUITE_P(Dm5Index, FamilyHomingMethod,
                          testing::ValuesIn(withFamily(kDm5Pp, kDm5Switches, homesByIndex())),
+                         familyMethodName);
+
+// The figures of CiA 402-2 themselves.
+INSTANTIATE_TEST_SUITE_P(GenericEdges, FamilyHomingMethod,
+                         testing::ValuesIn(withFamily(kByTheBookPp, kAsDelivered, homesByEdges())),
+                         familyMethodName);
+INSTANTIATE_TEST_SUITE_P(GenericIndex, FamilyHomingMethod,
+                         testing::ValuesIn(withFamily(kByTheBookPp, kAsDelivered, homesByIndex())),
+                         familyMethodName);
+INSTANTIATE_TEST_SUITE_P(GenericOffTheSwitch, FamilyHomingMethod,
+                         testing::ValuesIn(withFamily(kByTheBookPp, kAsDelivered,
+                                                      homesOffTheSwitch())),
+                         familyMethodName);
+INSTANTIATE_TEST_SUITE_P(GenericAtOnce, FamilyHomingMethod,
+                         testing::ValuesIn(withFamily(kByTheBookPp, kAsDelivered,
+                                                      {{37, 1.8, 1.8}, {37, -0.7, -0.7}})),
                          familyMethodName);
 
 INSTANTIATE_TEST_SUITE_P(Dm5OnTheSwitch, FamilyHomingMethod,

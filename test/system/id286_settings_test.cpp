@@ -5,6 +5,7 @@
 #include "drive/profile/named_write.h"
 #include "system/id286_scene.h"
 #include "system/refused_enabling.h"
+#include "system/stubborn_object.h"
 #include "system/traced_scene.h"
 
 namespace cia402 {
@@ -127,14 +128,6 @@ TEST(Id286ReadBack, FollowsEveryParameterThatIsWritten) {
   EXPECT_EQ(missing, "");
 }
 
-/// The drive takes another number than is written.
-void clamp(Scene& scene, std::uint16_t index, std::uint8_t subindex, std::uint64_t number) {
-  sim::ObjectDictionary& dictionary = scene.drive("joint").dictionary();
-  dictionary.onWrite({index, subindex}, [&dictionary, number](const sim::Entry& entry) {
-    dictionary.find(entry.id)->number = number;
-  });
-}
-
 TEST(Id286ReadBack, OfTheBootEndsItWithObjectAndNumbers) {
   for (const auto& [index, told] :
        {std::pair<std::uint16_t, const char*>(0x20F1,
@@ -181,6 +174,39 @@ TEST(Id286ReadBack, OfWhatSomebodyWritesIsToldInTheAnswer) {
   EXPECT_FALSE(written.success);
   EXPECT_THAT(written.message, AllOf(HasSubstr("joint (node 1): wrote 60 to 20D5:00 idle_current"),
                                      HasSubstr("but it is 17"), HasSubstr("read back")));
+}
+
+// What shifts its coordinates, or is calibration: 20C9h, 20D9h, 20F2h, 20F6h.
+TEST(Id286ReadBack, OfCoordinatesAndCalibrationIsToldInTheAnswer) {
+  struct Row {
+    std::uint16_t index;
+    const char *object, *value;
+  };
+  for (const Row& row :
+       {Row{0x20C9, "motor_direction", "3"}, Row{0x20D9, "motor_mode", "1"},
+        Row{0x20F2, "resolution", "20000"}, Row{0x20F6, "encoder_resolution", "20000"}}) {
+    TracedScene scene(familyJoint(kId286InPp));
+    ASSERT_TRUE(scene.boot(20s)) << scene.told();
+    scene.run(300ms);
+    scene.clear();
+    const auto write = [&] {
+      return call(scene, bus::WriteObjectCommand{"joint", row.object, row.value});
+    };
+    bus::Answer written = write();
+    EXPECT_TRUE(written.success) << written.message;
+    EXPECT_THAT(written.message, HasSubstr("is not homed any more"));
+    const auto low = static_cast<std::uint8_t>(row.index & 0xFFU);
+    const std::string address = wireText(can::Frame(0x601, {0x40, low, 0x20, 0x00}));
+    EXPECT_EQ(scene.count(address), 1U) << address;
+    clamp(scene, row.index, 0, 17);
+    scene.run(300ms);
+    written = write();
+    EXPECT_FALSE(written.success);
+    EXPECT_THAT(written.message,
+                AllOf(HasSubstr("joint (node 1): wrote " + std::string(row.value) + " to "),
+                      HasSubstr(row.object), HasSubstr("but it is 17 ("),
+                      HasSubstr("when it is read back"), HasSubstr("is not homed any more")));
+  }
 }
 
 TEST(Id286ReadBack, OfPositionLimitsRefusesEnabling) {

@@ -7,10 +7,22 @@
 #include <deque>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "system/scene.h"
 
 namespace cia402 {
+
+/// The greatest change of acceleration over 20 ms, rad/s^3. @param speeds rad/s, one a millisecond
+inline double greatestJerk(const std::vector<double>& speeds) {
+  constexpr std::size_t kApart = 20;
+  double most = 0.0;
+  for (std::size_t i = 2 * kApart; i < speeds.size(); ++i) {
+    const double change = speeds[i] - 2.0 * speeds[i - kApart] + speeds[i - 2 * kApart];
+    most = std::max(most, std::fabs(change) / (0.02 * 0.02));
+  }
+  return most;
+}
 
 /// What the motor did, looked at every millisecond.
 class Motion {

@@ -215,13 +215,7 @@ double jerkOn(const std::string& more, double goal) {
   scene.run(4s);
   EXPECT_NEAR(scene.position("joint"), goal, kOneStep) << scene.told();
   EXPECT_LT(scene.seen("joint").fastest, 0.8 * 1.02);
-  double most = 0.0;
-  constexpr std::size_t kStep = 20;
-  for (std::size_t i = 2 * kStep; i < speeds.size(); ++i) {
-    const double change = speeds[i] - 2.0 * speeds[i - kStep] + speeds[i - 2 * kStep];
-    most = std::max(most, std::fabs(change) / (0.02 * 0.02));
-  }
-  return most;
+  return greatestJerk(speeds);
 }
 
 // 40 rad/s^3 of familyJoint(); a trapezoid has all of its 4 rad/s^2 within one control loop.

@@ -1,5 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Terminals and virtual inputs of a NiMotion: what they are for, and what is looked at before.
+#include <tuple>
+
 #include "system/families_motion.h"
 #include "system/refused_enabling.h"
 #include "system/traced_scene.h"
@@ -105,7 +107,8 @@ TEST(NimotionTerminals, AreSetWhileItIsDisabledOnly) {
 // The levels of 200Bh:03 are the electrical ones [1822-1828].
 TEST(NimotionTerminals, TellTheLevelsOfTheirSwitches) {
   Scene scene(loadText(familyJoint(
-      kNimotionPp, withWrites(terminalWrites("di1", 15, 0) + ", " + terminalWrites("di3", 31, 1)) +
+      kNimotionPp, withWrites(terminalWrites("di1", 15, 0) + ", " + terminalWrites("di3", 31, 1) +
+                              ", " + rawWrite("dx0_is_output", 0)) +
                        ", simulation: {initial_position: 0.0, lower_limit_switch: -0.5, "
                        "home_switch: [-0.1, 0.1]}")));
   ASSERT_TRUE(scene.boot(20s)) << scene.told();
@@ -140,6 +143,28 @@ TEST(NimotionHoming, BeginsOnlyWhereTheSwitchesOfTheMethodAreAtTerminals) {
     scene.run(300ms);
     EXPECT_FALSE(scene.truth("joint").power_stage_on);
     EXPECT_EQ(scene.seen("joint").travel(), 0.0);
+  }
+}
+
+// DI3 and DI4 are outputs from the factory, 2021h = 1 [2653-2656]: a switch there does not exist.
+TEST(NimotionHoming, BeginsOnlyWhereTheTerminalOfASwitchIsAnInput) {
+  for (const auto& [terminal, direction, told] :
+       {std::tuple("di3", "dx0_is_output", "dx0_is_output (2021:01) is 1 instead of 0"),
+        std::tuple("di4", "dx1_is_output", "dx1_is_output (2021:02) is 1 instead of 0")}) {
+    for (const bool is_input : {false, true}) {
+      const std::string writes = terminalWrites(terminal, 15, 1) +
+                                 (is_input ? ", " + rawWrite(direction, 0) : std::string());
+      Scene scene(loadText(familyJoint(
+          kNimotionPp,
+          searchingBy(17, withWrites(writes) + ", simulation: {lower_limit_switch: -0.3}"))));
+      ASSERT_TRUE(scene.boot(20s)) << scene.told();
+      const bus::Answer homed = scene.procedure(ProcedureKind::home, "joint");
+      EXPECT_EQ(homed.success, is_input) << homed.message;
+      if (!is_input) {
+        EXPECT_THAT(homed.message, AllOf(HasSubstr("does not search its home: "), HasSubstr(told)));
+        EXPECT_EQ(scene.position("joint"), 0.0);
+      }
+    }
   }
 }
 

@@ -41,7 +41,8 @@ std::string refusal(drive::Axis& axis, const canopen::Node& node, const std::str
                     NmtCommand command, bool alone) {
   if (command == NmtCommand::start) return {};  // at most, it boots
   const std::string refused = drive::whoIs(axis.config()) + ": nmt " + word + " is refused: ";
-  if (command == NmtCommand::reset_node && !node.config().reset_node_allowed) {
+  const bool may_be_reset = node.config().reset_node_allowed || node.config().reset_does_nothing;
+  if (command == NmtCommand::reset_node && !may_be_reset) {
     return refused +
            "by its profile (nmt_reset_node) the drive must not get that command; use "
            "reset_communication, or switch the drive off and on";
@@ -177,6 +178,12 @@ void NmtJob::watchBoot(Entry& entry, Time now) const {
     const bool was_reset = command_ != NmtCommand::start;
     entry.message = std::string("the drive is configured and operational") +
                     (was_reset ? "; it is disabled" : "");
+    const bool in_vain = command_ == NmtCommand::reset_node && node.config().reset_does_nothing;
+    if (in_vain) {
+      entry.message +=
+          ". It does nothing by that command (nmt_reset_node of its profile): switch it off and "
+          "on for a start";
+    }
   } else if (entry.ended) {
     entry.message = "sent, but the node is not operational: " +
                     (health == Health::ready  ? "its heartbeat does not say so"

@@ -229,14 +229,19 @@ bool ObjectJob::finishWrite(Time now) {
     since_ = now;
     return false;
   }
-  if (ticket_->ok() && readsBack()) {
-    stage_ = Stage::reading_back;
-    written_ = ticket_->data();  // as the drive has it, if it has fewer bits for it
-    ticket_ = axis_->device().objects().upload(id_, name_);
-    return false;
-  }
-  if (ticket_->ok()) return finish(true, writtenText());
+  if (ticket_->ok()) return finishOrReadBack(writtenText(), {});
   return finish(false, notWritten(ticket_->reason()));
+}
+
+/// @param consequence of the write, behind what was written
+bool ObjectJob::finishOrReadBack(std::string written, const std::string& consequence) {
+  if (!readsBack()) return finish(true, written + consequence);
+  stage_ = Stage::reading_back;
+  said_ = std::move(written);
+  consequence_ = consequence;
+  written_ = ticket_->data();  // as the drive has it, if it has fewer bits for it
+  ticket_ = axis_->device().objects().upload(id_, name_);
+  return false;
 }
 
 std::string ObjectJob::writtenText() const {
@@ -249,7 +254,10 @@ std::string ObjectJob::writtenText() const {
 bool ObjectJob::readsBack() const {
   const bool mapped = axis_->device().image().outputSlot(id_) != fieldbus::kNoSlot;
   const bool number = spec_ && spec_->readable && fieldbus::sizeBits(spec_->type) != 0;
-  return axis_->config().profile->reads_back && number && !mapped;
+  // What is a command, or moves by itself, is another number by now.
+  const bool command =
+      mark_ == CoordinateMark::set_position || mark_ == CoordinateMark::restore_parameters;
+  return axis_->config().profile->reads_back && number && !mapped && !command;
 }
 
 /// What cannot be read again is believed.
@@ -257,10 +265,10 @@ bool ObjectJob::compare() {
   const fieldbus::Bytes& holds = ticket_->data();
   const bool same = !ticket_->ok() || holds.empty() || holds.size() > 8 ||
                     fieldbus::toUnsigned(holds) == fieldbus::toUnsigned(written_);
-  if (same) return finish(true, writtenText());
+  if (same) return finish(true, said_ + consequence_);
   const ObjectText text = describeObject(&*spec_, axis_->config(), holds);
   return finish(false, who_ + ": wrote " + value_ + " to " + name_ + units_ + ", but it is " +
-                           text.value + " when it is read back");
+                           text.value + " when it is read back" + consequence_);
 }
 
 /// The axis stays locked until what it measures counts in the new coordinates.
@@ -274,16 +282,14 @@ bool ObjectJob::measure(Time now) {
   }
   const bool measured = axis_->state().feedback_valid;
   if (!measured && now < since_ + axis_->config().profile->timing.state_change) return false;
-  return finish(ticket_->ok(), measuredText(measured));
+  if (ticket_->ok()) return finishOrReadBack(writtenText(), unhomedText(measured));
+  return finish(false, who_ + ": it is not known whether " + value_ + " was written to " + name_ +
+                           " (" + ticket_->reason() + "); read it" + unhomedText(measured));
 }
 
-std::string ObjectJob::measuredText(bool measured) const {
+std::string ObjectJob::unhomedText(bool measured) const {
   const drive::AxisConfig& axis = axis_->config();
-  std::string text = ticket_->ok()
-                         ? writtenText()
-                         : who_ + ": it is not known whether " + value_ + " was written to " +
-                               name_ + " (" + ticket_->reason() + "); read it";
-  text +=
+  std::string text =
       "; " + drive::jointName(axis) + " is not homed any more, for its zero may be another now: ";
   if (mark_ == CoordinateMark::configuration) {
     text += "see that `counts_per_turn`, `gear_ratio` and `direction` fit the drive, then ";

@@ -66,7 +66,8 @@ class ObjectJob final : public Job {
   bool compare();
   bool measure(Time now);
   std::string writtenText() const;
-  std::string measuredText(bool measured) const;
+  std::string unhomedText(bool measured) const;
+  bool finishOrReadBack(std::string written, const std::string& consequence);
   /// By what was read of it, if nothing names it.
   std::optional<drive::ObjectSpec> unnamedObject() const;
 
@@ -79,7 +80,8 @@ class ObjectJob final : public Job {
   drive::CoordinateMark mark_ = drive::CoordinateMark::none;  ///< of what is written
   bool locked_ = false;                                       ///< Axis::beginCalibration()
   fieldbus::Bytes written_;
-  Time since_{};  ///< of the stage
+  std::string said_, consequence_;  ///< where what was written is the same when it is read back
+  Time since_{};                    ///< of the stage
   fieldbus::Ticket ticket_;
   Reply<ObjectAnswer> reply_;
 };

@@ -109,7 +109,11 @@ void readDevice(yaml::Section& section, yaml::Section& timing, const DriveProfil
                 canopen::DeviceProfile& device) {
   readIdentity(section, device);
   section.read("if_silent", device.if_silent);
-  section.read("nmt_reset_node", device.nmt_reset_node);
+  if (const auto reset = section.get("nmt_reset_node")) {
+    const std::size_t word = reset->oneOf({"true", "false", "does_nothing"}).value_or(0);
+    device.nmt_reset_node = word == 0;
+    device.nmt_reset_does_nothing = word == 2;
+  }
   readSync(section, device);
   readHeartbeat(section, device);
   const yaml::Range deadline{0.001, 600.0, false};

@@ -200,6 +200,7 @@ std::string readWritable(const yaml::Value& value, const DriveProfile& profile) 
 
 void readBehaviour(yaml::Section& section, DriveProfile& profile) {
   readHomedBit(section, profile);
+  if (const auto way = section.get("disable_by")) profile.disabling = readDisabling(*way);
   section.read("output_shaft", profile.output_shaft);
   section.read("halt_supported", profile.halt_supported);
   section.read("warning_stops", profile.warning_stops);

@@ -62,6 +62,9 @@ void readParameterNames(const yaml::Value& value, DriveProfile& profile);
 void readParameterNumbers(yaml::Section& section, DriveProfile& profile);
 /// `checks`: what the drive must be set to, or say. @pre objects, modes and homing were read
 void readChecks(const yaml::Value& list, DriveProfile& profile);
+/// `disable_by`: one of the ways out of operation.
+drive::Disabling readDisabling(const yaml::Value& value);
+
 /// `statusword_needs`, `watches`, `fault_reads`. @pre objects were read
 void readSupervision(yaml::Section& section, DriveProfile& profile);
 /// The name of an object of the profile that holds a whole number and can be read; else a problem

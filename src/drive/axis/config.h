@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "drive/profile/conversion.h"
+#include "drive/profile/disabling.h"
 #include "drive/profile/profile.h"
 #include "fieldbus/object_dictionary.h"
 #include "motion/joint.h"
@@ -55,6 +56,7 @@ struct AxisConfig {
   bool brake_after_effort = true;  ///< when a stream of efforts ends; else the axis coasts
   /// Velocities and efforts are streamed to a drive that does not notice the driver's death, too.
   bool unwatched_streams = false;
+  Disabling disabling;            ///< the profile's, where the axis does not say another one
   bool quick_stop_holds = false;  ///< ends in quick stop active, under power; else disabled
   /// A statusword that no state of CiA 402 shows is put up with for so long.
   Duration undecodable_timeout{std::chrono::milliseconds(100)};

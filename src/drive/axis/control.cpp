@@ -55,8 +55,8 @@ void Control::command() {
   if (state != commanded_in_ || goal_ != commanded_for_) {
     // A fault in which there may be power is none in which an axis is let go.
     const bool maybe_powered = state == State::fault && !axis_.powerOff();
-    command_ =
-        maybe_powered ? nextCommand(State::unknown, Goal::quick_stop) : nextCommand(state, goal_);
+    command_ = maybe_powered ? nextCommand(State::unknown, Goal::quick_stop)
+                             : nextCommand(state, goal_, axis_.config.disabling);
     commanded_in_ = state;
     commanded_for_ = goal_;
   }

@@ -1,6 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "drive/axis/coordinates.h"
 
+#include <algorithm>
+
 namespace cia402::drive {
 
 Coordinates::Coordinates(const AxisConfig& config, const Signal& position, AxisState& state)
@@ -11,6 +13,11 @@ Coordinates::Coordinates(const AxisConfig& config, const Signal& position, AxisS
   }
   if (config.homing && config.homing->kept_by_drive && config.profile->homed_bit) {
     home_mask_ = 1U << static_cast<unsigned>(*config.profile->homed_bit);
+    const auto& writes = config.profile->homing.writes;
+    const bool offset_in_drive =
+        std::any_of(writes.begin(), writes.end(),
+                    [](const NamedWrite& write) { return write.from == "homing.offset"; });
+    if (!offset_in_drive) kept_shift_ = config.homing->atHome() - drive_.toJoint(0);
   }
   state_.homed = absolute();
 }
@@ -23,7 +30,7 @@ std::optional<double> Coordinates::takeHome(bool known) {
   }
   if (state_.homed || lost_) return {};
   by_drive_ = true;
-  return set(0.0);
+  return set(kept_shift_);
 }
 
 bool Coordinates::absolute() const {

@@ -89,6 +89,7 @@ class Coordinates {
   unsigned home_mask_ = 0;   ///< of the statusword; 0: what the drive says of its home is nothing
   bool home_known_ = false;  ///< by the drive
   bool by_drive_ = false;    ///< homed as the drive knows its home
+  double kept_shift_ = 0.0;  ///< then: the offset of homing, where the driver counts it
   PositionUnwrap unwrap_;
 };
 

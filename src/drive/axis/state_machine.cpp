@@ -49,6 +49,7 @@ constexpr Command kDisableOperation5{0x0007, 5, "disable operation (transition 5
 constexpr Command kShutdown6{0x0006, 6, "shutdown (transition 6)"};
 constexpr Command kDisableVoltage7{0x0000, 7, "disable voltage (transition 7)"};
 constexpr Command kShutdown8{0x0006, 8, "shutdown (transition 8)"};
+constexpr Command kDisableVoltage9{0x0000, 9, "disable voltage (transition 9)"};
 constexpr Command kDisableVoltage10{0x0000, 10, "disable voltage (transition 10)"};
 constexpr Command kQuickStop11{0x0002, 11, "quick stop (transition 11)"};
 constexpr Command kDisableVoltage12{0x0000, 12, "disable voltage (transition 12)"};
@@ -62,7 +63,7 @@ constexpr Command kStayQuickStop{0x0002, -1, "quick stop (stay)"};
 
 /// kCommands[state][goal]; the columns are disabled, ready, switched on, enabled, quick stop.
 /// Operation is left for "disabled" by transition 5, whose option code (605Ch) ramps down by
-/// default, not by transition 9, which lets the axis coast.
+/// default, not by transition 9, which lets the axis coast; Disabling may say otherwise.
 constexpr std::array<std::array<Command, kGoals>, kStates> kCommands = {{
     // not ready to switch on: the drive initialises itself (transitions 0 and 1)
     {{kNothing, kNothing, kNothing, kNothing, kNothing}},
@@ -105,9 +106,16 @@ State decodeState(std::uint16_t statusword) {
   return State::unknown;
 }
 
-Command nextCommand(State state, Goal goal) {
+Command nextCommand(State state, Goal goal, const Disabling& disabling) {
   const auto row = static_cast<std::size_t>(state);
   const auto column = static_cast<std::size_t>(goal);
+  if (goal == Goal::disabled && state == State::operation_enabled) {
+    if (disabling.from_operation == 8) return kShutdown8;
+    if (disabling.from_operation == 9) return kDisableVoltage9;
+  }
+  if (goal == Goal::disabled && state == State::switched_on && disabling.from_switched_on == 6) {
+    return kShutdown6;
+  }
   if (row >= kStates || column >= kGoals) return kNothing;
   return kCommands[row][column];
 }

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "drive/profile/disabling.h"
+
 namespace cia402::drive {
 
 /// States of the CiA 402 power drive system (CiA 402-2, finite state automaton).
@@ -42,7 +44,8 @@ struct Command {
 };
 /// The controlword that brings `state` one transition nearer to `goal` or keeps it there; a table
 /// over all states and goals. Fault is only left by a fault reset, never by this.
-Command nextCommand(State state, Goal goal);
+/// @param disabling by which transitions the goal "disabled" is gone to
+Command nextCommand(State state, Goal goal, const Disabling& disabling = {});
 
 namespace controlword {
 inline constexpr std::uint16_t kSwitchOn = 1u << 0, kEnableVoltage = 1u << 1, kQuickStop = 1u << 2,

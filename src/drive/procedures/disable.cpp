@@ -27,9 +27,7 @@ class Disable : public Procedure {
       if (axis.feedback().mayMove()) return awaitRest(context);
       return finish(axis, faulted);
     }
-    if (context.now - since_ <= transitionTime(axis, 5) + transitionTime(axis, 10)) {
-      return Outcome::running();
-    }
+    if (context.now - since_ <= disablingInTurn(axis)) return Outcome::running();
     return Outcome::failed(axis.who() + ": disabling timed out after " +
                            seconds(context.now - since_) + "; " + report(axis));
   }

@@ -76,7 +76,7 @@ struct Steps {
   Duration change() const {  // SwitchStep
     const ModeChange& rules = profile.mode_change;
     const bool may_disable = rules.needs_disabling || !rules.detours.empty();
-    return may_disable ? timing.disabling() + enable() + mode() : mode();
+    return may_disable ? timing.disabling(axis.disabling) + enable() + mode() : mode();
   }
   Duration reset() const {
     const Duration once = timing.transition(14) + timing.transition(15) + 3 * timing.state_change +
@@ -120,6 +120,22 @@ Duration transitionTime(const AxisCore& axis, int number) {
   return axis.profile().timing.transition(number) + more;
 }
 
+Duration disablingAtOnce(const AxisCore& axis) {
+  Duration longest{0};
+  for (const int number : axis.config().disabling.transitions()) {
+    longest = std::max(longest, transitionTime(axis, number));
+  }
+  return longest;
+}
+
+Duration disablingInTurn(const AxisCore& axis) {
+  Duration time{0};
+  for (const int number : axis.config().disabling.transitions()) {
+    time += transitionTime(axis, number);
+  }
+  return time;
+}
+
 Duration timeLimit(ProcedureKind kind, const AxisConfig& config,
                    const fieldbus::DeviceTimes& device, double velocity) {
   const Steps steps{config, device};
@@ -130,7 +146,7 @@ Duration timeLimit(ProcedureKind kind, const AxisConfig& config,
     case ProcedureKind::enable:
       return kMargin + std::max(steps.change(), steps.enable());
     case ProcedureKind::disable:
-      return kMargin + stop + steps.timing.longest(5) + steps.timing.longest(10) + kComeToRest;
+      return kMargin + stop + steps.timing.disablingInTurn(config.disabling) + kComeToRest;
     case ProcedureKind::home:
       return kMargin + steps.home();
     case ProcedureKind::clear_faults:

@@ -20,6 +20,10 @@ Duration stopTime(const AxisConfig& config, double velocity);
 
 /// How long a transition of CiA 402-2 may take of this axis, by what its drive has told of it.
 Duration transitionTime(const AxisCore& axis, int number);
+/// How long it may take from operation enabled to switch on disabled, by the transitions of the axis'
+/// `disabling`: if that is one step, or one after the other.
+Duration disablingAtOnce(const AxisCore& axis);
+Duration disablingInTurn(const AxisCore& axis);
 
 /// The longest that a procedure may take: what its steps may take, each once. A drive that goes to
 /// and fro between states begins the wait of a step again and again, so the whole has a limit.

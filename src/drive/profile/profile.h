@@ -12,6 +12,7 @@
 #include "cia402_driver/common/time.h"
 #include "drive/profile/bit_fields.h"
 #include "drive/profile/bus_settings.h"
+#include "drive/profile/disabling.h"
 #include "drive/profile/error_texts.h"
 #include "drive/profile/handover.h"
 #include "drive/profile/io.h"
@@ -267,6 +268,7 @@ struct DriveProfile {
   std::vector<ModeSpec> modes;
   HomingSpec homing;
   bool halt_supported = true;
+  Disabling disabling;
   ModeChange mode_change;
   int fault_reset_tries = 1;  ///< edges of controlword bit 7 that it may take, 1 to 20
   /// Where these did not help the device is taken out of operation for so long, and resets once

@@ -1,12 +1,12 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <map>
 #include <string>
 
 #include "cia402_driver/common/time.h"
+#include "drive/profile/disabling.h"
 
 namespace cia402::drive {
 
@@ -21,8 +21,9 @@ struct DriveTiming {
   Duration transition(int number) const;
   /// The same at the most, with `power_off` where that transition ends operation.
   Duration longest(int number) const;
-  /// From operation enabled to switch on disabled (transitions 5 and 10), if that is one step.
-  Duration disabling() const { return std::max(longest(5), longest(10)); }
+  /// From operation enabled to switch on disabled, if that is one step; or one after the other.
+  Duration disabling(const Disabling& by) const;
+  Duration disablingInTurn(const Disabling& by) const;
   Duration mode_change{std::chrono::seconds(1)};
   /// Operation enabled until set-points are followed: 0 to 60 s. With `brake_object` the longest
   /// that this object may say, and what counts where it cannot be read.

@@ -213,6 +213,10 @@ struct DriveDefinition {
   /// By the value of the object of the role sync_tolerance: the share of its period by which SYNC
   /// may be off in interpolated position before the fault `sync_error`; 0: anything.
   std::vector<double> sync_tolerances;
+  /// Number of 6086h that makes the corners of profiles round: over so many seconds, or over the
+  /// time of an acceleration by 60A4h where that is 0.
+  std::int64_t s_curve = 3;
+  double s_curve_time = 0.0;
   RangeUse range_use = RangeUse::none;
   std::vector<LimitUse> limit_uses;  ///< by the value of the role position_limits_use; empty: on
   std::vector<fieldbus::ObjectId> locked_while_enabled;

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -21,9 +22,15 @@ enum class ModeCommand : std::uint8_t {
 struct DriveQuirks {
   bool mode_shown_when_enabled = false;  ///< 6061h is 0 in all states but operation enabled
   ModeCommand mode_command = ModeCommand::any;
-  bool mode_needed = false;       ///< 0x0F enables nothing while the mode is 0
-  Duration enabling_time{0};      ///< from 0x0F in Switched on to operation enabled
-  bool halt_blocks_mode = false;  ///< 6060h is ignored while controlword bit 8 is set
+  bool mode_needed = false;                       ///< 0x0F enables nothing while the mode is 0
+  std::vector<std::int64_t> refused_transitions;  ///< commands of these do nothing
+  bool refuses(unsigned transition) const {
+    return std::find(refused_transitions.begin(), refused_transitions.end(),
+                     std::int64_t{transition}) != refused_transitions.end();
+  }
+  Duration enabling_time{0};                ///< from 0x0F in Switched on to operation enabled
+  bool mode_ignored_while_enabled = false;  ///< 6060h is taken then, and does nothing
+  bool halt_blocks_mode = false;            ///< 6060h is ignored while controlword bit 8 is set
   /// Changes of 6060h that it answers by a fault (`mode_change`) while enabled: from, to.
   std::vector<std::pair<std::int64_t, std::int64_t>> mode_faults;
   std::uint16_t fault_bits = 0;           ///< statusword bits beside those of the state fault

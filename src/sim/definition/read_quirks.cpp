@@ -11,6 +11,11 @@ void readQuirks(DefinitionReader& reader, DriveQuirks& out) {
                             {"change", ModeCommand::change}});
   reader.read("mode_needed", out.mode_needed);
   reader.read("enabling_time", out.enabling_time);
+  reader.read("mode_ignored_while_enabled", out.mode_ignored_while_enabled);
+  if (reader.has("refused_transitions")) out.refused_transitions.clear();
+  reader.list("refused_transitions", [&](const yaml::Value& item) {
+    out.refused_transitions.push_back(item.integer(2, 16).value_or(2));
+  });
   reader.read("halt_blocks_mode", out.halt_blocks_mode);
   std::int64_t bits = out.fault_bits;
   reader.read("fault_bits", bits, 0, 0xFFFF);

@@ -16,7 +16,10 @@ constexpr std::pair<const char*, InputFunction> kInputFunctions[] = {
     {"home_switch", InputFunction::home_switch},
     {"fault_reset", InputFunction::fault_reset},
     {"set_home", InputFunction::set_home},
-    {"clear_history", InputFunction::clear_history}};
+    {"clear_history", InputFunction::clear_history},
+    {"motor_enable", InputFunction::motor_enable},
+    {"pause", InputFunction::pause},
+    {"step", InputFunction::step}};
 
 std::optional<fieldbus::ObjectId> terminalObjectOf(const yaml::Value& value) {
   const auto text = value.text();
@@ -30,13 +33,17 @@ void readInputPairs(DefinitionReader& reader, const char* key, bool with_logic,
   if (reader.has(key)) out.clear();
   reader.list(key, [&](const yaml::Value& item) {
     const std::vector<yaml::Value> pair = item.list();
-    if (pair.size() != (with_logic ? 2 : 1)) {
+    const bool fits = with_logic ? pair.size() == 2 || pair.size() == 3 : pair.size() == 1;
+    if (!fits) {
       return item.problem(with_logic
                               ? "must be the objects of function and logic"
                               : "must be the object of the function, as there is `inversion`");
     }
-    const auto function = terminalObjectOf(pair[0]), logic = terminalObjectOf(pair.back());
-    if (function && logic) out.push_back({*function, *logic});
+    const auto function = terminalObjectOf(pair[0]);
+    const auto logic = terminalObjectOf(pair[with_logic ? 1 : 0]);
+    std::optional<fieldbus::ObjectId> is_output;
+    if (pair.size() == 3) is_output = terminalObjectOf(pair[2]);
+    if (function && logic) out.push_back({*function, *logic, is_output});
   });
 }
 

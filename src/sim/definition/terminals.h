@@ -19,6 +19,9 @@ enum class InputFunction : std::uint8_t {
   fault_reset,    ///< an edge resets faults
   set_home,       ///< an edge makes the present position 0
   clear_history,  ///< an edge empties 1003h
+  motor_enable,   ///< enables the motor in a maker's mode (MakerModes)
+  pause,          ///< halts it there
+  step,           ///< an edge brings a step there
 };
 
 /// Digital inputs whose functions the drive is told by objects. Logic of an input with a terminal:
@@ -27,6 +30,7 @@ enum class InputFunction : std::uint8_t {
 struct TerminalsDefinition {
   struct Input {
     fieldbus::ObjectId function, logic;
+    std::optional<fieldbus::ObjectId> is_output;  ///< not 0: the terminal is no input
   };
   std::vector<Input> with_terminal, without;  ///< the second ones are virtual
   /// Instead of their logic: an object whose bit n turns input n, active where nothing conducts.

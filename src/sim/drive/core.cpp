@@ -44,10 +44,8 @@ void DriveCore::start(bool cold, Time now) {
   advance(now);
   on_ = true;
   if (cold && !definition_.absolute_encoder) motion_.setCounter(0.0);
-  if (cold) {
-    stored_ = false;
-    motion_.loseHome();
-  }
+  if (cold) stored_ = false;
+  if (cold) motion_.loseHome();
   motion_.powerStage(false);
   controlword_ = 0;
   statusword_ = 0;  // the dictionary has its initial values again
@@ -59,19 +57,20 @@ void DriveCore::start(bool cold, Time now) {
   modes_.start();
   power_.start(now);
   power_.finishInitialisation(now, now_);
-  motion_.probes().start();
+  motion_.parts().probes.start();
   onObstacle();
 }
 
 void DriveCore::powerOff() {
   on_ = false;
-  motion_.probes().start();
+  motion_.parts().probes.start();
+  motion_.parts().maker.setInputs(false, false);
   power_.powerOff();
   statusword_ = 0;
 }
 
 bool DriveCore::idle() const {
-  if (motion_.powered() || !motion_.atRest()) return false;
+  if (motion_.powered() || !motion_.atRest() || motion_.parts().maker.wantsPower()) return false;
   const bool initialises = power_.readyAt() != kNever && on_;
   return !power_.enabling() && !faults_.endByThemselves() && modes_.due() == kNever && !initialises;
 }
@@ -134,6 +133,7 @@ void DriveCore::superviseMotion() {
     raise("sync_error");
   }
   if (const char* fault = motion_.takeFault()) raise(fault);
+  if (motion_.parts().watch.takeStall()) raise("stall");
   const MotionLimits& limits = motion_.limits();
   const auto act = [this](const LimitReports::Due& due) {
     if (due.end != nullptr && faults_.endWarning(*due.end)) clearErrors();
@@ -173,6 +173,7 @@ void DriveCore::onControlword() {
 }
 
 void DriveCore::command(PdsCommand command) {
+  if (motion_.parts().maker.chosen()) return;
   if (command == PdsCommand::enable_operation) power_.stay();
   PdsTransition transition = transitionFor(power_.state(), command);
   if (transition.number == 0 && definition_.direct_enable &&
@@ -180,15 +181,15 @@ void DriveCore::command(PdsCommand command) {
     power_.enter(PdsState::ready_to_switch_on, now_);
     transition = transitionFor(power_.state(), command);
   }
-  if (obstacle_.forbids(transition)) return;
-  if (transition.number != 0) execute(transition);
+  if (!obstacle_.forbids(transition)) execute(transition);
   if (transition.number == 3 && command == PdsCommand::enable_operation &&
-      definition_.enable_in_one_step) {
+      definition_.enable_in_one_step && power_.state() == PdsState::switched_on) {
     execute(transitionFor(power_.state(), command));
   }
 }
 
 void DriveCore::execute(const PdsTransition& transition) {
+  if (transition.number == 0 || definition_.quirks.refuses(transition.number)) return;
   transition.number == 4 ? beginEnabling() : power_.execute(transition, now_);
 }
 

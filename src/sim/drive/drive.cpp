@@ -120,7 +120,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
     }
     if (role == Role::gear_numerator || role == Role::gear_denominator)
       axis.core.motion().publish();
-    if (role == Role::touch_probe_function) axis.core.motion().probes().command();
+    if (role == Role::touch_probe_function) axis.core.motion().parts().probes.command();
     if (role == Role::clear_errors && entry.number != 0) axis.core.resetFault();
     if (role == Role::software_reset && entry.number == 1) reset_at = now + kSoftwareReset;
     const bool command = role == Role::emergency_stop || role == Role::homing_start;
@@ -128,8 +128,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
     if (role == Role::alarm_select || saves || (command && entry.number == 1))
       axis.core.onWrite(*role);
     if (axis.terminals.holds(entry.id)) {
-      obey(axis.terminals.look(axis.core.motion().switches()), axis.core, dictionary,
-           definition->fault("terminal_setup"));
+      obey(axis.terminals, axis.core, dictionary, definition->fault("terminal_setup"));
       axis.core.motion().publish();
     }
   }
@@ -159,7 +158,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
   void onPowerOn(Time time) override {
     now = time;
     heard = false;
-    for (Axis& axis : axes) axis.terminals.start(axis.core.motion().switches());
+    for (Axis& axis : axes) axis.terminals.start(axis.core);
     forEach(&DriveCore::start, cold, time);
     if (cold) gate.foreign = store.silent();
     cold = false;
@@ -359,15 +358,23 @@ std::vector<std::string> Drive::faultNames() const {
 
 void Drive::setProbe(unsigned probe, bool active, Time now, unsigned axis) {
   impl_->bringTo(now);
-  impl_->axes.at(axis).core.motion().probes().setInput(probe, active);
+  impl_->axes.at(axis).core.motion().parts().probes.setInput(probe, active);
   impl_->flushChanges();
 }
 
 void Drive::setInput(unsigned bit, bool active, Time now, unsigned axis) {
   impl_->bringTo(now);
-  DriveCore& core = impl_->axes.at(axis).core;
-  core.obstacle().setInput(bit, active);
-  core.onObstacle();
+  Axis& changed = impl_->axes.at(axis);
+  changed.core.obstacle().setInput(bit, active);
+  changed.core.onObstacle();
+  obey(changed.terminals, changed.core, impl_->dictionary,
+       impl_->definition->fault("terminal_setup"));
+  impl_->flushChanges();
+}
+
+void Drive::setPulseWidth(double duty, Time now, unsigned axis) {
+  impl_->bringTo(now);
+  impl_->axes.at(axis).core.motion().parts().maker.setDuty(duty);
   impl_->flushChanges();
 }
 

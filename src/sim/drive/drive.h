@@ -96,6 +96,10 @@ class Drive {
   /// AxisMechanics.  @pre bit < 32, axis < axisCount()
   void setInput(unsigned bit, bool active, Time now, unsigned axis = 0);
 
+  /// The pulse width at the input for a maker's speed, -1 to 1, at `now`; negative: the input for
+  /// the direction says so.  @pre axis < axisCount()
+  void setPulseWidth(double duty, Time now, unsigned axis = 0);
+
   /// @pre axis < axisCount()
   DriveTruth truth(Time now, unsigned axis = 0);
   /// 1 to 8.

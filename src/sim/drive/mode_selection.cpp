@@ -20,6 +20,7 @@ bool ModeSelection::ignores(std::int64_t wanted, bool enabled, bool halted) {
   last_command_ = wanted;
   if (quirks.mode_command != ModeCommand::any && !enabled) return true;
   if (quirks.mode_command == ModeCommand::change && !changes) return true;
+  if (quirks.mode_ignored_while_enabled && enabled) return true;
   return quirks.halt_blocks_mode && halted;
 }
 

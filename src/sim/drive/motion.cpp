@@ -55,6 +55,7 @@ bool DriveMotion::modeBit() const { return (controlword_ & kModeBit) != 0; }
 
 void DriveMotion::powerStage(bool on) {
   powered_ = on;
+  if (!on) parts_.maker.begin(false);
   controlword_ = 0;
   stop_.reset();
   held_ = false;
@@ -163,9 +164,17 @@ void DriveMotion::step() {
     axis_.motor.setPositionTimeConstant(time_constant_);
   }
   axis_.motor.setStops(mechanics_.negative_stop, mechanics_.positive_stop);
+  if (parts_.maker.wantsPower() != parts_.maker.running() &&
+      (parts_.maker.running() || !powered_)) {
+    powerStage(parts_.maker.wantsPower());
+    parts_.maker.begin(powered_);
+  }
   const double from = axis_.motor.position();
   stepRotor(from);
-  probes_.turned(from);
+  parts_.probes.turned(from);
+  const bool rests = !powered_ && axis_.motor.atRest();
+  parts_.watch.step(axis_.values, powered_ ? axis_.demand.velocity : 0.0, axis_.motor.velocity(),
+                    rests);
 }
 
 void DriveMotion::stepRotor(double from) {
@@ -177,6 +186,7 @@ void DriveMotion::stepRotor(double from) {
     return;
   }
   limitTorque();
+  if (parts_.maker.running()) return parts_.maker.step();
   // Limits of a cyclic target last until the next one.
   if (!cyclic_.ofThisMode()) axis_.limits.release();
   axis_.limits.releaseSwitch();
@@ -265,7 +275,7 @@ void DriveMotion::publish() {
   const bool nothing = unsure && ++publications_ % kZeroReading == 0;
   values.set(Role::position_actual, nothing ? 0.0 : position);
   values.set(Role::position_internal, position);
-  values.set(Role::velocity_actual, axis_.motor.velocity());
+  values.set(Role::velocity_actual, parts_.watch.shown());
   values.set(Role::torque_actual, axis_.motor.torque());
   values.set(Role::current_actual, axis_.motor.torque());
   values.set(Role::position_demand, demand);

@@ -6,6 +6,8 @@
 
 #include "sim/drive/cyclic_positions.h"
 #include "sim/drive/homing_mode.h"
+#include "sim/drive/maker_modes.h"
+#include "sim/drive/motor_watch.h"
 #include "sim/drive/moving_axis.h"
 #include "sim/drive/profile_position.h"
 #include "sim/drive/target_supervision.h"
@@ -18,6 +20,14 @@ namespace cia402::sim {
 /// tells its master.
 class DriveMotion {
  public:
+  /// What works beside the modes of CiA 402.
+  struct Parts {
+    explicit Parts(MovingAxis& axis) : probes(axis), maker(axis) {}
+    TouchProbes probes;
+    MakerModes maker;
+    MotorWatch watch;
+  };
+
   /// All references must outlive it; `mechanics` may change meanwhile.
   DriveMotion(const DriveDefinition& definition, const MotorParameters& motor_parameters,
               const AxisMechanics& mechanics, DriveValues& values);
@@ -47,7 +57,10 @@ class DriveMotion {
   void cyclicTarget(double seconds, double into);
 
   void step();  ///< one kDriveStep
-  bool atRest() const { return axis_.motor.atRest(); }
+  /// The rotor stands, and is shown to.
+  bool atRest() const {
+    return axis_.motor.atRest() && parts_.watch.shown() == axis_.motor.velocity();
+  }
   /// Neither demand nor rotor moves.
   bool standing() const;
   /// Bits 8 and 10 to 15 for the present mode; only meaningful while operation is enabled.
@@ -67,7 +80,8 @@ class DriveMotion {
   const MotionLimits& limits() const { return axis_.limits; }
   /// Name of a fault that the mode has come to since it was asked last, or nullptr.
   const char* takeFault() { return cyclic_.takeStep() ? "position_step" : homing_.takeFault(); }
-  TouchProbes& probes() { return probes_; }
+  Parts& parts() { return parts_; }
+  const Parts& parts() const { return parts_; }
   /// Further bits of the inputs (60FDh) that are 1.
   void setInputs(std::uint32_t bits) { inputs_ = bits; }
   AxisSwitches& switches() { return axis_.switches; }
@@ -95,7 +109,7 @@ class DriveMotion {
   CyclicPositions cyclic_{axis_};
   HomingMode homing_{axis_};
   TargetSupervision supervision_{axis_};
-  TouchProbes probes_{axis_};
+  Parts parts_{axis_};
   double time_constant_;  ///< of the position loop, s
   bool powered_ = false;
   bool held_ = false;

@@ -13,6 +13,17 @@ double MotionLimits::velocityModeRamp(Role speed, Role time) const {
 }
 
 double MotionLimits::deceleration(Ramp ramp, const ModeDefinition* mode) const {
+  return std::min(rampOf(ramp, mode), clamp());
+}
+
+double MotionLimits::cornerTime(const ProfileLimits& limits) const {
+  if (values_.raw(Role::motion_profile_type, 0) != definition_.s_curve) return 0.0;
+  if (definition_.s_curve_time > 0.0) return definition_.s_curve_time;
+  return std::max(limits.acceleration / values_.get(Role::profile_jerk_1, kUnlimited),
+                  limits.deceleration / values_.get(Role::profile_jerk_2, kUnlimited));
+}
+
+double MotionLimits::rampOf(Ramp ramp, const ModeDefinition* mode) const {
   const bool vl = mode != nullptr && mode->behaviour == ModeBehaviour::velocity;
   switch (ramp) {
     case Ramp::slow_down:
@@ -38,7 +49,8 @@ ProfileLimits MotionLimits::profile(const ModeDefinition* mode) const {
   ProfileLimits limits;
   if (mode != nullptr && mode->behaviour == ModeBehaviour::velocity) {
     limits.velocity = maxSpeed();
-    limits.acceleration = velocityModeRamp(Role::vl_acceleration_speed, Role::vl_acceleration_time);
+    limits.acceleration = std::min(
+        clamp(), velocityModeRamp(Role::vl_acceleration_speed, Role::vl_acceleration_time));
     limits.deceleration = deceleration(Ramp::slow_down, mode);
     return limits;
   }
@@ -47,10 +59,10 @@ ProfileLimits MotionLimits::profile(const ModeDefinition* mode) const {
                            : kUnlimited;
   limits.velocity =
       std::min({speed, maxSpeed(), values_.get(Role::max_profile_velocity, kUnlimited)});
-  limits.acceleration = std::min(values_.get(Role::profile_acceleration, kUnlimited),
-                                 values_.get(Role::max_acceleration, kUnlimited));
-  limits.deceleration = std::min(values_.get(Role::profile_deceleration, kUnlimited),
-                                 values_.get(Role::max_deceleration, kUnlimited));
+  limits.acceleration = std::min({values_.get(Role::profile_acceleration, kUnlimited),
+                                  values_.get(Role::max_acceleration, kUnlimited), clamp()});
+  limits.deceleration = std::min({values_.get(Role::profile_deceleration, kUnlimited),
+                                  values_.get(Role::max_deceleration, kUnlimited), clamp()});
   return limits;
 }
 

@@ -27,6 +27,10 @@ class MotionLimits {
 
   /// Of a ramp in a mode; nullptr: in none.
   double deceleration(Ramp ramp, const ModeDefinition* mode) const;
+  /// More no change of a speed has.
+  double clamp() const { return values_.get(Role::acceleration_clamp, kUnlimited); }
+  /// So long the corners of a profile take, s; 0: it has them.
+  double cornerTime(const ProfileLimits& limits) const;
   /// Of the motor (6080h).
   double maxSpeed() const;
   /// Of profiles in a mode; nullptr: in none.
@@ -68,6 +72,7 @@ class MotionLimits {
 
  private:
   double velocityModeRamp(Role speed, Role time) const;
+  double rampOf(Ramp ramp, const ModeDefinition* mode) const;
   bool positionsCount() const;
   Span software() const;
 

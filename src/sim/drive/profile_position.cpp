@@ -11,8 +11,6 @@ namespace {
 constexpr std::uint16_t kImmediately = 0x0020;
 constexpr std::uint16_t kRelative = 0x0040;
 
-constexpr std::int64_t kLimitedJerk = 3;  // 6086h
-
 }  // namespace
 
 bool ProfilePosition::ofThisMode() const {
@@ -84,19 +82,14 @@ void ProfilePosition::accept(std::uint16_t controlword) {
   }
 }
 
-bool ProfilePosition::limitsJerk() const {
-  return axis_.values.raw(Role::motion_profile_type, 0) == kLimitedJerk;
-}
-
 /// The demand is where the profile is, or comes there with limited jerk.
 void ProfilePosition::follow() {
   Demand& demand = axis_.demand;
   const double before = demand.position;
   demand.followProfile();
-  if (!limitsJerk()) return smooth_.reset(demand.position);
-  const ProfileLimits& limits = active_.limits;
-  smooth_.limit(std::max(limits.acceleration / axis_.values.get(Role::profile_jerk_1, kUnlimited),
-                         limits.deceleration / axis_.values.get(Role::profile_jerk_2, kUnlimited)));
+  const double corners = axis_.limits.cornerTime(active_.limits);
+  if (corners == 0.0) return smooth_.reset(demand.position);
+  smooth_.limit(corners);
   demand.position = smooth_.step(demand.profile.position());
   demand.velocity = (demand.position - before) / kDriveStepS;
 }

@@ -41,7 +41,6 @@ class ProfilePosition {
   void accept(std::uint16_t controlword);
   double base() const;
   bool full() const;
-  bool limitsJerk() const;
   void follow();
   void beginNext();
   bool ofThisMode() const;

@@ -34,9 +34,18 @@ void stepVelocity(MovingAxis& axis, bool ramped) {
   const double braking = axis.limits.deceleration(Ramp::quick_stop, axis.mode);
   const double target = allowedVelocity(axis, wanted, braking);
   const bool forced = target != wanted;
-  const double down = forced ? braking : limits.deceleration;
-  demand.velocity =
-      ramped || forced ? rampVelocity(demand.velocity, target, limits.acceleration, down) : target;
+  const double most = axis.limits.clamp();
+  const double corners = ramped && !forced ? axis.limits.cornerTime(limits) : 0.0;
+  if (corners > 0.0) {
+    demand.ramp = rampVelocity(demand.ramp, target, limits.acceleration, limits.deceleration);
+    demand.corners.limit(corners);
+    demand.velocity = demand.corners.step(demand.ramp);
+  } else {
+    const double up = ramped || forced ? limits.acceleration : most;
+    const double down = forced ? braking : ramped ? limits.deceleration : most;
+    demand.velocity = rampVelocity(demand.velocity, target, up, down);
+    demand.beginRamp();
+  }
   axis.motor.followVelocity(demand.velocity, ramped ? 0.0 : axis.offset(Role::torque_offset));
   demand.position = axis.motor.position();
 }

@@ -10,7 +10,8 @@
 namespace cia402::sim {
 namespace {
 
-constexpr std::uint64_t kLogicLow = 0, kLogicRising = 1;  // logic
+constexpr std::uint64_t kLogicLow = 0, kLogicHigh = 1, kLogicRising = 1;  // the last: virtual ones
+constexpr std::uint64_t kTerminalRising = 2, kTerminalFalling = 3, kTerminalBoth = 4;
 constexpr fieldbus::ObjectId kErrorsKept{0x1003, 0};
 constexpr std::uint16_t kTerminalStateBits = 0x004F, kInFault = 0x0008;
 
@@ -36,7 +37,7 @@ std::uint64_t Terminals::number(fieldbus::ObjectId id) const {
 
 bool Terminals::holds(fieldbus::ObjectId id) const {
   const auto is = [&](const TerminalsDefinition::Input& input) {
-    return input.function == id || input.logic == id;
+    return input.function == id || input.logic == id || input.is_output == id;
   };
   const auto any = [&](const auto& list) { return std::any_of(list.begin(), list.end(), is); };
   return any(definition_.with_terminal) || any(definition_.without) || definition_.levels == id ||
@@ -46,6 +47,11 @@ bool Terminals::holds(fieldbus::ObjectId id) const {
 InputFunction Terminals::functionOf(const TerminalsDefinition::Input& input) const {
   const auto known = definition_.functions.find(static_cast<std::int64_t>(number(input.function)));
   return known == definition_.functions.end() ? InputFunction::none : known->second;
+}
+
+/// A terminal may be an output instead.
+bool Terminals::isInput(const TerminalsDefinition::Input& input) const {
+  return !input.is_output || number(*input.is_output) == 0;
 }
 
 /// Each function but 0 may stand once, over all inputs.
@@ -65,9 +71,10 @@ void Terminals::connect(AxisSwitches& switches) const {
   const std::uint64_t turned =
       by_bits ? number(*definition_.inversion) ^ definition_.normally_closed : 0;
   for (const auto& input : definition_.with_terminal) {
+    const HomingInput at = isInput(input) ? switchOf(functionOf(input)) : HomingInput::none;
     const bool low = !by_bits && number(input.logic) == kLogicLow;
     const bool reversed = ((turned >> terminals.size()) & 1U) != 0;
-    terminals.push_back({switchOf(functionOf(input)), low, reversed});
+    terminals.push_back({at, low, reversed});
   }
   if (definition_.empty()) return;
   switches.connect(std::move(terminals));
@@ -79,14 +86,48 @@ std::uint64_t Terminals::levels() const {
   return enabled && definition_.levels ? number(*definition_.levels) : 0;
 }
 
-void Terminals::start(AxisSwitches& switches) {
+void Terminals::start(DriveCore& core) {
   levels_ = levels();
+  inputs_ = core.obstacle().inputs();
   doubled_ = false;
-  connect(switches);
+  connect(core.motion().switches());
+  core.motion().parts().maker.setInputs(active(InputFunction::motor_enable),
+                                        active(InputFunction::pause));
 }
 
-Terminals::Change Terminals::look(AxisSwitches& switches) {
+bool Terminals::active(InputFunction function) const {
+  for (std::size_t i = 0; i < definition_.with_terminal.size(); ++i) {
+    const auto& input = definition_.with_terminal[i];
+    const bool high = ((inputs_ >> i) & 1U) != 0;
+    const std::uint64_t logic = number(input.logic);
+    const bool on = (logic == kLogicLow && !high) || (logic == kLogicHigh && high);
+    if (on && isInput(input) && functionOf(input) == function) return true;
+  }
+  for (std::size_t i = 0; i < definition_.without.size(); ++i) {
+    const auto& input = definition_.without[i];
+    const bool on = ((levels_ >> i) & 1U) != 0 && number(input.logic) == kLogicLow;  // active high
+    if (on && functionOf(input) == function) return true;
+  }
+  return false;
+}
+
+/// Of inputs with a terminal.
+void Terminals::addEdges(std::uint32_t inputs, Change& change) const {
+  for (std::size_t i = 0; i < definition_.with_terminal.size(); ++i) {
+    const auto& input = definition_.with_terminal[i];
+    const bool was = ((inputs_ >> i) & 1U) != 0, is = ((inputs >> i) & 1U) != 0;
+    const std::uint64_t logic = number(input.logic);
+    const bool rises = is && !was && (logic == kTerminalRising || logic == kTerminalBoth);
+    const bool falls = was && !is && (logic == kTerminalFalling || logic == kTerminalBoth);
+    const InputFunction function = isInput(input) ? functionOf(input) : InputFunction::none;
+    if ((rises || falls) && function != InputFunction::none) change.edges.push_back(function);
+  }
+}
+
+Terminals::Change Terminals::look(AxisSwitches& switches, std::uint32_t inputs) {
   Change change;
+  addEdges(inputs, change);
+  inputs_ = inputs;
   const std::uint64_t now = levels(), rising = now & ~levels_;
   levels_ = now;
   Entry* seen = definition_.seen ? dictionary_.find(*definition_.seen) : nullptr;
@@ -102,14 +143,21 @@ Terminals::Change Terminals::look(AxisSwitches& switches) {
   change.doubled = doubled && !doubled_;
   change.mended = doubled_ && !doubled;
   doubled_ = doubled;
+  change.enabled = active(InputFunction::motor_enable);
+  change.paused = active(InputFunction::pause);
   return change;
 }
 
-void obey(const Terminals::Change& change, DriveCore& core, ObjectDictionary& dictionary,
+void obey(Terminals& terminals, DriveCore& core, ObjectDictionary& dictionary,
           const FaultDefinition* doubled) {
+  const Terminals::Change change =
+      terminals.look(core.motion().switches(), core.obstacle().inputs());
+  MakerModes& maker = core.motion().parts().maker;
+  maker.setInputs(change.enabled, change.paused);
   for (const InputFunction function : change.edges) {
     if (function == InputFunction::set_home) core.onWrite(Role::save_zero);
     if (function == InputFunction::fault_reset) core.resetFault();
+    if (function == InputFunction::step) maker.trigger();
     Entry* history = dictionary.find(kErrorsKept);
     if (function == InputFunction::clear_history && history != nullptr) history->number = 0;
   }

@@ -151,6 +151,19 @@ constexpr RoleInfo kRoles[] = {
     {R::brake_close_time, "brake_close_time", {0, 0}, Q::time},
     {R::brake_power_time, "brake_power_time", {0, 0}, Q::time},
     {R::rpm_units, "rpm_units", {0, 0}, Q::none},
+    {R::acceleration_clamp, "acceleration_clamp", {0, 0}, Q::acceleration},
+    {R::velocity_filter, "velocity_filter", {0, 0}, Q::time},
+    {R::stall_error, "stall_error", {0, 0}, Q::none},
+    {R::stall_speed, "stall_speed", {0, 0}, Q::motor_speed},
+    {R::stall_time, "stall_time", {0, 0}, Q::time},
+    {R::maker_mode, "maker_mode", {0, 0}, Q::none},
+    {R::step_amount, "step_amount", {0, 0}, Q::position},
+    {R::step_speed, "step_speed", {0, 0}, Q::motor_speed},
+    {R::maker_speed_source, "maker_speed_source", {0, 0}, Q::none},
+    {R::maker_speed, "maker_speed", {0, 0}, Q::motor_speed},
+    {R::maker_acceleration_time, "maker_acceleration_time", {0, 0}, Q::none},
+    {R::maker_deceleration_time, "maker_deceleration_time", {0, 0}, Q::none},
+    {R::pulse_width, "pulse_width", {0, 0}, Q::none},
 };
 static_assert(sizeof(kRoles) / sizeof(kRoles[0]) == kRoleCount, "one line for each role");
 

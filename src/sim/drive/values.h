@@ -150,6 +150,19 @@ enum class Role : std::uint8_t {
   brake_close_time,      ///< ... or so long after the stop began
   brake_power_time,      ///< vendor object: where it stood then the power stays for so long
   rpm_units,  ///< vendor object: 1: speeds count in 0.01 rpm, ramps are the ms from 0 to 1000 rpm
+  acceleration_clamp,  ///< vendor object: no profile or ramp accelerates more
+  velocity_filter,     ///< vendor object: so much later the actual velocity is shown
+  stall_error,         ///< vendor objects; see MotorWatch
+  stall_speed,
+  stall_time,
+  maker_mode,  ///< vendor objects of MakerModes: 0: the modes of CiA 402
+  step_amount,
+  step_speed,
+  maker_speed_source,
+  maker_speed,
+  maker_acceleration_time,  ///< ms from 0 to 1000/min
+  maker_deceleration_time,
+  pulse_width,  ///< %, as it is seen
   count,
 };
 inline constexpr std::size_t kRoleCount = static_cast<std::size_t>(Role::count);

@@ -95,8 +95,7 @@ Outcome SwitchStep::awaitDisabled(const Context& context) {
     return Outcome::running();
   }
   if (axis.faulted()) return Outcome::failed(axis.faults().text());
-  const Duration longest = std::max(transitionTime(axis, 5), transitionTime(axis, 10));
-  if (context.now - since_ <= longest) return Outcome::running();
+  if (context.now - since_ <= disablingAtOnce(axis)) return Outcome::running();
   return Outcome::failed(axis.who() + ": mode " + channel_->spec->name +
                          " was not taken: the drive must be disabled for it and was not within " +
                          seconds(context.now - since_) + "; " + report(axis));
