@@ -46,7 +46,7 @@ void DriveCore::start(bool cold, Time now) {
   if (cold && !definition_.absolute_encoder) motion_.setCounter(0.0);
   if (cold) {
     stored_ = false;
-    motion_.loseHome();
+    motion_.setHomed(false);
   }
   motion_.powerStage(false);
   controlword_ = 0;

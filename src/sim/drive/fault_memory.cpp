@@ -85,6 +85,11 @@ std::uint8_t FaultMemory::errorRegister() const {
   return bits;
 }
 
+bool FaultMemory::has(const FaultDefinition& fault) const {
+  return std::any_of(causes_.begin(), causes_.end(),
+                     [&fault](const Cause& cause) { return cause.fault == &fault; });
+}
+
 const FaultDefinition* FaultMemory::lasting(bool warnings, Time now) const {
   for (const Cause& cause : causes_) {
     if (cause.fault->warning != warnings) continue;
