@@ -72,7 +72,7 @@ TEST(SimulatedEncoder, ReportsTooManyTurnsUnlessThatIsMasked) {
 // Er.076: without its battery the turns are gone with the power.
 TEST(SimulatedEncoder, ForgetsItsTurnsWithoutBattery) {
   EncoderBench bench("megmeet_dm5", 12.25, "{}");
-  ASSERT_TRUE(bench.drive->inject("battery_lost", bench.now));
+  ASSERT_TRUE(bench.drive->inject("battery_warning", bench.now));
   bench.run(ms(100));
   EXPECT_EQ(bench.position(), static_cast<std::int32_t>(12.25 * kTurn));
   ASSERT_TRUE(bench.drive->inject("power_cycle", bench.now));

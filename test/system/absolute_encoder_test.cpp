@@ -91,7 +91,7 @@ TEST(Dm5Absolute, WithoutItsBatteryHasNoHomeAnyMore) {
   ASSERT_TRUE(scene.boot(20s)) << scene.told();
   ASSERT_TRUE(scene.procedure(ProcedureKind::home, "joint").success) << scene.told();
   EXPECT_TRUE(scene.state("joint").homed);
-  scene.inject("joint", "battery_lost");
+  scene.inject("joint", "battery_warning");
   switchOffAndOn(scene);
   EXPECT_THAT(scene.axis("joint").faultText(),
               AllOf(HasSubstr("0xFF4C"), HasSubstr("encoder battery was lost (Er.076)"),

@@ -37,7 +37,8 @@ struct AbsoluteEncoderDefinition {
   /// While it is 0 more than 65535 turns are the fault `turns_overflow`.
   std::optional<fieldbus::ObjectId> overflow_masked;
   std::optional<fieldbus::ObjectId> reset;  ///< 2 forgets the turns
-  /// A fault with which the turns are lost as soon as the power goes; it is there again then.
+  /// What it reports at power-on where the warning `battery_warning` stood when the power went: the
+  /// turns are lost.
   std::string battery_fault;
 };
 

@@ -22,6 +22,7 @@ AbsoluteEncoder::AbsoluteEncoder(const DriveDefinition& definition, ObjectDictio
     : encoder_(definition.absolute),
       overflow_(definition.fault("turns_overflow")),
       battery_(definition.fault(encoder_.battery_fault)),
+      low_battery_(definition.fault("battery_warning")),
       dictionary_(dictionary),
       core_(core) {
   if (encoder_.counts != 0) showAll();
@@ -81,8 +82,8 @@ double AbsoluteEncoder::rotary() const {
   return at - load * std::floor(at / load);
 }
 
-bool AbsoluteEncoder::batteryLost() const {
-  return battery_ != nullptr && core_.faults().has(*battery_);
+bool AbsoluteEncoder::batteryLow() const {
+  return battery_ != nullptr && low_battery_ != nullptr && core_.faults().has(*low_battery_);
 }
 
 /// What is left of its counter is where it stands in its turn.
@@ -103,9 +104,9 @@ void AbsoluteEncoder::start(bool cold) {
     zero_ = core_.motion().motor().position();
     return forgetTurns();
   }
-  if (battery_lost_ || known == EncoderKind::single_turn) {
+  if (battery_low_ || known == EncoderKind::single_turn) {
     forgetTurns();
-    battery_due_ = battery_lost_ && known == EncoderKind::absolute;
+    battery_due_ = battery_low_ && known == EncoderKind::absolute;
     return;
   }
   core_.motion().setHomed(homed_);
@@ -116,7 +117,7 @@ void AbsoluteEncoder::start(bool cold) {
 void AbsoluteEncoder::look() {
   if (encoder_.counts == 0) return;
   homed_ = core_.motion().homed();
-  battery_lost_ = battery_due_ || batteryLost();
+  battery_low_ = batteryLow();
   if ((core_.statusword() & kStateBits) == kNotReady) return;
   if (std::exchange(battery_due_, false)) core_.raise(*battery_);
   const bool beyond = std::fabs(std::floor(turned())) > kMostTurns;

@@ -37,14 +37,14 @@ class AbsoluteEncoder {
   double turned() const;  ///< turns since its own zero
   double rotary() const;  ///< counts within a turn of the load
   void forgetTurns();
-  bool batteryLost() const;
+  bool batteryLow() const;
 
   const AbsoluteEncoderDefinition& encoder_;
-  const FaultDefinition *overflow_, *battery_;  ///< nullptr: it reports none
+  const FaultDefinition *overflow_, *battery_, *low_battery_;  ///< nullptr: it reports none
   ObjectDictionary& dictionary_;
   DriveCore& core_;
   double zero_ = 0.0;  ///< true turns where its own counter is 0
-  bool homed_ = false, battery_lost_ = false;
+  bool homed_ = false, battery_low_ = false;
   bool battery_due_ = false;  ///< that it is lost is to be told
   bool told_ = false;         ///< that there are too many turns
 };
