@@ -170,11 +170,11 @@ TEST(Sv660cAbsolute, KeepsItsHomeWithoutPowerAsH0201Says) {
 TEST(Sv660cAbsolute, TellsItsPositionsIn64Bits) {
   constexpr double kAt = 1.1 * kCountsOfARad;
   Scene scene(
-      loadText(sv660cSystem(2, ", [0x2005, 0x33, gear_numerator, uint16, rw, -, 4, 1, 65535]")));
+      loadText(sv660cSystem(2, ", [0x2005, 0x33, gear_numerator, uint16, rw, -, 5, 1, 65535]")));
   ASSERT_TRUE(scene.boot()) << scene.told();
   EXPECT_NEAR(wideOf(scene, "encoder_position"), kAt, 2.0);
   EXPECT_NEAR(wideOf(scene, "absolute_position"), kAt, 2.0);
-  EXPECT_NEAR(wideOf(scene, "rotary_counts"), kAt - 2.0 * 4.0 * 8388608.0, 2.0) << "of 4 turns";
+  EXPECT_NEAR(wideOf(scene, "rotary_counts"), kAt - 5.0 * 8388608.0, 2.0) << "of 5 turns";
   EXPECT_EQ(scene.call(bus::ReadObjectCommand{"joint", "encoder_turns"}).number, 8.0);
   ASSERT_TRUE(scene.procedure(ProcedureKind::home, "joint").success) << scene.told();
   EXPECT_NEAR(wideOf(scene, "absolute_position"), 0.0, 2.0);
