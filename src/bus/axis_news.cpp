@@ -9,6 +9,11 @@
 namespace cia402::bus {
 namespace {
 
+Event::Severity severityOfNotice(const drive::Axis& axis) {
+  if (axis.noticeInforms()) return Event::Severity::info;
+  return axis.noticeWarns() ? Event::Severity::warning : Event::Severity::error;
+}
+
 Event::Severity severityOf(Condition condition) {
   return condition == Condition::error ? Event::Severity::error : Event::Severity::warning;
 }
@@ -91,8 +96,7 @@ void AxisNews::tellProblem(drive::Axis& axis, AxisReporter& reporter, Time now) 
   const bool told_by_health = !of_device.empty();
   notices_ = axis.noticeCount();
   if (noticed && !told_by_health) {
-    tell(*events_, axis.noticeWarns() ? Event::Severity::warning : Event::Severity::error,
-         axis.notice(), now);
+    tell(*events_, severityOfNotice(axis), axis.notice(), now);
   }
   const std::uint32_t version = words_.version;
   if (axis.faultTextAwaited() && told_.health == fieldbus::Health::ready) return;

@@ -77,6 +77,51 @@ TEST(QueueingHandshake, IsBlockedForWhatIsToCountAtOnceWhileTheQueueIsFull) {
   EXPECT_EQ(wire.handshake.raw(), 7U);
 }
 
+// A drive that takes what counts at once whatever waits, as CiA 402-2 has it.
+TEST(QueueingHandshake, ReplacesAFullQueueWhereTheDriveTakesThat) {
+  QueueingWire wire;
+  wire.handover.replaces_queue = true;
+  wire.handOver(100);
+  for (int i = 0; i < 5; ++i) EXPECT_TRUE(wire.step(true));
+  EXPECT_EQ(wire.handshake.word(), 0x0020);
+  wire.handshake.offer(7);
+  EXPECT_TRUE(wire.step(true));
+  EXPECT_FALSE(wire.handshake.blocked());
+  EXPECT_EQ(wire.handshake.raw(), 7U);
+  int raised = 0;
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_TRUE(wire.step(true));
+    raised += wire.handshake.word() == 0x0030 ? 1 : 0;
+  }
+  EXPECT_GE(raised, wire.handover.each_for) << "the bit that is set already proves nothing";
+  EXPECT_EQ(wire.handshake.word(), 0x0020);
+  EXPECT_TRUE(wire.step(false));
+  EXPECT_FALSE(wire.handshake.busy());
+}
+
+// Where nothing proves that the drive took a set-point it is handed over twice; a distance is not.
+TEST(QueueingHandshake, HandsADistanceOverOnce) {
+  for (const bool relative : {false, true}) {
+    QueueingWire wire;
+    wire.handover = Handover();
+    wire.handover.words = {0x0000, 0x0020, 0x0030};
+    wire.handover.acknowledge = Handover::Acknowledge::rise;
+    if (relative) wire.handover.from = Handover::From::target;
+    wire.handshake.offer({100, false, true});
+    int edges = 0;
+    std::uint16_t before = 0;
+    for (int i = 0; i < 40; ++i) {
+      EXPECT_TRUE(wire.step(true)) << "its bit stays set";
+      const std::uint16_t word = wire.handshake.word();
+      if ((word & 0x10U) != 0 && (before & 0x10U) == 0) ++edges;
+      EXPECT_EQ((word & 0x40U) != 0, relative && word != 0);
+      before = word;
+    }
+    EXPECT_EQ(edges, relative ? 1 : 2);
+    EXPECT_FALSE(wire.handshake.busy());
+  }
+}
+
 TEST(QueueingHandshake, GivesUpWhatIsToCountAtOnceAfterItsTime) {
   QueueingWire wire;
   wire.handOver(100);

@@ -56,7 +56,16 @@ TEST(OneByOne, CommandsHaveTheWordsOfTheStandard) {
 TEST(OneByOne, ModesThatCannotBeSoAreRefused) {
   const std::pair<std::string, const char*> mistakes[] = {
       {"  a: {value: 1, control: position, target: target_position, queued: true}\n",
-       "need `handshake: new_set_point`"},
+       "`queued` needs `handshake: new_set_point`"},
+      {"  a: {value: 1, control: position, target: target_position, relative_to: demand}\n",
+       "whose set-points are acknowledged"},
+      {"  a: {value: 1, control: position, target: target_position, handshake: new_set_point,"
+       " replaces_queue: true, status_bits: {set_point_acknowledge: 12}}\n",
+       "`replaces_queue` is of `queued`"},
+      {"  a: {value: 1, control: position, target: target_position, relative_to: target,"
+       " handshake: {words: [0, 32, 48], acknowledge: rise}, status_bits: {set_point_acknowledge: "
+       "12}}\n",
+       ""},
       {"  a: {value: 1, control: position, target: target_position, relative_to: demand,"
        " handshake: {words: [0, 16]}, status_bits: {set_point_acknowledge: 12}}\n",
        ""},

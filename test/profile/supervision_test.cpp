@@ -31,6 +31,9 @@ TEST(ProfileSupervision, IsAsWritten) {
       "  {bit: 14, is: 0, when: enabled, text: zero, remedy: look}]\n"
       "watches: [{object: supply, within: [24, 48], text: off, remedy: check}]\n"
       "fault_reads: [alarm, \"1001:00\"]\n"
+      "boot_reads: [alarm, supply]\n"
+      "absent_settings_pass: true\n"
+      "errors: {7: {text: battery, loses_zero: true}, 8: other}\n"
       "error_bits: 0xFF00\n"
       "reads_back: true\n"
       "checks: [{object: alarm, given: true, text: a, remedy: b}]\n"
@@ -50,6 +53,10 @@ TEST(ProfileSupervision, IsAsWritten) {
   EXPECT_EQ(supervision.watches[0].low, 24.0);
   EXPECT_EQ(supervision.watches[0].high, 48.0);
   EXPECT_THAT(supervision.fault_reads, ElementsAre("alarm", "1001:00"));
+  EXPECT_THAT(supervision.boot_reads, ElementsAre("alarm", "supply"));
+  EXPECT_TRUE(profile.absent_settings_pass);
+  EXPECT_TRUE(profile.errors.at(7).loses_zero);
+  EXPECT_FALSE(profile.errors.at(8).loses_zero);
   EXPECT_EQ(profile.error_bits, 0xFF00);
   EXPECT_TRUE(profile.reads_back);
   ASSERT_EQ(profile.checks.size(), 1U);
@@ -66,6 +73,8 @@ TEST(ProfileSupervision, IsNothingWithoutTheseKeys) {
   EXPECT_EQ(profile.supervision.unmet(0, true), nullptr);
   EXPECT_TRUE(profile.supervision.watches.empty());
   EXPECT_TRUE(profile.supervision.fault_reads.empty());
+  EXPECT_TRUE(profile.supervision.boot_reads.empty());
+  EXPECT_FALSE(profile.absent_settings_pass);
   EXPECT_EQ(profile.error_bits, 0);
   EXPECT_FALSE(profile.reads_back);
 }
@@ -88,6 +97,7 @@ TEST(ProfileSupervision, SaysWhatIsWrong) {
                 "its lowest number is above its highest"},
         Mistake{"watches: [{object: supply, within: [3], text: a, remedy: b}]", "/within"},
         Mistake{"fault_reads: [nothing]", "the profile has no object `nothing`"},
+        Mistake{"boot_reads: [nothing]", "the profile has no object `nothing`"},
         Mistake{"error_bits: 0x10000", "error_bits"},
         Mistake{"checks: [{object: alarm, given: true, is: 1, text: a, remedy: b}]", "or `given`"},
         Mistake{"sync: {advice: {share: 0.4}}", "pdos_per_ms"}}) {
@@ -131,6 +141,32 @@ TEST(ProfileObjects, SayHowWideTheyMayBe) {
                          "target_position}\n",
                      "tested.yaml", problems);
     EXPECT_THAT(problems.text(), HasSubstr("objects/choice/widest")) << wrong;
+  }
+}
+
+TEST(ProfileObjects, JoinTwoHalvesOfANumber) {
+  const auto with = [](const std::string& objects, Problems& problems) {
+    return parseDriveFamily(std::string(kLeastDrive) + objects +
+                                "\nmodes:\n  csp: {value: 8, control: position, cyclic: true, "
+                                "target: target_position}\n",
+                            "tested.yaml", problems);
+  };
+  const std::string low = "\n  low: {object: \"2000:01\", type: uint32, access: ro, high: up}";
+  Problems problems;
+  const WholeProfile profile =
+      with(low + "\n  up: {object: \"2000:02\", type: int32, access: ro}", problems);
+  ASSERT_TRUE(problems.empty()) << problems.text();
+  EXPECT_EQ(profile.find("low")->high, "up");
+  EXPECT_EQ(profile.find("up")->high, "");
+  for (const std::string& wrong :
+       {low, low + "\n  up: {object: \"2000:02\", type: int16, access: ro}",
+        low + "\n  up: {object: \"2000:02\", type: int32}",
+        std::string("\n  low: {object: \"2000:01\", type: uint32, high: up}\n  up: {object: "
+                    "\"2000:02\", type: int32, access: ro}")}) {
+    Problems of_wrong;
+    with(wrong, of_wrong);
+    EXPECT_THAT(of_wrong.text(), HasSubstr("`high` joins two read-only objects of 32 bits"))
+        << wrong;
   }
 }
 

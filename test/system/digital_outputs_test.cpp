@@ -63,9 +63,11 @@ TEST(DigitalOutputs, WorkByEachProfileThatHasThem) {
                          Row{"megmeet_dm5", "8388608", "do2", 0x00020000},
                          Row{"nimotion_stepper", "10000", "do1", 0x00000002}}) {
     const bool inovance = row.drive == std::string("sv660c");
-    Scene scene(
-        loadText(familyJoint({row.drive, row.counts, "profile_position"},
-                             inovance ? ", write: [{object: do2_function, raw: 31}]" : "")));
+    const bool megmeet = row.drive == std::string("megmeet_dm5");
+    Scene scene(loadText(familyJoint({row.drive, row.counts, "profile_position"},
+                                     inovance  ? ", write: [{object: do2_function, raw: 31}]"
+                                     : megmeet ? ", write: [{object: do2_function, raw: 28}]"
+                                               : "")));
     ASSERT_TRUE(scene.boot()) << row.drive << scene.told();
     const auto set = setOutputs(scene, "joint", {row.output}, {true});
     EXPECT_TRUE(set.success) << row.drive << ": " << set.message;

@@ -90,7 +90,6 @@ INSTANTIATE_TEST_SUITE_P(
                           {{"bus_voltage", {0x200B, 10}, 47, "47 V", true},
                            {"module_temperature", {0x200B, 32}, 412, "41.2 degC", true},
                            {"motor_load", {0x200B, 9}, 335, " 335", true},
-                           {"encoder_turns", {0x200B, 34}, 77, " 77", true},
                            {"drive_status", {0x200B, 12}, 5, " 5", true},
                            {"control_voltage", {0x200B, 11}, 46, "46 V", false}}},
         // H0b.12, .24, .26, .27, .63, .66, .67; 203Fh [L8413-8997, L14982]

@@ -1,10 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Positions that a NiMotion goes to one after the other, distances, and rounded corners: by its
 // motor.
-#include <array>
-
-#include "system/families_motion.h"
 #include "system/motion_watch.h"
+#include "system/stations.h"
 
 namespace cia402 {
 namespace {
@@ -15,37 +13,14 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-constexpr double kNearlyStill = 0.05;  // rad/s
-constexpr double kOneStep = 1e-4;      // rad, more than a count: 6.3 / (50 * 4000)
+constexpr double kOneStep = Stations::kOneStep;
 
-/// Gives commands without a pause, and writes down where the motor comes to rest.
-struct Stations : FamilyScene {
-  explicit Stations(const char* mode, const std::string& more = {})
-      : FamilyScene(familyJoint(nimotionIn(mode), more)) {}
-  void give(std::initializer_list<double> values) {
-    for (const double value : values) EXPECT_EQ(setpoint("joint", value), "");
-  }
-  /// Places where it came to rest, in hundredths of a rad: where it was slowest.
-  std::vector<int> visit(Duration time) {
-    std::vector<int> rests;
-    double slowest = 1.0;
-    watch([&] {
-      const double speed = std::fabs(velocity("joint"));
-      if (speed < kNearlyStill && slowest >= kNearlyStill) rests.push_back(0);
-      if (speed < kNearlyStill && speed < slowest) {
-        rests.back() = static_cast<int>(std::lround(position("joint") * 100.0));
-      }
-      slowest = speed < kNearlyStill ? std::min(speed, slowest) : 1.0;
-    });
-    run(time);
-    watch({});
-    return rests;
-  }
-  bool bit(unsigned number) { return ((truth("joint").statusword >> number) & 1u) != 0; }
-};
+std::string nimotionBy(const char* mode, const std::string& more = {}) {
+  return familyJoint(nimotionIn(mode), more);
+}
 
 TEST(NimotionQueue, ComesToRestAtEachPositionInTheirOrder) {
-  Stations scene("queued_position");
+  Stations scene(nimotionBy("queued_position"));
   const auto told = scene.axis("joint").noticeCount();
   scene.give({0.3, 0.1, 0.4, -0.2, 0.0, 0.2, 0.1, 0.3});  // more than the drive's five
   EXPECT_THAT(scene.visit(12s), ElementsAre(0, 30, 10, 40, -20, 0, 20, 10, 30)) << scene.told();
@@ -55,7 +30,7 @@ TEST(NimotionQueue, ComesToRestAtEachPositionInTheirOrder) {
 }
 
 TEST(NimotionQueue, IsFullWithFiveAndTellsSoByBit12) {
-  Stations scene("queued_position");
+  Stations scene(nimotionBy("queued_position"));
   scene.give({1.0, 0.1, 0.2, 0.3, 0.4});  // one at work, four wait
   scene.run(300ms);
   EXPECT_FALSE(scene.bit(12));
@@ -71,7 +46,7 @@ TEST(NimotionQueue, IsFullWithFiveAndTellsSoByBit12) {
 }
 
 TEST(NimotionQueue, RefusesInWordsWhatNobodyHasRoomFor) {
-  Stations scene("queued_position");
+  Stations scene(nimotionBy("queued_position"));
   for (int i = 0; i < 16; ++i) ASSERT_EQ(scene.setpoint("joint", 0.1 * (i % 2 + 1)), "") << i;
   EXPECT_THAT(scene.setpoint("joint", 0.5),
               AllOf(HasSubstr("joint"), HasSubstr("16 wait for those before already")));
@@ -79,7 +54,7 @@ TEST(NimotionQueue, RefusesInWordsWhatNobodyHasRoomFor) {
 
 TEST(NimotionQueue, IsEmptiedByAHaltThatHolds) {
   for (const int waiting : {2, 7}) {
-    Stations scene("queued_position");
+    Stations scene(nimotionBy("queued_position"));
     scene.give({1.0, 0.0});
     for (int i = 2; i < waiting; ++i) scene.give({0.1 * i});
     scene.run(700ms);
@@ -98,7 +73,7 @@ TEST(NimotionQueue, IsEmptiedByAHaltThatHolds) {
 
 // A motor that is held, then let go: its goals are given up, those that wait in the drive, too.
 TEST(NimotionQueue, IsEmptiedWhereTheMotorIsHeldAndDoesNotGoOnLater) {
-  Stations scene("queued_position");
+  Stations scene(nimotionBy("queued_position"));
   scene.give({1.0, 0.0, 0.2, 0.4, 0.6, 0.8, 1.0});
   scene.run(300ms);
   scene.inject("joint", "blocked_rotor");
@@ -116,7 +91,7 @@ TEST(NimotionQueue, IsEmptiedWhereTheMotorIsHeldAndDoesNotGoOnLater) {
 
 TEST(NimotionQueue, IsForgottenByAnAxisThatIsSwitchedOff) {
   for (const auto kind : {ProcedureKind::quick_stop, ProcedureKind::disable}) {
-    Stations scene("queued_position");
+    Stations scene(nimotionBy("queued_position"));
     scene.give({0.6, 0.0, 0.3, 0.5, 0.2, 0.1, 0.4});
     scene.run(500ms);
     scene.mustSucceed(kind);
@@ -131,49 +106,19 @@ TEST(NimotionQueue, IsForgottenByAnAxisThatIsSwitchedOff) {
 class NimotionDistance : public testing::TestWithParam<const char*> {};
 
 TEST_P(NimotionDistance, IsGoneFromTheTargetBeforeOrFromWhereTheAxisStands) {
-  Stations scene(GetParam());
-  for (const double distance : {0.3, -0.5, 0.1}) {
-    const double from = scene.position("joint");
-    scene.give({distance});
-    scene.run(3s);
-    EXPECT_NEAR(scene.position("joint"), from + distance, 2 * kOneStep) << scene.told();
-  }
-  EXPECT_NEAR(scene.state("joint").position, scene.position("joint"), kOneStep);
+  expectDistancesAreGone(nimotionBy(GetParam()));
 }
 
 TEST_P(NimotionDistance, AddsUpWhereTheyAreGivenWithoutAPause) {
-  Stations scene(GetParam());
-  scene.give({0.2, 0.2, -0.1, 0.3});
-  scene.run(8s);
-  EXPECT_NEAR(scene.position("joint"), 0.6, 4 * kOneStep) << scene.told();
+  expectDistancesAddUp(nimotionBy(GetParam()));
 }
 
 TEST_P(NimotionDistance, CountsFromWhereItStandsAfterAStop) {
-  Stations scene(GetParam());
-  scene.give({1.2});
-  scene.run(900ms);
-  scene.mustSucceed(ProcedureKind::halt);
-  scene.mustSucceed(ProcedureKind::enable);
-  const double held = scene.position("joint");
-  scene.expectStands(500ms);
-  scene.give({-0.25});
-  scene.run(3s);
-  EXPECT_NEAR(scene.position("joint"), held - 0.25, 2 * kOneStep) << scene.told();
-  scene.mustSucceed(ProcedureKind::disable);
-  scene.mustSucceed(ProcedureKind::enable);
-  scene.give({0.1});
-  scene.run(2s);
-  EXPECT_NEAR(scene.position("joint"), held - 0.15, 3 * kOneStep) << scene.told();
+  expectDistancesCountFromAStop(nimotionBy(GetParam()));
 }
 
 TEST_P(NimotionDistance, LeadsNoFurtherThanTheLimitsOfTheJoint) {
-  Stations scene(GetParam(), ", simulation: {initial_position: 2.2}");
-  scene.give({0.9});
-  scene.run(3s);
-  EXPECT_NEAR(scene.position("joint"), 2.5, 2 * kOneStep) << scene.told();
-  scene.give({-0.4});
-  scene.run(3s);
-  EXPECT_NEAR(scene.position("joint"), 2.1, 3 * kOneStep) << "from the limit";
+  expectDistancesEndAtTheLimit(nimotionBy(GetParam(), ", simulation: {initial_position: 2.2}"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Nimotion, NimotionDistance,
@@ -191,7 +136,7 @@ TEST(NimotionPositions, AreHandedOverByTheWordsOfTheManual) {
        {Row{"pp", 0x3F, 0}, Row{"queued_position", 0x1F, 0}, Row{"relative_position", 0x7F, 0},
         Row{"queued_relative_position", 0x5F, 0}, Row{"relative_to_demand", 0x7F, 1},
         Row{"relative_to_position", 0x7F, 2}}) {
-    Stations scene(row.mode);
+    Stations scene(nimotionBy(row.mode));
     std::vector<unsigned> words;
     scene.watch([&] {
       const auto word = static_cast<unsigned>(scene.number(0x6040));
@@ -208,7 +153,7 @@ TEST(NimotionPositions, AreHandedOverByTheWordsOfTheManual) {
 
 /// The greatest change of acceleration of the joint over 20 ms, rad/s^3.
 double jerkOn(const std::string& more, double goal) {
-  Stations scene("pp", more);
+  Stations scene(nimotionBy("pp", more));
   std::vector<double> speeds;
   scene.watch([&] { speeds.push_back(scene.velocity("joint")); });
   scene.give({goal});

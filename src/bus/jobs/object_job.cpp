@@ -301,14 +301,16 @@ std::string ObjectJob::unhomedText(bool measured) const {
 }
 
 bool ObjectJob::finishRead() {
+  if (spec_ && !spec_->high.empty() && !joinHalves()) return false;
   const auto unnamed = unnamedObject();
+  const fieldbus::Bytes& data = joined_.empty() ? ticket_->data() : joined_;
   const ObjectText text = describeObject(unnamed ? &*unnamed
                                          : spec_ ? &*spec_
                                                  : nullptr,
-                                         axis_->config(), ticket_->data());
+                                         axis_->config(), data);
   ObjectAnswer answer;
   answer.success = true;
-  answer.data = ticket_->data();
+  answer.data = data;
   answer.number = text.number;
   answer.text = text.value + printedText(text.number);
   answer.message = who_ + ": " + name_ + " is " + answer.text;
@@ -323,6 +325,25 @@ std::string ObjectJob::printedText(double number) const {
   const std::string printed =
       axis_->config().profile->parameter_names.printed(id_, static_cast<std::int64_t>(number));
   return printed.empty() ? printed : ", in the manual " + printed;
+}
+
+/// A number in two objects: the lower half is read once more behind the upper one, which fits it
+/// where it has not gone round meanwhile. @return false: one of them is asked for
+bool ObjectJob::joinHalves() {
+  const std::uint64_t half = fieldbus::toUnsigned(ticket_->data()) & 0xFFFFFFFFU;
+  const drive::ObjectSpec* high = axis_->config().profile->find(spec_->high);
+  halves_.push_back(half);
+  const bool round = halves_.size() == 3 && (halves_[0] >> 31U) != (halves_[2] >> 31U);
+  if (round) halves_ = {half};
+  if (halves_.size() < 3) {
+    const bool upper = halves_.size() == 1;
+    ticket_ = axis_->device().objects().upload(upper ? high->id : id_, upper ? high->name : name_);
+    return false;
+  }
+  joined_ = fieldbus::toBytes(halves_[1] << 32U | half, 8);
+  spec_->type = drive::DataType::int64;
+  spec_->high.clear();
+  return true;
 }
 
 std::optional<drive::ObjectSpec> ObjectJob::unnamedObject() const {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "bus/jobs/job.h"
 #include "bus/jobs/object_commands.h"
@@ -50,6 +51,7 @@ class ObjectJob final : public Job {
   std::string notWritten(const std::string& why) const;
   bool finish(bool success, std::string message);
   bool finishRead();
+  bool joinHalves();
   bool writeWithAskedSize();
   void download(const fieldbus::Bytes& data);
   Result<std::string> countedValue() const;
@@ -80,8 +82,10 @@ class ObjectJob final : public Job {
   drive::CoordinateMark mark_ = drive::CoordinateMark::none;  ///< of what is written
   bool locked_ = false;                                       ///< Axis::beginCalibration()
   fieldbus::Bytes written_;
-  std::string said_, consequence_;  ///< where what was written is the same when it is read back
-  Time since_{};                    ///< of the stage
+  std::string said_, consequence_;     ///< where what was written is the same when it is read back
+  std::vector<std::uint64_t> halves_;  ///< of a number in two objects: lower, upper, lower again
+  fieldbus::Bytes joined_;             ///< the number
+  Time since_{};                       ///< of the stage
   fieldbus::Ticket ticket_;
   Reply<ObjectAnswer> reply_;
 };

@@ -53,6 +53,7 @@ void readErrors(const yaml::Value& value, DriveProfile& profile) {
       if (index) error.reset = static_cast<ErrorText::Reset>(*index);
     }
     readDuration(details, "wait", yaml::Range{0.0, 3600.0, false}, error.wait);
+    details.read("loses_zero", error.loses_zero);
   });
 }
 

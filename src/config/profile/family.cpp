@@ -214,6 +214,7 @@ void readBehaviour(yaml::Section& section, DriveProfile& profile) {
     profile.fault_reset_object = readWritable(*object, profile);
   }
   section.read("reads_back", profile.reads_back);
+  section.read("absent_settings_pass", profile.absent_settings_pass);
   readQuickStop(section, profile);
   if (const auto value = section.get("parameters")) readParameters(*value, profile);
 }

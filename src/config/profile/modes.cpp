@@ -129,19 +129,27 @@ void readHandshake(yaml::Section& section, ModeSpec& mode) {
 void readOneByOne(yaml::Section& section, const DriveProfile& profile, ModeSpec& mode) {
   Handover& handover = mode.handover;
   section.read("queued", handover.queued);
+  section.read("replaces_queue", handover.replaces_queue);
   const auto from = section.get("relative_to");
   const auto index = from ? from->oneOf({"target", "demand", "position"}) : std::nullopt;
   if (index) handover.from = static_cast<Handover::From>(*index + 1);
+  if (handover.replaces_queue && !handover.queued)
+    section.problem("`replaces_queue` is of `queued`");
   if (!handover.oneByOne()) return;
-  if (handover.acknowledge != Handover::Acknowledge::level || handover.words.size() != 2) {
-    section.problem("`queued` and `relative_to` need `handshake: new_set_point`");
+  const bool standard =
+      handover.acknowledge == Handover::Acknowledge::level && handover.words.size() == 2;
+  if (handover.queued && !standard) section.problem("`queued` needs `handshake: new_set_point`");
+  if (handover.acknowledge == Handover::Acknowledge::none) {
+    section.problem("`relative_to` needs a `handshake` whose set-points are acknowledged");
   }
   if (((handover.words.empty() ? 0u : mode.controlword_bits) & 0x0070u) != 0) {
     section.problem("`queued` and `relative_to` leave controlword bits 4 to 6 to the handshake");
   }
   if (handover.queued && !(mode.stop == StopBy::halt || (!mode.stop && profile.halt_supported))) {
     section.problem(
-        "`queued` needs a drive that is stopped by the halt bit, which empties its queue");
+        "`queued` needs a drive that is stopped by the halt bit, which empties its queue, or lets "
+        "it "
+        "be replaced");
   }
 }
 

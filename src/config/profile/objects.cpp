@@ -173,8 +173,22 @@ ObjectSpec readObject(const std::string& name, const yaml::Value& value,
   readFieldsName(section, profile, object);
   section.read("when_disabled", object.when_disabled);
   readWidest(section, object);
+  section.read("high", object.high);
   section.finish();
   return object;
+}
+
+/// Both halves of a number of 64 bits are shown, none is written by itself.
+void checkHigh(const ObjectSpec& object, const yaml::Value& entry, const DriveProfile& profile) {
+  const ObjectSpec* high = profile.find(object.high);
+  const auto fits = [](const ObjectSpec& half) {
+    return half.readable && !half.writable && half.encoding == Encoding::integer &&
+           fieldbus::sizeBits(half.type) == 32;
+  };
+  if (high == nullptr || !fits(object) || !fits(*high)) {
+    entry.problem("`high` joins two read-only objects of 32 bits; `" + object.high +
+                  "` is to be one of this list");
+  }
 }
 
 }  // namespace
@@ -228,6 +242,7 @@ void readEncodings(const yaml::Value& value, DriveProfile& profile) {
 void readObjects(const yaml::Value& value, DriveProfile& profile) {
   yaml::Section section(value);
   std::map<ObjectId, std::string> names;
+  std::vector<std::pair<ObjectSpec, yaml::Value>> highs;
   for (const auto& [name, entry] : section.entries()) {
     const ObjectSpec object = readObject(name, entry, profile);
     if (fieldbus::parseObjectId(name)) {
@@ -239,7 +254,9 @@ void readObjects(const yaml::Value& value, DriveProfile& profile) {
                     "` already");
     }
     if (profile.find(name) == nullptr) profile.objects.push_back(object);
+    if (!object.high.empty()) highs.emplace_back(object, entry);
   }
+  for (const auto& [object, entry] : highs) checkHigh(object, entry, profile);
   section.finish();
 }
 

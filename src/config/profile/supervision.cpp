@@ -1,5 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-// What of a drive is looked at while it works: `statusword_needs`, `watches`, `fault_reads`.
+// What of a drive is looked at while it works: `statusword_needs`, `watches`, `fault_reads`,
+// `boot_reads`.
 #include <algorithm>
 
 #include "config/profile/parts.h"
@@ -72,6 +73,12 @@ void readSupervision(yaml::Section& section, DriveProfile& profile) {
   }
   if (const auto reads = section.get("fault_reads")) {
     for (const yaml::Value& entry : reads->list()) readFaultRead(entry, profile);
+  }
+  if (const auto reads = section.get("boot_reads")) {
+    for (const yaml::Value& entry : reads->list()) {
+      const ObjectSpec* object = readSetting(entry, profile);
+      if (object != nullptr) profile.supervision.boot_reads.push_back(object->name);
+    }
   }
 }
 

@@ -268,5 +268,6 @@ bool Axis::faultTextAwaited() const { return impl_->core.faults().textAwaited();
 std::string Axis::unknownText() const { return impl_->core.feedback().unknownText(); }
 const std::string& Axis::notice() const { return impl_->core.notices().text(); }
 bool Axis::noticeWarns() const { return impl_->core.notices().warns(); }
+bool Axis::noticeInforms() const { return impl_->core.notices().informs(); }
 
 }  // namespace cia402::drive

@@ -261,6 +261,7 @@ class Axis {
   const std::string& notice() const;
   /// It is a warning of a procedure, and stops nothing.
   bool noticeWarns() const;
+  bool noticeInforms() const;  ///< it is neither an error nor a warning
   std::uint32_t noticeCount() const { return *notices_; }
 
  private:

@@ -12,6 +12,8 @@ constexpr Duration kLeftBehind{std::chrono::milliseconds(150)},
     kHeld{std::chrono::milliseconds(60)};
 /// A drive that goes to a goal by itself, and stands at a limit on the way, gets so long.
 constexpr Duration kStuck{std::chrono::milliseconds(300)};
+/// One that says nothing of what is in its way gets so long to set off.
+constexpr Duration kSetsOff{std::chrono::seconds(1)};
 
 /// The drive says by the bit of its mode that the motor stays behind. It may do no more than that.
 bool tellsFollowingError(const AxisState& state) {
@@ -54,7 +56,7 @@ bool FollowWatch::watchStanding(const Look& look, Time now) {
   if (!runs) {
     running_since_ = kNever;
     const bool held = look.state.internal_limit || tellsFollowingError(look.state);
-    return held && restsAhead(look, ahead, now);
+    return (held && restsAhead(look, ahead, now)) || goesNowhere(look, ahead, now);
   }
   if (running_since_ == kNever) running_since_ = now;
   return runsAway(look, ahead, now);
@@ -89,6 +91,17 @@ bool FollowWatch::staysApart(const Look& look, double ahead, Time now) {
   }
   if (apart_since_ == kNever) apart_since_ = now;
   return look.standstill.stillFrom() >= apart_since_ + reaction_;
+}
+
+/// A drive that goes to its goal by itself, and has no bit to say that it stays behind.
+bool FollowWatch::goesNowhere(const Look& look, double ahead, Time now) {
+  const ModeSpec* mode = look.state.mode;
+  const bool silent = mode != nullptr && mode->target_reached_bit && !mode->following_error_bit;
+  const bool rests = silent && look.sent.kind() == SetPointKind::goal &&
+                     now - look.sent.movedAt() >= kSetsOff && restsAhead(look, ahead, now);
+  if (!rests) rests_since_ = kNever;
+  if (rests && rests_since_ == kNever) rests_since_ = now;
+  return rests && now - rests_since_ >= kStuck;
 }
 
 bool FollowWatch::restsAhead(const Look& look, double ahead, Time now) const {

@@ -41,7 +41,7 @@ class FollowWatch {
   /// The axis came into operation. @param when the drive can begin to follow
   void begin(Time when);
   /// It left operation, or what was sent has been called back.
-  void end() { running_since_ = apart_since_ = kNever; }
+  void end() { running_since_ = apart_since_ = rests_since_ = kNever; }
   /// The drive follows its set-points, as far as the mode that was looked at last shows that.
   bool follows() const { return follows_; }
   /// @return true: what was sent is to be called back to where the motor stands, and given up.
@@ -65,6 +65,7 @@ class FollowWatch {
   void lookForBit(const Look& look, Time now);
   bool watchStanding(const Look& look, Time now);
   bool runsAway(const Look& look, double ahead, Time now) const;
+  bool goesNowhere(const Look& look, double ahead, Time now);
   bool restsAhead(const Look& look, double ahead, Time now) const;
   bool apart(const Look& look, double ahead) const;
   bool staysApart(const Look& look, double ahead, Time now);
@@ -78,6 +79,7 @@ class FollowWatch {
   bool told_ = false;
   Time began_{};                 ///< since then the bit is waited for
   Time running_since_ = kNever;  ///< set-points of a stream move since then
+  Time rests_since_ = kNever;    ///< a drive that goes to a goal by itself, far from it
   Time apart_since_ = kNever;    ///< they are ahead of a motor that a limit holds since then
 };
 

@@ -8,14 +8,24 @@ namespace cia402::drive {
 
 void Notices::notify(std::string text) {
   text_ = std::move(text);
-  warns_ = false;
+  warns_ = informs_ = false;
   ++count_;
 }
 
+bool Notices::isNew(const std::string& text) {
+  if (std::find(once_.begin(), once_.end(), text) != once_.end()) return false;
+  once_.push_back(text);
+  return true;
+}
+
 void Notices::warnOnce(std::string text) {
-  if (std::find(warned_.begin(), warned_.end(), text) != warned_.end()) return;
-  warned_.push_back(text);
-  warn(std::move(text));
+  if (isNew(text)) warn(std::move(text));
+}
+
+void Notices::informOnce(std::string text) {
+  if (!isNew(text)) return;
+  notify(std::move(text));
+  informs_ = true;
 }
 
 void Notices::warn(std::string text) {

@@ -15,6 +15,8 @@ class Notices {
   void warn(std::string text);
   /// The same, told once.
   void warnOnce(std::string text);
+  /// Something good to know, told once.
+  void informOnce(std::string text);
   /// The axis fell out of what it was doing: a procedure that runs must fail for this reason.
   /// @param tell people are told as well
   void fail(std::string text, bool tell = true);
@@ -26,14 +28,18 @@ class Notices {
   const std::string& text() const { return text_; }
   /// It is a warning, and stops nothing.
   bool warns() const { return warns_; }
+  /// It is neither an error nor a warning.
+  bool informs() const { return informs_; }
   /// Grows with each notice.
   const std::uint32_t& count() const { return count_; }
 
  private:
   std::string failure_, text_;
-  std::vector<std::string> warned_;  ///< of warnOnce()
+  bool isNew(const std::string& text);
+
+  std::vector<std::string> once_;  ///< of warnOnce() and informOnce()
   std::uint32_t count_ = 0;
-  bool warns_ = false;
+  bool warns_ = false, informs_ = false;
 };
 
 }  // namespace cia402::drive

@@ -33,8 +33,7 @@ bool SetPointHandshake::sentLongEnough(const Input& input) const {
 }
 
 bool SetPointHandshake::waitsForAcknowledge() const {
-  return handover_->acknowledge == Acknowledge::level ||
-         (handover_->acknowledge == Acknowledge::rise && !was_acknowledged_);
+  return handover_->acknowledge != Acknowledge::none && !was_acknowledged_;
 }
 
 /// The next word, or the end of the last one.
@@ -57,8 +56,19 @@ void SetPointHandshake::lower(const Input& input, Time now) {
   }
   phase_ = Phase::idle;
   timing_ = false;
+  if (++handed_over_ == 1 && !handedOverOnce()) enter(Phase::announced, 0, now);
+}
+
+/// A distance would be gone twice.
+bool SetPointHandshake::handedOverOnce() const {
+  if (present_.command && handover_->relative()) return true;
   const bool unproved = handover_->acknowledge == Acknowledge::rise && was_acknowledged_;
-  if (++handed_over_ == 1 && (present_.twice || unproved)) enter(Phase::announced, 0, now);
+  return !present_.twice && !unproved;
+}
+
+/// A set-point that is to count at once, with a drive that takes it whatever waits in its queue.
+bool SetPointHandshake::replacesQueue() const {
+  return handover_->queued && handover_->replaces_queue && pending_ && !next_.command;
 }
 
 /// The drive has taken a command, and takes the next one once there is room for it.
@@ -76,7 +86,7 @@ bool SetPointHandshake::advance(const Input& input, Time now, Duration timeout) 
         return true;
       }
       if (!timing_) enter(Phase::idle, 0, now);
-      if (!level || !input.acknowledged) announce(input, now);
+      if (!level || !input.acknowledged || replacesQueue()) announce(input, now);
       break;
     case Phase::announced:
       if (pending_) {  // nothing has been handed over yet: the latest target wins
@@ -89,7 +99,11 @@ bool SetPointHandshake::advance(const Input& input, Time now, Duration timeout) 
       raise(input, now);
       break;
     case Phase::lowered:
-      lower(input, now);
+      if (replacesQueue() && input.acknowledged && sentLongEnough(input)) {
+        announce(input, now);
+      } else {
+        lower(input, now);
+      }
       break;
   }
   if (waitsForRoom()) since_ = now;

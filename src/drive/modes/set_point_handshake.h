@@ -59,8 +59,8 @@ class SetPointHandshake {
   bool busy() const { return pending_ || phase_ != Phase::idle; }
   /// A set-point that is to count at once waits for a drive whose queue is full of commands.
   bool blocked() const {
-    return handover_->queued && pending_ && !next_.command && acknowledged_ &&
-           (phase_ == Phase::idle || phase_ == Phase::lowered);
+    return handover_->queued && !handover_->replaces_queue && pending_ && !next_.command &&
+           acknowledged_ && (phase_ == Phase::idle || phase_ == Phase::lowered);
   }
   /// What the drive does not do that is waited for, in words.
   const char* waitingFor() const;
@@ -72,6 +72,8 @@ class SetPointHandshake {
   void raise(const Input& input, Time now);
   void lower(const Input& input, Time now);
   bool waitsForRoom() const;
+  bool replacesQueue() const;
+  bool handedOverOnce() const;
   bool sentLongEnough(const Input& input) const;
   bool waitsForAcknowledge() const;
 

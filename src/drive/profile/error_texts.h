@@ -27,7 +27,8 @@ struct ErrorText {
   std::string text, cause, remedy;
   Missing missing = Missing::nothing;
   Reset reset = Reset::by_bit;
-  Duration wait{0};  ///< since the fault, before which the drive takes no reset
+  Duration wait{0};         ///< since the fault, before which the drive takes no reset
+  bool loses_zero = false;  ///< what the drive counts from is gone with it
 };
 
 /// A further number that the drive tells of an error, which says more than its code (603Fh).

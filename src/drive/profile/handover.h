@@ -24,6 +24,9 @@ struct Handover {
 
   // Of what people command; what stops the axis counts at once (bit 5) and is absolute anyway.
   bool queued = false;  ///< the drive comes to rest at each before it goes on (bit 5 = 0)
+  /// What counts at once is taken by a full queue, too, and replaces it; else the halt bit empties
+  /// it.
+  bool replaces_queue = false;
   /// What a set-point counts from.
   enum class From : std::uint8_t {
     zero,      ///< of the joint

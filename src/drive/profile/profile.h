@@ -101,6 +101,7 @@ struct ObjectSpec {
   bool when_disabled = false;  ///< services write it only while the axis is disabled and stands
   /// The drive may hold it in up to so many bits, which it says itself; 0: in those of its type.
   unsigned widest = 0;
+  std::string high;  ///< object with the upper 32 bits of it, which are read together; or empty
   bool readable = true;
   bool writable = true;
   bool rpdo = false;                  ///< may be mapped into an RPDO
@@ -285,6 +286,7 @@ struct DriveProfile {
   std::vector<NamedWrite> startup;        ///< at every boot
   std::vector<NamedWrite> before_enable;  ///< each time before enabling
   std::vector<SettingCheck> checks;       ///< what the drive must be set to, or say
+  bool absent_settings_pass = false;      ///< what it does not have is told, and refuses nothing
   Supervision supervision;
   std::vector<std::string> may_be_cut;  ///< objects that are compared with what was written
   CountsRule counts_rule;               ///< compared with counts_per_turn before enabling

@@ -27,6 +27,7 @@ struct Supervision {
   std::vector<StatusNeed> needs;         ///< before any motion
   std::vector<ValueWatch> watches;       ///< read once a second
   std::vector<std::string> fault_reads;  ///< once at each fault: by name, or "1001:00"
+  std::vector<std::string> boot_reads;   ///< once at each boot: by name
 
   /// What forbids motion; nullptr: nothing does. @param operating in operation enabled
   const StatusNeed* unmet(std::uint16_t statusword, bool operating) const {

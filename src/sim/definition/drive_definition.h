@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/definition/absolute_encoder.h"
 #include "sim/definition/memory.h"
 #include "sim/definition/quirks.h"
 #include "sim/definition/terminals.h"
@@ -71,6 +72,7 @@ struct ModeDefinition {
   bool delayed = false;             ///< interpolated_position: a set-point begins one SYNC later
   std::int64_t queue = 1;           ///< profile_position: set-points that may wait for those before
   bool stop_empties_queue = false;  ///< whatever stops the motor takes those away
+  bool replaces_queue = false;      ///< bit 5 counts where no more may wait, too
   MakerBits maker;
 };
 
@@ -227,6 +229,7 @@ struct DriveDefinition {
 
   DriveHomingDefinition homing;
   TerminalsDefinition terminals;
+  AbsoluteEncoderDefinition absolute;
   ProbeForgets probe_forgets = ProbeForgets::disarmed;
 
   double enables_below = 0.0;  ///< turns/s; faster it raises `turning_at_enable`. 0: always

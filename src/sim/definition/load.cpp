@@ -3,6 +3,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "sim/definition/drive_definition.h"
+#include "sim/definition/read_absolute_encoder.h"
 #include "sim/definition/read_communication.h"
 #include "sim/definition/read_faults.h"
 #include "sim/definition/read_homing.h"
@@ -91,6 +92,8 @@ void readDefinition(DefinitionReader& reader, bool extends, DriveDefinition& out
   });
   reader.section("quirks", [&](DefinitionReader& r) { readQuirks(r, out.quirks); });
   reader.section("homing", [&](DefinitionReader& r) { readHoming(r, out.homing); });
+  reader.section("absolute_encoder",
+                 [&](DefinitionReader& r) { readAbsoluteEncoder(r, out.absolute); });
   reader.section("terminals", [&](DefinitionReader& r) { readTerminals(r, out.terminals); });
   reader.section("touch_probe", [&](DefinitionReader& r) {
     r.read<ProbeForgets>("forgets", out.probe_forgets,

@@ -109,6 +109,7 @@ void readMode(const std::string& number, const yaml::Value& from, DefinitionRead
   reader.read("stops_fade", mode.stops_fade);
   reader.read("queue", mode.queue, 1, 64);
   reader.read("stop_empties_queue", mode.stop_empties_queue);
+  reader.read("replaces_queue", mode.replaces_queue);
   std::int64_t bit = mode.set_point_bit;
   reader.read("set_point_bit", bit, 4, 5);
   mode.set_point_bit = static_cast<unsigned>(bit);

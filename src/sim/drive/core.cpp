@@ -45,7 +45,7 @@ void DriveCore::start(bool cold, Time now) {
   on_ = true;
   if (cold && !definition_.absolute_encoder) motion_.setCounter(0.0);
   if (cold) stored_ = false;
-  if (cold) motion_.loseHome();
+  if (cold) motion_.setHomed(false);
   motion_.powerStage(false);
   controlword_ = 0;
   statusword_ = 0;  // the dictionary has its initial values again

@@ -10,6 +10,7 @@
 
 #include "sim/definition/drive_definition.h"
 #include "sim/dictionary/axis_objects.h"
+#include "sim/drive/absolute_encoder.h"
 #include "sim/drive/build_dictionary.h"
 #include "sim/drive/core.h"
 #include "sim/drive/emergency_sender.h"
@@ -29,11 +30,13 @@ struct Axis {
        ObjectDictionary& dictionary, DriveCore::Reports& reports)
       : mechanics(axis_mechanics),
         core(definition, number, mechanics, dictionary, reports),
-        terminals(definition.terminals, dictionary) {}
+        terminals(definition.terminals, dictionary),
+        encoder(definition, dictionary, core) {}
 
   AxisMechanics mechanics;
   DriveCore core;
   Terminals terminals;
+  AbsoluteEncoder encoder;
   unsigned bad_floats = 0;
 };
 
@@ -69,7 +72,8 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
       });
       const auto role = roleOf(entry);
       const Encoding encoding = encodingOf(entry);
-      if (role || encoding != Encoding::integer || axes.front().terminals.holds(entry.id)) {
+      const bool own = axes[0].terminals.holds(entry.id) || axes[0].encoder.holds(entry.id);
+      if (role || encoding != Encoding::integer || own) {
         dictionary.onWrite(entry.id,
                            [this, role, encoding](const Entry& e) { written(e, role, encoding); });
       }
@@ -127,6 +131,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
     const bool saves = role == Role::save_zero && entry.number != 0;
     if (role == Role::alarm_select || saves || (command && entry.number == 1))
       axis.core.onWrite(*role);
+    axis.encoder.written(entry);
     if (axis.terminals.holds(entry.id)) {
       obey(axis.terminals, axis.core, dictionary, definition->fault("terminal_setup"));
       axis.core.motion().publish();
@@ -161,6 +166,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
     for (Axis& axis : axes) axis.terminals.start(axis.core);
     forEach(&DriveCore::start, cold, time);
     if (cold) gate.foreign = store.silent();
+    for (Axis& axis : axes) axis.encoder.start(cold);
     cold = false;
   }
   std::optional<canopen::NodeId> ownNodeId() const override {
@@ -207,6 +213,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
       device.powerOn(at);
     }
     forEach(&DriveCore::advance, now);
+    for (Axis& axis : axes) axis.encoder.look();
   }
 
   // Another drive of the same kind takes this one's place: other serial number, as from the

@@ -96,6 +96,11 @@ bool FaultMemory::resettable(const FaultDefinition& fault) const {
   return fault.resettable || (by != nullptr && by->number != 0);
 }
 
+bool FaultMemory::has(const FaultDefinition& fault) const {
+  return std::any_of(causes_.begin(), causes_.end(),
+                     [&fault](const Cause& cause) { return cause.fault == &fault; });
+}
+
 const FaultDefinition* FaultMemory::lasting(bool warnings, Time now) const {
   for (const Cause& cause : causes_) {
     if (cause.fault->warning != warnings) continue;

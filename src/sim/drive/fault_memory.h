@@ -41,6 +41,7 @@ class FaultMemory {
   /// What the maker keeps of the past.
   AlarmMemory& alarms() { return alarms_; }
   bool empty() const { return causes_.empty(); }
+  bool has(const FaultDefinition& fault) const;
   /// Statusword bit 7.
   bool warning() const { return warning_; }
   /// What the errors contribute to 1001h.

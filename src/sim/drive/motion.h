@@ -37,6 +37,8 @@ class DriveMotion {
   bool powered() const { return powered_; }
   /// The encoder's counter reads `turns` now.
   void setCounter(double turns) { axis_.frame = axis_.motor.position() - turns; }
+  /// Turns from the drive's zero.
+  double counter() const { return axis_.motor.position() - axis_.frame; }
 
   /// Takes the mode over at once, at the present position and speed; nullptr: none.
   void setMode(const ModeDefinition* mode);
@@ -70,7 +72,7 @@ class DriveMotion {
   bool followingErrorExceeded() const { return supervision_.followingErrorExceeded(); }
   /// The drive has found its home by itself, since its position was lost.
   bool homed() const { return axis_.limits.homed(); }
-  void loseHome() { axis_.limits.setHomed(false); }
+  void setHomed(bool homed) { axis_.limits.setHomed(homed); }
   /// The drive halts the motor by itself, as by controlword bit 8, until it lets it go on.
   void pause(bool on);
   /// Ramps on the way out of operation hold their speed in velocity mode.

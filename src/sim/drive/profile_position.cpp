@@ -47,7 +47,8 @@ bool ProfilePosition::control(std::uint16_t controlword, std::uint16_t previous)
   if (!ofThisMode()) return false;
   const unsigned mask = 1U << axis_.mode->set_point_bit;
   bit_ = (controlword & mask) != 0;
-  const bool accepts = bit_ && (previous & mask) == 0 && !acknowledged_;
+  const bool replaces = axis_.mode->replaces_queue && (controlword & kImmediately) != 0;
+  const bool accepts = bit_ && (previous & mask) == 0 && (!acknowledged_ || replaces);
   if (accepts) accept(controlword);
   if (!bit_) acknowledged_ = full();
   return accepts;

@@ -8,9 +8,11 @@
 #include <utility>
 
 #include "common/text.h"
+#include "drive/procedures/steps/setting_parts.h"
 #include "drive/profile/named_write.h"
 #include "drive/profile/object_value.h"
 #include "drive/sentence.h"
+#include "fieldbus/abort_code.h"
 
 namespace cia402::drive {
 namespace {
@@ -18,30 +20,9 @@ namespace {
 constexpr double kSameTorque = 0.01;  // relative: what rounding of a name plate may be off
 constexpr double kSameCounts = 1e-6;  // relative: what a reduced fraction of 32 bits may be off
 
-std::string named(const ObjectSpec& object) {
-  return object.name + " (" + fieldbus::toString(object.id) + ")";
-}
-
 template <typename Value>
 bool contains(const std::vector<Value>& values, const Value& value) {
   return std::find(values.begin(), values.end(), value) != values.end();
-}
-
-/// The last thing that the boot writes to an object, by its name in the profile; nothing where that
-/// is not a number, or follows the joint's zero.
-std::optional<ResolvedWrite> lastWrite(const AxisConfig& axis, const std::string& object) {
-  const ObjectSpec* spec = axis.profile->find(object);
-  std::optional<ResolvedWrite> last;
-  for (const auto* list : {&axis.profile->startup, &axis.writes}) {
-    for (const NamedWrite& write : *list) {
-      if (spec == nullptr || findObject(*axis.profile, write.object) != spec || write.when_homed) {
-        continue;
-      }
-      const auto resolved = resolveWrite(write, axis);
-      if (resolved && *resolved && !(*resolved)->copied_from) last = **resolved;
-    }
-  }
-  return last;
 }
 
 /// Has the axis given one of the objects, or said that it keeps what the drive has?
@@ -163,11 +144,22 @@ std::string SettingsStep::take(const Context& context, const fieldbus::Transfer&
     return {};
   }
   if (!setting.needed || setting.object->name == profile_->timing.brake_object) return {};
-  const std::string why =
-      answer.ok() ? named(*setting.object) + ": the drive answers nothing" : answer.message();
+  if (mayBeAbsent(answer)) {
+    append(absent_, settingTitle(*setting.object), ", ");
+    return {};
+  }
+  const std::string why = answer.ok()
+                              ? settingTitle(*setting.object) + ": the drive answers nothing"
+                              : answer.message();
   return refusal(context) + "it is not known how the drive is set: " + why + "; `lacks: [" +
          setting.object->name + "]` of axes/" + context.axis.config().name +
          " says that the drive does not have the object";
+}
+
+bool SettingsStep::mayBeAbsent(const fieldbus::Transfer& answer) const {
+  return profile_->absent_settings_pass &&
+         answer.failure() == fieldbus::Transfer::Failure::aborted_by_server &&
+         fieldbus::abort_code::saysLacking(answer.abortCode());
 }
 
 /// What was written may have given the drive another zero, or another idea of its motor.
@@ -196,7 +188,7 @@ std::optional<SettingsStep::Difference> SettingsStep::compare(const SettingCheck
   for (const std::string& name : check.objects) {
     const auto number = numberOf(name);
     if (!number || check.condition.holds(*number)) return {};  // or `lacks` names it
-    append(told, named(*profile_->find(name)) + " is " + check.condition.complaint(*number),
+    append(told, settingTitle(*profile_->find(name)) + " is " + check.condition.complaint(*number),
            " and ");
     meaning = &check.meaning(*number);
   }
@@ -212,8 +204,8 @@ std::optional<SettingsStep::Difference> SettingsStep::compareAmongThem(
     if (!number || check.condition.holds(*number)) continue;
     const auto [first, fresh] = seen.emplace(*number, &name);
     if (fresh) continue;
-    return Difference{&check, named(*profile_->find(*first->second)) + " and " +
-                                  named(*profile_->find(name)) + " are both " +
+    return Difference{&check, settingTitle(*profile_->find(*first->second)) + " and " +
+                                  settingTitle(*profile_->find(name)) + " are both " +
                                   std::to_string(*number) + ", " + check.meaning(*number) + "; " +
                                   check.remedy};
   }
@@ -284,6 +276,10 @@ Outcome SettingsStep::judge(const Context& context) {
   AxisCore& axis = context.axis;
   std::string problem;
   std::vector<std::string> warnings;
+  if (!absent_.empty()) {
+    warnings.push_back("the drive does not have " + absent_ +
+                       ", and is taken to be as it shall be there; see that it is");
+  }
   if (const std::string torque = compareTorque(axis.config()); !torque.empty()) {
     warnings.push_back(torque);
   }
@@ -296,8 +292,8 @@ Outcome SettingsStep::judge(const Context& context) {
       append(problem, difference.text);
     }
   }
-  // One a cycle: of several the last alone would be told. Answers of the drive come in between.
-  if (warned_at_ && context.now <= *warned_at_ + axis.config().cycle) return Outcome::running();
+  // One a cycle: of several the last alone would be told. An answer may come within one.
+  if (warned_at_ && context.now < *warned_at_ + axis.config().cycle) return Outcome::running();
   if (warned_ < warnings.size()) {
     axis.notices().warnOnce(axis.who() + ": " + warnings[warned_++]);
     warned_at_ = context.now;
@@ -305,7 +301,7 @@ Outcome SettingsStep::judge(const Context& context) {
   }
   for (const SettingCheck* check : writes_) {
     if (!check->power_cycle || compare(*check)) continue;
-    const std::string why = named(*profile_->find(check->objects.front())) + " was set to " +
+    const std::string why = settingTitle(*profile_->find(check->objects.front())) + " was set to " +
                             std::to_string(check->condition.numbers.front()) +
                             ", which counts once its power was off";
     axis.control().wantPowerCycle(why);
@@ -331,8 +327,8 @@ void SettingsStep::compareReadBack(AxisCore& axis) const {
     if (!written) continue;
     const std::int64_t wanted = wholeNumber(object.type, wireBytes(written->raw, written->type));
     if (*number == wanted) continue;
-    axis.notices().warnOnce(axis.who() + ": " + named(object) + " is " + std::to_string(*number) +
-                            " instead of the " + std::to_string(wanted) +
+    axis.notices().warnOnce(axis.who() + ": " + settingTitle(object) + " is " +
+                            std::to_string(*number) + " instead of the " + std::to_string(wanted) +
                             " that was written at the boot, and counts as it is: the drive has cut "
                             "it to what it can do, or something else has written it since");
   }
@@ -351,7 +347,7 @@ std::string SettingsStep::compareCounts(const AxisConfig& axis) const {
       const auto number = numberOf(object);
       if (!number) return false;
       counts *= divides ? 1.0 / static_cast<double>(*number) : static_cast<double>(*number);
-      append(told, named(*profile_->find(object)) + " = " + std::to_string(*number), ", ");
+      append(told, settingTitle(*profile_->find(object)) + " = " + std::to_string(*number), ", ");
     }
     return true;
   };
@@ -372,7 +368,7 @@ std::string SettingsStep::compareTorque(const AxisConfig& axis) const {
   const double configured = axis.geometry.rated_torque;
   if (std::fabs(told - configured) <= kSameTorque * configured) return {};
   return "the motor's rated torque is " + numberText(told, 4) + " N m by the drive (" +
-         named(object) + " = " + std::to_string(*number) + "), but rated_torque of axes/" +
+         settingTitle(object) + " = " + std::to_string(*number) + "), but rated_torque of axes/" +
          axis.name + " is " + numberText(configured, 4) +
          ": efforts are told and limited wrong by that much; correct it";
 }
@@ -386,7 +382,7 @@ std::string SettingsStep::learnTime(const AxisConfig& axis, const std::string& n
   if (!conversion) return conversion.error().message;
   const Duration told = fromSeconds(conversion->toJoint(static_cast<std::uint64_t>(*number)));
   if (told > time) {
-    return named(object) + " is " + seconds(told) + ", longer than the " + seconds(time) +
+    return settingTitle(object) + " is " + seconds(told) + ", longer than the " + seconds(time) +
            " that the profile allows for (timing)";
   }
   if (told >= Duration(0)) time = told;

@@ -40,6 +40,7 @@ class SettingsStep {
 
   Outcome transfer(const Context& context);
   bool ask(const Context& context);
+  bool mayBeAbsent(const fieldbus::Transfer& answer) const;
   std::string take(const Context& context, const fieldbus::Transfer& answer);
   std::vector<Difference> differences() const;
   std::optional<Difference> compare(const SettingCheck& check) const;
@@ -67,6 +68,7 @@ class SettingsStep {
   std::array<SettingCheck, 2> counts_;       ///< two of these, by the rule of counts
   std::vector<std::size_t> reads_;           ///< of settings_, what is read
   std::size_t written_ = 0, read_ = 0;       ///< of these
+  std::string absent_;                       ///< what could not be compared, the drive has it not
   std::size_t warned_ = 0;                   ///< differences that only warn, told so far
   std::optional<Time> warned_at_;
   fieldbus::Ticket ticket_;
