@@ -68,7 +68,10 @@ void HostTrouble::kill(const Words& words) {
   calls_.drop();
   conditions.stalled += gone;
   Conditions::extend(conditions.host_late, now + gone + 100ms);
-  for (std::size_t i = 0; i < session_.truths.size(); ++i) session_.breakLink(i, 1h);
+  for (std::size_t i = 0; i < session_.truths.size(); ++i) {
+    const bool watched = session_.stage.axes()[i].watches_master;
+    session_.breakLink(i, watched ? 1h : gone);
+  }
   for (auto& axis : conditions.axes) axis.cut_off = std::min(axis.cut_off, now + gone + 500ms);
   session_.later(gone, [this] { start(); });
 }

@@ -13,6 +13,8 @@ using namespace std::chrono_literals;
 
 constexpr Duration kRecoverTime = 20s;
 constexpr const char* kDisableFirst = ": disable, then enable";  // the words of an axis
+constexpr const char* kDisableFor = "disable it first";
+constexpr const char* kOnSwitch = "limit switch";
 constexpr const char* kFreeDrive = ", in the same drive, may be under power: disable it first";
 
 bool contains(const std::string& text, const char* words) {
@@ -22,7 +24,7 @@ bool contains(const std::string& text, const char* words) {
 /// Whether a recovery that failed names the calls that help: for halted axes, for those that lost
 /// their zero, and for those that share their drive.
 bool asksForMore(const std::string& text) {
-  return contains(text, kFreeDrive) || contains(text, ": enable") ||
+  return contains(text, kFreeDrive) || contains(text, kOnSwitch) || contains(text, ": enable") ||
          contains(text, kDisableFirst) || contains(text, " is not homed: home") ||
          contains(text, " is not homed: set_position");
 }
@@ -62,8 +64,14 @@ bool Proof::recover() {
   }
   if (contains(first, kFreeDrive) && !freeDrives()) return false;
   if (!enableAll() || !homeAll()) return false;
+  if (contains(first, kOnSwitch) && !leaveSwitches()) return false;
   if (!first.empty() && !call("recover", "all", kRecoverTime)) return false;
   if (answer_.success) return true;
+  // Its zero may have been declared so that its limits lie beyond the switch.
+  const auto& truths = session_.truths;
+  const bool held = std::any_of(truths.begin(), truths.end(),
+                                [](const AxisTruth& truth) { return truth.at_switch; });
+  if (held && contains(answer_.message, kOnSwitch)) return true;
   noRecovery("", "recover fails when all is well again: " + answer_.message);
   return false;
 }
@@ -98,6 +106,17 @@ bool Proof::enableAll() {
   return true;
 }
 
+/// Moves off their limit switches what its drive holds there.
+bool Proof::leaveSwitches() {
+  for (const AxisFacts& facts : session_.stage.axes()) {
+    if (!session_.truths[facts.index].at_switch) continue;
+    if (!call("enable", facts.name, kRecoverTime)) return false;
+    move(facts.index);
+    if (session_.failed()) return false;
+  }
+  return true;
+}
+
 bool Proof::homeAll() {
   for (const AxisFacts& facts : session_.stage.axes()) {
     const drive::Axis& axis = session_.stage.host().network().axis(facts.index);
@@ -107,6 +126,11 @@ bool Proof::homeAll() {
     if (!homes && !contains(axis.obstacle(), ": set_position")) continue;
     const std::string verb = homes ? "home" : "set_position";
     if (!call(verb, facts.name, facts.homing_timeout + 10s)) return false;
+    if (!answer_.success && contains(answer_.message, kDisableFor)) {
+      if (!call("disable", facts.name, kRecoverTime)) return false;
+      if (!call(verb, facts.name, facts.homing_timeout + 10s)) return false;
+      if (answer_.success && !call("enable", facts.name, kRecoverTime)) return false;
+    }
     if (answer_.success) continue;
     noRecovery(facts.name, verb + " fails when all is well again: " + answer_.message);
     return false;
@@ -143,12 +167,10 @@ bool Proof::call(const std::string& verb, const std::string& who, Duration limit
 }
 
 const drive::ModeSpec* Proof::modeOf(std::size_t axis) {
-  const AxisFacts& facts = session_.stage.axes()[axis];
   const int shown = session_.truths[axis].mode;
-  for (const drive::ModeSpec& mode : facts.config->profile->modes) {
-    if (mode.value == shown) return &mode;
-  }
-  noRecovery(facts.name,
+  const drive::ModeSpec* const mode = session_.stage.modeOf(axis, shown);
+  if (mode != nullptr) return mode;
+  noRecovery(session_.stage.axes()[axis].name,
              "its drive shows mode " + std::to_string(shown) + " when all is well again");
   return nullptr;
 }
@@ -179,7 +201,11 @@ void Proof::move(std::size_t axis, std::optional<double> tried) {
   const double from = session_.truths[axis].position, at = session_.shown(axis);
   const double middle =
       limits.lower && limits.upper ? (*limits.lower + *limits.upper) / 2.0 : at + 1.0;
-  const double sign = tried ? -*tried : middle >= at ? 1.0 : -1.0;
+  double sign = tried ? -*tried : middle >= at ? 1.0 : -1.0;
+  // Some drives push one way only.
+  const drive::ObjectSpec* const target = facts.config->profile->find(mode->target);
+  const bool one_way = target != nullptr && target->range && target->range->low >= 0;
+  if (one_way) sign = facts.config->geometry.direction;
   const Step step = stepOf(facts, *mode, at, sign);
   if (!step.provable) return;
   streams_.begin(

@@ -28,6 +28,7 @@ class Proof {
   bool recover();
   bool freeDrives();
   bool enableAll();
+  bool leaveSwitches();
   bool homeAll();
   /// @return false if it is not answered in time, or a finding ends the run; else answer_ is its.
   bool call(const std::string& verb, const std::string& who, Duration limit);
