@@ -91,7 +91,7 @@ Family nimotion() {
   family.rated_torque = 1.27;
   family.rated_acceleration = 300.0;
   family.strongest = 2.0;
-  family.fastest = 18.0;
+  family.fastest = 9.0;  // 600/min from the factory
   family.limits_effort = false;
   family.writes =  // the limit switches at its terminals, active high
       "{object: di0_function, raw: 15}, {object: di0_logic, raw: 1}, "
@@ -119,6 +119,7 @@ Family id286() {
   family.fastest = 30.0;
   family.limits_effort = false;
   family.options = "keeps: [motor_current], ";
+  family.writes = "{object: following_error_limit, raw: 20000}";  // two turns, at 30 turns/s
   family.modes = {{"position_by_velocity", 'p'},
                   {"profile_position", 'p'},
                   {"profile_velocity", 'v'},

@@ -29,6 +29,12 @@ bool asksForMore(const std::string& text) {
          contains(text, " is not homed: set_position");
 }
 
+/// Whether the targets of a mode have one sign.
+bool pushesOneWay(const AxisFacts& facts, const drive::ModeSpec& mode) {
+  const drive::ObjectSpec* const target = facts.config->profile->find(mode.target);
+  return target != nullptr && target->range && target->range->low >= 0.0;
+}
+
 drive::ProcedureKind kindOf(const std::string& verb) {
   if (verb == "clear_faults") return drive::ProcedureKind::clear_faults;
   if (verb == "home") return drive::ProcedureKind::home;
@@ -68,10 +74,10 @@ bool Proof::recover() {
   if (!first.empty() && !call("recover", "all", kRecoverTime)) return false;
   if (answer_.success) return true;
   // Its zero may have been declared so that its limits lie beyond the switch.
-  const auto& truths = session_.truths;
-  const bool held = std::any_of(truths.begin(), truths.end(),
-                                [](const AxisTruth& truth) { return truth.at_switch; });
-  if (held && contains(answer_.message, kOnSwitch)) return true;
+  for (const AxisFacts& facts : session_.stage.axes()) {
+    const bool held = session_.truths[facts.index].at_switch;
+    if (heldByFault(facts.index) || (held && contains(answer_.message, kOnSwitch))) return true;
+  }
   noRecovery("", "recover fails when all is well again: " + answer_.message);
   return false;
 }
@@ -120,7 +126,7 @@ bool Proof::leaveSwitches() {
 bool Proof::homeAll() {
   for (const AxisFacts& facts : session_.stage.axes()) {
     const drive::Axis& axis = session_.stage.host().network().axis(facts.index);
-    if (axis.state().homed) continue;
+    if (axis.state().homed || heldByFault(facts.index)) continue;
     const bool homes = facts.config->homing.has_value();
     // An absolute axis has lost its zero where the factory's values were restored.
     if (!homes && !contains(axis.obstacle(), ": set_position")) continue;
@@ -166,6 +172,10 @@ bool Proof::call(const std::string& verb, const std::string& who, Duration limit
   return false;
 }
 
+bool Proof::heldByFault(std::size_t axis) const {
+  return session_.stage.axes()[axis].limit_coasts && session_.truths[axis].at_switch;
+}
+
 const drive::ModeSpec* Proof::modeOf(std::size_t axis) {
   const int shown = session_.truths[axis].mode;
   const drive::ModeSpec* const mode = session_.stage.modeOf(axis, shown);
@@ -195,6 +205,7 @@ Proof::Step Proof::stepOf(const AxisFacts& facts, const drive::ModeSpec& mode, d
 
 void Proof::move(std::size_t axis, std::optional<double> tried) {
   const AxisFacts& facts = session_.stage.axes()[axis];
+  if (heldByFault(axis)) return;
   const drive::ModeSpec* const mode = modeOf(axis);
   if (mode == nullptr) return;
   const motion::JointLimits& limits = facts.config->limits;
@@ -202,10 +213,11 @@ void Proof::move(std::size_t axis, std::optional<double> tried) {
   const double middle =
       limits.lower && limits.upper ? (*limits.lower + *limits.upper) / 2.0 : at + 1.0;
   double sign = tried ? -*tried : middle >= at ? 1.0 : -1.0;
-  // Some drives push one way only.
-  const drive::ObjectSpec* const target = facts.config->profile->find(mode->target);
-  const bool one_way = target != nullptr && target->range && target->range->low >= 0;
-  if (one_way) sign = facts.config->geometry.direction;
+  if (pushesOneWay(facts, *mode)) {
+    sign = facts.config->geometry.direction;
+    const std::optional<double>& end = sign > 0.0 ? limits.upper : limits.lower;
+    if (end && (*end - at) * sign < 0.1 * facts.velocity) return;  // it may not go that way
+  }
   const Step step = stepOf(facts, *mode, at, sign);
   if (!step.provable) return;
   streams_.begin(

@@ -21,6 +21,8 @@ constexpr Duration kForEver = std::chrono::hours(1);
 
 /// Whether the drive does anything about the loss of its master (6007h or by its nature).
 bool watchesMaster(const sim::DriveDefinition& definition, const sim::ObjectDictionary& objects) {
+  const bool told = objects.find({0x1016, 1}) != nullptr || objects.find({0x100D, 0}) != nullptr;
+  if (!told) return false;
   return definition.master_lost != sim::ConnectionLoss::none ||
          objects.find({0x6007, 0}) != nullptr;
 }

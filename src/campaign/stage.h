@@ -51,6 +51,9 @@ struct AxisFacts {
   double velocity = 1.0, acceleration = 1.0;  ///< limits
   bool watches_master = true;                 ///< else the drive goes on without one
   Duration master_timeout{};  ///< after which the drive stops by itself; else very long
+  /// Until a driver that starts, or finds its drive again, has stopped it: what watches no master
+  /// turns on while it boots.
+  Duration retaken() const { return std::chrono::seconds(watches_master ? 1 : 4); }
   bool loss_coasts = false;   ///< it lets the motor go where it misses its master or SYNC
   bool limit_coasts = false;  ///< likewise at a limit switch
   bool homes_by_moving = false;
