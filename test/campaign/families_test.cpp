@@ -87,6 +87,7 @@ class PowerOfMixedRobot : public OracleTest {
   PowerOfMixedRobot() : OracleTest(makePowerOracle, kMixedRobot) {}
   /// It turns at its limit, and has no power and a fault from the next look on.
   std::size_t letGo(std::size_t axis) {
+    look();
     truths_[axis].velocity = 1.0;
     look();
     truths_[axis].power = false;

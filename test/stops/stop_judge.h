@@ -174,8 +174,8 @@ inline Bound boundOf(const Case& tested, const Trace& trace) {
     orElse(boundOf(Stop::coasting_fault, mover, late + after));
   }
   if (tested.follower == Follower::restart) {
-    bound.time += after + kCycleS;  // the first SYNC of the new process
     orElse(boundOf(Stop::quick_stop, mover, after));
+    bound.time += after + 2 * kCycleS;  // the first SYNC of the new process, and its set-point
   }
   if (tested.late > 0ms) bound.speed += hurryOf(mover);
   if (starved(tested)) bound.time += 2.0 * mover.speed / mechanicsOf(mover.drive).hardest();
