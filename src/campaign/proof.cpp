@@ -214,6 +214,7 @@ void Proof::move(std::size_t axis, std::optional<double> tried) {
       limits.lower && limits.upper ? (*limits.lower + *limits.upper) / 2.0 : at + 1.0;
   double sign = tried ? -*tried : middle >= at ? 1.0 : -1.0;
   if (pushesOneWay(facts, *mode)) {
+    if (session_.truths[axis].at_switch) return;  // it may only push against it
     sign = facts.config->geometry.direction;
     const std::optional<double>& end = sign > 0.0 ? limits.upper : limits.lower;
     if (end && (*end - at) * sign < 0.1 * facts.velocity) return;  // it may not go that way
