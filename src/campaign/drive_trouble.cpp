@@ -1,9 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "campaign/drive_trouble.h"
 
-#include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <stdexcept>
 
 namespace cia402::campaign {
@@ -11,16 +9,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Faults that take the power away, and those that only the power switch ends.
-constexpr const char* kCoast[] = {"overcurrent",  "short_circuit", "overvoltage",
-                                  "undervoltage", "hardware",      "encoder"};
-constexpr const char* kLast[] = {"short_circuit", "hardware"};
 constexpr const char* kPowerCycle = "power_cycle";  // of the drive
-
-template <std::size_t size>
-bool isIn(const char* const (&list)[size], const std::string& word) {
-  return std::find(std::begin(list), std::end(list), word) != std::end(list);
-}
 
 /// A drive that plans its motion itself goes on planning while its rotor is blocked: what it takes
 /// to stop that demand, and to come back from it to where the axis was told to stop meanwhile.
@@ -61,8 +50,9 @@ void DriveTrouble::clearLater(std::size_t axis, Duration delay) {
 
 void DriveTrouble::fault(std::size_t axis, const Words& words) {
   const std::string& name = words.at(2);
-  if (isIn(kCoast, name)) session_.mayCoast(axis);
-  if (isIn(kLast, name)) dead_[place(axis).drive] = true;
+  const sim::FaultDefinition* const known = session_.stage.fault(axis, name);
+  if (session_.stage.coasts(axis, name)) session_.mayCoast(axis);
+  if (known != nullptr && !known->resettable) dead_[place(axis).drive] = true;  // until power-off
   if (name == kPowerCycle) session_.mayCoastInDriveOf(axis);
   inject(axis, name);
   if (name == kPowerCycle) session_.breakLink(axis, 600ms);

@@ -48,7 +48,7 @@ class Author {
   }
   char kindOf(const AxisPlan& axis) {
     const auto index = static_cast<std::size_t>(&axis - robot_.axes.data());
-    for (const ModePlan& mode : modesOf(axis.damiao)) {
+    for (const ModePlan& mode : axis.family->modes) {
       if (modes_[index] == mode.name) return mode.kind;
     }
     return 'p';
@@ -104,7 +104,7 @@ class Author {
   }
 
   void changeMode(const AxisPlan& axis) {
-    const std::string mode = random_.pick(modesOf(axis.damiao)).name;
+    const std::string mode = random_.pick(axis.family->modes).name;
     modes_[static_cast<std::size_t>(&axis - robot_.axes.data())] = mode;
     add(now_, "set_mode " + axis.name + " " + mode);
     now_ += random_.between(0.3, 1.5);
@@ -173,7 +173,7 @@ class Author {
     if (choice < 0.54) return add(at, "enable " + who);
     if (choice < 0.64) return add(at, "recover " + who);
     if (choice < 0.72) {
-      const std::string mode = random_.pick(modesOf(axis.damiao)).name;
+      const std::string mode = random_.pick(axis.family->modes).name;
       return add(at, "set_mode " + axis.name + " " + mode);
     }
     if (choice < 0.80) return add(at, "set_position " + axis.name + " " + text(position(axis)));
@@ -209,17 +209,7 @@ class Author {
         {"position_actual", "6041:00", "following_error_window", "1018:04", "6502:00", "5FFF:01"});
   }
   void write(double at, const AxisPlan& axis) {
-    if (axis.damiao) {
-      add(at,
-          "write " + axis.name + " " +
-              random_.pick<std::string>({"following_error_window nan", "following_error_window 0.5",
-                                         "position_window -0.0", "position_window inf",
-                                         "200A:03 100.0", "2004:03 1000.0"}));
-    } else {
-      add(at, "write " + axis.name + " " +
-                  random_.pick<std::string>({"6066:00 20", "position_window_time 10",
-                                             "digital_outputs 1", "6041:00 0", "5FFF:00 1"}));
-    }
+    add(at, "write " + axis.name + " " + random_.pick(axis.family->values));
   }
 
   void late(double at) {
@@ -276,7 +266,7 @@ class Author {
     } else if (choice < 0.76) {
       add(at, "block " + axis.name + " " + length);
     } else if (choice < 0.83) {
-      if (axis.damiao) return;  // has none
+      if (axis.family->joint_units) return;  // has none
       add(at, "switch " + axis.name + random_.pick<std::string>({" lower ", " upper "}) +
                   text(random_.between(0.2, 2.0)));
     } else if (choice < 0.88) {
@@ -297,22 +287,7 @@ class Author {
     }
   }
   void fault(double at, const AxisPlan& axis) {
-    static const std::vector<std::string> kGeneric{"overcurrent",
-                                                   "short_circuit",
-                                                   "overvoltage",
-                                                   "undervoltage",
-                                                   "encoder",
-                                                   "hardware",
-                                                   "following_error",
-                                                   "overtemperature",
-                                                   "0x7305",
-                                                   "power_cycle",
-                                                   "overtemperature_warning"};
-    static const std::vector<std::string> kDamiao{
-        "overcurrent",  "overvoltage", "undervoltage",    "motor_overtemperature",
-        "encoder",      "hardware",    "following_error", "overtemperature_warning",
-        "not_a_number", "0x7305",      "power_cycle"};
-    add(at, "fault " + axis.name + " " + random_.pick(axis.damiao ? kDamiao : kGeneric));
+    add(at, "fault " + axis.name + " " + random_.pick(axis.family->faults));
     // While it still coasts or brakes.
     if (random_.chance(0.3)) add(at + random_.between(0.001, 0.3), "recover " + axis.name);
   }

@@ -11,6 +11,7 @@ namespace {
 using namespace std::chrono_literals;
 using Source = Permits::Source;
 
+constexpr Duration kBootTime = 6s;          // of drives that take no notice of the reset, too
 constexpr Duration kShutdownTime = 2500ms;  // until a driver that was asked to end is gone
 
 const Verbs<HostTrouble> kHostVerbs{{"stall", &HostTrouble::stall},
@@ -68,8 +69,14 @@ void HostTrouble::kill(const Words& words) {
   calls_.drop();
   conditions.stalled += gone;
   Conditions::extend(conditions.host_late, now + gone + 100ms);
-  for (std::size_t i = 0; i < session_.truths.size(); ++i) session_.breakLink(i, 1h);
-  for (auto& axis : conditions.axes) axis.cut_off = std::min(axis.cut_off, now + gone + 500ms);
+  for (std::size_t i = 0; i < session_.truths.size(); ++i) {
+    const bool watched = session_.stage.axes()[i].watches_master;
+    session_.breakLink(i, watched ? 1h : gone);
+  }
+  for (auto& axis : conditions.axes) {
+    axis.cut_off = std::min(axis.cut_off, now + gone + 500ms);
+    axis.unheard = now + gone + kBootTime;
+  }
   session_.later(gone, [this] { start(); });
 }
 
@@ -105,7 +112,8 @@ void HostTrouble::start() {
   for (std::size_t i = 0; i < session_.truths.size(); ++i) {
     const AxisFacts& facts = session_.stage.axes()[i];
     if (!session_.permits.allowed(i, now)) continue;
-    session_.permits.allow(i, Source::stream, now + 1s + facts.stopTime(facts.velocity));
+    session_.permits.allow(i, Source::stream,
+                           now + facts.retaken() + facts.stopTime(facts.velocity));
   }
   session_.stage.host().start();
 }

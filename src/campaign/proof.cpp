@@ -13,6 +13,8 @@ using namespace std::chrono_literals;
 
 constexpr Duration kRecoverTime = 20s;
 constexpr const char* kDisableFirst = ": disable, then enable";  // the words of an axis
+constexpr const char* kDisableFor = "disable it first";
+constexpr const char* kOnSwitch = "limit switch";
 constexpr const char* kFreeDrive = ", in the same drive, may be under power: disable it first";
 
 bool contains(const std::string& text, const char* words) {
@@ -22,9 +24,15 @@ bool contains(const std::string& text, const char* words) {
 /// Whether a recovery that failed names the calls that help: for halted axes, for those that lost
 /// their zero, and for those that share their drive.
 bool asksForMore(const std::string& text) {
-  return contains(text, kFreeDrive) || contains(text, ": enable") ||
+  return contains(text, kFreeDrive) || contains(text, kOnSwitch) || contains(text, ": enable") ||
          contains(text, kDisableFirst) || contains(text, " is not homed: home") ||
          contains(text, " is not homed: set_position");
+}
+
+/// Whether the targets of a mode have one sign.
+bool pushesOneWay(const AxisFacts& facts, const drive::ModeSpec& mode) {
+  const drive::ObjectSpec* const target = facts.config->profile->find(mode.target);
+  return target != nullptr && target->range && target->range->low >= 0.0;
 }
 
 drive::ProcedureKind kindOf(const std::string& verb) {
@@ -62,8 +70,14 @@ bool Proof::recover() {
   }
   if (contains(first, kFreeDrive) && !freeDrives()) return false;
   if (!enableAll() || !homeAll()) return false;
+  if (contains(first, kOnSwitch) && !leaveSwitches()) return false;
   if (!first.empty() && !call("recover", "all", kRecoverTime)) return false;
   if (answer_.success) return true;
+  // Its zero may have been declared so that its limits lie beyond the switch.
+  for (const AxisFacts& facts : session_.stage.axes()) {
+    const bool held = session_.truths[facts.index].at_switch;
+    if (heldByFault(facts.index) || (held && contains(answer_.message, kOnSwitch))) return true;
+  }
   noRecovery("", "recover fails when all is well again: " + answer_.message);
   return false;
 }
@@ -98,15 +112,31 @@ bool Proof::enableAll() {
   return true;
 }
 
+/// Moves off their limit switches what its drive holds there.
+bool Proof::leaveSwitches() {
+  for (const AxisFacts& facts : session_.stage.axes()) {
+    if (!session_.truths[facts.index].at_switch) continue;
+    if (!call("enable", facts.name, kRecoverTime)) return false;
+    move(facts.index);
+    if (session_.failed()) return false;
+  }
+  return true;
+}
+
 bool Proof::homeAll() {
   for (const AxisFacts& facts : session_.stage.axes()) {
     const drive::Axis& axis = session_.stage.host().network().axis(facts.index);
-    if (axis.state().homed) continue;
+    if (axis.state().homed || heldByFault(facts.index)) continue;
     const bool homes = facts.config->homing.has_value();
     // An absolute axis has lost its zero where the factory's values were restored.
     if (!homes && !contains(axis.obstacle(), ": set_position")) continue;
     const std::string verb = homes ? "home" : "set_position";
     if (!call(verb, facts.name, facts.homing_timeout + 10s)) return false;
+    if (!answer_.success && contains(answer_.message, kDisableFor)) {
+      if (!call("disable", facts.name, kRecoverTime)) return false;
+      if (!call(verb, facts.name, facts.homing_timeout + 10s)) return false;
+      if (answer_.success && !call("enable", facts.name, kRecoverTime)) return false;
+    }
     if (answer_.success) continue;
     noRecovery(facts.name, verb + " fails when all is well again: " + answer_.message);
     return false;
@@ -142,13 +172,15 @@ bool Proof::call(const std::string& verb, const std::string& who, Duration limit
   return false;
 }
 
+bool Proof::heldByFault(std::size_t axis) const {
+  return session_.stage.axes()[axis].limit_coasts && session_.truths[axis].at_switch;
+}
+
 const drive::ModeSpec* Proof::modeOf(std::size_t axis) {
-  const AxisFacts& facts = session_.stage.axes()[axis];
   const int shown = session_.truths[axis].mode;
-  for (const drive::ModeSpec& mode : facts.config->profile->modes) {
-    if (mode.value == shown) return &mode;
-  }
-  noRecovery(facts.name,
+  const drive::ModeSpec* const mode = session_.stage.modeOf(axis, shown);
+  if (mode != nullptr) return mode;
+  noRecovery(session_.stage.axes()[axis].name,
              "its drive shows mode " + std::to_string(shown) + " when all is well again");
   return nullptr;
 }
@@ -173,13 +205,20 @@ Proof::Step Proof::stepOf(const AxisFacts& facts, const drive::ModeSpec& mode, d
 
 void Proof::move(std::size_t axis, std::optional<double> tried) {
   const AxisFacts& facts = session_.stage.axes()[axis];
+  if (heldByFault(axis)) return;
   const drive::ModeSpec* const mode = modeOf(axis);
   if (mode == nullptr) return;
   const motion::JointLimits& limits = facts.config->limits;
   const double from = session_.truths[axis].position, at = session_.shown(axis);
   const double middle =
       limits.lower && limits.upper ? (*limits.lower + *limits.upper) / 2.0 : at + 1.0;
-  const double sign = tried ? -*tried : middle >= at ? 1.0 : -1.0;
+  double sign = tried ? -*tried : middle >= at ? 1.0 : -1.0;
+  if (pushesOneWay(facts, *mode)) {
+    if (session_.truths[axis].at_switch) return;  // it may only push against it
+    sign = facts.config->geometry.direction;
+    const std::optional<double>& end = sign > 0.0 ? limits.upper : limits.lower;
+    if (end && (*end - at) * sign < 0.1 * facts.velocity) return;  // it may not go that way
+  }
   const Step step = stepOf(facts, *mode, at, sign);
   if (!step.provable) return;
   streams_.begin(

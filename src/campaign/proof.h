@@ -28,6 +28,9 @@ class Proof {
   bool recover();
   bool freeDrives();
   bool enableAll();
+  /// A fault keeps it on its limit switch until it is moved by hand.
+  bool heldByFault(std::size_t axis) const;
+  bool leaveSwitches();
   bool homeAll();
   /// @return false if it is not answered in time, or a finding ends the run; else answer_ is its.
   bool call(const std::string& verb, const std::string& who, Duration limit);

@@ -19,32 +19,45 @@ struct Seat {
   Habits habits{};  ///< of a drive with two axes; may be empty
 };
 
+const Family& drawFamily(Random& random) {
+  double left = random.uniform();
+  for (const Family& family : families()) {
+    left -= family.share;
+    if (left < 0.0) return family;
+  }
+  return families().front();
+}
+
 /// One axis; its YAML is a flow mapping on one line.
 class AxisWriter {
  public:
-  AxisWriter(Random& random, std::size_t number, const Seat& seat) : random_(random) {
+  AxisWriter(Random& random, std::size_t number, const Seat& seat)
+      : random_(random), family_(seat.neighbour ? families().front() : drawFamily(random)) {
     axis_.name = "a" + std::to_string(number + 1);
     axis_.neighbour = seat.neighbour;
-    axis_.damiao = !seat.neighbour && random.chance(0.4);
+    axis_.family = &family_;
     add("node_id", std::to_string(seat.node));
     if (seat.neighbour) add("device_axis", std::to_string(seat.device_axis));
-    add("drive", axis_.damiao ? "damiao_dm" : "generic_cia402");
+    add("drive", family_.profile);
     const double kind = random.uniform();
-    linear_ = !axis_.damiao && kind < 0.15;
+    linear_ = !family_.joint_units && family_.long_range && kind < 0.15;
     axis_.continuous = !linear_ && kind < 0.3;
     if (linear_) add("type", "prismatic");
     if (axis_.continuous) add("type", "continuous");
-    if (axis_.damiao) {
-      damiao();
+    axis_.yaml +=
+        family_.options.empty() ? "" : ", " + family_.options.substr(0, family_.options.size() - 2);
+    if (family_.joint_units) {
+      directDrive();
     } else {
-      generic();
+      geared();
     }
+    drawMode();
     place();
     homing();
     options();
     if (seat.neighbour) {
       sitIn(seat);
-    } else if (!axis_.damiao) {
+    } else if (isGeneric()) {
       sitAlone();
     }
     add("simulation", "{" + simulation_ + "}");
@@ -59,33 +72,47 @@ class AxisWriter {
   void simulate(const std::string& key, const std::string& value) {
     simulation_ += (simulation_.empty() ? "" : ", ") + key + ": " + value;
   }
-  void damiao() {
+  /// The one that has habits, brakes and drives of two axes.
+  bool isGeneric() const { return &family_ == &families().front(); }
+  void directDrive() {
     time_constant_ = random_.between(0.003, 0.008);
     axis_.velocity = random_.between(0.5, 4.0);
     axis_.acceleration = axis_.velocity * random_.between(2.0, 8.0);
     axis_.effort = random_.between(3.0, 7.0);
-    axis_.mode = random_.chance(0.55) ? "cyclic_position" : random_.pick(modesOf(true)).name;
   }
-  void generic() {
+  void geared() {
     time_constant_ = random_.between(0.002, 0.006);
-    const double counts = random_.pick({4096.0, 65536.0, 131072.0});
+    const double counts = random_.pick(family_.counts);
     const double gear = linear_ ? random_.pick({1.0, 2.0, 5.0}) : random_.between(20.0, 160.0);
     const double lead = random_.pick({0.005, 0.01, 0.02});
     const double unit = (linear_ ? lead : kTwoPi) / gear;  // joint units a motor turn
-    add("counts_per_turn", text(counts));
+    add("counts_per_turn", std::to_string(static_cast<long>(counts)));
     add("gear_ratio", text(gear));
     if (linear_) add("lead", text(lead));
-    const double rated = 0.64, strength = random_.between(1.5, 3.0);
+    const double rated = family_.rated_torque;
+    const double drawn = random_.between(1.5, 3.0);
+    const double strength = family_.limits_effort ? drawn : family_.strongest;
     add("rated_torque", text(rated));
     axis_.effort = rated * strength * (linear_ ? kTwoPi / unit : gear);
     axis_.velocity = linear_ ? random_.between(0.05, 0.4) : random_.between(0.3, 3.0);
-    axis_.velocity = std::min(axis_.velocity, 60.0 * unit);
-    axis_.acceleration =
-        std::min(axis_.velocity * random_.between(2.0, 8.0), 0.25 * strength * 300.0 * unit);
-    axis_.mode = random_.chance(0.6) ? "cyclic_position" : random_.pick(modesOf(false)).name;
+    axis_.velocity = std::min(axis_.velocity, family_.fastest * unit);
+    const double hardest = std::min(0.25 * strength * family_.rated_acceleration, family_.hardest);
+    axis_.acceleration = std::min(axis_.velocity * random_.between(2.0, 8.0), hardest * unit);
     // Narrow enough to notice what jumps, wide enough for honest motion.
-    add("write", "[{object: following_error_window, value: " +
-                     text(5.0 * axis_.velocity * time_constant_ + 0.004 * axis_.velocity) + "}]");
+    std::string writes = family_.writes;
+    if (isGeneric()) {
+      writes = "{object: following_error_window, value: " +
+               text(5.0 * axis_.velocity * time_constant_ + 0.004 * axis_.velocity) + "}";
+    }
+    if (!writes.empty()) add("write", "[" + writes + "]");
+  }
+  void drawMode() {
+    const std::vector<ModePlan>& modes = family_.modes;
+    axis_.mode = random_.chance(0.58) ? modes.front().name : random_.pick(modes).name;
+    if (!family_.names_modes) return;
+    std::string all;
+    for (const ModePlan& mode : modes) all += (all.empty() ? "" : ", ") + std::string(mode.name);
+    add("modes", "[" + all + "]");
   }
   void place() {
     const double reach = linear_ ? 0.4 : 2.5;
@@ -105,15 +132,20 @@ class AxisWriter {
   }
   void homing() {
     const double choice = random_.uniform();
-    if (axis_.damiao) {
+    if (family_.joint_units) {
       if (choice < 0.3) declare({});
       return;
     }
     if (choice < 0.25) return;
-    if (choice < 0.55) return declare("method: " + random_.pick<std::string>({"35", "37"}) + ", ");
+    const bool by_switch = choice > 0.8 && !axis_.continuous && family_.searches_switches;
+    if (choice < 0.55 || (!by_switch && family_.searches.empty())) {
+      const std::string any = random_.pick<std::string>({"35", "37"});
+      return declare("method: " + (family_.declares.empty() ? any : family_.declares) + ", ");
+    }
     axis_.homing = axis_.homes_by_moving = true;
-    std::string method = random_.pick<std::string>({"33", "34"});
-    if (choice > 0.8 && !axis_.continuous) {
+    std::string method;
+    if (!by_switch) method = random_.pick(family_.searches);
+    if (by_switch) {
       method = random_.pick<std::string>({"17", "18"});
       simulate("lower_limit_switch", text(axis_.lower - 0.05));
       simulate("upper_limit_switch", text(axis_.upper + 0.05));
@@ -132,7 +164,7 @@ class AxisWriter {
     add("mode", axis_.mode);
     axis_.command_timeout = random_.pick({0.05, 0.1, 0.2, 0.4});
     add("command_timeout", text(axis_.command_timeout));
-    if (!axis_.damiao && random_.chance(0.3)) {
+    if (isGeneric() && random_.chance(0.3)) {
       simulate("brake_delay", text(random_.between(0.02, 0.25)));
     }
   }
@@ -154,6 +186,7 @@ class AxisWriter {
   }
 
   Random& random_;
+  const Family& family_;
   AxisPlan axis_;
   std::string simulation_;
   bool linear_ = false;
@@ -194,7 +227,7 @@ std::vector<Seat> planSeats(Random& random, std::size_t count) {
   return seats;
 }
 
-bool cyclic(const AxisPlan& axis) { return axis.mode == "cyclic_position"; }
+bool cyclic(const AxisPlan& axis) { return axis.mode == axis.family->modes.front().name; }
 
 GroupPlan planGroup(Random& random, const std::vector<AxisPlan>& axes, std::size_t number) {
   GroupPlan group;
@@ -226,17 +259,6 @@ std::string text(double value) {
   return written;
 }
 
-const std::vector<ModePlan>& modesOf(bool damiao) {
-  static const std::vector<ModePlan> kGeneric{{"cyclic_position", 'p'},  {"profile_position", 'p'},
-                                              {"profile_velocity", 'v'}, {"cyclic_velocity", 'v'},
-                                              {"profile_torque", 't'},   {"cyclic_torque", 't'}};
-  static const std::vector<ModePlan> kDamiao{
-      {"cyclic_position", 'p'},          {"profile_position", 'p'}, {"position_velocity", 'p'},
-      {"position_velocity_torque", 'p'}, {"profile_velocity", 'v'}, {"cyclic_velocity", 'v'},
-      {"velocity_torque", 'v'},          {"profile_torque", 't'}};
-  return damiao ? kDamiao : kGeneric;
-}
-
 RobotPlan planRobot(Random& random) {
   RobotPlan robot;
   const std::size_t count = 2 + random.below(5);
@@ -248,8 +270,11 @@ RobotPlan planRobot(Random& random) {
       count <= 2 && random.chance(0.3) ? 0.002 : random.pick({0.004, 0.004, 0.005, 0.01});
   const double heartbeat = random.pick({0.05, 0.1, 0.1, 0.2});
   const bool external_sync = random.chance(0.12);
+  const bool counts = std::all_of(robot.axes.begin(), robot.axes.end(),
+                                  [](const AxisPlan& axis) { return axis.family->counts_sync; });
   robot.yaml = "bus: {interface: can0, bitrate: 1000000, sync_period: " + text(period) +
-               ", heartbeat: " + text(heartbeat) + (external_sync ? ", sync: external}\n" : "}\n") +
+               ", heartbeat: " + text(heartbeat) + (external_sync ? ", sync: external" : "") +
+               (counts ? "" : ", sync_counter: 0") + "}\n" +
                "recorder: {duration: 1, keep: 0}\naxes:\n";
   for (const AxisPlan& axis : robot.axes) robot.yaml += "  " + axis.name + ": " + axis.yaml + "\n";
   robot.yaml += "groups:\n";

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "campaign/families.h"
 #include "campaign/random.h"
 
 namespace cia402::campaign {
@@ -12,7 +13,8 @@ namespace cia402::campaign {
 /// What the author of a history has to know of an axis.
 struct AxisPlan {
   std::string name, yaml;
-  bool damiao = false, continuous = false, homing = false, homes_by_moving = false;
+  const Family* family = nullptr;
+  bool continuous = false, homing = false, homes_by_moving = false;
   double velocity = 1.0, acceleration = 4.0, effort = 1.0;
   double lower = -1.0, upper = 1.0;
   double command_timeout = 0.2;
@@ -38,13 +40,5 @@ std::string text(double value);
 
 /// A random robot of 2 to 6 axes, now and then with one or two drives of two axes.
 RobotPlan planRobot(Random& random);
-
-/// Modes that an axis of the family can be in, and what their set-points are.
-struct ModePlan {
-  const char* name;
-  char kind;  ///< p position, v velocity, t torque
-};
-/// Those that a history may ask for.
-const std::vector<ModePlan>& modesOf(bool damiao);
 
 }  // namespace cia402::campaign

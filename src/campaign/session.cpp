@@ -134,7 +134,9 @@ void Session::loseCommandsOfOne(std::size_t axis, Duration duration) {
   const AxisFacts& facts = stage.axes()[axis];
   Conditions::extend(conditions.axes[axis].cut_off, now() + duration + 500ms);
   if (truths.empty()) return;
-  const Time end = now() + facts.master_timeout + facts.stopTime(facts.velocity) + 100ms;
+  // A drive that does not watch its master goes on until the driver has found it again.
+  const Duration goes_on = std::min(facts.master_timeout, duration + facts.retaken());
+  const Time end = now() + goes_on + facts.stopTime(facts.velocity) + 100ms;
   if (permits.allowed(axis, now())) permits.allow(axis, Permits::Source::stream, end);
   if (duration > facts.master_timeout) permits.cut(axis, end);
 }

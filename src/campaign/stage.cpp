@@ -16,6 +16,17 @@
 namespace cia402::campaign {
 namespace {
 
+constexpr double kNearSwitch = 0.05;  // turns of the shaft
+constexpr Duration kForEver = std::chrono::hours(1);
+
+/// Whether the drive does anything about the loss of its master (6007h or by its nature).
+bool watchesMaster(const sim::DriveDefinition& definition, const sim::ObjectDictionary& objects) {
+  const bool told = objects.find({0x1016, 1}) != nullptr || objects.find({0x100D, 0}) != nullptr;
+  if (!told) return false;
+  return definition.master_lost != sim::ConnectionLoss::none ||
+         objects.find({0x6007, 0}) != nullptr;
+}
+
 AxisFacts factsOf(const Loaded& loaded, std::size_t index) {
   const config::RobotConfig& robot = loaded.robot;
   const drive::AxisConfig& axis = robot.axes[index];
@@ -32,8 +43,10 @@ AxisFacts factsOf(const Loaded& loaded, std::size_t index) {
   facts.units_per_turn = (linear ? geometry.lead : kTwoPi) / ratio * geometry.direction;
   if (!axis.profile->output_shaft) {
     facts.units_per_count = facts.units_per_turn / geometry.counts_per_turn;
+    const auto unit = axis.profile->units.find(drive::Quantity::torque);
+    const double scale = unit == axis.profile->units.end() ? 1.0 : unit->second.scale;
     facts.effort_per_count =
-        geometry.rated_torque * 1e-3 * kTwoPi / std::fabs(facts.units_per_turn);
+        geometry.rated_torque * 1e-3 * scale * kTwoPi / std::fabs(facts.units_per_turn);
   }
   facts.velocity = axis.limits.velocity.value_or(1.0);
   facts.acceleration = axis.limits.acceleration.value_or(linear ? 0.5 : 5.0);
@@ -178,6 +191,11 @@ Stage::Stage(Loaded loaded, std::uint64_t seed)
   sim::addTo(world_, loaded_.drives);
   for (std::size_t i = 0; i < loaded_.robot.axes.size(); ++i) {
     facts_.push_back(factsOf(loaded_, i));
+    if (!watchesMaster(*loaded_.drives[facts_[i].place.drive].definition,
+                       driveOf(i).dictionary())) {
+      facts_[i].watches_master = false;
+      facts_[i].master_timeout = kForEver;
+    }
     const auto entry = [&](std::uint16_t object) {
       return driveOf(i).dictionary().find(sim::ofAxis({object, 0}, facts_[i].place.axis));
     };
@@ -187,11 +205,43 @@ Stage::Stage(Loaded loaded, std::uint64_t seed)
   rpdos_ = pdosOf(loaded_, facts_, canopen::PdoDirection::rpdo);
   tpdos_ = pdosOf(loaded_, facts_, canopen::PdoDirection::tpdo);
   for (const AxisFacts& axis : facts_) statuswords_.push_back(statuswordOf(axis, tpdos_));
+  for (AxisFacts& axis : facts_) {
+    axis.loss_coasts = coasts(axis.index, "master_lost") || coasts(axis.index, "sync_lost");
+    axis.limit_coasts = coasts(axis.index, "positive_limit_switch");
+  }
   const config::BusConfig& bus = loaded_.robot.bus;
   if (bus.external_sync) {
     sync_.connect(world_.addParticipant("sync", sync_));
     sync_.start({bus.sync_period, static_cast<std::uint8_t>(bus.sync_counter), {}, 0x80}, now());
   }
+}
+
+const drive::ModeSpec* Stage::modeOf(std::size_t axis, int number) const {
+  const drive::ModeSpec* const shown =
+      host_.running() ? driver()->axis(axis).state().mode : nullptr;
+  if (shown != nullptr && shown->value == number) return shown;
+  const auto& modes = facts_[axis].config->profile->modes;
+  const auto found = std::find_if(modes.begin(), modes.end(), [&](const drive::ModeSpec& mode) {
+    return mode.value == number;
+  });
+  return found == modes.end() ? nullptr : &*found;
+}
+
+const sim::FaultDefinition* Stage::fault(std::size_t axis, const std::string& name) const {
+  return loaded_.drives[facts_[axis].place.drive].definition->fault(name);
+}
+
+bool Stage::coasts(std::size_t axis, const std::string& name) {
+  const sim::FaultDefinition* const known = fault(axis, name);
+  if (known == nullptr || known->warning) return false;
+  if (known->reaction) return *known->reaction == sim::Ramp::coast;
+  const sim::AxisPlace& place = facts_[axis].place;
+  const sim::OptionTable& table = loaded_.drives[place.drive].definition->fault_reaction;
+  const sim::Entry* const option =
+      driveOf(axis).dictionary().find(sim::ofAxis({0x605E, 0}, place.axis));
+  const auto chosen =
+      table.options.find(option == nullptr ? table.fallback : sim::asSigned(*option));
+  return chosen != table.options.end() && chosen->second.ramp == sim::Ramp::coast;
 }
 
 const AxisFacts* Stage::find(const std::string& name) const {
@@ -238,10 +288,14 @@ void Stage::look(std::vector<AxisTruth>& truths) {
             ? asFloat(objects_[i].position->number) *
                   (facts_[i].config->geometry.direction < 0 ? -1.0 : 1.0)
             : static_cast<double>(sim::asSigned(*objects_[i].position)) * facts_[i].units_per_count;
-    const sim::Entry& effort = *objects_[i].effort;
+    const sim::AxisMechanics& mechanics = driveOf(i).mechanics(facts_[i].place.axis);
+    seen.at_switch = truth.position_turns < mechanics.negative_limit_switch + kNearSwitch ||
+                     truth.position_turns > mechanics.positive_limit_switch - kNearSwitch;
+    const sim::Entry* const effort = objects_[i].effort;
+    if (effort == nullptr) continue;
     seen.effort = facts_[i].effort_per_count == 0.0
-                      ? asFloat(effort.number)
-                      : static_cast<double>(sim::asSigned(effort)) * facts_[i].effort_per_count;
+                      ? asFloat(effort->number)
+                      : static_cast<double>(sim::asSigned(*effort)) * facts_[i].effort_per_count;
   }
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "campaign/scene.h"
+#include "sim/definition/drive_definition.h"
 #include "sim/world/robot_drives.h"
 #include "sim/world/sync_producer.h"
 #include "tools/virtual_host.h"
@@ -30,6 +31,7 @@ struct AxisTruth {
   int mode = 0;             ///< in which it is, whatever 6061h shows
   double told = 0.0;        ///< 6064h, before position_offset and what set_position declared
   unsigned bad_floats = 0;  ///< received by it since the start
+  bool at_switch = false;   ///< on a limit switch, or right before it
   canopen::NmtState nmt = canopen::NmtState::unknown;
 
   bool faulted() const { return (statusword & 0x0008) != 0; }
@@ -47,7 +49,13 @@ struct AxisFacts {
   double units_per_count = 0.0;   ///< of 607Ah and 6064h; 0: they are floats
   double effort_per_count = 0.0;  ///< of 6077h; 0: it is a float
   double velocity = 1.0, acceleration = 1.0;  ///< limits
-  Duration master_timeout{};                  ///< after which the drive stops by itself
+  bool watches_master = true;                 ///< else the drive goes on without one
+  Duration master_timeout{};  ///< after which the drive stops by itself; else very long
+  /// Until a driver that starts, or finds its drive again, has stopped it: what watches no master
+  /// turns on while it boots.
+  Duration retaken() const { return std::chrono::seconds(watches_master ? 1 : 4); }
+  bool loss_coasts = false;   ///< it lets the motor go where it misses its master or SYNC
+  bool limit_coasts = false;  ///< likewise at a limit switch
   bool homes_by_moving = false;
   Duration homing_timeout{};
 
@@ -104,6 +112,12 @@ class Stage {
   const std::vector<PdoPlace>& tpdos() const { return tpdos_; }
   /// Where its drive tells the statusword of an axis; nullptr: in no TPDO.
   const PdoPlace* statusword(std::size_t axis) const { return statuswords_[axis]; }
+  /// The mode with that number of 6060h: where there are several, the one that the driver is in.
+  const drive::ModeSpec* modeOf(std::size_t axis, int number) const;
+  /// What the drive does about a fault of that name; nullptr: it has none.
+  const sim::FaultDefinition* fault(std::size_t axis, const std::string& name) const;
+  /// Whether a fault takes the power away at once.
+  bool coasts(std::size_t axis, const std::string& name);
   /// nullptr if there is none.
   const AxisFacts* find(const std::string& name) const;
   /// The axes that a call concerns: one by its name, or "all".

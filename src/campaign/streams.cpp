@@ -118,10 +118,8 @@ void Streams::accepted(std::size_t axis, double value) {
   if (session_.truths.empty()) return;
   const AxisFacts& facts = session_.stage.axes()[axis];
   const AxisTruth& truth = session_.truths[axis];
-  const auto& modes = facts.config->profile->modes;
-  const auto mode = std::find_if(modes.begin(), modes.end(),
-                                 [&](const drive::ModeSpec& m) { return m.value == truth.mode; });
-  if (mode == modes.end() || mode->kind == drive::ControlKind::position) {
+  const drive::ModeSpec* const mode = session_.stage.modeOf(axis, truth.mode);
+  if (mode == nullptr || mode->kind == drive::ControlKind::position) {
     const Duration way = timeOfWay(facts, value, session_.shown(axis));
     session_.permits.allow(axis, Source::target, session_.now() + session_.lateFor() + way);
     return;

@@ -45,7 +45,7 @@ TEST(RobotPlan, PutsNeighboursIntoOneDrive) {
       ++together;
       const drive::AxisConfig& axis = loaded->robot.axes[i];
       const drive::AxisConfig& other = loaded->robot.axes[*plan.axes[i].neighbour];
-      EXPECT_FALSE(plan.axes[i].damiao);
+      EXPECT_EQ(plan.axes[i].family->profile, std::string("generic_cia402"));
       if (loaded->robot.deviceOf(axis).profile->pdos_per_axis == 0) ++shared_pdos;
       EXPECT_EQ(plan.axes[*plan.axes[i].neighbour].neighbour, i);
       EXPECT_EQ(axis.device, other.device);

@@ -31,15 +31,38 @@ constexpr double kReactionS = 3 * kCycleS;
 constexpr double kMasterLostS = 0.3;
 
 inline bool brakesByHaltBit(const Mover& mover) {
-  return mover.drive == "generic_cia402" && mover.mode != "cyclic_torque";
+  return stopDrive(mover.drive).halt_bit_brakes_efforts && mover.mode != "cyclic_torque";
+}
+
+/// The mode that brakes an effort is asked for, shown and then given its first set-point.
+constexpr double kModeChangeS = 3 * kCycleS;
+
+/// What brakes an effort by a mode of velocities, whatever the stop.
+inline Braking brakingByMode(Stop stop, const Mover& mover) {
+  const bool ends = stop == Stop::end_of_stream || stop == Stop::set_mode;
+  const double waits = ends ? toSeconds(kCommandTimeout) + kCycleS : 0.0;
+  return {waits + kReactionS + kModeChangeS, mechanicsOf(mover.drive).acceleration};
+}
+
+inline Braking brakingOfOrphan(const Mover& mover) {
+  const Mechanics& mechanics = mechanicsOf(mover.drive);
+  const double quick = 2.0 * mechanics.acceleration;
+  const bool interpolated = mover.mode == "interpolated_position";
+  if (interpolated && stopDrive(mover.drive).sync_fault) return {3 * kCycleS, quick};
+  if (mover.motion == Motion::stream) return {2 * kCycleS, mechanics.hardest()};
+  const bool coasts = stopDrive(mover.drive).orphaned == Orphaned::coasts;
+  return {kMasterLostS, coasts ? mechanics.friction() : quick};
 }
 
 /// What brakes, for a stop that comes in time.
 inline Braking brakingOf(Stop stop, const Mover& mover) {
-  const Mechanics mechanics = mechanicsOf(mover.drive);
+  const Mechanics& mechanics = mechanicsOf(mover.drive);
   const double ramp = mechanics.acceleration, quick = 2.0 * ramp;
   const bool effort = mover.motion == Motion::effort;
   const double effort_ramp = brakesByHaltBit(mover) ? ramp : quick;
+  const bool by_fault = stop == Stop::fault || stop == Stop::coasting_fault;
+  const bool by_mode = effort && stopDrive(mover.drive).efforts_by_mode;
+  if (by_mode && !by_fault && stop != Stop::host_death) return brakingByMode(stop, mover);
   switch (stop) {
     case Stop::halt:
       return {kReactionS, effort ? effort_ramp : ramp};
@@ -49,19 +72,18 @@ inline Braking brakingOf(Stop stop, const Mover& mover) {
     case Stop::end_of_stream:
     case Stop::set_mode:
       if (mover.motion == Motion::stream) return {kReactionS + kCycleS, ramp};
-      return {toSeconds(kCommandTimeout) + kReactionS + kCycleS, mover.coasts ? mechanics.friction
+      return {toSeconds(kCommandTimeout) + kReactionS + kCycleS, mover.coasts ? mechanics.friction()
                                                                  : effort     ? effort_ramp
                                                                               : ramp};
     case Stop::fault:
       return {0.001, quick};
     case Stop::coasting_fault:
-      return {0.001, mechanics.friction};
+      return {0.001, mechanics.friction()};
     case Stop::shutdown:
       if (effort || mover.motion == Motion::goal) return {kReactionS + kCycleS, quick};
       return {kReactionS, ramp};
     case Stop::host_death:
-      if (mover.motion == Motion::stream) return {2 * kCycleS, mechanics.hardest};
-      return {kMasterLostS, quick};
+      return brakingOfOrphan(mover);
   }
   return {};
 }
@@ -69,9 +91,9 @@ inline Braking brakingOf(Stop stop, const Mover& mover) {
 /// The motor behind its demand. A Damiao approaches a streamed target by a profile of its own, with
 /// ten times the acceleration.
 inline double lagOf(const Mover& mover) {
-  const Mechanics mechanics = mechanicsOf(mover.drive);
+  const Mechanics& mechanics = mechanicsOf(mover.drive);
   double lag = mechanics.lag_s;
-  if (mover.drive == "damiao_dm" && mover.motion == Motion::stream) {
+  if (stopDrive(mover.drive).float_numbers && mover.motion == Motion::stream) {
     lag += mover.speed / (2.0 * 10.0 * mechanics.acceleration);
   }
   return lag;
@@ -79,17 +101,20 @@ inline double lagOf(const Mover& mover) {
 
 /// N m to rad/s², behind friction.
 inline double pushOf(const Mover& mover) {
-  constexpr double kTurn = 6.283185307179586;
-  if (mover.motion != Motion::effort || mover.drive == "damiao_dm") return 0.0;  // at its speed
-  return (mover.set_point / 64.0 - 0.05) * 300.0 * kTurn / 100.0;
+  if (mover.motion != Motion::effort || stopDrive(mover.drive).float_numbers)
+    return 0.0;  // at its speed
+  const Mechanics& mechanics = mechanicsOf(mover.drive);
+  return mover.set_point / mechanics.rated * mechanics.by_rated - mechanics.friction();
 }
 
 inline Bound boundOf(Stop stop, const Mover& mover, double late_s) {
-  const Mechanics mechanics = mechanicsOf(mover.drive);
+  const bool alone = stop == Stop::host_death && mover.motion == Motion::goal;
+  if (alone && stopDrive(mover.drive).orphaned == Orphaned::goes_on) stop = Stop::set_mode;
+  const Mechanics& mechanics = mechanicsOf(mover.drive);
   Braking braking = brakingOf(stop, mover);
   const double lag = lagOf(mover), settling = 8.0 * lag;
   double speed = mover.speed;
-  const bool by_goal = mover.motion == Motion::goal && mover.drive == "damiao_dm";
+  const bool by_goal = mover.motion == Motion::goal && stopDrive(mover.drive).float_numbers;
   if (stop == Stop::set_mode && mover.motion == Motion::goal) {  // it goes on to its goal
     const double ramp = speed * speed / (2.0 * mechanics.acceleration);
     const double way = mover.set_point - ramp;
@@ -107,14 +132,28 @@ inline Bound boundOf(Stop stop, const Mover& mover, double late_s) {
 /// A drive that gets no SYNC stands at its last target. Its next SYNC brings the one set-point that
 /// was sent before.
 inline bool starved(const Case& tested) {
-  return tested.mover->motion == Motion::stream &&
+  return tested.mover->motion == Motion::stream && !tested.mover->byVelocity() &&
          (tested.late > 0ms || tested.follower == Follower::host_death ||
           tested.stop == Stop::host_death);
 }
 /// The motor swings beyond the last target by what it cannot brake, once it has begun to.
 inline double swingOf(const Mover& mover) {
-  const Mechanics mechanics = mechanicsOf(mover.drive);
-  return mover.speed * mover.speed / (2.0 * mechanics.hardest) + mover.speed * mechanics.lag_s;
+  const Mechanics& mechanics = mechanicsOf(mover.drive);
+  return mover.speed * mover.speed / (2.0 * mechanics.hardest()) + mover.speed * mechanics.lag_s;
+}
+
+/// The speed that one set-point gives it is braked by its own ramp.
+inline double stepOf(const Mover& mover) {
+  const Mechanics& mechanics = mechanicsOf(mover.drive);
+  const double reached = mover.speed * (1.0 - std::exp(-kCycleS / mechanics.lag_s));
+  return mover.speed * kCycleS +
+         std::max(swingOf(mover), reached * reached / (4.0 * mechanics.acceleration));
+}
+/// The first set-point after a gap is compared with feedback from before it: by so much the
+/// driver's own position loop may turn faster (`gain` of the profile, 1/s).
+inline double hurryOf(const Mover& mover) {
+  constexpr double kGain = 10.0;
+  return mover.byVelocity() ? kGain * mover.speed * kReactionS : 0.0;
 }
 
 /// With what follows.
@@ -130,12 +169,20 @@ inline Bound boundOf(const Case& tested, const Trace& trace) {
   if (tested.follower == Follower::host_death) {
     orElse(boundOf(Stop::host_death, mover, late + after));
   }
-  if (tested.follower == Follower::restart) orElse(boundOf(Stop::quick_stop, mover, after));
-  if (starved(tested)) bound.time += 2.0 * mover.speed / mechanicsOf(mover.drive).hardest;
+  const StopDrive& drive = stopDrive(mover.drive);
+  if (tested.follower == Follower::fault && drive.braked_fault == nullptr) {
+    orElse(boundOf(Stop::coasting_fault, mover, late + after));
+  }
+  if (tested.follower == Follower::restart) {
+    orElse(boundOf(Stop::quick_stop, mover, after));
+    bound.time += after + 2 * kCycleS;  // the first SYNC of the new process, and its set-point
+  }
+  if (tested.late > 0ms) bound.speed += hurryOf(mover);
+  if (starved(tested)) bound.time += 2.0 * mover.speed / mechanicsOf(mover.drive).hardest();
   if (!trace.taken) return bound;
   if (mover.motion == Motion::stream || mover.motion == Motion::goal) {
     const double way = *trace.taken - trace.samples.front().position;
-    const Mechanics mechanics = mechanicsOf(mover.drive);
+    const Mechanics& mechanics = mechanicsOf(mover.drive);
     bound.distance = std::max(bound.distance, way + 0.002);
     bound.speed = 1.02 * mechanics.velocity;
     bound.time += way / mover.speed + mover.speed / mechanics.acceleration + after;
@@ -143,6 +190,16 @@ inline Bound boundOf(const Case& tested, const Trace& trace) {
     bound = boundOf(tested.stop, mover, late + after);
   }
   return bound;
+}
+
+/// What follows may take the power away from a motor that turns.
+inline bool mayCoast(const Case& tested) {
+  const StopDrive& drive = stopDrive(tested.mover->drive);
+  const bool orphan = tested.stop == Stop::host_death || tested.follower == Follower::host_death ||
+                      toSeconds(tested.late) > kMasterLostS;
+  return tested.stop == Stop::coasting_fault ||
+         (tested.follower == Follower::fault && drive.braked_fault == nullptr) ||
+         (orphan && drive.orphaned == Orphaned::coasts);
 }
 
 struct Verdict {
@@ -177,7 +234,7 @@ inline Verdict judge(const Case& tested, const Trace& trace) {
   const auto find = [&](std::string what) { verdict.findings.push_back(std::move(what)); };
   const Mover& mover = *tested.mover;
   const double swing = kTolerance + (starved(tested) ? swingOf(mover) : 0.0);
-  const double step = 2 * kTolerance + (starved(tested) ? mover.speed * kCycleS + swing : 0.0);
+  const double step = 2 * kTolerance + (starved(tested) ? kTolerance + stepOf(mover) : 0.0);
   const double from = trace.samples.front().position;
   double furthest = from, back = 0.0, fastest = 0.0, stood = 0.0, again = 0.0;
   std::size_t quiet = 0, last = 0;
@@ -189,7 +246,7 @@ inline Verdict judge(const Case& tested, const Trace& trace) {
     fastest = std::max(fastest, std::fabs(velocity));
     const bool still = std::fabs(velocity) <= kRest;
     const bool switched = i > 0 && power != trace.samples[i - 1].power;
-    if (switched && std::fabs(velocity) > kSlow && (power || tested.stop != Stop::coasting_fault)) {
+    if (switched && std::fabs(velocity) > kSlow && (power || !mayCoast(tested))) {
       find(std::string(power ? "gets" : "loses") + " power at " + number(velocity) + " rad/s");
     }
     if (!still) last = i + 1;

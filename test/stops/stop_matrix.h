@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "stops/stop_drives.h"
 #include "system/robot_fixture.h"
 
 namespace cia402::stops {
@@ -68,7 +69,8 @@ enum class Motion { stream, velocity, goal, effort };
 struct Mover {
   std::string drive, mode;
   Motion motion = Motion::stream;
-  bool coasts = false;     ///< command_timeout_action
+  bool coasts = false;                                                ///< command_timeout_action
+  bool byVelocity() const { return mode == "position_by_velocity"; }  ///< the driver's loop
   double set_point = 0.0;  ///< rad/s of a stream or a velocity, rad of a goal, N m
   double speed = 0.0;      ///< rad/s that it runs at, when it is stopped
   std::string other_mode;  ///< for set_mode
@@ -78,67 +80,84 @@ struct Mover {
 constexpr Duration kCycle = 4ms;
 constexpr Duration kCommandTimeout = 60ms;
 
-/// What the robots below are made of, rad and s.
-struct Mechanics {
-  double velocity, acceleration;  ///< limits of the axis
-  double lag_s;                   ///< of the motor behind its demand
-  double friction;                ///< rad/s², that a coasting motor loses
-  double hardest;                 ///< rad/s², with which the effort limit can brake it
-};
-
-/// `motor` and `units` of config/simulated_drives: friction × rated_acceleration turns/s².
-inline Mechanics mechanicsOf(const std::string& drive) {
-  constexpr double kTurn = 6.283185307179586;
-  if (drive == "damiao_dm") return {2.0, 15.0, 0.005, 0.02 * 400.0 * kTurn, 150.0};
-  constexpr double kRated = 300.0 * kTurn / 100.0;  // rad/s² by the rated 64 N m
-  return {1.5, 6.0, 0.004, 0.05 * kRated, 120.0 / 64.0 * kRated};
-}
-
 inline std::string yamlOf(const Mover& mover) {
-  const bool damiao = mover.drive == "damiao_dm";
+  const campaign::Family& family = campaign::family(mover.drive);
+  const StopDrive& drive = stopDrive(mover.drive);
   std::string yaml =
       "bus: {interface: sim, bitrate: 1000000, sync_period: 0.004, heartbeat: 0.1}\n"
       "axes:\n"
       "  joint: {node_id: 1, command_timeout: 0.06, drive: " +
       mover.drive + ", mode: " + mover.mode + ", modes: [" + mover.mode + ", " + mover.other_mode +
-      "],\n";
+      "],\n" + family.options;
+  if (!family.writes.empty()) yaml += "    write: [" + family.writes + "],\n";
   if (mover.coasts) yaml += "    command_timeout_action: coast,\n";
-  if (damiao) {
+  if (drive.float_numbers) {
     return yaml +
            "    homing: {required: false}, simulation: {time_constant: 0.005},\n"
            "    limits: {lower: -2.0, upper: 2.0, velocity: 2.0, acceleration: 15.0, jerk: 150.0,\n"
            "             effort: 5.0}}\n";
   }
-  return yaml +
-         "    counts_per_turn: 131072, gear_ratio: 100.0, rated_torque: 0.64,\n"
-         "    homing: {method: 37, required: false, search_velocity: 0.1, zero_velocity: 0.1,\n"
+  const std::string declares = family.declares.empty() ? "37" : family.declares;
+  return yaml + "    counts_per_turn: " + std::to_string(static_cast<long>(family.counts.back())) +
+         ", gear_ratio: " + std::to_string(drive.mechanics.gear) +
+         ", rated_torque: " + std::to_string(family.rated_torque) +
+         ",\n"
+         "    homing: {method: " +
+         declares +
+         ", required: false, search_velocity: 0.1, zero_velocity: 0.1,\n"
          "             acceleration: 1.0}, simulation: {time_constant: 0.004},\n"
          "    limits: {lower: -2.5, upper: 2.5, velocity: 1.5, acceleration: 6.0, jerk: 60.0,\n"
-         "             effort: 120.0}}\n";
+         "             effort: " +
+         drive.effort_limit + "}}\n";
 }
 
+/// Efforts accelerate a joint by 0.7 to 1.1 rad/s², but for the Damiao's.
 inline std::vector<Mover> movers() {
-  const std::string g = "generic_cia402", d = "damiao_dm";
+  const std::string g = "generic_cia402", d = "damiao_dm", s = "sv660c", n = "nimotion_stepper",
+                    i = "id286_cnfa", m = "megmeet_dm5";
   const std::string csp = "cyclic_position", csv = "cyclic_velocity", pv = "profile_velocity";
+  const std::string ip = "interpolated_position", pp = "profile_position", pt = "profile_torque";
   return {
       {g, csp, Motion::stream, false, 1.2, 1.2, pv},
       {g, csv, Motion::velocity, false, 1.2, 1.2, pv},
-      {g, "interpolated_position", Motion::stream, false, 1.2, 1.2, pv},
-      {g, "profile_position", Motion::goal, false, 1.8, 1.5, pv},
+      {g, ip, Motion::stream, false, 1.2, 1.2, pv},
+      {g, pp, Motion::goal, false, 1.8, 1.5, pv},
       {g, "velocity", Motion::velocity, false, 1.2, 1.2, csp},
       {g, pv, Motion::velocity, false, 1.2, 1.2, csp},
-      {g, "profile_torque", Motion::effort, false, 6.0, 0.5, csp},
+      {g, pt, Motion::effort, false, 6.0, 0.5, csp},
       {g, "cyclic_torque", Motion::effort, false, 6.0, 0.5, csp},
       {g, "cyclic_torque", Motion::effort, true, 6.0, 0.5, csp},
       {d, csp, Motion::stream, false, 1.6, 1.6, pv},
       {d, csv, Motion::velocity, false, 1.6, 1.6, csp},
-      {d, "profile_position", Motion::goal, false, 1.8, 2.0, pv},
+      {d, pp, Motion::goal, false, 1.8, 2.0, pv},
       {d, "position_velocity", Motion::goal, false, 1.8, 2.0, pv},
       {d, "position_velocity_torque", Motion::goal, false, 1.8, 2.0, pv},
       {d, pv, Motion::velocity, false, 1.6, 1.6, csp},
       {d, "velocity_torque", Motion::velocity, false, 1.6, 1.6, csp},
-      {d, "profile_torque", Motion::effort, false, 0.2, 2.0, csp},
-      {d, "profile_torque", Motion::effort, true, 0.2, 2.0, csp},
+      {d, pt, Motion::effort, false, 0.2, 2.0, csp},
+      {d, pt, Motion::effort, true, 0.2, 2.0, csp},
+      {s, ip, Motion::stream, false, 1.2, 1.2, pv},
+      {s, pp, Motion::goal, false, 1.8, 1.5, pv},
+      {s, pv, Motion::velocity, false, 1.2, 1.2, ip},
+      {s, csv, Motion::velocity, false, 1.2, 1.2, ip},
+      {s, pt, Motion::effort, false, 10.0, 0.5, ip},
+      {n, csp, Motion::stream, false, 1.2, 1.2, pv},
+      {n, ip, Motion::stream, false, 1.2, 1.2, pv},
+      {n, pp, Motion::goal, false, 1.8, 1.5, pv},
+      {n, "velocity", Motion::velocity, false, 1.2, 1.2, csp},
+      {n, pv, Motion::velocity, false, 1.2, 1.2, csp},
+      {n, csv, Motion::velocity, false, 1.2, 1.2, csp},
+      {i, "position_by_velocity", Motion::stream, false, 1.2, 1.2, pp},
+      {i, pp, Motion::goal, false, 1.8, 1.5, pv},
+      {i, pv, Motion::velocity, false, 1.2, 1.2, pp},
+      {i, csv, Motion::velocity, false, 1.2, 1.2, pp},
+      {i, pt, Motion::effort, false, 12.7, 0.5, pp},
+      {m, csp, Motion::stream, false, 1.2, 1.2, pv},
+      {m, pp, Motion::goal, false, 1.8, 1.5, pv},
+      {m, pv, Motion::velocity, false, 1.2, 1.2, csp},
+      {m, csv, Motion::velocity, false, 1.2, 1.2, csp},
+      {m, pt, Motion::effort, false, 5.08, 0.5, csp},
+      {m, "cyclic_torque", Motion::effort, false, 5.08, 0.5, csp},
   };
 }
 
@@ -170,9 +189,18 @@ inline std::string text(const Case& tested) {
   return text;
 }
 
+/// It turns on for ever without a master: only those stop that follow positions.
+inline bool goesOnAlone(const Mover& mover) {
+  const bool follows = mover.motion == Motion::stream && !mover.byVelocity();
+  return stopDrive(mover.drive).orphaned == Orphaned::goes_on && !follows &&
+         mover.motion != Motion::goal;
+}
+
 /// Whether the stop means anything there.
 inline bool applies(Stop stop, const Mover& mover) {
   if (stop == Stop::end_of_stream) return mover.motion != Motion::goal;
+  if (stop == Stop::fault && stopDrive(mover.drive).braked_fault == nullptr) return false;
+  if (stop == Stop::host_death && goesOnAlone(mover)) return false;
   return !mover.coasts;
 }
 
@@ -196,6 +224,7 @@ inline std::vector<Case> casesOf(Stop stop, const Mover& mover, bool whole) {
     const auto follower = static_cast<Follower>(i);
     const bool restarts = follower == Follower::restart;
     if (restarts != (stop == Stop::host_death)) continue;  // nobody is there to be called
+    if (follower == Follower::host_death && goesOnAlone(mover)) continue;
     add(follower, 3ms, {1ms, 7ms});
     add(follower, 8ms, {4ms, 10ms});
   }

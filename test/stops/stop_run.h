@@ -73,7 +73,7 @@ class Play {
   bool begin() {
     world_.powerOn();
     host_.start();
-    const bool ready = until([this] { return booted(); }, 4s);
+    const bool ready = until([this] { return booted(); }, 12s);
     if (!ready) return fail("does not boot");
     const auto enabled = call(drive::ProcedureKind::enable, {});
     if (!until([&] { return enabled->has_value(); }, 4s)) return fail("enable is not answered");
@@ -148,10 +148,10 @@ class Play {
         (void)call(drive::ProcedureKind::set_mode, case_.mover->other_mode);
         break;
       case Stop::fault:
-        inject("following_error");
+        inject(drive().braked_fault);
         break;
       case Stop::coasting_fault:
-        inject("encoder");
+        inject(drive().coasting_fault);
         break;
       case Stop::shutdown:
         host_.stop();
@@ -199,7 +199,7 @@ class Play {
         giveAnother();
         break;
       case Follower::fault:
-        inject("following_error");
+        inject(drive().braked_fault != nullptr ? drive().braked_fault : drive().coasting_fault);
         break;
       case Follower::shutdown:
         if (host_.running()) host_.stop();
@@ -239,6 +239,7 @@ class Play {
     host_.post(bus::Command(bus::ProcedureCommand{"joint", request}, reply));
     return answer;
   }
+  const StopDrive& drive() const { return stopDrive(case_.mover->drive); }
   void inject(const char* fault) {
     const auto done = world_.drive(0).inject(fault, host_.now());
     if (!done) trace_.problem = done.error().message;

@@ -289,5 +289,27 @@ TEST(Id286HomeOffset, IsReadBackAndAWrongSignToldInsteadOfAWrongZero) {
   }
 }
 
+// Bit 8 brakes by 6084h, where the modes that follow a stream leave ten times the limit.
+TEST(Id286Homing, IsHaltedByTheAccelerationLimitWhateverTheModeBefore) {
+  FamilyScene scene(familyJoint({kId286Cnfa, "10000", "position_by_velocity"},
+                                ", homing: {method: 17, search_velocity: 0.6, zero_velocity: 0.05,"
+                                " acceleration: 4.0}"));
+  const auto home = scene.begin(ProcedureKind::home, "joint");
+  ASSERT_TRUE(scene.runUntil([&] { return scene.velocity("joint") < -0.59; }, 2s)) << scene.told();
+  scene.run(100ms);
+  std::vector<double> speeds;
+  scene.watch([&] { speeds.push_back(std::fabs(scene.velocity("joint"))); });
+  scene.mustSucceed(ProcedureKind::halt);
+  scene.watch({});
+  double hardest = 0.0;  // over 20 ms
+  for (std::size_t i = 20; i < speeds.size(); ++i) {
+    hardest = std::max(hardest, (speeds[i - 20] - speeds[i]) / 0.020);
+  }
+  EXPECT_GT(hardest, 0.8 * 4.0);
+  EXPECT_LT(hardest, 1.1 * 4.0);
+  ASSERT_TRUE(home->has_value());
+  EXPECT_FALSE((*home)->success);
+}
+
 }  // namespace
 }  // namespace cia402

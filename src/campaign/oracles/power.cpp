@@ -17,7 +17,7 @@ class Power final : public Oracle {
       const AxisTruth& truth = view.truths[i];
       const AxisFacts& facts = view.stage.axes()[i];
       const bool fast = std::fabs(truth.velocity) > 0.05 * facts.velocity + 0.005;
-      if (fast && before_[i] && !truth.power && view.now >= view.conditions.axes[i].may_coast) {
+      if (fast && before_[i] && !truth.power && !mayCoast(view, i)) {
         report(view, i, "lost its power at " + number(truth.velocity) + " per s and coasts");
       }
       if (fast && !before_[i] && truth.power) {
@@ -28,6 +28,16 @@ class Power final : public Oracle {
   }
 
  private:
+  /// Some drives let the motor go where they miss their master or SYNC, or at a limit switch.
+  static bool mayCoast(const View& view, std::size_t i) {
+    const AxisTruth& truth = view.truths[i];
+    const AxisFacts& facts = view.stage.axes()[i];
+    if (view.now < view.conditions.axes[i].may_coast) return true;
+    if (!truth.faulted()) return false;
+    return (facts.loss_coasts && !view.conditions.quiet(i, view.now)) ||
+           (facts.limit_coasts && truth.at_switch);
+  }
+
   std::vector<bool> before_;
 };
 

@@ -138,7 +138,8 @@ void DriveCore::superviseMotion() {
   const auto act = [this](const LimitReports::Due& due) {
     if (due.end != nullptr && faults_.endWarning(*due.end)) clearErrors();
     if (due.end != nullptr) updateStatusword();
-    if (due.raise != nullptr) raise(*due.raise);
+    const bool told = due.raise != nullptr && due.raise->warning && faults_.stands(*due.raise);
+    if (due.raise != nullptr && !told) raise(*due.raise);
   };
   const bool beyond = limits.positionHit();
   act(limits_told_.positions.look(

@@ -61,6 +61,11 @@ bool FaultMemory::endByThemselves() const {
   });
 }
 
+bool FaultMemory::stands(const FaultDefinition& fault) const {
+  return std::any_of(causes_.begin(), causes_.end(),
+                     [&fault](const Cause& cause) { return cause.fault->name == fault.name; });
+}
+
 bool FaultMemory::endWarning(const FaultDefinition& warning) {
   const auto over = [&warning](const Cause& cause) {
     return cause.fault->warning && cause.fault->name == warning.name;

@@ -33,6 +33,8 @@ class FaultMemory {
   void endCauses(Time now);
   /// There are errors, and the drive resets each of them by itself.
   bool endByThemselves() const;
+  /// Whether it is among those that have not been cleared.
+  bool stands(const FaultDefinition& fault) const;
   /// One warning is over. @return true if no error is left
   bool endWarning(const FaultDefinition& warning);
   /// Warnings last as long as what they warn of. @return true if no error is left.
