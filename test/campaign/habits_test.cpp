@@ -48,11 +48,11 @@ TEST(ProfileKeys, AreOnTopOfTheProfileOfTheirAxisAlone) {
       cia402::test::configFolder());
   ASSERT_TRUE(loaded) << loaded.error().message;
   const drive::DriveProfile& own = *loaded->robot.axes[0].profile;
-  EXPECT_EQ(own.fault_reset_tries, 7);
+  EXPECT_EQ(own.fault_reset.tries, 7);
   const canopen::DeviceProfile& device = *loaded->robot.devices[0].profile;
   EXPECT_EQ(device.sdo.timeout, std::chrono::milliseconds(700));
   EXPECT_EQ(device.boot_time, std::chrono::seconds(5)) << "beside it the keys stay";
-  EXPECT_EQ(loaded->robot.axes[1].profile->fault_reset_tries, 1);
+  EXPECT_EQ(loaded->robot.axes[1].profile->fault_reset.tries, 1);
 }
 
 TEST(ProfileKeys, AreTakenAwayByANull) {

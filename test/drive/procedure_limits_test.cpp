@@ -45,7 +45,7 @@ constexpr Waits kProcedures[] = {
 
 DriveProfile slowProfile() {
   DriveProfile profile = testProfile();
-  profile.fault_reset_tries = 2;
+  profile.fault_reset.tries = 2;
   NamedWrite option;
   option.object = "quick_stop_option";
   option.raw = 2;
@@ -156,12 +156,12 @@ TEST(ProcedureLimits, AModeThatIsCommandedAgainByADetourTakesItTwice) {
 TEST(ProcedureLimits, AResetBehindNmtStopIsOneTryMore) {
   DriveProfile stopped = slowProfile();
   const Duration without = limitOf(ProcedureKind::clear_faults, stopped);
-  stopped.fault_reset_pause = 100ms;
+  stopped.fault_reset.pause = 100ms;
   const Duration once = limitOf(ProcedureKind::clear_faults, stopped);
   EXPECT_GT(once, without);
-  stopped.fault_reset_tries = 3;
+  stopped.fault_reset.tries = 3;
   const Duration tried = limitOf(ProcedureKind::clear_faults, stopped) - once;
-  stopped.fault_reset_pause = Duration::zero();
+  stopped.fault_reset.pause = Duration::zero();
   EXPECT_EQ(limitOf(ProcedureKind::clear_faults, stopped) - without, tried) << "of one try";
   EXPECT_GE(once, without + tried + 100ms);
 }
@@ -169,7 +169,7 @@ TEST(ProcedureLimits, AResetBehindNmtStopIsOneTryMore) {
 TEST(ProcedureLimits, AHistoryThatIsClearedBeforeAResetTakesATransfer) {
   DriveProfile clears = slowProfile();
   const Duration without = limitOf(ProcedureKind::clear_faults, clears);
-  clears.fault_reset_clears_history = true;
+  clears.fault_reset.clears_history = true;
   EXPECT_EQ(limitOf(ProcedureKind::clear_faults, clears), without + slowDevice().access.timeout);
 }
 

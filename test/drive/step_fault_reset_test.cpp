@@ -17,8 +17,8 @@ using namespace std::chrono_literals;
 
 AxisConfig withTries(int tries, Duration nmt_stop = Duration::zero()) {
   DriveProfile profile = testProfile();
-  profile.fault_reset_tries = tries;
-  profile.fault_reset_pause = nmt_stop;
+  profile.fault_reset.tries = tries;
+  profile.fault_reset.pause = nmt_stop;
   return testConfig(profile);
 }
 
@@ -160,7 +160,7 @@ TEST(FaultResetStep, ClearsTheErrorHistoryFirstWhereTheProfileSaysSo) {
   for (const bool refused : {false, true}) {
     SCOPED_TRACE(refused);
     DriveProfile profile = testProfile();
-    profile.fault_reset_clears_history = true;
+    profile.fault_reset.clears_history = true;
     FaultedBench world(testConfig(profile));
     if (refused) world.drive.aborts[{0x1003, 0}] = 0x06090030;
     world.drive.writes.clear();

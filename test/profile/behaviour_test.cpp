@@ -129,9 +129,9 @@ TEST(ProfileBehaviour, AModeThatBrakesMustBeReachableWhileEnabled) {
 
 TEST(ProfileBehaviour, AFaultResetMayNeedAnEmptyHistoryAndAResetMayBeForbidden) {
   const WholeProfile plain = profileWith("");
-  EXPECT_FALSE(plain.fault_reset_clears_history);
+  EXPECT_FALSE(plain.fault_reset.clears_history);
   EXPECT_TRUE(plain.nmt_reset_node);
-  EXPECT_TRUE(profileWith("fault_reset_clears_history: true").fault_reset_clears_history);
+  EXPECT_TRUE(profileWith("fault_reset_clears_history: true").fault_reset.clears_history);
   EXPECT_FALSE(profileWith("nmt_reset_node: false").nmt_reset_node);
   EXPECT_FALSE(profileWith("nmt_reset_node: false").nmt_reset_does_nothing);
   const WholeProfile in_vain = profileWith("nmt_reset_node: does_nothing");

@@ -58,7 +58,7 @@ TEST(OpenQuestions, AreReadFromAProfile) {
   EXPECT_NE(family.drive.doubtful.find({0x2005, 200}), nullptr);
   EXPECT_NE(family.drive.after_power.find({0x2001, 0x11}), nullptr);
   EXPECT_EQ(family.drive.after_power.find({0x2001, 0x12}), nullptr);
-  EXPECT_EQ(family.drive.fault_reset_object, "clear");
+  EXPECT_EQ(family.drive.fault_reset.object, "clear");
   EXPECT_TRUE(family.drive.reads_back);
   EXPECT_TRUE(family.device.sync_starts);
   EXPECT_EQ(family.drive.find("position_actual")->doubt, "printed twice");
@@ -80,7 +80,7 @@ TEST(OpenQuestions, AreNoneWithoutTheseKeys) {
   EXPECT_EQ(family.device.half_float_encoding, Encoding::bfloat16);
   EXPECT_TRUE(family.drive.doubtful.empty());
   EXPECT_TRUE(family.drive.after_power.empty());
-  EXPECT_EQ(family.drive.fault_reset_object, "");
+  EXPECT_EQ(family.drive.fault_reset.object, "");
   EXPECT_FALSE(family.drive.reads_back);
   EXPECT_FALSE(family.device.sync_starts);
 }

@@ -169,8 +169,8 @@ TEST_F(ProfileKeys, BehaviourIsAsWritten) {
   EXPECT_THAT(profile.parameters.restore, ElementsAre(4));
   EXPECT_EQ(profile.parameters.timeout, milliseconds(4500));
   EXPECT_TRUE(profile.parameters.power_cycle_after_save);
-  EXPECT_EQ(profile.fault_reset_tries, 4);
-  EXPECT_EQ(profile.fault_reset_pause, milliseconds(150));
+  EXPECT_EQ(profile.fault_reset.tries, 4);
+  EXPECT_EQ(profile.fault_reset.pause, milliseconds(150));
 }
 
 TEST_F(ProfileKeys, WritesAreAsWritten) {
@@ -295,8 +295,8 @@ TEST(ProfileDefaults, AreThoseOfTheStandards) {
                device.cob_ids_of_node || device.rpdo_deadline);
   EXPECT_TRUE(device.remote_requests);
   EXPECT_EQ(device.error_control_min, Duration::zero());
-  EXPECT_EQ(profile.fault_reset_tries, 1);
-  EXPECT_EQ(profile.fault_reset_pause, Duration::zero());
+  EXPECT_EQ(profile.fault_reset.tries, 1);
+  EXPECT_EQ(profile.fault_reset.pause, Duration::zero());
   EXPECT_FALSE(profile.parameters.power_cycle_after_save);
   EXPECT_TRUE(profile.homing.methods.empty());
   EXPECT_FALSE(profile.mode("csp")->cyclic);

@@ -206,12 +206,12 @@ void readBehaviour(yaml::Section& section, DriveProfile& profile) {
   section.read("warning_stops", profile.warning_stops);
   readStatusWords(section, profile);
   readModeChange(section, profile);
-  section.readInteger("fault_reset_tries", profile.fault_reset_tries, 1, 20);
+  section.readInteger("fault_reset_tries", profile.fault_reset.tries, 1, 20);
   readDuration(section, "fault_reset_nmt_stop", yaml::Range{0.0, 10.0, false},
-               profile.fault_reset_pause);
-  section.read("fault_reset_clears_history", profile.fault_reset_clears_history);
+               profile.fault_reset.pause);
+  section.read("fault_reset_clears_history", profile.fault_reset.clears_history);
   if (const auto object = section.get("fault_reset_object")) {
-    profile.fault_reset_object = readWritable(*object, profile);
+    profile.fault_reset.object = readWritable(*object, profile);
   }
   section.read("reads_back", profile.reads_back);
   section.read("absent_settings_pass", profile.absent_settings_pass);

@@ -81,11 +81,11 @@ struct Steps {
   Duration reset() const {
     const Duration once = timing.transition(14) + timing.transition(15) + 3 * timing.state_change +
                           FaultResetStep::kInterval + FaultResetStep::kWatch;
-    const Duration clearing = profile.fault_reset_clears_history ? transfer() : Duration(0);
-    if (profile.fault_reset_pause == Duration::zero()) {
-      return clearing + profile.fault_reset_tries * once;
+    const Duration clearing = profile.fault_reset.clears_history ? transfer() : Duration(0);
+    if (profile.fault_reset.pause == Duration::zero()) {
+      return clearing + profile.fault_reset.tries * once;
     }
-    return clearing + (profile.fault_reset_tries + 1) * once + FaultResetStep::pause(profile);
+    return clearing + (profile.fault_reset.tries + 1) * once + FaultResetStep::pause(profile);
   }
   Duration boot() const { return kBootTimes * device.boot; }
   Duration declare() const { return 2 * kStanding + 2 * limits(); }

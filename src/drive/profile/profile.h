@@ -14,6 +14,7 @@
 #include "drive/profile/bus_settings.h"
 #include "drive/profile/disabling.h"
 #include "drive/profile/error_texts.h"
+#include "drive/profile/fault_reset.h"
 #include "drive/profile/handover.h"
 #include "drive/profile/io.h"
 #include "drive/profile/number_texts.h"
@@ -271,14 +272,8 @@ struct DriveProfile {
   bool halt_supported = true;
   Disabling disabling;
   ModeChange mode_change;
-  int fault_reset_tries = 1;  ///< edges of controlword bit 7 that it may take, 1 to 20
-  /// Where these did not help the device is taken out of operation for so long, and resets once
-  /// more; 0: it is not.
-  Duration fault_reset_pause{0};
-  /// An object that takes faults away where these did not, by a 1; empty: there is none.
-  std::string fault_reset_object;
-  bool reads_back = false;                  ///< what is written is read again and compared
-  bool fault_reset_clears_history = false;  ///< 1003h:00 = 0 is written before a fault reset
+  FaultReset fault_reset;
+  bool reads_back = false;  ///< what is written is read again and compared
   StatusWords status_words;
   bool has_warning_bit = true;            ///< statusword bit 7 is a warning
   bool warning_stops = false;             ///< a warning makes the drive stop like a fault

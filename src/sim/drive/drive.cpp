@@ -10,35 +10,17 @@
 
 #include "sim/definition/drive_definition.h"
 #include "sim/dictionary/axis_objects.h"
-#include "sim/drive/absolute_encoder.h"
 #include "sim/drive/build_dictionary.h"
-#include "sim/drive/core.h"
+#include "sim/drive/drive_axis.h"
 #include "sim/drive/emergency_sender.h"
 #include "sim/drive/gate.h"
 #include "sim/drive/parameter_store.h"
-#include "sim/drive/terminals.h"
 
 namespace cia402::sim {
 namespace {
 
 constexpr Duration kPowerCycle = std::chrono::milliseconds(500);
 constexpr Duration kSoftwareReset = std::chrono::milliseconds(10);  // the write is answered before
-
-/// One axis of the device.
-struct Axis {
-  Axis(const DriveDefinition& definition, unsigned number, const AxisMechanics& axis_mechanics,
-       ObjectDictionary& dictionary, DriveCore::Reports& reports)
-      : mechanics(axis_mechanics),
-        core(definition, number, mechanics, dictionary, reports),
-        terminals(definition.terminals, dictionary),
-        encoder(definition, dictionary, core) {}
-
-  AxisMechanics mechanics;
-  DriveCore core;
-  Terminals terminals;
-  AbsoluteEncoder encoder;
-  unsigned bad_floats = 0;
-};
 
 }  // namespace
 
@@ -80,7 +62,9 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
     }
   }
 
-  Axis& axisWith(const Entry& entry) { return axes[axisOf(entry.id, definition->axisCount())]; }
+  DriveAxis& axisWith(const Entry& entry) {
+    return axes[axisOf(entry.id, definition->axisCount())];
+  }
 
   std::optional<Role> roleOf(const Entry& entry) const {
     const ObjectId id = ofFirstAxis(entry.id, definition->axisCount());
@@ -103,7 +87,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
   std::uint32_t refuseWrite(const Entry& entry, std::uint64_t number) {
     if (entry.id.index >= kFirstAxisObject) return axisWith(entry).core.refuseWrite(entry, number);
     std::uint32_t refused = 0;
-    for (const Axis& axis : axes) {
+    for (const DriveAxis& axis : axes) {
       if (refused == 0) refused = axis.core.refuseWrite(entry, number);
     }
     if (refused == 0) store.keep(entry, number);
@@ -111,7 +95,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
   }
 
   void written(const Entry& entry, std::optional<Role> role, Encoding encoding) {
-    Axis& axis = axisWith(entry);
+    DriveAxis& axis = axisWith(entry);
     if (encoding != Encoding::integer && badFloat(decodeNumber(entry, encoding))) {
       ++axis.bad_floats;
       axis.core.onNonFinite();
@@ -146,16 +130,16 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
   /// Calls a method of every axis.
   template <typename Method, typename... Arguments>
   void forEach(Method method, Arguments... arguments) {
-    for (Axis& axis : axes) (axis.core.*method)(arguments...);
+    for (DriveAxis& axis : axes) (axis.core.*method)(arguments...);
   }
 
   bool enabled() const {
     return std::any_of(axes.begin(), axes.end(),
-                       [](const Axis& axis) { return axis.core.enabled(); });
+                       [](const DriveAxis& axis) { return axis.core.enabled(); });
   }
   std::uint8_t errorRegister() const {
     unsigned bits = 0;
-    for (const Axis& axis : axes) bits |= axis.core.faults().errorRegister();
+    for (const DriveAxis& axis : axes) bits |= axis.core.faults().errorRegister();
     return static_cast<std::uint8_t>(bits);
   }
 
@@ -163,10 +147,10 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
   void onPowerOn(Time time) override {
     now = time;
     heard = false;
-    for (Axis& axis : axes) axis.terminals.start(axis.core);
+    for (DriveAxis& axis : axes) axis.terminals.start(axis.core);
     forEach(&DriveCore::start, cold, time);
     if (cold) gate.foreign = store.silent();
-    for (Axis& axis : axes) axis.encoder.start(cold);
+    for (DriveAxis& axis : axes) axis.encoder.start(cold);
     cold = false;
   }
   std::optional<canopen::NodeId> ownNodeId() const override {
@@ -189,7 +173,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
   void onMasterLost(Time) override { forEach(&DriveCore::onMasterLost); }
   bool hasFault() const override {
     return std::any_of(axes.begin(), axes.end(),
-                       [](const Axis& axis) { return !axis.core.faults().empty(); });
+                       [](const DriveAxis& axis) { return !axis.core.faults().empty(); });
   }
 
   // DriveCore::Reports: one EMCY channel and one 1001h for all axes.
@@ -213,7 +197,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
       device.powerOn(at);
     }
     forEach(&DriveCore::advance, now);
-    for (Axis& axis : axes) axis.encoder.look();
+    for (DriveAxis& axis : axes) axis.encoder.look();
   }
 
   // Another drive of the same kind takes this one's place: other serial number, as from the
@@ -255,7 +239,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
   Gate gate;
   Device device;
   EmergencySender emergencies;
-  std::deque<Axis> axes;
+  std::deque<DriveAxis> axes;
   ParameterStore store;
   Time now{};
   std::optional<Time> restart_at;
@@ -305,7 +289,7 @@ void Drive::tick(Time now) {
 
 Time Drive::nextEvent() const {
   Time next = std::min(impl_->device.nextEvent(), impl_->emergencies.nextEvent());
-  for (const Axis& axis : impl_->axes) next = std::min(next, axis.core.nextEvent());
+  for (const DriveAxis& axis : impl_->axes) next = std::min(next, axis.core.nextEvent());
   for (const auto& due : {impl_->restart_at, impl_->reset_at}) {
     if (due) next = std::min(next, *due);
   }
@@ -371,7 +355,7 @@ void Drive::setProbe(unsigned probe, bool active, Time now, unsigned axis) {
 
 void Drive::setInput(unsigned bit, bool active, Time now, unsigned axis) {
   impl_->bringTo(now);
-  Axis& changed = impl_->axes.at(axis);
+  DriveAxis& changed = impl_->axes.at(axis);
   changed.core.obstacle().setInput(bit, active);
   changed.core.onObstacle();
   obey(changed.terminals, changed.core, impl_->dictionary,
@@ -387,7 +371,7 @@ void Drive::setPulseWidth(double duty, Time now, unsigned axis) {
 
 DriveTruth Drive::truth(Time now, unsigned axis) {
   impl_->bringTo(now);
-  Axis& asked = impl_->axes.at(axis);
+  DriveAxis& asked = impl_->axes.at(axis);
   const DriveMotion& motion = asked.core.motion();
   DriveTruth truth;
   truth.position_turns = motion.motor().position();

@@ -7,6 +7,8 @@
 namespace cia402::sim {
 namespace {
 
+constexpr unsigned kZeroReading = 64;  // every so many readings are 0 while it homes by an object
+
 constexpr double kHard = 300.0;  // turns/s^2 where there is no 609Ah
 
 constexpr double kStopSpeed = 0.05;  // turns/s, below it a motor that pushes has come to a stop
@@ -193,6 +195,10 @@ void HomingMode::watchTime() {
   const double limit = axis_.values.get(Role::homing_time_limit, 0.0) * std::pow(10.0, unit);
   late_ = searching() && limit > 0.0 && searched_s_ > limit;
   if (late_) sequence_.stop();
+}
+
+bool HomingMode::readsNothing() {
+  return byObject() && searching() && ++readings_ % kZeroReading == 0;
 }
 
 const char* HomingMode::takeFault() {

@@ -25,6 +25,8 @@ class HomingMode {
   /// An object begins to home instead of controlword bit 4.
   bool byObject() const { return axis_.values.entry(Role::homing_start) != nullptr; }
   bool searching() const { return sequence_.phase() == HomingSequence::Phase::searching; }
+  /// The position that is shown next is 0, as some are while it homes by an object.
+  bool readsNothing();
   /// Name of a fault that this mode has come to since it was asked last, or nullptr.
   const char* takeFault();
   /// Statusword bits 10, 12 and 13 of this mode; bit 15 where an object begins it.
@@ -51,6 +53,7 @@ class HomingMode {
   bool returning_ = false;  ///< to goal_, which is home or lies the offset beyond it
   double goal_ = 0.0;       ///< true turns
   bool terminals_wrong_ = false, late_ = false, tells_failure_ = false, illogical_ = false;
+  unsigned readings_ = 0;  ///< of positions, while it homes by an object
   double searched_s_ = 0.0;
   double pushed_s_ = 0.0;  ///< against a hard stop
 };

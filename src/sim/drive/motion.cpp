@@ -9,8 +9,6 @@
 namespace cia402::sim {
 namespace {
 
-constexpr unsigned kZeroReading = 64;  // every so many readings are 0 while it homes by an object
-
 // Controlword.
 constexpr std::uint16_t kModeBit = 0x0010;  // new set-point, start of homing, ramp, interpolation
 constexpr std::uint16_t kUnlockRamp = 0x0020;
@@ -271,8 +269,7 @@ void DriveMotion::publish() {
   const double turns = axis_.motor.position();
   const double position = turns - axis_.frame;
   const double demand = axis_.demand.position - axis_.frame;
-  const bool unsure = homing_.byObject() && homing_.searching();
-  const bool nothing = unsure && ++publications_ % kZeroReading == 0;
+  const bool nothing = homing_.readsNothing();
   values.set(Role::position_actual, nothing ? 0.0 : position);
   values.set(Role::position_internal, position);
   values.set(Role::velocity_actual, parts_.watch.shown());

@@ -120,7 +120,6 @@ class DriveMotion {
   std::optional<Ramp> stop_;
   std::uint32_t inputs_ = 0;
   std::uint16_t controlword_ = 0;  ///< the last one in operation
-  unsigned publications_ = 0;      ///< while it homes by an object
 };
 
 }  // namespace cia402::sim

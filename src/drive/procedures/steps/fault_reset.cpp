@@ -11,7 +11,7 @@ namespace {
 /// What could not be tried as the device has other axes, too.
 std::string pauseLeftOut(AxisCore& axis) {
   const std::string others = axis.basis().neighbours.refusal();
-  if (others.empty() || axis.profile().fault_reset_pause == Duration::zero()) return {};
+  if (others.empty() || axis.profile().fault_reset.pause == Duration::zero()) return {};
   return std::string("; ") + axis.device().terms().stop_and_start +
          ", after which it may be cleared, was left out: " + others + ", then recover " +
          jointName(axis.config()) + " alone";
@@ -61,7 +61,7 @@ Outcome FaultResetStep::awaitReset(const Context& context) {
   if (axis.state().state == State::fault_reaction_active) return cameBack(context);
   if (clearable(axis)) {
     const bool last =
-        tries_ >= axis.profile().fault_reset_tries && !mayWrite(context) && !mayPause(context);
+        tries_ >= axis.profile().fault_reset.tries && !mayWrite(context) && !mayPause(context);
     if (waited <= (last ? axis.profile().timing.transition(15) : kInterval) || tryAgain(context)) {
       return Outcome::running();
     }
@@ -81,7 +81,7 @@ Outcome FaultResetStep::awaitReset(const Context& context) {
 /// Drives are known that need up to five (Schunk modules).
 bool FaultResetStep::tryAgain(const Context& context) {
   AxisCore& axis = context.axis;
-  const int most = axis.profile().fault_reset_tries;
+  const int most = axis.profile().fault_reset.tries;
   if (tries_ >= most && mayWrite(context)) {
     axis.control().setFaultReset(false);
     beginWrite(context);
@@ -100,14 +100,14 @@ bool FaultResetStep::tryAgain(const Context& context) {
 }
 
 bool FaultResetStep::mayWrite(const Context& context) const {
-  return !written_ && !context.axis.profile().fault_reset_object.empty();
+  return !written_ && !context.axis.profile().fault_reset.object.empty();
 }
 
 /// A drive that refuses it keeps its fault, as the edge after it shows.
 void FaultResetStep::beginWrite(const Context& context) {
   AxisCore& axis = context.axis;
   written_ = true;
-  const ObjectSpec* object = axis.profile().find(axis.profile().fault_reset_object);
+  const ObjectSpec* object = axis.profile().find(axis.profile().fault_reset.object);
   clearing_ =
       axis.device().objects().download(object->id, wireBytes(1, object->type), object->name);
   enter(Phase::clearing, context);
@@ -116,14 +116,14 @@ void FaultResetStep::beginWrite(const Context& context) {
 }
 
 bool FaultResetStep::mayPause(const Context& context) const {
-  return !paused_ && context.axis.profile().fault_reset_pause > Duration::zero() &&
+  return !paused_ && context.axis.profile().fault_reset.pause > Duration::zero() &&
          context.axis.basis().neighbours.refusal().empty();
 }
 
 void FaultResetStep::beginPause(const Context& context) {
   AxisCore& axis = context.axis;
   paused_ = true;
-  axis.device().stopAndStart(axis.profile().fault_reset_pause, context.now);
+  axis.device().stopAndStart(axis.profile().fault_reset.pause, context.now);
   enter(Phase::paused, context);
   const fieldbus::Terms& terms = axis.device().terms();
   context.show(std::string("taking the ") + terms.device + " through " + terms.stop_and_start +
@@ -132,7 +132,7 @@ void FaultResetStep::beginPause(const Context& context) {
 }
 
 Duration FaultResetStep::pause(const DriveProfile& profile) {
-  return profile.fault_reset_pause + fieldbus::Device::kStartPatience + profile.timing.state_change;
+  return profile.fault_reset.pause + fieldbus::Device::kStartPatience + profile.timing.state_change;
 }
 
 Outcome FaultResetStep::awaitPause(const Context& context) {
@@ -166,7 +166,7 @@ Outcome FaultResetStep::advance(const Context& context) {
       }
       code_ = axis.state().error_code;
       axis.setGoal(Goal::disabled);
-      if (!axis.profile().fault_reset_clears_history) return awaitReaction(context);
+      if (!axis.profile().fault_reset.clears_history) return awaitReaction(context);
       clearing_ = axis.device().objects().download({0x1003, 0}, {0}, "error history");
       enter(Phase::clearing, context);
       context.show("clearing the error history", "the drive to take 1003:00 = 0");

@@ -11,7 +11,7 @@ namespace cia402::drive {
 /// profile says so the error history is cleared before (`fault_reset_clears_history`), it is tried
 /// several times (`fault_reset_tries`), once more after a write (`fault_reset_object`), and once
 /// more after the device was taken out of operation and into it again
-/// (DriveProfile::fault_reset_pause).
+/// (FaultReset::pause).
 class FaultResetStep {
  public:
   static constexpr Duration kInterval{std::chrono::seconds(1)};
@@ -38,7 +38,7 @@ class FaultResetStep {
 
   Phase phase_ = Phase::begin;
   int tries_ = 1;         ///< begun
-  bool written_ = false;  ///< DriveProfile::fault_reset_object is
+  bool written_ = false;  ///< FaultReset::object is
   bool paused_ = false;   ///< that is behind it, or under way
   std::uint16_t code_ = 0;
   std::uint64_t frames_ = 0;

@@ -20,35 +20,6 @@ namespace {
 constexpr double kSameTorque = 0.01;  // relative: what rounding of a name plate may be off
 constexpr double kSameCounts = 1e-6;  // relative: what a reduced fraction of 32 bits may be off
 
-template <typename Value>
-bool contains(const std::vector<Value>& values, const Value& value) {
-  return std::find(values.begin(), values.end(), value) != values.end();
-}
-
-/// Has the axis given one of the objects, or said that it keeps what the drive has?
-bool isGiven(const SettingCheck& check, const AxisConfig& axis) {
-  const auto writes = [&](const std::string& name) {
-    return std::any_of(axis.writes.begin(), axis.writes.end(), [&](const NamedWrite& write) {
-      const ObjectSpec* object = findObject(*axis.profile, write.object);
-      return object != nullptr && object->name == name;
-    });
-  };
-  return std::any_of(check.objects.begin(), check.objects.end(), [&](const std::string& name) {
-    return writes(name) || contains(axis.keeps, name);
-  });
-}
-
-/// Does the check count for what the axis uses?
-bool concerns(const SettingCheck& check, const AxisConfig& axis) {
-  if (check.condition.kind == Condition::Kind::given && isGiven(check, axis)) return false;
-  const bool modes = check.modes.empty() ||
-                     std::any_of(check.modes.begin(), check.modes.end(),
-                                 [&](const auto& mode) { return contains(axis.modes, mode); });
-  const bool methods = check.methods.empty() || (axis.homing && axis.homing->method &&
-                                                 contains(check.methods, *axis.homing->method));
-  return modes && methods && isGiven(check.if_given, axis);
-}
-
 }  // namespace
 
 /// Where it stands in settings_; their number if it does not.
