@@ -86,6 +86,7 @@ Family sv660c() {
 
 Family nimotion() {
   Family family{"nimotion_stepper", 0.125};
+  family.options = "unwatched_streams: true, ";
   family.counts_sync = false;
   family.counts = {4000.0};
   family.rated_torque = 1.27;
@@ -118,7 +119,7 @@ Family id286() {
   family.strongest = 1.2;
   family.fastest = 30.0;
   family.limits_effort = false;
-  family.options = "keeps: [motor_current], ";
+  family.options = "keeps: [motor_current], unwatched_streams: true, ";
   family.writes = "{object: following_error_limit, raw: 20000}";  // two turns, at 30 turns/s
   family.modes = {{"position_by_velocity", 'p'},
                   {"profile_position", 'p'},

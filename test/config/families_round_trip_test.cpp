@@ -138,7 +138,7 @@ TEST_P(FamilyRoundTrip, OfWhatDoesNotFitIsNone) {
 INSTANTIATE_TEST_SUITE_P(All, FamilyRoundTrip,
                          testing::Values("generic_cia402", "sv660c", "nimotion_stepper",
                                          "id286_cnfa", "damiao_dm", "megmeet_dm5"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& tested) { return std::string(tested.param); });
 
 }  // namespace
 }  // namespace cia402::config

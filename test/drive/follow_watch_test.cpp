@@ -41,7 +41,7 @@ struct WatchBench {
     if (heard) standstill.update(motor, now);
     if (target) sent.give(*target);
     sent.advance(now);
-    return watch.watch({sent, standstill, state, has_bit, bit, held}, now);
+    return watch.watch({sent, standstill, state, has_bit, bit, held, false}, now);
   }
   void stand(Duration duration) {
     for (const Time end = now + duration; now < end;) {

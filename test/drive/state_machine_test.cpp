@@ -193,15 +193,15 @@ TEST(StateMachine, NoGoalEverSetsFaultResetOrHalt) {
 }
 
 TEST(StateMachine, IsLeftByTheTransitionsThatAreAskedFor) {
-  struct Row {
+  struct Way {
     Disabling by;
     std::vector<int> transitions;
     int operation, switched_on;
     std::uint16_t word, next;
   };
-  for (const Row& row :
-       {Row{{5, 10}, {5, 10}, 5, 10, 0x0007, 0x0000}, Row{{5, 6}, {5, 6, 7}, 5, 6, 0x0007, 0x0006},
-        Row{{8, 10}, {8, 7}, 8, 10, 0x0006, 0x0000}, Row{{9, 10}, {9}, 9, 10, 0x0000, 0x0000}}) {
+  for (const Way& row :
+       {Way{{5, 10}, {5, 10}, 5, 10, 0x0007, 0x0000}, Way{{5, 6}, {5, 6, 7}, 5, 6, 0x0007, 0x0006},
+        Way{{8, 10}, {8, 7}, 8, 10, 0x0006, 0x0000}, Way{{9, 10}, {9}, 9, 10, 0x0000, 0x0000}}) {
     EXPECT_EQ(row.by.transitions(), row.transitions);
     const Command out = nextCommand(State::operation_enabled, Goal::disabled, row.by);
     EXPECT_EQ(out.transition, row.operation);

@@ -10,12 +10,12 @@
 namespace cia402::sim {
 namespace {
 
-constexpr std::int64_t kTurn = 8388608;
+constexpr std::int64_t kEncoderTurn = 8388608;
 
 AxisMechanics standingAt(double turns) {
   AxisMechanics mechanics;
   mechanics.initial_position = turns;
-  mechanics.counts_per_turn = kTurn;
+  mechanics.counts_per_turn = kEncoderTurn;
   return mechanics;
 }
 
@@ -43,7 +43,7 @@ TEST(SimulatedEncoder, KnowsAfterPowerWhatItsKindLetsIt) {
     EXPECT_EQ(bench.position(), static_cast<std::int32_t>(2518679552 - 4294967296)) << "32 bits";
     ASSERT_TRUE(bench.drive->inject("power_cycle", bench.now));
     bench.run(ms(2500));
-    const auto counts = static_cast<std::int64_t>(expected[kind] * kTurn);
+    const auto counts = static_cast<std::int64_t>(expected[kind] * kEncoderTurn);
     EXPECT_EQ(bench.wide(0x200B, 37, 38), counts) << kind;
     EXPECT_EQ(bench.position(), static_cast<std::int32_t>(static_cast<std::uint32_t>(counts)));
   }
@@ -74,10 +74,10 @@ TEST(SimulatedEncoder, ForgetsItsTurnsWithoutBattery) {
   EncoderBench bench("megmeet_dm5", 12.25, "{}");
   ASSERT_TRUE(bench.drive->inject("battery_warning", bench.now));
   bench.run(ms(100));
-  EXPECT_EQ(bench.position(), static_cast<std::int32_t>(12.25 * kTurn));
+  EXPECT_EQ(bench.position(), static_cast<std::int32_t>(12.25 * kEncoderTurn));
   ASSERT_TRUE(bench.drive->inject("power_cycle", bench.now));
   bench.run(ms(2500));
-  EXPECT_EQ(bench.position(), kTurn / 4);
+  EXPECT_EQ(bench.position(), kEncoderTurn / 4);
   EXPECT_EQ(bench.read(0x603F) & 0xFFFFU, 0xFF4CU);
   EXPECT_EQ(bench.state() & 0x4F, 0x08) << "fault";
 }
@@ -102,8 +102,8 @@ TEST(SimulatedEncoder, IsResetByTheObjectOfItsMaker) {
   bench.write(0x200D, 0x15, 2, 2);
   bench.run(ms(100));
   EXPECT_EQ(bench.read(0x200B, 0x47), 0U);
-  EXPECT_EQ(bench.wide(0x200B, 0x3B, 0x3D), kTurn / 4);
-  EXPECT_EQ(bench.position(), kTurn / 4);
+  EXPECT_EQ(bench.wide(0x200B, 0x3B, 0x3D), kEncoderTurn / 4);
+  EXPECT_EQ(bench.position(), kEncoderTurn / 4);
 }
 
 // One waits; more are not taken but with bit 5, which counts at once [L692-698].

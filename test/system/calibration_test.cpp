@@ -210,12 +210,12 @@ TEST(StandardCalibration, WhatADriveAddsToItsSetPointsIsNotWritten) {
   Scene scene(loadText(genericPair()));
   ASSERT_TRUE(scene.boot()) << scene.told();
   for (const char* const object : {"60B0:00", "60B1:00", "60B2:00"}) {
-    const auto refused = write(scene, "left", std::string(object) + " i32", "1000");
+    const auto refused = write(scene, "left", object, "1000");
     EXPECT_FALSE(refused.success);
     EXPECT_THAT(refused.message, AllOf(HasSubstr("left (node 1)"), HasSubstr(object),
                                        HasSubstr("the drive adds it to each of its set-points")));
   }
-  EXPECT_THAT(write(scene, "left", "60B0:00 i32", "0").message, Not(HasSubstr("set-points")));
+  EXPECT_THAT(write(scene, "left", "60B0:00", "0").message, Not(HasSubstr("set-points")));
 }
 
 TEST(StandardCalibration, ADriveFarFromItsBusIsNotWritten) {

@@ -23,7 +23,7 @@ class FamilyTransitions : public testing::TestWithParam<FamilyMode> {
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Of, FamilyTransitions, testing::Values(kBusNimotion, kBusDamiao),
+INSTANTIATE_TEST_SUITE_P(Of, FamilyTransitions, testing::Values(kBusNimotion, kBusDamiao, kBusDm5),
                          nameOfFamily);
 
 // 2, 3 and 4; 5 and 10, 5, 6 and 7, 8 and 7, or 9, each after its state.
@@ -124,6 +124,8 @@ TEST_P(FamilyTransitions, ThatAreNotMadeInTimeAreTold) {
 }
 
 TEST_P(FamilyTransitions, OutOfOperationThatAreNotMadeInTimeAreTold) {
+  // A DM5 may close its brake first, which P02.11 and P02.13 say.
+  const Duration longest = GetParam().family == std::string("megmeet_dm5") ? 12s : 7s;
   for (const NotMade& row :
        {NotMade{5, "5, 10", "operation enabled"}, NotMade{10, "5, 10", "switched on"},
         NotMade{6, "5, 6, 7", "switched on"}, NotMade{7, "5, 6, 7", "ready to switch on"},
@@ -138,7 +140,7 @@ TEST_P(FamilyTransitions, OutOfOperationThatAreNotMadeInTimeAreTold) {
     const Time asked = scene.now();
     const bus::Answer disabled = scene.procedure(ProcedureKind::disable);
     EXPECT_FALSE(disabled.success) << row.transition;
-    EXPECT_LT(scene.now() - asked, 7s) << row.transition;
+    EXPECT_LT(scene.now() - asked, longest) << row.transition;
     EXPECT_THAT(disabled.message, AllOf(HasSubstr("joint (node 1): disabling timed out after "),
                                         HasSubstr(row.told)));
     EXPECT_LT(scene.seen("joint").travel(), 1e-4) << "it stands all the same";

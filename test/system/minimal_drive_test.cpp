@@ -202,7 +202,8 @@ std::string onlyWith(const MinimalMode& mode, bool homing, const std::string& mo
   }
   return genericPair(
       std::string(", mode: ") + mode.mode +
-      ", simulation: {drive: generic_cia402, lower_limit_switch: -1.0, with: {without: [" +
+      ", unwatched_streams: true, simulation: {drive: generic_cia402, lower_limit_switch: -1.0, "
+      "with: {without: [" +
       without + "], dictionary: [{rpdos: {count: 1, types: 255, maps: [[0x60400010]]}}, " +
       "{tpdos: {count: 1, types: 255, maps: [[0x60410010]]}}], modes: {0: {behaviour: hold}, " +
       std::to_string(mode.value) + ": {behaviour: " + mode.behaviour + "}" +

@@ -97,7 +97,7 @@ bool FollowWatch::staysApart(const Look& look, double ahead, Time now) {
 bool FollowWatch::goesNowhere(const Look& look, double ahead, Time now) {
   const ModeSpec* mode = look.state.mode;
   const bool silent = mode != nullptr && mode->target_reached_bit && !mode->following_error_bit;
-  const bool rests = silent && look.sent.kind() == SetPointKind::goal &&
+  const bool rests = silent && !look.handing_over && look.sent.kind() == SetPointKind::goal &&
                      now - look.sent.movedAt() >= kSetsOff && restsAhead(look, ahead, now);
   if (!rests) rests_since_ = kNever;
   if (rests && rests_since_ == kNever) rests_since_ = now;

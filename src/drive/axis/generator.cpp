@@ -207,7 +207,8 @@ void Generator::watchFollowing(Time now) {
   const bool active = state.mode == &mode_->spec();
   const bool shown = bit && active && ((state.statusword >> *bit) & 1u) != 0;
   const bool held = !active || control_.halt() || state.internal_limit;
-  const FollowWatch::Look look{sent_, standstill, state, bit.has_value(), shown, held};
+  const FollowWatch::Look look{sent_, standstill,          state, bit.has_value(), shown,
+                               held,  mode_->handingOver()};
   if (following_.watch(look, now)) callBack();
 }
 

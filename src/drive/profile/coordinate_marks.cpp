@@ -19,7 +19,6 @@ constexpr StandardMark kStandard[] = {
     {{0x607E, 0}, {0x607E, 0xFF}, CoordinateMark::configuration},  // polarity
     {{0x6089, 0}, {0x6097, 0xFF}, CoordinateMark::configuration},  // units, resolutions, factors
     {{0x60A8, 0}, {0x60AB, 0xFF}, CoordinateMark::configuration},  // SI units
-    {{0x60B0, 0}, {0x60B0, 0xFF}, CoordinateMark::configuration},  // position offset of csp
     {{0x60E6, 0}, {0x60E6, 0xFF}, CoordinateMark::configuration},  // of further encoders
     {{0x60E8, 0}, {0x60EE, 0xFF}, CoordinateMark::configuration},
 };
