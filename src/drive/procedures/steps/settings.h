@@ -56,7 +56,7 @@ class SettingsStep {
   std::string compareCounts(const AxisConfig& axis) const;
   std::string compareTorque(const AxisConfig& axis) const;
   /// @param time the longest that the profile allows for, then what the drive says
-  std::string learnTime(const AxisConfig& axis, const std::string& object, Duration& time) const;
+  std::string learnTime(const AxisConfig& axis, const std::string& name, Duration& time) const;
   std::string learnTimes(AxisCore& axis) const;
 
   const DriveProfile* profile_;

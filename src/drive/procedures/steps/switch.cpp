@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "drive/procedures/steps/switch.h"
 
+#include "drive/procedures/limits.h"
 #include "drive/sentence.h"
 
 namespace cia402::drive {
