@@ -98,7 +98,7 @@ bool FollowWatch::goesNowhere(const Look& look, double ahead, Time now) {
   const ModeSpec* mode = look.state.mode;
   const bool silent = mode != nullptr && mode->target_reached_bit && !mode->following_error_bit;
   const bool rests = silent && !look.handing_over && look.sent.kind() == SetPointKind::goal &&
-                     now - look.sent.movedAt() >= kSetsOff && restsAhead(look, ahead, now);
+                     now >= look.sent.movedAt() + kSetsOff && restsAhead(look, ahead, now);
   if (!rests) rests_since_ = kNever;
   if (rests && rests_since_ == kNever) rests_since_ = now;
   return rests && now - rests_since_ >= kStuck;

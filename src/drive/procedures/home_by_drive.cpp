@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "drive/procedures/limits.h"
 #include "drive/profile/named_write.h"
 #include "drive/sentence.h"
 #include "fieldbus/abort_code.h"
@@ -103,6 +104,12 @@ Outcome DriveHoming::enterHoming(const Context& context) {
 Outcome DriveHoming::clearOldResult(const Context& context) {
   AxisCore& axis = context.axis;
   if (axis.control().frames() < frames_ + kSureFrames) return Outcome::running();  // bit 4 is low
+  // A motor on its way to a goal is brought to rest by the homing mode; some drives fault where the
+  // search begins before.
+  const Duration braking = stopTime(axis.config(), axis.state().velocity);
+  if (!axis.feedback().measuredStill() && context.now - since_ <= braking) {
+    return Outcome::running();
+  }
   if (const StatusNeed* need = axis.feedback().unmet()) {
     giveUp(context, needText(*need));
     return Outcome::running();

@@ -148,7 +148,7 @@ Duration timeLimit(ProcedureKind kind, const AxisConfig& config,
     case ProcedureKind::disable:
       return kMargin + stop + steps.timing.disablingInTurn(config.disabling) + kComeToRest;
     case ProcedureKind::home:
-      return kMargin + steps.home();
+      return kMargin + stop + steps.home();
     case ProcedureKind::clear_faults:
       return kMargin + steps.reset();
     case ProcedureKind::recover:

@@ -20,8 +20,8 @@ Duration stopTime(const AxisConfig& config, double velocity);
 
 /// How long a transition of CiA 402-2 may take of this axis, by what its drive has told of it.
 Duration transitionTime(const AxisCore& axis, int number);
-/// How long it may take from operation enabled to switch on disabled, by the transitions of the axis'
-/// `disabling`: if that is one step, or one after the other.
+/// How long it may take from operation enabled to switch on disabled, by the transitions of the
+/// axis' `disabling`: if that is one step, or one after the other.
 Duration disablingAtOnce(const AxisCore& axis);
 Duration disablingInTurn(const AxisCore& axis);
 
