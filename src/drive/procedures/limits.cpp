@@ -93,8 +93,9 @@ struct Steps {
     const bool by_drive = axis.homing && profile.homing.methods.count(axis.homing->method) != 0 &&
                           axis.homing->method;
     if (!by_drive) return declare();
-    return settings() + writes(profile.homing.writes) + limits() + enable() + timing.state_change +
-           axis.homing->timeout + transfer() + timing.state_change + limits() + change();
+    return settings() + writes(profile.homing.writes) + limits() + enable() + stopTime(axis, 0.0) +
+           timing.state_change + axis.homing->timeout + transfer() + timing.state_change +
+           limits() + change();
   }
   Duration rewrite() const {  // SaveBySwitch
     constexpr int kMostWritten = 100;
@@ -148,7 +149,7 @@ Duration timeLimit(ProcedureKind kind, const AxisConfig& config,
     case ProcedureKind::disable:
       return kMargin + stop + steps.timing.disablingInTurn(config.disabling) + kComeToRest;
     case ProcedureKind::home:
-      return kMargin + stop + steps.home();
+      return kMargin + steps.home();
     case ProcedureKind::clear_faults:
       return kMargin + steps.reset();
     case ProcedureKind::recover:
