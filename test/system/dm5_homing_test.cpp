@@ -195,6 +195,23 @@ TEST(Dm5HomingLogic, ThatIsWrongIsAFaultOfTheDriveToldInWords) {
   }
 }
 
+/// A motor that has just set off to a position, which nobody has measured yet: the simulated drive
+/// faults, and coasts, where a search begins before it stands.
+TEST(Dm5Homing, OutOfAMotionBeginsOnceTheMotorStands) {
+  Scene scene(loadText(dm5Search(35, "{object: di1_function, raw: 0}", "initial_position: 0.1")));
+  ASSERT_TRUE(scene.boot(20s)) << scene.told();
+  const std::string set = scene.procedure(ProcedureKind::home, "joint").message;
+  ASSERT_TRUE(scene.state("joint").homed) << set;
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success) << scene.told();
+  ASSERT_EQ(scene.setpoint("joint", 1.5), "");
+  ASSERT_TRUE(scene.runUntil([&] { return scene.velocity("joint") > 0.01; }, 50ms));
+  const bus::Answer homed = scene.procedure(ProcedureKind::home, "joint");
+  EXPECT_TRUE(homed.success) << homed.message;
+  EXPECT_TRUE(scene.truth("joint").power_stage_on) << scene.told();
+  EXPECT_NEAR(scene.velocity("joint"), 0.0, 1e-6);
+  EXPECT_NEAR(scene.state("joint").position, kDm5AtHome, 1e-5) << "that is home";
+}
+
 constexpr char kClosedAtRest[] =  // contacts of DI1 to DI3
     ", with: {terminals: {normally_closed: [0, 1, 2]}}";
 constexpr char kThreeSwitches[] =
