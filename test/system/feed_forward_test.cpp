@@ -116,10 +116,13 @@ TEST(FeedForward, OfACyclicVelocityIsItsAcceleration) {
 TEST(Offsets, ThatStandInTheDriveMoveNothing) {
   for (const char* mode : {"csp", "csv"}) {
     Scene scene(loadText(genericPair(", mode: " + std::string(mode))));
-    auto& dictionary = scene.drive("left").dictionary();
-    dictionary.find({0x60B0, 0})->number = 300000;   // 0.14 rad
-    dictionary.find({0x60B1, 0})->number = 1000000;  // 0.48 rad/s
-    dictionary.find({0x60B2, 0})->number = 300;
+    const auto hold = [&](std::uint16_t index, std::uint64_t number) {
+      auto* entry = scene.drive("left").dictionary().find({index, 0});
+      entry->number = entry->initial_number = number;  // a reset brings it back
+    };
+    hold(0x60B0, 300000);   // 0.14 rad
+    hold(0x60B1, 1000000);  // 0.48 rad/s
+    hold(0x60B2, 300);
     ASSERT_TRUE(scene.boot()) << scene.told();
     scene.forget();
     ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success) << scene.told();

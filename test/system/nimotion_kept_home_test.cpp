@@ -2,6 +2,7 @@
 // Statusword bit 15 of a NiMotion: it was homed since its power came [768].
 #include "drive/profile/status_bits.h"
 #include "system/families_motion.h"
+#include "system/kept_home.h"
 
 namespace cia402 {
 namespace {
@@ -20,28 +21,14 @@ std::string nimotionKept(const std::string& more) {
                          more + "}, simulation: {lower_limit_switch: -0.4}" + kNimotionSwitches);
 }
 
-constexpr char kNimotionKept[] = ", kept_by_drive: true";
-
 std::string bitsOf(Scene& scene) {
   const drive::AxisState& state = scene.state("joint");
   return drive::statusBitsText(state.statusword, state.mode,
                                scene.loaded().robot.axes[0].profile->status_words);
 }
 
-/// Nobody hears of the drive for a while; it keeps its power, and boots anew.
-void nimotionLoseAndRecover(Scene& scene) {
-  scene.inject("joint", "silent");
-  scene.run(1s);
-  ASSERT_NE(scene.state("joint").health, fieldbus::Health::ready);
-  EXPECT_FALSE(scene.state("joint").homed);
-  scene.inject("joint", "clear");
-  (void)scene.procedure(ProcedureKind::recover, "joint");  // fails where it is not homed
-  ASSERT_EQ(scene.state("joint").state, drive::State::operation_enabled) << scene.told();
-  scene.run(200ms);
-}
-
 TEST(NimotionKeptHome, CountsWithItsOffsetOnceTheDriveIsBack) {
-  Scene scene(loadText(nimotionKept(kNimotionKept)));
+  Scene scene(loadText(nimotionKept(kKeptByDrive)));
   ASSERT_TRUE(scene.boot(20s)) << scene.told();
   scene.run(200ms);
   EXPECT_FALSE(scene.state("joint").homed) << "bit 15 is 0 after power-on";
@@ -52,7 +39,7 @@ TEST(NimotionKeptHome, CountsWithItsOffsetOnceTheDriveIsBack) {
   EXPECT_THAT(bitsOf(scene), HasSubstr("homed since power-on")) << "and people are shown it";
   ASSERT_EQ(scene.setpoint("joint", 0.8), "");
   scene.run(2s);
-  nimotionLoseAndRecover(scene);
+  loseAndRecover(scene);
   EXPECT_TRUE(scene.state("joint").homed) << scene.told();
   EXPECT_NEAR(scene.state("joint").position, 0.8, 1e-4);
   ASSERT_EQ(scene.setpoint("joint", 0.5), "");
@@ -67,7 +54,7 @@ TEST(NimotionKeptHome, CountsOnlyWhereTheAxisSaysSo) {
   Scene scene(loadText(nimotionKept("")));
   ASSERT_TRUE(scene.boot(20s)) << scene.told();
   ASSERT_TRUE(scene.procedure(ProcedureKind::home, "joint").success) << scene.told();
-  nimotionLoseAndRecover(scene);
+  loseAndRecover(scene);
   EXPECT_FALSE(scene.state("joint").homed);
   EXPECT_THAT(bitsOf(scene), HasSubstr("homed since power-on")) << "the drive still says so";
   EXPECT_THAT(scene.setpoint("joint", 0.2), HasSubstr("not homed"));
@@ -75,7 +62,7 @@ TEST(NimotionKeptHome, CountsOnlyWhereTheAxisSaysSo) {
 
 // Its encoder is incremental: "since this power-on" [768].
 TEST(NimotionKeptHome, IsGoneWithThePower) {
-  Scene scene(loadText(nimotionKept(kNimotionKept)));
+  Scene scene(loadText(nimotionKept(kKeptByDrive)));
   ASSERT_TRUE(scene.boot(20s)) << scene.told();
   ASSERT_TRUE(scene.procedure(ProcedureKind::home, "joint").success) << scene.told();
   scene.inject("joint", "power_cycle");

@@ -1,5 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // Statusword bit 15 of an SV660C: the drive knows its home [L618].
+#include "system/kept_home.h"
 #include "system/sv660c_scene.h"
 
 namespace cia402 {
@@ -13,29 +14,15 @@ std::string sv660cKept(const std::string& more) {
   return sv660cJoint(", homing: {method: 35, offset: 0.5" + more + "}", "initial_position: 1.1");
 }
 
-constexpr char kSv660cKept[] = ", kept_by_drive: true";
-
-/// Nobody hears of the drive for a while; it keeps its power, and boots anew.
-void sv660cLoseAndRecover(Scene& scene) {
-  scene.inject("joint", "silent");
-  scene.run(1s);
-  ASSERT_NE(scene.state("joint").health, fieldbus::Health::ready);
-  EXPECT_FALSE(scene.state("joint").homed);
-  scene.inject("joint", "clear");
-  (void)scene.procedure(ProcedureKind::recover, "joint");  // fails where it is not homed
-  ASSERT_EQ(scene.state("joint").state, drive::State::operation_enabled) << scene.told();
-  scene.run(200ms);
-}
-
 TEST(Sv660cKeptHome, CountsOnceTheDriveIsBack) {
-  Scene scene(loadText(sv660cKept(kSv660cKept)));
+  Scene scene(loadText(sv660cKept(kKeptByDrive)));
   ASSERT_TRUE(scene.boot()) << scene.told();
   scene.run(200ms);
   EXPECT_FALSE(scene.state("joint").homed) << "bit 15 is 0 after power-on";
   ASSERT_TRUE(scene.procedure(ProcedureKind::home, "joint").success) << scene.told();
   ASSERT_EQ(scene.setpoint("joint", 0.8), "");
   scene.run(2s);
-  sv660cLoseAndRecover(scene);
+  loseAndRecover(scene);
   EXPECT_TRUE(scene.state("joint").homed) << scene.told();
   EXPECT_NEAR(scene.state("joint").position, 0.8, 1e-5);
   ASSERT_EQ(scene.setpoint("joint", 0.2), "");
@@ -48,14 +35,14 @@ TEST(Sv660cKeptHome, CountsOnlyWhereTheAxisSaysSo) {
   Scene scene(loadText(sv660cKept("")));
   ASSERT_TRUE(scene.boot()) << scene.told();
   ASSERT_TRUE(scene.procedure(ProcedureKind::home, "joint").success) << scene.told();
-  sv660cLoseAndRecover(scene);
+  loseAndRecover(scene);
   EXPECT_FALSE(scene.state("joint").homed);
   EXPECT_THAT(scene.setpoint("joint", 0.2), HasSubstr("not homed"));
 }
 
 // Its encoder is incremental: it begins anew without power.
 TEST(Sv660cKeptHome, IsGoneWithThePower) {
-  Scene scene(loadText(sv660cKept(kSv660cKept)));
+  Scene scene(loadText(sv660cKept(kKeptByDrive)));
   ASSERT_TRUE(scene.boot()) << scene.told();
   ASSERT_TRUE(scene.procedure(ProcedureKind::home, "joint").success) << scene.told();
   scene.inject("joint", "power_cycle");
@@ -68,13 +55,13 @@ TEST(Sv660cKeptHome, IsGoneWithThePower) {
 
 // What a person declares is no home of the drive.
 TEST(Sv660cKeptHome, HasNothingToDoWithWhatIsDeclared) {
-  Scene scene(loadText(sv660cKept(kSv660cKept)));
+  Scene scene(loadText(sv660cKept(kKeptByDrive)));
   ASSERT_TRUE(scene.boot()) << scene.told();
   ASSERT_TRUE(declare(scene, "joint", -0.3).success);
   scene.run(500ms);
   EXPECT_TRUE(scene.state("joint").homed);
   EXPECT_NEAR(scene.state("joint").position, -0.3, 1e-5);
-  sv660cLoseAndRecover(scene);
+  loseAndRecover(scene);
   EXPECT_FALSE(scene.state("joint").homed) << "bit 15 is still 0";
 }
 
