@@ -33,8 +33,8 @@ class Group {
   /// Brings all joints to rest and ends the trajectory with `why`.
   void stop(const TrajectoryOutcome& why);
   /// Gives the axes their set-points of this cycle. @return how the trajectory ended, in the cycle
-  /// in which it did.
-  std::optional<TrajectoryOutcome> step(Time now);
+  /// in which it did. Not inlined: it would push apart what each of the more axes does there.
+  [[gnu::noinline]] std::optional<TrajectoryOutcome> step(Time now);
 
   /// A trajectory is being followed, or its beginning or end is awaited.
   bool executing() const { return phase_ == Phase::following || next_.has_value(); }

@@ -56,7 +56,8 @@ bool FollowWatch::watchStanding(const Look& look, Time now) {
   if (!runs) {
     running_since_ = kNever;
     const bool held = look.state.internal_limit || tellsFollowingError(look.state);
-    return (held && restsAhead(look, ahead, now)) || goesNowhere(look, ahead, now);
+    return (held && restsAhead(look, ahead, now)) ||
+           (look.sent.kind() == SetPointKind::goal && goesNowhere(look, ahead, now));
   }
   if (running_since_ == kNever) running_since_ = now;
   return runsAway(look, ahead, now);
@@ -97,8 +98,8 @@ bool FollowWatch::staysApart(const Look& look, double ahead, Time now) {
 bool FollowWatch::goesNowhere(const Look& look, double ahead, Time now) {
   const ModeSpec* mode = look.state.mode;
   const bool silent = mode != nullptr && mode->target_reached_bit && !mode->following_error_bit;
-  const bool rests = silent && !look.handing_over && look.sent.kind() == SetPointKind::goal &&
-                     now >= look.sent.movedAt() + kSetsOff && restsAhead(look, ahead, now);
+  const bool rests = silent && !look.handing_over && now >= look.sent.movedAt() + kSetsOff &&
+                     restsAhead(look, ahead, now);
   if (!rests) rests_since_ = kNever;
   if (rests && rests_since_ == kNever) rests_since_ = now;
   return rests && now - rests_since_ >= kStuck;

@@ -66,7 +66,7 @@ class FollowWatch {
   void lookForBit(const Look& look, Time now);
   bool watchStanding(const Look& look, Time now);
   bool runsAway(const Look& look, double ahead, Time now) const;
-  bool goesNowhere(const Look& look, double ahead, Time now);
+  [[gnu::cold]] bool goesNowhere(const Look& look, double ahead, Time now);  // goals only
   bool restsAhead(const Look& look, double ahead, Time now) const;
   bool apart(const Look& look, double ahead) const;
   bool staysApart(const Look& look, double ahead, Time now);

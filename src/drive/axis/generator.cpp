@@ -207,8 +207,9 @@ void Generator::watchFollowing(Time now) {
   const bool active = state.mode == &mode_->spec();
   const bool shown = bit && active && ((state.statusword >> *bit) & 1u) != 0;
   const bool held = !active || control_.halt() || state.internal_limit;
-  const FollowWatch::Look look{sent_, standstill,          state, bit.has_value(), shown,
-                               held,  mode_->handingOver()};
+  const bool handing_over = mode_->goals() && mode_->handingOver();
+  const FollowWatch::Look look{sent_, standstill, state,       bit.has_value(),
+                               shown, held,       handing_over};
   if (following_.watch(look, now)) callBack();
 }
 

@@ -55,7 +55,7 @@ class Generator {
   /// Takes over a motor that turns: begins at its measured velocity and ramps that to rest.
   void arrest();
   /// Cycles were missed: nothing of them is made good.
-  void lateCycle(Time now);
+  [[gnu::cold]] void lateCycle(Time now);
 
   /// Once a cycle, before all that follows: the stream of commands gives its set-point.
   void stepCommands(Time now);
@@ -68,7 +68,7 @@ class Generator {
   /// nullptr
   const char* send(Time now);
   /// The cycle out of operation: every target is neutral.
-  void sendNeutral();
+  [[gnu::cold]] void sendNeutral();
   /// The drive may move by itself, which counts as motion; after advance() or sendNeutral().
   void watchDrive(Time now);
   /// The motor does not follow what is sent, and that is called back to where it stands.

@@ -16,8 +16,8 @@ class SetPointOffsets {
   /// One of them travels.
   bool any() const { return velocity_.output.mapped() || torque_.output.mapped(); }
   /// Of the set-point of this cycle. @param velocity of it, rad/s or m/s
-  void set(double velocity);
-  void clear();
+  [[gnu::cold]] void set(double velocity);  // few axes have offsets: kept out of every cycle's code
+  [[gnu::cold]] void clear();
 
  private:
   void put(const ModeChannel::Offset& offset, double value);
