@@ -41,9 +41,8 @@ void CyclicPositions::target(double seconds, double into) {
 
 /// A set-point that reads like the present place is none to go to.
 bool CyclicPositions::goesOn() const {
-  constexpr double kNumbers = 4294967296.0;  // of 32 bits
-  const double one = axis_.values.range(targetRole()) / kNumbers;
-  return !last_ || std::fabs(*last_ - axis_.demand.position) > one;
+  return !last_ ||
+         std::fabs(*last_ - axis_.demand.position) > axis_.values.resolution(targetRole());
 }
 
 void CyclicPositions::step(bool bit_4) {

@@ -244,6 +244,11 @@ class DriveValues {
   /// All that the object's numbers span, after which they begin anew; 0 for floats and where there
   /// is no such object.
   double range(Role role) const;
+  /// What one of its numbers is, in internal units; 0 for floats and where there is no such object.
+  double resolution(Role role) const {
+    const Slot& s = slot(role);
+    return s.entry == nullptr || s.encoding != Encoding::integer ? 0.0 : 1.0 / scale(s);
+  }
   const Entry* entry(Role role) const { return slot(role).entry; }
   Encoding encoding(Role role) const { return slot(role).encoding; }
 
