@@ -18,13 +18,6 @@ constexpr Duration kIdleInterval = std::chrono::milliseconds(20);  // while ther
 constexpr Duration kFlushTime = std::chrono::milliseconds(20);     // for the last frames
 constexpr int kFramesToFlush = 256;  // per millisecond: a flood does not keep it from its end
 
-NetworkSnapshot sized(std::size_t axes, std::size_t groups) {
-  NetworkSnapshot snapshot;
-  snapshot.axes.resize(axes);
-  snapshot.groups.resize(groups);
-  return snapshot;
-}
-
 }  // namespace
 
 BusRunner::BusRunner(config::RobotConfig robot, canopen::MasterConfig master,
@@ -34,8 +27,7 @@ BusRunner::BusRunner(config::RobotConfig robot, canopen::MasterConfig master,
       interface_(std::move(interface)),
       loop_(std::move(robot), std::move(master), *interface_, *this),
       wake_fd_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)),
-      snapshots_(
-          sized(loop_.network().cycle().units().size(), loop_.network().cycle().groups().size())),
+      snapshots_(first()),
       recordings_(loop_.recorder(), loop_.network().config(), loop_.network().master().config(),
                   time_) {
   if (wake_fd_ < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
@@ -146,12 +138,22 @@ void BusRunner::iterate(Time now) {
   publish(now);
 }
 
+NetworkSnapshot BusRunner::first() const {
+  NetworkSnapshot snapshot;
+  fill(snapshot, time_.now());
+  return snapshot;
+}
+
 void BusRunner::publish(Time now) {
   const std::uint64_t cycle = loop_.network().statistics().cycles();
   if (cycle == published_cycle_ && now < published_ + kIdleInterval) return;
   published_cycle_ = cycle;
   published_ = now;
-  NetworkSnapshot& snapshot = snapshots_.back();
+  fill(snapshots_.back(), now);
+  snapshots_.publish();
+}
+
+void BusRunner::fill(NetworkSnapshot& snapshot, Time now) const {
   loop_.network().fill(snapshot);
   snapshot.now = now;
   snapshot.bus_state = interface_->state();
@@ -161,7 +163,6 @@ void BusRunner::publish(Time now) {
   snapshot.bus_text.assign(loop_.watch().text());
   snapshot.pending = interface_->pending();
   snapshot.error_counters = interface_->errorCounters();
-  snapshots_.publish();
 }
 
 void BusRunner::wait() {

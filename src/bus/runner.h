@@ -48,7 +48,7 @@ class BusRunner final : private EventSink {
   /// Any thread: queues a command. If there is no room or no running thread, its reply is given at
   /// once and false returned.
   bool post(Command command);
-  /// Any thread: the newest snapshot.
+  /// Any thread: the newest snapshot; before the first cycle all that is configured, as unknown.
   NetworkSnapshot snapshot();
   /// Any thread: what a snapshot shows of the axes is shown to somebody, at the rate of these
   /// calls. What no TPDO brings and only people want is read no oftener: drive::Axis::look().
@@ -73,7 +73,9 @@ class BusRunner final : private EventSink {
   void onEmergency(const EmergencyEvent& event) override;
   void run();
   void iterate(Time now);
+  NetworkSnapshot first() const;
   void publish(Time now);
+  void fill(NetworkSnapshot& snapshot, Time now) const;
   void wait();
   void wake() const;
   void refuseRest();

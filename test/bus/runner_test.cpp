@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "bus/runner.h"
 
+#include <cmath>
 #include <future>
 #include <thread>
 
@@ -18,6 +19,21 @@ TEST_F(BusRunnerTest, RefusesCommandsBeforeItsStart) {
   auto answer = post(ProcedureKind::enable);
   EXPECT_FALSE(posted);
   EXPECT_EQ(answer.get().message, "refused: the driver is not running");
+}
+
+TEST_F(BusRunnerTest, ShowsAllThatIsConfiguredAsUnknownBeforeItsFirstCycle) {
+  const NetworkSnapshot snapshot = runner->snapshot();
+  ASSERT_EQ(snapshot.axes.size(), 2u);
+  for (const AxisSnapshot& axis : snapshot.axes) {
+    EXPECT_EQ(axis.state.health, fieldbus::Health::absent);
+    EXPECT_FALSE(axis.state.feedback_valid);
+  }
+  ASSERT_EQ(snapshot.joints.size(), 2u);
+  for (const JointState& joint : snapshot.joints) {
+    EXPECT_FALSE(joint.known);
+    EXPECT_TRUE(std::isnan(joint.position));
+  }
+  EXPECT_EQ(snapshot.groups.size(), 1u);
 }
 
 TEST_F(BusRunnerTest, EndsCleanlyThoughItWasNeverStarted) {

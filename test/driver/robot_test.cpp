@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <thread>
 
@@ -63,6 +64,18 @@ TEST(EmbeddedRobot, WhatIsAskedBeforeTheStartIsRefused) {
   const bus::TrajectoryOutcome outcome =
       robot.value().follow("arm", robot->jointsOf("arm"), {{{0, 0, 0, 0, 0}, {}, {}, 1s}}).get();
   EXPECT_EQ(outcome.end, bus::TrajectoryEnd::refused);
+}
+
+TEST(EmbeddedRobot, ShowsItsJointsAsUnknownBeforeTheStart) {
+  auto robot = demo();
+  ASSERT_TRUE(robot.ok());
+  const std::vector<JointStatus> joints = robot->state();
+  ASSERT_EQ(joints.size(), 5u);
+  for (const JointStatus& joint : joints) {
+    EXPECT_TRUE(std::isnan(joint.position)) << joint.name;
+    EXPECT_FALSE(joint.enabled) << joint.name;
+    EXPECT_FALSE(joint.homed) << joint.name;
+  }
 }
 
 TEST(EmbeddedRobot, EnablesSimulatedDrivesAndShowsThem) {
