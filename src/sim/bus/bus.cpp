@@ -112,13 +112,17 @@ Bus::Candidate Bus::winnerAmongReady(Time start) const {
 }
 
 Bus::Candidate Bus::arbitrate() const {
-  const Candidate at_idle = winnerAmongReady(idle_at_);
-  if (at_idle.port != nullptr) return at_idle;
-  Time earliest = kNever;
+  Candidate winner;
+  Time earliest = kNever;  // of those who are not ready by then
   for (const auto& port : ports_) {
-    if (port->canTransmit()) earliest = std::min(earliest, port->earliestReady());
+    if (!port->canTransmit()) continue;
+    if (const Port::Entry* const entry = port->bestReadyAt(idle_at_); entry == nullptr) {
+      earliest = std::min(earliest, port->earliestReady());
+    } else if (winner.entry == nullptr || entry->key < winner.entry->key) {
+      winner = {port.get(), idle_at_, entry};
+    }
   }
-  return earliest == kNever ? Candidate{} : winnerAmongReady(earliest);
+  return winner.port != nullptr || earliest == kNever ? winner : winnerAmongReady(earliest);
 }
 
 bool Bus::acknowledged(const Port& sender) const {

@@ -114,8 +114,7 @@ void AbsoluteEncoder::start(bool cold) {
 }
 
 /// Faults are told once the drive has initialised itself.
-void AbsoluteEncoder::look() {
-  if (encoder_.counts == 0) return;
+void AbsoluteEncoder::lookAtTurns() {
   homed_ = core_.motion().homed();
   battery_low_ = batteryLow();
   if ((core_.statusword() & kStateBits) == kNotReady) return;

@@ -19,13 +19,16 @@ class AbsoluteEncoder {
   /// The axis has been started. @param cold it had no power
   void start(bool cold);
   /// What comes of it by itself: too many turns. Often.
-  void look();
+  void look() {
+    if (encoder_.counts != 0) lookAtTurns();
+  }
   /// The object that resets it, which it wants to hear of.
   bool holds(fieldbus::ObjectId id) const { return encoder_.reset == id; }
   void written(const Entry& entry);
 
  private:
   using Object = std::optional<fieldbus::ObjectId>;
+  void lookAtTurns();
   template <typename Number>
   void show(const Object& object, Number number);
   template <typename Number>

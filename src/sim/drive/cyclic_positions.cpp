@@ -31,6 +31,7 @@ void CyclicPositions::target(double seconds, double into) {
   const double step = std::min(std::fabs(target - last_.value_or(at)), std::fabs(target - at));
   const double farthest = axis_.definition.position_step * axis_.motor.maxSpeed() * seconds;
   last_ = target;
+  resolution_ = axis_.values.resolution(targetRole());
   far_ = far_ || (farthest > 0.0 && step > farthest);
   if (far_) return;
   if (axis_.mode->delayed) {
@@ -41,8 +42,7 @@ void CyclicPositions::target(double seconds, double into) {
 
 /// A set-point that reads like the present place is none to go to.
 bool CyclicPositions::goesOn() const {
-  return !last_ ||
-         std::fabs(*last_ - axis_.demand.position) > axis_.values.resolution(targetRole());
+  return !last_ || std::fabs(*last_ - axis_.demand.position) > resolution_;
 }
 
 void CyclicPositions::step(bool bit_4) {

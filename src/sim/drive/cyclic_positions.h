@@ -40,6 +40,7 @@ class CyclicPositions {
   MovingAxis& axis_;
   std::optional<double> pending_;  ///< true turns; ModeDefinition::delayed
   std::optional<double> last_;     ///< true turns, the set-point that came last
+  double resolution_ = 0.0;        ///< of its object, turns
   bool far_ = false;
 };
 

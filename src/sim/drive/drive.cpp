@@ -196,8 +196,10 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
       cold = true;
       device.powerOn(at);
     }
-    forEach(&DriveCore::advance, now);
-    for (DriveAxis& axis : axes) axis.encoder.look();
+    for (DriveAxis& axis : axes) {
+      axis.core.advance(now);
+      axis.encoder.look();
+    }
   }
 
   // Another drive of the same kind takes this one's place: other serial number, as from the
@@ -290,10 +292,8 @@ void Drive::tick(Time now) {
 Time Drive::nextEvent() const {
   Time next = std::min(impl_->device.nextEvent(), impl_->emergencies.nextEvent());
   for (const DriveAxis& axis : impl_->axes) next = std::min(next, axis.core.nextEvent());
-  for (const auto& due : {impl_->restart_at, impl_->reset_at}) {
-    if (due) next = std::min(next, *due);
-  }
-  return next;
+  next = std::min(next, impl_->restart_at.value_or(kNever));
+  return std::min(next, impl_->reset_at.value_or(kNever));
 }
 
 Result<void> Drive::inject(const std::string& fault, Time now, unsigned axis) {

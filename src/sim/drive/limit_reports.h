@@ -1,7 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string>
 #include <utility>
 
 #include "sim/definition/drive_definition.h"
@@ -30,15 +29,13 @@ class LimitReports {
       if (!seen.there) due.end = std::exchange(warning_, nullptr);
       const bool news = seen.in_the_way && !told_;
       told_ = seen.in_the_way;
-      if (!news) return due;
-      due.raise =
-          definition.fault((seen.upwards ? "positive_" : "negative_") + std::string(seen.name));
-      if (due.raise == nullptr) due.raise = definition.fault(seen.name);
-      if (due.raise != nullptr && due.raise->warning) warning_ = due.raise;
+      if (news) due.raise = faultOf(seen, definition);
       return due;
     }
 
    private:
+    const FaultDefinition* faultOf(const Seen& seen, const DriveDefinition& definition);
+
     bool told_ = false;
     const FaultDefinition* warning_ = nullptr;
   };

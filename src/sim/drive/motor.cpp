@@ -85,10 +85,11 @@ void Motor::followPosition(double demand, const Offsets& offsets) {
   const double lag = parameters_.position_time_constant + kDriveStepS;
   const double approach =
       brakingSpeed(distance) + std::max(0.0, std::copysign(1.0, error) * demand_speed);
-  double speed = std::copysign(std::min({distance / lag, approach, parameters_.max_speed}), error);
+  const double most = parameters_.max_speed;
+  double speed = std::copysign(std::min(std::min(distance / lag, approach), most), error);
   if (led) {
-    speed = std::clamp((error - offsets.velocity * kDriveStepS) / lag + offsets.velocity,
-                       -parameters_.max_speed, parameters_.max_speed);
+    speed =
+        std::clamp((error - offsets.velocity * kDriveStepS) / lag + offsets.velocity, -most, most);
   }
   accelerate((speed - velocity_) * velocity_gain_ / kDriveStepS +
              offsets.torque * parameters_.rated_acceleration);

@@ -12,12 +12,11 @@ double interpolationPeriod(const DriveValues& values) {
 
 double syncTolerance(const DriveDefinition& definition, const DriveValues& values,
                      const ModeDefinition* mode) {
+  const bool watched = mode != nullptr && mode->behaviour == ModeBehaviour::interpolated_position;
+  if (!watched) return kUnlimited;
   const auto& shares = definition.sync_tolerances;
   const std::int64_t number = values.raw(Role::sync_tolerance, 0);
-  const bool watched = mode != nullptr && mode->behaviour == ModeBehaviour::interpolated_position;
-  if (!watched || number < 0 || number >= static_cast<std::int64_t>(shares.size())) {
-    return kUnlimited;
-  }
+  if (number < 0 || number >= static_cast<std::int64_t>(shares.size())) return kUnlimited;
   const double share = shares[static_cast<std::size_t>(number)];
   return share > 0.0 ? share * interpolationPeriod(values) : kUnlimited;
 }

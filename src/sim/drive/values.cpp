@@ -180,9 +180,12 @@ std::uint32_t toFloatBits(double value) {
   return bits;
 }
 
-std::uint64_t rounded(double value) {
+/// Halves away from zero, as std::llround(), which is a call.
+inline std::uint64_t rounded(double value) {
   const double wrapped = std::fabs(value) < 9e18 ? value : 0.0;
-  return static_cast<std::uint64_t>(std::llround(wrapped));
+  const auto whole = static_cast<std::int64_t>(wrapped);
+  const double rest = wrapped - static_cast<double>(whole);
+  return static_cast<std::uint64_t>(whole + (rest >= 0.5 ? 1 : 0) - (rest <= -0.5 ? 1 : 0));
 }
 
 std::uint64_t mask(const Entry& entry) {
@@ -250,9 +253,9 @@ DriveValues::DriveValues(const DriveDefinition& definition, unsigned axis,
         moved == definition.objects.end() ? info.object : moved->second;
     Slot& slot = slots_[static_cast<std::size_t>(info.role)];
     slot.entry = dictionary.find(ofAxis(object, axis));
-    if (slot.entry != nullptr) slot.bits = mask(*slot.entry);
-    if (slot.entry != nullptr && fieldbus::isSigned(slot.entry->type)) {
-      slot.sign = std::uint64_t{1} << (widthBits(slot.entry->type) - 1);
+    if (slot.entry != nullptr) {
+      slot.bits = mask(*slot.entry);
+      slot.is_signed = fieldbus::isSigned(slot.entry->type);
     }
     const auto own = definition.units_of.find(info.role);
     const UnitScale& unit = own != definition.units_of.end()
@@ -287,7 +290,7 @@ double DriveValues::number(const Slot& slot) const {
     return decodeNumber(*slot.entry, slot.encoding) / scale(slot);
   }
   const double number =
-      slot.sign != 0 ? static_cast<double>(integer(slot)) : static_cast<double>(slot.entry->number);
+      slot.is_signed ? static_cast<double>(integer(slot)) : static_cast<double>(slot.entry->number);
   if (slot.ramp && inRpm()) return kHardest / std::max(number, 1.0);
   return number / scale(slot);
 }

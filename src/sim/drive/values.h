@@ -255,9 +255,10 @@ class DriveValues {
  private:
   struct Slot {
     Entry* entry = nullptr;
-    double scale = 1.0;  ///< where objects of the drive scale it: times theirs
+    double scale = 1.0;      ///< where objects of the drive scale it: times theirs
+    std::uint64_t bits = 0;  ///< all bits of the number
     Encoding encoding = Encoding::integer;
-    std::uint64_t bits = 0, sign = 0;  ///< all bits of the number, and its sign's; 0: unsigned
+    bool is_signed = false;
     bool per_encoder = false, geared = false;
     bool speed = false, ramp = false;  ///< Role::rpm_units changes it
   };
@@ -274,7 +275,8 @@ class DriveValues {
   double number(const Slot& slot) const;
   void setNumber(const Slot& slot, double value);
   static std::int64_t integer(const Slot& slot) {
-    return static_cast<std::int64_t>(((slot.entry->number & slot.bits) ^ slot.sign) - slot.sign);
+    const std::uint64_t sign = slot.is_signed ? slot.bits ^ (slot.bits >> 1) : 0;
+    return static_cast<std::int64_t>(((slot.entry->number & slot.bits) ^ sign) - sign);
   }
   const Slot& slot(Role role) const { return slots_[static_cast<std::size_t>(role)]; }
 

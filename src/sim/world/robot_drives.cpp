@@ -69,6 +69,8 @@ class Builder {
   std::vector<SimulatedDrive> take() { return std::move(drives_); }
 
  private:
+  using Definition = Result<std::shared_ptr<const DriveDefinition>>;
+
   config::SimulationConfig sectionOf(const drive::AxisConfig& axis) const {
     const auto section = robot_.simulated.find(axis.name);
     return section == robot_.simulated.end() ? config::SimulationConfig() : section->second;
@@ -76,10 +78,7 @@ class Builder {
 
   void begin(const drive::AxisConfig& axis, const config::SimulationConfig& simulation) {
     drive_of_[axis.device] = std::nullopt;
-    const std::string name = simulation.drive.empty() ? axis.profile->name : simulation.drive;
-    const bool is_path = name.find('/') != std::string::npos;
-    auto definition =
-        loadDriveDefinition(is_path ? name : folder_ + "/" + name + ".yaml", simulation.with);
+    auto definition = definitionOf(axis, simulation);
     if (!definition) return tell(axis, "drive", definition.error().message);
     SimulatedDrive drive;
     drive.name = axis.name;
@@ -90,6 +89,18 @@ class Builder {
     drive.mechanics.resize((*definition)->axisCount());
     drive_of_[axis.device] = drives_.size();
     drives_.push_back(std::move(drive));
+  }
+
+  /// Drives of one file share it, but for those that count other keys.
+  Definition definitionOf(const drive::AxisConfig& axis,
+                          const config::SimulationConfig& simulation) {
+    const std::string name = simulation.drive.empty() ? axis.profile->name : simulation.drive;
+    const bool is_path = name.find('/') != std::string::npos;
+    const std::string file = is_path ? name : folder_ + "/" + name + ".yaml";
+    if (simulation.with.size() > 0) return loadDriveDefinition(file, simulation.with);
+    const auto known = definitions_.find(file);
+    if (known != definitions_.end()) return known->second;
+    return definitions_.emplace(file, loadDriveDefinition(file, simulation.with)).first->second;
   }
 
   /// A further axis may say nothing else of the drive.
@@ -138,6 +149,7 @@ class Builder {
   std::string folder_;
   Problems& problems_;
   std::vector<SimulatedDrive> drives_;
+  std::map<std::string, Definition> definitions_;  ///< by their files
   std::map<std::size_t, std::optional<std::size_t>>
       drive_of_;  ///< device; nothing: it has problems
 };
