@@ -59,7 +59,8 @@ TEST_F(BootSyncTest, a_drive_without_sync_counter_is_right_for_a_plain_sync_only
   config.sync_counter = 10;
   boot();
   EXPECT_EQ(node->health(), Health::failed);
-  EXPECT_THAT(node->problem(), HasSubstr("1019:00 synchronous counter overflow value"));
+  EXPECT_THAT(node->problem(), AllOf(HasSubstr("1019:00 synchronous counter overflow value"),
+                                     HasSubstr("write `sync_counter: 0` under `bus`")));
 }
 
 TEST_F(BootSyncTest, a_sync_counter_that_the_drive_refuses_fails_the_boot) {

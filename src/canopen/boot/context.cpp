@@ -64,10 +64,11 @@ Progress BootContext::fail(BootFailure kind, const std::string& reason) {
   return Progress::failed;
 }
 
-Progress BootContext::failTransfer() {
+Progress BootContext::failTransfer(const std::string& remedy) {
   const bool mute = ticket->failure() == fieldbus::Transfer::Failure::timed_out;
   return fail(refused() ? BootFailure::refused : BootFailure::timed_out,
-              "boot failed while " + step + ": " + ticket->reason() + (mute ? muteText() : ""));
+              "boot failed while " + step + ": " + ticket->reason() + (mute ? muteText() : "") +
+                  (remedy.empty() ? "" : "; " + remedy));
 }
 
 std::string BootContext::muteText() const {

@@ -156,8 +156,8 @@ class BootContext {
   Progress fail(BootFailure kind, const std::string& reason);
   /// Ends the boot of a drive that stays in the NMT state stopped.
   Progress failStopped();
-  /// Ends the boot because of the last transfer.
-  Progress failTransfer();
+  /// Ends the boot because of the last transfer. @param remedy what the user can do, if anything
+  Progress failTransfer(const std::string& remedy = "");
   /// Where heartbeats came while nothing was answered: "; its heartbeat goes on (NMT state
   /// operational): ..." with what to try; else empty.
   std::string muteText() const;

@@ -9,6 +9,8 @@ constexpr ObjectId kSyncPeriod{0x1006, 0};   // CiA 301, 7.5.2.6
 constexpr ObjectId kSyncCounter{0x1019, 0};  // CiA 301, 7.5.2.22
 constexpr const char* kSyncPeriodName = "communication cycle period";
 constexpr const char* kSyncCounterName = "synchronous counter overflow value";
+constexpr const char* kCounterRemedy =
+    "where a drive takes no SYNC with a counter, write `sync_counter: 0` under `bus`";
 
 class SyncSetup : public BootStep {
  public:
@@ -25,7 +27,8 @@ class SyncSetup : public BootStep {
     if (!boot.answered()) return Progress::waiting;
     if (!take(boot)) {
       if (patience_.grant(boot, boot.ticket->abortCode(), now)) return Progress::waiting;
-      return boot.failTransfer();
+      const bool counted = phase_ == Phase::read_counter || phase_ == Phase::write_counter;
+      return boot.failTransfer(counted && boot.refused() ? kCounterRemedy : "");
     }
     patience_.renew();
     phase_ = after(phase_);
