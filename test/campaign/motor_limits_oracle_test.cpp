@@ -290,6 +290,24 @@ TEST_F(MotorLimitsTest, DoNotJudgeTheAccelerationOfACommandedEffort) {
   EXPECT_EQ(found(), "motor_limits a1 +61 ms") << "its velocity is limited";
 }
 
+TEST_F(MotorLimitsTest, DoNotJudgeTheAccelerationInTheTwoCyclesAfterAnEffort) {
+  truths_[0].mode = 10;
+  lookFor(100ms);
+  truths_[0].mode = 8;
+  lookFor(7ms);
+  turn(1.0, 60ms);
+  EXPECT_EQ(found(), "");
+}
+
+TEST_F(MotorLimitsTest, JudgeTheAccelerationFromTheThirdCycleAfterAnEffortOn) {
+  truths_[0].mode = 10;
+  lookFor(100ms);
+  truths_[0].mode = 8;
+  lookFor(10ms);
+  turn(1.0, 60ms);
+  EXPECT_NE(found(), "");
+}
+
 TEST_F(MotorLimitsTest, LetAMotorTurnFasterByTheShareThatIsMissingBetweenTwoSyncs) {
   for (double speed = 0.2; speed < 1.1; speed += 0.2) turn(speed, 40ms);
   earlySync();

@@ -65,6 +65,7 @@ class MotorLimits final : public Oracle {
     Time last{};          // it may take no longer than that
     Time catches_up{};    // until then it makes good what that cost it
     Time held{};          // by a limit switch, since then; Time(): it is not
+    Time pushed{};        // by an effort, until then
     Time let_go{};        // until then it goes to where it was led against the switch
     bool behind = false;  // its set-points, for some were lost; the drive cannot catch up
   };
@@ -122,7 +123,9 @@ class MotorLimits final : public Oracle {
           "turns at " + number(truth.velocity) + " per s, its limit is " + number(facts.velocity));
     }
     // Nor is it limited where an effort is commanded: it follows from the load.
-    const bool effort = facts.kind(truth.mode) == drive::ControlKind::torque;
+    // Another mode takes the motor over at a velocity that is up to two cycles old.
+    if (facts.kind(truth.mode) == drive::ControlKind::torque) axis.pushed = view.now + 2 * period;
+    const bool effort = view.now <= axis.pushed;
     // A limit switch stops a motor as hard as its drive can.
     if (lags || effort || at_limit || axis.behind) axis.count = 0;
     if (axis.count == kWindow && squeeze == 0.0) {
