@@ -224,7 +224,8 @@ void Proof::move(std::size_t axis, std::optional<double> tried) {
   streams_.begin(
       axis, [value = step.value](Duration) { return value; }, 0.3, 100.0);
   runFor(300ms + facts.config->command_timeout + facts.stopTime(facts.velocity) + 500ms);
-  if (session_.failed()) return;
+  // It may have met the switch at which it has found its home.
+  if (session_.failed() || heldByFault(axis)) return;
   const bool torque = mode->kind == drive::ControlKind::torque;
   const double expected = step.expected;
   const double moved = session_.truths[axis].position - from;
