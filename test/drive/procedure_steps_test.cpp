@@ -147,7 +147,8 @@ TEST(ProcedureSteps, OfEnableOnAHaltedAxisNameTheSetPoint) {
   bench.run(100ms);
   ASSERT_TRUE(bench.perform(ProcedureKind::halt).success);
   EXPECT_EQ(stepsOf(bench, ProcedureKind::enable),
-            (Steps{"releasing the halt | the drive to take its present position as set-point"}));
+            (Steps{"writing position limits | the drive to hold the axis also beyond its limits",
+                   "releasing the halt | the drive to take its present position as set-point"}));
   EXPECT_EQ(bench.axis.procedure().message,
             "shoulder: the halt is released, the axis holds its position");
 }

@@ -1,4 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include <utility>
+
 #include "drive/procedures/procedure.h"
 #include "drive/procedures/steps/switch.h"
 #include "drive/sentence.h"
@@ -38,15 +40,28 @@ class Enable : public Procedure {
       released_ = true;
       frames_ = axis.control().frames();
     }
-    if (!releasing_ || !axis.state().halted || changing_mode_) return;
-    axis.stops().replaceHaltedTarget();
-    frames_ = axis.generator().targetFrames();
-    context.show("releasing the halt", "the drive to take its present position as set-point");
+    if (!releasing_ || !axis.state().halted) return;
+    replacing_ = !changing_mode_;
+    axis.limits().renew();
+    context.show("writing position limits", "the drive to hold the axis also beyond its limits");
   }
 
   Outcome release(const Context& context) {
     AxisCore& axis = context.axis;
     if (blocked_) return Outcome::failed(drive::obstacle(axis));
+    if (!axis.limits().settled()) return Outcome::running();
+    const std::string problem = axis.limits().problem();
+    if (!problem.empty() && axis.state().halted) {
+      return Outcome::failed(axis.who() +
+                             ": the halt was not released, as the drive would move to its position "
+                             "limits; disable and enable instead (" +
+                             problem + ")");
+    }
+    if (std::exchange(replacing_, false)) {
+      axis.stops().replaceHaltedTarget();
+      frames_ = axis.generator().targetFrames();
+      context.show("releasing the halt", "the drive to take its present position as set-point");
+    }
     if (changing_mode_) {
       if (released_ && axis.control().frames() < frames_ + kSureFrames) return Outcome::running();
       const Outcome ready = waiting_.advance(context);
@@ -100,7 +115,8 @@ class Enable : public Procedure {
   bool begun_ = false, releasing_ = false, released_ = false;
   bool changing_mode_ = false;  ///< the drive is not, or does not show to be, in the mode to be in
   bool mode_changed_ = false;
-  bool blocked_ = false;  ///< the halt is in the way of the mode
+  bool replacing_ = false;  ///< where it was going is still to be taken back
+  bool blocked_ = false;    ///< the halt is in the way of the mode
   std::uint64_t frames_ = 0;
   Time started_{};
 };
