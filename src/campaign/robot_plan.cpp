@@ -10,6 +10,7 @@ namespace cia402::campaign {
 namespace {
 
 constexpr const char* kSharedPdos = "pdo_rules: {pdos_per_axis: 0}";
+constexpr double kSearch = 0.4;  // of the velocity limit: how fast a home is searched for
 
 /// Where an axis sits.
 struct Seat {
@@ -137,7 +138,9 @@ class AxisWriter {
       return;
     }
     if (choice < 0.25) return;
-    const bool by_switch = choice > 0.8 && !axis_.continuous && family_.searches_switches;
+    // Within the time that a home is searched for, 30 s where nothing is said.
+    const bool soon = axis_.upper - axis_.lower < 20.0 * kSearch * axis_.velocity;
+    const bool by_switch = choice > 0.8 && !axis_.continuous && family_.searches_switches && soon;
     if (choice < 0.55 || (!by_switch && family_.searches.empty())) {
       const std::string any = random_.pick<std::string>({"35", "37"});
       return declare("method: " + (family_.declares.empty() ? any : family_.declares) + ", ");
@@ -150,7 +153,7 @@ class AxisWriter {
       simulate("lower_limit_switch", text(axis_.lower - 0.05));
       simulate("upper_limit_switch", text(axis_.upper + 0.05));
     }
-    add("homing", "{method: " + method + ", search_velocity: " + text(0.4 * axis_.velocity) +
+    add("homing", "{method: " + method + ", search_velocity: " + text(kSearch * axis_.velocity) +
                       ", zero_velocity: " + text(0.1 * axis_.velocity) + ", acceleration: " +
                       text(axis_.acceleration) + ", offset: " + text(at_) + required() + "}");
   }
