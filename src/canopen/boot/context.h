@@ -99,9 +99,11 @@ class BootContext {
   Time commanded{};                                            ///< the last NMT command to the node
   Time asked{};                                                ///< the last SDO request was queued
   NmtCommand reset_command = NmtCommand::reset_communication;  ///< that it was given
-  bool resetting = false;    ///< its boot-up message is waited for
-  unsigned resets_left = 0;  ///< repetitions of a reset that shows no effect
-  bool ask_state = false;    ///< Node shall send a remote frame for the NMT state, now
+  bool resetting = false;          ///< its boot-up message is waited for
+  bool braking = false;            ///< it is left in its NMT state until its motors are braked ...
+  bool reset_when_braked = false;  ///< ... and gets a reset then
+  unsigned resets_left = 0;        ///< repetitions of a reset that shows no effect
+  bool ask_state = false;          ///< Node shall send a remote frame for the NMT state, now
   // These outlive the boot:
   bool restore_pending = false;  ///< 1011h was written, the drive has not yet started anew
   bool restored = false;         ///< ... and it has
@@ -136,6 +138,13 @@ class BootContext {
   void wake(Time now) {
     command(NmtCommand::enter_pre_operational, now);
     if (guarded()) ask_state = true;
+  }
+  /// A reset has left: its boot-up message is waited for.
+  void awaitReset(Time now) {
+    constexpr unsigned kResets = 3;
+    resetting = true;
+    resets_left = kResets;
+    commanded = now;
   }
   bool guarded() const { return config.error_control == ErrorControl::guarding; }
 

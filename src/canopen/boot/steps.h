@@ -14,6 +14,8 @@ using BootStepPointer = std::unique_ptr<BootStep>;
 BootStepPointer makeBootUpWait();
 BootStepPointer makeProofOfLife();
 BootStepPointer makeIdentification();
+// boot/brake.cpp: a motor that turns on is braked where its stop would let it go.
+BootStepPointer makeBrake();
 // boot_wake.cpp: out of the NMT state stopped, before anything is asked.
 BootStepPointer makeWake();
 // boot_writes.cpp: what stops a drive that was left enabled, before anything else is written to it.
