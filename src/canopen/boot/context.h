@@ -40,6 +40,12 @@ struct LeftOutEntry {
   ObjectId object;
 };
 
+/// What an RPDO is to carry of an object that no cycle sets.
+struct KeptValue {
+  ObjectId object;
+  std::uint64_t raw;
+};
+
 /// What was found out about the node since the boot began.
 struct BootFindings {
   std::optional<Node::Identity> identity;
@@ -64,6 +70,7 @@ struct BootFindings {
   std::vector<AdoptedCobId> cob_ids;
   std::vector<LeftOutEntry> left_out;
   std::vector<LearnedWidth> widths;  ///< longer than assumed
+  std::vector<KeptValue> kept;       ///< before its RPDOs are sent
   std::vector<std::string> lacking;  ///< what only defaults ask for, "606C:00 velocity_actual"
   std::vector<std::string> lacking_optional;  ///< what is optional anyhow
   bool started = false;                       ///< the NMT command was sent

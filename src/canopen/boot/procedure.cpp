@@ -31,6 +31,7 @@ std::vector<BootStepPointer> makeSteps(const NodeConfig& config) {
   steps.push_back(makeSyncSetup());
   steps.push_back(makePdos(config));
   steps.push_back(makeStartupWrites());
+  steps.push_back(makeKeptValues());
   steps.push_back(makeSignature());
   steps.push_back(makeStart());
   return steps;

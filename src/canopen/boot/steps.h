@@ -39,6 +39,8 @@ BootStepPointer makeSyncSetup();
 BootStepPointer makePdos(const NodeConfig& config);
 // boot_writes.cpp: the start-up writes of profile and user.
 BootStepPointer makeStartupWrites();
+// boot/kept_values.cpp: what its RPDOs shall carry of objects that no cycle sets.
+BootStepPointer makeKeptValues();
 // boot_start.cpp: operational, and does it say so?
 BootStepPointer makeStart();
 
