@@ -60,6 +60,15 @@ struct StartupWrite {
   bool always = false;  ///< no configuration but what stops the drive: done at each boot, first
 };
 
+/// What brakes a motor that a drive turns as its last master has told it, in modes in which the
+/// drive only lets it go when it is stopped: another mode takes it over at the velocity that it
+/// has.
+struct BootBrake {
+  ObjectId statusword, shown_mode, mode, velocity, target;
+  std::vector<int> pushing;  ///< numbers of modes, in `shown_mode`
+  int brake = 0;             ///< number of the mode for `mode`, whose target is in `target`
+};
+
 /// A whole number whose length the drive says itself.
 struct OpenWidth {
   ObjectId object;
@@ -97,6 +106,7 @@ struct NodeConfig {
   std::vector<PdoConfig> by_sdo;
   std::vector<HalfFloat> half_floats;  ///< how wide the drive has these is learnt at each boot
   std::vector<OpenWidth> widths;       ///< whole numbers of which the same is learnt
+  std::vector<BootBrake> brakes;       ///< of its axes, before it leaves the NMT state operational
   bool reads_back = false;             ///< what `writes` writes is read again and compared
   std::vector<StartupWrite> writes;    ///< in this order, after the PDOs but for `always`
   /// Behind the warning of what was left out (StartupWrite::by_default, PdoEntry::optional): what

@@ -96,8 +96,10 @@ void checkCyclicObjects(yaml::Section& section, const canopen::PdoSet& pdos) {
 }
 
 // What an RPDO carries is sent in every cycle, over whatever an SDO wrote: a torque limit that
-// nobody sets would be 0 and drop the load.
+// nobody sets would be 0 and drop the load. So the node learns what the drive holds, where PDOs
+// are.
 void checkRpdoObjects(yaml::Section& section, const AxisDraft& draft) {
+  if (!draft.pdos().by_sdo) return;
   const auto at = section.get("pdos").value_or(section.value());
   for (const canopen::PdoLayout& pdo : draft.pdos().pdos) {
     if (pdo.direction != PdoDirection::rpdo) continue;

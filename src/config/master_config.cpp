@@ -54,6 +54,33 @@ void addStop(const drive::DriveProfile& profile, NodeConfig& node) {
   node.writes.push_back(stop);
 }
 
+/// A number of one means the same in the other.
+bool alike(const drive::ObjectSpec& a, const drive::ObjectSpec& b) {
+  return a.quantity == b.quantity && a.type == b.type && a.encoding == b.encoding &&
+         a.factor == b.factor && !a.unit && !b.unit;
+}
+
+/// A motor that turns as a driver has told it that is gone is braked first by the mode that brakes
+/// such ones, where a stop would only let it go.
+void addBrakes(const drive::AxisConfig& axis, canopen::NodeConfig& node) {
+  const drive::DriveProfile& profile = *axis.profile;
+  const drive::ObjectSpec* const statusword = profile.find("statusword");
+  const drive::ObjectSpec* const shown = profile.find("mode_display");
+  const drive::ObjectSpec* const mode = profile.find("mode_of_operation");
+  const drive::ObjectSpec* const velocity = profile.find("velocity_actual");
+  if (!statusword || !shown || !mode || !velocity) return;
+  for (const drive::ModeSpec& brake : profile.modes) {
+    const drive::ObjectSpec* const target = profile.find(brake.target);
+    if (target == nullptr || !alike(*velocity, *target)) continue;
+    canopen::BootBrake found{statusword->id, shown->id, mode->id,   velocity->id,
+                             target->id,     {},        brake.value};
+    for (const drive::ModeSpec& pushing : profile.modes) {
+      if (pushing.stop_mode == brake.name) found.pushing.push_back(pushing.value);
+    }
+    if (!found.pushing.empty()) node.brakes.push_back(std::move(found));
+  }
+}
+
 void setSupervision(const BusConfig& bus, const DeviceConfig& device, NodeConfig& node) {
   const ErrorControlPlan plan = planErrorControl(bus, device);
   const bool guarding = plan.kind == canopen::ErrorControl::guarding;
@@ -135,6 +162,7 @@ NodeConfig makeNode(const BusConfig& bus, const DeviceConfig& device,
   node.reads_back = axes.front()->profile->reads_back;
   for (const AxisConfig* axis : axes) addWidths(*axis, node);
   for (const AxisConfig* axis : axes) addStop(*axis->profile, node);
+  for (const AxisConfig* axis : axes) addBrakes(*axis, node);
   addSyncWindow(bus, node);
   for (const AxisConfig* axis : axes) addAxis(*axis, node, problems);
   node.lacking_remedy = "`lacks` of axes/" + device.name + " says that this is right";

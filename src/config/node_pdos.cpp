@@ -6,6 +6,7 @@
 #include <set>
 
 #include "common/text.h"
+#include "drive/profile/outputs.h"
 
 namespace cia402::config {
 namespace {
@@ -72,8 +73,10 @@ PdoConfig makePdo(const canopen::PdoLayout& layout, unsigned first, const AxisCo
     const auto& riders = set.riders;
     const bool optional = std::find(defaults.begin(), defaults.end(), name) != defaults.end();
     const bool if_room = std::find(riders.begin(), riders.end(), name) != riders.end();
+    const bool kept = layout.direction == PdoDirection::rpdo &&
+                      drive::isKept(*axis.profile, axis.modes, object->name);
     pdo.entries.push_back({object->id, static_cast<std::uint8_t>(fieldbus::sizeBits(object->type)),
-                           object->name, optional, if_room});
+                           object->name, optional, if_room, kept});
   }
   return pdo;
 }

@@ -297,14 +297,25 @@ TEST(RobotConfig, CoupledAxesAreRefusedAsNothingWouldCoupleThem) {
   EXPECT_THAT(loaded.robot.groups.at(0).joints, ElementsAre("pitch", "roll"));
 }
 
-TEST(RobotConfig, AnObjectThatNothingSetsIsNoObjectForAnRpdo) {
+TEST(RobotConfig, AnObjectThatNothingSetsIsKeptAsTheDriveHasItInAnRpdo) {
   const std::string axis =
       "bus: {interface: can0}\naxes: {a: {node_id: 1, drive: generic_cia402, counts_per_turn: "
       "1000, rated_torque: 1.0, limits: {velocity: 1, acceleration: 1}, pdos: {rpdo1: "
       "[controlword, mode_of_operation, target_position], tpdo1: [statusword, position_actual]";
   EXPECT_EQ(loadText(axis + "}}}").problems, "");
-  EXPECT_THAT(loadText(axis + ", rpdo2: [target_torque, max_torque]}}}").problems,
-              HasSubstr("`max_torque` would be sent as 0 in every cycle"));
+  const LoadedRobot loaded = loadText(axis + ", rpdo2: [target_torque, max_torque]}}}");
+  EXPECT_EQ(loaded.problems, "");
+  Problems problems;
+  const canopen::MasterConfig master = makeMasterConfig(loaded.robot, problems);
+  EXPECT_TRUE(problems.empty()) << problems.text();
+  unsigned kept = 0;
+  for (const canopen::PdoConfig& pdo : master.nodes.at(0).pdos) {
+    for (const canopen::PdoEntry& entry : pdo.entries) {
+      EXPECT_EQ(entry.kept, entry.name == "max_torque") << entry.name;
+      kept += entry.kept ? 1U : 0U;
+    }
+  }
+  EXPECT_EQ(kept, 1U);
 }
 
 TEST(RobotConfig, WarnsOfWhatCannotBeNoticedOrLimited) {

@@ -51,6 +51,36 @@ TEST_P(FamilyHomingResult, IsAnInterruptionWhereItIsHaltedAndTheAxisHolds) {
   EXPECT_TRUE(scene.truth("joint").power_stage_on) << "it is halted, not switched off";
 }
 
+// Efforts that end leave the axis halted by the mode that braked it. The motor has just set off,
+// which the feedback of then does not show yet: it is braked before its power goes.
+TEST(FamilyHomingResults, AreNoneWhereItIsDisabledAsItSetsOffFromAHalt) {
+  for (const FamilyMode& tested :
+       {FamilyMode{kId286Cnfa, "10000", "pt"}, FamilyMode{kMegmeetDm5, "8388608", "pt"}}) {
+    for (const double begun : {0.001, 0.03, 0.1}) {
+      Scene scene(loadText(replaced(familySearch(tested, "17", "lower_limit_switch: -2.0"),
+                                    "sync_period: 0.004", "sync_period: 0.01")));
+      ASSERT_TRUE(scene.boot(20s)) << scene.told();
+      ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success) << scene.told();
+      scene.stream("joint", 5.0, 400ms);
+      scene.run(2s);
+      ASSERT_TRUE(scene.state("joint").halted) << scene.told();
+      double when_off = 0.0;
+      bool on = true;
+      scene.watch([&] {
+        const bool power = scene.truth("joint").power_stage_on;
+        if (on && !power) when_off = std::max(when_off, std::fabs(scene.velocity("joint")));
+        on = power;
+      });
+      const auto homed = scene.begin(ProcedureKind::home, "joint");
+      ASSERT_TRUE(scene.runUntil([&] { return scene.velocity("joint") < -begun; }, 8s))
+          << tested.family << scene.told();
+      EXPECT_TRUE(scene.procedure(ProcedureKind::disable, "joint").success);
+      EXPECT_LT(when_off, 0.01) << tested.family << " at " << begun << " rad/s";
+      EXPECT_FALSE(scene.truth("joint").power_stage_on);
+    }
+  }
+}
+
 TEST_P(FamilyHomingResult, IsTheTimeOutOfTheDriverWhichStopsIt) {
   Scene scene(loadText(familySearch(GetParam(), "17", "lower_limit_switch: -2.0", "1.5")));
   ASSERT_TRUE(scene.boot(20s)) << scene.told();

@@ -118,5 +118,24 @@ TEST(FamilyWarnings, OfOneCodeWithAFaultAreToldApart) {
   EXPECT_THAT(scene.axis("joint").faultText(), HasSubstr("fault 0xFF0C motor overload (Er.012)"));
 }
 
+// Bit 7 says of 603Fh that it is the warning's, for as long as that stands: the fault is still the
+// one that let the motor go, and its reset waits for nothing but that.
+TEST(FamilyWarnings, ThatComeInAFaultDoNotTakeItsName) {
+  Scene scene(loadText(familyJoint({"megmeet_dm5", "8388608", "csp"})));
+  ASSERT_TRUE(scene.boot(20s)) << scene.told();
+  scene.inject("joint", "overcurrent");
+  scene.run(1s);
+  scene.inject("joint", "motor_overload_warning");
+  scene.run(1s);
+  EXPECT_EQ(scene.truth("joint").statusword & 0x0088, 0x0088);
+  EXPECT_THAT(scene.axis("joint").faultText(), HasSubstr("fault 0xFF01 drive over-current"));
+  scene.inject("joint", "clear");
+  scene.run(1s);
+  EXPECT_EQ(scene.drive("joint").dictionary().find({0x603F, 0})->number, 0xFF01U);
+  EXPECT_THAT(scene.axis("joint").faultText(), HasSubstr("fault 0xFF01 drive over-current"));
+  const bus::Answer cleared = scene.procedure(ProcedureKind::clear_faults);
+  EXPECT_TRUE(cleared.success) << cleared.message;
+}
+
 }  // namespace
 }  // namespace cia402

@@ -75,6 +75,31 @@ TEST_P(FadingTorque, IsBrakedAtAShutdown) {
   EXPECT_FALSE(scene.truth("joint").power_stage_on);
 }
 
+// A new driver finds it turning by the torque of one that is gone. What it tells the drive first,
+// the NMT command and the quick stop, would let the motor go.
+TEST_P(FadingTorque, IsBrakedByTheNextDriver) {
+  turn();
+  for (const bool reset : {true, false}) {
+    double when_off = 1e9;
+    scene.watch([&] {
+      if (when_off > 1e8 && !scene.truth("joint").power_stage_on) {
+        when_off = scene.velocity("joint");
+      }
+    });
+    scene.node("joint").boot(scene.now(), reset);
+    scene.run(1s);
+    EXPECT_LT(std::fabs(when_off), 0.05) << "braked, not left to coast";
+    expectRest();
+    ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 10s)) << scene.told();
+    EXPECT_TRUE(scene.procedure(ProcedureKind::recover).success) << scene.told();
+    EXPECT_NEAR(scene.velocity("joint"), 0.0, 1e-3);
+    scene.stream("joint", 4.0, 700ms);
+    speed = scene.velocity("joint");
+    from = scene.position("joint");
+    scene.forget();
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, FadingTorque,
                          testing::Values(FamilyMode{"id286_cnfa", "10000", "pt"},
                                          FamilyMode{"megmeet_dm5", "8388608", "pt"},

@@ -55,7 +55,7 @@ std::string bitsRefusal(drive::Axis& axis, const drive::ObjectSpec& object) {
   }
   const fieldbus::Slot slot = travellingIn(axis, object);
   if (slot == fieldbus::kNoSlot) return {};
-  if (drive::isSetByPeople(*axis.config().profile, object.name)) return {};
+  if (!drive::isSetByAxis(*axis.config().profile, object.name)) return {};
   return titleOf(object) + " travels in " + axis.device().carrierText(slot) +
          ", which would undo it in the next cycle; take it out of `pdos`";
 }

@@ -91,6 +91,12 @@ class TargetSteps final : public Oracle {
     const auto same = [&](const drive::ModeSpec& other) { return other.value == mode->value; };
     return !unsure_[i] || std::count_if(profile.modes.begin(), profile.modes.end(), same) == 1;
   }
+  /// Integers of 32 bits count on from their lowest number where they end.
+  static double distance(double a, double b, const AxisFacts& facts) {
+    constexpr double kNumbers = 4294967296.0;
+    if (facts.units_per_count == 0.0) return std::fabs(a - b);
+    return std::fabs(std::remainder(a - b, kNumbers * facts.units_per_count));
+  }
   bool operates(std::size_t i) const { return (controlwords_[i] & 0x8F) == 0x0F; }
   void judge(const View& view, std::size_t i, double value) {
     if (!streams(view, i) || !operates(i)) {
@@ -98,7 +104,7 @@ class TargetSteps final : public Oracle {
       return;
     }
     const AxisFacts& facts = view.stage.axes()[i];
-    const double step = last_[i] ? std::fabs(value - *last_[i]) : 0.0;
+    const double step = last_[i] ? distance(value, *last_[i], facts) : 0.0;
     const double allowed = 1.02 * facts.velocity * toSeconds(facts.config->cycle) +
                            2 * std::fabs(facts.units_per_count) + 1e-6 * std::fabs(value);
     const bool stands_as_told = view.now - stood_[i].at <= facts.config->cycle;

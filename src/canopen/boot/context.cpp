@@ -20,7 +20,7 @@ void BootContext::reset() {
   ticket.reset();
   deadline = kNever;
   absent_at = kNever;
-  resetting = false;
+  resetting = braking = false;
   resets_left = 0;
   error.clear();
   failure = BootFailure::none;

@@ -40,6 +40,12 @@ struct LeftOutEntry {
   ObjectId object;
 };
 
+/// What an RPDO is to carry of an object that no cycle sets.
+struct KeptValue {
+  ObjectId object;
+  std::uint64_t raw;
+};
+
 /// What was found out about the node since the boot began.
 struct BootFindings {
   std::optional<Node::Identity> identity;
@@ -64,6 +70,7 @@ struct BootFindings {
   std::vector<AdoptedCobId> cob_ids;
   std::vector<LeftOutEntry> left_out;
   std::vector<LearnedWidth> widths;  ///< longer than assumed
+  std::vector<KeptValue> kept;       ///< before its RPDOs are sent
   std::vector<std::string> lacking;  ///< what only defaults ask for, "606C:00 velocity_actual"
   std::vector<std::string> lacking_optional;  ///< what is optional anyhow
   bool started = false;                       ///< the NMT command was sent
@@ -99,9 +106,11 @@ class BootContext {
   Time commanded{};                                            ///< the last NMT command to the node
   Time asked{};                                                ///< the last SDO request was queued
   NmtCommand reset_command = NmtCommand::reset_communication;  ///< that it was given
-  bool resetting = false;    ///< its boot-up message is waited for
-  unsigned resets_left = 0;  ///< repetitions of a reset that shows no effect
-  bool ask_state = false;    ///< Node shall send a remote frame for the NMT state, now
+  bool resetting = false;          ///< its boot-up message is waited for
+  bool braking = false;            ///< it is left in its NMT state until its motors are braked ...
+  bool reset_when_braked = false;  ///< ... and gets a reset then
+  unsigned resets_left = 0;        ///< repetitions of a reset that shows no effect
+  bool ask_state = false;          ///< Node shall send a remote frame for the NMT state, now
   // These outlive the boot:
   bool restore_pending = false;  ///< 1011h was written, the drive has not yet started anew
   bool restored = false;         ///< ... and it has
@@ -136,6 +145,13 @@ class BootContext {
   void wake(Time now) {
     command(NmtCommand::enter_pre_operational, now);
     if (guarded()) ask_state = true;
+  }
+  /// A reset has left: its boot-up message is waited for.
+  void awaitReset(Time now) {
+    constexpr unsigned kResets = 3;
+    resetting = true;
+    resets_left = kResets;
+    commanded = now;
   }
   bool guarded() const { return config.error_control == ErrorControl::guarding; }
 

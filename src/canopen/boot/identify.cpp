@@ -36,6 +36,7 @@ std::string mismatch(ObjectId object, const char* name, std::uint32_t is, std::u
 class BootUpWait : public BootStep {
  public:
   bool begin(BootContext& boot, Time now) override {
+    if (!boot.resetting) return false;
     boot.step = "waiting for boot-up";
     boot.deadline = now + boot.config.boot_timeout / 4;
     return true;

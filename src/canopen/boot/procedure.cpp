@@ -9,14 +9,14 @@
 namespace cia402::canopen {
 namespace {
 
-constexpr std::size_t kBootUpWait = 0, kWake = 1;               // places in makeSteps()
+constexpr std::size_t kBrake = 0, kBootUpWait = 1, kWake = 2;   // places in makeSteps()
 constexpr Duration kOnItsWay = std::chrono::milliseconds(20);   // a heartbeat of before a command
 constexpr Duration kResetTime = std::chrono::milliseconds(50);  // after which no old state is told
-constexpr unsigned kResets = 3;
 
 /// In this order; each step is skipped where the configuration asks nothing of it.
 std::vector<BootStepPointer> makeSteps(const NodeConfig& config) {
   std::vector<BootStepPointer> steps;
+  steps.push_back(makeBrake());
   steps.push_back(makeBootUpWait());
   steps.push_back(makeWake());
   steps.push_back(makeProofOfLife());
@@ -31,6 +31,7 @@ std::vector<BootStepPointer> makeSteps(const NodeConfig& config) {
   steps.push_back(makeSyncSetup());
   steps.push_back(makePdos(config));
   steps.push_back(makeStartupWrites());
+  steps.push_back(makeKeptValues());
   steps.push_back(makeSignature());
   steps.push_back(makeStart());
   return steps;
@@ -49,12 +50,14 @@ void BootProcedure::start(From from, Time now, NmtCommand reset) {
   boot_.found.after_reset = from == From::boot_up;
   if (boot_.restore_pending && from == From::boot_up) boot_.restored = boot_.must_configure = true;
   boot_.restore_pending = false;
-  if (from == From::unknown) boot_.command(NmtCommand::enter_pre_operational, now);
+  if (from == From::unknown || from == From::before_reset) {
+    boot_.reset_when_braked = from == From::before_reset;
+    boot_.braking = true;
+    return begin(kBrake, now);
+  }
   if (from == From::reset) {
     boot_.reset_command = reset;
-    boot_.resetting = true;
-    boot_.resets_left = kResets;
-    boot_.commanded = now;
+    boot_.awaitReset(now);
   }
   begin(from == From::reset ? kBootUpWait : kWake, now);
 }
@@ -131,6 +134,7 @@ void BootProcedure::heartbeatHeard(NmtState state, Time now) {
     return;
   }
   if (state == NmtState::pre_operational) boot_.found.stopped = false;
+  if (boot_.braking) return;
   const bool disobeys = state == NmtState::operational || state == NmtState::stopped;
   // One that is guarded answers a question that left behind the command.
   const Duration heard_late = boot_.guarded() ? Duration::zero() : kOnItsWay;

@@ -19,9 +19,10 @@ class BootProcedure {
   enum class Status { idle, running, done, failed, absent };
   /// What is known about the node at the start.
   enum class From {
-    reset,    ///< it was just told to reset: a boot-up message is due
-    boot_up,  ///< its boot-up message came
-    unknown,  ///< nothing: it is brought to pre-operational and asked whether it is there
+    reset,         ///< it was just told to reset: a boot-up message is due
+    boot_up,       ///< its boot-up message came
+    unknown,       ///< nothing: it is brought to pre-operational and asked whether it is there
+    before_reset,  ///< the same, but its communication is reset instead
   };
 
   BootProcedure(const NodeConfig& config, const MasterConfig& master, SdoClient& sdo,

@@ -14,6 +14,8 @@ using BootStepPointer = std::unique_ptr<BootStep>;
 BootStepPointer makeBootUpWait();
 BootStepPointer makeProofOfLife();
 BootStepPointer makeIdentification();
+// boot/brake.cpp: a motor that turns on is braked where its stop would let it go.
+BootStepPointer makeBrake();
 // boot_wake.cpp: out of the NMT state stopped, before anything is asked.
 BootStepPointer makeWake();
 // boot_writes.cpp: what stops a drive that was left enabled, before anything else is written to it.
@@ -37,6 +39,8 @@ BootStepPointer makeSyncSetup();
 BootStepPointer makePdos(const NodeConfig& config);
 // boot_writes.cpp: the start-up writes of profile and user.
 BootStepPointer makeStartupWrites();
+// boot/kept_values.cpp: what its RPDOs shall carry of objects that no cycle sets.
+BootStepPointer makeKeptValues();
 // boot_start.cpp: operational, and does it say so?
 BootStepPointer makeStart();
 

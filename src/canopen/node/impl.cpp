@@ -41,7 +41,8 @@ Node::Impl::Impl(const NodeConfig& node_config, const MasterConfig& master, can:
       retry(config.boot),
       last_stop(config, sdo, sink),
       pause(config.node_id, sink),
-      sdo_cycle(config, image, sdo) {
+      sdo_cycle(config, image, sdo),
+      kept(config, image, sdo) {
   process = &image;
   sdo.tellWhenQueued(changed);
 }
@@ -196,6 +197,7 @@ void Node::Impl::succeed(Time now) {
   problem.clear();
   retry.reset();
   sdo_cycle.start();
+  kept.begin(boot.found().kept);
   if (boot.found().supervised && !boot.found().guarded) consumer.arm(now);
   notes = boot.notes();
   compareWithLastIdentity();

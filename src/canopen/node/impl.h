@@ -10,6 +10,7 @@
 #include "canopen/nmt/heartbeat.h"
 #include "canopen/nmt/node_guarding.h"
 #include "canopen/nmt/pause.h"
+#include "canopen/node/kept_outputs.h"
 #include "canopen/node/last_stop.h"
 #include "canopen/node/node.h"
 #include "canopen/node/sdo_cycle.h"
@@ -78,6 +79,7 @@ struct Node::Impl : Node::Front {
   LastStop last_stop;
   NmtPause pause;
   SdoCycle sdo_cycle;
+  KeptOutputs kept;
   SdoTicket probe;  ///< of the search for a node that does not answer
   NmtState nmt_state = NmtState::unknown;
   std::string problem;

@@ -62,11 +62,8 @@ std::string Node::carrierText(fieldbus::Slot output) const {
 Time Node::nextDeadline() const { return std::min(impl_->next, impl_->sdo.nextDeadline()); }
 
 void Node::boot(Time now, bool reset) {
-  if (reset) {
-    command(NmtCommand::reset_communication, now);
-    return;
-  }
-  impl_->startBoot(BootProcedure::From::unknown, "", now);
+  using From = BootProcedure::From;
+  impl_->startBoot(reset ? From::before_reset : From::unknown, "", now);
   impl_->refresh();
 }
 

@@ -22,6 +22,9 @@ struct PdoEntry {
   /// Wanted only where it costs nothing: left out where the drive refuses the mapping for whatever
   /// reason, and no cause for a warning.
   bool if_room = false;
+  /// Of an RPDO: no cycle sets it. It carries what the drive holds when it boots, and later what
+  /// was written to it last.
+  bool kept = false;
 };
 
 /// Transmission types (CiA 301, 7.5.2.35 and 7.5.2.37).

@@ -270,6 +270,7 @@ void SdoClient::succeed(Time now) {
     transfer.setData(widths_.fromDrive(transfer.object(), transfer.data()));
   }
   transfer.succeed();
+  if (written_ && !transfer.isUpload()) written_(transfer.object(), transfer.data());
   queue_.pop();
   startNext(now);
 }

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 
 #include "can/bus.h"
@@ -71,6 +73,10 @@ class SdoClient final : public fieldbus::ObjectAccess {
   /// `*queued` becomes true with every transfer that is queued, for nextDeadline() may be another
   /// one then. It must outlive the client; nullptr: nobody is told.
   void tellWhenQueued(bool* queued) { queue_.tellWhenQueued(queued); }
+  /// Who is told of each write that the drive has confirmed, in the bytes that it was asked for in.
+  void tellWritten(std::function<void(ObjectId, const Bytes&)> written) {
+    written_ = std::move(written);
+  }
   /// Ends all transfers, running and queued, with `reason` (e.g. "the node rebooted").
   void cancelAll(const std::string& reason);
   /// A boot-up message came: no answer to an older request can follow, and whether the server takes
@@ -133,6 +139,7 @@ class SdoClient final : public fieldbus::ObjectAccess {
   HalfFloats half_floats_;
   SdoBlockUse blocks_;
   ObjectWidths widths_;
+  std::function<void(ObjectId, const Bytes&)> written_;
   /// What is on the wire, for the front one of the queue.
   std::variant<Idle, AtFence, SdoUpload, SdoDownload, SdoBlockUpload, SdoBlockDownload> wire_;
   Time started_at_{};  ///< of the front transfer, all attempts and fences included

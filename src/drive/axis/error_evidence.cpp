@@ -44,7 +44,9 @@ void ErrorEvidence::forget() {
 void ErrorEvidence::update(const Look& look, fieldbus::ObjectAccess& objects, Time now) {
   if (look.faulted && !faulted_) fault_since_ = now;
   faulted_ = look.faulted;
-  if (look.told && (!object_known_ || *look.told != object_.code)) {
+  // A warning that comes while the drive stands in a fault does not take that one's name.
+  const bool beside = faulted_ && look.of_warning && code_ != 0 && now > fault_since_ + kNaming;
+  if (look.told && !beside && (!object_known_ || *look.told != object_.code)) {
     const bool in_time = object_known_ && !(faulted_ && now > fault_since_ + kNaming);
     object_ = {*look.told, in_time ? now : Time::min()};
     object_known_ = true;

@@ -39,6 +39,7 @@ class ErrorEvidence {
   struct Look {
     bool faulted = false, warning = false;
     std::optional<std::uint16_t> told;  ///< 603Fh as it came in the cycle
+    bool of_warning = false;            ///< ... which is, with this statusword, a warning's
     const ObjectSpec* asked = nullptr;  ///< 603Fh where it does not come so
   };
   void update(const Look& look, fieldbus::ObjectAccess& objects, Time now);

@@ -17,6 +17,8 @@ void FaultWatch::readError(Time now) {
   } else if (signals.fresh(SignalId::error_code)) {
     look.told = static_cast<std::uint16_t>(signals.image(SignalId::error_code).raw);
   }
+  const auto& warnings = axis_.profile().warnings;
+  look.of_warning = look.warning && look.told && warnings.find(*look.told) != warnings.end();
   errors_.update(look, axis_.device.objects(), now);
   axis_.state.error_code = errors_.code();
   const std::uint16_t code = look.faulted ? axis_.state.error_code : 0;

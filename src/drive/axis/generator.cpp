@@ -159,10 +159,11 @@ void Generator::sendNeutral() {
 }
 
 /// The drive moves the axis as it sees fit, and what looks like standstill may be where it turns
-/// back.
+/// back. A search for home does not mind that the axis was halted in another mode before.
 bool Generator::movesItself() const {
-  if (!control_.inOperation() || control_.halt() || axis_.state.halted) return false;
-  return control_.homingStart() || (mode_->spec().target_reached_bit && goalAhead());
+  if (!control_.inOperation() || control_.halt()) return false;
+  if (control_.homingStart()) return true;
+  return !axis_.state.halted && mode_->spec().target_reached_bit && goalAhead();
 }
 
 void Generator::watchDrive(Time now) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "drive/profile/profile.h"
 
@@ -13,5 +14,9 @@ bool isSetByAxis(const DriveProfile& profile, const std::string& object);
 /// Does it hold digital outputs alone, which people set: it may travel in the cycle, and holds 0
 /// until somebody has.
 bool isSetByPeople(const DriveProfile& profile, const std::string& object);
+/// Is it set in no cycle of an axis that can be in these modes? An RPDO carries it as the drive
+/// holds it, or as it was written last.
+bool isKept(const DriveProfile& profile, const std::vector<std::string>& modes,
+            const std::string& object);
 
 }  // namespace cia402::drive

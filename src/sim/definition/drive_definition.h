@@ -162,6 +162,7 @@ struct DriveHomingDefinition {
   bool home_offset_is_zero_shift = false;      ///< 6064h at home = -607Ch instead of +607Ch
   bool returns = false;                        ///< moves back onto the home position
   bool stops_quickly_at_limits = false;        ///< by 6085h instead of by 609Ah
+  bool stops_by_torque = false;  ///< what pushes is at a hard stop, whether it moves or not
   /// What the object of a terminal says where a switch is connected to it; a method whose switches
   /// are not at one terminal each is the fault `terminal_setup`. Empty: nobody looks.
   std::map<HomingInput, std::int64_t> terminal_functions;

@@ -107,6 +107,7 @@ void readHoming(DefinitionReader& reader, DriveHomingDefinition& out) {
                     {{"position_at_home", false}, {"shift_of_zero", true}});
   reader.read("returns_to_home", out.returns);
   reader.read("stops_quickly_at_limits", out.stops_quickly_at_limits);
+  reader.read("stops_by_torque", out.stops_by_torque);
   reader.section("terminals", [&](DefinitionReader& r) { readTerminals(r, out); });
   reader.each("routes", [&](const std::string& number, const yaml::Value& value) {
     const auto method = yaml::parseInteger(number);

@@ -14,6 +14,7 @@ constexpr std::size_t kMostCauses = 16;
 FaultMemory::FaultMemory(const DriveDefinition& definition, DriveValues& values,
                          ObjectDictionary& dictionary)
     : definition_(definition),
+      values_(values),
       dictionary_(dictionary),
       alarms_(values),
       records_(definition, dictionary),
@@ -75,6 +76,7 @@ bool FaultMemory::endWarning(const FaultDefinition& warning) {
   causes_.erase(kept, causes_.end());
   warning_ = std::any_of(causes_.begin(), causes_.end(),
                          [](const Cause& cause) { return cause.fault->warning; });
+  showRest();
   return causes_.empty();
 }
 
@@ -84,7 +86,14 @@ bool FaultMemory::endWarnings() {
                                [](const Cause& cause) { return cause.fault->warning; }),
                 causes_.end());
   warning_ = false;
+  showRest();
   return causes_.empty();
+}
+
+void FaultMemory::showRest() {
+  if (causes_.empty()) return;
+  values_.setRaw(Role::error_code, causes_.back().fault->code);
+  values_.setRaw(Role::error_code_copy, causes_.back().fault->code);
 }
 
 std::uint8_t FaultMemory::errorRegister() const {

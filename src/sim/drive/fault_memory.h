@@ -35,9 +35,9 @@ class FaultMemory {
   bool endByThemselves() const;
   /// Whether it is among those that have not been cleared.
   bool stands(const FaultDefinition& fault) const;
-  /// One warning is over. @return true if no error is left
+  /// One warning is over: 603Fh shows the newest error that is left. @return true if none is
   bool endWarning(const FaultDefinition& warning);
-  /// Warnings last as long as what they warn of. @return true if no error is left.
+  /// Warnings last as long as what they warn of; the same.
   bool endWarnings();
 
   /// What the maker keeps of the past.
@@ -66,8 +66,10 @@ class FaultMemory {
   };
   const FaultDefinition* lasting(bool warnings, Time now) const;
   bool resettable(const FaultDefinition& fault) const;
+  void showRest();
 
   const DriveDefinition& definition_;
+  DriveValues& values_;
   const ObjectDictionary& dictionary_;
   AlarmMemory alarms_;
   FaultRecords records_;

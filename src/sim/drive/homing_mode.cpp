@@ -166,12 +166,13 @@ void HomingMode::step(double from) {
   watchTime();
 }
 
-/// The motor has pushed hard enough for long enough, and has not moved.
+/// The motor has pushed hard enough for long enough, and has not moved where that counts.
 bool HomingMode::atHardStop() {
   if (!sequence_.seeksStop()) return false;
   const double torque = axis_.motor.torque() * sequence_.direction();
+  const bool stands = std::fabs(axis_.motor.velocity()) < kStopSpeed;
   const bool pushes = torque >= axis_.values.get(Role::homing_stop_torque, kUnlimited) &&
-                      std::fabs(axis_.motor.velocity()) < kStopSpeed;
+                      (stands || axis_.definition.homing.stops_by_torque);
   pushed_s_ = pushes ? pushed_s_ + kDriveStepS : 0.0;
   return pushes && pushed_s_ >= axis_.values.get(Role::homing_stop_time, 0.0);
 }

@@ -1,0 +1,134 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// A drive that still turns its motor as a driver has told it that is gone: where its stop would
+// only let the motor go, another mode takes the motor over at its velocity first, in which the stop
+// ramps.
+#include <algorithm>
+
+#include "canopen/boot/steps.h"
+
+namespace cia402::canopen {
+namespace {
+
+constexpr Duration kAnswer = std::chrono::milliseconds(100);          // it may as well be off
+constexpr Duration kPatience = std::chrono::milliseconds(100);        // for the mode to be shown
+constexpr std::uint32_t kStateMask = 0x6F, kOperationEnabled = 0x27;  // CiA 402-2, state coding
+
+/// Ends with the NMT command that this boot would have begun with. What is refused or not answered
+/// leaves the motor to the stop.
+class Brake : public BootStep {
+ public:
+  bool begin(BootContext& boot, Time now) override {
+    if (!boot.braking) return false;
+    if (item_ >= boot.config.brakes.size()) return stop(boot, now);
+    options_ = boot.config.sdo;
+    options_.retries = 0;
+    options_.timeout = std::min(options_.timeout, kAnswer);
+    phase_ = Phase::mode;
+    read(boot, brake(boot).shown_mode, "mode display", now);
+    return true;
+  }
+
+  Progress check(BootContext& boot, Time now) override {
+    if (!boot.answered()) return Progress::waiting;
+    if (phase_ == Phase::stop) return Progress::again;
+    const bool usable =
+        boot.ok() && !boot.ticket->data().empty() && boot.ticket->data().size() <= 8;
+    if (!usable || !follow(boot, now)) {
+      ++item_;
+      return Progress::again;
+    }
+    return Progress::waiting;
+  }
+
+ private:
+  /// Of those that were braked: in their new mode it ramps.
+  bool stop(BootContext& boot, Time now) {
+    phase_ = Phase::stop;
+    const std::vector<StartupWrite>& writes = boot.config.writes;
+    while (stop_ < writes.size() && !writes[stop_].always) ++stop_;
+    if (!braked_ || stop_ >= writes.size()) {
+      end(boot, now);
+      return false;
+    }
+    write(boot, writes[stop_].object, writes[stop_].data, writes[stop_].name.c_str(), now);
+    ++stop_;
+    return true;
+  }
+
+  static void end(BootContext& boot, Time now) {
+    boot.braking = false;
+    if (boot.reset_when_braked) {
+      boot.reset_command = NmtCommand::reset_communication;
+      boot.command(boot.reset_command, now);
+      boot.awaitReset(now);
+    } else {
+      boot.command(NmtCommand::enter_pre_operational, now);
+    }
+  }
+
+  enum class Phase { mode, state, velocity, target, command, shown, stop };
+
+  const BootBrake& brake(const BootContext& boot) const { return boot.config.brakes[item_]; }
+  void read(BootContext& boot, ObjectId object, const char* name, Time now) {
+    boot.read(object, name, now, options_);
+  }
+  void write(BootContext& boot, ObjectId object, Bytes data, const char* name, Time now) {
+    boot.write(object, std::move(data), name, now, options_);
+  }
+  static int modeIn(const Bytes& data) { return static_cast<std::int8_t>(data.front()); }
+
+  /// @return false: nothing more is to be done
+  bool follow(BootContext& boot, Time now) {
+    const Bytes& data = boot.ticket->data();
+    switch (phase_) {
+      case Phase::mode: {
+        const std::vector<int>& pushing = brake(boot).pushing;
+        if (std::find(pushing.begin(), pushing.end(), modeIn(data)) == pushing.end()) return false;
+        mode_bytes_ = static_cast<unsigned>(data.size());
+        phase_ = Phase::state;
+        read(boot, brake(boot).statusword, "statusword", now);
+        return true;
+      }
+      case Phase::state:
+        if ((fieldbus::toUnsigned(data) & kStateMask) != kOperationEnabled) return false;
+        phase_ = Phase::velocity;
+        read(boot, brake(boot).velocity, "velocity", now);
+        return true;
+      case Phase::velocity:
+        phase_ = Phase::target;
+        write(boot, brake(boot).target, data, "target of the mode that brakes", now);
+        return true;
+      case Phase::target:
+        phase_ = Phase::command;
+        deadline_ = now + kPatience;
+        write(boot, brake(boot).mode,
+              fieldbus::toBytes(static_cast<std::uint64_t>(brake(boot).brake), mode_bytes_),
+              "mode that brakes", now);
+        return true;
+      case Phase::command:
+        phase_ = Phase::shown;
+        break;
+      case Phase::shown:
+        braked_ = braked_ || modeIn(data) == brake(boot).brake;
+        if (modeIn(data) == brake(boot).brake || now >= deadline_) return false;
+        break;
+      case Phase::stop:
+        return false;
+    }
+    read(boot, brake(boot).shown_mode, "mode display", now);
+    return true;
+  }
+
+  std::size_t item_ = 0, stop_ = 0;
+  bool braked_ = false;
+  Phase phase_ = Phase::mode;
+  SdoOptions options_;
+  unsigned mode_bytes_ = 1;
+  Time deadline_{};
+};
+
+}  // namespace
+
+BootStepPointer makeBrake() { return std::make_unique<Brake>(); }
+
+}  // namespace cia402::canopen
