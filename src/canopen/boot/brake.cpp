@@ -23,8 +23,9 @@ class Brake : public BootStep {
     options_ = boot.config.sdo;
     options_.retries = 0;
     options_.timeout = std::min(options_.timeout, kAnswer);
-    phase_ = Phase::mode;
-    read(boot, brake(boot).shown_mode, "mode display", now);
+    if (!boot.config.vendor_id || known_) return readMode(boot, now);
+    phase_ = Phase::vendor;
+    read(boot, {0x1018, 1}, "vendor id", now);
     return true;
   }
 
@@ -66,7 +67,7 @@ class Brake : public BootStep {
     }
   }
 
-  enum class Phase { mode, state, velocity, target, command, shown, stop };
+  enum class Phase { vendor, mode, state, velocity, target, command, shown, stop };
 
   const BootBrake& brake(const BootContext& boot) const { return boot.config.brakes[item_]; }
   void read(BootContext& boot, ObjectId object, const char* name, Time now) {
@@ -75,12 +76,20 @@ class Brake : public BootStep {
   void write(BootContext& boot, ObjectId object, Bytes data, const char* name, Time now) {
     boot.write(object, std::move(data), name, now, options_);
   }
+  bool readMode(BootContext& boot, Time now) {
+    phase_ = Phase::mode;
+    read(boot, brake(boot).shown_mode, "mode display", now);
+    return true;
+  }
   static int modeIn(const Bytes& data) { return static_cast<std::int8_t>(data.front()); }
 
   /// @return false: nothing more is to be done
   bool follow(BootContext& boot, Time now) {
     const Bytes& data = boot.ticket->data();
     switch (phase_) {
+      case Phase::vendor:  // nothing is written to the drive of another maker
+        known_ = fieldbus::toUnsigned(data) == *boot.config.vendor_id;
+        return known_ && readMode(boot, now);
       case Phase::mode: {
         const std::vector<int>& pushing = brake(boot).pushing;
         if (std::find(pushing.begin(), pushing.end(), modeIn(data)) == pushing.end()) return false;
@@ -120,7 +129,7 @@ class Brake : public BootStep {
   }
 
   std::size_t item_ = 0, stop_ = 0;
-  bool braked_ = false;
+  bool braked_ = false, known_ = false;
   Phase phase_ = Phase::mode;
   SdoOptions options_;
   unsigned mode_bytes_ = 1;

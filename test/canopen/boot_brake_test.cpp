@@ -1,0 +1,98 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+// A motor that a driver before has left turning in a mode whose stop only lets it go: another mode
+// takes it over before the drive is reset.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "canopen/node_fixture.h"
+
+namespace cia402::canopen {
+namespace {
+
+using test::Lines;
+using ::testing::ElementsAre;
+
+const char kReset[] = "000 82 03";
+const char kAskShownMode[] = "603 40 61 60 00 00 00 00 00";
+const char kAskStatusword[] = "603 40 41 60 00 00 00 00 00";
+const char kAskVelocity[] = "603 40 6C 60 00 00 00 00 00";
+const char kTarget[] = "603 23 FF 60 00 10 27 00 00";  // 10000, as it turns
+const char kMode[] = "603 2F 60 60 00 09 00 00 00";
+
+/// Modes 4 and 10 push; mode 9 brakes.
+class BootBrakeTest : public test::NodeFixture {
+ protected:
+  BootBrakeTest() {
+    BootBrake brake;
+    brake.statusword = {0x6041, 0};
+    brake.shown_mode = {0x6061, 0};
+    brake.mode = {0x6060, 0};
+    brake.velocity = {0x606C, 0};
+    brake.target = {0x60FF, 0};
+    brake.pushing = {4, 10};
+    brake.brake = 9;
+    config.brakes = {brake};
+    for (const char* line : {kAskShownMode, kAskStatusword, kAskVelocity}) peer.forget(line);
+    peer.on(kAskShownMode, Lines{"583 4F 61 60 00 0A 00 00 00"});
+    peer.on(kAskStatusword, "583 4B 41 60 00 37 12 00 00");  // Operation enabled
+    peer.on(kAskVelocity, "583 43 6C 60 00 10 27 00 00");
+    peer.on(kTarget, "583 60 FF 60 00 00 00 00 00");
+    peer.on(kMode, "583 60 60 60 00 00 00 00 00");
+  }
+  void shows(const char* mode_answer) {
+    peer.forget(kAskShownMode);
+    peer.on(kAskShownMode, mode_answer);
+  }
+  /// What is sent until the reset.
+  Lines sentBeforeReset() {
+    boot();
+    Lines lines;
+    for (const std::string& line : peer.take()) {
+      if (line == kReset) return lines;
+      lines.push_back(line);
+    }
+    ADD_FAILURE() << "it was not reset";
+    return lines;
+  }
+};
+
+TEST_F(BootBrakeTest, takes_the_motor_over_at_its_velocity_before_the_reset) {
+  peer.on(kAskShownMode, Lines{"583 4F 61 60 00 09 00 00 00"});
+  EXPECT_THAT(sentBeforeReset(), ElementsAre(kAskShownMode, kAskStatusword, kAskVelocity, kTarget,
+                                             kMode, kAskShownMode));
+}
+
+TEST_F(BootBrakeTest, leaves_a_motor_in_another_mode_alone) {
+  shows("583 4F 61 60 00 08 00 00 00");
+  EXPECT_THAT(sentBeforeReset(), ElementsAre(kAskShownMode));
+}
+
+TEST_F(BootBrakeTest, leaves_a_motor_without_power_alone) {
+  peer.forget(kAskStatusword);
+  peer.on(kAskStatusword, "583 4B 41 60 00 50 02 00 00");  // Switch on disabled
+  EXPECT_THAT(sentBeforeReset(), ElementsAre(kAskShownMode, kAskStatusword));
+}
+
+TEST_F(BootBrakeTest, goes_on_to_the_reset_where_the_mode_cannot_be_read) {
+  shows("583 80 61 60 00 00 00 02 06");
+  EXPECT_THAT(sentBeforeReset(), ElementsAre(kAskShownMode));
+}
+
+TEST_F(BootBrakeTest, writes_nothing_to_the_drive_of_another_maker) {
+  config.vendor_id = 0x11223344;
+  peer.forget(test::kAskVendor);
+  peer.on(test::kAskVendor, "583 43 18 10 01 45 33 22 11");
+  EXPECT_THAT(sentBeforeReset(), ElementsAre(test::kAskVendor));
+}
+
+TEST_F(BootBrakeTest, asks_who_it_is_where_that_is_configured) {
+  config.vendor_id = 0x11223344;
+  peer.forget(test::kAskVendor);
+  peer.on(test::kAskVendor, "583 43 18 10 01 44 33 22 11");
+  peer.on(kAskShownMode, Lines{"583 4F 61 60 00 09 00 00 00"});
+  EXPECT_THAT(sentBeforeReset(), ElementsAre(test::kAskVendor, kAskShownMode, kAskStatusword,
+                                             kAskVelocity, kTarget, kMode, kAskShownMode));
+}
+
+}  // namespace
+}  // namespace cia402::canopen
