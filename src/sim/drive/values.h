@@ -274,7 +274,7 @@ class DriveValues {
   double number(const Slot& slot) const;
   void setNumber(const Slot& slot, double value);
   static std::int64_t integer(const Slot& slot) {
-    return static_cast<std::int64_t>(((slot.entry->number & slot.bits) ^ slot.sign) - slot.sign);
+    return static_cast<std::int64_t>(((slot.entry->acting() & slot.bits) ^ slot.sign) - slot.sign);
   }
   const Slot& slot(Role role) const { return slots_[static_cast<std::size_t>(role)]; }
 
