@@ -66,7 +66,11 @@ std::optional<BusState> stateOf(std::uint32_t kernel_state) {
 void takeCan(unsigned type, View content, LinkSettings& link) {
   switch (type) {
     case IFLA_CAN_BITTIMING:
-      if (const auto timing = content.as<can_bittiming>()) link.bitrate = timing->bitrate;
+      if (const auto timing = content.as<can_bittiming>()) {
+        link.bitrate = timing->bitrate;
+        // In thousandths; a driver that does not know it says 0.
+        if (timing->sample_point != 0) link.sample_point = 1e-3 * timing->sample_point;
+      }
       break;
     case IFLA_CAN_BITTIMING_CONST:
       link.real_controller = true;

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 
 #include "can/link_message.h"
@@ -20,10 +21,17 @@ namespace {
 constexpr std::uint32_t kLongQueue = 100;     // frames
 constexpr std::uint32_t kSlowRestart = 1000;  // ms
 constexpr unsigned kLongFrame = 135;          // bits of 8 bytes with stuff bits, at most
+constexpr double kNearSamplePoint = 0.0505;   // Linux' 75 % at 1 Mbit/s is near 70 and 80 %
 
 std::string setUp(const LinkSettings& link, const std::string& options) {
   return "`ip link set " + link.name + " down; ip link set " + link.name + " up type can " +
          options + "` as root";
+}
+
+std::string percent(double share) {
+  char text[16];
+  std::snprintf(text, sizeof text, "%g %%", std::round(1000.0 * share) / 10.0);
+  return text;
 }
 
 }  // namespace
@@ -78,6 +86,23 @@ std::vector<LinkFinding> findingsOf(const LinkSettings& link, unsigned bitrate,
                                    " txqueuelen 10` as root"});
   }
   return findings;
+}
+
+std::optional<LinkFinding> samplePointFinding(const LinkSettings& link, unsigned bitrate,
+                                              const SamplePoints& devices) {
+  if (!link.sample_point || devices.choices.empty()) return {};
+  std::string points;
+  for (const double point : devices.choices) {
+    if (std::fabs(point - *link.sample_point) < kNearSamplePoint) return {};
+    points += (points.empty() ? "" : " or ") + percent(point);
+  }
+  char best[16];
+  std::snprintf(best, sizeof best, "%.3f", devices.choices.front());
+  return LinkFinding{
+      false, link.name + " reads a bit at " + percent(*link.sample_point) + " of its time, " +
+                 devices.who + " at " + points +
+                 ": frames may be destroyed on a long or disturbed cable; run " +
+                 setUp(link, "bitrate " + std::to_string(bitrate) + " sample-point " + best)};
 }
 
 bool mayConfigureLinks() {

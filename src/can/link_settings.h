@@ -22,6 +22,7 @@ struct LinkSettings {
   bool carrier = false;  ///< the driver takes frames; it does not while the controller is bus-off
   std::optional<std::uint32_t> tx_queue_length;  ///< frames that the kernel queues (txqueuelen)
   std::optional<std::uint32_t> bitrate;          ///< bit/s; 0: not configured
+  std::optional<double> sample_point;            ///< share of a bit after which it is read
   std::optional<BusState> controller;            ///< `down` while stopped or asleep
   std::optional<std::uint16_t> transmit_errors, receive_errors;  ///< the controller's counters
   std::optional<std::uint32_t> restart_ms;  ///< the kernel restarts after so long; 0: never
@@ -55,6 +56,14 @@ struct LinkFinding {
 /// @param may_restart whether the driver may restart a controller (mayConfigureLinks()).
 std::vector<LinkFinding> findingsOf(const LinkSettings& link, unsigned bitrate,
                                     Duration sync_period, bool may_restart);
+/// Where devices of the bus read a bit, which the others are to do nearly alike.
+struct SamplePoints {
+  std::string who;              ///< "shoulder, elbow (sv660c)"
+  std::vector<double> choices;  ///< shares of a bit, what they best have first; one is enough
+};
+/// That the controller of `link` does it far from each of them; nothing where that is not known.
+std::optional<LinkFinding> samplePointFinding(const LinkSettings& link, unsigned bitrate,
+                                              const SamplePoints& devices);
 /// Whether this process has CAP_NET_ADMIN.
 bool mayConfigureLinks();
 

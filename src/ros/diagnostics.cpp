@@ -8,6 +8,7 @@
 
 #include "bus/axis_condition.h"
 #include "bus/jobs/object_text.h"
+#include "bus/link_findings.h"
 #include "bus/real_clock.h"
 #include "can/error_frame.h"
 #include "common/text.h"
@@ -114,6 +115,7 @@ void addLink(diagnostic_updater::DiagnosticStatusWrapper& status, const can::Lin
   status.add("interface kind", link.kind.empty() ? "unknown" : link.kind);
   if (link.tx_queue_length) status.add("txqueuelen", *link.tx_queue_length);
   if (link.bitrate) status.add("bit rate", *link.bitrate);
+  if (link.sample_point) status.addf("sample point", "%.1f %%", 100.0 * *link.sample_point);
   if (link.restart_ms) status.add("restart-ms", *link.restart_ms);
   if (link.controller) status.add("controller state", can::toString(*link.controller));
   if (link.transmit_errors && link.receive_errors) {
@@ -220,8 +222,7 @@ void Diagnostics::reportLink(Status& status) {
   const auto& link = link_.settings();
   if (!link) return;
   addLink(status, *link);
-  const auto findings = can::findingsOf(*link, static_cast<unsigned>(robot_.bus.bitrate),
-                                        robot_.bus.sync_period, can::mayConfigureLinks());
+  const auto findings = bus::linkFindings(*link, robot_, can::mayConfigureLinks());
   for (const can::LinkFinding& finding : findings) {
     status.mergeSummary(finding.error ? DiagnosticStatus::ERROR : DiagnosticStatus::WARN,
                         finding.text);

@@ -54,6 +54,17 @@ std::optional<LinkSettings> parse(const Bytes& bytes) {
   return parseLink(bytes.data(), bytes.size());
 }
 
+// struct can_bittiming: bit/s, thousandths of a bit, ns of a quantum, ...
+TEST(ParseLink, TakesTheSamplePointOfAController) {
+  const Bytes timing =
+      u32(1000000) + u32(750) + u32(125) + u32(2) + u32(3) + u32(2) + u32(1) + u32(1);
+  const auto link = parse(canLink(attribute(1, timing) + attribute(2, Bytes(48))));
+  ASSERT_TRUE(link);
+  EXPECT_EQ(link->bitrate, 1000000u);
+  ASSERT_TRUE(link->sample_point);
+  EXPECT_DOUBLE_EQ(*link->sample_point, 0.75);
+}
+
 TEST(ParseLink, TakesTheSettingsOfAController) {
   const auto link = parse(canLink(canData(2, 100, 0x10)));
   ASSERT_TRUE(link);
@@ -64,6 +75,7 @@ TEST(ParseLink, TakesTheSettingsOfAController) {
   EXPECT_TRUE(link->carrier);
   EXPECT_EQ(link->tx_queue_length, 10u);
   EXPECT_EQ(link->bitrate, 500000u);
+  EXPECT_FALSE(link->sample_point) << "0: it is not known";
   EXPECT_EQ(link->controller, BusState::error_passive);
   EXPECT_EQ(link->restart_ms, 100u);
   EXPECT_EQ(link->transmit_errors, 136u);

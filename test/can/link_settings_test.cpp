@@ -49,6 +49,35 @@ TEST(FindingsOf, AnotherBitRateIsAnErrorWithBothRates) {
                     HasSubstr("ip link set can0 up type can bitrate 1000000")));
 }
 
+TEST(SamplePoint, FarFromThoseOfTheDevicesIsToldWithBothAndTheRemedy) {
+  LinkSettings link = good();
+  const SamplePoints devices{"shoulder, elbow (sv660c)", {0.8, 0.7}};
+  link.sample_point = 0.875;
+  const auto finding = samplePointFinding(link, 1'000'000, devices);
+  ASSERT_TRUE(finding);
+  EXPECT_FALSE(finding->error);
+  EXPECT_THAT(finding->text,
+              AllOf(HasSubstr("can0 reads a bit at 87.5 % of its time, shoulder, elbow (sv660c) at "
+                              "80 % or 70 %"),
+                    HasSubstr("ip link set can0 down; ip link set can0 up type can bitrate 1000000 "
+                              "sample-point 0.800`")));
+  link.sample_point = 0.6;
+  EXPECT_TRUE(samplePointFinding(link, 1'000'000, devices));
+}
+
+TEST(SamplePoint, NearOneOfThoseOfTheDevicesIsWell) {
+  LinkSettings link = good();
+  const SamplePoints devices{"joint (sv660c)", {0.8, 0.7}};
+  for (const double point : {0.65, 0.7, 0.75, 0.8, 0.85}) {
+    link.sample_point = point;
+    EXPECT_FALSE(samplePointFinding(link, 1'000'000, devices)) << point;
+  }
+  link.sample_point = 0.95;
+  EXPECT_FALSE(samplePointFinding(link, 1'000'000, {"joint (generic)", {}})) << "nothing is wanted";
+  link.sample_point.reset();
+  EXPECT_FALSE(samplePointFinding(link, 1'000'000, devices)) << "nothing is known";
+}
+
 TEST(FindingsOf, ListenOnlyAndOneShotAreTold) {
   LinkSettings link = good();
   link.listen_only = true;

@@ -76,6 +76,30 @@ TEST_F(LastStopTest, without_anything_to_write_it_is_stopped_by_nmt_at_once) {
   EXPECT_THAT(times(kNmtStop, milliseconds(250)), ElementsAre(0, 20, 40, 60, 80, 180));
 }
 
+TEST_F(LastStopTest, a_node_that_is_booted_anew_but_takes_no_reset_is_told_to_stop_its_motor) {
+  lose();
+  peer.forget("000 82 03");
+  pass(milliseconds(100));
+  node->boot(now, true);
+  pass(milliseconds(49));
+  peer.take();
+  hear("703 05");  // it may have left before the reset
+  EXPECT_THAT(peer.take(), Not(Contains(kMotorStop)));
+  pass(milliseconds(1));
+  hear("703 05");
+  EXPECT_THAT(peer.take(), Contains(kMotorStop)) << "though it is not identified yet";
+  hear("703 7F");
+  EXPECT_THAT(peer.take(), Not(Contains(kMotorStop))) << "it has obeyed";
+}
+
+TEST_F(LastStopTest, a_node_that_was_never_identified_is_told_nothing) {
+  peer.forget("000 82 03");
+  boot();
+  pass(milliseconds(50));
+  hear("703 05");
+  EXPECT_THAT(peer.take(), Not(Contains(kMotorStop)));
+}
+
 TEST_F(LastStopTest, ends_three_seconds_after_the_loss) {
   lose();
   pass(milliseconds(2999));

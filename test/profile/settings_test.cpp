@@ -99,7 +99,7 @@ TEST(ProfileSettings, OfBitsWordsAndTheMakersNamesAreAsWritten) {
       "rated_torque: told\n"
       "bus_settings: {node_id: {object: source, counts: after_power_cycle},\n"
       "  bit_rate: {object: gear, numbers: {500000: 3}}, saved_apart: true,\n"
-      "  memory: {object: polarity, on: 2, off: 9}}\n"
+      "  memory: {object: polarity, on: 2, off: 9}, sample_points: {1000000: [0.8, 0.7]}}\n"
       "not_ready_reason: told\n"
       "homed_bit: 14\n"
       "if_silent: set it at the panel\n"
@@ -125,6 +125,7 @@ TEST(ProfileSettings, OfBitsWordsAndTheMakersNamesAreAsWritten) {
   EXPECT_EQ(bus.memory_on, 2);
   EXPECT_EQ(bus.memory_off, 9);
   EXPECT_TRUE(bus.saved_apart);
+  EXPECT_THAT(bus.sample_points.at(1000000), ElementsAre(0.8, 0.7));
   EXPECT_EQ(profile.rated_torque, "told");
   EXPECT_EQ(profile.not_ready_reason, "told");
   EXPECT_EQ(profile.homed_bit, 14);
@@ -198,6 +199,9 @@ TEST(ProfileSettings, AreRefusedWhereTheyCanMeanNothing) {
       {"bus_settings: {node_id: {object: told}}",
        "bus_settings/node_id/object: `told` cannot be written"},
       {"bus_settings: {bit_rate: {object: gear}}", "bus_settings/bit_rate: needs `numbers`"},
+      {"bus_settings: {sample_points: {fast: [0.8]}}",
+       "bus_settings/sample_points/fast: `fast` is no bit rate of CAN"},
+      {"bus_settings: {sample_points: {500000: [1.2]}}", "bus_settings/sample_points/500000"},
       {"bus_settings: {bit_rate: {object: gear, numbers: {fast: 1}}}",
        "bus_settings/bit_rate/numbers/fast: `fast` is no bit rate of CAN"},
       {"not_ready_reason: label", "not_ready_reason: `label` is no whole number"},

@@ -67,6 +67,20 @@ TEST(DriveDefinition, SaysSoWhenThereIsNoFileOrNoYaml) {
   EXPECT_THAT(errorOf("extends: nothing"), HasSubstr("nothing.yaml"));
 }
 
+TEST(DriveDefinition, RefusesWhatIsNoObjectOfItsBusOrItsEffects) {
+  const std::string some = "dictionary: [[0x6040, 0, controlword, uint16, rw, rt, 5]]\n";
+  EXPECT_THAT(errorOf(some + "own_bus: {node_id: here}"), HasSubstr("own_bus/node_id: must be an"));
+  EXPECT_THAT(errorOf(some + "own_bus: {bit_rate: \"2003:01\"}"),
+              HasSubstr("own_bus: `rates` is missing"));
+  EXPECT_THAT(errorOf(some + "own_bus: {rates: {fast: 5}}"), HasSubstr("'fast' is no number"));
+  EXPECT_THAT(errorOf(some + "own_bus: {rates: {1: 2000000}}"), HasSubstr("2000000"));
+  for (const char* wrong : {"2003:02-01", "2003:01-xx", "20-03"}) {
+    EXPECT_THAT(errorOf(some + "effective: {stop: [\"" + wrong + "\"]}"),
+                HasSubstr("effective/stop: '" + std::string(wrong) + "' is no object like"));
+  }
+  EXPECT_THAT(errorOf(some + "effective: {later: []}"), HasSubstr("later"));
+}
+
 TEST(DriveDefinition, AFileCanExtendAnotherBesideIt) {
   const std::string base = testing::TempDir() + "drive_definition_base.yaml";
   const std::string path = testing::TempDir() + "drive_definition_extended.yaml";

@@ -1,5 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // What the simulated NiMotion does on the wire: relative set-points, its queue, limits, alarms.
+#include <gmock/gmock.h>
 #include <yaml-cpp/yaml.h>
 
 #include <cmath>
@@ -55,6 +56,30 @@ TEST(SimulatedNimotion, CountsRelativeTargetsFromWhat60F2hSays) {
   }
   EXPECT_GT(ends[0], ends[1]);
   EXPECT_GT(ends[1], ends[2]);
+}
+
+// 200Bh:01: 0 not ready, 1 ready, 12 an error, others running [2586].
+TEST(SimulatedNimotion, TellsItsStateInAnObjectOfItsOwn) {
+  NimotionBench bench;
+  const auto state = [&bench] { return bench.read(0x200B, 1) & 0xFFFF; };
+  EXPECT_EQ(state(), 1U);
+  bench.control(0x0006);
+  bench.control(0x0007);
+  EXPECT_EQ(state(), 1U) << "switched on, but without power at the motor";
+  bench.control(0x000F);
+  bench.run(ms(5));
+  EXPECT_THAT(state(), testing::AllOf(testing::Ne(0U), testing::Ne(1U), testing::Ne(12U)));
+  ASSERT_TRUE(bench.drive->inject("over_voltage", bench.now));
+  bench.run(ms(500));
+  EXPECT_EQ(state(), 12U);
+  ASSERT_TRUE(bench.drive->inject("clear", bench.now));
+  bench.control(0x0080);
+  bench.run(ms(50));
+  EXPECT_EQ(state(), 1U);
+  NimotionBench slow("{state_machine: {initialisation: 1.0}}");
+  EXPECT_EQ(slow.read(0x200B, 1) & 0xFFFF, 0U);
+  slow.run(ms(1000));
+  EXPECT_EQ(slow.read(0x200B, 1) & 0xFFFF, 1U);
 }
 
 TEST(SimulatedNimotion, QueuesFiveAndTakesNoSixth) {

@@ -48,6 +48,18 @@ TEST(Motor, IsHeldAwayFromItsDemandByAnOffsetThatStays) {
   EXPECT_NEAR(motor.position(), 2.0 * 0.004, 1e-6);
 }
 
+// Faster than its torque could stop it within the lag.
+TEST(Motor, KeepsItsSpeedWhereAPositionTakesOverFromATorque) {
+  Motor motor(parameters(), 0.0);
+  steps(1000, [&] { motor.applyTorque(2.0, 40.0); });
+  EXPECT_NEAR(motor.velocity(), 40.0, 1e-6);
+  double demand = motor.position() + 40.0 * 0.004;
+  steps(20, [&] {
+    motor.followPosition(demand += 40.0 * kDriveStepS);
+    EXPECT_NEAR(motor.velocity(), 40.0, 1e-3);
+  });
+}
+
 TEST(Motor, ReachesAStepWithoutOvershootAndStandsExactly) {
   Motor motor(parameters(), 0.0);
   double highest = 0.0;

@@ -37,7 +37,8 @@ TEST(BusParameters, AreWrittenIntoTheMemoryAndToldWithWhatMustFollow) {
   scene.run(500ms);
   std::vector<std::string> writes;
   scene.world().bus().setMonitor([&](const can::Frame& frame, Time) {
-    if (frame.id != 0x601 || (frame.data[0] & 0xE0) != 0x20) return;
+    const bool parameter = frame.data[1] == 0x0C && frame.data[2] == 0x20;
+    if (frame.id != 0x601 || (frame.data[0] & 0xE0) != 0x20 || !parameter) return;
     writes.push_back(std::to_string(frame.data[3]) + "=" + std::to_string(frame.data[4]));
   });
   const bus::Answer node = setBus(scene, 5, 0, true);
@@ -47,11 +48,38 @@ TEST(BusParameters, AreWrittenIntoTheMemoryAndToldWithWhatMustFollow) {
                     HasSubstr("start the driver anew")));
   EXPECT_EQ(sv660cNumber(scene, 0x200C, 1), 5U);
   EXPECT_THAT(writes, testing::ElementsAre("14=1", "1=5", "14=0"));
-  const bus::Answer rate = setBus(scene, 0, 1000000, true);
+  EXPECT_EQ(scene.drive("joint").device().node(), 5U);
+  EXPECT_TRUE(scene.runUntil([&] { return !scene.node("joint").ready(); }, 2s)) << "it is lost";
+}
+
+TEST(BusParameters, OfTheBitRateTakeTheDriveFromItsBusAtOnce) {
+  Scene scene(loadText(sv660cJoint()));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  scene.run(500ms);
+  const bus::Answer rate = setBus(scene, 0, 500000, true);
   EXPECT_TRUE(rate.success) << rate.message;
   EXPECT_THAT(rate.message,
-              HasSubstr("bit rate: bit_rate (200C:09) was 5 (500 kbit/s) and is 6 (1 Mbit/s, "
-                        "sample point 80 %)"));
+              AllOf(HasSubstr("bit rate: bit_rate (200C:09) was 6 (1 Mbit/s, sample point 80 %) "
+                              "and is 5 (500 kbit/s)"),
+                    HasSubstr("counts at once"), HasSubstr("change `bitrate` of the bus")));
+  EXPECT_TRUE(scene.runUntil([&] { return !scene.node("joint").ready(); }, 2s)) << "it is lost";
+  scene.inject("joint", "power_cycle");
+  scene.run(3s);
+  EXPECT_FALSE(scene.node("joint").ready()) << "it stays at 500 kbit/s";
+}
+
+// Both speak at 1 Mbit/s [L9301-9307].
+TEST(BusParameters, OfTheSamplePointLeaveTheDriveOnItsBus) {
+  Scene scene(loadText(sv660cJoint()));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  scene.run(500ms);
+  for (const char* number : {"7", "6"}) {
+    EXPECT_TRUE(sv660cWrite(scene, "H0C.08", number).success);
+    scene.run(500ms);
+    EXPECT_TRUE(scene.node("joint").ready()) << number;
+    EXPECT_TRUE(scene.procedure(ProcedureKind::enable).success) << scene.told();
+    EXPECT_TRUE(scene.procedure(ProcedureKind::disable).success) << scene.told();
+  }
 }
 
 TEST(BusParameters, AreRefusedInWords) {
@@ -66,7 +94,7 @@ TEST(BusParameters, AreRefusedInWords) {
   EXPECT_THAT(setBus(scene, 5, 500000, true).message, HasSubstr("one of them"));
   EXPECT_THAT(setBus(scene, 0, 0, true).message, HasSubstr("one of them"));
   EXPECT_EQ(sv660cNumber(scene, 0x200C, 1), 1U);
-  EXPECT_EQ(sv660cNumber(scene, 0x200C, 9), 5U);
+  EXPECT_EQ(sv660cNumber(scene, 0x200C, 9), 6U);
 }
 
 TEST(BusParameters, OfADriveWithoutSuchObjectsPointToLss) {

@@ -69,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         FamilyNumbersTold{{kNimotionStepper, "4000", "csp"},
                           {{"bus_voltage", {0x200B, 8}, 27, "27 V", true},
-                           {"drive_state", {0x200B, 1}, 12, " 12", true},
+                           {"drive_state", {0x200B, 1}, 2, " 2", true},
                            {"digital_outputs_seen", {0x200B, 4}, 1, " 1", true},
                            {"virtual_inputs_seen", {0x200B, 5}, 2, " 2", true},
                            {"motor_speed", {0x200B, 2}, 121, " 121", true},

@@ -207,6 +207,29 @@ TEST(NimotionMakersSpeed, IsThatOfAPulseWidthWhichIsShown) {
   EXPECT_EQ(scene.velocity("joint"), 0.0);
 }
 
+// What speed a pulse width is, no manual tells: whatever it is, the driver shows that of the motor.
+TEST(NimotionMakersSpeed, OfAPulseWidthIsShownWhateverItIs) {
+  for (const double full : {5.0, 10.0, 40.0}) {
+    MakerScene scene(
+        ", write: [{object: di0_function, raw: 44}, {object: di1_function, raw: 45}, "
+        "{object: di2_function, raw: 1}, {object: di2_logic, raw: 0}, "
+        "{object: maker_velocity_source, raw: 3}, {object: maker_acceleration_time, raw: 10}], "
+        "simulation: {with: {full_pulse_width: " +
+        std::to_string(full) + "}}");
+    scene.write("control_mode_select", "2");
+    scene.drive("joint").setPulseWidth(0.25, scene.now());
+    scene.drive("joint").setInput(2, false, scene.now());
+    scene.run(500ms);
+    const double speed = scene.velocity("joint");
+    EXPECT_NEAR(std::fabs(speed), 0.25 * full * kRadPerTurn, 0.01 * full * kRadPerTurn) << full;
+    EXPECT_NEAR(scene.state("joint").velocity, speed, 0.02 * full * kRadPerTurn) << full;
+    const auto told = scene.call(bus::ReadObjectCommand{"joint", "drive_state"});
+    EXPECT_EQ(told.number, 2.0) << told.message;
+    scene.drive("joint").setInput(2, true, scene.now());
+    scene.run(500ms);
+  }
+}
+
 /// The axis is in the modes of CiA 402 again, and goes where it is told.
 void expectServedAgain(Scene& scene) {
   const bus::Answer enabled = scene.procedure(ProcedureKind::enable);

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // The simulated SV660C, and its profile, against a table of the manual's pages of parameters
 // (sv660c_parameters.csv), which was made from its text and from neither of them.
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <set>
@@ -10,6 +11,8 @@
 
 namespace cia402 {
 namespace {
+
+using namespace std::chrono_literals;
 
 struct Sv660cPrinted {
   fieldbus::ObjectId id;
@@ -112,6 +115,85 @@ TEST_F(Sv660cManual, PrintsWhenTheDriveTakesThem) {
                                                      : 0U;
     EXPECT_EQ(dictionary().write(row.id, same), wanted) << row.name << " " << row.change;
   }
+}
+
+// Each is written anew with the number that it holds: at once, once the motor has no power, once
+// the drive's power was off.
+TEST_F(Sv660cManual, PrintsWhenTheDriveGoesByThem) {
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  const auto write = [this](const Sv660cPrinted& row, std::int64_t number) {
+    EXPECT_EQ(dictionary().write(row.id, sv660cBytes(row, number)), 0U) << row.name;
+  };
+  for (const Sv660cPrinted& row : rows) {
+    if (row.change == "RO") continue;
+    const sim::Entry& entry = *dictionary().find(row.id);
+    write(row, sv660cValue(row, entry.number));
+    EXPECT_EQ(entry.goes_by.has_value(), row.effect == "P" || row.effect == "D") << row.name;
+  }
+}
+
+// H17.00 to H17.31 and H17.33 to H17.64: functions and logic of virtual inputs and outputs
+// [L11922-13089].
+TEST_F(Sv660cManual, PrintsThatVirtualTerminalsCountOnceItHasStopped) {
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  ASSERT_TRUE(scene.procedure(drive::ProcedureKind::enable).success) << scene.told();
+  unsigned waiting = 0;
+  for (unsigned number = 0; number <= 64; ++number) {
+    const sim::Entry* entry = dictionary().find({0x2017, static_cast<std::uint8_t>(number + 1)});
+    ASSERT_NE(entry, nullptr) << number;
+    if (dictionary().write(entry->id, {1, 0}) != 0) continue;  // while stopped only
+    EXPECT_EQ(entry->number, 1U) << number;
+    EXPECT_EQ(entry->acting(), 0U) << number;
+    ++waiting;
+  }
+  EXPECT_EQ(waiting, 16U) << "the functions of the virtual inputs";
+  ASSERT_TRUE(scene.procedure(drive::ProcedureKind::disable).success) << scene.told();
+  scene.run(100ms);
+  for (unsigned number = 0; number < 32; number += 2) {
+    const sim::Entry* entry = dictionary().find({0x2017, static_cast<std::uint8_t>(number + 1)});
+    EXPECT_EQ(entry->acting(), 1U) << number;
+  }
+  for (unsigned number = 0; number <= 64; ++number) {
+    const sim::Entry* entry = dictionary().find({0x2017, static_cast<std::uint8_t>(number + 1)});
+    const bool shown_only = number == 32;  // the levels
+    EXPECT_EQ(dictionary().write(entry->id, {1, 0}), shown_only ? 0x06010002U : 0U) << number;
+    EXPECT_EQ(entry->goes_by.has_value(), !shown_only) << number;
+  }
+}
+
+// All that wait, with other numbers than they hold.
+TEST_F(Sv660cManual, PrintsWhatIsReadAtOnceAndGoneByLater) {
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  ASSERT_TRUE(scene.procedure(drive::ProcedureKind::enable).success) << scene.told();
+  const auto change = [this](const char* effect) {
+    for (const Sv660cPrinted& row : rows) {
+      if (row.change == "RO" || row.effect != effect) continue;
+      const sim::Entry& entry = *dictionary().find(row.id);
+      const std::uint64_t before = entry.number;
+      const std::int64_t other =
+          sv660cValue(row, before) == row.lowest ? row.lowest + 1 : row.lowest;
+      EXPECT_EQ(dictionary().write(row.id, sv660cBytes(row, other)), 0U) << row.name;
+      EXPECT_EQ(sv660cValue(row, entry.number), other) << row.name;
+      EXPECT_EQ(entry.acting(), before) << row.name;
+    }
+  };
+  const auto waiting = [this](const char* effect) {
+    return std::count_if(rows.begin(), rows.end(), [&](const Sv660cPrinted& row) {
+      return row.effect == effect && dictionary().find(row.id)->goes_by.has_value();
+    });
+  };
+  change("D");
+  scene.run(500ms);
+  EXPECT_EQ(waiting("D"), 24);
+  ASSERT_TRUE(scene.procedure(drive::ProcedureKind::disable).success) << scene.told();
+  scene.run(100ms);
+  EXPECT_EQ(waiting("D"), 0);
+  change("P");
+  scene.run(500ms);
+  EXPECT_EQ(waiting("P"), 51);
+  scene.inject("joint", "power_cycle");
+  scene.run(1s);
+  EXPECT_EQ(waiting("P"), 0);
 }
 
 TEST_F(Sv660cManual, PrintsWhatTheProfileSaysOfEffectAndDigits) {

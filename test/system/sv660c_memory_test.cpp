@@ -138,7 +138,7 @@ TEST(Sv660cFactoryReset, IsNotDoneUnlessThatIsConfirmed) {
 
 // H02.00 is 1 from the factory, H0E.10 is 0: no CANopen from the next power-on [L9629-9647].
 TEST(Sv660cFactoryReset, BringsBackWhatTheFactoryHasSetAndSaysWhatMustFollow) {
-  Sv660cMemory scene;
+  Sv660cMemory scene(sv660cWith(sv660cJoint(), "bitrate: 1000000", "bitrate: 500000"));
   ASSERT_TRUE(sv660cWrite(scene, "speed_gain", "250").success);
   ASSERT_TRUE(scene.save().success);
   const bus::Answer reset = scene.reset(true);
@@ -156,6 +156,17 @@ TEST(Sv660cFactoryReset, BringsBackWhatTheFactoryHasSetAndSaysWhatMustFollow) {
   EXPECT_FALSE(scene.truth("joint").power_stage_on);
   scene.powerCycle();
   EXPECT_FALSE(allReady(scene.robot())) << "it has no CANopen any more";
+}
+
+// H0C.08 is 5, 500 kbit/s, from the factory [L9277].
+TEST(Sv660cFactoryReset, TakesTheDriveFromABusOfAnotherBitRateWhichIsTold) {
+  Sv660cMemory scene;
+  const bus::Answer reset = scene.reset(true);
+  EXPECT_FALSE(reset.success);
+  EXPECT_THAT(reset.message,
+              AllOf(HasSubstr("restored the factory's values"), HasSubstr("it did not boot"),
+                    HasSubstr("has it got the factory's node-ID or bit rate?")));
+  EXPECT_EQ(sv660cNumber(scene, 0x200C, 9), 5U);
 }
 
 TEST(Sv660cFactoryReset, IsRefusedWhileTheAxisIsEnabledAndMovesNothing) {

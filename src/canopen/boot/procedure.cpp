@@ -125,6 +125,11 @@ BootProcedure::Status BootProcedure::advance(Time now) {
   return status_;
 }
 
+bool BootProcedure::ignoresReset(NmtState state, Time now) const {
+  return running() && boot_.resetting && state == NmtState::operational &&
+         now >= boot_.commanded + kResetTime;
+}
+
 void BootProcedure::heartbeatHeard(NmtState state, Time now) {
   boot_.found.heartbeat_heard = true;
   boot_.found.heartbeat_state = state;

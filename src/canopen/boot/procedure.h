@@ -38,6 +38,8 @@ class BootProcedure {
   /// A heartbeat, or an answer to guarding. One that shows that the last NMT command was lost makes
   /// it be sent again.
   void heartbeatHeard(NmtState state, Time now);
+  /// That heartbeat tells of a node that was told to reset and goes on as before.
+  bool ignoresReset(NmtState state, Time now) const;
   /// A TPDO came: the node is operational. @return false if nobody waits for that.
   bool tpdoHeard();
   /// @return true for the heartbeat that a TPDO, of higher priority, may have overtaken: the first

@@ -259,6 +259,8 @@ void Node::Impl::onHeartbeat(NmtState state, Time stamp, Time now) {
   if (boot.overtakenByTpdo(state)) return;
   nmt_state = state;
   if (boot.running()) {
+    // So may its motor. Who it is was seen before: that need not be waited for.
+    if (last_identity && boot.ignoresReset(state, now)) last_stop.stopMotor();
     boot.heartbeatHeard(state, now);
     runBoot(now);
     return;

@@ -42,7 +42,6 @@ void LastStop::tick(Time now) {
   next_ = now + (quickly ? kQuickInterval : kSlowInterval);
 }
 
-/// @return false if there is nothing that could be written.
 bool LastStop::stopMotor() {
   bool told = false;
   for (const StartupWrite& write : config_.writes) {

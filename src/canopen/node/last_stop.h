@@ -30,9 +30,11 @@ class LastStop {
   /// A heartbeat tells the node's state. @return true: it has not stopped yet, it is told again at
   /// once, and shall not be booted before it has or its time is up (0.5 s after the loss).
   bool insists(NmtState state, Time now);
+  /// Tells it once to stop its motor; no answer is waited for. @return false if there is nothing
+  /// that could be written.
+  bool stopMotor();
 
  private:
-  bool stopMotor();
   void restart(Time now);
 
   const NodeConfig& config_;

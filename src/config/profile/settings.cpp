@@ -75,6 +75,14 @@ const ObjectSpec* readWritable(const yaml::Value& value, const DriveProfile& pro
   return nullptr;
 }
 
+/// A bit rate is a key.
+std::optional<std::uint32_t> bitRate(const std::string& key, const yaml::Value& entry) {
+  const auto rate = yaml::parseInteger(key);
+  if (rate && *rate >= 1000 && *rate <= 1000000) return static_cast<std::uint32_t>(*rate);
+  entry.problem("`" + key + "` is no bit rate of CAN, in bit/s");
+  return {};
+}
+
 void readBusSetting(const yaml::Value& value, const DriveProfile& profile,
                     drive::BusSetting& setting) {
   yaml::Section section(value);
@@ -88,17 +96,25 @@ void readBusSetting(const yaml::Value& value, const DriveProfile& profile,
   if (const auto numbers = section.get("numbers")) {
     yaml::Section rates(*numbers);
     for (const auto& [key, entry] : rates.entries()) {
-      const auto rate = yaml::parseInteger(key);
+      const auto rate = bitRate(key, entry);
       const auto number = entry.integer(0, 0xFFFF);
-      if (!rate || *rate < 1000 || *rate > 1000000) {
-        entry.problem("`" + key + "` is no bit rate of CAN, in bit/s");
-      } else if (number) {
-        setting.numbers[static_cast<std::uint32_t>(*rate)] = *number;
-      }
+      if (rate && number) setting.numbers[*rate] = *number;
     }
     rates.finish();
   }
   section.finish();
+}
+
+void readSamplePoints(const yaml::Value& value, drive::BusSettings& settings) {
+  yaml::Section rates(value);
+  for (const auto& [key, entry] : rates.entries()) {
+    const auto rate = bitRate(key, entry);
+    for (const yaml::Value& item : entry.list()) {
+      const auto point = item.number({0.5, 0.95, false});
+      if (rate && point) settings.sample_points[*rate].push_back(*point);
+    }
+  }
+  rates.finish();
 }
 
 }  // namespace
@@ -123,6 +139,7 @@ void readBusSettings(const yaml::Value& value, DriveProfile& profile) {
     of_memory.finish();
   }
   section.read("saved_apart", settings.saved_apart);
+  if (const auto points = section.get("sample_points")) readSamplePoints(*points, settings);
   section.finish();
 }
 

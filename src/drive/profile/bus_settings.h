@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace cia402::drive {
 
@@ -24,6 +25,8 @@ struct BusSettings {
   std::string memory;
   std::int64_t memory_on = 1, memory_off = 0;
   bool saved_apart = false;  ///< it stays only once the parameters are saved
+  /// Bit/s to the share of a bit after which the device reads it, what it best has first.
+  std::map<std::uint32_t, std::vector<double>> sample_points;
 };
 
 }  // namespace cia402::drive

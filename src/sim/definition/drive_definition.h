@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sim/definition/absolute_encoder.h"
+#include "sim/definition/makers_own.h"
 #include "sim/definition/memory.h"
 #include "sim/definition/quirks.h"
 #include "sim/definition/terminals.h"
@@ -243,7 +244,7 @@ struct DriveDefinition {
   bool stops_outside_operational = true;
   bool traps_non_finite = false;  ///< NaN and infinity in a float object: fault "not_a_number"
   bool traps_negative_zero = false;
-  std::optional<fieldbus::ObjectId> node_id;  ///< object whose saved value is the node-ID
+  MakersOwnDefinition own;
   MemoryDefinition memory;
 
   /// What the objects of the roles output_n_function say where 60FEh is shown.

@@ -9,6 +9,7 @@
 #include "sim/definition/read_homing.h"
 #include "sim/definition/read_modes.h"
 #include "sim/definition/read_objects.h"
+#include "sim/definition/read_own_bus.h"
 #include "sim/definition/read_quirks.h"
 #include "sim/definition/read_state_machine.h"
 #include "sim/definition/read_terminals.h"
@@ -83,7 +84,10 @@ void readDefinition(DefinitionReader& reader, bool extends, DriveDefinition& out
   reader.each("modes", [&](const std::string& number, const yaml::Value& value) {
     readMode(number, value, reader, out);
   });
-  readNodeId(reader, out);
+  reader.section("own_bus", [&](DefinitionReader& r) { readOwnBus(r, out.own.bus); });
+  reader.section("effective", [&](DefinitionReader& r) { readEffects(r, out.own.effects); });
+  reader.section("maker_states", [&](DefinitionReader& r) { readMakerStates(r, out.own.states); });
+  reader.read("full_pulse_width", out.own.full_pulse_width, 0.0, 1000.0);
   reader.section("memory", [&](DefinitionReader& r) { readMemory(r, out.memory); });
   reader.section("state_machine", [&](DefinitionReader& r) { readStateMachine(r, out); });
   reader.section("s_curve", [&](DefinitionReader& r) {

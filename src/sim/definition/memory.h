@@ -19,8 +19,6 @@ struct MemoryDefinition {
   std::map<fieldbus::ObjectId, std::int64_t> factory;
   /// Switched on with other numbers in these, it is deaf and mute.
   std::map<fieldbus::ObjectId, std::int64_t> silent_unless;
-  /// Switched on with another number in it than it came with, it has another bit rate than the bus.
-  std::optional<fieldbus::ObjectId> bit_rate;
 };
 
 }  // namespace cia402::sim

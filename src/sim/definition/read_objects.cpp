@@ -74,14 +74,6 @@ void readObjects(DefinitionReader& reader, DriveDefinition& out) {
   });
 }
 
-void readNodeId(DefinitionReader& reader, DriveDefinition& out) {
-  std::string text;
-  reader.read("node_id", text);
-  if (text.empty()) return;
-  out.node_id = fieldbus::parseObjectId(text);
-  if (!out.node_id) reader.problem("node_id", "must be an object like \"2003:01\"");
-}
-
 void readMemory(DefinitionReader& reader, MemoryDefinition& out) {
   const auto one = [&](const char* key, std::optional<fieldbus::ObjectId>& object) {
     std::string text;
@@ -99,7 +91,6 @@ void readMemory(DefinitionReader& reader, MemoryDefinition& out) {
     });
   };
   one("keeps", out.keeps);
-  one("bit_rate", out.bit_rate);
   numbers("reset", out.reset);
   numbers("factory", out.factory);
   numbers("silent_unless", out.silent_unless);

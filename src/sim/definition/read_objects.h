@@ -17,8 +17,6 @@ void readUnitsOf(DefinitionReader& reader, DriveDefinition& out);
 void readEncoding(DefinitionReader& reader, DriveDefinition& out);
 /// `objects:` and `encodings:`, of single objects.
 void readObjects(DefinitionReader& reader, DriveDefinition& out);
-/// `node_id:`.
-void readNodeId(DefinitionReader& reader, DriveDefinition& out);
 /// The `memory:` section. @pre the dictionary was read
 void readMemory(DefinitionReader& reader, MemoryDefinition& out);
 

@@ -59,7 +59,7 @@ void AbsoluteEncoder::showAll() {
 
 double AbsoluteEncoder::number(const Object& object, double fallback) const {
   const Entry* entry = object ? dictionary_.find(*object) : nullptr;
-  return entry == nullptr ? fallback : static_cast<double>(entry->number);
+  return entry == nullptr ? fallback : static_cast<double>(entry->acting());
 }
 
 double AbsoluteEncoder::wide(const AbsoluteEncoderDefinition::Wide& objects) const {

@@ -3,18 +3,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <deque>
-#include <map>
 #include <utility>
 
 #include "sim/definition/drive_definition.h"
 #include "sim/dictionary/axis_objects.h"
 #include "sim/drive/build_dictionary.h"
 #include "sim/drive/drive_axis.h"
+#include "sim/drive/effect_times.h"
 #include "sim/drive/emergency_sender.h"
 #include "sim/drive/gate.h"
+#include "sim/drive/maker_state.h"
+#include "sim/drive/object_roles.h"
+#include "sim/drive/own_bus.h"
 #include "sim/drive/parameter_store.h"
+#include "sim/drive/raw_faults.h"
 
 namespace cia402::sim {
 namespace {
@@ -30,6 +33,8 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
        const std::vector<AxisMechanics>& further)
       : definition(std::move(drive_definition)),
         dictionary(buildDictionary(*definition, node, identity)),
+        effects(definition->own.effects, dictionary),
+        own_bus(definition->own.bus, dictionary),
         gate(sink),
         device(node, gate, dictionary, definition->communication, *this),
         emergencies(*definition, device),
@@ -52,9 +57,10 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
       dictionary.onWriteCheck(entry.id, [this](const Entry& e, std::uint64_t number) {
         return refuseWrite(e, number);
       });
-      const auto role = roleOf(entry);
-      const Encoding encoding = encodingOf(entry);
-      const bool own = axes[0].terminals.holds(entry.id) || axes[0].encoder.holds(entry.id);
+      const auto role = roleOf(*definition, entry.id);
+      const Encoding encoding = encodingOf(*definition, entry.id);
+      const bool own = axes[0].terminals.holds(entry.id) || axes[0].encoder.holds(entry.id) ||
+                       own_bus.holds(entry.id);
       if (role || encoding != Encoding::integer || own) {
         dictionary.onWrite(entry.id,
                            [this, role, encoding](const Entry& e) { written(e, role, encoding); });
@@ -66,23 +72,6 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
     return axes[axisOf(entry.id, definition->axisCount())];
   }
 
-  std::optional<Role> roleOf(const Entry& entry) const {
-    const ObjectId id = ofFirstAxis(entry.id, definition->axisCount());
-    for (const auto& moved : definition->objects) {
-      if (moved.second == id) return moved.first;
-    }
-    return findRole(id);
-  }
-
-  Encoding encodingOf(const Entry& entry) const {
-    const ObjectId id = ofFirstAxis(entry.id, definition->axisCount());
-    const auto special = definition->encodings.find(id);
-    if (special != definition->encodings.end()) return special->second;
-    const auto role = roleOf(entry);
-    return role && roleInfo(*role).quantity != Quantity::none ? definition->encoding
-                                                              : Encoding::integer;
-  }
-
   // An object of the device itself is refused by any of its axes.
   std::uint32_t refuseWrite(const Entry& entry, std::uint64_t number) {
     if (entry.id.index >= kFirstAxisObject) return axisWith(entry).core.refuseWrite(entry, number);
@@ -90,8 +79,10 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
     for (const DriveAxis& axis : axes) {
       if (refused == 0) refused = axis.core.refuseWrite(entry, number);
     }
-    if (refused == 0) store.keep(entry, number);
-    return refused;
+    if (refused != 0) return refused;
+    store.keep(entry, number);
+    effects.writing(entry.id);
+    return 0;
   }
 
   void written(const Entry& entry, std::optional<Role> role, Encoding encoding) {
@@ -116,6 +107,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
     if (role == Role::alarm_select || saves || (command && entry.number == 1))
       axis.core.onWrite(*role);
     axis.encoder.written(entry);
+    own_bus.written(entry, now);
     if (axis.terminals.holds(entry.id)) {
       obey(axis.terminals, axis.core, dictionary, definition->fault("terminal_setup"));
       axis.core.motion().publish();
@@ -137,6 +129,10 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
     return std::any_of(axes.begin(), axes.end(),
                        [](const DriveAxis& axis) { return axis.core.enabled(); });
   }
+  bool powered() {
+    return std::any_of(axes.begin(), axes.end(),
+                       [](DriveAxis& axis) { return axis.core.motion().powered(); });
+  }
   std::uint8_t errorRegister() const {
     unsigned bits = 0;
     for (const DriveAxis& axis : axes) bits |= axis.core.faults().errorRegister();
@@ -149,18 +145,14 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
     heard = false;
     for (DriveAxis& axis : axes) axis.terminals.start(axis.core);
     forEach(&DriveCore::start, cold, time);
-    if (cold) gate.foreign = store.silent();
+    gate.foreign = own_bus.foreign() || (cold ? store.silent() : gate.foreign);
     for (DriveAxis& axis : axes) axis.encoder.start(cold);
     cold = false;
   }
-  std::optional<canopen::NodeId> ownNodeId() const override {
-    const Entry* entry = definition->node_id ? dictionary.find(*definition->node_id) : nullptr;
-    if (entry == nullptr) return {};
-    return static_cast<canopen::NodeId>(entry->initial_number);
-  }
+  std::optional<canopen::NodeId> ownNodeId() const override { return own_bus.nodeId(); }
   void onNodeId(canopen::NodeId before, canopen::NodeId now_is) override {
     for (const ObjectId id : definition->dictionary.nodeIdObjects()) {
-      store.moveDefault(id, std::int64_t{now_is} - before);
+      if (id != definition->own.bus.node_id) store.moveDefault(id, std::int64_t{now_is} - before);
     }
   }
   void onResetCommunication(Time) override {}  // the power drive system goes on
@@ -185,8 +177,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
   void bringTo(Time time) {
     now = std::max(now, time);
     if (reset_at && now >= *reset_at) {
-      device.powerOff();
-      forEach(&DriveCore::powerOff);
+      cutPower();
       restart_at = std::exchange(reset_at, std::nullopt);
     }
     if (restart_at && now >= *restart_at) {
@@ -196,16 +187,40 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
       cold = true;
       device.powerOn(at);
     }
+<<<<<<< HEAD
     for (DriveAxis& axis : axes) {
       axis.core.advance(now);
       axis.encoder.look();
     }
+=======
+    forEach(&DriveCore::advance, now);
+    for (DriveAxis& axis : axes) axis.encoder.look();
+    showMakerState(definition->own.states, axes[0].core.statusword(),
+                   axes[0].core.motion().powered(), dictionary);
+    if (effects.waits() && !powered()) effects.stopped();
+    if (now >= own_bus.due()) countOwnBus();
+  }
+
+  void cutPower() {
+    device.powerOff();
+    forEach(&DriveCore::powerOff);
+    effects.powerOff();
+    own_bus.powerOff();
+  }
+
+  void countOwnBus() {
+    if (own_bus.count(device.node())) {
+      device.receive(can::Frame(0x000, {130, device.node()}), now);  // reset communication
+    }
+    gate.foreign = own_bus.foreign();
+>>>>>>> rest_3
   }
 
   // Another drive of the same kind takes this one's place: other serial number, as from the
   // factory.
   void exchange() {
     store.restore(1);
+    own_bus.setUp();
     Entry* serial = dictionary.find({0x1018, 4});
     if (serial != nullptr) ++serial->initial_number;
   }
@@ -219,25 +234,14 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
     forEach(&DriveCore::removeCauses);
   }
 
-  // The fault with a code that a text such as "0x7305" names; nullptr if it names none.
-  const FaultDefinition* rawFault(const std::string& text) {
-    char* end = nullptr;
-    const bool raw = text.compare(0, 2, "0x") == 0;
-    const unsigned long code = raw ? std::strtoul(text.c_str(), &end, 16) : 0;
-    if (code == 0 || code > 0xFFFF || *end != '\0') return nullptr;
-    FaultDefinition& made = raw_faults[static_cast<std::uint16_t>(code)];
-    made.name = text;
-    made.code = static_cast<std::uint16_t>(code);
-    made.error_register = registerFor(made.code);
-    return &made;
-  }
-
   void flushChanges() {
     if (device.powered()) device.notifyChange(now);
   }
 
   std::shared_ptr<const DriveDefinition> definition;
   ObjectDictionary dictionary;
+  EffectTimes effects;
+  OwnBus own_bus;
   Gate gate;
   Device device;
   EmergencySender emergencies;
@@ -246,7 +250,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
   Time now{};
   std::optional<Time> restart_at;
   std::optional<Time> reset_at;  ///< by its own object
-  std::map<std::uint16_t, FaultDefinition> raw_faults;
+  RawFaults raw_faults;
   bool heard = false;  ///< anything, since power-on
   bool cold = false;
   bool first_power = true;
@@ -271,8 +275,7 @@ void Drive::powerOn(Time now) {
 void Drive::powerOff(Time now) {
   impl_->bringTo(now);
   impl_->restart_at.reset();
-  impl_->device.powerOff();
-  impl_->forEach(&DriveCore::powerOff);
+  impl_->cutPower();
 }
 
 void Drive::receive(const can::Frame& frame, Time now) {
@@ -290,7 +293,8 @@ void Drive::tick(Time now) {
 }
 
 Time Drive::nextEvent() const {
-  Time next = std::min(impl_->device.nextEvent(), impl_->emergencies.nextEvent());
+  Time next =
+      std::min({impl_->device.nextEvent(), impl_->emergencies.nextEvent(), impl_->own_bus.due()});
   for (const DriveAxis& axis : impl_->axes) next = std::min(next, axis.core.nextEvent());
   next = std::min(next, impl_->restart_at.value_or(kNever));
   return std::min(next, impl_->reset_at.value_or(kNever));
@@ -321,7 +325,7 @@ Result<void> Drive::inject(const std::string& fault, Time now, unsigned axis) {
     core.motion().motor().block(true);
   } else if (fault == "clear") {
     impl.removeTroubles();
-  } else if (const FaultDefinition* raw = impl.rawFault(fault)) {
+  } else if (const FaultDefinition* raw = impl.raw_faults.find(fault)) {
     core.raise(*raw);
   } else {
     std::string names;
@@ -384,6 +388,12 @@ DriveTruth Drive::truth(Time now, unsigned axis) {
   truth.outputs = asked.core.outputs();
   truth.bad_floats_received = asked.bad_floats;
   return truth;
+}
+
+void Drive::hangOn(std::uint32_t bit_rate) {
+  impl_->device.setBusBitrate(bit_rate);
+  impl_->own_bus.hangOn(bit_rate);
+  if (impl_->first_power) impl_->own_bus.setUp();
 }
 
 unsigned Drive::axisCount() const { return static_cast<unsigned>(impl_->axes.size()); }

@@ -66,6 +66,9 @@ class Drive {
         const std::vector<AxisMechanics>& further = {});
   ~Drive();
 
+  /// The bit rate of the bus that it hangs on, bit/s. A drive that has never had power yet has been
+  /// set up for it; later it is deaf and mute where it speaks another one.
+  void hangOn(std::uint32_t bit_rate);
   /// Supply on, or on again: boots, after the device's boot time.
   void powerOn(Time now);
   /// No supply: silent, rotors coast.

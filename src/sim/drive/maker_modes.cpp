@@ -9,7 +9,6 @@ namespace {
 
 constexpr std::int64_t kSteps = 1, kSpeed = 2;  // role maker_mode
 constexpr std::int64_t kByPulseWidth = 3;       // role maker_speed_source
-constexpr double kAtFullWidth = 10.0;           // turns/s; not told by anybody
 constexpr double kRampSpeed = 1000.0 / 60.0;    // turns/s, reached in the time of a ramp
 
 }  // namespace
@@ -48,7 +47,8 @@ void MakerModes::stepDistance() {
 void MakerModes::stepSpeed() {
   Demand& demand = axis_.demand;
   const bool by_width = axis_.values.raw(Role::maker_speed_source, 0) == kByPulseWidth;
-  const double wanted = by_width ? duty_ * kAtFullWidth : axis_.values.get(Role::maker_speed, 0.0);
+  const double wanted = by_width ? duty_ * axis_.definition.own.full_pulse_width
+                                 : axis_.values.get(Role::maker_speed, 0.0);
   const auto ramp = [this](Role time) {
     const double seconds = static_cast<double>(axis_.values.raw(time, 0)) * 1e-3;
     return seconds > 0.0 ? kRampSpeed / seconds : kUnlimited;

@@ -71,7 +71,8 @@ void Motor::accelerate(double wanted) {
 
 void Motor::followPosition(double demand, const Offsets& offsets) {
   const double error = demand - position_;
-  const double demand_speed = last_demand_ ? (demand - *last_demand_) / kDriveStepS : 0.0;
+  // A demand that takes over from a speed or a torque goes on as the rotor turns.
+  const double demand_speed = last_demand_ ? (demand - *last_demand_) / kDriveStepS : velocity_;
   last_demand_ = demand;
   const double distance = std::fabs(error);
   const bool led = offsets.velocity != 0.0 || offsets.torque != 0.0;

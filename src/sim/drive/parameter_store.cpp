@@ -46,10 +46,6 @@ ParameterStore::ParameterStore(ObjectDictionary& dictionary, const MemoryDefinit
   for (const auto& pair : dictionary_.entries()) factory_[pair.first] = pair.second.initial_number;
   install(kStore, kSave);
   install(kRestore, kLoad);
-  if (memory_.bit_rate) {
-    const Entry* rate = dictionary_.find(*memory_.bit_rate);
-    if (rate != nullptr) came_with_ = rate->initial_number;
-  }
   dictionary_.onChange([this](const Entry& entry) { changed(entry); });
 }
 
@@ -144,7 +140,7 @@ bool ParameterStore::silent() const {
   for (const auto& [id, number] : memory_.silent_unless) {
     if (differs(id, static_cast<std::uint64_t>(number))) return true;
   }
-  return memory_.bit_rate && differs(*memory_.bit_rate, came_with_);
+  return false;
 }
 
 void ParameterStore::restore(std::uint8_t subindex) {

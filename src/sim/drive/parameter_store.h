@@ -48,7 +48,6 @@ class ParameterStore {
   std::function<bool()> enabled_;
   std::function<void()> stored_;
   std::map<ObjectId, std::uint64_t> factory_;
-  std::uint64_t came_with_ = 0;  ///< number of its bit rate
 };
 
 }  // namespace cia402::sim

@@ -15,7 +15,7 @@ class World::DriveNode final : public Listener {
       : bus_(bus),
         port_(bus.attach(*this, std::move(name))),
         drive_(std::move(definition), node, port_, mechanics, identity, further) {
-    drive_.device().setBusBitrate(static_cast<std::uint32_t>(bus.bitrate()));
+    drive_.hangOn(static_cast<std::uint32_t>(bus.bitrate()));
   }
 
   void onFrame(const can::Frame& frame, Time now) override {

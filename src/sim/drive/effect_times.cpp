@@ -1,0 +1,24 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "sim/drive/effect_times.h"
+
+namespace cia402::sim {
+
+void EffectTimes::writing(ObjectId id) {
+  Entry* entry = effects_.count(id) == 0 ? nullptr : dictionary_.find(id);
+  if (entry == nullptr) return;
+  if (!entry->goes_by) entry->goes_by = entry->number;
+  waits_ = true;
+}
+
+void EffectTimes::release(bool all) {
+  if (!waits_) return;
+  waits_ = false;
+  for (const auto& [id, effect] : effects_) {
+    Entry* entry = dictionary_.find(id);
+    if (entry == nullptr) continue;
+    if (all || effect == Effect::stop) entry->goes_by.reset();
+    waits_ = waits_ || entry->goes_by.has_value();
+  }
+}
+
+}  // namespace cia402::sim
