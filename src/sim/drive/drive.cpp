@@ -187,14 +187,10 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
       cold = true;
       device.powerOn(at);
     }
-<<<<<<< HEAD
     for (DriveAxis& axis : axes) {
       axis.core.advance(now);
       axis.encoder.look();
     }
-=======
-    forEach(&DriveCore::advance, now);
-    for (DriveAxis& axis : axes) axis.encoder.look();
     showMakerState(definition->own.states, axes[0].core.statusword(),
                    axes[0].core.motion().powered(), dictionary);
     if (effects.waits() && !powered()) effects.stopped();
@@ -213,7 +209,6 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
       device.receive(can::Frame(0x000, {130, device.node()}), now);  // reset communication
     }
     gate.foreign = own_bus.foreign();
->>>>>>> rest_3
   }
 
   // Another drive of the same kind takes this one's place: other serial number, as from the

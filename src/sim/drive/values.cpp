@@ -289,13 +289,8 @@ double DriveValues::number(const Slot& slot) const {
   if (slot.encoding != Encoding::integer) {
     return decodeNumber(*slot.entry, slot.encoding) / scale(slot);
   }
-<<<<<<< HEAD
-  const double number =
-      slot.is_signed ? static_cast<double>(integer(slot)) : static_cast<double>(slot.entry->number);
-=======
-  const double number = slot.sign != 0 ? static_cast<double>(integer(slot))
+  const double number = slot.is_signed ? static_cast<double>(integer(slot))
                                        : static_cast<double>(slot.entry->acting());
->>>>>>> rest_3
   if (slot.ramp && inRpm()) return kHardest / std::max(number, 1.0);
   return number / scale(slot);
 }

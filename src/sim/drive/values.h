@@ -275,12 +275,8 @@ class DriveValues {
   double number(const Slot& slot) const;
   void setNumber(const Slot& slot, double value);
   static std::int64_t integer(const Slot& slot) {
-<<<<<<< HEAD
     const std::uint64_t sign = slot.is_signed ? slot.bits ^ (slot.bits >> 1) : 0;
-    return static_cast<std::int64_t>(((slot.entry->number & slot.bits) ^ sign) - sign);
-=======
-    return static_cast<std::int64_t>(((slot.entry->acting() & slot.bits) ^ slot.sign) - slot.sign);
->>>>>>> rest_3
+    return static_cast<std::int64_t>(((slot.entry->acting() & slot.bits) ^ sign) - sign);
   }
   const Slot& slot(Role role) const { return slots_[static_cast<std::size_t>(role)]; }
 
