@@ -11,6 +11,7 @@ bool isSetByAxis(const DriveProfile& profile, const std::string& object) {
     const auto& writes = mode.entry_writes;
     return mode.target == object || mode.offsets.velocity == object ||
            mode.offsets.torque == object ||
+           (mode.set_point_stream && mode.set_point_stream->sends(object)) ||
            std::any_of(writes.begin(), writes.end(),
                        [&](const NamedWrite& write) { return write.object == object; });
   });
