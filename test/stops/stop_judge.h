@@ -185,6 +185,8 @@ inline Bound boundOf(const Case& tested, const Trace& trace) {
     bound.time += after + 2 * kCycleS;  // the first SYNC of the new process, and its set-point
   }
   if (tested.late > 0ms) bound.speed += hurryOf(mover);
+  // It was brought to speed by 0.8 of the limit, by which it fell behind: it makes that good.
+  if (mover.bySetPoints()) bound.speed = 1.02 * mechanicsOf(mover.drive).velocity;
   if (starved(tested)) bound.time += 2.0 * mover.speed / mechanicsOf(mover.drive).hardest();
   if (!trace.taken) return bound;
   if (mover.motion == Motion::stream || mover.motion == Motion::goal) {

@@ -13,7 +13,7 @@ constexpr int kTaken = 3;
 /// What the drive may brake harder by where it must, times the acceleration limit; as a quick stop.
 constexpr double kHardest = 2.0;
 /// What is measured of the speed of a motor that brakes may be so old, cycles,
-constexpr double kMeasured = 1.5;
+constexpr double kMeasured = 1.0;
 /// and needs no more than this, of the limit, to be judged by it.
 constexpr double kMore = 1.1;
 /// A drive that acknowledges by a level is waited for, cycles.
@@ -219,13 +219,12 @@ const char* PositionBySetPoints::handOver(std::uint64_t& raw, Time now) {
 }
 
 /// The drive has gone on, and stands at the last set-point that it has, or comes to stand there.
-/// One that it was not told to take yet would have it set off once more.
+/// That replaces one that it was not told to take yet, by which it would set off once more.
 bool PositionBySetPoints::late(Time /*now*/) {
   const double speed = std::isfinite(state().velocity) ? state().velocity : 0.0;
   const bool moves = !sent().atRest() || std::fabs(speed) > axis().config.standstill_velocity;
   if (!moves || !state().feedback_valid) return moves;
   const double rest = std::isfinite(held_) ? held_ : state().position;
-  if (!handshake_.raised()) handshake_.reset(handshake_.raw());
   sent().rest(SetPointKind::stream, rest);
   velocity_ = acceleration_ = 0.0;
   return true;
