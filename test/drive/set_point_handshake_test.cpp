@@ -231,7 +231,7 @@ TEST(SetPointHandshake, AnnouncesTheNextTargetWithTheWordsAtRestWhereEachIsSentO
   wire.handshake.offer(100);
   std::vector<std::pair<int, std::uint64_t>> sent;
   for (int i = 0; i < 8; ++i) {
-    if (i == 1) wire.handshake.offer(200);
+    if (i == 2) wire.handshake.offer(200);
     EXPECT_TRUE(wire.step(true));
     sent.emplace_back(wire.handshake.word(), wire.handshake.raw());
   }

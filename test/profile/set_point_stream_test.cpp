@@ -15,7 +15,8 @@ WholeProfile inMode(const std::string& keys, Problems& problems) {
   return parseDriveFamily(
       std::string(kLeastDrive) +
           "\n  fast: {object: \"6081:00\", type: uint32, quantity: velocity, pdo: rpdo}\n"
-          "  ramp: {object: \"6084:00\", type: uint32, quantity: acceleration, unit: count/s^2, pdo: rpdo}\n"
+          "  ramp: {object: \"6084:00\", type: uint32, quantity: acceleration, unit: count/s^2,"
+          " pdo: rpdo}\n"
           "  fixed: {object: \"607F:00\", type: uint32, quantity: velocity}\n"
           "modes:\n  led: {value: 1, " +
           keys + "}\n",
