@@ -214,6 +214,7 @@ void readAxis(const std::string& name, const yaml::Value& value, AxisReading& re
     checkDoubts(section, draft, robot);
   }
   tunePositionLoop(section, axis);
+  tuneSetPointStream(section, axis);
   checkFeedForward(section, axis);
   checkEds(section, draft, robot);
   if (draft.first) checkErrorControl(section, draft, robot);

@@ -125,6 +125,8 @@ void readFeedForward(yaml::Section& axis_section, drive::AxisConfig& axis);
 void checkFeedForward(yaml::Section& axis_section, const drive::AxisConfig& axis);
 /// The axis' `position_loop`, or the profile's, for the modes that it can be in.
 void tunePositionLoop(yaml::Section& section, drive::AxisConfig& axis);
+/// The axis' `set_point_stream`, or the profile's. @pre its PDOs are chosen
+void tuneSetPointStream(yaml::Section& section, drive::AxisConfig& axis);
 FrameConfig readFrame(const yaml::Value& value, const std::string& joint);
 SimulationConfig readSimulation(const yaml::Value& value);
 

@@ -225,6 +225,22 @@ TEST(SetPointHandshake, WithoutRiseGivesUpAtRest) {
   EXPECT_FALSE(wire.handshake.busy());
 }
 
+/// The next target leaves with the words at rest, and its first word after that.
+TEST(SetPointHandshake, AnnouncesTheNextTargetWithTheWordsAtRestWhereEachIsSentOnce) {
+  Wire wire(threeWords());
+  wire.handshake.offer(100);
+  std::vector<std::pair<int, std::uint64_t>> sent;
+  for (int i = 0; i < 8; ++i) {
+    if (i == 2) wire.handshake.offer(200);
+    EXPECT_TRUE(wire.step(true));
+    sent.emplace_back(wire.handshake.word(), wire.handshake.raw());
+  }
+  using testing::Pair;
+  EXPECT_THAT(
+      sent, testing::ElementsAre(Pair(0, 100u), Pair(0x20, 100u), Pair(0x30, 100u), Pair(0, 200u),
+                                 Pair(0x20, 200u), Pair(0x30, 200u), Pair(0, 200u), Pair(0, 200u)));
+}
+
 TEST(SetPointHandshake, SendsEachWordAsOftenAsItIsTold) {
   Handover handover = threeWords();
   handover.acknowledge = Handover::Acknowledge::none;

@@ -34,6 +34,10 @@ inline bool brakesByHaltBit(const Mover& mover) {
   return stopDrive(mover.drive).halt_bit_brakes_efforts && mover.mode != "cyclic_torque";
 }
 
+/// A set-point of profile position mode leads six cycles ahead of its stream, behind which the
+/// motor is by three; the next one comes three cycles later.
+constexpr double kSetPointsLeadS = 9 * kCycleS, kSetPointsApartS = 3 * kCycleS;
+
 /// The mode that brakes an effort is asked for, shown and then given its first set-point.
 constexpr double kModeChangeS = 3 * kCycleS;
 
@@ -49,6 +53,7 @@ inline Braking brakingOfOrphan(const Mover& mover) {
   const double quick = 2.0 * mechanics.acceleration;
   const bool interpolated = mover.mode == "interpolated_position";
   if (interpolated && stopDrive(mover.drive).sync_fault) return {3 * kCycleS, quick};
+  if (mover.bySetPoints()) return {kSetPointsLeadS, mechanics.acceleration};
   if (mover.motion == Motion::stream) return {2 * kCycleS, mechanics.hardest()};
   const bool coasts = stopDrive(mover.drive).orphaned == Orphaned::coasts;
   return {kMasterLostS, coasts ? mechanics.friction() : quick};
@@ -138,12 +143,14 @@ inline bool starved(const Case& tested) {
 }
 /// The motor swings beyond the last target by what it cannot brake, once it has begun to.
 inline double swingOf(const Mover& mover) {
+  if (mover.bySetPoints()) return 0.0;  // it stops there by its ramp
   const Mechanics& mechanics = mechanicsOf(mover.drive);
   return mover.speed * mover.speed / (2.0 * mechanics.hardest()) + mover.speed * mechanics.lag_s;
 }
 
 /// The speed that one set-point gives it is braked by its own ramp.
 inline double stepOf(const Mover& mover) {
+  if (mover.bySetPoints()) return mover.speed * kSetPointsApartS;
   const Mechanics& mechanics = mechanicsOf(mover.drive);
   const double reached = mover.speed * (1.0 - std::exp(-kCycleS / mechanics.lag_s));
   return mover.speed * kCycleS +
@@ -178,6 +185,8 @@ inline Bound boundOf(const Case& tested, const Trace& trace) {
     bound.time += after + 2 * kCycleS;  // the first SYNC of the new process, and its set-point
   }
   if (tested.late > 0ms) bound.speed += hurryOf(mover);
+  // It was brought to speed by 0.8 of the limit, by which it fell behind: it makes that good.
+  if (mover.bySetPoints()) bound.speed = 1.02 * mechanicsOf(mover.drive).velocity;
   if (starved(tested)) bound.time += 2.0 * mover.speed / mechanicsOf(mover.drive).hardest();
   if (!trace.taken) return bound;
   if (mover.motion == Motion::stream || mover.motion == Motion::goal) {

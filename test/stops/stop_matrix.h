@@ -69,8 +69,9 @@ enum class Motion { stream, velocity, goal, effort };
 struct Mover {
   std::string drive, mode;
   Motion motion = Motion::stream;
-  bool coasts = false;                                                ///< command_timeout_action
-  bool byVelocity() const { return mode == "position_by_velocity"; }  ///< the driver's loop
+  bool coasts = false;                                                   ///< command_timeout_action
+  bool byVelocity() const { return mode == "position_by_velocity"; }     ///< the driver's loop
+  bool bySetPoints() const { return mode == "position_by_set_points"; }  ///< of profile position
   double set_point = 0.0;  ///< rad/s of a stream or a velocity, rad of a goal, N m
   double speed = 0.0;      ///< rad/s that it runs at, when it is stopped
   std::string other_mode;  ///< for set_mode
@@ -148,6 +149,7 @@ inline std::vector<Mover> movers() {
       {n, pv, Motion::velocity, false, 1.2, 1.2, csp},
       {n, csv, Motion::velocity, false, 1.2, 1.2, csp},
       {i, "position_by_velocity", Motion::stream, false, 1.2, 1.2, pp},
+      {i, "position_by_set_points", Motion::stream, false, 1.2, 1.2, pv},
       {i, pp, Motion::goal, false, 1.8, 1.5, pv},
       {i, pv, Motion::velocity, false, 1.2, 1.2, pp},
       {i, csv, Motion::velocity, false, 1.2, 1.2, pp},

@@ -20,7 +20,8 @@ inline std::vector<FamilyMode> familyModes() {
   for (const char* mode : {"pp", "vl", "pv", "ip", "csp", "csv"}) {
     modes.push_back({kNimotionStepper, "4000", mode});
   }
-  for (const char* mode : {"pp", "pv", "csv", "pt", "position_by_velocity"}) {
+  for (const char* mode :
+       {"pp", "pv", "csv", "pt", "position_by_velocity", "position_by_set_points"}) {
     modes.push_back({kId286Cnfa, "10000", mode});
   }
   for (const char* mode : {"pp", "pv", "csp", "csv", "pt", "cst"}) {

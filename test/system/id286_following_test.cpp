@@ -63,7 +63,8 @@ TEST(Id286Trajectory, FromWhichTheMotorFallsBehindIsStopped) {
   EXPECT_EQ(scene.state("joint").error_code, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(In, Id286Following, testing::Values("pp", "position_by_velocity"),
+INSTANTIATE_TEST_SUITE_P(In, Id286Following,
+                         testing::Values("pp", "position_by_velocity", "position_by_set_points"),
                          [](const auto& tested) { return std::string(tested.param); });
 
 }  // namespace

@@ -50,7 +50,8 @@ INSTANTIATE_TEST_SUITE_P(All, UnwatchedStreams,
 TEST(WatchedByNobody, PositionsNeedNoKey) {
   for (const FamilyMode tested :
        {FamilyMode{kNimotionStepper, "4000", "csp"}, FamilyMode{kNimotionStepper, "4000", "pp"},
-        FamilyMode{kId286Cnfa, "10000", "pp"}}) {
+        FamilyMode{kId286Cnfa, "10000", "pp"},
+        FamilyMode{kId286Cnfa, "10000", "position_by_set_points"}}) {
     Scene scene(loadText(without(familyJoint(tested))));
     ASSERT_TRUE(scene.boot(20s)) << scene.told();
     ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success) << scene.told();

@@ -44,6 +44,23 @@ void readLoop(yaml::Section& section, ModeSpec& mode) {
   }
 }
 
+/// Its speed travels as the objects of `mapped` do.
+void readStream(yaml::Section& section, const DriveProfile& profile, ModeSpec& mode) {
+  const auto value = section.get("set_point_stream");
+  if (!value) return;
+  drive::SetPointStream stream = readSetPointStream(*value, {}, &profile);
+  if (mode.kind != ControlKind::position || !mode.cyclic || mode.position_loop) {
+    value->problem(
+        "leads the drive along a stream of positions: it goes with `control: position` and "
+        "`cyclic: true`, without `position_loop`");
+    return;
+  }
+  if (stream.speed.empty()) return;  // told
+  mode.mapped.push_back(stream.speed);
+  if (!stream.deceleration.empty()) mode.mapped.push_back(stream.deceleration);
+  mode.set_point_stream = std::move(stream);
+}
+
 void readTarget(yaml::Section& section, const DriveProfile& profile, ModeSpec& mode) {
   const Quantity quantity =
       mode.position_loop ? Quantity::velocity : drive::targetQuantity(mode.kind);
@@ -117,7 +134,7 @@ void readHandshake(yaml::Section& section, ModeSpec& mode) {
   if (!value) return;
   mode.handover = readHandover(*value, mode.set_point_acknowledge_bit.has_value());
   if (mode.handover.words.empty()) return;
-  if (mode.cyclic) {
+  if (mode.cyclic && !mode.set_point_stream) {
     value->problem("a cyclic mode cannot wait for an acknowledgement of each set-point");
   }
   if (mode.kind != ControlKind::position) {
@@ -150,6 +167,18 @@ void readOneByOne(yaml::Section& section, const DriveProfile& profile, ModeSpec&
         "`queued` needs a drive that is stopped by the halt bit, which empties its queue, or lets "
         "it "
         "be replaced");
+  }
+}
+
+void checkSetPointStream(yaml::Section& section, const ModeSpec& mode) {
+  if (!mode.set_point_stream) return;
+  if (mode.handover.words.empty()) {
+    section.problem("`set_point_stream` needs the `handshake` by which set-points are taken");
+  }
+  if (mode.handover.oneByOne()) {
+    section.problem(
+        "`set_point_stream` replaces one set-point by the next: leave `queued` and "
+        "`relative_to` out");
   }
 }
 
@@ -229,6 +258,7 @@ ModeSpec readMode(const std::string& name, const yaml::Value& value, const Drive
   if (kind) mode.kind = static_cast<ControlKind>(*kind);
   section.read("cyclic", mode.cyclic);
   readLoop(section, mode);
+  readStream(section, profile, mode);
   readTarget(section, profile, mode);
   readOffsets(section, profile, mode);
   readStatusBits(section, mode);
@@ -236,6 +266,7 @@ ModeSpec readMode(const std::string& name, const yaml::Value& value, const Drive
   readStop(section, mode);
   section.readInteger("controlword_bits", mode.controlword_bits, 0, 0xFFFF);
   readOneByOne(section, profile, mode);
+  checkSetPointStream(section, mode);
   if ((mode.controlword_bits & kStateMachineBits) != 0) {
     section.problem("controlword_bits must leave bits 0 to 3 and 7 to the state machine");
   }

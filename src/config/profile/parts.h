@@ -110,6 +110,10 @@ enum class WriteList : std::uint8_t {
 
 /// `position_loop` of a mode or an axis. @param loop what holds where it does not say
 drive::PositionLoop readPositionLoop(const yaml::Value& value, drive::PositionLoop loop);
+/// `set_point_stream` of a mode or an axis. @param stream what holds where it does not say
+/// @param profile of the mode, whose objects `speed` may name; nullptr: an axis does not say that
+drive::SetPointStream readSetPointStream(const yaml::Value& value, drive::SetPointStream stream,
+                                         const DriveProfile* profile);
 
 /// Reads a list of writes (docs/drive_profiles.md, "Writes"); what is wrong adds problems. By index
 /// (`object: "6065:00"`) a value is the drive's own whole number; by name it is in SI units.

@@ -58,10 +58,13 @@ const ModeSpec* trajectoryMode(const AxisConfig& axis) {
   const auto sent = [&](const std::string& target) {
     return std::find(axis.outputs.begin(), axis.outputs.end(), target) != axis.outputs.end();
   };
-  const auto found =
-      std::find_if(profile.modes.begin(), profile.modes.end(), [&](const ModeSpec& mode) {
-        return mode.cyclic && mode.kind == ControlKind::position && sent(mode.target);
-      });
+  const auto follows = [&](const ModeSpec& mode) {
+    return mode.cyclic && mode.kind == ControlKind::position && sent(mode.target) &&
+           (!mode.set_point_stream || sent(mode.set_point_stream->speed));
+  };
+  const ModeSpec* start = profile.mode(axis.mode);
+  if (start != nullptr && follows(*start)) return start;
+  const auto found = std::find_if(profile.modes.begin(), profile.modes.end(), follows);
   return found == profile.modes.end() ? nullptr : &*found;
 }
 

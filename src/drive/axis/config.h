@@ -49,7 +49,8 @@ struct AxisConfig {
   motion::JointLimits limits;
   std::string mode;                           ///< canonical name; mode at start
   std::optional<PositionLoop> position_loop;  ///< instead of the profile's, in modes that have one
-  FeedForward feed_forward;                   ///< in modes that have offsets
+  std::optional<SetPointStream> set_point_stream;  ///< likewise
+  FeedForward feed_forward;                        ///< in modes that have offsets
   std::optional<HomingOptions> homing;
   Duration cycle{std::chrono::milliseconds(4)};  ///< from one to the next
   Duration command_timeout{std::chrono::milliseconds(200)};

@@ -119,10 +119,10 @@ void Generator::lateCycle(Time now) {
 void Generator::giveUpLate() {
   sent_.giveUp();
   axis_.notices.notify(axis_.who() +
-                       ": cycles were missed while it moved, and its drive turned on with the last "
-                       "velocity meanwhile (mode " +
+                       ": cycles were missed while it moved, and its drive went on with what it "
+                       "was told last meanwhile (mode " +
                        mode_->spec().name +
-                       "): it is brought to rest from where it is, and what was commanded is given "
+                       "): it is brought to rest, and what was commanded is given "
                        "up. Command it again; see that nothing keeps the driver from its cycle");
 }
 
@@ -154,7 +154,7 @@ void Generator::sendNeutral() {
     const OutputObject& target = mode->channel().target;
     std::uint64_t raw = 0;
     if (target.mapped() && mode->neutralRaw(raw)) axis_.image.setOutput(target.slot, raw);
-    if (mode->handsOver()) mode->clearOffsets();
+    if (mode->handsOver()) mode->rest();
   }
 }
 
@@ -167,7 +167,7 @@ bool Generator::movesItself() const {
 }
 
 void Generator::watchDrive(Time now) {
-  if (!control_.homingStart() && !mode_->goals()) return;
+  if (!control_.homingStart() && !mode_->handsOver()) return;
   if (!feedback_.measuredStill()) seen_moving_ = now;
   const bool halting = axis_.state.halted && !control_.halt();
   if (movesItself() || (halting && mode_->mayTurnBack(now, seen_moving_))) moved_itself_ = now;
@@ -208,9 +208,8 @@ void Generator::watchFollowing(Time now) {
   const bool active = state.mode == &mode_->spec();
   const bool shown = bit && active && ((state.statusword >> *bit) & 1u) != 0;
   const bool held = !active || control_.halt() || state.internal_limit;
-  const bool handing_over = mode_->goals() && mode_->handingOver();
-  const FollowWatch::Look look{sent_, standstill, state,       bit.has_value(),
-                               shown, held,       handing_over};
+  const FollowWatch::Look look{sent_, standstill, state,        bit.has_value(),
+                               shown, held,       handingOver()};
   if (following_.watch(look, now)) callBack();
 }
 

@@ -83,7 +83,7 @@ class Generator {
   /// The drive goes to a position by itself and has not come to it.
   bool goalAhead() const { return mode_->goalAhead(); }
   /// A set-point is being handed over to the drive.
-  bool handingOver() const { return mode_->goals() && mode_->handingOver(); }
+  bool handingOver() const { return mode_->handsOver() && mode_->handingOver(); }
   /// What is commanded as a position in operation, rad or m; NaN: nothing.
   double commandedPosition() const {
     return control_.inOperation() && mode_->positions() ? target() : kUnknown;

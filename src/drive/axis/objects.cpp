@@ -63,6 +63,16 @@ ModeChannel modeChannel(const AxisConfig& config, const fieldbus::Device& device
   const FeedForward& feed = config.feed_forward;
   channel.velocity_offset = offset(config, device, spec.offsets.velocity, feed.velocity != 0.0);
   channel.torque_offset = offset(config, device, spec.offsets.torque, feed.inertia != 0.0);
+  if (spec.set_point_stream) {
+    channel.set_point_speed = offset(config, device, spec.set_point_stream->speed, true);
+    channel.set_point_deceleration =
+        offset(config, device, spec.set_point_stream->deceleration, true);
+    if (!channel.set_point_speed.output.mapped()) {
+      channel.refusal = "the speed of its set-points, " + spec.set_point_stream->speed +
+                        ", is not mapped into an " + device.terms().output +
+                        ", or its unit is not known";
+    }
+  }
   channel.copies_position = position != nullptr && sameCoding(*object, *position);
   return channel;
 }

@@ -23,14 +23,16 @@ struct ModeChannel {
   const ModeSpec* spec = nullptr;
   OutputObject target;
   Conversion conversion;
-  /// An object that is added to a demand of the drive.
+  /// An object beside the target: what is added to a demand of the drive, or its speed.
   struct Offset {
     OutputObject output;
     Conversion conversion;
   };
   Offset velocity_offset, torque_offset;  ///< where the axis feeds forward by them
-  bool copies_position = false;           ///< target has the very coding of the actual position
-  std::string refusal;                    ///< why the mode cannot be used; empty: it can
+  /// Those that go with each set-point (SetPointStream).
+  Offset set_point_speed, set_point_deceleration;
+  bool copies_position = false;  ///< target has the very coding of the actual position
+  std::string refusal;           ///< why the mode cannot be used; empty: it can
 };
 
 /// Where everything that an axis needs is in the process image, worked out once.

@@ -5,6 +5,7 @@
 
 #include "drive/modes/cyclic_position.h"
 #include "drive/modes/homing_control.h"
+#include "drive/modes/position_by_set_points.h"
 #include "drive/modes/position_by_velocity.h"
 #include "drive/modes/profile_position.h"
 #include "drive/modes/torque_control.h"
@@ -24,6 +25,7 @@ Made make(const ModeChannel& channel, const ModeControl::Context& context) {
 /// In a mode that is not cyclic the drive plans the way to a position by itself.
 Made makePosition(const ModeChannel& channel, const ModeControl::Context& context) {
   if (channel.spec->position_loop) return make<PositionByVelocity>(channel, context);
+  if (channel.spec->set_point_stream) return make<PositionBySetPoints>(channel, context);
   return channel.spec->cyclic ? make<CyclicPosition>(channel, context)
                               : make<ProfilePosition>(channel, context);
 }

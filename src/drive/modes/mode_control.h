@@ -70,8 +70,8 @@ class ModeControl {
   /// handOver() is to be asked in each cycle.
   bool handsOver() const { return hands_over_; }
 
-  /// The axis is not in operation: offsets are 0.
-  void clearOffsets() { offsets_.clear(); }
+  /// A cycle out of operation, where handsOver(): what is sent beside the target is neutral.
+  virtual void rest() { offsets_.clear(); }
 
   // What follows is empty but where handsOver(); cycles ask for it there only.
   /// Begins anew with a neutral target, or the mode is left.

@@ -25,6 +25,17 @@ bool PositionControl::neutralRaw(std::uint64_t& raw) const {
   return channel().conversion.toDevice(position.toJoint(raw), raw);
 }
 
+SetPointHandshake::Input PositionControl::handshakeInput() const {
+  const fieldbus::ProcessImage& image = axis().image;
+  const OutputObject& target = channel().target;
+  SetPointHandshake::Input input;
+  input.controlword_frames = image.sent(axis().objects.controlword.slot);
+  input.target_frames = target.mapped() ? image.sent(target.slot) : input.controlword_frames;
+  const std::optional<int>& bit = spec().set_point_acknowledge_bit;
+  input.acknowledged = bit && ((static_cast<unsigned>(state().statusword) >> *bit) & 1u) != 0;
+  return input;
+}
+
 Duration PositionControl::wayBack(double) const { return kReactionCycles * axis().config.cycle; }
 
 }  // namespace cia402::drive

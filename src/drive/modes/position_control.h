@@ -2,6 +2,7 @@
 #pragma once
 
 #include "drive/modes/mode_control.h"
+#include "drive/modes/set_point_handshake.h"
 
 namespace cia402::drive {
 
@@ -15,6 +16,10 @@ class PositionControl : public ModeControl {
   double neutral() const override { return state().position; }
   bool neutralRaw(std::uint64_t& raw) const override;
   Duration wayBack(double away) const override;
+
+ protected:
+  /// What a handshake is to know of this cycle.
+  SetPointHandshake::Input handshakeInput() const;
 };
 
 }  // namespace cia402::drive

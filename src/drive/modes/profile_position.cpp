@@ -121,15 +121,8 @@ unsigned ProfilePosition::bits() const {
 
 const char* ProfilePosition::handOver(std::uint64_t& raw, Time now) {
   if (!by_hand_) return nullptr;
-  const fieldbus::ProcessImage& image = axis().image;
-  const OutputObject& target = channel().target;
-  SetPointHandshake::Input input;
-  input.controlword_frames = image.sent(axis().objects.controlword.slot);
-  input.target_frames = target.mapped() ? image.sent(target.slot) : input.controlword_frames;
-  const std::optional<int>& bit = spec().set_point_acknowledge_bit;
-  input.acknowledged = bit && ((static_cast<unsigned>(state().statusword) >> *bit) & 1u) != 0;
   const char* waiting = handshake_.waitingFor();
-  const bool well = handshake_.advance(input, now, axis().profile().timing.state_change);
+  const bool well = handshake_.advance(handshakeInput(), now, axis().profile().timing.state_change);
   raw = handshake_.raw();
   flushes_ = handshake_.blocked() || (flushes_ && handshake_.busy());
   if (well) return nullptr;

@@ -46,7 +46,13 @@ void SetPointHandshake::raise(const Input& input, Time now) {
   } else if (waitsForAcknowledge() ? input.acknowledged : sentLongEnough(input)) {
     word_ = 0;
     enter(Phase::lowered, input.controlword_frames, now);
+    if (pending_ && replacesWhileLowering()) announce(input, now);
   }
+}
+
+/// The words rest for as long as the next target takes to leave: both may travel together.
+bool SetPointHandshake::replacesWhileLowering() const {
+  return handover_->each_for == 1 && handover_->acknowledge != Acknowledge::level;
 }
 
 void SetPointHandshake::lower(const Input& input, Time now) {

@@ -62,6 +62,10 @@ class SetPointHandshake {
     return handover_->queued && !handover_->replaces_queue && pending_ && !next_.command &&
            acknowledged_ && (phase_ == Phase::idle || phase_ == Phase::lowered);
   }
+  /// One that was offered has not been announced yet.
+  bool pending() const { return pending_; }
+  /// The words that hand a set-point over are being sent.
+  bool raised() const { return word_ > 0; }
   /// What the drive does not do that is waited for, in words.
   const char* waitingFor() const;
 
@@ -73,6 +77,7 @@ class SetPointHandshake {
   void lower(const Input& input, Time now);
   bool waitsForRoom() const;
   bool replacesQueue() const;
+  bool replacesWhileLowering() const;
   bool handedOverOnce() const;
   bool sentLongEnough(const Input& input) const;
   bool waitsForAcknowledge() const;

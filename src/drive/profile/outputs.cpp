@@ -11,7 +11,8 @@ bool isSetpoint(const DriveProfile& profile, const std::string& object) {
   if (object == "controlword" || object == "mode_of_operation") return true;
   return std::any_of(profile.modes.begin(), profile.modes.end(), [&](const ModeSpec& mode) {
     return mode.target == object || mode.offsets.velocity == object ||
-           mode.offsets.torque == object;
+           mode.offsets.torque == object ||
+           (mode.set_point_stream && mode.set_point_stream->sends(object));
   });
 }
 

@@ -23,6 +23,7 @@
 #include "drive/profile/parameter_names.h"
 #include "drive/profile/parameter_recipes.h"
 #include "drive/profile/position_loop.h"
+#include "drive/profile/set_point_stream.h"
 #include "drive/profile/setting_check.h"
 #include "drive/profile/supervision.h"
 #include "drive/profile/timing.h"
@@ -176,6 +177,8 @@ struct ModeSpec {
   bool bits_while_stopping = false;
   std::optional<PositionLoop>
       position_loop;  ///< positions by velocities: `target` is one; cyclic positions only
+  /// Positions by set-points of profile position mode; cyclic positions with a handover only.
+  std::optional<SetPointStream> set_point_stream;
   OffsetObjects offsets;
   /// A drive that hears nothing more keeps moving, or pushing, as it was told last.
   bool runsOn() const { return kind != ControlKind::position || position_loop.has_value(); }
