@@ -121,12 +121,9 @@ Family id286() {
   family.limits_effort = false;
   family.options = "keeps: [motor_current], unwatched_streams: true, ";
   family.writes = "{object: following_error_limit, raw: 20000}";  // two turns, at 30 turns/s
-  family.modes = {{"position_by_velocity", 'p'},
-                  {"position_by_set_points", 'p'},
-                  {"profile_position", 'p'},
-                  {"profile_velocity", 'v'},
-                  {"cyclic_velocity", 'v'},
-                  {"profile_torque", 't'}};
+  family.modes = {{"position_by_velocity", 'p'}, {"position_by_set_points", 'p'},
+                  {"profile_position", 'p'},     {"profile_velocity", 'v'},
+                  {"cyclic_velocity", 'v'},      {"profile_torque", 't'}};
   family.declares = "35";
   family.searches = {"33", "34"};
   family.searches_switches = true;
