@@ -60,6 +60,16 @@ TEST(PositionBySetPoints, CarriesASpeedWithEachAndNeverLeadsBeyondTheLast) {
   EXPECT_GT(speeds.size(), 20u) << "the speed follows that of the stream";
 }
 
+/// A set-point is taken each 30 ms then: the motor is no more than that and two cycles behind.
+TEST(PositionBySetPoints, FollowsAtASyncPeriodAsLongAsItsInterval) {
+  FamilyScene scene(replaced(familyJoint(kBySets), "sync_period: 0.004", "sync_period: 0.01"));
+  ASSERT_TRUE(scene.move({1.0}, 2s).success);  // at up to 0.75 rad/s
+  scene.run(1s);
+  EXPECT_NEAR(scene.position("joint"), 0.5, 0.75 * 0.06) << "half of the way";
+  scene.run(3s);
+  EXPECT_NEAR(scene.position("joint"), 1.0, oneCount(kBySets));
+}
+
 TEST(PositionBySetPoints, TurnsRoundWhenItIsCommandedBack) {
   FamilyScene scene(familyJoint(kBySets));
   ASSERT_EQ(scene.setpoint("joint", 1.2), "");

@@ -170,7 +170,7 @@ PositionBySetPoints::Way PositionBySetPoints::wayToRest() const {
 void PositionBySetPoints::offerNext(Time now) {
   if (!state().feedback_valid || !std::isfinite(sent().value())) return;
   const bool rests = sent().atRest();
-  if (!rests && now < next_) return;
+  if (!rests && (now < next_ || handshake_.announced())) return;
   const Way way = rests ? wayToRest() : ahead();
   std::uint64_t raw = 0;
   if (!encode(way.target, raw)) return;

@@ -64,6 +64,8 @@ class SetPointHandshake {
   }
   /// One that was offered has not been announced yet.
   bool pending() const { return pending_; }
+  /// A target is on its way and its words are to follow: another one would begin anew.
+  bool announced() const { return phase_ == Phase::announced && handed_over_ == 0; }
   /// The words that hand a set-point over are being sent.
   bool raised() const { return word_ > 0; }
   /// What the drive does not do that is waited for, in words.
