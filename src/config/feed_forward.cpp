@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "config/robot_parts.h"
+#include "config/tuned_mode.h"
 
 namespace cia402::config {
 
@@ -22,9 +23,7 @@ void checkFeedForward(yaml::Section& axis_section, const AxisConfig& axis) {
   if (!value || !axis.profile || !axis.feed_forward.any()) return;
   const drive::DriveProfile& profile = *axis.profile;
   const auto served = [&](const ModeSpec& mode) {
-    const bool used = axis.mode == mode.name || std::find(axis.modes.begin(), axis.modes.end(),
-                                                          mode.name) != axis.modes.end();
-    return used && !drive::offsetsSent(mode.offsets, axis.feed_forward).empty();
+    return canBeIn(axis, mode) && !drive::offsetsSent(mode.offsets, axis.feed_forward).empty();
   };
   bool any = false;
   for (const ModeSpec& mode : profile.modes) {

@@ -3,6 +3,7 @@
 
 #include "config/profile/parts.h"
 #include "config/robot_parts.h"
+#include "config/tuned_mode.h"
 
 namespace cia402::config {
 
@@ -31,10 +32,6 @@ void readCompanions(yaml::Section& section, const DriveProfile& profile, SetPoin
       readCompanion(section.get("deceleration"), "acceleration", Quantity::acceleration, profile);
 }
 
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 }  // namespace
 
 SetPointStream readSetPointStream(const yaml::Value& value, SetPointStream stream,
@@ -50,21 +47,16 @@ SetPointStream readSetPointStream(const yaml::Value& value, SetPointStream strea
 void tuneSetPointStream(yaml::Section& section, AxisConfig& axis) {
   const auto value = section.get("set_point_stream");
   if (!axis.profile) return;
-  const auto& modes = axis.profile->modes;
-  const auto mode = std::find_if(modes.begin(), modes.end(), [](const ModeSpec& candidate) {
-    return candidate.set_point_stream.has_value();
-  });
-  if (mode == modes.end()) {
-    if (!value) return;
-    value->problem("profile " + axis.profile->name +
-                   " has no mode whose set-points lead the drive along a stream of positions; "
-                   "remove the section");
-    return;
-  }
+  const ModeSpec* const mode =
+      tunedMode(axis, &ModeSpec::set_point_stream, value,
+                "whose set-points lead the drive along a stream of positions");
+  if (mode == nullptr) return;
   axis.set_point_stream =
       value ? readSetPointStream(*value, *mode->set_point_stream, nullptr) : mode->set_point_stream;
-  const bool used = axis.mode == mode->name || contains(axis.modes, mode->name);
-  if (!used || axis.outputs.empty() || contains(axis.outputs, axis.set_point_stream->speed)) return;
+  const auto& outputs = axis.outputs;
+  const bool sent =
+      std::find(outputs.begin(), outputs.end(), axis.set_point_stream->speed) != outputs.end();
+  if (!canBeIn(axis, *mode) || outputs.empty() || sent) return;
   value.value_or(section.value())
       .problem("mode `" + mode->name + "` needs `" + axis.set_point_stream->speed +
                "` in an RPDO; add it to `pdos`, or leave the mode out of `modes`");

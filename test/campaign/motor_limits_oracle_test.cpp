@@ -291,21 +291,16 @@ TEST_F(MotorLimitsTest, DoNotJudgeTheAccelerationOfACommandedEffort) {
 }
 
 TEST_F(MotorLimitsTest, DoNotJudgeTheAccelerationInTheTwoCyclesAfterAnEffort) {
-  truths_[0].mode = 10;
-  lookFor(100ms);
-  truths_[0].mode = 8;
-  lookFor(7ms);
-  turn(1.0, 60ms);
-  EXPECT_EQ(found(), "");
-}
-
-TEST_F(MotorLimitsTest, JudgeTheAccelerationFromTheThirdCycleAfterAnEffortOn) {
-  truths_[0].mode = 10;
-  lookFor(100ms);
-  truths_[0].mode = 8;
-  lookFor(10ms);
-  turn(1.0, 60ms);
-  EXPECT_NE(found(), "");
+  const auto stepsAfterAnEffort = [&](Duration after, double speed) {
+    truths_[0].mode = 10;
+    lookFor(100ms);
+    truths_[0].mode = 8;
+    lookFor(after);
+    turn(speed, 60ms);
+    return found();
+  };
+  EXPECT_EQ(stepsAfterAnEffort(7ms, 1.0), "");
+  EXPECT_NE(stepsAfterAnEffort(10ms, 0.0), "") << "from the third cycle on";
 }
 
 TEST_F(MotorLimitsTest, LetAMotorTurnFasterByTheShareThatIsMissingBetweenTwoSyncs) {

@@ -82,6 +82,7 @@ TEST_F(BootBrakeTest, writes_nothing_to_the_drive_of_another_maker) {
   config.vendor_id = 0x11223344;
   peer.forget(test::kAskVendor);
   peer.on(test::kAskVendor, "583 43 18 10 01 45 33 22 11");
+  peer.on(kAskShownMode, Lines{"583 4F 61 60 00 09 00 00 00"});  // would end it, if it were asked
   EXPECT_THAT(sentBeforeReset(), ElementsAre(test::kAskVendor));
 }
 

@@ -128,7 +128,7 @@ TEST_F(Sv660cManual, PrintsWhenTheDriveGoesByThem) {
     if (row.change == "RO") continue;
     const sim::Entry& entry = *dictionary().find(row.id);
     write(row, sv660cValue(row, entry.number));
-    EXPECT_EQ(entry.goes_by.has_value(), row.effect == "P" || row.effect == "D") << row.name;
+    EXPECT_EQ(entry.waits, row.effect == "P" || row.effect == "D") << row.name;
   }
 }
 
@@ -157,7 +157,7 @@ TEST_F(Sv660cManual, PrintsThatVirtualTerminalsCountOnceItHasStopped) {
     const sim::Entry* entry = dictionary().find({0x2017, static_cast<std::uint8_t>(number + 1)});
     const bool shown_only = number == 32;  // the levels
     EXPECT_EQ(dictionary().write(entry->id, {1, 0}), shown_only ? 0x06010002U : 0U) << number;
-    EXPECT_EQ(entry->goes_by.has_value(), !shown_only) << number;
+    EXPECT_EQ(entry->waits, !shown_only) << number;
   }
 }
 
@@ -179,7 +179,7 @@ TEST_F(Sv660cManual, PrintsWhatIsReadAtOnceAndGoneByLater) {
   };
   const auto waiting = [this](const char* effect) {
     return std::count_if(rows.begin(), rows.end(), [&](const Sv660cPrinted& row) {
-      return row.effect == effect && dictionary().find(row.id)->goes_by.has_value();
+      return row.effect == effect && dictionary().find(row.id)->waits;
     });
   };
   change("D");

@@ -42,7 +42,7 @@ Node::Impl::Impl(const NodeConfig& node_config, const MasterConfig& master, can:
       last_stop(config, sdo, sink),
       pause(config.node_id, sink),
       sdo_cycle(config, image, sdo),
-      kept(config, image, sdo) {
+      kept(image, sdo) {
   process = &image;
   sdo.tellWhenQueued(changed);
 }

@@ -5,20 +5,16 @@
 
 namespace cia402::canopen {
 
-KeptOutputs::KeptOutputs(const NodeConfig& config, PdoImage& image, SdoClient& sdo)
-    : image_(image) {
-  for (const PdoConfig& pdo : config.pdos) {
-    if (!pdo.enabled || pdo.direction != PdoDirection::rpdo) continue;
-    for (const PdoEntry& entry : pdo.entries) {
-      if (entry.kept) objects_.push_back(entry.object);
-    }
-  }
-  if (objects_.empty()) return;
+KeptOutputs::KeptOutputs(PdoImage& image, SdoClient& sdo) : image_(image) {
   sdo.tellWritten([this](ObjectId object, const Bytes& data) { written(object, data); });
 }
 
 void KeptOutputs::begin(const std::vector<KeptValue>& found) {
-  for (const KeptValue& value : found) image_.setOutput(image_.outputSlot(value.object), value.raw);
+  objects_.clear();
+  for (const KeptValue& value : found) {
+    objects_.push_back(value.object);
+    image_.setOutput(image_.outputSlot(value.object), value.raw);
+  }
 }
 
 void KeptOutputs::written(ObjectId object, const Bytes& data) {

@@ -13,8 +13,8 @@ namespace cia402::canopen {
 /// hold them, and from a write on, whoever has asked for it, as they were written.
 class KeptOutputs {
  public:
-  /// All must outlive it.
-  KeptOutputs(const NodeConfig& config, PdoImage& image, SdoClient& sdo);
+  /// Both must outlive it.
+  KeptOutputs(PdoImage& image, SdoClient& sdo);
 
   /// The node is in operation, and its RPDOs are about to be sent.
   void begin(const std::vector<KeptValue>& found);

@@ -27,17 +27,18 @@ struct Entry {
   std::string name;
   DataType type = DataType::uint32;
   Access access = Access::rw;
-  bool rpdo = false;  ///< may be mapped into an RPDO
-  bool tpdo = false;  ///< may be mapped into a TPDO
+  bool rpdo = false;   ///< may be mapped into an RPDO
+  bool tpdo = false;   ///< may be mapped into a TPDO
+  bool waits = false;  ///< `number` counts later only: until then the drive goes by `goes_by`
   std::uint64_t number = 0;
-  std::optional<std::uint64_t> goes_by;  ///< the drive still does, as `number` counts later only
   std::vector<std::uint8_t> bytes;
   std::optional<std::int64_t> low, high;    ///< allowed range of integers, inclusive
   std::uint64_t initial_number = 0;         ///< value after power-on; add() takes it from `number`
   std::vector<std::uint8_t> initial_bytes;  ///< the same for `bytes`
+  std::uint64_t goes_by = 0;                ///< while it `waits`
 
   /// By which the drive goes.
-  std::uint64_t acting() const { return goes_by ? *goes_by : number; }
+  std::uint64_t acting() const { return waits ? goes_by : number; }
 };
 
 /// The object dictionary of a simulated device. Pointers to entries stay valid for its life.

@@ -6,7 +6,8 @@ namespace cia402::sim {
 void EffectTimes::writing(ObjectId id) {
   Entry* entry = effects_.count(id) == 0 ? nullptr : dictionary_.find(id);
   if (entry == nullptr) return;
-  if (!entry->goes_by) entry->goes_by = entry->number;
+  if (!entry->waits) entry->goes_by = entry->number;
+  entry->waits = true;
   waits_ = true;
 }
 
@@ -16,8 +17,8 @@ void EffectTimes::release(bool all) {
   for (const auto& [id, effect] : effects_) {
     Entry* entry = dictionary_.find(id);
     if (entry == nullptr) continue;
-    if (all || effect == Effect::stop) entry->goes_by.reset();
-    waits_ = waits_ || entry->goes_by.has_value();
+    if (all || effect == Effect::stop) entry->waits = false;
+    waits_ = waits_ || entry->waits;
   }
 }
 

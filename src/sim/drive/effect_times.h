@@ -6,7 +6,7 @@
 
 namespace cia402::sim {
 
-/// Lets what is written into some objects count later (Entry::goes_by).
+/// Lets what is written into some objects count later (Entry::waits).
 class EffectTimes {
  public:
   /// Both must outlive it.
