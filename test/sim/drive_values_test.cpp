@@ -45,6 +45,9 @@ TEST(DriveValues, WritesSixteenBitFloats) {
 
 TEST(DriveValues, IntegersRoundToNearestAndWrapInTheirWidth) {
   EXPECT_EQ(encodeNumber(-1.6, entry(DataType::int16), Encoding::integer), 0xFFFEU);
+  EXPECT_EQ(encodeNumber(2.5, entry(DataType::int16), Encoding::integer), 3U) << "as std::llround";
+  EXPECT_EQ(encodeNumber(-2.5, entry(DataType::int16), Encoding::integer), 0xFFFDU);
+  EXPECT_EQ(encodeNumber(0.49999999999999994, entry(DataType::int16), Encoding::integer), 0U);
   EXPECT_EQ(encodeNumber(4294967297.0, entry(DataType::int32), Encoding::integer), 1U);
   EXPECT_EQ(decodeNumber(entry(DataType::int16, 0xFFFE), Encoding::integer), -2.0);
   EXPECT_EQ(decodeNumber(entry(DataType::uint16, 0xFFFE), Encoding::integer), 65534.0);
