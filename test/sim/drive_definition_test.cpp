@@ -78,6 +78,8 @@ TEST(DriveDefinition, RefusesWhatIsNoObjectOfItsBusOrItsEffects) {
     EXPECT_THAT(errorOf(some + "effective: {stop: [\"" + wrong + "\"]}"),
                 HasSubstr("effective/stop: '" + std::string(wrong) + "' is no object like"));
   }
+  EXPECT_THAT(errorOf(some + "effective: {stop: [\"6040:00\"]}"),
+              HasSubstr("effective/stop: '6040:00' is an object of an axis"));
   EXPECT_THAT(errorOf(some + "effective: {later: []}"), HasSubstr("later"));
 }
 

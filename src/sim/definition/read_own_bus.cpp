@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "sim/dictionary/axis_objects.h"
+
 namespace cia402::sim {
 namespace {
 
@@ -68,6 +70,9 @@ void readEffects(DefinitionReader& reader, Effects& out) {
       const auto objects = text ? parseStretch(*text) : std::vector<fieldbus::ObjectId>();
       if (text && objects.empty()) {
         reader.problem(key, "'" + *text + "' is no object like \"2003:01\", nor \"2003:01-0C\"");
+      }
+      if (!objects.empty() && objects.back().index >= kFirstAxisObject) {
+        reader.problem(key, "'" + *text + "' is an object of an axis, which counts at once");
       }
       for (const fieldbus::ObjectId id : objects) out[id] = effect;
     });
