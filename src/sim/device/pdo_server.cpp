@@ -80,6 +80,8 @@ void PdoServer::configured() {
   }
   event_driven_ = std::any_of(tpdos_.begin(), tpdos_.end(),
                               [](const SlaveTpdo& pdo) { return pdo.eventDriven(); });
+  timed_ = event_driven_ || std::any_of(rpdos_.begin(), rpdos_.end(),
+                                        [](const SlaveRpdo& pdo) { return pdo.supervised(); });
 }
 
 void PdoServer::start() {
@@ -135,6 +137,7 @@ void PdoServer::notifyChange() {
 }
 
 void PdoServer::tick() {
+  if (!timed_) return;
   for (SlaveRpdo& pdo : rpdos_) pdo.tick();
   bool refreshed = false;
   for (SlaveTpdo& pdo : tpdos_) {
@@ -147,6 +150,7 @@ void PdoServer::tick() {
 
 Time PdoServer::deadline() const {
   Time earliest = kNever;
+  if (!timed_) return earliest;
   for (const SlaveRpdo& pdo : rpdos_) earliest = std::min(earliest, pdo.deadline());
   for (const SlaveTpdo& pdo : tpdos_) earliest = std::min(earliest, pdo.deadline());
   return earliest;

@@ -52,6 +52,7 @@ class PdoServer {
   std::vector<SlaveTpdo*> due_;
   std::bitset<0x800> ids_;
   bool event_driven_ = false;  ///< any TPDO, as configured
+  bool timed_ = false;         ///< any PDO may have a deadline: an event-driven or supervised one
 };
 
 }  // namespace cia402::sim

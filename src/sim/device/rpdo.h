@@ -29,6 +29,8 @@ class SlaveRpdo {
   /// Reports that it fails to come, where its event timer says so.
   void tick();
   Time deadline() const { return deadline_; }
+  /// As configured: does its event timer say that it must come?
+  bool supervised() const { return event_time_ > Duration::zero(); }
 
  private:
   bool lengthFits(const can::Frame& frame);

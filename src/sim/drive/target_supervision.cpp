@@ -38,18 +38,18 @@ void TargetSupervision::superviseFollowing(bool controlled) {
     following_error_ = controlled && ranged && error > range;
     return;
   }
-  const double window = std::fabs(values.get(Role::following_error_window, 0.0));
-  following_error_ =
-      following_.step(error > window, values.get(Role::following_error_timeout, 0.0)) ||
-      (ranged && error > range);
+  const bool outside = error > std::fabs(values.get(Role::following_error_window, 0.0));
+  const double timeout = outside ? values.get(Role::following_error_timeout, 0.0) : 0.0;
+  following_error_ = following_.step(outside, timeout) || (ranged && error > range);
 }
 
 void TargetSupervision::step(bool controlled, bool halted, const ProfilePosition& set_points) {
   superviseFollowing(controlled);
   const DriveValues& values = axis_.values;
   const double speed = std::fabs(axis_.motor.velocity());
-  at_zero_speed_ = zero_speed_.step(speed <= values.get(Role::velocity_threshold, kStandingSpeed),
-                                    values.get(Role::velocity_threshold_time, 0.0));
+  const bool slow = speed <= values.get(Role::velocity_threshold, kStandingSpeed);
+  at_zero_speed_ =
+      zero_speed_.step(slow, slow ? values.get(Role::velocity_threshold_time, 0.0) : 0.0);
   target_reached_ = axis_.mode != nullptr && reached(halted, set_points);
 }
 
