@@ -81,6 +81,9 @@ TEST(DriveDefinition, RefusesWhatIsNoObjectOfItsBusOrItsEffects) {
   EXPECT_THAT(errorOf(some + "effective: {stop: [\"6040:00\"]}"),
               HasSubstr("effective/stop: '6040:00' is an object of an axis"));
   EXPECT_THAT(errorOf(some + "effective: {later: []}"), HasSubstr("later"));
+  EXPECT_THAT(errorOf(some + "clamped: [here]"), HasSubstr("clamped: 'here' is no object like"));
+  EXPECT_THAT(errorOf(some + "clamped: [\"6040:00\"]"),
+              HasSubstr("clamped: 6040:00 is not in `dictionary` with a range"));
 }
 
 TEST(DriveDefinition, AFileCanExtendAnotherBesideIt) {

@@ -3,6 +3,8 @@
 // own power was off.
 #include <yaml-cpp/yaml.h>
 
+#include <utility>
+
 #include "sim/definition/drive_definition.h"
 #include "sv660c_bench.h"
 
@@ -49,6 +51,30 @@ TEST_F(Sv660cEffect, OfALevelOfATerminalComesAtOnce) {
   enable();
   bench.write(0x2031, 5, 2, 2);
   EXPECT_EQ(outputs(), kDo2);
+}
+
+// 60C2h:01: 1 to 20 ms, beyond them the limit; set while it is stopped, without effect while it
+// runs [L15979-15983].
+TEST_F(Sv660cEffect, OfThePeriodOfItsSetPointsIsNoneWhileItRuns) {
+  const auto period = [&] { return bench.read(0x60C2, 1) & 0xFF; };
+  const auto write = [&](std::uint8_t ms) {
+    EXPECT_EQ(bench.sdo({0x2F, 0xC2, 0x60, 0x01, ms, 0, 0, 0}),
+              (std::vector<std::uint8_t>{0x60, 0xC2, 0x60, 0x01, 0, 0, 0, 0}));
+  };
+  for (const auto& [written, shown] : {std::pair(21, 20U), {255, 20U}, {0, 1U}, {4, 4U}}) {
+    write(static_cast<std::uint8_t>(written));
+    EXPECT_EQ(period(), shown) << written;
+  }
+  enable();
+  ASSERT_TRUE(bench.drive->truth(bench.now).power_stage_on);
+  write(8);
+  EXPECT_EQ(period(), 4U);
+  control(0x07);
+  bench.run(ms(50));
+  ASSERT_FALSE(bench.drive->truth(bench.now).power_stage_on);
+  EXPECT_EQ(period(), 4U) << "what came while it ran is forgotten";
+  write(8);
+  EXPECT_EQ(period(), 8U);
 }
 
 // H0E.10: in effect after the next power-on [L9629]; a reset by NMT is none.

@@ -8,10 +8,12 @@
 
 namespace cia402::sim {
 
-/// When the drive goes by the number that was written into an object; it shows it at once.
+/// When the drive goes by the number that was written into an object; it shows it at once, but for
+/// `never`.
 enum class Effect : std::uint8_t {
   power,  ///< once its power was off
   stop,   ///< once no motor of it has power
+  never,  ///< while a motor of it has power: the write is taken and changes nothing
 };
 
 /// Of integers; all others count at once.

@@ -86,6 +86,7 @@ void readDefinition(DefinitionReader& reader, bool extends, DriveDefinition& out
   });
   reader.section("own_bus", [&](DefinitionReader& r) { readOwnBus(r, out.own.bus); });
   reader.section("effective", [&](DefinitionReader& r) { readEffects(r, out.own.effects); });
+  readClamped(reader, out.dictionary, out.own.clamped);
   reader.section("maker_states", [&](DefinitionReader& r) { readMakerStates(r, out.own.states); });
   reader.read("full_pulse_width", out.own.full_pulse_width, 0.0, 1000.0);
   reader.section("memory", [&](DefinitionReader& r) { readMemory(r, out.memory); });

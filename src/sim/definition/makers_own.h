@@ -1,6 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include "sim/definition/effect.h"
 #include "sim/definition/maker_states.h"
 #include "sim/definition/own_bus.h"
@@ -11,6 +13,7 @@ namespace cia402::sim {
 struct MakersOwnDefinition {
   OwnBusDefinition bus;
   Effects effects;
+  std::vector<fieldbus::ObjectId> clamped;  ///< out of range they take the limit
   MakerStates states;
   double full_pulse_width = 10.0;  ///< turns/s of MakerModes; no manual tells it
 };

@@ -35,6 +35,18 @@ void readObject(DefinitionReader& reader, const char* key, std::optional<fieldbu
   if (!out) reader.problem(key, "must be an object like \"2003:01\"");
 }
 
+/// @return nothing, and a problem, for what is neither an object nor a stretch.
+std::vector<fieldbus::ObjectId> readStretch(DefinitionReader& reader, const char* key,
+                                            const yaml::Value& value) {
+  const auto text = value.text();
+  if (!text) return {};
+  auto objects = parseStretch(*text);
+  if (objects.empty()) {
+    reader.problem(key, "'" + *text + "' is no object like \"2003:01\", nor \"2003:01-0C\"");
+  }
+  return objects;
+}
+
 }  // namespace
 
 void readMakerStates(DefinitionReader& reader, MakerStates& out) {
@@ -64,19 +76,33 @@ void readOwnBus(DefinitionReader& reader, OwnBusDefinition& out) {
 }
 
 void readEffects(DefinitionReader& reader, Effects& out) {
-  for (const auto& [key, effect] : {std::pair("power", Effect::power), {"stop", Effect::stop}}) {
+  for (const auto& [key, effect] :
+       {std::pair("power", Effect::power), {"stop", Effect::stop}, {"never", Effect::never}}) {
     reader.list(key, [&, effect = effect, key = key](const yaml::Value& value) {
-      const auto text = value.text();
-      const auto objects = text ? parseStretch(*text) : std::vector<fieldbus::ObjectId>();
-      if (text && objects.empty()) {
-        reader.problem(key, "'" + *text + "' is no object like \"2003:01\", nor \"2003:01-0C\"");
-      }
-      if (!objects.empty() && objects.back().index >= kFirstAxisObject) {
-        reader.problem(key, "'" + *text + "' is an object of an axis, which counts at once");
+      const auto objects = readStretch(reader, key, value);
+      const bool of_axis = !objects.empty() && objects.back().index >= kFirstAxisObject;
+      if (of_axis && effect != Effect::never) {
+        reader.problem(key,
+                       "'" + *value.text() + "' is an object of an axis, which counts at once");
       }
       for (const fieldbus::ObjectId id : objects) out[id] = effect;
     });
   }
+}
+
+void readClamped(DefinitionReader& reader, const DictionaryTemplate& dictionary,
+                 std::vector<fieldbus::ObjectId>& out) {
+  constexpr const char* kKey = "clamped";
+  const ObjectDictionary built = dictionary.build(canopen::NodeId(1));
+  reader.list(kKey, [&](const yaml::Value& value) {
+    for (const fieldbus::ObjectId id : readStretch(reader, kKey, value)) {
+      const Entry* entry = built.find(id);
+      if (entry == nullptr || !(entry->low || entry->high)) {
+        reader.problem(kKey, fieldbus::toString(id) + " is not in `dictionary` with a range");
+      }
+      out.push_back(id);
+    }
+  });
 }
 
 }  // namespace cia402::sim

@@ -166,11 +166,16 @@ std::uint32_t ObjectDictionary::writeNumber(Entry& entry, std::uint64_t number) 
 std::uint32_t ObjectDictionary::writeNumber(Entry& entry, std::uint64_t number,
                                             const Hooks& hooks) {
   if (const std::uint32_t refused = checkAccess(entry)) return refused;
-  const std::uint64_t value = truncate(number, widthBits(entry.type));
-  if (const std::uint32_t refused = checkRange(entry, value)) return refused;
+  std::uint64_t value = truncate(number, widthBits(entry.type));
+  if (const std::uint32_t refused = checkRange(entry, value)) {
+    if (!entry.clamps) return refused;
+    const auto& limit = refused == abort_code::kValueTooHigh ? entry.high : entry.low;
+    value = truncate(static_cast<std::uint64_t>(*limit), widthBits(entry.type));
+  }
   if (hooks.check) {
     if (const std::uint32_t refused = hooks.check(entry, value)) return refused;
   }
+  if (entry.deaf) return 0;
   entry.number = value;
   if (hooks.write) hooks.write(entry);
   return 0;

@@ -27,9 +27,11 @@ struct Entry {
   std::string name;
   DataType type = DataType::uint32;
   Access access = Access::rw;
-  bool rpdo = false;   ///< may be mapped into an RPDO
-  bool tpdo = false;   ///< may be mapped into a TPDO
-  bool waits = false;  ///< `number` counts later only: until then the drive goes by `goes_by`
+  bool rpdo = false;    ///< may be mapped into an RPDO
+  bool tpdo = false;    ///< may be mapped into a TPDO
+  bool waits = false;   ///< `number` counts later only: until then the drive goes by `goes_by`
+  bool deaf = false;    ///< writes from the bus are taken and change nothing
+  bool clamps = false;  ///< a number out of range becomes the limit that it exceeds
   std::uint64_t number = 0;
   std::vector<std::uint8_t> bytes;
   std::optional<std::int64_t> low, high;    ///< allowed range of integers, inclusive

@@ -15,6 +15,9 @@ ObjectDictionary buildDictionary(const DriveDefinition& definition, canopen::Nod
     if (entry == nullptr || !numbers[i]) continue;
     entry->number = entry->initial_number = *numbers[i];
   }
+  for (const fieldbus::ObjectId id : definition.own.clamped) {
+    if (Entry* entry = built.find(id)) entry->clamps = true;
+  }
   return built;
 }
 

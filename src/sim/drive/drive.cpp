@@ -193,7 +193,7 @@ struct Drive::Impl : Device::Application, DriveCore::Reports {
     }
     showMakerState(definition->own.states, axes[0].core.statusword(),
                    axes[0].core.motion().powered(), dictionary);
-    if (effects.waits() && !powered()) effects.stopped();
+    if (effects.watches()) effects.look(powered());
     if (now >= own_bus.due()) countOwnBus();
   }
 

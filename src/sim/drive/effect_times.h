@@ -6,27 +6,29 @@
 
 namespace cia402::sim {
 
-/// Lets what is written into some objects count later (Entry::waits).
+/// Lets what is written into some objects count later (Entry::waits) or never (Entry::deaf).
 class EffectTimes {
  public:
   /// Both must outlive it.
-  EffectTimes(const Effects& effects, ObjectDictionary& dictionary)
-      : effects_(effects), dictionary_(dictionary) {}
+  EffectTimes(const Effects& effects, ObjectDictionary& dictionary);
 
   /// A write to the object is about to be taken.
   void writing(ObjectId id);
-  /// No motor has power.
-  void stopped() { release(false); }
-  void powerOff() { release(true); }
-  /// Something that was written does not count yet.
-  bool waits() const { return waits_; }
+  /// look() may have something to do.
+  bool watches() const { return waits_ || ignores_; }
+  /// @param powered a motor of the drive has power.
+  void look(bool powered);
+  void powerOff();
 
  private:
   void release(bool all);
+  void hear(bool any);
 
   const Effects& effects_;
   ObjectDictionary& dictionary_;
-  bool waits_ = false;
+  const bool ignores_;  ///< there is Effect::never among them
+  bool waits_ = false;  ///< something that was written does not count yet
+  bool deaf_ = false;   ///< to the objects of Effect::never
 };
 
 }  // namespace cia402::sim
