@@ -61,6 +61,7 @@ std::vector<std::string> defaultObjects(const AxisDraft& draft, const PdoNeeds& 
   if (!needs.feedback_required) names = needs.feedback;
   const std::vector<std::string>& riders = draft.pdos().riders;
   names.insert(names.end(), riders.begin(), riders.end());
+  names.emplace_back("mode_of_operation");
   if (needs.modes_required) return names;
   const ModeSpec* start = axis.profile->mode(needs.mode);
   for (const std::string& name : axis.modes) {

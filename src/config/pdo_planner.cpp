@@ -18,6 +18,7 @@ using drive::ObjectSpec;
 
 constexpr unsigned kMaxEvery = 240;     // the slowest cyclic transmission type
 constexpr unsigned kRefreshEvery = 10;  // cycles; RPDOs whose content does not change
+constexpr const char* kModeObject = "mode_of_operation";
 constexpr Duration kSlow = std::chrono::milliseconds(40);  // error codes, inputs
 
 unsigned cyclesIn(Duration time, Duration cycle) {
@@ -145,8 +146,24 @@ class Planner {
       Result<void> added = addMode(name, limits, items, *packed);
       if (!added) return added;
     }
+    addModeToBrakeIn(limits, items, *packed);
     keep(*packed, PdoDirection::rpdo);
     return {};
+  }
+
+  /// Where one mode brakes another, the mode travels too, if it finds room: a drive that does not
+  /// answer is braked as well.
+  void addModeToBrakeIn(const PackRules& limits, std::vector<PackItem> items,
+                        std::vector<PackedPdo>& packed) const {
+    const ObjectSpec* object = profile_.find(kModeObject);
+    const bool brakes =
+        std::any_of(plan_.modes.begin(), plan_.modes.end(), [this](const std::string& name) {
+          const ModeSpec& mode = *profile_.mode(name);
+          return mode.stop == drive::StopBy::mode && contains(plan_.modes, mode.stop_mode);
+        });
+    if (!brakes || object == nullptr || !object->rpdo || contains(items, kModeObject)) return;
+    items.push_back(item(*object, kRefreshEvery));
+    if (auto wider = packPdos(items, limits)) packed = *wider;
   }
 
   Result<void> addMode(const std::string& name, const PackRules& limits,
@@ -179,7 +196,7 @@ class Planner {
     return mode_object.writable || mode_object.rpdo;
   }
   bool reachable(const ModeSpec& mode) const {
-    const ObjectSpec* object = profile_.find("mode_of_operation");
+    const ObjectSpec* object = profile_.find(kModeObject);
     if (object == nullptr || !reachable(*object)) return false;
     const ObjectSpec* goal = mode.target.empty() ? nullptr : profile_.find(mode.target);
     return mode.target.empty() || (goal != nullptr && goal->rpdo);

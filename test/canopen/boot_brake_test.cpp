@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "canopen/node_fixture.h"
 
 namespace cia402::canopen {
@@ -13,10 +15,14 @@ using test::Lines;
 using ::testing::ElementsAre;
 
 const char kReset[] = "000 82 03";
+const char kTellPreOperational[] = "000 80 03";
 const char kAskShownMode[] = "603 40 61 60 00 00 00 00 00";
 const char kAskStatusword[] = "603 40 41 60 00 00 00 00 00";
 const char kAskVelocity[] = "603 40 6C 60 00 00 00 00 00";
 const char kTarget[] = "603 23 FF 60 00 10 27 00 00";  // 10000, as it turns
+const char kOperationEnabled[] = "583 4B 41 60 00 37 12 00 00";
+const char kQuickStopActive[] = "583 4B 41 60 00 17 12 00 00";
+const char kSwitchOnDisabled[] = "583 4B 41 60 00 50 02 00 00";
 const char kMode[] = "603 2F 60 60 00 09 00 00 00";
 
 /// Modes 4 and 10 push; mode 9 brakes.
@@ -34,7 +40,7 @@ class BootBrakeTest : public test::NodeFixture {
     config.brakes = {brake};
     for (const char* line : {kAskShownMode, kAskStatusword, kAskVelocity}) peer.forget(line);
     peer.on(kAskShownMode, Lines{"583 4F 61 60 00 0A 00 00 00"});
-    peer.on(kAskStatusword, "583 4B 41 60 00 37 12 00 00");  // Operation enabled
+    peer.on(kAskStatusword, Lines{kOperationEnabled});
     peer.on(kAskVelocity, "583 43 6C 60 00 10 27 00 00");
     peer.on(kTarget, "583 60 FF 60 00 00 00 00 00");
     peer.on(kMode, "583 60 60 60 00 00 00 00 00");
@@ -43,9 +49,11 @@ class BootBrakeTest : public test::NodeFixture {
     peer.forget(kAskShownMode);
     peer.on(kAskShownMode, mode_answer);
   }
+  void rests() { peer.on(kAskStatusword, Lines{kSwitchOnDisabled}); }
   /// What is sent until the reset.
-  Lines sentBeforeReset() {
+  Lines sentBeforeReset(Duration within = Duration::zero()) {
     boot();
+    pass(within);
     Lines lines;
     for (const std::string& line : peer.take()) {
       if (line == kReset) return lines;
@@ -58,8 +66,46 @@ class BootBrakeTest : public test::NodeFixture {
 
 TEST_F(BootBrakeTest, takes_the_motor_over_at_its_velocity_before_the_reset) {
   peer.on(kAskShownMode, Lines{"583 4F 61 60 00 09 00 00 00"});
+  rests();
   EXPECT_THAT(sentBeforeReset(), ElementsAre(kAskShownMode, kAskStatusword, kAskVelocity, kTarget,
-                                             kMode, kAskShownMode));
+                                             kMode, kAskShownMode, kAskStatusword));
+}
+
+// Its ramp is not disturbed: the reset comes once it has no power any more.
+TEST_F(BootBrakeTest, waits_until_the_motor_rests) {
+  peer.on(kAskShownMode, Lines{"583 4F 61 60 00 09 00 00 00"});
+  peer.on(kAskStatusword, Lines{kOperationEnabled});
+  peer.on(kAskStatusword, Lines{kQuickStopActive});
+  rests();
+  EXPECT_THAT(sentBeforeReset(std::chrono::milliseconds(50)),
+              ElementsAre(kAskShownMode, kAskStatusword, kAskVelocity, kTarget, kMode,
+                          kAskShownMode, kAskStatusword, kAskStatusword, kAskStatusword));
+}
+
+// A drive may stay in quick stop active for good (605Ah = 5 to 8).
+TEST_F(BootBrakeTest, waits_for_rest_for_two_seconds_at_most) {
+  peer.on(kAskShownMode, Lines{"583 4F 61 60 00 09 00 00 00"});
+  peer.on(kAskStatusword, kQuickStopActive);
+  const Lines sent = sentBeforeReset(std::chrono::seconds(3));
+  EXPECT_EQ(std::count(sent.begin(), sent.end(), kAskStatusword), 201);  // every 10 ms
+}
+
+// One that was cut off, or stopped (NMT), as the boot began.
+TEST_F(BootBrakeTest, takes_it_over_once_it_is_identified_where_it_did_not_answer_before) {
+  peer.forget(kAskShownMode);
+  boot(false);
+  EXPECT_THAT(peer.take(), ElementsAre(kAskShownMode));
+  peer.on(kAskShownMode, Lines{"583 4F 61 60 00 04 00 00 00"});
+  peer.on(kAskShownMode, Lines{"583 4F 61 60 00 09 00 00 00"});
+  rests();
+  pass(std::chrono::milliseconds(200));
+  const Lines sent = peer.take();
+  const auto brake = std::find(sent.begin(), sent.end(), kAskShownMode);
+  ASSERT_GE(sent.end() - brake, 7);
+  EXPECT_THAT(Lines(brake, brake + 7), ElementsAre(kAskShownMode, kAskStatusword, kAskVelocity,
+                                                   kTarget, kMode, kAskShownMode, kAskStatusword));
+  EXPECT_EQ(std::count(sent.begin(), brake, kTellPreOperational), 1);
+  EXPECT_EQ(std::count(brake, sent.end(), kTellPreOperational), 0);
 }
 
 TEST_F(BootBrakeTest, leaves_a_motor_in_another_mode_alone) {
@@ -69,7 +115,7 @@ TEST_F(BootBrakeTest, leaves_a_motor_in_another_mode_alone) {
 
 TEST_F(BootBrakeTest, leaves_a_motor_without_power_alone) {
   peer.forget(kAskStatusword);
-  peer.on(kAskStatusword, "583 4B 41 60 00 50 02 00 00");  // Switch on disabled
+  peer.on(kAskStatusword, kSwitchOnDisabled);
   EXPECT_THAT(sentBeforeReset(), ElementsAre(kAskShownMode, kAskStatusword));
 }
 
@@ -91,8 +137,10 @@ TEST_F(BootBrakeTest, asks_who_it_is_where_that_is_configured) {
   peer.forget(test::kAskVendor);
   peer.on(test::kAskVendor, "583 43 18 10 01 44 33 22 11");
   peer.on(kAskShownMode, Lines{"583 4F 61 60 00 09 00 00 00"});
-  EXPECT_THAT(sentBeforeReset(), ElementsAre(test::kAskVendor, kAskShownMode, kAskStatusword,
-                                             kAskVelocity, kTarget, kMode, kAskShownMode));
+  rests();
+  EXPECT_THAT(sentBeforeReset(),
+              ElementsAre(test::kAskVendor, kAskShownMode, kAskStatusword, kAskVelocity, kTarget,
+                          kMode, kAskShownMode, kAskStatusword));
 }
 
 }  // namespace

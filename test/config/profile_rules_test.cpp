@@ -17,6 +17,7 @@ using canopen::PdoDirection;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 /// The generic profile with the first `from` replaced by `to`, and further keys behind it.
 struct OwnProfile {
@@ -111,17 +112,42 @@ TEST(ProfileRules, LssTakesTheDrivesPartOfTheIdentity) {
                         "or under `identity`; missing: revision, serial"));
 }
 
+/// All objects of the axis' PDOs.
+std::vector<std::string> planned(const OwnDrive& loaded) {
+  std::vector<std::string> objects;
+  for (const canopen::PdoLayout& pdo : loaded.robot.devices[0].axes[0].pdos) {
+    objects.insert(objects.end(), pdo.objects.begin(), pdo.objects.end());
+  }
+  return objects;
+}
+
+TEST(ProfileRules, TheModeTravelsOnlyWhereItMustBrake) {
+  const OwnDrive loaded =
+      loadOwn({"", "", ""}, ", rated_torque: 1.0, mode: csp, modes: [csv, cst]");
+  EXPECT_EQ(loaded.problems.text(), "");
+  EXPECT_THAT(planned(loaded), Not(Contains("mode_of_operation")));
+}
+
+// It is no reason to refuse a mode: without it the mode is written.
+TEST(ProfileRules, TheModeThatBrakesTravelsWhereItFindsRoom) {
+  const std::string torque = "    target: target_torque\n    status_bits: {follows_command: 12}\n";
+  const std::string axis = ", rated_torque: 1.0, mode: cst, modes: []";
+  const std::string braked = torque + "    stop: mode\n    stop_mode: csv\n";
+  const OwnDrive loaded =
+      loadOwn({"pdo_rules: {max_entries: 3, max_pdos: 1}", torque, braked}, axis);
+  EXPECT_THAT(planned(loaded), Contains("target_velocity")) << loaded.problems.text();
+  EXPECT_THAT(planned(loaded), Not(Contains("mode_of_operation")));
+}
+
 TEST(ProfileRules, WhatBrakesInAModeIsPlannedWithIt) {
   const std::string torque = "    target: target_torque\n    status_bits: {follows_command: 12}\n";
   const OwnProfile profile{"", torque, torque + "    stop: mode\n    stop_mode: csv\n"};
   const auto modes = [&](const std::string& axis) {
     const OwnDrive loaded = loadOwn(profile, ", rated_torque: 1.0" + axis);
     EXPECT_EQ(loaded.problems.text(), "");
-    std::vector<std::string> targets;
-    for (const canopen::PdoLayout& pdo : loaded.robot.devices[0].axes[0].pdos) {
-      targets.insert(targets.end(), pdo.objects.begin(), pdo.objects.end());
-    }
-    EXPECT_THAT(targets, Contains("target_velocity"));
+    const std::vector<std::string> objects = planned(loaded);
+    EXPECT_THAT(objects, Contains("target_velocity"));
+    EXPECT_THAT(objects, Contains("mode_of_operation")) << "it brakes without an answer";
     return loaded.robot.axes[0].modes;
   };
   EXPECT_THAT(modes(", mode: csp, modes: [cst]"),

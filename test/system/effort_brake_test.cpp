@@ -30,9 +30,15 @@ std::string withModes(std::string yaml, const char* modes) {
   return yaml.replace(at, 21, std::string("mode: cyclic_position, modes: [") + modes + "]");
 }
 
-/// A generic drive whose torques csv brakes. @param value of csv for 6060h
-std::string brakedByVelocity(int value = 9) {
+const std::string kModeObject = "mode_of_operation: {object: \"6060:00\", type: int8, pdo: ";
+
+/// A generic drive whose torques csv brakes. @param value of csv for 6060h @param travels 6060h may
+/// be in an RPDO
+std::string brakedByVelocity(int value = 9, bool travels = true) {
   std::string profile = genericProfileText();
+  const std::size_t mode = profile.find(kModeObject + "rpdo}");
+  EXPECT_NE(mode, std::string::npos);
+  if (!travels) profile.replace(mode, kModeObject.size() + 5, kModeObject + "none}");
   const std::string csv = "  cyclic_velocity:\n    value: ";
   profile.replace(profile.find(csv) + csv.size(), 1, std::to_string(value));
   const std::string torque = "    target: target_torque\n    status_bits: {follows_command: 12}\n";
@@ -153,9 +159,42 @@ TEST(SetPoints, AnEffortIsBrakedByAnotherModeByItsRampAndHeldThere) {
   EXPECT_TRUE(pushed(scene));
 }
 
+// The mode travels with the targets: nothing has to be answered.
+TEST(SetPoints, AnEffortIsBrakedByVelocityWhereNoSdoIsAnswered) {
+  Scene scene(loadText(brakedByVelocity()));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  ASSERT_TRUE(scene.procedure(ProcedureKind::set_mode, "left", "cst").success);
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "left").success);
+  scene.inject("left", "sdo_silent");
+  ASSERT_TRUE(pushed(scene));
+  scene.run(1s);
+  EXPECT_LT(std::abs(scene.velocity("left")), 1e-3);
+  EXPECT_TRUE(scene.truth("left").power_stage_on);
+  EXPECT_THAT(scene.told(), HasSubstr("braked and held by mode cyclic_velocity"));
+}
+
+// The profile says that 6060h may be mapped, the drive does not take it: then it is written.
+TEST(SetPoints, AnEffortIsBrakedByVelocityWhereTheModeCannotTravel) {
+  std::string yaml = brakedByVelocity();
+  const std::string drive = "simulation: {drive: generic_cia402";
+  yaml.insert(yaml.find(drive) + drive.size(),
+              ", with: {dictionary: [[0x6060, 0, mode_of_operation, int8, rw, -, 0]]}");
+  Scene scene(loadText(yaml));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  EXPECT_THAT(scene.told(), HasSubstr("6060:00 mode_of_operation"));
+  ASSERT_TRUE(scene.procedure(ProcedureKind::set_mode, "left", "cst").success);
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "left").success);
+  ASSERT_TRUE(pushed(scene));
+  scene.run(1s);
+  EXPECT_LT(std::abs(scene.velocity("left")), 1e-3);
+  EXPECT_TRUE(scene.truth("left").power_stage_on);
+  EXPECT_THAT(scene.told(), HasSubstr("braked and held by mode cyclic_velocity"));
+}
+
 TEST(SetPoints, AnEffortWhoseBrakeTheDriveDoesNotTakeEndsInAQuickStop) {
   for (const bool mute : {false, true}) {
-    Scene scene(loadText(brakedByVelocity(mute ? 9 : 11)));  // the drive has no mode 11
+    // The drive has no mode 11; the mode of a mute one is written.
+    Scene scene(loadText(brakedByVelocity(mute ? 9 : 11, !mute)));
     ASSERT_TRUE(scene.boot()) << scene.told();
     ASSERT_TRUE(scene.procedure(ProcedureKind::set_mode, "left", "cst").success);
     ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "left").success);

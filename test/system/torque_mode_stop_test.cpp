@@ -33,6 +33,25 @@ class FadingTorque : public testing::TestWithParam<FamilyMode> {
     EXPECT_LT(scene.seen("joint").fastest, 1.02 * speed) << "the torque is not let go in motion";
   }
 
+  static constexpr double kNeverOff = 1e9;
+  /// @param when_off is set to the velocity at which the motor loses its power
+  void watchPower(double& when_off) {
+    scene.watch([&] {
+      if (when_off == kNeverOff && !scene.truth("joint").power_stage_on) {
+        when_off = scene.velocity("joint");
+      }
+    });
+  }
+
+  void cutOff(Duration time) {
+    scene.inject("joint", "silent");
+    scene.run(time);
+    from = scene.position("joint");
+    speed = scene.velocity("joint");
+    scene.forget();
+    scene.inject("joint", "clear");
+  }
+
   Scene scene;
   double speed = 0.0, from = 0.0;
 };
@@ -75,17 +94,52 @@ TEST_P(FadingTorque, IsBrakedAtAShutdown) {
   EXPECT_FALSE(scene.truth("joint").power_stage_on);
 }
 
+// It hears what it is told, but nothing usable comes from it.
+TEST_P(FadingTorque, IsBrakedByAModeWhereItIsNotHeard) {
+  turn();
+  double when_off = kNeverOff;
+  watchPower(when_off);
+  scene.inject("joint", "short_tpdos");
+  scene.run(3s);
+  EXPECT_THAT(scene.told(), testing::HasSubstr("is to brake it, then quick stop is commanded"));
+  EXPECT_LT(std::fabs(when_off), 0.05);
+  expectRest(0.1);
+}
+
+// Cut off for a moment it hears nothing, and turns on by its torque. What it hears first then is
+// the mode that brakes.
+TEST_P(FadingTorque, IsBrakedByAModeWhenItIsBack) {
+  turn();
+  double when_off = kNeverOff;
+  watchPower(when_off);
+  cutOff(130ms);
+  scene.run(3s);
+  EXPECT_LT(std::fabs(when_off), 0.05) << "no quick stop lets it go, until it stands";
+  expectRest();
+  EXPECT_TRUE(scene.procedure(ProcedureKind::recover).success) << scene.told();
+  EXPECT_EQ(scene.axis("joint").modeName(), drive::canonicalModeName(GetParam().mode));
+}
+
+// A drive that does not notice a dead master, and is cut off for so long that it is lost: it is
+// braked as it is configured again. (The DM5 notices, and lets its motor go by itself.)
+class UnwatchedTorque : public FadingTorque {};
+TEST_P(UnwatchedTorque, IsBrakedByAModeWhenItIsFoundAgain) {
+  turn();
+  double when_off = kNeverOff;
+  watchPower(when_off);
+  cutOff(1200ms);
+  scene.run(1s);
+  EXPECT_LT(std::fabs(when_off), 0.05) << "braked, not left to coast";
+  expectRest(0.3);
+}
+
 // A new driver finds it turning by the torque of one that is gone. What it tells the drive first,
 // the NMT command and the quick stop, would let the motor go.
 TEST_P(FadingTorque, IsBrakedByTheNextDriver) {
   turn();
   for (const bool reset : {true, false}) {
-    double when_off = 1e9;
-    scene.watch([&] {
-      if (when_off > 1e8 && !scene.truth("joint").power_stage_on) {
-        when_off = scene.velocity("joint");
-      }
-    });
+    double when_off = kNeverOff;
+    watchPower(when_off);
     scene.node("joint").boot(scene.now(), reset);
     scene.run(1s);
     EXPECT_LT(std::fabs(when_off), 0.05) << "braked, not left to coast";
@@ -107,6 +161,9 @@ INSTANTIATE_TEST_SUITE_P(All, FadingTorque,
                          [](const auto& tested) {
                            return std::string(tested.param.family) + "_" + tested.param.mode;
                          });
+INSTANTIATE_TEST_SUITE_P(All, UnwatchedTorque,
+                         testing::Values(FamilyMode{"id286_cnfa", "10000", "pt"}),
+                         [](const auto&) { return "id286_cnfa_pt"; });
 
 }  // namespace
 }  // namespace cia402

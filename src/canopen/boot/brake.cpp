@@ -3,6 +3,8 @@
 // only let the motor go, another mode takes the motor over at its velocity first, in which the stop
 // ramps.
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "canopen/boot/steps.h"
 
@@ -11,22 +13,29 @@ namespace {
 
 constexpr Duration kAnswer = std::chrono::milliseconds(100);          // it may as well be off
 constexpr Duration kPatience = std::chrono::milliseconds(100);        // for the mode to be shown
+constexpr Duration kRamp = std::chrono::seconds(2);                   // for the motors to rest
+constexpr Duration kInterval = std::chrono::milliseconds(10);         // of questions meanwhile
 constexpr std::uint32_t kStateMask = 0x6F, kOperationEnabled = 0x27;  // CiA 402-2, state coding
+constexpr std::uint32_t kQuickStopActive = 0x07;
 
 /// Ends with the NMT command that this boot would have begun with. What is refused or not answered
 /// leaves the motor to the stop.
 class Brake : public BootStep {
  public:
+  /// @param identified it is known to be there, and of which maker it is
+  explicit Brake(bool identified) : identified_(identified), known_(identified) {}
+
   bool begin(BootContext& boot, Time now) override {
-    if (!boot.braking) return false;
-    if (item_ >= boot.config.brakes.size()) return stop(boot, now);
+    const bool due = identified_ ? !boot.found.after_reset && !boot.found.braked : boot.braking;
+    if (!due && !begun_) return false;
+    begun_ = true;
     options_ = boot.config.sdo;
     options_.retries = 0;
     options_.timeout = std::min(options_.timeout, kAnswer);
-    if (!boot.config.vendor_id || known_) return readMode(boot, now);
-    phase_ = Phase::vendor;
-    read(boot, {0x1018, 1}, "vendor id", now);
-    return true;
+    if (item_ < boot.config.brakes.size()) return look(boot, now);
+    if (!braked_.empty() && (stop(boot, now) || rest(boot, now))) return true;
+    if (!identified_) end(boot, now);
+    return false;
   }
 
   Progress check(BootContext& boot, Time now) override {
@@ -34,7 +43,14 @@ class Brake : public BootStep {
     if (phase_ == Phase::stop) return Progress::again;
     const bool usable =
         boot.ok() && !boot.ticket->data().empty() && boot.ticket->data().size() <= 8;
+    if (phase_ == Phase::rest) {
+      const bool ramping = usable && ramps(boot);
+      if (ramping && now < next_question_) return Progress::waiting;
+      if (!ramping) braked_.pop_back();
+      return Progress::again;
+    }
     if (!usable || !follow(boot, now)) {
+      boot.found.braked = boot.found.braked || usable;
       ++item_;
       return Progress::again;
     }
@@ -42,18 +58,36 @@ class Brake : public BootStep {
   }
 
  private:
-  /// Of those that were braked: in their new mode it ramps.
+  bool look(BootContext& boot, Time now) {
+    if (!boot.config.vendor_id || known_) return readMode(boot, now);
+    phase_ = Phase::vendor;
+    read(boot, {0x1018, 1}, "vendor id", now);
+    return true;
+  }
+
+  /// Of those that were braked: in their new mode it ramps. @return false: nothing is left of it
   bool stop(BootContext& boot, Time now) {
-    phase_ = Phase::stop;
     const std::vector<StartupWrite>& writes = boot.config.writes;
     while (stop_ < writes.size() && !writes[stop_].always) ++stop_;
-    if (!braked_ || stop_ >= writes.size()) {
-      end(boot, now);
-      return false;
-    }
+    if (stop_ >= writes.size()) return false;
+    phase_ = Phase::stop;
     write(boot, writes[stop_].object, writes[stop_].data, writes[stop_].name.c_str(), now);
     ++stop_;
     return true;
+  }
+
+  /// Until the ramp is over nothing else is written, and no other mode travels.
+  bool rest(BootContext& boot, Time now) {
+    if (phase_ != Phase::rest) deadline_ = now + kRamp;
+    phase_ = Phase::rest;
+    if (now >= deadline_) return false;
+    read(boot, boot.config.brakes[braked_.back()].statusword, "statusword", now);
+    boot.deadline = next_question_ = now + kInterval;
+    return true;
+  }
+  static bool ramps(const BootContext& boot) {
+    const std::uint64_t state = fieldbus::toUnsigned(boot.ticket->data()) & kStateMask;
+    return state == kOperationEnabled || state == kQuickStopActive;
   }
 
   static void end(BootContext& boot, Time now) {
@@ -67,7 +101,7 @@ class Brake : public BootStep {
     }
   }
 
-  enum class Phase { vendor, mode, state, velocity, target, command, shown, stop };
+  enum class Phase { vendor, mode, state, velocity, target, command, shown, stop, rest };
 
   const BootBrake& brake(const BootContext& boot) const { return boot.config.brakes[item_]; }
   void read(BootContext& boot, ObjectId object, const char* name, Time now) {
@@ -118,10 +152,11 @@ class Brake : public BootStep {
         phase_ = Phase::shown;
         break;
       case Phase::shown:
-        braked_ = braked_ || modeIn(data) == brake(boot).brake;
+        if (modeIn(data) == brake(boot).brake) braked_.push_back(item_);
         if (modeIn(data) == brake(boot).brake || now >= deadline_) return false;
         break;
       case Phase::stop:
+      case Phase::rest:
         return false;
     }
     read(boot, brake(boot).shown_mode, "mode display", now);
@@ -129,15 +164,18 @@ class Brake : public BootStep {
   }
 
   std::size_t item_ = 0, stop_ = 0;
-  bool braked_ = false, known_ = false;
+  std::vector<std::size_t> braked_;
+  const bool identified_;
+  bool begun_ = false;
+  bool known_;
   Phase phase_ = Phase::mode;
   SdoOptions options_;
   unsigned mode_bytes_ = 1;
-  Time deadline_{};
+  Time deadline_{}, next_question_{};
 };
 
 }  // namespace
 
-BootStepPointer makeBrake() { return std::make_unique<Brake>(); }
+BootStepPointer makeBrake(bool identified) { return std::make_unique<Brake>(identified); }
 
 }  // namespace cia402::canopen

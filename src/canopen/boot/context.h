@@ -54,12 +54,13 @@ struct BootFindings {
   bool heartbeat_heard = false;  ///< or an answer to guarding
   NmtState heartbeat_state = NmtState::unknown;  ///< that it told last, ...
   Time heartbeat_at{};                           ///< ... and when
-  bool operational_heard = false;                ///< since it was told to start
-  bool only_by_tpdo = false;                     ///< a heartbeat may still say what was before
-  bool stopped = false;                          ///< its last heartbeat said so: it answers no SDO
-  unsigned stopped_count = 0;                    ///< heartbeats that said so, ...
-  Time stopped_since{}, stopped_last{};          ///< ... the first and the last of them
-  unsigned wake_ups = 0;                         ///< NMT commands out of that state
+  bool braked = false;                   ///< a motor that turned on, or none of its motors did
+  bool operational_heard = false;        ///< since it was told to start
+  bool only_by_tpdo = false;             ///< a heartbeat may still say what was before
+  bool stopped = false;                  ///< its last heartbeat said so: it answers no SDO
+  unsigned stopped_count = 0;            ///< heartbeats that said so, ...
+  Time stopped_since{}, stopped_last{};  ///< ... the first and the last of them
+  unsigned wake_ups = 0;                 ///< NMT commands out of that state
   bool supervised = false;      ///< its loss will be noticed: heartbeat or guarding is set up
   bool guarded = false;         ///< ... by guarding
   bool watches_master = false;  ///< it took what it needs to notice a dead master

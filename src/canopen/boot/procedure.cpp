@@ -16,11 +16,12 @@ constexpr Duration kResetTime = std::chrono::milliseconds(50);  // after which n
 /// In this order; each step is skipped where the configuration asks nothing of it.
 std::vector<BootStepPointer> makeSteps(const NodeConfig& config) {
   std::vector<BootStepPointer> steps;
-  steps.push_back(makeBrake());
+  steps.push_back(makeBrake(false));
   steps.push_back(makeBootUpWait());
   steps.push_back(makeWake());
   steps.push_back(makeProofOfLife());
   steps.push_back(makeIdentification());
+  steps.push_back(makeBrake(true));
   steps.push_back(makeStop());
   steps.push_back(makeRestore());
   steps.push_back(makeErrorControl());

@@ -14,8 +14,9 @@ using BootStepPointer = std::unique_ptr<BootStep>;
 BootStepPointer makeBootUpWait();
 BootStepPointer makeProofOfLife();
 BootStepPointer makeIdentification();
-// boot/brake.cpp: a motor that turns on is braked where its stop would let it go.
-BootStepPointer makeBrake();
+// boot/brake.cpp: a motor that turns on is braked where its stop would let it go: before it leaves
+// its NMT state, or, where it did not answer then, once it is identified.
+BootStepPointer makeBrake(bool identified);
 // boot_wake.cpp: out of the NMT state stopped, before anything is asked.
 BootStepPointer makeWake();
 // boot_writes.cpp: what stops a drive that was left enabled, before anything else is written to it.

@@ -38,6 +38,11 @@ class ActiveMode {
   /// Keeps `raw` in an output object while the mode is active (ModeSpec::entry_writes).
   void hold(fieldbus::Slot slot, std::uint64_t raw);
 
+  /// 6060h travels in the cycle; else it is written.
+  bool travels() const {
+    const OutputObject& object = axis_.objects.mode;
+    return object.mapped() && !axis_.image.outputLeftOut(object.slot);
+  }
   /// Puts the mode, and what it holds, into the process image.
   void write();
   /// Why a mode cannot be used with this drive; empty: it can.

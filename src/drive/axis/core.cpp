@@ -42,7 +42,7 @@ void AxisCore::supervise(Time now) {
   if (late) generator_.lateCycle(now);
   if (!deviceReady()) return;
   limits_.keep(inOperation() ? generator_.target() : state().position);
-  if (control_.commanded() && !state().feedback_valid) return stopUnheard();
+  if (control_.commanded() && !state().feedback_valid) return stopUnheard(now);
   if (inOperation()) {
     superviseOperation(now);
   } else if (goal() == Goal::enabled && state().state == State::operation_enabled) {
@@ -63,10 +63,13 @@ void AxisCore::superviseOperation(Time now) {
   generator_.watchFollowing(now);
 }
 
-void AxisCore::stopUnheard() {
-  setGoal(Goal::quick_stop);
+void AxisCore::stopUnheard(Time now) {
+  if (stops_.brakesUnheard(now)) return;
+  const bool brakes = stops_.brakeUnheard(now);
+  if (!brakes) setGoal(Goal::quick_stop);
   notices().fail(who() + ": no usable " + profile().feedbackObjects() + ": " + feedback_.text() +
-                 "; quick stop is commanded. Check bus load, cable and the drive's " +
+                 (brakes ? "; mode " + mode_.spec().name + " is to brake it, then" : ";") +
+                 " quick stop is commanded. Check bus load, cable and the drive's " +
                  device().terms().input + "s");
 }
 
@@ -134,6 +137,7 @@ void AxisCore::switchOff() {
 }
 
 void AxisCore::leaveOperation() {
+  stops_.forgetBrakeMode();
   axis_.state.halted = axis_.state.ready_for_motion = false;
   mode_.overrideValue({});
   control_.leaveOperation();
@@ -167,8 +171,8 @@ void AxisCore::onDeviceLost() {
 }
 
 void AxisCore::onBusLost(const std::string& why) {
-  if (!control_.commanded()) return;
-  setGoal(Goal::quick_stop);
+  if (!control_.commanded() || stops_.brakesUnheard(written_)) return;
+  if (!stops_.brakeUnheard(written_)) setGoal(Goal::quick_stop);
   notices().fail(who() + ": " + why +
                  ": nothing reaches the drive; it gets a quick stop once the bus is back and stays "
                  "disabled until enable or recover");

@@ -86,7 +86,7 @@ class AxisCore {
   [[gnu::cold]] void zeroMoved(double moved);
   void superviseOperation(Time now);
   // Reactions of supervise(). Cold: what tells much is kept out of the code of every cycle.
-  [[gnu::cold]] void stopUnheard();
+  [[gnu::cold]] void stopUnheard(Time now);
   [[gnu::cold]] void giveUpOperation();
   /// @return false: it leaves operation
   [[gnu::cold]] bool goesOnWarned(Time now);

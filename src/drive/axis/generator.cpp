@@ -105,8 +105,8 @@ void Generator::stepCommands(Time now) {
   if (next && !take(*next)) commands_.drop();
 }
 
-void Generator::arrest() {
-  sent_.arrest(axis_.state.velocity);
+void Generator::arrest(double velocity) {
+  sent_.arrest(velocity);
   encode();
 }
 

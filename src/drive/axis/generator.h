@@ -52,8 +52,8 @@ class Generator {
   Result<void> command(double value, Time now) { return commands_.take(value, *mode_, sent_, now); }
   /// Brings the set-points to rest, by a ramp where they move, whoever gave them.
   void stop();
-  /// Takes over a motor that turns: begins at its measured velocity and ramps that to rest.
-  void arrest();
+  /// Takes over a motor that turns: begins at its velocity, per s, and ramps that to rest.
+  void arrest(double velocity);
   /// Cycles were missed: nothing of them is made good.
   [[gnu::cold]] void lateCycle(Time now);
 

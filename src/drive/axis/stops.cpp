@@ -91,6 +91,7 @@ void Stops::followByBrakeMode() {
   const double velocity = axis_.state().velocity;
   std::uint64_t raw = 0;
   if (brake == nullptr || !std::isfinite(velocity)) return;
+  followed_ = velocity;
   if (brake->conversion.toDevice(velocity, raw)) {
     axis_.device().image().setOutput(brake->target.slot, raw);
   }
@@ -101,26 +102,58 @@ bool Stops::brakeByMode(Time now) {
   const ModeChannel* brake = brakeMode();
   AxisState& state = axis_.basis().state;
   if (brake == nullptr || !state.feedback_valid || !std::isfinite(state.velocity)) return false;
+  takeOver(*brake, state.velocity, now);
+  return true;
+}
+
+void Stops::takeOver(const ModeChannel& brake, double velocity, Time now) {
+  AxisState& state = axis_.basis().state;
   const ModeChannel& pushes = axis_.mode().channel();
   if (pushes.target.mapped()) axis_.device().image().setOutput(pushes.target.slot, 0);
-  axis_.selectMode(*brake);
+  axis_.selectMode(brake);
   axis_.mode().brakeFor(pushes);
   braked_at_ = now;
   const OutputObject& object = axis_.objects().mode;
-  if (!object.mapped() && object.spec != nullptr) {
-    const auto value = static_cast<std::uint64_t>(brake->spec->value);
+  if (!axis_.mode().travels() && object.spec != nullptr) {
+    const auto value = static_cast<std::uint64_t>(brake.spec->value);
     brake_ticket_ = axis_.device().objects().downloadUrgent(
         object.spec->id, wireBytes(value, object.spec->type), object.spec->name);
   }
-  axis_.generator().arrest();
+  axis_.generator().arrest(velocity);
   axis_.generator().endPushing();
   state.halted = true;
   state.ready_for_motion = false;
+}
+
+bool Stops::brakeUnheard(Time now) {
+  const bool over = quick_stop_at_ != kNever;
+  if (over || !axis_.control().inOperation() || !axis_.mode().travels()) return false;
+  double velocity = 0.0;
+  if (how() == StopBy::mode) {
+    const ModeChannel* brake = brakeMode();
+    if (brake == nullptr) return false;
+    velocity = followed_;
+    takeOver(*brake, velocity, now);
+  } else if (!axis_.mode().brakes() || brake_mode_shown_) {
+    return false;
+  }
+  quick_stop_at_ = now + axis_.profile().timing.mode_change +
+                   fromSeconds(std::abs(velocity) / stopDeceleration(axis_.config()));
+  return true;
+}
+
+bool Stops::brakesUnheard(Time now) {
+  if (quick_stop_at_ == kNever || now > quick_stop_at_) return false;
+  braked_at_ = now;  // what it shows is waited for once it is heard
   return true;
 }
 
 /// The ramp begins when the drive has taken the mode: until then it coasts.
 void Stops::watchBrakeMode(Time now) {
+  const bool unheard = quick_stop_at_ != kNever;
+  if (unheard && brake_mode_shown_ && (axis_.feedback().atStandstill() || now > quick_stop_at_)) {
+    return axis_.setGoal(Goal::quick_stop);
+  }
   if (brake_mode_shown_) return;
   const ModeSpec& mode = axis_.mode().spec();
   const bool refused = brake_ticket_ && brake_ticket_->done() && !brake_ticket_->ok();
@@ -130,7 +163,8 @@ void Stops::watchBrakeMode(Time now) {
   }
   const Duration patience = axis_.profile().timing.mode_change;
   if (!refused && now <= braked_at_ + patience) {
-    if (std::isfinite(axis_.state().velocity)) axis_.generator().arrest();
+    const double velocity = axis_.state().velocity;
+    if (std::isfinite(velocity)) axis_.generator().arrest(velocity);
     return;
   }
   axis_.notices().notify(
@@ -144,6 +178,7 @@ void Stops::watchBrakeMode(Time now) {
 void Stops::forgetBrakeMode() {
   brake_mode_shown_ = false;
   brake_ticket_.reset();
+  quick_stop_at_ = kNever;
 }
 
 void Stops::watchEffort(Time now) {

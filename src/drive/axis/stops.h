@@ -42,6 +42,12 @@ class Stops {
   void watchEffort(Time now);
   /// Once a cycle while another mode brakes: a drive that does not take that gets a quick stop.
   void watchBrakeMode(Time now);
+  /// Nothing is heard of a drive that is commanded: where another mode brakes the present one, and
+  /// travels in the cycle, that comes first, for a quick stop would let the motor go.
+  /// @return false: a quick stop has to do it
+  bool brakeUnheard(Time now);
+  /// Once a cycle then. @return false when the time for that is over
+  bool brakesUnheard(Time now);
   /// Another mode was selected by somebody else.
   void forgetBrakeMode();
 
@@ -50,6 +56,7 @@ class Stops {
   const ModeChannel* brakeMode() const;
   void followByBrakeMode();
   bool brakeByMode(Time now);
+  void takeOver(const ModeChannel& brake, double velocity, Time now);
   void brakeEffort(Time now);
   [[gnu::cold]] void judgeUrgent();
   [[gnu::cold]] void finishHold();
@@ -57,7 +64,9 @@ class Stops {
   AxisCore& axis_;
   Time braked_at_{};
   bool brake_mode_shown_ = false;
-  bool holding_ = false;  ///< by hold(), and the motor has not been seen to stand since
+  double followed_ = 0.0;        ///< velocity at which the mode that brakes would begin
+  Time quick_stop_at_ = kNever;  ///< at the latest, after braking unheard
+  bool holding_ = false;         ///< by hold(), and the motor has not been seen to stand since
   fieldbus::Ticket brake_ticket_, urgent_ticket_;
 };
 

@@ -71,7 +71,7 @@ void ModeStep::select(const Context& context) {
   started_ = context.now;
   controlword_frames_ = axis.generator().targetFrames();
   const OutputObject& object = axis.objects().mode;
-  if (object.mapped() || object.spec == nullptr) {
+  if (axis.mode().travels() || object.spec == nullptr) {
     phase_ = Phase::waiting;
   } else {
     command_ = axis.device().objects().download(
@@ -121,7 +121,7 @@ Outcome ModeStep::fail(const Context& context, const std::string& why) {
   if (before_ != nullptr && before_ != mode_) {
     enter(axis, *before_);
     const OutputObject& object = axis.objects().mode;
-    if (!object.mapped() && object.spec != nullptr) {
+    if (!axis.mode().travels() && object.spec != nullptr) {
       axis.device().objects().download(
           object.spec->id,
           wireBytes(static_cast<std::uint64_t>(before_->spec->value), object.spec->type),

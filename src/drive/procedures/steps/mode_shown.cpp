@@ -67,7 +67,7 @@ void ModeShownStep::command(const Context& context, Phase phase, int value) {
   phase_ = phase;
   frames_ = axis.control().frames();
   const OutputObject& object = axis.objects().mode;
-  if (object.mapped()) {
+  if (axis.mode().travels()) {
     const bool is_mode = value == mode_->spec->value;
     axis.mode().overrideValue(is_mode ? std::optional<int>() : std::optional<int>(value));
   } else if (object.spec != nullptr) {
