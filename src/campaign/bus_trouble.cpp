@@ -120,9 +120,6 @@ void BusTrouble::unheard(const Words& words) {
   for (std::size_t i : session_.stage.drivesNamed(words.at(1))) {
     const DriveFacts& drive = session_.stage.drives()[i];
     session_.breakLink(drive.axes.front(), length);
-    for (std::size_t axis : drive.axes) {
-      Conditions::extend(session_.conditions.axes[axis].mute, session_.now() + length + 500ms);
-    }
     std::set<std::uint32_t> ids{0x580U + drive.node_id, 0x700U + drive.node_id};  // SDO, heartbeat
     if (words.at(2) == "all") {
       ids = {drive.node_id};

@@ -16,7 +16,6 @@ struct Conditions {
     Time may_coast{};  ///< until then its power may go by itself: a fault that coasts, no supply
     Time blocked{};    ///< until then rotor and demand may lie apart: blocked, or just let go
     Time unheard{};    ///< until then the driver may not hear it
-    Time mute{};       ///< until then it obeys and the driver does not hear it
     Time cut_off{};    ///< until then commands may not reach it, or its answers not the driver
   };
   std::vector<Axis> axes;

@@ -70,6 +70,54 @@ TEST_F(LastStopTest, the_motor_is_stopped_before_nmt_takes_sdo_away) {
   EXPECT_THAT(times(kMotorStop, milliseconds(450)), ElementsAre(0, 8, 16, 24, 32));
 }
 
+/// Mode 4 pushes; mode 9 brakes. The mode comes with the position.
+class LastStopInTorqueTest : public LastStopTest {
+ protected:
+  LastStopInTorqueTest() {
+    BootBrake brake;
+    brake.statusword = {0x6041, 0};
+    brake.shown_mode = {0x6061, 0};
+    brake.mode = {0x6060, 0};
+    brake.velocity = {0x606C, 0};
+    brake.target = {0x60FF, 0};
+    brake.pushing = {4};
+    brake.brake = 9;
+    config.brakes = {brake};
+    PdoConfig& tpdo = config.pdos.at(1);
+    tpdo.entries.at(1) = {{0x6061, 0}, 8, "mode display"};
+    peer.on("603 40 61 60 00 00 00 00 00", "583 4F 61 60 00 08 00 00 00");  // as the boot begins
+    peer.forget("603 40 00 1A 02 00 00 00 00");
+    peer.on("603 40 00 1A 02 00 00 00 00", "583 43 00 1A 02 08 00 61 60");
+  }
+  void loseIn(const char* mode) {
+    boot();
+    ASSERT_EQ(node->health(), Health::ready) << node->problem();
+    node->receiveTpdo(0, test::frame(std::string("183 37 12 ") + mode), now);
+    peer.take();
+    peer.forget(kMotorStop);
+    pass(milliseconds(300));
+    ASSERT_EQ(node->health(), Health::lost);
+  }
+};
+
+const char kBrake[] = "603 2F 60 60 00 09 00 00 00";
+
+TEST_F(LastStopInTorqueTest, the_mode_that_brakes_comes_before_the_stop_that_lets_go) {
+  loseIn("04");
+  const Lines sent = peer.take();
+  EXPECT_THAT(sent, Contains(kBrake));
+  EXPECT_THAT(sent, Not(Contains(kMotorStop)));
+  EXPECT_THAT(times(kBrake, milliseconds(10)), ElementsAre(8));
+  EXPECT_THAT(times(kMotorStop, milliseconds(300)), ElementsAre(6, 14, 22, 30, 38));
+}
+
+TEST_F(LastStopInTorqueTest, a_mode_whose_stop_brakes_is_left) {
+  loseIn("08");
+  const Lines sent = peer.take();
+  EXPECT_THAT(sent, Contains(kMotorStop));
+  EXPECT_THAT(sent, Not(Contains(kBrake)));
+}
+
 TEST_F(LastStopTest, without_anything_to_write_it_is_stopped_by_nmt_at_once) {
   config.writes.clear();
   lose();

@@ -120,6 +120,7 @@ void Node::Impl::takeOutBy(NmtCommand command) {
 
 void Node::Impl::lose(const std::string& why, Time now) {
   sdo.cancelAll("the node is lost: " + why);
+  last_stop.remember(image);
   takeOut(Health::lost, why + ": check power and cable; it is configured again when it is back");
   last_stop.begin(now);
   retry.search(now, last_stop.over());

@@ -1,10 +1,13 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "canopen/node/last_stop.h"
 
+#include <algorithm>
+
 namespace cia402::canopen {
 namespace {
 
-constexpr unsigned kMotorStops = 5;  // by SDO, ...
+constexpr unsigned kBrakes = 2;      // by the mode that brakes, where another stop would not, ...
+constexpr unsigned kMotorStops = 5;  // ... by SDO, ...
 constexpr Duration kMotorInterval = std::chrono::milliseconds(8);
 constexpr unsigned kQuickStops = 5;  // ... then by NMT, ...
 constexpr Duration kQuickInterval = std::chrono::milliseconds(20);
@@ -15,6 +18,18 @@ constexpr Duration kOnItsWay = std::chrono::milliseconds(10);  // a heartbeat of
 
 }  // namespace
 
+void LastStop::remember(const PdoImage& image) {
+  brakes_.clear();
+  for (const BootBrake& brake : config_.brakes) {
+    const fieldbus::Slot slot = image.inputSlot(brake.shown_mode);
+    if (slot == fieldbus::kNoSlot || !image.input(slot).valid) continue;
+    const int mode = static_cast<std::int8_t>(image.input(slot).raw & 0xFFU);
+    const auto& pushing = brake.pushing;
+    if (std::find(pushing.begin(), pushing.end(), mode) == pushing.end()) continue;
+    brakes_.push_back({brake.mode, fieldbus::toBytes(static_cast<std::uint64_t>(brake.brake), 1)});
+  }
+}
+
 void LastStop::begin(Time now) {
   patience_end_ = now + kPatience;
   end_ = now + kEnough;
@@ -22,7 +37,7 @@ void LastStop::begin(Time now) {
 }
 
 void LastStop::restart(Time now) {
-  said_ = 0;
+  said_ = braked_ = 0;
   next_ = now;
   tick(now);
 }
@@ -31,6 +46,11 @@ void LastStop::tick(Time now) {
   if (now < next_) return;
   if (now >= end_) return end();
   last_ = now;
+  if (braked_ < kBrakes && brake()) {
+    ++braked_;
+    next_ = now + kMotorInterval;
+    return;
+  }
   if (said_ < kMotorStops) {
     ++said_;
     next_ = now + kMotorInterval;
@@ -40,6 +60,12 @@ void LastStop::tick(Time now) {
   sink_.send(nmtFrame(NmtCommand::stop, config_.node_id));
   const bool quickly = ++said_ < kMotorStops + kQuickStops;
   next_ = now + (quickly ? kQuickInterval : kSlowInterval);
+}
+
+bool LastStop::brake() {
+  bool told = false;
+  for (const ModeWrite& write : brakes_) told = sdo_.post(write.object, write.data) || told;
+  return told;
 }
 
 bool LastStop::stopMotor() {

@@ -1,9 +1,12 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include "can/bus.h"
 #include "canopen/config.h"
 #include "canopen/nmt/nmt.h"
+#include "canopen/pdo/image.h"
 #include "canopen/sdo/client.h"
 
 namespace cia402::canopen {
@@ -12,13 +15,16 @@ namespace cia402::canopen {
 /// last set-point; and each frame may be lost. So it is told more than once: first to stop the
 /// motor (the writes of StartupWrite::always, by SDO, no answer is waited for), as a stopped node
 /// takes no SDO any more and not every drive stops its motor on NMT stop; then NMT stop, quickly at
-/// first, for three seconds in all.
+/// first, for three seconds in all. Where that stop would only let the motor go (BootBrake), the
+/// mode that brakes comes first.
 class LastStop {
  public:
   /// All must outlive it.
   LastStop(const NodeConfig& config, SdoClient& sdo, can::Sink& sink)
       : config_(config), sdo_(sdo), sink_(sink) {}
 
+  /// The node is about to be forgotten. @param image what it has told last
+  void remember(const PdoImage& image);
   /// The node was lost just now; its SDO transfers have ended.
   void begin(Time now);
   /// It is there again, or somebody else decides.
@@ -36,11 +42,18 @@ class LastStop {
 
  private:
   void restart(Time now);
+  bool brake();
 
+  struct ModeWrite {
+    ObjectId object;
+    Bytes data;
+  };
   const NodeConfig& config_;
   SdoClient& sdo_;
   can::Sink& sink_;
-  unsigned said_ = 0;  ///< since it began, or began again
+  std::vector<ModeWrite> brakes_;  ///< of what turned as it was told last
+  unsigned braked_ = 0;            ///< since it began, or began again; said_ likewise
+  unsigned said_ = 0;
   Time next_ = kNever, last_{}, patience_end_{}, end_{};
 };
 

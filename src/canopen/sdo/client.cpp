@@ -56,7 +56,7 @@ SdoTicket SdoClient::downloadUrgent(ObjectId object, Bytes data, const std::stri
 
 bool SdoClient::post(ObjectId object, const Bytes& data) {
   if (!isIdle() || !SdoDownload::isExpedited(data.size())) return false;
-  SdoDownload::sendExpedited(exchange_, object, data);
+  SdoDownload::sendExpedited(exchange_, object, widths_.toDrive(object, data));
   fence_.expectNothingOf(object);
   return true;
 }
