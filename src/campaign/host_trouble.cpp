@@ -75,7 +75,7 @@ void HostTrouble::kill(const Words& words) {
   }
   for (auto& axis : conditions.axes) {
     axis.cut_off = std::min(axis.cut_off, now + gone + 500ms);
-    axis.unheard = now + gone + kBootTime;
+    axis.unheard = now + gone;
   }
   session_.later(gone, [this] { start(); });
 }
@@ -108,6 +108,7 @@ void HostTrouble::start() {
   if (session_.stage.host().running()) return;
   session_.say("  a new driver starts");
   const Time now = session_.now();
+  for (auto& axis : session_.conditions.axes) Conditions::extend(axis.unheard, now + kBootTime);
   // It has to find a drive that moves, and stops it before all else.
   for (std::size_t i = 0; i < session_.truths.size(); ++i) {
     const AxisFacts& facts = session_.stage.axes()[i];

@@ -58,7 +58,11 @@ void Proof::run() {
   const Time began = session_.now();
   if (!recover()) return;
   session_.say("  recovered within " + number(toSeconds(session_.now() - began)) + " s");
-  for (std::size_t i = 0; i < session_.stage.axes().size() && !session_.failed(); ++i) move(i);
+  for (const AxisFacts& facts : session_.stage.axes()) {
+    // While others moved, a drive may have begun to warn of the switch on which its axis stands.
+    if (session_.failed() || !enable(facts)) return;
+    move(facts.index);
+  }
 }
 
 bool Proof::recover() {
@@ -102,14 +106,18 @@ bool Proof::freeDrives() {
 }
 
 bool Proof::enableAll() {
-  for (const AxisFacts& facts : session_.stage.axes()) {
-    const std::string obstacle = session_.stage.host().network().axis(facts.index).obstacle();
-    const bool disable = contains(obstacle, kDisableFirst);
-    if (!disable && !contains(obstacle, ": enable")) continue;
-    if (disable && !call("disable", facts.name, kRecoverTime)) return false;
-    if (!call("enable", facts.name, kRecoverTime)) return false;
-  }
-  return true;
+  const auto& axes = session_.stage.axes();
+  return std::all_of(axes.begin(), axes.end(),
+                     [this](const AxisFacts& facts) { return enable(facts); });
+}
+
+/// An axis that asks for that.
+bool Proof::enable(const AxisFacts& facts) {
+  const std::string obstacle = session_.stage.host().network().axis(facts.index).obstacle();
+  const bool disable = contains(obstacle, kDisableFirst);
+  if (!disable && !contains(obstacle, ": enable")) return true;
+  if (disable && !call("disable", facts.name, kRecoverTime)) return false;
+  return call("enable", facts.name, kRecoverTime);
 }
 
 /// Moves off their limit switches what its drive holds there.
@@ -203,7 +211,7 @@ Proof::Step Proof::stepOf(const AxisFacts& facts, const drive::ModeSpec& mode, d
   return made;
 }
 
-void Proof::move(std::size_t axis, std::optional<double> tried) {
+void Proof::move(std::size_t axis, unsigned tried, double last) {
   const AxisFacts& facts = session_.stage.axes()[axis];
   if (heldByFault(axis)) return;
   const drive::ModeSpec* const mode = modeOf(axis);
@@ -212,7 +220,7 @@ void Proof::move(std::size_t axis, std::optional<double> tried) {
   const double from = session_.truths[axis].position, at = session_.shown(axis);
   const double middle =
       limits.lower && limits.upper ? (*limits.lower + *limits.upper) / 2.0 : at + 1.0;
-  double sign = tried ? -*tried : middle >= at ? 1.0 : -1.0;
+  double sign = tried != 0 ? -last : middle >= at ? 1.0 : -1.0;
   if (pushesOneWay(facts, *mode)) {
     if (session_.truths[axis].at_switch) return;  // it may only push against it
     sign = facts.config->geometry.direction;
@@ -235,11 +243,12 @@ void Proof::move(std::size_t axis, std::optional<double> tried) {
                                         facts.velocity * facts.velocity / facts.acceleration;
   const bool outside = (limits.lower && at < *limits.lower) || (limits.upper && at > *limits.upper);
   if ((torque ? moved * sign > 0.0 : far_enough) && (!too_far || outside)) return;
-  // A switch may stand in the way: it lets the axis go back.
+  // A switch may stand in the way: it lets the axis go back. One that begins to tell so as the axis
+  // sets off from it halts that axis, too, so both ways are tried, and the first one again.
   const bool held = facts.units_per_count != 0.0 && session_.now() - session_.limited_at[axis] < 3s;
   if (held && outside) return;  // its limits lie beyond the switch, as its zero was declared
-  if (held && !tried) {
-    if (call("enable", facts.name, kRecoverTime)) move(axis, sign);
+  if (held && tried < 2) {
+    if (call("enable", facts.name, kRecoverTime)) move(axis, tried + 1, sign);
     return;
   }
   noRecovery(facts.name, "was told to move by " + number(expected) + " in mode " + mode->name +

@@ -28,6 +28,7 @@ class Proof {
   bool recover();
   bool freeDrives();
   bool enableAll();
+  bool enable(const AxisFacts& facts);
   /// A fault keeps it on its limit switch until it is moved by hand.
   bool heldByFault(std::size_t axis) const;
   bool leaveSwitches();
@@ -36,7 +37,9 @@ class Proof {
   bool call(const std::string& verb, const std::string& who, Duration limit);
   const drive::ModeSpec* modeOf(std::size_t axis);
   /// @param tried the direction in which a limit held it, -1 or 1.
-  void move(std::size_t axis, std::optional<double> tried = std::nullopt);
+  /// @param tried so often it was held by a limit switch @param last the way that was tried last, 1
+  /// or -1
+  void move(std::size_t axis, unsigned tried = 0, double last = 0.0);
 
   /// What a small move of an axis is to come to.
   struct Step {

@@ -13,6 +13,7 @@ namespace {
 
 using test::Lines;
 using ::testing::ElementsAre;
+using ::testing::IsEmpty;
 
 const char kReset[] = "000 82 03";
 const char kTellPreOperational[] = "000 80 03";
@@ -53,7 +54,8 @@ class BootBrakeTest : public test::NodeFixture {
   /// What is sent until the reset.
   Lines sentBeforeReset(Duration within = Duration::zero()) {
     boot();
-    pass(within);
+    EXPECT_THAT(peer.sent, IsEmpty()) << "two SYNCs are waited for";
+    pass(2 * master.sync_period + within);
     Lines lines;
     for (const std::string& line : peer.take()) {
       if (line == kReset) return lines;
@@ -94,6 +96,7 @@ TEST_F(BootBrakeTest, waits_for_rest_for_two_seconds_at_most) {
 TEST_F(BootBrakeTest, takes_it_over_once_it_is_identified_where_it_did_not_answer_before) {
   peer.forget(kAskShownMode);
   boot(false);
+  pass(2 * master.sync_period);
   EXPECT_THAT(peer.take(), ElementsAre(kAskShownMode));
   peer.on(kAskShownMode, Lines{"583 4F 61 60 00 04 00 00 00"});
   peer.on(kAskShownMode, Lines{"583 4F 61 60 00 09 00 00 00"});

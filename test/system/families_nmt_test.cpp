@@ -1,6 +1,9 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // NMT, heartbeat and node guarding with the families' drives, on the wire and in words.
+#include <optional>
+
 #include "system/families_bus_scene.h"
+#include "system/interface_scene.h"
 
 namespace cia402 {
 namespace {
@@ -54,6 +57,27 @@ TEST_P(FamilyNmt, TakesEachCommandAloneAndWithAllOthers) {
   }
   ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, kFamilyBoot)) << scene.told();
   EXPECT_TRUE(scene.procedure(ProcedureKind::enable).success) << scene.told();
+}
+
+// A host that stands still is no master: its drives leave the state operational meanwhile, and what
+// they have told before is not true any more.
+TEST(NmtStart, CountsNothingThatIsOlderThanAStandstillOfTheHost) {
+  // They miss their master 0.3 s after it, and say so in a heartbeat up to 0.1 s later.
+  for (int moment = 0; moment < 100; ++moment) {
+    InterfaceScene scene(loadText(genericPair()), {});
+    ASSERT_TRUE(scene.runUntil([&] { return scene.allReady(); }, 10s)) << scene.told();
+    scene.run(std::chrono::milliseconds(13 * moment % 100));
+    std::optional<bus::Answer> answer;
+    scene.network().execute(bus::Command(bus::NmtServiceCommand{"left", "start"},
+                                         [&](const bus::Answer& given) { answer = given; }),
+                            scene.now());
+    scene.run(std::chrono::milliseconds(moment % 7));
+    if (answer) continue;
+    scene.stall(300ms + std::chrono::milliseconds(moment));
+    ASSERT_TRUE(scene.runUntil([&] { return answer.has_value(); }, 10s)) << scene.told();
+    EXPECT_TRUE(answer->success) << answer->message;
+    EXPECT_EQ(scene.truth(0).nmt, NmtState::operational) << moment;
+  }
 }
 
 // A NiMotion does nothing by it [332-333]: it goes on, and is configured all the same.

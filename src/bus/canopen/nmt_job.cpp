@@ -27,6 +27,7 @@ constexpr struct {
     {"reset_communication", NmtCommand::reset_communication},
 };
 constexpr Duration kLeastWait = std::chrono::seconds(1);
+constexpr Duration kStandstill = std::chrono::milliseconds(50);  // of the host, between two cycles
 constexpr int kBootTimes = 4;  // boot time-outs until a boot that does not end is given up
 
 std::optional<NmtCommand> commandOf(const std::string& word) {
@@ -84,6 +85,8 @@ NmtJob::NmtJob(std::string word, NmtCommand command, Reply<> reply, Time now)
       word_(std::move(word)),
       command_(command),
       began_(now),
+      counts_from_(now),
+      stepped_(now),
       reply_(std::move(reply)) {}
 
 Result<std::unique_ptr<Job>> NmtJob::start(const std::string& word, const std::vector<Item>& items,
@@ -123,8 +126,12 @@ void NmtJob::command(const Item& item, bool all, Time now) {
 }
 
 bool NmtJob::step(Time now) {
+  if (now > stepped_ + kStandstill) counts_from_ = now;
+  stepped_ = now;
   for (Entry& entry : entries_) {
-    if (!entry.ended) watch(entry, now);
+    // While the others are waited for, one that was operational may be none any more.
+    const bool may_leave = entry.success && !staysDown();
+    if (!entry.ended || may_leave) watch(entry, now);
   }
   const bool ended =
       std::all_of(entries_.begin(), entries_.end(), [](const Entry& e) { return e.ended; });
@@ -169,8 +176,8 @@ void NmtJob::watchBoot(Entry& entry, Time now) const {
   const Health health = node.health();
   const Duration patience = kBootTimes * node.config().boot_timeout + kLeastWait;
   // An older heartbeat may not have told yet that the drive left that state.
-  const bool told = !node.supervision().watched ||
-                    (node.lastHeartbeat() > began_ && node.nmtState() == NmtState::operational);
+  const bool told = !node.supervision().watched || (node.lastHeartbeat() > counts_from_ &&
+                                                    node.nmtState() == NmtState::operational);
   entry.success = health == Health::ready && told;
   entry.ended = entry.success || health == Health::failed || health == Health::absent ||
                 now >= began_ + patience;

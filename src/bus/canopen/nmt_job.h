@@ -61,6 +61,10 @@ class NmtJob final : public Job {
   canopen::NmtCommand command_;
   std::vector<Entry> entries_;
   Time began_;
+  /// What was heard before tells nothing: it began then, or the host had stood still until then,
+  /// and a drive that missed its master may have left its state.
+  Time counts_from_;
+  Time stepped_;
   Reply<> reply_;
 };
 

@@ -20,6 +20,13 @@ class VainRequests final : public Oracle {
   explicit VainRequests(const Stage& stage) : drives_(stage.drives().size()) {}
   const char* name() const override { return "vain_request"; }
 
+  void look(const View& view) override {
+    for (std::size_t i = 0; i < drives_.size(); ++i) {
+      const std::size_t first = view.stage.drives()[i].axes.front();
+      if (view.truths[first].nmt != canopen::NmtState::stopped) drives_[i] = {};  // reset, perhaps
+    }
+  }
+
   void onFrame(const can::Frame& frame, const View& view) override {
     if (frame.error || frame.remote || frame.size == 0) return;
     for (std::size_t i = 0; i < drives_.size(); ++i) {

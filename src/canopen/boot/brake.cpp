@@ -16,6 +16,8 @@ constexpr Duration kPatience = std::chrono::milliseconds(100);        // for the
 constexpr Duration kRamp = std::chrono::seconds(2);                   // for the motors to rest
 constexpr Duration kInterval = std::chrono::milliseconds(10);         // of questions meanwhile
 constexpr std::uint32_t kStateMask = 0x6F, kOperationEnabled = 0x27;  // CiA 402-2, state coding
+// What an RPDO has left in the drive takes effect with the next SYNC, and is not to undo this.
+constexpr int kSyncs = 2;
 constexpr std::uint32_t kQuickStopActive = 0x07;
 
 /// Ends with the NMT command that this boot would have begun with. What is refused or not answered
@@ -26,9 +28,13 @@ class Brake : public BootStep {
   explicit Brake(bool identified) : identified_(identified), known_(identified) {}
 
   bool begin(BootContext& boot, Time now) override {
-    const bool due = identified_ ? !boot.found.after_reset && !boot.found.braked : boot.braking;
+    const bool due = identified_ ? !boot.found.braked : boot.braking;
     if (!due && !begun_) return false;
-    begun_ = true;
+    boot.deadline = kNever;
+    if (!std::exchange(begun_, true) && !identified_ && !boot.config.brakes.empty()) {
+      boot.deadline = waits_until_ = now + kSyncs * boot.sync_period;
+      return true;
+    }
     options_ = boot.config.sdo;
     options_.retries = 0;
     options_.timeout = std::min(options_.timeout, kAnswer);
@@ -39,6 +45,7 @@ class Brake : public BootStep {
   }
 
   Progress check(BootContext& boot, Time now) override {
+    if (phase_ == Phase::wait) return now < waits_until_ ? Progress::waiting : Progress::again;
     if (!boot.answered()) return Progress::waiting;
     if (phase_ == Phase::stop) return Progress::again;
     const bool usable =
@@ -101,7 +108,7 @@ class Brake : public BootStep {
     }
   }
 
-  enum class Phase { vendor, mode, state, velocity, target, command, shown, stop, rest };
+  enum class Phase { wait, vendor, mode, state, velocity, target, command, shown, stop, rest };
 
   const BootBrake& brake(const BootContext& boot) const { return boot.config.brakes[item_]; }
   void read(BootContext& boot, ObjectId object, const char* name, Time now) {
@@ -155,6 +162,7 @@ class Brake : public BootStep {
         if (modeIn(data) == brake(boot).brake) braked_.push_back(item_);
         if (modeIn(data) == brake(boot).brake || now >= deadline_) return false;
         break;
+      case Phase::wait:
       case Phase::stop:
       case Phase::rest:
         return false;
@@ -168,10 +176,10 @@ class Brake : public BootStep {
   const bool identified_;
   bool begun_ = false;
   bool known_;
-  Phase phase_ = Phase::mode;
+  Phase phase_ = Phase::wait;
   SdoOptions options_;
   unsigned mode_bytes_ = 1;
-  Time deadline_{}, next_question_{};
+  Time waits_until_{}, deadline_{}, next_question_{};
 };
 
 }  // namespace

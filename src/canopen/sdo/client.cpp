@@ -47,9 +47,9 @@ SdoTicket SdoClient::download(ObjectId object, Bytes data, std::string name,
 
 SdoTicket SdoClient::downloadUrgent(ObjectId object, Bytes data, const std::string& name) {
   makeWay(toString(object) + (name.empty() ? "" : " " + name));
-  auto transfer = std::make_shared<SdoTransfer>(Direction::download, object, name,
-                                                half_floats_.narrowed(object, std::move(data)),
-                                                defaults_, true);
+  auto transfer = std::make_shared<SdoTransfer>(
+      Direction::download, object, name,
+      widths_.toDrive(object, half_floats_.narrowed(object, std::move(data))), defaults_, true);
   queue_.add(transfer);
   return transfer;
 }
