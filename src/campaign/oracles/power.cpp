@@ -34,9 +34,18 @@ class Power final : public Oracle {
     const AxisTruth& truth = view.truths[i];
     const AxisFacts& facts = view.stage.axes()[i];
     if (view.now < view.conditions.axes[i].may_coast) return true;
+    const bool disturbed = !view.conditions.quiet(i, view.now);
+    if (disturbed && facts.watches_master && fades(truth, facts)) return true;
     if (!truth.faulted()) return false;
-    return (facts.loss_coasts && !view.conditions.quiet(i, view.now)) ||
-           (facts.limit_coasts && truth.at_switch);
+    return (facts.loss_coasts && disturbed) || (facts.limit_coasts && truth.at_switch);
+  }
+
+  /// In a mode in which the drive's own stop, as it misses its master, only lets the torque go.
+  static bool fades(const AxisTruth& truth, const AxisFacts& facts) {
+    const auto& modes = facts.config->profile->modes;
+    return std::any_of(modes.begin(), modes.end(), [&](const drive::ModeSpec& mode) {
+      return mode.value == truth.mode && mode.stop == drive::StopBy::mode;
+    });
   }
 
   std::vector<bool> before_;
