@@ -106,6 +106,20 @@ TEST_P(FadingTorque, IsBrakedByAModeWhereItIsNotHeard) {
   expectRest(0.1);
 }
 
+// The velocity of a stream that has ended long ago is nobody's any more.
+TEST_P(FadingTorque, StandsThatIsNotHeardAtRest) {
+  turn();
+  scene.run(1s);
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success) << scene.told();
+  ASSERT_EQ(scene.axis("joint").modeName(), drive::canonicalModeName(GetParam().mode));
+  scene.run(500ms);
+  scene.forget();
+  scene.inject("joint", "short_tpdos");
+  scene.run(3s);
+  EXPECT_LT(scene.seen("joint").travel(), 1e-3);
+  EXPECT_FALSE(scene.truth("joint").power_stage_on) << scene.told();
+}
+
 // Cut off for a moment it hears nothing, and turns on by its torque. What it hears first then is
 // the mode that brakes.
 TEST_P(FadingTorque, IsBrakedByAModeWhenItIsBack) {

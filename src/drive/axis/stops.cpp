@@ -131,8 +131,8 @@ bool Stops::brakeUnheard(Time now) {
   double velocity = 0.0;
   if (how() == StopBy::mode) {
     const ModeChannel* brake = brakeMode();
-    if (brake == nullptr) return false;
-    velocity = followed_;
+    if (brake == nullptr || !axis_.config().brake_after_effort) return false;
+    if (axis_.generator().pushes()) velocity = followed_;  // else it was braked, and stands
     takeOver(*brake, velocity, now);
   } else if (!axis_.mode().brakes() || brake_mode_shown_) {
     return false;

@@ -64,7 +64,7 @@ class Stops {
   AxisCore& axis_;
   Time braked_at_{};
   bool brake_mode_shown_ = false;
-  double followed_ = 0.0;        ///< velocity at which the mode that brakes would begin
+  double followed_ = 0.0;        ///< while it pushes: velocity at which the mode that brakes begins
   Time quick_stop_at_ = kNever;  ///< at the latest, after braking unheard
   bool holding_ = false;         ///< by hold(), and the motor has not been seen to stand since
   fieldbus::Ticket brake_ticket_, urgent_ticket_;
