@@ -91,7 +91,6 @@ class LastStopInTorqueTest : public LastStopTest {
   }
   void loseIn(const char* mode) {
     boot();
-    pass(2 * master.sync_period);
     ASSERT_EQ(node->health(), Health::ready) << node->problem();
     node->receiveTpdo(0, test::frame(std::string("183 37 12 ") + mode), now);
     peer.take();

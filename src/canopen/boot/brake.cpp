@@ -31,10 +31,7 @@ class Brake : public BootStep {
     const bool due = identified_ ? !boot.found.braked : boot.braking;
     if (!due && !begun_) return false;
     boot.deadline = kNever;
-    if (!std::exchange(begun_, true) && !identified_ && !boot.config.brakes.empty()) {
-      boot.deadline = waits_until_ = now + kSyncs * boot.sync_period;
-      return true;
-    }
+    begun_ = true;
     options_ = boot.config.sdo;
     options_.retries = 0;
     options_.timeout = std::min(options_.timeout, kAnswer);
@@ -45,7 +42,7 @@ class Brake : public BootStep {
   }
 
   Progress check(BootContext& boot, Time now) override {
-    if (phase_ == Phase::wait) return now < waits_until_ ? Progress::waiting : Progress::again;
+    if (phase_ == Phase::wait) return readVelocity(boot, now);
     if (!boot.answered()) return Progress::waiting;
     if (phase_ == Phase::stop) return Progress::again;
     const bool usable =
@@ -108,7 +105,7 @@ class Brake : public BootStep {
     }
   }
 
-  enum class Phase { wait, vendor, mode, state, velocity, target, command, shown, stop, rest };
+  enum class Phase { vendor, mode, state, wait, velocity, target, command, shown, stop, rest };
 
   const BootBrake& brake(const BootContext& boot) const { return boot.config.brakes[item_]; }
   void read(BootContext& boot, ObjectId object, const char* name, Time now) {
@@ -121,6 +118,13 @@ class Brake : public BootStep {
     phase_ = Phase::mode;
     read(boot, brake(boot).shown_mode, "mode display", now);
     return true;
+  }
+  Progress readVelocity(BootContext& boot, Time now) {
+    if (now < waits_until_) return Progress::waiting;
+    boot.deadline = kNever;
+    phase_ = Phase::velocity;
+    read(boot, brake(boot).velocity, "velocity", now);
+    return Progress::waiting;
   }
   static int modeIn(const Bytes& data) { return static_cast<std::int8_t>(data.front()); }
 
@@ -141,8 +145,8 @@ class Brake : public BootStep {
       }
       case Phase::state:
         if ((fieldbus::toUnsigned(data) & kStateMask) != kOperationEnabled) return false;
-        phase_ = Phase::velocity;
-        read(boot, brake(boot).velocity, "velocity", now);
+        phase_ = Phase::wait;
+        boot.deadline = waits_until_ = identified_ ? now : now + kSyncs * boot.sync_period;
         return true;
       case Phase::velocity:
         phase_ = Phase::target;
@@ -176,7 +180,7 @@ class Brake : public BootStep {
   const bool identified_;
   bool begun_ = false;
   bool known_;
-  Phase phase_ = Phase::wait;
+  Phase phase_ = Phase::vendor;
   SdoOptions options_;
   unsigned mode_bytes_ = 1;
   Time waits_until_{}, deadline_{}, next_question_{};
