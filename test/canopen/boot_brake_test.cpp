@@ -31,15 +31,7 @@ const char kMode[] = "603 2F 60 60 00 09 00 00 00";
 class BootBrakeTest : public test::NodeFixture {
  protected:
   BootBrakeTest() {
-    BootBrake brake;
-    brake.statusword = {0x6041, 0};
-    brake.shown_mode = {0x6061, 0};
-    brake.mode = {0x6060, 0};
-    brake.velocity = {0x606C, 0};
-    brake.target = {0x60FF, 0};
-    brake.pushing = {4, 10};
-    brake.brake = 9;
-    config.brakes = {brake};
+    config.brakes = {brakeByMode9({4, 10})};
     for (const char* line : {kAskShownMode, kAskStatusword, kAskVelocity}) peer.forget(line);
     peer.on(kAskShownMode, Lines{"583 4F 61 60 00 0A 00 00 00"});
     peer.on(kAskStatusword, Lines{kOperationEnabled});

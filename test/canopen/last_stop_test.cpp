@@ -74,15 +74,7 @@ TEST_F(LastStopTest, the_motor_is_stopped_before_nmt_takes_sdo_away) {
 class LastStopInTorqueTest : public LastStopTest {
  protected:
   LastStopInTorqueTest() {
-    BootBrake brake;
-    brake.statusword = {0x6041, 0};
-    brake.shown_mode = {0x6061, 0};
-    brake.mode = {0x6060, 0};
-    brake.velocity = {0x606C, 0};
-    brake.target = {0x60FF, 0};
-    brake.pushing = {4};
-    brake.brake = 9;
-    config.brakes = {brake};
+    config.brakes = {brakeByMode9({4})};
     PdoConfig& tpdo = config.pdos.at(1);
     tpdo.entries.at(1) = {{0x6061, 0}, 8, "mode display"};
     peer.on("603 40 61 60 00 00 00 00 00", "583 4F 61 60 00 08 00 00 00");  // as the boot begins

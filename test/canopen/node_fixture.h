@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "canopen/node/node.h"
@@ -52,6 +53,11 @@ class NodeFixture : public ::testing::Test {
   }
   bool sentLine(const std::string& text) const {
     return std::find(peer.sent.begin(), peer.sent.end(), text) != peer.sent.end();
+  }
+
+  /// A drive whose motor mode 9 brakes. @param pushing the modes whose stop would let it go
+  static BootBrake brakeByMode9(std::vector<int> pushing) {
+    return {{0x6041, 0}, {0x6061, 0}, {0x6060, 0}, {0x606C, 0}, {0x60FF, 0}, std::move(pushing), 9};
   }
 
   ScriptedPeer peer;

@@ -128,6 +128,17 @@ TEST_F(SdoUrgentTest, a_transfer_that_waits_for_the_past_to_pass_goes_on_waiting
   EXPECT_EQ(peer.take(), Lines{"601 40 08 10 00 00 00 00 00"});
 }
 
+// 6060h that has two bytes in this drive; what is posted waits for nothing either.
+TEST_F(SdoUrgentTest, is_as_long_as_the_drive_has_the_object) {
+  client.widths().add({{0x6060, 0}, 1, 2, true});
+  client.downloadUrgent({0x6060, 0}, {0x09}, "mode");
+  client.tick(now);
+  EXPECT_EQ(peer.take(), Lines{"601 2B 60 60 00 09 00 00 00"});
+  receive("581 60 60 60 00 00 00 00 00");
+  EXPECT_TRUE(client.post({0x6060, 0}, {0xFE}));
+  EXPECT_EQ(peer.take(), Lines{"601 2B 60 60 00 FE FF 00 00"});
+}
+
 TEST_F(SdoUrgentTest, two_are_done_one_after_the_other) {
   const SdoTicket first = stop();
   const SdoTicket queued = client.upload(kStatusword);

@@ -159,6 +159,14 @@ TEST(SetPoints, AnEffortIsBrakedByAnotherModeByItsRampAndHeldThere) {
   EXPECT_TRUE(pushed(scene));
 }
 
+void expectBrakedByVelocity(Scene& scene) {
+  ASSERT_TRUE(pushed(scene));
+  scene.run(1s);
+  EXPECT_LT(std::abs(scene.velocity("left")), 1e-3);
+  EXPECT_TRUE(scene.truth("left").power_stage_on);
+  EXPECT_THAT(scene.told(), HasSubstr("braked and held by mode cyclic_velocity"));
+}
+
 // The mode travels with the targets: nothing has to be answered.
 TEST(SetPoints, AnEffortIsBrakedByVelocityWhereNoSdoIsAnswered) {
   Scene scene(loadText(brakedByVelocity()));
@@ -166,11 +174,7 @@ TEST(SetPoints, AnEffortIsBrakedByVelocityWhereNoSdoIsAnswered) {
   ASSERT_TRUE(scene.procedure(ProcedureKind::set_mode, "left", "cst").success);
   ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "left").success);
   scene.inject("left", "sdo_silent");
-  ASSERT_TRUE(pushed(scene));
-  scene.run(1s);
-  EXPECT_LT(std::abs(scene.velocity("left")), 1e-3);
-  EXPECT_TRUE(scene.truth("left").power_stage_on);
-  EXPECT_THAT(scene.told(), HasSubstr("braked and held by mode cyclic_velocity"));
+  expectBrakedByVelocity(scene);
 }
 
 // The profile says that 6060h may be mapped, the drive does not take it: then it is written.
@@ -184,11 +188,7 @@ TEST(SetPoints, AnEffortIsBrakedByVelocityWhereTheModeCannotTravel) {
   EXPECT_THAT(scene.told(), HasSubstr("6060:00 mode_of_operation"));
   ASSERT_TRUE(scene.procedure(ProcedureKind::set_mode, "left", "cst").success);
   ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "left").success);
-  ASSERT_TRUE(pushed(scene));
-  scene.run(1s);
-  EXPECT_LT(std::abs(scene.velocity("left")), 1e-3);
-  EXPECT_TRUE(scene.truth("left").power_stage_on);
-  EXPECT_THAT(scene.told(), HasSubstr("braked and held by mode cyclic_velocity"));
+  expectBrakedByVelocity(scene);
 }
 
 TEST(SetPoints, AnEffortWhoseBrakeTheDriveDoesNotTakeEndsInAQuickStop) {

@@ -34,8 +34,9 @@ class FadingTorque : public testing::TestWithParam<FamilyMode> {
   }
 
   static constexpr double kNeverOff = 1e9;
-  /// @param when_off is set to the velocity at which the motor loses its power
-  void watchPower(double& when_off) {
+  /// From now on the velocity at which the motor loses its power is remembered.
+  void watchPower() {
+    when_off = kNeverOff;
     scene.watch([&] {
       if (when_off == kNeverOff && !scene.truth("joint").power_stage_on) {
         when_off = scene.velocity("joint");
@@ -53,7 +54,7 @@ class FadingTorque : public testing::TestWithParam<FamilyMode> {
   }
 
   Scene scene;
-  double speed = 0.0, from = 0.0;
+  double speed = 0.0, from = 0.0, when_off = kNeverOff;
 };
 
 // The simulation, without a brake of its own: what the tests below would see else.
@@ -97,8 +98,7 @@ TEST_P(FadingTorque, IsBrakedAtAShutdown) {
 // It hears what it is told, but nothing usable comes from it.
 TEST_P(FadingTorque, IsBrakedByAModeWhereItIsNotHeard) {
   turn();
-  double when_off = kNeverOff;
-  watchPower(when_off);
+  watchPower();
   scene.inject("joint", "short_tpdos");
   scene.run(3s);
   EXPECT_THAT(scene.told(), testing::HasSubstr("is to brake it, then quick stop is commanded"));
@@ -124,8 +124,7 @@ TEST_P(FadingTorque, StandsThatIsNotHeardAtRest) {
 // the mode that brakes.
 TEST_P(FadingTorque, IsBrakedByAModeWhenItIsBack) {
   turn();
-  double when_off = kNeverOff;
-  watchPower(when_off);
+  watchPower();
   cutOff(130ms);
   scene.run(3s);
   EXPECT_LT(std::fabs(when_off), 0.05) << "no quick stop lets it go, until it stands";
@@ -139,8 +138,7 @@ TEST_P(FadingTorque, IsBrakedByAModeWhenItIsBack) {
 class UnwatchedTorque : public FadingTorque {};
 TEST_P(UnwatchedTorque, IsBrakedByAModeWhenItIsFoundAgain) {
   turn();
-  double when_off = kNeverOff;
-  watchPower(when_off);
+  watchPower();
   cutOff(1200ms);
   scene.run(1s);
   EXPECT_LT(std::fabs(when_off), 0.05) << "braked, not left to coast";
@@ -152,8 +150,7 @@ TEST_P(UnwatchedTorque, IsBrakedByAModeWhenItIsFoundAgain) {
 TEST_P(FadingTorque, IsBrakedByTheNextDriver) {
   turn();
   for (const bool reset : {true, false}) {
-    double when_off = kNeverOff;
-    watchPower(when_off);
+    watchPower();
     scene.node("joint").boot(scene.now(), reset);
     scene.run(1s);
     EXPECT_LT(std::fabs(when_off), 0.05) << "braked, not left to coast";

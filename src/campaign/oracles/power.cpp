@@ -34,10 +34,13 @@ class Power final : public Oracle {
     const AxisTruth& truth = view.truths[i];
     const AxisFacts& facts = view.stage.axes()[i];
     if (view.now < view.conditions.axes[i].may_coast) return true;
-    const bool disturbed = !view.conditions.quiet(i, view.now);
-    if (disturbed && facts.watches_master && fades(truth, facts)) return true;
+    const Conditions& world = view.conditions;
+    const bool misses_master =
+        view.now < world.foreign || view.now < world.host_late || view.now < world.axes[i].cut_off;
+    if (misses_master && facts.watches_master && fades(truth, facts)) return true;
     if (!truth.faulted()) return false;
-    return (facts.loss_coasts && disturbed) || (facts.limit_coasts && truth.at_switch);
+    return (facts.loss_coasts && !world.quiet(i, view.now)) ||
+           (facts.limit_coasts && truth.at_switch);
   }
 
   /// In a mode in which the drive's own stop, as it misses its master, only lets the torque go.
