@@ -49,6 +49,7 @@ SERVICES.update({
                                           "index_pulse": chance.choice([True, False]),
                                           "continuous": chance.choice([True, False]),
                                           "timeout": chance.choice([0.01, 0.2] + NUMBERS)},
+    # Never one that a drive would take: it would be gone for good.
     "set_bus_parameters": lambda chance, _: {"node_id": chance.choice([0, 1, 127, 128, 255]),
                                              "bit_rate": chance.choice([0, 500000, 1000000, 7]),
                                              "confirm": chance.choice([True, False])},

@@ -1,6 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // set_bus_parameters: node-ID and bit rate of drives without LSS, by objects of their makers.
-#include "bus/jobs/bus_setting_job.h"
+#include "bus/canopen/bus_setting_job.h"
 #include "system/sv660c_scene.h"
 
 namespace cia402 {
@@ -95,6 +95,28 @@ TEST(BusParameters, AreRefusedInWords) {
   EXPECT_THAT(setBus(scene, 0, 0, true).message, HasSubstr("one of them"));
   EXPECT_EQ(sv660cNumber(scene, 0x200C, 1), 1U);
   EXPECT_EQ(sv660cNumber(scene, 0x200C, 9), 6U);
+}
+
+// Two drives would move by the commands of one.
+TEST(BusParameters, AreNoNodeIdOfAnotherDriveOrOfTheMaster) {
+  Scene scene(
+      loadText(sv660cWith(sv660cJoint(), "axes:\n",
+                          "axes:\n"
+                          "  other: {node_id: 7, drive: generic_cia402, gear_ratio: 100.0,\n"
+                          "    counts_per_turn: 131072, rated_torque: 0.64,\n"
+                          "    limits: {lower: -2.5, upper: 2.5, velocity: 1.5,\n"
+                          "             acceleration: 4.0, effort: 120.0}}\n")));
+  ASSERT_TRUE(scene.boot()) << scene.told();
+  scene.run(500ms);
+  const bus::Answer taken = setBus(scene, 7, 0, true);
+  EXPECT_FALSE(taken.success);
+  EXPECT_THAT(taken.message, AllOf(HasSubstr("joint (node 1): bus parameters not set: node-ID 7 is "
+                                             "that of other"),
+                                   HasSubstr("give one a free node-ID first")));
+  EXPECT_THAT(setBus(scene, 127, 0, true).message, HasSubstr("node-ID 127 is the master's own"));
+  EXPECT_EQ(sv660cNumber(scene, 0x200C, 1), 1U);
+  EXPECT_EQ(scene.drive("joint").device().node(), 1U);
+  EXPECT_TRUE(setBus(scene, 1, 0, true).success) << "its own";
 }
 
 TEST(BusParameters, OfADriveWithoutSuchObjectsPointToLss) {

@@ -1,6 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // set_bus_parameters of drives whose numbers count later, and stay only once they are saved.
-#include "bus/jobs/bus_setting_job.h"
+#include "bus/canopen/bus_setting_job.h"
 #include "system/families_bus_scene.h"
 
 namespace cia402 {

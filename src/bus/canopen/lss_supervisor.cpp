@@ -15,13 +15,6 @@ constexpr int kLookAttempts = 2;  // as it is looked for again anyway
 /// After which one that boots has sent its boot-up message; the others are asked.
 constexpr Duration kBootUpTime = std::chrono::milliseconds(500);
 
-// Waited for by the boot procedure, but silent since the start.
-bool neverHeard(const canopen::Node& node) {
-  const auto& answers = node.sdo().counters();
-  return node.bootUps() == 0 && node.lastHeartbeat() == Time() && answers.completed == 0 &&
-         answers.aborted == 0;
-}
-
 /// It failed, or was taken out of operation, and its heartbeat has ended since.
 bool fellSilent(const canopen::Node& node, Time now) {
   return node.health() == Health::failed &&
@@ -46,7 +39,7 @@ void LssSupervisor::lookSoon(canopen::Node& node, Time now) { node.look(now + kB
 std::vector<canopen::NodeId> LssSupervisor::nodesInOperation() const {
   std::vector<canopen::NodeId> ids = {master_.config().node_id};
   for (const canopen::Node& node : master_.nodes()) {
-    const bool silent = neverHeard(node) || fellSilent(node, cycle_.now());
+    const bool silent = !node.everHeard() || fellSilent(node, cycle_.now());
     if (!fieldbus::isAway(node.health()) && !silent) ids.push_back(node.id());
   }
   return ids;

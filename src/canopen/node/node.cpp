@@ -45,6 +45,10 @@ Node::Supervision Node::supervision() const {
 }
 std::uint32_t Node::emergencies() const { return impl_->emergencies; }
 std::uint32_t Node::malformedEmergencies() const { return impl_->malformed_emergencies; }
+bool Node::everHeard() const {
+  const auto& answers = sdo().counters();
+  return bootUps() > 0 || lastHeartbeat() != Time() || answers.completed > 0 || answers.aborted > 0;
+}
 Time Node::lastHeartbeat() const { return impl_->last_heartbeat; }
 const std::optional<Emergency>& Node::lastEmergency() const { return impl_->last_emergency; }
 

@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <cia402_driver/SetBusParameters.h>
 
-#include "bus/jobs/bus_setting_job.h"
+#include "bus/canopen/bus_setting_job.h"
 #include "ros/services/table.h"
 
 namespace cia402::ros_node {

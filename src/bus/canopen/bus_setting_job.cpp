@@ -1,11 +1,11 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "bus/jobs/bus_setting_job.h"
+#include "bus/canopen/bus_setting_job.h"
 
 #include <algorithm>
 #include <memory>
 #include <utility>
 
-#include "bus/axis_cycle.h"
+#include "bus/network.h"
 #include "common/text.h"
 #include "drive/profile/named_write.h"
 #include "drive/profile/object_value.h"
@@ -18,6 +18,20 @@ using drive::BusSetting;
 
 std::string notSet(const drive::Axis& axis, const std::string& why) {
   return drive::whoIs(axis.config()) + ": bus parameters not set: " + why;
+}
+
+/// Who else goes by it, and may be back at any time; empty if nobody does. A drive that is in the
+/// robot's file and was never heard may be the one that gets its node-ID now.
+std::string ownerOf(unsigned node_id, const drive::Axis& asked, Network& network) {
+  const config::RobotConfig& robot = network.config();
+  if (node_id == robot.bus.node_id) return "the master's own";
+  const canopen::Node* const node = network.master().find(static_cast<canopen::NodeId>(node_id));
+  if (node == nullptr || !node->everHeard()) return {};
+  for (const drive::AxisConfig& axis : robot.axes) {
+    const bool same_drive = axis.device == asked.config().device;
+    if (!same_drive && robot.deviceOf(axis).node_id == node_id) return "that of " + axis.name;
+  }
+  return {};
 }
 
 std::string knownRates(const BusSetting& setting) {
@@ -62,12 +76,19 @@ Result<BusSettingChange> busSettingChange(const drive::Axis& axis,
   return change;
 }
 
-void SetBusParametersCommand::begin(AxisCycle& cycle, const Reply<>& reply, Time) const {
+void SetBusParametersCommand::begin(Network& network, const Reply<>& reply, Time) const {
+  AxisCycle& cycle = network.cycle();
   const auto unit = cycle.findToAsk(axis, "its bus parameters");
   if (!unit) return refuse(reply, unit.error().message);
   drive::Axis& asked = (*unit)->axis;
   const auto change = busSettingChange(asked, *this);
   if (!change) return refuse(reply, notSet(asked, change.error().message));
+  const std::string owner = node_id == 0 ? std::string() : ownerOf(node_id, asked, network);
+  if (!owner.empty()) {
+    return refuse(reply, notSet(asked, "node-ID " + std::to_string(node_id) + " is " + owner +
+                                           ", and two would follow the same frames; where drives "
+                                           "are to be swapped, give one a free node-ID first"));
+  }
   const std::string moves = asked.calibrationRefusal();
   if (!moves.empty()) return refuse(reply, notSet(asked, moves));
   cycle.jobs().add(std::make_unique<BusSettingJob>(asked, *change, confirm, reply));

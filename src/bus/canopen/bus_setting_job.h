@@ -11,9 +11,11 @@
 
 namespace cia402::bus {
 
-class AxisCycle;
+class Network;
 
-/// Gives a drive without LSS another node-ID or bit rate, by the objects of its maker.
+/// Gives a drive without LSS another node-ID or bit rate, by the objects of its maker. A node-ID of
+/// another drive in the robot's file, or of the master, is refused: two would follow the same
+/// frames.
 struct SetBusParametersCommand {
   using Answer = bus::Answer;
   std::string axis;
@@ -21,7 +23,7 @@ struct SetBusParametersCommand {
   unsigned bit_rate = 0;  ///< bit/s; 0: it keeps it
   bool confirm = false;   ///< else nothing is written, and the answer says what would be
 
-  void begin(AxisCycle& cycle, const Reply<>& reply, Time now) const;
+  void begin(Network& network, const Reply<>& reply, Time now) const;
 };
 
 /// What is to be written.
