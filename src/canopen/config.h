@@ -60,12 +60,12 @@ struct StartupWrite {
   bool always = false;  ///< no configuration but what stops the drive: done at each boot, first
 };
 
-/// What brakes a motor that a drive turns as its last master has told it, in modes in which the
-/// drive only lets it go when it is stopped: another mode takes it over at the velocity that it
-/// has.
+/// How a motor is stopped that a drive turns as its last master has told it. In modes in which the
+/// drive only lets it go when it is stopped another mode takes it over first, at the velocity that
+/// it has.
 struct BootBrake {
   ObjectId statusword, shown_mode, mode, velocity, target;
-  std::vector<int> pushing;  ///< numbers of modes, in `shown_mode`
+  std::vector<int> pushing;  ///< numbers of such modes, in `shown_mode`; there may be none
   int brake = 0;             ///< number of the mode for `mode`, whose target is in `target`
 };
 

@@ -60,15 +60,19 @@ bool alike(const drive::ObjectSpec& a, const drive::ObjectSpec& b) {
          a.factor == b.factor && !a.unit && !b.unit;
 }
 
-/// A motor that turns as a driver has told it that is gone is braked first by the mode that brakes
-/// such ones, where a stop would only let it go.
+/// A motor that turns as a driver has told it that is gone is stopped before all else: by the mode
+/// that brakes such ones, where a stop would only let it go.
 void addBrakes(const drive::AxisConfig& axis, canopen::NodeConfig& node) {
   const drive::DriveProfile& profile = *axis.profile;
   const drive::ObjectSpec* const statusword = profile.find("statusword");
   const drive::ObjectSpec* const shown = profile.find("mode_display");
   const drive::ObjectSpec* const mode = profile.find("mode_of_operation");
   const drive::ObjectSpec* const velocity = profile.find("velocity_actual");
-  if (!statusword || !shown || !mode || !velocity) return;
+  if (!statusword) return;
+  canopen::BootBrake plain;
+  plain.statusword = statusword->id;
+  if (!shown || !mode || !velocity) return node.brakes.push_back(std::move(plain));
+  const std::size_t before = node.brakes.size();
   for (const drive::ModeSpec& brake : profile.modes) {
     const drive::ObjectSpec* const target = profile.find(brake.target);
     if (target == nullptr || !alike(*velocity, *target)) continue;
@@ -79,6 +83,7 @@ void addBrakes(const drive::AxisConfig& axis, canopen::NodeConfig& node) {
     }
     if (!found.pushing.empty()) node.brakes.push_back(std::move(found));
   }
+  if (node.brakes.size() == before) node.brakes.push_back(std::move(plain));
 }
 
 void setSupervision(const BusConfig& bus, const DeviceConfig& device, NodeConfig& node) {

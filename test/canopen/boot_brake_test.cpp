@@ -1,6 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-// A motor that a driver before has left turning in a mode whose stop only lets it go: another mode
-// takes it over before the drive is reset.
+// A motor that a driver before has left turning is stopped before the drive is reset; in a mode
+// whose stop only lets it go another one takes it over first.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -25,7 +25,9 @@ const char kTarget[] = "603 23 FF 60 00 10 27 00 00";  // 10000, as it turns
 const char kOperationEnabled[] = "583 4B 41 60 00 37 12 00 00";
 const char kQuickStopActive[] = "583 4B 41 60 00 17 12 00 00";
 const char kSwitchOnDisabled[] = "583 4B 41 60 00 50 02 00 00";
+const char kFaultReactionActive[] = "583 4B 41 60 00 1F 12 00 00";
 const char kMode[] = "603 2F 60 60 00 09 00 00 00";
+const char kQuickStop[] = "603 2B 40 60 00 02 00 00 00";
 
 /// Modes 4 and 10 push; mode 9 brakes.
 class BootBrakeTest : public test::NodeFixture {
@@ -35,6 +37,13 @@ class BootBrakeTest : public test::NodeFixture {
     for (const char* line : {kAskShownMode, kAskStatusword, kAskVelocity}) peer.forget(line);
     peer.on(kAskShownMode, Lines{"583 4F 61 60 00 0A 00 00 00"});
     peer.on(kAskStatusword, Lines{kOperationEnabled});
+    StartupWrite stop;
+    stop.object = {0x6040, 0};
+    stop.data = {0x02, 0x00};
+    stop.only_if_different = false;
+    stop.always = true;
+    config.writes = {stop};
+    peer.on(kQuickStop, "583 60 40 60 00 00 00 00 00");
     peer.on(kAskVelocity, "583 43 6C 60 00 10 27 00 00");
     peer.on(kTarget, "583 60 FF 60 00 00 00 00 00");
     peer.on(kMode, "583 60 60 60 00 00 00 00 00");
@@ -61,8 +70,8 @@ class BootBrakeTest : public test::NodeFixture {
 TEST_F(BootBrakeTest, takes_the_motor_over_at_its_velocity_before_the_reset) {
   peer.on(kAskShownMode, Lines{"583 4F 61 60 00 09 00 00 00"});
   rests();
-  EXPECT_THAT(sentBeforeReset(), ElementsAre(kAskShownMode, kAskStatusword, kAskVelocity, kTarget,
-                                             kMode, kAskShownMode, kAskStatusword));
+  EXPECT_THAT(sentBeforeReset(), ElementsAre(kAskStatusword, kAskShownMode, kAskVelocity, kTarget,
+                                             kMode, kAskShownMode, kQuickStop, kAskStatusword));
 }
 
 // What an RPDO has left in the drive takes effect with the next SYNC, and is not to undo it.
@@ -70,7 +79,7 @@ TEST_F(BootBrakeTest, waits_for_two_syncs_before_it_writes) {
   peer.on(kAskShownMode, Lines{"583 4F 61 60 00 09 00 00 00"});
   rests();
   boot();
-  EXPECT_THAT(peer.take(), ElementsAre(kAskShownMode, kAskStatusword));
+  EXPECT_THAT(peer.take(), ElementsAre(kAskStatusword, kAskShownMode));
   pass(2 * master.sync_period - std::chrono::nanoseconds(1));
   EXPECT_THAT(peer.take(), IsEmpty());
   pass(std::chrono::nanoseconds(1));
@@ -80,12 +89,26 @@ TEST_F(BootBrakeTest, waits_for_two_syncs_before_it_writes) {
 // Its ramp is not disturbed: the reset comes once it has no power any more.
 TEST_F(BootBrakeTest, waits_until_the_motor_rests) {
   peer.on(kAskShownMode, Lines{"583 4F 61 60 00 09 00 00 00"});
-  peer.on(kAskStatusword, Lines{kOperationEnabled});
+  peer.on(kAskStatusword, Lines{kQuickStopActive});
   peer.on(kAskStatusword, Lines{kQuickStopActive});
   rests();
-  EXPECT_THAT(sentBeforeReset(std::chrono::milliseconds(50)),
-              ElementsAre(kAskShownMode, kAskStatusword, kAskVelocity, kTarget, kMode,
-                          kAskShownMode, kAskStatusword, kAskStatusword, kAskStatusword));
+  EXPECT_THAT(
+      sentBeforeReset(std::chrono::milliseconds(50)),
+      ElementsAre(kAskStatusword, kAskShownMode, kAskVelocity, kTarget, kMode, kAskShownMode,
+                  kQuickStop, kAskStatusword, kAskStatusword, kAskStatusword));
+}
+
+// No answer comes any more while it is waited for rest: the boot sleeps until that is sure.
+TEST_F(BootBrakeTest, goes_on_where_nothing_is_told_of_the_ramp) {
+  config.brakes = {{}};
+  config.brakes.front().statusword = {0x6041, 0};
+  peer.on(kAskStatusword, Lines{});
+  boot(false);
+  pass(std::chrono::milliseconds(99));
+  EXPECT_GT(node->nextDeadline(), now);
+  EXPECT_THAT(peer.take(), ElementsAre(kAskStatusword, kQuickStop, kAskStatusword));
+  pass(std::chrono::milliseconds(2));
+  EXPECT_THAT(peer.take(), Contains(kTellPreOperational));
 }
 
 // A drive may stay in quick stop active for good (605Ah = 5 to 8).
@@ -98,36 +121,69 @@ TEST_F(BootBrakeTest, waits_for_rest_for_two_seconds_at_most) {
 
 // One that was cut off, or stopped (NMT), as the boot began.
 TEST_F(BootBrakeTest, takes_it_over_once_it_is_identified_where_it_did_not_answer_before) {
-  peer.forget(kAskShownMode);
+  peer.forget(kAskStatusword);
   boot(false);
-  EXPECT_THAT(peer.take(), ElementsAre(kAskShownMode));
-  peer.on(kAskShownMode, Lines{"583 4F 61 60 00 04 00 00 00"});
+  EXPECT_THAT(peer.take(), ElementsAre(kAskStatusword));
+  peer.on(kAskStatusword, Lines{kOperationEnabled});
   peer.on(kAskShownMode, Lines{"583 4F 61 60 00 09 00 00 00"});
   rests();
   pass(std::chrono::milliseconds(200));
   const Lines sent = peer.take();
-  const auto brake = std::find(sent.begin(), sent.end(), kAskShownMode);
-  ASSERT_GE(sent.end() - brake, 7);
-  EXPECT_THAT(Lines(brake, brake + 7), ElementsAre(kAskShownMode, kAskStatusword, kAskVelocity,
-                                                   kTarget, kMode, kAskShownMode, kAskStatusword));
+  const auto brake = std::find(sent.begin(), sent.end(), kAskStatusword);
+  ASSERT_GE(sent.end() - brake, 8);
+  EXPECT_THAT(Lines(brake, brake + 8),
+              ElementsAre(kAskStatusword, kAskShownMode, kAskVelocity, kTarget, kMode,
+                          kAskShownMode, kQuickStop, kAskStatusword));
   EXPECT_EQ(std::count(sent.begin(), brake, kTellPreOperational), 1);
   EXPECT_EQ(std::count(brake, sent.end(), kTellPreOperational), 0);
 }
 
-TEST_F(BootBrakeTest, leaves_a_motor_in_another_mode_alone) {
+TEST_F(BootBrakeTest, stops_a_motor_in_another_mode_at_once) {
   shows("583 4F 61 60 00 08 00 00 00");
-  EXPECT_THAT(sentBeforeReset(), ElementsAre(kAskShownMode));
+  boot();
+  EXPECT_THAT(peer.take(), ElementsAre(kAskStatusword, kAskShownMode, kQuickStop, kAskStatusword));
+}
+
+TEST_F(BootBrakeTest, stops_a_motor_without_a_mode_that_takes_it_over_at_once) {
+  config.brakes = {{}};
+  config.brakes.front().statusword = {0x6041, 0};
+  boot();
+  EXPECT_THAT(peer.take(), ElementsAre(kAskStatusword, kQuickStop, kAskStatusword));
+}
+
+// An RPDO of the driver before, which waits in the drive, may have it go on.
+TEST_F(BootBrakeTest, stops_it_once_more_after_two_syncs_where_it_is_enabled_again) {
+  shows("583 4F 61 60 00 08 00 00 00");
+  const Duration twice = 2 * master.sync_period;
+  for (Duration waited{}; waited < twice; waited += std::chrono::milliseconds(10)) {
+    peer.on(kAskStatusword, Lines{kQuickStopActive});
+  }
+  peer.on(kAskStatusword, Lines{kOperationEnabled});
+  rests();
+  const Lines sent = sentBeforeReset(std::chrono::milliseconds(50));
+  EXPECT_EQ(std::count(sent.begin(), sent.end(), kQuickStop), 2);
+}
+
+TEST_F(BootBrakeTest, lets_a_fault_reaction_end) {
+  peer.forget(kAskStatusword);
+  peer.on(kAskStatusword, Lines{kFaultReactionActive});
+  peer.on(kAskStatusword, Lines{kFaultReactionActive});
+  rests();
+  EXPECT_THAT(sentBeforeReset(std::chrono::milliseconds(50)),
+              ElementsAre(kAskStatusword, kQuickStop, kAskStatusword, kAskStatusword));
 }
 
 TEST_F(BootBrakeTest, leaves_a_motor_without_power_alone) {
   peer.forget(kAskStatusword);
   peer.on(kAskStatusword, kSwitchOnDisabled);
-  EXPECT_THAT(sentBeforeReset(), ElementsAre(kAskShownMode, kAskStatusword));
+  EXPECT_THAT(sentBeforeReset(), ElementsAre(kAskStatusword));
 }
 
-TEST_F(BootBrakeTest, goes_on_to_the_reset_where_the_mode_cannot_be_read) {
+TEST_F(BootBrakeTest, stops_it_where_the_mode_cannot_be_read) {
   shows("583 80 61 60 00 00 00 02 06");
-  EXPECT_THAT(sentBeforeReset(), ElementsAre(kAskShownMode));
+  rests();
+  EXPECT_THAT(sentBeforeReset(),
+              ElementsAre(kAskStatusword, kAskShownMode, kQuickStop, kAskStatusword));
 }
 
 TEST_F(BootBrakeTest, writes_nothing_to_the_drive_of_another_maker) {
@@ -135,7 +191,7 @@ TEST_F(BootBrakeTest, writes_nothing_to_the_drive_of_another_maker) {
   peer.forget(test::kAskVendor);
   peer.on(test::kAskVendor, "583 43 18 10 01 45 33 22 11");
   peer.on(kAskShownMode, Lines{"583 4F 61 60 00 09 00 00 00"});  // would end it, if it were asked
-  EXPECT_THAT(sentBeforeReset(), ElementsAre(test::kAskVendor));
+  EXPECT_THAT(sentBeforeReset(), ElementsAre(kAskStatusword, test::kAskVendor));
 }
 
 TEST_F(BootBrakeTest, asks_who_it_is_where_that_is_configured) {
@@ -145,8 +201,8 @@ TEST_F(BootBrakeTest, asks_who_it_is_where_that_is_configured) {
   peer.on(kAskShownMode, Lines{"583 4F 61 60 00 09 00 00 00"});
   rests();
   EXPECT_THAT(sentBeforeReset(),
-              ElementsAre(test::kAskVendor, kAskShownMode, kAskStatusword, kAskVelocity, kTarget,
-                          kMode, kAskShownMode, kAskStatusword));
+              ElementsAre(kAskStatusword, test::kAskVendor, kAskShownMode, kAskVelocity, kTarget,
+                          kMode, kAskShownMode, kQuickStop, kAskStatusword));
 }
 
 }  // namespace

@@ -77,7 +77,7 @@ class LastStopInTorqueTest : public LastStopTest {
     config.brakes = {brakeByMode9({4})};
     PdoConfig& tpdo = config.pdos.at(1);
     tpdo.entries.at(1) = {{0x6061, 0}, 8, "mode display"};
-    peer.on("603 40 61 60 00 00 00 00 00", "583 4F 61 60 00 08 00 00 00");  // as the boot begins
+    peer.on("603 40 41 60 00 00 00 00 00", "583 4B 41 60 00 50 02 00 00");  // as the boot begins
     peer.forget("603 40 00 1A 02 00 00 00 00");
     peer.on("603 40 00 1A 02 00 00 00 00", "583 43 00 1A 02 08 00 61 60");
   }

@@ -99,13 +99,28 @@ TEST_F(LeftTurning, IsStoppedBeforeAnythingElseIsWrittenAndBooted) {
   scene.robot().network().start(scene.now());
   ASSERT_TRUE(scene.runUntil([&] { return !writes.empty(); }, 2s));
   EXPECT_EQ(writes[0], can::Frame(0x601, {0x2B, 0x40, 0x60, 0x00, 0x02, 0x00, 0, 0}));
-  EXPECT_LE(reads, 5u) << "who it is, and nothing else";
+  EXPECT_EQ(reads, 1u) << "whether it turns, and nothing else";
   ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 8s)) << scene.told();
-  EXPECT_GT(refused, 0u) << "the test needs a drive that refuses while it stops";
+  EXPECT_EQ(refused, 0u) << "a drive that is locked while its motor has power";
   EXPECT_FALSE(scene.truth("left").power_stage_on);
   EXPECT_NEAR(scene.truth("left").velocity_turns, 0.0, 1e-3);
   EXPECT_EQ(scene.drive("left").dictionary().find({0x1A00, 1})->number >> 16U, 0x6041u);
   EXPECT_TRUE(scene.procedure(ProcedureKind::enable).success);
+}
+
+// NMT stop would leave it turning, out of reach of every SDO.
+TEST_F(LeftTurning, IsNotStoppedByNmtWhileItBoots) {
+  leaveTurning();
+  scene.robot().network().start(scene.now());
+  ASSERT_TRUE(scene.runUntil([&] { return scene.state("left").health == Health::booting; }, 2s));
+  ASSERT_GT(scene.truth("left").velocity_turns, 1.0);
+  for (const char* command : {"stop", "pre_operational"}) {
+    const bus::Answer stopped = scene.call(bus::NmtServiceCommand{"left", command});
+    EXPECT_FALSE(stopped.success) << command;
+    EXPECT_THAT(stopped.message, HasSubstr("its motor may still turn")) << command;
+  }
+  ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 8s)) << scene.told();
+  EXPECT_NEAR(scene.truth("left").velocity_turns, 0.0, 1e-3);
 }
 
 TEST(LateDrives, OneThatIsSwitchedOnMinutesLaterIsTakenIn) {

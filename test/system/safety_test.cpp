@@ -278,8 +278,10 @@ TEST_F(Safety, AQuickStopByTheDriveItselfIsNotCutOff) {
   stream(1.9, 700ms);
   ASSERT_GT(fastest(4ms), 0.5);
   loseFrames(0x77F, "arm");  // the drive misses the master: 6007h makes it quick-stop
-  ASSERT_TRUE(
-      robot->runUntil([&] { return axis().state().state == drive::State::quick_stop_active; }, 2s));
+  const auto stopsItself = [&] {
+    return (drive(0).dictionary().find({0x6041, 0})->number & 0x6FU) == 0x07U;
+  };
+  ASSERT_TRUE(robot->runUntil(stopsItself, 2s));
   ASSERT_GT(fastest(1ms), 0.3);
   while (fastest(1ms) > 0.05) {
     ASSERT_TRUE(truth().power_stage_on) << "coasting at " << fastest(1ms) << " rad/s";

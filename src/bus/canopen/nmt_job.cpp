@@ -52,6 +52,13 @@ std::string refusal(drive::Axis& axis, const canopen::Node& node, const std::str
     return refused + toString(axis.procedure().kind) + " runs (" + axis.procedure().step +
            "); wait for its end, or stop it by halt, quick_stop or disable";
   }
+  const bool stays_down =
+      command == NmtCommand::stop || command == NmtCommand::enter_pre_operational;
+  if (axis.device().health() == Health::booting && stays_down && axis.mayMove()) {
+    return refused +
+           "the drive is being configured, its motor may still turn as it was told last, and NMT "
+           "does not stop a motor; wait for the end of the boot, which stops it first";
+  }
   if (axis.device().health() != Health::ready) return {};
   const std::string others = alone ? axis.deviceRefusal() : std::string();
   if (!others.empty()) return refused + others;

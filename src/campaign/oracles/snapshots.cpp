@@ -132,9 +132,13 @@ class Snapshots final : public Oracle {
     const AxisFacts& facts = view.stage.axes()[i];
     const double zero = shown.position - view.truths[i].told;
     const double margin = 2 * std::fabs(facts.units_per_count) + 1e-5;
-    if (axis.zero && std::fabs(zero - *axis.zero) > margin) {
+    // A joint that turns on and on goes beyond the 32 bits of its drive.
+    const double range = 4294967296.0 * std::fabs(facts.units_per_count);
+    const double moved = axis.zero ? zero - *axis.zero : 0.0;
+    const double off = range > 0.0 ? std::remainder(moved, range) : moved;
+    if (std::fabs(off) > margin) {
       report(view, i,
-             "is shown at " + number(shown.position) + ", which is " + number(zero - *axis.zero) +
+             "is shown at " + number(shown.position) + ", which is " + number(off) +
                  " off what its drive tells, and nobody has set a new zero");
     }
     if (!axis.zero) axis.zero = zero;

@@ -1,7 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-// A drive that still turns its motor as a driver has told it that is gone: where its stop would
-// only let the motor go, another mode takes the motor over at its velocity first, in which the stop
-// ramps.
+// A drive that still turns its motor as a driver has told it that is gone: it is stopped before all
+// else. Where its stop would only let the motor go, another mode takes the motor over at its
+// velocity first, in which the stop ramps.
 #include <algorithm>
 #include <utility>
 #include <vector>
@@ -11,17 +11,18 @@
 namespace cia402::canopen {
 namespace {
 
-constexpr Duration kAnswer = std::chrono::milliseconds(100);          // it may as well be off
-constexpr Duration kPatience = std::chrono::milliseconds(100);        // for the mode to be shown
-constexpr Duration kRamp = std::chrono::seconds(2);                   // for the motors to rest
-constexpr Duration kInterval = std::chrono::milliseconds(10);         // of questions meanwhile
-constexpr std::uint32_t kStateMask = 0x6F, kOperationEnabled = 0x27;  // CiA 402-2, state coding
+constexpr Duration kAnswer = std::chrono::milliseconds(100);    // it may as well be off
+constexpr Duration kPatience = std::chrono::milliseconds(100);  // for the mode to be shown
+constexpr Duration kRamp = std::chrono::seconds(2);             // for the motors to rest
+constexpr Duration kInterval = std::chrono::milliseconds(10);   // of questions meanwhile
+// CiA 402-2, state coding
+constexpr std::uint32_t kStateMask = 0x6F, kOperationEnabled = 0x27, kQuickStopActive = 0x07;
+constexpr std::uint32_t kFaultMask = 0x4F, kFaultReactionActive = 0x0F;
 // What an RPDO has left in the drive takes effect with the next SYNC, and is not to undo this.
 constexpr int kSyncs = 2;
-constexpr std::uint32_t kQuickStopActive = 0x07;
 
 /// Ends with the NMT command that this boot would have begun with. What is refused or not answered
-/// leaves the motor to the stop.
+/// leaves the motor to the stop that each boot writes.
 class Brake : public BootStep {
  public:
   /// @param identified it is known to be there, and of which maker it is
@@ -31,12 +32,13 @@ class Brake : public BootStep {
     const bool due = identified_ ? !boot.found.braked : boot.braking;
     if (!due && !begun_) return false;
     boot.deadline = kNever;
-    begun_ = true;
+    if (!std::exchange(begun_, true) && !identified_) fresh_from_ = now + kSyncs * boot.sync_period;
     options_ = boot.config.sdo;
     options_.retries = 0;
     options_.timeout = std::min(options_.timeout, kAnswer);
-    if (item_ < boot.config.brakes.size()) return look(boot, now);
-    if (!braked_.empty() && (stop(boot, now) || rest(boot, now))) return true;
+    if (boot.stopped_before && !identified_) item_ = boot.config.brakes.size();
+    if (item_ < boot.config.brakes.size()) return readStatus(boot, item_, Phase::state, now);
+    if (!turning_.empty() && (stop(boot, now) || rest(boot, now))) return true;
     if (!identified_) end(boot, now);
     return false;
   }
@@ -47,29 +49,16 @@ class Brake : public BootStep {
     if (phase_ == Phase::stop) return Progress::again;
     const bool usable =
         boot.ok() && !boot.ticket->data().empty() && boot.ticket->data().size() <= 8;
-    if (phase_ == Phase::rest) {
-      const bool ramping = usable && ramps(boot);
-      if (ramping && now < next_question_) return Progress::waiting;
-      if (!ramping) braked_.pop_back();
-      return Progress::again;
-    }
-    if (!usable || !follow(boot, now)) {
-      boot.found.braked = boot.found.braked || usable;
-      ++item_;
-      return Progress::again;
-    }
-    return Progress::waiting;
+    if (phase_ == Phase::rest) return usable ? watch(boot, now) : leave();
+    if (usable && follow(boot, now)) return Progress::waiting;
+    ++item_;
+    return Progress::again;
   }
 
  private:
-  bool look(BootContext& boot, Time now) {
-    if (!boot.config.vendor_id || known_) return readMode(boot, now);
-    phase_ = Phase::vendor;
-    read(boot, {0x1018, 1}, "vendor id", now);
-    return true;
-  }
+  enum class Phase { state, vendor, mode, wait, velocity, target, command, shown, stop, rest };
 
-  /// Of those that were braked: in their new mode it ramps. @return false: nothing is left of it
+  /// Of all axes. @return false: nothing is left of it
   bool stop(BootContext& boot, Time now) {
     const std::vector<StartupWrite>& writes = boot.config.writes;
     while (stop_ < writes.size() && !writes[stop_].always) ++stop_;
@@ -82,16 +71,26 @@ class Brake : public BootStep {
 
   /// Until the ramp is over nothing else is written, and no other mode travels.
   bool rest(BootContext& boot, Time now) {
-    if (phase_ != Phase::rest) deadline_ = now + kRamp;
-    phase_ = Phase::rest;
-    if (now >= deadline_) return false;
-    read(boot, boot.config.brakes[braked_.back()].statusword, "statusword", now);
-    boot.deadline = next_question_ = now + kInterval;
-    return true;
+    if (rests_until_ == Time{}) rests_until_ = now + kRamp;
+    if (now >= rests_until_) return false;
+    next_question_ = now + kInterval;
+    return readStatus(boot, turning_.back(), Phase::rest, now);
   }
-  static bool ramps(const BootContext& boot) {
-    const std::uint64_t state = fieldbus::toUnsigned(boot.ticket->data()) & kStateMask;
-    return state == kOperationEnabled || state == kQuickStopActive;
+  Progress watch(BootContext& boot, Time now) {
+    if (enabled(statusword(boot)) && !stopped_again_ && now >= fresh_from_) {
+      stopped_again_ = true;
+      stop_ = 0;
+      return Progress::again;
+    }
+    if (!powered(statusword(boot))) return leave();
+    if (now >= next_question_) return Progress::again;
+    boot.deadline = next_question_;
+    return Progress::waiting;
+  }
+  /// The last of those that turn: it rests, or tells nothing.
+  Progress leave() {
+    turning_.pop_back();
+    return Progress::again;
   }
 
   static void end(BootContext& boot, Time now) {
@@ -105,8 +104,6 @@ class Brake : public BootStep {
     }
   }
 
-  enum class Phase { vendor, mode, state, wait, velocity, target, command, shown, stop, rest };
-
   const BootBrake& brake(const BootContext& boot) const { return boot.config.brakes[item_]; }
   void read(BootContext& boot, ObjectId object, const char* name, Time now) {
     boot.read(object, name, now, options_);
@@ -114,13 +111,23 @@ class Brake : public BootStep {
   void write(BootContext& boot, ObjectId object, Bytes data, const char* name, Time now) {
     boot.write(object, std::move(data), name, now, options_);
   }
-  bool readMode(BootContext& boot, Time now) {
-    phase_ = Phase::mode;
-    read(boot, brake(boot).shown_mode, "mode display", now);
+  bool readStatus(BootContext& boot, std::size_t of, Phase phase, Time now) {
+    phase_ = phase;
+    read(boot, boot.config.brakes[of].statusword, "statusword", now);
     return true;
   }
+  static std::uint64_t statusword(const BootContext& boot) {
+    return fieldbus::toUnsigned(boot.ticket->data());
+  }
+  static bool enabled(std::uint64_t statusword) {
+    return (statusword & kStateMask) == kOperationEnabled;
+  }
+  static bool powered(std::uint64_t statusword) {
+    return enabled(statusword) || (statusword & kStateMask) == kQuickStopActive ||
+           (statusword & kFaultMask) == kFaultReactionActive;
+  }
   Progress readVelocity(BootContext& boot, Time now) {
-    if (now < waits_until_) return Progress::waiting;
+    if (now < fresh_from_) return Progress::waiting;
     boot.deadline = kNever;
     phase_ = Phase::velocity;
     read(boot, brake(boot).velocity, "velocity", now);
@@ -128,26 +135,29 @@ class Brake : public BootStep {
   }
   static int modeIn(const Bytes& data) { return static_cast<std::int8_t>(data.front()); }
 
-  /// @return false: nothing more is to be done
+  /// @return false: nothing more is to be done before the stop
   bool follow(BootContext& boot, Time now) {
     const Bytes& data = boot.ticket->data();
     switch (phase_) {
+      case Phase::state:
+        boot.found.braked = true;
+        enabled_ = enabled(statusword(boot));
+        if (!powered(statusword(boot))) return false;
+        if (!boot.config.vendor_id || known_) return isTurning(boot, now);
+        phase_ = Phase::vendor;
+        read(boot, {0x1018, 1}, "vendor id", now);
+        return true;
       case Phase::vendor:  // nothing is written to the drive of another maker
         known_ = fieldbus::toUnsigned(data) == *boot.config.vendor_id;
-        return known_ && readMode(boot, now);
+        return known_ && isTurning(boot, now);
       case Phase::mode: {
         const std::vector<int>& pushing = brake(boot).pushing;
         if (std::find(pushing.begin(), pushing.end(), modeIn(data)) == pushing.end()) return false;
         mode_bytes_ = static_cast<unsigned>(data.size());
-        phase_ = Phase::state;
-        read(boot, brake(boot).statusword, "statusword", now);
+        phase_ = Phase::wait;
+        boot.deadline = std::max(now, fresh_from_);
         return true;
       }
-      case Phase::state:
-        if ((fieldbus::toUnsigned(data) & kStateMask) != kOperationEnabled) return false;
-        phase_ = Phase::wait;
-        boot.deadline = waits_until_ = identified_ ? now : now + kSyncs * boot.sync_period;
-        return true;
       case Phase::velocity:
         phase_ = Phase::target;
         write(boot, brake(boot).target, data, "target of the mode that brakes", now);
@@ -163,7 +173,6 @@ class Brake : public BootStep {
         phase_ = Phase::shown;
         break;
       case Phase::shown:
-        if (modeIn(data) == brake(boot).brake) braked_.push_back(item_);
         if (modeIn(data) == brake(boot).brake || now >= deadline_) return false;
         break;
       case Phase::wait:
@@ -175,15 +184,25 @@ class Brake : public BootStep {
     return true;
   }
 
+  bool isTurning(BootContext& boot, Time now) {
+    turning_.push_back(item_);
+    if (brake(boot).pushing.empty() || !enabled_) return false;
+    phase_ = Phase::mode;
+    read(boot, brake(boot).shown_mode, "mode display", now);
+    return true;
+  }
+
   std::size_t item_ = 0, stop_ = 0;
-  std::vector<std::size_t> braked_;
+  std::vector<std::size_t> turning_;  ///< of BootBrakes: their motors have power
   const bool identified_;
   bool begun_ = false;
   bool known_;
-  Phase phase_ = Phase::vendor;
+  bool enabled_ = false;  ///< `item_` is
+  bool stopped_again_ = false;
+  Phase phase_ = Phase::state;
   SdoOptions options_;
   unsigned mode_bytes_ = 1;
-  Time waits_until_{}, deadline_{}, next_question_{};
+  Time fresh_from_{}, deadline_{}, rests_until_{}, next_question_{};
 };
 
 }  // namespace

@@ -109,6 +109,7 @@ class BootContext {
   NmtCommand reset_command = NmtCommand::reset_communication;  ///< that it was given
   bool resetting = false;          ///< its boot-up message is waited for
   bool braking = false;            ///< it is left in its NMT state until its motors are braked ...
+  bool stopped_before = false;     ///< ... unless it was stopped (NMT), and answers no SDO ...
   bool reset_when_braked = false;  ///< ... and gets a reset then
   unsigned resets_left = 0;        ///< repetitions of a reset that shows no effect
   bool ask_state = false;          ///< Node shall send a remote frame for the NMT state, now

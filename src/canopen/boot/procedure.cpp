@@ -44,7 +44,7 @@ BootProcedure::BootProcedure(const NodeConfig& config, const MasterConfig& maste
                              can::Sink& sink, SdoPacer& pacer)
     : boot_(config, master, sdo, sink, pacer) {}
 
-void BootProcedure::start(From from, Time now, NmtCommand reset) {
+void BootProcedure::start(From from, Time now, NmtState told, NmtCommand reset) {
   boot_.reset();
   status_ = Status::running;
   boot_.absent_at = now + boot_.config.boot_timeout;
@@ -54,6 +54,7 @@ void BootProcedure::start(From from, Time now, NmtCommand reset) {
   if (from == From::unknown || from == From::before_reset) {
     boot_.reset_when_braked = from == From::before_reset;
     boot_.braking = true;
+    boot_.stopped_before = told == NmtState::stopped;
     return begin(kBrake, now);
   }
   if (from == From::reset) {

@@ -28,8 +28,10 @@ class BootProcedure {
   BootProcedure(const NodeConfig& config, const MasterConfig& master, SdoClient& sdo,
                 can::Sink& sink, SdoPacer& pacer);
 
+  /// @param told of the node's NMT state, last of all: one that is stopped answers no SDO
   /// @param reset the command that was given, with From::reset
-  void start(From from, Time now, NmtCommand reset = NmtCommand::reset_communication);
+  void start(From from, Time now, NmtState told = NmtState::unknown,
+             NmtCommand reset = NmtCommand::reset_communication);
   void stop();
 
   /// Goes as far as the answers allow. To be called after every SDO answer and heartbeat and when

@@ -83,7 +83,7 @@ void Node::Impl::beginBoot(BootProcedure::From from, const std::string& why, Tim
   if (from == BootProcedure::From::boot_up) sdo.serverRestarted();
   notes.clear();
   half_floats_adopted = false;
-  boot.start(from, now, reset);
+  boot.start(from, now, nmt_state, reset);
 }
 
 void Node::Impl::takeOut(Health as, const std::string& why) {
