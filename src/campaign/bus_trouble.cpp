@@ -15,12 +15,13 @@ using namespace std::chrono_literals;
 
 constexpr std::uint32_t kNodeBits = 0x7F;  // of an identifier of the predefined connection set
 constexpr std::uint8_t kNmtStart = 1;
-constexpr std::uint8_t kNmtResetNode = 129;
-constexpr std::pair<const char*, std::uint8_t> kNmtCommands[] = {{"start", kNmtStart},
-                                                                 {"stop", 2},
-                                                                 {"pre_operational", 128},
-                                                                 {"reset_node", kNmtResetNode},
-                                                                 {"reset_communication", 130}};
+constexpr std::uint8_t kNmtResetNode = 129, kNmtResetCommunication = 130;
+constexpr std::pair<const char*, std::uint8_t> kNmtCommands[] = {
+    {"start", kNmtStart},
+    {"stop", 2},
+    {"pre_operational", 128},
+    {"reset_node", kNmtResetNode},
+    {"reset_communication", kNmtResetCommunication}};
 
 const Verbs<BusTrouble> kBusVerbs{
     {"loss", &BusTrouble::lose},       {"duplicate", &BusTrouble::duplicate},
@@ -111,7 +112,10 @@ void BusTrouble::foreignNmt(const Words& words) {
     if (code == kNmtResetNode) session_.mayCoastInDriveOf(i);
     const bool started = code == kNmtStart && !session_.truths.empty() &&
                          session_.truths[i].nmt == canopen::NmtState::operational;
-    if (!started) session_.loseCommands(i, 1s);
+    const bool resets = code == kNmtResetNode || code == kNmtResetCommunication;
+    const Duration away =
+        resets ? session_.stage.driveOf(i).device().behaviour().boot_time : Duration::zero();
+    if (!started) session_.loseCommands(i, 1s + away);
   }
 }
 

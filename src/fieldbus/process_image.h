@@ -53,6 +53,9 @@ class ProcessImage {
   std::size_t carrierOf(Slot slot) const { return carriers_[slot]; }
   /// How often what carries an output has left so far. @pre slot is that of an output
   std::uint64_t sent(Slot slot) const { return sent_[carriers_[slot]]; }
+  /// What carries an output leaves with the next cycle though nothing in it has changed, for an
+  /// output that must not be lost. @pre slot is that of an output
+  virtual void sendAgain(Slot slot) = 0;
 
  protected:
   // For the bus that the values travel on.

@@ -42,8 +42,8 @@ TEST_F(NetworkStart, ListensBeforeTheFirstFrameIsSent) {
   EXPECT_EQ(world.sent[1].frame, can::Frame(0x77F, {0x05}));
   // Whether their motors turn is asked first.
   EXPECT_EQ(world.sent[2].frame, can::Frame(0x601, {0x40, 0x41, 0x60, 0x00, 0, 0, 0, 0}));
-  EXPECT_EQ(world.sent[3].frame, can::Frame(0x602, {0x40, 0x41, 0x60, 0x00, 0, 0, 0, 0}));
-  EXPECT_EQ(world.sent[4].frame, can::Frame(0x000, {0x82, 0x01}));
+  EXPECT_EQ(world.sent[3].frame, can::Frame(0x000, {0x82, 0x01}));
+  EXPECT_EQ(world.sent[4].frame, can::Frame(0x602, {0x40, 0x41, 0x60, 0x00, 0, 0, 0, 0}));
   EXPECT_EQ(world.sent[5].frame, can::Frame(0x000, {0x82, 0x02}));
 }
 

@@ -259,9 +259,12 @@ TEST(PdoImage, an_rpdo_leaves_when_its_content_changes_and_at_its_refresh_rate) 
   EXPECT_EQ(test::text(frame), "203 06 00");
   for (int i = 0; i < 3; ++i) EXPECT_FALSE(due()) << i;
   EXPECT_TRUE(due()) << "the fourth cycle since";
+  image.sendAgain(image.outputSlot(kControlword));
+  EXPECT_TRUE(due()) << "asked for";
+  EXPECT_FALSE(due());
   image.invalidate();
   EXPECT_TRUE(due()) << "the drive has rebooted";
-  EXPECT_EQ(image.sent(0), 4U);
+  EXPECT_EQ(image.sent(0), 5U);
 }
 
 TEST(PdoImage, after_a_reboot_a_tpdo_has_as_long_to_come_as_at_first) {

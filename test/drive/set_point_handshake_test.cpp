@@ -66,6 +66,36 @@ TEST(SetPointHandshake, HoldsTheBitUntilAcknowledgedThenWaitsForTheFall) {
   EXPECT_FALSE(wire.handshake.busy());
 }
 
+// One whose frame may be lost leaves three times before each of its two edges.
+TEST(SetPointHandshake, InsistsOnATargetWithAFrameOfItsOwn) {
+  Wire wire;
+  wire.handshake.offer({100, true, false, true});
+  for (int edge = 0; edge < 2; ++edge) {
+    for (int frame = 0; frame < 3; ++frame) {
+      EXPECT_TRUE(wire.step(false));
+      EXPECT_FALSE(wire.bit()) << edge << frame;
+      EXPECT_TRUE(wire.handshake.insists()) << edge << frame;
+    }
+    EXPECT_TRUE(wire.step(false));
+    EXPECT_TRUE(wire.bit()) << edge;
+    EXPECT_FALSE(wire.handshake.insists());
+    EXPECT_TRUE(wire.step(true));
+    EXPECT_FALSE(wire.bit());
+  }
+  EXPECT_TRUE(wire.step(false));
+  EXPECT_FALSE(wire.handshake.busy());
+}
+
+TEST(SetPointHandshake, DoesNotInsistWhereOneFrameHasBoth) {
+  Wire wire;
+  wire.input.together = true;
+  wire.handshake.offer({100, true, false, true});
+  EXPECT_TRUE(wire.step(false));
+  EXPECT_FALSE(wire.bit());
+  EXPECT_TRUE(wire.step(false));
+  EXPECT_TRUE(wire.bit());
+}
+
 /// A drive that looks at the controlword before the target of the same RPDO, and hears some frames
 /// only.
 struct HastyDrive {

@@ -255,5 +255,30 @@ TEST(FaultResetStep, AnEnabledAxisIsLeftDisabledWhereItsWarningIsCleared) {
   EXPECT_EQ(bench.drive.state, S::disabled);
 }
 
+// A drive that took its set-points up again, at the speed of its own stop, would jerk.
+TEST(FaultResetStep, AMotorThatAWarningStopsRestsBeforeTheReset) {
+  DriveProfile profile = testProfile();
+  profile.warning_stops = true;
+  Bench bench(testConfig(profile));
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  bench.drive.warning = true;
+  bench.drive.quick_stop_ends = false;
+  bench.drive.coast = 50000.0;  // counts/s
+  bench.run(milliseconds(20));
+  int cycles = 0;
+  bench.each_cycle = [&] {
+    if (++cycles == 50) bench.drive.coast = 0.0;
+    if (bench.drive.coast > 0.0) {
+      EXPECT_EQ(bench.drive.controlword & 0x80, 0) << cycles;
+      EXPECT_NE(bench.drive.state, S::disabled) << cycles;
+    }
+    if ((bench.drive.controlword & 0x80) != 0) bench.drive.warning = false;
+  };
+  const ProcedureStatus& status = bench.perform(ProcedureKind::clear_faults);
+  EXPECT_TRUE(status.success) << status.message;
+  EXPECT_EQ(bench.drive.state, S::disabled);
+}
+
 }  // namespace
 }  // namespace cia402::drive

@@ -23,6 +23,7 @@ struct Image : ProcessImage {
   using ProcessImage::setCarrier;
   using ProcessImage::setDelivery;
   using ProcessImage::take;
+  void sendAgain(Slot) override {}
 };
 
 TEST(ProcessImage, AnObjectHasOneSlotInEachDirection) {

@@ -30,6 +30,7 @@ class PdoImage : public fieldbus::ProcessImage {
   /// Packs an RPDO if it is due in this cycle: its content changed, or it was not sent for
   /// PdoConfig::refresh_every cycles. Counts it as sent then.
   bool packDue(std::size_t rpdo, can::Frame& frame, Time now);
+  void sendAgain(fieldbus::Slot slot) override { rpdos_[carrierOf(slot)].sent_once = false; }
   /// Sends every RPDO for which packDue() gives a frame; what `sink` refuses is due again.
   void sendDue(can::Sink& sink, Time now);
   /// One cycle more without the TPDOs that did not come: counts, and marks what is stale. Once a

@@ -179,8 +179,8 @@ void PositionBySetPoints::offerNext(Time now) {
   rest_raw_ = raw;
   offered_ = way;
   if (called_back_) offered_.speed = usual();
+  handshake_.offer({raw, rests, false, called_back_});
   called_back_ = false;
-  handshake_.offer(raw, rests);
 }
 
 void PositionBySetPoints::send(const ModeChannel::Offset& object, double value) {
@@ -211,6 +211,7 @@ const char* PositionBySetPoints::handOver(std::uint64_t& raw, Time now) {
   if (offered && !handshake_.pending()) announced(now);
   if (handshake_.raised()) held_ = coming_.target;
   raw = handshake_.raw();
+  insist(handshake_);
   if (well) return nullptr;
   sent().rest(SetPointKind::stream, state().position);
   sent().giveUp();

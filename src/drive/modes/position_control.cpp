@@ -31,9 +31,16 @@ SetPointHandshake::Input PositionControl::handshakeInput() const {
   SetPointHandshake::Input input;
   input.controlword_frames = image.sent(axis().objects.controlword.slot);
   input.target_frames = target.mapped() ? image.sent(target.slot) : input.controlword_frames;
+  input.together = !target.mapped() ||
+                   image.carrierOf(axis().objects.controlword.slot) == image.carrierOf(target.slot);
   const std::optional<int>& bit = spec().set_point_acknowledge_bit;
   input.acknowledged = bit && ((static_cast<unsigned>(state().statusword) >> *bit) & 1u) != 0;
   return input;
+}
+
+void PositionControl::insist(const SetPointHandshake& handshake) const {
+  const OutputObject& target = channel().target;
+  if (handshake.insists() && target.mapped()) axis().image.sendAgain(target.slot);
 }
 
 Duration PositionControl::wayBack(double) const { return kReactionCycles * axis().config.cycle; }

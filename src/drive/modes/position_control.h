@@ -20,6 +20,8 @@ class PositionControl : public ModeControl {
  protected:
   /// What a handshake is to know of this cycle.
   SetPointHandshake::Input handshakeInput() const;
+  /// Has the target leave with this cycle where the handshake insists on it.
+  void insist(const SetPointHandshake& handshake) const;
 };
 
 }  // namespace cia402::drive

@@ -102,7 +102,7 @@ void ProfilePosition::offer(std::uint64_t raw, bool twice) {
   if (!by_hand_) return;
   const bool command = spec().handover.oneByOne() && command_ == raw && !twice;
   const bool counted = command && spec().handover.relative() && base_;
-  handshake_.offer({counted ? distance(raw) : raw, twice, command});
+  handshake_.offer({counted ? distance(raw) : raw, twice, command, twice});
   base_ = raw;
   command_.reset();
 }
@@ -124,6 +124,7 @@ const char* ProfilePosition::handOver(std::uint64_t& raw, Time now) {
   const char* waiting = handshake_.waitingFor();
   const bool well = handshake_.advance(handshakeInput(), now, axis().profile().timing.state_change);
   raw = handshake_.raw();
+  insist(handshake_);
   flushes_ = handshake_.blocked() || (flushes_ && handshake_.busy());
   if (well) return nullptr;
   dropped_ = true;

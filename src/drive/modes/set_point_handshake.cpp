@@ -6,6 +6,8 @@ namespace {
 
 using Acknowledge = Handover::Acknowledge;
 
+constexpr std::uint64_t kInsisting = 3;  // frames
+
 }  // namespace
 
 void SetPointHandshake::reset(std::uint64_t raw) {
@@ -30,6 +32,11 @@ void SetPointHandshake::announce(const Input& input, Time now) {
 
 bool SetPointHandshake::sentLongEnough(const Input& input) const {
   return input.controlword_frames >= frames_ + static_cast<std::uint64_t>(handover_->each_for);
+}
+
+bool SetPointHandshake::targetSent(const Input& input) const {
+  const bool several = present_.insist && !input.together;
+  return input.target_frames >= frames_ + (several ? kInsisting : 1);
 }
 
 bool SetPointHandshake::waitsForAcknowledge() const {
@@ -62,7 +69,9 @@ void SetPointHandshake::lower(const Input& input, Time now) {
   }
   phase_ = Phase::idle;
   timing_ = false;
-  if (++handed_over_ == 1 && !handedOverOnce()) enter(Phase::announced, 0, now);
+  if (++handed_over_ == 1 && !handedOverOnce()) {
+    enter(Phase::announced, present_.insist ? input.target_frames : 0, now);
+  }
 }
 
 /// A distance would be gone twice.
@@ -97,7 +106,7 @@ bool SetPointHandshake::advance(const Input& input, Time now, Duration timeout) 
     case Phase::announced:
       if (pending_) {  // nothing has been handed over yet: the latest target wins
         announce(input, now);
-      } else if (input.target_frames > frames_) {
+      } else if (targetSent(input)) {
         raise(input, now);
       }
       break;

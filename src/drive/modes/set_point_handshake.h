@@ -20,6 +20,7 @@ class SetPointHandshake {
   struct Input {
     std::uint64_t target_frames = 0;       ///< how often the target was sent so far
     std::uint64_t controlword_frames = 0;  ///< how often the controlword was
+    bool together = false;                 ///< one frame has both
     bool acknowledged = false;             ///< statusword bit 12
   };
 
@@ -31,13 +32,16 @@ class SetPointHandshake {
     std::uint64_t raw = 0;  ///< for the target object
     bool twice = false;     ///< see offer()
     bool command = false;   ///< its words are Handover::ofCommand()
+    /// The drive must not take the previous one: the target leaves several times before the words,
+    /// where it has a frame of its own, which may be lost.
+    bool insist = false;
   };
 
   /// Wants `raw` to be the set-point. Replaces one that has not been handed over yet.
   /// @param twice once more after the first acknowledge, which proves that the drive has the target
   ///   where one frame holds both: then the second edge cannot take the previous one, whatever is
   ///   lost
-  void offer(std::uint64_t raw, bool twice = false) { offer(Offer{raw, twice, false}); }
+  void offer(std::uint64_t raw, bool twice = false) { offer(Offer{raw, twice, false, false}); }
   void offer(const Offer& offer) {
     next_ = offer;
     pending_ = true;
@@ -66,6 +70,8 @@ class SetPointHandshake {
   bool pending() const { return pending_; }
   /// A target is on its way and its words are to follow: another one would begin anew.
   bool announced() const { return phase_ == Phase::announced && handed_over_ == 0; }
+  /// The target is to leave with this cycle, whether it has before or not.
+  bool insists() const { return phase_ == Phase::announced && present_.insist; }
   /// The words that hand a set-point over are being sent.
   bool raised() const { return word_ > 0; }
   /// What the drive does not do that is waited for, in words.
@@ -82,6 +88,7 @@ class SetPointHandshake {
   bool replacesWhileLowering() const;
   bool handedOverOnce() const;
   bool sentLongEnough(const Input& input) const;
+  bool targetSent(const Input& input) const;
   bool waitsForAcknowledge() const;
 
   const Handover* handover_;

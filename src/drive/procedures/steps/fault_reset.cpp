@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "drive/procedures/steps/fault_reset.h"
 
+#include "drive/procedures/limits.h"
 #include "drive/profile/fault_text.h"
 #include "drive/profile/named_write.h"
 #include "drive/sentence.h"
@@ -154,6 +155,14 @@ Outcome FaultResetStep::awaitReaction(const Context& context) {
   return Outcome::running();
 }
 
+/// A drive that a warning stops, and that has power, may take its set-points up again once that is
+/// cleared, at the speed that it has.
+bool FaultResetStep::turns(const Context& context) {
+  const AxisCore& axis = context.axis;
+  return !axis.faulted() && !axis.powerOff() && axis.state().feedback_valid &&
+         !axis.feedback().seenToStand(context.now);
+}
+
 Outcome FaultResetStep::advance(const Context& context) {
   AxisCore& axis = context.axis;
   const Duration waited = context.now - since_;
@@ -165,6 +174,13 @@ Outcome FaultResetStep::advance(const Context& context) {
         return fail(context, refusal);
       }
       code_ = axis.state().error_code;
+      enter(Phase::resting, context);
+      if (turns(context)) {
+        context.show("waiting for rest", "the drive to end the stop by which its warning holds it");
+      }
+      [[fallthrough]];
+    case Phase::resting:
+      if (turns(context) && context.now - since_ <= kComeToRest) return Outcome::running();
       axis.setGoal(Goal::disabled);
       if (!axis.profile().fault_reset.clears_history) return awaitReaction(context);
       clearing_ = axis.device().objects().download({0x1003, 0}, {0}, "error history");

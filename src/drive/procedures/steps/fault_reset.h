@@ -7,11 +7,11 @@ namespace cia402::drive {
 
 /// Fault reset (transition 15) with a proper edge: controlword bit 7 low on the wire, then high
 /// until the drive has left the fault or the time is over, then low again, then a moment in which
-/// the fault may come back. Edges are at least kInterval apart, whoever asks for them. Where the
-/// profile says so the error history is cleared before (`fault_reset_clears_history`), it is tried
-/// several times (`fault_reset_tries`), once more after a write (`fault_reset_object`), and once
-/// more after the device was taken out of operation and into it again
-/// (FaultReset::pause).
+/// the fault may come back. A motor that a warning stops rests before. Edges are at least kInterval
+/// apart, whoever asks for them. Where the profile says so the error history is cleared before
+/// (`fault_reset_clears_history`), it is tried several times (`fault_reset_tries`), once more after
+/// a write (`fault_reset_object`), and once more after the device was taken out of operation and
+/// into it again (FaultReset::pause).
 class FaultResetStep {
  public:
   static constexpr Duration kInterval{std::chrono::seconds(1)};
@@ -22,8 +22,9 @@ class FaultResetStep {
   static Duration pause(const DriveProfile& profile);
 
  private:
-  enum class Phase { begin, clearing, reacting, low, high, low_again, watching, paused };
+  enum class Phase { begin, resting, clearing, reacting, low, high, low_again, watching, paused };
   void enter(Phase phase, const Context& context);
+  static bool turns(const Context& context);
   Outcome fail(const Context& context, const std::string& why) const;
   Outcome awaitReaction(const Context& context);
   Outcome cameBack(const Context& context);
