@@ -181,6 +181,27 @@ TEST_F(MisbehaviourTest, TellsTwoStatuswordsForAWhile) {
   EXPECT_THAT(sent(), ElementsAre("181 31 06 00 00 00 00", "281 31 06"));
 }
 
+// Also one that changes sooner than that comes, 29 ms late.
+TEST_F(MisbehaviourTest, TellsEachStatuswordLate) {
+  presetPdos(1, 1);
+  preset(0x1801, 1, 0x281);
+  preset(0x1801, 2, 1);
+  preset(0x1A01, 0, 1);
+  preset(0x1A01, 1, 0x60410010);
+  behaviour.stale_statusword = milliseconds(29);
+  operate();
+  send(0x080, {});
+  std::vector<std::string> late;
+  for (const std::uint64_t word : {0x0631U, 0x0633U, 0x0637U, 0x0631U}) {
+    setValue(0x6041, word);
+    forget();
+    send(0x080, {});
+    late.push_back(sent().back());
+    run(milliseconds(20));
+  }
+  EXPECT_THAT(late, ElementsAre("281 00 00", "281 00 00", "281 31 06", "281 33 06"));
+}
+
 TEST_F(MisbehaviourTest, NmtResetNodeHoldsTheBusButAPowerOnDoesNot) {
   behaviour.reset_jams_bus = milliseconds(300);
   boot();

@@ -50,7 +50,7 @@ void SlaveTpdo::start() {
   counting_ = false;
   syncs_ = 0;
   sent_ = false;
-  shown_word_.reset();
+  words_.clear();
   sampled_ = false;
   waiting_ = false;
   inhibited_until_ = Time::min();
@@ -91,10 +91,9 @@ std::uint64_t SlaveTpdo::sample() {
   const Duration lag = context_.behaviour.stale_statusword;
   if (lag == Duration::zero() || records_.mapping == kMapping || !place) return data;
   const std::uint64_t word = data >> *place & 0xFFFFU;
-  if (word != newest_word_) word_since_ = context_.now;
-  newest_word_ = word;
-  if (!shown_word_ || context_.now - word_since_ >= lag) shown_word_ = word;
-  return (data & ~(std::uint64_t{0xFFFF} << *place)) | *shown_word_ << *place;
+  if (words_.empty() || word != words_.back().word) words_.push_back({word, context_.now});
+  while (words_.size() > 1 && context_.now - words_[1].since >= lag) words_.erase(words_.begin());
+  return (data & ~(std::uint64_t{0xFFFF} << *place)) | words_.front().word << *place;
 }
 
 void SlaveTpdo::onSync() {

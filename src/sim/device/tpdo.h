@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "sim/device/pdo_parameters.h"
 
@@ -64,10 +65,12 @@ class SlaveTpdo {
   unsigned syncs_ = 0;
   bool sent_ = false;
   std::uint64_t last_ = 0;
-  std::optional<std::uint64_t> shown_word_;  // DeviceBehaviour::stale_statusword
-  std::uint64_t newest_word_ = 0;
-  Time word_since_{};
-  bool sampled_ = false;  // type 252: `sampled_data_` holds the data of the last SYNC
+  struct Word {
+    std::uint64_t word;
+    Time since;
+  };
+  std::vector<Word> words_;  // DeviceBehaviour::stale_statusword: from the one that is shown on
+  bool sampled_ = false;     // type 252: `sampled_data_` holds the data of the last SYNC
   std::uint64_t sampled_data_ = 0;
   bool waiting_ = false;  // for the end of the inhibit time
   Time inhibited_until_ = Time::min();
