@@ -60,9 +60,36 @@ class FadingTorque : public testing::TestWithParam<FamilyMode> {
 // The simulation, without a brake of its own: what the tests below would see else.
 TEST_P(FadingTorque, CoastsByTheQuickStopOfTheDriveAlone) {
   turn();
-  scene.axis("joint").stopBesideCycle("nothing else is heard");
+  ASSERT_EQ(scene.drive("joint").dictionary().write({0x6040, 0}, {0x02, 0x00}), 0U);
   scene.run(200ms);
   EXPECT_GT(scene.velocity("joint"), 0.9 * speed);
+}
+
+// As where SYNC comes at a wrong rate.
+TEST_P(FadingTorque, IsBrakedByAModeBesideTheCycle) {
+  turn();
+  watchPower();
+  scene.axis("joint").stopBesideCycle("nothing else is heard");
+  scene.run(2s);
+  EXPECT_LT(std::fabs(when_off), 0.05) << "braked, not left to coast";
+  expectRest();
+  EXPECT_FALSE(scene.truth("joint").power_stage_on) << scene.told();
+}
+
+// What it is told in cycles does not reach it at all.
+TEST_P(FadingTorque, IsBrakedByAModeWhereItsRpdosAreLost) {
+  turn();
+  watchPower();
+  for (const canopen::PdoImage::Pdo& pdo : scene.node("joint").image().rpdos()) {
+    sim::FaultRule lost;
+    lost.id = pdo.cob_id;
+    lost.receiver = "joint";
+    scene.world().bus().faults().add(lost);
+  }
+  scene.axis("joint").stopBesideCycle("nothing else is heard");
+  scene.run(2s);
+  EXPECT_LT(std::fabs(when_off), 0.05) << "braked, not left to coast";
+  expectRest();
 }
 
 TEST_P(FadingTorque, IsBrakedBeforeItsQuickStop) {

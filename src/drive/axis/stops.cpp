@@ -60,12 +60,27 @@ void Stops::endHalt() {
 void Stops::stopUrgently(const std::string& why) {
   if (!axis_.deviceReady() || axis_.powerOff()) return;
   const bool was_commanded = !axis_.control().silent() && axis_.goal() != Goal::disabled;
+  if (!brakeUrgently()) quickStopUrgently();
+  if (was_commanded) axis_.notices().fail(axis_.who() + ": " + why);
+}
+
+void Stops::quickStopUrgently() {
+  urgent_ = false;
   axis_.setGoal(Goal::quick_stop);
   const ObjectSpec* object = axis_.objects().controlword.spec;
   const unsigned word = controlword::kQuickStopCommand | axis_.mode().spec().stoppingBits();
   urgent_ticket_ =
       axis_.device().objects().downloadUrgent(object->id, fieldbus::toBytes(word, 2), object->name);
-  if (was_commanded) axis_.notices().fail(axis_.who() + ": " + why);
+}
+
+/// @return false if nothing but a quick stop can do it
+bool Stops::brakeUrgently() {
+  if (urgent_) return true;
+  if (how() != StopBy::mode || !axis_.control().inOperation()) return false;
+  if (!brakeByMode(axis_.state().stamp)) return false;
+  if (axis_.mode().travels()) writeBrakeMode();
+  urgent_ = true;
+  return true;
 }
 
 void Stops::judgeUrgent() {
@@ -113,16 +128,20 @@ void Stops::takeOver(const ModeChannel& brake, double velocity, Time now) {
   axis_.selectMode(brake);
   axis_.mode().brakeFor(pushes);
   braked_at_ = now;
-  const OutputObject& object = axis_.objects().mode;
-  if (!axis_.mode().travels() && object.spec != nullptr) {
-    const auto value = static_cast<std::uint64_t>(brake.spec->value);
-    brake_ticket_ = axis_.device().objects().downloadUrgent(
-        object.spec->id, wireBytes(value, object.spec->type), object.spec->name);
-  }
+  if (!axis_.mode().travels()) writeBrakeMode();
   axis_.generator().arrest(velocity);
   axis_.generator().endPushing();
   state.halted = true;
   state.ready_for_motion = false;
+}
+
+/// The active mode is the one that brakes.
+void Stops::writeBrakeMode() {
+  const ObjectSpec* const object = axis_.objects().mode.spec;
+  if (object == nullptr) return;
+  const auto value = static_cast<std::uint64_t>(axis_.mode().spec().value);
+  brake_ticket_ = axis_.device().objects().downloadUrgent(
+      object->id, wireBytes(value, object->type), object->name);
 }
 
 bool Stops::brakeUnheard(Time now) {
@@ -159,6 +178,7 @@ void Stops::watchBrakeMode(Time now) {
   const bool refused = brake_ticket_ && brake_ticket_->done() && !brake_ticket_->ok();
   if (axis_.feedback().shows(mode) && !refused) {
     brake_mode_shown_ = true;
+    if (urgent_) quickStopUrgently();
     return;
   }
   const Duration patience = axis_.profile().timing.mode_change;
@@ -172,13 +192,14 @@ void Stops::watchBrakeMode(Time now) {
       std::to_string(mode.value) + "), which is to brake, was not taken" +
       (refused ? ": " + brake_ticket_->message() : " within " + seconds(patience)) +
       "; quick stop is commanded. " + report(axis_));
-  axis_.setGoal(Goal::quick_stop);
+  urgent_ ? quickStopUrgently() : axis_.setGoal(Goal::quick_stop);
 }
 
 void Stops::forgetBrakeMode() {
   brake_mode_shown_ = false;
   brake_ticket_.reset();
   quick_stop_at_ = kNever;
+  urgent_ = false;
 }
 
 void Stops::watchEffort(Time now) {

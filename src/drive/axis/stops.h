@@ -28,6 +28,7 @@ class Stops {
   bool byMode() const { return how() == StopBy::mode; }
 
   /// Quick stop by a write that waits for nothing: what travels in cycles does not reach the drive.
+  /// Where another mode brakes the present one the drive is told to take that first.
   /// @param why in words
   void stopUrgently(const std::string& why);
   /// Once a cycle: where that failed as well, nothing but the drive itself can stop the motor; and
@@ -57,6 +58,9 @@ class Stops {
   void followByBrakeMode();
   bool brakeByMode(Time now);
   void takeOver(const ModeChannel& brake, double velocity, Time now);
+  void writeBrakeMode();
+  bool brakeUrgently();
+  void quickStopUrgently();
   void brakeEffort(Time now);
   [[gnu::cold]] void judgeUrgent();
   [[gnu::cold]] void finishHold();
@@ -66,6 +70,7 @@ class Stops {
   bool brake_mode_shown_ = false;
   double followed_ = 0.0;        ///< while it pushes: velocity at which the mode that brakes begins
   Time quick_stop_at_ = kNever;  ///< at the latest, after braking unheard
+  bool urgent_ = false;          ///< a quick stop by a write follows once the mode brakes
   bool holding_ = false;         ///< by hold(), and the motor has not been seen to stand since
   fieldbus::Ticket brake_ticket_, urgent_ticket_;
 };
