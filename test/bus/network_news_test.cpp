@@ -164,7 +164,7 @@ TEST_F(NetworkNews, ABootIsToldWithTheTimeThatItTook) {
 TEST_F(NetworkNews, AThirdBootUpMessageWithinOneBootIsTold) {
   world.drives[0].sdo_silent = true;
   world.network.start(world.now);
-  world.run(120ms);  // it is asked in vain whether its motor turns
+  world.run(320ms);  // it is asked in vain whether its motor turns
   const auto bootUp = [&] {
     world.network.receive(can::Frame(0x701, {0x00}), world.now, world.now);
   };

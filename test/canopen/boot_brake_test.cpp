@@ -104,7 +104,7 @@ TEST_F(BootBrakeTest, goes_on_where_nothing_is_told_of_the_ramp) {
   config.brakes.front().statusword = {0x6041, 0};
   peer.on(kAskStatusword, Lines{});
   boot(false);
-  pass(std::chrono::milliseconds(99));
+  pass(std::chrono::milliseconds(299));
   EXPECT_GT(node->nextDeadline(), now);
   EXPECT_THAT(peer.take(), ElementsAre(kAskStatusword, kQuickStop, kAskStatusword));
   pass(std::chrono::milliseconds(2));
@@ -127,7 +127,7 @@ TEST_F(BootBrakeTest, takes_it_over_once_it_is_identified_where_it_did_not_answe
   peer.on(kAskStatusword, Lines{kOperationEnabled});
   peer.on(kAskShownMode, Lines{"583 4F 61 60 00 09 00 00 00"});
   rests();
-  pass(std::chrono::milliseconds(200));
+  pass(std::chrono::milliseconds(400));
   const Lines sent = peer.take();
   const auto brake = std::find(sent.begin(), sent.end(), kAskStatusword);
   ASSERT_GE(sent.end() - brake, 8);

@@ -11,7 +11,7 @@
 namespace cia402::canopen {
 namespace {
 
-constexpr Duration kAnswer = std::chrono::milliseconds(100);    // it may as well be off
+constexpr Duration kAnswer = std::chrono::milliseconds(300);    // it may as well be off
 constexpr Duration kPatience = std::chrono::milliseconds(100);  // for the mode to be shown
 constexpr Duration kRamp = std::chrono::seconds(2);             // for the motors to rest
 constexpr Duration kInterval = std::chrono::milliseconds(10);   // of questions meanwhile
