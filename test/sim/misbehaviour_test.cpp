@@ -12,7 +12,20 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing_support::milliseconds;
 
-class MisbehaviourTest : public testing_support::SlaveTest {};
+class MisbehaviourTest : public testing_support::SlaveTest {
+ protected:
+  /// In operation, with the statusword in TPDO 1, and in TPDO 2 as it was 29 ms ago.
+  void operateWithTwoStatuswords() {
+    presetPdos(1, 1);
+    preset(0x1801, 1, 0x281);
+    preset(0x1801, 2, 1);
+    preset(0x1A01, 0, 1);
+    preset(0x1A01, 1, 0x60410010);
+    behaviour.stale_statusword = milliseconds(29);
+    operate();
+    send(0x080, {});
+  }
+};
 
 TEST_F(MisbehaviourTest, StartsItselfOperational) {
   behaviour.starts_operational = true;
@@ -163,14 +176,7 @@ TEST_F(MisbehaviourTest, TakesSynchronousRpdosAtOnce) {
 }
 
 TEST_F(MisbehaviourTest, TellsTwoStatuswordsForAWhile) {
-  presetPdos(1, 1);
-  preset(0x1801, 1, 0x281);
-  preset(0x1801, 2, 1);
-  preset(0x1A01, 0, 1);
-  preset(0x1A01, 1, 0x60410010);
-  behaviour.stale_statusword = milliseconds(29);
-  operate();
-  send(0x080, {});
+  operateWithTwoStatuswords();
   setValue(0x6041, 0x0631);
   forget();
   send(0x080, {});
@@ -183,14 +189,7 @@ TEST_F(MisbehaviourTest, TellsTwoStatuswordsForAWhile) {
 
 // Also one that changes sooner than that comes, 29 ms late.
 TEST_F(MisbehaviourTest, TellsEachStatuswordLate) {
-  presetPdos(1, 1);
-  preset(0x1801, 1, 0x281);
-  preset(0x1801, 2, 1);
-  preset(0x1A01, 0, 1);
-  preset(0x1A01, 1, 0x60410010);
-  behaviour.stale_statusword = milliseconds(29);
-  operate();
-  send(0x080, {});
+  operateWithTwoStatuswords();
   std::vector<std::string> late;
   for (const std::uint64_t word : {0x0631U, 0x0633U, 0x0637U, 0x0631U}) {
     setValue(0x6041, word);

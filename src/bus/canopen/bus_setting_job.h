@@ -13,9 +13,9 @@ namespace cia402::bus {
 
 class Network;
 
-/// Gives a drive without LSS another node-ID or bit rate, by the objects of its maker. A node-ID of
-/// another drive in the robot's file, or of the master, is refused: two would follow the same
-/// frames.
+/// Gives a drive without LSS another node-ID or bit rate, by the objects of its maker. The
+/// node-ID of the master, or of another axis whose drive was heard, is refused: two would follow
+/// the same frames.
 struct SetBusParametersCommand {
   using Answer = bus::Answer;
   std::string axis;

@@ -107,7 +107,7 @@ class Node final : public fieldbus::Device {
   PdoImage& image() { return static_cast<PdoImage&>(Device::image()); }
   const PdoImage& image() const { return static_cast<const PdoImage&>(Device::image()); }
 
-  /// Something came from its node-ID since this program started.
+  /// A boot-up message, a heartbeat or an SDO answer has come since this program started.
   bool everHeard() const;
   /// Stamp of the last heartbeat or guarding answer, Time() before the first.
   Time lastHeartbeat() const;
