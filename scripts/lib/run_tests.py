@@ -19,6 +19,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 import traceback
 import unittest
 import xml.etree.ElementTree as ElementTree
@@ -121,28 +122,60 @@ def outcomes_in(report):
             if case.get("result") == "COMPLETED"}
 
 
-def run_gtest(results, executable):
-    name = pathlib.Path(executable).name
-    log = results.logs / f"{name}.log"
-    report = results.logs / f"{name}.json"
-    log.write_bytes(b"")
-    report.unlink(missing_ok=True)
-    try:
-        cases = cases_in(executable)
-    except (OSError, subprocess.SubprocessError) as error:
-        log.write_text(f"cannot list the tests: {error}\n", encoding="utf-8")
-        cases = []
-    if not cases:
-        results.note(f"{name}: has tests", log, "none found")
-        return
-    status = run([executable, "--gtest_brief=1", f"--gtest_output=json:{report}"], log,
-                 GTEST_TIMEOUT_S, cwd=results.logs)
-    outcomes = outcomes_in(report)
-    reasons = [outcomes.get(case, f"did not run (status {status})") for case in cases]
-    for case, why in zip(cases, reasons):
-        results.note(f"{name}: {case}", log, why)
-    if status != 0 and all(why is None for why in reasons):
-        results.note(f"{name}: ends with status 0", log, f"ended with {status}")
+class GoogleTest:
+    """An executable, whose cases are dealt out to several processes: each runs a share of them."""
+
+    def __init__(self, results, executable, shares):
+        self.results, self.executable, self.shares = results, executable, shares
+        self.name = pathlib.Path(executable).name
+        self.log = results.logs / f"{self.name}.log"
+        self.log.write_bytes(b"")
+        self.outcomes, self.statuses = {}, []
+        self._lock = threading.Lock()
+        try:
+            self.cases = cases_in(executable)
+        except (OSError, subprocess.SubprocessError) as error:
+            self.log.write_text(f"cannot list the tests: {error}\n", encoding="utf-8")
+            self.cases = []
+        if not self.cases:
+            self.results.note(f"{self.name}: has tests", self.log, "none found")
+
+    def run(self, share):
+        """Runs a share. With the last one it is noted what has become of all cases."""
+        report = self.results.logs / f"{self.name}.{share}.json"
+        report.unlink(missing_ok=True)
+        shards = {"GTEST_TOTAL_SHARDS": str(self.shares), "GTEST_SHARD_INDEX": str(share)}
+        try:
+            status = run([self.executable, "--gtest_brief=1", f"--gtest_output=json:{report}"],
+                         self.log, GTEST_TIMEOUT_S, cwd=self.results.logs,
+                         env={**os.environ, **shards})
+        except OSError as error:
+            status = repr(error)
+        with self._lock:
+            self.outcomes.update(outcomes_in(report))
+            self.statuses.append(status)
+            if len(self.statuses) == self.shares:
+                self.note()
+
+    def note(self):
+        bad = next((status for status in self.statuses if status != 0), 0)
+        reasons = [self.outcomes.get(case, f"did not run (status {bad})") for case in self.cases]
+        for case, why in zip(self.cases, reasons):
+            self.results.note(f"{self.name}: {case}", self.log, why)
+        if bad != 0 and all(why is None for why in reasons):
+            self.results.note(f"{self.name}: ends with status 0", self.log, f"ended with {bad}")
+
+
+def run_gtests(results, executables, processors):
+    """Their cases take very different times: each executable is shared out to all processors."""
+    with concurrent.futures.ThreadPoolExecutor(processors) as pool:
+        running = []
+        for executable in executables:
+            alone = executable.endswith("_vcan")  # one bus for all
+            test = GoogleTest(results, executable, 1 if alone else processors)
+            running += [pool.submit(test.run, share) for share in range(test.shares) if test.cases]
+        for share in running:
+            share.result()
 
 
 # Python's unittest
@@ -230,7 +263,7 @@ def run_rostest(results, file):
 def run_file(kind, results, file):
     """Runs one file of tests. Whatever goes wrong in doing so is a failure of its own."""
     try:
-        {"gtest": run_gtest, "unittest": run_unittest, "rostest": run_rostest}[kind](results, file)
+        {"unittest": run_unittest, "rostest": run_rostest}[kind](results, file)
     except Exception as error:  # pylint: disable=broad-except
         log = results.logs / f"{pathlib.Path(file).stem}.error.log"
         log.write_text(traceback.format_exc(), encoding="utf-8")
@@ -245,10 +278,11 @@ def main():
     kind, logs, files = arguments[0], pathlib.Path(arguments[1]).resolve(), arguments[2:]
     logs.mkdir(parents=True, exist_ok=True)
     results = Results(logs)
-    # Nodes of a ROS graph need the processors for themselves.
-    at_once = os.cpu_count() if kind == "gtest" else 1
-    with concurrent.futures.ThreadPoolExecutor(at_once) as pool:
-        list(pool.map(lambda file: run_file(kind, results, file), files))
+    if kind == "gtest":
+        run_gtests(results, files, os.cpu_count() or 1)
+    else:
+        for file in files:
+            run_file(kind, results, file)
     if report is not None:
         results.write_junit(report)
     return 1 if results.failed else 0

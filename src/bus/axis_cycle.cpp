@@ -51,11 +51,11 @@ void AxisCycle::move(Time now) {
   last_cycle_ = now;
   for (AxisUnit& unit : units_) unit.readFeedback(now);
   for (Group& group : groups_) {
-    if (const auto outcome = group.step(now)) {
+    for (const TrajectoryOutcome& outcome : group.step(now)) {
       tell(events_,
-           outcome->code == motion::TrajectoryErrorCode::successful ? Event::Severity::info
-                                                                    : Event::Severity::error,
-           outcome->message, now);
+           outcome.code == motion::TrajectoryErrorCode::successful ? Event::Severity::info
+                                                                   : Event::Severity::error,
+           outcome.message, now);
     }
   }
   for (AxisUnit& unit : units_) unit.move(now);

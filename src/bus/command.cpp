@@ -14,14 +14,25 @@ void SetpointCommand::begin(AxisCycle& cycle, const Reply<>& reply, Time now) co
   if (!taken) refuse(reply, taken.error().message);
 }
 
-void TrajectoryCommand::begin(AxisCycle& cycle, const Reply<>& reply, Time now) const {
+void TrajectoryCommand::begin(AxisCycle& cycle, const Reply<Answer>& reply, Time now) const {
   for (Group& candidate : cycle.groups()) {
     if (candidate.config().name != group) continue;
-    const TrajectoryOutcome outcome = candidate.start(joints, points, start_time, now, ended);
-    const bool accepted = outcome.code == motion::TrajectoryErrorCode::successful;
-    return give(reply, answerOf(accepted, outcome.message));
+    const TrajectoryOutcome outcome = candidate.start(*this, now);
+    Answer answer;
+    answer.success = outcome.code == motion::TrajectoryErrorCode::successful;
+    answer.message = outcome.message;
+    answer.code = outcome.code;
+    answer.passed_points = outcome.passed_points;
+    return give(reply, answer);
   }
   refuse(reply, "there is no group \"" + group + "\"");
+}
+
+void CancelCommand::begin(AxisCycle& cycle, const Reply<>& reply, Time) const {
+  for (Group& candidate : cycle.groups()) {
+    if (candidate.config().name == group) candidate.cancel(id);
+  }
+  give(reply, answerOf(true, group + ": cancelled"));
 }
 
 void CallCommand::begin(AxisCycle&, const Reply<>& reply, Time now) const {

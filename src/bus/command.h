@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +15,7 @@
 #include "bus/reply.h"
 #include "cia402_driver/bus/trajectory_outcome.h"
 #include "cia402_driver/common/time.h"
+#include "config/robot.h"
 #include "motion/trajectory.h"
 
 namespace cia402::bus {
@@ -44,14 +47,39 @@ struct SetpointCommand {
   void begin(AxisCycle& cycle, const Reply<>& reply, Time now) const;
 };
 
-/// A trajectory for a group; without points: stop. Answered once it was accepted or refused.
+/// Whether a trajectory was accepted.
+struct TrajectoryAnswer : Answer {
+  /// Of a refused one; that of a command that no group got is the first of them.
+  motion::TrajectoryErrorCode code = motion::TrajectoryErrorCode::invalid_goal;
+  std::size_t passed_points = 0;  ///< see TrajectoryOutcome
+};
+
+/// How closely a trajectory is to be followed, other than the group's configuration has it.
+struct TrajectoryTolerances {
+  std::map<std::string, config::JointTolerance> joints;  ///< by name; 0: none
+  std::optional<double> goal_time;                       ///< s >= 0
+};
+
+/// A trajectory for a group; without points: stop, and what has ended is that all stand. Answered
+/// once it was accepted or refused.
 struct TrajectoryCommand {
-  using Answer = bus::Answer;
+  using Answer = TrajectoryAnswer;
   std::string group;
   std::vector<std::string> joints;
   std::vector<motion::TrajectoryPoint> points;
   std::optional<Time> start_time;
+  TrajectoryTolerances tolerances;
+  std::uint64_t id = 0;   ///< for CancelCommand; 0: nobody cancels it
   TrajectoryEnded ended;  ///< told how it ended, if it was accepted
+
+  void begin(AxisCycle& cycle, const Reply<Answer>& reply, Time now) const;
+};
+
+/// Brings a group to rest that follows the trajectory `id`, or is about to; else does nothing.
+struct CancelCommand {
+  using Answer = bus::Answer;
+  std::string group;
+  std::uint64_t id = 0;
 
   void begin(AxisCycle& cycle, const Reply<>& reply, Time now) const;
 };

@@ -30,7 +30,10 @@ JointState Joint::state() const {
   state.effort = from.effort;
   const bool takes_positions =
       from.mode != nullptr && from.mode->kind == drive::ControlKind::position;
-  if (takes_positions) state.desired = axis().target();
+  if (takes_positions) {
+    state.desired = axis().target();
+    state.desired_velocity = sent().velocity();
+  }
   return state;
 }
 

@@ -31,6 +31,8 @@ class Joint {
   int homingOrder() const;
   double position() const { return axis().state().position; }
   Time stamp() const { return axis().state().stamp; }
+  /// What one unit of the drive's position is, rad or m.
+  double resolution() const { return axis().positionResolution(); }
   /// Takes set-points: enabled, and no procedure runs.
   bool ready() const { return axis().state().ready_for_motion; }
   /// What was sent last, and how it moves.
@@ -46,8 +48,8 @@ class Joint {
 
   /// Its set-point of this cycle, rad or m. @return false: it is refused, and nothing changes
   [[nodiscard]] bool give(double position) { return unit_->axis.setTarget(position); }
-  /// Brings it to rest.
-  void stop() { unit_->axis.stopSetPoint(); }
+  /// Brings it to rest. @param over not harder than that takes; zero: as hard as it may be
+  void stop(Duration over = Duration::zero()) { unit_->axis.stopSetPoint(over); }
   /// A group gives its set-points from now on; nullptr: none any more.
   void follow(const std::string* group) { unit_->axis.follow(group); }
 

@@ -22,9 +22,10 @@ Reply<> ReplyLog::toSetpoint(std::size_t axis) {
   };
 }
 
-Reply<> ReplyLog::toTrajectory() {
-  return [this](const Answer& answer) {
-    add(answer.success ? Level::debug : Level::error, answer.message);
+Reply<TrajectoryAnswer> ReplyLog::toTrajectory() {
+  return [this](const TrajectoryAnswer& answer) {
+    const Level accepted = answer.passed_points > 0 ? Level::warning : Level::debug;
+    add(answer.success ? accepted : Level::error, answer.message);
   };
 }
 

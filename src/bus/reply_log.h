@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <deque>
 
+#include "bus/command.h"
 #include "bus/fixed_text.h"
 #include "bus/mpsc_queue.h"
 #include "bus/reply.h"
@@ -45,8 +46,9 @@ class ReplyLog {
   /// For a set-point of an axis: refusals are warnings, at most one per second of each axis, so
   /// that a refused stream does not flood the log. The log must outlive the reply.
   Reply<> toSetpoint(std::size_t axis);
-  /// For a trajectory: refusals are errors. The log must outlive the reply.
-  Reply<> toTrajectory();
+  /// For a trajectory: refusals are errors, points that had passed a warning. The log must outlive
+  /// the reply.
+  Reply<TrajectoryAnswer> toTrajectory();
 
   /// One thread: the next reply to log. @return false if there is none.
   bool next(Entry& entry) { return entries_.pop(entry); }

@@ -54,6 +54,7 @@ struct JointState {
   double velocity = drive::kUnknown;  ///< rad/s or m/s
   double effort = drive::kUnknown;    ///< N m or N
   double desired = drive::kUnknown;   ///< position set-point, rad or m; in other modes unknown
+  double desired_velocity = drive::kUnknown;  ///< of that, rad/s or m/s
 };
 
 /// The trajectory of one group.

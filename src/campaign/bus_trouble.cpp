@@ -14,6 +14,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::uint32_t kNodeBits = 0x7F;  // of an identifier of the predefined connection set
+constexpr Duration kHeard = 5ms;           // by then a drive has left operational, if it is to
 constexpr std::uint8_t kNmtStart = 1;
 constexpr std::uint8_t kNmtResetNode = 129, kNmtResetCommunication = 130;
 constexpr std::pair<const char*, std::uint8_t> kNmtCommands[] = {
@@ -110,12 +111,20 @@ void BusTrouble::foreignNmt(const Words& words) {
   for (std::size_t i : session_.stage.named(words.at(1))) {
     Conditions::extend(session_.conditions.foreign, now + 500ms);
     if (code == kNmtResetNode) session_.mayCoastInDriveOf(i);
-    const bool started = code == kNmtStart && !session_.truths.empty() &&
-                         session_.truths[i].nmt == canopen::NmtState::operational;
+    const auto operational = [this, i] {
+      return !session_.truths.empty() && session_.truths[i].nmt == canopen::NmtState::operational;
+    };
     const bool resets = code == kNmtResetNode || code == kNmtResetCommunication;
     const Duration away =
         resets ? session_.stage.driveOf(i).device().behaviour().boot_time : Duration::zero();
-    if (!started) session_.loseCommands(i, 1s + away);
+    if (code == kNmtStart) {
+      if (!operational()) session_.loseCommands(i, 1s);
+      continue;
+    }
+    // A drive that goes on has not heard it, and what it was told counts on.
+    session_.later(kHeard, [this, i, away, operational] {
+      if (!operational()) session_.loseCommands(i, 1s + away);
+    });
   }
 }
 

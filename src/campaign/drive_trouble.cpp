@@ -100,7 +100,7 @@ void DriveTrouble::limitHere(std::size_t axis, const Words& words) {
   sim::AxisMechanics& mechanics = drive.mechanics(number);
   double& limit =
       words.at(2) == "lower" ? mechanics.negative_limit_switch : mechanics.positive_limit_switch;
-  const double before = limit;
+  const double before = switches_.emplace(&limit, limit).first->second;
   limit = drive.truth(session_.now(), number).position_turns;
   session_.later(toDuration(words.at(3)), [&limit, before] { limit = before; });
 }

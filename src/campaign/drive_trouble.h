@@ -1,6 +1,9 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
+#include <vector>
+
 #include "campaign/session.h"
 
 namespace cia402::campaign {
@@ -39,6 +42,7 @@ class DriveTrouble {
   Session& session_;
   std::vector<unsigned> cuts_;  ///< of each drive's power that have not ended
   std::vector<bool> dead_;      ///< drives with a fault that only the power switch ends
+  std::map<const double*, double> switches_;  ///< where those that were moved belong
 };
 
 }  // namespace cia402::campaign

@@ -121,9 +121,9 @@ void Player::calm() {
   drives_.calm();
 }
 
-/// SYNC, and what passes between the master and the drive of the axis that is watched (CiA 301,
-/// 7.3.5: the predefined connection set carries the node-ID in the lowest seven bits). The PDOs of
-/// a further axis may have other COB-IDs.
+/// SYNC, NMT, and what passes between the master and the drive of the axis that is watched (CiA
+/// 301, 7.3.5: the predefined connection set carries the node-ID in the lowest seven bits). The
+/// PDOs of a further axis may have other COB-IDs.
 void Player::traceFrame(const can::Frame& frame) const {
   const AxisFacts* const watched = session_.stage.find(options_.watch);
   if (watched == nullptr || frame.error) return;
@@ -132,7 +132,8 @@ void Player::traceFrame(const can::Frame& frame) const {
       return place.axis == watched->index && place.cob_id == frame.id;
     });
   };
-  const bool of_node = frame.id == 0x80 || (frame.id & 0x7F) == watched->node_id;
+  const bool told = frame.id == 0 && (frame.data[1] == 0 || frame.data[1] == watched->node_id);
+  const bool of_node = told || frame.id == 0x80 || (frame.id & 0x7F) == watched->node_id;
   if (!of_node && !holds(session_.stage.rpdos()) && !holds(session_.stage.tpdos())) return;
   const std::string line = can::formatLogLine({{}, "can", frame, can::Direction::unknown});
   session_.say(line.substr(line.find("can ")));

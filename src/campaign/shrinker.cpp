@@ -104,11 +104,18 @@ class Shrinker {
     return better;
   }
   /// Without it something else goes wrong: there is nothing to judge by, no switch to home to, a
-  /// count is a leap, or a velocity is refused.
+  /// count is a leap, or a velocity is refused, be it the drive's own.
   static bool judges(const std::string& key) {
-    static const std::vector<std::string> kKeys = {
-        "limits",      "velocity",           "acceleration",       "gear_ratio",       "simulation",
-        "home_switch", "lower_limit_switch", "upper_limit_switch", "unwatched_streams"};
+    static const std::vector<std::string> kKeys = {"limits",
+                                                   "velocity",
+                                                   "acceleration",
+                                                   "gear_ratio",
+                                                   "simulation",
+                                                   "home_switch",
+                                                   "lower_limit_switch",
+                                                   "upper_limit_switch",
+                                                   "unwatched_streams",
+                                                   "search_velocity"};
     return std::find(kKeys.begin(), kKeys.end(), key) != kKeys.end();
   }
   bool dropKeysOf(const std::vector<std::string>& path) {

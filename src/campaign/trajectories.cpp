@@ -152,7 +152,13 @@ void Trajectories::accepted(const Sent& sent) {
   session_.stage.look(session_.truths);
   const bool seen = std::all_of(sent.axes.begin(), sent.axes.end(),
                                 [&](std::size_t i) { return session_.conditions.quiet(i, now); });
-  goals_[sent.group] = seen ? sent.goals : std::vector<Goal>();
+  const std::vector<Goal> goals = seen ? sent.goals : std::vector<Goal>();
+  waiting_.erase(sent.group);
+  if (sent.has_start && sent.base > now) {
+    waiting_[sent.group] = {now, sent.base, goals};
+  } else {
+    goals_[sent.group] = goals;
+  }
   for (std::size_t i : sent.axes) {
     if (sent.stop && follows_[i] != sent.group) continue;  // another group moves it
     follows_[i] = sent.group;
@@ -166,7 +172,15 @@ void Trajectories::accepted(const Sent& sent) {
 
 void Trajectories::hear(const std::string& text) {
   for (const config::GroupConfig& group : session_.stage.loaded().robot.groups) {
-    if (text == group.name + ": goal reached") reached(group);
+    if (text != group.name + ": goal reached") continue;
+    const auto next = waiting_.find(group.name);
+    if (next != waiting_.end() && session_.now() >= next->second.begin) {
+      // Where cycles were late the driver's clock is, too: this may be the end of the one before.
+      const bool late = session_.late_until > next->second.since;
+      goals_[group.name] = late ? std::vector<Goal>() : next->second.goals;
+      waiting_.erase(next);
+    }
+    reached(group);
   }
 }
 

@@ -34,6 +34,11 @@ class Trajectories {
     std::size_t axis = 0;
     double from = 0.0, way = 0.0, slack = 0.0;
   };
+  /// A trajectory that waits until the one before has had its time.
+  struct Waiting {
+    Time since{}, begin{};
+    std::vector<Goal> goals;
+  };
   /// A trajectory on its way to the driver.
   struct Sent {
     std::string group;
@@ -58,6 +63,7 @@ class Trajectories {
   Session& session_;
   std::map<std::size_t, std::string> follows_;      ///< the group that moved an axis last
   std::map<std::string, std::vector<Goal>> goals_;  ///< of the groups' trajectories under way
+  std::map<std::string, Waiting> waiting_;          ///< and of those behind them
 };
 
 }  // namespace cia402::campaign

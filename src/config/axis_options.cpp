@@ -1,6 +1,4 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include <cmath>
-
 #include "config/profile/parts.h"
 #include "config/robot_parts.h"
 
@@ -62,38 +60,6 @@ void readParameters(const yaml::Value& value, drive::AxisConfig& axis) {
   readSubindices(section, "save", axis.save);
   readSubindices(section, "restore", axis.restore);
   section.finish();
-}
-
-namespace {
-
-void readVector(yaml::Section& section, const std::string& key, double (&target)[3]) {
-  const auto value = section.get(key);
-  const auto numbers = value ? value->numbers(3) : std::nullopt;
-  for (std::size_t i = 0; numbers && i < 3; ++i) target[i] = (*numbers)[i];
-}
-
-}  // namespace
-
-FrameConfig readFrame(const yaml::Value& value, const std::string& joint) {
-  FrameConfig frame;
-  frame.joint = joint;
-  yaml::Section section(value);
-  section.require("parent", "the tf frame that the joint is fixed to");
-  section.require("child", "the tf frame that the joint moves");
-  section.read("parent", frame.parent);
-  section.read("child", frame.child);
-  if (const auto origin = section.get("origin")) {
-    yaml::Section origin_section(*origin);
-    readVector(origin_section, "xyz", frame.xyz);
-    readVector(origin_section, "rpy", frame.rpy);
-    origin_section.finish();
-  }
-  readVector(section, "axis", frame.axis);
-  const double length = std::hypot(frame.axis[0], frame.axis[1], frame.axis[2]);
-  if (length < 1e-9) section.get("axis")->problem("must not be the zero vector");
-  for (double& component : frame.axis) component /= length;
-  section.finish();
-  return frame;
 }
 
 SimulationConfig readSimulation(const yaml::Value& value) {

@@ -129,11 +129,26 @@ bool homedByEdge(const AxisConfig& axis) {
   return method != methods.end() && method->second.edge.has_value();
 }
 
+/// Not refused: where a drive counts its homing speeds in a unit of its own, that is how they are
+/// given.
+void warnOfHomingSpeeds(yaml::Section& homing, const AxisConfig& axis, RobotConfig& robot) {
+  const std::optional<double>& limit = axis.limits.velocity;
+  const auto warn = [&](const char* key, double value) {
+    if (!limit || value <= *limit) return;
+    robot.warnings.push_back(homing.get(key)->path() + ": " + numberText(value) +
+                             " is beyond `limits/velocity` " + numberText(*limit) +
+                             ": the drive searches faster than the joint may move else");
+  };
+  warn("search_velocity", axis.homing->search_velocity);
+  warn("zero_velocity", axis.homing->zero_velocity);
+}
+
 void checkHoming(yaml::Section& section, const AxisConfig& axis, RobotConfig& robot) {
   if (!axis.homing) return;
   const drive::HomingSpec& spec = axis.profile->homing;
   const auto homing = *section.get("homing");
   yaml::Section homing_section(homing);
+  warnOfHomingSpeeds(homing_section, axis, robot);
   const auto method = homing_section.get("method");
   const bool by_driver = spec.methods.count(std::nullopt) != 0;
   const bool by_drive = spec.methods.size() > (by_driver ? 1 : 0);

@@ -78,9 +78,7 @@ void readSections(yaml::Section& section, AxisDraft& draft, RobotConfig& robot) 
   if (const auto homing = section.get("homing")) axis.homing = readHoming(*homing);
   if (draft.first) readDevice(section, draft.device, robot);
   if (const auto parameters = section.get("parameters")) readParameters(*parameters, axis);
-  if (const auto frame = section.get("frame")) {
-    robot.frames.push_back(readFrame(*frame, axis.joint));
-  }
+  if (const auto frame = section.get("frame")) readFrame(*frame, axis.joint, robot);
   SimulationConfig simulation;
   if (const auto value = section.get("simulation")) simulation = readSimulation(*value);
   if (simulation.drive.empty() && axis.profile) simulation.drive = axis.profile->name;

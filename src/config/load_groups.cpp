@@ -111,6 +111,7 @@ std::vector<std::string> incapableAxes(const RobotConfig& robot, const std::stri
 void readConstraints(const yaml::Value& value, GroupConfig& group) {
   yaml::Section section(value);
   section.read("goal_time", group.goal_time, yaml::kNotNegative);
+  section.read("stopped_velocity_tolerance", group.stopped_velocity_tolerance, yaml::kNotNegative);
   for (const std::string& joint : group.joints) {
     const auto tolerance = section.get(joint);
     if (!tolerance) continue;
@@ -197,6 +198,8 @@ void readGroups(const yaml::Value& value, RobotConfig& robot) {
     yaml::Section section(entry);
     group.joints = readNames(section, "joints", known, "joint");
     section.read("stop_group_on_fault", group.stop_group_on_fault);
+    section.read("allow_partial_joints_goal", group.allow_partial_joints_goal);
+    section.read("stop_trajectory_duration", group.stop_trajectory_duration, yaml::kNotNegative);
     if (const auto constraints = section.get("constraints")) readConstraints(*constraints, group);
     section.finish();
     for (const std::string& joint : group.joints) {

@@ -1,6 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <fstream>
-#include <set>
 
 #include "config/robot_parts.h"
 
@@ -26,15 +25,6 @@ void readAxes(const yaml::Value& value, const YAML::Node& defaults, AxisReading&
   if (robot.axes.empty()) value.problem("must name at least one axis");
 }
 
-void checkFrames(const yaml::Value& axes, const RobotConfig& robot) {
-  std::set<std::string> children;
-  for (const FrameConfig& frame : robot.frames) {
-    if (!frame.child.empty() && !children.insert(frame.child).second) {
-      axes.problem("two joints move the tf frame `" + frame.child + "`; a frame has one parent");
-    }
-  }
-}
-
 RobotConfig readRobot(const YAML::Node& tree, const ProfileLookup& lookup, Problems& problems) {
   RobotConfig robot;
   AxisReading reading{ProfileCache(lookup, problems), EdsFiles(lookup), {}, {}};
@@ -48,13 +38,16 @@ RobotConfig readRobot(const YAML::Node& tree, const ProfileLookup& lookup, Probl
   const auto defaults = section.get("defaults");
   if (defaults) yaml::Section check_kind(*defaults);
   section.read("joint_state_rate", robot.joint_state_rate, yaml::Range{0.0, 1000.0, true});
+  if (const auto unknown = section.get("unknown_joints")) {
+    robot.omit_unknown_joints = unknown->oneOf({"nan", "omit"}) == 1U;
+  }
   const auto axes = section.get("axes");
   if (axes) {
     readAxes(*axes, defaults ? defaults->node() : YAML::Node(), reading, robot);
-    checkFrames(*axes, robot);
   } else {
     problems.add("axes", "is missing: name at least one axis with its node_id and drive");
   }
+  readTf(section, robot);
   if (const auto couplings = section.get("couplings")) readCouplings(*couplings, robot);
   const auto groups = section.get("groups");
   if (groups && !groups->node().IsNull()) readGroups(*groups, robot);

@@ -46,7 +46,10 @@ struct GroupConfig {
   std::string name;
   std::vector<std::string> joints;
   bool stop_group_on_fault = true;
-  double goal_time = 1.0;  ///< s
+  bool allow_partial_joints_goal = false;    ///< a trajectory may name some of the joints only
+  double goal_time = 0.4;                    ///< s
+  double stopped_velocity_tolerance = 0.01;  ///< rad/s or m/s; 0: none
+  double stop_trajectory_duration = 0.0;     ///< s that a stop takes at least; 0: as hard as may be
   std::map<std::string, JointTolerance> tolerances;
 };
 
@@ -56,10 +59,14 @@ struct CouplingConfig {
   std::vector<std::vector<double>> matrix;  ///< joint space = matrix * axis space
 };
 
-/// Fixed and moving frames around a joint, for tf.
+/// A tf frame that a joint moves, or one that stands still, as URDF defines joints.
 struct FrameConfig {
-  std::string joint, parent, child;
-  double xyz[3] = {0, 0, 0}, rpy[3] = {0, 0, 0}, axis[3] = {0, 0, 1};
+  std::string joint;           ///< that moves it; empty: it stands still
+  std::string parent, child;   ///< names in tf, the frame's own is `child`
+  double xyz[3] = {0, 0, 0};   ///< m, of its origin in the parent
+  double rpy[3] = {0, 0, 0};   ///< rad, its turn there about the parent's x, then y, then z
+  double axis[3] = {0, 0, 1};  ///< of length 1, in the turned frame: the joint turns it about that
+                               ///< or shifts it along
 };
 
 /// The `simulation:` section of an axis: what stands around the simulated drive, in the joint's own
@@ -104,8 +111,12 @@ struct RobotConfig {
   }
   std::vector<CouplingConfig> couplings;
   std::vector<GroupConfig> groups;
-  std::vector<FrameConfig> frames;
-  double joint_state_rate = 50.0;                     ///< Hz
+  std::vector<FrameConfig> frames;         ///< that joints move; with `static_frames` trees
+  std::vector<FrameConfig> static_frames;  ///< that stand still
+  bool publish_tf = false;                 ///< the node tells tf of them
+  double joint_state_rate = 50.0;          ///< Hz
+  /// joint_states leave out joints whose position is not known; else they are NaN there.
+  bool omit_unknown_joints = false;
   std::map<std::string, SimulationConfig> simulated;  ///< axis name -> its `simulation:` section
   std::vector<std::string> warnings;                  ///< worth a look, but no reason to refuse
 };

@@ -127,7 +127,10 @@ void checkFeedForward(yaml::Section& axis_section, const drive::AxisConfig& axis
 void tunePositionLoop(yaml::Section& section, drive::AxisConfig& axis);
 /// The axis' `set_point_stream`, or the profile's. @pre its PDOs are chosen
 void tuneSetPointStream(yaml::Section& section, drive::AxisConfig& axis);
-FrameConfig readFrame(const yaml::Value& value, const std::string& joint);
+/// The `frame` of an axis. A second parent of a frame, or a ring of frames, is refused.
+void readFrame(const yaml::Value& value, const std::string& joint, RobotConfig& robot);
+/// `static_frames` and `publish_tf`. @pre the axes were read
+void readTf(yaml::Section& root, RobotConfig& robot);
 SimulationConfig readSimulation(const yaml::Value& value);
 
 /// Chooses the PDO mapping: the axis' `pdos`, the profile's, or one made for its modes.

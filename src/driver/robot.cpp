@@ -195,14 +195,13 @@ std::future<bus::TrajectoryOutcome> Robot::follow(
   command.group = group;
   command.joints = joints;
   command.points = points;
-  const bool stops = points.empty();
   command.ended = [promise](const bus::TrajectoryOutcome& outcome) { promise->set_value(outcome); };
-  const auto answered = [promise, stops](const bus::Answer& answer) {
-    if (answer.success && !stops) return;  // its end is told
+  const auto answered = [promise](const bus::TrajectoryAnswer& answer) {
+    if (answer.success) return;  // its end is told
     bus::TrajectoryOutcome outcome;
+    outcome.code = answer.code;
     outcome.message = answer.message;
-    outcome.end = answer.success ? bus::TrajectoryEnd::stopped : bus::TrajectoryEnd::refused;
-    if (!answer.success) outcome.code = motion::TrajectoryErrorCode::invalid_goal;
+    outcome.end = bus::TrajectoryEnd::refused;
     promise->set_value(outcome);
   };
   impl_->runner.post(bus::Command(std::move(command), answered));

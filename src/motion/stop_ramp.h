@@ -13,6 +13,8 @@ class StopRamp {
   void begin(double position, double velocity, double deceleration);
   /// Advances by `dt`. Stays where it is once finished.
   void advance(Duration dt);
+  /// Positions have got another zero.
+  void shift(double by) { position_ += by; }
   bool finished() const { return velocity_ == 0.0; }
   double position() const { return position_; }
   double velocity() const { return velocity_; }

@@ -38,15 +38,18 @@ SplineSegment connect(const Target& from, const Target& to, double duration_s) {
   return SplineSegment::linear(from.state.position, to.state.position, duration_s);
 }
 
-TrajectoryError allPassed(const TrajectoryPoint& last, Time base, Time begin) {
+TrajectoryError allPassed(const std::vector<TrajectoryPoint>& points, Time base, Time begin) {
+  const double last = toSeconds(points.back().time_from_start);
   if (begin <= base) {
     return {TrajectoryErrorCode::invalid_goal,
-            "point 0, the only one, has time_from_start 0 s: there is no time to reach it in"};
+            "point " + std::to_string(points.size() - 1) +
+                (points.size() == 1 ? ", the only one, has" : ", the last one, has") +
+                " time_from_start " + formatNumber(last) + " s: there is no time to reach it in"};
   }
-  const double late = toSeconds(begin - base);
-  return {TrajectoryErrorCode::old_header_timestamp,
-          "all points have passed: the trajectory should have begun " + formatNumber(late) +
-              " s ago and its last point is at " + formatNumber(toSeconds(last.time_from_start)) +
+  return {TrajectoryErrorCode::invalid_goal,
+          "all points have passed: the trajectory should have begun " +
+              formatNumber(toSeconds(begin - base)) + " s ago and its last point is at " +
+              formatNumber(last) +
               " s; check the stamp and that the clocks agree (stamp 0 starts at once)"};
 }
 
@@ -110,7 +113,7 @@ std::optional<TrajectoryError> Trajectory::takePointsAhead(
     const Time time = base + point.time_from_start;
     if (time > begin_) ends_.push_back(time);
   }
-  if (ends_.empty()) return allPassed(points.back(), base, begin_);
+  if (ends_.empty()) return allPassed(points, base, begin_);
   dropped_points_ = points.size() - ends_.size();
   return {};
 }
@@ -155,15 +158,16 @@ void Trajectory::samplePositions(Time time, std::vector<double>& positions) cons
   for (std::size_t j = 0; j < count; ++j) positions[j] = joints[j].position(since_s);
 }
 
-Result<std::vector<std::size_t>> matchJoints(const std::vector<Joint>& joints,
-                                             const std::vector<std::string>& names) {
-  std::vector<std::size_t> order;
+Result<std::vector<JointPlace>> matchJoints(const std::vector<Joint>& joints,
+                                            const std::vector<std::string>& names, bool partial) {
+  std::vector<JointPlace> places;
   std::vector<std::string> missing, twice, unknown;
-  for (const Joint& joint : joints) {
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const Joint& joint = joints[i];
     const auto found = std::find(names.begin(), names.end(), joint.name);
-    order.push_back(static_cast<std::size_t>(found - names.begin()));
     const auto count = std::count(names.begin(), names.end(), joint.name);
-    if (count == 0) missing.push_back(joint.name);
+    if (count > 0) places.push_back({i, static_cast<std::size_t>(found - names.begin())});
+    if (count == 0 && (!partial || names.empty())) missing.push_back(joint.name);
     if (count > 1) twice.push_back(joint.name);
   }
   for (const std::string& name : names) {
@@ -179,7 +183,7 @@ Result<std::vector<std::size_t>> matchJoints(const std::vector<Joint>& joints,
   mention("the group has no joint ", unknown);
   mention("the trajectory lacks joint ", missing);
   mention("the trajectory names more than once ", twice);
-  if (sentence.empty()) return order;
+  if (sentence.empty()) return places;
   std::vector<std::string> all;
   for (const Joint& joint : joints) all.push_back(joint.name);
   return Error{sentence + "; the group's joints are " + quotedList(all)};

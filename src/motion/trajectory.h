@@ -45,17 +45,17 @@ class Trajectory {
  public:
   /// Checks everything before anything moves. `joints` and `commanded` have one entry a joint.
   ///
-  /// Points at or before begin() are dropped. Refused with a sentence that names joint, point (the
+  /// Points at or before begin() are dropped, also such as lie before the start (time_from_start
+  /// below 0). Refused with a sentence that names joint, point (the
   /// first is 0), value and limit are:
   /// - INVALID_JOINTS: no joints, or not one commanded state a joint;
   /// - INVALID_GOAL: sizes that differ from the number of joints, values that are not finite, times
-  ///   that are negative or do not rise; a last point with a velocity above kRestVelocity (the
-  ///   joint would have to stop there at once);
+  ///   that do not rise; no point that is still ahead; a last point with a velocity above
+  ///   kRestVelocity (the joint would have to stop there at once);
   /// - INVALID_GOAL: position, velocity or acceleration beyond the joint's limits anywhere on the
   ///   way still ahead, not only at the points, by more than 1e-6 of the limit (for positions: of
   ///   the range). A joint that is outside its position limits already may move back, not further.
-  ///   Jerk is not checked: between cubic segments it has no bound;
-  /// - OLD_HEADER_TIMESTAMP: all points have passed.
+  ///   Jerk is not checked: between cubic segments it has no bound.
   /// No points at all are a valid trajectory that asks for a stop: the caller brings the joints
   /// to rest. Sampling holds the commanded positions.
   static TrajectoryResult create(const std::vector<Joint>& joints,
@@ -75,6 +75,8 @@ class Trajectory {
   /// The positions of that alone, many times cheaper: what a cycle needs.
   void samplePositions(Time time, std::vector<double>& positions) const;
 
+  /// So many of the first points had passed before it began.
+  std::size_t droppedPoints() const { return dropped_points_; }
   bool finished(Time time) const { return time >= endTime(); }
   Time startTime() const { return begin_; }
   Time endTime() const { return ends_.empty() ? begin_ : ends_.back(); }
@@ -122,10 +124,17 @@ class [[nodiscard]] TrajectoryResult {
   std::variant<Trajectory, TrajectoryError> state_;
 };
 
-/// For each joint its place in the message's `names`, to bring points into the group's order.
-/// Every joint must be named exactly once and no other; the error (code INVALID_JOINTS) lists all
-/// that are unknown, missing or named twice.
-Result<std::vector<std::size_t>> matchJoints(const std::vector<Joint>& joints,
-                                             const std::vector<std::string>& names);
+/// A joint that a message names.
+struct JointPlace {
+  std::size_t joint;  ///< of the group
+  std::size_t place;  ///< in the message
+};
+
+/// Where the joints of a group are in the message's `names`, in the group's order. Every joint must
+/// be named exactly once and no other; the error (code INVALID_JOINTS) lists all that are unknown,
+/// missing or named twice. @param partial joints may be missing, but not all
+Result<std::vector<JointPlace>> matchJoints(const std::vector<Joint>& joints,
+                                            const std::vector<std::string>& names,
+                                            bool partial = false);
 
 }  // namespace cia402::motion

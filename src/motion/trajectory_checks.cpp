@@ -88,10 +88,6 @@ Failure checkPoint(const std::vector<Joint>& joints, const TrajectoryPoint& poin
 Failure checkTimes(const std::vector<TrajectoryPoint>& points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double time = toSeconds(points[i].time_from_start);
-    if (points[i].time_from_start < Duration::zero()) {
-      return invalidGoal(pointName(i) + " has time_from_start " + seconds(time) +
-                         "; it must not be negative");
-    }
     if (i > 0 && points[i].time_from_start <= points[i - 1].time_from_start) {
       return invalidGoal(pointName(i) + " has time_from_start " + seconds(time) +
                          ", which is not after the " +

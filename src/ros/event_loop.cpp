@@ -24,8 +24,8 @@ EventLoop::EventLoop() : wake_fd_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)), began
 
 EventLoop::~EventLoop() { close(wake_fd_); }
 
-void EventLoop::every(Duration period, std::function<void()> task) {
-  tasks_.push_back({period, began_ + period, std::move(task)});
+void EventLoop::every(Duration period, std::function<void()> task, std::function<bool()> wanted) {
+  tasks_.push_back({period, began_ + period, std::move(task), std::move(wanted)});
 }
 
 void EventLoop::wake() const {
@@ -40,14 +40,16 @@ void EventLoop::step() {
   const Time now = bus::realNow() + kTogether;
   for (Task& task : tasks_) {
     if (task.due > now) continue;
-    task.work();
+    if (task.counts()) task.work();
     task.due += ((now - task.due) / task.period + 1) * task.period;
   }
 }
 
 void EventLoop::sleep() {
   Time due = kNever;
-  for (const Task& task : tasks_) due = std::min(due, task.due);
+  for (const Task& task : tasks_) {
+    if (task.counts()) due = std::min(due, task.due);
+  }
   const std::int64_t left = std::max<std::int64_t>((due - bus::realNow()).count(), 0);
   const timespec timeout{static_cast<std::time_t>(left / 1'000'000'000),
                          static_cast<long>(left % 1'000'000'000)};

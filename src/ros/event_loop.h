@@ -26,7 +26,8 @@ class EventLoop {
   void always(std::function<void()> task) { always_.push_back(std::move(task)); }
   /// Called at each whole multiple of `period` (> 0) since the loop was made, so that one waking
   /// serves tasks of several periods. What is too late is left out, never made good.
-  void every(Duration period, std::function<void()> task);
+  /// @param wanted where it is given and says no, the task is left out, and nobody wakes for it
+  void every(Duration period, std::function<void()> task, std::function<bool()> wanted = {});
   /// Any thread: ends the sleep of step(). Never waits.
   void wake() const;
   /// An eventfd: to write to it is wake(), for signal handlers.
@@ -55,6 +56,9 @@ class EventLoop {
     Duration period;
     Time due;
     std::function<void()> work;
+    std::function<bool()> wanted;
+
+    bool counts() const { return !wanted || wanted(); }
   };
 
   void sleep();

@@ -1,34 +1,46 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <tf2_ros/static_transform_broadcaster.h>
 #include <tf2_ros/transform_broadcaster.h>
 
+#include <cstddef>
+#include <optional>
 #include <vector>
 
-#include "bus/joint.h"
-#include "bus/runner.h"
+#include "bus/bus_time.h"
+#include "bus/snapshot.h"
 #include "config/robot.h"
+#include "motion/joint.h"
+#include "ros/stamp_order.h"
 
 namespace cia402::ros_node {
 
-/// Transform of a joint's child frame in its parent frame at a joint position (rad or m): the
-/// origin, then the turn about or the shift along the axis, as URDF defines joints.
-geometry_msgs::TransformStamped jointTransform(const config::FrameConfig& frame, bool prismatic,
-                                               double position, const ros::Time& stamp);
-
-/// Publishes the frames of joints that have a `frame` section to /tf. A joint whose position is not
-/// known sends nothing.
+/// Tells tf where the frames of a robot are, if it is to (`publish_tf`): those that stand still
+/// once, to /tf_static, those of joints to /tf.
 class Frames {
  public:
-  Frames(bus::BusRunner& runner, const config::RobotConfig& robot);
+  /// @param robot must outlive it
+  Frames(const bus::BusTime& time, const config::RobotConfig& robot);
 
-  void publish();
+  /// Sends the frames of those joints whose position is known, each with the time of its feedback
+  /// as its stamp, and where that is newer than what was sent before.
+  /// @param joints those of a snapshot
+  void publish(const std::vector<bus::JointState>& joints);
 
  private:
-  bus::BusRunner& runner_;
-  const std::vector<config::FrameConfig>& frames_;
-  std::vector<motion::Joint> joints_;
-  tf2_ros::TransformBroadcaster broadcaster_;
+  /// A frame, and the joint that moves it.
+  struct Moved {
+    const config::FrameConfig* frame;
+    std::size_t joint;  ///< index in the snapshot
+    motion::JointUnit unit;
+    StampOrder order{};
+  };
+
+  const bus::BusTime& time_;
+  std::vector<Moved> moved_;
+  std::optional<tf2_ros::TransformBroadcaster> broadcaster_;
+  std::optional<tf2_ros::StaticTransformBroadcaster> static_broadcaster_;
 };
 
 }  // namespace cia402::ros_node

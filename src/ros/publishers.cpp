@@ -8,6 +8,7 @@
 
 #include "bus/joint.h"
 #include "ros/clock_map.h"
+#include "ros/group_message.h"
 
 namespace cia402::ros_node {
 namespace {
@@ -92,11 +93,7 @@ std::string stepText(const bus::AxisSnapshot& axis) {
 
 Publishers::Publishers(ros::NodeHandle& node, ros::NodeHandle& private_node, bus::BusRunner& runner,
                        const LinkWatch& link, const config::RobotConfig& robot)
-    : runner_(runner), link_(link), robot_(robot) {
-  for (const motion::Joint& joint : bus::jointsOf(robot)) joint_states_.name.push_back(joint.name);
-  joint_states_.position.resize(joint_states_.name.size());
-  joint_states_.velocity.resize(joint_states_.name.size());
-  joint_states_.effort.resize(joint_states_.name.size());
+    : runner_(runner), link_(link), robot_(robot), joints_(bus::jointsOf(robot)) {
   joint_states_pub_ = node.advertise<sensor_msgs::JointState>("joint_states", 10);
   axis_states_pub_ = private_node.advertise<cia402_driver::AxisStates>("axis_states", 10, true);
   bus_state_pub_ = private_node.advertise<cia402_driver::BusState>("bus_state", 10, true);
@@ -106,37 +103,27 @@ Publishers::Publishers(ros::NodeHandle& node, ros::NodeHandle& private_node, bus
   }
 }
 
-void Publishers::publishJointStates() {
-  const bus::NetworkSnapshot snapshot = runner_.snapshot();
-  Time newest{};
-  for (std::size_t i = 0; i < snapshot.joints.size(); ++i) {
-    const bus::JointState& joint = snapshot.joints[i];
-    joint_states_.position[i] = joint.position;
-    joint_states_.velocity[i] = joint.velocity;
-    joint_states_.effort[i] = joint.effort;
-    if (joint.known && joint.stamp > newest) newest = joint.stamp;
+void Publishers::publishJointStates(const bus::NetworkSnapshot& snapshot) {
+  const ros::Time now = ros::Time::now();
+  const Time newest = newestFeedback(snapshot.joints);
+  const ros::Time when = newest == Time() ? now : toRos(runner_.time(), newest);
+  sensor_msgs::JointState message =
+      jointStates(joints_, snapshot.joints, robot_.omit_unknown_joints);
+  if (!message.name.empty()) {
+    if (const auto stamp = joint_state_stamps_.next(snapshot.joints, when, now)) {
+      message.header.stamp = *stamp;
+      joint_states_pub_.publish(message);
+    }
   }
-  joint_states_.header.stamp = newest == Time() ? ros::Time::now() : toRos(runner_.time(), newest);
-  joint_states_pub_.publish(joint_states_);
-  publishGroups(snapshot);
+  publishGroups(snapshot, when);
 }
 
-void Publishers::publishGroups(const bus::NetworkSnapshot& snapshot) {
+void Publishers::publishGroups(const bus::NetworkSnapshot& snapshot, const ros::Time& stamp) {
   for (std::size_t g = 0; g < group_pubs_.size(); ++g) {
     if (group_pubs_[g].getNumSubscribers() == 0) continue;
     control_msgs::JointTrajectoryControllerState message;
-    message.header.stamp = joint_states_.header.stamp;
-    for (const std::string& name : robot_.groups[g].joints) {
-      for (std::size_t i = 0; i < snapshot.joints.size(); ++i) {
-        if (joint_states_.name[i] != name) continue;
-        const bus::JointState& joint = snapshot.joints[i];
-        message.joint_names.push_back(name);
-        message.desired.positions.push_back(joint.desired);
-        message.actual.positions.push_back(joint.position);
-        message.actual.velocities.push_back(joint.velocity);
-        message.error.positions.push_back(joint.desired - joint.position);
-      }
-    }
+    message.header.stamp = stamp;
+    addGroup(robot_.groups[g], joints_, snapshot, message);
     group_pubs_[g].publish(message);
   }
 }

@@ -5,12 +5,13 @@
 #include <cia402_driver/BusState.h>
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
-#include <sensor_msgs/JointState.h>
 
 #include <vector>
 
 #include "bus/runner.h"
 #include "config/robot.h"
+#include "motion/joint.h"
+#include "ros/joint_states.h"
 #include "ros/link_watch.h"
 
 namespace cia402::ros_node {
@@ -22,13 +23,14 @@ class Publishers {
   Publishers(ros::NodeHandle& node, ros::NodeHandle& private_node, bus::BusRunner& runner,
              const LinkWatch& link, const config::RobotConfig& robot);
 
-  /// Sends joint_states, and the states of groups to those who listen; at the configured rate.
-  void publishJointStates();
+  /// Sends joint_states where a position is newer than those sent before, and the states of groups
+  /// to those who listen; to be called at the configured rate.
+  void publishJointStates(const bus::NetworkSnapshot& snapshot);
   /// Sends ~axis_states if something has changed or 0.1 s have passed, ~bus_state every 0.5 s.
   void publishStates();
 
  private:
-  void publishGroups(const bus::NetworkSnapshot& snapshot);
+  void publishGroups(const bus::NetworkSnapshot& snapshot, const ros::Time& stamp);
   cia402_driver::BusState busState(const bus::NetworkSnapshot& snapshot) const;
   cia402_driver::AxisStates axisStates(const bus::NetworkSnapshot& snapshot) const;
   bool changed(const cia402_driver::AxisStates& states) const;
@@ -36,7 +38,8 @@ class Publishers {
   bus::BusRunner& runner_;
   const LinkWatch& link_;
   const config::RobotConfig& robot_;
-  sensor_msgs::JointState joint_states_;
+  const std::vector<motion::Joint> joints_;  ///< in the order of the snapshots
+  JointStateStamps joint_state_stamps_;
   cia402_driver::AxisStates last_states_;
   Time axis_states_sent_{}, bus_state_sent_{};
   ros::Publisher joint_states_pub_, axis_states_pub_, bus_state_pub_;

@@ -12,10 +12,10 @@
 
 namespace cia402::ros_node {
 
-/// All services of the node, for the bus (`~name`) and for each axis (`~<axis>/name`). A call
-/// returns when what it asked for has ended. Those whose requests say nothing, every one that stops
-/// motion among them, wait at the desk and never for each other; the rest keep a thread of the
-/// node handle's callback queue while they wait.
+/// All services of the node, for the bus (`~name`), for each axis (`~<axis>/name`) and for each
+/// group (`~<group>/name`). A call returns when what it asked for has ended. Those whose requests
+/// say nothing, every one that stops motion among them, wait at the desk and never for each other;
+/// the rest keep a thread of the node handle's callback queue while they wait.
 class Services {
  public:
   /// @param desk, @param runner, @param robot must outlive the services.

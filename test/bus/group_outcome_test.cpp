@@ -5,16 +5,15 @@
 
 #include <cmath>
 
-#include "bus/robot_world.h"
+#include "bus/group_scene.h"
 
 namespace cia402::bus {
 namespace {
 
 using motion::TrajectoryErrorCode;
-using test::RobotWorld;
 using testing::HasSubstr;
 using namespace std::chrono_literals;
-using Outcomes = std::shared_ptr<std::vector<TrajectoryOutcome>>;
+using test::Outcomes;
 
 config::RobotConfig robotWithGoal(double tolerance) {
   config::RobotConfig robot = test::testRobot();
@@ -23,10 +22,9 @@ config::RobotConfig robotWithGoal(double tolerance) {
   return robot;
 }
 
-struct GroupOutcomeTest : testing::Test {
-  explicit GroupOutcomeTest(const config::RobotConfig& config = test::testRobot()) : world(config) {
-    world.enable();
-  }
+struct GroupOutcomeTest : test::GroupScene {
+  using GroupScene::GroupScene;
+  using GroupScene::send;
   /// Sends both joints there in so many seconds. @return how that ended, once it has
   Outcomes send(double shoulder, double elbow, double seconds,
                 std::optional<Time> start_time = {}) {
@@ -34,14 +32,6 @@ struct GroupOutcomeTest : testing::Test {
     command.start_time = start_time;
     return send(std::move(command));
   }
-  Outcomes send(TrajectoryCommand command) {
-    auto outcomes = std::make_shared<std::vector<TrajectoryOutcome>>();
-    command.ended = [outcomes](const TrajectoryOutcome& outcome) { outcomes->push_back(outcome); };
-    answer = world.call(std::move(command));
-    return outcomes;
-  }
-  RobotWorld world;
-  Answer answer;
 };
 
 TEST_F(GroupOutcomeTest, ATrajectoryThatComesToItsGoalHasReachedIt) {
@@ -103,6 +93,23 @@ TEST_F(GroupOutcomeTest, OneThatWaitsBehindAnotherIsReplacedToo) {
   EXPECT_EQ(next->front().end, TrajectoryEnd::reached);
 }
 
+TEST_F(GroupOutcomeTest, OneThatIsToBeginNowRunsUntilTheLaterOneOfTheSameMomentBegins) {
+  send(0.1, 0.0, 4.0);
+  world.run(200ms);
+  TrajectoryCommand soon = world.trajectory("arm", {{{0.5, 0.0}, 1.0}});
+  TrajectoryCommand later = world.trajectory("arm", {{{0.2, 0.0}, 1.0}});
+  later.start_time = world.now + 1500ms;
+  auto ended = std::make_shared<std::vector<TrajectoryOutcome>>();
+  soon.ended = [ended](const TrajectoryOutcome& outcome) { ended->push_back(outcome); };
+  (void)world.begin(std::move(soon));
+  (void)world.begin(std::move(later));  // in the same cycle
+  ASSERT_TRUE(world.runUntil([&] { return !ended->empty(); }, 1400ms));
+  EXPECT_EQ(ended->front().end, TrajectoryEnd::reached);
+  EXPECT_EQ(world.drives[0].position, 50000);
+  world.run(1500ms);
+  EXPECT_EQ(world.drives[0].position, 20000);
+}
+
 TEST_F(GroupOutcomeTest, OneThatIsStoppedEndsWhenItsJointsStand) {
   const Outcomes ended = send(1.0, -0.5, 1.0);
   world.run(500ms);
@@ -114,6 +121,86 @@ TEST_F(GroupOutcomeTest, OneThatIsStoppedEndsWhenItsJointsStand) {
   const int stands = world.drives[0].position;
   world.run(500ms);
   EXPECT_EQ(world.drives[0].position, stands);
+}
+
+TEST_F(GroupOutcomeTest, OneThatIsCancelledEndsWhenItsJointsStand) {
+  TrajectoryCommand command = world.trajectory("arm", {{{1.0, -0.5}, 1.0}});
+  command.id = 7;
+  const Outcomes ended = send(std::move(command));
+  world.run(300ms);
+  ASSERT_TRUE(world.call(CancelCommand{"arm", 6}).success);
+  world.run(200ms);
+  const int moving = world.drives[0].position;
+  world.run(20ms);
+  EXPECT_NE(world.drives[0].position, moving) << "another one was cancelled";
+  ASSERT_TRUE(world.call(CancelCommand{"arm", 7}).success);
+  EXPECT_TRUE(ended->empty()) << "they are being brought to rest";
+  ASSERT_TRUE(world.runUntil([&] { return !ended->empty(); }, 2s));
+  EXPECT_EQ(ended->front().end, TrajectoryEnd::stopped);
+  EXPECT_EQ(ended->front().message, "arm: cancelled");
+  const int stands = world.drives[0].position;
+  EXPECT_LT(stands, 99000);
+  world.run(500ms);
+  EXPECT_EQ(world.drives[0].position, stands);
+}
+
+// It was planned from where the other would have led.
+TEST_F(GroupOutcomeTest, OneThatWaitsBehindACancelledOneIsStoppedWithIt) {
+  TrajectoryCommand command = world.trajectory("arm", {{{1.0, -0.5}, 1.0}});
+  command.id = 7;
+  const Outcomes runs = send(std::move(command));
+  const Outcomes waits = send(0.5, 0.5, 1.0, world.now + 900ms);
+  world.run(500ms);
+  ASSERT_TRUE(world.call(CancelCommand{"arm", 7}).success);
+  ASSERT_EQ(waits->size(), 1u);
+  EXPECT_EQ(waits->front().end, TrajectoryEnd::stopped);
+  world.run(300ms);
+  ASSERT_EQ(runs->size(), 1u);
+  const int stands = position(0);
+  world.run(2s);
+  EXPECT_EQ(position(0), stands);
+}
+
+TEST_F(GroupOutcomeTest, OneThatWaitsIsCancelledAlone) {
+  const Outcomes runs = send(1.0, -0.5, 1.0);
+  TrajectoryCommand command = world.trajectory("arm", {{{0.5, 0.5}, 1.0}});
+  command.id = 8;
+  command.start_time = world.now + 900ms;
+  const Outcomes waits = send(std::move(command));
+  ASSERT_TRUE(world.call(CancelCommand{"arm", 8}).success);
+  ASSERT_EQ(waits->size(), 1u);
+  EXPECT_EQ(waits->front().end, TrajectoryEnd::stopped);
+  world.run(3s);
+  ASSERT_EQ(runs->size(), 1u);
+  EXPECT_EQ(runs->front().end, TrajectoryEnd::reached);
+  EXPECT_EQ(position(0), 100000);
+}
+
+TEST_F(GroupOutcomeTest, OneWithoutPointsEndsWhenTheJointsStand) {
+  send(1.0, -0.5, 1.0);
+  world.run(500ms);
+  const Outcomes ended = send(world.trajectory("arm", {}));
+  EXPECT_TRUE(ended->empty());
+  ASSERT_TRUE(world.runUntil([&] { return !ended->empty(); }, 2s));
+  EXPECT_EQ(ended->front().end, TrajectoryEnd::stopped);
+  EXPECT_EQ(ended->front().message, "arm: stands");
+  const int stands = world.drives[0].position;
+  world.run(500ms);
+  EXPECT_EQ(world.drives[0].position, stands);
+  EXPECT_EQ(send(world.trajectory("arm", {}))->size(), 1u) << "they stand already";
+}
+
+TEST_F(GroupOutcomeTest, OneIsJudgedByTolerancesOfItsOwn) {
+  TrajectoryCommand command = world.trajectory("arm", {{{1.0, -0.5}, 1.0}});
+  command.tolerances.joints["elbow"].trajectory = 1e-9;
+  const Outcomes ended = send(std::move(command));
+  ASSERT_TRUE(world.runUntil([&] { return !ended->empty(); }, 3s));
+  EXPECT_EQ(ended->front().end, TrajectoryEnd::failed);
+  EXPECT_EQ(ended->front().code, TrajectoryErrorCode::path_tolerance_violated);
+  EXPECT_EQ(ended->front().joint, "elbow");
+  const Outcomes next = send(0.5, 0.5, 1.0);  // as configured again
+  ASSERT_TRUE(world.runUntil([&] { return !next->empty(); }, 3s));
+  EXPECT_EQ(next->front().end, TrajectoryEnd::reached) << next->front().message;
 }
 
 TEST_F(GroupOutcomeTest, OneThatWaitsIsStoppedAtOnce) {

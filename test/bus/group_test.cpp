@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bus/robot_world.h"
+#include "bus/group_scene.h"
 
 namespace cia402::bus {
 namespace {
@@ -27,20 +27,8 @@ config::RobotConfig robotWith(bool stop_group_on_fault = true) {
   return robot;
 }
 
-struct GroupTest : testing::Test {
-  explicit GroupTest(const config::RobotConfig& config = robotWith()) : world(config) {
-    world.enable();
-  }
-  /// Velocity limit 2 rad/s, acceleration limit 10 rad/s² in counts a cycle, rounded.
-  void expectSmooth(std::size_t drive) const {
-    const auto& targets = world.drives[drive].targets;
-    for (std::size_t i = 2; i < targets.size(); ++i) {
-      ASSERT_LE(std::abs(targets[i] - targets[i - 1]), 800 + 1) << "cycle " << i;
-      ASSERT_LE(std::abs(targets[i] - 2 * targets[i - 1] + targets[i - 2]), 16 + 3)
-          << "cycle " << i;
-    }
-  }
-  RobotWorld world;
+struct GroupTest : test::GroupScene {
+  explicit GroupTest(const config::RobotConfig& config = robotWith()) : GroupScene(config) {}
 };
 
 TEST_F(GroupTest, FollowsATrajectoryToItsGoal) {
@@ -89,10 +77,10 @@ TEST_F(GroupTest, RefusesUnknownJointsAndGroupsAndImpossibleTrajectories) {
 
 TEST_F(GroupTest, RefusesWhileAnAxisIsDisabled) {
   ASSERT_TRUE(world.call(ProcedureKind::disable, "elbow").success);
-  const Answer answer = world.move({1.0, 0.0}, 1.0);
-  EXPECT_FALSE(answer.success);
-  EXPECT_THAT(answer.message, AllOf(HasSubstr("arm: trajectory refused: elbow (node 2)"),
-                                    HasSubstr("not enabled"), HasSubstr("call enable")));
+  const Answer refused = world.move({1.0, 0.0}, 1.0);
+  EXPECT_FALSE(refused.success);
+  EXPECT_THAT(refused.message, AllOf(HasSubstr("arm: trajectory refused: elbow (node 2)"),
+                                     HasSubstr("not enabled"), HasSubstr("call enable")));
 }
 
 TEST_F(GroupTest, RefusesWhileAnAxisIsInAModeThatFollowsNoTrajectory) {
@@ -214,8 +202,8 @@ TEST_F(GroupTest, TakesOverFromAStopRampNowAndLater) {
     world.run(40ms);
     TrajectoryCommand command = world.trajectory("arm", {{{0.2, 0.0}, 2.0}});
     if (later > 0ms) command.start_time = world.now + later;
-    const Answer answer = world.call(command);
-    ASSERT_TRUE(answer.success) << answer.message;
+    const Answer taken = world.call(command);
+    ASSERT_TRUE(taken.success) << taken.message;
     EXPECT_TRUE(world.group().executing());
     world.run(2100ms + later);
     EXPECT_EQ(world.drives[0].position, 20000);

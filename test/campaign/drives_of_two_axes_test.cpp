@@ -182,6 +182,14 @@ TEST_F(DualTrouble, ALimitSwitchIsThatOfTheAxis) {
   EXPECT_EQ(stage_.driveOf(0).mechanics(1).positive_limit_switch, 1e9);
 }
 
+TEST_F(DualTrouble, ALimitSwitchThatIsMovedTwiceGoesBackToItsPlace) {
+  drives({"switch", "a1", "upper", "1"});
+  wait(500ms);
+  drives({"switch", "a1", "upper", "1"});
+  wait(1100ms);
+  EXPECT_EQ(stage_.driveOf(0).mechanics(1).positive_limit_switch, 1e9);
+}
+
 TEST_F(DualTrouble, SilenceIsThatOfTheDrive) {
   drives({"silent", "a2", "0.5"});
   EXPECT_THAT(unheard(), ElementsAre(0, 1));
@@ -197,10 +205,19 @@ TEST_F(DualTrouble, ACableIsThatOfTheDrive) {
 
 TEST_F(DualTrouble, ACommandOfAStrangerIsToTheDrive) {
   bus({"foreign_nmt", "a2", "stop"});
+  wait(6ms);
   EXPECT_THAT(cutOff(), ElementsAre(0, 1));
   EXPECT_THAT(mayCoast(), ElementsAre());
   bus({"foreign_nmt", "a2", "reset_node"});
   EXPECT_THAT(mayCoast(), ElementsAre(0, 1));
+}
+
+// It goes on as it was told.
+TEST_F(DualTrouble, ACommandOfAStrangerThatIsLostCutsNothingOff) {
+  for (AxisTruth& truth : session_.truths) truth.nmt = canopen::NmtState::operational;
+  bus({"foreign_nmt", "a2", "stop"});
+  wait(6ms);
+  EXPECT_THAT(cutOff(), ElementsAre());
 }
 
 TEST_F(DualTrouble, CommandsThatAreLostAreCountedOnceForADrive) {

@@ -161,16 +161,32 @@ TEST_F(TargetStepTest, AwayFromWhereTheMotorStandsIsFound) {
   EXPECT_EQ(found(), "target_step a1 +8 ms");
 }
 
-TEST_F(TargetStepTest, BackToWhereTheMotorStoodMoreThanACycleAgoIsFound) {
+TEST_F(TargetStepTest, BackToWhereTheMotorStoodMoreThanTwoCyclesAgoIsFound) {
   target(1500);
   truths_[0].velocity = 0.0;
   truths_[0].told = 0.03068;
   look();
   truths_[0].velocity = 0.5;
   target(1600);
+  target(1700);
   look();
   rpdos(0, {{kControlwordObject, 0x000F}, {kTargetObject, 1000}});
-  EXPECT_EQ(found(), "target_step a1 +10 ms") << "5 ms ago";
+  EXPECT_EQ(found(), "target_step a1 +14 ms") << "9 ms ago";
+}
+
+// It was freed just as its target was called back, which is to where it has been told to be.
+TEST_F(TargetStepTest, BackToAMotorThatHasJustBegunToMoveIsNone) {
+  target(1500);
+  truths_[0].velocity = 0.0;
+  truths_[0].told = 0.03068;
+  look();
+  truths_[0].velocity = -2.0;
+  target(1600);
+  truths_[0].told = 0.02455;  // 800 counts
+  target(800);
+  EXPECT_EQ(found(), "") << "it stood 8 ms ago";
+  target(1300);
+  EXPECT_EQ(found(), "target_step a1 +17 ms");
 }
 
 class FloatTest : public OracleTest {

@@ -16,6 +16,9 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
+constexpr Duration kUnanswered = std::chrono::milliseconds(300);
+// After 0.3 s without an answer it is reset, and told 0.05 s later that it goes on as before.
+constexpr Duration kAwaitsBootUp = std::chrono::milliseconds(360);
 const char kReset[] = "000 82 03";
 const char kTellPreOperational[] = "000 80 03";
 const char kAskShownMode[] = "603 40 61 60 00 00 00 00 00";
@@ -104,9 +107,11 @@ TEST_F(BootBrakeTest, goes_on_where_nothing_is_told_of_the_ramp) {
   config.brakes.front().statusword = {0x6041, 0};
   peer.on(kAskStatusword, Lines{});
   boot(false);
-  pass(std::chrono::milliseconds(299));
+  pass(std::chrono::milliseconds(99));
   EXPECT_GT(node->nextDeadline(), now);
   EXPECT_THAT(peer.take(), ElementsAre(kAskStatusword, kQuickStop, kAskStatusword));
+  pass(std::chrono::milliseconds(500));
+  EXPECT_THAT(peer.take(), testing::Not(Contains(kTellPreOperational))) << "it is asked again";
   pass(std::chrono::milliseconds(2));
   EXPECT_THAT(peer.take(), Contains(kTellPreOperational));
 }
@@ -136,6 +141,66 @@ TEST_F(BootBrakeTest, takes_it_over_once_it_is_identified_where_it_did_not_answe
                           kAskShownMode, kQuickStop, kAskStatusword));
   EXPECT_EQ(std::count(sent.begin(), brake, kTellPreOperational), 1);
   EXPECT_EQ(std::count(brake, sent.end(), kTellPreOperational), 0);
+}
+
+// It was cut off as the boot began, and appears while its boot-up message is waited for.
+TEST_F(BootBrakeTest, stops_a_motor_that_appears_before_the_reset_is_sent_again) {
+  shows("583 4F 61 60 00 08 00 00 00");
+  peer.forget(kAskStatusword);
+  peer.forget(kReset);
+  boot();
+  pass(kAwaitsBootUp);
+  EXPECT_THAT(peer.take(), Contains(kReset));
+  peer.on(kAskStatusword, Lines{kOperationEnabled});
+  peer.on(kAskStatusword, Lines{kQuickStopActive});
+  rests();
+  hear("703 05");
+  pass(std::chrono::milliseconds(50));
+  const Lines sent = peer.take();
+  ASSERT_GE(sent.size(), 7U);
+  EXPECT_THAT(Lines(sent.begin(), sent.begin() + 7),
+              ElementsAre(test::kAskDeviceType, kAskStatusword, kAskShownMode, kQuickStop,
+                          kAskStatusword, kAskStatusword, kReset));
+}
+
+TEST_F(BootBrakeTest, asks_for_the_state_again_where_a_heartbeat_says_that_the_drive_is_there) {
+  shows("583 4F 61 60 00 08 00 00 00");
+  peer.forget(kAskStatusword);
+  peer.on(kAskStatusword, Lines{});
+  peer.on(kAskStatusword, Lines{kOperationEnabled});
+  rests();
+  boot();
+  hear("703 05");
+  pass(kAwaitsBootUp);
+  const Lines sent = peer.take();
+  const auto reset = std::find(sent.begin(), sent.end(), kReset);
+  const auto stop = std::find(sent.begin(), sent.end(), kQuickStop);
+  EXPECT_LT(stop, reset) << "it came only once the drive was reset";
+  EXPECT_EQ(std::count(sent.begin(), stop, kAskStatusword), 2);
+}
+
+// A stopped drive answers no SDO.
+TEST_F(BootBrakeTest, does_not_ask_a_stopped_drive_again) {
+  peer.forget(kAskStatusword);
+  peer.forget(kReset);
+  boot();
+  hear("703 04");
+  pass(kAwaitsBootUp);
+  const Lines sent = peer.take();
+  EXPECT_EQ(std::count(sent.begin(), sent.end(), kAskStatusword), 1);
+  EXPECT_THAT(sent, Contains(kReset));
+}
+
+// It was there all the time, and does not tell: its reset does not wait once more.
+TEST_F(BootBrakeTest, resets_again_what_answered_nothing_while_its_heartbeat_went_on) {
+  peer.forget(kAskStatusword);
+  peer.forget(kReset);
+  boot();
+  hear("703 05");
+  pass(2 * kUnanswered + kAwaitsBootUp);
+  peer.take();
+  hear("703 05");
+  EXPECT_THAT(peer.take(), ElementsAre(kReset));
 }
 
 TEST_F(BootBrakeTest, stops_a_motor_in_another_mode_at_once) {
@@ -192,6 +257,39 @@ TEST_F(BootBrakeTest, writes_nothing_to_the_drive_of_another_maker) {
   peer.on(test::kAskVendor, "583 43 18 10 01 45 33 22 11");
   peer.on(kAskShownMode, Lines{"583 4F 61 60 00 09 00 00 00"});  // would end it, if it were asked
   EXPECT_THAT(sentBeforeReset(), ElementsAre(kAskStatusword, test::kAskVendor));
+}
+
+TEST_F(BootBrakeTest, asks_again_where_an_answer_is_lost_once_it_has_given_one) {
+  shows("583 4F 61 60 00 08 00 00 00");
+  config.vendor_id = 0x11223344;
+  peer.forget(test::kAskVendor);
+  peer.on(test::kAskVendor, Lines{});
+  peer.on(test::kAskVendor, "583 43 18 10 01 44 33 22 11");
+  rests();
+  const Lines sent = sentBeforeReset(std::chrono::milliseconds(500));
+  EXPECT_THAT(sent, Contains(kQuickStop));
+  EXPECT_EQ(std::count(sent.begin(), sent.end(), test::kAskVendor), 2);
+}
+
+// It was identified before, and has not started anew since.
+TEST_F(BootBrakeTest, does_not_ask_who_it_is_once_more) {
+  shows("583 4F 61 60 00 08 00 00 00");
+  config.vendor_id = 0x11223344;
+  peer.forget(test::kAskVendor);
+  peer.on(test::kAskVendor, "583 43 18 10 01 44 33 22 11");
+  peer.forget(kAskStatusword);
+  peer.on(kAskStatusword, kSwitchOnDisabled);
+  boot();
+  ASSERT_THAT(peer.take(), Contains(test::kAskVendor));
+  peer.forget(kAskStatusword);
+  peer.on(kAskStatusword, Lines{kOperationEnabled});
+  rests();
+  node->boot(now, true);
+  settle();
+  const Lines sent = peer.take();
+  ASSERT_GE(sent.size(), 5U);
+  EXPECT_THAT(Lines(sent.begin(), sent.begin() + 5),
+              ElementsAre(kAskStatusword, kAskShownMode, kQuickStop, kAskStatusword, kReset));
 }
 
 TEST_F(BootBrakeTest, asks_who_it_is_where_that_is_configured) {

@@ -110,6 +110,79 @@ TEST_F(LastStopInTorqueTest, a_mode_whose_stop_brakes_is_left) {
   EXPECT_THAT(sent, Not(Contains(kBrake)));
 }
 
+/// It left operational by itself, and what it is asked, or its answer, is lost.
+class LeftOperational : public LastStopInTorqueTest {
+ protected:
+  void leave(const char* mode, const char* heartbeat = "703 7F") {
+    boot();
+    ASSERT_EQ(node->health(), Health::ready) << node->problem();
+    if (*mode != 0) node->receiveTpdo(0, test::frame(std::string("183 37 12 ") + mode), now);
+    peer.take();
+    peer.forget(kMotorStop);
+    peer.forget(kAskStatusword);
+    hear(heartbeat);
+    ASSERT_EQ(node->health(), Health::booting);
+  }
+  /// What is sent with each heartbeat, 90 ms apart.
+  Lines sentWithHeartbeat() {
+    pass(milliseconds(90));
+    peer.take();
+    hear("703 7F");
+    return peer.take();
+  }
+  const char* const kAskStatusword = "603 40 41 60 00 00 00 00 00";
+};
+
+TEST_F(LeftOperational, its_motor_is_told_to_stop_with_each_heartbeat_until_it_tells_its_state) {
+  leave("08");
+  EXPECT_EQ(peer.take(), (Lines{kAskStatusword, kMotorStop}));
+  EXPECT_EQ(sentWithHeartbeat(), Lines{kMotorStop});
+  EXPECT_EQ(sentWithHeartbeat(), Lines{kMotorStop});
+  hear("583 4B 41 60 00 37 12 00 00");  // operation enabled; its mode is asked for before the stop
+  EXPECT_EQ(node->health(), Health::booting);
+  EXPECT_THAT(sentWithHeartbeat(), Not(Contains(kMotorStop)));
+}
+
+// The answers to what nobody waits for come after the fence's own, and prove nothing.
+TEST_F(LeftOperational, what_is_told_while_the_fence_waits_moves_the_fence) {
+  leave("08");
+  peer.forget("603 40 00 10 00 00 00 00 00");
+  peer.forget("603 40 18 10 00 00 00 00 00");
+  sentWithHeartbeat();
+  pass(milliseconds(220));
+  EXPECT_THAT(peer.take(), Contains("603 40 00 10 00 00 00 00 00"));
+  hear("703 7F");
+  EXPECT_EQ(peer.take(), (Lines{kMotorStop, "603 40 18 10 00 00 00 00 00"}));
+  hear("583 43 00 10 00 92 01 02 00");
+  EXPECT_THAT(peer.take(), IsEmpty());
+  hear("583 4F 18 10 00 04 00 00 00");
+  EXPECT_EQ(peer.take(), Lines{kAskStatusword});
+}
+
+TEST_F(LeftOperational, in_a_mode_whose_stop_lets_go_its_motor_is_told_nothing_unasked) {
+  leave("04");
+  EXPECT_EQ(peer.take(), Lines{kAskStatusword});
+  EXPECT_THAT(sentWithHeartbeat(), Not(Contains(kMotorStop)));
+}
+
+TEST_F(LeftOperational, in_a_mode_that_nobody_knows_its_motor_is_told_nothing_unasked) {
+  leave("");
+  EXPECT_EQ(peer.take(), Lines{kAskStatusword});
+  EXPECT_THAT(sentWithHeartbeat(), Not(Contains(kMotorStop)));
+}
+
+TEST_F(LeftOperational, a_stopped_one_is_told_nothing_for_it_hears_no_sdo) {
+  leave("08", "703 04");
+  EXPECT_THAT(peer.take(), Not(Contains(kMotorStop)));
+}
+
+TEST_F(LeftOperational, one_that_is_stopped_meanwhile_is_told_nothing_more) {
+  leave("08");
+  peer.take();
+  hear("703 04");
+  EXPECT_THAT(peer.take(), Not(Contains(kMotorStop)));
+}
+
 TEST_F(LastStopTest, without_anything_to_write_it_is_stopped_by_nmt_at_once) {
   config.writes.clear();
   lose();

@@ -325,11 +325,57 @@ TEST_F(SdoFenceTest, a_last_word_takes_no_read_away_that_an_abandoned_block_uplo
   EXPECT_EQ(peer.take(), Lines{kAskDeviceType});
 }
 
-TEST_F(SdoFenceTest, a_last_word_has_one_to_four_bytes_and_a_free_wire) {
+TEST_F(SdoFenceTest, a_last_word_goes_out_in_front_of_the_first_answer_to_a_read) {
+  const SdoTicket read = client.upload(kStatusword);
+  client.tick(now);
+  ASSERT_TRUE(client.post({0x6040, 0}, {2, 0}));
+  EXPECT_EQ(peer.take(), (Lines{kAskStatusword, "601 2B 40 60 00 02 00 00 00"}));
+  receive("581 4B 41 60 00 37 02 00 00");
+  ASSERT_TRUE(read->ok()) << read->message();
+  EXPECT_EQ(toUnsigned(read->data()), 0x237U);
+  client.download({0x6040, 0}, {6, 0});
+  client.tick(now);
+  EXPECT_EQ(peer.take(), Lines{kAskDeviceType}) << "its answer is still to come";
+}
+
+TEST_F(SdoFenceTest, a_last_word_behind_the_read_of_the_fence_has_another_object_read) {
+  abandonStatusword();
+  const SdoTicket next = client.download({0x6040, 0}, {6, 0}, "", once());
+  client.tick(now);
+  EXPECT_EQ(peer.take(), Lines{kAskDeviceType});
+  ASSERT_TRUE(client.post({0x6040, 0}, {2, 0}));
+  EXPECT_EQ(peer.take(), (Lines{"601 2B 40 60 00 02 00 00 00", kAskIdentity}));
+  receive(kDeviceType);
+  receive("581 60 40 60 00 00 00 00 00");  // to that word
+  EXPECT_TRUE(peer.take().empty());
+  receive(kIdentity);
+  EXPECT_EQ(peer.take(), Lines{"601 2B 40 60 00 06 00 00 00"});
+  EXPECT_FALSE(next->done());
+}
+
+TEST_F(SdoFenceTest, a_last_word_has_the_fence_s_only_object_read_once_more) {
+  client.upload({0x1000, 0}, "", once());
+  client.tick(now);
+  wait(50);
+  client.download({0x6040, 0}, {6, 0}, "", once());
+  client.tick(now);
+  peer.take();
+  ASSERT_TRUE(client.post({0x6040, 0}, {2, 0}));
+  peer.take();
+  receive(kIdentity);
+  EXPECT_EQ(peer.take(), Lines{kAskIdentity});
+  receive("581 60 40 60 00 00 00 00 00");  // to that word
+  EXPECT_TRUE(peer.take().empty());
+  receive(kIdentity);
+  EXPECT_EQ(peer.take(), Lines{"601 2B 40 60 00 06 00 00 00"});
+}
+
+TEST_F(SdoFenceTest, a_last_word_has_one_to_four_bytes_and_no_transfer_in_its_way) {
   EXPECT_FALSE(client.post({0x6040, 0}, {}));
   EXPECT_FALSE(client.post({0x6040, 0}, {1, 2, 3, 4, 5}));
-  client.upload(kStatusword);
+  client.upload(kName);
   client.tick(now);
+  receive("581 41 08 10 00 05 00 00 00");  // five bytes, in segments
   peer.take();
   EXPECT_FALSE(client.post({0x6040, 0}, {2, 0}));
   EXPECT_TRUE(peer.take().empty());

@@ -21,6 +21,9 @@ bus: {interface: vcan7, bitrate: 500000, sync_period: 0.01, node_id: 126, heartb
       sync_counter: 9, sync: external, listen: 0.5, reset: all, sync_window: 0.002,
       time_interval: 2.5, receive: all}
 joint_state_rate: 33.0
+unknown_joints: omit
+publish_tf: false
+static_frames: [{parent: carriage, child: tip, origin: {xyz: [4, 5, 6], rpy: [0.4, 0.5, 0.6]}}]
 recorder: {duration: 12.5, post_trigger: 1.5, directory: /tmp/recordings, keep: 7}
 axes:
   slide:
@@ -50,8 +53,9 @@ axes:
   turn: {node_id: 4, drive: generic_cia402, counts_per_turn: 1000,
          limits: {velocity: 1, acceleration: 2}}
 groups:
-  both: {joints: [turn, lift], stop_group_on_fault: false,
-         constraints: {goal_time: 2.5, lift: {trajectory: 0.02, goal: 0.003}}}
+  both: {joints: [turn, lift], stop_group_on_fault: false, allow_partial_joints_goal: true,
+         stop_trajectory_duration: 0.75,
+         constraints: {goal_time: 2.5, stopped_velocity_tolerance: 0.125, lift: {trajectory: 0.02, goal: 0.003}}}
 )";
 
 class RobotKeys : public testing::Test {
@@ -79,6 +83,7 @@ TEST_F(RobotKeys, OfTheBus) {
   EXPECT_EQ(bus.sync_window, milliseconds(2));
   EXPECT_EQ(bus.time_interval, milliseconds(2500));
   EXPECT_EQ(robot.joint_state_rate, 33.0);
+  EXPECT_TRUE(robot.omit_unknown_joints);
 }
 
 TEST_F(RobotKeys, OfTheRecorder) {
@@ -155,6 +160,17 @@ TEST_F(RobotKeys, OfAFrame) {
   EXPECT_THAT(frame.axis, ElementsAre(0.0, 0.6, 0.8)) << "of length 1";
 }
 
+TEST_F(RobotKeys, OfAStaticFrame) {
+  EXPECT_FALSE(robot.publish_tf);
+  ASSERT_EQ(robot.static_frames.size(), 1U);
+  const FrameConfig& frame = robot.static_frames[0];
+  EXPECT_EQ(frame.joint, "");
+  EXPECT_EQ(frame.parent, "carriage");
+  EXPECT_EQ(frame.child, "tip");
+  EXPECT_THAT(frame.xyz, ElementsAre(4.0, 5.0, 6.0));
+  EXPECT_THAT(frame.rpy, ElementsAre(0.4, 0.5, 0.6));
+}
+
 TEST_F(RobotKeys, OfTheSimulation) {
   const SimulationConfig& simulation = robot.simulated.at("slide");
   EXPECT_EQ(simulation.drive, "generic_cia402_guarding");
@@ -186,7 +202,10 @@ TEST_F(RobotKeys, OfAGroup) {
   EXPECT_EQ(group.name, "both");
   EXPECT_THAT(group.joints, ElementsAre("turn", "lift"));
   EXPECT_FALSE(group.stop_group_on_fault);
+  EXPECT_TRUE(group.allow_partial_joints_goal);
   EXPECT_EQ(group.goal_time, 2.5);
+  EXPECT_EQ(group.stopped_velocity_tolerance, 0.125);
+  EXPECT_EQ(group.stop_trajectory_duration, 0.75);
   ASSERT_EQ(group.tolerances.size(), 1U);
   EXPECT_EQ(group.tolerances.at("lift").trajectory, 0.02);
   EXPECT_EQ(group.tolerances.at("lift").goal, 0.003);
@@ -208,6 +227,7 @@ TEST(RobotDefaults, OfWhatIsNotGiven) {
   EXPECT_EQ(bus.listen, milliseconds(150));
   EXPECT_EQ(bus.time_interval, milliseconds(0));
   EXPECT_EQ(loaded.robot.joint_state_rate, 50.0);
+  EXPECT_FALSE(loaded.robot.omit_unknown_joints);
   EXPECT_EQ(loaded.robot.recorder.duration, milliseconds(10000));
   EXPECT_EQ(loaded.robot.recorder.post_trigger, milliseconds(500));
   EXPECT_EQ(loaded.robot.recorder.keep, 20U);
@@ -217,7 +237,10 @@ TEST(RobotDefaults, OfWhatIsNotGiven) {
   EXPECT_EQ(homing.order, 0);
   const GroupConfig& group = loaded.robot.groups.at(0);
   EXPECT_TRUE(group.stop_group_on_fault);
-  EXPECT_EQ(group.goal_time, 1.0);
+  EXPECT_FALSE(group.allow_partial_joints_goal);
+  EXPECT_EQ(group.goal_time, 0.4);
+  EXPECT_EQ(group.stopped_velocity_tolerance, 0.01);
+  EXPECT_EQ(group.stop_trajectory_duration, 0.0);
   EXPECT_THAT(group.tolerances, IsEmpty());
 }
 
@@ -240,12 +263,6 @@ TEST(RobotMistakes, AreToldWithWhatToDo) {
       {"sync_period: 0.004", "sync: mine", "bus/sync: unknown word `mine`"},
       {"sync_period: 0.004", "sync_counter: 241", "bus/sync_counter: must be between 0 and 240"},
       {"sync_period: 0.004", "node_id: 128", "bus/node_id: must be between 1 and 127"},
-      {"node_id: 1,", "node_id: 1, frame: {child: a},",
-       "axes/shoulder/frame: `parent` is missing: the tf frame that the joint is fixed to"},
-      {"node_id: 1,", "node_id: 1, frame: {parent: a},",
-       "axes/shoulder/frame: `child` is missing: the tf frame that the joint moves"},
-      {"node_id: 1,", "node_id: 1, frame: {parent: a, child: b, axis: [0, 0, 0]},",
-       "axes/shoulder/frame/axis: must not be the zero vector"},
       {"node_id: 1,", "node_id: 1, simulation: {lower_limit_switch: 1, upper_limit_switch: 1},",
        "lower_limit_switch must be less than upper_limit_switch"},
       {"node_id: 1,", "node_id: 1, simulation: {lower_stop: 1, upper_stop: 0.5},",
@@ -277,10 +294,8 @@ TEST(RobotMistakes, AreToldWithWhatToDo) {
        "axes/elbow/homing/acceleration: `lacks` says that the drive has no `homing_acceleration` "
        "to "
        "take it; remove one of the two"},
-      {"node_id: 1, gear_ratio: 50.0, limits: {lower: -3.0, upper: 3.0}}\n  elbow: {node_id: 2, ",
-       "node_id: 1, frame: {parent: a, child: b}}\n  elbow: {node_id: 2, frame: {parent: b, child: "
-       "b}, ",
-       "axes: two joints move the tf frame `b`; a frame has one parent"},
+      {"axes:", "unknown_joints: omitt\naxes:",
+       "unknown_joints: unknown word `omitt`, did you mean `omit`?"},
       {"axes:", "recorder: {duration: 2, post_trigger: 2}\naxes:",
        "recorder/post_trigger: must be less than `duration` (2.000000)"},
       {"axes:", "recorder: {duration: 0.5}\naxes:", "recorder/duration: must be at least 1"},
@@ -290,6 +305,11 @@ TEST(RobotMistakes, AreToldWithWhatToDo) {
       {"axes:", "groups: {arm: {}}\naxes:", "groups/arm: `joints` is missing: list the joints"},
       {"axes:", "groups: {arm: {joints: [elbow], constraints: {goal_time: -1}}}\naxes:",
        "groups/arm/constraints/goal_time: must be at least 0"},
+      {"axes:", "groups: {arm: {joints: [elbow], stop_trajectory_duration: -1}}\naxes:",
+       "groups/arm/stop_trajectory_duration: must be at least 0"},
+      {"axes:",
+       "groups: {arm: {joints: [elbow], constraints: {stopped_velocity_tolerance: -1}}}\naxes:",
+       "groups/arm/constraints/stopped_velocity_tolerance: must be at least 0"},
       {"axes:", "couplings: [{joints: [p, r], axes: [shoulder, elbow]}]\naxes:",
        "couplings[0]: `matrix` is missing: joint space = matrix * axis space"},
       {"axes:", "couplings: [{joints: [p, r], axes: [shoulder, elbow], matrix: [[1, 2]]}]\naxes:",
@@ -354,6 +374,20 @@ TEST(RobotWarnings, OfAHomePositionBeyondTheLimits) {
   EXPECT_THAT(warnings("-3.1"), Contains(words));
   EXPECT_THAT(warnings("3.0"), IsEmpty());
   EXPECT_THAT(warnings("-3.0"), IsEmpty());
+}
+
+TEST(RobotWarnings, OfASearchForHomeBeyondTheVelocityLimit) {
+  const auto warnings = [](const char* speeds) {
+    return changed("velocity: 2.0, acceleration: 8.0",
+                   "velocity: 2.0, acceleration: 8.0}, homing: {method: 17, " + std::string(speeds))
+        .robot.warnings;
+  };
+  EXPECT_THAT(warnings("search_velocity: 2.5, zero_velocity: 2.0"),
+              Contains("axes/shoulder/homing/search_velocity: 2.5 is beyond `limits/velocity` 2: "
+                       "the drive searches faster than the joint may move else"));
+  EXPECT_THAT(warnings("search_velocity: 2.0, zero_velocity: 2.0"), IsEmpty());
+  EXPECT_THAT(warnings("zero_velocity: 2.5"),
+              Contains(HasSubstr("axes/shoulder/homing/zero_velocity: 2.5 is beyond")));
 }
 
 }  // namespace

@@ -320,5 +320,33 @@ TEST(RecoverProcedure, NeedsNoHomingForVelocities) {
   EXPECT_TRUE(bench.give(0.5));
 }
 
+// What was asked for at a fault is answered when that has gone: it is of no fault any more.
+TEST(FaultReads, ThatAreAnsweredTooLateAreToldOfTheNextFaultAlone) {
+  DriveProfile profile = testProfile();
+  profile.supervision.fault_reads = {"1001:00", "1003:01"};
+  Bench bench(testConfig(profile));
+  bench.drive.dictionary[{0x1001, 0}] = {0x21, 1};
+  bench.drive.dictionary[{0x1003, 1}] = {0x8611, 4};
+  ASSERT_TRUE(bench.boot());
+  std::vector<std::string> told;
+  bench.each_cycle = [&, count = bench.axis.noticeCount()]() mutable {
+    if (std::exchange(count, bench.axis.noticeCount()) != count) {
+      told.push_back(bench.axis.notice());
+    }
+  };
+  bench.fail(0x8611);
+  ASSERT_TRUE(bench.runUntil([&] { return bench.drive.reads[{0x1001, 0}] == 1; }));
+  bench.drive.state = FakeDrive::S::disabled;
+  bench.drive.error = 0;
+  bench.run(milliseconds(200));
+  EXPECT_EQ(bench.drive.reads[(FakeDrive::Key{0x1003, 1})], 0);
+  EXPECT_THAT(told, Not(testing::Contains(HasSubstr("at this fault"))));
+  bench.fail(0x8611);
+  bench.run(milliseconds(200));
+  EXPECT_THAT(told,
+              testing::Contains("shoulder (node 3): at this fault the drive holds 1001:00 = 0x21 "
+                                "(generic, profile), 1003:01 = 0x8611 (following error)"));
+}
+
 }  // namespace
 }  // namespace cia402::drive

@@ -63,6 +63,62 @@ TEST(DriveHoming, TellsWhatItWaitsFor) {
           "switching the mode | 6061:00 to show 8 (cyclic_position)"}));
 }
 
+// 6099h as the drive has it: 1 count/s is 0.0001 rad/s, the joint's limit 2 rad/s.
+class HomingAtTheDrivesOwnSpeed : public testing::Test {
+ protected:
+  static AxisConfig configured(bool limited = true) {
+    AxisConfig config = searches();
+    config.homing->search_velocity = 0.0;
+    if (!limited) config.limits.velocity.reset();
+    return config;
+  }
+  static constexpr FakeDrive::Key kSearchSpeed{0x6099, 1};
+};
+
+TEST_F(HomingAtTheDrivesOwnSpeed, IsRefusedBeyondTheLimit) {
+  Bench bench(configured());
+  bench.drive.dictionary[kSearchSpeed] = {20100, 4};
+  ASSERT_TRUE(bench.boot());
+  ASSERT_TRUE(bench.enable());
+  const ProcedureStatus& status = bench.perform(ProcedureKind::home);
+  EXPECT_FALSE(status.success);
+  EXPECT_EQ(status.message,
+            "shoulder (node 3): is not homed, as the drive would search with a "
+            "homing_search_velocity (6099:01) of 2.01 rad/s, beyond the joint's limit 2 rad/s; "
+            "give `search_velocity` in `homing` of axes/shoulder");
+  EXPECT_EQ(bench.drive.homings, 0);
+}
+
+TEST_F(HomingAtTheDrivesOwnSpeed, IsTakenUpToTheLimit) {
+  Bench bench(configured());
+  bench.drive.dictionary[kSearchSpeed] = {20000, 4};
+  ASSERT_TRUE(bench.boot());
+  const ProcedureStatus& status = bench.perform(ProcedureKind::home);
+  EXPECT_TRUE(status.success) << status.message;
+}
+
+TEST_F(HomingAtTheDrivesOwnSpeed, IsTakenWhereTheDriveDoesNotTellIt) {
+  for (const bool answers : {true, false}) {
+    Bench bench(configured());
+    if (answers) {
+      bench.drive.read_aborts[kSearchSpeed] = 0x06020000;
+    } else {
+      bench.drive.unanswered_reads.insert(kSearchSpeed);
+    }
+    ASSERT_TRUE(bench.boot());
+    const ProcedureStatus& status = bench.perform(ProcedureKind::home);
+    EXPECT_TRUE(status.success) << status.message;
+  }
+}
+
+TEST_F(HomingAtTheDrivesOwnSpeed, IsNotAskedForWithoutALimit) {
+  Bench bench(configured(false));
+  bench.drive.dictionary[kSearchSpeed] = {20100, 4};
+  ASSERT_TRUE(bench.boot());
+  EXPECT_TRUE(bench.perform(ProcedureKind::home).success);
+  EXPECT_EQ(bench.drive.reads[kSearchSpeed], 0);
+}
+
 TEST(DriveHoming, StartsAtOnceWhereNoOldResultIsShown) {
   Bench bench(searches(withoutOldResult()));
   ASSERT_TRUE(bench.boot());

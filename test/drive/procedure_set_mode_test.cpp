@@ -144,6 +144,66 @@ TEST(SetModeProcedure, EntryWritesOfMappedObjectsStayInTheRpdo) {
   EXPECT_THAT(bench.drive.writes, testing::Contains(std::make_pair(0x60FFu, std::uint64_t{7000})));
 }
 
+NamedWrite writing(const char* object, double value) {
+  NamedWrite write;
+  write.object = object;
+  write.value = value;
+  return write;
+}
+
+/// Two modes that need other numbers in the same object.
+AxisConfig modesWithSpeeds() {
+  DriveProfile profile = testProfile();
+  profile.modes[4].entry_writes = {writing("profile_velocity", 0.5)};
+  profile.modes[5].entry_writes = {writing("profile_velocity", 1.5),
+                                   writing("quick_stop_option", 3)};
+  return testConfig(profile);
+}
+
+class CutOffSetMode : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(bench.boot());
+    ASSERT_TRUE(bench.enable());
+    ASSERT_EQ(profileVelocity(), 5000u);
+  }
+  std::uint64_t profileVelocity() { return bench.drive.dictionary[{0x6081, 0}].first; }
+  /// The axis takes nothing until it has what its mode needs.
+  void expectToWaitForEnable() {
+    EXPECT_EQ(profileVelocity(), 15000u);
+    EXPECT_FALSE(bench.give(bench.axis.state().position));
+    EXPECT_FALSE(bench.perform(ProcedureKind::recover).success);
+    ASSERT_TRUE(bench.enable());
+    EXPECT_EQ(profileVelocity(), 5000u);
+    EXPECT_EQ(bench.axis.motionRefusal(), "");
+    EXPECT_TRUE(bench.give(bench.axis.state().position));
+  }
+
+  Bench bench{modesWithSpeeds()};
+};
+
+TEST_F(CutOffSetMode, ByAHaltLeavesNothingOfTheOtherMode) {
+  const auto id = bench.axis.start({ProcedureKind::set_mode, "csv", 0.0}, bench.now);
+  ASSERT_TRUE(id.ok());
+  ASSERT_TRUE(bench.runUntil([&] { return profileVelocity() == 15000; }));
+  ASSERT_TRUE(bench.perform(ProcedureKind::halt).success);
+  ASSERT_EQ(bench.axis.state().mode->name, "cyclic_position");
+  EXPECT_THAT(bench.axis.obstacle(), HasSubstr("shoulder is halted: enable"));
+  expectToWaitForEnable();
+}
+
+TEST_F(CutOffSetMode, ByARefusalLeavesNothingOfTheOtherMode) {
+  bench.drive.aborts[{0x605A, 0}] = 0x08000022;
+  ASSERT_FALSE(bench.perform(ProcedureKind::set_mode, "csv").success);
+  EXPECT_EQ(bench.axis.obstacle(),
+            "shoulder may lack what mode cyclic_position needs, for a change of the mode was cut "
+            "off: enable");
+  EXPECT_THAT(bench.axis.motionRefusal(),
+              HasSubstr("the drive may lack what mode cyclic_position needs, for a change of the "
+                        "mode was cut off; call enable"));
+  expectToWaitForEnable();
+}
+
 TEST(VelocityMode, TakesVelocitiesWithinTheLimit) {
   AxisConfig config = testConfig();
   config.mode = "csv";

@@ -54,6 +54,78 @@ TEST(SetPoint, AStreamThatIsNotRenewedIsRampedToRest) {
   EXPECT_EQ(rig.point.breaks(), breaks + 1);
 }
 
+TEST(SetPoint, AStreamIsStoppedAsGentlyAsTheTimeAllows) {
+  Rig rig(SetPointKind::stream);
+  rig.move(1.0, 10);
+  rig.point.stop(milliseconds(500));  // 2 /s² of the 4 that there are
+  rig.cycles(25);
+  EXPECT_NEAR(rig.point.velocity(), 0.5, 1e-9);
+  rig.cycles(25);
+  EXPECT_TRUE(rig.point.atRest());
+  EXPECT_NEAR(rig.point.value(), 0.1 + 0.25, 1e-9);
+}
+
+TEST(SetPoint, AGentleStopIsNoHarderThanTheDeceleration) {
+  Rig rig(SetPointKind::stream);
+  rig.move(1.0, 10);
+  rig.point.stop(milliseconds(10));
+  rig.cycles(24);
+  EXPECT_FALSE(rig.point.atRest());
+  rig.cycles(1);
+  EXPECT_NEAR(rig.point.value(), 0.1 + 1.0 / (2 * kDeceleration), 1e-9);
+}
+
+TEST(SetPoint, AGentleStopEndsInFrontOfALimit) {
+  Rig rig(SetPointKind::stream, 0.7);
+  rig.move(1.0, 10);  // to 0.8; the limit is 1
+  rig.point.stop(std::chrono::seconds(2));
+  rig.cycles(39);
+  EXPECT_FALSE(rig.point.atRest());
+  EXPECT_NEAR(rig.point.velocity(), 0.025, 1e-9) << "2.5 /s²";
+  rig.cycles(1);
+  EXPECT_TRUE(rig.point.atRest());
+  EXPECT_NEAR(rig.point.value(), 1.0, 1e-9);
+}
+
+TEST(SetPoint, AGentleStopIsHastenedByAHarderOne) {
+  Rig rig(SetPointKind::stream);
+  rig.move(1.0, 10);
+  rig.point.stop(milliseconds(500));
+  rig.cycles(25);  // 0.5 /s
+  const std::uint32_t breaks = rig.point.breaks();
+  rig.point.stop(std::chrono::seconds(9));
+  rig.cycles(1);
+  EXPECT_NEAR(rig.point.velocity(), 0.48, 1e-9) << "never made gentler";
+  rig.point.stop();
+  rig.cycles(11);
+  EXPECT_NEAR(rig.point.velocity(), 0.04, 1e-9);
+  rig.cycles(1);
+  EXPECT_TRUE(rig.point.atRest());
+  EXPECT_EQ(rig.point.breaks(), breaks);
+}
+
+TEST(SetPoint, WhereAGentleStopLeadsIsExpected) {
+  Rig rig(SetPointKind::stream);
+  rig.move(1.0, 10);
+  rig.point.stop(milliseconds(500));
+  rig.cycles(10);
+  const SetPoint::Motion then = rig.point.expected(milliseconds(200));
+  rig.cycles(20);
+  EXPECT_NEAR(rig.point.value(), then.position, 1e-9);
+  EXPECT_NEAR(rig.point.velocity(), then.velocity, 1e-9);
+}
+
+TEST(SetPoint, AGentleStopGoesOnWithAnotherZero) {
+  Rig rig(SetPointKind::stream, -0.5);
+  rig.move(1.0, 10);
+  rig.point.stop(milliseconds(500));
+  rig.cycles(10);
+  rig.point.shift(0.25);
+  rig.cycles(40);
+  EXPECT_TRUE(rig.point.atRest());
+  EXPECT_NEAR(rig.point.value(), -0.4 + 0.25 + 0.25, 1e-9);
+}
+
 TEST(SetPoint, SlowsAVelocityDownByTheDecelerationWhereItIsNotRenewed) {
   Rig rig(SetPointKind::velocity);
   rig.point.give(1.0);

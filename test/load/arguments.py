@@ -3,7 +3,10 @@
 import os
 
 import rospy
+from actionlib_msgs.msg import GoalID
 from cia402_driver.msg import LssIdentity
+from control_msgs.msg import (FollowJointTrajectoryActionGoal, FollowJointTrajectoryGoal,
+                              JointTolerance)
 from std_msgs.msg import Float64
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
@@ -92,4 +95,24 @@ def trajectory(chance):
     return message
 
 
-TOPICS = {Float64: set_point, JointTrajectory: trajectory}
+def goal_id(chance):
+    """Of a goal that there may be, of all, of those before a time, of none."""
+    return GoalID(id=chance.choice(["", "1", "2", "3", "nobody", "x" * 1000]),
+                  stamp=chance.choice([rospy.Time(), rospy.Time(1), rospy.Time.now()]))
+
+
+def tolerances(chance):
+    return [JointTolerance(name=chance.choice(NAMES), position=chance.choice(NUMBERS),
+                           velocity=chance.choice(NUMBERS), acceleration=chance.choice(NUMBERS))
+            for _ in range(chance.choice([0, 0, 0, 1, 5]))]
+
+
+def action_goal(chance):
+    return FollowJointTrajectoryActionGoal(goal_id=goal_id(chance), goal=FollowJointTrajectoryGoal(
+        trajectory=trajectory(chance), path_tolerance=tolerances(chance),
+        goal_tolerance=tolerances(chance),
+        goal_time_tolerance=rospy.Duration(chance.choice([0, 0, 1, -1]))))
+
+
+TOPICS = {Float64: set_point, JointTrajectory: trajectory,
+          FollowJointTrajectoryActionGoal: action_goal, GoalID: goal_id}

@@ -45,9 +45,10 @@ TEST_F(TrajectoryChecks, AccelerationsNeedVelocities) {
   expectInvalid({point(1, {1, 2}, {}, {0, 0})}, "point 0 has accelerations without velocities");
 }
 
-TEST_F(TrajectoryChecks, TimesMustRiseFromZero) {
-  expectInvalid({point(-0.5, {1, 2})},
-                "point 0 has time_from_start -0.5 s; it must not be negative");
+TEST_F(TrajectoryChecks, TimesMustRise) {
+  expectInvalid({point(-0.5, {1, 2})}, "point 0, the only one, has time_from_start -0.5 s");
+  expectInvalid({point(-2, {1, 2}), point(0, {1, 2})},
+                "point 1, the last one, has time_from_start 0 s: there is no time to reach it in");
   expectInvalid({point(1, {1, 2}), point(1, {1, 2})},
                 "point 1 has time_from_start 1 s, which is not after the 1 s of point 0");
   expectInvalid({point(2, {1, 2}), point(1, {1, 2})}, "point 1 has time_from_start 1 s");
@@ -77,9 +78,19 @@ TEST_F(TrajectoryChecks, ThePresentStateMustBeKnownForEachJoint) {
   expectRefused({}, Code::invalid_joints, "no joints");
 }
 
-TEST_F(TrajectoryChecks, AllPointsPassedIsAnOldTimestamp) {
+TEST_F(TrajectoryChecks, PointsThatLieBeforeTheStartHavePassed) {
+  const auto trajectory = create({point(-1, {9, 9}), point(0, {8, 8}), point(1, {1, 2})});
+  ASSERT_TRUE(trajectory.ok()) << trajectory.error().message;
+  EXPECT_EQ(trajectory->droppedPoints(), 2U);
+  start.start_time = at(5);
+  const auto ahead = create({point(-1, {0.5, 1}), point(1, {1, 2})});
+  ASSERT_TRUE(ahead.ok()) << ahead.error().message;
+  EXPECT_EQ(ahead->droppedPoints(), 1U) << "it begins no sooner than it is stamped";
+}
+
+TEST_F(TrajectoryChecks, AllPointsPassedIsRefused) {
   start.start_time = at(-10);
-  expectRefused({point(1, {1, 2}), point(10, {1, 2})}, Code::old_header_timestamp,
+  expectRefused({point(1, {1, 2}), point(10, {1, 2})}, Code::invalid_goal,
                 "should have begun 10 s ago and its last point is at 10 s");
 }
 

@@ -209,10 +209,29 @@ TEST_F(TrajectorySampling, TimesStayExactLateInTheLifeOfTheClock) {
   EXPECT_NEAR(trajectory->sample(0, start.now + fromSeconds(0.5)).velocity, 1.5, 1e-12);
 }
 
+std::string text(const std::vector<JointPlace>& places) {
+  std::string all;
+  for (const JointPlace& place : places) {
+    all += std::to_string(place.joint) + " at " + std::to_string(place.place) + ", ";
+  }
+  return all;
+}
+
 TEST(MatchJoints, FindsThePlaceOfEachJoint) {
   const auto order = matchJoints({{"a", {}, {}}, {"b", {}, {}}, {"c", {}, {}}}, {"c", "a", "b"});
   ASSERT_TRUE(order);
-  EXPECT_EQ(*order, (std::vector<std::size_t>{1, 2, 0}));
+  EXPECT_EQ(text(*order), "0 at 1, 1 at 2, 2 at 0, ");
+}
+
+TEST(MatchJoints, LeavesJointsOutWhereThatIsAllowed) {
+  const std::vector<Joint> joints{{"a", {}, {}}, {"b", {}, {}}, {"c", {}, {}}};
+  const auto some = matchJoints(joints, {"c", "b"}, true);
+  ASSERT_TRUE(some);
+  EXPECT_EQ(text(*some), "1 at 1, 2 at 0, ");
+  EXPECT_FALSE(matchJoints(joints, {"c", "b"}));
+  EXPECT_FALSE(matchJoints(joints, {}, true)) << "but not all";
+  EXPECT_FALSE(matchJoints(joints, {"c", "c"}, true));
+  EXPECT_FALSE(matchJoints(joints, {"c", "x"}, true));
 }
 
 TEST(MatchJoints, NamesUnknownMissingAndRepeatedJointsAllAtOnce) {

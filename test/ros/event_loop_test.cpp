@@ -38,6 +38,20 @@ TEST(EventLoop, LeavesOutWhatIsTooLate) {
   EXPECT_GE(bus::realNow() - began, 5ms) << "made good in a burst";
 }
 
+TEST(EventLoop, DoesNotWakeForWhatNobodyWants) {
+  EventLoop loop;
+  bool wanted = false;
+  int done = 0, seldom = 0, steps = 0;
+  loop.every(
+      1ms, [&] { ++done; }, [&] { return wanted; });
+  loop.every(50ms, [&] { ++seldom; });
+  for (; seldom == 0; ++steps) loop.step();
+  EXPECT_EQ(done, 0);
+  EXPECT_LE(steps, 3);  // the kernel may wake a moment early
+  wanted = true;
+  while (done < 3) loop.step();
+}
+
 TEST(EventLoop, IsWokenByCallbacksOfOtherThreads) {
   EventLoop loop;
   loop.every(1h, [] { FAIL() << "not due"; });

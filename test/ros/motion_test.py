@@ -5,6 +5,7 @@ import math
 
 import rospy
 from cia402_driver.msg import AxisStates
+from control_msgs.msg import FollowJointTrajectoryResult
 from robot_client import OK, WARN, RobotTest, main, wait_until
 from tf2_msgs.msg import TFMessage
 
@@ -63,9 +64,19 @@ class Motion(RobotTest):
                 self.succeed(f"{axis}/set_mode", mode="csp")
         self.succeed("enable")
 
+    def results(self):
+        """What becomes of the group's trajectories from now on."""
+        found = []
+        subscriber = rospy.Subscriber("/robot/arm/command_result", FollowJointTrajectoryResult,
+                                      found.append)
+        self.addCleanup(subscriber.unregister)
+        wait_until(lambda: subscriber.get_num_connections() > 0, "a publisher of results")
+        return found
+
     def test_trajectory_reaches_its_goal(self):
         goal = {"shoulder": -1.8, "elbow": -0.3, "wrist": 0.8, "gripper": 0.6}
         middle = [-2.2, 0.0, 0.4, 0.3]
+        results = self.results()
         self.robot.follow(list(goal), [(0.8, middle), (1.8, list(goal.values()))])
         worst = {}
 
@@ -80,14 +91,24 @@ class Motion(RobotTest):
         self.assertEqual(sorted(worst), self.AXES)
         self.assertTrue(all(error < 0.2 for error in worst.values()), worst)
         self.assertTrue(any(error > 1e-4 for error in worst.values()), worst)
+        wait_until(lambda: results, "the result")
+        self.assertEqual(results[0].error_code, FollowJointTrajectoryResult.SUCCESSFUL)
+        self.assertIn("arm: goal reached", results[0].error_string)
 
-    def test_trajectory_with_fewer_joints_or_beyond_limits_is_refused(self):
+    def test_trajectory_with_unknown_joints_or_beyond_limits_is_refused(self):
+        results = self.results()
         seen = len(self.process.output())
         self.robot.follow(["shoulder", "elbow", "wrist", "gripper"], [(3.0, [0.0, 2.5, 0.0, 0.0])])
         self.wait_log("elbow|2.5|2", seen)
         seen = len(self.process.output())
         self.robot.follow(["shoulder", "neck", "wrist", "gripper"], [(3.0, [0.0] * 4)])
         self.wait_log("neck", seen)
+        wait_until(lambda: len(results) == 2, "both results")
+        self.assertEqual([result.error_code for result in results],
+                         [FollowJointTrajectoryResult.INVALID_GOAL,
+                          FollowJointTrajectoryResult.INVALID_JOINTS])
+        self.assertIn("elbow", results[0].error_string)
+        self.assertIn("neck", results[1].error_string)
 
     def test_set_point_in_cyclic_position_is_followed_within_limits(self):
         for axis, place in (("wrist", -0.5), ("gripper", 0.4)):

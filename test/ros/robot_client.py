@@ -43,13 +43,13 @@ def package_file(path):
     return os.path.join(rospkg.RosPack().get_path(PACKAGE), path)
 
 
-def executable(name):
-    """Path of a node of this package, as rosrun finds it; of another build in CIA402_NODES."""
+def executable(name, package=PACKAGE):
+    """Path of a node, as rosrun finds it; of another build of this package in CIA402_NODES."""
     import roslib.packages
     other = os.path.join(os.environ.get("CIA402_NODES", ""), name)
-    if other != name:
+    if package == PACKAGE and other != name:
         return other
-    return roslib.packages.find_node(PACKAGE, name)[0]
+    return roslib.packages.find_node(package, name)[0]
 
 
 def wait_until(condition, what, deadline=DEADLINE):
@@ -89,8 +89,9 @@ def thread_states(pid):
 class Process:
     """A node as a child of the test, with its output."""
 
-    def __init__(self, node, name, config, **parameters):
-        """@param config path below the package, loaded into the node's private namespace."""
+    def __init__(self, node, name, config, remap=(), **parameters):
+        """@param config path below the package, loaded into the node's private namespace.
+        @param remap as `from:=to`."""
         for tree, _ in rosparam.load_file(package_file(config)):
             rospy.set_param("/" + name, tree)
         for key, value in parameters.items():
@@ -98,7 +99,7 @@ class Process:
         self.name = name
         self._lines = []
         self._process = subprocess.Popen(
-            ["stdbuf", "-oL", executable(node), f"__name:={name}"], stdout=subprocess.PIPE,
+            ["stdbuf", "-oL", executable(node), f"__name:={name}", *remap], stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, text=True, errors="replace")
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
@@ -147,7 +148,7 @@ class Process:
 class Robot:
     """Topics and services of a bus_node, wherever it runs."""
 
-    def __init__(self, name="robot", group="arm"):
+    def __init__(self, name="robot", group="arm", joint_states="/joint_states"):
         self._prefix = "/" + name
         self._group = group
         self._publishers = {}
@@ -163,7 +164,7 @@ class Robot:
             rospy.Subscriber(f"{self._prefix}/emergencies", Emergency, self.emergencies.append),
             rospy.Subscriber(f"{self._prefix}/{group}/state", JointTrajectoryControllerState,
                              self._on_group_state),
-            rospy.Subscriber("/joint_states", JointState, self._on_joint_state, tcp_nodelay=True),
+            rospy.Subscriber(joint_states, JointState, self._on_joint_state, tcp_nodelay=True),
             rospy.Subscriber("/diagnostics", DiagnosticArray, self._on_diagnostics),
         ]
 

@@ -38,6 +38,13 @@ REPORT = """{"testsuites": [{"name": "Suite", "testsuite": [
 GOOD_REPORT = """{"testsuites": [{"name": "Suite", "testsuite": [
   {"name": "Good", "result": "COMPLETED"}, {"name": "Bad", "result": "COMPLETED"},
   {"name": "DISABLED_Never", "result": "COMPLETED"}]}]}"""
+# Its first process runs the first of two cases; the second ends badly.
+SHARED = """#!/bin/bash
+[ "$1" != --gtest_list_tests ] || { printf 'Suite.\\n  First\\n  Second\\n'; exit; }
+[ "$GTEST_TOTAL_SHARDS $GTEST_SHARD_INDEX" = '2 0' ] || exit 3
+echo '{"testsuites": [{"name": "Suite", "testsuite": [{"name": "First", "result": "COMPLETED"}]}]}' \\
+  > "${2#--gtest_output=json:}"
+"""
 
 
 class RunTests(unittest.TestCase):
@@ -100,6 +107,34 @@ class RunTests(unittest.TestCase):
         status, results = self.run_on("gtest", "suite", GTEST.format(report=GOOD_REPORT, status=0))
         self.assertEqual(status, 0)
         self.assertEqual([outcome for outcome, _ in results.values()], ["passed"] * 3)
+
+    def run_shared(self, name):
+        file, logs = self.path / name, self.path / "logs"
+        file.write_text(SHARED)
+        file.chmod(0o755)
+        logs.mkdir()
+        run_tests.run_gtests(run_tests.Results(logs), [str(file)], 2)
+        fields = [line.split("\t") for line in (logs / "results.tsv").read_text().splitlines()]
+        return {field[1]: (field[0], field[3]) for field in fields}
+
+    def test_googletest_shared_out_to_two_processes(self):
+        self.assertEqual(self.run_shared("suite"), {
+            "suite: Suite.First": ("passed", ""),
+            "suite: Suite.Second": ("failed", "did not run (status 3)")})
+
+    def test_googletest_that_is_gone_when_it_is_to_run(self):
+        file, logs = self.path / "suite", self.path / "logs"
+        file.write_text("#!/bin/bash\nrm \"$0\"; printf 'Suite.\\n  First\\n'\n")
+        file.chmod(0o755)
+        logs.mkdir()
+        results = run_tests.Results(logs)
+        run_tests.run_gtests(results, [str(file)], 2)
+        self.assertEqual(results.failed, 1)
+        self.assertIn("FileNotFoundError", (logs / "results.tsv").read_text())
+
+    def test_googletest_on_a_bus_of_its_own_is_not_shared_out(self):
+        self.assertEqual(set(self.run_shared("suite_vcan").values()),
+                         {("failed", "did not run (status 3)")})
 
     def test_the_report_for_catkin(self):
         report = self.path / "reports/three.xml"

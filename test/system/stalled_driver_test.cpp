@@ -141,5 +141,41 @@ TEST_F(StalledDriver, DoesNotMissTheSyncOfAnotherDeviceThatWaitsInTheQueue) {
   stallInAllPhases(100ms, [&] { ASSERT_THAT(scene->told(), Not(HasSubstr("no SYNC"))); });
 }
 
+// Drives that have missed their master stop by themselves. A reset takes their power, and their
+// motors would coast: whoever asks for it as the driver wakes up has to wait.
+TEST_F(StalledDriver, ResetsNoDriveThatStillStopsItsMotor) {
+  using drive::ProcedureKind;
+  int refused = 0;
+  for (int moment = 0; moment < 20; ++moment) {
+    begin(genericPair(", mode: cyclic_velocity, error_control: {master_timeout: 0.15}"));
+    ASSERT_TRUE(scene->procedure(ProcedureKind::enable, "left").success) << scene->told();
+    for (const Time end = scene->now() + 600ms; scene->now() < end; scene->run(20ms)) {
+      ASSERT_TRUE(scene->network().axis(0).command(1.4, scene->now()).ok()) << scene->told();
+    }
+    scene->stall(140ms + moment * 20ms);
+    scene->run(500us);  // what waited in the queue is read
+    std::optional<bus::Answer> answer;
+    scene->network().execute(
+        bus::Command(
+            bus::NmtServiceCommand{"left", moment % 2 ? "reset_node" : "reset_communication"},
+            [&](const bus::Answer& given) { answer = given; }),
+        scene->now());
+    const auto coasts = [&] {
+      const sim::DriveTruth truth = scene->truth(0);
+      return !truth.power_stage_on && std::abs(truth.velocity_turns) > 0.1;
+    };
+    const bool coasted = scene->runUntil(coasts, 2s);
+    EXPECT_FALSE(coasted) << "stalled for " << 140 + moment * 20 << " ms: " << scene->told();
+    ASSERT_TRUE(answer.has_value());
+    const bool waits = answer->message.find("wait for the end of the boot") != std::string::npos;
+    refused += waits ? 1 : 0;
+    ASSERT_TRUE(scene->runUntil([&] { return scene->allReady(); }, 10s)) << scene->told();
+    EXPECT_TRUE(scene->procedure(ProcedureKind::disable, "left").success) << scene->told();
+    answer = scene->call(bus::NmtServiceCommand{"left", "reset_node"});
+    EXPECT_TRUE(answer->success) << answer->message;
+  }
+  EXPECT_GT(refused, 2);
+}
+
 }  // namespace
 }  // namespace cia402

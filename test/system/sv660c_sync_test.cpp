@@ -93,7 +93,7 @@ struct Sv660cInterpolating : Sv660cReady {
   }
 
  private:
-  std::shared_ptr<std::optional<bus::Answer>> answer_;
+  std::shared_ptr<std::optional<bus::TrajectoryAnswer>> answer_;
 };
 
 // Bit 12 goes: interpolation is interrupted, here by a terminal that inhibits position commands.

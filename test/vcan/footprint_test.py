@@ -19,7 +19,7 @@ from robot_client import Process, Robot, main, wait_until  # noqa: E402
 MEASURED_S = 20.0
 MOST_MB = {1: 40.0, 8: 40.0, 32: 48.0}
 MOST_THREADS = 12
-MOST_WAKE_UPS = 100.0  # a second
+MOST_WAKE_UPS = 150.0  # a second; some more where the machine is crowded, see docs/benchmarks.md
 
 
 def robot_of(count):

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -27,6 +28,7 @@ struct TrajectoryOutcome {
   std::string joint{};  ///< whose fault it is, or which is farthest from its goal; empty: none
   double off =
       std::numeric_limits<double>::quiet_NaN();  ///< by how much, rad or m; NaN: by nothing
+  std::size_t passed_points = 0;  ///< of one accepted with a start time: what it begins behind
 };
 
 /// Told once how a trajectory that was accepted ended, in the bus thread; may be empty. Must not

@@ -52,9 +52,7 @@ std::string refusal(drive::Axis& axis, const canopen::Node& node, const std::str
     return refused + toString(axis.procedure().kind) + " runs (" + axis.procedure().step +
            "); wait for its end, or stop it by halt, quick_stop or disable";
   }
-  const bool stays_down =
-      command == NmtCommand::stop || command == NmtCommand::enter_pre_operational;
-  if (axis.device().health() == Health::booting && stays_down && axis.mayMove()) {
+  if (axis.device().health() == Health::booting && axis.mayMove()) {
     return refused +
            "the drive is being configured, its motor may still turn as it was told last, and NMT "
            "does not stop a motor; wait for the end of the boot, which stops it first";

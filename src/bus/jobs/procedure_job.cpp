@@ -58,47 +58,62 @@ std::string lapse(const drive::ProcedureRequest& request, const drive::Axis& axi
 
 }  // namespace
 
+bool ProcedureCommand::concerns(const AxisUnit& unit, const config::GroupConfig* of) const {
+  const drive::AxisConfig& config = unit.axis.config();
+  if (!axis.empty()) return config.name == axis;
+  if (request.kind == drive::ProcedureKind::home && !config.homing) return false;
+  return of == nullptr ||
+         std::find(of->joints.begin(), of->joints.end(), config.joint) != of->joints.end();
+}
+
 void ProcedureCommand::begin(AxisCycle& cycle, const Reply<>& reply, Time now) const {
-  const bool homing = request.kind == drive::ProcedureKind::home;
   const std::string problem = enables(request.kind) ? cycle.enableProblem() : std::string();
   if (!problem.empty()) {
     return refuse(reply, std::string(drive::toString(request.kind)) + " is refused: " + problem);
   }
+  const auto of = std::find_if(cycle.groups().begin(), cycle.groups().end(),
+                               [&](const Group& any) { return any.config().name == group; });
+  const bool of_group = of != cycle.groups().end();
+  if (!group.empty() && !of_group) return refuse(reply, "there is no group `" + group + "`");
+  const bool homing = request.kind == drive::ProcedureKind::home;
   std::vector<AxisUnit*> units;
   std::vector<ProcedureJob::Item> items;
   std::string left_out;
   for (AxisUnit& unit : cycle.units()) {
-    const drive::AxisConfig& config = unit.axis.config();
-    const bool named = config.name == axis;
-    const bool concerned = axis.empty() && (!homing || config.homing);
-    if (concerned && unit.axis.device().excused()) {
-      left_out += "; " + drive::jointName(config) + " is optional and not there, it was left out";
+    if (!concerns(unit, of_group ? &of->config() : nullptr)) continue;
+    if (axis.empty() && unit.axis.device().excused()) {
+      left_out += "; " + drive::jointName(unit.axis.config()) +
+                  " is optional and not there, it was left out";
       continue;
     }
-    if (!named && !concerned) continue;
     units.push_back(&unit);
     items.push_back({&unit.axis, homing ? cycle.joints().ofAxis(unit.index).homingOrder() : 0});
     if (stops(request.kind)) cycle.jobs().withdraw(unit.axis, request.kind);
   }
   if (items.empty()) {
     return refuse(reply, !axis.empty()      ? noSuchAxis(axis)
-                         : left_out.empty() ? "nothing to do: no axis has a `homing` section"
+                         : left_out.empty() ? "nothing to do: no axis" +
+                                                  (of_group ? " of " + group : std::string()) +
+                                                  " has a `homing` section"
                                             : "nothing to do" + left_out);
   }
   // Until the devices can be reached again, where that takes more than their boot.
   const bool held = request.kind == drive::ProcedureKind::recover && cycle.prepareRecovery(units);
+  ProcedureJob::Manner manner;
+  manner.held = held;
+  manner.together = of_group;
   auto job =
-      std::make_unique<ProcedureJob>(request, std::move(items), std::move(left_out), held, reply);
+      std::make_unique<ProcedureJob>(request, std::move(items), std::move(left_out), manner, reply);
   if (!job->step(now)) cycle.jobs().add(std::move(job));
 }
 
 ProcedureJob::ProcedureJob(drive::ProcedureRequest request, std::vector<Item> items,
-                           std::string remark, bool held, Reply<> reply)
+                           std::string remark, Manner manner, Reply<> reply)
     : Job(Turn::procedure, Ends::at_once),
       request_(std::move(request)),
       reply_(std::move(reply)),
       remark_(std::move(remark)),
-      held_(held) {
+      manner_(manner) {
   std::stable_sort(items.begin(), items.end(),
                    [](const Item& a, const Item& b) { return a.order < b.order; });
   for (const Item& item : items) {
@@ -110,17 +125,17 @@ ProcedureJob::ProcedureJob(drive::ProcedureRequest request, std::vector<Item> it
 
 bool ProcedureJob::step(Time now) {
   watch();
-  if (all(Stage::waiting) && !held_ && allOrNone()) refuseUnlessAll();
+  if (all(Stage::waiting) && !manner_.held && begunByAll()) refuseUnlessAll();
   const bool failed = std::any_of(entries_.begin(), entries_.end(),
                                   [](const Entry& e) { return e.stage == Stage::failed; });
   if (failed) {
     skipRest();
-  } else if (!held_) {
+  } else if (!manner_.held) {
     startDue(now);
   }
   if (!ended() || awaitsNews(now)) return false;
   judge();
-  if (!all(Stage::succeeded) && allOrNone()) restoreModes(now);
+  if (!all(Stage::succeeded) && allOrNone()) undo(now);
   if (!ended()) return false;
   give(reply_, answer());
   return true;
@@ -137,7 +152,15 @@ bool ProcedureJob::ended() const {
 }
 
 bool ProcedureJob::allOrNone() const {
-  return request_.kind == drive::ProcedureKind::set_mode && entries_.size() > 1;
+  using drive::ProcedureKind;
+  const bool undoable = request_.kind == ProcedureKind::set_mode ||
+                        (manner_.together && request_.kind == ProcedureKind::enable);
+  return undoable && entries_.size() > 1;
+}
+
+bool ProcedureJob::begunByAll() const {
+  const bool homing = request_.kind == drive::ProcedureKind::home;
+  return allOrNone() || (manner_.together && homing && entries_.size() > 1);
 }
 
 /// Nothing is begun where one axis cannot.
@@ -155,9 +178,27 @@ void ProcedureJob::refuseUnlessAll() {
   }
 }
 
-/// One axis has failed: the others go back to the mode that they had.
-void ProcedureJob::restoreModes(Time now) {
-  for (Entry& entry : entries_) restoreMode(entry, now);
+/// One axis has failed: the others go back to what they were.
+void ProcedureJob::undo(Time now) {
+  const bool switched_on = request_.kind == drive::ProcedureKind::enable;
+  for (Entry& entry : entries_) switched_on ? switchOff(entry, now) : restoreMode(entry, now);
+}
+
+void ProcedureJob::switchOff(Entry& entry, Time now) const {
+  if (entry.stage != Stage::succeeded) return;
+  drive::Axis& axis = *entry.axis;
+  const std::string name = drive::jointName(axis.config());
+  if (entry.was_on) return entry.fail(name + ": it was enabled before, and stays so");
+  if (axis.procedure().id != entry.id) {
+    return entry.fail(name + ": " + toString(axis.procedure().kind) + " was called");
+  }
+  drive::ProcedureRequest off;
+  off.kind = drive::ProcedureKind::disable;
+  const Result<std::uint32_t> started = axis.start(off, now);
+  if (!started) return entry.fail(name + ": it stays enabled: " + started.error().message);
+  entry.fail(name + ": another axis failed");
+  entry.stage = Stage::restoring;
+  entry.id = *started;
 }
 
 void ProcedureJob::restoreMode(Entry& entry, Time now) const {
@@ -214,7 +255,9 @@ void ProcedureJob::startDue(Time now) {
   const int order = open->order;
   for (Entry& entry : entries_) {
     if (entry.stage != Stage::waiting || entry.order != order) continue;
+    const drive::AxisState& state = entry.axis->state();
     if (allOrNone()) entry.mode = entry.axis->modeName();
+    entry.was_on = !drive::powerStageOff(state.state, state.statusword);
     const Result<std::uint32_t> started = entry.axis->start(request_, now);
     if (started) {
       entry.stage = Stage::running;
@@ -233,6 +276,14 @@ void ProcedureJob::watch() {
   }
 }
 
+std::string ProcedureJob::undone(const drive::Axis& axis, bool back) const {
+  if (request_.kind == drive::ProcedureKind::enable) {
+    return back ? "; it is disabled again" : "; it was not disabled again";
+  }
+  return (back ? "; it is back in mode " : "; it was not set back, it is in mode ") +
+         axis.modeName();
+}
+
 void ProcedureJob::watchRunning(Entry& entry) const {
   const drive::Axis& axis = *entry.axis;
   const bool replaced = axis.procedure().id != entry.id;
@@ -243,8 +294,7 @@ void ProcedureJob::watchRunning(Entry& entry) const {
     if (its && status.running) return;
     const bool back = its && status.success;
     entry.stage = Stage::failed;
-    entry.message += (back ? "; it is back in mode " : "; it was not set back, it is in mode ") +
-                     axis.modeName();
+    entry.message += undone(axis, back);
     if (!back && its) entry.message += ": " + status.message;
   } else if (!its) {
     entry.fail(drive::jointName(axis.config()) + ": " + toString(request_.kind) +

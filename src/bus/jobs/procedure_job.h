@@ -12,7 +12,8 @@ namespace cia402::bus {
 
 /// A procedure on one or several axes, in the order that was asked for: axes of equal order run
 /// together; an order begins when the one before has succeeded on every axis. set_mode on several
-/// axes is done on all or none. The answer says what is true of all axes when it is given.
+/// axes, and enable on those of a group, is done on all or none. The answer says what is true of
+/// all axes when it is given.
 class ProcedureJob final : public Job {
  public:
   struct Item {
@@ -20,17 +21,21 @@ class ProcedureJob final : public Job {
     int order = 0;
   };
 
+  struct Manner {
+    bool held = false;      ///< nothing is begun before release()
+    bool together = false;  ///< the axes are a group
+  };
+
   /// @param items not empty; any order. @param remark said at the end of the answer.
-  /// @param held nothing is begun before release().
   ProcedureJob(drive::ProcedureRequest request, std::vector<Item> items, std::string remark,
-               bool held, Reply<> reply);
+               Manner manner, Reply<> reply);
 
   bool step(Time now) override;
   void abandon(const std::string& why) override;
   void withdraw(const drive::Axis& axis, drive::ProcedureKind by) override;
   void withdrawEnabling(const std::string& why) override;
-  bool held() const override { return held_; }
-  void release() override { held_ = false; }
+  bool held() const override { return manner_.held; }
+  void release() override { manner_.held = false; }
 
  private:
   enum class Stage : std::uint8_t { waiting, running, succeeded, failed, restoring };
@@ -42,7 +47,8 @@ class ProcedureJob final : public Job {
     std::uint32_t id = 0;  ///< of the procedure; while waiting: of the axis' last one
     bool seen = false;     ///< id is known while waiting
     std::string message;
-    std::string mode;  ///< before set_mode
+    std::string mode;     ///< before set_mode
+    bool was_on = false;  ///< before it was begun
 
     bool ended() const { return stage == Stage::succeeded || stage == Stage::failed; }
     void fail(std::string why);
@@ -57,8 +63,12 @@ class ProcedureJob final : public Job {
   bool ended() const;
   bool all(Stage stage) const;
   bool allOrNone() const;
+  /// Nothing is begun where one axis cannot.
+  bool begunByAll() const;
   void refuseUnlessAll();
-  void restoreModes(Time now);
+  void undo(Time now);
+  void switchOff(Entry& entry, Time now) const;
+  std::string undone(const drive::Axis& axis, bool back) const;
   void restoreMode(Entry& entry, Time now) const;
   bool awaitsNews(Time now) const;
   void judge();
@@ -69,7 +79,7 @@ class ProcedureJob final : public Job {
   std::vector<Entry> entries_;
   Reply<> reply_;
   std::string remark_;
-  bool held_;
+  Manner manner_;
 };
 
 }  // namespace cia402::bus

@@ -107,8 +107,11 @@ class TargetSteps final : public Oracle {
     const double step = last_[i] ? distance(value, *last_[i], facts) : 0.0;
     const double allowed = 1.02 * facts.velocity * toSeconds(facts.config->cycle) +
                            2 * std::fabs(facts.units_per_count) + 1e-6 * std::fabs(value);
-    const bool stands_as_told = view.now - stood_[i].at <= facts.config->cycle;
-    const bool called_back = stands_as_told && std::fabs(value - stood_[i].told) <= allowed;
+    // It is told of in one cycle, and called back in the next.
+    const bool stands_as_told = view.now - stood_[i].at <= 2 * facts.config->cycle;
+    const double told = view.truths[i].told;
+    const bool called_back = stands_as_told && std::min(std::fabs(value - stood_[i].told),
+                                                        std::fabs(value - told)) <= allowed;
     if (last_[i] && !(step <= allowed) && !called_back) {
       report(view, i,
              "is sent a target that steps by " + number(step) + " in one cycle, " +

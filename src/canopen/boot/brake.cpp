@@ -11,7 +11,10 @@
 namespace cia402::canopen {
 namespace {
 
-constexpr Duration kAnswer = std::chrono::milliseconds(300);    // it may as well be off
+constexpr Duration kAnswer = std::chrono::milliseconds(300);  // it may as well be off
+constexpr int kRetries = 2;                                   // once it is known to be there
+constexpr Duration kQuick = std::chrono::milliseconds(100);   // for one that answers in half of it
+constexpr int kQuickRetries = 5;                              // in as long as the others' two
 constexpr Duration kPatience = std::chrono::milliseconds(100);  // for the mode to be shown
 constexpr Duration kRamp = std::chrono::seconds(2);             // for the motors to rest
 constexpr Duration kInterval = std::chrono::milliseconds(10);   // of questions meanwhile
@@ -34,8 +37,8 @@ class Brake : public BootStep {
     boot.deadline = kNever;
     if (!std::exchange(begun_, true) && !identified_) fresh_from_ = now + kSyncs * boot.sync_period;
     options_ = boot.config.sdo;
-    options_.retries = 0;
-    options_.timeout = std::min(options_.timeout, kAnswer);
+    options_.retries = boot.found.braked ? retries() : 0;
+    options_.timeout = std::min(options_.timeout, quick_ || asked_again_ > 0 ? kQuick : kAnswer);
     if (boot.stopped_before && !identified_) item_ = boot.config.brakes.size();
     if (item_ < boot.config.brakes.size()) return readStatus(boot, item_, Phase::state, now);
     if (!turning_.empty() && (stop(boot, now) || rest(boot, now))) return true;
@@ -50,6 +53,7 @@ class Brake : public BootStep {
     const bool usable =
         boot.ok() && !boot.ticket->data().empty() && boot.ticket->data().size() <= 8;
     if (phase_ == Phase::rest) return usable ? watch(boot, now) : leave();
+    if (!usable && asksAgain(boot)) return Progress::again;
     if (usable && follow(boot, now)) return Progress::waiting;
     ++item_;
     return Progress::again;
@@ -57,6 +61,14 @@ class Brake : public BootStep {
 
  private:
   enum class Phase { state, vendor, mode, wait, velocity, target, command, shown, stop, rest };
+
+  /// Its heartbeat says that it is there: the question, or its answer, was lost.
+  bool asksAgain(const BootContext& boot) {
+    const bool lost = boot.ticket->failure() == fieldbus::Transfer::Failure::timed_out;
+    const bool there =
+        boot.found.heartbeat_heard && boot.found.heartbeat_state != NmtState::stopped;
+    return phase_ == Phase::state && lost && there && asked_again_++ < kQuickRetries;
+  }
 
   /// Of all axes. @return false: nothing is left of it
   bool stop(BootContext& boot, Time now) {
@@ -141,8 +153,12 @@ class Brake : public BootStep {
     switch (phase_) {
       case Phase::state:
         boot.found.braked = true;
+        quick_ = now - boot.asked <= kQuick / 2;
+        if (quick_) options_.timeout = std::min(options_.timeout, kQuick);
         enabled_ = enabled(statusword(boot));
         if (!powered(statusword(boot))) return false;
+        options_.retries = retries();
+        known_ = known_ || boot.vendor_known;
         if (!boot.config.vendor_id || known_) return isTurning(boot, now);
         phase_ = Phase::vendor;
         read(boot, {0x1018, 1}, "vendor id", now);
@@ -192,8 +208,12 @@ class Brake : public BootStep {
     return true;
   }
 
+  int retries() const { return quick_ ? kQuickRetries : kRetries; }
+
   std::size_t item_ = 0, stop_ = 0;
+  int asked_again_ = 0;               ///< for a state, of all axes
   std::vector<std::size_t> turning_;  ///< of BootBrakes: their motors have power
+  bool quick_ = false;                ///< it has answered soon
   const bool identified_;
   bool begun_ = false;
   bool known_;

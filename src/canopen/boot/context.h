@@ -117,6 +117,7 @@ class BootContext {
   bool restore_pending = false;  ///< 1011h was written, the drive has not yet started anew
   bool restored = false;         ///< ... and it has
   bool must_configure = false;   ///< whatever 1020h says
+  bool vendor_known = false;     ///< it is the configured one, since the boot-up message
   std::string step{"not started"}, error;
   BootFailure failure = BootFailure::none;
   std::vector<std::string> notes;    ///< warnings

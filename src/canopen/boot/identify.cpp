@@ -136,6 +136,7 @@ class Identification : public BootStep {
       return boot.fail(BootFailure::refused,
                        mismatch({0x1018, row.subindex}, row.name, value, *configured));
     }
+    if (row.subindex == 1) boot.vendor_known = configured.has_value();
     if (row.subindex == 2 && !configured) noteProduct(boot, value);
     return Progress::again;
   }

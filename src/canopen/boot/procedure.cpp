@@ -49,9 +49,11 @@ void BootProcedure::start(From from, Time now, NmtState told, NmtCommand reset) 
   status_ = Status::running;
   boot_.absent_at = now + boot_.config.boot_timeout;
   boot_.found.after_reset = from == From::boot_up;
+  if (from == From::boot_up) boot_.vendor_known = false;  // another one may have been put there
   if (boot_.restore_pending && from == From::boot_up) boot_.restored = boot_.must_configure = true;
   boot_.restore_pending = false;
-  if (from == From::unknown || from == From::before_reset) {
+  unheard_ = from == From::unknown || from == From::before_reset;
+  if (unheard_) {
     boot_.reset_when_braked = from == From::before_reset;
     boot_.braking = true;
     boot_.stopped_before = told == NmtState::stopped;
@@ -132,6 +134,23 @@ bool BootProcedure::ignoresReset(NmtState state, Time now) const {
          now >= boot_.commanded + kResetTime;
 }
 
+bool BootProcedure::asksForMotors(NmtState heard) const {
+  const bool known = !boot_.config.vendor_id || boot_.vendor_known;
+  return running() && boot_.braking && !boot_.found.braked && known && heard != NmtState::stopped &&
+         !boot_.config.brakes.empty();
+}
+
+/// Silent while its motors were asked for, it is there now and may still turn them: they come first
+/// again.
+bool BootProcedure::appearsInOperation(NmtState state, Time now) {
+  const bool appears = std::exchange(unheard_, false) && state == NmtState::operational;
+  if (!appears || boot_.found.braked || boot_.config.brakes.empty()) return false;
+  boot_.resetting = boot_.stopped_before = false;
+  boot_.braking = true;
+  begin(kBrake, now);
+  return true;
+}
+
 void BootProcedure::heartbeatHeard(NmtState state, Time now) {
   boot_.found.heartbeat_heard = true;
   boot_.found.heartbeat_state = state;
@@ -141,7 +160,8 @@ void BootProcedure::heartbeatHeard(NmtState state, Time now) {
     return;
   }
   if (state == NmtState::pre_operational) boot_.found.stopped = false;
-  if (boot_.braking) return;
+  if (boot_.braking) unheard_ = false;
+  if (boot_.braking || appearsInOperation(state, now)) return;
   const bool disobeys = state == NmtState::operational || state == NmtState::stopped;
   // One that is guarded answers a question that left behind the command.
   const Duration heard_late = boot_.guarded() ? Duration::zero() : kOnItsWay;

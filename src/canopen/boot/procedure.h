@@ -42,6 +42,9 @@ class BootProcedure {
   void heartbeatHeard(NmtState state, Time now);
   /// That heartbeat tells of a node that was told to reset and goes on as before.
   bool ignoresReset(NmtState state, Time now) const;
+  /// Its motors are asked for before all else and have not answered; nothing is known to speak
+  /// against stopping them unasked. @param heard what its heartbeat told just now
+  bool asksForMotors(NmtState heard) const;
   /// A TPDO came: the node is operational. @return false if nobody waits for that.
   bool tpdoHeard();
   /// @return true for the heartbeat that a TPDO, of higher priority, may have overtaken: the first
@@ -67,10 +70,12 @@ class BootProcedure {
   void enter(std::size_t step, Time now);
   void begin(std::size_t step, Time now);
   void stoppedHeard(Time now);
+  bool appearsInOperation(NmtState state, Time now);
   void tellWhatIsLacking();
 
   BootContext boot_;
   Status status_ = Status::idle;
+  bool unheard_ = false;  ///< this boot began with its motors, and has heard no heartbeat yet
   std::vector<std::unique_ptr<BootStep>> steps_;
   std::size_t index_ = 0;  ///< of the present one in steps_
 };

@@ -95,6 +95,7 @@ void Node::Impl::takeOut(Health as, const std::string& why) {
   guard.stop();
   sdo.cancelAll(why.empty() ? "the node is booted again" : "the node " + why);
   probe.reset();
+  if (health == Health::ready) last_stop.remember(image);
   image.invalidate();
   health = as;
   problem = why.empty() ? std::string() : sentence(why);
@@ -260,8 +261,7 @@ void Node::Impl::onHeartbeat(NmtState state, Time stamp, Time now) {
   if (boot.overtakenByTpdo(state)) return;
   nmt_state = state;
   if (boot.running()) {
-    // So may its motor. Who it is was seen before: that need not be waited for.
-    if (last_identity && boot.ignoresReset(state, now)) last_stop.stopMotor();
+    stopUnasked(state, now);
     boot.heartbeatHeard(state, now);
     runBoot(now);
     return;
@@ -282,7 +282,17 @@ void Node::Impl::onHeartbeat(NmtState state, Time stamp, Time now) {
                   " without our command: look for another NMT master or a reset; it is configured "
                   "again and stays disabled",
               now);
+    sdo.tick(now);
+    stopUnasked(state, now);
   }
+}
+
+/// It goes on as before, and so may its motor. Who it is was seen before: that need not be waited
+/// for, nor answers, each of which may be lost.
+void Node::Impl::stopUnasked(NmtState state, Time now) {
+  if (!last_identity) return;
+  const bool asked_in_vain = boot.asksForMotors(state) && last_stop.ramps();
+  if (asked_in_vain || boot.ignoresReset(state, now)) last_stop.stopMotor();
 }
 
 void Node::Impl::onEmergency(const can::Frame& frame, Time stamp) {

@@ -20,12 +20,19 @@ constexpr Duration kOnItsWay = std::chrono::milliseconds(10);  // a heartbeat of
 
 void LastStop::remember(const PdoImage& image) {
   brakes_.clear();
+  ramps_ = true;
   for (const BootBrake& brake : config_.brakes) {
-    const fieldbus::Slot slot = image.inputSlot(brake.shown_mode);
-    if (slot == fieldbus::kNoSlot || !image.input(slot).valid) continue;
-    const int mode = static_cast<std::int8_t>(image.input(slot).raw & 0xFFU);
     const auto& pushing = brake.pushing;
+    if (pushing.empty()) continue;
+    const fieldbus::Slot slot = image.inputSlot(brake.shown_mode);
+    const bool told = slot != fieldbus::kNoSlot && image.input(slot).valid;
+    if (!told) {
+      ramps_ = false;
+      continue;
+    }
+    const int mode = static_cast<std::int8_t>(image.input(slot).raw & 0xFFU);
     if (std::find(pushing.begin(), pushing.end(), mode) == pushing.end()) continue;
+    ramps_ = false;
     brakes_.push_back({brake.mode, fieldbus::toBytes(static_cast<std::uint64_t>(brake.brake), 1)});
   }
 }

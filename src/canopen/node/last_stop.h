@@ -25,6 +25,8 @@ class LastStop {
 
   /// The node is about to be forgotten. @param image what it has told last
   void remember(const PdoImage& image);
+  /// No axis was told to be in a mode whose stop only lets its motor go, or may be in one untold.
+  bool ramps() const { return ramps_; }
   /// The node was lost just now; its SDO transfers have ended.
   void begin(Time now);
   /// It is there again, or somebody else decides.
@@ -52,7 +54,8 @@ class LastStop {
   SdoClient& sdo_;
   can::Sink& sink_;
   std::vector<ModeWrite> brakes_;  ///< of what turned as it was told last
-  unsigned braked_ = 0;            ///< since it began, or began again; said_ likewise
+  bool ramps_ = false;
+  unsigned braked_ = 0;  ///< since it began, or began again; said_ likewise
   unsigned said_ = 0;
   Time next_ = kNever, last_{}, patience_end_{}, end_{};
 };

@@ -55,9 +55,13 @@ SdoTicket SdoClient::downloadUrgent(ObjectId object, Bytes data, const std::stri
 }
 
 bool SdoClient::post(ObjectId object, const Bytes& data) {
-  if (!isIdle() || !SdoDownload::isExpedited(data.size())) return false;
+  if (!SdoDownload::isExpedited(data.size())) return false;
+  const auto* upload = std::get_if<SdoUpload>(&wire_);
+  const bool asked = upload != nullptr && upload->initiating();
+  if (!isIdle() && !isAtFence() && !asked) return false;
   SdoDownload::sendExpedited(exchange_, object, widths_.toDrive(object, data));
   fence_.expectNothingOf(object);
+  if (isAtFence() && fence_.expectMore()) askFence();
   return true;
 }
 
@@ -132,10 +136,14 @@ void SdoClient::attempt(Time now) {
 }
 
 void SdoClient::sendFence(Time now) {
-  ++exchange_.counters().fences;
-  exchange_.sendRequest(sdo::kRequestUpload, fence_.object(), 0);
+  askFence();
   exchange_.await(queue_.front().options().timeout, now);
   wire_ = AtFence();
+}
+
+void SdoClient::askFence() {
+  ++exchange_.counters().fences;
+  exchange_.sendRequest(sdo::kRequestUpload, fence_.object(), 0);
 }
 
 void SdoClient::initiate(Time now) {

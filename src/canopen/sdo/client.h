@@ -55,9 +55,10 @@ class SdoClient final : public fieldbus::ObjectAccess {
   /// an object that never changes precedes the write then.
   SdoTicket downloadUrgent(ObjectId object, Bytes data, const std::string& name) override;
 
-  /// Writes 1 to 4 bytes at once and waits for no answer: a last word to a server that may be gone.
-  /// The answer, should it come, is taken for none to a later request.
-  /// @return false if that cannot be done: a transfer is on the wire, or the data are longer.
+  /// Writes 1 to 4 bytes at once and waits for no answer: a last word to a server that may be gone,
+  /// also in front of the first answer to a read, which a server that takes one request at a time
+  /// may then owe for good. The answer, should it come, is taken for none to a later request.
+  /// @return false if that cannot be done: something else is on the wire, or the data are longer.
   bool post(ObjectId object, const Bytes& data);
 
   /// Takes a frame of the channel's answer COB-ID; others and answers to nothing are ignored
@@ -115,6 +116,7 @@ class SdoClient final : public fieldbus::ObjectAccess {
   void attempt(Time now);
   void initiate(Time now);
   void sendFence(Time now);
+  void askFence();
 
   SdoReaction dispatch(const can::Frame& frame, Time now);
   SdoReaction onFenceAnswer(const can::Frame& frame, Time now);

@@ -14,15 +14,25 @@ constexpr ObjectId kDeviceType{0x1000, 0}, kIdentityCount{0x1018, 0};
 void SdoFence::abandon(ObjectId object, bool looks_like_anything) {
   abandoned_ = object;
   reads_left_ = looks_like_anything ? 2 : 1;
+  other_ = false;
 }
 
 void SdoFence::expectNothingOf(ObjectId object) {
   if (!isUp()) abandon(object, false);
 }
 
+bool SdoFence::expectMore() {
+  const ObjectId before = object();
+  other_ = !other_;
+  if (object() != before) return true;
+  ++reads_left_;
+  return false;
+}
+
 ObjectId SdoFence::object() const {
-  const bool other = abandoned_->index == kDeviceType.index || reads_left_ > 1;
-  return other && abandoned_->index != kIdentityCount.index ? kIdentityCount : kDeviceType;
+  if (abandoned_->index == kIdentityCount.index) return kDeviceType;
+  if (abandoned_->index == kDeviceType.index) return kIdentityCount;
+  return other_ != (reads_left_ > 1) ? kIdentityCount : kDeviceType;
 }
 
 bool SdoFence::isAnswer(const can::Frame& frame) const {

@@ -21,6 +21,12 @@ class SdoFence {
   void abandon(ObjectId object, bool looks_like_anything);
   /// Something was sent whose answer nobody waits for. What is abandoned already covers it.
   void expectNothingOf(ObjectId object);
+  /// The same while the read is under way, whose answer proves nothing any more, for it comes
+  /// first.
+  /// @return true: object() is another one now, to be read at once; false: one read more will
+  /// follow
+  /// @pre isUp()
+  bool expectMore();
   /// Nothing older can follow any more.
   void clear() { abandoned_.reset(); }
 
@@ -38,6 +44,7 @@ class SdoFence {
  private:
   std::optional<ObjectId> abandoned_;
   unsigned reads_left_ = 0;
+  bool other_ = false;  ///< of the objects to read
 };
 
 }  // namespace cia402::canopen

@@ -21,6 +21,8 @@ class SdoUpload {
   void initiate(Time now);
   /// Takes an SDO of the server (eight bytes) and sends what follows from it.
   SdoReaction receive(const can::Frame& frame, Time now);
+  /// Nothing has been answered yet.
+  bool initiating() const { return !initiated_; }
 
  private:
   SdoReaction onInitiated(const can::Frame& frame, Time now);

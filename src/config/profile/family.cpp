@@ -187,7 +187,7 @@ void readHomedBit(yaml::Section& section, DriveProfile& profile) {
 }
 
 /// The name of an object that can be written; else a problem and an empty name.
-std::string readWritable(const yaml::Value& value, const DriveProfile& profile) {
+std::string readWritableName(const yaml::Value& value, const DriveProfile& profile) {
   const auto name = value.text();
   const ObjectSpec* object = name ? profile.find(*name) : nullptr;
   if (object != nullptr && object->writable && fieldbus::sizeBits(object->type) != 0) return *name;
@@ -211,7 +211,7 @@ void readBehaviour(yaml::Section& section, DriveProfile& profile) {
                profile.fault_reset.pause);
   section.read("fault_reset_clears_history", profile.fault_reset.clears_history);
   if (const auto object = section.get("fault_reset_object")) {
-    profile.fault_reset.object = readWritable(*object, profile);
+    profile.fault_reset.object = readWritableName(*object, profile);
   }
   section.read("reads_back", profile.reads_back);
   section.read("absent_settings_pass", profile.absent_settings_pass);

@@ -32,6 +32,10 @@ class ActiveMode {
   /// The selected mode only brakes what moved in another one. Until a mode is selected.
   void brakeFor(const ModeChannel& mode) { braked_in_ = &mode; }
   bool brakes() const { return braked_in_ != nullptr; }
+  /// The drive may hold what another mode needs (ModeSpec::entry_writes): a change of the mode
+  /// began and was cut off. Until it was entered with all that it needs.
+  bool prepared() const { return prepared_; }
+  void setPrepared(bool prepared) { prepared_ = prepared; }
   /// Another value of 6060h is sent instead of the mode's, where it travels in the cycle; until it
   /// is taken back, another mode is selected, or the axis leaves operation.
   void overrideValue(std::optional<int> value) { override_ = value; }
@@ -58,6 +62,7 @@ class ActiveMode {
   const ModeChannel* mode_;
   const ModeChannel* bound_for_ = nullptr;
   const ModeChannel* braked_in_ = nullptr;
+  bool prepared_ = true;
   std::optional<int> override_;
   std::vector<Held> held_;
 };

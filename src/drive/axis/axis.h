@@ -199,9 +199,13 @@ class Axis {
   double target() const { return setPoint().value(); }
   /// What was sent last, and how it moves.
   const SetPoint& setPoint() const { return *set_point_; }
+  /// What one unit of the measured position is, rad or m.
+  double positionResolution() const;
   /// Brings the set-points to rest, by a ramp where they move, and ends a stream of commands.
-  /// Nothing if they do not move.
-  void stopSetPoint();
+  /// Nothing if they do not move. @param over a ramp of positions is not harder than it takes to
+  /// come to rest in that time, or in front of a limit; zero: as hard as it may be, also one that
+  /// goes on more gently
+  void stopSetPoint(Duration over = Duration::zero());
   /// Somebody gives the set-points of every cycle from now on by setTarget(), and streams are
   /// refused.
   /// @param who for messages, the name of a group; must outlive that. nullptr: nobody any more

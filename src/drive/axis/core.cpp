@@ -106,8 +106,8 @@ bool AxisCore::goesOnWarned(Time now) {
 void AxisCore::updateReadiness(bool busy) {
   AxisState& state = axis_.state;
   state.ready_for_motion = brakeReleased() && !busy && !state.halted && state.feedback_valid &&
-                           feedback_.shows(mode_.spec()) &&
-                           state.state == State::operation_enabled && feedback_.unmet() == nullptr;
+                           inMode(*this) && state.state == State::operation_enabled &&
+                           feedback_.unmet() == nullptr;
 }
 
 void AxisCore::writeCommands(Time now) {

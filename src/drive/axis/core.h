@@ -103,4 +103,9 @@ class AxisCore {
   Time written_{};  ///< when commands were written last
 };
 
+/// The drive shows the active mode, and has all that this needs.
+inline bool inMode(const AxisCore& axis) {
+  return axis.feedback().shows(axis.mode().spec()) && axis.mode().prepared();
+}
+
 }  // namespace cia402::drive

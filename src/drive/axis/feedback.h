@@ -62,6 +62,8 @@ class Feedback {
   }
 
   const Standstill& standstill() const { return standstill_; }
+  /// Of the measured position, rad or m.
+  double positionResolution() const { return signals_[SignalId::position].conversion.resolution(); }
   /// What is measured says that it stands, whatever the drive may do the next moment.
   bool measuredStill() const { return standstill_.still(); }
   /// Measured over a window that lies wholly after `from` and the drive's reaction to it.

@@ -93,9 +93,9 @@ bool Generator::take(double value) {
   return true;
 }
 
-void Generator::stop() {
+void Generator::stop(Duration over) {
   commands_.drop();
-  sent_.stop();
+  sent_.stop(over);
 }
 
 void Generator::stepCommands(Time now) {

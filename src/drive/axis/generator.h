@@ -51,7 +51,8 @@ class Generator {
   /// Takes a streamed command, see Axis::command().
   Result<void> command(double value, Time now) { return commands_.take(value, *mode_, sent_, now); }
   /// Brings the set-points to rest, by a ramp where they move, whoever gave them.
-  void stop();
+  /// @param over see SetPoint::stop()
+  void stop(Duration over = Duration::zero());
   /// Takes over a motor that turns: begins at its velocity, per s, and ramps that to rest.
   void arrest(double velocity);
   /// Cycles were missed: nothing of them is made good.

@@ -65,6 +65,7 @@ void Inquiry::step(Time now) {
   }
   mindZero();
   if (!axis_.faulted()) {
+    if (asks_ == Asks::at_fault) ticket_.reset();  // what comes now is of no fault any more
     described_ = false;
     fault_next_ = 0;
     description_.clear();

@@ -33,17 +33,25 @@ void SetPoint::arrest(double velocity) {
   beginStop();
 }
 
-void SetPoint::stop() {
+void SetPoint::stop(Duration over) {
   has_given_ = false;
-  if (stopping_ || atRest()) return;
-  ++breaks_;
-  beginStop();
+  if (atRest() || (stopping_ && over > Duration::zero())) return;
+  if (!stopping_) ++breaks_;
+  beginStop(over);
 }
 
-void SetPoint::beginStop() {
+void SetPoint::beginStop(Duration over) {
   stopping_ = true;
-  if (kind_ == SetPointKind::stream) ramp_.begin(value_, velocity_, deceleration_);
+  if (kind_ == SetPointKind::stream) ramp_.begin(value_, velocity_, gentlest(over));
   if (kind_ == SetPointKind::velocity) ramp_.begin(0.0, value_, deceleration_);
+}
+
+double SetPoint::gentlest(Duration over) const {
+  if (over <= Duration::zero()) return deceleration_;
+  const std::optional<double>& limit = velocity_ > 0.0 ? limits_.upper : limits_.lower;
+  const double room = limit ? std::abs(*limit - value_) : 1e300;
+  const double in_front = velocity_ * velocity_ / (2.0 * std::max(room, 1e-9));
+  return std::min(deceleration_, std::max(std::abs(velocity_) / toSeconds(over), in_front));
 }
 
 void SetPoint::interrupt() {
@@ -63,7 +71,7 @@ void SetPoint::shift(double by) {
   if (kind_ != SetPointKind::stream && kind_ != SetPointKind::goal) return;
   value_ += by;
   has_given_ = false;
-  if (stopping_) ramp_.begin(value_, velocity_, deceleration_);
+  if (stopping_) ramp_.shift(by);
   ++breaks_;
 }
 
@@ -132,8 +140,8 @@ double SetPoint::withinLimits(double position) const {
 
 SetPoint::Motion SetPoint::expected(Duration ahead) const {
   if (kind_ != SetPointKind::stream || velocity_ == 0.0) return {value_, 0.0};
-  motion::StopRamp ramp;
-  ramp.begin(value_, velocity_, deceleration_);
+  motion::StopRamp ramp = ramp_;
+  if (!stopping_) ramp.begin(value_, velocity_, deceleration_);
   ramp.advance(ahead);
   return {withinLimits(ramp.position()), ramp.velocity()};
 }

@@ -48,8 +48,10 @@ class SetPoint {
     has_given_ = true;
   }
   /// Brings to rest: a stream or a velocity by a ramp, a torque at once; a goal is left to the
-  /// drive. While stopping, or at rest, nothing changes.
-  void stop();
+  /// drive. @param over of a stream: the ramp is not harder than it takes to come to rest in that
+  /// time, or in front of a limit of position; zero: as hard as it may be, also one that goes on
+  /// more gently. Else nothing changes while stopping, or at rest.
+  void stop(Duration over = Duration::zero());
   /// At least one cycle was missed: who follows a stream of positions has come to rest meanwhile.
   void interrupt();
   /// A stream that the axis has run ahead of: goes on from where that is, rad or m, and ramps its
@@ -89,7 +91,8 @@ class SetPoint {
   std::uint32_t givenUp() const { return given_up_; }
 
  private:
-  void beginStop();
+  void beginStop(Duration over = Duration::zero());
+  double gentlest(Duration over) const;
   void advanceStop();
   void follow();
   double withinLimits(double position) const;

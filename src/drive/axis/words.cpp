@@ -66,12 +66,16 @@ std::string obstacle(const AxisCore& axis) {
     return name + " is left in its homing mode: enable" + (homed ? "" : ", then " + zero);
   }
   const bool shown = axis.feedback().shows(mode);
-  if (state.halted && !shown && !axis.profile().mode_change.while_halted) {
+  if (state.halted && !inMode(axis) && !axis.profile().mode_change.while_halted) {
     return name + " is halted, is not in mode " + mode.name +
            ", and takes no mode while halted: disable, then enable";
   }
   if (state.halted) return name + " is halted: enable" + (homed ? "" : ", then " + zero);
   if (!shown) return name + " does not show that it is in mode " + mode.name + ": enable";
+  if (!axis.mode().prepared()) {
+    return name + " may lack what mode " + mode.name +
+           " needs, for a change of the mode was cut off: enable";
+  }
   return homed ? std::string() : name + " is not homed: " + zero;
 }
 
@@ -104,6 +108,10 @@ std::string motionRefusal(const AxisCore& axis, bool busy) {
     return who + ": " + axis.profile().address(0x6061) + " shows mode " +
            (shown ? std::to_string(*shown) : std::string("unknown")) + " instead of " +
            std::to_string(mode.value) + " (" + mode.name + "); call enable";
+  }
+  if (!axis.mode().prepared()) {
+    return who + ": the drive may lack what mode " + mode.name +
+           " needs, for a change of the mode was cut off; call enable";
   }
   return who + ": the brake is being released, or the drive does not follow its set-points yet (" +
          axis.feedback().stateText() + ")";

@@ -30,8 +30,7 @@ class Enable : public Procedure {
     const bool homing = axis.mode().spec().kind == ControlKind::homing;
     const bool elsewhere =
         &axis.mode().channel() != &axis.mode().working();  // homing, or braked by a mode
-    changing_mode_ =
-        releasing_ && (elsewhere || axis.feedback().shownMode() != axis.mode().spec().value);
+    changing_mode_ = releasing_ && (elsewhere || !inMode(axis));
     blocked_ = changing_mode_ && axis.state().halted && !axis.profile().mode_change.while_halted;
     if (blocked_ && homing) {
       // The start bit of homing has been 0 since the halt: without the halt bit nothing begins.
@@ -113,7 +112,7 @@ class Enable : public Procedure {
   ReadyToSwitchStep waiting_;
   SwitchStep mode_;
   bool begun_ = false, releasing_ = false, released_ = false;
-  bool changing_mode_ = false;  ///< the drive is not, or does not show to be, in the mode to be in
+  bool changing_mode_ = false;  ///< inMode() is not true of the mode to be in
   bool mode_changed_ = false;
   bool replacing_ = false;  ///< where it was going is still to be taken back
   bool blocked_ = false;    ///< the halt is in the way of the mode

@@ -57,7 +57,8 @@ Outcome DriveHoming::advance(const Context& context) {
       return outcome.isFailed() ? outcome : Outcome::running();
     }
     case Phase::writing: {
-      const Outcome outcome = writes_.advance(context);
+      Outcome outcome = writes_.advance(context);
+      if (outcome.isDone() && method_.moves) outcome = speeds_.advance(context);
       if (!outcome.isDone()) return outcome;
       if (!context.axis.generator().sent().atRest() || !context.axis.limits().settled()) {
         return Outcome::running();

@@ -5,6 +5,7 @@
 
 #include "drive/procedures/homing_status.h"
 #include "drive/procedures/procedure.h"
+#include "drive/procedures/steps/homing_speed.h"
 #include "drive/procedures/steps/settings.h"
 #include "drive/procedures/steps/switch.h"
 
@@ -68,6 +69,7 @@ class DriveHoming : public Procedure {
   const ModeChannel* before_;
   SettingsStep settings_;
   WriteStep writes_;
+  HomingSpeedStep speeds_;
   SwitchStep mode_;
   EnableStep enabling_;
   std::optional<SwitchStep> restoring_;

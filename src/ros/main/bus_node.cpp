@@ -24,6 +24,7 @@
 #include "ros/robot_loader.h"
 #include "ros/service_pool.h"
 #include "ros/services.h"
+#include "ros/trajectory_actions.h"
 #include "sim/world/simulated_interface.h"
 
 namespace {
@@ -54,6 +55,7 @@ It waits for the ROS master and for the interface. SIGINT and SIGTERM stop and d
 
 constexpr unsigned kWaitingCalls = 4;  // of services that keep a thread while they wait
 constexpr Duration kLongestTick = std::chrono::milliseconds(20);  // for states and the log
+constexpr Duration kFeedbackTick = std::chrono::milliseconds(50);
 constexpr Duration kDiagnosticsTick = std::chrono::milliseconds(100);
 
 /// A whole part of the period of joint_states, so that states and log need no waking of their own.
@@ -101,6 +103,14 @@ ros_node::FaultService::Inject injectThrough(bus::BusRunner& runner,
   };
 }
 
+/// What joint_states and tf tell together comes from one cycle.
+void publishMeasured(bus::BusRunner& runner, ros_node::Publishers& publishers,
+                     ros_node::Frames& frames) {
+  const bus::NetworkSnapshot snapshot = runner.snapshot();
+  publishers.publishJointStates(snapshot);
+  frames.publish(snapshot.joints);
+}
+
 /// Runs the driver until the node is asked to end.
 void serve(ros::NodeHandle& node, ros::NodeHandle& private_node, const LoadedRobot& loaded,
            OpenInterface open) {
@@ -121,8 +131,11 @@ void serve(ros::NodeHandle& node, ros::NodeHandle& private_node, const LoadedRob
   ros_node::LinkWatch link(loaded.robot.bus, open.socket);
   ros_node::Publishers publishers(node, private_node, runner, link, loaded.robot);
   ros_node::Diagnostics diagnostics(node, private_node, runner, link, loaded.robot);
-  ros_node::Frames frames(runner, loaded.robot);
-  ros_node::CommandTopics topics(private_node, runner, replies, loaded.robot);
+  ros_node::Frames frames(runner.time(), loaded.robot);
+  ros_node::CommandTopics topics(
+      private_node, runner, replies, [&loop] { loop.wake(); }, loaded.robot);
+  ros_node::TrajectoryActions actions(
+      private_node, runner, [&loop] { loop.wake(); }, loaded.robot);
   runner.start();
 
   ros::NodeHandle service_node("~");
@@ -131,16 +144,19 @@ void serve(ros::NodeHandle& node, ros::NodeHandle& private_node, const LoadedRob
   std::optional<ros_node::FaultService> faults;
   if (simulation != nullptr) faults.emplace(service_node, injectThrough(runner, *simulation));
 
-  loop.always([&] { desk.answer(); });
+  loop.always([&] {
+    desk.answer();
+    actions.update();
+    topics.update();
+  });
   const Duration joint_states = fromSeconds(1.0 / loaded.robot.joint_state_rate);
   loop.every(tickOf(joint_states), [&] {
     events.drain();
     publishers.publishStates();
   });
-  loop.every(joint_states, [&] {
-    publishers.publishJointStates();
-    frames.publish();
-  });
+  loop.every(joint_states, [&] { publishMeasured(runner, publishers, frames); });
+  loop.every(
+      kFeedbackTick, [&] { actions.publishFeedback(); }, [&] { return actions.busy(); });
   loop.every(kDiagnosticsTick, [&] { diagnostics.update(); });
   ros_node::wakeOnSignals(loop.wakeFd());
   while (!ros_node::endRequested()) loop.step();
@@ -151,6 +167,8 @@ void serve(ros::NodeHandle& node, ros::NodeHandle& private_node, const LoadedRob
   runner.join();
   events.drain();
   desk.answer();
+  actions.update();
+  topics.update();
   pool.stop();
   ROS_INFO("stopped");
   ros::shutdown();

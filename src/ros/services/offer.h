@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "bus/jobs/procedure_command.h"
 #include "bus/runner.h"
 #include "config/robot.h"
 #include "ros/call_desk.h"
@@ -15,10 +16,11 @@
 
 namespace cia402::ros_node {
 
-/// Where the services of the bus, or those of one axis, are offered, and what they work with.
+/// Where the services of the bus, of one axis or of one group are offered, and what they work with.
 struct Offer {
-  ros::NodeHandle node;                     ///< of their names
-  const drive::AxisConfig* axis = nullptr;  ///< nullptr: those of the bus
+  ros::NodeHandle node;                        ///< of their names
+  const drive::AxisConfig* axis = nullptr;     ///< nullptr: those of the bus or of a group
+  const config::GroupConfig* group = nullptr;  ///< nullptr: those of the bus or of an axis
   CallDesk& desk;
   bus::BusRunner& runner;
   const config::RobotConfig& robot;
@@ -26,6 +28,14 @@ struct Offer {
 
   /// For commands: of one axis, or empty for all.
   std::string name() const { return axis == nullptr ? std::string() : axis->name; }
+  /// A procedure on what they are of.
+  bus::ProcedureCommand procedure(drive::ProcedureKind kind) const {
+    bus::ProcedureCommand command;
+    command.axis = name();
+    command.request.kind = kind;
+    if (group != nullptr) command.group = group->name;
+    return command;
+  }
   /// A service that keeps a thread until it is answered.
   /// @param serve (const Request&, Response&)
   template <typename Service, typename Serve>

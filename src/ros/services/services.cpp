@@ -7,15 +7,19 @@ namespace cia402::ros_node {
 
 Services::Services(ros::NodeHandle& private_node, CallDesk& desk, bus::BusRunner& runner,
                    const config::RobotConfig& robot) {
-  Offer of_bus{private_node, nullptr, desk, runner, robot, servers_};
-  for (const ServiceEntry& service : kServices) {
-    if (service.of_bus) service.offer(of_bus);
-  }
-  for (const drive::AxisConfig& axis : robot.axes) {
-    Offer of_axis{ros::NodeHandle(private_node, axis.name), &axis, desk, runner, robot, servers_};
+  const auto offer = [&](const ros::NodeHandle& node, const drive::AxisConfig* axis,
+                         const config::GroupConfig* group, bool ServiceEntry::*concerned) {
+    Offer all{node, axis, group, desk, runner, robot, servers_};
     for (const ServiceEntry& service : kServices) {
-      if (service.of_axis) service.offer(of_axis);
+      if (service.*concerned) service.offer(all);
     }
+  };
+  offer(private_node, nullptr, nullptr, &ServiceEntry::of_bus);
+  for (const drive::AxisConfig& axis : robot.axes) {
+    offer(ros::NodeHandle(private_node, axis.name), &axis, nullptr, &ServiceEntry::of_axis);
+  }
+  for (const config::GroupConfig& group : robot.groups) {
+    offer(ros::NodeHandle(private_node, group.name), nullptr, &group, &ServiceEntry::of_group);
   }
 }
 

@@ -21,15 +21,15 @@ void offerBusParameters(Offer& offer);
 void offerLoadDcf(Offer& offer);
 void offerFactoryReset(Offer& offer);
 
-/// A row of the table: what offers it, and whether for the bus, for each axis, or for both.
+/// A row of the table: what offers it, and whether for the bus, for each axis, for each group.
 struct ServiceEntry {
   void (*offer)(Offer&);
-  bool of_bus, of_axis;
+  bool of_bus, of_axis, of_group = false;
 };
 // clang-format off
 inline constexpr ServiceEntry kServices[] = {
-    {offerTriggers, true, true},
-    {offerSetMode, true, true},
+    {offerTriggers, true, true, true},
+    {offerSetMode, true, true, true},
     {offerNmt, true, true},
     {offerDumpRecording, true, false},
     {offerLss, true, false},

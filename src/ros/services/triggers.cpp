@@ -1,6 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // The procedures whose requests say nothing: std_srvs/Trigger.
-#include "bus/jobs/procedure_command.h"
 #include "ros/services/table.h"
 
 namespace cia402::ros_node {
@@ -12,6 +11,7 @@ using drive::ProcedureKind;
 constexpr struct {
   const char* name;
   ProcedureKind kind;
+  bool of_groups = true;
 } kTriggers[] = {
     {"enable", ProcedureKind::enable},
     {"disable", ProcedureKind::disable},
@@ -20,19 +20,18 @@ constexpr struct {
     {"recover", ProcedureKind::recover},
     {"quick_stop", ProcedureKind::quick_stop},
     {"halt", ProcedureKind::halt},
-    {"save_parameters", ProcedureKind::save_parameters},
-    {"restore_parameters", ProcedureKind::restore_parameters},
+    {"save_parameters", ProcedureKind::save_parameters, false},
+    {"restore_parameters", ProcedureKind::restore_parameters, false},
 };
 
 }  // namespace
 
 void offerTriggers(Offer& offer) {
   for (const auto& trigger : kTriggers) {
-    const auto begin = [&runner = offer.runner, axis = offer.name(),
-                        kind = trigger.kind](bus::Reply<> reply) {
-      drive::ProcedureRequest request;
-      request.kind = kind;
-      runner.post(bus::Command(bus::ProcedureCommand{axis, request}, std::move(reply)));
+    if (offer.group != nullptr && !trigger.of_groups) continue;
+    const auto begin = [&runner = offer.runner,
+                        command = offer.procedure(trigger.kind)](bus::Reply<> reply) {
+      runner.post(bus::Command(command, std::move(reply)));
     };
     offer.servers.push_back(offer.desk.advertise(offer.node, trigger.name, begin));
   }

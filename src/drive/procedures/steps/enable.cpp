@@ -83,7 +83,7 @@ bool EnableStep::resumes(const AxisCore& axis) const {
   const DriveProfile& profile = axis.profile();
   return axis.state().state == State::quick_stop_active && !profile.quick_stop_holds.empty() &&
          profile.mode_change.needs_disabling && axis.config().quick_stop_holds &&
-         &axis.mode().channel() == channel_ && axis.feedback().shownMode() == channel_->spec->value;
+         &axis.mode().channel() == channel_ && inMode(axis);
 }
 
 Outcome EnableStep::awaitRest(const Context& context) {

@@ -19,6 +19,7 @@ Outcome ModeStep::advance(const Context& context) {
   switch (phase_) {
     case Phase::writing: {
       const Outcome outcome = writes_.advance(context);
+      if (writes_.wrote()) axis.mode().setPrepared(false);
       if (!outcome.isDone()) return outcome;
       axis.generator().preset(*mode_);
       // What brakes at rest would be in the way of the mode; it ends with the mode anyway.
@@ -90,8 +91,10 @@ Outcome ModeStep::await(const Context& context) {
   // Some show it in operation enabled only; what is shown counts before the axis takes a command.
   const bool later = axis.profile().mode_change.shown_when_enabled && !axis.inOperation();
   const bool shown = later || axis.feedback().shownMode() == mode_->spec->value;
-  if (shown && axis.generator().targetFrames() >= controlword_frames_ + kSureFrames)
+  if (shown && axis.generator().targetFrames() >= controlword_frames_ + kSureFrames) {
+    axis.mode().setPrepared(true);
     return Outcome::done();
+  }
   if (context.now - started_ <= axis.profile().timing.mode_change) return Outcome::running();
   const std::string shows =
       axis.feedback().shownMode() ? modeText(*axis.feedback().shownMode(), axis) : "nothing";

@@ -72,7 +72,7 @@ Outcome SwitchStep::begin(const Context& context) {
     phase_ = Phase::switching;
     return Outcome::running();
   }
-  if (&axis.mode().channel() == channel_ && axis.feedback().shownMode() == channel_->spec->value) {
+  if (&axis.mode().channel() == channel_ && inMode(axis)) {
     return Outcome::done();
   }
   if (between != nullptr) {

@@ -162,6 +162,7 @@ bool WriteStep::copy(const Context& context, fieldbus::Bytes bytes) {
 }
 
 void WriteStep::write(const Context& context, fieldbus::Bytes bytes) {
+  wrote_ = true;
   const fieldbus::Slot slot = context.axis.device().image().outputSlot(current_.object);
   if (slot != fieldbus::kNoSlot && bytes.size() <= 8) {
     mapped_.push_back({slot, fieldbus::toUnsigned(bytes)});

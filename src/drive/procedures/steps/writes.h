@@ -22,6 +22,8 @@ class WriteStep {
     std::uint64_t raw;
   };
   const std::vector<Mapped>& mapped() const { return mapped_; }
+  /// Something may have been written.
+  bool wrote() const { return wrote_; }
   /// Was the write of what NamedWrite::from calls `from` left out?
   bool leftOut(const std::string& from) const;
 
@@ -41,6 +43,7 @@ class WriteStep {
   fieldbus::Ticket ticket_;
   fieldbus::Bytes written_;  ///< what is read back at the moment; else empty
   std::vector<Mapped> mapped_;
+  bool wrote_ = false;
   std::vector<std::string> left_out_;  ///< NamedWrite::from
 };
 

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "bus/runner_world.h"
+#include "runner/runner_world.h"
 
 namespace cia402::bus {
 namespace {

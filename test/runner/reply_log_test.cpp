@@ -24,6 +24,13 @@ std::vector<std::string> texts(ReplyLog& log, ReplyLog::Level level) {
   return found;
 }
 
+TrajectoryAnswer trajectoryAnswer(bool success, const std::string& message) {
+  TrajectoryAnswer answer;
+  answer.success = success;
+  answer.message = message;
+  return answer;
+}
+
 TEST(Throttle, PermitsOnceInAnInterval) {
   Throttle throttle(1s);
   EXPECT_TRUE(throttle.permit(Time(0s)));
@@ -50,17 +57,26 @@ TEST(ReplyLog, SaysNothingOfASetpointThatIsTaken) {
 
 TEST(ReplyLog, TellsEveryRefusedTrajectoryAsAnError) {
   ReplyLog log(0);
-  for (int i = 0; i < 3; ++i) log.toTrajectory()(answerOf(false, "arm: refused"));
+  for (int i = 0; i < 3; ++i) log.toTrajectory()(trajectoryAnswer(false, "arm: refused"));
   EXPECT_THAT(texts(log, ReplyLog::Level::error),
               ElementsAre("arm: refused", "arm: refused", "arm: refused"));
-  log.toTrajectory()(answerOf(true, "arm: accepted"));
+  log.toTrajectory()(trajectoryAnswer(true, "arm: accepted"));
   EXPECT_THAT(texts(log, ReplyLog::Level::debug), ElementsAre("arm: accepted"));
+}
+
+TEST(ReplyLog, WarnsOfATrajectoryThatBeginsLate) {
+  ReplyLog log(0);
+  TrajectoryAnswer late = trajectoryAnswer(true, "arm: accepted without the first point");
+  late.passed_points = 1;
+  log.toTrajectory()(late);
+  EXPECT_THAT(texts(log, ReplyLog::Level::warning),
+              ElementsAre("arm: accepted without the first point"));
 }
 
 TEST(ReplyLog, CountsWhatNobodyTakesInsteadOfWaiting) {
   ReplyLog log(0);
-  const Reply<> reply = log.toTrajectory();
-  for (int i = 0; i < 300; ++i) reply(answerOf(false, std::to_string(i)));
+  const auto reply = log.toTrajectory();
+  for (int i = 0; i < 300; ++i) reply(trajectoryAnswer(false, std::to_string(i)));
   const auto kept = texts(log, ReplyLog::Level::error);
   EXPECT_EQ(kept.size() + log.lost(), 300u);
   EXPECT_GT(log.lost(), 0u);
@@ -70,7 +86,7 @@ TEST(ReplyLog, CountsWhatNobodyTakesInsteadOfWaiting) {
 TEST(ReplyLog, TakesRepliesOfTwoThreadsAtOnce) {
   ReplyLog log(0);
   const auto refuse_often = [&log] {
-    for (int i = 0; i < 1000; ++i) log.toTrajectory()(answerOf(false, "arm: refused"));
+    for (int i = 0; i < 1000; ++i) log.toTrajectory()(trajectoryAnswer(false, "arm: refused"));
   };
   std::thread bus(refuse_often), ros(refuse_often);
   std::size_t taken = 0;

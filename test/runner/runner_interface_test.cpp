@@ -15,7 +15,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bus/runner_world.h"
+#include "runner/runner_world.h"
 
 namespace cia402::bus {
 namespace {

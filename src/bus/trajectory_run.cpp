@@ -1,0 +1,262 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "bus/trajectory_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "common/text.h"
+
+namespace cia402::bus {
+namespace {
+
+using motion::TrajectoryErrorCode;
+
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+constexpr double kArrived = 0.01;  // rad or m; "reached" where no goal tolerance is configured
+
+/// "0.1 rad".
+std::string distance(const Joint& joint, double way) {
+  return motion::formatNumber(way) + " " + motion::toString(joint.description().unit);
+}
+
+}  // namespace
+
+TrajectoryRun::TrajectoryRun(const config::GroupConfig& group, TrajectoryOrder order,
+                             const std::vector<Joint*>& joints,
+                             std::optional<motion::Trajectory> trajectory)
+    : group_(&group),
+      order_(std::move(order)),
+      trajectory_(std::move(trajectory)),
+      positions_(joints.size()),
+      phase_(trajectory_ ? Phase::waiting : Phase::stopping) {
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    Joint* const joint = joints[i];
+    const auto tolerance = order_.tolerances.find(joint->name());
+    members_.push_back(
+        {joint, i,
+         tolerance == order_.tolerances.end() ? config::JointTolerance() : tolerance->second,
+         joint->sent().breaks(), joint->noticeCount(), !joint->ready(),
+         drive::Standstill(group.stopped_velocity_tolerance, joint->resolution())});
+  }
+}
+
+bool TrajectoryRun::has(const Joint& joint) const {
+  return std::any_of(members_.begin(), members_.end(),
+                     [&](const Member& member) { return member.joint == &joint; });
+}
+
+bool TrajectoryRun::meets(const TrajectoryRun& other) const {
+  return std::any_of(members_.begin(), members_.end(),
+                     [&](const Member& member) { return other.has(*member.joint); });
+}
+
+bool TrajectoryRun::within(const std::vector<Joint*>& joints) const {
+  return std::all_of(members_.begin(), members_.end(), [&](const Member& member) {
+    return std::find(joints.begin(), joints.end(), member.joint) != joints.end();
+  });
+}
+
+std::vector<Joint*> TrajectoryRun::joints() const {
+  std::vector<Joint*> all;
+  for (const Member& member : members_) all.push_back(member.joint);
+  return all;
+}
+
+std::optional<motion::MotionState> TrajectoryRun::planned(const Joint& joint, Time time) const {
+  if (phase_ != Phase::following) return std::nullopt;
+  for (const Member& member : members_) {
+    if (member.joint == &joint && !member.dropped) return trajectory_->sample(member.place, time);
+  }
+  return std::nullopt;
+}
+
+/// The joints' own accelerations come with the square of the rate, so that both together keep the
+/// limit: rise * velocity + rate² * acceleration.
+double TrajectoryRun::permittedRise(const MotionClock& clock) const {
+  constexpr double kLeast = 0.1;  // of the limit, where the trajectory takes all of it
+  const double rate = clock.rate();
+  double rise = 1e9;
+  for (const Member& member : members_) {
+    const motion::MotionState state = trajectory_->sample(member.place, clock.time());
+    const double limit = member.joint->stopDeceleration();
+    const double left = limit - rate * rate * std::abs(state.acceleration);
+    const double speed = std::max(std::abs(state.velocity), 1e-9);
+    rise = std::min(rise, std::max(left, kLeast * limit) / speed);
+  }
+  return rise;
+}
+
+void TrajectoryRun::begin(Time now) {
+  began_ = now;
+  phase_ = Phase::following;
+  for (const Member& member : members_) positions_[member.place] = member.joint->sent().value();
+}
+
+void TrajectoryRun::leave(const Joint& joint, const TrajectoryOutcome& replaced) {
+  const auto gone = std::remove_if(members_.begin(), members_.end(),
+                                   [&](const Member& member) { return member.joint == &joint; });
+  if (gone == members_.end()) return;
+  members_.erase(gone, members_.end());
+  const bool any_left = std::any_of(members_.begin(), members_.end(),
+                                    [](const Member& member) { return !member.dropped; });
+  if (!any_left) phase_ = Phase::ended;
+  order_.tell(replaced);
+}
+
+void TrajectoryRun::stop(const TrajectoryOutcome& why) {
+  outcome_ = why;
+  if (why.end == TrajectoryEnd::failed) order_.tell(why);
+  const bool failed = why.code != TrajectoryErrorCode::successful;
+  const Duration over = failed ? Duration::zero() : fromSeconds(group_->stop_trajectory_duration);
+  for (Member& member : members_) {
+    if (!member.dropped) member.joint->stop(over);
+    member.breaks = member.joint->sent().breaks();
+  }
+  phase_ = Phase::stopping;
+}
+
+void TrajectoryRun::hasten() {
+  for (Member& member : members_) {
+    if (!member.dropped) member.joint->stop();
+  }
+}
+
+void TrajectoryRun::end(const TrajectoryOutcome& outcome) {
+  phase_ = Phase::ended;
+  order_.tell(outcome);
+}
+
+void TrajectoryRun::noteDropped() {
+  for (Member& member : members_) {
+    const Joint& joint = *member.joint;
+    if (!joint.ready() || joint.sent().breaks() != member.breaks) member.dropped = true;
+  }
+}
+
+std::optional<TrajectoryOutcome> TrajectoryRun::failure() const {
+  if (refused_ != nullptr) {  // which ends the axis' set-points, too
+    return TrajectoryOutcome{TrajectoryErrorCode::path_tolerance_violated,
+                             group_->name + ": trajectory stopped: " + refused_->who() +
+                                 " refused a set-point: it does not fit the drive or is beyond the "
+                                 "joint's limits",
+                             TrajectoryEnd::failed, refused_->name()};
+  }
+  if (auto failed = axisFailure()) return failed;
+  return pathFailure();
+}
+
+std::optional<TrajectoryOutcome> TrajectoryRun::axisFailure() const {
+  bool any_ready = false;
+  for (const Member& member : members_) {
+    if (!member.dropped) {
+      any_ready = true;
+    } else if (group_->stop_group_on_fault) {
+      return blame(TrajectoryErrorCode::path_tolerance_violated, member, kNothing,
+                   ": trajectory stopped: " + member.joint->trouble(member.notices));
+    }
+  }
+  if (any_ready) return std::nullopt;
+  return TrajectoryOutcome{TrajectoryErrorCode::path_tolerance_violated,
+                           group_->name + ": trajectory stopped: no joint is enabled any more",
+                           TrajectoryEnd::failed,
+                           {}};
+}
+
+std::optional<TrajectoryOutcome> TrajectoryRun::pathFailure() const {
+  for (const Member& member : members_) {
+    const double tolerance = member.tolerance.trajectory;
+    if (tolerance <= 0.0 || member.dropped) continue;
+    const Joint& joint = *member.joint;
+    const double error = std::abs(positions_[member.place] - joint.position());
+    if (began_ < joint.stamp() && error > tolerance) {
+      return blame(TrajectoryErrorCode::path_tolerance_violated, member, error,
+                   ": trajectory stopped: " + joint.who() + " is " + distance(joint, error) +
+                       " off its path, the tolerance is " + motion::formatNumber(tolerance));
+    }
+  }
+  return std::nullopt;
+}
+
+bool TrajectoryRun::atGoal(Time time) const {
+  if (!trajectory_->finished(time)) return false;
+  return std::all_of(members_.begin(), members_.end(), [&](const Member& member) {
+    return member.dropped || member.joint->sent().value() == trajectory_->goal()[member.place];
+  });
+}
+
+void TrajectoryRun::follow(Time time) {
+  trajectory_->samplePositions(time, positions_);
+  for (const Member& member : members_) {
+    // An axis that fell out of operation holds or stops by itself; the others go on as configured.
+    // Enabled again, it must not jump to where the trajectory is by now.
+    if (!member.dropped && !member.joint->give(positions_[member.place])) refused_ = member.joint;
+  }
+}
+
+bool TrajectoryRun::stands() const {
+  return std::all_of(members_.begin(), members_.end(), [](const Member& member) {
+    return member.dropped || member.joint->sent().atRest();
+  });
+}
+
+TrajectoryOutcome TrajectoryRun::blame(TrajectoryErrorCode code, const Member& member, double off,
+                                       const std::string& text) const {
+  return {code, group_->name + text, TrajectoryEnd::failed, member.joint->name(), off};
+}
+
+bool TrajectoryRun::rests(const Member& member) const {
+  return group_->stopped_velocity_tolerance <= 0.0 || member.rest.still();
+}
+
+TrajectoryOutcome TrajectoryRun::restlessness(const Member& member) const {
+  const Joint& joint = *member.joint;
+  return blame(
+      TrajectoryErrorCode::goal_tolerance_violated, member, kNothing,
+      ": goal missed: " + joint.who() + " still moves " + motion::formatNumber(order_.goal_time) +
+          " s after the end, its stopped_velocity_tolerance is " +
+          motion::formatNumber(group_->stopped_velocity_tolerance) + " " +
+          motion::toString(joint.description().unit) +
+          "/s; see whether it swings or is pushed, or give a larger goal_time or tolerance");
+}
+
+std::optional<TrajectoryOutcome> TrajectoryRun::arrival(Time time) {
+  for (Member& member : members_) {
+    member.rest.update(member.joint->position(), member.joint->stamp());
+    if (!member.dropped) continue;
+    return blame(TrajectoryErrorCode::goal_tolerance_violated, member, kNothing,
+                 ": goal missed: " + member.joint->trouble(member.notices));
+  }
+  const bool late = time >= trajectory_->endTime() + fromSeconds(order_.goal_time);
+  std::string away;  // without a tolerance that is no failure, but it is told
+  TrajectoryOutcome reached{TrajectoryErrorCode::successful, group_->name + ": goal reached"};
+  for (const Member& member : members_) {
+    const Joint& joint = *member.joint;
+    const double tolerance = member.tolerance.goal;
+    const bool judged = tolerance > 0.0;
+    const double error = std::abs(trajectory_->goal()[member.place] - joint.position());
+    const bool arrived = error <= (judged ? tolerance : kArrived);
+    if (arrived && rests(member)) continue;
+    if (!late) return std::nullopt;
+    if (arrived) return restlessness(member);
+    const std::string where = joint.who() + " is " + distance(joint, error) + " away";
+    if (judged) {
+      return blame(TrajectoryErrorCode::goal_tolerance_violated, member, error,
+                   ": goal missed: " + where + " after " + motion::formatNumber(order_.goal_time) +
+                       " s, the tolerance is " + motion::formatNumber(tolerance));
+    }
+    append(away, where, ", ");
+    if (!(error <= reached.off)) {
+      reached.joint = joint.name();
+      reached.off = error;
+    }
+  }
+  if (!away.empty()) {
+    reached.message = group_->name + ": the trajectory is over, but " + away +
+                      " from its goal; no goal tolerance is configured for it";
+  }
+  return reached;
+}
+
+}  // namespace cia402::bus

@@ -1,0 +1,111 @@
+// Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bus/joint.h"
+#include "bus/motion_clock.h"
+#include "bus/trajectory_order.h"
+#include "cia402_driver/bus/trajectory_outcome.h"
+#include "config/robot.h"
+#include "drive/axis/standstill.h"
+#include "motion/trajectory.h"
+
+namespace cia402::bus {
+
+/// One trajectory and those joints of a group that follow it, from when it was accepted until they
+/// stand. A later one may take some of them over, or all.
+class TrajectoryRun {
+ public:
+  /// @param joints those of the trajectory, in its order; they are ready. Must outlive the run.
+  /// @param trajectory absent: it only waits until they stand, whatever brings them to rest
+  TrajectoryRun(const config::GroupConfig& group, TrajectoryOrder order,
+                const std::vector<Joint*>& joints, std::optional<motion::Trajectory> trajectory);
+
+  std::uint64_t id() const { return order_.id; }
+  bool waiting() const { return is(Phase::waiting); }
+  bool following() const { return is(Phase::following); }
+  bool stopping() const { return is(Phase::stopping); }
+  /// All its joints were taken over, or all that were well, or end() was called.
+  bool ended() const { return members_.empty() || is(Phase::ended); }
+  bool hasTrajectory() const { return trajectory_.has_value(); }
+  bool has(const Joint& joint) const;
+  /// They share a joint.
+  bool meets(const TrajectoryRun& other) const;
+  /// It has no joints but those.
+  bool within(const std::vector<Joint*>& joints) const;
+  std::vector<Joint*> joints() const;
+
+  /// @pre waiting() or following()
+  Time startTime() const { return trajectory_->startTime(); }
+  /// Where it has a joint at `time` of the group's clock; absent: it does not say, for it has not
+  /// begun, it stops, or the joint fell out.
+  std::optional<motion::MotionState> planned(const Joint& joint, Time time) const;
+  /// How fast the clock's rate may rise for it, 1/s. @pre following()
+  double permittedRise(const MotionClock& clock) const;
+
+  /// Its joints follow it from now on.
+  void begin(Time now);
+  /// Another takes a joint over; who waited for this one is told so.
+  void leave(const Joint& joint, const TrajectoryOutcome& replaced);
+  /// Brings its joints to rest, as hard as they may where `why` has the code of a failure, else
+  /// within stop_trajectory_duration. Who waits is told at once where it failed, else when they
+  /// stand.
+  void stop(const TrajectoryOutcome& why);
+  /// While it stops: as hard as its joints may.
+  void hasten();
+  /// It has no trajectory, and its joints are being stopped.
+  void expectRest(const TrajectoryOutcome& outcome) { outcome_ = outcome; }
+  /// Ends it without a word to its joints, of which it knows still.
+  void end(const TrajectoryOutcome& outcome);
+  /// What it has come to, once it stops.
+  const TrajectoryOutcome& outcome() const { return outcome_; }
+
+  /// A joint that was not ready for a while, or whose set-points were ended by anything else
+  /// (another zero of its positions, a motor that stands), is not where this was planned from.
+  void noteDropped();
+  /// Why its joints are to stop. @pre following()
+  std::optional<TrajectoryOutcome> failure() const;
+  /// The goal was sent already: given once more, the set-points are at rest there. @pre following()
+  bool atGoal(Time time) const;
+  /// Gives the joints their set-points. @pre following()
+  void follow(Time time);
+  /// How it ended; absent: the goal is waited for still. @pre following(), atGoal()
+  std::optional<TrajectoryOutcome> arrival(Time time);
+  bool stands() const;
+
+ private:
+  enum class Phase : std::uint8_t { waiting, following, stopping, ended };
+  struct Member {
+    Joint* joint;
+    std::size_t place;  ///< in the trajectory
+    config::JointTolerance tolerance;
+    std::uint32_t breaks, notices;  ///< of the joint, as it was taken
+    bool dropped;                   ///< it fell out of operation under way
+    drive::Standstill rest;         ///< of the motor, from when the goal was sent
+  };
+
+  bool is(Phase phase) const { return phase_ == phase && !members_.empty(); }
+  std::optional<TrajectoryOutcome> axisFailure() const;
+  std::optional<TrajectoryOutcome> pathFailure() const;
+  bool rests(const Member& member) const;
+  TrajectoryOutcome restlessness(const Member& member) const;
+  TrajectoryOutcome blame(motion::TrajectoryErrorCode code, const Member& member, double off,
+                          const std::string& text) const;
+
+  const config::GroupConfig* group_;
+  TrajectoryOrder order_;
+  std::vector<Member> members_;
+  std::optional<motion::Trajectory> trajectory_;
+  std::vector<double> positions_;  ///< that were given last, as the trajectory numbers them
+  Phase phase_;
+  Time began_{};                    ///< in the time of the bus
+  const Joint* refused_ = nullptr;  ///< the one that did not take its set-point
+  TrajectoryOutcome outcome_;       ///< while it stops
+};
+
+}  // namespace cia402::bus
