@@ -89,7 +89,6 @@ Parameters readParameters(const ros::NodeHandle& private_node, Problems& problem
   takeOption(parameters.robot, "interface", parameters.options.interface, problems);
   takeOption(parameters.robot, "profile_path", parameters.options.profile_path, problems);
   takePriority(parameters.robot, parameters.options.realtime_priority, problems);
-  parameters.robot.remove("actionlib_status_frequency");  // actionlib's own
   if (!parameters.options.interface.empty()) {
     parameters.robot["bus"]["interface"] = parameters.options.interface;
   }

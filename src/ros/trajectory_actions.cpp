@@ -13,7 +13,6 @@ namespace {
 
 using motion::TrajectoryErrorCode;
 
-constexpr char kStatusFrequency[] = "actionlib_status_frequency";
 constexpr std::size_t kMostGoals = 64;         // that have not ended
 constexpr std::size_t kNews = 4 * kMostGoals;  // two of each goal, and room to be late
 constexpr actionlib_msgs::GoalStatus::_status_type kPending = actionlib_msgs::GoalStatus::PENDING;
@@ -61,13 +60,11 @@ TrajectoryActions::TrajectoryActions(ros::NodeHandle& private_node, bus::BusRunn
       robot_(robot),
       joints_(bus::jointsOf(robot)),
       news_(kNews) {
-  // Each change is sent at once, so that the regular status only wakes the node.
-  if (!private_node.hasParam(kStatusFrequency)) private_node.setParam(kStatusFrequency, 1.0);
   for (std::size_t group = 0; group < robot.groups.size(); ++group) {
     servers_.push_back(std::make_unique<Server>(
         private_node, robot.groups[group].name + "/follow_joint_trajectory",
         [this, group](const Server::GoalHandle& handle) { onGoal(group, handle); },
-        [this, group](const Server::GoalHandle& handle) { onCancel(group, handle); }, false));
+        [this, group](const Server::GoalHandle& handle) { onCancel(group, handle); }));
     servers_.back()->start();
   }
 }
@@ -168,6 +165,10 @@ void TrajectoryActions::finish(Goal& goal, const News& news) {
     case bus::TrajectoryEnd::failed:
       return handle.setAborted(result, text);
   }
+}
+
+void TrajectoryActions::publishStatus() {
+  for (const auto& server : servers_) server->tick();
 }
 
 void TrajectoryActions::publishFeedback() {

@@ -1,7 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <actionlib/server/action_server.h>
 #include <control_msgs/FollowJointTrajectoryAction.h>
 #include <ros/node_handle.h>
 
@@ -19,6 +18,7 @@
 #include "bus/runner.h"
 #include "config/robot.h"
 #include "motion/joint.h"
+#include "ros/trajectory_action_server.h"
 
 namespace cia402::ros_node {
 
@@ -38,11 +38,13 @@ class TrajectoryActions {
   void update();
   /// A goal has not ended.
   bool busy() const { return !goals_.empty(); }
+  /// The same thread, once a second: which goals there are; changes are told of at once.
+  void publishStatus();
   /// The same thread, regularly: where the joints of each goal are to be, and are.
   void publishFeedback();
 
  private:
-  using Server = actionlib::ActionServer<control_msgs::FollowJointTrajectoryAction>;
+  using Server = TrajectoryActionServer;
   /// Of one goal, from the thread of the bus.
   struct News {
     enum class Kind : std::uint8_t { answered, ended };

@@ -15,6 +15,7 @@ using test::Lines;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 constexpr Duration kUnanswered = std::chrono::milliseconds(300);
 // After 0.3 s without an answer it is reset, and told 0.05 s later that it goes on as before.
@@ -143,18 +144,26 @@ TEST_F(BootBrakeTest, takes_it_over_once_it_is_identified_where_it_did_not_answe
   EXPECT_EQ(std::count(brake, sent.end(), kTellPreOperational), 0);
 }
 
-// It was cut off as the boot began, and appears while its boot-up message is waited for.
-TEST_F(BootBrakeTest, stops_a_motor_that_appears_before_the_reset_is_sent_again) {
-  shows("583 4F 61 60 00 08 00 00 00");
-  peer.forget(kAskStatusword);
-  peer.forget(kReset);
-  boot();
-  pass(kAwaitsBootUp);
-  EXPECT_THAT(peer.take(), Contains(kReset));
-  peer.on(kAskStatusword, Lines{kOperationEnabled});
-  peer.on(kAskStatusword, Lines{kQuickStopActive});
-  rests();
-  hear("703 05");
+/// It was cut off as the boot began, and appears while its boot-up message is waited for. What it
+/// tells then; pre-operational: it missed its master and left the state operational by itself.
+class BootBrakeAppearsTest : public BootBrakeTest, public testing::WithParamInterface<const char*> {
+ protected:
+  void appears(Duration after_reset) {
+    shows("583 4F 61 60 00 08 00 00 00");
+    peer.forget(kAskStatusword);
+    peer.forget(kReset);
+    boot();
+    pass(kUnanswered + after_reset);
+    EXPECT_THAT(peer.take(), Contains(kReset));
+    peer.on(kAskStatusword, Lines{kOperationEnabled});
+    peer.on(kAskStatusword, Lines{kQuickStopActive});
+    rests();
+    hear(GetParam());
+  }
+};
+
+TEST_P(BootBrakeAppearsTest, stops_the_motor_before_the_reset_is_sent_again) {
+  appears(kAwaitsBootUp - kUnanswered);
   pass(std::chrono::milliseconds(50));
   const Lines sent = peer.take();
   ASSERT_GE(sent.size(), 7U);
@@ -162,6 +171,19 @@ TEST_F(BootBrakeTest, stops_a_motor_that_appears_before_the_reset_is_sent_again)
               ElementsAre(test::kAskDeviceType, kAskStatusword, kAskShownMode, kQuickStop,
                           kAskStatusword, kAskStatusword, kReset));
 }
+
+INSTANTIATE_TEST_SUITE_P(Told, BootBrakeAppearsTest, testing::Values("703 05", "703 7F"));
+
+/// A heartbeat that was on its way as the reset was sent says nothing of it.
+using BootBrakeOnItsWayTest = BootBrakeAppearsTest;
+TEST_P(BootBrakeOnItsWayTest, waits_for_the_next_heartbeat) {
+  appears(std::chrono::milliseconds(20));
+  EXPECT_THAT(peer.take(), Not(Contains(kAskStatusword)));
+  pass(std::chrono::milliseconds(40));
+  hear(GetParam());
+  EXPECT_THAT(peer.take(), Contains(kAskStatusword));
+}
+INSTANTIATE_TEST_SUITE_P(Told, BootBrakeOnItsWayTest, testing::Values("703 7F"));
 
 TEST_F(BootBrakeTest, asks_for_the_state_again_where_a_heartbeat_says_that_the_drive_is_there) {
   shows("583 4F 61 60 00 08 00 00 00");

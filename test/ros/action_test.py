@@ -3,13 +3,15 @@
 """Goals of follow_joint_trajectory: how they end, and where the joints are then."""
 import actionlib
 import rospy
-from actionlib_msgs.msg import GoalStatus
-from control_msgs.msg import (FollowJointTrajectoryAction, FollowJointTrajectoryGoal,
+from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
+from control_msgs.msg import (FollowJointTrajectoryAction, FollowJointTrajectoryActionGoal,
+                              FollowJointTrajectoryActionResult, FollowJointTrajectoryGoal,
                               FollowJointTrajectoryResult, JointTolerance)
 from robot_client import DEADLINE, RobotTest, main, wait_until
 from trajectory_msgs.msg import JointTrajectoryPoint
 
 JOINTS = ["shoulder", "elbow", "wrist", "gripper"]
+ACTION = "/robot/arm/follow_joint_trajectory"
 NEAR, FAR = [-2.0, 0.0, 0.2, 0.1], [-0.8, 0.6, 0.8, 0.5]
 
 
@@ -38,8 +40,7 @@ class Action(RobotTest):
                          FollowJointTrajectoryResult.SUCCESSFUL)
 
     def make_client(self):
-        client = actionlib.SimpleActionClient("/robot/arm/follow_joint_trajectory",
-                                              FollowJointTrajectoryAction)
+        client = actionlib.SimpleActionClient(ACTION, FollowJointTrajectoryAction)
         self.assertTrue(client.wait_for_server(rospy.Duration.from_sec(DEADLINE)))
         return client
 
@@ -168,6 +169,43 @@ class Action(RobotTest):
         result = self.result(GoalStatus.ABORTED, "shoulder|off its path, the tolerance is 1e-06")
         self.assertEqual(result.error_code, FollowJointTrajectoryResult.PATH_TOLERANCE_VIOLATED)
         self.assert_stops()
+
+    def connect(self, topic, kind):
+        publisher = rospy.Publisher(f"{ACTION}/{topic}", kind, queue_size=10)
+        self.addCleanup(publisher.unregister)
+        wait_until(lambda: publisher.get_num_connections() > 0, f"{topic} is heard")
+        return publisher
+
+    def test_is_recalled_if_it_was_cancelled_before_it_came(self):
+        cancel = self.connect("cancel", GoalID)
+        send = self.connect("goal", FollowJointTrajectoryActionGoal)
+        results, known = {}, set()
+        subscribers = [
+            rospy.Subscriber(f"{ACTION}/result", FollowJointTrajectoryActionResult,
+                             lambda message: results.update({message.status.goal_id.id:
+                                                             message.status.status})),
+            rospy.Subscriber(f"{ACTION}/status", GoalStatusArray,
+                             lambda message: (known.clear(), known.update(
+                                 status.goal_id.id for status in message.status_list)))]
+        ids = []
+        for seconds in (0, 1, 2**32 - 1):
+            ids.append(f"at {seconds}")
+            stamp = rospy.Time(seconds)
+            cancel.publish(GoalID(id=ids[-1], stamp=stamp))
+            # Once the status tells of it, the cancel has been heard.
+            wait_until(lambda: ids[-1] in known, "the cancel is known")
+            message = FollowJointTrajectoryActionGoal(goal=goal_of(FAR, 2.0))
+            message.goal_id = GoalID(id=ids[-1], stamp=stamp)
+            for _ in range(2):
+                send.publish(message)
+            wait_until(lambda: results.get(ids[-1]) == GoalStatus.RECALLED, "it is recalled")
+        self.assert_rests()
+        self.assertAlmostEqual(self.robot.position("shoulder"), NEAR[0], delta=0.01)
+        wait_until(lambda: not known.intersection(ids), "they are forgotten")
+        self.assertEqual(self.finish(goal_of(FAR, 2.0)).error_code,
+                         FollowJointTrajectoryResult.SUCCESSFUL)
+        for subscriber in subscribers:
+            subscriber.unregister()
 
     def test_for_some_joints_leaves_the_others_to_theirs(self):
         other = self.make_client()

@@ -141,9 +141,13 @@ bool BootProcedure::asksForMotors(NmtState heard) const {
 }
 
 /// Silent while its motors were asked for, it is there now and may still turn them: they come first
-/// again.
-bool BootProcedure::appearsInOperation(NmtState state, Time now) {
-  const bool appears = std::exchange(unheard_, false) && state == NmtState::operational;
+/// again. One that missed its master may have left the state operational by itself, and one that
+/// tells so without a boot-up message has not heard its reset.
+bool BootProcedure::mayStillTurn(NmtState state, Time now) {
+  const bool reset_in_vain = boot_.resetting && state == NmtState::pre_operational;
+  if (reset_in_vain && now < boot_.commanded + kResetTime) return false;
+  const bool appears =
+      std::exchange(unheard_, false) && (state == NmtState::operational || reset_in_vain);
   if (!appears || boot_.found.braked || boot_.config.brakes.empty()) return false;
   boot_.resetting = boot_.stopped_before = false;
   boot_.braking = true;
@@ -161,7 +165,7 @@ void BootProcedure::heartbeatHeard(NmtState state, Time now) {
   }
   if (state == NmtState::pre_operational) boot_.found.stopped = false;
   if (boot_.braking) unheard_ = false;
-  if (boot_.braking || appearsInOperation(state, now)) return;
+  if (boot_.braking || mayStillTurn(state, now)) return;
   const bool disobeys = state == NmtState::operational || state == NmtState::stopped;
   // One that is guarded answers a question that left behind the command.
   const Duration heard_late = boot_.guarded() ? Duration::zero() : kOnItsWay;

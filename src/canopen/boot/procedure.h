@@ -70,7 +70,7 @@ class BootProcedure {
   void enter(std::size_t step, Time now);
   void begin(std::size_t step, Time now);
   void stoppedHeard(Time now);
-  bool appearsInOperation(NmtState state, Time now);
+  bool mayStillTurn(NmtState state, Time now);
   void tellWhatIsLacking();
 
   BootContext boot_;

@@ -56,6 +56,7 @@ It waits for the ROS master and for the interface. SIGINT and SIGTERM stop and d
 constexpr unsigned kWaitingCalls = 4;  // of services that keep a thread while they wait
 constexpr Duration kLongestTick = std::chrono::milliseconds(20);  // for states and the log
 constexpr Duration kFeedbackTick = std::chrono::milliseconds(50);
+constexpr Duration kStatusTick = std::chrono::seconds(1);
 constexpr Duration kDiagnosticsTick = std::chrono::milliseconds(100);
 
 /// A whole part of the period of joint_states, so that states and log need no waking of their own.
@@ -157,6 +158,7 @@ void serve(ros::NodeHandle& node, ros::NodeHandle& private_node, const LoadedRob
   loop.every(joint_states, [&] { publishMeasured(runner, publishers, frames); });
   loop.every(
       kFeedbackTick, [&] { actions.publishFeedback(); }, [&] { return actions.busy(); });
+  loop.every(kStatusTick, [&] { actions.publishStatus(); });
   loop.every(kDiagnosticsTick, [&] { diagnostics.update(); });
   ros_node::wakeOnSignals(loop.wakeFd());
   while (!ros_node::endRequested()) loop.step();
