@@ -148,27 +148,28 @@ TrajectoryOutcome Group::startStop(const TrajectoryCommand& command,
                               config_.name + ": stopped by an empty trajectory",
                               TrajectoryEnd::stopped,
                               {}};
-  std::vector<Joint*> moving;
+  std::vector<Joint*> ours;
   for (Joint* joint : joints) {
-    const bool moves = std::any_of(runs_.begin(), runs_.end(),
-                                   [&](const TrajectoryRun& run) { return run.has(*joint); });
-    if (moves) moving.push_back(joint);
+    if (!joint->followsAnother(config_.name)) ours.push_back(joint);
   }
   for (TrajectoryRun& run : runs_) {
     if (run.within(joints)) stop(run, why);
   }
-  for (TrajectoryRun& run : runs_) {
-    for (Joint* joint : moving) {
-      if (run.following() && run.has(*joint) && joint->ready()) {
-        joint->stop(fromSeconds(config_.stop_trajectory_duration));
-      }
-    }
-    if (run.following() || run.waiting()) handOver(run, moving);
+  for (Joint* joint : ours) {
+    const bool stops = std::any_of(runs_.begin(), runs_.end(), [&](const TrajectoryRun& run) {
+      return run.stopping() && run.has(*joint);
+    });
+    if (!joint->ready()) continue;
+    if (!stops) joint->stop(fromSeconds(config_.stop_trajectory_duration));
+    joint->follow(&config_.name);
   }
-  runs_.emplace_back(config_, orderOf(command), moving, std::nullopt);
+  for (TrajectoryRun& run : runs_) {
+    if (run.following() || run.waiting()) handOver(run, ours);
+  }
+  runs_.emplace_back(config_, orderOf(command), ours, std::nullopt);
   runs_.back().expectRest(
       {TrajectoryErrorCode::successful, config_.name + ": stands", TrajectoryEnd::stopped, {}});
-  if (runs_.back().stands()) runs_.back().end(runs_.back().outcome());
+  if (ours.empty()) runs_.back().end(runs_.back().outcome());
   sweep();
   return {TrajectoryErrorCode::successful, config_.name + ": stopping"};
 }
@@ -254,7 +255,7 @@ const std::vector<TrajectoryOutcome>& Group::step(Time now) {
   stopFailed();
   bool any_ended = false;
   for (TrajectoryRun& run : runs_) {
-    if (!run.ended()) stepRun(run);
+    if (!run.ended()) stepRun(run, now);
     any_ended = any_ended || run.ended();
   }
   if (any_ended) sweep();
@@ -271,14 +272,14 @@ void Group::stopFailed() {
   ended_.push_back(std::move(*failure));
 }
 
-void Group::stepRun(TrajectoryRun& run) {
+void Group::stepRun(TrajectoryRun& run, Time now) {
   std::optional<TrajectoryOutcome> ended;
   if (run.following()) {
     const bool at_goal = run.atGoal(clock_.time());
     run.follow(clock_.time());
     if (at_goal) ended = run.arrival(clock_.time());
-  } else if (run.stopping() && run.stands()) {
-    ended = run.outcome();
+  } else if (run.stopping()) {
+    ended = run.standstill(now);
   }
   if (!ended) return;
   // A failure was told as the stop began, and who only waits for rest has stopped nothing.

@@ -64,7 +64,7 @@ class Group {
   double permittedRise() const;
   /// What one joint cannot follow ends the motion of all.
   void stopFailed();
-  void stepRun(TrajectoryRun& run);
+  void stepRun(TrajectoryRun& run, Time now);
 
   config::GroupConfig config_;
   std::vector<Joint*> joints_;

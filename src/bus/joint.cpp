@@ -51,8 +51,7 @@ std::string Joint::refusal(const std::string& group) const {
            ", which does not follow trajectories: " + switchAdvice(axis().config());
   }
   const std::string* leader = axis().leader();
-  if (leader != nullptr && *leader != group)
-    return who_ + " follows a trajectory of group " + *leader;
+  if (followsAnother(group)) return who_ + " follows a trajectory of group " + *leader;
   // In the cycle in which a trajectory has ended, the stream still knows the way to its goal only.
   const bool rests = axis().streamAtRest() || sent().atRest();
   if (leader == nullptr && !rests) {

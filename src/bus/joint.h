@@ -42,6 +42,10 @@ class Joint {
 
   /// Why it cannot follow trajectories of that group now, in words; empty if it can.
   std::string refusal(const std::string& group) const;
+  /// Another group than that one gives its set-points.
+  bool followsAnother(const std::string& group) const {
+    return axis().leader() != nullptr && *axis().leader() != group;
+  }
   /// Why it does not do what it is told any more, in words. @param told_before noticeCount() then
   std::string trouble(std::uint32_t told_before) const;
   std::uint32_t noticeCount() const { return axis().noticeCount(); }

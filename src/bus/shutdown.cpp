@@ -28,10 +28,14 @@ bool atRest(const AxisCycle& cycle) {
                       [](const Group& group) { return group.executing() || group.stopping(); });
 }
 
+/// One that was lost as it turned is told to stop again and again, and once more when it is heard:
+/// it is worth waiting for.
 bool disabled(const AxisCycle& cycle) {
   const auto& units = cycle.units();
   return std::none_of(units.begin(), units.end(), [](const AxisUnit& unit) {
-    return unit.axis.state().health == fieldbus::Health::ready && unit.axis.procedure().running;
+    const fieldbus::Health health = unit.axis.state().health;
+    return (health == fieldbus::Health::ready && unit.axis.procedure().running) ||
+           (health == fieldbus::Health::lost && unit.axis.mayMove());
   });
 }
 

@@ -14,6 +14,7 @@ namespace {
 using motion::TrajectoryErrorCode;
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+constexpr Duration kSettles = std::chrono::milliseconds(400);  // at least, after a stop
 constexpr double kArrived = 0.01;  // rad or m; "reached" where no goal tolerance is configured
 
 /// "0.1 rad".
@@ -195,10 +196,27 @@ void TrajectoryRun::follow(Time time) {
   }
 }
 
-bool TrajectoryRun::stands() const {
-  return std::all_of(members_.begin(), members_.end(), [](const Member& member) {
-    return member.dropped || member.joint->sent().atRest();
-  });
+std::optional<TrajectoryOutcome> TrajectoryRun::standstill(Time now) {
+  const Member* restless = nullptr;
+  bool rest_commanded = true;
+  for (Member& member : members_) {
+    // Something else stops one that was dropped: of that nothing but its motor tells.
+    if (member.dropped && !member.joint->state().known) continue;
+    member.rest.update(member.joint->position(), member.joint->stamp());
+    rest_commanded = rest_commanded && (member.dropped || member.joint->sent().atRest());
+    if (!rests(member)) restless = &member;
+  }
+  if (!rest_commanded) commanded_rest_.reset();
+  if (!rest_commanded) return std::nullopt;
+  if (restless == nullptr) return outcome_;
+  if (!commanded_rest_) commanded_rest_ = now;
+  if (now < *commanded_rest_ + std::max(fromSeconds(order_.goal_time), kSettles)) {
+    return std::nullopt;
+  }
+  TrajectoryOutcome outcome = outcome_;
+  outcome.message +=
+      ", but " + restless->joint->who() + " still moves; see whether it swings or is pushed";
+  return outcome;
 }
 
 TrajectoryOutcome TrajectoryRun::blame(TrajectoryErrorCode code, const Member& member, double off,

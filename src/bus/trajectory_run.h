@@ -76,7 +76,9 @@ class TrajectoryRun {
   void follow(Time time);
   /// How it ended; absent: the goal is waited for still. @pre following(), atGoal()
   std::optional<TrajectoryOutcome> arrival(Time time);
-  bool stands() const;
+  /// Its joints stand, as was commanded and as their motors are measured, or one that should does
+  /// not: what it has come to. @pre stopping()
+  std::optional<TrajectoryOutcome> standstill(Time now);
 
  private:
   enum class Phase : std::uint8_t { waiting, following, stopping, ended };
@@ -86,7 +88,7 @@ class TrajectoryRun {
     config::JointTolerance tolerance;
     std::uint32_t breaks, notices;  ///< of the joint, as it was taken
     bool dropped;                   ///< it fell out of operation under way
-    drive::Standstill rest;         ///< of the motor, from when the goal was sent
+    drive::Standstill rest;         ///< of the motor, since the goal was sent or it is stopped
   };
 
   bool is(Phase phase) const { return phase_ == phase && !members_.empty(); }
@@ -103,9 +105,10 @@ class TrajectoryRun {
   std::optional<motion::Trajectory> trajectory_;
   std::vector<double> positions_;  ///< that were given last, as the trajectory numbers them
   Phase phase_;
-  Time began_{};                    ///< in the time of the bus
-  const Joint* refused_ = nullptr;  ///< the one that did not take its set-point
-  TrajectoryOutcome outcome_;       ///< while it stops
+  Time began_{};                        ///< in the time of the bus
+  const Joint* refused_ = nullptr;      ///< the one that did not take its set-point
+  TrajectoryOutcome outcome_;           ///< while it stops
+  std::optional<Time> commanded_rest_;  ///< while it stops: all set-points are at rest since then
 };
 
 }  // namespace cia402::bus

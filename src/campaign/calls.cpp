@@ -90,7 +90,9 @@ bool Calls::actProcedure(const Words& words) {
   for (std::size_t i : session_.stage.named(words.at(1))) {
     if (verb == "home") bound += session_.stage.axes()[i].homing_timeout;
   }
-  call(words, bus::ProcedureCommand{axisWord(words.at(1)), request}, bound);
+  bus::ProcedureCommand command{axisWord(words[1]), request};
+  if (session_.stage.group(words[1]) != nullptr) std::swap(command.axis, command.group);
+  call(words, std::move(command), bound);
   return true;
 }
 

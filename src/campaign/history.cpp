@@ -46,6 +46,10 @@ class Author {
   std::string whom(const AxisPlan& axis, double all = 0.2) {
     return random_.chance(all) ? "all" : axis.name;
   }
+  /// Procedures are of groups as well.
+  std::string whomOrGroup(const AxisPlan& axis) {
+    return random_.chance(0.15) ? random_.pick(robot_.groups).name : whom(axis);
+  }
   char kindOf(const AxisPlan& axis) {
     const auto index = static_cast<std::size_t>(&axis - robot_.axes.data());
     for (const ModePlan& mode : axis.family->modes) {
@@ -145,7 +149,9 @@ class Author {
     for (std::size_t i = 0; i < group.axes.size(); ++i) shares += " " + text(random_.uniform());
     const std::string length = text(random_.between(0.1, 2.5));
     const double choice = random_.uniform();
-    if (choice < 0.65) {
+    if (group.partial && random_.chance(0.4)) {
+      parts(group);
+    } else if (choice < 0.65) {
       add(now_, "move " + group.name + " " + length + shares);
     } else if (choice < 0.9) {
       add(now_, "path " + group.name + " " + text(random_.between(-0.5, 1.0)) + " " +
@@ -162,10 +168,33 @@ class Author {
           "move " + group.name + " " + text(random_.between(0.3, 2.0)) + shares);
     }
     if (random_.chance(0.15)) add(now_ + random_.between(0.0, 1.0), "stop " + group.name);
+    if (random_.chance(0.2)) add(now_ + random_.between(0.0, 1.5), "cancel " + group.name);
+  }
+  /// Some of a group's axes, at least one: "a1,a3".
+  std::string someOf(const GroupPlan& group) {
+    std::string names;
+    const std::size_t sure = random_.below(group.axes.size());
+    for (std::size_t i = 0; i < group.axes.size(); ++i) {
+      if (i != sure && random_.chance(0.5)) continue;
+      names += (names.empty() ? "" : ",") + robot_.axes[group.axes[i]].name;
+    }
+    return names;
+  }
+  /// Trajectories of some of the joints, one beside another, or in its way.
+  void parts(const GroupPlan& group) {
+    double at = now_;
+    for (std::size_t count = 1 + random_.below(3); count > 0; --count) {
+      std::string shares;
+      for (std::size_t i = 0; i < group.axes.size(); ++i) shares += " " + text(random_.uniform());
+      add(at, "part " + group.name + " " + someOf(group) + " " + text(random_.between(0.1, 2.5)) +
+                  shares);
+      at += random_.between(0.0, 0.8);
+    }
+    if (random_.chance(0.3)) add(at, "stop " + group.name + " " + someOf(group));
   }
 
   void call(double at, const AxisPlan& axis) {
-    const std::string who = whom(axis);
+    const std::string who = whomOrGroup(axis);
     const double choice = random_.uniform();
     if (choice < 0.22) return add(at, "halt " + who);
     if (choice < 0.32) return add(at, "quick_stop " + who);
@@ -177,13 +206,16 @@ class Author {
       return add(at, "set_mode " + axis.name + " " + mode);
     }
     if (choice < 0.80) return add(at, "set_position " + axis.name + " " + text(position(axis)));
-    if (choice < 0.84) return add(at, "home " + axis.name);
+    if (choice < 0.84) {
+      return add(at, "home " + (random_.chance(0.15) ? random_.pick(robot_.groups).name
+                                                     : std::string(axis.name)));
+    }
     if (choice < 0.87) return add(at, "clear_faults " + who);
     if (choice < 0.90) return add(at, "point " + axis.name + " " + text(position(axis)));
     if (choice < 0.92) return add(at, "stop " + random_.pick(robot_.groups).name);
     if (choice < 0.94) return add(at, "read " + axis.name + " " + object());
     if (choice < 0.96) return write(at, axis);
-    if (choice < 0.98) return add(at, "nmt " + who + " " + nmtCommand());
+    if (choice < 0.98) return add(at, "nmt " + whom(axis) + " " + nmtCommand());
     add(at, random_.pick<std::string>({"save ", "restore ", "history "}) + axis.name);
   }
   /// What may be done to a drive for one of its axes.

@@ -26,11 +26,7 @@ Player::Player(Stage& stage, const Scene& scene, const RunOptions& options)
       proof_(session_, calls_, streams_, [this](Time until) { runTo(until); }) {
   stage.world().bus().setMonitor(
       [this](const can::Frame& frame, Time now) { onFrame(frame, now); });
-  stage.host().listen([this](const bus::Event& event) {
-    const std::string text = event.text.str();
-    session_.say("    " + text);
-    trajectories_.hear(text);
-  });
+  stage.host().listen([this](const bus::Event& event) { session_.say("    " + event.text.str()); });
 }
 
 void Player::play() {

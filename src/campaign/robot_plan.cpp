@@ -243,6 +243,7 @@ GroupPlan planGroup(Random& random, const std::vector<AxisPlan>& axes, std::size
                      static_cast<std::ptrdiff_t>(random.below(group.axes.size())));
   }
   if (group.axes.empty()) group.axes.push_back(random.below(axes.size()));
+  group.partial = group.axes.size() > 1 && random.chance(0.5);
   return group;
 }
 
@@ -251,6 +252,10 @@ std::string groupYaml(Random& random, const GroupPlan& group, const std::vector<
   for (std::size_t i : group.axes) joints += (joints.empty() ? "" : ", ") + axes[i].name;
   std::string yaml = "  " + group.name + ": {joints: [" + joints + "]";
   if (random.chance(0.4)) yaml += ", stop_group_on_fault: false";
+  if (group.partial) yaml += ", allow_partial_joints_goal: true";
+  if (random.chance(0.3)) {
+    yaml += ", stop_trajectory_duration: " + text(random.between(0.05, 0.6));
+  }
   return yaml + "}\n";
 }
 

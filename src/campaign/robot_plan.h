@@ -26,6 +26,7 @@ struct AxisPlan {
 struct GroupPlan {
   std::string name;
   std::vector<std::size_t> axes;
+  bool partial = false;  ///< it takes trajectories of some of its joints
 };
 
 /// A random robot, and what its history must know of it.

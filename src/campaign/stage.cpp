@@ -251,10 +251,20 @@ const AxisFacts* Stage::find(const std::string& name) const {
   return nullptr;
 }
 
+const config::GroupConfig* Stage::group(const std::string& name) const {
+  for (const config::GroupConfig& group : loaded_.robot.groups) {
+    if (group.name == name) return &group;
+  }
+  return nullptr;
+}
+
 std::vector<std::size_t> Stage::named(const std::string& name) const {
   std::vector<std::size_t> indices;
+  const config::GroupConfig* const of = group(name);
   for (const AxisFacts& facts : facts_) {
-    if (name == "all" || facts.name == name) indices.push_back(facts.index);
+    const bool within =
+        of != nullptr && std::count(of->joints.begin(), of->joints.end(), facts.config->joint) != 0;
+    if (name == "all" || facts.name == name || within) indices.push_back(facts.index);
   }
   return indices;
 }

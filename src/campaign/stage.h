@@ -120,7 +120,9 @@ class Stage {
   bool coasts(std::size_t axis, const std::string& name);
   /// nullptr if there is none.
   const AxisFacts* find(const std::string& name) const;
-  /// The axes that a call concerns: one by its name, or "all".
+  /// nullptr if there is none.
+  const config::GroupConfig* group(const std::string& name) const;
+  /// The axes that a call concerns: one by its name, those of a group, or "all".
   std::vector<std::size_t> named(const std::string& name) const;
   /// The drives that these axes sit in, each once.
   std::vector<std::size_t> drivesNamed(const std::string& name) const;

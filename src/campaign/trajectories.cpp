@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
+#include <sstream>
 #include <utility>
 
 #include "campaign/verbs.h"
@@ -14,13 +14,15 @@ namespace {
 using namespace std::chrono_literals;
 using Source = Permits::Source;
 
-constexpr double kShownAge = 0.03;  // s, of what the driver shows
-constexpr double kArrived = 0.01;   // rad or m: how near the driver calls reached by itself
+constexpr double kShownAge = 0.03;     // s, of what the driver shows
+constexpr Duration kShownTime = 30ms;  // likewise
+constexpr Duration kRampEnds = 150ms;  // as in AxisFacts::stopTime
+constexpr double kArrived = 0.01;      // rad or m: how near the driver calls reached by itself
 
-const Verbs<Trajectories> kTrajectoryVerbs{{"move", &Trajectories::move},
-                                           {"goal", &Trajectories::goal},
-                                           {"path", &Trajectories::path},
-                                           {"stop", &Trajectories::stop}};
+const Verbs<Trajectories> kTrajectoryVerbs{
+    {"move", &Trajectories::move}, {"part", &Trajectories::part},
+    {"goal", &Trajectories::goal}, {"path", &Trajectories::path},
+    {"stop", &Trajectories::stop}, {"cancel", &Trajectories::cancel}};
 
 std::vector<double> rest(std::size_t joints) { return std::vector<double>(joints, 0.0); }
 
@@ -30,10 +32,22 @@ bool Trajectories::act(const Words& words) { return actBy(kTrajectoryVerbs, *thi
 
 void Trajectories::move(const Words& words) {
   const config::GroupConfig* const to = running(words.at(1));
+  if (to != nullptr) moveThere(*to, axesOf(*to), words, 2);
+}
+
+void Trajectories::part(const Words& words) {
+  const config::GroupConfig* const to = running(words.at(1));
   if (to == nullptr) return;
-  const double seconds = toNumber(words.at(2));
-  const std::vector<double> goal = reachable(*to, shown(*to), words, 3, seconds);
-  send(*to, {{goal, rest(goal.size()), {}, fromSeconds(seconds)}});
+  const std::vector<std::size_t> axes = among(axesOf(*to), words.at(2));
+  if (!axes.empty()) moveThere(*to, axes, words, 3);
+}
+
+/// @param seconds where among the words; what the joints are to go to follows
+void Trajectories::moveThere(const config::GroupConfig& group, const std::vector<std::size_t>& axes,
+                             const Words& words, std::size_t seconds) {
+  const double length = toNumber(words.at(seconds));
+  const std::vector<double> goal = reachable(axes, shown(axes), words, seconds + 1, length);
+  send(group, axes, {{goal, rest(goal.size()), {}, fromSeconds(length)}});
 }
 
 void Trajectories::goal(const Words& words) {
@@ -41,63 +55,89 @@ void Trajectories::goal(const Words& words) {
   if (to == nullptr) return;
   std::vector<double> goal;
   for (std::size_t i = 3; i < words.size(); ++i) goal.push_back(toNumber(words[i]));
-  send(*to, {{goal, rest(goal.size()), {}, toDuration(words.at(2))}});
+  send(*to, axesOf(*to), {{goal, rest(goal.size()), {}, toDuration(words.at(2))}});
 }
 
 void Trajectories::path(const Words& words) {
   const config::GroupConfig* const to = running(words.at(1));
   if (to == nullptr) return;
   const double seconds = toNumber(words.at(4));
-  std::vector<double> at = shown(*to);
+  const std::vector<std::size_t> axes = axesOf(*to);
+  std::vector<double> at = shown(axes);
   Points points;
   for (int i = 1; i <= static_cast<int>(toNumber(words.at(3))); ++i) {
     Words turned = words;
     if (i % 2 == 0) std::reverse(turned.begin() + 5, turned.end());
-    at = reachable(*to, at, turned, 5, seconds);
+    at = reachable(axes, at, turned, 5, seconds);
     points.push_back({at, rest(at.size()), {}, fromSeconds(seconds * i)});
   }
-  send(*to, std::move(points), toDuration(words.at(2)));
+  send(*to, axes, std::move(points), toDuration(words.at(2)));
 }
 
 void Trajectories::stop(const Words& words) {
-  if (const config::GroupConfig* const to = running(words.at(1))) send(*to, {});
+  const config::GroupConfig* const to = running(words.at(1));
+  if (to == nullptr) return;
+  const std::vector<std::size_t> all = axesOf(*to);
+  const std::vector<std::size_t> axes = words.size() > 2 ? among(all, words[2]) : all;
+  if (!axes.empty()) send(*to, axes, {});
+}
+
+void Trajectories::cancel(const Words& words) {
+  if (running(words.at(1)) == nullptr) return;
+  const std::uint64_t id = last_of_[words[1]];
+  session_.stage.host().post(bus::Command(
+      bus::CancelCommand{words[1], id}, [this, id, group = words[1]](const auto& said) {
+        session_.say("< cancel of " + group + ": " + said.message);
+        cancelled(id);
+      }));
 }
 
 void Trajectories::stopAll() {
-  for (const config::GroupConfig& group : session_.stage.loaded().robot.groups) send(group, {});
+  for (const config::GroupConfig& group : session_.stage.loaded().robot.groups) {
+    send(group, axesOf(group), {});
+  }
 }
 
 const config::GroupConfig* Trajectories::running(const std::string& name) const {
-  if (!session_.stage.host().running()) return nullptr;
-  for (const config::GroupConfig& config : session_.stage.loaded().robot.groups) {
-    if (config.name == name) return &config;
-  }
-  return nullptr;
+  return session_.stage.host().running() ? session_.stage.group(name) : nullptr;
 }
 
-std::size_t Trajectories::axisOf(const std::string& joint) const {
-  for (const AxisFacts& facts : session_.stage.axes()) {
-    if (facts.config->joint == joint) return facts.index;
-  }
-  throw std::invalid_argument("no joint " + joint);
-}
-
-std::vector<double> Trajectories::shown(const config::GroupConfig& group) const {
-  std::vector<double> positions;
+std::vector<std::size_t> Trajectories::axesOf(const config::GroupConfig& group) const {
+  std::vector<std::size_t> axes;
   for (const std::string& joint : group.joints) {
-    positions.push_back(session_.shown(axisOf(joint)));
+    for (const AxisFacts& facts : session_.stage.axes()) {
+      if (facts.config->joint == joint) axes.push_back(facts.index);
+    }
   }
+  return axes;
+}
+
+std::vector<std::size_t> Trajectories::among(const std::vector<std::size_t>& axes,
+                                             const std::string& names) const {
+  std::vector<std::size_t> found;
+  std::istringstream words(names);
+  for (std::string name; std::getline(words, name, ',');) {
+    for (std::size_t axis : axes) {
+      if (session_.stage.axes()[axis].name == name) found.push_back(axis);
+    }
+  }
+  return found;
+}
+
+std::vector<double> Trajectories::shown(const std::vector<std::size_t>& axes) const {
+  std::vector<double> positions;
+  for (std::size_t axis : axes) positions.push_back(session_.shown(axis));
   return positions;
 }
 
 /// Goals as shares of each joint's range, or as near to that as its limits allow in so many
 /// seconds.
-std::vector<double> Trajectories::reachable(const config::GroupConfig& group,
+std::vector<double> Trajectories::reachable(const std::vector<std::size_t>& axes,
                                             const std::vector<double>& from, const Words& words,
                                             std::size_t first, double seconds) const {
   std::vector<double> goal;
-  for (std::size_t i = 0; i < group.joints.size(); ++i) {
-    const AxisFacts& facts = session_.stage.axes()[axisOf(group.joints[i])];
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const AxisFacts& facts = session_.stage.axes()[axes[i]];
     const motion::JointLimits& limits = facts.config->limits;
     const double share = first + i < words.size() ? toNumber(words[first + i]) : 0.5;
     const double wish = limits.lower && limits.upper
@@ -116,33 +156,37 @@ std::vector<Trajectories::Goal> Trajectories::goalsOf(const std::vector<std::siz
                                                       const Points& points) const {
   std::vector<Goal> goals;
   for (std::size_t i = 0; i < axes.size() && !points.empty(); ++i) {
-    if (i >= points.back().positions.size()) break;
+    if (i >= points.back().positions.size()) return {};
     const AxisTruth& truth = session_.truths[axes[i]];
-    goals.push_back({axes[i], truth.position, points.back().positions[i] - session_.shown(axes[i]),
+    goals.push_back({truth.position, points.back().positions[i] - session_.shown(axes[i]),
                      std::fabs(truth.velocity) * kShownAge});
   }
   return goals;
 }
 
-void Trajectories::send(const config::GroupConfig& group, Points points,
-                        std::optional<Duration> start) {
-  Sent sent;
-  sent.group = group.name;
-  for (const std::string& joint : group.joints) sent.axes.push_back(axisOf(joint));
+void Trajectories::send(const config::GroupConfig& group, std::vector<std::size_t> axes,
+                        Points points, std::optional<Duration> start) {
+  const std::uint64_t id = ++last_id_;
+  Sent sent{id, &group, std::move(axes), {}, session_.now() + start.value_or(Duration())};
   sent.goals = goalsOf(sent.axes, points);
-  sent.base = session_.now() + start.value_or(Duration());
   sent.has_start = start.has_value();
   sent.stop = points.empty();
   if (!points.empty()) sent.last = points.back().time_from_start;
   bus::TrajectoryCommand body;
+  body.id = id;
   body.group = group.name;
-  body.joints = group.joints;
+  for (std::size_t axis : sent.axes) {
+    body.joints.push_back(session_.stage.axes()[axis].config->joint);
+  }
   body.points = std::move(points);
   if (start) body.start_time = sent.base;
+  body.ended = [this, id](const bus::TrajectoryOutcome& outcome) { ended(id, outcome); };
+  sent_[id] = sent;
   const auto reply = [this, sent](const bus::Answer& answer) {
-    session_.say("< trajectory of " + sent.group + (answer.success ? ": " : " refused: ") +
+    session_.say("< trajectory of " + sent.group->name + (answer.success ? ": " : " refused: ") +
                  answer.message);
-    if (answer.success) accepted(sent);
+    if (answer.success) return accepted(sent);
+    sent_.erase(sent.id);
   };
   session_.stage.host().post(bus::Command(std::move(body), reply));
 }
@@ -152,56 +196,99 @@ void Trajectories::accepted(const Sent& sent) {
   session_.stage.look(session_.truths);
   const bool seen = std::all_of(sent.axes.begin(), sent.axes.end(),
                                 [&](std::size_t i) { return session_.conditions.quiet(i, now); });
-  const std::vector<Goal> goals = seen ? sent.goals : std::vector<Goal>();
-  waiting_.erase(sent.group);
-  if (sent.has_start && sent.base > now) {
-    waiting_[sent.group] = {now, sent.base, goals};
-  } else {
-    goals_[sent.group] = goals;
-  }
+  const auto runs = sent_.find(sent.id);  // one that only stops may have ended already
+  if (!seen && runs != sent_.end()) runs->second.goals.clear();
+  if (!sent.stop) last_of_[sent.group->name] = sent.id;
   for (std::size_t i : sent.axes) {
-    if (sent.stop && follows_[i] != sent.group) continue;  // another group moves it
-    follows_[i] = sent.group;
-    const Duration stop = session_.stage.axes()[i].stopTime(session_.truths[i].velocity);
+    const auto before = sent_.find(follows_[i]);
+    const bool of_another = before != sent_.end() && before->second.group != sent.group;
+    if (sent.stop && of_another) continue;  // that group moves it
+    follows_[i] = sent.id;
     const Time begin = std::max(sent.base, sent.has_start ? sent.base : now);
-    const Time end = sent.stop ? now + stop : begin + sent.last + session_.lateFor() + 250ms;
+    const Time end =
+        sent.stop ? restAfter(sent, i) : begin + sent.last + session_.lateFor() + 250ms;
     session_.permits.cut(i, Source::trajectory, end);
     if (!sent.stop) session_.permits.allow(i, Source::trajectory, end);
   }
 }
 
-void Trajectories::hear(const std::string& text) {
-  for (const config::GroupConfig& group : session_.stage.loaded().robot.groups) {
-    if (text != group.name + ": goal reached") continue;
-    const auto next = waiting_.find(group.name);
-    if (next != waiting_.end() && session_.now() >= next->second.begin) {
-      // Where cycles were late the driver's clock is, too: this may be the end of the one before.
-      const bool late = session_.late_until > next->second.since;
-      goals_[group.name] = late ? std::vector<Goal>() : next->second.goals;
-      waiting_.erase(next);
-    }
-    reached(group);
+/// When an axis of it that moves stands, if it is brought to rest from now on.
+Time Trajectories::restAfter(const Sent& sent, std::size_t axis) const {
+  const Duration hard = session_.stage.axes()[axis].stopTime(session_.truths[axis].velocity);
+  return session_.now() +
+         std::max(hard, fromSeconds(sent.group->stop_trajectory_duration) + kRampEnds);
+}
+
+/// It has not begun yet, or not surely.
+bool Trajectories::waits(const Sent& sent) const {
+  return sent.has_start && sent.base + session_.lateFor() + kShownTime > session_.now();
+}
+
+/// One that waits leaves those that are before it to what they do.
+void Trajectories::cancelled(std::uint64_t id) {
+  const auto found = sent_.find(id);
+  if (found == sent_.end()) return;
+  const Sent& sent = found->second;
+  if (waits(sent)) return;
+  session_.stage.look(session_.truths);
+  for (std::size_t i : sent.axes) {
+    if (follows_[i] == id) session_.permits.cut(i, Source::trajectory, restAfter(sent, i));
   }
 }
 
-void Trajectories::reached(const config::GroupConfig& group) {
+void Trajectories::ended(std::uint64_t id, const bus::TrajectoryOutcome& outcome) {
+  const auto found = sent_.find(id);
+  if (found == sent_.end()) {
+    return session_.report("answered_twice", "",
+                           "a trajectory has ended twice: " + outcome.message);
+  }
+  const Sent sent = std::move(found->second);
+  sent_.erase(found);
+  session_.say("< trajectory of " + sent.group->name + " has ended: " + outcome.message);
   session_.stage.look(session_.truths);
-  for (const Goal& goal : goals_[group.name]) {
-    const AxisFacts& facts = session_.stage.axes()[goal.axis];
-    const AxisTruth& truth = session_.truths[goal.axis];
-    const auto tolerance = group.tolerances.find(facts.config->joint);
-    const bool told = tolerance != group.tolerances.end() && tolerance->second.goal > 0.0;
-    double missing = truth.position - goal.from - goal.way;
+  if (outcome.end == bus::TrajectoryEnd::reached) judgeReached(sent);
+  const bool stopped = outcome.end == bus::TrajectoryEnd::stopped && !waits(sent);
+  const bool restless = outcome.message.find("still moves") != std::string::npos;
+  if (stopped && !restless) judgeStopped(sent, outcome.message);
+}
+
+bool Trajectories::judged(const Sent& sent, std::size_t axis) const {
+  const auto follows = follows_.find(axis);
+  return follows != follows_.end() && follows->second == sent.id &&
+         session_.conditions.quiet(axis, session_.now());
+}
+
+void Trajectories::judgeReached(const Sent& sent) const {
+  for (std::size_t i = 0; i < sent.goals.size(); ++i) {
+    const AxisFacts& facts = session_.stage.axes()[sent.axes[i]];
+    const AxisTruth& truth = session_.truths[facts.index];
+    const auto tolerance = sent.group->tolerances.find(facts.config->joint);
+    const bool told = tolerance != sent.group->tolerances.end() && tolerance->second.goal > 0.0;
+    double missing = truth.position - sent.goals[i].from - sent.goals[i].way;
     // The way to the first point is the shorter one, whole turns off.
     const bool turns = facts.config->geometry.type == drive::AxisGeometry::Type::continuous;
     if (turns) missing = std::remainder(missing, kTwoPi);
-    const double bound = (told ? tolerance->second.goal : kArrived) + goal.slack +
+    const double bound = (told ? tolerance->second.goal : kArrived) + sent.goals[i].slack +
                          std::fabs(truth.velocity) * kShownAge +
                          2.0 * std::fabs(facts.units_per_count);
     if (std::fabs(missing) <= bound) continue;
     session_.report("untrue_answer", facts.name,
-                    group.name + " has reached its goal, is said, and the motor is " +
+                    sent.group->name + " has reached its goal, is said, and the motor is " +
                         number(missing) + " away from it");
+  }
+}
+
+/// What was stopped is told of once its joints stand, unless something else moves them since.
+void Trajectories::judgeStopped(const Sent& sent, const std::string& words) const {
+  for (std::size_t i : sent.axes) {
+    const AxisFacts& facts = session_.stage.axes()[i];
+    const AxisTruth& truth = session_.truths[i];
+    const double bound = std::max(facts.creep(), 1.2 * sent.group->stopped_velocity_tolerance);
+    const bool stands = !truth.power || std::fabs(truth.velocity) <= bound;
+    if (stands || !judged(sent, i)) continue;
+    session_.report("untrue_answer", facts.name,
+                    "a trajectory has come to its end (" + words + ") while the motor turns at " +
+                        number(truth.velocity) + " per s");
   }
 }
 

@@ -1,7 +1,9 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,7 +11,8 @@
 
 namespace cia402::campaign {
 
-/// Trajectories of groups, what they permit, and whether a goal that the driver calls reached is.
+/// Trajectories of groups, what they permit, and whether what the driver says of their ends is
+/// true.
 class Trajectories {
  public:
   explicit Trajectories(Session& session) : session_(session) {}
@@ -18,52 +21,61 @@ class Trajectories {
   bool act(const Words& words);
   /// Stops those of all groups.
   void stopAll();
-  /// What the driver tells: has a group reached its goal, have its motors?
-  void hear(const std::string& text);
 
   // Actions; a group that a smaller robot has not, or no driver: nothing happens.
-  void move(const Words& words);  ///< move G SECONDS FRACTION...: within reach
-  void goal(const Words& words);  ///< goal G SECONDS POSITION...: whatever it is
-  void path(const Words& words);  ///< path G START COUNT SECONDS FRACTION...: there and back
-  void stop(const Words& words);  ///< stop G
+  void move(const Words& words);    ///< move G SECONDS FRACTION...: within reach
+  void part(const Words& words);    ///< part G AXIS,AXIS... SECONDS FRACTION...: of these axes only
+  void goal(const Words& words);    ///< goal G SECONDS POSITION...: whatever it is
+  void path(const Words& words);    ///< path G START COUNT SECONDS FRACTION...: there and back
+  void stop(const Words& words);    ///< stop G, or stop G AXIS,AXIS...
+  void cancel(const Words& words);  ///< cancel G: the last one
 
  private:
   using Points = std::vector<motion::TrajectoryPoint>;
   /// How far a trajectory is to take a motor, and from where.
   struct Goal {
-    std::size_t axis = 0;
     double from = 0.0, way = 0.0, slack = 0.0;
   };
-  /// A trajectory that waits until the one before has had its time.
-  struct Waiting {
-    Time since{}, begin{};
-    std::vector<Goal> goals;
-  };
-  /// A trajectory on its way to the driver.
+  /// A trajectory, from when it left for the driver.
   struct Sent {
-    std::string group;
+    std::uint64_t id = 0;
+    const config::GroupConfig* group = nullptr;
     std::vector<std::size_t> axes;
-    std::vector<Goal> goals;
-    Time base{};      ///< from which its points count, at the earliest
-    Duration last{};  ///< time of the last point
+    std::vector<Goal> goals;  ///< of these axes
+    Time base{};              ///< from which its points count, at the earliest
+    Duration last{};          ///< time of the last point
     bool stop = false, has_start = false;
   };
 
   const config::GroupConfig* running(const std::string& name) const;
-  std::size_t axisOf(const std::string& joint) const;
-  std::vector<double> shown(const config::GroupConfig& group) const;
-  std::vector<double> reachable(const config::GroupConfig& group, const std::vector<double>& from,
-                                const Words& words, std::size_t first, double seconds) const;
-  void send(const config::GroupConfig& group, Points points,
+  std::vector<std::size_t> axesOf(const config::GroupConfig& group) const;
+  /// Those of them that the word names, "a1,a3"; a smaller robot may have none.
+  std::vector<std::size_t> among(const std::vector<std::size_t>& axes,
+                                 const std::string& names) const;
+  std::vector<double> shown(const std::vector<std::size_t>& axes) const;
+  std::vector<double> reachable(const std::vector<std::size_t>& axes,
+                                const std::vector<double>& from, const Words& words,
+                                std::size_t first, double seconds) const;
+  void moveThere(const config::GroupConfig& group, const std::vector<std::size_t>& axes,
+                 const Words& words, std::size_t seconds);
+  void send(const config::GroupConfig& group, std::vector<std::size_t> axes, Points points,
             std::optional<Duration> start = std::nullopt);
   std::vector<Goal> goalsOf(const std::vector<std::size_t>& axes, const Points& points) const;
   void accepted(const Sent& sent);
-  void reached(const config::GroupConfig& group);
+  void cancelled(std::uint64_t id);
+  bool waits(const Sent& sent) const;
+  void ended(std::uint64_t id, const bus::TrajectoryOutcome& outcome);
+  /// Whether the driver hears and reaches an axis, and it was moved by that trajectory last.
+  bool judged(const Sent& sent, std::size_t axis) const;
+  void judgeReached(const Sent& sent) const;
+  void judgeStopped(const Sent& sent, const std::string& words) const;
+  Time restAfter(const Sent& sent, std::size_t axis) const;
 
   Session& session_;
-  std::map<std::size_t, std::string> follows_;      ///< the group that moved an axis last
-  std::map<std::string, std::vector<Goal>> goals_;  ///< of the groups' trajectories under way
-  std::map<std::string, Waiting> waiting_;          ///< and of those behind them
+  std::uint64_t last_id_ = 0;
+  std::map<std::uint64_t, Sent> sent_;            ///< that have not ended, or never will
+  std::map<std::size_t, std::uint64_t> follows_;  ///< what moved an axis last
+  std::map<std::string, std::uint64_t> last_of_;  ///< trajectory of a group
 };
 
 }  // namespace cia402::campaign

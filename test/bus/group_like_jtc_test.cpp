@@ -18,6 +18,8 @@ using testing::HasSubstr;
 using namespace std::chrono_literals;
 using test::Outcomes;
 
+constexpr Duration kSeenToRest = 100ms;  // at most, until a motor that stands is known to
+
 struct LikeJtc : test::GroupScene {
   using GroupScene::GroupScene;
   Outcomes sendPoints(const std::vector<RobotWorld::Point>& points,
@@ -156,6 +158,47 @@ TEST_F(RestTest, OneUnitOfTheEncoderToAndFroIsRest) {
   EXPECT_EQ(ended->front().end, TrajectoryEnd::reached);
 }
 
+TEST_F(RestTest, WhatIsCancelledEndsOnceTheMotorsStand) {
+  const Outcomes ended = sendPoints({{{0.5, 0.5}, 1.0}});
+  world.run(500ms);
+  ASSERT_TRUE(world.call(CancelCommand{"arm", 1}).success);
+  world.run(60ms);  // of its ramp of 75 ms
+  swing(1000, 200ms);
+  EXPECT_TRUE(ended->empty()) << "the set-points are at rest, a motor is not";
+  world.drives[1].disturbance = 0;
+  world.run(kSeenToRest);
+  ASSERT_EQ(ended->size(), 1u);
+  EXPECT_EQ(ended->front().end, TrajectoryEnd::stopped);
+  EXPECT_EQ(ended->front().message, "arm: cancelled");
+}
+
+TEST_F(RestTest, WhatIsCancelledEndsAllTheSameWhereAMotorDoesNotComeToRest) {
+  const Outcomes ended = sendPoints({{{0.5, 0.5}, 1.0}});
+  world.run(500ms);
+  ASSERT_TRUE(world.call(CancelCommand{"arm", 1}).success);
+  world.run(60ms);
+  swing(1000, 600ms);
+  ASSERT_EQ(ended->size(), 1u);
+  EXPECT_EQ(ended->front().end, TrajectoryEnd::stopped);
+  EXPECT_EQ(ended->front().message,
+            "arm: cancelled, but elbow still moves; see whether it swings or is pushed");
+}
+
+// A halt takes the joint from the trajectory; the motor does not stand for that.
+TEST_F(RestTest, WhatIsHaltedEndsOnceTheMotorsStand) {
+  const Outcomes ended = sendPoints({{{0.5, 0.5}, 1.0}});
+  world.run(500ms);
+  ASSERT_TRUE(world.call(CancelCommand{"arm", 1}).success);
+  world.run(20ms);
+  const auto halt = world.begin(drive::ProcedureKind::halt);
+  swing(1000, 200ms);
+  EXPECT_TRUE(ended->empty());
+  world.drives[1].disturbance = 0;
+  world.run(kSeenToRest);
+  ASSERT_EQ(ended->size(), 1u);
+  EXPECT_EQ(ended->front().end, TrajectoryEnd::stopped);
+}
+
 struct NoRestTest : RestTest {
   NoRestTest() : RestTest(0.0) {}
 };
@@ -192,7 +235,7 @@ TEST_F(GentleStop, ACancelledTrajectoryTakesItsTimeToStop) {
   world.run(300ms);
   EXPECT_NEAR(speed(), 0.75, 0.03);
   EXPECT_TRUE(ended->empty());
-  world.run(320ms);
+  world.run(320ms + kSeenToRest);
   ASSERT_EQ(ended->size(), 1u);
   EXPECT_EQ(ended->front().end, TrajectoryEnd::stopped);
   EXPECT_NEAR(position(0) - from, 45000, 1500);  // 1.5 rad/s * 0.6 s / 2
@@ -206,7 +249,7 @@ TEST_F(GentleStop, SoDoesAJointThatIsStoppedAlone) {
   world.run(300ms);
   EXPECT_NEAR(world.group().commanded()[1].velocity, -0.375, 0.02);
   EXPECT_TRUE(ended->empty());
-  world.run(320ms);
+  world.run(320ms + kSeenToRest);
   ASSERT_EQ(ended->size(), 1u);
   EXPECT_EQ(ended->front().message, "arm: stands");
 }
@@ -220,6 +263,7 @@ TEST_F(GentleStop, AFaultStopsTheOthersAsHardAsTheyMay) {
   EXPECT_TRUE(world.group().stopping());
   world.run(170ms);
   EXPECT_EQ(speed(), 0.0);
+  world.run(kSeenToRest);
   EXPECT_FALSE(world.group().stopping());
 }
 

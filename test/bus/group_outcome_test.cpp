@@ -187,7 +187,32 @@ TEST_F(GroupOutcomeTest, OneWithoutPointsEndsWhenTheJointsStand) {
   const int stands = world.drives[0].position;
   world.run(500ms);
   EXPECT_EQ(world.drives[0].position, stands);
-  EXPECT_EQ(send(world.trajectory("arm", {}))->size(), 1u) << "they stand already";
+  const Outcomes again = send(world.trajectory("arm", {}));
+  world.run(100ms);
+  EXPECT_EQ(again->size(), 1u) << "they stand already";
+}
+
+TEST_F(GroupOutcomeTest, OneWithoutPointsStopsAJointThatAStreamMoves) {
+  for (int i = 0; i < 20; ++i) {
+    (void)world.begin(SetpointCommand{0, 1.0});
+    world.run(10ms);
+  }
+  const int from = world.drives[0].position;
+  const Outcomes ended = send(world.trajectory("arm", {}));
+  EXPECT_TRUE(ended->empty());
+  const auto refused = world.begin(SetpointCommand{0, 1.0});
+  world.run(test::kPeriod);
+  EXPECT_EQ(refused->size(), 1u) << "until it stands";
+  ASSERT_TRUE(world.runUntil([&] { return !ended->empty(); }, 2s));
+  const int stands = world.drives[0].position;
+  EXPECT_GT(stands, from);
+  EXPECT_LT(stands, from + 40000) << "its ramp; 1 rad was asked for";
+  world.run(500ms);
+  EXPECT_EQ(world.drives[0].position, stands);
+  const auto taken = world.begin(SetpointCommand{0, 1.0});
+  world.run(100ms);
+  EXPECT_TRUE(taken->empty());
+  EXPECT_GT(world.drives[0].position, stands) << "the stream may begin anew";
 }
 
 TEST_F(GroupOutcomeTest, OneIsJudgedByTolerancesOfItsOwn) {

@@ -192,5 +192,39 @@ TEST_F(TakenDriveTest, IsNoneWhileTheWorldIsDisturbed) {
   EXPECT_EQ(found(), "") << "the driver ends";
 }
 
+// Its life time is three times 0.1 s.
+TEST_F(TakenDriveTest, MayHaveLostAnAnswerToGuardingBefore) {
+  conditions_.lossy = now() - 250ms;
+  leaves(canopen::NmtState::stopped);
+  EXPECT_EQ(allFound(), "drive_taken a2 +1 ms") << "heartbeats do not alternate";
+}
+
+class TakenGuardedDriveTest : public OracleTest {
+ protected:
+  TakenGuardedDriveTest() : OracleTest(makeTakenDrives, guarded()) {}
+  static std::string guarded() {
+    std::string robot = kJudgedRobot;
+    const std::string drive = "drive: generic_cia402";
+    return robot.replace(robot.find(drive), drive.size(), drive + ", error_control: guarding");
+  }
+  /// So long after the last frame that may have been lost.
+  std::string foundAfter(Duration lost) {
+    truths_[0].power = true;
+    truths_[0].nmt = canopen::NmtState::operational;
+    look();
+    findings_.clear();
+    conditions_.lossy = now() - lost;
+    mark();
+    truths_[0].nmt = canopen::NmtState::stopped;
+    look();
+    return allFound();
+  }
+};
+
+TEST_F(TakenGuardedDriveTest, MayHaveLostAnAnswerBefore) {
+  EXPECT_EQ(foundAfter(250ms), "");
+  EXPECT_EQ(foundAfter(310ms), "drive_taken a1 +1 ms");
+}
+
 }  // namespace
 }  // namespace cia402::campaign

@@ -26,6 +26,8 @@ constexpr struct {
     {"reset_node", NmtCommand::reset_node},
     {"reset_communication", NmtCommand::reset_communication},
 };
+constexpr char kMayTurn[] =
+    "its motor may still turn as it was told last, and NMT does not stop a motor";
 constexpr Duration kLeastWait = std::chrono::seconds(1);
 constexpr Duration kStandstill = std::chrono::milliseconds(50);  // of the host, between two cycles
 constexpr int kBootTimes = 4;  // boot time-outs until a boot that does not end is given up
@@ -52,12 +54,17 @@ std::string refusal(drive::Axis& axis, const canopen::Node& node, const std::str
     return refused + toString(axis.procedure().kind) + " runs (" + axis.procedure().step +
            "); wait for its end, or stop it by halt, quick_stop or disable";
   }
-  if (axis.device().health() == Health::booting && axis.mayMove()) {
-    return refused +
-           "the drive is being configured, its motor may still turn as it was told last, and NMT "
-           "does not stop a motor; wait for the end of the boot, which stops it first";
+  const Health health = axis.device().health();
+  const bool may_turn = axis.mayMove();
+  if (health == Health::booting && may_turn) {
+    return refused + "the drive is being configured, " + kMayTurn +
+           "; wait for the end of the boot, which stops it first";
   }
-  if (axis.device().health() != Health::ready) return {};
+  if (health == Health::lost && may_turn) {
+    return refused + "the drive is lost, " + kMayTurn +
+           "; recover stops it before all else, as soon as it is heard";
+  }
+  if (health != Health::ready) return {};
   const std::string others = alone ? axis.deviceRefusal() : std::string();
   if (!others.empty()) return refused + others;
   const drive::AxisState& state = axis.state();

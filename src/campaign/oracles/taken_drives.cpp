@@ -40,8 +40,15 @@ class TakenDrives final : public Oracle {
   }
   static bool judged(const View& view, std::size_t axis) {
     const Conditions::Axis& own = view.conditions.axes[axis];
-    return view.conditions.quiet(axis, view.now) && view.now >= own.unheard &&
-           view.now >= own.may_coast && view.now >= view.conditions.ended;
+    // An answer to guarding that was lost makes the next one void, whose toggle bit does not
+    // alternate then (CiA 301, node guarding): what is lost of them counts for their life time.
+    const Loaded& loaded = view.stage.loaded();
+    const auto kind = loaded.robot.deviceOf(*view.stage.axes()[axis].config).error_control.kind;
+    const bool guarded = kind == canopen::ErrorControl::guarding;
+    const Duration life = guarded ? 3 * loaded.master.heartbeat : Duration();
+    return view.now >= view.conditions.lossy + life && view.conditions.quiet(axis, view.now) &&
+           view.now >= own.unheard && view.now >= own.may_coast &&
+           view.now >= view.conditions.ended;
   }
 
   std::vector<bool> operates_;                       // of each drive, at the last look

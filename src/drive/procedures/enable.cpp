@@ -75,6 +75,11 @@ class Enable : public Procedure {
       context.show("asking whether it is enabled still", "fresh feedback");
       return Outcome::running();
     }
+    if (!axis.inOperation()) {  // e.g. by the stop of an axis that was not heard
+      return Outcome::failed(axis.who() +
+                             ": was switched off while it was being enabled: enable it again. " +
+                             report(axis));
+    }
     if (released_) return released(axis);
     if (!axis.state().halted) {
       return Outcome::done(
