@@ -34,22 +34,24 @@ std::string plainText(const AxisSnapshot& axis) {
 Condition conditionOf(const drive::AxisState& state, bool warning_stops, bool problem) {
   // Without a problem it is on its way: its turn to boot has not come, or it boots.
   if (state.health != fieldbus::Health::ready) {
-    return problem ? Condition::error : Condition::warning;
+    if (!problem) return Condition::warning;
+    return fieldbus::isAway(state.health) ? Condition::unheard : Condition::error;
   }
   if (drive::isFault(state.state) || unknown(state)) return Condition::error;
   if (state.warning) return warning_stops ? Condition::error : Condition::warning;
   return problem ? Condition::warning : Condition::well;
 }
 
-AxisSummary summaryOf(const AxisSnapshot& axis, bool warning_stops) {
+Summary summaryOf(const AxisSnapshot& axis, bool warning_stops) {
   const AxisWords& words = axis.words;
-  AxisSummary summary;
+  Summary summary;
   summary.condition = conditionOf(axis.state, warning_stops, !words.problem.empty());
   if (summary.condition == Condition::well && !words.stream.empty()) {
     summary.condition = Condition::warning;
   }
-  if (summary.condition == Condition::error && axis.node.may_be_absent) {
-    summary.condition = Condition::warning;
+  if (summary.condition >= Condition::error && axis.node.may_be_absent) {
+    const bool lost = axis.state.health != fieldbus::Health::absent;
+    summary.condition = lost ? Condition::warning : Condition::well;
   }
   summary.text = words.problem.empty() ? plainText(axis) : words.problem.str();
   return summary;

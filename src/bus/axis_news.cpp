@@ -15,7 +15,7 @@ Event::Severity severityOfNotice(const drive::Axis& axis) {
 }
 
 Event::Severity severityOf(Condition condition) {
-  return condition == Condition::error ? Event::Severity::error : Event::Severity::warning;
+  return condition >= Condition::error ? Event::Severity::error : Event::Severity::warning;
 }
 
 /// Why an axis is brought to rest though nobody stopped it.
@@ -96,12 +96,15 @@ void AxisNews::tellProblem(drive::Axis& axis, AxisReporter& reporter, Time now) 
   const bool told_by_health = !of_device.empty();
   notices_ = axis.noticeCount();
   if (noticed && !told_by_health) {
-    tell(*events_, severityOfNotice(axis), axis.notice(), now);
+    const Event::Severity severity = severityOfNotice(axis);
+    tell(*events_, severity, axis.notice(), now);
+    if (severity == Event::Severity::error) words_.remember(axis.notice(), now);
   }
   const std::uint32_t version = words_.version;
   if (axis.faultTextAwaited() && told_.health == fieldbus::Health::ready) return;
   say(&AxisWords::problem, problem);
   if (words_.version == version) return;
+  if (!problem.empty()) words_.remember(problem, now);
   const bool told = told_by_health || (noticed && axis.notice().find(problem) != std::string::npos);
   if (problem.empty() || told) return;
   const bool stops = axis.config().profile->warning_stops;

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "bus/fixed_text.h"
+#include "cia402_driver/common/time.h"
 
 namespace cia402::bus {
 
@@ -19,12 +20,20 @@ struct AxisWords {
   FixedText<384> problem;  ///< fault, warning or node problem; empty if well
   FixedText<192> stream;   ///< a stream of set-points that has dried up, while it lasts
   FixedText<384> boot;     ///< what the last boot that succeeded found, its warnings first
+  FixedText<384> last;  ///< the last problem, or what the axis did by itself; stays when it is over
+  Time last_at{};       ///< when that began
 
   template <std::size_t N>
   void say(FixedText<N> AxisWords::*what, std::string_view text) {
     const FixedText<N> said(text);
     if (this->*what == said.view()) return;
     this->*what = said;
+    ++version;
+  }
+  /// It has got a problem.
+  void remember(std::string_view text, Time now) {
+    last.assign(text);
+    last_at = now;
     ++version;
   }
 };

@@ -177,6 +177,9 @@ void readAxis(const std::string& name, const yaml::Value& value, AxisReading& re
   yaml::Section section(value);
   if (!isGraphName(name)) {
     section.problem("an axis is named by a letter, then letters, digits and _");
+  } else if (name == "bus") {
+    section.problem(
+        "`bus` is what diagnostics and inject_fault call the whole: choose another name");
   }
   readPlace(section, draft, robot);
   checkDeviceKeys(section, draft, reading);

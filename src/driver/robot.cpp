@@ -215,7 +215,7 @@ std::vector<JointStatus> Robot::state() const {
   for (std::size_t i = 0; i < impl_->config.axes.size(); ++i) {
     const drive::AxisConfig& axis = impl_->config.axes[i];
     const drive::AxisState& state = shown.axes[i].state;
-    const bus::AxisSummary summary = bus::summaryOf(shown.axes[i], axis.profile->warning_stops);
+    const bus::Summary summary = bus::summaryOf(shown.axes[i], axis.profile->warning_stops);
     JointStatus joint;
     joint.name = axis.joint;
     joint.position = shown.joints[i].position;
@@ -223,7 +223,7 @@ std::vector<JointStatus> Robot::state() const {
     joint.effort = shown.joints[i].effort;
     joint.enabled = state.ready_for_motion;
     joint.homed = state.homed;
-    joint.faulted = summary.condition == bus::Condition::error;
+    joint.faulted = summary.condition >= bus::Condition::error;
     joint.condition = summary.text;
     joints.push_back(std::move(joint));
   }

@@ -5,24 +5,23 @@
 #include <ros/console.h>
 
 #include <cmath>
+#include <optional>
 
 #include "bus/axis_condition.h"
 #include "bus/jobs/object_text.h"
 #include "bus/link_findings.h"
+#include "bus/node_condition.h"
 #include "bus/real_clock.h"
 #include "can/error_frame.h"
 #include "common/text.h"
 #include "decode/value_text.h"
 #include "drive/profile/fault_text.h"
 #include "drive/profile/status_bits.h"
-#include "ros/publishers.h"
 
 namespace cia402::ros_node {
 namespace {
 
 using diagnostic_msgs::DiagnosticStatus;
-
-constexpr double kHighLoad = 0.8;  // share of the bit rate
 
 unsigned char levelOf(bus::Condition condition) {
   switch (condition) {
@@ -31,9 +30,11 @@ unsigned char levelOf(bus::Condition condition) {
     case bus::Condition::warning:
       return DiagnosticStatus::WARN;
     case bus::Condition::error:
+      return DiagnosticStatus::ERROR;
+    case bus::Condition::unheard:
       break;
   }
-  return DiagnosticStatus::ERROR;
+  return DiagnosticStatus::STALE;
 }
 
 std::string hardwareId(const bus::AxisSnapshot& axis, const drive::AxisConfig& config) {
@@ -78,6 +79,47 @@ std::string inputsText(const drive::AxisConfig& axis, const drive::AxisState& st
   if (!state.digital_inputs_valid || object == nullptr) return "unknown";
   const unsigned size = fieldbus::sizeBits(object->type) / 8;
   return bus::describeObject(object, axis, fieldbus::toBytes(state.digital_inputs, size)).value;
+}
+
+/// The joint's limits: "-2.65 to 2.5 rad, 1.5 rad/s, 4 rad/s^2, 240 N m".
+std::string limitsText(const drive::AxisConfig& axis) {
+  using drive::Quantity;
+  const motion::JointLimits& limits = axis.limits;
+  std::string text;
+  if (limits.lower || limits.upper) {
+    text = (limits.lower ? numberText(*limits.lower) : "no end") + " to " +
+           (limits.upper ? numberText(*limits.upper) : "no end") + " " +
+           decode::unitOf(Quantity::position, axis);
+  }
+  const auto add = [&](const std::optional<double>& limit, Quantity quantity) {
+    if (limit) append(text, withUnit(*limit, decode::unitOf(quantity, axis)), ", ");
+  };
+  add(limits.velocity, Quantity::velocity);
+  add(limits.acceleration, Quantity::acceleration);
+  add(limits.jerk, Quantity::jerk);
+  add(limits.effort, Quantity::torque);
+  return text.empty() ? "none" : text;
+}
+
+/// What was wrong last, also where it is over.
+void addLastError(diagnostic_updater::DiagnosticStatusWrapper& status, const bus::AxisWords& words,
+                  Time now) {
+  const bool any = !words.last.empty();
+  status.add("last error", any ? words.last.str() : "none");
+  status.add("last error age", any ? withUnit(toSeconds(now - words.last_at), "s") : "none");
+}
+
+/// How late SYNC was how often, a line for each band.
+void addLateness(diagnostic_updater::DiagnosticStatusWrapper& status,
+                 const bus::CycleStatistics& cycle) {
+  constexpr auto& kBands = bus::CycleStatistics::kBands;
+  status.addf("SYNC lateness rms", "%.3f ms", 1e3 * cycle.rmsLateness());
+  status.addf("SYNC lateness max", "%.3f ms", 1e3 * cycle.maxLateness());
+  for (std::size_t band = 0; band < kBands.size(); ++band) {
+    status.add("SYNC lateness up to " + numberText(1e3 * kBands[band]) + " ms", cycle.inBand(band));
+  }
+  status.add("SYNC lateness above " + numberText(1e3 * kBands.back()) + " ms",
+             cycle.inBand(kBands.size()));
 }
 
 /// "emergencies: 1234", then a line for each code.
@@ -169,6 +211,7 @@ Diagnostics::Diagnostics(ros::NodeHandle& node, ros::NodeHandle& private_node,
 
 void Diagnostics::update() {
   snapshot_ = runner_.snapshot();
+  skipped_.look(snapshot_.statistics.overruns(), snapshot_.now);
   link_.update(snapshot_);
   updater_.update();
 }
@@ -176,18 +219,9 @@ void Diagnostics::update() {
 void Diagnostics::reportBus(Status& status) {
   if (topic_.getNumSubscribers() > 0) runner_.look();  // what the next report will show
   const bus::CycleStatistics& cycle = snapshot_.statistics;
-  if (snapshot_.bus_state == can::BusState::error_active) {
-    status.summary(DiagnosticStatus::OK, snapshot_.bus_text.str());
-  } else {
-    const bool passing = snapshot_.bus_state == can::BusState::error_warning ||
-                         snapshot_.bus_state == can::BusState::error_passive;
-    status.summary(passing ? DiagnosticStatus::WARN : DiagnosticStatus::ERROR,
-                   snapshot_.bus_text.str());
-  }
   const can::TrafficMeter::Load load = link_.load(snapshot_);
-  if (load.nominal > kHighLoad) {
-    status.mergeSummaryf(DiagnosticStatus::WARN, "bus load %.0f %%", 100.0 * load.nominal);
-  }
+  const bus::Summary summary = bus::busSummaryOf(snapshot_, load.nominal, skipped_.lately());
+  status.summary(levelOf(summary.condition), summary.text);
   status.addf("state", "%s", can::toString(snapshot_.bus_state));
   status.addf("load", "%.1f %%, %.1f %% with all stuff bits that are possible",
               100.0 * load.nominal, 100.0 * load.most);
@@ -201,8 +235,7 @@ void Diagnostics::reportBus(Status& status) {
   addBusHealth(status, snapshot_);
   reportLink(status);
   status.addf("SYNC period", "%.3f ms", 1e3 * toSeconds(robot_.bus.sync_period));
-  status.addf("SYNC lateness rms", "%.3f ms", 1e3 * cycle.rmsLateness());
-  status.addf("SYNC lateness max", "%.3f ms", 1e3 * cycle.maxLateness());
+  addLateness(status, cycle);
   if (robot_.bus.interface == "sim") {
     status.addf("simulation behind the clock", "%.3f s", toSeconds(runner_.time().lost()));
   }
@@ -211,9 +244,6 @@ void Diagnostics::reportBus(Status& status) {
   status.add("failures not recorded", runner_.recordings().suppressed());
   status.add("SYNC missed", snapshot_.missed_syncs);
   status.add("SYNC of others", snapshot_.foreign_syncs);
-  if (!snapshot_.sync_problem.empty()) {
-    status.mergeSummary(DiagnosticStatus::ERROR, snapshot_.sync_problem.str());
-  }
   status.add("real time", runner_.realtime().text);
 }
 
@@ -224,8 +254,7 @@ void Diagnostics::reportLink(Status& status) {
   addLink(status, *link);
   const auto findings = bus::linkFindings(*link, robot_, can::mayConfigureLinks());
   for (const can::LinkFinding& finding : findings) {
-    status.mergeSummary(finding.error ? DiagnosticStatus::ERROR : DiagnosticStatus::WARN,
-                        finding.text);
+    status.mergeSummary(levelOf(bus::conditionOf(finding)), finding.text);
     if (!findings_told_.insert(finding.text).second) continue;
     if (finding.error) {
       ROS_ERROR_STREAM(finding.text);
@@ -238,25 +267,11 @@ void Diagnostics::reportLink(Status& status) {
 void Diagnostics::reportNode(std::size_t index, Status& status) {
   const bus::AxisSnapshot& axis = snapshot_.axes[index];
   status.hardware_id = hardwareId(axis, robot_.axes[index]);
-  const fieldbus::Health health = axis.state.health;
+  const bus::Summary summary = bus::nodeSummaryOf(axis);
+  status.summary(levelOf(summary.condition), summary.text);
   const canopen::Node::Supervision& supervision = axis.node.supervision;
-  if (health == fieldbus::Health::ready) {
-    status.summary(DiagnosticStatus::OK, "configured and operational");
-    status.add("boot", axis.words.boot.str());
-    if (!supervision.watched) {
-      status.mergeSummary(DiagnosticStatus::WARN, "its loss would show in missing TPDOs only");
-    }
-    if (!supervision.watches_master) {
-      status.mergeSummary(DiagnosticStatus::WARN, "it cannot notice a dead master");
-    }
-  } else if (health == fieldbus::Health::booting) {
-    status.summary(DiagnosticStatus::WARN, "booting: " + axis.words.step.str());
-  } else {
-    status.summary(
-        axis.node.may_be_absent ? DiagnosticStatus::WARN : DiagnosticStatus::ERROR,
-        axis.words.problem.empty() ? fieldbus::toString(health) : axis.words.problem.str());
-    status.add("boot", axis.words.step.str());
-  }
+  const bool ready = axis.state.health == fieldbus::Health::ready;
+  status.add("boot", ready ? axis.words.boot.str() : axis.words.step.str());
   status.add("error control", canopen::toString(supervision.kind));
   status.add("notices a dead master", supervision.watches_master ? "yes" : "no");
   status.add("axis", robot_.axes[index].name);
@@ -279,8 +294,6 @@ void Diagnostics::reportNode(std::size_t index, Status& status) {
   status.add("feedback missed", axis.missed_feedback);
   status.add("feedback stale", axis.stale_feedback);
   status.add("feedback of wrong length", axis.wrong_lengths);
-  if (!axis.words.stale.empty())
-    status.mergeSummary(DiagnosticStatus::WARN, axis.words.stale.str());
 }
 
 void Diagnostics::reportAxis(std::size_t index, Status& status) {
@@ -288,7 +301,7 @@ void Diagnostics::reportAxis(std::size_t index, Status& status) {
   const drive::AxisConfig& config = robot_.axes[index];
   const drive::AxisState& state = axis.state;
   status.hardware_id = hardwareId(axis, config);
-  const bus::AxisSummary summary = bus::summaryOf(axis, config.profile->warning_stops);
+  const bus::Summary summary = bus::summaryOf(axis, config.profile->warning_stops);
   status.summary(levelOf(summary.condition), summary.text);
   status.add("state", drive::toString(state.state));
   status.add("statusword",
@@ -296,9 +309,14 @@ void Diagnostics::reportAxis(std::size_t index, Status& status) {
   status.add("mode", state.mode ? state.mode->name : "unknown");
   status.add("halted", state.halted ? "yes" : "no");
   status.add("homed", state.homed ? "yes" : "no");
+  status.add("limits", limitsText(config));
+  status.add("internal limit active", state.internal_limit ? "yes" : "no");
   status.add("error code", hexText(state.error_code, 4));
   status.add("procedure", axis.procedure_running ? drive::toString(axis.procedure) : "none");
-  status.add("step", stepText(axis));
+  status.add("step", axis.words.step.str());
+  status.add("waits for",
+             axis.words.waiting_for.empty() ? "nothing" : axis.words.waiting_for.str());
+  addLastError(status, axis.words, snapshot_.now);
   if (!axis.words.history.empty())
     status.add("error history after the last fault", axis.words.history.str());
   using drive::Quantity;

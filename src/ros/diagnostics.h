@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 
+#include "bus/bus_condition.h"
 #include "bus/runner.h"
 #include "config/robot.h"
 #include "ros/link_watch.h"
@@ -34,6 +35,7 @@ class Diagnostics {
   bus::BusRunner& runner_;
   const config::RobotConfig& robot_;
   bus::NetworkSnapshot snapshot_;
+  bus::SkippedCycles skipped_;
   LinkWatch& link_;
   std::set<std::string> findings_told_;
   diagnostic_updater::Updater updater_;

@@ -21,7 +21,7 @@ AxisSnapshot snapshotOf(const RobotWorld& world, std::size_t axis = 0) {
   return snapshot.axes[axis];
 }
 
-AxisSummary summary(const RobotWorld& world, bool warning_stops = false) {
+Summary summary(const RobotWorld& world, bool warning_stops = false) {
   return summaryOf(snapshotOf(world), warning_stops);
 }
 
@@ -177,16 +177,18 @@ TEST(AxisCondition, AnEffortStreamThatEndsInAQuickStopIsToldOnce) {
   EXPECT_EQ(world.eventsWith("quick stop"), 1u) << world.allEvents();
 }
 
-TEST(AxisCondition, IsAnErrorWhereTheNodeIsLostButNotWhereItMayBeAbsent) {
+TEST(AxisCondition, IsUnheardWhereTheNodeIsLostUnlessItMayBeAbsent) {
   RobotWorld world;
   world.enable();
   world.drives[0].silent = true;
   world.run(1s);
-  EXPECT_EQ(summary(world).condition, Condition::error);
+  EXPECT_EQ(summary(world).condition, Condition::unheard);
   EXPECT_THAT(summary(world).text, HasSubstr("shoulder (node 1)"));
   AxisSnapshot optional = snapshotOf(world);
   optional.node.may_be_absent = true;
-  EXPECT_EQ(summaryOf(optional, false).condition, Condition::warning);
+  EXPECT_EQ(summaryOf(optional, false).condition, Condition::warning) << "it was there";
+  optional.state.health = fieldbus::Health::absent;
+  EXPECT_EQ(summaryOf(optional, false).condition, Condition::well) << "it never was";
 }
 
 // Nothing has been told of it yet.

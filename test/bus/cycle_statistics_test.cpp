@@ -25,6 +25,18 @@ TEST(CycleStatistics, TellsLastLargestAndRootMeanSquareLateness) {
   EXPECT_NEAR(statistics.rmsLateness(), 0.0035355339, 1e-9);  // sqrt((16 + 9) / 2) ms
 }
 
+TEST(CycleStatistics, CountsLatenessInBandsThatIncludeTheirUpperEnd) {
+  CycleStatistics statistics;
+  for (const Duration late : {Duration(0), Duration(10us), Duration(11us), Duration(1ms),
+                              Duration(5ms), Duration(5001us), Duration(1s)}) {
+    statistics.syncSent(late);
+  }
+  const std::array<std::uint64_t, 10> expected{2, 1, 0, 0, 0, 0, 1, 0, 1, 2};
+  for (std::size_t band = 0; band < expected.size(); ++band) {
+    EXPECT_EQ(statistics.inBand(band), expected[band]) << band;
+  }
+}
+
 TEST(CycleStatistics, AddsUpSkippedCycles) {
   CycleStatistics statistics;
   statistics.cyclesSkipped(3);

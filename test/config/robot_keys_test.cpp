@@ -261,6 +261,7 @@ TEST(RobotMistakes, AreToldWithWhatToDo) {
       {"sync_period: 0.004", "heartbeat: 0.0005",
        "bus/heartbeat: must be a whole number of milliseconds, as 1017h counts"},
       {"sync_period: 0.004", "sync: mine", "bus/sync: unknown word `mine`"},
+      {"shoulder:", "bus:", "axes/bus: `bus` is what diagnostics and inject_fault call the whole"},
       {"sync_period: 0.004", "sync_counter: 241", "bus/sync_counter: must be between 0 and 240"},
       {"sync_period: 0.004", "node_id: 128", "bus/node_id: must be between 1 and 127"},
       {"node_id: 1,", "node_id: 1, simulation: {lower_limit_switch: 1, upper_limit_switch: 1},",

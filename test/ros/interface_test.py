@@ -1,12 +1,16 @@
 #!/usr/bin/python3
 # Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-"""What a running node offers is what docs/interface.md lists: no more, no less, of those types."""
+"""What a running node offers is what docs/interface.md lists: no more, no less, of those types.
+The keys of a robot's file are compared by test/config/documented_keys_test.cpp."""
+import os
 import re
+import subprocess
 import unittest
+import xml.etree.ElementTree
 
 import rosgraph
 import rosservice
-from robot_client import Robot, main, package_file
+from robot_client import Robot, executable, main, package_file
 
 AXES, GROUPS = ["shoulder", "elbow", "wrist", "tool", "gripper"], ["arm"]
 PLACES = {"bus": [""], "axis": AXES, "group": GROUPS}
@@ -16,17 +20,20 @@ ACTION = {"goal": "ActionGoal", "cancel": None, "status": None, "feedback": "Act
 OF_ACTIONLIB = {"cancel": "actionlib_msgs/GoalID", "status": "actionlib_msgs/GoalStatusArray"}
 
 
+def chapter(title):
+    with open(package_file("docs/interface.md"), encoding="utf-8") as file:
+        return file.read().split(f"\n## {title}\n")[1].split("\n## ")[0]
+
+
 def section(title):
     """The lines of a section of bus_node's chapter."""
-    with open(package_file("docs/interface.md"), encoding="utf-8") as file:
-        chapter = file.read().split("\n## bus_node\n")[1].split("\n## ")[0]
-    return chapter.split(f"\n### {title}\n")[1].split("\n###")[0].splitlines()
+    return chapter("bus_node").split(f"\n### {title}\n")[1].split("\n###")[0].splitlines()
 
 
-def rows(title):
+def rows(title, lines=None):
     """The cells of the rows of a section's tables, without their heads."""
-    cells = [[cell.strip() for cell in line.strip("|").split(" | ")]
-             for line in section(title) if line.startswith("| `")]
+    cells = [[cell.strip() for cell in line.strip("|").split(" |")]
+             for line in lines or section(title) if line.startswith("| `")]
     assert cells, f"docs/interface.md has no table below {title}"
     return cells
 
@@ -43,6 +50,21 @@ def expand(name):
         if place in name:
             return [name.replace(place, one) for one in those]
     return [name]
+
+
+def documented_arguments():
+    """{launch file: {argument: default, None where the document does not tell it}}"""
+    files = {}
+    for cells in rows("Launch files", chapter("Launch files").splitlines()):
+        told = re.findall(r"`([^`]+)`(?: \(([\w.]+)(?:[:)]|$))?", cells[1].split(";")[0])
+        files[names_of(cells[0])[0]] = {name: default or None for name, default in told}
+    return files
+
+
+def launch_arguments(name):
+    """{argument: default, None where it has none} of a launch file of the package."""
+    tree = xml.etree.ElementTree.parse(package_file(f"launch/{name}"))
+    return {arg.get("name"): arg.get("default") for arg in tree.getroot().findall("arg")}
 
 
 def documented_topics():
@@ -96,6 +118,26 @@ class Interface(unittest.TestCase):
         offered = {name: rosservice.get_service_type(name)
                    for name in rosservice.get_service_list(node="/bus") if name not in OF_EACH_NODE}
         self.assertEqual(offered, documented_services())
+
+    def test_parameters_of_the_node_itself(self):
+        told = subprocess.run([executable("bus_node"), "--help"], stdout=subprocess.PIPE, text=True,
+                              timeout=60, check=True).stdout
+        offered = dict(re.findall(r"(?m)^  _(\w+):=(\S+)", told))
+        documented = {names_of(cells[0])[0].lstrip("~"): cells[1] for cells in rows("Parameters")}
+        self.assertEqual(set(offered), set(documented))
+        for name, default in documented.items():  # in capitals: what has none
+            self.assertEqual(default, "" if offered[name].isupper() else offered[name], name)
+
+    def test_launch_files_and_their_arguments(self):
+        documented = documented_arguments()
+        self.assertEqual(set(documented), set(os.listdir(package_file("launch"))))
+        for name, arguments in documented.items():
+            offered = launch_arguments(name)
+            self.assertEqual(set(arguments), set(offered), name)
+            for argument, default in arguments.items():
+                word = re.fullmatch(r"\w+", offered[argument] or "")  # paths are told in words
+                self.assertEqual(default, offered[argument] if word else None,
+                                 f"{argument} of {name}")
 
     def test_services_of_a_group_concern_its_axes(self):
         answer = self.robot.call("arm/enable")
