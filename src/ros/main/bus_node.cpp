@@ -18,6 +18,7 @@
 #include "ros/event_loop.h"
 #include "ros/fault_service.h"
 #include "ros/frames.h"
+#include "ros/home_action.h"
 #include "ros/link_watch.h"
 #include "ros/process_signals.h"
 #include "ros/publishers.h"
@@ -56,6 +57,7 @@ It waits for the ROS master and for the interface. SIGINT and SIGTERM stop and d
 constexpr unsigned kWaitingCalls = 4;  // of services that keep a thread while they wait
 constexpr Duration kLongestTick = std::chrono::milliseconds(20);  // for states and the log
 constexpr Duration kFeedbackTick = std::chrono::milliseconds(50);
+constexpr Duration kHomingTick = std::chrono::milliseconds(100);
 constexpr Duration kStatusTick = std::chrono::seconds(1);
 constexpr Duration kDiagnosticsTick = std::chrono::milliseconds(100);
 
@@ -137,6 +139,8 @@ void serve(ros::NodeHandle& node, ros::NodeHandle& private_node, const LoadedRob
       private_node, runner, replies, [&loop] { loop.wake(); }, loaded.robot);
   ros_node::TrajectoryActions actions(
       private_node, runner, [&loop] { loop.wake(); }, loaded.robot);
+  ros_node::HomeAction home(
+      private_node, runner, [&loop] { loop.wake(); }, loaded.robot);
   runner.start();
 
   ros::NodeHandle service_node("~");
@@ -148,6 +152,7 @@ void serve(ros::NodeHandle& node, ros::NodeHandle& private_node, const LoadedRob
   loop.always([&] {
     desk.answer();
     actions.update();
+    home.update();
     topics.update();
   });
   const Duration joint_states = fromSeconds(1.0 / loaded.robot.joint_state_rate);
@@ -158,7 +163,12 @@ void serve(ros::NodeHandle& node, ros::NodeHandle& private_node, const LoadedRob
   loop.every(joint_states, [&] { publishMeasured(runner, publishers, frames); });
   loop.every(
       kFeedbackTick, [&] { actions.publishFeedback(); }, [&] { return actions.busy(); });
-  loop.every(kStatusTick, [&] { actions.publishStatus(); });
+  loop.every(
+      kHomingTick, [&] { home.publishFeedback(); }, [&] { return home.busy(); });
+  loop.every(kStatusTick, [&] {
+    actions.publishStatus();
+    home.publishStatus();
+  });
   loop.every(kDiagnosticsTick, [&] { diagnostics.update(); });
   ros_node::wakeOnSignals(loop.wakeFd());
   while (!ros_node::endRequested()) loop.step();
@@ -170,6 +180,7 @@ void serve(ros::NodeHandle& node, ros::NodeHandle& private_node, const LoadedRob
   events.drain();
   desk.answer();
   actions.update();
+  home.update();
   topics.update();
   pool.stop();
   ROS_INFO("stopped");
