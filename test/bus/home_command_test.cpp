@@ -267,10 +267,11 @@ TEST_F(HomeCommandTest, IsRefusedWhileTheBusIsOffAndEndsWithIt) {
   world.run(100ms);
   world.network.busLost("can0 is bus-off", world.now);
   const ProcedureReport refused = world.wait(home({"shoulder"}, {}, 8));
-  EXPECT_THAT(refused.message, HasSubstr("home is refused: "));
+  EXPECT_THAT(refused.message, HasSubstr("can0 is bus-off"));
   EXPECT_EQ(begun, 1);
-  ASSERT_EQ(first->size(), 1U);
-  EXPECT_FALSE(first->front().success || first->front().stopped);
+  const ProcedureReport answer = world.wait(first);
+  EXPECT_FALSE(answer.success || answer.stopped);
+  EXPECT_THAT(answer.message, HasSubstr("elbow (node 2): home was ended: can0 is bus-off"));
 }
 
 TEST_F(HomeCommandTest, TheEndOfTheProgramEndsIt) {
