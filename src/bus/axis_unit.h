@@ -46,6 +46,7 @@ struct AxisUnit {
     snapshot.target = axis.target();
     snapshot.procedure = axis.procedure().kind;
     snapshot.procedure_running = axis.procedure().running;
+    snapshot.procedure_deadline = axis.procedure().deadline;
     snapshot.missed_feedback = missed_feedback;
     const EmergencyCounts& emergencies = reporter.emergencies();
     const bool more = snapshot.emergencies.total != emergencies.total ||

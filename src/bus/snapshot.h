@@ -38,6 +38,7 @@ struct AxisSnapshot {
   double target = drive::kUnknown;  ///< set-point of the active mode, joint units
   drive::ProcedureKind procedure = drive::ProcedureKind::none;
   bool procedure_running = false;
+  Time procedure_deadline{};          ///< when it is given up at the latest
   std::uint64_t missed_feedback = 0;  ///< cycles without a new TPDO while the node was ready
   std::uint64_t stale_feedback = 0;   ///< how often a TPDO was overdue, see PdoConfig::stale_after
   std::uint64_t wrong_lengths = 0;    ///< TPDOs that were too short or too long

@@ -167,7 +167,12 @@ std::vector<Trajectories::Goal> Trajectories::goalsOf(const std::vector<std::siz
 void Trajectories::send(const config::GroupConfig& group, std::vector<std::size_t> axes,
                         Points points, std::optional<Duration> start) {
   const std::uint64_t id = ++last_id_;
-  Sent sent{id, &group, std::move(axes), {}, session_.now() + start.value_or(Duration())};
+  Sent sent;
+  sent.id = id;
+  sent.group = &group;
+  sent.axes = std::move(axes);
+  sent.at = session_.now();
+  sent.base = sent.at + start.value_or(Duration());
   sent.goals = goalsOf(sent.axes, points);
   sent.has_start = start.has_value();
   sent.stop = points.empty();
@@ -254,7 +259,9 @@ void Trajectories::ended(std::uint64_t id, const bus::TrajectoryOutcome& outcome
 
 bool Trajectories::judged(const Sent& sent, std::size_t axis) const {
   const auto follows = follows_.find(axis);
-  return follows != follows_.end() && follows->second == sent.id &&
+  // A trajectory that was taken is given after it has left.
+  const bool led = sent.stop && session_.permits.given(axis) > sent.at;
+  return follows != follows_.end() && follows->second == sent.id && !led &&
          session_.conditions.quiet(axis, session_.now());
 }
 

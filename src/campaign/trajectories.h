@@ -42,6 +42,7 @@ class Trajectories {
     const config::GroupConfig* group = nullptr;
     std::vector<std::size_t> axes;
     std::vector<Goal> goals;  ///< of these axes
+    Time at{};                ///< when it left
     Time base{};              ///< from which its points count, at the earliest
     Duration last{};          ///< time of the last point
     bool stop = false, has_start = false;

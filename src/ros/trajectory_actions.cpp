@@ -15,9 +15,6 @@ using motion::TrajectoryErrorCode;
 
 constexpr std::size_t kMostGoals = 64;         // that have not ended
 constexpr std::size_t kNews = 4 * kMostGoals;  // two of each goal, and room to be late
-constexpr actionlib_msgs::GoalStatus::_status_type kPending = actionlib_msgs::GoalStatus::PENDING;
-constexpr actionlib_msgs::GoalStatus::_status_type kRecalling =
-    actionlib_msgs::GoalStatus::RECALLING;
 
 control_msgs::FollowJointTrajectoryResult resultOf(TrajectoryErrorCode code,
                                                    const std::string& text) {
@@ -136,8 +133,7 @@ void TrajectoryActions::take(const News& news) {
   if (found == goals_.end()) return;
   Goal& goal = found->second;
   if (news.kind == News::Kind::answered && news.accepted) {
-    const auto status = goal.handle.getGoalStatus().status;
-    if (status == kPending || status == kRecalling) goal.handle.setAccepted(news.text.str());
+    if (isPending(goal.handle)) goal.handle.setAccepted(news.text.str());
     return;
   }
   finish(goal, news);
@@ -151,8 +147,7 @@ void TrajectoryActions::finish(Goal& goal, const News& news) {
   if (news.kind == News::Kind::answered && news.end == bus::TrajectoryEnd::refused) {
     return handle.setRejected(result, text);
   }
-  const auto status = handle.getGoalStatus().status;
-  if (status == kPending || status == kRecalling) handle.setAccepted();
+  if (isPending(handle)) handle.setAccepted();
   switch (news.end) {
     case bus::TrajectoryEnd::reached:
       return handle.setSucceeded(result, text);
@@ -174,8 +169,7 @@ void TrajectoryActions::publishStatus() {
 void TrajectoryActions::publishFeedback() {
   const bus::NetworkSnapshot snapshot = runner_.snapshot();
   for (auto& [id, goal] : goals_) {
-    const auto status = goal.handle.getGoalStatus().status;
-    if (status == kPending || status == kRecalling) continue;
+    if (isPending(goal.handle)) continue;
     control_msgs::FollowJointTrajectoryFeedback feedback;
     feedback.header.stamp = ros::Time::now();
     addGroup(robot_.groups[goal.group], joints_, snapshot, feedback);

@@ -18,7 +18,7 @@
 #include "bus/runner.h"
 #include "config/robot.h"
 #include "motion/joint.h"
-#include "ros/trajectory_action_server.h"
+#include "ros/action_server.h"
 
 namespace cia402::ros_node {
 
@@ -44,7 +44,7 @@ class TrajectoryActions {
   void publishFeedback();
 
  private:
-  using Server = TrajectoryActionServer;
+  using Server = ActionServer<control_msgs::FollowJointTrajectoryAction>;
   /// Of one goal, from the thread of the bus.
   struct News {
     enum class Kind : std::uint8_t { answered, ended };

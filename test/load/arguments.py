@@ -4,7 +4,7 @@ import os
 
 import rospy
 from actionlib_msgs.msg import GoalID
-from cia402_driver.msg import LssIdentity
+from cia402_driver.msg import HomeActionGoal, HomeGoal, LssIdentity
 from control_msgs.msg import (FollowJointTrajectoryActionGoal, FollowJointTrajectoryGoal,
                               JointTolerance)
 from std_msgs.msg import Float64
@@ -114,5 +114,13 @@ def action_goal(chance):
         goal_time_tolerance=rospy.Duration(chance.choice([0, 0, 1, -1]))))
 
 
+def home_goal(chance):
+    axes = [chance.choice(NAMES + ["arm"]) for _ in range(chance.choice([0, 1, 2, 5, 200]))]
+    axes = chance.choice([axes, JOINTS, ["arm"]])
+    return HomeActionGoal(goal_id=goal_id(chance), goal=HomeGoal(axes=axes, order=[
+        chance.choice([0, 1, -5, 2**31 - 1, -2**31])
+        for _ in range(chance.choice([0, 0, len(axes), 3]))]))
+
+
 TOPICS = {Float64: set_point, JointTrajectory: trajectory,
-          FollowJointTrajectoryActionGoal: action_goal, GoalID: goal_id}
+          FollowJointTrajectoryActionGoal: action_goal, HomeActionGoal: home_goal, GoalID: goal_id}

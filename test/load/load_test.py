@@ -150,7 +150,8 @@ class Load(RobotTest):
     def test_all_topics_and_services_at_once(self):
         topics = self.topics()
         self.assertGreaterEqual(len(self.services), 80)
-        self.assertEqual(len(topics), 7)  # four axes; the group: command, and goal and cancel
+        # Four axes; the group: command, and goal and cancel; goal and cancel of home.
+        self.assertEqual(len(topics), 9)
         threads = [self.start(self.call, seed) for seed in range(CALLERS)]
         threads += [self.start(self.publish, topic, kind) for topic, kind in topics]
         for thread in threads:

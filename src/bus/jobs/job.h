@@ -41,6 +41,11 @@ class Job {
   virtual void withdraw(const drive::Axis& /*axis*/, drive::ProcedureKind /*by*/) {}
   /// The same on all axes, for the reason `why`, if it would enable them.
   virtual void withdrawEnabling(const std::string& /*why*/) {}
+  /// Whoever has called it by that id wants it to end: what runs is stopped and watched to its end,
+  /// what has not begun does not begin.
+  virtual void cancel(std::uint64_t /*id*/, Time /*now*/) {}
+  /// It homes that axis: it does, has, or is going to.
+  virtual bool homes(const drive::Axis& /*axis*/) const { return false; }
   /// It begins nothing before release().
   virtual bool held() const { return false; }
   virtual void release() {}

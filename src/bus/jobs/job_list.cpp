@@ -26,6 +26,14 @@ void JobList::withdrawEnabling(const std::string& why) {
   for (const auto& job : jobs_) job->withdrawEnabling(why);
 }
 
+void JobList::cancel(std::uint64_t id, Time now) {
+  for (const auto& job : jobs_) job->cancel(id, now);
+}
+
+bool JobList::homes(const drive::Axis& axis) const {
+  return std::any_of(jobs_.begin(), jobs_.end(), [&](const auto& job) { return job->homes(axis); });
+}
+
 void JobList::release() {
   for (const auto& job : jobs_) job->release();
 }

@@ -3,10 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <utility>
 
-#include "bus/axis_cycle.h"
 #include "common/text.h"
 #include "motion/joint.h"
 
@@ -58,72 +56,46 @@ std::string lapse(const drive::ProcedureRequest& request, const drive::Axis& axi
 
 }  // namespace
 
-bool ProcedureCommand::concerns(const AxisUnit& unit, const config::GroupConfig* of) const {
-  const drive::AxisConfig& config = unit.axis.config();
-  if (!axis.empty()) return config.name == axis;
-  if (request.kind == drive::ProcedureKind::home && !config.homing) return false;
-  return of == nullptr ||
-         std::find(of->joints.begin(), of->joints.end(), config.joint) != of->joints.end();
-}
-
-void ProcedureCommand::begin(AxisCycle& cycle, const Reply<>& reply, Time now) const {
-  const std::string problem = enables(request.kind) ? cycle.enableProblem() : std::string();
-  if (!problem.empty()) {
-    return refuse(reply, std::string(drive::toString(request.kind)) + " is refused: " + problem);
-  }
-  const auto of = std::find_if(cycle.groups().begin(), cycle.groups().end(),
-                               [&](const Group& any) { return any.config().name == group; });
-  const bool of_group = of != cycle.groups().end();
-  if (!group.empty() && !of_group) return refuse(reply, "there is no group `" + group + "`");
-  const bool homing = request.kind == drive::ProcedureKind::home;
-  std::vector<AxisUnit*> units;
-  std::vector<ProcedureJob::Item> items;
-  std::string left_out;
-  for (AxisUnit& unit : cycle.units()) {
-    if (!concerns(unit, of_group ? &of->config() : nullptr)) continue;
-    if (axis.empty() && unit.axis.device().excused()) {
-      left_out += "; " + drive::jointName(unit.axis.config()) +
-                  " is optional and not there, it was left out";
-      continue;
-    }
-    units.push_back(&unit);
-    items.push_back({&unit.axis, homing ? cycle.joints().ofAxis(unit.index).homingOrder() : 0});
-    if (stops(request.kind)) cycle.jobs().withdraw(unit.axis, request.kind);
-  }
-  if (items.empty()) {
-    return refuse(reply, !axis.empty()      ? noSuchAxis(axis)
-                         : left_out.empty() ? "nothing to do: no axis" +
-                                                  (of_group ? " of " + group : std::string()) +
-                                                  " has a `homing` section"
-                                            : "nothing to do" + left_out);
-  }
-  // Until the devices can be reached again, where that takes more than their boot.
-  const bool held = request.kind == drive::ProcedureKind::recover && cycle.prepareRecovery(units);
-  ProcedureJob::Manner manner;
-  manner.held = held;
-  manner.together = of_group;
-  auto job =
-      std::make_unique<ProcedureJob>(request, std::move(items), std::move(left_out), manner, reply);
-  if (!job->step(now)) cycle.jobs().add(std::move(job));
-}
-
 ProcedureJob::ProcedureJob(drive::ProcedureRequest request, std::vector<Item> items,
-                           std::string remark, Manner manner, Reply<> reply)
+                           std::string remark, Manner manner, Reply<ProcedureReport> reply)
     : Job(Turn::procedure, Ends::at_once),
       request_(std::move(request)),
       reply_(std::move(reply)),
       remark_(std::move(remark)),
-      manner_(manner) {
+      manner_(std::move(manner)) {
   std::stable_sort(items.begin(), items.end(),
                    [](const Item& a, const Item& b) { return a.order < b.order; });
   for (const Item& item : items) {
     entries_.emplace_back();
     entries_.back().axis = item.axis;
+    entries_.back().number = item.number;
     entries_.back().order = item.order;
   }
 }
 
+std::string ProcedureJob::leftOut(const drive::Axis& axis) {
+  return "; " + drive::jointName(axis.config()) + " is optional and not there, it was left out";
+}
+
+std::string ProcedureJob::homingRefusal(const JobList& jobs, const std::vector<Item>& items) {
+  const auto busy = std::find_if(items.begin(), items.end(),
+                                 [&](const Item& item) { return jobs.homes(*item.axis); });
+  if (busy == items.end()) return {};
+  return "home is refused: one that was called before has not ended, and " +
+         drive::jointName(busy->axis->config()) +
+         " is a part of it; wait for its end, or stop it by halt, quick_stop or disable";
+}
+
 bool ProcedureJob::step(Time now) {
+  const bool done = advance(now);
+  if (manner_.progress) {
+    for (const Entry& entry : entries_) manner_.progress->set(entry.number, entry.stage);
+  }
+  if (done) give(reply_, answer());
+  return done;
+}
+
+bool ProcedureJob::advance(Time now) {
   watch();
   if (all(Stage::waiting) && !manner_.held && begunByAll()) refuseUnlessAll();
   const bool failed = std::any_of(entries_.begin(), entries_.end(),
@@ -136,9 +108,7 @@ bool ProcedureJob::step(Time now) {
   if (!ended() || awaitsNews(now)) return false;
   judge();
   if (!all(Stage::succeeded) && allOrNone()) undo(now);
-  if (!ended()) return false;
-  give(reply_, answer());
-  return true;
+  return ended();
 }
 
 bool ProcedureJob::all(Stage stage) const {
@@ -303,6 +273,7 @@ void ProcedureJob::watchRunning(Entry& entry) const {
     entry.stage = status.success ? Stage::succeeded : Stage::failed;
     entry.message = status.message;
     entry.remark = status.remark;
+    if (replaced && stops(axis.procedure().kind)) entry.unwanted = true;
   }
 }
 
@@ -315,10 +286,15 @@ void ProcedureJob::Entry::refuse(const std::string& why) {
   fail(drive::jointName(axis->config()) + ": not started, for " + why);
 }
 
+void ProcedureJob::Entry::withdraw(const std::string& by) {
+  refuse(by + " was called");
+  unwanted = true;
+}
+
 void ProcedureJob::withdraw(const drive::Axis& axis, drive::ProcedureKind by) {
   for (Entry& entry : entries_) {
     if (entry.stage != Stage::waiting || entry.axis != &axis) continue;
-    entry.refuse(std::string(toString(by)) + " was called");
+    entry.withdraw(toString(by));
   }
 }
 
@@ -332,24 +308,54 @@ void ProcedureJob::withdrawEnabling(const std::string& why) {
 /// Somebody who stops an axis does not want it moved by what was asked before.
 void ProcedureJob::Entry::watchWaiting() {
   const drive::ProcedureStatus& status = axis->procedure();
-  if (seen && status.id != id && stops(status.kind)) {
-    refuse(std::string(toString(status.kind)) + " was called");
-  }
+  if (seen && status.id != id && stops(status.kind)) withdraw(toString(status.kind));
   id = status.id;
   seen = true;
 }
 
-void ProcedureJob::skipRest() {
+void ProcedureJob::cancel(std::uint64_t id, Time now) {
+  if (id == 0 || manner_.id != id) return;
   for (Entry& entry : entries_) {
-    if (entry.stage == Stage::waiting) entry.refuse("another axis failed");
+    if (entry.ended()) continue;
+    entry.unwanted = true;
+    const bool runs = entry.stage == Stage::running && entry.axis->procedure().id == entry.id;
+    if (entry.stage == Stage::waiting) entry.refuse("the goal was cancelled");
+    if (runs) entry.axis->cancel("the client asked for it", now);
   }
 }
 
-Answer ProcedureJob::answer() const {
-  if (entries_.size() == 1) {
-    const Entry& only = entries_.front();
-    return answerOf(only.stage == Stage::succeeded, only.message + remark_);
+bool ProcedureJob::homes(const drive::Axis& axis) const {
+  return request_.kind == drive::ProcedureKind::home &&
+         std::any_of(entries_.begin(), entries_.end(), [&](const Entry& entry) {
+           return entry.axis == &axis && entry.stage != Stage::failed;
+         });
+}
+
+void ProcedureJob::skipRest() {
+  const bool unwanted = std::none_of(entries_.begin(), entries_.end(), [](const Entry& entry) {
+    return entry.stage == Stage::failed && !entry.unwanted;
+  });
+  for (Entry& entry : entries_) {
+    if (entry.stage != Stage::waiting) continue;
+    entry.refuse(unwanted ? "another axis was stopped" : "another axis failed");
+    entry.unwanted = unwanted;
   }
+}
+
+ProcedureReport ProcedureJob::answer() const {
+  ProcedureReport answer;
+  answer.success = all(Stage::succeeded);
+  answer.message = text() + remark_;
+  answer.stopped = !answer.success;
+  for (const Entry& entry : entries_) {
+    if (entry.stage == Stage::failed && !entry.unwanted) answer.stopped = false;
+    answer.axes.push_back({entry.number, entry.axis->state().homed, entry.message});
+  }
+  return answer;
+}
+
+std::string ProcedureJob::text() const {
+  if (entries_.size() == 1) return entries_.front().message;
   const auto succeeded = std::count_if(entries_.begin(), entries_.end(),
                                        [](const Entry& e) { return e.stage == Stage::succeeded; });
   std::string text = std::string(toString(request_.kind)) + " done on " +
@@ -361,7 +367,7 @@ Answer ProcedureJob::answer() const {
     append(text, entry.message.empty() ? drive::jointName(entry.axis->config()) + ": done"
                                        : entry.message);
   }
-  return answerOf(all(Stage::succeeded), text + remark_);
+  return text;
 }
 
 }  // namespace cia402::bus

@@ -310,8 +310,9 @@ Outcome DriveHoming::limit(const Context& context) {
 
 bool DriveHoming::cancel(const std::string& reason, const Context& context) {
   if (phase_ == Phase::stopping || phase_ == Phase::restoring) return false;
-  if (phase_ != Phase::clearing && phase_ != Phase::searching && phase_ != Phase::reading_offset &&
-      phase_ != Phase::settling && phase_ != Phase::limiting) {
+  const bool entered = phase_ == Phase::entering && context.axis.inOperation();
+  if (!entered &&
+      (phase_ == Phase::begin || phase_ == Phase::writing || phase_ == Phase::entering)) {
     return true;
   }
   giveUp(context, "it was cancelled: " + reason);

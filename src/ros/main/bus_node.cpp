@@ -18,6 +18,7 @@
 #include "ros/event_loop.h"
 #include "ros/fault_service.h"
 #include "ros/frames.h"
+#include "ros/home_action.h"
 #include "ros/link_watch.h"
 #include "ros/process_signals.h"
 #include "ros/publishers.h"
@@ -56,6 +57,7 @@ It waits for the ROS master and for the interface. SIGINT and SIGTERM stop and d
 constexpr unsigned kWaitingCalls = 4;  // of services that keep a thread while they wait
 constexpr Duration kLongestTick = std::chrono::milliseconds(20);  // for states and the log
 constexpr Duration kFeedbackTick = std::chrono::milliseconds(50);
+constexpr Duration kHomingTick = std::chrono::milliseconds(100);
 constexpr Duration kStatusTick = std::chrono::seconds(1);
 constexpr Duration kDiagnosticsTick = std::chrono::milliseconds(100);
 
@@ -112,12 +114,30 @@ void publishMeasured(bus::BusRunner& runner, ros_node::Publishers& publishers,
   frames.publish(snapshot.joints);
 }
 
+/// Clients of the actions hear what becomes of their goals.
+void tellOfGoals(ros_node::EventLoop& loop, ros_node::TrajectoryActions& trajectories,
+                 ros_node::HomeAction& home) {
+  loop.always([&] {
+    trajectories.update();
+    home.update();
+  });
+  loop.every(
+      kFeedbackTick, [&] { trajectories.publishFeedback(); }, [&] { return trajectories.busy(); });
+  loop.every(
+      kHomingTick, [&] { home.publishFeedback(); }, [&] { return home.busy(); });
+  loop.every(kStatusTick, [&] {
+    trajectories.publishStatus();
+    home.publishStatus();
+  });
+}
+
 /// Runs the driver until the node is asked to end.
 void serve(ros::NodeHandle& node, ros::NodeHandle& private_node, const LoadedRobot& loaded,
            OpenInterface open) {
   sim::SimulatedInterface* const simulation = open.simulation;
   ros_node::EventLoop loop;
-  ros_node::CallDesk desk([&loop] { loop.wake(); });
+  const auto wake = [&loop] { loop.wake(); };
+  ros_node::CallDesk desk(wake);
   ros_node::ServicePool pool(kWaitingCalls);
   node.setCallbackQueue(loop.queue());
   private_node.setCallbackQueue(loop.queue());
@@ -133,10 +153,9 @@ void serve(ros::NodeHandle& node, ros::NodeHandle& private_node, const LoadedRob
   ros_node::Publishers publishers(node, private_node, runner, link, loaded.robot);
   ros_node::Diagnostics diagnostics(node, private_node, runner, link, loaded.robot);
   ros_node::Frames frames(runner.time(), loaded.robot);
-  ros_node::CommandTopics topics(
-      private_node, runner, replies, [&loop] { loop.wake(); }, loaded.robot);
-  ros_node::TrajectoryActions actions(
-      private_node, runner, [&loop] { loop.wake(); }, loaded.robot);
+  ros_node::CommandTopics topics(private_node, runner, replies, wake, loaded.robot);
+  ros_node::TrajectoryActions actions(private_node, runner, wake, loaded.robot);
+  ros_node::HomeAction home(private_node, runner, wake, loaded.robot);
   runner.start();
 
   ros::NodeHandle service_node("~");
@@ -147,18 +166,15 @@ void serve(ros::NodeHandle& node, ros::NodeHandle& private_node, const LoadedRob
 
   loop.always([&] {
     desk.answer();
-    actions.update();
     topics.update();
   });
+  tellOfGoals(loop, actions, home);
   const Duration joint_states = fromSeconds(1.0 / loaded.robot.joint_state_rate);
   loop.every(tickOf(joint_states), [&] {
     events.drain();
     publishers.publishStates();
   });
   loop.every(joint_states, [&] { publishMeasured(runner, publishers, frames); });
-  loop.every(
-      kFeedbackTick, [&] { actions.publishFeedback(); }, [&] { return actions.busy(); });
-  loop.every(kStatusTick, [&] { actions.publishStatus(); });
   loop.every(kDiagnosticsTick, [&] { diagnostics.update(); });
   ros_node::wakeOnSignals(loop.wakeFd());
   while (!ros_node::endRequested()) loop.step();
@@ -170,6 +186,7 @@ void serve(ros::NodeHandle& node, ros::NodeHandle& private_node, const LoadedRob
   events.drain();
   desk.answer();
   actions.update();
+  home.update();
   topics.update();
   pool.stop();
   ROS_INFO("stopped");

@@ -1,7 +1,9 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-#include "ros/trajectory_action_server.h"
+#include "ros/action_server.h"
 
 #include <actionlib_msgs/GoalStatusArray.h>
+#include <cia402_driver/HomeAction.h>
+#include <control_msgs/FollowJointTrajectoryAction.h>
 
 #include <algorithm>
 #include <iterator>
@@ -14,55 +16,62 @@ constexpr unsigned int kQueue = 50;  // messages: actionlib's
 
 }  // namespace
 
-TrajectoryActionServer::TrajectoryActionServer(const ros::NodeHandle& node, const std::string& name,
-                                               const Handler& on_goal, const Handler& on_cancel)
-    : ActionServerBase(on_goal, on_cancel, false), node_(node, name) {}
+template <typename Action>
+ActionServer<Action>::ActionServer(const ros::NodeHandle& node, const std::string& name,
+                                   const Handler& on_goal, const Handler& on_cancel)
+    : Base(on_goal, on_cancel, false), node_(node, name) {}
 
-void TrajectoryActionServer::tick() {
+template <typename Action>
+void ActionServer<Action>::tick() {
   forget();
   publishStatus();
 }
 
-void TrajectoryActionServer::initialize() {
+template <typename Action>
+void ActionServer<Action>::initialize() {
   result_ = node_.advertise<ActionResult>("result", kQueue);
   feedback_ = node_.advertise<ActionFeedback>("feedback", kQueue);
   status_ = node_.advertise<actionlib_msgs::GoalStatusArray>("status", kQueue, true);
   const boost::function<void(const ActionGoalConstPtr&)> on_goal =
       [this](const ActionGoalConstPtr& goal) {
-        goalCallback(goal);
+        this->goalCallback(goal);
         remember(goal->goal_id.id);
       };
   const boost::function<void(const actionlib_msgs::GoalIDConstPtr&)> on_cancel =
       [this](const actionlib_msgs::GoalIDConstPtr& id) {
-        cancelCallback(id);
+        this->cancelCallback(id);
         // A client whose clock is wrong must not cancel for ever what comes.
-        last_cancel_ = std::min(last_cancel_, ros::Time::now() + ros::Duration(kRemembered));
+        this->last_cancel_ =
+            std::min(this->last_cancel_, ros::Time::now() + ros::Duration(kRemembered));
         remember(id->id);
       };
   goal_ = node_.subscribe<ActionGoal>("goal", kQueue, on_goal);
   cancel_ = node_.subscribe<actionlib_msgs::GoalID>("cancel", kQueue, on_cancel);
 }
 
-void TrajectoryActionServer::remember(const std::string& id) {
-  for (auto& known : status_list_) {
+template <typename Action>
+void ActionServer<Action>::remember(const std::string& id) {
+  for (auto& known : this->status_list_) {
     if (known.status_.goal_id.id != id || !known.handle_tracker_.expired()) continue;
     known.handle_destruction_time_ = ros::Time::now();
   }
 }
 
-void TrajectoryActionServer::forget() {
+template <typename Action>
+void ActionServer<Action>::forget() {
   const ros::Time now = ros::Time::now();
-  for (auto known = status_list_.begin(); known != status_list_.end();) {
+  for (auto known = this->status_list_.begin(); known != this->status_list_.end();) {
     ros::Time& ended = known->handle_destruction_time_;
     if (ended > now) ended = now;  // the clock was set back
     const bool held = !known->handle_tracker_.expired();
     const bool due = now.toSec() - ended.toSec() > kRemembered;
-    known = held || !due ? std::next(known) : status_list_.erase(known);
+    known = held || !due ? std::next(known) : this->status_list_.erase(known);
   }
 }
 
-void TrajectoryActionServer::publishResult(const actionlib_msgs::GoalStatus& status,
-                                           const Result& result) {
+template <typename Action>
+void ActionServer<Action>::publishResult(const actionlib_msgs::GoalStatus& status,
+                                         const Result& result) {
   ActionResult message;
   message.header.stamp = ros::Time::now();
   message.status = status;
@@ -71,8 +80,9 @@ void TrajectoryActionServer::publishResult(const actionlib_msgs::GoalStatus& sta
   publishStatus();
 }
 
-void TrajectoryActionServer::publishFeedback(const actionlib_msgs::GoalStatus& status,
-                                             const Feedback& feedback) {
+template <typename Action>
+void ActionServer<Action>::publishFeedback(const actionlib_msgs::GoalStatus& status,
+                                           const Feedback& feedback) {
   ActionFeedback message;
   message.header.stamp = ros::Time::now();
   message.status = status;
@@ -80,11 +90,15 @@ void TrajectoryActionServer::publishFeedback(const actionlib_msgs::GoalStatus& s
   feedback_.publish(message);
 }
 
-void TrajectoryActionServer::publishStatus() {
+template <typename Action>
+void ActionServer<Action>::publishStatus() {
   actionlib_msgs::GoalStatusArray message;
   message.header.stamp = ros::Time::now();
-  for (const auto& known : status_list_) message.status_list.push_back(known.status_);
+  for (const auto& known : this->status_list_) message.status_list.push_back(known.status_);
   status_.publish(message);
 }
+
+template class ActionServer<control_msgs::FollowJointTrajectoryAction>;
+template class ActionServer<cia402_driver::HomeAction>;
 
 }  // namespace cia402::ros_node

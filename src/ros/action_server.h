@@ -4,7 +4,6 @@
 #include <actionlib/server/action_server_base.h>
 #include <actionlib_msgs/GoalID.h>
 #include <actionlib_msgs/GoalStatus.h>
-#include <control_msgs/FollowJointTrajectoryAction.h>
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
 #include <ros/subscriber.h>
@@ -13,21 +12,25 @@
 
 namespace cia402::ros_node {
 
-/// The wire of an action control_msgs/FollowJointTrajectory, its goals kept by actionlib.
+/// The wire of an action, its goals kept by actionlib.
 /// actionlib::ActionServer has a wire, too, but forgets goals while it walks over them (a goal that
 /// was cancelled in advance under an old stamp makes it read freed memory), never forgets what
 /// was cancelled under stamp 0, throws at stamps near 2^32 s, and cancels all goals until then:
 /// a message must do none of that.
 /// All of it runs in the thread of the node handle's callbacks.
-class TrajectoryActionServer final
-    : public actionlib::ActionServerBase<control_msgs::FollowJointTrajectoryAction> {
+/// @tparam Action the message that is named after the action; those that there are: see the source
+template <typename Action>
+class ActionServer final : public actionlib::ActionServerBase<Action> {
  public:
+  ACTION_DEFINITION(Action)  // the types of its messages
+  using Base = actionlib::ActionServerBase<Action>;
+  using GoalHandle = typename Base::GoalHandle;
   using Handler = boost::function<void(GoalHandle)>;
 
   /// @param name of the action, in the namespace of `node`; its topics are <name>/goal, cancel,
   /// status, feedback and result
-  TrajectoryActionServer(const ros::NodeHandle& node, const std::string& name,
-                         const Handler& on_goal, const Handler& on_cancel);
+  ActionServer(const ros::NodeHandle& node, const std::string& name, const Handler& on_goal,
+               const Handler& on_cancel);
 
   /// Forgets goals that ended 5 s ago or more, and tells the status of the others. Regularly;
   /// changes are told of at once.
@@ -49,5 +52,13 @@ class TrajectoryActionServer final
   ros::Subscriber goal_;
   ros::Subscriber cancel_;
 };
+
+/// Nobody has accepted or rejected the goal yet.
+template <typename GoalHandle>
+bool isPending(const GoalHandle& goal) {
+  const auto status = goal.getGoalStatus().status;
+  return status == actionlib_msgs::GoalStatus::PENDING ||
+         status == actionlib_msgs::GoalStatus::RECALLING;
+}
 
 }  // namespace cia402::ros_node
