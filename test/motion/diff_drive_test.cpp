@@ -9,7 +9,7 @@
 namespace cia402::motion {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kHalfTurn = 3.14159265358979323846;
 constexpr DiffDriveGeometry kBase{0.4, 0.1};
 // 1 m/s are 10 rad/s of a wheel.
 constexpr PlanarLimits kLimits{0.5, 1.0, 1.0, 2.0, 6.0};
@@ -43,6 +43,7 @@ TEST(TwistLimiter, KeepsTheCurveOfWhatIsTooFast) {
   const PlanarTwist both = limiter.within({0.5, 1.0});  // the outer wheel would need 7 rad/s
   EXPECT_NEAR(wheelSpeeds(kBase, both).right, 6.0, 1e-12);
   EXPECT_NEAR(both.linear / both.angular, 0.5, 1e-12);
+  EXPECT_NEAR(wheelSpeeds(kBase, limiter.within({0.5, -1.0})).left, 6.0, 1e-12);
   const PlanarTwist slow = limiter.within({0.1, -0.2});
   EXPECT_DOUBLE_EQ(slow.linear, 0.1);
   EXPECT_DOUBLE_EQ(slow.angular, -0.2);
@@ -60,6 +61,15 @@ TEST(TwistLimiter, GetsThereWithItsAccelerationAndBothPartsAtOnce) {
   limiter.step({0.4, 0.5}, 0.02);
   EXPECT_EQ(limiter.twist().linear, 0.4);
   EXPECT_EQ(limiter.twist().angular, 0.5);
+}
+
+TEST(TwistLimiter, GoesAheadNoFasterThanItsTurnAllows) {
+  TwistLimiter limiter(kLimits, kBase);
+  for (int i = 1; i <= 10; ++i) {  // 0.8 rad/s take 0.4 s
+    const PlanarTwist& twist = limiter.step({0.1, -0.8}, 0.02);
+    EXPECT_NEAR(twist.linear, 0.005 * i, 1e-12);
+    EXPECT_NEAR(twist.angular, -0.04 * i, 1e-12);
+  }
 }
 
 TEST(TwistLimiter, ReversesThroughRest) {
@@ -101,19 +111,19 @@ TEST(WheelOdometry, GoesStraightAndBack) {
 TEST(WheelOdometry, TurnsOnTheSpotOverManyTurns) {
   WheelOdometry odometry(kBase);
   odometry.update(0.0, 0.0);
-  for (int i = 1; i <= 100; ++i) odometry.update(-i * kPi / 5.0, i * kPi / 5.0);
+  for (int i = 1; i <= 100; ++i) odometry.update(-i * kHalfTurn / 5.0, i * kHalfTurn / 5.0);
   EXPECT_NEAR(odometry.pose().position.norm(), 0.0, 1e-12);
-  EXPECT_NEAR(odometry.pose().heading, 100 * kPi / 10.0, 1e-9);  // 0.1 m * pi/5 / 0.2 m
+  EXPECT_NEAR(odometry.pose().heading, 100 * kHalfTurn / 10.0, 1e-9);  // 0.1 m * pi/5 / 0.2 m
 }
 
 /// A quarter of a circle of 1 m: the tracks are 0.8 and 1.2 m off its centre.
 TEST(WheelOdometry, AnArcInOneStepIsExact) {
   WheelOdometry odometry(kBase);
   odometry.update(0.0, 0.0);
-  odometry.update(0.8 * kPi / 2.0 / 0.1, 1.2 * kPi / 2.0 / 0.1);
+  odometry.update(0.8 * kHalfTurn / 2.0 / 0.1, 1.2 * kHalfTurn / 2.0 / 0.1);
   EXPECT_NEAR(odometry.pose().position.x(), 1.0, 1e-12);
   EXPECT_NEAR(odometry.pose().position.y(), 1.0, 1e-12);
-  EXPECT_NEAR(odometry.pose().heading, kPi / 2.0, 1e-12);
+  EXPECT_NEAR(odometry.pose().heading, kHalfTurn / 2.0, 1e-12);
 }
 
 TEST(WheelOdometry, ACircleClosesHoweverItIsCut) {
@@ -121,10 +131,11 @@ TEST(WheelOdometry, ACircleClosesHoweverItIsCut) {
     WheelOdometry odometry(kBase);
     odometry.update(0.0, 0.0);
     for (int i = 1; i <= pieces; ++i) {
-      odometry.update(0.8 * 2.0 * kPi / 0.1 * i / pieces, 1.2 * 2.0 * kPi / 0.1 * i / pieces);
+      odometry.update(0.8 * 2.0 * kHalfTurn / 0.1 * i / pieces,
+                      1.2 * 2.0 * kHalfTurn / 0.1 * i / pieces);
     }
     EXPECT_NEAR(odometry.pose().position.norm(), 0.0, 1e-9) << pieces;
-    EXPECT_NEAR(odometry.pose().heading, 2.0 * kPi, 1e-9) << pieces;
+    EXPECT_NEAR(odometry.pose().heading, 2.0 * kHalfTurn, 1e-9) << pieces;
   }
 }
 
@@ -144,7 +155,7 @@ TEST(WheelOdometry, IsTheProductOfRotationsAboutTheCentresOfItsArcs) {
   }
   EXPECT_LT((odometry.pose().position - pose.translation()).norm(), 1e-9);
   EXPECT_NEAR(std::remainder(odometry.pose().heading - Eigen::Rotation2Dd(pose.rotation()).angle(),
-                             2.0 * kPi),
+                             2.0 * kHalfTurn),
               0.0, 1e-9);
 }
 
