@@ -63,7 +63,7 @@ class DiffDrive(unittest.TestCase):
 
     def wheel(self, joint):
         """rad, as the drive counts, which its 32 bits hold all through these tests."""
-        answer = self.robot.call("read_object", axis=joint, object="position_actual")
+        answer = self.robot.call(f"{joint}/read_object", object="position_actual")
         self.assertTrue(answer.success, answer.message)
         return SIGNS[joint] * answer.number / COUNTS
 
@@ -173,4 +173,4 @@ class DiffDrive(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    main("diff_drive")
+    main("wheels")
