@@ -43,6 +43,18 @@ struct SetpointCommand {
   using Answer = bus::Answer;
   std::size_t axis = 0;  ///< index in the configuration
   double value = 0.0;
+  std::optional<Time> came{};  ///< to this program, in bus time; nothing: just now
+
+  void begin(AxisCycle& cycle, const Reply<>& reply, Time now) const;
+};
+
+/// Set-points for all joints of a group, each of its joint's active mode: all are taken for the
+/// same cycle, or none, where one cannot be followed as it is. Answered only if refused.
+struct GroupSetpointsCommand {
+  using Answer = bus::Answer;
+  std::size_t group = 0;       ///< index in the configuration
+  std::vector<double> values;  ///< in the order of the group's joints
+  std::optional<Time> came{};  ///< see SetpointCommand
 
   void begin(AxisCycle& cycle, const Reply<>& reply, Time now) const;
 };
@@ -121,6 +133,7 @@ class Command {
   /// It is out of date soon: it is carried out now or never.
   bool streams() const {
     return std::holds_alternative<Given<SetpointCommand>>(body_) ||
+           std::holds_alternative<Given<GroupSetpointsCommand>>(body_) ||
            std::holds_alternative<Given<TrajectoryCommand>>(body_);
   }
   /// It makes sense only where frames reach the drives.
@@ -153,10 +166,12 @@ class Command {
    private:
     Given<Request> given_;
   };
-  using Body = std::variant<std::unique_ptr<Erased>, Given<SetpointCommand>,
-                            Given<TrajectoryCommand>, Given<CallCommand>>;
+  using Body =
+      std::variant<std::unique_ptr<Erased>, Given<SetpointCommand>, Given<GroupSetpointsCommand>,
+                   Given<TrajectoryCommand>, Given<CallCommand>>;
 
   static Body bodyOf(Given<SetpointCommand> given) { return given; }
+  static Body bodyOf(Given<GroupSetpointsCommand> given) { return given; }
   static Body bodyOf(Given<TrajectoryCommand> given) { return given; }
   static Body bodyOf(Given<CallCommand> given) { return given; }
   template <typename Request>

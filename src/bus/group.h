@@ -26,6 +26,8 @@ class Group {
   Group(config::GroupConfig config, std::vector<Joint*> joints, Duration cycle);
 
   const config::GroupConfig& config() const { return config_; }
+  /// Those of its configuration, in that order.
+  const std::vector<Joint*>& joints() const { return joints_; }
 
   /// Checks a trajectory and takes it over; without points, stops. On an error nothing changes.
   TrajectoryOutcome start(const TrajectoryCommand& command, Time now);

@@ -52,6 +52,13 @@ class Joint {
 
   /// Its set-point of this cycle, rad or m. @return false: it is refused, and nothing changes
   [[nodiscard]] bool give(double position) { return unit_->axis.setTarget(position); }
+  /// See drive::Axis.
+  std::string commandRefusal(double value) const { return axis().commandRefusal(value); }
+  Result<void> command(double value, Time at) { return unit_->axis.command(value, at); }
+  /// What its set-points are in the mode that it is in; nullptr: that is unknown
+  const drive::ModeSpec* mode() const { return axis().state().mode; }
+  /// Older than that a command is not followed any more.
+  Duration commandTimeout() const { return axis().config().command_timeout; }
   /// Brings it to rest. @param over not harder than that takes; zero: as hard as it may be
   void stop(Duration over = Duration::zero()) { unit_->axis.stopSetPoint(over); }
   /// A group gives its set-points from now on; nullptr: none any more.

@@ -11,15 +11,23 @@ constexpr Duration kRefusalInterval = std::chrono::seconds(1);
 
 }  // namespace
 
-ReplyLog::ReplyLog(std::size_t axes) : entries_(kCapacity) {
+ReplyLog::ReplyLog(std::size_t axes, std::size_t groups) : entries_(kCapacity) {
   for (std::size_t i = 0; i < axes; ++i) refusals_.emplace_back(kRefusalInterval);
+  for (std::size_t i = 0; i < groups; ++i) group_refusals_.emplace_back(kRefusalInterval);
 }
 
-Reply<> ReplyLog::toSetpoint(std::size_t axis) {
-  return [this, axis](const Answer& answer) {
-    if (answer.success || !refusals_[axis].permit(realNow())) return;
-    add(Level::warning, answer.message);
+/// Not larger than what a reply holds without memory.
+Reply<> ReplyLog::toStream(ReplyLog& log, Throttle& refusals) {
+  return [&log, &refusals](const Answer& answer) {
+    if (answer.success || !refusals.permit(realNow())) return;
+    log.add(Level::warning, answer.message);
   };
+}
+
+Reply<> ReplyLog::toSetpoint(std::size_t axis) { return toStream(*this, refusals_[axis]); }
+
+Reply<> ReplyLog::toGroupSetpoints(std::size_t group) {
+  return toStream(*this, group_refusals_[group]);
 }
 
 Reply<TrajectoryAnswer> ReplyLog::toTrajectory() {

@@ -40,12 +40,14 @@ class ReplyLog {
     FixedText<512> text;
   };
 
-  /// @param axes how many there are.
-  explicit ReplyLog(std::size_t axes);
+  /// @param axes, groups how many there are.
+  explicit ReplyLog(std::size_t axes, std::size_t groups = 0);
 
   /// For a set-point of an axis: refusals are warnings, at most one per second of each axis, so
   /// that a refused stream does not flood the log. The log must outlive the reply.
   Reply<> toSetpoint(std::size_t axis);
+  /// The same for set-points of a group.
+  Reply<> toGroupSetpoints(std::size_t group);
   /// For a trajectory: refusals are errors, points that had passed a warning. The log must outlive
   /// the reply.
   Reply<TrajectoryAnswer> toTrajectory();
@@ -56,10 +58,12 @@ class ReplyLog {
   std::uint64_t lost() const { return lost_.load(); }
 
  private:
+  static Reply<> toStream(ReplyLog& log, Throttle& refusals);
   void add(Level level, const std::string& text);
 
   MpscQueue<Entry> entries_;
-  std::deque<Throttle> refusals_;  // of each axis
+  std::deque<Throttle> refusals_;        // of each axis
+  std::deque<Throttle> group_refusals_;  // of each group
   std::atomic<std::uint64_t> lost_{0};
 };
 

@@ -203,6 +203,9 @@ void readAxis(const std::string& name, const yaml::Value& value, AxisReading& re
   if (const auto end = section.get("quick_stop")) {
     axis.quick_stop_holds = end->oneOf({"disable", "hold"}).value_or(0) == 1;
   }
+  if (const auto moving = section.get("set_mode_in_motion")) {
+    axis.set_mode_stops = moving->oneOf({"refuse", "stop"}).value_or(0) == 1;
+  }
   readSections(section, draft, robot);
   readWithProfile(section, axis);
   if (axis.profile && axis.mode.empty()) {

@@ -45,6 +45,10 @@ CommandTopics::CommandTopics(ros::NodeHandle& private_node, bus::BusRunner& runn
     groups_.push_back(name);
     const boost::function<void(const trajectory_msgs::JointTrajectory&)> callback =
         [this, i](const trajectory_msgs::JointTrajectory& message) { onTrajectory(i, message); };
+    const boost::function<void(const std_msgs::Float64MultiArray&)> stream =
+        [this, i](const std_msgs::Float64MultiArray& message) { onSetpoints(i, message); };
+    subscribers_.push_back(private_node.subscribe<const std_msgs::Float64MultiArray&>(
+        name + "/commands", 1, stream, ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));
     subscribers_.push_back(private_node.subscribe<const trajectory_msgs::JointTrajectory&>(
         name + "/command", 1, callback));
     result_pubs_.push_back(private_node.advertise<control_msgs::FollowJointTrajectoryResult>(
@@ -53,7 +57,13 @@ CommandTopics::CommandTopics(ros::NodeHandle& private_node, bus::BusRunner& runn
 }
 
 void CommandTopics::onSetpoint(std::size_t axis, const std_msgs::Float64& message) {
-  runner_.post(bus::Command(bus::SetpointCommand{axis, message.data}, replies_.toSetpoint(axis)));
+  runner_.post(bus::Command(bus::SetpointCommand{axis, message.data, runner_.time().now()},
+                            replies_.toSetpoint(axis)));
+}
+
+void CommandTopics::onSetpoints(std::size_t group, const std_msgs::Float64MultiArray& message) {
+  runner_.post(bus::Command(bus::GroupSetpointsCommand{group, message.data, runner_.time().now()},
+                            replies_.toGroupSetpoints(group)));
 }
 
 void CommandTopics::onTrajectory(std::size_t group,

@@ -5,6 +5,7 @@
 #include <ros/publisher.h>
 #include <ros/subscriber.h>
 #include <std_msgs/Float64.h>
+#include <std_msgs/Float64MultiArray.h>
 #include <trajectory_msgs/JointTrajectory.h>
 
 #include <cstddef>
@@ -21,8 +22,8 @@
 
 namespace cia402::ros_node {
 
-/// Subscribes ~<axis>/command and ~<group>/command. What is refused is told in the log; what became
-/// of a trajectory also on ~<group>/command_result, for programs.
+/// Subscribes ~<axis>/command, ~<group>/commands and ~<group>/command. What is refused is told in
+/// the log; what became of a trajectory also on ~<group>/command_result, for programs.
 class CommandTopics {
  public:
   /// @param replies where refusals go. @param wake called where update() has something to do; any
@@ -42,6 +43,7 @@ class CommandTopics {
   };
 
   void onSetpoint(std::size_t axis, const std_msgs::Float64& message);
+  void onSetpoints(std::size_t group, const std_msgs::Float64MultiArray& message);
   void onTrajectory(std::size_t group, const trajectory_msgs::JointTrajectory& message);
   void add(std::size_t group, motion::TrajectoryErrorCode code, const std::string& text);
 

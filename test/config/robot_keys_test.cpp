@@ -41,6 +41,7 @@ axes:
     mode: pv
     command_timeout: 0.75
     command_timeout_action: coast
+    set_mode_in_motion: stop
     homing: {method: 17, search_velocity: 0.03, zero_velocity: 0.01, acceleration: 0.6,
              offset: -0.25, timeout: 12.0, required: false, order: -4}
     identity: {vendor_id: 11, product_code: 12, revision: 13, serial: 14}
@@ -116,6 +117,7 @@ TEST_F(RobotKeys, OfAnAxis) {
   EXPECT_EQ(slide.limits.effort, 40.0);
   EXPECT_EQ(slide.mode, "profile_velocity");
   EXPECT_EQ(slide.command_timeout, milliseconds(750));
+  EXPECT_TRUE(slide.set_mode_stops);
   EXPECT_FALSE(slide.brake_after_effort);
   EXPECT_EQ(slide.standstill_velocity, 0.002) << "m/s, as it is prismatic";
   EXPECT_EQ(device.vendor_id, 11U);
@@ -129,6 +131,7 @@ TEST_F(RobotKeys, OfAnAxis) {
   EXPECT_EQ(turn.geometry.direction, 1);
   EXPECT_EQ(turn.mode, "cyclic_position");
   EXPECT_EQ(turn.command_timeout, milliseconds(200));
+  EXPECT_FALSE(turn.set_mode_stops);
   EXPECT_TRUE(turn.brake_after_effort);
   EXPECT_EQ(turn.standstill_velocity, 0.01);
   const canopen::DeviceConfig& other = robot.deviceOf(turn);
@@ -282,6 +285,8 @@ TEST(RobotMistakes, AreToldWithWhatToDo) {
        "axes/shoulder/command_timeout: must be greater than 0"},
       {"node_id: 1,", "node_id: 1, command_timeout_action: stop,",
        "axes/shoulder/command_timeout_action: unknown word `stop`"},
+      {"node_id: 1,", "node_id: 1, set_mode_in_motion: coast,",
+       "axes/shoulder/set_mode_in_motion: unknown word `coast`"},
       {"node_id: 1,",
        "node_id: 1, modes: [pv], pdos: {rpdo1: [controlword, target_position], tpdo1: [statusword, "
        "position_actual]},",

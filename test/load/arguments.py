@@ -7,7 +7,7 @@ from actionlib_msgs.msg import GoalID
 from cia402_driver.msg import HomeActionGoal, HomeGoal, LssIdentity
 from control_msgs.msg import (FollowJointTrajectoryActionGoal, FollowJointTrajectoryGoal,
                               JointTolerance)
-from std_msgs.msg import Float64
+from std_msgs.msg import Float64, Float64MultiArray
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 NAN, INF = float("nan"), float("inf")
@@ -80,6 +80,15 @@ def set_point(chance):
     return Float64(chance.choice(NUMBERS))
 
 
+def set_points(chance):
+    """For all joints, mostly; with any layout, which nobody looks at."""
+    count = chance.choice([len(JOINTS)] * 4 + [0, 1, len(JOINTS) + 1, 1000])
+    message = Float64MultiArray(data=[chance.choice([0.1, -0.2] * 8 + NUMBERS)
+                                      for _ in range(count)])
+    message.layout.data_offset = chance.choice([0, 0, 7])
+    return message
+
+
 def trajectory(chance):
     message = JointTrajectory(joint_names=chance.choice(
         [JOINTS, JOINTS[::-1], JOINTS[:2], JOINTS[:3] + ["neck"], []]))
@@ -122,5 +131,5 @@ def home_goal(chance):
         for _ in range(chance.choice([0, 0, len(axes), 3]))]))
 
 
-TOPICS = {Float64: set_point, JointTrajectory: trajectory,
+TOPICS = {Float64: set_point, Float64MultiArray: set_points, JointTrajectory: trajectory,
           FollowJointTrajectoryActionGoal: action_goal, HomeActionGoal: home_goal, GoalID: goal_id}

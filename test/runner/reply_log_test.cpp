@@ -49,6 +49,17 @@ TEST(ReplyLog, HoldsBackTheRefusedStreamOfOneAxisAndNotThatOfAnother) {
   EXPECT_EQ(log.lost(), 0u) << "what is held back is not lost";
 }
 
+TEST(ReplyLog, HoldsBackTheRefusedStreamOfOneGroupAndNotThatOfItsAxis) {
+  ReplyLog log(1, 2);
+  for (int i = 0; i < 5; ++i) {
+    log.toGroupSetpoints(0)(answerOf(false, "arm: refused"));
+    log.toGroupSetpoints(1)(answerOf(false, "head: refused"));
+    log.toSetpoint(0)(answerOf(false, "left: refused"));
+  }
+  EXPECT_THAT(texts(log, ReplyLog::Level::warning),
+              ElementsAre("arm: refused", "head: refused", "left: refused"));
+}
+
 TEST(ReplyLog, SaysNothingOfASetpointThatIsTaken) {
   ReplyLog log(1);
   log.toSetpoint(0)(answerOf(true, "taken"));

@@ -31,9 +31,21 @@ class Continuous : public testing::TestWithParam<int> {
     ASSERT_TRUE(scene->procedure(ProcedureKind::enable).success);
     last_ = scene->state("table").position;
     first_ = last_ - scene->position("table");
+    overflows = 0;
+    counted_ = counts();
+    speed_ = scene->velocity("table");
     scene->watch([this] { look(); });
   }
+  std::int32_t counts() {  // 6064h, as the drive has it
+    return static_cast<std::int32_t>(scene->drive("table").dictionary().find({0x6064, 0})->number);
+  }
   void look() {
+    const std::int32_t counted = counts();
+    if (std::abs(double(counted) - double(counted_)) > 2147483648.0) ++overflows;
+    counted_ = counted;
+    const double speed = scene->velocity("table");
+    hardest = std::max(hardest, std::abs(speed - speed_) / 0.001);
+    speed_ = speed;
     const double told = scene->state("table").position;
     largest_step = std::max(largest_step, std::abs(told - last_));
     off = std::max(off, std::abs(told - first_ - scene->position("table")));
@@ -43,13 +55,18 @@ class Continuous : public testing::TestWithParam<int> {
 
   std::optional<Scene> scene;
   double largest_step = 0.0, off = 0.0;  // of what is told: between looks; from the truth
+  double hardest = 0.0;                  // of the motor, rad/s^2
+  int overflows = 0;                     // of the drive's counter
 
  private:
-  double last_ = 0.0, first_ = 0.0;
+  double last_ = 0.0, first_ = 0.0, speed_ = 0.0;
+  std::int32_t counted_ = 0;
 };
 
 // Feedback is at most two cycles old, and one cycle more for the wire.
 constexpr double kStep = 1.5 * 0.004 * 1.05, kOld = 1.5 * 0.012;
+// 3 rad/s^2 in steps of a cycle, each of which the motor may have done within a millisecond.
+constexpr double kHardest = 3.0 * 0.004 / 0.001;
 
 TEST_P(Continuous, AStreamOfPositionsCrossesTheWrapThereAndBack) {
   begin();
@@ -75,23 +92,49 @@ TEST_P(Continuous, ATrajectoryCrossesTheWrapThereAndBack) {
   EXPECT_LE(off, kOld);
 }
 
-TEST_P(Continuous, AVelocityCrossesTheWrapAgainAndAgain) {
-  begin(", modes: [cyclic_velocity]");
-  ASSERT_TRUE(scene->procedure(ProcedureKind::set_mode, "table", "cyclic_velocity").success);
-  scene->stream("table", sign() * 1.4, 20s);
-  EXPECT_GT(std::abs(scene->state("table").position), 6.0 + 20.0);
-  scene->run(1s);
+TEST_P(Continuous, AStreamOfPositionsCrossesThreeOverflowsThereAndBack) {
+  begin();
+  for (const double goal : {36.0, 6.0}) {  // it overflows at 6.28, 18.85 and 31.42 rad
+    overflows = 0;
+    ASSERT_EQ(scene->setpoint("table", sign() * goal), "");
+    scene->run(24s);
+    EXPECT_EQ(overflows, 3);
+    EXPECT_NEAR(scene->position("table"), sign() * goal, 1e-3) << scene->told();
+    EXPECT_NEAR(scene->state("table").position, sign() * goal, 1e-3);
+  }
   EXPECT_LE(largest_step, kStep);
   EXPECT_LE(off, kOld);
-  // The mode is changed far from where the drive says that it stands: nothing moves.
-  scene->forget();
-  ASSERT_TRUE(scene->procedure(ProcedureKind::set_mode, "table", "cyclic_position").success);
-  scene->run(200ms);
-  EXPECT_LT(scene->seen("table").travel(), 1e-4);
-  const double goal = scene->state("table").position - sign() * 1.0;
-  ASSERT_EQ(scene->setpoint("table", goal), "");
-  scene->run(3s);
-  EXPECT_NEAR(scene->state("table").position, goal, 1e-3);
+  EXPECT_LE(hardest, kHardest);
+}
+
+TEST_P(Continuous, AVelocityCrossesThreeOverflowsThereAndBack) {
+  for (const char* const mode : {"cyclic_velocity", "profile_velocity"}) {
+    SCOPED_TRACE(mode);
+    begin(std::string(", modes: [") + mode + "]");
+    ASSERT_TRUE(scene->procedure(ProcedureKind::set_mode, "table", mode).success);
+    scene->stream("table", sign() * 1.4, 20s);
+    EXPECT_EQ(overflows, 3);
+    EXPECT_GT(std::abs(scene->state("table").position), 6.0 + 20.0);
+    scene->run(1s);
+    // The mode is changed far from where the drive says that it stands: nothing moves.
+    scene->forget();
+    ASSERT_TRUE(scene->procedure(ProcedureKind::set_mode, "table", "cyclic_position").success);
+    scene->run(200ms);
+    EXPECT_LT(scene->seen("table").travel(), 1e-4);
+    const double goal = scene->state("table").position - sign() * 1.0;
+    ASSERT_EQ(scene->setpoint("table", goal), "");
+    scene->run(3s);
+    EXPECT_NEAR(scene->state("table").position, goal, 1e-3);
+    ASSERT_TRUE(scene->procedure(ProcedureKind::set_mode, "table", mode).success);
+    overflows = 0;
+    scene->stream("table", -sign() * 1.4, 20s);
+    scene->run(1s);
+    EXPECT_EQ(overflows, 3);
+    EXPECT_LE(largest_step, kStep);
+    EXPECT_LE(off, kOld);
+    EXPECT_LE(hardest, kHardest);
+    EXPECT_LE(scene->seen("table").fastest, 1.5 * 1.01);
+  }
 }
 
 TEST_P(Continuous, AGoalOfTheDriveCrossesTheWrapThereAndBack) {

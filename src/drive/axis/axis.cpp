@@ -225,6 +225,13 @@ Result<void> Axis::command(double value, Time now) {
   return impl_->core.generator().command(value, now);
 }
 
+std::string Axis::commandRefusal(double value) const {
+  std::string refusal = motionRefusal();
+  if (!refusal.empty()) return refusal;
+  refusal = impl_->core.generator().commandRefusal(value);
+  return refusal.empty() ? refusal : jointName(config()) + ": " + refusal;
+}
+
 void Axis::follow(const std::string* who) { impl_->core.generator().commands().follow(who); }
 const std::string* Axis::leader() const { return impl_->core.generator().commands().leader(); }
 bool Axis::late() const { return impl_->core.generator().late(); }

@@ -191,6 +191,9 @@ class Axis {
   /// ends.
   /// @return why it is refused, in words
   Result<void> command(double value, Time now);
+  /// Why command() would refuse that value now, or lead the joint elsewhere as it is beyond a
+  /// limit, in words; empty if it is followed as it is.
+  std::string commandRefusal(double value) const;
   /// Set-point of the active mode for this cycle, in joint units (rad, m, per s, N m, N). Only
   /// taken while ready_for_motion. What moves must be given anew in every cycle: it is brought to
   /// rest where it is not (SetPoint). @return false (nothing changes) for NaN, out of limits or not

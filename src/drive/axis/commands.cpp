@@ -8,25 +8,49 @@
 
 namespace cia402::drive {
 
-Result<void> Commands::take(double value, ModeControl& mode, const SetPoint& sent, Time now) {
-  const std::string refused = jointName(axis_.config) + ": set-point refused: ";
+std::string Commands::refusal(double value, const ModeControl& mode) const {
   if (leader_ != nullptr) {
-    return Error{refused + "the axis follows a trajectory of group " + *leader_ +
-                 "; stop that first with an empty trajectory"};
+    return "the axis follows a trajectory of group " + *leader_ +
+           "; stop that first with an empty trajectory";
   }
-  if (!std::isfinite(value)) return Error{refused + "it is not a finite number"};
+  if (!std::isfinite(value)) return "it is not a finite number";
   if (mode.kind() == SetPointKind::none) {
-    return Error{refused + "mode " + mode.spec().name + " takes none; set_mode another first"};
+    return "mode " + mode.spec().name + " takes none; set_mode another first";
   }
   std::uint64_t raw = 0;
   if (mode.kind() == SetPointKind::torque && !mode.encode(value, raw)) {
-    return Error{refused + number(value) + " does not fit " + mode.targetText()};
+    return number(value) + " does not fit " + mode.targetText();
   }
+  if (stream_.command && !mode.takesMore()) {
+    return std::to_string(WaitingSetPoints::kMost) +
+           " wait for those before already; give it again once some are reached";
+  }
+  return {};
+}
+
+std::string Commands::excess(double value, const ModeControl& mode) const {
+  const motion::JointLimits& limits = axis_.config.limits;
+  const bool velocity = mode.kind() == SetPointKind::velocity;
+  if (!mode.positions()) {
+    const std::optional<double>& most = velocity ? limits.velocity : limits.effort;
+    std::uint64_t raw = 0;
+    if (most && std::fabs(value) > *most) {
+      return number(value) + " is beyond its limit of " + (velocity ? "velocity, " : "effort, ") +
+             number(*most);
+    }
+    return mode.encode(value, raw) ? std::string()
+                                   : number(value) + " does not fit " + mode.targetText();
+  }
+  if (mode.spec().handover.relative() || mode.accepts(value)) return {};
+  return "position " + number(value) + " is beyond its limits" +
+         (limits.lower ? ", " + number(*limits.lower) + " below" : "") +
+         (limits.upper ? ", " + number(*limits.upper) + " above" : "");
+}
+
+Result<void> Commands::take(double value, ModeControl& mode, const SetPoint& sent, Time now) {
+  const std::string why = refusal(value, mode);
+  if (!why.empty()) return Error{jointName(axis_.config) + ": set-point refused: " + why};
   if (!stream_.command) resume(mode, sent, stream_.clock);
-  if (!mode.takesMore()) {
-    return Error{refused + std::to_string(WaitingSetPoints::kMost) +
-                 " wait for those before already; give it again once some are reached"};
-  }
   stream_.command = value;
   stream_.commanded = now;
   stream_.dried_up = false;

@@ -17,6 +17,11 @@ class Commands {
   /// Takes a streamed command in joint units for `mode`. @pre the axis takes set-points
   /// @return why not, in words
   Result<void> take(double value, ModeControl& mode, const SetPoint& sent, Time now);
+  /// Why take() would refuse that now, in words; empty if it would not.
+  std::string refusal(double value, const ModeControl& mode) const;
+  /// Why the joint would be led elsewhere than to `value`: it is beyond a limit; empty: it is not.
+  /// Of distances nothing is said. @param value finite
+  std::string excess(double value, const ModeControl& mode) const;
   /// One cycle of the stream. @return whether it leads the axis, by what lead() gives
   bool leads(const SetPoint& sent) {
     stream_.clock += axis_.config.cycle;

@@ -58,6 +58,7 @@ struct AxisConfig {
   /// Velocities and efforts are streamed to a drive that does not notice the driver's death, too.
   bool unwatched_streams = false;
   Disabling disabling;            ///< the profile's, where the axis does not say another one
+  bool set_mode_stops = false;    ///< in motion it stops the axis first; else it is refused
   bool quick_stop_holds = false;  ///< ends in quick stop active, under power; else disabled
   /// A statusword that no state of CiA 402 shows is put up with for so long.
   Duration undecodable_timeout{std::chrono::milliseconds(100)};

@@ -159,7 +159,9 @@ Duration timeLimit(ProcedureKind kind, const AxisConfig& config,
     case ProcedureKind::halt:
       return kMargin + stop;
     case ProcedureKind::set_mode:
-      return kMargin + kStanding + steps.change();
+      return kMargin + kStanding + steps.change() +
+             (config.set_mode_stops ? stop + std::max(steps.change(), steps.enable())
+                                    : Duration(0));
     case ProcedureKind::set_position:
       return kMargin + steps.declare();
     case ProcedureKind::save_parameters:

@@ -1,4 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include <memory>
+#include <utility>
+
 #include "common/text.h"
 #include "drive/procedures/procedure.h"
 #include "drive/procedures/steps/switch.h"
@@ -7,32 +10,105 @@
 namespace cia402::drive {
 namespace {
 
-/// Switches the mode of operation, disabled or enabled at standstill.
+/// Switches the mode of operation, disabled or enabled at standstill. Where the axis asks for it
+/// one that moves is halted before by what its mode has for that, and released from the halt in the
+/// new mode; before, where the halt is in the way of the mode.
 class SetMode : public Procedure {
  public:
   SetMode(const ModeChannel& mode, const DriveProfile& profile)
       : mode_(&mode), step_(mode, profile) {}
 
   Outcome advance(const Context& context) override {
-    AxisCore& axis = context.axis;
-    if (!begun_) {
-      begun_ = true;
-      started_ = context.now;
+    if (phase_ == Phase::begin) begin(context);
+    switch (phase_) {
+      case Phase::begin:
+        break;
+      case Phase::stopping:
+        return stop(context);
+      case Phase::releasing:
+        return enable(context);
+      case Phase::switching:
+        return change(context);
+      case Phase::enabling: {
+        const Outcome outcome = enable(context);
+        return outcome.isDone() ? Outcome::done(text(context)) : outcome;
+      }
     }
-    const Outcome ready = waiting_.advance(context);
-    if (!ready.isDone()) return ready;
-    const Outcome outcome = step_.advance(context);
-    if (!outcome.isDone()) return outcome;
-    return Outcome::done(jointName(axis.config()) + ": mode " + mode_->spec->name + " after " +
-                         seconds(context.now - started_) +
-                         (step_.wasDisabled() ? ", disabled meanwhile as the drive demands" : ""));
+    return Outcome::running();
   }
 
  private:
+  enum class Phase { begin, stopping, releasing, switching, enabling };
+
+  void begin(const Context& context) {
+    AxisCore& axis = context.axis;
+    started_ = context.now;
+    phase_ = Phase::switching;
+    if (!axis.config().set_mode_stops || axis.powerOff() || !axis.generator().moving()) return;
+    goes_on_ = axis.inOperation() && !axis.state().halted;
+    phase_ = Phase::stopping;
+  }
+
+  /// @return done once `make`, made when it is due, is
+  template <typename Make>
+  Outcome run(const Context& context, Make make) {
+    if (!under_way_) {
+      auto made = make(context.axis);
+      if (!made) return Outcome::failed(made.error().message);
+      under_way_ = std::move(made).value();
+    }
+    Outcome outcome = under_way_->step(context);
+    if (outcome.isDone()) under_way_.reset();
+    return outcome;
+  }
+
+  Outcome stop(const Context& context) {
+    const Outcome outcome = run(context, makeHalt);
+    if (!outcome.isDone()) return outcome;
+    const AxisCore& axis = context.axis;
+    stopped_ = true;
+    const bool in_the_way = axis.state().halted && !axis.profile().mode_change.while_halted;
+    phase_ = goes_on_ && in_the_way ? Phase::releasing : Phase::switching;
+    return Outcome::running();
+  }
+
+  Outcome enable(const Context& context) {
+    const Outcome outcome = run(context, makeEnable);
+    if (!outcome.isDone()) return outcome;
+    if (phase_ == Phase::enabling) return outcome;
+    phase_ = Phase::switching;
+    return Outcome::running();
+  }
+
+  Outcome change(const Context& context) {
+    const Outcome ready = waiting_.advance(context);
+    if (!ready.isDone()) return ready;
+    const AxisCore& axis = context.axis;
+    Outcome outcome = step_.advance(context);
+    if (outcome.isFailed() && goes_on_ && axis.state().halted) {
+      outcome.message += "; it was stopped for that and stays halted, enable releases the halt";
+    }
+    if (!outcome.isDone()) return outcome;
+    if (!goes_on_ || (axis.inOperation() && !axis.state().halted)) {
+      return Outcome::done(text(context));
+    }
+    phase_ = Phase::enabling;
+    return Outcome::running();
+  }
+
+  std::string text(const Context& context) const {
+    return jointName(context.axis.config()) + ": mode " + mode_->spec->name + " after " +
+           seconds(context.now - started_) + (stopped_ ? ", it was stopped for that" : "") +
+           (step_.wasDisabled() ? ", disabled meanwhile as the drive demands" : "");
+  }
+
   const ModeChannel* mode_;
   SwitchStep step_;
   ReadyToSwitchStep waiting_;
-  bool begun_ = false;
+  Phase phase_ = Phase::begin;
+  std::unique_ptr<Procedure> under_way_;  ///< halt or enable
+  bool stopped_ = false;
+  bool goes_on_ = false;  ///< it was taking commands before it was stopped
   Time started_{};
 };
 
@@ -73,9 +149,11 @@ Result<std::unique_ptr<Procedure>> makeSetMode(AxisCore& axis, const std::string
   if (!axis.state().feedback_valid) {
     return Error{axis.who() + ": cannot set the mode: no fresh statusword and position"};
   }
-  if (!axis.powerOff() && axis.generator().moving()) {
+  const bool moves = !axis.powerOff() && axis.generator().moving();
+  if (moves && !axis.config().set_mode_stops) {
     return Error{axis.who() + ": mode " + name + " is refused in motion (velocity " +
-                 number(axis.state().velocity) + "); stop the axis first"};
+                 number(axis.state().velocity) +
+                 "); stop the axis first (set_mode_in_motion: stop does it)"};
   }
   return std::unique_ptr<Procedure>(std::make_unique<SetMode>(*channel, axis.profile()));
 }

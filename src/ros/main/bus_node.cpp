@@ -145,7 +145,7 @@ void serve(ros::NodeHandle& node, ros::NodeHandle& private_node, const LoadedRob
   bus::BusRunner::Options options;
   options.priority = loaded.options.realtime_priority;
   if (simulation != nullptr) options.time = bus::BusTime::Kind::simulated;
-  bus::ReplyLog replies(loaded.robot.axes.size());
+  bus::ReplyLog replies(loaded.robot.axes.size(), loaded.robot.groups.size());
   bus::BusRunner runner(loaded.robot, loaded.master, std::move(open.interface), options);
   ROS_INFO_STREAM(runner.recordings().describe());
   ros_node::EventLog events(private_node, runner, replies, loaded.robot);
