@@ -94,6 +94,7 @@ void TrajectoryCommand::begin(AxisCycle& cycle, const Reply<Answer>& reply, Time
     answer.message = outcome.message;
     answer.code = outcome.code;
     answer.passed_points = outcome.passed_points;
+    answer.slowed = outcome.slowed;
     return give(reply, answer);
   }
   refuse(reply, "there is no group \"" + group + "\"");

@@ -64,6 +64,7 @@ struct TrajectoryAnswer : Answer {
   /// Of a refused one; that of a command that no group got is the first of them.
   motion::TrajectoryErrorCode code = motion::TrajectoryErrorCode::invalid_goal;
   std::size_t passed_points = 0;  ///< see TrajectoryOutcome
+  bool slowed = false;            ///< likewise
 };
 
 /// How closely a trajectory is to be followed, other than the group's configuration has it.
@@ -81,6 +82,8 @@ struct TrajectoryCommand {
   std::vector<motion::TrajectoryPoint> points;
   std::optional<Time> start_time;
   TrajectoryTolerances tolerances;
+  /// As topics have it: it may end in motion, and a single point is approached, however near it is.
+  bool streamed = false;
   std::uint64_t id = 0;   ///< for CancelCommand; 0: nobody cancels it
   TrajectoryEnded ended;  ///< told how it ended, if it was accepted
 

@@ -16,10 +16,14 @@ TrajectoryOutcome refused(TrajectoryErrorCode code, const std::string& why) {
   return {code, why, TrajectoryEnd::refused, {}};
 }
 
+// How long a trajectory that ends in motion goes on, for the next may be late a little.
+constexpr double kCoast = 0.02;  // s
+constexpr double kCoastCycles = 3.0;
+
 }  // namespace
 
 Group::Group(config::GroupConfig config, std::vector<Joint*> joints, Duration cycle)
-    : config_(std::move(config)), joints_(std::move(joints)), clock_(cycle) {
+    : config_(std::move(config)), joints_(std::move(joints)), cycle_(cycle), clock_(cycle) {
   for (const Joint* joint : joints_) descriptions_.push_back(joint->description());
 }
 
@@ -60,6 +64,17 @@ TrajectoryOrder Group::orderOf(const TrajectoryCommand& command) const {
   return order;
 }
 
+motion::TrajectoryRules Group::rulesOf(const TrajectoryCommand& command) const {
+  motion::TrajectoryRules rules;
+  rules.strict = config_.strict;
+  rules.margin = config_.acceleration_margin;
+  rules.longer_share = config_.lengthening;
+  rules.longer_s = command.tolerances.goal_time.value_or(config_.goal_time);
+  rules.streamed = command.streamed;
+  rules.coast_s = std::max(kCoastCycles * toSeconds(cycle_), kCoast);
+  return rules;
+}
+
 TrajectoryOutcome Group::replaced() const {
   return {TrajectoryErrorCode::successful,
           config_.name + ": replaced by a newer trajectory",
@@ -98,8 +113,8 @@ TrajectoryOutcome Group::start(const TrajectoryCommand& command, Time now) {
   start.shortest_way = true;
   std::vector<motion::MotionState> from;
   for (const Joint* joint : joints) from.push_back(commandedAt(*joint, start.begin()));
-  auto trajectory =
-      motion::Trajectory::create(descriptions, from, reorder(command.points, places), start);
+  auto trajectory = motion::Trajectory::create(descriptions, from, reorder(command.points, places),
+                                               start, rulesOf(command));
   if (!trajectory) return refused(trajectory.error().code, trajectory.error().message);
   TrajectoryOutcome accepted{TrajectoryErrorCode::successful,
                              config_.name + ": trajectory accepted"};
@@ -109,6 +124,10 @@ TrajectoryOutcome Group::start(const TrajectoryCommand& command, Time now) {
                         std::to_string(command.points.size()) +
                         " points, whose time has passed: it was to begin " +
                         motion::formatNumber(toSeconds(now - *command.start_time)) + " s ago";
+  }
+  if (trajectory->delay() > 0.0) {
+    accepted.slowed = !command.streamed || command.points.size() > 1;  // a stream is not told of
+    append(accepted.message, slowedText(*trajectory));
   }
   add({config_, orderOf(command), joints, std::move(trajectory).value()}, now);
   for (Joint* joint : joints) joint->follow(&config_.name);

@@ -52,6 +52,7 @@ class Group {
   /// Where a joint is when the clock shows `time`, if nothing new begins before.
   motion::MotionState commandedAt(const Joint& joint, Time time) const;
   TrajectoryOrder orderOf(const TrajectoryCommand& command) const;
+  motion::TrajectoryRules rulesOf(const TrajectoryCommand& command) const;
   TrajectoryOutcome startStop(const TrajectoryCommand& command, const std::vector<Joint*>& joints);
   TrajectoryOutcome replaced() const;
   void add(TrajectoryRun run, Time now);
@@ -71,6 +72,7 @@ class Group {
   config::GroupConfig config_;
   std::vector<Joint*> joints_;
   std::vector<motion::Joint> descriptions_;  // of them
+  Duration cycle_;
   MotionClock clock_;
   bool starts_ = false;                   // no cycle has passed since it was set
   std::vector<TrajectoryRun> runs_;       // in the order in which they were accepted

@@ -32,7 +32,8 @@ Reply<> ReplyLog::toGroupSetpoints(std::size_t group) {
 
 Reply<TrajectoryAnswer> ReplyLog::toTrajectory() {
   return [this](const TrajectoryAnswer& answer) {
-    const Level accepted = answer.passed_points > 0 ? Level::warning : Level::debug;
+    const bool differs = answer.passed_points > 0 || answer.slowed;
+    const Level accepted = differs ? Level::warning : Level::debug;
     add(answer.success ? accepted : Level::error, answer.message);
   };
 }

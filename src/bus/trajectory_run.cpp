@@ -24,6 +24,11 @@ std::string distance(const Joint& joint, double way) {
 
 }  // namespace
 
+std::string slowedText(const motion::Trajectory& trajectory) {
+  return "slowed down, it ends " + motion::formatNumber(trajectory.delay()) +
+         " s later than asked, for " + trajectory.excess();
+}
+
 TrajectoryRun::TrajectoryRun(const config::GroupConfig& group, TrajectoryOrder order,
                              const std::vector<Joint*>& joints,
                              std::optional<motion::Trajectory> trajectory)
@@ -270,6 +275,8 @@ std::optional<TrajectoryOutcome> TrajectoryRun::arrival(Time time) {
       reached.off = error;
     }
   }
+  if (trajectory_->endsInMotion()) append(reached.message, "brought to rest behind its last point");
+  if (trajectory_->delay() > 0.0) append(reached.message, slowedText(*trajectory_));
   if (!away.empty()) {
     reached.message = group_->name + ": the trajectory is over, but " + away +
                       " from its goal; no goal tolerance is configured for it";

@@ -17,6 +17,9 @@
 
 namespace cia402::bus {
 
+/// How much later than asked a trajectory ends, and why, in words.
+std::string slowedText(const motion::Trajectory& trajectory);
+
 /// One trajectory and those joints of a group that follow it, from when it was accepted until they
 /// stand. A later one may take some of them over, or all.
 class TrajectoryRun {

@@ -8,6 +8,8 @@
 namespace cia402::config {
 namespace {
 
+constexpr yaml::Range kShare{0.0, 1.0, false};
+
 std::vector<std::string> readNames(yaml::Section& section, const std::string& key,
                                    const std::vector<std::string>& known, const char* what) {
   std::vector<std::string> names;
@@ -200,6 +202,9 @@ void readGroups(const yaml::Value& value, RobotConfig& robot) {
     section.read("stop_group_on_fault", group.stop_group_on_fault);
     section.read("allow_partial_joints_goal", group.allow_partial_joints_goal);
     section.read("stop_trajectory_duration", group.stop_trajectory_duration, yaml::kNotNegative);
+    section.read("strict", group.strict);
+    section.read("acceleration_margin", group.acceleration_margin, kShare);
+    section.read("lengthening", group.lengthening, yaml::kNotNegative);
     if (const auto constraints = section.get("constraints")) readConstraints(*constraints, group);
     section.finish();
     for (const std::string& joint : group.joints) {

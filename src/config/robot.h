@@ -50,6 +50,9 @@ struct GroupConfig {
   double goal_time = 0.4;                    ///< s
   double stopped_velocity_tolerance = 0.01;  ///< rad/s or m/s; 0: none
   double stop_trajectory_duration = 0.0;     ///< s that a stop takes at least; 0: as hard as may be
+  bool strict = false;  ///< what is beyond a limit on its way is refused, not slowed down
+  double acceleration_margin = 0.0;  ///< share by which limits of acceleration may be exceeded
+  double lengthening = 0.1;  ///< share by which a trajectory may take longer, beside goal_time
   std::map<std::string, JointTolerance> tolerances;
 };
 

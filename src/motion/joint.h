@@ -29,6 +29,7 @@ struct Joint {
   std::string name;
   JointLimits limits;
   JointUnit unit = JointUnit::radian;
+  double deceleration = 5.0;  ///< > 0, with which it is brought to rest without a limit, per s^2
 };
 
 /// Position, velocity and acceleration of one joint, in rad or m and s.

@@ -21,6 +21,11 @@ struct Range {
   const Extremum& largest() const { return -min.value > max.value ? min : max; }
 };
 
+/// Velocity and acceleration, per s and s².
+struct SplineRates {
+  double velocity, acceleration;
+};
+
 /// One joint's way between two points: a polynomial in time over [0, duration]. Kept in the
 /// normalised time t / duration, which stays well-conditioned from nanoseconds to hours. A value;
 /// nothing here allocates.
@@ -37,6 +42,12 @@ class SplineSegment {
   MotionState sample(double t_s) const;
   /// The position of that alone.
   double position(double t_s) const { return position_(share(t_s)); }
+
+  /// Velocity and acceleration of that alone.
+  SplineRates rates(double t_s) const {
+    const double x = share(t_s);
+    return {velocity_(x) / duration_s_, acceleration_(x) / (duration_s_ * duration_s_)};
+  }
 
   double duration() const { return duration_s_; }
 

@@ -3,40 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
 #include "common/text.h"
-#include "trajectory_checks.h"
+#include "motion/trajectory_checks.h"
+#include "motion/trajectory_plan.h"
 
 namespace cia402::motion {
 
 namespace {
 
 constexpr double kTurn = 6.283185307179586;
-
-/// What a point asks of one joint; velocity and acceleration only where it carries them.
-struct Target {
-  MotionState state;
-  bool has_velocity, has_acceleration;
-};
-
-Target targetOf(const TrajectoryPoint& point, std::size_t joint, double shift) {
-  Target target{{point.positions[joint] + shift, 0, 0},
-                !point.velocities.empty(),
-                !point.accelerations.empty()};
-  if (target.has_velocity) target.state.velocity = point.velocities[joint];
-  if (target.has_acceleration) target.state.acceleration = point.accelerations[joint];
-  return target;
-}
-
-SplineSegment connect(const Target& from, const Target& to, double duration_s) {
-  if (from.has_acceleration && to.has_acceleration) {
-    return SplineSegment::quintic(from.state, to.state, duration_s);
-  }
-  if (from.has_velocity && to.has_velocity) {
-    return SplineSegment::cubic(from.state, to.state, duration_s);
-  }
-  return SplineSegment::linear(from.state.position, to.state.position, duration_s);
-}
 
 TrajectoryError allPassed(const std::vector<TrajectoryPoint>& points, Time base, Time begin) {
   const double last = toSeconds(points.back().time_from_start);
@@ -64,46 +42,34 @@ std::string quotedList(const std::vector<std::string>& names) {
 TrajectoryResult Trajectory::create(const std::vector<Joint>& joints,
                                     const std::vector<MotionState>& commanded,
                                     const std::vector<TrajectoryPoint>& points,
-                                    const TrajectoryStart& start) {
-  if (auto failure = checkShape(joints, commanded, points)) return *failure;
+                                    const TrajectoryStart& start, const TrajectoryRules& rules) {
+  if (auto failure = checkShape(joints, commanded, points, !rules.streamed)) return *failure;
   Trajectory result;
   result.joint_count_ = joints.size();
-  result.begin_ = start.begin();
+  result.begin_ = result.end_ = start.begin();
   for (const MotionState& state : commanded) result.origin_.push_back(state.position);
   result.goal_ = result.origin_;
   if (points.empty()) return result;
 
   const Time base = start.start_time.value_or(start.now);
-  if (auto failure = result.takePointsAhead(points, base)) return *failure;
+  std::vector<double> durations_s;
+  if (auto failure = result.takePointsAhead(points, base, durations_s)) return *failure;
   std::vector<double> shift(joints.size(), 0.0);
   const std::vector<double>& first = points[result.dropped_points_].positions;
   for (std::size_t j = 0; j < joints.size(); ++j) {
     if (!start.shortest_way || !joints[j].limits.continuous) continue;
     shift[j] = kTurn * std::round((commanded[j].position - first[j]) / kTurn);
   }
-  result.segments_.reserve(result.ends_.size() * joints.size());
-  std::vector<Target> from;
-  for (const MotionState& state : commanded) from.push_back({state, true, true});
-  Time begin = result.begin_;
-  for (std::size_t s = 0; s < result.ends_.size(); ++s) {
-    const std::size_t index = result.dropped_points_ + s;
-    const double duration_s = toSeconds(result.ends_[s] - begin);
-    for (std::size_t j = 0; j < joints.size(); ++j) {
-      const Target to = targetOf(points[index], j, shift[j]);
-      const SplineSegment segment = connect(from[j], to, duration_s);
-      const Place place{joints[j], index, s == 0, commanded[j].position, toSeconds(begin - base)};
-      if (auto failure = checkLimits(segment, place)) return *failure;
-      result.segments_.push_back(segment);
-      result.goal_[j] = to.state.position;
-      from[j] = to;
-    }
-    begin = result.ends_[s];
-  }
+  TrajectoryPlan plan({joints, commanded, points, result.dropped_points_, shift,
+                       toSeconds(result.begin_ - base), std::move(durations_s)},
+                      rules);
+  if (auto failure = plan.make()) return *failure;
+  result.take(plan);
   return result;
 }
 
 std::optional<TrajectoryError> Trajectory::takePointsAhead(
-    const std::vector<TrajectoryPoint>& points, Time base) {
+    const std::vector<TrajectoryPoint>& points, Time base, std::vector<double>& durations_s) {
   if (base > Time{} && points.back().time_from_start > kNever - base) {
     return TrajectoryError(TrajectoryErrorCode::invalid_goal,
                            "point " + std::to_string(points.size() - 1) +
@@ -111,20 +77,33 @@ std::optional<TrajectoryError> Trajectory::takePointsAhead(
   }
   for (const TrajectoryPoint& point : points) {
     const Time time = base + point.time_from_start;
-    if (time > begin_) ends_.push_back(time);
+    if (time <= begin_) continue;
+    durations_s.push_back(toSeconds(time - end_));
+    end_ = time;
   }
-  if (ends_.empty()) return allPassed(points, base, begin_);
-  dropped_points_ = points.size() - ends_.size();
+  if (durations_s.empty()) return allPassed(points, base, begin_);
+  dropped_points_ = points.size() - durations_s.size();
   return {};
 }
 
-std::size_t Trajectory::segmentAt(Time time) const {
-  return static_cast<std::size_t>(std::upper_bound(ends_.begin(), ends_.end(), time) -
-                                  ends_.begin());
+void Trajectory::take(const TrajectoryPlan& plan) {
+  segments_ = plan.segments();
+  goal_ = plan.goal();
+  law_ = plan.law();
+  delay_s_ = plan.delay();
+  excess_ = plan.excess();
+  ends_in_motion_ = plan.endsInMotion();
+  double along_s = 0.0;
+  for (double duration_s : plan.durations()) ends_s_.push_back(along_s += duration_s);
+  const bool as_asked = excess_.empty() && !ends_in_motion_;
+  if (!as_asked) end_ = begin_ + fromSeconds(along_s + law_.delay());
 }
 
-MotionState Trajectory::sampleSegment(std::size_t segment, std::size_t joint, Time time) const {
-  return segments_[segment * joint_count_ + joint].sample(toSeconds(time - beginOf(segment)));
+Trajectory::PathPlace Trajectory::placeAt(double along_s) const {
+  const auto found = std::upper_bound(ends_s_.begin(), ends_s_.end(), along_s);
+  const auto segment = static_cast<std::size_t>(
+      std::min(found - ends_s_.begin(), static_cast<std::ptrdiff_t>(ends_s_.size()) - 1));
+  return {segment, along_s - (segment == 0 ? 0.0 : ends_s_[segment - 1])};
 }
 
 MotionState Trajectory::rest(std::size_t joint, Time time) const {
@@ -133,16 +112,18 @@ MotionState Trajectory::rest(std::size_t joint, Time time) const {
 
 MotionState Trajectory::sample(std::size_t joint, Time time) const {
   if (time < begin_ || finished(time)) return rest(joint, time);
-  return sampleSegment(segmentAt(time), joint, time);
+  const TimeLaw::Moment moment = law_.at(toSeconds(time - begin_));
+  const PathPlace place = placeAt(moment.along_s);
+  MotionState state = segments_[place.segment * joint_count_ + joint].sample(place.since_s);
+  state.acceleration =
+      state.acceleration * moment.rate * moment.rate + state.velocity * moment.change;
+  state.velocity *= moment.rate;
+  return state;
 }
 
 void Trajectory::sample(Time time, std::vector<MotionState>& states) const {
   const std::size_t count = std::min(states.size(), joint_count_);
-  const bool moving = time >= begin_ && !finished(time);
-  const std::size_t segment = moving ? segmentAt(time) : 0;
-  for (std::size_t j = 0; j < count; ++j) {
-    states[j] = moving ? sampleSegment(segment, j, time) : rest(j, time);
-  }
+  for (std::size_t j = 0; j < count; ++j) states[j] = sample(j, time);
 }
 
 void Trajectory::samplePositions(Time time, std::vector<double>& positions) const {
@@ -152,10 +133,9 @@ void Trajectory::samplePositions(Time time, std::vector<double>& positions) cons
     std::copy_n(rest.begin(), count, positions.begin());
     return;
   }
-  const std::size_t segment = segmentAt(time);
-  const double since_s = toSeconds(time - beginOf(segment));
-  const SplineSegment* const joints = &segments_[segment * joint_count_];
-  for (std::size_t j = 0; j < count; ++j) positions[j] = joints[j].position(since_s);
+  const PathPlace place = placeAt(law_.at(toSeconds(time - begin_)).along_s);
+  const SplineSegment* const joints = &segments_[place.segment * joint_count_];
+  for (std::size_t j = 0; j < count; ++j) positions[j] = joints[j].position(place.since_s);
 }
 
 Result<std::vector<JointPlace>> matchJoints(const std::vector<Joint>& joints,

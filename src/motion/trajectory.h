@@ -12,9 +12,12 @@
 #include "cia402_driver/motion/trajectory_point.h"
 #include "motion/joint.h"
 #include "motion/spline.h"
+#include "motion/time_law.h"
+#include "motion/trajectory_rules.h"
 
 namespace cia402::motion {
 
+class TrajectoryPlan;
 class TrajectoryResult;
 
 /// When and how a trajectory begins.
@@ -35,10 +38,8 @@ struct TrajectoryStart {
 /// of the same message. The joints leave from the present commanded state, so that a new trajectory
 /// pre-empts another smoothly, and follow one spline segment from point to point: quintic where
 /// both ends have accelerations, cubic where both have velocities, else linear. The present state
-/// has both.
-///
-/// Linear segments change their velocity at the points without transition; that is what a message
-/// with positions only asks for. Pass the samples through a PositionLimiter to round the corners.
+/// has both. A joint with a limit of acceleration goes through points without velocities by cubics
+/// that swing nowhere beyond them.
 ///
 /// create() allocates, sampling does not.
 class Trajectory {
@@ -51,17 +52,20 @@ class Trajectory {
   /// - INVALID_JOINTS: no joints, or not one commanded state a joint;
   /// - INVALID_GOAL: sizes that differ from the number of joints, values that are not finite, times
   ///   that do not rise; no point that is still ahead; a last point with a velocity above
-  ///   kRestVelocity (the joint would have to stop there at once);
+  ///   kRestVelocity (the joint would have to stop there at once) where `rules` have it end at
+  ///   rest;
   /// - INVALID_GOAL: position, velocity or acceleration beyond the joint's limits anywhere on the
   ///   way still ahead, not only at the points, by more than 1e-6 of the limit (for positions: of
   ///   the range). A joint that is outside its position limits already may move back, not further.
   ///   Jerk is not checked: between cubic segments it has no bound.
+  /// Where `rules` are not strict velocities and accelerations beyond the limits are slowed down
+  /// instead, if the points themselves ask for none that are, see TrajectoryRules.
   /// No points at all are a valid trajectory that asks for a stop: the caller brings the joints
   /// to rest. Sampling holds the commanded positions.
   static TrajectoryResult create(const std::vector<Joint>& joints,
                                  const std::vector<MotionState>& commanded,
                                  const std::vector<TrajectoryPoint>& points,
-                                 const TrajectoryStart& start);
+                                 const TrajectoryStart& start, const TrajectoryRules& rules = {});
 
   /// A last velocity up to this counts as rest, in rad/s or m/s.
   static constexpr double kRestVelocity = 1e-3;
@@ -79,26 +83,39 @@ class Trajectory {
   std::size_t droppedPoints() const { return dropped_points_; }
   bool finished(Time time) const { return time >= endTime(); }
   Time startTime() const { return begin_; }
-  Time endTime() const { return ends_.empty() ? begin_ : ends_.back(); }
+  Time endTime() const { return end_; }
+  /// How much later than asked it ends, s; below 0 where a stream's point is reached sooner.
+  double delay() const { return delay_s_; }
+  /// What would have been beyond a limit had it not been slowed down, in words; empty: nothing.
+  const std::string& excess() const { return excess_; }
+  /// It is brought to rest behind its last point.
+  bool endsInMotion() const { return ends_in_motion_; }
   /// Where the joints come to rest, one entry a joint, whole turns of shortest_way included.
   const std::vector<double>& goal() const { return goal_; }
 
  private:
   Trajectory() = default;
-  /// Fills ends_ with the points after begin_; `base` is where their times count from.
+  /// How long the ways to the points after begin_ take; `base` is where their times count from.
   std::optional<TrajectoryError> takePointsAhead(const std::vector<TrajectoryPoint>& points,
-                                                 Time base);
-  /// The segment that `time` lies in; only between startTime() and endTime().
-  std::size_t segmentAt(Time time) const;
-  Time beginOf(std::size_t segment) const { return segment == 0 ? begin_ : ends_[segment - 1]; }
-  MotionState sampleSegment(std::size_t segment, std::size_t joint, Time time) const;
+                                                 Time base, std::vector<double>& durations_s);
+  void take(const TrajectoryPlan& plan);
+  /// A place on the path: the segment, and how far in it.
+  struct PathPlace {
+    std::size_t segment;
+    double since_s;
+  };
+  PathPlace placeAt(double along_s) const;
   MotionState rest(std::size_t joint, Time time) const;
 
   std::size_t joint_count_ = 0;
   std::size_t dropped_points_ = 0;  ///< of the first: they had passed before it began
-  Time begin_{};
-  std::vector<Time> ends_;               // one a segment
+  Time begin_{}, end_{};
+  std::vector<double> ends_s_;           // one a segment, along the path
   std::vector<SplineSegment> segments_;  // joint_count_ of them a segment
+  TimeLaw law_;
+  double delay_s_ = 0.0;
+  std::string excess_;
+  bool ends_in_motion_ = false;
   std::vector<double> origin_, goal_;
 };
 

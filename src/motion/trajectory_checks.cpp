@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "motion/trajectory.h"
+
 namespace cia402::motion {
 
 namespace {
@@ -114,6 +116,10 @@ Failure checkRestAtEnd(const std::vector<Joint>& joints,
 
 /// "shoulder: on the way from the present state to point 0, at 0.25 s, the ".
 std::string whereabouts(const Place& place, double time_s) {
+  if (place.behind_end) {
+    return place.joint.name + ": behind " + pointName(place.point) + ", the last one, at " +
+           seconds(place.begin_s + time_s) + " on the way to rest, the ";
+  }
   const std::string from =
       place.from_present_state ? "the present state" : pointName(place.point - 1);
   return place.joint.name + ": on the way from " + from + " to " + pointName(place.point) +
@@ -154,23 +160,50 @@ bool exceeds(const Extremum& worst, const std::optional<double>& limit) {
 
 std::optional<TrajectoryError> checkShape(const std::vector<Joint>& joints,
                                           const std::vector<MotionState>& commanded,
-                                          const std::vector<TrajectoryPoint>& points) {
+                                          const std::vector<TrajectoryPoint>& points, bool rests) {
   if (Failure failure = checkJoints(joints, commanded)) return failure;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (Failure failure = checkPoint(joints, points[i], i)) return failure;
   }
   if (Failure failure = checkTimes(points)) return failure;
-  return checkRestAtEnd(joints, points);
+  return rests ? checkRestAtEnd(joints, points) : Failure();
 }
 
-std::optional<TrajectoryError> checkLimits(const SplineSegment& segment, const Place& place) {
+std::optional<TrajectoryError> checkRates(const std::vector<Joint>& joints,
+                                          const TrajectoryPoint& point, std::size_t index,
+                                          double margin) {
+  const auto check = [&](const Joint& joint, const std::vector<double>& values, std::size_t i,
+                         const std::optional<double>& limit, const char* what, const char* power) {
+    if (values.empty() || !limit || std::abs(values[i]) <= *limit * (1 + margin)) return Failure();
+    const std::string unit = std::string(" ") + toString(joint.unit) + power;
+    return Failure(invalidGoal(joint.name + ": " + pointName(index) + " asks for the " + what +
+                               " " + formatNumber(values[i]) + unit + ", beyond the limit " +
+                               formatNumber(*limit) + unit));
+  };
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const JointLimits& limits = joints[i].limits;
+    Failure failure = check(joints[i], point.velocities, i, limits.velocity, "velocity", "/s");
+    if (!failure) {
+      failure =
+          check(joints[i], point.accelerations, i, limits.acceleration, "acceleration", "/s^2");
+    }
+    if (failure) return failure;
+  }
+  return {};
+}
+
+std::optional<TrajectoryError> checkReach(const SplineSegment& segment, const Place& place) {
   if (!segment.isFinite()) {
     return invalidGoal(whereabouts(place, 0) + "motion of " + seconds(segment.duration()) +
                        " is too fast to be computed; check positions and time_from_start");
   }
   if (segment.surelyWithin(place.joint.limits)) return {};
-  if (Failure failure = checkPosition(segment, place)) return failure;
+  return checkPosition(segment, place);
+}
+
+std::optional<TrajectoryError> checkRates(const SplineSegment& segment, const Place& place) {
   const JointLimits& limits = place.joint.limits;
+  if (segment.surelyWithin(limits)) return {};
   const Range velocity = segment.velocityRange();
   if (exceeds(velocity.largest(), limits.velocity)) {
     return beyond(place, velocity.largest(), "velocity", "/s", "limit", *limits.velocity);
@@ -181,6 +214,17 @@ std::optional<TrajectoryError> checkLimits(const SplineSegment& segment, const P
                   *limits.acceleration);
   }
   return {};
+}
+
+TrajectoryError jumpOf(const Place& place, bool at_end, double velocity) {
+  const Joint& joint = place.joint;
+  const std::string unit = std::string(" ") + toString(joint.unit);
+  return invalidGoal(joint.name + ": " +
+                     (at_end ? pointName(place.point) + " is to be reached with "
+                             : "the present state is to be left with ") +
+                     formatNumber(velocity) + unit + "/s at once, without " +
+                     (at_end ? "braking" : "accelerating") + " by its limit " +
+                     formatNumber(*joint.limits.acceleration) + unit + "/s^2");
 }
 
 }  // namespace cia402::motion

@@ -69,6 +69,7 @@ void CommandTopics::onSetpoints(std::size_t group, const std_msgs::Float64MultiA
 void CommandTopics::onTrajectory(std::size_t group,
                                  const trajectory_msgs::JointTrajectory& message) {
   bus::TrajectoryCommand command = trajectoryCommand(groups_[group], message, runner_.time());
+  command.streamed = true;
   command.ended = [this, group](const bus::TrajectoryOutcome& outcome) {
     if (outcome.end == bus::TrajectoryEnd::replaced) return;  // a stream's are, each of them
     add(group, outcome.code, outcome.message);

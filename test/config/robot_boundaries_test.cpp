@@ -151,6 +151,18 @@ TEST(RobotBoundaries, TheDrivesOwnDeadlineHas16BitsOfMilliseconds) {
                         "1400h:05 counts in them"));
 }
 
+TEST(RobotBoundaries, OfHowTrajectoriesAreSlowedDown) {
+  const auto problems = [](const std::string& key) {
+    return changed("axes:", "groups: {arm: {joints: [elbow], " + key + "}}\naxes:").problems;
+  };
+  EXPECT_EQ(problems("acceleration_margin: 1"), "");
+  EXPECT_EQ(problems("lengthening: 0"), "");
+  EXPECT_THAT(problems("acceleration_margin: 1.001"),
+              HasSubstr("groups/arm/acceleration_margin: must be at least 0 and at most 1"));
+  EXPECT_THAT(problems("lengthening: -0.1"),
+              HasSubstr("groups/arm/lengthening: must be at least 0"));
+}
+
 TEST(RobotBoundaries, LimitsMayBeAsWideAsTheDrivesPosition) {
   const auto problems = [](const std::string& limits) {
     return changed("gear_ratio: 50.0, limits: {lower: -3.0, upper: 3.0}",

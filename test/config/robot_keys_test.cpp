@@ -55,7 +55,7 @@ axes:
          limits: {velocity: 1, acceleration: 2}}
 groups:
   both: {joints: [turn, lift], stop_group_on_fault: false, allow_partial_joints_goal: true,
-         stop_trajectory_duration: 0.75,
+         stop_trajectory_duration: 0.75, strict: true, acceleration_margin: 0.25, lengthening: 0.5,
          constraints: {goal_time: 2.5, stopped_velocity_tolerance: 0.125, lift: {trajectory: 0.02, goal: 0.003}}}
 )";
 
@@ -209,6 +209,9 @@ TEST_F(RobotKeys, OfAGroup) {
   EXPECT_EQ(group.goal_time, 2.5);
   EXPECT_EQ(group.stopped_velocity_tolerance, 0.125);
   EXPECT_EQ(group.stop_trajectory_duration, 0.75);
+  EXPECT_TRUE(group.strict);
+  EXPECT_EQ(group.acceleration_margin, 0.25);
+  EXPECT_EQ(group.lengthening, 0.5);
   ASSERT_EQ(group.tolerances.size(), 1U);
   EXPECT_EQ(group.tolerances.at("lift").trajectory, 0.02);
   EXPECT_EQ(group.tolerances.at("lift").goal, 0.003);
@@ -244,6 +247,9 @@ TEST(RobotDefaults, OfWhatIsNotGiven) {
   EXPECT_EQ(group.goal_time, 0.4);
   EXPECT_EQ(group.stopped_velocity_tolerance, 0.01);
   EXPECT_EQ(group.stop_trajectory_duration, 0.0);
+  EXPECT_FALSE(group.strict);
+  EXPECT_EQ(group.acceleration_margin, 0.0);
+  EXPECT_EQ(group.lengthening, 0.1);
   EXPECT_THAT(group.tolerances, IsEmpty());
 }
 

@@ -29,6 +29,7 @@ struct TrajectoryOutcome {
   double off =
       std::numeric_limits<double>::quiet_NaN();  ///< by how much, rad or m; NaN: by nothing
   std::size_t passed_points = 0;  ///< of one accepted with a start time: what it begins behind
+  bool slowed = false;  ///< of one accepted: it takes longer than asked, to keep the limits
 };
 
 /// Told once how a trajectory that was accepted ended, in the bus thread; may be empty. Must not

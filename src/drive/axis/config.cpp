@@ -19,6 +19,7 @@ motion::Joint jointOf(const AxisConfig& axis) {
   joint.limits = axis.limits;
   joint.limits.continuous = axis.geometry.type == AxisGeometry::Type::continuous;
   joint.unit = axis.geometry.prismatic() ? motion::JointUnit::metre : motion::JointUnit::radian;
+  joint.deceleration = stopDeceleration(axis);
   return joint;
 }
 
