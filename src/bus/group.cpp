@@ -23,6 +23,22 @@ Group::Group(config::GroupConfig config, std::vector<Joint*> joints, Duration cy
   for (const Joint* joint : joints_) descriptions_.push_back(joint->description());
 }
 
+void Group::adopt(config::GroupConfig& next) {
+  std::swap(config_.tolerances, next.tolerances);
+  std::swap(config_.goal_time, next.goal_time);
+  std::swap(config_.stopped_velocity_tolerance, next.stopped_velocity_tolerance);
+  std::swap(config_.stop_trajectory_duration, next.stop_trajectory_duration);
+  std::swap(config_.allow_partial_joints_goal, next.allow_partial_joints_goal);
+  std::swap(config_.stop_group_on_fault, next.stop_group_on_fault);
+  for (TrajectoryRun& run : runs_) run.adopt();
+}
+
+void Group::adoptLimits() {
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    descriptions_[i].limits = joints_[i]->description().limits;
+  }
+}
+
 bool Group::executing() const {
   return std::any_of(runs_.begin(), runs_.end(),
                      [](const TrajectoryRun& run) { return run.waiting() || run.following(); });
@@ -49,15 +65,6 @@ motion::MotionState Group::commandedAt(const Joint& joint, Time time) const {
   }
   const auto sent = joint.sent().expected(time - clock_.time());
   return {sent.position, sent.velocity, 0.0};
-}
-
-TrajectoryOrder Group::orderOf(const TrajectoryCommand& command) const {
-  TrajectoryOrder order{command.id, command.ended, config_.tolerances,
-                        command.tolerances.goal_time.value_or(config_.goal_time)};
-  for (const auto& [joint, tolerance] : command.tolerances.joints) {
-    order.tolerances[joint] = tolerance;
-  }
-  return order;
 }
 
 TrajectoryOutcome Group::replaced() const {
@@ -110,7 +117,9 @@ TrajectoryOutcome Group::start(const TrajectoryCommand& command, Time now) {
                         " points, whose time has passed: it was to begin " +
                         motion::formatNumber(toSeconds(now - *command.start_time)) + " s ago";
   }
-  add({config_, orderOf(command), joints, std::move(trajectory).value()}, now);
+  add({config_, TrajectoryOrder{command.id, command.ended, command.tolerances}, joints,
+       std::move(trajectory).value()},
+      now);
   for (Joint* joint : joints) joint->follow(&config_.name);
   return accepted;
 }
@@ -165,7 +174,8 @@ TrajectoryOutcome Group::startStop(const TrajectoryCommand& command,
     }
     if (run.following() || run.waiting()) handOver(run, moving);
   }
-  runs_.emplace_back(config_, orderOf(command), moving, std::nullopt);
+  runs_.emplace_back(config_, TrajectoryOrder{command.id, command.ended, command.tolerances},
+                     moving, std::nullopt);
   runs_.back().expectRest(
       {TrajectoryErrorCode::successful, config_.name + ": stands", TrajectoryEnd::stopped, {}});
   if (runs_.back().stands()) runs_.back().end(runs_.back().outcome());

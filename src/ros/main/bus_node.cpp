@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <ros/ros.h>
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -21,6 +22,8 @@
 #include "ros/link_watch.h"
 #include "ros/process_signals.h"
 #include "ros/publishers.h"
+#include "ros/reconfigure.h"
+#include "ros/reloader.h"
 #include "ros/robot_loader.h"
 #include "ros/service_pool.h"
 #include "ros/services.h"
@@ -112,6 +115,18 @@ void publishMeasured(bus::BusRunner& runner, ros_node::Publishers& publishers,
   frames.publish(snapshot.joints);
 }
 
+/// The tasks at the rate of joint_states, which may change.
+void addStateTasks(ros_node::EventLoop& loop, const ros_node::Reloader& reloader,
+                   std::function<void()> states, std::function<void()> measured) {
+  const Duration period = reloader.jointStatePeriod();
+  const std::size_t first = loop.every(tickOf(period), std::move(states));
+  const std::size_t second = loop.every(period, std::move(measured));
+  loop.always([&loop, &reloader, first, second] {
+    loop.retime(first, tickOf(reloader.jointStatePeriod()));
+    loop.retime(second, reloader.jointStatePeriod());
+  });
+}
+
 /// Runs the driver until the node is asked to end.
 void serve(ros::NodeHandle& node, ros::NodeHandle& private_node, const LoadedRobot& loaded,
            OpenInterface open) {
@@ -141,7 +156,9 @@ void serve(ros::NodeHandle& node, ros::NodeHandle& private_node, const LoadedRob
 
   ros::NodeHandle service_node("~");
   service_node.setCallbackQueue(pool.queue());
-  ros_node::Services services(service_node, desk, runner, loaded.robot);
+  ros_node::Reloader reloader(private_node, runner, loaded, [&loop] { loop.wake(); });
+  ros_node::Services services(service_node, desk, runner, reloader, loaded.robot);
+  ros_node::Reconfigure reconfigure(service_node, private_node, reloader, loaded.robot.groups);
   std::optional<ros_node::FaultService> faults;
   if (simulation != nullptr) faults.emplace(service_node, injectThrough(runner, *simulation));
 
@@ -149,13 +166,15 @@ void serve(ros::NodeHandle& node, ros::NodeHandle& private_node, const LoadedRob
     desk.answer();
     actions.update();
     topics.update();
+    reconfigure.update();
   });
-  const Duration joint_states = fromSeconds(1.0 / loaded.robot.joint_state_rate);
-  loop.every(tickOf(joint_states), [&] {
-    events.drain();
-    publishers.publishStates();
-  });
-  loop.every(joint_states, [&] { publishMeasured(runner, publishers, frames); });
+  addStateTasks(
+      loop, reloader,
+      [&] {
+        events.drain();
+        publishers.publishStates();
+      },
+      [&] { publishMeasured(runner, publishers, frames); });
   loop.every(
       kFeedbackTick, [&] { actions.publishFeedback(); }, [&] { return actions.busy(); });
   loop.every(kStatusTick, [&] { actions.publishStatus(); });
