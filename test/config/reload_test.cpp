@@ -55,7 +55,7 @@ auto isChange(const std::string& key, const std::string& before, const std::stri
 TEST(Reload, FindsNothingWhereNothingDiffers) {
   EXPECT_THAT(changesOf(settledText(kPair), settledText(kPair)), IsEmpty());
   EXPECT_THAT(changesBy("joint_state_rate: 50", "joint_state_rate: 5.0e1"), IsEmpty());
-  EXPECT_THAT(changesBy("goal_time: 1.0, ", "goal_time: 1, wrist: {}, "), IsEmpty())
+  EXPECT_THAT(changesBy("goal_time: 1.0, ", "goal_time: 1, shoulder: {}, "), IsEmpty())
       << "an empty section says nothing";
 }
 
