@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "bus/canopen/reload_command.h"
 #include "common/text.h"
 #include "ros/command_call.h"
 #include "ros/parameters.h"
@@ -103,7 +102,7 @@ bus::Answer Reloader::take(const YAML::Node& tree, Changes changes) {
     changes.erase(waiting, changes.end());
     answer = apply(tree, changes);
   }
-  if (!answer.success) return answerOf(false, "nothing was changed: " + answer.message);
+  if (!answer.success) return bus::answerOf(false, "nothing was changed: " + answer.message);
   report.changed = changes;
   report.remark = answer.message;
   const bool all = report.waiting.empty() && report.restart.empty();

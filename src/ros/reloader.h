@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "bus/canopen/reload_command.h"
 #include "bus/runner.h"
 #include "config/ready_robot.h"
 #include "config/reload.h"
