@@ -29,15 +29,16 @@ struct GroupReload : test::GroupScene {
 };
 
 TEST_F(GroupReload, APathToleranceCountsAtOnce) {
-  world.drives[1].blocked = true;
   const Outcomes ended = send(toOneRadian());
   world.run(500ms);
+  world.drives[1].disturbance = 20000;
+  world.run(20ms);
   ASSERT_TRUE(ended->empty()) << "nothing is checked";
   reload([](config::GroupConfig& group) { group.tolerances["elbow"].trajectory = 0.1; });
   world.run(8ms);
   ASSERT_EQ(ended->size(), 1U);
   EXPECT_EQ(ended->front().code, TrajectoryErrorCode::path_tolerance_violated);
-  EXPECT_THAT(ended->front().message, HasSubstr("elbow"));
+  EXPECT_THAT(ended->front().message, HasSubstr("elbow is 0.2"));
   expectSmooth(0);
   world.run(500ms);
   const int stopped = position(0);
@@ -103,15 +104,16 @@ TEST_F(GroupReload, WhatAGoalHasOfItsOwnStays) {
 }
 
 TEST_F(GroupReload, ButOnlyThat) {
-  world.drives[1].blocked = true;
   TrajectoryCommand command = toOneRadian();
   command.tolerances.joints["elbow"].goal = 3.0;
   const Outcomes ended = send(command);
   world.run(500ms);
+  world.drives[1].disturbance = 20000;
   reload([](config::GroupConfig& group) { group.tolerances["elbow"].trajectory = 0.1; });
   world.run(8ms);
   ASSERT_EQ(ended->size(), 1U);
   EXPECT_EQ(ended->front().code, TrajectoryErrorCode::path_tolerance_violated);
+  EXPECT_THAT(ended->front().message, HasSubstr("the tolerance is 0.1"));
 }
 
 TEST_F(GroupReload, TrajectoriesForSomeJointsAreTakenFromThenOn) {
@@ -131,8 +133,8 @@ TEST_F(GroupReload, ACancelledTrajectoryStopsAsGentlyAsIsSaidByThen) {
   reload([](config::GroupConfig& group) { group.stop_trajectory_duration = 0.5; });
   ASSERT_TRUE(world.call(CancelCommand{"arm", 7}).success);
   world.run(1s);
-  // From 1.875 rad/s in 0.5 s: 0.47 rad; with 10 rad/s² it would be 0.18.
-  EXPECT_NEAR(position(0) - before, 47000, 3000);
+  // From 1.5 rad/s in 0.5 s: 0.375 rad; with 10 rad/s² it would be 0.11.
+  EXPECT_NEAR(position(0) - before, 37500, 1500);
 }
 
 }  // namespace

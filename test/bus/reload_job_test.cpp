@@ -38,7 +38,10 @@ config::RobotConfig limited(double velocity) {
 }
 
 struct ReloadScene : testing::Test {
-  ReloadScene() { world.boot(); }
+  ReloadScene() {
+    world.boot();
+    world.run(500ms);  // seen to stand
+  }
 
   static std::shared_ptr<Reload> to(const config::RobotConfig& next, bool at_rest = true) {
     const config::RobotConfig now = limited(2.0);
@@ -59,7 +62,7 @@ struct ReloadScene : testing::Test {
       EXPECT_EQ(*world.network.cycle().joints().all()[i].description().limits.velocity, 2.0);
     }
     EXPECT_TRUE(world.call(ProcedureKind::enable).success) << "an axis is held still";
-    EXPECT_TRUE(world.move({0.3, 0.3}, 0.25).success) << "slower than 2.25 rad/s at its peak";
+    EXPECT_TRUE(world.move({0.8, 0.8}, 1.0).success) << "1.5 rad/s at its peak";
   }
   RobotWorld world{limited(2.0)};
 };

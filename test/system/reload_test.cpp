@@ -55,12 +55,12 @@ TEST_F(ReloadedPair, ASlowerLimitIsKeptByStreamsTrajectoriesAndTheDrive) {
   ASSERT_TRUE(change("velocity: 1.5", "velocity: 0.5").success);
   EXPECT_NEAR(heldBy(scene, "left", "profile_velocity"), before / 3.0, 1.0);
   enable();
-  scene.stream("left", -1.0, 2s);
+  scene.stream("left", -1.0, 6s);
   EXPECT_NEAR(scene.seen("left").fastest, 0.5, 0.01) << "also no slower than it may";
-  EXPECT_THAT(scene.move({0.0, 1.0}, 1s).message, AllOf(HasSubstr("right"), HasSubstr("velocity")));
-  scene.stream("left", scene.position("left"), 1s);
+  EXPECT_THAT(scene.move({-1.0, 1.0}, 1s).message,
+              AllOf(HasSubstr("right"), HasSubstr("velocity")));
   scene.forget();
-  ASSERT_TRUE(scene.move({0.0, 0.5}, 4s).success) << scene.told();
+  ASSERT_TRUE(scene.move({-1.0, 0.5}, 4s).success) << scene.told();
   scene.run(5s);
   EXPECT_NEAR(scene.position("right"), 0.5, 1e-3);
   EXPECT_LT(scene.seen("right").fastest, 0.51);
@@ -81,7 +81,7 @@ TEST_F(ReloadedPair, AStopIsAsHardAsTheNewLimit) {
   ASSERT_TRUE(scene.move({2.0, 0.0}, 4s).success) << scene.told();
   scene.run(2s);
   const double from = scene.position("left"), fast = scene.velocity("left");
-  ASSERT_GT(fast, 0.8);
+  ASSERT_GT(fast, 0.7);
   ASSERT_TRUE(scene.stopGroup().success);
   scene.run(3s);
   EXPECT_NEAR(scene.position("left") - from, fast * fast / 2.0, 0.05);

@@ -148,13 +148,21 @@ bool ReloadJob::next(Time now) {
   return true;
 }
 
+std::string ReloadJob::textOf(const Item& item) const {
+  const canopen::StartupWrite& write = item.item->write;
+  return item.node->who() + ": " + fieldbus::toString(write.object) + " " + write.name + ": " +
+         ticket_->reason();
+}
+
 bool ReloadJob::takeWritten(Time now) {
   const Item& item = items_[at_];
   const canopen::StartupWrite& write = item.item->write;
   const bool refused = ticket_->failure() == TransferFailure::aborted_by_server;
   if (!refused) taken_.push_back(item);  // or may have been
   const bool does_without = mayLack(write, *ticket_) || (write.optional && refused);
-  if (!ticket_->ok() && !does_without && item.node->ready()) return fail(ticket_->message());
+  if (!ticket_->ok() && !does_without && item.node->ready()) {
+    return fail(textOf(item));
+  }
   if (ticket_->ok()) {
     if (write.after_power) {
       append(remarks_, item.node->who() + ": " + write.name +

@@ -35,6 +35,8 @@ class ReloadJob final : public Job {
   bool next(Time now);
   bool takeWritten(Time now);
   bool takeReadBack(Time now);
+  /// What became of its transfer, which has failed.
+  std::string textOf(const Item& item) const;
   /// Takes back what was written last, or ends.
   bool undo();
   bool fail(const std::string& why);
