@@ -187,9 +187,21 @@ TEST_F(ReloadScene, ADriveThatIsBeingConfiguredIsWaitedFor) {
   EXPECT_THAT(answer.message, HasSubstr("elbow (node 2): its drive is being configured"));
 }
 
+TEST_F(ReloadScene, ABootThatHasWrittenTheOldLimitWritesTheNewOne) {
+  std::vector<canopen::StartupWrite> writes = test::masterOf(limited(1.0)).nodes[1].writes;
+  world.drives[1].objects[kWindow] = {0, 0, 0, 0};
+  world.node(1).boot(world.now, false);
+  ASSERT_TRUE(world.runUntil([&] { return held(1) == kOfTwo; }));
+  ASSERT_EQ(world.node(1).health(), fieldbus::Health::booting);
+  world.node(1).swapWrites(writes, world.now);
+  ASSERT_TRUE(world.runUntil([&] { return world.node(1).ready(); }));
+  EXPECT_EQ(held(1), kOfOne);
+}
+
 TEST_F(ReloadScene, IsAnsweredAtTheEndOfTheProgram) {
-  world.drives[0].sdo_silent = true;
+  world.drives[1].sdo_silent = true;
   const auto reloading = begin();
+  ASSERT_TRUE(world.runUntil([&] { return held(0) == kOfOne; }));
   world.run(10ms);
   world.network.beginShutdown(world.now);
   ASSERT_EQ(reloading->size(), 1U);
