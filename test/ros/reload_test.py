@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 """Parameters that change while the node runs: by ~reload, and by dynamic_reconfigure's own client."""
+import os
 import subprocess
 
 import rospy
@@ -11,6 +12,10 @@ from robot_client import DEADLINE, RobotTest, main, wait_until
 JOINTS = ["shoulder", "elbow", "wrist", "gripper"]
 NEAR, FAR = [-2.0, 0.0, 0.2, 0.1], [-0.8, 0.6, 0.8, 0.5]
 GOAL_TIME = "groups/arm/constraints/goal_time"
+# Debian has it in a folder that rosrun does not know; it is no program of PATH anywhere.
+DYNPARAM = next((path for path in ("/usr/lib/dynamic_reconfigure/dynparam",
+                                   "/opt/ros/noetic/lib/dynamic_reconfigure/dynparam")
+                 if os.path.exists(path)), "dynparam")
 PATH = "groups/arm/constraints/shoulder/trajectory"
 
 
@@ -132,13 +137,15 @@ class Reload(RobotTest):
         self.assertGreater(period(), 0.15)
 
     def test_dynparam_lists_and_sets(self):
-        shown = subprocess.run(["rosrun", "dynamic_reconfigure", "dynparam", "get", "/robot"],
-                               stdout=subprocess.PIPE, text=True, check=False, timeout=DEADLINE)
-        if shown.returncode != 0:  # Debian has dynparam in a folder that rosrun does not know
-            shown = subprocess.run(["/usr/lib/dynamic_reconfigure/dynparam", "get", "/robot"],
-                                   stdout=subprocess.PIPE, text=True, check=True, timeout=DEADLINE)
-        self.assertIn(GOAL_TIME, shown.stdout)
-        self.assertIn("last_change", shown.stdout)
+        def dynparam(*words):
+            return subprocess.run([DYNPARAM, *words], stdout=subprocess.PIPE, text=True, check=True,
+                                  timeout=DEADLINE).stdout
+        shown = dynparam("get", "/robot")
+        self.assertIn(GOAL_TIME, shown)
+        self.assertIn("last_change", shown)
+        dynparam("set", "/robot", GOAL_TIME, "0.75")
+        self.assertEqual(rospy.get_param(f"/robot/{GOAL_TIME}"), 0.75)
+        self.assertIn(f"'{GOAL_TIME}': 0.75", dynparam("get", "/robot"))
 
 
 if __name__ == "__main__":
