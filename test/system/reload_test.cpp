@@ -12,7 +12,7 @@ using drive::ProcedureKind;
 using testing::AllOf;
 using testing::HasSubstr;
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
+std::string changedBy(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   return text.replace(at, from.size(), to);
@@ -34,7 +34,7 @@ double heldBy(Scene& scene, const std::string& axis, const std::string& object) 
 
 struct ReloadedPair : testing::Test {
   bus::ReloadAnswer change(const std::string& from, const std::string& to, bool at_rest = true) {
-    return reload(scene, replaced(genericPair(), from, to), at_rest);
+    return reload(scene, changedBy(genericPair(), from, to), at_rest);
   }
   void enable() {
     const bus::Answer enabled = scene.procedure(ProcedureKind::enable);
@@ -139,7 +139,7 @@ TEST(ReloadedTimeout, EndsAStreamOfVelocitiesAsSoonAsItSays) {
   ReadyScene scene(genericPair(), "csv");
   scene.stream("left", 0.5, 1s);
   ASSERT_TRUE(
-      reload(scene, replaced(genericPair(), "command_timeout: 0.2", "command_timeout: 1.0"), false)
+      reload(scene, changedBy(genericPair(), "command_timeout: 0.2", "command_timeout: 1.0"), false)
           .success);
   scene.run(900ms);
   EXPECT_NEAR(scene.velocity("left"), 0.5, 0.01) << "it was stopped by the time of before";
@@ -150,8 +150,8 @@ TEST(ReloadedTimeout, EndsAStreamOfVelocitiesAsSoonAsItSays) {
 TEST(ReloadedLimits, OfVelocityModesCountToo) {
   ReadyScene scene(genericPair(), "csv");
   ASSERT_TRUE(scene.procedure(ProcedureKind::disable).success);
-  const std::string slow = replaced(replaced(genericPair(), "velocity: 1.5", "velocity: 0.5"),
-                                    "acceleration: 4.0", "acceleration: 1.0");
+  const std::string slow = changedBy(changedBy(genericPair(), "velocity: 1.5", "velocity: 0.5"),
+                                     "acceleration: 4.0", "acceleration: 1.0");
   ASSERT_TRUE(reload(scene, slow, true).success);
   ASSERT_TRUE(scene.procedure(ProcedureKind::enable).success);
   scene.run(100ms);
@@ -166,8 +166,8 @@ TEST(ReloadedLimits, OfVelocityModesCountToo) {
 constexpr FamilyMode kLedByVelocity{kId286Cnfa, "10000", "position_by_velocity"};
 
 std::string withLoop(const std::string& loop) {
-  return replaced(familyJoint(kLedByVelocity),
-                  "node_id:", "position_loop: {" + loop + "}, node_id:");
+  return changedBy(familyJoint(kLedByVelocity),
+                   "node_id:", "position_loop: {" + loop + "}, node_id:");
 }
 
 /// How far the motor is behind a motion of 0.5 rad/s.
