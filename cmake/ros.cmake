@@ -20,8 +20,8 @@ find_package(catkin REQUIRED)
 include(${CMAKE_CURRENT_LIST_DIR}/control_msgs.cmake)
 
 set(cia402_message_packages
-  actionlib_msgs control_msgs diagnostic_msgs geometry_msgs nav_msgs sensor_msgs std_msgs
-  std_srvs trajectory_msgs)
+  actionlib_msgs control_msgs diagnostic_msgs dynamic_reconfigure geometry_msgs nav_msgs sensor_msgs
+  std_msgs std_srvs trajectory_msgs)
 set(cia402_ros_packages
   actionlib diagnostic_updater roscpp roslib tf2_ros ${cia402_message_packages})
 find_package(catkin REQUIRED COMPONENTS message_generation ${cia402_ros_packages})

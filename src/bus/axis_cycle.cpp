@@ -122,6 +122,11 @@ void AxisCycle::endMotion(Time now) {
   Shutdown::endMotion(*this, now);
 }
 
+void AxisCycle::adoptLimits() {
+  for (Joint& joint : joints_.all()) joint.adoptLimits();
+  for (Group& group : groups_) group.adoptLimits();
+}
+
 std::string AxisCycle::motionProblem() const {
   for (const Group& group : groups_) {
     if (group.executing() || group.stopping()) {

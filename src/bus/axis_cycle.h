@@ -72,6 +72,9 @@ class AxisCycle {
   void endMotion(Time now);
   const Shutdown& shutdown() const { return shutdown_; }
 
+  /// The axes have got other limits. @pre they are disabled
+  void adoptLimits();
+
   /// Why nothing that delays other things may be begun: something is in motion, or may be. Empty if
   /// it may.
   std::string motionProblem() const;

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,9 +12,8 @@
 #include <vector>
 
 #include "bus/reply.h"
-#include "cia402_driver/bus/trajectory_outcome.h"
+#include "bus/trajectory_order.h"
 #include "cia402_driver/common/time.h"
-#include "config/robot.h"
 #include "motion/trajectory.h"
 
 namespace cia402::bus {
@@ -65,12 +63,6 @@ struct TrajectoryAnswer : Answer {
   motion::TrajectoryErrorCode code = motion::TrajectoryErrorCode::invalid_goal;
   std::size_t passed_points = 0;  ///< see TrajectoryOutcome
   bool slowed = false;            ///< likewise
-};
-
-/// How closely a trajectory is to be followed, other than the group's configuration has it.
-struct TrajectoryTolerances {
-  std::map<std::string, config::JointTolerance> joints;  ///< by name; 0: none
-  std::optional<double> goal_time;                       ///< s >= 0
 };
 
 /// A trajectory for a group; without points: stop, and what has ended is that all stand. Answered

@@ -27,6 +27,22 @@ Group::Group(config::GroupConfig config, std::vector<Joint*> joints, Duration cy
   for (const Joint* joint : joints_) descriptions_.push_back(joint->description());
 }
 
+void Group::adopt(config::GroupConfig& next) {
+  std::swap(config_.tolerances, next.tolerances);
+  std::swap(config_.goal_time, next.goal_time);
+  std::swap(config_.stopped_velocity_tolerance, next.stopped_velocity_tolerance);
+  std::swap(config_.stop_trajectory_duration, next.stop_trajectory_duration);
+  std::swap(config_.allow_partial_joints_goal, next.allow_partial_joints_goal);
+  std::swap(config_.stop_group_on_fault, next.stop_group_on_fault);
+  for (TrajectoryRun& run : runs_) run.adopt();
+}
+
+void Group::adoptLimits() {
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    descriptions_[i].limits = joints_[i]->description().limits;
+  }
+}
+
 bool Group::executing() const {
   return std::any_of(runs_.begin(), runs_.end(),
                      [](const TrajectoryRun& run) { return run.waiting() || run.following(); });
@@ -53,15 +69,6 @@ motion::MotionState Group::commandedAt(const Joint& joint, Time time) const {
   }
   const auto sent = joint.sent().expected(time - clock_.time());
   return {sent.position, sent.velocity, 0.0};
-}
-
-TrajectoryOrder Group::orderOf(const TrajectoryCommand& command) const {
-  TrajectoryOrder order{command.id, command.ended, config_.tolerances,
-                        command.tolerances.goal_time.value_or(config_.goal_time)};
-  for (const auto& [joint, tolerance] : command.tolerances.joints) {
-    order.tolerances[joint] = tolerance;
-  }
-  return order;
 }
 
 motion::TrajectoryRules Group::rulesOf(const TrajectoryCommand& command) const {
@@ -129,7 +136,9 @@ TrajectoryOutcome Group::start(const TrajectoryCommand& command, Time now) {
     accepted.slowed = !command.streamed || command.points.size() > 1;  // a stream is not told of
     append(accepted.message, slowedText(*trajectory));
   }
-  add({config_, orderOf(command), joints, std::move(trajectory).value()}, now);
+  add({config_, TrajectoryOrder{command.id, command.ended, command.tolerances}, joints,
+       std::move(trajectory).value()},
+      now);
   for (Joint* joint : joints) joint->follow(&config_.name);
   return accepted;
 }
@@ -185,7 +194,8 @@ TrajectoryOutcome Group::startStop(const TrajectoryCommand& command,
   for (TrajectoryRun& run : runs_) {
     if (run.following() || run.waiting()) handOver(run, ours);
   }
-  runs_.emplace_back(config_, orderOf(command), ours, std::nullopt);
+  runs_.emplace_back(config_, TrajectoryOrder{command.id, command.ended, command.tolerances}, ours,
+                     std::nullopt);
   runs_.back().expectRest(
       {TrajectoryErrorCode::successful, config_.name + ": stands", TrajectoryEnd::stopped, {}});
   if (ours.empty()) runs_.back().end(runs_.back().outcome());

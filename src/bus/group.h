@@ -28,6 +28,12 @@ class Group {
   const config::GroupConfig& config() const { return config_; }
   /// Those of its configuration, in that order.
   const std::vector<Joint*>& joints() const { return joints_; }
+  /// Takes over what may change in motion: tolerances, times, what concerns some joints alone. It
+  /// counts at once, for what is being followed, too, as far as that has none of its own. Takes no
+  /// memory: `next` gets what was there before.
+  void adopt(config::GroupConfig& next);
+  /// Its joints have got other limits. @pre they are at rest
+  void adoptLimits();
 
   /// Checks a trajectory and takes it over; without points, stops. On an error nothing changes.
   TrajectoryOutcome start(const TrajectoryCommand& command, Time now);
@@ -51,7 +57,6 @@ class Group {
   std::string refusal(const std::vector<Joint*>& joints) const;
   /// Where a joint is when the clock shows `time`, if nothing new begins before.
   motion::MotionState commandedAt(const Joint& joint, Time time) const;
-  TrajectoryOrder orderOf(const TrajectoryCommand& command) const;
   motion::TrajectoryRules rulesOf(const TrajectoryCommand& command) const;
   TrajectoryOutcome startStop(const TrajectoryCommand& command, const std::vector<Joint*>& joints);
   TrajectoryOutcome replaced() const;

@@ -20,6 +20,11 @@ Joint::Joint(AxisUnit& unit)
       who_(drive::jointName(unit.axis.config())),
       stop_deceleration_(drive::stopDeceleration(unit.axis.config())) {}
 
+void Joint::adoptLimits() {
+  description_ = drive::jointOf(unit_->axis.config());
+  stop_deceleration_ = drive::stopDeceleration(unit_->axis.config());
+}
+
 JointState Joint::state() const {
   const drive::AxisState& from = axis().state();
   JointState state;

@@ -18,6 +18,9 @@ class Joint {
   /// @param unit the axis that turns it, one for one; must outlive it.
   explicit Joint(AxisUnit& unit);
 
+  /// Its axis has got other limits.
+  void adoptLimits();
+
   const std::string& name() const { return description_.name; }
   /// For messages: "shoulder", or "shoulder (axis m3)".
   const std::string& who() const { return who_; }

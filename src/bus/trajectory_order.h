@@ -4,21 +4,30 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "cia402_driver/bus/trajectory_outcome.h"
-#include "config/robot.h"
 #include "motion/trajectory.h"
 
 namespace cia402::bus {
+
+/// How closely a trajectory is to be followed, other than the group's configuration has it.
+struct TrajectoryTolerances {
+  /// Of a joint, rad or m. Absent: as the group has it; 0: none.
+  struct OfJoint {
+    std::optional<double> trajectory, goal;
+  };
+  std::map<std::string, OfJoint> joints;  ///< by name
+  std::optional<double> goal_time;        ///< s >= 0
+};
 
 /// Who waits for the end of a trajectory, and how closely that is to be followed.
 struct TrajectoryOrder {
   std::uint64_t id = 0;  ///< by which it is cancelled; 0: by nobody
   TrajectoryEnded ended;
-  std::map<std::string, config::JointTolerance> tolerances;  ///< by the names of joints; else none
-  double goal_time = 0.0;                                    ///< s
+  TrajectoryTolerances tolerances;
 
   /// Tells who waits, once; afterwards nobody waits any more, and nobody cancels it.
   void tell(const TrajectoryOutcome& outcome);

@@ -39,12 +39,28 @@ TrajectoryRun::TrajectoryRun(const config::GroupConfig& group, TrajectoryOrder o
       phase_(trajectory_ ? Phase::waiting : Phase::stopping) {
   for (std::size_t i = 0; i < joints.size(); ++i) {
     Joint* const joint = joints[i];
-    const auto tolerance = order_.tolerances.find(joint->name());
-    members_.push_back(
-        {joint, i,
-         tolerance == order_.tolerances.end() ? config::JointTolerance() : tolerance->second,
-         joint->sent().breaks(), joint->noticeCount(), !joint->ready(),
-         drive::Standstill(group.stopped_velocity_tolerance, joint->resolution())});
+    members_.push_back({joint, i, toleranceOf(joint->name()), joint->sent().breaks(),
+                        joint->noticeCount(), !joint->ready(),
+                        drive::Standstill(group.stopped_velocity_tolerance, joint->resolution())});
+  }
+}
+
+config::JointTolerance TrajectoryRun::toleranceOf(const std::string& joint) const {
+  config::JointTolerance tolerance;
+  const auto of_group = group_->tolerances.find(joint);
+  if (of_group != group_->tolerances.end()) tolerance = of_group->second;
+  const auto own = order_.tolerances.joints.find(joint);
+  if (own == order_.tolerances.joints.end()) return tolerance;
+  return {own->second.trajectory.value_or(tolerance.trajectory),
+          own->second.goal.value_or(tolerance.goal)};
+}
+
+/// Whether a motor stands is watched anew where that means something else.
+void TrajectoryRun::adopt() {
+  for (Member& member : members_) {
+    member.tolerance = toleranceOf(member.joint->name());
+    const drive::Standstill rest(group_->stopped_velocity_tolerance, member.joint->resolution());
+    if (member.rest.tolerance() != rest.tolerance()) member.rest = rest;
   }
 }
 
@@ -215,7 +231,7 @@ std::optional<TrajectoryOutcome> TrajectoryRun::standstill(Time now) {
   if (!rest_commanded) return std::nullopt;
   if (restless == nullptr) return outcome_;
   if (!commanded_rest_) commanded_rest_ = now;
-  if (now < *commanded_rest_ + std::max(fromSeconds(order_.goal_time), kSettles)) {
+  if (now < *commanded_rest_ + std::max(fromSeconds(goalTime()), kSettles)) {
     return std::nullopt;
   }
   TrajectoryOutcome outcome = outcome_;
@@ -237,7 +253,7 @@ TrajectoryOutcome TrajectoryRun::restlessness(const Member& member) const {
   const Joint& joint = *member.joint;
   return blame(
       TrajectoryErrorCode::goal_tolerance_violated, member, kNothing,
-      ": goal missed: " + joint.who() + " still moves " + motion::formatNumber(order_.goal_time) +
+      ": goal missed: " + joint.who() + " still moves " + motion::formatNumber(goalTime()) +
           " s after the end, its stopped_velocity_tolerance is " +
           motion::formatNumber(group_->stopped_velocity_tolerance) + " " +
           motion::toString(joint.description().unit) +
@@ -251,7 +267,7 @@ std::optional<TrajectoryOutcome> TrajectoryRun::arrival(Time time) {
     return blame(TrajectoryErrorCode::goal_tolerance_violated, member, kNothing,
                  ": goal missed: " + member.joint->trouble(member.notices));
   }
-  const bool late = time >= trajectory_->endTime() + fromSeconds(order_.goal_time);
+  const bool late = time >= trajectory_->endTime() + fromSeconds(goalTime());
   std::string away;  // without a tolerance that is no failure, but it is told
   TrajectoryOutcome reached{TrajectoryErrorCode::successful, group_->name + ": goal reached"};
   for (const Member& member : members_) {
@@ -266,7 +282,7 @@ std::optional<TrajectoryOutcome> TrajectoryRun::arrival(Time time) {
     const std::string where = joint.who() + " is " + distance(joint, error) + " away";
     if (judged) {
       return blame(TrajectoryErrorCode::goal_tolerance_violated, member, error,
-                   ": goal missed: " + where + " after " + motion::formatNumber(order_.goal_time) +
+                   ": goal missed: " + where + " after " + motion::formatNumber(goalTime()) +
                        " s, the tolerance is " + motion::formatNumber(tolerance));
     }
     append(away, where, ", ");

@@ -51,6 +51,8 @@ class TrajectoryRun {
   /// How fast the clock's rate may rise for it, 1/s. @pre following()
   double permittedRise(const MotionClock& clock) const;
 
+  /// The group's configuration is another one.
+  void adopt();
   /// Its joints follow it from now on.
   void begin(Time now);
   /// Another takes a joint over; who waited for this one is told so.
@@ -94,6 +96,9 @@ class TrajectoryRun {
     drive::Standstill rest;         ///< of the motor, since the goal was sent or it is stopped
   };
 
+  config::JointTolerance toleranceOf(const std::string& joint) const;
+  /// s
+  double goalTime() const { return order_.tolerances.goal_time.value_or(group_->goal_time); }
   bool is(Phase phase) const { return phase_ == phase && !members_.empty(); }
   std::optional<TrajectoryOutcome> axisFailure() const;
   std::optional<TrajectoryOutcome> pathFailure() const;

@@ -27,6 +27,8 @@ class SetpointLimiter {
   explicit SetpointLimiter(Joint joint) : joint_(std::move(joint)) {}
   ~SetpointLimiter() = default;
 
+  /// Keeps to these from now on. @pre they are valid; reset() follows
+  void limitTo(const JointLimits& limits) { joint_.limits = limits; }
   void resetTo(const MotionState& state, Time now);
   Result<void> take(double command, const char* power);
   /// The velocity nearest to `desired` that all limits permit at `position` for a step of `dt` s.
@@ -48,6 +50,7 @@ class SetpointLimiter {
 class PositionLimiter : public SetpointLimiter {
  public:
   explicit PositionLimiter(Joint joint) : SetpointLimiter(std::move(joint)) {}
+  using SetpointLimiter::limitTo;
 
   /// Starts from the present commanded state, without a command. A velocity that is not finite
   /// counts as 0. @pre the position is finite; where it is not, no output is.
@@ -76,6 +79,7 @@ class VelocityLimiter : public SetpointLimiter {
   /// cycles; the braking distance before a position limit is longer by as much.
   explicit VelocityLimiter(Joint joint, Duration reaction = {})
       : SetpointLimiter(std::move(joint)), reaction_s_(toSeconds(reaction)) {}
+  using SetpointLimiter::limitTo;
 
   /// Starts from the present commanded state, without a command.
   void reset(const MotionState& commanded, Time now);

@@ -24,8 +24,17 @@ EventLoop::EventLoop() : wake_fd_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)), began
 
 EventLoop::~EventLoop() { close(wake_fd_); }
 
-void EventLoop::every(Duration period, std::function<void()> task, std::function<bool()> wanted) {
+std::size_t EventLoop::every(Duration period, std::function<void()> task,
+                             std::function<bool()> wanted) {
   tasks_.push_back({period, began_ + period, std::move(task), std::move(wanted)});
+  return tasks_.size() - 1;
+}
+
+void EventLoop::retime(std::size_t task, Duration period) {
+  Task& known = tasks_[task];
+  if (known.period == period) return;
+  known.period = period;
+  known.due = began_ + ((bus::realNow() - began_) / period + 1) * period;
 }
 
 void EventLoop::wake() const {

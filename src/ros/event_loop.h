@@ -27,7 +27,10 @@ class EventLoop {
   /// Called at each whole multiple of `period` (> 0) since the loop was made, so that one waking
   /// serves tasks of several periods. What is too late is left out, never made good.
   /// @param wanted where it is given and says no, the task is left out, and nobody wakes for it
-  void every(Duration period, std::function<void()> task, std::function<bool()> wanted = {});
+  /// @return its number, for retime()
+  std::size_t every(Duration period, std::function<void()> task, std::function<bool()> wanted = {});
+  /// Gives a task another period (> 0). Not to be called by a task.
+  void retime(std::size_t task, Duration period);
   /// Any thread: ends the sleep of step(). Never waits.
   void wake() const;
   /// An eventfd: to write to it is wake(), for signal handlers.

@@ -46,11 +46,13 @@ std::optional<LoadedRobot> loadRobot(const ros::NodeHandle& private_node) {
   if (!parameters.options.profile_path.empty()) {
     folders.insert(folders.begin(), parameters.options.profile_path);
   }
-  auto ready = config::readyRobot(parameters.robot, lookup(folders), problems);
+  const config::ProfileLookup found = lookup(folders);
+  auto ready = config::readyRobot(parameters.robot, found, problems);
   report(problems, "configuration of " + private_node.getNamespace());
   if (!ready) return std::nullopt;
   for (const std::string& warning : ready->robot.warnings) ROS_WARN_STREAM(warning);
-  return LoadedRobot{parameters.options, std::move(ready->robot), std::move(ready->master)};
+  return LoadedRobot{parameters.options, std::move(ready->robot), std::move(ready->master),
+                     parameters.robot, found};
 }
 
 std::optional<std::vector<sim::SimulatedDrive>> loadSimulation(const config::RobotConfig& robot) {

@@ -19,6 +19,8 @@ struct LoadedRobot {
   NodeOptions options;
   config::RobotConfig robot;
   canopen::MasterConfig master;
+  YAML::Node tree;               ///< of which it was loaded
+  config::ProfileLookup lookup;  ///< by which profiles were found
 };
 
 /// Reads and checks everything; every problem is logged with its path, and nothing is returned if

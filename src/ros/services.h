@@ -9,6 +9,7 @@
 #include "bus/runner.h"
 #include "config/robot.h"
 #include "ros/call_desk.h"
+#include "ros/reloader.h"
 
 namespace cia402::ros_node {
 
@@ -18,9 +19,9 @@ namespace cia402::ros_node {
 /// the rest keep a thread of the node handle's callback queue while they wait.
 class Services {
  public:
-  /// @param desk, @param runner, @param robot must outlive the services.
+  /// @param desk, @param runner, @param reloader, @param robot must outlive the services.
   Services(ros::NodeHandle& private_node, CallDesk& desk, bus::BusRunner& runner,
-           const config::RobotConfig& robot);
+           Reloader& reloader, const config::RobotConfig& robot);
 
  private:
   std::vector<ros::ServiceServer> servers_;

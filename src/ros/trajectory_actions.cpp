@@ -2,6 +2,7 @@
 #include "ros/trajectory_actions.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "bus/joint.h"
@@ -24,9 +25,9 @@ control_msgs::FollowJointTrajectoryResult resultOf(TrajectoryErrorCode code,
   return result;
 }
 
-/// 0: `configured`; below 0: none.
-double stated(double in_goal, double configured) {
-  return in_goal == 0.0 ? configured : std::max(in_goal, 0.0);
+/// 0: as it is; below 0: none.
+void state(double in_goal, std::optional<double>& tolerance) {
+  if (in_goal != 0.0) tolerance = std::max(in_goal, 0.0);
 }
 
 }  // namespace
@@ -34,15 +35,12 @@ double stated(double in_goal, double configured) {
 bus::TrajectoryTolerances tolerancesOf(const control_msgs::FollowJointTrajectoryGoal& goal,
                                        const config::GroupConfig& group) {
   bus::TrajectoryTolerances tolerances;
-  tolerances.joints = group.tolerances;
   for (const std::string& joint : group.joints) {
     for (const control_msgs::JointTolerance& path : goal.path_tolerance) {
-      double& count = tolerances.joints[joint].trajectory;
-      if (path.name == joint) count = stated(path.position, count);
+      if (path.name == joint) state(path.position, tolerances.joints[joint].trajectory);
     }
     for (const control_msgs::JointTolerance& end : goal.goal_tolerance) {
-      double& count = tolerances.joints[joint].goal;
-      if (end.name == joint) count = stated(end.position, count);
+      if (end.name == joint) state(end.position, tolerances.joints[joint].goal);
     }
   }
   const double seconds = goal.goal_time_tolerance.toSec();

@@ -5,6 +5,7 @@ import os
 import rospy
 from actionlib_msgs.msg import GoalID
 from cia402_driver.msg import HomeActionGoal, HomeGoal, LssIdentity
+from dynamic_reconfigure.msg import BoolParameter, Config, DoubleParameter, StrParameter
 from control_msgs.msg import (FollowJointTrajectoryActionGoal, FollowJointTrajectoryGoal,
                               JointTolerance)
 from std_msgs.msg import Float64, Float64MultiArray
@@ -39,8 +40,24 @@ def identity(chance):
 
 SERVICES = {name: trigger for name in (
     "enable", "disable", "home", "clear_faults", "recover", "quick_stop", "halt",
-    "save_parameters", "restore_parameters", "dump_recording", "error_history")}
+    "save_parameters", "restore_parameters", "dump_recording", "error_history", "reload")}
+
+
+def configuration(chance, _folder):
+    keys = ["joint_state_rate", "axes/elbow/command_timeout", "groups/arm/constraints/goal_time",
+            "groups/arm/constraints/wrist/goal", "axes/elbow/limits/velocity", "ä", "x" * 1000]
+    flags = ["groups/arm/allow_partial_joints_goal", "joint_state_rate", ""]
+    return {"config": Config(
+        doubles=[DoubleParameter(chance.choice(keys), chance.choice([0.1, 0.5, 20.0] + NUMBERS))
+                 for _ in range(chance.choice([0, 1, 1, 1, 3]))],
+        bools=[BoolParameter(chance.choice(flags), chance.choice([True, False]))
+               for _ in range(chance.choice([0, 0, 1]))],
+        strs=[StrParameter(chance.choice(["last_change", "joint_state_rate"]), "x" * 1000)
+              for _ in range(chance.choice([0, 0, 0, 1]))])}
+
+
 SERVICES.update({
+    "set_parameters": configuration,
     "set_mode": lambda chance, _: {"mode": chance.choice(MODES)},
     "set_position": lambda chance, _: {"position": chance.choice(NUMBERS)},
     "read_object": lambda chance, _: {"object": chance.choice(OBJECTS)},

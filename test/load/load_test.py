@@ -97,7 +97,7 @@ class Load(RobotTest):
                 lost = str(error).startswith("transport error")
                 (self.cut_off if lost else self.problems).append(f"{name} {request}: {error}")
                 continue
-            if not answer.message:
+            if not getattr(answer, "message", "of dynamic_reconfigure"):
                 self.problems.append(f"{name} {request}: answered without a word")
             with self.lock:
                 self.calls[name] = self.calls.get(name, 0) + 1

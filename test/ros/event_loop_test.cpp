@@ -52,6 +52,18 @@ TEST(EventLoop, DoesNotWakeForWhatNobodyWants) {
   while (done < 3) loop.step();
 }
 
+TEST(EventLoop, GivesATaskAnotherPeriod) {
+  EventLoop loop;
+  int done = 0;
+  const std::size_t task = loop.every(1h, [&] { ++done; });
+  loop.retime(task, 1ms);
+  while (done < 3) loop.step();
+  loop.retime(task, 1h);
+  loop.wake();
+  loop.step();
+  EXPECT_EQ(done, 3);
+}
+
 TEST(EventLoop, IsWokenByCallbacksOfOtherThreads) {
   EventLoop loop;
   loop.every(1h, [] { FAIL() << "not due"; });

@@ -68,7 +68,7 @@ struct Node::Impl : Node::Front {
   std::string sentence(const std::string& text) const;
   const std::string& step() const;
 
-  const NodeConfig config;
+  NodeConfig config;
   can::Sink& sink;
   bool* deadlines_changed;  ///< may be nullptr
   SdoPacer own_turns{0.0};  ///< where the master shares none

@@ -21,6 +21,10 @@ NodeId Node::id() const { return impl_->config.node_id; }
 const std::string& Node::name() const { return impl_->config.name; }
 std::string Node::who() const { return impl_->who(); }
 const NodeConfig& Node::config() const { return impl_->config; }
+void Node::swapWrites(std::vector<StartupWrite>& writes, Time now) {
+  impl_->config.writes.swap(writes);
+  if (health() == Health::booting) boot(now, false);
+}
 bool Node::excused() const { return config().boot.optional && isAway(impl_->health); }
 NmtState Node::nmtState() const { return impl_->nmt_state; }
 const std::string& Node::bootStep() const { return impl_->step(); }

@@ -39,8 +39,11 @@ class Node final : public fieldbus::Device {
   const std::string& name() const;
   /// "shoulder (node 3)", for messages.
   std::string who() const;
-  /// As given.
+  /// As given, or changed by swapWrites().
   const NodeConfig& config() const;
+  /// What is written at each boot is this from now on; one that is under way begins anew. `writes`
+  /// gets what it was before.
+  void swapWrites(std::vector<StartupWrite>& writes, Time now);
   /// As its last heartbeat, guarding answer or boot-up message told; `unknown` before the first.
   NmtState nmtState() const;
 

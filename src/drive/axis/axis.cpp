@@ -38,6 +38,7 @@ struct Axis::Impl {
   bool lost = false;  ///< since the last update(), though the device may be ready again
   std::uint32_t boot_ups = 0;
   std::string calibrating;  ///< what is being written; empty: nothing
+  bool moves_zero = true;   ///< that may
   Time watched{};           ///< when watchDevice() was called by readFeedback()
 };
 
@@ -49,8 +50,8 @@ std::string Axis::Impl::busyRefusal(ProcedureKind kind) const {
            "); wait for its end, or stop it by halt, quick_stop or disable";
   }
   if (calibrating.empty()) return {};
-  return what + calibrating +
-         " is being written, which may give the drive another zero; call it again";
+  return what + calibrating + " is being written" +
+         (moves_zero ? ", which may give the drive another zero" : "") + "; call it again";
 }
 
 /// Notices a device that is not what it was, even if nobody called onHealthChange().
@@ -204,7 +205,17 @@ std::string Axis::calibrationRefusal() const {
   }
   return drive::calibrationRefusal(impl_->core);
 }
-void Axis::beginCalibration(std::string what) { impl_->calibrating = std::move(what); }
+void Axis::beginCalibration(std::string what, bool moves_zero) {
+  impl_->calibrating = std::move(what);
+  impl_->moves_zero = moves_zero;
+}
+void Axis::adopt(const AxisConfig& next, bool at_rest) {
+  AxisConfig& config = impl_->core.basis().config;
+  drive::tune(config, next);
+  if (!at_rest) return;
+  drive::adopt(config, next);
+  impl_->core.limits().adopt();
+}
 void Axis::loseZero(bool device) {
   impl_->core.loseZero();
   if (device) impl_->core.basis().neighbours.loseZero();

@@ -174,8 +174,8 @@ class Axis {
   /// now: the axis is not known to be switched off and to stand. Empty: it may.
   std::string calibrationRefusal() const;
   /// Such a write begins: until endCalibration() the axis takes no procedure but those that stop.
-  /// @param what is written, for messages
-  void beginCalibration(std::string what);
+  /// @param what is written, for messages. @param moves_zero it may
+  void beginCalibration(std::string what, bool moves_zero = true);
   /// The drive has taken the write, or may have: the axis is not homed any more, positions count
   /// from the drive's own zero.
   /// @param device it concerns the whole device, and with it all axes in it
@@ -185,6 +185,12 @@ class Axis {
   void endCalibration();
   /// Somebody had an object written, which save_parameters may have to write again.
   void noteWritten(fieldbus::ObjectId object);
+
+  /// Takes over what of another configuration an axis takes in motion, see tune(AxisConfig&), or
+  /// also what it takes at rest, see adopt(AxisConfig&). In motion nothing allocates.
+  /// @pre at rest it is disabled, or its device away; what belongs into the device, but for limits
+  /// of position, is there already
+  void adopt(const AxisConfig& next, bool at_rest);
 
   /// A streamed command for the active mode, in joint units (rad, m, per s, N m, N): led there
   /// within the joint's limits. A velocity or effort that is not renewed within command_timeout

@@ -13,11 +13,26 @@ bool hasAlias(const AxisConfig& axis) { return !axis.joint.empty() && axis.joint
 
 }  // namespace
 
+void tune(AxisConfig& axis, const AxisConfig& next) {
+  axis.command_timeout = next.command_timeout;
+  axis.position_loop = next.position_loop;
+}
+
+void adopt(AxisConfig& axis, const AxisConfig& next) {
+  axis.limits = next.limits;
+  axis.homing = next.homing;
+}
+
+motion::JointLimits limitsOf(const AxisConfig& axis) {
+  motion::JointLimits limits = axis.limits;
+  limits.continuous = axis.geometry.type == AxisGeometry::Type::continuous;
+  return limits;
+}
+
 motion::Joint jointOf(const AxisConfig& axis) {
   motion::Joint joint;
   joint.name = axis.joint;
-  joint.limits = axis.limits;
-  joint.limits.continuous = axis.geometry.type == AxisGeometry::Type::continuous;
+  joint.limits = limitsOf(axis);
   joint.unit = axis.geometry.prismatic() ? motion::JointUnit::metre : motion::JointUnit::radian;
   joint.deceleration = stopDeceleration(axis);
   return joint;

@@ -81,6 +81,13 @@ struct AxisConfig {
   }
 };
 
+/// Takes over what an axis takes in motion: the time-out of its commands, its position loop.
+void tune(AxisConfig& axis, const AxisConfig& next);
+/// Takes over what it takes at rest, without power: its limits, and how home is searched for.
+void adopt(AxisConfig& axis, const AxisConfig& next);
+
+/// The limits of its joint, with what the geometry says of them.
+motion::JointLimits limitsOf(const AxisConfig& axis);
 /// The joint of an axis with its limits, as the motion module sees it.
 motion::Joint jointOf(const AxisConfig& axis);
 

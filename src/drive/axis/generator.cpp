@@ -47,6 +47,7 @@ void Generator::leave() {
 }
 
 void Generator::neutralize() {
+  sent_.adopt(axis_.config.limits, stopDeceleration(axis_.config));
   sent_.rest(mode_->kind(), mode_->neutral());
   const OutputObject& target = mode_->channel().target;
   if (!mode_->neutralRaw(target_raw_) && target.mapped()) {

@@ -14,6 +14,11 @@ void LimitKeeper::open(bool open) {
   due_ = true;
 }
 
+void LimitKeeper::adopt() {
+  limits_.adopt(axis_.config);
+  due_ = true;
+}
+
 void LimitKeeper::forget() {
   limits_.forget();
   due_ = true;

@@ -17,6 +17,8 @@ class LimitKeeper {
   void open(bool open);
   /// Has them worked out anew: the zero has moved, or the axis is about to be enabled.
   void renew() { due_ = true; }
+  /// The joint's limits are others (AxisConfig).
+  void adopt();
   /// Another drive may be there, or the same with other parameters.
   void forget();
   /// The drive has them, or has refused them.

@@ -15,6 +15,13 @@ using Failure = fieldbus::Transfer::Failure;
 }  // namespace
 
 PositionLimits::PositionLimits(const AxisConfig& config) : read_back_(config.profile->reads_back) {
+  adopt(config);
+}
+
+void PositionLimits::adopt(const AxisConfig& config) {
+  sides_.clear();
+  ticket_.reset();
+  idle_ = false;
   for (const auto* writes : {&config.profile->startup, &config.writes}) {
     for (const NamedWrite& write : *writes) {
       if (!write.when_homed) continue;

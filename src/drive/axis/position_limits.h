@@ -21,6 +21,8 @@ class PositionLimits {
  public:
   explicit PositionLimits(const AxisConfig& config);
 
+  /// The joint's limits are others: has them worked out anew. aim() must follow.
+  void adopt(const AxisConfig& config);
   /// Another drive may be there, or the same with other parameters.
   void forget();
   /// Decides anew what the drive shall hold, and tries again what it refused before.

@@ -13,11 +13,15 @@ constexpr double kTolerance = 1.0 + 1e-6;
 }  // namespace
 
 SetPoint::SetPoint(const motion::JointLimits& limits, double deceleration, Duration cycle)
-    : limits_(limits),
-      deceleration_(deceleration),
-      cycle_s_(toSeconds(cycle)),
-      furthest_(limits.velocity ? *limits.velocity * cycle_s_ * kTolerance : 1e300),
-      cycle_(cycle) {}
+    : cycle_s_(toSeconds(cycle)), cycle_(cycle) {
+  adopt(limits, deceleration);
+}
+
+void SetPoint::adopt(const motion::JointLimits& limits, double deceleration) {
+  limits_ = limits;
+  deceleration_ = deceleration;
+  furthest_ = limits.velocity ? *limits.velocity * cycle_s_ * kTolerance : 1e300;
+}
 
 void SetPoint::rest(SetPointKind kind, double value) {
   kind_ = kind;

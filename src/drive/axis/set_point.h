@@ -37,6 +37,8 @@ class SetPoint {
   /// rest
   SetPoint(const motion::JointLimits& limits, double deceleration, Duration cycle);
 
+  /// Keeps to these from now on; they may have changed. @pre it is at rest
+  void adopt(const motion::JointLimits& limits, double deceleration);
   /// Begins anew, at rest: at the position `value`, or with no velocity or torque.
   void rest(SetPointKind kind, double value);
   /// Takes over a motor that turns: begins at its velocity, per s, and ramps that to rest.
@@ -98,8 +100,8 @@ class SetPoint {
   double withinLimits(double position) const;
 
   motion::JointLimits limits_;
-  double deceleration_;
-  double cycle_s_, furthest_;  ///< step of a stream
+  double deceleration_ = 0.0;
+  double cycle_s_, furthest_ = 0.0;  ///< step of a stream
   Duration cycle_;
   SetPointKind kind_ = SetPointKind::none;
   double value_ = kNone, velocity_ = 0.0;

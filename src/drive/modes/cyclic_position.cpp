@@ -7,6 +7,7 @@ CyclicPosition::CyclicPosition(const ModeChannel& channel, const Context& contex
     : PositionControl(channel, context), limiter_(jointOf(context.axis.config)) {}
 
 void CyclicPosition::beginStream(const Stream& stream, Time at) {
+  limiter_.limitTo(limitsOf(axis().config));
   limiter_.reset({sent().value(), sent().velocity(), 0.0}, at);
   if (stream.command) (void)limiter_.command(*stream.command);  // finite, so it is taken
 }

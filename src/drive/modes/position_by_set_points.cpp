@@ -53,6 +53,7 @@ void PositionBySetPoints::place() {
 }
 
 void PositionBySetPoints::reset(std::uint64_t raw) {
+  ramp_ = stopDeceleration(axis().config);
   handshake_.reset(raw);
   coming_ = {kUnknown, usual(), ramp_};
   rest_raw_ = raw;

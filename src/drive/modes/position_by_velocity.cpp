@@ -8,6 +8,8 @@
 namespace cia402::drive {
 namespace {
 
+/// What another loop makes of a motor in motion is spread over this time, s.
+constexpr double kRetuning = 1.0;
 constexpr double kNearest = 0.5 + 1e-6;  // counts: no other one is nearer
 
 const Conversion& measured(const AxisBasis& axis) {
@@ -19,9 +21,36 @@ const Conversion& measured(const AxisBasis& axis) {
 PositionByVelocity::PositionByVelocity(const ModeChannel& channel, const Context& context)
     : CyclicPosition(channel, context),
       loop_(context.axis.config.position_loop.value_or(*channel.spec->position_loop)),
+      wanted_(loop_),
       velocity_(channel.conversion),
       resolution_(measured(context.axis).resolution()) {
   handOverEachCycle();
+}
+
+const PositionLoop& PositionByVelocity::configured() const {
+  const std::optional<PositionLoop>& of_axis = axis().config.position_loop;
+  return of_axis ? *of_axis : *spec().position_loop;
+}
+
+void PositionByVelocity::retune() {
+  const PositionLoop& now = configured();
+  if (now.gain != wanted_.gain || now.feed_forward != wanted_.feed_forward) {
+    wanted_ = now;
+    retuned_s_ = kRetuning;
+  }
+  if (retuned_s_ <= 0.0) return;
+  const double cycle = toSeconds(axis().config.cycle);
+  const double share = std::min(1.0, cycle / retuned_s_);
+  loop_.gain += share * (wanted_.gain - loop_.gain);
+  loop_.feed_forward += share * (wanted_.feed_forward - loop_.feed_forward);
+  retuned_s_ -= cycle;
+}
+
+/// Nothing of another loop is felt out of operation.
+void PositionByVelocity::rest() {
+  CyclicPosition::rest();
+  loop_ = wanted_ = configured();
+  retuned_s_ = 0.0;
 }
 
 void PositionByVelocity::place() { convertBy(coordinates().ofTarget(measured(axis()))); }
@@ -43,6 +72,7 @@ double PositionByVelocity::velocity() const {
 }
 
 const char* PositionByVelocity::handOver(std::uint64_t& raw, Time /*now*/) {
+  retune();
   const double wanted = std::clamp(velocity(), velocity_.lowest(), velocity_.highest());
   if (!velocity_.toDevice(wanted, raw)) (void)neutralRaw(raw);
   return nullptr;

@@ -18,13 +18,19 @@ class PositionByVelocity : public CyclicPosition {
   bool neutralRaw(std::uint64_t& raw) const override;
   const char* handOver(std::uint64_t& raw, Time now) override;
   bool late(Time now) override;
+  void rest() override;
 
  private:
   double velocity() const;
+  /// The loop that the configuration has by now.
+  const PositionLoop& configured() const;
+  void retune();
 
   PositionLoop loop_;
-  Conversion velocity_;  ///< of the target
-  double resolution_;    ///< of the position that is measured, rad or m
+  PositionLoop wanted_;     ///< to which loop_ is led,
+  double retuned_s_ = 0.0;  ///< in this time still
+  Conversion velocity_;     ///< of the target
+  double resolution_;       ///< of the position that is measured, rad or m
 };
 
 }  // namespace cia402::drive

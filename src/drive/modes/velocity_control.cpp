@@ -7,10 +7,10 @@ namespace cia402::drive {
 namespace {
 
 /// A velocity always has a ramp: a step in the set-point would be a jerk of the machine.
-motion::Joint withRamp(const AxisConfig& config) {
-  motion::Joint joint = jointOf(config);
-  if (!joint.limits.acceleration) joint.limits.acceleration = stopDeceleration(config);
-  return joint;
+motion::JointLimits withRamp(const AxisConfig& config) {
+  motion::JointLimits limits = limitsOf(config);
+  if (!limits.acceleration) limits.acceleration = stopDeceleration(config);
+  return limits;
 }
 
 }  // namespace
@@ -18,9 +18,10 @@ motion::Joint withRamp(const AxisConfig& config) {
 // The drive acts on a set-point up to two cycles after it was computed from a measured position.
 VelocityControl::VelocityControl(const ModeChannel& channel, const Context& context)
     : ModeControl(channel, context),
-      limiter_(withRamp(context.axis.config), kReactionCycles * context.axis.config.cycle) {}
+      limiter_(jointOf(context.axis.config), kReactionCycles * context.axis.config.cycle) {}
 
 void VelocityControl::beginStream(const Stream& stream, Time at) {
+  limiter_.limitTo(withRamp(axis().config));
   limiter_.reset({state().position, sent().velocity(), 0.0}, at);
   if (stream.command) (void)limiter_.command(*stream.command);  // finite, so it is taken
 }

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <ros/ros.h>
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -22,6 +23,8 @@
 #include "ros/link_watch.h"
 #include "ros/process_signals.h"
 #include "ros/publishers.h"
+#include "ros/reconfigure.h"
+#include "ros/reloader.h"
 #include "ros/robot_loader.h"
 #include "ros/service_pool.h"
 #include "ros/services.h"
@@ -131,6 +134,18 @@ void tellOfGoals(ros_node::EventLoop& loop, ros_node::TrajectoryActions& traject
   });
 }
 
+/// The tasks at the rate of joint_states, which may change.
+void addStateTasks(ros_node::EventLoop& loop, const ros_node::Reloader& reloader,
+                   std::function<void()> states, std::function<void()> measured) {
+  const Duration period = reloader.jointStatePeriod();
+  const std::size_t first = loop.every(tickOf(period), std::move(states));
+  const std::size_t second = loop.every(period, std::move(measured));
+  loop.always([&loop, &reloader, first, second] {
+    loop.retime(first, tickOf(reloader.jointStatePeriod()));
+    loop.retime(second, reloader.jointStatePeriod());
+  });
+}
+
 /// Runs the driver until the node is asked to end.
 void serve(ros::NodeHandle& node, ros::NodeHandle& private_node, const LoadedRobot& loaded,
            OpenInterface open) {
@@ -160,21 +175,25 @@ void serve(ros::NodeHandle& node, ros::NodeHandle& private_node, const LoadedRob
 
   ros::NodeHandle service_node("~");
   service_node.setCallbackQueue(pool.queue());
-  ros_node::Services services(service_node, desk, runner, loaded.robot);
+  ros_node::Reloader reloader(private_node, runner, loaded, [&loop] { loop.wake(); });
+  ros_node::Services services(service_node, desk, runner, reloader, loaded.robot);
+  ros_node::Reconfigure reconfigure(service_node, private_node, reloader, loaded.robot.groups);
   std::optional<ros_node::FaultService> faults;
   if (simulation != nullptr) faults.emplace(service_node, injectThrough(runner, *simulation));
 
   loop.always([&] {
     desk.answer();
     topics.update();
+    reconfigure.update();
   });
   tellOfGoals(loop, actions, home);
-  const Duration joint_states = fromSeconds(1.0 / loaded.robot.joint_state_rate);
-  loop.every(tickOf(joint_states), [&] {
-    events.drain();
-    publishers.publishStates();
-  });
-  loop.every(joint_states, [&] { publishMeasured(runner, publishers, frames); });
+  addStateTasks(
+      loop, reloader,
+      [&] {
+        events.drain();
+        publishers.publishStates();
+      },
+      [&] { publishMeasured(runner, publishers, frames); });
   loop.every(kDiagnosticsTick, [&] { diagnostics.update(); });
   ros_node::wakeOnSignals(loop.wakeFd());
   while (!ros_node::endRequested()) loop.step();

@@ -13,6 +13,7 @@
 #include "config/robot.h"
 #include "ros/call_desk.h"
 #include "ros/command_call.h"
+#include "ros/reloader.h"
 
 namespace cia402::ros_node {
 
@@ -23,6 +24,7 @@ struct Offer {
   const config::GroupConfig* group = nullptr;  ///< nullptr: those of the bus or of an axis
   CallDesk& desk;
   bus::BusRunner& runner;
+  Reloader& reloader;
   const config::RobotConfig& robot;
   std::vector<ros::ServiceServer>& servers;
 

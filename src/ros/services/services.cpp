@@ -6,10 +6,10 @@
 namespace cia402::ros_node {
 
 Services::Services(ros::NodeHandle& private_node, CallDesk& desk, bus::BusRunner& runner,
-                   const config::RobotConfig& robot) {
+                   Reloader& reloader, const config::RobotConfig& robot) {
   const auto offer = [&](const ros::NodeHandle& node, const drive::AxisConfig* axis,
                          const config::GroupConfig* group, bool ServiceEntry::*concerned) {
-    Offer all{node, axis, group, desk, runner, robot, servers_};
+    Offer all{node, axis, group, desk, runner, reloader, robot, servers_};
     for (const ServiceEntry& service : kServices) {
       if (service.*concerned) service.offer(all);
     }

@@ -10,6 +10,7 @@ void offerTriggers(Offer& offer);
 void offerSetMode(Offer& offer);
 void offerNmt(Offer& offer);
 void offerDumpRecording(Offer& offer);
+void offerReload(Offer& offer);
 void offerLss(Offer& offer);
 void offerErrorHistory(Offer& offer);
 void offerSetPosition(Offer& offer);
@@ -32,6 +33,7 @@ inline constexpr ServiceEntry kServices[] = {
     {offerSetMode, true, true, true},
     {offerNmt, true, true},
     {offerDumpRecording, true, false},
+    {offerReload, true, false},
     {offerLss, true, false},
     {offerErrorHistory, false, true},
     {offerSetPosition, false, true},

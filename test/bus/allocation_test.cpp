@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include "bus/canopen/reload_command.h"
 #include "bus/flight_recorder.h"
 #include "bus/robot_world.h"
 #include "count_allocations.h"
@@ -89,6 +90,30 @@ TEST_F(RecorderAllocation, TheCounterCounts) {
   delete number;
   counting = false;
   EXPECT_GE(allocations, 1);
+}
+
+TEST(ReloadAllocation, WhatIsChangedInMotionTakesNoMemoryOfTheBus) {
+  const config::RobotConfig robot = test::testRobot();
+  config::RobotConfig next = robot;
+  next.groups[0].tolerances["elbow"] = {0.1, 0.01};
+  next.axes[0].command_timeout = 50ms;
+  const canopen::MasterConfig master = test::masterOf(robot);
+  const auto reload = makeReload({robot, master}, {next, master}, false);
+  test::RobotWorld world(robot);
+  world.enable();
+  ASSERT_TRUE(world.move({1.0, -1.0}, 2.0).success);
+  world.run(500ms);
+  bool done = false;
+  Command command(ReloadCommand{reload},
+                  [&done](const ReloadAnswer& answer) { done = answer.success; });
+  allocations = 0;
+  counting = true;
+  world.network.execute(std::move(command), world.now);
+  counting = false;
+  EXPECT_EQ(allocations, 0);
+  EXPECT_TRUE(done);
+  EXPECT_EQ(world.group().config().tolerances.at("elbow").goal, 0.01);
+  EXPECT_TRUE(reload->groups[0].tolerances.empty()) << "what was before is freed by who asked";
 }
 
 }  // namespace
