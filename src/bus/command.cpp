@@ -4,12 +4,16 @@
 #include <vector>
 
 #include "bus/axis_cycle.h"
+#include "bus/coupled_axes.h"
 
 namespace cia402::bus {
 
 void SetpointCommand::begin(AxisCycle& cycle, const Reply<>& reply, Time now) const {
   std::vector<AxisUnit>& units = cycle.units();
   if (axis >= units.size()) return;
+  if (const CoupledAxes* coupling = units[axis].coupling) {
+    return refuse(reply, coupling->streamRefusal(units[axis].axis.config()));
+  }
   const Result<void> taken = units[axis].axis.command(value, now);
   if (!taken) refuse(reply, taken.error().message);
 }
