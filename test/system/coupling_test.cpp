@@ -24,15 +24,21 @@ std::string text(const double (&matrix)[2][2]) {
 }
 
 /// Joints pitch and roll on the axes m5 and m6, which turn to different sides and have other gears.
-std::string wrist(const double (&matrix)[2][2] = kDifferential, const std::string& group = {}) {
+/// @param acceleration limit of both axes
+std::string wrist(const double (&matrix)[2][2] = kDifferential, const std::string& group = {},
+                  const std::string& acceleration = "9") {
+  const std::string limits = ", limits: {velocity: 8, acceleration: " + acceleration + "}";
   return "bus: {interface: sim, bitrate: 1000000, sync_period: 0.004, heartbeat: 0.1}\n"
          "defaults: {drive: generic_cia402, counts_per_turn: 131072, rated_torque: 0.64,\n"
          "  mode: cyclic_position}\n"
          "axes:\n"
          "  base: {node_id: 7, gear_ratio: 100, limits: {velocity: 1, acceleration: 4}}\n"
-         "  m5: {node_id: 1, gear_ratio: 50, limits: {velocity: 8, acceleration: 40}}\n"
-         "  m6: {node_id: 2, gear_ratio: 80, direction: -1, limits: {velocity: 8, acceleration: "
-         "40}}\n"
+         "  m5: {node_id: 1, gear_ratio: 50" +
+         limits +
+         "}\n"
+         "  m6: {node_id: 2, gear_ratio: 80, direction: -1" +
+         limits +
+         "}\n"
          "couplings:\n"
          "  - joints: [pitch, roll]\n"
          "    axes: [m5, m6]\n"
@@ -102,7 +108,7 @@ TEST(Coupling, RandomMatricesBringTheJointsToTheirGoals) {
     const double determinant = matrix[0][0] * matrix[1][1] - matrix[0][1] * matrix[1][0];
     if (std::abs(determinant) < 0.5) continue;
     ++tried;
-    Wrist scene(wrist(matrix), matrix);
+    Wrist scene(wrist(matrix, "", "40"), matrix);
     const double pitch = 0.5 * random(engine), roll = random(engine);
     ASSERT_TRUE(scene.move({pitch, roll}, 2500ms).success) << text(matrix);
     scene.run(3s);
@@ -152,7 +158,7 @@ TEST(Coupling, AHaltOfOneAxisStopsTheOtherOnTheSameWay) {
   scene.run(300ms);
   EXPECT_TRUE(scene.rests());
   EXPECT_LT(scene.pitch(), 0.4);
-  EXPECT_LT(off, 2e-3);
+  EXPECT_LT(off, 1.5e-3) << "with ramps of their own they would be 3.4e-3 off it";
   EXPECT_THAT(scene.told(), HasSubstr("wrist: trajectory stopped: pitch (axes m5, m6): m5"));
   EXPECT_THAT(scene.move({0.0, 0.0}, 2s).message,
               AllOf(HasSubstr("m5 (node 1): halted"), HasSubstr("enable")));

@@ -250,6 +250,34 @@ TEST(Gantry, ASideThatIsHeldWhileBothHomeStopsBoth) {
   EXPECT_FALSE((*homing)->success);
 }
 
+TEST(Gantry, SidesThatSearchToDifferentEndsAreStoppedWithinTheWindow) {
+  Portal scene(
+      portal(standing(0.0, -0.1, 17), standing(0.0, -0.1, 17), "{window: 0.004, homing: 0.01}"));
+  scene.enable();
+  scene.watchApart();
+  const bus::Answer homed = scene.procedure(ProcedureKind::home, "x1");
+  EXPECT_FALSE(homed.success);
+  scene.run(500ms);
+  EXPECT_FALSE(scene.on("x1") || scene.on("x2"));
+  EXPECT_LT(scene.widest, 0.01 + 0.1 * 0.016 + 2.0 * 0.05 * 0.05 / (4.0 * kAcceleration));
+  EXPECT_THAT(scene.told(), HasSubstr("x2 is 0.01"));
+  EXPECT_THAT(scene.told(), HasSubstr("m ahead of x1, and skew/homing is 0.01 m"));
+}
+
+TEST(Gantry, ASideWhoseHomingEndsStopsTheOther) {
+  Portal scene(
+      portal(standing(0.0, -0.1, 17), standing(0.0, -0.1, 18), "{window: 0.004, homing: 0.05}"));
+  scene.enable();
+  const auto homing = scene.begin(ProcedureKind::home, "x1");
+  ASSERT_TRUE(scene.runUntil([&] { return scene.position("x1") < -0.03; }, 3s));
+  scene.axis("x2").cancel("for a test", scene.now());
+  EXPECT_LT(scene.untilRest(), 250ms) << "x2 comes to rest by its halt first";
+  scene.run(500ms);
+  EXPECT_GT(scene.position("x1"), -0.04) << "it goes on for its switch no more";
+  EXPECT_FALSE(scene.on("x1"));
+  EXPECT_THAT(scene.told(), HasSubstr("x (gantry): both sides home together, and x2 does no more"));
+}
+
 TEST(Gantry, AFaultWhileBothHomeStopsBoth) {
   Portal scene(
       portal(standing(0.0, -0.1, 17), standing(0.0, -0.1, 18), "{window: 0.004, homing: 0.01}"));
