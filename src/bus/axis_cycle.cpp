@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "bus/coupled_axes.h"
 #include "bus/reply.h"
 
 namespace cia402::bus {
@@ -33,7 +34,7 @@ bool knownToStand(const drive::Axis& axis) {
 
 AxisCycle::AxisCycle(const config::RobotConfig& robot, const std::vector<AxisUnit::Place>& places,
                      BusSide& bus, EventSink& events)
-    : bus_(bus), events_(events), units_(unitsOf(robot, places, events)), joints_(units_) {
+    : bus_(bus), events_(events), units_(unitsOf(robot, places, events)), joints_(robot, units_) {
   for (AxisUnit& unit : units_) {
     for (AxisUnit& other : units_) {
       const bool together = places[unit.index].device == places[other.index].device;
@@ -50,6 +51,7 @@ AxisCycle::AxisCycle(const config::RobotConfig& robot, const std::vector<AxisUni
 void AxisCycle::move(Time now) {
   last_cycle_ = now;
   for (AxisUnit& unit : units_) unit.readFeedback(now);
+  for (const auto& coupling : joints_.couplings()) coupling->update(now, events_);
   for (Group& group : groups_) {
     for (const TrajectoryOutcome& outcome : group.step(now)) {
       tell(events_,
@@ -58,6 +60,7 @@ void AxisCycle::move(Time now) {
            outcome.message, now);
     }
   }
+  for (const auto& coupling : joints_.couplings()) coupling->move(now);
   for (AxisUnit& unit : units_) unit.move(now);
 }
 
@@ -123,7 +126,7 @@ void AxisCycle::endMotion(Time now) {
 }
 
 void AxisCycle::adoptLimits() {
-  for (Joint& joint : joints_.all()) joint.adoptLimits();
+  for (const auto& joint : joints_.all()) joint->adoptLimits();
   for (Group& group : groups_) group.adoptLimits();
 }
 

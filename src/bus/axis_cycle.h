@@ -115,7 +115,7 @@ class AxisCycle {
   BusSide& bus_;
   EventSink& events_;
   std::vector<AxisUnit> units_;
-  Joints joints_;  ///< that they turn
+  Joints joints_;  ///< that they turn, with their couplings
   std::vector<Group> groups_;
   ObjectClaims claims_;
   JobList jobs_;

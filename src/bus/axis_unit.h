@@ -13,6 +13,8 @@
 
 namespace cia402::bus {
 
+class CoupledAxes;
+
 /// One axis and all that is kept of it, so that what it needs in a cycle lies together. It knows
 /// the device that it sits in, and not which bus this is.
 struct AxisUnit {
@@ -68,6 +70,7 @@ struct AxisUnit {
   SignalWatch signals;
   AxisReporter reporter;
   AxisNews news;
+  CoupledAxes* coupling = nullptr;  ///< that it is in; nullptr: it turns a joint by itself
 };
 
 }  // namespace cia402::bus

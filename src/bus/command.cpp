@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bus/axis_cycle.h"
+#include "bus/coupled_axes.h"
 #include "common/text.h"
 
 namespace cia402::bus {
@@ -61,6 +62,9 @@ std::string refusalOf(const std::vector<Joint*>& joints, const std::vector<doubl
 void SetpointCommand::begin(AxisCycle& cycle, const Reply<>& reply, Time now) const {
   std::vector<AxisUnit>& units = cycle.units();
   if (axis >= units.size()) return;
+  if (const CoupledAxes* coupling = units[axis].coupling) {
+    return refuse(reply, coupling->streamRefusal(units[axis].axis.config()));
+  }
   drive::Axis& target = units[axis].axis;
   const Time at = std::min(came.value_or(now), now);
   const std::string stale = staleness(at, target.config().command_timeout, now);

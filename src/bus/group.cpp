@@ -62,6 +62,19 @@ std::string Group::refusal(const std::vector<Joint*>& joints) const {
   return all;
 }
 
+std::string Group::tornApart(const std::vector<Joint*>& joints) const {
+  for (const Joint* joint : joints) {
+    if (joint->coupling() == nullptr) continue;
+    for (const Joint* other : joints_) {
+      const bool named = std::find(joints.begin(), joints.end(), other) != joints.end();
+      if (named || other->coupling() != joint->coupling()) continue;
+      return config_.name + ": refused: " + joint->who() + " is named without " + other->name() +
+             ", which the same axes move: name both";
+    }
+  }
+  return {};
+}
+
 motion::MotionState Group::commandedAt(const Joint& joint, Time time) const {
   // In the time of the clock, also where that lags: what comes next is given out by the same clock.
   for (const TrajectoryRun& run : runs_) {
@@ -103,6 +116,8 @@ TrajectoryOutcome Group::start(const TrajectoryCommand& command, Time now) {
     descriptions.push_back(descriptions_[named.joint]);
     places.push_back(named.place);
   }
+  const std::string torn = tornApart(joints);
+  if (!torn.empty()) return refused(TrajectoryErrorCode::invalid_joints, torn);
   if (stops) return startStop(command, joints);
   const std::string why_not = refusal(joints);
   if (!why_not.empty()) {

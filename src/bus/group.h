@@ -55,6 +55,8 @@ class Group {
 
  private:
   std::string refusal(const std::vector<Joint*>& joints) const;
+  /// Which joint is named without another one of its coupling, in words; empty if none is.
+  std::string tornApart(const std::vector<Joint*>& joints) const;
   /// Where a joint is when the clock shows `time`, if nothing new begins before.
   motion::MotionState commandedAt(const Joint& joint, Time time) const;
   motion::TrajectoryRules rulesOf(const TrajectoryCommand& command) const;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "bus/coupled_axes.h"
+
 namespace cia402::bus {
 namespace {
 
@@ -12,20 +14,46 @@ std::string switchAdvice(const drive::AxisConfig& axis) {
                          : "~" + axis.name + "/set_mode " + mode->name + " first";
 }
 
-}  // namespace
+/// Turned by one axis.
+class AxisJoint final : public Joint {
+ public:
+  /// @param unit must outlive it
+  explicit AxisJoint(AxisUnit& unit)
+      : Joint(drive::jointOf(unit.axis.config()), drive::jointName(unit.axis.config()),
+              drive::stopDeceleration(unit.axis.config())),
+        unit_(&unit) {}
 
-Joint::Joint(AxisUnit& unit)
-    : unit_(&unit),
-      description_(drive::jointOf(unit.axis.config())),
-      who_(drive::jointName(unit.axis.config())),
-      stop_deceleration_(drive::stopDeceleration(unit.axis.config())) {}
+  JointState state() const override;
+  double position() const override { return axis().state().position; }
+  Time stamp() const override { return axis().state().stamp; }
+  double resolution() const override { return axis().positionResolution(); }
+  bool ready() const override { return axis().state().ready_for_motion; }
+  const drive::SetPoint& sent() const override { return axis().setPoint(); }
+  bool late() const override { return axis().late(); }
+  std::string refusal(const std::string& group) const override;
+  std::string trouble(std::uint32_t told_before) const override;
+  std::uint32_t noticeCount() const override { return axis().noticeCount(); }
+  [[nodiscard]] bool give(double position) override { return unit_->axis.setTarget(position); }
+  void stop(Duration over) override { unit_->axis.stopSetPoint(over); }
+  void follow(const std::string* group) override { unit_->axis.follow(group); }
+  bool followsAnother(const std::string& group) const override {
+    return axis().leader() != nullptr && *axis().leader() != group;
+  }
+  void adoptLimits() override {
+    limitTo(drive::jointOf(axis().config()), drive::stopDeceleration(axis().config()));
+  }
+  std::string commandRefusal(double value) const override { return axis().commandRefusal(value); }
+  Result<void> command(double value, Time at) override { return unit_->axis.command(value, at); }
+  const drive::ModeSpec* mode() const override { return axis().state().mode; }
+  Duration commandTimeout() const override { return axis().config().command_timeout; }
 
-void Joint::adoptLimits() {
-  description_ = drive::jointOf(unit_->axis.config());
-  stop_deceleration_ = drive::stopDeceleration(unit_->axis.config());
-}
+ private:
+  const drive::Axis& axis() const { return unit_->axis; }
 
-JointState Joint::state() const {
+  AxisUnit* unit_;
+};
+
+JointState AxisJoint::state() const {
   const drive::AxisState& from = axis().state();
   JointState state;
   state.known = from.feedback_valid;
@@ -42,51 +70,62 @@ JointState Joint::state() const {
   return state;
 }
 
-int Joint::homingOrder() const {
-  const auto& homing = axis().config().homing;
-  return homing ? homing->order : 0;
-}
-
-std::string Joint::refusal(const std::string& group) const {
-  std::string reason = axis().motionRefusal();
+std::string AxisJoint::refusal(const std::string& group) const {
+  std::string reason = trajectoryRefusal(axis());
   if (!reason.empty()) return reason;
-  const drive::ModeSpec* mode = axis().state().mode;
-  if (mode == nullptr || !mode->cyclic || mode->kind != drive::ControlKind::position) {
-    return who_ + " is in mode " + (mode ? mode->name : "unknown") +
-           ", which does not follow trajectories: " + switchAdvice(axis().config());
-  }
   const std::string* leader = axis().leader();
-  if (followsAnother(group)) return who_ + " follows a trajectory of group " + *leader;
+  if (followsAnother(group)) return who() + " follows a trajectory of group " + *leader;
   // In the cycle in which a trajectory has ended, the stream still knows the way to its goal only.
   const bool rests = axis().streamAtRest() || sent().atRest();
   if (leader == nullptr && !rests) {
-    return who_ + " is still moved by streamed set-points: end the stream and let it come to rest";
+    return who() + " is still moved by streamed set-points: end the stream and let it come to rest";
   }
   return {};
 }
 
-std::string Joint::trouble(std::uint32_t told_before) const {
+std::string AxisJoint::trouble(std::uint32_t told_before) const {
   std::string reason = axis().motionRefusal();
   if (!reason.empty()) return reason;
   if (axis().noticeCount() != told_before) return axis().notice();
-  return who_ + " fell out of operation or got another zero on the way";
+  return who() + " fell out of operation or got another zero on the way";
 }
 
-std::vector<motion::Joint> jointsOf(const config::RobotConfig& robot) {
-  std::vector<motion::Joint> joints;
-  for (const drive::AxisConfig& axis : robot.axes) joints.push_back(drive::jointOf(axis));
-  return joints;
+}  // namespace
+
+std::string trajectoryRefusal(const drive::Axis& axis) {
+  std::string reason = axis.motionRefusal();
+  if (!reason.empty()) return reason;
+  const drive::ModeSpec* mode = axis.state().mode;
+  if (mode != nullptr && mode->cyclic && mode->kind == drive::ControlKind::position) return {};
+  return drive::jointName(axis.config()) + " is in mode " + (mode ? mode->name : "unknown") +
+         ", which does not follow trajectories: " + switchAdvice(axis.config());
 }
 
-Joints::Joints(std::vector<AxisUnit>& units) {
-  joints_.reserve(units.size());
-  for (AxisUnit& unit : units) joints_.emplace_back(unit);
+Joints::Joints(const config::RobotConfig& robot, std::vector<AxisUnit>& units) {
+  for (AxisUnit& unit : units) {
+    if (robot.couplingOf(unit.axis.config().name) != nullptr) continue;
+    joints_.push_back(std::make_unique<AxisJoint>(unit));
+  }
+  for (const config::CouplingConfig& coupling : robot.couplings) {
+    std::vector<AxisUnit*> coupled;
+    for (const std::string& name : coupling.axes) {
+      const auto unit = std::find_if(units.begin(), units.end(), [&](const AxisUnit& any) {
+        return any.axis.config().name == name;
+      });
+      coupled.push_back(&*unit);
+    }
+    couplings_.push_back(
+        std::make_unique<CoupledAxes>(coupling, std::move(coupled), robot.bus.sync_period));
+    for (auto& joint : couplings_.back()->makeJoints()) joints_.push_back(std::move(joint));
+  }
 }
+
+Joints::~Joints() = default;
 
 Joint* Joints::find(const std::string& name) {
   const auto found = std::find_if(joints_.begin(), joints_.end(),
-                                  [&](const Joint& joint) { return joint.name() == name; });
-  return found != joints_.end() ? &*found : nullptr;
+                                  [&](const auto& joint) { return joint->name() == name; });
+  return found != joints_.end() ? found->get() : nullptr;
 }
 
 }  // namespace cia402::bus

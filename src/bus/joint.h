@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,91 +12,101 @@
 
 namespace cia402::bus {
 
-/// A joint: what people name, command and see. An axis turns it; nothing that speaks of joints
-/// (trajectories, joint states, the order of homing) asks which.
+class CoupledAxes;
+
+/// A joint: what people name, command and see. One axis turns it, or several do together (a
+/// coupling); nothing that speaks of joints (trajectories, joint states) asks which.
 class Joint {
  public:
-  /// @param unit the axis that turns it, one for one; must outlive it.
-  explicit Joint(AxisUnit& unit);
+  virtual ~Joint() = default;
+  Joint(const Joint&) = delete;
+  Joint& operator=(const Joint&) = delete;
 
   /// Its axis has got other limits.
-  void adoptLimits();
+  virtual void adoptLimits() = 0;
 
   const std::string& name() const { return description_.name; }
-  /// For messages: "shoulder", or "shoulder (axis m3)".
+  /// For messages: "shoulder", "shoulder (axis m3)", or "pitch (axes m5, m6)".
   const std::string& who() const { return who_; }
   /// Its name, unit and limits.
   const motion::Joint& description() const { return description_; }
   /// With which it is brought to rest, rad/s^2 or m/s^2.
   double stopDeceleration() const { return stop_deceleration_; }
+  /// The coupling that it is of: its joints follow trajectories together. nullptr: of none
+  virtual const CoupledAxes* coupling() const { return nullptr; }
 
-  JointState state() const;
-  /// Joints of a lower order home first.
-  int homingOrder() const;
-  double position() const { return axis().state().position; }
-  Time stamp() const { return axis().state().stamp; }
+  virtual JointState state() const = 0;
+  virtual double position() const = 0;
+  virtual Time stamp() const = 0;
   /// What one unit of the drive's position is, rad or m.
-  double resolution() const { return axis().positionResolution(); }
+  virtual double resolution() const = 0;
   /// Takes set-points: enabled, and no procedure runs.
-  bool ready() const { return axis().state().ready_for_motion; }
+  virtual bool ready() const = 0;
   /// What was sent last, and how it moves.
-  const drive::SetPoint& sent() const { return axis().setPoint(); }
+  virtual const drive::SetPoint& sent() const = 0;
   /// Cycles were missed before this one.
-  bool late() const { return axis().late(); }
+  virtual bool late() const = 0;
 
   /// Why it cannot follow trajectories of that group now, in words; empty if it can.
-  std::string refusal(const std::string& group) const;
+  virtual std::string refusal(const std::string& group) const = 0;
   /// Another group than that one gives its set-points.
-  bool followsAnother(const std::string& group) const {
-    return axis().leader() != nullptr && *axis().leader() != group;
-  }
+  virtual bool followsAnother(const std::string& group) const = 0;
   /// Why it does not do what it is told any more, in words. @param told_before noticeCount() then
-  std::string trouble(std::uint32_t told_before) const;
-  std::uint32_t noticeCount() const { return axis().noticeCount(); }
+  virtual std::string trouble(std::uint32_t told_before) const = 0;
+  virtual std::uint32_t noticeCount() const = 0;
 
   /// Its set-point of this cycle, rad or m. @return false: it is refused, and nothing changes
-  [[nodiscard]] bool give(double position) { return unit_->axis.setTarget(position); }
+  [[nodiscard]] virtual bool give(double position) = 0;
   /// See drive::Axis.
-  std::string commandRefusal(double value) const { return axis().commandRefusal(value); }
-  Result<void> command(double value, Time at) { return unit_->axis.command(value, at); }
-  /// What its set-points are in the mode that it is in; nullptr: that is unknown
-  const drive::ModeSpec* mode() const { return axis().state().mode; }
+  virtual std::string commandRefusal(double value) const = 0;
+  virtual Result<void> command(double value, Time at) = 0;
+  /// What its set-points are in the mode that it is in; nullptr: that is unknown.
+  virtual const drive::ModeSpec* mode() const = 0;
   /// Older than that a command is not followed any more.
-  Duration commandTimeout() const { return axis().config().command_timeout; }
+  virtual Duration commandTimeout() const = 0;
   /// Brings it to rest. @param over not harder than that takes; zero: as hard as it may be
-  void stop(Duration over = Duration::zero()) { unit_->axis.stopSetPoint(over); }
+  virtual void stop(Duration over) = 0;
+  void stop() { stop(Duration::zero()); }
   /// A group gives its set-points from now on; nullptr: none any more.
-  void follow(const std::string* group) { unit_->axis.follow(group); }
+  virtual void follow(const std::string* group) = 0;
+
+ protected:
+  Joint(motion::Joint description, std::string who, double stop_deceleration)
+      : description_(std::move(description)),
+        who_(std::move(who)),
+        stop_deceleration_(stop_deceleration) {}
+  void limitTo(const motion::Joint& description, double stop_deceleration) {
+    description_ = description;
+    stop_deceleration_ = stop_deceleration;
+  }
 
  private:
-  const drive::Axis& axis() const { return unit_->axis; }
-
-  AxisUnit* unit_;
   motion::Joint description_;
   std::string who_;
   double stop_deceleration_;
 };
 
-/// Those of a robot, in the order of NetworkSnapshot::joints.
-std::vector<motion::Joint> jointsOf(const config::RobotConfig& robot);
+/// Why an axis cannot follow trajectories, whatever group asks; empty if it can.
+std::string trajectoryRefusal(const drive::Axis& axis);
 
-/// The joints of a bus, in the order of the configuration, and which axis turns which: each one,
-/// so far.
+/// The joints of a bus, in the order of NetworkSnapshot::joints (config::RobotConfig::joints()),
+/// and the couplings that move some of them.
 class Joints {
  public:
-  explicit Joints(std::vector<AxisUnit>& units);  ///< @param units must outlive it, where they are
+  /// @param units must outlive it, where they are
+  Joints(const config::RobotConfig& robot, std::vector<AxisUnit>& units);
+  ~Joints();
   Joints(const Joints&) = delete;
   Joints& operator=(const Joints&) = delete;
 
-  std::vector<Joint>& all() { return joints_; }
-  const std::vector<Joint>& all() const { return joints_; }
+  const std::vector<std::unique_ptr<Joint>>& all() const { return joints_; }
   /// @return nullptr: there is none of that name
   Joint* find(const std::string& name);
-  /// That which an axis turns. @param axis index in the configuration
-  const Joint& ofAxis(std::size_t axis) const { return joints_[axis]; }
+  const std::vector<std::unique_ptr<CoupledAxes>>& couplings() const { return couplings_; }
 
  private:
-  std::vector<Joint> joints_;
+  std::vector<std::unique_ptr<CoupledAxes>> couplings_;
+  std::vector<std::unique_ptr<Joint>> joints_;
 };
 
 }  // namespace cia402::bus

@@ -228,9 +228,9 @@ void Network::fill(NetworkSnapshot& snapshot) const {
     unit.fill(axis);
     nodes_->ofAxis(unit.index).fill(axis, foreseen_);
   }
-  const std::vector<Joint>& joints = cycle_.joints().all();
+  const auto& joints = cycle_.joints().all();
   snapshot.joints.resize(joints.size());
-  for (std::size_t i = 0; i < joints.size(); ++i) snapshot.joints[i] = joints[i].state();
+  for (std::size_t i = 0; i < joints.size(); ++i) snapshot.joints[i] = joints[i]->state();
   const std::vector<Group>& groups = cycle_.groups();
   snapshot.groups.resize(groups.size());
   for (std::size_t i = 0; i < groups.size(); ++i) {

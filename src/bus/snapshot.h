@@ -80,7 +80,7 @@ struct NetworkSnapshot {
   std::uint64_t foreign_syncs = 0;  ///< of others, while the driver produces SYNC
   bool shut_down = false;
   std::vector<AxisSnapshot> axes;     ///< in configuration order
-  std::vector<JointState> joints;     ///< in configuration order, see jointsOf()
+  std::vector<JointState> joints;     ///< in the order of config::RobotConfig::joints()
   std::vector<GroupSnapshot> groups;  ///< in configuration order
 };
 

@@ -1,72 +1,13 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cmath>
-#include <set>
 
+#include "common/text.h"
 #include "config/robot_parts.h"
 
 namespace cia402::config {
 namespace {
 
 constexpr yaml::Range kShare{0.0, 1.0, false};
-
-std::vector<std::string> readNames(yaml::Section& section, const std::string& key,
-                                   const std::vector<std::string>& known, const char* what) {
-  std::vector<std::string> names;
-  const auto list = section.require(key, std::string("list the ") + what + "s");
-  if (!list) return names;
-  for (const yaml::Value& value : list->list()) {
-    const auto name = value.text();
-    if (!name) continue;
-    if (!known.empty() && std::find(known.begin(), known.end(), *name) == known.end()) {
-      value.problem("there is no " + std::string(what) + " `" + *name + "`" +
-                    yaml::suggestion(*name, known));
-    } else if (std::find(names.begin(), names.end(), *name) != names.end()) {
-      value.problem("`" + *name + "` is listed twice");
-    } else {
-      names.push_back(*name);
-    }
-  }
-  if (list->isList() && list->node().size() == 0) list->problem("must not be empty");
-  return names;
-}
-
-/// The magnitude of the determinant.
-double determinant(std::vector<std::vector<double>> m) {
-  double product = 1.0;
-  for (std::size_t column = 0; column < m.size(); ++column) {
-    std::size_t pivot = column;
-    for (std::size_t row = column + 1; row < m.size(); ++row) {
-      if (std::fabs(m[row][column]) > std::fabs(m[pivot][column])) pivot = row;
-    }
-    if (m[pivot][column] == 0.0) return 0.0;
-    std::swap(m[pivot], m[column]);
-    product *= m[column][column];
-    for (std::size_t row = column + 1; row < m.size(); ++row) {
-      const double factor = m[row][column] / m[column][column];
-      for (std::size_t i = column; i < m.size(); ++i) m[row][i] -= factor * m[column][i];
-    }
-  }
-  return std::fabs(product);
-}
-
-void readMatrix(yaml::Section& section, CouplingConfig& coupling) {
-  const auto value = section.require("matrix", "joint space = matrix * axis space");
-  if (!value) return;
-  const std::size_t size = coupling.axes.size();
-  const std::vector<yaml::Value> rows = value->list();
-  if (rows.size() != size) {
-    value->problem("must have a row for each joint: " + std::to_string(size) + ", not " +
-                   std::to_string(rows.size()));
-    return;
-  }
-  for (const yaml::Value& row : rows) {
-    if (const auto numbers = row.numbers(size)) coupling.matrix.push_back(*numbers);
-  }
-  if (coupling.matrix.size() == size && determinant(coupling.matrix) < 1e-12) {
-    value->problem("has no inverse: some joint motion would need no axis, or all of them");
-  }
-}
 
 // Whether the drive has room for a stream of positions.
 bool streamsPositions(const drive::AxisConfig& axis) {
@@ -97,15 +38,7 @@ std::string incapacity(const RobotConfig& robot, const std::string& name) {
 std::vector<std::string> incapableAxes(const RobotConfig& robot, const std::string& joint) {
   std::vector<std::string> incapable;
   for (const drive::AxisConfig& axis : robot.axes) {
-    bool moves_joint = axis.joint == joint;
-    for (const CouplingConfig& coupling : robot.couplings) {
-      const bool of_coupling =
-          std::find(coupling.axes.begin(), coupling.axes.end(), axis.name) != coupling.axes.end();
-      const bool has_joint =
-          std::find(coupling.joints.begin(), coupling.joints.end(), joint) != coupling.joints.end();
-      moves_joint = moves_joint || (of_coupling && has_joint);
-    }
-    if (moves_joint && !streamsPositions(axis)) incapable.push_back(axis.name);
+    if (robot.turns(axis, joint) && !streamsPositions(axis)) incapable.push_back(axis.name);
   }
   return incapable;
 }
@@ -126,6 +59,21 @@ void readConstraints(const yaml::Value& value, GroupConfig& group) {
   section.finish();
 }
 
+/// Joints that axes couple move together or not at all.
+void checkWhole(yaml::Section& section, const RobotConfig& robot, const GroupConfig& group) {
+  const auto in = [&](const motion::Joint& joint) {
+    return std::find(group.joints.begin(), group.joints.end(), joint.name) != group.joints.end();
+  };
+  for (const CouplingConfig& coupling : robot.couplings) {
+    const auto missing = std::find_if_not(coupling.joints.begin(), coupling.joints.end(), in);
+    const bool any = std::any_of(coupling.joints.begin(), coupling.joints.end(), in);
+    if (!any || missing == coupling.joints.end()) continue;
+    section.get("joints")->problem("lacks `" + missing->name + "`, which the same axes move (" +
+                                   joined(coupling.axes, ", ") +
+                                   "): joints of a coupling are in a group together");
+  }
+}
+
 bool isAxisName(const RobotConfig& robot, const std::string& name) {
   return std::any_of(robot.axes.begin(), robot.axes.end(),
                      [&](const drive::AxisConfig& axis) { return axis.name == name; });
@@ -133,55 +81,30 @@ bool isAxisName(const RobotConfig& robot, const std::string& name) {
 
 }  // namespace
 
-void readCouplings(const yaml::Value& value, RobotConfig& robot) {
-  std::vector<std::string> axis_names;
-  for (const drive::AxisConfig& axis : robot.axes) axis_names.push_back(axis.name);
-  std::set<std::string> coupled, joints;
-  for (const yaml::Value& entry : value.list()) {
-    CouplingConfig coupling;
-    yaml::Section section(entry);
-    coupling.axes = readNames(section, "axes", axis_names, "axis");
-    coupling.joints = readNames(section, "joints", {}, "joint");
-    if (coupling.joints.size() != coupling.axes.size()) {
-      section.problem("needs as many joints as axes");
+std::vector<std::string> readNames(yaml::Section& section, const std::string& key,
+                                   const std::vector<std::string>& known, const char* what) {
+  std::vector<std::string> names;
+  const auto list = section.require(key, std::string("list the ") + what + "s");
+  if (!list) return names;
+  for (const yaml::Value& value : list->list()) {
+    const auto name = value.text();
+    if (!name) continue;
+    if (!known.empty() && std::find(known.begin(), known.end(), *name) == known.end()) {
+      value.problem("there is no " + std::string(what) + " `" + *name + "`" +
+                    yaml::suggestion(*name, known));
+    } else if (std::find(names.begin(), names.end(), *name) != names.end()) {
+      value.problem("`" + *name + "` is listed twice");
     } else {
-      readMatrix(section, coupling);
-    }
-    section.finish();
-    for (const std::string& axis : coupling.axes) {
-      if (!coupled.insert(axis).second) section.problem("`" + axis + "` is coupled twice");
-    }
-    for (const std::string& joint : coupling.joints) {
-      if (!joints.insert(joint).second) section.problem("joint `" + joint + "` is given twice");
-    }
-    robot.couplings.push_back(coupling);
-  }
-  if (!robot.couplings.empty()) {
-    value.problem(
-        "joints that several axes move together are not supported yet: trajectories would go to "
-        "the axes as if each were a joint; leave `couplings` out and command the axes");
-  }
-  for (const drive::AxisConfig& axis : robot.axes) {
-    if (coupled.count(axis.name) == 0 && joints.count(axis.joint) != 0) {
-      value.problem("the joint `" + axis.joint + "` is that of an axis without coupling already");
+      names.push_back(*name);
     }
   }
+  if (list->isList() && list->node().size() == 0) list->problem("must not be empty");
+  return names;
 }
 
 std::vector<std::string> jointNames(const RobotConfig& robot) {
   std::vector<std::string> names;
-  const auto coupled = [&](const std::string& axis) {
-    return std::any_of(
-        robot.couplings.begin(), robot.couplings.end(), [&](const CouplingConfig& coupling) {
-          return std::find(coupling.axes.begin(), coupling.axes.end(), axis) != coupling.axes.end();
-        });
-  };
-  for (const drive::AxisConfig& axis : robot.axes) {
-    if (!coupled(axis.name)) names.push_back(axis.joint);
-  }
-  for (const CouplingConfig& coupling : robot.couplings) {
-    names.insert(names.end(), coupling.joints.begin(), coupling.joints.end());
-  }
+  for (const motion::Joint& joint : robot.joints()) names.push_back(joint.name);
   return names;
 }
 
@@ -207,6 +130,7 @@ void readGroups(const yaml::Value& value, RobotConfig& robot) {
     section.read("lengthening", group.lengthening, yaml::kNotNegative);
     if (const auto constraints = section.get("constraints")) readConstraints(*constraints, group);
     section.finish();
+    checkWhole(section, robot, group);
     for (const std::string& joint : group.joints) {
       for (const std::string& axis : incapableAxes(robot, joint)) {
         section.get("joints")->problem(incapacity(robot, axis));

@@ -47,8 +47,8 @@ RobotConfig readRobot(const YAML::Node& tree, const ProfileLookup& lookup, Probl
   } else {
     problems.add("axes", "is missing: name at least one axis with its node_id and drive");
   }
-  readTf(section, robot);
   if (const auto couplings = section.get("couplings")) readCouplings(*couplings, robot);
+  readTf(section, robot);
   const auto groups = section.get("groups");
   if (groups && !groups->node().IsNull()) readGroups(*groups, robot);
   if (robot.groups.empty()) addDefaultGroup(robot);

@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <memory>
@@ -15,6 +16,11 @@
 #include "canopen/device_config.h"
 #include "common/problems.h"
 #include "drive/axis/config.h"
+#include "motion/joint.h"
+
+namespace cia402::motion {
+class Coupling;
+}
 
 namespace cia402::config {
 
@@ -56,10 +62,29 @@ struct GroupConfig {
   std::map<std::string, JointTolerance> tolerances;
 };
 
-/// Joints that are linear combinations of several axes (`couplings:`).
+/// The two sides of a gantry move one joint, side by side.
+struct GantryConfig {
+  double skew_window = 0.0;    ///< rad or m, > 0, that one side may be ahead of the other
+  double homing_window = 0.0;  ///< the same while they are not homed, counted from where they stood
+  /// How fast what is left of it is taken back while the joint moves, per s and s².
+  double squaring_velocity = 0.0, squaring_acceleration = 0.0;
+};
+
+/// Joints that several axes move together (`couplings:`).
 struct CouplingConfig {
-  std::vector<std::string> joints, axes;
-  std::vector<std::vector<double>> matrix;  ///< joint space = matrix * axis space
+  std::vector<motion::Joint> joints;
+  std::vector<std::string> axes;
+  /// Joint space = matrix * axis space. That of a gantry has a second row: side 2 minus side 1.
+  std::shared_ptr<const motion::Coupling> matrix;
+  std::optional<GantryConfig> gantry;
+
+  bool has(const std::string& axis) const {
+    return std::find(axes.begin(), axes.end(), axis) != axes.end();
+  }
+  bool moves(const std::string& joint) const {
+    return std::any_of(joints.begin(), joints.end(),
+                       [&](const motion::Joint& any) { return any.name == joint; });
+  }
 };
 
 /// A tf frame that a joint moves, or one that stands still, as URDF defines joints.
@@ -113,6 +138,19 @@ struct RobotConfig {
     return devices[axis.device].axes[axis.device_axis];
   }
   std::vector<CouplingConfig> couplings;
+  /// That which the axis is in; nullptr: it moves its own joint.
+  const CouplingConfig* couplingOf(const std::string& axis) const {
+    const auto found = std::find_if(couplings.begin(), couplings.end(),
+                                    [&](const CouplingConfig& any) { return any.has(axis); });
+    return found != couplings.end() ? &*found : nullptr;
+  }
+  /// The joints of a bus: of the axes that are in no coupling, then of the couplings.
+  std::vector<motion::Joint> joints() const;
+  /// Whether the axis moves that joint, alone or with others.
+  bool turns(const drive::AxisConfig& axis, const std::string& joint) const {
+    const CouplingConfig* coupling = couplingOf(axis.name);
+    return coupling != nullptr ? coupling->moves(joint) : axis.joint == joint;
+  }
   std::vector<GroupConfig> groups;
   std::vector<FrameConfig> frames;         ///< that joints move; with `static_frames` trees
   std::vector<FrameConfig> static_frames;  ///< that stand still

@@ -147,6 +147,11 @@ void leaveRiders(RobotConfig& robot);
 /// What the axis' keys mean together with its profile, which it has; `section` is the axis.
 void checkAxis(yaml::Section& section, const AxisDraft& draft, RobotConfig& robot);
 
+/// The names in the list `key`, each once. @param known those that there are; empty: any.
+/// @param what they are, for messages
+std::vector<std::string> readNames(yaml::Section& section, const std::string& key,
+                                   const std::vector<std::string>& known, const char* what);
+/// `couplings`, with the frames of their joints. @pre the axes were read
 void readCouplings(const yaml::Value& value, RobotConfig& robot);
 void readGroups(const yaml::Value& value, RobotConfig& robot);
 /// The group `joints` of all joints that can follow a stream of positions.

@@ -8,10 +8,10 @@
 #include "bus/axis_condition.h"
 #include "bus/jobs/object_commands.h"
 #include "bus/jobs/procedure_command.h"
-#include "bus/joint.h"
 #include "bus/mpsc_queue.h"
 #include "bus/real_clock.h"
 #include "bus/runner.h"
+#include "common/text.h"
 #include "config/ready_robot.h"
 #include "driver/open_socket.h"
 #include "sim/world/robot_drives.h"
@@ -47,6 +47,15 @@ std::unique_ptr<can::Interface> open(const config::ReadyRobot& ready, const std:
   const auto drives = sim::simulatedDrives(ready.robot, folder + "/simulated_drives", problems);
   if (!problems.empty()) return nullptr;
   return std::make_unique<sim::SimulatedInterface>(drives, ready.robot.bus.bitrate, bus::realNow());
+}
+
+/// What one of the axes that move a joint, mostly the only one, says of it.
+void addAxis(const drive::AxisConfig& axis, const bus::AxisSnapshot& shown, JointStatus& joint) {
+  const bus::Summary summary = bus::summaryOf(shown, axis.profile->warning_stops);
+  joint.enabled = joint.enabled && shown.state.ready_for_motion;
+  joint.homed = joint.homed && shown.state.homed;
+  joint.faulted = joint.faulted || summary.condition >= bus::Condition::error;
+  if (joint.condition != summary.text) append(joint.condition, summary.text);
 }
 
 }  // namespace
@@ -134,7 +143,7 @@ bool Robot::ready() const {
 
 std::vector<std::string> Robot::joints() const {
   std::vector<std::string> names;
-  for (const motion::Joint& joint : bus::jointsOf(impl_->config)) names.push_back(joint.name);
+  for (const motion::Joint& joint : impl_->config.joints()) names.push_back(joint.name);
   return names;
 }
 
@@ -212,19 +221,19 @@ std::vector<JointStatus> Robot::state() const {
   impl_->runner.look();
   const bus::NetworkSnapshot shown = impl_->runner.snapshot();
   std::vector<JointStatus> joints;
-  for (std::size_t i = 0; i < impl_->config.axes.size(); ++i) {
-    const drive::AxisConfig& axis = impl_->config.axes[i];
-    const drive::AxisState& state = shown.axes[i].state;
-    const bus::Summary summary = bus::summaryOf(shown.axes[i], axis.profile->warning_stops);
+  for (const motion::Joint& known : impl_->config.joints()) {
+    const bus::JointState& state = shown.joints[joints.size()];
     JointStatus joint;
-    joint.name = axis.joint;
-    joint.position = shown.joints[i].position;
-    joint.velocity = shown.joints[i].velocity;
-    joint.effort = shown.joints[i].effort;
-    joint.enabled = state.ready_for_motion;
-    joint.homed = state.homed;
-    joint.faulted = summary.condition >= bus::Condition::error;
-    joint.condition = summary.text;
+    joint.name = known.name;
+    joint.position = state.position;
+    joint.velocity = state.velocity;
+    joint.effort = state.effort;
+    joint.enabled = joint.homed = true;
+    for (std::size_t i = 0; i < impl_->config.axes.size(); ++i) {
+      if (impl_->config.turns(impl_->config.axes[i], known.name)) {
+        addAxis(impl_->config.axes[i], shown.axes[i], joint);
+      }
+    }
     joints.push_back(std::move(joint));
   }
   return joints;

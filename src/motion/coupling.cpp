@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <algorithm>
+#include <limits>
 
 #include "common/text.h"
 #include "motion/joint.h"
@@ -12,7 +13,7 @@ namespace cia402::motion {
 
 namespace {
 
-constexpr double kSmallestRcond = 1e-9;
+constexpr double kSingular = 1e12;  // beyond that a condition number is rounding
 
 std::string printed(const Eigen::MatrixXd& matrix) {
   std::string text = "[";
@@ -26,9 +27,8 @@ std::string printed(const Eigen::MatrixXd& matrix) {
   return text + "]";
 }
 
-/// Smallest over largest singular value, after scaling the rows (joints) and then the columns
-/// (axes): metres beside radians or a large gear ratio do not make a coupling singular.
-double reciprocalCondition(Eigen::MatrixXd matrix) {
+/// After scaling the rows (joints) and then the columns (axes).
+double conditionOf(Eigen::MatrixXd matrix) {
   constexpr double kTiny = 1e-300;  // a row of zeros stays one
   for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
     matrix.row(i) /= std::max(matrix.row(i).cwiseAbs().maxCoeff(), kTiny);
@@ -38,7 +38,9 @@ double reciprocalCondition(Eigen::MatrixXd matrix) {
   }
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(matrix);
   const auto& values = svd.singularValues();
-  return values(0) > 0 ? values(values.size() - 1) / values(0) : 0;
+  const double smallest = values(values.size() - 1);
+  const bool singular = !(values(0) < kSingular * smallest);
+  return singular ? std::numeric_limits<double>::infinity() : values(0) / smallest;
 }
 
 }  // namespace
@@ -51,6 +53,15 @@ Coupling::Coupling(std::vector<std::string> joints, std::vector<std::string> axe
       inverse_(matrix.fullPivLu().inverse()),
       transposed_(matrix.transpose()),
       inverse_transposed_(inverse_.transpose()) {}
+
+double Coupling::dot(const Eigen::MatrixXd& matrix, std::size_t row, const Input& values) {
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    const double factor = matrix(static_cast<Eigen::Index>(row), i);
+    if (factor != 0.0) sum += factor * values(i);
+  }
+  return sum;
+}
 
 Result<Coupling> Coupling::create(std::vector<std::string> joints, std::vector<std::string> axes,
                                   const Eigen::MatrixXd& matrix) {
@@ -70,11 +81,15 @@ Result<Coupling> Coupling::create(std::vector<std::string> joints, std::vector<s
   if (!matrix.allFinite()) {
     return Error{who + ": the matrix " + printed(matrix) + " has an element that is not a number"};
   }
-  if (reciprocalCondition(matrix) < kSmallestRcond) {
+  const double condition = conditionOf(matrix);
+  if (condition > kWorstCondition) {
+    const bool singular = condition > kSingular;
     return Error{who + ": the matrix " + printed(matrix) +
-                 " is singular: some movement of the axes would move no joint, so that axis "
-                 "set-points cannot be computed; check for a row or column that is zero or a "
-                 "multiple of another"};
+                 (singular ? " is singular" : " is badly conditioned") + " (condition number " +
+                 numberText(condition, 3) + ", at most " + formatNumber(kWorstCondition) +
+                 "): some movement of the axes would move " +
+                 (singular ? "no joint" : "the joints next to not at all") +
+                 "; check for a row or column that is zero, or nearly a multiple of another"};
   }
   return Coupling(std::move(joints), std::move(axes), matrix);
 }

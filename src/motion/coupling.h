@@ -20,10 +20,15 @@ class Coupling {
   using Input = Eigen::Ref<const Eigen::VectorXd>;
   using Output = Eigen::Ref<Eigen::VectorXd>;
 
+  /// The worst condition number of a matrix, see create(): small errors of the axes become errors
+  /// of the joints, and the other way round, that are larger by as much.
+  static constexpr double kWorstCondition = 1000.0;
+
   /// One row a joint, one column an axis. @return why the matrix cannot be used: not square, of
-  /// another size than the names, not finite, or singular, i.e. some movement of the axes would
-  /// move no joint (after scaling rows and columns
-  /// the smallest singular value is below 1e-9 of the largest).
+  /// another size than the names, not finite, or singular or badly conditioned: some movement of
+  /// the axes moves no joint, or next to none. The condition number is the largest over the
+  /// smallest singular value after scaling rows and columns, so that metres beside radians or a
+  /// large gear ratio do not count.
   static Result<Coupling> create(std::vector<std::string> joints, std::vector<std::string> axes,
                                  const Eigen::MatrixXd& matrix);
 
@@ -40,6 +45,22 @@ class Coupling {
     axes.noalias() = transposed_ * joints;
   }
 
+  /// One joint of toJoints(). Axes that it does not depend on may be NaN: unknown.
+  double toJoint(std::size_t joint, const Input& axes) const { return dot(matrix_, joint, axes); }
+  /// One joint of effortToJoints(), likewise.
+  double effortToJoint(std::size_t joint, const Input& axes) const {
+    return dot(inverse_transposed_, joint, axes);
+  }
+
+  /// The largest magnitude that `axis` can get from joints of these magnitudes, all at once.
+  double mostOfAxis(std::size_t axis, const Input& joints) const {
+    return inverse_.row(static_cast<Eigen::Index>(axis)).cwiseAbs().dot(joints);
+  }
+  /// How much of a joint's motion an axis makes, e.g. in radians a radian.
+  double shareOfAxis(std::size_t axis, std::size_t joint) const {
+    return inverse_(static_cast<Eigen::Index>(axis), static_cast<Eigen::Index>(joint));
+  }
+
   std::size_t size() const { return joints_.size(); }
   const std::vector<std::string>& joints() const { return joints_; }
   const std::vector<std::string>& axes() const { return axes_; }
@@ -48,6 +69,7 @@ class Coupling {
  private:
   Coupling(std::vector<std::string> joints, std::vector<std::string> axes,
            const Eigen::MatrixXd& matrix);
+  static double dot(const Eigen::MatrixXd& matrix, std::size_t row, const Input& values);
 
   std::vector<std::string> joints_, axes_;
   Eigen::MatrixXd matrix_, inverse_, transposed_, inverse_transposed_;

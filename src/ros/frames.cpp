@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "bus/joint.h"
 #include "ros/clock_map.h"
 #include "ros/frame_pose.h"
 
@@ -23,7 +22,7 @@ std::vector<geometry_msgs::TransformStamped> transformsOf(
 
 Frames::Frames(const bus::BusTime& time, const config::RobotConfig& robot) : time_(time) {
   if (!robot.publish_tf) return;
-  const std::vector<motion::Joint> joints = bus::jointsOf(robot);
+  const std::vector<motion::Joint> joints = robot.joints();
   for (const config::FrameConfig& frame : robot.frames) {
     for (std::size_t i = 0; i < joints.size(); ++i) {
       if (joints[i].name == frame.joint) moved_.push_back({&frame, i, joints[i].unit});

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "bus/joint.h"
 #include "ros/clock_map.h"
 #include "ros/group_message.h"
 
@@ -93,7 +92,7 @@ std::string stepText(const bus::AxisSnapshot& axis) {
 
 Publishers::Publishers(ros::NodeHandle& node, ros::NodeHandle& private_node, bus::BusRunner& runner,
                        const LinkWatch& link, const config::RobotConfig& robot)
-    : runner_(runner), link_(link), robot_(robot), joints_(bus::jointsOf(robot)) {
+    : runner_(runner), link_(link), robot_(robot), joints_(robot.joints()) {
   joint_states_pub_ = node.advertise<sensor_msgs::JointState>("joint_states", 10);
   axis_states_pub_ = private_node.advertise<cia402_driver::AxisStates>("axis_states", 10, true);
   bus_state_pub_ = private_node.advertise<cia402_driver::BusState>("bus_state", 10, true);

@@ -5,7 +5,6 @@
 #include <optional>
 #include <utility>
 
-#include "bus/joint.h"
 #include "ros/command_topics.h"
 #include "ros/group_message.h"
 
@@ -53,7 +52,7 @@ TrajectoryActions::TrajectoryActions(ros::NodeHandle& private_node, bus::BusRunn
     : runner_(runner),
       wake_(std::move(wake)),
       robot_(robot),
-      joints_(bus::jointsOf(robot)),
+      joints_(robot.joints()),
       news_(kNews) {
   for (std::size_t group = 0; group < robot.groups.size(); ++group) {
     servers_.push_back(std::make_unique<Server>(

@@ -25,8 +25,8 @@ struct GroupToleranceTest : testing::Test {
     config.joints = {"shoulder", "elbow"};
     config.goal_time = 0.5;
     config.tolerances["elbow"] = elbow;
-    std::vector<Joint>& joints = world.network.cycle().joints().all();
-    return Group(config, {&joints[0], &joints[1]}, test::kPeriod);
+    Joints& joints = world.network.cycle().joints();
+    return Group(config, {joints.find("shoulder"), joints.find("elbow")}, test::kPeriod);
   }
   TrajectoryOutcome start(Group& group, double shoulder, double elbow) {
     return group.start(world.trajectory("arm", {{{shoulder, elbow}, 1.0}}), world.now);

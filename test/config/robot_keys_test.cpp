@@ -351,19 +351,6 @@ TEST(RobotMistakes, WithoutAnyAxisThereIsNothingToDo) {
               HasSubstr("axes: is missing: name at least one axis with its node_id and drive"));
 }
 
-TEST(RobotMistakes, AMatrixHasAnInverseWhateverTheOrderOfItsRows) {
-  const auto problems = [](const char* matrix) {
-    return changed("axes:", "couplings: [{joints: [p, r], axes: [shoulder, elbow], matrix: " +
-                                std::string(matrix) + "}]\naxes:")
-        .problems;
-  };
-  EXPECT_THAT(problems("[[0, 2], [3, 0]]"), testing::Not(HasSubstr("has no inverse")));
-  EXPECT_THAT(problems("[[1, 2], [3, 4]]"), testing::Not(HasSubstr("has no inverse")));
-  EXPECT_THAT(problems("[[1, 1], [1, 1]]"), HasSubstr("has no inverse"));
-  EXPECT_THAT(problems("[[0, 0], [1, 2]]"), HasSubstr("has no inverse"));
-  EXPECT_THAT(problems("[[1, 0], [2, 0]]"), HasSubstr("has no inverse"));
-}
-
 TEST(RobotWarnings, OfLimitsThatAreMissing) {
   EXPECT_THAT(changed("velocity: 2.0, acceleration: 8.0", "velocity: 2.0").robot.warnings,
               Contains("axes/shoulder/limits: no acceleration limit: the axis follows set-points "

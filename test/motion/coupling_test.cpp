@@ -80,10 +80,29 @@ TEST(Coupling, SingularMatrixIsRefusedInWords) {
   EXPECT_FALSE(wrist(matrix2(1, 0, 2, 0)));
 }
 
-TEST(Coupling, IsSingularWhereTheSmallestSingularValueIsBelowABillionthOfTheLargest) {
-  // 2 and d / 2 are the singular values of these
-  EXPECT_FALSE(wrist(matrix2(1, 1, 1, 1 + 3e-9)));
-  EXPECT_TRUE(wrist(matrix2(1, 1, 1, 1 + 5e-9)));
+TEST(Coupling, IsRefusedWhereTheConditionNumberIsBeyondAThousand) {
+  // 2 and d / 2 are the singular values of these: condition numbers 4 / d
+  const auto refused = wrist(matrix2(1, 1, 1, 1 + 3.9e-3));
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message,
+              HasSubstr("is badly conditioned (condition number 1.03e+03, at most 1000)"));
+  EXPECT_TRUE(wrist(matrix2(1, 1, 1, 1 + 4.1e-3)));
+  EXPECT_THAT(wrist(matrix2(1, 1, 1, 1)).error().message,
+              HasSubstr("is singular (condition number inf"));
+}
+
+TEST(Coupling, AnUnknownAxisLeavesThoseJointsKnownThatDoNotNeedIt) {
+  const Coupling coupling = wrist(matrix2(2, 0, 1, 1)).value();
+  const Eigen::Vector2d axes(0.5, std::nan(""));
+  EXPECT_EQ(coupling.toJoint(0, axes), 1.0);
+  EXPECT_TRUE(std::isnan(coupling.toJoint(1, axes)));
+}
+
+TEST(Coupling, SaysWhatAnAxisGetsFromAllJointsAtOnce) {
+  // pitch = (a + b) / 2, roll = a - b: a = pitch + roll / 2
+  EXPECT_NEAR(differential().mostOfAxis(0, Eigen::Vector2d(2, 3)), 3.5, 1e-12);
+  EXPECT_NEAR(differential().mostOfAxis(1, Eigen::Vector2d(2, 3)), 3.5, 1e-12);
+  EXPECT_NEAR(differential().shareOfAxis(1, 1), -0.5, 1e-12);
 }
 
 TEST(Coupling, UnequalScalesAreNotMistakenForSingularity) {

@@ -26,7 +26,7 @@ class HomingPlan {
   void add(const std::string& name, std::optional<int> order) {
     const auto axis = indexWhere([&](const drive::AxisConfig& of) { return of.name == name; });
     if (!axis) return addGroup(name, order);
-    if (robot_.axes[*axis].homing) return add(*axis, order, true);
+    if (robot_.axes[*axis].homing) return addSides(*axis, order);
     problem_ = drive::jointName(robot_.axes[*axis]) +
                " has no `homing` section; set_position says where it stands";
   }
@@ -43,6 +43,15 @@ class HomingPlan {
     if (found == robot_.axes.end()) return {};
     return static_cast<std::size_t>(found - robot_.axes.begin());
   }
+  /// The sides of a gantry are homed together.
+  void addSides(std::size_t axis, std::optional<int> order) {
+    const config::CouplingConfig* const coupling = robot_.couplingOf(robot_.axes[axis].name);
+    if (coupling == nullptr || !coupling->gantry) return add(axis, order, true);
+    for (const std::string& side : coupling->axes) {
+      const auto of = indexWhere([&](const drive::AxisConfig& any) { return any.name == side; });
+      if (of) add(*of, order, true);
+    }
+  }
   void addGroup(const std::string& name, std::optional<int> order) {
     const auto group = std::find_if(robot_.groups.begin(), robot_.groups.end(),
                                     [&](const config::GroupConfig& of) { return of.name == name; });
@@ -52,10 +61,11 @@ class HomingPlan {
     }
     bool any = false;
     for (const std::string& joint : group->joints) {
-      const auto axis = indexWhere([&](const drive::AxisConfig& of) { return of.joint == joint; });
-      if (!axis || !robot_.axes[*axis].homing) continue;
-      any = true;
-      add(*axis, order, false);
+      for (std::size_t axis = 0; axis < robot_.axes.size(); ++axis) {
+        if (!robot_.axes[axis].homing || !robot_.turns(robot_.axes[axis], joint)) continue;
+        any = true;
+        add(axis, order, false);
+      }
     }
     if (!any) problem_ = "nothing to do: no axis of " + name + " has a `homing` section";
   }

@@ -7,16 +7,34 @@
 #include <vector>
 
 #include "bus/axis_cycle.h"
+#include "bus/coupled_axes.h"
 #include "bus/jobs/procedure_job.h"
 
 namespace cia402::bus {
+namespace {
+
+/// What is done to one side of a gantry is done to the other; parameters are the drive's own.
+bool ofBothSides(drive::ProcedureKind kind) {
+  return kind != drive::ProcedureKind::save_parameters &&
+         kind != drive::ProcedureKind::restore_parameters;
+}
+
+int homingOrder(const drive::AxisConfig& axis) { return axis.homing ? axis.homing->order : 0; }
+
+}  // namespace
 
 bool ProcedureCommand::concerns(const AxisUnit& unit, const config::GroupConfig* of) const {
   const drive::AxisConfig& config = unit.axis.config();
-  if (!axis.empty()) return config.name == axis;
+  const CoupledAxes* coupling = unit.coupling;
+  if (!axis.empty()) {
+    const bool with_it = coupling != nullptr && coupling->asOne() && coupling->config().has(axis);
+    return config.name == axis || (with_it && ofBothSides(request.kind));
+  }
   if (request.kind == drive::ProcedureKind::home && !config.homing) return false;
   return of == nullptr ||
-         std::find(of->joints.begin(), of->joints.end(), config.joint) != of->joints.end();
+         std::any_of(of->joints.begin(), of->joints.end(), [&](const std::string& joint) {
+           return coupling != nullptr ? coupling->config().moves(joint) : config.joint == joint;
+         });
 }
 
 void ProcedureCommand::begin(AxisCycle& cycle, const Reply<>& reply, Time now) const {
@@ -39,8 +57,7 @@ void ProcedureCommand::begin(AxisCycle& cycle, const Reply<>& reply, Time now) c
       continue;
     }
     units.push_back(&unit);
-    items.push_back(
-        {&unit.axis, homing ? cycle.joints().ofAxis(unit.index).homingOrder() : 0, unit.index});
+    items.push_back({&unit.axis, homing ? homingOrder(unit.axis.config()) : 0, unit.index});
     if (stops(request.kind)) cycle.jobs().withdraw(unit.axis, request.kind);
   }
   if (items.empty()) {
@@ -57,7 +74,7 @@ void ProcedureCommand::begin(AxisCycle& cycle, const Reply<>& reply, Time now) c
   const bool held = request.kind == drive::ProcedureKind::recover && cycle.prepareRecovery(units);
   ProcedureJob::Manner manner;
   manner.held = held;
-  manner.together = of_group;
+  manner.together = of_group || (!axis.empty() && items.size() > 1);
   auto job = std::make_unique<ProcedureJob>(request, std::move(items), std::move(left_out),
                                             std::move(manner), reply);
   if (!job->step(now)) cycle.jobs().add(std::move(job));
