@@ -59,7 +59,7 @@ struct ReloadScene : testing::Test {
     for (const std::size_t i : {0U, 1U}) {
       EXPECT_EQ(fastest(i), 2.0);
       EXPECT_EQ(held(i), kOfTwo) << "drive " << i;
-      EXPECT_EQ(*world.network.cycle().joints().all()[i].description().limits.velocity, 2.0);
+      EXPECT_EQ(*world.network.cycle().joints().all()[i]->description().limits.velocity, 2.0);
     }
     EXPECT_TRUE(world.call(ProcedureKind::enable).success) << "an axis is held still";
     EXPECT_TRUE(world.move({0.8, 0.8}, 1.0).success) << "1.5 rad/s at its peak";

@@ -11,7 +11,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using namespace std::chrono_literals;
 
-constexpr double kVelocity = 0.3, kAcceleration = 1.0;  // m/s, m/s²
+constexpr double kGantryVelocity = 0.3, kAcceleration = 1.0;  // m/s, m/s²
 constexpr Duration kCycle = 4ms;
 
 /// A portal x, of which each side has a motor with a spindle of 20 mm.
