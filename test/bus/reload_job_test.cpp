@@ -77,7 +77,7 @@ TEST_F(ReloadScene, ALimitGetsIntoTheDriveAndThenCounts) {
     EXPECT_THAT(world.drives[i].written, testing::ElementsAre(kWindow)) << "and nothing else";
   }
   ASSERT_TRUE(world.call(ProcedureKind::enable).success);
-  const Answer refused = world.move({0.0, 0.8}, 1.0);  // 1.5 rad/s at its peak
+  const Answer refused = world.move({0.0, 0.8}, 0.5);  // 1.2 s at least, by a cubic
   EXPECT_FALSE(refused.success);
   EXPECT_THAT(refused.message, AllOf(HasSubstr("elbow"), HasSubstr("limit")));
   EXPECT_TRUE(world.move({0.0, 0.5}, 1.0).success);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <stdexcept>
@@ -102,7 +103,14 @@ class PlayerTest : public testing::Test {
   }
   /// So many seconds after the beginning of the scene the axis may move until then, as is told at
   /// the last action, "end".
-  double permitAtEnd() const { return seconds(told(" end").until); }
+  double permitAtEnd() const {
+    const auto ends = [](const Told& line) {
+      const std::string last = " end";
+      return line.line.size() > last.size() &&
+             line.line.compare(line.line.size() - last.size(), last.size(), last) == 0;
+    };
+    return seconds(std::find_if(told_.begin(), told_.end(), ends)->until);
+  }
   static double seconds(Time time) { return toSeconds(time.time_since_epoch()); }
 
   std::vector<Told> told_;
