@@ -118,7 +118,8 @@ TEST_F(PlayerTest, PermitsAVelocityUntilItIsOutOfDateAndTheMotorStops) {
 TEST_F(PlayerTest, PermitsAnEffortUntilItIsOutOfDateAndTheMotorStops) {
   play({"2 enable a1", "4 stream a1 1 0.01 100", "8 end"},
        playedRobot("cyclic_torque", ", modes: [cyclic_torque, cyclic_position]"));
-  EXPECT_NEAR(permitAtEnd(), 4 + 0.2 + 0.016 + 0.45, 0.006);
+  const Time until = told("the stream of efforts ended").until;
+  EXPECT_NEAR(seconds(until), 4 + 0.2 + 0.016 + 0.45, 0.006);
 }
 
 TEST_F(PlayerTest, PermitsNothingBySetPointsThatAreRefused) {
