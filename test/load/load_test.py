@@ -151,7 +151,7 @@ class Load(RobotTest):
         topics = self.topics()
         self.assertGreaterEqual(len(self.services), 80)
         # Four axes; the group: command, and goal and cancel; goal and cancel of home.
-        self.assertEqual(len(topics), 9)
+        self.assertEqual(len(topics), 10)  # four axes; the group: command, commands; two actions
         threads = [self.start(self.call, seed) for seed in range(CALLERS)]
         threads += [self.start(self.publish, topic, kind) for topic, kind in topics]
         for thread in threads:
