@@ -80,7 +80,7 @@ class CouplingReader {
     }
     auto made = motion::Coupling::create(names_, coupling_.axes, matrix);
     if (!made) return value->problem("is refused: " + made.error().message);
-    coupling_.matrix = std::make_shared<const motion::Coupling>(std::move(*made));
+    coupling_.matrix = std::make_shared<const motion::Coupling>(*made);
   }
 
   void readGantry() {

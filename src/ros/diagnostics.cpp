@@ -112,14 +112,14 @@ void addLastError(diagnostic_updater::DiagnosticStatusWrapper& status, const bus
 /// How late SYNC was how often, a line for each band.
 void addLateness(diagnostic_updater::DiagnosticStatusWrapper& status,
                  const bus::CycleStatistics& cycle) {
-  constexpr auto& kBands = bus::CycleStatistics::kBands;
+  const auto& bands = bus::CycleStatistics::kBands;
   status.addf("SYNC lateness rms", "%.3f ms", 1e3 * cycle.rmsLateness());
   status.addf("SYNC lateness max", "%.3f ms", 1e3 * cycle.maxLateness());
-  for (std::size_t band = 0; band < kBands.size(); ++band) {
-    status.add("SYNC lateness up to " + numberText(1e3 * kBands[band]) + " ms", cycle.inBand(band));
+  for (std::size_t band = 0; band < bands.size(); ++band) {
+    status.add("SYNC lateness up to " + numberText(1e3 * bands[band]) + " ms", cycle.inBand(band));
   }
-  status.add("SYNC lateness above " + numberText(1e3 * kBands.back()) + " ms",
-             cycle.inBand(kBands.size()));
+  status.add("SYNC lateness above " + numberText(1e3 * bands.back()) + " ms",
+             cycle.inBand(bands.size()));
 }
 
 /// "emergencies: 1234", then a line for each code.

@@ -48,14 +48,14 @@ bool DiffDriveBase::measured(const std::vector<double>& positions, Time now) {
   for (std::size_t i = 0; i < positions.size(); ++i) {
     if (std::isfinite(positions[i])) continue;
     const std::string why = "the position of " + nameOf(i) + " is not known";
-    if (unknown_.empty()) news_.push_back(why + ": the base stops, odometry stands still");
+    if (unknown_.empty()) news_.emplace_back(why + ": the base stops, odometry stands still");
     unknown_ = why;
     odometry_.lose();
     velocity_ = {};
     return false;
   }
   if (!unknown_.empty() && heard_) {
-    news_.push_back(
+    news_.emplace_back(
         "the wheels are known again; what they turned meanwhile is not in the odometry");
   }
   heard_ = true;
@@ -63,9 +63,9 @@ bool DiffDriveBase::measured(const std::vector<double>& positions, Time now) {
   unknown_.clear();
   const std::string jumped = odometry_.following() ? jump(positions, dt) : std::string();
   if (!jumped.empty()) {
-    news_.push_back(jumped +
-                    ": it has got another zero, and what it turned meanwhile is not in the "
-                    "odometry");
+    news_.emplace_back(jumped +
+                       ": it has got another zero, and what it turned meanwhile is not in the "
+                       "odometry");
     odometry_.lose();
   }
   const bool follows = odometry_.following();
@@ -95,9 +95,9 @@ bool DiffDriveBase::wheelsKnown(Time now) {
   if (!unknown_.empty()) return false;
   if (now - measured_ <= options_.joints_timeout) return true;
   if (!std::exchange(stale_, true)) {
-    news_.push_back("joint_states of the wheels have not come for " +
-                    secondsText(options_.joints_timeout) +
-                    " (joint_states_timeout): the base stops");
+    news_.emplace_back("joint_states of the wheels have not come for " +
+                       secondsText(options_.joints_timeout) +
+                       " (joint_states_timeout): the base stops");
   }
   return false;
 }
@@ -107,13 +107,13 @@ std::optional<motion::WheelSpeeds> DiffDriveBase::step(Time now) {
   const Duration since = before == Time{} ? Duration::zero() : std::min(now - before, kLongestStep);
   if (command_ && now - commanded_ > options_.command_timeout) {
     if (!motion::atRest(*command_)) {
-      news_.push_back("cmd_vel has not come for " + secondsText(options_.command_timeout) +
-                      " (cmd_vel_timeout): the base stops");
+      news_.emplace_back("cmd_vel has not come for " + secondsText(options_.command_timeout) +
+                         " (cmd_vel_timeout): the base stops");
     }
     command_.reset();
   }
   if (command_ && !heard_ && !std::exchange(told_, true)) {
-    news_.push_back("cmd_vel is not followed: no joint_states with the wheels have come yet");
+    news_.emplace_back("cmd_vel is not followed: no joint_states with the wheels have come yet");
   }
   motion::PlanarTwist wanted;
   if (wheelsKnown(now) && command_) wanted = *command_;

@@ -102,7 +102,7 @@ void HomeAction::onGoal(Server::GoalHandle handle) {
   command.plan = *plan;
   command.progress = std::make_shared<bus::ProcedureProgress>(robot_.axes.size());
   command.begun = [this, id] { add({id, nullptr}); };
-  goals_[id] = {handle, std::move(*plan), command.progress};
+  goals_[id] = {handle, *plan, command.progress};
   runner_.post(bus::Command(std::move(command), [this, id](const bus::ProcedureReport& answer) {
     add({id, std::make_shared<const bus::ProcedureReport>(answer)});
   }));

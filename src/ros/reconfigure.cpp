@@ -65,7 +65,7 @@ dynamic_reconfigure::ParamDescription descriptionOf(const std::string& key, cons
 }
 
 /// Takes one value of a call.
-void take(const std::string& key, bool is_flag, XmlRpc::XmlRpcValue value, double number,
+void take(const std::string& key, bool is_flag, const XmlRpc::XmlRpcValue& value, double number,
           const std::vector<Tunable>& tunables, std::map<std::string, std::string>& values,
           Problems& problems) {
   const auto tunable = std::find_if(tunables.begin(), tunables.end(),
@@ -77,7 +77,7 @@ void take(const std::string& key, bool is_flag, XmlRpc::XmlRpcValue value, doubl
     return problems.add(key, tunable->is_flag ? "must be true or false" : "must be a number");
   }
   if (tunable->value == number) return;
-  values[key] = toYaml(std::move(value), key, problems).Scalar();
+  values[key] = toYaml(value, key, problems).Scalar();
 }
 
 }  // namespace

@@ -29,7 +29,8 @@ void addOption(const char* key, const std::string& before, const std::string& af
   changes.push_back({key, before, after, rule.when, rule.because});
 }
 
-void put(YAML::Node tree, const std::string& key, const std::string& value) {
+void put(const YAML::Node& root, const std::string& key, const std::string& value) {
+  YAML::Node tree = root;
   std::size_t begin = 0;
   for (std::size_t end = key.find('/'); end != std::string::npos; end = key.find('/', begin)) {
     tree.reset(tree[key.substr(begin, end - begin)]);

@@ -136,10 +136,10 @@ void tellOfGoals(ros_node::EventLoop& loop, ros_node::TrajectoryActions& traject
 
 /// The tasks at the rate of joint_states, which may change.
 void addStateTasks(ros_node::EventLoop& loop, const ros_node::Reloader& reloader,
-                   std::function<void()> states, std::function<void()> measured) {
+                   const std::function<void()>& states, const std::function<void()>& measured) {
   const Duration period = reloader.jointStatePeriod();
-  const std::size_t first = loop.every(tickOf(period), std::move(states));
-  const std::size_t second = loop.every(period, std::move(measured));
+  const std::size_t first = loop.every(tickOf(period), states);
+  const std::size_t second = loop.every(period, measured);
   loop.always([&loop, &reloader, first, second] {
     loop.retime(first, tickOf(reloader.jointStatePeriod()));
     loop.retime(second, reloader.jointStatePeriod());
