@@ -41,9 +41,9 @@ void put(const YAML::Node& root, const std::string& key, const std::string& valu
 
 }  // namespace
 
-Reloader::Reloader(ros::NodeHandle private_node, bus::BusRunner& runner, const LoadedRobot& loaded,
-                   std::function<void()> wake)
-    : node_(std::move(private_node)),
+Reloader::Reloader(const ros::NodeHandle& private_node, bus::BusRunner& runner,
+                   const LoadedRobot& loaded, std::function<void()> wake)
+    : node_(private_node),
       runner_(runner),
       wake_(std::move(wake)),
       options_(loaded.options),

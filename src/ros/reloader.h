@@ -24,7 +24,7 @@ namespace cia402::ros_node {
 class Reloader {
  public:
   /// @param runner must outlive it. @param wake called after each change, by any thread
-  Reloader(ros::NodeHandle private_node, bus::BusRunner& runner, const LoadedRobot& loaded,
+  Reloader(const ros::NodeHandle& private_node, bus::BusRunner& runner, const LoadedRobot& loaded,
            std::function<void()> wake);
 
   /// Reads the private parameters again. @return whether the node now does what they say, and in
