@@ -62,6 +62,11 @@ void Calls::call(const Words& words, Request request, Duration bound) {
                   session_.stage.named(words[1]),
                   session_.now(),
                   session_.conditions.stalled};
+  if (words[0] == "home") {  // of a group, or of all, those that have a homing
+    auto& axes = pending.call.axes;
+    const auto none = [&](std::size_t i) { return !session_.stage.axes()[i].config->homing; };
+    axes.erase(std::remove_if(axes.begin(), axes.end(), none), axes.end());
+  }
   for (const AxisTruth& truth : session_.truths) pending.call.modes.push_back(truth.mode);
   pending.deadline = session_.now() + bound;
   pending_.push_back(pending);
