@@ -104,9 +104,9 @@ void TrajectoryCommand::begin(AxisCycle& cycle, const Reply<Answer>& reply, Time
   refuse(reply, "there is no group \"" + group + "\"");
 }
 
-void CancelCommand::begin(AxisCycle& cycle, const Reply<>& reply, Time) const {
+void CancelCommand::begin(AxisCycle& cycle, const Reply<>& reply, Time now) const {
   for (Group& candidate : cycle.groups()) {
-    if (candidate.config().name == group) candidate.cancel(id);
+    if (candidate.config().name == group) candidate.cancel(id, now);
   }
   give(reply, answerOf(true, group + ": cancelled"));
 }

@@ -59,9 +59,6 @@ class CoupledJoint final : public Joint {
   [[nodiscard]] bool give(double position) override { return axes_->give(index_, position); }
   void stop(Duration over) override { axes_->stop(index_, over); }
   void follow(const std::string* group) override { axes_->follow(group); }
-  bool followsAnother(const std::string& group) const override {
-    return axes_->followsAnother(group);
-  }
   /// Its limits are its own.
   void adoptLimits() override {}
   std::string commandRefusal(double) const override {
@@ -72,6 +69,9 @@ class CoupledJoint final : public Joint {
   Duration commandTimeout() const override { return Duration::zero(); }
 
  private:
+  const drive::ProcedureStatus* procedure() const override { return axes_->procedure(); }
+  const std::string* leader() const override { return axes_->leader(); }
+
   CoupledAxes* axes_;
   std::size_t index_;
 };
@@ -327,8 +327,9 @@ std::string CoupledAxes::refusal(const std::string& group) const {
   if (!all.empty()) return all;
   if (watch_) all = watch_->refusal();
   if (!all.empty()) return all;
-  const std::string* leader = units_.front()->axis.leader();
-  if (leader != nullptr && *leader != group) return "follows a trajectory of group " + *leader;
+  if (leader() != nullptr && *leader() != group) {
+    return "follows a trajectory of group " + *leader();
+  }
   if (!driving_ && !axesRest()) return "its axes are being brought to rest: wait until they stand";
   return {};
 }
@@ -355,9 +356,13 @@ void CoupledAxes::follow(const std::string* group) {
   for (AxisUnit* unit : units_) unit->axis.follow(group);
 }
 
-bool CoupledAxes::followsAnother(const std::string& group) const {
-  const std::string* leader = units_.front()->axis.leader();
-  return leader != nullptr && *leader != group;
+const std::string* CoupledAxes::leader() const { return units_.front()->axis.leader(); }
+
+const drive::ProcedureStatus* CoupledAxes::procedure() const {
+  for (const AxisUnit* unit : units_) {
+    if (const drive::ProcedureStatus* const status = runningOn(unit->axis)) return status;
+  }
+  return nullptr;
 }
 
 }  // namespace cia402::bus

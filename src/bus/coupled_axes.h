@@ -58,7 +58,9 @@ class CoupledAxes {
   std::string trouble() const;
   std::uint32_t noticeCount() const;
   void follow(const std::string* group);
-  bool followsAnother(const std::string& group) const;
+  const std::string* leader() const;
+  /// That runs on one of them; nullptr: none.
+  const drive::ProcedureStatus* procedure() const;
 
  private:
   bool takesPositions() const;

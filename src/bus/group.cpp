@@ -107,7 +107,7 @@ TrajectoryOutcome Group::start(const TrajectoryCommand& command, Time now) {
   std::vector<motion::Joint> descriptions;
   std::vector<std::size_t> places;
   const bool stops = command.points.empty();
-  if (stops && command.joints.empty()) return startStop(command, joints_);
+  if (stops && command.joints.empty()) return startStop(command, joints_, now);
   const auto found =
       motion::matchJoints(descriptions_, command.joints, config_.allow_partial_joints_goal);
   if (!found) return refused(TrajectoryErrorCode::invalid_joints, found.error().message);
@@ -118,7 +118,7 @@ TrajectoryOutcome Group::start(const TrajectoryCommand& command, Time now) {
   }
   const std::string torn = tornApart(joints);
   if (!torn.empty()) return refused(TrajectoryErrorCode::invalid_joints, torn);
-  if (stops) return startStop(command, joints);
+  if (stops) return startStop(command, joints, now);
   const std::string why_not = refusal(joints);
   if (!why_not.empty()) {
     return refused(TrajectoryErrorCode::invalid_goal,
@@ -186,7 +186,7 @@ void Group::beginDue(Time now) {
 }
 
 TrajectoryOutcome Group::startStop(const TrajectoryCommand& command,
-                                   const std::vector<Joint*>& joints) {
+                                   const std::vector<Joint*>& joints, Time now) {
   const TrajectoryOutcome why{TrajectoryErrorCode::successful,
                               config_.name + ": stopped by an empty trajectory",
                               TrajectoryEnd::stopped,
@@ -195,6 +195,7 @@ TrajectoryOutcome Group::startStop(const TrajectoryCommand& command,
   for (Joint* joint : joints) {
     if (!joint->followsAnother(config_.name)) ours.push_back(joint);
   }
+  beginDue(now);  // what came since the last cycle takes over first, and is stopped then
   for (TrajectoryRun& run : runs_) {
     if (run.within(joints)) stop(run, why);
   }
@@ -209,11 +210,11 @@ TrajectoryOutcome Group::startStop(const TrajectoryCommand& command,
   for (TrajectoryRun& run : runs_) {
     if (run.following() || run.waiting()) handOver(run, ours);
   }
-  runs_.emplace_back(config_, TrajectoryOrder{command.id, command.ended, command.tolerances}, ours,
-                     std::nullopt);
+  // Of those that something else moves it is awaited, too, that they stand.
+  runs_.emplace_back(config_, TrajectoryOrder{command.id, command.ended, command.tolerances},
+                     joints, std::nullopt);
   runs_.back().expectRest(
       {TrajectoryErrorCode::successful, config_.name + ": stands", TrajectoryEnd::stopped, {}});
-  if (ours.empty()) runs_.back().end(runs_.back().outcome());
   sweep();
   return {TrajectoryErrorCode::successful, config_.name + ": stopping"};
 }
@@ -228,8 +229,9 @@ void Group::stop(TrajectoryRun& run, const TrajectoryOutcome& why) {
   }
 }
 
-void Group::cancel(std::uint64_t id) {
+void Group::cancel(std::uint64_t id, Time now) {
   if (id == 0) return;
+  beginDue(now);
   for (TrajectoryRun& run : runs_) {
     if (run.id() != id) continue;
     stop(run, {TrajectoryErrorCode::successful,
@@ -259,7 +261,7 @@ void Group::sweep() {
   for (Joint* joint : left) {
     const bool taken = std::any_of(runs_.begin(), runs_.end(),
                                    [&](const TrajectoryRun& run) { return run.has(*joint); });
-    if (!taken) joint->follow(nullptr);
+    if (!taken && !joint->followsAnother(config_.name)) joint->follow(nullptr);
   }
 }
 

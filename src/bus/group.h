@@ -38,7 +38,7 @@ class Group {
   /// Checks a trajectory and takes it over; without points, stops. On an error nothing changes.
   TrajectoryOutcome start(const TrajectoryCommand& command, Time now);
   /// Stops the joints of the trajectory of that number, where it runs or waits.
-  void cancel(std::uint64_t id);
+  void cancel(std::uint64_t id, Time now);
   /// Brings all joints to rest and ends their trajectories with `why`.
   void stop(const TrajectoryOutcome& why);
   /// Gives the axes their set-points of this cycle. @return how trajectories ended, in the cycle in
@@ -60,7 +60,8 @@ class Group {
   /// Where a joint is when the clock shows `time`, if nothing new begins before.
   motion::MotionState commandedAt(const Joint& joint, Time time) const;
   motion::TrajectoryRules rulesOf(const TrajectoryCommand& command) const;
-  TrajectoryOutcome startStop(const TrajectoryCommand& command, const std::vector<Joint*>& joints);
+  TrajectoryOutcome startStop(const TrajectoryCommand& command, const std::vector<Joint*>& joints,
+                              Time now);
   TrajectoryOutcome replaced() const;
   void add(TrajectoryRun run, Time now);
   void beginDue(Time now);

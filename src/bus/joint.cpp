@@ -36,9 +36,6 @@ class AxisJoint final : public Joint {
   [[nodiscard]] bool give(double position) override { return unit_->axis.setTarget(position); }
   void stop(Duration over) override { unit_->axis.stopSetPoint(over); }
   void follow(const std::string* group) override { unit_->axis.follow(group); }
-  bool followsAnother(const std::string& group) const override {
-    return axis().leader() != nullptr && *axis().leader() != group;
-  }
   void adoptLimits() override {
     limitTo(drive::jointOf(axis().config()), drive::stopDeceleration(axis().config()));
   }
@@ -48,6 +45,8 @@ class AxisJoint final : public Joint {
   Duration commandTimeout() const override { return axis().config().command_timeout; }
 
  private:
+  const drive::ProcedureStatus* procedure() const override { return runningOn(axis()); }
+  const std::string* leader() const override { return axis().leader(); }
   const drive::Axis& axis() const { return unit_->axis; }
 
   AxisUnit* unit_;
@@ -73,11 +72,10 @@ JointState AxisJoint::state() const {
 std::string AxisJoint::refusal(const std::string& group) const {
   std::string reason = trajectoryRefusal(axis());
   if (!reason.empty()) return reason;
-  const std::string* leader = axis().leader();
-  if (followsAnother(group)) return who() + " follows a trajectory of group " + *leader;
+  if (followsAnother(group)) return who() + " follows a trajectory of group " + *leader();
   // In the cycle in which a trajectory has ended, the stream still knows the way to its goal only.
   const bool rests = axis().streamAtRest() || sent().atRest();
-  if (leader == nullptr && !rests) {
+  if (leader() == nullptr && !rests) {
     return who() + " is still moved by streamed set-points: end the stream and let it come to rest";
   }
   return {};
@@ -91,6 +89,20 @@ std::string AxisJoint::trouble(std::uint32_t told_before) const {
 }
 
 }  // namespace
+
+const drive::ProcedureStatus* runningOn(const drive::Axis& axis) {
+  return axis.procedure().running ? &axis.procedure() : nullptr;
+}
+
+std::string Joint::occupation() const {
+  const drive::ProcedureStatus* const status = procedure();
+  if (status == nullptr) {
+    return "it follows a trajectory of group " + *leader() +
+           ", which one without points stops there";
+  }
+  return std::string(drive::toString(status->kind)) + " runs" +
+         (drive::stops(status->kind) ? "" : ", which halt stops");
+}
 
 std::string trajectoryRefusal(const drive::Axis& axis) {
   std::string reason = axis.motionRefusal();

@@ -50,7 +50,15 @@ class Joint {
   /// Why it cannot follow trajectories of that group now, in words; empty if it can.
   virtual std::string refusal(const std::string& group) const = 0;
   /// Another group than that one gives its set-points.
-  virtual bool followsAnother(const std::string& group) const = 0;
+  bool followsAnother(const std::string& group) const {
+    return leader() != nullptr && *leader() != group;
+  }
+  /// Something else than that group moves it, or may.
+  bool occupied(const std::string& group) const {
+    return procedure() != nullptr || followsAnother(group);
+  }
+  /// What that is, in words, and how to stop it: "home runs, which halt stops". @pre occupied()
+  std::string occupation() const;
   /// Why it does not do what it is told any more, in words. @param told_before noticeCount() then
   virtual std::string trouble(std::uint32_t told_before) const = 0;
   virtual std::uint32_t noticeCount() const = 0;
@@ -71,6 +79,10 @@ class Joint {
   virtual void follow(const std::string* group) = 0;
 
  protected:
+  /// The procedure that runs on it; nullptr: none.
+  virtual const drive::ProcedureStatus* procedure() const = 0;
+  /// The group that gives its set-points; nullptr: none.
+  virtual const std::string* leader() const = 0;
   Joint(motion::Joint description, std::string who, double stop_deceleration)
       : description_(std::move(description)),
         who_(std::move(who)),
@@ -86,6 +98,8 @@ class Joint {
   double stop_deceleration_;
 };
 
+/// The procedure that runs on an axis; nullptr: none.
+const drive::ProcedureStatus* runningOn(const drive::Axis& axis);
 /// Why an axis cannot follow trajectories, whatever group asks; empty if it can.
 std::string trajectoryRefusal(const drive::Axis& axis);
 

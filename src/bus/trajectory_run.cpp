@@ -224,8 +224,9 @@ std::optional<TrajectoryOutcome> TrajectoryRun::standstill(Time now) {
     // Something else stops one that was dropped: of that nothing but its motor tells.
     if (member.dropped && !member.joint->state().known) continue;
     member.rest.update(member.joint->position(), member.joint->stamp());
-    rest_commanded = rest_commanded && (member.dropped || member.joint->sent().atRest());
-    if (!rests(member)) restless = &member;
+    const bool others = occupied(member);
+    rest_commanded = rest_commanded && (others || member.dropped || member.joint->sent().atRest());
+    if (others || (restless == nullptr && !rests(member))) restless = &member;
   }
   if (!rest_commanded) commanded_rest_.reset();
   if (!rest_commanded) return std::nullopt;
@@ -234,10 +235,21 @@ std::optional<TrajectoryOutcome> TrajectoryRun::standstill(Time now) {
   if (now < *commanded_rest_ + std::max(fromSeconds(goalTime()), kSettles)) {
     return std::nullopt;
   }
+  if (occupied(*restless)) return notStopped(*restless);
   TrajectoryOutcome outcome = outcome_;
   outcome.message +=
       ", but " + restless->joint->who() + " still moves; see whether it swings or is pushed";
   return outcome;
+}
+
+bool TrajectoryRun::occupied(const Member& member) const {
+  return !hasTrajectory() && member.joint->occupied(group_->name);
+}
+
+TrajectoryOutcome TrajectoryRun::notStopped(const Member& member) const {
+  return blame(
+      TrajectoryErrorCode::goal_tolerance_violated, member, kNothing,
+      ": " + member.joint->who() + " is not stopped by this: " + member.joint->occupation());
 }
 
 TrajectoryOutcome TrajectoryRun::blame(TrajectoryErrorCode code, const Member& member, double off,

@@ -67,8 +67,6 @@ class TrajectoryRun {
   void expectRest(const TrajectoryOutcome& outcome) { outcome_ = outcome; }
   /// Ends it without a word to its joints, of which it knows still.
   void end(const TrajectoryOutcome& outcome);
-  /// What it has come to, once it stops.
-  const TrajectoryOutcome& outcome() const { return outcome_; }
 
   /// A joint that was not ready for a while, or whose set-points were ended by anything else
   /// (another zero of its positions, a motor that stands), is not where this was planned from.
@@ -103,6 +101,9 @@ class TrajectoryRun {
   std::optional<TrajectoryOutcome> axisFailure() const;
   std::optional<TrajectoryOutcome> pathFailure() const;
   bool rests(const Member& member) const;
+  /// It is to be stopped, and something else than this group moves it, or may.
+  bool occupied(const Member& member) const;
+  TrajectoryOutcome notStopped(const Member& member) const;
   TrajectoryOutcome restlessness(const Member& member) const;
   TrajectoryOutcome blame(motion::TrajectoryErrorCode code, const Member& member, double off,
                           const std::string& text) const;

@@ -31,6 +31,11 @@ void Permits::cut(std::size_t axis, Time until) {
   for (Time& time : axes_[axis].until) time = std::min(time, until);
 }
 
+void Permits::prolong(std::size_t axis, Source source, Time until) {
+  Time& present = at(axis, source);
+  if (present > stage_.now()) present = std::max(present, until);
+}
+
 void Permits::end(std::size_t axis, Time called, Time now) {
   for (const Source source : {Source::stream, Source::target, Source::trajectory}) {
     // What came in the cycle in which the call ended is commanded after it.

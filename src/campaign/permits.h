@@ -24,6 +24,8 @@ class Permits {
   /// It may move no longer than that by `source`, or by any.
   void cut(std::size_t axis, Source source, Time until);
   void cut(std::size_t axis, Time until);
+  /// What still permits it to move does until then, or longer.
+  void prolong(std::size_t axis, Source source, Time until);
   /// All that was commanded before `called` is void from now on; a homing that was called later
   /// goes on.
   void end(std::size_t axis, Time called, Time now);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <sstream>
 #include <utility>
 
@@ -17,6 +18,7 @@ using Source = Permits::Source;
 constexpr double kShownAge = 0.03;     // s, of what the driver shows
 constexpr Duration kShownTime = 30ms;  // likewise
 constexpr Duration kRampEnds = 150ms;  // as in AxisFacts::stopTime
+constexpr double kRounded = 1e-6;      // s, of what the driver tells in digits
 constexpr double kArrived = 0.01;      // rad or m: how near the driver calls reached by itself
 
 const Verbs<Trajectories> kTrajectoryVerbs{
@@ -190,13 +192,29 @@ void Trajectories::send(const config::GroupConfig& group, std::vector<std::size_
   const auto reply = [this, sent](const bus::Answer& answer) {
     session_.say("< trajectory of " + sent.group->name + (answer.success ? ": " : " refused: ") +
                  answer.message);
-    if (answer.success) return accepted(sent);
+    if (answer.success) return accepted(sent, laterBy(sent, answer.message));
     sent_.erase(sent.id);
   };
   session_.stage.host().post(bus::Command(std::move(body), reply));
 }
 
-void Trajectories::accepted(const Sent& sent) {
+/// By how much later than asked it ends, as the driver says, which may be no more than is
+/// documented.
+Duration Trajectories::laterBy(const Sent& sent, const std::string& answer) const {
+  static const std::string kWords = "it ends ";
+  const std::size_t at = answer.find(kWords);
+  if (at == std::string::npos) return {};
+  const double told = std::strtod(answer.c_str() + at + kWords.size(), nullptr);
+  // Without tolerances of its own.
+  const double most = sent.group->goal_time + sent.group->lengthening * toSeconds(sent.last);
+  if (!(told >= 0.0 && told <= most + kRounded)) {
+    session_.report("untrue_answer", "",
+                    "a trajectory may take " + number(most) + " s longer: " + answer);
+  }
+  return fromSeconds(told);
+}
+
+void Trajectories::accepted(const Sent& sent, Duration later) {
   const Time now = session_.now();
   session_.stage.look(session_.truths);
   const bool seen = std::all_of(sent.axes.begin(), sent.axes.end(),
@@ -205,15 +223,19 @@ void Trajectories::accepted(const Sent& sent) {
   if (!seen && runs != sent_.end()) runs->second.goals.clear();
   if (!sent.stop) last_of_[sent.group->name] = sent.id;
   for (std::size_t i : sent.axes) {
-    const auto before = sent_.find(follows_[i]);
-    const bool of_another = before != sent_.end() && before->second.group != sent.group;
+    const config::GroupConfig*& leader = led_by_[i];
+    const bool of_another = leader != nullptr && leader != sent.group;
     if (sent.stop && of_another) continue;  // that group moves it
     follows_[i] = sent.id;
+    leader = sent.group;
     const Time begin = std::max(sent.base, sent.has_start ? sent.base : now);
-    const Time end =
-        sent.stop ? restAfter(sent, i) : begin + sent.last + session_.lateFor() + 250ms;
+    if (sent.stop) {
+      stopped(sent, i);
+      continue;
+    }
+    const Time end = begin + sent.last + later + session_.lateFor() + 250ms;
     session_.permits.cut(i, Source::trajectory, end);
-    if (!sent.stop) session_.permits.allow(i, Source::trajectory, end);
+    session_.permits.allow(i, Source::trajectory, end);
   }
 }
 
@@ -222,6 +244,13 @@ Time Trajectories::restAfter(const Sent& sent, std::size_t axis) const {
   const Duration hard = session_.stage.axes()[axis].stopTime(session_.truths[axis].velocity);
   return session_.now() +
          std::max(hard, fromSeconds(sent.group->stop_trajectory_duration) + kRampEnds);
+}
+
+/// A gentle stop may last longer than what it ends.
+void Trajectories::stopped(const Sent& sent, std::size_t axis) {
+  const Time rest = restAfter(sent, axis);
+  session_.permits.cut(axis, Source::trajectory, rest);
+  session_.permits.prolong(axis, Source::trajectory, rest);
 }
 
 /// It has not begun yet, or not surely.
@@ -237,7 +266,7 @@ void Trajectories::cancelled(std::uint64_t id) {
   if (waits(sent)) return;
   session_.stage.look(session_.truths);
   for (std::size_t i : sent.axes) {
-    if (follows_[i] == id) session_.permits.cut(i, Source::trajectory, restAfter(sent, i));
+    if (follows_[i] == id) stopped(sent, i);
   }
 }
 
@@ -250,6 +279,10 @@ void Trajectories::ended(std::uint64_t id, const bus::TrajectoryOutcome& outcome
   const Sent sent = std::move(found->second);
   sent_.erase(found);
   session_.say("< trajectory of " + sent.group->name + " has ended: " + outcome.message);
+  for (std::size_t i : sent.axes) {  // of one that was replaced some axes may go on
+    const bool over = outcome.end != bus::TrajectoryEnd::replaced;
+    if (over && follows_[i] == id) led_by_[i] = nullptr;
+  }
   session_.stage.look(session_.truths);
   if (outcome.end == bus::TrajectoryEnd::reached) judgeReached(sent);
   const bool stopped = outcome.end == bus::TrajectoryEnd::stopped && !waits(sent);

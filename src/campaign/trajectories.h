@@ -62,7 +62,9 @@ class Trajectories {
   void send(const config::GroupConfig& group, std::vector<std::size_t> axes, Points points,
             std::optional<Duration> start = std::nullopt);
   std::vector<Goal> goalsOf(const std::vector<std::size_t>& axes, const Points& points) const;
-  void accepted(const Sent& sent);
+  Duration laterBy(const Sent& sent, const std::string& answer) const;
+  /// @param later it takes longer than was asked
+  void accepted(const Sent& sent, Duration later);
   void cancelled(std::uint64_t id);
   bool waits(const Sent& sent) const;
   void ended(std::uint64_t id, const bus::TrajectoryOutcome& outcome);
@@ -70,13 +72,15 @@ class Trajectories {
   bool judged(const Sent& sent, std::size_t axis) const;
   void judgeReached(const Sent& sent) const;
   void judgeStopped(const Sent& sent, const std::string& words) const;
+  void stopped(const Sent& sent, std::size_t axis);
   Time restAfter(const Sent& sent, std::size_t axis) const;
 
   Session& session_;
   std::uint64_t last_id_ = 0;
   std::map<std::uint64_t, Sent> sent_;            ///< that have not ended, or never will
   std::map<std::size_t, std::uint64_t> follows_;  ///< what moved an axis last
-  std::map<std::string, std::uint64_t> last_of_;  ///< trajectory of a group
+  std::map<std::size_t, const config::GroupConfig*> led_by_;  ///< nullptr: no group any more
+  std::map<std::string, std::uint64_t> last_of_;              ///< trajectory of a group
 };
 
 }  // namespace cia402::campaign

@@ -57,7 +57,10 @@ class Answers final : public Oracle {
         return view.now - time <= std::max(kFeedbackAge, cycles);
       };
       const bool idle = call.verb == "set_mode" && !view.truths[i].power;
-      if (says(kStands) && !says_so && !idle && !lately(seen.still)) {
+      // One that was homed before the others takes commands again.
+      const bool commanded =
+          call.verb == "home" && call.axes.size() > 1 && view.permits.given(i) > call.at;
+      if (says(kStands) && !says_so && !idle && !commanded && !lately(seen.still)) {
         report(view, i,
                call.verb + " is answered with success (" + answer.message +
                    ") while the motor turns at " + number(view.truths[i].velocity) + " per s");

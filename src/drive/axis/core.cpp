@@ -60,7 +60,7 @@ void AxisCore::superviseOperation(Time now) {
   if (mode_.brakes()) stops_.watchBrakeMode(now);
   // With its bits the mode begins to follow: from where the motor is by then.
   if (control_.releaseBrake(now) && mode_.spec().controlword_bits != 0) generator_.neutralize();
-  generator_.watchFollowing(now);
+  generator_.watchFollowing(now, faults_.holdsMotor());
 }
 
 void AxisCore::stopUnheard(Time now) {

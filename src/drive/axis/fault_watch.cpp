@@ -44,6 +44,13 @@ FaultWatch::Warning FaultWatch::warning() const {
                                                                          : Warning::goes_on;
 }
 
+bool FaultWatch::holdsMotor() const {
+  if (!axis_.state.warning) return false;
+  const auto known = axis_.profile().warnings.find(axis_.state.error_code);
+  return known != axis_.profile().warnings.end() &&
+         known->second.reaction == WarningText::Reaction::holds;
+}
+
 std::string FaultWatch::resetRefusal(Time now) const {
   const std::uint16_t code = axis_.state.error_code;
   const auto known = axis_.profile().errors.find(code);

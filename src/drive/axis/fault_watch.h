@@ -33,6 +33,8 @@ class FaultWatch {
     holds,  ///< it brings the motor to rest and holds it; told once for each warning
   };
   Warning warning() const;
+  /// By a warning that stands, known to people or not, the drive holds its motor and may let it go.
+  bool holdsMotor() const;
   /// Nothing more is to be done about the warning that stands.
   void acknowledgeWarning() { acknowledged_ = axis_.state.warning ? axis_.state.error_code : 0; }
   /// The fault was reset: what was told before is over.

@@ -55,7 +55,7 @@ bool FollowWatch::watchStanding(const Look& look, Time now) {
   const bool runs = streams && std::fabs(look.sent.velocity()) > clearly_;
   if (!runs) {
     running_since_ = kNever;
-    const bool held = look.state.internal_limit || tellsFollowingError(look.state);
+    const bool held = look.warned || look.state.internal_limit || tellsFollowingError(look.state);
     return (held && restsAhead(look, ahead, now)) ||
            (look.sent.kind() == SetPointKind::goal && goesNowhere(look, ahead, now));
   }
@@ -110,7 +110,7 @@ bool FollowWatch::restsAhead(const Look& look, double ahead, Time now) const {
   const Duration rested = now - look.sent.movedAt();
   if (look.sent.kind() == SetPointKind::stream) return look.sent.atRest() && rested >= kHeld;
   return look.sent.kind() == SetPointKind::goal && look.state.ready_for_motion &&
-         !look.state.target_reached && rested >= kStuck;
+         (look.warned || !look.state.target_reached) && rested >= kStuck;
 }
 
 }  // namespace cia402::drive

@@ -29,6 +29,7 @@ class FollowWatch {
     bool has_bit, bit;
     /// Something explains that the bit is not set: the halt bit, a limit, another mode still.
     bool held;
+    bool warned;        ///< the drive holds the motor by a warning, and may tell "target reached"
     bool handing_over;  ///< the drive has not taken the set-point yet, which is waited for
   };
 

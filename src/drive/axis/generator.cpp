@@ -201,7 +201,7 @@ bool Generator::giveUpGoal() {
   return true;
 }
 
-void Generator::watchFollowing(Time now) {
+void Generator::watchFollowing(Time now, bool warned) {
   const Standstill& standstill = feedback_.standstill();
   const AxisState& state = axis_.state;
   const auto& bit = mode_->spec().follows_command_bit;
@@ -209,12 +209,12 @@ void Generator::watchFollowing(Time now) {
   const bool active = state.mode == &mode_->spec();
   const bool shown = bit && active && ((state.statusword >> *bit) & 1u) != 0;
   const bool held = !active || control_.halt() || state.internal_limit;
-  const FollowWatch::Look look{sent_, standstill, state,        bit.has_value(),
-                               shown, held,       handingOver()};
-  if (following_.watch(look, now)) callBack();
+  const FollowWatch::Look look{sent_, standstill, state,  bit.has_value(),
+                               shown, held,       warned, handingOver()};
+  if (following_.watch(look, now)) callBack(warned);
 }
 
-void Generator::callBack() {
+void Generator::callBack(bool warned) {
   const AxisState& state = axis_.state;
   const bool turns = sent_.kind() == SetPointKind::velocity;
   const double ahead = turns ? target() : target() - state.position;
@@ -230,6 +230,7 @@ void Generator::callBack() {
       axis_.who() + ": the motor stands while " + what +
       (state.internal_limit ? "internal limit active (statusword bit 11), a limit switch or a "
                               "position limit of the drive holds it"
+       : warned             ? "the drive holds it by its warning"
                             : "the brake, a limit or the load holds it") +
       (turns ? ". The velocity is set to 0" : ". They are called back to where it stands") +
       ", and what was commanded is given up: free the axis or lead it back, then command it "

@@ -79,7 +79,8 @@ class Generator {
   /// The drive may move by itself, which counts as motion; after advance() or sendNeutral().
   void watchDrive(Time now);
   /// The motor does not follow what is sent, and that is called back to where it stands.
-  void watchFollowing(Time now);
+  /// @param warned the drive holds the motor by a warning
+  void watchFollowing(Time now, bool warned);
   /// @param when the drive can begin to follow: its brake has had its time then
   void beginFollowing(Time when) { following_.begin(when); }
   /// The drive shows that it follows, as far as its mode has a bit for that.
@@ -115,7 +116,7 @@ class Generator {
 
  private:
   void encode();
-  [[gnu::cold]] void callBack();
+  [[gnu::cold]] void callBack(bool warned);
   [[gnu::cold]] void giveUpLate();
   bool movesItself() const;
   ModeControl& controlOf(const ModeChannel& channel);
