@@ -34,6 +34,18 @@ struct GroupOutcomeTest : test::GroupScene {
   }
 };
 
+struct TwoGroupsTest : test::GroupScene {
+  TwoGroupsTest() : GroupScene(robot()) {}
+  static config::RobotConfig robot() {
+    config::RobotConfig robot = test::testRobot();
+    config::GroupConfig head = robot.groups[0];
+    head.name = "head";
+    head.joints = {"elbow"};
+    robot.groups.push_back(head);
+    return robot;
+  }
+};
+
 TEST_F(GroupOutcomeTest, ATrajectoryThatComesToItsGoalHasReachedIt) {
   const Outcomes ended = send(1.0, -0.5, 1.0);
   ASSERT_TRUE(answer.success);
@@ -213,6 +225,83 @@ TEST_F(GroupOutcomeTest, OneWithoutPointsStopsAJointThatAStreamMoves) {
   world.run(100ms);
   EXPECT_TRUE(taken->empty());
   EXPECT_GT(world.drives[0].position, stands) << "the stream may begin anew";
+}
+
+TEST_F(TwoGroupsTest, OneWithoutPointsNamesAJointThatAnotherGroupMoves) {
+  const Outcomes head = send(world.trajectory("head", {{{1.0}, 2.0}}));
+  ASSERT_TRUE(answer.success) << answer.message;
+  world.run(300ms);
+  const Outcomes ended = send(world.trajectory("arm", {}));
+  ASSERT_TRUE(world.runUntil([&] { return !ended->empty(); }, 1s));
+  EXPECT_EQ(ended->front().end, TrajectoryEnd::failed);
+  EXPECT_EQ(ended->front().code, TrajectoryErrorCode::goal_tolerance_violated);
+  EXPECT_EQ(ended->front().joint, "elbow");
+  EXPECT_EQ(ended->front().message,
+            "arm: elbow is not stopped by this: it follows a trajectory of group head, which one "
+            "without points stops there");
+  world.run(2s);
+  EXPECT_EQ(position(1), 100000);
+  ASSERT_EQ(head->size(), 1u);
+  EXPECT_EQ(head->front().end, TrajectoryEnd::reached);
+}
+
+// A trajectory and an empty one come within one cycle.
+TEST_F(GroupOutcomeTest, OneThatIsStoppedAsItBeginsEndsWhenTheJointsStand) {
+  const Outcomes first = send(1.0, -0.5, 1.0);
+  world.run(500ms);
+  auto second = std::make_shared<std::vector<TrajectoryOutcome>>();
+  TrajectoryCommand command = world.trajectory("arm", {{{-1.0, 0.5}, 2.0}});
+  command.ended = [second](const TrajectoryOutcome& outcome) { second->push_back(outcome); };
+  (void)world.begin(std::move(command));
+  (void)world.begin(world.trajectory("arm", {}));
+  const int before = position(0);
+  world.run(20ms);
+  EXPECT_GT(position(0), before) << "its ramp";
+  ASSERT_EQ(first->size(), 1u);
+  EXPECT_EQ(first->front().end, TrajectoryEnd::replaced);
+  EXPECT_TRUE(second->empty());
+  ASSERT_TRUE(world.runUntil([&] { return !second->empty(); }, 2s));
+  EXPECT_EQ(second->front().end, TrajectoryEnd::stopped);
+  const int stands = position(0);
+  world.run(2s);
+  EXPECT_EQ(position(0), stands);
+}
+
+TEST_F(GroupOutcomeTest, OneThatIsCancelledAsItBeginsDoesNotLeaveTheOneBeforeItToItsWay) {
+  const Outcomes first = send(1.0, -0.5, 1.0);
+  world.run(300ms);
+  auto second = std::make_shared<std::vector<TrajectoryOutcome>>();
+  TrajectoryCommand command = world.trajectory("arm", {{{-1.0, 0.5}, 2.0}});
+  command.id = 9;
+  command.ended = [second](const TrajectoryOutcome& outcome) { second->push_back(outcome); };
+  (void)world.begin(std::move(command));
+  (void)world.begin(CancelCommand{"arm", 9});
+  ASSERT_TRUE(world.runUntil([&] { return !second->empty(); }, 2s));
+  EXPECT_EQ(second->front().end, TrajectoryEnd::stopped);
+  const int stands = position(0);
+  EXPECT_LT(stands, 90000) << "100000 was the goal of the first";
+  world.run(2s);
+  EXPECT_EQ(position(0), stands);
+  ASSERT_EQ(first->size(), 1u);
+  EXPECT_EQ(first->front().end, TrajectoryEnd::replaced);
+}
+
+TEST(GroupOutcome, OneWithoutPointsNamesAJointThatIsBeingHomed) {
+  config::RobotConfig robot = test::testRobot();
+  robot.axes[0].homing = test::homingOfOrder(0);
+  test::RobotWorld world(robot);
+  world.enable();
+  world.drives[0].homing_is_slow = true;
+  (void)world.begin(ProcedureCommand{"shoulder", {drive::ProcedureKind::home, {}, {}}});
+  world.run(200ms);
+  std::vector<TrajectoryOutcome> ended;
+  TrajectoryCommand command = world.trajectory("arm", {});
+  command.ended = [&ended](const TrajectoryOutcome& outcome) { ended.push_back(outcome); };
+  ASSERT_TRUE(world.call(std::move(command)).success);
+  ASSERT_TRUE(world.runUntil([&] { return !ended.empty(); }, 1s));
+  EXPECT_EQ(ended.front().end, TrajectoryEnd::failed);
+  EXPECT_EQ(ended.front().message,
+            "arm: shoulder is not stopped by this: home runs, which halt stops");
 }
 
 TEST_F(GroupOutcomeTest, OneIsJudgedByTolerancesOfItsOwn) {

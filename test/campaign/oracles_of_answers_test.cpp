@@ -143,6 +143,16 @@ TEST_F(AnswerTest, IsJudgedOfEachAxisThatItConcerns) {
   EXPECT_EQ(allFound(), "untrue_answer a2 +100 ms");
 }
 
+// Each takes commands again as soon as it is homed itself.
+TEST_F(AnswerTest, ThatAllAreHomedIsTrueWhereOneWasGivenMoreToDo) {
+  const Call home = callOf("home", "all");
+  truths_[0].velocity = truths_[1].velocity = 1.0;
+  lookFor(100ms);
+  permits_.allow(0, Permits::Source::stream, now() + 1s);
+  oracle_->onAnswer(home, bus::answerOf(true, "done"), view());
+  EXPECT_EQ(allFound(), "untrue_answer a2 +100 ms");
+}
+
 TEST_F(AnswerTest, ThatThePowerIsOnIsTrueWhereTheStatuswordToldSo) {
   truths_[0].power = false;
   lookFor(100ms);

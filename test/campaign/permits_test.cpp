@@ -75,6 +75,17 @@ TEST_F(PermitsTest, AreNotLengthenedByACut) {
   expectFor(20ms);
 }
 
+TEST_F(PermitsTest, ThatHaveNotEndedAreProlonged) {
+  permits_.prolong(0, Source::trajectory, now() + 100ms);
+  EXPECT_FALSE(mayMove()) << "there was none";
+  permits_.allow(0, Source::trajectory, now() + 20ms);
+  permits_.prolong(0, Source::trajectory, now() + 10ms);
+  permits_.prolong(0, Source::trajectory, now() + 50ms);
+  expectFor(50ms);
+  permits_.prolong(0, Source::trajectory, now() + 50ms);
+  EXPECT_FALSE(mayMove()) << "it is over";
+}
+
 TEST_F(PermitsTest, OfATargetEndOnceTheMotorStoodFor400Ms) {
   permits_.allow(0, Source::target, now() + 10s);
   truths_[0].velocity = 0.5;

@@ -84,6 +84,21 @@ TEST_F(TrajectoriesTest, StopsOfOneJointLeaveTheOtherAlone) {
   EXPECT_NEAR(until_[1], 4 + 2.0 + 0.25, 0.006);
 }
 
+// At 4.95 s it is 0.05 s from its end, and the stop takes half a second, as the group says.
+TEST_F(TrajectoriesTest, MayMoveForAStopThatOutlastsThem) {
+  playTwo({"4 part g1 a2 1.0 0.55", "4.95 stop g1", "8 end"});
+  EXPECT_NEAR(until_[1], 4.95 + 0.5 + 0.15, 0.02);
+}
+
+TEST_F(TrajectoriesTest, MayMoveForAsMuchLongerAsTheyAreSaidToTake) {
+  playTwo({"4 part g1 a2 2.0 0.6", "5 part g1 a2 0.8 0.3", "8 end"});
+  const std::string answer = told("slowed down, it ends").line;
+  const double later = std::stod(answer.substr(answer.find("it ends ") + 8));
+  EXPECT_GT(later, 0.05);
+  EXPECT_LT(later, 0.4 + 0.1 * 0.8 + 1e-6) << "goal_time and a share of its duration";
+  EXPECT_NEAR(until_[1], 5 + 0.8 + later + 0.25, 0.006);
+}
+
 TEST_F(TrajectoriesTest, AreStoppedByCallsOfTheirGroup) {
   playTwo({"4 move g1 2.0 0.6 0.6", "5 halt g1", "8 end"});
   EXPECT_LT(motors_[0].position, 0.5);

@@ -25,7 +25,7 @@ struct WatchBench {
   Time now{1s};
   bool has_bit = false, bit = false;
   bool heard = true;  ///< its feedback arrives
-  bool held = false;
+  bool held = false, warned = false;
 
   explicit WatchBench(SetPointKind kind = SetPointKind::stream) {
     sent.rest(kind, 0.0);
@@ -41,7 +41,7 @@ struct WatchBench {
     if (heard) standstill.update(motor, now);
     if (target) sent.give(*target);
     sent.advance(now);
-    return watch.watch({sent, standstill, state, has_bit, bit, held, false}, now);
+    return watch.watch({sent, standstill, state, has_bit, bit, held, warned, false}, now);
   }
   void stand(Duration duration) {
     for (const Time end = now + duration; now < end;) {
@@ -238,6 +238,20 @@ TEST(FollowWatch, GivesAGoalUpWhereTheDriveSaysThatItsMotorStaysBehind) {
     bool called_back = false;
     for (int i = 0; i < 250 && !called_back; ++i) called_back = bench.cycle(0.0);
     EXPECT_EQ(called_back, tells);
+  }
+}
+
+// Where it may tell "target reached", though it went nowhere.
+TEST(FollowWatch, GivesAGoalUpThatADriveDoesNotGoToWhileAWarningHoldsIt) {
+  for (const bool warned : {true, false}) {
+    WatchBench bench(SetPointKind::goal);
+    bench.warned = warned;
+    bench.state.target_reached = true;
+    const Time given = bench.now;
+    bool back = bench.cycle(0.0, 0.5);
+    while (!back && bench.now < given + 2s) back = bench.cycle(0.0);
+    EXPECT_EQ(back, warned);
+    EXPECT_LE(bench.now - given, warned ? 300ms + 3 * kCycle : 2s);
   }
 }
 
