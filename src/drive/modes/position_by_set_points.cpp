@@ -220,14 +220,23 @@ const char* PositionBySetPoints::handOver(std::uint64_t& raw, Time now) {
   return waiting;
 }
 
+/// Within what way a drive stops that turns at `speed` now, and faster until it has been told.
+double PositionBySetPoints::surelyStops(double speed) const {
+  const double told = reaction_s_ + kReactionCycles * cycle_s_;
+  const double then = std::min(speed + ramp_ * told, std::max(speed, fastest()));
+  return 0.5 * (speed + then) * told + then * then / (2.0 * ramp_);
+}
+
 /// The drive has gone on, and stands at the last set-point that it has, or comes to stand there.
-/// That replaces one that it was not told to take yet, by which it would set off once more.
+/// That replaces one that it was not told to take yet, by which it would set off once more. Where
+/// that set-point is further away than it takes to stop, it is to stop before.
 bool PositionBySetPoints::late(Time /*now*/) {
   const double speed = std::isfinite(state().velocity) ? state().velocity : 0.0;
   const bool moves = !sent().atRest() || std::fabs(speed) > axis().config.standstill_velocity;
   if (!moves || !state().feedback_valid) return moves;
-  const double rest = std::isfinite(held_) ? held_ : state().position;
-  sent().rest(SetPointKind::stream, rest);
+  const double way = std::isfinite(held_) ? held_ - state().position : 0.0;
+  const double nearest = surelyStops(std::fabs(speed));
+  sent().rest(SetPointKind::stream, state().position + std::clamp(way, -nearest, nearest));
   velocity_ = acceleration_ = 0.0;
   return true;
 }

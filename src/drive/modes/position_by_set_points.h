@@ -46,6 +46,7 @@ class PositionBySetPoints : public CyclicPosition {
   double awayFromDue() const;
   Taken taken() const;
   void limit(Way& way) const;
+  double surelyStops(double speed) const;
   double fastest() const;
   double slowest() const;
   double usual() const;
