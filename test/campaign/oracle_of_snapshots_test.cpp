@@ -117,15 +117,17 @@ TEST_F(SnapshotTest, MayBeTrueOfADriveFromLookToLookAsItsFrameTells) {
   EXPECT_EQ(found(), "untrue_snapshot a1 +120 ms");
 }
 
-// 10 % of 1 rad/s.
+// 10 % of 1 rad/s, and 5 % of how much it has changed. Smoothed by 25 ms the velocity is beyond
+// that after 19 ms: 0.2 (1 - 0.96^19) = 0.108, and has been for all of 60 ms after 78; each 10 ms
+// it is judged.
 TEST_F(SnapshotTest, OfAnotherSpeedIsFound) {
-  lookAt([](AxisTruth& truth) { truth.velocity = 0.11; }, 70ms);
-  EXPECT_EQ(found(), "untrue_snapshot a1 +60 ms");
+  lookAt([](AxisTruth& truth) { truth.velocity = 0.2; }, 90ms);
+  EXPECT_EQ(found(), "untrue_snapshot a1 +80 ms");
 }
 
 TEST_F(SnapshotTest, OfAnotherSpeedBackwardsIsFound) {
-  lookAt([](AxisTruth& truth) { truth.velocity = -0.11; }, 70ms);
-  EXPECT_EQ(found(), "untrue_snapshot a1 +60 ms");
+  lookAt([](AxisTruth& truth) { truth.velocity = -0.2; }, 90ms);
+  EXPECT_EQ(found(), "untrue_snapshot a1 +80 ms");
 }
 
 TEST_F(SnapshotTest, OfASpeedWithinTheBoundIsNot) {
