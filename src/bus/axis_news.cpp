@@ -10,8 +10,15 @@ namespace cia402::bus {
 namespace {
 
 Event::Severity severityOfNotice(const drive::Axis& axis) {
-  if (axis.noticeInforms()) return Event::Severity::info;
-  return axis.noticeWarns() ? Event::Severity::warning : Event::Severity::error;
+  switch (axis.noticeKind()) {
+    case drive::NoticeKind::error:
+      return Event::Severity::error;
+    case drive::NoticeKind::warning:
+      return Event::Severity::warning;
+    case drive::NoticeKind::information:
+      return Event::Severity::info;
+  }
+  return Event::Severity::error;
 }
 
 Event::Severity severityOf(Condition condition) {

@@ -210,6 +210,7 @@ Duration Trajectories::laterBy(const Sent& sent, const std::string& answer) cons
   if (!(told >= 0.0 && told <= most + kRounded)) {
     session_.report("untrue_answer", "",
                     "a trajectory may take " + number(most) + " s longer: " + answer);
+    return {};
   }
   return fromSeconds(told);
 }
@@ -228,11 +229,11 @@ void Trajectories::accepted(const Sent& sent, Duration later) {
     if (sent.stop && of_another) continue;  // that group moves it
     follows_[i] = sent.id;
     leader = sent.group;
-    const Time begin = std::max(sent.base, sent.has_start ? sent.base : now);
     if (sent.stop) {
       stopped(sent, i);
       continue;
     }
+    const Time begin = sent.has_start ? sent.base : std::max(sent.base, now);
     const Time end = begin + sent.last + later + session_.lateFor() + 250ms;
     session_.permits.cut(i, Source::trajectory, end);
     session_.permits.allow(i, Source::trajectory, end);

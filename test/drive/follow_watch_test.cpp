@@ -2,62 +2,16 @@
 // When set-points are called back from a motor that does not follow them.
 #include "drive/axis/follow_watch.h"
 
-#include <gtest/gtest.h>
-
-#include <optional>
+#include "drive/follow_watch_bench.h"
 
 namespace cia402::drive {
 namespace {
 
 using namespace std::chrono_literals;
-
-constexpr Duration kCycle = 4ms;
-constexpr double kStandstill = 0.01;  // rad/s
-/// A drive may react so late, and a standstill is seen in whole windows.
-constexpr Duration kSeen = 2 * kCycle + 2 * Standstill::kWindow + 2 * kCycle;
-
-/// An axis of which the motor does what `motor` says, cycle by cycle.
-struct WatchBench {
-  SetPoint sent{motion::JointLimits{}, 5.0, kCycle};
-  Standstill standstill{kStandstill, 1e-6};
-  AxisState state;
-  FollowWatch watch{kStandstill, kCycle};
-  Time now{1s};
-  bool has_bit = false, bit = false;
-  bool heard = true;  ///< its feedback arrives
-  bool held = false, warned = false;
-
-  explicit WatchBench(SetPointKind kind = SetPointKind::stream) {
-    sent.rest(kind, 0.0);
-    state.position = 0.0;
-    state.ready_for_motion = true;
-    watch.begin(now);
-    stand(100ms);
-  }
-  /// One cycle: the motor is at `motor`, `target` is given. @return whether it is called back.
-  bool cycle(double motor, std::optional<double> target = {}) {
-    now += kCycle;
-    state.position = motor;
-    if (heard) standstill.update(motor, now);
-    if (target) sent.give(*target);
-    sent.advance(now);
-    return watch.watch({sent, standstill, state, has_bit, bit, held, warned, false}, now);
-  }
-  void stand(Duration duration) {
-    for (const Time end = now + duration; now < end;) {
-      ASSERT_FALSE(cycle(state.position, sent.value())) << "at rest";
-    }
-  }
-  /// The targets run at 1 rad/s while the motor stands. @return after how long they are called
-  /// back.
-  std::optional<Duration> runAhead(Duration longest = 1s) {
-    const Time began = now;
-    while (now - began < longest) {
-      if (cycle(state.position, sent.value() + 0.004)) return now - began;
-    }
-    return std::nullopt;
-  }
-};
+using test::kCycle;
+using test::kSeen;
+using test::kStandstill;
+using test::WatchBench;
 
 TEST(FollowWatch, CallsBackWhatRunsAwayFromAStandingMotor) {
   WatchBench bench;
@@ -212,62 +166,6 @@ TEST(FollowWatch, TellsOnceUntilTheMotorMoves) {
   EXPECT_FALSE(bench.watch.isNews());
   for (int i = 0; i < 20; ++i) bench.cycle(0.004 * i);
   EXPECT_TRUE(bench.watch.isNews());
-}
-
-TEST(FollowWatch, GivesADriveThatPlansUntilItHasStoodForAWhileAtALimit) {
-  WatchBench bench(SetPointKind::goal);
-  bench.state.internal_limit = true;
-  ASSERT_FALSE(bench.cycle(0.0, 0.5));
-  const Time begun = bench.now;
-  while (bench.now - begun < 1s && !bench.cycle(0.0)) {
-  }
-  EXPECT_GE(bench.now - begun, 300ms - kCycle);
-  EXPECT_LE(bench.now - begun, 300ms + 2 * kCycle);
-}
-
-// A stepper whose following error is no fault: only the bit of its mode tells of it.
-TEST(FollowWatch, GivesAGoalUpWhereTheDriveSaysThatItsMotorStaysBehind) {
-  for (const bool tells : {false, true}) {
-    ModeSpec mode;
-    mode.kind = ControlKind::position;
-    mode.following_error_bit = 13;
-    WatchBench bench(SetPointKind::goal);
-    bench.state.mode = &mode;
-    bench.state.statusword = tells ? 0x2000 : 0x1000;
-    EXPECT_FALSE(bench.cycle(0.0, 0.5));
-    bool called_back = false;
-    for (int i = 0; i < 250 && !called_back; ++i) called_back = bench.cycle(0.0);
-    EXPECT_EQ(called_back, tells);
-  }
-}
-
-// Where it may tell "target reached", though it went nowhere.
-TEST(FollowWatch, GivesAGoalUpThatADriveDoesNotGoToWhileAWarningHoldsIt) {
-  for (const bool warned : {true, false}) {
-    WatchBench bench(SetPointKind::goal);
-    bench.warned = warned;
-    bench.state.target_reached = true;
-    const Time given = bench.now;
-    bool back = bench.cycle(0.0, 0.5);
-    while (!back && bench.now < given + 2s) back = bench.cycle(0.0);
-    EXPECT_EQ(back, warned);
-    EXPECT_LE(bench.now - given, warned ? 300ms + 3 * kCycle : 2s);
-  }
-}
-
-TEST(FollowWatch, AGoalThatIsReachedIsNotCalledBack) {
-  WatchBench bench(SetPointKind::goal);
-  bench.state.internal_limit = bench.state.target_reached = true;
-  ASSERT_FALSE(bench.cycle(0.0, 0.5));
-  for (int i = 0; i < 500; ++i) ASSERT_FALSE(bench.cycle(0.0));
-}
-
-TEST(FollowWatch, AGoalIsNotCalledBackBeforeTheAxisIsReadyForIt) {
-  WatchBench bench(SetPointKind::goal);
-  bench.state.internal_limit = true;
-  bench.state.ready_for_motion = false;
-  ASSERT_FALSE(bench.cycle(0.0, 0.5));
-  for (int i = 0; i < 500; ++i) ASSERT_FALSE(bench.cycle(0.0));
 }
 
 TEST(FollowWatch, WaitsOnceForADriveThatNeverShowsItsBit) {

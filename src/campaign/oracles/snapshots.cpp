@@ -16,10 +16,9 @@ using namespace std::chrono_literals;
 
 constexpr std::size_t kMemory = 60;  // ms: two of the longest cycles, their frames, and a filter
 constexpr int kEvery = 10;           // looks
-constexpr double kLookTime = 0.001;  // s, from look to look
-/// s. Drives smooth the velocity that they show: of those that are simulated NiMotion's does it by
-/// the longest time, 2008:04 from power-on.
-constexpr double kDisplayFilter = 0.025;
+/// Looks. Drives smooth the velocity that they show: of those that are simulated NiMotion's does it
+/// by the longest time, 2008:04 from power-on.
+constexpr double kDisplayFilter = 25.0;
 
 class Snapshots final : public Oracle {
  public:
@@ -86,7 +85,7 @@ class Snapshots final : public Oracle {
   void remember(const View& view, std::size_t i) {
     const AxisTruth& truth = view.truths[i];
     Axis& axis = axes_[i];
-    axis.smooth += (truth.velocity - axis.smooth) * std::min(1.0, kLookTime / kDisplayFilter);
+    axis.smooth += (truth.velocity - axis.smooth) / kDisplayFilter;
     axis.speeds[axis.next] = truth.velocity;
     axis.smoothed[axis.next] = axis.smooth;
     axis.next = (axis.next + 1) % kMemory;

@@ -239,7 +239,9 @@ Result<void> Axis::command(double value, Time now) {
 std::string Axis::commandRefusal(double value) const {
   std::string refusal = motionRefusal();
   if (!refusal.empty()) return refusal;
-  refusal = impl_->core.generator().commandRefusal(value);
+  const Generator& generator = impl_->core.generator();
+  refusal = generator.commands().refusal(value, generator.mode());
+  if (refusal.empty()) refusal = generator.commands().excess(value, generator.mode());
   return refusal.empty() ? refusal : jointName(config()) + ": " + refusal;
 }
 
@@ -287,7 +289,6 @@ std::string Axis::faultText() const { return impl_->core.faults().text(); }
 bool Axis::faultTextAwaited() const { return impl_->core.faults().textAwaited(); }
 std::string Axis::unknownText() const { return impl_->core.feedback().unknownText(); }
 const std::string& Axis::notice() const { return impl_->core.notices().text(); }
-bool Axis::noticeWarns() const { return impl_->core.notices().warns(); }
-bool Axis::noticeInforms() const { return impl_->core.notices().informs(); }
+NoticeKind Axis::noticeKind() const { return impl_->core.notices().kind(); }
 
 }  // namespace cia402::drive

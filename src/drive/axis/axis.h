@@ -12,6 +12,7 @@
 
 #include "cia402_driver/common/result.h"
 #include "drive/axis/config.h"
+#include "drive/axis/notices.h"
 #include "drive/axis/set_point.h"
 #include "drive/axis/state_machine.h"
 #include "drive/modes/stream.h"
@@ -272,9 +273,7 @@ class Axis {
   /// The last thing the axis did by itself (left operation, quick-stopped without feedback, dropped
   /// a set-point, lost its device), as a sentence; noticeCount() grows with each.
   const std::string& notice() const;
-  /// It is a warning of a procedure, and stops nothing.
-  bool noticeWarns() const;
-  bool noticeInforms() const;  ///< it is neither an error nor a warning
+  NoticeKind noticeKind() const;
   std::uint32_t noticeCount() const { return *notices_; }
 
  private:

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "drive/profile/fault_text.h"
 #include "drive/sentence.h"
 
 namespace cia402::drive {
@@ -230,8 +231,9 @@ void Generator::callBack(bool warned) {
       axis_.who() + ": the motor stands while " + what +
       (state.internal_limit ? "internal limit active (statusword bit 11), a limit switch or a "
                               "position limit of the drive holds it"
-       : warned             ? "the drive holds it by its warning"
-                            : "the brake, a limit or the load holds it") +
+       : warned
+           ? "the drive holds it by warning " + warningCodeText(axis_.profile(), state.error_code)
+           : "the brake, a limit or the load holds it") +
       (turns ? ". The velocity is set to 0" : ". They are called back to where it stands") +
       ", and what was commanded is given up: free the axis or lead it back, then command it "
       "again");

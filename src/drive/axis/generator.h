@@ -50,12 +50,6 @@ class Generator {
   const Commands& commands() const { return commands_; }
   /// Takes a streamed command, see Axis::command().
   Result<void> command(double value, Time now) { return commands_.take(value, *mode_, sent_, now); }
-  /// Why a command would not be taken now, or not be followed as it is, in words; empty if it
-  /// would.
-  std::string commandRefusal(double value) const {
-    std::string why = commands_.refusal(value, *mode_);
-    return why.empty() ? commands_.excess(value, *mode_) : why;
-  }
   /// Brings the set-points to rest, by a ramp where they move, whoever gave them.
   /// @param over see SetPoint::stop()
   void stop(Duration over = Duration::zero());

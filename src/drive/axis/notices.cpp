@@ -8,7 +8,7 @@ namespace cia402::drive {
 
 void Notices::notify(std::string text) {
   text_ = std::move(text);
-  warns_ = informs_ = false;
+  kind_ = NoticeKind::error;
   ++count_;
 }
 
@@ -25,12 +25,12 @@ void Notices::warnOnce(std::string text) {
 void Notices::informOnce(std::string text) {
   if (!isNew(text)) return;
   notify(std::move(text));
-  informs_ = true;
+  kind_ = NoticeKind::information;
 }
 
 void Notices::warn(std::string text) {
   notify(std::move(text));
-  warns_ = true;
+  kind_ = NoticeKind::warning;
 }
 
 void Notices::fail(std::string text, bool tell) {

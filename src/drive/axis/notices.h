@@ -7,6 +7,12 @@
 
 namespace cia402::drive {
 
+enum class NoticeKind : std::uint8_t {
+  error,
+  warning,      ///< stops nothing
+  information,  ///< good to know
+};
+
 /// What an axis did by itself and people are told of, and why a procedure that runs must fail.
 class Notices {
  public:
@@ -26,10 +32,7 @@ class Notices {
   std::string takeFailure();
   /// The last notice, a sentence.
   const std::string& text() const { return text_; }
-  /// It is a warning, and stops nothing.
-  bool warns() const { return warns_; }
-  /// It is neither an error nor a warning.
-  bool informs() const { return informs_; }
+  NoticeKind kind() const { return kind_; }
   /// Grows with each notice.
   const std::uint32_t& count() const { return count_; }
 
@@ -39,7 +42,7 @@ class Notices {
 
   std::vector<std::string> once_;  ///< of warnOnce() and informOnce()
   std::uint32_t count_ = 0;
-  bool warns_ = false, informs_ = false;
+  NoticeKind kind_ = NoticeKind::error;
 };
 
 }  // namespace cia402::drive
