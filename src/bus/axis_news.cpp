@@ -39,7 +39,7 @@ std::string dryText(const drive::AxisConfig& config, const drive::ModeSpec& mode
 }  // namespace
 
 void AxisNews::tellStream(const drive::Axis& axis, Time now) {
-  dried_up_ = axis.driedUp();
+  dried_up_ = axis.stream().dried_up;
   const drive::ModeSpec* mode = axis.state().mode;
   const bool says = dried_up_ && mode != nullptr;
   const std::string text = says ? dryText(axis.config(), *mode) : std::string();

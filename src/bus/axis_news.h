@@ -36,7 +36,7 @@ class AxisNews {
 
   /// Once a cycle, the last of it: tells what has changed.
   void watch(drive::Axis& axis, AxisReporter& reporter, const BusSide& bus, Time now) {
-    if (dried_up_ != axis.driedUp()) tellStream(axis, now);
+    if (dried_up_ != axis.stream().dried_up) tellStream(axis, now);
     if (differs(axis)) {
       tellNews(axis, reporter, bus, now);
     } else if (now >= checked_ + kInterval) {

@@ -153,7 +153,7 @@ void FlightRecorder::observeAxis(const AxisUnit& unit, bool sample, Time now) {
   const drive::ProcedureStatus& procedure = axis.procedure();
   Watched& watched = watched_[index];
   if (procedure.running) observeStep(index, axis, now);
-  const bool moving = !axis.streamAtRest();
+  const bool moving = !axis.stream().at_rest;
   const bool known = watched.signature != 0 && watched.condition == state &&
                      watched.last_procedure == procedure.id &&
                      watched.running == procedure.running &&

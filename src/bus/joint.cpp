@@ -74,7 +74,7 @@ std::string AxisJoint::refusal(const std::string& group) const {
   if (!reason.empty()) return reason;
   if (followsAnother(group)) return who() + " follows a trajectory of group " + *leader();
   // In the cycle in which a trajectory has ended, the stream still knows the way to its goal only.
-  const bool rests = axis().streamAtRest() || sent().atRest();
+  const bool rests = axis().stream().at_rest || sent().atRest();
   if (leader() == nullptr && !rests) {
     return who() + " is still moved by streamed set-points: end the stream and let it come to rest";
   }

@@ -23,7 +23,7 @@ bool atRest(const AxisCycle& cycle) {
   const auto& units = cycle.units();
   const auto& groups = cycle.groups();
   return std::all_of(units.begin(), units.end(),
-                     [](const AxisUnit& unit) { return unit.axis.streamAtRest(); }) &&
+                     [](const AxisUnit& unit) { return unit.axis.stream().at_rest; }) &&
          std::none_of(groups.begin(), groups.end(),
                       [](const Group& group) { return group.executing() || group.stopping(); });
 }

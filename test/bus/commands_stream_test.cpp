@@ -53,7 +53,7 @@ TEST(AxisStream, IsForgottenWhenATrajectoryMovesTheAxis) {
   world.run(1s);
   ASSERT_TRUE(world.move({1.0}, 1.0).success);
   world.run(500ms);
-  EXPECT_FALSE(world.shoulder().driedUp());
+  EXPECT_FALSE(world.shoulder().stream().dried_up);
   world.run(2s);
   EXPECT_EQ(world.drive().position, 100000) << "it does not go back to 0.5 rad";
 }
@@ -151,9 +151,9 @@ TEST(AxisStream, OfAVelocityOrAnEffortIsKeptForAsLongAsTheTimeOutAllows) {
     drive::Axis& axis = world.axis(0);
     ASSERT_TRUE(axis.command(0.5, world.now).ok());
     axis.writeCommands(world.now + 200ms);  // command_timeout
-    EXPECT_FALSE(axis.driedUp());
+    EXPECT_FALSE(axis.stream().dried_up);
     axis.writeCommands(world.now + 200ms + 1us);
-    EXPECT_TRUE(axis.driedUp());
+    EXPECT_TRUE(axis.stream().dried_up);
   }
 }
 
@@ -163,10 +163,10 @@ TEST(AxisStream, IsNotAtRestFromTheFirstCycleOn) {
     StreamWorld world(mode);
     drive::Axis& axis = world.axis(0);
     axis.writeCommands(world.now);
-    EXPECT_TRUE(axis.streamAtRest());
+    EXPECT_TRUE(axis.stream().at_rest);
     ASSERT_TRUE(axis.command(0.5, world.now).ok());
     axis.writeCommands(world.now);
-    EXPECT_FALSE(axis.streamAtRest());
+    EXPECT_FALSE(axis.stream().at_rest);
   }
 }
 
@@ -178,30 +178,30 @@ TEST(AxisStream, IsAtRestOnceItsStopHasEnded) {
   world.run(100 * test::kPeriod);
   axis.stopSetPoint();
   world.run(20 * test::kPeriod);
-  EXPECT_FALSE(axis.streamAtRest()) << "2 rad/s at 10 rad/s² take 200 ms";
+  EXPECT_FALSE(axis.stream().at_rest) << "2 rad/s at 10 rad/s² take 200 ms";
   world.run(40 * test::kPeriod);
-  EXPECT_TRUE(axis.streamAtRest());
+  EXPECT_TRUE(axis.stream().at_rest);
 }
 
 TEST(AxisStream, IsAtRestWhenTheAxisFallsOutOfOperation) {
   StreamWorld world("cyclic_velocity");
   ASSERT_EQ(world.command(0.5), "");
   world.run(150ms);
-  EXPECT_FALSE(world.shoulder().streamAtRest());
+  EXPECT_FALSE(world.shoulder().stream().at_rest);
   world.drive().fault(0x8611);
   world.run(20ms);
-  EXPECT_TRUE(world.shoulder().streamAtRest());
-  EXPECT_FALSE(world.shoulder().driedUp());
+  EXPECT_TRUE(world.shoulder().stream().at_rest);
+  EXPECT_FALSE(world.shoulder().stream().dried_up);
 }
 
 TEST(AxisStream, AGoalIsAtRestWhenTheDriveHasReachedIt) {
   StreamWorld world("profile_position");
   ASSERT_EQ(world.command(0.5), "");
   world.run(300ms);
-  EXPECT_FALSE(world.shoulder().streamAtRest());
+  EXPECT_FALSE(world.shoulder().stream().at_rest);
   world.run(400ms);
   ASSERT_EQ(world.drive().position, 50000);
-  EXPECT_TRUE(world.shoulder().streamAtRest());
+  EXPECT_TRUE(world.shoulder().stream().at_rest);
 }
 
 TEST(AxisStream, AGoalIsHeldBackToTheLowerLimitOfTheJoint) {

@@ -180,9 +180,9 @@ TEST(AxisCommands, SaysThatAStreamDriedUpUnlessItEndedWithAZero) {
       rig.world.run(20ms);
       ASSERT_EQ(rig.command(last), "");
       rig.world.run(190ms);  // command_timeout is 200 ms
-      EXPECT_FALSE(rig.world.axis(0).driedUp());
+      EXPECT_FALSE(rig.world.axis(0).stream().dried_up);
       rig.world.run(20ms);
-      EXPECT_EQ(rig.world.axis(0).driedUp(), last != 0.0);
+      EXPECT_EQ(rig.world.axis(0).stream().dried_up, last != 0.0);
     }
   }
 }
@@ -234,10 +234,10 @@ TEST(AxisCommands, GoesOnSmoothlyAfterAStop) {
   run(100);
   axis.stopSetPoint();
   run(20);
-  EXPECT_FALSE(axis.streamAtRest());
+  EXPECT_FALSE(axis.stream().at_rest);
   ASSERT_TRUE(axis.command(2.0, rig.world.now).ok());
   run(300);
-  EXPECT_TRUE(axis.streamAtRest());
+  EXPECT_TRUE(axis.stream().at_rest);
   EXPECT_EQ(rig.drive().targets.back(), 200000);
   EXPECT_LE(largestStep(rig.drive().targets), kLargestStep);
   EXPECT_LE(largestChangeOfStep(rig.drive().targets), kLargestChange);

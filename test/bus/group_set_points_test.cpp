@@ -73,15 +73,15 @@ TEST(GroupSetPoints, OfVelocitiesEndAfterTheTimeOut) {
   world.run(130ms);  // 1 rad/s at 10 rad/s^2
   EXPECT_EQ(world.drives[0].target_velocity, 0);
   EXPECT_EQ(world.drives[1].target_velocity, 0);
-  EXPECT_TRUE(world.axis(0).driedUp());
-  EXPECT_TRUE(world.axis(1).driedUp());
+  EXPECT_TRUE(world.axis(0).stream().dried_up);
+  EXPECT_TRUE(world.axis(1).stream().dried_up);
 }
 
 TEST(GroupSetPoints, TheTimeOutCountsFromWhenTheyCame) {
   SetPointWorld world("cyclic_velocity");
   ASSERT_EQ(world.command({1.0, 1.0}, world.now - 150ms), "");
   world.run(60ms);
-  EXPECT_TRUE(world.axis(0).driedUp());
+  EXPECT_TRUE(world.axis(0).stream().dried_up);
 }
 
 TEST(GroupSetPoints, OfEffortsReachAllAxes) {
@@ -181,7 +181,7 @@ TEST(GroupSetPoints, FromTheFutureCountAsJustCome) {
   SetPointWorld world("cyclic_velocity");
   ASSERT_EQ(world.command({1.0, 1.0}, world.now + 10s), "");
   world.run(220ms);
-  EXPECT_TRUE(world.axis(0).driedUp());
+  EXPECT_TRUE(world.axis(0).stream().dried_up);
 }
 
 TEST(GroupSetPoints, ThatAreRefusedLeaveTheStreamBeforeToItsTimeOut) {
@@ -190,7 +190,7 @@ TEST(GroupSetPoints, ThatAreRefusedLeaveTheStreamBeforeToItsTimeOut) {
   world.run(150ms);
   EXPECT_NE(world.command({1.0, kNoNumber}), "");
   world.run(60ms);
-  EXPECT_TRUE(world.axis(0).driedUp());
+  EXPECT_TRUE(world.axis(0).stream().dried_up);
 }
 
 TEST(GroupSetPoints, LeadAJointThatStandsBeyondItsLimitBackOnly) {

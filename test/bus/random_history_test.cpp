@@ -29,7 +29,7 @@ auto recordedOf(const drive::Axis& axis) {
   const drive::ProcedureStatus& procedure = axis.procedure();
   return std::make_tuple(state.state, state.health, state.homed, state.warning,
                          state.internal_limit, state.ready_for_motion, procedure.running,
-                         procedure.success, !axis.streamAtRest(), procedure.id, state.error_code,
+                         procedure.success, !axis.stream().at_rest, procedure.id, state.error_code,
                          state.mode_value);
 }
 using Recorded = decltype(recordedOf(std::declval<const drive::Axis&>()));

@@ -222,10 +222,8 @@ class Axis {
   void follow(const std::string* who);
   /// Who does; nullptr: nobody.
   const std::string* leader() const;
-  /// The stream of commands has come to rest, or there is none.
-  bool streamAtRest() const { return stream_->at_rest; }
-  /// A stream of velocities or efforts ended without a zero: it is being brought to rest, or was.
-  bool driedUp() const { return stream_->dried_up; }
+  /// What became of the commands that were streamed.
+  const Stream& stream() const { return *stream_; }
   /// Cycles were missed before this one. Valid from update() to writeCommands().
   bool late() const;
   /// Why setTarget would refuse now, in words; empty if it would not.

@@ -12,8 +12,10 @@ struct Stream {
   std::optional<double> command;  ///< the last one, in joint units; nothing: there is none
   Time clock{};                   ///< one period a cycle, however late the cycle is
   Time commanded{};               ///< when the command came, in bus time
-  bool dried_up = false;  ///< a velocity or an effort other than zero was not renewed in time
-  bool at_rest = true;    ///< what is led by the commands does not move
+  /// A velocity or an effort other than zero was not renewed in time: it is being brought to rest,
+  /// or was.
+  bool dried_up = false;
+  bool at_rest = true;  ///< what the commands lead does not move, or there are none
 };
 
 }  // namespace cia402::drive
