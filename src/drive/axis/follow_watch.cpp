@@ -107,10 +107,10 @@ bool FollowWatch::goesNowhere(const Look& look, double ahead, Time now) {
 
 bool FollowWatch::restsAhead(const Look& look, double ahead, Time now) const {
   if (!apart(look, ahead)) return false;
-  const Duration rested = now - look.sent.movedAt();
-  if (look.sent.kind() == SetPointKind::stream) return look.sent.atRest() && rested >= kHeld;
+  const Time moved = look.sent.movedAt();
+  if (look.sent.kind() == SetPointKind::stream) return look.sent.atRest() && now >= moved + kHeld;
   return look.sent.kind() == SetPointKind::goal && look.state.ready_for_motion &&
-         (look.warned || !look.state.target_reached) && rested >= kStuck;
+         (look.warned || !look.state.target_reached) && now >= moved + kStuck;
 }
 
 }  // namespace cia402::drive
