@@ -110,11 +110,8 @@ void Axis::Impl::endEnabling(const std::string& why) {
 
 Axis::Axis(AxisConfig config, fieldbus::Device& device)
     : impl_(std::make_unique<Impl>(std::move(config), device)),
-      state_(&impl_->core.state()),
-      procedure_(&impl_->status),
-      notices_(&impl_->core.notices().count()),
-      set_point_(&impl_->core.generator().sent()),
-      stream_(&impl_->core.generator().commands().stream()) {}
+      shown_{&impl_->core.state(), &impl_->status, &impl_->core.notices().count(),
+             &impl_->core.generator().sent(), &impl_->core.generator().commands().stream()} {}
 Axis::~Axis() = default;
 Axis::Axis(Axis&&) noexcept = default;
 

@@ -135,8 +135,8 @@ class Axis {
 
   const AxisConfig& config() const;
   fieldbus::Device& device();
-  const AxisState& state() const { return *state_; }
-  const ProcedureStatus& procedure() const { return *procedure_; }
+  const AxisState& state() const { return *shown_.state; }
+  const ProcedureStatus& procedure() const { return *shown_.procedure; }
   /// The one before; ended, e.g. because disable, quick_stop or halt pre-empted it.
   const ProcedureStatus& previousProcedure() const;
 
@@ -208,7 +208,7 @@ class Axis {
   [[nodiscard]] bool setTarget(double value);
   double target() const { return setPoint().value(); }
   /// What was sent last, and how it moves.
-  const SetPoint& setPoint() const { return *set_point_; }
+  const SetPoint& setPoint() const { return *shown_.set_point; }
   /// What one unit of the measured position is, rad or m.
   double positionResolution() const;
   /// Brings the set-points to rest, by a ramp where they move, and ends a stream of commands.
@@ -223,7 +223,7 @@ class Axis {
   /// Who does; nullptr: nobody.
   const std::string* leader() const;
   /// What became of the commands that were streamed.
-  const Stream& stream() const { return *stream_; }
+  const Stream& stream() const { return *shown_.stream; }
   /// Cycles were missed before this one. Valid from update() to writeCommands().
   bool late() const;
   /// Why setTarget would refuse now, in words; empty if it would not.
@@ -272,17 +272,18 @@ class Axis {
   /// a set-point, lost its device), as a sentence; noticeCount() grows with each.
   const std::string& notice() const;
   NoticeKind noticeKind() const;
-  std::uint32_t noticeCount() const { return *notices_; }
+  std::uint32_t noticeCount() const { return *shown_.notices; }
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
-  // Of impl_, for every cycle asks for them:
-  const AxisState* state_;
-  const ProcedureStatus* procedure_;
-  const std::uint32_t* notices_;
-  const SetPoint* set_point_;
-  const Stream* stream_;
+  struct Shown {
+    const AxisState* state;
+    const ProcedureStatus* procedure;
+    const std::uint32_t* notices;
+    const SetPoint* set_point;
+    const Stream* stream;
+  } shown_;  // of impl_, for every cycle asks for it
 };
 
 }  // namespace cia402::drive

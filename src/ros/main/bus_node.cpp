@@ -51,6 +51,7 @@ or by hand:
   rosrun cia402_driver bus_node __name:=bus _interface:=sim
 
   _interface:=NAME          CAN interface instead of the file's; sim: simulated drives in the node
+  _limits_from_parameters:=true  whether limits of robot_description and joint_limits count
   _profile_path:=FOLDER     a folder with further drive profiles
   _realtime_priority:=80    SCHED_FIFO priority of the bus thread, 1 to 99; 0: no real time
 
@@ -146,6 +147,16 @@ void addStateTasks(ros_node::EventLoop& loop, const ros_node::Reloader& reloader
   });
 }
 
+/// Until the program is to end, and until the drives are stopped then.
+void untilStopped(ros_node::EventLoop& loop, bus::BusRunner& runner) {
+  ros_node::wakeOnSignals(loop.wakeFd());
+  while (!ros_node::endRequested()) loop.step();
+  ROS_INFO("stopping the drives");
+  runner.requestShutdown();
+  while (runner.running()) loop.step();
+  runner.join();
+}
+
 /// Runs the driver until the node is asked to end.
 void serve(ros::NodeHandle& node, ros::NodeHandle& private_node, const LoadedRobot& loaded,
            OpenInterface open) {
@@ -195,13 +206,7 @@ void serve(ros::NodeHandle& node, ros::NodeHandle& private_node, const LoadedRob
       },
       [&] { publishMeasured(runner, publishers, frames); });
   loop.every(kDiagnosticsTick, [&] { diagnostics.update(); });
-  ros_node::wakeOnSignals(loop.wakeFd());
-  while (!ros_node::endRequested()) loop.step();
-
-  ROS_INFO("stopping the drives");
-  runner.requestShutdown();
-  while (runner.running()) loop.step();
-  runner.join();
+  untilStopped(loop, runner);
   events.drain();
   desk.answer();
   actions.update();

@@ -163,6 +163,30 @@ bool FaultResetStep::turns(const Context& context) {
          !axis.feedback().seenToStand(context.now);
 }
 
+Outcome FaultResetStep::begin(const Context& context) {
+  const AxisCore& axis = context.axis;
+  if (const std::string refusal = axis.faults().resetRefusal(context.now); !refusal.empty()) {
+    return fail(context, refusal);
+  }
+  code_ = axis.state().error_code;
+  enter(Phase::resting, context);
+  if (turns(context)) {
+    context.show("waiting for rest", "the drive to end the stop by which its warning holds it");
+  }
+  return awaitRest(context);
+}
+
+Outcome FaultResetStep::awaitRest(const Context& context) {
+  AxisCore& axis = context.axis;
+  if (turns(context) && context.now - since_ <= kComeToRest) return Outcome::running();
+  axis.setGoal(Goal::disabled);
+  if (!axis.profile().fault_reset.clears_history) return awaitReaction(context);
+  clearing_ = axis.device().objects().download({0x1003, 0}, {0}, "error history");
+  enter(Phase::clearing, context);
+  context.show("clearing the error history", "the drive to take 1003:00 = 0");
+  return Outcome::running();
+}
+
 Outcome FaultResetStep::advance(const Context& context) {
   AxisCore& axis = context.axis;
   const Duration waited = context.now - since_;
@@ -170,23 +194,9 @@ Outcome FaultResetStep::advance(const Context& context) {
   const bool sent = axis.control().frames() >= frames_ + kSureFrames;
   switch (phase_) {
     case Phase::begin:
-      if (const std::string refusal = axis.faults().resetRefusal(context.now); !refusal.empty()) {
-        return fail(context, refusal);
-      }
-      code_ = axis.state().error_code;
-      enter(Phase::resting, context);
-      if (turns(context)) {
-        context.show("waiting for rest", "the drive to end the stop by which its warning holds it");
-      }
-      [[fallthrough]];
+      return begin(context);
     case Phase::resting:
-      if (turns(context) && context.now - since_ <= kComeToRest) return Outcome::running();
-      axis.setGoal(Goal::disabled);
-      if (!axis.profile().fault_reset.clears_history) return awaitReaction(context);
-      clearing_ = axis.device().objects().download({0x1003, 0}, {0}, "error history");
-      enter(Phase::clearing, context);
-      context.show("clearing the error history", "the drive to take 1003:00 = 0");
-      return Outcome::running();
+      return awaitRest(context);
     case Phase::clearing:  // a drive that refuses it may still take the reset
       return clearing_->done() ? awaitReaction(context) : Outcome::running();
     case Phase::reacting:

@@ -26,6 +26,8 @@ class FaultResetStep {
   void enter(Phase phase, const Context& context);
   static bool turns(const Context& context);
   Outcome fail(const Context& context, const std::string& why) const;
+  Outcome begin(const Context& context);
+  Outcome awaitRest(const Context& context);
   Outcome awaitReaction(const Context& context);
   Outcome cameBack(const Context& context);
   Outcome awaitReset(const Context& context);
