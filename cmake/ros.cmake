@@ -26,6 +26,14 @@ set(cia402_ros_packages
   actionlib diagnostic_updater roscpp roslib tf2_ros ${cia402_message_packages})
 find_package(catkin REQUIRED COMPONENTS message_generation ${cia402_ros_packages})
 
+# Reads robot_description; ROS' own package of it is a wrapper that links a loader of plugins, too.
+find_path(cia402_urdfdom_include urdf_parser/urdf_parser.h PATH_SUFFIXES urdfdom)
+find_path(cia402_urdfdom_headers urdf_model/model.h PATH_SUFFIXES urdfdom_headers)
+find_library(cia402_urdfdom urdfdom_model)
+if(NOT cia402_urdfdom_include OR NOT cia402_urdfdom_headers OR NOT cia402_urdfdom)
+  message(FATAL_ERROR "urdfdom was not found: install liburdfdom-dev and liburdfdom-headers-dev")
+endif()
+
 add_message_files(FILES
   AxisState.msg AxisStates.msg BusState.msg Emergency.msg LssIdentity.msg NodeState.msg)
 add_service_files(FILES
@@ -51,11 +59,11 @@ catkin_package(
 
 # The one module that knows ROS: src/ros/*.cpp.
 function(cia402_ros_module)
-  cia402_module(ros cia402_driver cia402_bus cia402_sim ${catkin_LIBRARIES})
+  cia402_module(ros cia402_driver cia402_bus cia402_sim ${cia402_urdfdom} ${catkin_LIBRARIES})
   get_target_property(type cia402_ros TYPE)
   if(type STREQUAL STATIC_LIBRARY)
     target_include_directories(cia402_ros SYSTEM PUBLIC ${CATKIN_DEVEL_PREFIX}/include
-      ${catkin_INCLUDE_DIRS})
+      ${catkin_INCLUDE_DIRS} ${cia402_urdfdom_include} ${cia402_urdfdom_headers})
     add_dependencies(cia402_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
   endif()
 endfunction()

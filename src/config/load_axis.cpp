@@ -70,11 +70,20 @@ void keep(const AxisDraft& draft, RobotConfig& robot) {
   device.title = joints + " (node " + std::to_string(device.node_id) + ")";
 }
 
-void readSections(yaml::Section& section, AxisDraft& draft, RobotConfig& robot) {
-  AxisConfig& axis = draft.axis;
+void readAxisLimits(yaml::Section& section, AxisConfig& axis, const AxisReading& reading,
+                    RobotConfig& robot) {
   if (const auto limits = section.get("limits")) {
     axis.limits = readLimits(*limits, axis.geometry.type);
   }
+  if (reading.coupled.count(axis.name) != 0) return;
+  const yaml::Value& value = section.value();
+  axis.limits = reading.described.strictest({drive::jointOf(axis), value.path() + "/limits"},
+                                            value.problems(), robot);
+  axis.limits.continuous = false;
+}
+
+void readSections(yaml::Section& section, AxisDraft& draft, RobotConfig& robot) {
+  AxisConfig& axis = draft.axis;
   if (const auto homing = section.get("homing")) axis.homing = readHoming(*homing);
   if (draft.first) readDevice(section, draft.device, robot);
   if (const auto parameters = section.get("parameters")) readParameters(*parameters, axis);
@@ -206,6 +215,7 @@ void readAxis(const std::string& name, const yaml::Value& value, AxisReading& re
   if (const auto moving = section.get("set_mode_in_motion")) {
     axis.set_mode_stops = moving->oneOf({"refuse", "stop"}).value_or(0) == 1;
   }
+  readAxisLimits(section, axis, reading, robot);
   readSections(section, draft, robot);
   readWithProfile(section, axis);
   if (axis.profile && axis.mode.empty()) {

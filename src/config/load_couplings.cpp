@@ -32,7 +32,8 @@ constexpr Quantity kMagnitudes[] = {{"velocity", &JointLimits::velocity},
 /// Reads one coupling of the list, and checks that its axes may do all that its joints may.
 class CouplingReader {
  public:
-  CouplingReader(const yaml::Value& entry, RobotConfig& robot) : section_(entry), robot_(robot) {}
+  CouplingReader(const yaml::Value& entry, const DescribedLimits& described, RobotConfig& robot)
+      : section_(entry), described_(described), robot_(robot) {}
 
   CouplingConfig read() {
     std::vector<std::string> known;
@@ -181,6 +182,9 @@ class CouplingReader {
       section.finish();
     }
     joint.limits.continuous = type == Type::continuous;
+    const yaml::Value& value = section_.value();
+    joint.limits = described_.strictest({joint, value.path() + "/" + name + "/limits", true},
+                                        value.problems(), robot_);
     joint.unit = type == Type::prismatic ? motion::JointUnit::metre : motion::JointUnit::radian;
     coupling_.joints.push_back(joint);
   }
@@ -293,6 +297,7 @@ class CouplingReader {
   }
 
   yaml::Section section_;
+  const DescribedLimits& described_;
   RobotConfig& robot_;
   std::vector<std::string> names_;
   CouplingConfig coupling_;
@@ -300,10 +305,10 @@ class CouplingReader {
 
 }  // namespace
 
-void readCouplings(const yaml::Value& value, RobotConfig& robot) {
+void readCouplings(const yaml::Value& value, const DescribedLimits& described, RobotConfig& robot) {
   std::set<std::string> coupled, joints;
   for (const yaml::Value& entry : value.list()) {
-    CouplingReader reader(entry, robot);
+    CouplingReader reader(entry, described, robot);
     CouplingConfig coupling = reader.read();
     for (const std::string& axis : coupling.axes) {
       if (!coupled.insert(axis).second) reader.section().problem("`" + axis + "` is coupled twice");

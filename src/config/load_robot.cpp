@@ -27,7 +27,7 @@ void readAxes(const yaml::Value& value, const YAML::Node& defaults, AxisReading&
 
 RobotConfig readRobot(const YAML::Node& tree, const ProfileLookup& lookup, Problems& problems) {
   RobotConfig robot;
-  AxisReading reading{ProfileCache(lookup, problems), EdsFiles(lookup), {}, {}};
+  AxisReading reading{ProfileCache(lookup, problems), EdsFiles(lookup), {}, {}, {}, {}};
   const yaml::Value root(tree, "", problems);
   yaml::Section section(root);
   const yaml::Value missing(YAML::Node(YAML::NodeType::Map), "bus", problems);
@@ -41,13 +41,19 @@ RobotConfig readRobot(const YAML::Node& tree, const ProfileLookup& lookup, Probl
   if (const auto unknown = section.get("unknown_joints")) {
     robot.omit_unknown_joints = unknown->oneOf({"nan", "omit"}) == 1U;
   }
+  const auto described = section.get("limits_from");
+  if (described) reading.described = DescribedLimits(*described);
+  reading.coupled = coupledAxes(tree);
   const auto axes = section.get("axes");
   if (axes) {
     readAxes(*axes, defaults ? defaults->node() : YAML::Node(), reading, robot);
   } else {
     problems.add("axes", "is missing: name at least one axis with its node_id and drive");
   }
-  if (const auto couplings = section.get("couplings")) readCouplings(*couplings, robot);
+  if (const auto couplings = section.get("couplings")) {
+    readCouplings(*couplings, reading.described, robot);
+  }
+  reading.described.finish(jointNames(robot));
   readTf(section, robot);
   const auto groups = section.get("groups");
   if (groups && !groups->node().IsNull()) readGroups(*groups, robot);

@@ -140,6 +140,7 @@ YAML::Node settledTree(const YAML::Node& tree, const RobotConfig& robot) {
     settled["axes"] = axes;
   }
   settled.remove("defaults");
+  settleLimits(settled, robot);
   if (settled["groups"].IsMap()) return settled;
   for (const GroupConfig& group : robot.groups) {
     settled["groups"][group.name]["joints"] = group.joints;

@@ -160,6 +160,7 @@ struct RobotConfig {
   bool omit_unknown_joints = false;
   std::map<std::string, SimulationConfig> simulated;  ///< axis name -> its `simulation:` section
   std::vector<std::string> warnings;                  ///< worth a look, but no reason to refuse
+  std::vector<std::string> notes;                     ///< good to know
 };
 
 /// Finds the file of a drive profile, an EDS or a DCF: a name ("generic_cia402", "motor.eds") in

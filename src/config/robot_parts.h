@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "config/described_limits.h"
 #include "config/robot.h"
 #include "yaml/reader.h"
 
@@ -65,6 +66,8 @@ struct AxisReading {
   ProfileCache profiles;
   EdsFiles eds;
   std::map<canopen::NodeId, unsigned> axes_of;  ///< how many the file has of a node
+  DescribedLimits described;
+  std::set<std::string> coupled;  ///< axes in a coupling
   /// Of each device (index) what its first axis says of it: key to YAML.
   std::map<std::size_t, std::map<std::string, std::string>> device_keys;
 };
@@ -152,7 +155,7 @@ void checkAxis(yaml::Section& section, const AxisDraft& draft, RobotConfig& robo
 std::vector<std::string> readNames(yaml::Section& section, const std::string& key,
                                    const std::vector<std::string>& known, const char* what);
 /// `couplings`, with the frames of their joints. @pre the axes were read
-void readCouplings(const yaml::Value& value, RobotConfig& robot);
+void readCouplings(const yaml::Value& value, const DescribedLimits& described, RobotConfig& robot);
 void readGroups(const yaml::Value& value, RobotConfig& robot);
 /// The group `joints` of all joints that can follow a stream of positions.
 void addDefaultGroup(RobotConfig& robot);

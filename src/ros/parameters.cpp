@@ -3,6 +3,8 @@
 
 #include <sstream>
 
+#include "ros/described_limits.h"
+
 namespace cia402::ros_node {
 namespace {
 
@@ -28,6 +30,15 @@ void takeOption(YAML::Node& tree, const char* key, std::string& value, Problems&
     value = node.Scalar();
   } else {
     problems.add(key, "must be a text");
+  }
+  tree.remove(key);
+}
+
+void takeFlag(YAML::Node& tree, const char* key, bool& value, Problems& problems) {
+  const YAML::Node node = tree[key];
+  if (!node) return;
+  if (!node.IsScalar() || !YAML::convert<bool>::decode(node, value)) {
+    problems.add(key, "must be true or false");
   }
   tree.remove(key);
 }
@@ -89,6 +100,11 @@ Parameters readParameters(const ros::NodeHandle& private_node, Problems& problem
   takeOption(parameters.robot, "interface", parameters.options.interface, problems);
   takeOption(parameters.robot, "profile_path", parameters.options.profile_path, problems);
   takePriority(parameters.robot, parameters.options.realtime_priority, problems);
+  takeFlag(parameters.robot, "limits_from_parameters", parameters.options.limits_from_parameters,
+           problems);
+  if (parameters.options.limits_from_parameters) {
+    addDescribedLimits(private_node, parameters.robot, problems);
+  }
   if (!parameters.options.interface.empty()) {
     parameters.robot["bus"]["interface"] = parameters.options.interface;
   }

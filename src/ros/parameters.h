@@ -18,7 +18,9 @@ YAML::Node toYaml(XmlRpc::XmlRpcValue value, const std::string& path, Problems& 
 /// What the node itself takes from its private namespace, beside the robot.
 struct NodeOptions {
   std::string interface;  ///< `~interface`: overrides bus/interface (roslaunch can:=..., sim:=true)
-  std::string profile_path;    ///< `~profile_path`: further folder of drive profiles
+  std::string profile_path;  ///< `~profile_path`: further folder of drive profiles
+  /// `~limits_from_parameters`: the limits of robot_description and joint_limits count, too
+  bool limits_from_parameters = true;
   int realtime_priority = 80;  ///< `~realtime_priority`: 0 leaves scheduling and memory alone
 };
 

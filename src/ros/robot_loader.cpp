@@ -51,6 +51,7 @@ std::optional<LoadedRobot> loadRobot(const ros::NodeHandle& private_node) {
   report(problems, "configuration of " + private_node.getNamespace());
   if (!ready) return std::nullopt;
   for (const std::string& warning : ready->robot.warnings) ROS_WARN_STREAM(warning);
+  for (const std::string& note : ready->robot.notes) ROS_INFO_STREAM(note);
   return LoadedRobot{parameters.options, std::move(ready->robot), std::move(ready->master),
                      parameters.robot, found};
 }

@@ -41,7 +41,9 @@ class Reload(RobotTest):
     def tearDown(self):
         self.robot.call("inject_fault", axis="shoulder", fault="clear")
         self.robot.call("disable")
-        rospy.delete_param("/robot")
+        for name in ("/robot", "/robot_description", "/robot_description_planning"):
+            if rospy.has_param(name):
+                rospy.delete_param(name)
         rospy.set_param("/robot", self.given)
         self.succeed("reload")
 
@@ -63,6 +65,30 @@ class Reload(RobotTest):
 
     def test_nothing_changes_where_nothing_has(self):
         self.succeed("reload", "nothing has changed")
+
+    def describe(self, velocity):
+        """A robot_description of the shoulder alone."""
+        rospy.set_param("/robot_description", f"""
+            <robot name="r"><link name="a"/><link name="b"/>
+              <joint name="shoulder" type="revolute"><parent link="a"/><child link="b"/>
+                <limit lower="-9" upper="9" velocity="{velocity}" effort="0"/></joint></robot>""")
+
+    def test_the_stricter_limits_of_robot_description_and_joint_limits_count(self):
+        before = self.succeed("shoulder/read_object", object="profile_velocity").number
+        own = self.given["axes"]["shoulder"]["limits"]["velocity"]
+        self.describe(own / 2.0)
+        self.succeed("reload", f"axes/shoulder/limits/velocity: {own} -> {own / 2.0:g}")
+        now = self.succeed("shoulder/read_object", object="profile_velocity").number
+        self.assertAlmostEqual(now, before / 2.0, delta=1.0)
+        limits = "/robot_description_planning/joint_limits/shoulder"
+        rospy.set_param(limits, {"has_velocity_limits": True, "max_velocity": own / 4.0})
+        self.succeed("reload", f"axes/shoulder/limits/velocity: {own / 2.0:g} -> {own / 4.0:g}")
+        rospy.set_param("/robot/limits_from_parameters", False)
+        self.succeed("reload", f"axes/shoulder/limits/velocity: {own / 4.0:g} -> {own}")
+
+    def test_a_robot_description_that_cannot_be_read_is_refused(self):
+        rospy.set_param("/robot_description", "<robot")
+        self.refuse("reload", "robot_description: is no URDF")
 
     def test_a_limit_changes_while_all_axes_are_disabled(self):
         before = self.succeed("shoulder/read_object", object="profile_velocity").number
