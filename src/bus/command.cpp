@@ -111,6 +111,22 @@ void CancelCommand::begin(AxisCycle& cycle, const Reply<>& reply, Time now) cons
   give(reply, answerOf(true, group + ": cancelled"));
 }
 
+void PlannedStateCommand::begin(AxisCycle& cycle, const Reply<Answer>& reply, Time now) const {
+  for (const Group& candidate : cycle.groups()) {
+    if (candidate.config().name != group) continue;
+    Answer answer;
+    for (const Joint* joint : candidate.joints()) {
+      const auto state = candidate.stateAt(*joint, time, now);
+      if (!state) return refuse(reply, group + ": " + state.error().message);
+      answer.joints.push_back(joint->name());
+      answer.states.push_back(*state);
+    }
+    answer.success = true;
+    return give(reply, answer);
+  }
+  refuse(reply, "there is no group \"" + group + "\"");
+}
+
 void CallCommand::begin(AxisCycle&, const Reply<>& reply, Time now) const {
   give(reply, function(now));
 }

@@ -91,6 +91,24 @@ struct CancelCommand {
   void begin(AxisCycle& cycle, const Reply<>& reply, Time now) const;
 };
 
+/// Where the joints of a group are commanded to be at a time, and how fast.
+struct PlannedStateAnswer : Answer {
+  std::vector<std::string> joints;
+  std::vector<motion::MotionState> states;  ///< one a joint
+};
+
+/// Asks that of what runs, and of what waits for its time. A joint that nothing leads then is where
+/// it was brought; one that is being stopped, or streamed, where that comes to rest. Refused where
+/// a joint takes no trajectories, for a time before that which it follows has begun, and, where it
+/// follows none but moves, for one more than 0.1 s ago.
+struct PlannedStateCommand {
+  using Answer = PlannedStateAnswer;
+  std::string group;
+  Time time{};
+
+  void begin(AxisCycle& cycle, const Reply<Answer>& reply, Time now) const;
+};
+
 /// Runs a function in the bus thread, e.g. to inject a fault into a simulated drive; also where
 /// there is no bus.
 struct CallCommand {

@@ -2,6 +2,7 @@
 #include "bus/group.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -19,6 +20,9 @@ TrajectoryOutcome refused(TrajectoryErrorCode code, const std::string& why) {
 // How long a trajectory that ends in motion goes on, for the next may be late a little.
 constexpr double kCoast = 0.02;  // s
 constexpr double kCoastCycles = 3.0;
+
+// What is asked for "now" is asked for a moment that has just passed when it comes here.
+constexpr Duration kRecent = std::chrono::milliseconds(100);
 
 }  // namespace
 
@@ -82,6 +86,31 @@ motion::MotionState Group::commandedAt(const Joint& joint, Time time) const {
   }
   const auto sent = joint.sent().expected(time - clock_.time());
   return {sent.position, sent.velocity, 0.0};
+}
+
+Result<motion::MotionState> Group::stateAt(const Joint& joint, Time then, Time now) const {
+  const Time time = clock_.at(then, now);
+  const TrajectoryRun* leading = nullptr;
+  for (const TrajectoryRun& run : runs_) {  // what was accepted later takes over
+    if (run.leads(joint) && (leading == nullptr || run.startTime() <= time)) leading = &run;
+  }
+  if (leading != nullptr && time >= leading->startTime()) return leading->state(joint, time);
+  const std::string ago = motion::formatNumber(toSeconds(now - then)) + " s ago";
+  if (leading != nullptr && leading->startTime() <= clock_.time()) {
+    const std::string running =
+        motion::formatNumber(toSeconds(clock_.time() - leading->startTime()));
+    return Error{joint.who() + " follows a trajectory that began " + running +
+                 " s ago; what was before it, " + ago + ", is not known any more"};
+  }
+  const std::string refusal = joint.refusal(config_.name);
+  if (!refusal.empty()) return Error{refusal};
+  const drive::SetPoint& sent = joint.sent();
+  if (then < now && !(sent.atRest() && then >= sent.movedAt()) && now - then > kRecent) {
+    return Error{joint.who() + ": where it was commanded to be " + ago + " is not known any more"};
+  }
+  const auto planned = sent.expected(std::max(then - now, Duration::zero()));
+  const double since = std::min(0.0, toSeconds(then - now));
+  return motion::MotionState{planned.position + since * planned.velocity, planned.velocity, 0.0};
 }
 
 motion::TrajectoryRules Group::rulesOf(const TrajectoryCommand& command) const {

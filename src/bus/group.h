@@ -11,6 +11,7 @@
 #include "bus/motion_clock.h"
 #include "bus/trajectory_run.h"
 #include "cia402_driver/bus/trajectory_outcome.h"
+#include "cia402_driver/common/result.h"
 #include "config/robot.h"
 #include "motion/trajectory.h"
 
@@ -52,6 +53,9 @@ class Group {
   bool stopping() const;
   /// Commanded states, one a joint; valid while executing or stopping. Made on demand: allocates.
   std::vector<motion::MotionState> commanded() const;
+  /// Where a joint of the group is commanded to be at `then`, a time of the bus, and how fast, by
+  /// all that was accepted until now; see PlannedStateCommand.
+  Result<motion::MotionState> stateAt(const Joint& joint, Time then, Time now) const;
 
  private:
   std::string refusal(const std::vector<Joint*>& joints) const;

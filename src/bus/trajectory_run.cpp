@@ -86,12 +86,24 @@ std::vector<Joint*> TrajectoryRun::joints() const {
   return all;
 }
 
-std::optional<motion::MotionState> TrajectoryRun::planned(const Joint& joint, Time time) const {
-  if (phase_ != Phase::following) return std::nullopt;
+const TrajectoryRun::Member* TrajectoryRun::memberOf(const Joint& joint) const {
   for (const Member& member : members_) {
-    if (member.joint == &joint && !member.dropped) return trajectory_->sample(member.place, time);
+    if (member.joint == &joint && !member.dropped) return &member;
   }
-  return std::nullopt;
+  return nullptr;
+}
+
+bool TrajectoryRun::leads(const Joint& joint) const {
+  return (following() || waiting()) && memberOf(joint) != nullptr;
+}
+
+motion::MotionState TrajectoryRun::state(const Joint& joint, Time time) const {
+  return trajectory_->sample(memberOf(joint)->place, time);
+}
+
+std::optional<motion::MotionState> TrajectoryRun::planned(const Joint& joint, Time time) const {
+  if (phase_ != Phase::following || memberOf(joint) == nullptr) return std::nullopt;
+  return state(joint, time);
 }
 
 /// The joints' own accelerations come with the square of the rate, so that both together keep the

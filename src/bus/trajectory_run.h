@@ -45,6 +45,11 @@ class TrajectoryRun {
 
   /// @pre waiting() or following()
   Time startTime() const { return trajectory_->startTime(); }
+  /// It leads a joint, or will: it does not stop, and the joint did not fall out.
+  bool leads(const Joint& joint) const;
+  /// Where it has that joint at `time` of the group's clock, also before it has begun.
+  /// @pre leads(joint)
+  motion::MotionState state(const Joint& joint, Time time) const;
   /// Where it has a joint at `time` of the group's clock; absent: it does not say, for it has not
   /// begun, it stops, or the joint fell out.
   std::optional<motion::MotionState> planned(const Joint& joint, Time time) const;
@@ -94,6 +99,8 @@ class TrajectoryRun {
     drive::Standstill rest;         ///< of the motor, since the goal was sent or it is stopped
   };
 
+  /// nullptr: it has none such, or that fell out.
+  const Member* memberOf(const Joint& joint) const;
   config::JointTolerance toleranceOf(const std::string& joint) const;
   /// s
   double goalTime() const { return order_.tolerances.goal_time.value_or(group_->goal_time); }

@@ -5,7 +5,8 @@ import math
 
 import rospy
 from cia402_driver.msg import AxisStates
-from control_msgs.msg import FollowJointTrajectoryResult
+from control_msgs.msg import FollowJointTrajectoryResult, JointTrajectoryControllerState
+from control_msgs.srv import QueryTrajectoryState
 from robot_client import OK, WARN, RobotTest, main, wait_until
 from tf2_msgs.msg import TFMessage
 
@@ -94,6 +95,36 @@ class Motion(RobotTest):
         wait_until(lambda: results, "the result")
         self.assertEqual(results[0].error_code, FollowJointTrajectoryResult.SUCCESSFUL)
         self.assertIn("arm: goal reached", results[0].error_string)
+
+    def test_query_state_tells_where_the_joints_will_be(self):
+        states = []
+        subscriber = rospy.Subscriber("/robot/arm/state", JointTrajectoryControllerState, states.append)
+        self.addCleanup(subscriber.unregister)
+        query = rospy.ServiceProxy("/robot/arm/query_state", QueryTrajectoryState)
+        wait_until(lambda: states, "states of the group")
+        results = self.results()
+        start = self.robot.position("shoulder")
+        goal = [start + (0.8 if start < -1.5 else -0.8), 0.0, 0.0, 0.0]
+        self.robot.follow(["shoulder", "elbow", "wrist", "gripper"], [(3.0, goal)])
+        wait_until(lambda: abs(self.robot.position("shoulder") - start) > 0.05, "it moves")
+        then = rospy.Time.now() + rospy.Duration(0.5)
+        told = query(then)
+        self.assertEqual(list(told.name), list(states[-1].joint_names))
+        at = told.name.index("shoulder")
+        wait_until(lambda: states[-1].header.stamp > then, "the time has come")
+        before = [state for state in states if state.header.stamp <= then][-1]
+        after = next(state for state in states if state.header.stamp > then)
+        self.assertLess((after.header.stamp - before.header.stamp).to_sec(), 0.5)
+        for shown in ("desired", "actual"):  # what was commanded then, and where the motor was
+            places = sorted(getattr(state, shown).positions[at] for state in (before, after))
+            slack = 0.002 if shown == "desired" else 0.05
+            self.assertLess(places[0] - slack, told.position[at])
+            self.assertGreater(places[1] + slack, told.position[at])
+        self.assertGreater(abs(told.velocity[at]), 0.1)
+        wait_until(lambda: results, "the result")
+        self.assertEqual(query(rospy.Time.now()).position[at], goal[0])
+        with self.assertRaisesRegex(rospy.ServiceException, "arm: .*is not known any more"):
+            query(rospy.Time.now() - rospy.Duration(3600.0))
 
     def test_trajectory_with_unknown_joints_or_beyond_limits_is_refused(self):
         results = self.results()

@@ -21,6 +21,7 @@ void offerTouchProbe(Offer& offer);
 void offerBusParameters(Offer& offer);
 void offerLoadDcf(Offer& offer);
 void offerFactoryReset(Offer& offer);
+void offerQueryState(Offer& offer);
 
 /// A row of the table: what offers it, and whether for the bus, for each axis, for each group.
 struct ServiceEntry {
@@ -44,6 +45,7 @@ inline constexpr ServiceEntry kServices[] = {
     {offerBusParameters, false, true},
     {offerLoadDcf, false, true},
     {offerFactoryReset, false, true},
+    {offerQueryState, false, false, true},
 };
 // clang-format on
 
