@@ -238,7 +238,7 @@ std::optional<TrajectoryOutcome> TrajectoryRun::standstill(Time now) {
     member.rest.update(member.joint->position(), member.joint->stamp());
     const bool others = occupied(member);
     rest_commanded = rest_commanded && (others || member.dropped || member.joint->sent().atRest());
-    if (others || (restless == nullptr && !rests(member))) restless = &member;
+    if (others || (restless == nullptr && !restsByNow(member))) restless = &member;
   }
   if (!rest_commanded) commanded_rest_.reset();
   if (!rest_commanded) return std::nullopt;
@@ -271,6 +271,13 @@ TrajectoryOutcome TrajectoryRun::blame(TrajectoryErrorCode code, const Member& m
 
 bool TrajectoryRun::rests(const Member& member) const {
   return group_->stopped_velocity_tolerance <= 0.0 || member.rest.still();
+}
+
+/// One that was held apart from its set-points stands while these are being stopped, and may move
+/// again as they are called back to it.
+bool TrajectoryRun::restsByNow(const Member& member) const {
+  return rests(member) &&
+         (!member.rest.still() || member.rest.stillFrom() >= member.joint->sent().movedAt());
 }
 
 TrajectoryOutcome TrajectoryRun::restlessness(const Member& member) const {

@@ -108,6 +108,8 @@ class TrajectoryRun {
   std::optional<TrajectoryOutcome> axisFailure() const;
   std::optional<TrajectoryOutcome> pathFailure() const;
   bool rests(const Member& member) const;
+  /// The same since its set-points moved last.
+  bool restsByNow(const Member& member) const;
   /// It is to be stopped, and something else than this group moves it, or may.
   bool occupied(const Member& member) const;
   TrajectoryOutcome notStopped(const Member& member) const;
