@@ -10,6 +10,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr const char* kPowerCycle = "power_cycle";  // of the drive
+constexpr Duration kOffFor = 600ms;                 // by that, until it is heard again
 
 /// A drive that plans its motion itself goes on planning while its rotor is blocked: what it takes
 /// to stop that demand, and to come back from it to where the axis was told to stop meanwhile.
@@ -55,7 +56,7 @@ void DriveTrouble::fault(std::size_t axis, const Words& words) {
   if (known != nullptr && !known->resettable) dead_[place(axis).drive] = true;  // until power-off
   if (name == kPowerCycle) session_.mayCoastInDriveOf(axis);
   inject(axis, name);
-  if (name == kPowerCycle) session_.breakLink(axis, 600ms);
+  if (name == kPowerCycle) session_.breakLink(axis, kOffFor);
 }
 
 void DriveTrouble::clear(std::size_t axis, const Words&) { inject(axis, "clear"); }
@@ -114,6 +115,7 @@ void DriveTrouble::calm() {
     world.port(i).requestRecovery();
     if (dead_[i]) {
       session_.mayCoastInDriveOf(axis);
+      session_.mayBeUnheard(axis, kOffFor);
       inject(axis, kPowerCycle);
     }
     dead_[i] = false;

@@ -112,10 +112,14 @@ void Session::report(const char* oracle, const std::string& axis, const std::str
 }
 
 void Session::breakLink(std::size_t axis, Duration duration) {
+  mayBeUnheard(axis, duration);
+  loseCommands(axis, duration);
+}
+
+void Session::mayBeUnheard(std::size_t axis, Duration duration) {
   for (std::size_t i : stage.inDriveOf(axis)) {
     Conditions::extend(conditions.axes[i].unheard, now() + duration + 500ms);
   }
-  loseCommands(axis, duration);
 }
 
 void Session::mayCoast(std::size_t axis) {

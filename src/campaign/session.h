@@ -56,6 +56,8 @@ class Session {
 
   /// Neither hears the driver the drive of an axis nor that drive the driver for so long.
   void breakLink(std::size_t axis, Duration duration);
+  /// The driver may not hear that drive for so long.
+  void mayBeUnheard(std::size_t axis, Duration duration);
   /// A drive that nothing reaches goes on with what it has until it misses the master, all its
   /// axes.
   void loseCommands(std::size_t axis, Duration duration);

@@ -85,7 +85,8 @@ class Answers final : public Oracle {
       const bool told = call.verb == "nmt" &&
                         answer.message.find("to tell whether") == std::string::npos &&
                         view.now >= view.conditions.foreign && view.now >= view.conditions.lossy &&
-                        view.now >= view.conditions.axes[i].cut_off;
+                        view.now >= view.conditions.axes[i].cut_off &&
+                        view.now >= view.conditions.axes[i].unheard;
       if (told && !lately(seen.inState(wanted(call.argument)))) {
         report(view, i,
                "nmt " + call.argument + " is answered with success (" + answer.message +
