@@ -45,6 +45,8 @@ void SetpointLimiter::resetTo(const MotionState& state, Time now) {
   if (!std::isfinite(state.velocity)) output_.velocity = 0;
   command_.reset();
   stepped_ = now;
+  smooth_.reset();
+  if (joint_.limits.jerk) smooth_.emplace(joint_.limits);
 }
 
 Result<void> SetpointLimiter::take(double command, const char* power) {
@@ -56,24 +58,28 @@ Result<void> SetpointLimiter::take(double command, const char* power) {
   return {};
 }
 
-double SetpointLimiter::permitted(double desired, double position, double dt,
-                                  double reaction_s) const {
+double SetpointLimiter::stoppable(double desired, double position, double delay_s,
+                                  double margin) const {
   const JointLimits& limits = joint_.limits;
   const double acceleration = limits.acceleration.value_or(kInfinity);
   const double fastest = limits.velocity.value_or(kInfinity);
-  const double delay_s = dt + kSettling * reaction_s;
   double lowest = -fastest, highest = fastest;
   if (limits.upper) {
-    const double room = *limits.upper - position;
+    const double room = *limits.upper - margin - position;
     highest = std::min(highest, brakingVelocity(room, delay_s, acceleration));
   }
   if (limits.lower) {
-    const double room = position - *limits.lower;
+    const double room = position - *limits.lower - margin;
     lowest = std::max(lowest, -brakingVelocity(room, delay_s, acceleration));
   }
-  const double change = acceleration * dt;
-  return std::clamp(std::clamp(desired, lowest, highest), output_.velocity - change,
-                    output_.velocity + change);
+  return std::clamp(desired, lowest, highest);
+}
+
+double SetpointLimiter::permitted(double desired, double position, double dt,
+                                  double reaction_s) const {
+  const double change = joint_.limits.acceleration.value_or(kInfinity) * dt;
+  return std::clamp(stoppable(desired, position, dt + kSettling * reaction_s, 0),
+                    output_.velocity - change, output_.velocity + change);
 }
 
 double SetpointLimiter::slower(double dt) const {
@@ -95,22 +101,48 @@ Result<void> PositionLimiter::command(double position) {
   return {};
 }
 
+double PositionLimiter::streamVelocity(double dt) const {
+  if (!fresh_ || !previous_command_) return 0;
+  const double fastest = joint_.limits.velocity.value_or(kInfinity);
+  return std::clamp((*command_ - *previous_command_) / dt, -fastest, fastest);
+}
+
 /// Towards the command, in one step at most onto it, and never faster than from where its own
 /// velocity can still be met by braking.
 double PositionLimiter::approach(double dt) const {
   const double acceleration = joint_.limits.acceleration.value_or(kInfinity);
-  const double fastest = joint_.limits.velocity.value_or(kInfinity);
   const double way = *command_ - output_.position;
-  double moving = 0;
-  if (fresh_ && previous_command_) moving = (*command_ - *previous_command_) / dt;
-  moving = std::clamp(moving, -fastest, fastest);
+  const double moving = streamVelocity(dt);
   const double relative = brakingVelocity(std::abs(way), dt, acceleration);
   return way >= 0 ? std::min(way / dt, moving + relative) : std::max(way / dt, moving - relative);
+}
+
+/// What was followed and comes no more is brought to rest ahead; see step().
+void PositionLimiter::stepSmoothly(double dt) {
+  const double from = output_.position;
+  smooth_->reset(output_);
+  if (command_ && (fresh_ || !met_)) {
+    const double moving = streamVelocity(dt);
+    met_ = smooth_->approach(*command_, moving, dt) && moving != 0;
+  } else {
+    smooth_->brake(dt);
+    if (command_) command_ = smooth_->state().position;
+  }
+  output_ = smooth_->state();
+  output_.position = withoutRounding(output_.position, from, joint_.limits);
 }
 
 MotionState PositionLimiter::step(Time now) {
   const double dt = toSeconds(now - stepped_);
   if (!(dt > 0)) return output_;
+  if (smooth_) {
+    stepSmoothly(dt);
+    previous_command_ = output_.position;
+    if (command_) previous_command_ = fresh_ ? command_ : std::nullopt;
+    fresh_ = false;
+    stepped_ = now;
+    return output_;
+  }
   const bool follow = command_.has_value();
   const JointLimits& limits = joint_.limits;
   const double from = output_.position;
@@ -140,10 +172,24 @@ MotionState VelocityLimiter::step(Time now, double position) {
   const JointLimits& limits = joint_.limits;
   const bool lost = std::isnan(position) && (limits.lower || limits.upper);
   const bool follow = command_.has_value() && !lost;
+  stepped_ = now;
+  if (smooth_) {
+    smooth_->reset({position, output_.velocity, output_.acceleration});
+    if (follow) {
+      // Its jerk takes so long to brake it, and so far, and a half more, it may be ahead: see
+      // unseen().
+      const double jerk = *joint_.limits.jerk;
+      const double delay_s = dt + kSettling * reaction_s_ + limits.acceleration.value_or(0) / jerk;
+      const double margin = jerk * reaction_s_ * reaction_s_ * reaction_s_ / 4;
+      smooth_->turn(stoppable(*command_, position, delay_s, margin), dt, reaction_s_);
+    } else {
+      smooth_->brake(dt);
+    }
+    return output_ = {position, smooth_->state().velocity, smooth_->state().acceleration};
+  }
   const double desired = follow ? *command_ : slower(dt);
   const double velocity = permitted(desired, position, dt, reaction_s_);
   output_ = {position, velocity, (velocity - output_.velocity) / dt};
-  stepped_ = now;
   return output_;
 }
 

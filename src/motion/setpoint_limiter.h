@@ -7,20 +7,21 @@
 
 #include "cia402_driver/common/result.h"
 #include "cia402_driver/common/time.h"
+#include "motion/jerk_limiter.h"
 #include "motion/joint.h"
 
 namespace cia402::motion {
 
 /// What both kinds of limiter of one joint's streamed set-points share: the command and the
-/// permissible next velocity. They keep the limits of position, velocity and acceleration; a
-/// command counts until the next one.
+/// permissible next velocity. They keep the limits of position, velocity, acceleration and, where
+/// there is one, jerk; a command counts until the next one.
 ///
 /// Velocity and acceleration are meant as differences of successive outputs over the time between
 /// the steps, so that what the drive is given keeps the limits exactly, whatever the jitter of the
-/// cycle. The joint can always be stopped before a position limit with the acceleration limit,
-/// unless it was not so when reset() was called; then it brakes with the acceleration limit. From
-/// outside the position limits it can only move back, as far as it is told. No function allocates
-/// but command() when it refuses.
+/// cycle; with a limit of jerk they are meant as JerkLimiter has them. The joint can always be
+/// stopped before a position limit with the acceleration limit, unless it was not so when reset()
+/// was called; then it brakes with the acceleration limit. From outside the position limits it can
+/// only move back, as far as it is told. No function allocates but command() when it refuses.
 class SetpointLimiter {
  protected:
   /// @param joint its limits are valid: finite, those of magnitude above 0, lower below upper
@@ -31,6 +32,9 @@ class SetpointLimiter {
   void limitTo(const JointLimits& limits) { joint_.limits = limits; }
   void resetTo(const MotionState& state, Time now);
   Result<void> take(double command, const char* power);
+  /// The velocity nearest to `desired` from which the joint can stop `margin` before the limits of
+  /// position, as it carries on for `delay_s` before it brakes; and within that of velocity.
+  double stoppable(double desired, double position, double delay_s, double margin) const;
   /// The velocity nearest to `desired` that all limits permit at `position` for a step of `dt` s.
   /// `reaction_s` is how long the joint carries on before it follows.
   double permitted(double desired, double position, double dt, double reaction_s) const;
@@ -41,11 +45,14 @@ class SetpointLimiter {
   MotionState output_;  ///< what the last step() gave
   std::optional<double> command_;
   Time stepped_{};
+  std::optional<JerkLimiter> smooth_;  ///< where there is a limit of jerk
 };
 
 /// Follows streamed positions. A stream that keeps the limits and gives a position each cycle comes
 /// out unchanged; anything else (steps, slower or irregular streams) is approached as fast as the
-/// limits permit, each position as one to stop at without overshoot. A stream that was followed and
+/// limits permit, each position as one to stop at without overshoot. With a limit of jerk a stream
+/// that keeps it is followed as closely as its acceleration can be had with that, a³/(3 j²) behind
+/// while it accelerates. A stream that was followed and
 /// ends at speed is brought to rest ahead of its last position; nothing turns back to that.
 class PositionLimiter : public SetpointLimiter {
  public:
@@ -66,6 +73,9 @@ class PositionLimiter : public SetpointLimiter {
 
  private:
   double approach(double dt) const;
+  /// How fast the commands move, by the last two.
+  double streamVelocity(double dt) const;
+  void stepSmoothly(double dt);
 
   std::optional<double> previous_command_;  // the cycle before: its command, or where it held
   bool fresh_ = false;

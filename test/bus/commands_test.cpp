@@ -63,6 +63,45 @@ TEST(AxisCommands, LimitsAStreamedPositionInVelocityAndAcceleration) {
   EXPECT_EQ(*std::max_element(rig.drive().targets.begin(), rig.drive().targets.end()), 200000);
 }
 
+config::RobotConfig smoothAxis(const std::string& mode) {
+  config::RobotConfig robot = oneAxis(mode);
+  robot.axes[0].limits.jerk = 50.0;  // 0.2 s to its acceleration
+  return robot;
+}
+
+TEST(AxisCommands, LimitsAStreamedPositionInJerk) {
+  Rig rig(smoothAxis("cyclic_position"));
+  rig.drive().targets.clear();
+  ASSERT_EQ(rig.command(2.0), "");
+  rig.world.run(1360ms);
+  EXPECT_LT(rig.drive().targets.back(), 200000);
+  rig.world.run(100ms);  // 2 rad at 2 rad/s, 10 rad/s², 50 rad/s³: 1 + 0.2 + 0.2 s
+  const std::vector<std::int32_t>& targets = rig.drive().targets;
+  EXPECT_EQ(targets.back(), 200000);
+  EXPECT_LE(largestStep(targets), kLargestStep);
+  EXPECT_LE(largestChangeOfStep(targets), kLargestChange);
+  const auto moves = std::find_if(targets.begin(), targets.end(), [](int t) { return t != 0; });
+  ASSERT_LT(moves - targets.begin(), 20);
+  // 50 rad/s³ * (4 ms)³ = 0.32 counts that a step changes by more with each step.
+  for (std::size_t i = 2; i < 40; ++i) {
+    const int change = targets[i] - 2 * targets[i - 1] + targets[i - 2];
+    EXPECT_LE(change, 0.32 * static_cast<double>(i) + 2) << i;
+  }
+}
+
+TEST(AxisCommands, LimitsAStreamedVelocityInJerk) {
+  Rig rig(smoothAxis("cyclic_velocity"));
+  ASSERT_EQ(rig.command(0.0), "");
+  rig.drive().velocities.clear();
+  for (int i = 0; i < 200; ++i) {
+    ASSERT_EQ(rig.command(1.5), "");
+    rig.world.run(4ms);
+  }
+  EXPECT_NEAR(rig.drive().velocities.back(), 150000, 2);
+  EXPECT_LE(largestStep(rig.drive().velocities), 4000 + 1);        // 10 rad/s² * 4 ms
+  EXPECT_LE(largestChangeOfStep(rig.drive().velocities), 80 + 2);  // 50 rad/s³ * (4 ms)²
+}
+
 TEST(AxisCommands, StopsAStreamedPositionAtTheLimitOfTheJoint) {
   Rig rig("cyclic_position");
   ASSERT_EQ(rig.command(10.0), "");
