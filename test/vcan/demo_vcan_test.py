@@ -6,6 +6,13 @@ import math
 import os
 import struct
 import sys
+import time
+
+import actionlib
+from actionlib_msgs.msg import GoalStatus
+from control_msgs.msg import (FollowJointTrajectoryAction, FollowJointTrajectoryGoal,
+                              JointTrajectoryControllerState)
+from trajectory_msgs.msg import JointTrajectoryPoint
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "ros"))
 from robot_client import (ERROR, OK, Process, Robot, RobotTest, main, rospy,  # noqa: E402
@@ -124,6 +131,70 @@ class DemoRobot(RobotTest):
         self.succeed("elbow/enable")
         self.robot.wait_diagnostic("elbow", OK)
         self.travel_to(PLACES[1])
+
+    def client(self):
+        client = actionlib.SimpleActionClient("/robot/arm/follow_joint_trajectory",
+                                              FollowJointTrajectoryAction)
+        self.assertTrue(client.wait_for_server(rospy.Duration(100.0)), "the action is offered")
+        return client
+
+    def goal(self, places, seconds):
+        goal = FollowJointTrajectoryGoal()
+        goal.trajectory.joint_names = JOINTS
+        goal.trajectory.points = [JointTrajectoryPoint(
+            positions=[places[joint] for joint in JOINTS], velocities=[0.0] * len(JOINTS),
+            time_from_start=rospy.Duration(seconds))]
+        return goal
+
+    def test_5_an_action_is_followed_by_all_families(self):
+        worst = {}
+
+        def note(state):
+            for joint, error in zip(state.joint_names, state.error.positions):
+                worst[joint] = max(worst.get(joint, 0.0), abs(error))
+        self.succeed("enable")
+        client = self.client()
+        start = {joint: self.robot.position(joint) for joint in JOINTS}
+        subscriber = rospy.Subscriber("/robot/arm/state", JointTrajectoryControllerState, note)
+        self.addCleanup(subscriber.unregister)
+        wait_until(lambda: len(worst) == len(JOINTS), "states of the group")
+        expected = {joint: self.told(joint)[1] + PLACES[0][joint] - self.robot.position(joint)
+                    for joint in JOINTS}
+        for _ in range(5):  # a late cycle of this machine ends it
+            self.succeed("enable")
+            worst.clear()
+            client.send_goal(self.goal(PLACES[0], 5.0))
+            self.assertTrue(client.wait_for_result(rospy.Duration(100.0)), "a result")
+            if client.get_state() == GoalStatus.SUCCEEDED:
+                break
+        self.assertEqual(client.get_state(), GoalStatus.SUCCEEDED, client.get_result())
+        for joint in JOINTS:
+            # Its largest velocity, in the middle, and by how much motor and feedback are late: three
+            # cycles of 20 ms, a lag of the motor of some 20 ms; the loop of the tool is 0.2 s slow.
+            fastest = 1.5 * abs(PLACES[0][joint] - start[joint]) / 5.0
+            late = 0.35 if joint == "tool" else 0.12
+            print(f"{joint}: {worst[joint]:.4f} rad off its path at most, at {fastest:.3f} rad/s")
+            self.assertLess(worst[joint], fastest * late + 0.003, joint)
+            self.assertAlmostEqual(self.told(joint)[1], expected[joint], delta=0.01, msg=joint)
+
+    def test_6_a_cancel_brings_all_motors_to_rest(self):
+        client = self.client()
+        for _ in range(5):  # a late cycle of this machine ends it before
+            self.succeed("enable")
+            before = self.told("shoulder")[1]
+            client.send_goal(self.goal(PLACES[1], 5.0))
+            wait_until(lambda: abs(self.told("shoulder")[1] - before) > 0.1, "it moves")
+            client.cancel_goal()
+            self.assertTrue(client.wait_for_result(rospy.Duration(100.0)), "a result")
+            if client.get_state() == GoalStatus.PREEMPTED:
+                break
+        self.assertEqual(client.get_state(), GoalStatus.PREEMPTED, client.get_result())
+        stood = {joint: self.told(joint)[1] for joint in JOINTS}
+        time.sleep(0.5)
+        for joint in JOINTS:
+            self.assertAlmostEqual(self.told(joint)[1], stood[joint], delta=0.002, msg=joint)
+            self.assertTrue(self.powered(joint), joint)
+        self.assertGreater(abs(self.robot.position("shoulder") - PLACES[1]["shoulder"]), 0.1)
 
 
 if __name__ == "__main__":
