@@ -47,9 +47,9 @@ void readDrive(yaml::Section& section, AxisDraft& draft, ProfileCache& profiles)
   const auto name = section.require("drive", "the drive's profile, e.g. generic_cia402");
   if (!name) return;
   const SharedFamily family = profiles.get(*name);
-  draft.axis.profile = family.drive;
   if (draft.first) draft.device.profile = family.device;
-  if (draft.axis.device_axis == 0 || !family.drive) return;
+  if (draft.device.profile) draft.axis.profile = family.drive;  // else its first axis has a mistake
+  if (draft.axis.device_axis == 0 || !draft.axis.profile) return;
   draft.axis.profile = std::make_shared<const drive::DriveProfile>(
       drive::ofDeviceAxis(*family.drive, draft.axis.device_axis));
 }

@@ -250,6 +250,19 @@ TEST(DeviceAxes, TwoOfThemCannotBeTheSame) {
   EXPECT_THAT(configured(eighth).problems.text(), HasSubstr("axes/right/device_axis: must be"));
 }
 
+TEST(DeviceAxes, AFirstAxisWithoutADriveIsAProblemOfItsOwn) {
+  for (const char* drive : {"", ", drive: none_such"}) {
+    const LoadedRobot loaded = loadText(
+        std::string("bus: {interface: can0, sync_period: 0.004, sync_counter: 0}\naxes:\n"
+                    "  left: {node_id: 3, device_axis: 0, counts_per_turn: 4000") +
+        drive +
+        "}\n  right: {node_id: 3, device_axis: 1, drive: generic_cia402, counts_per_turn: 4000, "
+        "modes: [cyclic_position], limits: {velocity: 2.0}}\n");
+    EXPECT_THAT(loaded.problems, HasSubstr("axes/left")) << drive;
+    EXPECT_THAT(loaded.problems, HasSubstr("drive")) << drive;
+  }
+}
+
 TEST(DeviceAxes, WhatIsOfTheDeviceIsSaidOnce) {
   EXPECT_EQ(configured(twoAxesText(", optional: true")).problems.text(), "");
   EXPECT_TRUE(configured(twoAxesText(", optional: true")).robot.devices[0].boot.optional);
