@@ -292,7 +292,11 @@ void Node::Impl::onHeartbeat(NmtState state, Time stamp, Time now) {
 void Node::Impl::stopUnasked(NmtState state, Time now) {
   if (!last_identity) return;
   const bool asked_in_vain = boot.asksForMotors(state) && last_stop.ramps();
-  if (asked_in_vain || boot.ignoresReset(state, now)) last_stop.stopMotor();
+  if (boot.ignoresReset(state, now)) {
+    last_stop.stopMotor();
+  } else if (asked_in_vain) {
+    last_stop.stopBesides(now);
+  }
 }
 
 void Node::Impl::onEmergency(const can::Frame& frame, Time stamp) {

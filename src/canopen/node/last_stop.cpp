@@ -14,6 +14,7 @@ constexpr Duration kQuickInterval = std::chrono::milliseconds(20);
 constexpr Duration kSlowInterval = std::chrono::milliseconds(100);  // ... and at last so often
 constexpr Duration kPatience = std::chrono::milliseconds(500);
 constexpr Duration kEnough = std::chrono::seconds(3);
+constexpr Duration kSeldom = std::chrono::seconds(1);  // a slow drive has answered them by then
 constexpr Duration kOnItsWay = std::chrono::milliseconds(10);  // a heartbeat of before the command
 
 }  // namespace
@@ -81,6 +82,13 @@ bool LastStop::stopMotor() {
     if (write.always) told = sdo_.post(write.object, write.data) || told;
   }
   return told;
+}
+
+void LastStop::stopBesides(Time now) {
+  if (besides_ >= kMotorStops && now < besides_at_ + kSeldom) return;
+  ++besides_;
+  besides_at_ = now;
+  stopMotor();
 }
 
 bool LastStop::insists(NmtState state, Time now) {

@@ -30,7 +30,10 @@ class LastStop {
   /// The node was lost just now; its SDO transfers have ended.
   void begin(Time now);
   /// It is there again, or somebody else decides.
-  void end() { next_ = kNever; }
+  void end() {
+    next_ = kNever;
+    besides_ = 0;
+  }
   void tick(Time now);
   Time deadline() const { return next_; }
   /// When it is told to stop for the last time at the latest: what wakes it must wait so long.
@@ -41,6 +44,9 @@ class LastStop {
   /// Tells it once to stop its motor; no answer is waited for. @return false if there is nothing
   /// that could be written.
   bool stopMotor();
+  /// The same as often as its heartbeat comes while it is asked whether its motor turns; seldom
+  /// after a few times, for each makes the question wait for one more answer of the drive.
+  void stopBesides(Time now);
 
  private:
   void restart(Time now);
@@ -57,6 +63,8 @@ class LastStop {
   bool ramps_ = false;
   unsigned braked_ = 0;  ///< since it began, or began again; said_ likewise
   unsigned said_ = 0;
+  unsigned besides_ = 0;
+  Time besides_at_{};
   Time next_ = kNever, last_{}, patience_end_{}, end_{};
 };
 
