@@ -171,6 +171,7 @@ bool JerkLimiter::approach(double position, double velocity, double dt) {
 }
 
 void JerkLimiter::turn(double velocity, double dt, double reaction_s) {
+  if (velocity == 0) return brake(dt);
   const auto settles = [&](const MotionState& state) {
     const double a = state.acceleration;
     return state.velocity + a * std::fabs(a) / (2 * jerk_) - velocity;
