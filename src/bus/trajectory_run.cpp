@@ -40,7 +40,7 @@ TrajectoryRun::TrajectoryRun(const config::GroupConfig& group, TrajectoryOrder o
   for (std::size_t i = 0; i < joints.size(); ++i) {
     Joint* const joint = joints[i];
     members_.push_back({joint, i, toleranceOf(joint->name()), joint->sent().breaks(),
-                        joint->noticeCount(), !joint->ready(),
+                        joint->noticeCount(), joint->sent().givenUp(), !joint->ready(),
                         drive::Standstill(group.stopped_velocity_tolerance, joint->resolution())});
   }
 }
@@ -235,10 +235,13 @@ std::optional<TrajectoryOutcome> TrajectoryRun::standstill(Time now) {
   for (Member& member : members_) {
     // Something else stops one that was dropped: of that nothing but its motor tells.
     if (member.dropped && !member.joint->state().known) continue;
+    // One that was held apart from its set-points may move again as they are called back to it.
+    const std::uint32_t given_up = member.joint->sent().givenUp();
+    if (std::exchange(member.given_up, given_up) != given_up) member.rest.reset();
     member.rest.update(member.joint->position(), member.joint->stamp());
     const bool others = occupied(member);
     rest_commanded = rest_commanded && (others || member.dropped || member.joint->sent().atRest());
-    if (others || (restless == nullptr && !restsByNow(member))) restless = &member;
+    if (others || (restless == nullptr && !rests(member))) restless = &member;
   }
   if (!rest_commanded) commanded_rest_.reset();
   if (!rest_commanded) return std::nullopt;
@@ -271,13 +274,6 @@ TrajectoryOutcome TrajectoryRun::blame(TrajectoryErrorCode code, const Member& m
 
 bool TrajectoryRun::rests(const Member& member) const {
   return group_->stopped_velocity_tolerance <= 0.0 || member.rest.still();
-}
-
-/// One that was held apart from its set-points stands while these are being stopped, and may move
-/// again as they are called back to it.
-bool TrajectoryRun::restsByNow(const Member& member) const {
-  return rests(member) &&
-         (!member.rest.still() || member.rest.stillFrom() >= member.joint->sent().movedAt());
 }
 
 TrajectoryOutcome TrajectoryRun::restlessness(const Member& member) const {

@@ -94,9 +94,9 @@ class TrajectoryRun {
     Joint* joint;
     std::size_t place;  ///< in the trajectory
     config::JointTolerance tolerance;
-    std::uint32_t breaks, notices;  ///< of the joint, as it was taken
-    bool dropped;                   ///< it fell out of operation under way
-    drive::Standstill rest;         ///< of the motor, since the goal was sent or it is stopped
+    std::uint32_t breaks, notices, given_up;  ///< of the joint, as it was taken
+    bool dropped;                             ///< it fell out of operation under way
+    drive::Standstill rest;  ///< of the motor, since the goal was sent or it is stopped
   };
 
   /// nullptr: it has none such, or that fell out.
@@ -108,8 +108,6 @@ class TrajectoryRun {
   std::optional<TrajectoryOutcome> axisFailure() const;
   std::optional<TrajectoryOutcome> pathFailure() const;
   bool rests(const Member& member) const;
-  /// The same since its set-points moved last.
-  bool restsByNow(const Member& member) const;
   /// It is to be stopped, and something else than this group moves it, or may.
   bool occupied(const Member& member) const;
   TrajectoryOutcome notStopped(const Member& member) const;
