@@ -95,7 +95,7 @@ inline std::string yamlOf(const Mover& mover) {
   if (drive.float_numbers) {
     return yaml +
            "    homing: {required: false}, simulation: {time_constant: 0.005},\n"
-           "    limits: {lower: -2.0, upper: 2.0, velocity: 2.0, acceleration: 15.0, jerk: 150.0,\n"
+           "    limits: {lower: -2.0, upper: 2.0, velocity: 2.0, acceleration: 15.0,\n"
            "             effort: 5.0}}\n";
   }
   const std::string declares = family.declares.empty() ? "37" : family.declares;
@@ -107,7 +107,7 @@ inline std::string yamlOf(const Mover& mover) {
          declares +
          ", required: false, search_velocity: 0.1, zero_velocity: 0.1,\n"
          "             acceleration: 1.0}, simulation: {time_constant: 0.004},\n"
-         "    limits: {lower: -2.5, upper: 2.5, velocity: 1.5, acceleration: 6.0, jerk: 60.0,\n"
+         "    limits: {lower: -2.5, upper: 2.5, velocity: 1.5, acceleration: 6.0,\n"
          "             effort: " +
          drive.effort_limit + "}}\n";
 }

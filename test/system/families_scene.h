@@ -44,7 +44,7 @@ inline std::string familyJoint(const FamilyMode& tested, const std::string& more
          std::string(tested.family) + ", counts_per_turn: " + tested.counts_per_turn +
          ", gear_ratio: 50.0, rated_torque: 1.27,\n    mode: " + mode + ", modes: [" + mode +
          "],\n"
-         "    limits: {lower: -2.5, upper: 2.5, velocity: 0.8, acceleration: 4.0, jerk: 40.0,\n"
+         "    limits: {lower: -2.5, upper: 2.5, velocity: 0.8, acceleration: 4.0,\n"
          "             effort: 60.0}" +
          panelSteps(tested) + more + "}\n";
 }

@@ -153,7 +153,8 @@ TEST(NimotionPositions, AreHandedOverByTheWordsOfTheManual) {
 
 /// The greatest change of acceleration of the joint over 20 ms, rad/s^3.
 double jerkOn(const std::string& more, double goal) {
-  Stations scene(nimotionBy("pp", more));
+  Stations scene(
+      replaced(nimotionBy("pp", more), "acceleration: 4.0", "acceleration: 4.0, jerk: 40"));
   std::vector<double> speeds;
   scene.watch([&] { speeds.push_back(scene.velocity("joint")); });
   scene.give({goal});

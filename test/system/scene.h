@@ -29,7 +29,7 @@ inline std::string genericPair(const std::string& left = {}, const std::string& 
   return "bus: {interface: sim, bitrate: 1000000, sync_period: 0.004, heartbeat: 0.1}\n"
          "defaults: {drive: generic_cia402, counts_per_turn: 131072, gear_ratio: 100.0,\n"
          "  rated_torque: 0.64, command_timeout: 0.2, mode: cyclic_position,\n"
-         "  limits: {lower: -2.5, upper: 2.5, velocity: 1.5, acceleration: 4.0, jerk: 40.0,\n"
+         "  limits: {lower: -2.5, upper: 2.5, velocity: 1.5, acceleration: 4.0,\n"
          "           effort: 120.0}}\n"
          "axes:\n"
          "  left: {node_id: 1" +
@@ -57,7 +57,7 @@ inline std::string damiaoJoint(const std::string& more = {}) {
   return "bus: {interface: sim, bitrate: 1000000, sync_period: 0.004, heartbeat: 0.1}\n"
          "axes:\n"
          "  joint: {node_id: 4, drive: damiao_dm, mode: cyclic_position, command_timeout: 0.2,\n"
-         "    limits: {lower: -2.0, upper: 2.0, velocity: 2.0, acceleration: 15.0, jerk: 150.0,\n"
+         "    limits: {lower: -2.0, upper: 2.0, velocity: 2.0, acceleration: 15.0,\n"
          "             effort: 5.0}, simulation: {initial_position: 1.1, time_constant: 0.005}" +
          more + "}\n";
 }
@@ -67,7 +67,7 @@ inline std::string damiaoJoint(const std::string& more = {}) {
 inline std::string mixedPair(std::string yaml = genericPair()) {
   const std::string damiao =
       "{node_id: 2, drive: damiao_dm, limits: {lower: -2.0, upper: 2.0, velocity: 2.0,\n"
-      "    acceleration: 15.0, jerk: 150.0, effort: 5.0}}\n";
+      "    acceleration: 15.0, effort: 5.0}}\n";
   return yaml.replace(yaml.find("{node_id: 2}"), 13, damiao);
 }
 

@@ -23,7 +23,7 @@ inline std::string sv660cJoint(const std::string& more = {}, const std::string& 
          ",\n"
          "    write: [{object: gear_numerator, raw: 262144},\n"
          "            {object: gear_denominator, raw: 3125}],\n"
-         "    limits: {lower: -2.5, upper: 2.5, velocity: 1.5, acceleration: 4.0, jerk: 40.0,\n"
+         "    limits: {lower: -2.5, upper: 2.5, velocity: 1.5, acceleration: 4.0,\n"
          "             effort: 100.0}" +
          more + ",\n    simulation: {" + simulation +
          "}}\n"

@@ -119,7 +119,7 @@ TEST(Sv660cLimits, AreThoseOfTheJointOnceItIsHomed) {
 // The factory's numbers are for 1:1: at 6091h of the axis they would be 84 times as fast.
 TEST(Sv660cLimits, OfTheFactoryAreNotKept) {
   Scene scene(loadText(sv660cWith(sv660cJoint(),
-                                  "velocity: 1.5, acceleration: 4.0, jerk: 40.0,\n"
+                                  "velocity: 1.5, acceleration: 4.0,\n"
                                   "             effort: 100.0",
                                   "velocity: 1.5")));
   ASSERT_TRUE(scene.boot()) << scene.told();

@@ -132,6 +132,17 @@ TEST_F(TwoAxes, NothingIsDoneToTheDriveWhileTheOtherIsUnderPower) {
   EXPECT_THAT(reset.message, HasSubstr("in the same drive: right"));
 }
 
+TEST_F(TwoAxes, MemoryAndOtherProceduresOfOneDriveDoNotGoTogether) {
+  const auto setting = scene.begin(ProcedureKind::set_position, "right");
+  const bus::Answer refused = scene.procedure(ProcedureKind::restore_parameters, "left");
+  EXPECT_FALSE(refused.success);
+  EXPECT_THAT(refused.message, HasSubstr("set_position runs on right, in the same drive"));
+  scene.run(std::chrono::seconds(1));
+  ASSERT_TRUE(setting->has_value());
+  EXPECT_TRUE((*setting)->success) << (*setting)->message;
+  EXPECT_TRUE(scene.procedure(ProcedureKind::restore_parameters, "left").success);
+}
+
 TEST_F(TwoAxes, NobodyMovesOneByTheNameOfTheOther) {
   enableAll();
   const double left = scene.position("left");

@@ -12,6 +12,16 @@
 
 namespace cia402::drive {
 
+namespace {
+
+/// Does it work on what the whole device remembers? That may take its time, in which its other axes
+/// get nothing else done.
+bool ofMemory(ProcedureKind kind) {
+  return kind == ProcedureKind::save_parameters || kind == ProcedureKind::restore_parameters;
+}
+
+}  // namespace
+
 struct Axis::Impl {
   Impl(AxisConfig config, fieldbus::Device& device)
       : core(std::move(config), device), boot_ups(device.bootUps()) {}
@@ -30,6 +40,7 @@ struct Axis::Impl {
   Context context(Time now) { return {core, status, now}; }
 
   AxisCore core;
+  std::vector<const Impl*> neighbours;  ///< of the other axes in the device
   Inquiry inquiry{core};
   ProcedureStatus status, previous;
   std::unique_ptr<Procedure> procedure;
@@ -48,6 +59,12 @@ std::string Axis::Impl::busyRefusal(ProcedureKind kind) const {
   if (status.running) {
     return what + toString(status.kind) + " runs (" + status.step +
            "); wait for its end, or stop it by halt, quick_stop or disable";
+  }
+  for (const Impl* other : neighbours) {
+    const ProcedureStatus& its = other->status;
+    if (!its.running || its.kind == kind || !(ofMemory(kind) || ofMemory(its.kind))) continue;
+    return what + toString(its.kind) + " runs on " + jointName(other->core.config()) +
+           ", in the same drive; wait for its end, or stop it by halt, quick_stop or disable";
   }
   if (calibrating.empty()) return {};
   return what + calibrating + " is being written" +
@@ -221,7 +238,10 @@ void Axis::measureAnew(bool device) {
   impl_->core.measureAnew();
   if (device) impl_->core.basis().neighbours.measureAnew();
 }
-void Axis::addNeighbour(Axis& other) { impl_->core.basis().neighbours.add(other.impl_->core); }
+void Axis::addNeighbour(Axis& other) {
+  impl_->neighbours.push_back(other.impl_.get());
+  impl_->core.basis().neighbours.add(other.impl_->core);
+}
 std::string Axis::deviceRefusal() const { return impl_->core.basis().neighbours.refusal(); }
 std::string Axis::neighbourText() const { return impl_->core.basis().neighbours.text(); }
 void Axis::endCalibration() { impl_->calibrating.clear(); }
