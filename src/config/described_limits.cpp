@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/text.h"
 #include "config/robot_parts.h"
 
 namespace cia402::config {
