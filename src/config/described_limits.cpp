@@ -33,13 +33,10 @@ struct Claim {
 };
 
 constexpr double kEqual = 1e-6;  // digits that another file has not
+constexpr int kDigits = 12;      // more than anybody writes: none is rounded up
 
 bool equal(double a, double b) {
   return std::abs(a - b) <= kEqual * std::max({1e-3, std::abs(a), std::abs(b)});
-}
-
-void append(std::string& text, const std::string& more) {
-  text += (text.empty() ? "" : "; ") + more;
 }
 
 Claim strictestOf(const std::vector<Claim>& claims, const Row& row) {
@@ -170,7 +167,7 @@ void settleLimits(YAML::Node& tree, const RobotConfig& robot) {
       const YAML::Node given = limits[row.key];
       const auto number =
           given && given.IsScalar() ? yaml::parseNumber(given.Scalar()) : std::nullopt;
-      if (value && number != value) limits[row.key] = numberText(*value);
+      if (value && number != value) limits[row.key] = numberText(*value, kDigits);
     }
     for (const auto& source : tree["limits_from"]) {
       YAML::Node joints = source.second;

@@ -157,17 +157,18 @@ bool JerkLimiter::goOn(const Error& error, double dt, double reaction_s) {
 }
 
 bool JerkLimiter::approach(double position, double velocity, double dt) {
-  const auto relative = [&](const MotionState& state, double place) {
-    const MotionState moving{state.position - place, state.velocity - velocity, state.acceleration};
+  const auto relative = [&](const MotionState& state) {
+    const MotionState moving{state.position - position, state.velocity - velocity,
+                             state.acceleration};
     return rest(moving, acceleration_, jerk_, nullptr).position;
   };
   // On its last way to rest it stays: no jerk that is constant over a step would end there.
   const double near = kRounding * (1 + std::fabs(position));
-  if (velocity == 0 && std::fabs(relative(state_, position)) <= near) {
+  if (velocity == 0 && std::fabs(relative(state_)) <= near) {
     brake(dt);
     return true;
   }
-  return goOn([&](const MotionState& next) { return relative(next, position); }, dt, 0);
+  return goOn(relative, dt, 0);
 }
 
 void JerkLimiter::turn(double velocity, double dt, double reaction_s) {

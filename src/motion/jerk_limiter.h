@@ -38,14 +38,14 @@ class JerkLimiter {
   /// Goes on for `dt` s towards a velocity. What it knows of the position was told by reset().
   /// @param reaction_s how long the joint carries on before it follows
   void turn(double velocity, double dt, double reaction_s);
-  /// How far a joint that moves with `velocity` >= 0 may be ahead of where it was told to be, as
-  /// its feedback and its reaction together are late by `reaction_s`: it was faster by its
-  /// acceleration before, and by what its jerk may have made of that.
-  double unseen(double velocity, double reaction_s) const;
   /// Goes on for `dt` s on the quickest way to rest.
   void brake(double dt);
 
  private:
+  /// How far a joint that moves with `velocity` >= 0 may be ahead of where it was told to be, as
+  /// its feedback and its reaction together are late by `reaction_s`: it was faster by its
+  /// acceleration before, and by what its jerk may have made of that.
+  double unseen(double velocity, double reaction_s) const;
   /// Whether a jerk carries the joint beyond a limit, to the one side or the other, now or on the
   /// way to rest after `dt` s of it.
   bool tooHigh(double jerk, double dt, double reaction_s) const;

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
+#include "motion/limiter_fixture.h"
 #include "motion/setpoint_limiter.h"
 
 namespace cia402::motion {
@@ -17,12 +17,7 @@ constexpr Duration kStep = std::chrono::milliseconds(4);
 
 /// 1 rad/s, 5 rad/s², 50 rad/s³, from -1.5 to 2 rad.
 Joint smooth() {
-  Joint joint;
-  joint.name = "elbow";
-  joint.limits.lower = -1.5;
-  joint.limits.upper = 2.0;
-  joint.limits.velocity = 1.0;
-  joint.limits.acceleration = 5.0;
+  Joint joint = test::elbow();
   joint.limits.jerk = 50.0;
   return joint;
 }
@@ -163,38 +158,12 @@ TEST(JerkLimitedPosition, FromOutsideItOnlyComesBack) {
   EXPECT_NEAR(joint.last[2], 2.0, 1e-6);
 }
 
-/// Commands that step, drift, shake, pause and are no numbers.
-class SteadyStorm {
- public:
-  explicit SteadyStorm(unsigned seed) : engine_(seed) {}
-  double random(double magnitude) {
-    return std::uniform_real_distribution<double>(-magnitude, magnitude)(engine_);
-  }
-  bool chance(double p) { return std::bernoulli_distribution(p)(engine_); }
-  std::optional<double> command(double magnitude) {
-    if (chance(0.004)) silent_ = static_cast<int>(50 + random(50));
-    if (silent_ > 0 && --silent_ > 0) return std::nullopt;
-    if (chance(0.002)) return chance(0.5) ? std::nan("") : HUGE_VAL;
-    if (chance(0.01)) kind_ = static_cast<int>(2 + random(2));
-    if (kind_ == 0) return value_ = random(magnitude);
-    if (kind_ == 1) return value_ += random(0.005 * magnitude);
-    if (kind_ == 2) return value_ + random(1e-4);
-    if (chance(0.02)) value_ = random(magnitude);
-    return value_;
-  }
-
- private:
-  std::mt19937 engine_;
-  int silent_ = 0, kind_ = 0;
-  double value_ = 0;
-};
-
 class EveryJerkSeed : public testing::TestWithParam<unsigned> {};
 INSTANTIATE_TEST_SUITE_P(Seeds, EveryJerkSeed, testing::Values(1U, 2U, 3U, 4U, 5U));
 constexpr int kStormCycles = 40000;
 
 TEST_P(EveryJerkSeed, PositionsKeepAllLimits) {
-  SteadyStorm storm(GetParam());
+  test::Storm storm(GetParam());
   Judged joint(smooth());
   for (int i = 0; i < kStormCycles; ++i) {
     if (const auto command = storm.command(4)) static_cast<void>(joint.limiter.command(*command));
@@ -210,7 +179,7 @@ TEST_P(EveryJerkSeed, PositionsKeepAllLimits) {
 }
 
 TEST_P(EveryJerkSeed, VelocitiesKeepAllLimits) {
-  SteadyStorm storm(GetParam());
+  test::Storm storm(GetParam());
   VelocityLimiter limiter(smooth(), 3 * kStep);
   Time now{};
   limiter.reset({}, now);
@@ -274,7 +243,7 @@ TEST(JerkLimitedVelocity, ComesToRestAtALimitAndStaysThere) {
 }
 
 TEST_P(EveryJerkSeed, AConstantTargetIsReachedWithoutOvershoot) {
-  SteadyStorm storm(GetParam());
+  test::Storm storm(GetParam());
   for (int run = 0; run < 50; ++run) {
     const double from = storm.random(1.4), target = storm.random(1.4);
     const double sign = target >= from ? 1 : -1;

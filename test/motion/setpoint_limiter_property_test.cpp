@@ -2,12 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
+#include "motion/limiter_fixture.h"
 #include "motion/setpoint_limiter.h"
 
 namespace cia402::motion {
 namespace {
+
+using test::Storm;
 
 constexpr double kLower = -1.5, kUpper = 2.0, kVelocity = 1.5, kAcceleration = 6.0;
 constexpr int kCycles = 100000;
@@ -21,38 +23,6 @@ Joint limited() {
   joint.limits.acceleration = kAcceleration;
   return joint;
 }
-
-/// Cycles that are late and early, commands that step, drift, shake, pause and are not numbers.
-class Storm {
- public:
-  explicit Storm(unsigned seed) : engine_(seed) {}
-
-  double random(double magnitude) {
-    return std::uniform_real_distribution<double>(-magnitude, magnitude)(engine_);
-  }
-  Duration cycle() {
-    const double jitter = chance(0.01) ? 8 : 1 + random(0.4);
-    return fromSeconds(0.004 * jitter);
-  }
-  std::optional<double> command(double magnitude) {
-    if (chance(0.004)) silent_ = static_cast<int>(50 + random(50));
-    if (silent_ > 0 && --silent_ > 0) return std::nullopt;
-    if (chance(0.002)) return std::nan("");
-    if (chance(0.01)) kind_ = static_cast<int>(2 + random(2));
-    if (kind_ == 0) return value_ = random(magnitude);
-    if (kind_ == 1) return value_ += random(0.005 * magnitude);
-    if (kind_ == 2) return value_ + random(1e-4);
-    if (chance(0.02)) value_ = random(magnitude);
-    return value_;
-  }
-
- private:
-  bool chance(double p) { return std::bernoulli_distribution(p)(engine_); }
-
-  std::mt19937 engine_;
-  int silent_ = 0, kind_ = 0;
-  double value_ = 0;
-};
 
 class EverySeed : public testing::TestWithParam<unsigned> {};
 INSTANTIATE_TEST_SUITE_P(Seeds, EverySeed, testing::Values(1U, 2U, 3U, 4U, 5U));

@@ -5,22 +5,15 @@
 
 #include <cmath>
 
+#include "motion/limiter_fixture.h"
+
 namespace cia402::motion {
 namespace {
 
+using test::elbow;
 using testing::HasSubstr;
 constexpr Duration kCycle = std::chrono::milliseconds(4);
 constexpr double kDt = 0.004;
-
-Joint elbow() {
-  Joint joint;
-  joint.name = "elbow";
-  joint.limits.lower = -1.5;
-  joint.limits.upper = 2.0;
-  joint.limits.velocity = 1.0;
-  joint.limits.acceleration = 5.0;
-  return joint;
-}
 
 /// Runs one limiter in virtual time.
 struct Position {
