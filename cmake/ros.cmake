@@ -54,7 +54,7 @@ endforeach()
 
 catkin_package(
   INCLUDE_DIRS include
-  LIBRARIES ${cia402_libraries} yaml-cpp
+  LIBRARIES ${cia402_libraries} yaml-cpp ${cia402_urdfdom}
   CATKIN_DEPENDS message_runtime ${cia402_ros_packages})
 
 # The one module that knows ROS: src/ros/*.cpp.
