@@ -82,6 +82,7 @@ SERVICES.update({
     "factory_reset": lambda chance, _: {"confirm": chance.choice([True, False])},
     "inject_fault": lambda chance, _: {"axis": chance.choice(NAMES), "fault": chance.choice(
         FAULTS + ["bus_off"])},
+    "query_state": lambda chance, _: {"time": any_time(chance)},
     "lss_scan": lambda chance, _: {"window": chance.choice([0.0, 0.02, -1.0, NAN, 1e9])},
     "lss_assign": lambda chance, _: {"device": identity(chance),
                                      "node_id": chance.choice([0, 1, 99, 127, 255]),
@@ -91,6 +92,13 @@ SERVICES.update({
                                              "kbit_per_s": chance.choice([0, 1, 300, 4000000000]),
                                              "delay": chance.choice(NUMBERS)},
 })
+
+
+def any_time(chance):
+    """Not given, present, past, to come, out of any reach."""
+    return chance.choice(
+        [rospy.Time(), rospy.Time.now(), rospy.Time.now() - rospy.Duration(5),
+         rospy.Time.now() + rospy.Duration(1), rospy.Time(1), rospy.Time(4294967295)])
 
 
 def set_point(chance):
@@ -109,9 +117,7 @@ def set_points(chance):
 def trajectory(chance):
     message = JointTrajectory(joint_names=chance.choice(
         [JOINTS, JOINTS[::-1], JOINTS[:2], JOINTS[:3] + ["neck"], []]))
-    message.header.stamp = chance.choice(
-        [rospy.Time(), rospy.Time.now(), rospy.Time.now() - rospy.Duration(5),
-         rospy.Time.now() + rospy.Duration(1), rospy.Time(1), rospy.Time(4294967295)])
+    message.header.stamp = any_time(chance)
     width = chance.choice([len(message.joint_names)] * 4 + [0, 2, 50])
     for i in range(chance.choice([0, 1, 2, 5, 200])):
         places = [chance.choice([0.1, 0.2, -0.2] * 6 + NUMBERS) for _ in range(width)]

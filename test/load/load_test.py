@@ -36,6 +36,12 @@ def races(output):
     return [report for report in reports if re.search(r"#[012] cia402::", report)]
 
 
+def refused_in_words(name, error):
+    """The answer of query_state has no field for a reason: the failed call carries it."""
+    return name.endswith("/query_state") and re.search(
+        r"responded with an error: b'.*\w+ \w+.*'", str(error)) is not None
+
+
 class Load(RobotTest):
     @classmethod
     def setUpClass(cls):
@@ -93,14 +99,20 @@ class Load(RobotTest):
             try:
                 answer = proxies[name](**request)
             except rospy.ServiceException as error:
+                if refused_in_words(name, error):
+                    self.count(name)
+                    continue
                 # ROS itself may close a connection too many (it races with itself in close_socket)
                 lost = str(error).startswith("transport error")
                 (self.cut_off if lost else self.problems).append(f"{name} {request}: {error}")
                 continue
             if not getattr(answer, "message", "of dynamic_reconfigure"):
                 self.problems.append(f"{name} {request}: answered without a word")
-            with self.lock:
-                self.calls[name] = self.calls.get(name, 0) + 1
+            self.count(name)
+
+    def count(self, name):
+        with self.lock:
+            self.calls[name] = self.calls.get(name, 0) + 1
 
     def publish(self, topic, kind):
         """Sends to one topic a hundred times a second."""

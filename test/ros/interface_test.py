@@ -5,6 +5,7 @@ The keys of a robot's file are compared by test/config/documented_keys_test.cpp.
 import os
 import re
 import subprocess
+import sys
 import unittest
 import xml.etree.ElementTree
 
@@ -118,6 +119,15 @@ class Interface(unittest.TestCase):
         offered = {name: rosservice.get_service_type(name)
                    for name in rosservice.get_service_list(node="/bus") if name not in OF_EACH_NODE}
         self.assertEqual(offered, documented_services())
+
+    def test_services_under_load_are_all_of_them(self):
+        """The load test, which takes long, calls what it has arguments for."""
+        sys.path.insert(0, package_file("test/load"))
+        from arguments import SERVICES  # pylint: disable=import-outside-toplevel,import-error
+        offered = {name.rsplit("/", 1)[-1] for name in rosservice.get_service_list(node="/bus")
+                   if name not in OF_EACH_NODE}
+        # A simulated bus alone offers inject_fault.
+        self.assertEqual(offered | {"inject_fault"}, set(SERVICES))
 
     def test_parameters_of_the_node_itself(self):
         told = subprocess.run([executable("bus_node"), "--help"], stdout=subprocess.PIPE, text=True,
