@@ -27,7 +27,14 @@ constexpr Duration kRecent = std::chrono::milliseconds(100);
 }  // namespace
 
 Group::Group(config::GroupConfig config, std::vector<Joint*> joints, Duration cycle)
-    : config_(std::move(config)), joints_(std::move(joints)), cycle_(cycle), clock_(cycle) {
+    : config_(std::move(config)),
+      joints_(std::move(joints)),
+      cycle_(cycle),
+      clock_(cycle),
+      replaced_{TrajectoryErrorCode::successful,
+                config_.name + ": replaced by a newer trajectory",
+                TrajectoryEnd::replaced,
+                {}} {
   for (const Joint* joint : joints_) descriptions_.push_back(joint->description());
 }
 
@@ -124,13 +131,6 @@ motion::TrajectoryRules Group::rulesOf(const TrajectoryCommand& command) const {
   return rules;
 }
 
-TrajectoryOutcome Group::replaced() const {
-  return {TrajectoryErrorCode::successful,
-          config_.name + ": replaced by a newer trajectory",
-          TrajectoryEnd::replaced,
-          {}};
-}
-
 TrajectoryOutcome Group::start(const TrajectoryCommand& command, Time now) {
   std::vector<Joint*> joints;
   std::vector<motion::Joint> descriptions;
@@ -190,7 +190,7 @@ TrajectoryOutcome Group::start(const TrajectoryCommand& command, Time now) {
 /// What waits behind others begins in the cycle in which its time has come.
 void Group::add(TrajectoryRun run, Time now) {
   for (TrajectoryRun& other : runs_) {
-    if (other.waiting()) handOver(other, run.joints());
+    if (other.waiting()) other.leave(run, replaced_);
   }
   const bool free = std::none_of(runs_.begin(), runs_.end(), [&](const TrajectoryRun& other) {
     return !other.ended() && other.meets(run);
@@ -200,15 +200,11 @@ void Group::add(TrajectoryRun run, Time now) {
   sweep();
 }
 
-void Group::handOver(TrajectoryRun& from, const std::vector<Joint*>& joints) {
-  for (Joint* joint : joints) from.leave(*joint, replaced());
-}
-
 void Group::beginDue(Time now) {
   for (TrajectoryRun& run : runs_) {
     if (!run.waiting() || clock_.time() < run.startTime()) continue;
     for (TrajectoryRun& other : runs_) {
-      if (&other != &run && !other.waiting()) handOver(other, run.joints());
+      if (&other != &run && !other.waiting()) other.leave(run, replaced_);
     }
     run.begin(now);
   }
@@ -237,7 +233,8 @@ TrajectoryOutcome Group::startStop(const TrajectoryCommand& command,
     joint->follow(&config_.name);
   }
   for (TrajectoryRun& run : runs_) {
-    if (run.following() || run.waiting()) handOver(run, ours);
+    if (!run.following() && !run.waiting()) continue;
+    for (const Joint* joint : ours) run.leave(*joint, replaced_);
   }
   // Of those that something else moves it is awaited, too, that they stand.
   runs_.emplace_back(config_, TrajectoryOrder{command.id, command.ended, command.tolerances},
@@ -279,19 +276,17 @@ void Group::stop(const TrajectoryOutcome& why) {
 }
 
 void Group::sweep() {
-  std::vector<Joint*> left;
-  for (const TrajectoryRun& run : runs_) {
-    if (!run.ended()) continue;
-    for (Joint* joint : run.joints()) left.push_back(joint);
+  for (Joint* joint : joints_) {
+    bool left = false;
+    bool taken = false;
+    for (const TrajectoryRun& run : runs_) {
+      if (run.has(*joint)) (run.ended() ? left : taken) = true;
+    }
+    if (left && !taken && !joint->followsAnother(config_.name)) joint->follow(nullptr);
   }
   runs_.erase(std::remove_if(runs_.begin(), runs_.end(),
                              [](const TrajectoryRun& run) { return run.ended(); }),
               runs_.end());
-  for (Joint* joint : left) {
-    const bool taken = std::any_of(runs_.begin(), runs_.end(),
-                                   [&](const TrajectoryRun& run) { return run.has(*joint); });
-    if (!taken && !joint->followsAnother(config_.name)) joint->follow(nullptr);
-  }
 }
 
 void Group::advanceClock(Time now) {

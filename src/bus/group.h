@@ -66,11 +66,8 @@ class Group {
   motion::TrajectoryRules rulesOf(const TrajectoryCommand& command) const;
   TrajectoryOutcome startStop(const TrajectoryCommand& command, const std::vector<Joint*>& joints,
                               Time now);
-  TrajectoryOutcome replaced() const;
   void add(TrajectoryRun run, Time now);
   void beginDue(Time now);
-  /// Another run takes those of its joints that `from` has.
-  void handOver(TrajectoryRun& from, const std::vector<Joint*>& joints);
   void stop(TrajectoryRun& run, const TrajectoryOutcome& why);
   /// Forgets what has ended; joints that nothing else waits for are free.
   void sweep();
@@ -87,6 +84,7 @@ class Group {
   Duration cycle_;
   MotionClock clock_;
   bool starts_ = false;                   // no cycle has passed since it was set
+  TrajectoryOutcome replaced_;            // of what a newer trajectory takes over, worded once
   std::vector<TrajectoryRun> runs_;       // in the order in which they were accepted
   std::vector<TrajectoryOutcome> ended_;  // in this cycle
 };

@@ -80,12 +80,6 @@ bool TrajectoryRun::within(const std::vector<Joint*>& joints) const {
   });
 }
 
-std::vector<Joint*> TrajectoryRun::joints() const {
-  std::vector<Joint*> all;
-  for (const Member& member : members_) all.push_back(member.joint);
-  return all;
-}
-
 const TrajectoryRun::Member* TrajectoryRun::memberOf(const Joint& joint) const {
   for (const Member& member : members_) {
     if (member.joint == &joint && !member.dropped) return &member;
@@ -137,6 +131,10 @@ void TrajectoryRun::leave(const Joint& joint, const TrajectoryOutcome& replaced)
                                     [](const Member& member) { return !member.dropped; });
   if (!any_left) phase_ = Phase::ended;
   order_.tell(replaced);
+}
+
+void TrajectoryRun::leave(const TrajectoryRun& other, const TrajectoryOutcome& replaced) {
+  for (const Member& member : other.members_) leave(*member.joint, replaced);
 }
 
 void TrajectoryRun::stop(const TrajectoryOutcome& why) {

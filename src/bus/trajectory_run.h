@@ -41,7 +41,6 @@ class TrajectoryRun {
   bool meets(const TrajectoryRun& other) const;
   /// It has no joints but those.
   bool within(const std::vector<Joint*>& joints) const;
-  std::vector<Joint*> joints() const;
 
   /// @pre waiting() or following()
   Time startTime() const { return trajectory_->startTime(); }
@@ -62,6 +61,8 @@ class TrajectoryRun {
   void begin(Time now);
   /// Another takes a joint over; who waited for this one is told so.
   void leave(const Joint& joint, const TrajectoryOutcome& replaced);
+  /// The same for all joints that the other run has.
+  void leave(const TrajectoryRun& other, const TrajectoryOutcome& replaced);
   /// Brings its joints to rest, as hard as they may where `why` has the code of a failure, else
   /// within stop_trajectory_duration. Who waits is told at once where it failed, else when they
   /// stand.

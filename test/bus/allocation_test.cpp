@@ -116,5 +116,72 @@ TEST(ReloadAllocation, WhatIsChangedInMotionTakesNoMemoryOfTheBus) {
   EXPECT_TRUE(reload->groups[0].tolerances.empty()) << "what was before is freed by who asked";
 }
 
+/// Counts what the network takes of memory in its cycles, also for frames received; commands apart.
+struct CycleAllocation : testing::Test {
+  CycleAllocation() {
+    world.enable();
+    world.in_cycle = &counting;
+    allocations = 0;
+  }
+  ~CycleAllocation() override { world.in_cycle = nullptr; }
+  /// Gives it to the group, and lets it lead for a while.
+  void follow(TrajectoryCommand command) {
+    command.ended = [this](const TrajectoryOutcome& outcome) {
+      if (outcome.end == TrajectoryEnd::replaced) ++replaced;
+    };
+    const auto answers = world.begin(std::move(command));
+    ASSERT_FALSE(answers->empty());
+    ASSERT_TRUE(answers->front().success) << answers->front().message;
+    world.run(40ms);
+    ASSERT_TRUE(world.group().executing());
+  }
+  test::RobotWorld world;
+  int replaced = 0;
+};
+
+TEST_F(CycleAllocation, TrajectoriesThatReplaceEachOtherTakeNone) {
+  for (int i = 0; i < 100; ++i) {
+    const double place = 0.014 * i;
+    follow(world.trajectory("arm", {{{place, -place}, 0.5}, {{2 * place, 0.0}, 1.0}}));
+  }
+  EXPECT_EQ(replaced, 99);
+  EXPECT_EQ(allocations, 0);
+  EXPECT_GT(std::abs(world.drives[0].position), 1000);
+}
+
+TEST_F(CycleAllocation, OnesThatBeginLaterTakeNoneEither) {
+  for (int i = 0; i < 50; ++i) {
+    const double place = 0.02 * i;
+    TrajectoryCommand command = world.trajectory("arm", {{{place, -place}, 0.5}});
+    command.start_time = world.now + 30ms;
+    follow(std::move(command));
+  }
+  EXPECT_EQ(replaced, 49);
+  EXPECT_EQ(allocations, 0);
+  EXPECT_GT(std::abs(world.drives[0].position), 1000);
+}
+
+TEST_F(CycleAllocation, AStreamOfSinglePointsTakesNone) {
+  for (int i = 0; i < 100; ++i) {
+    TrajectoryCommand command = world.trajectory("arm", {{{0.01 * i, -0.01 * i}, 0.06}});
+    command.points[0].velocities.clear();
+    command.streamed = true;
+    follow(std::move(command));
+  }
+  EXPECT_EQ(replaced, 99);
+  EXPECT_EQ(allocations, 0);
+  EXPECT_GT(std::abs(world.drives[0].position), 1000);
+}
+
+TEST_F(CycleAllocation, TheCounterIsOnInACycle) {
+  world.in_cycle = nullptr;
+  world.run(4ms);
+  EXPECT_EQ(allocations, 0);
+  world.in_cycle = &counting;
+  world.drives[0].fault(0x8611);  // it is told of in words
+  world.run(100ms);
+  EXPECT_GT(allocations, 0);
+}
+
 }  // namespace
 }  // namespace cia402::bus

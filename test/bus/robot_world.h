@@ -173,6 +173,7 @@ class RobotWorld : private can::Sink, private EventSink {
   /// Other devices: hear what is sent, and may answer.
   std::function<std::optional<can::Frame>(const can::Frame&)> bystanders;
   Network network;
+  bool* in_cycle = nullptr;  ///< set while the network's own code runs in a cycle, if given
 
   drive::Axis& axis(std::size_t index) { return network.axis(index); }
   canopen::Node& node(std::size_t index) { return network.node(index); }
@@ -300,6 +301,7 @@ class RobotWorld : private can::Sink, private EventSink {
 
  private:
   bool send(const can::Frame& frame) override {
+    const Outside outside(in_cycle);
     sent.push_back({now, frame});
     for (FakeDrive& drive : drives) drive.receive(frame, now);
     collect();
@@ -307,8 +309,14 @@ class RobotWorld : private can::Sink, private EventSink {
     if (answer) wire_.push_back({now + kFrameTime, *answer});
     return true;
   }
-  void onEvent(const Event& event) override { events.push_back(event); }
-  void onEmergency(const EmergencyEvent& event) override { emergencies.push_back(event); }
+  void onEvent(const Event& event) override {
+    const Outside outside(in_cycle);
+    events.push_back(event);
+  }
+  void onEmergency(const EmergencyEvent& event) override {
+    const Outside outside(in_cycle);
+    emergencies.push_back(event);
+  }
 
   void collect() {
     for (FakeDrive& drive : drives) {
@@ -318,15 +326,35 @@ class RobotWorld : private can::Sink, private EventSink {
     }
   }
   void step() {
-    network.tick(now);
+    ofTheNetwork([this] { network.tick(now); });
     for (FakeDrive& drive : drives) drive.tick(now);
     collect();
     while (!wire_.empty() && wire_.front().time <= now) {
       const Sent answer = wire_.front();
       wire_.pop_front();
-      network.receive(answer.frame, answer.time, now);
+      ofTheNetwork([&] { network.receive(answer.frame, answer.time, now); });
     }
   }
+
+  template <typename Work>
+  void ofTheNetwork(const Work& work) {
+    if (in_cycle != nullptr) *in_cycle = true;
+    work();
+    if (in_cycle != nullptr) *in_cycle = false;
+  }
+  /// What the world itself does is none of the network's.
+  struct Outside {
+    explicit Outside(bool* running) : flag(running), was(running != nullptr && *running) {
+      if (was) *flag = false;
+    }
+    ~Outside() {
+      if (was) *flag = true;
+    }
+    Outside(const Outside&) = delete;
+    Outside& operator=(const Outside&) = delete;
+    bool* flag;
+    bool was;
+  };
 
   std::deque<Sent> wire_;  // on their way to the network
 };
