@@ -214,7 +214,10 @@ std::optional<TrajectoryOutcome> TrajectoryRun::pathFailure() const {
 bool TrajectoryRun::atGoal(Time time) const {
   if (!trajectory_->finished(time)) return false;
   return std::all_of(members_.begin(), members_.end(), [&](const Member& member) {
-    return member.dropped || member.joint->sent().value() == trajectory_->goal()[member.place];
+    if (member.dropped) return true;
+    // A goal that lies beyond a limit by rounding is sent as that limit.
+    const double sent = member.joint->sent().value(), goal = trajectory_->goal()[member.place];
+    return motion::withinReach(member.joint->description().limits, goal, sent) == sent;
   });
 }
 

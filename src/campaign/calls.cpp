@@ -40,6 +40,11 @@ const std::map<std::string, Procedure>& procedures() {
 
 std::string axisWord(const std::string& who) { return who == "all" ? std::string() : who; }
 
+/// Whether it is done to both sides of a gantry.
+bool asOne(const std::string& verb) {
+  return procedures().count(verb) != 0 && verb != "save" && verb != "restore";
+}
+
 /// Whether an axis stands, or is to stand, once such a call has succeeded.
 bool bringsToRest(const std::string& verb) {
   static const char* const kVerbs[] = {"halt",         "disable", "quick_stop", "set_mode",
@@ -56,12 +61,13 @@ void Calls::call(const Words& words, Request request, Duration bound) {
   if (!session_.stage.host().running()) return;
   const bool argued = words[0] == "set_mode" || words[0] == "nmt";
   Pending pending;
-  pending.call = {words[0],
-                  words[1],
-                  argued ? words.at(2) : "",
-                  session_.stage.named(words[1]),
-                  session_.now(),
-                  session_.conditions.stalled};
+  pending.call = {
+      words[0],
+      words[1],
+      argued ? words.at(2) : "",
+      asOne(words[0]) ? session_.stage.namedAsOne(words[1]) : session_.stage.named(words[1]),
+      session_.now(),
+      session_.conditions.stalled};
   if (words[0] == "home") {  // of a group, or of all, those that have a homing
     auto& axes = pending.call.axes;
     const auto none = [&](std::size_t i) { return !session_.stage.axes()[i].config->homing; };
@@ -92,7 +98,7 @@ bool Calls::actProcedure(const Words& words) {
   if (verb == "set_mode") request.mode = words.at(2);
   if (verb == "set_position") request.position = toNumber(words.at(2));
   Duration bound = procedure->second.bound;
-  for (std::size_t i : session_.stage.named(words.at(1))) {
+  for (std::size_t i : session_.stage.namedAsOne(words.at(1))) {
     if (verb == "home") bound += session_.stage.axes()[i].homing_timeout;
   }
   bus::ProcedureCommand command{axisWord(words[1]), request};

@@ -39,9 +39,10 @@ class Author {
   const AxisPlan& oneInDriveOf(const AxisPlan& axis) {
     return axis.neighbour && random_.chance(0.5) ? robot_.axes[*axis.neighbour] : axis;
   }
-  /// Often the one in the same drive.
+  /// Often the one in the same drive, or that moves joints with it.
   const AxisPlan& another(const AxisPlan& axis) {
-    return axis.neighbour && random_.chance(0.5) ? robot_.axes[*axis.neighbour] : anyAxis();
+    const auto& near = axis.mate ? axis.mate : axis.neighbour;
+    return near && random_.chance(0.5) ? robot_.axes[*near] : anyAxis();
   }
   std::string whom(const AxisPlan& axis, double all = 0.2) {
     return random_.chance(all) ? "all" : axis.name;
@@ -118,7 +119,7 @@ class Author {
 
   void move(const AxisPlan& axis) {
     const char kind = kindOf(axis);
-    if (kind == 'p' && random_.chance(0.4)) return trajectory();
+    if (kind == 'p' && random_.chance(axis.mate ? 0.85 : 0.4)) return trajectory();
     const std::string rate = text(random_.between(50.0, 250.0));
     const std::string length = text(random_.between(0.005, 1.5));
     double value = position(axis);
@@ -146,7 +147,7 @@ class Author {
   void trajectory() {
     const GroupPlan& group = random_.pick(robot_.groups);
     std::string shares;
-    for (std::size_t i = 0; i < group.axes.size(); ++i) shares += " " + text(random_.uniform());
+    for (std::size_t i = 0; i < group.joints.size(); ++i) shares += " " + text(random_.uniform());
     const std::string length = text(random_.between(0.1, 2.5));
     const double choice = random_.uniform();
     if (group.partial && random_.chance(0.4)) {
@@ -158,7 +159,7 @@ class Author {
                     std::to_string(1 + random_.below(4)) + " " + length + shares);
     } else {
       std::string goal;
-      for (std::size_t i = 0; i < group.axes.size(); ++i) {
+      for (std::size_t i = 0; i < group.joints.size(); ++i) {
         goal += " " + random_.pick<std::string>({"nan", "1e9", "0", "-0.0", "99"});
       }
       add(now_, "goal " + group.name + " " + length + goal);
@@ -170,13 +171,13 @@ class Author {
     if (random_.chance(0.15)) add(now_ + random_.between(0.0, 1.0), "stop " + group.name);
     if (random_.chance(0.2)) add(now_ + random_.between(0.0, 1.5), "cancel " + group.name);
   }
-  /// Some of a group's axes, at least one: "a1,a3".
+  /// Some of a group's joints, at least one: "a1,a3".
   std::string someOf(const GroupPlan& group) {
     std::string names;
-    const std::size_t sure = random_.below(group.axes.size());
-    for (std::size_t i = 0; i < group.axes.size(); ++i) {
+    const std::size_t sure = random_.below(group.joints.size());
+    for (std::size_t i = 0; i < group.joints.size(); ++i) {
       if (i != sure && random_.chance(0.5)) continue;
-      names += (names.empty() ? "" : ",") + robot_.axes[group.axes[i]].name;
+      names += (names.empty() ? "" : ",") + group.joints[i];
     }
     return names;
   }
@@ -185,7 +186,7 @@ class Author {
     double at = now_;
     for (std::size_t count = 1 + random_.below(3); count > 0; --count) {
       std::string shares;
-      for (std::size_t i = 0; i < group.axes.size(); ++i) shares += " " + text(random_.uniform());
+      for (std::size_t i = 0; i < group.joints.size(); ++i) shares += " " + text(random_.uniform());
       add(at, "part " + group.name + " " + someOf(group) + " " + text(random_.between(0.1, 2.5)) +
                   shares);
       at += random_.between(0.0, 0.8);

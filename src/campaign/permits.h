@@ -43,6 +43,9 @@ class Permits {
   /// When something was commanded last that may move the axis.
   Time given(std::size_t axis) const;
   Time until(std::size_t axis) const;
+  Time until(std::size_t axis, Source source) const {
+    return axes_[axis].until[static_cast<std::size_t>(source)];
+  }
   bool allowed(std::size_t axis, Time now) const { return now <= until(axis); }
 
  private:

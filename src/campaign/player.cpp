@@ -23,7 +23,7 @@ Player::Player(Stage& stage, const Scene& scene, const RunOptions& options)
       options_(options),
       session_(stage, scene.seed, options),
       calls_(session_, *this),
-      proof_(session_, calls_, streams_, [this](Time until) { runTo(until); }) {
+      proof_(session_, calls_, streams_, trajectories_, [this](Time until) { runTo(until); }) {
   stage.world().bus().setMonitor(
       [this](const can::Frame& frame, Time now) { onFrame(frame, now); });
   stage.host().listen([this](const bus::Event& event) { session_.say("    " + event.text.str()); });

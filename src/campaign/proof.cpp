@@ -61,8 +61,64 @@ void Proof::run() {
   for (const AxisFacts& facts : session_.stage.axes()) {
     // While others moved, a drive may have begun to warn of the switch on which its axis stands.
     if (session_.failed() || !enable(facts)) return;
-    move(facts.index);
+    if (facts.coupled.size() == 1) move(facts.index);
   }
+  moveJoints();
+}
+
+void Proof::moveJoints() {
+  const std::vector<JointFacts>& joints = session_.stage.joints();
+  for (const config::GroupConfig& group : session_.stage.loaded().robot.groups) {
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      const bool within = std::count(group.joints.begin(), group.joints.end(), joints[i].name) != 0;
+      if (!within || joints[i].axes.size() == 1) continue;
+      if (session_.failed() || !takesTrajectories(group)) break;
+      moveJoint(group, i);
+    }
+  }
+}
+
+bool Proof::takesTrajectories(const config::GroupConfig& group) {
+  const std::vector<std::size_t> axes = session_.stage.named(group.name);
+  return std::all_of(axes.begin(), axes.end(), [this](std::size_t i) {
+    const AxisFacts& facts = session_.stage.axes()[i];
+    const drive::ModeSpec* const mode = modeOf(i);
+    const bool follows =
+        mode != nullptr && mode->cyclic && mode->kind == drive::ControlKind::position;
+    return follows && !session_.truths[i].at_switch && !skewed(facts);
+  });
+}
+
+/// Sides of a gantry that may stand so far apart that they are to be homed first.
+bool Proof::skewed(const AxisFacts& facts) const {
+  if (!facts.gantry) return false;
+  const config::CouplingConfig* const coupling =
+      session_.stage.loaded().robot.couplingOf(facts.name);
+  const double skew = session_.shown(facts.coupled[1]) - session_.shown(facts.coupled[0]);
+  return std::fabs(skew) > 0.9 * coupling->gantry->skew_window;
+}
+
+void Proof::moveJoint(const config::GroupConfig& group, std::size_t joint) {
+  const JointFacts& facts = session_.stage.joints()[joint];
+  const double at = session_.shown(facts);
+  const motion::JointLimits& limits = facts.limits;
+  const bool bounded = limits.lower && limits.upper;
+  const double step = 0.05 * facts.velocity;
+  const double middle = bounded ? (*limits.lower + *limits.upper) / 2.0 : at + 1.0;
+  if (bounded && *limits.upper - *limits.lower < 4.0 * step) return;
+  const double way = middle >= at ? step : -step;
+  const double from = facts.position(session_.truths);
+  const auto refused = [&](const std::string& why) {
+    noRecovery(group.name, "a trajectory is refused when all is well again: " + why);
+  };
+  constexpr double kSeconds = 1.0;
+  trajectories_.nudge(group, {joint, way}, kSeconds, refused);
+  runFor(fromSeconds(kSeconds) + 1s);
+  if (session_.failed()) return;
+  const double moved = facts.position(session_.truths) - from;
+  if (std::fabs(moved - way) <= 0.5 * step) return;
+  noRecovery(group.name, facts.name + " was told to move by " + number(way) +
+                             " when all was well again, and moved by " + number(moved));
 }
 
 bool Proof::recover() {
@@ -158,7 +214,7 @@ bool Proof::call(const std::string& verb, const std::string& who, Duration limit
   request.kind = kindOf(verb);
   const bus::ProcedureCommand command{who == "all" ? std::string() : who, request};
   const Call call{
-      verb, who, "", session_.stage.named(who), session_.now(), session_.conditions.stalled};
+      verb, who, "", session_.stage.namedAsOne(who), session_.now(), session_.conditions.stalled};
   session_.onCall(call);
   const auto reply = [this, done, call](const bus::Answer& given) {
     *done = given;

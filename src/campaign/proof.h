@@ -9,6 +9,7 @@
 #include "campaign/calls.h"
 #include "campaign/session.h"
 #include "campaign/streams.h"
+#include "campaign/trajectories.h"
 
 namespace cia402::campaign {
 
@@ -18,8 +19,12 @@ class Proof {
   /// Lets everything happen until then, or until a finding ends the run.
   using RunTo = std::function<void(Time)>;
 
-  Proof(Session& session, Calls& calls, Streams& streams, RunTo run_to)
-      : session_(session), calls_(calls), streams_(streams), run_to_(std::move(run_to)) {}
+  Proof(Session& session, Calls& calls, Streams& streams, Trajectories& trajectories, RunTo run_to)
+      : session_(session),
+        calls_(calls),
+        streams_(streams),
+        trajectories_(trajectories),
+        run_to_(std::move(run_to)) {}
 
   /// @pre the world is well again
   void run();
@@ -41,6 +46,12 @@ class Proof {
   /// or -1
   void move(std::size_t axis, unsigned tried = 0, double last = 0.0);
 
+  /// Joints that several axes move, which take trajectories alone.
+  void moveJoints();
+  void moveJoint(const config::GroupConfig& group, std::size_t joint);
+  /// All axes of the group are in a mode for trajectories, free, and stand as square as they must.
+  bool takesTrajectories(const config::GroupConfig& group);
+  bool skewed(const AxisFacts& facts) const;
   /// What a small move of an axis is to come to.
   struct Step {
     double value = 0.0;     ///< of the set-points
@@ -54,6 +65,7 @@ class Proof {
   Session& session_;
   Calls& calls_;
   Streams& streams_;
+  Trajectories& trajectories_;
   RunTo run_to_;
   bus::Answer answer_;  ///< to the last call
 };

@@ -17,6 +17,8 @@ struct Seat {
   int node = 0;
   std::optional<std::size_t> neighbour{};  ///< the other axis in its drive
   int device_axis = 0;
+  std::optional<std::size_t> mate{};  ///< with which it moves joints
+  bool gantry = false;
   Habits habits{};  ///< of a drive with two axes; may be empty
 };
 
@@ -36,13 +38,15 @@ class AxisWriter {
       : random_(random), family_(seat.neighbour ? families().front() : drawFamily(random)) {
     axis_.name = "a" + std::to_string(number + 1);
     axis_.neighbour = seat.neighbour;
+    axis_.mate = seat.mate;
+    differential_ = seat.mate && !seat.gantry;
     axis_.family = &family_;
     add("node_id", std::to_string(seat.node));
     if (seat.neighbour) add("device_axis", std::to_string(seat.device_axis));
     add("drive", family_.profile);
     const double kind = random.uniform();
-    linear_ = !family_.joint_units && family_.long_range && kind < 0.15;
-    axis_.continuous = !linear_ && kind < 0.3;
+    linear_ = !differential_ && !family_.joint_units && family_.long_range && kind < 0.15;
+    axis_.continuous = !seat.mate && !linear_ && kind < 0.3;
     if (linear_) add("type", "prismatic");
     if (axis_.continuous) add("type", "continuous");
     axis_.yaml +=
@@ -109,7 +113,8 @@ class AxisWriter {
   }
   void drawMode() {
     const std::vector<ModePlan>& modes = family_.modes;
-    axis_.mode = random_.chance(0.58) ? modes.front().name : random_.pick(modes).name;
+    axis_.mode =
+        random_.chance(axis_.mate ? 0.9 : 0.58) ? modes.front().name : random_.pick(modes).name;
     if (!family_.names_modes) return;
     std::string all;
     for (const ModePlan& mode : modes) all += (all.empty() ? "" : ", ") + std::string(mode.name);
@@ -123,11 +128,12 @@ class AxisWriter {
     if (random_.chance(0.4)) add("direction", "-1");
     if (random_.chance(0.25)) add("position_offset", text(random_.between(-0.3, 0.3) * reach));
     std::string limits;
-    if (!axis_.continuous) {
+    if (!axis_.continuous && !differential_) {  // those of its joints bound that
       limits = "lower: " + text(axis_.lower) + ", upper: " + text(axis_.upper) + ", ";
     }
     add("limits", "{" + limits + "velocity: " + text(axis_.velocity) + ", acceleration: " +
                       text(axis_.acceleration) + ", effort: " + text(axis_.effort) + "}");
+    axis_.at = at_;
     simulate("initial_position", text(at_));
     simulate("time_constant", text(time_constant_));
   }
@@ -140,7 +146,8 @@ class AxisWriter {
     if (choice < 0.25) return;
     // Within the time that a home is searched for, 30 s where nothing is said.
     const bool soon = axis_.upper - axis_.lower < 20.0 * kSearch * axis_.velocity;
-    const bool by_switch = choice > 0.8 && !axis_.continuous && family_.searches_switches && soon;
+    const bool by_switch =
+        choice > 0.8 && !axis_.continuous && !differential_ && family_.searches_switches && soon;
     if (choice < 0.55 || (!by_switch && family_.searches.empty())) {
       const std::string any = random_.pick<std::string>({"35", "37"});
       return declare("method: " + (family_.declares.empty() ? any : family_.declares) + ", ");
@@ -192,7 +199,7 @@ class AxisWriter {
   const Family& family_;
   AxisPlan axis_;
   std::string simulation_;
-  bool linear_ = false;
+  bool linear_ = false, differential_ = false;
   double at_ = 0.0, time_constant_ = 0.004;
 };
 
@@ -206,6 +213,16 @@ Habits drawDualHabits(Random& random) {
   return habits;
 }
 
+/// Two of them move joints together.
+std::vector<Seat> coupleTwo(Random& random, std::vector<Seat> seats) {
+  const std::size_t one = random.below(seats.size());
+  const std::size_t other = (one + 1 + random.below(seats.size() - 1)) % seats.size();
+  seats[one].mate = other;
+  seats[other].mate = one;
+  seats[one].gantry = seats[other].gantry = random.chance(0.5);
+  return seats;
+}
+
 std::vector<Seat> planSeats(Random& random, std::size_t count) {
   const int first = 1 + static_cast<int>(random.below(30));
   std::vector<Seat> seats(count);
@@ -214,6 +231,7 @@ std::vector<Seat> planSeats(Random& random, std::size_t count) {
     seats[i].node = first + 3 * static_cast<int>(i);
     alone.push_back(i);
   }
+  if (random.chance(1.0 / 6.0)) return coupleTwo(random, std::move(seats));
   if (!random.chance(1.0 / 6.0)) return seats;
   const auto draw = [&] {
     const auto drawn = alone.begin() + static_cast<std::ptrdiff_t>(random.below(alone.size()));
@@ -224,15 +242,66 @@ std::vector<Seat> planSeats(Random& random, std::size_t count) {
   for (int pairs = count >= 4 && random.chance(0.5) ? 2 : 1; pairs > 0; --pairs) {
     const std::size_t one = draw(), other = draw();
     const Habits habits = drawDualHabits(random);
-    seats[one] = {seats[one].node, other, 0, habits};
-    seats[other] = {seats[one].node, one, 1, habits};
+    seats[one] = {seats[one].node, other, 0, {}, false, habits};
+    seats[other] = {seats[one].node, one, 1, {}, false, habits};
   }
   return seats;
 }
 
 bool cyclic(const AxisPlan& axis) { return axis.mode == axis.family->modes.front().name; }
 
-GroupPlan planGroup(Random& random, const std::vector<AxisPlan>& axes, std::size_t number) {
+/// The other side of a gantry: the same but for its node, and sometimes its turn.
+AxisPlan otherSide(Random& random, const AxisPlan& side, std::size_t number, const Seat& seat) {
+  AxisPlan other = side;
+  other.name = "a" + std::to_string(number + 1);
+  other.mate = seat.mate;
+  const std::string node = "{node_id: ";
+  const std::size_t end = side.yaml.find(',');
+  other.yaml = node + std::to_string(seat.node) + side.yaml.substr(end);
+  const std::string turned = ", direction: -1";
+  const std::size_t turn = other.yaml.find(turned);
+  const bool searches = side.homes_by_moving;  // would find its switch at the other end
+  if (turn != std::string::npos && !searches && random.chance(0.5)) {
+    other.yaml.erase(turn, turned.size());
+  }
+  return other;
+}
+
+void planAxes(Random& random, const std::vector<Seat>& seats, RobotPlan& robot) {
+  for (std::size_t i = 0; i < seats.size(); ++i) {
+    const auto& mate = seats[i].mate;
+    const bool second = mate && *mate < i;
+    robot.axes.push_back(second && seats[i].gantry
+                             ? otherSide(random, robot.axes[*mate], i, seats[i])
+                             : AxisWriter(random, i, seats[i]).take());
+    if (second) {
+      robot.couplings.push_back(planCoupling(random, robot.axes, {*mate, i}, seats[i].gantry));
+    }
+  }
+}
+
+/// Joints of one coupling are in a group together: those whose mate was left out are as well.
+void pairUp(const std::vector<AxisPlan>& axes, GroupPlan& group) {
+  const std::vector<std::size_t> drawn = group.axes;
+  const auto alone = [&](std::size_t i) {
+    const std::optional<std::size_t>& mate = axes[i].mate;
+    return mate && std::count(drawn.begin(), drawn.end(), *mate) == 0;
+  };
+  group.axes.erase(std::remove_if(group.axes.begin(), group.axes.end(), alone), group.axes.end());
+}
+
+void nameJoints(const RobotPlan& robot, GroupPlan& group) {
+  for (std::size_t i : group.axes) {
+    if (!robot.axes[i].mate) group.joints.push_back(robot.axes[i].name);
+  }
+  for (const CouplingPlan& coupling : robot.couplings) {
+    if (std::count(group.axes.begin(), group.axes.end(), coupling.axes[0]) == 0) continue;
+    group.joints.insert(group.joints.end(), coupling.joints.begin(), coupling.joints.end());
+  }
+}
+
+GroupPlan planGroup(Random& random, const RobotPlan& robot, std::size_t number) {
+  const std::vector<AxisPlan>& axes = robot.axes;
   GroupPlan group;
   group.name = "g" + std::to_string(number + 1);
   for (std::size_t i = 0; i < axes.size(); ++i) {
@@ -242,14 +311,20 @@ GroupPlan planGroup(Random& random, const std::vector<AxisPlan>& axes, std::size
     group.axes.erase(group.axes.begin() +
                      static_cast<std::ptrdiff_t>(random.below(group.axes.size())));
   }
-  if (group.axes.empty()) group.axes.push_back(random.below(axes.size()));
-  group.partial = group.axes.size() > 1 && random.chance(0.5);
+  pairUp(axes, group);
+  if (group.axes.empty()) {
+    group.axes.push_back(random.below(axes.size()));
+    const std::optional<std::size_t>& mate = axes[group.axes.front()].mate;
+    if (mate) group.axes.push_back(*mate);
+  }
+  nameJoints(robot, group);
+  group.partial = group.joints.size() > 1 && random.chance(0.5);
   return group;
 }
 
-std::string groupYaml(Random& random, const GroupPlan& group, const std::vector<AxisPlan>& axes) {
+std::string groupYaml(Random& random, const GroupPlan& group) {
   std::string joints;
-  for (std::size_t i : group.axes) joints += (joints.empty() ? "" : ", ") + axes[i].name;
+  for (const std::string& joint : group.joints) joints += (joints.empty() ? "" : ", ") + joint;
   std::string yaml = "  " + group.name + ": {joints: [" + joints + "]";
   if (random.chance(0.4)) yaml += ", stop_group_on_fault: false";
   if (group.partial) yaml += ", allow_partial_joints_goal: true";
@@ -271,9 +346,7 @@ RobotPlan planRobot(Random& random) {
   RobotPlan robot;
   const std::size_t count = 2 + random.below(5);
   const std::vector<Seat> seats = planSeats(random, count);
-  for (std::size_t i = 0; i < count; ++i) {
-    robot.axes.push_back(AxisWriter(random, i, seats[i]).take());
-  }
+  planAxes(random, seats, robot);
   const double period =
       count <= 2 && random.chance(0.3) ? 0.002 : random.pick({0.004, 0.004, 0.005, 0.01});
   const double heartbeat = random.pick({0.05, 0.1, 0.1, 0.2});
@@ -285,11 +358,15 @@ RobotPlan planRobot(Random& random) {
                (counts ? "" : ", sync_counter: 0") + "}\n" +
                "recorder: {duration: 1, keep: 0}\naxes:\n";
   for (const AxisPlan& axis : robot.axes) robot.yaml += "  " + axis.name + ": " + axis.yaml + "\n";
+  if (!robot.couplings.empty()) robot.yaml += "couplings:\n";
+  for (const CouplingPlan& coupling : robot.couplings) {
+    robot.yaml += "  - " + coupling.yaml + "\n";
+  }
   robot.yaml += "groups:\n";
   const std::size_t groups = random.chance(0.3) ? 2 : 1;
   for (std::size_t i = 0; i < groups; ++i) {
-    robot.groups.push_back(planGroup(random, robot.axes, i));
-    robot.yaml += groupYaml(random, robot.groups.back(), robot.axes);
+    robot.groups.push_back(planGroup(random, robot, i));
+    robot.yaml += groupYaml(random, robot.groups.back());
   }
   return robot;
 }

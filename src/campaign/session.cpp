@@ -145,6 +145,12 @@ void Session::loseCommandsOfOne(std::size_t axis, Duration duration) {
   if (duration > facts.master_timeout) permits.cut(axis, end);
 }
 
+double Session::shown(const JointFacts& joint) const {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < joint.axes.size(); ++k) sum += joint.shares[k] * shown(joint.axes[k]);
+  return sum;
+}
+
 double Session::shown(std::size_t axis) const {
   return stage.host().running() ? stage.host().network().axis(axis).state().position : 0.0;
 }

@@ -68,6 +68,7 @@ class Session {
   Duration lateFor() const { return std::max(late_until - now(), Duration()); }
   /// Where the driver shows an axis, rad or m; 0 where no driver runs.
   double shown(std::size_t axis) const;
+  double shown(const JointFacts& joint) const;
 
   Stage& stage;
   Random random;

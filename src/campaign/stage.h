@@ -58,13 +58,32 @@ struct AxisFacts {
   bool limit_coasts = false;  ///< likewise at a limit switch
   bool homes_by_moving = false;
   Duration homing_timeout{};
+  /// With which it moves joints, itself among them. Of a gantry: its sides, to which what is asked
+  /// of one is done.
+  std::vector<std::size_t> coupled;
+  bool gantry = false;
+  double joint_share = 1.0;       ///< how fast it may turn for joints at speed 1, all at once
+  Duration longest_joint_stop{};  ///< of the joints that it moves with others
 
-  /// Longest time from `speed` to rest by the acceleration limit.
+  /// Longest time from `speed` to rest by the acceleration limit, or those of its joints.
   Duration stopTime(double speed) const;
   /// What the mode with that number of 6060h controls; other where the drive homes or has no mode.
   drive::ControlKind kind(int mode) const;
   /// Slower counts as standing.
   double creep() const { return std::max(0.02 * velocity + 0.002, config->standstill_velocity); }
+};
+
+/// What trajectories are given for: what one axis moves, or several together.
+struct JointFacts {
+  std::string name;
+  motion::JointLimits limits;
+  double velocity = 1.0, acceleration = 1.0;
+  std::vector<std::size_t> axes;
+  std::vector<double> shares;  ///< of these axes: where the joint is, is the sum of share * axis
+
+  /// By its motors, whose zeros nobody knows.
+  double position(const std::vector<AxisTruth>& truths) const;
+  double speed(const std::vector<AxisTruth>& truths) const;  ///< at most, of all its axes
 };
 
 /// What oracles and troubles must know of a simulated drive.
@@ -98,6 +117,7 @@ class Stage {
   const bus::Network* driver() const { return host_.running() ? &host_.network() : nullptr; }
   const Loaded& loaded() const { return loaded_; }
   const std::vector<AxisFacts>& axes() const { return facts_; }
+  const std::vector<JointFacts>& joints() const { return joints_; }
   /// In the order of the world.
   const std::vector<DriveFacts>& drives() const { return drives_; }
   /// All axes in the drive of this one, itself among them: what is done to the drive happens to
@@ -124,6 +144,8 @@ class Stage {
   const config::GroupConfig* group(const std::string& name) const;
   /// The axes that a call concerns: one by its name, those of a group, or "all".
   std::vector<std::size_t> named(const std::string& name) const;
+  /// The same where what is asked of one side of a gantry is done to both.
+  std::vector<std::size_t> namedAsOne(const std::string& name) const;
   /// The drives that these axes sit in, each once.
   std::vector<std::size_t> drivesNamed(const std::string& name) const;
   Time now() const { return world_.now(); }
@@ -136,6 +158,7 @@ class Stage {
   sim::World world_;
   tools::VirtualHost host_;
   std::vector<AxisFacts> facts_;
+  std::vector<JointFacts> joints_;
   std::vector<DriveFacts> drives_;
   std::vector<PdoPlace> rpdos_, tpdos_;
   std::vector<const PdoPlace*> statuswords_;  // of tpdos_

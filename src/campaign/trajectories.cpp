@@ -34,22 +34,22 @@ bool Trajectories::act(const Words& words) { return actBy(kTrajectoryVerbs, *thi
 
 void Trajectories::move(const Words& words) {
   const config::GroupConfig* const to = running(words.at(1));
-  if (to != nullptr) moveThere(*to, axesOf(*to), words, 2);
+  if (to != nullptr) moveThere(*to, jointsOf(*to), words, 2);
 }
 
 void Trajectories::part(const Words& words) {
   const config::GroupConfig* const to = running(words.at(1));
   if (to == nullptr) return;
-  const std::vector<std::size_t> axes = among(axesOf(*to), words.at(2));
-  if (!axes.empty()) moveThere(*to, axes, words, 3);
+  const Joints joints = among(jointsOf(*to), words.at(2));
+  if (!joints.empty()) moveThere(*to, joints, words, 3);
 }
 
 /// @param seconds where among the words; what the joints are to go to follows
-void Trajectories::moveThere(const config::GroupConfig& group, const std::vector<std::size_t>& axes,
+void Trajectories::moveThere(const config::GroupConfig& group, const Joints& joints,
                              const Words& words, std::size_t seconds) {
   const double length = toNumber(words.at(seconds));
-  const std::vector<double> goal = reachable(axes, shown(axes), words, seconds + 1, length);
-  send(group, axes, {{goal, rest(goal.size()), {}, fromSeconds(length)}});
+  const std::vector<double> goal = reachable(joints, shown(joints), words, seconds + 1, length);
+  send(group, joints, {{goal, rest(goal.size()), {}, fromSeconds(length)}});
 }
 
 void Trajectories::goal(const Words& words) {
@@ -57,31 +57,31 @@ void Trajectories::goal(const Words& words) {
   if (to == nullptr) return;
   std::vector<double> goal;
   for (std::size_t i = 3; i < words.size(); ++i) goal.push_back(toNumber(words[i]));
-  send(*to, axesOf(*to), {{goal, rest(goal.size()), {}, toDuration(words.at(2))}});
+  send(*to, jointsOf(*to), {{goal, rest(goal.size()), {}, toDuration(words.at(2))}});
 }
 
 void Trajectories::path(const Words& words) {
   const config::GroupConfig* const to = running(words.at(1));
   if (to == nullptr) return;
   const double seconds = toNumber(words.at(4));
-  const std::vector<std::size_t> axes = axesOf(*to);
-  std::vector<double> at = shown(axes);
+  const Joints joints = jointsOf(*to);
+  std::vector<double> at = shown(joints);
   Points points;
   for (int i = 1; i <= static_cast<int>(toNumber(words.at(3))); ++i) {
     Words turned = words;
     if (i % 2 == 0) std::reverse(turned.begin() + 5, turned.end());
-    at = reachable(axes, at, turned, 5, seconds);
+    at = reachable(joints, at, turned, 5, seconds);
     points.push_back({at, rest(at.size()), {}, fromSeconds(seconds * i)});
   }
-  send(*to, axes, std::move(points), toDuration(words.at(2)));
+  send(*to, joints, std::move(points), toDuration(words.at(2)));
 }
 
 void Trajectories::stop(const Words& words) {
   const config::GroupConfig* const to = running(words.at(1));
   if (to == nullptr) return;
-  const std::vector<std::size_t> all = axesOf(*to);
-  const std::vector<std::size_t> axes = words.size() > 2 ? among(all, words[2]) : all;
-  if (!axes.empty()) send(*to, axes, {});
+  const Joints all = jointsOf(*to);
+  const Joints joints = words.size() > 2 ? among(all, words[2]) : all;
+  if (!joints.empty()) send(*to, joints, {});
 }
 
 void Trajectories::cancel(const Words& words) {
@@ -96,51 +96,71 @@ void Trajectories::cancel(const Words& words) {
 
 void Trajectories::stopAll() {
   for (const config::GroupConfig& group : session_.stage.loaded().robot.groups) {
-    send(group, axesOf(group), {});
+    send(group, jointsOf(group), {});
   }
+}
+
+void Trajectories::nudge(const config::GroupConfig& group, const Nudge& nudge, double seconds,
+                         std::function<void(const std::string& why)> refused) {
+  const Joints joints = jointsOf(group);
+  std::vector<double> goal = shown(joints);
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    if (joints[i] == nudge.joint) goal[i] += nudge.way;
+  }
+  send(group, joints, {{goal, rest(goal.size()), {}, fromSeconds(seconds)}}, std::nullopt,
+       std::move(refused));
 }
 
 const config::GroupConfig* Trajectories::running(const std::string& name) const {
   return session_.stage.host().running() ? session_.stage.group(name) : nullptr;
 }
 
-std::vector<std::size_t> Trajectories::axesOf(const config::GroupConfig& group) const {
-  std::vector<std::size_t> axes;
-  for (const std::string& joint : group.joints) {
-    for (const AxisFacts& facts : session_.stage.axes()) {
-      if (facts.config->joint == joint) axes.push_back(facts.index);
+Trajectories::Joints Trajectories::jointsOf(const config::GroupConfig& group) const {
+  Joints joints;
+  for (const std::string& name : group.joints) {
+    for (std::size_t i = 0; i < session_.stage.joints().size(); ++i) {
+      if (jointAt(i).name == name) joints.push_back(i);
     }
   }
-  return axes;
+  return joints;
 }
 
-std::vector<std::size_t> Trajectories::among(const std::vector<std::size_t>& axes,
-                                             const std::string& names) const {
-  std::vector<std::size_t> found;
+Trajectories::Joints Trajectories::among(const Joints& joints, const std::string& names) const {
+  Joints found;
   std::istringstream words(names);
   for (std::string name; std::getline(words, name, ',');) {
-    for (std::size_t axis : axes) {
-      if (session_.stage.axes()[axis].name == name) found.push_back(axis);
+    for (std::size_t joint : joints) {
+      if (jointAt(joint).name == name) found.push_back(joint);
     }
   }
   return found;
 }
 
-std::vector<double> Trajectories::shown(const std::vector<std::size_t>& axes) const {
+std::vector<std::size_t> Trajectories::axesOf(const Joints& joints) const {
+  std::vector<std::size_t> axes;
+  for (std::size_t joint : joints) {
+    for (std::size_t axis : jointAt(joint).axes) {
+      if (std::find(axes.begin(), axes.end(), axis) == axes.end()) axes.push_back(axis);
+    }
+  }
+  return axes;
+}
+
+std::vector<double> Trajectories::shown(const Joints& joints) const {
   std::vector<double> positions;
-  for (std::size_t axis : axes) positions.push_back(session_.shown(axis));
+  for (std::size_t joint : joints) positions.push_back(session_.shown(jointAt(joint)));
   return positions;
 }
 
 /// Goals as shares of each joint's range, or as near to that as its limits allow in so many
 /// seconds.
-std::vector<double> Trajectories::reachable(const std::vector<std::size_t>& axes,
-                                            const std::vector<double>& from, const Words& words,
-                                            std::size_t first, double seconds) const {
+std::vector<double> Trajectories::reachable(const Joints& joints, const std::vector<double>& from,
+                                            const Words& words, std::size_t first,
+                                            double seconds) const {
   std::vector<double> goal;
-  for (std::size_t i = 0; i < axes.size(); ++i) {
-    const AxisFacts& facts = session_.stage.axes()[axes[i]];
-    const motion::JointLimits& limits = facts.config->limits;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const JointFacts& facts = jointAt(joints[i]);
+    const motion::JointLimits& limits = facts.limits;
     const double share = first + i < words.size() ? toNumber(words[first + i]) : 0.5;
     const double wish = limits.lower && limits.upper
                             ? *limits.lower + share * (*limits.upper - *limits.lower)
@@ -154,46 +174,48 @@ std::vector<double> Trajectories::reachable(const std::vector<std::size_t>& axes
 }
 
 /// As the driver shows the axes now, which is as old as its feedback.
-std::vector<Trajectories::Goal> Trajectories::goalsOf(const std::vector<std::size_t>& axes,
+std::vector<Trajectories::Goal> Trajectories::goalsOf(const Joints& joints,
                                                       const Points& points) const {
   std::vector<Goal> goals;
-  for (std::size_t i = 0; i < axes.size() && !points.empty(); ++i) {
+  for (std::size_t i = 0; i < joints.size() && !points.empty(); ++i) {
     if (i >= points.back().positions.size()) return {};
-    const AxisTruth& truth = session_.truths[axes[i]];
-    goals.push_back({truth.position, points.back().positions[i] - session_.shown(axes[i]),
-                     std::fabs(truth.velocity) * kShownAge});
+    const JointFacts& facts = jointAt(joints[i]);
+    goals.push_back({facts.position(session_.truths),
+                     points.back().positions[i] - session_.shown(facts),
+                     facts.speed(session_.truths) * kShownAge});
   }
   return goals;
 }
 
-void Trajectories::send(const config::GroupConfig& group, std::vector<std::size_t> axes,
-                        Points points, std::optional<Duration> start) {
+void Trajectories::send(const config::GroupConfig& group, Joints joints, Points points,
+                        std::optional<Duration> start,
+                        std::function<void(const std::string& why)> refused) {
   const std::uint64_t id = ++last_id_;
   Sent sent;
   sent.id = id;
   sent.group = &group;
-  sent.axes = std::move(axes);
+  sent.axes = axesOf(joints);
+  sent.joints = std::move(joints);
   sent.at = session_.now();
   sent.base = sent.at + start.value_or(Duration());
-  sent.goals = goalsOf(sent.axes, points);
+  sent.goals = goalsOf(sent.joints, points);
   sent.has_start = start.has_value();
   sent.stop = points.empty();
   if (!points.empty()) sent.last = points.back().time_from_start;
   bus::TrajectoryCommand body;
   body.id = id;
   body.group = group.name;
-  for (std::size_t axis : sent.axes) {
-    body.joints.push_back(session_.stage.axes()[axis].config->joint);
-  }
+  for (std::size_t joint : sent.joints) body.joints.push_back(jointAt(joint).name);
   body.points = std::move(points);
   if (start) body.start_time = sent.base;
   body.ended = [this, id](const bus::TrajectoryOutcome& outcome) { ended(id, outcome); };
   sent_[id] = sent;
-  const auto reply = [this, sent](const bus::Answer& answer) {
+  const auto reply = [this, sent, refused](const bus::Answer& answer) {
     session_.say("< trajectory of " + sent.group->name + (answer.success ? ": " : " refused: ") +
                  answer.message);
     if (answer.success) return accepted(sent, laterBy(sent, answer.message));
     sent_.erase(sent.id);
+    if (refused) refused(answer.message);
   };
   session_.stage.host().post(bus::Command(std::move(body), reply));
 }
@@ -224,6 +246,9 @@ void Trajectories::accepted(const Sent& sent, Duration later) {
   if (!seen && runs != sent_.end()) runs->second.goals.clear();
   if (!sent.stop) last_of_[sent.group->name] = sent.id;
   for (std::size_t i : sent.axes) {
+    if (runs != sent_.end()) {
+      runs->second.before[i] = {follows_[i], session_.permits.until(i, Source::trajectory)};
+    }
     const config::GroupConfig*& leader = led_by_[i];
     const bool of_another = leader != nullptr && leader != sent.group;
     if (sent.stop && of_another) continue;  // that group moves it
@@ -284,11 +309,21 @@ void Trajectories::ended(std::uint64_t id, const bus::TrajectoryOutcome& outcome
     const bool over = outcome.end != bus::TrajectoryEnd::replaced;
     if (over && follows_[i] == id) led_by_[i] = nullptr;
   }
+  if (waits(sent)) neverBegan(sent);
   session_.stage.look(session_.truths);
   if (outcome.end == bus::TrajectoryEnd::reached) judgeReached(sent);
   const bool stopped = outcome.end == bus::TrajectoryEnd::stopped && !waits(sent);
   const bool restless = outcome.message.find("still moves") != std::string::npos;
   if (stopped && !restless) judgeStopped(sent, outcome.message);
+}
+
+/// What it was to take over goes on.
+void Trajectories::neverBegan(const Sent& sent) {
+  for (const auto& [axis, before] : sent.before) {
+    if (follows_[axis] != sent.id) continue;
+    follows_[axis] = before.follows;
+    session_.permits.allow(axis, Source::trajectory, before.until);
+  }
 }
 
 bool Trajectories::judged(const Sent& sent, std::size_t axis) const {
@@ -301,21 +336,22 @@ bool Trajectories::judged(const Sent& sent, std::size_t axis) const {
 
 void Trajectories::judgeReached(const Sent& sent) const {
   for (std::size_t i = 0; i < sent.goals.size(); ++i) {
-    const AxisFacts& facts = session_.stage.axes()[sent.axes[i]];
-    const AxisTruth& truth = session_.truths[facts.index];
-    const auto tolerance = sent.group->tolerances.find(facts.config->joint);
+    const JointFacts& facts = jointAt(sent.joints[i]);
+    const auto tolerance = sent.group->tolerances.find(facts.name);
     const bool told = tolerance != sent.group->tolerances.end() && tolerance->second.goal > 0.0;
-    double missing = truth.position - sent.goals[i].from - sent.goals[i].way;
+    double missing = facts.position(session_.truths) - sent.goals[i].from - sent.goals[i].way;
     // The way to the first point is the shorter one, whole turns off.
-    const bool turns = facts.config->geometry.type == drive::AxisGeometry::Type::continuous;
-    if (turns) missing = std::remainder(missing, kTwoPi);
+    if (facts.limits.continuous) missing = std::remainder(missing, kTwoPi);
+    double counts = 0.0;
+    for (std::size_t k = 0; k < facts.axes.size(); ++k) {
+      counts += std::fabs(facts.shares[k] * session_.stage.axes()[facts.axes[k]].units_per_count);
+    }
     const double bound = (told ? tolerance->second.goal : kArrived) + sent.goals[i].slack +
-                         std::fabs(truth.velocity) * kShownAge +
-                         2.0 * std::fabs(facts.units_per_count);
+                         facts.speed(session_.truths) * kShownAge + 2.0 * counts;
     if (std::fabs(missing) <= bound) continue;
-    session_.report("untrue_answer", facts.name,
-                    sent.group->name + " has reached its goal, is said, and the motor is " +
-                        number(missing) + " away from it");
+    session_.report("untrue_answer", session_.stage.axes()[facts.axes.front()].name,
+                    sent.group->name + " has reached its goal, is said, and " + facts.name +
+                        " is, by its motors, " + number(missing) + " away from it");
   }
 }
 
@@ -324,7 +360,8 @@ void Trajectories::judgeStopped(const Sent& sent, const std::string& words) cons
   for (std::size_t i : sent.axes) {
     const AxisFacts& facts = session_.stage.axes()[i];
     const AxisTruth& truth = session_.truths[i];
-    const double bound = std::max(facts.creep(), 1.2 * sent.group->stopped_velocity_tolerance);
+    const double bound =
+        std::max(facts.creep(), 1.2 * facts.joint_share * sent.group->stopped_velocity_tolerance);
     const bool stands = !truth.power || std::fabs(truth.velocity) <= bound;
     if (stands || !judged(sent, i)) continue;
     session_.report("untrue_answer", facts.name,

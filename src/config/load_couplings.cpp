@@ -306,6 +306,7 @@ class CouplingReader {
 }  // namespace
 
 void readCouplings(const yaml::Value& value, const DescribedLimits& described, RobotConfig& robot) {
+  if (robot.axes.empty()) return;  // which is a problem of its own
   std::set<std::string> coupled, joints;
   for (const yaml::Value& entry : value.list()) {
     CouplingReader reader(entry, described, robot);

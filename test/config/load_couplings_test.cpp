@@ -86,6 +86,14 @@ TEST(LoadCouplings, AMatrixThatCannotBeUsedIsRefusedWithItsConditionNumber) {
   EXPECT_THAT(problems("[[1, 2], [3, .nan]]"), HasSubstr("couplings[0]/matrix"));
 }
 
+TEST(LoadCouplings, WithoutAnyAxisThatAloneIsTheProblem) {
+  for (const std::string& coupling : {kDifferential, kGantry}) {
+    const LoadedRobot loaded =
+        loadText("bus: {interface: can0}\ncouplings: [{" + coupling + "}]\n");
+    EXPECT_THAT(loaded.problems, HasSubstr("axes: is missing: name at least one axis"));
+  }
+}
+
 TEST(LoadCouplings, JointsThatCouldAskMoreOfAnAxisThanItMayAreRefused) {
   // Both at 2: 2 + 2 / 2 = 3 rad/s of the axis, just what it may; 2.2: 2.2 + 1.
   const auto with = [](const std::string& from, const std::string& to, const std::string& m5 = {}) {

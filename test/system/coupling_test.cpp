@@ -253,6 +253,17 @@ TEST(Coupling, ATrajectoryReplacesAnotherWithoutAJump) {
   EXPECT_NEAR(scene.roll(), 0.4, 1e-5);
 }
 
+TEST(Coupling, AGoalThatIsBeyondALimitByRoundingIsReached) {
+  Wrist scene;
+  ASSERT_TRUE(scene.move({1.2 + 1e-6, 0.0}, 3s).success);  // it may be by 1e-6 of the range
+  scene.run(3500ms);
+  EXPECT_FALSE(scene.robot().network().cycle().groups()[0].executing()) << scene.told();
+  EXPECT_NEAR(scene.pitch(), 1.2, 1e-5);
+  ASSERT_TRUE(scene.move({1.2 - 1e-3, 0.0}, 1s).success);
+  scene.run(1500ms);
+  EXPECT_FALSE(scene.robot().network().cycle().groups()[0].executing());
+}
+
 TEST(Coupling, AfterMissedCyclesTheJointsGoOnWhereTheyAre) {
   Wrist scene;
   ASSERT_TRUE(scene.move({0.5, -1.0}, 2s).success);
