@@ -75,6 +75,28 @@ int cycleCost() {
   return 0;
 }
 
+int groupCost() {
+  constexpr int kCycles = 20000;
+  DrivenRobot moving(6, 0.004, kCycles);
+  DrivenRobot holding(6, 0.004, 0);
+  std::vector<double> moves, holds;
+  for (int i = 0; i < kCycles; ++i) {
+    moving.prepare();
+    holding.prepare();
+    const double begin = processorTime();
+    cia402_measured_cycle(moving);
+    const double between = processorTime();
+    cia402_measured_cycle(holding);
+    const double end = processorTime();
+    moves.push_back(between - begin);
+    holds.push_back(end - between);
+  }
+  moving.check();
+  holding.check();
+  print("group_cost_6_axes", median(moves) / median(holds), "ratio");
+  return 0;
+}
+
 int countedCycles(int axes, int cycles) {
   DrivenRobot robot(axes, 0.01, cycles);
   for (int i = 0; i < cycles; ++i) {

@@ -36,6 +36,7 @@ void DrivenRobot::runUntilAnswered(Request request) {
 DrivenRobot::DrivenRobot(int axes, double sync_period_s, int cycles)
     : config_(genericRobot(axes, sync_period_s, Layout::lean)),
       period_(config_.robot.bus.sync_period),
+      holds_(cycles == 0),
       drives_(axes),
       meter_(*this, kBitrate),
       recorder_(config_.robot, meter_),
@@ -58,6 +59,7 @@ DrivenRobot::DrivenRobot(int axes, double sync_period_s, int cycles)
   while (network_.statistics().cycles() == sync) step();
   sync_ = now_ + period_;
   began_ = sync_ - period_ / 2;  // one period before the first cycle
+  if (holds_) return;
   runUntilAnswered(swing(config_.robot, sync_period_s * (cycles + 1), 0.1));
 }
 
@@ -139,7 +141,17 @@ void DrivenRobot::publish(Time now) {
   snapshots_.publish();
 }
 
+void DrivenRobot::checkHeld() const {
+  for (const bus::AxisUnit& unit : network_.cycle().units()) {
+    const drive::AxisState& state = unit.axis.state();
+    if (state.state != drive::State::operation_enabled || state.position != 0.0) {
+      throw std::runtime_error(unit.axis.config().joint + " does not hold");
+    }
+  }
+}
+
 void DrivenRobot::check() const {
+  if (holds_) return checkHeld();
   // The target was computed in the middle of the last period.
   const double time_s = toSeconds(sync_ - period_ / 2 - began_);
   const auto& commanded = network_.cycle().groups().front().commanded();

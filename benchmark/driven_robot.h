@@ -17,7 +17,7 @@ namespace cia402::benchmark {
 /// the driver's work alone: everything that BusRunner does in it but system calls.
 class DrivenRobot final : private can::Sink, private bus::EventSink {
  public:
-  /// Boots and enables all axes and begins a trajectory of `cycles` cycles.
+  /// Boots and enables all axes and begins a trajectory of `cycles` cycles; with 0 they hold.
   /// @throws std::runtime_error if that fails.
   DrivenRobot(int axes, double sync_period_s, int cycles);
 
@@ -30,7 +30,7 @@ class DrivenRobot final : private can::Sink, private bus::EventSink {
   /// The frames of one cycle, as prepare() and cycle() left them.
   const std::vector<can::Frame>& received() const { return incoming_; }
   const std::vector<can::Frame>& sent() const { return outgoing_; }
-  /// @throws std::runtime_error unless all axes are where the trajectory wants them.
+  /// @throws std::runtime_error unless all axes are where the trajectory wants them, or hold.
   void check() const;
 
  private:
@@ -43,9 +43,11 @@ class DrivenRobot final : private can::Sink, private bus::EventSink {
   void step();
   void wake(Time now);
   void publish(Time now);
+  void checkHeld() const;
 
   TestRobot config_;
   Duration period_;
+  bool holds_;
   ScriptedDrives drives_;
   bus::LoadMeter meter_;
   bus::FlightRecorder recorder_;

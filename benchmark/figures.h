@@ -12,6 +12,7 @@ void print(const std::string& name, double value, const std::string& unit);
 int virtualTimeSpeed();
 int virtualTimeRepeatable();
 int cycleCost();
+int groupCost();
 int syncLateness();
 int sdoBlockDownload();
 int sdoBlockUpload();

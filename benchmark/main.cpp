@@ -16,10 +16,11 @@ struct Figure {
   int (*measure)();
 };
 
-constexpr std::array<Figure, 7> kFigures{{
+constexpr std::array<Figure, 8> kFigures{{
     {"virtual_time_speed_3_axes", virtualTimeSpeed},
     {"virtual_time_repeatable", virtualTimeRepeatable},
     {"cycle_cost_6_axes", cycleCost},
+    {"group_cost_6_axes", groupCost},
     {"sync_lateness", syncLateness},
     {"sdo_block_download", sdoBlockDownload},
     {"sdo_block_upload", sdoBlockUpload},

@@ -180,20 +180,16 @@ std::optional<TrajectoryOutcome> TrajectoryRun::failure() const {
 }
 
 std::optional<TrajectoryOutcome> TrajectoryRun::axisFailure() const {
-  bool any_ready = false;
-  for (const Member& member : members_) {
-    if (!member.dropped) {
-      any_ready = true;
-    } else if (group_->stop_group_on_fault) {
-      return blame(TrajectoryErrorCode::path_tolerance_violated, member, kNothing,
-                   ": trajectory stopped: " + member.joint->trouble(member.notices));
-    }
+  const auto dropped = [](const Member& member) { return member.dropped; };
+  const auto first = std::find_if(members_.begin(), members_.end(), dropped);
+  if (first == members_.end()) return std::nullopt;
+  std::string left;
+  if (!group_->stop_group_on_fault) {
+    if (!std::all_of(members_.begin(), members_.end(), dropped)) return std::nullopt;
+    left = "no joint is left to follow it: ";
   }
-  if (any_ready) return std::nullopt;
-  return TrajectoryOutcome{TrajectoryErrorCode::path_tolerance_violated,
-                           group_->name + ": trajectory stopped: no joint is enabled any more",
-                           TrajectoryEnd::failed,
-                           {}};
+  return blame(TrajectoryErrorCode::path_tolerance_violated, *first, kNothing,
+               ": trajectory stopped: " + left + first->joint->trouble(first->notices));
 }
 
 std::optional<TrajectoryOutcome> TrajectoryRun::pathFailure() const {

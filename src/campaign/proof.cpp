@@ -78,7 +78,17 @@ void Proof::moveJoints() {
   }
 }
 
+bool Proof::outside(const JointFacts& joint) const {
+  const double at = session_.shown(joint);
+  return (joint.limits.lower && at < *joint.limits.lower) ||
+         (joint.limits.upper && at > *joint.limits.upper);
+}
+
 bool Proof::takesTrajectories(const config::GroupConfig& group) {
+  for (const JointFacts& joint : session_.stage.joints()) {
+    const auto& names = group.joints;
+    if (std::count(names.begin(), names.end(), joint.name) != 0 && outside(joint)) return false;
+  }
   const std::vector<std::size_t> axes = session_.stage.named(group.name);
   return std::all_of(axes.begin(), axes.end(), [this](std::size_t i) {
     const AxisFacts& facts = session_.stage.axes()[i];
@@ -116,7 +126,10 @@ void Proof::moveJoint(const config::GroupConfig& group, std::size_t joint) {
   runFor(fromSeconds(kSeconds) + 1s);
   if (session_.failed()) return;
   const double moved = facts.position(session_.truths) - from;
-  if (std::fabs(moved - way) <= 0.5 * step) return;
+  const bool held = std::any_of(facts.axes.begin(), facts.axes.end(), [this](std::size_t axis) {
+    return session_.now() - session_.limited_at[axis] < 3s;  // by a switch at which it has its home
+  });
+  if (held || std::fabs(moved - way) <= 0.5 * step) return;
   noRecovery(group.name, facts.name + " was told to move by " + number(way) +
                              " when all was well again, and moved by " + number(moved));
 }

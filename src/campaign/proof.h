@@ -49,8 +49,10 @@ class Proof {
   /// Joints that several axes move, which take trajectories alone.
   void moveJoints();
   void moveJoint(const config::GroupConfig& group, std::size_t joint);
-  /// All axes of the group are in a mode for trajectories, free, and stand as square as they must.
+  /// All axes of the group are in a mode for trajectories, free, and stand as square as they must;
+  /// no joint is outside of its limits, into which a zero may have put it.
   bool takesTrajectories(const config::GroupConfig& group);
+  bool outside(const JointFacts& joint) const;
   bool skewed(const AxisFacts& facts) const;
   /// What a small move of an axis is to come to.
   struct Step {

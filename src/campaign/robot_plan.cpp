@@ -131,8 +131,11 @@ class AxisWriter {
     if (!axis_.continuous && !differential_) {  // those of its joints bound that
       limits = "lower: " + text(axis_.lower) + ", upper: " + text(axis_.upper) + ", ";
     }
-    add("limits", "{" + limits + "velocity: " + text(axis_.velocity) + ", acceleration: " +
-                      text(axis_.acceleration) + ", effort: " + text(axis_.effort) + "}");
+    limits += "velocity: " + text(axis_.velocity) + ", acceleration: " + text(axis_.acceleration);
+    if (!axis_.mate && random_.chance(0.25)) {
+      limits += ", jerk: " + text(axis_.acceleration * random_.between(5.0, 40.0));
+    }
+    add("limits", "{" + limits + ", effort: " + text(axis_.effort) + "}");
     axis_.at = at_;
     simulate("initial_position", text(at_));
     simulate("time_constant", text(time_constant_));

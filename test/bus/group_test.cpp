@@ -338,7 +338,10 @@ TEST_F(LooseGroupTest, StopsWhenNoJointIsLeft) {
   world.run(500ms);
   for (auto& drive : world.drives) drive.fault(0x8611);
   world.run(1s);
-  EXPECT_EQ(world.eventsWith("arm: trajectory stopped: no joint is enabled any more"), 1u);
+  EXPECT_EQ(world.eventsWith("arm: trajectory stopped: no joint is left to follow it: shoulder "
+                             "(node 1)"),
+            1u)
+      << world.allEvents();
 }
 
 TEST_F(LooseGroupTest, DoesNotMoveAJointThatIsEnabledAgainUnderWay) {
