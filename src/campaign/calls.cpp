@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <map>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "bus/canopen/history_command.h"
 #include "bus/canopen/nmt_command.h"
+#include "bus/jobs/home_command.h"
 #include "bus/jobs/object_commands.h"
 #include "bus/jobs/procedure_command.h"
 
@@ -58,35 +60,95 @@ Calls::Calls(Session& session, Line& line) : session_(session), line_(line) {}
 
 template <typename Request>
 void Calls::call(const Words& words, Request request, Duration bound) {
-  if (!session_.stage.host().running()) return;
   const bool argued = words[0] == "set_mode" || words[0] == "nmt";
-  Pending pending;
-  pending.call = {
-      words[0],
-      words[1],
-      argued ? words.at(2) : "",
-      asOne(words[0]) ? session_.stage.namedAsOne(words[1]) : session_.stage.named(words[1]),
-      session_.now(),
-      session_.conditions.stalled};
+  Call call;
+  call.verb = words[0];
+  call.who = words[1];
+  call.argument = argued ? words.at(2) : "";
+  call.axes =
+      asOne(words[0]) ? session_.stage.namedAsOne(words[1]) : session_.stage.named(words[1]);
   if (words[0] == "home") {  // of a group, or of all, those that have a homing
-    auto& axes = pending.call.axes;
+    auto& axes = call.axes;
     const auto none = [&](std::size_t i) { return !session_.stage.axes()[i].config->homing; };
     axes.erase(std::remove_if(axes.begin(), axes.end(), none), axes.end());
   }
+  this->call(std::move(call), std::move(request), bound);
+}
+
+template <typename Request>
+void Calls::call(Call call, Request request, Duration bound) {
+  if (!session_.stage.host().running()) return;
+  Pending pending;
+  pending.call = std::move(call);
+  pending.call.at = session_.now();
+  pending.call.stalled = session_.conditions.stalled;
   for (const AxisTruth& truth : session_.truths) pending.call.modes.push_back(truth.mode);
   pending.deadline = session_.now() + bound;
   pending_.push_back(pending);
   permitHoming(pending.call);
   session_.onCall(pending.call);
-  bus::Reply<> reply = [this, call = pending.call,
-                        done = pending.answered](const bus::Answer& answer) {
+  const auto take = [this, call = pending.call, done = pending.answered](const auto& answer) {
     if (*done) {
       session_.report("answered_twice", call.who, call.verb + ": " + answer.message);
     }
     *done = true;
     answered(call, answer);
+    using Given = std::decay_t<decltype(answer)>;
+    if constexpr (std::is_same_v<Given, bus::ProcedureReport>) judgeCancelled(call, answer);
   };
-  line_.post(bus::Command(std::move(request), line_.replied(std::move(reply))));
+  if constexpr (std::is_same_v<Request, bus::HomeCommand>) {
+    line_.post(bus::Command(std::move(request), take));
+  } else {
+    line_.post(bus::Command(std::move(request), line_.replied(bus::Reply<>(take))));
+  }
+}
+
+void Calls::home(const Words& words) {
+  const bool ordered = words.size() > 2;
+  std::vector<int> orders;
+  for (const std::string& order : ordered ? listed(words[2]) : Words()) {
+    orders.push_back(static_cast<int>(toNumber(order)));
+  }
+  const auto plan =
+      bus::homingPlan(session_.stage.loaded().robot, listed(words.at(1)), std::move(orders));
+  if (!plan) return session_.say("< homing: " + plan.error().message);
+  Call call;
+  call.verb = "home";
+  call.who = words[1];
+  Duration bound = 20s;
+  for (const bus::HomingItem& item : *plan) {
+    for (std::size_t axis : session_.stage.namedAsOne(session_.stage.axes()[item.axis].name)) {
+      const bool known = std::count(call.axes.begin(), call.axes.end(), axis) != 0;
+      if (!known) call.axes.push_back(axis);
+    }
+    bound += session_.stage.axes()[item.axis].homing_timeout;
+  }
+  bus::HomeCommand command;
+  command.plan = *plan;
+  command.id = ++last_home_;
+  this->call(std::move(call), std::move(command), bound);
+}
+
+void Calls::cancelHome() {
+  if (!session_.stage.host().running()) return;
+  session_.stage.host().post(bus::Command(bus::CancelHomeCommand{last_home_}));
+}
+
+void Calls::judgeCancelled(const Call& call, const bus::ProcedureReport& report) {
+  using Source = Permits::Source;
+  if (!report.stopped) return;
+  Call cancel = call;
+  cancel.verb = "cancel_home";
+  const auto led = [this](std::size_t i) {  // by something else
+    const Permits& permits = session_.permits;
+    return std::max({permits.until(i, Source::stream), permits.until(i, Source::target),
+                     permits.until(i, Source::trajectory)}) > session_.now();
+  };
+  cancel.axes.erase(std::remove_if(cancel.axes.begin(), cancel.axes.end(), led), cancel.axes.end());
+  bus::Answer answer;
+  answer.success = true;
+  answer.message = report.message;
+  session_.onAnswer(cancel, answer);
 }
 
 bool Calls::actProcedure(const Words& words) {
@@ -110,7 +172,11 @@ bool Calls::actProcedure(const Words& words) {
 bool Calls::act(const Words& words) {
   const std::string& verb = words[0];
   if (actProcedure(words)) return true;
-  if (verb == "nmt") {
+  if (verb == "homing") {
+    home(words);
+  } else if (verb == "cancel_home") {
+    cancelHome();
+  } else if (verb == "nmt") {
     call(words, bus::NmtServiceCommand{axisWord(words.at(1)), words.at(2)}, 60s);
   } else if (verb == "read") {
     call(words, bus::ReadObjectCommand{words.at(1), words.at(2)}, 15s);

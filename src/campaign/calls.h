@@ -1,9 +1,11 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <list>
 #include <memory>
 
+#include "bus/jobs/procedure_progress.h"
 #include "campaign/session.h"
 
 namespace cia402::campaign {
@@ -44,14 +46,23 @@ class Calls {
     std::shared_ptr<bool> answered = std::make_shared<bool>(false);
   };
   bool actProcedure(const Words& words);
+  /// homing NAME,NAME... ORDER,ORDER...: the action, of axes and groups; without orders as they are
+  /// configured
+  void home(const Words& words);
+  void cancelHome();
   template <typename Request>
   void call(const Words& words, Request request, Duration bound);
+  template <typename Request>
+  void call(Call call, Request request, Duration bound);
+  /// It may also speak of an action that was cancelled: its motors stand.
+  void judgeCancelled(const Call& call, const bus::ProcedureReport& report);
   void endPermits(const Call& call, const bus::Answer& answer);
   bool homesStill(std::size_t axis) const;
 
   Session& session_;
   Line& line_;
   std::list<Pending> pending_;
+  std::uint64_t last_home_ = 0;
 };
 
 }  // namespace cia402::campaign

@@ -64,12 +64,27 @@ class Author {
     add(now_, "recover all");
     now_ += 1.0;
     bool moves = false;
+    const bool action = random_.chance(0.3);
+    if (action) homeAll();
     for (const AxisPlan& axis : robot_.axes) {
       if (!axis.homing) continue;
-      add(now_, "home " + axis.name);
+      if (!action) add(now_, "home " + axis.name);
       moves = moves || axis.homes_by_moving;
     }
     now_ += moves ? random_.between(0.3, 8.0) : 0.6;
+  }
+  /// By the action, some together, perhaps cancelled.
+  void homeAll() {
+    std::string names, orders;
+    for (const AxisPlan& axis : robot_.axes) {
+      if (!axis.homing || random_.chance(0.1)) continue;
+      names += (names.empty() ? "" : ",") + axis.name;
+      orders += (orders.empty() ? "" : ",") + std::to_string(random_.below(3));
+    }
+    if (names.empty()) return;
+    if (random_.chance(0.1)) names = random_.pick(robot_.groups).name, orders = "0";
+    add(now_, "homing " + names + (random_.chance(0.6) ? " " + orders : ""));
+    if (random_.chance(0.3)) add(now_ + random_.between(0.0, 4.0), "cancel_home");
   }
   void prove() {
     now_ += 0.5;
@@ -84,7 +99,11 @@ class Author {
       now_ += random_.between(0.3, 1.2);
     }
     if (axis.homing && random_.chance(0.1)) {
-      add(now_, "home " + axis.name);
+      if (random_.chance(0.4)) {
+        homeAll();
+      } else {
+        add(now_, "home " + axis.name);
+      }
       if (troubled_ && random_.chance(0.15)) unheard(now_ + random_.between(0.1, 2.0), axis);
       now_ += random_.between(0.05, 3.0);
     }

@@ -2,8 +2,10 @@
 #include "campaign/session.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -21,6 +23,13 @@ double toNumber(const std::string& word) {
   const double value = std::strtod(word.c_str(), &end);
   if (word.empty() || *end != '\0') throw std::invalid_argument("not a number: " + word);
   return value;
+}
+
+Words listed(const std::string& word) {
+  Words items;
+  std::istringstream words(word);
+  for (std::string item; std::getline(words, item, ',');) items.push_back(item);
+  return items;
 }
 
 Duration toDuration(const std::string& word) { return fromSeconds(toNumber(word)); }
@@ -134,6 +143,18 @@ void Session::loseCommands(std::size_t axis, Duration duration) {
   for (std::size_t i : stage.inDriveOf(axis)) loseCommandsOfOne(i, duration);
 }
 
+/// A loop in the driver holds it, by small velocities of which the last one goes on.
+bool Session::heldByVelocity(std::size_t axis) const {
+  const AxisFacts& facts = stage.axes()[axis];
+  const AxisTruth& truth = truths[axis];
+  const auto& modes = facts.config->profile->modes;
+  const bool looped = std::any_of(modes.begin(), modes.end(), [&](const drive::ModeSpec& mode) {
+    return mode.value == truth.mode && mode.position_loop;
+  });
+  return looped && !facts.watches_master && truth.power &&
+         std::fabs(truth.velocity) <= facts.creep();
+}
+
 void Session::loseCommandsOfOne(std::size_t axis, Duration duration) {
   const AxisFacts& facts = stage.axes()[axis];
   Conditions::extend(conditions.axes[axis].cut_off, now() + duration + 500ms);
@@ -141,7 +162,8 @@ void Session::loseCommandsOfOne(std::size_t axis, Duration duration) {
   // A drive that does not watch its master goes on until the driver has found it again.
   const Duration goes_on = std::min(facts.master_timeout, duration + facts.retaken());
   const Time end = now() + goes_on + facts.stopTime(facts.velocity) + 100ms;
-  if (permits.allowed(axis, now())) permits.allow(axis, Permits::Source::stream, end);
+  if (permits.allowed(axis, now()) || heldByVelocity(axis))
+    permits.allow(axis, Permits::Source::stream, end);
   if (duration > facts.master_timeout) permits.cut(axis, end);
 }
 

@@ -80,6 +80,7 @@ class Session {
 
  private:
   void loseCommandsOfOne(std::size_t axis, Duration duration);
+  bool heldByVelocity(std::size_t axis) const;
   struct Later {
     Time at{};
     std::function<void()> what;
@@ -92,6 +93,8 @@ class Session {
   std::vector<Later> later_;
 };
 
+/// The words of a list, "a1,a3".
+Words listed(const std::string& word);
 /// A number of a line; throws std::invalid_argument with the line's words.
 double toNumber(const std::string& word);
 /// Seconds of a line, likewise.

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <sstream>
 #include <utility>
 
 #include "campaign/verbs.h"
@@ -127,8 +126,7 @@ Trajectories::Joints Trajectories::jointsOf(const config::GroupConfig& group) co
 
 Trajectories::Joints Trajectories::among(const Joints& joints, const std::string& names) const {
   Joints found;
-  std::istringstream words(names);
-  for (std::string name; std::getline(words, name, ',');) {
+  for (const std::string& name : listed(names)) {
     for (std::size_t joint : joints) {
       if (jointAt(joint).name == name) found.push_back(joint);
     }

@@ -87,6 +87,35 @@ TEST(SetPoint, AGentleStopEndsInFrontOfALimit) {
   EXPECT_NEAR(rig.point.value(), 1.0, 1e-9);
 }
 
+/// From rest at 0 with all of the acceleration to the middle, and from there with all of it to the
+/// limit, 1.
+double wayToTheLimit(double time) {
+  const double half = std::sqrt(0.5 / (0.5 * kDeceleration));
+  if (time < half) return 0.5 * kDeceleration * time * time;
+  const double left = std::max(2.0 * half - time, 0.0);
+  return 1.0 - 0.5 * kDeceleration * left * left;
+}
+
+TEST(SetPoint, AStopOfWhatBrakesTowardsALimitBrakesNoHarder) {
+  const double dt = toSeconds(kStepTime);
+  for (int stopped = 2; stopped < 105; ++stopped) {
+    Rig rig(SetPointKind::stream);
+    double last = rig.point.value(), step = 0.0, hardest = 0.0;
+    for (int i = 1; i < 200; ++i) {
+      if (i < stopped) rig.point.give(wayToTheLimit(i * dt));
+      if (i == stopped || i == stopped + 3) rig.point.stop();
+      rig.cycle();
+      const double next = rig.point.value() - last;
+      hardest = std::max(hardest, std::abs(next - step));
+      last = rig.point.value();
+      step = next;
+    }
+    EXPECT_LE(hardest, kDeceleration * dt * dt * (1.0 + 1e-6)) << "stopped in cycle " << stopped;
+    EXPECT_LE(last, 1.0);
+    EXPECT_TRUE(rig.point.atRest());
+  }
+}
+
 TEST(SetPoint, AGentleStopIsHastenedByAHarderOne) {
   Rig rig(SetPointKind::stream);
   rig.move(1.0, 10);

@@ -84,15 +84,38 @@ TEST_P(EffortLimits, ADriveWithoutALimitOfSpeedKeepsItAllTheSame) {
   EXPECT_LT(scene.seen("left").fastest, kVelocity + 4 * kCycle * kPushed);
 }
 
-TEST_P(EffortLimits, BeyondALimitOfPositionNoEffortLeadsFurtherOut) {
+TEST_P(EffortLimits, NoEffortKeepsAnAxisFromStoppingInFrontOfALimitOfPosition) {
+  // Pushed on, let go, held against, and driven back, from when it is half a radian from the limit.
+  for (const double then : {kEffort, 0.0, -1e-9, -1.0, -kEffort}) {
+    Pushed scene("", GetParam());
+    for (int i = 0; i < 2000 && scene.position("left") < kUpper - 0.5; ++i) {
+      ASSERT_EQ(scene.setpoint("left", kEffort), "");
+      scene.run(4ms);
+    }
+    EXPECT_GT(scene.velocity("left"), 0.9 * kVelocity);
+    // Taken or refused, as the mode has a brake of its own or not.
+    for (int i = 0; i < 500; ++i) {
+      (void)scene.setpoint("left", then);
+      scene.run(4ms);
+    }
+    EXPECT_LT(scene.seen("left").highest, kUpper + 0.01) << then << " N m\n" << scene.told();
+    if (then >= 0.0) {
+      EXPECT_GT(scene.seen("left").highest, kUpper - 0.2) << "it was braked early";
+    }
+    if (then == -kEffort) continue;  // it turns back before that
+    EXPECT_THAT(scene.told(), testing::HasSubstr("comes to a limit of position"));
+  }
+}
+
+TEST_P(EffortLimits, AnAxisAtALimitIsPushedBackFromIt) {
   Pushed scene("", GetParam());
-  (void)scene.push(kEffort, 10s);  // taken or refused, as the mode has a brake of its own or not
-  scene.run(3s);
-  EXPECT_GT(scene.seen("left").highest, kUpper) << "the limit was not reached";
-  // A command time-out of 0.2 s, then the brake.
-  EXPECT_LT(
-      scene.seen("left").highest,
-      kUpper + 1.15 * kVelocity * 0.25 + 1.15 * 1.15 * kVelocity * kVelocity / 2 / kAcceleration);
+  for (int i = 0; i < 1000; ++i) {
+    (void)scene.setpoint("left", kEffort);
+    scene.run(4ms);
+  }
+  EXPECT_TRUE(scene.procedure(ProcedureKind::enable, "left").success);
+  EXPECT_EQ(scene.push(-kEffort, 500ms), "");
+  EXPECT_LT(scene.position("left"), kUpper - 0.3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Modes, EffortLimits, testing::Values("profile_torque", "cyclic_torque"),

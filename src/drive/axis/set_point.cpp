@@ -9,6 +9,7 @@ namespace {
 
 /// What trajectories may exceed a limit by (motion::Trajectory), and rounding.
 constexpr double kTolerance = 1.0 + 1e-6;
+constexpr double kRounded = 1.0 + 1e-9;
 
 }  // namespace
 
@@ -46,15 +47,32 @@ void SetPoint::stop(Duration over) {
 
 void SetPoint::beginStop(Duration over) {
   stopping_ = true;
-  if (kind_ == SetPointKind::stream) ramp_.begin(value_, velocity_, gentlest(over));
+  if (kind_ == SetPointKind::stream) beginRamp(ramp_, gentlest(over));
   if (kind_ == SetPointKind::velocity) ramp_.begin(0.0, value_, deceleration_);
+}
+
+double SetPoint::room() const {
+  const std::optional<double>& limit = velocity_ > 0.0 ? limits_.upper : limits_.lower;
+  if (!limit) return 1e300;
+  return velocity_ > 0.0 ? *limit - value_ : value_ - *limit;
+}
+
+/// What was sent shows the velocity in the middle of the last cycle. A trajectory that brakes as
+/// hard as it may and ends at the limit is half a cycle slower by now: in front of a limit a ramp
+/// goes on from there, and, where even that leads beyond it, a little harder.
+void SetPoint::beginRamp(motion::StopRamp& ramp, double deceleration) const {
+  double speed = std::abs(velocity_);
+  const double ahead = room();
+  if (speed * speed > 2.0 * deceleration * ahead * kRounded) {
+    speed = std::max(speed - 0.5 * deceleration * cycle_s_, 0.0);
+    if (ahead > 0.0) deceleration = std::max(deceleration, speed * speed / (2.0 * ahead));
+  }
+  ramp.begin(value_, std::copysign(speed, velocity_), deceleration);
 }
 
 double SetPoint::gentlest(Duration over) const {
   if (over <= Duration::zero()) return deceleration_;
-  const std::optional<double>& limit = velocity_ > 0.0 ? limits_.upper : limits_.lower;
-  const double room = limit ? std::abs(*limit - value_) : 1e300;
-  const double in_front = velocity_ * velocity_ / (2.0 * std::max(room, 1e-9));
+  const double in_front = velocity_ * velocity_ / (2.0 * std::max(std::abs(room()), 1e-9));
   return std::min(deceleration_, std::max(std::abs(velocity_) / toSeconds(over), in_front));
 }
 
@@ -145,7 +163,7 @@ double SetPoint::withinLimits(double position) const {
 SetPoint::Motion SetPoint::expected(Duration ahead) const {
   if (kind_ != SetPointKind::stream || velocity_ == 0.0) return {value_, 0.0};
   motion::StopRamp ramp = ramp_;
-  if (!stopping_) ramp.begin(value_, velocity_, deceleration_);
+  if (!stopping_) beginRamp(ramp, deceleration_);
   ramp.advance(ahead);
   return {withinLimits(ramp.position()), ramp.velocity()};
 }

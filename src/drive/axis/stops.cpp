@@ -212,20 +212,23 @@ void Stops::brakeEffort(Time now) {
   if (generator.sent().atRest() && axis_.feedback().atStandstill()) return generator.endPushing();
   if (axis_.control().braking() || axis_.state().halted) return;
   generator.stop();
-  if (how() == StopBy::halt) return axis_.control().brake();
+  const bool at_limit = axis_.generator().mode().stopsAtLimit();
+  const std::string why = at_limit ? "the axis comes to a limit of position, or is beyond it"
+                                   : "the stream of efforts ended";
+  if (how() == StopBy::halt) {
+    if (at_limit) axis_.notices().notify(axis_.who() + ": " + why + ": it is braked");
+    return axis_.control().brake();
+  }
   const std::string pushing = axis_.mode().spec().name;
   if (how() == StopBy::mode && brakeByMode(now)) {
-    axis_.notices().notify(axis_.who() +
-                           ": the stream of efforts ended; the axis is braked and held by mode " +
+    axis_.notices().notify(axis_.who() + ": " + why + "; the axis is braked and held by mode " +
                            axis_.mode().spec().name + ". enable brings it back into " + pushing +
                            ", or let it coast by command_timeout_action: coast");
     return;
   }
   axis_.setGoal(Goal::quick_stop);
-  axis_.notices().notify(axis_.who() +
-                         ": the stream of efforts ended; the axis is braked by a quick stop, as "
-                         "mode " +
-                         pushing +
+  axis_.notices().notify(axis_.who() + ": " + why +
+                         "; the axis is braked by a quick stop, as mode " + pushing +
                          " has no other brake. enable to go on, or let it coast by "
                          "command_timeout_action: coast");
 }

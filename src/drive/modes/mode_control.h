@@ -43,6 +43,8 @@ class ModeControl {
   bool goals() const { return kind_ == SetPointKind::goal; }
   /// Is within the limits of the joint? @param value in joint units, finite
   virtual bool accepts(double value) const = 0;
+  /// Of efforts: none is accepted, as the axis comes to a limit of position, or goes on beyond one.
+  virtual bool stopsAtLimit() const { return false; }
   /// What is sent of an effort that was accepted.
   virtual double guarded(double value) const { return value; }
   /// With which the mode begins without moving anything, in joint units.

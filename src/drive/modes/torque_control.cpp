@@ -8,12 +8,26 @@
 namespace cia402::drive {
 namespace {
 
-constexpr double kFreeSpeed = 0.9;  ///< of the velocity limit, up to which an effort is as given
+constexpr double kFreeSpeed = 0.9;    ///< of the velocity limit, up to which an effort is as given
+constexpr double kBrakesAfter = 4.0;  ///< cycles: feedback under way, and the brake
+constexpr double kBraked = 1.5;       ///< times the way that it takes, for a brake to be let go
 
 }  // namespace
 
 bool TorqueControl::accepts(double value) const {
-  return !(limits().effort && std::fabs(value) > *limits().effort) && leadsInside(value);
+  return !(limits().effort && std::fabs(value) > *limits().effort) && leadsInside(value) &&
+         !stopsAtLimit();
+}
+
+bool TorqueControl::stopsAtLimit() const {
+  const double velocity = state().velocity, speed = std::fabs(velocity);
+  const std::optional<double>& limit = velocity > 0.0 ? limits().upper : limits().lower;
+  if (!state().homed || !limit || !(speed > axis().config.standstill_velocity)) return false;
+  const double room = velocity > 0.0 ? *limit - state().position : state().position - *limit;
+  double way = speed * speed / (2.0 * stopDeceleration(axis().config)) +
+               speed * kBrakesAfter * toSeconds(axis().config.cycle);
+  if (!sent().leased()) way *= kBraked;
+  return way > room;
 }
 
 std::optional<double> TorqueControl::follow(Stream& stream, Time now) {
