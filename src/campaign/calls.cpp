@@ -2,6 +2,7 @@
 #include "campaign/calls.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <string>
 #include <type_traits>
@@ -131,24 +132,27 @@ void Calls::home(const Words& words) {
 
 void Calls::cancelHome() {
   if (!session_.stage.host().running()) return;
+  cancelled_ = last_home_;
   session_.stage.host().post(bus::Command(bus::CancelHomeCommand{last_home_}));
 }
 
 void Calls::judgeCancelled(const Call& call, const bus::ProcedureReport& report) {
   using Source = Permits::Source;
-  if (!report.stopped) return;
-  Call cancel = call;
-  cancel.verb = "cancel_home";
-  const auto led = [this](std::size_t i) {  // by something else
+  if (!report.stopped || cancelled_ != last_home_) return;
+  for (const bus::ProcedureReport::Axis& axis : report.axes) {
+    const std::size_t i = axis.number;
     const Permits& permits = session_.permits;
-    return std::max({permits.until(i, Source::stream), permits.until(i, Source::target),
-                     permits.until(i, Source::trajectory)}) > session_.now();
-  };
-  cancel.axes.erase(std::remove_if(cancel.axes.begin(), cancel.axes.end(), led), cancel.axes.end());
-  bus::Answer answer;
-  answer.success = true;
-  answer.message = report.message;
-  session_.onAnswer(cancel, answer);
+    const bool led = std::max({permits.until(i, Source::stream), permits.until(i, Source::target),
+                               permits.until(i, Source::trajectory)}) > session_.now();
+    // Another stop tells by itself when it is done.
+    const bool other = axis.message.find("was stopped by") != std::string::npos;
+    const bool stands = std::fabs(session_.truths[i].velocity) <= session_.stage.axes()[i].creep();
+    if (led || other || stands || axis.message.find("still moves") != std::string::npos) continue;
+    session_.report("untrue_answer", session_.stage.axes()[i].name,
+                    call.verb + " was cancelled and is answered (" + axis.message +
+                        ") while the motor turns at " + number(session_.truths[i].velocity) +
+                        " per s");
+  }
 }
 
 bool Calls::actProcedure(const Words& words) {

@@ -54,7 +54,7 @@ class Calls {
   void call(const Words& words, Request request, Duration bound);
   template <typename Request>
   void call(Call call, Request request, Duration bound);
-  /// It may also speak of an action that was cancelled: its motors stand.
+  /// An action that was cancelled is answered once its motors stand.
   void judgeCancelled(const Call& call, const bus::ProcedureReport& report);
   void endPermits(const Call& call, const bus::Answer& answer);
   bool homesStill(std::size_t axis) const;
@@ -62,7 +62,7 @@ class Calls {
   Session& session_;
   Line& line_;
   std::list<Pending> pending_;
-  std::uint64_t last_home_ = 0;
+  std::uint64_t last_home_ = 0, cancelled_ = 0;
 };
 
 }  // namespace cia402::campaign

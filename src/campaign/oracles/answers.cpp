@@ -42,9 +42,8 @@ class Answers final : public Oracle {
   }
   void onAnswer(const Call& call, const bus::Answer& answer, const View& view) override {
     if (!answer.success) return;
-    static const std::set<std::string> kStands{"halt",     "disable",      "quick_stop",
-                                               "set_mode", "set_position", "save",
-                                               "restore",  "home",         "cancel_home"};
+    static const std::set<std::string> kStands{"halt",         "disable", "quick_stop", "set_mode",
+                                               "set_position", "save",    "restore",    "home"};
     const bool says_so = answer.message.find("still moves") != std::string::npos;
     static const std::set<std::string> kOff{"disable", "save", "restore"};
     static const std::set<std::string> kOn{"enable", "recover"};
@@ -60,8 +59,7 @@ class Answers final : public Oracle {
       const bool idle = call.verb == "set_mode" && !view.truths[i].power;
       // One that was homed before the others takes commands again.
       const bool commanded =
-          ((call.verb == "home" && call.axes.size() > 1) || call.verb == "cancel_home") &&
-          view.permits.given(i) > call.at;
+          call.verb == "home" && call.axes.size() > 1 && view.permits.given(i) > call.at;
       if (says(kStands) && !says_so && !idle && !commanded && !lately(seen.still)) {
         report(view, i,
                call.verb + " is answered with success (" + answer.message +
