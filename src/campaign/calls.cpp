@@ -110,8 +110,7 @@ void Calls::home(const Words& words) {
   for (const std::string& order : ordered ? listed(words[2]) : Words()) {
     orders.push_back(static_cast<int>(toNumber(order)));
   }
-  const auto plan =
-      bus::homingPlan(session_.stage.loaded().robot, listed(words.at(1)), std::move(orders));
+  const auto plan = bus::homingPlan(session_.stage.loaded().robot, listed(words.at(1)), orders);
   if (!plan) return session_.say("< homing: " + plan.error().message);
   Call call;
   call.verb = "home";

@@ -100,14 +100,13 @@ void Trajectories::stopAll() {
 }
 
 void Trajectories::nudge(const config::GroupConfig& group, const Nudge& nudge, double seconds,
-                         std::function<void(const std::string& why)> refused) {
+                         const std::function<void(const std::string& why)>& refused) {
   const Joints joints = jointsOf(group);
   std::vector<double> goal = shown(joints);
   for (std::size_t i = 0; i < joints.size(); ++i) {
     if (joints[i] == nudge.joint) goal[i] += nudge.way;
   }
-  send(group, joints, {{goal, rest(goal.size()), {}, fromSeconds(seconds)}}, std::nullopt,
-       std::move(refused));
+  send(group, joints, {{goal, rest(goal.size()), {}, fromSeconds(seconds)}}, std::nullopt, refused);
 }
 
 const config::GroupConfig* Trajectories::running(const std::string& name) const {
@@ -187,7 +186,7 @@ std::vector<Trajectories::Goal> Trajectories::goalsOf(const Joints& joints,
 
 void Trajectories::send(const config::GroupConfig& group, Joints joints, Points points,
                         std::optional<Duration> start,
-                        std::function<void(const std::string& why)> refused) {
+                        const std::function<void(const std::string& why)>& refused) {
   const std::uint64_t id = ++last_id_;
   Sent sent;
   sent.id = id;

@@ -39,7 +39,7 @@ class Trajectories {
   /// Has a group move one of its joints so far, the others where they are.
   /// @param refused told why, if it is
   void nudge(const config::GroupConfig& group, const Nudge& nudge, double seconds,
-             std::function<void(const std::string& why)> refused);
+             const std::function<void(const std::string& why)>& refused);
 
  private:
   using Points = std::vector<motion::TrajectoryPoint>;
@@ -80,7 +80,7 @@ class Trajectories {
                  std::size_t seconds);
   void send(const config::GroupConfig& group, Joints joints, Points points,
             std::optional<Duration> start = std::nullopt,
-            std::function<void(const std::string& why)> refused = nullptr);
+            const std::function<void(const std::string& why)>& refused = nullptr);
   std::vector<Goal> goalsOf(const Joints& joints, const Points& points) const;
   Duration laterBy(const Sent& sent, const std::string& answer) const;
   /// @param later it takes longer than was asked
