@@ -39,8 +39,8 @@ class AxisCycle {
   /// before that of the axis.
   template <typename TellOfDevice>
   void watch(Time now, TellOfDevice&& tell_of_device) {
-    for (AxisUnit& unit : units_) unit.reporter.tick(now);
     for (AxisUnit& unit : units_) {
+      unit.reporter.tick(now);
       tell_of_device(unit);
       unit.news.watch(unit.axis, unit.reporter, bus_, now);
     }

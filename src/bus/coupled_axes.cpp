@@ -42,12 +42,14 @@ class CoupledJoint final : public Joint {
         index_(index) {}
 
   const CoupledAxes* coupling() const override { return axes_; }
-  JointState state() const override { return axes_->stateOf(index_); }
+  void show(JointState& state) const override { axes_->show(index_, state); }
+  bool known() const override { return !std::isnan(axes_->positionOf(index_)); }
   double position() const override { return axes_->positionOf(index_); }
   Time stamp() const override { return axes_->stampOf(index_); }
   double resolution() const override { return axes_->resolutionOf(index_); }
   bool ready() const override { return axes_->ready(); }
   const drive::SetPoint& sent() const override { return axes_->sentOf(index_); }
+  bool goesOn(std::uint32_t breaks) const override { return ready() && sent().breaks() == breaks; }
   bool late() const override { return axes_->late(); }
   /// The joints of a coupling are asked together: one answers for all.
   std::string refusal(const std::string& group) const override {
@@ -269,18 +271,15 @@ bool CoupledAxes::takesPositions() const {
   });
 }
 
-JointState CoupledAxes::stateOf(std::size_t joint) const {
-  JointState state;
+void CoupledAxes::show(std::size_t joint, JointState& state) const {
   state.position = positionOf(joint);
   state.known = !std::isnan(state.position);
   state.stamp = stampOf(joint);
   state.velocity = config_.matrix->toJoint(joint, velocities_);
   state.effort = config_.matrix->effortToJoint(joint, efforts_);
-  if (takesPositions()) {
-    state.desired = sent_[joint].value();
-    state.desired_velocity = sent_[joint].velocity();
-  }
-  return state;
+  const bool takes_positions = takesPositions();
+  state.desired = takes_positions ? sent_[joint].value() : drive::kUnknown;
+  state.desired_velocity = takes_positions ? sent_[joint].velocity() : drive::kUnknown;
 }
 
 /// That of the oldest value that it is made of.

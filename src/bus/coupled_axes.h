@@ -44,7 +44,7 @@ class CoupledAxes {
   void move(Time now);
 
   // Of one joint, its index in config().joints:
-  JointState stateOf(std::size_t joint) const;
+  void show(std::size_t joint, JointState& state) const;
   double positionOf(std::size_t joint) const { return config_.matrix->toJoint(joint, positions_); }
   Time stampOf(std::size_t joint) const;
   double resolutionOf(std::size_t joint) const;

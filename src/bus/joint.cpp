@@ -23,12 +23,14 @@ class AxisJoint final : public Joint {
               drive::stopDeceleration(unit.axis.config())),
         unit_(&unit) {}
 
-  JointState state() const override;
+  void show(JointState& state) const override;
+  bool known() const override { return axis().state().feedback_valid; }
   double position() const override { return axis().state().position; }
   Time stamp() const override { return axis().state().stamp; }
   double resolution() const override { return axis().positionResolution(); }
   bool ready() const override { return axis().state().ready_for_motion; }
   const drive::SetPoint& sent() const override { return axis().setPoint(); }
+  bool goesOn(std::uint32_t breaks) const override { return ready() && sent().breaks() == breaks; }
   bool late() const override { return axis().late(); }
   std::string refusal(const std::string& group) const override;
   std::string trouble(std::uint32_t told_before) const override;
@@ -52,9 +54,8 @@ class AxisJoint final : public Joint {
   AxisUnit* unit_;
 };
 
-JointState AxisJoint::state() const {
+void AxisJoint::show(JointState& state) const {
   const drive::AxisState& from = axis().state();
-  JointState state;
   state.known = from.feedback_valid;
   state.stamp = from.stamp;
   state.position = from.position;
@@ -62,11 +63,8 @@ JointState AxisJoint::state() const {
   state.effort = from.effort;
   const bool takes_positions =
       from.mode != nullptr && from.mode->kind == drive::ControlKind::position;
-  if (takes_positions) {
-    state.desired = axis().target();
-    state.desired_velocity = sent().velocity();
-  }
-  return state;
+  state.desired = takes_positions ? axis().target() : drive::kUnknown;
+  state.desired_velocity = takes_positions ? sent().velocity() : drive::kUnknown;
 }
 
 std::string AxisJoint::refusal(const std::string& group) const {

@@ -35,7 +35,10 @@ class Joint {
   /// The coupling that it is of: its joints follow trajectories together. nullptr: of none
   virtual const CoupledAxes* coupling() const { return nullptr; }
 
-  virtual JointState state() const = 0;
+  /// Writes all of its state there.
+  virtual void show(JointState& state) const = 0;
+  /// Its position is known.
+  virtual bool known() const = 0;
   virtual double position() const = 0;
   virtual Time stamp() const = 0;
   /// What one unit of the drive's position is, rad or m.
@@ -44,6 +47,8 @@ class Joint {
   virtual bool ready() const = 0;
   /// What was sent last, and how it moves.
   virtual const drive::SetPoint& sent() const = 0;
+  /// Still takes set-points, and nothing has ended its motion since sent() had so many breaks().
+  virtual bool goesOn(std::uint32_t breaks) const = 0;
   /// Cycles were missed before this one.
   virtual bool late() const = 0;
 

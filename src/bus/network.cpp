@@ -122,8 +122,14 @@ void Network::receive(const can::Frame& frame, Time stamp, Time now) {
   master_.receive(frame, stamp, now);
 }
 
+/// Asked for with every frame; LSS seldom has anything to do.
 Time Network::nextDeadline() const {
-  const Time due = earlier(earlier(sync_.deadline(), master_.nextDeadline()), lss_->deadline());
+  const Time due = earlier(sync_.deadline(), master_.nextDeadline());
+  return phase_ == Phase::running && !lss_->busy() ? due : deadlineBeside(due);
+}
+
+[[gnu::noinline]] Time Network::deadlineBeside(Time others) const {
+  const Time due = earlier(others, lss_->deadline());
   if (phase_ == Phase::running) return due;
   return phase_ == Phase::listening ? earlier(due, start_up_->deadline()) : kNever;
 }
@@ -223,14 +229,14 @@ void Network::fill(NetworkSnapshot& snapshot) const {
   snapshot.foreign_syncs = sync_.foreign();
   const std::vector<AxisUnit>& units = cycle_.units();
   snapshot.axes.resize(units.size());
+  AxisSnapshot* axis = snapshot.axes.data();
   for (const AxisUnit& unit : units) {
-    AxisSnapshot& axis = snapshot.axes[unit.index];
-    unit.fill(axis);
-    nodes_->ofAxis(unit.index).fill(axis, foreseen_);
+    unit.fill(*axis);
+    nodes_->ofAxis(unit.index).fill(*axis++, foreseen_);
   }
   const auto& joints = cycle_.joints().all();
   snapshot.joints.resize(joints.size());
-  for (std::size_t i = 0; i < joints.size(); ++i) snapshot.joints[i] = joints[i]->state();
+  for (std::size_t i = 0; i < joints.size(); ++i) joints[i]->show(snapshot.joints[i]);
   const std::vector<Group>& groups = cycle_.groups();
   snapshot.groups.resize(groups.size());
   for (std::size_t i = 0; i < groups.size(); ++i) {

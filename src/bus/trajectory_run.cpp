@@ -162,8 +162,7 @@ void TrajectoryRun::end(const TrajectoryOutcome& outcome) {
 
 void TrajectoryRun::noteDropped() {
   for (Member& member : members_) {
-    const Joint& joint = *member.joint;
-    if (!joint.ready() || joint.sent().breaks() != member.breaks) member.dropped = true;
+    if (!member.joint->goesOn(member.breaks)) member.dropped = true;
   }
 }
 
@@ -231,7 +230,7 @@ std::optional<TrajectoryOutcome> TrajectoryRun::standstill(Time now) {
   bool rest_commanded = true;
   for (Member& member : members_) {
     // Something else stops one that was dropped: of that nothing but its motor tells.
-    if (member.dropped && !member.joint->state().known) continue;
+    if (member.dropped && !member.joint->known()) continue;
     // One that was held apart from its set-points may move again as they are called back to it.
     const std::uint32_t given_up = member.joint->sent().givenUp();
     if (std::exchange(member.given_up, given_up) != given_up) member.rest.reset();

@@ -95,6 +95,7 @@ void Master::start(Time now, bool reset) {
   sync_.restart();
   heartbeat_.start(sink_, now);
   time_.start(now);
+  deadlines_changed_ = true;
   if (reset && config_.reset_all) {
     commandAll(NmtCommand::reset_communication, now);
     return;
@@ -152,6 +153,7 @@ void Master::tick(Time now) {
   sink_.setTime(now);
   heartbeat_.tick(sink_, now);
   time_.tick(sink_, now);
+  deadlines_changed_ = true;
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     if (nodes_[i].nextDeadline() > now) continue;
     nodes_[i].tick(now);
@@ -168,10 +170,10 @@ void Master::tell(std::size_t node, Time now) {
 }
 
 /// Not inlined: nextDeadline() is asked for with every frame, and seldom comes here.
-[[gnu::noinline]] void Master::askNodes() const {
+[[gnu::noinline]] void Master::findDeadline() const {
   deadlines_changed_ = false;
-  nodes_deadline_ = kNever;
-  for (const Node& node : nodes_) nodes_deadline_ = std::min(nodes_deadline_, node.nextDeadline());
+  deadline_ = std::min(heartbeat_.deadline(), time_.deadline());
+  for (const Node& node : nodes_) deadline_ = std::min(deadline_, node.nextDeadline());
 }
 
 void Master::sendSync(Time now) {

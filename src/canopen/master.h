@@ -50,8 +50,8 @@ class Master {
   /// Time-outs, heartbeat, SDO queues, boot procedures.
   void tick(Time now);
   Time nextDeadline() const {
-    if (deadlines_changed_) askNodes();
-    return std::min(std::min(heartbeat_.deadline(), time_.deadline()), nodes_deadline_);
+    if (deadlines_changed_) findDeadline();
+    return deadline_;
   }
 
   /// Produces SYNC now (with counter if configured).
@@ -62,7 +62,10 @@ class Master {
   /// Sends every ready node's RPDOs that are due.
   void sendRpdos(Time now);
   /// Tells the wall-clock time for TIME messages; without it none are sent.
-  void setWallTime(UnixTime wall, Time now) { time_.setWallTime(wall, now); }
+  void setWallTime(UnixTime wall, Time now) {
+    time_.setWallTime(wall, now);
+    deadlines_changed_ = true;
+  }
   /// NMT command to all nodes.
   void commandAll(NmtCommand command, Time now);
 
@@ -75,7 +78,7 @@ class Master {
   std::uint64_t strayFrames() const { return stray_frames_; }
 
  private:
-  void askNodes() const;  ///< when they have to be ticked
+  void findDeadline() const;
   enum class Service : std::uint8_t {
     none,
     tpdo,
@@ -112,9 +115,9 @@ class Master {
   HeartbeatProducer heartbeat_;
   TimeProducer time_;
   std::uint64_t stray_frames_ = 0;
-  // The earliest deadline of all nodes is kept: it is asked for with every frame.
+  // The earliest deadline of all is kept: it is asked for with every frame.
   mutable bool deadlines_changed_ = true;
-  mutable Time nodes_deadline_ = kNever;
+  mutable Time deadline_ = kNever;
 };
 
 }  // namespace cia402::canopen

@@ -23,6 +23,9 @@ struct JointLimits {
 /// The position nearest to `wanted` that a joint may go to from where it is: between its limits;
 /// from outside of them only back, and no further than it is told.
 double withinReach(const JointLimits& limits, double wanted, double from);
+/// From `position` to the limit of position that it moves to: negative beyond that, infinity where
+/// there is none. @param velocity 0 counts as one towards `lower`
+double room(const JointLimits& limits, double position, double velocity);
 
 /// One joint as the motion module sees it.
 struct Joint {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace cia402::motion {
 namespace {
 
@@ -23,6 +25,19 @@ TEST(WithinReach, BetweenTheLimitsAndFromOutsideOnlyBack) {
     EXPECT_EQ(withinReach(limits, test.wanted, test.from), test.reached)
         << test.wanted << " from " << test.from;
   }
+}
+
+TEST(Room, IsTheWayToTheLimitThatIsMovedTo) {
+  JointLimits limits;
+  limits.lower = -1.5;
+  EXPECT_EQ(room(limits, 1.0, -0.1), 2.5);
+  EXPECT_EQ(room(limits, 1.0, 0.0), 2.5);
+  EXPECT_EQ(room(limits, -2.0, -0.1), -0.5) << "beyond it";
+  EXPECT_EQ(room(limits, 1.0, 0.1), std::numeric_limits<double>::infinity());
+  limits.upper = 2.0;
+  EXPECT_EQ(room(limits, 1.0, 0.1), 1.0);
+  EXPECT_EQ(room(limits, 2.5, 0.1), -0.5);
+  EXPECT_EQ(room(limits, 2.5, -0.1), 4.0) << "on the way back";
 }
 
 TEST(WithinReach, ASideWithoutLimitIsOpen) {

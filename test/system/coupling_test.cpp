@@ -59,7 +59,9 @@ struct Wrist : ReadyScene {
   double pitch() { return matrix[0][0] * position("m5") + matrix[0][1] * position("m6"); }
   double roll() { return matrix[1][0] * position("m5") + matrix[1][1] * position("m6"); }
   bus::JointState shown(const std::string& name) {
-    return robot().network().cycle().joints().find(name)->state();
+    bus::JointState state;
+    robot().network().cycle().joints().find(name)->show(state);
+    return state;
   }
   bool rests() { return std::abs(velocity("m5")) < 1e-3 && std::abs(velocity("m6")) < 1e-3; }
 

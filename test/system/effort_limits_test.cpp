@@ -103,8 +103,31 @@ TEST_P(EffortLimits, NoEffortKeepsAnAxisFromStoppingInFrontOfALimitOfPosition) {
       EXPECT_GT(scene.seen("left").highest, kUpper - 0.2) << "it was braked early";
     }
     if (then == -kEffort) continue;  // it turns back before that
-    EXPECT_THAT(scene.told(), testing::HasSubstr("comes to a limit of position"));
+    EXPECT_THAT(scene.told(), testing::HasSubstr("comes to its limit of position 2.500 rad"));
+    EXPECT_THAT(scene.told(), testing::HasSubstr("an effort that leads back"));
+    EXPECT_THAT(scene.told(), testing::Not(testing::HasSubstr("coast")));
   }
+}
+
+TEST_P(EffortLimits, AnAxisThatCoastsToALimitTakesOnlyWhatSlowsItDown) {
+  Pushed scene(", command_timeout_action: coast", GetParam());
+  ASSERT_TRUE(scene.runUntil(
+      [&] {
+        (void)scene.setpoint("left", kEffort);
+        return scene.position("left") > kUpper - 0.5;
+      },
+      5s));
+  const std::string refused = scene.push(kEffort, 500ms);
+  EXPECT_THAT(refused, testing::HasSubstr("comes to its limit of position 2.500 rad"));
+  EXPECT_THAT(refused, testing::HasSubstr("only an effort that slows it down"));
+  EXPECT_NE(scene.setpoint("left", 0.0), "");
+  EXPECT_LT(scene.position("left"), kUpper - 0.2);
+  const double speed = scene.velocity("left");
+  scene.run(40ms);
+  EXPECT_NEAR(scene.velocity("left"), speed, 0.05) << "it was to coast";
+  EXPECT_THAT(scene.told(), testing::Not(testing::HasSubstr("braked")));
+  EXPECT_EQ(scene.push(-kEffort, 500ms), "");
+  EXPECT_LT(scene.seen("left").highest, kUpper);
 }
 
 TEST_P(EffortLimits, AnAxisAtALimitIsPushedBackFromIt) {

@@ -64,7 +64,11 @@ struct Portal : Scene {
     EXPECT_TRUE(runUntil([this] { return fastest() < 1e-3; }, 5s)) << told();
     return now() - begun;
   }
-  bus::JointState shown() { return robot().network().cycle().joints().find("x")->state(); }
+  bus::JointState shown() {
+    bus::JointState state;
+    robot().network().cycle().joints().find("x")->show(state);
+    return state;
+  }
 
   double widest = 0.0;
 };

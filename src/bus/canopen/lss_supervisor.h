@@ -27,6 +27,7 @@ class LssSupervisor {
   /// That is under way.
   bool starting() const { return starting_; }
   void receive(const can::Frame& frame, Time now) { desk_.receive(frame, now); }
+  bool busy() const { return desk_.busy(); }
   Time deadline() const { return desk_.nextDeadline(); }
   /// @return true once the node-IDs of the start are given out: the nodes are to be booted
   bool tick(Time now);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "drive/axis/words.h"
 #include "drive/modes/waiting_set_points.h"
 #include "drive/sentence.h"
 
@@ -20,6 +21,11 @@ std::string Commands::refusal(double value, const ModeControl& mode) const {
   std::uint64_t raw = 0;
   if (mode.kind() == SetPointKind::torque && !mode.encode(value, raw)) {
     return number(value) + " does not fit " + mode.targetText();
+  }
+  const bool coasts = !axis_.config.brake_after_effort && mode.stopsAtLimit();
+  if (coasts && !mode.maySlow(value)) {
+    return limitText(axis_.state, axis_.config) +
+           ", and coasts (command_timeout_action): only an effort that slows it down is taken";
   }
   if (stream_.command && !mode.takesMore()) {
     return std::to_string(WaitingSetPoints::kMost) +

@@ -86,7 +86,7 @@ std::uint16_t Control::wordOutOfOperation(const ModeSpec& mode) {
 void Control::write(unsigned mode_bits, const ModeSpec& mode) {
   if (in_operation_) {
     command();
-    unsigned word = base_ | mode_bits;
+    unsigned word = base_ | (brake_waits_ ? 0u : mode_bits);
     if (fault_reset_) word |= controlword::kFaultReset;
     if (homing_start_) word |= controlword::kHomingStart;
     if (halt_) word |= controlword::kHalt;

@@ -73,9 +73,9 @@ class Control {
   }
   void endHalt() { halt_ = braking_ = false; }
 
-  /// Puts the controlword into the process image. @param mode_bits of the active mode, once the
-  /// brake is released; they count in operation. @param mode the active one, whose bits may count
-  /// on the way out of it, too
+  /// Puts the controlword into the process image. @param mode_bits of the active mode, which count
+  /// in operation, once the brake is released. @param mode the active one, whose bits may count on
+  /// the way out of it, too
   void write(unsigned mode_bits, const ModeSpec& mode);
   /// How often the controlword was sent so far.
   std::uint64_t frames() const { return axis_.image.sent(axis_.objects.controlword.slot); }

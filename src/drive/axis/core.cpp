@@ -41,7 +41,7 @@ void AxisCore::supervise(Time now) {
   const bool late = now > written_ + 2 * config().cycle && written_ != Time{};
   if (late) generator_.lateCycle(now);
   if (!deviceReady()) return;
-  limits_.keep(inOperation() ? generator_.target() : state().position);
+  if (limits_.works()) limits_.work(inOperation() ? generator_.target() : state().position);
   if (control_.commanded() && !state().feedback_valid) return stopUnheard(now);
   if (inOperation()) {
     superviseOperation(now);
@@ -122,7 +122,7 @@ void AxisCore::writeCommands(Time now) {
   }
   written_ = now;
   generator_.watchDrive(now);
-  control_.write(control_.brakeReleased() ? generator_.mode().bits() : 0, mode_.spec());
+  control_.write(generator_.mode().bits(), mode_.spec());
   mode_.write();
 }
 

@@ -80,15 +80,16 @@ void Generator::shiftZero(double moved) {
 bool Generator::take(double value) {
   const bool ready = axis_.state.ready_for_motion && homedEnough();
   if (!ready || !std::isfinite(value) || !mode_->accepts(value)) return false;
-  const bool pushes = mode_->kind() == SetPointKind::torque;
-  if (pushes) value = mode_->guarded(value);
+  const SetPointKind kind = mode_->kind();
+  if (kind == SetPointKind::torque) value = mode_->guarded(value);
   std::uint64_t raw = 0;
   if (!mode_->channel().target.mapped() || !mode_->encode(value, raw)) return false;
-  if (pushes) {
+  if (kind == SetPointKind::torque) {
     pushes_ = axis_.config.brake_after_effort;
     control_.endBraking();
+  } else if (kind == SetPointKind::goal) {
+    mode_->accepted(raw, raw == target_raw_);
   }
-  if (mode_->goals()) mode_->accepted(raw, raw == target_raw_);
   sent_.give(value);
   given_ = value;
   given_raw_ = raw;

@@ -27,16 +27,14 @@ class LimitKeeper {
   std::string problem() const { return limits_.problem(); }
   std::string remark() const { return limits_.remark(); }
 
-  /// Once a cycle, while the device is ready. @param target that the axis goes to, rad or m; where
-  /// it goes to none, its position
-  void keep(double target) {
-    if (!limits_.idle() || due_ || belong() != known_) work(target);
-  }
+  /// To be asked once a cycle, while the device is ready: work() has something to do.
+  bool works() const { return !limits_.idle() || due_ || belong() != known_; }
+  /// @param target that the axis goes to, rad or m; where it goes to none, its position
+  void work(double target);
 
  private:
   /// Limits belong into the drive: its coordinates are known, and stay.
   bool belong() const { return axis_.state.homed && !open_; }
-  void work(double target);
 
   AxisBasis& axis_;
   const Coordinates& coordinates_;

@@ -51,18 +51,12 @@ void SetPoint::beginStop(Duration over) {
   if (kind_ == SetPointKind::velocity) ramp_.begin(0.0, value_, deceleration_);
 }
 
-double SetPoint::room() const {
-  const std::optional<double>& limit = velocity_ > 0.0 ? limits_.upper : limits_.lower;
-  if (!limit) return 1e300;
-  return velocity_ > 0.0 ? *limit - value_ : value_ - *limit;
-}
-
 /// What was sent shows the velocity in the middle of the last cycle. A trajectory that brakes as
 /// hard as it may and ends at the limit is half a cycle slower by now: in front of a limit a ramp
 /// goes on from there, and, where even that leads beyond it, a little harder.
 void SetPoint::beginRamp(motion::StopRamp& ramp, double deceleration) const {
   double speed = std::abs(velocity_);
-  const double ahead = room();
+  const double ahead = motion::room(limits_, value_, velocity_);
   if (speed * speed > 2.0 * deceleration * ahead * kRounded) {
     speed = std::max(speed - 0.5 * deceleration * cycle_s_, 0.0);
     if (ahead > 0.0) deceleration = std::max(deceleration, speed * speed / (2.0 * ahead));
@@ -72,7 +66,8 @@ void SetPoint::beginRamp(motion::StopRamp& ramp, double deceleration) const {
 
 double SetPoint::gentlest(Duration over) const {
   if (over <= Duration::zero()) return deceleration_;
-  const double in_front = velocity_ * velocity_ / (2.0 * std::max(std::abs(room()), 1e-9));
+  const double ahead = std::abs(motion::room(limits_, value_, velocity_));
+  const double in_front = velocity_ * velocity_ / (2.0 * std::max(ahead, 1e-9));
   return std::min(deceleration_, std::max(std::abs(velocity_) / toSeconds(over), in_front));
 }
 
@@ -111,9 +106,12 @@ bool SetPoint::advance(Time now) {
     }
     if (stopping_) advanceStop();
   }
-  const bool changed = value_ != before && !std::isnan(value_);
-  if (changed || !atRest()) moved_at_ = now;
-  return changed;
+  if (value_ == before || std::isnan(value_)) {
+    if (!atRest()) moved_at_ = now;
+    return false;
+  }
+  moved_at_ = now;
+  return true;
 }
 
 void SetPoint::follow() {

@@ -96,8 +96,6 @@ class SetPoint {
   void beginStop(Duration over = Duration::zero());
   double gentlest(Duration over) const;
   void beginRamp(motion::StopRamp& ramp, double deceleration) const;
-  /// To the limit of position that a stream moves to; negative beyond it.
-  double room() const;
   void advanceStop();
   void follow();
   double withinLimits(double position) const;

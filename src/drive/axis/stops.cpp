@@ -10,7 +10,6 @@
 #include "drive/sentence.h"
 
 namespace cia402::drive {
-
 StopBy Stops::how() const { return stopBy(axis_.mode().spec(), axis_.profile()); }
 
 void Stops::halt(Time now) {
@@ -212,25 +211,29 @@ void Stops::brakeEffort(Time now) {
   if (generator.sent().atRest() && axis_.feedback().atStandstill()) return generator.endPushing();
   if (axis_.control().braking() || axis_.state().halted) return;
   generator.stop();
-  const bool at_limit = axis_.generator().mode().stopsAtLimit();
-  const std::string why = at_limit ? "the axis comes to a limit of position, or is beyond it"
-                                   : "the stream of efforts ended";
+  const bool at_limit = generator.mode().stopsAtLimit();
+  const std::string why =
+      axis_.who() + ": " +
+      (at_limit ? limitText(axis_.state(), axis_.config()) : "the stream of efforts ended");
   if (how() == StopBy::halt) {
-    if (at_limit) axis_.notices().notify(axis_.who() + ": " + why + ": it is braked");
+    if (at_limit)
+      axis_.notices().notify(why + ": it is braked. Only an effort that leads back, " +
+                             "once it is slow enough, is taken");
     return axis_.control().brake();
   }
   const std::string pushing = axis_.mode().spec().name;
+  const std::string remedy = at_limit ? " and then an effort that leads back bring it out of there"
+                                      : " to go on, or let it coast by "
+                                        "command_timeout_action: coast";
   if (how() == StopBy::mode && brakeByMode(now)) {
-    axis_.notices().notify(axis_.who() + ": " + why + "; the axis is braked and held by mode " +
-                           axis_.mode().spec().name + ". enable brings it back into " + pushing +
-                           ", or let it coast by command_timeout_action: coast");
+    axis_.notices().notify(why + "; the axis is braked and held by mode " +
+                           axis_.mode().spec().name + ", enable takes it back into " + pushing +
+                           ": enable" + remedy);
     return;
   }
   axis_.setGoal(Goal::quick_stop);
-  axis_.notices().notify(axis_.who() + ": " + why +
-                         "; the axis is braked by a quick stop, as mode " + pushing +
-                         " has no other brake. enable to go on, or let it coast by "
-                         "command_timeout_action: coast");
+  axis_.notices().notify(why + "; the axis is braked by a quick stop, as mode " + pushing +
+                         " has no other brake: enable" + remedy);
 }
 
 }  // namespace cia402::drive

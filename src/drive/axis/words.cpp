@@ -3,6 +3,7 @@
 
 #include "common/text.h"
 #include "drive/profile/fault_text.h"
+#include "drive/sentence.h"
 
 namespace cia402::drive {
 
@@ -41,6 +42,16 @@ std::string report(const AxisCore& axis) {
     text += "; remote is 0: the drive does not listen to the controlword, check its control source";
   }
   return text;
+}
+
+std::string limitText(const AxisState& state, const AxisConfig& config) {
+  const motion::JointLimits& limits = config.limits;
+  const bool prismatic = config.geometry.prismatic();
+  const double limit = (state.velocity > 0.0 ? limits.upper : limits.lower).value_or(kUnknown);
+  const bool beyond = motion::room(limits, state.position, state.velocity) < 0.0;
+  return "at " + length(state.position, prismatic) + ", with " + length(state.velocity, prismatic) +
+         "/s, the axis " + (beyond ? "goes on beyond" : "comes to") + " its limit of position " +
+         length(limit, prismatic);
 }
 
 std::string needText(const StatusNeed& need) {

@@ -13,6 +13,9 @@ namespace cia402::drive {
 std::string report(const AxisCore& axis);
 /// Axis::obstacle()
 std::string obstacle(const AxisCore& axis);
+/// Of an axis in motion: "at 2.312 rad, with 1.480 rad/s, the axis comes to its limit of position
+/// 2.500 rad", or "goes on beyond" that. @pre it has a limit there
+std::string limitText(const AxisState& state, const AxisConfig& config);
 /// "statusword bit 9 is 0, the drive does not listen: ...", of what is not met.
 std::string needText(const StatusNeed& need);
 /// Axis::motionRefusal(). @param busy a procedure runs

@@ -45,6 +45,8 @@ class ModeControl {
   virtual bool accepts(double value) const = 0;
   /// Of efforts: none is accepted, as the axis comes to a limit of position, or goes on beyond one.
   virtual bool stopsAtLimit() const { return false; }
+  /// But for those that slow it down, where nothing else does.
+  virtual bool maySlow(double /*value*/) const { return false; }
   /// What is sent of an effort that was accepted.
   virtual double guarded(double value) const { return value; }
   /// With which the mode begins without moving anything, in joint units.

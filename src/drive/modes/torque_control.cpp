@@ -15,19 +15,21 @@ constexpr double kBraked = 1.5;       ///< times the way that it takes, for a br
 }  // namespace
 
 bool TorqueControl::accepts(double value) const {
-  return !(limits().effort && std::fabs(value) > *limits().effort) && leadsInside(value) &&
-         !stopsAtLimit();
+  if (limits().effort && std::fabs(value) > *limits().effort) return false;
+  return leadsInside(value) && (!stopsAtLimit() || maySlow(value));
+}
+
+bool TorqueControl::maySlow(double value) const {
+  return !axis().config.brake_after_effort && value * state().velocity < 0.0;
 }
 
 bool TorqueControl::stopsAtLimit() const {
   const double velocity = state().velocity, speed = std::fabs(velocity);
-  const std::optional<double>& limit = velocity > 0.0 ? limits().upper : limits().lower;
-  if (!state().homed || !limit || !(speed > axis().config.standstill_velocity)) return false;
-  const double room = velocity > 0.0 ? *limit - state().position : state().position - *limit;
+  if (!state().homed || !(speed > axis().config.standstill_velocity)) return false;
   double way = speed * speed / (2.0 * stopDeceleration(axis().config)) +
                speed * kBrakesAfter * toSeconds(axis().config.cycle);
   if (!sent().leased()) way *= kBraked;
-  return way > room;
+  return way > motion::room(limits(), state().position, velocity);
 }
 
 std::optional<double> TorqueControl::follow(Stream& stream, Time now) {

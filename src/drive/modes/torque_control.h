@@ -14,6 +14,8 @@ class TorqueControl : public ModeControl {
   /// It would come to rest beyond the limit if it were not braked from now on, whatever the effort
   /// is: what its load makes of that nobody knows.
   bool stopsAtLimit() const override;
+  /// Where the driver does not brake (`command_timeout_action: coast`), who commands efforts may.
+  bool maySlow(double value) const override;
   /// An effort makes a motor without load ever faster, and not every drive has a limit of speed for
   /// its torque modes: from nine tenths of the limit on it gets less, at the limit it is 0.
   double guarded(double value) const override;
