@@ -142,7 +142,7 @@ void Network::produceSync(Time now) {
 
 /// With most frames nothing is due but to note the time.
 void Network::tick(Time now) {
-  const bool waits = phase_ == Phase::running && !cycle_.answered() && now < sync_.deadline() &&
+  const bool waits = phase_ == Phase::running && !cycle_.answered() && !sync_.anythingDue(now) &&
                      now < master_.nextDeadline() && now < lss_->deadline();
   if (!waits) return act(now);
   cycle_.setTime(now);

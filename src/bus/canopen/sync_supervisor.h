@@ -37,6 +37,7 @@ class SyncSupervisor {
   /// This program's own SYNC is due.
   bool ownSyncDue(Time now) const { return syncDue(now) && !bus_.external_sync; }
   bool cycleDue(Time now) const { return now >= next_cycle_; }
+  bool anythingDue(Time now) const { return syncDue(now) || cycleDue(now); }
   /// The cycle that was due has begun.
   void beginCycle() { next_cycle_ = kNever; }
   /// Another device has sent SYNC.

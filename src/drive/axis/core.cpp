@@ -107,7 +107,7 @@ void AxisCore::updateReadiness(bool busy) {
   AxisState& state = axis_.state;
   state.ready_for_motion = brakeReleased() && !busy && !state.halted && state.feedback_valid &&
                            inMode(*this) && state.state == State::operation_enabled &&
-                           feedback_.unmet() == nullptr;
+                           feedback_.needsMet();
 }
 
 void AxisCore::writeCommands(Time now) {

@@ -48,6 +48,8 @@ class Feedback {
 
   /// What the statusword says that forbids motion; nullptr: nothing, or it is not known.
   const StatusNeed* unmet() const { return axis_.state.feedback_valid ? unmet_ : nullptr; }
+  /// There was none by the statusword that came last.
+  bool needsMet() const { return unmet_ == nullptr; }
 
   /// The value that 6061h shows, if known.
   std::optional<int> shownMode() const { return shown_mode_; }
