@@ -17,10 +17,10 @@ std::string plainText(const AxisSnapshot& axis) {
     return "the drive is booting: " + axis.words.step.str();
   }
   if (state.health != fieldbus::Health::ready) {
-    return std::string("the node is ") + fieldbus::toString(state.health);
+    return std::string("the drive is ") + fieldbus::toString(state.health);
   }
   if (unknown(state)) {
-    return "its state is unknown: no usable statusword (6041:00) and position (6064:00) yet";
+    return "its state is unknown: no usable statusword and position yet";
   }
   if (drive::isFault(state.state)) return drive::toString(state.state);
   if (state.warning) return "the drive shows a warning (statusword bit 7)";

@@ -138,10 +138,11 @@ std::string GantryWatch::skewed() const {
   const double off = skew_ - base_;
   if (!(std::fabs(off) > window + apart * std::max(speedOf(a), speedOf(b)))) return {};
   const bool second = off > 0.0;
-  return drive::jointName((second ? b : a).config()) + " is " + length(std::fabs(off)) +
-         " ahead of " + drive::jointName((second ? a : b).config()) +
+  return drive::jointName((second ? b : a).config()) + " is " +
+         motion::lengthText(std::fabs(off), joint_.unit) + " ahead of " +
+         drive::jointName((second ? a : b).config()) +
          (base_ == 0.0 ? "" : ", from where they stood") + ", and skew/" +
-         (free ? "homing" : "window") + " is " + length(window) +
+         (free ? "homing" : "window") + " is " + motion::lengthText(window, joint_.unit) +
          ": both are stopped. See what holds one of them back, then enable" +
          (homed() ? "" : " and home");
 }
@@ -150,12 +151,9 @@ std::string GantryWatch::refusal() const {
   if (level()) return {};
   const std::string a = drive::jointName(sides_[0].unit->axis.config());
   const std::string b = drive::jointName(sides_[1].unit->axis.config());
-  return a + " and " + b + " stand " + length(std::fabs(skew_)) + " apart, and skew/window is " +
-         length(config_.skew_window) + ": home squares them; disabled they can be pushed";
-}
-
-std::string GantryWatch::length(double value) const {
-  return motion::formatNumber(value) + " " + motion::toString(joint_.unit);
+  return a + " and " + b + " stand " + motion::lengthText(std::fabs(skew_), joint_.unit) +
+         " apart, and skew/window is " + motion::lengthText(config_.skew_window, joint_.unit) +
+         ": home squares them; disabled they can be pushed";
 }
 
 }  // namespace cia402::bus

@@ -42,7 +42,6 @@ class GantryWatch {
   std::string alone() const;
   std::string homesAlone();
   std::string skewed() const;
-  std::string length(double value) const;
 
   config::GantryConfig config_;
   motion::Joint joint_;

@@ -13,7 +13,7 @@ namespace {
 std::vector<can::SamplePoints> samplePoints(const config::RobotConfig& robot, unsigned bitrate) {
   std::vector<std::pair<std::string, can::SamplePoints>> found;
   for (const drive::AxisConfig& axis : robot.axes) {
-    const auto& rates = axis.profile->bus_settings.sample_points;
+    const auto& rates = robot.deviceOf(axis).profile->bus_settings.sample_points;
     const auto points = rates.find(bitrate);
     if (points == rates.end()) continue;
     const std::string& name = axis.profile->name;

@@ -125,13 +125,10 @@ void Network::receive(const can::Frame& frame, Time stamp, Time now) {
 /// Asked for with every frame; LSS seldom has anything to do.
 Time Network::nextDeadline() const {
   const Time due = earlier(sync_.deadline(), master_.nextDeadline());
-  return phase_ == Phase::running && !lss_->busy() ? due : deadlineBeside(due);
-}
-
-[[gnu::noinline]] Time Network::deadlineBeside(Time others) const {
-  const Time due = earlier(others, lss_->deadline());
-  if (phase_ == Phase::running) return due;
-  return phase_ == Phase::listening ? earlier(due, start_up_->deadline()) : kNever;
+  if (phase_ == Phase::running && !lss_->busy()) return due;
+  const Time with_lss = earlier(due, lss_->deadline());
+  if (phase_ == Phase::running) return with_lss;
+  return phase_ == Phase::listening ? earlier(with_lss, start_up_->deadline()) : kNever;
 }
 
 void Network::produceSync(Time now) {

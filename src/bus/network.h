@@ -121,8 +121,6 @@ class Network final : private canopen::MasterListener, private BusSide {
   void beginSending(Time now);
   void boot(Time now);
   void act(Time now);
-  /// nextDeadline() where more than the cycle has one.
-  Time deadlineBeside(Time others) const;
   void stepCycle(Time now);
   /// Why a command that needs the bus is not carried out; empty if it is.
   std::string refusal() const;

@@ -17,11 +17,6 @@ constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr Duration kSettles = std::chrono::milliseconds(400);  // at least, after a stop
 constexpr double kArrived = 0.01;  // rad or m; "reached" where no goal tolerance is configured
 
-/// "0.1 rad".
-std::string distance(const Joint& joint, double way) {
-  return motion::formatNumber(way) + " " + motion::toString(joint.description().unit);
-}
-
 }  // namespace
 
 std::string slowedText(const motion::Trajectory& trajectory) {
@@ -199,7 +194,8 @@ std::optional<TrajectoryOutcome> TrajectoryRun::pathFailure() const {
     const double error = std::abs(positions_[member.place] - joint.position());
     if (began_ < joint.stamp() && error > tolerance) {
       return blame(TrajectoryErrorCode::path_tolerance_violated, member, error,
-                   ": trajectory stopped: " + joint.who() + " is " + distance(joint, error) +
+                   ": trajectory stopped: " + joint.who() + " is " +
+                       motion::lengthText(error, joint.description().unit) +
                        " off its path, the tolerance is " + motion::formatNumber(tolerance));
     }
   }
@@ -302,7 +298,8 @@ std::optional<TrajectoryOutcome> TrajectoryRun::arrival(Time time) {
     if (arrived && rests(member)) continue;
     if (!late) return std::nullopt;
     if (arrived) return restlessness(member);
-    const std::string where = joint.who() + " is " + distance(joint, error) + " away";
+    const std::string where =
+        joint.who() + " is " + motion::lengthText(error, joint.description().unit) + " away";
     if (judged) {
       return blame(TrajectoryErrorCode::goal_tolerance_violated, member, error,
                    ": goal missed: " + where + " after " + motion::formatNumber(goalTime()) +

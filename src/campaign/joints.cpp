@@ -87,11 +87,4 @@ double JointFacts::speed(const std::vector<AxisTruth>& truths) const {
   return sum;
 }
 
-drive::ControlKind AxisFacts::kind(int mode) const {
-  for (const drive::ModeSpec& spec : config->profile->modes) {
-    if (spec.value == mode) return spec.kind;
-  }
-  return drive::ControlKind::homing;
-}
-
 }  // namespace cia402::campaign

@@ -319,4 +319,11 @@ void Stage::look(std::vector<AxisTruth>& truths) {
   }
 }
 
+drive::ControlKind AxisFacts::kind(int mode) const {
+  for (const drive::ModeSpec& spec : config->profile->modes) {
+    if (spec.value == mode) return spec.kind;
+  }
+  return drive::ControlKind::homing;
+}
+
 }  // namespace cia402::campaign

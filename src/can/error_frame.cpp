@@ -1,8 +1,8 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include "can/error_frame.h"
+#include "common/text.h"
 
 #include <cstddef>
-#include <cstdio>
 #include <iterator>
 
 namespace cia402::can {
@@ -64,18 +64,12 @@ constexpr Name kTransceiver[] = {
     {0x80, "CANL is shorted to CANH"},
 };
 
-std::string hex(std::uint32_t value) {
-  char text[16];
-  std::snprintf(text, sizeof text, "0x%X", value);
-  return text;
-}
-
 template <std::size_t N>
 std::string codeText(const Name (&names)[N], std::uint32_t code) {
   for (const Name& name : names) {
     if (name.code == code) return name.text;
   }
-  return "code " + hex(code);
+  return "code " + hexText(code, 1);
 }
 
 template <std::size_t N>
@@ -148,7 +142,7 @@ std::string describeErrorFrame(const Frame& frame) {
     unknown &= ~row.bit;
     append(row.fixed != nullptr ? row.fixed : row.text(frame));
   }
-  if (unknown != 0) append("unknown error class " + hex(unknown));
+  if (unknown != 0) append("unknown error class " + hexText(unknown, 1));
   return text.empty() ? "error frame without a class" : text;
 }
 

@@ -14,6 +14,7 @@
 #include <cstdio>
 
 #include "can/link_message.h"
+#include "common/text.h"
 
 namespace cia402::can {
 namespace {
@@ -26,12 +27,6 @@ constexpr double kNearSamplePoint = 0.0505;   // Linux' 75 % at 1 Mbit/s is near
 std::string setUp(const LinkSettings& link, const std::string& options) {
   return "`ip link set " + link.name + " down; ip link set " + link.name + " up type can " +
          options + "` as root";
-}
-
-std::string percent(double share) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%g %%", std::round(1000.0 * share) / 10.0);
-  return text;
 }
 
 }  // namespace
@@ -94,13 +89,13 @@ std::optional<LinkFinding> samplePointFinding(const LinkSettings& link, unsigned
   std::string points;
   for (const double point : devices.choices) {
     if (std::fabs(point - *link.sample_point) < kNearSamplePoint) return {};
-    points += (points.empty() ? "" : " or ") + percent(point);
+    points += (points.empty() ? "" : " or ") + percentText(point, 1);
   }
   char best[16];
   std::snprintf(best, sizeof best, "%.3f", devices.choices.front());
   return LinkFinding{
-      false, link.name + " reads a bit at " + percent(*link.sample_point) + " of its time, " +
-                 devices.who + " at " + points +
+      false, link.name + " reads a bit at " + percentText(*link.sample_point, 1) +
+                 " of its time, " + devices.who + " at " + points +
                  ": frames may be destroyed on a long or disturbed cable; run " +
                  setUp(link, "bitrate " + std::to_string(bitrate) + " sample-point " + best)};
 }

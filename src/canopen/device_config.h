@@ -16,7 +16,7 @@
 
 namespace cia402::canopen {
 
-/// A drive that gets its node-ID by LSS at start-up, see bus::Robot.
+/// A drive that gets its node-ID by LSS at start-up, see bus::LssSupervisor.
 struct DeviceLss {
   lss::Identity identity;
   bool store = false;  ///< in the drive, where it was another one

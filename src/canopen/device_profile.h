@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "canopen/bus_settings.h"
 #include "canopen/pdo/layout.h"
 #include "cia402_driver/common/time.h"
 #include "fieldbus/float_codec.h"
@@ -59,6 +60,7 @@ struct DeviceProfile {
   bool nmt_reset_does_nothing = false;          ///< then it may be sent, where somebody asks for it
   Duration boot_time{std::chrono::seconds(5)};  ///< from a reset until the drive answers
   fieldbus::AccessOptions sdo;                  ///< `timeout` and `retries` of transfers
+  BusSettings bus_settings;
 };
 
 }  // namespace cia402::canopen

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cinttypes>
+#include <cmath>
 #include <cstdio>
 
 namespace cia402 {
@@ -50,6 +51,11 @@ std::string secondsText(Duration duration, int decimals) {
 
 std::string millisecondsText(Duration duration, int digits) {
   return numberText(1e3 * toSeconds(duration), digits) + " ms";
+}
+
+std::string percentText(double share, int decimals) {
+  const double unit = std::pow(10.0, decimals);
+  return numberText(std::round(share * 100.0 * unit) / unit) + " %";
 }
 
 }  // namespace cia402

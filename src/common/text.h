@@ -30,5 +30,7 @@ std::string secondsText(Duration duration);
 std::string secondsText(Duration duration, int decimals);
 /// "4 ms", "1.25 ms": as many of `digits` significant digits as it takes.
 std::string millisecondsText(Duration duration, int digits = 6);
+/// "85 %", "87.5 %": a share of 1, rounded to so many decimals, without zeros at the end.
+std::string percentText(double share, int decimals = 0);
 
 }  // namespace cia402

@@ -73,8 +73,6 @@ void readHeartbeat(yaml::Section& section, BusConfig& bus) {
   }
 }
 
-std::string percent(double share) { return std::to_string(std::lround(share * 100.0)) + " %"; }
-
 /// Does the family write the period in this form when a drive starts?
 bool writesPeriod(const drive::DriveProfile& profile, const char* source) {
   return std::any_of(profile.startup.begin(), profile.startup.end(),
@@ -273,8 +271,8 @@ void checkBusLoad(const yaml::Value& bus_section, RobotConfig& robot, Problems& 
   warnOfShortPeriod(master, robot);
   const BusLoad load = busLoad(master, robot.bus.bitrate);
   const std::string rate = std::to_string(std::lround(1.0 / toSeconds(robot.bus.sync_period)));
-  const std::string share = "the PDOs need " + percent(load.worst) + " of the bus at " + rate +
-                            " Hz in the worst case (" + percent(load.nominal) +
+  const std::string share = "the PDOs need " + percentText(load.worst) + " of the bus at " + rate +
+                            " Hz in the worst case (" + percentText(load.nominal) +
                             " without stuff bits)";
   if (load.worst <= kComfortableLoad) return;
   const auto cycle = feasibleCycle(robot, load);

@@ -22,8 +22,8 @@ enum class ChangeTime : std::uint8_t {
 
 /// A row of the table of what can be changed when.
 struct ReloadRule {
-  const char* keys;     ///< "axes/*/limits/*": a * is one name, ** at the end as many as there are
-  ChangeTime when;      ///
+  const char* keys;  ///< "axes/*/limits/*": a * is one name, ** at the end as many as there are
+  ChangeTime when;
   const char* because;  ///< of `restart`: "needs a restart of the node, because ..."
 };
 /// All of them; of several that fit a key the first counts.

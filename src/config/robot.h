@@ -169,7 +169,7 @@ struct RobotConfig {
 using ProfileLookup = std::function<std::string(const std::string& drive)>;
 ProfileLookup profilesIn(std::vector<std::string> folders);
 
-/// Turns a parameter tree (interface.md, "Configuration") into a typed configuration. Every problem
+/// Turns a parameter tree (docs/configuration.md) into a typed configuration. Every problem
 /// is reported at once with its path; the result is only valid if none was added.
 RobotConfig loadRobot(const YAML::Node& tree, const ProfileLookup& profiles, Problems& problems);
 

@@ -25,4 +25,8 @@ double room(const JointLimits& limits, double position, double velocity) {
 
 std::string formatNumber(double value) { return numberText(value, 8); }
 
+std::string lengthText(double value, JointUnit unit) {
+  return formatNumber(value) + " " + toString(unit);
+}
+
 }  // namespace cia402::motion

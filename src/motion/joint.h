@@ -42,5 +42,7 @@ struct MotionState {
 
 /// A number for a sentence, up to 8 significant digits: "3.1", "-0.25".
 std::string formatNumber(double value);
+/// The same with its unit: "0.1 rad".
+std::string lengthText(double value, JointUnit unit);
 
 }  // namespace cia402::motion

@@ -169,7 +169,7 @@ TEST_F(StartupWriteTest, a_read_that_is_not_answered_fails_the_boot_before_anyth
   EXPECT_FALSE(sentLine(kWrite));
 }
 
-// A drive that is silent where it should abort: asked three times (canopen/boot_context.h).
+// A drive that is silent where it should abort: asked three times (canopen/boot/context.h).
 TEST_F(StartupWriteTest, an_optional_object_that_is_silent_while_others_answer_is_missing) {
   config.writes[0].optional = true;
   config.writes[0].only_if_different = false;

@@ -117,9 +117,9 @@ TEST(ProfileSettings, OfBitsWordsAndTheMakersNamesAreAsWritten) {
   EXPECT_EQ(drive::textOf(profile.find("told")->words, 7), "too hot");
   EXPECT_EQ(drive::textOf(profile.find("told")->words, 8), "");
   EXPECT_TRUE(profile.counts_rule.adjustable);
-  const drive::BusSettings& bus = profile.bus_settings;
+  const canopen::BusSettings& bus = profile.bus_settings;
   EXPECT_EQ(bus.node_id.object, "source");
-  EXPECT_EQ(bus.node_id.counts, drive::BusSetting::Counts::after_power_cycle);
+  EXPECT_EQ(bus.node_id.counts, canopen::BusSetting::Counts::after_power_cycle);
   EXPECT_EQ(bus.bit_rate.numbers.at(500000), 3);
   EXPECT_EQ(bus.memory, "polarity");
   EXPECT_EQ(bus.memory_on, 2);

@@ -46,8 +46,9 @@ struct DcfScene : Scene {
     });
   }
   const drive::AxisConfig& config() { return axis("joint").config(); }
+  const canopen::DeviceProfile& device() { return *loaded().robot.deviceOf(config()).profile; }
   bus::Answer load(const std::string& text, bool confirm) {
-    const auto loading = bus::planDcf(text, "a.dcf", config());
+    const auto loading = bus::planDcf(text, "a.dcf", config(), device());
     if (!loading) return bus::answerOf(false, loading.error().message);
     const bus::Answer answer = call(bus::LoadDcfCommand{"joint", *loading, confirm});
     return answer.success ? bus::dcfOutcome(**loading, config()) : answer;
@@ -130,7 +131,7 @@ TEST(Sv660cDcf, IsRefusedWhileTheAxisIsEnabledAndLocksItMeanwhile) {
   EXPECT_THAT(scene.writes, ElementsAre());
   ASSERT_TRUE(scene.procedure(ProcedureKind::disable).success);
   scene.run(500ms);
-  const auto loading = bus::planDcf(file, "a.dcf", scene.config());
+  const auto loading = bus::planDcf(file, "a.dcf", scene.config(), scene.device());
   ASSERT_TRUE(loading);
   const auto answer = scene.ask(bus::LoadDcfCommand{"joint", *loading, true});
   const bus::Answer enabled = scene.procedure(ProcedureKind::enable);

@@ -14,7 +14,7 @@
 namespace cia402::bus {
 namespace {
 
-using drive::BusSetting;
+using canopen::BusSetting;
 
 std::string notSet(const drive::Axis& axis, const std::string& why) {
   return drive::whoIs(axis.config()) + ": bus parameters not set: " + why;
@@ -43,6 +43,7 @@ std::string knownRates(const BusSetting& setting) {
 }  // namespace
 
 Result<BusSettingChange> busSettingChange(const drive::Axis& axis,
+                                          const canopen::DeviceProfile& device,
                                           const SetBusParametersCommand& command) {
   const drive::DriveProfile& profile = *axis.config().profile;
   const bool node = command.node_id != 0;
@@ -51,7 +52,8 @@ Result<BusSettingChange> busSettingChange(const drive::Axis& axis,
   }
   BusSettingChange change;
   change.what = node ? "node-ID" : "bit rate";
-  change.setting = node ? &profile.bus_settings.node_id : &profile.bus_settings.bit_rate;
+  change.settings = &device.bus_settings;
+  change.setting = node ? &change.settings->node_id : &change.settings->bit_rate;
   change.object = profile.find(change.setting->object);
   if (change.object == nullptr) {
     return Error{"profile " + profile.name + " names no object that holds the " + change.what +
@@ -81,7 +83,8 @@ void SetBusParametersCommand::begin(Network& network, const Reply<>& reply, Time
   const auto unit = cycle.findToAsk(axis, "its bus parameters");
   if (!unit) return refuse(reply, unit.error().message);
   drive::Axis& asked = (*unit)->axis;
-  const auto change = busSettingChange(asked, *this);
+  const canopen::DeviceProfile& device = *network.config().deviceOf(asked.config()).profile;
+  const auto change = busSettingChange(asked, device, *this);
   if (!change) return refuse(reply, notSet(asked, change.error().message));
   const std::string owner = node_id == 0 ? std::string() : ownerOf(node_id, asked, network);
   if (!owner.empty()) {
@@ -161,11 +164,10 @@ bool BusSettingJob::takeOld() {
   }
   const std::string moves = axis_->calibrationRefusal();
   if (!moves.empty()) return fail(moves);
-  if (profile.bus_settings.memory.empty()) {
+  if (change_.settings->memory.empty()) {
     write(*change_.object, change_.number, Stage::writing);
   } else {
-    write(*profile.find(profile.bus_settings.memory), profile.bus_settings.memory_on,
-          Stage::opening);
+    write(*profile.find(change_.settings->memory), change_.settings->memory_on, Stage::opening);
   }
   return false;
 }
@@ -174,7 +176,7 @@ bool BusSettingJob::takeWritten() {
   const drive::DriveProfile& profile = *axis_->config().profile;
   const bool at_once = change_.setting->counts == BusSetting::Counts::at_once;
   const bool lost = ticket_->failure() == fieldbus::Transfer::Failure::timed_out;
-  const bool opened = !profile.bus_settings.memory.empty();
+  const bool opened = !change_.settings->memory.empty();
   if (!ticket_->ok() && !(at_once && lost)) {
     problem_ = ticket_->message();
     if (!opened) return fail(problem_);
@@ -182,8 +184,7 @@ bool BusSettingJob::takeWritten() {
   doubtful_ = problem_.empty() && !ticket_->ok();
   if (doubtful_ || (at_once && !opened)) return finish();
   if (opened) {
-    write(*profile.find(profile.bus_settings.memory), profile.bus_settings.memory_off,
-          Stage::closing);
+    write(*profile.find(change_.settings->memory), change_.settings->memory_off, Stage::closing);
   } else {
     read(Stage::comparing);
   }
@@ -208,7 +209,7 @@ std::string BusSettingJob::consequence() const {
       text = "which counts once its power was off";
       break;
   }
-  if (axis_->config().profile->bus_settings.saved_apart) {
+  if (change_.settings->saved_apart) {
     text += ", and stays only after save_parameters";
   }
   return text + "; then change " + change_.file + ", and start the driver anew";

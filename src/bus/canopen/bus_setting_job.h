@@ -6,6 +6,7 @@
 
 #include "bus/jobs/job.h"
 #include "bus/reply.h"
+#include "canopen/device_profile.h"
 #include "cia402_driver/common/result.h"
 #include "drive/axis/axis.h"
 
@@ -28,7 +29,8 @@ struct SetBusParametersCommand {
 
 /// What is to be written.
 struct BusSettingChange {
-  const drive::BusSetting* setting = nullptr;
+  const canopen::BusSettings* settings = nullptr;  ///< of the device
+  const canopen::BusSetting* setting = nullptr;    ///< of these
   const drive::ObjectSpec* object = nullptr;
   std::int64_t number = 0;  ///< the drive's own
   std::string what, value;  ///< "node-ID", "5"
@@ -36,6 +38,7 @@ struct BusSettingChange {
 };
 /// What the command asks for; or why that cannot be.
 Result<BusSettingChange> busSettingChange(const drive::Axis& axis,
+                                          const canopen::DeviceProfile& device,
                                           const SetBusParametersCommand& command);
 
 /// Reads what the drive has, writes the new number where that is confirmed, and reads it back where

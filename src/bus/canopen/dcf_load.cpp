@@ -50,11 +50,11 @@ std::string guardOf(CoordinateMark mark) {
 }
 
 /// Why an object is not written; empty: it is.
-std::string leftOut(const drive::AxisConfig& axis, const DictionaryEntry& entry) {
+std::string leftOut(const drive::AxisConfig& axis, const canopen::BusSettings& bus,
+                    const DictionaryEntry& entry) {
   const drive::DriveProfile& profile = *axis.profile;
   const drive::ObjectSpec* object = profile.find(entry.id);
   const std::string name = object == nullptr ? std::string() : object->name;
-  const drive::BusSettings& bus = profile.bus_settings;
   const drive::ParameterRecipes& recipes = profile.parameters.recipes;
   if (commandsByStandard(entry.id) || holds(recipes.commands, name)) return "a command";
   const std::string guard = guardOf(profile.coordinateMark(entry.id));
@@ -86,14 +86,14 @@ DcfLoading::Item itemOf(const drive::AxisConfig& axis, const DictionaryEntry& en
 }
 
 void addItems(const canopen::ObjectDictionary& dictionary, const drive::AxisConfig& axis,
-              DcfLoading& loading) {
+              const canopen::BusSettings& bus, DcfLoading& loading) {
   for (const auto& [index, object] : dictionary.objects()) {
     if (index < kFirstOfMaker) continue;
     for (const auto& [subindex, entry] : object.entries) {
       const bool wanted = isWritable(entry.access) && (entry.flags & kNotToBeWritten) == 0 &&
                           entry.value && !entry.value->empty();
       if (!wanted) continue;
-      const std::string why_not = leftOut(axis, entry);
+      const std::string why_not = leftOut(axis, bus, entry);
       if (why_not.empty()) {
         loading.items.push_back(itemOf(axis, entry));
       } else {
@@ -148,7 +148,8 @@ std::string namesOf(const DcfLoading& loading, Loaded outcome) {
 }  // namespace
 
 Result<std::shared_ptr<DcfLoading>> planDcf(std::string_view text, const std::string& file,
-                                            const drive::AxisConfig& axis) {
+                                            const drive::AxisConfig& axis,
+                                            const canopen::DeviceProfile& device) {
   const std::string who = drive::whoIs(axis) + ": " + file + " not loaded: ";
   const canopen::Eds eds = canopen::readEds(text);
   const auto bad = std::find_if(eds.problems.begin(), eds.problems.end(), [](const auto& problem) {
@@ -161,7 +162,7 @@ Result<std::shared_ptr<DcfLoading>> planDcf(std::string_view text, const std::st
   if (loading->identity.empty()) {
     return Error{who + "it does not say for which drive it is (1000h, 1018h, VendorNumber)"};
   }
-  addItems(eds.dictionary, axis, *loading);
+  addItems(eds.dictionary, axis, device.bus_settings, *loading);
   sortLast(axis, *loading);
   if (!loading->items.empty()) return loading;
   return Error{who + "it has no value (ParameterValue) that could be written"};

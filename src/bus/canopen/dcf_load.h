@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bus/reply.h"
+#include "canopen/device_profile.h"
 #include "cia402_driver/common/result.h"
 #include "cia402_driver/common/time.h"
 #include "drive/axis/config.h"
@@ -57,7 +58,8 @@ struct LoadDcfCommand {
 /// needs otherwise. An error where the text is no sound DCF or does not say whose it is.
 /// @param file its name, for messages
 Result<std::shared_ptr<DcfLoading>> planDcf(std::string_view text, const std::string& file,
-                                            const drive::AxisConfig& axis);
+                                            const drive::AxisConfig& axis,
+                                            const canopen::DeviceProfile& device);
 
 /// What came of it, once the command was answered with success.
 Answer dcfOutcome(const DcfLoading& loading, const drive::AxisConfig& axis);

@@ -13,7 +13,7 @@ namespace cia402::canopen {
 
 /// The boot procedure of one node (after CiA 302-2, figure "boot slave"): wait for the device,
 /// identify it, configure error control, SYNC, PDOs and objects, start it. A table of steps
-/// (boot.cpp) that advances with every answer; all nodes run theirs at once.
+/// (procedure.cpp) that advances with every answer; all nodes run theirs at once.
 class BootProcedure {
  public:
   enum class Status { idle, running, done, failed, absent };

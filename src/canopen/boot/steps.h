@@ -10,39 +10,39 @@ namespace cia402::canopen {
 
 using BootStepPointer = std::unique_ptr<BootStep>;
 
-// boot_identify.cpp: is somebody there, and who is it?
+// boot/identify.cpp: is somebody there, and who is it?
 BootStepPointer makeBootUpWait();
 BootStepPointer makeProofOfLife();
 BootStepPointer makeIdentification();
 // boot/brake.cpp: a motor that turns on is braked where its stop would let it go: before it leaves
 // its NMT state, or, where it did not answer then, once it is identified.
 BootStepPointer makeBrake(bool identified);
-// boot_wake.cpp: out of the NMT state stopped, before anything is asked.
+// boot/wake.cpp: out of the NMT state stopped, before anything is asked.
 BootStepPointer makeWake();
-// boot_writes.cpp: what stops a drive that was left enabled, before anything else is written to it.
+// boot/writes.cpp: what stops a drive that was left enabled, before anything else is written to it.
 BootStepPointer makeStop();
-// boot_restore.cpp: factory settings (1011h), where asked for.
+// boot/restore.cpp: factory settings (1011h), where asked for.
 BootStepPointer makeRestore();
-// boot_supervise.cpp: heartbeat or guarding, both ways.
+// boot/supervise.cpp: heartbeat or guarding, both ways.
 BootStepPointer makeErrorControl();
 // boot/half_floats.cpp: floats of 16 bits that the family has in 32.
 BootStepPointer makeHalfFloatSearch();
-// boot_unchanged.cpp: may the configuration be left as it is (1020h)?
+// boot/unchanged.cpp: may the configuration be left as it is (1020h)?
 BootStepPointer makeUnchangedCheck();
 BootStepPointer makeSignature();
-// boot_widths.cpp: how long it holds what its profile leaves open.
+// boot/widths.cpp: how long it holds what its profile leaves open.
 BootStepPointer makeWidths();
-// boot_cob_ids.cpp: identifiers of SYNC and EMCY (1005h, 1014h).
+// boot/cob_ids.cpp: identifiers of SYNC and EMCY (1005h, 1014h).
 BootStepPointer makeCobIds();
-// boot_sync.cpp: SYNC counter and period (1019h, 1006h).
+// boot/sync.cpp: SYNC counter and period (1019h, 1006h).
 BootStepPointer makeSyncSetup();
-// boot_pdos.cpp
+// boot/pdos.cpp
 BootStepPointer makePdos(const NodeConfig& config);
-// boot_writes.cpp: the start-up writes of profile and user.
+// boot/writes.cpp: the start-up writes of profile and user.
 BootStepPointer makeStartupWrites();
 // boot/kept_values.cpp: what its RPDOs shall carry of objects that no cycle sets.
 BootStepPointer makeKeptValues();
-// boot_start.cpp: operational, and does it say so?
+// boot/start.cpp: operational, and does it say so?
 BootStepPointer makeStart();
 
 }  // namespace cia402::canopen

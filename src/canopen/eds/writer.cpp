@@ -1,21 +1,15 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cstdio>
 
 #include "canopen/eds/eds.h"
 #include "canopen/eds/strings.h"
 #include "canopen/eds/value.h"
+#include "common/text.h"
 
 namespace cia402::canopen {
 namespace {
 
 constexpr unsigned kBaudRates[] = {10, 20, 50, 125, 250, 500, 800, 1000};
-
-std::string hex(std::uint64_t number, int digits) {
-  char text[24];
-  std::snprintf(text, sizeof text, "0x%0*llX", digits, static_cast<unsigned long long>(number));
-  return text;
-}
 
 /// Builds the text of a file, section by section.
 class DcfText {
@@ -67,10 +61,10 @@ void writeInfo(const EdsInfo& info, DcfText& text) {
 void writeDevice(const EdsInfo& info, DcfText& text) {
   text.section("DeviceInfo");
   text.optional("VendorName", oneLine(info.vendor_name));
-  if (info.vendor_number) text.key("VendorNumber", hex(*info.vendor_number, 8));
+  if (info.vendor_number) text.key("VendorNumber", hexText(*info.vendor_number, 8));
   text.optional("ProductName", oneLine(info.product_name));
-  if (info.product_number) text.key("ProductNumber", hex(*info.product_number, 8));
-  if (info.revision_number) text.key("RevisionNumber", hex(*info.revision_number, 8));
+  if (info.product_number) text.key("ProductNumber", hexText(*info.product_number, 8));
+  if (info.revision_number) text.key("RevisionNumber", hexText(*info.revision_number, 8));
   text.optional("OrderCode", oneLine(info.order_code));
   for (unsigned rate : kBaudRates) {
     const auto& rates = info.baud_rates;
@@ -91,16 +85,16 @@ void writeDevice(const EdsInfo& info, DcfText& text) {
 void writeCommissioning(const EdsInfo& info, DcfText& text) {
   if (info.node_id) {
     text.section("DeviceComissioning");  // spelt as CiA 306 spells it
-    text.key("NodeID", hex(*info.node_id, 2));
+    text.key("NodeID", hexText(*info.node_id, 2));
     text.optional("NodeName", oneLine(info.node_name));
     if (info.baud_rate != 0) text.number("Baudrate", info.baud_rate);
-    if (info.lss_serial) text.key("LSS_SerialNumber", hex(*info.lss_serial, 8));
+    if (info.lss_serial) text.key("LSS_SerialNumber", hexText(*info.lss_serial, 8));
   }
   text.section("DummyUsage");
   for (std::uint16_t code = 1; code <= 0x1B; ++code) {
     const auto& dummies = info.dummies;
     const bool has = std::find(dummies.begin(), dummies.end(), code) != dummies.end();
-    if (has || code <= 7) text.number("Dummy" + hex(code, 4).substr(2), has ? 1 : 0);
+    if (has || code <= 7) text.number("Dummy" + hexText(code, 4).substr(2), has ? 1 : 0);
   }
   if (info.comments.empty()) return;
   text.section("Comments");
@@ -127,7 +121,7 @@ void writeList(const char* name, bool (*belongs)(std::uint16_t), const ObjectDic
   text.section(name);
   text.number("SupportedObjects", indices.size());
   for (std::size_t i = 0; i < indices.size(); ++i) {
-    text.key(std::to_string(i + 1), hex(indices[i], 4));
+    text.key(std::to_string(i + 1), hexText(indices[i], 4));
   }
 }
 
@@ -146,17 +140,17 @@ void writeDefault(const DictionaryEntry& entry, std::optional<NodeId> node_id, D
   for (std::size_t i = entry.default_value->size(); i-- > 0;) {
     raw = raw << 8U | (*entry.default_value)[i];
   }
-  text.key("DefaultValue", "$NODEID+" + hex(raw - *node_id, 1));
+  text.key("DefaultValue", "$NODEID+" + hexText(raw - *node_id, 1));
 }
 
 void writeEntry(const DictionaryEntry& entry, std::optional<NodeId> node_id, DcfText& text) {
-  text.key("DataType", hex(dataTypeCode(entry.type), 4));
+  text.key("DataType", hexText(dataTypeCode(entry.type), 4));
   text.key("AccessType", toString(entry.access));
   writeValue("LowLimit", entry.low, entry.type, text);
   writeValue("HighLimit", entry.high, entry.type, text);
   writeDefault(entry, node_id, text);
   text.number("PDOMapping", entry.mappable ? 1 : 0);
-  if (entry.flags != 0) text.key("ObjFlags", hex(entry.flags, 1));
+  if (entry.flags != 0) text.key("ObjFlags", hexText(entry.flags, 1));
   writeValue("ParameterValue", entry.value, entry.type, text);
   text.optional("Denotation", oneLine(entry.denotation));
   text.optional("UploadFile", oneLine(entry.upload_file));
@@ -164,11 +158,11 @@ void writeEntry(const DictionaryEntry& entry, std::optional<NodeId> node_id, Dcf
 }
 
 void writeObject(const DictionaryObject& object, std::optional<NodeId> node_id, DcfText& text) {
-  const std::string name = hex(object.index, 4).substr(2);
+  const std::string name = hexText(object.index, 4).substr(2);
   const auto single = object.entries.find(0);
   text.section(name);
   text.key("ParameterName", oneLine(object.name));
-  text.key("ObjectType", hex(static_cast<std::uint64_t>(object.code), 1));
+  text.key("ObjectType", hexText(static_cast<std::uint64_t>(object.code), 1));
   if (object.code < ObjectCode::array && object.code != ObjectCode::defstruct &&
       single != object.entries.end()) {
     writeEntry(single->second, node_id, text);
@@ -176,11 +170,11 @@ void writeObject(const DictionaryObject& object, std::optional<NodeId> node_id, 
   }
   text.number("SubNumber", object.entries.size());
   for (const auto& [subindex, entry] : object.entries) {
-    text.section(name + "sub" + hex(subindex, 1).substr(2));
+    text.section(name + "sub" + hexText(subindex, 1).substr(2));
     text.key("ParameterName", oneLine(entry.name));
     const bool domain = entry.type == DataType::domain;
     text.key("ObjectType",
-             hex(static_cast<unsigned>(domain ? ObjectCode::domain : ObjectCode::variable), 1));
+             hexText(static_cast<unsigned>(domain ? ObjectCode::domain : ObjectCode::variable), 1));
     writeEntry(entry, node_id, text);
   }
 }

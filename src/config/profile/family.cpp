@@ -278,7 +278,6 @@ void readDrive(yaml::Section& section, yaml::Section& timing, DriveProfile& prof
   };
   setting("rated_torque", profile.rated_torque);
   setting("not_ready_reason", profile.not_ready_reason);
-  if (const auto settings = section.get("bus_settings")) readBusSettings(*settings, profile);
   if (const auto names = section.get("parameter_names")) readParameterNames(*names, profile);
   if (const auto names = section.get("default_modes")) {
     profile.default_modes = readModeNames(*names, profile);
@@ -307,6 +306,9 @@ DriveFamily readFamily(const yaml::Value& root) {
   yaml::Section timing(section.get("timing").value_or(none));
   readDrive(section, timing, family.drive);
   readDevice(section, timing, family.drive, family.device);
+  if (const auto settings = section.get("bus_settings")) {
+    readBusSettings(*settings, family.drive, family.device.bus_settings);
+  }
   timing.finish();
   section.finish();
   return family;

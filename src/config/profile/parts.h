@@ -53,7 +53,8 @@ void readAlarmMemory(const yaml::Value& value, DriveProfile& profile);
 /// `parameters`: what saves and restores them. @pre objects were read
 void readParameters(const yaml::Value& value, DriveProfile& profile);
 /// `bus_settings`. @pre objects were read
-void readBusSettings(const yaml::Value& value, DriveProfile& profile);
+void readBusSettings(const yaml::Value& value, const DriveProfile& profile,
+                     canopen::BusSettings& settings);
 /// `fault_memory`. @pre objects were read
 void readFaultMemory(const yaml::Value& value, DriveProfile& profile);
 /// `parameter_names`

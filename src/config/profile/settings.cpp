@@ -84,14 +84,14 @@ std::optional<std::uint32_t> bitRate(const std::string& key, const yaml::Value& 
 }
 
 void readBusSetting(const yaml::Value& value, const DriveProfile& profile,
-                    drive::BusSetting& setting) {
+                    canopen::BusSetting& setting) {
   yaml::Section section(value);
   const auto name = section.require("object", "what holds it, by name");
   const ObjectSpec* object = name ? readWritable(*name, profile) : nullptr;
   if (object != nullptr) setting.object = object->name;
   if (const auto counts = section.get("counts")) {
     const auto word = counts->oneOf({"at_once", "after_reset", "after_power_cycle"});
-    if (word) setting.counts = static_cast<drive::BusSetting::Counts>(*word);
+    if (word) setting.counts = static_cast<canopen::BusSetting::Counts>(*word);
   }
   if (const auto numbers = section.get("numbers")) {
     yaml::Section rates(*numbers);
@@ -105,7 +105,7 @@ void readBusSetting(const yaml::Value& value, const DriveProfile& profile,
   section.finish();
 }
 
-void readSamplePoints(const yaml::Value& value, drive::BusSettings& settings) {
+void readSamplePoints(const yaml::Value& value, canopen::BusSettings& settings) {
   yaml::Section rates(value);
   for (const auto& [key, entry] : rates.entries()) {
     const auto rate = bitRate(key, entry);
@@ -119,8 +119,8 @@ void readSamplePoints(const yaml::Value& value, drive::BusSettings& settings) {
 
 }  // namespace
 
-void readBusSettings(const yaml::Value& value, DriveProfile& profile) {
-  drive::BusSettings& settings = profile.bus_settings;
+void readBusSettings(const yaml::Value& value, const DriveProfile& profile,
+                     canopen::BusSettings& settings) {
   yaml::Section section(value);
   if (const auto node = section.get("node_id")) readBusSetting(*node, profile, settings.node_id);
   if (const auto rate = section.get("bit_rate")) {

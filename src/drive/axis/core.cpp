@@ -103,7 +103,8 @@ bool AxisCore::goesOnWarned(Time now) {
   return true;
 }
 
-void AxisCore::updateReadiness(bool busy) {
+/// Not inlined: superviseOperation() would lose its place in Axis::update() to it.
+[[gnu::noinline]] void AxisCore::updateReadiness(bool busy) {
   AxisState& state = axis_.state;
   state.ready_for_motion = brakeReleased() && !busy && !state.halted && state.feedback_valid &&
                            inMode(*this) && state.state == State::operation_enabled &&

@@ -11,7 +11,6 @@
 
 #include "cia402_driver/common/time.h"
 #include "drive/profile/bit_fields.h"
-#include "drive/profile/bus_settings.h"
 #include "drive/profile/disabling.h"
 #include "drive/profile/error_texts.h"
 #include "drive/profile/fault_reset.h"
@@ -138,7 +137,7 @@ enum class StopBy : std::uint8_t {
 };
 
 /// A write by profile name: value in the object's unit system (SI after conversion) or raw.
-/// drive/named_write.h turns it into a number for one axis.
+/// drive/profile/named_write.h turns it into a number for one axis.
 struct NamedWrite {
   std::string object;               ///< name in the profile, or "6065:00"
   std::optional<double> value;      ///< in SI units of the joint if the object has a quantity
@@ -156,7 +155,8 @@ struct NamedWrite {
   std::string if_given;  ///< a value of the configuration, as `from`: without it nothing is written
   std::optional<DataType> type;  ///< of an object by index that the profile does not name
   /// A limit of the position that counts in the drive's coordinates: written while these are known
-  /// to be the joint's, and open (the widest number) while they are not. See drive/position_limits.
+  /// to be the joint's, and open (the widest number) while they are not. See
+  /// drive/axis/position_limits.
   bool when_homed = false;
   bool optional = false;  ///< an abort is noted, not an error
 };
@@ -316,7 +316,6 @@ struct DriveProfile {
   AlarmMemory alarm_memory;
   FaultObjects fault_memory;
   ParameterNames parameter_names;
-  BusSettings bus_settings;
   std::string eds;  ///< file whose objects were added, for messages; empty: none
 
   /// By the profile's name, or by a name of the EDS without regard to case and blanks.

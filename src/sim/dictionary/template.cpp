@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "common/text.h"
 #include "sim/dictionary/axis_objects.h"
 #include "sim/dictionary/macros.h"
 #include "sim/dictionary/reader.h"
@@ -20,12 +21,6 @@ namespace {
 constexpr std::size_t kWithoutDefault = 6;
 constexpr std::size_t kWithDefault = 7;
 constexpr std::size_t kWithRange = 9;
-
-std::string joined(const std::vector<std::string>& lines) {
-  std::string text;
-  for (const std::string& line : lines) text += (text.empty() ? "" : "\n") + line;
-  return text;
-}
 
 }  // namespace
 
@@ -185,7 +180,7 @@ bool DictionaryReader::readLimit(const YAML::Node& node, DataType type,
 }
 
 Result<DictionaryTemplate> DictionaryReader::finish() && {
-  if (!problems_.empty()) return Error{joined(problems_)};
+  if (!problems_.empty()) return Error{joined(problems_, "\n")};
   return std::move(template_);
 }
 

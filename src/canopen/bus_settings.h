@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-namespace cia402::drive {
+namespace cia402::canopen {
 
 /// An object of the maker that holds what the bus wants of a device.
 struct BusSetting {
   /// When another number counts.
   enum class Counts : std::uint8_t { at_once, after_reset, after_power_cycle };
-  std::string object;  ///< by its name; empty: there is none
+  std::string object;  ///< by its name in the profile of the drive; empty: there is none
   Counts counts = Counts::at_once;
   std::map<std::uint32_t, std::int64_t> numbers;  ///< bit/s to what the object says; else as it is
 };
@@ -29,4 +29,4 @@ struct BusSettings {
   std::map<std::uint32_t, std::vector<double>> sample_points;
 };
 
-}  // namespace cia402::drive
+}  // namespace cia402::canopen
