@@ -1,4 +1,5 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
+#include "common/text.h"
 #include "config/profile/parts.h"
 #include "config/robot_parts.h"
 
@@ -25,10 +26,35 @@ motion::JointLimits readLimits(const yaml::Value& value, drive::AxisGeometry::Ty
   return limits;
 }
 
-drive::HomingOptions readHoming(const yaml::Value& value) {
+namespace {
+
+/// By its number, or in the words of the profile.
+std::optional<int> homingMethod(const yaml::Value& value, const drive::DriveProfile& profile) {
+  const bool words = value.isScalar() && !yaml::parseInteger(value.node().Scalar());
+  if (!words) {
+    const auto number = value.integer(-128, 127);
+    return number ? std::optional<int>(static_cast<int>(*number)) : std::nullopt;
+  }
+  std::string known;
+  for (const auto& [number, method] : profile.homing.methods) {
+    if (!number) continue;
+    if (method.text == value.node().Scalar()) return number;
+    append(known, std::to_string(*number) + " (" + method.text + ")", ", ");
+  }
+  value.problem("is the number of a homing method, or its words; profile " + profile.name +
+                " has " + (known.empty() ? "none" : known) + ", and no `" + value.node().Scalar() +
+                "`");
+  return {};
+}
+
+}  // namespace
+
+drive::HomingOptions readHoming(const yaml::Value& value, const drive::DriveProfile* profile) {
   drive::HomingOptions homing;
   yaml::Section section(value);
-  section.readInteger("method", homing.method, -128, 127);
+  if (const auto method = section.get("method")) {
+    if (profile != nullptr) homing.method = homingMethod(*method, *profile);
+  }
   section.read("search_velocity", homing.search_velocity, yaml::kPositive);
   section.read("zero_velocity", homing.zero_velocity, yaml::kPositive);
   section.read("acceleration", homing.acceleration, yaml::kPositive);

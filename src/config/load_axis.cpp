@@ -84,7 +84,7 @@ void readAxisLimits(yaml::Section& section, AxisConfig& axis, const AxisReading&
 
 void readSections(yaml::Section& section, AxisDraft& draft, RobotConfig& robot) {
   AxisConfig& axis = draft.axis;
-  if (const auto homing = section.get("homing")) axis.homing = readHoming(*homing);
+  if (const auto homing = section.get("homing")) axis.homing = readHoming(*homing, axis.profile.get());
   if (draft.first) readDevice(section, draft.device, robot);
   if (const auto parameters = section.get("parameters")) readParameters(*parameters, axis);
   if (const auto frame = section.get("frame")) readFrame(*frame, axis.joint, robot);

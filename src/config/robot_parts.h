@@ -96,7 +96,8 @@ void readEds(yaml::Section& section, AxisDraft& draft, EdsFiles& files, RobotCon
 void checkEds(yaml::Section& section, const AxisDraft& draft, RobotConfig& robot);
 
 motion::JointLimits readLimits(const yaml::Value& value, drive::AxisGeometry::Type type);
-drive::HomingOptions readHoming(const yaml::Value& value);
+/// @param profile of the drive, for the words of its methods; nullptr: it is not known
+drive::HomingOptions readHoming(const yaml::Value& value, const drive::DriveProfile* profile);
 /// `error_control`, `sdo`, `optional`, `boot` and the like.
 void readNodeOptions(yaml::Section& section, canopen::DeviceConfig& device);
 /// `trusted`: objects that may be written though the profile calls them doubtful.

@@ -4,7 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <set>
+
+#include "config/drive_family.h"
 #include "config/loaded.h"
+#include "folders.h"
 
 namespace cia402::config {
 namespace {
@@ -324,6 +329,68 @@ TEST(RobotConfig, NothingAtAllIsAProblemToo) {
   const std::string empty = loadText("{}").problems;
   EXPECT_THAT(empty, HasSubstr("bus: `interface` is missing"));
   EXPECT_THAT(empty, HasSubstr("axes: is missing"));
+}
+
+TEST(RobotHoming, IsByTheNumberOfAMethodOrItsWords) {
+  const auto told =
+      changed("method: 17", "method: \"home switch, start negative, negative edge, inside\"");
+  EXPECT_EQ(told.problems, "");
+  EXPECT_EQ(told.robot.axes[1].homing->method, 29);
+  EXPECT_THAT(
+      changed("method: 17", "method: home switch").problems,
+      HasSubstr("axes/elbow/homing/method: is the number of a homing method, or its words; "
+                "profile generic_cia402 has 1 (negative limit switch, then index pulse), "));
+  EXPECT_THAT(changed("method: 17", "method: home switch").problems,
+              HasSubstr(", 37 (the present position), and no `home switch`"));
+  EXPECT_THAT(changed("method: 17", "method: [17]").problems,
+              HasSubstr("axes/elbow/homing/method"));
+}
+
+TEST(RobotWrites, AreInTheWordsOfTheObjectToo) {
+  const auto written = [](const std::string& value) {
+    return changed("node_id: 1,", "node_id: 1, write: [{object: halt_option, " + value + "}],");
+  };
+  const auto told = written("raw: \"quick stop ramp, holds\"");
+  EXPECT_EQ(told.problems, "");
+  ASSERT_EQ(told.robot.axes[0].writes.size(), 1U);
+  EXPECT_EQ(told.robot.axes[0].writes[0].raw, 2);
+  EXPECT_EQ(written("value: \"slow down ramp, holds\"").robot.axes[0].writes[0].raw, 1);
+  EXPECT_THAT(
+      written("raw: coasts").problems,
+      HasSubstr("/raw: must be a number or words of halt_option: 1 (slow down ramp, holds), "
+                "2 (quick stop ramp, holds), 3 (by the current limit, holds), 4 (by the "
+                "voltage limit, holds); not `coasts`"));
+}
+
+/// Of the iD286 the meanings are not printed.
+TEST(RobotWrites, OptionCodesOfStopsHaveWordsInEveryFamilyThatHasAny) {
+  unsigned found = 0;
+  for (const auto& file : std::filesystem::directory_iterator(test::configFolder() + "/drives")) {
+    Problems problems;
+    const DriveFamily family = loadDriveFamily(file.path().string(), problems);
+    for (std::uint16_t index = 0x605A; index <= 0x605E; ++index) {
+      const drive::ObjectSpec* object = family.drive.find(fieldbus::ObjectId{index, 0});
+      if (object == nullptr || !object->writable || family.drive.name == "id286_cnfa") continue;
+      EXPECT_GE(object->words.size(), 2U) << family.drive.name << ": " << object->name;
+      ++found;
+    }
+  }
+  EXPECT_GE(found, 5U + 1U + 5U + 4U + 4U) << "generic, Damiao, NiMotion, DM5, SV660C";
+}
+
+TEST(RobotHoming, NoTwoMethodsOfAFamilyHaveTheSameWords) {
+  std::size_t families = 0;
+  for (const auto& file : std::filesystem::directory_iterator(test::configFolder() + "/drives")) {
+    Problems problems;
+    const DriveFamily family = loadDriveFamily(file.path().string(), problems);
+    ASSERT_TRUE(problems.empty()) << problems.text();
+    std::set<std::string> words;
+    for (const auto& [number, method] : family.drive.homing.methods) {
+      EXPECT_TRUE(words.insert(method.text).second) << family.drive.name << ": " << method.text;
+    }
+    ++families;
+  }
+  EXPECT_GE(families, 6U);
 }
 
 }  // namespace

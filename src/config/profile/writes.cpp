@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/text.h"
 #include "config/profile/parts.h"
 #include "drive/profile/object_value.h"
 
@@ -87,6 +88,23 @@ void readDeviceNumber(const yaml::Value& value, Coding coding, NamedWrite& write
   if (!bits) value.problem("does not fit the float that the object holds");
 }
 
+/// In the words of the object, where it has any. @return true if it is in words
+bool readWord(const yaml::Value& value, const ObjectSpec* object, NamedWrite& write) {
+  const bool words = object != nullptr && !object->words.empty() && value.isScalar() &&
+                     !yaml::parseInteger(value.node().Scalar());
+  if (!words) return false;
+  std::string known;
+  for (const auto& [number, text] : object->words) {
+    if (text == value.node().Scalar()) write.raw = number;
+    append(known, std::to_string(number) + " (" + text + ")", ", ");
+  }
+  if (!write.raw) {
+    value.problem("must be a number or words of " + object->name + ": " + known + "; not `" +
+                  value.node().Scalar() + "`");
+  }
+  return true;
+}
+
 void readValue(yaml::Section& section, const DriveProfile& profile, const ObjectSpec* object,
                NamedWrite& write) {
   const auto value = section.get("value");
@@ -104,8 +122,8 @@ void readValue(yaml::Section& section, const DriveProfile& profile, const Object
     coding.encoding = drive::encodingAt(profile, *id, *type);
   }
   const bool by_index = object == nullptr || write.object != object->name;
-  if (raw) readRaw(*raw, coding, write);
-  if (!value) return;
+  if (raw && !readWord(*raw, object, write)) readRaw(*raw, coding, write);
+  if (!value || readWord(*value, object, write)) return;
   if (!by_index && !object->from_eds) {
     write.value = value->number();
     return;
