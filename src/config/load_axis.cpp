@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include "common/text.h"
 #include "config/drive_family.h"
 #include "config/profile/parts.h"
 #include "config/robot_parts.h"
@@ -84,7 +85,8 @@ void readAxisLimits(yaml::Section& section, AxisConfig& axis, const AxisReading&
 
 void readSections(yaml::Section& section, AxisDraft& draft, RobotConfig& robot) {
   AxisConfig& axis = draft.axis;
-  if (const auto homing = section.get("homing")) axis.homing = readHoming(*homing, axis.profile.get());
+  if (const auto homing = section.get("homing"))
+    axis.homing = readHoming(*homing, axis.profile.get());
   if (draft.first) readDevice(section, draft.device, robot);
   if (const auto parameters = section.get("parameters")) readParameters(*parameters, axis);
   if (const auto frame = section.get("frame")) readFrame(*frame, axis.joint, robot);
@@ -118,16 +120,46 @@ void readKeeps(const yaml::Value& list, AxisConfig& axis) {
   }
 }
 
+/// The units that count while a setting of the drive holds the number that the axis names; it is
+/// compared with that before each enabling.
+void useUnitSystem(const yaml::Value& value, drive::DriveProfile& profile) {
+  const drive::UnitSystems& systems = profile.unit_systems;
+  if (systems.object.empty()) {
+    value.problem("profile " + profile.name + " knows units of one system only");
+    return;
+  }
+  const auto number = value.integer(0, 0xFFFF);
+  const auto check = std::find_if(profile.checks.begin(), profile.checks.end(), [&](const auto& c) {
+    return !c.objects.empty() && c.objects.front() == systems.object;
+  });
+  if (!number || check->condition.holds(*number)) return;  // that of `units`
+  const auto units = systems.others.find(*number);
+  if (units == systems.others.end()) {
+    std::string known;
+    for (const auto& entry : systems.others) append(known, std::to_string(entry.first), ", ");
+    value.problem("profile " + profile.name + " knows no units for " + systems.object + " = " +
+                  std::to_string(*number) + ", but for " + known);
+    return;
+  }
+  profile.units = units->second;
+  check->condition.numbers = {*number};
+  check->texts.clear();
+  check->text = "the axis reckons in other units than the drive";
+  check->remedy = "write " + std::to_string(*number) + " to " + systems.object +
+                  ", or give the axis the `unit_system` that it holds";
+}
+
 /// What is otherwise here than the profile says: inputs and outputs that are wired besides its own,
-/// the side of the gear that the drive counts at.
+/// the side of the gear that the drive counts at, its units.
 void readWiring(yaml::Section& section, AxisConfig& axis) {
   const auto inputs = section.get("inputs"), outputs = section.get("outputs");
-  const auto shaft = section.get("output_shaft");
-  if (!axis.profile || (!inputs && !outputs && !shaft)) return;
+  const auto shaft = section.get("output_shaft"), units = section.get("unit_system");
+  if (!axis.profile || (!inputs && !outputs && !shaft && !units)) return;
   const auto own = std::make_shared<drive::DriveProfile>(*axis.profile);
   section.read("output_shaft", own->output_shaft);
   if (inputs) readDigitalInputs(*inputs, *own);
   if (outputs) readDigitalOutputs(*outputs, *own);
+  if (units) useUnitSystem(*units, *own);
   axis.profile = own;
 }
 

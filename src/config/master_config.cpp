@@ -109,6 +109,17 @@ void addSyncWindow(const BusConfig& bus, NodeConfig& node) {
   node.writes.push_back(write);
 }
 
+/// "parameter_protection (2002:16) may be why: parameters are locked; unlock them", of a family
+/// that has such a setting.
+std::string lockOf(const drive::DriveProfile& profile) {
+  const auto lock = std::find_if(profile.checks.begin(), profile.checks.end(),
+                                 [](const drive::SettingCheck& check) { return check.locks; });
+  if (lock == profile.checks.end()) return {};
+  const drive::ObjectSpec* object = profile.find(lock->objects.front());
+  return object->name + " (" + fieldbus::toString(object->id) + ") may be why: " + lock->text +
+         "; " + lock->remedy;
+}
+
 void setSync(const BusConfig& bus, const canopen::DeviceProfile& profile, NodeConfig& node) {
   // Without a counter on the bus only drives that expect one must be told so.
   if (profile.has_sync_counter_object && (bus.sync_counter != 0 || profile.sync_counter)) {
@@ -170,6 +181,7 @@ NodeConfig makeNode(const BusConfig& bus, const DeviceConfig& device,
   for (const AxisConfig* axis : axes) addBrakes(*axis, node);
   addSyncWindow(bus, node);
   for (const AxisConfig* axis : axes) addAxis(*axis, node, problems);
+  node.sdo.lock = lockOf(*axes.front()->profile);
   node.lacking_remedy = "`lacks` of axes/" + device.name + " says that this is right";
   return node;
 }

@@ -43,6 +43,7 @@ const std::vector<ReloadRule>& reloadRules() {
       {"axes/*/counts_per_turn", kRestart, kPlace},
       {"axes/*/gear_ratio", kRestart, kPlace},
       {"axes/*/output_shaft", kRestart, kPlace},
+      {"axes/*/unit_system", kRestart, kPlace},
       {"axes/*/lead", kRestart, kPlace},
       {"axes/*/direction", kRestart, kPlace},
       {"axes/*/position_offset", kRestart, kPlace},

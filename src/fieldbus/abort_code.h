@@ -39,6 +39,11 @@ constexpr bool saysLacking(std::uint32_t code) {
   return code == kNoSuchObject || code == kNoSuchSubindex || code == kReadOnly ||
          code == kNotMappable;
 }
+/// It says that the object is not written now, or not by everybody, whatever the value.
+constexpr bool saysForbidden(std::uint32_t code) {
+  return code == kUnsupportedAccess || code == kReadOnly || code == kCannotTransfer ||
+         code == kLocalControl || code == kDeviceState;
+}
 }  // namespace abort_code
 
 /// The code with its meaning in words: "0x06010002 (attempt to write a read-only object)". Unknown

@@ -230,6 +230,8 @@ TEST(RobotMistakes, PositionsInCountsNeedTheCountsOfATurn) {
 }
 
 TEST(RobotMistakes, ADriveIsNamedByAText) {
+  EXPECT_THAT(shoulderWith("unit_system: 1").problems,
+              HasSubstr("axes/shoulder/unit_system: profile generic_cia402 knows units of one "));
   const std::string problems = shoulderWith("drive: [generic_cia402]").problems;
   EXPECT_THAT(problems, HasSubstr("axes/shoulder/drive: must be a text, not a list"));
   EXPECT_THAT(problems, Not(HasSubstr("there is no drive profile")));

@@ -216,6 +216,28 @@ TEST(Conversion, AnObjectMayHaveItsOwnUnitAndFactor) {
   EXPECT_EQ(encode(*Conversion::create(speed, countingDrive(), servo(1, 10.0)), 2 * kPi), 2400u);
 }
 
+// SV660C, H0E.07 = 1: the time in ms from 0 to 1000 rpm [L9609-9627].
+TEST(Conversion, AnAccelerationMayBeTheTimeToASpeed) {
+  DriveProfile profile = countingDrive();
+  profile.units[Quantity::acceleration] = {UnitSpec::Base::turn, 1, true, 0.001, 1000.0};
+  const auto conversion = *Conversion::create(object(DataType::uint32, Quantity::acceleration),
+                                              profile, servo(-1, 50.0));
+  // 1000 rpm in 10 s are 10.472 rad/s^2 of the motor, behind the gear a fiftieth of it.
+  const double slow = 1000.0 / 60.0 * 2.0 * kPi / 10.0 / 50.0;
+  EXPECT_NEAR(conversion.toJoint(10000), slow, 1e-12);
+  EXPECT_EQ(encode(conversion, slow), 10000U);
+  EXPECT_EQ(encode(conversion, 0.5 * slow), 20000U) << "bigger is slower";
+  EXPECT_NEAR(conversion.highest(), 10000.0 * slow, 1e-6) << "in 1 ms";
+  EXPECT_NEAR(conversion.lowest(), slow * 10000.0 / 4294967295.0, 1e-12);
+  EXPECT_TRUE(conversion.reversed());
+  std::uint64_t raw = 7;
+  for (const double none :
+       {0.0, -slow, 3e4 * slow, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    EXPECT_FALSE(conversion.toDevice(none, raw)) << none;
+  }
+  EXPECT_EQ(raw, 7U);
+}
+
 TEST(Conversion, RoundsToTheNearestDeviceUnit) {
   const auto position =
       *Conversion::create(object(DataType::int32, Quantity::position), countingDrive(), servo());

@@ -239,5 +239,50 @@ TEST(ProfileSettings, AreRefusedWhereTheyCanMeanNothing) {
   }
 }
 
+const char* const kSourceIsChecked =
+    "checks: [{object: source, is: 0, text: a, remedy: b}]\nunit_systems: ";
+
+TEST(ProfileUnitSystems, KeepTheUnitsThatTheyDoNotName) {
+  Problems problems;
+  const WholeProfile profile = settingsWith(
+      std::string(kSourceIsChecked) +
+          "{object: source, 1: {acceleration: {unit: s, scale: 0.001, to: 1000, of: turn/min}}}",
+      problems);
+  ASSERT_TRUE(problems.empty()) << problems.text();
+  EXPECT_EQ(profile.unit_systems.object, "source");
+  const drive::Units& units = profile.unit_systems.others.at(1);
+  EXPECT_EQ(units.at(drive::Quantity::position).base,
+            profile.units.at(drive::Quantity::position).base);
+  const drive::UnitSpec& acceleration = units.at(drive::Quantity::acceleration);
+  EXPECT_EQ(acceleration.to, 1000.0);
+  EXPECT_EQ(acceleration.scale, 0.001);
+  EXPECT_TRUE(acceleration.per_minute);
+}
+
+TEST(ProfileUnitSystems, AreToldTheirMistakes) {
+  const std::pair<std::string, const char*> mistakes[] = {
+      {"unit_systems: {1: {}}", "unit_systems: `object` is missing"},
+      {"unit_systems: {object: source}", "unit_systems/object: `checks` must compare it"},
+      {std::string(kSourceIsChecked) + "{object: source, one: {}}",
+       "unit_systems/one: a unit system is a number that `source` may hold"},
+      {std::string(kSourceIsChecked) +
+           "{object: source, 1: {velocity: {unit: s, to: 1, of: turn/min}}}",
+       "unit_systems/1/velocity/to: is of accelerations that are times"},
+      {std::string(kSourceIsChecked) +
+           "{object: source, 1: {acceleration: {unit: s, to: 1, of: turn/min/s}}}",
+       "unit_systems/1/acceleration/of: `turn/min/s` is no unit of velocity"},
+      {std::string(kSourceIsChecked) + "{object: source, 1: {acceleration: {unit: s, to: 1}}}",
+       "unit_systems/1/acceleration: `of` is missing"},
+      {std::string(kSourceIsChecked) +
+           "{object: source, 1: {acceleration: {unit: s, to: 0, of: turn/min}}}",
+       "unit_systems/1/acceleration/to"},
+  };
+  for (const auto& [text, told] : mistakes) {
+    Problems problems;
+    settingsWith(text, problems);
+    EXPECT_THAT(problems.text(), HasSubstr(told)) << text;
+  }
+}
+
 }  // namespace
 }  // namespace cia402::config

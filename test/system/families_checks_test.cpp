@@ -168,5 +168,22 @@ TEST(Id286OpenLoop, IsToldOnce) {
   EXPECT_THAT(scene.told(), HasSubstr("motor_mode (20D9:00) is 0 instead of 1, it runs open loop"));
 }
 
+// P02.21 [L3180]: a drive that forbids a write names it.
+TEST(FamilyLock, IsNamedByEveryWriteThatIsForbidden) {
+  Scene scene(loadText(
+      familyJoint(kCheckedDm5,
+                  ", simulation: {with: {dictionary: [[0x6065, 0, following_error_window, uint32, "
+                  "ro, r, 23860929]]}}")));
+  ASSERT_TRUE(scene.boot(std::chrono::seconds(20))) << scene.told();
+  const bus::Answer refused =
+      scene.call(bus::WriteObjectCommand{"joint", "following_error_window", "0.1"});
+  EXPECT_FALSE(refused.success);
+  EXPECT_THAT(
+      refused.message,
+      testing::AllOf(testing::HasSubstr("0x06010002"),
+                     testing::HasSubstr("parameter_protection (2002:16) may be why: "
+                                        "parameters are locked (P02.21); set P02.21 to 0")));
+}
+
 }  // namespace
 }  // namespace cia402

@@ -43,6 +43,32 @@ INSTANTIATE_TEST_SUITE_P(
                     "counts_per_turn of axes/joint is 1"}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
+TEST(Sv660cUnits, AreComparedWithThoseThatTheAxisReckonsIn) {
+  expectRefusedEnabling(sv660cJoint(", unit_system: 1"), "unit_system (200E:08) is 0 instead of 1",
+                        "give the axis the `unit_system` that it holds");
+}
+
+// H0E.07 = 1: 0.01 rpm, and the ms from 0 to 1000 rpm [L9609-9627].
+TEST(Sv660cUnits, MayBeSpeedsInRpmAndAccelerationsAsTimes) {
+  const std::string units = "[0x200E, 8, object_unit_system, uint16, rw, -, 1]";
+  Sv660cReady scene(sv660cJoint(", unit_system: 1", sv660cDelivered(units)), "pv");
+  // 4 rad/s^2 of the joint are 200 of the motor, 1909.86 rpm/s: 1000 rpm in 523.6 ms.
+  EXPECT_EQ(sv660cNumber(scene, 0x6083), 524U);
+  double fastest = 0.0, before = 0.0;
+  for (int i = 0; i < 50; ++i) {
+    scene.stream("joint", 1.0, 4ms);
+    fastest = std::max(fastest, (scene.velocity("joint") - before) / 0.004);
+    before = scene.velocity("joint");
+  }
+  EXPECT_LT(before, 0.9) << "1 rad/s takes 0.25 s";
+  EXPECT_LT(fastest, 4.3) << "rad/s^2";
+  scene.stream("joint", 1.0, 300ms);
+  // 1 rad/s are 50 of the motor, 477.46 rpm.
+  EXPECT_EQ(sv660cNumber(scene, 0x60FF), 47746U);
+  EXPECT_NEAR(scene.velocity("joint"), 1.0, 0.005);
+  EXPECT_NEAR(scene.state("joint").velocity, 1.0, 0.005) << "606Ch";
+}
+
 TEST(Sv660cSettings, AnAxisWithoutIpDoesNotMindTheCommandRate) {
   std::string yaml =
       sv660cJoint(", mode: pp", sv660cDelivered("[0x2001, 0x3E, command_rate, uint16, rw, -, 3]"),

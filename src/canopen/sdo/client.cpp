@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "canopen/sdo/frames.h"
+#include "common/text.h"
 #include "fieldbus/abort_code.h"
 
 namespace cia402::canopen {
@@ -199,6 +200,13 @@ SdoReaction SdoClient::onFenceAnswer(const can::Frame& frame, Time now) {
   return SdoReaction::taken();
 }
 
+std::string SdoClient::refusalText(std::uint32_t abort_code) const {
+  std::string text = "the drive refused: " + abortText(abort_code);
+  const bool forbidden = !queue_.front().isUpload() && abort_code::saysForbidden(abort_code);
+  if (forbidden && !defaults_.lock.empty()) append(text, defaults_.lock);
+  return text;
+}
+
 void SdoClient::act(const SdoReaction& reaction, Time now) {
   switch (reaction.kind) {
     case SdoReaction::Kind::completed:
@@ -206,8 +214,7 @@ void SdoClient::act(const SdoReaction& reaction, Time now) {
     case SdoReaction::Kind::refused:
       exchange_.answered(now);
       if (initiatesBlocks() && blocks_.refused(reaction.code)) return initiate(now);
-      return fail(Failure::aborted_by_server, reaction.code,
-                  "the drive refused: " + abortText(reaction.code), now);
+      return fail(Failure::aborted_by_server, reaction.code, refusalText(reaction.code), now);
     case SdoReaction::Kind::broken:
       abandon(reaction.code);
       return fail(Failure::protocol_error, reaction.code,

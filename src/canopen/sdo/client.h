@@ -128,6 +128,7 @@ class SdoClient final : public fieldbus::ObjectAccess {
   bool isIdle() const { return std::holds_alternative<Idle>(wire_); }
   bool isAtFence() const { return std::holds_alternative<AtFence>(wire_); }
   bool initiatesBlocks() const;
+  std::string refusalText(std::uint32_t abort_code) const;
   void abandon(std::uint32_t abort_code);
   void succeed(Time now);
   void fail(SdoTransfer::Failure failure, std::uint32_t code, std::string reason, Time now);

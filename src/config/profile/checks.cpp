@@ -136,6 +136,7 @@ void readUnless(const yaml::Value& value, const DriveProfile& profile, SettingCh
 void readWriting(yaml::Section& section, const std::vector<const ObjectSpec*>& objects,
                  SettingCheck& check) {
   section.read("power_cycle", check.power_cycle);
+  section.read("locks", check.locks);
   const auto value = section.get("write");
   if (!value) return;
   const auto word = value->oneOf({"never", "asked", "always"});

@@ -267,6 +267,7 @@ void readDrive(yaml::Section& section, yaml::Section& timing, DriveProfile& prof
     profile.before_enable = readWrites(*writes, profile, WriteList::running);
   }
   if (const auto list = section.get("checks")) readChecks(*list, profile);
+  if (const auto systems = section.get("unit_systems")) readUnitSystems(*systems, profile);
   if (const auto list = section.get("may_be_cut"))
     profile.may_be_cut = readSettings(*list, profile);
   readSupervision(section, profile);

@@ -25,6 +25,7 @@ using drive::NamedWrite;
 using drive::ObjectSpec;
 using drive::Quantity;
 using drive::StopBy;
+using drive::Units;
 using drive::UnitSpec;
 using fieldbus::DataType;
 using fieldbus::ObjectId;
@@ -32,6 +33,8 @@ using fieldbus::ObjectId;
 /// A unit such as "count/s" or "turn/min"; adds a problem if it does not suit the quantity.
 std::optional<UnitSpec> readUnit(const yaml::Value& value, Quantity quantity);
 void readUnits(const yaml::Value& value, DriveProfile& profile);
+/// `unit_systems`. @pre units, objects and checks were read
+void readUnitSystems(const yaml::Value& value, DriveProfile& profile);
 /// `bit_fields`: what the bits of objects say.
 void readBitFields(const yaml::Value& value, DriveProfile& profile);
 /// @pre `bit_fields` were read

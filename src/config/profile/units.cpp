@@ -98,6 +98,51 @@ std::optional<UnitSpec> parseUnit(const std::string& text) {
   return unit;
 }
 
+/// Anything but a unit of that quantity is a problem.
+std::optional<UnitSpec> unitOf(const yaml::Value& value, const std::string& text,
+                               Quantity quantity) {
+  if (text.empty()) return {};
+  const QuantityName& wanted = describe(quantity);
+  auto unit = parseUnit(text);
+  if (unit && unit->per_seconds == wanted.per_seconds &&
+      std::find(wanted.bases.begin(), wanted.bases.end(), unit->base) != wanted.bases.end()) {
+    return unit;
+  }
+  value.problem("`" + text + "` is no unit of " + wanted.name + "; write for example `" +
+                example(wanted) + "`");
+  return {};
+}
+
+/// An acceleration as the time to a speed: {unit: s, to: 1000, of: turn/min}.
+std::optional<UnitSpec> timeToSpeed(yaml::Section& section, const std::string& text,
+                                    Quantity quantity) {
+  const auto of = section.require("of", "the unit of the speed that `to` counts");
+  double to = 0.0;
+  section.read("to", to, yaml::kPositive);
+  if (quantity != Quantity::acceleration || text != "s") {
+    section.get("to")->problem(
+        "is of accelerations that are times: write `quantity: acceleration` "
+        "and `unit: s`, or leave it out");
+    return {};
+  }
+  auto unit = of ? unitOf(*of, of->text().value_or(""), Quantity::velocity) : std::nullopt;
+  if (unit) unit->to = to;
+  return unit && to > 0.0 ? unit : std::nullopt;
+}
+
+/// Units by quantity.
+Units readUnitMap(yaml::Section& section) {
+  Units units;
+  for (const QuantityName& entry : quantities()) {
+    if (entry.quantity == Quantity::none || entry.quantity == Quantity::distance) continue;
+    const auto value = section.get(entry.name);
+    const auto unit = value ? readUnit(*value, entry.quantity) : std::nullopt;
+    if (unit) units[entry.quantity] = *unit;
+  }
+  section.finish();
+  return units;
+}
+
 }  // namespace
 
 std::optional<Quantity> readQuantity(const yaml::Value& value) {
@@ -109,40 +154,48 @@ std::optional<Quantity> readQuantity(const yaml::Value& value) {
 }
 
 std::optional<UnitSpec> readUnit(const yaml::Value& value, Quantity quantity) {
+  if (!value.isMap()) return unitOf(value, value.text().value_or(""), quantity);
   std::string text;
   double scale = 1.0;
-  if (value.isMap()) {
-    yaml::Section section(value);
-    if (section.require("unit", "write for example `unit: " + example(describe(quantity)) + "`")) {
-      section.read("unit", text);
-    }
-    section.read("scale", scale, yaml::kPositive);
-    section.finish();
-  } else {
-    text = value.text().value_or("");
+  yaml::Section section(value);
+  if (section.require("unit", "write for example `unit: " + example(describe(quantity)) + "`")) {
+    section.read("unit", text);
   }
-  if (text.empty()) return {};
-  const QuantityName& wanted = describe(quantity);
-  auto unit = parseUnit(text);
-  if (!unit || unit->per_seconds != wanted.per_seconds ||
-      std::find(wanted.bases.begin(), wanted.bases.end(), unit->base) == wanted.bases.end()) {
-    value.problem("`" + text + "` is no unit of " + wanted.name + "; write for example `" +
-                  example(wanted) + "`");
-    return {};
-  }
-  unit->scale = scale;
+  section.read("scale", scale, yaml::kPositive);
+  auto unit =
+      section.has("to") ? timeToSpeed(section, text, quantity) : unitOf(value, text, quantity);
+  section.finish();
+  if (unit) unit->scale = scale;
   return unit;
 }
 
 void readUnits(const yaml::Value& value, DriveProfile& profile) {
   yaml::Section section(value);
-  for (const QuantityName& entry : quantities()) {
-    if (entry.quantity == Quantity::none || entry.quantity == Quantity::distance) continue;
-    const auto unit_value = section.get(entry.name);
-    if (!unit_value) continue;
-    if (const auto unit = readUnit(*unit_value, entry.quantity)) {
-      profile.units[entry.quantity] = *unit;
+  profile.units = readUnitMap(section);
+}
+
+void readUnitSystems(const yaml::Value& value, DriveProfile& profile) {
+  yaml::Section section(value);
+  drive::UnitSystems& systems = profile.unit_systems;
+  const auto name = section.require("object", "the setting that says which units count, by name");
+  const ObjectSpec* object = name ? readSetting(*name, profile) : nullptr;
+  if (object == nullptr) return;
+  systems.object = object->name;
+  const bool checked =
+      std::any_of(profile.checks.begin(), profile.checks.end(), [&](const auto& check) {
+        return !check.objects.empty() && check.objects.front() == object->name;
+      });
+  if (!checked) name->problem("`checks` must compare it with what `units` are for");
+  for (const auto& [key, units] : section.entries()) {
+    if (key == "object") continue;
+    const auto number = yaml::parseInteger(key);
+    if (!number) {
+      units.problem("a unit system is a number that `" + object->name + "` may hold");
+      continue;
     }
+    yaml::Section of_system(units);
+    Units& all = systems.others[*number] = readUnitMap(of_system);
+    all.insert(profile.units.begin(), profile.units.end());
   }
   section.finish();
 }

@@ -101,18 +101,21 @@ Result<Conversion> Conversion::create(const ObjectSpec& object, const DriveProfi
     return lacks(object, std::string("a ") + fieldbus::toString(object.type) +
                              " holds no number that can be scaled");
   }
+  Conversion result;
   double scale = 1.0 / object.factor;
   if (object.quantity != Quantity::none) {
     const UnitSpec* unit = unitOf(object, profile);
     if (unit == nullptr) return lacks(object, "the profile has no unit for what it measures");
     const auto per_unit = jointPerUnit(object, *unit, profile, geometry);
     if (!per_unit) return per_unit.error();
-    scale *= *per_unit * unit->scale;
+    scale = unit->to > 0.0 ? *per_unit * unit->to / (scale * unit->scale)
+                           : scale * *per_unit * unit->scale;
+    result.time_ = unit->to > 0.0;
   }
 
   const bool floating = object.encoding != Encoding::integer;
-  Conversion result;
   result.encoding_ = object.encoding;
+  result.plain_ = !floating && !result.time_;
   result.shift_ = static_cast<std::uint8_t>(64 - bits);
   result.mask_ = ~std::uint64_t{0} >> result.shift_;
   result.signed_ = fieldbus::isSigned(object.type) || object.type == DataType::real32;
@@ -133,6 +136,7 @@ Result<Conversion> Conversion::create(const ObjectSpec& object, const DriveProfi
   }
   result.first_ = result.low_;
   result.last_ = result.high_;
+  if (result.time_) result.low_ = 1.0;  // no time at all is no acceleration
   if (object.range) {
     result.low_ = std::max(result.low_, object.range->low);
     result.high_ = std::min(result.high_, object.range->high);
@@ -140,14 +144,15 @@ Result<Conversion> Conversion::create(const ObjectSpec& object, const DriveProfi
   return result;
 }
 
-double Conversion::floatToJoint(std::uint64_t raw) const {
-  return decodeFloat(encoding_, raw) * factor_ + offset_;
+double Conversion::otherToJoint(std::uint64_t raw) const {
+  const double device = encoding_ == Encoding::integer ? static_cast<double>(raw & mask_)
+                                                       : decodeFloat(encoding_, raw);
+  return time_ ? factor_ / device : device * factor_ + offset_;
 }
 
 bool Conversion::toDevice(double value, std::uint64_t& raw) const {
-  const double device = (value - offset_) * inverse_;
-  if (encoding_ != Encoding::integer) return toFloat(device, raw);
-  double rounded = std::nearbyint(device);
+  if (!plain_) return toOther(value, raw);
+  double rounded = std::nearbyint((value - offset_) * inverse_);
   if (wraps_ && std::fabs(rounded) < kExact) {
     const double numbers = last_ - first_ + 1.0;
     rounded -= numbers * std::floor((rounded - first_) / numbers);
@@ -158,7 +163,14 @@ bool Conversion::toDevice(double value, std::uint64_t& raw) const {
 }
 
 /// Not inlined: toDevice() would save its registers for the integers, too.
-[[gnu::noinline]] bool Conversion::toFloat(double device, std::uint64_t& raw) const {
+[[gnu::noinline]] bool Conversion::toOther(double value, std::uint64_t& raw) const {
+  const double device = time_ ? factor_ / value : (value - offset_) * inverse_;
+  if (encoding_ == Encoding::integer) {
+    const double rounded = std::nearbyint(device);
+    if (!(rounded >= low_ && rounded <= high_)) return false;
+    raw = wire(rounded);
+    return true;
+  }
   if (!(device >= low_ && device <= high_)) return false;
   return encodeFloat(encoding_, device, raw);
 }
@@ -173,9 +185,15 @@ std::uint64_t Conversion::sendableFloat(std::uint64_t raw) const {
   return withoutNegativeZero(encoding_, raw);
 }
 
-double Conversion::lowest() const { return (factor_ < 0.0 ? high_ : low_) * factor_ + offset_; }
+double Conversion::lowest() const {
+  if (time_) return factor_ / high_;
+  return (factor_ < 0.0 ? high_ : low_) * factor_ + offset_;
+}
 
-double Conversion::highest() const { return (factor_ < 0.0 ? low_ : high_) * factor_ + offset_; }
+double Conversion::highest() const {
+  if (time_) return factor_ / low_;
+  return (factor_ < 0.0 ? low_ : high_) * factor_ + offset_;
+}
 
 std::uint64_t Conversion::lowestRaw() const {
   std::uint64_t raw = 0;
@@ -191,17 +209,13 @@ std::uint64_t Conversion::highestRaw() const {
   return signed_ ? mask_ >> 1 : mask_;
 }
 
-double Conversion::resolution() const {
-  return encoding_ == Encoding::integer ? std::fabs(factor_) : 0.0;
-}
+double Conversion::resolution() const { return plain_ ? std::fabs(factor_) : 0.0; }
 
-double Conversion::span() const {
-  return encoding_ == Encoding::integer ? (last_ - first_ + 1.0) * factor_ : 0.0;
-}
+double Conversion::span() const { return plain_ ? (last_ - first_ + 1.0) * factor_ : 0.0; }
 
 Conversion Conversion::wrapping() const {
   Conversion result = *this;
-  result.wraps_ = encoding_ == Encoding::integer && shift_ > 0;
+  result.wraps_ = plain_ && shift_ > 0;
   return result;
 }
 

@@ -39,7 +39,7 @@ class Conversion {
   /// Joint value (rad, m, per s, N m, N) of a raw number as wide as the object. NaN if the device
   /// sent NaN or infinity. Always inlined, as it is called for each value of each cycle.
   [[gnu::always_inline]] double toJoint(std::uint64_t raw) const {
-    if (encoding_ != Encoding::integer) return floatToJoint(raw);
+    if (!plain_) return otherToJoint(raw);
     const std::uint64_t top = raw << shift_;  // the object's own sign bit becomes the top one
     const double device = signed_ ? static_cast<double>(static_cast<std::int64_t>(top) >> shift_)
                                   : static_cast<double>(top >> shift_);
@@ -58,12 +58,12 @@ class Conversion {
   /// Smallest and largest number that it takes, as it is on the wire.
   std::uint64_t lowestRaw() const;
   std::uint64_t highestRaw() const;
-  /// Joint units per device unit (resolution); 0 for floats.
+  /// Joint units per device unit (resolution); 0 for floats and times.
   double resolution() const;
   /// True if larger device numbers are smaller joint values.
-  bool reversed() const { return factor_ < 0.0; }
-  /// Joint units of all numbers that the object has, after which it begins anew; 0 for floats,
-  /// which do not.
+  bool reversed() const { return time_ || factor_ < 0.0; }
+  /// Joint units of all numbers that the object has, after which it begins anew; 0 for floats and
+  /// times, which do not.
   double span() const;
   /// The same for a joint that turns without end: what does not fit the object wraps around, as the
   /// drive's own counting does. Floats do not.
@@ -73,18 +73,20 @@ class Conversion {
 
  private:
   std::uint64_t wire(double device) const;
-  bool toFloat(double device, std::uint64_t& raw) const;
-  double floatToJoint(std::uint64_t raw) const;
+  bool toOther(double value, std::uint64_t& raw) const;
+  double otherToJoint(std::uint64_t raw) const;
   std::uint64_t sendableFloat(std::uint64_t raw) const;
 
-  double factor_ = 1.0;   ///< joint value = factor * device value + offset
+  double factor_ = 1.0;   ///< joint value = factor * device value + offset; of times factor / value
   double inverse_ = 1.0;  ///< 1 / factor
   double offset_ = 0.0;
   double low_ = -2147483648.0, high_ = 2147483647.0;  ///< device values that it takes
   double first_ = low_, last_ = high_;                ///< all that its type has
   std::uint64_t mask_ = 0xFFFFFFFF;                   ///< bits of the object
   std::uint8_t shift_ = 32;                           ///< 64 - bits
+  bool plain_ = true;                                 ///< a whole number, and no time
   bool signed_ = true, wraps_ = false;
+  bool time_ = false;  ///< UnitSpec::to
   Encoding encoding_ = Encoding::integer;
 };
 

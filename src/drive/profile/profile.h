@@ -61,7 +61,9 @@ enum class Quantity : std::uint8_t {
   time,
 };
 
-/// Device units of one quantity: a device value 1 is `scale` of `base` per `per`.
+/// Device units of one quantity: a device value 1 is `scale` of `base` per `per`. Where an
+/// acceleration is told as the time that it takes to a speed, bigger is slower: a device value 1 is
+/// then `scale` seconds, and the speed is `to` of `base` per `per`.
 struct UnitSpec {
   enum class Base : std::uint8_t {
     count,  ///< axis option counts_per_turn to the motor turn
@@ -80,6 +82,14 @@ struct UnitSpec {
   int per_seconds = 0;      ///< power of 1/s: velocity 1, acceleration 2, jerk 3
   bool per_minute = false;  ///< one of these is per minute instead: "turn/min", "turn/min/s"
   double scale = 1.0;
+  double to = 0.0;  ///< > 0: the device tells times
+};
+using Units = std::map<Quantity, UnitSpec>;
+
+/// Other units of a drive that counts as a setting of its own says.
+struct UnitSystems {
+  std::string object;  ///< that says which count, by name; empty: there are no others
+  std::map<std::int64_t, Units> others;  ///< its numbers, and what counts otherwise then
 };
 
 /// A named object of the drive family.
@@ -258,7 +268,8 @@ struct DriveProfile {
   std::string name, description;
   std::uint16_t offset =
       0;  ///< of the objects of its axis from those of axis 0, see ofDeviceAxis()
-  std::map<Quantity, UnitSpec> units;
+  Units units;
+  UnitSystems unit_systems;
   bool output_shaft = false;  ///< units count at the joint's side of the gear
   std::vector<ObjectSpec> objects;
   std::map<std::string, BitFields> bit_fields;  ///< by the names that objects call them by

@@ -49,6 +49,7 @@ struct SettingCheck {
   bool only_warns = false;
   Write write = Write::never;  ///< condition.numbers.front(), then it is read again
   bool power_cycle = false;    ///< what was written counts once power was off
+  bool locks = false;          ///< while it does not hold, the drive may refuse what is written
   std::string text, remedy;    ///< what that means, and what to do about it
   NumberTexts texts;           ///< the same for single numbers, instead of `text`
 
