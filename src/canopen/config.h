@@ -58,6 +58,7 @@ struct StartupWrite {
   bool after_power = false;       ///< it counts once the device was switched off and on
   bool only_if_different = true;  ///< read first, write only what differs
   bool always = false;  ///< no configuration but what stops the drive: done at each boot, first
+  bool before_pdos = false;  ///< else when the PDOs are set up
 };
 
 /// How a motor is stopped that a drive turns as its last master has told it. In modes in which the

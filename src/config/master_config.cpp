@@ -33,6 +33,7 @@ void addWrites(const std::vector<drive::NamedWrite>& writes, AskedBy who, const 
     if (object != nullptr) start.name = object->name;
     start.data = drive::wireBytes((*resolved)->raw, (*resolved)->type);
     start.optional = (*resolved)->optional;
+    start.before_pdos = write.before_pdos;
     start.after_power = axis.profile->after_power.find(start.object) != nullptr;
     start.by_default = who == AskedBy::profile && !(*resolved)->asked_for;
     node.writes.push_back(start);

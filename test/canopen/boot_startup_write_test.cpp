@@ -56,6 +56,25 @@ TEST_F(StartupWriteTest, does_not_read_first_where_not_wanted) {
   EXPECT_FALSE(sentLine(kRead));
 }
 
+TEST_F(StartupWriteTest, comes_after_the_pdos_or_before_them) {
+  const auto place = [this](const std::string& beginning) {
+    const auto found = std::find_if(
+        peer.sent.begin(), peer.sent.end(),
+        [&](const std::string& sent) { return sent.compare(0, beginning.size(), beginning) == 0; });
+    EXPECT_NE(found, peer.sent.end()) << beginning;
+    return found - peer.sent.begin();
+  };
+  for (const bool before : {false, true}) {
+    peer.sent.clear();
+    config.writes[0].before_pdos = before;
+    peer.on(kRead, "583 43 65 60 00 10 00 00 00").on(kWrite, kDone);
+    boot();
+    ASSERT_EQ(node->health(), Health::ready) << node->problem();
+    EXPECT_EQ(place(kWrite) < place("603 40 00 14 01"), before) << "the COB-ID of RPDO 1 is read";
+    EXPECT_EQ(std::count(peer.sent.begin(), peer.sent.end(), kWrite), 1);
+  }
+}
+
 // 0x08000022: because of the present device state; e.g. a drive on its way out of operation.
 const char* const kNotInThisState = "583 80 65 60 00 22 00 00 08";
 

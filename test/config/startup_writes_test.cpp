@@ -67,6 +67,14 @@ TEST(StartupWrites, AreCalledByTheNamesOfTheProfile) {
   EXPECT_TRUE(window.optional) << "few drives have it";
 }
 
+TEST(StartupWrites, GoBeforeThePdosWhereThatIsAskedFor) {
+  const auto writes =
+      writesOf(bootedServo(", write: [{object: \"6065:00\", value: 5000, before_pdos: true}, "
+                           "{object: \"6066:00\", value: 5}]"));
+  EXPECT_TRUE(writeTo(writes, {0x6065, 0}).before_pdos);
+  EXPECT_FALSE(writeTo(writes, {0x6066, 0}).before_pdos);
+}
+
 TEST(StartupWrites, WhatSomebodyAskedForIsNoDefault) {
   const auto plain = writesOf(bootedServo(", write: [{object: position_window, value: 0.1}]"));
   EXPECT_TRUE(writeTo(plain, {0x6081, 0}).by_default) << "the profile's";

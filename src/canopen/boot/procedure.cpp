@@ -30,6 +30,7 @@ std::vector<BootStepPointer> makeSteps(const NodeConfig& config) {
   steps.push_back(makeUnchangedCheck());
   steps.push_back(makeCobIds());
   steps.push_back(makeSyncSetup());
+  steps.push_back(makeEarlyWrites());
   steps.push_back(makePdos(config));
   steps.push_back(makeStartupWrites());
   steps.push_back(makeKeptValues());

@@ -36,9 +36,11 @@ BootStepPointer makeWidths();
 BootStepPointer makeCobIds();
 // boot/sync.cpp: SYNC counter and period (1019h, 1006h).
 BootStepPointer makeSyncSetup();
+// boot/writes.cpp: the start-up writes that go before the PDOs.
+BootStepPointer makeEarlyWrites();
 // boot/pdos.cpp
 BootStepPointer makePdos(const NodeConfig& config);
-// boot/writes.cpp: the start-up writes of profile and user.
+// boot/writes.cpp: the other start-up writes of profile and user.
 BootStepPointer makeStartupWrites();
 // boot/kept_values.cpp: what its RPDOs shall carry of objects that no cycle sets.
 BootStepPointer makeKeptValues();

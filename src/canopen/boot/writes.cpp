@@ -1,5 +1,6 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
-// The start-up writes: those that are always done first of all, those of profile and user last.
+// The start-up writes: those that are always done first of all, those that go before the PDOs, and
+// the others, last.
 #include "canopen/boot/steps.h"
 #include "canopen/boot/text.h"
 #include "fieldbus/abort_code.h"
@@ -7,15 +8,21 @@
 namespace cia402::canopen {
 namespace {
 
+enum class Part : std::uint8_t { always, before_pdos, others };
+
+Part partOf(const StartupWrite& write) {
+  if (write.always) return Part::always;
+  return write.before_pdos ? Part::before_pdos : Part::others;
+}
+
 class Writes : public BootStep {
  public:
-  /// @param always those that are no configuration, else the others.
-  explicit Writes(bool always) : always_(always) {}
+  explicit Writes(Part part) : part_(part), always_(part == Part::always) {}
 
   bool begin(BootContext& boot, Time now) override {
     if (boot.found.unchanged && !always_) return false;
     const std::vector<StartupWrite>& writes = boot.config.writes;
-    while (item_ < writes.size() && writes[item_].always != always_) ++item_;
+    while (item_ < writes.size() && partOf(writes[item_]) != part_) ++item_;
     if (item_ >= writes.size()) return false;
     reading_ = writes[item_].only_if_different;
     if (reading_) {
@@ -111,6 +118,7 @@ class Writes : public BootStep {
     return Progress::waiting;
   }
 
+  const Part part_;
   const bool always_;
   std::size_t item_ = 0;
   bool reading_ = false, reading_back_ = false;
@@ -120,7 +128,8 @@ class Writes : public BootStep {
 
 }  // namespace
 
-BootStepPointer makeStop() { return std::make_unique<Writes>(true); }
-BootStepPointer makeStartupWrites() { return std::make_unique<Writes>(false); }
+BootStepPointer makeStop() { return std::make_unique<Writes>(Part::always); }
+BootStepPointer makeEarlyWrites() { return std::make_unique<Writes>(Part::before_pdos); }
+BootStepPointer makeStartupWrites() { return std::make_unique<Writes>(Part::others); }
 
 }  // namespace cia402::canopen

@@ -217,6 +217,7 @@ std::vector<NamedWrite> readWrites(const yaml::Value& list, const DriveProfile& 
     readIfGiven(section, write);
     readWhen(section, object, kind, write);
     section.read("optional", write.optional);
+    if (kind == WriteList::boot) section.read("before_pdos", write.before_pdos);
     section.finish();
     writes.push_back(write);
   }

@@ -168,7 +168,8 @@ struct NamedWrite {
   /// to be the joint's, and open (the widest number) while they are not. See
   /// drive/axis/position_limits.
   bool when_homed = false;
-  bool optional = false;  ///< an abort is noted, not an error
+  bool optional = false;     ///< an abort is noted, not an error
+  bool before_pdos = false;  ///< at boot; else when the PDOs are set up
 };
 
 /// One mode of operation of the family.
