@@ -93,6 +93,22 @@ TEST(HomingRoute, TurnsAtALimitWhereItSaysSo) {
   EXPECT_NEAR(fails.turns(), 3.0, 0.1);
 }
 
+TEST(HomingRoute, TurnsAtALimitFromALegThatLooksForTheIndexPulse) {
+  Route b(route("legs: \"-slow index\", from_limit: \"+slow index, -slow index\""), -1.9);
+  EXPECT_EQ(b.home(), kReached);
+  EXPECT_NEAR(b.turns() - b.fromHome(), -1.75, 1e-4) << "the last one before the limit";
+}
+
+TEST(HomingRoute, IsAtHomeWhereItBeginsOnTheIndexPulseAndHomeIsHere) {
+  const std::string keys = "legs: \"-slow index\", begun_on: here";
+  Route on(route(keys), 0.25), behind(route(keys), 0.251);
+  EXPECT_EQ(on.home(), kReached);
+  EXPECT_NEAR(on.turns(), 0.25, 1e-5) << "it has not moved";
+  EXPECT_NEAR(on.fromHome(), 0.0, 1e-4);
+  EXPECT_EQ(behind.home(), kReached);
+  EXPECT_NEAR(behind.turns() - behind.fromHome(), 0.25, 1e-4);
+}
+
 TEST(HomingRoute, FailsAtLimitsThatAreAnErrorWhereverItIsGoing) {
   const std::string away = "legs: \"+fast home on\"";
   Route passes(route(away), -2.5), fails(route(away + ", fails_at: [negative]"), -2.5);

@@ -22,6 +22,7 @@ const std::vector<std::pair<const char*, HomingEvent>> kEvents = {
 constexpr const char* kLegs =
     "must be legs like `+fast home on, -slow home off, -slow index`, each until `negative on`, "
     "`negative off`, `positive on`, `positive off`, `home on`, `home off`, `index` or `stop`";
+constexpr const char* kBegunOn = "begun_on";
 
 std::optional<HomingLeg> readLeg(const std::string& text) {
   std::istringstream words(text);
@@ -57,6 +58,14 @@ std::optional<HomingLegs> readLegs(DefinitionReader& reader, const char* key) {
   return legs;
 }
 
+/// Where home is the place itself, there are no legs.
+std::optional<HomingLegs> readBegunOn(DefinitionReader& reader) {
+  if (!reader.has(kBegunOn)) return std::nullopt;
+  std::string text;
+  reader.read(kBegunOn, text);
+  return text == "here" ? HomingLegs{} : readLegs(reader, kBegunOn);
+}
+
 HomingRoute readRoute(const yaml::Value& value) {
   DefinitionReader reader(value);
   HomingRoute route;
@@ -65,7 +74,7 @@ HomingRoute readRoute(const yaml::Value& value) {
   } else {
     reader.problem("legs", "is missing");
   }
-  route.begun_on = readLegs(reader, "begun_on");
+  route.begun_on = readBegunOn(reader);
   route.from_limit = readLegs(reader, "from_limit");
   route.nearer = readLegs(reader, "nearer");
   if (route.nearer && (route.nearer->empty() || route.legs.empty())) {

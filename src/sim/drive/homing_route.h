@@ -39,7 +39,7 @@ using HomingLegs = std::vector<HomingLeg>;
 /// it is the present position.
 struct HomingRoute {
   HomingLegs legs;
-  /// Instead, where it begins on the switch (or the index pulse) that the first leg looks for.
+  /// Instead, where it begins on what the first leg looks for, a switch or the index pulse.
   std::optional<HomingLegs> begun_on;
   /// Instead, from where the first leg meets a limit switch that it does not look for.
   std::optional<HomingLegs> from_limit;
