@@ -1,6 +1,7 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 // The DM5 looks for home at hard stops; what 607Ch is for by P12.11; searches that it refuses; and
 // switches whose contacts are closed at rest. Where home is says the motor.
+#include "system/families_homing.h"
 #include "system/families_motion.h"
 
 namespace cia402 {
@@ -212,11 +213,113 @@ TEST(Dm5Homing, OutOfAMotionBeginsOnceTheMotorStands) {
   EXPECT_NEAR(scene.state("joint").position, kDm5AtHome, 1e-5) << "that is home";
 }
 
-constexpr char kClosedAtRest[] =  // contacts of DI1 to DI3
-    ", with: {terminals: {normally_closed: [0, 1, 2]}}";
 constexpr char kThreeSwitches[] =
     "{object: di1_function, raw: 36}, {object: di2_function, raw: 35}, {object: di3_function, raw: "
     "32}, {object: di4_function, raw: 0}";
+
+/// What the motor does in a search, as "+F -S": forwards by the search speed, back by the slow one.
+class Dm5Ways {
+ public:
+  void see(double velocity) {  // rad/s, each millisecond
+    const double speed = std::fabs(velocity);
+    const char direction = velocity > 0.0 ? '+' : '-';
+    if (direction != direction_) turn(direction);
+    highest_ = std::max(highest_, speed);
+    held_ = std::fabs(speed - kZeroSpeed) < 0.1 * kZeroSpeed ? held_ + 1 : 0;
+    if (speed > 1.5 * kZeroSpeed) add('F');
+    if (held_ > 15) add('S');  // a ramp is there for 8 ms
+  }
+  const std::string& said() {
+    turn(' ');
+    return said_;
+  }
+
+ private:
+  void turn(char direction) {
+    if (highest_ > 0.5 * kZeroSpeed && kind_ == ' ') add('S');
+    direction_ = direction;
+    kind_ = ' ';
+    highest_ = 0.0;
+    held_ = 0;
+  }
+  void add(char kind) {
+    if (kind != kind_) said_ += (said_.empty() ? "" : " ") + std::string{direction_, kind};
+    kind_ = kind;
+  }
+
+  std::string said_;
+  char direction_ = ' ', kind_ = ' ';  ///< now
+  double highest_ = 0.0;               ///< speed since it turned, rad/s
+  int held_ = 0;                       ///< the slow speed, ms
+};
+
+/// The lines of a method, its starts in turns of the motor and what is printed for each. Limit
+/// switches at -2 and 5 and the home switch from 1 to 2.6, index pulses 0.8 turns after each whole
+/// one: from the edges of the home switch there is time to become slow before the next.
+struct Dm5Printed {
+  int method;
+  std::vector<std::pair<double, const char*>> ways;
+};
+void PrintTo(const Dm5Printed& printed, std::ostream* out) { *out << "method " << printed.method; }
+
+class Dm5Printing : public testing::TestWithParam<Dm5Printed> {};
+
+TEST_P(Dm5Printing, SaysWhichWaysAndHowFastTheMotorTurns) {
+  const std::string switches = ", write: [" + std::string(kThreeSwitches) + "]";
+  for (const auto& [start, printed] : GetParam().ways) {
+    Scene scene(loadText(
+        replaced(homingJoint({kHomingDm5, switches.c_str(), {GetParam().method, start, 0.0}}),
+                 "index_offset: 0.3", "index_offset: 0.8")));
+    ASSERT_TRUE(scene.boot(20s)) << scene.told();
+    Dm5Ways ways;
+    scene.watch([&] { ways.see(scene.velocity("joint")); });
+    const bus::Answer homed = scene.procedure(ProcedureKind::home, "joint");
+    ASSERT_TRUE(homed.success) << homed.message << scene.told();
+    EXPECT_EQ(ways.said(), printed) << "from " << start;
+  }
+}
+
+// [L2241-2669]; before, on and behind the switch, and by 33 and 34 with an index pulse ahead, at
+// one and with none before the limit switch.
+constexpr double kRear = 0.0, kOnSwitch = 1.7, kFront = 3.6, kIndex = 1.8;
+const Dm5Printed kDm5Printed[] = {
+    {1, {{kRear, "-F +S"}, {-2.4, "+S"}}},
+    {2, {{kFront, "+F -S"}, {5.4, "-S"}}},
+    {3, {{kRear, "+F -S"}, {kOnSwitch, "-S"}}},
+    {4, {{kRear, "+F +S"}, {kOnSwitch, "-F +F +S"}, {kFront, "+F -F +F +S"}}},
+    {5, {{kFront, "-F +S"}, {kOnSwitch, "+S"}}},
+    {6, {{kFront, "-F -S"}, {kOnSwitch, "+F -F -S"}}},
+    {7, {{kRear, "+F -S"}, {kOnSwitch, "-S"}, {kFront, "+F -F -S"}}},
+    {8, {{kRear, "+F +S"}, {kOnSwitch, "-F +F +S"}, {kFront, "+F -F +F +S"}}},
+    {9, {{kRear, "+F -F -S"}, {kOnSwitch, "+F -F -S"}, {kFront, "+F -F -S"}}},
+    {10, {{kRear, "+F +S"}, {kOnSwitch, "+S"}, {kFront, "+F -F +S"}}},
+    {11, {{kRear, "-F +F +S"}, {kOnSwitch, "+S"}, {kFront, "-F +S"}}},
+    {12, {{kRear, "-F +F -F -S"}, {kOnSwitch, "+F -F -S"}, {kFront, "-F -S"}}},
+    {13, {{kRear, "-F +F +S"}, {kOnSwitch, "-F +F +S"}, {kFront, "-F +F +S"}}},
+    {14, {{kRear, "-F +F -S"}, {kOnSwitch, "-S"}, {kFront, "-F -S"}}},
+    {17, {{kRear, "-F +S"}, {-2.4, "+S"}}},
+    {18, {{kFront, "+F -S"}, {5.4, "-S"}}},
+    {19, {{kRear, "+F -S"}, {kOnSwitch, "-S"}}},
+    {20, {{kRear, "+F -F +S"}, {kOnSwitch, "-F +S"}}},
+    {21, {{kFront, "-F +S"}, {kOnSwitch, "+S"}}},
+    {22, {{kFront, "-F +F -S"}, {kOnSwitch, "+F -S"}}},
+    {23, {{kRear, "+F -S"}, {kOnSwitch, "-S"}, {kFront, "+F -F -S"}}},
+    {24, {{kRear, "+F -F +S"}, {kOnSwitch, "-F +S"}, {kFront, "+F -F +S"}}},
+    {25, {{kRear, "+F +S -S"}, {kOnSwitch, "+S -S"}, {kFront, "+F -F +S -S"}}},
+    {26, {{kRear, "+F +S"}, {kOnSwitch, "+S"}, {kFront, "+F -F +S"}}},
+    {27, {{kRear, "-F +F +S"}, {kOnSwitch, "+S"}, {kFront, "-F +S"}}},
+    {28, {{kRear, "-F +F -S"}, {kOnSwitch, "+F -S"}, {kFront, "-F +F -S"}}},
+    {29, {{kRear, "-F +F -S +S"}, {kOnSwitch, "-S +S"}, {kFront, "-F -S +S"}}},
+    {30, {{kRear, "-F +F -S"}, {kOnSwitch, "-S"}, {kFront, "-F -S"}}},
+    {33, {{kOnSwitch, "-S"}, {kIndex, ""}, {-1.6, "-S +S -S"}}},
+    {34, {{kOnSwitch, "+S"}, {kIndex, ""}, {4.9, "+S -S +S"}}},
+};
+INSTANTIATE_TEST_SUITE_P(By, Dm5Printing, testing::ValuesIn(kDm5Printed), [](const auto& tested) {
+  return "Method" + std::to_string(tested.param.method);
+});
+
+constexpr char kClosedAtRest[] =  // contacts of DI1 to DI3
+    ", with: {terminals: {normally_closed: [0, 1, 2]}}";
 
 /// A method with the switch that it ends at; switches at -0.4, 0.9 and from 0.3 to 0.5 rad.
 class Dm5Inversion : public testing::TestWithParam<std::pair<int, double>> {

@@ -121,6 +121,43 @@ TEST(Dm5Homing, BeginsOnlyWhereATerminalHasTheSwitchOfTheMethod) {
   EXPECT_EQ(scene.seen("joint").travel(), 0.0);
 }
 
+// Each method with the switches that it is printed to look for or to turn at [L2241-2669].
+TEST(Dm5Homing, BeginsByNoMethodWithoutEachOfItsSwitches) {
+  struct Needed {
+    const char *function, *others;
+    std::vector<int> methods;
+  };
+  const Needed kNeeded[] = {
+      {"36",
+       "{object: di2_function, raw: 35}, {object: di3_function, raw: 32}",
+       {1, 11, 12, 13, 14, 17, 27, 28, 29, 30, 33}},
+      {"35",
+       "{object: di2_function, raw: 36}, {object: di3_function, raw: 32}",
+       {2, 4, 7, 8, 9, 10, 18, 23, 24, 25, 26, 34}},
+      {"32",
+       "{object: di2_function, raw: 36}, {object: di3_function, raw: 35}",
+       {3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30}}};
+  for (const Needed& needed : kNeeded) {
+    for (const int method : needed.methods) {
+      std::string search = kSearch;
+      search.replace(search.find("17"), 2, std::to_string(method));
+      Scene scene(loadText(familyJoint(
+          kCheckedDm5, search +
+                           ", write: [{object: di1_function, raw: 0}, {object: di4_function, "
+                           "raw: 0}, " +
+                           needed.others + "]")));
+      ASSERT_TRUE(scene.boot(20s)) << scene.told();
+      scene.forget();
+      const bus::Answer homed = scene.procedure(ProcedureKind::home);
+      EXPECT_FALSE(homed.success) << method;
+      EXPECT_THAT(homed.message,
+                  HasSubstr("give a terminal the function " + std::string(needed.function)))
+          << method;
+      EXPECT_EQ(scene.seen("joint").travel(), 0.0) << method;
+    }
+  }
+}
+
 // P12.11 = 2 would move on by 607Ch and read 0 there.
 TEST(Dm5Homing, IsRefusedWhereTheOffsetMeansSomethingElse) {
   Scene scene(loadText(familyJoint(

@@ -1,7 +1,9 @@
 // Copyright 2026 the cia402_driver authors. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <iomanip>
 #include <ostream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -37,20 +39,21 @@ inline std::vector<FamilyHome> homesByEdges() {
 /// Methods of which all manuals that have them say the same: with the index pulse, and 35.
 inline std::vector<FamilyHome> homesByIndex() {
   constexpr double kBelow = 0.0, kOn = 1.8, kAbove = 3.6;
-  return {{1, kBelow, -1.7}, {1, -2.4, -1.7},  {2, kAbove, 4.3},  {2, 5.4, 4.3},
-          {3, kBelow, 0.3},  {3, kOn, 0.3},    {4, kBelow, 1.3},  {4, kOn, 1.3},
-          {5, kAbove, 3.3},  {5, kOn, 3.3},    {6, kAbove, 2.3},  {6, kOn, 2.3},
-          {7, kBelow, 0.3},  {7, kOn, 0.3},    {8, kBelow, 1.3},  {8, kOn, 1.3},
-          {8, kAbove, 1.3},  {9, kBelow, 2.3}, {9, kOn, 2.3},     {9, kAbove, 2.3},
-          {12, kBelow, 2.3}, {12, kOn, 2.3},   {12, kAbove, 2.3}, {13, kOn, 1.3},
-          {13, kAbove, 1.3}, {33, 1.8, 1.3},   {34, 1.8, 2.3},    {35, 1.8, 1.8}};
+  return {
+      {1, kBelow, -1.7}, {1, -2.4, -1.7},  {2, kAbove, 4.3},  {2, 5.4, 4.3},     {3, kBelow, 0.3},
+      {3, kOn, 0.3},     {4, kBelow, 1.3}, {4, kOn, 1.3},     {5, kAbove, 3.3},  {5, kOn, 3.3},
+      {6, kAbove, 2.3},  {6, kOn, 2.3},    {7, kBelow, 0.3},  {7, kOn, 0.3},     {8, kBelow, 1.3},
+      {8, kOn, 1.3},     {8, kAbove, 1.3}, {9, kBelow, 2.3},  {9, kOn, 2.3},     {9, kAbove, 2.3},
+      {12, kBelow, 2.3}, {12, kOn, 2.3},   {12, kAbove, 2.3}, {13, kBelow, 1.3}, {13, kOn, 1.3},
+      {13, kAbove, 1.3}, {33, 1.8, 1.3},   {34, 1.8, 2.3},    {35, 1.8, 1.8}};
 }
 
 /// Methods that leave the home switch before they look for the index pulse.
 inline std::vector<FamilyHome> homesOffTheSwitch() {
   constexpr double kBelow = 0.0, kOn = 1.8, kAbove = 3.6;
-  return {{7, kAbove, 0.3}, {10, kBelow, 3.3}, {10, kOn, 3.3}, {10, kAbove, 3.3}, {11, kBelow, 3.3},
-          {11, kOn, 3.3},   {11, kAbove, 3.3}, {14, kOn, 0.3}, {14, kAbove, 0.3}};
+  return {{7, kAbove, 0.3},  {10, kBelow, 3.3}, {10, kOn, 3.3},    {10, kAbove, 3.3},
+          {11, kBelow, 3.3}, {11, kOn, 3.3},    {11, kAbove, 3.3}, {14, kBelow, 0.3},
+          {14, kOn, 0.3},    {14, kAbove, 0.3}};
 }
 
 /// The same as the DM5 prints them, where the index pulse may be one on the switch. By the search
@@ -60,6 +63,17 @@ inline std::vector<FamilyHome> homesOnTheSwitch() {
   return {{7, kAbove, 2.3},  {10, kBelow, 1.3}, {10, kOn, 2.3},    {10, kAbove, 2.3},
           {11, kBelow, 1.3}, {11, kOn, 2.3},    {11, kAbove, 2.3}, {14, kBelow, 1.3},
           {14, kOn, 1.3},    {14, kAbove, 2.3}};
+}
+
+/// Starts for which the DM5 alone prints a way: the home switch behind the joint, no index pulse
+/// before the limit switch, and one right here, of which the rotor is at the far end.
+inline std::vector<FamilyHome> homesByTurning() {
+  constexpr double kEnd = 4e-7;
+  return {{4, 3.6, 1.3},
+          {33, -1.8, -1.7},
+          {34, 4.6, 4.3},
+          {33, 1.3 - kEnd, 1.3},
+          {34, 1.3 + kEnd, 1.3}};
 }
 
 struct FamilyHoming {
@@ -81,12 +95,14 @@ inline std::vector<FamilyHoming> withFamily(const FamilyMode& tested, const char
 
 inline std::string homingJoint(const FamilyHoming& homing) {
   const auto place = [](double turns) { return std::to_string(turns * kTurnOfMotor); };
+  std::ostringstream start;  // exact: an index pulse is narrow
+  start << std::setprecision(17) << homing.home.start * kTurnOfMotor;
   return familyJoint(
       homing.tested,
       ", homing: {method: " + std::to_string(homing.home.method) + ", offset: " +
           std::to_string(kReadAtHome) + ", search_velocity: " + std::to_string(kSearchSpeed) +
           ", zero_velocity: " + std::to_string(kZeroSpeed) + ", acceleration: 4.0}" +
-          homing.switches + ", simulation: {initial_position: " + place(homing.home.start) +
+          homing.switches + ", simulation: {initial_position: " + start.str() +
           ", lower_limit_switch: " + place(-2.0) + ", upper_limit_switch: " + place(5.0) +
           ", home_switch: [" + place(1.0) + ", " + place(2.6) + "], index_offset: 0.3}");
 }

@@ -79,6 +79,9 @@ INSTANTIATE_TEST_SUITE_P(GenericAtOnce, FamilyHomingMethod,
 INSTANTIATE_TEST_SUITE_P(Dm5OnTheSwitch, FamilyHomingMethod,
                          testing::ValuesIn(withFamily(kDm5Pp, kDm5Switches, homesOnTheSwitch())),
                          familyMethodName);
+INSTANTIATE_TEST_SUITE_P(Dm5Turning, FamilyHomingMethod,
+                         testing::ValuesIn(withFamily(kDm5Pp, kDm5Switches, homesByTurning())),
+                         familyMethodName);
 
 }  // namespace
 }  // namespace cia402
