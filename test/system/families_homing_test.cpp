@@ -28,11 +28,13 @@ TEST_P(FamilyHomingMethod, MakesTheJointReadItsOffsetAtTheTrueHome) {
 
 constexpr FamilyMode kStepperPp{"nimotion_stepper", "4000", "pp"},
     kId286Pp{"id286_cnfa", "10000", "pp"}, kDm5Pp{"megmeet_dm5", "8388608", "pp"},
-    kByTheBookPp{"generic_cia402", "131072", "pp"};
+    kByTheBookPp{"generic_cia402", "131072", "pp"}, kSv660cPp{"sv660c", "100000", "pp"};
 constexpr char kAsDelivered[] = "";
 constexpr char kDm5Switches[] =  // P03.00 to P03.02: reverse limit, forward limit, home
     ", write: [{object: di1_function, raw: 36}, {object: di2_function, raw: 35}, "
     "{object: di3_function, raw: 32}, {object: di4_function, raw: 0}]";
+constexpr char kSv660cGear[] =  // 2^23 / 100000
+    ", write: [{object: gear_numerator, raw: 262144}, {object: gear_denominator, raw: 3125}]";
 
 std::string familyMethodName(const testing::TestParamInfo<FamilyHoming>& tested) {
   const FamilyHoming& c = tested.param;
@@ -81,6 +83,62 @@ INSTANTIATE_TEST_SUITE_P(Dm5OnTheSwitch, FamilyHomingMethod,
                          familyMethodName);
 INSTANTIATE_TEST_SUITE_P(Dm5Turning, FamilyHomingMethod,
                          testing::ValuesIn(withFamily(kDm5Pp, kDm5Switches, homesByTurning())),
+                         familyMethodName);
+
+// Each start that the manual lists [L1440-1743]: before the switch, on it, and with a limit switch
+// met first. Its figures are not in the text; the edges are those of CiA 402-2 [L15784-15813].
+INSTANTIATE_TEST_SUITE_P(Sv660cEdges, FamilyHomingMethod,
+                         testing::ValuesIn(withFamily(kSv660cPp, kSv660cGear, homesByEdges())),
+                         familyMethodName);
+INSTANTIATE_TEST_SUITE_P(Sv660cIndex, FamilyHomingMethod,
+                         testing::ValuesIn(withFamily(kSv660cPp, kSv660cGear, homesByIndex())),
+                         familyMethodName);
+INSTANTIATE_TEST_SUITE_P(Sv660cOffTheSwitch, FamilyHomingMethod,
+                         testing::ValuesIn(withFamily(kSv660cPp, kSv660cGear, homesOffTheSwitch())),
+                         familyMethodName);
+
+/// Methods that no manual lets turn at a limit switch, with the home switch behind the joint.
+class FamilyHomingBehind : public testing::TestWithParam<FamilyHoming> {};
+
+TEST_P(FamilyHomingBehind, EndsInWordsAtTheLimitSwitchAheadAndFindsNoHome) {
+  const FamilyHoming& c = GetParam();
+  Scene scene(loadText(homingJoint(c)));
+  ASSERT_TRUE(scene.boot(20s)) << scene.told();
+  scene.forget();
+  const bus::Answer homed = scene.procedure(ProcedureKind::home, "joint");
+  EXPECT_FALSE(homed.success);
+  EXPECT_THAT(homed.message, testing::AllOf(HasSubstr("joint (node 1)"), HasSubstr("homing")));
+  scene.run(1s);
+  EXPECT_FALSE(scene.state("joint").homed);
+  EXPECT_NEAR(scene.velocity("joint"), 0.0, 1e-6);
+  const double limit = c.home.home * kTurnOfMotor, ramp = 0.64 * kTurnOfMotor;
+  if (c.home.home > c.home.start) {
+    EXPECT_GE(scene.seen("joint").highest, limit) << "it was there";
+    EXPECT_LT(scene.seen("joint").highest, limit + 1.1 * ramp);
+    EXPECT_GT(scene.seen("joint").lowest, c.home.start * kTurnOfMotor - 1e-3) << "it does not turn";
+  } else {
+    EXPECT_LE(scene.seen("joint").lowest, limit) << "it was there";
+    EXPECT_GT(scene.seen("joint").lowest, limit - 1.1 * ramp);
+    EXPECT_LT(scene.seen("joint").highest, c.home.start * kTurnOfMotor + 1e-3) << "does not turn";
+  }
+}
+
+/// Methods, starts and the limit switch ahead.
+std::vector<FamilyHome> homesBehind() {
+  return {{3, 3.6, 5.0},  {5, 0.0, -2.0},  {6, 0.0, -2.0}, {19, 3.6, 5.0},
+          {20, 3.6, 5.0}, {21, 0.0, -2.0}, {22, 0.0, -2.0}};
+}
+INSTANTIATE_TEST_SUITE_P(Dm5, FamilyHomingBehind,
+                         testing::ValuesIn(withFamily(kDm5Pp, kDm5Switches, homesBehind())),
+                         familyMethodName);
+INSTANTIATE_TEST_SUITE_P(Id286, FamilyHomingBehind,
+                         testing::ValuesIn(withFamily(kId286Pp, kAsDelivered, homesBehind())),
+                         familyMethodName);
+INSTANTIATE_TEST_SUITE_P(Sv660c, FamilyHomingBehind,
+                         testing::ValuesIn(withFamily(kSv660cPp, kSv660cGear, homesBehind())),
+                         familyMethodName);
+INSTANTIATE_TEST_SUITE_P(Generic, FamilyHomingBehind,
+                         testing::ValuesIn(withFamily(kByTheBookPp, kAsDelivered, homesBehind())),
                          familyMethodName);
 
 }  // namespace
