@@ -106,7 +106,8 @@ class Family:
                       if mode["control"] != "homing"}
         homing = profile.get("homing") or {}
         self.methods = list(homing.get("methods") or ([homing["kind"]] if homing else []))
-        self.shown = {item: set() for item in (*self.modes, *self.methods)}
+        self.shown = {item: set() for item in (*self.modes, *self.methods)}  # by which tests
+        self.starts = {method: set() for method in self.methods}  # the same, a name for each start
 
     def find(self, rules, results, used):
         """Looks for the tests of a section of tests.yaml; adds the patterns that fit to used."""
@@ -126,6 +127,17 @@ class Family:
             used.add(pattern)
             if results.problem(full) is None:
                 self.shown[item].add(full.partition("/")[0])
+                if item in self.starts:
+                    self.starts[item].update(results.matching(full))
+
+    def missing_starts(self, rules):
+        """What is wrong with the number of starts of the homing methods, by `starts` of tests.yaml."""
+        for number, methods in rules.get("starts", {}).items():
+            for method in methods:
+                if method not in self.starts:
+                    yield f"the profile has no `{method}`"
+                elif len(self.starts[method]) < number:
+                    yield f"`{method}` is shown from {len(self.starts[method])} of {number} starts"
 
 
 def families(folder, rules, results, problems):
@@ -144,6 +156,7 @@ def families(folder, rules, results, problems):
             named = {item for items in rule.get("named", {}).values() for item in items}
             problems += [f"tests.yaml, {section}: the profile has no `{item}`"
                          for item in sorted(named - set(family.shown), key=str)]
+            problems += [f"tests.yaml, {section}: {problem}" for problem in family.missing_starts(rule)]
         elif section != "all":
             problems.append(f"tests.yaml, {section}: there is no such profile")
     return known

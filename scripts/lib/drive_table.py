@@ -47,7 +47,7 @@ def methods(known):
     for method in sorted(set().union(*(family.methods for family in known)),
                          key=lambda method: (isinstance(method, str), method)):
         cells = ["–" if method not in family.methods else
-                 "shown" if family.shown[method] else "open" for family in known]
+                 len(family.starts[method]) or "open" for family in known]
         yield [method, *cells]
 
 
@@ -64,7 +64,8 @@ def generated(known, checklists):
         parts += [f"\n### {title}\n\n", table(["mode", "6060h", "shown by"], rows)]
     parts += ["\n## Homing methods\n\n",
               "A dash: not among those of the profile. `declare_zero`: a person declares the position.\n",
-              "Shown by a robot that found the home which the method names, in\n\n",
+              "Shown by a robot that found the home which the method names, from as many starts (before the "
+              "switch,\non it, behind it, with a limit switch first) as the number says, in\n\n",
               table(["profile", "tests"], ([family.name, tests_of(family, family.methods)]
                                            for family in known)), "\n",
               table(["method", *(family.name for family in known)], methods(known))]

@@ -44,6 +44,7 @@ A motor. The [checklist](#checklist) has 3 items.
 RESULTS = """passed\ttest_system: All/Family.Moves/washer_pp\tlog\t
 passed\ttest_system: Washer.Spins\tlog\t
 passed\ttest_system: Some/Washer.Homes/Method17Case3\tlog\t
+passed\ttest_system: Some/Washer.Homes/Method17Case4\tlog\t
 passed\troad.Test.test_road\tlog\t
 """
 FAILED = "failed\ttest_system: All/Family.Moves/washer_csp\tlog\tstuck\n"
@@ -96,7 +97,7 @@ class DriveTable(unittest.TestCase):
         self.assertNotIn("\nold\n", self.readme())
         for line in (FAMILY, "| `profile_position` (pp) | 1 | `Family.Moves` |\n",
                      "| `cyclic_velocity` (csv) | 9 | `Washer.Spins` |\n",
-                     "| `velocity` (vl) | 2 | open |\n", "| 1 | open |\n", "| 17 | shown |\n"):
+                     "| `velocity` (vl) | 2 | open |\n", "| 1 | open |\n", "| 17 | 2 |\n"):
             self.assertIn(line, self.readme())
         self.assertNotIn("homing` (hm)", self.readme())
 
@@ -170,6 +171,23 @@ class DriveTable(unittest.TestCase):
             self.assertIn(said, self.said_of("docs/drives/tests.yaml", TESTS, old, new))
         self.assertIn("dryer: there is no such profile\n",
                       self.said_of("docs/drives/tests.yaml", TESTS, "\nwasher:", "\ndryer:"))
+
+    def test_a_homing_method_is_shown_from_as_many_starts_as_the_file_says(self):
+        two = TESTS + "  starts: {2: [17]}\n"
+        self.write("docs/drives/tests.yaml", two)
+        self.assertEqual(self.run_table(), "")
+        self.write("docs/drives/README.md", README)
+        self.assertEqual(self.said_of("docs/drives/tests.yaml", two, "{2: [17]}", "{3: [17]}"),
+                         "tests.yaml, washer: `17` is shown from 2 of 3 starts\n")
+        self.assertEqual(self.said_of("docs/drives/tests.yaml", two, "{2: [17]}", "{1: [1]}"),
+                         "tests.yaml, washer: `1` is shown from 0 of 1 starts\n")
+        self.assertEqual(self.said_of("docs/drives/tests.yaml", two, "{2: [17]}", "{1: [18]}"),
+                         "tests.yaml, washer: the profile has no `18`\n")
+
+    def test_a_start_that_is_gone_changes_what_is_written(self):
+        self.assertEqual(self.run_table(), "")
+        self.write("results.tsv", "".join(line for line in RESULTS.splitlines(True) if "Case4" not in line))
+        self.assertIn("| 17 | 2 |\nand not\n  | 17 | 1 |\n", self.run_table("--check"))
 
     def test_a_document_is_of_a_profile(self):
         self.write("docs/drives/dryer.md", DOCUMENT)
