@@ -198,6 +198,54 @@ TEST(SimulatedNimotion, HasDi3AndDi4OnlyWhere2021hSaysSo) {
   }
 }
 
+// 2004h:02, its function, and 2004h:03, its logic: 1 alarm, 2 position reached, 3 the motor has
+// power, 4 it turns [1907-1940]. Function 0 is its bit of 2004h:01.
+TEST(SimulatedNimotion, TellsAlarmsPositionsAndMotionByItsOutputs) {
+  NimotionBench bench;
+  const auto high = [&](std::uint32_t function, std::uint32_t logic) {
+    bench.write(0x2004, 2, function, 2);
+    bench.write(0x2004, 3, logic, 2);
+    return (bench.drive->truth(bench.now).outputs & 1U) != 0;
+  };
+  EXPECT_FALSE(high(1, 1));
+  EXPECT_TRUE(high(1, 0)) << "low while there is an alarm";
+  EXPECT_FALSE(high(3, 1));
+  EXPECT_FALSE(high(4, 1));
+  bench.write(0x607A, 0, kCounts, 4);
+  bench.positions();
+  EXPECT_TRUE(high(3, 1));
+  bench.control(0x001F);
+  bench.run(ms(200));
+  EXPECT_TRUE(high(4, 1)) << "it turns";
+  EXPECT_FALSE(high(2, 1));
+  bench.run(ms(2000));
+  EXPECT_FALSE(high(4, 1));
+  EXPECT_TRUE(high(2, 1)) << "its position is reached";
+  ASSERT_TRUE(bench.drive->inject("over_current", bench.now));
+  bench.run(ms(100));
+  EXPECT_TRUE(high(1, 1));
+  EXPECT_FALSE(high(3, 1));
+  bench.write(0x2004, 1, 1, 2);
+  EXPECT_TRUE(high(0, 1));
+  bench.write(0x2021, 1, 0, 2);
+  EXPECT_FALSE(high(0, 1)) << "DX0 is an input";
+}
+
+// 0x07, then 0x1F [1363]: the edge of bit 4 counts that comes with the word that enables.
+TEST(SimulatedNimotion, BeginsAHomingByTheWordThatEnables) {
+  AxisMechanics mechanics;
+  mechanics.negative_limit_switch = -1.0;
+  NimotionBench bench("{}", mechanics);
+  bench.write(0x2003, 1, 15, 2);
+  bench.write(0x6098, 0, 17, 1);
+  bench.write(0x6060, 0, 6, 1);
+  bench.control(0x0006);
+  bench.control(0x0007);
+  bench.control(0x001F);
+  bench.run(ms(200));
+  EXPECT_NEAR(bench.drive->truth(bench.now).velocity_turns, -3.0, 0.05) << "12000 counts/s";
+}
+
 // "Setting it in the running state has no effect" [720].
 TEST(SimulatedNimotion, TakesAModeWhileEnabledAndMindsItNot) {
   NimotionBench bench;

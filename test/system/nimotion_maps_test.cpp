@@ -100,9 +100,10 @@ TEST(NimotionOutputs, AreSetByServiceAndHaveTheFunctionsOfTheFile) {
   EXPECT_EQ(scene.number(0x2004, 5), 1U);
   const auto answer = scene.call(bus::SetOutputsCommand{"joint", {"do0"}, {true}});
   EXPECT_TRUE(answer.success) << answer.message;
-  EXPECT_EQ(scene.truth("joint").outputs & 3U, 1U);
+  EXPECT_EQ(scene.truth("joint").outputs & 3U, 3U) << "do1 while the motor has power";
   scene.mustSucceed(ProcedureKind::disable);
   scene.run(200ms);
+  EXPECT_EQ(scene.truth("joint").outputs & 3U, 1U);
   for (const auto& [name, value] : {std::pair("do0_function", "6"), std::pair("do1_function", "6"),
                                     std::pair("do0_logic", "2"), std::pair("do1_logic", "2")}) {
     const auto refused = scene.call(bus::WriteObjectCommand{"joint", name, value});

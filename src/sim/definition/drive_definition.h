@@ -209,6 +209,7 @@ struct DriveDefinition {
   bool internal_limit_bit = true;
   bool warning_stops = false;         ///< a warning leads to the fault reaction
   bool follows_sync_period = false;   ///< csp interpolates over the SYNC period, not over 60C2h
+  bool edges_while_enabling = false;  ///< those that come with 0x0F count
   bool brake_loses_commands = false;  ///< edges of the controlword while the brake opens are lost
   bool ramps_of_mode = false;         ///< in homing "slow down" goes by 609Ah
   /// In velocity mode controlword bit 5 = 0 locks the ramps of quick stop and disabling, too.
@@ -247,8 +248,11 @@ struct DriveDefinition {
   MakersOwnDefinition own;
   MemoryDefinition memory;
 
-  /// What the objects of the roles output_n_function say where 60FEh is shown.
+  /// What the objects of the roles output_n_function say where 60FEh is shown, and where the axis
+  /// tells something by an output.
   std::int64_t commanded_output = 0;
+  std::map<std::int64_t, OutputFunction> output_functions;
+  unsigned first_output = 16;  ///< bit of the first output in the role digital_outputs
 
   std::vector<FaultDefinition> faults;
   std::vector<FaultRecordObjects>

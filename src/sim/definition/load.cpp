@@ -115,7 +115,7 @@ void readDefinition(DefinitionReader& reader, bool extends, DriveDefinition& out
   });
   if (reader.has("fault_records")) out.fault_records.clear();
   reader.list("fault_records", [&](const yaml::Value& value) { readFaultRecord(value, out); });
-  reader.read("commanded_output", out.commanded_output, 0, 65535);
+  readOutputs(reader, out);
   reader.each("obstacles", [&](const std::string& name, const yaml::Value& value) {
     readObstacle(name, value, out);
   });

@@ -97,6 +97,7 @@ void readStateMachine(DefinitionReader& reader, DriveDefinition& out) {
   reader.read("master_lost", out.master_lost, kConnectionLoss);
   reader.read("stops_outside_operational", out.stops_outside_operational);
   reader.read("interpolates_over_sync_period", out.follows_sync_period);
+  reader.read("edges_while_enabling", out.edges_while_enabling);
   reader.read("brake_loses_commands", out.brake_loses_commands);
   reader.read("ramps_of_mode", out.ramps_of_mode);
   reader.read("locked_ramp_holds_stops", out.locked_ramp_holds_stops);

@@ -56,7 +56,29 @@ void readTerminalObject(DefinitionReader& reader, const char* key,
   if (!out) reader.problem(key, "must be an object like \"2017:02\"");
 }
 
+constexpr std::pair<const char*, OutputFunction> kOutputFunctions[] = {
+    {"alarm", OutputFunction::alarm},
+    {"reached", OutputFunction::reached},
+    {"holding", OutputFunction::holding},
+    {"turning", OutputFunction::turning}};
+
 }  // namespace
+
+void readOutputs(DefinitionReader& reader, DriveDefinition& out) {
+  reader.read("commanded_output", out.commanded_output, 0, 65535);
+  std::int64_t first = out.first_output;
+  reader.read("first_output", first, 0, 27);
+  out.first_output = static_cast<unsigned>(first);
+  if (reader.has("output_functions")) out.output_functions.clear();
+  reader.section("output_functions", [&](DefinitionReader& functions) {
+    for (const auto& [word, function] : kOutputFunctions) {
+      std::int64_t number = 0;
+      if (!functions.has(word)) continue;
+      functions.read(word, number, 0, 65535);
+      out.output_functions[number] = function;
+    }
+  });
+}
 
 void readTerminals(DefinitionReader& reader, TerminalsDefinition& out) {
   readTerminalObject(reader, "inversion", out.inversion);

@@ -24,6 +24,14 @@ enum class InputFunction : std::uint8_t {
   step,           ///< an edge brings a step there
 };
 
+/// What an axis can tell by a digital output.
+enum class OutputFunction : std::uint8_t {
+  alarm,    ///< a fault or a warning
+  reached,  ///< bit 10 of the statusword
+  holding,  ///< the motor has power
+  turning,
+};
+
 /// Digital inputs whose functions the drive is told by objects. Logic of an input with a terminal:
 /// 0 active low, 1 high, 2 to 4 by edges; of a virtual one, whose level comes over the bus: 0
 /// active high, 1 by rising edges.

@@ -166,9 +166,9 @@ void DriveCore::onControlword() {
   motion_.lockRamps(definition_.locked_ramp_holds_stops && locked);
   const bool was_operating = power_.operating();
   command(wanted);
-  // Edges count only where operation was enabled before.
+  // Most drives mind edges only where operation was enabled before.
   const bool lost = definition_.brake_loses_commands && power_.braking(now_);
-  const bool edges = was_operating && !lost;
+  const bool edges = (was_operating || definition_.edges_while_enabling) && !lost;
   if (power_.operating()) motion_.controlBits(controlword_, edges ? previous : controlword_);
   updateStatusword();
 }
@@ -261,7 +261,8 @@ void DriveCore::onWrite(Role role) {
 }
 
 std::uint32_t DriveCore::outputs() const {
-  return on_ ? outputsAtTerminals(definition_, values_, nmt_) : 0;
+  const OutputSituation now{nmt_, statusword_, motion_.powered(), motion_.motor().velocity()};
+  return on_ ? outputsAtTerminals(definition_, values_, now) : 0;
 }
 
 std::uint32_t DriveCore::refuseWrite(const Entry& entry, std::uint64_t number) const {
@@ -361,8 +362,7 @@ void DriveCore::onMasterLost() {
 }
 
 void DriveCore::onNmtState(canopen::NmtState state) {
-  const bool left =
-      nmt_ == canopen::NmtState::operational && state != canopen::NmtState::operational;
+  const bool left = nmt_ == canopen::NmtState::operational && state != nmt_;
   nmt_ = state;
   faults_.onNmtState(state, now_);
   if (!left || !definition_.stops_outside_operational) return;

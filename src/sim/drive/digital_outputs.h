@@ -9,9 +9,17 @@
 
 namespace cia402::sim {
 
+/// What outputs can tell of an axis.
+struct OutputSituation {
+  canopen::NmtState nmt;
+  std::uint16_t statusword;
+  bool powered;     ///< its motor
+  double velocity;  ///< turns/s
+};
+
 /// Digital outputs that are on at their terminals, in the bits of 60FEh: what is commanded, where
-/// the terminal shows that, and what the maker's parameters make of it.
+/// the terminal shows that, and what functions and the maker's parameters make of it.
 std::uint32_t outputsAtTerminals(const DriveDefinition& definition, const DriveValues& values,
-                                 canopen::NmtState nmt);
+                                 const OutputSituation& situation);
 
 }  // namespace cia402::sim

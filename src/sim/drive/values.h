@@ -121,6 +121,10 @@ enum class Role : std::uint8_t {
   output_3_function,
   output_4_function,
   output_5_function,
+  output_1_logic,  ///< vendor object: 0: low while what its function tells is so, else high
+  output_2_logic,
+  output_1_used,  ///< vendor object: 0: the terminal is an input
+  output_2_used,
   outputs_by_parameter,  ///< vendor object: bit n: output n + 1 shows bit n of the next
   output_levels,
   outputs_offline,   ///< vendor object: bit n: output n + 1 is off while not operational
