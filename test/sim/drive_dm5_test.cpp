@@ -105,7 +105,7 @@ TEST(DriveDm5, BeginsNoSearchForHomeInMotion) {
     b.write(0x6098, 0, 17, 1);
     b.enable();
     b.run(ms(600));
-    if (moves) b.write(0x60FF, 0, 131072, 4);  // a turn a second
+    if (moves) b.write(0x60FF, 0, 8388608, 4);  // a turn a second
     b.run(ms(300));
     b.write(0x6060, 0, 6, 1);
     b.control(0x001F);
@@ -125,7 +125,7 @@ TEST(DriveDm5, FollowsNoStepThatItsMotorCannot) {
   double turns = 0.0;
   const auto goOn = [&](double step) {
     turns += step;
-    b.write(0x607A, 0, static_cast<std::uint32_t>(turns * 131072.0), 4);
+    b.write(0x607A, 0, static_cast<std::uint32_t>(turns * 8388608.0), 4);
     b.sync();
     b.run(ms(4));
   };

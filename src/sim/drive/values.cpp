@@ -250,7 +250,8 @@ constexpr double kHardest = 1000.0 / 60.0 / 0.001;  // turns/s^2: 1000 rpm in a 
 }  // namespace
 
 DriveValues::DriveValues(const DriveDefinition& definition, unsigned axis,
-                         ObjectDictionary& dictionary, double counts_per_turn) {
+                         ObjectDictionary& dictionary, double counts_per_turn)
+    : counts_per_turn_(counts_per_turn) {
   for (const RoleInfo& info : kRoles) {
     const auto moved = definition.objects.find(info.role);
     const fieldbus::ObjectId object =
@@ -282,7 +283,8 @@ DriveValues::DriveValues(const DriveDefinition& definition, unsigned axis,
 }
 
 double DriveValues::countsPerUnit(const Slot& slot) const {
-  const double counts = static_cast<double>(raw(Role::encoder_resolution, 1)) /
+  const auto told = static_cast<double>(raw(Role::encoder_resolution, 0));
+  const double counts = (told > 0.0 ? told : counts_per_turn_) /
                         static_cast<double>(raw(Role::encoder_revolutions, 1));
   if (!slot.geared) return counts;
   return counts * static_cast<double>(raw(Role::gear_denominator, 1)) /

@@ -285,6 +285,7 @@ class DriveValues {
   const Slot& slot(Role role) const { return slots_[static_cast<std::size_t>(role)]; }
 
   std::array<Slot, kRoleCount> slots_;
+  double counts_per_turn_;  ///< where no object says how many
 };
 
 }  // namespace cia402::sim
