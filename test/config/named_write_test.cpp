@@ -104,7 +104,11 @@ TEST(NamedWrite, PeriodsAreExactOrNothing) {
   ASSERT_TRUE(four);
   EXPECT_EQ(four->value, 4);
   EXPECT_EQ(four->exponent, -3);
-  EXPECT_EQ(interpolationPeriod(std::chrono::milliseconds(250))->value, 25);
+  EXPECT_EQ(interpolationPeriod(std::chrono::milliseconds(250))->value, 250);
+  EXPECT_EQ(interpolationPeriod(std::chrono::milliseconds(250))->exponent, -3) << "where that will";
+  EXPECT_EQ(interpolationPeriod(std::chrono::milliseconds(260))->value, 26);
+  EXPECT_EQ(interpolationPeriod(std::chrono::milliseconds(20))->value, 20);
+  EXPECT_EQ(interpolationPeriod(std::chrono::microseconds(20))->value, 2) << "10^-5";
   EXPECT_EQ(interpolationPeriod(std::chrono::seconds(1))->exponent, 0);
   EXPECT_FALSE(interpolationPeriod(std::chrono::microseconds(3333)));
   EXPECT_FALSE(interpolationPeriod(std::chrono::nanoseconds(1500)));

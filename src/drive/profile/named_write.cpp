@@ -160,12 +160,17 @@ bool isGiven(const std::string& name, const AxisConfig& axis) {
 }
 
 std::optional<InterpolationPeriod> interpolationPeriod(Duration period) {
-  std::int64_t unit_ns = 1000000000;
-  for (int exponent = 0; exponent >= -6; --exponent, unit_ns /= 10) {
+  struct Unit {
+    std::int8_t exponent;
+    std::int64_t ns;
+  };
+  // Milliseconds first: some drives know no other exponent than -3, the default of 60C2h:02.
+  constexpr Unit kUnits[] = {{-3, 1000000}, {0, 1000000000}, {-1, 100000000}, {-2, 10000000},
+                             {-4, 100000},  {-5, 10000},     {-6, 1000}};
+  for (const auto& [exponent, unit_ns] : kUnits) {
     const std::int64_t value = period.count() / unit_ns;
     if (period.count() % unit_ns != 0 || value < 1 || value > 255) continue;
-    return InterpolationPeriod{static_cast<std::uint8_t>(value),
-                               static_cast<std::int8_t>(exponent)};
+    return InterpolationPeriod{static_cast<std::uint8_t>(value), exponent};
   }
   return {};
 }
