@@ -5,6 +5,7 @@
 #include "system/families_bus_scene.h"
 #include "system/families_homing.h"
 #include "system/families_motion.h"
+#include "system/stations.h"
 
 namespace cia402 {
 namespace {
@@ -26,13 +27,14 @@ std::string askedReading(const std::string& with) { return ", simulation: {with:
 struct Dm5Reading {
   const char *name, *with;
   std::size_t emergencies;
+  const char* options = "";  ///< of the axis, that such a drive takes
 };
 void PrintTo(const Dm5Reading& tested, std::ostream* out) { *out << tested.name; }
 
 class Dm5Reads : public testing::TestWithParam<Dm5Reading> {};
 
 TEST_P(Dm5Reads, GoesAndTellsItsFaultsAllTheSame) {
-  Scene scene(loadText(familyJoint(kAskedCsp, askedReading(GetParam().with))));
+  Scene scene(loadText(familyJoint(kAskedCsp, GetParam().options + askedReading(GetParam().with))));
   expectBootsAndGoes(scene);
   scene.inject("joint", "overcurrent");
   scene.run(300ms);
@@ -73,8 +75,75 @@ INSTANTIATE_TEST_SUITE_P(
         Dm5Reading{"SpeedsInCounts",  // which nothing of a motion depends on [L1978-1991]
                    "units_of: {velocity_demand: counts, velocity_window: counts, "
                    "velocity_threshold: counts}",
-                   0}),
+                   0},
+        // Heartbeats and SYNC are assumed: nothing of CAN is printed.
+        Dm5Reading{"NoHeartbeat", "without: [0x1016, 0x1017]", 0},
+        Dm5Reading{"NotDrivenBySync",
+                   "without: [0x1005, 0x1006], state_machine: {interpolates_over_sync_period: "
+                   "false}",
+                   0,
+                   ", pdos: {rpdo1: {objects: [controlword, target_position], transmission: 255}, "
+                   "tpdo1: {objects: [statusword, position_actual], transmission: 255, "
+                   "event_timer: 0.004}}"}),
     [](const auto& tested) { return std::string(tested.param.name); });
+
+// Its loss is told to be unseen, and so is that of the master to it.
+TEST(Dm5Heartbeats, ThatTheDriveDoesNotHaveAreMissedInWords) {
+  Scene scene(loadText(familyJoint(kAskedCsp, askedReading("without: [0x1016, 0x1017]"))));
+  ASSERT_TRUE(scene.boot(20s)) << scene.told();
+  EXPECT_THAT(scene.told(),
+              AllOf(HasSubstr("cannot notice a dead master: writing 0x007F012C to 1016:01"),
+                    HasSubstr("not supervised, its loss will go unnoticed: writing 0x0064 to "
+                              "1017:00 producer heartbeat time")));
+}
+
+// --- Positions that wait in the drive: how many is assumed, and whether a new one replaces them
+// ----------------------------------------------------------------------------------------------
+
+TEST(Dm5Queues, OfAnyLengthAreComeToRestInTheirOrder) {
+  for (const char* queue : {"queue: 1, replaces_queue: true", "queue: 4, replaces_queue: true",
+                            "queue: 4, replaces_queue: false"}) {
+    const FamilyMode queued{"megmeet_dm5", "8388608", "queued_position"};
+    Stations scene(familyJoint(queued, askedReading("modes: {1: {behaviour: profile_position, " +
+                                                    std::string(queue) + "}}")));
+    scene.give({0.3, 0.1, 0.4, -0.2, 0.0});
+    EXPECT_THAT(scene.visit(9s), testing::ElementsAre(0, 30, 10, 40, -20, 0)) << queue;
+    EXPECT_NEAR(scene.position("joint"), 0.0, Stations::kOneStep);
+    scene.give({1.0, 0.2});
+    scene.run(700ms);
+    scene.mustSucceed(ProcedureKind::halt);
+    const double held = scene.position("joint");
+    EXPECT_LT(held, 0.9) << queue;
+    scene.mustSucceed(ProcedureKind::enable);
+    scene.expectStands(2s);
+    EXPECT_NEAR(scene.position("joint"), held, Stations::kOneStep) << "nothing goes on: " << queue;
+  }
+}
+
+// A drive whose queue is full and is not replaced by bit 5 either: what waits there would be gone
+// to once the halt ends, so that the axis is switched off. Enabling it anew empties its queue.
+TEST(Dm5Queues, ThatAreNotReplacedMoveNothingAfterAHalt) {
+  const FamilyMode queued{"megmeet_dm5", "8388608", "queued_position"};
+  Stations scene(familyJoint(
+      queued, askedReading("modes: {1: {behaviour: profile_position, queue: 1, replaces_queue: "
+                           "false}}")));
+  scene.give({1.0, 0.2});
+  scene.run(700ms);
+  scene.mustSucceed(ProcedureKind::halt);
+  const double held = scene.position("joint");
+  EXPECT_LT(held, 0.9);
+  const bus::Answer early = scene.procedure(ProcedureKind::enable);
+  EXPECT_FALSE(early.success) << early.message;
+  scene.run(4s);
+  EXPECT_THAT(scene.told(), HasSubstr("did not take the place where it stands"));
+  EXPECT_FALSE(scene.truth("joint").power_stage_on);
+  EXPECT_NEAR(scene.position("joint"), held, Stations::kOneStep);
+  scene.mustSucceed(ProcedureKind::enable);
+  scene.expectStands(2s);
+  scene.give({held + 0.2});
+  scene.run(3s);
+  EXPECT_NEAR(scene.position("joint"), held + 0.2, Stations::kOneStep) << scene.told();
+}
 
 // --- P02.00: 0 from the factory; which number CANopen has is a guess [L529, L3156]
 // ----------------

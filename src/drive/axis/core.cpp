@@ -15,6 +15,14 @@ namespace {
                         missing + "; " + report(axis));
 }
 
+/// The place to stand at was not taken: what waits in the drive would be gone to as the halt ends.
+[[gnu::cold]] void leaveHalt(AxisCore& axis) {
+  axis.notices().fail(axis.who() +
+                      ": the drive did not take the place where it stands, so that it would go on "
+                      "as soon as the halt ends: it is switched off; enable begins anew");
+  axis.setGoal(Goal::quick_stop);
+}
+
 }  // namespace
 
 AxisCore::AxisCore(AxisConfig config, fieldbus::Device& device)
@@ -117,7 +125,10 @@ void AxisCore::writeCommands(Time now) {
     generator_.advance(now);
     stops_.watchEffort(now);
     const double target = generator_.target();
-    if (const char* missing = generator_.send(now)) tellNotTaken(*this, missing, target);
+    if (const char* missing = generator_.send(now)) {
+      tellNotTaken(*this, missing, target);
+      if (state().halted) leaveHalt(*this);
+    }
   } else {
     generator_.sendNeutral();
   }
