@@ -24,6 +24,12 @@ struct Sv660cMemory : Scene {
     inject("joint", "power_cycle");
     run(5s);
   }
+  /// What a person sets at the drive itself, which stays without power.
+  void atThePanel(fieldbus::ObjectId object, std::uint64_t number) {
+    sim::Entry* entry = drive("joint").dictionary().find(object);
+    ASSERT_NE(entry, nullptr);
+    entry->number = entry->initial_number = number;
+  }
   std::uint64_t gain() { return sv660cNumber(*this, 0x2008, 1); }
   std::uint64_t keeps() { return sv660cNumber(*this, 0x200C, 0x0E); }
   bus::Answer save() { return procedure(ProcedureKind::save_parameters, "joint"); }
@@ -156,6 +162,73 @@ TEST(Sv660cFactoryReset, BringsBackWhatTheFactoryHasSetAndSaysWhatMustFollow) {
   EXPECT_FALSE(scene.truth("joint").power_stage_on);
   scene.powerCycle();
   EXPECT_FALSE(allReady(scene.robot())) << "it has no CANopen any more";
+}
+
+// Each step at the panel is asked for in turn while the bus is still there; H0E.10 [L9629-9647],
+// H02.00 [L3334], H01.61 [L866, L3149], of which the first and the last count from the next
+// power-on.
+TEST(Sv660cFactoryReset, IsLivedWithOnceThePanelHasWhatIsAskedFor) {
+  Sv660cMemory scene(sv660cWith(sv660cJoint(), "bitrate: 1000000", "bitrate: 500000"));
+  ASSERT_TRUE(scene.reset(true).success);
+  struct Step {
+    const char* told;
+    fieldbus::ObjectId object;
+    std::uint64_t number;
+  };
+  for (const Step& step :
+       {Step{"set H02.00 to 8", {0x2002, 0x01}, 8},
+        Step{"set H0E.10 to 2 and switch the drive off and on", {0x200E, 0x0B}, 2},
+        Step{"set H01.61 to 2", {0x2001, 0x3E}, 2}}) {
+    const bus::Answer refused = scene.procedure(ProcedureKind::enable);
+    EXPECT_FALSE(refused.success);
+    EXPECT_THAT(refused.message, HasSubstr(step.told));
+    EXPECT_FALSE(scene.truth("joint").power_stage_on);
+    scene.atThePanel(step.object, step.number);
+  }
+  scene.powerCycle();
+  ASSERT_TRUE(allReady(scene.robot())) << scene.told();
+  const bus::Answer enabled = scene.procedure(ProcedureKind::enable);
+  ASSERT_TRUE(enabled.success) << enabled.message;
+  EXPECT_EQ(scene.state("joint").state, drive::State::operation_enabled);
+  ASSERT_TRUE(declare(scene, "joint", 0.0).success);
+  const double from = scene.position("joint");
+  ASSERT_EQ(scene.setpoint("joint", 0.3), "");
+  scene.run(3s);
+  EXPECT_NEAR(scene.position("joint") - from, 0.3, 1e-5) << scene.told();
+}
+
+// As it comes from the factory: no CANopen, whatever is asked of it.
+TEST(Sv660cFactoryState, IsSilentUntilThePanelHasWhatTheDriverNames) {
+  Scene scene(loadText(sv660cWith(sv660cJoint(), "bitrate: 1000000", "bitrate: 500000")));
+  const auto panel = [&](fieldbus::ObjectId object, std::uint64_t number) {
+    sim::Entry* entry = scene.drive("joint").dictionary().find(object);
+    entry->number = entry->initial_number = number;
+  };
+  panel({0x200E, 0x0B}, 0);
+  panel({0x2002, 0x01}, 1);
+  panel({0x2001, 0x3E}, 3);
+  scene.robot().start();
+  scene.inject("joint", "power_cycle");
+  scene.run(30s);
+  EXPECT_FALSE(allReady(scene.robot()));
+  EXPECT_FALSE(scene.procedure(ProcedureKind::enable).success);
+  EXPECT_THAT(scene.told(), HasSubstr("at its panel set H0E.10 to 2 and H02.00 to 8, compare "
+                                      "H0C.00 (node-ID) and H0C.08 (bit rate), then switch it off "
+                                      "and on"));
+  panel({0x200E, 0x0B}, 2);
+  panel({0x2002, 0x01}, 8);
+  scene.inject("joint", "power_cycle");
+  ASSERT_TRUE(scene.runUntil([&] { return allReady(scene.robot()); }, 40s)) << scene.told();
+  const bus::Answer refused = scene.procedure(ProcedureKind::enable);
+  EXPECT_FALSE(refused.success);
+  EXPECT_THAT(refused.message, HasSubstr("set H01.61 to 2"));
+  panel({0x2001, 0x3E}, 2);
+  scene.inject("joint", "power_cycle");
+  scene.run(5s);
+  const bus::Answer enabled = scene.procedure(ProcedureKind::enable);
+  EXPECT_TRUE(enabled.success) << enabled.message;
+  EXPECT_EQ(scene.state("joint").state, drive::State::operation_enabled);
+  EXPECT_TRUE(scene.truth("joint").power_stage_on);
 }
 
 // H0C.08 is 5, 500 kbit/s, from the factory [L9277].
