@@ -92,6 +92,74 @@ TEST(GenericModes, EachModeTakesItsSetPoints) {
   EXPECT_LT(scene.seen("right").travel(), kNoJump) << "the other axis was never enabled";
 }
 
+class GenericTorqueMode : public testing::TestWithParam<const char*> {
+ protected:
+  /// The left axis is enabled in the mode.
+  static void begin(Scene& scene) {
+    ASSERT_TRUE(scene.boot()) << scene.told();
+    ASSERT_TRUE(scene.procedure(ProcedureKind::set_mode, "left", GetParam()).success);
+    ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "left").success) << scene.told();
+  }
+  /// 6077h of the left axis, in 1/1000 of its rated torque.
+  static int torque(Scene& scene) {
+    return static_cast<std::int16_t>(scene.drive("left").dictionary().find({0x6077, 0})->number);
+  }
+};
+
+// 0.64 N m by a gear of 100 are 64 N m: 12 N m are 187.5 / 1000 of them, 120 N m, its limit, 1875.
+TEST_P(GenericTorqueMode, PushesAsHardAsItIsToldBothWays) {
+  Scene scene(loadText(genericPair(", modes: [csp, pt, csv, cst]")));
+  ASSERT_NO_FATAL_FAILURE(begin(scene));
+  scene.forget();
+  scene.run(500ms);
+  EXPECT_LT(scene.seen("left").travel(), kNoJump) << "enabled, and nothing more";
+  EXPECT_EQ(torque(scene), 0);
+  scene.inject("left", "blocked_rotor");
+  for (const double effort : {12.0, -12.0}) {
+    ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "left").success) << scene.told();
+    scene.stream("left", effort, 500ms);
+    EXPECT_NEAR(torque(scene), effort / 64.0 * 1000.0, 1.0);
+    EXPECT_NEAR(scene.state("left").effort, effort, 0.1);
+    scene.run(1s);
+    EXPECT_EQ(torque(scene), 0) << "without a stream there is none";
+  }
+  ASSERT_TRUE(scene.procedure(ProcedureKind::enable, "left").success) << scene.told();
+  const Time end = scene.now() + 500ms;
+  int hardest = 0;
+  while (scene.now() < end) {
+    (void)scene.setpoint("left", 200.0);
+    scene.run(20ms);
+    hardest = std::max(hardest, torque(scene));
+  }
+  EXPECT_EQ(hardest, 1875) << "200 N m are cut to the limit";
+}
+
+// 6 N m are 93.75 / 1000. At its rated torque the motor takes 300 turns/s^2 in the file of the
+// simulated drive: 28.1 turns/s^2 are 1.77 rad/s^2 of the joint, less what friction takes.
+TEST_P(GenericTorqueMode, TurnsTheJointAsItIsPushedAndEndsAtRest) {
+  for (const double way : {1.0, -1.0}) {
+    Scene scene(loadText(genericPair(", modes: [csp, pt, csv, cst]")));
+    ASSERT_NO_FATAL_FAILURE(begin(scene));
+    const Time begin = scene.now();
+    ASSERT_TRUE(scene.runUntil(
+        [&] {
+          (void)scene.setpoint("left", 6.0 * way);
+          return way * scene.velocity("left") > 0.5;
+        },
+        2s))
+        << scene.told();
+    EXPECT_GT(toSeconds(scene.now() - begin), 0.5 / 1.8);
+    EXPECT_NEAR(scene.state("left").position, scene.position("left"), 0.02);
+    EXPECT_NEAR(scene.state("left").velocity, scene.velocity("left"), 0.05);
+    scene.run(2s);
+    EXPECT_NEAR(scene.velocity("left"), 0.0, 1e-3);
+    EXPECT_LT(scene.seen("right").travel(), kNoJump);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, GenericTorqueMode, testing::Values("profile_torque", "cyclic_torque"),
+                         [](const auto& tested) { return std::string(tested.param); });
+
 /// Brings the axis somewhere else in the mode it is in, and to rest.
 void wander(Scene& scene, const std::string& axis, double goal) {
   const drive::ModeSpec* mode = scene.state(axis).mode;
