@@ -270,7 +270,7 @@ TEST(NamedWrite, PeriodsHaveOneToTwoHundredAndFiftyFiveOfAPowerOfTen) {
       {std::chrono::microseconds(1), 1, -6},     {std::chrono::microseconds(7), 7, -6},
       {std::chrono::microseconds(255), 255, -6}, {std::chrono::milliseconds(255), 255, -3},
       {std::chrono::seconds(255), 255, 0},       {std::chrono::seconds(1), 1, 0},
-      {std::chrono::milliseconds(100), 1, -1}};
+      {std::chrono::milliseconds(100), 100, -3}, {std::chrono::milliseconds(300), 3, -1}};
   for (const Row& row : rows) {
     SCOPED_TRACE(row.period.count());
     const auto found = interpolationPeriod(row.period);
