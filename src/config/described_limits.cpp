@@ -70,6 +70,21 @@ std::vector<Claim> claimsOf(const Row& row, const DescribedLimits::Owner& own,
   return claims;
 }
 
+/// What is stated of a joint that several axes move, though only an axis can be kept to it: "effort
+/// 3 of robot_description".
+std::string uncountedOf(const std::vector<DescribedLimits::Stated>& stated) {
+  std::string all;
+  for (const Row& row : kRows) {
+    for (const DescribedLimits::Stated& other : stated) {
+      const auto limit = other.limits.*row.limit;
+      if (row.of_coupled || !limit) continue;
+      append(all, std::string(row.key) + " " + motion::formatNumber(*limit) + " of " + other.source,
+             ", ");
+    }
+  }
+  return all;
+}
+
 /// "velocity 1.5 of robot_description, not 2 of axes/m3/limits".
 std::string difference(const char* key, const Claim& strictest, const std::vector<Claim>& claims) {
   std::string others;
@@ -129,6 +144,12 @@ JointLimits DescribedLimits::strictest(const Owner& own, Problems& problems,
   }
   if (!different.empty()) {
     robot.warnings.push_back(name + ": its limits differ, the strictest count: " + different);
+  }
+  const std::string uncounted = own.coupled ? uncountedOf(stated->second) : std::string();
+  if (!uncounted.empty()) {
+    robot.warnings.push_back(name + ": " + uncounted +
+                             " do not count, as several axes move the joint: limit these instead "
+                             "(axes/<name>/limits)");
   }
   if (!taken.empty()) robot.notes.push_back(name + ": limits stated elsewhere: " + taken);
   return strictest;

@@ -106,7 +106,8 @@ LoadedRobot differential(const std::string& limits_from) {
 }
 
 TEST(DescribedLimits, OfACoupledJointAreNotThoseOfAnAxis) {
-  const LoadedRobot loaded = differential("urdf: {pitch: {velocity: 0.5, effort: 3}}");
+  const LoadedRobot loaded =
+      differential("urdf: {pitch: {velocity: 0.5, effort: 3}}, joint_limits: {pitch: {jerk: 60}}");
   EXPECT_EQ(loaded.problems, "");
   EXPECT_EQ(loaded.robot.axes.at(0).limits.velocity, 3.0);
   ASSERT_THAT(loaded.robot.couplings, SizeIs(1));
@@ -114,7 +115,12 @@ TEST(DescribedLimits, OfACoupledJointAreNotThoseOfAnAxis) {
   EXPECT_EQ(limits.velocity, 0.5);
   EXPECT_EQ(limits.upper, 1.0);
   EXPECT_FALSE(limits.effort.has_value());
-  EXPECT_THAT(loaded.robot.warnings, ElementsAre(HasSubstr("not 2 of couplings[0]/pitch/limits")));
+  EXPECT_FALSE(limits.jerk.has_value());
+  EXPECT_THAT(
+      loaded.robot.warnings,
+      ElementsAre(HasSubstr("not 2 of couplings[0]/pitch/limits"),
+                  "pitch: jerk 60 of joint_limits, effort 3 of urdf do not count, as several "
+                  "axes move the joint: limit these instead (axes/<name>/limits)"));
 }
 
 TEST(DescribedLimits, AReloadSeesWhatTheyChange) {
