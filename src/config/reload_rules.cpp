@@ -12,6 +12,8 @@ constexpr char kPdos[] = "the drive's PDOs are made for it";
 constexpr char kPlace[] = "where the joint stands is counted by it";
 constexpr char kOtherDrive[] = "it says which drive is driven, and how";
 constexpr char kHomed[] = "whether an axis is homed, and where its zero is, hangs on it";
+constexpr char kCoupled[] =
+    "the joints, their limits and how a skew is taken back are worked out with it";
 constexpr char kTf[] = "tf is told of it at the start";
 constexpr char kStart[] = "it is read at the start alone";
 
@@ -63,6 +65,7 @@ const std::vector<ReloadRule>& reloadRules() {
       {"axes/*/**", kRestart, kAsItBoots},
       {"groups/**", kRestart, "topics, services and actions are offered for it"},
       {"bus/**", kRestart, "the bus was opened, and the drives were configured, with it"},
+      {"couplings", kRestart, kCoupled},
       {"recorder/**", kRestart, "its memory and files are laid out at the start"},
       {"static_frames", kRestart, kTf},
       {"publish_tf", kRestart, kTf},

@@ -196,6 +196,8 @@ TEST(ReloadRules, KnowEveryKey) {
   EXPECT_EQ(reloadRuleOf("axes/a/homing/order").when, ChangeTime::disabled);
   EXPECT_EQ(reloadRuleOf("axes/a/homing/offset").when, ChangeTime::restart);
   EXPECT_EQ(reloadRuleOf("axes/a/pdos/rpdo1").when, ChangeTime::restart);
+  EXPECT_EQ(reloadRuleOf("couplings").when, ChangeTime::restart);
+  EXPECT_THAT(reloadRuleOf("couplings").because, HasSubstr("how a skew is taken back"));
 }
 
 TEST(Tunables, AreWhatCanBeChangedAtAnyTimeWithTheirValues) {
