@@ -15,6 +15,17 @@ namespace cia402::motion {
 namespace {
 
 constexpr double kTurn = 6.283185307179586;
+constexpr double kHalfTurn = 0.5 * kTurn;
+constexpr double kEqual = 1e-9;  // rad: two ways that differ by no more are as long as each other
+
+/// Whole turns, rad, that take `position` to where it is nearest to `from`. Where both ways there
+/// are half a turn it is the one that was asked for, as in ros_controllers' wraparoundJointOffset.
+double turnsTo(double from, double position) {
+  const double asked = position - from;
+  double way = std::remainder(asked, kTurn);
+  if (std::abs(std::abs(way) - kHalfTurn) < kEqual) way = std::copysign(kHalfTurn, asked);
+  return kTurn * std::round((way - asked) / kTurn);
+}
 
 TrajectoryError allPassed(const std::vector<TrajectoryPoint>& points, Time base, Time begin) {
   const double last = toSeconds(points.back().time_from_start);
@@ -58,7 +69,7 @@ TrajectoryResult Trajectory::create(const std::vector<Joint>& joints,
   const std::vector<double>& first = points[result.dropped_points_].positions;
   for (std::size_t j = 0; j < joints.size(); ++j) {
     if (!start.shortest_way || !joints[j].limits.continuous) continue;
-    shift[j] = kTurn * std::round((commanded[j].position - first[j]) / kTurn);
+    shift[j] = turnsTo(commanded[j].position, first[j]);
   }
   TrajectoryPlan plan({joints, commanded, points, result.dropped_points_, shift,
                        toSeconds(result.begin_ - base), std::move(durations_s)},

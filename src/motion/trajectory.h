@@ -26,7 +26,8 @@ struct TrajectoryStart {
   /// What time_from_start counts from; absent: now. (A zero stamp in the ROS message means absent.)
   std::optional<Time> start_time;
   /// Shift all positions of each continuous joint by whole turns, so that the first point that is
-  /// still ahead lies at most half a turn from the present position.
+  /// still ahead lies at most half a turn from the present position; where it is half a turn either
+  /// way (within 1e-9 rad), in the direction in which it was given.
   bool shortest_way = false;
 
   /// When the new trajectory takes over: the later of start time and now. The states given to

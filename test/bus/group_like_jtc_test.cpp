@@ -90,10 +90,27 @@ struct TurningShoulder : LikeJtc {
   }
 };
 
-TEST_F(TurningShoulder, HalfATurnIsHalfATurnEitherWay) {
-  sendPoints({{{M_PI, 0.0}, 4.0}});
+/// JTC's `wraparoundJointOffset`: where both ways are half a turn, the one towards the point.
+TEST_F(TurningShoulder, HalfATurnGoesTheWayThatWasAsked) {
+  for (const double goal : {M_PI, 0.0, -M_PI, 0.0}) {
+    sendPoints({{{goal, 0.0}, 4.0}});
+    world.run(4100ms);
+    EXPECT_NEAR(world.drives[0].radians(), goal, 1e-4);
+  }
+  sendPoints({{{-0.5 * M_PI, 0.0}, 4.0}});
   world.run(4100ms);
-  EXPECT_NEAR(std::abs(world.drives[0].radians()), M_PI, 1e-4);
+  sendPoints({{{0.5 * M_PI, 0.0}, 4.0}});
+  world.run(4100ms);
+  EXPECT_NEAR(world.drives[0].radians(), 0.5 * M_PI, 1e-4);
+}
+
+TEST_F(TurningShoulder, OneTurnAndAHalfIsHalfATurnTheSameWay) {
+  sendPoints({{{3.0 * M_PI, 0.0}, 4.0}});
+  world.run(4100ms);
+  EXPECT_NEAR(world.drives[0].radians(), M_PI, 1e-4);
+  sendPoints({{{-2.0 * M_PI, 0.0}, 4.0}});
+  world.run(4100ms);
+  EXPECT_NEAR(world.drives[0].radians(), 0.0, 1e-4);
 }
 
 TEST_F(TurningShoulder, MoreThanHalfATurnGoesTheOtherWay) {

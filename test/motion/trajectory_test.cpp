@@ -196,6 +196,34 @@ TEST_F(TrajectorySampling, ContinuousJointTakesTheShortestWayWhereAsked) {
   EXPECT_NEAR(wrapped->goal()[0], 2 * kPi - 2, 1e-12);
 }
 
+// ros_controllers' wraparoundJointOffset: within 1e-9 of half a turn the asked direction is kept.
+TEST_F(TrajectorySampling, HalfATurnKeepsTheAskedDirection) {
+  joints[0].limits.continuous = true;
+  start.shortest_way = true;
+  const struct {
+    double from, first, goal;
+  } cases[] = {
+      {0.0, kPi, kPi},
+      {0.0, -kPi, -kPi},
+      {kPi, 0.0, 0.0},
+      {-kPi, 0.0, 0.0},
+      {-kPi / 2, kPi / 2, kPi / 2},
+      {kPi / 2, -kPi / 2, -kPi / 2},
+      {0.0, 3 * kPi, kPi},
+      {0.0, -3 * kPi, -kPi},
+      {0.0, kPi + 0.5e-9, kPi},
+      {0.0, -kPi - 0.5e-9, -kPi},
+      {1.0, 1.0 + 5 * kPi, 1.0 + kPi},
+      {0.0, kPi + 1e-6, -kPi + 1e-6},  // the other way is shorter
+      {0.0, -kPi - 1e-6, kPi - 1e-6},
+  };
+  for (const auto& way : cases) {
+    commanded[0].position = way.from;
+    EXPECT_NEAR(create({point(4, {way.first, 0})})->goal()[0], way.goal, 1e-8)
+        << way.from << " to " << way.first;
+  }
+}
+
 TEST_F(TrajectorySampling, OrdinaryJointNeverTakesAShorterWayRound) {
   start.shortest_way = true;
   commanded[0].position = 3;
